@@ -1,0 +1,130 @@
+// Chunked bump allocator; see arena.h.
+#include "base/arena.h"
+
+#include "base/guard.h"
+
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+struct chunk {
+    struct chunk *next;
+    size_t size, used; // bytes of payload
+    _Alignas(16) unsigned char data[];
+};
+
+struct ct_arena {
+    struct chunk *head;
+    size_t total;
+};
+
+static const size_t first_chunk = 4096, largest_chunk = 1 << 22;
+
+static struct chunk *chunk_create(size_t size)
+{
+    if (ct_guard_must_fail())
+        return NULL;
+    struct chunk *c = calloc(1, sizeof *c + size);
+    if (c)
+        c->size = size;
+    return c;
+}
+
+struct ct_arena *ct_arena_create(void)
+{
+    struct ct_arena *a = ct_guard_must_fail() ? NULL : calloc(1, sizeof *a);
+    return a;
+}
+
+void ct_arena_destroy(struct ct_arena *a)
+{
+    if (!a)
+        return;
+    for (struct chunk *c = a->head, *next; c; c = next) {
+        next = c->next;
+        free(c);
+    }
+    free(a);
+}
+
+void *ct_arena_alloc(struct ct_arena *a, size_t size)
+{
+    if (size > SIZE_MAX / 2)
+        ct_guard_raise();
+    size = (size + 15) & ~(size_t)15;
+    struct chunk *c = a->head;
+    if (!c || c->size - c->used < size) {
+        size_t want = c ? 2 * c->size : first_chunk;
+        if (want > largest_chunk)
+            want = largest_chunk;
+        if (want < size)
+            want = size;
+        c = chunk_create(want);
+        if (!c)
+            ct_guard_raise();
+        c->next = a->head;
+        a->head = c;
+    }
+    void *p = c->data + c->used;
+    c->used += size;
+    a->total += size;
+    return p;
+}
+
+void *ct_arena_calloc(struct ct_arena *a, size_t n, size_t size)
+{
+    if (size && n > SIZE_MAX / 2 / size)
+        ct_guard_raise();
+    return ct_arena_alloc(a, n * size);
+}
+
+char *ct_arena_strndup(struct ct_arena *a, const char *s, size_t n)
+{
+    char *p = ct_arena_alloc(a, n + 1);
+    memcpy(p, s, n);
+    return p;
+}
+
+char *ct_arena_strdup(struct ct_arena *a, const char *s)
+{
+    return ct_arena_strndup(a, s, strlen(s));
+}
+
+char *ct_arena_vprintf(struct ct_arena *a, const char *fmt, va_list ap)
+{
+    va_list again;
+    va_copy(again, ap);
+    int n = vsnprintf(NULL, 0, fmt, ap);
+    char *p = ct_arena_alloc(a, (size_t)(n < 0 ? 0 : n) + 1);
+    if (n >= 0)
+        vsnprintf(p, (size_t)n + 1, fmt, again);
+    va_end(again);
+    return p;
+}
+
+char *ct_arena_printf(struct ct_arena *a, const char *fmt, ...)
+{
+    va_list ap;
+    va_start(ap, fmt);
+    char *p = ct_arena_vprintf(a, fmt, ap);
+    va_end(ap);
+    return p;
+}
+
+void *ct_arena_grow(struct ct_arena *a, void *array, size_t n, size_t *cap, size_t size)
+{
+    if (n < *cap)
+        return array;
+    size_t more = *cap ? 2 * *cap : 8;
+    void *p = ct_arena_calloc(a, more, size);
+    if (n)
+        memcpy(p, array, n * size);
+    *cap = more;
+    return p;
+}
+
+size_t ct_arena_used(const struct ct_arena *a)
+{
+    return a->total;
+}

@@ -1,0 +1,48 @@
+// Memory that is freed all at once.
+//
+//     arena:  [ chunk 4 KiB ] -> [ chunk 8 KiB ] -> [ chunk 16 KiB ] ...
+//                                      ^ next free byte
+//
+// What always holds: memory is zeroed, aligned to 16 bytes, and stays where it is until the arena
+// is released. Allocation never returns NULL: when the system has no memory left it jumps to the
+// guard of the public entry point (guard.h), which reports E001.
+#ifndef CT_BASE_ARENA_H
+#define CT_BASE_ARENA_H
+
+#include <stdarg.h>
+#include <stddef.h>
+
+#define COUNT(a) (sizeof(a) / sizeof((a)[0]))
+
+struct ct_arena;
+
+/// A new arena, or NULL without memory. Errors of later allocations go to the current guard.
+struct ct_arena *ct_arena_create(void);
+void ct_arena_destroy(struct ct_arena *a);
+
+/// size bytes, zeroed. Cost: O(size).
+void *ct_arena_alloc(struct ct_arena *a, size_t size);
+/// n elements of size bytes; an overflow of the product counts as out of memory.
+void *ct_arena_calloc(struct ct_arena *a, size_t n, size_t size);
+char *ct_arena_strdup(struct ct_arena *a, const char *s);
+char *ct_arena_strndup(struct ct_arena *a, const char *s, size_t n);
+char *ct_arena_printf(struct ct_arena *a, const char *fmt, ...)
+    __attribute__((format(printf, 2, 3)));
+char *ct_arena_vprintf(struct ct_arena *a, const char *fmt, va_list ap);
+
+/// Bytes handed out so far, for reports.
+size_t ct_arena_used(const struct ct_arena *a);
+
+#define CT_NEW(a, T) ((T *)ct_arena_alloc((a), sizeof(T)))
+#define CT_NEWN(a, T, n) ((T *)ct_arena_calloc((a), (size_t)(n), sizeof(T)))
+
+/// Room for one more element in a growable array: returns the array, moved if it had to grow.
+/// n is the used count, *cap the room. Use through CT_PUSH.
+void *ct_arena_grow(struct ct_arena *a, void *array, size_t n, size_t *cap, size_t size);
+
+/// Append v to array (an lvalue pointer) with counters n and cap (lvalues, size_t).
+#define CT_PUSH(a, array, n, cap, v)                                                           \
+    ((array) = ct_arena_grow((a), (array), (n), &(cap), sizeof *(array)),                      \
+     (void)((array)[(n)++] = (v)))
+
+#endif

@@ -1,0 +1,32 @@
+// The one non-local exit: out of memory.
+//
+// A public entry point that allocates opens a guard; arenas jump to it when the system refuses
+// memory. Guards nest; each thread has its own. Only arena.c and guard.c know longjmp.
+#ifndef CT_BASE_GUARD_H
+#define CT_BASE_GUARD_H
+
+#include <setjmp.h>
+
+struct ct_guard {
+    jmp_buf env;
+    struct ct_guard *outer;
+};
+
+void ct_guard_push(struct ct_guard *g);
+void ct_guard_pop(struct ct_guard *g);
+/// Jump to the innermost guard; aborts if there is none.
+_Noreturn void ct_guard_raise(void);
+
+/// for (struct ct_guard g; ...) would hide the setjmp; use it as
+///     struct ct_guard g;
+///     ct_guard_push(&g);
+///     if (setjmp(g.env)) { ct_guard_pop(&g); return report_no_memory(ctx); }
+///     ... work ...
+///     ct_guard_pop(&g);
+
+/// Tests only: let the n-th allocation from now fail (0 = never).
+void ct_guard_fail_after(long n);
+/// Counts one allocation; true if it is the one that must fail.
+int ct_guard_must_fail(void);
+
+#endif

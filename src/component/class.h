@@ -1,0 +1,152 @@
+// Component classes and their instances: what the reader fills in and formulate asks for.
+//
+//     class (const, components/NAME.c)          instance (model arena)
+//       name, keys[] ------- checked by -------> value[] one per key
+//       motion / wrench / inertia                frames, marks
+//
+// What always holds: a class is constant data; from its key table alone come the checks of the
+// reader, `cotree components` and `cotree schema`. Values are expressions in the model's store, SI.
+#ifndef CT_COMPONENT_CLASS_H
+#define CT_COMPONENT_CLASS_H
+
+#include "expr/ex.h"
+
+struct ct_model;
+struct ct_instance;
+
+enum ct_family { CT_FAMILY_BODY, CT_FAMILY_JOINT, CT_FAMILY_FORCE };
+
+enum ct_value_kind {
+    CT_VALUE_SCALAR, // one expression
+    CT_VALUE_VEC3,   // three expressions
+    CT_VALUE_LIST,   // `least`..`most` expressions; a single scalar counts as a list of one
+    CT_VALUE_COORDS, // one per coordinate of the joint (a scalar for one); `~` leaves a hole
+    CT_VALUE_AXIS,   // x, y, z or [ux, uy, uz]; three expressions, normalised by the reader
+    CT_VALUE_AXES,   // two axes: six expressions
+    CT_VALUE_TURNS,  // [axis, angle] or a list of such
+    CT_VALUE_FRAME,  // a frame's name
+    CT_VALUE_NAMES,  // list of new names (coordinates of a custom joint)
+    CT_VALUE_JOINTS, // list of joint coordinates: `a` or `a.q2`
+    CT_VALUE_POINTS, // the points of a body
+    CT_VALUE_INITIAL, // {q:, u:, rotate:, guess:} of a joint
+};
+
+enum {
+    CT_KEY_REQUIRED = 1,
+    CT_KEY_TIME = 2,  // may use t, and may be a {table: ...}
+    CT_KEY_STATE = 4, // may use t and signals, and may be a {table: ...}
+    CT_KEY_LOCAL = 8  // may use the coordinate names of its own custom joint
+};
+
+/// One key of a component in the model file.
+struct ct_key {
+    const char *name;
+    enum ct_value_kind kind;
+    unsigned flags;
+    const char *unit; // dimension of each expression, as a unit: "kg", "N*m/rad", "" none; NULL: any
+    int least, most;  // LIST: admissible lengths lie in least..most (inertia also checks 1, 3, 6)
+    const char *doc;  // one line, with the default
+};
+
+struct ct_turn {
+    ct_ex3 axis; // unit vector
+    ct_ex angle; // [rad]
+};
+
+struct ct_value {
+    bool given;
+    struct ct_mark mark;   // of the value
+    size_t n;              // number of expressions
+    ct_ex *e;              // expressions
+    struct ct_mark *at;    // mark of each
+    bool *hole;            // COORDS: true where `~` stood
+    int frame;             // FRAME: index into the model's frames
+    const char *const *name; // NAMES, JOINTS: n texts
+    size_t nturn;
+    struct ct_turn *turn; // TURNS
+};
+
+enum { CT_MAX_COORD = 12, CT_MAX_ROW = 6 };
+
+/// How a coordinate is measured from the relative motion of the frames, for a joint that is a chord.
+///   length      q = along . d                        u = along . d'
+///   angle       q = angle about `about` from v (axes of `from`) to R w (w in axes of `to`)
+///               u = (from . w_rel) + (to . w_rel),   w_rel = angular velocity of `to` in `from`
+///   quaternion  first of the four stored numbers; u = components of w_rel in axes of `to`
+enum ct_measure_kind { CT_MEASURE_LENGTH, CT_MEASURE_ANGLE, CT_MEASURE_QUATERNION };
+struct ct_measure {
+    enum ct_measure_kind kind;
+    ct_ex3 along;      // LENGTH: unit vector in axes of `from`
+    bool reversed;     // ANGLE: `about` is fixed in `to`, and the angle is that from R v to w
+    ct_ex3 about;      // ANGLE: unit vector, in axes of `from` (of `to` when reversed)
+    ct_ex3 v, w;       // ANGLE: in axes of `from` and of `to`
+    ct_ex3 from, to;   // ANGLE: direction of the rate, parts in axes of `from` and of `to`
+};
+
+/// Freedom of motion of a joint: translation d of the origin of `to` in axes of `from`, rotation
+/// R = R_1 R_2 ... from components of `to` to those of `from`.  (formulation 1.3, 1.8)
+struct ct_motion {
+    int ncoord;              // stored coordinates: a quaternion counts 4
+    int nfree;               // speeds
+    ct_ex coord[CT_MAX_COORD]; // in:  symbols (or driver expressions) of the coordinates
+    ct_ex3 d;                // out: [m]
+    int nturn;               // out: successive rotations about axes in the frame turned so far
+    struct ct_turn turn[CT_MAX_COORD];
+    int quaternion; // index of the first of 4 coordinates that give a 3-dof rotation, or -1.
+                    // Such a rotation is the whole rotation: nturn = 0.
+    bool coupled;   // translation and rotation share a coordinate, or no constraint rows exist:
+                    // the joint is always a branch (custom, screw)
+
+    int nmeasure; // length and angle: one per coordinate; a quaternion: one for its four
+    struct ct_measure measure[CT_MAX_COORD];
+
+    // Rows when the joint is a chord. Translational: directions in axes of `from`.
+    int ntrans;
+    ct_ex3 trans[3];
+    // Rotational: pairs (s | t), s in axes of `from`, t in axes of `to`, with s . R t constant.
+    int nrot;
+    ct_ex3 rot_from[3], rot_to[3];
+};
+
+/// Start values of a joint: `initial: {q:, u:, rotate:, guess:}`.
+struct ct_initial {
+    struct ct_value q, u;
+    struct ct_value rotate; // turns; n = 0 when absent
+    bool guess;
+};
+
+struct ct_instance {
+    const struct ct_component_class *cls;
+    const char *name;
+    struct ct_mark mark;
+    const struct ct_value *value;  // one per key: family keys first, then the class's own
+    struct ct_initial initial;     // joints
+    const ct_ex *local;            // symbols of the coordinate names of a custom joint
+    int ncoord, nfree;             // joints: resolved counts
+    int from, to;                  // joints and two-ended forces: frames; else -1
+};
+
+/// Value of a key of the instance by name; the key must exist (asserted). `given` tells if it was.
+const struct ct_value *ct_instance_value(const struct ct_instance *self, const char *key);
+
+struct ct_component_class {
+    const char *name, *summary;
+    enum ct_family family;
+    const struct ct_key *key; // keys of its own; those of the family come from class.c
+    int nkey;
+    const char *across, *through; // terminal equations, for `components` and `--show terminal`
+    int ncoord, nfree;            // joints; custom: -1, from its list of coordinates
+    /// Joints: fill `m` from the instance. coord[] is set by the caller.
+    void (*motion)(struct ct_exs *x, const struct ct_instance *self, struct ct_motion *m);
+};
+
+/// Keys that every joint has besides its own (from, to, initial, stiffness, damping, rest, effort,
+/// motion); empty for other families.
+const struct ct_key *ct_family_keys(enum ct_family family, int *nkey);
+
+/// All classes in the order of components/meson.build.
+extern const struct ct_component_class *const ct_component_classes[];
+extern const int ct_ncomponent_class;
+const struct ct_component_class *ct_component_find(enum ct_family family, const char *name);
+
+#endif

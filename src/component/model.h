@@ -1,0 +1,101 @@
+// The model as read: instances with marks, names resolved, nothing derived yet.
+//
+//     frame 0 = ground ("ground"); each body owns the frame of its name; each point is one more
+//
+// What always holds after ct_model_read: every name is resolved, units are SI, every value has the
+// right dimension and count, parameters have values in definition order, nothing is cyclic.
+// Expressions live in model->x and may contain symbols of kind TIME, PARAM and SIGNAL only (LOCAL too
+// in custom joints).
+#ifndef CT_COMPONENT_MODEL_H
+#define CT_COMPONENT_MODEL_H
+
+#include "component/class.h"
+
+struct ct_frame {
+    const char *name; // "crank", "crank.tip"
+    struct ct_mark mark;
+    int body;  // index; 0 is ground
+    ct_ex3 at; // of a point: in axes of its body [m]; zero for a body's own frame
+    int nturn;
+    struct ct_turn *turn; // axes of the point out of the body's: R = R1 R2 ...
+};
+
+struct ct_body {
+    struct ct_instance instance; // class rigid or particle; ground has class NULL
+    int frame;                   // its own
+    ct_ex mass;                  // [kg]
+    ct_ex3 com;                  // [m] in body axes
+    ct_ex inertia[6];            // xx yy zz xy xz yz about the centre of mass, body axes [kg m^2]
+    bool is_particle;
+};
+
+struct ct_parameter {
+    const char *name;
+    struct ct_mark mark;
+    ct_ex symbol;     // CT_SYM_PARAM, index = place in model->parameter
+    ct_ex definition; // in terms of other parameters
+    double value;
+};
+
+/// One entry of `outputs`: a signal, a vector signal (several columns later) or an expression.
+struct ct_output {
+    const char *name; // as written
+    struct ct_mark mark;
+    bool is_signal;
+    ct_ex value; // SIGNAL symbol or expression
+};
+
+enum ct_rate_jumps { CT_RATE_IMPULSE, CT_RATE_CONTINUOUS };
+
+struct ct_simulation {
+    double duration;    // [s]
+    long samples;       // at least 2 unless the duration is 0; both ends included
+    double interval;    // [s] instead of samples; 0 when samples were given
+    double rtol, atol;  // `tolerance` (default 1e-8), `absolute` (default tolerance / 100)
+    double step;        // fixed step [s]; 0: controlled
+    const char *method; // "auto"
+    enum ct_rate_jumps rate_jumps;
+    struct ct_value small; // names
+    struct ct_mark mark;
+};
+
+struct ct_model {
+    struct ct_exs *x;
+    const char *file; // as given on the command line
+    const char *name, *description;
+    ct_ex time; // the symbol t
+    ct_ex3 gravity; // [m/s^2]
+    struct ct_parameter *parameter;
+    size_t nparameter, parameter_cap;
+    struct ct_frame *frame;
+    size_t nframe, frame_cap;
+    struct ct_body *body; // [0] is ground
+    size_t nbody, body_cap;
+    struct ct_instance *joint;
+    size_t njoint, joint_cap;
+    struct ct_instance *force;
+    size_t nforce, force_cap;
+    struct ct_output *output;
+    size_t noutput, output_cap;
+    struct ct_simulation simulation;
+};
+
+/// An override from the command line: "NAME=VALUE", the value an expression or a quantity.
+struct ct_set {
+    const char *text;
+};
+
+/// Read, check and resolve a model file. Reports every problem it can find in one pass.
+/// Errors: all E1xx. Cost: linear in the file.
+bool ct_model_read(struct ct_ctx *ctx, const char *path, const struct ct_set *set, size_t nset,
+                   struct ct_model *m);
+
+/// Value of an expression of parameters alone.
+double ct_model_number(const struct ct_model *m, ct_ex e);
+
+int ct_model_find_joint(const struct ct_model *m, const char *name);
+int ct_model_find_frame(const struct ct_model *m, const char *name);
+int ct_model_find_body(const struct ct_model *m, const char *name);
+int ct_model_find_force(const struct ct_model *m, const char *name);
+
+#endif

@@ -1,0 +1,184 @@
+// The expression graph: one hash-consed store of nodes.
+//
+//     id   0    1     2      3        4          5
+//          0    1    theta  sin(2)   m        mul(4,3)      children have smaller ids than parents
+//
+// What always holds: equal ids mean equal expressions (up to the local rules below), a node's
+// children have smaller ids, so evaluating is a loop upwards and a reverse derivative the same loop
+// downwards. Constants are told apart by bit pattern, -0 and 0 are the same node; a NaN is never
+// stored as a constant except as the value of an explicit NaN operation at run time.
+//
+// Local rules applied on construction: constants are folded, 0 and 1 vanish, signs are pulled out of
+// products and quotients, commutative operands are ordered by id, x - x = 0, x + x = 2 x,
+// c (d x) = (c d) x, sin(-x) = -sin(x), cos(-x) = cos(x), x - (-y) = x + y. Nothing is expanded.
+#ifndef CT_EXPR_EX_H
+#define CT_EXPR_EX_H
+
+#include "base/ctx.h"
+
+#include <stdint.h>
+
+typedef struct {
+    uint32_t id;
+} ct_ex;
+
+typedef struct {
+    ct_ex e[3];
+} ct_ex3; // three components in some frame
+
+typedef struct {
+    ct_ex e[9];
+} ct_ex33; // column-major 3 x 3, e[row + 3 * column]
+
+enum ct_op {
+#define OP(op, narg, name) op,
+#include "expr/ops.def"
+#undef OP
+    CT_NOP
+};
+
+extern const struct ct_op_info {
+    const char *name;
+    int narg;
+} ct_op_info[CT_NOP];
+
+/// What a symbol stands for. The kind decides who gives its value at run time.
+enum ct_sym_kind {
+    CT_SYM_TIME,   // t                                                     [s]
+    CT_SYM_PARAM,  // a model parameter, constant during a run
+    CT_SYM_Q,      // stored coordinate (quaternions have four)
+    CT_SYM_U,      // speed
+    CT_SYM_A,      // derivative of a speed
+    CT_SYM_LAM,    // multiplier of a constraint row
+    CT_SYM_MODE,   // 0 or 1: the side of a comparison, constant between events
+    CT_SYM_MEMORY, // value kept from the last accepted step (angle of a chord)
+    CT_SYM_WORK,   // energy.work: a quadrature beside the states
+    CT_SYM_LOCAL,  // argument of an expression of its own: coordinate of a custom joint, x of a beam
+    CT_SYM_SIGNAL, // a signal name not yet resolved; formulate substitutes it
+};
+
+struct ct_sym {
+    enum ct_sym_kind kind;
+    const char *name; // as printed: "theta.q", "length"
+    uint32_t index;   // its place in the vector of its kind
+    struct ct_mark mark;
+};
+
+/// 16 bytes. CONST: a indexes the constants. SYM: a indexes the symbols. TABLE: a is the argument,
+/// b the table's number, c the order of its derivative.
+struct ct_exnode {
+    uint32_t op, a, b, c;
+};
+
+/// A sampled function of one variable, for CT_OP_TABLE (drivers from files).
+struct ct_table {
+    const char *file, *column;
+    size_t n;
+    const double *x, *y; // x strictly increasing
+    const double *m;     // slopes at the points (cubic Hermite of the natural spline), NULL: linear
+};
+
+struct ct_exs {
+    struct ct_arena *arena;
+    struct ct_exnode *node;
+    size_t nnode, node_cap;
+    double *constant;
+    size_t nconstant, constant_cap;
+    struct ct_sym *sym;
+    size_t nsym, sym_cap;
+    const struct ct_table *table;
+    size_t ntable, table_cap;
+    uint32_t *hash; // open addressing, 0 is free, else id + 1
+    size_t hash_size;
+    const char **label; // optional name by node id, for printing; NULL where none
+    size_t label_cap;
+};
+
+void ct_exs_init(struct ct_exs *x, struct ct_arena *arena);
+
+// ---- leaves ---------------------------------------------------------------------------------
+
+ct_ex ct_ex_const(struct ct_exs *x, double v);
+/// A new symbol each time; keep the handle.
+ct_ex ct_ex_sym(struct ct_exs *x, enum ct_sym_kind kind, const char *name, uint32_t index);
+#define CT_EX_ZERO ((ct_ex){0})
+#define CT_EX_ONE ((ct_ex){1})
+
+// ---- nodes ----------------------------------------------------------------------------------
+
+ct_ex ct_ex_add(struct ct_exs *x, ct_ex a, ct_ex b);
+ct_ex ct_ex_sub(struct ct_exs *x, ct_ex a, ct_ex b);
+ct_ex ct_ex_mul(struct ct_exs *x, ct_ex a, ct_ex b);
+ct_ex ct_ex_div(struct ct_exs *x, ct_ex a, ct_ex b);
+ct_ex ct_ex_neg(struct ct_exs *x, ct_ex a);
+ct_ex ct_ex_pow(struct ct_exs *x, ct_ex a, ct_ex b);
+/// Any operator with one argument (SQRT, SIN, ...).
+ct_ex ct_ex_fun(struct ct_exs *x, enum ct_op op, ct_ex a);
+/// Any operator with two arguments, ADD and so on included.
+ct_ex ct_ex_fun2(struct ct_exs *x, enum ct_op op, ct_ex a, ct_ex b);
+/// c != 0 ? a : b
+ct_ex ct_ex_if(struct ct_exs *x, ct_ex c, ct_ex a, ct_ex b);
+ct_ex ct_ex_table(struct ct_exs *x, uint32_t table, uint32_t order, ct_ex a);
+ct_ex ct_ex_scale(struct ct_exs *x, double c, ct_ex a);
+
+// ---- questions ------------------------------------------------------------------------------
+
+static inline const struct ct_exnode *ct_ex_node(const struct ct_exs *x, ct_ex a)
+{
+    return &x->node[a.id];
+}
+static inline bool ct_ex_same(ct_ex a, ct_ex b)
+{
+    return a.id == b.id;
+}
+static inline bool ct_ex_is_zero(ct_ex a)
+{
+    return a.id == 0;
+}
+bool ct_ex_is_const(const struct ct_exs *x, ct_ex a, double *v);
+/// The symbol a node stands for, or NULL.
+const struct ct_sym *ct_ex_symbol(const struct ct_exs *x, ct_ex a);
+/// Bit set (1u << kind) of the kinds of symbols below a.
+unsigned ct_ex_kinds(const struct ct_exs *x, ct_ex a);
+
+// ---- derivatives, substitution, values ----------------------------------------------------------
+
+/// da/ds for a symbol s; comparisons and sign have derivative 0, `if` differentiates its branches.
+/// Cost: nodes below a, each once.
+ct_ex ct_ex_diff(struct ct_exs *x, ct_ex a, ct_ex s);
+/// Sum over i of da/ds[i] * ds[i]: the directional (or total time) derivative. Same cost.
+ct_ex ct_ex_diff_along(struct ct_exs *x, ct_ex a, const ct_ex *s, const ct_ex *ds, size_t n);
+/// a with each symbol from[i] replaced by to[i].
+ct_ex ct_ex_subst(struct ct_exs *x, ct_ex a, const ct_ex *from, const ct_ex *to, size_t n);
+/// Copy a from store `from` into x; leaf(data, x, from, symbol) gives the node for a symbol.
+typedef ct_ex (*ct_ex_leaf_fn)(void *data, struct ct_exs *x, const struct ct_exs *from, ct_ex s);
+ct_ex ct_ex_import(struct ct_exs *x, const struct ct_exs *from, ct_ex a, ct_ex_leaf_fn leaf,
+                   void *data);
+/// Value with value[k] for symbol k (index into x->sym). Slow; for checks, defaults and tests.
+double ct_ex_value(const struct ct_exs *x, ct_ex a, const double *value);
+/// One operator on numbers: what every evaluator must agree with.
+double ct_op_apply(enum ct_op op, double a, double b, double c);
+/// Value of the order-th derivative of a table at x; NaN outside its range.
+double ct_table_value(const struct ct_table *t, uint32_t order, double x);
+
+// ---- three components ----------------------------------------------------------------------------
+
+ct_ex3 ct_ex3_add(struct ct_exs *x, ct_ex3 a, ct_ex3 b);
+ct_ex3 ct_ex3_sub(struct ct_exs *x, ct_ex3 a, ct_ex3 b);
+ct_ex3 ct_ex3_neg(struct ct_exs *x, ct_ex3 a);
+ct_ex3 ct_ex3_scale(struct ct_exs *x, ct_ex c, ct_ex3 a);
+ct_ex3 ct_ex3_cross(struct ct_exs *x, ct_ex3 a, ct_ex3 b);
+ct_ex ct_ex3_dot(struct ct_exs *x, ct_ex3 a, ct_ex3 b);
+ct_ex3 ct_ex3_const(struct ct_exs *x, const double v[3]);
+bool ct_ex3_is_zero(ct_ex3 a);
+/// A b, A' b
+ct_ex3 ct_ex33_apply(struct ct_exs *x, const ct_ex33 *A, ct_ex3 b);
+ct_ex3 ct_ex33_apply_t(struct ct_exs *x, const ct_ex33 *A, ct_ex3 b);
+/// A B
+ct_ex33 ct_ex33_mul(struct ct_exs *x, const ct_ex33 *A, const ct_ex33 *B);
+ct_ex33 ct_ex33_identity(void);
+ct_ex33 ct_ex33_transpose(const ct_ex33 *A);
+/// Rotation about the unit vector n by the angle a (right-handed): columns are the turned axes.
+ct_ex33 ct_ex33_axis_angle(struct ct_exs *x, ct_ex3 n, ct_ex a);
+
+#endif

@@ -1,0 +1,79 @@
+// Linear graphs: nodes, oriented edges, spanning trees, cutsets and circuits. Integers only.
+//
+//     node 0 is ground (the datum); an edge goes from tail to head; incidence +1 at the head
+//
+// What always holds: a tree's arrays have one entry per node (parent edge, parent node, depth) and
+// one per edge (is_branch); `order` lists the nodes root first, so parents precede children.
+// Ties are broken by edge index: the same graph gives the same tree.
+#ifndef CT_GRAPH_GRAPH_H
+#define CT_GRAPH_GRAPH_H
+
+#include "base/ctx.h"
+
+struct ct_edge {
+    int tail, head;
+};
+
+struct ct_graph {
+    int nnode, nedge;
+    const struct ct_edge *edge;
+};
+
+/// A spanning tree rooted at node 0.
+struct ct_tree {
+    int nnode, nedge, nbranch, nchord;
+    bool *is_branch;  // per edge
+    int *parent_edge; // per node; -1 at the root
+    int *parent;      // per node; -1 at the root
+    int *sign;        // per node: +1 if its parent edge points away from the root, else -1
+    int *depth;       // per node, in edges
+    int *order;       // nnode nodes, parents before children
+    int *branch;      // edge numbers, ascending
+    int *chord;       // edge numbers, ascending
+};
+
+/// Compressed columns of -1, +1; rows sorted.
+struct ct_incidence {
+    int nrow, ncol;
+    int *start; // ncol + 1
+    int *row;
+    signed char *value;
+};
+
+/// Spanning tree of least weight (Kruskal); edges of weight < 0 are never branches. Among equal
+/// weights the smaller `rank` wins, then the smaller index. rank may be NULL.
+/// False if no spanning tree exists; then component[v] (nnode, may be NULL) numbers the pieces, 0 is ground's.
+/// Cost O(e log e).
+bool ct_tree_kruskal(struct ct_arena *a, const struct ct_graph *g, const int *weight,
+                     const int *rank, struct ct_tree *t, int *component);
+
+/// The tree with the given branches; false if they are no spanning tree.
+bool ct_tree_from_branches(struct ct_arena *a, const struct ct_graph *g, const bool *is_branch,
+                           struct ct_tree *t);
+
+/// Debug: every node has a parent but the root, branches and parent edges agree. NULL if so, else what is wrong.
+const char *ct_tree_check(const struct ct_graph *g, const struct ct_tree *t);
+
+/// Number of spanning trees whose branches include all `forced` edges and no `banned` one
+/// (matrix-tree theorem, in double; exact below 2^53). Either array may be NULL. Cost O(n^3).
+double ct_tree_count(struct ct_arena *scratch, const struct ct_graph *g, const bool *forced,
+                     const bool *banned);
+
+/// Call visit(data, is_branch) for every such tree, in lexicographic order of branches, until it returns false.
+bool ct_tree_enumerate(struct ct_arena *scratch, const struct ct_graph *g, const bool *forced,
+                       const bool *banned, bool (*visit)(void *data, const bool *is_branch),
+                       void *data);
+
+/// The fundamental circuit of chord e: n branches and their signs (in the sense of the chord,
+/// formulation 3.2: across_e = -sum sign * across_branch ... ) written to branch[] and sign[] (room nbranch). Returns n.
+int ct_tree_circuit(const struct ct_graph *g, const struct ct_tree *t, int e, int *branch,
+                    signed char *sign);
+
+/// Fundamental circuits B_f = [B_t 1] (nchord x nedge, columns are edges) and cutsets A_f = [1 A_cut]
+/// (nbranch x nedge); rows in the order of t->chord and t->branch. A_f B_f' = 0 exactly. (3.1)-(3.3)
+void ct_circuits_derive(struct ct_arena *a, const struct ct_graph *g, const struct ct_tree *t,
+                        struct ct_incidence *Bf);
+void ct_cutsets_derive(struct ct_arena *a, const struct ct_graph *g, const struct ct_tree *t,
+                       struct ct_incidence *Af);
+
+#endif

@@ -1,0 +1,94 @@
+// An initial value problem as integrators see it: arrays and callbacks, no model.
+//
+//     y' = f(t, y)   with  events, a projection after each step and samples on the way
+//
+// What always holds: between two events f is smooth; f is called at stage points that may lie off the
+// constraint manifold; after `project` the state lies on it. Nothing allocates while stepping.
+#ifndef CT_INTEGRATE_PROBLEM_H
+#define CT_INTEGRATE_PROBLEM_H
+
+#include "base/ctx.h"
+
+enum ct_eval { CT_EVAL_OK, CT_EVAL_RETRY /* take a smaller step */, CT_EVAL_FATAL /* diagnosed */ };
+
+struct ct_problem {
+    void *user;
+    int ny;              // states
+    const bool *watched; // per state: counts in error control (quadratures do not)
+
+    /// dy (ny, out) = f(t, y).
+    enum ct_eval (*rhs)(void *user, double t, const double *y, double *dy);
+
+    /// Move y onto the constraints; called on accepted steps and on interpolated samples. May be NULL.
+    enum ct_eval (*project)(void *user, double t, double *y);
+
+    /// After a step was accepted and projected: update memories and choices that keep f the same
+    /// function. May be NULL.
+    enum ct_eval (*accepted)(void *user, double t, double *y);
+
+    /// Root functions on the state, g (nroot, out); a sign change within a step is an event. g is
+    /// continuous within the step.
+    int nroot;
+    enum ct_eval (*root)(void *user, double t, const double *y, double *g);
+
+    /// The first time event after t, or INFINITY. May be NULL. Steps end exactly on it.
+    double (*next_time_event)(void *user, double t);
+
+    /// At an event: t and y are those of the event, crossed[i] (nroot) is -1 or +1 for the roots that
+    /// changed sign downwards or upwards, 0 else; is_time tells that a time event is due. Changes modes and may change y
+    /// (impulses). Integration restarts after it.
+    enum ct_eval (*event)(void *user, double t, double *y, const signed char *crossed, bool is_time);
+};
+
+struct ct_integrate_options {
+    double t0, t1;
+    double rtol, atol;    // tolerance of the states; see ct_integrate
+    double step;          // > 0: fixed step; ends on events and samples
+    double first_step;    // 0: chosen
+    long max_steps;       // 0: 100 million
+    const double *sample; // nsample times in [t0, t1], ascending
+    size_t nsample;
+    /// Called once for each sample, in order. A sample on an event is given after it. y may be used
+    /// freely; dy is not given. Return false to stop (a diagnostic is there).
+    bool (*at_sample)(void *user, double t, const double *y);
+    /// Called after each accepted step for progress; may be NULL. Return false to stop quietly.
+    bool (*at_step)(void *user, double t, const double *y);
+};
+
+struct ct_integrate_stats {
+    long steps, rejected_steps, evaluations, jacobians, factorizations, events;
+    double last_time; // reached, also on failure
+};
+
+/// One integration method: a constant table in a file of its own.
+struct ct_method {
+    const char *name;    // as in `simulation.method`
+    const char *summary; // one line for `cotree methods`
+    const char *source;  // key into docs/references.bib
+    int order;
+    bool is_implicit;
+    /// Size of the private workspace in doubles, for ny states.
+    size_t (*work)(int ny);
+    /// One step from (t, y) with derivative dy by h: y1 (out), dy1 (out) = f(t + h, y1) before
+    /// projection, *err (out) scaled so that 1 is the tolerance.
+    enum ct_eval (*step)(const struct ct_problem *p, double t, double h, const double *y,
+                         const double *dy, const double *weight, double *y1, double *dy1,
+                         double *err, double *work, struct ct_integrate_stats *stats);
+    /// y (ny, out) at t + theta h, 0 <= theta <= 1, from the step just taken.
+    void (*dense)(const struct ct_problem *p, double h, double theta, const double *y,
+                  const double *y1, double *work, double *out);
+};
+
+extern const struct ct_method *const ct_methods[];
+extern const int ct_nmethod;
+/// NULL if there is none of that name.
+const struct ct_method *ct_method_find(const char *name);
+
+/// Integrate y (ny, in: start, out: end) from t0 to t1. The error of a step is held below
+/// rtol * max(|y_i|, ...) + atol in each watched state (weighted root mean square).
+/// Errors: E3xx with the time reached.
+bool ct_integrate(struct ct_ctx *ctx, const struct ct_method *method, const struct ct_problem *p,
+                  const struct ct_integrate_options *options, double *y,
+                  struct ct_integrate_stats *stats);
+
+#endif

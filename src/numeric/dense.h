@@ -1,0 +1,44 @@
+// Dense linear algebra on small matrices: thin, named wrappers of LAPACK.
+//
+// Column-major with explicit leading dimension. Outputs first, then inputs, then sizes, then
+// workspace. Nothing allocates; each function says how much workspace it wants.
+#ifndef CT_NUMERIC_DENSE_H
+#define CT_NUMERIC_DENSE_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+/// y = A x, A (m x n).  y = A' x with transpose.
+void ct_gemv(double *y, const double *A, const double *x, int m, int n, int lda);
+void ct_gemv_t(double *y, const double *A, const double *x, int m, int n, int lda);
+
+/// Cholesky A = L L' in place (lower, n x n); false if A is not positive definite.
+bool ct_cholesky(double *A, int n, int lda);
+/// x (n x nrhs, in: right-hand sides, out: solutions) with the factor of ct_cholesky.
+void ct_cholesky_solve(double *x, const double *L, int n, int lda, int nrhs, int ldx);
+
+/// LU with partial pivoting in place; false if exactly singular. pivot (n).
+bool ct_lu(double *A, int *pivot, int n, int lda);
+void ct_lu_solve(double *x, const double *LU, const int *pivot, int n, int lda, int nrhs, int ldx,
+                 bool transpose);
+
+/// QR with column pivoting, A P = Q R in place. column (n, out): original column at each place;
+/// tau (min(m, n), out). Returns the rank: diagonal entries of R above tol * |R_00|.
+int ct_qr_pivot(double *A, int *column, double *tau, int m, int n, int lda, double tol,
+                double *work);
+size_t ct_qr_pivot_work(int m, int n);
+
+/// Minimum-norm least-squares solution of A x = b by complete orthogonal decomposition:
+/// A (m x n) is destroyed, b (max(m, n), in and out). Returns the rank with relative tolerance tol.
+int ct_lstsq(double *b, double *A, int m, int n, int lda, double tol, int *iwork, double *work);
+size_t ct_lstsq_work(int m, int n);
+
+/// Symmetric indefinite solve of A x = b, A (n x n, lower, destroyed); false if singular.
+bool ct_symmetric_solve(double *b, double *A, int *pivot, int n, int lda, double *work);
+size_t ct_symmetric_solve_work(int n);
+
+/// Eigenvalues w (n, ascending) of a symmetric matrix (lower; destroyed).
+bool ct_symmetric_eigenvalues(double *w, double *A, int n, int lda, double *work);
+size_t ct_symmetric_eigenvalues_work(int n);
+
+#endif
