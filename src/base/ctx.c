@@ -6,6 +6,10 @@
 
 static void record(struct ct_ctx *ctx, enum ct_severity severity, enum ct_code code,
                    struct ct_mark mark, const char *fmt, va_list ap)
+    __attribute__((format(printf, 5, 0)));
+
+static void record(struct ct_ctx *ctx, enum ct_severity severity, enum ct_code code,
+                   struct ct_mark mark, const char *fmt, va_list ap)
 {
     const struct ct_diagnostic d
         = {severity, code, mark, ct_arena_vprintf(ctx->model, fmt, ap)};
