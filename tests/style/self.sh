@@ -65,6 +65,19 @@ touch src/new/file.c
 fails_with 'folder new is not in' layers
 rm -r src/new
 
+# ---- keys
+keys() {
+  sh "$tests/style/keys.sh" "$PWD/references.bib" .
+}
+echo '@article{seshu1961,' >references.bib
+echo '// Source: Seshu and Reed, key seshu1961' >src/low/cited.c
+passes keys
+echo '.source = "kane1985",' >src/low/table.c
+fails_with 'kane1985: not in' keys
+echo '// Source: key mcphee1996' >src/low/table.c
+fails_with 'mcphee1996: not in' keys
+rm src/low/table.c src/low/cited.c
+
 # ---- headers
 headers() {
   sh "$tests/style/headers.sh" . include c "$@"
