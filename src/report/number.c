@@ -13,8 +13,8 @@ const char *ct_number_format(char text[CT_NUMBER_SIZE], double v)
     if (isinf(v))
         return text;
     // The decimal point of a locale may be any character, of several bytes.
-    char *point = text + strspn(text, "-0123456789e");
-    const size_t n = strcspn(point, "-0123456789e");
+    char *point = text + strspn(text, "+-0123456789e");
+    const size_t n = strcspn(point, "+-0123456789e");
     if (n) {
         *point = '.';
         memmove(point + 1, point + n, strlen(point + n) + 1);

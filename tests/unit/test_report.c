@@ -44,7 +44,8 @@ static const char *contents(struct ct_ctx *ctx, const char *path)
 static void numbers_read_back_to_the_same_bits(void **state)
 {
     (void)state;
-    static const double cases[] = {0, -0.0, 1, 0.1, -1.0 / 3, 1e300, 4.9e-324, 123456789.125};
+    static const double cases[]
+        = {0, -0.0, 1, 0.1, -1.0 / 3, 1e300, 1e22, 4.9e-324, 123456789.125};
     for (size_t i = 0; i < COUNT(cases); i++) {
         char text[CT_NUMBER_SIZE];
         const double back = strtod(ct_number_format(text, cases[i]), NULL);
