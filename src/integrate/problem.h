@@ -9,7 +9,11 @@
 
 #include "base/ctx.h"
 
-enum ct_eval { CT_EVAL_OK, CT_EVAL_RETRY /* take a smaller step */, CT_EVAL_FATAL /* diagnosed */ };
+enum ct_eval {
+    CT_EVAL_OK,
+    CT_EVAL_RETRY /* take a smaller step */,
+    CT_EVAL_FATAL /* diagnosed */
+};
 
 struct ct_problem {
     void *user;
@@ -37,7 +41,8 @@ struct ct_problem {
     /// At an event: t and y are those of the event, crossed[i] (nroot) is -1 or +1 for the roots that
     /// changed sign downwards or upwards, 0 else; is_time tells that a time event is due. Changes modes and may change y
     /// (impulses). Integration restarts after it.
-    enum ct_eval (*event)(void *user, double t, double *y, const signed char *crossed, bool is_time);
+    enum ct_eval (*event)(void *user, double t, double *y, const signed char *crossed,
+                          bool is_time);
 };
 
 struct ct_integrate_options {
@@ -87,8 +92,8 @@ const struct ct_method *ct_method_find(const char *name);
 /// Integrate y (ny, in: start, out: end) from t0 to t1. The error of a step is held below
 /// rtol * max(|y_i|, ...) + atol in each watched state (weighted root mean square).
 /// Errors: E3xx with the time reached.
-bool ct_integrate(struct ct_ctx *ctx, const struct ct_method *method, const struct ct_problem *p,
-                  const struct ct_integrate_options *options, double *y,
-                  struct ct_integrate_stats *stats);
+bool ct_integrate(struct ct_ctx *ctx, const struct ct_method *method,
+                  const struct ct_problem *p, const struct ct_integrate_options *options,
+                  double *y, struct ct_integrate_stats *stats);
 
 #endif
