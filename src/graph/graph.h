@@ -86,4 +86,9 @@ void ct_circuits_derive(struct ct_arena *a, const struct ct_graph *g, const stru
 void ct_cutsets_derive(struct ct_arena *a, const struct ct_graph *g, const struct ct_tree *t,
                        struct ct_incidence *Af);
 
+/// The transpose: compressed columns of S' are compressed rows of S, so that its equations can be
+/// read one by one. Cost O(rows + columns + entries).
+void ct_incidence_transpose(struct ct_arena *a, const struct ct_incidence *S,
+                            struct ct_incidence *St);
+
 #endif
