@@ -4,10 +4,12 @@
 // outwards; other edges are drawn over it. A branch that points at ground is written parent first
 // with its arrow at the near end, as Graphviz ranks by the order written. In a large graph most
 // edges would meet at ground: there each edge to ground that is no branch of translation gets a
-// small ground of its own, and arms stand upright to keep the nodes of a body together.
+// small ground of its own. In a deep tree arms stand upright, so that a body takes one column.
+// Boxes around bodies would be welcome, but Graphviz loses edges that do not rank across clusters.
 #include "graph/print.h"
 
 static const int large_graph = 12; // nodes; a slider-crank with its arms has 8
+static const int deep_tree = 10;   // edges from ground; beyond, a row of nodes overflows a page
 
 // How an edge looks by the trees it is a branch of; a quiet edge means what its kind says. The colours keep apart for the colour-blind
 // (Okabe and Ito).
@@ -33,9 +35,11 @@ static int look_of(const struct ct_graph_view *view, int e)
     return T ? TRANS_ONLY : R ? ROT_ONLY : CHORD;
 }
 
-/// s inside an HTML-like label or a quoted attribute; control characters become blanks.
+/// s inside an HTML-like label, which must not be empty; control characters become blanks.
 static void print_escaped(FILE *out, const char *s)
 {
+    if (!*s)
+        fputs("&#160;", out);
     for (; *s; s++) {
         const unsigned char c = (unsigned char)*s;
         if (c == '&')
@@ -105,6 +109,12 @@ static void print_edge_label(FILE *out, const struct ct_graph_names *names, int 
     fprintf(out, "</font>>");
 }
 
+static bool is_deep(const struct ct_tree *t)
+{
+    return t->depth[t->order[t->nnode - 1]]
+         > deep_tree; // breadth first: the last is the deepest
+}
+
 /// Node v as the end of edge e: itself, or a small ground of the edge's own.
 static void print_end(FILE *out, int v, int e, bool own_ground)
 {
@@ -136,7 +146,7 @@ static void print_edge(FILE *out, const struct ct_graph_view *view, int e)
     fprintf(out, "color=\"%s\", fontcolor=\"%s\", style=%s, penwidth=%s%s%s%s]\n",
             looks[look].color, looks[look].color, looks[look].style, looks[look].penwidth,
             back ? ", dir=back" : "", is_branch || own_ground ? "" : ", constraint=false",
-            large && look == QUIET ? ", minlen=0" : "");
+            is_deep(view->T) && look == QUIET ? ", minlen=0" : "");
 }
 
 void ct_graph_print_dot(FILE *out, const struct ct_graph_view *view)
