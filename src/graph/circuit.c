@@ -1,8 +1,8 @@
 // Fundamental circuits by the path method of formulation 3.2: no elimination, no arithmetic.
 //
 // Both ends of a chord are walked up to their common ancestor. With sg(v) = +1 where the parent
-// edge points away from ground, its entry of B_t is -sg on the way up from the head and +sg on the
-// way down to the tail.
+// edge points away from ground, its entry of B_t is -sg on the way up from the head and +sg on
+// the way down to the tail.
 #include "graph/graph.h"
 
 static int common_ancestor(const struct ct_tree *t, int a, int b)

@@ -1,9 +1,10 @@
-// Fundamental cutsets A_f = [1 A_cut] from the circuits: A_cut = -B_t' (3.2), so (3.3) holds
-// by construction. Row i is the cutset of branch i, oriented along it: +1 for the edges that cross
+// Fundamental cutsets A_f = [1 A_cut] from the circuits: A_cut = -B_t' (3.2), so (3.3) holds by
+// construction. Row i is the cutset of branch i, oriented along it: +1 for the edges that cross
 // in its direction.
 #include "graph/graph.h"
 
-/// Starts of the columns of A_f: a chord has as many entries as its row of B_t, a branch has one.
+/// Starts of the columns of A_f: a chord has as many entries as its row of B_t, a branch has
+/// one.
 static void count_columns(const struct ct_tree *t, const struct ct_incidence *Bf, int *start)
 {
     for (int i = 0; i < t->nbranch; i++) {

@@ -1,8 +1,8 @@
 // How many spanning trees there are, and all of them in turn.
 //
 // Counting: the matrix-tree theorem (Kirchhoff 1847, key kirchhoff1847) says det(A A') is the
-// number of trees. It is evaluated as a resistor network: nodes are eliminated one by one by the
-// star-mesh transformation, and the pivots are the total conductances met. This is Gaussian
+// number of trees. It is evaluated as a resistor network: nodes are eliminated one by one by
+// the star-mesh transformation, and the pivots are the total conductances met. This is Gaussian
 // elimination with the diagonal rebuilt from the off-diagonals, so nothing is ever subtracted.
 //
 // Enumerating: each edge in turn is taken and then left out, and a choice is followed only if a
@@ -23,7 +23,8 @@ static bool join_forced(const struct ct_graph *g, const bool *forced, const bool
     return true;
 }
 
-/// W (n x n, out, symmetric): number of free edges between each two pieces, numbered by place[].
+/// W (n x n, out, symmetric): number of free edges between each two pieces, numbered by
+/// place[].
 static void fill_conductances(double *W, const struct ct_graph *g, const bool *banned,
                               struct ct_pieces *p, const int *place, int n)
 {
@@ -37,8 +38,8 @@ static void fill_conductances(double *W, const struct ct_graph *g, const bool *b
     }
 }
 
-/// Product of the pivots of the star-mesh elimination of nodes n - 1, ..., 1 of the conductances
-/// W (n x n, destroyed).
+/// Product of the pivots of the star-mesh elimination of nodes n - 1, ..., 1 of the
+/// conductances W (n x n, destroyed).
 static double eliminate_nodes(double *W, int n)
 {
     double ntree = 1;

@@ -53,7 +53,7 @@ static bool same_branches(const struct pair *p, const struct pair *q)
         && memcmp(p->tree[ROT].is_branch, q->tree[ROT].is_branch, size) == 0;
 }
 
-// ---- the least weight pair --------------------------------------------------------------------
+// ---- the least weight pair ----------------------------------------------------------------
 
 /// Copy the rules of tree k.
 static void set_rules(struct search *s, int k, const struct ct_tree_rules *rules)
@@ -114,9 +114,9 @@ static int first_disagreement(const struct search *s, const struct ct_tree *T,
     return -1;
 }
 
-/// Branch and bound on the tied edges: the least weight pair without (R3) is a lower bound; if it
-/// disagrees on a tied edge, that edge is put into both trees, then into neither. least->weight is
-/// INT_MAX until a pair is found.
+/// Branch and bound on the tied edges: the least weight pair without (R3) is a lower bound; if
+/// it disagrees on a tied edge, that edge is put into both trees, then into neither.
+/// least->weight is INT_MAX until a pair is found.
 static void settle_tied(struct search *s, struct pair *least)
 {
     struct pair p;
@@ -139,7 +139,7 @@ static void settle_tied(struct search *s, struct pair *least)
     }
 }
 
-// ---- all pairs --------------------------------------------------------------------------------
+// ---- all pairs ----------------------------------------------------------------------------
 
 struct tree_list {
     const struct search *s;
@@ -177,7 +177,7 @@ static void try_all(struct search *s, const struct pair *start)
         }
 }
 
-// ---- descent ----------------------------------------------------------------------------------
+// ---- descent ------------------------------------------------------------------------------
 
 // An exchange in one tree or in both; in[k] = -1: tree k stays.
 struct move {
@@ -225,8 +225,8 @@ static void add_moves_of_tied(struct neighbours *near, int c, int b)
     }
 }
 
-/// All exchanges of chord c for a branch of its circuit in tree k. Moves of tied edges concern both
-/// trees and are found from the first.
+/// All exchanges of chord c for a branch of its circuit in tree k. Moves of tied edges concern
+/// both trees and are found from the first.
 static void add_moves_of_chord(struct neighbours *near, int k, int c)
 {
     const struct search *s = near->s;
@@ -253,7 +253,8 @@ static int compare_moves(const void *a, const void *b)
     return (x->number > y->number) - (x->number < y->number);
 }
 
-/// Moves from p that keep the rules, lightest first, then translation before rotation and by index.
+/// Moves from p that keep the rules, lightest first, then translation before rotation and by
+/// index.
 static struct neighbours list_moves(struct search *s, const struct pair *p)
 {
     struct neighbours near = {.s = s, .p = p};
@@ -295,7 +296,8 @@ static bool was_visited(const struct visited *v, const struct pair *p)
     return false;
 }
 
-/// Steepest descent: each round evaluates all neighbours of the best pair and goes to a better one.
+/// Steepest descent: each round evaluates all neighbours of the best pair and goes to a better
+/// one.
 static void descend(struct search *s, struct pair start, int budget)
 {
     struct visited seen = {0};
@@ -319,7 +321,7 @@ static void descend(struct search *s, struct pair start, int budget)
     }
 }
 
-// ---- the search -------------------------------------------------------------------------------
+// ---- the search ---------------------------------------------------------------------------
 
 static void run(struct search *s, struct pair start, const struct ct_search_options *o)
 {

@@ -3,10 +3,10 @@
 //     least weight pair  -->  few pairs?  --yes-->  try them all
 //      (Kruskal twice)            '-------no------>  steepest descent by exchanges
 //
-// The two graphs share nodes and edges; they differ in weights and in the edges that are forced or
-// banned. Cost is the caller's: a function of the two trees. What always holds: every pair that is
-// tried has all forced edges and no banned one, agrees on every tied edge, and weighs at most the
-// least weight plus the excess. The same input gives the same pair.
+// The two graphs share nodes and edges; they differ in weights and in the edges that are forced
+// or banned. Cost is the caller's: a function of the two trees. What always holds: every pair
+// that is tried has all forced edges and no banned one, agrees on every tied edge, and weighs
+// at most the least weight plus the excess. The same input gives the same pair.
 #ifndef CT_GRAPH_EXCHANGE_H
 #define CT_GRAPH_EXCHANGE_H
 
@@ -48,19 +48,21 @@ typedef double (*ct_tree_cost)(void *data, const struct ct_tree *T, const struct
 /**
  * The cheapest pair of spanning trees the search meets.
  *
- * Among equal costs the smaller total weight wins, then the pair found first. A descent step tries
- * all neighbours, lightest first, and goes to the best one. A neighbour exchanges a chord for a
- * branch of its circuit in one tree; if a tied edge moves, it moves in both trees at once.
+ * Among equal costs the smaller total weight wins, then the pair found first. A descent step
+ * tries all neighbours, lightest first, and goes to the best one. A neighbour exchanges a chord
+ * for a branch of its circuit in one tree; if a tied edge moves, it moves in both trees at
+ * once.
  *
  * a       in    holds the result and the trees tried
  * g       in    both graphs' nodes and edges
  * best    out   branches of the pair found; left alone on false
  * stats   out   filled in any case
  *
- * False if no pair keeps the rules (then nevaluated is 0), or if no pair tried has a finite cost.
+ * False if no pair keeps the rules (then nevaluated is 0), or if no pair tried has a finite
+ * cost.
  * Cost    at most max(limit, budget) evaluations and O(e^2) besides each
- * Source  formulation 2.3; the least weight pair is exact (graphic matroid, 2.1), tied edges are
- *         settled by branch and bound
+ * Source  formulation 2.3; the least weight pair is exact (graphic matroid, 2.1), tied edges
+ *         are settled by branch and bound
  */
 bool ct_tree_search(struct ct_arena *a, const struct ct_graph *g,
                     const struct ct_search_options *options, ct_tree_cost cost, void *data,

@@ -7,7 +7,7 @@
 static const int page_width = 100; // columns; wider lines are wrapped, wider matrices left out
 static const int max_equations = 60; // of each kind
 
-// ---- columns ----------------------------------------------------------------------------------
+// ---- columns ------------------------------------------------------------------------------
 
 /// Columns a UTF-8 string takes: its code points, continuation bytes not counted.
 static int width_of(const char *s)
@@ -38,7 +38,7 @@ static int widest(const char *(*name)(void *data, int i), void *data, int n, con
     return width;
 }
 
-// ---- nodes and edges --------------------------------------------------------------------------
+// ---- nodes and edges ----------------------------------------------------------------------
 
 static void print_nodes(FILE *out, const struct ct_graph_view *view)
 {
@@ -84,7 +84,7 @@ static void print_edges(FILE *out, const struct ct_graph_view *view)
     }
 }
 
-// ---- the incidence matrix ---------------------------------------------------------------------
+// ---- the incidence matrix -----------------------------------------------------------------
 
 /// Head of column e: the edge's name or, to save room, its number (in text[12]).
 static const char *column_head(const struct ct_graph_names *names, int e, bool by_number,
@@ -145,7 +145,7 @@ static void print_matrix(FILE *out, const struct ct_graph_view *view)
     }
 }
 
-// ---- equations --------------------------------------------------------------------------------
+// ---- equations ----------------------------------------------------------------------------
 
 // A line that is wrapped between terms.
 struct line {

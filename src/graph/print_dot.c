@@ -1,11 +1,12 @@
 // A graph and its trees as Graphviz source; see print.h.
 //
-// The translational tree ranks the nodes from left to right, so that the picture grows from ground
-// outwards; other edges are drawn over it. A branch that points at ground is written parent first
-// with its arrow at the near end, as Graphviz ranks by the order written. In a large graph most
-// edges would meet at ground: there each edge to ground that is no branch of translation gets a
-// small ground of its own. In a deep tree arms stand upright, so that a body takes one column.
-// Boxes around bodies would be welcome, but Graphviz loses edges that do not rank across clusters.
+// The translational tree ranks the nodes from left to right, so that the picture grows from
+// ground outwards; other edges are drawn over it. A branch that points at ground is written
+// parent first with its arrow at the near end, as Graphviz ranks by the order written. In a
+// large graph most edges would meet at ground: there each edge to ground that is no branch of
+// translation gets a small ground of its own. In a deep tree arms stand upright, so that a body
+// takes one column. Boxes around bodies would be welcome, but Graphviz loses edges that do not
+// rank across clusters.
 #include "graph/print.h"
 
 static const int large_graph = 12; // nodes; a slider-crank with its arms has 8

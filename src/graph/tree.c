@@ -1,7 +1,8 @@
 // Spanning trees: least weight (Kruskal 1956, key kruskal1956) and from given branches.
 //
-// A set of nnode - 1 branches that reaches every node is a spanning tree; walking it breadth first
-// from ground gives parents, signs and depths, so that `order` lists nodes near ground first.
+// A set of nnode - 1 branches that reaches every node is a spanning tree; walking it breadth
+// first from ground gives parents, signs and depths, so that `order` lists nodes near ground
+// first.
 #include "graph/graph.h"
 
 #include "graph/pieces.h"
@@ -97,7 +98,8 @@ static void attach(const struct ct_graph *g, struct ct_tree *t, int v, int paren
     t->depth[v] = t->depth[parent] + 1;
 }
 
-/// Breadth first from ground along the branches; t->order is the queue. Returns the nodes reached.
+/// Breadth first from ground along the branches; t->order is the queue. Returns how many nodes
+/// it reaches.
 static int walk_from_ground(const struct ct_graph *g, struct star s, struct ct_tree *t)
 {
     for (int v = 0; v < g->nnode; v++)

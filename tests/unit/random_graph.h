@@ -44,8 +44,8 @@ static inline void start_random(void)
     print_message("seed %llu (CT_TEST_SEED)\n", (unsigned long long)seed);
 }
 
-/// A connected multigraph of 1 .. maxnode nodes: a random tree and up to maxextra further edges,
-/// parallel ones included, orientations and edge order random.
+/// A connected multigraph of 1 .. maxnode nodes: a random tree and up to maxextra further
+/// edges, parallel ones included, orientations and edge order random.
 static inline struct ct_graph random_graph(int maxnode, int maxextra)
 {
     const int nnode = 1 + draw(maxnode), nextra = nnode > 1 ? draw(maxextra + 1) : 0;

@@ -1,11 +1,11 @@
-// The search for a pair of trees, against brute force over all subsets of edges; formulation 2.3.
+// The search for a pair of trees (formulation 2.3) against brute force over all edge subsets.
 #include "graph/exchange.h"
 
 #include "random_graph.h"
 
 #include <math.h>
 
-// ---- a slider-crank, bodies as nodes: m inertia, h pin, s slider; weights of formulation 1.3 ----
+// ---- a slider-crank, bodies as nodes: m inertia, h pin, s slider; weights of the joints ------
 
 enum { m1, m2, m3, h1, h2, h3, s4 };
 static const struct ct_edge crank_edge[]
@@ -13,7 +13,7 @@ static const struct ct_edge crank_edge[]
 static const struct ct_graph crank = {4, 7, crank_edge};
 static const int crank_trans[] = {2, 2, 2, 0, 0, 0, 1}, crank_rot[] = {1, 1, 1, 1, 1, 1, 0};
 
-// ---- what the cost functions see --------------------------------------------------------------
+// ---- what the cost functions see ----------------------------------------------------------
 
 enum cost_kind {
     COST_ONE,    // the same for all
@@ -128,7 +128,7 @@ static bool search(struct watch *w, struct ct_tree_pair *best, struct ct_search_
     return found;
 }
 
-// ---- brute force: every subset of edges -------------------------------------------------------
+// ---- brute force: every subset of edges ---------------------------------------------------
 
 struct reference {
     int ntree[2];
@@ -187,7 +187,7 @@ static bool *random_flags(int n, int one_in)
     return b;
 }
 
-// ---- tests ------------------------------------------------------------------------------------
+// ---- tests --------------------------------------------------------------------------------
 
 static void slider_crank_has_441_pairs_8_of_least_weight(void **state)
 {

@@ -1,4 +1,5 @@
-// Linear graphs: trees, cutsets, circuits, counting and enumerating; formulation sections 3.1-3.4.
+// Linear graphs: trees, cutsets, circuits, counting and enumerating; formulation sections
+// 3.1-3.4.
 #include "graph/graph.h"
 
 #include "random_graph.h"
@@ -10,7 +11,7 @@ static struct ct_tree random_tree(const struct ct_graph *g)
     return t;
 }
 
-// ---- dense matrices, for comparison only ------------------------------------------------------
+// ---- dense matrices, for comparison only --------------------------------------------------
 
 /// nrow x ncol, column-major, from compressed columns; also checks that rows are sorted.
 static int *dense(const struct ct_incidence *S)
@@ -26,7 +27,8 @@ static int *dense(const struct ct_incidence *S)
     return A;
 }
 
-/// Incidence matrix without the ground row, (nnode - 1) x nedge: +1 at the head, -1 at the tail.
+/// Incidence matrix without the ground row, (nnode - 1) x nedge: +1 at the head, -1 at the
+/// tail.
 static int *reduced_incidence(const struct ct_graph *g)
 {
     const int n = g->nnode - 1;
@@ -57,8 +59,9 @@ static void move_pivot(int *A, int nrow, int ncol, int i, int p, int factor)
     }
 }
 
-/// Gauss-Jordan on the listed columns, in integers: incidence matrices are totally unimodular, so
-/// every pivot is -1 or +1. Row i ends with 1 in the i-th column that had a pivot. Returns the rank.
+/// Gauss-Jordan on the listed columns, in integers: incidence matrices are totally unimodular,
+/// so every pivot is -1 or +1. Row i ends with 1 in the i-th column that had a pivot. Returns
+/// the rank.
 static int eliminate(int *A, int nrow, int ncol, const int *column, int ncolumn)
 {
     int rank = 0;
@@ -87,7 +90,7 @@ static int rank_of(const struct ct_incidence *S)
     return eliminate(dense(S), S->nrow, S->ncol, column, S->ncol);
 }
 
-// ---- trees ------------------------------------------------------------------------------------
+// ---- trees --------------------------------------------------------------------------------
 
 static void tree_without_edges_is_ground_alone(void **state)
 {
@@ -179,7 +182,7 @@ static void tree_check_finds_each_damage(void **state)
     assert_non_null(ct_tree_check(&g, &t));
 }
 
-// ---- the worked example, formulation 3.4 ------------------------------------------------------
+// ---- the worked example, formulation 3.4 --------------------------------------------------
 
 enum { m1, r3, m2, h4, w5 };
 static const struct ct_edge beam_edge[] = {{0, 1}, {1, 2}, {0, 3}, {0, 1}, {2, 3}};
@@ -250,7 +253,7 @@ static void worked_example_has_7_trees_5_with_the_arm(void **state)
     assert_true(ct_tree_count(arena, &beam, arm, arm) == 0);
 }
 
-// ---- properties of random graphs --------------------------------------------------------------
+// ---- properties of random graphs ----------------------------------------------------------
 
 enum { nrandom = 200 };
 

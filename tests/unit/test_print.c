@@ -1,5 +1,6 @@
-// Printing a graph as text, dot and json, against files under tests/golden/graph; --update rewrites
-// them. The example is a slider-crank with arms, its mixed trees T = {O, A, B}, R = {O, A, guide}.
+// Printing a graph as text, dot and json, against files under tests/golden/graph; --update
+// rewrites them. The example is a slider-crank with arms, its mixed trees T = {O, A, B}, R =
+// {O, A, guide}.
 #include "graph/print.h"
 
 #include <setjmp.h>
@@ -26,7 +27,7 @@ static int teardown(void **state)
     return 0;
 }
 
-// ---- the slider-crank -------------------------------------------------------------------------
+// ---- the slider-crank ---------------------------------------------------------------------
 
 struct named_edge {
     const char *name, *kind;
@@ -108,7 +109,7 @@ static struct stage *set_stage(const struct example *x)
     return s;
 }
 
-// ---- golden files -----------------------------------------------------------------------------
+// ---- golden files -------------------------------------------------------------------------
 
 enum format { TEXT, DOT, JSON };
 
@@ -191,7 +192,7 @@ static void slider_crank_as_json(void **state)
     check_golden("slider_crank.json", JSON);
 }
 
-// ---- odd names, odd graphs --------------------------------------------------------------------
+// ---- odd names, odd graphs ----------------------------------------------------------------
 
 /// One body on a joint, everything with a name that must be escaped.
 static const struct example nasty = {
