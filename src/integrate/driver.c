@@ -64,8 +64,9 @@ struct run {
 // A step as planned: to t1, which is t + h but for rounding.
 struct stride {
     double h, t1;
-    bool is_landing; // t1 is the stop it was planned for
-    bool is_event;   // a state event ends it
+    bool is_landing;      // t1 is the stop it was planned for
+    bool is_event;        // a state event ends it
+    bool is_interpolated; // the method is ready to interpolate it
     double error;
 };
 
@@ -236,21 +237,15 @@ static void adapt_after_success(struct run *r, double h, double error)
     r->was_refused = false;
 }
 
-static void adapt_after_refusal(struct run *r, const struct stride *s, enum ct_eval e)
+static void adapt_after_refusal(struct run *r, double h, double error)
 {
     const double alpha = 1.0 / (r->method->error_order + 1);
     r->stats->rejected_steps++;
-    r->h
-        = e == CT_EVAL_OK ? s->h * fmax(most_shrink, safety * pow(s->error, -alpha)) : s->h / 2;
+    r->h = error > 1 ? h * fmax(most_shrink, safety * pow(error, -alpha)) : h / 2;
     r->was_refused = true;
 }
 
 // --- one step --------------------------------------------------------------------------------
-
-static bool needs_interpolant(const struct run *r, const struct stride *s)
-{
-    return r->p->nroot > 0 || (r->sample < r->o->nsample && r->o->sample[r->sample] < s->t1);
-}
 
 static bool differs(const double *a, const double *b, int n)
 {
@@ -276,26 +271,36 @@ static enum ct_eval project_end(struct run *r, double t1)
                                             : CT_EVAL_RETRY;
 }
 
-// From y to end by the method and the projection. OK with s->error > 1 is a step to be refused.
+// From y to end by the method and the projection. Refused with s->error > 1 when that is the reason.
 static enum ct_eval attempt(struct run *r, struct stride *s)
 {
-    const struct ct_method *m = r->method;
     const struct ct_tolerance *tolerance = r->o->step > 0 ? NULL : &r->tolerance;
+    double error = 0;
     s->error = 0;
-    enum ct_eval e = m->step(r->p, r->t, s->h, r->y, r->dy, tolerance, r->y1, r->dy1, &s->error,
-                             r->work, r->stats);
+    s->is_interpolated = false;
+    const enum ct_eval e = r->method->step(r->p, r->t, s->h, r->y, r->dy, tolerance, r->y1,
+                                           r->dy1, &error, r->work, r->stats);
     if (e != CT_EVAL_OK)
         return e;
-    if (!ct_stepper_finite(r->y1, r->p->ny) || !isfinite(s->error))
+    if (!ct_stepper_finite(r->y1, r->p->ny) || !isfinite(error))
         return CT_EVAL_RETRY;
-    if (s->error > 1)
+    s->error = error;
+    return error > 1 ? CT_EVAL_RETRY : project_end(r, s->t1);
+}
+
+// Make the method ready to interpolate, once.
+static enum ct_eval interpolate(struct run *r, struct stride *s)
+{
+    if (s->is_interpolated || !r->method->prepare)
         return CT_EVAL_OK;
-    if (m->prepare && needs_interpolant(r, s)) {
-        e = m->prepare(r->p, r->t, s->h, r->y, r->y1, r->work, r->stats);
-        if (e != CT_EVAL_OK)
-            return e;
-    }
-    return project_end(r, s->t1);
+    s->is_interpolated = true;
+    return r->method->prepare(r->p, r->t, s->h, r->y, r->y1, r->work, r->stats);
+}
+
+static enum ct_eval interpolate_for_samples(struct run *r, struct stride *s)
+{
+    const bool has_sample = r->sample < r->o->nsample && r->o->sample[r->sample] < s->t1;
+    return has_sample && s->h > 0 ? interpolate(r, s) : CT_EVAL_OK;
 }
 
 // An event so close to the start that there is no time to step: the state stays.
@@ -321,7 +326,7 @@ static enum ct_eval step_to_event(struct run *r, struct stride *s, double h)
         s->t1 = r->t + h;
         enum ct_eval e = attempt(r, s);
         if (e == CT_EVAL_OK)
-            e = s->error > 1 ? CT_EVAL_RETRY : ct_watch_refine(&r->watch, s->t1, r->end, &dt);
+            e = ct_watch_refine(&r->watch, s->t1, r->end, &dt);
         if (e != CT_EVAL_OK)
             return e;
         h += dt;
@@ -335,7 +340,11 @@ static enum ct_eval end_on_event(struct run *r, struct stride *s)
 {
     const struct ct_stepper_span span = {r->method, r->p, r->t, s->h, r->y, r->y1, r->work};
     double theta;
-    const enum ct_eval e = ct_watch_search(&r->watch, &span, r->end, &theta);
+    if (r->p->nroot == 0)
+        return CT_EVAL_OK;
+    enum ct_eval e = r->method->has_rough_dense ? CT_EVAL_OK : interpolate(r, s);
+    if (e == CT_EVAL_OK)
+        e = ct_watch_search(&r->watch, &span, r->end, &theta);
     if (e != CT_EVAL_OK || theta > 1)
         return e;
     const double unresolved = ct_watch_resolution(r->t, s->h), h = theta * s->h;
@@ -360,6 +369,17 @@ static enum ct_eval tell_accepted(struct run *r, const struct stride *s)
     return ct_stepper_rhs(p, s->t1, r->end, r->dend, r->stats);
 }
 
+// What follows an attempt whose error is small enough; h is the step as it was attempted.
+static enum ct_eval finish_step(struct run *r, struct stride *s, double h)
+{
+    enum ct_eval e = end_on_event(r, s);
+    if (e == CT_EVAL_OK)
+        e = ct_watch_accept(&r->watch, s->t1, h, r->end, s->is_event);
+    if (e == CT_EVAL_OK)
+        e = interpolate_for_samples(r, s);
+    return e == CT_EVAL_OK ? tell_accepted(r, s) : e;
+}
+
 // One step that everybody accepts: from y to end.
 static bool find_step(struct run *r, double stop, struct stride *s)
 {
@@ -372,24 +392,18 @@ static bool find_step(struct run *r, double stop, struct stride *s)
         const double h = s->h;
         enum ct_eval e = attempt(r, s);
         const double error = s->error;
-        if (e == CT_EVAL_OK && error <= 1)
-            e = end_on_event(r, s);
-        if (e == CT_EVAL_OK && error <= 1)
-            e = ct_watch_accept(&r->watch, s->t1, h, r->end, s->is_event);
-        if (e == CT_EVAL_OK && error <= 1)
-            e = tell_accepted(r, s);
+        if (e == CT_EVAL_OK)
+            e = finish_step(r, s, h);
         if (e == CT_EVAL_FATAL)
             return false;
-        if (e == CT_EVAL_OK && error <= 1) {
+        if (e == CT_EVAL_OK) {
             adapt_after_success(r, h, error);
             return true;
         }
         if (r->o->step > 0)
             return ct_error(r->ctx, nowhere, CT_E_STEP_REFUSED,
                             "at t = %.9g a step of fixed size %.3g is too large", r->t, h);
-        s->h = h;
-        s->error = error;
-        adapt_after_refusal(r, s, e);
+        adapt_after_refusal(r, h, error);
     }
 }
 

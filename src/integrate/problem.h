@@ -83,7 +83,9 @@ struct ct_method {
                          const double *dy, const struct ct_tolerance *tolerance, double *y1,
                          double *dy1, double *err, double *work,
                          struct ct_integrate_stats *stats);
-    /// Called once for a step before its first `dense`: extra stages. May be NULL.
+    /// Called once for a step before its first `dense`: extra stages. May be NULL. With
+    /// has_rough_dense, `dense` works without it, too, well enough to find roots.
+    bool has_rough_dense;
     enum ct_eval (*prepare)(const struct ct_problem *p, double t, double h, const double *y,
                             const double *y1, double *work, struct ct_integrate_stats *stats);
     /// y (ny, out) at t + theta h, 0 <= theta <= 1, from the step just taken; y1 as it came from

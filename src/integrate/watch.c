@@ -180,8 +180,6 @@ enum ct_eval ct_watch_search(struct ct_watch *w, const struct ct_stepper_span *s
 {
     const int n = w->p->nroot;
     *theta = 2;
-    if (n == 0)
-        return CT_EVAL_OK;
     memset(w->crossed, 0, (size_t)n);
     memcpy(w->low, w->g0, (size_t)n * sizeof *w->g0);
     for (size_t j = 0; j < COUNT(probes); j++) {
