@@ -34,8 +34,8 @@ static const double E[STAGES]
     = {71. / 57600, 0, -71. / 16695, 71. / 1920, -17253. / 339200, 22. / 525, -1. / 40};
 
 static const double D[STAGES] = {
-    -12715105075. / 11282082432, 0,
-    87487479700. / 32700410799,  -10690763975. / 1880347072,
+    -12715105075. / 11282082432,  0,
+    87487479700. / 32700410799,   -10690763975. / 1880347072,
     701980252875. / 199316789632, -1453857185. / 822651844,
     69997945. / 29380423,
 };
@@ -93,8 +93,8 @@ static void quartic(double *out, double h, double theta, const double *y, const 
 }
 
 // out (n) = f at the point of the quartic at theta, minus the slope of the Hermite polynomial.
-static enum ct_eval miss(double *out, double theta, const struct ct_problem *p, double t, double h,
-                         const double *y, const double *y1, const struct parts *w,
+static enum ct_eval miss(double *out, double theta, const struct ct_problem *p, double t,
+                         double h, const double *y, const double *y1, const struct parts *w,
                          struct ct_integrate_stats *stats)
 {
     const int n = p->ny;
@@ -103,7 +103,7 @@ static enum ct_eval miss(double *out, double theta, const struct ct_problem *p, 
     const double *dy = w->k, *dy1 = w->k + (STAGES - 1) * n, rest = 1 - theta;
     for (int i = 0; i < n && e == CT_EVAL_OK; i++)
         out[i] -= 6 * theta * rest * (y1[i] - y[i]) / h + rest * (1 - 3 * theta) * dy[i]
-                  + theta * (3 * theta - 2) * dy1[i];
+                + theta * (3 * theta - 2) * dy1[i];
     return e;
 }
 

@@ -135,7 +135,8 @@ static double step_limit(const struct run *r)
     return r->p->nroot ? run / event_steps : run;
 }
 
-// A step after which an Euler step is off by about 1 % of the tolerance of a method of this order.
+// A first step whose error should be near a hundredth of the tolerance, from the size of the
+// derivative and its change along an Euler step; all constants are those of the source.
 static double first_step(struct run *r, double limit)
 {
     const struct ct_problem *p = r->p;
@@ -300,39 +301,33 @@ static enum ct_eval interpolate(struct run *r, struct stride *s)
 static enum ct_eval interpolate_for_samples(struct run *r, struct stride *s)
 {
     const bool has_sample = r->sample < r->o->nsample && r->o->sample[r->sample] < s->t1;
-    return has_sample && s->h > 0 ? interpolate(r, s) : CT_EVAL_OK;
-}
-
-// An event so close to the start that there is no time to step: the state stays.
-static void stay(struct run *r, struct stride *s)
-{
-    const size_t bytes = (size_t)r->p->ny * sizeof *r->y;
-    s->h = 0;
-    s->t1 = r->t;
-    s->is_landing = false;
-    memcpy(r->end, r->y, bytes);
-    memcpy(r->dend, r->dy, bytes);
+    return has_sample ? interpolate(r, s) : CT_EVAL_OK;
 }
 
 // Step again, to the event that the interpolant shows at t + h; then correct h for the difference
 // between the interpolant and the step until the root that fires is zero to the resolution.
+// Corrected up to where the whole step ended, the step is the whole step, for the sake of its stop.
 static enum ct_eval step_to_event(struct run *r, struct stride *s, double h)
 {
-    const double longest = s->h, unresolved = ct_watch_resolution(r->t, longest);
-    s->is_landing = false;
-    for (int i = 0;; i++) {
-        double dt;
-        s->h = h;
-        s->t1 = r->t + h;
+    const struct stride whole = *s;
+    const double unresolved = ct_watch_resolution(r->t, whole.h);
+    double dt = INFINITY;
+    for (int i = 0; i <= most_corrections && fabs(dt) > unresolved && h > 0; i++) {
+        const bool is_whole = whole.h - h <= unresolved;
+        *s = whole;
+        if (!is_whole) {
+            s->h = h;
+            s->t1 = r->t + h;
+            s->is_landing = false;
+        }
         enum ct_eval e = attempt(r, s);
         if (e == CT_EVAL_OK)
             e = ct_watch_refine(&r->watch, s->t1, r->end, &dt);
-        if (e != CT_EVAL_OK)
+        if (e != CT_EVAL_OK || is_whole)
             return e;
         h += dt;
-        if (i == most_corrections || fabs(dt) <= unresolved || h <= 0 || h > longest)
-            return CT_EVAL_OK;
     }
+    return CT_EVAL_OK;
 }
 
 // If a root fires within the step, the step is made to end there.
@@ -347,13 +342,10 @@ static enum ct_eval end_on_event(struct run *r, struct stride *s)
         e = ct_watch_search(&r->watch, &span, r->end, &theta);
     if (e != CT_EVAL_OK || theta > 1)
         return e;
-    const double unresolved = ct_watch_resolution(r->t, s->h), h = theta * s->h;
     s->is_event = true;
-    if (h <= unresolved)
-        stay(r, s);
-    else if (s->h - h > unresolved)
-        return step_to_event(r, s, h);
-    return CT_EVAL_OK;
+    const double rest = (1 - theta) * s->h;
+    return rest <= ct_watch_resolution(r->t, s->h) ? CT_EVAL_OK
+                                                   : step_to_event(r, s, theta * s->h);
 }
 
 // The caller's memories and choices move on to the end of the step.

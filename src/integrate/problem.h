@@ -9,12 +9,17 @@
 
 #include "base/ctx.h"
 
-enum ct_eval { CT_EVAL_OK, CT_EVAL_RETRY /* take a smaller step */, CT_EVAL_FATAL /* diagnosed */ };
+enum ct_eval {
+    CT_EVAL_OK,
+    CT_EVAL_RETRY, // take a smaller step
+    CT_EVAL_FATAL, // diagnosed
+};
 
 struct ct_problem {
     void *user;
-    int ny;              // states
-    const bool *watched; // per state: counts in error control (quadratures do not); NULL: all do
+    int ny; // states
+    const bool
+        *watched; // per state: counts in error control (quadratures do not). NULL: all do
 
     /// dy (ny, out) = f(t, y).
     enum ct_eval (*rhs)(void *user, double t, const double *y, double *dy);
@@ -38,7 +43,8 @@ struct ct_problem {
     /// At an event: t and y are those of the event, crossed[i] (nroot) is -1 or +1 for the roots that
     /// changed sign downwards or upwards, 0 else; is_time tells that a time event is due. Changes modes and may change y
     /// (impulses). Integration restarts after it.
-    enum ct_eval (*event)(void *user, double t, double *y, const signed char *crossed, bool is_time);
+    enum ct_eval (*event)(void *user, double t, double *y, const signed char *crossed,
+                          bool is_time);
 };
 
 struct ct_integrate_options {
@@ -112,8 +118,8 @@ const struct ct_method *ct_method_find(const char *name);
 ///
 /// Errors: E301 to E307, with the time reached. Owner: workspace is taken from ctx->model before
 /// the first step.
-bool ct_integrate(struct ct_ctx *ctx, const struct ct_method *method, const struct ct_problem *p,
-                  const struct ct_integrate_options *options, double *y,
-                  struct ct_integrate_stats *stats);
+bool ct_integrate(struct ct_ctx *ctx, const struct ct_method *method,
+                  const struct ct_problem *p, const struct ct_integrate_options *options,
+                  double *y, struct ct_integrate_stats *stats);
 
 #endif

@@ -18,9 +18,10 @@ static const double resolution = 1e-12;
 // by 1e-7 of what it does in a step, some 1e8 roundings, and is still a straight line.
 static const double glance = 1e-7;
 
-// Spacing of the difference that gives the slope at the event, in parts of the step: the slope
-// is off by about as much, so each correction by it gains three digits.
-static const double slope_spacing = 1e-3;
+// Spacing of the difference that gives the slope at the event, in parts of the time since the
+// step began: the slope is off by about as much, so each correction by it gains three digits.
+// Near the start it is this many resolutions, for the same number of digits.
+static const double slope_spacing = 1e-3, slope_resolutions = 1e3, slope_most = 0.1;
 
 double ct_watch_resolution(double t, double h)
 {
@@ -73,9 +74,11 @@ enum ct_eval ct_watch_start(struct ct_watch *w, double t, double h, const double
         return e;
     for (int i = 0; i < n; i++) {
         w->side[i] = (signed char)sign(w->g0[i]);
-        // where it fired the value is noise; unless the event has moved the state away
-        if (w->crossed[i] && fabs(w->g0[i]) <= w->near[i])
+        // where it fired the value is noise, unless the event has moved the state away
+        if (fabs(w->g0[i]) <= w->near[i])
             w->side[i] = 0;
+        else
+            w->near[i] = 0;
         w->crossed[i] = 0;
         has_doubt |= w->side[i] == 0;
     }
@@ -91,10 +94,23 @@ enum ct_eval ct_watch_start(struct ct_watch *w, double t, double h, const double
     return e == CT_EVAL_RETRY ? CT_EVAL_OK : e; // the first step will find the side
 }
 
-// Reaching zero is crossing it; a root at rest on zero does not fire.
+// Reaching zero is crossing it; a root at rest on zero does not fire. One that has just fired may
+// still be on the wrong side: until it has got away it must go further than it was then.
 static bool has_crossed(const struct ct_watch *w, int i, const double *g)
 {
-    return w->side[i] && sign(g[i]) != w->side[i];
+    const double x = w->side[i] * g[i];
+    return w->side[i] && (w->near[i] > 0 ? x < -w->near[i] : x <= 0);
+}
+
+// A probe without an event: roots that rested take sides, those that have fired got away.
+static void settle(struct ct_watch *w, const double *g)
+{
+    for (int i = 0; i < w->p->nroot; i++) {
+        if (w->side[i] == 0)
+            w->side[i] = (signed char)sign(g[i]);
+        if (w->side[i] * g[i] > w->near[i])
+            w->near[i] = 0;
+    }
 }
 
 static bool any_crossed(const struct ct_watch *w, const double *g)
@@ -166,12 +182,26 @@ static enum ct_eval locate(struct ct_watch *w, const struct ct_stepper_span *s, 
 // The roots that fire at theta, from w->high, and their slopes there.
 static enum ct_eval mark(struct ct_watch *w, const struct ct_stepper_span *s, double theta)
 {
-    const double d = theta > 0.5 ? -slope_spacing : slope_spacing;
+    const double least = slope_resolutions * ct_watch_resolution(s->t, s->h) / s->h;
+    const double size = fmin(slope_most, slope_spacing * theta + least);
+    const double d = theta > 0.5 ? -size : size;
     const enum ct_eval e = evaluate_inside(w, s, theta + d, w->g);
     for (int i = 0; i < w->p->nroot && e == CT_EVAL_OK; i++) {
         w->crossed[i] = has_crossed(w, i, w->high) ? (signed char)-w->side[i] : 0;
         w->slope[i] = (w->g[i] - w->high[i]) / (d * s->h);
     }
+    return e;
+}
+
+// g at the end of a step (out: w->high), carried on by the resolution: a root that is about to be
+// zero fires at the end of this step and not at the start of the next, after a sample there.
+static enum ct_eval evaluate_end(struct ct_watch *w, const struct ct_stepper_span *s,
+                                 const double *y_end, double since)
+{
+    const double ahead = ct_watch_resolution(s->t, s->h) / (since * s->h);
+    const enum ct_eval e = evaluate(w, s->t + s->h, y_end, w->high);
+    for (int i = 0; i < w->p->nroot && e == CT_EVAL_OK; i++)
+        w->high[i] += ahead * (w->high[i] - w->low[i]);
     return e;
 }
 
@@ -182,20 +212,20 @@ enum ct_eval ct_watch_search(struct ct_watch *w, const struct ct_stepper_span *s
     *theta = 2;
     memset(w->crossed, 0, (size_t)n);
     memcpy(w->low, w->g0, (size_t)n * sizeof *w->g0);
+    double before = 0;
     for (size_t j = 0; j < COUNT(probes); j++) {
-        enum ct_eval e = j + 1 < COUNT(probes) ? evaluate_inside(w, s, probes[j], w->high)
-                                               : evaluate(w, s->t + s->h, y_end, w->high);
-        if (e == CT_EVAL_OK && any_crossed(w, w->high)) {
-            const double width = fmin(0.5, ct_watch_resolution(s->t, s->h) / s->h);
-            e = locate(w, s, j ? probes[j - 1] : 0, probes[j], width, theta);
-            return e == CT_EVAL_OK ? mark(w, s, *theta) : e;
-        }
+        enum ct_eval e = probes[j] < 1 ? evaluate_inside(w, s, probes[j], w->high)
+                                       : evaluate_end(w, s, y_end, 1 - before);
         if (e != CT_EVAL_OK)
             return e;
-        for (int i = 0; i < n; i++)
-            if (w->side[i] == 0)
-                w->side[i] = (signed char)sign(w->high[i]);
+        if (any_crossed(w, w->high)) {
+            const double width = fmin(0.5, ct_watch_resolution(s->t, s->h) / s->h);
+            e = locate(w, s, before, probes[j], width, theta);
+            return e == CT_EVAL_OK ? mark(w, s, *theta) : e;
+        }
+        settle(w, w->high);
         swap(&w->low, &w->high);
+        before = probes[j];
     }
     return CT_EVAL_OK;
 }
@@ -229,7 +259,8 @@ enum ct_eval ct_watch_accept(struct ct_watch *w, double t, double h, const doubl
             w->slope[i] = 0;
         }
         // ten resolutions: the location and its refinement are each good to a few
-        w->near[i] = fabs(w->g0[i]) + 10 * fabs(w->slope[i]) * ct_watch_resolution(t, h);
+        if (w->crossed[i])
+            w->near[i] = fabs(w->g0[i]) + 10 * fabs(w->slope[i]) * ct_watch_resolution(t, h);
     }
     return e;
 }

@@ -14,11 +14,12 @@
 
 struct ct_watch {
     const struct ct_problem *p;
-    signed char *side, *crossed;   // (nroot)
-    double *g0;                    // g at the start of the step  (nroot)
-    double *g, *low, *high, *near; // (nroot) each
-    double *slope;                 // dg/dt at the event  (nroot)
-    double *point;                 // (ny)
+    signed char *side, *crossed; // (nroot)
+    double *g0;                  // g at the start of the step  (nroot)
+    double *g, *low, *high;      // (nroot) each
+    double *near;                // > 0: fired, and |g| has not been above this since (nroot)
+    double *slope;               // dg/dt at the event  (nroot)
+    double *point;               // (ny)
 };
 
 /// Times closer than this to an event cannot be told from it.

@@ -15,7 +15,8 @@
 #include <string.h>
 
 // Fortran passes the length of each character argument behind the others.
-extern void dgetrf_(const int *m, const int *n, double *a, const int *lda, int *ipiv, int *info);
+extern void dgetrf_(const int *m, const int *n, double *a, const int *lda, int *ipiv,
+                    int *info);
 extern void dgetrs_(const char *trans, const int *n, const int *nrhs, const double *a,
                     const int *lda, const int *ipiv, double *b, const int *ldb, int *info,
                     size_t);
@@ -49,7 +50,8 @@ static int max_int(int a, int b)
     return a > b ? a : b;
 }
 
-void ct_gemv(double *restrict y, const double *A, const double *restrict x, int m, int n, int lda)
+void ct_gemv(double *restrict y, const double *A, const double *restrict x, int m, int n,
+             int lda)
 {
     memset(y, 0, (size_t)m * sizeof *y);
     for (int j = 0; j < n; j++) {
@@ -116,8 +118,8 @@ bool ct_lu(double *A, int *pivot, int n, int lda)
     return info == 0;
 }
 
-void ct_lu_solve(double *x, const double *LU, const int *pivot, int n, int lda, int nrhs, int ldx,
-                 bool transpose)
+void ct_lu_solve(double *x, const double *LU, const int *pivot, int n, int lda, int nrhs,
+                 int ldx, bool transpose)
 {
     int info;
     lda = max_int(1, lda);
@@ -171,7 +173,8 @@ static void solve_trapezoid(double *b, double *A, int rank, int n, int lda, doub
     dtrtrs_("U", "N", "N", &rank, &one, A, &lda, b, &n, &info, 1, 1, 1);
     memset(b + rank, 0, (size_t)rest * sizeof *b);
     if (rest > 0)
-        dormrz_("L", "T", &n, &one, &rank, &rest, A, &lda, tau, b, &n, work, &lwork, &info, 1, 1);
+        dormrz_("L", "T", &n, &one, &rank, &rest, A, &lda, tau, b, &n, work, &lwork, &info, 1,
+                1);
 }
 
 int ct_lstsq(double *b, double *A, int m, int n, int lda, double tol, int *iwork, double *work)
