@@ -18,8 +18,8 @@ enum ct_eval {
 struct ct_problem {
     void *user;
     int ny; // states
-    const bool
-        *watched; // per state: counts in error control (quadratures do not). NULL: all do
+    /// Per state: counts in error control (quadratures do not). NULL: all do.
+    const bool *watched;
 
     /// dy (ny, out) = f(t, y).
     enum ct_eval (*rhs)(void *user, double t, const double *y, double *dy);
