@@ -64,8 +64,8 @@ struct ct_sym {
     struct ct_mark mark;
 };
 
-/// 16 bytes. CONST: a indexes the constants. SYM: a indexes the symbols. TABLE: a is the argument,
-/// b the table's number, c the order of its derivative.
+/// 16 bytes. CONST: a and b hold the bits of the value. SYM: a indexes the symbols. TABLE: a is the
+/// argument, b the table's number, c the order of its derivative.
 struct ct_exnode {
     uint32_t op, a, b, c;
 };
@@ -82,16 +82,21 @@ struct ct_exs {
     struct ct_arena *arena;
     struct ct_exnode *node;
     size_t nnode, node_cap;
-    double *constant;
-    size_t nconstant, constant_cap;
     struct ct_sym *sym;
     size_t nsym, sym_cap;
     const struct ct_table *table;
     size_t ntable, table_cap;
     uint32_t *hash; // open addressing, 0 is free, else id + 1
     size_t hash_size;
+    uint16_t *kinds; // per node: bit set of the kinds of symbols below it
+    size_t kinds_cap;
     const char **label; // optional name by node id, for printing; NULL where none
     size_t label_cap;
+    // workspace of walks over the graph: a generation stamp and a result per node, a stack
+    uint32_t *stamp, generation;
+    ct_ex *memo;
+    uint32_t *stack;
+    size_t walk_cap;
 };
 
 void ct_exs_init(struct ct_exs *x, struct ct_arena *arena);
@@ -120,6 +125,8 @@ ct_ex ct_ex_fun2(struct ct_exs *x, enum ct_op op, ct_ex a, ct_ex b);
 ct_ex ct_ex_if(struct ct_exs *x, ct_ex c, ct_ex a, ct_ex b);
 ct_ex ct_ex_table(struct ct_exs *x, uint32_t table, uint32_t order, ct_ex a);
 ct_ex ct_ex_scale(struct ct_exs *x, double c, ct_ex a);
+/// Give a node a name by meaning ("rod.position.x"); the first name stays.
+void ct_ex_label(struct ct_exs *x, ct_ex a, const char *name);
 
 // ---- questions ------------------------------------------------------------------------------
 
@@ -142,6 +149,10 @@ const struct ct_sym *ct_ex_symbol(const struct ct_exs *x, ct_ex a);
 unsigned ct_ex_kinds(const struct ct_exs *x, ct_ex a);
 
 // ---- derivatives, substitution, values ----------------------------------------------------------
+
+/// Nodes below the n roots (each once, children before parents) written to x->stack; returns their
+/// number. The list holds until the next walk. Cost: the nodes below.
+size_t ct_ex_walk(struct ct_exs *x, const ct_ex *root, size_t n);
 
 /// da/ds for a symbol s; comparisons and sign have derivative 0, `if` differentiates its branches.
 /// Cost: nodes below a, each once.

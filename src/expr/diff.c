@@ -1,0 +1,243 @@
+// Walks over the graph: derivatives, substitution, copies between stores.
+//
+// Each walk lists the nodes below its roots once, children before parents, and computes one result a
+// node. The lists live in the store's workspace; explicit stacks, as expressions may be deep.
+#include "expr/ex.h"
+
+#include <assert.h>
+#include <string.h>
+
+static void reserve_walk(struct ct_exs *x)
+{
+    if (x->walk_cap >= x->nnode)
+        return;
+    const size_t cap = 2 * x->nnode;
+    uint32_t *stamp = CT_NEWN(x->arena, uint32_t, cap);
+    if (x->walk_cap)
+        memcpy(stamp, x->stamp, x->walk_cap * sizeof *stamp);
+    x->stamp = stamp;
+    x->memo = CT_NEWN(x->arena, ct_ex, cap);
+    x->stack = CT_NEWN(x->arena, uint32_t, 2 * cap);
+    x->walk_cap = cap;
+}
+
+size_t ct_ex_walk(struct ct_exs *x, const ct_ex *root, size_t n)
+{
+    reserve_walk(x);
+    x->generation++;
+    uint32_t *list = x->stack, *pending = x->stack + x->walk_cap; // pending grows behind the list
+    size_t nlist = 0;
+    for (size_t r = 0; r < n; r++) {
+        size_t npending = 0;
+        if (x->stamp[root[r].id] == x->generation)
+            continue;
+        pending[npending++] = root[r].id;
+        while (npending) {
+            const uint32_t id = pending[npending - 1];
+            const struct ct_exnode *e = &x->node[id];
+            const uint32_t arg[3] = {e->a, e->b, e->c};
+            bool ready = true;
+            for (int i = 0; ready && i < ct_op_info[e->op].narg; i++)
+                if (x->stamp[arg[i]] != x->generation) {
+                    pending[npending++] = arg[i]; // a path: never longer than the walk
+                    ready = false;
+                }
+            if (ready) {
+                x->stamp[id] = x->generation;
+                list[nlist++] = id;
+                npending--;
+            }
+        }
+    }
+    return nlist;
+}
+
+// The walk's list moved out of the workspace, so that other walks may run meanwhile.
+static uint32_t *copy_list(struct ct_exs *x, size_t n)
+{
+    uint32_t *list = CT_NEWN(x->arena, uint32_t, n ? n : 1);
+    memcpy(list, x->stack, n * sizeof *list);
+    return list;
+}
+
+// Derivative of a node by its i-th argument, as an expression of the node and its arguments.
+static ct_ex partial(struct ct_exs *x, uint32_t id, int i)
+{
+    const struct ct_exnode n = x->node[id];
+    const ct_ex e = {id}, a = {n.a}, b = {n.b};
+    const ct_ex one = CT_EX_ONE;
+    switch ((enum ct_op)n.op) {
+    case CT_OP_ADD:
+        return one;
+    case CT_OP_SUB:
+        return i ? ct_ex_neg(x, one) : one;
+    case CT_OP_NEG:
+        return ct_ex_neg(x, one);
+    case CT_OP_MUL:
+        return i ? a : b;
+    case CT_OP_DIV: // a/b: 1/b, -(a/b)/b
+        return i ? ct_ex_neg(x, ct_ex_div(x, e, b)) : ct_ex_div(x, one, b);
+    case CT_OP_POW: // b a^(b-1), a^b log a
+        return i ? ct_ex_mul(x, e, ct_ex_fun(x, CT_OP_LOG, a))
+                 : ct_ex_mul(x, b, ct_ex_pow(x, a, ct_ex_sub(x, b, one)));
+    case CT_OP_SQRT:
+        return ct_ex_div(x, ct_ex_const(x, 0.5), e);
+    case CT_OP_SIN:
+        return ct_ex_fun(x, CT_OP_COS, a);
+    case CT_OP_COS:
+        return ct_ex_neg(x, ct_ex_fun(x, CT_OP_SIN, a));
+    case CT_OP_TAN:
+        return ct_ex_add(x, one, ct_ex_mul(x, e, e));
+    case CT_OP_ASIN:
+        return ct_ex_div(x, one, ct_ex_fun(x, CT_OP_SQRT, ct_ex_sub(x, one, ct_ex_mul(x, a, a))));
+    case CT_OP_ACOS:
+        return ct_ex_neg(
+            x, ct_ex_div(x, one, ct_ex_fun(x, CT_OP_SQRT, ct_ex_sub(x, one, ct_ex_mul(x, a, a)))));
+    case CT_OP_ATAN:
+        return ct_ex_div(x, one, ct_ex_add(x, one, ct_ex_mul(x, a, a)));
+    case CT_OP_ATAN2: { // atan2(a, b): b/(a^2 + b^2), -a/(a^2 + b^2)
+        const ct_ex s = ct_ex_add(x, ct_ex_mul(x, a, a), ct_ex_mul(x, b, b));
+        return i ? ct_ex_neg(x, ct_ex_div(x, a, s)) : ct_ex_div(x, b, s);
+    }
+    case CT_OP_SINH:
+        return ct_ex_fun(x, CT_OP_COSH, a);
+    case CT_OP_COSH:
+        return ct_ex_fun(x, CT_OP_SINH, a);
+    case CT_OP_TANH:
+        return ct_ex_sub(x, one, ct_ex_mul(x, e, e));
+    case CT_OP_EXP:
+        return e;
+    case CT_OP_LOG:
+        return ct_ex_div(x, one, a);
+    case CT_OP_ABS:
+        return ct_ex_fun(x, CT_OP_SIGN, a);
+    case CT_OP_MIN: // the smaller argument's derivative counts; ties go to the second
+        return i ? ct_ex_if(x, ct_ex_fun2(x, CT_OP_LT, a, b), CT_EX_ZERO, one)
+                 : ct_ex_if(x, ct_ex_fun2(x, CT_OP_LT, a, b), one, CT_EX_ZERO);
+    case CT_OP_MAX:
+        return i ? ct_ex_if(x, ct_ex_fun2(x, CT_OP_GT, a, b), CT_EX_ZERO, one)
+                 : ct_ex_if(x, ct_ex_fun2(x, CT_OP_GT, a, b), one, CT_EX_ZERO);
+    case CT_OP_IF: // branch by branch; the condition has no derivative
+        if (i == 0)
+            return CT_EX_ZERO;
+        return i == 1 ? ct_ex_if(x, a, one, CT_EX_ZERO) : ct_ex_if(x, a, CT_EX_ZERO, one);
+    case CT_OP_TABLE:
+        return ct_ex_table(x, n.b, n.c + 1, a);
+    case CT_OP_CONST:
+    case CT_OP_SYM:
+    case CT_OP_SIGN:
+    case CT_OP_LT:
+    case CT_OP_LE:
+    case CT_OP_GT:
+    case CT_OP_GE:
+    case CT_OP_EQ:
+    case CT_NOP:
+        break;
+    }
+    return CT_EX_ZERO;
+}
+
+// One chain-rule step; `d` holds the derivatives of smaller ids.
+static ct_ex chain(struct ct_exs *x, uint32_t id, const ct_ex *d, const uint32_t *place)
+{
+    const struct ct_exnode n = x->node[id];
+    const uint32_t arg[3] = {n.a, n.b, n.c};
+    const ct_ex a = {n.a}, b = {n.b};
+    if (n.op == CT_OP_IF) // keeps one `if`, however deep the derivative
+        return ct_ex_if(x, a, d[place[n.b]], d[place[n.c]]);
+    if (n.op == CT_OP_DIV) { // (a' - (a/b) b') / b
+        const ct_ex da = d[place[n.a]], db = d[place[n.b]];
+        return ct_ex_div(x, ct_ex_sub(x, da, ct_ex_mul(x, (ct_ex){id}, db)), b);
+    }
+    ct_ex sum = CT_EX_ZERO;
+    for (int i = 0; i < ct_op_info[n.op].narg; i++) {
+        const ct_ex da = d[place[arg[i]]];
+        if (!ct_ex_is_zero(da))
+            sum = ct_ex_add(x, sum, ct_ex_mul(x, partial(x, id, i), da));
+    }
+    return sum;
+}
+
+ct_ex ct_ex_diff_along(struct ct_exs *x, ct_ex e, const ct_ex *s, const ct_ex *ds, size_t ns)
+{
+    const size_t n = ct_ex_walk(x, &e, 1);
+    const uint32_t *list = copy_list(x, n);
+    uint32_t *place = CT_NEWN(x->arena, uint32_t, (size_t)e.id + 1);
+    ct_ex *d = CT_NEWN(x->arena, ct_ex, n + 1);
+    for (size_t k = 0; k < n; k++) {
+        place[list[k]] = (uint32_t)k;
+        if (x->node[list[k]].op == CT_OP_SYM) {
+            for (size_t i = 0; i < ns; i++)
+                if (s[i].id == list[k])
+                    d[k] = ds[i];
+        } else {
+            d[k] = chain(x, list[k], d, place);
+        }
+    }
+    return d[place[e.id]];
+}
+
+ct_ex ct_ex_diff(struct ct_exs *x, ct_ex a, ct_ex s)
+{
+    const ct_ex one = CT_EX_ONE;
+    return ct_ex_diff_along(x, a, &s, &one, 1);
+}
+
+// The node rebuilt with new arguments, through the public constructors so that the rules apply.
+static ct_ex rebuild(struct ct_exs *x, const struct ct_exnode *n, ct_ex a, ct_ex b, ct_ex c)
+{
+    if (n->op == CT_OP_IF)
+        return ct_ex_if(x, a, b, c);
+    if (n->op == CT_OP_TABLE)
+        return ct_ex_table(x, n->b, n->c, a);
+    return ct_op_info[n->op].narg == 1 ? ct_ex_fun(x, (enum ct_op)n->op, a)
+                                       : ct_ex_fun2(x, (enum ct_op)n->op, a, b);
+}
+
+static ct_ex rebuild_mapped(struct ct_exs *x, const struct ct_exnode *n, const ct_ex *image,
+                            const uint32_t *place)
+{
+    const uint32_t arg[3] = {n->a, n->b, n->c};
+    ct_ex m[3] = {{0}, {0}, {0}};
+    for (int i = 0; i < ct_op_info[n->op].narg; i++)
+        m[i] = image[place[arg[i]]];
+    return rebuild(x, n, m[0], m[1], m[2]);
+}
+
+ct_ex ct_ex_subst(struct ct_exs *x, ct_ex e, const ct_ex *from, const ct_ex *to, size_t ns)
+{
+    const size_t n = ct_ex_walk(x, &e, 1);
+    const uint32_t *list = copy_list(x, n);
+    uint32_t *place = CT_NEWN(x->arena, uint32_t, (size_t)e.id + 1);
+    ct_ex *image = CT_NEWN(x->arena, ct_ex, n + 1);
+    for (size_t k = 0; k < n; k++) {
+        const struct ct_exnode node = x->node[list[k]];
+        place[list[k]] = (uint32_t)k;
+        image[k] = (ct_ex){list[k]};
+        if (node.op == CT_OP_SYM) {
+            for (size_t i = 0; i < ns; i++)
+                if (from[i].id == list[k])
+                    image[k] = to[i];
+        } else if (ct_op_info[node.op].narg) {
+            image[k] = rebuild_mapped(x, &node, image, place);
+        }
+    }
+    return image[place[e.id]];
+}
+
+ct_ex ct_ex_import(struct ct_exs *x, const struct ct_exs *from, ct_ex e, ct_ex_leaf_fn leaf,
+                   void *data)
+{
+    // model expressions are small, so plain recursion serves
+    const struct ct_exnode n = from->node[e.id];
+    double v;
+    if (ct_ex_is_const(from, e, &v))
+        return ct_ex_const(x, v);
+    if (n.op == CT_OP_SYM)
+        return leaf(data, x, from, e);
+    const uint32_t arg[3] = {n.a, n.b, n.c};
+    ct_ex m[3] = {{0}, {0}, {0}};
+    for (int i = 0; i < ct_op_info[n.op].narg; i++)
+        m[i] = ct_ex_import(x, from, (ct_ex){arg[i]}, leaf, data);
+    return rebuild(x, &n, m[0], m[1], m[2]);
+}

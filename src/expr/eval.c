@@ -1,0 +1,132 @@
+// Values of operators, tables and whole expressions: what every evaluator must agree with.
+#include "expr/ex.h"
+
+#include <math.h>
+
+double ct_op_apply(enum ct_op op, double a, double b, double c)
+{
+    switch (op) {
+    case CT_OP_ADD:
+        return a + b;
+    case CT_OP_SUB:
+        return a - b;
+    case CT_OP_MUL:
+        return a * b;
+    case CT_OP_DIV:
+        return a / b;
+    case CT_OP_NEG:
+        return -a;
+    case CT_OP_POW:
+        return pow(a, b);
+    case CT_OP_SQRT:
+        return sqrt(a);
+    case CT_OP_SIN:
+        return sin(a);
+    case CT_OP_COS:
+        return cos(a);
+    case CT_OP_TAN:
+        return tan(a);
+    case CT_OP_ASIN:
+        return asin(a);
+    case CT_OP_ACOS:
+        return acos(a);
+    case CT_OP_ATAN:
+        return atan(a);
+    case CT_OP_ATAN2:
+        return atan2(a, b);
+    case CT_OP_SINH:
+        return sinh(a);
+    case CT_OP_COSH:
+        return cosh(a);
+    case CT_OP_TANH:
+        return tanh(a);
+    case CT_OP_EXP:
+        return exp(a);
+    case CT_OP_LOG:
+        return log(a);
+    case CT_OP_ABS:
+        return fabs(a);
+    case CT_OP_SIGN:
+        return (a > 0) - (a < 0);
+    case CT_OP_MIN:
+        return a < b ? a : b;
+    case CT_OP_MAX:
+        return a > b ? a : b;
+    case CT_OP_LT:
+        return a < b;
+    case CT_OP_LE:
+        return a <= b;
+    case CT_OP_GT:
+        return a > b;
+    case CT_OP_GE:
+        return a >= b;
+    case CT_OP_EQ:
+        return a == b;
+    case CT_OP_IF:
+        return a != 0 ? b : c;
+    case CT_OP_CONST:
+    case CT_OP_SYM:
+    case CT_OP_TABLE:
+    case CT_NOP:
+        break;
+    }
+    return NAN; // leaves and tables have no operator value
+}
+
+// Interval i with x[i] <= at <= x[i + 1].
+static size_t find_interval(const struct ct_table *t, double at)
+{
+    size_t low = 0, high = t->n - 1;
+    while (high - low > 1) {
+        const size_t middle = (low + high) / 2;
+        if (t->x[middle] <= at)
+            low = middle;
+        else
+            high = middle;
+    }
+    return low;
+}
+
+double ct_table_value(const struct ct_table *t, uint32_t order, double at)
+{
+    if (!(at >= t->x[0] && at <= t->x[t->n - 1]))
+        return NAN;
+    const size_t i = find_interval(t, at);
+    const double h = t->x[i + 1] - t->x[i], s = at - t->x[i];
+    const double slope = (t->y[i + 1] - t->y[i]) / h;
+    // y(s) = y_i + s (c1 + s (c2 + s c3))
+    double c1 = slope, c2 = 0, c3 = 0;
+    if (t->m) {
+        c1 = t->m[i];
+        c2 = (3 * slope - 2 * t->m[i] - t->m[i + 1]) / h;
+        c3 = (t->m[i] + t->m[i + 1] - 2 * slope) / (h * h);
+    }
+    switch (order) {
+    case 0:
+        return t->y[i] + s * (c1 + s * (c2 + s * c3));
+    case 1:
+        return c1 + s * (2 * c2 + s * 3 * c3);
+    case 2:
+        return 2 * c2 + 6 * s * c3;
+    case 3:
+        return 6 * c3;
+    default:
+        return 0;
+    }
+}
+
+double ct_ex_value(const struct ct_exs *x, ct_ex a, const double *value)
+{
+    const struct ct_exnode *n = &x->node[a.id];
+    double v[3] = {0};
+    if (ct_ex_is_const(x, a, v))
+        return v[0];
+    if (n->op == CT_OP_SYM)
+        return value[n->a];
+    const uint32_t arg[3] = {n->a, n->b, n->c};
+    for (int i = 0; i < ct_op_info[n->op].narg; i++)
+        v[i] = ct_ex_value(x, (ct_ex){arg[i]}, value);
+    if (n->op == CT_OP_TABLE)
+        return ct_table_value(&x->table[n->b], n->c, v[0]);
+    return ct_op_apply((enum ct_op)n->op, v[0], v[1], v[2]);
+}
