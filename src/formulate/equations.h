@@ -110,6 +110,9 @@ struct ct_equations {
     const char **undetermined; // names of reaction components that are not unique
     struct ct_left_out *left_out;
     size_t nleft_out, left_out_cap;
+    struct ct_coordinate *coordinate; // of all joints and bodies (build.h)
+    size_t ncoordinate;
+    struct ct_build *build; // for what is asked for later: terminal equations, further signals
     // topology, for reports
     const struct ct_graph *graph;
     const struct ct_tree *T, *R;
