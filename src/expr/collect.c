@@ -15,10 +15,11 @@ static struct ct_collector *start(struct ct_exs *x, const struct ct_collect_opti
     return c;
 }
 
-double ct_ex_tree_size(struct ct_exs *x, ct_ex e)
+// size[id] of the nodes below e.
+static double *tree_sizes(struct ct_exs *x, struct ct_arena *arena, ct_ex e)
 {
     const size_t n = ct_ex_walk(x, &e, 1);
-    double *size = CT_NEWN(x->arena, double, (size_t)e.id + 1);
+    double *size = CT_NEWN(arena, double, (size_t)e.id + 1);
     for (size_t k = 0; k < n; k++) {
         const uint32_t id = x->stack[k];
         const struct ct_exnode *node = &x->node[id];
@@ -27,7 +28,12 @@ double ct_ex_tree_size(struct ct_exs *x, ct_ex e)
         for (int i = 0; i < ct_op_info[node->op].narg; i++)
             size[id] += size[arg[i]];
     }
-    return size[e.id];
+    return size;
+}
+
+double ct_ex_tree_size(struct ct_exs *x, struct ct_arena *scratch, ct_ex e)
+{
+    return tree_sizes(x, scratch, e)[e.id];
 }
 
 static ct_ex finish(struct ct_collector *c, struct ct_poly p)
@@ -35,11 +41,60 @@ static ct_ex finish(struct ct_collector *c, struct ct_poly p)
     return ct_regroup(c, ct_identity_apply(c, p));
 }
 
+// ---- the smallest form --------------------------------------------------------------------------
+
+// Expanding is not always a gain: (a + b)^5 stays. Where it is none, the operator is kept and its
+// operands are collected.
+struct descent {
+    struct ct_collector *c;
+    const struct ct_poly *expanded; // by id
+    const double *size;             // by id
+    ct_ex *done;                    // by id, 0 where not yet collected
+    size_t left; // nodes that may still be tried: a try can take milliseconds
+};
+
+static ct_ex collect_node(struct descent *d, ct_ex e);
+
+static ct_ex collect_operands(struct descent *d, ct_ex e)
+{
+    const struct ct_exnode n = *ct_ex_node(d->c->x, e);
+    switch (n.op) {
+    case CT_OP_NEG:
+        return ct_ex_neg(d->c->x, collect_node(d, (ct_ex){n.a}));
+    case CT_OP_ADD:
+    case CT_OP_SUB:
+    case CT_OP_MUL:
+    case CT_OP_DIV: {
+        const ct_ex a = collect_node(d, (ct_ex){n.a});
+        return ct_ex_fun2(d->c->x, (enum ct_op)n.op, a, collect_node(d, (ct_ex){n.b}));
+    }
+    default:
+        return e;
+    }
+}
+
+static ct_ex collect_node(struct descent *d, ct_ex e)
+{
+    struct ct_exs *x = d->c->x;
+    if (d->done[e.id].id || !d->left)
+        return d->done[e.id].id ? d->done[e.id] : e;
+    d->left--;
+    ct_ex r = finish(d->c, d->expanded[e.id]);
+    if (ct_ex_tree_size(x, d->c->arena, r) > d->size[e.id])
+        r = collect_operands(d, e);
+    if (ct_ex_tree_size(x, d->c->arena, r) > d->size[e.id])
+        r = e;
+    return d->done[e.id] = r;
+}
+
 ct_ex ct_ex_collect(struct ct_exs *x, ct_ex e, const struct ct_collect_options *options)
 {
     struct ct_collector *c = start(x, options);
-    const ct_ex r = finish(c, ct_expand(c, e));
-    return ct_ex_tree_size(x, r) <= ct_ex_tree_size(x, e) ? r : e;
+    struct descent d = {.c = c, .left = 100};
+    d.expanded = ct_expand(c, e);
+    d.size = tree_sizes(x, c->arena, e);
+    d.done = CT_NEWN(c->arena, ct_ex, (size_t)e.id + 1);
+    return collect_node(&d, e);
 }
 
 // ---- linear forms -----------------------------------------------------------------------------
@@ -89,7 +144,7 @@ bool ct_ex_collect_linear(struct ct_exs *x, ct_ex e, const ct_ex *s, size_t n,
                           const struct ct_collect_options *options)
 {
     struct ct_collector *c = start(x, options);
-    const struct ct_poly p = ct_expand(c, e);
+    const struct ct_poly p = ct_expand(c, e)[e.id];
     const size_t *role = roles_of_atoms(c, s, n);
     struct ct_term *t = CT_NEWN(c->arena, struct ct_term, p.n);
     bool linear = true;

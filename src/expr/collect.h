@@ -33,6 +33,6 @@ bool ct_ex_collect_linear(struct ct_exs *x, ct_ex e, const ct_ex *s, size_t n,
                           const struct ct_collect_options *options);
 
 /// Operators and operands that a full print of e shows. Cost: nodes below e.
-double ct_ex_tree_size(struct ct_exs *x, ct_ex e);
+double ct_ex_tree_size(struct ct_exs *x, struct ct_arena *scratch, ct_ex e);
 
 #endif

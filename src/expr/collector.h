@@ -44,8 +44,8 @@ uint32_t ct_collector_atom(struct ct_collector *c, ct_ex e);
 struct ct_poly ct_collector_trig(struct ct_collector *c, enum ct_op op,
                                  struct ct_poly argument);
 
-/// e as a polynomial.
-struct ct_poly ct_expand(struct ct_collector *c, ct_ex e);
+/// e and the nodes below it as polynomials, by id.
+struct ct_poly *ct_expand(struct ct_collector *c, ct_ex e);
 /// p by the identities of sines and cosines, where that is shorter.
 struct ct_poly ct_identity_apply(struct ct_collector *c, struct ct_poly p);
 /// p as an expression with common factors pulled out.

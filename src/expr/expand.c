@@ -5,6 +5,7 @@
 #include "expr/collector.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 // Terms made before sums are no longer multiplied out: some 100 ms and some 50 MB.
@@ -177,8 +178,39 @@ static struct ct_poly reduce_roots(struct ct_collector *c, struct ct_poly p)
     return p;
 }
 
+// Powers a reader would not want multiplied out any further; far from the range of exponents, too.
+enum { LARGEST_EXPONENT = 100 };
+
+static int32_t largest_exponent(const struct ct_collector *c, struct ct_poly p)
+{
+    int32_t largest = 0;
+    for (size_t k = 0; k < p.n; k++)
+        for (size_t i = 0; i < ct_mono_length(&c->ps, p.t[k].mono); i++) {
+            const int32_t e = abs(ct_mono_power(&c->ps, p.t[k].mono, i).exponent);
+            largest = e > largest ? e : largest;
+        }
+    return largest;
+}
+
+static bool is_finite(struct ct_poly p)
+{
+    for (size_t k = 0; k < p.n; k++)
+        if (!isfinite(p.t[k].c))
+            return false;
+    return true;
+}
+
+static struct ct_poly product_as_it_is(struct ct_collector *c, struct ct_poly a,
+                                       struct ct_poly b)
+{
+    const ct_ex first = ct_regroup(c, a);
+    return opaque(c, ct_ex_mul(c->x, first, ct_regroup(c, b)));
+}
+
 static struct ct_poly multiply(struct ct_collector *c, struct ct_poly a, struct ct_poly b)
 {
+    if (largest_exponent(c, a) + largest_exponent(c, b) > LARGEST_EXPONENT)
+        return product_as_it_is(c, a, b);
     // a product of many terms may still collapse, so it may be larger than the limit for a while
     if (a.n * b.n > 16 * room(c)) {
         a = a.n >= b.n ? bundle(c, a) : a;
@@ -186,6 +218,8 @@ static struct ct_poly multiply(struct ct_collector *c, struct ct_poly a, struct 
     }
     const struct ct_poly p = reduce_roots(c, ct_poly_mul(&c->ps, a, b));
     c->spent += a.n * b.n;
+    if (!is_finite(p))
+        return product_as_it_is(c, a, b);
     if (p.n <= room(c))
         return p;
     return ct_poly_mul(&c->ps, bundle(c, a), bundle(c, b));
@@ -196,8 +230,8 @@ static struct ct_poly invert(struct ct_collector *c, struct ct_poly b)
 {
     if (b.n > 1)
         b = bundle(c, b);
-    if (!b.n)
-        return opaque(c, ct_ex_div(c->x, CT_EX_ONE, CT_EX_ZERO));
+    if (!b.n || !isfinite(1 / b.t[0].c))
+        return opaque(c, ct_ex_div(c->x, CT_EX_ONE, ct_regroup(c, b)));
     return ct_poly_term(&c->ps, 1 / b.t[0].c, ct_mono_raise(&c->ps, b.t[0].mono, -1));
 }
 
@@ -283,7 +317,7 @@ static struct ct_poly expand_node(struct ct_collector *c, ct_ex e, const struct 
     }
 }
 
-struct ct_poly ct_expand(struct ct_collector *c, ct_ex e)
+struct ct_poly *ct_expand(struct ct_collector *c, ct_ex e)
 {
     const size_t n = ct_ex_walk(c->x, &e, 1);
     uint32_t *id
@@ -292,5 +326,5 @@ struct ct_poly ct_expand(struct ct_collector *c, ct_ex e)
     memcpy(id, c->x->stack, n * sizeof *id);
     for (size_t k = 0; k < n; k++)
         done[id[k]] = expand_node(c, (ct_ex){id[k]}, done);
-    return done[e.id];
+    return done;
 }

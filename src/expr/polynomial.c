@@ -11,6 +11,11 @@
 // A coefficient is the sum of some tens of products, each rounded: 16 eps of the largest is noise.
 static const double noise = 16 * DBL_EPSILON;
 
+static bool is_noise(const struct ct_term *t)
+{
+    return fabs(t->c) <= noise * t->size && isfinite(t->size);
+}
+
 bool ct_same_number(double a, double b)
 {
     return fabs(a - b) <= noise * fmax(fabs(a), fabs(b));
@@ -166,7 +171,7 @@ struct ct_poly ct_poly_sum(struct ct_polys *ps, struct ct_term *t, size_t n)
     }
     for (size_t k = 0; k < m; k++) {
         ps->place[t[k].mono] = 0;
-        if (fabs(t[k].c) > noise * t[k].size)
+        if (!is_noise(&t[k]))
             t[kept++] = t[k];
     }
     ct_sort(ps->arena, t, kept, sizeof *t, by_mono, NULL);
@@ -196,7 +201,7 @@ struct ct_poly ct_poly_add(struct ct_polys *ps, struct ct_poly a, double c, stru
             t.size = fmax(t.size, fabs(c) * b.t[j].size);
             j++;
         }
-        if (fabs(t.c) > noise * t.size)
+        if (!is_noise(&t))
             p.t[p.n++] = t;
     }
     return p;

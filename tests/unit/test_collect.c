@@ -320,17 +320,21 @@ static ct_ex random_mechanics(struct random *r, struct fixture *f, ct_ex *e, siz
     const ct_ex angle[]
         = {f->q1, f->q2, ct_ex_add(&f->x, f->q1, f->q2), ct_ex_sub(&f->x, f->q3, f->q1)};
     for (size_t k = 0; k < n; k++) {
-        const size_t kind = random_below(r, 10);
-        const ct_ex a = k ? e[random_below(r, k)] : f->m1,
-                    b = k ? e[random_below(r, k)] : f->l1;
-        if (k < 4 || kind < 2)
+        const size_t kind = k < 2 ? random_below(r, 4) : random_below(r, 14);
+        // of recent nodes: the last one has most of the others below it
+        const size_t back = k < 5 ? k : 5;
+        const ct_ex a = k ? e[k - 1 - random_below(r, back)] : f->m1;
+        const ct_ex b = k ? e[k - 1 - random_below(r, back)] : f->l1;
+        if (kind < 2)
             e[k] = sym[random_below(r, COUNT(sym))];
-        else if (kind < 5)
+        else if (kind < 4)
             e[k] = ct_ex_fun(&f->x, random_below(r, 2) ? CT_OP_SIN : CT_OP_COS,
                              angle[random_below(r, COUNT(angle))]);
-        else if (kind < 7)
-            e[k] = ct_ex_mul(&f->x, a, b);
-        else if (kind < 8)
+        else if (kind < 7) // degrees grow slowly
+            e[k] = ct_ex_mul(&f->x, a, sym[random_below(r, COUNT(sym))]);
+        else if (kind < 9)
+            e[k] = ct_ex_mul(&f->x, a, e[random_below(r, k < 5 ? k : 5)]);
+        else if (kind < 11)
             e[k] = ct_ex_sub(&f->x, a, b);
         else
             e[k] = ct_ex_add(&f->x, a, ct_ex_scale(&f->x, random_below(r, 2) ? 1 : 0.3, b));
@@ -360,13 +364,14 @@ static void random_expressions_keep_their_values(void **unused)
 {
     (void)unused;
     struct random r = random_start(__func__);
-    for (int round = 0; round < 1000; round++) {
+    for (int round = 0; round < 3000; round++) {
         struct fixture f;
         start(&f);
-        ct_ex e[60], from = random_mechanics(&r, &f, e, 4 + random_below(&r, 30));
+        ct_ex e[60], from = random_mechanics(&r, &f, e, 4 + random_below(&r, 50));
         ct_ex got = ct_ex_collect(&f.x, from, NULL);
         check_values(&f, &r, from, got);
-        assert_true(ct_ex_tree_size(&f.x, got) <= ct_ex_tree_size(&f.x, from));
+        assert_true(ct_ex_tree_size(&f.x, f.arena, got)
+                    <= ct_ex_tree_size(&f.x, f.arena, from));
         finish(&f);
     }
 }
