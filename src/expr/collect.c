@@ -15,25 +15,33 @@ static struct ct_collector *start(struct ct_exs *x, const struct ct_collect_opti
     return c;
 }
 
-// size[id] of the nodes below e.
-static double *tree_sizes(struct ct_exs *x, struct ct_arena *arena, ct_ex e)
+// Tree sizes of the nodes below e by id; the room grows with the store.
+struct sizes {
+    double *at;
+    size_t cap;
+};
+
+static double tree_size(struct sizes *s, struct ct_exs *x, struct ct_arena *arena, ct_ex e)
 {
     const size_t n = ct_ex_walk(x, &e, 1);
-    double *size = CT_NEWN(arena, double, (size_t)e.id + 1);
+    if (s->cap < x->nnode) {
+        s->cap = 2 * x->nnode;
+        s->at = CT_NEWN(arena, double, s->cap);
+    }
     for (size_t k = 0; k < n; k++) {
         const uint32_t id = x->stack[k];
         const struct ct_exnode *node = &x->node[id];
         const uint32_t arg[3] = {node->a, node->b, node->c};
-        size[id] = 1;
+        s->at[id] = 1;
         for (int i = 0; i < ct_op_info[node->op].narg; i++)
-            size[id] += size[arg[i]];
+            s->at[id] += s->at[arg[i]];
     }
-    return size;
+    return s->at[e.id];
 }
 
 double ct_ex_tree_size(struct ct_exs *x, struct ct_arena *scratch, ct_ex e)
 {
-    return tree_sizes(x, scratch, e)[e.id];
+    return tree_size(&(struct sizes){NULL, 0}, x, scratch, e);
 }
 
 static ct_ex finish(struct ct_collector *c, struct ct_poly p)
@@ -48,8 +56,8 @@ static ct_ex finish(struct ct_collector *c, struct ct_poly p)
 struct descent {
     struct ct_collector *c;
     const struct ct_poly *expanded; // by id
-    const double *size;             // by id
-    ct_ex *done;                    // by id, 0 where not yet collected
+    struct sizes sizes;
+    ct_ex *done; // by id, 0 where not yet collected
     size_t left; // nodes that may still be tried: a try can take milliseconds
 };
 
@@ -80,9 +88,10 @@ static ct_ex collect_node(struct descent *d, ct_ex e)
         return d->done[e.id].id ? d->done[e.id] : e;
     d->left--;
     ct_ex r = finish(d->c, d->expanded[e.id]);
-    if (ct_ex_tree_size(x, d->c->arena, r) > d->size[e.id])
+    const double size = tree_size(&d->sizes, x, d->c->arena, e);
+    if (tree_size(&d->sizes, x, d->c->arena, r) > size)
         r = collect_operands(d, e);
-    if (ct_ex_tree_size(x, d->c->arena, r) > d->size[e.id])
+    if (tree_size(&d->sizes, x, d->c->arena, r) > size)
         r = e;
     return d->done[e.id] = r;
 }
@@ -92,7 +101,6 @@ ct_ex ct_ex_collect(struct ct_exs *x, ct_ex e, const struct ct_collect_options *
     struct ct_collector *c = start(x, options);
     struct descent d = {.c = c, .left = 100};
     d.expanded = ct_expand(c, e);
-    d.size = tree_sizes(x, c->arena, e);
     d.done = CT_NEWN(c->arena, ct_ex, (size_t)e.id + 1);
     return collect_node(&d, e);
 }

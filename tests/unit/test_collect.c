@@ -408,7 +408,7 @@ static void what_is_zero_becomes_zero(void **unused)
     }
 }
 
-static void collecting_twice_changes_nothing(void **unused)
+static void collecting_twice_rarely_changes_anything(void **unused)
 {
     (void)unused;
     struct random r = random_start(__func__);
@@ -422,7 +422,9 @@ static void collecting_twice_changes_nothing(void **unused)
         changed += strcmp(s, ct_ex_text(f.arena, &f.x, twice, NULL)) != 0;
         finish(&f);
     }
+    // the second time other sums are below the operators that were kept
     print_message("%zu of 300 changed again\n", changed);
+    assert_true(changed < 15);
 }
 
 int main(void)
@@ -441,7 +443,7 @@ int main(void)
         cmocka_unit_test(random_expressions_keep_their_values),
         cmocka_unit_test(bundled_sums_keep_their_values),
         cmocka_unit_test(what_is_zero_becomes_zero),
-        cmocka_unit_test(collecting_twice_changes_nothing),
+        cmocka_unit_test(collecting_twice_rarely_changes_anything),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
