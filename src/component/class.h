@@ -11,7 +11,7 @@
 
 #include "expr/ex.h"
 
-struct ct_model;
+struct ct_build; // the equations under construction, formulate/build.h
 struct ct_instance;
 
 enum ct_family { CT_FAMILY_BODY, CT_FAMILY_JOINT, CT_FAMILY_FORCE };
@@ -89,14 +89,12 @@ struct ct_motion {
     int ncoord;              // stored coordinates: a quaternion counts 4
     int nfree;               // speeds
     ct_ex coord[CT_MAX_COORD]; // in:  symbols (or driver expressions) of the coordinates
+    const double *value;       // in:  values of all symbols at the start, for choices only
     ct_ex3 d;                // out: [m]
     int nturn;               // out: successive rotations about axes in the frame turned so far
     struct ct_turn turn[CT_MAX_COORD];
     int quaternion; // index of the first of 4 coordinates that give a 3-dof rotation, or -1.
                     // Such a rotation is the whole rotation: nturn = 0.
-    bool coupled;   // translation and rotation share a coordinate, or no constraint rows exist:
-                    // the joint is always a branch (custom, screw)
-
     int nmeasure; // length and angle: one per coordinate; a quaternion: one for its four
     struct ct_measure measure[CT_MAX_COORD];
 
@@ -136,9 +134,34 @@ struct ct_component_class {
     int nkey;
     const char *across, *through; // terminal equations, for `components` and `--show terminal`
     int ncoord, nfree;            // joints; custom: -1, from its list of coordinates
-    /// Joints: fill `m` from the instance. coord[] is set by the caller.
+    bool always_branch; // joints whose rows as a chord do not exist: screw, custom
+    /// Joints with motion: fill `m` from the instance. NULL for distance and gear.
     void (*motion)(struct ct_exs *x, const struct ct_instance *self, struct ct_motion *m);
+    /// Forces, distance and gear: add loads or rows through formulate/load.h and row.h.
+    void (*apply)(struct ct_build *b, const struct ct_instance *self);
+    /// Signals of its own (S.force, S.length ...): false if there is none of that name.
+    bool (*signal)(struct ct_build *b, const struct ct_instance *self, const char *name, ct_ex *out);
 };
+
+// ---- what classes of joints use to fill a motion ------------------------------------------------
+
+/// The axis given under `key`, or the coordinate axis number `standard`.
+ct_ex3 ct_instance_axis(struct ct_exs *x, const struct ct_instance *self, const char *key,
+                        int standard);
+/// One more rotation, about `axis` in the frame turned so far.
+void ct_motion_turn(struct ct_motion *m, ct_ex3 axis, ct_ex angle);
+/// Three translational rows: the origins coincide.
+void ct_motion_hold_place(struct ct_exs *x, struct ct_motion *m);
+/// Three rotational rows (y|z) (z|x) (x|y): the axes coincide.
+void ct_motion_hold_turn(struct ct_exs *x, struct ct_motion *m);
+/// The next coordinate is a length along a direction of `from`.
+void ct_motion_measure_length(struct ct_motion *m, ct_ex3 along);
+/// The next coordinate is the angle about n; across: a unit vector normal to n.
+void ct_motion_measure_angle(struct ct_motion *m, ct_ex3 n, ct_ex3 across);
+
+/// Two unit vectors that make a right-handed set with the unit vector n; coordinate axes where n is one.
+/// value: of all symbols, decides which coordinate axis to start from.
+void ct_axes_across(struct ct_exs *x, ct_ex3 n, const double *value, ct_ex3 *e1, ct_ex3 *e2);
 
 /// Keys that every joint has besides its own (from, to, initial, stiffness, damping, rest, effort,
 /// motion); empty for other families.
