@@ -315,6 +315,7 @@ static bool read_document(struct source *s, const struct ct_node **root)
 bool ct_yaml_parse(struct ct_ctx *ctx, const char *file, const char *text, size_t n,
                    const struct ct_node **root)
 {
+    *root = NULL;
     if (n > max_bytes)
         return ct_error(ctx, (struct ct_mark){file, 0, 0}, CT_E_YAML_LIMIT,
                         "the file is larger than %zu MiB", max_bytes >> 20);
@@ -332,7 +333,9 @@ bool ct_yaml_parse(struct ct_ctx *ctx, const char *file, const char *text, size_
         ct_guard_raise();
     }
     yaml_parser_set_input_string(&s.parser, (const unsigned char *)text, n);
-    const bool ok = read_document(&s, root);
+    const struct ct_node *node = NULL;
+    const bool ok = read_document(&s, &node);
+    *root = ok ? node : NULL;
     ct_guard_pop(&g);
     drop_event(&s);
     yaml_parser_delete(&s.parser);
@@ -344,6 +347,7 @@ bool ct_yaml_read(struct ct_ctx *ctx, const char *path, const struct ct_node **r
     char *text;
     size_t n;
     const struct ct_mark none = {0};
+    *root = NULL;
     switch (ct_text_read(ctx->scratch, path, max_bytes, &text, &n)) {
     case CT_TEXT_UNREADABLE:
         return ct_error(ctx, none, CT_E_FILE, "cannot read '%s': %s", path, strerror(errno));

@@ -41,7 +41,8 @@ struct ct_node {
     size_t height, weight;
 };
 
-/// Read a file: *root in the model arena. path is kept as the marks' file name.
+/// Read a file: *root in the model arena, NULL if there is no tree. With a key given twice there is a
+/// tree and false is returned: the caller may look for more errors. Marks show a copy of path.
 /// Errors: E002, E101 to E104.
 bool ct_yaml_read(struct ct_ctx *ctx, const char *path, const struct ct_node **root);
 
