@@ -30,7 +30,8 @@ const struct ct_component_class ct_component_prismatic = {
     .key = keys,
     .nkey = COUNT(keys),
     .across = "d = axis*q, S = 1",
-    .through = "axis.F = effort - stiffness*(q - rest) - damping*u; T and the rest of F are reactions",
+    .through
+    = "axis.F = effort - stiffness*(q - rest) - damping*u; T and the rest of F are reactions",
     .ncoord = 1,
     .nfree = 1,
     .motion = motion,

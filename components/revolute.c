@@ -31,7 +31,8 @@ const struct ct_component_class ct_component_revolute = {
     .key = keys,
     .nkey = COUNT(keys),
     .across = "d = 0, S = Rot(axis, q)",
-    .through = "axis.T = effort - stiffness*(q - rest) - damping*u; F and the rest of T are reactions",
+    .through
+    = "axis.T = effort - stiffness*(q - rest) - damping*u; F and the rest of T are reactions",
     .ncoord = 1,
     .nfree = 1,
     .motion = motion,

@@ -8,7 +8,8 @@
 #include "component/class.h"
 
 static const struct ct_key keys[] = {
-    {"axes", CT_VALUE_AXES, 0, "", 6, 6, "first axis, fixed in `from`, and second, fixed in `to` (x, y)"},
+    {"axes", CT_VALUE_AXES, 0, "", 6, 6,
+     "first axis, fixed in `from`, and second, fixed in `to` (x, y)"},
 };
 
 static void motion(struct ct_exs *x, const struct ct_instance *self, struct ct_motion *m)
@@ -29,7 +30,8 @@ static void motion(struct ct_exs *x, const struct ct_instance *self, struct ct_m
 
     const ct_ex c = ct_ex3_dot(x, a, b);
     const ct_ex s2 = ct_ex_sub(x, CT_EX_ONE, ct_ex_mul(x, c, c));
-    const ct_ex direct = ct_ex_div(x, CT_EX_ONE, s2), crossed = ct_ex_neg(x, ct_ex_div(x, c, s2));
+    const ct_ex direct = ct_ex_div(x, CT_EX_ONE, s2),
+                crossed = ct_ex_neg(x, ct_ex_div(x, c, s2));
     m->nmeasure = 2;
     m->measure[0] = (struct ct_measure){.kind = CT_MEASURE_ANGLE,
                                         .about = a,

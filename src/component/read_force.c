@@ -20,6 +20,19 @@ void ct_read_forces_declare(struct ct_reader *r)
     }
 }
 
+// The edge of a force ends at the frame on which it acts: `to`, or the one frame it must have (`at`, `on`).
+static const char *name_of_end(const struct ct_component_class *cls)
+{
+    const char *name = "to";
+    for (int i = cls->nkey; i-- > 0;)
+        if (cls->key[i].kind == CT_VALUE_FRAME && (cls->key[i].flags & CT_KEY_REQUIRED))
+            name = cls->key[i].name;
+    for (int i = 0; i < cls->nkey; i++)
+        if (strcmp(cls->key[i].name, "to") == 0)
+            return "to";
+    return name;
+}
+
 // The frame under a key of kind FRAME; -1 if the class has no such key or it is not given.
 static int frame_under(const struct ct_instance *self, const char *name, struct ct_mark *at)
 {
@@ -42,7 +55,7 @@ static bool read_force(struct ct_reader *r, struct ct_instance *self, const stru
     ok &= ct_read_own_values(r, self, node);
     struct ct_mark at = self->mark;
     self->from = frame_under(self, "from", &at);
-    self->to = frame_under(self, "to", &at);
+    self->to = frame_under(self, name_of_end(self->cls), &at);
     if (self->from >= 0 && self->from == self->to)
         ok = ct_error(r->ctx, at, CT_E_SAME_FRAME,
                       "force '%s': 'from' and 'to' are the same frame '%s'", self->name,

@@ -33,11 +33,11 @@ static bool read_signal(struct ct_reader *r, const struct ct_node *node, struct 
         return false;
     if (!ct_parse_is_signal(r->ctx->scratch, node->text, &normal)) {
         if (ct_is_identifier(node->text) && ct_names_get(&r->component, node->text) >= 0)
-            return ct_error(r->ctx, node->mark, CT_E_SIGNAL,
+            return ct_error(r->ctx, node->mark, CT_E_SIGNAL_NAME,
                             "'%s' is no signal; say which of its quantities, as in %s.position.x or "
                             "%s.q",
                             node->text, node->text, node->text);
-        return ct_error(r->ctx, node->mark, CT_E_SIGNAL,
+        return ct_error(r->ctx, node->mark, CT_E_SIGNAL_NAME,
                         "'%s' is no signal; an expression is written {name: NAME, value: EXPRESSION}",
                         node->text);
     }

@@ -5,7 +5,7 @@
 #include "component/read.h"
 
 #include "expr/unit.h"
-#include "io/csv.h"
+#include "io/sheet.h"
 #include "io/text.h"
 
 #include <errno.h>
@@ -24,7 +24,7 @@ static const char *path_beside(struct ct_reader *r, const char *file)
 }
 
 static bool read_csv(struct ct_reader *r, const struct ct_node *node, const char *path,
-                     struct ct_csv *csv)
+                     struct ct_sheet *csv)
 {
     char *text;
     size_t n;
@@ -38,13 +38,13 @@ static bool read_csv(struct ct_reader *r, const struct ct_node *node, const char
     case CT_TEXT_OK:
         break;
     }
-    if (ct_csv_parse(r->ctx, r->ctx->scratch, path, text, n, csv))
+    if (ct_sheet_parse(r->ctx, r->ctx->scratch, path, text, n, csv))
         return true;
     ct_note(r->ctx, node->mark, "the table is used here");
     return false;
 }
 
-static bool find_column(struct ct_reader *r, const struct ct_node *node, const struct ct_csv *csv,
+static bool find_column(struct ct_reader *r, const struct ct_node *node, const struct ct_sheet *csv,
                         const char *name, size_t *column)
 {
     const char **names = CT_NEWN(r->ctx->scratch, const char *, csv->ncolumn);
@@ -70,7 +70,7 @@ static bool parse_field(const char *text, double *value)
     return n && !text[n + strspn(text + n, " \t")] && isfinite(*value);
 }
 
-static bool read_column(struct ct_reader *r, const struct ct_csv *csv, size_t column, double *value)
+static bool read_column(struct ct_reader *r, const struct ct_sheet *csv, size_t column, double *value)
 {
     for (size_t i = 1; i < csv->nrow; i++) {
         const size_t k = i * csv->ncolumn + column;
@@ -81,7 +81,7 @@ static bool read_column(struct ct_reader *r, const struct ct_csv *csv, size_t co
     return true;
 }
 
-static bool check_increasing(struct ct_reader *r, const struct ct_csv *csv, size_t column,
+static bool check_increasing(struct ct_reader *r, const struct ct_sheet *csv, size_t column,
                              const double *x)
 {
     for (size_t i = 2; i < csv->nrow; i++)
@@ -123,7 +123,7 @@ static void spline_slopes(size_t n, const double *x, const double *y, double *m,
 static bool fill_table(struct ct_reader *r, const struct ct_node *file, const struct ct_node *column,
                        bool cubic, struct ct_table *t)
 {
-    struct ct_csv csv;
+    struct ct_sheet csv;
     size_t kt = 0, ky = 0;
     if (!read_csv(r, file, t->file, &csv))
         return false;

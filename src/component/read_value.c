@@ -157,7 +157,7 @@ static enum ct_name_result find_signal(void *user, const char *text, const char 
     }
     bool ok = true;
     if (!signal_exists(r, first))
-        ok = ct_error(r->ctx, where, CT_E_SIGNAL,
+        ok = ct_error(r->ctx, where, CT_E_SIGNAL_NAME,
                       "'%s': there is no body, joint or force '%s'%s", text, first,
                       nearest_subject(r, first));
     if (in && !check_frame(r, in, where_in))

@@ -1,12 +1,12 @@
-// See csv.h.
-#include "io/csv.h"
+// See sheet.h.
+#include "io/sheet.h"
 
 #include <string.h>
 
 struct scan {
     struct ct_ctx *ctx;
     struct ct_arena *a;
-    struct ct_csv *csv;
+    struct ct_sheet *csv;
     char *p, *end;
     int line;
     char *line_start;
@@ -89,10 +89,10 @@ static void trim_end(struct scan *s)
     *s->end = 0;
 }
 
-bool ct_csv_parse(struct ct_ctx *ctx, struct ct_arena *a, const char *file, char *text, size_t n,
-                  struct ct_csv *csv)
+bool ct_sheet_parse(struct ct_ctx *ctx, struct ct_arena *a, const char *file, char *text, size_t n,
+                  struct ct_sheet *csv)
 {
-    *csv = (struct ct_csv){.file = file};
+    *csv = (struct ct_sheet){.file = file};
     struct scan s = {.ctx = ctx, .a = a, .csv = csv, .p = text, .end = text + n};
     if (memchr(text, 0, n))
         return ct_error(ctx, (struct ct_mark){file, 0, 0}, CT_E_TABLE_DATA,

@@ -1,0 +1,181 @@
+// The entries of collecting: expand, identities, regroup; see collect.h.
+#include "expr/collect.h"
+
+#include "expr/collector.h"
+
+#include <string.h>
+
+static struct ct_collector *start(struct ct_exs *x, const struct ct_collect_options *options)
+{
+    const struct ct_collect_options none = {0};
+    const struct ct_collect_options *o = options ? options : &none;
+    struct ct_arena *arena = o->scratch ? o->scratch : x->arena;
+    struct ct_collector *c = CT_NEW(arena, struct ct_collector);
+    ct_collector_init(c, x, arena, o->limit ? o->limit : 2000);
+    return c;
+}
+
+// Tree sizes of the nodes below e by id; the room grows with the store.
+struct sizes {
+    double *at;
+    size_t cap;
+};
+
+static double tree_size(struct sizes *s, struct ct_exs *x, struct ct_arena *arena, ct_ex e)
+{
+    const size_t n = ct_ex_walk(x, &e, 1);
+    if (s->cap < x->nnode) {
+        s->cap = 2 * x->nnode;
+        s->at = CT_NEWN(arena, double, s->cap);
+    }
+    for (size_t k = 0; k < n; k++) {
+        const uint32_t id = x->stack[k];
+        const struct ct_exnode *node = &x->node[id];
+        const uint32_t arg[3] = {node->a, node->b, node->c};
+        s->at[id] = 1;
+        for (int i = 0; i < ct_op_info[node->op].narg; i++)
+            s->at[id] += s->at[arg[i]];
+    }
+    return s->at[e.id];
+}
+
+double ct_ex_tree_size(struct ct_exs *x, struct ct_arena *scratch, ct_ex e)
+{
+    return tree_size(&(struct sizes){NULL, 0}, x, scratch, e);
+}
+
+static ct_ex finish(struct ct_collector *c, struct ct_poly p)
+{
+    return ct_regroup(c, ct_identity_apply(c, p));
+}
+
+// ---- the smallest form --------------------------------------------------------------------------
+
+// Expanding is not always a gain: (a + b)^5 stays. Where it is none, the operator is kept and its
+// operands are collected.
+struct descent {
+    struct ct_collector *c;
+    const struct ct_poly *expanded; // by id
+    struct sizes sizes;
+    ct_ex *done; // by id, 0 where not yet collected
+    size_t left; // nodes that may still be tried: a try can take milliseconds
+};
+
+static ct_ex collect_node(struct descent *d, ct_ex e);
+
+static ct_ex collect_operands(struct descent *d, ct_ex e)
+{
+    const struct ct_exnode n = *ct_ex_node(d->c->x, e);
+    switch (n.op) {
+    case CT_OP_NEG:
+        return ct_ex_neg(d->c->x, collect_node(d, (ct_ex){n.a}));
+    case CT_OP_ADD:
+    case CT_OP_SUB:
+    case CT_OP_MUL:
+    case CT_OP_DIV: {
+        const ct_ex a = collect_node(d, (ct_ex){n.a});
+        return ct_ex_fun2(d->c->x, (enum ct_op)n.op, a, collect_node(d, (ct_ex){n.b}));
+    }
+    default:
+        return e;
+    }
+}
+
+static ct_ex collect_node(struct descent *d, ct_ex e)
+{
+    struct ct_exs *x = d->c->x;
+    if (d->done[e.id].id || !d->left)
+        return d->done[e.id].id ? d->done[e.id] : e;
+    d->left--;
+    ct_ex r = finish(d->c, d->expanded[e.id]);
+    const double size = tree_size(&d->sizes, x, d->c->arena, e);
+    if (tree_size(&d->sizes, x, d->c->arena, r) > size)
+        r = collect_operands(d, e);
+    if (tree_size(&d->sizes, x, d->c->arena, r) > size)
+        r = e;
+    return d->done[e.id] = r;
+}
+
+ct_ex ct_ex_collect(struct ct_exs *x, ct_ex e, const struct ct_collect_options *options)
+{
+    struct ct_collector *c = start(x, options);
+    struct descent d = {.c = c, .left = 100};
+    d.expanded = ct_expand(c, e);
+    d.done = CT_NEWN(c->arena, ct_ex, (size_t)e.id + 1);
+    return collect_node(&d, e);
+}
+
+// ---- linear forms -----------------------------------------------------------------------------
+
+static bool contains(struct ct_exs *x, ct_ex e, const ct_ex *s, size_t n)
+{
+    const size_t below = ct_ex_walk(x, &e, 1);
+    for (size_t k = 0; k < below; k++)
+        for (size_t i = 0; i < n; i++)
+            if (x->stack[k] == s[i].id)
+                return true;
+    return false;
+}
+
+// By atom: 0 it has none of the symbols, 1 + k it is symbol k, n + 1 it contains one inside.
+static size_t *roles_of_atoms(const struct ct_collector *c, const ct_ex *s, size_t n)
+{
+    size_t *role = CT_NEWN(c->arena, size_t, c->natom);
+    for (size_t a = 0; a < c->natom; a++) {
+        for (size_t k = 0; k < n; k++)
+            if (ct_ex_same(c->atom[a].e, s[k]))
+                role[a] = 1 + k;
+        if (!role[a] && contains(c->x, c->atom[a].e, s, n))
+            role[a] = n + 1;
+    }
+    return role;
+}
+
+// The symbol a term is a coefficient of, n if none, n + 1 if it is not linear.
+static size_t place_of_term(const struct ct_collector *c, uint32_t mono, const size_t *role,
+                            size_t n)
+{
+    size_t place = n;
+    for (size_t k = 0; k < ct_mono_length(&c->ps, mono); k++) {
+        const struct ct_power p = ct_mono_power(&c->ps, mono, k);
+        if (!role[p.atom])
+            continue;
+        if (place != n || role[p.atom] > n || p.exponent != 1)
+            return n + 1;
+        place = role[p.atom] - 1;
+    }
+    return place;
+}
+
+bool ct_ex_collect_linear(struct ct_exs *x, ct_ex e, const ct_ex *s, size_t n,
+                          ct_ex *coefficient, ct_ex *rest,
+                          const struct ct_collect_options *options)
+{
+    struct ct_collector *c = start(x, options);
+    const struct ct_poly p = ct_expand(c, e)[e.id];
+    const size_t *role = roles_of_atoms(c, s, n);
+    struct ct_term *t = CT_NEWN(c->arena, struct ct_term, p.n);
+    bool linear = true;
+    for (size_t k = 0; k <= n; k++) {
+        size_t nt = 0;
+        for (size_t i = 0; i < p.n; i++) {
+            const size_t place = place_of_term(c, p.t[i].mono, role, n);
+            linear &= place <= n;
+            if (place != k && !(place > n && k == n))
+                continue;
+            t[nt] = p.t[i];
+            if (k < n) {
+                const uint32_t atom = ct_collector_atom(c, s[k]);
+                const uint32_t out = ct_mono_atom(&c->ps, atom, -1);
+                t[nt].mono = ct_mono_times(&c->ps, t[nt].mono, out);
+            }
+            nt++;
+        }
+        // ct_poly_sum keeps its work space, so each sum gets its own
+        struct ct_term *own = CT_NEWN(c->arena, struct ct_term, nt);
+        if (nt)
+            memcpy(own, t, nt * sizeof *own);
+        *(k < n ? &coefficient[k] : rest) = finish(c, ct_poly_sum(&c->ps, own, nt));
+    }
+    return linear;
+}

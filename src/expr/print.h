@@ -1,0 +1,58 @@
+// Expressions as text: for people, for LaTeX, for C.
+//
+//     text    m2*l1*l2*cos(q1 - q2)*u2^2 - m1*g*l1*sin(q1)      reads back as the same expression
+//     LaTeX   m_{2} \, l_{1} \, l_{2} \, \cos\left(q_{1} - q_{2}\right) ...
+//     C       ((m2*l1)*l2)*cos(q1 - q2)                          reads back as the same operations
+//
+// Text and LaTeX flatten sums and products and put them into an order that does not depend on the
+// order of construction: factors are number, parameters, coordinates, functions, speeds,
+// accelerations, multipliers; terms with accelerations come first, then speeds, coordinates,
+// parameters, functions. C keeps every operation and its order, so that bits agree.
+//
+// What always holds: parentheses only where the grammar of model files needs them; numbers are the
+// shortest that read back to the same bits.
+#ifndef CT_EXPR_PRINT_H
+#define CT_EXPR_PRINT_H
+
+#include "expr/ex.h"
+
+enum ct_print_style { CT_PRINT_TEXT, CT_PRINT_LATEX, CT_PRINT_C };
+
+/// How to print. All zero: text, symbols by their names.
+struct ct_print {
+    enum ct_print_style style;
+    /// The text of a symbol in this style; NULL: its name, ct_latex_name of it, ct_c_name of it.
+    const char *(*symbol)(void *data, struct ct_arena *a, const struct ct_sym *s);
+    /// A name to print instead of a node, or NULL to print the node (see share.h).
+    const char *(*node)(void *data, ct_ex e);
+    /// Symbols of a product in ascending rank, then as created (masses before lengths, say).
+    int (*rank)(void *data, const struct ct_sym *s);
+    void *data;
+    /// Items (operators and operands) after which the rest is `...`; 0: 20000. A graph of n nodes
+    /// can be a tree of 2^n: name shared nodes first.
+    size_t limit;
+};
+
+/// e as text; p may be NULL. The text and all work space live in a.
+const char *ct_ex_text(struct ct_arena *a, const struct ct_exs *x, ct_ex e,
+                       const struct ct_print *p);
+/// The same without asking p->node for e itself: the right side of a definition of e.
+const char *ct_ex_text_body(struct ct_arena *a, const struct ct_exs *x, ct_ex e,
+                            const struct ct_print *p);
+
+/// The shortest decimal that reads back to the same bits.
+const char *ct_number_text(struct ct_arena *a, double v);
+/// A C constant of type double with the same bits.
+const char *ct_number_c(struct ct_arena *a, double v);
+
+/// LaTeX of a name: crank.q -> q_{\mathrm{crank}}, theta1'' -> \ddot{\theta}_{1}, mass -> \mathrm{mass}
+const char *ct_latex_name(struct ct_arena *a, const char *name);
+/// A C identifier from a name: characters that are not allowed become _, a prime becomes d.
+/// Different names can become the same identifier: telling them apart is the caller's.
+const char *ct_c_name(struct ct_arena *a, const char *name);
+
+/// C text of one operator on operands that are identifiers or in parentheses. Not for leaves and
+/// tables.
+const char *ct_c_operation(struct ct_arena *a, enum ct_op op, const char *const arg[3]);
+
+#endif

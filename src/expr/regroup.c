@@ -1,0 +1,245 @@
+// Polynomials -> expressions for reading; see collect.h.
+//
+// What all terms share goes outside. Of the rest, the atom is chosen that saves most factors when it
+// is pulled out of the terms that contain it, and both parts are treated the same way.
+#include "expr/collector.h"
+
+#include <limits.h>
+#include <math.h>
+#include <stdlib.h>
+
+// ---- content ----------------------------------------------------------------------------------
+
+// The exponent two terms share: the one nearer to zero if the signs agree.
+static int32_t common_exponent(int32_t a, int32_t b)
+{
+    if ((a > 0) != (b > 0) || a == 0 || b == 0)
+        return 0;
+    return abs(a) < abs(b) ? a : b;
+}
+
+static uint32_t common_powers(struct ct_polys *ps, uint32_t a, uint32_t b)
+{
+    uint32_t mono = 0;
+    for (size_t k = 0; k < ct_mono_length(ps, a); k++) {
+        const struct ct_power p = ct_mono_power(ps, a, k);
+        const int32_t e = common_exponent(p.exponent, ct_mono_exponent(ps, b, p.atom));
+        if (e)
+            mono = ct_mono_times(ps, mono, ct_mono_atom(ps, p.atom, e));
+    }
+    return mono;
+}
+
+static double common_number(struct ct_poly p)
+{
+    size_t negative = 0, same = 0;
+    for (size_t k = 0; k < p.n; k++) {
+        negative += p.t[k].c < 0;
+        same += ct_same_number(fabs(p.t[k].c), fabs(p.t[0].c));
+    }
+    const double k = same == p.n ? fabs(p.t[0].c) : 1;
+    return negative == p.n ? -k : k;
+}
+
+void ct_poly_content(struct ct_collector *c, struct ct_poly *p, double *k, uint32_t *mono)
+{
+    struct ct_poly q = {CT_NEWN(c->arena, struct ct_term, p->n), p->n};
+    *mono = p->n ? p->t[0].mono : 0;
+    *k = p->n ? common_number(*p) : 1;
+    for (size_t i = 1; i < p->n && *mono; i++)
+        *mono = common_powers(&c->ps, *mono, p->t[i].mono);
+    const uint32_t out = ct_mono_raise(&c->ps, *mono, -1);
+    for (size_t i = 0; i < p->n; i++) {
+        const struct ct_term *t = &p->t[i];
+        q.t[i] = (struct ct_term){t->c / *k, t->size / fabs(*k),
+                                  ct_mono_times(&c->ps, t->mono, out)};
+        // what was equal up to rounding is now exactly 1
+        if (ct_same_number(fabs(q.t[i].c), 1))
+            q.t[i].c = q.t[i].c < 0 ? -1 : 1;
+    }
+    *p = ct_poly_sum(&c->ps, q.t, q.n);
+}
+
+// ---- products -----------------------------------------------------------------------------------
+
+// 0.3333333333333333 is 1/3: a fraction with small terms, if the decimals are long. *divisor is 1
+// otherwise.
+static double as_fraction(double k, double *divisor)
+{
+    *divisor = 1;
+    if (k * 1e6 == floor(k * 1e6))
+        return k;
+    for (double d = 3; d < 100; d++) {
+        const double n = round(k * d);
+        if (n != 0 && fabs(n) < 1000 && ct_same_number(n / d, k)) {
+            *divisor = d;
+            return n;
+        }
+    }
+    return k;
+}
+
+// k mono body
+static ct_ex product(struct ct_collector *c, double k, uint32_t mono, ct_ex body)
+{
+    ct_ex below = CT_EX_ONE;
+    double divisor;
+    k = as_fraction(k, &divisor);
+    for (size_t i = 0; i < ct_mono_length(&c->ps, mono); i++) {
+        const struct ct_power p = ct_mono_power(&c->ps, mono, i);
+        const ct_ex whole = ct_ex_const(c->x, abs(p.exponent));
+        const ct_ex factor = ct_ex_pow(c->x, c->atom[p.atom].e, whole);
+        if (p.exponent > 0)
+            body = ct_ex_mul(c->x, body, factor);
+        else
+            below = ct_ex_mul(c->x, below, factor);
+    }
+    below = ct_ex_scale(c->x, divisor, below);
+    return ct_ex_div(c->x, ct_ex_scale(c->x, k, body), below);
+}
+
+// ---- choice of the atom to group by ---------------------------------------------------------------
+
+struct choice {
+    bool worth; // at all
+    uint32_t atom;
+    int32_t sign;  // of its exponents
+    bool forced;   // it leads an equation
+    bool uniform;  // the same power in all terms
+    size_t saving; // factors no longer written
+};
+
+static unsigned kind_of_atom(const struct ct_collector *c, uint32_t atom)
+{
+    const struct ct_sym *s = ct_ex_symbol(c->x, c->atom[atom].e);
+    return s ? 1u << s->kind : 0;
+}
+
+// An equation is read as the coefficients of its accelerations and multipliers.
+static bool leads(const struct ct_collector *c, uint32_t atom)
+{
+    return kind_of_atom(c, atom) & (1u << CT_SYM_A | 1u << CT_SYM_LAM);
+}
+
+static bool has_lead(const struct ct_collector *c, uint32_t mono)
+{
+    for (size_t k = 0; k < ct_mono_length(&c->ps, mono); k++)
+        if (leads(c, ct_mono_power(&c->ps, mono, k).atom))
+            return true;
+    return false;
+}
+
+static size_t weight(const struct ct_collector *c, uint32_t mono)
+{
+    size_t n = 0;
+    for (size_t k = 0; k < ct_mono_length(&c->ps, mono); k++) {
+        const struct ct_power p = ct_mono_power(&c->ps, mono, k);
+        // a function or a sum is longer than a symbol
+        n += (size_t)abs(p.exponent) + (kind_of_atom(c, p.atom) == 0);
+    }
+    return n;
+}
+
+static bool has_power(const struct ct_collector *c, uint32_t mono, uint32_t atom, int32_t sign)
+{
+    return ct_mono_exponent(&c->ps, mono, atom) * sign > 0;
+}
+
+static struct choice weigh(struct ct_collector *c, struct ct_poly p, struct ct_power by)
+{
+    struct choice ch = {.atom = by.atom, .sign = by.exponent > 0 ? 1 : -1, .uniform = true};
+    uint32_t common = 0;
+    size_t n = 0;
+    for (size_t k = 0; k < p.n; k++) {
+        const uint32_t mono = p.t[k].mono;
+        if (!has_power(c, mono, by.atom, ch.sign))
+            continue;
+        common = n++ ? common_powers(&c->ps, common, mono) : mono;
+        ch.uniform &= ct_mono_exponent(&c->ps, mono, by.atom) == by.exponent;
+    }
+    ch.saving = n > 1 ? (n - 1) * weight(c, common) : 0;
+    ch.forced = leads(c, by.atom);
+    // l1^2 + 2*l1*l2*c reads better than l1*(l1 + 2*l2*c): one symbol does not pay the parentheses
+    ch.worth = ch.forced || ch.saving > 1 || (ch.saving == 1 && ch.uniform);
+    return ch;
+}
+
+// Ties go to parameters, then to the older node.
+static bool is_better(const struct ct_collector *c, const struct choice *a,
+                      const struct choice *b)
+{
+    if (a->forced != b->forced)
+        return a->forced;
+    if (a->saving != b->saving)
+        return a->saving > b->saving;
+    if (a->uniform != b->uniform)
+        return a->uniform;
+    const unsigned param = 1u << CT_SYM_PARAM;
+    const bool pa = kind_of_atom(c, a->atom) == param, pb = kind_of_atom(c, b->atom) == param;
+    if (pa != pb)
+        return pa;
+    return c->atom[a->atom].e.id < c->atom[b->atom].e.id;
+}
+
+static struct choice choose(struct ct_collector *c, struct ct_poly p)
+{
+    struct choice best = {0};
+    unsigned char *seen = CT_NEWN(c->arena, unsigned char, c->natom);
+    for (size_t k = 0; k < p.n; k++)
+        for (size_t i = 0; i < ct_mono_length(&c->ps, p.t[k].mono); i++) {
+            const struct ct_power by = ct_mono_power(&c->ps, p.t[k].mono, i);
+            const unsigned char mark = by.exponent > 0 ? 1 : 2;
+            if (seen[by.atom] & mark)
+                continue;
+            seen[by.atom] |= mark;
+            const struct choice ch = weigh(c, p, by);
+            if (ch.worth && (!best.worth || is_better(c, &ch, &best)))
+                best = ch;
+        }
+    return best;
+}
+
+// ---- sums -------------------------------------------------------------------------------------
+
+static ct_ex sum_of_terms(struct ct_collector *c, struct ct_poly p)
+{
+    ct_ex e = CT_EX_ZERO;
+    for (size_t k = 0; k < p.n; k++)
+        e = ct_ex_add(c->x, e, product(c, p.t[k].c, p.t[k].mono, CT_EX_ONE));
+    return e;
+}
+
+// Beyond this a grouping is not read by anyone, and choosing costs the square of the terms.
+enum { LARGEST_GROUPED = 1000 };
+
+static ct_ex grouped(struct ct_collector *c, struct ct_poly p)
+{
+    const struct choice by = p.n > LARGEST_GROUPED ? (struct choice){0} : choose(c, p);
+    if (!by.worth)
+        return sum_of_terms(c, p);
+    struct ct_poly with = {CT_NEWN(c->arena, struct ct_term, p.n), 0};
+    struct ct_poly rest = {CT_NEWN(c->arena, struct ct_term, p.n), 0};
+    for (size_t k = 0; k < p.n; k++) {
+        struct ct_poly *to = has_power(c, p.t[k].mono, by.atom, by.sign) ? &with : &rest;
+        to->t[to->n++] = p.t[k];
+    }
+    const ct_ex first = ct_regroup(c, with);
+    return ct_ex_add(c->x, first, ct_regroup(c, rest));
+}
+
+ct_ex ct_regroup(struct ct_collector *c, struct ct_poly p)
+{
+    double k;
+    uint32_t mono;
+    if (!p.n)
+        return CT_EX_ZERO;
+    if (p.n == 1)
+        return product(c, p.t[0].c, p.t[0].mono, CT_EX_ONE);
+    const struct ct_poly all = p;
+    ct_poly_content(c, &p, &k, &mono);
+    // an equation keeps its terms apart: m*l^2*q'' + m*g*l*sin(q), not m*l*(l*q'' + g*sin(q))
+    for (size_t i = 0; i < all.n && !has_lead(c, mono); i++)
+        if (has_lead(c, all.t[i].mono))
+            return grouped(c, all);
+    return product(c, k, mono, grouped(c, p));
+}

@@ -1,0 +1,257 @@
+// Choice of shared subexpressions; see share.h.
+//
+// Two sweeps per definition: upwards the length of each node's text, downwards how often that text
+// is printed; a name counts as short text, and what is below it is printed once.
+#include "expr/share.h"
+
+#include "base/sort.h"
+
+#include <math.h>
+#include <string.h>
+
+struct sharing {
+    struct ct_arena *arena;
+    struct ct_exs *x;
+    struct ct_share_options o;
+    const ct_ex *root;
+    size_t nroot;
+    uint32_t *id; // nodes below the roots, ascending
+    size_t n;
+    double *size, *times; // by id: length of the text, occurrences in the print
+    const char **meaning; // by id: a name by meaning, NULL
+    double *saving;       // by id: of chosen nodes, else 0
+    double total;
+};
+
+static const char *label_of(void *unused, const struct ct_exs *x, ct_ex e)
+{
+    (void)unused;
+    return e.id < x->label_cap ? x->label[e.id] : NULL;
+}
+
+static int operands(const struct ct_exs *x, uint32_t id, uint32_t arg[3])
+{
+    const struct ct_exnode *n = &x->node[id];
+    arg[0] = n->a;
+    arg[1] = n->b;
+    arg[2] = n->c;
+    return ct_op_info[n->op].narg;
+}
+
+// ---- lengths ----------------------------------------------------------------------------------
+
+// Characters an operator adds to those of its operands, parentheses of products guessed.
+static double own_length(const struct sharing *s, uint32_t id)
+{
+    const struct ct_exnode *n = &s->x->node[id];
+    double v;
+    switch (n->op) {
+    case CT_OP_CONST:
+        ct_ex_is_const(s->x, (ct_ex){id}, &v);
+        return v == floor(v) ? 1 : 6;
+    case CT_OP_SYM:
+        return (double)strlen(s->x->sym[n->a].name);
+    case CT_OP_ADD:
+    case CT_OP_SUB:
+        return 3;
+    case CT_OP_MUL:
+    case CT_OP_DIV:
+    case CT_OP_POW:
+    case CT_OP_NEG:
+        return 1.5;
+    default:
+        return (double)strlen(ct_op_info[n->op].name) + 2;
+    }
+}
+
+static double name_length(const struct sharing *s, uint32_t id)
+{
+    return s->meaning[id] ? (double)strlen(s->meaning[id]) : 2;
+}
+
+static double shown_length(const struct sharing *s, uint32_t id)
+{
+    return s->saving[id] > 0 ? name_length(s, id) : s->size[id];
+}
+
+static void measure(struct sharing *s)
+{
+    uint32_t arg[3];
+    for (size_t k = 0; k < s->n; k++) {
+        const uint32_t id = s->id[k];
+        s->times[id] = 0;
+        s->size[id] = own_length(s, id);
+        for (int i = operands(s->x, id, arg); i-- > 0;)
+            s->size[id] += shown_length(s, arg[i]);
+    }
+    s->total = 0;
+    for (size_t k = 0; k < s->nroot; k++) {
+        s->times[s->root[k].id]++;
+        s->total += shown_length(s, s->root[k].id);
+    }
+    for (size_t k = s->n; k-- > 0;) {
+        const uint32_t id = s->id[k];
+        const double bodies = s->saving[id] > 0 ? 1 : s->times[id];
+        for (int i = operands(s->x, id, arg); i-- > 0;)
+            s->times[arg[i]] += bodies;
+        if (s->saving[id] > 0)
+            s->total += s->size[id] + name_length(s, id) + 4;
+    }
+}
+
+// ---- choice -----------------------------------------------------------------------------------
+
+static bool is_leaf(const struct ct_exs *x, uint32_t id)
+{
+    return x->node[id].op == CT_OP_CONST || x->node[id].op == CT_OP_SYM;
+}
+
+static bool is_trivial(const struct ct_exs *x, uint32_t id)
+{
+    const struct ct_exnode *n = &x->node[id];
+    if (is_leaf(x, id) || n->op == CT_OP_NEG)
+        return true;
+    if (ct_op_info[n->op].narg == 1)
+        return is_leaf(x, n->a);
+    return n->op == CT_OP_MUL && ct_ex_is_const(x, (ct_ex){n->a}, NULL) && is_leaf(x, n->b);
+}
+
+// What naming a node saves: all prints but one become the name, and there is a line `name = `.
+static double saving_of(const struct sharing *s, uint32_t id)
+{
+    const double name = name_length(s, id), times = s->times[id];
+    return (times - 1) * s->size[id] - (times + 1) * name - 4;
+}
+
+// The node that saves most; ties go to the older one. A name by meaning counts twice: it explains.
+static bool choose(struct sharing *s)
+{
+    double best = s->o.least;
+    uint32_t chosen = 0;
+    for (size_t k = 0; k < s->n; k++) {
+        const uint32_t id = s->id[k];
+        if (s->saving[id] > 0 || is_trivial(s->x, id))
+            continue;
+        const double saving = saving_of(s, id) * (s->meaning[id] ? 2 : 1);
+        if (saving > best || (saving == best && chosen && id < chosen)) {
+            best = saving;
+            chosen = id;
+        }
+    }
+    if (!chosen)
+        return false;
+    s->saving[chosen] = saving_of(s, chosen);
+    return true;
+}
+
+// A definition that later ones left with a single use is taken back.
+static bool drop_useless(struct sharing *s)
+{
+    bool any = false;
+    for (size_t k = 0; k < s->n; k++) {
+        const uint32_t id = s->id[k];
+        if (s->saving[id] > 0 && s->times[id] < 1.5) {
+            s->saving[id] = 0;
+            any = true;
+        }
+    }
+    return any;
+}
+
+// ---- names ------------------------------------------------------------------------------------
+
+static bool is_taken(const struct sharing *s, const struct ct_share *list, const char *name)
+{
+    for (size_t k = 0; k < s->x->nsym; k++)
+        if (!strcmp(s->x->sym[k].name, name))
+            return true;
+    for (size_t k = 0; k < list->n; k++)
+        if (!strcmp(list->at[k].name, name))
+            return true;
+    return false;
+}
+
+static const char *free_name(const struct sharing *s, const struct ct_share *list,
+                             size_t *number)
+{
+    const char *name;
+    do
+        name = ct_arena_printf(s->arena, "t%zu", ++*number);
+    while (is_taken(s, list, name));
+    return name;
+}
+
+static struct ct_share list_definitions(struct sharing *s)
+{
+    struct ct_share list = {.size = s->total};
+    size_t cap = 0, number = 0;
+    for (size_t k = 0; k < s->n; k++) {
+        const uint32_t id = s->id[k];
+        if (!(s->saving[id] > 0))
+            continue;
+        struct ct_definition d = {{id}, s->meaning[id], s->saving[id]};
+        if (!d.name || is_taken(s, &list, d.name))
+            d.name = free_name(s, &list, &number);
+        CT_PUSH(s->arena, list.at, list.n, cap, d);
+    }
+    return list;
+}
+
+// ---- entries ----------------------------------------------------------------------------------
+
+static int by_id(const void *unused, const void *a, const void *b)
+{
+    const uint32_t m = *(const uint32_t *)a, n = *(const uint32_t *)b;
+    (void)unused;
+    return (m > n) - (m < n);
+}
+
+static void list_nodes(struct sharing *s)
+{
+    const char *(*name)(void *, const struct ct_exs *, ct_ex)
+        = s->o.name ? s->o.name : label_of;
+    s->n = ct_ex_walk(s->x, s->root, s->nroot);
+    s->id = CT_NEWN(s->arena, uint32_t, s->n);
+    if (s->n)
+        memcpy(s->id, s->x->stack, s->n * sizeof *s->id);
+    // children have smaller ids, so this is an order for both sweeps, and the list can be searched
+    ct_sort(s->arena, s->id, s->n, sizeof *s->id, by_id, NULL);
+    s->size = CT_NEWN(s->arena, double, s->x->nnode);
+    s->times = CT_NEWN(s->arena, double, s->x->nnode);
+    s->saving = CT_NEWN(s->arena, double, s->x->nnode);
+    s->meaning = CT_NEWN(s->arena, const char *, s->x->nnode);
+    for (size_t k = 0; k < s->n; k++)
+        s->meaning[s->id[k]] = name(s->o.data, s->x, (ct_ex){s->id[k]});
+}
+
+struct ct_share ct_ex_share(struct ct_arena *a, struct ct_exs *x, const ct_ex *e, size_t n,
+                            const struct ct_share_options *options)
+{
+    struct sharing s = {.arena = a, .x = x, .root = e, .nroot = n};
+    if (options)
+        s.o = *options;
+    s.o.most = s.o.most ? s.o.most : 40;
+    s.o.enough = s.o.enough > 0 ? s.o.enough : 1500;
+    s.o.least = s.o.least > 0 ? s.o.least : 20;
+    list_nodes(&s);
+    measure(&s);
+    for (size_t k = 0; k < s.o.most && s.total > s.o.enough && choose(&s); k++)
+        measure(&s);
+    while (drop_useless(&s))
+        measure(&s);
+    return list_definitions(&s);
+}
+
+const char *ct_share_name(void *data, ct_ex e)
+{
+    const struct ct_share *s = data;
+    size_t low = 0, high = s->n;
+    while (low < high) {
+        const size_t middle = (low + high) / 2;
+        if (s->at[middle].e.id < e.id)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low < s->n && s->at[low].e.id == e.id ? s->at[low].name : NULL;
+}
