@@ -293,10 +293,25 @@ static int class_of_term(const struct printer *pr, const struct term *t)
     return kinds & ~(1u << CT_SYM_PARAM) ? TERM_FUNCTION : TERM_PARAM;
 }
 
+// 0.75 -> 3/4. Powers of two only, as they do not round.
+static void split_fraction(struct term *t)
+{
+    double divisor = 1;
+    while (divisor < 16 && t->number * divisor != floor(t->number * divisor))
+        divisor *= 2;
+    if (divisor == 16 || t->number * divisor > 99)
+        return;
+    t->number *= divisor;
+    t->divisor *= divisor;
+}
+
 static struct term make_term(struct printer *pr, ct_ex e, bool negative)
 {
     struct term t = {.negative = negative, .number = 1, .divisor = 1};
     flatten_product(pr, &t, e, 1);
+    // a number alone stays a decimal
+    if (pr->p.fractions && t.above.n && t.divisor == 1)
+        split_fraction(&t);
     ct_sort(pr->arena, t.above.at, t.above.n, sizeof *t.above.at, compare_factors, pr);
     ct_sort(pr->arena, t.below.at, t.below.n, sizeof *t.below.at, compare_factors, pr);
     t.class = class_of_term(pr, &t);

@@ -31,6 +31,9 @@ struct ct_print {
     /// Items (operators and operands) after which the rest is `...`; 0: 20000. A graph of n nodes
     /// can be a tree of 2^n: name shared nodes first.
     size_t limit;
+    /// Halves, quarters, eighths as fractions: m*l^2/4, not 0.25*m*l^2. Reads back to the same value,
+    /// not to the same nodes. Text and LaTeX.
+    bool fractions;
 };
 
 /// e as text; p may be NULL. The text and all work space live in a.

@@ -1,0 +1,53 @@
+// The derivation, stage by stage; see equations.h.
+#include "report/equations.h"
+
+#include "report/derivation.h"
+
+#include <string.h>
+
+static const struct {
+    const char *name;
+    unsigned bit;
+    void (*fill)(struct ct_derivation *d);
+} stages_in_order[] = {
+    {"tree", CT_STAGE_TREE, ct_stage_tree},
+    {"reduced", CT_STAGE_REDUCED, ct_stage_reduced},
+};
+
+static const char *const format_name[] = {"text", "latex", "html", "c", "json"};
+
+unsigned ct_stage_find(const char *name, size_t length)
+{
+    if (length == 3 && !strncmp(name, "all", 3))
+        return CT_STAGE_ALL;
+    for (size_t i = 0; i < COUNT(stages_in_order); i++)
+        if (strlen(stages_in_order[i].name) == length
+            && !strncmp(stages_in_order[i].name, name, length))
+            return stages_in_order[i].bit;
+    return 0;
+}
+
+bool ct_equations_format_find(const char *name, enum ct_equations_format *format)
+{
+    for (size_t i = 0; i < COUNT(format_name); i++)
+        if (!strcmp(format_name[i], name)) {
+            *format = (enum ct_equations_format)i;
+            return true;
+        }
+    return false;
+}
+
+bool ct_equations_print(FILE *out, struct ct_arena *scratch, struct ct_equations *e,
+                        const struct ct_model *m, unsigned stages, enum ct_equations_format format)
+{
+    const enum ct_look look = format == CT_FORMAT_LATEX  ? CT_LOOK_LATEX
+                            : format == CT_FORMAT_HTML ? CT_LOOK_HTML
+                                                         : CT_LOOK_TEXT;
+    struct ct_derivation d;
+    ct_derivation_init(&d, scratch, e, m, look);
+    for (size_t i = 0; i < COUNT(stages_in_order); i++)
+        if (stages & stages_in_order[i].bit)
+            stages_in_order[i].fill(&d);
+    ct_page_print_text(out, &d.page);
+    return !ferror(out);
+}

@@ -1,0 +1,35 @@
+// The reduced equations prepared for reading: collected where that pays, shared where it must be.
+//
+//     sum over j of M[i][j] u'[j]  =  Q[i] + sum over r of J[r][i] lam[r]
+//
+// What always holds: each expression equals its namesake in struct ct_equations up to rounding.
+#ifndef CT_REPORT_REDUCED_H
+#define CT_REPORT_REDUCED_H
+
+#include "expr/share.h"
+#include "formulate/equations.h"
+
+struct ct_reduced {
+    ct_ex *M;    // nM values in the order of ct_equations.M
+    ct_ex *J;    // nJ
+    ct_ex *Q;    // nu
+    ct_ex *phi, *gam; // nrow
+    ct_ex *rate; // nq: q' in terms of u
+    ct_ex *value, *driven_rate, *acceleration; // ndriver
+    bool is_collected;
+    struct ct_share share; // definitions, none if everything is short
+};
+
+/// Collect if the system is small enough. No definitions yet.
+void ct_reduced_prepare(struct ct_arena *a, struct ct_equations *e, struct ct_reduced *r);
+
+/// Left and right side of the equation of speed i; of row r: J u' and -gam.
+ct_ex ct_reduced_left(struct ct_equations *e, const struct ct_reduced *r, size_t i);
+ct_ex ct_reduced_right(struct ct_equations *e, const struct ct_reduced *r, size_t i);
+ct_ex ct_reduced_row_left(struct ct_equations *e, const struct ct_reduced *r, size_t row);
+
+/// Names for sines and cosines, rotations, vectors and forces of the recursion by the frames they
+/// belong to, as labels of the store.
+void ct_reduced_label(struct ct_arena *a, struct ct_equations *e);
+
+#endif
