@@ -5,6 +5,19 @@
 
 #include <string.h>
 
+// p0^2 = 1 - p1^2 - p2^2 - p3^2: p0 is expanded as the square root of that.
+static void add_quaternion(struct ct_collector *c, const ct_ex p[4])
+{
+    struct ct_poly *square = CT_NEW(c->arena, struct ct_poly);
+    *square = ct_poly_term(&c->ps, 1, 0);
+    for (int i = 1; i < 4; i++) {
+        const uint32_t mono = ct_mono_atom(&c->ps, ct_collector_atom(c, p[i]), 2);
+        *square = ct_poly_add(&c->ps, *square, -1, ct_poly_term(&c->ps, 1, mono));
+    }
+    c->atom[ct_collector_atom(c, p[0])].square = square;
+    c->has_roots = true;
+}
+
 static struct ct_collector *start(struct ct_exs *x, const struct ct_collect_options *options)
 {
     const struct ct_collect_options none = {0};
@@ -12,6 +25,8 @@ static struct ct_collector *start(struct ct_exs *x, const struct ct_collect_opti
     struct ct_arena *arena = o->scratch ? o->scratch : x->arena;
     struct ct_collector *c = CT_NEW(arena, struct ct_collector);
     ct_collector_init(c, x, arena, o->limit ? o->limit : 2000);
+    for (size_t k = 0; k < o->nquaternion; k++)
+        add_quaternion(c, o->quaternion[k]);
     return c;
 }
 

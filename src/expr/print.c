@@ -37,6 +37,8 @@ static void put(struct printer *pr, const char *s)
 const char *ct_number_text(struct ct_arena *a, double v)
 {
     char s[40];
+    if (v == floor(v) && fabs(v) < 1e7) // 60, not 6e+01
+        return ct_arena_printf(a, "%.0f", v);
     for (int digits = 1; digits <= 17; digits += digits < 15 ? 14 : 1) {
         snprintf(s, sizeof s, "%.*g", digits, v);
         if (strtod(s, NULL) == v)

@@ -6,6 +6,7 @@
 
 #include <limits.h>
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 
 // ---- content ----------------------------------------------------------------------------------
@@ -62,6 +63,15 @@ void ct_poly_content(struct ct_collector *c, struct ct_poly *p, double *k, uint3
 
 // ---- products -----------------------------------------------------------------------------------
 
+// 0.05399999999999999 is 0.054: what rounding has left of a decimal.
+static double as_decimal(double k)
+{
+    char text[40];
+    snprintf(text, sizeof text, "%.12g", k);
+    const double v = strtod(text, NULL);
+    return ct_same_number(v, k) ? v : k;
+}
+
 // 0.3333333333333333 is 1/3: a fraction with small terms, if the decimals are long. *divisor is 1
 // otherwise.
 static double as_fraction(double k, double *divisor)
@@ -84,7 +94,7 @@ static ct_ex product(struct ct_collector *c, double k, uint32_t mono, ct_ex body
 {
     ct_ex below = CT_EX_ONE;
     double divisor;
-    k = as_fraction(k, &divisor);
+    k = as_fraction(as_decimal(k), &divisor);
     for (size_t i = 0; i < ct_mono_length(&c->ps, mono); i++) {
         const struct ct_power p = ct_mono_power(&c->ps, mono, i);
         const ct_ex whole = ct_ex_const(c->x, abs(p.exponent));

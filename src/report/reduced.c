@@ -7,6 +7,24 @@
 // collecting takes seconds.
 static const double largest_collected = 20000;
 
+struct quaternions {
+    ct_ex (*at)[4];
+    size_t n;
+};
+
+static struct quaternions quaternions_of(struct ct_arena *a, const struct ct_equations *e)
+{
+    struct quaternions s = {ct_arena_calloc(a, e->nq + 1, sizeof *s.at), 0};
+    for (size_t i = 0; i + 3 < e->nq; i++) {
+        if (e->q[i].quaternion != 0)
+            continue;
+        for (size_t k = 0; k < 4; k++)
+            s.at[s.n][k] = e->q[i + k].symbol;
+        s.n++;
+    }
+    return s;
+}
+
 static ct_ex collect(struct ct_equations *e, ct_ex v)
 {
     if (ct_ex_is_zero(v) || ct_ex_is_const(e->x, v, NULL) || ct_ex_symbol(e->x, v))
@@ -14,7 +32,8 @@ static ct_ex collect(struct ct_equations *e, ct_ex v)
     struct ct_arena *work = ct_arena_create();
     if (!work)
         return v;
-    const struct ct_collect_options o = {.scratch = work};
+    const struct quaternions s = quaternions_of(work, e);
+    const struct ct_collect_options o = {.scratch = work, .quaternion = s.at, .nquaternion = s.n};
     v = ct_ex_collect(e->x, v, &o);
     ct_arena_destroy(work);
     return v;
