@@ -432,13 +432,13 @@ static void flatten_sum(struct printer *pr, struct terms *t, ct_ex e, bool negat
     CT_PUSH(pr->arena, t->at, t->n, t->cap, one);
 }
 
-// x - x0 rather than -x0 + x
+// x - x0 rather than -x0 + x; but speeds stay before what is there at rest.
 static void lead_with_positive(struct terms *t)
 {
     size_t k = 0;
     while (k < t->n && t->at[k].negative)
         k++;
-    if (k == t->n)
+    if (k == t->n || (t->at[0].class <= TERM_SPEED && t->at[k].class != t->at[0].class))
         return;
     const struct term first = t->at[k];
     memmove(t->at + 1, t->at, k * sizeof *t->at);

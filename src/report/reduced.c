@@ -2,6 +2,7 @@
 #include "report/reduced.h"
 
 #include "expr/collect.h"
+#include "formulate/dynamics.h"
 
 // Beyond this many nodes of an expanded expression nobody reads it as a formula of its own, and
 // collecting takes seconds.
@@ -71,7 +72,8 @@ static double size_of_all(struct ct_equations *e, struct ct_arena *a)
     return size;
 }
 
-void ct_reduced_prepare(struct ct_arena *a, struct ct_equations *e, struct ct_reduced *r)
+void ct_reduced_prepare(struct ct_arena *a, struct ct_equations *e, bool may_collect,
+                        struct ct_reduced *r)
 {
     *r = (struct ct_reduced){
         .M = CT_NEWN(a, ct_ex, e->nM + 1),
@@ -81,7 +83,7 @@ void ct_reduced_prepare(struct ct_arena *a, struct ct_equations *e, struct ct_re
         .gam = CT_NEWN(a, ct_ex, e->nrow + 1),
         .rate = CT_NEWN(a, ct_ex, e->nq + 1),
     };
-    r->is_collected = size_of_all(e, a) <= largest_collected;
+    r->is_collected = may_collect && size_of_all(e, a) <= largest_collected;
     for (size_t i = 0; i < e->nM; i++)
         r->M[i] = r->is_collected ? collect(e, e->M[i].value) : e->M[i].value;
     for (size_t i = 0; i < e->nJ; i++)
@@ -127,10 +129,4 @@ ct_ex ct_reduced_row_left(struct ct_equations *e, const struct ct_reduced *r, si
             sum = ct_ex_add(e->x, sum,
                             ct_ex_mul(e->x, r->J[k], e->u[e->J[k].column].derivative));
     return sum;
-}
-
-void ct_reduced_label(struct ct_arena *a, struct ct_equations *e)
-{
-    (void)a;
-    (void)e;
 }

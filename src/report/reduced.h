@@ -20,16 +20,22 @@ struct ct_reduced {
     struct ct_share share; // definitions, none if everything is short
 };
 
-/// Collect if the system is small enough. No definitions yet.
-void ct_reduced_prepare(struct ct_arena *a, struct ct_equations *e, struct ct_reduced *r);
+/// Collect if allowed and the system is small enough. No definitions yet.
+void ct_reduced_prepare(struct ct_arena *a, struct ct_equations *e, bool may_collect,
+                        struct ct_reduced *r);
 
 /// Left and right side of the equation of speed i; of row r: J u' and -gam.
 ct_ex ct_reduced_left(struct ct_equations *e, const struct ct_reduced *r, size_t i);
 ct_ex ct_reduced_right(struct ct_equations *e, const struct ct_reduced *r, size_t i);
 ct_ex ct_reduced_row_left(struct ct_equations *e, const struct ct_reduced *r, size_t row);
 
-/// Names for sines and cosines, rotations, vectors and forces of the recursion by the frames they
-/// belong to, as labels of the store.
-void ct_reduced_label(struct ct_arena *a, struct ct_equations *e);
+/// Names for what the recursion computes, by the frames it belongs to, as labels of the store:
+///
+///     phi_rod, c_rod, s_rod   angle of rod about a fixed axis, its cosine and sine
+///     R_rod.xy                rotation of rod
+///     w_rod.z, al_rod.z       angular velocity; angular acceleration with all u' = 0
+///     d_pin.x, v_pin.x, a_pin.x   vector from the previous joint to pin; its rates with all u' = 0
+///     F_pin.x, T_rod.x        force and torque that the branch must supply, with all u' = 0
+void ct_reduced_label(struct ct_equations *e);
 
 #endif

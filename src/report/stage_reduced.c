@@ -121,18 +121,33 @@ static const char *count(struct ct_derivation *d, size_t n, const char *one, con
                   : ct_arena_printf(d->a, "%zu %s", n, n == 1 ? one : many);
 }
 
+// Expressions with definitions: collected ones or those of the recursion, whichever is shorter.
+static void share(struct ct_derivation *d, struct ct_reduced *r, struct group g[NGROUP])
+{
+    struct ct_reduced plain;
+    struct group h[NGROUP] = {0};
+    ct_reduced_label(d->e);
+    ct_reduced_prepare(d->a, d->e, false, &plain);
+    fill(d, &plain, h);
+    plain.share = share_groups(d, h, NGROUP);
+    if (r->is_collected)
+        r->share = share_groups(d, g, NGROUP);
+    if (!r->is_collected || plain.share.size < r->share.size) {
+        *r = plain;
+        memcpy(g, h, sizeof h);
+    }
+    d->share = &r->share;
+}
+
 void ct_stage_reduced(struct ct_derivation *d)
 {
     struct ct_equations *e = d->e;
     struct ct_reduced r;
     struct group g[NGROUP] = {0};
-    ct_reduced_prepare(d->a, e, &r);
+    ct_reduced_prepare(d->a, e, true, &r);
     fill(d, &r, g);
-    if (!r.is_collected || is_long(d, g, NGROUP)) {
-        ct_reduced_label(d->a, e);
-        r.share = share_groups(d, g, NGROUP);
-        d->share = &r.share;
-    }
+    if (!r.is_collected || is_long(d, g, NGROUP))
+        share(d, &r, g);
     ct_page_title(&d->page, "Equations of motion");
     ct_page_sentence(&d->page, "%s, %s%s",
                      count(d, e->nu, "unknown speed", "unknown speeds"),
