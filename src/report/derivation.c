@@ -29,13 +29,6 @@ static const char *symbol(void *data, struct ct_arena *a, const struct ct_sym *s
     return d->e->nrow == 1 ? "\\lambda" : ct_arena_printf(a, "\\lambda_{%u}", s->index + 1);
 }
 
-static const char *node(void *data, ct_ex e)
-{
-    const struct ct_derivation *d = data;
-    const char *name = d->share ? ct_share_name((void *)(uintptr_t)d->share, e) : NULL;
-    return name && d->page.look == CT_LOOK_LATEX ? ct_latex_name(d->a, name) : name;
-}
-
 void ct_derivation_init(struct ct_derivation *d, struct ct_arena *a, struct ct_equations *e,
                         const struct ct_model *m, enum ct_look look)
 {
@@ -43,7 +36,6 @@ void ct_derivation_init(struct ct_derivation *d, struct ct_arena *a, struct ct_e
     d->print = (struct ct_print){
         .style = look == CT_LOOK_LATEX ? CT_PRINT_LATEX : CT_PRINT_TEXT,
         .symbol = symbol,
-        .node = node,
         .data = d,
         .fractions = true,
     };

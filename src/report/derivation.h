@@ -11,7 +11,6 @@ struct ct_derivation {
     const struct ct_model *m;
     struct ct_page page;
     struct ct_print print;         // for expressions, in the page's look
-    const struct ct_share *share;  // names in force, NULL: none
 };
 
 void ct_derivation_init(struct ct_derivation *d, struct ct_arena *a, struct ct_equations *e,

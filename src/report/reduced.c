@@ -2,7 +2,8 @@
 #include "report/reduced.h"
 
 #include "expr/collect.h"
-#include "formulate/dynamics.h"
+#include "base/sort.h"
+#include "expr/share.h"
 
 // Beyond this many nodes of an expanded expression nobody reads it as a formula of its own, and
 // collecting takes seconds.
@@ -97,6 +98,98 @@ void ct_reduced_prepare(struct ct_arena *a, struct ct_equations *e, bool may_col
     for (size_t i = 0; i < e->nq; i++)
         r->rate[i] = collect(e, e->q[i].rate);
 }
+
+// ---- sharing ----------------------------------------------------------------------------------
+
+// All expressions one after the other; where = NULL: only their number.
+static size_t list_all(const struct ct_equations *e, const struct ct_reduced *r, ct_ex **where)
+{
+    const struct {
+        ct_ex *at;
+        size_t n;
+    } part[] = {{r->M, e->nM}, {r->Q, e->nu}, {r->J, e->nJ}, {r->phi, e->nrow}, {r->gam, e->nrow}};
+    size_t n = 0;
+    for (size_t k = 0; k < COUNT(part); k++)
+        for (size_t i = 0; i < part[k].n; i++, n++)
+            if (where)
+                where[n] = &part[k].at[i];
+    return n;
+}
+
+static ct_ex rebuild(struct ct_exs *x, ct_ex e, const ct_ex *map)
+{
+    const struct ct_exnode n = *ct_ex_node(x, e);
+    switch (ct_op_info[n.op].narg) {
+    case 0:
+        return e;
+    case 1:
+        if (n.op == CT_OP_TABLE)
+            return ct_ex_table(x, n.b, n.c, map[n.a]);
+        return n.op == CT_OP_NEG ? ct_ex_neg(x, map[n.a])
+                                 : ct_ex_fun(x, (enum ct_op)n.op, map[n.a]);
+    case 2:
+        return ct_ex_fun2(x, (enum ct_op)n.op, map[n.a], map[n.b]);
+    default:
+        return ct_ex_if(x, map[n.a], map[n.b], map[n.c]);
+    }
+}
+
+// Bodies are short by now: like terms that the names have brought to light are collected.
+static ct_ex tidy(struct ct_equations *e, struct ct_arena *a, ct_ex v)
+{
+    return ct_ex_tree_size(e->x, a, v) < 1000 ? collect(e, v) : v;
+}
+
+static int by_id(const void *unused, const void *a, const void *b)
+{
+    const uint32_t m = *(const uint32_t *)a, n = *(const uint32_t *)b;
+    (void)unused;
+    return (m > n) - (m < n);
+}
+
+// Each named node becomes a symbol; children have smaller ids, so one sweep upwards does.
+static void replace_named(struct ct_arena *a, struct ct_equations *e, struct ct_reduced *r,
+                          struct ct_share *share, const ct_ex *root, size_t nroot, ct_ex *map)
+{
+    struct ct_exs *x = e->x;
+    const size_t n = ct_ex_walk(x, root, nroot);
+    uint32_t *id = CT_NEWN(a, uint32_t, n + 1);
+    for (size_t k = 0; k < n; k++)
+        id[k] = x->stack[k];
+    ct_sort(a, id, n, sizeof *id, by_id, NULL);
+    r->definition = CT_NEWN(a, struct ct_reduced_definition, share->n + 1);
+    for (size_t k = 0; k < n; k++) {
+        const ct_ex old = {id[k]};
+        const char *name = ct_share_name(share, old);
+        map[old.id] = rebuild(x, old, map);
+        if (!name)
+            continue;
+        const uint32_t number = (uint32_t)r->ndefinition;
+        struct ct_reduced_definition *d = &r->definition[r->ndefinition++];
+        d->value = tidy(e, a, map[old.id]);
+        d->symbol = map[old.id] = ct_ex_sym(x, CT_SYM_LOCAL, name, number);
+    }
+}
+
+// The order a reader meets them in: those a definition needs stand before it.
+void ct_reduced_share(struct ct_arena *a, struct ct_equations *e, struct ct_reduced *r)
+{
+    const struct ct_share_options o = {.most = 2000, .enough = 2000};
+    const size_t n = list_all(e, r, NULL);
+    ct_ex **where = CT_NEWN(a, ct_ex *, n + 1);
+    ct_ex *root = CT_NEWN(a, ct_ex, n + 1);
+    list_all(e, r, where);
+    for (size_t i = 0; i < n; i++)
+        root[i] = *where[i];
+    struct ct_share share = ct_ex_share(a, e->x, root, n, &o);
+    ct_ex *map = CT_NEWN(a, ct_ex, e->x->nnode);
+    replace_named(a, e, r, &share, root, n, map);
+    for (size_t i = 0; i < n; i++)
+        *where[i] = tidy(e, a, map[root[i].id]);
+    r->size = share.size;
+}
+
+// ---- equations --------------------------------------------------------------------------------
 
 // M is symmetric and holds its lower triangle.
 ct_ex ct_reduced_left(struct ct_equations *e, const struct ct_reduced *r, size_t i)

@@ -6,8 +6,12 @@
 #ifndef CT_REPORT_REDUCED_H
 #define CT_REPORT_REDUCED_H
 
-#include "expr/share.h"
 #include "formulate/equations.h"
+
+struct ct_reduced_definition {
+    ct_ex symbol; // of kind LOCAL
+    ct_ex value;  // may use symbols of earlier definitions
+};
 
 struct ct_reduced {
     ct_ex *M;    // nM values in the order of ct_equations.M
@@ -15,14 +19,18 @@ struct ct_reduced {
     ct_ex *Q;    // nu
     ct_ex *phi, *gam; // nrow
     ct_ex *rate; // nq: q' in terms of u
-    ct_ex *value, *driven_rate, *acceleration; // ndriver
     bool is_collected;
-    struct ct_share share; // definitions, none if everything is short
+    struct ct_reduced_definition *definition; // none if everything is short
+    size_t ndefinition;
+    double size; // of the whole print in characters, about; known once there are definitions
 };
 
 /// Collect if allowed and the system is small enough. No definitions yet.
 void ct_reduced_prepare(struct ct_arena *a, struct ct_equations *e, bool may_collect,
                         struct ct_reduced *r);
+
+/// Names for what is written more than once: the expressions then use the symbols of definitions.
+void ct_reduced_share(struct ct_arena *a, struct ct_equations *e, struct ct_reduced *r);
 
 /// Left and right side of the equation of speed i; of row r: J u' and -gam.
 ct_ex ct_reduced_left(struct ct_equations *e, const struct ct_reduced *r, size_t i);

@@ -54,34 +54,15 @@ static bool is_long(struct ct_derivation *d, const struct group *g, size_t n)
     return lines > MOST_LINES;
 }
 
-static struct ct_share share_groups(struct ct_derivation *d, const struct group *g, size_t n)
+static void put_definitions(struct ct_derivation *d, const struct ct_reduced *r)
 {
-    size_t count = 0;
-    ct_ex *all = CT_NEWN(d->a, ct_ex, 1);
-    for (size_t k = 0; k < n; k++)
-        count += 2 * g[k].n;
-    all = CT_NEWN(d->a, ct_ex, count + 1);
-    count = 0;
-    for (size_t k = 0; k < n; k++)
-        for (size_t i = 0; i < g[k].n; i++) {
-            all[count++] = g[k].at[i].left;
-            all[count++] = g[k].at[i].right;
-        }
-    const struct ct_share_options o = {.most = 400, .enough = 2000};
-    return ct_ex_share(d->a, d->e->x, all, count, &o);
-}
-
-static void put_definitions(struct ct_derivation *d)
-{
-    if (!d->share || !d->share->n)
+    if (!r->ndefinition)
         return;
     ct_page_heading(&d->page, "with");
     ct_page_equations(&d->page);
-    for (size_t i = 0; i < d->share->n; i++) {
-        const struct ct_definition *def = &d->share->at[i];
-        ct_page_equation(&d->page, NULL, ct_derivation_name(d, def->name),
-                         ct_ex_text_body(d->a, d->e->x, def->e, &d->print), NULL);
-    }
+    for (size_t i = 0; i < r->ndefinition; i++)
+        ct_page_equation(&d->page, NULL, ct_derivation_text(d, r->definition[i].symbol),
+                         ct_derivation_text(d, r->definition[i].value), NULL);
 }
 
 // ---- groups -----------------------------------------------------------------------------------
@@ -122,21 +103,16 @@ static const char *count(struct ct_derivation *d, size_t n, const char *one, con
 }
 
 // Expressions with definitions: collected ones or those of the recursion, whichever is shorter.
-static void share(struct ct_derivation *d, struct ct_reduced *r, struct group g[NGROUP])
+static void share(struct ct_derivation *d, struct ct_reduced *r)
 {
     struct ct_reduced plain;
-    struct group h[NGROUP] = {0};
     ct_reduced_label(d->e);
     ct_reduced_prepare(d->a, d->e, false, &plain);
-    fill(d, &plain, h);
-    plain.share = share_groups(d, h, NGROUP);
+    ct_reduced_share(d->a, d->e, &plain);
     if (r->is_collected)
-        r->share = share_groups(d, g, NGROUP);
-    if (!r->is_collected || plain.share.size < r->share.size) {
+        ct_reduced_share(d->a, d->e, r);
+    if (!r->is_collected || plain.size < r->size)
         *r = plain;
-        memcpy(g, h, sizeof h);
-    }
-    d->share = &r->share;
 }
 
 void ct_stage_reduced(struct ct_derivation *d)
@@ -146,14 +122,17 @@ void ct_stage_reduced(struct ct_derivation *d)
     struct group g[NGROUP] = {0};
     ct_reduced_prepare(d->a, e, true, &r);
     fill(d, &r, g);
-    if (!r.is_collected || is_long(d, g, NGROUP))
-        share(d, &r, g);
+    if (!r.is_collected || is_long(d, g, NGROUP)) {
+        share(d, &r);
+        memset(g, 0, sizeof g);
+        fill(d, &r, g);
+    }
     ct_page_title(&d->page, "Equations of motion");
     ct_page_sentence(&d->page, "%s, %s%s",
                      count(d, e->nu, "unknown speed", "unknown speeds"),
                      count(d, e->nrow, "constraint", "constraints"),
                      e->nu ? "; each equation is the cutset of a branch, projected on its motion" : "");
-    put_definitions(d);
+    put_definitions(d, &r);
     if (e->nu) {
         ct_page_heading(&d->page, e->nrow ? "motion: M u' = Q + J' lambda" : "motion: M u' = Q");
         put_group(d, &g[MOTION]);
@@ -166,5 +145,4 @@ void ct_stage_reduced(struct ct_derivation *d)
     }
     if (g[KINEMATIC].n)
         put_kinematic(d, &g[KINEMATIC]);
-    d->share = NULL;
 }
