@@ -658,6 +658,17 @@ static bool is_greek(const char *s, size_t n)
     return false;
 }
 
+const char *ct_latex_quoted(struct ct_arena *a, const char *name)
+{
+    char *quoted = ct_arena_alloc(a, 2 * strlen(name) + 1), *q = quoted;
+    for (; *name; name++) {
+        if (strchr("_#$%&{}", *name))
+            *q++ = '\\';
+        *q++ = *name;
+    }
+    return quoted;
+}
+
 // A word: one letter and Greek as mathematics, the rest upright.
 static const char *latex_word(struct ct_arena *a, const char *s, size_t n)
 {
@@ -666,13 +677,7 @@ static const char *latex_word(struct ct_arena *a, const char *s, size_t n)
         return ct_arena_printf(a, "\\%s", word);
     if (n == 1 || strspn(word, "0123456789,") == n)
         return word;
-    char *quoted = ct_arena_alloc(a, 2 * n + 1), *q = quoted;
-    for (size_t k = 0; k < n; k++) {
-        if (strchr("_#$%&{}", s[k]))
-            *q++ = '\\';
-        *q++ = s[k];
-    }
-    return ct_arena_printf(a, "\\mathrm{%s}", quoted);
+    return ct_arena_printf(a, "\\mathrm{%s}", ct_latex_quoted(a, word));
 }
 
 static const char *join_subscript(struct ct_arena *a, const char *first, const char *second)

@@ -50,6 +50,8 @@ const char *ct_number_c(struct ct_arena *a, double v);
 
 /// LaTeX of a name: crank.q -> q_{\mathrm{crank}}, theta1'' -> \ddot{\theta}_{1}, mass -> \mathrm{mass}
 const char *ct_latex_name(struct ct_arena *a, const char *name);
+/// A name with a backslash before what LaTeX takes for itself.
+const char *ct_latex_quoted(struct ct_arena *a, const char *name);
 /// A C identifier from a name: characters that are not allowed become _, a prime becomes d.
 /// Different names can become the same identifier: telling them apart is the caller's.
 const char *ct_c_name(struct ct_arena *a, const char *name);

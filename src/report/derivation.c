@@ -54,25 +54,46 @@ const char *ct_derivation_collected(struct ct_derivation *d, ct_ex v)
 
 const char *ct_derivation_name(struct ct_derivation *d, const char *name)
 {
-    return d->page.look == CT_LOOK_LATEX ? ct_latex_name(d->a, name) : name;
+    return ct_derivation_is_latex(d) ? ct_latex_name(d->a, name) : name;
 }
 
 const char *ct_derivation_of(struct ct_derivation *d, const char *letter, const char *name)
 {
-    if (d->page.look != CT_LOOK_LATEX)
+    if (!ct_derivation_is_latex(d))
         return ct_arena_printf(d->a, "%s(%s)", letter, name);
-    char *quoted = CT_NEWN(d->a, char, 2 * strlen(name) + 1), *q = quoted;
-    for (; *name; name++) {
-        if (strchr("_#$%&{}", *name))
-            *q++ = '\\';
-        *q++ = *name;
-    }
-    return ct_arena_printf(d->a, "%s_{\\mathrm{%s}}", letter, quoted);
+    const char *word = !strcmp(letter, "w")    ? "\\omega"
+                       : !strcmp(letter, "al") ? "\\alpha"
+                                               : letter;
+    return ct_arena_printf(d->a, "\\boldsymbol{%s}_{\\mathrm{%s}}", word,
+                           ct_latex_quoted(d->a, name));
 }
 
 const char *ct_derivation_vector(struct ct_derivation *d, ct_ex3 v)
 {
-    return ct_arena_printf(d->a, d->page.look == CT_LOOK_LATEX ? "(%s,\\; %s,\\; %s)" : "[%s, %s, %s]",
+    if (ct_ex3_is_zero(v))
+        return "0";
+    return ct_arena_printf(d->a, ct_derivation_is_latex(d) ? "(%s,\\; %s,\\; %s)" : "[%s, %s, %s]",
                            ct_derivation_text(d, v.e[0]), ct_derivation_text(d, v.e[1]),
                            ct_derivation_text(d, v.e[2]));
+}
+
+static bool is_number(struct ct_derivation *d, ct_ex e, double want)
+{
+    double v;
+    return ct_ex_is_const(d->e->x, e, &v) && v == want;
+}
+
+const char *ct_derivation_axis(struct ct_derivation *d, ct_ex3 n)
+{
+    static const char *const name[] = {"x", "y", "z"}, *const minus[] = {"-x", "-y", "-z"};
+    for (int i = 0; i < 3; i++) {
+        const int j = (i + 1) % 3, k = (i + 2) % 3;
+        if (!ct_ex_is_zero(n.e[j]) || !ct_ex_is_zero(n.e[k]))
+            continue;
+        if (is_number(d, n.e[i], 1))
+            return name[i];
+        if (is_number(d, n.e[i], -1))
+            return minus[i];
+    }
+    return ct_derivation_vector(d, n);
 }

@@ -22,10 +22,17 @@ const char *ct_derivation_text(struct ct_derivation *d, ct_ex v);
 const char *ct_derivation_collected(struct ct_derivation *d, ct_ex v);
 /// A name of the model as mathematics: "crank.q", or LaTeX of it.
 const char *ct_derivation_name(struct ct_derivation *d, const char *name);
-/// letter(name), or the letter with a subscript.
+/// A vector or rotation of a component or frame: F(rod), or a bold letter with a subscript.
 const char *ct_derivation_of(struct ct_derivation *d, const char *letter, const char *name);
-/// Three components: [a, b, c]
+/// Three components: [a, b, c], or 0.
 const char *ct_derivation_vector(struct ct_derivation *d, ct_ex3 v);
+/// A direction: x, -y, or [a, b, c].
+const char *ct_derivation_axis(struct ct_derivation *d, ct_ex3 n);
+
+static inline bool ct_derivation_is_latex(const struct ct_derivation *d)
+{
+    return d->page.look == CT_LOOK_LATEX;
+}
 
 void ct_stage_terminal(struct ct_derivation *d);
 void ct_stage_graph(struct ct_derivation *d);

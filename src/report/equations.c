@@ -10,7 +10,11 @@ static const struct {
     unsigned bit;
     void (*fill)(struct ct_derivation *d);
 } stages_in_order[] = {
+    {"terminal", CT_STAGE_TERMINAL, ct_stage_terminal},
+    {"graph", CT_STAGE_GRAPH, ct_stage_graph},
     {"tree", CT_STAGE_TREE, ct_stage_tree},
+    {"cutset", CT_STAGE_CUTSET, ct_stage_cutset},
+    {"circuit", CT_STAGE_CIRCUIT, ct_stage_circuit},
     {"reduced", CT_STAGE_REDUCED, ct_stage_reduced},
 };
 

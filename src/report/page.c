@@ -39,6 +39,12 @@ void ct_page_cell(struct ct_page *p, const char *text)
     CT_PUSH(p->arena, b->cell, b->ncell, b->cell_cap, text);
 }
 
+void ct_page_row(struct ct_page *p, const char *const *cell, size_t n)
+{
+    for (size_t i = 0; i < n; i++)
+        ct_page_cell(p, cell[i]);
+}
+
 void ct_page_equations(struct ct_page *p)
 {
     add_block(p, CT_PAGE_EQUATIONS);

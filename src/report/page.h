@@ -50,6 +50,10 @@ void ct_page_sentence(struct ct_page *p, const char *fmt, ...) __attribute__((fo
 /// Starts a table; cells follow row by row, the head first.
 void ct_page_table(struct ct_page *p, const char *align);
 void ct_page_cell(struct ct_page *p, const char *text);
+void ct_page_row(struct ct_page *p, const char *const *cell, size_t n);
+#define CT_PAGE_ROW(p, ...)                                                                    \
+    ct_page_row((p), (const char *const[]){__VA_ARGS__},                                       \
+                COUNT(((const char *const[]){__VA_ARGS__})))
 /// Starts a group of equations.
 void ct_page_equations(struct ct_page *p);
 void ct_page_equation(struct ct_page *p, const char *label, const char *left, const char *right,

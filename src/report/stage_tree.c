@@ -5,15 +5,6 @@
 
 #include <string.h>
 
-static void put_row(struct ct_page *p, const char *const *cell, size_t n)
-{
-    for (size_t i = 0; i < n; i++)
-        ct_page_cell(p, cell[i]);
-}
-#define PUT_ROW(p, ...)                                                                        \
-    put_row((p), (const char *const[]){__VA_ARGS__},                                           \
-            COUNT(((const char *const[]){__VA_ARGS__})))
-
 // ---- branches and chords --------------------------------------------------------------------------
 
 static const char *role(struct ct_derivation *d, const struct ct_tree *t, const int *weight, int e,
@@ -30,7 +21,7 @@ static void put_trees(struct ct_derivation *d)
     const struct ct_build *b = e->build;
     int narm = 0;
     ct_page_table(&d->page, "llllll");
-    PUT_ROW(&d->page, "component", "type", "from", "to", "translation", "rotation");
+    CT_PAGE_ROW(&d->page, "component", "type", "from", "to", "translation", "rotation");
     for (int i = 0; i < e->graph->nedge; i++) {
         const struct ct_edge *w = &e->graph->edge[i];
         if (b->edge[i].kind == CT_EDGE_ARM) {
@@ -38,7 +29,7 @@ static void put_trees(struct ct_derivation *d)
             continue;
         }
         const bool force = b->edge[i].kind == CT_EDGE_FORCE;
-        PUT_ROW(&d->page, e->edge_name[i], e->edge_kind[i], e->node_name[w->tail],
+        CT_PAGE_ROW(&d->page, e->edge_name[i], e->edge_kind[i], e->node_name[w->tail],
                 e->node_name[w->head], force ? "chord" : role(d, e->T, e->weight_t, i, true),
                 force ? "chord" : role(d, e->R, e->weight_r, i, b->edge[i].has_rotation));
     }
@@ -47,28 +38,6 @@ static void put_trees(struct ct_derivation *d)
 }
 
 // ---- coordinates ----------------------------------------------------------------------------------
-
-static bool is_number(struct ct_derivation *d, ct_ex e, double want)
-{
-    double v;
-    return ct_ex_is_const(d->e->x, e, &v) && v == want;
-}
-
-// x, -y, or [a, b, c]
-static const char *axis_text(struct ct_derivation *d, ct_ex3 n)
-{
-    static const char *const name[] = {"x", "y", "z"}, *const minus[] = {"-x", "-y", "-z"};
-    for (int i = 0; i < 3; i++) {
-        const int j = (i + 1) % 3, k = (i + 2) % 3;
-        if (!ct_ex_is_zero(n.e[j]) || !ct_ex_is_zero(n.e[k]))
-            continue;
-        if (is_number(d, n.e[i], 1))
-            return name[i];
-        if (is_number(d, n.e[i], -1))
-            return minus[i];
-    }
-    return ct_derivation_vector(d, n);
-}
 
 static const struct ct_coordinate *coordinate_of(const struct ct_equations *e, int q)
 {
@@ -105,12 +74,12 @@ static const char *meaning_of(struct ct_derivation *d, const struct ct_coordinat
     }
     if (m->kind == CT_MEASURE_ANGLE) {
         *unit = "rad";
-        return ct_arena_printf(d->a, "angle of %s about %s", what, axis_text(d, m->about));
+        return ct_arena_printf(d->a, "angle of %s about %s", what, ct_derivation_axis(d, m->about));
     }
     return e->kind == CT_EDGE_BODY
                ? ct_arena_printf(d->a, "place of the centre of mass of %s along %s", what,
-                                 axis_text(d, m->along))
-               : ct_arena_printf(d->a, "displacement of %s along %s", what, axis_text(d, m->along));
+                                 ct_derivation_axis(d, m->along))
+               : ct_arena_printf(d->a, "displacement of %s along %s", what, ct_derivation_axis(d, m->along));
 }
 
 static void put_unknowns(struct ct_derivation *d)
@@ -120,18 +89,18 @@ static void put_unknowns(struct ct_derivation *d)
         return;
     ct_page_heading(&d->page, "unknown coordinates");
     ct_page_table(&d->page, "LLll");
-    PUT_ROW(&d->page, "coordinate", "speed", "unit", "meaning");
+    CT_PAGE_ROW(&d->page, "coordinate", "speed", "unit", "meaning");
     for (size_t i = 0; i < e->nu; i++) {
         const struct ct_u *u = &e->u[i];
         const char *unit;
         const char *speed = ct_derivation_text(d, u->symbol);
         if (u->q >= 0) {
             const char *meaning = meaning_of(d, coordinate_of(e, u->q), &unit);
-            PUT_ROW(&d->page, ct_derivation_text(d, e->q[u->q].symbol), speed, unit, meaning);
+            CT_PAGE_ROW(&d->page, ct_derivation_text(d, e->q[u->q].symbol), speed, unit, meaning);
         } else {
             const char *of = u->joint >= 0 ? d->m->joint[u->joint].name
                                            : d->m->body[u->body].instance.name;
-            PUT_ROW(&d->page, "", speed, "rad/s",
+            CT_PAGE_ROW(&d->page, "", speed, "rad/s",
                     ct_arena_printf(d->a, "angular velocity of %s in its own axes", of));
         }
     }
@@ -139,7 +108,7 @@ static void put_unknowns(struct ct_derivation *d)
         if (e->q[i].quaternion == 0) {
             const char *unit, *meaning = meaning_of(d, coordinate_of(e, (int)i), &unit);
             const char *last = strrchr(e->q[i + 3].name, '.');
-            PUT_ROW(&d->page, d->page.look == CT_LOOK_LATEX
+            CT_PAGE_ROW(&d->page, d->page.look == CT_LOOK_LATEX
                                   ? ct_derivation_text(d, e->q[i].symbol)
                                   : ct_arena_printf(d->a, "%s..%s", e->q[i].name, last ? last + 1 : ""),
                     "", "", meaning);
@@ -205,10 +174,10 @@ static void put_rows(struct ct_derivation *d)
         return;
     ct_page_heading(&d->page, "constraint rows of the chords");
     ct_page_table(&d->page, "lLll");
-    PUT_ROW(&d->page, "row", "multiplier", "unit", "meaning");
+    CT_PAGE_ROW(&d->page, "row", "multiplier", "unit", "meaning");
     for (size_t i = 0; i < e->nrow; i++) {
         const char *unit, *meaning = row_meaning(e->row[i].name, &unit);
-        PUT_ROW(&d->page, e->row[i].name, ct_derivation_text(d, e->row[i].lam), unit, meaning);
+        CT_PAGE_ROW(&d->page, e->row[i].name, ct_derivation_text(d, e->row[i].lam), unit, meaning);
     }
 }
 
