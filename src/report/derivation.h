@@ -34,11 +34,18 @@ static inline bool ct_derivation_is_latex(const struct ct_derivation *d)
     return d->page.look == CT_LOOK_LATEX;
 }
 
+/// The reduced equations as a reader wants them: collected, or with names where they are long.
+void ct_derivation_reduce(struct ct_derivation *d, struct ct_reduced *r);
+
 void ct_stage_terminal(struct ct_derivation *d);
 void ct_stage_graph(struct ct_derivation *d);
 void ct_stage_tree(struct ct_derivation *d);
 void ct_stage_cutset(struct ct_derivation *d);
 void ct_stage_circuit(struct ct_derivation *d);
 void ct_stage_reduced(struct ct_derivation *d);
+
+/// The formats for programs.
+void ct_derivation_print_json(FILE *out, struct ct_derivation *d, unsigned stages);
+void ct_derivation_print_c(FILE *out, struct ct_derivation *d);
 
 #endif

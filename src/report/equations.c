@@ -44,14 +44,31 @@ bool ct_equations_format_find(const char *name, enum ct_equations_format *format
 bool ct_equations_print(FILE *out, struct ct_arena *scratch, struct ct_equations *e,
                         const struct ct_model *m, unsigned stages, enum ct_equations_format format)
 {
-    const enum ct_look look = format == CT_FORMAT_LATEX  ? CT_LOOK_LATEX
-                            : format == CT_FORMAT_HTML ? CT_LOOK_HTML
-                                                         : CT_LOOK_TEXT;
     struct ct_derivation d;
+    const enum ct_look look = format == CT_FORMAT_LATEX  ? CT_LOOK_LATEX
+                              : format == CT_FORMAT_HTML ? CT_LOOK_HTML
+                                                         : CT_LOOK_TEXT;
     ct_derivation_init(&d, scratch, e, m, look);
-    for (size_t i = 0; i < COUNT(stages_in_order); i++)
+    const bool is_page = format != CT_FORMAT_C && format != CT_FORMAT_JSON;
+    for (size_t i = 0; is_page && i < COUNT(stages_in_order); i++)
         if (stages & stages_in_order[i].bit)
             stages_in_order[i].fill(&d);
-    ct_page_print_text(out, &d.page);
+    switch (format) {
+    case CT_FORMAT_TEXT:
+        ct_page_print_text(out, &d.page);
+        break;
+    case CT_FORMAT_LATEX:
+        ct_page_print_latex(out, &d.page);
+        break;
+    case CT_FORMAT_HTML:
+        ct_page_print_html(out, &d.page, m->name ? m->name : "equations");
+        break;
+    case CT_FORMAT_C:
+        ct_derivation_print_c(out, &d);
+        break;
+    case CT_FORMAT_JSON:
+        ct_derivation_print_json(out, &d, stages);
+        break;
+    }
     return !ferror(out);
 }

@@ -95,7 +95,8 @@ static void put_note(FILE *out, const char *note)
     fputs("\n", out);
 }
 
-static void put_equation(FILE *out, const struct ct_page_equation *e, size_t label_width)
+static void put_equation(FILE *out, const struct ct_page_equation *e, size_t label_width,
+                         size_t left_width)
 {
     const size_t indent = 2;
     const size_t left = ct_text_width(e->left), right = e->right ? 3 + ct_text_width(e->right) : 0;
@@ -113,13 +114,17 @@ static void put_equation(FILE *out, const struct ct_page_equation *e, size_t lab
             put_indent(out, column = indent + 2);
         }
     }
-    if (column + left + right <= CT_PAGE_WIDTH) {
-        fprintf(out, e->right ? "%s = %s" : "%s%s", e->left, e->right ? e->right : "");
+    const size_t pad = e->right && !e->label && left_width > left ? left_width - left : 0;
+    if (column + pad + left + right <= CT_PAGE_WIDTH) {
+        fputs(e->left, out);
+        put_indent(out, pad);
+        if (e->right)
+            fprintf(out, " = %s", e->right);
         put_note(out, column + left + right + note <= CT_PAGE_WIDTH ? e->note : NULL);
         return;
     }
     // a short left side keeps the right one on its line
-    const bool is_short = left < 24;
+    const bool is_short = left < 14;
     put_wrapped(out, e->left, column, column + 4);
     if (e->right) {
         if (!is_short) {
@@ -133,21 +138,47 @@ static void put_equation(FILE *out, const struct ct_page_equation *e, size_t lab
     fputs("\n", out);
 }
 
+// Left sides up to this are brought to one width, so that the equal signs stand below each other.
+enum { ALIGNED = 20 };
+
 static void put_equations(FILE *out, const struct ct_page_block *b)
 {
-    size_t width = 0;
+    size_t width = 0, left_width = 0;
     for (size_t i = 0; i < b->nequation; i++) {
         const size_t w = b->equation[i].label ? ct_text_width(b->equation[i].label) : 0;
+        const size_t l = ct_text_width(b->equation[i].left);
         width = w > width ? w : width;
+        left_width = l > left_width && l <= ALIGNED ? l : left_width;
     }
     for (size_t i = 0; i < b->nequation; i++)
-        put_equation(out, &b->equation[i], width);
+        put_equation(out, &b->equation[i], width, left_width);
+}
+
+// Plain words from `column` on, broken at blanks.
+static void put_cell_words(FILE *out, const char *s, size_t indent)
+{
+    size_t column = indent;
+    while (*s) {
+        const size_t n = strcspn(s, " ");
+        if (column > indent && column + 1 + n > CT_PAGE_WIDTH) {
+            fputs("\n", out);
+            put_indent(out, indent);
+            column = indent;
+        } else if (column > indent) {
+            fputs(" ", out);
+            column++;
+        }
+        fprintf(out, "%.*s", (int)n, s);
+        column += n;
+        s += n;
+        s += strspn(s, " ");
+    }
 }
 
 static void put_row(FILE *out, const struct ct_page_block *b, size_t row, const size_t *width)
 {
     const size_t n = strlen(b->align);
-    size_t pending = 2;
+    size_t column = 0, pending = 2;
     for (size_t k = 0; k < n; k++) {
         const char *s = b->cell[row * n + k];
         const size_t w = ct_text_width(s), room = width[k] - w;
@@ -156,15 +187,15 @@ static void put_row(FILE *out, const struct ct_page_block *b, size_t row, const 
             pending += room;
         if (*s) {
             put_indent(out, pending);
-            if (k + 1 == n && pending + w > CT_PAGE_WIDTH)
-                put_wrapped(out, s, CT_PAGE_WIDTH / 2, 6);
+            column += pending;
+            if (k + 1 == n && column + w > CT_PAGE_WIDTH && column < CT_PAGE_WIDTH - 20)
+                put_cell_words(out, s, column);
             else
                 fputs(s, out);
+            column += w;
             pending = 0;
-        } else {
-            pending += w;
         }
-        pending += 2 + (right ? 0 : room);
+        pending += 2 + (right ? 0 : *s ? room : width[k]);
     }
     fputs("\n", out);
 }

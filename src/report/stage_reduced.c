@@ -1,7 +1,6 @@
 // The reduced equations as equations of a page.
 #include "report/derivation.h"
 
-#include <string.h>
 
 // Lines of text beyond which subexpressions get names.
 enum { MOST_LINES = 30 };
@@ -115,18 +114,22 @@ static void share(struct ct_derivation *d, struct ct_reduced *r)
         *r = plain;
 }
 
+void ct_derivation_reduce(struct ct_derivation *d, struct ct_reduced *r)
+{
+    struct group g[NGROUP] = {0};
+    ct_reduced_prepare(d->a, d->e, true, r);
+    fill(d, r, g);
+    if (!r->is_collected || is_long(d, g, NGROUP))
+        share(d, r);
+}
+
 void ct_stage_reduced(struct ct_derivation *d)
 {
     struct ct_equations *e = d->e;
     struct ct_reduced r;
     struct group g[NGROUP] = {0};
-    ct_reduced_prepare(d->a, e, true, &r);
+    ct_derivation_reduce(d, &r);
     fill(d, &r, g);
-    if (!r.is_collected || is_long(d, g, NGROUP)) {
-        share(d, &r);
-        memset(g, 0, sizeof g);
-        fill(d, &r, g);
-    }
     ct_page_title(&d->page, "Equations of motion");
     ct_page_sentence(&d->page, "%s, %s%s",
                      count(d, e->nu, "unknown speed", "unknown speeds"),

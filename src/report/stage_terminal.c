@@ -220,9 +220,9 @@ static void put_joint(struct ct_derivation *d, const struct ct_edge_info *e)
         return;
     }
     name_coordinates(d, e, &m);
+    const char *from = d->m->frame[e->self->from].name;
     ct_page_equation(&d->page, NULL, ct_derivation_of(d, "d", e->name), ct_derivation_vector(d, m.d),
-                     ct_arena_printf(d->a, "axes of %s",
-                                     d->e->build->node[d->e->build->node_of_frame[e->self->from]].name));
+                     ct_ex3_is_zero(m.d) ? NULL : ct_arena_printf(d->a, "axes of %s", from));
     if (e->has_rotation) {
         const char *S = turns_text(d, m.turn, m.nturn);
         if (m.quaternion >= 0)
