@@ -121,7 +121,9 @@ const char *ct_nearest(const char *name, const char *const *names, size_t n)
     size_t best_distance = strlen(name) / 3 + 2; // one slip in three letters
     for (size_t i = 0; i < n; i++) {
         const size_t d = edit_distance(name, names[i], best_distance);
-        if (d < best_distance) {
+        const size_t given = strlen(name), known = strlen(names[i]);
+        // at least half of the letters agree: `r` is no misspelt `t`
+        if (d < best_distance && 2 * d <= (given > known ? given : known)) {
             best_distance = d;
             best = names[i];
         }
