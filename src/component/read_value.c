@@ -206,10 +206,11 @@ bool ct_read_number(struct ct_reader *r, ct_ex e, double *value)
 {
     if (ct_ex_is_const(r->m->x, e, value))
         return true;
-    if (ct_ex_kinds(r->m->x, e) & ~(1u << CT_SYM_PARAM))
+    const unsigned kinds = ct_ex_kinds(r->m->x, e);
+    if (kinds & ~(1u << CT_SYM_PARAM))
         return false;
     *value = ct_ex_value(r->m->x, e, r->m->value);
-    return r->parameters_ok || isfinite(*value); // else a wrong parameter may be the reason
+    return !kinds || r->parameters_ok || isfinite(*value); // else a wrong parameter may be why
 }
 
 bool ct_read_expr(struct ct_reader *r, const struct ct_node *node, unsigned flags,
