@@ -456,12 +456,13 @@ static bool read_texts(struct ct_reader *r, const struct ct_node *node,
     const char **name = CT_NEWN(r->a, const char *, node->n);
     make_room(r, v, node->n);
     v->name = name;
+    bool ok = true;
     for (size_t i = 0; i < node->n; i++) {
         v->at[i] = node->item[i]->mark;
-        if (!ct_read_text(r, node->item[i], &name[i]))
-            return false;
+        name[i] = ""; // where there is none
+        ok &= ct_read_text(r, node->item[i], &name[i]);
     }
-    return true;
+    return ok;
 }
 
 // Names of coordinates are new names, seen by the joint's own expressions only.
