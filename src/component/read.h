@@ -23,6 +23,7 @@ struct ct_reader {
     const char *const *local_name;
     // of tables already read: their names ("file\ncolumn\nkind") -> number in the store
     struct ct_names table;
+    struct ct_table *sampled; // the store's tables, while they grow
     // components of the file by name, for duplicates across the sections
     struct ct_names component;
     struct ct_read_place {

@@ -153,17 +153,6 @@ static bool fill_table(struct ct_reader *r, const struct ct_node *file,
     return true;
 }
 
-static uint32_t add_table(struct ct_exs *x, struct ct_arena *a, struct ct_table t)
-{
-    struct ct_table *all = CT_NEWN(a, struct ct_table, x->ntable + 1);
-    if (x->ntable)
-        memcpy(all, x->table, x->ntable * sizeof *all);
-    all[x->ntable] = t;
-    x->table = all;
-    x->table_cap = x->ntable + 1;
-    return (uint32_t)x->ntable++;
-}
-
 bool ct_read_table(struct ct_reader *r, const struct ct_node *node, ct_ex *e)
 {
     static const char *const keys[] = {"table", "column", "interpolate"};
@@ -191,7 +180,10 @@ bool ct_read_table(struct ct_reader *r, const struct ct_node *node, ct_ex *e)
     if (number < 0) {
         if (!fill_table(r, file, column, kind == 0, &t))
             return false;
-        number = (int)add_table(r->m->x, r->a, t);
+        struct ct_exs *x = r->m->x;
+        number = (int)x->ntable;
+        CT_PUSH(r->a, r->sampled, x->ntable, x->table_cap, t);
+        x->table = r->sampled;
         ct_names_put(r->ctx->scratch, &r->table, key, number);
     }
     *e = ct_ex_table(r->m->x, (uint32_t)number, 0, r->m->time);

@@ -11,7 +11,9 @@
 const char *ct_read_near(struct ct_reader *r, const char *name, const char *const *names,
                          size_t n)
 {
-    const char *near = ct_nearest(name, names, n);
+    // a search costs all names each time; after so many errors nobody reads on
+    enum { MOST_SUGGESTIONS = 200 };
+    const char *near = r->ctx->nerror < MOST_SUGGESTIONS ? ct_nearest(name, names, n) : NULL;
     return near ? ct_arena_printf(r->ctx->scratch, "; did you mean '%s'?", near) : "";
 }
 

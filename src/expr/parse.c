@@ -141,7 +141,11 @@ static bool is_known(const struct parser *s, const char *name)
 
 static void report_unknown_name(struct parser *s, const char *name, const char *start)
 {
-    const char *near = ct_nearest(name, s->scope->known, s->scope->nknown);
+    // a search costs all names each time; after so many errors nobody reads on
+    enum { MOST_SUGGESTIONS = 200 };
+    const char *near = s->ctx->nerror < MOST_SUGGESTIONS
+                         ? ct_nearest(name, s->scope->known, s->scope->nknown)
+                         : NULL;
     if (find_function(name) >= 0)
         ct_error(s->ctx, mark_at(s, start), CT_E_FUNCTION, "'%s' is a function: write %s(...)",
                  name, name);

@@ -1,6 +1,7 @@
 // Models as read: what ends up in struct ct_model. What is refused is in tests/broken.
 #include "base/guard.h"
 #include "component/model.h"
+#include "integrate/problem.h"
 #include "tests/check.h"
 
 #include <stdlib.h>
@@ -259,6 +260,16 @@ static void an_interval_gives_samples_with_both_ends(void **state)
     assert_int_equal(s->m.simulation.rate_jumps, CT_RATE_CONTINUOUS);
 }
 
+static void every_method_can_be_named(void **state)
+{
+    struct bench *s = *state;
+    for (int i = 0; i < ct_nmethod; i++) {
+        read_text(s, ct_arena_printf(s->ctx.model, "cotree: 1\nsimulation: {method: %s}\n",
+                                     ct_methods[i]->name));
+        assert_string_equal(s->m.simulation.method, ct_methods[i]->name);
+    }
+}
+
 // Through three points the natural spline follows from one equation; through a line it is that line.
 static void tables_are_natural_splines(void **state)
 {
@@ -351,6 +362,7 @@ int main(void)
         CASE(forces_end_at_the_frame_they_act_on),
         CASE(a_signal_has_one_symbol),
         CASE(an_interval_gives_samples_with_both_ends),
+        CASE(every_method_can_be_named),
         CASE(tables_are_natural_splines),
         CASE(anchors_share_values),
         CASE(without_memory_nothing_leaks),
