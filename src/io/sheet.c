@@ -58,7 +58,7 @@ static bool scan_quoted(struct scan *s, char **last)
 static bool scan_field(struct scan *s, size_t row, bool *row_ends)
 {
     const struct ct_mark mark = here(s);
-    char *start = s->p, *last;
+    char *start = s->p, *last = start;
     if (s->p < s->end && *s->p == '"') {
         start++;
         if (!scan_quoted(s, &last))
