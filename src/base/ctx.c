@@ -81,7 +81,8 @@ void ct_ctx_print(const struct ct_ctx *ctx, FILE *out)
         if (d->code)
             fprintf(out, " [E%03d]", d->code);
         fputc('\n', out);
-        if (d->mark.file)
+        // each line costs a pass over the file; nobody reads on after so many
+        if (d->mark.file && i < 200)
             print_source_line(d->mark, out);
     }
 }

@@ -56,7 +56,9 @@ bool ct_read_text(struct ct_reader *r, const struct ct_node *node, const char **
 bool ct_read_name(struct ct_reader *r, const char *name, struct ct_mark at, const char *sort);
 /// A body, joint or force: its name must differ from all others.
 bool ct_read_component_name(struct ct_reader *r, const struct ct_pair *p, const char *sort);
-/// ", did you mean 'x'?" or "".
+/// Suggestions cost a pass over all names each; after many errors nobody reads them.
+bool ct_read_suggests(const struct ct_reader *r);
+/// "; did you mean 'x'?" or "".
 const char *ct_read_near(struct ct_reader *r, const char *name, const char *const *names,
                          size_t n);
 
@@ -106,8 +108,7 @@ void ct_read_forces_declare(struct ct_reader *r);
 void ct_read_forces_fill(struct ct_reader *r);
 void ct_read_outputs(struct ct_reader *r);
 void ct_read_simulation(struct ct_reader *r);
-/// `a` or `a.q2` of a gear: which joint and coordinate (from 0); reports at the mark.
-bool ct_read_coordinate(struct ct_reader *r, const char *text, struct ct_mark at, int *joint,
-                        int *coordinate);
+/// The joint of this name; -1 after an error at the mark.
+int ct_read_joint_name(struct ct_reader *r, const char *name, struct ct_mark at);
 
 #endif

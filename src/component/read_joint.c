@@ -408,23 +408,35 @@ static bool read_joint(struct ct_reader *r, struct ct_instance *self,
 
 // ---- gears: they name joints, so all joints come first ---------------------------------------------------------------
 
-bool ct_read_coordinate(struct ct_reader *r, const char *text, struct ct_mark at, int *joint,
-                        int *coordinate)
+int ct_read_joint_name(struct ct_reader *r, const char *name, struct ct_mark at)
 {
-    struct ct_model *m = r->m;
-    const char *dot = strchr(text, '.');
-    const char *name
-        = dot ? ct_arena_strndup(r->ctx->scratch, text, (size_t)(dot - text)) : text;
-    *joint = ct_model_find_joint(m, name);
-    *coordinate = 0;
-    if (*joint < 0) {
+    const struct ct_model *m = r->m;
+    const int joint = ct_model_find_joint(m, name);
+    if (joint >= 0)
+        return joint;
+    const char *near = "";
+    if (ct_read_suggests(r)) {
         const char **names = CT_NEWN(r->ctx->scratch, const char *, m->njoint);
         for (size_t i = 0; i < m->njoint; i++)
             names[i] = m->joint[i].name;
-        return ct_error(r->ctx, at, CT_E_JOINT, "there is no joint '%s'%s", name,
-                        ct_read_near(r, name, names, m->njoint));
+        near = ct_read_near(r, name, names, m->njoint);
     }
-    const struct ct_instance *j = &m->joint[*joint];
+    ct_error(r->ctx, at, CT_E_JOINT, "there is no joint '%s'%s", name, near);
+    return -1;
+}
+
+// `a` or `a.q2`: which joint and coordinate (from 0); reports at the mark.
+static bool read_coordinate(struct ct_reader *r, const char *text, struct ct_mark at,
+                            int *joint, int *coordinate)
+{
+    const char *dot = strchr(text, '.');
+    const char *name
+        = dot ? ct_arena_strndup(r->ctx->scratch, text, (size_t)(dot - text)) : text;
+    *joint = ct_read_joint_name(r, name, at);
+    *coordinate = 0;
+    if (*joint < 0)
+        return false;
+    const struct ct_instance *j = &r->m->joint[*joint];
     if (!j->cls || j->ncoord < 0)
         return false; // reported there
     if (j->ncoord == 0)
@@ -458,7 +470,7 @@ static bool check_coupling(struct ct_reader *r, const struct ct_value *v)
         *coordinate = CT_NEWN(r->ctx->scratch, int, v->n);
     for (size_t i = 0; i < v->n; i++) {
         if (!v->name[i]
-            || !ct_read_coordinate(r, v->name[i], v->at[i], &joint[i], &coordinate[i])) {
+            || !read_coordinate(r, v->name[i], v->at[i], &joint[i], &coordinate[i])) {
             ok = false;
             joint[i] = -1;
         }

@@ -177,13 +177,7 @@ static bool read_small(struct ct_reader *r, const struct ct_node *node, struct c
             ok = false;
             continue;
         }
-        if (ct_model_find_joint(r->m, name[i]) >= 0)
-            continue;
-        const char **names = CT_NEWN(r->ctx->scratch, const char *, r->m->njoint);
-        for (size_t k = 0; k < r->m->njoint; k++)
-            names[k] = r->m->joint[k].name;
-        ok = ct_error(r->ctx, v->at[i], CT_E_JOINT, "there is no joint '%s'%s", name[i],
-                      ct_read_near(r, name[i], names, r->m->njoint));
+        ok &= ct_read_joint_name(r, name[i], v->at[i]) >= 0;
     }
     v->n = node->n;
     return ok;

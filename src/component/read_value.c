@@ -8,12 +8,16 @@
 
 // ---- keys and shapes ------------------------------------------------------------------------------
 
+bool ct_read_suggests(const struct ct_reader *r)
+{
+    enum { MOST = 200 };
+    return r->ctx->nerror < MOST;
+}
+
 const char *ct_read_near(struct ct_reader *r, const char *name, const char *const *names,
                          size_t n)
 {
-    // a search costs all names each time; after so many errors nobody reads on
-    enum { MOST_SUGGESTIONS = 200 };
-    const char *near = r->ctx->nerror < MOST_SUGGESTIONS ? ct_nearest(name, names, n) : NULL;
+    const char *near = ct_read_suggests(r) ? ct_nearest(name, names, n) : NULL;
     return near ? ct_arena_printf(r->ctx->scratch, "; did you mean '%s'?", near) : "";
 }
 
@@ -166,6 +170,8 @@ static bool signal_exists(const struct ct_reader *r, const char *first)
 
 static const char *nearest_subject(struct ct_reader *r, const char *first)
 {
+    if (!ct_read_suggests(r))
+        return "";
     const char **names = CT_NEWN(r->ctx->scratch, const char *, r->ncomponent + 4);
     size_t n = r->ncomponent;
     for (size_t i = 0; i < r->component.size; i++) // each goes to its place in the file's order
@@ -348,6 +354,8 @@ bool ct_read_turns(struct ct_reader *r, const struct ct_node *node, unsigned fla
 
 static const char *nearest_frame(struct ct_reader *r, const char *name)
 {
+    if (!ct_read_suggests(r))
+        return "";
     const char **names = CT_NEWN(r->ctx->scratch, const char *, r->m->nframe);
     for (size_t i = 0; i < r->m->nframe; i++)
         names[i] = r->m->frame[i].name;
