@@ -87,7 +87,8 @@ static bool report_parser(struct source *s)
         return ct_error(s->ctx, at, CT_E_YAML,
                         "a tab cannot be used here; YAML wants spaces for indentation");
     ct_error(s->ctx, at, CT_E_YAML, "not valid YAML: %s", problem);
-    if (p->context)
+    const bool elsewhere = p->context_mark.index != p->problem_mark.index;
+    if (p->context && elsewhere)
         ct_note(s->ctx, mark_of(s, p->context_mark), "%s that starts here", p->context);
     return false;
 }
