@@ -6,8 +6,13 @@
 
 static void record(struct ct_ctx *ctx, enum ct_severity severity, enum ct_code code,
                    struct ct_mark mark, const char *fmt, va_list ap)
+    __attribute__((format(printf, 5, 0)));
+
+static void record(struct ct_ctx *ctx, enum ct_severity severity, enum ct_code code,
+                   struct ct_mark mark, const char *fmt, va_list ap)
 {
-    const struct ct_diagnostic d = {severity, code, mark, ct_arena_vprintf(ctx->model, fmt, ap)};
+    const struct ct_diagnostic d
+        = {severity, code, mark, ct_arena_vprintf(ctx->model, fmt, ap)};
     CT_PUSH(ctx->model, ctx->diagnostic, ctx->ndiagnostic, ctx->diagnostic_cap, d);
     ctx->nerror += severity == CT_SEVERITY_ERROR;
 }
@@ -21,7 +26,8 @@ bool ct_error(struct ct_ctx *ctx, struct ct_mark mark, enum ct_code code, const 
     return false;
 }
 
-void ct_warning(struct ct_ctx *ctx, struct ct_mark mark, enum ct_code code, const char *fmt, ...)
+void ct_warning(struct ct_ctx *ctx, struct ct_mark mark, enum ct_code code, const char *fmt,
+                ...)
 {
     va_list ap;
     va_start(ap, fmt);

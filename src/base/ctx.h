@@ -44,8 +44,8 @@ struct ct_ctx {
 /// Put an error into the context. Always returns false, so that `return ct_error(...)` reads well.
 bool ct_error(struct ct_ctx *ctx, struct ct_mark mark, enum ct_code code, const char *fmt, ...)
     __attribute__((format(printf, 4, 5)));
-void ct_warning(struct ct_ctx *ctx, struct ct_mark mark, enum ct_code code, const char *fmt, ...)
-    __attribute__((format(printf, 4, 5)));
+void ct_warning(struct ct_ctx *ctx, struct ct_mark mark, enum ct_code code, const char *fmt,
+                ...) __attribute__((format(printf, 4, 5)));
 /// A further sentence to the diagnostic just made, with a mark of its own.
 void ct_note(struct ct_ctx *ctx, struct ct_mark mark, const char *fmt, ...)
     __attribute__((format(printf, 3, 4)));

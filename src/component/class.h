@@ -11,23 +11,23 @@
 
 #include "expr/ex.h"
 
-struct ct_model;
+struct ct_build; // the equations under construction, formulate/build.h
 struct ct_instance;
 
 enum ct_family { CT_FAMILY_BODY, CT_FAMILY_JOINT, CT_FAMILY_FORCE };
 
 enum ct_value_kind {
-    CT_VALUE_SCALAR, // one expression
-    CT_VALUE_VEC3,   // three expressions
-    CT_VALUE_LIST,   // `least`..`most` expressions; a single scalar counts as a list of one
-    CT_VALUE_COORDS, // one per coordinate of the joint (a scalar for one); `~` leaves a hole
-    CT_VALUE_AXIS,   // x, y, z or [ux, uy, uz]; three expressions, normalised by the reader
-    CT_VALUE_AXES,   // two axes: six expressions
-    CT_VALUE_TURNS,  // [axis, angle] or a list of such
-    CT_VALUE_FRAME,  // a frame's name
-    CT_VALUE_NAMES,  // list of new names (coordinates of a custom joint)
-    CT_VALUE_JOINTS, // list of joint coordinates: `a` or `a.q2`
-    CT_VALUE_POINTS, // the points of a body
+    CT_VALUE_SCALAR,  // one expression
+    CT_VALUE_VEC3,    // three expressions
+    CT_VALUE_LIST,    // `least`..`most` expressions; a single scalar counts as a list of one
+    CT_VALUE_COORDS,  // one per coordinate of the joint (a scalar for one); `~` leaves a hole
+    CT_VALUE_AXIS,    // x, y, z or [ux, uy, uz]; three expressions, normalised by the reader
+    CT_VALUE_AXES,    // two axes: six expressions
+    CT_VALUE_TURNS,   // [axis, angle] or a list of such
+    CT_VALUE_FRAME,   // a frame's name
+    CT_VALUE_NAMES,   // list of new names (coordinates of a custom joint)
+    CT_VALUE_JOINTS,  // list of joint coordinates: `a` or `a.q2`
+    CT_VALUE_POINTS,  // the points of a body
     CT_VALUE_INITIAL, // {q:, u:, rotate:, guess:} of a joint
 };
 
@@ -43,8 +43,8 @@ struct ct_key {
     const char *name;
     enum ct_value_kind kind;
     unsigned flags;
-    const char *unit; // dimension of each expression, as a unit: "kg", "N*m/rad", "" none; NULL: any
-    int least, most;  // LIST: admissible lengths lie in least..most (inertia also checks 1, 3, 6)
+    const char *unit; // dimension of each expression: "kg", "N*m/rad", "" none; NULL: any
+    int least, most;  // LIST: lengths lie in least..most (inertia also checks 1, 3, 6)
     const char *doc;  // one line, with the default
 };
 
@@ -55,12 +55,12 @@ struct ct_turn {
 
 struct ct_value {
     bool given;
-    struct ct_mark mark;   // of the value
-    size_t n;              // number of expressions
-    ct_ex *e;              // expressions
-    struct ct_mark *at;    // mark of each
-    bool *hole;            // COORDS: true where `~` stood
-    int frame;             // FRAME: index into the model's frames
+    struct ct_mark mark;     // of the value
+    size_t n;                // number of expressions
+    ct_ex *e;                // expressions
+    struct ct_mark *at;      // mark of each
+    bool *hole;              // COORDS: true where `~` stood
+    int frame;               // FRAME: index into the model's frames
     const char *const *name; // NAMES, JOINTS: n texts
     size_t nturn;
     struct ct_turn *turn; // TURNS
@@ -76,28 +76,26 @@ enum { CT_MAX_COORD = 12, CT_MAX_ROW = 6 };
 enum ct_measure_kind { CT_MEASURE_LENGTH, CT_MEASURE_ANGLE, CT_MEASURE_QUATERNION };
 struct ct_measure {
     enum ct_measure_kind kind;
-    ct_ex3 along;      // LENGTH: unit vector in axes of `from`
-    bool reversed;     // ANGLE: `about` is fixed in `to`, and the angle is that from R v to w
-    ct_ex3 about;      // ANGLE: unit vector, in axes of `from` (of `to` when reversed)
-    ct_ex3 v, w;       // ANGLE: in axes of `from` and of `to`
-    ct_ex3 from, to;   // ANGLE: direction of the rate, parts in axes of `from` and of `to`
+    ct_ex3 along;    // LENGTH: unit vector in axes of `from`
+    bool reversed;   // ANGLE: `about` is fixed in `to`, and the angle is that from R v to w
+    ct_ex3 about;    // ANGLE: unit vector, in axes of `from` (of `to` when reversed)
+    ct_ex3 v, w;     // ANGLE: in axes of `from` and of `to`
+    ct_ex3 from, to; // ANGLE: direction of the rate, parts in axes of `from` and of `to`
 };
 
 /// Freedom of motion of a joint: translation d of the origin of `to` in axes of `from`, rotation
 /// R = R_1 R_2 ... from components of `to` to those of `from`.  (formulation 1.3, 1.8)
 struct ct_motion {
-    int ncoord;              // stored coordinates: a quaternion counts 4
-    int nfree;               // speeds
+    int ncoord;                // stored coordinates: a quaternion counts 4
+    int nfree;                 // speeds
     ct_ex coord[CT_MAX_COORD]; // in:  symbols (or driver expressions) of the coordinates
-    ct_ex3 d;                // out: [m]
-    int nturn;               // out: successive rotations about axes in the frame turned so far
+    const double *value;       // in:  values of all symbols at the start, for choices only
+    ct_ex3 d;                  // out: [m]
+    int nturn; // out: successive rotations about axes in the frame turned so far
     struct ct_turn turn[CT_MAX_COORD];
     int quaternion; // index of the first of 4 coordinates that give a 3-dof rotation, or -1.
                     // Such a rotation is the whole rotation: nturn = 0.
-    bool coupled;   // translation and rotation share a coordinate, or no constraint rows exist:
-                    // the joint is always a branch (custom, screw)
-
-    int nmeasure; // length and angle: one per coordinate; a quaternion: one for its four
+    int nmeasure;   // length and angle: one per coordinate; a quaternion: one for its four
     struct ct_measure measure[CT_MAX_COORD];
 
     // Rows when the joint is a chord. Translational: directions in axes of `from`.
@@ -119,11 +117,11 @@ struct ct_instance {
     const struct ct_component_class *cls;
     const char *name;
     struct ct_mark mark;
-    const struct ct_value *value;  // one per key: family keys first, then the class's own
-    struct ct_initial initial;     // joints
-    const ct_ex *local;            // symbols of the coordinate names of a custom joint
-    int ncoord, nfree;             // joints: resolved counts
-    int from, to;                  // joints and two-ended forces: frames; else -1
+    const struct ct_value *value; // one per key: family keys first, then the class's own
+    struct ct_initial initial;    // joints
+    const ct_ex *local;           // symbols of the coordinate names of a custom joint
+    int ncoord, nfree;            // joints: resolved counts
+    int from, to;                 // joints and two-ended forces: frames; else -1
 };
 
 /// Value of a key of the instance by name; the key must exist (asserted). `given` tells if it was.
@@ -136,9 +134,35 @@ struct ct_component_class {
     int nkey;
     const char *across, *through; // terminal equations, for `components` and `--show terminal`
     int ncoord, nfree;            // joints; custom: -1, from its list of coordinates
-    /// Joints: fill `m` from the instance. coord[] is set by the caller.
+    bool always_branch;           // joints whose rows as a chord do not exist: screw, custom
+    /// Joints with motion: fill `m` from the instance. NULL for distance and gear.
     void (*motion)(struct ct_exs *x, const struct ct_instance *self, struct ct_motion *m);
+    /// Forces, distance and gear: add loads or rows through formulate/load.h and row.h.
+    void (*apply)(struct ct_build *b, const struct ct_instance *self);
+    /// Signals of its own (S.force, S.length ...): false if there is none of that name.
+    bool (*signal)(struct ct_build *b, const struct ct_instance *self, const char *name,
+                   ct_ex *out);
 };
+
+// ---- what classes of joints use to fill a motion ------------------------------------------------
+
+/// The axis given under `key`, or the coordinate axis number `standard`.
+ct_ex3 ct_instance_axis(struct ct_exs *x, const struct ct_instance *self, const char *key,
+                        int standard);
+/// One more rotation, about `axis` in the frame turned so far.
+void ct_motion_turn(struct ct_motion *m, ct_ex3 axis, ct_ex angle);
+/// Three translational rows: the origins coincide.
+void ct_motion_hold_place(struct ct_exs *x, struct ct_motion *m);
+/// Three rotational rows (y|z) (z|x) (x|y): the axes coincide.
+void ct_motion_hold_turn(struct ct_exs *x, struct ct_motion *m);
+/// The next coordinate is a length along a direction of `from`.
+void ct_motion_measure_length(struct ct_motion *m, ct_ex3 along);
+/// The next coordinate is the angle about n; across: a unit vector normal to n.
+void ct_motion_measure_angle(struct ct_motion *m, ct_ex3 n, ct_ex3 across);
+
+/// Two unit vectors that make a right-handed set with the unit vector n; coordinate axes where n is one.
+/// value: of all symbols, decides which coordinate axis to start from.
+void ct_axes_across(struct ct_exs *x, ct_ex3 n, const double *value, ct_ex3 *e1, ct_ex3 *e2);
 
 /// Keys that every joint has besides its own (from, to, initial, stiffness, damping, rest, effort,
 /// motion); empty for other families.

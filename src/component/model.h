@@ -25,7 +25,7 @@ struct ct_body {
     int frame;                   // its own
     ct_ex mass;                  // [kg]
     ct_ex3 com;                  // [m] in body axes
-    ct_ex inertia[6];            // xx yy zz xy xz yz about the centre of mass, body axes [kg m^2]
+    ct_ex inertia[6]; // xx yy zz xy xz yz about the centre of mass, body axes [kg m^2]
     bool is_particle;
 };
 
@@ -63,7 +63,7 @@ struct ct_model {
     struct ct_exs *x;
     const char *file; // as given on the command line
     const char *name, *description;
-    ct_ex time; // the symbol t
+    ct_ex time;     // the symbol t
     ct_ex3 gravity; // [m/s^2]
     struct ct_parameter *parameter;
     size_t nparameter, parameter_cap;

@@ -25,7 +25,8 @@ size_t ct_ex_walk(struct ct_exs *x, const ct_ex *root, size_t n)
 {
     reserve_walk(x);
     x->generation++;
-    uint32_t *list = x->stack, *pending = x->stack + x->walk_cap; // pending grows behind the list
+    uint32_t *list = x->stack,
+             *pending = x->stack + x->walk_cap; // pending grows behind the list
     size_t nlist = 0;
     for (size_t r = 0; r < n; r++) {
         size_t npending = 0;
@@ -89,10 +90,12 @@ static ct_ex partial(struct ct_exs *x, uint32_t id, int i)
     case CT_OP_TAN:
         return ct_ex_add(x, one, ct_ex_mul(x, e, e));
     case CT_OP_ASIN:
-        return ct_ex_div(x, one, ct_ex_fun(x, CT_OP_SQRT, ct_ex_sub(x, one, ct_ex_mul(x, a, a))));
+        return ct_ex_div(x, one,
+                         ct_ex_fun(x, CT_OP_SQRT, ct_ex_sub(x, one, ct_ex_mul(x, a, a))));
     case CT_OP_ACOS:
         return ct_ex_neg(
-            x, ct_ex_div(x, one, ct_ex_fun(x, CT_OP_SQRT, ct_ex_sub(x, one, ct_ex_mul(x, a, a)))));
+            x,
+            ct_ex_div(x, one, ct_ex_fun(x, CT_OP_SQRT, ct_ex_sub(x, one, ct_ex_mul(x, a, a)))));
     case CT_OP_ATAN:
         return ct_ex_div(x, one, ct_ex_add(x, one, ct_ex_mul(x, a, a)));
     case CT_OP_ATAN2: { // atan2(a, b): b/(a^2 + b^2), -a/(a^2 + b^2)

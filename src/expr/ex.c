@@ -148,7 +148,8 @@ static bool fold(struct ct_exs *x, enum ct_op op, ct_ex a, ct_ex b, ct_ex *out)
 
 static ct_ex sum(struct ct_exs *x, ct_ex a, ct_ex b)
 {
-    return a.id < b.id ? intern(x, CT_OP_ADD, a.id, b.id, 0) : intern(x, CT_OP_ADD, b.id, a.id, 0);
+    return a.id < b.id ? intern(x, CT_OP_ADD, a.id, b.id, 0)
+                       : intern(x, CT_OP_ADD, b.id, a.id, 0);
 }
 
 ct_ex ct_ex_add(struct ct_exs *x, ct_ex a, ct_ex b)
@@ -214,7 +215,8 @@ static ct_ex scaled(struct ct_exs *x, double c, ct_ex b)
         return b;
     const struct ct_exnode n = x->node[b.id];
     double d;
-    if (n.op == CT_OP_MUL && ct_ex_is_const(x, (ct_ex){n.a}, &d) && isfinite(c * d) && c * d != 0)
+    if (n.op == CT_OP_MUL && ct_ex_is_const(x, (ct_ex){n.a}, &d) && isfinite(c * d)
+        && c * d != 0)
         return scaled(x, c * d, (ct_ex){n.b});
     return intern(x, CT_OP_MUL, ct_ex_const(x, c).id, b.id, 0);
 }
@@ -242,7 +244,8 @@ ct_ex ct_ex_mul(struct ct_exs *x, ct_ex a, ct_ex b)
     n = x->node[b.id];
     if (n.op == CT_OP_MUL && ct_ex_is_const(x, (ct_ex){n.a}, &c))
         return scaled(x, c, ct_ex_mul(x, a, (ct_ex){n.b}));
-    return a.id < b.id ? intern(x, CT_OP_MUL, a.id, b.id, 0) : intern(x, CT_OP_MUL, b.id, a.id, 0);
+    return a.id < b.id ? intern(x, CT_OP_MUL, a.id, b.id, 0)
+                       : intern(x, CT_OP_MUL, b.id, a.id, 0);
 }
 
 ct_ex ct_ex_div(struct ct_exs *x, ct_ex a, ct_ex b)

@@ -53,7 +53,7 @@ enum ct_sym_kind {
     CT_SYM_MODE,   // 0 or 1: the side of a comparison, constant between events
     CT_SYM_MEMORY, // value kept from the last accepted step (angle of a chord)
     CT_SYM_WORK,   // energy.work: a quadrature beside the states
-    CT_SYM_LOCAL,  // argument of an expression of its own: coordinate of a custom joint, x of a beam
+    CT_SYM_LOCAL, // argument of an expression of its own: coordinate of a custom joint, x of a beam
     CT_SYM_SIGNAL, // a signal name not yet resolved; formulate substitutes it
 };
 
@@ -75,7 +75,7 @@ struct ct_table {
     const char *file, *column;
     size_t n;
     const double *x, *y; // x strictly increasing
-    const double *m;     // slopes at the points (cubic Hermite of the natural spline), NULL: linear
+    const double *m; // slopes at the points (cubic Hermite of the natural spline), NULL: linear
 };
 
 struct ct_exs {
@@ -162,7 +162,8 @@ ct_ex ct_ex_diff_along(struct ct_exs *x, ct_ex a, const ct_ex *s, const ct_ex *d
 /// a with each symbol from[i] replaced by to[i].
 ct_ex ct_ex_subst(struct ct_exs *x, ct_ex a, const ct_ex *from, const ct_ex *to, size_t n);
 /// Copy a from store `from` into x; leaf(data, x, from, symbol) gives the node for a symbol.
-typedef ct_ex (*ct_ex_leaf_fn)(void *data, struct ct_exs *x, const struct ct_exs *from, ct_ex s);
+typedef ct_ex (*ct_ex_leaf_fn)(void *data, struct ct_exs *x, const struct ct_exs *from,
+                               ct_ex s);
 ct_ex ct_ex_import(struct ct_exs *x, const struct ct_exs *from, ct_ex a, ct_ex_leaf_fn leaf,
                    void *data);
 /// Value with value[k] for symbol k (index into x->sym). Slow; for checks, defaults and tests.

@@ -16,7 +16,8 @@
 struct ct_tape;
 
 struct ct_tape_counts {
-    long multiplications, additions, divisions, functions; // of the body; functions: sin, cos, ...
+    long multiplications, additions, divisions,
+        functions; // of the body; functions: sin, cos, ...
 };
 
 /// Compile nout expressions. Inputs: in[k] is a symbol whose value is read from the input vector at
@@ -35,7 +36,7 @@ struct ct_tape_counts ct_tape_counts(const struct ct_tape *t);
 
 /// Operations below a set of expressions without compiling: unique nodes, parameter-only ones free.
 /// + includes -; negation is free. Cost: the nodes below.
-struct ct_tape_counts ct_ex_count(struct ct_arena *scratch, const struct ct_exs *x, const ct_ex *e,
-                                  size_t n);
+struct ct_tape_counts ct_ex_count(struct ct_arena *scratch, const struct ct_exs *x,
+                                  const ct_ex *e, size_t n);
 
 #endif

@@ -111,8 +111,9 @@ ct_ex33 ct_ex33_axis_angle(struct ct_exs *x, ct_ex3 n, ct_ex a)
         const int j = (i + 1) % 3, k = (i + 2) % 3;
         double one;
         const bool is_axis = ct_ex_is_const(x, n.e[i], &one) && (one == 1 || one == -1);
-        R.e[i + 3 * i] = is_axis ? CT_EX_ONE // c + (1 - c)
-                                 : ct_ex_add(x, c, ct_ex_mul(x, v, ct_ex_mul(x, n.e[i], n.e[i])));
+        R.e[i + 3 * i] = is_axis
+                           ? CT_EX_ONE // c + (1 - c)
+                           : ct_ex_add(x, c, ct_ex_mul(x, v, ct_ex_mul(x, n.e[i], n.e[i])));
         const ct_ex both = ct_ex_mul(x, v, ct_ex_mul(x, n.e[i], n.e[j]));
         const ct_ex turn = ct_ex_mul(x, s, n.e[k]);
         R.e[j + 3 * i] = ct_ex_add(x, both, turn);

@@ -2,9 +2,9 @@
 //
 //     node 0 is ground (the datum); an edge goes from tail to head; incidence +1 at the head
 //
-// What always holds: a tree's arrays have one entry per node (parent edge, parent node, depth) and
-// one per edge (is_branch); `order` lists the nodes root first, so parents precede children.
-// Ties are broken by edge index: the same graph gives the same tree.
+// What always holds: a tree's arrays have one entry per node (parent edge, parent node, depth)
+// and one per edge (is_branch); `order` lists the nodes root first, so parents precede
+// children. Ties are broken by edge index: the same graph gives the same tree.
 #ifndef CT_GRAPH_GRAPH_H
 #define CT_GRAPH_GRAPH_H
 
@@ -41,39 +41,55 @@ struct ct_incidence {
 };
 
 /// Spanning tree of least weight (Kruskal); edges of weight < 0 are never branches. Among equal
-/// weights the smaller `rank` wins, then the smaller index. rank may be NULL.
-/// False if no spanning tree exists; then component[v] (nnode, may be NULL) numbers the pieces, 0 is ground's.
-/// Cost O(e log e).
+/// weights the smaller `rank` wins, then the smaller index. rank may be NULL. False if no
+/// spanning tree exists; t is then left alone. component (nnode, may be NULL) numbers the
+/// pieces that the allowed edges leave: 0 is ground's, then by smallest node. Cost O(e log e).
+/// Source: Kruskal (1956), key kruskal1956.
 bool ct_tree_kruskal(struct ct_arena *a, const struct ct_graph *g, const int *weight,
                      const int *rank, struct ct_tree *t, int *component);
 
-/// The tree with the given branches; false if they are no spanning tree.
+/// The tree with the given branches; false if they are no spanning tree, t is then left alone.
+/// `order` is breadth first, edges by index. Cost O(v + e).
 bool ct_tree_from_branches(struct ct_arena *a, const struct ct_graph *g, const bool *is_branch,
                            struct ct_tree *t);
 
-/// Debug: every node has a parent but the root, branches and parent edges agree. NULL if so, else what is wrong.
+/// Debug: every node has a parent but the root, branches and parent edges agree, the order is
+/// right. NULL if so, else what is wrong. Cost O(v^2 + e).
 const char *ct_tree_check(const struct ct_graph *g, const struct ct_tree *t);
 
 /// Number of spanning trees whose branches include all `forced` edges and no `banned` one
-/// (matrix-tree theorem, in double; exact below 2^53). Either array may be NULL. Cost O(n^3).
+/// (matrix-tree theorem, in double, rounded). Relative error below n^2 eps, so exact up to
+/// about 1e15 / n^2 trees. Either array may be NULL. Cost O(n^3).
 double ct_tree_count(struct ct_arena *scratch, const struct ct_graph *g, const bool *forced,
                      const bool *banned);
 
-/// Call visit(data, is_branch) for every such tree, in lexicographic order of branches, until it returns false.
+/// Call visit(data, is_branch) for every such tree, in lexicographic order of branches, until
+/// it returns false. False if it did; true if every tree was seen, also when there is none.
+/// Cost O(e^2) per tree.
 bool ct_tree_enumerate(struct ct_arena *scratch, const struct ct_graph *g, const bool *forced,
                        const bool *banned, bool (*visit)(void *data, const bool *is_branch),
                        void *data);
 
-/// The fundamental circuit of chord e: n branches and their signs (in the sense of the chord,
-/// formulation 3.2: across_e = -sum sign * across_branch ... ) written to branch[] and sign[] (room nbranch). Returns n.
+/// The fundamental circuit of chord e, oriented along it (formulation 3.2): its n branches and
+/// their entries of B_t, so that across_e + sum_k sign[k] across_branch[k] = 0. They are
+/// written to branch[] and sign[] (room nbranch) in the order met when walking on from the head
+/// of e back to its tail; sign is +1 where the branch points along this walk. Returns n. Cost
+/// O(n).
 int ct_tree_circuit(const struct ct_graph *g, const struct ct_tree *t, int e, int *branch,
                     signed char *sign);
 
-/// Fundamental circuits B_f = [B_t 1] (nchord x nedge, columns are edges) and cutsets A_f = [1 A_cut]
-/// (nbranch x nedge); rows in the order of t->chord and t->branch. A_f B_f' = 0 exactly. (3.1)-(3.3)
+/// Fundamental circuits B_f = [B_t 1] (nchord x nedge) and cutsets A_f = [1 A_cut] (nbranch x
+/// nedge). Columns are edges by their number; rows in the order of t->chord and t->branch.
+/// A_f B_f' = 0 exactly. (3.1)-(3.3). Cost O(e + sum of circuit lengths).
+/// Source: Seshu and Reed (1961), key seshu1961.
 void ct_circuits_derive(struct ct_arena *a, const struct ct_graph *g, const struct ct_tree *t,
                         struct ct_incidence *Bf);
 void ct_cutsets_derive(struct ct_arena *a, const struct ct_graph *g, const struct ct_tree *t,
                        struct ct_incidence *Af);
+
+/// The transpose: compressed columns of S' are compressed rows of S, so that its equations can
+/// be read one by one. Cost O(rows + columns + entries).
+void ct_incidence_transpose(struct ct_arena *a, const struct ct_incidence *S,
+                            struct ct_incidence *St);
 
 #endif

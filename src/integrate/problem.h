@@ -9,12 +9,17 @@
 
 #include "base/ctx.h"
 
-enum ct_eval { CT_EVAL_OK, CT_EVAL_RETRY /* take a smaller step */, CT_EVAL_FATAL /* diagnosed */ };
+enum ct_eval {
+    CT_EVAL_OK,
+    CT_EVAL_RETRY, // take a smaller step
+    CT_EVAL_FATAL, // diagnosed
+};
 
 struct ct_problem {
     void *user;
-    int ny;              // states
-    const bool *watched; // per state: counts in error control (quadratures do not)
+    int ny; // states
+    /// Per state: counts in error control (quadratures do not). NULL: all do.
+    const bool *watched;
 
     /// dy (ny, out) = f(t, y).
     enum ct_eval (*rhs)(void *user, double t, const double *y, double *dy);
@@ -23,7 +28,7 @@ struct ct_problem {
     enum ct_eval (*project)(void *user, double t, double *y);
 
     /// After a step was accepted and projected: update memories and choices that keep f the same
-    /// function. May be NULL.
+    /// function. May be NULL. Before it answers CT_EVAL_RETRY it must have changed nothing.
     enum ct_eval (*accepted)(void *user, double t, double *y);
 
     /// Root functions on the state, g (nroot, out); a sign change within a step is an event. g is
@@ -31,19 +36,21 @@ struct ct_problem {
     int nroot;
     enum ct_eval (*root)(void *user, double t, const double *y, double *g);
 
-    /// The first time event after t, or INFINITY. May be NULL. Steps end exactly on it.
+    /// The first time event after t (never t itself), or INFINITY. May be NULL. Steps end exactly
+    /// on it.
     double (*next_time_event)(void *user, double t);
 
     /// At an event: t and y are those of the event, crossed[i] (nroot) is -1 or +1 for the roots that
     /// changed sign downwards or upwards, 0 else; is_time tells that a time event is due. Changes modes and may change y
     /// (impulses). Integration restarts after it.
-    enum ct_eval (*event)(void *user, double t, double *y, const signed char *crossed, bool is_time);
+    enum ct_eval (*event)(void *user, double t, double *y, const signed char *crossed,
+                          bool is_time);
 };
 
 struct ct_integrate_options {
     double t0, t1;
     double rtol, atol;    // tolerance of the states; see ct_integrate
-    double step;          // > 0: fixed step; ends on events and samples
+    double step;          // > 0: fixed step, see ct_integrate
     double first_step;    // 0: chosen
     long max_steps;       // 0: 100 million
     const double *sample; // nsample times in [t0, t1], ascending
@@ -60,21 +67,35 @@ struct ct_integrate_stats {
     double last_time; // reached, also on failure
 };
 
+/// What an error is measured against: rtol * max(|y_i| at either end of the step) + atol.
+struct ct_tolerance {
+    double rtol, atol;
+};
+
 /// One integration method: a constant table in a file of its own.
 struct ct_method {
     const char *name;    // as in `simulation.method`
     const char *summary; // one line for `cotree methods`
     const char *source;  // key into docs/references.bib
     int order;
+    int error_order; // the error of a step behaves as h^(error_order + 1), for step control
     bool is_implicit;
     /// Size of the private workspace in doubles, for ny states.
     size_t (*work)(int ny);
     /// One step from (t, y) with derivative dy by h: y1 (out), dy1 (out) = f(t + h, y1) before
-    /// projection, *err (out) scaled so that 1 is the tolerance.
+    /// projection, *err (out) scaled so that 1 is the tolerance. Without a tolerance (NULL) no
+    /// error is wanted and *err stays.
     enum ct_eval (*step)(const struct ct_problem *p, double t, double h, const double *y,
-                         const double *dy, const double *weight, double *y1, double *dy1,
-                         double *err, double *work, struct ct_integrate_stats *stats);
-    /// y (ny, out) at t + theta h, 0 <= theta <= 1, from the step just taken.
+                         const double *dy, const struct ct_tolerance *tolerance, double *y1,
+                         double *dy1, double *err, double *work,
+                         struct ct_integrate_stats *stats);
+    /// Called once for a step before its first `dense`: extra stages. May be NULL. With
+    /// has_rough_dense, `dense` works without it, too, well enough to find roots.
+    bool has_rough_dense;
+    enum ct_eval (*prepare)(const struct ct_problem *p, double t, double h, const double *y,
+                            const double *y1, double *work, struct ct_integrate_stats *stats);
+    /// y (ny, out) at t + theta h, 0 <= theta <= 1, from the step just taken; y1 as it came from
+    /// `step`.
     void (*dense)(const struct ct_problem *p, double h, double theta, const double *y,
                   const double *y1, double *work, double *out);
 };
@@ -84,11 +105,21 @@ extern const int ct_nmethod;
 /// NULL if there is none of that name.
 const struct ct_method *ct_method_find(const char *name);
 
-/// Integrate y (ny, in: start, out: end) from t0 to t1. The error of a step is held below
+/// Integrate y (ny, in: start, out: end) from t0 to t1 >= t0. The error of a step is held below
 /// rtol * max(|y_i|, ...) + atol in each watched state (weighted root mean square).
-/// Errors: E3xx with the time reached.
-bool ct_integrate(struct ct_ctx *ctx, const struct ct_method *method, const struct ct_problem *p,
-                  const struct ct_integrate_options *options, double *y,
-                  struct ct_integrate_stats *stats);
+///
+/// Steps end exactly on time events and on t1. Samples between step ends are interpolated and
+/// projected. State events are located on the interpolant; the step is then taken again up to the
+/// event, so that the state there is as accurate as any other.
+///
+/// With a fixed step, steps also end on samples, and the time between two such ends is divided
+/// evenly into the fewest steps that are not longer than `step`. There is no error control, and a
+/// refused step is an error.
+///
+/// Errors: E301 to E307, with the time reached. Owner: workspace is taken from ctx->model before
+/// the first step.
+bool ct_integrate(struct ct_ctx *ctx, const struct ct_method *method,
+                  const struct ct_problem *p, const struct ct_integrate_options *options,
+                  double *y, struct ct_integrate_stats *stats);
 
 #endif

@@ -19,8 +19,8 @@ void ct_cholesky_solve(double *x, const double *L, int n, int lda, int nrhs, int
 
 /// LU with partial pivoting in place; false if exactly singular. pivot (n).
 bool ct_lu(double *A, int *pivot, int n, int lda);
-void ct_lu_solve(double *x, const double *LU, const int *pivot, int n, int lda, int nrhs, int ldx,
-                 bool transpose);
+void ct_lu_solve(double *x, const double *LU, const int *pivot, int n, int lda, int nrhs,
+                 int ldx, bool transpose);
 
 /// QR with column pivoting, A P = Q R in place. column (n, out): original column at each place;
 /// tau (min(m, n), out). Returns the rank: diagonal entries of R above tol * |R_00|.

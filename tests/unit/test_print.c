@@ -1,211 +1,286 @@
-// Text, LaTeX and C of expressions, to the letter.
-#include "expr/print.h"
+// Printing a graph as text, dot and json, against files under tests/golden/graph; --update
+// rewrites them. The example is a slider-crank with arms, its mixed trees T = {O, A, B}, R =
+// {O, A, guide}.
+#include "graph/print.h"
 
 #include <setjmp.h>
-#include <stdarg.h>
+#include <stdint.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include <cmocka.h>
 
-struct fixture {
-    struct ct_arena *arena;
-    struct ct_exs x;
-    ct_ex m, l, g, x0, q, r, u, a;
+static struct ct_arena *arena;
+static bool update;
+
+static int setup(void **state)
+{
+    (void)state;
+    arena = ct_arena_create();
+    return !arena;
+}
+
+static int teardown(void **state)
+{
+    (void)state;
+    ct_arena_destroy(arena);
+    return 0;
+}
+
+// ---- the slider-crank ---------------------------------------------------------------------
+
+struct named_edge {
+    const char *name, *kind;
+    int tail, head, weight_T, weight_R;
+    bool in_T, in_R, is_arm;
 };
 
-static void start(struct fixture *f)
+struct example {
+    const char *const *node;
+    const struct named_edge *edge;
+    int nnode, nedge;
+};
+
+static const char *const crank_node[]
+    = {"ground", "crank", "crank.O", "crank.A", "rod", "rod.A", "rod.B", "slider"};
+static const struct named_edge crank_edge[] = {
+    {"crank", "rigid", 0, 1, 2, 1, false, false, false},
+    {"crank.O", "arm", 1, 2, 0, 0, true, true, true},
+    {"crank.A", "arm", 1, 3, 0, 0, true, true, true},
+    {"rod", "rigid", 0, 4, 2, 1, false, false, false},
+    {"rod.A", "arm", 4, 5, 0, 0, true, true, true},
+    {"rod.B", "arm", 4, 6, 0, 0, true, true, true},
+    {"slider", "rigid", 0, 7, 2, 1, false, false, false},
+    {"O", "revolute", 0, 2, 0, 1, true, true, false},
+    {"A", "revolute", 3, 5, 0, 1, true, true, false},
+    {"B", "revolute", 6, 7, 0, 1, true, false, false},
+    {"guide", "prismatic", 0, 7, 1, 0, false, true, false},
+    {"motor", "torque", 0, 2, -1, -1, false, false, false},
+};
+static const struct example crank
+    = {crank_node, crank_edge, COUNT(crank_node), COUNT(crank_edge)};
+
+static const char *node_name(void *data, int v)
 {
-    f->arena = ct_arena_create();
-    ct_exs_init(&f->x, f->arena);
-    f->l
-        = ct_ex_sym(&f->x, CT_SYM_PARAM, "l", 0); // l before m: the order is not the creation's
-    f->m = ct_ex_sym(&f->x, CT_SYM_PARAM, "m", 1);
-    f->g = ct_ex_sym(&f->x, CT_SYM_PARAM, "g", 2);
-    f->x0 = ct_ex_sym(&f->x, CT_SYM_PARAM, "x0", 3);
-    f->a = ct_ex_sym(&f->x, CT_SYM_A, "theta''", 0);
-    f->u = ct_ex_sym(&f->x, CT_SYM_U, "theta'", 0);
-    f->q = ct_ex_sym(&f->x, CT_SYM_Q, "theta", 0);
-    f->r = ct_ex_sym(&f->x, CT_SYM_Q, "crank.q2", 1);
+    return ((const struct example *)data)->node[v];
 }
 
-static void check(struct fixture *f, ct_ex e, const char *text, const char *latex,
-                  const char *c)
+static const char *edge_name(void *data, int e)
 {
-    const struct ct_print as_latex = {.style = CT_PRINT_LATEX}, as_c = {.style = CT_PRINT_C};
-    assert_string_equal(ct_ex_text(f->arena, &f->x, e, NULL), text);
-    assert_string_equal(ct_ex_text(f->arena, &f->x, e, &as_latex), latex);
-    if (c)
-        assert_string_equal(ct_ex_text(f->arena, &f->x, e, &as_c), c);
+    return ((const struct example *)data)->edge[e].name;
 }
 
-static void equation_of_a_pendulum(void **unused)
+static const char *edge_kind(void *data, int e)
 {
-    (void)unused;
-    struct fixture f;
-    start(&f);
-    struct ct_exs *x = &f.x;
-    ct_ex gravity = ct_ex_mul(x, ct_ex_mul(x, f.g, ct_ex_fun(x, CT_OP_SIN, f.q)), f.l);
-    ct_ex inertia = ct_ex_mul(x, f.a, ct_ex_mul(x, f.l, ct_ex_mul(x, f.l, f.m)));
-    check(&f, ct_ex_add(x, gravity, inertia), "m*l^2*theta'' + l*g*sin(theta)",
-          "m \\, l^{2} \\, \\ddot{\\theta} + l \\, g \\, \\sin \\theta", NULL);
-    ct_arena_destroy(f.arena);
+    return ((const struct example *)data)->edge[e].kind;
 }
 
-static void signs_and_quotients(void **unused)
-{
-    (void)unused;
-    struct fixture f;
-    start(&f);
-    struct ct_exs *x = &f.x;
-    ct_ex d = ct_ex_sub(x, f.q, f.x0), two = ct_ex_const(x, 2);
-    check(&f, ct_ex_neg(x, f.q), "-theta", "-\\theta", "-theta");
-    check(&f, d, "theta - x0", "\\theta - x_{0}", "theta - x0");
-    check(&f, ct_ex_neg(x, ct_ex_mul(x, f.m, d)), "-m*(theta - x0)",
-          "-m \\, \\left(\\theta - x_{0}\\right)", "-(m * (theta - x0))");
-    check(&f, ct_ex_div(x, ct_ex_mul(x, two, f.q), ct_ex_mul(x, f.m, d)),
-          "2*theta/(m*(theta - x0))", "\\frac{2 \\theta}{m \\, \\left(\\theta - x_{0}\\right)}",
-          NULL);
-    check(&f, ct_ex_div(x, d, f.m), "(theta - x0)/m", "\\frac{\\theta - x_{0}}{m}",
-          "(theta - x0) / m");
-    check(&f, ct_ex_div(x, f.m, ct_ex_div(x, f.q, f.l)), "l*m/theta",
-          "\\frac{l \\, m}{\\theta}", NULL);
-    check(&f, ct_ex_sub(x, ct_ex_neg(x, f.q), f.r), "-theta - crank.q2",
-          "-\\theta - q_{2,\\mathrm{crank}}", NULL);
-    check(&f, ct_ex_mul(x, ct_ex_neg(x, f.q), ct_ex_neg(x, f.m)), "m*theta", "m \\, \\theta",
-          NULL);
-    ct_arena_destroy(f.arena);
-}
+// What a view points at.
+struct stage {
+    struct example example;
+    struct ct_graph g;
+    struct ct_tree T, R;
+    struct ct_graph_names names;
+    struct ct_graph_view view;
+};
 
-static void powers_and_functions(void **unused)
+static struct stage *set_stage(const struct example *x)
 {
-    (void)unused;
-    struct fixture f;
-    start(&f);
-    struct ct_exs *x = &f.x;
-    ct_ex c = ct_ex_fun(x, CT_OP_COS, f.q), d = ct_ex_sub(x, f.q, f.x0);
-    check(&f, ct_ex_mul(x, c, c), "cos(theta)^2", "\\cos^{2} \\theta",
-          "cos(theta) * cos(theta)");
-    check(&f, ct_ex_pow(x, d, ct_ex_const(x, 3)), "(theta - x0)^3",
-          "\\left(\\theta - x_{0}\\right)^{3}", NULL);
-    check(&f, ct_ex_pow(x, d, ct_ex_const(x, -2.5)), "(theta - x0)^(-2.5)",
-          "\\left(\\theta - x_{0}\\right)^{-2.5}", "pow((theta - x0), (-2.5))");
-    check(&f, ct_ex_pow(x, ct_ex_pow(x, f.m, f.l), f.g), "(m^l)^g", "\\left(m^{l}\\right)^{g}",
-          NULL);
-    check(&f, ct_ex_pow(x, f.m, ct_ex_pow(x, f.l, f.g)), "m^(l^g)", "m^{l^{g}}", NULL);
-    check(&f, ct_ex_fun(x, CT_OP_SQRT, d), "sqrt(theta - x0)", "\\sqrt{\\theta - x_{0}}",
-          "sqrt((theta - x0))");
-    check(&f, ct_ex_fun2(x, CT_OP_ATAN2, f.q, f.r), "atan2(theta, crank.q2)",
-          "\\operatorname{atan2}\\left(\\theta, q_{2,\\mathrm{crank}}\\right)",
-          "atan2(theta, crank_q2)");
-    ct_arena_destroy(f.arena);
-}
-
-static void choices(void **unused)
-{
-    (void)unused;
-    struct fixture f;
-    start(&f);
-    struct ct_exs *x = &f.x;
-    ct_ex late = ct_ex_fun2(x, CT_OP_GE, f.q, ct_ex_add(x, f.l, CT_EX_ONE));
-    check(&f, ct_ex_if(x, late, f.m, ct_ex_neg(x, f.m)), "if(theta >= l + 1, m, -m)",
-          "\\begin{cases} m & \\theta \\geq l + 1 \\\\ -m & \\text{otherwise} \\end{cases}",
-          "((double)(theta >= (1.0 + l))) != 0 ? m : (-m)");
-    check(&f, ct_ex_mul(x, late, f.m), "m*(theta >= l + 1)",
-          "m \\, \\left(\\theta \\geq l + 1\\right)", NULL);
-    check(&f, ct_ex_fun2(x, CT_OP_MIN, f.m, f.l), "min(m, l)", "\\min\\left(m, l\\right)",
-          "m < l ? m : l");
-    ct_arena_destroy(f.arena);
-}
-
-static void numbers_are_the_shortest(void **unused)
-{
-    (void)unused;
-    struct ct_arena *a = ct_arena_create();
-    static const struct {
-        double v;
-        const char *text, *c;
-    } cases[] = {{0.1, "0.1", "0.10000000000000001"},
-                 {0.1 + 0.2, "0.30000000000000004", "0.30000000000000004"},
-                 {3, "3", "3.0"},
-                 {-1e-5, "-1e-05", "(-1.0000000000000001e-05)"},
-                 {6.02e23, "6.02e+23", "6.02e+23"},
-                 {1e300, "1e+300", "1.0000000000000001e+300"}};
-    for (size_t k = 0; k < COUNT(cases); k++) {
-        assert_string_equal(ct_number_text(a, cases[k].v), cases[k].text);
-        assert_string_equal(ct_number_c(a, cases[k].v), cases[k].c);
+    struct stage *s = CT_NEW(arena, struct stage);
+    struct ct_edge *edge = CT_NEWN(arena, struct ct_edge, x->nedge);
+    bool *in_T = CT_NEWN(arena, bool, x->nedge), *in_R = CT_NEWN(arena, bool, x->nedge);
+    bool *is_arm = CT_NEWN(arena, bool, x->nedge);
+    int *weight_T = CT_NEWN(arena, int, x->nedge), *weight_R = CT_NEWN(arena, int, x->nedge);
+    for (int e = 0; e < x->nedge; e++) {
+        edge[e] = (struct ct_edge){x->edge[e].tail, x->edge[e].head};
+        in_T[e] = x->edge[e].in_T;
+        in_R[e] = x->edge[e].in_R;
+        is_arm[e] = x->edge[e].is_arm;
+        weight_T[e] = x->edge[e].weight_T;
+        weight_R[e] = x->edge[e].weight_R;
     }
-    ct_arena_destroy(a);
+    s->example = *x;
+    s->g = (struct ct_graph){x->nnode, x->nedge, edge};
+    assert_true(ct_tree_from_branches(arena, &s->g, in_T, &s->T));
+    assert_true(ct_tree_from_branches(arena, &s->g, in_R, &s->R));
+    s->names = (struct ct_graph_names){node_name, edge_name, edge_kind, &s->example,
+                                       weight_T,  weight_R,  is_arm};
+    s->view = (struct ct_graph_view){&s->g, &s->T, &s->R, &s->names};
+    return s;
 }
 
-static void names_become_subscripts(void **unused)
+// ---- golden files -------------------------------------------------------------------------
+
+enum format { TEXT, DOT, JSON };
+
+/// What a printer writes, to be freed.
+static char *print_view(const struct ct_graph_view *view, enum format format)
 {
-    (void)unused;
-    struct ct_arena *a = ct_arena_create();
-    static const char *const cases[][2]
-        = {{"m", "m"},
-           {"m12", "m_{12}"},
-           {"theta", "\\theta"},
-           {"theta1''", "\\ddot{\\theta}_{1}"},
-           {"crank.q", "q_{\\mathrm{crank}}"},
-           {"crank.q'", "\\dot{q}_{\\mathrm{crank}}"},
-           {"a.b.q2", "q_{2,\\mathrm{a.b}}"},
-           {"length", "\\mathrm{length}"},
-           {"k_spring", "k_{\\mathrm{spring}}"},
-           {"l_0", "l_{0}"},
-           {"my_rod.mass", "\\mathrm{mass}_{\\mathrm{my\\_rod}}"}};
-    for (size_t k = 0; k < COUNT(cases); k++)
-        assert_string_equal(ct_latex_name(a, cases[k][0]), cases[k][1]);
-    assert_string_equal(ct_c_name(a, "2nd rod.q'"), "_2nd_rod_qd");
-    ct_arena_destroy(a);
+    char *text = NULL;
+    size_t size = 0;
+    FILE *out = open_memstream(&text, &size);
+    assert_non_null(out);
+    if (format == TEXT)
+        ct_graph_print(out, arena, view);
+    else if (format == DOT)
+        ct_graph_print_dot(out, view);
+    else
+        ct_graph_print_json(out, arena, view);
+    fclose(out);
+    return text;
 }
 
-static const char *named(void *data, ct_ex e)
+static const char *golden_path(const char *name)
 {
-    const ct_ex *n = data;
-    return ct_ex_same(*n, e) ? "t1" : NULL;
+    const char *tests = getenv("CT_TEST_DIR");
+    return ct_arena_printf(arena, "%s/golden/graph/%s", tests ? tests : "tests", name);
 }
 
-static void named_nodes_stand_for_themselves(void **unused)
+static char *read_file(const char *path)
 {
-    (void)unused;
-    struct fixture f;
-    start(&f);
-    struct ct_exs *x = &f.x;
-    ct_ex d = ct_ex_sub(x, f.q, f.x0), e = ct_ex_mul(x, f.m, ct_ex_mul(x, d, d));
-    const struct ct_print p = {.node = named, .data = &d};
-    assert_string_equal(ct_ex_text(f.arena, x, e, &p), "m*t1^2");
-    assert_string_equal(ct_ex_text(f.arena, x, d, &p), "t1");
-    assert_string_equal(ct_ex_text_body(f.arena, x, d, &p), "theta - x0");
-    ct_arena_destroy(f.arena);
+    char buffer[4096], *text = NULL;
+    size_t size = 0, n;
+    FILE *in = fopen(path, "rb"), *out = open_memstream(&text, &size);
+    if (!in)
+        fail_msg("%s is missing", path);
+    while ((n = fread(buffer, 1, sizeof buffer, in)) > 0)
+        fwrite(buffer, 1, n, out);
+    fclose(in);
+    fclose(out);
+    return text;
 }
 
-// The tree of this graph has 2^60 leaves.
-static void endless_trees_are_cut(void **unused)
+static void write_file(const char *path, const char *text)
 {
-    (void)unused;
-    struct fixture f;
-    start(&f);
-    ct_ex e = f.q;
-    for (int k = 0; k < 60; k++)
-        e = ct_ex_add(&f.x, ct_ex_fun(&f.x, CT_OP_EXP, e), ct_ex_mul(&f.x, f.m, e));
-    const struct ct_print p = {.limit = 500};
-    const char *s = ct_ex_text(f.arena, &f.x, e, &p);
-    assert_non_null(strstr(s, "..."));
-    assert_true(strlen(s) < 20000);
-    ct_arena_destroy(f.arena);
+    FILE *out = fopen(path, "wb");
+    if (!out)
+        fail_msg("%s cannot be written", path);
+    fputs(text, out);
+    fclose(out);
 }
 
-int main(void)
+static void check_golden(const char *name, enum format format)
 {
+    const char *path = golden_path(name);
+    char *got = print_view(&set_stage(&crank)->view, format);
+    if (update)
+        write_file(path, got);
+    char *want = read_file(path);
+    const int differs = strcmp(got, want);
+    if (differs)
+        print_message("---- got\n%s---- want\n%s", got, want);
+    free(got);
+    free(want);
+    assert_int_equal(differs, 0);
+}
+
+static void slider_crank_as_text(void **state)
+{
+    (void)state;
+    check_golden("slider_crank.txt", TEXT);
+}
+
+static void slider_crank_as_dot(void **state)
+{
+    (void)state;
+    check_golden("slider_crank.dot", DOT);
+}
+
+static void slider_crank_as_json(void **state)
+{
+    (void)state;
+    check_golden("slider_crank.json", JSON);
+}
+
+// ---- odd names, odd graphs ----------------------------------------------------------------
+
+/// One body on a joint, everything with a name that must be escaped.
+static const struct example nasty = {
+    (const char *const[]){"<ground>", "a\"b\\c\n&d \xc3\xa9"},
+    (const struct named_edge[]){{"</font>", "\t", 0, 1, 0, 0, true, true, false},
+                                {"\"]", "", 1, 0, 0, 0, false, false, false}},
+    2,
+    2,
+};
+
+static void check_contains(const struct example *x, enum format format, const char *want)
+{
+    char *got = print_view(&set_stage(x)->view, format);
+    const bool found = strstr(got, want) != NULL;
+    if (!found)
+        print_message("---- got\n%s---- want in it\n%s\n", got, want);
+    free(got);
+    assert_true(found);
+}
+
+static void names_are_escaped(void **state)
+{
+    (void)state;
+    check_contains(&nasty, JSON, "{\"id\": 1, \"name\": \"a\\\"b\\\\c\\u000a&d \xc3\xa9\"}");
+    check_contains(&nasty, JSON, "\"name\": \"</font>\", \"kind\": \"\\u0009\"");
+    check_contains(&nasty, DOT, "n1 [label=<a&quot;b&#92;c &amp;d \xc3\xa9>]");
+    check_contains(&nasty, DOT, "n0 -> n1 [label=<&lt;/font&gt;<br/>");
+    check_contains(&nasty, DOT, "n1 -> n0 [label=<&quot;]<br/>");
+    check_contains(&nasty, DOT, ">&#160;</font>>"); // Graphviz rejects an empty label
+}
+
+static void equations_of_equal_trees_are_printed_once(void **state)
+{
+    (void)state;
+    check_contains(&nasty, TEXT,
+                   "translation and rotation: the same tree\n"
+                   "  cutsets, for through variables, one per branch\n"
+                   "    </font> - \"] = 0\n"
+                   "  circuits, for across variables, one per chord\n"
+                   "    \"] + </font> = 0\n");
+}
+
+static void ground_alone_can_be_printed(void **state)
+{
+    (void)state;
+    const struct example alone = {crank_node, crank_edge, 1, 0};
+    check_contains(&alone, TEXT, "  circuits, for across variables, one per chord\n    none\n");
+    check_contains(&alone, DOT, "n0 [label=<ground>");
+    check_contains(&alone, JSON, "\"edges\": [\n  ],\n");
+}
+
+/// A chain of n edges from ground with a chord back to ground from its end.
+static struct example long_chain(int n)
+{
+    const char **node = CT_NEWN(arena, const char *, n + 1);
+    struct named_edge *edge = CT_NEWN(arena, struct named_edge, n + 1);
+    for (int v = 0; v <= n; v++) {
+        node[v] = ct_arena_printf(arena, "frame%d", v);
+        edge[v] = (struct named_edge){
+            ct_arena_printf(arena, "joint%d", v), "joint", v, v + 1, 1, 1, true, true, false};
+    }
+    edge[n].head = 0;
+    edge[n].in_T = edge[n].in_R = false;
+    return (struct example){node, edge, n + 1, n + 1};
+}
+
+static void large_graphs_are_cut_short(void **state)
+{
+    (void)state;
+    const struct example x = long_chain(80);
+    check_contains(&x, TEXT, "\n  too wide to print: 81 edges\n");
+    check_contains(&x, TEXT, "\n    ... and 20 more\n");
+    check_contains(&x, TEXT, " + joint8\n        + joint9");
+    check_contains(&x, DOT, "  n80 -> g80 ["); // a ground of its own
+}
+
+int main(int argc, char **argv)
+{
+    update = argc > 1 && strcmp(argv[1], "--update") == 0;
+#define TEST(f) cmocka_unit_test_setup_teardown(f, setup, teardown)
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(equation_of_a_pendulum),
-        cmocka_unit_test(signs_and_quotients),
-        cmocka_unit_test(powers_and_functions),
-        cmocka_unit_test(choices),
-        cmocka_unit_test(numbers_are_the_shortest),
-        cmocka_unit_test(names_become_subscripts),
-        cmocka_unit_test(named_nodes_stand_for_themselves),
-        cmocka_unit_test(endless_trees_are_cut),
+        TEST(slider_crank_as_text),
+        TEST(slider_crank_as_dot),
+        TEST(slider_crank_as_json),
+        TEST(names_are_escaped),
+        TEST(equations_of_equal_trees_are_printed_once),
+        TEST(ground_alone_can_be_printed),
+        TEST(large_graphs_are_cut_short),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

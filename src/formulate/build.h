@@ -1,0 +1,188 @@
+// Equations under construction: linear graph, clusters, links, and what is derived from them.
+//
+//   rotation    ground cluster --axis, angle--> cluster --> ...     a cluster is a set of frames that
+//                                                                   turn together (arms, welds)
+//   translation ground anchor --link--> anchor --> ...              a link is a vector fixed in a
+//                                                                   cluster (plus slides)
+//
+// What always holds: a cluster's parent and an anchor's parent have smaller numbers; number 0 is
+// ground. Every node sits at an anchor plus a constant offset in a cluster. Vectors are in ground
+// components unless a comment says `local` (components in a cluster).
+#ifndef CT_FORMULATE_BUILD_H
+#define CT_FORMULATE_BUILD_H
+
+#include "component/model.h"
+#include "formulate/equations.h"
+#include "graph/graph.h"
+
+enum ct_edge_kind { CT_EDGE_BODY, CT_EDGE_ARM, CT_EDGE_JOINT, CT_EDGE_CLOSURE, CT_EDGE_FORCE };
+
+struct ct_node_info {
+    const char *name;
+    struct ct_mark mark;
+    int body;
+    bool is_particle; // axes stay parallel to ground
+};
+
+/// A coordinate of a joint or of a body edge: unknown, driven, or measured.
+struct ct_coordinate {
+    const char *name;   // "crank.q", "crank.q2"
+    int edge, place;    // place among the edge's coordinates
+    bool in_translation, in_rotation; // enters d, enters the turns
+    bool is_driven;
+    int q, u, driver;   // index of the unknown or the driver; -1 where not
+    ct_ex value, rate;  // of unknown and driven ones; measured ones: row.h
+    ct_ex measured;     // value of a measured one, once asked for
+    bool has_measured;
+    int motion_row;     // driven and measured: its row, plus one
+};
+
+struct ct_edge_info {
+    enum ct_edge_kind kind;
+    const char *name;
+    struct ct_mark mark;
+    int index;                      // of the body, joint or force in the model; arms: frame
+    const struct ct_instance *self; // joints, forces
+    ct_ex3 at;                      // arms: place in axes of the tail
+    ct_ex33 S;                      // arms: rotation of the head out of the tail's axes
+    struct ct_motion trial, motion; // bodies, joints, closures: with LOCAL symbols; with coordinates
+    bool has_rotation;              // false where a particle is reached
+    bool must_be_branch, never_branch;
+    int weight_t, weight_r; // freedoms in the translational and rotational graph
+    int first_coordinate, ncoordinate; // plain coordinates in build->coordinate
+};
+
+/// coef times a speed: of an unknown (speed >= 0) or of a driver (driver >= 0).
+struct ct_term {
+    int speed, driver;
+    ct_ex coef;
+};
+
+/// One axis of rotation of a cluster against its parent. A quaternion gives three.
+struct ct_spin {
+    int cluster;      // the one it introduces
+    ct_ex3 axis;      // unit vector
+    int nterm;        // rate = sum of terms (+ what depends on time alone)
+    struct ct_term term[CT_MAX_COORD];
+    ct_ex rate, bias; // [rad/s], and [rad/s^2] with all u' = 0
+};
+
+struct ct_cluster {
+    int parent;
+    int first_spin, nspin;
+    int enter, leave; // preorder interval: holds those of the clusters outboard
+    ct_ex33 R;
+    int base;      // accumulated angle: R = R_base Rot(axis, angle)
+    ct_ex3 axis;   // local
+    ct_ex angle;
+    int has_angle;
+    ct_ex omega;     // planar: w = omega * normal
+    ct_ex3 w, al[2]; // angular velocity, acceleration: [0] with u' = 0, [1] with symbols u'
+    bool has_al[2];
+    ct_ex33 L; // augmented inertia, local (masses.c)
+};
+
+/// Sliding of a link along p (local) at the speed of an unknown or a driver.
+struct ct_slide {
+    int speed, driver;
+    ct_ex3 p;
+};
+
+/// Vector from the parent anchor to this one: R_cluster (local).
+struct ct_anchor {
+    int parent, cluster;
+    int enter, leave; // preorder interval: holds those of the anchors outboard
+    ct_ex3 local;
+    int nslide;
+    struct ct_slide slide[CT_MAX_COORD];
+    ct_ex3 drift, drift_bias; // local: rate of `local`, and its second derivative with all u' = 0
+    bool moves;               // has slides or a drift
+    ct_ex mass;               // of everything outboard [kg]
+    ct_ex3 d;                 // R_cluster local
+    ct_ex3 v, a[2];
+    bool has_d, has_v, has_a[2];
+};
+
+/// Where a node is: at an anchor plus R_cluster local; its axes: R_frame S.
+struct ct_place {
+    int anchor, cluster;
+    ct_ex3 local;
+    int frame;  // cluster the node's axes belong to
+    ct_ex33 S;  // rotation of the node's axes in it, constant
+};
+
+/// A load: force F at the head, torque T on the head, the opposite on the tail along the same line.
+struct ct_load {
+    const struct ct_instance *self;
+    int tail, head;       // nodes; tail 0 is ground
+    ct_ex3 force, torque; // ground components
+    bool is_central;      // the force points from one origin to the other: no moment of the pair
+    ct_ex potential; // [J]
+    ct_ex power;     // put in by the part that has no potential [W]
+};
+
+struct ct_star;  // dynamics.h
+struct ct_sweep;
+struct ct_pull; // row.h
+
+struct ct_build {
+    struct ct_ctx *ctx;
+    struct ct_arena *arena;
+    const struct ct_model *model;
+    struct ct_exs *x;
+    const double *value; // of all symbols at the start, by symbol index (parameters and t = 0)
+    struct ct_equations *eqs;
+
+    // planar mechanisms: common normal and a basis of the plane (ground components)
+    bool is_planar;
+    ct_ex3 plane[3]; // e1, e2, n
+
+    struct ct_graph graph;
+    struct ct_node_info *node;
+    struct ct_edge_info *edge;
+    struct ct_edge *wiring; // graph.edge, writable
+    size_t nnode, node_cap, nedge, edge_cap, wiring_cap;
+    int *node_of_frame, *node_of_com; // by frame, by body
+    int *edge_of_joint, *edge_of_body;
+    struct ct_tree T, R;
+
+    struct ct_coordinate *coordinate;
+    size_t ncoordinate, coordinate_cap;
+
+    struct ct_cluster *cluster;
+    size_t ncluster, cluster_cap;
+    struct ct_spin *spin;
+    size_t nspin, spin_cap;
+    struct ct_anchor *anchor;
+    size_t nanchor, anchor_cap;
+    struct ct_place *place; // by node
+
+    struct ct_star *star;
+    size_t nstar, star_cap;
+    int *child; // anchors, star by star
+
+    struct ct_load *load;
+    size_t nload, load_cap;
+    struct ct_pull *pull;
+    size_t npull, pull_cap;
+    const struct ct_sweep *sweep[2]; // by level, once asked for
+    int resolving;   // depth of signals within signals
+    bool in_outputs; // accelerations and multipliers may be used, comparisons stay as they are
+    struct ct_kept_quaternion {
+        bool made;
+        ct_ex p[4];
+    } *quaternion; // by node, of frames whose quaternion is an output
+};
+
+static inline bool ct_cluster_is_outboard(const struct ct_build *b, int inner, int outer)
+{
+    return b->cluster[inner].enter <= b->cluster[outer].enter
+           && b->cluster[outer].leave <= b->cluster[inner].leave;
+}
+static inline bool ct_anchor_is_outboard(const struct ct_build *b, int inner, int outer)
+{
+    return b->anchor[inner].enter <= b->anchor[outer].enter
+           && b->anchor[outer].leave <= b->anchor[inner].leave;
+}
+
+#endif

@@ -1,0 +1,50 @@
+// Dynamics by cutset equations: mass matrix, forces, loads, reactions.  (formulation 5)
+//
+// Masses are lumped on the links that carry them: a star is an anchor together with the cluster in
+// which the vectors to its masses and next anchors are fixed. It has a first moment and adds to the
+// cluster's augmented inertia; both are constant unless something slides.
+#ifndef CT_FORMULATE_DYNAMICS_H
+#define CT_FORMULATE_DYNAMICS_H
+
+#include "formulate/kinematics.h"
+
+struct ct_star {
+    int anchor, cluster;
+    ct_ex3 moment; // local: sum of mass * vector, of masses at it and of what hangs on its links [kg m]
+    int first_child, nchild; // in b->child: anchors whose link belongs to the star
+};
+
+/// Forces along the tree, accumulated from the leaves: cutset sums.
+struct ct_sweep {
+    ct_ex3 *force;  // by anchor: what the link must carry, [N]
+    ct_ex3 *torque; // by cluster: about its spins, clusters outboard included [N m]
+};
+
+/// Anchor masses, stars, augmented inertias.
+void ct_masses_lump(struct ct_build *b);
+/// Augmented inertia of a cluster in ground components; planar: about the normal, in the last entry.
+ct_ex33 ct_cluster_inertia(struct ct_build *b, int c);
+/// M, lower triangle.  (5.2)
+void ct_mass_matrix_derive(struct ct_build *b);
+/// Forward accelerations and reverse cutset sweep.  (5.3)  CT_BIAS: u' = 0 and no multipliers;
+/// CT_FULL: with the symbols u' and lam, so that the rows vanish along a motion.
+const struct ct_sweep *ct_sweep_run(struct ct_build *b, enum ct_level level);
+/// Q from the bias sweep and the efforts of the joints.
+void ct_forces_derive(struct ct_build *b);
+/// Row of the full sweep for a driver: the effort that the branch must supply.
+ct_ex ct_sweep_driver(struct ct_build *b, int driver);
+
+// ---- loads --------------------------------------------------------------------------------------
+
+/// Add a load; the struct is copied.
+void ct_load_add(struct ct_build *b, const struct ct_load *load);
+/// Power of a wrench on head against tail: F . (v_head - v_tail - w_tail x d) + T . w_rel.  (0.3)
+ct_ex ct_load_power(struct ct_build *b, int tail, int head, ct_ex3 force, ct_ex3 torque);
+/// Spring, damper and applied effort of a joint along a coordinate.
+ct_ex ct_joint_passive(struct ct_build *b, int coordinate);
+/// An expression of the model with its signals replaced and its comparisons held.
+ct_ex ct_build_value(struct ct_build *b, ct_ex e);
+/// Efforts, springs and dampers of joints; forces.
+bool ct_loads_derive(struct ct_build *b);
+
+#endif

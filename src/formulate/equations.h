@@ -1,0 +1,123 @@
+// The reduced equations of motion as expressions: what formulate hands on.
+//
+//     q' = Z(q) u
+//     M(q, t) u' = Q(q, u, t) + J(q, t)' lam        n_u rows
+//     Phi(q, t) = 0,  v = J u + Phi_t = 0,  J u' + gam = 0     m rows          (formulation 0.4)
+//
+// What always holds: M holds its lower triangle, J its nonzeros, both in row order; all expressions
+// live in x and use symbols of kind TIME, PARAM, Q, U, A, LAM, MODE, MEMORY, WORK only. A and LAM occur
+// in outputs and in the power alone.
+#ifndef CT_FORMULATE_EQUATIONS_H
+#define CT_FORMULATE_EQUATIONS_H
+
+#include "component/model.h"
+#include "graph/graph.h"
+
+/// A stored coordinate.
+struct ct_q {
+    const char *name;
+    ct_ex symbol;
+    ct_ex rate;     // in terms of u
+    int quaternion; // -1, or which of the four numbers of a quaternion this is
+};
+
+struct ct_u {
+    const char *name;  // "crank.u"
+    ct_ex symbol;      // speed
+    ct_ex derivative;  // the symbol u'
+    int q;             // the coordinate whose rate it is; -1 for angular velocities
+    int joint, body;   // whose it is; the other is -1
+};
+
+struct ct_entry { // of a sparse matrix
+    int row, column;
+    ct_ex value;
+};
+
+/// A constraint row and the wrench pair its multiplier stands for: force lam p, torque lam h on the head.
+struct ct_row {
+    const char *name;  // "pin2: y", "gear"
+    int joint;         // in the model; -1: none
+    ct_ex phi, v, gam; // position, velocity J u + Phi_t, acceleration J u' + gam
+    ct_ex lam;         // symbol
+    ct_ex wanted;      // >= 0 in the right assembly (half-turn solutions of (4.4)); 0 where none
+};
+
+/// A comparison whose outcome is held between events.
+struct ct_mode {
+    ct_ex symbol;
+    enum ct_op op;        // LT, LE, GT, GE
+    ct_ex g;              // the symbol is 1 where g op 0
+    bool is_time;         // g depends on t alone
+    struct ct_mark mark;
+};
+
+/// A value kept from the last accepted step: update gives the next one.
+struct ct_memory {
+    ct_ex symbol, update;
+    // ANGLE follows an angle; QUATERNION (four in a row) a rotation; OFFSET keeps its value at the start
+    enum ct_memory_kind { CT_MEMORY_ANGLE, CT_MEMORY_QUATERNION, CT_MEMORY_OFFSET } kind;
+    ct_ex33 R;      // QUATERNION, first of four: the rotation itself
+    int joint, place; // ANGLE: the coordinate, to start from a given value; joint -1: none
+};
+
+struct ct_result {
+    const char *name; // column
+    ct_ex value;
+    bool undetermined; // set by the run: depends on multipliers that are not unique
+};
+
+/// A driven coordinate: known branch coordinate with its value, rate and acceleration.
+struct ct_driver {
+    const char *name;
+    int joint, place;
+    struct ct_mark mark;
+    ct_ex value, rate, acceleration; // functions of t (and of modes)
+    ct_ex effort; // generalised force the driver gives [N or N m]
+    ct_ex impulse; // see formulate/bias.c
+};
+
+struct ct_left_out {
+    const char *what, *why;
+};
+
+struct ct_equations {
+    struct ct_exs *x;
+    struct ct_q *q;
+    size_t nq, q_cap;
+    struct ct_u *u;
+    size_t nu, u_cap;
+    struct ct_entry *M; // lower triangle, row by row
+    size_t nM, M_cap;
+    ct_ex *Q;           // nu
+    struct ct_entry *J; // row by row
+    size_t nJ, J_cap;
+    struct ct_row *row;
+    size_t nrow, row_cap;
+    struct ct_mode *mode;
+    size_t nmode, mode_cap;
+    struct ct_memory *memory;
+    size_t nmemory, memory_cap;
+    struct ct_driver *driver;
+    size_t ndriver, driver_cap;
+    struct ct_result *result; // outputs, one per column
+    size_t nresult, result_cap;
+    ct_ex work_symbol;
+    ct_ex power;   // d(work)/dt, in terms of u' and lam where drivers push; 0 when nothing works
+    ct_ex kinetic, potential;
+    bool is_planar;
+    bool needs_work; // some output or the ledger uses the work
+    const char **undetermined; // names of reaction components that are not unique
+    struct ct_left_out *left_out;
+    size_t nleft_out, left_out_cap;
+    struct ct_coordinate *coordinate; // of all joints and bodies (build.h)
+    size_t ncoordinate;
+    struct ct_build *build; // for what is asked for later: terminal equations, further signals
+    // topology, for reports
+    const struct ct_graph *graph;
+    const struct ct_tree *T, *R;
+    const char *const *node_name, *const *edge_name, *const *edge_kind;
+    const int *weight_t, *weight_r;
+};
+
+#endif

@@ -1,0 +1,302 @@
+// Forward accelerations and the reverse cutset sweep; loads; generalised forces.  (formulation 5.2)
+//
+// A link carries the force F = m a + what its outboard stars need to turn and slide; a cluster feels the
+// torque of its stars about their anchors. Summed from the leaves this is the cutset of each branch, and
+// its projection on the motion of the branch is a row of M u' - Q - J' lam.
+#include "formulate/dynamics.h"
+#include "formulate/row.h"
+#include "formulate/signal.h"
+
+// ---- loads ----------------------------------------------------------------------------------------
+
+void ct_load_add(struct ct_build *b, const struct ct_load *load)
+{
+    CT_PUSH(b->arena, b->load, b->nload, b->load_cap, *load);
+}
+
+ct_ex ct_load_power(struct ct_build *b, int tail, int head, ct_ex3 force, ct_ex3 torque)
+{
+    struct ct_exs *x = b->x;
+    const int from = b->place[tail].frame, to = b->place[head].frame;
+    ct_ex3 v = ct_path_velocity(b, tail, head);
+    if (from)
+        v = ct_ex3_sub(x, v, ct_cluster_swing(b, from, ct_path_position(b, tail, head)));
+    return ct_ex_add(x, ct_ex3_dot(x, force, v),
+                     ct_ex3_dot(x, torque, ct_cluster_path_velocity(b, from, to)));
+}
+
+// ---- the sweep --------------------------------------------------------------------------------------
+
+struct work {
+    struct ct_build *b;
+    enum ct_level level;
+    ct_ex3 *rest;     // by anchor: force of all outboard beyond mass * acceleration of the anchor
+    ct_ex3 *torque;   // by cluster
+    ct_ex3 *apparent; // by anchor: acceleration less gravity
+};
+
+// Applied force and torque at a node, taken off what the tree must supply.
+static void apply_at(struct work *w, int node, ct_ex3 force, ct_ex3 torque)
+{
+    struct ct_exs *x = w->b->x;
+    const struct ct_place *p = &w->b->place[node];
+    ct_ex3 *rest = &w->rest[p->anchor], *arm = &w->torque[p->cluster], *own = &w->torque[p->frame];
+    *rest = ct_ex3_sub(x, *rest, force);
+    *arm = ct_ex3_sub(x, *arm,
+                      ct_ex3_cross(x, ct_cluster_turn(w->b, p->cluster, p->local), force));
+    *own = ct_ex3_sub(x, *own, torque);
+}
+
+// A pair of wrenches on the line through head.  (0.2)
+static void apply_pair(struct work *w, int tail, int head, ct_ex3 force, ct_ex3 torque, bool carried)
+{
+    struct ct_exs *x = w->b->x;
+    apply_at(w, head, force, torque);
+    if (tail == 0)
+        return;
+    ct_ex3 back = torque;
+    if (carried)
+        back = ct_ex3_add(x, back, ct_ex3_cross(x, ct_path_position(w->b, tail, head), force));
+    apply_at(w, tail, ct_ex3_neg(x, force), ct_ex3_neg(x, back));
+}
+
+static void apply_loads(struct work *w)
+{
+    struct ct_build *b = w->b;
+    for (size_t i = 0; i < b->nload; i++) {
+        const struct ct_load *l = &b->load[i];
+        apply_pair(w, l->tail, l->head, l->force, l->torque, !l->is_central);
+    }
+    if (w->level == CT_BIAS)
+        return;
+    for (size_t i = 0; i < b->npull; i++) {
+        const struct ct_pull *p = &b->pull[i];
+        const ct_ex lam = b->eqs->row[p->row].lam;
+        apply_pair(w, p->tail, p->head, ct_ex3_scale(b->x, lam, p->force),
+                   ct_ex3_scale(b->x, lam, p->torque), p->carried);
+    }
+}
+
+static void find_apparent(struct work *w)
+{
+    struct ct_build *b = w->b;
+    w->apparent[0] = ct_ex3_neg(b->x, b->model->gravity);
+    for (size_t a = 1; a < b->nanchor; a++)
+        w->apparent[a] = ct_ex3_add(b->x, w->apparent[b->anchor[a].parent],
+                                    ct_link_acceleration(b, (int)a, w->level));
+}
+
+// Rest of an anchor and the torques of its stars; anchors outboard are done.
+static void sweep_star(struct work *w, const struct ct_star *s)
+{
+    struct ct_build *b = w->b;
+    struct ct_exs *x = b->x;
+    const ct_ex3 moment = ct_cluster_turn(b, s->cluster, s->moment);
+    const ct_ex3 turning
+        = ct_ex3_add(x, ct_ex3_cross(x, ct_cluster_acceleration(b, s->cluster, w->level), moment),
+                     ct_cluster_centripetal(b, s->cluster, moment));
+    ct_ex3 rest = turning;
+    ct_ex3 torque = ct_ex3_cross(x, moment, w->apparent[s->anchor]);
+    for (int k = 0; k < s->nchild; k++) {
+        const int child = b->child[s->first_child + k];
+        const ct_ex3 slide = ct_ex3_scale(x, b->anchor[child].mass, ct_link_slide(b, child, w->level));
+        const ct_ex3 force = ct_ex3_add(x, w->rest[child], slide);
+        rest = ct_ex3_add(x, rest, force);
+        torque = ct_ex3_add(x, torque, ct_ex3_cross(x, ct_link_vector(b, child), force));
+    }
+    w->rest[s->anchor] = ct_ex3_add(x, w->rest[s->anchor], rest);
+    w->torque[s->cluster] = ct_ex3_add(x, w->torque[s->cluster], torque);
+}
+
+// I al + w x I w of a cluster's augmented inertia.
+static ct_ex3 inertia_torque(struct work *w, int c)
+{
+    struct ct_build *b = w->b;
+    struct ct_exs *x = b->x;
+    const ct_ex33 I = ct_cluster_inertia(b, c);
+    const ct_ex3 al = ct_cluster_acceleration(b, c, w->level);
+    if (b->is_planar)
+        return ct_ex3_scale(x, I.e[8], al);
+    const ct_ex3 omega = ct_cluster_velocity(b, c);
+    return ct_ex3_add(x, ct_ex33_apply(x, &I, al),
+                      ct_ex3_cross(x, omega, ct_ex33_apply(x, &I, omega)));
+}
+
+static void sweep_anchors(struct work *w)
+{
+    struct ct_build *b = w->b;
+    int *first = CT_NEWN(b->arena, int, b->nanchor), *next = CT_NEWN(b->arena, int, b->nstar + 1);
+    for (size_t i = 0; i < b->nstar; i++) { // chains end at 0: numbers are one too large
+        next[i] = first[b->star[i].anchor];
+        first[b->star[i].anchor] = (int)i + 1;
+    }
+    for (size_t a = b->nanchor; a-- > 0;)
+        for (int i = first[a]; i; i = next[i - 1])
+            sweep_star(w, &b->star[i - 1]);
+}
+
+const struct ct_sweep *ct_sweep_run(struct ct_build *b, enum ct_level level)
+{
+    if (b->sweep[level])
+        return b->sweep[level];
+    struct work w = {.b = b, .level = level};
+    struct ct_sweep *s = CT_NEW(b->arena, struct ct_sweep);
+    w.rest = CT_NEWN(b->arena, ct_ex3, b->nanchor);
+    w.torque = s->torque = CT_NEWN(b->arena, ct_ex3, b->ncluster);
+    w.apparent = CT_NEWN(b->arena, ct_ex3, b->nanchor);
+    s->force = CT_NEWN(b->arena, ct_ex3, b->nanchor);
+    find_apparent(&w);
+    apply_loads(&w);
+    sweep_anchors(&w);
+    for (size_t c = b->ncluster; c-- > 1;) {
+        w.torque[c] = ct_ex3_add(b->x, w.torque[c], inertia_torque(&w, (int)c));
+        const int parent = b->cluster[c].parent;
+        w.torque[parent] = ct_ex3_add(b->x, w.torque[parent], w.torque[c]);
+    }
+    for (size_t a = 1; a < b->nanchor; a++) {
+        const ct_ex3 inertia = ct_ex3_scale(b->x, b->anchor[a].mass, w.apparent[a]);
+        s->force[a] = ct_ex3_add(b->x, w.rest[a], inertia);
+    }
+    b->sweep[level] = s;
+    return s;
+}
+
+// ---- rows -----------------------------------------------------------------------------------------
+
+// Sum over the motion of a speed or a driver: s . torque and p . force.
+static ct_ex sweep_row(struct ct_build *b, const struct ct_sweep *s, int speed, int driver)
+{
+    struct ct_exs *x = b->x;
+    ct_ex sum = CT_EX_ZERO;
+    for (size_t r = 0; r < b->nspin; r++)
+        for (int k = 0; k < b->spin[r].nterm; k++) {
+            const struct ct_term *t = &b->spin[r].term[k];
+            if (t->speed != speed || t->driver != driver)
+                continue;
+            const ct_ex moment = ct_ex3_dot(x, b->spin[r].axis, s->torque[b->spin[r].cluster]);
+            sum = ct_ex_add(x, sum, ct_ex_mul(x, t->coef, moment));
+        }
+    for (size_t a = 1; a < b->nanchor; a++)
+        for (int k = 0; k < b->anchor[a].nslide; k++) {
+            const struct ct_slide *t = &b->anchor[a].slide[k];
+            if (t->speed != speed || t->driver != driver)
+                continue;
+            const ct_ex3 p = ct_cluster_turn(b, b->anchor[a].cluster, t->p);
+            sum = ct_ex_add(x, sum, ct_ex3_dot(x, p, s->force[a]));
+        }
+    return sum;
+}
+
+void ct_forces_derive(struct ct_build *b)
+{
+    const struct ct_sweep *s = ct_sweep_run(b, CT_BIAS);
+    struct ct_equations *e = b->eqs;
+    for (size_t k = 0; k < e->nu; k++)
+        e->Q[k] = ct_ex_sub(b->x, e->Q[k], sweep_row(b, s, (int)k, -1));
+}
+
+ct_ex ct_sweep_driver(struct ct_build *b, int driver)
+{
+    return sweep_row(b, ct_sweep_run(b, CT_FULL), -1, driver);
+}
+
+// ---- efforts of joints ------------------------------------------------------------------------------
+
+static ct_ex element(const struct ct_value *v, int k)
+{
+    return v->given && (size_t)k < v->n && !v->hole[k] ? v->e[k] : CT_EX_ZERO;
+}
+
+// Generalised force `effort` along a coordinate: on its row, or, where it is measured, as a wrench pair.
+static void push_coordinate(struct ct_build *b, int coordinate, ct_ex effort, ct_ex potential, ct_ex power)
+{
+    const struct ct_coordinate *c = &b->coordinate[coordinate];
+    const struct ct_edge_info *e = &b->edge[c->edge];
+    struct ct_equations *s = b->eqs;
+    if (c->u >= 0)
+        s->Q[c->u] = ct_ex_add(b->x, s->Q[c->u], effort);
+    if (c->u >= 0 || c->driver >= 0) {
+        s->potential = ct_ex_add(b->x, s->potential, potential);
+        s->power = ct_ex_add(b->x, s->power, power);
+        return;
+    }
+    struct ct_wrench w;
+    if (ct_coordinate_wrench(b, coordinate, &w))
+        ct_load_add(b, &(struct ct_load){.self = e->self,
+                                         .tail = b->wiring[c->edge].tail,
+                                         .head = b->wiring[c->edge].head,
+                                         .force = ct_ex3_scale(b->x, effort, w.force),
+                                         .torque = ct_ex3_scale(b->x, effort, w.torque),
+                                         .potential = potential,
+                                         .power = power});
+}
+
+// What a joint does along coordinate k of its own: spring, damper, applied effort.
+struct effort {
+    ct_ex total, potential, power;
+};
+
+static struct effort own_effort(struct ct_build *b, const struct ct_edge_info *e, int k)
+{
+    struct ct_exs *x = b->x;
+    const int coordinate = e->first_coordinate + k;
+    const ct_ex stiffness = element(ct_instance_value(e->self, "stiffness"), k);
+    const ct_ex damping = element(ct_instance_value(e->self, "damping"), k);
+    const ct_ex applied = ct_build_value(b, element(ct_instance_value(e->self, "effort"), k));
+    struct effort f = {applied, CT_EX_ZERO, CT_EX_ZERO};
+    if (!ct_ex_is_zero(stiffness)) {
+        const ct_ex rest = element(ct_instance_value(e->self, "rest"), k);
+        const ct_ex stretch = ct_ex_sub(x, ct_coordinate_value(b, coordinate), rest);
+        const ct_ex pull = ct_ex_mul(x, stiffness, stretch);
+        f.total = ct_ex_sub(x, f.total, pull);
+        f.potential = ct_ex_scale(x, 0.5, ct_ex_mul(x, pull, stretch));
+    }
+    if (!ct_ex_is_zero(damping) || !ct_ex_is_zero(applied)) {
+        const ct_ex u = ct_coordinate_speed(b, coordinate), drag = ct_ex_mul(x, damping, u);
+        f.total = ct_ex_sub(x, f.total, drag);
+        f.power = ct_ex_mul(x, ct_ex_sub(x, applied, drag), u);
+    }
+    return f;
+}
+
+ct_ex ct_joint_passive(struct ct_build *b, int coordinate)
+{
+    const struct ct_coordinate *c = &b->coordinate[coordinate];
+    return own_effort(b, &b->edge[c->edge], c->place).total;
+}
+
+static void joint_effort(struct ct_build *b, const struct ct_edge_info *e, int k)
+{
+    const struct ct_coordinate *c = &b->coordinate[e->first_coordinate + k];
+    const struct ct_value *stiffness = ct_instance_value(e->self, "stiffness");
+    if (!c->in_translation && !c->in_rotation)
+        return; // the joint reaches a particle: this freedom does not exist
+    if (!ct_ex_is_zero(element(stiffness, k)) && e->trial.quaternion >= 0
+        && k >= e->trial.quaternion) {
+        ct_error(b->ctx, stiffness->mark, CT_E_STIFFNESS,
+                 "joint '%s': a free rotation has no coordinate for a stiffness; use a bushing",
+                 e->self->name);
+        return;
+    }
+    const struct effort f = own_effort(b, e, k);
+    if (!ct_ex_is_zero(f.total))
+        push_coordinate(b, e->first_coordinate + k, f.total, f.potential, f.power);
+}
+
+bool ct_loads_derive(struct ct_build *b)
+{
+    const size_t before = b->ctx->nerror;
+    for (size_t i = 0; i < b->nedge; i++) {
+        const struct ct_edge_info *e = &b->edge[i];
+        if (e->kind == CT_EDGE_JOINT && e->self->cls->motion)
+            for (int k = 0; k < e->self->nfree; k++)
+                joint_effort(b, e, k);
+        if (e->kind == CT_EDGE_FORCE)
+            e->self->cls->apply(b, e->self);
+    }
+    for (size_t i = 0; i < b->nload; i++) {
+        b->eqs->potential = ct_ex_add(b->x, b->eqs->potential, b->load[i].potential);
+        b->eqs->power = ct_ex_add(b->x, b->eqs->power, b->load[i].power);
+    }
+    return b->ctx->nerror == before;
+}

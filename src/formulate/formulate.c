@@ -1,0 +1,404 @@
+// The stage that turns a model into equations; tree selection by exact operation counts.
+#include "formulate/formulate.h"
+#include "expr/tape.h"
+#include "formulate/dynamics.h"
+#include "formulate/row.h"
+#include "formulate/signal.h"
+#include "formulate/topology.h"
+#include "graph/exchange.h"
+
+#include <math.h>
+#include <string.h>
+
+// ---- one pair of trees ---------------------------------------------------------------------------
+
+static struct ct_exs *clone_store(struct ct_arena *a, const struct ct_exs *from)
+{
+    struct ct_exs *x = CT_NEW(a, struct ct_exs);
+    *x = *from;
+    x->arena = a;
+    x->node = CT_NEWN(a, struct ct_exnode, from->node_cap);
+    memcpy(x->node, from->node, from->nnode * sizeof *x->node);
+    x->kinds = CT_NEWN(a, uint16_t, from->kinds_cap);
+    memcpy(x->kinds, from->kinds, from->nnode * sizeof *x->kinds);
+    x->sym = CT_NEWN(a, struct ct_sym, from->sym_cap);
+    memcpy(x->sym, from->sym, from->nsym * sizeof *x->sym);
+    x->hash = CT_NEWN(a, uint32_t, from->hash_size);
+    memcpy(x->hash, from->hash, from->hash_size * sizeof *x->hash);
+    x->label = NULL;
+    x->label_cap = x->walk_cap = 0;
+    x->generation = 0;
+    return x;
+}
+
+static double *start_values(struct ct_arena *a, const struct ct_model *m)
+{
+    double *v = CT_NEWN(a, double, m->x->nsym + 1);
+    for (size_t i = 0; i < m->nparameter; i++)
+        v[ct_ex_node(m->x, m->parameter[i].symbol)->a] = m->parameter[i].value;
+    return v;
+}
+
+// Graph, nodes and edges of the model; trees are still open.
+static struct ct_build *build_create(struct ct_ctx *ctx, struct ct_arena *a, const struct ct_model *m,
+                                     const struct ct_formulate_options *o)
+{
+    struct ct_build *b = CT_NEW(a, struct ct_build);
+    *b = (struct ct_build){.ctx = ctx, .arena = a, .model = m};
+    b->eqs = CT_NEW(a, struct ct_equations);
+    b->x = b->eqs->x = clone_store(a, m->x);
+    b->value = start_values(a, m);
+    ct_topology_derive(b, !o->keep_all);
+    return b;
+}
+
+// Everything but outputs: M, Q, J, gam, Phi.
+static bool derive(struct ct_build *b)
+{
+    const size_t before = b->ctx->nerror;
+    ct_unknowns_choose(b);
+    b->eqs->Q = CT_NEWN(b->arena, ct_ex, b->eqs->nu + 1);
+    ct_rotation_derive(b);
+    ct_translation_derive(b);
+    ct_masses_lump(b);
+    ct_rows_derive(b);
+    ct_loads_derive(b);
+    ct_mass_matrix_derive(b);
+    ct_forces_derive(b);
+    return b->ctx->nerror == before;
+}
+
+// ---- cost of a pair ----------------------------------------------------------------------------------
+
+// Operations of a sparse LDL' of [M J'; J 0] by minimum degree on its graph: sum of d^2 + 4 d + 3.
+static double factor_cost(struct ct_arena *scratch, const struct ct_equations *e)
+{
+    const size_t n = e->nu + e->nrow;
+    if (n > 400)
+        return (double)n * (double)n * (double)n / 3;
+    bool *near = CT_NEWN(scratch, bool, n * n + 1), *done = CT_NEWN(scratch, bool, n + 1);
+    for (size_t i = 0; i < e->nM; i++)
+        near[(size_t)e->M[i].row + n * (size_t)e->M[i].column]
+            = near[(size_t)e->M[i].column + n * (size_t)e->M[i].row] = true;
+    for (size_t i = 0; i < e->nJ; i++) {
+        const size_t r = e->nu + (size_t)e->J[i].row, c = (size_t)e->J[i].column;
+        near[r + n * c] = near[c + n * r] = true;
+    }
+    double cost = 0;
+    size_t *list = CT_NEWN(scratch, size_t, n + 1);
+    for (size_t step = 0; step < n; step++) {
+        size_t best = n, least = n;
+        for (size_t i = 0; i < n; i++) {
+            size_t degree = 0;
+            for (size_t j = 0; j < n && !done[i]; j++)
+                degree += near[j + n * i] && !done[j] && j != i;
+            if (!done[i] && degree < least) {
+                least = degree;
+                best = i;
+            }
+        }
+        size_t d = 0;
+        done[best] = true;
+        for (size_t j = 0; j < n; j++)
+            if (near[j + n * best] && !done[j])
+                list[d++] = j;
+        for (size_t i = 0; i < d; i++)
+            for (size_t j = 0; j < d; j++)
+                near[list[i] + n * list[j]] = true;
+        cost += (double)(d * d + 4 * d + 3);
+    }
+    return cost;
+}
+
+static double equations_cost(struct ct_arena *scratch, const struct ct_equations *e)
+{
+    const size_t n = e->nM + e->nu + e->nJ + e->nrow;
+    ct_ex *all = CT_NEWN(scratch, ct_ex, n + 1);
+    size_t k = 0;
+    for (size_t i = 0; i < e->nM; i++)
+        all[k++] = e->M[i].value;
+    for (size_t i = 0; i < e->nu; i++)
+        all[k++] = e->Q[i];
+    for (size_t i = 0; i < e->nJ; i++)
+        all[k++] = e->J[i].value;
+    for (size_t i = 0; i < e->nrow; i++)
+        all[k++] = e->row[i].gam;
+    const struct ct_tape_counts c = ct_ex_count(scratch, e->x, all, k);
+    const double per_function = 8, per_division = 4, per_speed = 20; // in multiplications
+    return (double)(c.multiplications + c.additions) + per_division * (double)c.divisions
+           + per_function * (double)c.functions + per_speed * (double)e->nu
+           + factor_cost(scratch, e);
+}
+
+struct search {
+    struct ct_ctx *ctx;
+    const struct ct_model *model;
+    const struct ct_formulate_options *options;
+};
+
+// The exact count of a trial generation; nothing of it is kept.
+static double pair_cost(void *data, const struct ct_tree *T, const struct ct_tree *R)
+{
+    const struct search *s = data;
+    struct ct_arena *scratch = ct_arena_create();
+    if (!scratch)
+        return INFINITY;
+    struct ct_ctx quiet = {.model = scratch, .scratch = scratch}; // errors are reported by the chosen pair
+    struct ct_build *b = build_create(&quiet, scratch, s->model, s->options);
+    b->T = *T;
+    b->R = *R;
+    const double cost = derive(b) ? equations_cost(scratch, b->eqs) : INFINITY;
+    ct_arena_destroy(scratch);
+    return cost;
+}
+
+// ---- rules for trees -----------------------------------------------------------------------------------
+
+struct rules {
+    int *weight_t, *weight_r, *rank;
+    bool *forced_t, *forced_r, *banned_t, *banned_r, *tied;
+};
+
+// Distance of each node from ground, in edges that can be branches.
+static int *node_depths(struct ct_build *b)
+{
+    int *depth = CT_NEWN(b->arena, int, b->nnode);
+    for (size_t i = 1; i < b->nnode; i++)
+        depth[i] = (int)b->nnode;
+    for (bool again = true; again;) {
+        again = false;
+        for (size_t e = 0; e < b->nedge; e++) {
+            if (b->edge[e].kind == CT_EDGE_BODY || b->edge[e].never_branch)
+                continue;
+            int *t = &depth[b->wiring[e].tail], *h = &depth[b->wiring[e].head];
+            if (*t + 1 < *h || *h + 1 < *t) {
+                *(*t < *h ? h : t) = (*t < *h ? *t : *h) + 1;
+                again = true;
+            }
+        }
+    }
+    return depth;
+}
+
+// Arms are branches, force drivers chords (R1, R2); shared coordinates tie a joint (R3). Ties go to
+// joints nearer to ground.
+static struct rules make_rules(struct ct_build *b, enum ct_tree_choice choice)
+{
+    const size_t n = b->nedge;
+    struct rules r = {.weight_t = CT_NEWN(b->arena, int, n),
+                      .weight_r = CT_NEWN(b->arena, int, n),
+                      .rank = CT_NEWN(b->arena, int, n),
+                      .forced_t = CT_NEWN(b->arena, bool, n),
+                      .forced_r = CT_NEWN(b->arena, bool, n),
+                      .banned_t = CT_NEWN(b->arena, bool, n),
+                      .banned_r = CT_NEWN(b->arena, bool, n),
+                      .tied = CT_NEWN(b->arena, bool, n)};
+    const int *depth = node_depths(b);
+    for (size_t i = 0; i < n; i++) {
+        const struct ct_edge_info *e = &b->edge[i];
+        const bool is_body = e->kind == CT_EDGE_BODY;
+        const bool is_particle = is_body && b->model->body[e->index].is_particle;
+        const bool dear = choice == CT_TREE_ABSOLUTE ? !is_body : is_body;
+        const int extra = choice != CT_TREE_AUTO && dear && !e->must_be_branch ? 100 : 0;
+        r.weight_t[i] = e->weight_t + extra;
+        r.weight_r[i] = e->weight_r + extra;
+        const int t = depth[b->wiring[i].tail], h = depth[b->wiring[i].head];
+        r.rank[i] = e->kind == CT_EDGE_ARM ? -1 : is_body ? 2 * (int)n : t < h ? t : h;
+        r.forced_t[i] = e->must_be_branch;
+        r.forced_r[i] = e->must_be_branch || is_particle;
+        r.banned_t[i] = e->never_branch;
+        r.banned_r[i] = e->never_branch || !e->has_rotation;
+        r.tied[i] = e->must_be_branch;
+        if (is_particle)
+            r.weight_r[i] = 0;
+    }
+    return r;
+}
+
+// Is every chord of the least-weight trees a body edge, a force or a rod? Then there is no loop to cut.
+static bool is_open(const struct ct_build *b, const struct ct_tree_pair *p)
+{
+    for (size_t i = 0; i < b->nedge; i++) {
+        const enum ct_edge_kind kind = b->edge[i].kind;
+        if ((kind == CT_EDGE_JOINT || kind == CT_EDGE_CLOSURE) && !b->edge[i].never_branch
+            && (!p->trans[i] || (b->edge[i].has_rotation && !p->rot[i]))
+            && b->edge[i].trial.quaternion != 3)
+            return false;
+    }
+    return true;
+}
+
+static bool least_weight(struct ct_build *b, const struct rules *r, struct ct_tree_pair *p)
+{
+    int *w = CT_NEWN(b->arena, int, b->nedge);
+    struct ct_tree t;
+    bool **out[] = {&p->trans, &p->rot};
+    for (int k = 0; k < 2; k++) {
+        const bool *forced = k ? r->forced_r : r->forced_t, *banned = k ? r->banned_r : r->banned_t;
+        const int *weight = k ? r->weight_r : r->weight_t;
+        for (size_t i = 0; i < b->nedge; i++)
+            w[i] = banned[i] ? -1 : forced[i] ? 0 : weight[i] + 1;
+        if (!ct_tree_kruskal(b->arena, &b->graph, w, r->rank, &t, NULL))
+            return ct_error(b->ctx, (struct ct_mark){0}, CT_E_TREE,
+                            "the model's graph has no spanning tree");
+        *out[k] = t.is_branch;
+    }
+    return true;
+}
+
+// Work of the search is bounded by nodes generated, not by time: same model, same tree.
+static const double search_nodes = 600000;
+
+static void improve(struct ct_build *b, const struct search *s, const struct rules *r,
+                    struct ct_tree_pair *p, struct ct_tree_report *report)
+{
+    struct ct_tree T, R;
+    struct ct_search_stats stats;
+    ct_tree_from_branches(b->arena, &b->graph, p->trans, &T);
+    ct_tree_from_branches(b->arena, &b->graph, p->rot, &R);
+    const double cost = pair_cost((void *)(uintptr_t)s, &T, &R);
+    const double pairs = floor(search_nodes / fmax(cost, 100));
+    const struct ct_search_options o
+        = {.trans = {r->weight_t, r->rank, r->forced_t, r->banned_t},
+           .rot = {r->weight_r, r->rank, r->forced_r, r->banned_r},
+           .tied = r->tied,
+           .limit = pairs < 1 ? -1 : fmin(pairs, 2000),
+           .budget = (int)fmax(1, fmin(pairs, 400)),
+           .excess = 2};
+    if (pairs < 4
+        || !ct_tree_search(b->arena, &b->graph, &o, pair_cost, (void *)(uintptr_t)s, p, &stats)) {
+        report->how = "least weight";
+        report->cost = report->cost_least_weight = cost;
+        return;
+    }
+    report->cost = stats.cost;
+    report->cost_least_weight = stats.cost_least_weight;
+    report->how = stats.exhaustive
+                      ? ct_arena_printf(b->arena, "cheapest of all %d pairs", stats.nevaluated)
+                      : ct_arena_printf(b->arena, "cheapest of %d pairs tried by exchanges",
+                                        stats.nevaluated);
+}
+
+static bool mark_named(struct ct_build *b, const char *const *names, size_t n, const bool *forced,
+                       bool *branch)
+{
+    memcpy(branch, forced, b->nedge * sizeof *branch);
+    bool ok = true;
+    for (size_t k = 0; k < n; k++) {
+        size_t i = 0;
+        while (i < b->nedge && strcmp(b->edge[i].name, names[k]) != 0)
+            i++;
+        if (i == b->nedge)
+            ok = ct_error(b->ctx, (struct ct_mark){0}, CT_E_TREE, "tree: there is no edge '%s'",
+                          names[k]);
+        else
+            branch[i] = true;
+    }
+    return ok;
+}
+
+static bool given_trees(struct ct_build *b, const struct ct_formulate_options *o,
+                        const struct rules *r, struct ct_tree_pair *p)
+{
+    p->trans = CT_NEWN(b->arena, bool, b->nedge);
+    p->rot = CT_NEWN(b->arena, bool, b->nedge);
+    if (!mark_named(b, o->trans, o->ntrans, r->forced_t, p->trans)
+        || !mark_named(b, o->rot, o->nrot, r->forced_r, p->rot))
+        return false;
+    bool ok = true;
+    for (size_t i = 0; i < b->nedge; i++)
+        if ((p->trans[i] && r->banned_t[i]) || (p->rot[i] && r->banned_r[i]))
+            ok = ct_error(b->ctx, (struct ct_mark){0}, CT_E_TREE, "tree: '%s' cannot be a branch",
+                          b->edge[i].name);
+    return ok;
+}
+
+static bool choose_trees(struct ct_build *b, const struct search *s, struct ct_tree_report *report)
+{
+    const struct ct_formulate_options *o = s->options;
+    const struct rules r = make_rules(b, o->tree);
+    struct ct_tree_pair p;
+    static const char *const how[] = {"least weight", "through joints", "absolute coordinates", "given"};
+    report->how = how[o->tree];
+    if (o->tree == CT_TREE_GIVEN ? !given_trees(b, o, &r, &p) : !least_weight(b, &r, &p))
+        return false;
+    if (o->tree == CT_TREE_AUTO && is_open(b, &p))
+        report->how = "least weight; there are no loops to cut";
+    else if (o->tree == CT_TREE_AUTO && !o->measure_all)
+        improve(b, s, &r, &p, report);
+    if (!ct_tree_from_branches(b->arena, &b->graph, p.trans, &b->T))
+        return ct_error(b->ctx, (struct ct_mark){0}, CT_E_TREE,
+                        "tree: the translational branches are no spanning tree");
+    if (!ct_tree_from_branches(b->arena, &b->graph, p.rot, &b->R))
+        return ct_error(b->ctx, (struct ct_mark){0}, CT_E_TREE,
+                        "tree: the rotational branches are no spanning tree");
+    return true;
+}
+
+// ---- the stage -------------------------------------------------------------------------------------------
+
+static const char *kind_name(const struct ct_build *b, size_t i)
+{
+    const struct ct_edge_info *e = &b->edge[i];
+    static const char *const plain[] = {"body", "arm", "joint", "closure", "force"};
+    return e->self ? e->self->cls->name : b->edge[i].kind == CT_EDGE_CLOSURE ? "weld" : plain[e->kind];
+}
+
+static void describe_graph(struct ct_build *b)
+{
+    struct ct_equations *e = b->eqs;
+    const char **node = CT_NEWN(b->arena, const char *, b->nnode);
+    const char **edge = CT_NEWN(b->arena, const char *, b->nedge + 1);
+    const char **kind = CT_NEWN(b->arena, const char *, b->nedge + 1);
+    int *wt = CT_NEWN(b->arena, int, b->nedge + 1), *wr = CT_NEWN(b->arena, int, b->nedge + 1);
+    for (size_t i = 0; i < b->nnode; i++)
+        node[i] = b->node[i].name;
+    for (size_t i = 0; i < b->nedge; i++) {
+        edge[i] = b->edge[i].name;
+        kind[i] = kind_name(b, i);
+        wt[i] = b->edge[i].weight_t;
+        wr[i] = b->edge[i].weight_r;
+    }
+    e->graph = &b->graph;
+    e->T = &b->T;
+    e->R = &b->R;
+    e->node_name = node;
+    e->edge_name = edge;
+    e->edge_kind = kind;
+    e->weight_t = wt;
+    e->weight_r = wr;
+}
+
+// Coordinates of all joints and bodies and their speeds, measured or not, in a fixed order.
+static void measure_all(struct ct_build *b)
+{
+    for (size_t i = 0; i < b->ncoordinate; i++) {
+        const struct ct_result q = {b->coordinate[i].name, ct_coordinate_value(b, (int)i), false};
+        CT_PUSH(b->arena, b->eqs->result, b->eqs->nresult, b->eqs->result_cap, q);
+        const struct ct_result u = {b->coordinate[i].name, ct_coordinate_speed(b, (int)i), false};
+        CT_PUSH(b->arena, b->eqs->result, b->eqs->nresult, b->eqs->result_cap, u);
+    }
+}
+
+bool ct_formulate(struct ct_ctx *ctx, struct ct_arena *a, const struct ct_model *m,
+                  const struct ct_formulate_options *options, struct ct_equations *out,
+                  struct ct_tree_report *report)
+{
+    struct ct_build *b = build_create(ctx, a, m, options);
+    struct search s = {ctx, m, options};
+    *report = (struct ct_tree_report){0};
+    if (!choose_trees(b, &s, report) || !derive(b))
+        return false;
+    if (options->with_energy)
+        ct_energies_derive(b);
+    if (options->measure_all)
+        measure_all(b);
+    else if (options->with_outputs && !ct_outputs_derive(b))
+        return false;
+    describe_graph(b);
+    b->eqs->coordinate = b->coordinate;
+    b->eqs->ncoordinate = b->ncoordinate;
+    b->eqs->build = b;
+    *out = *b->eqs;
+    return true;
+}

@@ -1,0 +1,66 @@
+// Comparisons as held modes; see mode.h.
+#include "formulate/mode.h"
+
+static bool changes_in_time(const struct ct_build *b, ct_ex e)
+{
+    const unsigned still = 1u << CT_SYM_PARAM | 1u << CT_SYM_MODE;
+    return ct_ex_kinds(b->x, e) & ~still;
+}
+
+// The 0/1 symbol of `g op 0`; one for equal questions.
+static ct_ex mode_symbol(struct ct_build *b, enum ct_op op, ct_ex g)
+{
+    struct ct_equations *s = b->eqs;
+    for (size_t i = 0; i < s->nmode; i++)
+        if (s->mode[i].op == op && ct_ex_same(s->mode[i].g, g))
+            return s->mode[i].symbol;
+    struct ct_mode m = {.op = op, .g = g};
+    const unsigned of_time = 1u << CT_SYM_PARAM | 1u << CT_SYM_MODE | 1u << CT_SYM_TIME;
+    m.is_time = !(ct_ex_kinds(b->x, g) & ~of_time);
+    m.symbol = ct_ex_sym(b->x, CT_SYM_MODE, ct_arena_printf(b->arena, "mode%zu", s->nmode + 1),
+                         (uint32_t)s->nmode);
+    CT_PUSH(b->arena, s->mode, s->nmode, s->mode_cap, m);
+    return m.symbol;
+}
+
+// The held form of a node whose arguments are held already.
+static ct_ex hold_node(struct ct_build *b, enum ct_op op, ct_ex e, ct_ex p, ct_ex q)
+{
+    struct ct_exs *x = b->x;
+    switch (op) {
+    case CT_OP_LT:
+    case CT_OP_LE:
+    case CT_OP_GT:
+    case CT_OP_GE:
+        return mode_symbol(b, op, ct_ex_sub(x, p, q));
+    case CT_OP_ABS:
+        return ct_ex_if(x, mode_symbol(b, CT_OP_LT, p), ct_ex_neg(x, p), p);
+    case CT_OP_SIGN:
+        return ct_ex_sub(x, mode_symbol(b, CT_OP_GT, p), mode_symbol(b, CT_OP_LT, p));
+    case CT_OP_MIN:
+        return ct_ex_if(x, mode_symbol(b, CT_OP_LT, ct_ex_sub(x, p, q)), p, q);
+    case CT_OP_MAX:
+        return ct_ex_if(x, mode_symbol(b, CT_OP_GT, ct_ex_sub(x, p, q)), p, q);
+    default:
+        return e;
+    }
+}
+
+ct_ex ct_mode_hold(struct ct_build *b, ct_ex e)
+{
+    struct ct_exs *x = b->x;
+    const struct ct_exnode n = *ct_ex_node(x, e);
+    const int narg = ct_op_info[n.op].narg;
+    if (narg == 0 || !changes_in_time(b, e))
+        return e;
+    // expressions of a model are small trees, so plain recursion serves
+    const ct_ex p = ct_mode_hold(b, (ct_ex){n.a});
+    if (n.op == CT_OP_TABLE)
+        return ct_ex_table(x, n.b, n.c, p);
+    const ct_ex q = narg > 1 ? ct_mode_hold(b, (ct_ex){n.b}) : CT_EX_ZERO;
+    if (n.op == CT_OP_IF)
+        return ct_ex_if(x, p, q, ct_mode_hold(b, (ct_ex){n.c}));
+    const ct_ex rebuilt = narg == 1 ? ct_ex_fun(x, (enum ct_op)n.op, p)
+                                    : ct_ex_fun2(x, (enum ct_op)n.op, p, q);
+    return hold_node(b, (enum ct_op)n.op, rebuilt, p, q);
+}

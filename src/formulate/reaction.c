@@ -1,0 +1,183 @@
+// Cutset sums node by node; see reaction.h.
+//
+// A branch of T_T carries what its outboard nodes need (5.8); a branch of T_R the torques of its
+// outboard nodes and the moments of the translational branches whose tails lie there (5.9), (5.3).
+#include "formulate/reaction.h"
+#include "formulate/row.h"
+
+static const ct_ex3 zero3 = {{{0}, {0}, {0}}};
+
+static void add(struct ct_build *b, ct_ex3 *sum, ct_ex3 v)
+{
+    *sum = ct_ex3_add(b->x, *sum, v);
+}
+
+static void take(struct ct_build *b, ct_ex3 *sum, ct_ex3 v)
+{
+    *sum = ct_ex3_sub(b->x, *sum, v);
+}
+
+// ---- what acts at a node -------------------------------------------------------------------------------
+
+static ct_ex3 pair_moment(struct ct_build *b, int tail, int head, ct_ex3 force)
+{
+    return ct_ex3_cross(b->x, ct_path_position(b, tail, head), force);
+}
+
+// Force that a node needs besides what it passes on: m (a - g) less applied forces.
+static ct_ex3 own_force(struct ct_build *b, int node)
+{
+    struct ct_exs *x = b->x;
+    ct_ex3 sum = zero3;
+    for (size_t i = 1; i < b->model->nbody; i++)
+        if (b->node_of_com[i] == node) {
+            const ct_ex3 a = ct_node_acceleration(b, node, CT_FULL);
+            add(b, &sum, ct_ex3_scale(x, b->model->body[i].mass, ct_ex3_sub(x, a, b->model->gravity)));
+        }
+    for (size_t i = 0; i < b->nload; i++) {
+        if (b->load[i].head == node)
+            take(b, &sum, b->load[i].force);
+        if (b->load[i].tail == node)
+            add(b, &sum, b->load[i].force);
+    }
+    for (size_t i = 0; i < b->npull; i++) {
+        const ct_ex3 f = ct_ex3_scale(x, b->eqs->row[b->pull[i].row].lam, b->pull[i].force);
+        if (b->pull[i].head == node)
+            take(b, &sum, f);
+        if (b->pull[i].tail == node)
+            add(b, &sum, f);
+    }
+    return sum;
+}
+
+static ct_ex3 body_torque(struct ct_build *b, int body, int node)
+{
+    struct ct_exs *x = b->x;
+    const ct_ex *I = b->model->body[body].inertia;
+    const ct_ex33 own = {{I[0], I[3], I[4], I[3], I[1], I[5], I[4], I[5], I[2]}};
+    const int c = b->place[node].frame;
+    const ct_ex3 w = ct_node_unturn(b, node, ct_cluster_velocity(b, c));
+    const ct_ex3 al = ct_node_unturn(b, node, ct_cluster_acceleration(b, c, CT_FULL));
+    const ct_ex3 T = ct_ex3_add(x, ct_ex33_apply(x, &own, al),
+                                ct_ex3_cross(x, w, ct_ex33_apply(x, &own, w)));
+    return ct_node_turn(b, node, T);
+}
+
+static ct_ex3 own_torque(struct ct_build *b, int node)
+{
+    struct ct_exs *x = b->x;
+    ct_ex3 sum = zero3;
+    for (size_t i = 1; i < b->model->nbody; i++)
+        if (b->node_of_com[i] == node && !b->model->body[i].is_particle)
+            add(b, &sum, body_torque(b, (int)i, node));
+    for (size_t i = 0; i < b->nload; i++) {
+        const struct ct_load *l = &b->load[i];
+        if (l->head == node)
+            take(b, &sum, l->torque);
+        if (l->tail == node) {
+            add(b, &sum, l->torque);
+            if (!l->is_central)
+                add(b, &sum, pair_moment(b, l->tail, l->head, l->force));
+        }
+    }
+    for (size_t i = 0; i < b->npull; i++) {
+        const struct ct_pull *p = &b->pull[i];
+        const ct_ex lam = b->eqs->row[p->row].lam;
+        const ct_ex3 T = ct_ex3_scale(x, lam, p->torque), F = ct_ex3_scale(x, lam, p->force);
+        if (p->head == node)
+            take(b, &sum, T);
+        if (p->tail == node) {
+            add(b, &sum, T);
+            if (p->carried && !ct_ex3_is_zero(F))
+                add(b, &sum, pair_moment(b, p->tail, p->head, F));
+        }
+    }
+    return sum;
+}
+
+// ---- cutset sums -----------------------------------------------------------------------------------------
+
+// Force that the branch above a node must supply.  (5.8)
+static ct_ex3 cut_force(struct ct_build *b, int node)
+{
+    ct_ex3 sum = own_force(b, node);
+    for (int i = 1; i < b->T.nnode; i++) // children; the sums are shared by hash-consing
+        if (b->T.parent[b->T.order[i]] == node)
+            add(b, &sum, cut_force(b, b->T.order[i]));
+    return sum;
+}
+
+// Vector of a translational branch in ground components.
+static ct_ex3 branch_vector(struct ct_build *b, int edge)
+{
+    const struct ct_edge_info *e = &b->edge[edge];
+    const ct_ex3 d = e->kind == CT_EDGE_ARM ? e->at : e->motion.d;
+    return ct_node_turn(b, b->wiring[edge].tail, d);
+}
+
+// Torque that the branch above a node of T_R must supply.  (5.9)
+static ct_ex3 cut_torque(struct ct_build *b, int node)
+{
+    struct ct_exs *x = b->x;
+    ct_ex3 sum = own_torque(b, node);
+    for (int i = 1; i < b->T.nnode; i++) {
+        const int child = b->T.order[i], edge = b->T.parent_edge[child];
+        if (b->wiring[edge].tail != node)
+            continue;
+        const ct_ex3 d = branch_vector(b, edge);
+        if (ct_ex3_is_zero(d))
+            continue;
+        const ct_ex3 moment = ct_ex3_cross(x, d, cut_force(b, child));
+        if (b->T.sign[child] > 0)
+            add(b, &sum, moment);
+        else
+            take(b, &sum, moment);
+    }
+    for (int i = 1; i < b->R.nnode; i++)
+        if (b->R.parent[b->R.order[i]] == node)
+            add(b, &sum, cut_torque(b, b->R.order[i]));
+    return sum;
+}
+
+// ---- the joint ---------------------------------------------------------------------------------------------
+
+static int outboard_node(const struct ct_build *b, const struct ct_tree *t, int edge)
+{
+    const int head = b->wiring[edge].head;
+    return t->parent_edge[head] == edge ? head : b->wiring[edge].tail;
+}
+
+void ct_reaction_derive(struct ct_build *b, int joint, ct_ex3 *force, ct_ex3 *torque)
+{
+    const int edge = b->edge_of_joint[joint];
+    const bool in_T = b->T.is_branch[edge], in_R = b->R.is_branch[edge];
+    *force = *torque = zero3;
+    if (in_T) {
+        const int node = outboard_node(b, &b->T, edge);
+        *force = cut_force(b, node);
+        if (b->T.sign[node] < 0)
+            *force = ct_ex3_neg(b->x, *force);
+    }
+    if (in_R) {
+        const int node = outboard_node(b, &b->R, edge);
+        *torque = cut_torque(b, node);
+        if (b->R.sign[node] < 0)
+            *torque = ct_ex3_neg(b->x, *torque);
+    }
+    for (size_t i = 0; i < b->nload; i++)
+        if (b->load[i].self == b->edge[edge].self) {
+            if (!in_T)
+                add(b, force, b->load[i].force);
+            if (!in_R)
+                add(b, torque, b->load[i].torque);
+        }
+    for (size_t i = 0; i < b->npull; i++) {
+        const struct ct_pull *p = &b->pull[i];
+        if (p->head != b->wiring[edge].head || p->tail != b->wiring[edge].tail
+            || b->eqs->row[p->row].joint != joint)
+            continue;
+        const ct_ex lam = b->eqs->row[p->row].lam;
+        add(b, force, ct_ex3_scale(b->x, lam, p->force));
+        add(b, torque, ct_ex3_scale(b->x, lam, p->torque));
+    }
+}

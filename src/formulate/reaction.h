@@ -1,0 +1,11 @@
+// Reactions of joints recovered from cutsets, on request.  (formulation 5.5)
+#ifndef CT_FORMULATE_REACTION_H
+#define CT_FORMULATE_REACTION_H
+
+#include "formulate/dynamics.h"
+
+/// Force and torque that the joint's `from` exerts on its `to` at the origin of `to`, everything the joint
+/// transmits, in ground components and in terms of u' and lam.
+void ct_reaction_derive(struct ct_build *b, int joint, ct_ex3 *force, ct_ex3 *torque);
+
+#endif

@@ -1,0 +1,454 @@
+// Rotations along the rotational tree: clusters of frames that turn together.
+//
+// A branch with axes adds one cluster an axis. Rotations about one and the same axis are accumulated:
+// R = R_base Rot(axis, angle), so that a chain of parallel revolutes needs one sine and cosine a body.
+#include "formulate/kinematics.h"
+#include "formulate/topology.h"
+
+#include <assert.h>
+
+// ---- unknowns -----------------------------------------------------------------------------------
+
+static bool is_branch_coordinate(const struct ct_build *b, const struct ct_coordinate *c)
+{
+    return (c->in_translation && b->T.is_branch[c->edge])
+           || (c->in_rotation && b->R.is_branch[c->edge]);
+}
+
+static int new_speed(struct ct_build *b, const struct ct_edge_info *e, const char *suffix, int q)
+{
+    struct ct_equations *s = b->eqs;
+    struct ct_u u = {.name = ct_arena_printf(b->arena, "%s.u%s", e->name, suffix), .q = q};
+    u.joint = e->kind == CT_EDGE_JOINT ? e->index : -1;
+    u.body = e->kind == CT_EDGE_BODY ? e->index : -1;
+    u.symbol = ct_ex_sym(b->x, CT_SYM_U, u.name, (uint32_t)s->nu);
+    u.derivative = ct_ex_sym(b->x, CT_SYM_A, ct_arena_printf(b->arena, "%s.a%s", e->name, suffix),
+                             (uint32_t)s->nu);
+    CT_PUSH(b->arena, s->u, s->nu, s->u_cap, u);
+    return (int)s->nu - 1;
+}
+
+static int new_coordinate(struct ct_build *b, const char *name, int quaternion)
+{
+    struct ct_equations *s = b->eqs;
+    struct ct_q q = {.name = name, .quaternion = quaternion};
+    q.symbol = ct_ex_sym(b->x, CT_SYM_Q, name, (uint32_t)s->nq);
+    CT_PUSH(b->arena, s->q, s->nq, s->q_cap, q);
+    return (int)s->nq - 1;
+}
+
+// Rates of a unit quaternion from body rates w.  (7.1)
+static void quaternion_rates(struct ct_build *b, int first, const ct_ex w[3])
+{
+    struct ct_exs *x = b->x;
+    struct ct_q *q = &b->eqs->q[first];
+    const ct_ex p0 = q[0].symbol;
+    const ct_ex3 p = {{q[1].symbol, q[2].symbol, q[3].symbol}}, W = {{w[0], w[1], w[2]}};
+    const ct_ex3 c = ct_ex3_cross(x, p, W);
+    q[0].rate = ct_ex_scale(x, -0.5, ct_ex3_dot(x, p, W));
+    for (int i = 0; i < 3; i++)
+        q[1 + i].rate
+            = ct_ex_scale(x, 0.5, ct_ex_add(x, ct_ex_mul(x, p0, W.e[i]), c.e[i]));
+}
+
+static void choose_quaternion(struct ct_build *b, struct ct_edge_info *e, int k, int speed)
+{
+    ct_ex w[3];
+    const int first = (int)b->eqs->nq;
+    for (int i = 0; i < 4; i++) {
+        struct ct_coordinate *c = &b->coordinate[e->first_coordinate + k + i];
+        c->q = new_coordinate(b, c->name, i);
+        c->value = b->eqs->q[c->q].symbol;
+    }
+    for (int i = 0; i < 3; i++) {
+        const int u = new_speed(b, e, ct_arena_printf(b->arena, "%d", speed + i + 1), -1);
+        b->coordinate[e->first_coordinate + k + i].u = u;
+        w[i] = b->eqs->u[u].symbol;
+    }
+    quaternion_rates(b, first, w);
+    for (int i = 0; i < 4; i++) {
+        struct ct_coordinate *c = &b->coordinate[e->first_coordinate + k + i];
+        c->rate = b->eqs->q[c->q].rate;
+    }
+}
+
+static void choose_driven(struct ct_build *b, const struct ct_edge_info *e, struct ct_coordinate *c)
+{
+    struct ct_driver d = {.name = c->name, .joint = e->index, .place = c->place};
+    const struct ct_value *motion = ct_instance_value(e->self, "motion");
+    d.mark = motion->at[c->place];
+    d.value = ct_mode_hold(b, motion->e[c->place]);
+    d.rate = ct_build_rate(b, d.value);
+    d.acceleration = ct_build_rate(b, d.rate);
+    c->value = d.value;
+    c->rate = d.rate;
+    c->driver = (int)b->eqs->ndriver;
+    CT_PUSH(b->arena, b->eqs->driver, b->eqs->ndriver, b->eqs->driver_cap, d);
+}
+
+static void choose_plain(struct ct_build *b, const struct ct_edge_info *e, struct ct_coordinate *c)
+{
+    const bool one = e->trial.nfree == 1;
+    const char *suffix = one ? "" : ct_arena_printf(b->arena, "%d", c->place + 1);
+    c->q = new_coordinate(b, c->name, -1);
+    c->u = new_speed(b, e, suffix, c->q);
+    c->value = b->eqs->q[c->q].symbol;
+    c->rate = b->eqs->q[c->q].rate = b->eqs->u[c->u].symbol;
+}
+
+bool ct_unknowns_choose(struct ct_build *b)
+{
+    for (size_t i = 0; i < b->nedge; i++) {
+        struct ct_edge_info *e = &b->edge[i];
+        for (int k = 0; k < e->ncoordinate; k++) {
+            struct ct_coordinate *c = &b->coordinate[e->first_coordinate + k];
+            if (!is_branch_coordinate(b, c))
+                continue;
+            if (c->is_driven) {
+                choose_driven(b, e, c);
+            } else if (e->trial.quaternion == k) {
+                choose_quaternion(b, e, k, k);
+                break;
+            } else {
+                choose_plain(b, e, c);
+            }
+        }
+        struct ct_motion m = {.ncoord = e->trial.ncoord, .nfree = e->trial.nfree};
+        for (int k = 0; k < e->ncoordinate; k++)
+            m.coord[k] = b->coordinate[e->first_coordinate + k].value;
+        ct_topology_motion(b, e, &m);
+        e->motion = m;
+    }
+    return true;
+}
+
+// ---- rates ----------------------------------------------------------------------------------------
+
+ct_ex ct_build_rate(struct ct_build *b, ct_ex e)
+{
+    const struct ct_equations *s = b->eqs;
+    const unsigned moving = 1u << CT_SYM_Q | 1u << CT_SYM_TIME;
+    if (!(ct_ex_kinds(b->x, e) & moving))
+        return CT_EX_ZERO;
+    // only the symbols below e matter; joints have few
+    ct_ex *from = CT_NEWN(b->arena, ct_ex, s->nq + 1), *to = CT_NEWN(b->arena, ct_ex, s->nq + 1);
+    size_t n = 0;
+    const size_t nwalk = ct_ex_walk(b->x, &e, 1);
+    for (size_t i = 0; i < nwalk; i++) {
+        const ct_ex leaf = {b->x->stack[i]};
+        const struct ct_sym *sym = ct_ex_symbol(b->x, leaf);
+        if (!sym || !(moving & 1u << sym->kind))
+            continue;
+        from[n] = leaf;
+        to[n++] = sym->kind == CT_SYM_TIME ? CT_EX_ONE : s->q[sym->index].rate;
+    }
+    return ct_ex_diff_along(b->x, e, from, to, n);
+}
+
+ct_ex3 ct_build_rate3(struct ct_build *b, ct_ex3 e)
+{
+    for (int i = 0; i < 3; i++)
+        e.e[i] = ct_build_rate(b, e.e[i]);
+    return e;
+}
+
+// ---- clusters -------------------------------------------------------------------------------------
+
+static int add_cluster(struct ct_build *b, int parent, int nspin)
+{
+    const struct ct_cluster c = {.parent = parent, .first_spin = (int)b->nspin, .nspin = nspin};
+    CT_PUSH(b->arena, b->cluster, b->ncluster, b->cluster_cap, c);
+    return (int)b->ncluster - 1;
+}
+
+static bool same3(ct_ex3 a, ct_ex3 b)
+{
+    return ct_ex_same(a.e[0], b.e[0]) && ct_ex_same(a.e[1], b.e[1]) && ct_ex_same(a.e[2], b.e[2]);
+}
+
+ct_ex ct_edge_partial(struct ct_build *b, const struct ct_edge_info *e, ct_ex trial, int k)
+{
+    const ct_ex c = ct_ex_diff(b->x, trial, e->trial.coord[k]);
+    return ct_ex_subst(b->x, c, e->trial.coord, e->motion.coord, (size_t)e->ncoordinate);
+}
+
+// Spin of the i-th turn of branch e, whose axis is fixed in the parent; the coefficients of its rate
+// are sign * d angle / d q_k.
+static void add_spin(struct ct_build *b, int cluster, const struct ct_edge_info *e, int i, int sign,
+                     ct_ex3 axis, ct_ex angle)
+{
+    struct ct_spin s = {.cluster = cluster, .axis = axis};
+    for (int k = 0; k < e->ncoordinate; k++) {
+        const struct ct_coordinate *c = &b->coordinate[e->first_coordinate + k];
+        const ct_ex coef = ct_edge_partial(b, e, e->trial.turn[i].angle, k);
+        if (!ct_ex_is_zero(coef))
+            s.term[s.nterm++] = (struct ct_term){c->u, c->driver, sign > 0 ? coef : ct_ex_neg(b->x, coef)};
+    }
+    s.rate = ct_build_rate(b, angle);
+    s.bias = ct_build_rate(b, s.rate);
+    CT_PUSH(b->arena, b->spin, b->nspin, b->spin_cap, s);
+}
+
+// Cluster turned about a local axis of `parent`; parallel axes accumulate.
+static int turn_cluster(struct ct_build *b, int parent, const struct ct_edge_info *e, int i, int sign,
+                        ct_ex3 axis)
+{
+    struct ct_exs *x = b->x;
+    ct_ex angle = e->motion.turn[i].angle;
+    if (sign < 0)
+        angle = ct_ex_neg(x, angle);
+    const int c = add_cluster(b, parent, 1);
+    struct ct_cluster *self = &b->cluster[c];
+    const struct ct_cluster *p = &b->cluster[parent];
+    const ct_ex3 opposite = ct_ex3_neg(x, axis);
+    self->has_angle = true;
+    if (p->has_angle && (same3(p->axis, axis) || same3(p->axis, opposite))) {
+        self->base = p->base;
+        self->axis = p->axis;
+        self->angle = same3(p->axis, axis) ? ct_ex_add(x, p->angle, angle)
+                                           : ct_ex_sub(x, p->angle, angle);
+    } else {
+        self->base = parent;
+        self->axis = axis;
+        self->angle = angle;
+    }
+    const ct_ex33 *B = &b->cluster[self->base].R;
+    const ct_ex33 A = ct_ex33_axis_angle(x, self->axis, self->angle);
+    self->R = ct_ex33_mul(x, B, &A);
+    add_spin(b, c, e, i, sign, ct_ex33_apply(x, B, axis), angle);
+    return c;
+}
+
+// S(p) of a unit quaternion.  (7.2)
+static ct_ex33 quaternion_matrix(struct ct_exs *x, const ct_ex p[4])
+{
+    ct_ex33 R;
+    const ct_ex ww = ct_ex_mul(x, p[0], p[0]);
+    for (int i = 0; i < 3; i++) {
+        const int j = (i + 1) % 3, k = (i + 2) % 3;
+        // p0^2 + pi^2 - 1/2, doubled: uses |p| = 1
+        R.e[i + 3 * i] = ct_ex_sub(
+            x, ct_ex_scale(x, 2, ct_ex_add(x, ww, ct_ex_mul(x, p[1 + i], p[1 + i]))), CT_EX_ONE);
+        const ct_ex both = ct_ex_mul(x, p[1 + i], p[1 + j]), turn = ct_ex_mul(x, p[0], p[1 + k]);
+        R.e[j + 3 * i] = ct_ex_scale(x, 2, ct_ex_add(x, both, turn));
+        R.e[i + 3 * j] = ct_ex_scale(x, 2, ct_ex_sub(x, both, turn));
+    }
+    return R;
+}
+
+// Cluster of a 3-dof rotation. The node of the axes of `to` is the child (sign +1) or the parent.
+static int quaternion_cluster(struct ct_build *b, int parent, const ct_ex33 *S,
+                              const struct ct_edge_info *e, int sign)
+{
+    struct ct_exs *x = b->x;
+    const int c = add_cluster(b, parent, 3);
+    const ct_ex33 P = ct_ex33_mul(x, &b->cluster[parent].R, S);
+    const int k = e->motion.quaternion;
+    const ct_ex33 forward = quaternion_matrix(x, &e->motion.coord[k]);
+    const ct_ex33 A = sign > 0 ? forward : ct_ex33_transpose(&forward);
+    b->cluster[c].R = ct_ex33_mul(x, &P, &A);
+    const ct_ex33 *to = sign > 0 ? &b->cluster[c].R : &P;
+    for (int i = 0; i < 3; i++) {
+        const struct ct_coordinate *coordinate = &b->coordinate[e->first_coordinate + k + i];
+        struct ct_spin s = {.cluster = c, .nterm = 1};
+        s.axis = (ct_ex3){{to->e[3 * i], to->e[3 * i + 1], to->e[3 * i + 2]}};
+        if (sign < 0)
+            s.axis = ct_ex3_neg(x, s.axis);
+        s.term[0] = (struct ct_term){coordinate->u, -1, CT_EX_ONE};
+        s.rate = b->eqs->u[coordinate->u].symbol;
+        CT_PUSH(b->arena, b->spin, b->nspin, b->spin_cap, s);
+    }
+    return c;
+}
+
+// Axes of a node from those of its parent in the rotational tree.
+static void place_axes(struct ct_build *b, int node)
+{
+    const struct ct_edge_info *e = &b->edge[b->R.parent_edge[node]];
+    const struct ct_place *p = &b->place[b->R.parent[node]];
+    struct ct_place *self = &b->place[node];
+    const int sign = b->R.sign[node];
+    self->frame = p->frame;
+    self->S = p->S;
+    if (e->kind == CT_EDGE_ARM) {
+        const ct_ex33 S = sign > 0 ? e->S : ct_ex33_transpose(&e->S);
+        self->S = ct_ex33_mul(b->x, &p->S, &S);
+        return;
+    }
+    for (int i = 0; i < e->motion.nturn; i++) {
+        const int k = sign > 0 ? i : e->motion.nturn - 1 - i; // backwards from `to` to `from`
+        const ct_ex3 axis = ct_ex33_apply(b->x, &p->S, e->motion.turn[k].axis);
+        self->frame = turn_cluster(b, self->frame, e, k, sign, axis);
+    }
+    if (e->motion.quaternion >= 0) {
+        self->frame = quaternion_cluster(b, self->frame, &p->S, e, sign);
+        self->S = ct_ex33_identity();
+    }
+}
+
+// Preorder intervals; children are found by scanning, parents come first.
+static void number_clusters(struct ct_build *b)
+{
+    int *size = CT_NEWN(b->arena, int, b->ncluster), *next = CT_NEWN(b->arena, int, b->ncluster);
+    for (size_t c = b->ncluster; c-- > 1;)
+        size[b->cluster[c].parent] += ++size[c];
+    b->cluster[0].enter = 0;
+    b->cluster[0].leave = size[0];
+    next[0] = 1;
+    for (size_t c = 1; c < b->ncluster; c++) {
+        struct ct_cluster *self = &b->cluster[c];
+        self->enter = next[self->parent];
+        self->leave = self->enter + size[c] - 1;
+        next[self->parent] += size[c];
+        next[c] = self->enter + 1;
+    }
+}
+
+static ct_ex3 relative_velocity(struct ct_build *b, int c)
+{
+    const struct ct_cluster *self = &b->cluster[c];
+    ct_ex3 w = {{{0}, {0}, {0}}};
+    for (int i = 0; i < self->nspin; i++) {
+        const struct ct_spin *s = &b->spin[self->first_spin + i];
+        w = ct_ex3_add(b->x, w, ct_ex3_scale(b->x, s->rate, s->axis));
+    }
+    return w;
+}
+
+void ct_rotation_derive(struct ct_build *b)
+{
+    b->place = CT_NEWN(b->arena, struct ct_place, b->nnode);
+    add_cluster(b, -1, 0);
+    b->cluster[0].R = ct_ex33_identity();
+    b->place[0].S = ct_ex33_identity();
+    for (size_t i = 1; i < b->nnode; i++)
+        place_axes(b, b->R.order[i]);
+    number_clusters(b);
+    for (size_t c = 1; c < b->ncluster; c++) {
+        struct ct_cluster *self = &b->cluster[c];
+        self->w = ct_ex3_add(b->x, b->cluster[self->parent].w, relative_velocity(b, (int)c));
+        if (b->is_planar) { // one spin, its axis is the normal or its opposite
+            const struct ct_spin *s = &b->spin[self->first_spin];
+            const ct_ex inner = b->cluster[self->parent].omega;
+            self->omega = ct_spin_is_positive(b, (size_t)self->first_spin)
+                              ? ct_ex_add(b->x, inner, s->rate)
+                              : ct_ex_sub(b->x, inner, s->rate);
+        }
+    }
+}
+
+bool ct_spin_is_positive(const struct ct_build *b, size_t r)
+{
+    double sum = 0;
+    for (int i = 0; i < 3; i++)
+        sum += ct_ex_value(b->x, b->spin[r].axis.e[i], b->value)
+               * ct_ex_value(b->x, b->plane[2].e[i], b->value);
+    return sum > 0;
+}
+
+ct_ex3 ct_cluster_velocity(const struct ct_build *b, int c)
+{
+    return b->cluster[c].w;
+}
+
+// al - al_p = sum s (bias + coef u') + w_p x w_rel: the axis of a turn is fixed in both frames, those
+// of a quaternion in one of them; the formula is the same.  (4.1), (1.8)
+static ct_ex3 relative_acceleration(struct ct_build *b, int c, enum ct_level level)
+{
+    const struct ct_cluster *self = &b->cluster[c];
+    struct ct_exs *x = b->x;
+    ct_ex3 w = {{{0}, {0}, {0}}}, al = w;
+    for (int i = 0; i < self->nspin; i++) {
+        const struct ct_spin *s = &b->spin[self->first_spin + i];
+        ct_ex rate = s->bias;
+        for (int k = 0; level == CT_FULL && k < s->nterm; k++)
+            if (s->term[k].speed >= 0)
+                rate = ct_ex_add(
+                    x, rate,
+                    ct_ex_mul(x, s->term[k].coef, b->eqs->u[s->term[k].speed].derivative));
+        al = ct_ex3_add(x, al, ct_ex3_scale(x, rate, s->axis));
+        w = ct_ex3_add(x, w, ct_ex3_scale(x, s->rate, s->axis));
+    }
+    if (b->is_planar)
+        return al; // all axes are parallel
+    return ct_ex3_add(x, al, ct_ex3_cross(x, b->cluster[self->parent].w, w));
+}
+
+ct_ex3 ct_cluster_acceleration(struct ct_build *b, int c, enum ct_level level)
+{
+    struct ct_cluster *self = &b->cluster[c];
+    if (c && !self->has_al[level]) {
+        self->al[level] = ct_ex3_add(b->x, ct_cluster_acceleration(b, self->parent, level),
+                                     relative_acceleration(b, c, level));
+        self->has_al[level] = true;
+    }
+    return self->al[level];
+}
+
+ct_ex3 ct_cluster_path_velocity(struct ct_build *b, int from, int to)
+{
+    ct_ex3 sum = {{{0}, {0}, {0}}};
+    while (from != to) // numbers grow outwards: the larger one steps inwards
+        if (to > from) {
+            sum = ct_ex3_add(b->x, sum, relative_velocity(b, to));
+            to = b->cluster[to].parent;
+        } else {
+            sum = ct_ex3_sub(b->x, sum, relative_velocity(b, from));
+            from = b->cluster[from].parent;
+        }
+    return sum;
+}
+
+ct_ex3 ct_cluster_path_acceleration(struct ct_build *b, int from, int to, enum ct_level level)
+{
+    ct_ex3 sum = {{{0}, {0}, {0}}};
+    while (from != to)
+        if (to > from) {
+            sum = ct_ex3_add(b->x, sum, relative_acceleration(b, to, level));
+            to = b->cluster[to].parent;
+        } else {
+            sum = ct_ex3_sub(b->x, sum, relative_acceleration(b, from, level));
+            from = b->cluster[from].parent;
+        }
+    return sum;
+}
+
+ct_ex3 ct_cluster_turn(struct ct_build *b, int c, ct_ex3 local)
+{
+    return ct_ex33_apply(b->x, &b->cluster[c].R, local);
+}
+
+ct_ex3 ct_cluster_swing(struct ct_build *b, int c, ct_ex3 v)
+{
+    return ct_ex3_cross(b->x, b->cluster[c].w, v);
+}
+
+ct_ex3 ct_cluster_centripetal(struct ct_build *b, int c, ct_ex3 v)
+{
+    struct ct_exs *x = b->x;
+    const ct_ex3 w = b->cluster[c].w;
+    if (!b->is_planar)
+        return ct_ex3_cross(x, w, ct_ex3_cross(x, w, v));
+    const ct_ex omega = b->cluster[c].omega;
+    return ct_ex3_neg(x, ct_ex3_scale(x, ct_ex_mul(x, omega, omega), ct_build_in_plane(b, v)));
+}
+
+// ---- axes of nodes --------------------------------------------------------------------------------
+
+ct_ex33 ct_node_rotation(struct ct_build *b, int node)
+{
+    const struct ct_place *p = &b->place[node];
+    return ct_ex33_mul(b->x, &b->cluster[p->frame].R, &p->S);
+}
+
+ct_ex3 ct_node_turn(struct ct_build *b, int node, ct_ex3 v)
+{
+    const struct ct_place *p = &b->place[node];
+    return ct_cluster_turn(b, p->frame, ct_ex33_apply(b->x, &p->S, v));
+}
+
+ct_ex3 ct_node_unturn(struct ct_build *b, int node, ct_ex3 v)
+{
+    const struct ct_place *p = &b->place[node];
+    return ct_ex33_apply_t(b->x, &p->S, ct_ex33_apply_t(b->x, &b->cluster[p->frame].R, v));
+}

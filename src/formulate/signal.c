@@ -1,0 +1,528 @@
+// Names of signals -> expressions; outputs and energies.  (format, section 6)
+#include "formulate/signal.h"
+#include "formulate/reaction.h"
+#include "formulate/topology.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static const ct_ex3 zero3 = {{{0}, {0}, {0}}};
+
+// ---- taking names apart -----------------------------------------------------------------------------------
+
+// "rod.tip.velocity.x in crank": what | property | component | axes
+struct signal {
+    const char *owner, *property, *component, *axes;
+};
+
+static const char *const axis_names[] = {"x", "y", "z"};
+
+static int index_of(const char *s, const char *const *names, int n)
+{
+    for (int i = 0; i < n; i++)
+        if (s && !strcmp(s, names[i]))
+            return i;
+    return -1;
+}
+
+static bool unknown(struct ct_build *b, struct ct_mark mark, const char *name, const char *why)
+{
+    return ct_error(b->ctx, mark, CT_E_SIGNAL, "there is no signal '%s': %s", name, why);
+}
+
+// ---- frames ---------------------------------------------------------------------------------------------------
+
+static const char *const vector_properties[]
+    = {"position", "velocity", "acceleration", "angular_velocity", "angular_acceleration"};
+
+static ct_ex3 frame_vector(struct ct_build *b, int node, int property)
+{
+    const int frame = b->place[node].frame;
+    switch (property) {
+    case 0:
+        return ct_node_position(b, node);
+    case 1:
+        return ct_node_velocity(b, node);
+    case 2:
+        return ct_node_acceleration(b, node, CT_FULL);
+    case 3:
+        return ct_cluster_velocity(b, frame);
+    default:
+        return ct_cluster_acceleration(b, frame, CT_FULL);
+    }
+}
+
+static bool in_axes(struct ct_build *b, const struct signal *s, const char *name, struct ct_mark mark,
+                    ct_ex3 *v)
+{
+    if (!s->axes)
+        return true;
+    const int f = ct_model_find_frame(b->model, s->axes);
+    if (f < 0)
+        return unknown(b, mark, name, ct_arena_printf(b->arena, "no frame '%s'", s->axes));
+    *v = ct_node_unturn(b, b->node_of_frame[f], *v);
+    return true;
+}
+
+static bool component_of(struct ct_build *b, const struct signal *s, const char *name,
+                         struct ct_mark mark, ct_ex3 v, ct_ex *out)
+{
+    const int i = index_of(s->component, axis_names, 3);
+    if (i < 0)
+        return unknown(b, mark, name, "a component is x, y or z");
+    if (!in_axes(b, s, name, mark, &v))
+        return false;
+    *out = v.e[i];
+    return true;
+}
+
+// The quaternion of a frame is followed in time, so its four numbers are made together and kept.
+static ct_ex frame_quaternion(struct ct_build *b, int node, int i)
+{
+    if (!b->quaternion)
+        b->quaternion = CT_NEWN(b->arena, struct ct_kept_quaternion, b->nnode);
+    struct ct_kept_quaternion *q = &b->quaternion[node];
+    if (!q->made) {
+        const ct_ex33 R = ct_node_rotation(b, node);
+        ct_quaternion_follow(b, b->node[node].name, &R, q->p);
+        q->made = true;
+    }
+    return q->p[i];
+}
+
+static bool frame_signal(struct ct_build *b, int frame, const struct signal *s, const char *name,
+                         struct ct_mark mark, ct_ex *out)
+{
+    static const char *const entries[]
+        = {"xx", "yx", "zx", "xy", "yy", "zy", "xz", "yz", "zz"}; // column-major
+    static const char *const numbers[] = {"0", "1", "2", "3"};
+    const int node = b->node_of_frame[frame];
+    const int property = index_of(s->property, vector_properties, COUNT(vector_properties));
+    if (property >= 0)
+        return component_of(b, s, name, mark, frame_vector(b, node, property), out);
+    if (!strcmp(s->property, "rotation")) {
+        const int i = index_of(s->component, entries, 9);
+        if (i < 0)
+            return unknown(b, mark, name, "an entry of a rotation is xx, xy ... zz");
+        *out = ct_node_rotation(b, node).e[i];
+        return true;
+    }
+    if (!strcmp(s->property, "quaternion")) {
+        const int i = index_of(s->component, numbers, 4);
+        if (i < 0)
+            return unknown(b, mark, name, "a component of a quaternion is 0, 1, 2 or 3");
+        *out = frame_quaternion(b, node, i);
+        return true;
+    }
+    return unknown(b, mark, name,
+                   "a frame has position, velocity, acceleration, angular_velocity, "
+                   "angular_acceleration, rotation and quaternion");
+}
+
+// ---- joints ----------------------------------------------------------------------------------------------------
+
+// Effort of a driver, or the effort applied by the user; of a gear its multiplier.
+static ct_ex driver_effort(struct ct_build *b, int coordinate)
+{
+    struct ct_exs *x = b->x;
+    const struct ct_coordinate *c = &b->coordinate[coordinate];
+    if (c->motion_row)
+        return b->eqs->row[c->motion_row - 1].lam;
+    const ct_ex row = ct_sweep_driver(b, c->driver);
+    return ct_ex_sub(x, row, ct_joint_passive(b, coordinate));
+}
+
+static bool effort_signal(struct ct_build *b, int joint, int k, const char *name, struct ct_mark mark,
+                          ct_ex *out)
+{
+    const struct ct_instance *self = &b->model->joint[joint];
+    if (self->from < 0) {
+        for (size_t i = 0; i < b->eqs->nrow; i++)
+            if (b->eqs->row[i].joint == joint)
+                *out = b->eqs->row[i].lam;
+        return true;
+    }
+    if (k >= self->nfree)
+        return unknown(b, mark, name, "the joint has fewer coordinates");
+    const int coordinate = b->edge[b->edge_of_joint[joint]].first_coordinate + k;
+    if (b->coordinate[coordinate].is_driven) {
+        *out = driver_effort(b, coordinate);
+        return true;
+    }
+    const struct ct_value *effort = ct_instance_value(self, "effort");
+    const bool given = effort->given && (size_t)k < effort->n && !effort->hole[k];
+    *out = given ? ct_build_value(b, effort->e[k]) : CT_EX_ZERO;
+    return true;
+}
+
+// q, u, a, effort with or without a number.
+static bool coordinate_signal(struct ct_build *b, int joint, const char *property, const char *name,
+                              struct ct_mark mark, ct_ex *out)
+{
+    const struct ct_instance *self = &b->model->joint[joint];
+    const size_t letters = strcspn(property, "0123456789");
+    const long number = property[letters] ? strtol(property + letters, NULL, 10) : 1;
+    const char *const kind = ct_arena_strndup(b->arena, property, letters);
+    if (!strcmp(kind, "effort"))
+        return effort_signal(b, joint, (int)number - 1, name, mark, out);
+    const bool stored = !strcmp(kind, "q");
+    if (self->from < 0 || number < 1 || number > (stored ? self->ncoord : self->nfree))
+        return unknown(b, mark, name, "the joint has no such coordinate");
+    const int coordinate = b->edge[b->edge_of_joint[joint]].first_coordinate + (int)number - 1;
+    if (stored)
+        *out = ct_coordinate_value(b, coordinate);
+    else if (!strcmp(kind, "u"))
+        *out = ct_coordinate_speed(b, coordinate);
+    else
+        *out = ct_coordinate_acceleration(b, coordinate, CT_FULL);
+    return true;
+}
+
+static bool joint_signal(struct ct_build *b, int joint, const struct signal *s, const char *name,
+                         struct ct_mark mark, ct_ex *out)
+{
+    static const char *const kinds[] = {"q", "u", "a", "effort"};
+    const bool is_force = !strcmp(s->property, "force");
+    if ((is_force || !strcmp(s->property, "torque")) && b->edge_of_joint[joint] >= 0) {
+        ct_ex3 force, torque;
+        ct_reaction_derive(b, joint, &force, &torque);
+        const int tail = b->wiring[b->edge_of_joint[joint]].tail;
+        return component_of(b, s, name, mark,
+                            ct_node_unturn(b, tail, is_force ? force : torque), out);
+    }
+    const size_t letters = strcspn(s->property, "0123456789");
+    for (size_t i = 0; i < COUNT(kinds); i++)
+        if (strlen(kinds[i]) == letters && !strncmp(s->property, kinds[i], letters))
+            return coordinate_signal(b, joint, s->property, name, mark, out);
+    return unknown(b, mark, name, "a joint has q, u, a, effort, force and torque");
+}
+
+// ---- sums over the system -----------------------------------------------------------------------------------------
+
+static ct_ex3 body_momentum(struct ct_build *b, size_t i)
+{
+    return ct_ex3_scale(b->x, b->model->body[i].mass, ct_node_velocity(b, b->node_of_com[i]));
+}
+
+static ct_ex3 body_spin(struct ct_build *b, size_t i)
+{
+    const struct ct_body *body = &b->model->body[i];
+    const int node = b->node_of_com[i];
+    if (body->is_particle)
+        return zero3;
+    const ct_ex *I = body->inertia;
+    const ct_ex33 own = {{I[0], I[3], I[4], I[3], I[1], I[5], I[4], I[5], I[2]}};
+    const ct_ex3 w = ct_node_unturn(b, node, ct_cluster_velocity(b, b->place[node].frame));
+    return ct_node_turn(b, node, ct_ex33_apply(b->x, &own, w));
+}
+
+static ct_ex3 system_vector(struct ct_build *b, int property)
+{
+    struct ct_exs *x = b->x;
+    ct_ex3 sum = zero3;
+    ct_ex mass = CT_EX_ZERO;
+    for (size_t i = 1; i < b->model->nbody; i++) {
+        const ct_ex3 r = ct_node_position(b, b->node_of_com[i]);
+        const ct_ex m = b->model->body[i].mass;
+        if (property == 0)
+            sum = ct_ex3_add(x, sum, ct_ex3_scale(x, m, r));
+        else if (property == 1)
+            sum = ct_ex3_add(x, sum, body_momentum(b, i));
+        else
+            sum = ct_ex3_add(x, sum,
+                             ct_ex3_add(x, ct_ex3_cross(x, r, body_momentum(b, i)), body_spin(b, i)));
+        mass = ct_ex_add(x, mass, m);
+    }
+    for (int i = 0; i < 3 && property == 0; i++)
+        sum.e[i] = ct_ex_div(x, sum.e[i], mass);
+    return sum;
+}
+
+static ct_ex largest(struct ct_build *b, bool position)
+{
+    ct_ex max = CT_EX_ZERO;
+    for (size_t i = 0; i < b->eqs->nrow; i++) {
+        const ct_ex r = position ? b->eqs->row[i].phi : b->eqs->row[i].v;
+        max = ct_ex_fun2(b->x, CT_OP_MAX, max, ct_ex_fun(b->x, CT_OP_ABS, r));
+    }
+    return max;
+}
+
+static bool global_signal(struct ct_build *b, const struct signal *s, const char *name,
+                          struct ct_mark mark, ct_ex *out)
+{
+    static const char *const sums[] = {"com", "momentum", "angular_momentum"};
+    static const char *const energies[] = {"kinetic", "potential", "strain", "work", "total"};
+    struct ct_equations *e = b->eqs;
+    struct ct_exs *x = b->x;
+    if (!strcmp(s->owner, "system")) {
+        const int i = index_of(s->property, sums, 3);
+        return i < 0 ? unknown(b, mark, name, "the system has com, momentum and angular_momentum")
+                     : component_of(b, s, name, mark, system_vector(b, i), out);
+    }
+    if (!strcmp(s->owner, "constraint")) {
+        const bool position = !strcmp(s->property, "position");
+        if (!position && strcmp(s->property, "velocity"))
+            return unknown(b, mark, name, "constraint has position and velocity");
+        *out = largest(b, position);
+        return true;
+    }
+    const int i = index_of(s->property, energies, 5);
+    const ct_ex stored = ct_ex_add(x, e->kinetic, e->potential);
+    const ct_ex values[]
+        = {e->kinetic, e->potential, CT_EX_ZERO, e->work_symbol, ct_ex_sub(x, stored, e->work_symbol)};
+    if (i < 0)
+        return unknown(b, mark, name, "energy has kinetic, potential, strain, work and total");
+    *out = values[i];
+    return true;
+}
+
+// ---- any signal ----------------------------------------------------------------------------------------------------
+
+// Split at dots after the longest prefix that names something; " in AXES" is taken off the end.
+static bool split(struct ct_build *b, const char *name, struct signal *s, int *frame)
+{
+    char *text = ct_arena_strdup(b->arena, name);
+    char *axes = strstr(text, " in ");
+    if (axes) {
+        *axes = 0;
+        for (axes += 4; *axes == ' ';)
+            axes++;
+        s->axes = axes;
+    }
+    *frame = -1;
+    char *cut = NULL;
+    for (char *dot = strchr(text, '.'); dot; dot = strchr(dot + 1, '.')) {
+        *dot = 0;
+        const int f = ct_model_find_frame(b->model, text);
+        if (f >= 0)
+            *frame = f;
+        if (f >= 0 || !cut)
+            cut = dot;
+        *dot = '.';
+    }
+    if (!cut)
+        return false;
+    *cut = 0;
+    s->owner = text;
+    s->property = cut + 1;
+    char *dot = strchr(cut + 1, '.');
+    if (dot) {
+        *dot = 0;
+        s->component = dot + 1;
+    }
+    return true;
+}
+
+bool ct_signal_resolve(struct ct_build *b, const char *name, struct ct_mark mark, ct_ex *out)
+{
+    struct signal s = {0};
+    int frame;
+    *out = CT_EX_ZERO;
+    if (!split(b, name, &s, &frame))
+        return unknown(b, mark, name, "a signal is written OWNER.PROPERTY");
+    if (!strcmp(s.owner, "system") || !strcmp(s.owner, "energy") || !strcmp(s.owner, "constraint"))
+        return global_signal(b, &s, name, mark, out);
+    const int joint = ct_model_find_joint(b->model, s.owner);
+    if (joint >= 0)
+        return joint_signal(b, joint, &s, name, mark, out);
+    const int force = ct_model_find_force(b->model, s.owner);
+    if (force >= 0) {
+        const struct ct_instance *self = &b->model->force[force];
+        const char *property = s.component
+                                   ? ct_arena_printf(b->arena, "%s.%s", s.property, s.component)
+                                   : s.property;
+        if (self->cls->signal && self->cls->signal(b, self, property, out))
+            return true;
+        return unknown(b, mark, name, "this force has no such property");
+    }
+    if (frame < 0)
+        return unknown(b, mark, name, "nothing has this name");
+    const int body = b->model->frame[frame].body;
+    if (!strcmp(s.property, "com") && body > 0)
+        return component_of(b, &s, name, mark, ct_node_position(b, b->node_of_com[body]), out);
+    return frame_signal(b, frame, &s, name, mark, out);
+}
+
+// ---- expressions of the model ------------------------------------------------------------------------------------------
+
+static const int deepest_signal = 64; // a force that measures a force that measures ... itself
+
+ct_ex ct_build_value(struct ct_build *b, ct_ex e)
+{
+    if (!(ct_ex_kinds(b->x, e) & 1u << CT_SYM_SIGNAL))
+        return ct_mode_hold(b, e);
+    ct_ex from[32], to[32];
+    size_t n = 0;
+    const size_t nwalk = ct_ex_walk(b->x, &e, 1);
+    for (size_t i = 0; i < nwalk && n < COUNT(from); i++)
+        if (ct_ex_symbol(b->x, (ct_ex){b->x->stack[i]})
+            && ct_ex_symbol(b->x, (ct_ex){b->x->stack[i]})->kind == CT_SYM_SIGNAL)
+            from[n++] = (ct_ex){b->x->stack[i]};
+    if (b->resolving > deepest_signal) {
+        ct_error(b->ctx, ct_ex_symbol(b->x, from[0])->mark, CT_E_SIGNAL_USE,
+                 "signal '%s' depends on itself", ct_ex_symbol(b->x, from[0])->name);
+        return CT_EX_ZERO;
+    }
+    b->resolving++;
+    for (size_t i = 0; i < n; i++) {
+        const struct ct_sym s = *ct_ex_symbol(b->x, from[i]);
+        const unsigned late = 1u << CT_SYM_A | 1u << CT_SYM_LAM | 1u << CT_SYM_WORK;
+        if (ct_signal_resolve(b, s.name, s.mark, &to[i]) && !b->in_outputs
+            && ct_ex_kinds(b->x, to[i]) & late)
+            ct_error(b->ctx, s.mark, CT_E_SIGNAL_USE,
+                     "a force cannot depend on '%s': accelerations, reactions and work follow from it",
+                     s.name);
+    }
+    b->resolving--;
+    const ct_ex replaced = ct_ex_subst(b->x, e, from, to, n);
+    const bool more = ct_ex_kinds(b->x, replaced) & 1u << CT_SYM_SIGNAL; // more than COUNT(from)
+    return more ? ct_build_value(b, replaced) : b->in_outputs ? replaced : ct_mode_hold(b, replaced);
+}
+
+// ---- energies --------------------------------------------------------------------------------------------------------------
+
+void ct_energies_derive(struct ct_build *b)
+{
+    struct ct_exs *x = b->x;
+    struct ct_equations *e = b->eqs;
+    ct_ex kinetic = CT_EX_ZERO;
+    for (size_t i = 1; i < b->model->nbody; i++) {
+        const struct ct_body *body = &b->model->body[i];
+        const int node = b->node_of_com[i];
+        const ct_ex3 v = ct_node_velocity(b, node);
+        const ct_ex weight = ct_ex_mul(
+            x, body->mass, ct_ex3_dot(x, b->model->gravity, ct_node_position(b, node)));
+        kinetic = ct_ex_add(x, kinetic, ct_ex_mul(x, body->mass, ct_ex3_dot(x, v, v)));
+        kinetic = ct_ex_add(
+            x, kinetic,
+            ct_ex3_dot(x, ct_cluster_velocity(b, b->place[node].frame), body_spin(b, i)));
+        e->potential = ct_ex_sub(x, e->potential, weight);
+    }
+    e->kinetic = ct_ex_scale(x, 0.5, kinetic);
+    for (size_t i = 0; i < b->ncoordinate; i++) {
+        const struct ct_coordinate *c = &b->coordinate[i];
+        if (c->driver < 0)
+            continue;
+        struct ct_driver *d = &e->driver[c->driver];
+        d->effort = driver_effort(b, (int)i);
+        e->power = ct_ex_add(x, e->power, ct_ex_mul(x, d->effort, d->rate));
+    }
+    e->work_symbol = ct_ex_sym(x, CT_SYM_WORK, "work", 0);
+    if (ct_ex_is_zero(e->power))
+        e->work_symbol = CT_EX_ZERO;
+}
+
+// ---- outputs -----------------------------------------------------------------------------------------------------------------
+
+static bool push_result(struct ct_build *b, const char *name, ct_ex value)
+{
+    const struct ct_result r = {.name = name, .value = value};
+    CT_PUSH(b->arena, b->eqs->result, b->eqs->nresult, b->eqs->result_cap, r);
+    return true;
+}
+
+// Components a name without one stands for; NULL-terminated, or NULL for a scalar signal.
+static const char *const *components_of(struct ct_build *b, const char *name)
+{
+    static const char *const xyz[] = {".x", ".y", ".z", NULL};
+    static const char *const matrix[]
+        = {".xx", ".xy", ".xz", ".yx", ".yy", ".yz", ".zx", ".zy", ".zz", NULL};
+    static const char *const four[] = {".0", ".1", ".2", ".3", NULL};
+    static const char *const vectors[]
+        = {"position", "velocity", "acceleration", "angular_velocity", "angular_acceleration", "com",
+           "momentum", "angular_momentum", "force", "torque"};
+    struct signal s = {0};
+    int frame;
+    if (!split(b, name, &s, &frame) || s.component)
+        return NULL;
+    const int force = ct_model_find_force(b->model, s.owner);
+    if (force >= 0 && b->model->force[force].cls->signal) {
+        ct_ex scalar; // S.force of a spring is its tension
+        if (b->model->force[force].cls->signal(b, &b->model->force[force], s.property, &scalar))
+            return NULL;
+    }
+    if (index_of(s.property, vectors, COUNT(vectors)) >= 0 && strcmp(s.owner, "constraint"))
+        return xyz;
+    if (!strcmp(s.property, "rotation"))
+        return matrix;
+    return !strcmp(s.property, "quaternion") ? four : NULL;
+}
+
+static const char *with_component(struct ct_build *b, const char *name, const char *component)
+{
+    const char *axes = strstr(name, " in ");
+    const int n = axes ? (int)(axes - name) : (int)strlen(name);
+    return ct_arena_printf(b->arena, "%.*s%s%s", n, name, component, axes ? axes : "");
+}
+
+// "J.q" of a joint with several coordinates stands for all of them.
+static bool numbered_columns(struct ct_build *b, const char *name, struct ct_mark mark, bool *done)
+{
+    const char *dot = strrchr(name, '.');
+    *done = false;
+    if (!dot)
+        return true;
+    const int joint
+        = ct_model_find_joint(b->model, ct_arena_strndup(b->arena, name, (size_t)(dot - name)));
+    const bool stored = !strcmp(dot, ".q");
+    if (joint < 0 || (!stored && strcmp(dot, ".u") && strcmp(dot, ".a") && strcmp(dot, ".effort")))
+        return true;
+    const int n = stored ? b->model->joint[joint].ncoord : b->model->joint[joint].nfree;
+    if (n < 2)
+        return true;
+    *done = true;
+    for (int i = 1; i <= n; i++) {
+        const char *column = ct_arena_printf(b->arena, "%s%d", name, i);
+        ct_ex v;
+        if (!ct_signal_resolve(b, column, mark, &v))
+            return false;
+        push_result(b, column, v);
+    }
+    return true;
+}
+
+static bool signal_columns(struct ct_build *b, const char *name, struct ct_mark mark)
+{
+    ct_ex v;
+    bool done;
+    if (!numbered_columns(b, name, mark, &done))
+        return false;
+    if (done)
+        return true;
+    const char *const *component = components_of(b, name);
+    if (!component)
+        return ct_signal_resolve(b, name, mark, &v) && push_result(b, name, v);
+    for (; *component; component++) {
+        const char *column = with_component(b, name, *component);
+        if (!ct_signal_resolve(b, column, mark, &v))
+            return false;
+        push_result(b, column, v);
+    }
+    return true;
+}
+
+// A signal under a name of its own is one column of that name; else its columns are named after it.
+static void named_columns(struct ct_build *b, const struct ct_output *o)
+{
+    const size_t first = b->eqs->nresult;
+    const char *signal = ct_ex_symbol(b->x, o->value)->name;
+    if (signal_columns(b, signal, o->mark) && strcmp(o->name, signal)
+        && b->eqs->nresult == first + 1)
+        b->eqs->result[first].name = o->name;
+}
+
+bool ct_outputs_derive(struct ct_build *b)
+{
+    const size_t before = b->ctx->nerror;
+    b->in_outputs = true;
+    for (size_t i = 0; i < b->model->noutput; i++) {
+        const struct ct_output *o = &b->model->output[i];
+        if (o->is_signal)
+            named_columns(b, o);
+        else
+            push_result(b, o->name, ct_build_value(b, o->value));
+    }
+    b->in_outputs = false;
+    return b->ctx->nerror == before;
+}

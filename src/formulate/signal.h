@@ -1,0 +1,15 @@
+// Signals: names of the format (section 6) turned into expressions.
+#ifndef CT_FORMULATE_SIGNAL_H
+#define CT_FORMULATE_SIGNAL_H
+
+#include "formulate/dynamics.h"
+#include "formulate/row.h"
+
+/// The columns of all outputs; fills b->eqs->result.
+bool ct_outputs_derive(struct ct_build *b);
+/// Kinetic energy, potential of gravity and power of drivers, added to b->eqs.
+void ct_energies_derive(struct ct_build *b);
+/// One scalar signal; false with a diagnostic at mark if it does not exist.
+bool ct_signal_resolve(struct ct_build *b, const char *name, struct ct_mark mark, ct_ex *out);
+
+#endif

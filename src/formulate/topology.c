@@ -1,0 +1,456 @@
+// Model -> linear graph: nodes are frames, edges are components.  (formulation 1)
+//
+//   node 0       ground
+//   node         one per frame; one per centre of mass that is not at its body's origin;
+//                one between a joint that must be a branch and the weld that closes its loop
+//   edge         body  0 -> centre of mass     arm  body -> point or centre of mass
+//                joint from -> to              force, rod  from -> to (always chords)
+#include "formulate/topology.h"
+
+#include <math.h>
+#include <string.h>
+
+static int add_node(struct ct_build *b, const char *name, struct ct_mark mark, int body)
+{
+    const struct ct_node_info n
+        = {.name = name, .mark = mark, .body = body, .is_particle = b->model->body[body].is_particle};
+    CT_PUSH(b->arena, b->node, b->nnode, b->node_cap, n);
+    return (int)b->nnode - 1;
+}
+
+static struct ct_edge_info *add_edge(struct ct_build *b, enum ct_edge_kind kind, const char *name,
+                                     struct ct_mark mark, int tail, int head)
+{
+    const struct ct_edge_info e = {.kind = kind, .name = name, .mark = mark, .S = ct_ex33_identity()};
+    const struct ct_edge w = {tail, head};
+    size_t nwiring = b->nedge;
+    CT_PUSH(b->arena, b->wiring, nwiring, b->wiring_cap, w);
+    CT_PUSH(b->arena, b->edge, b->nedge, b->edge_cap, e);
+    return &b->edge[b->nedge - 1];
+}
+
+// ---- frames and bodies ------------------------------------------------------------------------
+
+static ct_ex33 turns_to_matrix(struct ct_exs *x, const struct ct_turn *turn, int nturn)
+{
+    ct_ex33 R = ct_ex33_identity();
+    for (int i = 0; i < nturn; i++) {
+        const ct_ex33 A = ct_ex33_axis_angle(x, turn[i].axis, turn[i].angle);
+        R = ct_ex33_mul(x, &R, &A);
+    }
+    return R;
+}
+
+static void add_frames(struct ct_build *b)
+{
+    const struct ct_model *m = b->model;
+    b->node_of_frame = CT_NEWN(b->arena, int, m->nframe);
+    for (size_t i = 0; i < m->nframe; i++)
+        b->node_of_frame[i] = add_node(b, m->frame[i].name, m->frame[i].mark, m->frame[i].body);
+    for (size_t i = 0; i < m->nframe; i++) {
+        const struct ct_frame *f = &m->frame[i];
+        const int own = m->body[f->body].frame;
+        if ((int)i == own)
+            continue;
+        struct ct_edge_info *e = add_edge(b, CT_EDGE_ARM, f->name, f->mark, b->node_of_frame[own],
+                                          b->node_of_frame[i]);
+        e->index = (int)i;
+        e->at = f->at;
+        e->S = turns_to_matrix(b->x, f->turn, f->nturn);
+        e->has_rotation = e->must_be_branch = true;
+    }
+}
+
+// The body edge runs from ground to the centre of mass; in absolute coordinates it is the branch.
+static void add_bodies(struct ct_build *b)
+{
+    const struct ct_model *m = b->model;
+    b->node_of_com = CT_NEWN(b->arena, int, m->nbody);
+    b->edge_of_body = CT_NEWN(b->arena, int, m->nbody);
+    b->edge_of_body[0] = -1;
+    for (size_t i = 1; i < m->nbody; i++) {
+        const struct ct_body *body = &m->body[i];
+        const int own = b->node_of_frame[body->frame];
+        b->node_of_com[i] = own;
+        if (!ct_ex3_is_zero(body->com)) {
+            const char *name = ct_arena_printf(b->arena, "%s.com", body->instance.name);
+            const int com = add_node(b, name, body->instance.mark, (int)i);
+            struct ct_edge_info *arm = add_edge(b, CT_EDGE_ARM, name, body->instance.mark, own, com);
+            arm->index = -1;
+            arm->at = body->com;
+            arm->has_rotation = arm->must_be_branch = true;
+            b->node_of_com[i] = com;
+        }
+        struct ct_edge_info *e = add_edge(b, CT_EDGE_BODY, body->instance.name, body->instance.mark,
+                                          0, b->node_of_com[i]);
+        e->index = (int)i;
+        e->self = &body->instance;
+        e->has_rotation = true;
+        b->edge_of_body[i] = (int)b->nedge - 1;
+    }
+}
+
+// ---- joints and forces ------------------------------------------------------------------------
+
+// Union-find over the edges that must be branches.
+static int find(int *set, int i)
+{
+    while (set[i] != i)
+        i = set[i] = set[set[i]];
+    return i;
+}
+
+static bool is_motionless(const struct ct_instance *joint)
+{
+    return !joint->cls->motion;
+}
+
+static void add_joints(struct ct_build *b)
+{
+    const struct ct_model *m = b->model;
+    b->edge_of_joint = CT_NEWN(b->arena, int, m->njoint + 1);
+    int *set = CT_NEWN(b->arena, int, b->nnode + m->njoint);
+    for (size_t i = 0; i < b->nnode + m->njoint; i++)
+        set[i] = (int)i;
+    for (size_t e = 0; e < b->nedge; e++)
+        if (b->edge[e].must_be_branch)
+            set[find(set, b->wiring[e].tail)] = find(set, b->wiring[e].head);
+    for (size_t j = 0; j < m->njoint; j++) {
+        const struct ct_instance *joint = &m->joint[j];
+        b->edge_of_joint[j] = -1;
+        if (joint->from < 0)
+            continue; // a gear couples coordinates, it joins no frames
+        const int from = b->node_of_frame[joint->from];
+        int to = b->node_of_frame[joint->to], closure = -1;
+        if (joint->cls->always_branch) {
+            if (find(set, from) == find(set, to)) {
+                // the loop is closed by a weld behind the joint
+                closure = to;
+                to = add_node(b, ct_arena_printf(b->arena, "%s.end", joint->name), joint->mark,
+                              b->node[to].body);
+            }
+            set[find(set, from)] = find(set, to);
+        }
+        struct ct_edge_info *e = add_edge(b, CT_EDGE_JOINT, joint->name, joint->mark, from, to);
+        e->index = (int)j;
+        e->self = joint;
+        e->has_rotation = !b->node[from].is_particle && !b->node[to].is_particle;
+        e->must_be_branch = joint->cls->always_branch;
+        e->never_branch = is_motionless(joint);
+        b->edge_of_joint[j] = (int)b->nedge - 1;
+        if (closure >= 0) {
+            e = add_edge(b, CT_EDGE_CLOSURE, ct_arena_printf(b->arena, "%s.closure", joint->name),
+                         joint->mark, to, closure);
+            e->index = (int)j;
+            e->has_rotation = !b->node[closure].is_particle;
+        }
+    }
+}
+
+static void add_forces(struct ct_build *b)
+{
+    const struct ct_model *m = b->model;
+    for (size_t i = 0; i < m->nforce; i++) {
+        const struct ct_instance *f = &m->force[i];
+        const int from = f->from < 0 ? 0 : b->node_of_frame[f->from];
+        struct ct_edge_info *e
+            = add_edge(b, CT_EDGE_FORCE, f->name, f->mark, from, b->node_of_frame[f->to]);
+        e->index = (int)i;
+        e->self = f;
+        e->never_branch = true;
+    }
+}
+
+// ---- motions and coordinates --------------------------------------------------------------------
+
+// Body edge: place of the centre of mass in ground axes and orientation. In a planar mechanism two
+// lengths and an angle, of a particle the place alone.
+static void body_motion(struct ct_build *b, const struct ct_edge_info *e, struct ct_motion *m)
+{
+    struct ct_exs *x = b->x;
+    if (b->is_planar) {
+        m->d = ct_ex3_add(x, ct_ex3_scale(x, m->coord[0], b->plane[0]),
+                          ct_ex3_scale(x, m->coord[1], b->plane[1]));
+        ct_motion_measure_length(m, b->plane[0]);
+        ct_motion_measure_length(m, b->plane[1]);
+    } else {
+        m->d = (ct_ex3){{m->coord[0], m->coord[1], m->coord[2]}};
+        for (int i = 0; i < 3; i++) {
+            double axis[3] = {0};
+            axis[i] = 1;
+            ct_motion_measure_length(m, ct_ex3_const(x, axis));
+        }
+    }
+    if (b->model->body[e->index].is_particle)
+        return;
+    if (b->is_planar) {
+        ct_motion_turn(m, b->plane[2], m->coord[2]);
+        ct_motion_measure_angle(m, b->plane[2], b->plane[0]);
+    } else {
+        m->quaternion = 3;
+        m->measure[m->nmeasure++].kind = CT_MEASURE_QUATERNION;
+    }
+}
+
+static void count_coordinates(const struct ct_build *b, const struct ct_edge_info *e, int *ncoord,
+                              int *nfree)
+{
+    const bool is_particle = e->kind == CT_EDGE_BODY && b->model->body[e->index].is_particle;
+    *ncoord = *nfree = 0;
+    if (e->kind == CT_EDGE_BODY) {
+        *ncoord = b->is_planar ? 3 - is_particle : is_particle ? 3 : 7;
+        *nfree = b->is_planar ? *ncoord : is_particle ? 3 : 6;
+    } else if (e->kind == CT_EDGE_JOINT) {
+        *ncoord = e->self->ncoord;
+        *nfree = e->self->nfree;
+    }
+}
+
+static bool depends(struct ct_exs *x, ct_ex3 v, ct_ex symbol)
+{
+    for (int i = 0; i < 3; i++)
+        if (!ct_ex_is_zero(ct_ex_diff(x, v.e[i], symbol)))
+            return true;
+    return false;
+}
+
+static bool turns_depend(struct ct_exs *x, const struct ct_motion *m, int k, ct_ex symbol)
+{
+    if (m->quaternion >= 0 && k >= m->quaternion)
+        return true;
+    for (int i = 0; i < m->nturn; i++)
+        if (!ct_ex_is_zero(ct_ex_diff(x, m->turn[i].angle, symbol)))
+            return true;
+    return false;
+}
+
+void ct_topology_motion(struct ct_build *b, const struct ct_edge_info *e, struct ct_motion *m)
+{
+    m->quaternion = -1;
+    m->value = b->value;
+    switch (e->kind) {
+    case CT_EDGE_BODY:
+        body_motion(b, e, m);
+        break;
+    case CT_EDGE_JOINT:
+        if (e->self->cls->motion)
+            e->self->cls->motion(b->x, e->self, m);
+        break;
+    case CT_EDGE_CLOSURE:
+        ct_motion_hold_place(b->x, m);
+        ct_motion_hold_turn(b->x, m);
+        break;
+    case CT_EDGE_ARM:
+    case CT_EDGE_FORCE:
+        break;
+    }
+}
+
+// Coordinates of an edge with trial symbols, to learn which graph each belongs to.
+static void add_coordinates(struct ct_build *b, int edge)
+{
+    struct ct_edge_info *e = &b->edge[edge];
+    struct ct_motion m = {0};
+    count_coordinates(b, e, &m.ncoord, &m.nfree);
+    for (int k = 0; k < m.ncoord; k++)
+        m.coord[k] = ct_ex_sym(b->x, CT_SYM_LOCAL, "trial", (uint32_t)k);
+    ct_topology_motion(b, e, &m);
+    e->first_coordinate = (int)b->ncoordinate;
+    e->ncoordinate = m.ncoord;
+    const struct ct_value *driver = NULL;
+    if (e->kind == CT_EDGE_JOINT)
+        driver = ct_instance_value(e->self, "motion");
+    for (int k = 0; k < m.ncoord; k++) {
+        const char *name = m.ncoord == 1 ? ct_arena_printf(b->arena, "%s.q", e->name)
+                                         : ct_arena_printf(b->arena, "%s.q%d", e->name, k + 1);
+        struct ct_coordinate c = {.name = name, .edge = edge, .place = k};
+        c.q = c.u = c.driver = -1;
+        c.in_translation = depends(b->x, m.d, m.coord[k]);
+        c.in_rotation = e->has_rotation && turns_depend(b->x, &m, k, m.coord[k]);
+        c.is_driven = driver && driver->given && (size_t)k < driver->n && !driver->hole[k];
+        CT_PUSH(b->arena, b->coordinate, b->ncoordinate, b->coordinate_cap, c);
+        const bool in_quaternion = m.quaternion >= 0 && k >= m.quaternion;
+        if (!c.is_driven && !(in_quaternion && k == m.quaternion)) { // four numbers, three freedoms
+            e->weight_t += c.in_translation;
+            e->weight_r += c.in_rotation;
+        }
+    }
+    e->trial = m;
+}
+
+// ---- planar mechanisms, class K (formulation 5.6 d) ----------------------------------------------
+
+static void value3(const struct ct_build *b, ct_ex3 v, double out[3])
+{
+    for (int i = 0; i < 3; i++)
+        out[i] = ct_ex_value(b->x, v.e[i], b->value);
+}
+
+static const double parallel_tolerance = 1e-12; // unit vectors from a dozen roundings
+
+static bool is_parallel(const double a[3], const double n[3])
+{
+    const double c = a[0] * n[0] + a[1] * n[1] + a[2] * n[2];
+    double d = 0;
+    for (int i = 0; i < 3; i++)
+        d = fmax(d, fabs(a[i] - c * n[i]));
+    return d < parallel_tolerance;
+}
+
+static bool is_across(const double a[3], const double n[3])
+{
+    return fabs(a[0] * n[0] + a[1] * n[1] + a[2] * n[2]) < parallel_tolerance;
+}
+
+// The motion of joint e keeps to the plane with normal n (in axes of `from`).
+static bool joint_is_planar(struct ct_build *b, const struct ct_edge_info *e, const double n[3])
+{
+    const struct ct_motion *m = &e->trial;
+    double v[3];
+    if (m->quaternion >= 0 && e->has_rotation)
+        return false;
+    for (int i = 0; i < m->nturn && e->has_rotation; i++) {
+        value3(b, m->turn[i].axis, v);
+        if (!is_parallel(v, n))
+            return false;
+    }
+    for (int k = 0; k < m->ncoord; k++) {
+        ct_ex3 p;
+        for (int i = 0; i < 3; i++)
+            p.e[i] = ct_ex_diff(b->x, m->d.e[i], m->coord[k]);
+        if (ct_ex3_is_zero(p))
+            continue;
+        for (int i = 0; i < 3; i++) // a direction that turns with q is not looked into
+            if (ct_ex_kinds(b->x, p.e[i]) & 1u << CT_SYM_LOCAL)
+                return false;
+        value3(b, p, v);
+        if (!is_across(v, n))
+            return false;
+    }
+    return true;
+}
+
+// n carried over an edge from its tail's axes to its head's.
+static void carry_normal(struct ct_build *b, const struct ct_edge_info *e, const double n[3],
+                         bool forward, double out[3])
+{
+    memcpy(out, n, 3 * sizeof *out);
+    if (e->kind != CT_EDGE_ARM)
+        return; // rotations about n leave it alone
+    double S[9];
+    for (int i = 0; i < 9; i++)
+        S[i] = ct_ex_value(b->x, e->S.e[i], b->value);
+    for (int i = 0; i < 3; i++) {
+        out[i] = 0;
+        for (int j = 0; j < 3; j++)
+            out[i] += (forward ? S[j + 3 * i] : S[i + 3 * j]) * n[j];
+    }
+}
+
+// Does every joint keep to the plane with ground normal n? Every body must hang on joints.
+static bool try_normal(struct ct_build *b, const double n0[3])
+{
+    double(*n)[3] = ct_arena_calloc(b->arena, b->nnode, sizeof *n);
+    bool *known = CT_NEWN(b->arena, bool, b->nnode);
+    memcpy(n[0], n0, sizeof n[0]);
+    known[0] = true;
+    for (bool grew = true; grew;) {
+        grew = false;
+        for (size_t i = 0; i < b->nedge; i++) {
+            const struct ct_edge_info *e = &b->edge[i];
+            if (e->kind == CT_EDGE_BODY || e->kind == CT_EDGE_FORCE || e->never_branch)
+                continue;
+            const int tail = b->wiring[i].tail, head = b->wiring[i].head;
+            if (known[tail] == known[head])
+                continue;
+            carry_normal(b, e, known[tail] ? n[tail] : n[head], known[tail],
+                         known[tail] ? n[head] : n[tail]);
+            known[tail] = known[head] = grew = true;
+        }
+    }
+    for (size_t i = 0; i < b->nnode; i++)
+        if (!known[i])
+            return false;
+    for (size_t i = 0; i < b->nedge; i++) {
+        const struct ct_edge_info *e = &b->edge[i];
+        if (e->kind == CT_EDGE_BODY || e->kind == CT_EDGE_FORCE || e->never_branch)
+            continue;
+        double head[3];
+        carry_normal(b, e, n[b->wiring[i].tail], true, head);
+        if (e->has_rotation && !is_parallel(head, n[b->wiring[i].head]))
+            return false;
+        if ((e->kind == CT_EDGE_JOINT) && !joint_is_planar(b, e, n[b->wiring[i].tail]))
+            return false;
+    }
+    return true;
+}
+
+// The normal can only be the axis of the first joint that turns, carried to ground; its `from` chain
+// may turn about that axis only, so the constant rotations of arms decide.
+static bool find_normal(struct ct_build *b, ct_ex3 *normal)
+{
+    for (size_t i = 0; i < b->nedge; i++) {
+        const struct ct_edge_info *e = &b->edge[i];
+        if (e->kind != CT_EDGE_JOINT || !e->has_rotation || !e->trial.nturn)
+            continue;
+        // candidates: the axis in coordinates of `from`, taken through the arm that leads there
+        ct_ex3 axis = e->trial.turn[0].axis;
+        for (size_t k = 0; k < b->nedge; k++)
+            if (b->edge[k].kind == CT_EDGE_ARM && b->wiring[k].head == b->wiring[i].tail)
+                axis = ct_ex33_apply(b->x, &b->edge[k].S, axis);
+        double n[3];
+        value3(b, axis, n);
+        // the sense does not matter; prefer the one along +z, +y, +x, so that coordinates read as usual
+        const int most = fabs(n[2]) > 0.5 ? 2 : fabs(n[1]) > 0.5 ? 1 : 0;
+        for (int k = 0; k < 3 && n[most] < 0; k++)
+            axis.e[k] = ct_ex_neg(b->x, axis.e[k]);
+        value3(b, axis, n);
+        *normal = axis;
+        return try_normal(b, n);
+    }
+    return false;
+}
+
+void ct_topology_left_out(struct ct_build *b, const char *what, const char *why)
+{
+    const struct ct_left_out l = {what, why};
+    CT_PUSH(b->arena, b->eqs->left_out, b->eqs->nleft_out, b->eqs->left_out_cap, l);
+}
+
+static void detect_plane(struct ct_build *b, bool allowed)
+{
+    const double axes[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+    for (int i = 0; i < 3; i++)
+        b->plane[i] = ct_ex3_const(b->x, axes + 3 * i);
+    ct_ex3 n;
+    if (!allowed || !find_normal(b, &n))
+        return;
+    b->is_planar = b->eqs->is_planar = true;
+    b->plane[2] = n;
+    ct_axes_across(b->x, n, b->value, &b->plane[0], &b->plane[1]);
+    double v[3];
+    value3(b, n, v);
+    const char *why = ct_arena_printf(b->arena,
+                                      "every joint turns about (%.6g, %.6g, %.6g) or slides across it",
+                                      v[0], v[1], v[2]);
+    ct_topology_left_out(b, "motion out of the plane and its constraint rows", why);
+}
+
+// ---- the stage ------------------------------------------------------------------------------------
+
+bool ct_topology_derive(struct ct_build *b, bool planar_allowed)
+{
+    add_frames(b);
+    add_bodies(b);
+    add_joints(b);
+    add_forces(b);
+    for (size_t e = 0; e < b->nedge; e++) // joints first: they decide whether all is planar
+        if (b->edge[e].kind == CT_EDGE_JOINT || b->edge[e].kind == CT_EDGE_CLOSURE)
+            add_coordinates(b, (int)e);
+    detect_plane(b, planar_allowed);
+    for (size_t e = 0; e < b->nedge; e++)
+        if (b->edge[e].kind == CT_EDGE_BODY)
+            add_coordinates(b, (int)e);
+    b->graph = (struct ct_graph){(int)b->nnode, (int)b->nedge, b->wiring};
+    return true;
+}

@@ -1,0 +1,354 @@
+// Places along the translational tree: anchors joined by links, nodes at constant offsets.
+//
+// A branch whose vector is constant in the cluster of its predecessor's vector adds to that vector;
+// only where the cluster changes, or where the branch slides, does an anchor come into being.
+#include "formulate/kinematics.h"
+
+#include <assert.h>
+
+static const ct_ex3 zero3 = {{{0}, {0}, {0}}};
+
+static bool same3(ct_ex3 a, ct_ex3 b)
+{
+    return ct_ex_same(a.e[0], b.e[0]) && ct_ex_same(a.e[1], b.e[1]) && ct_ex_same(a.e[2], b.e[2]);
+}
+
+static bool is_moving(const struct ct_build *b, ct_ex3 v)
+{
+    const unsigned moving = 1u << CT_SYM_Q | 1u << CT_SYM_TIME;
+    return (ct_ex_kinds(b->x, v.e[0]) | ct_ex_kinds(b->x, v.e[1]) | ct_ex_kinds(b->x, v.e[2]))
+           & moving;
+}
+
+// ---- anchors --------------------------------------------------------------------------------------
+
+static int add_anchor(struct ct_build *b, int parent, int cluster, ct_ex3 local)
+{
+    const struct ct_anchor a = {.parent = parent, .cluster = cluster, .local = local};
+    CT_PUSH(b->arena, b->anchor, b->nanchor, b->anchor_cap, a);
+    return (int)b->nanchor - 1;
+}
+
+// The anchor at a place; one that stands there already is used again.
+static int anchor_at(struct ct_build *b, const struct ct_place *p)
+{
+    if (ct_ex3_is_zero(p->local))
+        return p->anchor;
+    for (size_t i = b->nanchor; i-- > 1;) {
+        const struct ct_anchor *a = &b->anchor[i];
+        if (a->parent == p->anchor && a->cluster == p->cluster && !a->moves
+            && same3(a->local, p->local))
+            return (int)i;
+    }
+    return add_anchor(b, p->anchor, p->cluster, p->local);
+}
+
+// Node beyond a branch that slides: an anchor of its own.
+static void place_sliding(struct ct_build *b, const struct ct_edge_info *e, const struct ct_place *p,
+                          const struct ct_place *tail, int sign, ct_ex3 vector, struct ct_place *self)
+{
+    const int cluster = tail->frame;
+    ct_ex3 local = vector;
+    int parent = p->anchor;
+    if (p->cluster == cluster)
+        local = ct_ex3_add(b->x, p->local, vector);
+    else
+        parent = anchor_at(b, p);
+    const int i = add_anchor(b, parent, cluster, local);
+    struct ct_anchor *a = &b->anchor[i];
+    a->moves = true;
+    for (int k = 0; k < e->ncoordinate; k++) {
+        const struct ct_coordinate *c = &b->coordinate[e->first_coordinate + k];
+        ct_ex3 p_tail;
+        for (int j = 0; j < 3; j++)
+            p_tail.e[j] = ct_edge_partial(b, e, e->trial.d.e[j], k);
+        const ct_ex3 along = ct_ex33_apply(b->x, &tail->S, p_tail);
+        if (!ct_ex3_is_zero(along))
+            a->slide[a->nslide++]
+                = (struct ct_slide){c->u, c->driver, sign > 0 ? along : ct_ex3_neg(b->x, along)};
+    }
+    a->drift = ct_build_rate3(b, vector);
+    a->drift_bias = ct_build_rate3(b, a->drift);
+    self->anchor = i;
+    self->cluster = cluster;
+    self->local = zero3;
+}
+
+// (4.1): r_c = r_p + sign R_tail d, d in axes of the branch's tail.
+static void place_node(struct ct_build *b, int node)
+{
+    const int parent = b->T.parent[node], sign = b->T.sign[node];
+    const struct ct_edge_info *e = &b->edge[b->T.parent_edge[node]];
+    const struct ct_place *tail = &b->place[sign > 0 ? parent : node];
+    const struct ct_place p = b->place[parent];
+    struct ct_place *self = &b->place[node];
+    const ct_ex3 d = e->kind == CT_EDGE_ARM ? e->at : e->motion.d;
+    ct_ex3 vector = ct_ex33_apply(b->x, &tail->S, d);
+    if (sign < 0)
+        vector = ct_ex3_neg(b->x, vector);
+    self->anchor = p.anchor;
+    self->cluster = p.cluster;
+    self->local = p.local;
+    if (ct_ex3_is_zero(vector))
+        return;
+    if (is_moving(b, vector)) {
+        place_sliding(b, e, &p, tail, sign, vector, self);
+    } else if (p.cluster == tail->frame || ct_ex3_is_zero(p.local)) {
+        self->cluster = tail->frame;
+        self->local = ct_ex3_add(b->x, p.local, vector);
+    } else {
+        self->anchor = anchor_at(b, &p);
+        self->cluster = tail->frame;
+        self->local = vector;
+    }
+}
+
+static void number_anchors(struct ct_build *b)
+{
+    int *size = CT_NEWN(b->arena, int, b->nanchor), *next = CT_NEWN(b->arena, int, b->nanchor);
+    for (size_t a = b->nanchor; a-- > 1;)
+        size[b->anchor[a].parent] += ++size[a];
+    b->anchor[0].leave = size[0];
+    next[0] = 1;
+    for (size_t a = 1; a < b->nanchor; a++) {
+        struct ct_anchor *self = &b->anchor[a];
+        self->enter = next[self->parent];
+        self->leave = self->enter + size[a] - 1;
+        next[self->parent] += size[a];
+        next[a] = self->enter + 1;
+    }
+}
+
+void ct_translation_derive(struct ct_build *b)
+{
+    add_anchor(b, -1, 0, zero3);
+    for (size_t i = 1; i < b->nnode; i++)
+        place_node(b, b->T.order[i]);
+    number_anchors(b);
+}
+
+ct_ex3 ct_build_in_plane(struct ct_build *b, ct_ex3 v)
+{
+    if (!b->is_planar)
+        return v;
+    const ct_ex3 n = b->plane[2];
+    return ct_ex3_sub(b->x, v, ct_ex3_scale(b->x, ct_ex3_dot(b->x, n, v), n));
+}
+
+// ---- links ----------------------------------------------------------------------------------------
+
+ct_ex3 ct_link_vector(struct ct_build *b, int i)
+{
+    struct ct_anchor *a = &b->anchor[i];
+    if (!a->has_d)
+        a->d = ct_cluster_turn(b, a->cluster, a->local);
+    a->has_d = true;
+    return a->d;
+}
+
+ct_ex3 ct_link_velocity(struct ct_build *b, int i)
+{
+    struct ct_anchor *a = &b->anchor[i];
+    const ct_ex3 v = ct_cluster_swing(b, a->cluster, ct_link_vector(b, i));
+    return a->moves ? ct_ex3_add(b->x, v, ct_cluster_turn(b, a->cluster, a->drift)) : v;
+}
+
+// Acceleration of a vector fixed in a cluster: al x d + w x (w x d).
+static ct_ex3 carried_acceleration(struct ct_build *b, int cluster, ct_ex3 d, enum ct_level level)
+{
+    const ct_ex3 turning = ct_ex3_cross(b->x, ct_cluster_acceleration(b, cluster, level), d);
+    return ct_ex3_add(b->x, turning, ct_cluster_centripetal(b, cluster, d));
+}
+
+ct_ex3 ct_link_slide(struct ct_build *b, int i, enum ct_level level)
+{
+    struct ct_anchor *a = &b->anchor[i];
+    struct ct_exs *x = b->x;
+    if (!a->moves)
+        return zero3;
+    ct_ex3 s = a->drift_bias;
+    for (int k = 0; level == CT_FULL && k < a->nslide; k++)
+        if (a->slide[k].speed >= 0)
+            s = ct_ex3_add(
+                x, s, ct_ex3_scale(x, b->eqs->u[a->slide[k].speed].derivative, a->slide[k].p));
+    const ct_ex3 drift = ct_cluster_turn(b, a->cluster, a->drift);
+    const ct_ex3 coriolis
+        = ct_ex3_scale(x, ct_ex_const(x, 2), ct_cluster_swing(b, a->cluster, drift));
+    return ct_ex3_add(x, coriolis, ct_cluster_turn(b, a->cluster, s));
+}
+
+ct_ex3 ct_link_acceleration(struct ct_build *b, int i, enum ct_level level)
+{
+    const ct_ex3 carried
+        = carried_acceleration(b, b->anchor[i].cluster, ct_link_vector(b, i), level);
+    return ct_ex3_add(b->x, carried, ct_link_slide(b, i, level));
+}
+
+// ---- anchors and nodes ------------------------------------------------------------------------------
+
+static ct_ex3 anchor_position(struct ct_build *b, int i)
+{
+    return i ? ct_ex3_add(b->x, anchor_position(b, b->anchor[i].parent), ct_link_vector(b, i)) : zero3;
+}
+
+static ct_ex3 anchor_velocity(struct ct_build *b, int i)
+{
+    struct ct_anchor *a = &b->anchor[i];
+    if (i && !a->has_v) {
+        a->v = ct_ex3_add(b->x, anchor_velocity(b, a->parent), ct_link_velocity(b, i));
+        a->has_v = true;
+    }
+    return a->v;
+}
+
+ct_ex3 ct_anchor_acceleration(struct ct_build *b, int i, enum ct_level level)
+{
+    struct ct_anchor *a = &b->anchor[i];
+    if (i && !a->has_a[level]) {
+        a->a[level] = ct_ex3_add(b->x, ct_anchor_acceleration(b, a->parent, level),
+                                 ct_link_acceleration(b, i, level));
+        a->has_a[level] = true;
+    }
+    return a->a[level];
+}
+
+static ct_ex3 offset(struct ct_build *b, const struct ct_place *p)
+{
+    return ct_cluster_turn(b, p->cluster, p->local);
+}
+
+ct_ex3 ct_node_position(struct ct_build *b, int node)
+{
+    const struct ct_place *p = &b->place[node];
+    return ct_ex3_add(b->x, anchor_position(b, p->anchor), offset(b, p));
+}
+
+ct_ex3 ct_node_velocity(struct ct_build *b, int node)
+{
+    const struct ct_place *p = &b->place[node];
+    return ct_ex3_add(b->x, anchor_velocity(b, p->anchor),
+                      ct_cluster_swing(b, p->cluster, offset(b, p)));
+}
+
+ct_ex3 ct_node_acceleration(struct ct_build *b, int node, enum ct_level level)
+{
+    const struct ct_place *p = &b->place[node];
+    return ct_ex3_add(b->x, ct_anchor_acceleration(b, p->anchor, level),
+                      carried_acceleration(b, p->cluster, offset(b, p), level));
+}
+
+// ---- paths ----------------------------------------------------------------------------------------
+
+// One piece of a path: an anchor's link, or the offset of an end node (anchor < 0).
+struct piece {
+    int anchor, cluster, sign;
+    ct_ex3 local;
+};
+
+struct path {
+    struct piece *piece;
+    size_t n;
+};
+
+static void add_piece(struct path *p, int anchor, int cluster, int sign, ct_ex3 local)
+{
+    if (!ct_ex3_is_zero(local))
+        p->piece[p->n++] = (struct piece){anchor, cluster, sign, local};
+}
+
+// From tail to head: offsets and links up to where both chains of anchors meet.
+static struct path find_path(struct ct_build *b, int tail, int head)
+{
+    const struct ct_place *t = &b->place[tail], *h = &b->place[head];
+    struct path p = {CT_NEWN(b->arena, struct piece, b->nanchor + 2), 0};
+    if (t->anchor == h->anchor && t->cluster == h->cluster) {
+        add_piece(&p, -1, h->cluster, 1, ct_ex3_sub(b->x, h->local, t->local));
+        return p;
+    }
+    add_piece(&p, -1, h->cluster, 1, h->local);
+    add_piece(&p, -1, t->cluster, -1, t->local);
+    int i = h->anchor, j = t->anchor;
+    while (i != j) // numbers grow outwards: the larger one steps inwards
+        if (i > j) {
+            add_piece(&p, i, b->anchor[i].cluster, 1, b->anchor[i].local);
+            i = b->anchor[i].parent;
+        } else {
+            add_piece(&p, j, b->anchor[j].cluster, -1, b->anchor[j].local);
+            j = b->anchor[j].parent;
+        }
+    return p;
+}
+
+static ct_ex3 piece_vector(struct ct_build *b, const struct piece *p)
+{
+    return p->anchor >= 0 ? ct_link_vector(b, p->anchor) : ct_cluster_turn(b, p->cluster, p->local);
+}
+
+static ct_ex3 piece_velocity(struct ct_build *b, const struct piece *p)
+{
+    return p->anchor >= 0 ? ct_link_velocity(b, p->anchor)
+                          : ct_cluster_swing(b, p->cluster, piece_vector(b, p));
+}
+
+static ct_ex3 piece_acceleration(struct ct_build *b, const struct piece *p, enum ct_level level)
+{
+    return p->anchor >= 0 ? ct_link_acceleration(b, p->anchor, level)
+                          : carried_acceleration(b, p->cluster, piece_vector(b, p), level);
+}
+
+static ct_ex3 accumulate(struct ct_build *b, ct_ex3 sum, int sign, ct_ex3 v)
+{
+    return sign > 0 ? ct_ex3_add(b->x, sum, v) : ct_ex3_sub(b->x, sum, v);
+}
+
+ct_ex3 ct_path_position(struct ct_build *b, int tail, int head)
+{
+    const struct path p = find_path(b, tail, head);
+    ct_ex3 sum = zero3;
+    for (size_t i = 0; i < p.n; i++)
+        sum = accumulate(b, sum, p.piece[i].sign, piece_vector(b, &p.piece[i]));
+    return sum;
+}
+
+ct_ex3 ct_path_velocity(struct ct_build *b, int tail, int head)
+{
+    const struct path p = find_path(b, tail, head);
+    ct_ex3 sum = zero3;
+    for (size_t i = 0; i < p.n; i++)
+        sum = accumulate(b, sum, p.piece[i].sign, piece_velocity(b, &p.piece[i]));
+    return sum;
+}
+
+ct_ex3 ct_path_acceleration(struct ct_build *b, int tail, int head, enum ct_level level)
+{
+    const struct path p = find_path(b, tail, head);
+    ct_ex3 sum = zero3;
+    for (size_t i = 0; i < p.n; i++)
+        sum = accumulate(b, sum, p.piece[i].sign, piece_acceleration(b, &p.piece[i], level));
+    return sum;
+}
+
+bool ct_path_reach(struct ct_build *b, int tail, int head, size_t r, bool carried, ct_ex3 *reach)
+{
+    const struct path p = find_path(b, tail, head);
+    const int turning = b->spin[r].cluster;
+    const int base = carried && ct_cluster_is_outboard(b, turning, b->place[tail].frame);
+    bool any = false;
+    *reach = zero3;
+    for (size_t i = 0; i < p.n; i++) {
+        const int turns = ct_cluster_is_outboard(b, turning, p.piece[i].cluster);
+        if (turns == base)
+            continue;
+        any = true;
+        const int sign = (turns - base) * p.piece[i].sign;
+        *reach = accumulate(b, *reach, sign, piece_vector(b, &p.piece[i]));
+    }
+    return any;
+}
+
+int ct_path_slide(struct ct_build *b, int tail, int head, int anchor)
+{
+    const bool at_head = ct_anchor_is_outboard(b, anchor, b->place[head].anchor);
+    const bool at_tail = ct_anchor_is_outboard(b, anchor, b->place[tail].anchor);
+    return (int)at_head - (int)at_tail;
+}

@@ -1,0 +1,75 @@
+// Fundamental circuits by the path method of formulation 3.2: no elimination, no arithmetic.
+//
+// Both ends of a chord are walked up to their common ancestor. With sg(v) = +1 where the parent
+// edge points away from ground, its entry of B_t is -sg on the way up from the head and +sg on
+// the way down to the tail.
+#include "graph/graph.h"
+
+static int common_ancestor(const struct ct_tree *t, int a, int b)
+{
+    while (a != b) {
+        if (t->depth[a] >= t->depth[b])
+            a = t->parent[a];
+        else
+            b = t->parent[b];
+    }
+    return a;
+}
+
+int ct_tree_circuit(const struct ct_graph *g, const struct ct_tree *t, int e, int *branch,
+                    signed char *sign)
+{
+    const int tail = g->edge[e].tail, head = g->edge[e].head;
+    const int top = common_ancestor(t, tail, head);
+    const int nup = t->depth[head] - t->depth[top];
+    const int n = nup + t->depth[tail] - t->depth[top];
+
+    for (int v = head, k = 0; v != top; v = t->parent[v], k++) {
+        branch[k] = t->parent_edge[v];
+        sign[k] = (signed char)-t->sign[v];
+    }
+    // the way down to the tail is found upwards, so it is filled from the end
+    for (int v = tail, k = n - 1; v != top; v = t->parent[v], k--) {
+        branch[k] = t->parent_edge[v];
+        sign[k] = (signed char)t->sign[v];
+    }
+    return n;
+}
+
+/// Entries in each column of B_f, counted into start[e + 1] and summed to column starts.
+static void count_columns(const struct ct_graph *g, const struct ct_tree *t, int *branch,
+                          signed char *sign, int *start)
+{
+    for (int k = 0; k < t->nchord; k++) {
+        const int n = ct_tree_circuit(g, t, t->chord[k], branch, sign);
+        start[t->chord[k] + 1]++;
+        for (int i = 0; i < n; i++)
+            start[branch[i] + 1]++;
+    }
+    for (int e = 0; e < g->nedge; e++)
+        start[e + 1] += start[e];
+}
+
+void ct_circuits_derive(struct ct_arena *a, const struct ct_graph *g, const struct ct_tree *t,
+                        struct ct_incidence *Bf)
+{
+    int *branch = CT_NEWN(a, int, t->nbranch), *start = CT_NEWN(a, int, g->nedge + 1);
+    signed char *sign = CT_NEWN(a, signed char, t->nbranch);
+    count_columns(g, t, branch, sign, start);
+
+    const int nentry = start[g->nedge];
+    *Bf = (struct ct_incidence){t->nchord, g->nedge, start, CT_NEWN(a, int, nentry),
+                                CT_NEWN(a, signed char, nentry)};
+    int *next = CT_NEWN(a, int, g->nedge); // next free place of each column
+    for (int e = 0; e < g->nedge; e++)
+        next[e] = start[e];
+    for (int k = 0; k < t->nchord; k++) { // ascending, so the rows of a column come out sorted
+        const int c = t->chord[k], n = ct_tree_circuit(g, t, c, branch, sign);
+        Bf->row[next[c]] = k;
+        Bf->value[next[c]++] = 1;
+        for (int i = 0; i < n; i++) {
+            Bf->row[next[branch[i]]] = k;
+            Bf->value[next[branch[i]]++] = sign[i];
+        }
+    }
+}

@@ -1,0 +1,145 @@
+// How many spanning trees there are, and all of them in turn.
+//
+// Counting: the matrix-tree theorem (Kirchhoff 1847, key kirchhoff1847) says det(A A') is the
+// number of trees. It is evaluated as a resistor network: nodes are eliminated one by one by
+// the star-mesh transformation, and the pivots are the total conductances met. This is Gaussian
+// elimination with the diagonal rebuilt from the off-diagonals, so nothing is ever subtracted.
+//
+// Enumerating: each edge in turn is taken and then left out, and a choice is followed only if a
+// tree can still come of it, so no work is spent on dead ends.
+#include "graph/graph.h"
+
+#include "graph/pieces.h"
+
+#include <math.h>
+
+/// Join the ends of forced edges; false if they close a circuit or one is banned too.
+static bool join_forced(const struct ct_graph *g, const bool *forced, const bool *banned,
+                        struct ct_pieces *p)
+{
+    for (int e = 0; forced && e < g->nedge; e++)
+        if (forced[e] && ((banned && banned[e]) || !ct_pieces_join(p, g->edge[e])))
+            return false;
+    return true;
+}
+
+/// W (n x n, out, symmetric): number of free edges between each two pieces, numbered by
+/// place[].
+static void fill_conductances(double *W, const struct ct_graph *g, const bool *banned,
+                              struct ct_pieces *p, const int *place, int n)
+{
+    for (int e = 0; e < g->nedge; e++) {
+        const int i = place[ct_pieces_find(p, g->edge[e].tail)];
+        const int j = place[ct_pieces_find(p, g->edge[e].head)];
+        if (i == j || (banned && banned[e])) // forced edges lie within one piece
+            continue;
+        W[i + n * j] += 1;
+        W[j + n * i] += 1;
+    }
+}
+
+/// Product of the pivots of the star-mesh elimination of nodes n - 1, ..., 1 of the
+/// conductances W (n x n, destroyed).
+static double eliminate_nodes(double *W, int n)
+{
+    double ntree = 1;
+    for (int k = n - 1; k > 0; k--) {
+        double d = 0; // total conductance at node k
+        for (int j = 0; j < k; j++)
+            d += W[j + n * k];
+        if (d == 0)
+            return 0; // not connected
+        ntree *= d;
+        for (int j = 0; j < k; j++)
+            for (int i = 0; i < k; i++)
+                W[i + n * j] += i == j ? 0 : W[i + n * k] * W[j + n * k] / d;
+    }
+    return round(ntree);
+}
+
+double ct_tree_count(struct ct_arena *scratch, const struct ct_graph *g, const bool *forced,
+                     const bool *banned)
+{
+    struct ct_pieces p;
+    ct_pieces_init(scratch, g->nnode, &p);
+    if (!join_forced(g, forced, banned, &p))
+        return 0;
+
+    int *place = CT_NEWN(scratch, int, g->nnode);
+    const int n = p.npiece;
+    for (int v = 0, i = 0; v < g->nnode; v++)
+        if (ct_pieces_find(&p, v) == v)
+            place[v] = i++;
+    double *W = CT_NEWN(scratch, double, (size_t)n *(size_t)n);
+    fill_conductances(W, g, banned, &p, place, n);
+    return eliminate_nodes(W, n);
+}
+
+struct enumeration {
+    const struct ct_graph *g;
+    bool *is_branch;         // forced edges and those taken so far
+    bool *is_free;           // neither forced nor banned
+    int nmissing;            // branches a tree still needs
+    struct ct_pieces pieces; // workspace
+    bool (*visit)(void *data, const bool *is_branch);
+    void *data;
+};
+
+/// Would e close a circuit with the branches taken?
+static bool closes_circuit(struct enumeration *s, int e)
+{
+    ct_pieces_reset(&s->pieces);
+    for (int i = 0; i < s->g->nedge; i++)
+        if (s->is_branch[i])
+            ct_pieces_join(&s->pieces, s->g->edge[i]);
+    return !ct_pieces_join(&s->pieces, s->g->edge[e]);
+}
+
+/// Do the branches taken and the free edges from `first` on reach every node?
+static bool can_span(struct enumeration *s, int first)
+{
+    ct_pieces_reset(&s->pieces);
+    for (int i = 0; i < s->g->nedge; i++)
+        if (s->is_branch[i] || (i >= first && s->is_free[i]))
+            ct_pieces_join(&s->pieces, s->g->edge[i]);
+    return s->pieces.npiece == 1;
+}
+
+/// All trees that contain the branches taken, choosing among the free edges from e on. Here the
+/// branches are free of circuits and can_span(e) holds, so at least one tree follows.
+static bool choose_from(struct enumeration *s, int e)
+{
+    if (s->nmissing == 0)
+        return s->visit(s->data, s->is_branch);
+    while (!s->is_free[e])
+        e++;
+    if (!closes_circuit(s, e)) {
+        s->is_branch[e] = true;
+        s->nmissing--;
+        const bool go_on = choose_from(s, e + 1);
+        s->is_branch[e] = false;
+        s->nmissing++;
+        if (!go_on)
+            return false;
+    }
+    return !can_span(s, e + 1) || choose_from(s, e + 1);
+}
+
+bool ct_tree_enumerate(struct ct_arena *scratch, const struct ct_graph *g, const bool *forced,
+                       const bool *banned, bool (*visit)(void *data, const bool *is_branch),
+                       void *data)
+{
+    struct enumeration s = {.g = g, .visit = visit, .data = data};
+    ct_pieces_init(scratch, g->nnode, &s.pieces);
+    if (!join_forced(g, forced, banned, &s.pieces))
+        return true;
+
+    s.nmissing = s.pieces.npiece - 1;
+    s.is_branch = CT_NEWN(scratch, bool, g->nedge);
+    s.is_free = CT_NEWN(scratch, bool, g->nedge);
+    for (int e = 0; e < g->nedge; e++) {
+        s.is_branch[e] = forced && forced[e];
+        s.is_free[e] = !s.is_branch[e] && !(banned && banned[e]);
+    }
+    return !can_span(&s, 0) || choose_from(&s, 0);
+}

@@ -1,0 +1,71 @@
+// The search for a pair of spanning trees, one per graph, at least cost; formulation 2.3.
+//
+//     least weight pair  -->  few pairs?  --yes-->  try them all
+//      (Kruskal twice)            '-------no------>  steepest descent by exchanges
+//
+// The two graphs share nodes and edges; they differ in weights and in the edges that are forced
+// or banned. Cost is the caller's: a function of the two trees. What always holds: every pair
+// that is tried has all forced edges and no banned one, agrees on every tied edge, and weighs
+// at most the least weight plus the excess. The same input gives the same pair.
+#ifndef CT_GRAPH_EXCHANGE_H
+#define CT_GRAPH_EXCHANGE_H
+
+#include "graph/graph.h"
+
+/// What one of the two trees must respect; arrays have one entry per edge.
+struct ct_tree_rules {
+    const int *weight;  // negative: never a branch
+    const int *rank;    // order among equal weights for the least weight pair; may be NULL
+    const bool *forced; // always a branch (R1); may be NULL
+    const bool *banned; // never a branch (R2); may be NULL
+};
+
+struct ct_search_options {
+    struct ct_tree_rules trans, rot;
+    const bool *tied; // per edge: in both trees or in neither (R3); may be NULL
+    double limit; // all pairs are tried if there are at most this many; 0: 500, negative: never
+    int budget;   // evaluations of the descent; 0: 200
+    int excess;   // allowed weight above the least; 0: 3, negative: none
+};
+
+/// A pair of trees by their branches, one entry per edge.
+struct ct_tree_pair {
+    bool *trans, *rot;
+};
+
+struct ct_search_stats {
+    double npair;                   // pairs by forced and banned edges alone
+    int nevaluated;                 // calls of the cost function
+    bool exhaustive;                // all pairs were tried
+    bool out_of_budget;             // the descent was cut short
+    int weight_least, weight;       // total weight: least possible, of the pair found
+    double cost_least_weight, cost; // cost of the least weight pair, of the pair found
+};
+
+/// Cost of a pair; INFINITY (or NaN) if the pair is inadmissible. The trees live in the arena.
+typedef double (*ct_tree_cost)(void *data, const struct ct_tree *T, const struct ct_tree *R);
+
+/**
+ * The cheapest pair of spanning trees the search meets.
+ *
+ * Among equal costs the smaller total weight wins, then the pair found first. A descent step
+ * tries all neighbours, lightest first, and goes to the best one. A neighbour exchanges a chord
+ * for a branch of its circuit in one tree; if a tied edge moves, it moves in both trees at
+ * once.
+ *
+ * a       in    holds the result and the trees tried
+ * g       in    both graphs' nodes and edges
+ * best    out   branches of the pair found; left alone on false
+ * stats   out   filled in any case
+ *
+ * False if no pair keeps the rules (then nevaluated is 0), or if no pair tried has a finite
+ * cost.
+ * Cost    at most max(limit, budget) evaluations and O(e^2) besides each
+ * Source  formulation 2.3; the least weight pair is exact (graphic matroid, 2.1), tied edges
+ *         are settled by branch and bound
+ */
+bool ct_tree_search(struct ct_arena *a, const struct ct_graph *g,
+                    const struct ct_search_options *options, ct_tree_cost cost, void *data,
+                    struct ct_tree_pair *best, struct ct_search_stats *stats);
+
+#endif

@@ -1,0 +1,154 @@
+// Dormand-Prince 5(4): six stages a step, the seventh is the first of the next.
+//
+// Two interpolants correct the cubic Hermite polynomial of the step, with t = theta:
+//
+//     quartic   t^2 (1 - t)^2 h sum d_i k_i        error of order h^5, costs nothing; for roots
+//     quintic   t^2 (1 - t)^2 h (a + b t)          error of order h^6 like the step; for samples
+//
+// a and b make the slope at t = 1/5 and 1/2 that of f at the points of the quartic: their error
+// h^5 counts as h^6 in the integral (bootstrapping). Where errors do not accumulate the quartic is
+// off by some 20 tolerances though the steps keep to one; hence the two evaluations more.
+//
+// Sources: Dormand and Prince (1980), key dormand1980, table 2; quartic by Shampine (1986) as in
+// Hairer, Norsett and Wanner (1993), II.6, key hairer1993; bootstrapping by Enright, Jackson,
+// Norsett and Thomsen (1986), key enright1986.
+#include "integrate/stepper.h"
+
+#include <string.h>
+
+enum { STAGES = 7 };
+
+static const double C[STAGES] = {0, 1. / 5, 3. / 10, 4. / 5, 8. / 9, 1, 1};
+
+static const double A[STAGES][STAGES] = {
+    [1] = {1. / 5},
+    [2] = {3. / 40, 9. / 40},
+    [3] = {44. / 45, -56. / 15, 32. / 9},
+    [4] = {19372. / 6561, -25360. / 2187, 64448. / 6561, -212. / 729},
+    [5] = {9017. / 3168, -355. / 33, 46732. / 5247, 49. / 176, -5103. / 18656},
+    [6] = {35. / 384, 0, 500. / 1113, 125. / 192, -2187. / 6784, 11. / 84}, // = y1
+};
+
+// fifth order minus fourth order
+static const double E[STAGES]
+    = {71. / 57600, 0, -71. / 16695, 71. / 1920, -17253. / 339200, 22. / 525, -1. / 40};
+
+static const double D[STAGES] = {
+    -12715105075. / 11282082432,  0,
+    87487479700. / 32700410799,   -10690763975. / 1880347072,
+    701980252875. / 199316789632, -1453857185. / 822651844,
+    69997945. / 29380423,
+};
+
+// The workspace by parts: k (ny x 7), the other vectors (ny), is_prepared (1).
+struct parts {
+    double *k, *point, *slope, *a, *b, *is_prepared;
+};
+
+static struct parts divide(double *work, int n)
+{
+    double *rest = work + STAGES * n;
+    return (struct parts){work, rest, rest + n, rest + 2 * n, rest + 3 * n, rest + 4 * n};
+}
+
+static size_t work_size(int ny)
+{
+    return (STAGES + 4) * (size_t)ny + 1;
+}
+
+static enum ct_eval step(const struct ct_problem *p, double t, double h, const double *y,
+                         const double *dy, const struct ct_tolerance *tolerance, double *y1,
+                         double *dy1, double *err, double *work,
+                         struct ct_integrate_stats *stats)
+{
+    const int n = p->ny;
+    const size_t bytes = (size_t)n * sizeof *y;
+    const struct parts w = divide(work, n);
+    double *k = w.k, *point = w.point;
+    *w.is_prepared = false;
+    memcpy(k, dy, bytes);
+    for (int s = 1; s < STAGES; s++) {
+        ct_stepper_combine(point, y, h, A[s], k, s, n);
+        const enum ct_eval e = ct_stepper_rhs(p, t + C[s] * h, point, k + s * n, stats);
+        if (e != CT_EVAL_OK)
+            return e;
+    }
+    memcpy(y1, point, bytes); // the last stage point
+    memcpy(dy1, k + (STAGES - 1) * n, bytes);
+    if (tolerance) {
+        ct_stepper_combine(point, NULL, h, E, k, STAGES, n);
+        *err = ct_stepper_norm(p, tolerance, y, y1, point);
+    }
+    return CT_EVAL_OK;
+}
+
+static void quartic(double *out, double h, double theta, const double *y, const double *y1,
+                    const struct parts *w, int n)
+{
+    const double bubble = theta * theta * (1 - theta) * (1 - theta);
+    ct_stepper_combine(w->slope, NULL, h * bubble, D, w->k, STAGES, n);
+    ct_stepper_hermite(out, theta, h, y, w->k, y1, w->k + (STAGES - 1) * n, n);
+    for (int i = 0; i < n; i++)
+        out[i] += w->slope[i];
+}
+
+// out (n) = f at the point of the quartic at theta, minus the slope of the Hermite polynomial.
+static enum ct_eval miss(double *out, double theta, const struct ct_problem *p, double t,
+                         double h, const double *y, const double *y1, const struct parts *w,
+                         struct ct_integrate_stats *stats)
+{
+    const int n = p->ny;
+    quartic(w->point, h, theta, y, y1, w, n);
+    const enum ct_eval e = ct_stepper_rhs(p, t + theta * h, w->point, out, stats);
+    const double *dy = w->k, *dy1 = w->k + (STAGES - 1) * n, rest = 1 - theta;
+    for (int i = 0; i < n && e == CT_EVAL_OK; i++)
+        out[i] -= 6 * theta * rest * (y1[i] - y[i]) / h + rest * (1 - 3 * theta) * dy[i]
+                + theta * (3 * theta - 2) * dy1[i];
+    return e;
+}
+
+static enum ct_eval prepare(const struct ct_problem *p, double t, double h, const double *y,
+                            const double *y1, double *work, struct ct_integrate_stats *stats)
+{
+    const struct parts w = divide(work, p->ny);
+    enum ct_eval e = miss(w.b, 1. / 2, p, t, h, y, y1, &w, stats);
+    if (e == CT_EVAL_OK)
+        e = miss(w.a, 1. / 5, p, t, h, y, y1, &w, stats);
+    if (e != CT_EVAL_OK)
+        return e;
+    // slope of t^2 (1 - t)^2 (a + b t):  b / 16 at 1/2,  (24 a + 8 b) / 125 at 1/5
+    for (int i = 0; i < p->ny; i++) {
+        w.b[i] *= 16;
+        w.a[i] = (125 * w.a[i] - 8 * w.b[i]) / 24;
+    }
+    *w.is_prepared = true;
+    return CT_EVAL_OK;
+}
+
+static void dense(const struct ct_problem *p, double h, double theta, const double *y,
+                  const double *y1, double *work, double *out)
+{
+    const int n = p->ny;
+    const struct parts w = divide(work, n);
+    const double bubble = theta * theta * (1 - theta) * (1 - theta);
+    if (!*w.is_prepared) {
+        quartic(out, h, theta, y, y1, &w, n);
+        return;
+    }
+    ct_stepper_hermite(out, theta, h, y, w.k, y1, w.k + (STAGES - 1) * n, n);
+    for (int i = 0; i < n; i++)
+        out[i] += h * bubble * (w.a[i] + theta * w.b[i]);
+}
+
+const struct ct_method ct_method_dopri5 = {
+    .name = "dopri5",
+    .summary = "Dormand-Prince 5(4), explicit, for smooth motions without stiff parts",
+    .source = "dormand1980",
+    .order = 5,
+    .error_order = 4,
+    .work = work_size,
+    .step = step,
+    .prepare = prepare,
+    .has_rough_dense = true,
+    .dense = dense,
+};

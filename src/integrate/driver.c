@@ -1,0 +1,541 @@
+// Steps, their size, events and samples: ct_integrate.
+//
+//     fit -> attempt (step, project) -> search for an event -> [attempt again up to it]
+//         -> samples on the way -> commit -> event -> sample on it
+//
+// A step that the method, the projection or a root function refuses, or whose error is too large,
+// is tried again shorter; until `commit` nothing has changed. Step control is the PI controller of
+// Gustafsson (1991), key gustafsson1991, with the constants of Hairer, Norsett and Wanner (1993),
+// II.4, key hairer1993; the first step is the one of the same section.
+#include "integrate/watch.h"
+
+#include <assert.h>
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+static const double safety = 0.9;      // aims at this part of the step the error would allow
+static const double most_shrink = 0.2; // an error estimate is not trusted further than this
+static const double most_growth = 5;   // nor this
+static const double remembered_error
+    = 1e-4;                        // least error the controller remembers: smaller ones
+                                   // are luck and would make it shrink the next step
+static const double stretch = 1.1; // a step may be this much longer to end on a stop: no crumbs
+
+// A step must change t by more than its rounding: 16 * eps leaves room for the stage times. Near
+// t = 0 the scale is a millionth of the run, below which no motion of interest begins.
+static const double least_step = 16 * DBL_EPSILON, least_scale = 1e-6;
+
+// With events a run has at least this many steps, so that probes are never too far apart when
+// the motion between events is so simple (free fall) that steps could grow without limit.
+static const double event_steps = 50;
+
+// So many state events in a row, each within this part of max(|t|, run) after the one before,
+// are an infinite number: a bouncing ball comes here after its height has fallen by 1e-18.
+static const int pile_events = 100;
+static const double pile_time = 1e-9;
+
+// Corrections to the time of an event, each worth three digits or more.
+static const int most_corrections = 3;
+
+static const struct ct_mark nowhere = {0};
+
+struct run {
+    struct ct_ctx *ctx;
+    const struct ct_method *method;
+    const struct ct_problem *p;
+    const struct ct_integrate_options *o;
+    struct ct_integrate_stats *stats;
+    struct ct_tolerance tolerance;
+    struct ct_watch watch;
+    double t;             // time of y and dy
+    double h;             // size the next step should have
+    double *y, *dy;       // (ny) each, as all that follow
+    double *y1, *dy1;     // end of the step as the method gives it
+    double *end, *dend;   // the same, projected
+    double *point, *work; // a state to spare; the method's own workspace
+    double error_before;  // of the last accepted step
+    bool was_refused;     // the step before this try was
+    size_t sample;        // the next one to give
+    double last_event;    // time of the last state event
+    int piled;            // state events in a row without time going on
+};
+
+// A step as planned: to t1, which is t + h but for rounding.
+struct stride {
+    double h, t1;
+    bool is_landing;      // t1 is the stop it was planned for
+    bool is_event;        // a state event ends it
+    bool is_interpolated; // the method is ready to interpolate it
+    double error;
+};
+
+// --- before the first step ------------------------------------------------------------------
+
+static bool samples_ascend(const struct ct_integrate_options *o)
+{
+    for (size_t i = 0; i < o->nsample; i++)
+        if (!(o->sample[i] >= (i ? o->sample[i - 1] : o->t0) && o->sample[i] <= o->t1))
+            return false;
+    return true;
+}
+
+static bool check_options(struct ct_ctx *ctx, const struct ct_integrate_options *o)
+{
+    if (!(isfinite(o->t0) && isfinite(o->t1) && o->t1 >= o->t0))
+        return ct_error(
+            ctx, nowhere, CT_E_INTEGRATE_OPTION,
+            "cannot integrate from t = %g to t = %g: the end must not be before the "
+            "start",
+            o->t0, o->t1);
+    if (!(o->step >= 0 && o->first_step >= 0))
+        return ct_error(ctx, nowhere, CT_E_INTEGRATE_OPTION, "a step size must be positive");
+    if (o->step == 0 && !(o->rtol >= 0 && o->atol > 0 && isfinite(o->rtol + o->atol)))
+        return ct_error(ctx, nowhere, CT_E_INTEGRATE_OPTION,
+                        "tolerances rtol = %g, atol = %g: wanted rtol >= 0 and atol > 0",
+                        o->rtol, o->atol);
+    if (!samples_ascend(o))
+        return ct_error(ctx, nowhere, CT_E_INTEGRATE_OPTION,
+                        "sample times must ascend and lie between t = %g and t = %g", o->t0,
+                        o->t1);
+    return true;
+}
+
+static void allocate(struct run *r)
+{
+    struct ct_arena *a = r->ctx->model;
+    double **const vectors[] = {&r->y, &r->dy, &r->y1, &r->dy1, &r->end, &r->dend, &r->point};
+    for (size_t i = 0; i < COUNT(vectors); i++)
+        *vectors[i] = CT_NEWN(a, double, r->p->ny);
+    r->work = CT_NEWN(a, double, r->method->work(r->p->ny));
+    ct_watch_init(&r->watch, r->p, a);
+}
+
+static bool state_refused(struct run *r, enum ct_eval e)
+{
+    if (e == CT_EVAL_FATAL)
+        return false; // diagnosed where it happened
+    return ct_error(r->ctx, nowhere, CT_E_STATE_REFUSED,
+                    "the equations of motion cannot be evaluated at t = %.9g", r->t);
+}
+
+// The derivative, and on which side the roots are, at a state that was not stepped to.
+static bool take_bearings(struct run *r)
+{
+    enum ct_eval e = ct_stepper_rhs(r->p, r->t, r->y, r->dy, r->stats);
+    if (e == CT_EVAL_OK)
+        e = ct_watch_start(&r->watch, r->t, r->h, r->y, r->dy);
+    return e == CT_EVAL_OK || state_refused(r, e);
+}
+
+// Largest step allowed.
+static double step_limit(const struct run *r)
+{
+    const double run = r->o->t1 - r->o->t0;
+    return r->p->nroot ? run / event_steps : run;
+}
+
+// A first step whose error should be near a hundredth of the tolerance, from the size of the
+// derivative and its change along an Euler step; all constants are those of the source.
+static double first_step(struct run *r, double limit)
+{
+    const struct ct_problem *p = r->p;
+    const double d0 = ct_stepper_norm(p, &r->tolerance, r->y, r->y, r->y);
+    const double d1 = ct_stepper_norm(p, &r->tolerance, r->y, r->y, r->dy);
+    double h = d0 < 1e-5 || d1 < 1e-5 ? 1e-6 : 0.01 * d0 / d1;
+    h = fmin(h, limit);
+    for (int i = 0; i < p->ny; i++)
+        r->y1[i] = r->y[i] + h * r->dy[i];
+    if (ct_stepper_rhs(p, r->t + h, r->y1, r->dy1, r->stats) != CT_EVAL_OK)
+        return h; // step control will find a smaller one
+    for (int i = 0; i < p->ny; i++)
+        r->point[i] = (r->dy1[i] - r->dy[i]) / h;
+    const double d = fmax(d1, ct_stepper_norm(p, &r->tolerance, r->y, r->y, r->point));
+    const double by_error
+        = d <= 1e-15 ? fmax(1e-6, 1e-3 * h) : pow(0.01 / d, 1.0 / (r->method->error_order + 1));
+    return fmin(fmin(100 * h, by_error), limit);
+}
+
+// --- how far ---------------------------------------------------------------------------------
+
+// Samples this close before an event count as on it: times of samples are rounded, too.
+static double event_margin(bool is_event, double t, double h)
+{
+    return is_event ? ct_watch_resolution(t, h) : 0;
+}
+
+// Where steps must end next; *is_time tells that a time event is there.
+static double next_stop(const struct run *r, bool *is_time)
+{
+    double stop = r->o->t1;
+    *is_time = false;
+    if (r->p->next_time_event) {
+        const double event = r->p->next_time_event(r->p->user, r->t);
+        assert(!(event <= r->t));
+        if (event <= stop) {
+            stop = event;
+            *is_time = true;
+        }
+    }
+    const bool is_on_sample = r->o->step > 0 && r->sample < r->o->nsample;
+    if (is_on_sample && r->o->sample[r->sample] < stop - event_margin(*is_time, stop, 0)) {
+        stop = r->o->sample[r->sample];
+        *is_time = false;
+    }
+    return stop;
+}
+
+// The fewest even steps up to the stop that are not longer than the one asked for.
+static double fit_fixed(double rest, double step)
+{
+    // a stop that is a whole number of steps away but for its rounding must not cost one more
+    const double rounding = 1e-9;
+    return rest / fmax(1, ceil(rest / step - rounding));
+}
+
+// The step wanted, adapted so that neither it nor the one after it is a crumb.
+static double fit_free(double rest, double wanted)
+{
+    if (rest <= stretch * wanted)
+        return rest;
+    return rest < 2 * wanted ? rest / 2 : wanted;
+}
+
+static struct stride plan(const struct run *r, double stop)
+{
+    const double rest = stop - r->t;
+    const double h = r->o->step > 0 ? fit_fixed(rest, r->o->step)
+                                    : fit_free(rest, fmin(r->h, step_limit(r)));
+    const bool is_landing = h >= rest;
+    return (struct stride){
+        .h = h, .t1 = is_landing ? stop : r->t + h, .is_landing = is_landing};
+}
+
+static bool is_too_small(const struct run *r, const struct stride *s)
+{
+    const double scale = fmax(fabs(r->t), least_scale * (r->o->t1 - r->o->t0));
+    return !s->is_landing && s->h <= least_step * scale;
+}
+
+// What err says about the next step: h / factor, without limits.
+static double pi_factor(const struct run *r, double error)
+{
+    const double beta = 0.2 / (r->method->error_order + 1);
+    const double alpha = 1.0 / (r->method->error_order + 1) - 0.75 * beta;
+    return pow(error, alpha) / pow(r->error_before, beta) / safety;
+}
+
+static void adapt_after_success(struct run *r, double h, double error)
+{
+    const double factor = fmin(fmax(pi_factor(r, error), 1 / most_growth), 1 / most_shrink);
+    double next = h / factor;
+    if (r->was_refused)
+        next = fmin(next, h); // not at once back to what has just failed
+    else if (h < r->h)
+        next = fmax(next, r->h); // the step was cut for a stop, not for its error
+    r->h = next;
+    r->error_before = fmax(error, remembered_error);
+    r->was_refused = false;
+}
+
+static void adapt_after_refusal(struct run *r, double h, double error)
+{
+    const double alpha = 1.0 / (r->method->error_order + 1);
+    r->stats->rejected_steps++;
+    r->h = error > 1 ? h * fmax(most_shrink, safety * pow(error, -alpha)) : h / 2;
+    r->was_refused = true;
+}
+
+// --- one step --------------------------------------------------------------------------------
+
+static bool differs(const double *a, const double *b, int n)
+{
+    for (int i = 0; i < n; i++)
+        if (a[i] != b[i])
+            return true;
+    return false;
+}
+
+// end, dend (out) = y1, dy1 on the constraints.
+static enum ct_eval project_end(struct run *r, double t1)
+{
+    const struct ct_problem *p = r->p;
+    const size_t bytes = (size_t)p->ny * sizeof *r->y;
+    memcpy(r->end, r->y1, bytes);
+    memcpy(r->dend, r->dy1, bytes);
+    if (!p->project)
+        return CT_EVAL_OK;
+    const enum ct_eval e = p->project(p->user, t1, r->end);
+    if (e != CT_EVAL_OK || !differs(r->end, r->y1, p->ny))
+        return e;
+    return ct_stepper_finite(r->end, p->ny) ? ct_stepper_rhs(p, t1, r->end, r->dend, r->stats)
+                                            : CT_EVAL_RETRY;
+}
+
+// From y to end by the method and the projection. Refused with s->error > 1 when that is the reason.
+static enum ct_eval attempt(struct run *r, struct stride *s)
+{
+    const struct ct_tolerance *tolerance = r->o->step > 0 ? NULL : &r->tolerance;
+    double error = 0;
+    s->error = 0;
+    s->is_interpolated = false;
+    const enum ct_eval e = r->method->step(r->p, r->t, s->h, r->y, r->dy, tolerance, r->y1,
+                                           r->dy1, &error, r->work, r->stats);
+    if (e != CT_EVAL_OK)
+        return e;
+    if (!ct_stepper_finite(r->y1, r->p->ny) || !isfinite(error))
+        return CT_EVAL_RETRY;
+    s->error = error;
+    return error > 1 ? CT_EVAL_RETRY : project_end(r, s->t1);
+}
+
+// Make the method ready to interpolate, once.
+static enum ct_eval interpolate(struct run *r, struct stride *s)
+{
+    if (s->is_interpolated || !r->method->prepare)
+        return CT_EVAL_OK;
+    s->is_interpolated = true;
+    return r->method->prepare(r->p, r->t, s->h, r->y, r->y1, r->work, r->stats);
+}
+
+static enum ct_eval interpolate_for_samples(struct run *r, struct stride *s)
+{
+    const bool has_sample = r->sample < r->o->nsample && r->o->sample[r->sample] < s->t1;
+    return has_sample ? interpolate(r, s) : CT_EVAL_OK;
+}
+
+// Step again, to the event that the interpolant shows at t + h; then correct h for the difference
+// between the interpolant and the step until the root that fires is zero to the resolution.
+// Corrected up to where the whole step ended, the step is the whole step, for the sake of its stop.
+static enum ct_eval step_to_event(struct run *r, struct stride *s, double h)
+{
+    const struct stride whole = *s;
+    const double unresolved = ct_watch_resolution(r->t, whole.h);
+    double dt = INFINITY;
+    for (int i = 0; i <= most_corrections && fabs(dt) > unresolved && h > 0; i++) {
+        const bool is_whole = whole.h - h <= unresolved;
+        *s = whole;
+        if (!is_whole) {
+            s->h = h;
+            s->t1 = r->t + h;
+            s->is_landing = false;
+        }
+        enum ct_eval e = attempt(r, s);
+        if (e == CT_EVAL_OK)
+            e = ct_watch_refine(&r->watch, s->t1, r->end, &dt);
+        if (e != CT_EVAL_OK || is_whole)
+            return e;
+        h += dt;
+    }
+    return CT_EVAL_OK;
+}
+
+// If a root fires within the step, the step is made to end there.
+static enum ct_eval end_on_event(struct run *r, struct stride *s)
+{
+    const struct ct_stepper_span span = {r->method, r->p, r->t, s->h, r->y, r->y1, r->work};
+    double theta;
+    if (r->p->nroot == 0)
+        return CT_EVAL_OK;
+    enum ct_eval e = r->method->has_rough_dense ? CT_EVAL_OK : interpolate(r, s);
+    if (e == CT_EVAL_OK)
+        e = ct_watch_search(&r->watch, &span, r->end, &theta);
+    if (e != CT_EVAL_OK || theta > 1)
+        return e;
+    s->is_event = true;
+    const double rest = (1 - theta) * s->h;
+    return rest <= ct_watch_resolution(r->t, s->h) ? CT_EVAL_OK
+                                                   : step_to_event(r, s, theta * s->h);
+}
+
+// The caller's memories and choices move on to the end of the step.
+static enum ct_eval tell_accepted(struct run *r, const struct stride *s)
+{
+    const struct ct_problem *p = r->p;
+    if (!p->accepted)
+        return CT_EVAL_OK;
+    memcpy(r->point, r->end, (size_t)p->ny * sizeof *r->end);
+    const enum ct_eval e = p->accepted(p->user, s->t1, r->end);
+    if (e != CT_EVAL_OK || !differs(r->end, r->point, p->ny))
+        return e;
+    return ct_stepper_rhs(p, s->t1, r->end, r->dend, r->stats);
+}
+
+// What follows an attempt whose error is small enough; h is the step as it was attempted.
+static enum ct_eval finish_step(struct run *r, struct stride *s, double h)
+{
+    enum ct_eval e = end_on_event(r, s);
+    if (e == CT_EVAL_OK)
+        e = ct_watch_accept(&r->watch, s->t1, h, r->end, s->is_event);
+    if (e == CT_EVAL_OK)
+        e = interpolate_for_samples(r, s);
+    return e == CT_EVAL_OK ? tell_accepted(r, s) : e;
+}
+
+// One step that everybody accepts: from y to end.
+static bool find_step(struct run *r, double stop, struct stride *s)
+{
+    for (;;) {
+        *s = plan(r, stop);
+        if (is_too_small(r, s))
+            return ct_error(r->ctx, nowhere, CT_E_STEP_SMALL,
+                            "at t = %.9g the step size became too small (%.3g) to go on", r->t,
+                            s->h);
+        const double h = s->h;
+        enum ct_eval e = attempt(r, s);
+        const double error = s->error;
+        if (e == CT_EVAL_OK)
+            e = finish_step(r, s, h);
+        if (e == CT_EVAL_FATAL)
+            return false;
+        if (e == CT_EVAL_OK) {
+            adapt_after_success(r, h, error);
+            return true;
+        }
+        if (r->o->step > 0)
+            return ct_error(r->ctx, nowhere, CT_E_STEP_REFUSED,
+                            "at t = %.9g a step of fixed size %.3g is too large", r->t, h);
+        adapt_after_refusal(r, h, error);
+    }
+}
+
+// --- samples ---------------------------------------------------------------------------------
+
+static bool give_sample(struct run *r, const double *y)
+{
+    const double t = r->o->sample[r->sample++];
+    return r->o->at_sample(r->p->user, t, y);
+}
+
+// Samples before `end`, from the interpolant of the step.
+static bool give_samples_before(struct run *r, const struct stride *s, double end)
+{
+    const struct ct_problem *p = r->p;
+    const struct ct_stepper_span span = {r->method, p, r->t, s->h, r->y, r->y1, r->work};
+    while (r->sample < r->o->nsample && r->o->sample[r->sample] < end) {
+        const double t = r->o->sample[r->sample];
+        ct_stepper_point(&span, (t - r->t) / s->h, r->point);
+        const enum ct_eval e = p->project ? p->project(p->user, t, r->point) : CT_EVAL_OK;
+        if (e == CT_EVAL_RETRY)
+            return ct_error(r->ctx, nowhere, CT_E_SAMPLE_REFUSED,
+                            "the constraints cannot be met at t = %.9g", t);
+        if (e == CT_EVAL_FATAL || !give_sample(r, r->point))
+            return false;
+    }
+    return true;
+}
+
+static bool give_samples_here(struct run *r)
+{
+    while (r->sample < r->o->nsample && r->o->sample[r->sample] <= r->t)
+        if (!give_sample(r, r->y))
+            return false;
+    return true;
+}
+
+// --- the march -------------------------------------------------------------------------------
+
+static void commit(struct run *r, const struct stride *s)
+{
+    double *y = r->y, *dy = r->dy;
+    r->y = r->end;
+    r->dy = r->dend;
+    r->end = y;
+    r->dend = dy;
+    r->t = s->t1;
+    r->stats->steps++;
+}
+
+static bool is_piling_up(struct run *r)
+{
+    const double scale = fmax(fabs(r->t), r->o->t1 - r->o->t0);
+    r->piled = r->t - r->last_event <= pile_time * scale ? r->piled + 1 : 0;
+    r->last_event = r->t;
+    return r->piled >= pile_events;
+}
+
+static bool handle_event(struct run *r, bool is_state, bool is_time)
+{
+    const struct ct_problem *p = r->p;
+    r->stats->events++;
+    if (is_state && is_piling_up(r))
+        return ct_error(r->ctx, nowhere, CT_E_EVENT_PILE,
+                        "%d events in a row at t = %.9g without time going on", pile_events,
+                        r->t);
+    const enum ct_eval e
+        = p->event ? p->event(p->user, r->t, r->y, r->watch.crossed, is_time) : CT_EVAL_OK;
+    return e == CT_EVAL_OK ? take_bearings(r) : state_refused(r, e);
+}
+
+static bool advance(struct run *r)
+{
+    bool is_time;
+    struct stride s;
+    const double stop = next_stop(r, &is_time);
+    if (!find_step(r, stop, &s))
+        return false;
+    is_time = is_time && s.is_landing;
+    const bool is_event = s.is_event || is_time;
+    if (!give_samples_before(r, &s, s.t1 - event_margin(is_event, s.t1, s.h)))
+        return false;
+    commit(r, &s);
+    return (!is_event || handle_event(r, s.is_event, is_time)) && give_samples_here(r);
+}
+
+static bool march(struct run *r)
+{
+    const long most = r->o->max_steps ? r->o->max_steps : 100000000;
+    while (r->t < r->o->t1) {
+        if (r->stats->steps >= most)
+            return ct_error(
+                r->ctx, nowhere, CT_E_STEP_COUNT,
+                "%ld steps were taken and t = %.9g is reached: more are not allowed", most,
+                r->t);
+        if (!advance(r))
+            return false;
+        if (r->o->at_step && !r->o->at_step(r->p->user, r->t, r->y))
+            return true;
+    }
+    return true;
+}
+
+static bool start(struct run *r)
+{
+    if (r->o->t0 < r->o->t1) { // else there is nothing to step
+        bool is_time;
+        const double limit = fmin(step_limit(r), next_stop(r, &is_time) - r->t);
+        r->h = limit; // a scale for the bearings
+        if (!take_bearings(r))
+            return false;
+        r->h = r->o->step > 0       ? r->o->step
+             : r->o->first_step > 0 ? r->o->first_step
+                                    : first_step(r, limit);
+    }
+    return give_samples_here(r);
+}
+
+bool ct_integrate(struct ct_ctx *ctx, const struct ct_method *method,
+                  const struct ct_problem *p, const struct ct_integrate_options *options,
+                  double *y, struct ct_integrate_stats *stats)
+{
+    *stats = (struct ct_integrate_stats){.last_time = options->t0};
+    if (!check_options(ctx, options))
+        return false;
+    struct run r = {
+        .ctx = ctx,
+        .method = method,
+        .p = p,
+        .o = options,
+        .stats = stats,
+        .tolerance = {options->rtol, options->atol},
+        .t = options->t0,
+        .error_before = remembered_error,
+        .last_event = -INFINITY,
+    };
+    allocate(&r);
+    memcpy(r.y, y, (size_t)p->ny * sizeof *y);
+    const bool ok = start(&r) && march(&r);
+    memcpy(y, r.y, (size_t)p->ny * sizeof *y);
+    stats->last_time = r.t;
+    return ok;
+}

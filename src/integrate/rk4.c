@@ -1,0 +1,112 @@
+// The classical Runge-Kutta method of order 4.
+//
+// With a fixed step it is what textbooks show: four evaluations a step. Under error control a step
+// is taken as two halves, and a fifteenth of their difference to the whole step is the error of
+// the halves (Richardson); it is not added to the result, so that the order stays 4. The
+// interpolant is the cubic Hermite polynomial, of each half where there are halves.
+// Source: Kutta (1901); Hairer, Norsett and Wanner (1993), II.1 and II.4, key hairer1993.
+#include "integrate/stepper.h"
+
+#include <string.h>
+
+enum { STAGES = 4 };
+
+static const double C[STAGES] = {0, 1. / 2, 1. / 2, 1};
+static const double A[STAGES][STAGES] = {[1] = {1. / 2}, [2] = {0, 1. / 2}, [3] = {0, 0, 1}};
+static const double B[STAGES] = {1. / 6, 1. / 3, 1. / 3, 1. / 6};
+
+// The workspace by parts, each of length ny but k (ny x 4) and is_halved (1).
+struct parts {
+    double *k, *point, *dy, *dy1, *middle, *dmiddle, *is_halved;
+};
+
+static struct parts divide(double *work, int n)
+{
+    return (struct parts){work,         work + 4 * n, work + 5 * n, work + 6 * n,
+                          work + 7 * n, work + 8 * n, work + 9 * n};
+}
+
+static size_t work_size(int ny)
+{
+    return 9 * (size_t)ny + 1;
+}
+
+// y1 (out) by one step of length h from (t, y) with derivative dy.
+static enum ct_eval advance(const struct ct_problem *p, double t, double h, const double *y,
+                            const double *dy, double *y1, const struct parts *w,
+                            struct ct_integrate_stats *stats)
+{
+    const int n = p->ny;
+    memcpy(w->k, dy, (size_t)n * sizeof *dy);
+    for (int s = 1; s < STAGES; s++) {
+        ct_stepper_combine(w->point, y, h, A[s], w->k, s, n);
+        const enum ct_eval e = ct_stepper_rhs(p, t + C[s] * h, w->point, w->k + s * n, stats);
+        if (e != CT_EVAL_OK)
+            return e;
+    }
+    ct_stepper_combine(y1, y, h, B, w->k, STAGES, n);
+    return CT_EVAL_OK;
+}
+
+// Two steps of h / 2 to y1; *err from the whole step.
+static enum ct_eval advance_halved(const struct ct_problem *p, double t, double h,
+                                   const double *y, const struct ct_tolerance *tolerance,
+                                   double *y1, double *err, const struct parts *w,
+                                   struct ct_integrate_stats *stats)
+{
+    double *whole = w->dy1; // free until the end of the step
+    enum ct_eval e = advance(p, t, h, y, w->dy, whole, w, stats);
+    if (e == CT_EVAL_OK)
+        e = advance(p, t, h / 2, y, w->dy, w->middle, w, stats);
+    if (e == CT_EVAL_OK)
+        e = ct_stepper_rhs(p, t + h / 2, w->middle, w->dmiddle, stats);
+    if (e == CT_EVAL_OK)
+        e = advance(p, t + h / 2, h / 2, w->middle, w->dmiddle, y1, w, stats);
+    if (e != CT_EVAL_OK)
+        return e;
+    for (int i = 0; i < p->ny; i++)
+        w->point[i] = (y1[i] - whole[i]) / 15; // 2^4 - 1
+    *err = ct_stepper_norm(p, tolerance, y, y1, w->point);
+    return CT_EVAL_OK;
+}
+
+static enum ct_eval step(const struct ct_problem *p, double t, double h, const double *y,
+                         const double *dy, const struct ct_tolerance *tolerance, double *y1,
+                         double *dy1, double *err, double *work,
+                         struct ct_integrate_stats *stats)
+{
+    const struct parts w = divide(work, p->ny);
+    const size_t bytes = (size_t)p->ny * sizeof *y;
+    memcpy(w.dy, dy, bytes);
+    *w.is_halved = tolerance != NULL;
+    enum ct_eval e = tolerance ? advance_halved(p, t, h, y, tolerance, y1, err, &w, stats)
+                               : advance(p, t, h, y, dy, y1, &w, stats);
+    if (e == CT_EVAL_OK)
+        e = ct_stepper_rhs(p, t + h, y1, dy1, stats);
+    if (e == CT_EVAL_OK)
+        memcpy(w.dy1, dy1, bytes);
+    return e;
+}
+
+static void dense(const struct ct_problem *p, double h, double theta, const double *y,
+                  const double *y1, double *work, double *out)
+{
+    const struct parts w = divide(work, p->ny);
+    if (!*w.is_halved)
+        ct_stepper_hermite(out, theta, h, y, w.dy, y1, w.dy1, p->ny);
+    else if (theta < 0.5)
+        ct_stepper_hermite(out, 2 * theta, h / 2, y, w.dy, w.middle, w.dmiddle, p->ny);
+    else
+        ct_stepper_hermite(out, 2 * theta - 1, h / 2, w.middle, w.dmiddle, y1, w.dy1, p->ny);
+}
+
+const struct ct_method ct_method_rk4 = {
+    .name = "rk4",
+    .summary = "classical Runge-Kutta of order 4, explicit, meant for fixed steps",
+    .source = "hairer1993",
+    .order = 4,
+    .error_order = 4,
+    .work = work_size,
+    .step = step,
+    .dense = dense,
+};

@@ -1,0 +1,65 @@
+// See stepper.h.
+#include "integrate/stepper.h"
+
+#include <math.h>
+#include <string.h>
+
+bool ct_stepper_finite(const double *x, int n)
+{
+    double zero = 0; // stays 0 unless an entry is infinite or NaN: 0 * inf is NaN
+    for (int i = 0; i < n; i++)
+        zero += 0 * x[i];
+    return zero == 0;
+}
+
+enum ct_eval ct_stepper_rhs(const struct ct_problem *p, double t, const double *y, double *dy,
+                            struct ct_integrate_stats *stats)
+{
+    stats->evaluations++;
+    const enum ct_eval e = p->rhs(p->user, t, y, dy);
+    return e == CT_EVAL_OK && !ct_stepper_finite(dy, p->ny) ? CT_EVAL_RETRY : e;
+}
+
+void ct_stepper_combine(double *restrict out, const double *y, double h, const double *a,
+                        const double *k, int s, int n)
+{
+    memset(out, 0, (size_t)n * sizeof *out);
+    for (int j = 0; j < s; j++, k += n) {
+        if (a[j] == 0) // tables have many zeros
+            continue;
+        for (int i = 0; i < n; i++)
+            out[i] += a[j] * k[i];
+    }
+    for (int i = 0; i < n; i++)
+        out[i] = (y ? y[i] : 0) + h * out[i];
+}
+
+double ct_stepper_norm(const struct ct_problem *p, const struct ct_tolerance *tolerance,
+                       const double *y, const double *y1, const double *e)
+{
+    double sum = 0;
+    int n = 0;
+    for (int i = 0; i < p->ny; i++) {
+        if (p->watched && !p->watched[i])
+            continue;
+        const double weight = tolerance->rtol * fmax(fabs(y[i]), fabs(y1[i])) + tolerance->atol;
+        sum += (e[i] / weight) * (e[i] / weight);
+        n++;
+    }
+    return n ? sqrt(sum / n) : 0;
+}
+
+void ct_stepper_hermite(double *restrict out, double theta, double h, const double *y,
+                        const double *dy, const double *y1, const double *dy1, int n)
+{
+    const double rest = 1 - theta;
+    for (int i = 0; i < n; i++) {
+        const double rise = y1[i] - y[i], bend = h * dy[i] - rise;
+        out[i] = y[i] + theta * (rise + rest * (bend + theta * (rise - h * dy1[i] - bend)));
+    }
+}
+
+void ct_stepper_point(const struct ct_stepper_span *s, double theta, double *out)
+{
+    s->method->dense(s->p, s->h, theta, s->y, s->y1, s->work, out);
+}

@@ -1,0 +1,41 @@
+// What one-step methods share: stages, the error norm, Hermite interpolation.
+#ifndef CT_INTEGRATE_STEPPER_H
+#define CT_INTEGRATE_STEPPER_H
+
+#include "integrate/problem.h"
+
+/// dy (ny, out) = f(t, y), counted. A derivative that is not finite asks for a smaller step.
+enum ct_eval ct_stepper_rhs(const struct ct_problem *p, double t, const double *y, double *dy,
+                            struct ct_integrate_stats *stats);
+
+/// out (n) = y + h (a_0 k_0 + ... + a_{s-1} k_{s-1}), k (n x s). y == NULL: without y. out must not
+/// overlap y or k.
+void ct_stepper_combine(double *restrict out, const double *y, double h, const double *a,
+                        const double *k, int s, int n);
+
+/// Root mean square of e_i / (rtol max(|y_i|, |y1_i|) + atol) over the watched states; 0 if there
+/// are none. e (ny).
+double ct_stepper_norm(const struct ct_problem *p, const struct ct_tolerance *tolerance,
+                       const double *y, const double *y1, const double *e);
+
+/// out (n) = the cubic through y and y1 with slopes dy and dy1, at theta of the step h.
+/// Error h^4 / 384 |y''''|.
+void ct_stepper_hermite(double *restrict out, double theta, double h, const double *y,
+                        const double *dy, const double *y1, const double *dy1, int n);
+
+/// The step just taken, for interpolation: method->prepare has been called.
+struct ct_stepper_span {
+    const struct ct_method *method;
+    const struct ct_problem *p;
+    double t, h;
+    const double *y, *y1;
+    double *work;
+};
+
+/// out (ny) = state at t + theta h.
+void ct_stepper_point(const struct ct_stepper_span *s, double theta, double *out);
+
+/// True if all n entries are finite.
+bool ct_stepper_finite(const double *x, int n);
+
+#endif

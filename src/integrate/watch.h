@@ -1,0 +1,49 @@
+// State events: which root functions change sign within a step, and when.
+//
+//     side      -1 or +1 for each root: where it was last seen; 0: resting on zero, not watched
+//     probes    a step is looked at in a few places, so that a root that crosses and comes
+//               back is seen as far as the probes allow
+//
+// What always holds between steps: g0 is g at the start of the next step, and a root that has
+// just fired has the side to which it is moving. So it cannot fire twice for one crossing, and
+// a root that comes back at once (a bounce) is still seen.
+#ifndef CT_INTEGRATE_WATCH_H
+#define CT_INTEGRATE_WATCH_H
+
+#include "integrate/stepper.h"
+
+struct ct_watch {
+    const struct ct_problem *p;
+    signed char *side, *crossed; // (nroot)
+    double *g0;                  // g at the start of the step  (nroot)
+    double *g, *low, *high;      // (nroot) each
+    double *near;                // > 0: fired, and |g| has not been above this since (nroot)
+    double *slope;               // dg/dt at the event  (nroot)
+    double *point;               // (ny)
+};
+
+/// Times closer than this to an event cannot be told from it.
+double ct_watch_resolution(double t, double h);
+
+void ct_watch_init(struct ct_watch *w, const struct ct_problem *p, struct ct_arena *a);
+
+/// Take bearings at the start, or after an event in which `crossed` fired; clears `crossed`.
+/// h is the size of a usual step: a root that fired is looked at a tiny part of it later.
+enum ct_eval ct_watch_start(struct ct_watch *w, double t, double h, const double *y,
+                            const double *dy);
+
+/// Look for the first event in a step that ends in y_end (projected). *theta (out): its place,
+/// or 2 if there is none. The roots that fire there are in `crossed`. When this or a later stage
+/// refuses the step, look again after the next try.
+enum ct_eval ct_watch_search(struct ct_watch *w, const struct ct_stepper_span *s,
+                             const double *y_end, double *theta);
+
+/// The step was taken again up to the event, which gave y: *dt (out), how much later the first
+/// root that fired is zero, from its slope.
+enum ct_eval ct_watch_refine(struct ct_watch *w, double t, const double *y, double *dt);
+
+/// The step to y is accepted. With an event there: roots that fire with it join `crossed`.
+enum ct_eval ct_watch_accept(struct ct_watch *w, double t, double h, const double *y,
+                             bool is_event);
+
+#endif

@@ -1,0 +1,230 @@
+// Wrappers of LAPACK; see dense.h.
+//
+// LAPACK is called with the smallest workspace it accepts. That selects its unblocked code, which
+// is the faster one for the sizes met here (some tens of rows), and lets the size of the workspace
+// be a formula instead of a query. Minimum-norm least squares is put together from the parts of
+// a complete orthogonal decomposition (Golub and Van Loan (2013), 5.5, key golub2013) rather than
+// taken from dgelsy, so that its rank is decided exactly as ct_qr_pivot decides it.
+//
+// Products with a matrix and Cholesky are plain loops: the mass matrix goes through them at every
+// stage, small matrices cost no more than a call, the result is the same with every BLAS and
+// number of threads, and a NaN is refused, which not every dpotrf does.
+#include "numeric/dense.h"
+
+#include <math.h>
+#include <string.h>
+
+// Fortran passes the length of each character argument behind the others.
+extern void dgetrf_(const int *m, const int *n, double *a, const int *lda, int *ipiv,
+                    int *info);
+extern void dgetrs_(const char *trans, const int *n, const int *nrhs, const double *a,
+                    const int *lda, const int *ipiv, double *b, const int *ldb, int *info,
+                    size_t);
+extern void dgeqp3_(const int *m, const int *n, double *a, const int *lda, int *jpvt,
+                    double *tau, double *work, const int *lwork, int *info);
+extern void dormqr_(const char *side, const char *trans, const int *m, const int *n,
+                    const int *k, const double *a, const int *lda, const double *tau, double *c,
+                    const int *ldc, double *work, const int *lwork, int *info, size_t, size_t);
+extern void dtzrzf_(const int *m, const int *n, double *a, const int *lda, double *tau,
+                    double *work, const int *lwork, int *info);
+extern void dormrz_(const char *side, const char *trans, const int *m, const int *n,
+                    const int *k, const int *l, const double *a, const int *lda,
+                    const double *tau, double *c, const int *ldc, double *work,
+                    const int *lwork, int *info, size_t, size_t);
+extern void dtrtrs_(const char *uplo, const char *trans, const char *diag, const int *n,
+                    const int *nrhs, const double *a, const int *lda, double *b, const int *ldb,
+                    int *info, size_t, size_t, size_t);
+extern void dsysv_(const char *uplo, const int *n, const int *nrhs, double *a, const int *lda,
+                   int *ipiv, double *b, const int *ldb, double *work, const int *lwork,
+                   int *info, size_t);
+extern void dsyev_(const char *jobz, const char *uplo, const int *n, double *a, const int *lda,
+                   double *w, double *work, const int *lwork, int *info, size_t, size_t);
+
+static int min_int(int a, int b)
+{
+    return a < b ? a : b;
+}
+
+static int max_int(int a, int b)
+{
+    return a > b ? a : b;
+}
+
+void ct_gemv(double *restrict y, const double *A, const double *restrict x, int m, int n,
+             int lda)
+{
+    memset(y, 0, (size_t)m * sizeof *y);
+    for (int j = 0; j < n; j++) {
+        const double *a = A + (size_t)lda * j;
+        for (int i = 0; i < m; i++)
+            y[i] += a[i] * x[j];
+    }
+}
+
+void ct_gemv_t(double *restrict y, const double *A, const double *restrict x, int m, int n,
+               int lda)
+{
+    for (int j = 0; j < n; j++) {
+        const double *a = A + (size_t)lda * j;
+        double sum = 0;
+        for (int i = 0; i < m; i++)
+            sum += a[i] * x[i];
+        y[j] = sum;
+    }
+}
+
+// Right-looking: column k is finished, then taken off the columns behind it.
+bool ct_cholesky(double *A, int n, int lda)
+{
+    for (int k = 0; k < n; k++) {
+        double *col = A + (size_t)lda * k;
+        if (!(col[k] > 0) || isinf(col[k])) // so written, NaN is refused too
+            return false;
+        col[k] = sqrt(col[k]);
+        for (int i = k + 1; i < n; i++)
+            col[i] /= col[k];
+        for (int j = k + 1; j < n; j++) {
+            double *a = A + (size_t)lda * j;
+            for (int i = j; i < n; i++)
+                a[i] -= col[i] * col[j];
+        }
+    }
+    return true;
+}
+
+void ct_cholesky_solve(double *x, const double *L, int n, int lda, int nrhs, int ldx)
+{
+    for (int c = 0; c < nrhs; c++, x += ldx) {
+        for (int j = 0; j < n; j++) { // L z = b
+            const double *l = L + (size_t)lda * j;
+            x[j] /= l[j];
+            for (int i = j + 1; i < n; i++)
+                x[i] -= l[i] * x[j];
+        }
+        for (int j = n; j-- > 0;) { // L' x = z
+            const double *l = L + (size_t)lda * j;
+            for (int i = j + 1; i < n; i++)
+                x[j] -= l[i] * x[i];
+            x[j] /= l[j];
+        }
+    }
+}
+
+bool ct_lu(double *A, int *pivot, int n, int lda)
+{
+    int info;
+    lda = max_int(1, lda);
+    dgetrf_(&n, &n, A, &lda, pivot, &info);
+    return info == 0;
+}
+
+void ct_lu_solve(double *x, const double *LU, const int *pivot, int n, int lda, int nrhs,
+                 int ldx, bool transpose)
+{
+    int info;
+    lda = max_int(1, lda);
+    ldx = max_int(1, ldx);
+    dgetrs_(transpose ? "T" : "N", &n, &nrhs, LU, &lda, pivot, x, &ldx, &info, 1);
+}
+
+// Diagonal entries of R above tol |R_00|; pivoting has made them descend.
+static int count_rank(const double *R, int m, int n, int lda, double tol)
+{
+    int rank = 0;
+    const int k = min_int(m, n);
+    while (rank < k && fabs(R[rank + (size_t)lda * rank]) > tol * fabs(R[0]))
+        rank++;
+    return rank;
+}
+
+int ct_qr_pivot(double *A, int *column, double *tau, int m, int n, int lda, double tol,
+                double *work)
+{
+    int info;
+    const int lwork = (int)ct_qr_pivot_work(m, n);
+    lda = max_int(1, lda);
+    memset(column, 0, (size_t)n * sizeof *column); // 0: this column is free to move
+    if (m == 0 || n == 0) {                        // LAPACK would leave the columns unnumbered
+        for (int j = 0; j < n; j++)
+            column[j] = j;
+        return 0;
+    }
+    dgeqp3_(&m, &n, A, &lda, column, tau, work, &lwork, &info);
+    for (int j = 0; j < n; j++)
+        column[j]--; // Fortran counts from 1
+    return count_rank(A, m, n, lda, tol);
+}
+
+size_t ct_qr_pivot_work(int m, int n)
+{
+    (void)m;
+    return 3 * (size_t)n + 1;
+}
+
+// b (n, in: first `rank` entries, out: all) = Z' [ T^-1 b ; 0 ] for the trapezoidal top
+// [ R11 R12 ] = [ T 0 ] Z of A: the shortest vector that R11 and R12 map to b.
+static void solve_trapezoid(double *b, double *A, int rank, int n, int lda, double *tau,
+                            double *work, int lwork)
+{
+    int info;
+    const int one = 1, rest = n - rank;
+    if (rest > 0)
+        dtzrzf_(&rank, &n, A, &lda, tau, work, &lwork, &info);
+    dtrtrs_("U", "N", "N", &rank, &one, A, &lda, b, &n, &info, 1, 1, 1);
+    memset(b + rank, 0, (size_t)rest * sizeof *b);
+    if (rest > 0)
+        dormrz_("L", "T", &n, &one, &rank, &rest, A, &lda, tau, b, &n, work, &lwork, &info, 1,
+                1);
+}
+
+int ct_lstsq(double *b, double *A, int m, int n, int lda, double tol, int *iwork, double *work)
+{
+    int info;
+    const int k = min_int(m, n), one = 1, lwork = (int)ct_qr_pivot_work(m, n);
+    double *tau = work, *x = tau + k, *rest = x + n;
+    lda = max_int(1, lda);
+    const int rank = ct_qr_pivot(A, iwork, tau, m, n, lda, tol, rest);
+    if (rank == 0) {
+        memset(b, 0, (size_t)n * sizeof *b);
+        return 0;
+    }
+    dormqr_("L", "T", &m, &one, &k, A, &lda, tau, b, &m, rest, &lwork, &info, 1, 1);
+    solve_trapezoid(b, A, rank, n, lda, tau, rest, lwork);
+    for (int j = 0; j < n; j++)
+        x[iwork[j]] = b[j];
+    memcpy(b, x, (size_t)n * sizeof *b);
+    return rank;
+}
+
+size_t ct_lstsq_work(int m, int n)
+{
+    return (size_t)min_int(m, n) + (size_t)n + ct_qr_pivot_work(m, n); // tau, x, LAPACK's own
+}
+
+bool ct_symmetric_solve(double *b, double *A, int *pivot, int n, int lda, double *work)
+{
+    int info;
+    const int one = 1, ldb = max_int(1, n), lwork = (int)ct_symmetric_solve_work(n);
+    lda = max_int(1, lda);
+    dsysv_("L", &n, &one, A, &lda, pivot, b, &ldb, work, &lwork, &info, 1);
+    return info == 0;
+}
+
+size_t ct_symmetric_solve_work(int n)
+{
+    return (size_t)max_int(1, n);
+}
+
+bool ct_symmetric_eigenvalues(double *w, double *A, int n, int lda, double *work)
+{
+    int info;
+    const int lwork = (int)ct_symmetric_eigenvalues_work(n);
+    lda = max_int(1, lda);
+    dsyev_("N", "L", &n, A, &lda, w, work, &lwork, &info, 1, 1);
+    return info == 0;
+}
+
+size_t ct_symmetric_eigenvalues_work(int n)
+{
+    return (size_t)max_int(1, 3 * n - 1);
+}

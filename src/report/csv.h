@@ -1,0 +1,37 @@
+// Results as comma-separated values (RFC 4180), row by row.
+//
+//     t,crank.q,"atan2(y, x)"         header: quoted where a comma, quote or line end asks for it
+//     0,0.5,1.25                      numbers: 17 digits, read back to the same bits
+//
+// What always holds: each row has as many fields as the header (asserted); the file appears under its
+// name only when it is complete (outfile.h).
+#ifndef CT_REPORT_CSV_H
+#define CT_REPORT_CSV_H
+
+#include "report/outfile.h"
+
+struct ct_csv {
+    struct ct_outfile file;
+    size_t ncolumn;
+    size_t nfield; // in the current row
+};
+
+/// Open path (NULL: standard output) and write the header. Errors: E002.
+bool ct_csv_open(struct ct_ctx *ctx, struct ct_csv *w, const char *path,
+                 const char *const *column, size_t ncolumn);
+
+/// One row of numbers, value (ncolumn). Errors: E002.
+bool ct_csv_row(struct ct_ctx *ctx, struct ct_csv *w, const double *value);
+
+/// A row field by field: numbers and texts ("" for an empty field), then the end.
+void ct_csv_number(struct ct_csv *w, double value);
+void ct_csv_text(struct ct_csv *w, const char *text);
+bool ct_csv_end_row(struct ct_ctx *ctx, struct ct_csv *w);
+
+/// Complete the file under its own name. Errors: E002.
+bool ct_csv_close(struct ct_ctx *ctx, struct ct_csv *w);
+
+/// Give up: the rows so far stay in PATH.partial. Accepts all zeros and a closed writer.
+void ct_csv_abandon(struct ct_csv *w);
+
+#endif

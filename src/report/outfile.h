@@ -1,0 +1,32 @@
+// A result file that is either whole or not there.
+//
+//     open: FILE.partial  -- writing -->  FILE.partial  -- close -->  FILE
+//                                               `-- abandon, crash -->  FILE.partial stays
+//
+// What always holds: until close has succeeded FILE is what it was before. Only a file that is not a
+// regular one, such as /dev/null, is written to directly.
+#ifndef CT_REPORT_OUTFILE_H
+#define CT_REPORT_OUTFILE_H
+
+#include "base/ctx.h"
+
+struct ct_outfile {
+    FILE *stream;        // NULL when not open
+    const char *path;    // as given; "standard output" if that is meant
+    const char *partial; // where it is written; NULL: straight to path
+};
+
+/// Open path for writing; NULL means standard output. Strings live in ctx->model.
+/// Errors: E002.
+bool ct_outfile_open(struct ct_ctx *ctx, struct ct_outfile *o, const char *path);
+
+/// Everything written so far has reached the system. Errors: E002.
+bool ct_outfile_flush(struct ct_ctx *ctx, struct ct_outfile *o);
+
+/// Finish and move to the final name; on failure the partial file stays. Errors: E002.
+bool ct_outfile_close(struct ct_ctx *ctx, struct ct_outfile *o);
+
+/// Give up: the partial file stays. Accepts all zeros and a closed file.
+void ct_outfile_abandon(struct ct_outfile *o);
+
+#endif

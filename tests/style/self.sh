@@ -1,0 +1,125 @@
+#!/bin/sh
+# The checks of this suite see what they are for: each is given something wrong.
+#   self.sh TESTS_FOLDER COMPILER [FLAG...]
+set -eu
+
+tests=$1
+shift
+temporary=$(mktemp -d)
+trap 'rm -rf "$temporary"' EXIT
+cd "$temporary"
+bad=0
+
+passes() {
+  "$@" >log 2>&1 || {
+    echo "should pass: $*"
+    cat log
+    bad=1
+  }
+}
+
+fails_with() {
+  text=$1
+  shift
+  if "$@" >log 2>&1; then
+    echo "should fail: $*"
+    bad=1
+  elif ! grep -qF -- "$text" log; then
+    echo "should say '$text': $*"
+    cat log
+    bad=1
+  fi
+}
+
+# ---- layers
+cat >layers.txt <<'END'
+low
+high low
+src  *
+cli  cotree
+only yaml.h low
+END
+mkdir -p src/low src/high src/cli
+layers() {
+  sh "$tests/style/layers.sh" layers.txt .
+}
+printf '#include "low/a.h"\n#include <yaml.h>\n#include <stdio.h>\n' >src/low/a.c
+printf '#include "high/b.h"\n  # include "low/a.h"\n' >src/high/b.c
+printf '#include "low/a.h"\n#include "high/b.h"\n' >src/system.c
+printf '#include <cotree/cotree.h>\n#include "cli/args.h"\n' >src/cli/main.c
+passes layers
+echo '#include "high/b.h"' >src/low/up.c
+fails_with 'src/low/up.c:1: low may not include "high/b.h"' layers
+rm src/low/up.c
+echo '#include "low/a.h"' >src/cli/inside.c
+fails_with 'cli may not include "low/a.h"' layers
+rm src/cli/inside.c
+printf '\n#include <yaml.h>\n' >src/high/yaml.c
+fails_with 'src/high/yaml.c:2: <yaml.h> belongs in low' layers
+rm src/high/yaml.c
+echo '#include <yaml.h>' >src/low/second.c
+fails_with 'already wrapped by src/low/a.c' layers
+rm src/low/second.c
+mkdir src/new
+touch src/new/file.c
+fails_with 'folder new is not in' layers
+rm -r src/new
+
+# ---- keys
+keys() {
+  sh "$tests/style/keys.sh" "$PWD/references.bib" .
+}
+echo '@article{seshu1961,' >references.bib
+echo '// Source: Seshu and Reed, key seshu1961' >src/low/cited.c
+passes keys
+echo '.source = "kane1985",' >src/low/table.c
+fails_with 'kane1985: not in' keys
+echo '// Source: key mcphee1996' >src/low/table.c
+fails_with 'mcphee1996: not in' keys
+rm src/low/table.c src/low/cited.c
+
+# ---- headers
+headers() {
+  sh "$tests/style/headers.sh" . include c "$@"
+}
+mkdir include
+fails_with '0 headers' headers "$@"
+echo 'int f(int x);' >include/good.h
+passes headers "$@"
+echo 'size_t g(void);' >include/bad.h
+fails_with 'include/bad.h does not compile alone' headers "$@"
+
+# ---- cases
+mkdir cases
+case_of() {
+  UPDATE='' sh "$tests/run_case.sh" "$@"
+}
+update_case() {
+  UPDATE=1 sh "$tests/run_case.sh" "$@"
+}
+# shellcheck disable=SC2016 # $SYSTEMS is for the case
+echo 'echo said; echo complained >&2; echo $SYSTEMS/x; exit 3' >cases/talk.sh
+SYSTEMS=/some/where
+export SYSTEMS
+fails_with '+said' case_of cli cases/talk.sh
+fails_with '+complained' case_of cli cases/talk.sh
+fails_with '+3' case_of cli cases/talk.sh
+passes update_case cli cases/talk.sh
+passes case_of cli cases/talk.sh
+passes grep -qx SYSTEMS/x cases/talk.stdout
+passes grep -qx 3 cases/talk.exit
+echo 'exit 0' >cases/talk.sh
+fails_with '-said' case_of cli cases/talk.sh
+passes update_case cli cases/talk.sh
+fails_with 'No such file' ls cases/talk.stdout cases/talk.stderr cases/talk.exit
+
+echo 'mkdir out; echo 1 >out/a; echo 2 >b' >cases/leave.sh
+fails_with '+2' case_of golden cases/leave.sh
+passes update_case golden cases/leave.sh
+passes case_of golden cases/leave.sh
+echo 3 >cases/leave.files/out/more
+fails_with '-3' case_of golden cases/leave.sh
+echo 'echo broken; exit 4' >cases/leave.sh
+fails_with 'exit status 4' case_of golden cases/leave.sh
+
+exit $bad

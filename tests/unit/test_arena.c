@@ -1,0 +1,182 @@
+// Arenas and the guard: alignment, zeroing, growth, and the way out when memory ends.
+#include "base/arena.h"
+#include "base/guard.h"
+#include "tests/check.h"
+
+#include <stdbool.h>
+#include <string.h>
+
+static int create(void **state)
+{
+    *state = ct_arena_create();
+    return *state ? 0 : -1;
+}
+
+static int destroy(void **state)
+{
+    ct_guard_fail_after(0);
+    ct_arena_destroy(*state);
+    return 0;
+}
+
+static void allocations_are_aligned_and_zeroed(void **state)
+{
+    struct ct_arena *a = *state;
+    static const unsigned char zero[5000];
+    for (size_t size = 0; size < 5000; size += 1 + size / 3) { // beyond the first chunk
+        unsigned char *p = ct_arena_alloc(a, size);
+        assert_int_equal((uintptr_t)p % 16, 0);
+        assert_memory_equal(p, zero, size);
+        memset(p, 0xff, size);
+    }
+}
+
+static void allocations_do_not_overlap_or_move(void **state)
+{
+    enum { N = 3000 };
+    struct ct_arena *a = *state;
+    int *p[N];
+    for (int i = 0; i < N; i++) {
+        p[i] = CT_NEWN(a, int, 1 + i % 7);
+        for (int k = 0; k <= i % 7; k++)
+            p[i][k] = i;
+    }
+    for (int i = 0; i < N; i++)
+        for (int k = 0; k <= i % 7; k++)
+            assert_int_equal(p[i][k], i);
+}
+
+static void a_block_larger_than_any_chunk_is_given(void **state)
+{
+    const size_t size = (size_t)9 << 20;
+    char *p = ct_arena_alloc(*state, size);
+    p[0] = p[size - 1] = 1;
+    assert_true(ct_arena_used(*state) >= size);
+}
+
+static void strings_are_copied_whole(void **state)
+{
+    struct ct_arena *a = *state;
+    char text[] = "crank";
+    const char *all = ct_arena_strdup(a, text), *part = ct_arena_strndup(a, text, 2);
+    const char *made = ct_arena_printf(a, "%s.%d", text, 12);
+    text[0] = 'X';
+    assert_string_equal(all, "crank");
+    assert_string_equal(part, "cr");
+    assert_string_equal(made, "crank.12");
+}
+
+static void a_pushed_array_keeps_its_elements(void **state)
+{
+    struct ct_arena *a = *state;
+    int *v = NULL;
+    size_t n = 0, cap = 0;
+    for (int i = 0; i < 1000; i++)
+        CT_PUSH(a, v, n, cap, 3 * i);
+    assert_int_equal(n, 1000);
+    assert_true(cap >= n);
+    for (int i = 0; i < 1000; i++)
+        assert_int_equal(v[i], 3 * i);
+}
+
+static void destroying_nothing_is_allowed(void **state)
+{
+    (void)state;
+    ct_arena_destroy(NULL);
+}
+
+// Runs work(a) under a guard; true if it came back through the guard.
+static bool runs_out(struct ct_arena *a, void (*work)(struct ct_arena *a))
+{
+    struct ct_guard g;
+    ct_guard_push(&g);
+    if (setjmp(g.env)) {
+        ct_guard_pop(&g);
+        return true;
+    }
+    work(a);
+    ct_guard_pop(&g);
+    return false;
+}
+
+static void ask_for_two_chunks(struct ct_arena *a)
+{
+    ct_arena_alloc(a, 4096);
+    ct_arena_alloc(a, 8192);
+}
+
+static void ask_for_too_much(struct ct_arena *a)
+{
+    ct_arena_alloc(a, SIZE_MAX - 8);
+}
+
+static void ask_for_an_overflowing_product(struct ct_arena *a)
+{
+    ct_arena_calloc(a, SIZE_MAX / 4, 8);
+}
+
+static void the_nth_refusal_reaches_the_guard(void **state)
+{
+    for (long n = 1; n <= 2; n++) {
+        ct_guard_fail_after(n);
+        struct ct_arena *a = *state;
+        assert_true(runs_out(a, ask_for_two_chunks));
+        destroy(state);
+        create(state);
+    }
+    ct_guard_fail_after(3);
+    assert_false(runs_out(*state, ask_for_two_chunks));
+}
+
+static void after_a_refusal_the_arena_is_usable(void **state)
+{
+    struct ct_arena *a = *state;
+    ct_guard_fail_after(1);
+    assert_true(runs_out(a, ask_for_two_chunks));
+    assert_false(runs_out(a, ask_for_two_chunks));
+    assert_string_equal(ct_arena_strdup(a, "still here"), "still here");
+}
+
+static void impossible_sizes_count_as_out_of_memory(void **state)
+{
+    assert_true(runs_out(*state, ask_for_too_much));
+    assert_true(runs_out(*state, ask_for_an_overflowing_product));
+}
+
+static void creation_reports_a_refusal_by_null(void **state)
+{
+    (void)state;
+    ct_guard_fail_after(1);
+    assert_null(ct_arena_create());
+}
+
+static void refuse_inside(struct ct_arena *a)
+{
+    assert_true(runs_out(a, ask_for_too_much));
+    ct_arena_alloc(a, 16);
+}
+
+static void guards_nest(void **state)
+{
+    assert_false(runs_out(*state, refuse_inside)); // the inner guard catches its own
+    assert_true(runs_out(*state, ask_for_too_much));
+}
+
+int main(void)
+{
+#define CASE(f) cmocka_unit_test_setup_teardown(f, create, destroy)
+    const struct CMUnitTest tests[] = {
+        CASE(allocations_are_aligned_and_zeroed),
+        CASE(allocations_do_not_overlap_or_move),
+        CASE(a_block_larger_than_any_chunk_is_given),
+        CASE(strings_are_copied_whole),
+        CASE(a_pushed_array_keeps_its_elements),
+        CASE(destroying_nothing_is_allowed),
+        CASE(the_nth_refusal_reaches_the_guard),
+        CASE(after_a_refusal_the_arena_is_usable),
+        CASE(impossible_sizes_count_as_out_of_memory),
+        CASE(creation_reports_a_refusal_by_null),
+        CASE(guards_nest),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,287 @@
+// Dense kernels against their definitions: residuals, orthogonality, ranks.
+#include "numeric/dense.h"
+
+#include <float.h>
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <string.h>
+#include <cmocka.h>
+
+enum { MOST = 12, LDA = 15, WORK = 200 }; // an lda above the rows shows a forgotten stride
+
+// n terms of order 1, growing with the condition of matrices that are random: a hundred times over
+static const double close_enough = 1e4 * DBL_EPSILON;
+
+static uint64_t state = 20240229; // the seed; the same numbers in every run
+
+static double uniform(void) // in [-1, 1)
+{
+    state = state * 6364136223846793005u + 1442695040888963407u;
+    return (double)(int64_t)(state >> 11) / 4503599627370496.0 - 1;
+}
+
+static void fill(double *A, int m, int n)
+{
+    for (int j = 0; j < n; j++)
+        for (int i = 0; i < LDA; i++)
+            A[i + LDA * j] = i < m ? uniform() : NAN; // below the rows nothing may be read
+}
+
+// A (m x n) of the given rank: a product of random m x rank and rank x n.
+static void fill_rank(double *A, int m, int n, int rank)
+{
+    double L[LDA * MOST], R[LDA * MOST];
+    fill(L, m, rank);
+    fill(R, rank, n);
+    for (int j = 0; j < n; j++)
+        for (int i = 0; i < LDA; i++) {
+            A[i + LDA * j] = i < m ? 0 : NAN;
+            for (int k = 0; k < rank && i < m; k++)
+                A[i + LDA * j] += L[i + LDA * k] * R[k + LDA * j];
+        }
+}
+
+// A = B' B + I, symmetric and positive definite; the upper triangle is never read.
+static void fill_definite(double *A, double *full, int n)
+{
+    double B[LDA * MOST];
+    fill(B, n, n);
+    for (int j = 0; j < n; j++)
+        for (int i = 0; i < n; i++) {
+            double sum = i == j;
+            for (int k = 0; k < n; k++)
+                sum += B[k + LDA * i] * B[k + LDA * j];
+            full[i + LDA * j] = sum;
+            A[i + LDA * j] = i >= j ? sum : NAN;
+        }
+}
+
+static void check_close(const char *what, double got, double want, double tolerance)
+{
+    if (!(fabs(got - want) <= tolerance)) {
+        printf("%s: got %.17g, wanted %.17g within %g\n", what, got, want, tolerance);
+        fail();
+    }
+}
+
+static double dot(const double *a, const double *b, int n)
+{
+    double sum = 0;
+    for (int i = 0; i < n; i++)
+        sum += a[i] * b[i];
+    return sum;
+}
+
+static void products_agree_with_their_definition(void **unused)
+{
+    (void)unused;
+    double A[LDA * MOST], x[MOST], y[MOST], z[MOST];
+    fill(A, 5, 7);
+    for (int i = 0; i < MOST; i++)
+        x[i] = uniform();
+    ct_gemv(y, A, x, 5, 7, LDA);
+    for (int i = 0; i < 5; i++) {
+        double want = 0;
+        for (int j = 0; j < 7; j++)
+            want += A[i + LDA * j] * x[j];
+        check_close("A x", y[i], want, close_enough);
+    }
+    ct_gemv_t(z, A, x, 5, 7, LDA);
+    for (int j = 0; j < 7; j++)
+        check_close("A' x", z[j], dot(A + LDA * j, x, 5), close_enough);
+    ct_gemv(y, A, x, 5, 0, LDA);
+    for (int i = 0; i < 5; i++)
+        assert_true(y[i] == 0);
+}
+
+static void cholesky_solves_definite_matrices(void **unused)
+{
+    (void)unused;
+    for (int n = 0; n <= MOST; n++) {
+        double A[LDA * MOST], full[LDA * MOST], want[2 * LDA], x[2 * LDA];
+        fill_definite(A, full, n);
+        for (int i = 0; i < 2 * LDA; i++)
+            want[i] = uniform();
+        for (int c = 0; c < 2; c++)
+            ct_gemv(x + LDA * c, full, want + LDA * c, n, n, LDA);
+        assert_true(ct_cholesky(A, n, LDA));
+        ct_cholesky_solve(x, A, n, LDA, 2, LDA);
+        for (int c = 0; c < 2; c++)
+            for (int i = 0; i < n; i++)
+                check_close("x", x[i + LDA * c], want[i + LDA * c], close_enough);
+    }
+}
+
+static void cholesky_refuses_indefinite_and_nonfinite(void **unused)
+{
+    (void)unused;
+    double indefinite[] = {1, 2, NAN, 1};
+    assert_false(ct_cholesky(indefinite, 2, 2));
+    double nonfinite[] = {1, 0, 0, NAN};
+    assert_false(ct_cholesky(nonfinite, 2, 2));
+}
+
+static void lu_solves_both_ways(void **unused)
+{
+    (void)unused;
+    for (int n = 1; n <= MOST; n++) {
+        double A[LDA * MOST], LU[LDA * MOST], want[MOST], x[MOST];
+        int pivot[MOST];
+        fill(A, n, n);
+        A[0] = 0; // needs an exchange of rows
+        for (int j = 0; j < n; j++)
+            A[n - 1 - j + LDA * j] += 3; // well conditioned
+        memcpy(LU, A, sizeof A);
+        assert_true(ct_lu(LU, pivot, n, LDA));
+        for (int transpose = 0; transpose < 2; transpose++) {
+            for (int i = 0; i < n; i++)
+                want[i] = uniform();
+            (transpose ? ct_gemv_t : ct_gemv)(x, A, want, n, n, LDA);
+            ct_lu_solve(x, LU, pivot, n, LDA, 1, n, transpose);
+            for (int i = 0; i < n; i++)
+                check_close("x", x[i], want[i], close_enough);
+        }
+    }
+    double singular[] = {1, 2, 2, 4};
+    int pivot[2];
+    assert_false(ct_lu(singular, pivot, 2, 2));
+}
+
+static void pivoted_qr_finds_rank_and_columns(void **unused)
+{
+    (void)unused;
+    for (int m = 1; m <= MOST; m++)
+        for (int n = 1; n <= MOST; n++)
+            for (int rank = 0; rank <= (m < n ? m : n); rank++) {
+                double A[LDA * MOST], Q[LDA * MOST], tau[MOST], work[WORK];
+                int column[MOST], seen = 0;
+                assert_true(ct_qr_pivot_work(m, n) <= WORK);
+                fill_rank(A, m, n, rank);
+                memcpy(Q, A, sizeof A);
+                assert_int_equal(ct_qr_pivot(Q, column, tau, m, n, LDA, 1e-10, work), rank);
+                for (int j = 0; j < n; j++)
+                    seen |= 1 << column[j];
+                assert_int_equal(seen, (1 << n) - 1);
+                // Q is orthogonal: columns of A P and of R have equal inner products
+                for (int j = 0; j < n; j++) {
+                    const double *r = Q + LDA * j;
+                    check_close("|R_j|", dot(r, r, j + 1 < m ? j + 1 : m),
+                                dot(A + LDA * column[j], A + LDA * column[j], m),
+                                close_enough * MOST);
+                }
+            }
+}
+
+// A' (b - A x) = 0 makes it least squares; x in the range of A' makes it the shortest.
+static void check_least_squares(int m, int n, int rank)
+{
+    double A[LDA * MOST], F[LDA * MOST], T[LDA * MOST], b[MOST], x[MOST], r[MOST], work[WORK];
+    int iwork[MOST];
+    fill_rank(A, m, n, rank);
+    memcpy(F, A, sizeof A);
+    for (int i = 0; i < MOST; i++)
+        x[i] = b[i] = i < m ? uniform() : NAN;
+    assert_true(ct_lstsq_work(m, n) <= WORK);
+    assert_int_equal(ct_lstsq(x, F, m, n, LDA, 1e-10, iwork, work), rank);
+
+    double Ax[MOST], normal[MOST];
+    ct_gemv(Ax, A, x, m, n, LDA);
+    for (int i = 0; i < m; i++)
+        r[i] = b[i] - Ax[i];
+    ct_gemv_t(normal, A, r, m, n, LDA);
+    double norm = 1;
+    for (int j = 0; j < n; j++)
+        norm += fabs(x[j]);
+    for (int j = 0; j < n; j++)
+        check_close("A' r", normal[j], 0, close_enough * norm);
+
+    // A' z = x has a solution z: its residual vanishes
+    for (int j = 0; j < n; j++)
+        for (int i = 0; i < m; i++)
+            T[j + LDA * i] = A[i + LDA * j];
+    double z[MOST], back[MOST];
+    memcpy(z, x, (size_t)n * sizeof *z);
+    ct_lstsq(z, T, n, m, LDA, 1e-10, iwork, work);
+    ct_gemv_t(back, A, z, m, n, LDA);
+    for (int j = 0; j < n; j++)
+        check_close("x in range of A'", back[j], x[j], close_enough * norm);
+}
+
+static void least_squares_is_shortest_for_every_shape_and_rank(void **unused)
+{
+    (void)unused;
+    for (int m = 1; m <= MOST; m++)
+        for (int n = 1; n <= MOST; n++)
+            for (int rank = 0; rank <= (m < n ? m : n); rank++)
+                check_least_squares(m, n, rank);
+}
+
+static void empty_least_squares_gives_zero(void **unused)
+{
+    (void)unused;
+    double b[] = {7, 7, 7}, work[WORK];
+    int iwork[3];
+    assert_int_equal(ct_lstsq(b, NULL, 0, 3, 0, 1e-10, iwork, work), 0);
+    for (int i = 0; i < 3; i++)
+        assert_true(b[i] == 0);
+}
+
+static void symmetric_solve_handles_saddle_points(void **unused)
+{
+    (void)unused;
+    for (int n = 2; n <= MOST; n++) { // [ M J' ; J 0 ] with n / 3 constraints
+        double A[LDA * MOST], full[LDA * MOST], want[MOST], x[MOST], work[WORK];
+        int pivot[MOST];
+        fill_definite(A, full, n);
+        for (int j = n - n / 3; j < n; j++)
+            for (int i = j; i < n; i++)
+                full[i + LDA * j] = full[j + LDA * i] = A[i + LDA * j] = 0;
+        for (int i = 0; i < n; i++)
+            want[i] = uniform();
+        ct_gemv(x, full, want, n, n, LDA);
+        assert_true(ct_symmetric_solve_work(n) <= WORK);
+        assert_true(ct_symmetric_solve(x, A, pivot, n, LDA, work));
+        for (int i = 0; i < n; i++)
+            check_close("x", x[i], want[i], 100 * close_enough); // conditions up to 1e4 are met
+    }
+    double zero[] = {0, 0, NAN, 0}, b[] = {1, 1}, work[2];
+    int pivot[2];
+    assert_false(ct_symmetric_solve(b, zero, pivot, 2, 2, work));
+}
+
+static void eigenvalues_of_a_chain_are_known(void **unused)
+{
+    (void)unused;
+    enum { N = 9 };
+    double A[N * N] = {0}, w[N], work[WORK];
+    for (int i = 0; i < N; i++) {
+        A[i + N * i] = 2;
+        if (i + 1 < N)
+            A[i + 1 + N * i] = -1;
+    }
+    assert_true(ct_symmetric_eigenvalues_work(N) <= WORK);
+    assert_true(ct_symmetric_eigenvalues(w, A, N, N, work));
+    const double pi = acos(-1);
+    for (int i = 0; i < N; i++)
+        check_close("eigenvalue", w[i], 2 - 2 * cos((i + 1) * pi / (N + 1)), close_enough);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(products_agree_with_their_definition),
+        cmocka_unit_test(cholesky_solves_definite_matrices),
+        cmocka_unit_test(cholesky_refuses_indefinite_and_nonfinite),
+        cmocka_unit_test(lu_solves_both_ways),
+        cmocka_unit_test(pivoted_qr_finds_rank_and_columns),
+        cmocka_unit_test(least_squares_is_shortest_for_every_shape_and_rank),
+        cmocka_unit_test(empty_least_squares_gives_zero),
+        cmocka_unit_test(symmetric_solve_handles_saddle_points),
+        cmocka_unit_test(eigenvalues_of_a_chain_are_known),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
