@@ -20,7 +20,7 @@ enum ct_value_kind {
     CT_VALUE_SCALAR,  // one expression
     CT_VALUE_VEC3,    // three expressions
     CT_VALUE_LIST,    // `least`..`most` expressions; a single scalar counts as a list of one
-    CT_VALUE_COORDS,  // one per coordinate of the joint (a scalar for one); `~` leaves a hole
+    CT_VALUE_COORDS,  // one per speed of the joint (a scalar for one); `~` leaves a hole
     CT_VALUE_AXIS,    // x, y, z or [ux, uy, uz]; three expressions, normalised by the reader
     CT_VALUE_AXES,    // two axes: six expressions
     CT_VALUE_TURNS,   // [axis, angle] or a list of such
@@ -60,7 +60,7 @@ struct ct_value {
     ct_ex *e;                // expressions
     struct ct_mark *at;      // mark of each
     bool *hole;              // COORDS: true where `~` stood
-    int frame;               // FRAME: index into the model's frames
+    int frame;               // FRAME: index into the model's frames; -1 when not given
     const char *const *name; // NAMES, JOINTS: n texts
     size_t nturn;
     struct ct_turn *turn; // TURNS
@@ -106,7 +106,8 @@ struct ct_motion {
     ct_ex3 rot_from[3], rot_to[3];
 };
 
-/// Start values of a joint: `initial: {q:, u:, rotate:, guess:}`.
+/// Start values of a joint: `initial: {q:, u:, rotate:, guess:}`. q has one entry per stored coordinate
+/// (beside `rotate` without the four of the quaternion), u one per speed; `~` leaves a hole.
 struct ct_initial {
     struct ct_value q, u;
     struct ct_value rotate; // turns; n = 0 when absent
@@ -120,8 +121,8 @@ struct ct_instance {
     const struct ct_value *value; // one per key: family keys first, then the class's own
     struct ct_initial initial;    // joints
     const ct_ex *local;           // symbols of the coordinate names of a custom joint
-    int ncoord, nfree;            // joints: resolved counts
-    int from, to;                 // joints and two-ended forces: frames; else -1
+    int ncoord, nfree;            // joints: resolved counts; beside a particle lengths only
+    int from, to;                 // frames; -1 for gears; `force` and `torque`: from -1, to the frame acted on
 };
 
 /// Value of a key of the instance by name; the key must exist (asserted). `given` tells if it was.

@@ -3,12 +3,14 @@
 //     frame 0 = ground ("ground"); each body owns the frame of its name; each point is one more
 //
 // What always holds after ct_model_read: every name is resolved, units are SI, every value has the
-// right dimension and count, parameters have values in definition order, nothing is cyclic.
+// right dimension and count, a parameter's definition uses parameters before it only (the order of the
+// file where that is possible), nothing is cyclic.
 // Expressions live in model->x and may contain symbols of kind TIME, PARAM and SIGNAL only (LOCAL too
 // in custom joints).
 #ifndef CT_COMPONENT_MODEL_H
 #define CT_COMPONENT_MODEL_H
 
+#include "base/names.h"
 #include "component/class.h"
 
 struct ct_frame {
@@ -33,7 +35,7 @@ struct ct_parameter {
     const char *name;
     struct ct_mark mark;
     ct_ex symbol;     // CT_SYM_PARAM, index = place in model->parameter
-    ct_ex definition; // in terms of other parameters
+    ct_ex definition; // in terms of parameters before it
     double value;
 };
 
@@ -48,15 +50,17 @@ struct ct_output {
 enum ct_rate_jumps { CT_RATE_IMPULSE, CT_RATE_CONTINUOUS };
 
 struct ct_simulation {
-    double duration;    // [s]
-    long samples;       // at least 2 unless the duration is 0; both ends included
-    double interval;    // [s] instead of samples; 0 when samples were given
+    double duration;    // [s]; 0 when none was given
+    bool has_duration;
+    long samples;       // at least 2 unless the duration is 0; both ends included; default 1001
+    double interval;    // [s] when it was given instead of samples (samples then follow from it), else 0
     double rtol, atol;  // `tolerance` (default 1e-8), `absolute` (default tolerance / 100)
     double step;        // fixed step [s]; 0: controlled
     const char *method; // "auto"
+    struct ct_mark method_mark;
     enum ct_rate_jumps rate_jumps;
     struct ct_value small; // names
-    struct ct_mark mark;
+    struct ct_mark mark;   // of the key `simulation`; of the file when there is none
 };
 
 struct ct_model {
@@ -78,6 +82,9 @@ struct ct_model {
     struct ct_output *output;
     size_t noutput, output_cap;
     struct ct_simulation simulation;
+    double *value;                     // by number of symbol: t (0) and the parameters
+    struct ct_names parameter_index;   // names -> indices
+    struct ct_names frame_index, body_index, joint_index, force_index;
 };
 
 /// An override from the command line: "NAME=VALUE", the value an expression or a quantity.
@@ -85,12 +92,16 @@ struct ct_set {
     const char *text;
 };
 
-/// Read, check and resolve a model file. Reports every problem it can find in one pass.
-/// Errors: all E1xx. Cost: linear in the file.
+/// Read, check and resolve a model file. Reports every problem it can find in one pass, in the order of
+/// the file. Tables are sought beside the model.
+/// Errors: all E1xx, E002 for the file itself, E003 for overrides. Cost: linear in the file.
 bool ct_model_read(struct ct_ctx *ctx, const char *path, const struct ct_set *set, size_t nset,
                    struct ct_model *m);
+/// The same for n bytes of text; `file` names it in marks and says where tables are sought.
+bool ct_model_parse(struct ct_ctx *ctx, const char *file, const char *text, size_t n,
+                    const struct ct_set *set, size_t nset, struct ct_model *m);
 
-/// Value of an expression of parameters alone.
+/// Value of an expression of parameters alone; NaN if it contains anything else.
 double ct_model_number(const struct ct_model *m, ct_ex e);
 
 int ct_model_find_joint(const struct ct_model *m, const char *name);

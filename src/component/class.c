@@ -1,0 +1,61 @@
+// The registry of component classes and the keys that families share.
+#include "component/class.h"
+
+#include <assert.h>
+#include <string.h>
+
+#define COMPONENT(name) extern const struct ct_component_class ct_component_##name;
+#include "components/components.def"
+#undef COMPONENT
+
+const struct ct_component_class *const ct_component_classes[] = {
+#define COMPONENT(name) &ct_component_##name,
+#include "components/components.def"
+#undef COMPONENT
+};
+
+const int ct_ncomponent_class = COUNT(ct_component_classes);
+
+// COORDS take their units from the coordinates: N/m or N*m/rad and so on
+static const struct ct_key joint_keys[] = {
+    {"from", CT_VALUE_FRAME, CT_KEY_REQUIRED, NULL, 1, 1, "frame the motion is relative to"},
+    {"to", CT_VALUE_FRAME, CT_KEY_REQUIRED, NULL, 1, 1, "frame that moves"},
+    {"initial", CT_VALUE_INITIAL, 0, NULL, 1, 1,
+     "start: {q: values, u: values, rotate: [axis, angle], guess: true}"},
+    {"stiffness", CT_VALUE_COORDS, 0, NULL, 1, CT_MAX_COORD, "spring along the coordinate (0)"},
+    {"damping", CT_VALUE_COORDS, 0, NULL, 1, CT_MAX_COORD, "damper along the coordinate (0)"},
+    {"rest", CT_VALUE_COORDS, 0, NULL, 1, CT_MAX_COORD, "coordinate at which the spring is free (0)"},
+    {"effort", CT_VALUE_COORDS, CT_KEY_STATE, NULL, 1, CT_MAX_COORD,
+     "force or torque along the coordinate, positive along q (0)"},
+    {"motion", CT_VALUE_COORDS, CT_KEY_TIME, NULL, 1, CT_MAX_COORD,
+     "prescribed q(t); `~` leaves a coordinate free"},
+};
+
+const struct ct_key *ct_family_keys(enum ct_family family, int *nkey)
+{
+    *nkey = family == CT_FAMILY_JOINT ? (int)COUNT(joint_keys) : 0;
+    return joint_keys;
+}
+
+const struct ct_component_class *ct_component_find(enum ct_family family, const char *name)
+{
+    for (int i = 0; i < ct_ncomponent_class; i++)
+        if (ct_component_classes[i]->family == family
+            && strcmp(ct_component_classes[i]->name, name) == 0)
+            return ct_component_classes[i];
+    return NULL;
+}
+
+const struct ct_value *ct_instance_value(const struct ct_instance *self, const char *key)
+{
+    int nfamily;
+    const struct ct_key *family = ct_family_keys(self->cls->family, &nfamily);
+    for (int i = 0; i < nfamily; i++)
+        if (strcmp(family[i].name, key) == 0)
+            return &self->value[i];
+    for (int i = 0; i < self->cls->nkey; i++)
+        if (strcmp(self->cls->key[i].name, key) == 0)
+            return &self->value[nfamily + i];
+    assert(!"a key of this class");
+    return NULL;
+}

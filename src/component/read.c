@@ -1,0 +1,182 @@
+// A model from its file: version and top keys here, sections in the other read_*.c. Names of all
+// sections are declared before any value is read, so that order within the file does not matter.
+#include "component/read.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const char *const top_keys[] = {"cotree", "name",   "description", "gravity", "parameters",
+                                       "bodies", "joints", "forces",      "outputs", "simulation"};
+
+// ---- diagnostics in the order of the file ------------------------------------------------------------------
+
+struct group {
+    const struct ct_diagnostic *first; // an error or warning; its notes follow
+    size_t n, number;
+};
+
+static int compare_groups(const void *a, const void *b)
+{
+    const struct group *p = a, *q = b;
+    const struct ct_mark *m = &p->first->mark, *n = &q->first->mark;
+    const int c = m->file && n->file ? strcmp(m->file, n->file) : (m->file != NULL) - (n->file != NULL);
+    if (c)
+        return c;
+    if (m->line != n->line)
+        return m->line < n->line ? -1 : 1;
+    if (m->column != n->column)
+        return m->column < n->column ? -1 : 1;
+    return p->number < q->number ? -1 : 1;
+}
+
+// Sections are read in an order of their own; readers go through a file from above.
+static void sort_diagnostics(struct ct_ctx *ctx, size_t from)
+{
+    const size_t n = ctx->ndiagnostic - from;
+    if (n < 2)
+        return;
+    struct ct_diagnostic *copy = CT_NEWN(ctx->scratch, struct ct_diagnostic, n);
+    struct group *group = CT_NEWN(ctx->scratch, struct group, n);
+    memcpy(copy, ctx->diagnostic + from, n * sizeof *copy);
+    size_t ngroup = 0;
+    for (size_t i = 0; i < n; i++) {
+        if (copy[i].severity != CT_SEVERITY_NOTE || !ngroup) {
+            group[ngroup] = (struct group){&copy[i], 0, ngroup};
+            ngroup++;
+        }
+        group[ngroup - 1].n++;
+    }
+    qsort(group, ngroup, sizeof *group, compare_groups);
+    for (size_t g = 0, k = from; g < ngroup; g++)
+        for (size_t i = 0; i < group[g].n; i++)
+            ctx->diagnostic[k++] = group[g].first[i];
+}
+
+// ---- the top of the file ------------------------------------------------------------------------------------------
+
+static void check_version(struct ct_reader *r)
+{
+    const struct ct_pair *p = ct_node_find(r->root, "cotree");
+    if (!p)
+        ct_error(r->ctx, r->root->mark, CT_E_VERSION,
+                 "the file must start with its version, 'cotree: 1'");
+    else if (p != r->root->pair)
+        ct_error(r->ctx, p->mark, CT_E_VERSION, "'cotree: 1' must be the first key");
+    if (p && (p->value->kind != CT_NODE_SCALAR || strcmp(p->value->text, "1") != 0))
+        ct_error(r->ctx, p->value->mark, CT_E_VERSION,
+                 "this program reads version 1 of the format, 'cotree: 1'");
+}
+
+// File name without folder and suffix
+static const char *stem(struct ct_reader *r)
+{
+    const char *slash = strrchr(r->m->file, '/');
+    const char *base = slash ? slash + 1 : r->m->file;
+    const char *dot = strrchr(base, '.');
+    return ct_arena_strndup(r->a, base, dot && dot > base ? (size_t)(dot - base) : strlen(base));
+}
+
+static void read_top(struct ct_reader *r)
+{
+    struct ct_model *m = r->m;
+    check_version(r);
+    ct_read_keys(r, r->root, "a model", top_keys, COUNT(top_keys));
+    m->name = stem(r);
+    m->description = "";
+    if (ct_node_get(r->root, "name"))
+        ct_read_text(r, ct_node_get(r->root, "name"), &m->name);
+    if (ct_node_get(r->root, "description"))
+        ct_read_text(r, ct_node_get(r->root, "description"), &m->description);
+}
+
+static void read_gravity(struct ct_reader *r)
+{
+    const struct ct_node *node = ct_node_get(r->root, "gravity");
+    r->m->gravity = (ct_ex3){{CT_EX_ZERO, CT_EX_ZERO, CT_EX_ZERO}};
+    if (node)
+        ct_read_vec3(r, node, 0, "m/s^2", &r->m->gravity, NULL);
+}
+
+static bool read_model(struct ct_ctx *ctx, const char *file, const struct ct_node *root,
+                       const struct ct_set *set, size_t nset, struct ct_model *m)
+{
+    struct ct_reader r = {.ctx = ctx, .a = ctx->model, .m = m, .root = root};
+    *m = (struct ct_model){.file = file};
+    m->x = CT_NEW(ctx->model, struct ct_exs);
+    ct_exs_init(m->x, ctx->model);
+    m->time = ct_ex_sym(m->x, CT_SYM_TIME, "t", 0);
+    if (!ct_read_shape(&r, root, CT_NODE_MAP, "a map of keys that starts with 'cotree: 1'"))
+        return false;
+    read_top(&r);
+    ct_read_parameters(&r, set, nset);
+    ct_read_bodies_declare(&r);
+    ct_read_joints_declare(&r);
+    ct_read_forces_declare(&r);
+    read_gravity(&r);
+    ct_read_bodies_fill(&r);
+    ct_read_joints_fill(&r);
+    ct_read_forces_fill(&r);
+    ct_read_outputs(&r);
+    ct_read_simulation(&r);
+    return true;
+}
+
+static bool read_tree(struct ct_ctx *ctx, const char *file, const struct ct_node *root, size_t nerror,
+                      size_t ndiagnostic, const struct ct_set *set, size_t nset, struct ct_model *m)
+{
+    if (root) // also with keys given twice: there may be more to say
+        read_model(ctx, file, root, set, nset, m);
+    sort_diagnostics(ctx, ndiagnostic);
+    return ctx->nerror == nerror;
+}
+
+bool ct_model_read(struct ct_ctx *ctx, const char *path, const struct ct_set *set, size_t nset,
+                   struct ct_model *m)
+{
+    const size_t nerror = ctx->nerror, ndiagnostic = ctx->ndiagnostic;
+    const struct ct_node *root = NULL;
+    ct_yaml_read(ctx, path, &root);
+    return read_tree(ctx, ct_arena_strdup(ctx->model, path), root, nerror, ndiagnostic, set, nset, m);
+}
+
+bool ct_model_parse(struct ct_ctx *ctx, const char *file, const char *text, size_t n,
+                    const struct ct_set *set, size_t nset, struct ct_model *m)
+{
+    const size_t nerror = ctx->nerror, ndiagnostic = ctx->ndiagnostic;
+    const struct ct_node *root = NULL;
+    ct_yaml_parse(ctx, file, text, n, &root);
+    return read_tree(ctx, file, root, nerror, ndiagnostic, set, nset, m);
+}
+
+// ---- questions to a model ------------------------------------------------------------------------------------------
+
+double ct_model_number(const struct ct_model *m, ct_ex e)
+{
+    double v;
+    if (ct_ex_is_const(m->x, e, &v))
+        return v;
+    if (ct_ex_kinds(m->x, e) & ~(1u << CT_SYM_PARAM))
+        return NAN;
+    return ct_ex_value(m->x, e, m->value);
+}
+
+int ct_model_find_joint(const struct ct_model *m, const char *name)
+{
+    return ct_names_get(&m->joint_index, name);
+}
+
+int ct_model_find_frame(const struct ct_model *m, const char *name)
+{
+    return ct_names_get(&m->frame_index, name);
+}
+
+int ct_model_find_body(const struct ct_model *m, const char *name)
+{
+    return ct_names_get(&m->body_index, name);
+}
+
+int ct_model_find_force(const struct ct_model *m, const char *name)
+{
+    return ct_names_get(&m->force_index, name);
+}

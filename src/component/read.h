@@ -1,0 +1,109 @@
+// What the parts of the reader share: read.c (the file), read_value.c (values by kind) and one file per
+// section: read_parameter.c, read_body.c, read_joint.c, read_force.c, read_run.c; tables in read_table.c.
+//
+// What always holds: a function that returns false has reported; reading then goes on with the next
+// value, so that one pass shows as many problems as it can.
+#ifndef CT_COMPONENT_READ_H
+#define CT_COMPONENT_READ_H
+
+#include "component/model.h"
+#include "io/yaml.h"
+
+struct ct_reader {
+    struct ct_ctx *ctx;
+    struct ct_arena *a; // of the model
+    struct ct_model *m;
+    const struct ct_node *root;
+    bool parameters_ok;  // all have values; else nothing that needs them is checked
+    const char **known;  // names for suggestions: t and the parameters
+    size_t nknown, known_cap;
+    struct ct_names signal;             // text -> node of its symbol
+    const struct ct_instance *local_of; // custom joint whose coordinate names are known, or NULL
+    const char *const *local_name;
+    // of tables already read: their names ("file\ncolumn\nkind") -> number in the store
+    struct ct_names table;
+    // components of the file by name, for duplicates across the sections
+    struct ct_names component;
+    struct ct_read_place {
+        const char *sort; // "body", "joint", "force"
+        struct ct_mark mark;
+    } *place;
+    size_t ncomponent, place_cap;
+    unsigned flags; // CT_KEY_... of the value being read
+    const struct ct_node **body_node, **joint_node, **force_node;
+    size_t nbody_node, body_node_cap, njoint_node, joint_node_cap, nforce_node, force_node_cap;
+};
+
+// ---- keys and shapes ------------------------------------------------------------------------------
+
+/// node is a map and has keys of this list only. what: "joint 'a'", for messages.
+bool ct_read_keys(struct ct_reader *r, const struct ct_node *node, const char *what,
+                  const char *const *names, size_t n);
+bool ct_read_shape(struct ct_reader *r, const struct ct_node *node, enum ct_node_kind kind,
+                   const char *wanted);
+/// A list with least..most entries.
+bool ct_read_length(struct ct_reader *r, const struct ct_node *node, size_t least, size_t most,
+                    const char *wanted);
+/// One of n words; its index, or -1 after an error. what: "interpolation".
+int ct_read_word(struct ct_reader *r, const struct ct_node *node, const char *what,
+                 const char *const *names, size_t n);
+bool ct_read_boolean(struct ct_reader *r, const struct ct_node *node, bool *value);
+/// Any text.
+bool ct_read_text(struct ct_reader *r, const struct ct_node *node, const char **text);
+/// An identifier that may name something of this sort ("body").
+bool ct_read_name(struct ct_reader *r, const char *name, struct ct_mark at, const char *sort);
+/// A body, joint or force: its name must differ from all others.
+bool ct_read_component_name(struct ct_reader *r, const struct ct_pair *p, const char *sort);
+/// ", did you mean 'x'?" or "".
+const char *ct_read_near(struct ct_reader *r, const char *name, const char *const *names, size_t n);
+
+// ---- values ------------------------------------------------------------------------------------------
+
+/// One expression; flags are CT_KEY_TIME, _STATE, _LOCAL; unit as in ct_key.
+bool ct_read_expr(struct ct_reader *r, const struct ct_node *node, unsigned flags, const char *unit,
+                  ct_ex *e);
+/// Its value, if it has one: false without error when it cannot be known (a parameter is wrong).
+bool ct_read_number(struct ct_reader *r, ct_ex e, double *value);
+bool ct_read_vec3(struct ct_reader *r, const struct ct_node *node, unsigned flags, const char *unit,
+                  ct_ex3 *v, struct ct_mark at[3]);
+bool ct_read_axis(struct ct_reader *r, const struct ct_node *node, ct_ex3 *axis);
+bool ct_read_turns(struct ct_reader *r, const struct ct_node *node, unsigned flags,
+                   struct ct_turn **turn, size_t *nturn);
+bool ct_read_frame(struct ct_reader *r, const struct ct_node *node, int *frame);
+/// A value of any kind that does not depend on coordinate counts.
+bool ct_read_value(struct ct_reader *r, const struct ct_node *node, const struct ct_key *key,
+                   struct ct_value *value);
+/// {table:, column:, interpolate:}
+bool ct_read_table(struct ct_reader *r, const struct ct_node *node, ct_ex *e);
+
+// ---- components --------------------------------------------------------------------------------------
+
+/// The class named by `type`; NULL after an error. standard: when there is no `type`, or NULL.
+const struct ct_component_class *ct_read_class(struct ct_reader *r, enum ct_family family,
+                                               const struct ct_pair *p, const char *sort,
+                                               const char *standard);
+/// Room for the values of all keys, none given.
+void ct_read_clear(struct ct_reader *r, struct ct_instance *self);
+/// Unknown keys of a component are errors, missing required ones too. use_family: the family's
+/// keys count.
+bool ct_read_component_keys(struct ct_reader *r, const struct ct_instance *self,
+                            const struct ct_node *node, const char *sort, bool use_family);
+/// The class's own keys, in the order of its table.
+bool ct_read_own_values(struct ct_reader *r, struct ct_instance *self, const struct ct_node *node);
+
+// ---- sections: `declare` makes names known, `fill` reads values -----------------------------------------
+
+void ct_read_parameters(struct ct_reader *r, const struct ct_set *set, size_t nset);
+void ct_read_bodies_declare(struct ct_reader *r);
+void ct_read_bodies_fill(struct ct_reader *r);
+void ct_read_joints_declare(struct ct_reader *r);
+void ct_read_joints_fill(struct ct_reader *r);
+void ct_read_forces_declare(struct ct_reader *r);
+void ct_read_forces_fill(struct ct_reader *r);
+void ct_read_outputs(struct ct_reader *r);
+void ct_read_simulation(struct ct_reader *r);
+/// `a` or `a.q2` of a gear: which joint and coordinate (from 0); reports at the mark.
+bool ct_read_coordinate(struct ct_reader *r, const char *text, struct ct_mark at, int *joint,
+                        int *coordinate);
+
+#endif

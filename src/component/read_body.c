@@ -1,0 +1,270 @@
+// Bodies, their points and the frames both own.
+#include "component/read.h"
+
+#include <math.h>
+#include <string.h>
+
+static const char *const later[] = {"beam"}; // types of the format that are not read yet
+
+static void add_frame(struct ct_reader *r, const char *name, struct ct_mark at, int body)
+{
+    struct ct_model *m = r->m;
+    const struct ct_frame f = {.name = name,
+                               .mark = at,
+                               .body = body,
+                               .at = {{CT_EX_ZERO, CT_EX_ZERO, CT_EX_ZERO}}};
+    ct_names_put(r->a, &m->frame_index, name, (int)m->nframe);
+    CT_PUSH(r->a, m->frame, m->nframe, m->frame_cap, f);
+}
+
+// All names, also of points that will turn out wrong: what refers to them is not to blame.
+static void declare_points(struct ct_reader *r, int body, const struct ct_node *node)
+{
+    const struct ct_node *points = ct_node_get(node, "points");
+    for (size_t i = 0; points && points->kind == CT_NODE_MAP && i < points->n; i++) {
+        const struct ct_pair *p = &points->pair[i];
+        if (!ct_read_name(r, p->key, p->mark, "point"))
+            continue;
+        const char *name
+            = ct_arena_printf(r->a, "%s.%s", r->m->body[body].instance.name, p->key);
+        if (ct_model_find_frame(r->m, name) < 0) // a key given twice has been reported
+            add_frame(r, name, p->mark, body);
+    }
+}
+
+static int add_body(struct ct_reader *r, const char *name, struct ct_mark at)
+{
+    struct ct_model *m = r->m;
+    struct ct_body b = {.frame = (int)m->nframe};
+    b.instance.name = name;
+    b.instance.mark = at;
+    b.instance.from = b.instance.to = -1;
+    b.mass = CT_EX_ZERO;
+    b.com = (ct_ex3){{CT_EX_ZERO, CT_EX_ZERO, CT_EX_ZERO}};
+    const int i = (int)m->nbody;
+    ct_names_put(r->a, &m->body_index, name, i);
+    CT_PUSH(r->a, m->body, m->nbody, m->body_cap, b);
+    CT_PUSH(r->ctx->scratch, r->body_node, r->nbody_node, r->body_node_cap, NULL);
+    add_frame(r, name, at, i);
+    return i;
+}
+
+void ct_read_bodies_declare(struct ct_reader *r)
+{
+    const struct ct_pair *ground = NULL;
+    const struct ct_pair *section = ct_node_find(r->root, "bodies");
+    const struct ct_node *node = section ? section->value : NULL;
+    if (node && ct_node_is_null(node))
+        node = NULL;
+    const bool ok = node && ct_read_shape(r, node, CT_NODE_MAP, "a map of bodies");
+    if (ok)
+        ground = ct_node_find(node, "ground");
+    add_body(r, "ground", ground ? ground->mark : (struct ct_mark){r->m->file, 0, 0});
+    if (ground) {
+        r->body_node[0] = ground->value;
+        declare_points(r, 0, ground->value);
+    }
+    for (size_t i = 0; ok && i < node->n; i++) {
+        const struct ct_pair *p = &node->pair[i];
+        if (p == ground || !ct_read_component_name(r, p, "body"))
+            continue;
+        const int body = add_body(r, p->key, p->mark);
+        r->body_node[body] = p->value;
+        declare_points(r, body, p->value);
+    }
+}
+
+// ---- points ---------------------------------------------------------------------------------------------
+
+static bool read_point(struct ct_reader *r, const struct ct_node *node, struct ct_frame *f)
+{
+    static const char *const keys[] = {"at", "rotate"};
+    if (node->kind == CT_NODE_LIST)
+        return ct_read_vec3(r, node, 0, "m", &f->at, NULL);
+    const char *what = ct_arena_printf(r->ctx->scratch, "point '%s'", f->name);
+    if (!ct_read_shape(r, node, CT_NODE_MAP, "[x, y, z] or {at: [x, y, z], rotate: [axis, angle]}"))
+        return false;
+    bool ok = ct_read_keys(r, node, what, keys, COUNT(keys));
+    const struct ct_node *at = ct_node_get(node, "at"), *rotate = ct_node_get(node, "rotate");
+    if (at)
+        ok &= ct_read_vec3(r, at, 0, "m", &f->at, NULL);
+    if (rotate) {
+        size_t n;
+        ok &= ct_read_turns(r, rotate, 0, &f->turn, &n);
+        f->nturn = (int)n;
+    }
+    if (!at && !rotate)
+        ok = ct_error(r->ctx, f->mark, CT_E_KEY_MISSING, "%s needs 'at'", what);
+    return ok;
+}
+
+static bool read_points(struct ct_reader *r, const struct ct_body *b, const struct ct_node *node)
+{
+    const struct ct_node *points = ct_node_get(node, "points");
+    if (!points || ct_node_is_null(points))
+        return true;
+    if (!ct_read_shape(r, points, CT_NODE_MAP, "a map of points"))
+        return false;
+    bool ok = true;
+    for (size_t i = 0; i < points->n; i++) {
+        const char *name
+            = ct_arena_printf(r->ctx->scratch, "%s.%s", b->instance.name, points->pair[i].key);
+        const int f = ct_model_find_frame(r->m, name);
+        ok &= f >= 0 && read_point(r, points->pair[i].value, &r->m->frame[f]);
+    }
+    return ok;
+}
+
+static bool read_ground(struct ct_reader *r, const struct ct_node *node)
+{
+    if (ct_node_is_null(node))
+        return true;
+    if (!ct_read_shape(r, node, CT_NODE_MAP, "a map of keys"))
+        return false;
+    bool ok = true;
+    for (size_t i = 0; i < node->n; i++)
+        if (strcmp(node->pair[i].key, "points") != 0)
+            ok = ct_error(r->ctx, node->pair[i].mark, CT_E_GROUND,
+                          "the ground has points only, no '%s'", node->pair[i].key);
+    return read_points(r, &r->m->body[0], node) && ok;
+}
+
+// ---- mass and inertia -------------------------------------------------------------------------------------
+
+static bool check_mass(struct ct_reader *r, const struct ct_body *b, const struct ct_value *mass)
+{
+    double v;
+    if (!mass->given || !ct_read_number(r, b->mass, &v) || !(v < 0))
+        return true;
+    return ct_error(r->ctx, mass->mark, CT_E_MASS, "body '%s': the mass is negative (%g kg)",
+                    b->instance.name, v);
+}
+
+// Principal moments (3, ascending) of I = [xx yy zz xy xz yz]; trigonometric solution of the cubic.
+static void principal_moments(const double I[6], double lam[3])
+{
+    const double mean = (I[0] + I[1] + I[2]) / 3;
+    const double x = I[0] - mean, y = I[1] - mean, z = I[2] - mean;
+    const double p = sqrt((x * x + y * y + z * z + 2 * (I[3] * I[3] + I[4] * I[4] + I[5] * I[5])) / 6);
+    double angle = 0;
+    if (p > 0) {
+        const double det = x * (y * z - I[5] * I[5]) - I[3] * (I[3] * z - I[5] * I[4])
+                           + I[4] * (I[3] * I[5] - y * I[4]);
+        angle = acos(fmax(-1, fmin(1, det / (2 * p * p * p)))) / 3;
+    }
+    const double third = 2.0943951023931953; // a third of a turn
+    lam[2] = mean + 2 * p * cos(angle);
+    lam[0] = mean + 2 * p * cos(angle + third);
+    lam[1] = 3 * mean - lam[0] - lam[2];
+}
+
+// The moments of any mass distribution are sums of squares: none is negative, none exceeds the sum of
+// the other two.
+static bool check_inertia(struct ct_reader *r, const struct ct_body *b, const struct ct_value *given)
+{
+    double I[6], largest = 0, lam[3];
+    for (int i = 0; i < 6; i++) {
+        if (!ct_read_number(r, b->inertia[i], &I[i]))
+            return true;
+        largest = fmax(largest, fabs(I[i]));
+    }
+    if (largest == 0)
+        return true;
+    for (int i = 0; i < 6; i++)
+        I[i] /= largest; // so that cubes neither over- nor underflow
+    principal_moments(I, lam);
+    // moments are copied from data sheets and programs that print six or seven digits
+    const double rounding = 1e-6 * lam[2];
+    if (lam[0] >= -rounding && lam[2] <= lam[0] + lam[1] + rounding)
+        return true;
+    return ct_error(r->ctx, given->mark, CT_E_INERTIA,
+                    "body '%s': no body has the principal moments of inertia %g, %g, %g kg*m^2: %s",
+                    b->instance.name, lam[0] * largest, lam[1] * largest, lam[2] * largest,
+                    lam[0] < -rounding ? "one is negative"
+                                       : "one is larger than the sum of the others");
+}
+
+static bool fill_inertia(struct ct_reader *r, struct ct_body *b, const struct ct_value *v)
+{
+    if (!v->given)
+        return true;
+    if (v->n != 1 && v->n != 3 && v->n != 6)
+        return ct_error(r->ctx, v->mark, CT_E_LENGTH,
+                        "the list has %zu values; one moment, [Ixx, Iyy, Izz] or "
+                        "[Ixx, Iyy, Izz, Ixy, Ixz, Iyz] is wanted",
+                        v->n);
+    for (size_t i = 0; i < 6; i++)
+        b->inertia[i] = i < v->n ? v->e[i] : CT_EX_ZERO;
+    if (v->n == 1)
+        b->inertia[1] = b->inertia[2] = v->e[0];
+    return check_inertia(r, b, v);
+}
+
+static bool fill_rigid(struct ct_reader *r, struct ct_body *b)
+{
+    const struct ct_value *com = ct_instance_value(&b->instance, "com");
+    for (int i = 0; com->given && i < 3; i++)
+        b->com.e[i] = com->e[i];
+    return fill_inertia(r, b, ct_instance_value(&b->instance, "inertia"));
+}
+
+// ---- a body ------------------------------------------------------------------------------------------------
+
+static bool is_particle_type(const struct ct_node *node)
+{
+    const struct ct_node *type = ct_node_get(node, "type");
+    return type && type->kind == CT_NODE_SCALAR && strcmp(type->text, "particle") == 0;
+}
+
+// What a rigid body has and a particle has not deserves a better word than "unknown key".
+static bool check_particle_keys(struct ct_reader *r, const struct ct_body *b,
+                                const struct ct_node *node)
+{
+    static const char *const names[] = {"points", "inertia", "com"};
+    bool ok = true;
+    for (size_t i = 0; i < COUNT(names); i++) {
+        const struct ct_pair *p = ct_node_find(node, names[i]);
+        if (p)
+            ok = ct_error(r->ctx, p->mark, CT_E_PARTICLE,
+                          "'%s' is a particle: it has a mass, but no '%s'", b->instance.name,
+                          names[i]);
+    }
+    return ok;
+}
+
+static bool read_body(struct ct_reader *r, struct ct_body *b, const struct ct_node *node)
+{
+    struct ct_instance *self = &b->instance;
+    const struct ct_pair p = {self->name, self->mark, node};
+    const struct ct_node *type = ct_node_get(node, "type");
+    for (size_t i = 0; type && type->kind == CT_NODE_SCALAR && i < COUNT(later); i++)
+        if (strcmp(type->text, later[i]) == 0 && !ct_component_find(CT_FAMILY_BODY, later[i]))
+            return ct_error(r->ctx, type->mark, CT_E_LATER, "bodies of type '%s' are not available yet",
+                            later[i]);
+    self->cls = ct_read_class(r, CT_FAMILY_BODY, &p, "body", "rigid");
+    if (!self->cls)
+        return false;
+    ct_read_clear(r, self);
+    b->is_particle = is_particle_type(node);
+    if (b->is_particle ? !check_particle_keys(r, b, node) : false)
+        return false;
+    bool ok = ct_read_component_keys(r, self, node, "body", false);
+    ok &= ct_read_own_values(r, self, node);
+    if (!b->is_particle)
+        ok &= read_points(r, b, node);
+    if (!ok)
+        return false;
+    const struct ct_value *mass = ct_instance_value(self, "mass");
+    if (mass->given)
+        b->mass = mass->e[0];
+    ok = check_mass(r, b, mass);
+    return (b->is_particle || fill_rigid(r, b)) && ok;
+}
+
+void ct_read_bodies_fill(struct ct_reader *r)
+{
+    if (r->body_node[0])
+        read_ground(r, r->body_node[0]);
+    for (size_t i = 1; i < r->m->nbody; i++)
+        read_body(r, &r->m->body[i], r->body_node[i]);
+}

@@ -1,0 +1,221 @@
+// Parameters: names first, then definitions, then values in an order in which each can be computed.
+#include "component/read.h"
+
+#include "expr/parse.h"
+
+#include <math.h>
+#include <string.h>
+
+enum colour { WHITE, GREY, BLACK };
+
+// Parameters in the order of the file, before they are ordered for computing.
+struct work {
+    size_t n;
+    const struct ct_node **node; // definition; NULL when overridden
+    int **use;                   // parameters in the definition of each
+    size_t *nuse;
+    enum colour *colour;
+    int *order; // of computing
+    size_t norder;
+};
+
+static bool add_parameter(struct ct_reader *r, const struct ct_pair *p)
+{
+    struct ct_model *m = r->m;
+    if (!ct_read_name(r, p->key, p->mark, "parameter"))
+        return false;
+    if (ct_is_reserved(p->key))
+        return ct_error(r->ctx, p->mark, CT_E_NAME,
+                        "'%s' cannot name a parameter: it has a meaning in expressions", p->key);
+    if (ct_names_get(&m->parameter_index, p->key) >= 0)
+        return false; // a key given twice has been reported
+    const int i = (int)m->nparameter;
+    const ct_ex s = ct_ex_sym(m->x, CT_SYM_PARAM, p->key, (uint32_t)i);
+    m->x->sym[ct_ex_node(m->x, s)->a].mark = p->mark;
+    const struct ct_parameter new = {.name = p->key, .mark = p->mark, .symbol = s};
+    CT_PUSH(r->a, m->parameter, m->nparameter, m->parameter_cap, new);
+    ct_names_put(r->a, &m->parameter_index, p->key, i);
+    CT_PUSH(r->a, r->known, r->nknown, r->known_cap, p->key);
+    return true;
+}
+
+// The errors since `first` become errors of the command line.
+static void blame_command_line(struct ct_reader *r, size_t first, const char *text)
+{
+    for (size_t i = first; i < r->ctx->ndiagnostic; i++) {
+        struct ct_diagnostic *d = &r->ctx->diagnostic[i];
+        d->mark = (struct ct_mark){0};
+        d->code = d->severity == CT_SEVERITY_NOTE ? 0 : CT_E_USAGE;
+        d->text = ct_arena_printf(r->a, "--set '%s': %s", text, d->text);
+    }
+}
+
+static bool parse_override(struct ct_reader *r, const char *text, struct work *w)
+{
+    const struct ct_mark none = {0};
+    const char *equals = strchr(text, '=');
+    if (!equals || equals == text)
+        return ct_error(r->ctx, none, CT_E_USAGE, "NAME=VALUE is wanted");
+    const char *name = ct_arena_strndup(r->a, text, (size_t)(equals - text));
+    const int i = ct_names_get(&r->m->parameter_index, name);
+    if (i < 0)
+        return ct_error(r->ctx, none, CT_E_USAGE, "the model has no parameter '%s'%s", name,
+                        ct_read_near(r, name, r->known + 1, r->nknown - 1));
+    const struct ct_node value = {
+        .kind = CT_NODE_SCALAR, .text = ct_arena_strdup(r->a, equals + 1), .is_plain = true};
+    w->node[i] = NULL;
+    return ct_read_expr(r, &value, 0, NULL, &r->m->parameter[i].definition);
+}
+
+static bool apply_overrides(struct ct_reader *r, const struct ct_set *set, size_t nset,
+                            struct work *w)
+{
+    bool ok = true;
+    for (size_t k = 0; k < nset; k++) {
+        const size_t first = r->ctx->ndiagnostic;
+        ok &= parse_override(r, set[k].text, w);
+        blame_command_line(r, first, set[k].text);
+    }
+    return ok;
+}
+
+static void find_uses(struct ct_reader *r, size_t i, struct work *w)
+{
+    struct ct_exs *x = r->m->x;
+    const size_t n = ct_ex_walk(x, &r->m->parameter[i].definition, 1);
+    w->use[i] = CT_NEWN(r->ctx->scratch, int, n);
+    for (size_t k = 0; k < n; k++) {
+        const struct ct_sym *s = ct_ex_symbol(x, (ct_ex){x->stack[k]});
+        if (s && s->kind == CT_SYM_PARAM)
+            w->use[i][w->nuse[i]++] = (int)s->index;
+    }
+}
+
+static bool report_cycle(struct ct_reader *r, const struct work *w, const int *path, size_t n)
+{
+    const struct ct_model *m = r->m;
+    const char *text = m->parameter[path[0]].name;
+    for (size_t k = 1; k < n; k++)
+        text = ct_arena_printf(r->ctx->scratch, "%s -> %s", text, m->parameter[path[k]].name);
+    const struct ct_node *node = w->node[path[0]];
+    return ct_error(r->ctx, node ? node->mark : (struct ct_mark){0}, node ? CT_E_CYCLE : CT_E_USAGE,
+                    "the parameter depends on itself: %s -> %s", text, m->parameter[path[0]].name);
+}
+
+// Depth first from `start` with a stack of our own: a chain may be as long as the file.
+static bool visit(struct ct_reader *r, struct work *w, int start, int *path, size_t *next)
+{
+    bool ok = true;
+    size_t depth = 0;
+    path[depth++] = start;
+    w->colour[start] = GREY;
+    while (depth) {
+        const int i = path[depth - 1];
+        if (next[i] == w->nuse[i]) {
+            w->colour[i] = BLACK;
+            w->order[w->norder++] = i;
+            depth--;
+            continue;
+        }
+        const int j = w->use[i][next[i]++];
+        if (w->colour[j] == GREY) {
+            size_t k = depth - 1;
+            while (path[k] != j)
+                k--;
+            ok = report_cycle(r, w, path + k, depth - k);
+        } else if (w->colour[j] == WHITE) {
+            w->colour[j] = GREY;
+            path[depth++] = j;
+        }
+    }
+    return ok;
+}
+
+static bool order_parameters(struct ct_reader *r, struct work *w)
+{
+    int *path = CT_NEWN(r->ctx->scratch, int, w->n);
+    size_t *next = CT_NEWN(r->ctx->scratch, size_t, w->n);
+    bool ok = true;
+    for (size_t i = 0; i < w->n; i++)
+        find_uses(r, i, w);
+    for (size_t i = 0; i < w->n; i++)
+        if (w->colour[i] == WHITE)
+            ok &= visit(r, w, (int)i, path, next);
+    return ok;
+}
+
+// From the order of the file to that of computing; symbols and the map of names follow.
+static void permute(struct ct_reader *r, struct work *w)
+{
+    struct ct_model *m = r->m;
+    struct ct_parameter *sorted = CT_NEWN(r->a, struct ct_parameter, w->n);
+    const struct ct_node **node = CT_NEWN(r->ctx->scratch, const struct ct_node *, w->n);
+    m->parameter_index = (struct ct_names){0};
+    for (size_t k = 0; k < w->n; k++) {
+        sorted[k] = m->parameter[w->order[k]];
+        node[k] = w->node[w->order[k]];
+        m->x->sym[ct_ex_node(m->x, sorted[k].symbol)->a].index = (uint32_t)k;
+        ct_names_put(r->a, &m->parameter_index, sorted[k].name, (int)k);
+    }
+    m->parameter = sorted;
+    m->parameter_cap = w->n;
+    w->node = node;
+}
+
+static bool evaluate(struct ct_reader *r, const struct work *w)
+{
+    struct ct_model *m = r->m;
+    bool ok = true;
+    for (size_t i = 0; i < w->n; i++) {
+        struct ct_parameter *p = &m->parameter[i];
+        p->value = ct_ex_value(m->x, p->definition, m->value);
+        m->value[ct_ex_node(m->x, p->symbol)->a] = p->value;
+        if (isfinite(p->value))
+            continue;
+        bool cause = true; // not so when it only passes on what another one is
+        double v;
+        for (size_t k = ct_ex_walk(m->x, &p->definition, 1); k-- > 0;) {
+            const struct ct_sym *s = ct_ex_symbol(m->x, (ct_ex){m->x->stack[k]});
+            cause &= !s || isfinite(m->parameter[s->index].value);
+        }
+        if (cause && w->node[i])
+            ct_error(r->ctx, w->node[i]->mark, CT_E_NUMBER,
+                     "the parameter '%s' is not a finite number", p->name);
+        else if (cause && !ct_ex_is_const(m->x, p->definition, &v))
+            ct_error(r->ctx, (struct ct_mark){0}, CT_E_USAGE,
+                     "--set: the parameter '%s' is not a finite number", p->name);
+        ok = false;
+    }
+    return ok;
+}
+
+void ct_read_parameters(struct ct_reader *r, const struct ct_set *set, size_t nset)
+{
+    const struct ct_node *node = ct_node_get(r->root, "parameters");
+    bool ok = true;
+    CT_PUSH(r->a, r->known, r->nknown, r->known_cap, "t");
+    if (node && ct_node_is_null(node))
+        node = NULL;
+    if (node && !ct_read_shape(r, node, CT_NODE_MAP, "a map of parameters"))
+        return;
+    const size_t n = node ? node->n : 0;
+    struct work w = {.node = CT_NEWN(r->ctx->scratch, const struct ct_node *, n)};
+    for (size_t i = 0; i < n; i++) {
+        if (add_parameter(r, &node->pair[i]))
+            w.node[w.n++] = node->pair[i].value;
+        else
+            ok = false;
+    }
+    w.use = CT_NEWN(r->ctx->scratch, int *, w.n);
+    w.nuse = CT_NEWN(r->ctx->scratch, size_t, w.n);
+    w.colour = CT_NEWN(r->ctx->scratch, enum colour, w.n);
+    w.order = CT_NEWN(r->ctx->scratch, int, w.n);
+    r->m->value = CT_NEWN(r->a, double, r->m->x->nsym);
+    for (size_t i = 0; i < w.n; i++)
+        ok &= ct_read_expr(r, w.node[i], 0, NULL, &r->m->parameter[i].definition);
+    ok &= apply_overrides(r, set, nset, &w);
+    if (!ok || !order_parameters(r, &w))
+        return;
+    permute(r, &w);
+    r->parameters_ok = evaluate(r, &w);
+}

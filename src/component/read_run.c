@@ -1,0 +1,217 @@
+// What is asked of a run: outputs and simulation.
+#include "component/read.h"
+
+#include "expr/parse.h"
+
+#include <limits.h>
+#include <math.h>
+#include <string.h>
+
+// ---- outputs --------------------------------------------------------------------------------------------------
+
+static bool add_output(struct ct_reader *r, struct ct_output output, struct ct_names *names)
+{
+    struct ct_model *m = r->m;
+    const int known = ct_names_get(names, output.name);
+    if (known >= 0) {
+        ct_error(r->ctx, output.mark, CT_E_NAME_TWICE, "the output '%s' is there twice", output.name);
+        ct_note(r->ctx, m->output[known].mark, "the first one is here");
+        return false;
+    }
+    if (strcmp(output.name, "t") == 0)
+        return ct_error(r->ctx, output.mark, CT_E_NAME, "the first column is always called 't'");
+    ct_names_put(r->ctx->scratch, names, output.name, (int)m->noutput);
+    CT_PUSH(r->a, m->output, m->noutput, m->output_cap, output);
+    return true;
+}
+
+static bool read_signal(struct ct_reader *r, const struct ct_node *node, struct ct_output *o)
+{
+    const char *normal;
+    o->mark = node->mark;
+    if (!ct_read_shape(r, node, CT_NODE_SCALAR, "a signal or {name: NAME, value: EXPRESSION}"))
+        return false;
+    if (!ct_parse_is_signal(r->ctx->scratch, node->text, &normal)) {
+        if (ct_is_identifier(node->text) && ct_names_get(&r->component, node->text) >= 0)
+            return ct_error(r->ctx, node->mark, CT_E_SIGNAL_NAME,
+                            "'%s' is no signal; say which of its quantities, as in %s.position.x or "
+                            "%s.q",
+                            node->text, node->text, node->text);
+        return ct_error(r->ctx, node->mark, CT_E_SIGNAL_NAME,
+                        "'%s' is no signal; an expression is written {name: NAME, value: EXPRESSION}",
+                        node->text);
+    }
+    o->name = ct_arena_strdup(r->a, node->text);
+    o->is_signal = true;
+    return ct_read_expr(r, node, CT_KEY_STATE, NULL, &o->value);
+}
+
+static bool read_named(struct ct_reader *r, const struct ct_node *node, struct ct_output *o)
+{
+    static const char *const keys[] = {"name", "value"};
+    bool ok = ct_read_keys(r, node, "an output", keys, COUNT(keys));
+    const struct ct_node *name = ct_node_get(node, "name"), *value = ct_node_get(node, "value");
+    if (!name || !value)
+        return ct_error(r->ctx, node->mark, CT_E_KEY_MISSING, "the output needs '%s'",
+                        name ? "value" : "name");
+    ok &= ct_read_text(r, name, &o->name);
+    o->mark = name->mark;
+    if (ok && !o->name[0])
+        ok = ct_error(r->ctx, name->mark, CT_E_NAME, "the name of an output cannot be empty");
+    return ct_read_expr(r, value, CT_KEY_STATE, NULL, &o->value) && ok;
+}
+
+void ct_read_outputs(struct ct_reader *r)
+{
+    const struct ct_node *node = ct_node_get(r->root, "outputs");
+    struct ct_names names = {0};
+    if (!node || ct_node_is_null(node) || !ct_read_shape(r, node, CT_NODE_LIST, "a list of outputs"))
+        return;
+    for (size_t i = 0; i < node->n; i++) {
+        struct ct_output o = {0};
+        const struct ct_node *item = node->item[i];
+        if (item->kind == CT_NODE_MAP ? read_named(r, item, &o) : read_signal(r, item, &o))
+            add_output(r, o, &names);
+    }
+}
+
+// ---- simulation -------------------------------------------------------------------------------------------------
+
+// The methods of the format; a unit test holds them against the registry of integrators.
+static const char *const methods[] = {
+    "auto",    "dopri5", "dop853", "rk4", "radau5", "generalized-alpha", "generalized-alpha-index3",
+    "hht",     "newmark"};
+
+// A number that may not be below `least`, or not even equal to it.
+static bool read_bounded(struct ct_reader *r, const struct ct_node *node, const char *key,
+                         const char *unit, double least, bool strict, double *value)
+{
+    ct_ex e;
+    if (!ct_read_expr(r, node, 0, unit, &e) || !ct_read_number(r, e, value))
+        return false;
+    if (*value > least || (!strict && *value == least))
+        return true;
+    return ct_error(r->ctx, node->mark, CT_E_RANGE, "'%s' is %g; it must be %s %g", key, *value,
+                    strict ? "greater than" : "at least", least);
+}
+
+static bool read_optional(struct ct_reader *r, const struct ct_node *section, const char *key,
+                          const char *unit, double *value)
+{
+    const struct ct_node *node = ct_node_get(section, key);
+    return !node || read_bounded(r, node, key, unit, 0, true, value);
+}
+
+static const double most_samples = 1e9;
+
+static bool read_samples(struct ct_reader *r, const struct ct_node *node, struct ct_simulation *s)
+{
+    const bool at_rest = s->has_duration && s->duration == 0;
+    double v;
+    if (!read_bounded(r, node, "samples", "", at_rest ? 1 : 2, false, &v))
+        return false;
+    // an integer computed from parameters: n * eps of rounding
+    if (fabs(v - round(v)) > 1e-9 * v)
+        return ct_error(r->ctx, node->mark, CT_E_RANGE, "'samples' is %g; it must be an integer", v);
+    if (v > most_samples)
+        return ct_error(r->ctx, node->mark, CT_E_RANGE, "'samples' is %g; at most %g are possible", v,
+                        most_samples);
+    s->samples = lround(v);
+    return true;
+}
+
+static bool read_interval(struct ct_reader *r, const struct ct_node *node, struct ct_simulation *s)
+{
+    if (!read_bounded(r, node, "interval", "s", 0, true, &s->interval))
+        return false;
+    // 10/0.01 may come out as 1000.0000000000001: that is no further sample
+    const double steps = ceil(s->duration / s->interval * (1 - 1e-12));
+    if (!(steps < most_samples))
+        return ct_error(r->ctx, node->mark, CT_E_RANGE,
+                        "an 'interval' of %g s gives more than %g samples", s->interval, most_samples);
+    s->samples = (long)steps + 1;
+    return true;
+}
+
+static bool read_sampling(struct ct_reader *r, const struct ct_node *node, struct ct_simulation *s)
+{
+    const struct ct_pair *samples = ct_node_find(node, "samples"),
+                         *interval = ct_node_find(node, "interval");
+    if (samples && interval) {
+        const struct ct_pair *second = samples > interval ? samples : interval;
+        return ct_error(r->ctx, second->mark, CT_E_CONFLICT,
+                        "give 'samples' or 'interval', not both");
+    }
+    if (samples)
+        return read_samples(r, samples->value, s);
+    return !interval || read_interval(r, interval->value, s);
+}
+
+static bool read_small(struct ct_reader *r, const struct ct_node *node, struct ct_value *v)
+{
+    if (!ct_read_shape(r, node, CT_NODE_LIST, "a list of joints"))
+        return false;
+    const char **name = CT_NEWN(r->a, const char *, node->n);
+    bool ok = true;
+    *v = (struct ct_value){.given = true, .mark = node->mark, .frame = -1, .name = name};
+    v->at = CT_NEWN(r->a, struct ct_mark, node->n);
+    for (size_t i = 0; i < node->n; i++) {
+        v->at[i] = node->item[i]->mark;
+        if (!ct_read_text(r, node->item[i], &name[i])) {
+            ok = false;
+            continue;
+        }
+        if (ct_model_find_joint(r->m, name[i]) >= 0)
+            continue;
+        const char **names = CT_NEWN(r->ctx->scratch, const char *, r->m->njoint);
+        for (size_t k = 0; k < r->m->njoint; k++)
+            names[k] = r->m->joint[k].name;
+        ok = ct_error(r->ctx, v->at[i], CT_E_JOINT, "there is no joint '%s'%s", name[i],
+                      ct_read_near(r, name[i], names, r->m->njoint));
+    }
+    v->n = node->n;
+    return ok;
+}
+
+static void read_words(struct ct_reader *r, const struct ct_node *node, struct ct_simulation *s)
+{
+    static const char *const jumps[] = {"impulse", "continuous"};
+    const struct ct_node *method = ct_node_get(node, "method"),
+                         *rate_jumps = ct_node_get(node, "rate_jumps");
+    if (method) {
+        const int i = ct_read_word(r, method, "method", methods, COUNT(methods));
+        s->method = i >= 0 ? methods[i] : "auto";
+        s->method_mark = method->mark;
+    }
+    if (rate_jumps && ct_read_word(r, rate_jumps, "choice", jumps, COUNT(jumps)) == 1)
+        s->rate_jumps = CT_RATE_CONTINUOUS;
+}
+
+void ct_read_simulation(struct ct_reader *r)
+{
+    static const char *const keys[] = {"duration", "samples", "interval", "tolerance", "absolute",
+                                       "method",   "step",    "rate_jumps", "small"};
+    struct ct_simulation *s = &r->m->simulation;
+    *s = (struct ct_simulation){.samples = 1001, .rtol = 1e-8, .method = "auto"};
+    s->small.frame = -1;
+    s->mark = (struct ct_mark){r->m->file, 0, 0};
+    const struct ct_pair *p = ct_node_find(r->root, "simulation");
+    const struct ct_node *node = p && !ct_node_is_null(p->value) ? p->value : NULL;
+    if (p)
+        s->mark = p->mark;
+    if (node && ct_read_shape(r, node, CT_NODE_MAP, "a map of keys")) {
+        ct_read_keys(r, node, "'simulation'", keys, COUNT(keys));
+        const struct ct_node *duration = ct_node_get(node, "duration");
+        if (duration)
+            s->has_duration
+                = read_bounded(r, duration, "duration", "s", 0, false, &s->duration);
+        read_sampling(r, node, s);
+        read_optional(r, node, "tolerance", "", &s->rtol);
+        read_optional(r, node, "step", "s", &s->step);
+        read_words(r, node, s);
+        if (ct_node_get(node, "small"))
+            read_small(r, ct_node_get(node, "small"), &s->small);
+    }
+    s->atol = s->rtol / 100;
+    read_optional(r, node, "absolute", "", &s->atol);
+}

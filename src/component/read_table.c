@@ -1,0 +1,195 @@
+// Functions of time from files: {table: FILE.csv, column: NAME, interpolate: cubic|linear}.
+//
+// The file is CSV with a header; one column is `t`, strictly increasing. `cubic` is the natural spline:
+// twice continuously differentiable, second derivative 0 at both ends.
+#include "component/read.h"
+
+#include "expr/unit.h"
+#include "io/sheet.h"
+#include "io/text.h"
+
+#include <errno.h>
+#include <math.h>
+#include <string.h>
+
+static const size_t max_bytes = (size_t)256 << 20;
+
+// FILE beside the model
+static const char *path_beside(struct ct_reader *r, const char *file)
+{
+    const char *slash = strrchr(r->m->file, '/');
+    if (file[0] == '/' || !slash)
+        return file;
+    return ct_arena_printf(r->a, "%.*s%s", (int)(slash + 1 - r->m->file), r->m->file, file);
+}
+
+static bool read_csv(struct ct_reader *r, const struct ct_node *node, const char *path,
+                     struct ct_sheet *csv)
+{
+    char *text;
+    size_t n;
+    switch (ct_text_read(r->ctx->scratch, path, max_bytes, &text, &n)) {
+    case CT_TEXT_UNREADABLE:
+        return ct_error(r->ctx, node->mark, CT_E_TABLE, "cannot read the table '%s': %s", path,
+                        strerror(errno));
+    case CT_TEXT_TOO_BIG:
+        return ct_error(r->ctx, node->mark, CT_E_TABLE, "the table '%s' is larger than %zu MiB", path,
+                        max_bytes >> 20);
+    case CT_TEXT_OK:
+        break;
+    }
+    if (ct_sheet_parse(r->ctx, r->ctx->scratch, path, text, n, csv))
+        return true;
+    ct_note(r->ctx, node->mark, "the table is used here");
+    return false;
+}
+
+static bool find_column(struct ct_reader *r, const struct ct_node *node, const struct ct_sheet *csv,
+                        const char *name, size_t *column)
+{
+    const char **names = CT_NEWN(r->ctx->scratch, const char *, csv->ncolumn);
+    for (size_t k = 0; csv->nrow && k < csv->ncolumn; k++) {
+        names[k] = csv->field[k];
+        if (strcmp(csv->field[k], name) == 0) {
+            *column = k;
+            return true;
+        }
+    }
+    return ct_error(r->ctx, node->mark, CT_E_TABLE, "the table '%s' has no column '%s'%s", csv->file,
+                    name, ct_read_near(r, name, names, csv->nrow ? csv->ncolumn : 0));
+}
+
+// A number with blanks around it and nothing else.
+static bool parse_field(const char *text, double *value)
+{
+    text += strspn(text, " \t");
+    const double sign = *text == '-' ? -1 : 1;
+    text += *text == '-' || *text == '+';
+    const size_t n = ct_number_parse(text, value);
+    *value *= sign;
+    return n && !text[n + strspn(text + n, " \t")] && isfinite(*value);
+}
+
+static bool read_column(struct ct_reader *r, const struct ct_sheet *csv, size_t column, double *value)
+{
+    for (size_t i = 1; i < csv->nrow; i++) {
+        const size_t k = i * csv->ncolumn + column;
+        if (!parse_field(csv->field[k], &value[i - 1]))
+            return ct_error(r->ctx, csv->mark[k], CT_E_TABLE_DATA, "'%s' is not a finite number",
+                            csv->field[k]);
+    }
+    return true;
+}
+
+static bool check_increasing(struct ct_reader *r, const struct ct_sheet *csv, size_t column,
+                             const double *x)
+{
+    for (size_t i = 2; i < csv->nrow; i++)
+        if (!(x[i - 1] > x[i - 2]))
+            return ct_error(r->ctx, csv->mark[i * csv->ncolumn + column], CT_E_TABLE_DATA,
+                            "'t' must increase from row to row: %g follows %g", x[i - 1], x[i - 2]);
+    return true;
+}
+
+// Slopes m (n, out) of the natural spline through (x, y), n >= 2: the second derivative is continuous at
+// inner points and 0 at the ends. Rows h_i = x_i+1 - x_i, d_i = (y_i+1 - y_i)/h_i:
+//   2 m_0 + m_1 = 3 d_0
+//   m_i-1/h_i-1 + 2 m_i (1/h_i-1 + 1/h_i) + m_i+1/h_i = 3 (d_i-1/h_i-1 + d_i/h_i)
+//   m_n-2 + 2 m_n-1 = 3 d_n-2
+// Diagonally dominant: elimination without pivoting is stable. work: n.
+static void spline_slopes(size_t n, const double *x, const double *y, double *m, double *work)
+{
+    double h = x[1] - x[0], d = (y[1] - y[0]) / h;
+    work[0] = 0.5; // upper diagonal after elimination
+    m[0] = 1.5 * d;
+    for (size_t i = 1; i < n; i++) {
+        const double h0 = h, d0 = d;
+        double below = 1 / h0, diagonal = 2 / h0, above = 0, right = 3 * d0 / h0;
+        if (i + 1 < n) {
+            h = x[i + 1] - x[i];
+            d = (y[i + 1] - y[i]) / h;
+            diagonal += 2 / h;
+            above = 1 / h;
+            right += 3 * d / h;
+        }
+        const double pivot = diagonal - below * work[i - 1];
+        work[i] = above / pivot;
+        m[i] = (right - below * m[i - 1]) / pivot;
+    }
+    for (size_t i = n - 1; i-- > 0;)
+        m[i] -= work[i] * m[i + 1];
+}
+
+static bool fill_table(struct ct_reader *r, const struct ct_node *file, const struct ct_node *column,
+                       bool cubic, struct ct_table *t)
+{
+    struct ct_sheet csv;
+    size_t kt = 0, ky = 0;
+    if (!read_csv(r, file, t->file, &csv))
+        return false;
+    const bool has_t = find_column(r, file, &csv, "t", &kt);
+    if (!find_column(r, column, &csv, t->column, &ky) || !has_t)
+        return false;
+    if (csv.nrow < 3)
+        return ct_error(r->ctx, file->mark, CT_E_TABLE_DATA,
+                        "the table '%s' needs at least two rows below its header", t->file);
+    t->n = csv.nrow - 1;
+    double *x = CT_NEWN(r->a, double, t->n), *y = CT_NEWN(r->a, double, t->n), *m = NULL;
+    if (!read_column(r, &csv, kt, x) || !read_column(r, &csv, ky, y)
+        || !check_increasing(r, &csv, kt, x)) {
+        ct_note(r->ctx, file->mark, "the table is used here");
+        return false;
+    }
+    if (cubic) {
+        m = CT_NEWN(r->a, double, t->n);
+        spline_slopes(t->n, x, y, m, CT_NEWN(r->ctx->scratch, double, t->n));
+    }
+    t->x = x;
+    t->y = y;
+    t->m = m;
+    return true;
+}
+
+static uint32_t add_table(struct ct_exs *x, struct ct_arena *a, struct ct_table t)
+{
+    struct ct_table *all = CT_NEWN(a, struct ct_table, x->ntable + 1);
+    if (x->ntable)
+        memcpy(all, x->table, x->ntable * sizeof *all);
+    all[x->ntable] = t;
+    x->table = all;
+    x->table_cap = x->ntable + 1;
+    return (uint32_t)x->ntable++;
+}
+
+bool ct_read_table(struct ct_reader *r, const struct ct_node *node, ct_ex *e)
+{
+    static const char *const keys[] = {"table", "column", "interpolate"};
+    static const char *const kinds[] = {"cubic", "linear"};
+    const struct ct_node *file = ct_node_get(node, "table"), *column = ct_node_get(node, "column"),
+                         *interpolate = ct_node_get(node, "interpolate");
+    bool ok = ct_read_keys(r, node, "a table", keys, COUNT(keys));
+    int kind = 0;
+    if (interpolate) {
+        kind = ct_read_word(r, interpolate, "interpolation", kinds, COUNT(kinds));
+        ok &= kind >= 0;
+    }
+    if (!column)
+        ok = ct_error(r->ctx, node->mark, CT_E_KEY_MISSING, "the table needs 'column'");
+    struct ct_table t = {0};
+    ok &= ct_read_shape(r, file, CT_NODE_SCALAR, "the name of a file");
+    ok &= !column || ct_read_text(r, column, &t.column);
+    if (!ok)
+        return false;
+    t.file = path_beside(r, file->text);
+    // one table per file, column and kind, however often it is used
+    const char *key = ct_arena_printf(r->ctx->scratch, "%s\n%s\n%d", t.file, t.column, kind);
+    int number = ct_names_get(&r->table, key);
+    if (number < 0) {
+        if (!fill_table(r, file, column, kind == 0, &t))
+            return false;
+        number = (int)add_table(r->m->x, r->a, t);
+        ct_names_put(r->ctx->scratch, &r->table, key, number);
+    }
+    *e = ct_ex_table(r->m->x, (uint32_t)number, 0, r->m->time);
+    return true;
+}

@@ -1,0 +1,498 @@
+// Values by kind: from a node of the file to expressions, checked.
+#include "component/read.h"
+
+#include "expr/parse.h"
+
+#include <math.h>
+#include <string.h>
+
+// ---- keys and shapes ------------------------------------------------------------------------------
+
+const char *ct_read_near(struct ct_reader *r, const char *name, const char *const *names, size_t n)
+{
+    const char *near = ct_nearest(name, names, n);
+    return near ? ct_arena_printf(r->ctx->scratch, "; did you mean '%s'?", near) : "";
+}
+
+bool ct_read_shape(struct ct_reader *r, const struct ct_node *node, enum ct_node_kind kind,
+                   const char *wanted)
+{
+    if (node->kind == kind && !(kind == CT_NODE_SCALAR && ct_node_is_null(node)))
+        return true;
+    return ct_error(r->ctx, node->mark, CT_E_SHAPE, "found %s where %s is wanted",
+                    ct_node_what(node), wanted);
+}
+
+bool ct_read_keys(struct ct_reader *r, const struct ct_node *node, const char *what,
+                  const char *const *names, size_t n)
+{
+    if (!ct_read_shape(r, node, CT_NODE_MAP, "a map of keys"))
+        return false;
+    bool ok = true;
+    for (size_t i = 0; i < node->n; i++) {
+        bool known = false;
+        for (size_t k = 0; k < n && !known; k++)
+            known = strcmp(node->pair[i].key, names[k]) == 0;
+        if (!known)
+            ok = ct_error(r->ctx, node->pair[i].mark, CT_E_KEY_UNKNOWN,
+                          "%s has no key '%s'%s", what, node->pair[i].key,
+                          ct_read_near(r, node->pair[i].key, names, n));
+    }
+    return ok;
+}
+
+bool ct_read_length(struct ct_reader *r, const struct ct_node *node, size_t least, size_t most,
+                    const char *wanted)
+{
+    if (!ct_read_shape(r, node, CT_NODE_LIST, wanted))
+        return false;
+    if (node->n >= least && node->n <= most)
+        return true;
+    return ct_error(r->ctx, node->mark, CT_E_LENGTH, "the list has %zu value%s; %s is wanted",
+                    node->n, node->n == 1 ? "" : "s", wanted);
+}
+
+int ct_read_word(struct ct_reader *r, const struct ct_node *node, const char *what,
+                 const char *const *names, size_t n)
+{
+    const char *wanted = ct_arena_printf(r->ctx->scratch, "a word (%s, ...)", names[0]);
+    if (!ct_read_shape(r, node, CT_NODE_SCALAR, wanted))
+        return -1;
+    for (size_t i = 0; i < n; i++)
+        if (strcmp(names[i], node->text) == 0)
+            return (int)i;
+    const char *list = names[0];
+    for (size_t i = 1; i < n; i++)
+        list = ct_arena_printf(r->ctx->scratch, "%s, %s", list, names[i]);
+    ct_error(r->ctx, node->mark, CT_E_WORD, "unknown %s '%s'%s (known: %s)", what, node->text,
+             ct_read_near(r, node->text, names, n), list);
+    return -1;
+}
+
+bool ct_read_boolean(struct ct_reader *r, const struct ct_node *node, bool *value)
+{
+    static const char *const names[] = {"false", "true"};
+    const int i = ct_read_word(r, node, "truth value", names, COUNT(names));
+    *value = i == 1;
+    return i >= 0;
+}
+
+bool ct_read_text(struct ct_reader *r, const struct ct_node *node, const char **text)
+{
+    if (!ct_read_shape(r, node, CT_NODE_SCALAR, "a text"))
+        return false;
+    *text = node->text;
+    return true;
+}
+
+bool ct_read_name(struct ct_reader *r, const char *name, struct ct_mark at, const char *sort)
+{
+    if (ct_is_identifier(name))
+        return true;
+    return ct_error(r->ctx, at, CT_E_NAME,
+                    "'%s' cannot name a %s: names are letters, digits and _, not first a digit",
+                    name, sort);
+}
+
+// ---- expressions --------------------------------------------------------------------------------------
+
+static enum ct_name_result find_name(void *user, const char *name, ct_ex *e, const char **why)
+{
+    struct ct_reader *r = user;
+    const struct ct_instance *custom = r->local_of;
+    for (int i = 0; custom && i < custom->ncoord; i++)
+        if (strcmp(r->local_name[i], name) == 0) {
+            *e = custom->local[i];
+            *why = "the coordinates of a custom joint are known in its own motion only";
+            return r->flags & CT_KEY_LOCAL ? CT_NAME_OK : CT_NAME_FORBIDDEN;
+        }
+    if (strcmp(name, "t") == 0) {
+        *e = r->m->time;
+        *why = "this value is constant in time";
+        return r->flags & (CT_KEY_TIME | CT_KEY_STATE) ? CT_NAME_OK : CT_NAME_FORBIDDEN;
+    }
+    const int i = ct_names_get(&r->m->parameter_index, name);
+    if (i < 0)
+        return CT_NAME_UNKNOWN;
+    *e = r->m->parameter[i].symbol;
+    return CT_NAME_OK;
+}
+
+// Something signals can be about: the names a first part may have.
+static bool signal_exists(const struct ct_reader *r, const char *first)
+{
+    static const char *const own[] = {"system", "energy", "constraint"};
+    for (size_t i = 0; i < COUNT(own); i++)
+        if (strcmp(own[i], first) == 0)
+            return true;
+    return ct_model_find_body(r->m, first) >= 0 || ct_names_get(&r->component, first) >= 0;
+}
+
+static const char *nearest_subject(struct ct_reader *r, const char *first)
+{
+    const char **names = CT_NEWN(r->ctx->scratch, const char *, r->ncomponent + 4);
+    size_t n = r->ncomponent;
+    for (size_t i = 0; i < r->component.size; i++) // each goes to its place in the file's order
+        if (r->component.slot[i].name)
+            names[r->component.slot[i].index] = r->component.slot[i].name;
+    names[n++] = "ground";
+    names[n++] = "system";
+    names[n++] = "energy";
+    names[n++] = "constraint";
+    return ct_read_near(r, first, names, n);
+}
+
+static bool check_frame(struct ct_reader *r, const char *name, struct ct_mark at);
+
+static enum ct_name_result find_signal(void *user, const char *text, const char *first,
+                                       const char *in, struct ct_mark where,
+                                       struct ct_mark where_in, ct_ex *e, const char **why)
+{
+    struct ct_reader *r = user;
+    if (!(r->flags & CT_KEY_STATE)) {
+        *why = r->flags & CT_KEY_TIME
+                   ? "this is a function of time alone"
+                   : "this value is constant; signals are known in forces, efforts and outputs";
+        return CT_NAME_FORBIDDEN;
+    }
+    bool ok = true;
+    if (!signal_exists(r, first))
+        ok = ct_error(r->ctx, where, CT_E_SIGNAL_NAME,
+                      "'%s': there is no body, joint or force '%s'%s", text, first,
+                      nearest_subject(r, first));
+    if (in && !check_frame(r, in, where_in))
+        ok = false;
+    if (!ok)
+        return CT_NAME_REPORTED;
+    const int known = ct_names_get(&r->signal, text);
+    if (known >= 0) {
+        *e = (ct_ex){(uint32_t)known};
+        return CT_NAME_OK;
+    }
+    const char *name = ct_arena_strdup(r->a, text);
+    *e = ct_ex_sym(r->m->x, CT_SYM_SIGNAL, name, (uint32_t)r->signal.n);
+    r->m->x->sym[ct_ex_node(r->m->x, *e)->a].mark = where;
+    ct_names_put(r->ctx->scratch, &r->signal, name, (int)e->id);
+    return CT_NAME_OK;
+}
+
+bool ct_read_number(struct ct_reader *r, ct_ex e, double *value)
+{
+    if (ct_ex_is_const(r->m->x, e, value))
+        return true;
+    if (!r->parameters_ok || (ct_ex_kinds(r->m->x, e) & ~(1u << CT_SYM_PARAM)))
+        return false;
+    *value = ct_ex_value(r->m->x, e, r->m->value);
+    return true;
+}
+
+bool ct_read_expr(struct ct_reader *r, const struct ct_node *node, unsigned flags, const char *unit,
+                  ct_ex *e)
+{
+    *e = CT_EX_ZERO;
+    if (node->kind == CT_NODE_MAP && ct_node_get(node, "table")) {
+        if (flags & (CT_KEY_TIME | CT_KEY_STATE))
+            return ct_read_table(r, node, e);
+        return ct_error(r->ctx, node->mark, CT_E_NOT_HERE,
+                        "a table cannot be used here: this value is constant in time");
+    }
+    if (!ct_read_shape(r, node, CT_NODE_SCALAR, "a number or an expression"))
+        return false;
+    r->flags = flags;
+    const struct ct_scope scope = {.x = r->m->x,
+                                   .user = r,
+                                   .name = find_name,
+                                   .signal = find_signal,
+                                   .known = r->known,
+                                   .nknown = r->nknown,
+                                   .unit = unit};
+    const struct ct_text text = {node->text, node->mark, node->is_exact, node->is_plain ? 0 : 1};
+    if (!ct_parse(r->ctx, &scope, text, e))
+        return false;
+    double value;
+    if (ct_read_number(r, *e, &value) && !isfinite(value))
+        return ct_error(r->ctx, node->mark, CT_E_NUMBER, "'%s' is not a finite number", node->text);
+    return true;
+}
+
+bool ct_read_vec3(struct ct_reader *r, const struct ct_node *node, unsigned flags, const char *unit,
+                  ct_ex3 *v, struct ct_mark at[3])
+{
+    *v = (ct_ex3){{CT_EX_ZERO, CT_EX_ZERO, CT_EX_ZERO}};
+    if (!ct_read_length(r, node, 3, 3, "a list of 3"))
+        return false;
+    bool ok = true;
+    for (int i = 0; i < 3; i++) {
+        ok &= ct_read_expr(r, node->item[i], flags, unit, &v->e[i]);
+        if (at)
+            at[i] = node->item[i]->mark;
+    }
+    return ok;
+}
+
+// ---- directions and rotations -------------------------------------------------------------------------
+
+static bool normalise(struct ct_reader *r, const struct ct_node *node, ct_ex3 *axis)
+{
+    struct ct_exs *x = r->m->x;
+    double v[3];
+    bool constant = true;
+    for (int i = 0; i < 3; i++) {
+        double c;
+        constant &= ct_ex_is_const(x, axis->e[i], &c);
+        if (!ct_read_number(r, axis->e[i], &v[i]))
+            return true; // a parameter is wrong, which has been said
+    }
+    // scaled, so that no square over- or underflows
+    const double largest = fmax(fabs(v[0]), fmax(fabs(v[1]), fabs(v[2])));
+    if (largest == 0)
+        return ct_error(r->ctx, node->mark, CT_E_AXIS, "the axis has no direction: all of it is 0");
+    if (constant) {
+        for (int i = 0; i < 3; i++)
+            v[i] /= largest;
+        const double length = sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+        for (int i = 0; i < 3; i++)
+            axis->e[i] = ct_ex_const(x, v[i] / length);
+        return true;
+    }
+    const ct_ex length = ct_ex_fun(x, CT_OP_SQRT, ct_ex3_dot(x, *axis, *axis));
+    for (int i = 0; i < 3; i++)
+        axis->e[i] = ct_ex_div(x, axis->e[i], length);
+    return true;
+}
+
+bool ct_read_axis(struct ct_reader *r, const struct ct_node *node, ct_ex3 *axis)
+{
+    *axis = (ct_ex3){{CT_EX_ZERO, CT_EX_ZERO, CT_EX_ZERO}};
+    if (node->kind == CT_NODE_SCALAR && !ct_node_is_null(node)) {
+        static const char *const names[] = {"x", "y", "z"};
+        const int i = ct_read_word(r, node, "axis", names, COUNT(names));
+        if (i >= 0)
+            axis->e[i] = CT_EX_ONE;
+        return i >= 0;
+    }
+    if (!ct_read_length(r, node, 3, 3, "x, y, z or a list of 3"))
+        return false;
+    return ct_read_vec3(r, node, 0, NULL, axis, NULL) && normalise(r, node, axis);
+}
+
+static bool read_turn(struct ct_reader *r, const struct ct_node *node, unsigned flags,
+                      struct ct_turn *turn)
+{
+    if (!ct_read_length(r, node, 2, 2, "[axis, angle]"))
+        return false;
+    const bool ok = ct_read_axis(r, node->item[0], &turn->axis);
+    return ct_read_expr(r, node->item[1], flags, "rad", &turn->angle) && ok;
+}
+
+// [z, a] is one turn, [[z, a], [x, b]] are two; an axis may be a list itself, an angle never is
+static bool is_one_turn(const struct ct_node *node)
+{
+    return node->n == 0 || node->item[0]->kind != CT_NODE_LIST
+           || (node->n == 2 && node->item[1]->kind != CT_NODE_LIST);
+}
+
+bool ct_read_turns(struct ct_reader *r, const struct ct_node *node, unsigned flags,
+                   struct ct_turn **turn, size_t *nturn)
+{
+    enum { MOST = 1000 };
+    *nturn = 0;
+    *turn = NULL;
+    if (!ct_read_length(r, node, 1, MOST, "[axis, angle] or a list of such"))
+        return false;
+    const bool one = is_one_turn(node);
+    const size_t n = one ? 1 : node->n;
+    *turn = CT_NEWN(r->a, struct ct_turn, n);
+    *nturn = n;
+    bool ok = true;
+    for (size_t i = 0; i < n; i++)
+        ok &= read_turn(r, one ? node : node->item[i], flags, &(*turn)[i]);
+    return ok;
+}
+
+// ---- frames -------------------------------------------------------------------------------------------
+
+static const char *nearest_frame(struct ct_reader *r, const char *name)
+{
+    const char **names = CT_NEWN(r->ctx->scratch, const char *, r->m->nframe);
+    for (size_t i = 0; i < r->m->nframe; i++)
+        names[i] = r->m->frame[i].name;
+    return ct_read_near(r, name, names, r->m->nframe);
+}
+
+static bool check_frame(struct ct_reader *r, const char *name, struct ct_mark at)
+{
+    if (ct_model_find_frame(r->m, name) >= 0)
+        return true;
+    const char *dot = strchr(name, '.');
+    const char *body = dot ? ct_arena_strndup(r->ctx->scratch, name, (size_t)(dot - name)) : name;
+    if (dot && ct_model_find_body(r->m, body) >= 0)
+        return ct_error(r->ctx, at, CT_E_FRAME, "body '%s' has no point '%s'%s", body, dot + 1,
+                        nearest_frame(r, name));
+    return ct_error(r->ctx, at, CT_E_FRAME, "there is no frame '%s'%s", name,
+                    nearest_frame(r, name));
+}
+
+bool ct_read_frame(struct ct_reader *r, const struct ct_node *node, int *frame)
+{
+    *frame = -1;
+    if (!ct_read_shape(r, node, CT_NODE_SCALAR, "the name of a frame")
+        || !check_frame(r, node->text, node->mark))
+        return false;
+    *frame = ct_model_find_frame(r->m, node->text);
+    return true;
+}
+
+// ---- a value of any kind ---------------------------------------------------------------------------------
+
+static void make_room(struct ct_reader *r, struct ct_value *v, size_t n)
+{
+    v->n = n;
+    v->e = CT_NEWN(r->a, ct_ex, n);
+    v->at = CT_NEWN(r->a, struct ct_mark, n);
+    for (size_t i = 0; i < n; i++)
+        v->e[i] = CT_EX_ZERO;
+}
+
+static bool read_scalar(struct ct_reader *r, const struct ct_node *node, const struct ct_key *key,
+                        struct ct_value *v)
+{
+    make_room(r, v, 1);
+    v->at[0] = node->mark;
+    return ct_read_expr(r, node, key->flags, key->unit, &v->e[0]);
+}
+
+static bool read_list(struct ct_reader *r, const struct ct_node *node, const struct ct_key *key,
+                      struct ct_value *v)
+{
+    if (node->kind != CT_NODE_LIST && key->least <= 1)
+        return read_scalar(r, node, key, v);
+    const char *wanted
+        = key->least == key->most
+              ? ct_arena_printf(r->ctx->scratch, "a list of %d", key->most)
+              : ct_arena_printf(r->ctx->scratch, "a list of %d to %d", key->least, key->most);
+    if (!ct_read_length(r, node, (size_t)key->least, (size_t)key->most, wanted))
+        return false;
+    make_room(r, v, node->n);
+    bool ok = true;
+    for (size_t i = 0; i < node->n; i++) {
+        v->at[i] = node->item[i]->mark;
+        ok &= ct_read_expr(r, node->item[i], key->flags, key->unit, &v->e[i]);
+    }
+    return ok;
+}
+
+// Unit vectors a and b (6 numbers): |a x b|^2 = 1 - (a.b)^2 to rounding of some eps
+static bool check_crossed(struct ct_reader *r, const struct ct_value *v)
+{
+    double u[6], c = 0;
+    for (int i = 0; i < 6; i++)
+        if (!ct_read_number(r, v->e[i], &u[i]))
+            return true;
+    for (int i = 0; i < 3; i++)
+        c += u[i] * u[3 + i];
+    if (1 - c * c > 1e-12)
+        return true;
+    return ct_error(r->ctx, v->mark, CT_E_AXIS, "the two axes are parallel");
+}
+
+static bool read_axes(struct ct_reader *r, const struct ct_node *node, size_t n, struct ct_value *v)
+{
+    make_room(r, v, 3 * n);
+    if (n == 2 && !ct_read_length(r, node, 2, 2, "a list of two axes"))
+        return false;
+    bool ok = true;
+    for (size_t k = 0; k < n; k++) {
+        const struct ct_node *one = n == 1 ? node : node->item[k];
+        ct_ex3 axis;
+        ok &= ct_read_axis(r, one, &axis);
+        for (size_t i = 0; i < 3; i++) {
+            v->e[3 * k + i] = axis.e[i];
+            v->at[3 * k + i] = one->mark;
+        }
+    }
+    return ok && (n == 1 || check_crossed(r, v));
+}
+
+static bool read_texts(struct ct_reader *r, const struct ct_node *node, const struct ct_key *key,
+                       const char *wanted, struct ct_value *v)
+{
+    if (!ct_read_length(r, node, (size_t)key->least, (size_t)key->most, wanted))
+        return false;
+    const char **name = CT_NEWN(r->a, const char *, node->n);
+    make_room(r, v, node->n);
+    v->name = name;
+    for (size_t i = 0; i < node->n; i++) {
+        v->at[i] = node->item[i]->mark;
+        if (!ct_read_text(r, node->item[i], &name[i]))
+            return false;
+    }
+    return true;
+}
+
+// Names of coordinates are new names, seen by the joint's own expressions only.
+static bool read_new_names(struct ct_reader *r, const struct ct_node *node,
+                           const struct ct_key *key, struct ct_value *v)
+{
+    if (!read_texts(r, node, key, "a list of names", v))
+        return false;
+    bool ok = true;
+    for (size_t i = 0; i < v->n; i++) {
+        if (!ct_read_name(r, v->name[i], v->at[i], "coordinate")) {
+            ok = false;
+            continue;
+        }
+        if (ct_is_reserved(v->name[i]))
+            ok = ct_error(r->ctx, v->at[i], CT_E_NAME,
+                          "'%s' cannot name a coordinate: it has a meaning in expressions",
+                          v->name[i]);
+        if (ct_names_get(&r->m->parameter_index, v->name[i]) >= 0)
+            ok = ct_error(r->ctx, v->at[i], CT_E_NAME_TWICE,
+                          "the coordinate '%s' has the name of a parameter", v->name[i]);
+        for (size_t k = 0; k < i; k++)
+            if (strcmp(v->name[i], v->name[k]) == 0)
+                ok = ct_error(r->ctx, v->at[i], CT_E_NAME_TWICE, "the coordinate '%s' is there twice",
+                              v->name[i]);
+    }
+    return ok;
+}
+
+bool ct_read_value(struct ct_reader *r, const struct ct_node *node, const struct ct_key *key,
+                   struct ct_value *v)
+{
+    v->given = true;
+    v->mark = node->mark;
+    switch (key->kind) {
+    case CT_VALUE_SCALAR:
+        return read_scalar(r, node, key, v);
+    case CT_VALUE_VEC3: {
+        ct_ex3 e;
+        make_room(r, v, 3);
+        const bool ok = ct_read_vec3(r, node, key->flags, key->unit, &e, v->at);
+        for (int i = 0; i < 3; i++)
+            v->e[i] = e.e[i];
+        return ok;
+    }
+    case CT_VALUE_LIST:
+        return read_list(r, node, key, v);
+    case CT_VALUE_AXIS:
+        return read_axes(r, node, 1, v);
+    case CT_VALUE_AXES:
+        return read_axes(r, node, 2, v);
+    case CT_VALUE_TURNS:
+        if (node->kind == CT_NODE_LIST && node->n == 0 && key->least == 0)
+            return true;
+        return ct_read_turns(r, node, key->flags, &v->turn, &v->nturn);
+    case CT_VALUE_FRAME:
+        return ct_read_frame(r, node, &v->frame);
+    case CT_VALUE_NAMES:
+        return read_new_names(r, node, key, v);
+    case CT_VALUE_JOINTS:
+        return read_texts(r, node, key, "a list of two joints", v);
+    case CT_VALUE_POINTS:  // read_body.c
+    case CT_VALUE_COORDS:  // read_joint.c
+    case CT_VALUE_INITIAL: // read_joint.c
+        break;
+    }
+    return true;
+}

@@ -1,0 +1,63 @@
+// See text.h.
+#include "io/text.h"
+
+#include "base/guard.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/stat.h>
+
+static enum ct_text_result read_all(struct ct_arena *a, FILE *f, size_t most, char **text,
+                                    size_t *n)
+{
+    size_t used = 0, room = 1 << 14;
+    char *buffer = ct_arena_alloc(a, room);
+    for (;;) {
+        const size_t got = fread(buffer + used, 1, room - used - 1, f);
+        used += got;
+        if (used > most)
+            return CT_TEXT_TOO_BIG;
+        if (got == 0)
+            break;
+        if (used == room - 1) {
+            char *more = ct_arena_alloc(a, 2 * room);
+            memcpy(more, buffer, used);
+            buffer = more;
+            room *= 2;
+        }
+    }
+    buffer[used] = 0;
+    *text = buffer;
+    *n = used;
+    return ferror(f) ? CT_TEXT_UNREADABLE : CT_TEXT_OK;
+}
+
+enum ct_text_result ct_text_read(struct ct_arena *a, const char *path, size_t most, char **text,
+                                 size_t *n)
+{
+    FILE *f = fopen(path, "rb");
+    if (!f)
+        return CT_TEXT_UNREADABLE;
+    struct stat s;
+    if (fstat(fileno(f), &s) == 0 && S_ISDIR(s.st_mode)) {
+        fclose(f);
+        errno = EISDIR;
+        return CT_TEXT_UNREADABLE;
+    }
+    // without memory the file is closed before the jump goes on outwards
+    struct ct_guard g;
+    ct_guard_push(&g);
+    if (setjmp(g.env)) {
+        ct_guard_pop(&g);
+        fclose(f);
+        ct_guard_raise();
+    }
+    errno = 0;
+    const enum ct_text_result result = read_all(a, f, most, text, n);
+    ct_guard_pop(&g);
+    const int reason = errno;
+    fclose(f);
+    errno = reason;
+    return result;
+}

@@ -1,0 +1,344 @@
+// See embed.h.
+#include "solve/embed.h"
+#include "numeric/dense.h"
+
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+// A row counts as dependent when what is left of it is this small against the largest: the
+// constraints of a closed mechanism are known to about 1e-12 after projection.
+static const double rank_tolerance = 1e-9;
+// Choose anew when the dependent part has become this much worse than when it was chosen, (6.3)
+static const double kappa_growth = 10;
+static const double kappa_largest = 1e3;
+// Projections stop here: a few roundings of coordinates of order one.
+static const double position_tolerance = 1e-13;
+enum { MOST_NEWTON = 25 };
+
+static size_t larger(size_t a, size_t b)
+{
+    return a > b ? a : b;
+}
+
+struct ct_embed *ct_embed_create(struct ct_arena *arena, struct ct_ctx *ctx, struct ct_machine *m)
+{
+    const size_t n = m->nu, r = m->nrow, k = larger(n, r) + 1;
+    struct ct_embed *s = CT_NEW(arena, struct ct_embed);
+    s->m = m;
+    s->ctx = ctx;
+    s->row = CT_NEWN(arena, int, r + 1);
+    s->dependent = CT_NEWN(arena, int, k);
+    s->independent = CT_NEWN(arena, int, n + 1);
+    s->is_unique = CT_NEWN(arena, bool, r + 1);
+    s->a = CT_NEWN(arena, double, n + 1);
+    s->lam = CT_NEWN(arena, double, r + 1);
+    s->Jd = CT_NEWN(arena, double, k * k);
+    s->B = CT_NEWN(arena, double, k * k);
+    s->S = CT_NEWN(arena, double, k * k);
+    s->MB = CT_NEWN(arena, double, k * k);
+    s->A = CT_NEWN(arena, double, k * k);
+    s->c = CT_NEWN(arena, double, k);
+    s->r = CT_NEWN(arena, double, k);
+    s->b = CT_NEWN(arena, double, k);
+    s->d = CT_NEWN(arena, double, k);
+    s->pivot = CT_NEWN(arena, int, k);
+    s->iwork = CT_NEWN(arena, int, k);
+    s->column = CT_NEWN(arena, int, k);
+    const int kk = (int)k;
+    s->work = CT_NEWN(arena, double, larger(ct_lstsq_work(kk, kk), ct_qr_pivot_work(kk, kk)) + 3 * k);
+    return s;
+}
+
+// ---- choice of rows and columns -----------------------------------------------------------------------
+
+static double *J_at(const struct ct_embed *s, int row, int column)
+{
+    return &s->m->J[(size_t)row + s->m->nrow * (size_t)column];
+}
+
+static void choose_rows(struct ct_embed *s)
+{
+    const int n = (int)s->m->nu, m = (int)s->m->nrow;
+    for (int i = 0; i < m; i++) // A = J', n x m
+        for (int j = 0; j < n; j++)
+            s->A[j + n * i] = *J_at(s, i, j);
+    s->rank = ct_qr_pivot(s->A, s->row, s->b, n, m, n, rank_tolerance, s->work);
+}
+
+static void choose_columns(struct ct_embed *s)
+{
+    const int n = (int)s->m->nu, r = s->rank;
+    for (int i = 0; i < r; i++)
+        for (int j = 0; j < n; j++)
+            s->A[i + r * j] = *J_at(s, s->row[i], j);
+    ct_qr_pivot(s->A, s->column, s->b, r, n, r, 0, s->work);
+    for (int j = 0; j < n; j++)
+        *(j < r ? &s->dependent[j] : &s->independent[j - r]) = s->column[j];
+}
+
+// LU of J_d and B = -J_d^-1 J_i (rank x free); false if J_d is singular.
+static bool factor(struct ct_embed *s)
+{
+    const int r = s->rank, f = (int)s->m->nu - r;
+    s->factorizations++;
+    for (int j = 0; j < r; j++)
+        for (int i = 0; i < r; i++)
+            s->Jd[i + r * j] = *J_at(s, s->row[i], s->dependent[j]);
+    if (!ct_lu(s->Jd, s->pivot, r, r))
+        return false;
+    for (int j = 0; j < f; j++)
+        for (int i = 0; i < r; i++)
+            s->B[i + r * j] = -*J_at(s, s->row[i], s->independent[j]);
+    if (f)
+        ct_lu_solve(s->B, s->Jd, s->pivot, r, r, f, r, false);
+    s->kappa = 0;
+    for (int i = 0; i < r * f; i++)
+        s->kappa = fmax(s->kappa, fabs(s->B[i]));
+    return isfinite(s->kappa);
+}
+
+static bool massless(struct ct_embed *s)
+{
+    // the free direction with the least inertia: report the coordinate with the smallest diagonal entry
+    const size_t n = s->m->nu;
+    size_t least = 0;
+    for (size_t i = 1; i < n; i++)
+        if (s->m->M[i + n * i] < s->m->M[least + n * least])
+            least = i;
+    return ct_error(s->ctx, (struct ct_mark){0}, CT_E_MASSLESS,
+                    "coordinate '%s' moves no mass: give a mass or an inertia to what it moves",
+                    s->m->e->u[least].name);
+}
+
+bool ct_embed_choose(struct ct_embed *s)
+{
+    s->switches++;
+    s->rank = 0;
+    if (s->m->nrow)
+        choose_rows(s);
+    if (s->rank)
+        choose_columns(s);
+    else
+        for (int j = 0; j < (int)s->m->nu; j++)
+            s->independent[j] = j;
+    factor(s);
+    s->kappa_chosen = s->kappa;
+    ct_machine_motion(s->m);
+    return ct_embed_accelerate(s) == CT_EVAL_OK || massless(s);
+}
+
+// ---- accelerations --------------------------------------------------------------------------------------
+
+// S (free x free) = B' M B with the unit columns of the independent speeds.
+static void reduce_mass(struct ct_embed *s)
+{
+    const int n = (int)s->m->nu, r = s->rank, f = n - r;
+    const double *M = s->m->M;
+    for (int j = 0; j < f; j++) // MB = M [B; 1], n x f
+        for (int i = 0; i < n; i++) {
+            double sum = M[i + n * s->independent[j]];
+            for (int k = 0; k < r; k++)
+                sum += M[i + n * s->dependent[k]] * s->B[k + r * j];
+            s->MB[i + n * j] = sum;
+        }
+    for (int j = 0; j < f; j++)
+        for (int i = j; i < f; i++) {
+            double sum = s->MB[s->independent[i] + n * j];
+            for (int k = 0; k < r; k++)
+                sum += s->B[k + r * i] * s->MB[s->dependent[k] + n * j];
+            s->S[i + f * j] = sum;
+        }
+}
+
+// b (free) = B' v for v (nu).
+static void reduce_force(struct ct_embed *s, double *b, const double *v)
+{
+    const int r = s->rank, f = (int)s->m->nu - r;
+    for (int i = 0; i < f; i++) {
+        b[i] = v[s->independent[i]];
+        for (int k = 0; k < r; k++)
+            b[i] += s->B[k + r * i] * v[s->dependent[k]];
+    }
+}
+
+// x (nu) = [B; 1] z + [c; 0].
+static void expand(const struct ct_embed *s, double *x, const double *z, const double *c)
+{
+    const int r = s->rank, f = (int)s->m->nu - r;
+    for (int i = 0; i < f; i++)
+        x[s->independent[i]] = z[i];
+    for (int k = 0; k < r; k++) {
+        double sum = c[k];
+        for (int i = 0; i < f; i++)
+            sum += s->B[k + r * i] * z[i];
+        x[s->dependent[k]] = sum;
+    }
+}
+
+enum ct_eval ct_embed_accelerate(struct ct_embed *s)
+{
+    const int n = (int)s->m->nu, r = s->rank, f = n - r;
+    if (r && !factor(s))
+        return CT_EVAL_RETRY;
+    for (int k = 0; k < r; k++)
+        s->c[k] = -s->m->gam[s->row[k]];
+    if (r)
+        ct_lu_solve(s->c, s->Jd, s->pivot, r, r, 1, r, false);
+    for (int i = 0; i < n; i++) { // Q - M c
+        s->r[i] = s->m->Q[i];
+        for (int k = 0; k < r; k++)
+            s->r[i] -= s->m->M[i + n * s->dependent[k]] * s->c[k];
+    }
+    reduce_mass(s);
+    reduce_force(s, s->b, s->r);
+    if (f && !ct_cholesky(s->S, f, f))
+        return CT_EVAL_RETRY;
+    if (f)
+        ct_cholesky_solve(s->b, s->S, f, f, 1, f);
+    expand(s, s->a, s->b, s->c);
+    return CT_EVAL_OK;
+}
+
+void ct_embed_multipliers(struct ct_embed *s)
+{
+    const int n = (int)s->m->nu, m = (int)s->m->nrow, ld = n > m ? n : m;
+    if (!m)
+        return;
+    for (int i = 0; i < m; i++)
+        for (int j = 0; j < n; j++)
+            s->A[j + n * i] = *J_at(s, i, j);
+    memset(s->d, 0, (size_t)ld * sizeof *s->d);
+    for (int i = 0; i < n; i++) {
+        s->d[i] = -s->m->Q[i];
+        for (int j = 0; j < n; j++)
+            s->d[i] += s->m->M[i + n * j] * s->a[j];
+    }
+    ct_lstsq(s->d, s->A, n, m, n, rank_tolerance, s->iwork, s->work);
+    memcpy(s->lam, s->d, (size_t)m * sizeof *s->lam);
+}
+
+void ct_embed_uniqueness(struct ct_embed *s)
+{
+    // row k is unique iff e_k lies in the row space of J': the least-squares solution of J' z = J' e_k is e_k
+    const int n = (int)s->m->nu, m = (int)s->m->nrow, ld = n > m ? n : m;
+    const double unique_tolerance = 1e-6; // |z - e_k| is 0 or of order one
+    for (int k = 0; k < m; k++) {
+        for (int i = 0; i < m; i++)
+            for (int j = 0; j < n; j++)
+                s->A[j + n * i] = *J_at(s, i, j);
+        memset(s->d, 0, (size_t)ld * sizeof *s->d);
+        for (int j = 0; j < n; j++)
+            s->d[j] = *J_at(s, k, j);
+        ct_lstsq(s->d, s->A, n, m, n, rank_tolerance, s->iwork, s->work);
+        s->is_unique[k] = fabs(s->d[k] - 1) < unique_tolerance;
+    }
+}
+
+enum ct_eval ct_embed_impulse(struct ct_embed *s, const double *p, double *u)
+{
+    // with u+ = [B; 1] z + [c; 0]: B' M B z = B' (M u- + p - M c)
+    const int n = (int)s->m->nu, r = s->rank, f = n - r;
+    ct_machine_motion(s->m);
+    ct_machine_constraint(s->m);
+    if (r && !factor(s))
+        return CT_EVAL_RETRY;
+    for (int k = 0; k < r; k++) { // J_d c = -Phi_t = -(v - J u)
+        double driven = s->m->v[s->row[k]];
+        for (int j = 0; j < n; j++)
+            driven -= *J_at(s, s->row[k], j) * u[j];
+        s->c[k] = -driven;
+    }
+    if (r)
+        ct_lu_solve(s->c, s->Jd, s->pivot, r, r, 1, r, false);
+    for (int i = 0; i < n; i++) {
+        s->r[i] = p[i];
+        for (int j = 0; j < n; j++)
+            s->r[i] += s->m->M[i + n * j] * u[j];
+        for (int k = 0; k < r; k++)
+            s->r[i] -= s->m->M[i + n * s->dependent[k]] * s->c[k];
+    }
+    reduce_mass(s);
+    reduce_force(s, s->b, s->r);
+    if (f && !ct_cholesky(s->S, f, f))
+        return CT_EVAL_RETRY;
+    if (f)
+        ct_cholesky_solve(s->b, s->S, f, f, 1, f);
+    expand(s, u, s->b, s->c);
+    return CT_EVAL_OK;
+}
+
+// ---- projection -------------------------------------------------------------------------------------------
+
+static double largest(const double *v, size_t n)
+{
+    double max = 0;
+    for (size_t i = 0; i < n; i++)
+        max = fabs(v[i]) > max || isnan(v[i]) ? fabs(v[i]) : max;
+    return max;
+}
+
+// d (nu) = -J+ r: least norm, all rows.
+static void least_norm_step(struct ct_embed *s, const double *r, double *d)
+{
+    const int n = (int)s->m->nu, m = (int)s->m->nrow;
+    memcpy(s->A, s->m->J, (size_t)(n * m) * sizeof *s->A);
+    memset(s->d, 0, larger((size_t)n, (size_t)m) * sizeof *s->d);
+    for (int i = 0; i < m; i++)
+        s->d[i] = -r[i];
+    ct_lstsq(s->d, s->A, m, n, m, rank_tolerance, s->iwork, s->work);
+    memcpy(d, s->d, (size_t)n * sizeof *d);
+}
+
+// d = correction of the dependent part alone; false if J_d is too close to singular for it.
+static bool partitioned_step(struct ct_embed *s, const double *r, double *d)
+{
+    const int k = s->rank;
+    if (!factor(s) || s->kappa > kappa_largest)
+        return false;
+    memset(d, 0, s->m->nu * sizeof *d);
+    for (int i = 0; i < k; i++)
+        s->c[i] = -r[s->row[i]];
+    ct_lu_solve(s->c, s->Jd, s->pivot, k, k, 1, k, false);
+    for (int i = 0; i < k; i++)
+        d[s->dependent[i]] = s->c[i];
+    return true;
+}
+
+static void step_onto(struct ct_embed *s, const double *r, double *d)
+{
+    if (!partitioned_step(s, r, d))
+        least_norm_step(s, r, d);
+}
+
+enum ct_eval ct_embed_project(struct ct_embed *s, double t, double *y)
+{
+    struct ct_machine *m = s->m;
+    ct_machine_normalise(m, y);
+    if (!m->nrow)
+        return CT_EVAL_OK;
+    double before = INFINITY;
+    for (int i = 0;; i++) {
+        ct_machine_set(m, t, y);
+        ct_machine_constraint(m);
+        const double size = largest(m->phi, m->nrow);
+        // rounding keeps larger mechanisms from the tolerance: stop when nothing is gained any more
+        if (size <= position_tolerance || (size < 1e-10 && size > before / 4))
+            break;
+        if (i == MOST_NEWTON || !isfinite(size) || size > 1e3 * before)
+            return CT_EVAL_RETRY;
+        before = size;
+        step_onto(s, m->phi, s->r);
+        ct_machine_retract(m, y, s->r);
+    }
+    for (int i = 0; i < 2; i++) { // linear; the second step takes off rounding
+        step_onto(s, m->v, s->r);
+        for (size_t k = 0; k < m->nu; k++)
+            y[m->nq + k] += s->r[k];
+        ct_machine_set(m, t, y);
+        ct_machine_constraint(m);
+    }
+    if (s->kappa > kappa_growth * s->kappa_chosen + 1 || s->kappa > kappa_largest)
+        ct_embed_choose(s);
+    return CT_EVAL_OK;
+}

@@ -1,0 +1,45 @@
+// Accelerations, multipliers and projections of a system with loops by embedding.  (formulation 6)
+//
+//     u = [ dependent | independent ],   u_d' = B u_i' + c,   (B' M B) u_i' = B' (Q - M c)     (6.2)
+//
+// Independent rows of J and dependent columns are chosen by pivoted QR and kept while J_d stays well
+// conditioned; redundant rows take no part in the dynamics but are met by the projections.
+#ifndef CT_SOLVE_EMBED_H
+#define CT_SOLVE_EMBED_H
+
+#include "integrate/problem.h"
+#include "solve/machine.h"
+
+struct ct_embed {
+    struct ct_machine *m;
+    struct ct_ctx *ctx;
+    int rank;
+    int *row;            // kept rows, rank of them, then the redundant ones
+    int *dependent;      // rank columns
+    int *independent;    // nu - rank columns
+    double kappa, kappa_chosen; // largest |J_d^-1 J_i|, now and when chosen
+    bool *is_unique;     // per row: its multiplier is determined
+    long switches, factorizations;
+    double *a, *lam;     // results: u' (nu), lam (nrow)
+    // workspace
+    double *Jd, *B, *c, *r, *S, *MB, *A, *b, *work, *d;
+    int *pivot, *iwork, *column;
+};
+
+struct ct_embed *ct_embed_create(struct ct_arena *arena, struct ct_ctx *ctx, struct ct_machine *m);
+
+/// Choose rows and columns anew at the machine's input. False with a diagnostic if the mass matrix
+/// leaves a freedom without inertia.
+bool ct_embed_choose(struct ct_embed *s);
+/// u' into s->a from M, Q, J, gam of the last ct_machine_motion.
+enum ct_eval ct_embed_accelerate(struct ct_embed *s);
+/// Multipliers of least norm into s->lam, after ct_embed_accelerate.  (6.5)
+void ct_embed_multipliers(struct ct_embed *s);
+/// Move q, u in y onto the constraints, independent coordinates held where J_d allows.  (6.6)
+enum ct_eval ct_embed_project(struct ct_embed *s, double t, double *y);
+/// Which multipliers are unique: rows of null(J') that vanish.  (6.5)
+void ct_embed_uniqueness(struct ct_embed *s);
+/// Speeds after a jump: M (u+ - u-) = p + J' Lam, J u+ + Phi_t = 0.  (8.5)
+enum ct_eval ct_embed_impulse(struct ct_embed *s, const double *p, double *u);
+
+#endif

@@ -1,0 +1,331 @@
+// See machine.h.
+#include "solve/machine.h"
+
+#include <math.h>
+#include <string.h>
+
+// ---- inputs ---------------------------------------------------------------------------------------
+
+struct inputs {
+    ct_ex *symbol;
+    size_t *slot;
+    size_t n;
+};
+
+// Every symbol of the store that a run gives a value, with its slot.
+static struct inputs list_inputs(struct ct_arena *a, const struct ct_machine *m)
+{
+    const struct ct_exs *x = m->e->x;
+    struct inputs in = {CT_NEWN(a, ct_ex, x->nsym + 1), CT_NEWN(a, size_t, x->nsym + 1), 0};
+    for (uint32_t id = 0; id < x->nnode; id++) {
+        const struct ct_sym *s = ct_ex_symbol(x, (ct_ex){id});
+        if (!s)
+            continue;
+        size_t slot;
+        switch (s->kind) {
+        case CT_SYM_TIME:
+            slot = 0;
+            break;
+        case CT_SYM_PARAM:
+            slot = 1 + s->index;
+            break;
+        case CT_SYM_Q:
+            slot = m->at_q + s->index;
+            break;
+        case CT_SYM_U:
+            slot = m->at_u + s->index;
+            break;
+        case CT_SYM_A:
+            slot = m->at_a + s->index;
+            break;
+        case CT_SYM_LAM:
+            slot = m->at_lam + s->index;
+            break;
+        case CT_SYM_MODE:
+            slot = m->at_mode + s->index;
+            break;
+        case CT_SYM_MEMORY:
+            slot = m->at_memory + s->index;
+            break;
+        case CT_SYM_WORK:
+            slot = m->at_work;
+            break;
+        default:
+            continue; // trial symbols and signals do not reach the equations
+        }
+        in.symbol[in.n] = (ct_ex){id};
+        in.slot[in.n++] = slot;
+    }
+    return in;
+}
+
+static void compile(struct ct_arena *a, const struct ct_machine *m, const struct inputs *in,
+                    const ct_ex *out, size_t n, struct ct_program *p)
+{
+    p->tape = ct_tape_compile(a, m->e->x, out, n, in->symbol, in->slot, in->n);
+    p->out = CT_NEWN(a, double, n + 1);
+    p->work = CT_NEWN(a, double, ct_tape_work(p->tape) + 1);
+    p->nout = n;
+}
+
+void ct_program_run(struct ct_program *p, const double *input)
+{
+    if (p->nout)
+        ct_tape_eval(p->tape, input, p->out, p->work);
+}
+
+// ---- programs ---------------------------------------------------------------------------------------
+
+struct list {
+    struct ct_arena *a;
+    ct_ex *e;
+    size_t n, cap;
+};
+
+static void push(struct list *l, ct_ex e)
+{
+    CT_PUSH(l->a, l->e, l->n, l->cap, e);
+}
+
+static void compile_motion(struct ct_arena *a, struct ct_machine *m, const struct inputs *in)
+{
+    const struct ct_equations *e = m->e;
+    struct list l = {.a = a};
+    for (size_t i = 0; i < e->nM; i++)
+        push(&l, e->M[i].value);
+    for (size_t i = 0; i < e->nu; i++)
+        push(&l, e->Q[i]);
+    for (size_t i = 0; i < e->nJ; i++)
+        push(&l, e->J[i].value);
+    for (size_t i = 0; i < e->nrow; i++)
+        push(&l, e->row[i].gam);
+    for (size_t i = 0; i < e->nq; i++)
+        push(&l, e->q[i].rate);
+    compile(a, m, in, l.e, l.n, &m->motion);
+}
+
+static void compile_constraint(struct ct_arena *a, struct ct_machine *m, const struct inputs *in)
+{
+    const struct ct_equations *e = m->e;
+    struct list l = {.a = a};
+    for (size_t i = 0; i < e->nrow; i++)
+        push(&l, e->row[i].phi);
+    for (size_t i = 0; i < e->nrow; i++)
+        push(&l, e->row[i].v);
+    for (size_t i = 0; i < e->nJ; i++)
+        push(&l, e->J[i].value);
+    compile(a, m, in, l.e, l.n, &m->constraint);
+}
+
+static void compile_rest(struct ct_arena *a, struct ct_machine *m, const struct inputs *in)
+{
+    const struct ct_equations *e = m->e;
+    struct list result = {.a = a}, root = {.a = a}, memory = {.a = a}, momentum = {.a = a},
+                driver = {.a = a};
+    for (size_t i = 0; i < e->nresult; i++)
+        push(&result, e->result[i].value);
+    for (size_t i = 0; i < e->nmode; i++)
+        push(&root, e->mode[i].g);
+    for (size_t i = 0; i < e->nmemory; i++)
+        push(&memory, e->memory[i].update);
+    for (size_t i = 0; i < e->nmemory; i++) // rotations from which quaternions start
+        for (int k = 0; k < 9 && e->memory[i].kind == CT_MEMORY_QUATERNION; k++)
+            push(&memory, e->memory[i].R.e[k]);
+    for (size_t i = 0; i < e->nu && e->nmode; i++) // needed where rates can jump
+        push(&momentum, ct_ex_diff(e->x, e->kinetic, e->u[i].symbol));
+    for (size_t i = 0; i < e->ndriver; i++) {
+        push(&driver, e->driver[i].value);
+        push(&driver, e->driver[i].rate);
+    }
+    const ct_ex energies[] = {e->kinetic, e->potential};
+    compile(a, m, in, result.e, result.n, &m->result);
+    compile(a, m, in, root.e, root.n, &m->root);
+    compile(a, m, in, memory.e, memory.n, &m->memory);
+    compile(a, m, in, momentum.e, momentum.n, &m->momentum);
+    compile(a, m, in, driver.e, driver.n, &m->driver);
+    compile(a, m, in, energies, 2, &m->energy);
+    compile(a, m, in, &e->power, ct_ex_is_zero(e->power) ? 0 : 1, &m->power);
+}
+
+struct ct_machine *ct_machine_create(struct ct_arena *a, const struct ct_model *model,
+                                     const struct ct_equations *e)
+{
+    struct ct_machine *m = CT_NEW(a, struct ct_machine);
+    *m = (struct ct_machine){
+        .e = e, .model = model, .nq = e->nq, .nu = e->nu, .nrow = e->nrow};
+    m->at_q = 1 + model->nparameter;
+    m->at_u = m->at_q + e->nq;
+    m->at_a = m->at_u + e->nu;
+    m->at_lam = m->at_a + e->nu;
+    m->at_mode = m->at_lam + e->nrow;
+    m->at_memory = m->at_mode + e->nmode;
+    m->at_work = m->at_memory + e->nmemory;
+    m->ninput = m->at_work + 1;
+    m->input = CT_NEWN(a, double, m->ninput);
+    for (size_t i = 0; i < model->nparameter; i++)
+        m->input[1 + i] = model->parameter[i].value;
+    for (size_t i = 0; i < e->nmemory; i++)
+        if (e->memory[i].kind == CT_MEMORY_QUATERNION && e->memory[i].place == 0)
+            m->input[m->at_memory + i] = 1;
+
+    const struct inputs in = list_inputs(a, m);
+    compile_motion(a, m, &in);
+    compile_constraint(a, m, &in);
+    compile_rest(a, m, &in);
+    m->M = CT_NEWN(a, double, m->nu * m->nu + 1);
+    m->J = CT_NEWN(a, double, m->nrow * m->nu + 1);
+    m->Q = m->motion.out + e->nM;
+    m->gam = m->Q + e->nu + e->nJ;
+    m->rate = m->gam + e->nrow;
+    m->phi = m->constraint.out;
+    m->v = m->phi + e->nrow;
+    ct_machine_prepare(m);
+    return m;
+}
+
+void ct_machine_prepare(struct ct_machine *m)
+{
+    struct ct_program *const all[] = {&m->motion, &m->constraint, &m->result,   &m->power, &m->energy,
+                                      &m->root,   &m->memory,     &m->momentum, &m->driver};
+    for (size_t i = 0; i < COUNT(all); i++)
+        ct_tape_prepare(all[i]->tape, m->input, all[i]->work);
+}
+
+// ---- evaluation -------------------------------------------------------------------------------------
+
+void ct_machine_set(struct ct_machine *m, double t, const double *y)
+{
+    m->input[0] = t;
+    memcpy(m->input + m->at_q, y, (m->nq + m->nu) * sizeof *y);
+    m->input[m->at_work] = y[m->nq + m->nu];
+}
+
+static void scatter_J(struct ct_machine *m, const double *value)
+{
+    const struct ct_equations *e = m->e;
+    for (size_t i = 0; i < e->nJ; i++)
+        m->J[(size_t)e->J[i].row + m->nrow * (size_t)e->J[i].column] = value[i];
+}
+
+void ct_machine_motion(struct ct_machine *m)
+{
+    const struct ct_equations *e = m->e;
+    m->evaluations++;
+    ct_program_run(&m->motion, m->input);
+    for (size_t i = 0; i < e->nM; i++) {
+        const size_t r = (size_t)e->M[i].row, c = (size_t)e->M[i].column;
+        m->M[r + m->nu * c] = m->M[c + m->nu * r] = m->motion.out[i];
+    }
+    scatter_J(m, m->Q + e->nu);
+}
+
+void ct_machine_constraint(struct ct_machine *m)
+{
+    ct_program_run(&m->constraint, m->input);
+    scatter_J(m, m->v + m->nrow);
+}
+
+// ---- retraction -------------------------------------------------------------------------------------
+
+static void normalise4(double *p)
+{
+    const double norm = sqrt(p[0] * p[0] + p[1] * p[1] + p[2] * p[2] + p[3] * p[3]);
+    for (int i = 0; i < 4 && norm > 0; i++)
+        p[i] /= norm;
+}
+
+void ct_machine_normalise(const struct ct_machine *m, double *q)
+{
+    for (size_t i = 0; i < m->nq; i++)
+        if (m->e->q[i].quaternion == 0)
+            normalise4(q + i);
+}
+
+// p <- p o exp(d/2)
+static void turn_quaternion(double *p, const double *d)
+{
+    const double angle = sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+    const double c = cos(angle / 2), s = angle > 0 ? sin(angle / 2) / angle : 0.5;
+    const double v[3] = {s * d[0], s * d[1], s * d[2]}, w[4] = {p[0], p[1], p[2], p[3]};
+    p[0] = w[0] * c - w[1] * v[0] - w[2] * v[1] - w[3] * v[2];
+    p[1] = w[1] * c + w[0] * v[0] + w[2] * v[2] - w[3] * v[1];
+    p[2] = w[2] * c + w[0] * v[1] + w[3] * v[0] - w[1] * v[2];
+    p[3] = w[3] * c + w[0] * v[2] + w[1] * v[1] - w[2] * v[0];
+    normalise4(p);
+}
+
+void ct_machine_retract(const struct ct_machine *m, double *q, const double *d)
+{
+    // quaternions and angular velocities follow each other in the same order
+    size_t next = 0;
+    for (size_t k = 0; k < m->nu; k++) {
+        if (m->e->u[k].q >= 0) {
+            q[m->e->u[k].q] += d[k];
+            continue;
+        }
+        while (m->e->q[next].quaternion != 0)
+            next++;
+        turn_quaternion(q + next, d + k);
+        next++;
+        k += 2;
+    }
+}
+
+// ---- memories ---------------------------------------------------------------------------------------
+
+// Unit quaternion of a rotation (column-major), the largest of the four numbers found first.
+static void quaternion_of(const double *R, double *p)
+{
+    const double square[4] = {1 + R[0] + R[4] + R[8], 1 + R[0] - R[4] - R[8],
+                              1 - R[0] + R[4] - R[8], 1 - R[0] - R[4] + R[8]};
+    int k = 0;
+    for (int i = 1; i < 4; i++)
+        if (square[i] > square[k])
+            k = i;
+    const double s = 0.5 / sqrt(square[k]);
+    const double skew[3] = {R[5] - R[7], R[6] - R[2], R[1] - R[3]};
+    const double sum[3] = {R[5] + R[7], R[6] + R[2], R[1] + R[3]}; // yz, zx, xy
+    p[k] = square[k] * s;
+    if (k == 0) {
+        for (int i = 0; i < 3; i++)
+            p[1 + i] = skew[i] * s;
+    } else {
+        p[0] = skew[k - 1] * s;
+        for (int i = 0; i < 3; i++)
+            if (i != k - 1)
+                p[1 + i] = sum[3 - (k - 1) - i] * s;
+    }
+    if (p[0] < 0)
+        for (int i = 0; i < 4; i++)
+            p[i] = -p[i];
+}
+
+void ct_memory_start(struct ct_machine *m)
+{
+    double *memory = m->input + m->at_memory;
+    ct_program_run(&m->memory, m->input);
+    const double *R = m->memory.out + m->e->nmemory;
+    for (size_t i = 0; i < m->e->nmemory; i++) {
+        if (m->e->memory[i].kind != CT_MEMORY_QUATERNION) {
+            memory[i] = m->memory.out[i];
+        } else {
+            if (m->e->memory[i].place == 0)
+                quaternion_of(R, memory + i);
+            R += 9;
+        }
+    }
+}
+
+void ct_memory_follow(struct ct_machine *m)
+{
+    double *memory = m->input + m->at_memory;
+    if (!m->e->nmemory)
+        return;
+    ct_program_run(&m->memory, m->input);
+    for (size_t i = 0; i < m->e->nmemory; i++) {
+        if (m->e->memory[i].kind != CT_MEMORY_OFFSET)
+            memory[i] = m->memory.out[i];
+        if (m->e->memory[i].kind == CT_MEMORY_QUATERNION && m->e->memory[i].place == 3)
+            normalise4(memory + i - 3);
+    }
+}

@@ -1,0 +1,66 @@
+// The equations of motion as numbers: tapes, their inputs, and workspace for one run.
+//
+//     input   t | parameters | q | u | u' | lam | modes | memories | work
+//
+// What always holds: a machine belongs to one run; the equations it was made from are constant. Evaluation
+// allocates nothing. M is kept full (both triangles), J by rows (nrow x nu), column-major.
+#ifndef CT_SOLVE_MACHINE_H
+#define CT_SOLVE_MACHINE_H
+
+#include "component/model.h"
+#include "expr/tape.h"
+#include "formulate/equations.h"
+
+struct ct_machine {
+    const struct ct_equations *e;
+    const struct ct_model *model;
+    size_t nq, nu, nrow;
+
+    double *input;
+    size_t at_q, at_u, at_a, at_lam, at_mode, at_memory, at_work, ninput;
+
+    struct ct_program { // a tape with its outputs
+        struct ct_tape *tape;
+        double *out, *work;
+        size_t nout;
+    } motion,       // M, Q, J, gam, q'
+        constraint, // phi, v, J
+        result,     // output columns
+        power,      // d(work)/dt
+        energy,     // kinetic, potential
+        root,       // g of each mode
+        memory,     // next values
+        momentum,   // dT/du
+        driver;     // value, rate of each driver
+
+    double *M, *Q, *J, *gam, *rate; // of the last ct_machine_motion
+    double *phi, *v;                // of the last ct_machine_constraint (J as well)
+    long evaluations;
+};
+
+/// Compile all that the equations hold. Everything lives in a.
+struct ct_machine *ct_machine_create(struct ct_arena *a, const struct ct_model *model,
+                                     const struct ct_equations *e);
+
+/// Copy time and state into the input. y: q, u, work.
+void ct_machine_set(struct ct_machine *m, double t, const double *y);
+/// M, Q, J, gam and q' at the input.
+void ct_machine_motion(struct ct_machine *m);
+/// phi, v, J at the input.
+void ct_machine_constraint(struct ct_machine *m);
+void ct_program_run(struct ct_program *p, const double *input);
+/// Parameters have changed: run the prologues again.
+void ct_machine_prepare(struct ct_machine *m);
+
+/// q (+) d for a small motion d (nu) in the speeds; quaternions are composed and normalised.  (7.4)
+void ct_machine_retract(const struct ct_machine *m, double *q, const double *d);
+/// Normalise the quaternions of q.
+void ct_machine_normalise(const struct ct_machine *m, double *q);
+
+/// Memories take their values at the input as if from scratch: quaternions from their rotation (scalar part
+/// >= 0), angles near their present memory, offsets from now.
+void ct_memory_start(struct ct_machine *m);
+/// Memories follow the motion; offsets stay.
+void ct_memory_follow(struct ct_machine *m);
+
+#endif
