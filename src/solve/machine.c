@@ -174,6 +174,8 @@ struct ct_machine *ct_machine_create(struct ct_arena *a, const struct ct_model *
     compile_rest(a, m, &in);
     m->M = CT_NEWN(a, double, m->nu * m->nu + 1);
     m->J = CT_NEWN(a, double, m->nrow * m->nu + 1);
+    m->g[0] = CT_NEWN(a, double, e->nmode + 1);
+    m->g[1] = CT_NEWN(a, double, e->nmode + 1);
     m->Q = m->motion.out + e->nM;
     m->gam = m->Q + e->nu + e->nJ;
     m->rate = m->gam + e->nrow;

@@ -35,6 +35,7 @@ struct ct_machine {
 
     double *M, *Q, *J, *gam, *rate; // of the last ct_machine_motion
     double *phi, *v;                // of the last ct_machine_constraint (J as well)
+    double *g[2];                   // values of root functions, for modes (nmode)
     long evaluations;
 };
 

@@ -1,0 +1,481 @@
+// See assemble.h.
+//
+// Gauss-Newton on the stacked problem: constraints and given values (weight large), guesses of all other
+// coordinates (weight 1). The weight is finite, so the last steps correct the constraints alone.
+#include "solve/assemble.h"
+#include "formulate/build.h"
+#include "numeric/dense.h"
+#include "solve/embed.h"
+#include "solve/mode.h"
+
+#include <math.h>
+#include <string.h>
+
+static const double hard = 1e4;            // weight of what must be met against what is wanted
+static const double met = 1e-9;            // left over of what must be met [m or rad]
+static const double longest_step = 0.5;    // of one iteration [m or rad], against jumping to another assembly
+enum { MOST_ITERATIONS = 200 };
+
+// What a coordinate shall be: by place in eqs->coordinate.
+struct target {
+    bool is_given, wanted; // must be met; is wanted with weight 1
+    double value;
+    bool in_quaternion;
+};
+
+struct assembly {
+    struct ct_ctx *ctx;
+    struct ct_machine *m;
+    const struct ct_equations *e;
+    struct target *q, *u;
+    bool *fixed_row;       // rows without an offset of their own
+    double *y, *A, *b, *row, *work, *speed0;
+    int *iwork;
+    size_t most;           // rows of A
+};
+
+// ---- targets --------------------------------------------------------------------------------------------
+
+static const struct ct_value *initial_value(const struct ct_edge_info *e, bool is_speed)
+{
+    return is_speed ? &e->self->initial.u : &e->self->initial.q;
+}
+
+// Quaternion of successive turns given beside q.
+static void initial_turns(const struct ct_model *model, const struct ct_value *v, double p[4])
+{
+    p[0] = 1;
+    p[1] = p[2] = p[3] = 0;
+    for (size_t i = 0; i < v->nturn; i++) {
+        const double angle = ct_model_number(model, v->turn[i].angle), c = cos(angle / 2);
+        double n[3], w[4] = {p[0], p[1], p[2], p[3]};
+        for (int k = 0; k < 3; k++)
+            n[k] = sin(angle / 2) * ct_model_number(model, v->turn[i].axis.e[k]);
+        p[0] = w[0] * c - w[1] * n[0] - w[2] * n[1] - w[3] * n[2];
+        p[1] = w[1] * c + w[0] * n[0] + w[2] * n[2] - w[3] * n[1];
+        p[2] = w[2] * c + w[0] * n[1] + w[3] * n[0] - w[1] * n[2];
+        p[3] = w[3] * c + w[0] * n[2] + w[1] * n[1] - w[2] * n[0];
+    }
+}
+
+// Where a joint's value for a coordinate stands in `initial: {q: ...}`: with `rotate` the list may leave
+// the quaternion out.
+static bool initial_number(const struct ct_model *model, const struct ct_value *v, int place,
+                           double *out)
+{
+    if (!v->given || (size_t)place >= v->n || (v->hole && v->hole[place]))
+        return false;
+    *out = ct_model_number(model, v->e[place]);
+    return true;
+}
+
+static void joint_target(struct assembly *s, size_t i, const struct ct_model *model)
+{
+    const struct ct_coordinate *c = &s->e->coordinate[i];
+    const struct ct_edge_info *e = &s->e->build->edge[c->edge];
+    const struct ct_initial *initial = &e->self->initial;
+    const int k = e->trial.quaternion;
+    struct target *q = &s->q[i], *u = &s->u[i];
+    q->in_quaternion = k >= 0 && c->place >= k;
+    q->value = q->in_quaternion && c->place == k;
+    bool given = initial_number(model, &initial->q, c->place, &q->value);
+    if (q->in_quaternion && initial->rotate.given) {
+        double p[4];
+        initial_turns(model, &initial->rotate, p);
+        q->value = p[c->place - k];
+        given = true;
+    }
+    q->wanted = true;
+    q->is_given = given && !initial->guess;
+    u->wanted = c->place < e->self->nfree;
+    u->is_given = initial_number(model, &initial->u, c->place, &u->value) && !initial->guess && u->wanted;
+    if (c->is_driven) // the motion itself holds the value
+        q->wanted = q->is_given = u->wanted = u->is_given = false;
+    if (!c->in_translation && !c->in_rotation)
+        q->wanted = q->is_given = u->wanted = u->is_given = false;
+}
+
+// A body that hangs on no joint starts with its frame at the origin: its centre of mass at com.
+static void body_target(struct assembly *s, size_t i, const struct ct_model *model)
+{
+    const struct ct_coordinate *c = &s->e->coordinate[i];
+    const struct ct_build *b = s->e->build;
+    const struct ct_edge_info *e = &b->edge[c->edge];
+    const int k = e->trial.quaternion;
+    struct target *q = &s->q[i], *u = &s->u[i];
+    if (c->q < 0)
+        return; // held by joints
+    q->in_quaternion = k >= 0 && c->place >= k;
+    q->wanted = true;
+    u->wanted = c->u >= 0;
+    const int lengths = b->is_planar ? 2 : 3;
+    if (q->in_quaternion)
+        q->value = c->place == k;
+    else if (c->place < lengths)
+        for (int j = 0; j < 3; j++)
+            q->value += ct_model_number(model, model->body[e->index].com.e[j])
+                        * ct_model_number(model, b->is_planar ? b->plane[c->place].e[j]
+                                                              : (ct_ex){(uint32_t)(j == c->place)});
+}
+
+static void find_targets(struct assembly *s, const struct ct_model *model)
+{
+    for (size_t i = 0; i < s->e->ncoordinate; i++) {
+        const struct ct_edge_info *e = &s->e->build->edge[s->e->coordinate[i].edge];
+        if (e->kind == CT_EDGE_JOINT)
+            joint_target(s, i, model);
+        else if (e->kind == CT_EDGE_BODY)
+            body_target(s, i, model);
+    }
+}
+
+// ---- residuals --------------------------------------------------------------------------------------------
+
+static double measured(const struct assembly *s, size_t i)
+{
+    return s->m->result.out[2 * i];
+}
+
+// Small rotation from the target quaternion to the present one, component k.
+static double quaternion_error(const struct assembly *s, size_t first, int k)
+{
+    double t[4], p[4];
+    for (size_t i = 0; i < 4; i++) {
+        t[i] = s->q[first + i].value;
+        p[i] = measured(s, first + i);
+    }
+    const int i = 1 + (k + 1) % 3, j = 1 + (k + 2) % 3;
+    const double v = t[0] * p[1 + k] - p[0] * t[1 + k] - (t[i] * p[j] - t[j] * p[i]);
+    const double w = t[0] * p[0] + t[1] * p[1] + t[2] * p[2] + t[3] * p[3];
+    return w < 0 ? -2 * v : 2 * v;
+}
+
+// Deviation of a coordinate from its target; for three of a quaternion's four numbers a rotation.
+static bool deviation(const struct assembly *s, size_t i, double *r)
+{
+    if (!s->q[i].in_quaternion) {
+        *r = measured(s, i) - s->q[i].value;
+        return true;
+    }
+    const struct ct_coordinate *c = &s->e->coordinate[i];
+    const int k = c->place - s->e->build->edge[c->edge].trial.quaternion;
+    if (k == 3)
+        return false;
+    *r = quaternion_error(s, i - (size_t)k, k);
+    return true;
+}
+
+// Coefficients of the measured speed of coordinate i: by unit speeds, as it is linear in them.
+static void speed_rows(struct assembly *s, double *rows)
+{
+    struct ct_machine *m = s->m;
+    double *u = m->input + m->at_u;
+    double *kept = s->row;
+    memcpy(kept, u, m->nu * sizeof *u);
+    memset(u, 0, m->nu * sizeof *u);
+    ct_program_run(&m->result, m->input);
+    for (size_t i = 0; i < s->e->ncoordinate; i++)
+        s->speed0[i] = m->result.out[2 * i + 1];
+    for (size_t k = 0; k < m->nu; k++) {
+        u[k] = 1;
+        ct_program_run(&m->result, m->input);
+        for (size_t i = 0; i < s->e->ncoordinate; i++)
+            rows[i + s->e->ncoordinate * k] = m->result.out[2 * i + 1] - s->speed0[i];
+        u[k] = 0;
+    }
+    memcpy(u, kept, m->nu * sizeof *u);
+    ct_program_run(&m->result, m->input);
+}
+
+static void add_row(struct assembly *s, size_t *n, double weight, const double *coef, size_t stride,
+                    double r)
+{
+    for (size_t k = 0; k < s->m->nu; k++)
+        s->A[*n + s->most * k] = weight * coef[stride * k];
+    s->b[*n] = -weight * r;
+    (*n)++;
+}
+
+// ---- iterations ---------------------------------------------------------------------------------------------
+
+static double limit_step(double *d, size_t n)
+{
+    double largest = 0;
+    for (size_t i = 0; i < n; i++)
+        largest = fmax(largest, fabs(d[i]));
+    for (size_t i = 0; i < n && largest > longest_step; i++)
+        d[i] *= longest_step / largest;
+    return largest;
+}
+
+// One stacked step for the positions into s->b; wishes are left out in the last, exact steps.
+// Returns the largest violation of what must be met.
+static double position_step(struct assembly *s, double *rows, bool with_wishes)
+{
+    struct ct_machine *m = s->m;
+    size_t n = 0;
+    double worst = 0, r;
+    ct_machine_set(m, 0, s->y);
+    ct_memory_follow(m);
+    ct_machine_constraint(m);
+    speed_rows(s, rows);
+    for (size_t i = 0; i < m->nrow; i++)
+        if (s->fixed_row[i]) {
+            worst = fmax(worst, fabs(m->phi[i]));
+            add_row(s, &n, hard, m->J + i, m->nrow, m->phi[i]);
+        }
+    for (size_t i = 0; i < s->e->ncoordinate; i++) {
+        const struct target *t = &s->q[i];
+        if (!(t->is_given || (t->wanted && with_wishes)) || !deviation(s, i, &r))
+            continue;
+        if (t->is_given)
+            worst = fmax(worst, fabs(r));
+        add_row(s, &n, t->is_given ? hard : 1, rows + i, s->e->ncoordinate, r);
+    }
+    if (n && m->nu)
+        ct_lstsq(s->b, s->A, (int)n, (int)m->nu, (int)s->most, 1e-12, s->iwork, s->work);
+    else
+        memset(s->b, 0, (m->nu + 1) * sizeof *s->b);
+    return worst;
+}
+
+static double find_positions(struct assembly *s, double *rows)
+{
+    double worst = INFINITY;
+    // first the wishes too, until the step is small; then the constraints alone, to the last digit
+    for (int pass = 0; pass < 2; pass++)
+        for (int i = 0; i < MOST_ITERATIONS; i++) {
+            worst = position_step(s, rows, pass == 0);
+            const double size = limit_step(s->b, s->m->nu);
+            if (!isfinite(size))
+                return INFINITY;
+            ct_machine_retract(s->m, s->y, s->b);
+            if (size < (pass ? 1e-15 : 1e-10) || (pass && i > 8))
+                break;
+        }
+    return worst;
+}
+
+static double velocity_step(struct assembly *s, double *rows, bool with_wishes)
+{
+    struct ct_machine *m = s->m;
+    size_t n = 0;
+    double worst = 0;
+    ct_machine_set(m, 0, s->y);
+    ct_machine_constraint(m);
+    speed_rows(s, rows);
+    for (size_t i = 0; i < m->nrow; i++) {
+        worst = fmax(worst, fabs(m->v[i]));
+        add_row(s, &n, hard, m->J + i, m->nrow, m->v[i]);
+    }
+    for (size_t i = 0; i < s->e->ncoordinate; i++) {
+        const struct target *t = &s->u[i];
+        if (!t->is_given && !(t->wanted && with_wishes))
+            continue;
+        const double r = m->result.out[2 * i + 1] - t->value;
+        if (t->is_given)
+            worst = fmax(worst, fabs(r));
+        add_row(s, &n, t->is_given ? hard : 1, rows + i, s->e->ncoordinate, r);
+    }
+    if (n && m->nu)
+        ct_lstsq(s->b, s->A, (int)n, (int)m->nu, (int)s->most, 1e-12, s->iwork, s->work);
+    else
+        memset(s->b, 0, (m->nu + 1) * sizeof *s->b);
+    for (size_t k = 0; k < m->nu; k++)
+        s->y[m->nq + k] += s->b[k];
+    return worst;
+}
+
+// ---- what went wrong -------------------------------------------------------------------------------------------
+
+// The joint and the row or value that is missed most.
+static bool report_positions(struct assembly *s)
+{
+    const struct ct_build *b = s->e->build;
+    double worst_row = 0, worst_value = 0, r;
+    size_t row = 0, value = 0;
+    for (size_t i = 0; i < s->m->nrow; i++)
+        if (s->fixed_row[i] && fabs(s->m->phi[i]) > worst_row) {
+            worst_row = fabs(s->m->phi[i]);
+            row = i;
+        }
+    bool any_given = false;
+    for (size_t i = 0; i < s->e->ncoordinate; i++)
+        if (s->q[i].is_given) {
+            any_given = true;
+            if (deviation(s, i, &r) && fabs(r) > worst_value) {
+                worst_value = fabs(r);
+                value = i;
+            }
+        }
+    if (worst_value > met) {
+        const struct ct_coordinate *c = &s->e->coordinate[value];
+        const struct ct_instance *joint = b->edge[c->edge].self;
+        return ct_error(s->ctx, initial_value(&b->edge[c->edge], false)->mark, CT_E_START,
+                        "initial values contradict each other: '%s' of joint '%s' is missed by %.3g",
+                        c->name, joint->name, worst_value);
+    }
+    const int joint = s->e->row[row].joint;
+    const struct ct_mark mark
+        = joint >= 0 ? b->model->joint[joint].mark : (struct ct_mark){.file = b->model->file};
+    ct_error(s->ctx, mark, CT_E_ASSEMBLY,
+             "the mechanism cannot be assembled: '%s' stays open by %.3g; check lengths and places%s",
+             s->e->row[row].name, worst_row,
+             any_given ? ", the given initial values" : " and give guesses in `initial`");
+    return false;
+}
+
+static bool report_velocities(struct assembly *s)
+{
+    const struct ct_build *b = s->e->build;
+    double worst = 0;
+    size_t value = s->e->ncoordinate;
+    for (size_t i = 0; i < s->e->ncoordinate; i++) {
+        const double r = s->m->result.out[2 * i + 1] - s->u[i].value;
+        if (s->u[i].is_given && fabs(r) > worst) {
+            worst = fabs(r);
+            value = i;
+        }
+    }
+    if (value < s->e->ncoordinate) {
+        const struct ct_coordinate *c = &s->e->coordinate[value];
+        return ct_error(s->ctx, initial_value(&b->edge[c->edge], true)->mark, CT_E_START,
+                        "initial speeds contradict each other: the one of '%s' is missed by %.3g",
+                        c->name, worst);
+    }
+    return ct_error(s->ctx, (struct ct_mark){.file = b->model->file}, CT_E_START,
+                    "the drivers ask for speeds that the mechanism cannot have");
+}
+
+// A driven joint starts on its motion.
+static bool check_drivers(struct assembly *s)
+{
+    const struct ct_build *b = s->e->build;
+    bool ok = true;
+    for (size_t i = 0; i < s->e->ncoordinate; i++) {
+        const struct ct_coordinate *c = &s->e->coordinate[i];
+        const struct ct_edge_info *e = &b->edge[c->edge];
+        if (!c->is_driven || e->self->initial.guess)
+            continue;
+        for (int k = 0; k < 2; k++) {
+            const struct ct_value *v = initial_value(e, k);
+            double given;
+            if (!initial_number(b->model, v, c->place, &given))
+                continue;
+            const double real = s->m->result.out[2 * i + (size_t)k];
+            if (fabs(given - real) > met * fmax(1, fabs(real)))
+                ok = ct_error(s->ctx, v->mark, CT_E_START,
+                              "joint '%s' starts on its motion with %s = %.17g, but initial says %.17g",
+                              e->self->name, k ? "u" : "q", real, given);
+        }
+    }
+    return ok;
+}
+
+// ---- the stage ---------------------------------------------------------------------------------------------------
+
+// Rows whose constant comes from the start (gears, rods of the initial length) hold at any place.
+static void find_fixed_rows(struct assembly *s, struct ct_arena *a)
+{
+    struct ct_exs *x = s->e->x;
+    s->fixed_row = CT_NEWN(a, bool, s->m->nrow + 1);
+    for (size_t i = 0; i < s->m->nrow; i++) {
+        s->fixed_row[i] = true;
+        const size_t n = ct_ex_walk(x, &s->e->row[i].phi, 1);
+        for (size_t k = 0; k < n; k++) {
+            const struct ct_sym *sym = ct_ex_symbol(x, (ct_ex){x->stack[k]});
+            if (sym && sym->kind == CT_SYM_MEMORY
+                && s->e->memory[sym->index].kind == CT_MEMORY_OFFSET)
+                s->fixed_row[i] = false;
+        }
+    }
+}
+
+static void start_near_targets(struct assembly *s)
+{
+    double *memory = s->m->input + s->m->at_memory;
+    for (size_t i = 0; i < s->e->ncoordinate; i++) {
+        const struct ct_coordinate *c = &s->e->coordinate[i];
+        if (c->q >= 0)
+            s->y[c->q] = s->q[i].value;
+    }
+    for (size_t i = 0; i < s->e->nmemory; i++)
+        for (size_t k = 0; k < s->e->ncoordinate && s->e->memory[i].kind == CT_MEMORY_ANGLE; k++) {
+            const struct ct_coordinate *c = &s->e->coordinate[k];
+            const struct ct_edge_info *e = &s->e->build->edge[c->edge];
+            if (e->kind == CT_EDGE_JOINT && e->index == s->e->memory[i].joint
+                && c->place == s->e->memory[i].place)
+                memory[i] = s->q[k].value;
+        }
+    ct_machine_set(s->m, 0, s->y);
+    ct_modes_start(s->m, 0, s->y, NULL);
+    ct_memory_start(s->m);
+}
+
+bool ct_assemble(struct ct_ctx *ctx, struct ct_arena *a, const struct ct_model *model,
+                 const struct ct_equations *e, struct ct_start *out)
+{
+    struct assembly s = {.ctx = ctx, .e = e, .m = ct_machine_create(a, model, e)};
+    struct ct_machine *m = s.m;
+    const size_t nc = e->ncoordinate;
+    s.most = m->nrow + nc + m->nu + 1;
+    s.q = CT_NEWN(a, struct target, nc + 1);
+    s.u = CT_NEWN(a, struct target, nc + 1);
+    s.y = CT_NEWN(a, double, m->nq + m->nu + 1);
+    s.A = CT_NEWN(a, double, s.most * (m->nu + 1));
+    s.b = CT_NEWN(a, double, s.most + m->nu);
+    s.row = CT_NEWN(a, double, m->nu + 1);
+    s.speed0 = CT_NEWN(a, double, nc + 1);
+    s.iwork = CT_NEWN(a, int, s.most + m->nu);
+    s.work = CT_NEWN(a, double, ct_lstsq_work((int)s.most, (int)m->nu + 1));
+    double *rows = CT_NEWN(a, double, (nc + 1) * (m->nu + 1));
+    find_targets(&s, model);
+    find_fixed_rows(&s, a);
+    start_near_targets(&s);
+
+    out->residual = find_positions(&s, rows);
+    if (!(out->residual < met))
+        return report_positions(&s);
+    ct_machine_set(m, 0, s.y);
+    ct_memory_start(m);
+    velocity_step(&s, rows, true);
+    velocity_step(&s, rows, false);
+    const double left = velocity_step(&s, rows, false);
+    ct_machine_set(m, 0, s.y);
+    ct_program_run(&m->result, m->input);
+    if (!(left < met * 1e3)) // speeds may be large; a contradiction is of their order
+        return report_velocities(&s);
+    if (!check_drivers(&s))
+        return false;
+    out->n = nc;
+    out->q = CT_NEWN(a, double, nc + 1);
+    out->u = CT_NEWN(a, double, nc + 1);
+    for (size_t i = 0; i < nc; i++) {
+        out->q[i] = m->result.out[2 * i];
+        out->u[i] = m->result.out[2 * i + 1];
+    }
+    return true;
+}
+
+void ct_start_apply(const struct ct_start *s, struct ct_machine *m, double *y)
+{
+    const struct ct_equations *e = m->e;
+    double *memory = m->input + m->at_memory;
+    memset(y, 0, (m->nq + m->nu + 1) * sizeof *y);
+    for (size_t i = 0; i < s->n; i++) {
+        const struct ct_coordinate *c = &e->coordinate[i];
+        const struct ct_edge_info *edge = &e->build->edge[c->edge];
+        if (c->q >= 0)
+            y[c->q] = s->q[i];
+        if (c->u >= 0)
+            y[m->nq + (size_t)c->u] = s->u[i];
+        for (size_t k = 0; k < e->nmemory; k++)
+            if (e->memory[k].kind == CT_MEMORY_ANGLE && edge->kind == CT_EDGE_JOINT
+                && edge->index == e->memory[k].joint && c->place == e->memory[k].place)
+                memory[k] = s->q[i];
+    }
+    ct_machine_normalise(m, y);
+    ct_machine_set(m, 0, y);
+    ct_modes_start(m, 0, y, NULL);
+    ct_memory_start(m);
+}

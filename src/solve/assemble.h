@@ -1,0 +1,25 @@
+// Consistent start: the mechanism assembled nearest to the given values.  (formulation 9.1)
+//
+// Assembly runs on trees through joints, whatever trees the equations use, and measures all joints: the start does
+// not depend on the choice of trees.
+#ifndef CT_SOLVE_ASSEMBLE_H
+#define CT_SOLVE_ASSEMBLE_H
+
+#include "solve/machine.h"
+
+/// Start values of every coordinate of joints and bodies, by number of coordinate (eqs->coordinate).
+struct ct_start {
+    double *q, *u;
+    size_t n;
+    double residual; // largest |phi| left
+};
+
+/// Find the start at t = 0. e: equations made with measure_all for trees through joints.
+/// Errors: CT_E_ASSEMBLY when the loops do not close, CT_E_START when given values contradict.
+bool ct_assemble(struct ct_ctx *ctx, struct ct_arena *a, const struct ct_model *model,
+                 const struct ct_equations *e, struct ct_start *out);
+
+/// Put a start into the state y (q, u, work) of a machine; memories of angles start at the values.
+void ct_start_apply(const struct ct_start *s, struct ct_machine *m, double *y);
+
+#endif

@@ -1,0 +1,15 @@
+// Modes of a run: which side each comparison is on, when it changes.
+#ifndef CT_SOLVE_MODE_H
+#define CT_SOLVE_MODE_H
+
+#include "solve/machine.h"
+
+/// Sides at t, y; where g is zero the later side counts, found by following g along the derivative dy
+/// (nq + nu; NULL: time alone moves).
+void ct_modes_start(struct ct_machine *m, double t, const double *y, const double *dy);
+
+/// All times in (t0, t1] at which something changes by time alone: modes of time, knots of linear tables. Ascending;
+/// the list lives in a. Changes closer than (t1 - t0)/4096 to each other may be missed in pairs.
+size_t ct_time_events(struct ct_arena *a, struct ct_machine *m, double t0, double t1, double **time);
+
+#endif

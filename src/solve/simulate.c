@@ -1,0 +1,378 @@
+// See simulate.h.
+#include "solve/simulate.h"
+#include "solve/mode.h"
+
+#include <math.h>
+#include <string.h>
+
+struct ct_run {
+    struct ct_ctx *ctx;
+    struct ct_arena *arena;
+    const struct ct_model *model;
+    const struct ct_equations *e;
+    struct ct_machine *m;
+    struct ct_embed *s;
+    size_t ny;
+    double *y, *dy, *scratch, *value;
+    double *sign;       // of each state mode's root function at the last event
+    double *event;      // times
+    size_t nevent;
+    int *root_of;       // state modes, in order
+    int nroot;
+    bool needs_lam, has_power;
+    const struct ct_run_options *o;
+    struct ct_run_report *report;
+    double energy0, energy_scale;
+    bool started;
+};
+
+// ---- evaluation -------------------------------------------------------------------------------------------
+
+static enum ct_eval accelerate(struct ct_run *r, double t, const double *y)
+{
+    ct_machine_set(r->m, t, y);
+    ct_machine_motion(r->m);
+    const enum ct_eval e = ct_embed_accelerate(r->s);
+    if (e != CT_EVAL_OK)
+        return e;
+    for (size_t i = 0; i < r->m->nu; i++)
+        if (!isfinite(r->s->a[i]))
+            return CT_EVAL_RETRY;
+    memcpy(r->m->input + r->m->at_a, r->s->a, r->m->nu * sizeof *r->s->a);
+    return CT_EVAL_OK;
+}
+
+static void multipliers(struct ct_run *r)
+{
+    ct_embed_multipliers(r->s);
+    memcpy(r->m->input + r->m->at_lam, r->s->lam, r->m->nrow * sizeof *r->s->lam);
+}
+
+static enum ct_eval rhs(void *user, double t, const double *y, double *dy)
+{
+    struct ct_run *r = user;
+    const enum ct_eval e = accelerate(r, t, y);
+    if (e != CT_EVAL_OK)
+        return e;
+    memcpy(dy, r->m->rate, r->m->nq * sizeof *dy);
+    memcpy(dy + r->m->nq, r->s->a, r->m->nu * sizeof *dy);
+    dy[r->ny - 1] = 0;
+    if (r->has_power) {
+        if (r->needs_lam)
+            multipliers(r);
+        ct_program_run(&r->m->power, r->m->input);
+        dy[r->ny - 1] = r->m->power.out[0];
+    }
+    return CT_EVAL_OK;
+}
+
+static enum ct_eval project(void *user, double t, double *y)
+{
+    struct ct_run *r = user;
+    return ct_embed_project(r->s, t, y);
+}
+
+static enum ct_eval accepted(void *user, double t, double *y)
+{
+    struct ct_run *r = user;
+    ct_machine_set(r->m, t, y);
+    ct_memory_follow(r->m);
+    return CT_EVAL_OK;
+}
+
+// ---- events -------------------------------------------------------------------------------------------------
+
+static enum ct_eval root(void *user, double t, const double *y, double *g)
+{
+    struct ct_run *r = user;
+    ct_machine_set(r->m, t, y);
+    ct_program_run(&r->m->root, r->m->input);
+    for (int i = 0; i < r->nroot; i++)
+        g[i] = r->m->root.out[r->root_of[i]];
+    return CT_EVAL_OK;
+}
+
+static double next_time_event(void *user, double t)
+{
+    const struct ct_run *r = user;
+    size_t low = 0, high = r->nevent;
+    while (low < high) { // first event after t
+        const size_t middle = (low + high) / 2;
+        if (r->event[middle] > t)
+            high = middle;
+        else
+            low = middle + 1;
+    }
+    return low < r->nevent ? r->event[low] : INFINITY;
+}
+
+static double kinetic_energy(struct ct_run *r, double t, const double *y)
+{
+    ct_machine_set(r->m, t, y);
+    ct_program_run(&r->m->energy, r->m->input);
+    return r->m->energy.out[0];
+}
+
+// Largest change of driver values and rates between two records (value, rate alternating).
+static double largest_jump(const struct ct_run *r, const double *before, int which)
+{
+    double jump = 0;
+    for (size_t i = 0; i < r->e->ndriver; i++)
+        jump = fmax(jump, fabs(r->m->driver.out[2 * i + (size_t)which] - before[2 * i + (size_t)which]));
+    return jump;
+}
+
+static const double jump_tolerance = 1e-9; // of a driver's value or rate, beside rounding [rad, m, 1/s]
+
+// Driven values after a change of modes; impulse or not, the speeds must fit the new rates.  (8.5)
+static enum ct_eval apply_jump(struct ct_run *r, double t, double *y, const double *before,
+                               const double *momentum)
+{
+    struct ct_machine *m = r->m;
+    ct_machine_set(m, t, y);
+    ct_program_run(&m->driver, m->input);
+    for (size_t i = 0; i < r->e->ndriver; i++)
+        if (fabs(m->driver.out[2 * i] - before[2 * i])
+            > jump_tolerance * fmax(1, fabs(before[2 * i]))) {
+            ct_error(r->ctx, r->e->driver[i].mark, CT_E_DRIVER_JUMP,
+                     "the motion '%s' jumps by %.6g at t = %.9g: a place cannot change in no time",
+                     r->e->driver[i].name, m->driver.out[2 * i] - before[2 * i], t);
+            return CT_EVAL_FATAL;
+        }
+    ct_machine_constraint(m);
+    double worst = largest_jump(r, before, 1);
+    for (size_t i = 0; i < m->nrow; i++)
+        worst = fmax(worst, fabs(m->v[i]));
+    if (worst <= jump_tolerance)
+        return CT_EVAL_OK;
+    if (r->o && r->o->rate_jumps == CT_RATE_CONTINUOUS)
+        return ct_embed_project(r->s, t, y);
+    // p = momentum before - momentum after, both with the old unknown speeds
+    const double *after = m->momentum.out;
+    double *p = r->scratch, *u = y + m->nq;
+    ct_program_run(&m->momentum, m->input);
+    for (size_t i = 0; i < m->nu; i++)
+        p[i] = momentum[i] - after[i];
+    return ct_embed_impulse(r->s, p, u);
+}
+
+static enum ct_eval event(void *user, double t, double *y, const signed char *crossed, bool is_time)
+{
+    struct ct_run *r = user;
+    struct ct_machine *m = r->m;
+    (void)is_time;
+    double *before = r->scratch + m->nu, *momentum = before + 2 * r->e->ndriver;
+    ct_machine_set(m, t, y);
+    ct_program_run(&m->driver, m->input);
+    memcpy(before, m->driver.out, m->driver.nout * sizeof *before);
+    ct_program_run(&m->momentum, m->input);
+    memcpy(momentum, m->momentum.out, m->momentum.nout * sizeof *momentum);
+    const double kinetic = kinetic_energy(r, t, y);
+
+    // sides: a crossed root tells its own; the rest follow from where the motion leads
+    double *mode = m->input + m->at_mode;
+    enum ct_eval e = rhs(r, t, y, r->dy);
+    if (e != CT_EVAL_OK)
+        return e;
+    ct_modes_start(m, t, y, r->dy);
+    for (int i = 0; i < r->nroot; i++)
+        if (crossed[i])
+            mode[r->root_of[i]]
+                = ct_op_apply(r->e->mode[r->root_of[i]].op, crossed[i], 0, 0);
+    e = apply_jump(r, t, y, before, momentum);
+    if (e != CT_EVAL_OK)
+        return e;
+    y[r->ny - 1] += kinetic_energy(r, t, y) - kinetic;
+    return CT_EVAL_OK;
+}
+
+// ---- creation -------------------------------------------------------------------------------------------------
+
+static bool uses(const struct ct_equations *e, ct_ex v, enum ct_sym_kind kind)
+{
+    return ct_ex_kinds(e->x, v) & 1u << kind;
+}
+
+static void find_needs(struct ct_run *r)
+{
+    const struct ct_equations *e = r->e;
+    r->has_power = !ct_ex_is_zero(e->power);
+    r->needs_lam = uses(e, e->power, CT_SYM_LAM);
+    r->root_of = CT_NEWN(r->arena, int, e->nmode + 1);
+    for (size_t i = 0; i < e->nmode; i++)
+        if (!e->mode[i].is_time)
+            r->root_of[r->nroot++] = (int)i;
+}
+
+struct ct_run *ct_run_create(struct ct_ctx *ctx, struct ct_arena *a, const struct ct_model *model,
+                             const struct ct_equations *e, const struct ct_start *start)
+{
+    struct ct_run *r = CT_NEW(a, struct ct_run);
+    *r = (struct ct_run){.ctx = ctx, .arena = a, .model = model, .e = e};
+    r->m = ct_machine_create(a, model, e);
+    r->s = ct_embed_create(a, ctx, r->m);
+    r->ny = r->m->nq + r->m->nu + 1;
+    r->y = CT_NEWN(a, double, r->ny);
+    r->dy = CT_NEWN(a, double, r->ny);
+    r->scratch = CT_NEWN(a, double, 2 * r->m->nu + 2 * e->ndriver + 1);
+    r->value = CT_NEWN(a, double, e->nresult + 1);
+    find_needs(r);
+    ct_start_apply(start, r->m, r->y);
+    ct_machine_constraint(r->m);
+    ct_machine_motion(r->m);
+    if (!ct_embed_choose(r->s))
+        return NULL;
+    // measured on other trees, the loops close to rounding; the rest is taken off here
+    if (ct_embed_project(r->s, 0, r->y) != CT_EVAL_OK) {
+        ct_error(ctx, (struct ct_mark){.file = model->file}, CT_E_ASSEMBLY,
+                 "the assembled start is singular: the loops cannot be held there");
+        return NULL;
+    }
+    if (rhs(r, 0, r->y, r->dy) != CT_EVAL_OK) {
+        ct_error(ctx, (struct ct_mark){.file = model->file}, CT_E_SINGULAR,
+                 "the accelerations at t = 0 cannot be found");
+        return NULL;
+    }
+    ct_modes_start(r->m, 0, r->y, r->dy);
+    return r;
+}
+
+struct ct_machine *ct_run_machine(struct ct_run *r)
+{
+    return r->m;
+}
+
+struct ct_embed *ct_run_embed(struct ct_run *r)
+{
+    return r->s;
+}
+
+const double *ct_run_state(const struct ct_run *r)
+{
+    return r->y;
+}
+
+enum ct_eval ct_run_results(struct ct_run *r, double t, const double *y, double *out)
+{
+    const enum ct_eval e = accelerate(r, t, y);
+    if (e != CT_EVAL_OK)
+        return e;
+    multipliers(r);
+    ct_program_run(&r->m->result, r->m->input);
+    memcpy(out, r->m->result.out, r->e->nresult * sizeof *out);
+    return CT_EVAL_OK;
+}
+
+// ---- the run ------------------------------------------------------------------------------------------------------
+
+static double largest(const double *v, size_t n)
+{
+    double max = 0;
+    for (size_t i = 0; i < n; i++)
+        max = fmax(max, fabs(v[i]));
+    return max;
+}
+
+// Energy, constraints: the ledger of a sample.
+static void keep_ledger(struct ct_run *r, const double *y)
+{
+    ct_program_run(&r->m->energy, r->m->input);
+    const double kinetic = r->m->energy.out[0], potential = r->m->energy.out[1];
+    const double total = kinetic + potential - y[r->ny - 1];
+    if (!r->started)
+        r->energy0 = total;
+    r->started = true;
+    r->energy_scale = fmax(r->energy_scale, fmax(fabs(kinetic), fabs(potential)));
+    if (r->energy_scale > 0)
+        r->report->energy_drift
+            = fmax(r->report->energy_drift, fabs(total - r->energy0));
+    ct_machine_constraint(r->m);
+    r->report->position_constraint
+        = fmax(r->report->position_constraint, largest(r->m->phi, r->m->nrow));
+    r->report->velocity_constraint
+        = fmax(r->report->velocity_constraint, largest(r->m->v, r->m->nrow));
+}
+
+static bool at_sample(void *user, double t, const double *y)
+{
+    struct ct_run *r = user;
+    if (ct_run_results(r, t, y, r->value) != CT_EVAL_OK)
+        return ct_error(r->ctx, (struct ct_mark){.file = r->model->file}, CT_E_SINGULAR,
+                        "the equations are singular at t = %.9g", t);
+    for (size_t i = 0; i < r->e->nresult; i++)
+        if (!isfinite(r->value[i]))
+            return ct_error(r->ctx, (struct ct_mark){.file = r->model->file}, CT_E_SINGULAR,
+                            "the output '%s' has no finite value at t = %.9g",
+                            r->e->result[i].name, t);
+    keep_ledger(r, y);
+    memcpy(r->report->final, r->value, r->e->nresult * sizeof *r->value);
+    return !r->o->row || r->o->row(r->o->user, t, r->value, r->e->nresult);
+}
+
+static bool at_step(void *user, double t, const double *y)
+{
+    struct ct_run *r = user;
+    (void)y;
+    return !r->o->progress || r->o->progress(r->o->user, t, r->o->duration);
+}
+
+// Names of the rows whose multipliers are not unique.
+static void name_undetermined(struct ct_run *r, struct ct_run_report *report)
+{
+    if (r->s->rank == (int)r->m->nrow)
+        return;
+    ct_machine_set(r->m, 0, r->y);
+    ct_machine_constraint(r->m);
+    ct_embed_uniqueness(r->s);
+    const char **name = CT_NEWN(r->arena, const char *, r->m->nrow);
+    size_t n = 0;
+    for (size_t i = 0; i < r->m->nrow; i++)
+        if (!r->s->is_unique[i])
+            name[n++] = r->e->row[i].name;
+    report->undetermined = name;
+    report->nundetermined = n;
+}
+
+bool ct_run_simulate(struct ct_run *r, const struct ct_run_options *o, struct ct_run_report *report)
+{
+    const size_t n = o->nsample;
+    double *sample = CT_NEWN(r->arena, double, n + 1);
+    bool *watched = CT_NEWN(r->arena, bool, r->ny);
+    for (size_t i = 0; i < n; i++)
+        sample[i] = n == 1 || i + 1 == n ? o->duration : o->duration * (double)i / (double)(n - 1);
+    if (n == 1)
+        sample[0] = 0;
+    for (size_t i = 0; i + 1 < r->ny; i++)
+        watched[i] = true;
+    *report = (struct ct_run_report){0};
+    report->final = CT_NEWN(r->arena, double, r->e->nresult + 1);
+    r->o = o;
+    r->report = report;
+    r->nevent = ct_time_events(r->arena, r->m, 0, o->duration, &r->event);
+    ct_modes_start(r->m, 0, r->y, r->dy);
+    name_undetermined(r, report);
+    const struct ct_problem p = {.user = r,
+                                 .ny = (int)r->ny,
+                                 .watched = watched,
+                                 .rhs = rhs,
+                                 .project = project,
+                                 .accepted = accepted,
+                                 .nroot = r->nroot,
+                                 .root = root,
+                                 .next_time_event = next_time_event,
+                                 .event = event};
+    const struct ct_integrate_options io = {.t1 = o->duration,
+                                            .rtol = o->rtol,
+                                            .atol = o->atol,
+                                            .step = o->step,
+                                            .sample = sample,
+                                            .nsample = n,
+                                            .at_sample = at_sample,
+                                            .at_step = at_step};
+    const bool ok = ct_integrate(r->ctx, o->method, &p, &io, r->y, &report->stats);
+    report->rank = r->s->rank;
+    report->switches = r->s->switches;
+    if (r->energy_scale > 0)
+        report->energy_drift /= r->energy_scale;
+    return ok;
+}
