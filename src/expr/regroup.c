@@ -6,6 +6,7 @@
 
 #include <limits.h>
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 
 // ---- content ----------------------------------------------------------------------------------
@@ -62,6 +63,15 @@ void ct_poly_content(struct ct_collector *c, struct ct_poly *p, double *k, uint3
 
 // ---- products -----------------------------------------------------------------------------------
 
+// 0.04409999999999999 is 0.0441: the decimal of 12 digits where it differs by rounding noise only.
+static double without_noise(double k)
+{
+    char s[32];
+    snprintf(s, sizeof s, "%.12g", k);
+    const double rounded = strtod(s, NULL);
+    return ct_same_number(rounded, k) ? rounded : k;
+}
+
 // 0.3333333333333333 is 1/3: a fraction with small terms, if the decimals are long. *divisor is 1
 // otherwise.
 static double as_fraction(double k, double *divisor)
@@ -84,7 +94,7 @@ static ct_ex product(struct ct_collector *c, double k, uint32_t mono, ct_ex body
 {
     ct_ex below = CT_EX_ONE;
     double divisor;
-    k = as_fraction(k, &divisor);
+    k = as_fraction(without_noise(k), &divisor);
     for (size_t i = 0; i < ct_mono_length(&c->ps, mono); i++) {
         const struct ct_power p = ct_mono_power(&c->ps, mono, i);
         const ct_ex whole = ct_ex_const(c->x, abs(p.exponent));

@@ -332,6 +332,8 @@ static void rounding_leaves_no_residues(void **unused)
     check(&f, ct_ex_mul(x, ct_ex_scale(x, 0.5, f.q1), ct_ex_scale(x, 0.304, f.q2)),
           "0.152*q1*q2");
     check(&f, ct_ex_div(x, ct_ex_mul(x, f.m1, f.q1), ct_ex_const(x, 3)), "m1*q1/3");
+    check(&f, ct_ex_add(x, a, ct_ex_scale(x, 0.2, ct_ex_add(x, f.q1, f.q2))),
+          "0.3*q1 + 0.2*q2");
     ct_ex tiny = ct_ex_scale(x, 1e-17, f.q2);
     check(&f, ct_ex_add(x, f.q1, tiny), "q1 + 1e-17*q2"); // small is not noise
     finish(&f);

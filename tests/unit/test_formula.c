@@ -195,6 +195,17 @@ static void endless_trees_are_cut(void **unused)
     const char *s = ct_ex_text(f.arena, &f.x, e, &p);
     assert_non_null(strstr(s, "..."));
     assert_true(strlen(s) < 20000);
+    // and a deep one, and a long one
+    ct_ex deep = f.q, sum = f.q;
+    for (int k = 0; k < 100000; k++) {
+        deep = ct_ex_fun(&f.x, CT_OP_EXP, ct_ex_sub(&f.x, f.m, deep));
+        sum = ct_ex_add(&f.x, sum, deep);
+    }
+    for (int style = CT_PRINT_TEXT; style <= CT_PRINT_C; style++) {
+        const struct ct_print plain = {.style = (enum ct_print_style)style};
+        assert_non_null(strstr(ct_ex_text(f.arena, &f.x, deep, &plain), "..."));
+        assert_non_null(strstr(ct_ex_text(f.arena, &f.x, sum, &plain), "..."));
+    }
     ct_arena_destroy(f.arena);
 }
 
