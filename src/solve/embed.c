@@ -95,6 +95,12 @@ static bool factor(struct ct_embed *s)
     s->kappa = 0;
     for (int i = 0; i < r * f; i++)
         s->kappa = fmax(s->kappa, fabs(s->B[i]));
+    double least = INFINITY, most = 0;
+    for (int i = 0; i < r; i++) {
+        least = fmin(least, fabs(s->Jd[i + r * i]));
+        most = fmax(most, fabs(s->Jd[i + r * i]));
+    }
+    s->sigma = most > 0 ? least / most : 0;
     return isfinite(s->kappa);
 }
 
@@ -124,6 +130,7 @@ bool ct_embed_choose(struct ct_embed *s)
             s->independent[j] = j;
     factor(s);
     s->kappa_chosen = s->kappa;
+    s->sigma_chosen = s->sigma;
     ct_machine_motion(s->m);
     return ct_embed_accelerate(s) == CT_EVAL_OK || massless(s);
 }
@@ -311,6 +318,13 @@ static void step_onto(struct ct_embed *s, const double *r, double *d)
         least_norm_step(s, r, d);
 }
 
+// Is another choice of rows or columns due?
+static bool has_worn(const struct ct_embed *s)
+{
+    return s->kappa > kappa_growth * s->kappa_chosen + 1 || s->kappa > kappa_largest
+           || s->sigma * kappa_growth < s->sigma_chosen;
+}
+
 enum ct_eval ct_embed_project(struct ct_embed *s, double t, double *y)
 {
     struct ct_machine *m = s->m;
@@ -338,7 +352,7 @@ enum ct_eval ct_embed_project(struct ct_embed *s, double t, double *y)
         ct_machine_set(m, t, y);
         ct_machine_constraint(m);
     }
-    if (s->kappa > kappa_growth * s->kappa_chosen + 1 || s->kappa > kappa_largest)
+    if (s->rank && has_worn(s))
         ct_embed_choose(s);
     return CT_EVAL_OK;
 }

@@ -18,6 +18,7 @@ struct ct_embed {
     int *dependent;      // rank columns
     int *independent;    // nu - rank columns
     double kappa, kappa_chosen; // largest |J_d^-1 J_i|, now and when chosen
+    double sigma, sigma_chosen; // smallest pivot of J_d against its largest: falls when kept rows depend
     bool *is_unique;     // per row: its multiplier is determined
     long switches, factorizations;
     double *a, *lam;     // results: u' (nu), lam (nrow)

@@ -342,8 +342,8 @@ bool ct_run_simulate(struct ct_run *r, const struct ct_run_options *o, struct ct
         sample[i] = n == 1 || i + 1 == n ? o->duration : o->duration * (double)i / (double)(n - 1);
     if (n == 1)
         sample[0] = 0;
-    for (size_t i = 0; i + 1 < r->ny; i++)
-        watched[i] = true;
+    for (size_t i = 0; i < r->ny; i++)
+        watched[i] = i + 1 < r->ny || r->has_power; // the work is as good as the states
     *report = (struct ct_run_report){0};
     report->final = CT_NEWN(r->arena, double, r->e->nresult + 1);
     r->o = o;
