@@ -29,8 +29,8 @@ struct ct_print {
     int (*rank)(void *data, const struct ct_sym *s);
     void *data;
     /// Items (operators and operands) after which the rest is `...`; 0: 20000; 500 parentheses within
-    /// each other are cut in any case. A graph of n nodes
-    /// can be a tree of 2^n: name shared nodes first.
+    /// each other are cut in any case. A graph of n nodes can be a tree of 2^n: name shared nodes
+    /// first (share.h).
     size_t limit;
 };
 
