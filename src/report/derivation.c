@@ -29,6 +29,34 @@ static const char *symbol(void *data, struct ct_arena *a, const struct ct_sym *s
     return d->e->nrow == 1 ? "\\lambda" : ct_arena_printf(a, "\\lambda_{%u}", s->index + 1);
 }
 
+// ---- the order of parameters ------------------------------------------------------------------------
+
+// Masses and inertias stand before lengths, gravity last: m*g*l reads m*l*g.
+static int *rank_parameters(struct ct_derivation *d)
+{
+    struct ct_exs *x = d->e->x;
+    const struct ct_model *m = d->m;
+    int *rank = CT_NEWN(d->a, int, x->nsym);
+    for (size_t i = 0; i < x->nsym; i++)
+        rank[i] = 1;
+    for (int pass = 0; pass < 2; pass++)
+        for (size_t i = 1; i < m->nbody && (pass == 0 || i == 1); i++) {
+            const ct_ex *root = pass ? m->gravity.e : &m->body[i].mass;
+            const size_t n = ct_ex_walk(x, root, pass ? 3 : 1);
+            for (size_t k = 0; k < n; k++)
+                if (ct_ex_symbol(x, (ct_ex){x->stack[k]}))
+                    rank[x->node[x->stack[k]].a] = pass ? 2 : 0;
+        }
+    return rank;
+}
+
+static int rank(void *data, const struct ct_sym *s)
+{
+    const struct ct_derivation *d = data;
+    const size_t k = (size_t)(s - d->e->x->sym);
+    return k < d->nrank ? d->rank[k] : 1;
+}
+
 void ct_derivation_init(struct ct_derivation *d, struct ct_arena *a, struct ct_equations *e,
                         const struct ct_model *m, enum ct_look look)
 {
@@ -36,9 +64,12 @@ void ct_derivation_init(struct ct_derivation *d, struct ct_arena *a, struct ct_e
     d->print = (struct ct_print){
         .style = look == CT_LOOK_LATEX ? CT_PRINT_LATEX : CT_PRINT_TEXT,
         .symbol = symbol,
+        .rank = rank,
         .data = d,
         .fractions = true,
     };
+    d->nrank = e->x->nsym;
+    d->rank = rank_parameters(d);
 }
 
 const char *ct_derivation_text(struct ct_derivation *d, ct_ex v)
@@ -66,6 +97,13 @@ const char *ct_derivation_of(struct ct_derivation *d, const char *letter, const 
                                                : letter;
     return ct_arena_printf(d->a, "\\boldsymbol{%s}_{\\mathrm{%s}}", word,
                            ct_latex_quoted(d->a, name));
+}
+
+const char *ct_derivation_effort(struct ct_derivation *d, const char *coordinate)
+{
+    return ct_derivation_is_latex(d)
+               ? ct_arena_printf(d->a, "\\tau\\left(%s\\right)", ct_latex_name(d->a, coordinate))
+               : ct_arena_printf(d->a, "effort(%s)", coordinate);
 }
 
 const char *ct_derivation_vector(struct ct_derivation *d, ct_ex3 v)

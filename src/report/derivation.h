@@ -11,6 +11,8 @@ struct ct_derivation {
     const struct ct_model *m;
     struct ct_page page;
     struct ct_print print;         // for expressions, in the page's look
+    const int *rank;               // of the first nrank symbols: their order in products
+    size_t nrank;
 };
 
 void ct_derivation_init(struct ct_derivation *d, struct ct_arena *a, struct ct_equations *e,
@@ -24,6 +26,8 @@ const char *ct_derivation_collected(struct ct_derivation *d, ct_ex v);
 const char *ct_derivation_name(struct ct_derivation *d, const char *name);
 /// A vector or rotation of a component or frame: F(rod), or a bold letter with a subscript.
 const char *ct_derivation_of(struct ct_derivation *d, const char *letter, const char *name);
+/// The generalised force along a coordinate.
+const char *ct_derivation_effort(struct ct_derivation *d, const char *coordinate);
 /// Three components: [a, b, c], or 0.
 const char *ct_derivation_vector(struct ct_derivation *d, ct_ex3 v);
 /// A direction: x, -y, or [a, b, c].

@@ -57,6 +57,7 @@ struct writer {
     struct ct_derivation *d;
     struct names names;
     struct ct_print print;
+    bool *is_used; // by symbol
 };
 
 static const char *text(struct writer *w, ct_ex e)
@@ -64,35 +65,47 @@ static const char *text(struct writer *w, ct_ex e)
     return ct_ex_text(w->d->a, w->d->e->x, e, &w->print);
 }
 
+// Only what the results use is declared: the rest would warn.
+static void mark_used(struct writer *w, const struct ct_reduced *r)
+{
+    struct ct_exs *x = w->d->e->x;
+    const struct ct_equations *e = w->d->e;
+    const struct {
+        const ct_ex *at;
+        size_t n;
+    } part[] = {{r->M, e->nM}, {r->Q, e->nu}, {r->J, e->nJ}, {r->phi, e->nrow}, {r->gam, e->nrow}};
+    w->is_used = CT_NEWN(w->d->a, bool, x->nsym);
+    for (size_t i = 0; i < COUNT(part) + r->ndefinition; i++) {
+        const bool is_part = i < COUNT(part);
+        const size_t n = ct_ex_walk(x, is_part ? part[i].at : &r->definition[i - COUNT(part)].value,
+                                    is_part ? part[i].n : 1);
+        for (size_t k = 0; k < n; k++)
+            if (ct_ex_symbol(x, (ct_ex){x->stack[k]}))
+                w->is_used[x->node[x->stack[k]].a] = true;
+    }
+}
+
+static void put_symbol(struct writer *w, ct_ex e, const char *value)
+{
+    if (w->is_used[ct_ex_node(w->d->e->x, e)->a])
+        fprintf(w->out, "    const double %s = %s;\n", text(w, e), value);
+}
+
 static void put_known(struct writer *w)
 {
     const struct ct_model *m = w->d->m;
     const struct ct_equations *e = w->d->e;
-    if (m->nparameter)
-        fprintf(w->out, "    // parameters\n");
-    for (size_t i = 0; i < m->nparameter; i++)
-        fprintf(w->out, "    const double %s = %s;\n", text(w, m->parameter[i].symbol),
-                ct_number_c(w->d->a, m->parameter[i].value));
-    fprintf(w->out, "\n    // unknowns\n");
-    for (size_t i = 0; i < e->nq; i++)
-        fprintf(w->out, "    const double %s = q[%zu];\n", text(w, e->q[i].symbol), i);
-    for (size_t i = 0; i < e->nu; i++)
-        fprintf(w->out, "    const double %s = u[%zu];\n", text(w, e->u[i].symbol), i);
-}
-
-// What a model does not use must not warn.
-static void put_unused(struct writer *w)
-{
-    const struct ct_equations *e = w->d->e;
-    const struct ct_model *m = w->d->m;
+    struct ct_arena *a = w->d->a;
     fprintf(w->out, "    (void)t, (void)q, (void)u, (void)mode, (void)kept;\n");
     fprintf(w->out, "    (void)M, (void)Q, (void)J, (void)Phi, (void)gam;\n");
+    fprintf(w->out, "\n    // parameters\n");
     for (size_t i = 0; i < m->nparameter; i++)
-        fprintf(w->out, "    (void)%s;\n", text(w, m->parameter[i].symbol));
+        put_symbol(w, m->parameter[i].symbol, ct_number_c(a, m->parameter[i].value));
+    fprintf(w->out, "\n    // unknowns\n");
     for (size_t i = 0; i < e->nq; i++)
-        fprintf(w->out, "    (void)%s;\n", text(w, e->q[i].symbol));
+        put_symbol(w, e->q[i].symbol, ct_arena_printf(a, "q[%zu]", i));
     for (size_t i = 0; i < e->nu; i++)
-        fprintf(w->out, "    (void)%s;\n", text(w, e->u[i].symbol));
+        put_symbol(w, e->u[i].symbol, ct_arena_printf(a, "u[%zu]", i));
 }
 
 static void put_results(struct writer *w, const struct ct_reduced *r)
@@ -150,14 +163,13 @@ void ct_derivation_print_c(FILE *out, struct ct_derivation *d)
     ct_derivation_reduce(d, &r);
     w.names = (struct names){d, CT_NEWN(d->a, const char *, d->e->x->nsym), d->e->x->nsym};
     w.print = (struct ct_print){.style = CT_PRINT_C, .symbol = symbol, .data = &w.names, .limit = 1000000};
+    mark_used(&w, &r);
     put_head(&w, ct_c_name(d->a, d->m->name ? d->m->name : "model"));
     put_known(&w);
-    put_unused(&w);
     if (r.ndefinition)
         fprintf(out, "\n    // shared\n");
     for (size_t i = 0; i < r.ndefinition; i++)
-        fprintf(out, "    const double %s = %s;\n", text(&w, r.definition[i].symbol),
-                text(&w, r.definition[i].value));
+        put_symbol(&w, r.definition[i].symbol, text(&w, r.definition[i].value));
     put_results(&w, &r);
     fprintf(out, "}\n");
 }

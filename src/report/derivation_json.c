@@ -171,7 +171,7 @@ static void put_unknowns(struct writer *w, const struct ct_reduced *r)
     ct_json_end(&w->j);
 }
 
-static void put_known(struct writer *w)
+static void put_known(struct writer *w, const struct ct_reduced *r)
 {
     const struct ct_equations *e = w->d->e;
     ct_json_object(&w->j, "parameters");
@@ -181,6 +181,10 @@ static void put_known(struct writer *w)
     ct_json_object(&w->j, "driven");
     for (size_t i = 0; i < e->ndriver; i++)
         ct_json_text(&w->j, e->driver[i].name, text(w, e->driver[i].value));
+    ct_json_end(&w->j);
+    ct_json_object(&w->j, "efforts");
+    for (size_t i = 0; i < e->ndriver; i++)
+        ct_json_text(&w->j, e->driver[i].name, text(w, r->effort[i]));
     ct_json_end(&w->j);
     ct_json_object(&w->j, "modes"); // 1 where it holds
     for (size_t i = 0; i < e->nmode; i++)
@@ -196,7 +200,7 @@ static void put_reduced(struct writer *w)
     struct ct_reduced r;
     ct_derivation_reduce(w->d, &r);
     put_unknowns(w, &r);
-    put_known(w);
+    put_known(w, &r);
     ct_json_array(&w->j, "definitions");
     for (size_t i = 0; i < r.ndefinition; i++) {
         ct_json_array(&w->j, NULL);

@@ -75,7 +75,8 @@ static void put_name(FILE *out, const char *s, size_t n, size_t nprime)
     for (size_t i = 0; i < n; i++)
         dot = s[i] == '.' ? s + i : dot;
     // a part behind the last dot that is a quantity stands first
-    const bool is_quantity = dot && !bar && (dot[1] == 'q' || dot[1] == 'u' || dot[1] == 'a');
+    const bool is_quantity = dot && strchr("qua", dot[1])
+                             && strspn(dot + 2, "0123456789") == (size_t)(s + n - dot) - 2;
     const char *base = is_quantity ? dot + 1 : s;
     const char *end = s + n;
     size_t length = (size_t)(is_quantity ? end - base : bar && bar > s ? bar - s : (long)n);

@@ -19,8 +19,6 @@ static void put_words(FILE *out, const char *s)
             fputs(*s == '<' ? "\\textless{}" : "\\textgreater{}", out);
         else if (*s == '\\')
             fputs("\\textbackslash{}", out);
-        else if (*s == '\'')
-            fputs("\\textquotesingle{}", out);
         else
             fputc(*s, out);
     }
@@ -143,7 +141,7 @@ static void put_table(FILE *out, const struct ct_page_block *b)
 
 void ct_page_print_latex(FILE *out, const struct ct_page *p)
 {
-    fputs("% needs \\usepackage{amsmath,longtable,textcomp}\n", out);
+    fputs("% needs \\usepackage{amsmath,longtable}\n", out);
     for (size_t i = 0; i < p->nblock; i++) {
         const struct ct_page_block *b = &p->block[i];
         switch (b->kind) {

@@ -4,6 +4,7 @@
 #include "expr/collect.h"
 #include "base/sort.h"
 #include "expr/share.h"
+#include "formulate/dynamics.h"
 
 // Beyond this many nodes of an expanded expression nobody reads it as a formula of its own, and
 // collecting takes seconds.
@@ -41,27 +42,66 @@ static ct_ex collect(struct ct_equations *e, ct_ex v)
     return v;
 }
 
+// k (a + b) as k a + k b.
+static ct_ex spread(struct ct_equations *e, ct_ex k, ct_ex sum)
+{
+    struct ct_exs *x = e->x;
+    const struct ct_exnode n = *ct_ex_node(x, sum);
+    if (n.op == CT_OP_NEG)
+        return ct_ex_neg(x, spread(e, k, (ct_ex){n.a}));
+    if (n.op != CT_OP_ADD && n.op != CT_OP_SUB)
+        return ct_ex_mul(x, k, sum);
+    const ct_ex a = spread(e, k, (ct_ex){n.a}), b = spread(e, k, (ct_ex){n.b});
+    return n.op == CT_OP_ADD ? ct_ex_add(x, a, b) : ct_ex_sub(x, a, b);
+}
+
+// An equation keeps its terms apart where that costs little: -g*m1*l1*s1 - g*m2*l2*s2 rather than
+// -g*(m1*l1*s1 + m2*l2*s2).
+static ct_ex keep_apart(struct ct_equations *e, struct ct_arena *a, ct_ex v)
+{
+    struct ct_exs *x = e->x;
+    const struct ct_exnode n = *ct_ex_node(x, v);
+    if (n.op == CT_OP_NEG)
+        return ct_ex_neg(x, keep_apart(e, a, (ct_ex){n.a}));
+    if (n.op != CT_OP_MUL)
+        return v;
+    for (int i = 0; i < 2; i++) {
+        const ct_ex k = {i ? n.a : n.b}, sum = {i ? n.b : n.a};
+        const enum ct_op op = ct_ex_node(x, sum)->op;
+        const unsigned kinds = ct_ex_kinds(x, sum);
+        if ((op != CT_OP_ADD && op != CT_OP_SUB) || !(kinds & ~(1u << CT_SYM_PARAM)))
+            continue;
+        const ct_ex apart = spread(e, k, sum);
+        if (ct_ex_tree_size(x, a, apart) <= 1.3 * ct_ex_tree_size(x, a, v))
+            return apart;
+    }
+    return v;
+}
+
 // What is there at rest and what the speeds add, each collected: gravity stays apart from the
 // centrifugal terms, even if both share a factor.
 static ct_ex collect_force(struct ct_equations *e, struct ct_arena *a, ct_ex v)
 {
     struct ct_exs *x = e->x;
-    const ct_ex whole = collect(e, v);
+    const ct_ex whole = keep_apart(e, a, collect(e, v));
     if (!(ct_ex_kinds(x, v) & 1u << CT_SYM_U))
         return whole;
     ct_ex *from = CT_NEWN(a, ct_ex, e->nu), *zero = CT_NEWN(a, ct_ex, e->nu);
     for (size_t i = 0; i < e->nu; i++)
         from[i] = e->u[i].symbol;
-    const ct_ex still = collect(e, ct_ex_subst(x, v, from, zero, e->nu));
-    const ct_ex moving = collect(e, ct_ex_sub(x, v, still));
+    const ct_ex rest = collect(e, ct_ex_subst(x, v, from, zero, e->nu));
+    const ct_ex still = keep_apart(e, a, rest);
+    const ct_ex moving = keep_apart(e, a, collect(e, ct_ex_sub(x, v, rest)));
     const ct_ex apart = ct_ex_add(x, moving, still);
     const double size = ct_ex_tree_size(x, a, apart), least = ct_ex_tree_size(x, a, whole);
     return size <= 1.5 * least + 8 ? apart : whole;
 }
 
-static double size_of_all(struct ct_equations *e, struct ct_arena *a)
+static double size_of_all(struct ct_equations *e, struct ct_arena *a, const ct_ex *effort)
 {
     double size = 0;
+    for (size_t i = 0; i < e->ndriver; i++)
+        size += ct_ex_tree_size(e->x, a, effort[i]);
     for (size_t i = 0; i < e->nM; i++)
         size += ct_ex_tree_size(e->x, a, e->M[i].value);
     for (size_t i = 0; i < e->nJ; i++)
@@ -73,6 +113,18 @@ static double size_of_all(struct ct_equations *e, struct ct_arena *a)
     return size;
 }
 
+// Driven branch coordinates: their rows of the cutsets, less what the joint does by itself.
+static void find_efforts(struct ct_equations *e, ct_ex *effort)
+{
+    struct ct_build *b = e->build;
+    for (size_t i = 0; i < e->ncoordinate; i++) {
+        const struct ct_coordinate *c = &e->coordinate[i];
+        if (c->driver >= 0)
+            effort[c->driver] = ct_ex_sub(b->x, ct_sweep_driver(b, c->driver),
+                                          ct_joint_passive(b, (int)i));
+    }
+}
+
 void ct_reduced_prepare(struct ct_arena *a, struct ct_equations *e, bool may_collect,
                         struct ct_reduced *r)
 {
@@ -82,9 +134,11 @@ void ct_reduced_prepare(struct ct_arena *a, struct ct_equations *e, bool may_col
         .Q = CT_NEWN(a, ct_ex, e->nu + 1),
         .phi = CT_NEWN(a, ct_ex, e->nrow + 1),
         .gam = CT_NEWN(a, ct_ex, e->nrow + 1),
+        .effort = CT_NEWN(a, ct_ex, e->ndriver + 1),
         .rate = CT_NEWN(a, ct_ex, e->nq + 1),
     };
-    r->is_collected = may_collect && size_of_all(e, a) <= largest_collected;
+    find_efforts(e, r->effort);
+    r->is_collected = may_collect && size_of_all(e, a, r->effort) <= largest_collected;
     for (size_t i = 0; i < e->nM; i++)
         r->M[i] = r->is_collected ? collect(e, e->M[i].value) : e->M[i].value;
     for (size_t i = 0; i < e->nJ; i++)
@@ -95,6 +149,8 @@ void ct_reduced_prepare(struct ct_arena *a, struct ct_equations *e, bool may_col
         r->phi[i] = r->is_collected ? collect(e, e->row[i].phi) : e->row[i].phi;
         r->gam[i] = r->is_collected ? collect(e, e->row[i].gam) : e->row[i].gam;
     }
+    for (size_t i = 0; i < e->ndriver && r->is_collected; i++)
+        r->effort[i] = collect_force(e, a, r->effort[i]);
     for (size_t i = 0; i < e->nq; i++)
         r->rate[i] = collect(e, e->q[i].rate);
 }
@@ -107,7 +163,8 @@ static size_t list_all(const struct ct_equations *e, const struct ct_reduced *r,
     const struct {
         ct_ex *at;
         size_t n;
-    } part[] = {{r->M, e->nM}, {r->Q, e->nu}, {r->J, e->nJ}, {r->phi, e->nrow}, {r->gam, e->nrow}};
+    } part[] = {{r->M, e->nM}, {r->Q, e->nu}, {r->J, e->nJ}, {r->phi, e->nrow}, {r->gam, e->nrow},
+                {r->effort, e->ndriver}};
     size_t n = 0;
     for (size_t k = 0; k < COUNT(part); k++)
         for (size_t i = 0; i < part[k].n; i++, n++)

@@ -12,7 +12,7 @@ static size_t lines_of(const char *s)
 
 struct sides {
     ct_ex left, right;
-    const char *label, *note;
+    const char *label;
 };
 
 struct group {
@@ -20,10 +20,9 @@ struct group {
     size_t n, cap;
 };
 
-static void add(struct ct_derivation *d, struct group *g, const char *label, ct_ex left, ct_ex right,
-                const char *note)
+static void add(struct ct_derivation *d, struct group *g, const char *label, ct_ex left, ct_ex right)
 {
-    const struct sides s = {left, right, label, note};
+    const struct sides s = {left, right, label};
     CT_PUSH(d->a, g->at, g->n, g->cap, s);
 }
 
@@ -32,7 +31,7 @@ static void put_group(struct ct_derivation *d, const struct group *g)
     ct_page_equations(&d->page);
     for (size_t i = 0; i < g->n; i++)
         ct_page_equation(&d->page, g->at[i].label, ct_derivation_text(d, g->at[i].left),
-                         ct_derivation_text(d, g->at[i].right), g->at[i].note);
+                         ct_derivation_text(d, g->at[i].right), NULL);
 }
 
 static const char *speed_label(struct ct_derivation *d, size_t i)
@@ -66,22 +65,23 @@ static void put_definitions(struct ct_derivation *d, const struct ct_reduced *r)
 
 // ---- groups -----------------------------------------------------------------------------------
 
-enum { MOTION, CLOSURE, CLOSURE_RATE, KINEMATIC, NGROUP };
+enum { MOTION, CLOSURE, CLOSURE_RATE, EFFORT, KINEMATIC, NGROUP };
 
 static void fill(struct ct_derivation *d, const struct ct_reduced *r, struct group g[NGROUP])
 {
     struct ct_equations *e = d->e;
     for (size_t i = 0; i < e->nu; i++)
-        add(d, &g[MOTION], speed_label(d, i), ct_reduced_left(e, r, i), ct_reduced_right(e, r, i),
-            NULL);
+        add(d, &g[MOTION], speed_label(d, i), ct_reduced_left(e, r, i), ct_reduced_right(e, r, i));
     for (size_t i = 0; i < e->nrow; i++) {
-        add(d, &g[CLOSURE], e->row[i].name, r->phi[i], CT_EX_ZERO, NULL);
+        add(d, &g[CLOSURE], e->row[i].name, r->phi[i], CT_EX_ZERO);
         add(d, &g[CLOSURE_RATE], e->row[i].name, ct_reduced_row_left(e, r, i),
-            ct_ex_neg(e->x, r->gam[i]), NULL);
+            ct_ex_neg(e->x, r->gam[i]));
     }
+    for (size_t i = 0; i < e->ndriver; i++)
+        add(d, &g[EFFORT], e->driver[i].name, r->effort[i], CT_EX_ZERO);
     for (size_t i = 0; i < e->nq; i++)
         if (e->q[i].quaternion >= 0)
-            add(d, &g[KINEMATIC], NULL, e->q[i].symbol, r->rate[i], NULL);
+            add(d, &g[KINEMATIC], NULL, e->q[i].symbol, r->rate[i]);
 }
 
 static void put_kinematic(struct ct_derivation *d, const struct group *g)
@@ -93,6 +93,35 @@ static void put_kinematic(struct ct_derivation *d, const struct group *g)
         ct_page_equation(&d->page, NULL, ct_derivation_name(d, name),
                          ct_derivation_text(d, g->at[i].right), NULL);
     }
+}
+
+static void put_efforts(struct ct_derivation *d, const struct group *g)
+{
+    ct_page_heading(&d->page, "efforts of the drivers");
+    ct_page_equations(&d->page);
+    for (size_t i = 0; i < g->n; i++)
+        ct_page_equation(&d->page, NULL, ct_derivation_effort(d, g->at[i].label),
+                         ct_derivation_text(d, g->at[i].left), NULL);
+}
+
+// Symbols that stand for what changes at events, or from one step to the next.
+static void put_held(struct ct_derivation *d)
+{
+    const struct ct_equations *e = d->e;
+    if (e->nmode) {
+        ct_page_heading(&d->page, "held between events: 1 where it holds, else 0");
+        ct_page_equations(&d->page);
+    }
+    for (size_t i = 0; i < e->nmode; i++) {
+        const struct ct_mode *m = &e->mode[i];
+        const ct_ex holds = ct_ex_fun2(e->x, m->op, m->g, CT_EX_ZERO);
+        ct_page_equation(&d->page, NULL, ct_derivation_text(d, m->symbol),
+                         ct_derivation_text(d, holds), NULL);
+    }
+    for (size_t i = 0; i < e->nmemory; i++)
+        ct_page_sentence(&d->page, "%s: %s", ct_ex_symbol(e->x, e->memory[i].symbol)->name,
+                         e->memory[i].kind == CT_MEMORY_OFFSET ? "constant, from the assembled start"
+                                                               : "value at the last step");
 }
 
 static const char *count(struct ct_derivation *d, size_t n, const char *one, const char *many)
@@ -146,6 +175,9 @@ void ct_stage_reduced(struct ct_derivation *d)
         ct_page_heading(&d->page, "constraints, differentiated twice: J u' = -gam");
         put_group(d, &g[CLOSURE_RATE]);
     }
+    if (g[EFFORT].n)
+        put_efforts(d, &g[EFFORT]);
+    put_held(d);
     if (g[KINEMATIC].n)
         put_kinematic(d, &g[KINEMATIC]);
 }

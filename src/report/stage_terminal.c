@@ -188,9 +188,7 @@ static void put_effort(struct ct_derivation *d, const struct ct_edge_info *e, in
     const char *along = turns ? speed : name;
     if (!ct_ex_is_zero(f))
         ct_page_equation(&d->page, NULL,
-                         ct_derivation_is_latex(d)
-                             ? ct_arena_printf(d->a, "\\tau(%s)", ct_derivation_name(d, along))
-                             : ct_arena_printf(d->a, "effort(%s)", along),
+                         ct_derivation_effort(d, along),
                          ct_derivation_text(d, f), NULL);
 }
 
