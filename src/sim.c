@@ -152,10 +152,13 @@ static bool choose_method(struct ct_sim *sim, const char *option)
         return true;
     if (strcmp(name, "auto") != 0)
         return no_method(sim, name, option != NULL);
-    const bool high = o->step == 0 && o->rtol < high_order_below;
+    // Where loops pass near singular positions, long steps of high order lose the branch they are on.
+    const bool is_open = sim->system->equations.nrow == 0;
+    const bool high = o->step == 0 && is_open && o->rtol < high_order_below;
     o->method = ct_method_find(high ? "dop853" : "dopri5");
     sim->method_why = o->step > 0 ? "automatic: a fixed step"
-                    : high        ? "automatic: a tight tolerance"
+                    : !is_open    ? "automatic: closed loops"
+                    : high        ? "automatic: no loops, a tight tolerance"
                                   : "automatic: a moderate tolerance";
     return true;
 }

@@ -16,11 +16,9 @@ static bool run_dot(FILE *source, int out)
         _exit(127);
     }
     int status = -1;
-    if (child < 0 || waitpid(child, &status, 0) != child || !WIFEXITED(status))
-        status = -1;
-    if (status == 0)
+    if (child >= 0 && waitpid(child, &status, 0) == child && status == 0)
         return true;
-    fputs(status != -1 && WEXITSTATUS(status) == 127
+    fputs(status != -1 && WIFEXITED(status) && WEXITSTATUS(status) == 127
               ? "cotree: error: svg is drawn by Graphviz, whose program 'dot' is not there; "
                 "--format dot prints what it reads\n"
               : "cotree: error: Graphviz ('dot') failed\n",
