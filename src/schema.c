@@ -156,9 +156,13 @@ static void write_required(struct ct_json *j, const struct ct_key *key, int n)
             text(j, NULL, key[i].name);
 }
 
+// Couplings of joints have neither frames nor the keys that joints share.
 static bool has_frames(const struct ct_component_class *c)
 {
-    return c->family == CT_FAMILY_JOINT && strcmp(c->name, "gear") != 0;
+    for (int i = 0; i < c->nkey; i++)
+        if (c->key[i].kind == CT_VALUE_JOINTS)
+            return false;
+    return true;
 }
 
 static void write_class(struct ct_json *j, const struct ct_component_class *c)
