@@ -13,11 +13,11 @@ struct ct_run {
     struct ct_machine *m;
     struct ct_embed *s;
     size_t ny;
-    double *y, *dy, *scratch, *value;
-    double *sign;       // of each state mode's root function at the last event
-    double *event;      // times
+    double *y, *dy, *stage, *scratch, *value;
+    double *sign;  // of each state mode's root function at the last event
+    double *event; // times
     size_t nevent;
-    int *root_of;       // state modes, in order
+    int *root_of; // state modes, in order
     int nroot;
     bool needs_lam, has_power;
     const struct ct_run_options *o;
@@ -48,9 +48,20 @@ static void multipliers(struct ct_run *r)
     memcpy(r->m->input + r->m->at_lam, r->s->lam, r->m->nrow * sizeof *r->s->lam);
 }
 
+// Stages of a step lie off the manifold by more than its steps do. Beside a singular position that
+// little is divided by a small pivot, so there the stage is put onto the manifold first.
+static const double singular_pivot = 0.1;
+
 static enum ct_eval rhs(void *user, double t, const double *y, double *dy)
 {
     struct ct_run *r = user;
+    if (r->s->rank && r->s->sigma < singular_pivot) {
+        memcpy(r->stage, y, r->ny * sizeof *y);
+        const enum ct_eval p = ct_embed_project(r->s, t, r->stage);
+        if (p != CT_EVAL_OK)
+            return p;
+        y = r->stage;
+    }
     const enum ct_eval e = accelerate(r, t, y);
     if (e != CT_EVAL_OK)
         return e;
@@ -118,11 +129,13 @@ static double largest_jump(const struct ct_run *r, const double *before, int whi
 {
     double jump = 0;
     for (size_t i = 0; i < r->e->ndriver; i++)
-        jump = fmax(jump, fabs(r->m->driver.out[2 * i + (size_t)which] - before[2 * i + (size_t)which]));
+        jump = fmax(jump, fabs(r->m->driver.out[2 * i + (size_t)which]
+                               - before[2 * i + (size_t)which]));
     return jump;
 }
 
-static const double jump_tolerance = 1e-9; // of a driver's value or rate, beside rounding [rad, m, 1/s]
+static const double jump_tolerance
+    = 1e-9; // of a driver's value or rate, beside rounding [rad, m, 1/s]
 
 // Driven values after a change of modes; impulse or not, the speeds must fit the new rates.  (8.5)
 static enum ct_eval apply_jump(struct ct_run *r, double t, double *y, const double *before,
@@ -134,9 +147,10 @@ static enum ct_eval apply_jump(struct ct_run *r, double t, double *y, const doub
     for (size_t i = 0; i < r->e->ndriver; i++)
         if (fabs(m->driver.out[2 * i] - before[2 * i])
             > jump_tolerance * fmax(1, fabs(before[2 * i]))) {
-            ct_error(r->ctx, r->e->driver[i].mark, CT_E_DRIVER_JUMP,
-                     "the motion '%s' jumps by %.6g at t = %.9g: a place cannot change in no time",
-                     r->e->driver[i].name, m->driver.out[2 * i] - before[2 * i], t);
+            ct_error(
+                r->ctx, r->e->driver[i].mark, CT_E_DRIVER_JUMP,
+                "the motion '%s' jumps by %.6g at t = %.9g: a place cannot change in no time",
+                r->e->driver[i].name, m->driver.out[2 * i] - before[2 * i], t);
             return CT_EVAL_FATAL;
         }
     ct_machine_constraint(m);
@@ -156,7 +170,8 @@ static enum ct_eval apply_jump(struct ct_run *r, double t, double *y, const doub
     return ct_embed_impulse(r->s, p, u);
 }
 
-static enum ct_eval event(void *user, double t, double *y, const signed char *crossed, bool is_time)
+static enum ct_eval event(void *user, double t, double *y, const signed char *crossed,
+                          bool is_time)
 {
     struct ct_run *r = user;
     struct ct_machine *m = r->m;
@@ -177,8 +192,7 @@ static enum ct_eval event(void *user, double t, double *y, const signed char *cr
     ct_modes_start(m, t, y, r->dy);
     for (int i = 0; i < r->nroot; i++)
         if (crossed[i])
-            mode[r->root_of[i]]
-                = ct_op_apply(r->e->mode[r->root_of[i]].op, crossed[i], 0, 0);
+            mode[r->root_of[i]] = ct_op_apply(r->e->mode[r->root_of[i]].op, crossed[i], 0, 0);
     e = apply_jump(r, t, y, before, momentum);
     if (e != CT_EVAL_OK)
         return e;
@@ -204,8 +218,9 @@ static void find_needs(struct ct_run *r)
             r->root_of[r->nroot++] = (int)i;
 }
 
-struct ct_run *ct_run_create(struct ct_ctx *ctx, struct ct_arena *a, const struct ct_model *model,
-                             const struct ct_equations *e, const struct ct_start *start)
+struct ct_run *ct_run_create(struct ct_ctx *ctx, struct ct_arena *a,
+                             const struct ct_model *model, const struct ct_equations *e,
+                             const struct ct_start *start)
 {
     struct ct_run *r = CT_NEW(a, struct ct_run);
     *r = (struct ct_run){.ctx = ctx, .arena = a, .model = model, .e = e};
@@ -214,6 +229,7 @@ struct ct_run *ct_run_create(struct ct_ctx *ctx, struct ct_arena *a, const struc
     r->ny = r->m->nq + r->m->nu + 1;
     r->y = CT_NEWN(a, double, r->ny);
     r->dy = CT_NEWN(a, double, r->ny);
+    r->stage = CT_NEWN(a, double, r->ny);
     r->scratch = CT_NEWN(a, double, 2 * r->m->nu + 2 * e->ndriver + 1);
     r->value = CT_NEWN(a, double, e->nresult + 1);
     find_needs(r);
@@ -284,8 +300,7 @@ static void keep_ledger(struct ct_run *r, const double *y)
     r->started = true;
     r->energy_scale = fmax(r->energy_scale, fmax(fabs(kinetic), fabs(potential)));
     if (r->energy_scale > 0)
-        r->report->energy_drift
-            = fmax(r->report->energy_drift, fabs(total - r->energy0));
+        r->report->energy_drift = fmax(r->report->energy_drift, fabs(total - r->energy0));
     ct_machine_constraint(r->m);
     r->report->position_constraint
         = fmax(r->report->position_constraint, largest(r->m->phi, r->m->nrow));
@@ -330,7 +345,7 @@ static void compare_results(struct ct_run *r, const double *z, double *value, bo
     ct_program_run(&r->m->result, r->m->input);
     for (size_t i = 0; i < r->e->nresult; i++)
         result[i] |= fabs(r->m->result.out[i] - value[i])
-                     > change_tolerance * fmax(largest_lam, fabs(value[i]));
+                   > change_tolerance * fmax(largest_lam, fabs(value[i]));
     for (size_t i = 0; i < r->m->nrow; i++)
         lam[i] = r->s->lam[i];
 }
@@ -352,13 +367,15 @@ void ct_run_find_open(struct ct_run *r, double t, const double *y, bool *row, bo
     }
 }
 
-bool ct_run_simulate(struct ct_run *r, const struct ct_run_options *o, struct ct_run_report *report)
+bool ct_run_simulate(struct ct_run *r, const struct ct_run_options *o,
+                     struct ct_run_report *report)
 {
     const size_t n = o->nsample;
     double *sample = CT_NEWN(r->arena, double, n + 1);
     bool *watched = CT_NEWN(r->arena, bool, r->ny);
     for (size_t i = 0; i < n; i++)
-        sample[i] = n == 1 || i + 1 == n ? o->duration : o->duration * (double)i / (double)(n - 1);
+        sample[i]
+            = n == 1 || i + 1 == n ? o->duration : o->duration * (double)i / (double)(n - 1);
     if (n == 1)
         sample[0] = 0;
     for (size_t i = 0; i < r->ny; i++)

@@ -19,18 +19,19 @@ struct ct_run_options {
 
 struct ct_run_report {
     struct ct_integrate_stats stats;
-    double energy_drift;        // largest |total - total(0)| / scale of the energies
+    double energy_drift; // largest |total - total(0)| / scale of the energies
     double position_constraint, velocity_constraint; // largest residuals at samples
     int rank;
     long switches;
     long factorizations;
-    double *final;              // last row
-    double *y;                  // last state: q, u, work
+    double *final; // last row
+    double *y;     // last state: q, u, work
 };
 
 /// Machine, embedding and state at t = 0, assembled; choices made and modes set. NULL with a diagnostic on failure.
-struct ct_run *ct_run_create(struct ct_ctx *ctx, struct ct_arena *a, const struct ct_model *model,
-                             const struct ct_equations *e, const struct ct_start *start);
+struct ct_run *ct_run_create(struct ct_ctx *ctx, struct ct_arena *a,
+                             const struct ct_model *model, const struct ct_equations *e,
+                             const struct ct_start *start);
 struct ct_machine *ct_run_machine(struct ct_run *r);
 struct ct_embed *ct_run_embed(struct ct_run *r);
 /// State at the start: q, u, work.
@@ -43,6 +44,7 @@ enum ct_eval ct_run_results(struct ct_run *r, double t, const double *y, double 
 void ct_run_find_open(struct ct_run *r, double t, const double *y, bool *row, bool *result);
 
 /// Integrate over the duration.
-bool ct_run_simulate(struct ct_run *r, const struct ct_run_options *o, struct ct_run_report *report);
+bool ct_run_simulate(struct ct_run *r, const struct ct_run_options *o,
+                     struct ct_run_report *report);
 
 #endif
