@@ -354,21 +354,40 @@ static bool at_step(void *user, double t, const double *y)
     return !r->o->progress || r->o->progress(r->o->user, t, r->o->duration);
 }
 
-// Names of the rows whose multipliers are not unique.
-static void name_undetermined(struct ct_run *r, struct ct_run_report *report)
+// Results along one vector z of null(J'): those that change depend on the choice of multipliers.
+static void compare_results(struct ct_run *r, const double *z, double *value, bool *result)
 {
-    if (r->s->rank == (int)r->m->nrow)
+    const double change_tolerance = 1e-9; // of a result against its size; z is of order one
+    double *lam = r->m->input + r->m->at_lam, largest_lam = 1;
+    for (size_t i = 0; i < r->m->nrow; i++)
+        largest_lam = fmax(largest_lam, fabs(lam[i]));
+    ct_program_run(&r->m->result, r->m->input);
+    memcpy(value, r->m->result.out, r->e->nresult * sizeof *value);
+    for (size_t i = 0; i < r->m->nrow; i++)
+        lam[i] += largest_lam * z[i];
+    ct_program_run(&r->m->result, r->m->input);
+    for (size_t i = 0; i < r->e->nresult; i++)
+        result[i] |= fabs(r->m->result.out[i] - value[i])
+                   > change_tolerance * fmax(largest_lam, fabs(value[i]));
+    for (size_t i = 0; i < r->m->nrow; i++)
+        lam[i] = r->s->lam[i];
+}
+
+void ct_run_find_open(struct ct_run *r, double t, const double *y, bool *row, bool *result)
+{
+    if (r->s->rank == (int)r->m->nrow || accelerate(r, t, y) != CT_EVAL_OK)
         return;
-    ct_machine_set(r->m, 0, r->y);
+    multipliers(r);
     ct_machine_constraint(r->m);
     ct_embed_uniqueness(r->s);
-    const char **name = CT_NEWN(r->arena, const char *, r->m->nrow);
-    size_t n = 0;
-    for (size_t i = 0; i < r->m->nrow; i++)
-        if (!r->s->is_unique[i])
-            name[n++] = r->e->row[i].name;
-    report->undetermined = name;
-    report->nundetermined = n;
+    double *z = CT_NEWN(r->arena, double, r->m->nrow);
+    for (size_t i = 0; i < r->m->nrow; i++) {
+        if (r->s->is_unique[i])
+            continue;
+        row[i] = true;
+        ct_embed_null_vector(r->s, (int)i, z);
+        compare_results(r, z, r->value, result);
+    }
 }
 
 bool ct_run_simulate(struct ct_run *r, const struct ct_run_options *o,
@@ -391,7 +410,6 @@ bool ct_run_simulate(struct ct_run *r, const struct ct_run_options *o,
     r->report = report;
     r->nevent = ct_time_events(r->arena, r->m, 0, o->duration, &r->event);
     ct_modes_start(r->m, 0, r->y, r->dy);
-    name_undetermined(r, report);
     const struct ct_problem p = {.user = r,
                                  .ny = (int)r->ny,
                                  .watched = watched,
@@ -414,6 +432,8 @@ bool ct_run_simulate(struct ct_run *r, const struct ct_run_options *o,
     const bool ok = ct_integrate(r->ctx, o->method, &p, &io, r->y, &report->stats);
     report->rank = r->s->rank;
     report->switches = r->s->switches;
+    report->factorizations = r->s->factorizations + report->stats.factorizations;
+    report->y = r->y;
     if (r->energy_scale > 0)
         report->energy_drift /= r->energy_scale;
     return ok;
