@@ -28,8 +28,8 @@ struct mechanism {
     const char *body[MOST_LINES];
     struct joint_line joint[MOST_LINES];
     const char *force[MOST_LINES];
-    bool is_driven;    // has motion drivers
-    bool is_planar;    // shall be recognised as planar
+    bool is_driven;       // has motion drivers
+    bool is_planar;       // shall be recognised as planar
     bool is_irreversible; // a joint swapped is another mechanism
 };
 
@@ -43,8 +43,8 @@ extern const size_t nmechanism;
 
 /// Model text. move: may be NULL; reversed: bit set of joints with from and to exchanged; shuffle: lines in
 /// random order.
-const char *mechanism_text(struct ct_arena *a, const struct mechanism *m, const struct rigid_motion *move,
-                           unsigned reversed, bool shuffle);
+const char *mechanism_text(struct ct_arena *a, const struct mechanism *m,
+                           const struct rigid_motion *move, unsigned reversed, bool shuffle);
 /// Rot(axis, angle) v for a unit vector axis.
 void rigid_turn(const struct rigid_motion *move, const double v[3], double out[3]);
 

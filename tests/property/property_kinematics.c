@@ -7,7 +7,8 @@
 // rows grow with lengths and speeds of a few.
 static const double step = 1e-5, tolerance = 2e-7;
 
-static void constraints_at(struct variant *v, double t, const double *y, double *phi, double *rate)
+static void constraints_at(struct variant *v, double t, const double *y, double *phi,
+                           double *rate)
 {
     ct_machine_set(v->m, t, y);
     ct_machine_constraint(v->m);
@@ -20,7 +21,8 @@ struct difference {
 };
 
 // Constraints at both ends of a small motion: q moves along d, time by dt.
-static void differences(struct variant *v, double t, const double *d, double dt, struct difference *out)
+static void differences(struct variant *v, double t, const double *d, double dt,
+                        struct difference *out)
 {
     struct ct_machine *m = v->m;
     double *small = CT_NEWN(v->arena, double, m->nu + 1);
@@ -44,7 +46,7 @@ static bool is_measured(const struct ct_row *row)
 static void keep_to_rows(struct variant *v, const double *J, double *d)
 {
     const size_t n = v->m->nu, r = v->m->nrow, most = n > r ? n : r;
-    double *A = CT_NEWN(v->arena, double, r * n + 1), *b = CT_NEWN(v->arena, double, most + 1);
+    double *A = CT_NEWN(v->arena, double, r *n + 1), *b = CT_NEWN(v->arena, double, most + 1);
     double *work = CT_NEWN(v->arena, double, ct_lstsq_work((int)r, (int)n) + 1);
     int *iwork = CT_NEWN(v->arena, int, most + 1);
     int m = 0;
@@ -80,8 +82,8 @@ static bool measured_rows_agree(struct system *s, struct variant *v, double t, c
             for (size_t k = 0; k < n; k++)
                 along += J[i + r * k] * d[k];
             ok &= !is_measured(&v->e.row[i])
-                  || agree(s->name, text_of(v->arena, "J of '%s'", v->e.row[i].name), along,
-                           (x->phi[1][i] - x->phi[0][i]) / (2 * step), 1, tolerance);
+               || agree(s->name, text_of(v->arena, "J of '%s'", v->e.row[i].name), along,
+                        (x->phi[1][i] - x->phi[0][i]) / (2 * step), 1, tolerance);
         }
     }
     return ok;
@@ -93,7 +95,7 @@ static bool rows_agree(struct system *s, struct variant *v, double t, bool on_ro
     const size_t n = m->nu, r = m->nrow;
     bool ok = true;
     double *d = CT_NEWN(v->arena, double, n + 1), *u = v->y + m->nq;
-    double *J = CT_NEWN(v->arena, double, r * n + 1), *gam = CT_NEWN(v->arena, double, r + 1),
+    double *J = CT_NEWN(v->arena, double, r *n + 1), *gam = CT_NEWN(v->arena, double, r + 1),
            *rate = CT_NEWN(v->arena, double, r + 1);
     memcpy(J, m->J, r * n * sizeof *J);
     memcpy(gam, m->gam, r * sizeof *gam);
@@ -109,7 +111,8 @@ static bool rows_agree(struct system *s, struct variant *v, double t, bool on_ro
         differences(v, t, d, 0, &x);
         for (size_t i = 0; i < r; i++)
             ok &= is_measured(&v->e.row[i])
-                  || agree(s->name, text_of(v->arena, "J of '%s' by %s", v->e.row[i].name, v->e.u[k].name),
+               || agree(s->name,
+                        text_of(v->arena, "J of '%s' by %s", v->e.row[i].name, v->e.u[k].name),
                         J[i + r * k], (x.phi[1][i] - x.phi[0][i]) / (2 * step), 1, tolerance);
     }
     if (on_rows)
@@ -208,11 +211,13 @@ static void rows_of_every_joint_agree_with_differences(void **state)
     bool ok = true;
     chance_start();
     for (size_t i = 0; i < nmechanism; i++)
-        for (unsigned reversed = 0; reversed < (mechanisms[i].is_irreversible ? 1u : 2u); reversed++) {
+        for (unsigned reversed = 0; reversed < (mechanisms[i].is_irreversible ? 1u : 2u);
+             reversed++) {
             struct system s;
             struct ct_arena *a = ct_arena_create();
-            system_open_text(&s, text_of(a, "%s%s", mechanisms[i].name, reversed ? ", reversed" : ""),
-                             mechanism_text(a, &mechanisms[i], NULL, reversed * 0xff, false));
+            system_open_text(
+                &s, text_of(a, "%s%s", mechanisms[i].name, reversed ? ", reversed" : ""),
+                mechanism_text(a, &mechanisms[i], NULL, reversed * 0xff, false));
             ok &= system_agrees(&s);
             system_close(&s);
             ct_arena_destroy(a);

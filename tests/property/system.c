@@ -3,19 +3,27 @@
 
 #include <stdarg.h>
 
-const char *const shipped[]
-    = {"systems/andrews/model.yaml",          "systems/bricard/model.yaml",
-       "systems/cart_pole/model.yaml",        "systems/chain40/model.yaml",
-       "systems/double_pendulum/model.yaml",  "systems/four_bar/model.yaml",
-       "systems/four_bar_near_singular/model.yaml",
-       "systems/gimbal_top/model.yaml",       "systems/governor/model.yaml",
-       "systems/heavy_top/model.yaml",        "systems/light_cart/model.yaml",
-       "systems/n_four_bar/model.yaml",       "systems/pendulum/model.yaml",
-       "systems/puma560/model.yaml",          "systems/puma560_driven/model.yaml",
-       "systems/slider_crank/model.yaml",     "systems/spatial_four_bar/model.yaml",
-       "systems/spatial_slider_crank/model.yaml",
-       "systems/stewart/model.yaml",          "systems/stiff_spring_pendulum/model.yaml",
-       "systems/tumbling_body/model.yaml"};
+const char *const shipped[] = {"systems/andrews/model.yaml",
+                               "systems/bricard/model.yaml",
+                               "systems/cart_pole/model.yaml",
+                               "systems/chain40/model.yaml",
+                               "systems/double_pendulum/model.yaml",
+                               "systems/four_bar/model.yaml",
+                               "systems/four_bar_near_singular/model.yaml",
+                               "systems/gimbal_top/model.yaml",
+                               "systems/governor/model.yaml",
+                               "systems/heavy_top/model.yaml",
+                               "systems/light_cart/model.yaml",
+                               "systems/n_four_bar/model.yaml",
+                               "systems/pendulum/model.yaml",
+                               "systems/puma560/model.yaml",
+                               "systems/puma560_driven/model.yaml",
+                               "systems/slider_crank/model.yaml",
+                               "systems/spatial_four_bar/model.yaml",
+                               "systems/spatial_slider_crank/model.yaml",
+                               "systems/stewart/model.yaml",
+                               "systems/stiff_spring_pendulum/model.yaml",
+                               "systems/tumbling_body/model.yaml"};
 const size_t nshipped = COUNT(shipped);
 
 const struct ct_formulate_options by_joints
@@ -50,12 +58,13 @@ int chance_of(int n)
     return (int)floor((chance() + 1) / 2 * n);
 }
 
-bool agree(const char *system, const char *what, double got, double want, double scale, double tol)
+bool agree(const char *system, const char *what, double got, double want, double scale,
+           double tol)
 {
     if (fabs(got - want) <= tol * scale) // false for NaN
         return true;
-    print_error("%s: %s: got %.17g, wanted %.17g, difference %.3g of %.3g\n", system, what, got, want,
-                got - want, scale);
+    print_error("%s: %s: got %.17g, wanted %.17g, difference %.3g of %.3g\n", system, what, got,
+                want, got - want, scale);
     return false;
 }
 
@@ -114,7 +123,8 @@ void system_open_file(struct system *s, const char *file)
 bool system_try_text(struct system *s, const char *name, const char *text)
 {
     start(s, name);
-    return ct_model_parse(&s->ctx, name, text, strlen(text), NULL, 0, &s->model) && assemble(s, false);
+    return ct_model_parse(&s->ctx, name, text, strlen(text), NULL, 0, &s->model)
+        && assemble(s, false);
 }
 
 void system_open_text(struct system *s, const char *name, const char *text)
@@ -154,9 +164,12 @@ void system_output_motion(struct system *s)
     struct ct_arena *a = s->ctx.model;
     for (size_t i = 1; i < s->model.nbody; i++) {
         const char *name = s->model.body[i].instance.name;
+        system_output(s, text_of(a, "%s.position", name));
+        system_output(s, text_of(a, "%s.velocity", name));
         system_output(s, text_of(a, "%s.acceleration", name));
-        if (!s->model.body[i].is_particle)
-            system_output(s, text_of(a, "%s.angular_acceleration", name));
+        system_output(s, text_of(a, "%s.rotation", name));
+        system_output(s, text_of(a, "%s.angular_velocity", name));
+        system_output(s, text_of(a, "%s.angular_acceleration", name));
     }
     for (size_t i = 0; i < s->model.njoint; i++)
         if (s->model.joint[i].from >= 0 && s->model.joint[i].nfree > 0) {
@@ -180,38 +193,62 @@ void system_output_reactions(struct system *s)
     }
 }
 
-// Best of the tries that bring the constraints to rounding with well conditioned loops.
-bool system_random_state(struct system *s, double t, double amplitude, struct ct_start *out)
+static bool meets_rows(const struct ct_machine *m)
+{
+    for (size_t i = 0; i < m->nrow; i++)
+        if (!(fabs(m->phi[i]) < 1e-11 && fabs(m->v[i]) < 1e-10))
+            return false;
+    return true;
+}
+
+// One small step that the rows allow to first order, then onto them.
+static bool wander(struct system *s, double t, double amplitude, const double *wish, double *y)
 {
     struct ct_machine *m = s->machine;
-    const size_t n = m->nq + m->nu + 1;
-    double *y = CT_NEWN(s->ctx.scratch, double, n), *d = CT_NEWN(s->ctx.scratch, double, m->nu + 1);
-    double *memory = CT_NEWN(s->ctx.scratch, double, s->assembly.nmemory + 1);
-    memcpy(memory, m->input + m->at_memory, s->assembly.nmemory * sizeof *memory);
+    double *d = y + m->nq; // speeds are projected, so they serve as the direction
+    for (size_t k = 0; k < m->nu; k++)
+        d[k] = wish[k];
+    if (ct_embed_project(s->embed, t, y) != CT_EVAL_OK)
+        return false;
+    double *step = CT_NEWN(s->ctx.scratch, double, m->nu + 1);
+    for (size_t k = 0; k < m->nu; k++)
+        step[k] = amplitude * d[k];
+    ct_machine_retract(m, y, step);
+    if (ct_embed_project(s->embed, t, y) != CT_EVAL_OK)
+        return false;
+    ct_memory_follow(m);
+    return meets_rows(m);
+}
+
+bool system_random_state(struct system *s, double t, double amplitude, struct ct_start *out)
+{
+    enum { STEPS = 5 };
+    struct ct_machine *m = s->machine;
+    const size_t n = m->nq + m->nu + 1, nmemory = s->assembly.nmemory;
+    double *y = CT_NEWN(s->ctx.scratch, double, n),
+           *wish = CT_NEWN(s->ctx.scratch, double, m->nu + 1);
+    double *memory = CT_NEWN(s->ctx.scratch, double, nmemory + 1);
+    memcpy(memory, m->input + m->at_memory, nmemory * sizeof *memory);
     bool ok = false;
     for (int try = 0; try < 12 && !ok; try++, amplitude *= 0.7) {
+        memcpy(m->input + m->at_memory, memory, nmemory * sizeof *memory);
         memcpy(y, s->y, n * sizeof *y);
-        for (size_t k = 0; k < m->nu; k++) {
-            d[k] = amplitude * chance();
-            y[m->nq + k] = 2 * chance();
-        }
-        ct_machine_retract(m, y, d);
+        for (size_t k = 0; k < m->nu; k++)
+            wish[k] = chance();
         ct_machine_set(m, t, y);
         ct_modes_start(m, t, y, NULL);
         ct_machine_constraint(m);
         ct_machine_motion(m);
-        if (!ct_embed_choose(s->embed))
-{ if (getenv("DBG")) ct_ctx_print(&s->ctx,stderr);            continue;}
-        ok = ct_embed_project(s->embed, t, y) == CT_EVAL_OK;
-        if (getenv("DBG")) print_message("project %d kappa %g rank %d\n", ok, s->embed->kappa, s->embed->rank);
-        ct_machine_set(m, t, y);
-        ct_machine_constraint(m);
-        for (size_t i = 0; i < m->nrow; i++)
-            ok = ok && fabs(m->phi[i]) < 1e-11 && fabs(m->v[i]) < 1e-10;
-if (getenv("DBG")) {double w=0,z=0; for (size_t i=0;i<m->nrow;i++){w=fmax(w,fabs(m->phi[i]));z=fmax(z,fabs(m->v[i]));} print_message("phi %g v %g\n",w,z);}
-        ok = ok && (!s->embed->rank || s->embed->kappa < 30);
+        ok = ct_embed_choose(s->embed);
+        for (int k = 0; k < STEPS && ok; k++)
+            ok = wander(s, t, amplitude / STEPS, wish, y);
+        for (size_t k = 0; k < m->nu; k++)
+            y[m->nq + k] = 2 * chance();
+        ok = ok && ct_embed_project(s->embed, t, y) == CT_EVAL_OK && meets_rows(m)
+          && (!s->embed->rank || s->embed->kappa < 30);
     }
     s->ctx.nerror = s->ctx.ndiagnostic = 0;
+    ct_machine_set(m, t, y);
     ct_memory_follow(m);
     ct_program_run(&m->result, m->input);
     out->n = s->assembly.ncoordinate;
@@ -221,7 +258,7 @@ if (getenv("DBG")) {double w=0,z=0; for (size_t i=0;i<m->nrow;i++){w=fmax(w,fabs
         out->q[i] = m->result.out[2 * i];
         out->u[i] = m->result.out[2 * i + 1];
     }
-    memcpy(m->input + m->at_memory, memory, s->assembly.nmemory * sizeof *memory);
+    memcpy(m->input + m->at_memory, memory, nmemory * sizeof *memory);
     return ok;
 }
 

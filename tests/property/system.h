@@ -24,7 +24,7 @@ struct system {
     struct ct_start start;        // assembled at t = 0
     struct ct_machine *machine;   // of assembly
     struct ct_embed *embed;
-    double *y;                    // of machine, assembled
+    double *y; // of machine, assembled
 };
 
 struct variant {
@@ -55,7 +55,7 @@ extern const size_t nshipped;
 /// Replace the outputs by one signal more.
 void system_output(struct system *s, const char *signal);
 void system_no_outputs(struct system *s);
-/// Outputs of every body (acceleration, angular acceleration) and every joint (coordinates of all kinds).
+/// Outputs of every body (place, axes, their rates and accelerations) and every joint (coordinates of all kinds).
 void system_output_motion(struct system *s);
 /// Outputs of every joint: force, torque, efforts.
 void system_output_reactions(struct system *s);
@@ -76,7 +76,8 @@ bool variant_solve(struct variant *v);
 /// Index of a result by name; fails if there is none.
 size_t variant_result(const struct variant *v, const char *name);
 
-extern const struct ct_formulate_options by_joints, by_bodies, by_choice, by_joints_spatial, by_bodies_spatial;
+extern const struct ct_formulate_options by_joints, by_bodies, by_choice, by_joints_spatial,
+    by_bodies_spatial;
 
 // ---- trees --------------------------------------------------------------------------------------------------
 
@@ -86,7 +87,7 @@ struct tree_list {
     struct tree_names {
         const char **name;
         size_t n;
-    } *tree;
+    } * tree;
 };
 /// T (rotation false) or R (true) of a model; the list lives in s.
 struct tree_list system_trees(struct system *s, bool keep_all, bool rotation);
@@ -98,7 +99,8 @@ double chance(void);     // uniform in [-1, 1)
 int chance_of(int n);    // 0 .. n - 1
 
 /// |got - want| <= tol * scale; prints what and both values and counts a failure.
-bool agree(const char *system, const char *what, double got, double want, double scale, double tol);
+bool agree(const char *system, const char *what, double got, double want, double scale,
+           double tol);
 
 char *text_of(struct ct_arena *a, const char *fmt, ...) __attribute__((format(printf, 2, 3)));
 
