@@ -26,15 +26,15 @@ struct ct_node_info {
 
 /// A coordinate of a joint or of a body edge: unknown, driven, or measured.
 struct ct_coordinate {
-    const char *name;   // "crank.q", "crank.q2"
-    int edge, place;    // place among the edge's coordinates
+    const char *name;                 // "crank.q", "crank.q2"
+    int edge, place;                  // place among the edge's coordinates
     bool in_translation, in_rotation; // enters d, enters the turns
     bool is_driven;
-    int q, u, driver;   // index of the unknown or the driver; -1 where not
-    ct_ex value, rate;  // of unknown and driven ones; measured ones: row.h
-    ct_ex measured;     // value of a measured one, once asked for
+    int q, u, driver;  // index of the unknown or the driver; -1 where not
+    ct_ex value, rate; // of unknown and driven ones; measured ones: row.h
+    ct_ex measured;    // value of a measured one, once asked for
     bool has_measured;
-    int motion_row;     // driven and measured: its row, plus one
+    int motion_row; // driven and measured: its row, plus one
 };
 
 struct ct_edge_info {
@@ -44,12 +44,13 @@ struct ct_edge_info {
     int index;                      // of the body, joint or force in the model; arms: frame
     const struct ct_instance *self; // joints, forces
     ct_ex3 at;                      // arms: place in axes of the tail
-    ct_ex33 S;                      // arms: rotation of the head out of the tail's axes; bodies in a
-                                    // plane: that of the body before its angle
-    struct ct_motion trial, motion; // bodies, joints, closures: with LOCAL symbols; with coordinates
-    bool has_rotation;              // false where a particle is reached
+    ct_ex33 S; // arms: rotation of the head out of the tail's axes; bodies in a
+               // plane: that of the body before its angle
+    struct ct_motion trial,
+        motion;        // bodies, joints, closures: with LOCAL symbols; with coordinates
+    bool has_rotation; // false where a particle is reached
     bool must_be_branch, never_branch;
-    int weight_t, weight_r; // freedoms in the translational and rotational graph
+    int weight_t, weight_r;            // freedoms in the translational and rotational graph
     int first_coordinate, ncoordinate; // plain coordinates in build->coordinate
 };
 
@@ -61,9 +62,9 @@ struct ct_term {
 
 /// One axis of rotation of a cluster against its parent. A quaternion gives three.
 struct ct_spin {
-    int cluster;      // the one it introduces
-    ct_ex3 axis;      // unit vector
-    int nterm;        // rate = sum of terms (+ what depends on time alone)
+    int cluster; // the one it introduces
+    ct_ex3 axis; // unit vector
+    int nterm;   // rate = sum of terms (+ what depends on time alone)
     struct ct_term term[CT_MAX_COORD];
     ct_ex rate, bias; // [rad/s], and [rad/s^2] with all u' = 0
 };
@@ -73,8 +74,8 @@ struct ct_cluster {
     int first_spin, nspin;
     int enter, leave; // preorder interval: holds those of the clusters outboard
     ct_ex33 R;
-    int base;      // accumulated angle: R = R_base Rot(axis, angle)
-    ct_ex3 axis;   // local
+    int base;    // accumulated angle: R = R_base Rot(axis, angle)
+    ct_ex3 axis; // local
     ct_ex angle;
     int has_angle;
     ct_ex omega;     // planar: w = omega * normal
@@ -96,10 +97,11 @@ struct ct_anchor {
     ct_ex3 local;
     int nslide;
     struct ct_slide slide[CT_MAX_COORD];
-    ct_ex3 drift, drift_bias; // local: rate of `local`, and its second derivative with all u' = 0
-    bool moves;               // has slides or a drift
-    ct_ex mass;               // of everything outboard [kg]
-    ct_ex3 d;                 // R_cluster local
+    ct_ex3 drift,
+        drift_bias; // local: rate of `local`, and its second derivative with all u' = 0
+    bool moves;     // has slides or a drift
+    ct_ex mass;     // of everything outboard [kg]
+    ct_ex3 d;       // R_cluster local
     ct_ex3 v, a[2];
     bool has_d, has_v, has_a[2];
 };
@@ -108,8 +110,8 @@ struct ct_anchor {
 struct ct_place {
     int anchor, cluster;
     ct_ex3 local;
-    int frame;  // cluster the node's axes belong to
-    ct_ex33 S;  // rotation of the node's axes in it, constant
+    int frame; // cluster the node's axes belong to
+    ct_ex33 S; // rotation of the node's axes in it, constant
 };
 
 /// A load: force F at the head, torque T on the head, the opposite on the tail along the same line.
@@ -117,12 +119,12 @@ struct ct_load {
     const struct ct_instance *self;
     int tail, head;       // nodes; tail 0 is ground
     ct_ex3 force, torque; // ground components
-    bool is_central;      // the force points from one origin to the other: no moment of the pair
+    bool is_central; // the force points from one origin to the other: no moment of the pair
     ct_ex potential; // [J]
     ct_ex power;     // put in by the part that has no potential [W]
 };
 
-struct ct_star;  // dynamics.h
+struct ct_star; // dynamics.h
 struct ct_sweep;
 struct ct_pull; // row.h
 
@@ -170,24 +172,24 @@ struct ct_build {
     struct ct_pull *pull;
     size_t npull, pull_cap;
     const struct ct_sweep *sweep[2]; // by level, once asked for
-    int resolving;   // depth of signals within signals
-    bool is_open;    // a signal was met that this planar model leaves open
+    int resolving;                   // depth of signals within signals
+    bool is_open;                    // a signal was met that this planar model leaves open
     bool in_outputs; // accelerations and multipliers may be used, comparisons stay as they are
     struct ct_kept_quaternion {
         bool made;
         ct_ex p[4];
-    } *quaternion; // by node, of frames whose quaternion is an output
+    } * quaternion; // by node, of frames whose quaternion is an output
 };
 
 static inline bool ct_cluster_is_outboard(const struct ct_build *b, int inner, int outer)
 {
     return b->cluster[inner].enter <= b->cluster[outer].enter
-           && b->cluster[outer].leave <= b->cluster[inner].leave;
+        && b->cluster[outer].leave <= b->cluster[inner].leave;
 }
 static inline bool ct_anchor_is_outboard(const struct ct_build *b, int inner, int outer)
 {
     return b->anchor[inner].enter <= b->anchor[outer].enter
-           && b->anchor[outer].leave <= b->anchor[inner].leave;
+        && b->anchor[outer].leave <= b->anchor[inner].leave;
 }
 
 #endif

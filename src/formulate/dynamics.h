@@ -10,7 +10,8 @@
 
 struct ct_star {
     int anchor, cluster;
-    ct_ex3 moment; // local: sum of mass * vector, of masses at it and of what hangs on its links [kg m]
+    ct_ex3
+        moment; // local: sum of mass * vector, of masses at it and of what hangs on its links [kg m]
     int first_child, nchild; // in b->child: anchors whose link belongs to the star
 };
 

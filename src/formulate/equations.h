@@ -22,11 +22,11 @@ struct ct_q {
 };
 
 struct ct_u {
-    const char *name;  // "crank.u"
-    ct_ex symbol;      // speed
-    ct_ex derivative;  // the symbol u'
-    int q;             // the coordinate whose rate it is; -1 for angular velocities
-    int joint, body;   // whose it is; the other is -1
+    const char *name; // "crank.u"
+    ct_ex symbol;     // speed
+    ct_ex derivative; // the symbol u'
+    int q;            // the coordinate whose rate it is; -1 for angular velocities
+    int joint, body;  // whose it is; the other is -1
 };
 
 struct ct_entry { // of a sparse matrix
@@ -40,15 +40,15 @@ struct ct_row {
     int joint;         // in the model; -1: none
     ct_ex phi, v, gam; // position, velocity J u + Phi_t, acceleration J u' + gam
     ct_ex lam;         // symbol
-    ct_ex wanted;      // >= 0 in the right assembly (half-turn solutions of (4.4)); 0 where none
+    ct_ex wanted; // >= 0 in the right assembly (half-turn solutions of (4.4)); 0 where none
 };
 
 /// A comparison whose outcome is held between events.
 struct ct_mode {
     ct_ex symbol;
-    enum ct_op op;        // LT, LE, GT, GE
-    ct_ex g;              // the symbol is 1 where g op 0
-    bool is_time;         // g depends on t alone
+    enum ct_op op; // LT, LE, GT, GE
+    ct_ex g;       // the symbol is 1 where g op 0
+    bool is_time;  // g depends on t alone
     struct ct_mark mark;
 };
 
@@ -57,7 +57,7 @@ struct ct_memory {
     ct_ex symbol, update;
     // ANGLE follows an angle; QUATERNION (four in a row) a rotation; OFFSET keeps its value at the start
     enum ct_memory_kind { CT_MEMORY_ANGLE, CT_MEMORY_QUATERNION, CT_MEMORY_OFFSET } kind;
-    ct_ex33 R;      // QUATERNION, first of four: the rotation itself
+    ct_ex33 R;        // QUATERNION, first of four: the rotation itself
     int joint, place; // ANGLE: the coordinate, to start from a given value; joint -1: none
 };
 
@@ -73,8 +73,8 @@ struct ct_driver {
     int joint, place;
     struct ct_mark mark;
     ct_ex value, rate, acceleration; // functions of t (and of modes)
-    ct_ex effort; // generalised force the driver gives [N or N m]
-    ct_ex impulse; // see formulate/bias.c
+    ct_ex effort;                    // generalised force the driver gives [N or N m]
+    ct_ex impulse;                   // see formulate/bias.c
 };
 
 struct ct_left_out {
@@ -103,10 +103,10 @@ struct ct_equations {
     struct ct_result *result; // outputs, one per column
     size_t nresult, result_cap;
     ct_ex work_symbol;
-    ct_ex power;   // d(work)/dt, in terms of u' and lam where drivers push; 0 when nothing works
+    ct_ex power; // d(work)/dt, in terms of u' and lam where drivers push; 0 when nothing works
     ct_ex kinetic, potential;
     bool is_planar;
-    bool needs_work; // some output or the ledger uses the work
+    bool needs_work;           // some output or the ledger uses the work
     const char **undetermined; // names of reaction components that are not unique
     struct ct_left_out *left_out;
     size_t nleft_out, left_out_cap;

@@ -30,8 +30,8 @@ ct_ex ct_load_power(struct ct_build *b, int tail, int head, ct_ex3 force, ct_ex3
 struct work {
     struct ct_build *b;
     enum ct_level level;
-    ct_ex3 *rest;     // by anchor: force of all outboard beyond mass * acceleration of the anchor
-    ct_ex3 *torque;   // by cluster
+    ct_ex3 *rest;   // by anchor: force of all outboard beyond mass * acceleration of the anchor
+    ct_ex3 *torque; // by cluster
     ct_ex3 *apparent; // by anchor: acceleration less gravity
 };
 
@@ -40,7 +40,8 @@ static void apply_at(struct work *w, int node, ct_ex3 force, ct_ex3 torque)
 {
     struct ct_exs *x = w->b->x;
     const struct ct_place *p = &w->b->place[node];
-    ct_ex3 *rest = &w->rest[p->anchor], *arm = &w->torque[p->cluster], *own = &w->torque[p->frame];
+    ct_ex3 *rest = &w->rest[p->anchor], *arm = &w->torque[p->cluster],
+           *own = &w->torque[p->frame];
     *rest = ct_ex3_sub(x, *rest, force);
     *arm = ct_ex3_sub(x, *arm,
                       ct_ex3_cross(x, ct_cluster_turn(w->b, p->cluster, p->local), force));
@@ -48,7 +49,8 @@ static void apply_at(struct work *w, int node, ct_ex3 force, ct_ex3 torque)
 }
 
 // A pair of wrenches on the line through head.  (0.2)
-static void apply_pair(struct work *w, int tail, int head, ct_ex3 force, ct_ex3 torque, bool carried)
+static void apply_pair(struct work *w, int tail, int head, ct_ex3 force, ct_ex3 torque,
+                       bool carried)
 {
     struct ct_exs *x = w->b->x;
     apply_at(w, head, force, torque);
@@ -92,14 +94,15 @@ static void sweep_star(struct work *w, const struct ct_star *s)
     struct ct_build *b = w->b;
     struct ct_exs *x = b->x;
     const ct_ex3 moment = ct_cluster_turn(b, s->cluster, s->moment);
-    const ct_ex3 turning
-        = ct_ex3_add(x, ct_ex3_cross(x, ct_cluster_acceleration(b, s->cluster, w->level), moment),
-                     ct_cluster_centripetal(b, s->cluster, moment));
+    const ct_ex3 turning = ct_ex3_add(
+        x, ct_ex3_cross(x, ct_cluster_acceleration(b, s->cluster, w->level), moment),
+        ct_cluster_centripetal(b, s->cluster, moment));
     ct_ex3 rest = turning;
     ct_ex3 torque = ct_ex3_cross(x, moment, w->apparent[s->anchor]);
     for (int k = 0; k < s->nchild; k++) {
         const int child = b->child[s->first_child + k];
-        const ct_ex3 slide = ct_ex3_scale(x, b->anchor[child].mass, ct_link_slide(b, child, w->level));
+        const ct_ex3 slide
+            = ct_ex3_scale(x, b->anchor[child].mass, ct_link_slide(b, child, w->level));
         const ct_ex3 force = ct_ex3_add(x, w->rest[child], slide);
         rest = ct_ex3_add(x, rest, force);
         torque = ct_ex3_add(x, torque, ct_ex3_cross(x, ct_link_vector(b, child), force));
@@ -125,7 +128,8 @@ static ct_ex3 inertia_torque(struct work *w, int c)
 static void sweep_anchors(struct work *w)
 {
     struct ct_build *b = w->b;
-    int *first = CT_NEWN(b->arena, int, b->nanchor), *next = CT_NEWN(b->arena, int, b->nstar + 1);
+    int *first = CT_NEWN(b->arena, int, b->nanchor),
+        *next = CT_NEWN(b->arena, int, b->nstar + 1);
     for (size_t i = 0; i < b->nstar; i++) { // chains end at 0: numbers are one too large
         next[i] = first[b->star[i].anchor];
         first[b->star[i].anchor] = (int)i + 1;
@@ -208,7 +212,8 @@ static ct_ex element(const struct ct_value *v, int k)
 }
 
 // Generalised force `effort` along a coordinate: on its row, or, where it is measured, as a wrench pair.
-static void push_coordinate(struct ct_build *b, int coordinate, ct_ex effort, ct_ex potential, ct_ex power)
+static void push_coordinate(struct ct_build *b, int coordinate, ct_ex effort, ct_ex potential,
+                            ct_ex power)
 {
     const struct ct_coordinate *c = &b->coordinate[coordinate];
     const struct ct_edge_info *e = &b->edge[c->edge];

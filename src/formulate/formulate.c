@@ -40,7 +40,8 @@ static double *start_values(struct ct_arena *a, const struct ct_model *m)
 }
 
 // Graph, nodes and edges of the model; trees are still open.
-static struct ct_build *build_create(struct ct_ctx *ctx, struct ct_arena *a, const struct ct_model *m,
+static struct ct_build *build_create(struct ct_ctx *ctx, struct ct_arena *a,
+                                     const struct ct_model *m,
                                      const struct ct_formulate_options *o)
 {
     struct ct_build *b = CT_NEW(a, struct ct_build);
@@ -76,7 +77,7 @@ static double factor_cost(struct ct_arena *scratch, const struct ct_equations *e
     const size_t n = e->nu + e->nrow;
     if (n > 400)
         return (double)n * (double)n * (double)n / 3;
-    bool *near = CT_NEWN(scratch, bool, n * n + 1), *done = CT_NEWN(scratch, bool, n + 1);
+    bool *near = CT_NEWN(scratch, bool, n *n + 1), *done = CT_NEWN(scratch, bool, n + 1);
     for (size_t i = 0; i < e->nM; i++)
         near[(size_t)e->M[i].row + n * (size_t)e->M[i].column]
             = near[(size_t)e->M[i].column + n * (size_t)e->M[i].row] = true;
@@ -126,8 +127,8 @@ static double equations_cost(struct ct_arena *scratch, const struct ct_equations
     const struct ct_tape_counts c = ct_ex_count(scratch, e->x, all, k);
     const double per_function = 8, per_division = 4, per_speed = 20; // in multiplications
     return (double)(c.multiplications + c.additions) + per_division * (double)c.divisions
-           + per_function * (double)c.functions + per_speed * (double)e->nu
-           + factor_cost(scratch, e);
+         + per_function * (double)c.functions + per_speed * (double)e->nu
+         + factor_cost(scratch, e);
 }
 
 struct search {
@@ -143,7 +144,8 @@ static double pair_cost(void *data, const struct ct_tree *T, const struct ct_tre
     struct ct_arena *scratch = ct_arena_create();
     if (!scratch)
         return INFINITY;
-    struct ct_ctx quiet = {.model = scratch, .scratch = scratch}; // errors are reported by the chosen pair
+    struct ct_ctx quiet
+        = {.model = scratch, .scratch = scratch}; // errors are reported by the chosen pair
     struct ct_build *b = build_create(&quiet, scratch, s->model, s->options);
     b->T = *T;
     b->R = *R;
@@ -234,7 +236,8 @@ static bool least_weight(struct ct_build *b, const struct rules *r, struct ct_tr
     struct ct_tree t;
     bool **out[] = {&p->trans, &p->rot};
     for (int k = 0; k < 2; k++) {
-        const bool *forced = k ? r->forced_r : r->forced_t, *banned = k ? r->banned_r : r->banned_t;
+        const bool *forced = k ? r->forced_r : r->forced_t,
+                   *banned = k ? r->banned_r : r->banned_t;
         const int *weight = k ? r->weight_r : r->weight_t;
         for (size_t i = 0; i < b->nedge; i++)
             w[i] = banned[i] ? -1 : forced[i] ? 0 : weight[i] + 1;
@@ -266,7 +269,8 @@ static void improve(struct ct_build *b, const struct search *s, const struct rul
            .budget = (int)fmax(1, fmin(pairs, 400)),
            .excess = 2};
     if (pairs < 4
-        || !ct_tree_search(b->arena, &b->graph, &o, pair_cost, (void *)(uintptr_t)s, p, &stats)) {
+        || !ct_tree_search(b->arena, &b->graph, &o, pair_cost, (void *)(uintptr_t)s, p,
+                           &stats)) {
         report->how = "least weight";
         report->cost = report->cost_least_weight = cost;
         return;
@@ -274,13 +278,13 @@ static void improve(struct ct_build *b, const struct search *s, const struct rul
     report->cost = stats.cost;
     report->cost_least_weight = stats.cost_least_weight;
     report->how = stats.exhaustive
-                      ? ct_arena_printf(b->arena, "cheapest of all %d pairs", stats.nevaluated)
-                      : ct_arena_printf(b->arena, "cheapest of %d pairs tried by exchanges",
-                                        stats.nevaluated);
+                    ? ct_arena_printf(b->arena, "cheapest of all %d pairs", stats.nevaluated)
+                    : ct_arena_printf(b->arena, "cheapest of %d pairs tried by exchanges",
+                                      stats.nevaluated);
 }
 
-static bool mark_named(struct ct_build *b, const char *const *names, size_t n, const bool *forced,
-                       bool *branch)
+static bool mark_named(struct ct_build *b, const char *const *names, size_t n,
+                       const bool *forced, bool *branch)
 {
     memcpy(branch, forced, b->nedge * sizeof *branch);
     bool ok = true;
@@ -308,17 +312,19 @@ static bool given_trees(struct ct_build *b, const struct ct_formulate_options *o
     bool ok = true;
     for (size_t i = 0; i < b->nedge; i++)
         if ((p->trans[i] && r->banned_t[i]) || (p->rot[i] && r->banned_r[i]))
-            ok = ct_error(b->ctx, (struct ct_mark){0}, CT_E_TREE, "tree: '%s' cannot be a branch",
-                          b->edge[i].name);
+            ok = ct_error(b->ctx, (struct ct_mark){0}, CT_E_TREE,
+                          "tree: '%s' cannot be a branch", b->edge[i].name);
     return ok;
 }
 
-static bool choose_trees(struct ct_build *b, const struct search *s, struct ct_tree_report *report)
+static bool choose_trees(struct ct_build *b, const struct search *s,
+                         struct ct_tree_report *report)
 {
     const struct ct_formulate_options *o = s->options;
     const struct rules r = make_rules(b, o->tree);
     struct ct_tree_pair p;
-    static const char *const how[] = {"least weight", "through joints", "absolute coordinates", "given"};
+    static const char *const how[]
+        = {"least weight", "through joints", "absolute coordinates", "given"};
     report->how = how[o->tree];
     if (o->tree == CT_TREE_GIVEN ? !given_trees(b, o, &r, &p) : !least_weight(b, &r, &p))
         return false;
@@ -341,7 +347,9 @@ static const char *kind_name(const struct ct_build *b, size_t i)
 {
     const struct ct_edge_info *e = &b->edge[i];
     static const char *const plain[] = {"body", "arm", "joint", "closure", "force"};
-    return e->self ? e->self->cls->name : b->edge[i].kind == CT_EDGE_CLOSURE ? "weld" : plain[e->kind];
+    return e->self                            ? e->self->cls->name
+         : b->edge[i].kind == CT_EDGE_CLOSURE ? "weld"
+                                              : plain[e->kind];
 }
 
 static void describe_graph(struct ct_build *b)
@@ -373,9 +381,11 @@ static void describe_graph(struct ct_build *b)
 static void measure_all(struct ct_build *b)
 {
     for (size_t i = 0; i < b->ncoordinate; i++) {
-        const struct ct_result q = {b->coordinate[i].name, ct_coordinate_value(b, (int)i), false};
+        const struct ct_result q
+            = {b->coordinate[i].name, ct_coordinate_value(b, (int)i), false};
         CT_PUSH(b->arena, b->eqs->result, b->eqs->nresult, b->eqs->result_cap, q);
-        const struct ct_result u = {b->coordinate[i].name, ct_coordinate_speed(b, (int)i), false};
+        const struct ct_result u
+            = {b->coordinate[i].name, ct_coordinate_speed(b, (int)i), false};
         CT_PUSH(b->arena, b->eqs->result, b->eqs->nresult, b->eqs->result_cap, u);
     }
 }

@@ -5,7 +5,7 @@
 #include "formulate/equations.h"
 
 enum ct_tree_choice {
-    CT_TREE_AUTO,     // least weight, then improved by the exact operation count (formulation 2.3)
+    CT_TREE_AUTO, // least weight, then improved by the exact operation count (formulation 2.3)
     CT_TREE_JOINTS,   // through joints only
     CT_TREE_ABSOLUTE, // every body's own coordinates
     CT_TREE_GIVEN     // branches by name
@@ -18,7 +18,8 @@ struct ct_formulate_options {
     bool keep_all;     // leave nothing out: spatial rows for planar mechanisms
     bool with_energy;  // kinetic and potential energy and the power are wanted
     bool with_outputs; // the outputs of the model are wanted
-    bool measure_all;  // results are the coordinates of all joints and bodies instead (for assembly)
+    bool
+        measure_all; // results are the coordinates of all joints and bodies instead (for assembly)
 };
 
 /// What tree selection found, for the report.

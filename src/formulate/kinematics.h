@@ -25,7 +25,7 @@ ct_ex ct_edge_partial(struct ct_build *b, const struct ct_edge_info *e, ct_ex tr
 
 // ---- clusters --------------------------------------------------------------------------------
 
-ct_ex3 ct_cluster_velocity(const struct ct_build *b, int c);             // w [rad/s]
+ct_ex3 ct_cluster_velocity(const struct ct_build *b, int c);              // w [rad/s]
 ct_ex3 ct_cluster_acceleration(struct ct_build *b, int c, enum ct_level); // al [rad/s^2]
 /// w and al of cluster `to` less those of `from`, along the path of the rotational tree.
 ct_ex3 ct_cluster_path_velocity(struct ct_build *b, int from, int to);
@@ -68,7 +68,8 @@ ct_ex3 ct_path_acceleration(struct ct_build *b, int tail, int head, enum ct_leve
 /// Reach of node `head` from node `tail` under spin r: the sum of the path's vectors that turn with r,
 /// less those that would turn with the tail when carried is true (then the path is seen from the tail's axes):
 /// dv_head - dv_tail (- dw_tail x d) = axis_r x reach.  False if it is zero by structure.
-bool ct_path_reach(struct ct_build *b, int tail, int head, size_t r, bool carried, ct_ex3 *reach);
+bool ct_path_reach(struct ct_build *b, int tail, int head, size_t r, bool carried,
+                   ct_ex3 *reach);
 /// +1, -1 or 0: the slide of an anchor lies on the path's head side, tail side, or on neither (both).
 int ct_path_slide(struct ct_build *b, int tail, int head, int anchor);
 

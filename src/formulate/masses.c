@@ -23,7 +23,8 @@ static void add_point(struct ct_build *b, ct_ex33 *L, ct_ex m, ct_ex3 v)
     struct ct_exs *x = b->x;
     for (int i = 0; i < 3; i++) {
         const int j = (i + 1) % 3, k = (i + 2) % 3;
-        const ct_ex other = ct_ex_add(x, ct_ex_mul(x, v.e[j], v.e[j]), ct_ex_mul(x, v.e[k], v.e[k]));
+        const ct_ex other
+            = ct_ex_add(x, ct_ex_mul(x, v.e[j], v.e[j]), ct_ex_mul(x, v.e[k], v.e[k]));
         L->e[i + 3 * i] = ct_ex_add(x, L->e[i + 3 * i], ct_ex_mul(x, m, other));
         const ct_ex cross = ct_ex_mul(x, m, ct_ex_mul(x, v.e[i], v.e[j]));
         L->e[i + 3 * j] = ct_ex_sub(x, L->e[i + 3 * j], cross);
@@ -50,7 +51,8 @@ static void add_mass(struct ct_build *b, int anchor, int cluster, ct_ex m, ct_ex
 }
 
 // Inertia of a body turned from its own axes into its cluster's: S I S'.
-static void add_inertia(struct ct_build *b, const struct ct_body *body, const struct ct_place *p)
+static void add_inertia(struct ct_build *b, const struct ct_body *body,
+                        const struct ct_place *p)
 {
     const ct_ex *I = body->inertia;
     const ct_ex33 own = {{I[0], I[3], I[4], I[3], I[1], I[5], I[4], I[5], I[2]}};
@@ -88,7 +90,8 @@ void ct_masses_lump(struct ct_build *b)
     }
     for (size_t a = b->nanchor; a-- > 1;) {
         const struct ct_anchor *self = &b->anchor[a];
-        b->anchor[self->parent].mass = ct_ex_add(b->x, b->anchor[self->parent].mass, self->mass);
+        b->anchor[self->parent].mass
+            = ct_ex_add(b->x, b->anchor[self->parent].mass, self->mass);
         star_of(b, self->parent, self->cluster); // also without mass: loads pass through it
         if (!ct_ex_is_zero(self->mass))
             add_mass(b, self->parent, self->cluster, self->mass, self->local);
@@ -101,18 +104,18 @@ void ct_masses_lump(struct ct_build *b)
 // Everything below is asked for by (anchor, cluster of the spin); filled when first needed.
 struct reach {
     struct ct_build *b;
-    int *nstar;         // stars with mass outboard of an anchor
-    int *nturning;      // those that turn with a cluster: [anchor + nanchor * cluster]
-    ct_ex3 *g, *h;      // [anchor + nanchor * cluster]
+    int *nstar;    // stars with mass outboard of an anchor
+    int *nturning; // those that turn with a cluster: [anchor + nanchor * cluster]
+    ct_ex3 *g, *h; // [anchor + nanchor * cluster]
     bool *has_g, *has_h;
-    ct_ex3 *moment;     // by star, ground components
+    ct_ex3 *moment; // by star, ground components
     bool *has_moment;
-    ct_ex3 *all;        // by anchor: first moments of everything outboard
+    ct_ex3 *all; // by anchor: first moments of everything outboard
     bool *has_all;
-    ct_ex33 *cross;     // by anchor: inertia of the links against what they carry
+    ct_ex33 *cross; // by anchor: inertia of the links against what they carry
     bool *has_cross;
-    ct_ex33 *inertia;   // by cluster: augmented inertia of it and the clusters outboard, ground
-    int *first, *next;  // stars of an anchor, chained
+    ct_ex33 *inertia;  // by cluster: augmented inertia of it and the clusters outboard, ground
+    int *first, *next; // stars of an anchor, chained
 };
 
 static size_t at(const struct reach *s, int anchor, int cluster)
@@ -165,7 +168,8 @@ static void count_stars(struct reach *s)
     for (size_t a = b->nanchor; a-- > 1;) {
         s->nstar[b->anchor[a].parent] += s->nstar[a];
         for (size_t c = 1; c < b->ncluster; c++)
-            s->nturning[at(s, b->anchor[a].parent, (int)c)] += s->nturning[at(s, (int)a, (int)c)];
+            s->nturning[at(s, b->anchor[a].parent, (int)c)]
+                += s->nturning[at(s, (int)a, (int)c)];
     }
 }
 
@@ -227,7 +231,8 @@ static ct_ex3 moment_turning(struct reach *s, int anchor, int cluster)
                 sum = ct_ex3_add(b->x, sum, star_moment(s, i));
             for (int k = 0; k < b->star[i].nchild; k++)
                 sum = ct_ex3_add(
-                    b->x, sum, moment_turning(s, b->child[b->star[i].first_child + k], cluster));
+                    b->x, sum,
+                    moment_turning(s, b->child[b->star[i].first_child + k], cluster));
         }
         s->h[at_pair] = sum;
         s->has_h[at_pair] = true;
@@ -352,7 +357,8 @@ static ct_ex3 star_torque(struct reach *s, const struct column *c, int star)
 {
     struct ct_build *b = s->b;
     const struct ct_star *self = &b->star[star];
-    ct_ex3 sum = double_cross(b, c, star_moment(s, star), reach_of(s, self->anchor, c->cluster));
+    ct_ex3 sum
+        = double_cross(b, c, star_moment(s, star), reach_of(s, self->anchor, c->cluster));
     for (int k = 0; k < self->nchild; k++) {
         const int child = b->child[self->first_child + k];
         sum = ct_ex3_add(
@@ -493,9 +499,8 @@ static void spin_column(struct reach *s, ct_ex *M, size_t r, const struct column
             if (slide->speed < 0)
                 continue;
             const ct_ex3 g = reach_of(s, (int)a, c->cluster);
-            const ct_ex3 moved
-                = ct_ex3_add(b->x, ct_ex3_scale(b->x, anchor->mass, g),
-                             moment_turning(s, (int)a, c->cluster));
+            const ct_ex3 moved = ct_ex3_add(b->x, ct_ex3_scale(b->x, anchor->mass, g),
+                                            moment_turning(s, (int)a, c->cluster));
             if (ct_ex3_is_zero(moved))
                 continue;
             const ct_ex3 p = ct_cluster_turn(b, anchor->cluster, slide->p);
@@ -538,11 +543,11 @@ static struct reach reach_create(struct ct_build *b)
     const size_t na = b->nanchor, nc = b->ncluster, ns = b->nstar + 1;
     struct reach s = {.b = b};
     s.nstar = CT_NEWN(b->arena, int, na);
-    s.nturning = CT_NEWN(b->arena, int, na * nc);
+    s.nturning = CT_NEWN(b->arena, int, na *nc);
     s.g = CT_NEWN(b->arena, ct_ex3, na * nc);
     s.h = CT_NEWN(b->arena, ct_ex3, na * nc);
-    s.has_g = CT_NEWN(b->arena, bool, na * nc);
-    s.has_h = CT_NEWN(b->arena, bool, na * nc);
+    s.has_g = CT_NEWN(b->arena, bool, na *nc);
+    s.has_h = CT_NEWN(b->arena, bool, na *nc);
     s.moment = CT_NEWN(b->arena, ct_ex3, ns);
     s.has_moment = CT_NEWN(b->arena, bool, ns);
     s.all = CT_NEWN(b->arena, ct_ex3, na);

@@ -60,7 +60,7 @@ ct_ex ct_mode_hold(struct ct_build *b, ct_ex e)
     const ct_ex q = narg > 1 ? ct_mode_hold(b, (ct_ex){n.b}) : CT_EX_ZERO;
     if (n.op == CT_OP_IF)
         return ct_ex_if(x, p, q, ct_mode_hold(b, (ct_ex){n.c}));
-    const ct_ex rebuilt = narg == 1 ? ct_ex_fun(x, (enum ct_op)n.op, p)
-                                    : ct_ex_fun2(x, (enum ct_op)n.op, p, q);
+    const ct_ex rebuilt
+        = narg == 1 ? ct_ex_fun(x, (enum ct_op)n.op, p) : ct_ex_fun2(x, (enum ct_op)n.op, p, q);
     return hold_node(b, (enum ct_op)n.op, rebuilt, p, q);
 }

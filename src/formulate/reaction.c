@@ -34,7 +34,8 @@ static ct_ex3 own_force(struct ct_build *b, int node)
     for (size_t i = 1; i < b->model->nbody; i++)
         if (b->node_of_com[i] == node) {
             const ct_ex3 a = ct_node_acceleration(b, node, CT_FULL);
-            add(b, &sum, ct_ex3_scale(x, b->model->body[i].mass, ct_ex3_sub(x, a, b->model->gravity)));
+            add(b, &sum,
+                ct_ex3_scale(x, b->model->body[i].mass, ct_ex3_sub(x, a, b->model->gravity)));
         }
     for (size_t i = 0; i < b->nload; i++) {
         if (b->load[i].head == node)

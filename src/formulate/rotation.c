@@ -12,18 +12,19 @@
 static bool is_branch_coordinate(const struct ct_build *b, const struct ct_coordinate *c)
 {
     return (c->in_translation && b->T.is_branch[c->edge])
-           || (c->in_rotation && b->R.is_branch[c->edge]);
+        || (c->in_rotation && b->R.is_branch[c->edge]);
 }
 
-static int new_speed(struct ct_build *b, const struct ct_edge_info *e, const char *suffix, int q)
+static int new_speed(struct ct_build *b, const struct ct_edge_info *e, const char *suffix,
+                     int q)
 {
     struct ct_equations *s = b->eqs;
     struct ct_u u = {.name = ct_arena_printf(b->arena, "%s.u%s", e->name, suffix), .q = q};
     u.joint = e->kind == CT_EDGE_JOINT ? e->index : -1;
     u.body = e->kind == CT_EDGE_BODY ? e->index : -1;
     u.symbol = ct_ex_sym(b->x, CT_SYM_U, u.name, (uint32_t)s->nu);
-    u.derivative = ct_ex_sym(b->x, CT_SYM_A, ct_arena_printf(b->arena, "%s.a%s", e->name, suffix),
-                             (uint32_t)s->nu);
+    u.derivative = ct_ex_sym(
+        b->x, CT_SYM_A, ct_arena_printf(b->arena, "%s.a%s", e->name, suffix), (uint32_t)s->nu);
     CT_PUSH(b->arena, s->u, s->nu, s->u_cap, u);
     return (int)s->nu - 1;
 }
@@ -47,8 +48,7 @@ static void quaternion_rates(struct ct_build *b, int first, const ct_ex w[3])
     const ct_ex3 c = ct_ex3_cross(x, p, W);
     q[0].rate = ct_ex_scale(x, -0.5, ct_ex3_dot(x, p, W));
     for (int i = 0; i < 3; i++)
-        q[1 + i].rate
-            = ct_ex_scale(x, 0.5, ct_ex_add(x, ct_ex_mul(x, p0, W.e[i]), c.e[i]));
+        q[1 + i].rate = ct_ex_scale(x, 0.5, ct_ex_add(x, ct_ex_mul(x, p0, W.e[i]), c.e[i]));
 }
 
 static void choose_quaternion(struct ct_build *b, struct ct_edge_info *e, int k, int speed)
@@ -72,7 +72,8 @@ static void choose_quaternion(struct ct_build *b, struct ct_edge_info *e, int k,
     }
 }
 
-static void choose_driven(struct ct_build *b, const struct ct_edge_info *e, struct ct_coordinate *c)
+static void choose_driven(struct ct_build *b, const struct ct_edge_info *e,
+                          struct ct_coordinate *c)
 {
     struct ct_driver d = {.name = c->name, .joint = e->index, .place = c->place};
     const struct ct_value *motion = ct_instance_value(e->self, "motion");
@@ -86,7 +87,8 @@ static void choose_driven(struct ct_build *b, const struct ct_edge_info *e, stru
     CT_PUSH(b->arena, b->eqs->driver, b->eqs->ndriver, b->eqs->driver_cap, d);
 }
 
-static void choose_plain(struct ct_build *b, const struct ct_edge_info *e, struct ct_coordinate *c)
+static void choose_plain(struct ct_build *b, const struct ct_edge_info *e,
+                         struct ct_coordinate *c)
 {
     const bool one = e->trial.nfree == 1;
     const char *suffix = one ? "" : ct_arena_printf(b->arena, "%d", c->place + 1);
@@ -131,7 +133,8 @@ ct_ex ct_build_rate(struct ct_build *b, ct_ex e)
     if (!(ct_ex_kinds(b->x, e) & moving))
         return CT_EX_ZERO;
     // only the symbols below e matter; joints have few
-    ct_ex *from = CT_NEWN(b->arena, ct_ex, s->nq + 1), *to = CT_NEWN(b->arena, ct_ex, s->nq + 1);
+    ct_ex *from = CT_NEWN(b->arena, ct_ex, s->nq + 1),
+          *to = CT_NEWN(b->arena, ct_ex, s->nq + 1);
     size_t n = 0;
     const size_t nwalk = ct_ex_walk(b->x, &e, 1);
     for (size_t i = 0; i < nwalk; i++) {
@@ -163,7 +166,8 @@ static int add_cluster(struct ct_build *b, int parent, int nspin)
 
 static bool same3(ct_ex3 a, ct_ex3 b)
 {
-    return ct_ex_same(a.e[0], b.e[0]) && ct_ex_same(a.e[1], b.e[1]) && ct_ex_same(a.e[2], b.e[2]);
+    return ct_ex_same(a.e[0], b.e[0]) && ct_ex_same(a.e[1], b.e[1])
+        && ct_ex_same(a.e[2], b.e[2]);
 }
 
 ct_ex ct_edge_partial(struct ct_build *b, const struct ct_edge_info *e, ct_ex trial, int k)
@@ -174,15 +178,16 @@ ct_ex ct_edge_partial(struct ct_build *b, const struct ct_edge_info *e, ct_ex tr
 
 // Spin of the i-th turn of branch e, whose axis is fixed in the parent; the coefficients of its rate
 // are sign * d angle / d q_k.
-static void add_spin(struct ct_build *b, int cluster, const struct ct_edge_info *e, int i, int sign,
-                     ct_ex3 axis, ct_ex angle)
+static void add_spin(struct ct_build *b, int cluster, const struct ct_edge_info *e, int i,
+                     int sign, ct_ex3 axis, ct_ex angle)
 {
     struct ct_spin s = {.cluster = cluster, .axis = axis};
     for (int k = 0; k < e->ncoordinate; k++) {
         const struct ct_coordinate *c = &b->coordinate[e->first_coordinate + k];
         const ct_ex coef = ct_edge_partial(b, e, e->trial.turn[i].angle, k);
         if (!ct_ex_is_zero(coef))
-            s.term[s.nterm++] = (struct ct_term){c->u, c->driver, sign > 0 ? coef : ct_ex_neg(b->x, coef)};
+            s.term[s.nterm++]
+                = (struct ct_term){c->u, c->driver, sign > 0 ? coef : ct_ex_neg(b->x, coef)};
     }
     s.rate = ct_build_rate(b, angle);
     s.bias = ct_build_rate(b, s.rate);
@@ -190,8 +195,8 @@ static void add_spin(struct ct_build *b, int cluster, const struct ct_edge_info 
 }
 
 // Cluster turned about a local axis of `parent`; parallel axes accumulate.
-static int turn_cluster(struct ct_build *b, int parent, const struct ct_edge_info *e, int i, int sign,
-                        ct_ex3 axis)
+static int turn_cluster(struct ct_build *b, int parent, const struct ct_edge_info *e, int i,
+                        int sign, ct_ex3 axis)
 {
     struct ct_exs *x = b->x;
     ct_ex angle = e->motion.turn[i].angle;
@@ -228,8 +233,10 @@ static ct_ex33 quaternion_matrix(struct ct_exs *x, const ct_ex p[4])
         const int j = (i + 1) % 3, k = (i + 2) % 3;
         // p0^2 + pi^2 - 1/2, doubled: uses |p| = 1
         R.e[i + 3 * i] = ct_ex_sub(
-            x, ct_ex_scale(x, 2, ct_ex_add(x, ww, ct_ex_mul(x, p[1 + i], p[1 + i]))), CT_EX_ONE);
-        const ct_ex both = ct_ex_mul(x, p[1 + i], p[1 + j]), turn = ct_ex_mul(x, p[0], p[1 + k]);
+            x, ct_ex_scale(x, 2, ct_ex_add(x, ww, ct_ex_mul(x, p[1 + i], p[1 + i]))),
+            CT_EX_ONE);
+        const ct_ex both = ct_ex_mul(x, p[1 + i], p[1 + j]),
+                    turn = ct_ex_mul(x, p[0], p[1 + k]);
         R.e[j + 3 * i] = ct_ex_scale(x, 2, ct_ex_add(x, both, turn));
         R.e[i + 3 * j] = ct_ex_scale(x, 2, ct_ex_sub(x, both, turn));
     }
@@ -291,7 +298,8 @@ static void place_axes(struct ct_build *b, int node)
 // Preorder intervals; children are found by scanning, parents come first.
 static void number_clusters(struct ct_build *b)
 {
-    int *size = CT_NEWN(b->arena, int, b->ncluster), *next = CT_NEWN(b->arena, int, b->ncluster);
+    int *size = CT_NEWN(b->arena, int, b->ncluster),
+        *next = CT_NEWN(b->arena, int, b->ncluster);
     for (size_t c = b->ncluster; c-- > 1;)
         size[b->cluster[c].parent] += ++size[c];
     b->cluster[0].enter = 0;
@@ -333,8 +341,8 @@ void ct_rotation_derive(struct ct_build *b)
             const struct ct_spin *s = &b->spin[self->first_spin];
             const ct_ex inner = b->cluster[self->parent].omega;
             self->omega = ct_spin_is_positive(b, (size_t)self->first_spin)
-                              ? ct_ex_add(b->x, inner, s->rate)
-                              : ct_ex_sub(b->x, inner, s->rate);
+                            ? ct_ex_add(b->x, inner, s->rate)
+                            : ct_ex_sub(b->x, inner, s->rate);
         }
     }
 }
@@ -344,7 +352,7 @@ bool ct_spin_is_positive(const struct ct_build *b, size_t r)
     double sum = 0;
     for (int i = 0; i < 3; i++)
         sum += ct_ex_value(b->x, b->spin[r].axis.e[i], b->value)
-               * ct_ex_value(b->x, b->plane[2].e[i], b->value);
+             * ct_ex_value(b->x, b->plane[2].e[i], b->value);
     return sum > 0;
 }
 

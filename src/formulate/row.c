@@ -17,15 +17,16 @@ static struct pair ends(const struct ct_build *b, int edge)
     return (struct pair){b->wiring[edge].tail, b->wiring[edge].head};
 }
 
-static const struct ct_measure *measure_of(const struct ct_build *b, const struct ct_coordinate *c)
+static const struct ct_measure *measure_of(const struct ct_build *b,
+                                           const struct ct_coordinate *c)
 {
     const struct ct_motion *m = &b->edge[c->edge].motion;
     const int k = m->quaternion >= 0 && c->place >= m->quaternion ? m->quaternion : c->place;
     return &m->measure[k];
 }
 
-static ct_ex new_memory(struct ct_build *b, enum ct_memory_kind kind, const char *name, int joint,
-                        int place)
+static ct_ex new_memory(struct ct_build *b, enum ct_memory_kind kind, const char *name,
+                        int joint, int place)
 {
     struct ct_equations *s = b->eqs;
     struct ct_memory m = {.kind = kind, .joint = joint, .place = place};
@@ -63,7 +64,8 @@ static ct_ex measure_angle(struct ct_build *b, const struct ct_coordinate *c,
     const ct_ex cosine = ct_ex_sub(x, ct_ex3_dot(x, V, W), ct_ex_mul(x, along, along));
     const ct_ex sine = ct_ex3_dot(x, a, ct_ex3_cross(x, V, W));
     const struct ct_edge_info *e = &b->edge[c->edge];
-    return angle_from(b, c->name, e->kind == CT_EDGE_JOINT ? e->index : -1, c->place, sine, cosine);
+    return angle_from(b, c->name, e->kind == CT_EDGE_JOINT ? e->index : -1, c->place, sine,
+                      cosine);
 }
 
 void ct_quaternion_follow(struct ct_build *b, const char *name, const ct_ex33 *R, ct_ex out[4])
@@ -79,8 +81,10 @@ void ct_quaternion_follow(struct ct_build *b, const char *name, const ct_ex33 *R
     ct_ex33 S;
     for (int i = 0; i < 3; i++) {
         const int j = (i + 1) % 3, k = (i + 2) % 3;
-        const ct_ex square = ct_ex_add(x, ct_ex_mul(x, r[0], r[0]), ct_ex_mul(x, r[1 + i], r[1 + i]));
-        const ct_ex both = ct_ex_mul(x, r[1 + i], r[1 + j]), turn = ct_ex_mul(x, r[0], r[1 + k]);
+        const ct_ex square
+            = ct_ex_add(x, ct_ex_mul(x, r[0], r[0]), ct_ex_mul(x, r[1 + i], r[1 + i]));
+        const ct_ex both = ct_ex_mul(x, r[1 + i], r[1 + j]),
+                    turn = ct_ex_mul(x, r[0], r[1 + k]);
         S.e[4 * i] = ct_ex_sub(x, ct_ex_mul(x, two, square), CT_EX_ONE);
         S.e[j + 3 * i] = ct_ex_mul(x, two, ct_ex_add(x, both, turn));
         S.e[i + 3 * j] = ct_ex_mul(x, two, ct_ex_sub(x, both, turn));
@@ -186,19 +190,20 @@ ct_ex ct_coordinate_speed(struct ct_build *b, int coordinate)
 }
 
 // d/dt of p . (d' - w_a x d) with p fixed in the tail's axes.  (4.3)
-static ct_ex along_acceleration(struct ct_build *b, struct pair n, ct_ex3 p, enum ct_level level)
+static ct_ex along_acceleration(struct ct_build *b, struct pair n, ct_ex3 p,
+                                enum ct_level level)
 {
     struct ct_exs *x = b->x;
     const int a = b->place[n.tail].frame;
     ct_ex3 sum = ct_path_acceleration(b, n.tail, n.head, level);
     if (a) {
         const ct_ex3 d = ct_path_position(b, n.tail, n.head);
-        const ct_ex3 seen = ct_ex3_sub(x, ct_path_velocity(b, n.tail, n.head),
-                                       ct_cluster_swing(b, a, d));
+        const ct_ex3 seen
+            = ct_ex3_sub(x, ct_path_velocity(b, n.tail, n.head), ct_cluster_swing(b, a, d));
         sum = ct_ex3_sub(x, sum, ct_ex3_cross(x, ct_cluster_acceleration(b, a, level), d));
         sum = ct_ex3_sub(x, sum, ct_cluster_centripetal(b, a, d));
-        sum = ct_ex3_sub(
-            x, sum, ct_ex3_scale(x, ct_ex_const(x, 2), ct_cluster_swing(b, a, seen)));
+        sum = ct_ex3_sub(x, sum,
+                         ct_ex3_scale(x, ct_ex_const(x, 2), ct_cluster_swing(b, a, seen)));
     }
     return ct_ex3_dot(x, p, sum);
 }
@@ -224,7 +229,8 @@ ct_ex ct_coordinate_acceleration(struct ct_build *b, int coordinate, enum ct_lev
     if (m->kind == CT_MEASURE_ANGLE)
         turning = ct_ex3_add(x, ct_cluster_swing(b, from, ct_node_turn(b, p.tail, m->from)),
                              ct_cluster_swing(b, to, ct_node_turn(b, p.head, m->to)));
-    return ct_ex_add(x, ct_ex3_dot(x, w.torque, ct_cluster_path_acceleration(b, from, to, level)),
+    return ct_ex_add(x,
+                     ct_ex3_dot(x, w.torque, ct_cluster_path_acceleration(b, from, to, level)),
                      ct_ex3_dot(x, turning, ct_cluster_path_velocity(b, from, to)));
 }
 
@@ -255,8 +261,8 @@ static struct ct_linear linear_zero(struct ct_build *b)
 }
 
 // p . (dv_head - dv_tail [- dw_tail x d]) + h . (dw_head - dw_tail) in terms of the speeds.  (4.2)-(4.4)
-static void wrench_terms(struct ct_build *b, struct pair n, const struct ct_wrench *w, bool carried,
-                         struct ct_linear *l)
+static void wrench_terms(struct ct_build *b, struct pair n, const struct ct_wrench *w,
+                         bool carried, struct ct_linear *l)
 {
     struct ct_exs *x = b->x;
     const int from = b->place[n.tail].frame, to = b->place[n.head].frame;
@@ -267,7 +273,7 @@ static void wrench_terms(struct ct_build *b, struct pair n, const struct ct_wren
         if (!ct_ex3_is_zero(w->force) && ct_path_reach(b, n.tail, n.head, r, carried, &reach))
             v = ct_ex3_dot(x, w->force, ct_ex3_cross(x, s->axis, reach));
         const int turns = (int)ct_cluster_is_outboard(b, s->cluster, to)
-                          - (int)ct_cluster_is_outboard(b, s->cluster, from);
+                        - (int)ct_cluster_is_outboard(b, s->cluster, from);
         if (turns && !ct_ex3_is_zero(w->torque)) {
             const ct_ex h = ct_ex3_dot(x, w->torque, s->axis);
             v = turns > 0 ? ct_ex_add(x, v, h) : ct_ex_sub(x, v, h);
@@ -287,7 +293,8 @@ static void wrench_terms(struct ct_build *b, struct pair n, const struct ct_wren
     }
 }
 
-static void coordinate_terms(struct ct_build *b, int coordinate, ct_ex factor, struct ct_linear *l)
+static void coordinate_terms(struct ct_build *b, int coordinate, ct_ex factor,
+                             struct ct_linear *l)
 {
     const struct ct_coordinate *c = &b->coordinate[coordinate];
     struct ct_wrench w;
@@ -336,8 +343,8 @@ static int joint_index(const struct ct_build *b, const struct ct_instance *self)
     return (int)(self - b->model->joint);
 }
 
-void ct_row_add(struct ct_build *b, const struct ct_instance *self, const char *what, int tail, int head,
-                const struct ct_wrench *w, bool carried, ct_ex phi, ct_ex gam)
+void ct_row_add(struct ct_build *b, const struct ct_instance *self, const char *what, int tail,
+                int head, const struct ct_wrench *w, bool carried, ct_ex phi, ct_ex gam)
 {
     const char *name = ct_arena_printf(b->arena, "%s.%s", self->name, what);
     add_row(b, joint_index(b, self), name, (struct pair){tail, head}, w, carried, phi, gam);
@@ -360,9 +367,9 @@ void ct_row_couple(struct ct_build *b, const struct ct_instance *self, int coord
     coordinate_terms(b, coordinate_b, ct_ex_neg(x, ratio), &l);
     const ct_ex value = ct_ex_sub(x, ct_coordinate_value(b, coordinate_a),
                                   ct_ex_mul(x, ratio, ct_coordinate_value(b, coordinate_b)));
-    const ct_ex gam = ct_ex_sub(
-        x, ct_coordinate_acceleration(b, coordinate_a, CT_BIAS),
-        ct_ex_mul(x, ratio, ct_coordinate_acceleration(b, coordinate_b, CT_BIAS)));
+    const ct_ex gam
+        = ct_ex_sub(x, ct_coordinate_acceleration(b, coordinate_a, CT_BIAS),
+                    ct_ex_mul(x, ratio, ct_coordinate_acceleration(b, coordinate_b, CT_BIAS)));
     const ct_ex phi = ct_ex_sub(x, value, ct_row_offset(b, self, value));
     const int row = push_row(b, self->name, joint_index(b, self), &l, phi, gam);
     const int coupled[2] = {coordinate_a, coordinate_b};
@@ -458,7 +465,8 @@ static ct_ex planar_angle(struct ct_build *b, int node, ct_ex3 v)
         return own;
     double sign = 0;
     for (int i = 0; i < 3; i++)
-        sign += ct_ex_value(x, c->axis.e[i], b->value) * ct_ex_value(x, b->plane[2].e[i], b->value);
+        sign += ct_ex_value(x, c->axis.e[i], b->value)
+              * ct_ex_value(x, b->plane[2].e[i], b->value);
     return sign > 0 ? ct_ex_add(x, own, c->angle) : ct_ex_sub(x, own, c->angle);
 }
 
@@ -496,8 +504,8 @@ static void pair_row(struct ct_build *b, int edge, int i)
     const ct_ex gam = ct_ex_add(
         x, ct_ex3_dot(x, w.torque, ct_cluster_path_acceleration(b, from, to, CT_BIAS)),
         ct_ex3_dot(x, turning, ct_cluster_path_velocity(b, from, to)));
-    add_row(b, e->index, ct_arena_printf(b->arena, "%s.turn%d", e->name, i + 1), n, &w, true, phi,
-            gam);
+    add_row(b, e->index, ct_arena_printf(b->arena, "%s.turn%d", e->name, i + 1), n, &w, true,
+            phi, gam);
     // the rows also hold half a turn away: the cosine between like axes tells
     const ct_ex3 axis = ct_node_turn(b, n.tail, e->motion.rot_to[i]);
     if (e->motion.nrot > 1)
@@ -533,8 +541,8 @@ static void driven_row(struct ct_build *b, int coordinate)
     const ct_ex phi = ct_ex_sub(x, ct_coordinate_value(b, coordinate), s);
     const ct_ex gam = ct_ex_sub(x, ct_coordinate_acceleration(b, coordinate, CT_BIAS),
                                 ct_build_rate(b, rate));
-    add_row(b, e->index, ct_arena_printf(b->arena, "%s.motion", c->name), ends(b, c->edge), &w, true,
-            phi, gam);
+    add_row(b, e->index, ct_arena_printf(b->arena, "%s.motion", c->name), ends(b, c->edge), &w,
+            true, phi, gam);
     struct ct_row *row = &b->eqs->row[b->eqs->nrow - 1];
     row->v = ct_ex_sub(x, row->v, rate);
     b->eqs->power = ct_ex_add(x, b->eqs->power, ct_ex_mul(x, row->lam, rate));

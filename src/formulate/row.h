@@ -36,8 +36,8 @@ bool ct_coordinate_wrench(struct ct_build *b, int coordinate, struct ct_wrench *
 bool ct_rows_derive(struct ct_build *b);
 
 /// One scalar row along a wrench; used by classes (distance).
-void ct_row_add(struct ct_build *b, const struct ct_instance *self, const char *what, int tail, int head,
-                const struct ct_wrench *w, bool carried, ct_ex phi, ct_ex gam);
+void ct_row_add(struct ct_build *b, const struct ct_instance *self, const char *what, int tail,
+                int head, const struct ct_wrench *w, bool carried, ct_ex phi, ct_ex gam);
 /// A row that couples two coordinates: q_a - ratio q_b = const, the constant from the assembled start.
 void ct_row_couple(struct ct_build *b, const struct ct_instance *self, int coordinate_a,
                    int coordinate_b, ct_ex ratio);

@@ -52,8 +52,8 @@ static ct_ex3 frame_vector(struct ct_build *b, int node, int property)
     }
 }
 
-static bool in_axes(struct ct_build *b, const struct signal *s, const char *name, struct ct_mark mark,
-                    ct_ex3 *v)
+static bool in_axes(struct ct_build *b, const struct signal *s, const char *name,
+                    struct ct_mark mark, ct_ex3 *v)
 {
     if (!s->axes)
         return true;
@@ -90,8 +90,8 @@ static ct_ex frame_quaternion(struct ct_build *b, int node, int i)
     return q->p[i];
 }
 
-static bool frame_signal(struct ct_build *b, int frame, const struct signal *s, const char *name,
-                         struct ct_mark mark, ct_ex *out)
+static bool frame_signal(struct ct_build *b, int frame, const struct signal *s,
+                         const char *name, struct ct_mark mark, ct_ex *out)
 {
     static const char *const entries[]
         = {"xx", "yx", "zx", "xy", "yy", "zy", "xz", "yz", "zz"}; // column-major
@@ -132,8 +132,8 @@ static ct_ex driver_effort(struct ct_build *b, int coordinate)
     return ct_ex_sub(x, row, ct_joint_passive(b, coordinate));
 }
 
-static bool effort_signal(struct ct_build *b, int joint, int k, const char *name, struct ct_mark mark,
-                          ct_ex *out)
+static bool effort_signal(struct ct_build *b, int joint, int k, const char *name,
+                          struct ct_mark mark, ct_ex *out)
 {
     const struct ct_instance *self = &b->model->joint[joint];
     if (self->from < 0) {
@@ -156,8 +156,8 @@ static bool effort_signal(struct ct_build *b, int joint, int k, const char *name
 }
 
 // q, u, a, effort with or without a number.
-static bool coordinate_signal(struct ct_build *b, int joint, const char *property, const char *name,
-                              struct ct_mark mark, ct_ex *out)
+static bool coordinate_signal(struct ct_build *b, int joint, const char *property,
+                              const char *name, struct ct_mark mark, ct_ex *out)
 {
     const struct ct_instance *self = &b->model->joint[joint];
     const size_t letters = strcspn(property, "0123456789");
@@ -178,8 +178,8 @@ static bool coordinate_signal(struct ct_build *b, int joint, const char *propert
     return true;
 }
 
-static bool joint_signal(struct ct_build *b, int joint, const struct signal *s, const char *name,
-                         struct ct_mark mark, ct_ex *out)
+static bool joint_signal(struct ct_build *b, int joint, const struct signal *s,
+                         const char *name, struct ct_mark mark, ct_ex *out)
 {
     static const char *const kinds[] = {"q", "u", "a", "effort"};
     const bool is_force = !strcmp(s->property, "force");
@@ -231,8 +231,9 @@ static ct_ex3 system_vector(struct ct_build *b, int property)
         else if (property == 1)
             sum = ct_ex3_add(x, sum, body_momentum(b, i));
         else
-            sum = ct_ex3_add(x, sum,
-                             ct_ex3_add(x, ct_ex3_cross(x, r, body_momentum(b, i)), body_spin(b, i)));
+            sum = ct_ex3_add(
+                x, sum,
+                ct_ex3_add(x, ct_ex3_cross(x, r, body_momentum(b, i)), body_spin(b, i)));
         mass = ct_ex_add(x, mass, m);
     }
     for (int i = 0; i < 3 && property == 0; i++)
@@ -259,8 +260,9 @@ static bool global_signal(struct ct_build *b, const struct signal *s, const char
     struct ct_exs *x = b->x;
     if (!strcmp(s->owner, "system")) {
         const int i = index_of(s->property, sums, 3);
-        return i < 0 ? unknown(b, mark, name, "the system has com, momentum and angular_momentum")
-                     : component_of(b, s, name, mark, system_vector(b, i), out);
+        return i < 0
+                 ? unknown(b, mark, name, "the system has com, momentum and angular_momentum")
+                 : component_of(b, s, name, mark, system_vector(b, i), out);
     }
     if (!strcmp(s->owner, "constraint")) {
         const bool position = !strcmp(s->property, "position");
@@ -271,8 +273,8 @@ static bool global_signal(struct ct_build *b, const struct signal *s, const char
     }
     const int i = index_of(s->property, energies, 5);
     const ct_ex stored = ct_ex_add(x, e->kinetic, e->potential);
-    const ct_ex values[]
-        = {e->kinetic, e->potential, CT_EX_ZERO, e->work_symbol, ct_ex_sub(x, stored, e->work_symbol)};
+    const ct_ex values[] = {e->kinetic, e->potential, CT_EX_ZERO, e->work_symbol,
+                            ct_ex_sub(x, stored, e->work_symbol)};
     if (i < 0)
         return unknown(b, mark, name, "energy has kinetic, potential, strain, work and total");
     *out = values[i];
@@ -323,7 +325,8 @@ bool ct_signal_resolve(struct ct_build *b, const char *name, struct ct_mark mark
     *out = CT_EX_ZERO;
     if (!split(b, name, &s, &frame))
         return unknown(b, mark, name, "a signal is written OWNER.PROPERTY");
-    if (!strcmp(s.owner, "system") || !strcmp(s.owner, "energy") || !strcmp(s.owner, "constraint"))
+    if (!strcmp(s.owner, "system") || !strcmp(s.owner, "energy")
+        || !strcmp(s.owner, "constraint"))
         return global_signal(b, &s, name, mark, out);
     const int joint = ct_model_find_joint(b->model, s.owner);
     if (joint >= 0)
@@ -332,8 +335,8 @@ bool ct_signal_resolve(struct ct_build *b, const char *name, struct ct_mark mark
     if (force >= 0) {
         const struct ct_instance *self = &b->model->force[force];
         const char *property = s.component
-                                   ? ct_arena_printf(b->arena, "%s.%s", s.property, s.component)
-                                   : s.property;
+                                 ? ct_arena_printf(b->arena, "%s.%s", s.property, s.component)
+                                 : s.property;
         if (self->cls->signal && self->cls->signal(b, self, property, out))
             return true;
         return unknown(b, mark, name, "this force has no such property");
@@ -373,13 +376,17 @@ ct_ex ct_build_value(struct ct_build *b, ct_ex e)
         if (ct_signal_resolve(b, s.name, s.mark, &to[i]) && !b->in_outputs
             && ct_ex_kinds(b->x, to[i]) & late)
             ct_error(b->ctx, s.mark, CT_E_SIGNAL_USE,
-                     "a force cannot depend on '%s': accelerations, reactions and work follow from it",
+                     "a force cannot depend on '%s': accelerations, reactions and work follow "
+                     "from it",
                      s.name);
     }
     b->resolving--;
     const ct_ex replaced = ct_ex_subst(b->x, e, from, to, n);
-    const bool more = ct_ex_kinds(b->x, replaced) & 1u << CT_SYM_SIGNAL; // more than COUNT(from)
-    return more ? ct_build_value(b, replaced) : b->in_outputs ? replaced : ct_mode_hold(b, replaced);
+    const bool more
+        = ct_ex_kinds(b->x, replaced) & 1u << CT_SYM_SIGNAL; // more than COUNT(from)
+    return more          ? ct_build_value(b, replaced)
+         : b->in_outputs ? replaced
+                         : ct_mode_hold(b, replaced);
 }
 
 // ---- energies --------------------------------------------------------------------------------------------------------------
@@ -432,9 +439,16 @@ static const char *const *components_of(struct ct_build *b, const char *name)
     static const char *const matrix[]
         = {".xx", ".xy", ".xz", ".yx", ".yy", ".yz", ".zx", ".zy", ".zz", NULL};
     static const char *const four[] = {".0", ".1", ".2", ".3", NULL};
-    static const char *const vectors[]
-        = {"position", "velocity", "acceleration", "angular_velocity", "angular_acceleration", "com",
-           "momentum", "angular_momentum", "force", "torque"};
+    static const char *const vectors[] = {"position",
+                                          "velocity",
+                                          "acceleration",
+                                          "angular_velocity",
+                                          "angular_acceleration",
+                                          "com",
+                                          "momentum",
+                                          "angular_momentum",
+                                          "force",
+                                          "torque"};
     struct signal s = {0};
     int frame;
     if (!split(b, name, &s, &frame) || s.component)
@@ -460,7 +474,8 @@ static const char *with_component(struct ct_build *b, const char *name, const ch
 }
 
 // "J.q" of a joint with several coordinates stands for all of them.
-static bool numbered_columns(struct ct_build *b, const char *name, struct ct_mark mark, bool *done)
+static bool numbered_columns(struct ct_build *b, const char *name, struct ct_mark mark,
+                             bool *done)
 {
     const char *dot = strrchr(name, '.');
     *done = false;
@@ -469,7 +484,8 @@ static bool numbered_columns(struct ct_build *b, const char *name, struct ct_mar
     const int joint
         = ct_model_find_joint(b->model, ct_arena_strndup(b->arena, name, (size_t)(dot - name)));
     const bool stored = !strcmp(dot, ".q");
-    if (joint < 0 || (!stored && strcmp(dot, ".u") && strcmp(dot, ".a") && strcmp(dot, ".effort")))
+    if (joint < 0
+        || (!stored && strcmp(dot, ".u") && strcmp(dot, ".a") && strcmp(dot, ".effort")))
         return true;
     const int n = stored ? b->model->joint[joint].ncoord : b->model->joint[joint].nfree;
     if (n < 2)

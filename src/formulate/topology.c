@@ -12,16 +12,19 @@
 
 static int add_node(struct ct_build *b, const char *name, struct ct_mark mark, int body)
 {
-    const struct ct_node_info n
-        = {.name = name, .mark = mark, .body = body, .is_particle = b->model->body[body].is_particle};
+    const struct ct_node_info n = {.name = name,
+                                   .mark = mark,
+                                   .body = body,
+                                   .is_particle = b->model->body[body].is_particle};
     CT_PUSH(b->arena, b->node, b->nnode, b->node_cap, n);
     return (int)b->nnode - 1;
 }
 
-static struct ct_edge_info *add_edge(struct ct_build *b, enum ct_edge_kind kind, const char *name,
-                                     struct ct_mark mark, int tail, int head)
+static struct ct_edge_info *add_edge(struct ct_build *b, enum ct_edge_kind kind,
+                                     const char *name, struct ct_mark mark, int tail, int head)
 {
-    const struct ct_edge_info e = {.kind = kind, .name = name, .mark = mark, .S = ct_ex33_identity()};
+    const struct ct_edge_info e
+        = {.kind = kind, .name = name, .mark = mark, .S = ct_ex33_identity()};
     const struct ct_edge w = {tail, head};
     size_t nwiring = b->nedge;
     CT_PUSH(b->arena, b->wiring, nwiring, b->wiring_cap, w);
@@ -52,8 +55,8 @@ static void add_frames(struct ct_build *b)
         const int own = m->body[f->body].frame;
         if ((int)i == own)
             continue;
-        struct ct_edge_info *e = add_edge(b, CT_EDGE_ARM, f->name, f->mark, b->node_of_frame[own],
-                                          b->node_of_frame[i]);
+        struct ct_edge_info *e = add_edge(b, CT_EDGE_ARM, f->name, f->mark,
+                                          b->node_of_frame[own], b->node_of_frame[i]);
         e->index = (int)i;
         e->at = f->at;
         e->S = turns_to_matrix(b->x, f->turn, f->nturn);
@@ -75,14 +78,15 @@ static void add_bodies(struct ct_build *b)
         if (!ct_ex3_is_zero(body->com)) {
             const char *name = ct_arena_printf(b->arena, "%s.com", body->instance.name);
             const int com = add_node(b, name, body->instance.mark, (int)i);
-            struct ct_edge_info *arm = add_edge(b, CT_EDGE_ARM, name, body->instance.mark, own, com);
+            struct ct_edge_info *arm
+                = add_edge(b, CT_EDGE_ARM, name, body->instance.mark, own, com);
             arm->index = -1;
             arm->at = body->com;
             arm->has_rotation = arm->must_be_branch = true;
             b->node_of_com[i] = com;
         }
-        struct ct_edge_info *e = add_edge(b, CT_EDGE_BODY, body->instance.name, body->instance.mark,
-                                          0, b->node_of_com[i]);
+        struct ct_edge_info *e = add_edge(b, CT_EDGE_BODY, body->instance.name,
+                                          body->instance.mark, 0, b->node_of_com[i]);
         e->index = (int)i;
         e->self = &body->instance;
         e->has_rotation = true;
@@ -139,8 +143,9 @@ static void add_joints(struct ct_build *b)
         e->never_branch = is_motionless(joint);
         b->edge_of_joint[j] = (int)b->nedge - 1;
         if (closure >= 0) {
-            e = add_edge(b, CT_EDGE_CLOSURE, ct_arena_printf(b->arena, "%s.closure", joint->name),
-                         joint->mark, to, closure);
+            e = add_edge(b, CT_EDGE_CLOSURE,
+                         ct_arena_printf(b->arena, "%s.closure", joint->name), joint->mark, to,
+                         closure);
             e->index = (int)j;
             e->has_rotation = !b->node[closure].is_particle;
         }
@@ -194,8 +199,8 @@ static void body_motion(struct ct_build *b, const struct ct_edge_info *e, struct
     }
 }
 
-static void count_coordinates(const struct ct_build *b, const struct ct_edge_info *e, int *ncoord,
-                              int *nfree)
+static void count_coordinates(const struct ct_build *b, const struct ct_edge_info *e,
+                              int *ncoord, int *nfree)
 {
     const bool is_particle = e->kind == CT_EDGE_BODY && b->model->body[e->index].is_particle;
     *ncoord = *nfree = 0;
@@ -272,7 +277,8 @@ static void add_coordinates(struct ct_build *b, int edge)
         c.is_driven = driver && driver->given && (size_t)k < driver->n && !driver->hole[k];
         CT_PUSH(b->arena, b->coordinate, b->ncoordinate, b->coordinate_cap, c);
         const bool in_quaternion = m.quaternion >= 0 && k >= m.quaternion;
-        if (!c.is_driven && !(in_quaternion && k == m.quaternion)) { // four numbers, three freedoms
+        if (!c.is_driven
+            && !(in_quaternion && k == m.quaternion)) { // four numbers, three freedoms
             e->weight_t += c.in_translation;
             e->weight_r += c.in_rotation;
         }
@@ -377,11 +383,13 @@ static ct_ex reach_out(struct ct_build *b, int edge, const ct_ex33 *U)
     const ct_ex zero[CT_MAX_COORD] = {{0}};
     ct_ex3 d = e->at;
     for (int i = 0; i < 3 && e->kind != CT_EDGE_ARM; i++)
-        d.e[i] = ct_ex_subst(b->x, e->trial.d.e[i], e->trial.coord, zero, (size_t)e->ncoordinate);
+        d.e[i]
+            = ct_ex_subst(b->x, e->trial.d.e[i], e->trial.coord, zero, (size_t)e->ncoordinate);
     return ct_ex3_dot(b->x, ct_ex33_apply_t(b->x, U, b->plane[2]), d);
 }
 
-static const double layer_tolerance = 1e-9; // of places out of the plane, against the longest arm
+static const double layer_tolerance
+    = 1e-9; // of places out of the plane, against the longest arm
 
 static double longest_arm(const struct ct_build *b)
 {
@@ -501,9 +509,9 @@ static void detect_plane(struct ct_build *b, bool allowed)
     ct_axes_across(b->x, n, b->value, &b->plane[0], &b->plane[1]);
     double v[3];
     value3(b, n, v);
-    const char *why = ct_arena_printf(b->arena,
-                                      "every joint turns about (%.6g, %.6g, %.6g) or slides across it",
-                                      v[0], v[1], v[2]);
+    const char *why = ct_arena_printf(
+        b->arena, "every joint turns about (%.6g, %.6g, %.6g) or slides across it", v[0], v[1],
+        v[2]);
     ct_topology_left_out(b, "motion out of the plane and its constraint rows", why);
 }
 

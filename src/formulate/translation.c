@@ -10,14 +10,15 @@ static const ct_ex3 zero3 = {{{0}, {0}, {0}}};
 
 static bool same3(ct_ex3 a, ct_ex3 b)
 {
-    return ct_ex_same(a.e[0], b.e[0]) && ct_ex_same(a.e[1], b.e[1]) && ct_ex_same(a.e[2], b.e[2]);
+    return ct_ex_same(a.e[0], b.e[0]) && ct_ex_same(a.e[1], b.e[1])
+        && ct_ex_same(a.e[2], b.e[2]);
 }
 
 static bool is_moving(const struct ct_build *b, ct_ex3 v)
 {
     const unsigned moving = 1u << CT_SYM_Q | 1u << CT_SYM_TIME;
     return (ct_ex_kinds(b->x, v.e[0]) | ct_ex_kinds(b->x, v.e[1]) | ct_ex_kinds(b->x, v.e[2]))
-           & moving;
+         & moving;
 }
 
 // ---- anchors --------------------------------------------------------------------------------------
@@ -44,8 +45,9 @@ static int anchor_at(struct ct_build *b, const struct ct_place *p)
 }
 
 // Node beyond a branch that slides: an anchor of its own.
-static void place_sliding(struct ct_build *b, const struct ct_edge_info *e, const struct ct_place *p,
-                          const struct ct_place *tail, int sign, ct_ex3 vector, struct ct_place *self)
+static void place_sliding(struct ct_build *b, const struct ct_edge_info *e,
+                          const struct ct_place *p, const struct ct_place *tail, int sign,
+                          ct_ex3 vector, struct ct_place *self)
 {
     const int cluster = tail->frame;
     ct_ex3 local = vector;
@@ -64,8 +66,8 @@ static void place_sliding(struct ct_build *b, const struct ct_edge_info *e, cons
             p_tail.e[j] = ct_edge_partial(b, e, e->trial.d.e[j], k);
         const ct_ex3 along = ct_ex33_apply(b->x, &tail->S, p_tail);
         if (!ct_ex3_is_zero(along))
-            a->slide[a->nslide++]
-                = (struct ct_slide){c->u, c->driver, sign > 0 ? along : ct_ex3_neg(b->x, along)};
+            a->slide[a->nslide++] = (struct ct_slide){
+                c->u, c->driver, sign > 0 ? along : ct_ex3_neg(b->x, along)};
     }
     a->drift = ct_build_rate3(b, vector);
     a->drift_bias = ct_build_rate3(b, a->drift);
@@ -154,7 +156,8 @@ ct_ex3 ct_link_velocity(struct ct_build *b, int i)
 }
 
 // Acceleration of a vector fixed in a cluster: al x d + w x (w x d).
-static ct_ex3 carried_acceleration(struct ct_build *b, int cluster, ct_ex3 d, enum ct_level level)
+static ct_ex3 carried_acceleration(struct ct_build *b, int cluster, ct_ex3 d,
+                                   enum ct_level level)
 {
     const ct_ex3 turning = ct_ex3_cross(b->x, ct_cluster_acceleration(b, cluster, level), d);
     return ct_ex3_add(b->x, turning, ct_cluster_centripetal(b, cluster, d));
@@ -188,7 +191,8 @@ ct_ex3 ct_link_acceleration(struct ct_build *b, int i, enum ct_level level)
 
 static ct_ex3 anchor_position(struct ct_build *b, int i)
 {
-    return i ? ct_ex3_add(b->x, anchor_position(b, b->anchor[i].parent), ct_link_vector(b, i)) : zero3;
+    return i ? ct_ex3_add(b->x, anchor_position(b, b->anchor[i].parent), ct_link_vector(b, i))
+             : zero3;
 }
 
 static ct_ex3 anchor_velocity(struct ct_build *b, int i)
@@ -281,7 +285,8 @@ static struct path find_path(struct ct_build *b, int tail, int head)
 
 static ct_ex3 piece_vector(struct ct_build *b, const struct piece *p)
 {
-    return p->anchor >= 0 ? ct_link_vector(b, p->anchor) : ct_cluster_turn(b, p->cluster, p->local);
+    return p->anchor >= 0 ? ct_link_vector(b, p->anchor)
+                          : ct_cluster_turn(b, p->cluster, p->local);
 }
 
 static ct_ex3 piece_velocity(struct ct_build *b, const struct piece *p)
@@ -328,7 +333,8 @@ ct_ex3 ct_path_acceleration(struct ct_build *b, int tail, int head, enum ct_leve
     return sum;
 }
 
-bool ct_path_reach(struct ct_build *b, int tail, int head, size_t r, bool carried, ct_ex3 *reach)
+bool ct_path_reach(struct ct_build *b, int tail, int head, size_t r, bool carried,
+                   ct_ex3 *reach)
 {
     const struct path p = find_path(b, tail, head);
     const int turning = b->spin[r].cluster;

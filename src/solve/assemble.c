@@ -11,9 +11,10 @@
 #include <math.h>
 #include <string.h>
 
-static const double hard = 1e4;            // weight of what must be met against what is wanted
-static const double met = 1e-9;            // left over of what must be met [m or rad]
-static const double longest_step = 0.5;    // of one iteration [m or rad], against jumping to another assembly
+static const double hard = 1e4; // weight of what must be met against what is wanted
+static const double met = 1e-9; // left over of what must be met [m or rad]
+static const double longest_step
+    = 0.5; // of one iteration [m or rad], against jumping to another assembly
 enum { MOST_ITERATIONS = 200 };
 
 // What a coordinate shall be: by place in eqs->coordinate.
@@ -28,10 +29,10 @@ struct assembly {
     struct ct_machine *m;
     const struct ct_equations *e;
     struct target *q, *u;
-    bool *fixed_row;       // rows without an offset of their own
+    bool *fixed_row; // rows without an offset of their own
     double *y, *A, *b, *row, *work, *speed0;
     int *iwork;
-    size_t most;           // rows of A
+    size_t most; // rows of A
 };
 
 // ---- targets --------------------------------------------------------------------------------------------
@@ -88,7 +89,8 @@ static void joint_target(struct assembly *s, size_t i, const struct ct_model *mo
     q->wanted = true;
     q->is_given = given && !initial->guess;
     u->wanted = c->place < e->self->nfree;
-    u->is_given = initial_number(model, &initial->u, c->place, &u->value) && !initial->guess && u->wanted;
+    u->is_given = initial_number(model, &initial->u, c->place, &u->value) && !initial->guess
+               && u->wanted;
     if (c->is_driven) // the motion itself holds the value
         q->wanted = q->is_given = u->wanted = u->is_given = false;
     if (!c->in_translation && !c->in_rotation)
@@ -113,9 +115,10 @@ static void body_target(struct assembly *s, size_t i, const struct ct_model *mod
         q->value = c->place == k;
     else if (c->place < lengths)
         for (int j = 0; j < 3; j++)
-            q->value += ct_model_number(model, model->body[e->index].com.e[j])
-                        * ct_model_number(model, b->is_planar ? b->plane[c->place].e[j]
-                                                              : (ct_ex){(uint32_t)(j == c->place)});
+            q->value
+                += ct_model_number(model, model->body[e->index].com.e[j])
+                 * ct_model_number(model, b->is_planar ? b->plane[c->place].e[j]
+                                                       : (ct_ex){(uint32_t)(j == c->place)});
 }
 
 static void find_targets(struct assembly *s, const struct ct_model *model)
@@ -187,8 +190,8 @@ static void speed_rows(struct assembly *s, double *rows)
     ct_program_run(&m->result, m->input);
 }
 
-static void add_row(struct assembly *s, size_t *n, double weight, const double *coef, size_t stride,
-                    double r)
+static void add_row(struct assembly *s, size_t *n, double weight, const double *coef,
+                    size_t stride, double r)
 {
     for (size_t k = 0; k < s->m->nu; k++)
         s->A[*n + s->most * k] = weight * coef[stride * k];
@@ -311,15 +314,17 @@ static bool report_positions(struct assembly *s)
     if (worst_value > met) {
         const struct ct_coordinate *c = &s->e->coordinate[value];
         const struct ct_instance *joint = b->edge[c->edge].self;
-        return ct_error(s->ctx, initial_value(&b->edge[c->edge], false)->mark, CT_E_START,
-                        "initial values contradict each other: '%s' of joint '%s' is missed by %.3g",
-                        c->name, joint->name, worst_value);
+        return ct_error(
+            s->ctx, initial_value(&b->edge[c->edge], false)->mark, CT_E_START,
+            "initial values contradict each other: '%s' of joint '%s' is missed by %.3g",
+            c->name, joint->name, worst_value);
     }
     const int joint = s->e->row[row].joint;
     const struct ct_mark mark
         = joint >= 0 ? b->model->joint[joint].mark : (struct ct_mark){.file = b->model->file};
     ct_error(s->ctx, mark, CT_E_ASSEMBLY,
-             "the mechanism cannot be assembled: '%s' stays open by %.3g; check lengths and places%s",
+             "the mechanism cannot be assembled: '%s' stays open by %.3g; check lengths and "
+             "places%s",
              s->e->row[row].name, worst_row,
              any_given ? ", the given initial values" : " and give guesses in `initial`");
     return false;
@@ -339,9 +344,10 @@ static bool report_velocities(struct assembly *s)
     }
     if (value < s->e->ncoordinate) {
         const struct ct_coordinate *c = &s->e->coordinate[value];
-        return ct_error(s->ctx, initial_value(&b->edge[c->edge], true)->mark, CT_E_START,
-                        "initial speeds contradict each other: the one of '%s' is missed by %.3g",
-                        c->name, worst);
+        return ct_error(
+            s->ctx, initial_value(&b->edge[c->edge], true)->mark, CT_E_START,
+            "initial speeds contradict each other: the one of '%s' is missed by %.3g", c->name,
+            worst);
     }
     return ct_error(s->ctx, (struct ct_mark){.file = b->model->file}, CT_E_START,
                     "the drivers ask for speeds that the mechanism cannot have");
@@ -364,9 +370,10 @@ static bool check_drivers(struct assembly *s)
                 continue;
             const double real = s->m->result.out[2 * i + (size_t)k];
             if (fabs(given - real) > met * fmax(1, fabs(real)))
-                ok = ct_error(s->ctx, v->mark, CT_E_START,
-                              "joint '%s' starts on its motion with %s = %.17g, but initial says %.17g",
-                              e->self->name, k ? "u" : "q", real, given);
+                ok = ct_error(
+                    s->ctx, v->mark, CT_E_START,
+                    "joint '%s' starts on its motion with %s = %.17g, but initial says %.17g",
+                    e->self->name, k ? "u" : "q", real, given);
         }
     }
     return ok;
@@ -400,7 +407,8 @@ static void start_near_targets(struct assembly *s)
             s->y[c->q] = s->q[i].value;
     }
     for (size_t i = 0; i < s->e->nmemory; i++)
-        for (size_t k = 0; k < s->e->ncoordinate && s->e->memory[i].kind == CT_MEMORY_ANGLE; k++) {
+        for (size_t k = 0; k < s->e->ncoordinate && s->e->memory[i].kind == CT_MEMORY_ANGLE;
+             k++) {
             const struct ct_coordinate *c = &s->e->coordinate[k];
             const struct ct_edge_info *e = &s->e->build->edge[c->edge];
             if (e->kind == CT_EDGE_JOINT && e->index == s->e->memory[i].joint
@@ -422,7 +430,7 @@ bool ct_assemble(struct ct_ctx *ctx, struct ct_arena *a, const struct ct_model *
     s.q = CT_NEWN(a, struct target, nc + 1);
     s.u = CT_NEWN(a, struct target, nc + 1);
     s.y = CT_NEWN(a, double, m->nq + m->nu + 1);
-    s.A = CT_NEWN(a, double, s.most * (m->nu + 1));
+    s.A = CT_NEWN(a, double, s.most *(m->nu + 1));
     s.b = CT_NEWN(a, double, s.most + m->nu);
     s.row = CT_NEWN(a, double, m->nu + 1);
     s.speed0 = CT_NEWN(a, double, nc + 1);

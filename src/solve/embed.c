@@ -21,7 +21,8 @@ static size_t larger(size_t a, size_t b)
     return a > b ? a : b;
 }
 
-struct ct_embed *ct_embed_create(struct ct_arena *arena, struct ct_ctx *ctx, struct ct_machine *m)
+struct ct_embed *ct_embed_create(struct ct_arena *arena, struct ct_ctx *ctx,
+                                 struct ct_machine *m)
 {
     const size_t n = m->nu, r = m->nrow, k = larger(n, r) + 1;
     struct ct_embed *s = CT_NEW(arena, struct ct_embed);
@@ -33,11 +34,11 @@ struct ct_embed *ct_embed_create(struct ct_arena *arena, struct ct_ctx *ctx, str
     s->is_unique = CT_NEWN(arena, bool, r + 1);
     s->a = CT_NEWN(arena, double, n + 1);
     s->lam = CT_NEWN(arena, double, r + 1);
-    s->Jd = CT_NEWN(arena, double, k * k);
-    s->B = CT_NEWN(arena, double, k * k);
-    s->S = CT_NEWN(arena, double, k * k);
-    s->MB = CT_NEWN(arena, double, k * k);
-    s->A = CT_NEWN(arena, double, k * k);
+    s->Jd = CT_NEWN(arena, double, k *k);
+    s->B = CT_NEWN(arena, double, k *k);
+    s->S = CT_NEWN(arena, double, k *k);
+    s->MB = CT_NEWN(arena, double, k *k);
+    s->A = CT_NEWN(arena, double, k *k);
     s->c = CT_NEWN(arena, double, k);
     s->r = CT_NEWN(arena, double, k);
     s->b = CT_NEWN(arena, double, k);
@@ -46,7 +47,8 @@ struct ct_embed *ct_embed_create(struct ct_arena *arena, struct ct_ctx *ctx, str
     s->iwork = CT_NEWN(arena, int, k);
     s->column = CT_NEWN(arena, int, k);
     const int kk = (int)k;
-    s->work = CT_NEWN(arena, double, larger(ct_lstsq_work(kk, kk), ct_qr_pivot_work(kk, kk)) + 3 * k);
+    s->work = CT_NEWN(arena, double,
+                      larger(ct_lstsq_work(kk, kk), ct_qr_pivot_work(kk, kk)) + 3 * k);
     return s;
 }
 
@@ -322,7 +324,7 @@ static void step_onto(struct ct_embed *s, const double *r, double *d)
 static bool has_worn(const struct ct_embed *s)
 {
     return s->kappa > kappa_growth * s->kappa_chosen + 1 || s->kappa > kappa_largest
-           || s->sigma * kappa_growth < s->sigma_chosen;
+        || s->sigma * kappa_growth < s->sigma_chosen;
 }
 
 enum ct_eval ct_embed_project(struct ct_embed *s, double t, double *y)

@@ -14,20 +14,22 @@ struct ct_embed {
     struct ct_machine *m;
     struct ct_ctx *ctx;
     int rank;
-    int *row;            // kept rows, rank of them, then the redundant ones
-    int *dependent;      // rank columns
-    int *independent;    // nu - rank columns
+    int *row;                   // kept rows, rank of them, then the redundant ones
+    int *dependent;             // rank columns
+    int *independent;           // nu - rank columns
     double kappa, kappa_chosen; // largest |J_d^-1 J_i|, now and when chosen
-    double sigma, sigma_chosen; // smallest pivot of J_d against its largest: falls when kept rows depend
-    bool *is_unique;     // per row: its multiplier is determined
+    double sigma,
+        sigma_chosen; // smallest pivot of J_d against its largest: falls when kept rows depend
+    bool *is_unique;  // per row: its multiplier is determined
     long switches, factorizations;
-    double *a, *lam;     // results: u' (nu), lam (nrow)
+    double *a, *lam; // results: u' (nu), lam (nrow)
     // workspace
     double *Jd, *B, *c, *r, *S, *MB, *A, *b, *work, *d;
     int *pivot, *iwork, *column;
 };
 
-struct ct_embed *ct_embed_create(struct ct_arena *arena, struct ct_ctx *ctx, struct ct_machine *m);
+struct ct_embed *ct_embed_create(struct ct_arena *arena, struct ct_ctx *ctx,
+                                 struct ct_machine *m);
 
 /// Choose rows and columns anew at the machine's input. False with a diagnostic if the mass matrix
 /// leaves a freedom without inertia.

@@ -104,7 +104,8 @@ static void compile_motion(struct ct_arena *a, struct ct_machine *m, const struc
     compile(a, m, in, l.e, l.n, &m->motion);
 }
 
-static void compile_constraint(struct ct_arena *a, struct ct_machine *m, const struct inputs *in)
+static void compile_constraint(struct ct_arena *a, struct ct_machine *m,
+                               const struct inputs *in)
 {
     const struct ct_equations *e = m->e;
     struct list l = {.a = a};
@@ -151,8 +152,7 @@ struct ct_machine *ct_machine_create(struct ct_arena *a, const struct ct_model *
                                      const struct ct_equations *e)
 {
     struct ct_machine *m = CT_NEW(a, struct ct_machine);
-    *m = (struct ct_machine){
-        .e = e, .model = model, .nq = e->nq, .nu = e->nu, .nrow = e->nrow};
+    *m = (struct ct_machine){.e = e, .model = model, .nq = e->nq, .nu = e->nu, .nrow = e->nrow};
     m->at_q = 1 + model->nparameter;
     m->at_u = m->at_q + e->nq;
     m->at_a = m->at_u + e->nu;
@@ -187,8 +187,9 @@ struct ct_machine *ct_machine_create(struct ct_arena *a, const struct ct_model *
 
 void ct_machine_prepare(struct ct_machine *m)
 {
-    struct ct_program *const all[] = {&m->motion, &m->constraint, &m->result,   &m->power, &m->energy,
-                                      &m->root,   &m->memory,     &m->momentum, &m->driver};
+    struct ct_program *const all[]
+        = {&m->motion, &m->constraint, &m->result,   &m->power, &m->energy,
+           &m->root,   &m->memory,     &m->momentum, &m->driver};
     for (size_t i = 0; i < COUNT(all); i++)
         ct_tape_prepare(all[i]->tape, m->input, all[i]->work);
 }

@@ -11,8 +11,8 @@ static double side_of(enum ct_op op, double g)
 }
 
 // g at the state moved by h along (1, dy).
-static void evaluate(struct ct_machine *m, double t, const double *y, const double *dy, double h,
-                     double *g)
+static void evaluate(struct ct_machine *m, double t, const double *y, const double *dy,
+                     double h, double *g)
 {
     const size_t n = m->nq + m->nu;
     m->input[0] = t + h;
@@ -83,7 +83,8 @@ static double bisect(struct ct_machine *m, size_t i, double a, double b)
     return g == 0 ? a : b;
 }
 
-static void find_changes(struct ct_machine *m, size_t i, double t0, double t1, struct times *list)
+static void find_changes(struct ct_machine *m, size_t i, double t0, double t1,
+                         struct times *list)
 {
     enum { PIECES = 4096 };
     double g, a = t0;
@@ -107,7 +108,8 @@ static int ascending(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-size_t ct_time_events(struct ct_arena *a, struct ct_machine *m, double t0, double t1, double **time)
+size_t ct_time_events(struct ct_arena *a, struct ct_machine *m, double t0, double t1,
+                      double **time)
 {
     struct times list = {.a = a};
     const struct ct_exs *x = m->e->x;

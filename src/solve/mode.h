@@ -10,6 +10,7 @@ void ct_modes_start(struct ct_machine *m, double t, const double *y, const doubl
 
 /// All times in (t0, t1] at which something changes by time alone: modes of time, knots of linear tables. Ascending;
 /// the list lives in a. Changes closer than (t1 - t0)/4096 to each other may be missed in pairs.
-size_t ct_time_events(struct ct_arena *a, struct ct_machine *m, double t0, double t1, double **time);
+size_t ct_time_events(struct ct_arena *a, struct ct_machine *m, double t0, double t1,
+                      double **time);
 
 #endif

@@ -14,10 +14,10 @@ struct ct_run {
     struct ct_embed *s;
     size_t ny;
     double *y, *dy, *scratch, *value;
-    double *sign;       // of each state mode's root function at the last event
-    double *event;      // times
+    double *sign;  // of each state mode's root function at the last event
+    double *event; // times
     size_t nevent;
-    int *root_of;       // state modes, in order
+    int *root_of; // state modes, in order
     int nroot;
     bool needs_lam, has_power;
     const struct ct_run_options *o;
@@ -118,11 +118,13 @@ static double largest_jump(const struct ct_run *r, const double *before, int whi
 {
     double jump = 0;
     for (size_t i = 0; i < r->e->ndriver; i++)
-        jump = fmax(jump, fabs(r->m->driver.out[2 * i + (size_t)which] - before[2 * i + (size_t)which]));
+        jump = fmax(jump, fabs(r->m->driver.out[2 * i + (size_t)which]
+                               - before[2 * i + (size_t)which]));
     return jump;
 }
 
-static const double jump_tolerance = 1e-9; // of a driver's value or rate, beside rounding [rad, m, 1/s]
+static const double jump_tolerance
+    = 1e-9; // of a driver's value or rate, beside rounding [rad, m, 1/s]
 
 // Driven values after a change of modes; impulse or not, the speeds must fit the new rates.  (8.5)
 static enum ct_eval apply_jump(struct ct_run *r, double t, double *y, const double *before,
@@ -134,9 +136,10 @@ static enum ct_eval apply_jump(struct ct_run *r, double t, double *y, const doub
     for (size_t i = 0; i < r->e->ndriver; i++)
         if (fabs(m->driver.out[2 * i] - before[2 * i])
             > jump_tolerance * fmax(1, fabs(before[2 * i]))) {
-            ct_error(r->ctx, r->e->driver[i].mark, CT_E_DRIVER_JUMP,
-                     "the motion '%s' jumps by %.6g at t = %.9g: a place cannot change in no time",
-                     r->e->driver[i].name, m->driver.out[2 * i] - before[2 * i], t);
+            ct_error(
+                r->ctx, r->e->driver[i].mark, CT_E_DRIVER_JUMP,
+                "the motion '%s' jumps by %.6g at t = %.9g: a place cannot change in no time",
+                r->e->driver[i].name, m->driver.out[2 * i] - before[2 * i], t);
             return CT_EVAL_FATAL;
         }
     ct_machine_constraint(m);
@@ -156,7 +159,8 @@ static enum ct_eval apply_jump(struct ct_run *r, double t, double *y, const doub
     return ct_embed_impulse(r->s, p, u);
 }
 
-static enum ct_eval event(void *user, double t, double *y, const signed char *crossed, bool is_time)
+static enum ct_eval event(void *user, double t, double *y, const signed char *crossed,
+                          bool is_time)
 {
     struct ct_run *r = user;
     struct ct_machine *m = r->m;
@@ -177,8 +181,7 @@ static enum ct_eval event(void *user, double t, double *y, const signed char *cr
     ct_modes_start(m, t, y, r->dy);
     for (int i = 0; i < r->nroot; i++)
         if (crossed[i])
-            mode[r->root_of[i]]
-                = ct_op_apply(r->e->mode[r->root_of[i]].op, crossed[i], 0, 0);
+            mode[r->root_of[i]] = ct_op_apply(r->e->mode[r->root_of[i]].op, crossed[i], 0, 0);
     e = apply_jump(r, t, y, before, momentum);
     if (e != CT_EVAL_OK)
         return e;
@@ -204,8 +207,9 @@ static void find_needs(struct ct_run *r)
             r->root_of[r->nroot++] = (int)i;
 }
 
-struct ct_run *ct_run_create(struct ct_ctx *ctx, struct ct_arena *a, const struct ct_model *model,
-                             const struct ct_equations *e, const struct ct_start *start)
+struct ct_run *ct_run_create(struct ct_ctx *ctx, struct ct_arena *a,
+                             const struct ct_model *model, const struct ct_equations *e,
+                             const struct ct_start *start)
 {
     struct ct_run *r = CT_NEW(a, struct ct_run);
     *r = (struct ct_run){.ctx = ctx, .arena = a, .model = model, .e = e};
@@ -284,8 +288,7 @@ static void keep_ledger(struct ct_run *r, const double *y)
     r->started = true;
     r->energy_scale = fmax(r->energy_scale, fmax(fabs(kinetic), fabs(potential)));
     if (r->energy_scale > 0)
-        r->report->energy_drift
-            = fmax(r->report->energy_drift, fabs(total - r->energy0));
+        r->report->energy_drift = fmax(r->report->energy_drift, fabs(total - r->energy0));
     ct_machine_constraint(r->m);
     r->report->position_constraint
         = fmax(r->report->position_constraint, largest(r->m->phi, r->m->nrow));
@@ -333,13 +336,15 @@ static void name_undetermined(struct ct_run *r, struct ct_run_report *report)
     report->nundetermined = n;
 }
 
-bool ct_run_simulate(struct ct_run *r, const struct ct_run_options *o, struct ct_run_report *report)
+bool ct_run_simulate(struct ct_run *r, const struct ct_run_options *o,
+                     struct ct_run_report *report)
 {
     const size_t n = o->nsample;
     double *sample = CT_NEWN(r->arena, double, n + 1);
     bool *watched = CT_NEWN(r->arena, bool, r->ny);
     for (size_t i = 0; i < n; i++)
-        sample[i] = n == 1 || i + 1 == n ? o->duration : o->duration * (double)i / (double)(n - 1);
+        sample[i]
+            = n == 1 || i + 1 == n ? o->duration : o->duration * (double)i / (double)(n - 1);
     if (n == 1)
         sample[0] = 0;
     for (size_t i = 0; i < r->ny; i++)

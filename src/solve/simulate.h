@@ -19,18 +19,19 @@ struct ct_run_options {
 
 struct ct_run_report {
     struct ct_integrate_stats stats;
-    double energy_drift;        // largest |total - total(0)| / scale of the energies
+    double energy_drift; // largest |total - total(0)| / scale of the energies
     double position_constraint, velocity_constraint; // largest residuals at samples
     int rank;
     long switches;
-    double *final;              // last row
+    double *final; // last row
     const char *const *undetermined;
     size_t nundetermined;
 };
 
 /// Machine, embedding and state at t = 0, assembled; choices made and modes set. NULL with a diagnostic on failure.
-struct ct_run *ct_run_create(struct ct_ctx *ctx, struct ct_arena *a, const struct ct_model *model,
-                             const struct ct_equations *e, const struct ct_start *start);
+struct ct_run *ct_run_create(struct ct_ctx *ctx, struct ct_arena *a,
+                             const struct ct_model *model, const struct ct_equations *e,
+                             const struct ct_start *start);
 struct ct_machine *ct_run_machine(struct ct_run *r);
 struct ct_embed *ct_run_embed(struct ct_run *r);
 /// State at the start: q, u, work.
@@ -39,6 +40,7 @@ const double *ct_run_state(const struct ct_run *r);
 enum ct_eval ct_run_results(struct ct_run *r, double t, const double *y, double *out);
 
 /// Integrate over the duration.
-bool ct_run_simulate(struct ct_run *r, const struct ct_run_options *o, struct ct_run_report *report);
+bool ct_run_simulate(struct ct_run *r, const struct ct_run_options *o,
+                     struct ct_run_report *report);
 
 #endif
