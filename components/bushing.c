@@ -12,8 +12,10 @@
 static const struct ct_key keys[] = {
     {"from", CT_VALUE_FRAME, CT_KEY_REQUIRED, NULL, 1, 1, "frame in whose axes it acts"},
     {"to", CT_VALUE_FRAME, CT_KEY_REQUIRED, NULL, 1, 1, "frame on whose origin it acts"},
-    {"stiffness", CT_VALUE_LIST, 0, NULL, 6, 6, "three translational [N/m], three rotational [N*m/rad] (0)"},
-    {"damping", CT_VALUE_LIST, 0, NULL, 6, 6, "three translational [N*s/m], three rotational [N*m*s/rad] (0)"},
+    {"stiffness", CT_VALUE_LIST, 0, NULL, 6, 6,
+     "three translational [N/m], three rotational [N*m/rad] (0)"},
+    {"damping", CT_VALUE_LIST, 0, NULL, 6, 6,
+     "three translational [N*s/m], three rotational [N*m*s/rad] (0)"},
 };
 
 static ct_ex3 three(const struct ct_instance *self, const char *key, int first)
@@ -40,16 +42,14 @@ static ct_ex3 rotation_vector(struct ct_exs *x, const ct_ex33 *R)
                        ct_ex_scale(x, 0.5, ct_ex_sub(x, R->e[6], R->e[2])),
                        ct_ex_scale(x, 0.5, ct_ex_sub(x, R->e[1], R->e[3]))}};
     const ct_ex c = ct_ex_scale(
-        x, 0.5,
-        ct_ex_sub(x, ct_ex_add(x, R->e[0], ct_ex_add(x, R->e[4], R->e[8])), CT_EX_ONE));
+        x, 0.5, ct_ex_sub(x, ct_ex_add(x, R->e[0], ct_ex_add(x, R->e[4], R->e[8])), CT_EX_ONE));
     const ct_ex s2 = ct_ex3_dot(x, s, s);
     const double small = 1e-6; // |s|^2; the next term of the series, 5/112 |s|^6, is below eps
     const ct_ex is_small = ct_ex_mul(x, ct_ex_fun2(x, CT_OP_LT, s2, ct_ex_const(x, small)),
                                      ct_ex_fun2(x, CT_OP_GT, c, CT_EX_ZERO));
     const ct_ex series = ct_ex_add(
         x, CT_EX_ONE,
-        ct_ex_mul(x, s2,
-                  ct_ex_add(x, ct_ex_const(x, 1.0 / 6), ct_ex_scale(x, 3.0 / 40, s2))));
+        ct_ex_mul(x, s2, ct_ex_add(x, ct_ex_const(x, 1.0 / 6), ct_ex_scale(x, 3.0 / 40, s2))));
     const ct_ex sine = ct_ex_fun(x, CT_OP_SQRT, ct_ex_if(x, is_small, CT_EX_ONE, s2));
     const ct_ex exact = ct_ex_div(x, ct_ex_fun2(x, CT_OP_ATAN2, sine, c), sine);
     return ct_ex3_scale(x, ct_ex_if(x, is_small, series, exact), s);
@@ -63,7 +63,8 @@ static void apply(struct ct_build *b, const struct ct_instance *self)
     const ct_ex3 k = three(self, "stiffness", 0), kr = three(self, "stiffness", 3);
     const ct_ex3 c = three(self, "damping", 0), cr = three(self, "damping", 3);
     const ct_ex3 d = ct_path_position(b, tail, head);
-    const ct_ex3 seen = ct_ex3_sub(x, ct_path_velocity(b, tail, head), ct_cluster_swing(b, from, d));
+    const ct_ex3 seen
+        = ct_ex3_sub(x, ct_path_velocity(b, tail, head), ct_cluster_swing(b, from, d));
     const ct_ex3 place = ct_node_unturn(b, tail, d), rate = ct_node_unturn(b, tail, seen);
     const ct_ex3 w = ct_node_unturn(b, tail, ct_cluster_path_velocity(b, from, to));
     const ct_ex33 A = ct_node_rotation(b, tail), B = ct_node_rotation(b, head);
@@ -85,7 +86,8 @@ static void apply(struct ct_build *b, const struct ct_instance *self)
     ct_load_add(b, &l);
 }
 
-static bool signal(struct ct_build *b, const struct ct_instance *self, const char *name, ct_ex *out)
+static bool signal(struct ct_build *b, const struct ct_instance *self, const char *name,
+                   ct_ex *out)
 {
     for (size_t i = 0; i < b->nload; i++)
         for (int k = 0; k < 3 && b->load[i].self == self; k++) {

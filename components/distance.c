@@ -19,15 +19,15 @@ static void apply(struct ct_build *b, const struct ct_instance *self)
     const ct_ex3 zero = {{{0}, {0}, {0}}};
     const ct_ex3 d = ct_path_position(b, tail, head), v = ct_path_velocity(b, tail, head);
     const ct_ex square = ct_ex3_dot(x, d, d);
-    const ct_ex L
-        = length->given ? length->e[0] : ct_row_offset(b, self, ct_ex_fun(x, CT_OP_SQRT, square));
+    const ct_ex L = length->given ? length->e[0]
+                                  : ct_row_offset(b, self, ct_ex_fun(x, CT_OP_SQRT, square));
     const ct_ex phi
         = ct_ex_div(x, ct_ex_sub(x, square, ct_ex_mul(x, L, L)), ct_ex_scale(x, 2, L));
-    const ct_ex gam = ct_ex_div(
-        x,
-        ct_ex_add(x, ct_ex3_dot(x, d, ct_path_acceleration(b, tail, head, CT_BIAS)),
-                  ct_ex3_dot(x, v, v)),
-        L);
+    const ct_ex gam
+        = ct_ex_div(x,
+                    ct_ex_add(x, ct_ex3_dot(x, d, ct_path_acceleration(b, tail, head, CT_BIAS)),
+                              ct_ex3_dot(x, v, v)),
+                    L);
     struct ct_wrench w = {zero, zero};
     for (int i = 0; i < 3; i++)
         w.force.e[i] = ct_ex_div(x, d.e[i], L);

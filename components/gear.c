@@ -7,13 +7,15 @@
 static const struct ct_key keys[] = {
     {"joints", CT_VALUE_JOINTS, CT_KEY_REQUIRED, NULL, 2, 2,
      "the two coordinates, a joint's name or JOINT.q2"},
-    {"ratio", CT_VALUE_SCALAR, CT_KEY_REQUIRED, NULL, 1, 1, "turns of the first per turn of the second"},
+    {"ratio", CT_VALUE_SCALAR, CT_KEY_REQUIRED, NULL, 1, 1,
+     "turns of the first per turn of the second"},
 };
 
 static void apply(struct ct_build *b, const struct ct_instance *self)
 {
     const struct ct_value *joints = ct_instance_value(self, "joints");
-    const int a = ct_coordinate_find(b, joints->name[0]), c = ct_coordinate_find(b, joints->name[1]);
+    const int a = ct_coordinate_find(b, joints->name[0]),
+              c = ct_coordinate_find(b, joints->name[1]);
     if (a >= 0 && c >= 0)
         ct_row_couple(b, self, a, c, ct_instance_value(self, "ratio")->e[0]);
 }

@@ -13,7 +13,8 @@ static const struct ct_key keys[] = {
      "[Ixx, Iyy, Izz, Ixy, Ixz, Iyz] (0)"},
     {"com", CT_VALUE_VEC3, 0, "m", 3, 3, "centre of mass, from the body's frame ([0, 0, 0])"},
     {"points", CT_VALUE_POINTS, 0, NULL, 0, 0,
-     "frames fixed to the body: {NAME: [x, y, z]} or {NAME: {at: [x, y, z], rotate: [axis, angle]}}"},
+     "frames fixed to the body: {NAME: [x, y, z]} or {NAME: {at: [x, y, z], rotate: [axis, "
+     "angle]}}"},
 };
 
 const struct ct_component_class ct_component_rigid = {

@@ -50,9 +50,10 @@ static void apply(struct ct_build *b, const struct ct_instance *self)
                         .head = b->node_of_frame[self->to],
                         .is_central = true};
     // without a natural length k d pulls, and the length need not be known
-    const ct_ex per_length = ct_ex_is_zero(given(self, "length")) && ct_ex_is_zero(given(self, "damping"))
-                                 ? given(self, "stiffness")
-                                 : ct_ex_div(x, s.tension, s.length);
+    const ct_ex per_length
+        = ct_ex_is_zero(given(self, "length")) && ct_ex_is_zero(given(self, "damping"))
+            ? given(self, "stiffness")
+            : ct_ex_div(x, s.tension, s.length);
     l.force = ct_ex3_neg(x, ct_ex3_scale(x, per_length, s.d));
     l.potential = ct_ex_scale(
         x, 0.5, ct_ex_mul(x, given(self, "stiffness"), ct_ex_mul(x, s.stretch, s.stretch)));
@@ -60,7 +61,8 @@ static void apply(struct ct_build *b, const struct ct_instance *self)
     ct_load_add(b, &l);
 }
 
-static bool signal(struct ct_build *b, const struct ct_instance *self, const char *name, ct_ex *out)
+static bool signal(struct ct_build *b, const struct ct_instance *self, const char *name,
+                   ct_ex *out)
 {
     const struct state s = find_state(b, self);
     const char *const names[] = {"force", "length", "rate"};

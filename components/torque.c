@@ -5,14 +5,17 @@
 #include <string.h>
 
 static const struct ct_key keys[] = {
-    {"on", CT_VALUE_FRAME, CT_KEY_REQUIRED, NULL, 1, 1, "body or frame on which the torque acts"},
-    {"value", CT_VALUE_VEC3, CT_KEY_REQUIRED | CT_KEY_STATE, "N*m", 3, 3, "components [tx, ty, tz]"},
+    {"on", CT_VALUE_FRAME, CT_KEY_REQUIRED, NULL, 1, 1,
+     "body or frame on which the torque acts"},
+    {"value", CT_VALUE_VEC3, CT_KEY_REQUIRED | CT_KEY_STATE, "N*m", 3, 3,
+     "components [tx, ty, tz]"},
     {"in", CT_VALUE_FRAME, 0, NULL, 1, 1, "frame of the components (ground)"},
 };
 
 static ct_ex3 ground_value(struct ct_build *b, const struct ct_instance *self)
 {
-    const struct ct_value *value = ct_instance_value(self, "value"), *in = ct_instance_value(self, "in");
+    const struct ct_value *value = ct_instance_value(self, "value"),
+                          *in = ct_instance_value(self, "in");
     ct_ex3 v;
     for (int i = 0; i < 3; i++)
         v.e[i] = ct_build_value(b, value->e[i]);
@@ -27,7 +30,8 @@ static void apply(struct ct_build *b, const struct ct_instance *self)
     ct_load_add(b, &l);
 }
 
-static bool signal(struct ct_build *b, const struct ct_instance *self, const char *name, ct_ex *out)
+static bool signal(struct ct_build *b, const struct ct_instance *self, const char *name,
+                   ct_ex *out)
 {
     static const char *const names[] = {"torque.x", "torque.y", "torque.z"};
     const ct_ex3 v = ground_value(b, self);

@@ -29,7 +29,7 @@ char *ct_arena_strndup(struct ct_arena *a, const char *s, size_t n);
 char *ct_arena_printf(struct ct_arena *a, const char *fmt, ...)
     __attribute__((format(printf, 2, 3)));
 char *ct_arena_vprintf(struct ct_arena *a, const char *fmt, va_list ap)
-;
+    __attribute__((format(printf, 2, 0)));
 
 /// Bytes handed out so far, for reports.
 size_t ct_arena_used(const struct ct_arena *a);

@@ -81,7 +81,8 @@ void ct_ctx_print(const struct ct_ctx *ctx, FILE *out)
         if (d->code)
             fprintf(out, " [E%03d]", d->code);
         fputc('\n', out);
-        if (d->mark.file)
+        // each line costs a pass over the file; nobody reads on after so many
+        if (d->mark.file && i < 200)
             print_source_line(d->mark, out);
     }
 }
@@ -121,7 +122,9 @@ const char *ct_nearest(const char *name, const char *const *names, size_t n)
     size_t best_distance = strlen(name) / 3 + 2; // one slip in three letters
     for (size_t i = 0; i < n; i++) {
         const size_t d = edit_distance(name, names[i], best_distance);
-        if (d < best_distance) {
+        const size_t given = strlen(name), known = strlen(names[i]);
+        // at least half of the letters agree: `r` is no misspelt `t`
+        if (d < best_distance && 2 * d <= (given > known ? given : known)) {
             best_distance = d;
             best = names[i];
         }

@@ -11,7 +11,7 @@ struct ct_names {
     struct ct_names_slot {
         const char *name; // NULL: free
         int index;
-    } *slot;
+    } * slot;
     size_t n, size; // size is a power of two, at least twice n
 };
 

@@ -5,12 +5,12 @@
 #include <string.h>
 
 #define COMPONENT(name) extern const struct ct_component_class ct_component_##name;
-#include "components/components.def"
+#include "components.def"
 #undef COMPONENT
 
 const struct ct_component_class *const ct_component_classes[] = {
 #define COMPONENT(name) &ct_component_##name,
-#include "components/components.def"
+#include "components.def"
 #undef COMPONENT
 };
 
@@ -24,7 +24,8 @@ static const struct ct_key joint_keys[] = {
      "start: {q: values, u: values, rotate: [axis, angle], guess: true}"},
     {"stiffness", CT_VALUE_COORDS, 0, NULL, 1, CT_MAX_COORD, "spring along the coordinate (0)"},
     {"damping", CT_VALUE_COORDS, 0, NULL, 1, CT_MAX_COORD, "damper along the coordinate (0)"},
-    {"rest", CT_VALUE_COORDS, 0, NULL, 1, CT_MAX_COORD, "coordinate at which the spring is free (0)"},
+    {"rest", CT_VALUE_COORDS, 0, NULL, 1, CT_MAX_COORD,
+     "coordinate at which the spring is free (0)"},
     {"effort", CT_VALUE_COORDS, CT_KEY_STATE, NULL, 1, CT_MAX_COORD,
      "force or torque along the coordinate, positive along q (0)"},
     {"motion", CT_VALUE_COORDS, CT_KEY_TIME, NULL, 1, CT_MAX_COORD,

@@ -122,7 +122,7 @@ struct ct_instance {
     struct ct_initial initial;    // joints
     const ct_ex *local;           // symbols of the coordinate names of a custom joint
     int ncoord, nfree;            // joints: resolved counts; beside a particle lengths only
-    int from, to;                 // frames; -1 for gears; `force` and `torque`: from -1, to the frame acted on
+    int from, to; // frames; -1 for gears; `force` and `torque`: from -1, to the frame acted on
 };
 
 /// Value of a key of the instance by name; the key must exist (asserted). `given` tells if it was.

@@ -50,10 +50,11 @@ struct ct_output {
 enum ct_rate_jumps { CT_RATE_IMPULSE, CT_RATE_CONTINUOUS };
 
 struct ct_simulation {
-    double duration;    // [s]; 0 when none was given
+    double duration; // [s]; 0 when none was given
     bool has_duration;
-    long samples;       // at least 2 unless the duration is 0; both ends included; default 1001
-    double interval;    // [s] when it was given instead of samples (samples then follow from it), else 0
+    long samples; // at least 2 unless the duration is 0; both ends included; default 1001
+    double
+        interval; // [s] when it was given instead of samples (samples then follow from it), else 0
     double rtol, atol;  // `tolerance` (default 1e-8), `absolute` (default tolerance / 100)
     double step;        // fixed step [s]; 0: controlled
     const char *method; // "auto"
@@ -82,8 +83,8 @@ struct ct_model {
     struct ct_output *output;
     size_t noutput, output_cap;
     struct ct_simulation simulation;
-    double *value;                     // by number of symbol: t (0) and the parameters
-    struct ct_names parameter_index;   // names -> indices
+    double *value;                   // by number of symbol: t (0) and the parameters
+    struct ct_names parameter_index; // names -> indices
     struct ct_names frame_index, body_index, joint_index, force_index;
 };
 

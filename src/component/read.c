@@ -6,23 +6,24 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const char *const top_keys[] = {"cotree", "name",   "description", "gravity", "parameters",
-                                       "bodies", "joints", "forces",      "outputs", "simulation"};
+static const char *const top_keys[]
+    = {"cotree", "name",   "description", "gravity", "parameters",
+       "bodies", "joints", "forces",      "outputs", "simulation"};
 
 // ---- diagnostics in the order of the file ------------------------------------------------------------------
 
 struct group {
     const struct ct_diagnostic *first; // an error or warning; its notes follow
+    struct ct_mark mark; // the first one in the model's own file: a table is used there
     size_t n, number;
 };
 
 static int compare_groups(const void *a, const void *b)
 {
     const struct group *p = a, *q = b;
-    const struct ct_mark *m = &p->first->mark, *n = &q->first->mark;
-    const int c = m->file && n->file ? strcmp(m->file, n->file) : (m->file != NULL) - (n->file != NULL);
-    if (c)
-        return c;
+    const struct ct_mark *m = &p->mark, *n = &q->mark;
+    if (!m->file != !n->file) // the command line comes first
+        return m->file ? 1 : -1;
     if (m->line != n->line)
         return m->line < n->line ? -1 : 1;
     if (m->column != n->column)
@@ -31,7 +32,7 @@ static int compare_groups(const void *a, const void *b)
 }
 
 // Sections are read in an order of their own; readers go through a file from above.
-static void sort_diagnostics(struct ct_ctx *ctx, size_t from)
+static void sort_diagnostics(struct ct_ctx *ctx, const char *file, size_t from)
 {
     const size_t n = ctx->ndiagnostic - from;
     if (n < 2)
@@ -42,10 +43,13 @@ static void sort_diagnostics(struct ct_ctx *ctx, size_t from)
     size_t ngroup = 0;
     for (size_t i = 0; i < n; i++) {
         if (copy[i].severity != CT_SEVERITY_NOTE || !ngroup) {
-            group[ngroup] = (struct group){&copy[i], 0, ngroup};
+            group[ngroup] = (struct group){&copy[i], copy[i].mark, 0, ngroup};
             ngroup++;
         }
-        group[ngroup - 1].n++;
+        struct group *g = &group[ngroup - 1];
+        g->n++;
+        if (g->mark.file && copy[i].mark.file && strcmp(g->mark.file, file) != 0)
+            g->mark = copy[i].mark;
     }
     qsort(group, ngroup, sizeof *group, compare_groups);
     for (size_t g = 0, k = from; g < ngroup; g++)
@@ -74,7 +78,8 @@ static const char *stem(struct ct_reader *r)
     const char *slash = strrchr(r->m->file, '/');
     const char *base = slash ? slash + 1 : r->m->file;
     const char *dot = strrchr(base, '.');
-    return ct_arena_strndup(r->a, base, dot && dot > base ? (size_t)(dot - base) : strlen(base));
+    return ct_arena_strndup(r->a, base,
+                            dot && dot > base ? (size_t)(dot - base) : strlen(base));
 }
 
 static void read_top(struct ct_reader *r)
@@ -122,12 +127,13 @@ static bool read_model(struct ct_ctx *ctx, const char *file, const struct ct_nod
     return true;
 }
 
-static bool read_tree(struct ct_ctx *ctx, const char *file, const struct ct_node *root, size_t nerror,
-                      size_t ndiagnostic, const struct ct_set *set, size_t nset, struct ct_model *m)
+static bool read_tree(struct ct_ctx *ctx, const char *file, const struct ct_node *root,
+                      size_t nerror, size_t ndiagnostic, const struct ct_set *set, size_t nset,
+                      struct ct_model *m)
 {
     if (root) // also with keys given twice: there may be more to say
         read_model(ctx, file, root, set, nset, m);
-    sort_diagnostics(ctx, ndiagnostic);
+    sort_diagnostics(ctx, file, ndiagnostic);
     return ctx->nerror == nerror;
 }
 
@@ -137,7 +143,8 @@ bool ct_model_read(struct ct_ctx *ctx, const char *path, const struct ct_set *se
     const size_t nerror = ctx->nerror, ndiagnostic = ctx->ndiagnostic;
     const struct ct_node *root = NULL;
     ct_yaml_read(ctx, path, &root);
-    return read_tree(ctx, ct_arena_strdup(ctx->model, path), root, nerror, ndiagnostic, set, nset, m);
+    return read_tree(ctx, ct_arena_strdup(ctx->model, path), root, nerror, ndiagnostic, set,
+                     nset, m);
 }
 
 bool ct_model_parse(struct ct_ctx *ctx, const char *file, const char *text, size_t n,

@@ -14,20 +14,22 @@ struct ct_reader {
     struct ct_arena *a; // of the model
     struct ct_model *m;
     const struct ct_node *root;
-    bool parameters_ok;  // all have values; else nothing that needs them is checked
-    const char **known;  // names for suggestions: t and the parameters
+    bool parameters_ok; // all have values; else checks that need a missing one are left out
+    const char **known; // names for suggestions: t and the parameters
     size_t nknown, known_cap;
-    struct ct_names signal;             // text -> node of its symbol
-    const struct ct_instance *local_of; // custom joint whose coordinate names are known, or NULL
+    struct ct_names signal; // text -> node of its symbol
+    const struct ct_instance
+        *local_of; // custom joint whose coordinate names are known, or NULL
     const char *const *local_name;
     // of tables already read: their names ("file\ncolumn\nkind") -> number in the store
     struct ct_names table;
+    struct ct_table *sampled; // the store's tables, while they grow
     // components of the file by name, for duplicates across the sections
     struct ct_names component;
     struct ct_read_place {
         const char *sort; // "body", "joint", "force"
         struct ct_mark mark;
-    } *place;
+    } * place;
     size_t ncomponent, place_cap;
     unsigned flags; // CT_KEY_... of the value being read
     const struct ct_node **body_node, **joint_node, **force_node;
@@ -54,18 +56,21 @@ bool ct_read_text(struct ct_reader *r, const struct ct_node *node, const char **
 bool ct_read_name(struct ct_reader *r, const char *name, struct ct_mark at, const char *sort);
 /// A body, joint or force: its name must differ from all others.
 bool ct_read_component_name(struct ct_reader *r, const struct ct_pair *p, const char *sort);
-/// ", did you mean 'x'?" or "".
-const char *ct_read_near(struct ct_reader *r, const char *name, const char *const *names, size_t n);
+/// Suggestions cost a pass over all names each; after many errors nobody reads them.
+bool ct_read_suggests(const struct ct_reader *r);
+/// "; did you mean 'x'?" or "".
+const char *ct_read_near(struct ct_reader *r, const char *name, const char *const *names,
+                         size_t n);
 
 // ---- values ------------------------------------------------------------------------------------------
 
 /// One expression; flags are CT_KEY_TIME, _STATE, _LOCAL; unit as in ct_key.
-bool ct_read_expr(struct ct_reader *r, const struct ct_node *node, unsigned flags, const char *unit,
-                  ct_ex *e);
+bool ct_read_expr(struct ct_reader *r, const struct ct_node *node, unsigned flags,
+                  const char *unit, ct_ex *e);
 /// Its value, if it has one: false without error when it cannot be known (a parameter is wrong).
 bool ct_read_number(struct ct_reader *r, ct_ex e, double *value);
-bool ct_read_vec3(struct ct_reader *r, const struct ct_node *node, unsigned flags, const char *unit,
-                  ct_ex3 *v, struct ct_mark at[3]);
+bool ct_read_vec3(struct ct_reader *r, const struct ct_node *node, unsigned flags,
+                  const char *unit, ct_ex3 *v, struct ct_mark at[3]);
 bool ct_read_axis(struct ct_reader *r, const struct ct_node *node, ct_ex3 *axis);
 bool ct_read_turns(struct ct_reader *r, const struct ct_node *node, unsigned flags,
                    struct ct_turn **turn, size_t *nturn);
@@ -89,7 +94,8 @@ void ct_read_clear(struct ct_reader *r, struct ct_instance *self);
 bool ct_read_component_keys(struct ct_reader *r, const struct ct_instance *self,
                             const struct ct_node *node, const char *sort, bool use_family);
 /// The class's own keys, in the order of its table.
-bool ct_read_own_values(struct ct_reader *r, struct ct_instance *self, const struct ct_node *node);
+bool ct_read_own_values(struct ct_reader *r, struct ct_instance *self,
+                        const struct ct_node *node);
 
 // ---- sections: `declare` makes names known, `fill` reads values -----------------------------------------
 
@@ -102,8 +108,7 @@ void ct_read_forces_declare(struct ct_reader *r);
 void ct_read_forces_fill(struct ct_reader *r);
 void ct_read_outputs(struct ct_reader *r);
 void ct_read_simulation(struct ct_reader *r);
-/// `a` or `a.q2` of a gear: which joint and coordinate (from 0); reports at the mark.
-bool ct_read_coordinate(struct ct_reader *r, const char *text, struct ct_mark at, int *joint,
-                        int *coordinate);
+/// The joint of this name; -1 after an error at the mark.
+int ct_read_joint_name(struct ct_reader *r, const char *name, struct ct_mark at);
 
 #endif

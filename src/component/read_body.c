@@ -9,10 +9,8 @@ static const char *const later[] = {"beam"}; // types of the format that are not
 static void add_frame(struct ct_reader *r, const char *name, struct ct_mark at, int body)
 {
     struct ct_model *m = r->m;
-    const struct ct_frame f = {.name = name,
-                               .mark = at,
-                               .body = body,
-                               .at = {{CT_EX_ZERO, CT_EX_ZERO, CT_EX_ZERO}}};
+    const struct ct_frame f = {
+        .name = name, .mark = at, .body = body, .at = {{CT_EX_ZERO, CT_EX_ZERO, CT_EX_ZERO}}};
     ct_names_put(r->a, &m->frame_index, name, (int)m->nframe);
     CT_PUSH(r->a, m->frame, m->nframe, m->frame_cap, f);
 }
@@ -82,7 +80,8 @@ static bool read_point(struct ct_reader *r, const struct ct_node *node, struct c
     if (node->kind == CT_NODE_LIST)
         return ct_read_vec3(r, node, 0, "m", &f->at, NULL);
     const char *what = ct_arena_printf(r->ctx->scratch, "point '%s'", f->name);
-    if (!ct_read_shape(r, node, CT_NODE_MAP, "[x, y, z] or {at: [x, y, z], rotate: [axis, angle]}"))
+    if (!ct_read_shape(r, node, CT_NODE_MAP,
+                       "[x, y, z] or {at: [x, y, z], rotate: [axis, angle]}"))
         return false;
     bool ok = ct_read_keys(r, node, what, keys, COUNT(keys));
     const struct ct_node *at = ct_node_get(node, "at"), *rotate = ct_node_get(node, "rotate");
@@ -98,7 +97,8 @@ static bool read_point(struct ct_reader *r, const struct ct_node *node, struct c
     return ok;
 }
 
-static bool read_points(struct ct_reader *r, const struct ct_body *b, const struct ct_node *node)
+static bool read_points(struct ct_reader *r, const struct ct_body *b,
+                        const struct ct_node *node)
 {
     const struct ct_node *points = ct_node_get(node, "points");
     if (!points || ct_node_is_null(points))
@@ -131,7 +131,8 @@ static bool read_ground(struct ct_reader *r, const struct ct_node *node)
 
 // ---- mass and inertia -------------------------------------------------------------------------------------
 
-static bool check_mass(struct ct_reader *r, const struct ct_body *b, const struct ct_value *mass)
+static bool check_mass(struct ct_reader *r, const struct ct_body *b,
+                       const struct ct_value *mass)
 {
     double v;
     if (!mass->given || !ct_read_number(r, b->mass, &v) || !(v < 0))
@@ -145,11 +146,12 @@ static void principal_moments(const double I[6], double lam[3])
 {
     const double mean = (I[0] + I[1] + I[2]) / 3;
     const double x = I[0] - mean, y = I[1] - mean, z = I[2] - mean;
-    const double p = sqrt((x * x + y * y + z * z + 2 * (I[3] * I[3] + I[4] * I[4] + I[5] * I[5])) / 6);
+    const double p
+        = sqrt((x * x + y * y + z * z + 2 * (I[3] * I[3] + I[4] * I[4] + I[5] * I[5])) / 6);
     double angle = 0;
     if (p > 0) {
         const double det = x * (y * z - I[5] * I[5]) - I[3] * (I[3] * z - I[5] * I[4])
-                           + I[4] * (I[3] * I[5] - y * I[4]);
+                         + I[4] * (I[3] * I[5] - y * I[4]);
         angle = acos(fmax(-1, fmin(1, det / (2 * p * p * p)))) / 3;
     }
     const double third = 2.0943951023931953; // a third of a turn
@@ -160,7 +162,8 @@ static void principal_moments(const double I[6], double lam[3])
 
 // The moments of any mass distribution are sums of squares: none is negative, none exceeds the sum of
 // the other two.
-static bool check_inertia(struct ct_reader *r, const struct ct_body *b, const struct ct_value *given)
+static bool check_inertia(struct ct_reader *r, const struct ct_body *b,
+                          const struct ct_value *given)
 {
     double I[6], largest = 0, lam[3];
     for (int i = 0; i < 6; i++) {
@@ -177,11 +180,11 @@ static bool check_inertia(struct ct_reader *r, const struct ct_body *b, const st
     const double rounding = 1e-6 * lam[2];
     if (lam[0] >= -rounding && lam[2] <= lam[0] + lam[1] + rounding)
         return true;
-    return ct_error(r->ctx, given->mark, CT_E_INERTIA,
-                    "body '%s': no body has the principal moments of inertia %g, %g, %g kg*m^2: %s",
-                    b->instance.name, lam[0] * largest, lam[1] * largest, lam[2] * largest,
-                    lam[0] < -rounding ? "one is negative"
-                                       : "one is larger than the sum of the others");
+    return ct_error(
+        r->ctx, given->mark, CT_E_INERTIA,
+        "body '%s': no body has the principal moments of inertia %g, %g, %g kg*m^2: %s",
+        b->instance.name, lam[0] * largest, lam[1] * largest, lam[2] * largest,
+        lam[0] < -rounding ? "one is negative" : "one is larger than the sum of the others");
 }
 
 static bool fill_inertia(struct ct_reader *r, struct ct_body *b, const struct ct_value *v)
@@ -239,8 +242,8 @@ static bool read_body(struct ct_reader *r, struct ct_body *b, const struct ct_no
     const struct ct_node *type = ct_node_get(node, "type");
     for (size_t i = 0; type && type->kind == CT_NODE_SCALAR && i < COUNT(later); i++)
         if (strcmp(type->text, later[i]) == 0 && !ct_component_find(CT_FAMILY_BODY, later[i]))
-            return ct_error(r->ctx, type->mark, CT_E_LATER, "bodies of type '%s' are not available yet",
-                            later[i]);
+            return ct_error(r->ctx, type->mark, CT_E_LATER,
+                            "bodies of type '%s' are not available yet", later[i]);
     self->cls = ct_read_class(r, CT_FAMILY_BODY, &p, "body", "rigid");
     if (!self->cls)
         return false;

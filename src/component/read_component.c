@@ -12,9 +12,10 @@ bool ct_read_component_name(struct ct_reader *r, const struct ct_pair *p, const 
         return false;
     for (size_t i = 0; i < COUNT(taken); i++)
         if (strcmp(taken[i], p->key) == 0)
-            return ct_error(r->ctx, p->mark, CT_E_NAME,
-                            "'%s' cannot name a %s: signals of this name have a meaning of their own",
-                            p->key, sort);
+            return ct_error(
+                r->ctx, p->mark, CT_E_NAME,
+                "'%s' cannot name a %s: signals of this name have a meaning of their own",
+                p->key, sort);
     const int known = ct_names_get(&r->component, p->key);
     if (known >= 0) {
         const struct ct_read_place *c = &r->place[known];
@@ -72,8 +73,8 @@ void ct_read_clear(struct ct_reader *r, struct ct_instance *self)
 }
 
 static bool check_required(struct ct_reader *r, const struct ct_instance *self,
-                           const struct ct_node *node, const char *sort, const struct ct_key *key,
-                           int nkey)
+                           const struct ct_node *node, const char *sort,
+                           const struct ct_key *key, int nkey)
 {
     bool ok = true;
     for (int i = 0; i < nkey; i++)
@@ -98,14 +99,15 @@ bool ct_read_component_keys(struct ct_reader *r, const struct ct_instance *self,
         names[k++] = family[i].name;
     for (int i = 0; i < self->cls->nkey; i++)
         names[k++] = self->cls->key[i].name;
-    const char *what = ct_arena_printf(r->ctx->scratch, "%s '%s' (%s)", sort, self->name,
-                                       self->cls->name);
+    const char *what
+        = ct_arena_printf(r->ctx->scratch, "%s '%s' (%s)", sort, self->name, self->cls->name);
     bool ok = ct_read_keys(r, node, what, names, n);
     ok &= check_required(r, self, node, sort, family, nfamily);
     return check_required(r, self, node, sort, self->cls->key, self->cls->nkey) && ok;
 }
 
-bool ct_read_own_values(struct ct_reader *r, struct ct_instance *self, const struct ct_node *node)
+bool ct_read_own_values(struct ct_reader *r, struct ct_instance *self,
+                        const struct ct_node *node)
 {
     int nfamily;
     ct_family_keys(self->cls->family, &nfamily);

@@ -7,7 +7,8 @@ void ct_read_forces_declare(struct ct_reader *r)
 {
     struct ct_model *m = r->m;
     const struct ct_node *node = ct_node_get(r->root, "forces");
-    if (!node || ct_node_is_null(node) || !ct_read_shape(r, node, CT_NODE_MAP, "a map of forces"))
+    if (!node || ct_node_is_null(node)
+        || !ct_read_shape(r, node, CT_NODE_MAP, "a map of forces"))
         return;
     for (size_t i = 0; i < node->n; i++) {
         const struct ct_pair *p = &node->pair[i];
@@ -37,14 +38,16 @@ static const char *name_of_end(const struct ct_component_class *cls)
 static int frame_under(const struct ct_instance *self, const char *name, struct ct_mark *at)
 {
     for (int i = 0; i < self->cls->nkey; i++)
-        if (self->cls->key[i].kind == CT_VALUE_FRAME && strcmp(self->cls->key[i].name, name) == 0) {
+        if (self->cls->key[i].kind == CT_VALUE_FRAME
+            && strcmp(self->cls->key[i].name, name) == 0) {
             *at = self->value[i].mark; // forces have no keys of the family
             return self->value[i].frame;
         }
     return -1;
 }
 
-static bool read_force(struct ct_reader *r, struct ct_instance *self, const struct ct_node *node)
+static bool read_force(struct ct_reader *r, struct ct_instance *self,
+                       const struct ct_node *node)
 {
     const struct ct_pair p = {self->name, self->mark, node};
     self->cls = ct_read_class(r, CT_FAMILY_FORCE, &p, "force", NULL);

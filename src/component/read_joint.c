@@ -56,7 +56,8 @@ void ct_read_joints_declare(struct ct_reader *r)
 {
     struct ct_model *m = r->m;
     const struct ct_node *node = ct_node_get(r->root, "joints");
-    if (!node || ct_node_is_null(node) || !ct_read_shape(r, node, CT_NODE_MAP, "a map of joints"))
+    if (!node || ct_node_is_null(node)
+        || !ct_read_shape(r, node, CT_NODE_MAP, "a map of joints"))
         return;
     for (size_t i = 0; i < node->n; i++) {
         const struct ct_pair *p = &node->pair[i];
@@ -130,13 +131,14 @@ static void count_coordinates(struct ct_reader *r, struct joint *j)
         drop_rotations(j);
 }
 
-static bool check_has_coordinate(struct ct_reader *r, const struct joint *j, const struct ct_pair *p)
+static bool check_has_coordinate(struct ct_reader *r, const struct joint *j,
+                                 const struct ct_pair *p)
 {
     const struct ct_instance *self = j->self;
     if (self->nfree > 0)
         return true;
-    return ct_error(r->ctx, p->mark, CT_E_COORDINATE, "joint '%s' (%s) has no coordinate%s for '%s'",
-                    self->name, self->cls->name,
+    return ct_error(r->ctx, p->mark, CT_E_COORDINATE,
+                    "joint '%s' (%s) has no coordinate%s for '%s'", self->name, self->cls->name,
                     self->cls->nfree != 0 ? " beside a particle" : "", p->key);
 }
 
@@ -145,11 +147,11 @@ static bool check_has_coordinate(struct ct_reader *r, const struct joint *j, con
 static bool hole_allowed(const char *key)
 {
     return strcmp(key, "motion") == 0 || strcmp(key, "effort") == 0 || strcmp(key, "q") == 0
-           || strcmp(key, "u") == 0;
+        || strcmp(key, "u") == 0;
 }
 
-static bool read_entry(struct ct_reader *r, const struct ct_node *node, const struct ct_key *key,
-                       enum measure m, struct ct_value *v, size_t i)
+static bool read_entry(struct ct_reader *r, const struct ct_node *node,
+                       const struct ct_key *key, enum measure m, struct ct_value *v, size_t i)
 {
     v->at[i] = node->mark;
     if (ct_node_is_null(node) && hole_allowed(key->name)) {
@@ -160,9 +162,9 @@ static bool read_entry(struct ct_reader *r, const struct ct_node *node, const st
 }
 
 // n values, one alone not in a list; measure: of each
-static bool read_entries(struct ct_reader *r, const struct ct_node *node, const struct ct_key *key,
-                         size_t n, const enum measure *measure, const char *wanted,
-                         struct ct_value *v)
+static bool read_entries(struct ct_reader *r, const struct ct_node *node,
+                         const struct ct_key *key, size_t n, const enum measure *measure,
+                         const char *wanted, struct ct_value *v)
 {
     v->given = true;
     v->mark = node->mark;
@@ -192,8 +194,8 @@ static bool check_rotation_entries(struct ct_reader *r, const struct joint *j,
     for (size_t i = 0; i < v->n; i++)
         if (j->speed[i] == ROTATION && !v->hole[i] && !ct_ex_is_zero(v->e[i]))
             ok = ct_error(r->ctx, v->at[i], CT_E_COORDINATE,
-                          "the rotation of joint '%s' (%s) has no angle for '%s'%s", j->self->name,
-                          j->self->cls->name, key->name,
+                          "the rotation of joint '%s' (%s) has no angle for '%s'%s",
+                          j->self->name, j->self->cls->name, key->name,
                           strcmp(key->name, "motion") == 0 ? "" : "; use a bushing");
     return ok;
 }
@@ -205,17 +207,18 @@ static bool read_coords(struct ct_reader *r, struct joint *j, const struct ct_ke
         return false;
     struct ct_value *v = value_of(j, key->name);
     const size_t n = (size_t)j->self->nfree;
-    const char *wanted = n == 1 ? "one value"
-                                : ct_arena_printf(r->ctx->scratch,
-                                                  "a list of %zu (one per coordinate%s)", n,
-                                                  j->quaternion >= 0 ? " or rotation axis" : "");
+    const char *wanted
+        = n == 1 ? "one value"
+                 : ct_arena_printf(r->ctx->scratch, "a list of %zu (one per coordinate%s)", n,
+                                   j->quaternion >= 0 ? " or rotation axis" : "");
     return read_entries(r, p->value, key, n, j->speed, wanted, v)
-           && check_rotation_entries(r, j, key, v);
+        && check_rotation_entries(r, j, key, v);
 }
 
 // ---- initial -------------------------------------------------------------------------------------------------
 
-static bool check_quaternion(struct ct_reader *r, const struct joint *j, const struct ct_value *q)
+static bool check_quaternion(struct ct_reader *r, const struct joint *j,
+                             const struct ct_value *q)
 {
     double sum = 0;
     for (size_t i = (size_t)j->quaternion; i < q->n; i++) {
@@ -227,19 +230,20 @@ static bool check_quaternion(struct ct_reader *r, const struct joint *j, const s
     return sum > 0 || ct_error(r->ctx, q->mark, CT_E_INITIAL, "a quaternion cannot be all 0");
 }
 
-static bool read_initial_q(struct ct_reader *r, const struct joint *j, const struct ct_node *node,
-                           bool beside_rotate, struct ct_value *q)
+static bool read_initial_q(struct ct_reader *r, const struct joint *j,
+                           const struct ct_node *node, bool beside_rotate, struct ct_value *q)
 {
     static const struct ct_key key = {.name = "q"};
     enum measure measure[CT_MAX_COORD + 1];
     const int n = beside_rotate ? j->quaternion : j->self->ncoord;
     for (int i = 0; i < n; i++)
         measure[i] = j->quaternion >= 0 && i >= j->quaternion ? QUATERNION : j->speed[i];
-    const char *wanted = n == 1 ? "one value"
-                                : ct_arena_printf(r->ctx->scratch, "a list of %d%s", n,
-                                                  j->quaternion < 0 ? ""
-                                                  : beside_rotate   ? " beside 'rotate'"
-                                                  : " (with a quaternion; or give 'rotate')");
+    const char *wanted
+        = n == 1 ? "one value"
+                 : ct_arena_printf(r->ctx->scratch, "a list of %d%s", n,
+                                   j->quaternion < 0 ? ""
+                                   : beside_rotate   ? " beside 'rotate'"
+                                                   : " (with a quaternion; or give 'rotate')");
     if (n == 0)
         return ct_error(r->ctx, node->mark, CT_E_CONFLICT,
                         "'rotate' gives all coordinates of joint '%s'; 'q' gives them again",
@@ -249,8 +253,8 @@ static bool read_initial_q(struct ct_reader *r, const struct joint *j, const str
     return j->quaternion < 0 || beside_rotate || check_quaternion(r, j, q);
 }
 
-static bool read_initial_rotate(struct ct_reader *r, const struct joint *j, const struct ct_pair *p,
-                                struct ct_value *v)
+static bool read_initial_rotate(struct ct_reader *r, const struct joint *j,
+                                const struct ct_pair *p, struct ct_value *v)
 {
     if (j->quaternion < 0)
         return ct_error(r->ctx, p->mark, CT_E_COORDINATE,
@@ -274,7 +278,8 @@ static bool read_initial(struct ct_reader *r, struct joint *j, const struct ct_p
     struct ct_value *self = value_of(j, "initial");
     self->given = true;
     self->mark = node->mark;
-    const char *what = ct_arena_printf(r->ctx->scratch, "'initial' of joint '%s'", j->self->name);
+    const char *what
+        = ct_arena_printf(r->ctx->scratch, "'initial' of joint '%s'", j->self->name);
     bool ok = ct_read_keys(r, node, what, keys, COUNT(keys));
     const struct ct_node *q = ct_node_get(node, "q"), *u = ct_node_get(node, "u");
     const struct ct_pair *rotate = ct_node_find(node, "rotate");
@@ -314,8 +319,8 @@ static bool check_start(struct ct_reader *r, const struct joint *j, size_t i, co
     if (fabs(v - d) <= 1e-9 * fmax(1, fabs(d)))
         return true;
     ct_error(r->ctx, given->at[i], CT_E_INITIAL,
-             "joint '%s' starts with %s = %g by its motion, but 'initial' gives %g", j->self->name,
-             key, d, v);
+             "joint '%s' starts with %s = %g by its motion, but 'initial' gives %g",
+             j->self->name, key, d, v);
     ct_note(r->ctx, value_of(j, "motion")->at[i], "the motion is here");
     return false;
 }
@@ -376,48 +381,62 @@ static bool read_common(struct ct_reader *r, struct joint *j)
     return ok;
 }
 
-static bool read_joint(struct ct_reader *r, struct ct_instance *self, const struct ct_node *node)
+static bool read_joint(struct ct_reader *r, struct ct_instance *self,
+                       const struct ct_node *node)
 {
     const struct ct_pair p = {self->name, self->mark, node};
     self->cls = ct_read_class(r, CT_FAMILY_JOINT, &p, "joint", NULL);
     if (!self->cls)
         return false;
     ct_read_clear(r, self);
-    struct joint j = {
-        .self = self, .value = (struct ct_value *)(uintptr_t)self->value, .node = node};
+    struct joint j
+        = {.self = self, .value = (struct ct_value *)(uintptr_t)self->value, .node = node};
     const bool framed = has_frames(self->cls);
     bool ok = ct_read_component_keys(r, self, node, "joint", framed);
     ok &= ct_read_own_values(r, self, node);
     if (framed)
         ok &= read_ends(r, &j);
-    r->local_of = NULL;
-    if (!ok)
-        self->ncoord = -1; // not known: nobody is told that a coordinate is missing
     if (ok && framed) {
         count_coordinates(r, &j);
         ok = read_common(r, &j) && check_driven_start(r, &j);
+    } else if (!ok) {
+        self->ncoord = -1; // not known: nobody is told that a coordinate is missing
     }
+    r->local_of = NULL;
     return ok;
 }
 
 // ---- gears: they name joints, so all joints come first ---------------------------------------------------------------
 
-bool ct_read_coordinate(struct ct_reader *r, const char *text, struct ct_mark at, int *joint,
-                        int *coordinate)
+int ct_read_joint_name(struct ct_reader *r, const char *name, struct ct_mark at)
 {
-    struct ct_model *m = r->m;
-    const char *dot = strchr(text, '.');
-    const char *name = dot ? ct_arena_strndup(r->ctx->scratch, text, (size_t)(dot - text)) : text;
-    *joint = ct_model_find_joint(m, name);
-    *coordinate = 0;
-    if (*joint < 0) {
+    const struct ct_model *m = r->m;
+    const int joint = ct_model_find_joint(m, name);
+    if (joint >= 0)
+        return joint;
+    const char *near = "";
+    if (ct_read_suggests(r)) {
         const char **names = CT_NEWN(r->ctx->scratch, const char *, m->njoint);
         for (size_t i = 0; i < m->njoint; i++)
             names[i] = m->joint[i].name;
-        return ct_error(r->ctx, at, CT_E_JOINT, "there is no joint '%s'%s", name,
-                        ct_read_near(r, name, names, m->njoint));
+        near = ct_read_near(r, name, names, m->njoint);
     }
-    const struct ct_instance *j = &m->joint[*joint];
+    ct_error(r->ctx, at, CT_E_JOINT, "there is no joint '%s'%s", name, near);
+    return -1;
+}
+
+// `a` or `a.q2`: which joint and coordinate (from 0); reports at the mark.
+static bool read_coordinate(struct ct_reader *r, const char *text, struct ct_mark at,
+                            int *joint, int *coordinate)
+{
+    const char *dot = strchr(text, '.');
+    const char *name
+        = dot ? ct_arena_strndup(r->ctx->scratch, text, (size_t)(dot - text)) : text;
+    *joint = ct_read_joint_name(r, name, at);
+    *coordinate = 0;
+    if (*joint < 0)
+        return false;
+    const struct ct_instance *j = &r->m->joint[*joint];
     if (!j->cls || j->ncoord < 0)
         return false; // reported there
     if (j->ncoord == 0)
@@ -428,16 +447,18 @@ bool ct_read_coordinate(struct ct_reader *r, const char *text, struct ct_mark at
     if (dot && dot[1] == 'q')
         k = dot[2] ? strtol(dot + 2, &end, 10) : 1;
     if (dot && (dot[1] != 'q' || (dot[2] && (*end || dot[2] < '1' || dot[2] > '9'))))
-        return ct_error(r->ctx, at, CT_E_JOINT, "'%s' is no coordinate; write %s.q1", text, name);
+        return ct_error(r->ctx, at, CT_E_JOINT, "'%s' is no coordinate; write %s.q1", text,
+                        name);
     if ((!dot || !dot[2]) && j->ncoord > 1)
-        return ct_error(r->ctx, at, CT_E_JOINT, "joint '%s' has %d coordinates; name one, as in %s.q2",
-                        name, j->ncoord, name);
+        return ct_error(r->ctx, at, CT_E_JOINT,
+                        "joint '%s' has %d coordinates; name one, as in %s.q2", name, j->ncoord,
+                        name);
     if (k > j->ncoord)
         return ct_error(r->ctx, at, CT_E_JOINT, "joint '%s' has %d coordinate%s, no q%ld", name,
                         j->ncoord, j->ncoord == 1 ? "" : "s", k);
     if (j->ncoord != j->nfree && k > j->ncoord - 4)
-        return ct_error(r->ctx, at, CT_E_JOINT, "'%s' is part of a quaternion, not a coordinate of its own",
-                        text);
+        return ct_error(r->ctx, at, CT_E_JOINT,
+                        "'%s' is part of a quaternion, not a coordinate of its own", text);
     *coordinate = (int)k - 1;
     return true;
 }
@@ -445,15 +466,18 @@ bool ct_read_coordinate(struct ct_reader *r, const char *text, struct ct_mark at
 static bool check_coupling(struct ct_reader *r, const struct ct_value *v)
 {
     bool ok = true;
-    int *joint = CT_NEWN(r->ctx->scratch, int, v->n), *coordinate = CT_NEWN(r->ctx->scratch, int, v->n);
+    int *joint = CT_NEWN(r->ctx->scratch, int, v->n),
+        *coordinate = CT_NEWN(r->ctx->scratch, int, v->n);
     for (size_t i = 0; i < v->n; i++) {
-        if (!v->name[i] || !ct_read_coordinate(r, v->name[i], v->at[i], &joint[i], &coordinate[i])) {
+        if (!v->name[i]
+            || !read_coordinate(r, v->name[i], v->at[i], &joint[i], &coordinate[i])) {
             ok = false;
             joint[i] = -1;
         }
         for (size_t k = 0; k < i; k++)
             if (joint[i] >= 0 && joint[k] == joint[i] && coordinate[k] == coordinate[i])
-                ok = ct_error(r->ctx, v->at[i], CT_E_JOINT, "'%s' is coupled to itself", v->name[i]);
+                ok = ct_error(r->ctx, v->at[i], CT_E_JOINT, "'%s' is coupled to itself",
+                              v->name[i]);
     }
     return ok;
 }

@@ -12,6 +12,7 @@ enum colour { WHITE, GREY, BLACK };
 struct work {
     size_t n;
     const struct ct_node **node; // definition; NULL when overridden
+    bool *is_wrong;              // has no value, which has been reported
     int **use;                   // parameters in the definition of each
     size_t *nuse;
     enum colour *colour;
@@ -26,7 +27,8 @@ static bool add_parameter(struct ct_reader *r, const struct ct_pair *p)
         return false;
     if (ct_is_reserved(p->key))
         return ct_error(r->ctx, p->mark, CT_E_NAME,
-                        "'%s' cannot name a parameter: it has a meaning in expressions", p->key);
+                        "'%s' cannot name a parameter: it has a meaning in expressions",
+                        p->key);
     if (ct_names_get(&m->parameter_index, p->key) >= 0)
         return false; // a key given twice has been reported
     const int i = (int)m->nparameter;
@@ -61,10 +63,11 @@ static bool parse_override(struct ct_reader *r, const char *text, struct work *w
     if (i < 0)
         return ct_error(r->ctx, none, CT_E_USAGE, "the model has no parameter '%s'%s", name,
                         ct_read_near(r, name, r->known + 1, r->nknown - 1));
-    const struct ct_node value = {
-        .kind = CT_NODE_SCALAR, .text = ct_arena_strdup(r->a, equals + 1), .is_plain = true};
+    const struct ct_node value
+        = {.kind = CT_NODE_SCALAR, .text = ct_arena_strdup(r->a, equals + 1), .is_plain = true};
     w->node[i] = NULL;
-    return ct_read_expr(r, &value, 0, NULL, &r->m->parameter[i].definition);
+    w->is_wrong[i] = !ct_read_expr(r, &value, 0, NULL, &r->m->parameter[i].definition);
+    return !w->is_wrong[i];
 }
 
 static bool apply_overrides(struct ct_reader *r, const struct ct_set *set, size_t nset,
@@ -98,8 +101,9 @@ static bool report_cycle(struct ct_reader *r, const struct work *w, const int *p
     for (size_t k = 1; k < n; k++)
         text = ct_arena_printf(r->ctx->scratch, "%s -> %s", text, m->parameter[path[k]].name);
     const struct ct_node *node = w->node[path[0]];
-    return ct_error(r->ctx, node ? node->mark : (struct ct_mark){0}, node ? CT_E_CYCLE : CT_E_USAGE,
-                    "the parameter depends on itself: %s -> %s", text, m->parameter[path[0]].name);
+    return ct_error(r->ctx, node ? node->mark : (struct ct_mark){0},
+                    node ? CT_E_CYCLE : CT_E_USAGE, "the parameter depends on itself: %s -> %s",
+                    text, m->parameter[path[0]].name);
 }
 
 // Depth first from `start` with a stack of our own: a chain may be as long as the file.
@@ -150,43 +154,50 @@ static void permute(struct ct_reader *r, struct work *w)
     struct ct_model *m = r->m;
     struct ct_parameter *sorted = CT_NEWN(r->a, struct ct_parameter, w->n);
     const struct ct_node **node = CT_NEWN(r->ctx->scratch, const struct ct_node *, w->n);
+    bool *is_wrong = CT_NEWN(r->ctx->scratch, bool, w->n);
     m->parameter_index = (struct ct_names){0};
     for (size_t k = 0; k < w->n; k++) {
         sorted[k] = m->parameter[w->order[k]];
         node[k] = w->node[w->order[k]];
+        is_wrong[k] = w->is_wrong[w->order[k]];
         m->x->sym[ct_ex_node(m->x, sorted[k].symbol)->a].index = (uint32_t)k;
         ct_names_put(r->a, &m->parameter_index, sorted[k].name, (int)k);
     }
     m->parameter = sorted;
     m->parameter_cap = w->n;
     w->node = node;
+    w->is_wrong = is_wrong;
 }
 
-static bool evaluate(struct ct_reader *r, const struct work *w)
+// Is a value that is not finite so only because it passes on that of another parameter?
+static bool is_passed_on(struct ct_model *m, ct_ex definition)
+{
+    for (size_t k = ct_ex_walk(m->x, &definition, 1); k-- > 0;) {
+        const struct ct_sym *s = ct_ex_symbol(m->x, (ct_ex){m->x->stack[k]});
+        if (s && !isfinite(m->parameter[s->index].value))
+            return true;
+    }
+    return false;
+}
+
+static bool evaluate(struct ct_reader *r, const struct work *w, size_t i)
 {
     struct ct_model *m = r->m;
-    bool ok = true;
-    for (size_t i = 0; i < w->n; i++) {
-        struct ct_parameter *p = &m->parameter[i];
-        p->value = ct_ex_value(m->x, p->definition, m->value);
-        m->value[ct_ex_node(m->x, p->symbol)->a] = p->value;
-        if (isfinite(p->value))
-            continue;
-        bool cause = true; // not so when it only passes on what another one is
-        double v;
-        for (size_t k = ct_ex_walk(m->x, &p->definition, 1); k-- > 0;) {
-            const struct ct_sym *s = ct_ex_symbol(m->x, (ct_ex){m->x->stack[k]});
-            cause &= !s || isfinite(m->parameter[s->index].value);
-        }
-        if (cause && w->node[i])
-            ct_error(r->ctx, w->node[i]->mark, CT_E_NUMBER,
-                     "the parameter '%s' is not a finite number", p->name);
-        else if (cause && !ct_ex_is_const(m->x, p->definition, &v))
-            ct_error(r->ctx, (struct ct_mark){0}, CT_E_USAGE,
-                     "--set: the parameter '%s' is not a finite number", p->name);
-        ok = false;
+    struct ct_parameter *p = &m->parameter[i];
+    if (w->is_wrong[i])
+        return false;
+    const double v = ct_ex_value(m->x, p->definition, m->value);
+    if (isfinite(v)) {
+        p->value = m->value[ct_ex_node(m->x, p->symbol)->a] = v;
+        return true;
     }
-    return ok;
+    if (is_passed_on(m, p->definition))
+        return false;
+    if (w->node[i])
+        return ct_error(r->ctx, w->node[i]->mark, CT_E_NUMBER,
+                        "the parameter '%s' is not a finite number", p->name);
+    return ct_error(r->ctx, (struct ct_mark){0}, CT_E_USAGE,
+                    "--set: the parameter '%s' is not a finite number", p->name);
 }
 
 void ct_read_parameters(struct ct_reader *r, const struct ct_set *set, size_t nset)
@@ -199,23 +210,29 @@ void ct_read_parameters(struct ct_reader *r, const struct ct_set *set, size_t ns
     if (node && !ct_read_shape(r, node, CT_NODE_MAP, "a map of parameters"))
         return;
     const size_t n = node ? node->n : 0;
-    struct work w = {.node = CT_NEWN(r->ctx->scratch, const struct ct_node *, n)};
+    struct ct_arena *scratch = r->ctx->scratch;
+    struct work w = {.node = CT_NEWN(scratch, const struct ct_node *, n)};
     for (size_t i = 0; i < n; i++) {
         if (add_parameter(r, &node->pair[i]))
             w.node[w.n++] = node->pair[i].value;
         else
             ok = false;
     }
-    w.use = CT_NEWN(r->ctx->scratch, int *, w.n);
-    w.nuse = CT_NEWN(r->ctx->scratch, size_t, w.n);
-    w.colour = CT_NEWN(r->ctx->scratch, enum colour, w.n);
-    w.order = CT_NEWN(r->ctx->scratch, int, w.n);
+    w.use = CT_NEWN(scratch, int *, w.n);
+    w.nuse = CT_NEWN(scratch, size_t, w.n);
+    w.colour = CT_NEWN(scratch, enum colour, w.n);
+    w.order = CT_NEWN(scratch, int, w.n);
+    w.is_wrong = CT_NEWN(scratch, bool, w.n);
     r->m->value = CT_NEWN(r->a, double, r->m->x->nsym);
-    for (size_t i = 0; i < w.n; i++)
-        ok &= ct_read_expr(r, w.node[i], 0, NULL, &r->m->parameter[i].definition);
+    for (size_t i = 0; i < w.n; i++) {
+        w.is_wrong[i] = !ct_read_expr(r, w.node[i], 0, NULL, &r->m->parameter[i].definition);
+        r->m->parameter[i].value = NAN; // until it is known
+        r->m->value[1 + i] = NAN;
+    }
     ok &= apply_overrides(r, set, nset, &w);
-    if (!ok || !order_parameters(r, &w))
-        return;
+    ok &= order_parameters(r, &w);
     permute(r, &w);
-    r->parameters_ok = evaluate(r, &w);
+    for (size_t i = 0; i < w.n; i++)
+        ok &= evaluate(r, &w, i);
+    r->parameters_ok = ok;
 }

@@ -14,12 +14,14 @@ static bool add_output(struct ct_reader *r, struct ct_output output, struct ct_n
     struct ct_model *m = r->m;
     const int known = ct_names_get(names, output.name);
     if (known >= 0) {
-        ct_error(r->ctx, output.mark, CT_E_NAME_TWICE, "the output '%s' is there twice", output.name);
+        ct_error(r->ctx, output.mark, CT_E_NAME_TWICE, "the output '%s' is there twice",
+                 output.name);
         ct_note(r->ctx, m->output[known].mark, "the first one is here");
         return false;
     }
     if (strcmp(output.name, "t") == 0)
-        return ct_error(r->ctx, output.mark, CT_E_NAME, "the first column is always called 't'");
+        return ct_error(r->ctx, output.mark, CT_E_NAME,
+                        "the first column is always called 't'");
     ct_names_put(r->ctx->scratch, names, output.name, (int)m->noutput);
     CT_PUSH(r->a, m->output, m->noutput, m->output_cap, output);
     return true;
@@ -33,13 +35,15 @@ static bool read_signal(struct ct_reader *r, const struct ct_node *node, struct 
         return false;
     if (!ct_parse_is_signal(r->ctx->scratch, node->text, &normal)) {
         if (ct_is_identifier(node->text) && ct_names_get(&r->component, node->text) >= 0)
-            return ct_error(r->ctx, node->mark, CT_E_SIGNAL_NAME,
-                            "'%s' is no signal; say which of its quantities, as in %s.position.x or "
-                            "%s.q",
-                            node->text, node->text, node->text);
-        return ct_error(r->ctx, node->mark, CT_E_SIGNAL_NAME,
-                        "'%s' is no signal; an expression is written {name: NAME, value: EXPRESSION}",
-                        node->text);
+            return ct_error(
+                r->ctx, node->mark, CT_E_SIGNAL_NAME,
+                "'%s' is no signal; say which of its quantities, as in %s.position.x or "
+                "%s.q",
+                node->text, node->text, node->text);
+        return ct_error(
+            r->ctx, node->mark, CT_E_SIGNAL_NAME,
+            "'%s' is no signal; an expression is written {name: NAME, value: EXPRESSION}",
+            node->text);
     }
     o->name = ct_arena_strdup(r->a, node->text);
     o->is_signal = true;
@@ -65,7 +69,8 @@ void ct_read_outputs(struct ct_reader *r)
 {
     const struct ct_node *node = ct_node_get(r->root, "outputs");
     struct ct_names names = {0};
-    if (!node || ct_node_is_null(node) || !ct_read_shape(r, node, CT_NODE_LIST, "a list of outputs"))
+    if (!node || ct_node_is_null(node)
+        || !ct_read_shape(r, node, CT_NODE_LIST, "a list of outputs"))
         return;
     for (size_t i = 0; i < node->n; i++) {
         struct ct_output o = {0};
@@ -78,9 +83,15 @@ void ct_read_outputs(struct ct_reader *r)
 // ---- simulation -------------------------------------------------------------------------------------------------
 
 // The methods of the format; a unit test holds them against the registry of integrators.
-static const char *const methods[] = {
-    "auto",    "dopri5", "dop853", "rk4", "radau5", "generalized-alpha", "generalized-alpha-index3",
-    "hht",     "newmark"};
+static const char *const methods[] = {"auto",
+                                      "dopri5",
+                                      "dop853",
+                                      "rk4",
+                                      "radau5",
+                                      "generalized-alpha",
+                                      "generalized-alpha-index3",
+                                      "hht",
+                                      "newmark"};
 
 // A number that may not be below `least`, or not even equal to it.
 static bool read_bounded(struct ct_reader *r, const struct ct_node *node, const char *key,
@@ -104,7 +115,8 @@ static bool read_optional(struct ct_reader *r, const struct ct_node *section, co
 
 static const double most_samples = 1e9;
 
-static bool read_samples(struct ct_reader *r, const struct ct_node *node, struct ct_simulation *s)
+static bool read_samples(struct ct_reader *r, const struct ct_node *node,
+                         struct ct_simulation *s)
 {
     const bool at_rest = s->has_duration && s->duration == 0;
     double v;
@@ -112,15 +124,17 @@ static bool read_samples(struct ct_reader *r, const struct ct_node *node, struct
         return false;
     // an integer computed from parameters: n * eps of rounding
     if (fabs(v - round(v)) > 1e-9 * v)
-        return ct_error(r->ctx, node->mark, CT_E_RANGE, "'samples' is %g; it must be an integer", v);
+        return ct_error(r->ctx, node->mark, CT_E_RANGE,
+                        "'samples' is %g; it must be an integer", v);
     if (v > most_samples)
-        return ct_error(r->ctx, node->mark, CT_E_RANGE, "'samples' is %g; at most %g are possible", v,
-                        most_samples);
+        return ct_error(r->ctx, node->mark, CT_E_RANGE,
+                        "'samples' is %g; at most %g are possible", v, most_samples);
     s->samples = lround(v);
     return true;
 }
 
-static bool read_interval(struct ct_reader *r, const struct ct_node *node, struct ct_simulation *s)
+static bool read_interval(struct ct_reader *r, const struct ct_node *node,
+                          struct ct_simulation *s)
 {
     if (!read_bounded(r, node, "interval", "s", 0, true, &s->interval))
         return false;
@@ -128,12 +142,14 @@ static bool read_interval(struct ct_reader *r, const struct ct_node *node, struc
     const double steps = ceil(s->duration / s->interval * (1 - 1e-12));
     if (!(steps < most_samples))
         return ct_error(r->ctx, node->mark, CT_E_RANGE,
-                        "an 'interval' of %g s gives more than %g samples", s->interval, most_samples);
+                        "an 'interval' of %g s gives more than %g samples", s->interval,
+                        most_samples);
     s->samples = (long)steps + 1;
     return true;
 }
 
-static bool read_sampling(struct ct_reader *r, const struct ct_node *node, struct ct_simulation *s)
+static bool read_sampling(struct ct_reader *r, const struct ct_node *node,
+                          struct ct_simulation *s)
 {
     const struct ct_pair *samples = ct_node_find(node, "samples"),
                          *interval = ct_node_find(node, "interval");
@@ -161,13 +177,7 @@ static bool read_small(struct ct_reader *r, const struct ct_node *node, struct c
             ok = false;
             continue;
         }
-        if (ct_model_find_joint(r->m, name[i]) >= 0)
-            continue;
-        const char **names = CT_NEWN(r->ctx->scratch, const char *, r->m->njoint);
-        for (size_t k = 0; k < r->m->njoint; k++)
-            names[k] = r->m->joint[k].name;
-        ok = ct_error(r->ctx, v->at[i], CT_E_JOINT, "there is no joint '%s'%s", name[i],
-                      ct_read_near(r, name[i], names, r->m->njoint));
+        ok &= ct_read_joint_name(r, name[i], v->at[i]) >= 0;
     }
     v->n = node->n;
     return ok;
@@ -189,8 +199,9 @@ static void read_words(struct ct_reader *r, const struct ct_node *node, struct c
 
 void ct_read_simulation(struct ct_reader *r)
 {
-    static const char *const keys[] = {"duration", "samples", "interval", "tolerance", "absolute",
-                                       "method",   "step",    "rate_jumps", "small"};
+    static const char *const keys[]
+        = {"duration", "samples", "interval",   "tolerance", "absolute",
+           "method",   "step",    "rate_jumps", "small"};
     struct ct_simulation *s = &r->m->simulation;
     *s = (struct ct_simulation){.samples = 1001, .rtol = 1e-8, .method = "auto"};
     s->small.frame = -1;

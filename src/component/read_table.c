@@ -33,8 +33,8 @@ static bool read_csv(struct ct_reader *r, const struct ct_node *node, const char
         return ct_error(r->ctx, node->mark, CT_E_TABLE, "cannot read the table '%s': %s", path,
                         strerror(errno));
     case CT_TEXT_TOO_BIG:
-        return ct_error(r->ctx, node->mark, CT_E_TABLE, "the table '%s' is larger than %zu MiB", path,
-                        max_bytes >> 20);
+        return ct_error(r->ctx, node->mark, CT_E_TABLE, "the table '%s' is larger than %zu MiB",
+                        path, max_bytes >> 20);
     case CT_TEXT_OK:
         break;
     }
@@ -44,8 +44,8 @@ static bool read_csv(struct ct_reader *r, const struct ct_node *node, const char
     return false;
 }
 
-static bool find_column(struct ct_reader *r, const struct ct_node *node, const struct ct_sheet *csv,
-                        const char *name, size_t *column)
+static bool find_column(struct ct_reader *r, const struct ct_node *node,
+                        const struct ct_sheet *csv, const char *name, size_t *column)
 {
     const char **names = CT_NEWN(r->ctx->scratch, const char *, csv->ncolumn);
     for (size_t k = 0; csv->nrow && k < csv->ncolumn; k++) {
@@ -55,8 +55,9 @@ static bool find_column(struct ct_reader *r, const struct ct_node *node, const s
             return true;
         }
     }
-    return ct_error(r->ctx, node->mark, CT_E_TABLE, "the table '%s' has no column '%s'%s", csv->file,
-                    name, ct_read_near(r, name, names, csv->nrow ? csv->ncolumn : 0));
+    return ct_error(r->ctx, node->mark, CT_E_TABLE, "the table '%s' has no column '%s'%s",
+                    csv->file, name,
+                    ct_read_near(r, name, names, csv->nrow ? csv->ncolumn : 0));
 }
 
 // A number with blanks around it and nothing else.
@@ -70,13 +71,14 @@ static bool parse_field(const char *text, double *value)
     return n && !text[n + strspn(text + n, " \t")] && isfinite(*value);
 }
 
-static bool read_column(struct ct_reader *r, const struct ct_sheet *csv, size_t column, double *value)
+static bool read_column(struct ct_reader *r, const struct ct_sheet *csv, size_t column,
+                        double *value)
 {
     for (size_t i = 1; i < csv->nrow; i++) {
         const size_t k = i * csv->ncolumn + column;
         if (!parse_field(csv->field[k], &value[i - 1]))
-            return ct_error(r->ctx, csv->mark[k], CT_E_TABLE_DATA, "'%s' is not a finite number",
-                            csv->field[k]);
+            return ct_error(r->ctx, csv->mark[k], CT_E_TABLE_DATA,
+                            "'%s' is not a finite number", csv->field[k]);
     }
     return true;
 }
@@ -87,7 +89,8 @@ static bool check_increasing(struct ct_reader *r, const struct ct_sheet *csv, si
     for (size_t i = 2; i < csv->nrow; i++)
         if (!(x[i - 1] > x[i - 2]))
             return ct_error(r->ctx, csv->mark[i * csv->ncolumn + column], CT_E_TABLE_DATA,
-                            "'t' must increase from row to row: %g follows %g", x[i - 1], x[i - 2]);
+                            "'t' must increase from row to row: %g follows %g", x[i - 1],
+                            x[i - 2]);
     return true;
 }
 
@@ -120,8 +123,8 @@ static void spline_slopes(size_t n, const double *x, const double *y, double *m,
         m[i] -= work[i] * m[i + 1];
 }
 
-static bool fill_table(struct ct_reader *r, const struct ct_node *file, const struct ct_node *column,
-                       bool cubic, struct ct_table *t)
+static bool fill_table(struct ct_reader *r, const struct ct_node *file,
+                       const struct ct_node *column, bool cubic, struct ct_table *t)
 {
     struct ct_sheet csv;
     size_t kt = 0, ky = 0;
@@ -150,22 +153,12 @@ static bool fill_table(struct ct_reader *r, const struct ct_node *file, const st
     return true;
 }
 
-static uint32_t add_table(struct ct_exs *x, struct ct_arena *a, struct ct_table t)
-{
-    struct ct_table *all = CT_NEWN(a, struct ct_table, x->ntable + 1);
-    if (x->ntable)
-        memcpy(all, x->table, x->ntable * sizeof *all);
-    all[x->ntable] = t;
-    x->table = all;
-    x->table_cap = x->ntable + 1;
-    return (uint32_t)x->ntable++;
-}
-
 bool ct_read_table(struct ct_reader *r, const struct ct_node *node, ct_ex *e)
 {
     static const char *const keys[] = {"table", "column", "interpolate"};
     static const char *const kinds[] = {"cubic", "linear"};
-    const struct ct_node *file = ct_node_get(node, "table"), *column = ct_node_get(node, "column"),
+    const struct ct_node *file = ct_node_get(node, "table"),
+                         *column = ct_node_get(node, "column"),
                          *interpolate = ct_node_get(node, "interpolate");
     bool ok = ct_read_keys(r, node, "a table", keys, COUNT(keys));
     int kind = 0;
@@ -187,7 +180,10 @@ bool ct_read_table(struct ct_reader *r, const struct ct_node *node, ct_ex *e)
     if (number < 0) {
         if (!fill_table(r, file, column, kind == 0, &t))
             return false;
-        number = (int)add_table(r->m->x, r->a, t);
+        struct ct_exs *x = r->m->x;
+        number = (int)x->ntable;
+        CT_PUSH(r->a, r->sampled, x->ntable, x->table_cap, t);
+        x->table = r->sampled;
         ct_names_put(r->ctx->scratch, &r->table, key, number);
     }
     *e = ct_ex_table(r->m->x, (uint32_t)number, 0, r->m->time);

@@ -8,9 +8,16 @@
 
 // ---- keys and shapes ------------------------------------------------------------------------------
 
-const char *ct_read_near(struct ct_reader *r, const char *name, const char *const *names, size_t n)
+bool ct_read_suggests(const struct ct_reader *r)
 {
-    const char *near = ct_nearest(name, names, n);
+    enum { MOST = 200 };
+    return r->ctx->nerror < MOST;
+}
+
+const char *ct_read_near(struct ct_reader *r, const char *name, const char *const *names,
+                         size_t n)
+{
+    const char *near = ct_read_suggests(r) ? ct_nearest(name, names, n) : NULL;
     return near ? ct_arena_printf(r->ctx->scratch, "; did you mean '%s'?", near) : "";
 }
 
@@ -34,8 +41,8 @@ bool ct_read_keys(struct ct_reader *r, const struct ct_node *node, const char *w
         for (size_t k = 0; k < n && !known; k++)
             known = strcmp(node->pair[i].key, names[k]) == 0;
         if (!known)
-            ok = ct_error(r->ctx, node->pair[i].mark, CT_E_KEY_UNKNOWN,
-                          "%s has no key '%s'%s", what, node->pair[i].key,
+            ok = ct_error(r->ctx, node->pair[i].mark, CT_E_KEY_UNKNOWN, "%s has no key '%s'%s",
+                          what, node->pair[i].key,
                           ct_read_near(r, node->pair[i].key, names, n));
     }
     return ok;
@@ -96,16 +103,49 @@ bool ct_read_name(struct ct_reader *r, const char *name, struct ct_mark at, cons
 
 // ---- expressions --------------------------------------------------------------------------------------
 
+// The one symbol of a signal.
+static ct_ex signal_symbol(struct ct_reader *r, const char *text, struct ct_mark at)
+{
+    const int known = ct_names_get(&r->signal, text);
+    if (known >= 0)
+        return (ct_ex){(uint32_t)known};
+    const char *name = ct_arena_strdup(r->a, text);
+    const ct_ex e = ct_ex_sym(r->m->x, CT_SYM_SIGNAL, name, (uint32_t)r->signal.n);
+    r->m->x->sym[ct_ex_node(r->m->x, e)->a].mark = at;
+    ct_names_put(r->ctx->scratch, &r->signal, name, (int)e.id);
+    return e;
+}
+
+// Inside its own expressions a custom joint's coordinates go by their own names: in its motion they are
+// the arguments, in its efforts what J.q1 ... are elsewhere.
+static bool find_local(struct ct_reader *r, const char *name, ct_ex *e, const char **why,
+                       enum ct_name_result *result)
+{
+    const struct ct_instance *custom = r->local_of;
+    for (int i = 0; custom && i < custom->ncoord; i++) {
+        if (strcmp(r->local_name[i], name) != 0)
+            continue;
+        *result = CT_NAME_OK;
+        if (r->flags & CT_KEY_LOCAL) {
+            *e = custom->local[i];
+        } else if (r->flags & CT_KEY_STATE) {
+            *e = signal_symbol(r, ct_arena_printf(r->a, "%s.q%d", custom->name, i + 1),
+                               custom->mark);
+        } else {
+            *why = "it changes with the motion of the joint, this value does not";
+            *result = CT_NAME_FORBIDDEN;
+        }
+        return true;
+    }
+    return false;
+}
+
 static enum ct_name_result find_name(void *user, const char *name, ct_ex *e, const char **why)
 {
     struct ct_reader *r = user;
-    const struct ct_instance *custom = r->local_of;
-    for (int i = 0; custom && i < custom->ncoord; i++)
-        if (strcmp(r->local_name[i], name) == 0) {
-            *e = custom->local[i];
-            *why = "the coordinates of a custom joint are known in its own motion only";
-            return r->flags & CT_KEY_LOCAL ? CT_NAME_OK : CT_NAME_FORBIDDEN;
-        }
+    enum ct_name_result result;
+    if (find_local(r, name, e, why, &result))
+        return result;
     if (strcmp(name, "t") == 0) {
         *e = r->m->time;
         *why = "this value is constant in time";
@@ -130,6 +170,8 @@ static bool signal_exists(const struct ct_reader *r, const char *first)
 
 static const char *nearest_subject(struct ct_reader *r, const char *first)
 {
+    if (!ct_read_suggests(r))
+        return "";
     const char **names = CT_NEWN(r->ctx->scratch, const char *, r->ncomponent + 4);
     size_t n = r->ncomponent;
     for (size_t i = 0; i < r->component.size; i++) // each goes to its place in the file's order
@@ -151,8 +193,8 @@ static enum ct_name_result find_signal(void *user, const char *text, const char 
     struct ct_reader *r = user;
     if (!(r->flags & CT_KEY_STATE)) {
         *why = r->flags & CT_KEY_TIME
-                   ? "this is a function of time alone"
-                   : "this value is constant; signals are known in forces, efforts and outputs";
+                 ? "this is a function of time alone"
+                 : "this value is constant; signals are known in forces, efforts and outputs";
         return CT_NAME_FORBIDDEN;
     }
     bool ok = true;
@@ -164,15 +206,7 @@ static enum ct_name_result find_signal(void *user, const char *text, const char 
         ok = false;
     if (!ok)
         return CT_NAME_REPORTED;
-    const int known = ct_names_get(&r->signal, text);
-    if (known >= 0) {
-        *e = (ct_ex){(uint32_t)known};
-        return CT_NAME_OK;
-    }
-    const char *name = ct_arena_strdup(r->a, text);
-    *e = ct_ex_sym(r->m->x, CT_SYM_SIGNAL, name, (uint32_t)r->signal.n);
-    r->m->x->sym[ct_ex_node(r->m->x, *e)->a].mark = where;
-    ct_names_put(r->ctx->scratch, &r->signal, name, (int)e->id);
+    *e = signal_symbol(r, text, where);
     return CT_NAME_OK;
 }
 
@@ -180,14 +214,15 @@ bool ct_read_number(struct ct_reader *r, ct_ex e, double *value)
 {
     if (ct_ex_is_const(r->m->x, e, value))
         return true;
-    if (!r->parameters_ok || (ct_ex_kinds(r->m->x, e) & ~(1u << CT_SYM_PARAM)))
+    const unsigned kinds = ct_ex_kinds(r->m->x, e);
+    if (kinds & ~(1u << CT_SYM_PARAM))
         return false;
     *value = ct_ex_value(r->m->x, e, r->m->value);
-    return true;
+    return !kinds || r->parameters_ok || isfinite(*value); // else a wrong parameter may be why
 }
 
-bool ct_read_expr(struct ct_reader *r, const struct ct_node *node, unsigned flags, const char *unit,
-                  ct_ex *e)
+bool ct_read_expr(struct ct_reader *r, const struct ct_node *node, unsigned flags,
+                  const char *unit, ct_ex *e)
 {
     *e = CT_EX_ZERO;
     if (node->kind == CT_NODE_MAP && ct_node_get(node, "table")) {
@@ -206,17 +241,21 @@ bool ct_read_expr(struct ct_reader *r, const struct ct_node *node, unsigned flag
                                    .known = r->known,
                                    .nknown = r->nknown,
                                    .unit = unit};
-    const struct ct_text text = {node->text, node->mark, node->is_exact, node->is_plain ? 0 : 1};
-    if (!ct_parse(r->ctx, &scope, text, e))
+    const struct ct_text text
+        = {node->text, node->mark, node->is_exact, node->is_plain ? 0 : 1};
+    if (!ct_parse(r->ctx, &scope, text, e)) {
+        *e = CT_EX_ZERO; // not the part before the mistake
         return false;
+    }
     double value;
     if (ct_read_number(r, *e, &value) && !isfinite(value))
-        return ct_error(r->ctx, node->mark, CT_E_NUMBER, "'%s' is not a finite number", node->text);
+        return ct_error(r->ctx, node->mark, CT_E_NUMBER, "'%s' is not a finite number",
+                        node->text);
     return true;
 }
 
-bool ct_read_vec3(struct ct_reader *r, const struct ct_node *node, unsigned flags, const char *unit,
-                  ct_ex3 *v, struct ct_mark at[3])
+bool ct_read_vec3(struct ct_reader *r, const struct ct_node *node, unsigned flags,
+                  const char *unit, ct_ex3 *v, struct ct_mark at[3])
 {
     *v = (ct_ex3){{CT_EX_ZERO, CT_EX_ZERO, CT_EX_ZERO}};
     if (!ct_read_length(r, node, 3, 3, "a list of 3"))
@@ -246,7 +285,8 @@ static bool normalise(struct ct_reader *r, const struct ct_node *node, ct_ex3 *a
     // scaled, so that no square over- or underflows
     const double largest = fmax(fabs(v[0]), fmax(fabs(v[1]), fabs(v[2])));
     if (largest == 0)
-        return ct_error(r->ctx, node->mark, CT_E_AXIS, "the axis has no direction: all of it is 0");
+        return ct_error(r->ctx, node->mark, CT_E_AXIS,
+                        "the axis has no direction: all of it is 0");
     if (constant) {
         for (int i = 0; i < 3; i++)
             v[i] /= largest;
@@ -289,7 +329,7 @@ static bool read_turn(struct ct_reader *r, const struct ct_node *node, unsigned 
 static bool is_one_turn(const struct ct_node *node)
 {
     return node->n == 0 || node->item[0]->kind != CT_NODE_LIST
-           || (node->n == 2 && node->item[1]->kind != CT_NODE_LIST);
+        || (node->n == 2 && node->item[1]->kind != CT_NODE_LIST);
 }
 
 bool ct_read_turns(struct ct_reader *r, const struct ct_node *node, unsigned flags,
@@ -314,6 +354,8 @@ bool ct_read_turns(struct ct_reader *r, const struct ct_node *node, unsigned fla
 
 static const char *nearest_frame(struct ct_reader *r, const char *name)
 {
+    if (!ct_read_suggests(r))
+        return "";
     const char **names = CT_NEWN(r->ctx->scratch, const char *, r->m->nframe);
     for (size_t i = 0; i < r->m->nframe; i++)
         names[i] = r->m->frame[i].name;
@@ -325,7 +367,8 @@ static bool check_frame(struct ct_reader *r, const char *name, struct ct_mark at
     if (ct_model_find_frame(r->m, name) >= 0)
         return true;
     const char *dot = strchr(name, '.');
-    const char *body = dot ? ct_arena_strndup(r->ctx->scratch, name, (size_t)(dot - name)) : name;
+    const char *body
+        = dot ? ct_arena_strndup(r->ctx->scratch, name, (size_t)(dot - name)) : name;
     if (dot && ct_model_find_body(r->m, body) >= 0)
         return ct_error(r->ctx, at, CT_E_FRAME, "body '%s' has no point '%s'%s", body, dot + 1,
                         nearest_frame(r, name));
@@ -354,8 +397,8 @@ static void make_room(struct ct_reader *r, struct ct_value *v, size_t n)
         v->e[i] = CT_EX_ZERO;
 }
 
-static bool read_scalar(struct ct_reader *r, const struct ct_node *node, const struct ct_key *key,
-                        struct ct_value *v)
+static bool read_scalar(struct ct_reader *r, const struct ct_node *node,
+                        const struct ct_key *key, struct ct_value *v)
 {
     make_room(r, v, 1);
     v->at[0] = node->mark;
@@ -369,8 +412,8 @@ static bool read_list(struct ct_reader *r, const struct ct_node *node, const str
         return read_scalar(r, node, key, v);
     const char *wanted
         = key->least == key->most
-              ? ct_arena_printf(r->ctx->scratch, "a list of %d", key->most)
-              : ct_arena_printf(r->ctx->scratch, "a list of %d to %d", key->least, key->most);
+            ? ct_arena_printf(r->ctx->scratch, "a list of %d", key->most)
+            : ct_arena_printf(r->ctx->scratch, "a list of %d to %d", key->least, key->most);
     if (!ct_read_length(r, node, (size_t)key->least, (size_t)key->most, wanted))
         return false;
     make_room(r, v, node->n);
@@ -396,7 +439,8 @@ static bool check_crossed(struct ct_reader *r, const struct ct_value *v)
     return ct_error(r->ctx, v->mark, CT_E_AXIS, "the two axes are parallel");
 }
 
-static bool read_axes(struct ct_reader *r, const struct ct_node *node, size_t n, struct ct_value *v)
+static bool read_axes(struct ct_reader *r, const struct ct_node *node, size_t n,
+                      struct ct_value *v)
 {
     make_room(r, v, 3 * n);
     if (n == 2 && !ct_read_length(r, node, 2, 2, "a list of two axes"))
@@ -414,20 +458,21 @@ static bool read_axes(struct ct_reader *r, const struct ct_node *node, size_t n,
     return ok && (n == 1 || check_crossed(r, v));
 }
 
-static bool read_texts(struct ct_reader *r, const struct ct_node *node, const struct ct_key *key,
-                       const char *wanted, struct ct_value *v)
+static bool read_texts(struct ct_reader *r, const struct ct_node *node,
+                       const struct ct_key *key, const char *wanted, struct ct_value *v)
 {
     if (!ct_read_length(r, node, (size_t)key->least, (size_t)key->most, wanted))
         return false;
     const char **name = CT_NEWN(r->a, const char *, node->n);
     make_room(r, v, node->n);
     v->name = name;
+    bool ok = true;
     for (size_t i = 0; i < node->n; i++) {
         v->at[i] = node->item[i]->mark;
-        if (!ct_read_text(r, node->item[i], &name[i]))
-            return false;
+        name[i] = ""; // where there is none
+        ok &= ct_read_text(r, node->item[i], &name[i]);
     }
-    return true;
+    return ok;
 }
 
 // Names of coordinates are new names, seen by the joint's own expressions only.
@@ -451,8 +496,8 @@ static bool read_new_names(struct ct_reader *r, const struct ct_node *node,
                           "the coordinate '%s' has the name of a parameter", v->name[i]);
         for (size_t k = 0; k < i; k++)
             if (strcmp(v->name[i], v->name[k]) == 0)
-                ok = ct_error(r->ctx, v->at[i], CT_E_NAME_TWICE, "the coordinate '%s' is there twice",
-                              v->name[i]);
+                ok = ct_error(r->ctx, v->at[i], CT_E_NAME_TWICE,
+                              "the coordinate '%s' is there twice", v->name[i]);
     }
     return ok;
 }

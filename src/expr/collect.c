@@ -5,13 +5,18 @@
 
 #include <string.h>
 
-static struct ct_collector *start(struct ct_exs *x, const struct ct_collect_options *options)
+static struct ct_arena *scratch_of(const struct ct_exs *x,
+                                   const struct ct_collect_options *options)
 {
-    const struct ct_collect_options none = {0};
-    const struct ct_collect_options *o = options ? options : &none;
-    struct ct_arena *arena = o->scratch ? o->scratch : x->arena;
+    return options && options->scratch ? options->scratch : x->arena;
+}
+
+static struct ct_collector *start(struct ct_exs *x, const struct ct_collect_options *options,
+                                  bool early)
+{
+    struct ct_arena *arena = scratch_of(x, options);
     struct ct_collector *c = CT_NEW(arena, struct ct_collector);
-    ct_collector_init(c, x, arena, o->limit ? o->limit : 2000);
+    ct_collector_init(c, x, arena, options && options->limit ? options->limit : 2000, early);
     return c;
 }
 
@@ -96,13 +101,32 @@ static ct_ex collect_node(struct descent *d, ct_ex e)
     return d->done[e.id] = r;
 }
 
-ct_ex ct_ex_collect(struct ct_exs *x, ct_ex e, const struct ct_collect_options *options)
+struct attempt {
+    ct_ex e;
+    bool bundled, has_angles;
+};
+
+static struct attempt attempt(struct ct_exs *x, ct_ex e,
+                              const struct ct_collect_options *options, bool early)
 {
-    struct ct_collector *c = start(x, options);
+    struct ct_collector *c = start(x, options, early);
     struct descent d = {.c = c, .left = 100};
     d.expanded = ct_expand(c, e);
     d.done = CT_NEWN(c->arena, ct_ex, (size_t)e.id + 1);
-    return collect_node(&d, e);
+    return (struct attempt){collect_node(&d, e), c->bundled, c->nangle > 0};
+}
+
+// The smaller of both orders.
+static struct attempt attempt_both(struct ct_exs *x, ct_ex e,
+                                   const struct ct_collect_options *options)
+{
+    struct ct_arena *arena = scratch_of(x, options);
+    const struct attempt late = attempt(x, e, options, false);
+    if (!late.has_angles)
+        return late;
+    const struct attempt early = attempt(x, e, options, true);
+    return ct_ex_tree_size(x, arena, early.e) < ct_ex_tree_size(x, arena, late.e) ? early
+                                                                                  : late;
 }
 
 // ---- linear forms -----------------------------------------------------------------------------
@@ -147,12 +171,10 @@ static size_t place_of_term(const struct ct_collector *c, uint32_t mono, const s
     return place;
 }
 
-bool ct_ex_collect_linear(struct ct_exs *x, ct_ex e, const ct_ex *s, size_t n,
-                          ct_ex *coefficient, ct_ex *rest,
-                          const struct ct_collect_options *options)
+// By the terms of the expanded polynomial.
+static bool linear_by_terms(struct ct_collector *c, struct ct_poly p, const ct_ex *s, size_t n,
+                            ct_ex *coefficient, ct_ex *rest)
 {
-    struct ct_collector *c = start(x, options);
-    const struct ct_poly p = ct_expand(c, e)[e.id];
     const size_t *role = roles_of_atoms(c, s, n);
     struct ct_term *t = CT_NEWN(c->arena, struct ct_term, p.n);
     bool linear = true;
@@ -178,4 +200,100 @@ bool ct_ex_collect_linear(struct ct_exs *x, ct_ex e, const ct_ex *s, size_t n,
         *(k < n ? &coefficient[k] : rest) = finish(c, ct_poly_sum(&c->ps, own, nt));
     }
     return linear;
+}
+
+// By derivatives: where the polynomial is too long to be expanded. False: not linear, nothing is set.
+static bool linear_by_derivatives(struct ct_exs *x, ct_ex e, const ct_ex *s, size_t n,
+                                  ct_ex *coefficient, ct_ex *rest,
+                                  const struct ct_collect_options *options)
+{
+    struct ct_arena *arena = scratch_of(x, options);
+    ct_ex *found = CT_NEWN(arena, ct_ex, n), *zero = CT_NEWN(arena, ct_ex, n);
+    for (size_t k = 0; k < n; k++) {
+        found[k] = attempt_both(x, ct_ex_diff(x, e, s[k]), options).e;
+        if (contains(x, found[k], s, n))
+            return false;
+    }
+    if (n)
+        memcpy(coefficient, found, n * sizeof *found);
+    *rest = attempt_both(x, ct_ex_subst(x, e, s, zero, n), options).e; // zero: all node 0
+    return true;
+}
+
+struct form {
+    ct_ex *coefficient, rest;
+    bool linear, bundled;
+    double size;
+};
+
+static struct form form_by_terms(struct ct_exs *x, ct_ex e, const ct_ex *s, size_t n,
+                                 const struct ct_collect_options *options, bool early)
+{
+    struct ct_collector *c = start(x, options, early);
+    struct form f = {.coefficient = CT_NEWN(c->arena, ct_ex, n)};
+    const struct ct_poly p = ct_expand(c, e)[e.id];
+    f.bundled = c->bundled;
+    f.linear = linear_by_terms(c, p, s, n, f.coefficient, &f.rest);
+    f.size = ct_ex_tree_size(x, c->arena, f.rest);
+    for (size_t k = 0; k < n; k++)
+        f.size += ct_ex_tree_size(x, c->arena, f.coefficient[k]);
+    return f;
+}
+
+bool ct_ex_collect_linear(struct ct_exs *x, ct_ex e, const ct_ex *s, size_t n,
+                          ct_ex *coefficient, ct_ex *rest,
+                          const struct ct_collect_options *options)
+{
+    const struct form late = form_by_terms(x, e, s, n, options, false);
+    struct form best = form_by_terms(x, e, s, n, options, true);
+    if (best.bundled && late.bundled
+        && linear_by_derivatives(x, e, s, n, coefficient, rest, options))
+        return true;
+    if (best.bundled != late.bundled ? best.bundled : late.size <= best.size)
+        best = late;
+    if (n)
+        memcpy(coefficient, best.coefficient, n * sizeof *coefficient);
+    *rest = best.rest;
+    return best.linear;
+}
+
+// ---- the entry for all --------------------------------------------------------------------------
+
+// Symbols of one kind below e.
+static size_t list_symbols(struct ct_exs *x, struct ct_arena *arena, ct_ex e,
+                           enum ct_sym_kind kind, ct_ex **list)
+{
+    const size_t n = ct_ex_walk(x, &e, 1);
+    size_t found = 0;
+    *list = CT_NEWN(arena, ct_ex, x->nsym);
+    for (size_t k = 0; k < n; k++) {
+        const struct ct_sym *s = ct_ex_symbol(x, (ct_ex){x->stack[k]});
+        if (s && s->kind == kind)
+            (*list)[found++] = (ct_ex){x->stack[k]};
+    }
+    return found;
+}
+
+// An equation too long to expand, as linear form in its accelerations; e itself if it is none.
+static ct_ex collect_equation(struct ct_exs *x, struct ct_arena *arena, ct_ex e,
+                              const struct ct_collect_options *options)
+{
+    ct_ex *s, sum;
+    const size_t n = list_symbols(x, arena, e, CT_SYM_A, &s);
+    ct_ex *coefficient = CT_NEWN(arena, ct_ex, n);
+    if (!n || !linear_by_derivatives(x, e, s, n, coefficient, &sum, options))
+        return e;
+    for (size_t k = 0; k < n; k++)
+        sum = ct_ex_add(x, sum, ct_ex_mul(x, coefficient[k], s[k]));
+    return sum;
+}
+
+ct_ex ct_ex_collect(struct ct_exs *x, ct_ex e, const struct ct_collect_options *options)
+{
+    struct ct_arena *arena = scratch_of(x, options);
+    const struct attempt a = attempt_both(x, e, options);
+    if (!a.bundled)
+        return a.e;
+    const ct_ex equation = collect_equation(x, arena, e, options);
+    return ct_ex_tree_size(x, arena, equation) < ct_ex_tree_size(x, arena, e) ? equation : a.e;
 }

@@ -33,11 +33,13 @@ struct ct_collector {
     uint32_t *atom_of;  // by node: 1 + atom
     uint32_t *angle_of; // by node: 1 + the angle with this argument
     size_t of_cap;
+    bool early; // merge the pairs of each sum on the way up, see expand.c
     bool has_roots;
+    bool bundled; // a sum was too long and became an atom
 };
 
 void ct_collector_init(struct ct_collector *c, struct ct_exs *x, struct ct_arena *arena,
-                       size_t limit);
+                       size_t limit, bool early);
 /// The atom of a node that is not a sine or cosine.
 uint32_t ct_collector_atom(struct ct_collector *c, ct_ex e);
 /// CT_OP_SIN or CT_OP_COS of a polynomial: a number, an atom or minus an atom.
@@ -48,6 +50,8 @@ struct ct_poly ct_collector_trig(struct ct_collector *c, enum ct_op op,
 struct ct_poly *ct_expand(struct ct_collector *c, ct_ex e);
 /// p by the identities of sines and cosines, where that is shorter.
 struct ct_poly ct_identity_apply(struct ct_collector *c, struct ct_poly p);
+/// The same with pairs of terms only, which costs little.
+struct ct_poly ct_identity_merge(struct ct_collector *c, struct ct_poly p);
 /// p as an expression with common factors pulled out.
 ct_ex ct_regroup(struct ct_collector *c, struct ct_poly p);
 /// p = k mono (what is left): the number and the powers common to all terms. p is overwritten.

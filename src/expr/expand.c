@@ -2,6 +2,10 @@
 //
 // Products distribute over sums and whole powers multiply out. Sums that would outgrow the limit are
 // bundled: simplified, regrouped and from then on one atom.
+//
+// Identities can be applied at the end or early, to each sum on the way up. Early, the components of
+// a rotation about parallel axes become cos(a + b) before they are squared, and polynomials stay
+// short; at the end, everything that cancels is there in one form. Neither is always shorter.
 #include "expr/collector.h"
 
 #include <math.h>
@@ -12,9 +16,9 @@
 static const size_t budget = 1000000;
 
 void ct_collector_init(struct ct_collector *c, struct ct_exs *x, struct ct_arena *arena,
-                       size_t limit)
+                       size_t limit, bool early)
 {
-    *c = (struct ct_collector){.x = x, .arena = arena, .limit = limit};
+    *c = (struct ct_collector){.x = x, .arena = arena, .limit = limit, .early = early};
     ct_polys_init(&c->ps, arena);
 }
 
@@ -145,6 +149,9 @@ static size_t room(const struct ct_collector *c)
 static struct ct_poly bounded(struct ct_collector *c, struct ct_poly p)
 {
     c->spent += p.n;
+    if (c->early)
+        p = ct_identity_merge(c, p);
+    c->bundled |= p.n > room(c);
     return p.n > room(c) ? bundle(c, p) : p;
 }
 
@@ -213,6 +220,7 @@ static struct ct_poly multiply(struct ct_collector *c, struct ct_poly a, struct 
         return product_as_it_is(c, a, b);
     // a product of many terms may still collapse, so it may be larger than the limit for a while
     if (a.n * b.n > 16 * room(c)) {
+        c->bundled = true;
         a = a.n >= b.n ? bundle(c, a) : a;
         b = a.n * b.n > 16 * room(c) ? bundle(c, b) : b;
     }
@@ -222,6 +230,7 @@ static struct ct_poly multiply(struct ct_collector *c, struct ct_poly a, struct 
         return product_as_it_is(c, a, b);
     if (p.n <= room(c))
         return p;
+    c->bundled = true;
     return ct_poly_mul(&c->ps, bundle(c, a), bundle(c, b));
 }
 

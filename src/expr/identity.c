@@ -8,7 +8,7 @@
 //     expanded   sums inside sines and cosines first multiplied out, then merged: finds what cancels
 //                between products and functions of sums
 //     waves      products as sums, cos a cos b = (cos(a - b) + cos(a + b)) / 2: a normal form, in
-//                which everything that cancels does
+//                which everything that cancels does; pairs 1 + cos 2a become squares again
 #include "expr/collector.h"
 
 #include "base/sort.h"
@@ -26,13 +26,14 @@ static const struct ct_atom *atom_at(const struct ct_collector *c, uint32_t mono
 // What a reader has to read: terms, coefficients, factors, powers, and sums inside functions.
 static size_t length_of_term(const struct ct_collector *c, const struct ct_term *t)
 {
-    size_t n = 2 + !ct_same_number(fabs(t->c), 1);
+    // a fraction is a sign of waves, which are only wanted where they are much shorter
+    size_t n = 2 + !ct_same_number(fabs(t->c), 1) + 2 * (t->c != floor(t->c));
     for (size_t k = 0; k < ct_mono_length(&c->ps, t->mono); k++) {
         const struct ct_atom *atom = atom_at(c, t->mono, k);
         n += ct_mono_power(&c->ps, t->mono, k).exponent == 1 ? 2 : 3;
         if (atom->angle) {
             const struct ct_poly *arg = &c->angle[atom->angle - 1].argument;
-            n += arg->n - 1 + !ct_same_number(fabs(arg->t[0].c), 1);
+            n += 2 * (arg->n - 1) + !ct_same_number(fabs(arg->t[0].c), 1);
         }
     }
     return n;
@@ -440,14 +441,68 @@ static struct ct_poly waves(struct ct_collector *c, struct ct_poly p)
     return sum;
 }
 
+// k R + k R cos 2a = 2 k R cos^2 a, and with a minus 2 k R sin^2 a: waves leave such pairs.
+static struct ct_poly halve(struct ct_collector *c, struct ct_poly p, const struct ct_term *t)
+{
+    for (size_t i = 0; i < ct_mono_length(&c->ps, t->mono); i++) {
+        const struct ct_power power = ct_mono_power(&c->ps, t->mono, i);
+        const struct ct_atom f = c->atom[power.atom];
+        if (!f.angle || f.is_sine || power.exponent != 1)
+            continue;
+        struct ct_poly arg = c->angle[f.angle - 1].argument, one;
+        bool even = true;
+        for (size_t k = 0; k < arg.n; k++)
+            even &= arg.t[k].mono && fmod(arg.t[k].c, 2) == 0;
+        const uint32_t rest = times_power(c, t->mono, power.atom, -1);
+        const struct ct_term *other = even ? find_term(p, rest) : NULL;
+        if (!other || !ct_same_number(fabs(other->c), fabs(t->c)))
+            continue;
+        arg = ct_poly_add(&c->ps, (struct ct_poly){NULL, 0}, 0.5, arg);
+        one = ct_collector_trig(c, (other->c < 0) == (t->c < 0) ? CT_OP_COS : CT_OP_SIN, arg);
+        const struct ct_poly square = ct_poly_mul(&c->ps, one, one);
+        const struct ct_poly folded
+            = ct_poly_mul(&c->ps, ct_poly_term(&c->ps, 2 * other->c, rest), square);
+        struct ct_term pair[2] = {*t, *other};
+        p = ct_poly_add(&c->ps, p, -1, (struct ct_poly){&pair[0], 1});
+        p = ct_poly_add(&c->ps, p, -1, (struct ct_poly){&pair[1], 1});
+        return ct_poly_add(&c->ps, p, 1, folded);
+    }
+    return p;
+}
+
+static struct ct_poly halves(struct ct_collector *c, struct ct_poly p)
+{
+    for (size_t k = 0; k < p.n;) {
+        const struct ct_poly q = halve(c, p, &p.t[k]);
+        k = q.t == p.t ? k + 1 : 0; // each step removes a term, so this ends
+        p = q;
+    }
+    return p;
+}
+
 // ---- groups -----------------------------------------------------------------------------------
 
-static struct ct_poly shorten_group(struct ct_collector *c, struct ct_poly p,
-                                    const void *unused)
+// How much is tried: merging pairs costs little, the other two forms are for what is printed.
+enum effort { EFFORT_MERGE, EFFORT_ALL };
+
+static struct ct_poly shorten(struct ct_collector *c, struct ct_poly p, enum effort effort)
 {
-    // terms carry their common factor; it is taken out and put back
+    struct ct_poly best = shorter(c, p, merge(c, p));
+    if (effort == EFFORT_MERGE || best.n < 2)
+        return best;
+    const struct ct_poly expanded = expand_angles(c, p);
+    if (expanded.t != p.t)
+        best = shorter(c, best, merge(c, expanded));
+    // waves of what is merged: fewer terms, often within the limit where p is not
+    best = shorter(c, best, halves(c, waves(c, p)));
+    return shorter(c, best, halves(c, waves(c, best)));
+}
+
+// The terms carry their common factor; it is taken out and put back.
+static struct ct_poly shorten_group(struct ct_collector *c, struct ct_poly p,
+                                    const void *effort)
+{
     uint32_t rest = 0;
-    (void)unused;
     if (p.n < 2)
         return p;
     for (size_t k = 0; k < ct_mono_length(&c->ps, p.t[0].mono); k++) {
@@ -459,17 +514,12 @@ static struct ct_poly shorten_group(struct ct_collector *c, struct ct_poly p,
     for (size_t k = 0; k < p.n; k++)
         p.t[k].mono = ct_mono_times(&c->ps, p.t[k].mono, out);
     p = ct_poly_sum(&c->ps, p.t, p.n);
-
-    const struct ct_poly merged = merge(c, p), expanded = expand_angles(c, p);
-    struct ct_poly best = shorter(c, p, merged);
-    if (best.n > 1) {
-        best = expanded.t != p.t ? shorter(c, best, merge(c, expanded)) : best;
-        best = shorter(c, best, waves(c, p));
-    }
-    return ct_poly_mul(&c->ps, best, ct_poly_term(&c->ps, 1, rest));
+    p = shorten(c, p, *(const enum effort *)effort);
+    return ct_poly_mul(&c->ps, p, ct_poly_term(&c->ps, 1, rest));
 }
 
-struct ct_poly ct_identity_apply(struct ct_collector *c, struct ct_poly p)
+static struct ct_poly shorten_groups(struct ct_collector *c, struct ct_poly p,
+                                     enum effort effort)
 {
     struct keyed *k = CT_NEWN(c->arena, struct keyed, p.n);
     bool any = false;
@@ -483,5 +533,15 @@ struct ct_poly ct_identity_apply(struct ct_collector *c, struct ct_poly p)
         any |= rest != p.t[i].mono;
         k[i] = (struct keyed){rest, p.t[i]};
     }
-    return any ? rewrite_parts(c, k, p.n, shorten_group, NULL) : p;
+    return any ? rewrite_parts(c, k, p.n, shorten_group, &effort) : p;
+}
+
+struct ct_poly ct_identity_merge(struct ct_collector *c, struct ct_poly p)
+{
+    return shorten_groups(c, p, EFFORT_MERGE);
+}
+
+struct ct_poly ct_identity_apply(struct ct_collector *c, struct ct_poly p)
+{
+    return shorten_groups(c, p, EFFORT_ALL);
 }

@@ -27,7 +27,8 @@ static const struct {
 static const struct {
     const char *text;
     enum ct_op op;
-} comparisons[] = { // the longer ones first
+} comparisons[] = {
+    // the longer ones first
     {"<=", CT_OP_LE}, {">=", CT_OP_GE}, {"==", CT_OP_EQ}, {"<", CT_OP_LT}, {">", CT_OP_GT},
 };
 
@@ -140,10 +141,14 @@ static bool is_known(const struct parser *s, const char *name)
 
 static void report_unknown_name(struct parser *s, const char *name, const char *start)
 {
-    const char *near = ct_nearest(name, s->scope->known, s->scope->nknown);
+    // a search costs all names each time; after so many errors nobody reads on
+    enum { MOST_SUGGESTIONS = 200 };
+    const char *near = s->ctx->nerror < MOST_SUGGESTIONS
+                         ? ct_nearest(name, s->scope->known, s->scope->nknown)
+                         : NULL;
     if (find_function(name) >= 0)
-        ct_error(s->ctx, mark_at(s, start), CT_E_FUNCTION, "'%s' is a function: write %s(...)", name,
-                 name);
+        ct_error(s->ctx, mark_at(s, start), CT_E_FUNCTION, "'%s' is a function: write %s(...)",
+                 name, name);
     else if (near)
         ct_error(s->ctx, mark_at(s, start), CT_E_NAME_UNKNOWN,
                  "unknown name '%s'; did you mean '%s'?", name, near);
@@ -283,8 +288,9 @@ static bool parse_call(struct parser *s, const char *name, const char *start, ct
         return unexpected(s, "',' or ')'");
     s->p++;
     if (n < functions[f].least || n > functions[f].most)
-        return ct_error(s->ctx, mark_at(s, start), CT_E_FUNCTION, "'%s' takes %d argument%s, not %d",
-                        name, functions[f].least, functions[f].least == 1 ? "" : "s", n);
+        return ct_error(s->ctx, mark_at(s, start), CT_E_FUNCTION,
+                        "'%s' takes %d argument%s, not %d", name, functions[f].least,
+                        functions[f].least == 1 ? "" : "s", n);
     *e = apply(s->scope->x, f, arg, n);
     return true;
 }
@@ -436,8 +442,9 @@ static bool parse_comparison(struct parser *s, ct_ex *e)
     *e = ct_ex_fun2(s->scope->x, comparisons[c].op, *e, b);
     // (1 < x) < 3 is always true: nobody who writes 1 < x < 3 means it
     if (scan_comparison(s) >= 0)
-        return ct_error(s->ctx, mark_at(s, s->p), CT_E_SYNTAX,
-                        "comparisons cannot be chained; multiply two of them, or use parentheses");
+        return ct_error(
+            s->ctx, mark_at(s, s->p), CT_E_SYNTAX,
+            "comparisons cannot be chained; multiply two of them, or use parentheses");
     return true;
 }
 
@@ -464,7 +471,8 @@ static bool split_quantity(const char *text, double *value, const char **unit)
     return n && (is_letter(*p) || (*p & 0x80) || (has_gap && p[0] == '1' && p[1] == '/'));
 }
 
-static bool report_unit(struct parser *s, enum ct_unit_result result, const char *unit, size_t at)
+static bool report_unit(struct parser *s, enum ct_unit_result result, const char *unit,
+                        size_t at)
 {
     const struct ct_mark mark = s->text.mark;
     const char *bad = unit + at;
@@ -477,15 +485,16 @@ static bool report_unit(struct parser *s, enum ct_unit_result result, const char
                         "'%s': the exponent of a unit is one digit with an optional sign",
                         s->text.text);
     if (result == CT_UNIT_SYNTAX)
-        return ct_error(s->ctx, mark, CT_E_UNIT,
-                        "'%s': a number with a unit stands alone, in an expression numbers are SI",
-                        s->text.text);
+        return ct_error(
+            s->ctx, mark, CT_E_UNIT,
+            "'%s': a number with a unit stands alone, in an expression numbers are SI",
+            s->text.text);
     if (name[0] == '_')
         return ct_error(s->ctx, mark, CT_E_NUMBER, "'%s': digits cannot be grouped with '_'",
                         s->text.text);
     if (is_known(s, name) || find_function(name) >= 0)
-        return ct_error(s->ctx, mark, CT_E_SYNTAX,
-                        "'%s': an operator is missing before '%s'", s->text.text, name);
+        return ct_error(s->ctx, mark, CT_E_SYNTAX, "'%s': an operator is missing before '%s'",
+                        s->text.text, name);
     const char *near = ct_unit_nearest(name);
     if (near)
         return ct_error(s->ctx, mark, CT_E_UNIT, "unknown unit '%s'; did you mean '%s'?", name,
@@ -504,8 +513,8 @@ static bool check_dimension(struct parser *s, const struct ct_unit *u, const cha
         return true;
     if (!s->scope->unit[0])
         return ct_error(s->ctx, s->text.mark, CT_E_DIMENSION,
-                        "'%s' is in %s, but a number without a unit is wanted here", s->text.text,
-                        unit);
+                        "'%s' is in %s, but a number without a unit is wanted here",
+                        s->text.text, unit);
     return ct_error(s->ctx, s->text.mark, CT_E_DIMENSION,
                     "'%s' is in %s, but a quantity in %s is wanted here", s->text.text, unit,
                     s->scope->unit);
@@ -539,13 +548,15 @@ static bool is_infinite_word(const char *text)
 
 bool ct_parse(struct ct_ctx *ctx, const struct ct_scope *scope, struct ct_text text, ct_ex *e)
 {
-    struct parser s = {.ctx = ctx, .scope = scope, .text = text, .p = text.text, .names_ok = true};
+    struct parser s
+        = {.ctx = ctx, .scope = scope, .text = text, .p = text.text, .names_ok = true};
     *e = CT_EX_ZERO;
     if (strlen(text.text) > MAX_LENGTH)
         return ct_error(ctx, text.mark, CT_E_EXPRESSION_LIMIT,
                         "the expression is longer than %d characters", MAX_LENGTH);
     if (is_infinite_word(text.text))
-        return ct_error(ctx, text.mark, CT_E_NUMBER, "'%s': a finite number is wanted", text.text);
+        return ct_error(ctx, text.mark, CT_E_NUMBER, "'%s': a finite number is wanted",
+                        text.text);
     double value;
     const char *unit;
     if (split_quantity(text.text, &value, &unit))
@@ -607,5 +618,5 @@ bool ct_is_identifier(const char *name)
 bool ct_is_reserved(const char *name)
 {
     return strcmp(name, "t") == 0 || strcmp(name, "pi") == 0 || strcmp(name, "in") == 0
-           || find_function(name) >= 0;
+        || find_function(name) >= 0;
 }

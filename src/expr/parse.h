@@ -20,8 +20,9 @@
 struct ct_text {
     const char *text;
     struct ct_mark mark; // of the value, its quote included
-    bool is_exact;       // character k stands at column mark.column + offset + k; else errors show mark
-    int offset;          // 1 after a quote
+    bool
+        is_exact; // character k stands at column mark.column + offset + k; else errors show mark
+    int offset;   // 1 after a quote
 };
 
 enum ct_name_result {
@@ -40,9 +41,9 @@ struct ct_scope {
     /// A signal, text in normal form ("F.velocity.x in B"), its first part and the part after `in`
     /// (NULL without): make or find its symbol. `where` gives the mark of the first part, `where_in` of
     /// the other.
-    enum ct_name_result (*signal)(void *user, const char *text, const char *first, const char *in,
-                                  struct ct_mark where, struct ct_mark where_in, ct_ex *e,
-                                  const char **why);
+    enum ct_name_result (*signal)(void *user, const char *text, const char *first,
+                                  const char *in, struct ct_mark where, struct ct_mark where_in,
+                                  ct_ex *e, const char **why);
     /// All plain names, for suggestions.
     const char *const *known;
     size_t nknown;

@@ -17,6 +17,7 @@ struct printer {
     struct ct_print p;
     uint32_t body; // printed although it has a name
     size_t left;   // items that may still be printed
+    size_t depth;  // of nested groups
     char *s;
     size_t n, cap;
 };
@@ -398,6 +399,7 @@ static void flatten_sum(struct printer *pr, struct terms *t, ct_ex e, bool negat
 {
     const struct ct_exnode *n = ct_ex_node(pr->x, e);
     if (!name_of(pr, e) && pr->left) {
+        pr->left--;
         switch (n->op) {
         case CT_OP_ADD:
         case CT_OP_SUB:
@@ -596,6 +598,9 @@ static const char *symbol_text(const struct printer *pr, const struct ct_sym *s)
     }
 }
 
+// Parentheses within parentheses: far beyond reading, well within the stack.
+enum { DEEPEST = 500 };
+
 static void emit(struct printer *pr, ct_ex e, enum level level)
 {
     const struct ct_exnode *n = ct_ex_node(pr->x, e);
@@ -605,11 +610,12 @@ static void emit(struct printer *pr, ct_ex e, enum level level)
         put(pr, name);
         return;
     }
-    if (!pr->left) {
+    if (!pr->left || pr->depth == DEEPEST) {
         put(pr, "...");
         return;
     }
     pr->left--;
+    pr->depth++;
     if (ct_ex_is_const(pr->x, e, &v))
         emit_const(pr, v, level);
     else if (n->op == CT_OP_SYM)
@@ -624,6 +630,7 @@ static void emit(struct printer *pr, ct_ex e, enum level level)
         emit_comparison(pr, n, level);
     else
         emit_function(pr, n);
+    pr->depth--;
 }
 
 // ---- names ------------------------------------------------------------------------------------
@@ -750,7 +757,7 @@ static const char *c_text(struct printer *pr, ct_ex e, bool operand)
     double v;
     if (name)
         return name;
-    if (!pr->left)
+    if (!pr->left || pr->depth == DEEPEST)
         return "...";
     pr->left--;
     if (ct_ex_is_const(pr->x, e, &v))
@@ -758,8 +765,10 @@ static const char *c_text(struct printer *pr, ct_ex e, bool operand)
     if (n->op == CT_OP_SYM)
         return symbol_text(pr, &pr->x->sym[n->a]);
     const uint32_t id[3] = {n->a, n->b, n->c};
+    pr->depth++;
     for (int k = 0; k < ct_op_info[n->op].narg; k++)
         arg[k] = c_text(pr, (ct_ex){id[k]}, true);
+    pr->depth--;
     if (n->op == CT_OP_TABLE)
         return ct_arena_printf(pr->arena, "table(%u, %u, %s)", n->b, n->c, arg[0]);
     const char *s = ct_c_operation(pr->arena, (enum ct_op)n->op, arg);

@@ -28,8 +28,9 @@ struct ct_print {
     /// Symbols of a product in ascending rank, then as created (masses before lengths, say).
     int (*rank)(void *data, const struct ct_sym *s);
     void *data;
-    /// Items (operators and operands) after which the rest is `...`; 0: 20000. A graph of n nodes
-    /// can be a tree of 2^n: name shared nodes first.
+    /// Items (operators and operands) after which the rest is `...`; 0: 20000; 500 parentheses within
+    /// each other are cut in any case. A graph of n nodes can be a tree of 2^n: name shared nodes
+    /// first (share.h).
     size_t limit;
 };
 

@@ -6,6 +6,7 @@
 
 #include <limits.h>
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 
 // ---- content ----------------------------------------------------------------------------------
@@ -62,6 +63,15 @@ void ct_poly_content(struct ct_collector *c, struct ct_poly *p, double *k, uint3
 
 // ---- products -----------------------------------------------------------------------------------
 
+// 0.04409999999999999 is 0.0441: the decimal of 12 digits where it differs by rounding noise only.
+static double without_noise(double k)
+{
+    char s[32];
+    snprintf(s, sizeof s, "%.12g", k);
+    const double rounded = strtod(s, NULL);
+    return ct_same_number(rounded, k) ? rounded : k;
+}
+
 // 0.3333333333333333 is 1/3: a fraction with small terms, if the decimals are long. *divisor is 1
 // otherwise.
 static double as_fraction(double k, double *divisor)
@@ -84,7 +94,7 @@ static ct_ex product(struct ct_collector *c, double k, uint32_t mono, ct_ex body
 {
     ct_ex below = CT_EX_ONE;
     double divisor;
-    k = as_fraction(k, &divisor);
+    k = as_fraction(without_noise(k), &divisor);
     for (size_t i = 0; i < ct_mono_length(&c->ps, mono); i++) {
         const struct ct_power p = ct_mono_power(&c->ps, mono, i);
         const ct_ex whole = ct_ex_const(c->x, abs(p.exponent));
@@ -199,6 +209,87 @@ static struct choice choose(struct ct_collector *c, struct ct_poly p)
     return best;
 }
 
+// ---- shared sums --------------------------------------------------------------------------------
+
+// Groups are made atom by atom, so one sum can become a factor of several: l3*(m3 + m4) +
+// l2*(m3 + m4)*cos(q3). Equal sums are one node, and that node is pulled out.
+
+static bool has_factor(const struct ct_exs *x, ct_ex e, ct_ex f)
+{
+    const struct ct_exnode *n = ct_ex_node(x, e);
+    if (ct_ex_same(e, f))
+        return true;
+    if (n->op == CT_OP_MUL)
+        return has_factor(x, (ct_ex){n->a}, f) || has_factor(x, (ct_ex){n->b}, f);
+    return n->op == CT_OP_NEG && has_factor(x, (ct_ex){n->a}, f);
+}
+
+// e / f for a factor f of e.
+static ct_ex without_factor(struct ct_exs *x, ct_ex e, ct_ex f)
+{
+    const struct ct_exnode n = *ct_ex_node(x, e);
+    if (ct_ex_same(e, f))
+        return CT_EX_ONE;
+    if (n.op == CT_OP_NEG)
+        return ct_ex_neg(x, without_factor(x, (ct_ex){n.a}, f));
+    if (has_factor(x, (ct_ex){n.a}, f))
+        return ct_ex_mul(x, without_factor(x, (ct_ex){n.a}, f), (ct_ex){n.b});
+    return ct_ex_mul(x, (ct_ex){n.a}, without_factor(x, (ct_ex){n.b}, f));
+}
+
+// sum = f part + rest, term by term.
+static void split_sum(struct ct_exs *x, ct_ex sum, bool negative, ct_ex f, ct_ex *part,
+                      ct_ex *rest)
+{
+    const struct ct_exnode n = *ct_ex_node(x, sum);
+    if (n.op == CT_OP_ADD || n.op == CT_OP_SUB) {
+        split_sum(x, (ct_ex){n.a}, negative, f, part, rest);
+        split_sum(x, (ct_ex){n.b}, negative ^ (n.op == CT_OP_SUB), f, part, rest);
+        return;
+    }
+    const bool shared = has_factor(x, sum, f);
+    ct_ex *to = shared ? part : rest, term = shared ? without_factor(x, sum, f) : sum;
+    *to = negative ? ct_ex_sub(x, *to, term) : ct_ex_add(x, *to, term);
+}
+
+// `left` bounds the search, since a bundled sum can be a graph with more paths than nodes.
+static bool is_factor_of_term(const struct ct_exs *x, ct_ex sum, ct_ex f, size_t *left)
+{
+    const struct ct_exnode *n = ct_ex_node(x, sum);
+    if (!*left)
+        return false;
+    --*left;
+    if (n->op == CT_OP_ADD || n->op == CT_OP_SUB)
+        return is_factor_of_term(x, (ct_ex){n->a}, f, left)
+            || is_factor_of_term(x, (ct_ex){n->b}, f, left);
+    return has_factor(x, sum, f);
+}
+
+// A factor of the product e that is a sum and also a factor of a term of `sum`; false if none.
+static bool find_shared(const struct ct_exs *x, ct_ex e, ct_ex sum, ct_ex *f, size_t *left)
+{
+    const struct ct_exnode *n = ct_ex_node(x, e);
+    *f = e;
+    if (n->op == CT_OP_ADD || n->op == CT_OP_SUB)
+        return is_factor_of_term(x, sum, e, left);
+    if (n->op == CT_OP_MUL)
+        return find_shared(x, (ct_ex){n->a}, sum, f, left)
+            || find_shared(x, (ct_ex){n->b}, sum, f, left);
+    return n->op == CT_OP_NEG && find_shared(x, (ct_ex){n->a}, sum, f, left);
+}
+
+// first + sum
+static ct_ex join(struct ct_exs *x, ct_ex first, ct_ex sum)
+{
+    ct_ex f, part = CT_EX_ZERO, rest = CT_EX_ZERO;
+    size_t left = 1000;
+    if (!find_shared(x, first, sum, &f, &left))
+        return ct_ex_add(x, first, sum);
+    split_sum(x, sum, false, f, &part, &rest);
+    const ct_ex inner = join(x, without_factor(x, first, f), part);
+    return ct_ex_add(x, ct_ex_mul(x, f, inner), rest);
+}
+
 // ---- sums -------------------------------------------------------------------------------------
 
 static ct_ex sum_of_terms(struct ct_collector *c, struct ct_poly p)
@@ -224,7 +315,8 @@ static ct_ex grouped(struct ct_collector *c, struct ct_poly p)
         to->t[to->n++] = p.t[k];
     }
     const ct_ex first = ct_regroup(c, with);
-    return ct_ex_add(c->x, first, ct_regroup(c, rest));
+    const ct_ex second = ct_regroup(c, rest);
+    return by.forced ? ct_ex_add(c->x, first, second) : join(c->x, first, second);
 }
 
 ct_ex ct_regroup(struct ct_collector *c, struct ct_poly p)

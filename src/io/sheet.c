@@ -58,7 +58,7 @@ static bool scan_quoted(struct scan *s, char **last)
 static bool scan_field(struct scan *s, size_t row, bool *row_ends)
 {
     const struct ct_mark mark = here(s);
-    char *start = s->p, *last;
+    char *start = s->p, *last = start;
     if (s->p < s->end && *s->p == '"') {
         start++;
         if (!scan_quoted(s, &last))
@@ -69,8 +69,8 @@ static bool scan_field(struct scan *s, size_t row, bool *row_ends)
         last = s->p;
     }
     if (s->csv->ncolumn && s->nfield - row * s->csv->ncolumn >= s->csv->ncolumn)
-        return ct_error(s->ctx, mark, CT_E_TABLE_DATA, "the row has more fields than the header (%zu)",
-                        s->csv->ncolumn);
+        return ct_error(s->ctx, mark, CT_E_TABLE_DATA,
+                        "the row has more fields than the header (%zu)", s->csv->ncolumn);
     CT_PUSH(s->a, s->csv->field, s->nfield, s->field_cap, start);
     CT_PUSH(s->a, s->csv->mark, s->nmark, s->mark_cap, mark);
     *row_ends = s->p >= s->end || *s->p != ',';
@@ -89,8 +89,8 @@ static void trim_end(struct scan *s)
     *s->end = 0;
 }
 
-bool ct_sheet_parse(struct ct_ctx *ctx, struct ct_arena *a, const char *file, char *text, size_t n,
-                  struct ct_sheet *csv)
+bool ct_sheet_parse(struct ct_ctx *ctx, struct ct_arena *a, const char *file, char *text,
+                    size_t n, struct ct_sheet *csv)
 {
     *csv = (struct ct_sheet){.file = file};
     struct scan s = {.ctx = ctx, .a = a, .csv = csv, .p = text, .end = text + n};

@@ -14,7 +14,7 @@ struct ct_sheet {
 /// Cut text (changed in place, NUL behind its n bytes) into fields; a byte order mark and empty lines at
 /// the end are skipped. All in arena a.
 /// Errors: E135 with a mark in the file.
-bool ct_sheet_parse(struct ct_ctx *ctx, struct ct_arena *a, const char *file, char *text, size_t n,
-                  struct ct_sheet *csv);
+bool ct_sheet_parse(struct ct_ctx *ctx, struct ct_arena *a, const char *file, char *text,
+                    size_t n, struct ct_sheet *csv);
 
 #endif

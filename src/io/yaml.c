@@ -87,7 +87,8 @@ static bool report_parser(struct source *s)
         return ct_error(s->ctx, at, CT_E_YAML,
                         "a tab cannot be used here; YAML wants spaces for indentation");
     ct_error(s->ctx, at, CT_E_YAML, "not valid YAML: %s", problem);
-    if (p->context)
+    const bool elsewhere = p->context_mark.index != p->problem_mark.index;
+    if (p->context && elsewhere)
         ct_note(s->ctx, mark_of(s, p->context_mark), "%s that starts here", p->context);
     return false;
 }
@@ -113,7 +114,8 @@ static bool open_anchor(struct source *s, const yaml_char_t *name)
 // A tag asks for a type; models have none, so it could only be ignored in silence.
 static bool check_tag(struct source *s, const yaml_char_t *tag, struct ct_mark at)
 {
-    if (!tag || strcmp((const char *)tag, YAML_STR_TAG) == 0 || strcmp((const char *)tag, "!") == 0)
+    if (!tag || strcmp((const char *)tag, YAML_STR_TAG) == 0
+        || strcmp((const char *)tag, "!") == 0)
         return true;
     return ct_error(s->ctx, at, CT_E_YAML_FEATURE, "the tag '%s' has no meaning in a model",
                     (const char *)tag);
@@ -134,12 +136,13 @@ static bool read_scalar(struct source *s, struct ct_node *node)
     const yaml_event_t *e = &s->event;
     const char *value = (const char *)e->data.scalar.value;
     if (strlen(value) != e->data.scalar.length)
-        return ct_error(s->ctx, node->mark, CT_E_YAML, "a text must not contain the character NUL");
+        return ct_error(s->ctx, node->mark, CT_E_YAML,
+                        "a text must not contain the character NUL");
     node->text = ct_arena_strndup(s->ctx->model, value, e->data.scalar.length);
     node->is_plain = e->data.scalar.style == YAML_PLAIN_SCALAR_STYLE;
     const size_t span = e->end_mark.index - e->start_mark.index;
     node->is_exact = e->start_mark.line == e->end_mark.line
-                     && span == count_characters(value) + (node->is_plain ? 0 : 2);
+                  && span == count_characters(value) + (node->is_plain ? 0 : 2);
     return check_tag(s, e->data.scalar.tag, node->mark);
 }
 
@@ -151,7 +154,8 @@ static bool add_child(struct source *s, struct ct_node *node, const struct ct_no
     node->weight += child->weight;
     if (node->weight > MAX_WEIGHT)
         return ct_error(s->ctx, at, CT_E_YAML_LIMIT,
-                        "the file has more than %d values when aliases are written out", MAX_WEIGHT);
+                        "the file has more than %d values when aliases are written out",
+                        MAX_WEIGHT);
     return true;
 }
 
@@ -247,15 +251,16 @@ static bool read_alias(struct source *s, size_t depth, const struct ct_node **ou
             continue;
         const struct ct_node *node = s->anchor[i].node;
         if (!node)
-            return ct_error(s->ctx, at, CT_E_YAML_LIMIT, "the alias '*%s' contains itself", name);
+            return ct_error(s->ctx, at, CT_E_YAML_LIMIT, "the alias '*%s' contains itself",
+                            name);
         if (depth + node->height > MAX_DEPTH)
             return ct_error(s->ctx, at, CT_E_YAML_LIMIT, "lists and maps nest deeper than %d",
                             MAX_DEPTH);
         *out = node;
         return true;
     }
-    return ct_error(s->ctx, at, CT_E_YAML, "the alias '*%s' has no anchor '&%s' before it", name,
-                    name);
+    return ct_error(s->ctx, at, CT_E_YAML, "the alias '*%s' has no anchor '&%s' before it",
+                    name, name);
 }
 
 // The node that starts with the current event.
@@ -290,7 +295,8 @@ static bool read_node(struct source *s, size_t depth, const struct ct_node **out
         ok = read_map(s, node, depth);
         break;
     default:
-        ok = ct_error(s->ctx, at, CT_E_INTERNAL, "unexpected YAML event %d", (int)s->event.type);
+        ok = ct_error(s->ctx, at, CT_E_INTERNAL, "unexpected YAML event %d",
+                      (int)s->event.type);
     }
     if (has_anchor)
         s->anchor[own].node = node;
@@ -303,7 +309,8 @@ static bool read_document(struct source *s, const struct ct_node **root)
     if (!next_event(s) || !next_event(s)) // start of stream; of document
         return false;
     if (s->event.type == YAML_STREAM_END_EVENT)
-        return ct_error(s->ctx, (struct ct_mark){s->file, 0, 0}, CT_E_YAML, "the file is empty");
+        return ct_error(s->ctx, (struct ct_mark){s->file, 0, 0}, CT_E_YAML,
+                        "the file is empty");
     if (!next_event(s) || !read_node(s, 0, root) || !next_event(s) || !next_event(s))
         return false;
     if (s->event.type != YAML_STREAM_END_EVENT)
@@ -320,25 +327,26 @@ bool ct_yaml_parse(struct ct_ctx *ctx, const char *file, const char *text, size_
         return ct_error(ctx, (struct ct_mark){file, 0, 0}, CT_E_YAML_LIMIT,
                         "the file is larger than %zu MiB", max_bytes >> 20);
     const size_t nerror = ctx->nerror;
-    struct source s = {.ctx = ctx, .file = file, .text = text, .size = n};
-    if (!yaml_parser_initialize(&s.parser))
+    struct source *s = CT_NEW(ctx->scratch, struct source);
+    *s = (struct source){.ctx = ctx, .file = file, .text = text, .size = n};
+    if (!yaml_parser_initialize(&s->parser))
         ct_guard_raise();
     // without memory libyaml's part is freed before the jump goes on outwards
     struct ct_guard g;
     ct_guard_push(&g);
     if (setjmp(g.env)) {
         ct_guard_pop(&g);
-        drop_event(&s);
-        yaml_parser_delete(&s.parser);
+        drop_event(s);
+        yaml_parser_delete(&s->parser);
         ct_guard_raise();
     }
-    yaml_parser_set_input_string(&s.parser, (const unsigned char *)text, n);
+    yaml_parser_set_input_string(&s->parser, (const unsigned char *)text, n);
     const struct ct_node *node = NULL;
-    const bool ok = read_document(&s, &node);
-    *root = ok ? node : NULL;
+    const bool ok = read_document(s, &node);
     ct_guard_pop(&g);
-    drop_event(&s);
-    yaml_parser_delete(&s.parser);
+    drop_event(s);
+    yaml_parser_delete(&s->parser);
+    *root = ok ? node : NULL;
     return ok && ctx->nerror == nerror;
 }
 
@@ -379,7 +387,7 @@ const struct ct_node *ct_node_get(const struct ct_node *node, const char *key)
 bool ct_node_is_null(const struct ct_node *node)
 {
     return node->kind == CT_NODE_SCALAR && node->is_plain
-           && (!node->text[0] || strcmp(node->text, "~") == 0 || strcmp(node->text, "null") == 0);
+        && (!node->text[0] || strcmp(node->text, "~") == 0 || strcmp(node->text, "null") == 0);
 }
 
 const char *ct_node_what(const struct ct_node *node)

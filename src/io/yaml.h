@@ -32,7 +32,8 @@ struct ct_node {
     // scalars
     const char *text;
     bool is_plain; // neither quoted nor a block scalar
-    bool is_exact; // character k of the text stands at column mark.column + (is_plain ? 0 : 1) + k
+    bool
+        is_exact; // character k of the text stands at column mark.column + (is_plain ? 0 : 1) + k
     // lists and maps
     size_t n;
     const struct ct_node *const *item;

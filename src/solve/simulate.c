@@ -13,7 +13,7 @@ struct ct_run {
     struct ct_machine *m;
     struct ct_embed *s;
     size_t ny;
-    double *y, *dy, *scratch, *value;
+    double *y, *dy, *stage, *scratch, *value;
     double *sign;  // of each state mode's root function at the last event
     double *event; // times
     size_t nevent;
@@ -48,9 +48,20 @@ static void multipliers(struct ct_run *r)
     memcpy(r->m->input + r->m->at_lam, r->s->lam, r->m->nrow * sizeof *r->s->lam);
 }
 
+// Stages of a step lie off the manifold by more than its steps do. Beside a singular position that
+// little is divided by a small pivot, so there the stage is put onto the manifold first.
+static const double singular_pivot = 0.1;
+
 static enum ct_eval rhs(void *user, double t, const double *y, double *dy)
 {
     struct ct_run *r = user;
+    if (r->s->rank && r->s->sigma < singular_pivot) {
+        memcpy(r->stage, y, r->ny * sizeof *y);
+        const enum ct_eval p = ct_embed_project(r->s, t, r->stage);
+        if (p != CT_EVAL_OK)
+            return p;
+        y = r->stage;
+    }
     const enum ct_eval e = accelerate(r, t, y);
     if (e != CT_EVAL_OK)
         return e;
@@ -218,6 +229,7 @@ struct ct_run *ct_run_create(struct ct_ctx *ctx, struct ct_arena *a,
     r->ny = r->m->nq + r->m->nu + 1;
     r->y = CT_NEWN(a, double, r->ny);
     r->dy = CT_NEWN(a, double, r->ny);
+    r->stage = CT_NEWN(a, double, r->ny);
     r->scratch = CT_NEWN(a, double, 2 * r->m->nu + 2 * e->ndriver + 1);
     r->value = CT_NEWN(a, double, e->nresult + 1);
     find_needs(r);

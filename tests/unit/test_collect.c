@@ -59,6 +59,38 @@ static void check(struct fixture *f, ct_ex e, const char *want)
     }
 }
 
+static void evaluate_all(const struct ct_exs *x, const double *value, double *v)
+{
+    for (uint32_t id = 0; id < x->nnode; id++) {
+        const struct ct_exnode *n = &x->node[id];
+        const int narg = ct_op_info[n->op].narg;
+        if (ct_ex_is_const(x, (ct_ex){id}, &v[id]))
+            continue;
+        v[id] = n->op == CT_OP_SYM
+                  ? value[n->a]
+                  : ct_op_apply((enum ct_op)n->op, v[n->a], narg > 1 ? v[n->b] : 0,
+                                narg > 2 ? v[n->c] : 0);
+    }
+}
+
+static void check_values(struct fixture *f, struct random *r, ct_ex e, ct_ex got)
+{
+    double value[32], *v = CT_NEWN(f->arena, double, f->x.nnode);
+    for (int round = 0; round < 4; round++) {
+        for (size_t k = 0; k < f->x.nsym; k++)
+            value[k] = random_double(r);
+        evaluate_all(&f->x, value, v);
+        // rounding is relative to the largest number on the way, not to the result
+        double scale = fabs(v[e.id]);
+        for (size_t n = ct_ex_walk(&f->x, &e, 1); n-- > 0;)
+            scale = fmax(scale, fabs(v[f->x.stack[n]]));
+        if (fabs(v[e.id] - v[got.id]) > 1e-12 * scale)
+            fail_msg("got %.17g, wanted %.17g: %s\n  from %s", v[got.id], v[e.id],
+                     ct_ex_text(f->arena, &f->x, got, NULL),
+                     ct_ex_text(f->arena, &f->x, e, NULL));
+    }
+}
+
 // ---- models built from ground components, nothing simplified -------------------------------------
 
 static ct_ex mul3(struct ct_exs *x, ct_ex a, ct_ex b, ct_ex c)
@@ -219,6 +251,29 @@ static void equation_of_motion_is_a_linear_form(void **unused)
     finish(&f);
 }
 
+// So long for its limit that it is not expanded: the coefficients come from derivatives.
+static void long_equation_is_a_linear_form(void **unused)
+{
+    (void)unused;
+    struct fixture f;
+    start(&f);
+    struct ct_exs *x = &f.x;
+    ct_ex sum = ct_ex_add(x, ct_ex_add(x, f.m1, f.m2), ct_ex_add(x, f.l1, f.l2));
+    ct_ex wave = ct_ex_add(x, trig(&f, CT_OP_COS, f.q1), trig(&f, CT_OP_SIN, f.q2));
+    ct_ex a = ct_ex_add(x, ct_ex_mul(x, wave, f.a1), ct_ex_mul(x, f.u1, f.u2));
+    ct_ex e = mul3(x, sum, ct_ex_add(x, sum, wave), ct_ex_add(x, a, f.g));
+    ct_ex s[] = {f.a1, f.a2}, coefficient[2], rest;
+    const struct ct_collect_options few = {.limit = 10};
+    assert_true(ct_ex_collect_linear(x, e, s, 2, coefficient, &rest, &few));
+    assert_true(ct_ex_is_zero(coefficient[1]));
+    ct_ex again = ct_ex_add(x, ct_ex_mul(x, coefficient[0], f.a1), rest);
+    const unsigned kinds = ct_ex_kinds(x, coefficient[0]) | ct_ex_kinds(x, rest);
+    assert_false(kinds & 1u << CT_SYM_A);
+    struct random r = {1};
+    check_values(&f, &r, e, again);
+    finish(&f);
+}
+
 static void what_is_not_linear_is_left_over(void **unused)
 {
     (void)unused;
@@ -250,6 +305,9 @@ static void identities_only_where_shorter(void **unused)
           "m1*cos(q1)^2 + m2*sin(q1)^2");
     check(&f, ct_ex_mul(x, c1, c2), "cos(q1)*cos(q2)");
     check(&f, ct_ex_sub(x, ct_ex_mul(x, c1, s2), ct_ex_mul(x, s1, c2)), "-sin(q1 - q2)");
+    // a turn about two parallel axes, squared
+    ct_ex turn = ct_ex_sub(x, ct_ex_mul(x, c1, c2), ct_ex_mul(x, s1, s2));
+    check(&f, ct_ex_mul(x, f.m1, ct_ex_mul(x, turn, turn)), "m1*cos(q1 + q2)^2");
     // (s^2 + c^2)^2, multiplied out
     ct_ex whole = ct_ex_add(x, cc, ss);
     check(&f, ct_ex_mul(x, whole, whole), "1");
@@ -274,6 +332,8 @@ static void rounding_leaves_no_residues(void **unused)
     check(&f, ct_ex_mul(x, ct_ex_scale(x, 0.5, f.q1), ct_ex_scale(x, 0.304, f.q2)),
           "0.152*q1*q2");
     check(&f, ct_ex_div(x, ct_ex_mul(x, f.m1, f.q1), ct_ex_const(x, 3)), "m1*q1/3");
+    check(&f, ct_ex_add(x, a, ct_ex_scale(x, 0.2, ct_ex_add(x, f.q1, f.q2))),
+          "0.3*q1 + 0.2*q2");
     ct_ex tiny = ct_ex_scale(x, 1e-17, f.q2);
     check(&f, ct_ex_add(x, f.q1, tiny), "q1 + 1e-17*q2"); // small is not noise
     finish(&f);
@@ -296,21 +356,20 @@ static void quotients_and_roots(void **unused)
     finish(&f);
 }
 
-// ---- properties -------------------------------------------------------------------------------
-
-static void evaluate_all(const struct ct_exs *x, const double *value, double *v)
+static void equal_sums_are_pulled_out(void **unused)
 {
-    for (uint32_t id = 0; id < x->nnode; id++) {
-        const struct ct_exnode *n = &x->node[id];
-        const int narg = ct_op_info[n->op].narg;
-        if (ct_ex_is_const(x, (ct_ex){id}, &v[id]))
-            continue;
-        v[id] = n->op == CT_OP_SYM
-                  ? value[n->a]
-                  : ct_op_apply((enum ct_op)n->op, v[n->a], narg > 1 ? v[n->b] : 0,
-                                narg > 2 ? v[n->c] : 0);
-    }
+    (void)unused;
+    struct fixture f;
+    start(&f);
+    struct ct_exs *x = &f.x;
+    ct_ex arm = ct_ex_add(x, f.l1, ct_ex_mul(x, f.l2, trig(&f, CT_OP_COS, f.q1)));
+    ct_ex both = mul3(x, f.l1, ct_ex_add(x, f.m1, f.m2), arm);
+    ct_ex third = mul3(x, f.m3, f.l3, trig(&f, CT_OP_SIN, f.q2));
+    check(&f, ct_ex_add(x, both, third), "m3*l3*sin(q2) + l1*(m1 + m2)*(l1 + l2*cos(q1))");
+    finish(&f);
 }
+
+// ---- properties -------------------------------------------------------------------------------
 
 // Sums and products of symbols, sines and cosines; everything stays of order one, so that the
 // tolerance on the result can follow from the magnitudes of the nodes below.
@@ -340,24 +399,6 @@ static ct_ex random_mechanics(struct random *r, struct fixture *f, ct_ex *e, siz
             e[k] = ct_ex_add(&f->x, a, ct_ex_scale(&f->x, random_below(r, 2) ? 1 : 0.3, b));
     }
     return e[n - 1];
-}
-
-static void check_values(struct fixture *f, struct random *r, ct_ex e, ct_ex got)
-{
-    double value[32], *v = CT_NEWN(f->arena, double, f->x.nnode);
-    for (int round = 0; round < 4; round++) {
-        for (size_t k = 0; k < f->x.nsym; k++)
-            value[k] = random_double(r);
-        evaluate_all(&f->x, value, v);
-        // rounding is relative to the largest number on the way, not to the result
-        double scale = fabs(v[e.id]);
-        for (size_t n = ct_ex_walk(&f->x, &e, 1); n-- > 0;)
-            scale = fmax(scale, fabs(v[f->x.stack[n]]));
-        if (fabs(v[e.id] - v[got.id]) > 1e-12 * scale)
-            fail_msg("got %.17g, wanted %.17g: %s\n  from %s", v[got.id], v[e.id],
-                     ct_ex_text(f->arena, &f->x, got, NULL),
-                     ct_ex_text(f->arena, &f->x, e, NULL));
-    }
 }
 
 static void random_expressions_keep_their_values(void **unused)
@@ -436,10 +477,12 @@ int main(void)
         cmocka_unit_test(relative_angles_by_products_of_rotations),
         cmocka_unit_test(triple_chain_by_products_of_rotations),
         cmocka_unit_test(equation_of_motion_is_a_linear_form),
+        cmocka_unit_test(long_equation_is_a_linear_form),
         cmocka_unit_test(what_is_not_linear_is_left_over),
         cmocka_unit_test(identities_only_where_shorter),
         cmocka_unit_test(rounding_leaves_no_residues),
         cmocka_unit_test(quotients_and_roots),
+        cmocka_unit_test(equal_sums_are_pulled_out),
         cmocka_unit_test(random_expressions_keep_their_values),
         cmocka_unit_test(bundled_sums_keep_their_values),
         cmocka_unit_test(what_is_zero_becomes_zero),

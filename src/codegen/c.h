@@ -1,0 +1,34 @@
+// Expressions -> C source: one function of doubles, for export and for checking the tape.
+//
+//     void name(const double *in, double *out)        in[slot] of the symbols, out[nout]
+//
+// One statement per operation, `const double t12 = t3 * t7;`, in the order of the nodes. Every
+// operation of the tape is there with the same operands and nothing else, so the bits agree with the
+// tape if the compiler neither contracts nor reorders (-ffp-contract=off, no -ffast-math).
+//
+// What always holds: the same expressions give the same text; C99 without warnings; no globals but
+// constant tables. Functions are kept under `split` statements, because compilers need more than
+// linear time for one function; what crosses a boundary goes through an array on the stack.
+#ifndef CT_CODEGEN_C_H
+#define CT_CODEGEN_C_H
+
+#include "expr/ex.h"
+
+/// All zero: the defaults.
+struct ct_c_options {
+    const char *name;  // of the function; NULL: "evaluate". Helpers start with it
+    const char *title; // for the comment at the top; NULL: none
+    size_t split;      // statements in one function; 0: 800
+    /// The text of a symbol behind its input, a C identifier; NULL: ct_c_name of its name. Inputs
+    /// are called i<slot>_<text>, so texts need not differ.
+    const char *(*symbol)(void *data, struct ct_arena *a, const struct ct_sym *s);
+    void *data;
+};
+
+/// C source of nout expressions. in[k] is a symbol whose value stands at slot[k] of the input; all
+/// symbols that are needed must be listed. The text lives in a.
+const char *ct_c_function(struct ct_arena *a, const struct ct_exs *x, const ct_ex *out,
+                          size_t nout, const ct_ex *in, const size_t *slot, size_t nin,
+                          const struct ct_c_options *options);
+
+#endif

@@ -1,0 +1,162 @@
+// Generated C: exact text of a small function, bits of the tape from a compiled one.
+#include "codegen/c.h"
+#include "expr/tape.h"
+#include "random_ex.h"
+
+#include <dlfcn.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <string.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+
+static const double table_x[] = {-3, -1, 0, 1.5, 3}, table_y[] = {1, 2, 0, -1, 4},
+                    table_m[] = {0.5, 0.1, -1, 0, 2};
+static const struct ct_table tables[] = {{.n = 5, .x = table_x, .y = table_y},
+                                         {.n = 5, .x = table_x, .y = table_y, .m = table_m}};
+
+static void small_function_reads_well(void **unused)
+{
+    (void)unused;
+    struct ct_arena *a = ct_arena_create();
+    struct ct_exs x;
+    ct_exs_init(&x, a);
+    ct_ex m = ct_ex_sym(&x, CT_SYM_PARAM, "m", 0), q = ct_ex_sym(&x, CT_SYM_Q, "crank.q", 0);
+    ct_ex s = ct_ex_fun(&x, CT_OP_SIN, q);
+    ct_ex_label(&x, s, "tip.x");
+    const ct_ex out[] = {ct_ex_sub(&x, ct_ex_mul(&x, m, s), ct_ex_const(&x, 0.5)), m, s};
+    const ct_ex in[] = {m, q};
+    const size_t slot[] = {3, 0};
+    const struct ct_c_options o = {.name = "motion", .title = "crank"};
+    assert_string_equal(
+        ct_c_function(a, &x, out, 3, in, slot, 2, &o),
+        "/* crank: 3 operations. Compile with -ffp-contract=off to keep the bits. */\n"
+        "#include <math.h>\n"
+        "\n"
+        "void motion(const double *in, double *out);\n"
+        "\n"
+        "void motion(const double *in, double *out)\n"
+        "{\n"
+        "    (void)in;\n"
+        "    (void)out;\n"
+        "    const double i3_m = in[3];\n"
+        "    const double i0_crank_q = in[0];\n"
+        "    const double t0 = sin(i0_crank_q); /* tip.x */\n"
+        "    const double t1 = i3_m * t0;\n"
+        "    const double t2 = t1 - 0.5;\n"
+        "    out[2] = t0;\n"
+        "    out[0] = t2;\n"
+        "    out[1] = in[3];\n"
+        "}\n");
+    ct_arena_destroy(a);
+}
+
+// ---- compiled ---------------------------------------------------------------------------------
+
+typedef void (*evaluate_fn)(const double *in, double *out);
+
+struct object {
+    char folder[64], source[96], object[96];
+    void *handle;
+    evaluate_fn evaluate;
+};
+
+static void write_file(const char *path, const char *text)
+{
+    FILE *f = fopen(path, "w");
+    assert_non_null(f);
+    assert_int_equal(fwrite(text, 1, strlen(text), f), strlen(text));
+    assert_int_equal(fclose(f), 0);
+}
+
+static void object_open(struct object *o, const char *text)
+{
+    char command[512];
+    strcpy(o->folder, "/tmp/ct_test_c_XXXXXX");
+    assert_non_null(mkdtemp(o->folder));
+    snprintf(o->source, sizeof o->source, "%s/e.c", o->folder);
+    snprintf(o->object, sizeof o->object, "%s/e.so", o->folder);
+    write_file(o->source, text);
+    snprintf(command, sizeof command,
+             "cc -std=c99 -Wall -Wextra -Wpedantic -Werror -O1 -ffp-contract=off -shared -fPIC "
+             "-o %s %s -lm",
+             o->object, o->source);
+    assert_int_equal(system(command), 0);
+    o->handle = dlopen(o->object, RTLD_NOW);
+    assert_non_null(o->handle);
+    void *symbol = dlsym(o->handle, "evaluate");
+    assert_non_null(symbol);
+    memcpy(&o->evaluate, &symbol, sizeof symbol); // C has no cast from an object to a function
+}
+
+static void object_close(struct object *o)
+{
+    dlclose(o->handle);
+    unlink(o->object);
+    unlink(o->source);
+    rmdir(o->folder);
+}
+
+static bool has_compiler(void)
+{
+    return system("cc --version >/dev/null 2>&1") == 0;
+}
+
+static void compare(struct random *r, size_t n, size_t split)
+{
+    struct ct_arena *a = ct_arena_create();
+    struct ct_exs x;
+    ct_exs_init(&x, a);
+    x.table = tables;
+    x.ntable = COUNT(tables);
+    ct_ex sym[8], *e = CT_NEWN(a, ct_ex, n + 8), out[40];
+    size_t slot[8];
+    for (size_t k = 0; k < 8; k++) {
+        sym[k] = e[k] = ct_ex_sym(&x, k % 2 ? CT_SYM_Q : CT_SYM_PARAM, "gamma", (uint32_t)k);
+        slot[k] = 7 - k;
+    }
+    for (size_t k = 8; k < n + 8; k++)
+        e[k] = random_node(r, &x, e, k);
+    for (size_t k = 0; k < 40; k++)
+        out[k] = k < 30 ? e[n + 8 - 1 - random_below(r, n)] : e[random_below(r, 12)];
+    const struct ct_c_options o = {.split = split};
+    struct object object;
+    object_open(&object, ct_c_function(a, &x, out, 40, sym, slot, 8, &o));
+    struct ct_tape *t = ct_tape_compile(a, &x, out, 40, sym, slot, 8);
+    double *w = CT_NEWN(a, double, ct_tape_work(t)), in[8], got[40], want[40];
+    for (int round = 0; round < 20; round++) {
+        for (size_t k = 0; k < 8; k++)
+            in[k] = random_double(r);
+        ct_tape_prepare(t, in, w);
+        ct_tape_eval(t, in, want, w);
+        object.evaluate(in, got);
+        for (size_t k = 0; k < 40; k++)
+            if (memcmp(&got[k], &want[k], sizeof *got)
+                && !(got[k] != got[k] && want[k] != want[k]))
+                fail_msg("output %zu: C %.17g, tape %.17g", k, got[k], want[k]);
+    }
+    object_close(&object);
+    ct_arena_destroy(a);
+}
+
+static void compiled_function_has_the_bits_of_the_tape(void **unused)
+{
+    (void)unused;
+    struct random r = random_start(__func__);
+    if (!has_compiler())
+        skip();
+    compare(&r, 40, 0);
+    compare(&r, 500, 0);
+    compare(&r, 500, 7); // many parts
+    compare(&r, 3000, 0);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(small_function_reads_well),
+        cmocka_unit_test(compiled_function_has_the_bits_of_the_tape),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
