@@ -176,8 +176,9 @@ void ct_reaction_derive(struct ct_build *b, int joint, ct_ex3 *force, ct_ex3 *to
         }
     for (size_t i = 0; i < b->npull; i++) {
         const struct ct_pull *p = &b->pull[i];
-        if (p->joint != joint)
-            continue;
+        if (p->joint != joint || p->head != b->wiring[edge].head
+            || p->tail != b->wiring[edge].tail)
+            continue; // rows of the weld behind a joint carry its number, too
         const ct_ex lam = b->eqs->row[p->row].lam;
         add(b, force, ct_ex3_scale(b->x, lam, p->force));
         add(b, torque, ct_ex3_scale(b->x, lam, p->torque));
