@@ -64,7 +64,7 @@ struct ct_memory {
 struct ct_result {
     const char *name; // column
     ct_ex value;
-    bool undetermined; // set by the run: depends on multipliers that are not unique
+    bool undetermined; // a reaction out of the plane that a planar model leaves open
 };
 
 /// A driven coordinate: known branch coordinate with its value, rate and acceleration.
