@@ -420,6 +420,7 @@ bool ct_formulate(struct ct_ctx *ctx, struct ct_arena *a, const struct ct_model 
     b->eqs->coordinate = b->coordinate;
     b->eqs->ncoordinate = b->ncoordinate;
     b->eqs->build = b;
+    b->eqs->how = report->how;
     *out = *b->eqs;
     return true;
 }

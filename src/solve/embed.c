@@ -106,6 +106,11 @@ static bool factor(struct ct_embed *s)
     return isfinite(s->kappa);
 }
 
+double ct_embed_pivot(struct ct_embed *s)
+{
+    return factor(s) ? s->sigma : 0;
+}
+
 static bool massless(struct ct_embed *s)
 {
     // the free direction with the least inertia: report the coordinate with the smallest diagonal entry
@@ -346,7 +351,10 @@ enum ct_eval ct_embed_project(struct ct_embed *s, double t, double *y)
         ct_machine_constraint(m);
         const double size = largest(m->phi, m->nrow);
         // rounding keeps larger mechanisms from the tolerance: stop when nothing is gained any more
-        if (size <= position_tolerance || (size < 1e-10 && size > before / 4))
+        // what is left is divided by the smallest pivot: beside a singular position go on to the end
+        const double wanted
+            = s->sigma < 0.1 ? position_tolerance * s->sigma : position_tolerance;
+        if (size <= wanted || (size < 1e-10 && size > before / 4))
             break;
         if (i == MOST_NEWTON || !isfinite(size) || size > 1e3 * before)
             return CT_EVAL_RETRY;

@@ -40,6 +40,8 @@ enum ct_eval ct_embed_accelerate(struct ct_embed *s);
 void ct_embed_multipliers(struct ct_embed *s);
 /// Move q, u in y onto the constraints, independent coordinates held where J_d allows.  (6.6)
 enum ct_eval ct_embed_project(struct ct_embed *s, double t, double *y);
+/// The smallest pivot of J_d against its largest at the last ct_machine_constraint.
+double ct_embed_pivot(struct ct_embed *s);
 /// Which multipliers are unique, into s->is_unique: rows of null(J') that vanish.  (6.5)
 void ct_embed_uniqueness(struct ct_embed *s);
 /// z (nrow, out) = the unit vector of `row` less its part in the range of J: a vector of null(J'), so that

@@ -23,6 +23,7 @@ struct ct_run {
     const struct ct_run_options *o;
     struct ct_run_report *report;
     double energy0, energy_scale;
+    double pivot_last, pivot_time, singular_in; // see foresee_singular
     bool started;
 };
 
@@ -83,11 +84,33 @@ static enum ct_eval project(void *user, double t, double *y)
     return ct_embed_project(r->s, t, y);
 }
 
+// The smallest pivot of J_d falls about linearly towards a singular position: where it will vanish
+// is foreseen from two accepted states.
+static void foresee_singular(struct ct_run *r, double t)
+{
+    const double before = r->pivot_last, dt = t - r->pivot_time;
+    r->singular_in = INFINITY;
+    r->pivot_last = INFINITY;
+    if (!r->s->rank || r->s->sigma > 2 * singular_pivot)
+        return;
+    ct_machine_constraint(r->m);
+    r->pivot_last = ct_embed_pivot(r->s);
+    r->pivot_time = t;
+    if (isfinite(before) && before > r->pivot_last && dt > 0)
+        r->singular_in = dt * r->pivot_last / (before - r->pivot_last);
+}
+
+static double singular_in(void *user)
+{
+    return ((const struct ct_run *)user)->singular_in;
+}
+
 static enum ct_eval accepted(void *user, double t, double *y)
 {
     struct ct_run *r = user;
     ct_machine_set(r->m, t, y);
     ct_memory_follow(r->m);
+    foresee_singular(r, t);
     return CT_EVAL_OK;
 }
 
@@ -382,6 +405,7 @@ bool ct_run_simulate(struct ct_run *r, const struct ct_run_options *o,
         watched[i] = i + 1 < r->ny || r->has_power; // the work is as good as the states
     *report = (struct ct_run_report){0};
     report->final = CT_NEWN(r->arena, double, r->e->nresult + 1);
+    r->pivot_last = r->singular_in = INFINITY;
     r->o = o;
     r->report = report;
     r->nevent = ct_time_events(r->arena, r->m, 0, o->duration, &r->event);
@@ -392,6 +416,7 @@ bool ct_run_simulate(struct ct_run *r, const struct ct_run_options *o,
                                  .rhs = rhs,
                                  .project = project,
                                  .accepted = accepted,
+                                 .singular_in = singular_in,
                                  .nroot = r->nroot,
                                  .root = root,
                                  .next_time_event = next_time_event,
