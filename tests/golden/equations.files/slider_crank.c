@@ -5,10 +5,12 @@
 #include <math.h>
 
 void slider_crank_equations(double t, const double *q, const double *u, const double *mode,
-    const double *kept, double *M, double *Q, double *J, double *Phi, double *gam);
+                            const double *kept, double *M, double *Q, double *J, double *Phi,
+                            double *gam);
 
 void slider_crank_equations(double t, const double *q, const double *u, const double *mode,
-    const double *kept, double *M, double *Q, double *J, double *Phi, double *gam)
+                            const double *kept, double *M, double *Q, double *J, double *Phi,
+                            double *gam)
 {
     (void)t, (void)q, (void)u, (void)mode, (void)kept;
     (void)M, (void)Q, (void)J, (void)Phi, (void)gam;
@@ -36,12 +38,15 @@ void slider_crank_equations(double t, const double *q, const double *u, const do
     M[1 + 2 * 1] = J2 + ((l * l) * (m3 + (0.25 * m2)));
 
     // forces
-    Q[0] = torque - (sin((main_q + small_end_q)) * (l * ((small_end_u * small_end_u) * (r * (m3 + (0.5 * m2))))));
+    Q[0] = torque
+         - (sin((main_q + small_end_q))
+            * (l * ((small_end_u * small_end_u) * (r * (m3 + (0.5 * m2))))));
     Q[1] = -(sin((main_q + small_end_q)) * (l * ((main_u * main_u) * (r * (m3 + (0.5 * m2))))));
 
     // constraints
     J[0 + 1 * 0] = r * cos(main_q);
     J[0 + 1 * 1] = -(l * cos(small_end_q));
     Phi[0] = (r * sin(main_q)) - (l * sin(small_end_q));
-    gam[0] = ((l * sin(small_end_q)) * (small_end_u * small_end_u)) - ((r * sin(main_q)) * (main_u * main_u));
+    gam[0] = ((l * sin(small_end_q)) * (small_end_u * small_end_u))
+           - ((r * sin(main_q)) * (main_u * main_u));
 }
