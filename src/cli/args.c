@@ -8,7 +8,8 @@
 #include <string.h>
 
 const struct cli_command *const cli_commands[]
-    = {&cli_simulate, &cli_check, &cli_graph, &cli_components, &cli_methods, &cli_schema, NULL};
+    = {&cli_simulate,   &cli_equations, &cli_graph,  &cli_check,
+       &cli_components, &cli_methods,   &cli_schema, NULL};
 
 // ---- options --------------------------------------------------------------------------------------------
 
