@@ -53,10 +53,8 @@ static bool read_tree_file(struct ct_ctx *ctx, const char *path, struct ct_formu
         } else if (strcmp(p->key, keys[1]) == 0) {
             ok &= read_branches(ctx, p->value, &f->rot, &f->rot_mark, &f->nrot);
         } else {
-            const char *near = ct_nearest(p->key, keys, COUNT(keys));
-            ok = ct_error(ctx, p->mark, CT_E_KEY_UNKNOWN, "a tree file has no key '%s'%s%s%s",
-                          p->key, near ? ", did you mean '" : "", near ? near : "",
-                          near ? "'?" : "");
+            ok = ct_error(ctx, p->mark, CT_E_KEY_UNKNOWN, "a tree file has no key '%s'%s",
+                          p->key, ct_suggest_or_list(ctx->scratch, p->key, keys, COUNT(keys)));
         }
     }
     if (!ct_node_get(root, keys[0]))
@@ -85,11 +83,9 @@ static bool choose_tree(struct ct_ctx *ctx, const char *tree, struct ct_formulat
         fclose(file);
         return read_tree_file(ctx, tree, f);
     }
-    const char *near = ct_nearest(tree, words, COUNT(words));
-    return ct_error(
-        ctx, (struct ct_mark){0}, CT_E_USAGE,
-        "tree '%s': neither auto, joints, absolute nor a file that can be read%s%s%s", tree,
-        near ? ", did you mean '" : "", near ? near : "", near ? "'?" : "");
+    return ct_error(ctx, (struct ct_mark){0}, CT_E_USAGE,
+                    "tree '%s' is neither auto, joints, absolute nor a file that can be read%s",
+                    tree, ct_suggest(ctx->scratch, tree, words, COUNT(words)));
 }
 
 // ---- the pipeline ----------------------------------------------------------------------------------
@@ -264,13 +260,8 @@ static bool wrong_word(struct ct_ctx *ctx, const char *what, const char *word, s
                        const char *const *words, size_t nword)
 {
     const char *text = ct_arena_strndup(ctx->model, word, n);
-    const char *near = ct_nearest(text, words, nword);
-    const char *all = words[0];
-    for (size_t i = 1; i < nword; i++)
-        all = ct_arena_printf(ctx->model, "%s, %s", all, words[i]);
-    return ct_error(ctx, (struct ct_mark){0}, CT_E_USAGE,
-                    "equations have no %s '%s'%s%s%s; there are %s", what, text,
-                    near ? ", did you mean '" : "", near ? near : "", near ? "'?" : "", all);
+    return ct_error(ctx, (struct ct_mark){0}, CT_E_USAGE, "equations have no %s '%s'%s", what,
+                    text, ct_suggest_or_list(ctx->model, text, words, nword));
 }
 
 // A list of names, separated by commas.
