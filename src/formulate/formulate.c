@@ -317,7 +317,7 @@ static const char *near_edge(struct ct_build *b, const char *name)
         if (b->edge[i].kind != CT_EDGE_ARM)
             names[n++] = b->edge[i].name;
     const char *near = ct_nearest(name, names, n);
-    return near ? ct_arena_printf(b->arena, ", did you mean '%s'?", near) : "";
+    return near ? ct_arena_printf(b->arena, "; did you mean '%s'?", near) : "";
 }
 
 static bool mark_named(struct ct_build *b, const char *const *names, const struct ct_mark *mark,
