@@ -118,6 +118,7 @@ struct ct_equations {
     const struct ct_tree *T, *R;
     const char *const *node_name, *const *edge_name, *const *edge_kind;
     const int *weight_t, *weight_r;
+    const char *how; // the trees were chosen, for reports; NULL: not known
 };
 
 #endif
