@@ -447,8 +447,10 @@ static bool report_positions(struct assembly *s)
     if (worst_value > met) {
         const struct ct_coordinate *c = &s->e->coordinate[value];
         const struct ct_instance *joint = b->edge[c->edge].self;
+        const struct ct_value *turns = &joint->initial.rotate;
+        const bool is_turn = s->q[value].in_quaternion && turns->given;
         return ct_error(
-            s->ctx, initial_value(&b->edge[c->edge], false)->mark, CT_E_START,
+            s->ctx, is_turn ? turns->mark : joint->initial.q.mark, CT_E_START,
             "initial values contradict each other: '%s' of joint '%s' is missed by %.3g",
             c->name, joint->name, worst_value);
     }

@@ -33,6 +33,8 @@ static void expect_failure(struct system *s, const char *text, enum ct_code code
         print_error("got: %s\nwanted code %d and '%s'\n", d->text, code, named);
         fail();
     }
+    if (!d->mark.file)
+        print_error("no place: %s\n", d->text);
     assert_non_null(d->mark.file);
     system_close(s);
 }
