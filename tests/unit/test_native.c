@@ -181,6 +181,8 @@ static void all_back_ends_have_the_same_bits(void **unused)
 static void also_with_fused_products(void **unused)
 {
     (void)unused;
+    if (getenv("CT_VALGRIND")) // its fused multiply-add loses the sign of some zeros
+        skip();
     struct random r = random_start(__func__);
     check_graphs(&r, 500, 60, CT_FUSE_YES);
     check_graphs(&r, 200, 600, CT_FUSE_YES);
