@@ -14,6 +14,7 @@ enum ct_tree_choice {
 struct ct_formulate_options {
     enum ct_tree_choice tree;
     const char *const *trans, *const *rot; // GIVEN: names of the branches that are not arms
+    const struct ct_mark *trans_mark, *rot_mark; // of each name; NULL: nowhere
     size_t ntrans, nrot;
     bool keep_all;     // leave nothing out: spatial rows for planar mechanisms
     bool with_energy;  // kinetic and potential energy and the power are wanted

@@ -31,6 +31,11 @@ struct ct_problem {
     /// function. May be NULL. Before it answers CT_EVAL_RETRY it must have changed nothing.
     enum ct_eval (*accepted)(void *user, double t, double *y);
 
+    /// Time from the last accepted state to the next singular position as far as it can be foreseen,
+    /// else INFINITY. There f has a limit that cannot be computed: steps are placed so that it falls
+    /// where the method does not evaluate. May be NULL.
+    double (*singular_in)(void *user);
+
     /// Root functions on the state, g (nroot, out); a sign change within a step is an event. g is
     /// continuous within the step.
     int nroot;
@@ -80,6 +85,7 @@ struct ct_method {
     int order;
     int error_order; // the error of a step behaves as h^(error_order + 1), for step control
     bool is_implicit;
+    double gap; // middle of the widest gap between the abscissae of its stages
     /// Size of the private workspace in doubles, for ny states.
     size_t (*work)(int ny);
     /// One step from (t, y) with derivative dy by h: y1 (out), dy1 (out) = f(t + h, y1) before
