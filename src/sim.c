@@ -187,6 +187,23 @@ static bool resolve_options(struct ct_sim *sim, const struct ct_sim_options *o)
     return choose_method(sim, o->method);
 }
 
+// Machine code where it can be had, unless the tape is asked for.
+static bool choose_backend(struct ct_sim *sim, const char *name)
+{
+    static const char *const words[] = {"auto", "tape", "native"};
+    static const enum ct_backend backends[]
+        = {CT_BACKEND_BEST, CT_BACKEND_TAPE, CT_BACKEND_NATIVE};
+    for (size_t i = 0; i < COUNT(words); i++) {
+        if (name && strcmp(name, words[i]) != 0)
+            continue;
+        return ct_machine_use(sim->own.model, ct_run_machine(sim->run), backends[i])
+            || ct_error(&sim->own, (struct ct_mark){0}, CT_E_USAGE,
+                        "native code is not available on this computer; there is tape");
+    }
+    return ct_error(&sim->own, (struct ct_mark){0}, CT_E_USAGE,
+                    "there is no back end '%s'; there are auto, native, tape", name);
+}
+
 // ---- the start ---------------------------------------------------------------------------------------
 
 struct create {
@@ -205,7 +222,7 @@ static bool prepare(struct ct_sim *sim, const struct ct_sim_options *o)
         return false;
     sim->run = ct_run_create(&sim->own, sim->own.model, &s->model, &s->equations, &sim->start);
     sim->compile = ct_clock() - start;
-    if (!sim->run)
+    if (!sim->run || !choose_backend(sim, o->backend))
         return false;
     sim->open.row = CT_NEWN(sim->own.model, bool, s->equations.nrow + 1);
     sim->open.result = CT_NEWN(sim->own.model, bool, s->equations.nresult + 1);

@@ -111,6 +111,8 @@ struct ct_sim_options {
     double step;     /* fixed step [s] */
     double until;    /* end time [s]; the spacing of samples stays that of the model */
     long samples;    /* number of samples, both ends included */
+    const char
+        *backend; /* what evaluates the equations: "auto", "native" or "tape"; same bits */
 };
 
 /** Where results go. All of it may be zero. */
