@@ -166,8 +166,11 @@ bool ct_coordinate_wrench(struct ct_build *b, int coordinate, struct ct_wrench *
                                ct_node_turn(b, p.head, m->to));
         break;
     case CT_MEASURE_QUATERNION: {
+        const int k = c->place - b->edge[c->edge].motion.quaternion;
+        if (k == 3) // four numbers, three speeds
+            return false;
         ct_ex3 axis = zero3;
-        axis.e[c->place - b->edge[c->edge].motion.quaternion] = CT_EX_ONE;
+        axis.e[k] = CT_EX_ONE;
         w->torque = ct_node_turn(b, p.head, axis);
         break;
     }
