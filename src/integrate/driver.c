@@ -35,9 +35,9 @@ static const double event_steps = 50;
 static const int pile_events = 100;
 static const double pile_time = 1e-9;
 
-// Steps next to a singular position may err this much more: one digit and a half of one step, against
-// losing them all by coming nearer.
-static const double singular_error = 30;
+// Steps next to a singular position may err this much more, or by this part of the state, which is
+// about what rounding leaves there: a digit of one step, against losing them all by coming nearer.
+static const double singular_error = 30, singular_rounding = 3e-10;
 // Steps this much shorter than the way to the position do not get across any more.
 static const double crawl = 1e-4;
 
@@ -275,7 +275,9 @@ static void leap_over_singular(struct run *r)
     r->h = ahead <= longest * gap * h ? ahead / gap : rest / ceil(rest / h);
     r->h_far = h;
     r->is_leaping = true;
-    r->error_allowed = ahead <= (1 + gap) * h ? singular_error : 1;
+    r->error_allowed = ahead <= (1 + gap) * h
+                         ? fmax(singular_error, singular_rounding / r->tolerance.rtol)
+                         : 1;
 }
 
 // --- one step --------------------------------------------------------------------------------
