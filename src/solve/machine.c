@@ -62,16 +62,52 @@ static struct inputs list_inputs(struct ct_arena *a, const struct ct_machine *m)
 static void compile(struct ct_arena *a, const struct ct_machine *m, const struct inputs *in,
                     const ct_ex *out, size_t n, struct ct_program *p)
 {
-    p->tape = ct_tape_compile(a, m->e->x, out, n, in->symbol, in->slot, in->n);
+    p->listing = ct_listing_create(a, m->e->x, out, n, in->symbol, in->slot, in->n, CT_FUSE_NO);
+    p->tape = ct_tape_create(a, p->listing);
     p->out = CT_NEWN(a, double, n + 1);
     p->work = CT_NEWN(a, double, ct_tape_work(p->tape) + 1);
     p->nout = n;
 }
 
+static void prepare(struct ct_program *p, const double *input)
+{
+    if (p->native)
+        ct_native_prepare(p->native, input, p->work);
+    else
+        ct_tape_prepare(p->tape, input, p->work);
+}
+
 void ct_program_run(struct ct_program *p, const double *input)
 {
-    if (p->nout)
+    if (p->nout && p->native)
+        ct_native_eval(p->native, input, p->out, p->work);
+    else if (p->nout)
         ct_tape_eval(p->tape, input, p->out, p->work);
+}
+
+// The two ways keep different things in the work array.
+static void use(struct ct_arena *a, struct ct_program *p, struct ct_native *native)
+{
+    if (!p->native == !native)
+        return;
+    p->native = native;
+    p->work = CT_NEWN(a, double, (native ? ct_native_work(native) : ct_tape_work(p->tape)) + 1);
+}
+
+bool ct_machine_use(struct ct_arena *a, struct ct_machine *m, enum ct_backend backend)
+{
+    struct ct_program *const all[] = {&m->motion, &m->constraint};
+    bool available = true;
+    for (size_t i = 0; i < COUNT(all); i++) {
+        struct ct_native *native = NULL;
+        if (backend != CT_BACKEND_TAPE)
+            native = all[i]->native ? all[i]->native : ct_native_create(a, all[i]->listing, 1);
+        available &= native != NULL;
+        use(a, all[i], native);
+        prepare(all[i], m->input);
+    }
+    m->backend = m->motion.native ? "native" : "tape";
+    return available || backend != CT_BACKEND_NATIVE;
 }
 
 // ---- programs ---------------------------------------------------------------------------------------
@@ -184,6 +220,7 @@ struct ct_machine *ct_machine_create(struct ct_arena *a, const struct ct_model *
     m->rate = m->gam + e->nrow;
     m->phi = m->constraint.out;
     m->v = m->phi + e->nrow;
+    ct_machine_use(a, m, CT_BACKEND_BEST);
     ct_machine_prepare(m);
     return m;
 }
@@ -194,7 +231,7 @@ void ct_machine_prepare(struct ct_machine *m)
         = {&m->motion, &m->constraint, &m->result,   &m->power,  &m->energy,
            &m->root,   &m->memory,     &m->momentum, &m->driver, &m->wanted};
     for (size_t i = 0; i < COUNT(all); i++)
-        ct_tape_prepare(all[i]->tape, m->input, all[i]->work);
+        prepare(all[i], m->input);
 }
 
 // ---- evaluation -------------------------------------------------------------------------------------
