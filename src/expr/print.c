@@ -452,8 +452,7 @@ static void lead_with_positive(struct terms *t)
     if (k == 0 || k == t->n)
         return;
     const int from = t->at[0].class, to = t->at[k].class;
-    if (from != to
-        && (to == TERM_MULTIPLIER || (from <= TERM_SPEED && count_class(t, to) > 1)))
+    if (from != to && (to == TERM_MULTIPLIER || (from <= TERM_SPEED && count_class(t, to) > 1)))
         return;
     const struct term first = t->at[k];
     memmove(t->at + 1, t->at, k * sizeof *t->at);

@@ -18,12 +18,45 @@ static const char *plain_name(const struct ct_derivation *d, const struct ct_sym
                      : ct_arena_printf(d->a, "%s%s", u->name, prime);
 }
 
+// R_rod.xy of a definition (reduced.h) as a letter with subscripts; NULL for other names.
+static const char *latex_definition(struct ct_arena *a, const char *name)
+{
+    static const char *const letter[][2]
+        = {{"phi_", "\\varphi"}, {"c_", "c"},        {"s_", "s"}, {"R_", "R"},
+           {"w_", "\\omega"},    {"al_", "\\alpha"}, {"d_", "d"}, {"v_", "v"},
+           {"a_", "a"},          {"F_", "F"},        {"T_", "T"}};
+    for (size_t i = 0; i < COUNT(letter); i++) {
+        const size_t n = strlen(letter[i][0]);
+        if (strncmp(name, letter[i][0], n))
+            continue;
+        const char *of = name + n, *dot = strrchr(of, '.');
+        if (!dot || strspn(dot + 1, "xyz") != strlen(dot + 1))
+            return ct_arena_printf(a, "%s_{\\mathrm{%s}}", letter[i][1],
+                                   ct_latex_quoted(a, of));
+        of = ct_arena_strndup(a, of, (size_t)(dot - of));
+        return ct_arena_printf(a, "%s_{\\mathrm{%s},%s}", letter[i][1], ct_latex_quoted(a, of),
+                               dot + 1);
+    }
+    return NULL;
+}
+
+static bool is_coordinate_name(const char *name)
+{
+    const char *dot = strrchr(name, '.');
+    return dot && strchr("qu", dot[1]) && strspn(dot + 2, "0123456789'") == strlen(dot + 2);
+}
+
 static const char *symbol(void *data, struct ct_arena *a, const struct ct_sym *s)
 {
     const struct ct_derivation *d = data;
     const char *name = plain_name(d, s);
     if (d->page.look != CT_LOOK_LATEX)
         return name;
+    if (s->kind == CT_SYM_LOCAL && !is_coordinate_name(name)) {
+        const char *definition = latex_definition(a, name);
+        if (definition)
+            return definition;
+    }
     if (s->kind != CT_SYM_LAM)
         return ct_latex_name(a, name);
     return d->e->nrow == 1 ? "\\lambda" : ct_arena_printf(a, "\\lambda_{%u}", s->index + 1);
@@ -92,9 +125,9 @@ const char *ct_derivation_of(struct ct_derivation *d, const char *letter, const 
 {
     if (!ct_derivation_is_latex(d))
         return ct_arena_printf(d->a, "%s(%s)", letter, name);
-    const char *word = !strcmp(letter, "w")    ? "\\omega"
-                       : !strcmp(letter, "al") ? "\\alpha"
-                                               : letter;
+    const char *word = !strcmp(letter, "w")  ? "\\omega"
+                     : !strcmp(letter, "al") ? "\\alpha"
+                                             : letter;
     return ct_arena_printf(d->a, "\\boldsymbol{%s}_{\\mathrm{%s}}", word,
                            ct_latex_quoted(d->a, name));
 }
@@ -102,15 +135,16 @@ const char *ct_derivation_of(struct ct_derivation *d, const char *letter, const 
 const char *ct_derivation_effort(struct ct_derivation *d, const char *coordinate)
 {
     return ct_derivation_is_latex(d)
-               ? ct_arena_printf(d->a, "\\tau\\left(%s\\right)", ct_latex_name(d->a, coordinate))
-               : ct_arena_printf(d->a, "effort(%s)", coordinate);
+             ? ct_arena_printf(d->a, "\\tau\\left(%s\\right)", ct_latex_name(d->a, coordinate))
+             : ct_arena_printf(d->a, "effort(%s)", coordinate);
 }
 
 const char *ct_derivation_vector(struct ct_derivation *d, ct_ex3 v)
 {
     if (ct_ex3_is_zero(v))
         return "0";
-    return ct_arena_printf(d->a, ct_derivation_is_latex(d) ? "(%s,\\; %s,\\; %s)" : "[%s, %s, %s]",
+    return ct_arena_printf(d->a,
+                           ct_derivation_is_latex(d) ? "(%s,\\; %s,\\; %s)" : "[%s, %s, %s]",
                            ct_derivation_text(d, v.e[0]), ct_derivation_text(d, v.e[1]),
                            ct_derivation_text(d, v.e[2]));
 }

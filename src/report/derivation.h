@@ -10,8 +10,8 @@ struct ct_derivation {
     struct ct_equations *e;
     const struct ct_model *m;
     struct ct_page page;
-    struct ct_print print;         // for expressions, in the page's look
-    const int *rank;               // of the first nrank symbols: their order in products
+    struct ct_print print; // for expressions, in the page's look
+    const int *rank;       // of the first nrank symbols: their order in products
     size_t nrank;
 };
 

@@ -13,14 +13,14 @@ struct names {
 static bool is_keyword(const char *s)
 {
     static const char *const word[]
-        = {"auto",   "break",  "case",     "char",   "const",  "continue", "default", "do",     "double",
-           "else",   "enum",   "extern",   "float",  "for",    "goto",     "if",      "inline", "int",
-           "long",   "register", "restrict", "return", "short", "signed",  "sizeof",  "static", "struct",
-           "switch", "typedef", "union",   "unsigned", "void", "volatile", "while",
+        = {"auto", "break", "case", "char", "const", "continue", "default", "do", "double",
+           "else", "enum", "extern", "float", "for", "goto", "if", "inline", "int", "long",
+           "register", "restrict", "return", "short", "signed", "sizeof", "static", "struct",
+           "switch", "typedef", "union", "unsigned", "void", "volatile", "while",
            // what the function itself and math.h use
-           "t", "q", "u", "M", "Q", "J", "Phi", "gam", "mode", "kept", "table", "sin", "cos", "tan", "asin",
-           "acos", "atan", "atan2", "sinh", "cosh", "tanh", "exp", "log", "sqrt", "pow", "fabs", "y0", "y1",
-           "yn", "j0", "j1", "jn", "gamma"};
+           "t", "q", "u", "M", "Q", "J", "Phi", "gam", "mode", "kept", "table", "sin", "cos",
+           "tan", "asin", "acos", "atan", "atan2", "sinh", "cosh", "tanh", "exp", "log", "sqrt",
+           "pow", "fabs", "y0", "y1", "yn", "j0", "j1", "jn", "gamma"};
     for (size_t i = 0; i < COUNT(word); i++)
         if (!strcmp(word[i], s))
             return true;
@@ -65,24 +65,29 @@ static const char *text(struct writer *w, ct_ex e)
     return ct_ex_text(w->d->a, w->d->e->x, e, &w->print);
 }
 
-// Only what the results use is declared: the rest would warn.
-static void mark_used(struct writer *w, const struct ct_reduced *r)
+static void mark_below(struct writer *w, const ct_ex *root, size_t nroot)
 {
     struct ct_exs *x = w->d->e->x;
+    const size_t n = ct_ex_walk(x, root, nroot);
+    for (size_t k = 0; k < n; k++)
+        if (ct_ex_symbol(x, (ct_ex){x->stack[k]}))
+            w->is_used[x->node[x->stack[k]].a] = true;
+}
+
+// Only what the results use is declared: the rest would warn. Definitions use earlier ones only.
+static void mark_used(struct writer *w, const struct ct_reduced *r)
+{
+    const struct ct_exs *x = w->d->e->x;
     const struct ct_equations *e = w->d->e;
-    const struct {
-        const ct_ex *at;
-        size_t n;
-    } part[] = {{r->M, e->nM}, {r->Q, e->nu}, {r->J, e->nJ}, {r->phi, e->nrow}, {r->gam, e->nrow}};
     w->is_used = CT_NEWN(w->d->a, bool, x->nsym);
-    for (size_t i = 0; i < COUNT(part) + r->ndefinition; i++) {
-        const bool is_part = i < COUNT(part);
-        const size_t n = ct_ex_walk(x, is_part ? part[i].at : &r->definition[i - COUNT(part)].value,
-                                    is_part ? part[i].n : 1);
-        for (size_t k = 0; k < n; k++)
-            if (ct_ex_symbol(x, (ct_ex){x->stack[k]}))
-                w->is_used[x->node[x->stack[k]].a] = true;
-    }
+    mark_below(w, r->M, e->nM);
+    mark_below(w, r->Q, e->nu);
+    mark_below(w, r->J, e->nJ);
+    mark_below(w, r->phi, e->nrow);
+    mark_below(w, r->gam, e->nrow);
+    for (size_t i = r->ndefinition; i-- > 0;)
+        if (w->is_used[ct_ex_node(x, r->definition[i].symbol)->a])
+            mark_below(w, &r->definition[i].value, 1);
 }
 
 static void put_symbol(struct writer *w, ct_ex e, const char *value)
@@ -116,8 +121,8 @@ static void put_results(struct writer *w, const struct ct_reduced *r)
         const int row = e->M[i].row, column = e->M[i].column;
         fprintf(w->out, "    M[%d + %zu * %d] = %s;\n", row, e->nu, column, text(w, r->M[i]));
         if (row != column)
-            fprintf(w->out, "    M[%d + %zu * %d] = M[%d + %zu * %d];\n", column, e->nu, row, row,
-                    e->nu, column);
+            fprintf(w->out, "    M[%d + %zu * %d] = M[%d + %zu * %d];\n", column, e->nu, row,
+                    row, e->nu, column);
     }
     fprintf(w->out, "\n    // forces\n");
     for (size_t i = 0; i < e->nu; i++)
@@ -139,21 +144,26 @@ static void put_head(struct writer *w, const char *name)
     const struct ct_equations *e = w->d->e;
     fprintf(w->out,
             "// %s: M u' = Q + J' lam, Phi = 0, J u' + gam = 0\n//\n"
-            "// M (%zu x %zu) and J (%zu x %zu) are column-major; entries that are always zero are not "
+            "// M (%zu x %zu) and J (%zu x %zu) are column-major; entries that are always zero "
+            "are not "
             "written.\n"
-            "// mode: 0 or 1, the sides of comparisons (%zu); kept: values of the last step (%zu).\n",
+            "// mode: 0 or 1, the sides of comparisons (%zu); kept: values of the last step "
+            "(%zu).\n",
             w->d->m->name ? w->d->m->name : "model", e->nu, e->nu, e->nrow, e->nu, e->nmode,
             e->nmemory);
     fprintf(w->out, "#include <math.h>\n\n");
     if (e->x->ntable)
         fprintf(w->out, "// value of a sampled function or of one of its derivatives at x\n"
                         "double table(unsigned number, unsigned order, double x);\n\n");
-    fprintf(w->out,
-            "void %s_equations(double t, const double *q, const double *u, const double *mode,\n"
-            "    const double *kept, double *M, double *Q, double *J, double *Phi, double *gam);\n\n"
-            "void %s_equations(double t, const double *q, const double *u, const double *mode,\n"
-            "    const double *kept, double *M, double *Q, double *J, double *Phi, double *gam)\n{\n",
-            name, name);
+    fprintf(
+        w->out,
+        "void %s_equations(double t, const double *q, const double *u, const double *mode,\n"
+        "    const double *kept, double *M, double *Q, double *J, double *Phi, double "
+        "*gam);\n\n"
+        "void %s_equations(double t, const double *q, const double *u, const double *mode,\n"
+        "    const double *kept, double *M, double *Q, double *J, double *Phi, double "
+        "*gam)\n{\n",
+        name, name);
 }
 
 void ct_derivation_print_c(FILE *out, struct ct_derivation *d)
@@ -162,7 +172,8 @@ void ct_derivation_print_c(FILE *out, struct ct_derivation *d)
     struct writer w = {.out = out, .d = d};
     ct_derivation_reduce(d, &r);
     w.names = (struct names){d, CT_NEWN(d->a, const char *, d->e->x->nsym), d->e->x->nsym};
-    w.print = (struct ct_print){.style = CT_PRINT_C, .symbol = symbol, .data = &w.names, .limit = 1000000};
+    w.print = (struct ct_print){
+        .style = CT_PRINT_C, .symbol = symbol, .data = &w.names, .limit = 1000000};
     mark_used(&w, &r);
     put_head(&w, ct_c_name(d->a, d->m->name ? d->m->name : "model"));
     put_known(&w);

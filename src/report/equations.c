@@ -42,12 +42,13 @@ bool ct_equations_format_find(const char *name, enum ct_equations_format *format
 }
 
 bool ct_equations_print(FILE *out, struct ct_arena *scratch, struct ct_equations *e,
-                        const struct ct_model *m, unsigned stages, enum ct_equations_format format)
+                        const struct ct_model *m, unsigned stages,
+                        enum ct_equations_format format)
 {
     struct ct_derivation d;
-    const enum ct_look look = format == CT_FORMAT_LATEX  ? CT_LOOK_LATEX
-                              : format == CT_FORMAT_HTML ? CT_LOOK_HTML
-                                                         : CT_LOOK_TEXT;
+    const enum ct_look look = format == CT_FORMAT_LATEX ? CT_LOOK_LATEX
+                            : format == CT_FORMAT_HTML  ? CT_LOOK_HTML
+                                                        : CT_LOOK_TEXT;
     ct_derivation_init(&d, scratch, e, m, look);
     const bool is_page = format != CT_FORMAT_C && format != CT_FORMAT_JSON;
     for (size_t i = 0; is_page && i < COUNT(stages_in_order); i++)

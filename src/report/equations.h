@@ -28,13 +28,20 @@ enum {
     CT_STAGE_DEFAULT = CT_STAGE_TREE | CT_STAGE_REDUCED
 };
 
-enum ct_equations_format { CT_FORMAT_TEXT, CT_FORMAT_LATEX, CT_FORMAT_HTML, CT_FORMAT_C, CT_FORMAT_JSON };
+enum ct_equations_format {
+    CT_FORMAT_TEXT,
+    CT_FORMAT_LATEX,
+    CT_FORMAT_HTML,
+    CT_FORMAT_C,
+    CT_FORMAT_JSON
+};
 
 /// Print the stages in their order. C prints the reduced equations whatever the stages are. New nodes
 /// are made in e->x. Work space and texts live in scratch. False: the stream has failed.
 /// Cost: bounded for large systems, whose expressions are named instead of collected.
 bool ct_equations_print(FILE *out, struct ct_arena *scratch, struct ct_equations *e,
-                        const struct ct_model *m, unsigned stages, enum ct_equations_format format);
+                        const struct ct_model *m, unsigned stages,
+                        enum ct_equations_format format);
 
 /// The bit of a stage by its name ("tree"), "all" for all; 0 if there is none of that name.
 unsigned ct_stage_find(const char *name, size_t length);

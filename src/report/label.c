@@ -3,7 +3,8 @@
 
 #include "formulate/dynamics.h"
 
-static void label(struct ct_build *b, ct_ex e, const char *letter, const char *name, const char *part)
+static void label(struct ct_build *b, ct_ex e, const char *letter, const char *name,
+                  const char *part)
 {
     if (ct_ex_is_const(b->x, e, NULL) || ct_ex_symbol(b->x, e))
         return;
@@ -22,7 +23,8 @@ static void label3(struct ct_build *b, ct_ex3 v, const char *letter, const char 
 
 static void label33(struct ct_build *b, const ct_ex33 *A, const char *letter, const char *name)
 {
-    static const char *const part[] = {".xx", ".yx", ".zx", ".xy", ".yy", ".zy", ".xz", ".yz", ".zz"};
+    static const char *const part[]
+        = {".xx", ".yx", ".zx", ".xy", ".yy", ".zy", ".xz", ".yz", ".zz"};
     for (int i = 0; i < 9; i++)
         label(b, A->e[i], letter, name, part[i]);
 }

@@ -12,9 +12,9 @@
 enum { CT_PAGE_WIDTH = 100 };
 
 enum ct_page_kind {
-    CT_PAGE_TITLE,     // of a stage
-    CT_PAGE_HEADING,   // of a part of it
-    CT_PAGE_SENTENCE,  // plain words
+    CT_PAGE_TITLE,    // of a stage
+    CT_PAGE_HEADING,  // of a part of it
+    CT_PAGE_SENTENCE, // plain words
     CT_PAGE_TABLE,
     CT_PAGE_EQUATIONS, // a group, aligned
 };
@@ -22,16 +22,16 @@ enum ct_page_kind {
 enum ct_look { CT_LOOK_TEXT, CT_LOOK_LATEX, CT_LOOK_HTML };
 
 struct ct_page_equation {
-    const char *label;             // plain words before it; NULL: none
-    const char *left, *right;      // mathematics; right == NULL: left is all
-    const char *note;              // plain words after it; NULL: none
+    const char *label;        // plain words before it; NULL: none
+    const char *left, *right; // mathematics; right == NULL: left is all
+    const char *note;         // plain words after it; NULL: none
 };
 
 struct ct_page_block {
     enum ct_page_kind kind;
-    const char *text;              // TITLE, HEADING, SENTENCE
-    const char *align;             // TABLE: one letter a column: l or r plain, L or R mathematics
-    const char **cell;             // TABLE: the first row is the head, plain; row by row
+    const char *text;  // TITLE, HEADING, SENTENCE
+    const char *align; // TABLE: one letter a column: l or r plain, L or R mathematics
+    const char **cell; // TABLE: the first row is the head, plain; row by row
     size_t ncell, cell_cap;
     struct ct_page_equation *equation;
     size_t nequation, equation_cap;
@@ -46,7 +46,8 @@ struct ct_page {
 
 void ct_page_title(struct ct_page *p, const char *text);
 void ct_page_heading(struct ct_page *p, const char *text);
-void ct_page_sentence(struct ct_page *p, const char *fmt, ...) __attribute__((format(printf, 2, 3)));
+void ct_page_sentence(struct ct_page *p, const char *fmt, ...)
+    __attribute__((format(printf, 2, 3)));
 /// Starts a table; cells follow row by row, the head first.
 void ct_page_table(struct ct_page *p, const char *align);
 void ct_page_cell(struct ct_page *p, const char *text);

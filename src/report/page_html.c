@@ -34,8 +34,9 @@ static bool is_word(const char *s, size_t n, const char *word)
 static bool is_function(const char *s, size_t n)
 {
     static const char *const name[]
-        = {"sin", "cos", "tan", "asin", "acos", "atan", "atan2", "sinh", "cosh", "tanh", "exp", "log",
-           "sqrt", "abs", "sign", "min", "max", "if", "Rot", "diag", "effort", "const"};
+        = {"sin",  "cos",  "tan", "asin", "acos",   "atan", "atan2", "sinh",
+           "cosh", "tanh", "exp", "log",  "sqrt",   "abs",  "sign",  "min",
+           "max",  "if",   "Rot", "diag", "effort", "const"};
     for (size_t i = 0; i < COUNT(name); i++)
         if (is_word(s, n, name[i]))
             return true;
@@ -51,10 +52,12 @@ static bool is_vector(const char *s, size_t n)
 static void put_letter(FILE *out, const char *s, size_t n)
 {
     static const char *const greek[][2]
-        = {{"alpha", "&alpha;"}, {"al", "&alpha;"},     {"beta", "&beta;"},     {"gamma", "&gamma;"},
-           {"delta", "&delta;"}, {"epsilon", "&epsilon;"}, {"theta", "&theta;"}, {"lambda", "&lambda;"},
-           {"mu", "&mu;"},       {"rho", "&rho;"},      {"phi", "&phi;"},       {"psi", "&psi;"},
-           {"omega", "&omega;"}, {"w", "&omega;"},      {"tau", "&tau;"},       {"pi", "&pi;"}};
+        = {{"alpha", "&alpha;"}, {"al", "&alpha;"},      {"beta", "&beta;"},
+           {"gamma", "&gamma;"}, {"delta", "&delta;"},   {"epsilon", "&epsilon;"},
+           {"theta", "&theta;"}, {"lambda", "&lambda;"}, {"mu", "&mu;"},
+           {"rho", "&rho;"},     {"phi", "&phi;"},       {"psi", "&psi;"},
+           {"omega", "&omega;"}, {"w", "&omega;"},       {"tau", "&tau;"},
+           {"pi", "&pi;"}};
     for (size_t i = 0; i < COUNT(greek); i++)
         if (is_word(s, n, greek[i][0])) {
             fputs(greek[i][1], out);
@@ -76,7 +79,7 @@ static void put_name(FILE *out, const char *s, size_t n, size_t nprime)
         dot = s[i] == '.' ? s + i : dot;
     // a part behind the last dot that is a quantity stands first
     const bool is_quantity = dot && strchr("qua", dot[1])
-                             && strspn(dot + 2, "0123456789") == (size_t)(s + n - dot) - 2;
+                          && strspn(dot + 2, "0123456789") == (size_t)(s + n - dot) - 2;
     const char *base = is_quantity ? dot + 1 : s;
     const char *end = s + n;
     size_t length = (size_t)(is_quantity ? end - base : bar && bar > s ? bar - s : (long)n);
@@ -129,7 +132,8 @@ static size_t put_number(FILE *out, const char *s)
 {
     size_t n = strspn(s, "0123456789.");
     put_escaped(out, s, n);
-    if (s[n] == 'e' && (s[n + 1] == '-' || s[n + 1] == '+' || isdigit((unsigned char)s[n + 1]))) {
+    if (s[n] == 'e'
+        && (s[n + 1] == '-' || s[n + 1] == '+' || isdigit((unsigned char)s[n + 1]))) {
         const size_t digits = 1 + (s[n + 1] == '-' || s[n + 1] == '+');
         const size_t k = digits + strspn(s + n + digits, "0123456789");
         fputs("&middot;10<sup>", out);
@@ -200,7 +204,8 @@ static void put_table(FILE *out, const struct ct_page_block *b)
         const char letter = b->align[i % n];
         const char *tag = i < n ? "th" : "td";
         fputs(i % n ? "" : "<tr>", out);
-        fprintf(out, "<%s%s>", tag, tolower((unsigned char)letter) == 'r' ? " class=\"right\"" : "");
+        fprintf(out, "<%s%s>", tag,
+                tolower((unsigned char)letter) == 'r' ? " class=\"right\"" : "");
         if (isupper((unsigned char)letter) && i >= n)
             put_math(out, b->cell[i]);
         else
@@ -213,7 +218,8 @@ static void put_table(FILE *out, const struct ct_page_block *b)
 void ct_page_print_html(FILE *out, const struct ct_page *p, const char *title)
 {
     static const char *const tag[] = {"h1", "h2", "p"};
-    fputs("<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<title>", out);
+    fputs("<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<title>",
+          out);
     put_escaped(out, title, SIZE_MAX);
     fputs("</title>\n<style>\n"
           "body { font: 16px/1.5 serif; max-width: 70em; margin: 2em auto; padding: 0 1em }\n"

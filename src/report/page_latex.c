@@ -38,9 +38,12 @@ static size_t width_of(const char *s, size_t length)
         size_t k = i + 1;
         while (k < length && isalpha((unsigned char)s[k]))
             k++;
-        const bool is_free = k - i == 1 || !strncmp(s + i, "\\left", 5) || !strncmp(s + i, "\\right", 6)
-                             || !strncmp(s + i, "\\mathrm", 7) || !strncmp(s + i, "\\frac", 5);
-        n += is_free ? 0 : k - i > 3 && k - i < 5 ? 3 : 1; // \sin and \cos print as they are spelled
+        const bool is_free = k - i == 1 || !strncmp(s + i, "\\left", 5)
+                          || !strncmp(s + i, "\\right", 6) || !strncmp(s + i, "\\mathrm", 7)
+                          || !strncmp(s + i, "\\frac", 5);
+        n += is_free                ? 0
+           : k - i > 3 && k - i < 5 ? 3
+                                    : 1; // \sin and \cos print as they are spelled
         i = k > i + 1 ? k - 1 : i + 1;
     }
     return n;
@@ -82,7 +85,8 @@ static void put_equation(FILE *out, const struct ct_page_equation *e, bool label
         else if (e->right)
             fputs(" = ", out);
         if (e->right)
-            put_sum(out, e->right, label + left + right > LINE ? 8 : label + left, "&\\qquad\\quad ");
+            put_sum(out, e->right, label + left + right > LINE ? 8 : label + left,
+                    "&\\qquad\\quad ");
     } else {
         fprintf(out, "%s &= ", e->left);
         put_sum(out, e->right ? e->right : "", left + 3, "&\\quad ");
@@ -101,7 +105,7 @@ static void put_equations(FILE *out, const struct ct_page_block *b)
         return;
     for (size_t i = 0; i < b->nequation; i++)
         labelled |= b->equation[i].label || !b->equation[i].right
-                    || width_of(b->equation[i].left, strlen(b->equation[i].left)) > LINE / 2;
+                 || width_of(b->equation[i].left, strlen(b->equation[i].left)) > LINE / 2;
     fputs("\\begin{align*}\n", out);
     for (size_t i = 0; i < b->nequation; i++) {
         put_equation(out, &b->equation[i], labelled);

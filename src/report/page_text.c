@@ -59,7 +59,7 @@ static size_t break_place(const char *s, size_t room)
             continue;
         // a deeper sign is taken only if all at the shallower level stand in the first third
         const bool better = best == 0 || rank < best_rank
-                            || (rank == best_rank && (depth <= best_depth || 3 * best < room));
+                         || (rank == best_rank && (depth <= best_depth || 3 * best < room));
         if (better) {
             best = i;
             best_depth = depth;
@@ -99,7 +99,8 @@ static void put_equation(FILE *out, const struct ct_page_equation *e, size_t lab
                          size_t left_width)
 {
     const size_t indent = 2;
-    const size_t left = ct_text_width(e->left), right = e->right ? 3 + ct_text_width(e->right) : 0;
+    const size_t left = ct_text_width(e->left),
+                 right = e->right ? 3 + ct_text_width(e->right) : 0;
     const size_t note = e->note ? 5 + ct_text_width(e->note) : 0;
     size_t column = indent;
     put_indent(out, indent);

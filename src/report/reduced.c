@@ -36,7 +36,8 @@ static ct_ex collect(struct ct_equations *e, ct_ex v)
     if (!work)
         return v;
     const struct quaternions s = quaternions_of(work, e);
-    const struct ct_collect_options o = {.scratch = work, .quaternion = s.at, .nquaternion = s.n};
+    const struct ct_collect_options o
+        = {.scratch = work, .quaternion = s.at, .nquaternion = s.n};
     v = ct_ex_collect(e->x, v, &o);
     ct_arena_destroy(work);
     return v;
@@ -109,7 +110,8 @@ static double size_of_all(struct ct_equations *e, struct ct_arena *a, const ct_e
     for (size_t i = 0; i < e->nu; i++)
         size += ct_ex_tree_size(e->x, a, e->Q[i]);
     for (size_t i = 0; i < e->nrow; i++)
-        size += ct_ex_tree_size(e->x, a, e->row[i].phi) + ct_ex_tree_size(e->x, a, e->row[i].gam);
+        size += ct_ex_tree_size(e->x, a, e->row[i].phi)
+              + ct_ex_tree_size(e->x, a, e->row[i].gam);
     return size;
 }
 
@@ -120,8 +122,8 @@ static void find_efforts(struct ct_equations *e, ct_ex *effort)
     for (size_t i = 0; i < e->ncoordinate; i++) {
         const struct ct_coordinate *c = &e->coordinate[i];
         if (c->driver >= 0)
-            effort[c->driver] = ct_ex_sub(b->x, ct_sweep_driver(b, c->driver),
-                                          ct_joint_passive(b, (int)i));
+            effort[c->driver]
+                = ct_ex_sub(b->x, ct_sweep_driver(b, c->driver), ct_joint_passive(b, (int)i));
     }
 }
 
@@ -163,8 +165,8 @@ static size_t list_all(const struct ct_equations *e, const struct ct_reduced *r,
     const struct {
         ct_ex *at;
         size_t n;
-    } part[] = {{r->M, e->nM}, {r->Q, e->nu}, {r->J, e->nJ}, {r->phi, e->nrow}, {r->gam, e->nrow},
-                {r->effort, e->ndriver}};
+    } part[] = {{r->M, e->nM},     {r->Q, e->nu},     {r->J, e->nJ},
+                {r->phi, e->nrow}, {r->gam, e->nrow}, {r->effort, e->ndriver}};
     size_t n = 0;
     for (size_t k = 0; k < COUNT(part); k++)
         for (size_t i = 0; i < part[k].n; i++, n++)

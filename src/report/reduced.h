@@ -14,12 +14,12 @@ struct ct_reduced_definition {
 };
 
 struct ct_reduced {
-    ct_ex *M;    // nM values in the order of ct_equations.M
-    ct_ex *J;    // nJ
-    ct_ex *Q;    // nu
+    ct_ex *M;         // nM values in the order of ct_equations.M
+    ct_ex *J;         // nJ
+    ct_ex *Q;         // nu
     ct_ex *phi, *gam; // nrow
     ct_ex *effort;    // ndriver: of the drivers of branches, in terms of u' and lam
-    ct_ex *rate; // nq: q' in terms of u
+    ct_ex *rate;      // nq: q' in terms of u
     bool is_collected;
     struct ct_reduced_definition *definition; // none if everything is short
     size_t ndefinition;

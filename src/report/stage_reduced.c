@@ -1,7 +1,6 @@
 // The reduced equations as equations of a page.
 #include "report/derivation.h"
 
-
 // Lines of text beyond which subexpressions get names.
 enum { MOST_LINES = 30 };
 
@@ -20,7 +19,8 @@ struct group {
     size_t n, cap;
 };
 
-static void add(struct ct_derivation *d, struct group *g, const char *label, ct_ex left, ct_ex right)
+static void add(struct ct_derivation *d, struct group *g, const char *label, ct_ex left,
+                ct_ex right)
 {
     const struct sides s = {left, right, label};
     CT_PUSH(d->a, g->at, g->n, g->cap, s);
@@ -71,7 +71,8 @@ static void fill(struct ct_derivation *d, const struct ct_reduced *r, struct gro
 {
     struct ct_equations *e = d->e;
     for (size_t i = 0; i < e->nu; i++)
-        add(d, &g[MOTION], speed_label(d, i), ct_reduced_left(e, r, i), ct_reduced_right(e, r, i));
+        add(d, &g[MOTION], speed_label(d, i), ct_reduced_left(e, r, i),
+            ct_reduced_right(e, r, i));
     for (size_t i = 0; i < e->nrow; i++) {
         add(d, &g[CLOSURE], e->row[i].name, r->phi[i], CT_EX_ZERO);
         add(d, &g[CLOSURE_RATE], e->row[i].name, ct_reduced_row_left(e, r, i),
@@ -89,7 +90,8 @@ static void put_kinematic(struct ct_derivation *d, const struct group *g)
     ct_page_heading(&d->page, "kinematic equations: rates of the unit quaternions");
     ct_page_equations(&d->page);
     for (size_t i = 0; i < g->n; i++) {
-        const char *name = ct_arena_printf(d->a, "%s'", ct_ex_symbol(d->e->x, g->at[i].left)->name);
+        const char *name
+            = ct_arena_printf(d->a, "%s'", ct_ex_symbol(d->e->x, g->at[i].left)->name);
         ct_page_equation(&d->page, NULL, ct_derivation_name(d, name),
                          ct_derivation_text(d, g->at[i].right), NULL);
     }
@@ -120,8 +122,9 @@ static void put_held(struct ct_derivation *d)
     }
     for (size_t i = 0; i < e->nmemory; i++)
         ct_page_sentence(&d->page, "%s: %s", ct_ex_symbol(e->x, e->memory[i].symbol)->name,
-                         e->memory[i].kind == CT_MEMORY_OFFSET ? "constant, from the assembled start"
-                                                               : "value at the last step");
+                         e->memory[i].kind == CT_MEMORY_OFFSET
+                             ? "constant, from the assembled start"
+                             : "value at the last step");
 }
 
 static const char *count(struct ct_derivation *d, size_t n, const char *one, const char *many)
@@ -160,13 +163,14 @@ void ct_stage_reduced(struct ct_derivation *d)
     ct_derivation_reduce(d, &r);
     fill(d, &r, g);
     ct_page_title(&d->page, "Equations of motion");
-    ct_page_sentence(&d->page, "%s, %s%s",
-                     count(d, e->nu, "unknown speed", "unknown speeds"),
-                     count(d, e->nrow, "constraint", "constraints"),
-                     e->nu ? "; each equation is the cutset of a branch, projected on its motion" : "");
+    ct_page_sentence(
+        &d->page, "%s, %s%s", count(d, e->nu, "unknown speed", "unknown speeds"),
+        count(d, e->nrow, "constraint", "constraints"),
+        e->nu ? "; each equation is the cutset of a branch, projected on its motion" : "");
     put_definitions(d, &r);
     if (e->nu) {
-        ct_page_heading(&d->page, e->nrow ? "motion: M u' = Q + J' lambda" : "motion: M u' = Q");
+        ct_page_heading(&d->page,
+                        e->nrow ? "motion: M u' = Q + J' lambda" : "motion: M u' = Q");
         put_group(d, &g[MOTION]);
     }
     if (e->nrow) {

@@ -45,7 +45,8 @@ static void put_laws(struct ct_derivation *d)
 // ---- bodies and arms --------------------------------------------------------------------------------
 
 // F = m*(g - a(C))
-static const char *inertia_force(struct ct_derivation *d, const struct ct_body *body, const char *com)
+static const char *inertia_force(struct ct_derivation *d, const struct ct_body *body,
+                                 const char *com)
 {
     const bool latex = ct_derivation_is_latex(d);
     const char *mass = ct_derivation_text(d, body->mass);
@@ -68,13 +69,13 @@ static const char *inertia_torque(struct ct_derivation *d, const struct ct_body 
     if (is_massless)
         return "0";
     const bool is_round = ct_ex_same(body->inertia[0], body->inertia[1])
-                          && ct_ex_same(body->inertia[1], body->inertia[2]);
+                       && ct_ex_same(body->inertia[1], body->inertia[2]);
     if (is_round) // I w is along w
         return ct_arena_printf(d->a, latex ? "-%s \\, %s" : "-%s*%s",
                                ct_derivation_text(d, body->inertia[0]), al);
     const char *I = ct_derivation_of(d, "I", name);
-    return ct_arena_printf(d->a, latex ? "-(%s %s + %s \\times %s %s)" : "-(%s*%s + %s x %s*%s)", I,
-                           al, w, I, w);
+    return ct_arena_printf(
+        d->a, latex ? "-(%s %s + %s \\times %s %s)" : "-(%s*%s + %s x %s*%s)", I, al, w, I, w);
 }
 
 static void put_inertia(struct ct_derivation *d, const struct ct_body *body)
@@ -89,7 +90,8 @@ static void put_inertia(struct ct_derivation *d, const struct ct_body *body)
         list = join(d, list, ct_derivation_text(d, I[i]));
     ct_page_equation(&d->page, NULL, ct_derivation_of(d, "I", body->instance.name),
                      ct_arena_printf(d->a, latex ? "%s(%s)" : "%s[%s]",
-                                     is_diagonal ? latex ? "\\operatorname{diag}" : "diag" : "", list),
+                                     is_diagonal ? latex ? "\\operatorname{diag}" : "diag" : "",
+                                     list),
                      is_diagonal ? "body axes" : "xx yy zz xy xz yz, body axes");
 }
 
@@ -121,8 +123,9 @@ static const char *turns_text(struct ct_derivation *d, const struct ct_turn *tur
     const bool latex = ct_derivation_is_latex(d);
     const char *s = "";
     for (int i = 0; i < n; i++)
-        s = ct_arena_printf(d->a, latex ? "%s%s\\operatorname{Rot}(%s, %s)" : "%s%sRot(%s, %s)", s,
-                            *s ? latex ? "\\," : "*" : "", ct_derivation_axis(d, turn[i].axis),
+        s = ct_arena_printf(d->a, latex ? "%s%s\\operatorname{Rot}(%s, %s)" : "%s%sRot(%s, %s)",
+                            s, *s ? latex ? "\\," : "*" : "",
+                            ct_derivation_axis(d, turn[i].axis),
                             ct_derivation_text(d, turn[i].angle));
     return *s ? s : "1";
 }
@@ -142,11 +145,12 @@ static void put_arms(struct ct_derivation *d)
         any = true;
         const char *body = b->node[b->wiring[i].tail].name;
         ct_page_equation(&d->page, NULL, ct_derivation_of(d, "d", e->name),
-                         ct_derivation_vector(d, e->at), ct_arena_printf(d->a, "axes of %s", body));
+                         ct_derivation_vector(d, e->at),
+                         ct_arena_printf(d->a, "axes of %s", body));
         if (e->index >= 0 && d->m->frame[e->index].nturn)
-            ct_page_equation(&d->page, NULL, ct_derivation_of(d, "S", e->name),
-                             turns_text(d, d->m->frame[e->index].turn, d->m->frame[e->index].nturn),
-                             NULL);
+            ct_page_equation(
+                &d->page, NULL, ct_derivation_of(d, "S", e->name),
+                turns_text(d, d->m->frame[e->index].turn, d->m->frame[e->index].nturn), NULL);
     }
 }
 
@@ -167,7 +171,8 @@ static ct_ex effort_of(struct ct_derivation *d, const struct ct_instance *self, 
     const ct_ex damping = element(ct_instance_value(self, "damping"), k);
     const ct_ex stretch = ct_ex_sub(x, q, element(ct_instance_value(self, "rest"), k));
     f = ct_ex_sub(x, f, ct_ex_mul(x, stiffness, stretch));
-    return ct_ex_sub(x, f, ct_ex_mul(x, damping, ct_ex_sym(x, CT_SYM_LOCAL, speed, (uint32_t)k)));
+    return ct_ex_sub(x, f,
+                     ct_ex_mul(x, damping, ct_ex_sym(x, CT_SYM_LOCAL, speed, (uint32_t)k)));
 }
 
 static void put_effort(struct ct_derivation *d, const struct ct_edge_info *e, int k, ct_ex q)
@@ -180,15 +185,14 @@ static void put_effort(struct ct_derivation *d, const struct ct_edge_info *e, in
     const ct_ex motion = element(ct_instance_value(e->self, "motion"), k);
     const struct ct_value *given = ct_instance_value(e->self, "motion");
     if (given->given && (size_t)k < given->n && !given->hole[k]) {
-        ct_page_equation(&d->page, NULL, ct_derivation_name(d, name), ct_derivation_text(d, motion),
-                         "prescribed; its effort is a reaction");
+        ct_page_equation(&d->page, NULL, ct_derivation_name(d, name),
+                         ct_derivation_text(d, motion), "prescribed; its effort is a reaction");
         return;
     }
     const ct_ex f = effort_of(d, e->self, k, q, speed);
     const char *along = turns ? speed : name;
     if (!ct_ex_is_zero(f))
-        ct_page_equation(&d->page, NULL,
-                         ct_derivation_effort(d, along),
+        ct_page_equation(&d->page, NULL, ct_derivation_effort(d, along),
                          ct_derivation_text(d, f), NULL);
 }
 
@@ -211,7 +215,7 @@ static void put_joint(struct ct_derivation *d, const struct ct_edge_info *e)
         const struct ct_value *length = ct_instance_value(e->self, "length"); // distance
         ct_page_equation(&d->page, NULL,
                          ct_arena_printf(d->a, "|%s|", ct_derivation_of(d, "d", e->name)),
-                         length->given ? ct_derivation_text(d, length->e[0])
+                         length->given               ? ct_derivation_text(d, length->e[0])
                          : ct_derivation_is_latex(d) ? "\\text{the distance at the start}"
                                                      : "the distance at the start",
                          NULL);
@@ -219,16 +223,17 @@ static void put_joint(struct ct_derivation *d, const struct ct_edge_info *e)
     }
     name_coordinates(d, e, &m);
     const char *from = d->m->frame[e->self->from].name;
-    ct_page_equation(&d->page, NULL, ct_derivation_of(d, "d", e->name), ct_derivation_vector(d, m.d),
+    ct_page_equation(&d->page, NULL, ct_derivation_of(d, "d", e->name),
+                     ct_derivation_vector(d, m.d),
                      ct_ex3_is_zero(m.d) ? NULL : ct_arena_printf(d->a, "axes of %s", from));
     if (e->has_rotation) {
         const char *S = turns_text(d, m.turn, m.nturn);
         if (m.quaternion >= 0)
             S = ct_derivation_is_latex(d)
-                    ? ct_arena_printf(d->a, "\\boldsymbol{S}(%s, \\ldots)",
-                                      ct_derivation_text(d, m.coord[m.quaternion]))
-                    : ct_arena_printf(d->a, "S(%s.q%d..q%d)", e->name, m.quaternion + 1,
-                                      m.quaternion + 4);
+                  ? ct_arena_printf(d->a, "\\boldsymbol{S}(%s, \\ldots)",
+                                    ct_derivation_text(d, m.coord[m.quaternion]))
+                  : ct_arena_printf(d->a, "S(%s.q%d..q%d)", e->name, m.quaternion + 1,
+                                    m.quaternion + 4);
         ct_page_equation(&d->page, NULL, ct_derivation_of(d, "S", e->name), S, NULL);
     }
     for (int k = 0; k < e->self->nfree; k++)
@@ -252,13 +257,15 @@ static void put_joints(struct ct_derivation *d)
             const bool latex = ct_derivation_is_latex(d);
             const char *name[2];
             for (int i = 0; i < 2; i++)
-                name[i] = strchr(joints->name[i], '.') ? joints->name[i]
-                                                       : ct_arena_printf(d->a, "%s.q", joints->name[i]);
-            ct_page_equation(&d->page, NULL, ct_derivation_name(d, name[0]),
-                             ct_arena_printf(d->a, latex ? "%s \\, %s + \\mathrm{const}" : "%s*%s + const",
-                                             ct_derivation_text(d, ratio->e[0]),
-                                             ct_derivation_name(d, name[1])),
-                             self->name);
+                name[i] = strchr(joints->name[i], '.')
+                            ? joints->name[i]
+                            : ct_arena_printf(d->a, "%s.q", joints->name[i]);
+            ct_page_equation(
+                &d->page, NULL, ct_derivation_name(d, name[0]),
+                ct_arena_printf(d->a, latex ? "%s \\, %s + \\mathrm{const}" : "%s*%s + const",
+                                ct_derivation_text(d, ratio->e[0]),
+                                ct_derivation_name(d, name[1])),
+                self->name);
         }
     }
 }
@@ -289,11 +296,11 @@ static void put_force(struct ct_derivation *d, const struct ct_instance *self)
         const bool is_value = !strcmp(cls->key[k].name, "value");
         const char *key = cls->key[k].name;
         const char *left
-            = is_value ? ct_derivation_of(d, !strcmp(cls->name, "torque") ? "T" : "F", self->name)
-              : ct_derivation_is_latex(d)
-                  ? ct_arena_printf(d->a, "\\mathrm{%s}_{\\mathrm{%s}}", key,
-                                    ct_latex_quoted(d->a, self->name))
-                  : ct_arena_printf(d->a, "%s(%s)", key, self->name);
+            = is_value
+                ? ct_derivation_of(d, !strcmp(cls->name, "torque") ? "T" : "F", self->name)
+            : ct_derivation_is_latex(d) ? ct_arena_printf(
+                  d->a, "\\mathrm{%s}_{\\mathrm{%s}}", key, ct_latex_quoted(d->a, self->name))
+                                        : ct_arena_printf(d->a, "%s(%s)", key, self->name);
         const char *note = NULL;
         if (is_value)
             note = ct_arena_printf(d->a, "axes of %s",
@@ -315,9 +322,10 @@ static void put_forces(struct ct_derivation *d)
 void ct_stage_terminal(struct ct_derivation *d)
 {
     ct_page_title(&d->page, "Terminal equations");
-    ct_page_sentence(&d->page,
-                     "across: displacement d and rotation S of the head of an edge, seen from its tail; "
-                     "through: force F and torque T of the component on its head");
+    ct_page_sentence(
+        &d->page,
+        "across: displacement d and rotation S of the head of an edge, seen from its tail; "
+        "through: force F and torque T of the component on its head");
     put_laws(d);
     put_bodies(d);
     put_arms(d);

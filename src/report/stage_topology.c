@@ -19,7 +19,8 @@ static void put_incidence(struct ct_derivation *d)
     size_t width = 12;
     for (int i = 0; i < g->nedge; i++)
         width += 2 + ct_text_width(ct_arena_printf(d->a, "%d", i + 1));
-    ct_page_heading(&d->page, "incidence: 1 at the head of an edge, -1 at its tail; without ground");
+    ct_page_heading(&d->page,
+                    "incidence: 1 at the head of an edge, -1 at its tail; without ground");
     if (width > CT_PAGE_WIDTH) {
         ct_page_sentence(&d->page, "too wide to print: %d edges", g->nedge);
         return;
@@ -49,16 +50,17 @@ void ct_stage_graph(struct ct_derivation *d)
     ct_page_table(&d->page, "rllll");
     CT_PAGE_ROW(&d->page, "#", "edge", "type", "from", "to");
     for (int i = 0; i < g->nedge; i++)
-        CT_PAGE_ROW(&d->page, ct_arena_printf(d->a, "%d", i + 1), e->edge_name[i], e->edge_kind[i],
-                    e->node_name[g->edge[i].tail], e->node_name[g->edge[i].head]);
+        CT_PAGE_ROW(&d->page, ct_arena_printf(d->a, "%d", i + 1), e->edge_name[i],
+                    e->edge_kind[i], e->node_name[g->edge[i].tail],
+                    e->node_name[g->edge[i].head]);
     put_incidence(d);
 }
 
 // ---- cutsets --------------------------------------------------------------------------------------
 
 // F(own) + F(...) - ... = 0 for row i of a cutset matrix.
-static const char *cutset_text(struct ct_derivation *d, const struct ct_incidence *rows, int i, int own,
-                               const char *letter, const bool *is_in)
+static const char *cutset_text(struct ct_derivation *d, const struct ct_incidence *rows, int i,
+                               int own, const char *letter, const bool *is_in)
 {
     const char *s = ct_derivation_of(d, letter, d->e->edge_name[own]);
     for (int k = rows->start[i]; k < rows->start[i + 1]; k++)
@@ -87,8 +89,8 @@ static void put_cutsets(struct ct_derivation *d, const struct ct_tree *t, const 
             if ((b->edge[own].kind == CT_EDGE_ARM) != (arms == 1) || !is_in[own])
                 continue;
             if (n++ < MOST_EQUATIONS)
-                ct_page_equation(&d->page, NULL, cutset_text(d, &rows, i, own, letter, is_in), "0",
-                                 NULL);
+                ct_page_equation(&d->page, NULL, cutset_text(d, &rows, i, own, letter, is_in),
+                                 "0", NULL);
         }
     if (n > MOST_EQUATIONS)
         ct_page_sentence(&d->page, "... and %d more", n - MOST_EQUATIONS);
@@ -134,19 +136,22 @@ static void put_carried(struct ct_derivation *d)
             s = *s ? ct_arena_printf(d->a, "%s %s %s", s, positive ? "+" : "-", term)
                    : ct_arena_printf(d->a, "%s%s", positive ? "" : "-", term);
         }
-        ct_page_equation(&d->page, NULL, ct_derivation_of(d, "F", e->edge_name[own]), *s ? s : "0", NULL);
+        ct_page_equation(&d->page, NULL, ct_derivation_of(d, "F", e->edge_name[own]),
+                         *s ? s : "0", NULL);
     }
 }
 
 void ct_stage_cutset(struct ct_derivation *d)
 {
     ct_page_title(&d->page, "Cutset equations");
-    ct_page_sentence(&d->page, "one per branch: what crosses the cut that the branch makes in its tree");
+    ct_page_sentence(&d->page,
+                     "one per branch: what crosses the cut that the branch makes in its tree");
     ct_page_heading(&d->page, "forces, tree of translation");
     put_cutsets(d, d->e->T, "F", false);
     put_carried(d);
-    ct_page_heading(&d->page, "torques, tree of rotation (each with the moment of its force about one "
-                              "common point)");
+    ct_page_heading(&d->page,
+                    "torques, tree of rotation (each with the moment of its force about one "
+                    "common point)");
     put_cutsets(d, d->e->R, "T", true);
 }
 
@@ -170,8 +175,10 @@ static const char *circuit_text(struct ct_derivation *d, const struct ct_tree *t
             if (e->build->edge[branch[k]].kind == CT_EDGE_BODY
                 && e->build->node[e->graph->edge[branch[k]].head].is_particle)
                 continue; // its axes stay parallel to ground
-            s = ct_arena_printf(d->a, "%s%s%s%s", s, *s ? latex ? " \\, " : " " : "", S,
-                                forward ? "" : latex ? "^{T}" : "'");
+            s = ct_arena_printf(d->a, "%s%s%s%s", s, *s ? latex ? " \\, " : "*" : "", S,
+                                forward ? ""
+                                : latex ? "^{T}"
+                                        : "'");
         } else {
             s = ct_arena_printf(d->a, *s ? "%s %s %s" : "%s%s%s", s,
                                 forward ? *s ? "+" : "" : "-", ct_derivation_of(d, "d", name));
@@ -190,9 +197,10 @@ static void put_circuits(struct ct_derivation *d, const struct ct_tree *t, bool 
         if (of_rotation && !info->has_rotation)
             continue;
         if (n++ < MOST_EQUATIONS)
-            ct_page_equation(&d->page, NULL,
-                             ct_derivation_of(d, of_rotation ? "S" : "d", e->edge_name[t->chord[i]]),
-                             circuit_text(d, t, t->chord[i], of_rotation), NULL);
+            ct_page_equation(
+                &d->page, NULL,
+                ct_derivation_of(d, of_rotation ? "S" : "d", e->edge_name[t->chord[i]]),
+                circuit_text(d, t, t->chord[i], of_rotation), NULL);
     }
     if (n > MOST_EQUATIONS)
         ct_page_sentence(&d->page, "... and %d more", n - MOST_EQUATIONS);
@@ -220,12 +228,14 @@ static void put_places(struct ct_derivation *d)
         if (strlen(text) > LONGEST_VECTOR)
             continue;
         if (!any) {
-            ct_page_heading(&d->page, "circuits of the bodies, with the terminal equations of the "
-                                      "branches (ground axes)");
+            ct_page_heading(&d->page,
+                            "circuits of the bodies, with the terminal equations of the "
+                            "branches (ground axes)");
             ct_page_equations(&d->page);
         }
         any = true;
-        ct_page_equation(&d->page, NULL, ct_derivation_of(d, "d", e->edge_name[edge]), text, NULL);
+        ct_page_equation(&d->page, NULL, ct_derivation_of(d, "d", e->edge_name[edge]), text,
+                         NULL);
     }
 }
 
@@ -237,18 +247,21 @@ static void put_closures(struct ct_derivation *d)
         if (ct_ex_tree_size(e->x, d->a, e->row[i].phi) > 1000)
             continue;
         if (!any) {
-            ct_page_heading(&d->page, "circuits of the joints, with the terminal equations of all");
+            ct_page_heading(&d->page,
+                            "circuits of the joints, with the terminal equations of all");
             ct_page_equations(&d->page);
         }
         any = true;
-        ct_page_equation(&d->page, e->row[i].name, ct_derivation_collected(d, e->row[i].phi), "0", NULL);
+        ct_page_equation(&d->page, e->row[i].name, ct_derivation_collected(d, e->row[i].phi),
+                         "0", NULL);
     }
 }
 
 void ct_stage_circuit(struct ct_derivation *d)
 {
     ct_page_title(&d->page, "Circuit equations");
-    ct_page_sentence(&d->page, "one per chord: the way through the tree from its tail to its head");
+    ct_page_sentence(&d->page,
+                     "one per chord: the way through the tree from its tail to its head");
     ct_page_heading(&d->page, "displacements, tree of translation (ground axes)");
     put_circuits(d, d->e->T, false);
     ct_page_heading(&d->page, ct_derivation_is_latex(d)

@@ -7,8 +7,8 @@
 
 // ---- branches and chords --------------------------------------------------------------------------
 
-static const char *role(struct ct_derivation *d, const struct ct_tree *t, const int *weight, int e,
-                        bool is_in)
+static const char *role(struct ct_derivation *d, const struct ct_tree *t, const int *weight,
+                        int e, bool is_in)
 {
     if (!is_in)
         return "-";
@@ -30,8 +30,9 @@ static void put_trees(struct ct_derivation *d)
         }
         const bool force = b->edge[i].kind == CT_EDGE_FORCE;
         CT_PAGE_ROW(&d->page, e->edge_name[i], e->edge_kind[i], e->node_name[w->tail],
-                e->node_name[w->head], force ? "chord" : role(d, e->T, e->weight_t, i, true),
-                force ? "chord" : role(d, e->R, e->weight_r, i, b->edge[i].has_rotation));
+                    e->node_name[w->head],
+                    force ? "chord" : role(d, e->T, e->weight_t, i, true),
+                    force ? "chord" : role(d, e->R, e->weight_r, i, b->edge[i].has_rotation));
     }
     ct_page_sentence(&d->page, "in brackets: the unknowns an edge adds as a branch%s",
                      narm ? "; arms are branches of both trees" : "");
@@ -61,8 +62,8 @@ static const char *meaning_of(struct ct_derivation *d, const struct ct_coordinat
     const struct ct_edge_info *e = &d->e->build->edge[c->edge];
     const struct ct_measure *m = measure_of(d->e, c);
     const char *what = e->kind == CT_EDGE_BODY
-                           ? ct_arena_printf(d->a, "body %s", e->name)
-                           : ct_arena_printf(d->a, "%s joint %s", e->self->cls->name, e->name);
+                         ? ct_arena_printf(d->a, "body %s", e->name)
+                         : ct_arena_printf(d->a, "%s joint %s", e->self->cls->name, e->name);
     *unit = "m";
     if (!m) {
         *unit = c->in_rotation ? "rad" : "m";
@@ -74,12 +75,14 @@ static const char *meaning_of(struct ct_derivation *d, const struct ct_coordinat
     }
     if (m->kind == CT_MEASURE_ANGLE) {
         *unit = "rad";
-        return ct_arena_printf(d->a, "angle of %s about %s", what, ct_derivation_axis(d, m->about));
+        return ct_arena_printf(d->a, "angle of %s about %s", what,
+                               ct_derivation_axis(d, m->about));
     }
     return e->kind == CT_EDGE_BODY
-               ? ct_arena_printf(d->a, "place of the centre of mass of %s along %s", what,
-                                 ct_derivation_axis(d, m->along))
-               : ct_arena_printf(d->a, "displacement of %s along %s", what, ct_derivation_axis(d, m->along));
+             ? ct_arena_printf(d->a, "place of the centre of mass of %s along %s", what,
+                               ct_derivation_axis(d, m->along))
+             : ct_arena_printf(d->a, "displacement of %s along %s", what,
+                               ct_derivation_axis(d, m->along));
 }
 
 static void put_unknowns(struct ct_derivation *d)
@@ -96,22 +99,25 @@ static void put_unknowns(struct ct_derivation *d)
         const char *speed = ct_derivation_text(d, u->symbol);
         if (u->q >= 0) {
             const char *meaning = meaning_of(d, coordinate_of(e, u->q), &unit);
-            CT_PAGE_ROW(&d->page, ct_derivation_text(d, e->q[u->q].symbol), speed, unit, meaning);
+            CT_PAGE_ROW(&d->page, ct_derivation_text(d, e->q[u->q].symbol), speed, unit,
+                        meaning);
         } else {
             const char *of = u->joint >= 0 ? d->m->joint[u->joint].name
                                            : d->m->body[u->body].instance.name;
             CT_PAGE_ROW(&d->page, "", speed, "rad/s",
-                    ct_arena_printf(d->a, "angular velocity of %s in its own axes", of));
+                        ct_arena_printf(d->a, "angular velocity of %s in its own axes", of));
         }
     }
     for (size_t i = 0; i < e->nq; i++)
         if (e->q[i].quaternion == 0) {
             const char *unit, *meaning = meaning_of(d, coordinate_of(e, (int)i), &unit);
             const char *last = strrchr(e->q[i + 3].name, '.');
-            CT_PAGE_ROW(&d->page, d->page.look == CT_LOOK_LATEX
-                                  ? ct_derivation_text(d, e->q[i].symbol)
-                                  : ct_arena_printf(d->a, "%s..%s", e->q[i].name, last ? last + 1 : ""),
-                    "", "", meaning);
+            CT_PAGE_ROW(
+                &d->page,
+                d->page.look == CT_LOOK_LATEX
+                    ? ct_derivation_text(d, e->q[i].symbol)
+                    : ct_arena_printf(d->a, "%s..%s", e->q[i].name, last ? last + 1 : ""),
+                "", "", meaning);
         }
 }
 
@@ -138,7 +144,8 @@ static void put_dependent(struct ct_derivation *d)
         list = ct_arena_printf(d->a, "%s%s%s", list, *list ? ", " : "", c->name);
     }
     if (*list)
-        ct_page_sentence(&d->page, "joint coordinates that follow from these by circuits: %s", list);
+        ct_page_sentence(&d->page, "joint coordinates that follow from these by circuits: %s",
+                         list);
 }
 
 // ---- rows -----------------------------------------------------------------------------------------
@@ -177,7 +184,8 @@ static void put_rows(struct ct_derivation *d)
     CT_PAGE_ROW(&d->page, "row", "multiplier", "unit", "meaning");
     for (size_t i = 0; i < e->nrow; i++) {
         const char *unit, *meaning = row_meaning(e->row[i].name, &unit);
-        CT_PAGE_ROW(&d->page, e->row[i].name, ct_derivation_text(d, e->row[i].lam), unit, meaning);
+        CT_PAGE_ROW(&d->page, e->row[i].name, ct_derivation_text(d, e->row[i].lam), unit,
+                    meaning);
     }
 }
 

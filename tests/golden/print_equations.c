@@ -35,7 +35,8 @@ int main(int argc, char **argv)
         return 2;
     }
     struct ct_ctx ctx = {.model = ct_arena_create(), .scratch = ct_arena_create()};
-    const bool ok = ctx.model && ctx.scratch && print(&ctx, argv[1], stages_of(argv[2]), format);
+    const bool ok
+        = ctx.model && ctx.scratch && print(&ctx, argv[1], stages_of(argv[2]), format);
     if (!ok)
         ct_ctx_print(&ctx, stderr);
     ct_arena_destroy(ctx.scratch);
