@@ -120,27 +120,16 @@ static bool check_numbers(struct ct_sim *sim, const struct ct_sim_options *o)
     return ok;
 }
 
-static const char *method_list(struct ct_arena *a)
-{
-    const char *text = "auto";
-    for (int i = 0; i < ct_nmethod; i++)
-        text = ct_arena_printf(a, "%s, %s", text, ct_methods[i]->name);
-    return text;
-}
-
 static bool no_method(struct ct_sim *sim, const char *name, bool is_option)
 {
-    struct ct_arena *a = sim->own.model;
-    const char **names = CT_NEWN(a, const char *, ct_nmethod + 1);
+    const char **names = CT_NEWN(sim->own.model, const char *, ct_nmethod + 1);
+    names[0] = "auto";
     for (int i = 0; i < ct_nmethod; i++)
-        names[i] = ct_methods[i]->name;
-    names[ct_nmethod] = "auto";
-    const char *near = ct_nearest(name, names, (size_t)ct_nmethod + 1);
+        names[i + 1] = ct_methods[i]->name;
     return ct_error(
         &sim->own, is_option ? (struct ct_mark){0} : sim->system->model.simulation.method_mark,
-        is_option ? CT_E_USAGE : CT_E_LATER,
-        "this version has no method '%s'%s%s%s; there are %s", name,
-        near ? ", did you mean '" : "", near ? near : "", near ? "'?" : "", method_list(a));
+        is_option ? CT_E_USAGE : CT_E_LATER, "this version has no method '%s'%s", name,
+        ct_suggest_or_list(sim->own.model, name, names, (size_t)ct_nmethod + 1));
 }
 
 static bool choose_method(struct ct_sim *sim, const char *option)

@@ -8,7 +8,8 @@
 #include <string.h>
 
 const struct cli_command *const cli_commands[]
-    = {&cli_simulate, &cli_check, &cli_graph, &cli_components, &cli_methods, &cli_schema, NULL};
+    = {&cli_simulate,   &cli_equations, &cli_graph,  &cli_check,
+       &cli_components, &cli_methods,   &cli_schema, NULL};
 
 // ---- options --------------------------------------------------------------------------------------------
 
@@ -83,7 +84,7 @@ int cli_complain(const struct cli_command *command, const char *fmt, ...)
 static bool wrong(const struct cli_command *command, const char *what, const char *name,
                   const char *near)
 {
-    cli_complain(command, "%s '%s'%s%s%s", what, name, near ? ", did you mean '" : "",
+    cli_complain(command, "%s '%s'%s%s%s", what, name, near ? "; did you mean '" : "",
                  near ? near : "", near ? "'?" : "");
     return false;
 }
@@ -153,8 +154,7 @@ static bool unknown_option(const struct parser *p, const char *name)
     const char *near = ct_did_you_mean(name + strspn(name, "-"), names, n);
     if (near)
         snprintf(text, sizeof text, "--%s", near);
-    return wrong(p->command, p->command ? "no such option:" : "no such option:", name,
-                 near ? text : NULL);
+    return wrong(p->command, "no such option:", name, near ? text : NULL);
 }
 
 static bool give(struct parser *p, const struct option *o, const char *value)

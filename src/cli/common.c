@@ -81,6 +81,8 @@ int cli_output_close(struct cli_output *o, bool ok)
         cannot("replace", o->path, errno);
         written = false;
     }
+    if (!ok && o->partial) // half a text is of no use
+        remove(o->partial);
     free(o->partial);
     return ok && written ? CLI_DONE : CLI_FAILED;
 }

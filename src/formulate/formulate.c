@@ -161,25 +161,53 @@ struct rules {
     bool *forced_t, *forced_r, *banned_t, *banned_r, *tied;
 };
 
-// Distance of each node from ground, in edges that can be branches.
-static int *node_depths(struct ct_build *b)
+// Distance of each node from ground over edges that can be branches: in edges, or in rotational freedoms.
+static int *node_depths(struct ct_build *b, bool by_rotation)
 {
     int *depth = CT_NEWN(b->arena, int, b->nnode);
     for (size_t i = 1; i < b->nnode; i++)
-        depth[i] = (int)b->nnode;
+        depth[i] = (int)b->nnode * CT_MAX_COORD;
     for (bool again = true; again;) {
         again = false;
         for (size_t e = 0; e < b->nedge; e++) {
             if (b->edge[e].kind == CT_EDGE_BODY || b->edge[e].never_branch)
                 continue;
+            const int length = by_rotation ? b->edge[e].weight_r : 1;
             int *t = &depth[b->wiring[e].tail], *h = &depth[b->wiring[e].head];
-            if (*t + 1 < *h || *h + 1 < *t) {
-                *(*t < *h ? h : t) = (*t < *h ? *t : *h) + 1;
+            if (*t + length < *h || *h + length < *t) {
+                *(*t < *h ? h : t) = (*t < *h ? *t : *h) + length;
                 again = true;
             }
         }
     }
     return depth;
+}
+
+// A coordinate that carries an effort, a spring or a driver is best a branch of its own.
+static bool is_active(const struct ct_instance *joint)
+{
+    static const char *const keys[] = {"stiffness", "damping", "effort", "motion"};
+    for (size_t i = 0; i < COUNT(keys) && joint->cls->motion; i++)
+        if (ct_instance_value(joint, keys[i])->given)
+            return true;
+    return false;
+}
+
+// Order among equal weights. In a plane the angle of a body weighs as much as that of a joint and gives
+// shorter expressions; a passive joint on a body that turns yields to it.  (2.3)
+static int tie_rank(const struct ct_build *b, size_t i, const int *depth, const int *turned,
+                    enum ct_tree_choice choice)
+{
+    const struct ct_edge_info *e = &b->edge[i];
+    const int tail = b->wiring[i].tail, head = b->wiring[i].head, last = 2 * (int)b->nedge;
+    if (e->kind == CT_EDGE_ARM)
+        return -1;
+    if (e->kind == CT_EDGE_BODY)
+        return b->is_planar && choice == CT_TREE_AUTO ? 1 : last;
+    const bool is_first_turn = turned[tail] == 0 || turned[head] == 0;
+    if (is_first_turn || (e->kind == CT_EDGE_JOINT && is_active(e->self)))
+        return 0;
+    return 2 + (depth[tail] < depth[head] ? depth[tail] : depth[head]);
 }
 
 // Arms are branches, force drivers chords (R1, R2); shared coordinates tie a joint (R3). Ties go to
@@ -195,7 +223,7 @@ static struct rules make_rules(struct ct_build *b, enum ct_tree_choice choice)
                       .banned_t = CT_NEWN(b->arena, bool, n),
                       .banned_r = CT_NEWN(b->arena, bool, n),
                       .tied = CT_NEWN(b->arena, bool, n)};
-    const int *depth = node_depths(b);
+    const int *depth = node_depths(b, false), *turned = node_depths(b, true);
     for (size_t i = 0; i < n; i++) {
         const struct ct_edge_info *e = &b->edge[i];
         const bool is_body = e->kind == CT_EDGE_BODY;
@@ -204,8 +232,7 @@ static struct rules make_rules(struct ct_build *b, enum ct_tree_choice choice)
         const int extra = choice != CT_TREE_AUTO && dear && !e->must_be_branch ? 100 : 0;
         r.weight_t[i] = e->weight_t + extra;
         r.weight_r[i] = e->weight_r + extra;
-        const int t = depth[b->wiring[i].tail], h = depth[b->wiring[i].head];
-        r.rank[i] = e->kind == CT_EDGE_ARM ? -1 : is_body ? 2 * (int)n : t < h ? t : h;
+        r.rank[i] = tie_rank(b, i, depth, turned, choice);
         r.forced_t[i] = e->must_be_branch;
         r.forced_r[i] = e->must_be_branch || is_particle;
         r.banned_t[i] = e->never_branch;
@@ -291,7 +318,7 @@ static const char *near_edge(struct ct_build *b, const char *name)
         if (b->edge[i].kind != CT_EDGE_ARM)
             names[n++] = b->edge[i].name;
     const char *near = ct_nearest(name, names, n);
-    return near ? ct_arena_printf(b->arena, ", did you mean '%s'?", near) : "";
+    return near ? ct_arena_printf(b->arena, "; did you mean '%s'?", near) : "";
 }
 
 static bool mark_named(struct ct_build *b, const char *const *names, const struct ct_mark *mark,

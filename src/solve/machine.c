@@ -158,7 +158,7 @@ static void compile_rest(struct ct_arena *a, struct ct_machine *m, const struct 
 {
     const struct ct_equations *e = m->e;
     struct list result = {.a = a}, root = {.a = a}, memory = {.a = a}, momentum = {.a = a},
-                driver = {.a = a};
+                driver = {.a = a}, wanted = {.a = a};
     for (size_t i = 0; i < e->nresult; i++)
         push(&result, e->result[i].value);
     for (size_t i = 0; i < e->nmode; i++)
@@ -174,12 +174,15 @@ static void compile_rest(struct ct_arena *a, struct ct_machine *m, const struct 
         push(&driver, e->driver[i].value);
         push(&driver, e->driver[i].rate);
     }
+    for (size_t i = 0; i < e->nrow; i++)
+        push(&wanted, e->row[i].wanted);
     const ct_ex energies[] = {e->kinetic, e->potential};
     compile(a, m, in, result.e, result.n, &m->result);
     compile(a, m, in, root.e, root.n, &m->root);
     compile(a, m, in, memory.e, memory.n, &m->memory);
     compile(a, m, in, momentum.e, momentum.n, &m->momentum);
     compile(a, m, in, driver.e, driver.n, &m->driver);
+    compile(a, m, in, wanted.e, wanted.n, &m->wanted);
     compile(a, m, in, energies, 2, &m->energy);
     compile(a, m, in, &e->power, ct_ex_is_zero(e->power) ? 0 : 1, &m->power);
 }
@@ -225,8 +228,8 @@ struct ct_machine *ct_machine_create(struct ct_arena *a, const struct ct_model *
 void ct_machine_prepare(struct ct_machine *m)
 {
     struct ct_program *const all[]
-        = {&m->motion, &m->constraint, &m->result,   &m->power, &m->energy,
-           &m->root,   &m->memory,     &m->momentum, &m->driver};
+        = {&m->motion, &m->constraint, &m->result,   &m->power,  &m->energy,
+           &m->root,   &m->memory,     &m->momentum, &m->driver, &m->wanted};
     for (size_t i = 0; i < COUNT(all); i++)
         prepare(all[i], m->input);
 }

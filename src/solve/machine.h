@@ -41,7 +41,8 @@ struct ct_machine {
         root,       // g of each mode
         memory,     // next values
         momentum,   // dT/du
-        driver;     // value, rate of each driver
+        driver,     // value, rate of each driver
+        wanted;     // of each row: not negative in the right assembly
 
     double *M, *Q, *J, *gam, *rate; // of the last ct_machine_motion
     double *phi, *v;                // of the last ct_machine_constraint (J as well)

@@ -23,7 +23,7 @@ struct ct_run {
     const struct ct_run_options *o;
     struct ct_run_report *report;
     double energy0, energy_scale;
-    double pivot_last, pivot_time, singular_in; // see foresee_singular
+    double pivot_last, pivot_most, pivot_time, singular_in; // see foresee_singular
     bool started;
 };
 
@@ -51,12 +51,19 @@ static void multipliers(struct ct_run *r)
 
 // Stages of a step lie off the manifold by more than its steps do. Beside a singular position that
 // little is divided by a small pivot, so there the stage is put onto the manifold first.
-static const double singular_pivot = 0.1;
+// A position counts as near to singular when the smallest pivot has fallen to this part of its largest
+// value so far.
+static const double singular_pivot = 0.25;
+
+static bool is_near_singular(const struct ct_run *r)
+{
+    return r->s->rank && r->s->sigma < singular_pivot * r->pivot_most;
+}
 
 static enum ct_eval rhs(void *user, double t, const double *y, double *dy)
 {
     struct ct_run *r = user;
-    if (r->s->rank && r->s->sigma < singular_pivot) {
+    if (is_near_singular(r)) {
         memcpy(r->stage, y, r->ny * sizeof *y);
         const enum ct_eval p = ct_embed_project(r->s, t, r->stage);
         if (p != CT_EVAL_OK)
@@ -91,7 +98,8 @@ static void foresee_singular(struct ct_run *r, double t)
     const double before = r->pivot_last, dt = t - r->pivot_time;
     r->singular_in = INFINITY;
     r->pivot_last = INFINITY;
-    if (!r->s->rank || r->s->sigma > 2 * singular_pivot)
+    r->pivot_most = fmax(r->pivot_most, r->s->sigma);
+    if (!is_near_singular(r))
         return;
     ct_machine_constraint(r->m);
     r->pivot_last = ct_embed_pivot(r->s);
