@@ -2,6 +2,7 @@
 #include "formulate/formulate.h"
 #include "expr/tape.h"
 #include "formulate/dynamics.h"
+#include "formulate/residual.h"
 #include "formulate/row.h"
 #include "formulate/signal.h"
 #include "formulate/topology.h"
@@ -399,6 +400,8 @@ bool ct_formulate(struct ct_ctx *ctx, struct ct_arena *a, const struct ct_model 
     *report = (struct ct_tree_report){0};
     if (!choose_trees(b, &s, report) || !derive(b))
         return false;
+    if (options->with_residual)
+        ct_residual_derive(b);
     if (options->with_energy)
         ct_energies_derive(b);
     if (options->measure_all)

@@ -15,9 +15,10 @@ struct ct_formulate_options {
     enum ct_tree_choice tree;
     const char *const *trans, *const *rot; // GIVEN: names of the branches that are not arms
     size_t ntrans, nrot;
-    bool keep_all;     // leave nothing out: spatial rows for planar mechanisms
-    bool with_energy;  // kinetic and potential energy and the power are wanted
-    bool with_outputs; // the outputs of the model are wanted
+    bool keep_all;      // leave nothing out: spatial rows for planar mechanisms
+    bool with_energy;   // kinetic and potential energy and the power are wanted
+    bool with_outputs;  // the outputs of the model are wanted
+    bool with_residual; // an implicit method will ask for the residual and its derivatives
     bool
         measure_all; // results are the coordinates of all joints and bodies instead (for assembly)
 };
