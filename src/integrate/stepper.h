@@ -29,7 +29,7 @@ struct ct_stepper_span {
     const struct ct_problem *p;
     double t, h;
     const double *y, *y1;
-    double *work;
+    void *work;
 };
 
 /// out (ny) = state at t + theta h.

@@ -31,7 +31,9 @@ struct ct_machine {
         root,       // g of each mode
         memory,     // next values
         momentum,   // dT/du
-        driver;     // value, rate of each driver
+        driver,     // value, rate of each driver
+        residual,   // r, phi, v; nothing if the equations have no residual, and so the next
+        tangent;    // dr/dq, dr/du, dr/du', dv/dq, J: the entries
 
     double *M, *Q, *J, *gam, *rate; // of the last ct_machine_motion
     double *phi, *v;                // of the last ct_machine_constraint (J as well)
@@ -55,6 +57,9 @@ void ct_machine_prepare(struct ct_machine *m);
 
 /// q (+) d for a small motion d (nu) in the speeds; quaternions are composed and normalised.  (7.4)
 void ct_machine_retract(const struct ct_machine *m, double *q, const double *d);
+/// rate (nu, out) = d' when q (+) d moves at speeds w: T^-1(d) w for rotations.  (7.3)
+void ct_machine_chart_rate(const struct ct_machine *m, const double *d, const double *w,
+                           double *rate);
 /// Normalise the quaternions of q.
 void ct_machine_normalise(const struct ct_machine *m, double *q);
 
