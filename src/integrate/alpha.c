@@ -27,6 +27,8 @@ struct state {
     double *dd, *du;          // corrections (nu)
     double *eta, *dlam, *r, *phi, *v;
     double *rate, *rate1, *out; // for interpolation: d' at both ends; a motion (nu)
+    double *power,
+        *power1; // rates of all states at both ends, of which quadratures are needed  (ny)
 };
 
 void *ct_alpha_create(struct ct_arena *a, const struct ct_method *method,
@@ -45,6 +47,8 @@ void *ct_alpha_create(struct ct_arena *a, const struct ct_method *method,
     for (size_t i = 0; i < COUNT(rows); i++)
         *rows[i] = CT_NEWN(a, double, p->dae->most_rows + 1);
     s->q = CT_NEWN(a, double, p->dae->nq + 1);
+    s->power = CT_NEWN(a, double, p->ny);
+    s->power1 = CT_NEWN(a, double, p->ny);
     s->is_fresh = true;
     return s;
 }
@@ -156,7 +160,9 @@ static enum ct_eval correct(struct state *s, double t1, double h, const double *
     for (int i = 0; i < s->it->m; i++)
         s->end.lam[i] += s->dlam[i];
     dae->retract(dae->user, y, s->d, s->q);
-    *verdict = ct_iteration_judge(s->it, ct_iteration_norm(s->it, s->dd, s->du, 1));
+    // in the index-3 form speeds have rounding over h in them: places alone decide
+    const double *du = c->is_stabilised ? s->du : NULL;
+    *verdict = ct_iteration_judge(s->it, ct_iteration_norm(s->it, s->dd, du, 1));
     return CT_EVAL_OK;
 }
 
@@ -229,12 +235,14 @@ enum ct_eval ct_alpha_step(const struct ct_problem *p, double t, double h, const
     s->end.h = h;
     s->dae->chart_rate(s->dae->user, s->d, s->u, s->rate1);
     memcpy(s->rate, y + s->dae->nq, (size_t)s->dae->nu * sizeof *y);
+    memcpy(s->power, dy, (size_t)p->ny * sizeof *dy);
+    memcpy(s->power1, dy1, (size_t)p->ny * sizeof *dy);
     if (tolerance)
         *err = estimate(s, h);
     return CT_EVAL_OK;
 }
 
-// Cubic Hermite: places in the chart at the start of the step, speeds with u', quadratures linear.
+// Cubic Hermite: places in the chart at the start of the step, speeds and quadratures.
 void ct_alpha_dense(const struct ct_problem *p, double h, double theta, const double *y,
                     const double *y1, void *work, double *out)
 {
@@ -244,6 +252,7 @@ void ct_alpha_dense(const struct ct_problem *p, double h, double theta, const do
     ct_stepper_hermite(s->out, theta, h, s->dd, s->rate, s->d, s->rate1, nu);
     s->dae->retract(s->dae->user, y, s->out, out);
     ct_stepper_hermite(out + nq, theta, h, y + nq, s->start.u_dot, y1 + nq, s->end.u_dot, nu);
-    for (int i = nq + nu; i < p->ny; i++)
-        out[i] = y[i] + theta * (y1[i] - y[i]);
+    const int i = nq + nu;
+    ct_stepper_hermite(out + i, theta, h, y + i, s->power + i, y1 + i, s->power1 + i,
+                       p->ny - i);
 }

@@ -7,7 +7,7 @@
 #include <string.h>
 
 // Derivatives are kept while a correction is less than this part of the one before.
-static const double slow = 0.3;
+static const double slow = 0.1;
 // Factors serve as long as the step is the same but for this: it costs no iteration.
 static const double same_step = 1e-3;
 // With a tolerance the iteration errs by a small part of it, smaller the tighter it is.
@@ -16,6 +16,8 @@ static const double kappa_most = 0.03;
 // hundred times that where they stop to shrink.
 static const struct ct_tolerance finest = {1e-12, 1e-12};
 static const double kappa_finest = 0.1, rounding_finest = 100;
+// In the index-3 form places alone are judged, and speeds follow them divided by the step.
+static const double kappa_index3 = 0.01;
 enum { MOST = 10, MOST_FINEST = 30 };
 
 struct ct_iteration *ct_iteration_create(struct ct_arena *a, const struct ct_dae *dae,
@@ -58,7 +60,8 @@ bool ct_iteration_begin(struct ct_iteration *it, const struct ct_tolerance *tole
         it->weight[it->nu + k] = tol->rtol * fabs(y[dae->nq + k]) + tol->atol;
     }
     it->kappa = tolerance ? fmin(kappa_most, sqrt(tol->rtol + tol->atol)) : kappa_finest;
-    it->rounding = tolerance ? it->kappa : rounding_finest;
+    it->kappa *= it->is_stabilised ? 1 : kappa_index3;
+    it->rounding = tolerance ? kappa_most : rounding_finest;
     it->most = tolerance ? MOST : MOST_FINEST;
     it->is_new = false;
     const long before = it->version;

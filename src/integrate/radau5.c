@@ -72,7 +72,8 @@ struct state {
     double *q, *u, *u_dot, *lam; // of a stage; of the start  (lam)
     double *d, *error;           // (nu)
     double *none;                // zeros  (rows)
-    double *quadrature;          // rates of quadratures at the stages  (ny)
+    double *quadrature;          // what quadratures gain in the step  (ny)
+    double *power, *power1;      // rates of all states at both ends  (ny)
     double _Complex *Fc, *rc, *phic, *vc, *dc, *etac, *lamc;
 };
 
@@ -115,6 +116,8 @@ static void *create(struct ct_arena *a, const struct ct_method *method,
         *complex_rows[i] = CT_NEWN(a, double _Complex, m + 1);
     s->q = CT_NEWN(a, double, p->dae->nq + 1);
     s->quadrature = CT_NEWN(a, double, p->ny);
+    s->power = CT_NEWN(a, double, p->ny);
+    s->power1 = CT_NEWN(a, double, p->ny);
     s->is_fresh = true;
     return s;
 }
@@ -446,26 +449,28 @@ static enum ct_eval step(const struct ct_problem *p, double t, double h, const d
         e = estimate(s, p, t, y, dy, y1, dy1, err, stats);
     if (e == CT_EVAL_OK)
         e = finish(s, p, t, h, y, y1, dy1, stats);
+    memcpy(s->power, dy, (size_t)p->ny * sizeof *dy);
+    memcpy(s->power1, dy1, (size_t)p->ny * sizeof *dy);
     s->was_tried = true;
     return e;
 }
 
-// The collocation polynomial; quadratures linear.
+// The collocation polynomial; cubic Hermite for quadratures.
 static void dense(const struct ct_problem *p, double h, double theta, const double *y,
                   const double *y1, void *work, double *out)
 {
     struct state *s = work;
     const int nq = s->dae->nq, nu = s->dae->nu;
     double w[STAGES];
-    (void)h;
     lagrange(w, theta);
     weigh(s->d, w, s->now.d, nu);
     s->dae->retract(s->dae->user, y, s->d, out);
     weigh(s->d, w, s->now.u, nu);
     for (int k = 0; k < nu; k++)
         out[nq + k] = y[nq + k] + s->d[k];
-    for (int i = nq + nu; i < p->ny; i++)
-        out[i] = y[i] + theta * (y1[i] - y[i]);
+    const int i = nq + nu;
+    ct_stepper_hermite(out + i, theta, h, y + i, s->power + i, y1 + i, s->power1 + i,
+                       p->ny - i);
 }
 
 const struct ct_method ct_method_radau5 = {
