@@ -14,6 +14,7 @@
 struct memory {
     double h;                // of the step that ends here
     double *a, *u_dot, *lam; // (nu), (nu), (rows)
+    double *rate;            // of all states at that step's start  (ny)
 };
 
 struct state {
@@ -27,8 +28,7 @@ struct state {
     double *dd, *du;          // corrections (nu)
     double *eta, *dlam, *r, *phi, *v;
     double *rate, *rate1, *out; // for interpolation: d' at both ends; a motion (nu)
-    double *power,
-        *power1; // rates of all states at both ends, of which quadratures are needed  (ny)
+    double *end_rate, *error;   // of all states: rates at the end, errors of quadratures  (ny)
 };
 
 void *ct_alpha_create(struct ct_arena *a, const struct ct_method *method,
@@ -47,8 +47,9 @@ void *ct_alpha_create(struct ct_arena *a, const struct ct_method *method,
     for (size_t i = 0; i < COUNT(rows); i++)
         *rows[i] = CT_NEWN(a, double, p->dae->most_rows + 1);
     s->q = CT_NEWN(a, double, p->dae->nq + 1);
-    s->power = CT_NEWN(a, double, p->ny);
-    s->power1 = CT_NEWN(a, double, p->ny);
+    double **const states[] = {&s->start.rate, &s->end.rate, &s->end_rate, &s->error};
+    for (size_t i = 0; i < COUNT(states); i++)
+        *states[i] = CT_NEWN(a, double, p->ny);
     s->is_fresh = true;
     return s;
 }
@@ -200,6 +201,20 @@ static double estimate(struct state *s, double h)
     return ct_iteration_norm(s->it, s->dd, NULL, 1);
 }
 
+// The error of the trapezoidal rule for quadratures, h^2/12 times the change of the slope of their rate; the slopes are
+// those of this step and of the one before, zero where there is none.
+static double estimate_quadratures(struct state *s, const struct ct_problem *p,
+                                   const struct ct_tolerance *tolerance, double h,
+                                   const double *y, const double *dy, const double *y1,
+                                   const double *dy1)
+{
+    const int first = s->dae->nq + s->dae->nu;
+    const double ratio = s->is_fresh ? 0 : h / s->start.h;
+    for (int i = first; i < p->ny; i++)
+        s->error[i] = h / 12 * (dy1[i] - dy[i] - ratio * (dy[i] - s->start.rate[i]));
+    return ct_stepper_largest(p, tolerance, first, y, y1, s->error);
+}
+
 // y1 and dy1 from the iteration's end; quadratures by the trapezoidal rule.
 static enum ct_eval finish(struct state *s, const struct ct_problem *p, double t1, double h,
                            const double *y, const double *dy, double *y1, double *dy1,
@@ -225,20 +240,26 @@ enum ct_eval ct_alpha_step(const struct ct_problem *p, double t, double h, const
                            struct ct_integrate_stats *stats)
 {
     struct state *s = work;
+    const size_t bytes = (size_t)p->ny * sizeof *y;
     enum ct_eval e = begin(s, p, t, h, y, dy, tolerance, y1, dy1, stats);
     if (e == CT_EVAL_OK)
         e = iterate(s, t + h, h, y, stats);
-    if (e == CT_EVAL_OK)
-        e = finish(s, p, t + h, h, y, dy, y1, dy1, stats);
     if (e != CT_EVAL_OK)
         return e;
+    if (tolerance && (*err = estimate(s, h)) > 1) { // the step will be refused
+        memcpy(y1, y, bytes);
+        return CT_EVAL_OK;
+    }
+    e = finish(s, p, t + h, h, y, dy, y1, dy1, stats);
+    if (e != CT_EVAL_OK)
+        return e;
+    if (tolerance)
+        *err = fmax(*err, estimate_quadratures(s, p, tolerance, h, y, dy, y1, dy1));
     s->end.h = h;
     s->dae->chart_rate(s->dae->user, s->d, s->u, s->rate1);
     memcpy(s->rate, y + s->dae->nq, (size_t)s->dae->nu * sizeof *y);
-    memcpy(s->power, dy, (size_t)p->ny * sizeof *dy);
-    memcpy(s->power1, dy1, (size_t)p->ny * sizeof *dy);
-    if (tolerance)
-        *err = estimate(s, h);
+    memcpy(s->end.rate, dy, bytes);
+    memcpy(s->end_rate, dy1, bytes);
     return CT_EVAL_OK;
 }
 
@@ -253,6 +274,6 @@ void ct_alpha_dense(const struct ct_problem *p, double h, double theta, const do
     s->dae->retract(s->dae->user, y, s->out, out);
     ct_stepper_hermite(out + nq, theta, h, y + nq, s->start.u_dot, y1 + nq, s->end.u_dot, nu);
     const int i = nq + nu;
-    ct_stepper_hermite(out + i, theta, h, y + i, s->power + i, y1 + i, s->power1 + i,
+    ct_stepper_hermite(out + i, theta, h, y + i, s->end.rate + i, y1 + i, s->end_rate + i,
                        p->ny - i);
 }

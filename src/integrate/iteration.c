@@ -16,6 +16,8 @@ static const double kappa_most = 0.03;
 // hundred times that where they stop to shrink.
 static const struct ct_tolerance finest = {1e-12, 1e-12};
 static const double kappa_finest = 0.1, rounding_finest = 100;
+// The first corrections come from a guess and may grow; not so much, though.
+static const double hopeless = 100;
 // In the index-3 form places alone are judged, and speeds follow them divided by the step.
 static const double kappa_index3 = 0.01;
 enum { MOST = 10, MOST_FINEST = 30 };
@@ -250,7 +252,7 @@ enum ct_verdict ct_iteration_judge(struct ct_iteration *it, double size)
         const double rate = size / it->size;
         if (rate >= 1 && size <= it->rounding)
             return CT_CONVERGED;
-        if (rate >= 2 || (rate >= 1 && it->count > 3))
+        if (rate >= hopeless || (rate >= 1 && it->count > 3))
             return CT_DIVERGED;
         it->rate = it->count > 2 ? sqrt(rate * it->rate) : rate; // two in turn are often uneven
         it->eta = it->rate < 1 ? it->rate / (1 - it->rate) : INFINITY;

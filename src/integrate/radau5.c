@@ -25,12 +25,12 @@ enum { STAGES = 3 };
 
 static const double C[STAGES] = {(4 - SQRT6) / 10, (4 + SQRT6) / 10, 1};
 
-// Quadrature weights: the last row of A.
-static const double B[STAGES] = {(16 - SQRT6) / 36, (16 + SQRT6) / 36, 1. / 9};
+static const double A[STAGES][STAGES]
+    = {{(88 - 7 * SQRT6) / 360, (296 - 169 * SQRT6) / 1800, (-2 + 3 * SQRT6) / 225},
+       {(296 + 169 * SQRT6) / 1800, (88 + 7 * SQRT6) / 360, (-2 - 3 * SQRT6) / 225},
+       {(16 - SQRT6) / 36, (16 + SQRT6) / 36, 1. / 9}};
 
-// Inverse of A = [ (88 - 7s)/360      (296 - 169s)/1800  (-2 + 3s)/225
-//                  (296 + 169s)/1800  (88 + 7s)/360      (-2 - 3s)/225
-//                  b                                                   ],  s = sqrt 6
+// A^-1
 static const double INVERSE[STAGES][STAGES]
     = {{2 + SQRT6 / 2, -6. / 5 + 29 * SQRT6 / 30, 2. / 5 - 4 * SQRT6 / 15},
        {-6. / 5 - 29 * SQRT6 / 30, 2 - SQRT6 / 2, 2. / 5 + 4 * SQRT6 / 15},
@@ -72,7 +72,7 @@ struct state {
     double *q, *u, *u_dot, *lam; // of a stage; of the start  (lam)
     double *d, *error;           // (nu)
     double *none;                // zeros  (rows)
-    double *quadrature;          // what quadratures gain in the step  (ny)
+    double *gain, *defect;       // of quadratures: over h; error over h / GAMMA  (ny)
     double *power, *power1;      // rates of all states at both ends  (ny)
     double _Complex *Fc, *rc, *phic, *vc, *dc, *etac, *lamc;
 };
@@ -115,7 +115,8 @@ static void *create(struct ct_arena *a, const struct ct_method *method,
     for (size_t i = 0; i < COUNT(complex_rows); i++)
         *complex_rows[i] = CT_NEWN(a, double _Complex, m + 1);
     s->q = CT_NEWN(a, double, p->dae->nq + 1);
-    s->quadrature = CT_NEWN(a, double, p->ny);
+    s->gain = CT_NEWN(a, double, p->ny);
+    s->defect = CT_NEWN(a, double, p->ny);
     s->power = CT_NEWN(a, double, p->ny);
     s->power1 = CT_NEWN(a, double, p->ny);
     s->is_fresh = true;
@@ -398,31 +399,33 @@ static enum ct_eval estimate(struct state *s, const struct ct_problem *p, double
     return e;
 }
 
-// y1 and dy1 from the last stage; quadratures from their rates at the stages.
+// y1 and dy1 from the last stage; quadratures and their errors from their rates at the stages.
 static enum ct_eval finish(struct state *s, const struct ct_problem *p, double t, double h,
-                           const double *y, double *y1, double *dy1,
+                           const double *y, const double *dy, double *y1, double *dy1,
                            struct ct_integrate_stats *stats)
 {
     const int nq = s->dae->nq, nu = s->dae->nu, first = nq + nu;
     enum ct_eval e = CT_EVAL_OK;
     memcpy(y1, y, (size_t)p->ny * sizeof *y);
-    memset(s->quadrature, 0, (size_t)p->ny * sizeof *s->quadrature);
-    for (int i = 0; i < STAGES && e == CT_EVAL_OK; i++) {
-        const bool is_last = i == STAGES - 1;
-        if (!is_last && first == p->ny)
-            continue;
+    memset(s->gain, 0, (size_t)p->ny * sizeof *s->gain);
+    memcpy(s->defect, dy, (size_t)p->ny * sizeof *s->defect);
+    for (int i = first < p->ny ? 0 : STAGES - 1; i < STAGES && e == CT_EVAL_OK; i++) {
         place_stage(s, y, i);
         memcpy(y1, s->q, (size_t)nq * sizeof *y);
         memcpy(y1 + nq, s->u, (size_t)nu * sizeof *y);
-        if (is_last && p->project) // takes off what the iteration left
+        if (i == STAGES - 1 && p->project) // takes off what the iteration left
             e = p->project(p->user, t + h, y1);
         if (e == CT_EVAL_OK)
             e = ct_stepper_rhs(p, t + C[i] * h, y1, dy1, stats);
-        for (int k = first; k < p->ny; k++)
-            s->quadrature[k] += B[i] * dy1[k];
+        for (int k = first; k < p->ny && e == CT_EVAL_OK; k++) {
+            s->gain[k] += A[STAGES - 1][i] * dy1[k];
+            s->defect[k] += (E[0] * A[0][i] + E[1] * A[1][i] + E[2] * A[2][i]) * dy1[k];
+        }
     }
-    for (int k = first; k < p->ny; k++)
-        y1[k] += h * s->quadrature[k];
+    for (int k = first; k < p->ny; k++) {
+        y1[k] += h * s->gain[k];
+        s->defect[k] *= h / GAMMA;
+    }
     return e;
 }
 
@@ -441,18 +444,29 @@ static enum ct_eval step(const struct ct_problem *p, double t, double h, const d
 {
     struct state *s = work;
     const struct ct_tolerance eased = tolerance ? ease(tolerance) : (struct ct_tolerance){0};
+    const size_t bytes = (size_t)p->ny * sizeof *y;
     ct_iteration_begin(s->it, tolerance ? &eased : NULL, y);
     enum ct_eval e = s->dae->start(s->dae->user, t, y, s->u_dot, s->lam);
     if (e == CT_EVAL_OK)
         e = iterate(s, t, h, y, dy, stats);
     if (e == CT_EVAL_OK && tolerance)
         e = estimate(s, p, t, y, dy, y1, dy1, err, stats);
-    if (e == CT_EVAL_OK)
-        e = finish(s, p, t, h, y, y1, dy1, stats);
-    memcpy(s->power, dy, (size_t)p->ny * sizeof *dy);
-    memcpy(s->power1, dy1, (size_t)p->ny * sizeof *dy);
     s->was_tried = true;
-    return e;
+    if (e != CT_EVAL_OK)
+        return e;
+    if (tolerance && *err > 1) { // the step will be refused
+        memcpy(y1, y, bytes);
+        return CT_EVAL_OK;
+    }
+    e = finish(s, p, t, h, y, dy, y1, dy1, stats);
+    if (e != CT_EVAL_OK)
+        return e;
+    if (tolerance)
+        *err = fmax(*err,
+                    ct_stepper_largest(p, &eased, s->dae->nq + s->dae->nu, y, y1, s->defect));
+    memcpy(s->power, dy, bytes);
+    memcpy(s->power1, dy1, bytes);
+    return CT_EVAL_OK;
 }
 
 // The collocation polynomial; cubic Hermite for quadratures.
