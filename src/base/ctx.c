@@ -85,6 +85,8 @@ void ct_ctx_print(const struct ct_ctx *ctx, FILE *out)
         if (d->mark.file && i < 200)
             print_source_line(d->mark, out);
     }
+    if (ctx->no_memory)
+        fprintf(out, "cotree: error: out of memory [E%03d]\n", CT_E_MEMORY);
 }
 
 // Edit distance with adjacent swaps, given up beyond `limit`. Names are short: quadratic is fine.

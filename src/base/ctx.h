@@ -38,7 +38,8 @@ struct ct_ctx {
     struct ct_arena *scratch; // one stage; reset by the stage driver
     struct ct_diagnostic *diagnostic;
     size_t ndiagnostic, diagnostic_cap;
-    size_t nerror; // errors among them
+    size_t nerror;  // errors among them
+    bool no_memory; // the guard was reached: E001, which needs no room of its own
 };
 
 /// Put an error into the context. Always returns false, so that `return ct_error(...)` reads well.

@@ -20,6 +20,10 @@
 struct ct_collect_options {
     size_t limit;             // terms of one polynomial; 0: 2000. Larger sums stay as one atom
     struct ct_arena *scratch; // work space; NULL: the arena of the store
+    /// Unit quaternions, four symbols each: the square of the first number is one less the squares of
+    /// the others. Results then equal the expression where the quaternions have length one.
+    ct_ex (*quaternion)[4];
+    size_t nquaternion;
 };
 
 /// e with like terms collected. New nodes are made in x. Cost: that of the expanded terms, bounded by

@@ -12,7 +12,8 @@ struct ct_atom {
     ct_ex e;
     uint32_t angle; // 1 + the angle whose sine or cosine this is, 0 for other atoms
     bool is_sine;
-    const struct ct_poly *square; // of a square root: what is under it
+    const struct ct_poly
+        *square; // of a square root or the first number of a quaternion: its square
 };
 
 struct ct_angle {

@@ -38,6 +38,8 @@ static void put(struct printer *pr, const char *s)
 const char *ct_number_text(struct ct_arena *a, double v)
 {
     char s[40];
+    if (v == floor(v) && fabs(v) < 1e7) // 60, not 6e+01
+        return ct_arena_printf(a, "%.0f", v);
     for (int digits = 1; digits <= 17; digits += digits < 15 ? 14 : 1) {
         snprintf(s, sizeof s, "%.*g", digits, v);
         if (strtod(s, NULL) == v)
@@ -294,10 +296,25 @@ static int class_of_term(const struct printer *pr, const struct term *t)
     return kinds & ~(1u << CT_SYM_PARAM) ? TERM_FUNCTION : TERM_PARAM;
 }
 
+// 0.75 -> 3/4. Powers of two only, as they do not round.
+static void split_fraction(struct term *t)
+{
+    double divisor = 1;
+    while (divisor < 16 && t->number * divisor != floor(t->number * divisor))
+        divisor *= 2;
+    if (divisor == 16 || t->number * divisor > 99)
+        return;
+    t->number *= divisor;
+    t->divisor *= divisor;
+}
+
 static struct term make_term(struct printer *pr, ct_ex e, bool negative)
 {
     struct term t = {.negative = negative, .number = 1, .divisor = 1};
     flatten_product(pr, &t, e, 1);
+    // a number alone stays a decimal
+    if (pr->p.fractions && t.above.n && t.divisor == 1)
+        split_fraction(&t);
     ct_sort(pr->arena, t.above.at, t.above.n, sizeof *t.above.at, compare_factors, pr);
     ct_sort(pr->arena, t.below.at, t.below.n, sizeof *t.below.at, compare_factors, pr);
     t.class = class_of_term(pr, &t);
@@ -417,13 +434,25 @@ static void flatten_sum(struct printer *pr, struct terms *t, ct_ex e, bool negat
     CT_PUSH(pr->arena, t->at, t->n, t->cap, one);
 }
 
-// x - x0 rather than -x0 + x
+static size_t count_class(const struct terms *t, int class)
+{
+    size_t n = 0;
+    for (size_t k = 0; k < t->n; k++)
+        n += t->at[k].class == class;
+    return n;
+}
+
+// x - x0 rather than -x0 + x; but it does not leave others of its kind behind speeds, and forces of
+// constraint stay last.
 static void lead_with_positive(struct terms *t)
 {
     size_t k = 0;
     while (k < t->n && t->at[k].negative)
         k++;
-    if (k == t->n)
+    if (k == 0 || k == t->n)
+        return;
+    const int from = t->at[0].class, to = t->at[k].class;
+    if (from != to && (to == TERM_MULTIPLIER || (from <= TERM_SPEED && count_class(t, to) > 1)))
         return;
     const struct term first = t->at[k];
     memmove(t->at + 1, t->at, k * sizeof *t->at);
@@ -648,6 +677,17 @@ static bool is_greek(const char *s, size_t n)
     return false;
 }
 
+const char *ct_latex_quoted(struct ct_arena *a, const char *name)
+{
+    char *quoted = ct_arena_alloc(a, 2 * strlen(name) + 1), *q = quoted;
+    for (; *name; name++) {
+        if (strchr("_#$%&{}", *name))
+            *q++ = '\\';
+        *q++ = *name;
+    }
+    return quoted;
+}
+
 // A word: one letter and Greek as mathematics, the rest upright.
 static const char *latex_word(struct ct_arena *a, const char *s, size_t n)
 {
@@ -656,13 +696,7 @@ static const char *latex_word(struct ct_arena *a, const char *s, size_t n)
         return ct_arena_printf(a, "\\%s", word);
     if (n == 1 || strspn(word, "0123456789,") == n)
         return word;
-    char *quoted = ct_arena_alloc(a, 2 * n + 1), *q = quoted;
-    for (size_t k = 0; k < n; k++) {
-        if (strchr("_#$%&{}", s[k]))
-            *q++ = '\\';
-        *q++ = s[k];
-    }
-    return ct_arena_printf(a, "\\mathrm{%s}", quoted);
+    return ct_arena_printf(a, "\\mathrm{%s}", ct_latex_quoted(a, word));
 }
 
 static const char *join_subscript(struct ct_arena *a, const char *first, const char *second)

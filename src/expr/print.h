@@ -32,6 +32,9 @@ struct ct_print {
     /// each other are cut in any case. A graph of n nodes can be a tree of 2^n: name shared nodes
     /// first (share.h).
     size_t limit;
+    /// Halves, quarters, eighths as fractions: m*l^2/4, not 0.25*m*l^2. Reads back to the same value,
+    /// not to the same nodes. Text and LaTeX.
+    bool fractions;
 };
 
 /// e as text; p may be NULL. The text and all work space live in a.
@@ -48,6 +51,8 @@ const char *ct_number_c(struct ct_arena *a, double v);
 
 /// LaTeX of a name: crank.q -> q_{\mathrm{crank}}, theta1'' -> \ddot{\theta}_{1}, mass -> \mathrm{mass}
 const char *ct_latex_name(struct ct_arena *a, const char *name);
+/// A name with a backslash before what LaTeX takes for itself.
+const char *ct_latex_quoted(struct ct_arena *a, const char *name);
 /// A C identifier from a name: characters that are not allowed become _, a prime becomes d.
 /// Different names can become the same identifier: telling them apart is the caller's.
 const char *ct_c_name(struct ct_arena *a, const char *name);

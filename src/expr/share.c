@@ -123,25 +123,42 @@ static double saving_of(const struct sharing *s, uint32_t id)
     return (times - 1) * s->size[id] - (times + 1) * name - 4;
 }
 
-// The node that saves most; ties go to the older one. A name by meaning counts twice: it explains.
-static bool choose(struct sharing *s)
+// A name by meaning counts twice: it explains.
+static double worth_of(const struct sharing *s, uint32_t id)
+{
+    if (s->saving[id] > 0 || is_trivial(s->x, id))
+        return 0;
+    return saving_of(s, id) * (s->meaning[id] ? 2 : 1);
+}
+
+// Graphs of more nodes than this get many names at a time: all that save half as much as the best.
+// Those that others make useless are taken back at the end.
+enum { LARGE_GRAPH = 1000 };
+
+// Names the node that saves most; ties go to the older one. Returns how many were named.
+static size_t choose(struct sharing *s, size_t most)
 {
     double best = s->o.least;
     uint32_t chosen = 0;
     for (size_t k = 0; k < s->n; k++) {
-        const uint32_t id = s->id[k];
-        if (s->saving[id] > 0 || is_trivial(s->x, id))
-            continue;
-        const double saving = saving_of(s, id) * (s->meaning[id] ? 2 : 1);
-        if (saving > best || (saving == best && chosen && id < chosen)) {
-            best = saving;
-            chosen = id;
+        const double worth = worth_of(s, s->id[k]);
+        if (worth > best) {
+            best = worth;
+            chosen = s->id[k];
         }
     }
     if (!chosen)
-        return false;
-    s->saving[chosen] = saving_of(s, chosen);
-    return true;
+        return 0;
+    size_t n = 0;
+    const double enough = s->n > LARGE_GRAPH ? fmax(best / 2, s->o.least) : best;
+    for (size_t k = 0; k < s->n && n < most; k++) {
+        const uint32_t id = s->id[k];
+        if (worth_of(s, id) < enough || (s->n <= LARGE_GRAPH && id != chosen))
+            continue;
+        s->saving[id] = saving_of(s, id);
+        n++;
+    }
+    return n;
 }
 
 // A definition that later ones left with a single use is taken back.
@@ -235,8 +252,12 @@ struct ct_share ct_ex_share(struct ct_arena *a, struct ct_exs *x, const ct_ex *e
     s.o.least = s.o.least > 0 ? s.o.least : 20;
     list_nodes(&s);
     measure(&s);
-    for (size_t k = 0; k < s.o.most && s.total > s.o.enough && choose(&s); k++)
+    for (size_t k = 0, named; k < s.o.most && s.total > s.o.enough; k += named) {
+        named = choose(&s, s.o.most - k);
+        if (!named)
+            break;
         measure(&s);
+    }
     while (drop_useless(&s))
         measure(&s);
     return list_definitions(&s);

@@ -1,6 +1,9 @@
 // Three components and 3 x 3 matrices of expressions.
 #include "expr/ex.h"
 
+#include <float.h>
+#include <math.h>
+
 ct_ex3 ct_ex3_add(struct ct_exs *x, ct_ex3 a, ct_ex3 b)
 {
     for (int i = 0; i < 3; i++)
@@ -101,10 +104,21 @@ ct_ex33 ct_ex33_transpose(const ct_ex33 *A)
     return T;
 }
 
+// A quarter turn is meant exactly: cos(pi/2) is 0, not 6e-17.
+static ct_ex exact_quarter(struct ct_exs *x, ct_ex e)
+{
+    double v;
+    const double rounding = 4 * DBL_EPSILON; // of angles up to a few turns
+    if (ct_ex_is_const(x, e, &v) && fabs(v - round(v)) < rounding)
+        return ct_ex_const(x, round(v));
+    return e;
+}
+
 // R = c 1 + (1 - c) n n' + s n~  (Rodrigues); for a coordinate axis the zeros fold away.
 ct_ex33 ct_ex33_axis_angle(struct ct_exs *x, ct_ex3 n, ct_ex a)
 {
-    const ct_ex c = ct_ex_fun(x, CT_OP_COS, a), s = ct_ex_fun(x, CT_OP_SIN, a);
+    const ct_ex c = exact_quarter(x, ct_ex_fun(x, CT_OP_COS, a));
+    const ct_ex s = exact_quarter(x, ct_ex_fun(x, CT_OP_SIN, a));
     const ct_ex v = ct_ex_sub(x, CT_EX_ONE, c);
     ct_ex33 R;
     for (int i = 0; i < 3; i++) {

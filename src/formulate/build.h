@@ -44,7 +44,8 @@ struct ct_edge_info {
     int index;                      // of the body, joint or force in the model; arms: frame
     const struct ct_instance *self; // joints, forces
     ct_ex3 at;                      // arms: place in axes of the tail
-    ct_ex33 S;                      // arms: rotation of the head out of the tail's axes
+    ct_ex33 S; // arms: rotation of the head out of the tail's axes; bodies in a
+               // plane: that of the body before its angle
     struct ct_motion trial,
         motion;        // bodies, joints, closures: with LOCAL symbols; with coordinates
     bool has_rotation; // false where a particle is reached
@@ -138,6 +139,9 @@ struct ct_build {
     // planar mechanisms: common normal and a basis of the plane (ground components)
     bool is_planar;
     ct_ex3 plane[3]; // e1, e2, n
+    ct_ex *layer;    // by node: its place along n [m]
+    ct_ex33 *
+        upright; // by node: its axes -> ground's, joints at rest; none where both see the normal alike
 
     struct ct_graph graph;
     struct ct_node_info *node;
@@ -170,6 +174,7 @@ struct ct_build {
     const struct ct_sweep *sweep[2]; // by level, once asked for
     ct_ex *effort;                   // of joints along their unknown coordinates (nu)
     int resolving;                   // depth of signals within signals
+    bool is_open;                    // a signal was met that this planar model leaves open
     bool in_outputs; // accelerations and multipliers may be used, comparisons stay as they are
     struct ct_kept_quaternion {
         bool made;

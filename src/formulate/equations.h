@@ -64,7 +64,7 @@ struct ct_memory {
 struct ct_result {
     const char *name; // column
     ct_ex value;
-    bool undetermined; // set by the run: depends on multipliers that are not unique
+    bool undetermined; // a reaction out of the plane that a planar model leaves open
 };
 
 /// A driven coordinate: known branch coordinate with its value, rate and acceleration.
@@ -128,6 +128,7 @@ struct ct_equations {
     const struct ct_tree *T, *R;
     const char *const *node_name, *const *edge_name, *const *edge_kind;
     const int *weight_t, *weight_r;
+    const char *how; // the trees were chosen, for reports; NULL: not known
 };
 
 #endif

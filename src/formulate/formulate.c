@@ -284,8 +284,19 @@ static void improve(struct ct_build *b, const struct search *s, const struct rul
                                       stats.nevaluated);
 }
 
-static bool mark_named(struct ct_build *b, const char *const *names, size_t n,
-                       const bool *forced, bool *branch)
+static const char *near_edge(struct ct_build *b, const char *name)
+{
+    const char **names = CT_NEWN(b->arena, const char *, b->nedge);
+    size_t n = 0;
+    for (size_t i = 0; i < b->nedge; i++)
+        if (b->edge[i].kind != CT_EDGE_ARM)
+            names[n++] = b->edge[i].name;
+    const char *near = ct_nearest(name, names, n);
+    return near ? ct_arena_printf(b->arena, ", did you mean '%s'?", near) : "";
+}
+
+static bool mark_named(struct ct_build *b, const char *const *names, const struct ct_mark *mark,
+                       size_t n, const bool *forced, bool *branch)
 {
     memcpy(branch, forced, b->nedge * sizeof *branch);
     bool ok = true;
@@ -294,8 +305,8 @@ static bool mark_named(struct ct_build *b, const char *const *names, size_t n,
         while (i < b->nedge && strcmp(b->edge[i].name, names[k]) != 0)
             i++;
         if (i == b->nedge)
-            ok = ct_error(b->ctx, (struct ct_mark){0}, CT_E_TREE, "tree: there is no edge '%s'",
-                          names[k]);
+            ok = ct_error(b->ctx, mark ? mark[k] : (struct ct_mark){0}, CT_E_TREE,
+                          "tree: there is no edge '%s'%s", names[k], near_edge(b, names[k]));
         else
             branch[i] = true;
     }
@@ -307,8 +318,8 @@ static bool given_trees(struct ct_build *b, const struct ct_formulate_options *o
 {
     p->trans = CT_NEWN(b->arena, bool, b->nedge);
     p->rot = CT_NEWN(b->arena, bool, b->nedge);
-    if (!mark_named(b, o->trans, o->ntrans, r->forced_t, p->trans)
-        || !mark_named(b, o->rot, o->nrot, r->forced_r, p->rot))
+    if (!mark_named(b, o->trans, o->trans_mark, o->ntrans, r->forced_t, p->trans)
+        || !mark_named(b, o->rot, o->rot_mark, o->nrot, r->forced_r, p->rot))
         return false;
     bool ok = true;
     for (size_t i = 0; i < b->nedge; i++)
@@ -412,6 +423,14 @@ bool ct_formulate(struct ct_ctx *ctx, struct ct_arena *a, const struct ct_model 
     b->eqs->coordinate = b->coordinate;
     b->eqs->ncoordinate = b->ncoordinate;
     b->eqs->build = b;
+    b->eqs->how = report->how;
     *out = *b->eqs;
     return true;
+}
+
+void ct_formulate_residual(struct ct_equations *e)
+{
+    if (!e->residual)
+        ct_residual_derive(e->build);
+    e->residual = e->build->eqs->residual;
 }

@@ -14,6 +14,7 @@ enum ct_tree_choice {
 struct ct_formulate_options {
     enum ct_tree_choice tree;
     const char *const *trans, *const *rot; // GIVEN: names of the branches that are not arms
+    const struct ct_mark *trans_mark, *rot_mark; // of each name; NULL: nowhere
     size_t ntrans, nrot;
     bool keep_all;      // leave nothing out: spatial rows for planar mechanisms
     bool with_energy;   // kinetic and potential energy and the power are wanted
@@ -34,5 +35,8 @@ struct ct_tree_report {
 bool ct_formulate(struct ct_ctx *ctx, struct ct_arena *a, const struct ct_model *m,
                   const struct ct_formulate_options *options, struct ct_equations *out,
                   struct ct_tree_report *report);
+
+/// The residual form, if the equations do not have it yet: for an implicit method chosen after they were made.
+void ct_formulate_residual(struct ct_equations *e);
 
 #endif

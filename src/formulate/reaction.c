@@ -5,6 +5,8 @@
 #include "formulate/reaction.h"
 #include "formulate/row.h"
 
+#include <math.h>
+
 static const ct_ex3 zero3 = {{{0}, {0}, {0}}};
 
 static void add(struct ct_build *b, ct_ex3 *sum, ct_ex3 v)
@@ -174,11 +176,60 @@ void ct_reaction_derive(struct ct_build *b, int joint, ct_ex3 *force, ct_ex3 *to
         }
     for (size_t i = 0; i < b->npull; i++) {
         const struct ct_pull *p = &b->pull[i];
-        if (p->head != b->wiring[edge].head || p->tail != b->wiring[edge].tail
-            || b->eqs->row[p->row].joint != joint)
-            continue;
+        if (p->joint != joint || p->head != b->wiring[edge].head
+            || p->tail != b->wiring[edge].tail)
+            continue; // rows of the weld behind a joint carry its number, too
         const ct_ex lam = b->eqs->row[p->row].lam;
         add(b, force, ct_ex3_scale(b->x, lam, p->force));
         add(b, torque, ct_ex3_scale(b->x, lam, p->torque));
     }
+}
+
+// ---- planar mechanisms -------------------------------------------------------------------------------------
+
+// Does component i of a force lie in the plane, or that of a torque along its normal?
+static bool is_of_plane(const struct ct_build *b, int node, bool is_force, int i)
+{
+    const double rounding = 1e-12; // of components of unit vectors
+    const ct_ex3 n = ct_ex33_apply_t(b->x, &b->upright[node], b->plane[2]);
+    const double along = fabs(ct_ex_value(b->x, n.e[i], b->value));
+    return is_force ? along < rounding : along > 1 - rounding;
+}
+
+// Nodes that branch e cuts off from ground.
+static void mark_outboard(const struct ct_tree *t, int edge, bool *outboard)
+{
+    for (int i = 1; i < t->nnode; i++) { // parents come first
+        const int node = t->order[i];
+        outboard[node] = t->parent_edge[node] == edge || outboard[t->parent[node]];
+    }
+}
+
+bool ct_reaction_is_known(const struct ct_build *b, int joint, bool is_force, int i)
+{
+    const int edge = b->edge_of_joint[joint];
+    if (!b->is_planar || !b->edge[edge].self->cls->motion
+        || is_of_plane(b, b->wiring[edge].tail, is_force, i))
+        return true;
+    if (!b->T.is_branch[edge] || (b->edge[edge].has_rotation && !b->R.is_branch[edge]))
+        return false;
+    bool *cut[2];
+    for (int k = 0; k < 2; k++) {
+        const struct ct_tree *t = k ? &b->R : &b->T;
+        cut[k] = CT_NEWN(b->arena, bool, b->nnode);
+        if (t->is_branch[edge])
+            mark_outboard(t, edge, cut[k]);
+    }
+    for (size_t e = 0; e < b->nedge; e++) {
+        const enum ct_edge_kind kind = b->edge[e].kind;
+        const int tail = b->wiring[e].tail, head = b->wiring[e].head;
+        const bool is_open
+            = (kind == CT_EDGE_JOINT || kind == CT_EDGE_CLOSURE) && !b->edge[e].never_branch
+           && (!b->T.is_branch[e] || (b->edge[e].has_rotation && !b->R.is_branch[e]));
+        // a chord within the cut keeps what it transmits to itself, if both trees cut off both its ends
+        if (is_open && (cut[0][tail] || cut[1][tail] || cut[0][head] || cut[1][head])
+            && !(cut[0][tail] && cut[1][tail] && cut[0][head] && cut[1][head]))
+            return false;
+    }
+    return true;
 }

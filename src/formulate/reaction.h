@@ -8,4 +8,8 @@
 /// transmits, in ground components and in terms of u' and lam.
 void ct_reaction_derive(struct ct_build *b, int joint, ct_ex3 *force, ct_ex3 *torque);
 
+/// Is component i, in axes of `from`, of a joint's force (torque) known? In a planar mechanism chords have no
+/// rows out of the plane: what they transmit there is open, and so is what shares a circuit with them.
+bool ct_reaction_is_known(const struct ct_build *b, int joint, bool is_force, int i);
+
 #endif

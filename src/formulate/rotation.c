@@ -287,6 +287,8 @@ static void place_axes(struct ct_build *b, int node)
         const ct_ex3 axis = ct_ex33_apply(b->x, &p->S, e->motion.turn[k].axis);
         self->frame = turn_cluster(b, self->frame, e, k, sign, axis);
     }
+    if (e->kind == CT_EDGE_BODY) // from ground outwards always
+        self->S = e->S;
     if (e->motion.quaternion >= 0) {
         self->frame = quaternion_cluster(b, self->frame, &p->S, e, sign);
         self->S = ct_ex33_identity();

@@ -334,7 +334,7 @@ static void add_row(struct ct_build *b, int joint, const char *name, struct pair
     struct ct_linear l = linear_zero(b);
     wrench_terms(b, n, w, carried, &l);
     const int index = push_row(b, name, joint, &l, phi, gam);
-    const struct ct_pull p = {index, n.tail, n.head, w->force, w->torque, carried};
+    const struct ct_pull p = {index, n.tail, n.head, joint, w->force, w->torque, carried};
     CT_PUSH(b->arena, b->pull, b->npull, b->pull_cap, p);
 }
 
@@ -381,9 +381,13 @@ void ct_row_couple(struct ct_build *b, const struct ct_instance *self, int coord
         if (is_known(c) || !ct_coordinate_wrench(b, coupled[i], &w))
             continue;
         const ct_ex f = i ? ct_ex_neg(x, ratio) : CT_EX_ONE;
-        const struct ct_pull p
-            = {row, n.tail, n.head, ct_ex3_scale(x, f, w.force), ct_ex3_scale(x, f, w.torque),
-               true};
+        const struct ct_pull p = {row,
+                                  n.tail,
+                                  n.head,
+                                  b->edge[c->edge].index,
+                                  ct_ex3_scale(x, f, w.force),
+                                  ct_ex3_scale(x, f, w.torque),
+                                  true};
         CT_PUSH(b->arena, b->pull, b->npull, b->pull_cap, p);
     }
 }
@@ -448,13 +452,13 @@ static void translation_rows(struct ct_build *b, int edge)
 
 // ---- rotational rows of a joint ---------------------------------------------------------------------------
 
-// Angle of a node's axes about the normal of the plane.
-static ct_ex planar_angle(struct ct_build *b, int node)
+// Angle about the normal of the plane, of a vector of the plane given in the node's axes.
+static ct_ex planar_angle(struct ct_build *b, int node, ct_ex3 v)
 {
     struct ct_exs *x = b->x;
     const struct ct_place *p = &b->place[node];
     const struct ct_cluster *c = &b->cluster[p->frame];
-    const ct_ex3 e1 = b->plane[0], s = ct_ex33_apply(x, &p->S, e1);
+    const ct_ex3 e1 = b->plane[0], s = ct_ex33_apply(x, &p->S, v);
     const ct_ex sine = ct_ex3_dot(x, b->plane[2], ct_ex3_cross(x, e1, s));
     const ct_ex own = ct_ex_fun2(x, CT_OP_ATAN2, sine, ct_ex3_dot(x, e1, s));
     if (!c->has_angle)
@@ -472,7 +476,8 @@ static void planar_angle_row(struct ct_build *b, int edge)
     const struct ct_edge_info *e = &b->edge[edge];
     const struct pair n = ends(b, edge);
     const struct ct_wrench w = {zero3, b->plane[2]};
-    const ct_ex diff = ct_ex_sub(x, planar_angle(b, n.head), planar_angle(b, n.tail));
+    const ct_ex3 v = ct_ex33_apply_t(x, &b->upright[n.tail], b->plane[0]);
+    const ct_ex diff = ct_ex_sub(x, planar_angle(b, n.head, v), planar_angle(b, n.tail, v));
     // wrapped, as one whole turn is as good as none
     const ct_ex phi = ct_ex_fun2(x, CT_OP_ATAN2, ct_ex_fun(x, CT_OP_SIN, diff),
                                  ct_ex_fun(x, CT_OP_COS, diff));

@@ -13,6 +13,7 @@ struct ct_wrench {
 /// The wrench pair a multiplier stands for.
 struct ct_pull {
     int row, tail, head;
+    int joint; // that transmits it: of the row, of a gear the joints it couples
     ct_ex3 force, torque;
     bool carried;
 };

@@ -187,6 +187,8 @@ static bool joint_signal(struct ct_build *b, int joint, const struct signal *s,
         ct_ex3 force, torque;
         ct_reaction_derive(b, joint, &force, &torque);
         const int tail = b->wiring[b->edge_of_joint[joint]].tail;
+        const int i = index_of(s->component, axis_names, 3);
+        b->is_open = b->is_open || (i >= 0 && !ct_reaction_is_known(b, joint, is_force, i));
         return component_of(b, s, name, mark,
                             ct_node_unturn(b, tail, is_force ? force : torque), out);
     }
@@ -424,7 +426,8 @@ void ct_energies_derive(struct ct_build *b)
 
 static bool push_result(struct ct_build *b, const char *name, ct_ex value)
 {
-    const struct ct_result r = {.name = name, .value = value};
+    const struct ct_result r = {.name = name, .value = value, .undetermined = b->is_open};
+    b->is_open = false;
     CT_PUSH(b->arena, b->eqs->result, b->eqs->nresult, b->eqs->result_cap, r);
     return true;
 }

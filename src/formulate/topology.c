@@ -169,13 +169,14 @@ static void add_forces(struct ct_build *b)
 // ---- motions and coordinates --------------------------------------------------------------------
 
 // Body edge: place of the centre of mass in ground axes and orientation. In a planar mechanism two
-// lengths and an angle, of a particle the place alone.
+// lengths and an angle, beyond the rotation that lays the body into the plane; of a particle the place alone.
 static void body_motion(struct ct_build *b, const struct ct_edge_info *e, struct ct_motion *m)
 {
     struct ct_exs *x = b->x;
     if (b->is_planar) {
-        m->d = ct_ex3_add(x, ct_ex3_scale(x, m->coord[0], b->plane[0]),
-                          ct_ex3_scale(x, m->coord[1], b->plane[1]));
+        m->d = ct_ex3_add(x, ct_ex3_scale(x, b->layer[b->node_of_com[e->index]], b->plane[2]),
+                          ct_ex3_add(x, ct_ex3_scale(x, m->coord[0], b->plane[0]),
+                                     ct_ex3_scale(x, m->coord[1], b->plane[1])));
         ct_motion_measure_length(m, b->plane[0]);
         ct_motion_measure_length(m, b->plane[1]);
     } else {
@@ -191,6 +192,7 @@ static void body_motion(struct ct_build *b, const struct ct_edge_info *e, struct
     if (b->is_planar) {
         ct_motion_turn(m, b->plane[2], m->coord[2]);
         ct_motion_measure_angle(m, b->plane[2], b->plane[0]);
+        m->measure[2].w = ct_ex33_apply_t(x, &e->S, b->plane[0]);
     } else {
         m->quaternion = 3;
         m->measure[m->nmeasure++].kind = CT_MEASURE_QUATERNION;
@@ -303,6 +305,11 @@ static bool is_parallel(const double a[3], const double n[3])
     return d < parallel_tolerance;
 }
 
+static bool is_same(const double a[3], const double n[3])
+{
+    return is_parallel(a, n) && a[0] * n[0] + a[1] * n[1] + a[2] * n[2] > 0;
+}
+
 static bool is_across(const double a[3], const double n[3])
 {
     return fabs(a[0] * n[0] + a[1] * n[1] + a[2] * n[2]) < parallel_tolerance;
@@ -336,83 +343,148 @@ static bool joint_is_planar(struct ct_build *b, const struct ct_edge_info *e, co
     return true;
 }
 
-// n carried over an edge from its tail's axes to its head's.
-static void carry_normal(struct ct_build *b, const struct ct_edge_info *e, const double n[3],
-                         bool forward, double out[3])
+// Arms and joints with motion: they tell how their frames stand to each other.
+static bool holds_axes(const struct ct_edge_info *e)
 {
-    memcpy(out, n, 3 * sizeof *out);
-    if (e->kind != CT_EDGE_ARM)
-        return; // rotations about n leave it alone
-    double S[9];
-    for (int i = 0; i < 9; i++)
-        S[i] = ct_ex_value(b->x, e->S.e[i], b->value);
-    for (int i = 0; i < 3; i++) {
-        out[i] = 0;
-        for (int j = 0; j < 3; j++)
-            out[i] += (forward ? S[j + 3 * i] : S[i + 3 * j]) * n[j];
-    }
+    return e->kind != CT_EDGE_BODY && e->kind != CT_EDGE_FORCE && !e->never_branch;
 }
 
-// Does every joint keep to the plane with ground normal n? Every body must hang on joints.
-static bool try_normal(struct ct_build *b, const double n0[3])
+// Where joints stand still, the axes of every node are a constant rotation away from ground's; turns about the
+// normal change nothing in how they see it. Nodes that no joint holds stay at NULL.
+static ct_ex33 **upright_axes(struct ct_build *b)
 {
-    double(*n)[3] = ct_arena_calloc(b->arena, b->nnode, sizeof *n);
-    bool *known = CT_NEWN(b->arena, bool, b->nnode);
-    memcpy(n[0], n0, sizeof n[0]);
-    known[0] = true;
+    ct_ex33 **U = CT_NEWN(b->arena, ct_ex33 *, b->nnode);
+    for (size_t i = 0; i < b->nnode; i++)
+        if (i == 0 || b->node[i].is_particle) { // axes of particles stay those of ground
+            U[i] = CT_NEW(b->arena, ct_ex33);
+            *U[i] = ct_ex33_identity();
+        }
     for (bool grew = true; grew;) {
         grew = false;
         for (size_t i = 0; i < b->nedge; i++) {
             const struct ct_edge_info *e = &b->edge[i];
-            if (e->kind == CT_EDGE_BODY || e->kind == CT_EDGE_FORCE || e->never_branch)
-                continue;
             const int tail = b->wiring[i].tail, head = b->wiring[i].head;
-            if (known[tail] == known[head])
+            if (!holds_axes(e) || !e->has_rotation || !U[tail] == !U[head])
                 continue;
-            carry_normal(b, e, known[tail] ? n[tail] : n[head], known[tail],
-                         known[tail] ? n[head] : n[tail]);
+            const int from = U[tail] ? tail : head, to = U[tail] ? head : tail;
+            const ct_ex33 S = from == tail ? e->S : ct_ex33_transpose(&e->S);
+            U[to] = CT_NEW(b->arena, ct_ex33);
+            *U[to] = ct_ex33_mul(b->x, U[from], &S);
+            grew = true;
+        }
+    }
+    return U;
+}
+
+// How far an arm or a joint reaches out of the plane [m]; the coordinates of a joint keep to it.
+static ct_ex reach_out(struct ct_build *b, int edge, const ct_ex33 *U)
+{
+    const struct ct_edge_info *e = &b->edge[edge];
+    const ct_ex zero[CT_MAX_COORD] = {{0}};
+    ct_ex3 d = e->at;
+    for (int i = 0; i < 3 && e->kind != CT_EDGE_ARM; i++)
+        d.e[i]
+            = ct_ex_subst(b->x, e->trial.d.e[i], e->trial.coord, zero, (size_t)e->ncoordinate);
+    return ct_ex3_dot(b->x, ct_ex33_apply_t(b->x, U, b->plane[2]), d);
+}
+
+static const double layer_tolerance
+    = 1e-9; // of places out of the plane, against the longest arm
+
+static double longest_arm(const struct ct_build *b)
+{
+    double longest = 0, at[3];
+    for (size_t i = 0; i < b->nedge; i++) {
+        value3(b, b->edge[i].at, at);
+        longest = fmax(longest, sqrt(at[0] * at[0] + at[1] * at[1] + at[2] * at[2]));
+    }
+    return longest;
+}
+
+// Places of the nodes along the normal, where joints keep to the plane.
+static void find_layers(struct ct_build *b, ct_ex33 *const *U)
+{
+    bool *known = CT_NEWN(b->arena, bool, b->nnode);
+    b->layer = CT_NEWN(b->arena, ct_ex, b->nnode);
+    known[0] = true;
+    for (bool grew = true; grew;) {
+        grew = false;
+        for (size_t i = 0; i < b->nedge; i++) {
+            const int tail = b->wiring[i].tail, head = b->wiring[i].head;
+            if (!holds_axes(&b->edge[i]) || known[tail] == known[head])
+                continue;
+            const ct_ex up = reach_out(b, (int)i, U[tail]);
+            if (known[tail])
+                b->layer[head] = ct_ex_add(b->x, b->layer[tail], up);
+            else
+                b->layer[tail] = ct_ex_sub(b->x, b->layer[head], up);
             known[tail] = known[head] = grew = true;
         }
     }
-    for (size_t i = 0; i < b->nnode; i++)
-        if (!known[i])
+}
+
+// Does every joint keep to the plane, and do its loops close out of it? Every body must hang on joints.
+static bool is_plane(struct ct_build *b, ct_ex33 *const *U)
+{
+    double(*n)[3] = ct_arena_calloc(b->arena, b->nnode, sizeof *n);
+    const double allowed = layer_tolerance * longest_arm(b);
+    for (size_t i = 0; i < b->nnode; i++) {
+        if (!U[i])
             return false;
+        value3(b, ct_ex33_apply_t(b->x, U[i], b->plane[2]), n[i]);
+    }
+    find_layers(b, U);
     for (size_t i = 0; i < b->nedge; i++) {
         const struct ct_edge_info *e = &b->edge[i];
-        if (e->kind == CT_EDGE_BODY || e->kind == CT_EDGE_FORCE || e->never_branch)
+        const int tail = b->wiring[i].tail, head = b->wiring[i].head;
+        if (!holds_axes(e))
             continue;
-        double head[3];
-        carry_normal(b, e, n[b->wiring[i].tail], true, head);
-        if (e->has_rotation && !is_parallel(head, n[b->wiring[i].head]))
+        const ct_ex end = ct_ex_add(b->x, b->layer[tail], reach_out(b, (int)i, U[tail]));
+        if (fabs(ct_ex_value(b->x, end, b->value) - ct_ex_value(b->x, b->layer[head], b->value))
+            > allowed)
             return false;
-        if ((e->kind == CT_EDGE_JOINT) && !joint_is_planar(b, e, n[b->wiring[i].tail]))
+        if (e->kind != CT_EDGE_ARM && e->has_rotation && !is_same(n[tail], n[head]))
+            return false;
+        if (e->kind == CT_EDGE_JOINT && !joint_is_planar(b, e, n[tail]))
             return false;
     }
     return true;
 }
 
-// The normal can only be the axis of the first joint that turns, carried to ground; its `from` chain
-// may turn about that axis only, so the constant rotations of arms decide.
+// Nodes that see the normal as ground does need no rotation of their own.
+static void keep_uprights(struct ct_build *b, ct_ex33 **U)
+{
+    double g[3], n[3];
+    value3(b, b->plane[2], g);
+    b->upright = CT_NEWN(b->arena, ct_ex33, b->nnode);
+    for (size_t i = 0; i < b->nnode; i++) {
+        value3(b, ct_ex33_apply_t(b->x, U[i], b->plane[2]), n);
+        b->upright[i] = is_same(n, g) ? ct_ex33_identity() : *U[i];
+    }
+}
+
+// The normal can only be the axis of the first joint that turns, as ground sees it.
 static bool find_normal(struct ct_build *b, ct_ex3 *normal)
 {
+    ct_ex33 **U = upright_axes(b);
     for (size_t i = 0; i < b->nedge; i++) {
         const struct ct_edge_info *e = &b->edge[i];
         if (e->kind != CT_EDGE_JOINT || !e->has_rotation || !e->trial.nturn)
             continue;
-        // candidates: the axis in coordinates of `from`, taken through the arm that leads there
-        ct_ex3 axis = e->trial.turn[0].axis;
-        for (size_t k = 0; k < b->nedge; k++)
-            if (b->edge[k].kind == CT_EDGE_ARM && b->wiring[k].head == b->wiring[i].tail)
-                axis = ct_ex33_apply(b->x, &b->edge[k].S, axis);
+        if (!U[b->wiring[i].tail])
+            return false;
+        ct_ex3 axis = ct_ex33_apply(b->x, U[b->wiring[i].tail], e->trial.turn[0].axis);
         double n[3];
         value3(b, axis, n);
         // the sense does not matter; prefer the one along +z, +y, +x, so that coordinates read as usual
         const int most = fabs(n[2]) > 0.5 ? 2 : fabs(n[1]) > 0.5 ? 1 : 0;
-        for (int k = 0; k < 3 && n[most] < 0; k++)
-            axis.e[k] = ct_ex_neg(b->x, axis.e[k]);
-        value3(b, axis, n);
-        *normal = axis;
-        return try_normal(b, n);
+        if (n[most] < 0)
+            axis = ct_ex3_neg(b->x, axis);
+        b->plane[2] = *normal = axis;
+        if (!is_plane(b, U))
+            return false;
+        keep_uprights(b, U);
+        return true;
     }
     return false;
 }
@@ -429,10 +501,11 @@ static void detect_plane(struct ct_build *b, bool allowed)
     for (int i = 0; i < 3; i++)
         b->plane[i] = ct_ex3_const(b->x, axes + 3 * i);
     ct_ex3 n;
-    if (!allowed || !find_normal(b, &n))
+    if (!allowed || !find_normal(b, &n)) {
+        b->plane[2] = ct_ex3_const(b->x, axes + 6);
         return;
+    }
     b->is_planar = b->eqs->is_planar = true;
-    b->plane[2] = n;
     ct_axes_across(b->x, n, b->value, &b->plane[0], &b->plane[1]);
     double v[3];
     value3(b, n, v);
@@ -455,8 +528,11 @@ bool ct_topology_derive(struct ct_build *b, bool planar_allowed)
             add_coordinates(b, (int)e);
     detect_plane(b, planar_allowed);
     for (size_t e = 0; e < b->nedge; e++)
-        if (b->edge[e].kind == CT_EDGE_BODY)
+        if (b->edge[e].kind == CT_EDGE_BODY) {
+            if (b->is_planar && !b->node[b->wiring[e].head].is_particle)
+                b->edge[e].S = b->upright[b->wiring[e].head];
             add_coordinates(b, (int)e);
+        }
     b->graph = (struct ct_graph){(int)b->nnode, (int)b->nedge, b->wiring};
     return true;
 }

@@ -244,17 +244,12 @@ enum ct_eval ct_alpha_step(const struct ct_problem *p, double t, double h, const
     enum ct_eval e = begin(s, p, t, h, y, dy, tolerance, y1, dy1, stats);
     if (e == CT_EVAL_OK)
         e = iterate(s, t + h, h, y, stats);
-    if (e != CT_EVAL_OK)
-        return e;
-    if (tolerance && (*err = estimate(s, h)) > 1) { // the step will be refused
-        memcpy(y1, y, bytes);
-        return CT_EVAL_OK;
-    }
-    e = finish(s, p, t + h, h, y, dy, y1, dy1, stats);
+    if (e == CT_EVAL_OK)
+        e = finish(s, p, t + h, h, y, dy, y1, dy1, stats);
     if (e != CT_EVAL_OK)
         return e;
     if (tolerance)
-        *err = fmax(*err, estimate_quadratures(s, p, tolerance, h, y, dy, y1, dy1));
+        *err = fmax(estimate(s, h), estimate_quadratures(s, p, tolerance, h, y, dy, y1, dy1));
     s->end.h = h;
     s->dae->chart_rate(s->dae->user, s->d, s->u, s->rate1);
     memcpy(s->rate, y + s->dae->nq, (size_t)s->dae->nu * sizeof *y);

@@ -35,6 +35,12 @@ static const double event_steps = 50;
 static const int pile_events = 100;
 static const double pile_time = 1e-9;
 
+// Steps next to a singular position may err this much more: one digit and a half of one step, against
+// losing them all by coming nearer.
+static const double singular_error = 30;
+// Steps this much shorter than the way to the position do not get across any more.
+static const double crawl = 1e-4;
+
 // Corrections to the time of an event, each worth three digits or more.
 static const int most_corrections = 3;
 
@@ -48,18 +54,20 @@ struct run {
     struct ct_integrate_stats *stats;
     struct ct_tolerance tolerance;
     struct ct_watch watch;
-    double t;            // time of y and dy
-    double h;            // size the next step should have
-    double *y, *dy;      // (ny) each, as all that follow
-    double *y1, *dy1;    // end of the step as the method gives it
-    double *end, *dend;  // the same, projected
-    double *point;       // a state to spare
-    void *work;          // the method's own
-    double error_before; // of the last accepted step
-    bool was_refused;    // the step before this try was
-    size_t sample;       // the next one to give
-    double last_event;   // time of the last state event
-    int piled;           // state events in a row without time going on
+    double t;             // time of y and dy
+    double h;             // size the next step should have
+    double *y, *dy;       // (ny) each, as all that follow
+    double *y1, *dy1;     // end of the step as the method gives it
+    double *end, *dend;   // the same, projected
+    double *point;        // a state to spare
+    void *work;           // the method's own
+    double error_before;  // of the last accepted step
+    double error_allowed; // 1, more beside a singular position
+    double singular_in;   // time to it, from t
+    bool was_refused;     // the step before this try was
+    size_t sample;        // the next one to give
+    double last_event;    // time of the last state event
+    int piled;            // state events in a row without time going on
 };
 
 // A step as planned: to t1, which is t + h but for rounding.
@@ -253,6 +261,23 @@ static void adapt_after_refusal(struct run *r, double h, double error)
     r->was_refused = true;
 }
 
+// A singular position ahead: make the step so long that the position falls into the widest gap
+// between the stages, and the steps before it so that it starts a gap away: the nearer a step ends, the
+// more of f is rounding. What rounding is left shows as error that no shorter step would mend.
+static void leap_over_singular(struct run *r)
+{
+    const double longest = 1.3, steps = 3; // against the step the error allows
+    const double gap = r->method->gap;
+    const double ahead = r->p->singular_in ? r->p->singular_in(r->p->user) : INFINITY;
+    r->singular_in = ahead;
+    r->error_allowed = 1;
+    if (r->o->step > 0 || !(ahead <= (steps + gap) * r->h) || !(ahead > 0))
+        return;
+    const double rest = ahead - gap * r->h;
+    r->h = ahead <= longest * gap * r->h ? ahead / gap : rest / ceil(rest / r->h);
+    r->error_allowed = singular_error;
+}
+
 // --- one step --------------------------------------------------------------------------------
 
 static bool differs(const double *a, const double *b, int n)
@@ -293,7 +318,7 @@ static enum ct_eval attempt(struct run *r, struct stride *s)
     if (!ct_stepper_finite(r->y1, r->p->ny) || !isfinite(error))
         return CT_EVAL_RETRY;
     s->error = error;
-    return error > 1 ? CT_EVAL_RETRY : project_end(r, s->t1);
+    return error > r->error_allowed ? CT_EVAL_RETRY : project_end(r, s->t1);
 }
 
 // Make the method ready to interpolate, once.
@@ -389,6 +414,12 @@ static bool find_step(struct run *r, double stop, struct stride *s)
                             "at t = %.9g the step size became too small (%.3g) to go on", r->t,
                             s->h);
         const double h = s->h;
+        if (r->error_allowed > 1 && h < crawl * r->singular_in)
+            return ct_error(
+                r->ctx, nowhere, CT_E_STEP_SINGULAR,
+                "at t = %.9g the motion comes to a singular position (in %.3g s) and the "
+                "tolerance leaves no step across it: ask for less, or take dopri5",
+                r->t, r->singular_in);
         enum ct_eval e = attempt(r, s);
         const double error = s->error;
         if (e == CT_EVAL_OK)
@@ -397,6 +428,7 @@ static bool find_step(struct run *r, double stop, struct stride *s)
             return false;
         if (e == CT_EVAL_OK) {
             adapt_after_success(r, h, error);
+            leap_over_singular(r);
             return true;
         }
         if (r->o->step > 0)
@@ -543,6 +575,7 @@ bool ct_integrate(struct ct_ctx *ctx, const struct ct_method *method,
         .tolerance = {options->rtol, options->atol},
         .t = options->t0,
         .error_before = remembered_error,
+        .error_allowed = 1,
         .last_event = -INFINITY,
     };
     allocate(&r);

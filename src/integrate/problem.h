@@ -65,6 +65,11 @@ struct ct_problem {
     /// function. May be NULL. Before it answers CT_EVAL_RETRY it must have changed nothing.
     enum ct_eval (*accepted)(void *user, double t, double *y);
 
+    /// Time from the last accepted state to the next singular position as far as it can be foreseen,
+    /// else INFINITY. There f has a limit that cannot be computed: steps are placed so that it falls
+    /// where the method does not evaluate. May be NULL.
+    double (*singular_in)(void *user);
+
     /// Root functions on the state, g (nroot, out); a sign change within a step is an event. g is
     /// continuous within the step.
     int nroot;
@@ -115,6 +120,7 @@ struct ct_method {
     int error_order; // the error of a step behaves as h^(error_order + 1), for step control
     /// Needs problem.dae, and meets the constraints by itself: the driver does not project its steps.
     bool is_implicit;
+    double gap; // middle of the widest gap between the abscissae of its stages
     /// Rules of step control; 0: the usual ones. A next step that differs from the last by a factor between
     /// steady[0] and steady[1] is not made: it would cost a factorisation.
     double most_growth, steady[2];

@@ -106,6 +106,11 @@ static bool factor(struct ct_embed *s)
     return isfinite(s->kappa);
 }
 
+double ct_embed_pivot(struct ct_embed *s)
+{
+    return factor(s) ? s->sigma : 0;
+}
+
 static bool massless(struct ct_embed *s)
 {
     // the free direction with the least inertia: report the coordinate with the smallest diagonal entry
@@ -240,20 +245,27 @@ void ct_embed_kept_multipliers(struct ct_embed *s, double *lam)
         ct_lu_solve(lam, s->Jd, s->pivot, r, r, 1, r, true);
 }
 
+void ct_embed_null_vector(struct ct_embed *s, int row, double *z)
+{
+    // the least-squares solution of J' x = J' e_row is e_row without its part in null(J')
+    const int n = (int)s->m->nu, m = (int)s->m->nrow, ld = n > m ? n : m;
+    for (int i = 0; i < m; i++)
+        for (int j = 0; j < n; j++)
+            s->A[j + n * i] = *J_at(s, i, j);
+    memset(s->d, 0, (size_t)ld * sizeof *s->d);
+    for (int j = 0; j < n; j++)
+        s->d[j] = *J_at(s, row, j);
+    ct_lstsq(s->d, s->A, n, m, n, rank_tolerance, s->iwork, s->work);
+    for (int i = 0; i < m; i++)
+        z[i] = (i == row) - s->d[i];
+}
+
 void ct_embed_uniqueness(struct ct_embed *s)
 {
-    // row k is unique iff e_k lies in the row space of J': the least-squares solution of J' z = J' e_k is e_k
-    const int n = (int)s->m->nu, m = (int)s->m->nrow, ld = n > m ? n : m;
-    const double unique_tolerance = 1e-6; // |z - e_k| is 0 or of order one
-    for (int k = 0; k < m; k++) {
-        for (int i = 0; i < m; i++)
-            for (int j = 0; j < n; j++)
-                s->A[j + n * i] = *J_at(s, i, j);
-        memset(s->d, 0, (size_t)ld * sizeof *s->d);
-        for (int j = 0; j < n; j++)
-            s->d[j] = *J_at(s, k, j);
-        ct_lstsq(s->d, s->A, n, m, n, rank_tolerance, s->iwork, s->work);
-        s->is_unique[k] = fabs(s->d[k] - 1) < unique_tolerance;
+    const double unique_tolerance = 1e-6; // the entry is 0 to rounding or of order one
+    for (int k = 0; k < (int)s->m->nrow; k++) {
+        ct_embed_null_vector(s, k, s->r);
+        s->is_unique[k] = fabs(s->r[k]) < unique_tolerance;
     }
 }
 
@@ -352,7 +364,10 @@ enum ct_eval ct_embed_project(struct ct_embed *s, double t, double *y)
         ct_machine_constraint(m);
         const double size = largest(m->phi, m->nrow);
         // rounding keeps larger mechanisms from the tolerance: stop when nothing is gained any more
-        if (size <= position_tolerance || (size < 1e-10 && size > before / 4))
+        // what is left is divided by the smallest pivot: beside a singular position go on to the end
+        const double wanted
+            = s->sigma < 0.1 ? position_tolerance * s->sigma : position_tolerance;
+        if (size <= wanted || (size < 1e-10 && size > before / 4))
             break;
         if (i == MOST_NEWTON || !isfinite(size) || size > 1e3 * before)
             return CT_EVAL_RETRY;

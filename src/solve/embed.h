@@ -44,8 +44,13 @@ void ct_embed_kept_multipliers(struct ct_embed *s, double *lam);
 void ct_embed_renew(struct ct_embed *s);
 /// Move q, u in y onto the constraints, independent coordinates held where J_d allows.  (6.6)
 enum ct_eval ct_embed_project(struct ct_embed *s, double t, double *y);
-/// Which multipliers are unique: rows of null(J') that vanish.  (6.5)
+/// The smallest pivot of J_d against its largest at the last ct_machine_constraint.
+double ct_embed_pivot(struct ct_embed *s);
+/// Which multipliers are unique, into s->is_unique: rows of null(J') that vanish.  (6.5)
 void ct_embed_uniqueness(struct ct_embed *s);
+/// z (nrow, out) = the unit vector of `row` less its part in the range of J: a vector of null(J'), so that
+/// lam + z holds as well as lam. Zero (to rounding) where the multiplier is unique.
+void ct_embed_null_vector(struct ct_embed *s, int row, double *z);
 /// Speeds after a jump: M (u+ - u-) = p + J' Lam, J u+ + Phi_t = 0.  (8.5)
 enum ct_eval ct_embed_impulse(struct ct_embed *s, const double *p, double *u);
 

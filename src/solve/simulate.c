@@ -24,6 +24,7 @@ struct ct_run {
     const struct ct_run_options *o;
     struct ct_run_report *report;
     double energy0, energy_scale;
+    double pivot_last, pivot_time, singular_in; // see foresee_singular
     bool started;
 };
 
@@ -84,6 +85,27 @@ static enum ct_eval project(void *user, double t, double *y)
     return ct_embed_project(r->s, t, y);
 }
 
+// The smallest pivot of J_d falls about linearly towards a singular position: where it will vanish
+// is foreseen from two accepted states.
+static void foresee_singular(struct ct_run *r, double t)
+{
+    const double before = r->pivot_last, dt = t - r->pivot_time;
+    r->singular_in = INFINITY;
+    r->pivot_last = INFINITY;
+    if (!r->s->rank || r->s->sigma > 2 * singular_pivot)
+        return;
+    ct_machine_constraint(r->m);
+    r->pivot_last = ct_embed_pivot(r->s);
+    r->pivot_time = t;
+    if (isfinite(before) && before > r->pivot_last && dt > 0)
+        r->singular_in = dt * r->pivot_last / (before - r->pivot_last);
+}
+
+static double singular_in(void *user)
+{
+    return ((const struct ct_run *)user)->singular_in;
+}
+
 static enum ct_eval accepted(void *user, double t, double *y)
 {
     struct ct_run *r = user;
@@ -93,6 +115,7 @@ static enum ct_eval accepted(void *user, double t, double *y)
         ct_machine_constraint(r->m);
         ct_embed_renew(r->s);
     }
+    foresee_singular(r, t);
     return CT_EVAL_OK;
 }
 
@@ -336,21 +359,40 @@ static bool at_step(void *user, double t, const double *y)
     return !r->o->progress || r->o->progress(r->o->user, t, r->o->duration);
 }
 
-// Names of the rows whose multipliers are not unique.
-static void name_undetermined(struct ct_run *r, struct ct_run_report *report)
+// Results along one vector z of null(J'): those that change depend on the choice of multipliers.
+static void compare_results(struct ct_run *r, const double *z, double *value, bool *result)
 {
-    if (r->s->rank == (int)r->m->nrow)
+    const double change_tolerance = 1e-9; // of a result against its size; z is of order one
+    double *lam = r->m->input + r->m->at_lam, largest_lam = 1;
+    for (size_t i = 0; i < r->m->nrow; i++)
+        largest_lam = fmax(largest_lam, fabs(lam[i]));
+    ct_program_run(&r->m->result, r->m->input);
+    memcpy(value, r->m->result.out, r->e->nresult * sizeof *value);
+    for (size_t i = 0; i < r->m->nrow; i++)
+        lam[i] += largest_lam * z[i];
+    ct_program_run(&r->m->result, r->m->input);
+    for (size_t i = 0; i < r->e->nresult; i++)
+        result[i] |= fabs(r->m->result.out[i] - value[i])
+                   > change_tolerance * fmax(largest_lam, fabs(value[i]));
+    for (size_t i = 0; i < r->m->nrow; i++)
+        lam[i] = r->s->lam[i];
+}
+
+void ct_run_find_open(struct ct_run *r, double t, const double *y, bool *row, bool *result)
+{
+    if (r->s->rank == (int)r->m->nrow || accelerate(r, t, y) != CT_EVAL_OK)
         return;
-    ct_machine_set(r->m, 0, r->y);
+    multipliers(r);
     ct_machine_constraint(r->m);
     ct_embed_uniqueness(r->s);
-    const char **name = CT_NEWN(r->arena, const char *, r->m->nrow);
-    size_t n = 0;
-    for (size_t i = 0; i < r->m->nrow; i++)
-        if (!r->s->is_unique[i])
-            name[n++] = r->e->row[i].name;
-    report->undetermined = name;
-    report->nundetermined = n;
+    double *z = CT_NEWN(r->arena, double, r->m->nrow);
+    for (size_t i = 0; i < r->m->nrow; i++) {
+        if (r->s->is_unique[i])
+            continue;
+        row[i] = true;
+        ct_embed_null_vector(r->s, (int)i, z);
+        compare_results(r, z, r->value, result);
+    }
 }
 
 bool ct_run_simulate(struct ct_run *r, const struct ct_run_options *o,
@@ -372,11 +414,11 @@ bool ct_run_simulate(struct ct_run *r, const struct ct_run_options *o,
         watched[i] = i + 1 < r->ny || r->has_power; // the work is as good as the states
     *report = (struct ct_run_report){0};
     report->final = CT_NEWN(r->arena, double, r->e->nresult + 1);
+    r->pivot_last = r->singular_in = INFINITY;
     r->o = o;
     r->report = report;
     r->nevent = ct_time_events(r->arena, r->m, 0, o->duration, &r->event);
     ct_modes_start(r->m, 0, r->y, r->dy);
-    name_undetermined(r, report);
     const struct ct_problem p
         = {.user = r,
            .ny = (int)r->ny,
@@ -385,6 +427,7 @@ bool ct_run_simulate(struct ct_run *r, const struct ct_run_options *o,
            .rhs = rhs,
            .project = project,
            .accepted = accepted,
+           .singular_in = singular_in,
            .nroot = r->nroot,
            .root = root,
            .next_time_event = next_time_event,
@@ -400,6 +443,8 @@ bool ct_run_simulate(struct ct_run *r, const struct ct_run_options *o,
     const bool ok = ct_integrate(r->ctx, o->method, &p, &io, r->y, &report->stats);
     report->rank = r->s->rank;
     report->switches = r->s->switches;
+    report->factorizations = r->s->factorizations + report->stats.factorizations;
+    report->y = r->y;
     if (r->energy_scale > 0)
         report->energy_drift /= r->energy_scale;
     return ok;

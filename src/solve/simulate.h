@@ -23,9 +23,9 @@ struct ct_run_report {
     double position_constraint, velocity_constraint; // largest residuals at samples
     int rank;
     long switches;
+    long factorizations;
     double *final; // last row
-    const char *const *undetermined;
-    size_t nundetermined;
+    double *y;     // last state: q, u, work
 };
 
 /// Machine, embedding and state at t = 0, assembled; choices made and modes set. NULL with a diagnostic on failure.
@@ -38,6 +38,10 @@ struct ct_embed *ct_run_embed(struct ct_run *r);
 const double *ct_run_state(const struct ct_run *r);
 /// Accelerations, multipliers and results at t, y; out has nresult entries.
 enum ct_eval ct_run_results(struct ct_run *r, double t, const double *y, double *out);
+
+/// What redundant constraints leave open at t, y: row[i] becomes true if the multiplier of row i is not unique,
+/// result[i] if the result changes with such multipliers. What is true already stays.
+void ct_run_find_open(struct ct_run *r, double t, const double *y, bool *row, bool *result);
 
 /// Integrate over the duration.
 bool ct_run_simulate(struct ct_run *r, const struct ct_run_options *o,

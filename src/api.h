@@ -1,0 +1,60 @@
+// What the public entry points share: systems and runs from inside, the guard, diagnostics.
+//
+// What always holds: a system and a run own a context each, so that their memory is theirs alone; what
+// it says is handed over to the caller's context, as copies, before an entry point returns.
+#ifndef CT_API_H
+#define CT_API_H
+
+#include "formulate/formulate.h"
+#include "report/csv.h"
+#include "solve/simulate.h"
+
+#include <cotree/cotree.h>
+
+/// A model and its equations; constant once loaded. Everything lives in own.model.
+struct ct_system {
+    struct ct_ctx own;
+    struct ct_model model;
+    struct ct_equations equations;
+    struct ct_tree_report tree;
+    struct ct_equations start_equations; // on trees through joints, for assembling
+    double read, generate;               // seconds
+};
+
+/// What multipliers leave open, at the start and at the end of a run.
+struct ct_open {
+    bool *row;    // of the equations: its multiplier is not unique
+    bool *result; // depends on such a one
+};
+
+struct ct_sim {
+    struct ct_ctx own;
+    struct ct_system *system;
+    const char *method_why;
+    double tolerance; // wanted of outputs
+    struct ct_run_options run_options;
+    struct ct_start start;
+    struct ct_run *run;
+    struct ct_run_report report;
+    struct ct_open open;
+    const struct ct_sim_results *results;
+    struct ct_result_file *file; // sim.c
+    struct ct_progress *progress;
+    bool has_run, is_done;
+    double time;                      // of the last sample
+    double compile, integrate, write; // seconds
+};
+
+/// Run work(task) with a guard: without memory false, and E001 in ctx.
+bool ct_enter(struct ct_ctx *ctx, bool (*work)(void *task), void *task);
+/// Two arenas for a context that a system or a run owns. Raises the guard.
+void ct_own_init(struct ct_ctx *own);
+void ct_own_finish(struct ct_ctx *own);
+/// A new stage starts: nothing in the scratch arena is needed any more.
+void ct_own_next_stage(struct ct_ctx *own);
+/// Diagnostics of `from` go to `to`, as copies.
+void ct_ctx_hand_over(struct ct_ctx *to, struct ct_ctx *from);
+/// Monotonic time [s].
+double ct_clock(void);
+
+#endif

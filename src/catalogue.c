@@ -1,0 +1,49 @@
+// Lists of what there is: component types and methods.
+#include "api.h"
+
+static const char *const family_names[] = {"bodies", "joints", "forces"};
+
+static void print_keys(FILE *out, const struct ct_key *key, int n)
+{
+    for (int i = 0; i < n; i++) {
+        fprintf(out, "    %-12s %s", key[i].name, key[i].doc);
+        if (key[i].unit && *key[i].unit)
+            fprintf(out, " [%s]", key[i].unit);
+        if (key[i].flags & CT_KEY_REQUIRED)
+            fputs("; must be given", out);
+        fputc('\n', out);
+    }
+}
+
+static void print_class(FILE *out, const struct ct_component_class *c)
+{
+    fprintf(out, "\n  %s: %s\n", c->name, c->summary);
+    if (c->ncoord > 0)
+        fprintf(out, "    coordinates  %d, speeds %d\n", c->ncoord, c->nfree);
+    fprintf(out, "    across       %s\n    through      %s\n", c->across, c->through);
+    print_keys(out, c->key, c->nkey);
+}
+
+void ct_components_print(FILE *out)
+{
+    for (int f = 0; f < (int)COUNT(family_names); f++) {
+        int nfamily;
+        const struct ct_key *keys = ct_family_keys((enum ct_family)f, &nfamily);
+        fprintf(out, "%s%s\n", f ? "\n" : "", family_names[f]);
+        if (nfamily) {
+            fputs("\n  keys of every type\n", out);
+            print_keys(out, keys, nfamily);
+        }
+        for (int i = 0; i < ct_ncomponent_class; i++)
+            if ((int)ct_component_classes[i]->family == f)
+                print_class(out, ct_component_classes[i]);
+    }
+}
+
+void ct_methods_print(FILE *out)
+{
+    fputs("auto         dopri5 or dop853, by the tolerance\n", out);
+    for (int i = 0; i < ct_nmethod; i++)
+        fprintf(out, "%-24s %s (order %d, %s)\n", ct_methods[i]->name, ct_methods[i]->summary,
+                ct_methods[i]->order, ct_methods[i]->is_implicit ? "implicit" : "explicit");
+}

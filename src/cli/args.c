@@ -1,0 +1,335 @@
+// Commands and options as tables; parsing and help. See cli.h.
+#include "cli/cli.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+
+const struct cli_command *const cli_commands[]
+    = {&cli_simulate, &cli_check, &cli_graph, &cli_components, &cli_methods, &cli_schema, NULL};
+
+// ---- options --------------------------------------------------------------------------------------------
+
+enum kind { FLAG, TEXT, LIST, NUMBER, INTEGER };
+
+static const struct option {
+    const char *name;
+    char letter;       // 0: none
+    const char *value; // name of the value in the help
+    enum kind kind;
+    size_t field;
+    unsigned use;     // commands it means something to
+    bool is_common;   // accepted, without effect, by all commands that take a model
+    const char *help; // lines are broken by hand
+} options[] = {
+#define FIELD(f) offsetof(struct cli_args, f)
+    {"output", 'o', "FILE", TEXT, FIELD(output), CLI_MODELS | CLI_LISTS, true,
+     "where results go; the suffix says the type"},
+    {"set", 0, "NAME=VALUE", LIST, FIELD(set), CLI_MODELS, true,
+     "another value for a parameter; may be repeated"},
+    {"tree", 0, "CHOICE", TEXT, FIELD(tree), CLI_MODELS, true,
+     "auto, joints, absolute, or a YAML FILE with the keys\n"
+     "translation and rotation: lists of branches"},
+    {"keep-all", 0, NULL, FLAG, FIELD(keep_all), CLI_MODELS, true,
+     "leave nothing out: keep the spatial rows of planar models"},
+    {"tolerance", 0, "T", NUMBER, FIELD(tolerance), CLI_SIMULATE, true,
+     "wanted relative accuracy of the outputs"},
+    {"method", 0, "NAME", TEXT, FIELD(method), CLI_SIMULATE, true,
+     "auto, or a name that 'cotree methods' lists"},
+    {"step", 0, "H", NUMBER, FIELD(step), CLI_SIMULATE, true,
+     "fixed step in seconds, without step control"},
+    {"until", 0, "T", NUMBER, FIELD(until), CLI_SIMULATE, true,
+     "end time in seconds; the spacing of samples is kept"},
+    {"samples", 0, "N", INTEGER, FIELD(samples), CLI_SIMULATE, true,
+     "number of samples, both ends included"},
+    {"backend", 0, "CHOICE", TEXT, FIELD(backend), CLI_SIMULATE, true,
+     "tape: what evaluates the equations"},
+    {"summary", 0, "FILE.json", TEXT, FIELD(summary), CLI_SIMULATE | CLI_CHECK, true,
+     "what the run did, for programs"},
+    {"show", 0, "STAGES", TEXT, FIELD(show), CLI_EQUATIONS, false,
+     "terminal,graph,tree,cutset,circuit,reduced;\n"
+     "standard is tree,reduced"},
+    {"format", 0, "FORMAT", TEXT, FIELD(format), CLI_EQUATIONS, false,
+     "text, latex, html, c or json"},
+    {"format", 0, "FORMAT", TEXT, FIELD(format), CLI_GRAPH, false, "text, svg, dot or json"},
+    {"quiet", 'q', NULL, FLAG, FIELD(quiet), CLI_MODELS, true,
+     "no summary and no progress bar"},
+    {"help", 'h', NULL, FLAG, FIELD(help), CLI_MODELS | CLI_LISTS, true, "this text"},
+    {"version", 0, NULL, FLAG, FIELD(version), 0, true, "the version of the program"},
+#undef FIELD
+};
+
+static bool is_accepted(const struct option *o, const struct cli_command *c)
+{
+    return !c || o->use & c->use || (o->is_common && (c->takes_model || o->kind == FLAG));
+}
+
+// ---- messages ---------------------------------------------------------------------------------------------
+
+int cli_complain(const struct cli_command *command, const char *fmt, ...)
+{
+    va_list ap;
+    va_start(ap, fmt);
+    fputs("cotree: error: ", stderr);
+    vfprintf(stderr, fmt, ap);
+    fprintf(stderr, "\ntry: cotree %s%s--help\n", command ? command->name : "",
+            command ? " " : "");
+    va_end(ap);
+    return CLI_USAGE;
+}
+
+static bool wrong(const struct cli_command *command, const char *what, const char *name,
+                  const char *near)
+{
+    cli_complain(command, "%s '%s'%s%s%s", what, name, near ? ", did you mean '" : "",
+                 near ? near : "", near ? "'?" : "");
+    return false;
+}
+
+// ---- values -------------------------------------------------------------------------------------------------
+
+static bool parse_number(const char *text, double *v)
+{
+    char *end;
+    *v = strtod(text, &end);
+    return end != text && !*end && isfinite(*v) && *v > 0;
+}
+
+static bool parse_integer(const char *text, long *v)
+{
+    const long least = 2, most = 1000000000; // both ends; what the model file allows
+    char *end;
+    errno = 0;
+    *v = strtol(text, &end, 10);
+    return end != text && !*end && !errno && *v >= least && *v <= most;
+}
+
+static bool store(const struct cli_command *c, const struct option *o, const char *value,
+                  struct cli_args *args)
+{
+    void *field = (char *)args + o->field;
+    switch (o->kind) {
+    case FLAG:
+        *(bool *)field = true;
+        return true;
+    case TEXT:
+        *(const char **)field = value;
+        return *value || (cli_complain(c, "--%s is empty", o->name), false);
+    case LIST:
+        args->set[args->nset++] = value;
+        return true;
+    case NUMBER:
+        return parse_number(value, field)
+            || (cli_complain(c, "--%s is '%s'; a number greater than 0 is wanted", o->name,
+                             value),
+                false);
+    default:
+        return parse_integer(value, field)
+            || (cli_complain(c, "--%s is '%s'; an integer from 2 to 1000000000 is wanted",
+                             o->name, value),
+                false);
+    }
+}
+
+// ---- parsing --------------------------------------------------------------------------------------------------
+
+struct parser {
+    int argc, at;
+    char **argv;
+    const struct cli_command *command;
+    struct cli_args *args;
+};
+
+static bool unknown_option(const struct parser *p, const char *name)
+{
+    const char *names[CLI_COUNT(options)];
+    char text[64];
+    size_t n = 0;
+    for (size_t i = 0; i < CLI_COUNT(options); i++)
+        if (is_accepted(&options[i], p->command))
+            names[n++] = options[i].name;
+    const char *near = ct_did_you_mean(name + strspn(name, "-"), names, n);
+    if (near)
+        snprintf(text, sizeof text, "--%s", near);
+    return wrong(p->command, p->command ? "no such option:" : "no such option:", name,
+                 near ? text : NULL);
+}
+
+static bool give(struct parser *p, const struct option *o, const char *value)
+{
+    if (o->kind == FLAG) {
+        if (value)
+            return cli_complain(p->command, "--%s takes no value", o->name), false;
+    } else if (!value) {
+        if (p->at + 1 >= p->argc)
+            return cli_complain(p->command, "--%s needs a value: %s", o->name, o->value), false;
+        value = p->argv[++p->at];
+    }
+    return store(p->command, o, value, p->args);
+}
+
+// --name, --name=value
+static bool parse_long(struct parser *p, const char *text)
+{
+    const size_t n = strcspn(text, "=");
+    for (size_t i = 0; i < CLI_COUNT(options); i++) {
+        const struct option *o = &options[i];
+        if (strlen(o->name) == n && strncmp(text, o->name, n) == 0
+            && is_accepted(o, p->command))
+            return give(p, o, text[n] ? text + n + 1 : NULL);
+    }
+    char name[64];
+    snprintf(name, sizeof name, "--%.*s", (int)n, text);
+    return unknown_option(p, name);
+}
+
+// -o FILE, -oFILE
+static bool parse_short(struct parser *p, const char *text)
+{
+    for (size_t i = 0; i < CLI_COUNT(options); i++) {
+        const struct option *o = &options[i];
+        if (o->letter && o->letter == text[1] && is_accepted(o, p->command)
+            && (!text[2] || o->kind != FLAG))
+            return give(p, o, text[2] ? text + 2 : NULL);
+    }
+    return unknown_option(p, text);
+}
+
+static bool parse_command(struct parser *p, const char *name)
+{
+    const char *names[16];
+    size_t n = 0;
+    for (const struct cli_command *const *c = cli_commands; *c; c++) {
+        if (strcmp((*c)->name, name) == 0) {
+            p->command = *c;
+            return true;
+        }
+        names[n++] = (*c)->name;
+    }
+    return wrong(NULL, "no such command:", name, ct_did_you_mean(name, names, n));
+}
+
+static bool parse_plain(struct parser *p, const char *text)
+{
+    if (!p->command)
+        return parse_command(p, text);
+    if (!p->command->takes_model)
+        return cli_complain(p->command, "'%s' takes no model: '%s'", p->command->name, text),
+               false;
+    if (p->args->model)
+        return cli_complain(p->command, "one model is enough: '%s' and '%s'", p->args->model,
+                            text),
+               false;
+    p->args->model = text;
+    return true;
+}
+
+static bool parse_all(struct parser *p)
+{
+    bool options_end = false;
+    for (p->at = 1; p->at < p->argc; p->at++) {
+        const char *text = p->argv[p->at];
+        bool ok;
+        if (options_end || text[0] != '-' || !text[1])
+            ok = parse_plain(p, text);
+        else if (strcmp(text, "--") == 0)
+            ok = options_end = true;
+        else
+            ok = text[1] == '-' ? parse_long(p, text + 2) : parse_short(p, text);
+        if (!ok)
+            return false;
+    }
+    return true;
+}
+
+static bool check_backend(const struct parser *p)
+{
+    const char *backend = p->args->backend;
+    if (!backend || strcmp(backend, "tape") == 0)
+        return true;
+    if (strcmp(backend, "native") == 0)
+        return cli_complain(p->command,
+                            "--backend native is not available in this build; there is tape"),
+               false;
+    return cli_complain(p->command, "--backend is '%s'; there is tape", backend), false;
+}
+
+bool cli_parse(int argc, char **argv, const struct cli_command **command, struct cli_args *args)
+{
+    *args = (struct cli_args){.set = calloc((size_t)argc + 1, sizeof *args->set)};
+    struct parser p = {.argc = argc, .argv = argv, .args = args};
+    bool ok = args->set || (fputs("cotree: error: out of memory\n", stderr), false);
+    ok = ok && parse_all(&p);
+    *command = p.command;
+    if (!ok || args->help || args->version)
+        return ok;
+    if (!p.command)
+        return cli_complain(NULL, "a command is wanted"), false;
+    if (p.command->takes_model && !args->model)
+        return cli_complain(p.command, "'%s' needs a model: cotree %s MODEL.yaml",
+                            p.command->name, p.command->name),
+               false;
+    return check_backend(&p);
+}
+
+void cli_args_finish(struct cli_args *args)
+{
+    free(args->set);
+}
+
+// ---- help -----------------------------------------------------------------------------------------------------
+
+static void print_option(FILE *out, const struct option *o)
+{
+    char left[40];
+    const bool is_output = strcmp(o->name, "output") == 0; // known by its letter
+    if (is_output)
+        snprintf(left, sizeof left, "-%c, --%s %s", o->letter, o->name, o->value);
+    else
+        snprintf(left, sizeof left, "%s--%s%s%s",
+                 o->letter ? (char[]){'-', o->letter, ',', ' ', 0} : "", o->name,
+                 o->value ? " " : "", o->value ? o->value : "");
+    const char *line = o->help;
+    for (const char *title = left;; title = "") {
+        const int n = (int)strcspn(line, "\n");
+        fprintf(out, "  %-22s %.*s\n", title, n, line);
+        if (!line[n])
+            return;
+        line += n + 1;
+    }
+}
+
+static void print_program_help(FILE *out)
+{
+    fputs("usage: cotree COMMAND MODEL.yaml [options]\n\n"
+          "Equations of motion of a mechanism from its linear graph, and its motion.\n\n",
+          out);
+    for (const struct cli_command *const *c = cli_commands; *c; c++)
+        fprintf(out, "  %-11s %s\n", (*c)->name, (*c)->summary);
+    fputs("\n  cotree COMMAND --help   the options of a command\n"
+          "  cotree --version        the version of the program\n\n"
+          "Results go to standard output or to -o FILE, messages to standard error.\n"
+          "Exit status: 0 done, 1 the model or the run failed, 2 the command line is wrong.\n\n"
+          "try:\n"
+          "  cotree equations pendulum.yaml\n"
+          "  cotree simulate pendulum.yaml -o pendulum.csv\n",
+          out);
+}
+
+void cli_print_help(FILE *out, const struct cli_command *command)
+{
+    if (!command) {
+        print_program_help(out);
+        return;
+    }
+    fprintf(out, "usage: cotree %s%s [options]\n\n%s\n%s\n", command->name,
+            command->takes_model ? " MODEL.yaml" : "", command->summary, command->more);
+    for (size_t i = 0; i < CLI_COUNT(options); i++)
+        if (options[i].use & command->use)
+            print_option(out, &options[i]);
+    fputs("\ntry:\n", out);
+    for (size_t i = 0; i < CLI_COUNT(command->examples); i++)
+        fprintf(out, "  %s\n", command->examples[i]);
+}

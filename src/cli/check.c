@@ -1,0 +1,39 @@
+// cotree check: reads and assembles a model and says what it is.
+#include "cli/cli.h"
+
+static bool check(struct ct_ctx *ctx, struct ct_sim *sim, const struct cli_args *args)
+{
+    struct cli_output o;
+    if (!sim || !cli_output_open(&o, args->output))
+        return false;
+    ct_sim_print_check(sim, o.stream);
+    bool ok = cli_output_close(&o, true) == CLI_DONE;
+    if (ok && args->summary)
+        ok = ct_sim_write_summary(ctx, sim, args->summary);
+    return ok;
+}
+
+static int run(struct ct_ctx *ctx, const struct cli_args *args)
+{
+    struct ct_system *sys = cli_load(ctx, args);
+    struct ct_sim *sim = cli_sim(ctx, sys, args);
+    const bool ok = check(ctx, sim, args);
+    ct_sim_destroy(sim);
+    ct_system_destroy(sys);
+    return ok ? CLI_DONE : CLI_FAILED;
+}
+
+const struct cli_command cli_check = {
+    .name = "check",
+    .summary = "reads and assembles the model: freedoms, redundancy, trees, costs",
+    .use = CLI_CHECK,
+    .takes_model = true,
+    .more = "\n"
+            "Freedoms are the speeds of the chosen trees less the rank of the constraints. "
+            "Constraints\n"
+            "beyond the rank are redundant; they are named, and so is what they leave "
+            "undetermined.\n",
+    .examples
+    = {"cotree check four_bar.yaml", "cotree check four_bar.yaml --keep-all --tree joints"},
+    .run = run,
+};

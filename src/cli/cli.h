@@ -1,0 +1,84 @@
+// The command line: one table of commands, one of options; parsing and help come from them alone.
+//
+//     cotree COMMAND MODEL.yaml [options]
+//
+// What always holds: a command is one file and a place to stop in the pipeline; it uses the public API
+// only. Results go to standard output or to a file that appears when it is complete, messages to standard
+// error. Exit status: 0 done, 1 the model or the run failed, 2 the command line is wrong.
+#ifndef CT_CLI_CLI_H
+#define CT_CLI_CLI_H
+
+#include <cotree/cotree.h>
+
+enum { CLI_DONE = 0, CLI_FAILED = 1, CLI_USAGE = 2 };
+
+#define CLI_COUNT(a) (sizeof(a) / sizeof((a)[0]))
+
+/// What the command line says; zero where it says nothing.
+struct cli_args {
+    const char *model;
+    const char *output, *summary, *format, *show, *tree, *method, *backend;
+    const char **set;
+    size_t nset;
+    double tolerance, step, until;
+    long samples;
+    bool keep_all, quiet, help, version;
+};
+
+/// One bit for each command, for the table of options.
+enum cli_use {
+    CLI_SIMULATE = 1,
+    CLI_EQUATIONS = 2,
+    CLI_GRAPH = 4,
+    CLI_CHECK = 8,
+    CLI_COMPONENTS = 16,
+    CLI_METHODS = 32,
+    CLI_SCHEMA = 64,
+    CLI_LISTS = CLI_COMPONENTS | CLI_METHODS | CLI_SCHEMA,
+    CLI_MODELS = CLI_SIMULATE | CLI_EQUATIONS | CLI_GRAPH | CLI_CHECK
+};
+
+struct cli_command {
+    const char *name, *summary; // one line
+    enum cli_use use;
+    bool takes_model;
+    const char *more;        // paragraph for its own help
+    const char *examples[2]; // to try
+    int (*run)(struct ct_ctx *ctx, const struct cli_args *args);
+};
+
+extern const struct cli_command cli_simulate, cli_equations, cli_graph, cli_check,
+    cli_components, cli_methods, cli_schema;
+/// All commands in the order of --help; NULL at the end.
+extern const struct cli_command *const cli_commands[];
+
+/// Read argv: the command (NULL: none was named) and its arguments. False after a message: exit with 2.
+bool cli_parse(int argc, char **argv, const struct cli_command **command,
+               struct cli_args *args);
+void cli_args_finish(struct cli_args *args);
+/// Help for the program (NULL) or for one command.
+void cli_print_help(FILE *out, const struct cli_command *command);
+/// A message about the command line, with a pointer to the help. Returns CLI_USAGE.
+int cli_complain(const struct cli_command *command, const char *fmt, ...)
+    __attribute__((format(printf, 2, 3)));
+
+/// The system that the arguments ask for, or NULL.
+struct ct_system *cli_load(struct ct_ctx *ctx, const struct cli_args *args);
+/// A run with the options of the arguments, or NULL.
+struct ct_sim *cli_sim(struct ct_ctx *ctx, struct ct_system *sys, const struct cli_args *args);
+
+/// The format that --format or the suffix of -o asks for; suffixes[i] belongs to formats[i].
+const char *cli_format(const struct cli_args *args, const char *const *formats,
+                       const char *const *suffixes, size_t n);
+
+/// Text that appears under its name when it is complete; path NULL or "-": standard output.
+struct cli_output {
+    FILE *stream;
+    const char *path;
+    char *partial; // where it is written; NULL: straight to path
+};
+bool cli_output_open(struct cli_output *o, const char *path);
+/// ok: what was written is whole. Returns CLI_DONE or CLI_FAILED.
+int cli_output_close(struct cli_output *o, bool ok);
+
+#endif

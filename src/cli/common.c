@@ -1,0 +1,85 @@
+// What commands share: loading, formats, files.
+#include "cli/cli.h"
+
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+struct ct_system *cli_load(struct ct_ctx *ctx, const struct cli_args *args)
+{
+    return ct_system_load(ctx, args->model,
+                          &(struct ct_system_options){.set = args->set,
+                                                      .nset = args->nset,
+                                                      .tree = args->tree,
+                                                      .keep_all = args->keep_all});
+}
+
+struct ct_sim *cli_sim(struct ct_ctx *ctx, struct ct_system *sys, const struct cli_args *args)
+{
+    return ct_sim_create(ctx, sys,
+                         &(struct ct_sim_options){.method = args->method,
+                                                  .tolerance = args->tolerance,
+                                                  .step = args->step,
+                                                  .until = args->until,
+                                                  .samples = args->samples});
+}
+
+const char *cli_format(const struct cli_args *args, const char *const *formats,
+                       const char *const *suffixes, size_t n)
+{
+    if (args->format)
+        return args->format;
+    const char *dot = args->output ? strrchr(args->output, '.') : NULL;
+    for (size_t i = 0; dot && i < n; i++)
+        if (strcmp(dot + 1, suffixes[i]) == 0)
+            return formats[i];
+    return formats[0];
+}
+
+// ---- files ---------------------------------------------------------------------------------------------
+
+static void cannot(const char *what, const char *path, int error)
+{
+    fprintf(stderr, "cotree: error: cannot %s '%s': %s\n", what, path, strerror(error));
+}
+
+bool cli_output_open(struct cli_output *o, const char *path)
+{
+    *o = (struct cli_output){.stream = stdout, .path = "standard output"};
+    if (!path || strcmp(path, "-") == 0)
+        return true;
+    o->path = path;
+    struct stat st;
+    if (stat(path, &st) != 0 || S_ISREG(st.st_mode)) { // not /dev/null and the like
+        const size_t n = strlen(path) + sizeof ".partial";
+        o->partial = malloc(n);
+        if (!o->partial) {
+            cannot("write", path, ENOMEM);
+            return false;
+        }
+        snprintf(o->partial, n, "%s.partial", path);
+    }
+    o->stream = fopen(o->partial ? o->partial : path, "w");
+    if (o->stream)
+        return true;
+    cannot("write", o->partial ? o->partial : path, errno);
+    free(o->partial);
+    return false;
+}
+
+int cli_output_close(struct cli_output *o, bool ok)
+{
+    errno = 0;
+    bool written = fflush(o->stream) == 0 && !ferror(o->stream);
+    if (o->stream != stdout)
+        written = fclose(o->stream) == 0 && written;
+    if (!written)
+        cannot("write", o->path, errno ? errno : EIO);
+    if (ok && written && o->partial && rename(o->partial, o->path) != 0) {
+        cannot("replace", o->path, errno);
+        written = false;
+    }
+    free(o->partial);
+    return ok && written ? CLI_DONE : CLI_FAILED;
+}

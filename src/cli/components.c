@@ -1,0 +1,24 @@
+// cotree components: lists component types with their terminal equations and keys.
+#include "cli/cli.h"
+
+static int run(struct ct_ctx *ctx, const struct cli_args *args)
+{
+    struct cli_output o;
+    (void)ctx;
+    if (!cli_output_open(&o, args->output))
+        return CLI_FAILED;
+    ct_components_print(o.stream);
+    return cli_output_close(&o, true);
+}
+
+const struct cli_command cli_components = {
+    .name = "components",
+    .summary = "lists component types with their terminal equations and keys",
+    .use = CLI_COMPONENTS,
+    .more
+    = "\n"
+      "Across variables are d, S (place and axes of `to` seen from `from`), through variables\n"
+      "F, T (force and torque on `to`). Units stand in brackets, defaults in parentheses.\n",
+    .examples = {"cotree components", "cotree components -o components.txt"},
+    .run = run,
+};

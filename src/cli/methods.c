@@ -1,0 +1,22 @@
+// cotree methods: lists the methods of integration.
+#include "cli/cli.h"
+
+static int run(struct ct_ctx *ctx, const struct cli_args *args)
+{
+    struct cli_output o;
+    (void)ctx;
+    if (!cli_output_open(&o, args->output))
+        return CLI_FAILED;
+    ct_methods_print(o.stream);
+    return cli_output_close(&o, true);
+}
+
+const struct cli_command cli_methods = {
+    .name = "methods",
+    .summary = "lists the methods of integration",
+    .use = CLI_METHODS,
+    .more = "\n"
+            "Names for --method and for the key simulation.method.\n",
+    .examples = {"cotree methods", "cotree simulate pendulum.yaml --method dop853"},
+    .run = run,
+};

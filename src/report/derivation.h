@@ -1,0 +1,55 @@
+// What the stages of the derivation share while they fill a page: names and texts in the page's look.
+#ifndef CT_REPORT_DERIVATION_H
+#define CT_REPORT_DERIVATION_H
+
+#include "report/page.h"
+#include "report/reduced.h"
+
+struct ct_derivation {
+    struct ct_arena *a;
+    struct ct_equations *e;
+    const struct ct_model *m;
+    struct ct_page page;
+    struct ct_print print; // for expressions, in the page's look
+    const int *rank;       // of the first nrank symbols: their order in products
+    size_t nrank;
+};
+
+void ct_derivation_init(struct ct_derivation *d, struct ct_arena *a, struct ct_equations *e,
+                        const struct ct_model *m, enum ct_look look);
+
+/// An expression as mathematics of the page.
+const char *ct_derivation_text(struct ct_derivation *d, ct_ex v);
+/// The same after collecting.
+const char *ct_derivation_collected(struct ct_derivation *d, ct_ex v);
+/// A name of the model as mathematics: "crank.q", or LaTeX of it.
+const char *ct_derivation_name(struct ct_derivation *d, const char *name);
+/// A vector or rotation of a component or frame: F(rod), or a bold letter with a subscript.
+const char *ct_derivation_of(struct ct_derivation *d, const char *letter, const char *name);
+/// The generalised force along a coordinate.
+const char *ct_derivation_effort(struct ct_derivation *d, const char *coordinate);
+/// Three components: [a, b, c], or 0.
+const char *ct_derivation_vector(struct ct_derivation *d, ct_ex3 v);
+/// A direction: x, -y, or [a, b, c].
+const char *ct_derivation_axis(struct ct_derivation *d, ct_ex3 n);
+
+static inline bool ct_derivation_is_latex(const struct ct_derivation *d)
+{
+    return d->page.look == CT_LOOK_LATEX;
+}
+
+/// The reduced equations as a reader wants them: collected, or with names where they are long.
+void ct_derivation_reduce(struct ct_derivation *d, struct ct_reduced *r);
+
+void ct_stage_terminal(struct ct_derivation *d);
+void ct_stage_graph(struct ct_derivation *d);
+void ct_stage_tree(struct ct_derivation *d);
+void ct_stage_cutset(struct ct_derivation *d);
+void ct_stage_circuit(struct ct_derivation *d);
+void ct_stage_reduced(struct ct_derivation *d);
+
+/// The formats for programs.
+void ct_derivation_print_json(FILE *out, struct ct_derivation *d, unsigned stages);
+void ct_derivation_print_c(FILE *out, struct ct_derivation *d);
+
+#endif

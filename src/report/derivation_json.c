@@ -1,0 +1,238 @@
+// The derivation for programs.
+//
+// Rows and columns count from 0; M holds its lower triangle. Expressions are in the grammar of model
+// files with speeds as J.u and accelerations as J.a; definitions use earlier ones only.
+#include "report/derivation.h"
+
+#include "formulate/build.h"
+#include "report/equations.h"
+#include "report/json.h"
+
+struct writer {
+    struct ct_json j;
+    struct ct_derivation *d;
+};
+
+static const char *text(struct writer *w, ct_ex v)
+{
+    const struct ct_print plain = {.limit = 1000000};
+    return ct_ex_text(w->d->a, w->d->e->x, v, &plain);
+}
+
+// ---- topology -----------------------------------------------------------------------------------
+
+static void put_terminal(struct writer *w)
+{
+    const struct ct_build *b = w->d->e->build;
+    ct_json_array(&w->j, "terminal");
+    for (size_t i = 0; i < b->nedge; i++) {
+        const struct ct_edge_info *e = &b->edge[i];
+        ct_json_object(&w->j, NULL);
+        ct_json_text(&w->j, "name", e->name);
+        ct_json_text(&w->j, "type", w->d->e->edge_kind[i]);
+        ct_json_text(&w->j, "across", e->self ? e->self->cls->across : "d, S constant");
+        ct_json_text(&w->j, "through", e->self ? e->self->cls->through : "F, T are reactions");
+        ct_json_end(&w->j);
+    }
+    ct_json_end(&w->j);
+}
+
+static void put_graph(struct writer *w)
+{
+    const struct ct_equations *e = w->d->e;
+    ct_json_object(&w->j, "graph");
+    ct_json_array(&w->j, "nodes");
+    for (int v = 0; v < e->graph->nnode; v++)
+        ct_json_text(&w->j, NULL, e->node_name[v]);
+    ct_json_end(&w->j);
+    ct_json_array(&w->j, "edges");
+    for (int i = 0; i < e->graph->nedge; i++) {
+        ct_json_object(&w->j, NULL);
+        ct_json_text(&w->j, "name", e->edge_name[i]);
+        ct_json_text(&w->j, "type", e->edge_kind[i]);
+        ct_json_text(&w->j, "from", e->node_name[e->graph->edge[i].tail]);
+        ct_json_text(&w->j, "to", e->node_name[e->graph->edge[i].head]);
+        ct_json_end(&w->j);
+    }
+    ct_json_end(&w->j);
+    ct_json_end(&w->j);
+}
+
+static void put_branches(struct writer *w, const char *key, const struct ct_tree *t)
+{
+    ct_json_array(&w->j, key);
+    for (int i = 0; i < t->nbranch; i++)
+        ct_json_text(&w->j, NULL, w->d->e->edge_name[t->branch[i]]);
+    ct_json_end(&w->j);
+}
+
+static void put_tree(struct writer *w)
+{
+    const struct ct_equations *e = w->d->e;
+    ct_json_object(&w->j, "tree");
+    ct_json_text(&w->j, "chosen", e->how);
+    put_branches(w, "translation", e->T);
+    put_branches(w, "rotation", e->R);
+    ct_json_end(&w->j);
+    ct_json_array(&w->j, "left_out");
+    for (size_t i = 0; i < e->nleft_out; i++) {
+        ct_json_object(&w->j, NULL);
+        ct_json_text(&w->j, "what", e->left_out[i].what);
+        ct_json_text(&w->j, "why", e->left_out[i].why);
+        ct_json_end(&w->j);
+    }
+    ct_json_end(&w->j);
+}
+
+// Rows of a cutset or circuit matrix: edges and their signs.
+static void put_rows(struct writer *w, const char *key, const char *own_key,
+                     const struct ct_incidence *S, const int *own)
+{
+    struct ct_incidence rows;
+    ct_incidence_transpose(w->d->a, S, &rows);
+    ct_json_array(&w->j, key);
+    for (int i = 0; i < S->nrow; i++) {
+        ct_json_object(&w->j, NULL);
+        ct_json_text(&w->j, own_key, w->d->e->edge_name[own[i]]);
+        ct_json_object(&w->j, "sum");
+        for (int k = rows.start[i]; k < rows.start[i + 1]; k++)
+            ct_json_integer(&w->j, w->d->e->edge_name[rows.row[k]], rows.value[k]);
+        ct_json_end(&w->j);
+        ct_json_end(&w->j);
+    }
+    ct_json_end(&w->j);
+}
+
+static void put_topology(struct writer *w, bool cutsets)
+{
+    const struct ct_equations *e = w->d->e;
+    const struct ct_tree *const tree[] = {e->T, e->R};
+    static const char *const name[] = {"translation", "rotation"};
+    ct_json_object(&w->j, cutsets ? "cutsets" : "circuits");
+    for (int i = 0; i < 2; i++) {
+        struct ct_incidence S;
+        if (cutsets)
+            ct_cutsets_derive(w->d->a, e->graph, tree[i], &S);
+        else
+            ct_circuits_derive(w->d->a, e->graph, tree[i], &S);
+        put_rows(w, name[i], cutsets ? "branch" : "chord", &S,
+                 cutsets ? tree[i]->branch : tree[i]->chord);
+    }
+    ct_json_end(&w->j);
+}
+
+// ---- the reduced equations --------------------------------------------------------------------------
+
+static void put_matrix(struct writer *w, const char *key, const struct ct_entry *entry,
+                       const ct_ex *value, size_t n)
+{
+    ct_json_array(&w->j, key);
+    for (size_t i = 0; i < n; i++) {
+        ct_json_array(&w->j, NULL);
+        ct_json_integer(&w->j, NULL, entry[i].row);
+        ct_json_integer(&w->j, NULL, entry[i].column);
+        ct_json_text(&w->j, NULL, text(w, value[i]));
+        ct_json_end(&w->j);
+    }
+    ct_json_end(&w->j);
+}
+
+static void put_vector(struct writer *w, const char *key, const ct_ex *value, size_t n)
+{
+    ct_json_array(&w->j, key);
+    for (size_t i = 0; i < n; i++)
+        ct_json_text(&w->j, NULL, text(w, value[i]));
+    ct_json_end(&w->j);
+}
+
+static void put_unknowns(struct writer *w, const struct ct_reduced *r)
+{
+    const struct ct_equations *e = w->d->e;
+    ct_json_array(&w->j, "coordinates");
+    for (size_t i = 0; i < e->nq; i++) {
+        ct_json_object(&w->j, NULL);
+        ct_json_text(&w->j, "name", e->q[i].name);
+        ct_json_text(&w->j, "rate", text(w, r->rate[i]));
+        ct_json_end(&w->j);
+    }
+    ct_json_end(&w->j);
+    ct_json_array(&w->j, "speeds");
+    for (size_t i = 0; i < e->nu; i++) {
+        ct_json_object(&w->j, NULL);
+        ct_json_text(&w->j, "name", e->u[i].name);
+        ct_json_text(&w->j, "coordinate", e->u[i].q >= 0 ? e->q[e->u[i].q].name : NULL);
+        ct_json_text(&w->j, "derivative", text(w, e->u[i].derivative));
+        ct_json_end(&w->j);
+    }
+    ct_json_end(&w->j);
+    ct_json_array(&w->j, "rows");
+    for (size_t i = 0; i < e->nrow; i++)
+        ct_json_text(&w->j, NULL, e->row[i].name);
+    ct_json_end(&w->j);
+}
+
+static void put_known(struct writer *w, const struct ct_reduced *r)
+{
+    const struct ct_equations *e = w->d->e;
+    ct_json_object(&w->j, "parameters");
+    for (size_t i = 0; i < w->d->m->nparameter; i++)
+        ct_json_number(&w->j, w->d->m->parameter[i].name, w->d->m->parameter[i].value);
+    ct_json_end(&w->j);
+    ct_json_object(&w->j, "driven");
+    for (size_t i = 0; i < e->ndriver; i++)
+        ct_json_text(&w->j, e->driver[i].name, text(w, e->driver[i].value));
+    ct_json_end(&w->j);
+    ct_json_object(&w->j, "efforts");
+    for (size_t i = 0; i < e->ndriver; i++)
+        ct_json_text(&w->j, e->driver[i].name, text(w, r->effort[i]));
+    ct_json_end(&w->j);
+    ct_json_object(&w->j, "modes"); // 1 where it holds
+    for (size_t i = 0; i < e->nmode; i++)
+        ct_json_text(&w->j, ct_ex_symbol(e->x, e->mode[i].symbol)->name,
+                     ct_arena_printf(w->d->a, "%s %s 0", text(w, e->mode[i].g),
+                                     ct_op_info[e->mode[i].op].name));
+    ct_json_end(&w->j);
+}
+
+static void put_reduced(struct writer *w)
+{
+    const struct ct_equations *e = w->d->e;
+    struct ct_reduced r;
+    ct_derivation_reduce(w->d, &r);
+    put_unknowns(w, &r);
+    put_known(w, &r);
+    ct_json_array(&w->j, "definitions");
+    for (size_t i = 0; i < r.ndefinition; i++) {
+        ct_json_array(&w->j, NULL);
+        ct_json_text(&w->j, NULL, text(w, r.definition[i].symbol));
+        ct_json_text(&w->j, NULL, text(w, r.definition[i].value));
+        ct_json_end(&w->j);
+    }
+    ct_json_end(&w->j);
+    put_matrix(w, "M", e->M, r.M, e->nM);
+    put_vector(w, "Q", r.Q, e->nu);
+    put_matrix(w, "J", e->J, r.J, e->nJ);
+    put_vector(w, "phi", r.phi, e->nrow);
+    put_vector(w, "gam", r.gam, e->nrow);
+}
+
+void ct_derivation_print_json(FILE *out, struct ct_derivation *d, unsigned stages)
+{
+    struct writer w = {.d = d};
+    ct_json_init(&w.j, out);
+    ct_json_object(&w.j, NULL);
+    ct_json_text(&w.j, "model", d->m->name);
+    if (stages & CT_STAGE_TERMINAL)
+        put_terminal(&w);
+    if (stages & CT_STAGE_GRAPH)
+        put_graph(&w);
+    if (stages & CT_STAGE_TREE)
+        put_tree(&w);
+    if (stages & CT_STAGE_CUTSET)
+        put_topology(&w, true);
+    if (stages & CT_STAGE_CIRCUIT)
+        put_topology(&w, false);
+    if (stages & CT_STAGE_REDUCED)
+        put_reduced(&w);
+    ct_json_end(&w.j);
+}

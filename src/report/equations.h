@@ -1,0 +1,51 @@
+// The derivation for people and programs: every stage from the terminal equations of the components to
+// the reduced equations of motion.
+//
+//     terminal   what each component says on its own
+//     graph      how they are connected
+//     tree       what becomes a coordinate, and why
+//     cutset     balances of force and torque, one per branch
+//     circuit    closures, one per chord
+//     reduced    M u' = Q + J' lam, one equation per unknown speed; the constraints
+//
+// What always holds: the same model, trees and format give the same bytes. The expressions that are
+// printed equal those of struct ct_equations up to rounding.
+#ifndef CT_REPORT_EQUATIONS_H
+#define CT_REPORT_EQUATIONS_H
+
+#include "formulate/equations.h"
+
+#include <stdio.h>
+
+enum {
+    CT_STAGE_TERMINAL = 1,
+    CT_STAGE_GRAPH = 2,
+    CT_STAGE_TREE = 4,
+    CT_STAGE_CUTSET = 8,
+    CT_STAGE_CIRCUIT = 16,
+    CT_STAGE_REDUCED = 32,
+    CT_STAGE_ALL = 63,
+    CT_STAGE_DEFAULT = CT_STAGE_TREE | CT_STAGE_REDUCED
+};
+
+enum ct_equations_format {
+    CT_FORMAT_TEXT,
+    CT_FORMAT_LATEX,
+    CT_FORMAT_HTML,
+    CT_FORMAT_C,
+    CT_FORMAT_JSON
+};
+
+/// Print the stages in their order. C prints the reduced equations whatever the stages are. New nodes
+/// are made in e->x. Work space and texts live in scratch. False: the stream has failed.
+/// Cost: bounded for large systems, whose expressions are named instead of collected.
+bool ct_equations_print(FILE *out, struct ct_arena *scratch, struct ct_equations *e,
+                        const struct ct_model *m, unsigned stages,
+                        enum ct_equations_format format);
+
+/// The bit of a stage by its name ("tree"), "all" for all; 0 if there is none of that name.
+unsigned ct_stage_find(const char *name, size_t length);
+/// The format by its name; false if there is none.
+bool ct_equations_format_find(const char *name, enum ct_equations_format *format);
+
+#endif

@@ -1,0 +1,76 @@
+// A page of headings, sentences, tables and equations, and its three looks: text, LaTeX, HTML.
+//
+// Who fills a page writes mathematics in the style of the look it is for (expr/print.h knows the
+// styles) and says where mathematics stands; the look adds layout, line breaks and quoting.
+// What always holds: equations break between terms only; a line of text is at most CT_PAGE_WIDTH
+// columns unless a single term is wider.
+#ifndef CT_REPORT_PAGE_H
+#define CT_REPORT_PAGE_H
+
+#include "expr/print.h"
+
+enum { CT_PAGE_WIDTH = 100 };
+
+enum ct_page_kind {
+    CT_PAGE_TITLE,    // of a stage
+    CT_PAGE_HEADING,  // of a part of it
+    CT_PAGE_SENTENCE, // plain words
+    CT_PAGE_TABLE,
+    CT_PAGE_EQUATIONS, // a group, aligned
+};
+
+enum ct_look { CT_LOOK_TEXT, CT_LOOK_LATEX, CT_LOOK_HTML };
+
+struct ct_page_equation {
+    const char *label;        // plain words before it; NULL: none
+    const char *left, *right; // mathematics; right == NULL: left is all
+    const char *note;         // plain words after it; NULL: none
+};
+
+struct ct_page_block {
+    enum ct_page_kind kind;
+    const char *text;  // TITLE, HEADING, SENTENCE
+    const char *align; // TABLE: one letter a column: l or r plain, L or R mathematics
+    const char **cell; // TABLE: the first row is the head, plain; row by row
+    size_t ncell, cell_cap;
+    struct ct_page_equation *equation;
+    size_t nequation, equation_cap;
+};
+
+struct ct_page {
+    struct ct_arena *arena;
+    enum ct_look look;
+    struct ct_page_block *block;
+    size_t nblock, block_cap;
+};
+
+void ct_page_title(struct ct_page *p, const char *text);
+void ct_page_heading(struct ct_page *p, const char *text);
+void ct_page_sentence(struct ct_page *p, const char *fmt, ...)
+    __attribute__((format(printf, 2, 3)));
+/// Starts a table; cells follow row by row, the head first.
+void ct_page_table(struct ct_page *p, const char *align);
+void ct_page_cell(struct ct_page *p, const char *text);
+void ct_page_row(struct ct_page *p, const char *const *cell, size_t n);
+#define CT_PAGE_ROW(p, ...)                                                                    \
+    ct_page_row((p), (const char *const[]){__VA_ARGS__},                                       \
+                COUNT(((const char *const[]){__VA_ARGS__})))
+/// Starts a group of equations.
+void ct_page_equations(struct ct_page *p);
+void ct_page_equation(struct ct_page *p, const char *label, const char *left, const char *right,
+                      const char *note);
+
+/// Columns of a UTF-8 string.
+size_t ct_text_width(const char *s);
+
+void ct_page_print_text(FILE *out, const struct ct_page *p);
+/// A fragment for a document that uses amsmath and longtable.
+void ct_page_print_latex(FILE *out, const struct ct_page *p);
+/// A whole document; mathematics is in the style of text and is set with sub- and superscripts.
+void ct_page_print_html(FILE *out, const struct ct_page *p, const char *title);
+
+/// Top-level terms of a sum in any style: the length of the first one, up to before the next sign
+/// " + " or " - " outside all brackets; strlen(s) if there is no other.
+size_t ct_page_first_term(const char *s);
+
+#endif

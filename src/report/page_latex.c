@@ -1,0 +1,170 @@
+// Pages as LaTeX; see page.h.
+#include "report/page.h"
+
+#include <ctype.h>
+#include <string.h>
+
+// ---- words ------------------------------------------------------------------------------------
+
+static void put_words(FILE *out, const char *s)
+{
+    for (; *s; s++) {
+        if (strchr("_#$%&{}", *s))
+            fprintf(out, "\\%c", *s);
+        else if (*s == '^' || *s == '~')
+            fprintf(out, "\\%c{}", *s);
+        else if (*s == '|')
+            fputs("\\textbar{}", out);
+        else if (*s == '<' || *s == '>')
+            fputs(*s == '<' ? "\\textless{}" : "\\textgreater{}", out);
+        else if (*s == '\\')
+            fputs("\\textbackslash{}", out);
+        else
+            fputc(*s, out);
+    }
+}
+
+// ---- equations --------------------------------------------------------------------------------
+
+// Characters that take room on the page: a command counts as one, braces and sizes as none.
+static size_t width_of(const char *s, size_t length)
+{
+    size_t n = 0;
+    for (size_t i = 0; i < length; i++) {
+        if (s[i] != '\\') {
+            n += !strchr("{}^_ ", s[i]);
+            continue;
+        }
+        size_t k = i + 1;
+        while (k < length && isalpha((unsigned char)s[k]))
+            k++;
+        const bool is_free = k - i == 1 || !strncmp(s + i, "\\left", 5)
+                          || !strncmp(s + i, "\\right", 6) || !strncmp(s + i, "\\mathrm", 7)
+                          || !strncmp(s + i, "\\frac", 5);
+        n += is_free                ? 0
+           : k - i > 3 && k - i < 5 ? 3
+                                    : 1; // \sin and \cos print as they are spelled
+        i = k > i + 1 ? k - 1 : i + 1;
+    }
+    return n;
+}
+
+enum { LINE = 85 };
+
+// Terms of a sum, on further lines where they do not fit.
+static void put_sum(FILE *out, const char *s, size_t column, const char *indent)
+{
+    while (*s) {
+        const size_t n = ct_page_first_term(s), width = width_of(s, n);
+        if (column + width > LINE && column > 20) {
+            fprintf(out, " \\\\\n    %s", indent);
+            column = 8;
+        }
+        fprintf(out, "%.*s", (int)n, s);
+        column += width;
+        s += n;
+    }
+}
+
+static void put_equation(FILE *out, const struct ct_page_equation *e, bool labelled)
+{
+    const size_t left = width_of(e->left, strlen(e->left));
+    const size_t right = e->right ? width_of(e->right, strlen(e->right)) : 0;
+    const size_t label = e->label ? ct_text_width(e->label) : 0;
+    fputs("    ", out);
+    if (labelled) {
+        if (e->label) {
+            fputs("\\text{", out);
+            put_words(out, e->label);
+            fputs(":} ", out);
+        }
+        fputs("&\\quad ", out);
+        put_sum(out, e->left, label, "&\\qquad ");
+        if (e->right && label + left + right > LINE)
+            fputs(" \\\\\n    &\\qquad = ", out);
+        else if (e->right)
+            fputs(" = ", out);
+        if (e->right)
+            put_sum(out, e->right, label + left + right > LINE ? 8 : label + left,
+                    "&\\qquad\\quad ");
+    } else {
+        fprintf(out, "%s &= ", e->left);
+        put_sum(out, e->right ? e->right : "", left + 3, "&\\quad ");
+    }
+    if (e->note) {
+        fputs(" && \\text{", out);
+        put_words(out, e->note);
+        fputs("}", out);
+    }
+}
+
+static void put_equations(FILE *out, const struct ct_page_block *b)
+{
+    bool labelled = false;
+    if (!b->nequation)
+        return;
+    for (size_t i = 0; i < b->nequation; i++)
+        labelled |= b->equation[i].label || !b->equation[i].right
+                 || width_of(b->equation[i].left, strlen(b->equation[i].left)) > LINE / 2;
+    fputs("\\begin{align*}\n", out);
+    for (size_t i = 0; i < b->nequation; i++) {
+        put_equation(out, &b->equation[i], labelled);
+        fputs(i + 1 < b->nequation ? " \\\\\n" : "\n", out);
+    }
+    fputs("\\end{align*}\n", out);
+}
+
+// ---- tables -----------------------------------------------------------------------------------
+
+static void put_table(FILE *out, const struct ct_page_block *b)
+{
+    const size_t n = strlen(b->align);
+    bool is_wide = false;
+    for (size_t i = n - 1; i < b->ncell; i += n)
+        is_wide |= ct_text_width(b->cell[i]) > 45;
+    fputs("\\begin{longtable}{", out);
+    for (size_t k = 0; k < n; k++)
+        if (k + 1 == n && is_wide)
+            fputs("p{0.45\\linewidth}", out);
+        else
+            fputc(tolower((unsigned char)b->align[k]), out);
+    fputs("}\n", out);
+    for (size_t i = 0; i < b->ncell; i++) {
+        const char *s = b->cell[i];
+        const bool is_math = isupper((unsigned char)b->align[i % n]) && i >= n;
+        fputs(i % n ? " & " : "    ", out);
+        if (is_math && *s)
+            fprintf(out, "$%s$", s);
+        else
+            put_words(out, s);
+        if ((i + 1) % n == 0)
+            fputs(i + 1 == n ? " \\\\ \\hline\n" : " \\\\\n", out);
+    }
+    fputs("\\end{longtable}\n", out);
+}
+
+void ct_page_print_latex(FILE *out, const struct ct_page *p)
+{
+    fputs("% needs \\usepackage{amsmath,longtable}\n", out);
+    for (size_t i = 0; i < p->nblock; i++) {
+        const struct ct_page_block *b = &p->block[i];
+        switch (b->kind) {
+        case CT_PAGE_TITLE:
+        case CT_PAGE_HEADING:
+            fputs(b->kind == CT_PAGE_TITLE ? "\n\\section*{" : "\n\\subsection*{", out);
+            put_words(out, b->text);
+            fputs("}\n", out);
+            break;
+        case CT_PAGE_SENTENCE:
+            put_words(out, b->text);
+            fputs("\n\n", out);
+            break;
+        case CT_PAGE_TABLE:
+            put_table(out, b);
+            break;
+        case CT_PAGE_EQUATIONS:
+            put_equations(out, b);
+            break;
+        }
+    }
+}

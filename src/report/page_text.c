@@ -1,0 +1,241 @@
+// Pages as plain text; see page.h.
+#include "report/page.h"
+
+#include <ctype.h>
+#include <string.h>
+
+// ---- lines ------------------------------------------------------------------------------------
+
+static void put_indent(FILE *out, size_t n)
+{
+    fprintf(out, "%*s", (int)n, "");
+}
+
+// Plain words, broken at blanks.
+static void put_words(FILE *out, const char *s, size_t indent)
+{
+    size_t column = 0;
+    while (*s) {
+        size_t n = strcspn(s, " ");
+        size_t width = 0;
+        for (size_t i = 0; i < n; i++)
+            width += ((unsigned char)s[i] & 0xC0) != 0x80;
+        if (column == 0 || column + 1 + width > CT_PAGE_WIDTH) {
+            if (column)
+                fputs("\n", out);
+            put_indent(out, indent);
+            column = indent;
+        } else {
+            fputs(" ", out);
+            column++;
+        }
+        fprintf(out, "%.*s", (int)n, s);
+        column += width;
+        s += n;
+        s += strspn(s, " ");
+    }
+    fputs("\n", out);
+}
+
+// Where to break s so that at most `room` characters stay before: at the sign of a sum with the
+// fewest open brackets, the last of those; then after a comma or before a factor; 0 if nowhere.
+static size_t break_place(const char *s, size_t room)
+{
+    size_t best = 0;
+    int depth = 0, best_depth = 0, best_rank = 9;
+    for (size_t i = 0; s[i] && i <= room; i++) {
+        if (s[i] == '(' || s[i] == '[')
+            depth++;
+        if (s[i] == ')' || s[i] == ']')
+            depth--;
+        int rank = 9;
+        if (i > 4 && s[i] == ' ' && (s[i + 1] == '+' || s[i + 1] == '-') && s[i + 2] == ' ')
+            rank = 0;
+        else if (i > 4 && s[i] == ' ' && s[i - 1] == ',')
+            rank = 1;
+        else if (i > 4 && s[i] == '*' && depth == 0)
+            rank = 2;
+        if (rank == 9)
+            continue;
+        // a deeper sign is taken only if all at the shallower level stand in the first third
+        const bool better = best == 0 || rank < best_rank
+                         || (rank == best_rank && (depth <= best_depth || 3 * best < room));
+        if (better) {
+            best = i;
+            best_depth = depth;
+            best_rank = rank;
+        }
+    }
+    return best;
+}
+
+// s from `column` on, continued on further lines at `indent`.
+static void put_wrapped(FILE *out, const char *s, size_t column, size_t indent)
+{
+    while (column + ct_text_width(s) > CT_PAGE_WIDTH) {
+        const size_t room = CT_PAGE_WIDTH > column ? CT_PAGE_WIDTH - column : 0;
+        const size_t at = break_place(s, room);
+        if (!at)
+            break;
+        const bool keep = s[at] == '*'; // a factor's sign stays on the next line
+        fprintf(out, "%.*s\n", (int)at, s);
+        put_indent(out, indent);
+        s += at + !keep;
+        column = indent;
+    }
+    fputs(s, out);
+}
+
+// ---- blocks -----------------------------------------------------------------------------------
+
+static void put_note(FILE *out, const char *note)
+{
+    if (note)
+        fprintf(out, "   (%s)", note);
+    fputs("\n", out);
+}
+
+static void put_equation(FILE *out, const struct ct_page_equation *e, size_t label_width,
+                         size_t left_width)
+{
+    const size_t indent = 2;
+    const size_t left = ct_text_width(e->left),
+                 right = e->right ? 3 + ct_text_width(e->right) : 0;
+    const size_t note = e->note ? 5 + ct_text_width(e->note) : 0;
+    size_t column = indent;
+    put_indent(out, indent);
+    if (e->label) {
+        fprintf(out, "%s:", e->label);
+        column += ct_text_width(e->label) + 1;
+        if (indent + label_width + 2 + left + right <= CT_PAGE_WIDTH) {
+            put_indent(out, indent + label_width + 2 - column);
+            column = indent + label_width + 2;
+        } else {
+            fputs("\n", out);
+            put_indent(out, column = indent + 2);
+        }
+    }
+    const size_t pad = e->right && !e->label && left_width > left ? left_width - left : 0;
+    if (column + pad + left + right <= CT_PAGE_WIDTH) {
+        fputs(e->left, out);
+        put_indent(out, pad);
+        if (e->right)
+            fprintf(out, " = %s", e->right);
+        put_note(out, column + left + right + note <= CT_PAGE_WIDTH ? e->note : NULL);
+        return;
+    }
+    // a short left side keeps the right one on its line
+    const bool is_short = left < 14;
+    put_wrapped(out, e->left, column, column + 4);
+    if (e->right) {
+        if (!is_short) {
+            fputs("\n", out);
+            put_indent(out, column + 2);
+        }
+        fputs(is_short ? " = " : "= ", out);
+        const size_t start = column + (is_short ? left + 3 : 4);
+        put_wrapped(out, e->right, start, is_short ? start - 2 : start);
+    }
+    fputs("\n", out);
+}
+
+// Left sides up to this are brought to one width, so that the equal signs stand below each other.
+enum { ALIGNED = 20 };
+
+static void put_equations(FILE *out, const struct ct_page_block *b)
+{
+    size_t width = 0, left_width = 0;
+    for (size_t i = 0; i < b->nequation; i++) {
+        const size_t w = b->equation[i].label ? ct_text_width(b->equation[i].label) : 0;
+        const size_t l = ct_text_width(b->equation[i].left);
+        width = w > width ? w : width;
+        left_width = l > left_width && l <= ALIGNED ? l : left_width;
+    }
+    for (size_t i = 0; i < b->nequation; i++)
+        put_equation(out, &b->equation[i], width, left_width);
+}
+
+// Plain words from `column` on, broken at blanks.
+static void put_cell_words(FILE *out, const char *s, size_t indent)
+{
+    size_t column = indent;
+    while (*s) {
+        const size_t n = strcspn(s, " ");
+        if (column > indent && column + 1 + n > CT_PAGE_WIDTH) {
+            fputs("\n", out);
+            put_indent(out, indent);
+            column = indent;
+        } else if (column > indent) {
+            fputs(" ", out);
+            column++;
+        }
+        fprintf(out, "%.*s", (int)n, s);
+        column += n;
+        s += n;
+        s += strspn(s, " ");
+    }
+}
+
+static void put_row(FILE *out, const struct ct_page_block *b, size_t row, const size_t *width)
+{
+    const size_t n = strlen(b->align);
+    size_t column = 0, pending = 2;
+    for (size_t k = 0; k < n; k++) {
+        const char *s = b->cell[row * n + k];
+        const size_t w = ct_text_width(s), room = width[k] - w;
+        const bool right = tolower((unsigned char)b->align[k]) == 'r';
+        if (right)
+            pending += room;
+        if (*s) {
+            put_indent(out, pending);
+            column += pending;
+            if (k + 1 == n && column + w > CT_PAGE_WIDTH && column < CT_PAGE_WIDTH - 20)
+                put_cell_words(out, s, column);
+            else
+                fputs(s, out);
+            column += w;
+            pending = 0;
+        }
+        pending += 2 + (right ? 0 : *s ? room : width[k]);
+    }
+    fputs("\n", out);
+}
+
+static void put_table(FILE *out, struct ct_arena *a, const struct ct_page_block *b)
+{
+    const size_t n = strlen(b->align);
+    size_t *width = CT_NEWN(a, size_t, n);
+    for (size_t i = 0; i < b->ncell; i++) {
+        const size_t w = ct_text_width(b->cell[i]);
+        width[i % n] = w > width[i % n] ? w : width[i % n];
+    }
+    for (size_t row = 0; row < b->ncell / n; row++)
+        put_row(out, b, row, width);
+}
+
+void ct_page_print_text(FILE *out, const struct ct_page *p)
+{
+    for (size_t i = 0; i < p->nblock; i++) {
+        const struct ct_page_block *b = &p->block[i];
+        switch (b->kind) {
+        case CT_PAGE_TITLE:
+            fprintf(out, "%s%s\n", i ? "\n\n" : "", b->text);
+            for (size_t k = ct_text_width(b->text); k > 0; k--)
+                fputs("=", out);
+            fputs("\n", out);
+            break;
+        case CT_PAGE_HEADING:
+            fprintf(out, "\n%s\n", b->text);
+            break;
+        case CT_PAGE_SENTENCE:
+            put_words(out, b->text, i && p->block[i - 1].kind == CT_PAGE_TITLE ? 0 : 2);
+            break;
+        case CT_PAGE_TABLE:
+            put_table(out, p->arena, b);
+            break;
+        case CT_PAGE_EQUATIONS:
+            put_equations(out, b);
+            break;
+        }
+    }
+}

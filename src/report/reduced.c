@@ -1,0 +1,284 @@
+// Collecting the reduced equations; see reduced.h.
+#include "report/reduced.h"
+
+#include "expr/collect.h"
+#include "base/sort.h"
+#include "expr/share.h"
+#include "formulate/dynamics.h"
+
+// Beyond this many nodes of an expanded expression nobody reads it as a formula of its own, and
+// collecting takes seconds.
+static const double largest_collected = 20000;
+
+struct quaternions {
+    ct_ex (*at)[4];
+    size_t n;
+};
+
+static struct quaternions quaternions_of(struct ct_arena *a, const struct ct_equations *e)
+{
+    struct quaternions s = {ct_arena_calloc(a, e->nq + 1, sizeof *s.at), 0};
+    for (size_t i = 0; i + 3 < e->nq; i++) {
+        if (e->q[i].quaternion != 0)
+            continue;
+        for (size_t k = 0; k < 4; k++)
+            s.at[s.n][k] = e->q[i + k].symbol;
+        s.n++;
+    }
+    return s;
+}
+
+static ct_ex collect(struct ct_equations *e, ct_ex v)
+{
+    if (ct_ex_is_zero(v) || ct_ex_is_const(e->x, v, NULL) || ct_ex_symbol(e->x, v))
+        return v;
+    struct ct_arena *work = ct_arena_create();
+    if (!work)
+        return v;
+    const struct quaternions s = quaternions_of(work, e);
+    const struct ct_collect_options o
+        = {.scratch = work, .quaternion = s.at, .nquaternion = s.n};
+    v = ct_ex_collect(e->x, v, &o);
+    ct_arena_destroy(work);
+    return v;
+}
+
+// k (a + b) as k a + k b.
+static ct_ex spread(struct ct_equations *e, ct_ex k, ct_ex sum)
+{
+    struct ct_exs *x = e->x;
+    const struct ct_exnode n = *ct_ex_node(x, sum);
+    if (n.op == CT_OP_NEG)
+        return ct_ex_neg(x, spread(e, k, (ct_ex){n.a}));
+    if (n.op != CT_OP_ADD && n.op != CT_OP_SUB)
+        return ct_ex_mul(x, k, sum);
+    const ct_ex a = spread(e, k, (ct_ex){n.a}), b = spread(e, k, (ct_ex){n.b});
+    return n.op == CT_OP_ADD ? ct_ex_add(x, a, b) : ct_ex_sub(x, a, b);
+}
+
+// An equation keeps its terms apart where that costs little: -g*m1*l1*s1 - g*m2*l2*s2 rather than
+// -g*(m1*l1*s1 + m2*l2*s2).
+static ct_ex keep_apart(struct ct_equations *e, struct ct_arena *a, ct_ex v)
+{
+    struct ct_exs *x = e->x;
+    const struct ct_exnode n = *ct_ex_node(x, v);
+    if (n.op == CT_OP_NEG)
+        return ct_ex_neg(x, keep_apart(e, a, (ct_ex){n.a}));
+    if (n.op != CT_OP_MUL)
+        return v;
+    for (int i = 0; i < 2; i++) {
+        const ct_ex k = {i ? n.a : n.b}, sum = {i ? n.b : n.a};
+        const enum ct_op op = ct_ex_node(x, sum)->op;
+        const unsigned kinds = ct_ex_kinds(x, sum);
+        if ((op != CT_OP_ADD && op != CT_OP_SUB) || !(kinds & ~(1u << CT_SYM_PARAM)))
+            continue;
+        const ct_ex apart = spread(e, k, sum);
+        if (ct_ex_tree_size(x, a, apart) <= 1.3 * ct_ex_tree_size(x, a, v))
+            return apart;
+    }
+    return v;
+}
+
+// What is there at rest and what the speeds add, each collected: gravity stays apart from the
+// centrifugal terms, even if both share a factor.
+static ct_ex collect_force(struct ct_equations *e, struct ct_arena *a, ct_ex v)
+{
+    struct ct_exs *x = e->x;
+    const ct_ex whole = keep_apart(e, a, collect(e, v));
+    if (!(ct_ex_kinds(x, v) & 1u << CT_SYM_U))
+        return whole;
+    ct_ex *from = CT_NEWN(a, ct_ex, e->nu), *zero = CT_NEWN(a, ct_ex, e->nu);
+    for (size_t i = 0; i < e->nu; i++)
+        from[i] = e->u[i].symbol;
+    const ct_ex rest = collect(e, ct_ex_subst(x, v, from, zero, e->nu));
+    const ct_ex still = keep_apart(e, a, rest);
+    const ct_ex moving = keep_apart(e, a, collect(e, ct_ex_sub(x, v, rest)));
+    const ct_ex apart = ct_ex_add(x, moving, still);
+    const double size = ct_ex_tree_size(x, a, apart), least = ct_ex_tree_size(x, a, whole);
+    return size <= 1.5 * least + 8 ? apart : whole;
+}
+
+static double size_of_all(struct ct_equations *e, struct ct_arena *a, const ct_ex *effort)
+{
+    double size = 0;
+    for (size_t i = 0; i < e->ndriver; i++)
+        size += ct_ex_tree_size(e->x, a, effort[i]);
+    for (size_t i = 0; i < e->nM; i++)
+        size += ct_ex_tree_size(e->x, a, e->M[i].value);
+    for (size_t i = 0; i < e->nJ; i++)
+        size += ct_ex_tree_size(e->x, a, e->J[i].value);
+    for (size_t i = 0; i < e->nu; i++)
+        size += ct_ex_tree_size(e->x, a, e->Q[i]);
+    for (size_t i = 0; i < e->nrow; i++)
+        size += ct_ex_tree_size(e->x, a, e->row[i].phi)
+              + ct_ex_tree_size(e->x, a, e->row[i].gam);
+    return size;
+}
+
+// Driven branch coordinates: their rows of the cutsets, less what the joint does by itself.
+static void find_efforts(struct ct_equations *e, ct_ex *effort)
+{
+    struct ct_build *b = e->build;
+    for (size_t i = 0; i < e->ncoordinate; i++) {
+        const struct ct_coordinate *c = &e->coordinate[i];
+        if (c->driver >= 0)
+            effort[c->driver]
+                = ct_ex_sub(b->x, ct_sweep_driver(b, c->driver), ct_joint_passive(b, (int)i));
+    }
+}
+
+void ct_reduced_prepare(struct ct_arena *a, struct ct_equations *e, bool may_collect,
+                        struct ct_reduced *r)
+{
+    *r = (struct ct_reduced){
+        .M = CT_NEWN(a, ct_ex, e->nM + 1),
+        .J = CT_NEWN(a, ct_ex, e->nJ + 1),
+        .Q = CT_NEWN(a, ct_ex, e->nu + 1),
+        .phi = CT_NEWN(a, ct_ex, e->nrow + 1),
+        .gam = CT_NEWN(a, ct_ex, e->nrow + 1),
+        .effort = CT_NEWN(a, ct_ex, e->ndriver + 1),
+        .rate = CT_NEWN(a, ct_ex, e->nq + 1),
+    };
+    find_efforts(e, r->effort);
+    r->is_collected = may_collect && size_of_all(e, a, r->effort) <= largest_collected;
+    for (size_t i = 0; i < e->nM; i++)
+        r->M[i] = r->is_collected ? collect(e, e->M[i].value) : e->M[i].value;
+    for (size_t i = 0; i < e->nJ; i++)
+        r->J[i] = r->is_collected ? collect(e, e->J[i].value) : e->J[i].value;
+    for (size_t i = 0; i < e->nu; i++)
+        r->Q[i] = r->is_collected ? collect_force(e, a, e->Q[i]) : e->Q[i];
+    for (size_t i = 0; i < e->nrow; i++) {
+        r->phi[i] = r->is_collected ? collect(e, e->row[i].phi) : e->row[i].phi;
+        r->gam[i] = r->is_collected ? collect(e, e->row[i].gam) : e->row[i].gam;
+    }
+    for (size_t i = 0; i < e->ndriver && r->is_collected; i++)
+        r->effort[i] = collect_force(e, a, r->effort[i]);
+    for (size_t i = 0; i < e->nq; i++)
+        r->rate[i] = collect(e, e->q[i].rate);
+}
+
+// ---- sharing ----------------------------------------------------------------------------------
+
+// All expressions one after the other; where = NULL: only their number.
+static size_t list_all(const struct ct_equations *e, const struct ct_reduced *r, ct_ex **where)
+{
+    const struct {
+        ct_ex *at;
+        size_t n;
+    } part[] = {{r->M, e->nM},     {r->Q, e->nu},     {r->J, e->nJ},
+                {r->phi, e->nrow}, {r->gam, e->nrow}, {r->effort, e->ndriver}};
+    size_t n = 0;
+    for (size_t k = 0; k < COUNT(part); k++)
+        for (size_t i = 0; i < part[k].n; i++, n++)
+            if (where)
+                where[n] = &part[k].at[i];
+    return n;
+}
+
+static ct_ex rebuild(struct ct_exs *x, ct_ex e, const ct_ex *map)
+{
+    const struct ct_exnode n = *ct_ex_node(x, e);
+    switch (ct_op_info[n.op].narg) {
+    case 0:
+        return e;
+    case 1:
+        if (n.op == CT_OP_TABLE)
+            return ct_ex_table(x, n.b, n.c, map[n.a]);
+        return n.op == CT_OP_NEG ? ct_ex_neg(x, map[n.a])
+                                 : ct_ex_fun(x, (enum ct_op)n.op, map[n.a]);
+    case 2:
+        return ct_ex_fun2(x, (enum ct_op)n.op, map[n.a], map[n.b]);
+    default:
+        return ct_ex_if(x, map[n.a], map[n.b], map[n.c]);
+    }
+}
+
+// Bodies are short by now: like terms that the names have brought to light are collected.
+static ct_ex tidy(struct ct_equations *e, struct ct_arena *a, ct_ex v)
+{
+    return ct_ex_tree_size(e->x, a, v) < 1000 ? collect(e, v) : v;
+}
+
+static int by_id(const void *unused, const void *a, const void *b)
+{
+    const uint32_t m = *(const uint32_t *)a, n = *(const uint32_t *)b;
+    (void)unused;
+    return (m > n) - (m < n);
+}
+
+// Each named node becomes a symbol; children have smaller ids, so one sweep upwards does.
+static void replace_named(struct ct_arena *a, struct ct_equations *e, struct ct_reduced *r,
+                          struct ct_share *share, const ct_ex *root, size_t nroot, ct_ex *map)
+{
+    struct ct_exs *x = e->x;
+    const size_t n = ct_ex_walk(x, root, nroot);
+    uint32_t *id = CT_NEWN(a, uint32_t, n + 1);
+    for (size_t k = 0; k < n; k++)
+        id[k] = x->stack[k];
+    ct_sort(a, id, n, sizeof *id, by_id, NULL);
+    r->definition = CT_NEWN(a, struct ct_reduced_definition, share->n + 1);
+    for (size_t k = 0; k < n; k++) {
+        const ct_ex old = {id[k]};
+        const char *name = ct_share_name(share, old);
+        map[old.id] = rebuild(x, old, map);
+        if (!name)
+            continue;
+        const uint32_t number = (uint32_t)r->ndefinition;
+        struct ct_reduced_definition *d = &r->definition[r->ndefinition++];
+        d->value = tidy(e, a, map[old.id]);
+        d->symbol = map[old.id] = ct_ex_sym(x, CT_SYM_LOCAL, name, number);
+    }
+}
+
+// The order a reader meets them in: those a definition needs stand before it.
+void ct_reduced_share(struct ct_arena *a, struct ct_equations *e, struct ct_reduced *r)
+{
+    const struct ct_share_options o = {.most = 2000, .enough = 2000};
+    const size_t n = list_all(e, r, NULL);
+    ct_ex **where = CT_NEWN(a, ct_ex *, n + 1);
+    ct_ex *root = CT_NEWN(a, ct_ex, n + 1);
+    list_all(e, r, where);
+    for (size_t i = 0; i < n; i++)
+        root[i] = *where[i];
+    struct ct_share share = ct_ex_share(a, e->x, root, n, &o);
+    ct_ex *map = CT_NEWN(a, ct_ex, e->x->nnode);
+    replace_named(a, e, r, &share, root, n, map);
+    for (size_t i = 0; i < n; i++)
+        *where[i] = tidy(e, a, map[root[i].id]);
+    r->size = share.size;
+}
+
+// ---- equations --------------------------------------------------------------------------------
+
+// M is symmetric and holds its lower triangle.
+ct_ex ct_reduced_left(struct ct_equations *e, const struct ct_reduced *r, size_t i)
+{
+    ct_ex sum = CT_EX_ZERO;
+    for (size_t k = 0; k < e->nM; k++) {
+        const int row = e->M[k].row, column = e->M[k].column;
+        if (row != (int)i && column != (int)i)
+            continue;
+        const ct_ex acceleration = e->u[row == (int)i ? column : row].derivative;
+        sum = ct_ex_add(e->x, sum, ct_ex_mul(e->x, r->M[k], acceleration));
+    }
+    return sum;
+}
+
+ct_ex ct_reduced_right(struct ct_equations *e, const struct ct_reduced *r, size_t i)
+{
+    ct_ex sum = r->Q[i];
+    for (size_t k = 0; k < e->nJ; k++)
+        if (e->J[k].column == (int)i)
+            sum = ct_ex_add(e->x, sum, ct_ex_mul(e->x, r->J[k], e->row[e->J[k].row].lam));
+    return sum;
+}
+
+ct_ex ct_reduced_row_left(struct ct_equations *e, const struct ct_reduced *r, size_t row)
+{
+    ct_ex sum = CT_EX_ZERO;
+    for (size_t k = 0; k < e->nJ; k++)
+        if (e->J[k].row == (int)row)
+            sum = ct_ex_add(e->x, sum,
+                            ct_ex_mul(e->x, r->J[k], e->u[e->J[k].column].derivative));
+    return sum;
+}

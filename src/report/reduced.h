@@ -1,0 +1,50 @@
+// The reduced equations prepared for reading: collected where that pays, shared where it must be.
+//
+//     sum over j of M[i][j] u'[j]  =  Q[i] + sum over r of J[r][i] lam[r]
+//
+// What always holds: each expression equals its namesake in struct ct_equations up to rounding.
+#ifndef CT_REPORT_REDUCED_H
+#define CT_REPORT_REDUCED_H
+
+#include "formulate/equations.h"
+
+struct ct_reduced_definition {
+    ct_ex symbol; // of kind LOCAL
+    ct_ex value;  // may use symbols of earlier definitions
+};
+
+struct ct_reduced {
+    ct_ex *M;         // nM values in the order of ct_equations.M
+    ct_ex *J;         // nJ
+    ct_ex *Q;         // nu
+    ct_ex *phi, *gam; // nrow
+    ct_ex *effort;    // ndriver: of the drivers of branches, in terms of u' and lam
+    ct_ex *rate;      // nq: q' in terms of u
+    bool is_collected;
+    struct ct_reduced_definition *definition; // none if everything is short
+    size_t ndefinition;
+    double size; // of the whole print in characters, about; known once there are definitions
+};
+
+/// Collect if allowed and the system is small enough. No definitions yet.
+void ct_reduced_prepare(struct ct_arena *a, struct ct_equations *e, bool may_collect,
+                        struct ct_reduced *r);
+
+/// Names for what is written more than once: the expressions then use the symbols of definitions.
+void ct_reduced_share(struct ct_arena *a, struct ct_equations *e, struct ct_reduced *r);
+
+/// Left and right side of the equation of speed i; of row r: J u' and -gam.
+ct_ex ct_reduced_left(struct ct_equations *e, const struct ct_reduced *r, size_t i);
+ct_ex ct_reduced_right(struct ct_equations *e, const struct ct_reduced *r, size_t i);
+ct_ex ct_reduced_row_left(struct ct_equations *e, const struct ct_reduced *r, size_t row);
+
+/// Names for what the recursion computes, by the frames it belongs to, as labels of the store:
+///
+///     phi_rod, c_rod, s_rod   angle of rod about a fixed axis, its cosine and sine
+///     R_rod.xy                rotation of rod
+///     w_rod.z, al_rod.z       angular velocity; angular acceleration with all u' = 0
+///     d_pin.x, v_pin.x, a_pin.x   vector from the previous joint to pin; its rates with all u' = 0
+///     F_pin.x, T_rod.x        force and torque that the branch must supply, with all u' = 0
+void ct_reduced_label(struct ct_equations *e);
+
+#endif

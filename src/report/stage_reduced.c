@@ -1,0 +1,187 @@
+// The reduced equations as equations of a page.
+#include "report/derivation.h"
+
+// Lines of text beyond which subexpressions get names.
+enum { MOST_LINES = 30 };
+
+static size_t lines_of(const char *s)
+{
+    return 1 + ct_text_width(s) / (CT_PAGE_WIDTH - 12);
+}
+
+struct sides {
+    ct_ex left, right;
+    const char *label;
+};
+
+struct group {
+    struct sides *at;
+    size_t n, cap;
+};
+
+static void add(struct ct_derivation *d, struct group *g, const char *label, ct_ex left,
+                ct_ex right)
+{
+    const struct sides s = {left, right, label};
+    CT_PUSH(d->a, g->at, g->n, g->cap, s);
+}
+
+static void put_group(struct ct_derivation *d, const struct group *g)
+{
+    ct_page_equations(&d->page);
+    for (size_t i = 0; i < g->n; i++)
+        ct_page_equation(&d->page, g->at[i].label, ct_derivation_text(d, g->at[i].left),
+                         ct_derivation_text(d, g->at[i].right), NULL);
+}
+
+static const char *speed_label(struct ct_derivation *d, size_t i)
+{
+    const struct ct_u *u = &d->e->u[i];
+    return u->q >= 0 ? d->e->q[u->q].name : u->name;
+}
+
+// ---- sharing ----------------------------------------------------------------------------------
+
+static bool is_long(struct ct_derivation *d, const struct group *g, size_t n)
+{
+    size_t lines = 0;
+    for (size_t k = 0; k < n; k++)
+        for (size_t i = 0; i < g[k].n && lines <= MOST_LINES; i++)
+            lines += lines_of(ct_derivation_text(d, g[k].at[i].left))
+                   + lines_of(ct_derivation_text(d, g[k].at[i].right));
+    return lines > MOST_LINES;
+}
+
+static void put_definitions(struct ct_derivation *d, const struct ct_reduced *r)
+{
+    if (!r->ndefinition)
+        return;
+    ct_page_heading(&d->page, "with");
+    ct_page_equations(&d->page);
+    for (size_t i = 0; i < r->ndefinition; i++)
+        ct_page_equation(&d->page, NULL, ct_derivation_text(d, r->definition[i].symbol),
+                         ct_derivation_text(d, r->definition[i].value), NULL);
+}
+
+// ---- groups -----------------------------------------------------------------------------------
+
+enum { MOTION, CLOSURE, CLOSURE_RATE, EFFORT, KINEMATIC, NGROUP };
+
+static void fill(struct ct_derivation *d, const struct ct_reduced *r, struct group g[NGROUP])
+{
+    struct ct_equations *e = d->e;
+    for (size_t i = 0; i < e->nu; i++)
+        add(d, &g[MOTION], speed_label(d, i), ct_reduced_left(e, r, i),
+            ct_reduced_right(e, r, i));
+    for (size_t i = 0; i < e->nrow; i++) {
+        add(d, &g[CLOSURE], e->row[i].name, r->phi[i], CT_EX_ZERO);
+        add(d, &g[CLOSURE_RATE], e->row[i].name, ct_reduced_row_left(e, r, i),
+            ct_ex_neg(e->x, r->gam[i]));
+    }
+    for (size_t i = 0; i < e->ndriver; i++)
+        add(d, &g[EFFORT], e->driver[i].name, r->effort[i], CT_EX_ZERO);
+    for (size_t i = 0; i < e->nq; i++)
+        if (e->q[i].quaternion >= 0)
+            add(d, &g[KINEMATIC], NULL, e->q[i].symbol, r->rate[i]);
+}
+
+static void put_kinematic(struct ct_derivation *d, const struct group *g)
+{
+    ct_page_heading(&d->page, "kinematic equations: rates of the unit quaternions");
+    ct_page_equations(&d->page);
+    for (size_t i = 0; i < g->n; i++) {
+        const char *name
+            = ct_arena_printf(d->a, "%s'", ct_ex_symbol(d->e->x, g->at[i].left)->name);
+        ct_page_equation(&d->page, NULL, ct_derivation_name(d, name),
+                         ct_derivation_text(d, g->at[i].right), NULL);
+    }
+}
+
+static void put_efforts(struct ct_derivation *d, const struct group *g)
+{
+    ct_page_heading(&d->page, "efforts of the drivers");
+    ct_page_equations(&d->page);
+    for (size_t i = 0; i < g->n; i++)
+        ct_page_equation(&d->page, NULL, ct_derivation_effort(d, g->at[i].label),
+                         ct_derivation_text(d, g->at[i].left), NULL);
+}
+
+// Symbols that stand for what changes at events, or from one step to the next.
+static void put_held(struct ct_derivation *d)
+{
+    const struct ct_equations *e = d->e;
+    if (e->nmode) {
+        ct_page_heading(&d->page, "held between events: 1 where it holds, else 0");
+        ct_page_equations(&d->page);
+    }
+    for (size_t i = 0; i < e->nmode; i++) {
+        const struct ct_mode *m = &e->mode[i];
+        const ct_ex holds = ct_ex_fun2(e->x, m->op, m->g, CT_EX_ZERO);
+        ct_page_equation(&d->page, NULL, ct_derivation_text(d, m->symbol),
+                         ct_derivation_text(d, holds), NULL);
+    }
+    for (size_t i = 0; i < e->nmemory; i++)
+        ct_page_sentence(&d->page, "%s: %s", ct_ex_symbol(e->x, e->memory[i].symbol)->name,
+                         e->memory[i].kind == CT_MEMORY_OFFSET
+                             ? "constant, from the assembled start"
+                             : "value at the last step");
+}
+
+static const char *count(struct ct_derivation *d, size_t n, const char *one, const char *many)
+{
+    return n == 0 ? ct_arena_printf(d->a, "no %s", many)
+                  : ct_arena_printf(d->a, "%zu %s", n, n == 1 ? one : many);
+}
+
+// Expressions with definitions: collected ones or those of the recursion, whichever is shorter.
+static void share(struct ct_derivation *d, struct ct_reduced *r)
+{
+    struct ct_reduced plain;
+    ct_reduced_label(d->e);
+    ct_reduced_prepare(d->a, d->e, false, &plain);
+    ct_reduced_share(d->a, d->e, &plain);
+    if (r->is_collected)
+        ct_reduced_share(d->a, d->e, r);
+    if (!r->is_collected || plain.size < r->size)
+        *r = plain;
+}
+
+void ct_derivation_reduce(struct ct_derivation *d, struct ct_reduced *r)
+{
+    struct group g[NGROUP] = {0};
+    ct_reduced_prepare(d->a, d->e, true, r);
+    fill(d, r, g);
+    if (!r->is_collected || is_long(d, g, NGROUP))
+        share(d, r);
+}
+
+void ct_stage_reduced(struct ct_derivation *d)
+{
+    struct ct_equations *e = d->e;
+    struct ct_reduced r;
+    struct group g[NGROUP] = {0};
+    ct_derivation_reduce(d, &r);
+    fill(d, &r, g);
+    ct_page_title(&d->page, "Equations of motion");
+    ct_page_sentence(
+        &d->page, "%s, %s%s", count(d, e->nu, "unknown speed", "unknown speeds"),
+        count(d, e->nrow, "constraint", "constraints"),
+        e->nu ? "; each equation is the cutset of a branch, projected on its motion" : "");
+    put_definitions(d, &r);
+    if (e->nu) {
+        ct_page_heading(&d->page,
+                        e->nrow ? "motion: M u' = Q + J' lambda" : "motion: M u' = Q");
+        put_group(d, &g[MOTION]);
+    }
+    if (e->nrow) {
+        ct_page_heading(&d->page, "constraints: Phi = 0");
+        put_group(d, &g[CLOSURE]);
+        ct_page_heading(&d->page, "constraints, differentiated twice: J u' = -gam");
+        put_group(d, &g[CLOSURE_RATE]);
+    }
+    if (g[EFFORT].n)
+        put_efforts(d, &g[EFFORT]);
+    put_held(d);
+    if (g[KINEMATIC].n)
+        put_kinematic(d, &g[KINEMATIC]);
+}

@@ -1,0 +1,213 @@
+// The trees, and what they make of the model: unknowns, drivers, constraint rows.
+#include "report/derivation.h"
+
+#include "formulate/build.h"
+
+#include <string.h>
+
+// ---- branches and chords --------------------------------------------------------------------------
+
+static const char *role(struct ct_derivation *d, const struct ct_tree *t, const int *weight,
+                        int e, bool is_in)
+{
+    if (!is_in)
+        return "-";
+    return ct_arena_printf(d->a, "%s (%d)", t->is_branch[e] ? "branch" : "chord ", weight[e]);
+}
+
+static void put_trees(struct ct_derivation *d)
+{
+    const struct ct_equations *e = d->e;
+    const struct ct_build *b = e->build;
+    int narm = 0;
+    ct_page_table(&d->page, "llllll");
+    CT_PAGE_ROW(&d->page, "component", "type", "from", "to", "translation", "rotation");
+    for (int i = 0; i < e->graph->nedge; i++) {
+        const struct ct_edge *w = &e->graph->edge[i];
+        if (b->edge[i].kind == CT_EDGE_ARM) {
+            narm++;
+            continue;
+        }
+        const bool force = b->edge[i].kind == CT_EDGE_FORCE;
+        CT_PAGE_ROW(&d->page, e->edge_name[i], e->edge_kind[i], e->node_name[w->tail],
+                    e->node_name[w->head],
+                    force ? "chord" : role(d, e->T, e->weight_t, i, true),
+                    force ? "chord" : role(d, e->R, e->weight_r, i, b->edge[i].has_rotation));
+    }
+    ct_page_sentence(&d->page, "in brackets: the unknowns an edge adds as a branch%s",
+                     narm ? "; arms are branches of both trees" : "");
+}
+
+// ---- coordinates ----------------------------------------------------------------------------------
+
+static const struct ct_coordinate *coordinate_of(const struct ct_equations *e, int q)
+{
+    for (size_t i = 0; i < e->ncoordinate; i++)
+        if (e->coordinate[i].q == q)
+            return &e->coordinate[i];
+    return NULL;
+}
+
+static const struct ct_measure *measure_of(const struct ct_equations *e,
+                                           const struct ct_coordinate *c)
+{
+    const struct ct_motion *m = &e->build->edge[c->edge].motion;
+    const int k = m->quaternion >= 0 && c->place > m->quaternion ? m->quaternion : c->place;
+    return k < m->nmeasure ? &m->measure[k] : NULL;
+}
+
+static const char *meaning_of(struct ct_derivation *d, const struct ct_coordinate *c,
+                              const char **unit)
+{
+    const struct ct_edge_info *e = &d->e->build->edge[c->edge];
+    const struct ct_measure *m = measure_of(d->e, c);
+    const char *what = e->kind == CT_EDGE_BODY
+                         ? ct_arena_printf(d->a, "body %s", e->name)
+                         : ct_arena_printf(d->a, "%s joint %s", e->self->cls->name, e->name);
+    *unit = "m";
+    if (!m) {
+        *unit = c->in_rotation ? "rad" : "m";
+        return ct_arena_printf(d->a, "coordinate %d of %s", c->place + 1, what);
+    }
+    if (m->kind == CT_MEASURE_QUATERNION) {
+        *unit = "";
+        return ct_arena_printf(d->a, "orientation of %s, unit quaternion, scalar first", what);
+    }
+    if (m->kind == CT_MEASURE_ANGLE) {
+        *unit = "rad";
+        return ct_arena_printf(d->a, "angle of %s about %s", what,
+                               ct_derivation_axis(d, m->about));
+    }
+    return e->kind == CT_EDGE_BODY
+             ? ct_arena_printf(d->a, "place of the centre of mass of %s along %s", what,
+                               ct_derivation_axis(d, m->along))
+             : ct_arena_printf(d->a, "displacement of %s along %s", what,
+                               ct_derivation_axis(d, m->along));
+}
+
+static void put_unknowns(struct ct_derivation *d)
+{
+    const struct ct_equations *e = d->e;
+    if (!e->nq)
+        return;
+    ct_page_heading(&d->page, "unknown coordinates");
+    ct_page_table(&d->page, "LLll");
+    CT_PAGE_ROW(&d->page, "coordinate", "speed", "unit", "meaning");
+    for (size_t i = 0; i < e->nu; i++) {
+        const struct ct_u *u = &e->u[i];
+        const char *unit;
+        const char *speed = ct_derivation_text(d, u->symbol);
+        if (u->q >= 0) {
+            const char *meaning = meaning_of(d, coordinate_of(e, u->q), &unit);
+            CT_PAGE_ROW(&d->page, ct_derivation_text(d, e->q[u->q].symbol), speed, unit,
+                        meaning);
+        } else {
+            const char *of = u->joint >= 0 ? d->m->joint[u->joint].name
+                                           : d->m->body[u->body].instance.name;
+            CT_PAGE_ROW(&d->page, "", speed, "rad/s",
+                        ct_arena_printf(d->a, "angular velocity of %s in its own axes", of));
+        }
+    }
+    for (size_t i = 0; i < e->nq; i++)
+        if (e->q[i].quaternion == 0) {
+            const char *unit, *meaning = meaning_of(d, coordinate_of(e, (int)i), &unit);
+            const char *last = strrchr(e->q[i + 3].name, '.');
+            CT_PAGE_ROW(
+                &d->page,
+                d->page.look == CT_LOOK_LATEX
+                    ? ct_derivation_text(d, e->q[i].symbol)
+                    : ct_arena_printf(d->a, "%s..%s", e->q[i].name, last ? last + 1 : ""),
+                "", "", meaning);
+        }
+}
+
+static void put_drivers(struct ct_derivation *d)
+{
+    const struct ct_equations *e = d->e;
+    if (!e->ndriver)
+        return;
+    ct_page_heading(&d->page, "driven coordinates");
+    ct_page_equations(&d->page);
+    for (size_t i = 0; i < e->ndriver; i++)
+        ct_page_equation(&d->page, NULL, ct_derivation_name(d, e->driver[i].name),
+                         ct_derivation_text(d, e->driver[i].value), NULL);
+}
+
+static void put_dependent(struct ct_derivation *d)
+{
+    const struct ct_equations *e = d->e;
+    const char *list = "";
+    for (size_t i = 0; i < e->ncoordinate; i++) {
+        const struct ct_coordinate *c = &e->coordinate[i];
+        if (c->q >= 0 || c->driver >= 0 || e->build->edge[c->edge].kind != CT_EDGE_JOINT)
+            continue;
+        list = ct_arena_printf(d->a, "%s%s%s", list, *list ? ", " : "", c->name);
+    }
+    if (*list)
+        ct_page_sentence(&d->page, "joint coordinates that follow from these by circuits: %s",
+                         list);
+}
+
+// ---- rows -----------------------------------------------------------------------------------------
+
+static const char *row_meaning(const char *name, const char **unit)
+{
+    const char *part = strrchr(name, '.');
+    *unit = "N";
+    if (!part) {
+        *unit = "";
+        return "the coordinates keep their ratio";
+    }
+    part++;
+    if (!strncmp(part, "across", 6))
+        return "no displacement across the axis";
+    if (!strcmp(part, "length"))
+        return "the distance is kept";
+    if (strlen(part) == 1)
+        return "the origins coincide";
+    *unit = "N*m";
+    if (!strcmp(part, "angle"))
+        return "the angle is kept";
+    if (!strncmp(part, "turn", 4))
+        return "two axes keep their angle";
+    *unit = "";
+    return "the motion is prescribed";
+}
+
+static void put_rows(struct ct_derivation *d)
+{
+    const struct ct_equations *e = d->e;
+    if (!e->nrow)
+        return;
+    ct_page_heading(&d->page, "constraint rows of the chords");
+    ct_page_table(&d->page, "lLll");
+    CT_PAGE_ROW(&d->page, "row", "multiplier", "unit", "meaning");
+    for (size_t i = 0; i < e->nrow; i++) {
+        const char *unit, *meaning = row_meaning(e->row[i].name, &unit);
+        CT_PAGE_ROW(&d->page, e->row[i].name, ct_derivation_text(d, e->row[i].lam), unit,
+                    meaning);
+    }
+}
+
+static void put_left_out(struct ct_derivation *d)
+{
+    const struct ct_equations *e = d->e;
+    if (!e->nleft_out)
+        return;
+    ct_page_heading(&d->page, "left out");
+    for (size_t i = 0; i < e->nleft_out; i++)
+        ct_page_sentence(&d->page, "%s: %s", e->left_out[i].what, e->left_out[i].why);
+}
+
+void ct_stage_tree(struct ct_derivation *d)
+{
+    ct_page_title(&d->page, "Trees");
+    if (d->e->how)
+        ct_page_sentence(&d->page, "chosen: %s", d->e->how);
+    put_trees(d);
+    put_unknowns(d);
+    put_dependent(d);
+    put_drivers(d);
+    put_rows(d);
+    put_left_out(d);
+}

@@ -1,0 +1,372 @@
+// Runs: options resolved, the start assembled, the motion integrated and written.
+#include "api.h"
+
+#include "report/json.h"
+#include "report/progress.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+// The error of a solution is larger than that of its steps: over the reference cases 10 to 600 times the
+// tolerance of the steps. So steps are held to this fraction of what is wanted, as far as double
+// precision has that many digits. Closed loops lose digits where they pass near singular positions: ten
+// four-bars in a row (R05_N10) need 1e-12, and then meet their reference to 4e-10.
+static const double safety = 0.01;
+static const double least_rtol = 2e-14, least_rtol_loops = 1e-12;
+// Below this tolerance of the steps the higher order pays for its twelve evaluations.
+static const double high_order_below = 1e-8;
+
+// ---- results as a file --------------------------------------------------------------------------------
+
+struct ct_result_file {
+    bool is_json;
+    struct ct_csv csv;
+    struct ct_outfile json;
+    double *value; // JSON is written by columns: rows are kept until the end
+    size_t nvalue, value_cap, ncolumn;
+    const char **column; // "t" first
+};
+
+static bool has_suffix(const char *path, const char *suffix)
+{
+    const size_t n = strlen(path), k = strlen(suffix);
+    return n >= k && strcmp(path + n - k, suffix) == 0;
+}
+
+static bool open_file(struct ct_sim *sim, const char *path)
+{
+    const struct ct_equations *e = &sim->system->equations;
+    struct ct_result_file *f = sim->file = CT_NEW(sim->own.model, struct ct_result_file);
+    f->ncolumn = e->nresult + 1;
+    f->column = CT_NEWN(sim->own.model, const char *, f->ncolumn);
+    f->column[0] = "t";
+    for (size_t i = 0; i < e->nresult; i++)
+        f->column[i + 1] = e->result[i].name;
+    f->is_json = has_suffix(path, ".json");
+    if (f->is_json)
+        return ct_outfile_open(&sim->own, &f->json, path);
+    return ct_csv_open(&sim->own, &f->csv, strcmp(path, "-") == 0 ? NULL : path, f->column,
+                       f->ncolumn);
+}
+
+static bool write_row(struct ct_sim *sim, double t, const double *value)
+{
+    struct ct_result_file *f = sim->file;
+    if (!f->is_json) {
+        ct_csv_number(&f->csv, t);
+        for (size_t i = 0; i + 1 < f->ncolumn; i++)
+            ct_csv_number(&f->csv, value[i]);
+        return ct_csv_end_row(&sim->own, &f->csv);
+    }
+    CT_PUSH(sim->own.model, f->value, f->nvalue, f->value_cap, t);
+    for (size_t i = 0; i + 1 < f->ncolumn; i++)
+        CT_PUSH(sim->own.model, f->value, f->nvalue, f->value_cap, value[i]);
+    return true;
+}
+
+static void write_columns(struct ct_sim *sim)
+{
+    const struct ct_result_file *f = sim->file;
+    const size_t n = f->nvalue / f->ncolumn;
+    double *one = CT_NEWN(sim->own.model, double, n + 1);
+    struct ct_json j;
+    ct_json_init(&j, f->json.stream);
+    ct_json_object(&j, NULL);
+    for (size_t c = 0; c < f->ncolumn; c++) {
+        for (size_t i = 0; i < n; i++)
+            one[i] = f->value[i * f->ncolumn + c];
+        ct_json_numbers(&j, f->column[c], one, n);
+    }
+    ct_json_end(&j);
+}
+
+// ok: the run succeeded; else what there is stays in the partial file.
+static bool close_file(struct ct_sim *sim, bool ok)
+{
+    struct ct_result_file *f = sim->file;
+    if (f->is_json)
+        write_columns(sim);
+    if (ok)
+        return f->is_json ? ct_outfile_close(&sim->own, &f->json)
+                          : ct_csv_close(&sim->own, &f->csv);
+    ct_csv_abandon(&f->csv);
+    ct_outfile_abandon(&f->json);
+    return false;
+}
+
+// ---- options -------------------------------------------------------------------------------------------
+
+static bool wrong_option(struct ct_sim *sim, const char *name, double value)
+{
+    return ct_error(&sim->own, (struct ct_mark){0}, CT_E_USAGE,
+                    "%s is %g; it must be greater than 0", name, value);
+}
+
+static bool check_numbers(struct ct_sim *sim, const struct ct_sim_options *o)
+{
+    const struct {
+        const char *name;
+        double value;
+    } numbers[] = {{"the tolerance", o->tolerance},
+                   {"the absolute tolerance", o->absolute},
+                   {"the step", o->step},
+                   {"the end time", o->until},
+                   {"the number of samples", (double)o->samples}};
+    bool ok = true;
+    for (size_t i = 0; i < COUNT(numbers); i++)
+        if (!(numbers[i].value >= 0 && isfinite(numbers[i].value)))
+            ok = wrong_option(sim, numbers[i].name, numbers[i].value);
+    return ok;
+}
+
+static const char *method_list(struct ct_arena *a)
+{
+    const char *text = "auto";
+    for (int i = 0; i < ct_nmethod; i++)
+        text = ct_arena_printf(a, "%s, %s", text, ct_methods[i]->name);
+    return text;
+}
+
+static bool no_method(struct ct_sim *sim, const char *name, bool is_option)
+{
+    struct ct_arena *a = sim->own.model;
+    const char **names = CT_NEWN(a, const char *, ct_nmethod + 1);
+    for (int i = 0; i < ct_nmethod; i++)
+        names[i] = ct_methods[i]->name;
+    names[ct_nmethod] = "auto";
+    const char *near = ct_nearest(name, names, (size_t)ct_nmethod + 1);
+    return ct_error(
+        &sim->own, is_option ? (struct ct_mark){0} : sim->system->model.simulation.method_mark,
+        is_option ? CT_E_USAGE : CT_E_LATER,
+        "this version has no method '%s'%s%s%s; there are %s", name,
+        near ? ", did you mean '" : "", near ? near : "", near ? "'?" : "", method_list(a));
+}
+
+static bool choose_method(struct ct_sim *sim, const char *option)
+{
+    const char *name = option ? option : sim->system->model.simulation.method;
+    struct ct_run_options *o = &sim->run_options;
+    sim->method_why = option ? "as asked" : "as the model says";
+    o->method = ct_method_find(name);
+    if (o->method)
+        return true;
+    if (strcmp(name, "auto") != 0)
+        return no_method(sim, name, option != NULL);
+    // Where loops pass near singular positions, long steps of high order lose the branch they are on.
+    const bool is_open = sim->system->equations.nrow == 0;
+    const bool high = o->step == 0 && is_open && o->rtol < high_order_below;
+    o->method = ct_method_find(high ? "dop853" : "dopri5");
+    sim->method_why = o->step > 0 ? "automatic: a fixed step"
+                    : !is_open    ? "automatic: closed loops"
+                    : high        ? "automatic: no loops, a tight tolerance"
+                                  : "automatic: a moderate tolerance";
+    return true;
+}
+
+// The spacing of the model's samples is kept, as near as both ends allow.
+static size_t samples_until(const struct ct_simulation *m, double until)
+{
+    double spacing = m->interval;
+    if (spacing == 0 && m->has_duration && m->samples > 1)
+        spacing = m->duration / (double)(m->samples - 1);
+    if (!(spacing > 0))
+        return m->samples > 1 ? (size_t)m->samples : 2;
+    return (size_t)ceil(until / spacing * (1 - 1e-12)) + 1; // 10/0.01 may round upwards
+}
+
+static bool resolve_options(struct ct_sim *sim, const struct ct_sim_options *o)
+{
+    const struct ct_simulation *m = &sim->system->model.simulation;
+    if (!check_numbers(sim, o))
+        return false;
+    sim->tolerance = o->tolerance > 0 ? o->tolerance : m->rtol;
+    const double absolute = o->absolute > 0  ? o->absolute
+                          : o->tolerance > 0 ? o->tolerance / 100
+                                             : m->atol;
+    const double least = sim->system->equations.nrow ? least_rtol_loops : least_rtol;
+    sim->run_options = (struct ct_run_options){
+        .duration = o->until > 0 ? o->until : m->duration,
+        .rtol = fmax(safety * sim->tolerance, least),
+        .atol = fmax(safety * absolute, safety * least),
+        .step = o->step > 0 ? o->step : m->step,
+        .nsample = o->samples > 0 ? (size_t)o->samples
+                 : o->until > 0   ? samples_until(m, o->until)
+                                  : (size_t)m->samples,
+        .rate_jumps = m->rate_jumps,
+    };
+    return choose_method(sim, o->method);
+}
+
+// ---- the start ---------------------------------------------------------------------------------------
+
+struct create {
+    struct ct_ctx *ctx;
+    struct ct_sim *sim;
+    const struct ct_sim_options *options;
+};
+
+static bool prepare(struct ct_sim *sim, const struct ct_sim_options *o)
+{
+    struct ct_system *s = sim->system;
+    if (!resolve_options(sim, o))
+        return false;
+    const double start = ct_clock();
+    if (sim->run_options.method->is_implicit) // made once, when the first run asks for it
+        ct_formulate_residual(&s->equations);
+    if (!ct_assemble(&sim->own, sim->own.model, &s->model, &s->start_equations, &sim->start))
+        return false;
+    sim->run = ct_run_create(&sim->own, sim->own.model, &s->model, &s->equations, &sim->start);
+    sim->compile = ct_clock() - start;
+    if (!sim->run)
+        return false;
+    sim->open.row = CT_NEWN(sim->own.model, bool, s->equations.nrow + 1);
+    sim->open.result = CT_NEWN(sim->own.model, bool, s->equations.nresult + 1);
+    sim->report.final = CT_NEWN(sim->own.model, double, s->equations.nresult + 1);
+    sim->report.rank = ct_run_embed(sim->run)->rank;
+    if (ct_run_results(sim->run, 0, ct_run_state(sim->run), sim->report.final) != CT_EVAL_OK)
+        return ct_error(&sim->own, (struct ct_mark){.file = s->model.file}, CT_E_SINGULAR,
+                        "the equations are singular at the start");
+    ct_run_find_open(sim->run, 0, ct_run_state(sim->run), sim->open.row, sim->open.result);
+    return true;
+}
+
+static bool create(void *task)
+{
+    struct create *c = task;
+    ct_own_init(&c->sim->own);
+    const bool ok = prepare(c->sim, c->options);
+    ct_ctx_hand_over(c->ctx, &c->sim->own);
+    return ok;
+}
+
+struct ct_sim *ct_sim_create(struct ct_ctx *ctx, struct ct_system *sys,
+                             const struct ct_sim_options *options)
+{
+    static const struct ct_sim_options standard;
+    if (!sys)
+        return NULL;
+    struct create c = {ctx, calloc(1, sizeof *c.sim), options ? options : &standard};
+    if (!c.sim) {
+        ctx->no_memory = true;
+        return NULL;
+    }
+    c.sim->system = sys;
+    if (ct_enter(ctx, create, &c))
+        return c.sim;
+    ct_sim_destroy(c.sim);
+    return NULL;
+}
+
+void ct_sim_destroy(struct ct_sim *sim)
+{
+    if (sim)
+        ct_own_finish(&sim->own);
+    free(sim);
+}
+
+// ---- the run -------------------------------------------------------------------------------------------
+
+static bool at_row(void *user, double t, const double *value, size_t n)
+{
+    struct ct_sim *sim = user;
+    const double start = ct_clock();
+    sim->time = t;
+    bool go_on = !sim->file || write_row(sim, t, value);
+    if (go_on && sim->results->row)
+        go_on = sim->results->row(sim->results->user, t, value, n);
+    sim->write += ct_clock() - start;
+    return go_on;
+}
+
+static bool at_progress(void *user, double t, double end)
+{
+    struct ct_sim *sim = user;
+    ct_progress_update(sim->progress, end > 0 ? t / end : 1);
+    return true;
+}
+
+static bool integrate(struct ct_sim *sim)
+{
+    struct ct_run_options *o = &sim->run_options;
+    struct ct_progress progress = {0};
+    if (sim->results->progress) {
+        ct_progress_init(&progress, sim->results->progress, "simulate");
+        sim->progress = &progress;
+        o->progress = at_progress;
+    }
+    o->row = at_row;
+    o->user = sim;
+    const double start = ct_clock();
+    const bool ok = ct_run_simulate(sim->run, o, &sim->report);
+    sim->integrate = ct_clock() - start - sim->write;
+    ct_progress_finish(&progress);
+    sim->progress = NULL;
+    return ok;
+}
+
+// A run that a callback stopped has no diagnostic: it is done, too.
+static bool run(struct ct_sim *sim)
+{
+    const struct ct_simulation *m = &sim->system->model.simulation;
+    if (sim->has_run)
+        return ct_error(&sim->own, (struct ct_mark){0}, CT_E_USAGE, "the run is over already");
+    if (!m->has_duration && !(sim->run_options.duration > 0))
+        return ct_error(&sim->own, m->mark, CT_E_KEY_MISSING,
+                        "there is no end time: 'simulation' needs a 'duration'");
+    if (sim->results->path && !open_file(sim, sim->results->path))
+        return false;
+    sim->has_run = true;
+    bool ok = integrate(sim) || sim->own.nerror == 0;
+    const double start = ct_clock();
+    if (ok)
+        ct_run_find_open(sim->run, sim->time, sim->report.y, sim->open.row, sim->open.result);
+    if (sim->file)
+        ok = close_file(sim, ok);
+    sim->write += ct_clock() - start;
+    sim->is_done = ok;
+    return ok;
+}
+
+struct work {
+    struct ct_ctx *ctx;
+    struct ct_sim *sim;
+};
+
+static bool run_and_report(void *task)
+{
+    struct work *w = task;
+    const bool ok = run(w->sim);
+    ct_ctx_hand_over(w->ctx, &w->sim->own);
+    return ok;
+}
+
+bool ct_sim_run(struct ct_ctx *ctx, struct ct_sim *sim, const struct ct_sim_results *results)
+{
+    static const struct ct_sim_results nowhere;
+    struct work w = {ctx, sim};
+    if (!sim)
+        return false;
+    sim->results = results ? results : &nowhere;
+    const bool ok = ct_enter(ctx, run_and_report, &w);
+    if (!ok && sim->file) { // without memory the file is still open
+        ct_csv_abandon(&sim->file->csv);
+        ct_outfile_abandon(&sim->file->json);
+    }
+    sim->results = NULL;
+    return ok;
+}
+
+double ct_sim_time(const struct ct_sim *sim)
+{
+    return sim->time;
+}
+
+double ct_sim_value(const struct ct_sim *sim, const char *column)
+{
+    const struct ct_equations *e = &sim->system->equations;
+    for (size_t i = 0; i < e->nresult; i++)
+        if (strcmp(e->result[i].name, column) == 0)
+            return sim->report.final[i];
+    return NAN;
+}

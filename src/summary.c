@@ -1,0 +1,336 @@
+// What a run did, for people and for programs, and what a system is.
+#include "api.h"
+
+#include "report/json.h"
+
+#include <math.h>
+#include <string.h>
+
+// ---- numbers ---------------------------------------------------------------------------------------
+
+static long count(const struct ct_tape_counts *c)
+{
+    return c->multiplications + c->additions + c->divisions + c->functions;
+}
+
+// Arithmetic operations of embedding, (6.2), for n speeds, r kept rows, f = n - r freedoms: LU of J_d,
+// its solutions, products M B and B' M B, Cholesky of the reduced mass matrix.
+static long solve_operations(long n, long r)
+{
+    const long f = n - r;
+    const long lu = 2 * r * r * r / 3 + 2 * r * r * (f + 1);
+    const long right = 2 * n * r + 2 * r * f;
+    const long reduced = r ? 2 * n * r * f + r * f * (f + 1) : 0;
+    return lu + right + reduced + f * f * f / 3 + 2 * f * f + 2 * r * f;
+}
+
+static long operations(const struct ct_sim *sim)
+{
+    const struct ct_machine *m = ct_run_machine(sim->run);
+    const struct ct_tape_counts c = ct_tape_counts(m->motion.tape);
+    return count(&c) + solve_operations((long)m->nu, sim->report.rank);
+}
+
+static long freedoms(const struct ct_sim *sim)
+{
+    return (long)sim->system->equations.nu - sim->report.rank;
+}
+
+static long redundant(const struct ct_sim *sim)
+{
+    return (long)sim->system->equations.nrow - sim->report.rank;
+}
+
+static bool is_arm(const struct ct_equations *e, int edge)
+{
+    return strcmp(e->edge_kind[edge], "arm") == 0;
+}
+
+static bool same_trees(const struct ct_equations *e)
+{
+    for (int i = 0; i < e->graph->nedge; i++)
+        if (e->T->is_branch[i] != e->R->is_branch[i])
+            return false;
+    return true;
+}
+
+// ---- for programs ---------------------------------------------------------------------------------
+
+// Edges that are branches (chords) of one of the two trees at least.
+static void write_edges(struct ct_json *j, const struct ct_equations *e, const char *key,
+                        bool branches)
+{
+    ct_json_array(j, key);
+    for (int i = 0; i < e->graph->nedge; i++)
+        if (e->T->is_branch[i] == branches || e->R->is_branch[i] == branches)
+            ct_json_text(j, NULL, e->edge_name[i]);
+    ct_json_end(j);
+}
+
+// As a tree file: branches that are not arms.
+static void write_tree(struct ct_json *j, const struct ct_equations *e, const char *key,
+                       const struct ct_tree *t)
+{
+    ct_json_array(j, key);
+    for (int i = 0; i < t->nbranch; i++)
+        if (!is_arm(e, t->branch[i]))
+            ct_json_text(j, NULL, e->edge_name[t->branch[i]]);
+    ct_json_end(j);
+}
+
+static void write_left_out(struct ct_json *j, const struct ct_equations *e)
+{
+    ct_json_array(j, "left_out");
+    for (size_t i = 0; i < e->nleft_out; i++) {
+        ct_json_object(j, NULL);
+        ct_json_text(j, "what", e->left_out[i].what);
+        ct_json_text(j, "why", e->left_out[i].why);
+        ct_json_end(j);
+    }
+    ct_json_end(j);
+}
+
+static void write_structure(struct ct_json *j, const struct ct_sim *sim)
+{
+    const struct ct_equations *e = &sim->system->equations;
+    ct_json_integer(j, "coordinates", (long)e->nq);
+    ct_json_integer(j, "speeds", (long)e->nu);
+    ct_json_integer(j, "constraints", (long)e->nrow);
+    ct_json_integer(j, "redundant", redundant(sim));
+    ct_json_integer(j, "degrees_of_freedom", freedoms(sim));
+    ct_json_bool(j, "planar", e->is_planar);
+    write_edges(j, e, "tree", true);
+    write_edges(j, e, "cotree", false);
+    ct_json_object(j, "trees");
+    write_tree(j, e, "translation", e->T);
+    write_tree(j, e, "rotation", e->R);
+    ct_json_end(j);
+    ct_json_text(j, "tree_choice", sim->system->tree.how);
+    write_left_out(j, e);
+}
+
+static void write_open(struct ct_json *j, const struct ct_sim *sim)
+{
+    const struct ct_equations *e = &sim->system->equations;
+    ct_json_array(j, "undetermined");
+    for (size_t i = 0; i < e->nresult; i++)
+        if (sim->open.result[i])
+            ct_json_text(j, NULL, e->result[i].name);
+    ct_json_end(j);
+    ct_json_array(j, "undetermined_constraints");
+    for (size_t i = 0; i < e->nrow; i++)
+        if (sim->open.row[i])
+            ct_json_text(j, NULL, e->row[i].name);
+    ct_json_end(j);
+}
+
+static void write_work(struct ct_json *j, const struct ct_sim *sim)
+{
+    const struct ct_run_report *r = &sim->report;
+    ct_json_text(j, "method", sim->run_options.method->name);
+    ct_json_number(j, "tolerance", sim->tolerance);
+    ct_json_integer(j, "steps", r->stats.steps);
+    ct_json_integer(j, "rejected_steps", r->stats.rejected_steps);
+    ct_json_integer(j, "evaluations", r->stats.evaluations);
+    ct_json_integer(j, "jacobians", r->stats.jacobians);
+    ct_json_integer(j, "factorizations", r->factorizations);
+    ct_json_integer(j, "events", r->stats.events);
+    ct_json_integer(j, "operations", operations(sim));
+    ct_json_object(j, "seconds");
+    ct_json_number(j, "read", sim->system->read);
+    ct_json_number(j, "generate", sim->system->generate);
+    ct_json_number(j, "compile", sim->compile);
+    ct_json_number(j, "integrate", sim->integrate);
+    ct_json_number(j, "write", sim->write);
+    ct_json_end(j);
+    ct_json_object(j, "error");
+    ct_json_number(j, "energy_drift", r->energy_drift);
+    ct_json_number(j, "position_constraint", r->position_constraint);
+    ct_json_number(j, "velocity_constraint", r->velocity_constraint);
+    ct_json_end(j);
+}
+
+static void write_summary(FILE *out, const struct ct_sim *sim)
+{
+    const struct ct_equations *e = &sim->system->equations;
+    struct ct_json j;
+    ct_json_init(&j, out);
+    ct_json_object(&j, NULL);
+    ct_json_text(&j, "model", sim->system->model.name);
+    write_structure(&j, sim);
+    write_work(&j, sim);
+    write_open(&j, sim);
+    ct_json_object(&j, "final");
+    for (size_t i = 0; i < e->nresult; i++)
+        ct_json_number(&j, e->result[i].name, sim->report.final[i]);
+    ct_json_end(&j);
+    ct_json_end(&j);
+}
+
+struct work {
+    struct ct_ctx *ctx;
+    const struct ct_sim *sim;
+    const char *path;
+};
+
+static bool write_file(void *task)
+{
+    const struct work *w = task;
+    struct ct_outfile file;
+    if (!ct_outfile_open(w->ctx, &file, strcmp(w->path, "-") == 0 ? NULL : w->path))
+        return false;
+    write_summary(file.stream, w->sim);
+    return ct_outfile_close(w->ctx, &file);
+}
+
+bool ct_sim_write_summary(struct ct_ctx *ctx, const struct ct_sim *sim, const char *path)
+{
+    struct work w = {ctx, sim, path};
+    return sim && ct_enter(ctx, write_file, &w);
+}
+
+// ---- for people ---------------------------------------------------------------------------------------
+
+static void print_branches(FILE *out, const char *title, const struct ct_equations *e,
+                           const struct ct_tree *t)
+{
+    fprintf(out, "%-13s", title);
+    const char *comma = "";
+    for (int i = 0; i < t->nbranch; i++)
+        if (!is_arm(e, t->branch[i])) {
+            fprintf(out, "%s%s", comma, e->edge_name[t->branch[i]]);
+            comma = ", ";
+        }
+    fputs(*comma ? "\n" : "none\n", out);
+}
+
+static void print_trees(FILE *out, const struct ct_equations *e)
+{
+    if (same_trees(e)) {
+        print_branches(out, "branches", e, e->T);
+        return;
+    }
+    print_branches(out, "translation", e, e->T);
+    print_branches(out, "rotation", e, e->R);
+}
+
+static void print_freedoms(FILE *out, const struct ct_sim *sim)
+{
+    const struct ct_equations *e = &sim->system->equations;
+    fprintf(out, "coordinates  %zu, speeds %zu, constraints %zu, redundant %ld, freedoms %ld\n",
+            e->nq, e->nu, e->nrow, redundant(sim), freedoms(sim));
+}
+
+static void print_names(FILE *out, const char *title, const bool *is, size_t n,
+                        const char *(*name)(const struct ct_equations *e, size_t i),
+                        const struct ct_equations *e)
+{
+    const char *comma = title;
+    for (size_t i = 0; i < n; i++)
+        if (is[i]) {
+            fprintf(out, "%s%s", comma, name(e, i));
+            comma = ", ";
+        }
+    if (comma != title)
+        fputc('\n', out);
+}
+
+static const char *row_name(const struct ct_equations *e, size_t i)
+{
+    return e->row[i].name;
+}
+
+static const char *result_name(const struct ct_equations *e, size_t i)
+{
+    return e->result[i].name;
+}
+
+// Redundant constraints leave some forces open: which.
+static void print_open(FILE *out, const struct ct_sim *sim)
+{
+    const struct ct_equations *e = &sim->system->equations;
+    print_names(out, "undetermined ", sim->open.row, e->nrow, row_name, e);
+    print_names(out, "note: redundant constraints do not determine the outputs ",
+                sim->open.result, e->nresult, result_name, e);
+}
+
+void ct_sim_print_summary(const struct ct_sim *sim, FILE *out)
+{
+    const struct ct_run_report *r = &sim->report;
+    fprintf(out, "%s: t = %.9g s\n", sim->system->model.name, sim->time);
+    print_freedoms(out, sim);
+    fprintf(out, "tree         %s\n", sim->system->tree.how);
+    print_trees(out, &sim->system->equations);
+    fprintf(out, "method       %s (%s), ", sim->run_options.method->name, sim->method_why);
+    if (sim->run_options.step > 0)
+        fprintf(out, "step %g s\n", sim->run_options.step);
+    else
+        fprintf(out, "tolerance %g\n", sim->tolerance);
+    fprintf(out, "work         %ld steps, %ld rejected, %ld evaluations of %ld operations\n",
+            r->stats.steps, r->stats.rejected_steps, r->stats.evaluations, operations(sim));
+    fprintf(out, "error        energy drift %.2g, constraints %.2g, their rates %.2g\n",
+            r->energy_drift, r->position_constraint, r->velocity_constraint);
+    fprintf(out,
+            "seconds      read %.3g, generate %.3g, compile %.3g, integrate %.3g, write %.3g\n",
+            sim->system->read, sim->system->generate, sim->compile, sim->integrate, sim->write);
+    print_open(out, sim);
+}
+
+// ---- what a system is ----------------------------------------------------------------------------------
+
+static void print_counts(FILE *out, const char *title, const struct ct_program *p)
+{
+    const struct ct_tape_counts c = ct_tape_counts(p->tape);
+    fprintf(out, "%-13s%ld multiplications, %ld additions, %ld divisions, %ld functions\n",
+            title, c.multiplications, c.additions, c.divisions, c.functions);
+}
+
+// The rows that take no part in the dynamics, by joint.
+static void print_redundant(FILE *out, const struct ct_sim *sim)
+{
+    const struct ct_embed *s = ct_run_embed(sim->run);
+    const struct ct_equations *e = &sim->system->equations;
+    if (s->rank == (int)e->nrow)
+        return;
+    fputs("redundant    ", out);
+    for (int i = s->rank; i < (int)e->nrow; i++) {
+        const struct ct_row *row = &e->row[s->row[i]];
+        fprintf(out, "%s%s", i > s->rank ? ", " : "", row->name);
+        if (row->joint >= 0
+            && strcmp(sim->system->model.joint[row->joint].name, row->name) != 0)
+            fprintf(out, " (of joint %s)", sim->system->model.joint[row->joint].name);
+    }
+    fputc('\n', out);
+}
+
+void ct_sim_print_check(const struct ct_sim *sim, FILE *out)
+{
+    const struct ct_system *s = sim->system;
+    const struct ct_model *m = &s->model;
+    const struct ct_equations *e = &s->equations;
+    const struct ct_machine *machine = ct_run_machine(sim->run);
+    fprintf(out, "%s\n", m->name);
+    if (*m->description)
+        fprintf(out, "%s\n", m->description);
+    fprintf(out,
+            "model        %zu bodies, %zu joints, %zu forces, %zu parameters, %zu outputs\n",
+            m->nbody - 1, m->njoint, m->nforce, m->nparameter, m->noutput);
+    print_freedoms(out, sim);
+    fprintf(out, "freedoms     %ld = %zu speeds - rank %d of the constraints\n", freedoms(sim),
+            e->nu, sim->report.rank);
+    print_redundant(out, sim);
+    print_names(out, "undetermined ", sim->open.row, e->nrow, row_name, e);
+    print_names(out, "undetermined outputs: ", sim->open.result, e->nresult, result_name, e);
+    fprintf(out, "tree         %s", s->tree.how);
+    if (s->tree.cost > 0)
+        fprintf(out, ", cost %.0f (least weight: %.0f)", s->tree.cost,
+                s->tree.cost_least_weight);
+    fputc('\n', out);
+    print_trees(out, e);
+    for (size_t i = 0; i < e->nleft_out; i++)
+        fprintf(out, "left out     %s: %s\n", e->left_out[i].what, e->left_out[i].why);
+    print_counts(out, "motion", &machine->motion);
+    print_counts(out, "constraints", &machine->constraint);
+    fprintf(out, "evaluation   %ld operations, solving for accelerations included\n",
+            operations(sim));
+}

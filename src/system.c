@@ -1,0 +1,251 @@
+// The pipeline: model file -> equations of motion, stage by stage.
+#include "api.h"
+
+#include "graph/print.h"
+#include "io/yaml.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+// ---- trees that are asked for -------------------------------------------------------------------
+
+static bool read_branches(struct ct_ctx *ctx, const struct ct_node *node,
+                          const char *const **name, const struct ct_mark **mark, size_t *n)
+{
+    if (node->kind != CT_NODE_LIST)
+        return ct_error(ctx, node->mark, CT_E_SHAPE, "a list of branches is wanted, not %s",
+                        ct_node_what(node));
+    const char **names = CT_NEWN(ctx->model, const char *, node->n + 1);
+    struct ct_mark *marks = CT_NEWN(ctx->model, struct ct_mark, node->n + 1);
+    bool ok = true;
+    for (size_t i = 0; i < node->n; i++) {
+        const struct ct_node *item = node->item[i];
+        if (item->kind != CT_NODE_SCALAR)
+            ok = ct_error(ctx, item->mark, CT_E_SHAPE, "a name is wanted, not %s",
+                          ct_node_what(item));
+        names[i] = item->kind == CT_NODE_SCALAR ? item->text : "";
+        marks[i] = item->mark;
+    }
+    *name = names;
+    *mark = marks;
+    *n = node->n;
+    return ok;
+}
+
+// translation: [names]
+// rotation: [names]        as translation, when left out
+static bool read_tree_file(struct ct_ctx *ctx, const char *path, struct ct_formulate_options *f)
+{
+    const struct ct_node *root = NULL;
+    if (!ct_yaml_read(ctx, path, &root))
+        return false;
+    if (root->kind != CT_NODE_MAP)
+        return ct_error(
+            ctx, root->mark, CT_E_SHAPE,
+            "a tree file has the keys 'translation' and 'rotation', lists of branches");
+    static const char *const keys[] = {"translation", "rotation"};
+    bool ok = true;
+    for (size_t i = 0; i < root->n; i++) {
+        const struct ct_pair *p = &root->pair[i];
+        if (strcmp(p->key, keys[0]) == 0) {
+            ok &= read_branches(ctx, p->value, &f->trans, &f->trans_mark, &f->ntrans);
+        } else if (strcmp(p->key, keys[1]) == 0) {
+            ok &= read_branches(ctx, p->value, &f->rot, &f->rot_mark, &f->nrot);
+        } else {
+            const char *near = ct_nearest(p->key, keys, COUNT(keys));
+            ok = ct_error(ctx, p->mark, CT_E_KEY_UNKNOWN, "a tree file has no key '%s'%s%s%s",
+                          p->key, near ? ", did you mean '" : "", near ? near : "",
+                          near ? "'?" : "");
+        }
+    }
+    if (!ct_node_get(root, keys[0]))
+        return ct_error(ctx, root->mark, CT_E_KEY_MISSING, "the tree file needs 'translation'");
+    if (!ct_node_get(root, keys[1])) {
+        f->rot = f->trans;
+        f->rot_mark = f->trans_mark;
+        f->nrot = f->ntrans;
+    }
+    return ok;
+}
+
+static bool choose_tree(struct ct_ctx *ctx, const char *tree, struct ct_formulate_options *f)
+{
+    static const char *const words[] = {"auto", "joints", "absolute"};
+    static const enum ct_tree_choice choices[]
+        = {CT_TREE_AUTO, CT_TREE_JOINTS, CT_TREE_ABSOLUTE};
+    for (size_t i = 0; i < COUNT(words); i++)
+        if (!tree || strcmp(tree, words[i]) == 0) {
+            f->tree = choices[i];
+            return true;
+        }
+    f->tree = CT_TREE_GIVEN;
+    FILE *file = fopen(tree, "r");
+    if (file) {
+        fclose(file);
+        return read_tree_file(ctx, tree, f);
+    }
+    const char *near = ct_nearest(tree, words, COUNT(words));
+    return ct_error(
+        ctx, (struct ct_mark){0}, CT_E_USAGE,
+        "tree '%s': neither auto, joints, absolute nor a file that can be read%s%s%s", tree,
+        near ? ", did you mean '" : "", near ? near : "", near ? "'?" : "");
+}
+
+// ---- the pipeline ----------------------------------------------------------------------------------
+
+static bool read_model(struct ct_system *s, const char *path, const struct ct_system_options *o)
+{
+    const double start = ct_clock();
+    struct ct_set *set = CT_NEWN(s->own.model, struct ct_set, o->nset + 1);
+    for (size_t i = 0; i < o->nset; i++)
+        set[i].text = o->set[i];
+    const bool ok = ct_model_read(&s->own, path, set, o->nset, &s->model);
+    ct_own_next_stage(&s->own);
+    s->read = ct_clock() - start;
+    return ok;
+}
+
+static bool formulate(struct ct_system *s, const struct ct_formulate_options *f,
+                      struct ct_equations *out, struct ct_tree_report *report)
+{
+    const double start = ct_clock();
+    const bool ok = ct_formulate(&s->own, s->own.model, &s->model, f, out, report);
+    ct_own_next_stage(&s->own);
+    s->generate += ct_clock() - start;
+    return ok;
+}
+
+static bool build(struct ct_system *s, const char *path, const struct ct_system_options *o)
+{
+    struct ct_formulate_options motion
+        = {.keep_all = o->keep_all, .with_energy = true, .with_outputs = true};
+    // the start must not depend on the trees that the equations use
+    const struct ct_formulate_options start
+        = {.tree = CT_TREE_JOINTS, .keep_all = o->keep_all, .measure_all = true};
+    struct ct_tree_report unused;
+    return choose_tree(&s->own, o->tree, &motion)         // which branches, if any are given
+        && read_model(s, path, o)                         // text -> component instances
+        && formulate(s, &motion, &s->equations, &s->tree) // graph, trees, equations of motion
+        && formulate(s, &start, &s->start_equations, &unused); // equations for assembling
+}
+
+struct load {
+    struct ct_ctx *ctx;
+    struct ct_system *s;
+    const char *path;
+    const struct ct_system_options *options;
+};
+
+static bool load(void *task)
+{
+    struct load *l = task;
+    ct_own_init(&l->s->own);
+    const bool ok = build(l->s, l->path, l->options);
+    ct_ctx_hand_over(l->ctx, &l->s->own);
+    return ok;
+}
+
+struct ct_system *ct_system_load(struct ct_ctx *ctx, const char *path,
+                                 const struct ct_system_options *options)
+{
+    static const struct ct_system_options standard;
+    struct load l = {ctx, calloc(1, sizeof *l.s), path, options ? options : &standard};
+    if (!l.s) {
+        ctx->no_memory = true;
+        return NULL;
+    }
+    if (ct_enter(ctx, load, &l))
+        return l.s;
+    ct_system_destroy(l.s);
+    return NULL;
+}
+
+void ct_system_destroy(struct ct_system *sys)
+{
+    if (sys)
+        ct_own_finish(&sys->own);
+    free(sys);
+}
+
+// ---- what it is ---------------------------------------------------------------------------------------
+
+const char *ct_system_name(const struct ct_system *sys)
+{
+    return sys->model.name;
+}
+
+size_t ct_system_column_count(const struct ct_system *sys)
+{
+    return sys->equations.nresult;
+}
+
+const char *ct_system_column(const struct ct_system *sys, size_t i)
+{
+    return i < sys->equations.nresult ? sys->equations.result[i].name : NULL;
+}
+
+// ---- the graph -----------------------------------------------------------------------------------------
+
+static const char *node_name(void *data, int v)
+{
+    const struct ct_equations *e = data;
+    return e->node_name[v];
+}
+
+static const char *edge_name(void *data, int i)
+{
+    const struct ct_equations *e = data;
+    return e->edge_name[i];
+}
+
+static const char *edge_kind(void *data, int i)
+{
+    const struct ct_equations *e = data;
+    return e->edge_kind[i];
+}
+
+struct drawing {
+    struct ct_ctx *ctx;
+    struct ct_system *s;
+    const char *format;
+    FILE *out;
+};
+
+static bool draw(void *task)
+{
+    const struct drawing *d = task;
+    struct ct_equations *e = &d->s->equations;
+    struct ct_ctx *own = &d->s->own;
+    static const char *const formats[] = {"text", "dot", "json"};
+    bool *quiet = CT_NEWN(own->scratch, bool, e->graph->nedge + 1);
+    for (int i = 0; i < e->graph->nedge; i++)
+        quiet[i] = strcmp(e->edge_kind[i], "arm") == 0;
+    const struct ct_graph_names names = {.node = node_name,
+                                         .edge = edge_name,
+                                         .kind = edge_kind,
+                                         .data = e,
+                                         .weight_trans = e->weight_t,
+                                         .weight_rot = e->weight_r,
+                                         .is_quiet = quiet};
+    const struct ct_graph_view view = {e->graph, e->T, e->R, &names};
+    const char *format = d->format ? d->format : formats[0];
+    bool ok = true;
+    if (strcmp(format, "text") == 0)
+        ct_graph_print(d->out, own->scratch, &view);
+    else if (strcmp(format, "dot") == 0)
+        ct_graph_print_dot(d->out, &view);
+    else if (strcmp(format, "json") == 0)
+        ct_graph_print_json(d->out, own->scratch, &view);
+    else
+        ok = ct_error(d->ctx, (struct ct_mark){0}, CT_E_USAGE,
+                      "a graph has no format '%s': text, dot or json", format);
+    ct_own_next_stage(own);
+    return ok;
+}
+
+bool ct_system_print_graph(struct ct_ctx *ctx, struct ct_system *sys, const char *format,
+                           FILE *out)
+{
+    struct drawing d = {ctx, sys, format, out};
+    return sys && ct_enter(ctx, draw, &d);
+}

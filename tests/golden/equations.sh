@@ -1,0 +1,12 @@
+# The derivation of small systems: all stages of two, trees and reduced equations of the others.
+for s in pendulum slider_crank; do
+  "$PRINT_EQUATIONS" "$SYSTEMS/$s/model.yaml" all text >"$s.txt"
+  "$PRINT_EQUATIONS" "$SYSTEMS/$s/model.yaml" all latex >"$s.tex"
+done
+for s in cart_pole double_pendulum four_bar tumbling_body; do
+  "$PRINT_EQUATIONS" "$SYSTEMS/$s/model.yaml" tree,reduced text >"$s.txt"
+done
+"$PRINT_EQUATIONS" "$SYSTEMS/governor/model.yaml" terminal,reduced text >governor.txt
+"$PRINT_EQUATIONS" "$SYSTEMS/pendulum/model.yaml" all json >pendulum.json
+"$PRINT_EQUATIONS" "$SYSTEMS/pendulum/model.yaml" tree,reduced html >pendulum.html
+"$PRINT_EQUATIONS" "$SYSTEMS/slider_crank/model.yaml" reduced c >slider_crank.c

@@ -1,0 +1,371 @@
+// See system.h.
+#include "tests/property/system.h"
+
+#include <stdarg.h>
+
+const char *const shipped[] = {"systems/andrews/model.yaml",
+                               "systems/bricard/model.yaml",
+                               "systems/cart_pole/model.yaml",
+                               "systems/chain40/model.yaml",
+                               "systems/double_pendulum/model.yaml",
+                               "systems/four_bar/model.yaml",
+                               "systems/four_bar_near_singular/model.yaml",
+                               "systems/gimbal_top/model.yaml",
+                               "systems/governor/model.yaml",
+                               "systems/heavy_top/model.yaml",
+                               "systems/light_cart/model.yaml",
+                               "systems/n_four_bar/model.yaml",
+                               "systems/pendulum/model.yaml",
+                               "systems/puma560/model.yaml",
+                               "systems/puma560_driven/model.yaml",
+                               "systems/slider_crank/model.yaml",
+                               "systems/spatial_four_bar/model.yaml",
+                               "systems/spatial_slider_crank/model.yaml",
+                               "systems/stewart/model.yaml",
+                               "systems/stiff_spring_pendulum/model.yaml",
+                               "systems/tumbling_body/model.yaml"};
+const size_t nshipped = COUNT(shipped);
+
+const struct ct_formulate_options by_joints
+    = {.tree = CT_TREE_JOINTS, .with_energy = true, .with_outputs = true},
+    by_bodies = {.tree = CT_TREE_ABSOLUTE, .with_energy = true, .with_outputs = true},
+    by_choice = {.tree = CT_TREE_AUTO, .with_energy = true, .with_outputs = true},
+    by_joints_spatial
+    = {.tree = CT_TREE_JOINTS, .with_energy = true, .with_outputs = true, .keep_all = true},
+    by_bodies_spatial
+    = {.tree = CT_TREE_ABSOLUTE, .with_energy = true, .with_outputs = true, .keep_all = true};
+
+// ---- chance and comparison ------------------------------------------------------------------------------------
+
+static uint64_t seed = 20240611;
+
+void chance_start(void)
+{
+    const char *given = getenv("CT_TEST_SEED");
+    seed = given ? strtoull(given, NULL, 10) : 20240611;
+    print_message("seed %llu (CT_TEST_SEED)\n", (unsigned long long)seed);
+}
+
+// 64-bit congruential generator, constants of Knuth (MMIX)
+double chance(void)
+{
+    seed = seed * 6364136223846793005u + 1442695040888963407u;
+    return (double)(seed >> 11) / 4503599627370496.0 - 1;
+}
+
+int chance_of(int n)
+{
+    return (int)floor((chance() + 1) / 2 * n);
+}
+
+bool agree(const char *system, const char *what, double got, double want, double scale,
+           double tol)
+{
+    if (fabs(got - want) <= tol * scale) // false for NaN
+        return true;
+    print_error("%s: %s: got %.17g, wanted %.17g, difference %.3g of %.3g\n", system, what, got,
+                want, got - want, scale);
+    return false;
+}
+
+char *text_of(struct ct_arena *a, const char *fmt, ...)
+{
+    va_list ap;
+    va_start(ap, fmt);
+    char *text = ct_arena_vprintf(a, fmt, ap);
+    va_end(ap);
+    return text;
+}
+
+// ---- systems ------------------------------------------------------------------------------------------------
+
+static void start(struct system *s, const char *name)
+{
+    *s = (struct system){.name = name};
+    s->ctx.model = ct_arena_create();
+    s->ctx.scratch = ct_arena_create();
+    assert_non_null(s->ctx.model);
+    assert_non_null(s->ctx.scratch);
+}
+
+static bool assemble(struct system *s, bool keep_all)
+{
+    const struct ct_formulate_options o
+        = {.tree = CT_TREE_JOINTS, .measure_all = true, .keep_all = keep_all};
+    struct ct_tree_report report;
+    if (!ct_formulate(&s->ctx, s->ctx.model, &s->model, &o, &s->assembly, &report)
+        || !ct_assemble(&s->ctx, s->ctx.model, &s->model, &s->assembly, &s->start))
+        return false;
+    s->machine = ct_machine_create(s->ctx.model, &s->model, &s->assembly);
+    s->embed = ct_embed_create(s->ctx.model, &s->ctx, s->machine);
+    s->y = CT_NEWN(s->ctx.model, double, s->machine->nq + s->machine->nu + 1);
+    ct_start_apply(&s->start, s->machine, s->y);
+    return true;
+}
+
+static void must(struct system *s, bool ok)
+{
+    if (ok)
+        return;
+    print_error("%s: cannot be set up\n", s->name);
+    ct_ctx_print(&s->ctx, stderr);
+    fail();
+}
+
+void system_open_file(struct system *s, const char *file)
+{
+    const char *root = getenv("CT_SOURCE_DIR");
+    start(s, file);
+    const char *path = text_of(s->ctx.model, "%s/%s", root ? root : ".", file);
+    must(s, ct_model_read(&s->ctx, path, NULL, 0, &s->model) && assemble(s, false));
+}
+
+bool system_try_text(struct system *s, const char *name, const char *text)
+{
+    start(s, name);
+    return ct_model_parse(&s->ctx, name, text, strlen(text), NULL, 0, &s->model)
+        && assemble(s, false);
+}
+
+void system_open_text(struct system *s, const char *name, const char *text)
+{
+    const bool ok = system_try_text(s, name, text);
+    if (!ok)
+        print_error("%s\n", text);
+    must(s, ok);
+}
+
+void system_keep_all(struct system *s)
+{
+    must(s, assemble(s, true));
+}
+
+void system_close(struct system *s)
+{
+    ct_arena_destroy(s->ctx.scratch);
+    ct_arena_destroy(s->ctx.model);
+}
+
+void system_no_outputs(struct system *s)
+{
+    s->model.noutput = 0;
+}
+
+void system_output(struct system *s, const char *signal)
+{
+    struct ct_model *m = &s->model;
+    struct ct_output o = {.name = ct_arena_strdup(s->ctx.model, signal), .is_signal = true};
+    o.value = ct_ex_sym(m->x, CT_SYM_SIGNAL, o.name, 0);
+    CT_PUSH(s->ctx.model, m->output, m->noutput, m->output_cap, o);
+}
+
+void system_output_motion(struct system *s)
+{
+    struct ct_arena *a = s->ctx.model;
+    for (size_t i = 1; i < s->model.nbody; i++) {
+        const char *name = s->model.body[i].instance.name;
+        system_output(s, text_of(a, "%s.position", name));
+        system_output(s, text_of(a, "%s.velocity", name));
+        system_output(s, text_of(a, "%s.acceleration", name));
+        system_output(s, text_of(a, "%s.rotation", name));
+        system_output(s, text_of(a, "%s.angular_velocity", name));
+        system_output(s, text_of(a, "%s.angular_acceleration", name));
+    }
+    for (size_t i = 0; i < s->model.njoint; i++)
+        if (s->model.joint[i].from >= 0 && s->model.joint[i].nfree > 0) {
+            system_output(s, text_of(a, "%s.q", s->model.joint[i].name));
+            system_output(s, text_of(a, "%s.u", s->model.joint[i].name));
+            system_output(s, text_of(a, "%s.a", s->model.joint[i].name));
+        }
+}
+
+void system_output_reactions(struct system *s)
+{
+    struct ct_arena *a = s->ctx.model;
+    for (size_t i = 0; i < s->model.njoint; i++) {
+        const struct ct_instance *j = &s->model.joint[i];
+        if (j->from >= 0) {
+            system_output(s, text_of(a, "%s.force", j->name));
+            system_output(s, text_of(a, "%s.torque", j->name));
+        }
+        if (j->from < 0 || j->nfree > 0)
+            system_output(s, text_of(a, "%s.effort", j->name));
+    }
+}
+
+static bool meets_rows(const struct ct_machine *m)
+{
+    for (size_t i = 0; i < m->nrow; i++)
+        if (!(fabs(m->phi[i]) < 1e-11 && fabs(m->v[i]) < 1e-10))
+            return false;
+    return true;
+}
+
+// One small step that the rows allow to first order, then onto them.
+static bool wander(struct system *s, double t, double amplitude, const double *wish, double *y)
+{
+    struct ct_machine *m = s->machine;
+    double *d = y + m->nq; // speeds are projected, so they serve as the direction
+    for (size_t k = 0; k < m->nu; k++)
+        d[k] = wish[k];
+    if (ct_embed_project(s->embed, t, y) != CT_EVAL_OK)
+        return false;
+    double *step = CT_NEWN(s->ctx.scratch, double, m->nu + 1);
+    for (size_t k = 0; k < m->nu; k++)
+        step[k] = amplitude * d[k];
+    ct_machine_retract(m, y, step);
+    if (ct_embed_project(s->embed, t, y) != CT_EVAL_OK)
+        return false;
+    ct_memory_follow(m);
+    return meets_rows(m);
+}
+
+bool system_random_state(struct system *s, double t, double amplitude, struct ct_start *out)
+{
+    enum { STEPS = 5 };
+    struct ct_machine *m = s->machine;
+    const size_t n = m->nq + m->nu + 1, nmemory = s->assembly.nmemory;
+    double *y = CT_NEWN(s->ctx.scratch, double, n),
+           *wish = CT_NEWN(s->ctx.scratch, double, m->nu + 1);
+    double *memory = CT_NEWN(s->ctx.scratch, double, nmemory + 1);
+    memcpy(memory, m->input + m->at_memory, nmemory * sizeof *memory);
+    bool ok = false;
+    for (int try = 0; try < 12 && !ok; try++, amplitude *= 0.7) {
+        memcpy(m->input + m->at_memory, memory, nmemory * sizeof *memory);
+        memcpy(y, s->y, n * sizeof *y);
+        for (size_t k = 0; k < m->nu; k++)
+            wish[k] = chance();
+        ct_machine_set(m, t, y);
+        ct_modes_start(m, t, y, NULL);
+        ct_machine_constraint(m);
+        ct_machine_motion(m);
+        ok = ct_embed_choose(s->embed);
+        for (int k = 0; k < STEPS && ok; k++)
+            ok = wander(s, t, amplitude / STEPS, wish, y);
+        for (size_t k = 0; k < m->nu; k++)
+            y[m->nq + k] = 2 * chance();
+        ok = ok && ct_embed_project(s->embed, t, y) == CT_EVAL_OK && meets_rows(m)
+          && (!s->embed->rank || s->embed->kappa < 30);
+    }
+    s->ctx.nerror = s->ctx.ndiagnostic = 0;
+    ct_machine_set(m, t, y);
+    ct_memory_follow(m);
+    ct_program_run(&m->result, m->input);
+    out->n = s->assembly.ncoordinate;
+    out->q = CT_NEWN(s->ctx.model, double, out->n + 1);
+    out->u = CT_NEWN(s->ctx.model, double, out->n + 1);
+    for (size_t i = 0; i < out->n; i++) {
+        out->q[i] = m->result.out[2 * i];
+        out->u[i] = m->result.out[2 * i + 1];
+    }
+    memcpy(m->input + m->at_memory, memory, nmemory * sizeof *memory);
+    return ok;
+}
+
+// ---- variants -----------------------------------------------------------------------------------------------
+
+bool variant_try(struct system *s, const struct ct_formulate_options *o, struct variant *v)
+{
+    *v = (struct variant){.arena = ct_arena_create()};
+    assert_non_null(v->arena);
+    v->ctx = (struct ct_ctx){.model = v->arena, .scratch = v->arena};
+    if (!ct_formulate(&v->ctx, v->arena, &s->model, o, &v->e, &v->report))
+        return false;
+    v->m = ct_machine_create(v->arena, &s->model, &v->e);
+    v->s = ct_embed_create(v->arena, &v->ctx, v->m);
+    v->y = CT_NEWN(v->arena, double, v->m->nq + v->m->nu + 1);
+    v->result = CT_NEWN(v->arena, double, v->e.nresult + 1);
+    return true;
+}
+
+void variant_open(struct system *s, const struct ct_formulate_options *o, struct variant *v)
+{
+    if (variant_try(s, o, v))
+        return;
+    print_error("%s: cannot be formulated\n", s->name);
+    ct_ctx_print(&v->ctx, stderr);
+    fail();
+}
+
+void variant_close(struct variant *v)
+{
+    ct_arena_destroy(v->arena);
+}
+
+void variant_set(struct variant *v, const struct ct_start *state, double t)
+{
+    ct_start_apply(state, v->m, v->y);
+    ct_machine_set(v->m, t, v->y);
+    ct_modes_start(v->m, t, v->y, NULL);
+    ct_machine_set(v->m, t, v->y);
+    ct_memory_start(v->m);
+    ct_machine_motion(v->m);
+    ct_machine_constraint(v->m);
+}
+
+bool variant_solve(struct variant *v)
+{
+    struct ct_machine *m = v->m;
+    ct_machine_constraint(m);
+    ct_machine_motion(m);
+    if (!ct_embed_choose(v->s) || ct_embed_accelerate(v->s) != CT_EVAL_OK)
+        return false;
+    memcpy(m->input + m->at_a, v->s->a, m->nu * sizeof(double));
+    ct_embed_multipliers(v->s);
+    memcpy(m->input + m->at_lam, v->s->lam, m->nrow * sizeof(double));
+    ct_program_run(&m->result, m->input);
+    memcpy(v->result, m->result.out, v->e.nresult * sizeof(double));
+    return true;
+}
+
+size_t variant_result(const struct variant *v, const char *name)
+{
+    for (size_t i = 0; i < v->e.nresult; i++)
+        if (!strcmp(v->e.result[i].name, name))
+            return i;
+    print_error("there is no result '%s'\n", name);
+    fail();
+    return 0;
+}
+
+// ---- trees --------------------------------------------------------------------------------------------------
+
+struct collecting {
+    struct system *s;
+    const struct ct_build *b;
+    struct tree_list *list;
+};
+
+static bool collect(void *data, const bool *is_branch)
+{
+    struct collecting *c = data;
+    struct tree_names t = {CT_NEWN(c->s->ctx.model, const char *, c->b->nedge + 1), 0};
+    for (size_t i = 0; i < c->b->nedge; i++)
+        if (is_branch[i] && c->b->edge[i].kind != CT_EDGE_ARM)
+            t.name[t.n++] = c->b->edge[i].name;
+    CT_PUSH(c->s->ctx.model, c->list->tree, c->list->n, c->list->cap, t);
+    return true;
+}
+
+struct tree_list system_trees(struct system *s, bool keep_all, bool rotation)
+{
+    const struct ct_formulate_options o = {.tree = CT_TREE_JOINTS, .keep_all = keep_all};
+    struct ct_equations *e = CT_NEW(s->ctx.model, struct ct_equations);
+    struct ct_tree_report report;
+    struct tree_list list = {0};
+    assert_true(ct_formulate(&s->ctx, s->ctx.model, &s->model, &o, e, &report));
+    const struct ct_build *b = e->build;
+    bool *forced = CT_NEWN(s->ctx.model, bool, b->nedge + 1);
+    bool *banned = CT_NEWN(s->ctx.model, bool, b->nedge + 1);
+    for (size_t i = 0; i < b->nedge; i++) {
+        const struct ct_edge_info *k = &b->edge[i];
+        const bool is_particle = k->kind == CT_EDGE_BODY && s->model.body[k->index].is_particle;
+        forced[i] = k->must_be_branch || (rotation && is_particle);
+        banned[i] = k->never_branch || (rotation && !k->has_rotation && !is_particle);
+        if (banned[i])
+            forced[i] = false;
+    }
+    struct collecting c = {s, b, &list};
+    ct_tree_enumerate(s->ctx.model, e->graph, forced, banned, collect, &c);
+    return list;
+}

@@ -1,0 +1,107 @@
+// What property tests of whole systems share: read, assemble, move to random states, solve, compare.
+//
+//     text or file -> system (model, assembly equations, start)
+//     system + trees -> variant (equations, machine, embedding) -> state -> accelerations and results
+//
+// A failure prints what failed and fails the running test.
+#ifndef CT_TEST_PROPERTY_SYSTEM_H
+#define CT_TEST_PROPERTY_SYSTEM_H
+
+#include "formulate/build.h"
+#include "formulate/formulate.h"
+#include "solve/mode.h"
+#include "solve/simulate.h"
+#include "tests/check.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+struct system {
+    const char *name;
+    struct ct_ctx ctx;
+    struct ct_model model;
+    struct ct_equations assembly; // on trees through joints, all joints measured
+    struct ct_start start;        // assembled at t = 0
+    struct ct_machine *machine;   // of assembly
+    struct ct_embed *embed;
+    double *y; // of machine, assembled
+};
+
+struct variant {
+    struct ct_arena *arena; // of its own
+    struct ct_ctx ctx;
+    struct ct_equations e;
+    struct ct_tree_report report;
+    struct ct_machine *m;
+    struct ct_embed *s;
+    double *y, *result; // nresult
+};
+
+// ---- systems ------------------------------------------------------------------------------------------------
+
+/// Read and assemble; print diagnostics and fail the test if that does not work.
+void system_open_file(struct system *s, const char *file); // relative to the source root
+void system_open_text(struct system *s, const char *name, const char *text);
+/// The same, but a failure is returned; diagnostics stay in s->ctx.
+bool system_try_text(struct system *s, const char *name, const char *text);
+/// Assemble again with spatial rows, for variants that keep all: body coordinates differ.
+void system_keep_all(struct system *s);
+void system_close(struct system *s);
+
+/// All model files of systems/, relative to the source root.
+extern const char *const shipped[];
+extern const size_t nshipped;
+
+/// Replace the outputs by one signal more.
+void system_output(struct system *s, const char *signal);
+void system_no_outputs(struct system *s);
+/// Outputs of every body (place, axes, their rates and accelerations) and every joint (coordinates of all kinds).
+void system_output_motion(struct system *s);
+/// Outputs of every joint: force, torque, efforts.
+void system_output_reactions(struct system *s);
+
+/// A random state near the assembled one at time t that meets all constraints; false if the mechanism cannot
+/// be moved there.
+bool system_random_state(struct system *s, double t, double amplitude, struct ct_start *out);
+
+// ---- variants -----------------------------------------------------------------------------------------------
+
+bool variant_try(struct system *s, const struct ct_formulate_options *o, struct variant *v);
+void variant_open(struct system *s, const struct ct_formulate_options *o, struct variant *v);
+void variant_close(struct variant *v);
+/// Put a state in at time t; modes and memories follow.
+void variant_set(struct variant *v, const struct ct_start *state, double t);
+/// Accelerations, multipliers and results there.
+bool variant_solve(struct variant *v);
+/// Index of a result by name; fails if there is none.
+size_t variant_result(const struct variant *v, const char *name);
+
+extern const struct ct_formulate_options by_joints, by_bodies, by_choice, by_joints_spatial,
+    by_bodies_spatial;
+
+// ---- trees --------------------------------------------------------------------------------------------------
+
+/// All admissible trees by names of branches.
+struct tree_list {
+    size_t n, cap;
+    struct tree_names {
+        const char **name;
+        size_t n;
+    } * tree;
+};
+/// T (rotation false) or R (true) of a model; the list lives in s.
+struct tree_list system_trees(struct system *s, bool keep_all, bool rotation);
+
+// ---- chance and comparison ------------------------------------------------------------------------------------
+
+void chance_start(void); // prints the seed, CT_TEST_SEED
+double chance(void);     // uniform in [-1, 1)
+int chance_of(int n);    // 0 .. n - 1
+
+/// |got - want| <= tol * scale; prints what and both values and counts a failure.
+bool agree(const char *system, const char *what, double got, double want, double scale,
+           double tol);
+
+char *text_of(struct ct_arena *a, const char *fmt, ...) __attribute__((format(printf, 2, 3)));
+
+#endif

@@ -1,0 +1,484 @@
+// The printed equations: equal to the engine's, equal to the textbook's, and readable again.
+#include "expr/parse.h"
+#include "formulate/formulate.h"
+#include "report/derivation.h"
+#include "report/equations.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+struct fixture {
+    struct ct_ctx ctx;
+    struct ct_model m;
+    struct ct_equations e;
+    struct ct_derivation d;
+    struct ct_reduced r;
+    double *symbol; // values by symbol
+    double *value;  // by node
+};
+
+static void formulate(struct fixture *f, const char *system)
+{
+    char path[500];
+    struct ct_tree_report report;
+    const struct ct_formulate_options o = {.tree = CT_TREE_AUTO};
+    *f = (struct fixture){.ctx = {.model = ct_arena_create(), .scratch = ct_arena_create()}};
+    snprintf(path, sizeof path, "%s/../systems/%s/model.yaml", getenv("CT_TEST_DIR"), system);
+    if (!ct_model_read(&f->ctx, path, NULL, 0, &f->m)
+        || !ct_formulate(&f->ctx, f->ctx.model, &f->m, &o, &f->e, &report)) {
+        ct_ctx_print(&f->ctx, stderr);
+        fail();
+    }
+    ct_derivation_init(&f->d, f->ctx.scratch, &f->e, &f->m, CT_LOOK_TEXT);
+}
+
+static void reduce(struct fixture *f, const char *system)
+{
+    formulate(f, system);
+    ct_derivation_reduce(&f->d, &f->r);
+    f->symbol = CT_NEWN(f->ctx.scratch, double, f->e.x->nsym);
+}
+
+static void finish(struct fixture *f)
+{
+    ct_arena_destroy(f->ctx.scratch);
+    ct_arena_destroy(f->ctx.model);
+}
+
+static double random_number(void)
+{
+    static uint64_t s = 88172645463325252u;
+    s ^= s << 13;
+    s ^= s >> 7;
+    s ^= s << 17;
+    return (double)(s >> 11) / 9007199254740992.0;
+}
+
+// Random values; parameters near 1, quaternions of length 1, comparisons either way.
+static void choose_state(struct fixture *f)
+{
+    const struct ct_equations *e = &f->e;
+    for (size_t i = 0; i < e->x->nsym; i++) {
+        const enum ct_sym_kind kind = e->x->sym[i].kind;
+        f->symbol[i] = kind == CT_SYM_PARAM ? 0.5 + random_number()
+                     : kind == CT_SYM_MODE  ? (double)(random_number() < 0.5)
+                                            : 2 * random_number() - 1;
+    }
+    for (size_t i = 0; i < e->nq; i++) {
+        if (e->q[i].quaternion != 0)
+            continue;
+        double square = 0;
+        for (size_t k = i; k < i + 4; k++) {
+            const double v = f->symbol[ct_ex_node(e->x, e->q[k].symbol)->a];
+            square += v * v;
+        }
+        for (size_t k = i; k < i + 4; k++)
+            f->symbol[ct_ex_node(e->x, e->q[k].symbol)->a] /= sqrt(square);
+    }
+}
+
+// All nodes in one sweep upwards: the symbol of a definition is younger than its value.
+static void evaluate(struct fixture *f)
+{
+    const struct ct_exs *x = f->e.x;
+    f->value = CT_NEWN(f->ctx.scratch, double, x->nnode);
+    double *v = f->value;
+    for (size_t k = 0; k < f->r.ndefinition; k++) // marks them: any number that is not a node
+        f->symbol[ct_ex_node(x, f->r.definition[k].symbol)->a] = -1 - (double)k;
+    for (uint32_t id = 0; id < x->nnode; id++) {
+        const struct ct_exnode *n = &x->node[id];
+        if (ct_ex_is_const(x, (ct_ex){id}, &v[id]))
+            continue;
+        if (n->op == CT_OP_SYM) {
+            v[id] = f->symbol[n->a];
+            if (x->sym[n->a].kind == CT_SYM_LOCAL && f->symbol[n->a] <= -1)
+                v[id] = v[f->r.definition[(size_t)(-1 - f->symbol[n->a])].value.id];
+        } else if (n->op == CT_OP_TABLE) {
+            v[id] = ct_table_value(&x->table[n->b], n->c, v[n->a]);
+        } else {
+            const int narg = ct_op_info[n->op].narg;
+            v[id] = ct_op_apply((enum ct_op)n->op, v[n->a], narg > 1 ? v[n->b] : 0,
+                                narg > 2 ? v[n->c] : 0);
+        }
+    }
+}
+
+static void check_close(double got, double want, double tolerance)
+{
+    if (fabs(got - want) <= tolerance)
+        return;
+    print_error("got %.17g, wanted %.17g\n", got, want);
+    fail();
+}
+
+// ---- equal to the engine's ------------------------------------------------------------------------
+
+static void check_equal(const struct fixture *f, const char *system, const char *what, size_t i,
+                        ct_ex got, ct_ex want, double scale)
+{
+    const double g = f->value[got.id], w = f->value[want.id];
+    // sums of some hundred terms, taken in another order
+    if (fabs(g - w) <= 1e-12 * fmax(scale, fabs(w)) || (isnan(g) && isnan(w)))
+        return;
+    print_error("%s: %s[%zu] is %.17g, the engine has %.17g\n", system, what, i, g, w);
+    fail();
+}
+
+static double scale_of(const struct fixture *f, const ct_ex *e, size_t n)
+{
+    double scale = 1;
+    for (size_t i = 0; i < n; i++)
+        scale = fmax(scale, fabs(f->value[e[i].id]));
+    return scale;
+}
+
+static void check_all(struct fixture *f, const char *system)
+{
+    const struct ct_equations *e = &f->e;
+    const double Q = scale_of(f, e->Q, e->nu);
+    double M = 1, gam = 1;
+    for (size_t i = 0; i < e->nM; i++)
+        M = fmax(M, fabs(f->value[e->M[i].value.id]));
+    for (size_t i = 0; i < e->nrow; i++)
+        gam = fmax(gam, fabs(f->value[e->row[i].gam.id]));
+    for (size_t i = 0; i < e->nM; i++)
+        check_equal(f, system, "M", i, f->r.M[i], e->M[i].value, M);
+    for (size_t i = 0; i < e->nu; i++)
+        check_equal(f, system, "Q", i, f->r.Q[i], e->Q[i], Q);
+    for (size_t i = 0; i < e->nJ; i++)
+        check_equal(f, system, "J", i, f->r.J[i], e->J[i].value, 1);
+    for (size_t i = 0; i < e->nrow; i++) {
+        check_equal(f, system, "phi", i, f->r.phi[i], e->row[i].phi, 1);
+        check_equal(f, system, "gam", i, f->r.gam[i], e->row[i].gam, gam);
+    }
+    for (size_t i = 0; i < e->nq; i++)
+        check_equal(f, system, "rate", i, f->r.rate[i], e->q[i].rate, 1);
+}
+
+static const char *const systems[] = {"andrews",
+                                      "bricard",
+                                      "cart_pole",
+                                      "chain40",
+                                      "double_pendulum",
+                                      "four_bar",
+                                      "gimbal_top",
+                                      "governor",
+                                      "heavy_top",
+                                      "light_cart",
+                                      "n_four_bar",
+                                      "pendulum",
+                                      "puma560",
+                                      "puma560_driven",
+                                      "slider_crank",
+                                      "spatial_four_bar",
+                                      "spatial_slider_crank",
+                                      "stewart",
+                                      "stiff_spring_pendulum",
+                                      "tumbling_body"};
+
+static void what_is_printed_equals_the_engine(void **state)
+{
+    (void)state;
+    for (size_t i = 0; i < COUNT(systems); i++) {
+        struct fixture f;
+        reduce(&f, systems[i]);
+        for (int k = 0; k < 5; k++) {
+            choose_state(&f);
+            evaluate(&f);
+            check_all(&f, systems[i]);
+        }
+        finish(&f);
+    }
+}
+
+// ---- readable again ---------------------------------------------------------------------------------
+
+// Outputs of the model leave signals of the same name behind.
+static enum ct_name_result find_symbol(const struct fixture *f, const char *name, ct_ex *e)
+{
+    const struct ct_exs *x = f->e.x;
+    for (uint32_t id = 0; id < x->nnode; id++) {
+        const struct ct_sym *s = ct_ex_symbol(x, (ct_ex){id});
+        if (s && s->kind != CT_SYM_SIGNAL && !strcmp(s->name, name)) {
+            *e = (ct_ex){id};
+            return CT_NAME_OK;
+        }
+    }
+    return CT_NAME_UNKNOWN;
+}
+
+static enum ct_name_result find_name(void *user, const char *name, ct_ex *e, const char **why)
+{
+    (void)why;
+    return find_symbol(user, name, e);
+}
+
+static enum ct_name_result find_signal(void *user, const char *text, const char *first,
+                                       const char *in, struct ct_mark where,
+                                       struct ct_mark where_in, ct_ex *e, const char **why)
+{
+    (void)first, (void)in, (void)where, (void)where_in, (void)why;
+    return find_symbol(user, text, e);
+}
+
+static void check_reads_back(struct fixture *f, ct_ex e)
+{
+    const struct ct_print plain = {.limit = 1000000};
+    const struct ct_scope scope
+        = {.x = f->e.x, .user = f, .name = find_name, .signal = find_signal};
+    const struct ct_text text = {.text = ct_ex_text(f->ctx.scratch, f->e.x, e, &plain)};
+    ct_ex back;
+    if (!ct_parse(&f->ctx, &scope, text, &back)) {
+        ct_ctx_print(&f->ctx, stderr);
+        fail();
+    }
+    choose_state(f);
+    evaluate(f);
+    check_close(f->value[back.id], f->value[e.id], 1e-13 * fmax(1, fabs(f->value[e.id])));
+}
+
+static void text_for_programs_reads_back(void **state)
+{
+    (void)state;
+    static const char *const small[]
+        = {"pendulum", "cart_pole", "double_pendulum", "slider_crank", "four_bar"};
+    for (size_t i = 0; i < COUNT(small); i++) {
+        struct fixture f;
+        reduce(&f, small[i]);
+        for (size_t k = 0; k < f.e.nM; k++)
+            check_reads_back(&f, f.r.M[k]);
+        for (size_t k = 0; k < f.e.nu; k++)
+            check_reads_back(&f, f.r.Q[k]);
+        for (size_t k = 0; k < f.e.nJ; k++)
+            check_reads_back(&f, f.r.J[k]);
+        for (size_t k = 0; k < f.e.nrow; k++)
+            check_reads_back(&f, f.r.gam[k]);
+        finish(&f);
+    }
+}
+
+// ---- equal to the textbook's ------------------------------------------------------------------------
+
+static double *symbol_of(const struct fixture *f, const char *name)
+{
+    ct_ex e = CT_EX_ZERO;
+    if (find_symbol(f, name, &e) != CT_NAME_OK)
+        fail_msg("no symbol %s", name);
+    return &f->symbol[ct_ex_node(f->e.x, e)->a];
+}
+
+static double of(const struct fixture *f, const char *name)
+{
+    return *symbol_of(f, name);
+}
+
+static void set(struct fixture *f, const char *name, double v)
+{
+    *symbol_of(f, name) = v;
+}
+
+// Accelerations and multipliers of the printed equations: [M -J'; J 0] [u'; lam] = [Q; -gam].
+static void solve(const struct fixture *f, double *x)
+{
+    const struct ct_equations *e = &f->e;
+    const size_t n = e->nu + e->nrow;
+    double A[8][9] = {{0}};
+    for (size_t k = 0; k < e->nM; k++)
+        A[e->M[k].row][e->M[k].column] = A[e->M[k].column][e->M[k].row]
+            = f->value[f->r.M[k].id];
+    for (size_t k = 0; k < e->nJ; k++) {
+        const size_t row = e->nu + (size_t)e->J[k].row;
+        A[row][e->J[k].column] = f->value[f->r.J[k].id];
+        A[e->J[k].column][row] = -f->value[f->r.J[k].id];
+    }
+    for (size_t i = 0; i < n; i++)
+        A[i][n] = i < e->nu ? f->value[f->r.Q[i].id] : -f->value[f->r.gam[i - e->nu].id];
+    for (size_t i = 0; i < n; i++) { // Gauss with row exchange
+        size_t pivot = i;
+        for (size_t k = i; k < n; k++)
+            pivot = fabs(A[k][i]) > fabs(A[pivot][i]) ? k : pivot;
+        for (size_t j = 0; j <= n; j++) {
+            const double swap = A[i][j];
+            A[i][j] = A[pivot][j];
+            A[pivot][j] = swap;
+        }
+        for (size_t k = 0; k < n; k++)
+            for (size_t j = n + 1; k != i && j-- > i;)
+                A[k][j] -= A[k][i] / A[i][i] * A[i][j];
+    }
+    for (size_t i = 0; i < n; i++)
+        x[i] = A[i][n] / A[i][i];
+}
+
+// f->symbol is set; accelerations by name of the joint.
+static double acceleration(struct fixture *f, const char *name)
+{
+    double x[8];
+    evaluate(f);
+    solve(f, x);
+    for (size_t i = 0; i < f->e.nu; i++)
+        if (!strcmp(f->e.u[i].name, name))
+            return x[i];
+    fail();
+    return 0;
+}
+
+enum { STATES = 20 };
+
+// m l^2 q'' = -m g l sin q
+static void pendulum_is_that_of_the_textbook(void **state)
+{
+    (void)state;
+    struct fixture f;
+    reduce(&f, "pendulum");
+    for (int k = 0; k < STATES; k++) {
+        choose_state(&f);
+        const double want = -of(&f, "g") / of(&f, "l") * sin(of(&f, "pivot.q"));
+        check_close(acceleration(&f, "pivot.u"), want, 1e-12);
+    }
+    finish(&f);
+}
+
+// (M + m) x'' - m l th'' cos th + m l th'^2 sin th = F
+// l th'' - g sin th = x'' cos th               e.g. Cannon, Dynamics of Physical Systems, 1967
+static void cart_pole_is_that_of_the_textbook(void **state)
+{
+    (void)state;
+    struct fixture f;
+    reduce(&f, "cart_pole");
+    for (int i = 0; i < STATES; i++) {
+        choose_state(&f);
+        const double M = of(&f, "M"), m = of(&f, "m"), l = of(&f, "l"), g = of(&f, "g");
+        const double s = sin(of(&f, "pin.q")), c = cos(of(&f, "pin.q")), w = of(&f, "pin.u");
+        const double x
+            = (of(&f, "F") - m * l * w * w * s + m * g * s * c) / (M + m - m * c * c);
+        check_close(acceleration(&f, "rail.u"), x, 1e-12 * fmax(1, fabs(x)));
+        check_close(acceleration(&f, "pin.u"), (g * s + x * c) / l, 1e-11);
+    }
+    finish(&f);
+}
+
+// In the angles from the vertical:
+// (m1 + m2) l1^2 th1'' + m2 l1 l2 cos(th1 - th2) th2'' + m2 l1 l2 sin(th1 - th2) th2'^2
+//     + (m1 + m2) g l1 sin th1 = 0
+// m2 l2^2 th2'' + m2 l1 l2 cos(th1 - th2) th1'' - m2 l1 l2 sin(th1 - th2) th1'^2
+//     + m2 g l2 sin th2 = 0                     Landau and Lifshitz, Mechanics, section 5
+static void double_pendulum_is_that_of_the_textbook(void **state)
+{
+    (void)state;
+    struct fixture f;
+    reduce(&f, "double_pendulum");
+    for (int i = 0; i < STATES; i++) {
+        choose_state(&f);
+        const double m1 = of(&f, "m1"), m2 = of(&f, "m2"), l1 = of(&f, "l1"), l2 = of(&f, "l2");
+        const double g = of(&f, "g"), a = of(&f, "shoulder.q"), b = a + of(&f, "elbow.q");
+        const double wa = of(&f, "shoulder.u"), wb = wa + of(&f, "elbow.u");
+        const double A = (m1 + m2) * l1 * l1, B = m2 * l1 * l2 * cos(a - b), C = m2 * l2 * l2;
+        const double p = -m2 * l1 * l2 * sin(a - b) * wb * wb - (m1 + m2) * g * l1 * sin(a);
+        const double r = m2 * l1 * l2 * sin(a - b) * wa * wa - m2 * g * l2 * sin(b);
+        const double D = A * C - B * B;
+        const double first = (C * p - B * r) / D, second = (A * r - B * p) / D;
+        const double tolerance = 1e-12 * fmax(1, fmax(fabs(first), fabs(second)) * A * C / D);
+        check_close(acceleration(&f, "shoulder.u"), first, tolerance);
+        check_close(acceleration(&f, "elbow.u"), second - first, 2 * tolerance);
+    }
+    finish(&f);
+}
+
+// J(th) th'' + J'(th) th'^2/2 = torque with the kinetic coefficients of all bodies, eliminated by hand:
+// Eksergian's equation, Paul, Kinematics and Dynamics of Planar Machinery, 1979, chapter 12
+static void slider_crank_is_that_of_the_textbook(void **state)
+{
+    (void)state;
+    struct fixture f;
+    reduce(&f, "slider_crank");
+    for (int i = 0; i < STATES; i++) {
+        choose_state(&f);
+        const double r = of(&f, "r"), l = 2 * r + of(&f, "l"), w = of(&f, "main.u");
+        const double th = of(&f, "main.q"), phi = asin(r / l * sin(th));
+        const double s = sin(th), c = cos(th), sp = sin(phi), cp = cos(phi);
+        // first and second derivatives by th of: rod angle, its centre of mass, slider
+        const double k = r * c / (l * cp), k2 = (l * sp * k * k - r * s) / (l * cp);
+        const double x = -r * s - l / 2 * sp * k, x2 = -r * c - l / 2 * (cp * k * k + sp * k2);
+        const double y = r * c - l / 2 * cp * k, y2 = -r * s + l / 2 * (sp * k * k - cp * k2);
+        const double z = -r * s - l * sp * k, z2 = -r * c - l * (cp * k * k + sp * k2);
+        const double m1 = of(&f, "m1"), m2 = of(&f, "m2"), m3 = of(&f, "m3");
+        const double J1 = of(&f, "J1"), J2 = of(&f, "J2");
+        const double J = J1 + m1 * r * r / 4 + m2 * (x * x + y * y) + J2 * k * k + m3 * z * z;
+        const double half = m2 * (x * x2 + y * y2) + J2 * k * k2 + m3 * z * z2;
+        const double want = (of(&f, "torque") - half * w * w) / J;
+        set(&f, "l", l);
+        set(&f, "small_end.q", phi);
+        set(&f, "small_end.u", k * w);
+        check_close(acceleration(&f, "main.u"), want, 1e-12 * fmax(1, fabs(want)));
+        check_close(f.value[f.r.phi[0].id], 0, 1e-15);
+    }
+    finish(&f);
+}
+
+// ---- the formats ------------------------------------------------------------------------------------
+
+static char *print(const char *system, unsigned stages, enum ct_equations_format format)
+{
+    struct fixture f;
+    char *text = NULL;
+    size_t n;
+    formulate(&f, system);
+    FILE *out = open_memstream(&text, &n);
+    assert_true(ct_equations_print(out, f.ctx.scratch, &f.e, &f.m, stages, format));
+    fclose(out);
+    finish(&f);
+    return text;
+}
+
+static void all_formats_print_all_systems(void **state)
+{
+    (void)state;
+    for (size_t i = 0; i < COUNT(systems); i++)
+        for (int format = CT_FORMAT_TEXT; format <= CT_FORMAT_JSON; format++) {
+            // one look at the longest is enough
+            if (!strcmp(systems[i], "chain40") && format != CT_FORMAT_TEXT)
+                continue;
+            char *text = print(systems[i], CT_STAGE_ALL, (enum ct_equations_format)format);
+            assert_true(strlen(text) > 300);
+            assert_null(strstr(text, "...\""));
+            free(text);
+        }
+}
+
+static void small_systems_fit_a_screen(void **state)
+{
+    (void)state;
+    static const char *const small[]
+        = {"pendulum", "cart_pole", "double_pendulum", "slider_crank", "four_bar"};
+    for (size_t i = 0; i < COUNT(small); i++) {
+        char *text = print(small[i], CT_STAGE_REDUCED, CT_FORMAT_TEXT);
+        int lines = 0;
+        for (char *line = strtok(text, "\n"); line; line = strtok(NULL, "\n"), lines++)
+            assert_true(strlen(line) <= 100);
+        assert_true(lines <= 60);
+        free(text);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(what_is_printed_equals_the_engine),
+        cmocka_unit_test(text_for_programs_reads_back),
+        cmocka_unit_test(pendulum_is_that_of_the_textbook),
+        cmocka_unit_test(cart_pole_is_that_of_the_textbook),
+        cmocka_unit_test(double_pendulum_is_that_of_the_textbook),
+        cmocka_unit_test(slider_crank_is_that_of_the_textbook),
+        cmocka_unit_test(all_formats_print_all_systems),
+        cmocka_unit_test(small_systems_fit_a_screen),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
