@@ -105,6 +105,21 @@ void ct_ctx_hand_over(struct ct_ctx *to, struct ct_ctx *from)
     from->ndiagnostic = from->nerror = 0;
 }
 
+const char *ct_suggest(struct ct_arena *a, const char *name, const char *const *names, size_t n)
+{
+    const char *near = ct_nearest(name, names, n);
+    return near ? ct_arena_printf(a, "; did you mean '%s'?", near) : "";
+}
+
+const char *ct_suggest_or_list(struct ct_arena *a, const char *name, const char *const *names,
+                               size_t n)
+{
+    const char *text = ct_suggest(a, name, names, n);
+    for (size_t i = 0; i < n && (i || !*text); i++)
+        text = ct_arena_printf(a, "%s%s%s", text, i ? ", " : "; there are ", names[i]);
+    return text;
+}
+
 double ct_clock(void)
 {
     struct timespec t;

@@ -54,6 +54,12 @@ void ct_own_finish(struct ct_ctx *own);
 void ct_own_next_stage(struct ct_ctx *own);
 /// Diagnostics of `from` go to `to`, as copies.
 void ct_ctx_hand_over(struct ct_ctx *to, struct ct_ctx *from);
+/// "; did you mean 'x'?" for the nearest of n names, else ""; in arena a.
+const char *ct_suggest(struct ct_arena *a, const char *name, const char *const *names,
+                       size_t n);
+/// The same; else "; there are x, y, z".
+const char *ct_suggest_or_list(struct ct_arena *a, const char *name, const char *const *names,
+                               size_t n);
 /// Monotonic time [s].
 double ct_clock(void);
 

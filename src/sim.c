@@ -120,27 +120,16 @@ static bool check_numbers(struct ct_sim *sim, const struct ct_sim_options *o)
     return ok;
 }
 
-static const char *method_list(struct ct_arena *a)
-{
-    const char *text = "auto";
-    for (int i = 0; i < ct_nmethod; i++)
-        text = ct_arena_printf(a, "%s, %s", text, ct_methods[i]->name);
-    return text;
-}
-
 static bool no_method(struct ct_sim *sim, const char *name, bool is_option)
 {
-    struct ct_arena *a = sim->own.model;
-    const char **names = CT_NEWN(a, const char *, ct_nmethod + 1);
+    const char **names = CT_NEWN(sim->own.model, const char *, ct_nmethod + 1);
+    names[0] = "auto";
     for (int i = 0; i < ct_nmethod; i++)
-        names[i] = ct_methods[i]->name;
-    names[ct_nmethod] = "auto";
-    const char *near = ct_nearest(name, names, (size_t)ct_nmethod + 1);
+        names[i + 1] = ct_methods[i]->name;
     return ct_error(
         &sim->own, is_option ? (struct ct_mark){0} : sim->system->model.simulation.method_mark,
-        is_option ? CT_E_USAGE : CT_E_LATER,
-        "this version has no method '%s'%s%s%s; there are %s", name,
-        near ? ", did you mean '" : "", near ? near : "", near ? "'?" : "", method_list(a));
+        is_option ? CT_E_USAGE : CT_E_LATER, "this version has no method '%s'%s", name,
+        ct_suggest_or_list(sim->own.model, name, names, (size_t)ct_nmethod + 1));
 }
 
 static bool choose_method(struct ct_sim *sim, const char *option)
@@ -198,6 +187,23 @@ static bool resolve_options(struct ct_sim *sim, const struct ct_sim_options *o)
     return choose_method(sim, o->method);
 }
 
+// Machine code where it can be had, unless the tape is asked for.
+static bool choose_backend(struct ct_sim *sim, const char *name)
+{
+    static const char *const words[] = {"auto", "tape", "native"};
+    static const enum ct_backend backends[]
+        = {CT_BACKEND_BEST, CT_BACKEND_TAPE, CT_BACKEND_NATIVE};
+    for (size_t i = 0; i < COUNT(words); i++) {
+        if (name && strcmp(name, words[i]) != 0)
+            continue;
+        return ct_machine_use(sim->own.model, ct_run_machine(sim->run), backends[i])
+            || ct_error(&sim->own, (struct ct_mark){0}, CT_E_USAGE,
+                        "native code is not available on this computer; there is tape");
+    }
+    return ct_error(&sim->own, (struct ct_mark){0}, CT_E_USAGE,
+                    "there is no back end '%s'; there are auto, native, tape", name);
+}
+
 // ---- the start ---------------------------------------------------------------------------------------
 
 struct create {
@@ -218,7 +224,7 @@ static bool prepare(struct ct_sim *sim, const struct ct_sim_options *o)
         return false;
     sim->run = ct_run_create(&sim->own, sim->own.model, &s->model, &s->equations, &sim->start);
     sim->compile = ct_clock() - start;
-    if (!sim->run)
+    if (!sim->run || !choose_backend(sim, o->backend))
         return false;
     sim->open.row = CT_NEWN(sim->own.model, bool, s->equations.nrow + 1);
     sim->open.result = CT_NEWN(sim->own.model, bool, s->equations.nresult + 1);

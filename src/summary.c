@@ -129,6 +129,7 @@ static void write_work(struct ct_json *j, const struct ct_sim *sim)
     const struct ct_run_report *r = &sim->report;
     ct_json_text(j, "method", sim->run_options.method->name);
     ct_json_number(j, "tolerance", sim->tolerance);
+    ct_json_text(j, "backend", ct_run_machine(sim->run)->backend);
     ct_json_integer(j, "steps", r->stats.steps);
     ct_json_integer(j, "rejected_steps", r->stats.rejected_steps);
     ct_json_integer(j, "evaluations", r->stats.evaluations);
@@ -266,8 +267,9 @@ void ct_sim_print_summary(const struct ct_sim *sim, FILE *out)
         fprintf(out, "step %g s\n", sim->run_options.step);
     else
         fprintf(out, "tolerance %g\n", sim->tolerance);
-    fprintf(out, "work         %ld steps, %ld rejected, %ld evaluations of %ld operations\n",
-            r->stats.steps, r->stats.rejected_steps, r->stats.evaluations, operations(sim));
+    fprintf(out, "work         %ld steps, %ld rejected, %ld evaluations of %ld operations (%s)\n",
+            r->stats.steps, r->stats.rejected_steps, r->stats.evaluations, operations(sim),
+            ct_run_machine(sim->run)->backend);
     fprintf(out, "error        energy drift %.2g, constraints %.2g, their rates %.2g\n",
             r->energy_drift, r->position_constraint, r->velocity_constraint);
     fprintf(out,

@@ -3,6 +3,7 @@
 
 #include "graph/print.h"
 #include "io/yaml.h"
+#include "report/equations.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -52,10 +53,8 @@ static bool read_tree_file(struct ct_ctx *ctx, const char *path, struct ct_formu
         } else if (strcmp(p->key, keys[1]) == 0) {
             ok &= read_branches(ctx, p->value, &f->rot, &f->rot_mark, &f->nrot);
         } else {
-            const char *near = ct_nearest(p->key, keys, COUNT(keys));
-            ok = ct_error(ctx, p->mark, CT_E_KEY_UNKNOWN, "a tree file has no key '%s'%s%s%s",
-                          p->key, near ? ", did you mean '" : "", near ? near : "",
-                          near ? "'?" : "");
+            ok = ct_error(ctx, p->mark, CT_E_KEY_UNKNOWN, "a tree file has no key '%s'%s",
+                          p->key, ct_suggest_or_list(ctx->scratch, p->key, keys, COUNT(keys)));
         }
     }
     if (!ct_node_get(root, keys[0]))
@@ -84,11 +83,9 @@ static bool choose_tree(struct ct_ctx *ctx, const char *tree, struct ct_formulat
         fclose(file);
         return read_tree_file(ctx, tree, f);
     }
-    const char *near = ct_nearest(tree, words, COUNT(words));
-    return ct_error(
-        ctx, (struct ct_mark){0}, CT_E_USAGE,
-        "tree '%s': neither auto, joints, absolute nor a file that can be read%s%s%s", tree,
-        near ? ", did you mean '" : "", near ? near : "", near ? "'?" : "");
+    return ct_error(ctx, (struct ct_mark){0}, CT_E_USAGE,
+                    "tree '%s' is neither auto, joints, absolute nor a file that can be read%s",
+                    tree, ct_suggest(ctx->scratch, tree, words, COUNT(words)));
 }
 
 // ---- the pipeline ----------------------------------------------------------------------------------
@@ -248,4 +245,65 @@ bool ct_system_print_graph(struct ct_ctx *ctx, struct ct_system *sys, const char
 {
     struct drawing d = {ctx, sys, format, out};
     return sys && ct_enter(ctx, draw, &d);
+}
+
+// ---- the equations -------------------------------------------------------------------------------------
+
+struct printing {
+    struct ct_ctx *ctx;
+    struct ct_system *s;
+    const char *stages, *format;
+    FILE *out;
+};
+
+static bool wrong_word(struct ct_ctx *ctx, const char *what, const char *word, size_t n,
+                       const char *const *words, size_t nword)
+{
+    const char *text = ct_arena_strndup(ctx->model, word, n);
+    return ct_error(ctx, (struct ct_mark){0}, CT_E_USAGE, "equations have no %s '%s'%s", what,
+                    text, ct_suggest_or_list(ctx->model, text, words, nword));
+}
+
+// A list of names, separated by commas.
+static bool find_stages(struct ct_ctx *ctx, const char *text, unsigned *stages)
+{
+    static const char *const names[]
+        = {"terminal", "graph", "tree", "cutset", "circuit", "reduced", "all"};
+    bool ok = true;
+    *stages = text ? 0 : CT_STAGE_DEFAULT;
+    while (text) {
+        const size_t n = strcspn(text, ",");
+        const unsigned bit = ct_stage_find(text, n);
+        if (!bit)
+            ok = wrong_word(ctx, "stage", text, n, names, COUNT(names));
+        *stages |= bit;
+        text = text[n] ? text + n + 1 : NULL;
+    }
+    return ok;
+}
+
+static bool print_equations(void *task)
+{
+    const struct printing *p = task;
+    static const char *const formats[] = {"text", "latex", "html", "c", "json"};
+    const char *name = p->format ? p->format : formats[0];
+    enum ct_equations_format format;
+    unsigned stages;
+    bool ok = find_stages(p->ctx, p->stages, &stages);
+    if (!ct_equations_format_find(name, &format))
+        ok = wrong_word(p->ctx, "format", name, strlen(name), formats, COUNT(formats));
+    if (!ok)
+        return false;
+    ok = ct_equations_print(p->out, p->s->own.scratch, &p->s->equations, &p->s->model, stages,
+                            format)
+      || ct_error(p->ctx, (struct ct_mark){0}, CT_E_FILE, "cannot write the equations");
+    ct_own_next_stage(&p->s->own);
+    return ok;
+}
+
+bool ct_system_print_equations(struct ct_ctx *ctx, struct ct_system *sys, const char *stages,
+                               const char *format, FILE *out)
+{
+    struct printing p = {ctx, sys, stages, format, out};
+    return sys && ct_enter(ctx, print_equations, &p);
 }

@@ -88,6 +88,17 @@ CT_API const char *ct_system_column(const struct ct_system *sys, size_t i);
 CT_API bool ct_system_print_graph(struct ct_ctx *ctx, struct ct_system *sys, const char *format,
                                   FILE *out);
 
+/**
+ * The derivation of the equations of motion.
+ *
+ * stages  in   "terminal,graph,tree,cutset,circuit,reduced", some of them, or "all"; NULL: tree,reduced
+ * format  in   "text", "latex", "html", "c" or "json"; NULL: text. C has the reduced equations only.
+ *
+ * Errors: E002 for the stream, E003.
+ */
+CT_API bool ct_system_print_equations(struct ct_ctx *ctx, struct ct_system *sys,
+                                      const char *stages, const char *format, FILE *out);
+
 /* ---- runs -------------------------------------------------------------------------------------- */
 
 struct ct_sim;
@@ -100,6 +111,8 @@ struct ct_sim_options {
     double step;     /* fixed step [s] */
     double until;    /* end time [s]; the spacing of samples stays that of the model */
     long samples;    /* number of samples, both ends included */
+    const char
+        *backend; /* what evaluates the equations: "auto", "native" or "tape"; same bits */
 };
 
 /** Where results go. All of it may be zero. */

@@ -14,8 +14,15 @@ struct chunk {
     _Alignas(16) unsigned char data[];
 };
 
+struct ending {
+    struct ending *next;
+    void (*end)(void *data);
+    void *data;
+};
+
 struct ct_arena {
     struct chunk *head;
+    struct ending *ending; // in a chunk
     size_t total;
 };
 
@@ -41,11 +48,20 @@ void ct_arena_destroy(struct ct_arena *a)
 {
     if (!a)
         return;
+    for (struct ending *e = a->ending; e; e = e->next)
+        e->end(e->data);
     for (struct chunk *c = a->head, *next; c; c = next) {
         next = c->next;
         free(c);
     }
     free(a);
+}
+
+void ct_arena_at_end(struct ct_arena *a, void (*end)(void *data), void *data)
+{
+    struct ending *e = CT_NEW(a, struct ending);
+    *e = (struct ending){a->ending, end, data};
+    a->ending = e;
 }
 
 void *ct_arena_alloc(struct ct_arena *a, size_t size)

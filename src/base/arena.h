@@ -20,6 +20,10 @@ struct ct_arena;
 struct ct_arena *ct_arena_create(void);
 void ct_arena_destroy(struct ct_arena *a);
 
+/// Call end(data) when the arena is destroyed, before its memory goes; the latest first. For what a
+/// library or the system allocates.
+void ct_arena_at_end(struct ct_arena *a, void (*end)(void *data), void *data);
+
 /// size bytes, zeroed. Cost: O(size).
 void *ct_arena_alloc(struct ct_arena *a, size_t size);
 /// n elements of size bytes; an overflow of the product counts as out of memory.

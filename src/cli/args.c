@@ -8,7 +8,8 @@
 #include <string.h>
 
 const struct cli_command *const cli_commands[]
-    = {&cli_simulate, &cli_check, &cli_graph, &cli_components, &cli_methods, &cli_schema, NULL};
+    = {&cli_simulate,   &cli_equations, &cli_graph,  &cli_check,
+       &cli_components, &cli_methods,   &cli_schema, NULL};
 
 // ---- options --------------------------------------------------------------------------------------------
 
@@ -45,7 +46,7 @@ static const struct option {
     {"samples", 0, "N", INTEGER, FIELD(samples), CLI_SIMULATE, true,
      "number of samples, both ends included"},
     {"backend", 0, "CHOICE", TEXT, FIELD(backend), CLI_SIMULATE, true,
-     "tape: what evaluates the equations"},
+     "what evaluates the equations: auto, native or tape"},
     {"summary", 0, "FILE.json", TEXT, FIELD(summary), CLI_SIMULATE | CLI_CHECK, true,
      "what the run did, for programs"},
     {"show", 0, "STAGES", TEXT, FIELD(show), CLI_EQUATIONS, false,
@@ -83,7 +84,7 @@ int cli_complain(const struct cli_command *command, const char *fmt, ...)
 static bool wrong(const struct cli_command *command, const char *what, const char *name,
                   const char *near)
 {
-    cli_complain(command, "%s '%s'%s%s%s", what, name, near ? ", did you mean '" : "",
+    cli_complain(command, "%s '%s'%s%s%s", what, name, near ? "; did you mean '" : "",
                  near ? near : "", near ? "'?" : "");
     return false;
 }
@@ -153,8 +154,7 @@ static bool unknown_option(const struct parser *p, const char *name)
     const char *near = ct_did_you_mean(name + strspn(name, "-"), names, n);
     if (near)
         snprintf(text, sizeof text, "--%s", near);
-    return wrong(p->command, p->command ? "no such option:" : "no such option:", name,
-                 near ? text : NULL);
+    return wrong(p->command, "no such option:", name, near ? text : NULL);
 }
 
 static bool give(struct parser *p, const struct option *o, const char *value)
@@ -246,14 +246,13 @@ static bool parse_all(struct parser *p)
 
 static bool check_backend(const struct parser *p)
 {
+    static const char *const words[] = {"auto", "native", "tape"};
     const char *backend = p->args->backend;
-    if (!backend || strcmp(backend, "tape") == 0)
-        return true;
-    if (strcmp(backend, "native") == 0)
-        return cli_complain(p->command,
-                            "--backend native is not available in this build; there is tape"),
-               false;
-    return cli_complain(p->command, "--backend is '%s'; there is tape", backend), false;
+    for (size_t i = 0; i < CLI_COUNT(words); i++)
+        if (!backend || strcmp(backend, words[i]) == 0)
+            return true;
+    return cli_complain(p->command, "--backend is '%s'; there are auto, native, tape", backend),
+           false;
 }
 
 bool cli_parse(int argc, char **argv, const struct cli_command **command, struct cli_args *args)

@@ -22,7 +22,8 @@ struct ct_sim *cli_sim(struct ct_ctx *ctx, struct ct_system *sys, const struct c
                                                   .tolerance = args->tolerance,
                                                   .step = args->step,
                                                   .until = args->until,
-                                                  .samples = args->samples});
+                                                  .samples = args->samples,
+                                                  .backend = args->backend});
 }
 
 const char *cli_format(const struct cli_args *args, const char *const *formats,
@@ -80,6 +81,8 @@ int cli_output_close(struct cli_output *o, bool ok)
         cannot("replace", o->path, errno);
         written = false;
     }
+    if (!ok && o->partial) // half a text is of no use
+        remove(o->partial);
     free(o->partial);
     return ok && written ? CLI_DONE : CLI_FAILED;
 }

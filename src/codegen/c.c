@@ -1,6 +1,6 @@
-// Printing expressions as a C function; see c.h.
+// Printing a listing as a C function; see c.h.
 //
-// The live nodes that compute something are the statements, in the order of ids. Statement k belongs
+// The results of the instructions are the statements, in the order of the listing. Statement k belongs
 // to part k / split. A value that a later part reads is stored in w[] by its own part; one part alone
 // needs no w[].
 #include "codegen/c.h"
@@ -10,7 +10,7 @@
 #include <assert.h>
 #include <string.h>
 
-static const uint32_t none = UINT32_MAX;
+static const uint32_t none = CT_VALUE_NONE;
 
 struct text {
     char *s;
@@ -19,18 +19,19 @@ struct text {
 
 struct writer {
     struct ct_arena *arena;
-    const struct ct_exs *x;
+    const struct ct_listing *l;
     struct ct_c_options o;
-    const ct_ex *out;
-    size_t nout;
-    uint32_t nid;
-    unsigned char *live; // by id
-    uint32_t *statement; // by id: number of its statement
+    uint32_t *statement; // by value: number of its statement
     uint32_t nstatement;
-    uint32_t *crossing; // by id: place in w[], none if only its own part reads it
+    struct statement {
+        const struct ct_instruction *ins;
+        uint32_t result; // which of the instruction's
+    } * list;
+    uint32_t *crossing; // by value: place in w[], none if only its own part reads it
     uint32_t ncrossing;
-    const char **input;  // by id of a symbol: i<slot>_<name>
-    const size_t **slot; // by id of a symbol
+    const char **input; // by value of a symbol: i<slot>_<name>
+    uint32_t *first_output,
+        *next_output; // by value, by output: 1 + k of the next one, 0 at the end
     size_t split;
     struct text text;
 };
@@ -71,187 +72,166 @@ static const char *comment_text(struct ct_arena *a, const char *s)
 
 // ---- what is needed -----------------------------------------------------------------------------
 
-static int operands(const struct ct_exs *x, uint32_t id, uint32_t arg[3])
+static bool is_statement(const struct writer *w, uint32_t v)
 {
-    const struct ct_exnode *n = &x->node[id];
-    arg[0] = n->a;
-    arg[1] = n->b;
-    arg[2] = n->c;
-    return ct_op_info[n->op].narg;
+    return w->statement[v] != none;
 }
 
-static bool is_statement(const struct writer *w, uint32_t id)
+static size_t part_of(const struct writer *w, uint32_t v)
 {
-    const uint32_t op = w->x->node[id].op;
-    return w->live[id] && op != CT_OP_CONST && op != CT_OP_SYM;
-}
-
-static void mark_live(struct writer *w)
-{
-    uint32_t arg[3];
-    for (size_t k = 0; k < w->nout; k++)
-        w->nid = w->out[k].id >= w->nid ? w->out[k].id + 1 : w->nid;
-    w->live = CT_NEWN(w->arena, unsigned char, w->nid);
-    for (size_t k = 0; k < w->nout; k++)
-        w->live[w->out[k].id] = 1;
-    for (uint32_t id = w->nid; id-- > 0;)
-        for (int i = w->live[id] ? operands(w->x, id, arg) : 0; i-- > 0;)
-            w->live[arg[i]] = 1;
-}
-
-static size_t part_of(const struct writer *w, uint32_t id)
-{
-    return w->statement[id] / w->split;
+    return w->statement[v] / w->split;
 }
 
 static void number_statements(struct writer *w)
 {
-    uint32_t arg[3];
-    w->statement = CT_NEWN(w->arena, uint32_t, w->nid);
-    w->crossing = CT_NEWN(w->arena, uint32_t, w->nid);
-    for (uint32_t id = 0; id < w->nid; id++) {
-        w->crossing[id] = none;
-        if (is_statement(w, id))
-            w->statement[id] = w->nstatement++;
-    }
-    for (uint32_t id = 0; id < w->nid; id++)
-        for (int i = is_statement(w, id) ? operands(w->x, id, arg) : 0; i-- > 0;)
-            if (is_statement(w, arg[i]) && part_of(w, arg[i]) != part_of(w, id)
-                && w->crossing[arg[i]] == none)
-                w->crossing[arg[i]] = w->ncrossing++;
+    const struct ct_listing *l = w->l;
+    w->statement = CT_NEWN(w->arena, uint32_t, l->nvalue);
+    w->crossing = CT_NEWN(w->arena, uint32_t, l->nvalue);
+    w->list = CT_NEWN(w->arena, struct statement, l->nvalue);
+    for (size_t v = 0; v < l->nvalue; v++)
+        w->statement[v] = w->crossing[v] = none;
+    for (const struct ct_instruction *i = l->ins; i < l->ins + l->nins; i++)
+        for (uint32_t r = 0; r < i->nres; r++) {
+            w->list[w->nstatement] = (struct statement){i, r};
+            w->statement[i->res[r]] = w->nstatement++;
+        }
+    for (uint32_t k = 0; k < w->nstatement; k++)
+        for (uint32_t j = 0; j < w->list[k].ins->narg; j++) {
+            const uint32_t v = w->list[k].ins->arg[j];
+            if (is_statement(w, v) && part_of(w, v) != k / w->split && w->crossing[v] == none)
+                w->crossing[v] = w->ncrossing++;
+        }
 }
 
-static void name_inputs(struct writer *w, const ct_ex *in, const size_t *slot, size_t nin)
+static void name_inputs(struct writer *w)
 {
-    w->input = CT_NEWN(w->arena, const char *, w->nid);
-    w->slot = CT_NEWN(w->arena, const size_t *, w->nid);
-    for (size_t k = 0; k < nin; k++) {
-        const struct ct_sym *s = ct_ex_symbol(w->x, in[k]);
-        assert(s);
-        if (in[k].id >= w->nid || !w->live[in[k].id])
+    const struct ct_listing *l = w->l;
+    w->input = CT_NEWN(w->arena, const char *, l->nvalue);
+    for (size_t v = 0; v < l->nvalue; v++) {
+        if (l->input[v] == none)
             continue;
+        const struct ct_sym *s = ct_ex_symbol(l->x, (ct_ex){l->node[v]});
         const char *name
             = w->o.symbol ? w->o.symbol(w->o.data, w->arena, s) : ct_c_name(w->arena, s->name);
-        w->input[in[k].id] = ct_arena_printf(w->arena, "i%zu_%s", slot[k], name);
-        w->slot[in[k].id] = &slot[k];
+        w->input[v] = ct_arena_printf(w->arena, "i%u_%s", l->input[v], name);
+    }
+}
+
+static void list_outputs(struct writer *w)
+{
+    w->first_output = CT_NEWN(w->arena, uint32_t, w->l->nvalue);
+    w->next_output = CT_NEWN(w->arena, uint32_t, w->l->nout);
+    for (size_t k = w->l->nout; k-- > 0;) {
+        w->next_output[k] = w->first_output[w->l->out[k]];
+        w->first_output[w->l->out[k]] = (uint32_t)k + 1;
     }
 }
 
 // ---- statements -------------------------------------------------------------------------------
 
-// The text of node id as read by part `part`.
-static const char *operand_text(const struct writer *w, uint32_t id, size_t part)
+// The text of value v as read by part `part`.
+static const char *operand_text(const struct writer *w, uint32_t v, size_t part)
 {
-    double v;
-    if (ct_ex_is_const(w->x, (ct_ex){id}, &v))
-        return ct_number_c(w->arena, v);
-    if (w->x->node[id].op == CT_OP_SYM) {
-        assert(w->input[id] && "a symbol that is needed is not an input");
-        return w->input[id];
-    }
-    return part_of(w, id) == part ? ct_arena_printf(w->arena, "t%u", w->statement[id])
-                                  : ct_arena_printf(w->arena, "w[%u]", w->crossing[id]);
+    double number;
+    if (ct_ex_is_const(w->l->x, (ct_ex){w->l->node[v]}, &number))
+        return ct_number_c(w->arena, number);
+    if (!is_statement(w, v))
+        return w->input[v];
+    return part_of(w, v) == part ? ct_arena_printf(w->arena, "t%u", w->statement[v])
+                                 : ct_arena_printf(w->arena, "w[%u]", w->crossing[v]);
 }
 
-static void put_statement(struct writer *w, uint32_t id)
+static const char *operation_text(const struct writer *w, const struct statement *s,
+                                  size_t part)
 {
-    const struct ct_exnode *n = &w->x->node[id];
-    const size_t part = part_of(w, id);
-    const char *arg[3] = {"", "", ""}, *value;
-    uint32_t below[3];
-    for (int i = operands(w->x, id, below); i-- > 0;)
-        arg[i] = operand_text(w, below[i], part);
-    if (n->op == CT_OP_TABLE)
-        value = ct_arena_printf(w->arena, "%s_table(%s_table%u, %u, %s)", w->o.name, w->o.name,
-                                n->b, n->c, arg[0]);
-    else
-        value = ct_c_operation(w->arena, (enum ct_op)n->op, arg);
-    putf(w, "    const double t%u = %s;", w->statement[id], value);
-    if (id < w->x->label_cap && w->x->label[id])
-        putf(w, " /* %s */", comment_text(w->arena, w->x->label[id]));
+    const struct ct_instruction *i = s->ins;
+    const char *arg[3] = {"", "", ""};
+    for (uint32_t k = 0; k < i->narg; k++)
+        arg[k] = operand_text(w, i->arg[k], part);
+    switch (i->op) {
+    case CT_OP_TABLE:
+        return ct_arena_printf(w->arena, "%s_table(%s_table%u, %u, %s)", w->o.name, w->o.name,
+                               i->table, i->order, arg[0]);
+    case CT_OP_SINCOS:
+        return ct_c_operation(w->arena, s->result ? CT_OP_COS : CT_OP_SIN, arg);
+    case CT_OP_FMA:
+        return ct_arena_printf(w->arena, "fma(%s, %s, %s)", arg[0], arg[1], arg[2]);
+    case CT_OP_FMS:
+        return ct_arena_printf(w->arena, "fma(%s, %s, -(%s))", arg[0], arg[1], arg[2]);
+    case CT_OP_FNMA:
+        return ct_arena_printf(w->arena, "fma(-(%s), %s, %s)", arg[0], arg[1], arg[2]);
+    default:
+        return ct_c_operation(w->arena, (enum ct_op)i->op, arg);
+    }
+}
+
+static void put_statement(struct writer *w, uint32_t k)
+{
+    const size_t part = k / w->split;
+    const uint32_t v = w->list[k].ins->res[w->list[k].result], id = w->l->node[v];
+    const struct ct_exs *x = w->l->x;
+    putf(w, "    const double t%u = %s;", k, operation_text(w, &w->list[k], part));
+    if (id < x->label_cap && x->label[id])
+        putf(w, " /* %s */", comment_text(w->arena, x->label[id]));
     put(w, "\n");
-    if (w->crossing[id] != none)
-        putf(w, "    w[%u] = t%u;\n", w->crossing[id], w->statement[id]);
+    if (w->crossing[v] != none)
+        putf(w, "    w[%u] = t%u;\n", w->crossing[v], k);
 }
 
 // ---- functions --------------------------------------------------------------------------------
 
-// The live ids from the first statement of a part to that of the next.
+// The statements of a part.
 struct range {
     uint32_t from, to;
     bool reads_input, writes_output, uses_w;
 };
 
-static void look_at_operands(const struct writer *w, uint32_t id, unsigned char *read,
-                             size_t part, struct range *r)
+static void look_at_operands(const struct writer *w, uint32_t k, unsigned char *read,
+                             struct range *r)
 {
-    uint32_t arg[3];
-    for (int i = operands(w->x, id, arg); i-- > 0;) {
-        if (w->x->node[arg[i]].op == CT_OP_SYM)
-            read[arg[i]] = r->reads_input = true;
-        r->uses_w |= is_statement(w, arg[i]) && part_of(w, arg[i]) != part;
+    const struct ct_instruction *i = w->list[k].ins;
+    for (uint32_t j = 0; j < i->narg; j++) {
+        if (w->input[i->arg[j]])
+            read[i->arg[j]] = r->reads_input = true;
+        r->uses_w |= w->crossing[i->arg[j]] != none && part_of(w, i->arg[j]) != k / w->split;
     }
-    r->uses_w |= w->crossing[id] != none;
+    r->uses_w |= w->crossing[i->res[w->list[k].result]] != none;
 }
 
 static void put_inputs(struct writer *w, const unsigned char *read)
 {
-    for (uint32_t id = 0; id < w->nid; id++)
-        if (read[id])
-            putf(w, "    const double %s = in[%zu];\n", w->input[id], *w->slot[id]);
+    for (size_t v = 0; v < w->l->nvalue; v++)
+        if (read[v])
+            putf(w, "    const double %s = in[%u];\n", w->input[v], w->l->input[v]);
 }
 
-static void put_statements(struct writer *w, const struct range *r)
+static uint32_t value_of(const struct writer *w, uint32_t k)
 {
-    for (uint32_t id = r->from; id < r->to; id++)
-        if (is_statement(w, id))
-            put_statement(w, id);
+    return w->list[k].ins->res[w->list[k].result];
 }
 
-// outputs[k ...): of each statement id the outputs it is, as linked lists by id.
-struct outputs {
-    uint32_t *first, *next; // 1 + k, 0 at the end
-};
-
-static struct outputs list_outputs(const struct writer *w)
+static void put_outputs(struct writer *w, uint32_t v, const char *text)
 {
-    struct outputs o
-        = {CT_NEWN(w->arena, uint32_t, w->nid), CT_NEWN(w->arena, uint32_t, w->nout)};
-    for (size_t k = w->nout; k-- > 0;) {
-        o.next[k] = o.first[w->out[k].id];
-        o.first[w->out[k].id] = (uint32_t)k + 1;
-    }
-    return o;
+    for (uint32_t k = w->first_output[v]; k; k = w->next_output[k - 1])
+        putf(w, "    out[%u] = %s;\n", k - 1, text);
 }
 
-static void put_outputs(struct writer *w, const struct outputs *o, uint32_t id, size_t part)
-{
-    for (uint32_t k = o->first[id]; k; k = o->next[k - 1])
-        putf(w, "    out[%u] = %s;\n", k - 1, operand_text(w, id, part));
-}
-
-static void put_body(struct writer *w, const struct range *r, const struct outputs *o,
-                     const unsigned char *read, size_t part)
+static void put_body(struct writer *w, const struct range *r, const unsigned char *read)
 {
     put_inputs(w, read);
-    put_statements(w, r);
-    for (uint32_t id = r->from; id < r->to; id++)
-        if (is_statement(w, id))
-            put_outputs(w, o, id, part);
+    for (uint32_t k = r->from; k < r->to; k++)
+        put_statement(w, k);
+    for (uint32_t k = r->from; k < r->to; k++)
+        put_outputs(w, value_of(w, k), operand_text(w, value_of(w, k), k / w->split));
 }
 
-static struct range next_part(const struct writer *w, uint32_t from, size_t part,
-                              const struct outputs *o, unsigned char *read)
+static struct range next_part(const struct writer *w, uint32_t from, unsigned char *read)
 {
-    struct range r = {.from = from};
-    memset(read, 0, w->nid);
-    for (r.to = from; r.to < w->nid; r.to++) {
-        if (!is_statement(w, r.to))
-            continue;
-        if (part_of(w, r.to) != part)
-            break;
-        look_at_operands(w, r.to, read, part, &r);
-        r.writes_output |= o->first[r.to] != 0;
+    struct range r = {.from = from, .to = from};
+    memset(read, 0, w->l->nvalue);
+    for (; r.to < w->nstatement && r.to - from < w->split; r.to++) {
+        look_at_operands(w, r.to, read, &r);
+        r.writes_output |= w->first_output[value_of(w, r.to)] != 0;
     }
     return r;
 }
@@ -270,31 +250,27 @@ static const char *arguments(const struct writer *w, const struct range *r, bool
 }
 
 // Outputs that are symbols or constants, and the inputs read for them.
-static void put_plain_outputs(struct writer *w, const struct outputs *o)
+static void put_plain_outputs(struct writer *w)
 {
-    for (uint32_t id = 0; id < w->nid; id++)
-        if (!is_statement(w, id))
-            for (uint32_t k = o->first[id]; k; k = o->next[k - 1]) {
-                if (w->x->node[id].op == CT_OP_SYM)
-                    putf(w, "    out[%u] = in[%zu];\n", k - 1, *w->slot[id]);
-                else
-                    putf(w, "    out[%u] = %s;\n", k - 1, operand_text(w, id, 0));
-            }
+    for (uint32_t v = 0; v < w->l->nvalue; v++)
+        if (w->l->is_leaf[v])
+            put_outputs(w, v,
+                        w->input[v] ? ct_arena_printf(w->arena, "in[%u]", w->l->input[v])
+                                    : operand_text(w, v, 0));
 }
 
 static void put_functions(struct writer *w)
 {
-    const struct outputs o = list_outputs(w);
-    const size_t nstatement = w->nstatement, npart = (nstatement + w->split - 1) / w->split;
-    unsigned char *read = CT_NEWN(w->arena, unsigned char, w->nid);
+    const size_t npart = (w->nstatement + w->split - 1) / w->split;
+    unsigned char *read = CT_NEWN(w->arena, unsigned char, w->l->nvalue);
     const char **call = CT_NEWN(w->arena, const char *, npart);
     struct range r = {0};
     for (size_t part = 0; part < npart; part++) {
-        r = next_part(w, r.to, part, &o, read);
+        r = next_part(w, r.to, read);
         if (npart == 1)
             break;
         putf(w, "static void %s_%zu(%s)\n{\n", w->o.name, part, arguments(w, &r, true));
-        put_body(w, &r, &o, read, part);
+        put_body(w, &r, read);
         put(w, "}\n\n");
         call[part] = ct_arena_printf(w->arena, "    %s_%zu(%s);\n", w->o.name, part,
                                      arguments(w, &r, false));
@@ -303,12 +279,12 @@ static void put_functions(struct writer *w)
     putf(w, "void %s(const double *in, double *out)\n{\n", w->o.name);
     put(w, "    (void)in;\n    (void)out;\n");
     if (npart == 1)
-        put_body(w, &r, &o, read, 0);
+        put_body(w, &r, read);
     if (npart > 1 && w->ncrossing)
         putf(w, "    double w[%u];\n", w->ncrossing);
     for (size_t part = 0; npart > 1 && part < npart; part++)
         put(w, call[part]);
-    put_plain_outputs(w, &o);
+    put_plain_outputs(w);
     put(w, "}\n");
 }
 
@@ -367,16 +343,17 @@ static void put_table_function(struct writer *w)
 
 static void put_tables(struct writer *w)
 {
-    unsigned char *used = CT_NEWN(w->arena, unsigned char, w->x->ntable);
+    const size_t ntable = w->l->x->ntable;
+    unsigned char *used = CT_NEWN(w->arena, unsigned char, ntable);
     bool any = false;
-    for (uint32_t id = 0; id < w->nid; id++)
-        if (is_statement(w, id) && w->x->node[id].op == CT_OP_TABLE)
-            used[w->x->node[id].b] = any = true;
+    for (uint32_t k = 0; k < w->nstatement; k++)
+        if (w->list[k].ins->op == CT_OP_TABLE)
+            used[w->list[k].ins->table] = any = true;
     if (!any)
         return;
     put_table_function(w);
-    for (uint32_t k = 0; k < w->x->ntable; k++) {
-        const struct ct_table *t = &w->x->table[k];
+    for (uint32_t k = 0; k < ntable; k++) {
+        const struct ct_table *t = &w->l->table[k];
         if (!used[k])
             continue;
         put_array(w, k, "x", t->x, t->n);
@@ -405,21 +382,28 @@ static void put_head(struct writer *w)
     put(w, "#include <math.h>\n\n");
 }
 
-const char *ct_c_function(struct ct_arena *a, const struct ct_exs *x, const ct_ex *out,
-                          size_t nout, const ct_ex *in, const size_t *slot, size_t nin,
-                          const struct ct_c_options *options)
+const char *ct_c_listing(struct ct_arena *a, const struct ct_listing *l,
+                         const struct ct_c_options *options)
 {
-    struct writer w = {.arena = a, .x = x, .out = out, .nout = nout};
+    struct writer w = {.arena = a, .l = l};
     if (options)
         w.o = *options;
     w.o.name = w.o.name ? w.o.name : "evaluate";
     w.split = w.o.split ? w.o.split : 800;
-    mark_live(&w);
     number_statements(&w);
-    name_inputs(&w, in, slot, nin);
+    name_inputs(&w);
+    list_outputs(&w);
     put_head(&w);
     put_tables(&w);
     put_functions(&w);
     CT_PUSH(a, w.text.s, w.text.n, w.text.cap, '\0');
     return w.text.s;
+}
+
+const char *ct_c_function(struct ct_arena *a, const struct ct_exs *x, const ct_ex *out,
+                          size_t nout, const ct_ex *in, const size_t *slot, size_t nin,
+                          const struct ct_c_options *options)
+{
+    return ct_c_listing(a, ct_listing_create(a, x, out, nout, in, slot, nin, CT_FUSE_NO),
+                        options);
 }

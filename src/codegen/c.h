@@ -2,9 +2,9 @@
 //
 //     void name(const double *in, double *out)        in[slot] of the symbols, out[nout]
 //
-// One statement per operation, `const double t12 = t3 * t7;`, in the order of the nodes. Every
-// operation of the tape is there with the same operands and nothing else, so the bits agree with the
-// tape if the compiler neither contracts nor reorders (-ffp-contract=off, no -ffast-math).
+// One statement per operation, `const double t12 = t3 * t7;`, in the order of the listing. Every
+// instruction of it is there with the same operands and nothing else, so the bits agree with tape and
+// native code if the compiler neither contracts nor reorders (-ffp-contract=off, no -ffast-math).
 //
 // What always holds: the same expressions give the same text; C99 without warnings; no globals but
 // constant tables. Functions are kept under `split` statements, because compilers need more than
@@ -12,7 +12,7 @@
 #ifndef CT_CODEGEN_C_H
 #define CT_CODEGEN_C_H
 
-#include "expr/ex.h"
+#include "expr/listing.h"
 
 /// All zero: the defaults.
 struct ct_c_options {
@@ -24,6 +24,10 @@ struct ct_c_options {
     const char *(*symbol)(void *data, struct ct_arena *a, const struct ct_sym *s);
     void *data;
 };
+
+/// C source of a listing; parameters are inputs like the others. The text lives in a.
+const char *ct_c_listing(struct ct_arena *a, const struct ct_listing *l,
+                         const struct ct_c_options *options);
 
 /// C source of nout expressions. in[k] is a symbol whose value stands at slot[k] of the input; all
 /// symbols that are needed must be listed. The text lives in a.

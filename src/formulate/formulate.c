@@ -183,6 +183,33 @@ static int *node_depths(struct ct_build *b)
     return depth;
 }
 
+// A coordinate that carries an effort, a spring or a driver is best a branch of its own.
+static bool is_active(const struct ct_instance *joint)
+{
+    static const char *const keys[] = {"stiffness", "damping", "effort", "motion"};
+    for (size_t i = 0; i < COUNT(keys) && joint->cls->motion; i++)
+        if (ct_instance_value(joint, keys[i])->given)
+            return true;
+    return false;
+}
+
+// Order among equal weights. In a plane the angle of a body weighs as much as that of a joint and gives
+// shorter expressions; a passive joint away from ground yields to it.  (2.3)
+static int tie_rank(const struct ct_build *b, size_t i, const int *depth,
+                    enum ct_tree_choice choice)
+{
+    const struct ct_edge_info *e = &b->edge[i];
+    const int tail = b->wiring[i].tail, head = b->wiring[i].head, last = 2 * (int)b->nedge;
+    if (e->kind == CT_EDGE_ARM)
+        return -1;
+    if (e->kind == CT_EDGE_BODY)
+        return b->is_planar && choice == CT_TREE_AUTO ? 1 : last;
+    const bool at_ground = b->node[tail].body == 0 || b->node[head].body == 0;
+    if (at_ground || (e->kind == CT_EDGE_JOINT && is_active(e->self)))
+        return 0;
+    return 2 + (depth[tail] < depth[head] ? depth[tail] : depth[head]);
+}
+
 // Arms are branches, force drivers chords (R1, R2); shared coordinates tie a joint (R3). Ties go to
 // joints nearer to ground.
 static struct rules make_rules(struct ct_build *b, enum ct_tree_choice choice)
@@ -205,8 +232,7 @@ static struct rules make_rules(struct ct_build *b, enum ct_tree_choice choice)
         const int extra = choice != CT_TREE_AUTO && dear && !e->must_be_branch ? 100 : 0;
         r.weight_t[i] = e->weight_t + extra;
         r.weight_r[i] = e->weight_r + extra;
-        const int t = depth[b->wiring[i].tail], h = depth[b->wiring[i].head];
-        r.rank[i] = e->kind == CT_EDGE_ARM ? -1 : is_body ? 2 * (int)n : t < h ? t : h;
+        r.rank[i] = tie_rank(b, i, depth, choice);
         r.forced_t[i] = e->must_be_branch;
         r.forced_r[i] = e->must_be_branch || is_particle;
         r.banned_t[i] = e->never_branch;
@@ -292,7 +318,7 @@ static const char *near_edge(struct ct_build *b, const char *name)
         if (b->edge[i].kind != CT_EDGE_ARM)
             names[n++] = b->edge[i].name;
     const char *near = ct_nearest(name, names, n);
-    return near ? ct_arena_printf(b->arena, ", did you mean '%s'?", near) : "";
+    return near ? ct_arena_printf(b->arena, "; did you mean '%s'?", near) : "";
 }
 
 static bool mark_named(struct ct_build *b, const char *const *names, const struct ct_mark *mark,

@@ -253,6 +253,19 @@ void ct_topology_motion(struct ct_build *b, const struct ct_edge_info *e, struct
     }
 }
 
+// Joints: as in signals. Bodies: place of the centre of mass, angle or quaternion.
+static const char *coordinate_name(struct ct_build *b, const struct ct_edge_info *e,
+                                   const struct ct_motion *m, int k)
+{
+    static const char *const planar[] = {"x", "y", "angle"};
+    static const char *const spatial[] = {"x", "y", "z", "p0", "p1", "p2", "p3"};
+    if (e->kind == CT_EDGE_BODY)
+        return ct_arena_printf(b->arena, "%s.%s", e->name,
+                               (b->is_planar ? planar : spatial)[k]);
+    return m->ncoord == 1 ? ct_arena_printf(b->arena, "%s.q", e->name)
+                          : ct_arena_printf(b->arena, "%s.q%d", e->name, k + 1);
+}
+
 // Coordinates of an edge with trial symbols, to learn which graph each belongs to.
 static void add_coordinates(struct ct_build *b, int edge)
 {
@@ -268,8 +281,7 @@ static void add_coordinates(struct ct_build *b, int edge)
     if (e->kind == CT_EDGE_JOINT)
         driver = ct_instance_value(e->self, "motion");
     for (int k = 0; k < m.ncoord; k++) {
-        const char *name = m.ncoord == 1 ? ct_arena_printf(b->arena, "%s.q", e->name)
-                                         : ct_arena_printf(b->arena, "%s.q%d", e->name, k + 1);
+        const char *name = coordinate_name(b, e, &m, k);
         struct ct_coordinate c = {.name = name, .edge = edge, .place = k};
         c.q = c.u = c.driver = -1;
         c.in_translation = depends(b->x, m.d, m.coord[k]);

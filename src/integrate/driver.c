@@ -64,6 +64,7 @@ struct run {
     double error_before;  // of the last accepted step
     double error_allowed; // 1, more beside a singular position
     double singular_in;   // time to it, from t
+    double h_far;         // the step size when it came into reach
     bool was_refused;     // the step before this try was
     size_t sample;        // the next one to give
     double last_event;    // time of the last state event
@@ -269,12 +270,15 @@ static void leap_over_singular(struct run *r)
     const double longest = 1.3, steps = 3; // against the step the error allows
     const double gap = r->method->gap;
     const double ahead = r->p->singular_in ? r->p->singular_in(r->p->user) : INFINITY;
+    // the step size from before: what the controller makes of rounding is of no use
+    const double h = r->error_allowed > 1 ? r->h_far : r->h;
     r->singular_in = ahead;
     r->error_allowed = 1;
-    if (r->o->step > 0 || !(ahead <= (steps + gap) * r->h) || !(ahead > 0))
+    if (r->o->step > 0 || !(ahead <= (steps + gap) * h) || !(ahead > 0))
         return;
-    const double rest = ahead - gap * r->h;
-    r->h = ahead <= longest * gap * r->h ? ahead / gap : rest / ceil(rest / r->h);
+    const double rest = ahead - gap * h;
+    r->h = ahead <= longest * gap * h ? ahead / gap : rest / ceil(rest / h);
+    r->h_far = h;
     r->error_allowed = singular_error;
 }
 

@@ -10,6 +10,16 @@
 // collecting takes seconds.
 static const double largest_collected = 20000;
 
+double ct_reduced_size(const struct ct_exs *x, ct_ex e, double most)
+{
+    const struct ct_exnode *n = ct_ex_node(x, e);
+    const uint32_t arg[3] = {n->a, n->b, n->c};
+    double size = 1;
+    for (int i = 0; i < ct_op_info[n->op].narg && size < most; i++)
+        size += ct_reduced_size(x, (ct_ex){arg[i]}, most - size);
+    return size;
+}
+
 struct quaternions {
     ct_ex (*at)[4];
     size_t n;
@@ -43,6 +53,11 @@ static ct_ex collect(struct ct_equations *e, ct_ex v)
     return v;
 }
 
+static double size(const struct ct_equations *e, ct_ex v)
+{
+    return ct_reduced_size(e->x, v, 2 * largest_collected);
+}
+
 // k (a + b) as k a + k b.
 static ct_ex spread(struct ct_equations *e, ct_ex k, ct_ex sum)
 {
@@ -58,12 +73,12 @@ static ct_ex spread(struct ct_equations *e, ct_ex k, ct_ex sum)
 
 // An equation keeps its terms apart where that costs little: -g*m1*l1*s1 - g*m2*l2*s2 rather than
 // -g*(m1*l1*s1 + m2*l2*s2).
-static ct_ex keep_apart(struct ct_equations *e, struct ct_arena *a, ct_ex v)
+static ct_ex keep_apart(struct ct_equations *e, ct_ex v)
 {
     struct ct_exs *x = e->x;
     const struct ct_exnode n = *ct_ex_node(x, v);
     if (n.op == CT_OP_NEG)
-        return ct_ex_neg(x, keep_apart(e, a, (ct_ex){n.a}));
+        return ct_ex_neg(x, keep_apart(e, (ct_ex){n.a}));
     if (n.op != CT_OP_MUL)
         return v;
     for (int i = 0; i < 2; i++) {
@@ -73,7 +88,7 @@ static ct_ex keep_apart(struct ct_equations *e, struct ct_arena *a, ct_ex v)
         if ((op != CT_OP_ADD && op != CT_OP_SUB) || !(kinds & ~(1u << CT_SYM_PARAM)))
             continue;
         const ct_ex apart = spread(e, k, sum);
-        if (ct_ex_tree_size(x, a, apart) <= 1.3 * ct_ex_tree_size(x, a, v))
+        if (size(e, apart) <= 1.3 * size(e, v))
             return apart;
     }
     return v;
@@ -84,34 +99,36 @@ static ct_ex keep_apart(struct ct_equations *e, struct ct_arena *a, ct_ex v)
 static ct_ex collect_force(struct ct_equations *e, struct ct_arena *a, ct_ex v)
 {
     struct ct_exs *x = e->x;
-    const ct_ex whole = keep_apart(e, a, collect(e, v));
+    const ct_ex whole = keep_apart(e, collect(e, v));
     if (!(ct_ex_kinds(x, v) & 1u << CT_SYM_U))
         return whole;
     ct_ex *from = CT_NEWN(a, ct_ex, e->nu), *zero = CT_NEWN(a, ct_ex, e->nu);
     for (size_t i = 0; i < e->nu; i++)
         from[i] = e->u[i].symbol;
     const ct_ex rest = collect(e, ct_ex_subst(x, v, from, zero, e->nu));
-    const ct_ex still = keep_apart(e, a, rest);
-    const ct_ex moving = keep_apart(e, a, collect(e, ct_ex_sub(x, v, rest)));
+    const ct_ex still = keep_apart(e, rest);
+    const ct_ex moving = keep_apart(e, collect(e, ct_ex_sub(x, v, rest)));
     const ct_ex apart = ct_ex_add(x, moving, still);
-    const double size = ct_ex_tree_size(x, a, apart), least = ct_ex_tree_size(x, a, whole);
-    return size <= 1.5 * least + 8 ? apart : whole;
+    return size(e, apart) <= 1.5 * size(e, whole) + 8 ? apart : whole;
 }
 
-static double size_of_all(struct ct_equations *e, struct ct_arena *a, const ct_ex *effort)
+// What all expressions would show in full, up to the size that is still collected.
+static double size_of_all(const struct ct_equations *e, const ct_ex *effort)
 {
+    const double most = largest_collected + 1;
     double size = 0;
     for (size_t i = 0; i < e->ndriver; i++)
-        size += ct_ex_tree_size(e->x, a, effort[i]);
+        size += ct_reduced_size(e->x, effort[i], most - size);
     for (size_t i = 0; i < e->nM; i++)
-        size += ct_ex_tree_size(e->x, a, e->M[i].value);
+        size += ct_reduced_size(e->x, e->M[i].value, most - size);
     for (size_t i = 0; i < e->nJ; i++)
-        size += ct_ex_tree_size(e->x, a, e->J[i].value);
+        size += ct_reduced_size(e->x, e->J[i].value, most - size);
     for (size_t i = 0; i < e->nu; i++)
-        size += ct_ex_tree_size(e->x, a, e->Q[i]);
-    for (size_t i = 0; i < e->nrow; i++)
-        size += ct_ex_tree_size(e->x, a, e->row[i].phi)
-              + ct_ex_tree_size(e->x, a, e->row[i].gam);
+        size += ct_reduced_size(e->x, e->Q[i], most - size);
+    for (size_t i = 0; i < e->nrow; i++) {
+        size += ct_reduced_size(e->x, e->row[i].phi, most - size);
+        size += ct_reduced_size(e->x, e->row[i].gam, most - size);
+    }
     return size;
 }
 
@@ -140,7 +157,7 @@ void ct_reduced_prepare(struct ct_arena *a, struct ct_equations *e, bool may_col
         .rate = CT_NEWN(a, ct_ex, e->nq + 1),
     };
     find_efforts(e, r->effort);
-    r->is_collected = may_collect && size_of_all(e, a, r->effort) <= largest_collected;
+    r->is_collected = may_collect && size_of_all(e, r->effort) <= largest_collected;
     for (size_t i = 0; i < e->nM; i++)
         r->M[i] = r->is_collected ? collect(e, e->M[i].value) : e->M[i].value;
     for (size_t i = 0; i < e->nJ; i++)
@@ -194,9 +211,9 @@ static ct_ex rebuild(struct ct_exs *x, ct_ex e, const ct_ex *map)
 }
 
 // Bodies are short by now: like terms that the names have brought to light are collected.
-static ct_ex tidy(struct ct_equations *e, struct ct_arena *a, ct_ex v)
+static ct_ex tidy(struct ct_equations *e, ct_ex v)
 {
-    return ct_ex_tree_size(e->x, a, v) < 1000 ? collect(e, v) : v;
+    return ct_reduced_size(e->x, v, 1000) < 1000 ? collect(e, v) : v;
 }
 
 static int by_id(const void *unused, const void *a, const void *b)
@@ -208,7 +225,8 @@ static int by_id(const void *unused, const void *a, const void *b)
 
 // Each named node becomes a symbol; children have smaller ids, so one sweep upwards does.
 static void replace_named(struct ct_arena *a, struct ct_equations *e, struct ct_reduced *r,
-                          struct ct_share *share, const ct_ex *root, size_t nroot, ct_ex *map)
+                          struct ct_share *share, const ct_ex *root, size_t nroot, ct_ex *map,
+                          bool may_tidy)
 {
     struct ct_exs *x = e->x;
     const size_t n = ct_ex_walk(x, root, nroot);
@@ -225,7 +243,7 @@ static void replace_named(struct ct_arena *a, struct ct_equations *e, struct ct_
             continue;
         const uint32_t number = (uint32_t)r->ndefinition;
         struct ct_reduced_definition *d = &r->definition[r->ndefinition++];
-        d->value = tidy(e, a, map[old.id]);
+        d->value = may_tidy ? tidy(e, map[old.id]) : map[old.id];
         d->symbol = map[old.id] = ct_ex_sym(x, CT_SYM_LOCAL, name, number);
     }
 }
@@ -233,7 +251,7 @@ static void replace_named(struct ct_arena *a, struct ct_equations *e, struct ct_
 // The order a reader meets them in: those a definition needs stand before it.
 void ct_reduced_share(struct ct_arena *a, struct ct_equations *e, struct ct_reduced *r)
 {
-    const struct ct_share_options o = {.most = 2000, .enough = 2000};
+    const struct ct_share_options o = {.most = 20000, .enough = 2000};
     const size_t n = list_all(e, r, NULL);
     ct_ex **where = CT_NEWN(a, ct_ex *, n + 1);
     ct_ex *root = CT_NEWN(a, ct_ex, n + 1);
@@ -242,9 +260,11 @@ void ct_reduced_share(struct ct_arena *a, struct ct_equations *e, struct ct_redu
         root[i] = *where[i];
     struct ct_share share = ct_ex_share(a, e->x, root, n, &o);
     ct_ex *map = CT_NEWN(a, ct_ex, e->x->nnode);
-    replace_named(a, e, r, &share, root, n, map);
+    // collecting clears work space of the size of the store each time
+    const bool may_tidy = (double)(n + share.n) * (double)e->x->nnode < 2e8;
+    replace_named(a, e, r, &share, root, n, map, may_tidy);
     for (size_t i = 0; i < n; i++)
-        *where[i] = tidy(e, a, map[root[i].id]);
+        *where[i] = may_tidy ? tidy(e, map[root[i].id]) : map[root[i].id];
     r->size = share.size;
 }
 

@@ -33,6 +33,9 @@ void ct_reduced_prepare(struct ct_arena *a, struct ct_equations *e, bool may_col
 /// Names for what is written more than once: the expressions then use the symbols of definitions.
 void ct_reduced_share(struct ct_arena *a, struct ct_equations *e, struct ct_reduced *r);
 
+/// Operators and operands that a full print of e shows, counted up to `most`. Cost O(most).
+double ct_reduced_size(const struct ct_exs *x, ct_ex e, double most);
+
 /// Left and right side of the equation of speed i; of row r: J u' and -gam.
 ct_ex ct_reduced_left(struct ct_equations *e, const struct ct_reduced *r, size_t i);
 ct_ex ct_reduced_right(struct ct_equations *e, const struct ct_reduced *r, size_t i);

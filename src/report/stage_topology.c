@@ -219,7 +219,7 @@ static void put_places(struct ct_derivation *d)
         ct_ex3 r = ct_node_position(b, b->wiring[edge].head);
         double size = 0;
         for (int k = 0; k < 3; k++)
-            size += ct_ex_tree_size(b->x, d->a, r.e[k]);
+            size += ct_reduced_size(b->x, r.e[k], 301);
         if (size > 300)
             continue;
         for (int k = 0; k < 3; k++)
@@ -244,7 +244,7 @@ static void put_closures(struct ct_derivation *d)
     const struct ct_equations *e = d->e;
     bool any = false;
     for (size_t i = 0; i < e->nrow; i++) {
-        if (ct_ex_tree_size(e->x, d->a, e->row[i].phi) > 1000)
+        if (ct_reduced_size(e->x, e->row[i].phi, 1001) > 1000)
             continue;
         if (!any) {
             ct_page_heading(&d->page,

@@ -1,7 +1,8 @@
 // See assemble.h.
 //
-// Gauss-Newton on the stacked problem: constraints and given values (weight large), guesses of all other
-// coordinates (weight 1). The weight is finite, so the last steps correct the constraints alone.
+// First the loops are closed and the given values met: Newton steps, damped as Levenberg and Marquardt do, so that
+// rows which depend on each other in the solution do not throw it off. Then Gauss-Newton steps along these
+// constraints take all other coordinates to their guesses, each followed by closing again.
 #include "solve/assemble.h"
 #include "formulate/build.h"
 #include "numeric/dense.h"
@@ -9,13 +10,14 @@
 #include "solve/mode.h"
 
 #include <math.h>
+#include <stdint.h>
 #include <string.h>
 
-static const double hard = 1e4; // weight of what must be met against what is wanted
-static const double met = 1e-9; // left over of what must be met [m or rad]
-static const double longest_step
-    = 0.5; // of one iteration [m or rad], against jumping to another assembly
-enum { MOST_ITERATIONS = 200 };
+static const double hard = 1e4;         // weight of what must be met against what is wanted
+static const double met = 1e-9;         // left over of what must be met [m or rad]
+static const double longest_step = 0.5; // [m or rad], against jumping to another assembly
+static const double small_step = 1e-12; // has arrived [m or rad]
+enum { MOST_ITERATIONS = 200, MOST_HALVINGS = 12, MOST_STARTS = 24 };
 
 // What a coordinate shall be: by place in eqs->coordinate.
 struct target {
@@ -30,9 +32,12 @@ struct assembly {
     const struct ct_equations *e;
     struct target *q, *u;
     bool *fixed_row; // rows without an offset of their own
-    double *y, *A, *b, *row, *work, *speed0;
+    double *y, *A, *b, *row, *work, *speed0, *speeds;
+    double *r, *shift; // residuals; of what must be met, its multipliers over hard^2
+    double *kept_y, *kept_memory, *kept_A, *step;
     int *iwork;
-    size_t most; // rows of A
+    size_t most;     // rows of A
+    size_t nhard, n; // rows now: what must be met comes first
 };
 
 // ---- targets --------------------------------------------------------------------------------------------
@@ -121,6 +126,16 @@ static void body_target(struct assembly *s, size_t i, const struct ct_model *mod
                                                        : (ct_ex){(uint32_t)(j == c->place)});
 }
 
+// Quaternions need not be given with length one.
+static void normalise_target(struct target *q)
+{
+    double norm = 0;
+    for (int i = 0; i < 4; i++)
+        norm += q[i].value * q[i].value;
+    for (int i = 0; i < 4 && norm > 0; i++)
+        q[i].value /= sqrt(norm);
+}
+
 static void find_targets(struct assembly *s, const struct ct_model *model)
 {
     for (size_t i = 0; i < s->e->ncoordinate; i++) {
@@ -129,6 +144,11 @@ static void find_targets(struct assembly *s, const struct ct_model *model)
             joint_target(s, i, model);
         else if (e->kind == CT_EDGE_BODY)
             body_target(s, i, model);
+    }
+    for (size_t i = 0; i < s->e->ncoordinate; i++) {
+        const struct ct_coordinate *c = &s->e->coordinate[i];
+        if (s->q[i].in_quaternion && c->place == s->e->build->edge[c->edge].trial.quaternion)
+            normalise_target(&s->q[i]);
     }
 }
 
@@ -139,18 +159,24 @@ static double measured(const struct assembly *s, size_t i)
     return s->m->result.out[2 * i];
 }
 
-// Small rotation from the target quaternion to the present one, component k.
+// Rotation vector from the target quaternion to the present one, component k: along it the rate of half its square
+// is its product with the angular velocity, exactly.
 static double quaternion_error(const struct assembly *s, size_t first, int k)
 {
-    double t[4], p[4];
+    double t[4], p[4], v[3], norm = 0;
     for (size_t i = 0; i < 4; i++) {
         t[i] = s->q[first + i].value;
         p[i] = measured(s, first + i);
     }
-    const int i = 1 + (k + 1) % 3, j = 1 + (k + 2) % 3;
-    const double v = t[0] * p[1 + k] - p[0] * t[1 + k] - (t[i] * p[j] - t[j] * p[i]);
+    for (int i = 0; i < 3; i++) {
+        const int a = 1 + (i + 1) % 3, b = 1 + (i + 2) % 3;
+        v[i] = t[0] * p[1 + i] - p[0] * t[1 + i] - (t[a] * p[b] - t[b] * p[a]);
+        norm += v[i] * v[i];
+    }
+    norm = sqrt(norm);
     const double w = t[0] * p[0] + t[1] * p[1] + t[2] * p[2] + t[3] * p[3];
-    return w < 0 ? -2 * v : 2 * v;
+    const double factor = norm > 0 ? 2 * atan2(norm, fabs(w)) / norm : 2;
+    return w < 0 ? -factor * v[k] : factor * v[k];
 }
 
 // Deviation of a coordinate from its target; for three of a quaternion's four numbers a rotation.
@@ -190,13 +216,71 @@ static void speed_rows(struct assembly *s, double *rows)
     ct_program_run(&m->result, m->input);
 }
 
-static void add_row(struct assembly *s, size_t *n, double weight, const double *coef,
-                    size_t stride, double r)
+static void add_row(struct assembly *s, const double *coef, size_t stride, double r)
 {
     for (size_t k = 0; k < s->m->nu; k++)
-        s->A[*n + s->most * k] = weight * coef[stride * k];
-    s->b[*n] = -weight * r;
-    (*n)++;
+        s->A[s->n + s->most * k] = coef[stride * k];
+    s->r[s->n++] = r;
+}
+
+// Rows of the positions at s->y: A d + r = 0.
+static void position_rows(struct assembly *s)
+{
+    struct ct_machine *m = s->m;
+    const size_t nc = s->e->ncoordinate;
+    double r;
+    ct_machine_set(m, 0, s->y);
+    ct_memory_follow(m);
+    ct_machine_constraint(m);
+    speed_rows(s, s->speeds);
+    s->n = 0;
+    for (size_t i = 0; i < m->nrow; i++)
+        if (s->fixed_row[i])
+            add_row(s, m->J + i, m->nrow, m->phi[i]);
+    for (size_t i = 0; i < nc; i++)
+        if (s->q[i].is_given && deviation(s, i, &r))
+            add_row(s, s->speeds + i, nc, r);
+    s->nhard = s->n;
+    for (size_t i = 0; i < nc; i++)
+        if (!s->q[i].is_given && s->q[i].wanted && deviation(s, i, &r))
+            add_row(s, s->speeds + i, nc, r);
+}
+
+// The same for the speeds.
+static void velocity_rows(struct assembly *s)
+{
+    struct ct_machine *m = s->m;
+    const size_t nc = s->e->ncoordinate;
+    ct_machine_set(m, 0, s->y);
+    ct_machine_constraint(m);
+    speed_rows(s, s->speeds);
+    s->n = 0;
+    for (size_t i = 0; i < m->nrow; i++)
+        add_row(s, m->J + i, m->nrow, m->v[i]);
+    for (size_t i = 0; i < nc; i++)
+        if (s->u[i].is_given)
+            add_row(s, s->speeds + i, nc, m->result.out[2 * i + 1] - s->u[i].value);
+    s->nhard = s->n;
+    for (size_t i = 0; i < nc; i++)
+        if (!s->u[i].is_given && s->u[i].wanted)
+            add_row(s, s->speeds + i, nc, m->result.out[2 * i + 1] - s->u[i].value);
+}
+
+// Largest residual of what must be met; sum of squares of what is wanted.
+static double violation(const struct assembly *s)
+{
+    double worst = 0;
+    for (size_t i = 0; i < s->nhard; i++)
+        worst = fabs(s->r[i]) > worst || isnan(s->r[i]) ? fabs(s->r[i]) : worst;
+    return worst;
+}
+
+static double distance(const struct assembly *s)
+{
+    double sum = 0;
+    for (size_t i = s->nhard; i < s->n; i++)
+        sum += s->r[i] * s->r[i];
+    return sum;
 }
 
 // ---- iterations ---------------------------------------------------------------------------------------------
@@ -205,88 +289,137 @@ static double limit_step(double *d, size_t n)
 {
     double largest = 0;
     for (size_t i = 0; i < n; i++)
-        largest = fmax(largest, fabs(d[i]));
+        largest = fabs(d[i]) > largest || isnan(d[i]) ? fabs(d[i]) : largest;
     for (size_t i = 0; i < n && largest > longest_step; i++)
         d[i] *= longest_step / largest;
     return largest;
 }
 
-// One stacked step for the positions into s->b; wishes are left out in the last, exact steps.
-// Returns the largest violation of what must be met.
-static double position_step(struct assembly *s, double *rows, bool with_wishes)
+static void solve_rows(struct assembly *s, size_t n)
 {
-    struct ct_machine *m = s->m;
-    size_t n = 0;
-    double worst = 0, r;
-    ct_machine_set(m, 0, s->y);
-    ct_memory_follow(m);
-    ct_machine_constraint(m);
-    speed_rows(s, rows);
-    for (size_t i = 0; i < m->nrow; i++)
-        if (s->fixed_row[i]) {
-            worst = fmax(worst, fabs(m->phi[i]));
-            add_row(s, &n, hard, m->J + i, m->nrow, m->phi[i]);
-        }
-    for (size_t i = 0; i < s->e->ncoordinate; i++) {
-        const struct target *t = &s->q[i];
-        if (!(t->is_given || (t->wanted && with_wishes)) || !deviation(s, i, &r))
-            continue;
-        if (t->is_given)
-            worst = fmax(worst, fabs(r));
-        add_row(s, &n, t->is_given ? hard : 1, rows + i, s->e->ncoordinate, r);
-    }
-    if (n && m->nu)
-        ct_lstsq(s->b, s->A, (int)n, (int)m->nu, (int)s->most, 1e-12, s->iwork, s->work);
+    const size_t nu = s->m->nu;
+    if (n && nu)
+        ct_lstsq(s->b, s->A, (int)n, (int)nu, (int)s->most, 1e-12, s->iwork, s->work);
     else
-        memset(s->b, 0, (m->nu + 1) * sizeof *s->b);
-    return worst;
+        memset(s->b, 0, (nu + 1) * sizeof *s->b);
 }
 
-static double find_positions(struct assembly *s, double *rows)
+// Step into s->b towards what must be met: |A d + r|^2 + damping^2 |d|^2 becomes least.
+static void closing_step(struct assembly *s, double damping)
 {
-    double worst = INFINITY;
-    // first the wishes too, until the step is small; then the constraints alone, to the last digit
-    for (int pass = 0; pass < 2; pass++)
-        for (int i = 0; i < MOST_ITERATIONS; i++) {
-            worst = position_step(s, rows, pass == 0);
-            const double size = limit_step(s->b, s->m->nu);
-            if (!isfinite(size))
-                return INFINITY;
-            ct_machine_retract(s->m, s->y, s->b);
-            if (size < (pass ? 1e-15 : 1e-10) || (pass && i > 8))
-                break;
-        }
-    return worst;
+    const size_t nu = s->m->nu;
+    size_t n = s->nhard;
+    for (size_t i = 0; i < n; i++)
+        s->b[i] = -s->r[i];
+    for (size_t k = 0; k < nu && damping > 0; k++, n++) {
+        for (size_t l = 0; l < nu; l++)
+            s->A[n + s->most * l] = k == l ? damping : 0;
+        s->b[n] = 0;
+    }
+    solve_rows(s, n);
 }
 
-static double velocity_step(struct assembly *s, double *rows, bool with_wishes)
+// Step into s->b that leaves the constraints alone and takes what is wanted nearest to its residuals' zero. The
+// weight of the constraints is finite; their multipliers, learnt from step to step, make up for that.
+static void wishing_step(struct assembly *s)
 {
-    struct ct_machine *m = s->m;
-    size_t n = 0;
-    double worst = 0;
-    ct_machine_set(m, 0, s->y);
-    ct_machine_constraint(m);
-    speed_rows(s, rows);
-    for (size_t i = 0; i < m->nrow; i++) {
-        worst = fmax(worst, fabs(m->v[i]));
-        add_row(s, &n, hard, m->J + i, m->nrow, m->v[i]);
+    const size_t nu = s->m->nu;
+    double *row = s->kept_A;
+    for (size_t i = 0; i < s->nhard; i++)
+        for (size_t k = 0; k < nu; k++) {
+            row[i + s->nhard * k] = s->A[i + s->most * k];
+            s->A[i + s->most * k] *= hard;
+        }
+    for (size_t i = 0; i < s->n; i++)
+        s->b[i] = i < s->nhard ? -hard * (s->r[i] + s->shift[i]) : -s->r[i];
+    solve_rows(s, s->n);
+    for (size_t i = 0; i < s->nhard; i++) {
+        s->shift[i] += s->r[i];
+        for (size_t k = 0; k < nu; k++)
+            s->shift[i] += row[i + s->nhard * k] * s->b[k];
     }
-    for (size_t i = 0; i < s->e->ncoordinate; i++) {
-        const struct target *t = &s->u[i];
-        if (!t->is_given && !(t->wanted && with_wishes))
-            continue;
-        const double r = m->result.out[2 * i + 1] - t->value;
-        if (t->is_given)
-            worst = fmax(worst, fabs(r));
-        add_row(s, &n, t->is_given ? hard : 1, rows + i, s->e->ncoordinate, r);
+}
+
+// Close the loops from s->y; returns what is left.
+static double close_loops(struct assembly *s)
+{
+    // a step divides by the damping at worst, so that it must stay above roundings
+    const double least_damping = 1e-8, closed = 1e-15;
+    double before = INFINITY;
+    for (int i = 0;; i++) {
+        position_rows(s);
+        const double worst = violation(s);
+        if (!isfinite(worst) || worst <= closed || i == MOST_ITERATIONS
+            || (worst < 1e-11 && worst > before / 2))
+            return worst;
+        closing_step(s, fmax(fmin(1, worst), least_damping));
+        limit_step(s->b, s->m->nu);
+        ct_machine_retract(s->m, s->y, s->b);
+        before = worst;
     }
-    if (n && m->nu)
-        ct_lstsq(s->b, s->A, (int)n, (int)m->nu, (int)s->most, 1e-12, s->iwork, s->work);
-    else
-        memset(s->b, 0, (m->nu + 1) * sizeof *s->b);
-    for (size_t k = 0; k < m->nu; k++)
-        s->y[m->nq + k] += s->b[k];
-    return worst;
+}
+
+static void keep_place(struct assembly *s, bool back)
+{
+    double *memory = s->m->input + s->m->at_memory;
+    const size_t ny = s->m->nq + s->m->nu, nm = s->e->nmemory;
+    memcpy(back ? s->y : s->kept_y, back ? s->kept_y : s->y, ny * sizeof *s->y);
+    memcpy(back ? memory : s->kept_memory, back ? s->kept_memory : memory, nm * sizeof *memory);
+}
+
+// The step in s->b or a part of it, if that comes nearer to the guesses.
+static bool take_step(struct assembly *s, double *nearest)
+{
+    const size_t nu = s->m->nu;
+    double *d = s->step, part = 1;
+    const double rounding = 1e-14; // of a sum of squares
+    memcpy(d, s->b, nu * sizeof *d);
+    keep_place(s, false);
+    for (int i = 0; i < MOST_HALVINGS; i++, part /= 2) {
+        for (size_t k = 0; k < nu; k++)
+            s->b[k] = part * d[k];
+        ct_machine_retract(s->m, s->y, s->b);
+        if (close_loops(s) < met && distance(s) <= *nearest * (1 + rounding)) {
+            *nearest = distance(s);
+            return true;
+        }
+        keep_place(s, true);
+    }
+    return false;
+}
+
+static double find_positions(struct assembly *s)
+{
+    double worst = close_loops(s);
+    if (!(worst < met))
+        return worst;
+    memset(s->shift, 0, s->nhard * sizeof *s->shift);
+    double nearest = distance(s);
+    for (int i = 0; i < MOST_ITERATIONS; i++) {
+        wishing_step(s);
+        const double size = limit_step(s->b, s->m->nu);
+        if (!(size > small_step) || !take_step(s, &nearest))
+            break;
+    }
+    return close_loops(s);
+}
+
+static double find_velocities(struct assembly *s)
+{
+    double *u = s->y + s->m->nq;
+    memset(s->shift, 0, (s->m->nrow + s->e->ncoordinate) * sizeof *s->shift);
+    for (int i = 0; i < 5;
+         i++) { // linear: the multipliers are learnt in three, two take off rounding
+        velocity_rows(s);
+        if (i < 3)
+            wishing_step(s);
+        else
+            closing_step(s, 0);
+        for (size_t k = 0; k < s->m->nu; k++)
+            u[k] += s->b[k];
+    }
+    velocity_rows(s);
+    return violation(s);
 }
 
 // ---- what went wrong -------------------------------------------------------------------------------------------
@@ -314,8 +447,10 @@ static bool report_positions(struct assembly *s)
     if (worst_value > met) {
         const struct ct_coordinate *c = &s->e->coordinate[value];
         const struct ct_instance *joint = b->edge[c->edge].self;
+        const struct ct_value *turns = &joint->initial.rotate;
+        const bool is_turn = s->q[value].in_quaternion && turns->given;
         return ct_error(
-            s->ctx, initial_value(&b->edge[c->edge], false)->mark, CT_E_START,
+            s->ctx, is_turn ? turns->mark : joint->initial.q.mark, CT_E_START,
             "initial values contradict each other: '%s' of joint '%s' is missed by %.3g",
             c->name, joint->name, worst_value);
     }
@@ -398,14 +533,28 @@ static void find_fixed_rows(struct assembly *s, struct ct_arena *a)
     }
 }
 
-static void start_near_targets(struct assembly *s)
+// Deterministic numbers in [-1, 1): same model, same start.
+static double chance(uint64_t *state)
+{
+    *state = *state * 6364136223846793005u + 1442695040888963407u;
+    return (double)(*state >> 11) / 4503599627370496.0 - 1;
+}
+
+// From the targets, from the second try on moved a little, then more.
+static void start_near_targets(struct assembly *s, int try)
 {
     double *memory = s->m->input + s->m->at_memory;
+    uint64_t state = (uint64_t)try;
+    memset(s->y, 0, (s->m->nq + s->m->nu + 1) * sizeof *s->y);
     for (size_t i = 0; i < s->e->ncoordinate; i++) {
         const struct ct_coordinate *c = &s->e->coordinate[i];
         if (c->q >= 0)
             s->y[c->q] = s->q[i].value;
     }
+    ct_machine_normalise(s->m, s->y);
+    for (size_t k = 0; k < s->m->nu; k++)
+        s->b[k] = 0.15 * try * chance(&state);
+    ct_machine_retract(s->m, s->y, s->b);
     for (size_t i = 0; i < s->e->nmemory; i++)
         for (size_t k = 0; k < s->e->ncoordinate && s->e->memory[i].kind == CT_MEMORY_ANGLE;
              k++) {
@@ -420,35 +569,81 @@ static void start_near_targets(struct assembly *s)
     ct_memory_start(s->m);
 }
 
+// The joint of the first row that holds half a turn away from where it should; -1 if none does.
+static int half_turned_joint(struct assembly *s)
+{
+    struct ct_machine *m = s->m;
+    ct_machine_set(m, 0, s->y);
+    ct_program_run(&m->wanted, m->input);
+    for (size_t i = 0; i < m->nrow; i++)
+        if (m->wanted.out[i] < 0)
+            return s->e->row[i].joint;
+    return -1;
+}
+
+static bool report_half_turn(struct assembly *s, int joint)
+{
+    const struct ct_instance *self = &s->e->build->model->joint[joint];
+    return ct_error(
+        s->ctx, self->mark, CT_E_ASSEMBLY,
+        "the mechanism cannot be assembled: it closes only with the axes of '%s' turned to "
+        "their opposite; give guesses in `initial`",
+        self->name);
+}
+
+// Tries from places further and further away; the first one's failure is the one to report.
+static bool assemble_positions(struct assembly *s, double *residual)
+{
+    for (int try = 0; try < MOST_STARTS; try++) {
+        start_near_targets(s, try);
+        *residual = find_positions(s);
+        if (*residual < met && half_turned_joint(s) < 0)
+            return true;
+    }
+    start_near_targets(s, 0);
+    *residual = find_positions(s);
+    return *residual < met ? report_half_turn(s, half_turned_joint(s)) : report_positions(s);
+}
+
+static struct assembly assembly_create(struct ct_ctx *ctx, struct ct_arena *a,
+                                       const struct ct_model *model,
+                                       const struct ct_equations *e)
+{
+    struct assembly s = {.ctx = ctx, .e = e, .m = ct_machine_create(a, model, e)};
+    const size_t nc = e->ncoordinate, nu = s.m->nu;
+    s.most = s.m->nrow + nc + nu + 1;
+    s.q = CT_NEWN(a, struct target, nc + 1);
+    s.u = CT_NEWN(a, struct target, nc + 1);
+    s.y = CT_NEWN(a, double, s.m->nq + nu + 1);
+    s.kept_y = CT_NEWN(a, double, s.m->nq + nu + 1);
+    s.kept_memory = CT_NEWN(a, double, e->nmemory + 1);
+    s.A = CT_NEWN(a, double, s.most *(nu + 1));
+    s.kept_A = CT_NEWN(a, double, s.most *(nu + 1));
+    s.step = CT_NEWN(a, double, nu + 1);
+    s.b = CT_NEWN(a, double, s.most + nu);
+    s.r = CT_NEWN(a, double, s.most);
+    s.shift = CT_NEWN(a, double, s.most);
+    s.row = CT_NEWN(a, double, nu + 1);
+    s.speed0 = CT_NEWN(a, double, nc + 1);
+    s.speeds = CT_NEWN(a, double, (nc + 1) * (nu + 1));
+    s.iwork = CT_NEWN(a, int, s.most + nu);
+    s.work = CT_NEWN(a, double, ct_lstsq_work((int)s.most, (int)nu + 1));
+    find_targets(&s, model);
+    find_fixed_rows(&s, a);
+    return s;
+}
+
 bool ct_assemble(struct ct_ctx *ctx, struct ct_arena *a, const struct ct_model *model,
                  const struct ct_equations *e, struct ct_start *out)
 {
-    struct assembly s = {.ctx = ctx, .e = e, .m = ct_machine_create(a, model, e)};
+    struct assembly s = assembly_create(ctx, a, model, e);
     struct ct_machine *m = s.m;
     const size_t nc = e->ncoordinate;
-    s.most = m->nrow + nc + m->nu + 1;
-    s.q = CT_NEWN(a, struct target, nc + 1);
-    s.u = CT_NEWN(a, struct target, nc + 1);
-    s.y = CT_NEWN(a, double, m->nq + m->nu + 1);
-    s.A = CT_NEWN(a, double, s.most *(m->nu + 1));
-    s.b = CT_NEWN(a, double, s.most + m->nu);
-    s.row = CT_NEWN(a, double, m->nu + 1);
-    s.speed0 = CT_NEWN(a, double, nc + 1);
-    s.iwork = CT_NEWN(a, int, s.most + m->nu);
-    s.work = CT_NEWN(a, double, ct_lstsq_work((int)s.most, (int)m->nu + 1));
-    double *rows = CT_NEWN(a, double, (nc + 1) * (m->nu + 1));
-    find_targets(&s, model);
-    find_fixed_rows(&s, a);
-    start_near_targets(&s);
-
-    out->residual = find_positions(&s, rows);
-    if (!(out->residual < met))
-        return report_positions(&s);
+    if (!assemble_positions(&s, &out->residual))
+        return false;
     ct_machine_set(m, 0, s.y);
     ct_memory_start(m);
-    velocity_step(&s, rows, true);
-    velocity_step(&s, rows, false);
-    const double left = velocity_step(&s, rows, false);
+    const double left = find_velocities(&s);
     ct_machine_set(m, 0, s.y);
     ct_program_run(&m->result, m->input);
     if (!(left < met * 1e3)) // speeds may be large; a contradiction is of their order

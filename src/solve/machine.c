@@ -62,16 +62,52 @@ static struct inputs list_inputs(struct ct_arena *a, const struct ct_machine *m)
 static void compile(struct ct_arena *a, const struct ct_machine *m, const struct inputs *in,
                     const ct_ex *out, size_t n, struct ct_program *p)
 {
-    p->tape = ct_tape_compile(a, m->e->x, out, n, in->symbol, in->slot, in->n);
+    p->listing = ct_listing_create(a, m->e->x, out, n, in->symbol, in->slot, in->n, CT_FUSE_NO);
+    p->tape = ct_tape_create(a, p->listing);
     p->out = CT_NEWN(a, double, n + 1);
     p->work = CT_NEWN(a, double, ct_tape_work(p->tape) + 1);
     p->nout = n;
 }
 
+static void prepare(struct ct_program *p, const double *input)
+{
+    if (p->native)
+        ct_native_prepare(p->native, input, p->work);
+    else
+        ct_tape_prepare(p->tape, input, p->work);
+}
+
 void ct_program_run(struct ct_program *p, const double *input)
 {
-    if (p->nout)
+    if (p->nout && p->native)
+        ct_native_eval(p->native, input, p->out, p->work);
+    else if (p->nout)
         ct_tape_eval(p->tape, input, p->out, p->work);
+}
+
+// The two ways keep different things in the work array.
+static void use(struct ct_arena *a, struct ct_program *p, struct ct_native *native)
+{
+    if (!p->native == !native)
+        return;
+    p->native = native;
+    p->work = CT_NEWN(a, double, (native ? ct_native_work(native) : ct_tape_work(p->tape)) + 1);
+}
+
+bool ct_machine_use(struct ct_arena *a, struct ct_machine *m, enum ct_backend backend)
+{
+    struct ct_program *const all[] = {&m->motion, &m->constraint};
+    bool available = true;
+    for (size_t i = 0; i < COUNT(all); i++) {
+        struct ct_native *native = NULL;
+        if (backend != CT_BACKEND_TAPE)
+            native = all[i]->native ? all[i]->native : ct_native_create(a, all[i]->listing, 1);
+        available &= native != NULL;
+        use(a, all[i], native);
+        prepare(all[i], m->input);
+    }
+    m->backend = m->motion.native ? "native" : "tape";
+    return available || backend != CT_BACKEND_NATIVE;
 }
 
 // ---- programs ---------------------------------------------------------------------------------------
@@ -122,7 +158,7 @@ static void compile_rest(struct ct_arena *a, struct ct_machine *m, const struct 
 {
     const struct ct_equations *e = m->e;
     struct list result = {.a = a}, root = {.a = a}, memory = {.a = a}, momentum = {.a = a},
-                driver = {.a = a};
+                driver = {.a = a}, wanted = {.a = a};
     for (size_t i = 0; i < e->nresult; i++)
         push(&result, e->result[i].value);
     for (size_t i = 0; i < e->nmode; i++)
@@ -138,12 +174,15 @@ static void compile_rest(struct ct_arena *a, struct ct_machine *m, const struct 
         push(&driver, e->driver[i].value);
         push(&driver, e->driver[i].rate);
     }
+    for (size_t i = 0; i < e->nrow; i++)
+        push(&wanted, e->row[i].wanted);
     const ct_ex energies[] = {e->kinetic, e->potential};
     compile(a, m, in, result.e, result.n, &m->result);
     compile(a, m, in, root.e, root.n, &m->root);
     compile(a, m, in, memory.e, memory.n, &m->memory);
     compile(a, m, in, momentum.e, momentum.n, &m->momentum);
     compile(a, m, in, driver.e, driver.n, &m->driver);
+    compile(a, m, in, wanted.e, wanted.n, &m->wanted);
     compile(a, m, in, energies, 2, &m->energy);
     compile(a, m, in, &e->power, ct_ex_is_zero(e->power) ? 0 : 1, &m->power);
 }
@@ -211,6 +250,7 @@ struct ct_machine *ct_machine_create(struct ct_arena *a, const struct ct_model *
     m->rate = m->gam + e->nrow;
     m->phi = m->constraint.out;
     m->v = m->phi + e->nrow;
+    ct_machine_use(a, m, CT_BACKEND_BEST);
     ct_machine_prepare(m);
     return m;
 }
@@ -218,10 +258,10 @@ struct ct_machine *ct_machine_create(struct ct_arena *a, const struct ct_model *
 void ct_machine_prepare(struct ct_machine *m)
 {
     struct ct_program *const all[]
-        = {&m->motion, &m->constraint, &m->result, &m->power,    &m->energy, &m->root,
-           &m->memory, &m->momentum,   &m->driver, &m->residual, &m->tangent};
+        = {&m->motion, &m->constraint, &m->result, &m->power,  &m->energy,   &m->root,
+           &m->memory, &m->momentum,   &m->driver, &m->wanted, &m->residual, &m->tangent};
     for (size_t i = 0; i < COUNT(all); i++)
-        ct_tape_prepare(all[i]->tape, m->input, all[i]->work);
+        prepare(all[i], m->input);
 }
 
 // ---- evaluation -------------------------------------------------------------------------------------

@@ -1,4 +1,4 @@
-// The equations of motion as numbers: tapes, their inputs, and workspace for one run.
+// The equations of motion as numbers: programs, their inputs, and workspace for one run.
 //
 //     input   t | parameters | q | u | u' | lam | modes | memories | work
 //
@@ -7,9 +7,17 @@
 #ifndef CT_SOLVE_MACHINE_H
 #define CT_SOLVE_MACHINE_H
 
+#include "codegen/native.h"
 #include "component/model.h"
 #include "expr/tape.h"
 #include "formulate/equations.h"
+
+/// Which form of the programs is run. All give the same bits.
+enum ct_backend {
+    CT_BACKEND_BEST, // native code where it is available
+    CT_BACKEND_TAPE,
+    CT_BACKEND_NATIVE,
+};
 
 struct ct_machine {
     const struct ct_equations *e;
@@ -19,8 +27,10 @@ struct ct_machine {
     double *input;
     size_t at_q, at_u, at_a, at_lam, at_mode, at_memory, at_work, ninput;
 
-    struct ct_program { // a tape with its outputs
+    struct ct_program { // with its outputs
+        const struct ct_listing *listing;
         struct ct_tape *tape;
+        struct ct_native *native; // NULL: the tape is run
         double *out, *work;
         size_t nout;
     } motion,       // M, Q, J, gam, q'
@@ -32,6 +42,7 @@ struct ct_machine {
         memory,     // next values
         momentum,   // dT/du
         driver,     // value, rate of each driver
+        wanted,     // of each row: not negative in the right assembly
         residual,   // r, phi, v; nothing if the equations have no residual, and so the next
         tangent;    // dr/dq, dr/du, dr/du', dv/dq, J: the entries
 
@@ -39,11 +50,17 @@ struct ct_machine {
     double *phi, *v;                // of the last ct_machine_constraint (J as well)
     double *g[2];                   // values of root functions, for modes (nmode)
     long evaluations;
+    const char *backend; // of motion and constraint: "native" or "tape"
 };
 
-/// Compile all that the equations hold. Everything lives in a.
+/// Compile all that the equations hold, motion and constraint to native code where it is available.
+/// Everything lives in a.
 struct ct_machine *ct_machine_create(struct ct_arena *a, const struct ct_model *model,
                                      const struct ct_equations *e);
+
+/// Run motion and constraint with another back end. False if native code is asked for and is not
+/// available; the tape is run then. Not for the inner loop: a must be the machine's arena.
+bool ct_machine_use(struct ct_arena *a, struct ct_machine *m, enum ct_backend backend);
 
 /// Copy time and state into the input. y: q, u, work.
 void ct_machine_set(struct ct_machine *m, double t, const double *y);

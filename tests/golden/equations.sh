@@ -9,4 +9,4 @@ done
 "$PRINT_EQUATIONS" "$SYSTEMS/governor/model.yaml" terminal,reduced text >governor.txt
 "$PRINT_EQUATIONS" "$SYSTEMS/pendulum/model.yaml" all json >pendulum.json
 "$PRINT_EQUATIONS" "$SYSTEMS/pendulum/model.yaml" tree,reduced html >pendulum.html
-"$PRINT_EQUATIONS" "$SYSTEMS/slider_crank/model.yaml" reduced c >slider_crank.c
+"$PRINT_EQUATIONS" "$SYSTEMS/slider_crank/model.yaml" reduced c >slider_crank.c.txt

@@ -1,0 +1,34 @@
+// cotree equations: prints the derivation of the equations of motion.
+#include "cli/cli.h"
+
+static int run(struct ct_ctx *ctx, const struct cli_args *args)
+{
+    static const char *const formats[] = {"text", "latex", "html", "html", "c", "json"};
+    static const char *const suffixes[] = {"txt", "tex", "html", "htm", "c", "json"};
+    const char *format = cli_format(args, formats, suffixes, CLI_COUNT(formats));
+    struct ct_system *sys = cli_load(ctx, args);
+    struct cli_output o;
+    int status = CLI_FAILED;
+    if (sys && cli_output_open(&o, args->output))
+        status = cli_output_close(
+            &o, ct_system_print_equations(ctx, sys, args->show, format, o.stream));
+    ct_system_destroy(sys);
+    return status;
+}
+
+const struct cli_command cli_equations = {
+    .name = "equations",
+    .summary = "prints the equations of motion and how they come about",
+    .use = CLI_EQUATIONS,
+    .takes_model = true,
+    .more = "\n"
+            "Each stage of the derivation can be shown: what components say (terminal), how "
+            "they are\n"
+            "connected (graph), what becomes a coordinate (tree), balances (cutset), closures "
+            "(circuit)\n"
+            "and the result (reduced). The format follows the suffix of -o when --format is "
+            "not given.\n",
+    .examples = {"cotree equations pendulum.yaml --show all",
+                 "cotree equations four_bar.yaml --tree joints -o four_bar.tex"},
+    .run = run,
+};

@@ -1,0 +1,36 @@
+// Machine code of the running processor: a listing as a function.
+//
+//     listing -> prologue, interpreted, at prepare    body, compiled, at every call
+//
+// Available on x86-64 with AVX under the System V calling convention, where the system gives memory
+// that can be made executable. Memory is writable while code is written to it and executable
+// afterwards, never both.
+//
+// What always holds: results have the bits of the tape (tape.h) made from the same listing, lane by
+// lane; evaluation allocates nothing; the function is constant, the work array belongs to the caller
+// and holds the prologue's results between calls.
+#ifndef CT_CODEGEN_NATIVE_H
+#define CT_CODEGEN_NATIVE_H
+
+#include "expr/listing.h"
+
+struct ct_native;
+
+/// Can this processor run native code of 1 or 4 lanes?
+bool ct_native_is_available(int lanes);
+/// Compile for 1 or 4 lanes; l must live as long. NULL where native code is not available: use the
+/// tape. The code goes with the arena. Cost: instructions of l.
+struct ct_native *ct_native_create(struct ct_arena *a, const struct ct_listing *l, int lanes);
+
+/// Number of doubles of the work array, all lanes together.
+size_t ct_native_work(const struct ct_native *f);
+size_t ct_native_code_size(const struct ct_native *f);
+/// The code itself, for a disassembler.
+const unsigned char *ct_native_code(const struct ct_native *f);
+/// Run the prologue; needed once per work array and whenever a parameter changes. Arrays are laid
+/// out as in tape.h: input[lanes * slot + lane].
+void ct_native_prepare(const struct ct_native *f, const double *input, double *work);
+/// Run the body. out may not overlap the others.
+void ct_native_eval(const struct ct_native *f, const double *input, double *out, double *work);
+
+#endif

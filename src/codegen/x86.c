@@ -1,0 +1,734 @@
+// See x86.h. Two halves: encoding of instructions, and the walk over the listing that decides in which
+// register each value is.
+#include "codegen/x86.h"
+
+#include <assert.h>
+#include <string.h>
+
+static const uint32_t none = CT_VALUE_NONE;
+
+// ---- encoding ---------------------------------------------------------------------------------
+
+enum { RAX, RCX, RDX, RBX, RSP, RBP, RSI, RDI, R14 = 14, RIP = 16 };
+
+// An instruction of the VEX map: prefix, map, opcode.
+struct vex {
+    unsigned char prefix; // 0: none, 1: 66, 2: F3, 3: F2
+    unsigned char map;    // 1: 0F, 2: 0F 38, 3: 0F 3A
+    unsigned char w, op;
+};
+
+// The last operand: a register, or memory at base + disp (base RIP: a constant of the pool).
+struct rm {
+    int reg; // -1: memory
+    int base;
+    int32_t disp;
+};
+
+// Bit patterns that instructions read from behind the code, four times each.
+enum constant { SIGN_BIT, ALL_BUT_SIGN, ONE, NCONSTANT };
+static const uint64_t pattern[NCONSTANT]
+    = {UINT64_C(1) << 63, ~(UINT64_C(1) << 63), UINT64_C(0x3FF) << 52};
+
+struct fixup {
+    size_t at; // of the 32-bit displacement
+    enum constant constant;
+};
+
+struct code {
+    struct ct_arena *arena;
+    unsigned char *byte;
+    size_t n, cap;
+    struct fixup *fixup;
+    size_t nfixup, fixup_cap;
+    int lanes;
+};
+
+static struct rm in_register(int reg)
+{
+    return (struct rm){.reg = reg};
+}
+
+static struct rm in_memory(int base, int32_t disp)
+{
+    return (struct rm){.reg = -1, .base = base, .disp = disp};
+}
+
+static struct rm in_pool(enum constant c)
+{
+    return in_memory(RIP, (int32_t)c);
+}
+
+static void put(struct code *c, unsigned byte)
+{
+    if (c->n == c->cap)
+        c->byte = ct_arena_grow(c->arena, c->byte, c->n, &c->cap, 1);
+    c->byte[c->n++] = (unsigned char)byte;
+}
+
+static void put_number(struct code *c, uint64_t v, int nbyte)
+{
+    for (int i = 0; i < nbyte; i++)
+        put(c, (unsigned)(v >> 8 * i & 0xFF));
+}
+
+// ModRM and displacement. R14 as a base needs no SIB byte, as R12 would.
+static void put_operand(struct code *c, int reg, struct rm rm)
+{
+    const unsigned middle = (unsigned)(reg & 7) << 3;
+    if (rm.reg >= 0) {
+        put(c, 0xC0 | middle | (unsigned)(rm.reg & 7));
+    } else if (rm.base == RIP) {
+        put(c, 0x05 | middle);
+        const struct fixup f = {c->n, (enum constant)rm.disp};
+        CT_PUSH(c->arena, c->fixup, c->nfixup, c->fixup_cap, f);
+        put_number(c, 0, 4);
+    } else if (rm.disp >= -128 && rm.disp < 128) {
+        put(c, 0x40 | middle | (unsigned)(rm.base & 7));
+        put_number(c, (uint64_t)rm.disp, 1);
+    } else {
+        put(c, 0x80 | middle | (unsigned)(rm.base & 7));
+        put_number(c, (uint64_t)rm.disp, 4);
+    }
+}
+
+// op reg, vvvv, rm. `wide`: 256 bits. Instructions with one source have vvvv = 0.
+static void put_vex(struct code *c, struct vex i, bool wide, int reg, int vvvv, struct rm rm)
+{
+    const bool far_reg = reg >= 8,
+               far_rm = rm.reg >= 0 ? rm.reg >= 8 : rm.base >= 8 && rm.base != RIP;
+    const unsigned low = (unsigned)(~vvvv & 15) << 3 | (wide ? 4 : 0) | i.prefix;
+    if (i.map == 1 && !i.w && !far_rm) {
+        put(c, 0xC5);
+        put(c, (far_reg ? 0 : 0x80) | low);
+    } else {
+        put(c, 0xC4);
+        put(c, (far_reg ? 0 : 0x80) | 0x40 | (far_rm ? 0 : 0x20) | i.map);
+        put(c, (i.w ? 0x80 : 0) | low);
+    }
+    put(c, i.op);
+    put_operand(c, reg, rm);
+}
+
+// Arithmetic on one double (xx..SD) or four (xx..PD).
+static void put_arithmetic(struct code *c, unsigned op, int reg, int vvvv, struct rm rm)
+{
+    const struct vex i = {c->lanes == 1 ? 3 : 1, 1, 0, (unsigned char)op};
+    put_vex(c, i, c->lanes > 1, reg, vvvv, rm);
+}
+
+// Bitwise operations exist on whole registers only, so a scalar operand must not be in memory.
+static void put_bitwise(struct code *c, unsigned op, int reg, int vvvv, struct rm rm)
+{
+    put_vex(c, (struct vex){1, 1, 0, (unsigned char)op}, c->lanes > 1, reg, vvvv, rm);
+}
+
+static void put_load(struct code *c, int reg, struct rm from)
+{
+    put_arithmetic(c, 0x10, reg, 0, from); // vmovsd, vmovupd
+}
+
+static void put_store(struct code *c, struct rm to, int reg)
+{
+    put_arithmetic(c, 0x11, reg, 0, to);
+}
+
+static void put_compare(struct code *c, int reg, int vvvv, struct rm rm, unsigned predicate)
+{
+    assert(rm.reg >= 0 || rm.base != RIP); // the byte behind would move a displacement to RIP
+    put_arithmetic(c, 0xC2, reg, vvvv, rm);
+    put(c, predicate);
+}
+
+// reg = mask ? yes : no, by the sign of each number of mask
+static void put_blend(struct code *c, int reg, int no, int yes, int mask)
+{
+    put_vex(c, (struct vex){1, 3, 0, 0x4B}, c->lanes > 1, reg, no, in_register(yes));
+    put(c, (unsigned)mask << 4);
+}
+
+static void put_vzeroupper(struct code *c)
+{
+    if (c->lanes > 1)
+        put_number(c, 0x77F8C5, 3);
+}
+
+static void put_push(struct code *c, int reg)
+{
+    if (reg >= 8)
+        put(c, 0x41);
+    put(c, 0x50 | (unsigned)(reg & 7));
+}
+
+static void put_pop(struct code *c, int reg)
+{
+    if (reg >= 8)
+        put(c, 0x41);
+    put(c, 0x58 | (unsigned)(reg & 7));
+}
+
+// 64-bit to = from, from among the lower eight
+static void put_move(struct code *c, int to, int from)
+{
+    put(c, to >= 8 ? 0x49 : 0x48);
+    put(c, 0x89);
+    put(c, 0xC0 | (unsigned)from << 3 | (unsigned)(to & 7));
+}
+
+static void put_address(struct code *c, int reg, struct rm rm)
+{
+    put(c, rm.base >= 8 ? 0x49 : 0x48);
+    put(c, 0x8D);
+    put_operand(c, reg, rm);
+}
+
+static void put_immediate(struct code *c, int reg, uint64_t v)
+{
+    put(c, 0x48);
+    put(c, 0xB8 | (unsigned)reg);
+    put_number(c, v, 8);
+}
+
+static void put_call(struct code *c, uintptr_t function)
+{
+    put_immediate(c, RAX, function);
+    put(c, 0xFF);
+    put(c, 0xD0);
+}
+
+// The constants that are used, and the displacements to them. RIP is that of the next instruction,
+// four bytes behind the place of the displacement.
+static void put_pool(struct code *c)
+{
+    size_t at[NCONSTANT] = {0};
+    while (c->n % 32)
+        put(c, 0xCC);
+    for (size_t k = 0; k < c->nfixup; k++) {
+        const struct fixup *f = &c->fixup[k];
+        if (!at[f->constant]) {
+            at[f->constant] = c->n;
+            for (int i = 0; i < 4; i++)
+                put_number(c, pattern[f->constant], 8);
+        }
+        const uint32_t disp = (uint32_t)(at[f->constant] - (f->at + 4));
+        for (int i = 0; i < 4; i++)
+            c->byte[f->at + (size_t)i] = (unsigned char)(disp >> 8 * i);
+    }
+}
+
+// ---- where values are -------------------------------------------------------------------------
+
+enum { NREGISTER = 16 };
+
+enum area { NOWHERE, INPUT, OUT, WORK };
+
+struct home {
+    enum area area;
+    uint32_t place;
+};
+
+struct emitter {
+    struct code code;
+    struct ct_arena *arena;
+    const struct ct_listing *l;
+    const struct ct_x86_calls *calls;
+    int base[4];     // register that points at each area
+    uint32_t *order; // of the body's instructions
+    size_t norder;
+
+    // reads of a value: places in the order, ascending; those before next[v] are done
+    uint32_t *start, *use, *next;
+    struct home *home;                    // by value
+    signed char *reg;                     // by value: its register or -1
+    uint32_t content[NREGISTER];          // by register: its value or none
+    bool pinned[NREGISTER];               // may not be given away by this instruction
+    uint32_t *first_output, *next_output; // by value, by output: 1 + k of the next one
+    uint32_t *free;                       // places of the work array to be used again
+    uint32_t nfree, nwork, nfixed;
+};
+
+static struct rm memory_of(const struct emitter *e, struct home h)
+{
+    assert(h.area != NOWHERE);
+    return in_memory(e->base[h.area], (int32_t)(h.place * 8u * (uint32_t)e->code.lanes));
+}
+
+// Place in the order of the next read of v; none: never again.
+static uint32_t next_use(const struct emitter *e, uint32_t v)
+{
+    return e->next[v] < e->start[v + 1] ? e->use[e->next[v]] : none;
+}
+
+static bool is_spilled(const struct emitter *e, uint32_t v)
+{
+    return e->home[v].area == WORK && e->home[v].place >= e->nfixed;
+}
+
+static void need_home(struct emitter *e, uint32_t v)
+{
+    if (e->home[v].area != NOWHERE)
+        return;
+    e->home[v] = (struct home){WORK, e->nfree ? e->free[--e->nfree] : e->nwork++};
+    if (e->reg[v] >= 0)
+        put_store(&e->code, memory_of(e, e->home[v]), e->reg[v]);
+}
+
+static void leave_register(struct emitter *e, uint32_t v)
+{
+    if (e->reg[v] >= 0)
+        e->content[e->reg[v]] = none;
+    e->reg[v] = -1;
+}
+
+// The register that is free, or else whose value is read last; -1 if all are pinned.
+static int best_register(const struct emitter *e)
+{
+    int best = -1;
+    uint32_t farthest = 0;
+    for (int r = 0; r < NREGISTER; r++) {
+        if (e->pinned[r])
+            continue;
+        if (e->content[r] == none)
+            return r;
+        const uint32_t at = next_use(e, e->content[r]);
+        if (best < 0 || at > farthest) {
+            best = r;
+            farthest = at;
+        }
+    }
+    return best;
+}
+
+// A register for v, pinned; v = none: for an intermediate result.
+static int take_register(struct emitter *e, uint32_t v)
+{
+    const int r = best_register(e);
+    assert(r >= 0);
+    if (e->content[r] != none) {
+        need_home(e, e->content[r]);
+        leave_register(e, e->content[r]);
+    }
+    e->content[r] = v;
+    e->pinned[r] = true;
+    if (v != none)
+        e->reg[v] = (signed char)r;
+    return r;
+}
+
+// v in a register, pinned.
+static int load(struct emitter *e, uint32_t v)
+{
+    if (e->reg[v] >= 0) {
+        e->pinned[e->reg[v]] = true;
+        return e->reg[v];
+    }
+    const int r = take_register(e, v);
+    put_load(&e->code, r, memory_of(e, e->home[v]));
+    return r;
+}
+
+// v as a last operand: a register if it is in one or will be read again before some value that is.
+static struct rm operand(struct emitter *e, uint32_t v)
+{
+    if (e->reg[v] < 0) {
+        const uint32_t again = next_use(e, v);
+        const int r = again == none ? -1 : best_register(e);
+        if (r < 0 || (e->content[r] != none && next_use(e, e->content[r]) <= again))
+            return memory_of(e, e->home[v]);
+    }
+    return in_register(load(e, v));
+}
+
+// Which of two exchangeable operands must be in a register: one that is, or the one read again first.
+static bool prefer_second(const struct emitter *e, uint32_t a, uint32_t b)
+{
+    const bool has_a = e->reg[a] >= 0, has_b = e->reg[b] >= 0;
+    return has_a != has_b ? has_b : next_use(e, b) < next_use(e, a);
+}
+
+// ---- instructions -----------------------------------------------------------------------------
+
+// Pins come off, and values that are not read again leave.
+static void release_registers(struct emitter *e)
+{
+    for (int r = 0; r < NREGISTER; r++) {
+        e->pinned[r] = false;
+        if (e->content[r] != none && next_use(e, e->content[r]) == none)
+            leave_register(e, e->content[r]);
+    }
+}
+
+// The register of the result, which may be that of an operand: an operand read again is stored before
+// its register is given away, and instructions read before they write.
+static int result(struct emitter *e, const struct ct_instruction *i)
+{
+    release_registers(e);
+    return take_register(e, i->res[0]);
+}
+
+static void emit_binary(struct emitter *e, const struct ct_instruction *i, unsigned op,
+                        bool commutes)
+{
+    const bool swap = commutes && prefer_second(e, i->arg[0], i->arg[1]);
+    const int a = load(e, i->arg[swap]);
+    const struct rm b = operand(e, i->arg[!swap]);
+    put_arithmetic(&e->code, op, result(e, i), a, b);
+}
+
+static void emit_sqrt(struct emitter *e, const struct ct_instruction *i)
+{
+    const int a = load(e, i->arg[0]), d = result(e, i);
+    put_arithmetic(&e->code, 0x51, d, e->code.lanes == 1 ? a : 0, in_register(a));
+}
+
+// Flip or clear the sign.
+static void emit_sign_bit(struct emitter *e, const struct ct_instruction *i, unsigned op,
+                          enum constant c)
+{
+    const int a = load(e, i->arg[0]);
+    put_bitwise(&e->code, op, result(e, i), a, in_pool(c));
+}
+
+enum { AND = 0x54, XOR = 0x57 };
+enum { EQ_OQ = 0x00, NEQ_UQ = 0x04, LT_OQ = 0x11, LE_OQ = 0x12, GE_OQ = 0x1D, GT_OQ = 0x1E };
+
+// The mask of a comparison, all ones or all zeros, keeps 1 or nothing of the number one.
+static void emit_comparison(struct emitter *e, const struct ct_instruction *i,
+                            unsigned predicate)
+{
+    const int a = load(e, i->arg[0]);
+    const struct rm b = operand(e, i->arg[1]);
+    const int d = result(e, i);
+    put_compare(&e->code, d, a, b, predicate);
+    put_bitwise(&e->code, AND, d, d, in_pool(ONE));
+}
+
+// (0 < a) - (a < 0) in ones
+static void emit_signum(struct emitter *e, const struct ct_instruction *i)
+{
+    const int a = load(e, i->arg[0]), plus = take_register(e, none),
+              minus = take_register(e, none);
+    put_bitwise(&e->code, XOR, minus, minus, in_register(minus));
+    put_compare(&e->code, plus, minus, in_register(a), LT_OQ);
+    put_compare(&e->code, minus, a, in_register(minus), LT_OQ);
+    put_bitwise(&e->code, AND, plus, plus, in_pool(ONE));
+    put_bitwise(&e->code, AND, minus, minus, in_pool(ONE));
+    put_arithmetic(&e->code, 0x5C, result(e, i), plus, in_register(minus));
+}
+
+static void emit_if(struct emitter *e, const struct ct_instruction *i)
+{
+    const int yes = load(e, i->arg[1]), no = load(e, i->arg[2]), mask = take_register(e, none);
+    const struct rm condition = operand(e, i->arg[0]);
+    put_bitwise(&e->code, XOR, mask, mask, in_register(mask));
+    put_compare(&e->code, mask, mask, condition, NEQ_UQ);
+    put_blend(&e->code, result(e, i), no, yes, mask);
+}
+
+// Three forms, by which operand the result overwrites. `op` is that of form 132.
+//
+//     132: d = d * rm + v      213: d = v * d + rm      231: d = v * rm + d
+static void emit_fused(struct emitter *e, const struct ct_instruction *i, unsigned op)
+{
+    const bool swap = prefer_second(e, i->arg[0], i->arg[1]);
+    const int a = load(e, i->arg[swap]), b = load(e, i->arg[!swap]);
+    const struct rm c = operand(e, i->arg[2]);
+    const struct vex form = {1, 2, 1, (unsigned char)(op + (e->code.lanes == 1))};
+    const struct vex f132 = form, f213 = {1, 2, 1, form.op + 0x10},
+                     f231 = {1, 2, 1, form.op + 0x20};
+    const bool wide = e->code.lanes > 1;
+    const int d = result(e, i);
+    if (d == a)
+        put_vex(&e->code, f213, wide, d, b, c);
+    else if (d == b)
+        put_vex(&e->code, f213, wide, d, a, c);
+    else if (c.reg == d)
+        put_vex(&e->code, f231, wide, d, a, in_register(b));
+    else if (c.reg >= 0) {
+        put_vex(&e->code, (struct vex){1, 1, 0, 0x28}, wide, d, 0, in_register(a)); // vmovapd
+        put_vex(&e->code, f132, wide, d, c.reg, in_register(b));
+    } else {
+        put_load(&e->code, d, c);
+        put_vex(&e->code, f231, wide, d, a, in_register(b));
+    }
+}
+
+// All registers are lost in a call.
+static void emit_call(struct emitter *e, const struct ct_instruction *i)
+{
+    struct code *c = &e->code;
+    for (int r = 0; r < NREGISTER; r++) {
+        const uint32_t v = e->content[r];
+        bool is_argument = false;
+        for (uint32_t k = 0; v != none && k < i->narg; k++)
+            is_argument |= i->arg[k] == v;
+        if (v != none && (is_argument || next_use(e, v) != none))
+            need_home(e, v);
+        if (v != none)
+            leave_register(e, v);
+    }
+    for (uint32_t r = 0; r < i->nres; r++)
+        need_home(e, i->res[r]);
+    put_vzeroupper(c);
+    put_address(c, RDI, memory_of(e, e->home[i->res[0]]));
+    put_address(c, RSI, memory_of(e, e->home[i->arg[0]]));
+    if (i->op == CT_OP_SINCOS) {
+        put_address(c, RDX, memory_of(e, e->home[i->res[1]]));
+    } else if (i->op == CT_OP_TABLE) {
+        put_immediate(c, RDX, (uintptr_t)&e->l->table[i->table]);
+        put_immediate(c, RCX, i->order);
+    } else if (i->narg > 1) {
+        put_address(c, RDX, memory_of(e, e->home[i->arg[1]]));
+    }
+    put_call(c, e->calls->by_op[i->op]);
+}
+
+static void emit_operation(struct emitter *e, const struct ct_instruction *i)
+{
+    switch (i->op) {
+    case CT_OP_ADD:
+        emit_binary(e, i, 0x58, true);
+        break;
+    case CT_OP_MUL:
+        emit_binary(e, i, 0x59, true);
+        break;
+    case CT_OP_SUB:
+        emit_binary(e, i, 0x5C, false);
+        break;
+    case CT_OP_DIV:
+        emit_binary(e, i, 0x5E, false);
+        break;
+    // the second operand where neither is smaller, as a < b ? a : b
+    case CT_OP_MIN:
+        emit_binary(e, i, 0x5D, false);
+        break;
+    case CT_OP_MAX:
+        emit_binary(e, i, 0x5F, false);
+        break;
+    case CT_OP_SQRT:
+        emit_sqrt(e, i);
+        break;
+    case CT_OP_NEG:
+        emit_sign_bit(e, i, XOR, SIGN_BIT);
+        break;
+    case CT_OP_ABS:
+        emit_sign_bit(e, i, AND, ALL_BUT_SIGN);
+        break;
+    case CT_OP_SIGN:
+        emit_signum(e, i);
+        break;
+    case CT_OP_LT:
+        emit_comparison(e, i, LT_OQ);
+        break;
+    case CT_OP_LE:
+        emit_comparison(e, i, LE_OQ);
+        break;
+    case CT_OP_GT:
+        emit_comparison(e, i, GT_OQ);
+        break;
+    case CT_OP_GE:
+        emit_comparison(e, i, GE_OQ);
+        break;
+    case CT_OP_EQ:
+        emit_comparison(e, i, EQ_OQ);
+        break;
+    case CT_OP_IF:
+        emit_if(e, i);
+        break;
+    case CT_OP_FMA:
+        emit_fused(e, i, 0x98);
+        break;
+    case CT_OP_FMS:
+        emit_fused(e, i, 0x9A);
+        break;
+    case CT_OP_FNMA:
+        emit_fused(e, i, 0x9C);
+        break;
+    default:
+        emit_call(e, i);
+    }
+}
+
+// Places in the work array of values that are dead now.
+static void give_up_places(struct emitter *e, const uint32_t *v, uint32_t n)
+{
+    for (uint32_t k = 0; k < n; k++)
+        if (next_use(e, v[k]) == none && is_spilled(e, v[k])) {
+            e->free[e->nfree++] = e->home[v[k]].place;
+            e->home[v[k]].area = NOWHERE;
+        }
+}
+
+// Results that are outputs are stored at once; the first such place is their home.
+static void claim_output(struct emitter *e, uint32_t v)
+{
+    if (e->first_output[v])
+        e->home[v] = (struct home){OUT, e->first_output[v] - 1};
+}
+
+static void store_outputs(struct emitter *e, uint32_t v)
+{
+    uint32_t k = e->first_output[v];
+    if (k && e->reg[v] < 0) // a function has written it there
+        k = e->next_output[k - 1];
+    for (; k; k = e->next_output[k - 1])
+        put_store(&e->code, memory_of(e, (struct home){OUT, k - 1}), load(e, v));
+}
+
+static void emit_instruction(struct emitter *e, uint32_t at)
+{
+    const struct ct_instruction *i = &e->l->ins[e->order[at]];
+    for (uint32_t k = 0; k < i->narg; k++) {
+        while (next_use(e, i->arg[k]) == at)
+            e->next[i->arg[k]]++;
+        if (e->reg[i->arg[k]] >= 0)
+            e->pinned[e->reg[i->arg[k]]] = true;
+    }
+    for (uint32_t r = 0; r < i->nres; r++)
+        claim_output(e, i->res[r]);
+    emit_operation(e, i);
+    for (uint32_t r = 0; r < i->nres; r++)
+        store_outputs(e, i->res[r]);
+    release_registers(e);
+    give_up_places(e, i->arg, i->narg);
+    give_up_places(e, i->res, i->nres);
+}
+
+// ---- the whole --------------------------------------------------------------------------------
+
+static bool is_call(const struct emitter *e, const struct ct_instruction *i)
+{
+    return e->calls->by_op[i->op] != 0;
+}
+
+// Calls and what they need first, the rest behind; else in the order of the listing.
+static bool order_instructions(struct emitter *e)
+{
+    const struct ct_listing *l = e->l;
+    unsigned char *early = CT_NEWN(e->arena, unsigned char, l->nvalue); // by value
+    bool any = false;
+    for (size_t i = l->nins; i-- > l->nprologue;) {
+        const struct ct_instruction *ins = &l->ins[i];
+        const bool first = is_call(e, ins) || early[ins->res[0]];
+        any |= is_call(e, ins);
+        for (uint32_t k = 0; first && k < ins->nres; k++)
+            early[ins->res[k]] = 1;
+        for (uint32_t k = 0; first && k < ins->narg; k++)
+            early[ins->arg[k]] = 1;
+    }
+    e->order = CT_NEWN(e->arena, uint32_t, l->nins);
+    for (int late = 0; late < 2; late++)
+        for (size_t i = l->nprologue; i < l->nins; i++)
+            if (early[l->ins[i].res[0]] != late)
+                e->order[e->norder++] = (uint32_t)i;
+    return any;
+}
+
+static void list_uses(struct emitter *e)
+{
+    const struct ct_listing *l = e->l;
+    uint32_t nuse = 0;
+    e->start = CT_NEWN(e->arena, uint32_t, l->nvalue + 1);
+    e->next = CT_NEWN(e->arena, uint32_t, l->nvalue);
+    for (size_t i = l->nprologue; i < l->nins; i++)
+        for (uint32_t k = 0; k < l->ins[i].narg; k++)
+            e->start[l->ins[i].arg[k]]++;
+    for (size_t v = 0; v <= l->nvalue; v++) {
+        const uint32_t n = e->start[v];
+        e->start[v] = nuse;
+        nuse += n;
+        if (v < l->nvalue)
+            e->next[v] = e->start[v];
+    }
+    e->use = CT_NEWN(e->arena, uint32_t, nuse);
+    for (uint32_t at = 0; at < e->norder; at++)
+        for (uint32_t k = 0; k < l->ins[e->order[at]].narg; k++)
+            e->use[e->next[l->ins[e->order[at]].arg[k]]++] = at;
+    for (size_t v = 0; v < l->nvalue; v++)
+        e->next[v] = e->start[v];
+}
+
+static void place_values(struct emitter *e, const uint32_t *home)
+{
+    const struct ct_listing *l = e->l;
+    e->home = CT_NEWN(e->arena, struct home, l->nvalue);
+    e->reg = CT_NEWN(e->arena, signed char, l->nvalue);
+    e->free = CT_NEWN(e->arena, uint32_t, l->nvalue);
+    for (size_t v = 0; v < l->nvalue; v++) {
+        e->reg[v] = -1;
+        if (l->rate[v] != CT_RATE_CALL)
+            e->home[v] = (struct home){WORK, home[v]};
+        else if (l->is_leaf[v])
+            e->home[v] = (struct home){INPUT, l->input[v]};
+    }
+    for (int r = 0; r < NREGISTER; r++)
+        e->content[r] = none;
+    e->first_output = CT_NEWN(e->arena, uint32_t, l->nvalue);
+    e->next_output = CT_NEWN(e->arena, uint32_t, l->nout);
+    for (size_t k = l->nout; k-- > 0;) {
+        e->next_output[k] = e->first_output[l->out[k]];
+        e->first_output[l->out[k]] = (uint32_t)k + 1;
+    }
+}
+
+// The areas are pointed at by the arguments themselves, or by registers that calls leave alone. Three
+// pushes and the return address keep the stack aligned to 16.
+static void emit_entry(struct emitter *e, bool calls)
+{
+    if (calls) {
+        put_push(&e->code, RBX);
+        put_push(&e->code, RBP);
+        put_push(&e->code, R14);
+        put_move(&e->code, RBP, RDI);
+        put_move(&e->code, R14, RSI);
+        put_move(&e->code, RBX, RDX);
+    }
+    e->base[INPUT] = calls ? RBP : RDI;
+    e->base[OUT] = calls ? R14 : RSI;
+    e->base[WORK] = calls ? RBX : RDX;
+}
+
+// Outputs that the body does not compute.
+static void copy_outputs(struct emitter *e)
+{
+    for (uint32_t k = 0; k < e->l->nout; k++) {
+        const uint32_t v = e->l->out[k];
+        if (e->l->rate[v] == CT_RATE_CALL && !e->l->is_leaf[v])
+            continue;
+        put_load(&e->code, 0, memory_of(e, e->home[v]));
+        put_store(&e->code, memory_of(e, (struct home){OUT, k}), 0);
+    }
+}
+
+static void emit_return(struct emitter *e, bool calls)
+{
+    put_vzeroupper(&e->code);
+    if (calls) {
+        put_pop(&e->code, R14);
+        put_pop(&e->code, RBP);
+        put_pop(&e->code, RBX);
+    }
+    put(&e->code, 0xC3);
+}
+
+struct ct_x86_code ct_x86_emit(struct ct_arena *a, const struct ct_listing *l, int lanes,
+                               const uint32_t *home, size_t nhome,
+                               const struct ct_x86_calls *calls)
+{
+    struct emitter e = {.arena = a,
+                        .l = l,
+                        .calls = calls,
+                        .code = {.arena = a, .lanes = lanes},
+                        .nfixed = (uint32_t)nhome,
+                        .nwork = (uint32_t)nhome};
+    const bool any_call = order_instructions(&e);
+    list_uses(&e);
+    place_values(&e, home);
+    emit_entry(&e, any_call);
+    for (uint32_t at = 0; at < e.norder; at++)
+        emit_instruction(&e, at);
+    copy_outputs(&e);
+    emit_return(&e, any_call);
+    put_pool(&e.code);
+    return (struct ct_x86_code){e.code.byte, e.code.n, e.nwork};
+}

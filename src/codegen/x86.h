@@ -1,0 +1,45 @@
+// Instruction listing -> x86-64 machine code with AVX registers.
+//
+//     void code(const double *input, double *out, double *work)          System V calling convention
+//
+// Straight-line code for the body of a listing: three-operand VEX instructions on doubles, one a
+// register (xmm) or four (ymm, four lanes). Values live in 16 registers; when these run out, the one
+// whose next use is farthest goes to its home in memory: its input, its output, its place in the work
+// array, or a place there that is given to it then. Operands that are not worth a register are read
+// from memory by the instruction itself. Functions (sine, powers, tables) are calls from memory to
+// memory; they and what they need come first, while few values are alive.
+//
+// Nothing here executes or allocates executable memory: that is native.c.
+//
+// Source: instruction encoding, Intel 64 and IA-32 Architectures Software Developer's Manual, vol. 2,
+// sections 2.3 (VEX) and 3-5; calling convention, System V ABI AMD64, section 3.2; replacement by
+// farthest next use, Belady (1966), key belady1966.
+#ifndef CT_CODEGEN_X86_H
+#define CT_CODEGEN_X86_H
+
+#include "expr/listing.h"
+
+/// Functions that code calls for an operator, from memory to memory, `lanes` numbers each:
+///
+///     one argument    f(res, arg)             two arguments   f(res, arg, arg2)
+///     sincos          f(sin, arg, cos)        table           f(res, arg, table, order)
+///
+/// Zero for operators that need none.
+struct ct_x86_calls {
+    uintptr_t by_op[CT_NKIND];
+};
+
+struct ct_x86_code {
+    const unsigned char *byte; // position independent but for addresses of functions and tables
+    size_t nbyte;
+    size_t nwork; // places of the work array, of `lanes` doubles
+};
+
+/// Emit the body of l. home[v]: place in the work array of constants, parameters and results of the
+/// prologue that the body or the outputs need; the places from nhome on are free. lanes: 1 or 4.
+/// Registers: no contents of callee-saved ones are lost. Needs AVX; FMA if l has fused operations.
+struct ct_x86_code ct_x86_emit(struct ct_arena *a, const struct ct_listing *l, int lanes,
+                               const uint32_t *home, size_t nhome,
+                               const struct ct_x86_calls *calls);
+
+#endif

@@ -1,0 +1,84 @@
+// Expressions as a straight-line list of instructions: what every back end translates.
+//
+//     values        v0  v1  v2 ...      one per live node, in the order of ids
+//     instructions  [ prologue: parameters only | body: the rest ]     each in the order of ids
+//
+// The run-scheduled tape (tape.h), native code (codegen/native.h) and C source (codegen/c.h) come from
+// one listing. They execute the same instructions on the same operands, in an order of their own, so
+// they agree to the bit. sin and cos of one argument are one instruction with two results.
+//
+// What always holds: an instruction's arguments are leaves or results of earlier instructions; only
+// what the outputs need is there; the same expressions give the same listing.
+#ifndef CT_EXPR_LISTING_H
+#define CT_EXPR_LISTING_H
+
+#include "expr/ex.h"
+
+#define CT_VALUE_NONE UINT32_MAX
+
+/// Operators that no node has. `w[res]` are the results.
+enum {
+    CT_OP_SINCOS = CT_NOP, // res[0] = sin(a), res[1] = cos(a)
+    CT_OP_FMA,             // a b + c, rounded once
+    CT_OP_FMS,             // a b - c
+    CT_OP_FNMA,            // c - a b
+    CT_NKIND
+};
+
+/// What a value changes with. Numbers that construction did not fold (0/0) belong to the prologue.
+enum ct_rate { CT_RATE_NEVER, CT_RATE_PARAM, CT_RATE_CALL };
+
+struct ct_instruction {
+    uint32_t op; // enum ct_op or one of the above
+    uint32_t narg, nres;
+    uint32_t arg[3], res[2]; // values
+    uint32_t table, order;   // of CT_OP_TABLE
+};
+
+struct ct_tape_counts {
+    long multiplications, additions, divisions,
+        functions; // of the body; functions: sin, cos, ...
+};
+
+struct ct_listing {
+    const struct ct_exs *x;
+    size_t nvalue;
+    uint32_t *node;         // by value: id of its node
+    unsigned char *rate;    // by value: enum ct_rate
+    unsigned char *is_leaf; // by value: a constant or a symbol
+    uint32_t *input; // by value: place in the input vector of a symbol, else CT_VALUE_NONE
+    struct ct_instruction *ins;
+    size_t nins, nprologue;
+    uint32_t *out; // value of each output
+    size_t nout;
+    const struct ct_table *table; // stays where it is when the store grows
+    struct ct_tape_counts counts;
+};
+
+enum ct_fuse { CT_FUSE_NO, CT_FUSE_YES };
+
+/// List what nout expressions need. Inputs: in[k] is a symbol whose value is read from the input
+/// vector at slot[k] (distinct). Symbols of kind PARAM among them feed the prologue. A symbol that is
+/// needed but not listed is a program error (asserted). CT_FUSE_YES turns products used once, in a
+/// sum, into fused multiply-adds, in all back ends alike. Cost: the nodes below.
+const struct ct_listing *ct_listing_create(struct ct_arena *a, const struct ct_exs *x,
+                                           const ct_ex *out, size_t nout, const ct_ex *in,
+                                           const size_t *slot, size_t nin, enum ct_fuse fuse);
+
+/// use[start[v] ... start[v + 1]): instructions that read value v, ascending; one that reads it twice
+/// is twice in.
+struct ct_uses {
+    uint32_t *start, *use;
+};
+struct ct_uses ct_listing_uses(struct ct_arena *a, const struct ct_listing *l);
+
+/// One instruction on numbers, arg and res in the order of its fields.
+void ct_instruction_apply(const struct ct_listing *l, const struct ct_instruction *i,
+                          const double arg[3], double res[2]);
+
+/// Operations below a set of expressions without listing: unique nodes, parameter-only ones free.
+/// + includes -; negation is free. Cost: the nodes below.
+struct ct_tape_counts ct_ex_count(struct ct_arena *scratch, const struct ct_exs *x,
+                                  const ct_ex *e, size_t n);
+
+#endif

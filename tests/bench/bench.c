@@ -1,0 +1,544 @@
+// Speed of generated programs and of generating them: a table of measured times beside their goals.
+//
+//     bench [--quick]
+//
+// Models are read from YAML and go through the normal stages. A time is the median of 11 samples of
+// processor time, each of many calls; what a ratio compares is measured alternately in one run, so that
+// a busy machine slows both sides. Goals are those of the project's feasibility study, measured there on
+// one core of a server processor at 3.6 GHz; they include solving for the accelerations where the name
+// says so.
+#include "codegen/native.h"
+#include "expr/tape.h"
+#include "formulate/formulate.h"
+#include "solve/simulate.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+#include <unistd.h>
+
+enum { NSAMPLE = 11 };
+
+static double sample_seconds = 2e-3;
+
+static double now(void)
+{
+    struct timespec t;
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+// ---- table --------------------------------------------------------------------------------------
+
+static void head(const char *title)
+{
+    printf("\n%-58s %12s %12s %8s\n", title, "measured", "goal", "of goal");
+}
+
+// A time [s], and what it should be at most; 0: no goal.
+static void line(const char *what, double t, double goal)
+{
+    static const struct {
+        double from, factor;
+        const char *unit;
+    } scale[] = {{1, 1, "s"}, {1e-3, 1e3, "ms"}, {1e-6, 1e6, "us"}, {0, 1e9, "ns"}};
+    char text[2][32] = {"", "-"};
+    const double value[2] = {t, goal};
+    for (int k = 0; k < 2; k++)
+        for (size_t i = 0; i < COUNT(scale) && (k == 0 || goal > 0); i++)
+            if (value[k] >= scale[i].from) {
+                snprintf(text[k], sizeof text[k], "%.4g %s", scale[i].factor * value[k],
+                         scale[i].unit);
+                break;
+            }
+    printf("%-58s %12s %12s", what, text[0], text[1]);
+    if (goal > 0)
+        printf(" %8.2f", t / goal);
+    putchar('\n');
+}
+
+static void ratio(const char *what, double r, double goal)
+{
+    printf("%-58s %12.2f", what, r);
+    if (goal > 0)
+        printf(" %12.2f %8.2f", goal, r / goal);
+    putchar('\n');
+}
+
+// ---- timing -------------------------------------------------------------------------------------
+
+typedef void (*call_fn)(void *data);
+
+static int compare_doubles(const void *a, const void *b)
+{
+    const double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+static double time_of_calls(call_fn f, void *data, long n)
+{
+    const double start = now();
+    for (long i = 0; i < n; i++)
+        f(data);
+    return now() - start;
+}
+
+// Seconds per call of each of n functions, sampled in turn.
+static void measure(const call_fn *f, void *const *data, size_t n, double *t)
+{
+    double sample[8][NSAMPLE];
+    long calls[8];
+    for (size_t k = 0; k < n; k++) {
+        double once;
+        for (calls[k] = 1;
+             (once = time_of_calls(f[k], data[k], calls[k])) < sample_seconds / 4;)
+            calls[k] *= 2;
+        calls[k] = (long)ceil((double)calls[k] * sample_seconds / once);
+    }
+    for (int i = 0; i < NSAMPLE; i++)
+        for (size_t k = 0; k < n; k++)
+            sample[k][i] = time_of_calls(f[k], data[k], calls[k]) / (double)calls[k];
+    for (size_t k = 0; k < n; k++) {
+        qsort(sample[k], NSAMPLE, sizeof sample[k][0], compare_doubles);
+        t[k] = sample[k][NSAMPLE / 2];
+    }
+}
+
+// ---- models -------------------------------------------------------------------------------------
+
+struct subject {
+    const char *path;
+    struct ct_ctx ctx;
+    struct ct_model model;
+    struct ct_equations equations, assembly;
+    struct ct_start start;
+    struct ct_run *run;
+    struct ct_machine *machine;
+    double generate; // seconds, from the file to equations
+};
+
+static void give_up(const struct subject *s)
+{
+    ct_ctx_print(&s->ctx, stderr);
+    fprintf(stderr, "bench: %s failed\n", s->path);
+    exit(1);
+}
+
+static void open_arenas(struct ct_ctx *ctx)
+{
+    *ctx = (struct ct_ctx){.model = ct_arena_create(), .scratch = ct_arena_create()};
+    if (!ctx->model || !ctx->scratch)
+        abort();
+}
+
+static void close_arenas(struct ct_ctx *ctx)
+{
+    ct_arena_destroy(ctx->scratch);
+    ct_arena_destroy(ctx->model);
+}
+
+static const struct ct_formulate_options motion_options = {.tree = CT_TREE_AUTO};
+
+static bool generate(struct subject *s)
+{
+    struct ct_tree_report report;
+    return ct_model_read(&s->ctx, s->path, NULL, 0, &s->model)
+        && ct_formulate(&s->ctx, s->ctx.model, &s->model, &motion_options, &s->equations,
+                        &report);
+}
+
+// Everything up to a machine in a consistent state.
+static void open_subject(struct subject *s, const char *path)
+{
+    const struct ct_formulate_options assembly = {.tree = CT_TREE_JOINTS, .measure_all = true};
+    struct ct_tree_report report;
+    *s = (struct subject){.path = path};
+    open_arenas(&s->ctx);
+    const double start = now();
+    if (!generate(s))
+        give_up(s);
+    s->generate = now() - start;
+    if (!ct_formulate(&s->ctx, s->ctx.model, &s->model, &assembly, &s->assembly, &report)
+        || !ct_assemble(&s->ctx, s->ctx.model, &s->model, &s->assembly, &s->start))
+        give_up(s);
+    s->run = ct_run_create(&s->ctx, s->ctx.model, &s->model, &s->equations, &s->start);
+    if (!s->run)
+        give_up(s);
+    s->machine = ct_run_machine(s->run);
+    ct_machine_set(s->machine, 0, ct_run_state(s->run));
+}
+
+static void close_subject(struct subject *s)
+{
+    close_arenas(&s->ctx);
+}
+
+// The file that systems/NAME/generate.sh N writes, or a chain of N spherical joints in space.
+static char *generated(const char *name, int n)
+{
+    static char path[64];
+    char command[512];
+    snprintf(path, sizeof path, "/tmp/ct_bench_%ld.yaml", (long)getpid());
+    snprintf(command, sizeof command, "sh '%s/systems/%s/generate.sh' %d > %s",
+             getenv("CT_SOURCE_DIR") ? getenv("CT_SOURCE_DIR") : ".", name, n, path);
+    if (system(command) != 0)
+        exit(1);
+    return path;
+}
+
+static char *spatial_chain(int n)
+{
+    static char path[64];
+    snprintf(path, sizeof path, "/tmp/ct_bench_%ld.yaml", (long)getpid());
+    FILE *f = fopen(path, "w");
+    if (!f)
+        exit(1);
+    fprintf(f, "cotree: 1\nname: chain of %d balls\n\ngravity: [0, 0, -9.81]\n\nbodies:\n", n);
+    for (int i = 1; i <= n; i++)
+        fprintf(f,
+                "  link%d: {mass: 1.%d, com: [0.5, 0.01, 0.02], inertia: [0.1, 0.2, 0.25],\n"
+                "    points: {end: [1, 0, 0]}}\n",
+                i, i);
+    fprintf(f, "\njoints:\n");
+    for (int i = 1; i <= n; i++) {
+        fprintf(f, "  ball%d: {type: spherical, from: ", i);
+        if (i == 1)
+            fprintf(f, "ground, to: link1}\n");
+        else
+            fprintf(f, "link%d.end, to: link%d}\n", i - 1, i);
+    }
+    fprintf(f, "\nsimulation: {duration: 1}\n");
+    fclose(f);
+    return path;
+}
+
+static const char *shipped(const char *name)
+{
+    static char path[512];
+    snprintf(path, sizeof path, "%s/systems/%s/model.yaml",
+             getenv("CT_SOURCE_DIR") ? getenv("CT_SOURCE_DIR") : ".", name);
+    return path;
+}
+
+// ---- back ends ----------------------------------------------------------------------------------
+
+struct evaluator {
+    const char *name;
+    int lanes;
+    const struct ct_tape *tape;
+    const struct ct_native *native;
+    double *input, *out, *work;
+};
+
+static void evaluate(void *data)
+{
+    const struct evaluator *v = data;
+    if (v->native)
+        ct_native_eval(v->native, v->input, v->out, v->work);
+    else if (v->lanes == 1)
+        ct_tape_eval(v->tape, v->input, v->out, v->work);
+    else
+        ct_tape_eval_lanes(v->tape, v->lanes, v->input, v->out, v->work);
+}
+
+static bool open_evaluator(struct evaluator *v, struct subject *s, const char *name, int lanes,
+                           bool native)
+{
+    struct ct_arena *a = s->ctx.model;
+    const struct ct_machine *m = s->machine;
+    const size_t n = (size_t)lanes;
+    *v = (struct evaluator){.name = name, .lanes = lanes, .tape = m->motion.tape};
+    if (native && !(v->native = ct_native_create(a, m->motion.listing, lanes)))
+        return false;
+    v->input = CT_NEWN(a, double, n * m->ninput);
+    v->out = CT_NEWN(a, double, n * m->motion.nout + 1);
+    v->work = CT_NEWN(a, double,
+                      v->native ? ct_native_work(v->native) : n *ct_tape_work(v->tape) + 1);
+    for (size_t k = 0; k < m->ninput; k++) // lanes differ a little, as in a study
+        for (size_t i = 0; i < n; i++)
+            v->input[n * k + i] = m->input[k] + 1e-3 * (double)i;
+    if (v->native)
+        ct_native_prepare(v->native, v->input, v->work);
+    else
+        ct_tape_prepare_lanes(v->tape, lanes, v->input, v->work);
+    return true;
+}
+
+// One line per back end; goals [s] in the same order.
+static void compare_back_ends(struct subject *s, const char *what, const double goal[5])
+{
+    static const struct {
+        const char *name;
+        int lanes;
+        bool native;
+    } all[] = {{"tape", 1, false},
+               {"tape, 4 lanes, per lane", 4, false},
+               {"tape, 8 lanes, per lane", 8, false},
+               {"native", 1, true},
+               {"native, 4 lanes, per lane", 4, true}};
+    struct evaluator v[5];
+    call_fn f[5] = {0};
+    void *data[5] = {0};
+    double t[5];
+    size_t n = 0;
+    for (size_t i = 0; i < COUNT(all); i++)
+        n += open_evaluator(&v[n], s, all[i].name, all[i].lanes, all[i].native);
+    for (size_t i = 0; i < n; i++) {
+        f[i] = evaluate;
+        data[i] = &v[i];
+    }
+    measure(f, data, n, t);
+    const struct ct_tape_counts c = s->machine->motion.listing->counts;
+    printf("\n%s: %ld mul, %ld add, %ld div, %ld functions, %zu outputs\n", what,
+           c.multiplications, c.additions, c.divisions, c.functions, s->machine->motion.nout);
+    for (size_t i = 0; i < n; i++) {
+        char text[96];
+        snprintf(text, sizeof text, "  %s", v[i].name);
+        line(text, t[i] / v[i].lanes, goal ? goal[i] : 0);
+    }
+    if (n == 5) {
+        ratio("  tape / native", t[0] / t[3], 0);
+        ratio("  native / native, 4 lanes, per lane", 4 * t[3] / t[4], 0);
+    }
+}
+
+// ---- accelerations ------------------------------------------------------------------------------
+
+static void accelerate(void *data)
+{
+    struct subject *s = data;
+    ct_machine_motion(s->machine);
+    ct_embed_accelerate(ct_run_embed(s->run));
+}
+
+static void assemble(void *data)
+{
+    struct subject *s = data;
+    ct_machine_motion(s->machine);
+}
+
+// M, Q, J, gam and the solve, with a goal for both together.
+static void show_accelerations(struct subject *s, const char *what, double per, double goal)
+{
+    const call_fn f[] = {accelerate, assemble};
+    void *const data[] = {s, s};
+    double t[2];
+    char text[96];
+    measure(f, data, 2, t);
+    line(what, t[0] / per, goal);
+    snprintf(text, sizeof text, "  of that assembly (%s)", s->machine->backend);
+    line(text, t[1] / per, 0);
+}
+
+// ---- generating ---------------------------------------------------------------------------------
+
+static double median_of(double (*f)(const char *path), const char *path, int n)
+{
+    double t[NSAMPLE];
+    for (int i = 0; i < n; i++)
+        t[i] = f(path);
+    qsort(t, (size_t)n, sizeof t[0], compare_doubles);
+    return t[n / 2];
+}
+
+// From the file to machine code of the motion program.
+static double model_to_native(const char *path)
+{
+    struct subject s = {.path = path};
+    open_arenas(&s.ctx);
+    const double start = now();
+    if (!generate(&s))
+        give_up(&s);
+    ct_machine_create(s.ctx.model, &s.model, &s.equations);
+    const double t = now() - start;
+    close_subject(&s);
+    return t;
+}
+
+static double model_to_equations(const char *path)
+{
+    struct subject s = {.path = path};
+    open_arenas(&s.ctx);
+    const double start = now();
+    if (!generate(&s))
+        give_up(&s);
+    const double t = now() - start;
+    close_subject(&s);
+    return t;
+}
+
+// All nodes of a store made again in a new one.
+struct nodes {
+    const struct ct_exs *x;
+};
+
+static void build_nodes(void *data)
+{
+    const struct ct_exs *from = ((const struct nodes *)data)->x;
+    struct ct_arena *a = ct_arena_create();
+    struct ct_exs x;
+    ct_exs_init(&x, a);
+    ct_ex *copy = CT_NEWN(a, ct_ex, from->nnode);
+    for (uint32_t id = 0; id < from->nnode; id++) {
+        const struct ct_exnode *n = &from->node[id];
+        double value;
+        if (ct_ex_is_const(from, (ct_ex){id}, &value))
+            copy[id] = ct_ex_const(&x, value);
+        else if (n->op == CT_OP_SYM)
+            copy[id] = ct_ex_sym(&x, from->sym[n->a].kind, from->sym[n->a].name, n->a);
+        else if (n->op == CT_OP_IF)
+            copy[id] = ct_ex_if(&x, copy[n->a], copy[n->b], copy[n->c]);
+        else if (n->op != CT_OP_TABLE && ct_op_info[n->op].narg == 1)
+            copy[id] = ct_ex_fun(&x, (enum ct_op)n->op, copy[n->a]);
+        else if (n->op != CT_OP_TABLE)
+            copy[id] = ct_ex_fun2(&x, (enum ct_op)n->op, copy[n->a], copy[n->b]);
+    }
+    ct_arena_destroy(a);
+}
+
+static void emit_native(void *data)
+{
+    struct ct_arena *a = ct_arena_create();
+    ct_native_create(a, data, 1);
+    ct_arena_destroy(a);
+}
+
+static void make_tape(void *data)
+{
+    struct ct_arena *a = ct_arena_create();
+    ct_tape_create(a, data);
+    ct_arena_destroy(a);
+}
+
+struct listing_task {
+    struct subject *s;
+    ct_ex *out, *in;
+    size_t *slot, nout, nin;
+};
+
+static void make_listing(void *data)
+{
+    const struct listing_task *k = data;
+    struct ct_arena *a = ct_arena_create();
+    ct_listing_create(a, k->s->equations.x, k->out, k->nout, k->in, k->slot, k->nin,
+                      CT_FUSE_NO);
+    ct_arena_destroy(a);
+}
+
+// The outputs and inputs of the motion program, read off its listing.
+static struct listing_task motion_task(struct subject *s)
+{
+    const struct ct_listing *l = s->machine->motion.listing;
+    struct ct_arena *a = s->ctx.model;
+    struct listing_task k = {s,
+                             CT_NEWN(a, ct_ex, l->nout),
+                             CT_NEWN(a, ct_ex, l->nvalue),
+                             CT_NEWN(a, size_t, l->nvalue),
+                             l->nout,
+                             0};
+    for (size_t i = 0; i < l->nout; i++)
+        k.out[i] = (ct_ex){l->node[l->out[i]]};
+    for (size_t v = 0; v < l->nvalue; v++)
+        if (l->input[v] != CT_VALUE_NONE) {
+            k.in[k.nin] = (ct_ex){l->node[v]};
+            k.slot[k.nin++] = l->input[v];
+        }
+    return k;
+}
+
+static void show_generation(struct subject *s, const char *what)
+{
+    const struct ct_listing *l = s->machine->motion.listing;
+    struct nodes nodes = {s->equations.x};
+    struct listing_task task = motion_task(s);
+    const call_fn f[] = {build_nodes, make_listing, make_tape, emit_native};
+    union {
+        const struct ct_listing *l;
+        void *p;
+    } listing = {.l = l};
+    void *const data[] = {&nodes, &task, listing.p, listing.p};
+    double t[4];
+    measure(f, data, 4, t);
+    const double nnode = (double)s->equations.x->nnode, nins = (double)l->nins;
+    printf("\n%s: %zu nodes in the store, %zu instructions\n", what, s->equations.x->nnode,
+           l->nins);
+    line("  graph construction, per node", t[0] / nnode, 40e-9);
+    line("  listing, per instruction", t[1] / nins, 0);
+    line("  tape from the listing, per instruction", t[2] / nins, 0);
+    line("  native code from the listing, per instruction", t[3] / nins, 0);
+    line("  order and emit (listing + native), per instruction", (t[1] + t[3]) / nins, 250e-9);
+}
+
+// ---- what is measured ---------------------------------------------------------------------------
+
+static void six_axis_arm(void)
+{
+    struct subject s;
+    const double goal[5] = {0.8e-6, 0, 0, 120e-9, 42e-9};
+    open_subject(&s, shipped("puma560"));
+    compare_back_ends(&s, "6R arm (puma560, numbers folded), M and Q; goals with solve", goal);
+    show_accelerations(&s, "  accelerations, solve included", 1, 120e-9);
+    line("  model to native code", median_of(model_to_native, s.path, 11), 0.5e-3);
+    show_generation(&s, "6R arm");
+    close_subject(&s);
+}
+
+static void andrews(void)
+{
+    struct subject s;
+    open_subject(&s, shipped("andrews"));
+    compare_back_ends(&s, "Andrews' mechanism, M, Q, J, gam", NULL);
+    show_accelerations(&s, "  accelerations, solve included", 1, 160e-9);
+    ct_machine_use(s.ctx.model, s.machine, CT_BACKEND_TAPE);
+    show_accelerations(&s, "  accelerations, solve included", 1, 0.6e-6);
+    close_subject(&s);
+}
+
+static void four_bars(int n)
+{
+    struct subject s;
+    char what[64];
+    open_subject(&s, generated("n_four_bar", n));
+    snprintf(what, sizeof what, "%d four-bar%s, M, Q, J, gam", n, n > 1 ? "s" : "");
+    compare_back_ends(&s, what, NULL);
+    show_accelerations(&s, "  accelerations, solve included, per loop", n, 60e-9);
+    close_subject(&s);
+    unlink(s.path);
+}
+
+static void long_chain(int n)
+{
+    struct subject s;
+    char what[64];
+    const double goal[5] = {0, 0, 0, 4e-6, 0};
+    open_subject(&s, spatial_chain(n));
+    snprintf(what, sizeof what, "chain of %d balls (%d freedoms), M, Q; goal with solve", n,
+             3 * n);
+    compare_back_ends(&s, what, goal);
+    show_accelerations(&s, "  accelerations, solve included", 1, 4e-6);
+    line("  model to equations", median_of(model_to_equations, s.path, 3), 100e-3);
+    line("  model to native code", median_of(model_to_native, s.path, 3), 5e-3);
+    show_generation(&s, "chain");
+    close_subject(&s);
+    unlink(s.path);
+}
+
+int main(int argc, char **argv)
+{
+    const bool quick = argc > 1 && strcmp(argv[1], "--quick") == 0;
+    if (quick)
+        sample_seconds = 5e-5;
+    printf("native code: %s\n", ct_native_is_available(1) ? "available" : "not available");
+    head("one core, warm");
+    six_axis_arm();
+    andrews();
+    four_bars(1);
+    four_bars(10);
+    if (!quick) {
+        four_bars(40);
+        long_chain(50);
+    }
+    return 0;
+}

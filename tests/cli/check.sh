@@ -1,0 +1,14 @@
+# What a system is. Costs change with the engine and are left out.
+. "$(dirname "$0")/lib.sh"
+plain() {
+  say "$@" | sed -e '/^motion/d' -e '/^constraints/d' -e '/^evaluation/d' -e 's/pairs.*/pairs/' -e 's/[0-9]* pairs/N pairs/' \
+    -e '/^translation/d' -e '/^rotation/d' -e '/^branches/d'
+}
+plain check "$SYSTEMS/slider_crank/model.yaml"
+plain check "$SYSTEMS/bricard/model.yaml" --tree joints
+echo '-- a planar mechanism in space: redundant rows, and outputs they leave open'
+sed 's/^outputs:/outputs:\n  - top_pin.force.x\n  - top_pin.force.z\n  - crank_pin.torque.y/' \
+  "$SYSTEMS/four_bar/model.yaml" >four_bar.yaml
+plain check four_bar.yaml --keep-all --tree joints
+plain simulate four_bar.yaml --keep-all --tree joints --until 0.1 | grep undetermined
+"$COTREE" check four_bar.yaml --keep-all --tree joints --summary - | sed -n '/"undetermined"/,/]/p'

@@ -1,0 +1,8 @@
+# Each command explains itself; what the program lists, it has.
+. "$(dirname "$0")/lib.sh"
+say --help
+for command in $("$COTREE" --help | sed -n 's/^  \([a-z]*\)  .*/\1/p'); do
+  [ "$command" = cotree ] || say "$command" --help
+done
+"$COTREE" --version | sed 's/[0-9][0-9]*/N/g'
+"$COTREE" simulate --version | sed 's/[0-9][0-9]*/N/g'

@@ -1,0 +1,27 @@
+# A wrong command line: exit 2, nothing on standard output, a name that is near.
+. "$(dirname "$0")/lib.sh"
+m=$SYSTEMS/pendulum/model.yaml
+say
+say simlate "$m"
+say simulate
+say simulate "$m" "$m"
+say simulate "$m" --tolernce 1e-9
+say simulate "$m" --tolerance
+say simulate "$m" --tolerance small
+say simulate "$m" --step=-1
+say simulate "$m" --samples 1
+say simulate "$m" --samples 2.5
+say simulate "$m" --quiet=yes
+say simulate "$m" --backend native
+say simulate "$m" --backend tap
+say simulate "$m" --method dopri6
+say simulate "$m" --method radau5
+say simulate "$m" --tree jonts
+say graph "$m" --format png
+say graph "$m" --show tree
+say equations "$m" --format tex
+say equations "$m" --show tree,cutsets -o e.txt
+say components "$m"
+say schema -x
+"$COTREE" simulate "$m" --until 2>/dev/null
+ls

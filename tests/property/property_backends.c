@@ -1,0 +1,206 @@
+// Motion and constraint programs of every shipped system have the same bits on every back end: tape and
+// native code, one lane and several, compiled C.
+#include "codegen/c.h"
+#include "codegen/native.h"
+#include "tests/property/system.h"
+
+#include <dlfcn.h>
+#include <unistd.h>
+
+enum { NLANE = 8 };
+
+// The inputs of NLANE random states, in lanes: the assembled one with every entry moved a little.
+static double *random_inputs(struct variant *v)
+{
+    const struct ct_machine *m = v->m;
+    double *input = CT_NEWN(v->arena, double, NLANE * m->ninput);
+    for (size_t k = 0; k < m->ninput; k++)
+        for (size_t i = 0; i < NLANE; i++)
+            input[NLANE * k + i] = m->input[k] + (k < m->at_q ? 0 : 0.1 * chance());
+    return input;
+}
+
+// Lanes first ... first + n of inputs or outputs, in lanes of their own.
+static void take_lanes(double *to, const double *from, size_t nvalue, size_t first, size_t n)
+{
+    for (size_t k = 0; k < nvalue; k++)
+        memcpy(to + n * k, from + NLANE * k + first, n * sizeof *to);
+}
+
+static bool same_bits(const char *system, const char *who, const double *got,
+                      const double *want, size_t nvalue, size_t lanes)
+{
+    for (size_t i = 0; i < lanes * nvalue; i++)
+        if (memcmp(&got[i], &want[i], sizeof *got)
+            && !(got[i] != got[i] && want[i] != want[i])) {
+            print_error("%s: %s, output %zu: got %.17g, wanted %.17g\n", system, who, i / lanes,
+                        got[i], want[i]);
+            return false;
+        }
+    return true;
+}
+
+struct check {
+    const char *system;
+    struct variant *v;
+    const struct ct_program *p;
+    double *input, *want; // of NLANE lanes
+    double *in, *out, *expected;
+};
+
+static bool check_lanes(struct check *c, const char *who, const struct ct_native *native,
+                        size_t lanes)
+{
+    const size_t nwork = native ? ct_native_work(native) : lanes * ct_tape_work(c->p->tape);
+    double *work = CT_NEWN(c->v->arena, double, nwork + 1);
+    bool ok = true;
+    for (size_t first = 0; first < NLANE; first += lanes) {
+        take_lanes(c->in, c->input, c->v->m->ninput, first, lanes);
+        take_lanes(c->expected, c->want, c->p->nout, first, lanes);
+        if (native) {
+            ct_native_prepare(native, c->in, work);
+            ct_native_eval(native, c->in, c->out, work);
+        } else {
+            ct_tape_prepare_lanes(c->p->tape, (int)lanes, c->in, work);
+            ct_tape_eval_lanes(c->p->tape, (int)lanes, c->in, c->out, work);
+        }
+        ok &= same_bits(c->system, who, c->out, c->expected, c->p->nout, lanes);
+    }
+    return ok;
+}
+
+static void evaluate_by_one(struct check *c)
+{
+    double *work = CT_NEWN(c->v->arena, double, ct_tape_work(c->p->tape) + 1);
+    for (size_t i = 0; i < NLANE; i++) {
+        take_lanes(c->in, c->input, c->v->m->ninput, i, 1);
+        ct_tape_prepare(c->p->tape, c->in, work);
+        ct_tape_eval(c->p->tape, c->in, c->out, work);
+        for (size_t k = 0; k < c->p->nout; k++)
+            c->want[NLANE * k + i] = c->out[k];
+    }
+}
+
+// ---- compiled C -----------------------------------------------------------------------------------------
+
+typedef void (*evaluate_fn)(const double *in, double *out);
+
+static bool check_compiled(struct check *c, evaluate_fn evaluate)
+{
+    bool ok = true;
+    for (size_t i = 0; i < NLANE; i++) {
+        take_lanes(c->in, c->input, c->v->m->ninput, i, 1);
+        take_lanes(c->expected, c->want, c->p->nout, i, 1);
+        evaluate(c->in, c->out);
+        ok &= same_bits(c->system, "C", c->out, c->expected, c->p->nout, 1);
+    }
+    return ok;
+}
+
+static bool check_c(struct check *c)
+{
+    char folder[] = "/tmp/ct_backends_XXXXXX", command[256], path[64];
+    assert_non_null(mkdtemp(folder));
+    snprintf(path, sizeof path, "%s/e.c", folder);
+    FILE *f = fopen(path, "w");
+    assert_non_null(f);
+    fputs(ct_c_listing(c->v->arena, c->p->listing, NULL), f);
+    fclose(f);
+    snprintf(command, sizeof command,
+             "cc -std=c99 -Wall -Wextra -Wpedantic -Werror -O0 -ffp-contract=off -shared -fPIC "
+             "-o %s/e.so %s -lm",
+             folder, path);
+    assert_int_equal(system(command), 0);
+    snprintf(path, sizeof path, "%s/e.so", folder);
+    void *handle = dlopen(path, RTLD_NOW), *symbol;
+    assert_non_null(handle);
+    assert_non_null(symbol = dlsym(handle, "evaluate"));
+    evaluate_fn evaluate;
+    memcpy(&evaluate, &symbol, sizeof symbol); // C has no cast from an object to a function
+    const bool ok = check_compiled(c, evaluate);
+    dlclose(handle);
+    unlink(path);
+    snprintf(path, sizeof path, "%s/e.c", folder);
+    unlink(path);
+    rmdir(folder);
+    return ok;
+}
+
+// ---- all systems --------------------------------------------------------------------------------------
+
+static bool check_program(const char *system, struct variant *v, const struct ct_program *p,
+                          bool with_c)
+{
+    struct ct_arena *a = v->arena;
+    struct check c = {.system = system, .v = v, .p = p, .input = random_inputs(v)};
+    c.want = CT_NEWN(a, double, NLANE * p->nout + 1);
+    c.in = CT_NEWN(a, double, NLANE * v->m->ninput);
+    c.out = CT_NEWN(a, double, NLANE * p->nout + 1);
+    c.expected = CT_NEWN(a, double, NLANE * p->nout + 1);
+    if (!p->nout)
+        return true;
+    evaluate_by_one(&c);
+    bool ok = check_lanes(&c, "tape x4", NULL, 4) & check_lanes(&c, "tape x8", NULL, 8);
+    for (int lanes = 1; lanes <= 4; lanes += 3) {
+        const struct ct_native *native = ct_native_create(a, p->listing, lanes);
+        ok &= !native
+           || check_lanes(&c, lanes == 1 ? "native" : "native x4", native, (size_t)lanes);
+    }
+    return ok & (!with_c || check_c(&c));
+}
+
+static void shipped_systems_have_the_same_bits(void **unused)
+{
+    (void)unused;
+    chance_start();
+    const bool has_compiler = system("cc --version >/dev/null 2>&1") == 0;
+    bool ok = true;
+    for (size_t i = 0; i < nshipped; i++) {
+        struct system s;
+        system_open_file(&s, shipped[i]);
+        const struct ct_formulate_options *const all[] = {&by_joints, &by_bodies};
+        for (size_t k = 0; k < COUNT(all); k++) {
+            struct variant v;
+            variant_open(&s, all[k], &v);
+            ok &= check_program(s.name, &v, &v.m->motion, has_compiler && k == 0);
+            ok &= check_program(s.name, &v, &v.m->constraint, has_compiler && k == 0);
+            variant_close(&v);
+        }
+        system_close(&s);
+    }
+    assert_true(ok);
+}
+
+// Accelerations are computed from the same numbers, whatever evaluates them.
+static void choice_of_back_end_changes_no_bit(void **unused)
+{
+    (void)unused;
+    struct system s;
+    struct variant v;
+    system_open_file(&s, "systems/stewart/model.yaml");
+    variant_open(&s, &by_joints, &v);
+    variant_set(&v, &s.start, 0);
+    assert_true(variant_solve(&v));
+    double *before = CT_NEWN(v.arena, double, v.m->nu);
+    memcpy(before, v.s->a, v.m->nu * sizeof *before);
+    const bool has_native = ct_native_is_available(1);
+    assert_string_equal(v.m->backend, has_native ? "native" : "tape");
+    assert_true(ct_machine_use(v.arena, v.m, CT_BACKEND_TAPE));
+    assert_string_equal(v.m->backend, "tape");
+    assert_true(variant_solve(&v));
+    assert_memory_equal(before, v.s->a, v.m->nu * sizeof *before);
+    assert_true(ct_machine_use(v.arena, v.m, CT_BACKEND_NATIVE) == has_native);
+    assert_true(variant_solve(&v));
+    assert_memory_equal(before, v.s->a, v.m->nu * sizeof *before);
+    variant_close(&v);
+    system_close(&s);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(shipped_systems_have_the_same_bits),
+        cmocka_unit_test(choice_of_back_end_changes_no_bit),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
