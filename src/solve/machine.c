@@ -96,10 +96,12 @@ static void use(struct ct_arena *a, struct ct_program *p, struct ct_native *nati
 
 bool ct_machine_use(struct ct_arena *a, struct ct_machine *m, enum ct_backend backend)
 {
-    struct ct_program *const all[] = {&m->motion, &m->constraint};
+    struct ct_program *const all[] = {&m->motion, &m->constraint, &m->residual, &m->tangent};
     bool available = true;
     for (size_t i = 0; i < COUNT(all); i++) {
         struct ct_native *native = NULL;
+        if (i > 1 && !all[i]->nout) // no implicit method has asked for them
+            continue;
         if (backend != CT_BACKEND_TAPE)
             native = all[i]->native ? all[i]->native : ct_native_create(a, all[i]->listing, 1);
         available &= native != NULL;

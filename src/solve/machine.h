@@ -50,15 +50,16 @@ struct ct_machine {
     double *phi, *v;                // of the last ct_machine_constraint (J as well)
     double *g[2];                   // values of root functions, for modes (nmode)
     long evaluations;
-    const char *backend; // of motion and constraint: "native" or "tape"
+    const char *backend; // of what steps evaluate: "native" or "tape"
 };
 
-/// Compile all that the equations hold, motion and constraint to native code where it is available.
+/// Compile all that the equations hold, what steps evaluate (motion, constraint, residual, tangent) to native code where
+/// it is available.
 /// Everything lives in a.
 struct ct_machine *ct_machine_create(struct ct_arena *a, const struct ct_model *model,
                                      const struct ct_equations *e);
 
-/// Run motion and constraint with another back end. False if native code is asked for and is not
+/// Run these with another back end. False if native code is asked for and is not
 /// available; the tape is run then. Not for the inner loop: a must be the machine's arena.
 bool ct_machine_use(struct ct_arena *a, struct ct_machine *m, enum ct_backend backend);
 
