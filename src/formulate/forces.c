@@ -227,8 +227,16 @@ void ct_forces_derive(struct ct_build *b)
 {
     const struct ct_sweep *s = ct_sweep_run(b, CT_BIAS);
     struct ct_equations *e = b->eqs;
-    for (size_t k = 0; k < e->nu; k++)
+    b->effort = CT_NEWN(b->arena, ct_ex, e->nu + 1);
+    for (size_t k = 0; k < e->nu; k++) {
+        b->effort[k] = e->Q[k]; // so far these are all that is in Q
         e->Q[k] = ct_ex_sub(b->x, e->Q[k], sweep_row(b, s, (int)k, -1));
+    }
+}
+
+ct_ex ct_sweep_residual(struct ct_build *b, int speed)
+{
+    return ct_ex_sub(b->x, sweep_row(b, ct_sweep_run(b, CT_FULL), speed, -1), b->effort[speed]);
 }
 
 ct_ex ct_sweep_driver(struct ct_build *b, int driver)

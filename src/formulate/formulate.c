@@ -2,6 +2,7 @@
 #include "formulate/formulate.h"
 #include "expr/tape.h"
 #include "formulate/dynamics.h"
+#include "formulate/residual.h"
 #include "formulate/row.h"
 #include "formulate/signal.h"
 #include "formulate/topology.h"
@@ -452,6 +453,8 @@ bool ct_formulate(struct ct_ctx *ctx, struct ct_arena *a, const struct ct_model 
     *report = (struct ct_tree_report){0};
     if (!choose_trees(b, &s, report) || !derive(b))
         return false;
+    if (options->with_residual)
+        ct_residual_derive(b);
     if (options->with_energy)
         ct_energies_derive(b);
     if (options->measure_all)
@@ -465,4 +468,11 @@ bool ct_formulate(struct ct_ctx *ctx, struct ct_arena *a, const struct ct_model 
     b->eqs->how = report->how;
     *out = *b->eqs;
     return true;
+}
+
+void ct_formulate_residual(struct ct_equations *e)
+{
+    if (!e->residual)
+        ct_residual_derive(e->build);
+    e->residual = e->build->eqs->residual;
 }

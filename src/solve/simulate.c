@@ -1,5 +1,6 @@
 // See simulate.h.
 #include "solve/simulate.h"
+#include "solve/dae.h"
 #include "solve/mode.h"
 
 #include <math.h>
@@ -129,6 +130,10 @@ static enum ct_eval accepted(void *user, double t, double *y)
     struct ct_run *r = user;
     ct_machine_set(r->m, before_event(r, t), y);
     ct_memory_follow(r->m);
+    if (r->o->method->is_implicit) { // its steps may pass without a projection
+        ct_machine_constraint(r->m);
+        ct_embed_renew(r->s);
+    }
     foresee_singular(r, t);
     return CT_EVAL_OK;
 }
@@ -441,6 +446,10 @@ bool ct_run_simulate(struct ct_run *r, const struct ct_run_options *o,
                      struct ct_run_report *report)
 {
     const size_t n = o->nsample;
+    if (o->method->is_implicit && !r->e->residual)
+        return ct_error(r->ctx, (struct ct_mark){.file = r->model->file}, CT_E_INTEGRATE_OPTION,
+                        "the method '%s' is implicit: it needs equations with their residual",
+                        o->method->name);
     double *sample = CT_NEWN(r->arena, double, n + 1);
     bool *watched = CT_NEWN(r->arena, bool, r->ny);
     for (size_t i = 0; i < n; i++)
@@ -458,17 +467,19 @@ bool ct_run_simulate(struct ct_run *r, const struct ct_run_options *o,
     r->nevent = ct_time_events(r->arena, r->m, 0, o->duration, &r->event);
     r->pending = next_time_event(r, 0);
     ct_modes_start(r->m, 0, r->y, r->dy);
-    const struct ct_problem p = {.user = r,
-                                 .ny = (int)r->ny,
-                                 .watched = watched,
-                                 .rhs = rhs,
-                                 .project = project,
-                                 .accepted = accepted,
-                                 .singular_in = singular_in,
-                                 .nroot = r->nroot,
-                                 .root = root,
-                                 .next_time_event = next_time_event,
-                                 .event = event};
+    const struct ct_problem p
+        = {.user = r,
+           .ny = (int)r->ny,
+           .dae = o->method->is_implicit ? ct_dae_create(r->arena, r->s) : NULL,
+           .watched = watched,
+           .rhs = rhs,
+           .project = project,
+           .accepted = accepted,
+           .singular_in = singular_in,
+           .nroot = r->nroot,
+           .root = root,
+           .next_time_event = next_time_event,
+           .event = event};
     const struct ct_integrate_options io = {.t1 = o->duration,
                                             .rtol = o->rtol,
                                             .atol = o->atol,
