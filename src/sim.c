@@ -218,6 +218,8 @@ static bool prepare(struct ct_sim *sim, const struct ct_sim_options *o)
     if (!resolve_options(sim, o))
         return false;
     const double start = ct_clock();
+    if (sim->run_options.method->is_implicit) // made once, when the first run asks for it
+        ct_formulate_residual(&s->equations);
     if (!ct_assemble(&sim->own, sim->own.model, &s->model, &s->start_equations, &sim->start))
         return false;
     sim->run = ct_run_create(&sim->own, sim->own.model, &s->model, &s->equations, &sim->start);
