@@ -267,7 +267,8 @@ void ct_sim_print_summary(const struct ct_sim *sim, FILE *out)
         fprintf(out, "step %g s\n", sim->run_options.step);
     else
         fprintf(out, "tolerance %g\n", sim->tolerance);
-    fprintf(out, "work         %ld steps, %ld rejected, %ld evaluations of %ld operations (%s)\n",
+    fprintf(out,
+            "work         %ld steps, %ld rejected, %ld evaluations of %ld operations (%s)\n",
             r->stats.steps, r->stats.rejected_steps, r->stats.evaluations, operations(sim),
             ct_run_machine(sim->run)->backend);
     fprintf(out, "error        energy drift %.2g, constraints %.2g, their rates %.2g\n",

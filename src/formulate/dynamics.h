@@ -19,6 +19,8 @@ struct ct_star {
 struct ct_sweep {
     ct_ex3 *force;  // by anchor: what the link must carry, [N]
     ct_ex3 *torque; // by cluster: about its spins, clusters outboard included [N m]
+    ct_ex3 *
+        local; // by cluster: what is missing there, in axes of the cluster; zero but for the innermost
 };
 
 /// Anchor masses, stars, augmented inertias.

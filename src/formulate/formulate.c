@@ -162,20 +162,21 @@ struct rules {
     bool *forced_t, *forced_r, *banned_t, *banned_r, *tied;
 };
 
-// Distance of each node from ground, in edges that can be branches.
-static int *node_depths(struct ct_build *b)
+// Distance of each node from ground over edges that can be branches: in edges, or in rotational freedoms.
+static int *node_depths(struct ct_build *b, bool by_rotation)
 {
     int *depth = CT_NEWN(b->arena, int, b->nnode);
     for (size_t i = 1; i < b->nnode; i++)
-        depth[i] = (int)b->nnode;
+        depth[i] = (int)b->nnode * CT_MAX_COORD;
     for (bool again = true; again;) {
         again = false;
         for (size_t e = 0; e < b->nedge; e++) {
             if (b->edge[e].kind == CT_EDGE_BODY || b->edge[e].never_branch)
                 continue;
+            const int length = by_rotation ? b->edge[e].weight_r : 1;
             int *t = &depth[b->wiring[e].tail], *h = &depth[b->wiring[e].head];
-            if (*t + 1 < *h || *h + 1 < *t) {
-                *(*t < *h ? h : t) = (*t < *h ? *t : *h) + 1;
+            if (*t + length < *h || *h + length < *t) {
+                *(*t < *h ? h : t) = (*t < *h ? *t : *h) + length;
                 again = true;
             }
         }
@@ -194,8 +195,8 @@ static bool is_active(const struct ct_instance *joint)
 }
 
 // Order among equal weights. In a plane the angle of a body weighs as much as that of a joint and gives
-// shorter expressions; a passive joint away from ground yields to it.  (2.3)
-static int tie_rank(const struct ct_build *b, size_t i, const int *depth,
+// shorter expressions; a passive joint on a body that turns yields to it.  (2.3)
+static int tie_rank(const struct ct_build *b, size_t i, const int *depth, const int *turned,
                     enum ct_tree_choice choice)
 {
     const struct ct_edge_info *e = &b->edge[i];
@@ -204,10 +205,23 @@ static int tie_rank(const struct ct_build *b, size_t i, const int *depth,
         return -1;
     if (e->kind == CT_EDGE_BODY)
         return b->is_planar && choice == CT_TREE_AUTO ? 1 : last;
-    const bool at_ground = b->node[tail].body == 0 || b->node[head].body == 0;
-    if (at_ground || (e->kind == CT_EDGE_JOINT && is_active(e->self)))
+    const bool is_first_turn = turned[tail] == 0 || turned[head] == 0;
+    if (is_first_turn || (e->kind == CT_EDGE_JOINT && is_active(e->self)))
         return 0;
     return 2 + (depth[tail] < depth[head] ? depth[tail] : depth[head]);
+}
+
+// Equal ranks in the order of names: the trees of assembly, and with them the assembly found where there
+// are several, do not depend on the order of the file.
+static void rank_by_name(const struct ct_build *b, int *rank)
+{
+    const size_t n = b->nedge;
+    int *place = CT_NEWN(b->arena, int, n);
+    for (size_t i = 0; i < n; i++)
+        for (size_t k = 0; k < n; k++)
+            place[i] += strcmp(b->edge[k].name, b->edge[i].name) < 0;
+    for (size_t i = 0; i < n; i++)
+        rank[i] = (int)n * (rank[i] + 1) + place[i];
 }
 
 // Arms are branches, force drivers chords (R1, R2); shared coordinates tie a joint (R3). Ties go to
@@ -223,7 +237,7 @@ static struct rules make_rules(struct ct_build *b, enum ct_tree_choice choice)
                       .banned_t = CT_NEWN(b->arena, bool, n),
                       .banned_r = CT_NEWN(b->arena, bool, n),
                       .tied = CT_NEWN(b->arena, bool, n)};
-    const int *depth = node_depths(b);
+    const int *depth = node_depths(b, false), *turned = node_depths(b, true);
     for (size_t i = 0; i < n; i++) {
         const struct ct_edge_info *e = &b->edge[i];
         const bool is_body = e->kind == CT_EDGE_BODY;
@@ -232,7 +246,7 @@ static struct rules make_rules(struct ct_build *b, enum ct_tree_choice choice)
         const int extra = choice != CT_TREE_AUTO && dear && !e->must_be_branch ? 100 : 0;
         r.weight_t[i] = e->weight_t + extra;
         r.weight_r[i] = e->weight_r + extra;
-        r.rank[i] = tie_rank(b, i, depth, choice);
+        r.rank[i] = tie_rank(b, i, depth, turned, choice);
         r.forced_t[i] = e->must_be_branch;
         r.forced_r[i] = e->must_be_branch || is_particle;
         r.banned_t[i] = e->never_branch;
@@ -241,6 +255,8 @@ static struct rules make_rules(struct ct_build *b, enum ct_tree_choice choice)
         if (is_particle)
             r.weight_r[i] = 0;
     }
+    if (choice == CT_TREE_JOINTS)
+        rank_by_name(b, r.rank);
     return r;
 }
 

@@ -166,9 +166,9 @@ bool ct_coordinate_wrench(struct ct_build *b, int coordinate, struct ct_wrench *
                                ct_node_turn(b, p.head, m->to));
         break;
     case CT_MEASURE_QUATERNION: {
-        const int i = c->place - b->edge[c->edge].motion.quaternion;
         ct_ex3 axis = zero3;
-        if (i == 3) // four numbers, but three speeds
+        const int i = c->place - b->edge[c->edge].motion.quaternion;
+        if (i >= 3) // four numbers, three speeds
             return false;
         axis.e[i] = CT_EX_ONE;
         w->torque = ct_node_turn(b, p.head, axis);
@@ -271,10 +271,10 @@ static void wrench_terms(struct ct_build *b, struct pair n, const struct ct_wren
     const int from = b->place[n.tail].frame, to = b->place[n.head].frame;
     for (size_t r = 0; r < b->nspin; r++) {
         const struct ct_spin *s = &b->spin[r];
-        ct_ex3 reach;
+        ct_ex3 sweep;
         ct_ex v = CT_EX_ZERO;
-        if (!ct_ex3_is_zero(w->force) && ct_path_reach(b, n.tail, n.head, r, carried, &reach))
-            v = ct_ex3_dot(x, w->force, ct_ex3_cross(x, s->axis, reach));
+        if (!ct_ex3_is_zero(w->force) && ct_path_sweep(b, n.tail, n.head, r, carried, &sweep))
+            v = ct_ex3_dot(x, w->force, sweep);
         const int turns = (int)ct_cluster_is_outboard(b, s->cluster, to)
                         - (int)ct_cluster_is_outboard(b, s->cluster, from);
         if (turns && !ct_ex3_is_zero(w->torque)) {

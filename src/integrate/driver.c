@@ -35,9 +35,9 @@ static const double event_steps = 50;
 static const int pile_events = 100;
 static const double pile_time = 1e-9;
 
-// Steps next to a singular position may err this much more: one digit and a half of one step, against
-// losing them all by coming nearer.
-static const double singular_error = 30;
+// Steps next to a singular position may err this much more, or by this part of the state, which is
+// about what rounding leaves there: a digit of one step, against losing them all by coming nearer.
+static const double singular_error = 30, singular_rounding = 3e-10;
 // Steps this much shorter than the way to the position do not get across any more.
 static const double crawl = 1e-4;
 
@@ -64,6 +64,7 @@ struct run {
     double error_before;  // of the last accepted step
     double error_allowed; // 1, more beside a singular position
     double singular_in;   // time to it, from t
+    bool is_leaping;      // it is in reach
     double h_far;         // the step size when it came into reach
     bool was_refused;     // the step before this try was
     size_t sample;        // the next one to give
@@ -271,7 +272,8 @@ static void leap_over_singular(struct run *r)
     const double gap = r->method->gap;
     const double ahead = r->p->singular_in ? r->p->singular_in(r->p->user) : INFINITY;
     // the step size from before: what the controller makes of rounding is of no use
-    const double h = r->error_allowed > 1 ? r->h_far : r->h;
+    const double h = r->is_leaping ? r->h_far : r->h;
+    r->is_leaping = false;
     r->singular_in = ahead;
     r->error_allowed = 1;
     if (r->o->step > 0 || !(ahead <= (steps + gap) * h) || !(ahead > 0))
@@ -279,7 +281,10 @@ static void leap_over_singular(struct run *r)
     const double rest = ahead - gap * h;
     r->h = ahead <= longest * gap * h ? ahead / gap : rest / ceil(rest / h);
     r->h_far = h;
-    r->error_allowed = singular_error;
+    r->is_leaping = true;
+    r->error_allowed = ahead <= (1 + gap) * h
+                         ? fmax(singular_error, singular_rounding / r->tolerance.rtol)
+                         : 1;
 }
 
 // --- one step --------------------------------------------------------------------------------

@@ -170,7 +170,7 @@ static void compile_rest(struct ct_arena *a, struct ct_machine *m, const struct 
     for (size_t i = 0; i < e->nmemory; i++) // rotations from which quaternions start
         for (int k = 0; k < 9 && e->memory[i].kind == CT_MEMORY_QUATERNION; k++)
             push(&memory, e->memory[i].R.e[k]);
-    for (size_t i = 0; i < e->nu && e->nmode; i++) // needed where rates can jump
+    for (size_t i = 0; i < e->nu && (e->nmode || e->x->ntable); i++) // rates can jump
         push(&momentum, ct_ex_diff(e->x, e->kinetic, e->u[i].symbol));
     for (size_t i = 0; i < e->ndriver; i++) {
         push(&driver, e->driver[i].value);

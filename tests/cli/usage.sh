@@ -12,7 +12,6 @@ say simulate "$m" --step=-1
 say simulate "$m" --samples 1
 say simulate "$m" --samples 2.5
 say simulate "$m" --quiet=yes
-say simulate "$m" --backend native
 say simulate "$m" --backend tap
 say simulate "$m" --method dopri6
 say simulate "$m" --method radau5

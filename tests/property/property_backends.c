@@ -140,13 +140,14 @@ static bool check_program(const char *system, struct variant *v, const struct ct
     if (!p->nout)
         return true;
     evaluate_by_one(&c);
-    bool ok = check_lanes(&c, "tape x4", NULL, 4) & check_lanes(&c, "tape x8", NULL, 8);
+    bool ok = check_lanes(&c, "tape x4", NULL, 4);
+    ok &= check_lanes(&c, "tape x8", NULL, 8);
     for (int lanes = 1; lanes <= 4; lanes += 3) {
         const struct ct_native *native = ct_native_create(a, p->listing, lanes);
         ok &= !native
            || check_lanes(&c, lanes == 1 ? "native" : "native x4", native, (size_t)lanes);
     }
-    return ok & (!with_c || check_c(&c));
+    return (!with_c || check_c(&c)) && ok;
 }
 
 static void shipped_systems_have_the_same_bits(void **unused)

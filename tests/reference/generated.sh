@@ -21,7 +21,7 @@ for n in 1 2 3 5 10; do
     same "$folder/R05_N$n.yaml" "$systems/n_four_bar/generate.sh" "$n" 10 1 1e-10
 done
 same "$folder/R05_N2_20s.yaml" "$systems/n_four_bar/generate.sh" 2 20 1 1e-10
-same "$folder/R05_N40.yaml" "$systems/n_four_bar/generate.sh" 40 20 1 1e-10
+same "$folder/R05_N40.yaml" "$systems/n_four_bar/generate.sh" 40 20 1 1e-9
 same "$folder/R12.yaml" "$systems/chain40/generate.sh" 40 5 1 1e-9
 same "$folder/R12_pi.yaml" "$systems/chain40/generate.sh" 40 pi pi 1e-9
 
