@@ -166,8 +166,11 @@ bool ct_coordinate_wrench(struct ct_build *b, int coordinate, struct ct_wrench *
                                ct_node_turn(b, p.head, m->to));
         break;
     case CT_MEASURE_QUATERNION: {
+        const int i = c->place - b->edge[c->edge].motion.quaternion;
         ct_ex3 axis = zero3;
-        axis.e[c->place - b->edge[c->edge].motion.quaternion] = CT_EX_ONE;
+        if (i > 2)
+            return false; // four numbers, three speeds
+        axis.e[i] = CT_EX_ONE;
         w->torque = ct_node_turn(b, p.head, axis);
         break;
     }
