@@ -44,6 +44,6 @@ void ct_methods_print(FILE *out)
 {
     fputs("auto         dopri5 or dop853, by the tolerance\n", out);
     for (int i = 0; i < ct_nmethod; i++)
-        fprintf(out, "%-12s %s (order %d, %s)\n", ct_methods[i]->name, ct_methods[i]->summary,
+        fprintf(out, "%-24s %s (order %d, %s)\n", ct_methods[i]->name, ct_methods[i]->summary,
                 ct_methods[i]->order, ct_methods[i]->is_implicit ? "implicit" : "explicit");
 }

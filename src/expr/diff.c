@@ -61,8 +61,7 @@ static uint32_t *copy_list(struct ct_exs *x, size_t n)
     return list;
 }
 
-// Derivative of a node by its i-th argument, as an expression of the node and its arguments.
-static ct_ex partial(struct ct_exs *x, uint32_t id, int i)
+ct_ex ct_ex_partial(struct ct_exs *x, uint32_t id, int i)
 {
     const struct ct_exnode n = x->node[id];
     const ct_ex e = {id}, a = {n.a}, b = {n.b};
@@ -156,7 +155,7 @@ static ct_ex chain(struct ct_exs *x, uint32_t id, const ct_ex *d, const uint32_t
     for (int i = 0; i < ct_op_info[n.op].narg; i++) {
         const ct_ex da = d[place[arg[i]]];
         if (!ct_ex_is_zero(da))
-            sum = ct_ex_add(x, sum, ct_ex_mul(x, partial(x, id, i), da));
+            sum = ct_ex_add(x, sum, ct_ex_mul(x, ct_ex_partial(x, id, i), da));
     }
     return sum;
 }

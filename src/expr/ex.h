@@ -159,6 +159,26 @@ size_t ct_ex_walk(struct ct_exs *x, const ct_ex *root, size_t n);
 ct_ex ct_ex_diff(struct ct_exs *x, ct_ex a, ct_ex s);
 /// Sum over i of da/ds[i] * ds[i]: the directional (or total time) derivative. Same cost.
 ct_ex ct_ex_diff_along(struct ct_exs *x, ct_ex a, const ct_ex *s, const ct_ex *ds, size_t n);
+/// Derivative of node id by its i-th argument, as an expression of the node and its arguments.
+ct_ex ct_ex_partial(struct ct_exs *x, uint32_t id, int i);
+
+/// d(symbol)/d(direction) = value. A symbol may have several directions.
+struct ct_seed {
+    ct_ex symbol;
+    uint32_t direction;
+    ct_ex value;
+};
+/// Entry of a sparse Jacobian: d f[row] / d(direction).
+struct ct_slope {
+    uint32_t row, direction;
+    ct_ex value;
+};
+/// Derivatives of f (nf) in all directions of the seeds at once, zeros left out, by row and then by direction.
+/// *out lives in a. Cost: nodes below f times the directions each depends on.
+size_t ct_ex_jacobian(struct ct_exs *x, struct ct_arena *scratch, struct ct_arena *a,
+                      const ct_ex *f, size_t nf, const struct ct_seed *seeds, size_t nseed,
+                      struct ct_slope **out);
+
 /// a with each symbol from[i] replaced by to[i].
 ct_ex ct_ex_subst(struct ct_exs *x, ct_ex a, const ct_ex *from, const ct_ex *to, size_t n);
 /// Copy a from store `from` into x; leaf(data, x, from, symbol) gives the node for a symbol.

@@ -66,6 +66,7 @@ struct ct_spin {
     ct_ex3 axis; // unit vector
     int nterm;   // rate = sum of terms (+ what depends on time alone)
     struct ct_term term[CT_MAX_COORD];
+    ct_ex3 local;     // the axis in axes of the cluster; zero where it is not fixed there
     ct_ex rate, bias; // [rad/s], and [rad/s^2] with all u' = 0
 };
 
@@ -172,6 +173,7 @@ struct ct_build {
     struct ct_pull *pull;
     size_t npull, pull_cap;
     const struct ct_sweep *sweep[2]; // by level, once asked for
+    ct_ex *effort;                   // of joints along their unknown coordinates (nu)
     int resolving;                   // depth of signals within signals
     bool is_open;                    // a signal was met that this planar model leaves open
     bool in_outputs; // accelerations and multipliers may be used, comparisons stay as they are

@@ -19,6 +19,8 @@ struct ct_star {
 struct ct_sweep {
     ct_ex3 *force;  // by anchor: what the link must carry, [N]
     ct_ex3 *torque; // by cluster: about its spins, clusters outboard included [N m]
+    ct_ex3 *
+        local; // by cluster: what is missing there, in axes of the cluster; zero but for the innermost
 };
 
 /// Anchor masses, stars, augmented inertias.
@@ -32,6 +34,8 @@ void ct_mass_matrix_derive(struct ct_build *b);
 const struct ct_sweep *ct_sweep_run(struct ct_build *b, enum ct_level level);
 /// Q from the bias sweep and the efforts of the joints.
 void ct_forces_derive(struct ct_build *b);
+/// Row of the full sweep less the efforts of the joints: M u' - Q - J' lam. After ct_forces_derive.
+ct_ex ct_sweep_residual(struct ct_build *b, int speed);
 /// Row of the full sweep for a driver: the effort that the branch must supply.
 ct_ex ct_sweep_driver(struct ct_build *b, int driver);
 

@@ -77,6 +77,15 @@ struct ct_driver {
     ct_ex impulse;                   // see formulate/bias.c
 };
 
+/// The equations as implicit methods solve them, and the derivatives their iteration needs. Positions are
+/// varied along the retraction, so that an entry's direction is a speed's index.  (formulation 5.2, 8.2)
+struct ct_residual {
+    ct_ex *r;                      // M u' - Q - J' lam  (nu)
+    struct ct_slope *dq, *du, *da; // of r by q, u, u'
+    struct ct_slope *dv;           // of the rows' v by q
+    size_t ndq, ndu, nda, ndv;
+};
+
 struct ct_left_out {
     const char *what, *why;
 };
@@ -105,6 +114,7 @@ struct ct_equations {
     ct_ex work_symbol;
     ct_ex power; // d(work)/dt, in terms of u' and lam where drivers push; 0 when nothing works
     ct_ex kinetic, potential;
+    struct ct_residual *residual; // NULL if not asked for
     bool is_planar;
     bool needs_work;           // some output or the ledger uses the work
     const char **undetermined; // names of reaction components that are not unique

@@ -125,6 +125,34 @@ static ct_ex3 inertia_torque(struct work *w, int c)
                       ct_ex3_cross(x, omega, ct_ex33_apply(x, &I, omega)));
 }
 
+// The same in axes of the cluster, I constant: for clusters that turn against ground, where the rates are plain
+// and nobody further inboard asks for the torque. False where an axis is not fixed in the cluster.
+static bool local_inertia_torque(struct work *w, int c, ct_ex3 *torque)
+{
+    struct ct_build *b = w->b;
+    struct ct_exs *x = b->x;
+    const struct ct_cluster *self = &b->cluster[c];
+    ct_ex3 omega = {{{0}, {0}, {0}}}, al = omega;
+    if (b->is_planar || self->parent != 0)
+        return false;
+    for (int i = 0; i < self->nspin; i++) {
+        const struct ct_spin *s = &b->spin[self->first_spin + i];
+        ct_ex rate = s->bias;
+        if (ct_ex3_is_zero(s->local))
+            return false;
+        for (int k = 0; w->level == CT_FULL && k < s->nterm; k++)
+            if (s->term[k].speed >= 0)
+                rate = ct_ex_add(
+                    x, rate,
+                    ct_ex_mul(x, s->term[k].coef, b->eqs->u[s->term[k].speed].derivative));
+        omega = ct_ex3_add(x, omega, ct_ex3_scale(x, s->rate, s->local));
+        al = ct_ex3_add(x, al, ct_ex3_scale(x, rate, s->local));
+    }
+    *torque = ct_ex3_add(x, ct_ex33_apply(x, &self->L, al),
+                         ct_ex3_cross(x, omega, ct_ex33_apply(x, &self->L, omega)));
+    return true;
+}
+
 static void sweep_anchors(struct work *w)
 {
     struct ct_build *b = w->b;
@@ -147,13 +175,15 @@ const struct ct_sweep *ct_sweep_run(struct ct_build *b, enum ct_level level)
     struct ct_sweep *s = CT_NEW(b->arena, struct ct_sweep);
     w.rest = CT_NEWN(b->arena, ct_ex3, b->nanchor);
     w.torque = s->torque = CT_NEWN(b->arena, ct_ex3, b->ncluster);
+    s->local = CT_NEWN(b->arena, ct_ex3, b->ncluster);
     w.apparent = CT_NEWN(b->arena, ct_ex3, b->nanchor);
     s->force = CT_NEWN(b->arena, ct_ex3, b->nanchor);
     find_apparent(&w);
     apply_loads(&w);
     sweep_anchors(&w);
     for (size_t c = b->ncluster; c-- > 1;) {
-        w.torque[c] = ct_ex3_add(b->x, w.torque[c], inertia_torque(&w, (int)c));
+        if (!local_inertia_torque(&w, (int)c, &s->local[c]))
+            w.torque[c] = ct_ex3_add(b->x, w.torque[c], inertia_torque(&w, (int)c));
         const int parent = b->cluster[c].parent;
         w.torque[parent] = ct_ex3_add(b->x, w.torque[parent], w.torque[c]);
     }
@@ -177,7 +207,9 @@ static ct_ex sweep_row(struct ct_build *b, const struct ct_sweep *s, int speed, 
             const struct ct_term *t = &b->spin[r].term[k];
             if (t->speed != speed || t->driver != driver)
                 continue;
-            const ct_ex moment = ct_ex3_dot(x, b->spin[r].axis, s->torque[b->spin[r].cluster]);
+            const int c = b->spin[r].cluster;
+            const ct_ex moment = ct_ex_add(x, ct_ex3_dot(x, b->spin[r].axis, s->torque[c]),
+                                           ct_ex3_dot(x, b->spin[r].local, s->local[c]));
             sum = ct_ex_add(x, sum, ct_ex_mul(x, t->coef, moment));
         }
     for (size_t a = 1; a < b->nanchor; a++)
@@ -195,8 +227,16 @@ void ct_forces_derive(struct ct_build *b)
 {
     const struct ct_sweep *s = ct_sweep_run(b, CT_BIAS);
     struct ct_equations *e = b->eqs;
-    for (size_t k = 0; k < e->nu; k++)
+    b->effort = CT_NEWN(b->arena, ct_ex, e->nu + 1);
+    for (size_t k = 0; k < e->nu; k++) {
+        b->effort[k] = e->Q[k]; // so far these are all that is in Q
         e->Q[k] = ct_ex_sub(b->x, e->Q[k], sweep_row(b, s, (int)k, -1));
+    }
+}
+
+ct_ex ct_sweep_residual(struct ct_build *b, int speed)
+{
+    return ct_ex_sub(b->x, sweep_row(b, ct_sweep_run(b, CT_FULL), speed, -1), b->effort[speed]);
 }
 
 ct_ex ct_sweep_driver(struct ct_build *b, int driver)

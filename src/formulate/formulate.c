@@ -2,6 +2,7 @@
 #include "formulate/formulate.h"
 #include "expr/tape.h"
 #include "formulate/dynamics.h"
+#include "formulate/residual.h"
 #include "formulate/row.h"
 #include "formulate/signal.h"
 #include "formulate/topology.h"
@@ -135,15 +136,14 @@ struct search {
     struct ct_ctx *ctx;
     const struct ct_model *model;
     const struct ct_formulate_options *options;
+    struct ct_arena *owner; // of trial generations
 };
 
 // The exact count of a trial generation; nothing of it is kept.
 static double pair_cost(void *data, const struct ct_tree *T, const struct ct_tree *R)
 {
     const struct search *s = data;
-    struct ct_arena *scratch = ct_arena_create();
-    if (!scratch)
-        return INFINITY;
+    struct ct_arena *scratch = ct_arena_create_under(s->owner);
     struct ct_ctx quiet
         = {.model = scratch, .scratch = scratch}; // errors are reported by the chosen pair
     struct ct_build *b = build_create(&quiet, scratch, s->model, s->options);
@@ -210,6 +210,19 @@ static int tie_rank(const struct ct_build *b, size_t i, const int *depth, const 
     return 2 + (depth[tail] < depth[head] ? depth[tail] : depth[head]);
 }
 
+// Equal ranks in the order of names: the trees of assembly, and with them the assembly found where there
+// are several, do not depend on the order of the file.
+static void rank_by_name(const struct ct_build *b, int *rank)
+{
+    const size_t n = b->nedge;
+    int *place = CT_NEWN(b->arena, int, n);
+    for (size_t i = 0; i < n; i++)
+        for (size_t k = 0; k < n; k++)
+            place[i] += strcmp(b->edge[k].name, b->edge[i].name) < 0;
+    for (size_t i = 0; i < n; i++)
+        rank[i] = (int)n * (rank[i] + 1) + place[i];
+}
+
 // Arms are branches, force drivers chords (R1, R2); shared coordinates tie a joint (R3). Ties go to
 // joints nearer to ground.
 static struct rules make_rules(struct ct_build *b, enum ct_tree_choice choice)
@@ -241,6 +254,8 @@ static struct rules make_rules(struct ct_build *b, enum ct_tree_choice choice)
         if (is_particle)
             r.weight_r[i] = 0;
     }
+    if (choice == CT_TREE_JOINTS)
+        rank_by_name(b, r.rank);
     return r;
 }
 
@@ -433,10 +448,12 @@ bool ct_formulate(struct ct_ctx *ctx, struct ct_arena *a, const struct ct_model 
                   struct ct_tree_report *report)
 {
     struct ct_build *b = build_create(ctx, a, m, options);
-    struct search s = {ctx, m, options};
+    struct search s = {ctx, m, options, a};
     *report = (struct ct_tree_report){0};
     if (!choose_trees(b, &s, report) || !derive(b))
         return false;
+    if (options->with_residual)
+        ct_residual_derive(b);
     if (options->with_energy)
         ct_energies_derive(b);
     if (options->measure_all)
@@ -450,4 +467,11 @@ bool ct_formulate(struct ct_ctx *ctx, struct ct_arena *a, const struct ct_model 
     b->eqs->how = report->how;
     *out = *b->eqs;
     return true;
+}
+
+void ct_formulate_residual(struct ct_equations *e)
+{
+    if (!e->residual)
+        ct_residual_derive(e->build);
+    e->residual = e->build->eqs->residual;
 }

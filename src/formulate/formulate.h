@@ -16,9 +16,10 @@ struct ct_formulate_options {
     const char *const *trans, *const *rot; // GIVEN: names of the branches that are not arms
     const struct ct_mark *trans_mark, *rot_mark; // of each name; NULL: nowhere
     size_t ntrans, nrot;
-    bool keep_all;     // leave nothing out: spatial rows for planar mechanisms
-    bool with_energy;  // kinetic and potential energy and the power are wanted
-    bool with_outputs; // the outputs of the model are wanted
+    bool keep_all;      // leave nothing out: spatial rows for planar mechanisms
+    bool with_energy;   // kinetic and potential energy and the power are wanted
+    bool with_outputs;  // the outputs of the model are wanted
+    bool with_residual; // an implicit method will ask for the residual and its derivatives
     bool
         measure_all; // results are the coordinates of all joints and bodies instead (for assembly)
 };
@@ -34,5 +35,8 @@ struct ct_tree_report {
 bool ct_formulate(struct ct_ctx *ctx, struct ct_arena *a, const struct ct_model *m,
                   const struct ct_formulate_options *options, struct ct_equations *out,
                   struct ct_tree_report *report);
+
+/// The residual form, if the equations do not have it yet: for an implicit method chosen after they were made.
+void ct_formulate_residual(struct ct_equations *e);
 
 #endif

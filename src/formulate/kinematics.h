@@ -65,11 +65,11 @@ ct_ex3 ct_path_position(struct ct_build *b, int tail, int head);
 ct_ex3 ct_path_velocity(struct ct_build *b, int tail, int head);
 ct_ex3 ct_path_acceleration(struct ct_build *b, int tail, int head, enum ct_level level);
 
-/// Reach of node `head` from node `tail` under spin r: the sum of the path's vectors that turn with r,
-/// less those that would turn with the tail when carried is true (then the path is seen from the tail's axes):
-/// dv_head - dv_tail (- dw_tail x d) = axis_r x reach.  False if it is zero by structure.
-bool ct_path_reach(struct ct_build *b, int tail, int head, size_t r, bool carried,
-                   ct_ex3 *reach);
+/// Sweep of node `head` seen from node `tail` for a unit rate of spin r: axis_r x the sum of the path's vectors that
+/// turn with r, less those that would turn with the tail when carried is true (then the path is seen from the tail's
+/// axes): dv_head - dv_tail (- dw_tail x d).  False if it is zero by structure.
+bool ct_path_sweep(struct ct_build *b, int tail, int head, size_t r, bool carried,
+                   ct_ex3 *sweep);
 /// +1, -1 or 0: the slide of an anchor lies on the path's head side, tail side, or on neither (both).
 int ct_path_slide(struct ct_build *b, int tail, int head, int anchor);
 

@@ -115,6 +115,7 @@ struct reach {
     ct_ex33 *cross; // by anchor: inertia of the links against what they carry
     bool *has_cross;
     ct_ex33 *inertia;  // by cluster: augmented inertia of it and the clusters outboard, ground
+    ct_ex33 *outboard; // the same of the clusters outboard alone
     int *first, *next; // stars of an anchor, chained
 };
 
@@ -312,9 +313,10 @@ static void sum_inertias(struct reach *s)
     struct ct_build *b = s->b;
     for (size_t c = b->ncluster; c-- > 1;) {
         const ct_ex33 own = ct_cluster_inertia(b, (int)c);
+        add_tensor(b, &s->inertia[c], &s->outboard[c]);
         add_tensor(b, &s->inertia[c], &own);
         if (b->cluster[c].parent > 0)
-            add_tensor(b, &s->inertia[b->cluster[c].parent], &s->inertia[c]);
+            add_tensor(b, &s->outboard[b->cluster[c].parent], &s->inertia[c]);
     }
 }
 
@@ -341,7 +343,9 @@ struct column {
     int cluster;
     ct_ex3 axis;
     ct_ex33 inertia;
-    ct_ex3 *torque; // by anchor, of everything outboard
+    bool is_local;   // the inertia is the cluster's own and the axis is fixed in it:
+    ct_ex3 momentum; // their product in its axes, constant
+    ct_ex3 *torque;  // by anchor, of everything outboard
     bool *has_torque;
 };
 
@@ -414,6 +418,8 @@ static ct_ex3 column_inertia_torque(struct ct_build *b, const struct column *c)
 {
     if (b->is_planar)
         return ct_ex3_scale(b->x, c->inertia.e[8], c->axis);
+    if (c->is_local)
+        return ct_cluster_turn(b, c->cluster, c->momentum);
     return ct_ex33_apply(b->x, &c->inertia, c->axis);
 }
 
@@ -482,9 +488,12 @@ static void spin_column(struct reach *s, ct_ex *M, size_t r, const struct column
             || !has_unknown(other->term, other->nterm))
             continue;
         ct_ex3 torque = row_torque(s, c, other->cluster, 0);
-        if (ct_cluster_is_outboard(b, other->cluster, c->cluster))
+        const bool is_fixed = same && c->is_local && !ct_ex3_is_zero(other->local);
+        if (!is_fixed && ct_cluster_is_outboard(b, other->cluster, c->cluster))
             torque = ct_ex3_add(b->x, own, torque);
-        const ct_ex m = ct_ex3_dot(b->x, other->axis, torque);
+        ct_ex m = ct_ex3_dot(b->x, other->axis, torque);
+        if (is_fixed)
+            m = ct_ex_add(b->x, m, ct_ex3_dot(b->x, other->local, c->momentum));
         if (row == r)
             spread_self(b, M, self->term, self->nterm, m);
         else
@@ -555,6 +564,7 @@ static struct reach reach_create(struct ct_build *b)
     s.cross = CT_NEWN(b->arena, ct_ex33, na);
     s.has_cross = CT_NEWN(b->arena, bool, na);
     s.inertia = CT_NEWN(b->arena, ct_ex33, nc);
+    s.outboard = CT_NEWN(b->arena, ct_ex33, nc);
     s.first = CT_NEWN(b->arena, int, na);
     s.next = CT_NEWN(b->arena, int, ns);
     count_stars(&s);
@@ -578,6 +588,14 @@ static int *start_depths(struct reach *s)
     return depth;
 }
 
+static bool is_zero(const ct_ex33 *A)
+{
+    for (int i = 0; i < 9; i++)
+        if (!ct_ex_is_zero(A->e[i]))
+            return false;
+    return true;
+}
+
 void ct_mass_matrix_derive(struct ct_build *b)
 {
     struct ct_equations *e = b->eqs;
@@ -589,10 +607,17 @@ void ct_mass_matrix_derive(struct ct_build *b)
         struct column c = {.cluster = self->cluster, .axis = self->axis};
         if (!has_unknown(self->term, self->nterm))
             continue;
-        c.inertia = s.inertia[c.cluster];
+        c.inertia = s.outboard[c.cluster];
         c.torque = CT_NEWN(b->arena, ct_ex3, b->nanchor);
         c.has_torque = CT_NEWN(b->arena, bool, b->nanchor);
         add_full_anchors(&s, 0, c.cluster, &c.inertia);
+        c.is_local = !b->is_planar && !ct_ex3_is_zero(self->local) && is_zero(&c.inertia);
+        if (c.is_local) {
+            c.momentum = ct_ex33_apply(b->x, &b->cluster[c.cluster].L, self->local);
+        } else {
+            c.inertia = s.inertia[c.cluster];
+            add_full_anchors(&s, 0, c.cluster, &c.inertia);
+        }
         spin_column(&s, M, r, &c, depth);
     }
     slide_pairs(b, M);

@@ -179,9 +179,11 @@ ct_ex ct_edge_partial(struct ct_build *b, const struct ct_edge_info *e, ct_ex tr
 // Spin of the i-th turn of branch e, whose axis is fixed in the parent; the coefficients of its rate
 // are sign * d angle / d q_k.
 static void add_spin(struct ct_build *b, int cluster, const struct ct_edge_info *e, int i,
-                     int sign, ct_ex3 axis, ct_ex angle)
+                     int sign, ct_ex3 local, ct_ex angle)
 {
-    struct ct_spin s = {.cluster = cluster, .axis = axis};
+    // fixed in the axes it starts from and in those it leads to
+    struct ct_spin s
+        = {.cluster = cluster, .axis = ct_cluster_turn(b, b->cluster[cluster].base, local)};
     for (int k = 0; k < e->ncoordinate; k++) {
         const struct ct_coordinate *c = &b->coordinate[e->first_coordinate + k];
         const ct_ex coef = ct_edge_partial(b, e, e->trial.turn[i].angle, k);
@@ -189,6 +191,7 @@ static void add_spin(struct ct_build *b, int cluster, const struct ct_edge_info 
             s.term[s.nterm++]
                 = (struct ct_term){c->u, c->driver, sign > 0 ? coef : ct_ex_neg(b->x, coef)};
     }
+    s.local = local;
     s.rate = ct_build_rate(b, angle);
     s.bias = ct_build_rate(b, s.rate);
     CT_PUSH(b->arena, b->spin, b->nspin, b->spin_cap, s);
@@ -220,25 +223,26 @@ static int turn_cluster(struct ct_build *b, int parent, const struct ct_edge_inf
     const ct_ex33 *B = &b->cluster[self->base].R;
     const ct_ex33 A = ct_ex33_axis_angle(x, self->axis, self->angle);
     self->R = ct_ex33_mul(x, B, &A);
-    add_spin(b, c, e, i, sign, ct_ex33_apply(x, B, axis), angle);
+    add_spin(b, c, e, i, sign, axis, angle);
     return c;
 }
 
-// S(p) of a unit quaternion.  (7.2)
+// S(p) of a unit quaternion: 1 + 2 (p0 v~ + v~ v~), twelve products.  (7.2)
 static ct_ex33 quaternion_matrix(struct ct_exs *x, const ct_ex p[4])
 {
     ct_ex33 R;
-    const ct_ex ww = ct_ex_mul(x, p[0], p[0]);
+    ct_ex twice[3], square[3];
+    for (int i = 0; i < 3; i++) {
+        twice[i] = ct_ex_scale(x, 2, p[1 + i]);
+        square[i] = ct_ex_mul(x, twice[i], p[1 + i]);
+    }
     for (int i = 0; i < 3; i++) {
         const int j = (i + 1) % 3, k = (i + 2) % 3;
-        // p0^2 + pi^2 - 1/2, doubled: uses |p| = 1
-        R.e[i + 3 * i] = ct_ex_sub(
-            x, ct_ex_scale(x, 2, ct_ex_add(x, ww, ct_ex_mul(x, p[1 + i], p[1 + i]))),
-            CT_EX_ONE);
-        const ct_ex both = ct_ex_mul(x, p[1 + i], p[1 + j]),
-                    turn = ct_ex_mul(x, p[0], p[1 + k]);
-        R.e[j + 3 * i] = ct_ex_scale(x, 2, ct_ex_add(x, both, turn));
-        R.e[i + 3 * j] = ct_ex_scale(x, 2, ct_ex_sub(x, both, turn));
+        R.e[i + 3 * i] = ct_ex_sub(x, CT_EX_ONE, ct_ex_add(x, square[j], square[k]));
+        const ct_ex both = ct_ex_mul(x, twice[i], p[1 + j]),
+                    turn = ct_ex_mul(x, twice[k], p[0]);
+        R.e[j + 3 * i] = ct_ex_add(x, both, turn);
+        R.e[i + 3 * j] = ct_ex_sub(x, both, turn);
     }
     return R;
 }
@@ -261,6 +265,8 @@ static int quaternion_cluster(struct ct_build *b, int parent, const ct_ex33 *S,
         s.axis = (ct_ex3){{to->e[3 * i], to->e[3 * i + 1], to->e[3 * i + 2]}};
         if (sign < 0)
             s.axis = ct_ex3_neg(x, s.axis);
+        else
+            s.local.e[i] = CT_EX_ONE;
         s.term[0] = (struct ct_term){coordinate->u, -1, CT_EX_ONE};
         s.rate = b->eqs->u[coordinate->u].symbol;
         CT_PUSH(b->arena, b->spin, b->nspin, b->spin_cap, s);

@@ -271,10 +271,10 @@ static void wrench_terms(struct ct_build *b, struct pair n, const struct ct_wren
     const int from = b->place[n.tail].frame, to = b->place[n.head].frame;
     for (size_t r = 0; r < b->nspin; r++) {
         const struct ct_spin *s = &b->spin[r];
-        ct_ex3 reach;
+        ct_ex3 sweep;
         ct_ex v = CT_EX_ZERO;
-        if (!ct_ex3_is_zero(w->force) && ct_path_reach(b, n.tail, n.head, r, carried, &reach))
-            v = ct_ex3_dot(x, w->force, ct_ex3_cross(x, s->axis, reach));
+        if (!ct_ex3_is_zero(w->force) && ct_path_sweep(b, n.tail, n.head, r, carried, &sweep))
+            v = ct_ex3_dot(x, w->force, sweep);
         const int turns = (int)ct_cluster_is_outboard(b, s->cluster, to)
                         - (int)ct_cluster_is_outboard(b, s->cluster, from);
         if (turns && !ct_ex3_is_zero(w->torque)) {

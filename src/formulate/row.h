@@ -29,7 +29,8 @@ struct ct_linear {
 ct_ex ct_coordinate_value(struct ct_build *b, int coordinate);
 ct_ex ct_coordinate_speed(struct ct_build *b, int coordinate);
 ct_ex ct_coordinate_acceleration(struct ct_build *b, int coordinate, enum ct_level level);
-/// Wrench conjugate to the speed of a measured coordinate; false if there is none (a particle).
+/// Wrench conjugate to the speed of a measured coordinate; false if there is none (a particle, the last number of a
+/// quaternion).
 bool ct_coordinate_wrench(struct ct_build *b, int coordinate, struct ct_wrench *w);
 
 /// Rows of all joints that are chords, of rods, gears and driven chords.

@@ -333,22 +333,40 @@ ct_ex3 ct_path_acceleration(struct ct_build *b, int tail, int head, enum ct_leve
     return sum;
 }
 
-bool ct_path_reach(struct ct_build *b, int tail, int head, size_t r, bool carried,
-                   ct_ex3 *reach)
+// local x v for a vector v of the spin's own cluster, in its axes; worth it where a component vanishes.
+static bool local_sweep(struct ct_build *b, const struct ct_spin *s, ct_ex3 v, ct_ex3 *sweep)
+{
+    const ct_ex3 local = ct_ex3_cross(b->x, s->local, v);
+    bool any_zero = false;
+    for (int i = 0; i < 3; i++)
+        any_zero = any_zero || ct_ex_is_zero(local.e[i]);
+    if (b->is_planar || ct_ex3_is_zero(s->local) || !any_zero)
+        return false;
+    *sweep = ct_cluster_turn(b, s->cluster, local);
+    return true;
+}
+
+bool ct_path_sweep(struct ct_build *b, int tail, int head, size_t r, bool carried,
+                   ct_ex3 *sweep)
 {
     const struct path p = find_path(b, tail, head);
-    const int turning = b->spin[r].cluster;
-    const int base = carried && ct_cluster_is_outboard(b, turning, b->place[tail].frame);
-    bool any = false;
-    *reach = zero3;
+    const struct ct_spin *s = &b->spin[r];
+    const int base = carried && ct_cluster_is_outboard(b, s->cluster, b->place[tail].frame);
+    bool any = false, is_own = true;
+    ct_ex3 reach = zero3, own = zero3;
     for (size_t i = 0; i < p.n; i++) {
-        const int turns = ct_cluster_is_outboard(b, turning, p.piece[i].cluster);
+        const struct piece *piece = &p.piece[i];
+        const int turns = ct_cluster_is_outboard(b, s->cluster, piece->cluster);
         if (turns == base)
             continue;
         any = true;
-        const int sign = (turns - base) * p.piece[i].sign;
-        *reach = accumulate(b, *reach, sign, piece_vector(b, &p.piece[i]));
+        const int sign = (turns - base) * piece->sign;
+        reach = accumulate(b, reach, sign, piece_vector(b, piece));
+        is_own = is_own && piece->cluster == s->cluster;
+        own = accumulate(b, own, sign, piece->local);
     }
+    if (!is_own || !local_sweep(b, s, own, sweep))
+        *sweep = ct_ex3_cross(b->x, s->axis, reach);
     return any;
 }
 

@@ -135,9 +135,11 @@ static const double D[CORRECTIONS][ALL_STAGES] = {
 };
 
 // work: k (ny x 16), F (ny x 4), two vectors (ny)
-static size_t work_size(int ny)
+static void *create(struct ct_arena *a, const struct ct_method *method,
+                    const struct ct_problem *p)
 {
-    return (ALL_STAGES + CORRECTIONS + 2) * (size_t)ny;
+    (void)method;
+    return CT_NEWN(a, double, (ALL_STAGES + CORRECTIONS + 2) * (size_t)p->ny);
 }
 
 static double *corrections(double *work, int n)
@@ -182,8 +184,7 @@ static double estimate(const struct ct_problem *p, double h, const double *y, co
 
 static enum ct_eval step(const struct ct_problem *p, double t, double h, const double *y,
                          const double *dy, const struct ct_tolerance *tolerance, double *y1,
-                         double *dy1, double *err, double *work,
-                         struct ct_integrate_stats *stats)
+                         double *dy1, double *err, void *work, struct ct_integrate_stats *stats)
 {
     const int n = p->ny;
     const size_t bytes = (size_t)n * sizeof *y;
@@ -192,14 +193,14 @@ static enum ct_eval step(const struct ct_problem *p, double t, double h, const d
     if (e != CT_EVAL_OK)
         return e;
     memcpy(y1, spare(work, n), bytes);
-    memcpy(dy1, work + (STAGES - 1) * n, bytes);
+    memcpy(dy1, (const double *)work + (STAGES - 1) * n, bytes);
     if (tolerance)
         *err = estimate(p, h, y, y1, tolerance, work);
     return CT_EVAL_OK;
 }
 
 static enum ct_eval prepare(const struct ct_problem *p, double t, double h, const double *y,
-                            const double *y1, double *work, struct ct_integrate_stats *stats)
+                            const double *y1, void *work, struct ct_integrate_stats *stats)
 {
     (void)y1;
     const int n = p->ny;
@@ -211,7 +212,7 @@ static enum ct_eval prepare(const struct ct_problem *p, double t, double h, cons
 }
 
 static void dense(const struct ct_problem *p, double h, double theta, const double *y,
-                  const double *y1, double *work, double *out)
+                  const double *y1, void *work, double *out)
 {
     const int n = p->ny;
     const double rest = 1 - theta, bubble = theta * theta * rest * rest;
@@ -230,7 +231,7 @@ const struct ct_method ct_method_dop853 = {
     .order = 8,
     .error_order = 7,
     .gap = 0.47,
-    .work = work_size,
+    .create = create,
     .step = step,
     .prepare = prepare,
     .dense = dense,

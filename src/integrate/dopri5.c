@@ -51,15 +51,16 @@ static struct parts divide(double *work, int n)
     return (struct parts){work, rest, rest + n, rest + 2 * n, rest + 3 * n, rest + 4 * n};
 }
 
-static size_t work_size(int ny)
+static void *create(struct ct_arena *a, const struct ct_method *method,
+                    const struct ct_problem *p)
 {
-    return (STAGES + 4) * (size_t)ny + 1;
+    (void)method;
+    return CT_NEWN(a, double, (STAGES + 4) * (size_t)p->ny + 1);
 }
 
 static enum ct_eval step(const struct ct_problem *p, double t, double h, const double *y,
                          const double *dy, const struct ct_tolerance *tolerance, double *y1,
-                         double *dy1, double *err, double *work,
-                         struct ct_integrate_stats *stats)
+                         double *dy1, double *err, void *work, struct ct_integrate_stats *stats)
 {
     const int n = p->ny;
     const size_t bytes = (size_t)n * sizeof *y;
@@ -108,7 +109,7 @@ static enum ct_eval miss(double *out, double theta, const struct ct_problem *p, 
 }
 
 static enum ct_eval prepare(const struct ct_problem *p, double t, double h, const double *y,
-                            const double *y1, double *work, struct ct_integrate_stats *stats)
+                            const double *y1, void *work, struct ct_integrate_stats *stats)
 {
     const struct parts w = divide(work, p->ny);
     enum ct_eval e = miss(w.b, 1. / 2, p, t, h, y, y1, &w, stats);
@@ -126,7 +127,7 @@ static enum ct_eval prepare(const struct ct_problem *p, double t, double h, cons
 }
 
 static void dense(const struct ct_problem *p, double h, double theta, const double *y,
-                  const double *y1, double *work, double *out)
+                  const double *y1, void *work, double *out)
 {
     const int n = p->ny;
     const struct parts w = divide(work, n);
@@ -147,7 +148,7 @@ const struct ct_method ct_method_dopri5 = {
     .order = 5,
     .error_order = 4,
     .gap = 0.55,
-    .work = work_size,
+    .create = create,
     .step = step,
     .prepare = prepare,
     .has_rough_dense = true,

@@ -35,9 +35,9 @@ static const double event_steps = 50;
 static const int pile_events = 100;
 static const double pile_time = 1e-9;
 
-// Steps next to a singular position may err this much more: one digit and a half of one step, against
-// losing them all by coming nearer.
-static const double singular_error = 30;
+// Steps next to a singular position may err this much more, or by this part of the state, which is
+// about what rounding leaves there: a digit of one step, against losing them all by coming nearer.
+static const double singular_error = 30, singular_rounding = 3e-10;
 // Steps this much shorter than the way to the position do not get across any more.
 static const double crawl = 1e-4;
 
@@ -59,7 +59,8 @@ struct run {
     double *y, *dy;       // (ny) each, as all that follow
     double *y1, *dy1;     // end of the step as the method gives it
     double *end, *dend;   // the same, projected
-    double *point, *work; // a state to spare; the method's own workspace
+    double *point;        // a state to spare
+    void *work;           // the method's own
     double error_before;  // of the last accepted step
     double error_allowed; // 1, more beside a singular position
     double singular_in;   // time to it, from t
@@ -117,7 +118,7 @@ static void allocate(struct run *r)
     double **const vectors[] = {&r->y, &r->dy, &r->y1, &r->dy1, &r->end, &r->dend, &r->point};
     for (size_t i = 0; i < COUNT(vectors); i++)
         *vectors[i] = CT_NEWN(a, double, r->p->ny);
-    r->work = CT_NEWN(a, double, r->method->work(r->p->ny));
+    r->work = r->method->create(a, r->method, r->p);
     ct_watch_init(&r->watch, r->p, a);
 }
 
@@ -132,6 +133,8 @@ static bool state_refused(struct run *r, enum ct_eval e)
 // The derivative, and on which side the roots are, at a state that was not stepped to.
 static bool take_bearings(struct run *r)
 {
+    if (r->method->restart)
+        r->method->restart(r->work);
     enum ct_eval e = ct_stepper_rhs(r->p, r->t, r->y, r->dy, r->stats);
     if (e == CT_EVAL_OK)
         e = ct_watch_start(&r->watch, r->t, r->h, r->y, r->dy);
@@ -237,8 +240,12 @@ static double pi_factor(const struct run *r, double error)
 
 static void adapt_after_success(struct run *r, double h, double error)
 {
-    const double factor = fmin(fmax(pi_factor(r, error), 1 / most_growth), 1 / most_shrink);
+    const double growth = r->method->most_growth > 0 ? r->method->most_growth : most_growth;
+    const double factor = fmin(fmax(pi_factor(r, error), 1 / growth), 1 / most_shrink);
+    const double *steady = r->method->steady;
     double next = h / factor;
+    if (next > steady[0] * h && next < steady[1] * h)
+        next = h;
     if (r->was_refused)
         next = fmin(next, h); // not at once back to what has just failed
     else if (h < r->h)
@@ -275,7 +282,9 @@ static void leap_over_singular(struct run *r)
     r->h = ahead <= longest * gap * h ? ahead / gap : rest / ceil(rest / h);
     r->h_far = h;
     r->is_leaping = true;
-    r->error_allowed = ahead <= (1 + gap) * h ? singular_error : 1;
+    r->error_allowed = ahead <= (1 + gap) * h
+                         ? fmax(singular_error, singular_rounding / r->tolerance.rtol)
+                         : 1;
 }
 
 // --- one step --------------------------------------------------------------------------------
@@ -295,7 +304,7 @@ static enum ct_eval project_end(struct run *r, double t1)
     const size_t bytes = (size_t)p->ny * sizeof *r->y;
     memcpy(r->end, r->y1, bytes);
     memcpy(r->dend, r->dy1, bytes);
-    if (!p->project)
+    if (!p->project || r->method->is_implicit)
         return CT_EVAL_OK;
     const enum ct_eval e = p->project(p->user, t1, r->end);
     if (e != CT_EVAL_OK || !differs(r->end, r->y1, p->ny))
@@ -483,6 +492,8 @@ static void commit(struct run *r, const struct stride *s)
     r->dend = dy;
     r->t = s->t1;
     r->stats->steps++;
+    if (r->method->accept)
+        r->method->accept(r->work);
 }
 
 static bool is_piling_up(struct run *r)
@@ -560,6 +571,10 @@ bool ct_integrate(struct ct_ctx *ctx, const struct ct_method *method,
     *stats = (struct ct_integrate_stats){.last_time = options->t0};
     if (!check_options(ctx, options))
         return false;
+    if (method->is_implicit && !p->dae)
+        return ct_error(ctx, nowhere, CT_E_INTEGRATE_OPTION,
+                        "the method '%s' is implicit: it needs the residual of the equations",
+                        method->name);
     struct run r = {
         .ctx = ctx,
         .method = method,

@@ -15,9 +15,43 @@ enum ct_eval {
     CT_EVAL_FATAL, // diagnosed
 };
 
+/// The same problem as implicit methods solve it: second order, with constraints.  (formulation 0.4, 8)
+///
+///     r(t, q, u, u', lam) = M u' - Q - J' lam = 0,   Phi(q, t) = 0,   v(q, u, t) = J u + Phi_t = 0
+///
+/// Positions move by q (+) d, d (nu) a small motion in the speeds: sums for plain coordinates, rotations where
+/// q is a quaternion. Derivatives by q are taken along it. Of the constraints only independent rows count.
+struct ct_dae {
+    void *user;
+    int nq, nu;    // the states are q, u and perhaps quadratures: their rate feeds nothing back
+    int most_rows; // rows there can be
+    const int
+        *q_of; // (nu) the coordinate that moves with speed k alone; -1: a rotation, of size one
+
+    /// The number of rows now; *version changes when they become other rows. Only `rhs`, `project` and
+    /// `accepted` of the problem change them.
+    int (*rows)(void *user, long *version);
+    /// q1 (nq, out) = q (+) d.
+    void (*retract)(void *user, const double *q, const double *d, double *q1);
+    /// rate (nu, out) = d' where q (+) d moves at speeds w.  T^-1(d) w for rotations, (7.3)
+    void (*chart_rate)(void *user, const double *d, const double *w, double *rate);
+    /// a (nu, out), lam (rows, out) that satisfy r = 0 and the rows' accelerations at y.
+    enum ct_eval (*start)(void *user, double t, const double *y, double *a, double *lam);
+    /// r (nu, out), phi, v (rows, out).
+    enum ct_eval (*residual)(void *user, double t, const double *q, const double *u,
+                             const double *a, const double *lam, double *r, double *phi,
+                             double *v);
+    /// M = dr/du', C = dr/du, K = dr/dq (nu x nu, out), J = dPhi/dq = dv/du and D = dv/dq (rows x nu, out).
+    enum ct_eval (*tangent)(void *user, double t, const double *q, const double *u,
+                            const double *a, const double *lam, double *M, double *C, double *K,
+                            double *J, double *D);
+};
+
 struct ct_problem {
     void *user;
     int ny; // states
+    /// What implicit methods need beside the rest; NULL: none can be used.
+    const struct ct_dae *dae;
     /// Per state: counts in error control (quadratures do not). NULL: all do.
     const bool *watched;
 
@@ -84,26 +118,37 @@ struct ct_method {
     const char *source;  // key into docs/references.bib
     int order;
     int error_order; // the error of a step behaves as h^(error_order + 1), for step control
+    /// Needs problem.dae, and meets the constraints by itself: the driver does not project its steps.
     bool is_implicit;
     double gap; // middle of the widest gap between the abscissae of its stages
-    /// Size of the private workspace in doubles, for ny states.
-    size_t (*work)(int ny);
+    /// Rules of step control; 0: the usual ones. A next step that differs from the last by a factor between
+    /// steady[0] and steady[1] is not made: it would cost a factorisation.
+    double most_growth, steady[2];
+    const void *coefficients; // of families of methods
+    /// The private workspace for a run. What it keeps from step to step begins with `restart` and moves on
+    /// with `accept`; both may be NULL.
+    void *(*create)(struct ct_arena *a, const struct ct_method *method,
+                    const struct ct_problem *p);
+    /// Before the first step and after each event: nothing is known of the time before.
+    void (*restart)(void *work);
+    /// The last step was accepted; the next one starts at its end.
+    void (*accept)(void *work);
     /// One step from (t, y) with derivative dy by h: y1 (out), dy1 (out) = f(t + h, y1) before
     /// projection, *err (out) scaled so that 1 is the tolerance. Without a tolerance (NULL) no
     /// error is wanted and *err stays.
     enum ct_eval (*step)(const struct ct_problem *p, double t, double h, const double *y,
                          const double *dy, const struct ct_tolerance *tolerance, double *y1,
-                         double *dy1, double *err, double *work,
+                         double *dy1, double *err, void *work,
                          struct ct_integrate_stats *stats);
     /// Called once for a step before its first `dense`: extra stages. May be NULL. With
     /// has_rough_dense, `dense` works without it, too, well enough to find roots.
     bool has_rough_dense;
     enum ct_eval (*prepare)(const struct ct_problem *p, double t, double h, const double *y,
-                            const double *y1, double *work, struct ct_integrate_stats *stats);
+                            const double *y1, void *work, struct ct_integrate_stats *stats);
     /// y (ny, out) at t + theta h, 0 <= theta <= 1, from the step just taken; y1 as it came from
     /// `step`.
     void (*dense)(const struct ct_problem *p, double h, double theta, const double *y,
-                  const double *y1, double *work, double *out);
+                  const double *y1, void *work, double *out);
 };
 
 extern const struct ct_method *const ct_methods[];

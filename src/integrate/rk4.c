@@ -26,9 +26,11 @@ static struct parts divide(double *work, int n)
                           work + 7 * n, work + 8 * n, work + 9 * n};
 }
 
-static size_t work_size(int ny)
+static void *create(struct ct_arena *a, const struct ct_method *method,
+                    const struct ct_problem *p)
 {
-    return 9 * (size_t)ny + 1;
+    (void)method;
+    return CT_NEWN(a, double, 9 * (size_t)p->ny + 1);
 }
 
 // y1 (out) by one step of length h from (t, y) with derivative dy.
@@ -72,8 +74,7 @@ static enum ct_eval advance_halved(const struct ct_problem *p, double t, double 
 
 static enum ct_eval step(const struct ct_problem *p, double t, double h, const double *y,
                          const double *dy, const struct ct_tolerance *tolerance, double *y1,
-                         double *dy1, double *err, double *work,
-                         struct ct_integrate_stats *stats)
+                         double *dy1, double *err, void *work, struct ct_integrate_stats *stats)
 {
     const struct parts w = divide(work, p->ny);
     const size_t bytes = (size_t)p->ny * sizeof *y;
@@ -89,7 +90,7 @@ static enum ct_eval step(const struct ct_problem *p, double t, double h, const d
 }
 
 static void dense(const struct ct_problem *p, double h, double theta, const double *y,
-                  const double *y1, double *work, double *out)
+                  const double *y1, void *work, double *out)
 {
     const struct parts w = divide(work, p->ny);
     if (!*w.is_halved)
@@ -107,7 +108,7 @@ const struct ct_method ct_method_rk4 = {
     .order = 4,
     .error_order = 4,
     .gap = 0.25,
-    .work = work_size,
+    .create = create,
     .step = step,
     .dense = dense,
 };

@@ -49,6 +49,18 @@ double ct_stepper_norm(const struct ct_problem *p, const struct ct_tolerance *to
     return n ? sqrt(sum / n) : 0;
 }
 
+double ct_stepper_largest(const struct ct_problem *p, const struct ct_tolerance *tolerance,
+                          int first, const double *y, const double *y1, const double *e)
+{
+    double worst = 0;
+    for (int i = first; i < p->ny; i++) {
+        const double weight = tolerance->rtol * fmax(fabs(y[i]), fabs(y1[i])) + tolerance->atol;
+        if (!p->watched || p->watched[i])
+            worst = fmax(worst, fabs(e[i]) / weight);
+    }
+    return worst;
+}
+
 void ct_stepper_hermite(double *restrict out, double theta, double h, const double *y,
                         const double *dy, const double *y1, const double *dy1, int n)
 {

@@ -18,6 +18,11 @@ void ct_stepper_combine(double *restrict out, const double *y, double h, const d
 double ct_stepper_norm(const struct ct_problem *p, const struct ct_tolerance *tolerance,
                        const double *y, const double *y1, const double *e);
 
+/// Largest |e_i| / (rtol max(|y_i|, |y1_i|) + atol) over the watched states from `first` on: quadratures, which implicit
+/// methods measure apart. e (ny).
+double ct_stepper_largest(const struct ct_problem *p, const struct ct_tolerance *tolerance,
+                          int first, const double *y, const double *y1, const double *e);
+
 /// out (n) = the cubic through y and y1 with slopes dy and dy1, at theta of the step h.
 /// Error h^4 / 384 |y''''|.
 void ct_stepper_hermite(double *restrict out, double theta, double h, const double *y,
@@ -29,7 +34,7 @@ struct ct_stepper_span {
     const struct ct_problem *p;
     double t, h;
     const double *y, *y1;
-    double *work;
+    void *work;
 };
 
 /// out (ny) = state at t + theta h.

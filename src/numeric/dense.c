@@ -20,6 +20,11 @@ extern void dgetrf_(const int *m, const int *n, double *a, const int *lda, int *
 extern void dgetrs_(const char *trans, const int *n, const int *nrhs, const double *a,
                     const int *lda, const int *ipiv, double *b, const int *ldb, int *info,
                     size_t);
+extern void zgetrf_(const int *m, const int *n, double _Complex *a, const int *lda, int *ipiv,
+                    int *info);
+extern void zgetrs_(const char *trans, const int *n, const int *nrhs, const double _Complex *a,
+                    const int *lda, const int *ipiv, double _Complex *b, const int *ldb,
+                    int *info, size_t);
 extern void dgeqp3_(const int *m, const int *n, double *a, const int *lda, int *jpvt,
                     double *tau, double *work, const int *lwork, int *info);
 extern void dormqr_(const char *side, const char *trans, const int *m, const int *n,
@@ -125,6 +130,23 @@ void ct_lu_solve(double *x, const double *LU, const int *pivot, int n, int lda, 
     lda = max_int(1, lda);
     ldx = max_int(1, ldx);
     dgetrs_(transpose ? "T" : "N", &n, &nrhs, LU, &lda, pivot, x, &ldx, &info, 1);
+}
+
+bool ct_lu_complex(double _Complex *A, int *pivot, int n, int lda)
+{
+    int info;
+    lda = max_int(1, lda);
+    zgetrf_(&n, &n, A, &lda, pivot, &info);
+    return info == 0;
+}
+
+void ct_lu_complex_solve(double _Complex *x, const double _Complex *LU, const int *pivot, int n,
+                         int lda, int nrhs, int ldx)
+{
+    int info;
+    lda = max_int(1, lda);
+    ldx = max_int(1, ldx);
+    zgetrs_("N", &n, &nrhs, LU, &lda, pivot, x, &ldx, &info, 1);
 }
 
 // Diagonal entries of R above tol |R_00|; pivoting has made them descend.

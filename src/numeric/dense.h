@@ -22,6 +22,11 @@ bool ct_lu(double *A, int *pivot, int n, int lda);
 void ct_lu_solve(double *x, const double *LU, const int *pivot, int n, int lda, int nrhs,
                  int ldx, bool transpose);
 
+/// The same for complex matrices.
+bool ct_lu_complex(double _Complex *A, int *pivot, int n, int lda);
+void ct_lu_complex_solve(double _Complex *x, const double _Complex *LU, const int *pivot, int n,
+                         int lda, int nrhs, int ldx);
+
 /// QR with column pivoting, A P = Q R in place. column (n, out): original column at each place;
 /// tau (min(m, n), out). Returns the rank: diagonal entries of R above tol * |R_00|.
 int ct_qr_pivot(double *A, int *column, double *tau, int m, int n, int lda, double tol,

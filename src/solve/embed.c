@@ -232,6 +232,19 @@ void ct_embed_multipliers(struct ct_embed *s)
     memcpy(s->lam, s->d, (size_t)m * sizeof *s->lam);
 }
 
+void ct_embed_kept_multipliers(struct ct_embed *s, double *lam)
+{
+    const int n = (int)s->m->nu, r = s->rank;
+    for (int i = 0; i < r; i++) {
+        const int d = s->dependent[i];
+        lam[i] = -s->m->Q[d];
+        for (int j = 0; j < n; j++)
+            lam[i] += s->m->M[d + n * j] * s->a[j];
+    }
+    if (r)
+        ct_lu_solve(lam, s->Jd, s->pivot, r, r, 1, r, true);
+}
+
 void ct_embed_null_vector(struct ct_embed *s, int row, double *z)
 {
     // the least-squares solution of J' x = J' e_row is e_row without its part in null(J')
@@ -369,7 +382,12 @@ enum ct_eval ct_embed_project(struct ct_embed *s, double t, double *y)
         ct_machine_set(m, t, y);
         ct_machine_constraint(m);
     }
+    ct_embed_renew(s);
+    return CT_EVAL_OK;
+}
+
+void ct_embed_renew(struct ct_embed *s)
+{
     if (s->rank && has_worn(s))
         ct_embed_choose(s);
-    return CT_EVAL_OK;
 }

@@ -38,6 +38,10 @@ bool ct_embed_choose(struct ct_embed *s);
 enum ct_eval ct_embed_accelerate(struct ct_embed *s);
 /// Multipliers of least norm into s->lam, after ct_embed_accelerate.  (6.5)
 void ct_embed_multipliers(struct ct_embed *s);
+/// Multipliers lam (rank, out) of the kept rows alone, after ct_embed_accelerate: J_d' lam = (M u' - Q)_d.
+void ct_embed_kept_multipliers(struct ct_embed *s, double *lam);
+/// Choose anew if J_d, as last factored, has worn. For runs that do not project; J is that of the machine's input.
+void ct_embed_renew(struct ct_embed *s);
 /// Move q, u in y onto the constraints, independent coordinates held where J_d allows.  (6.6)
 enum ct_eval ct_embed_project(struct ct_embed *s, double t, double *y);
 /// The smallest pivot of J_d against its largest at the last ct_machine_constraint.

@@ -96,10 +96,12 @@ static void use(struct ct_arena *a, struct ct_program *p, struct ct_native *nati
 
 bool ct_machine_use(struct ct_arena *a, struct ct_machine *m, enum ct_backend backend)
 {
-    struct ct_program *const all[] = {&m->motion, &m->constraint};
+    struct ct_program *const all[] = {&m->motion, &m->constraint, &m->residual, &m->tangent};
     bool available = true;
     for (size_t i = 0; i < COUNT(all); i++) {
         struct ct_native *native = NULL;
+        if (i > 1 && !all[i]->nout) // no implicit method has asked for them
+            continue;
         if (backend != CT_BACKEND_TAPE)
             native = all[i]->native ? all[i]->native : ct_native_create(a, all[i]->listing, 1);
         available &= native != NULL;
@@ -168,7 +170,7 @@ static void compile_rest(struct ct_arena *a, struct ct_machine *m, const struct 
     for (size_t i = 0; i < e->nmemory; i++) // rotations from which quaternions start
         for (int k = 0; k < 9 && e->memory[i].kind == CT_MEMORY_QUATERNION; k++)
             push(&memory, e->memory[i].R.e[k]);
-    for (size_t i = 0; i < e->nu && e->nmode; i++) // needed where rates can jump
+    for (size_t i = 0; i < e->nu && (e->nmode || e->x->ntable); i++) // rates can jump
         push(&momentum, ct_ex_diff(e->x, e->kinetic, e->u[i].symbol));
     for (size_t i = 0; i < e->ndriver; i++) {
         push(&driver, e->driver[i].value);
@@ -185,6 +187,35 @@ static void compile_rest(struct ct_arena *a, struct ct_machine *m, const struct 
     compile(a, m, in, wanted.e, wanted.n, &m->wanted);
     compile(a, m, in, energies, 2, &m->energy);
     compile(a, m, in, &e->power, ct_ex_is_zero(e->power) ? 0 : 1, &m->power);
+}
+
+static void push_slopes(struct list *l, const struct ct_slope *s, size_t n)
+{
+    for (size_t i = 0; i < n; i++)
+        push(l, s[i].value);
+}
+
+static void compile_residual(struct ct_arena *a, struct ct_machine *m, const struct inputs *in)
+{
+    const struct ct_equations *e = m->e;
+    const struct ct_residual *f = e->residual;
+    struct list residual = {.a = a}, tangent = {.a = a};
+    for (size_t i = 0; i < e->nu && f; i++)
+        push(&residual, f->r[i]);
+    for (size_t i = 0; i < e->nrow && f; i++)
+        push(&residual, e->row[i].phi);
+    for (size_t i = 0; i < e->nrow && f; i++)
+        push(&residual, e->row[i].v);
+    if (f) {
+        push_slopes(&tangent, f->dq, f->ndq);
+        push_slopes(&tangent, f->du, f->ndu);
+        push_slopes(&tangent, f->da, f->nda);
+        push_slopes(&tangent, f->dv, f->ndv);
+        for (size_t i = 0; i < e->nJ; i++)
+            push(&tangent, e->J[i].value);
+    }
+    compile(a, m, in, residual.e, residual.n, &m->residual);
+    compile(a, m, in, tangent.e, tangent.n, &m->tangent);
 }
 
 struct ct_machine *ct_machine_create(struct ct_arena *a, const struct ct_model *model,
@@ -211,6 +242,7 @@ struct ct_machine *ct_machine_create(struct ct_arena *a, const struct ct_model *
     compile_motion(a, m, &in);
     compile_constraint(a, m, &in);
     compile_rest(a, m, &in);
+    compile_residual(a, m, &in);
     m->M = CT_NEWN(a, double, m->nu * m->nu + 1);
     m->J = CT_NEWN(a, double, m->nrow * m->nu + 1);
     m->g[0] = CT_NEWN(a, double, e->nmode + 1);
@@ -228,8 +260,8 @@ struct ct_machine *ct_machine_create(struct ct_arena *a, const struct ct_model *
 void ct_machine_prepare(struct ct_machine *m)
 {
     struct ct_program *const all[]
-        = {&m->motion, &m->constraint, &m->result,   &m->power,  &m->energy,
-           &m->root,   &m->memory,     &m->momentum, &m->driver, &m->wanted};
+        = {&m->motion, &m->constraint, &m->result, &m->power,  &m->energy,   &m->root,
+           &m->memory, &m->momentum,   &m->driver, &m->wanted, &m->residual, &m->tangent};
     for (size_t i = 0; i < COUNT(all); i++)
         prepare(all[i], m->input);
 }
@@ -310,6 +342,34 @@ void ct_machine_retract(const struct ct_machine *m, double *q, const double *d)
             next++;
         turn_quaternion(q + next, d + k);
         next++;
+        k += 2;
+    }
+}
+
+// T^-1 = 1 + th~/2 + (1 - (t/2) cot(t/2))/t^2 th~^2, t = |th|
+static void chart_rate3(double *rate, const double *th, const double *w)
+{
+    const double square = th[0] * th[0] + th[1] * th[1] + th[2] * th[2],
+                 half = sqrt(square) / 2;
+    // below a hundredth the series is right to rounding: its next term is t^4 / 30240
+    const double c = half < 0.005 ? 1. / 12 + square / 720 : (1 - half / tan(half)) / square;
+    const double x[3] = {th[1] * w[2] - th[2] * w[1], th[2] * w[0] - th[0] * w[2],
+                         th[0] * w[1] - th[1] * w[0]};
+    const double xx[3] = {th[1] * x[2] - th[2] * x[1], th[2] * x[0] - th[0] * x[2],
+                          th[0] * x[1] - th[1] * x[0]};
+    for (int i = 0; i < 3; i++)
+        rate[i] = w[i] + x[i] / 2 + c * xx[i];
+}
+
+void ct_machine_chart_rate(const struct ct_machine *m, const double *d, const double *w,
+                           double *rate)
+{
+    for (size_t k = 0; k < m->nu; k++) {
+        if (m->e->u[k].q >= 0) {
+            rate[k] = w[k];
+            continue;
+        }
+        chart_rate3(rate + k, d + k, w + k);
         k += 2;
     }
 }

@@ -42,21 +42,24 @@ struct ct_machine {
         memory,     // next values
         momentum,   // dT/du
         driver,     // value, rate of each driver
-        wanted;     // of each row: not negative in the right assembly
+        wanted,     // of each row: not negative in the right assembly
+        residual,   // r, phi, v; nothing if the equations have no residual, and so the next
+        tangent;    // dr/dq, dr/du, dr/du', dv/dq, J: the entries
 
     double *M, *Q, *J, *gam, *rate; // of the last ct_machine_motion
     double *phi, *v;                // of the last ct_machine_constraint (J as well)
     double *g[2];                   // values of root functions, for modes (nmode)
     long evaluations;
-    const char *backend; // of motion and constraint: "native" or "tape"
+    const char *backend; // of what steps evaluate: "native" or "tape"
 };
 
-/// Compile all that the equations hold, motion and constraint to native code where it is available.
+/// Compile all that the equations hold, what steps evaluate (motion, constraint, residual, tangent) to native code where
+/// it is available.
 /// Everything lives in a.
 struct ct_machine *ct_machine_create(struct ct_arena *a, const struct ct_model *model,
                                      const struct ct_equations *e);
 
-/// Run motion and constraint with another back end. False if native code is asked for and is not
+/// Run these with another back end. False if native code is asked for and is not
 /// available; the tape is run then. Not for the inner loop: a must be the machine's arena.
 bool ct_machine_use(struct ct_arena *a, struct ct_machine *m, enum ct_backend backend);
 
@@ -72,6 +75,9 @@ void ct_machine_prepare(struct ct_machine *m);
 
 /// q (+) d for a small motion d (nu) in the speeds; quaternions are composed and normalised.  (7.4)
 void ct_machine_retract(const struct ct_machine *m, double *q, const double *d);
+/// rate (nu, out) = d' when q (+) d moves at speeds w: T^-1(d) w for rotations.  (7.3)
+void ct_machine_chart_rate(const struct ct_machine *m, const double *d, const double *w,
+                           double *rate);
 /// Normalise the quaternions of q.
 void ct_machine_normalise(const struct ct_machine *m, double *q);
 

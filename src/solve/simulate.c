@@ -1,5 +1,6 @@
 // See simulate.h.
 #include "solve/simulate.h"
+#include "solve/dae.h"
 #include "solve/mode.h"
 
 #include <math.h>
@@ -24,8 +25,18 @@ struct ct_run {
     struct ct_run_report *report;
     double energy0, energy_scale;
     double pivot_last, pivot_most, pivot_time, singular_in; // see foresee_singular
+    double pending; // time of the event ahead; INFINITY if there is none
     bool started;
 };
+
+// ---- time ------------------------------------------------------------------------------------------------
+
+// Until an event is done what holds before it counts, also at its very instant: the knots of linear tables have
+// no modes that could hold their slopes.
+static double before_event(const struct ct_run *r, double t)
+{
+    return t < r->pending ? t : nextafter(r->pending, -INFINITY);
+}
 
 // ---- evaluation -------------------------------------------------------------------------------------------
 
@@ -60,9 +71,10 @@ static bool is_near_singular(const struct ct_run *r)
     return r->s->rank && r->s->sigma < singular_pivot * r->pivot_most;
 }
 
-static enum ct_eval rhs(void *user, double t, const double *y, double *dy)
+static enum ct_eval rhs(void *user, double time, const double *y, double *dy)
 {
     struct ct_run *r = user;
+    const double t = before_event(r, time);
     if (is_near_singular(r)) {
         memcpy(r->stage, y, r->ny * sizeof *y);
         const enum ct_eval p = ct_embed_project(r->s, t, r->stage);
@@ -88,7 +100,7 @@ static enum ct_eval rhs(void *user, double t, const double *y, double *dy)
 static enum ct_eval project(void *user, double t, double *y)
 {
     struct ct_run *r = user;
-    return ct_embed_project(r->s, t, y);
+    return ct_embed_project(r->s, before_event(r, t), y);
 }
 
 // The smallest pivot of J_d falls about linearly towards a singular position: where it will vanish
@@ -116,8 +128,12 @@ static double singular_in(void *user)
 static enum ct_eval accepted(void *user, double t, double *y)
 {
     struct ct_run *r = user;
-    ct_machine_set(r->m, t, y);
+    ct_machine_set(r->m, before_event(r, t), y);
     ct_memory_follow(r->m);
+    if (r->o->method->is_implicit) { // its steps may pass without a projection
+        ct_machine_constraint(r->m);
+        ct_embed_renew(r->s);
+    }
     foresee_singular(r, t);
     return CT_EVAL_OK;
 }
@@ -127,7 +143,7 @@ static enum ct_eval accepted(void *user, double t, double *y)
 static enum ct_eval root(void *user, double t, const double *y, double *g)
 {
     struct ct_run *r = user;
-    ct_machine_set(r->m, t, y);
+    ct_machine_set(r->m, before_event(r, t), y);
     ct_program_run(&r->m->root, r->m->input);
     for (int i = 0; i < r->nroot; i++)
         g[i] = r->m->root.out[r->root_of[i]];
@@ -168,6 +184,32 @@ static double largest_jump(const struct ct_run *r, const double *before, int whi
 static const double jump_tolerance
     = 1e-9; // of a driver's value or rate, beside rounding [rad, m, 1/s]
 
+static bool report_jump(struct ct_run *r, const char *name, struct ct_mark mark, double jump,
+                        double t)
+{
+    return ct_error(
+        r->ctx, mark, CT_E_DRIVER_JUMP,
+        "the motion '%s' jumps by %.6g at t = %.9g: a place cannot change in no time", name,
+        jump, t);
+}
+
+// Rows were met before; one that is not any more belongs to a driver on a chord.
+static bool chords_are_closed(struct ct_run *r, double t)
+{
+    const struct ct_row *row = r->e->row;
+    for (size_t i = 0; i < r->m->nrow; i++)
+        if (fabs(r->m->phi[i]) > jump_tolerance) {
+            const struct ct_instance *joint
+                = row[i].joint < 0 ? NULL : &r->model->joint[row[i].joint];
+            const bool is_driven = joint && joint->cls->motion;
+            return report_jump(r, is_driven ? joint->name : row[i].name,
+                               is_driven ? ct_instance_value(joint, "motion")->mark
+                                         : (struct ct_mark){.file = r->model->file},
+                               -r->m->phi[i], t);
+        }
+    return true;
+}
+
 // Driven values after a change of modes; impulse or not, the speeds must fit the new rates.  (8.5)
 static enum ct_eval apply_jump(struct ct_run *r, double t, double *y, const double *before,
                                const double *momentum)
@@ -178,13 +220,13 @@ static enum ct_eval apply_jump(struct ct_run *r, double t, double *y, const doub
     for (size_t i = 0; i < r->e->ndriver; i++)
         if (fabs(m->driver.out[2 * i] - before[2 * i])
             > jump_tolerance * fmax(1, fabs(before[2 * i]))) {
-            ct_error(
-                r->ctx, r->e->driver[i].mark, CT_E_DRIVER_JUMP,
-                "the motion '%s' jumps by %.6g at t = %.9g: a place cannot change in no time",
-                r->e->driver[i].name, m->driver.out[2 * i] - before[2 * i], t);
+            report_jump(r, r->e->driver[i].name, r->e->driver[i].mark,
+                        m->driver.out[2 * i] - before[2 * i], t);
             return CT_EVAL_FATAL;
         }
     ct_machine_constraint(m);
+    if (!chords_are_closed(r, t))
+        return CT_EVAL_FATAL;
     double worst = largest_jump(r, before, 1);
     for (size_t i = 0; i < m->nrow; i++)
         worst = fmax(worst, fabs(m->v[i]));
@@ -208,18 +250,19 @@ static enum ct_eval event(void *user, double t, double *y, const signed char *cr
     struct ct_machine *m = r->m;
     (void)is_time;
     double *before = r->scratch + m->nu, *momentum = before + 2 * r->e->ndriver;
-    ct_machine_set(m, t, y);
+    ct_machine_set(m, before_event(r, t), y);
     ct_program_run(&m->driver, m->input);
     memcpy(before, m->driver.out, m->driver.nout * sizeof *before);
     ct_program_run(&m->momentum, m->input);
     memcpy(momentum, m->momentum.out, m->momentum.nout * sizeof *momentum);
-    const double kinetic = kinetic_energy(r, t, y);
+    const double kinetic = kinetic_energy(r, before_event(r, t), y);
 
     // sides: a crossed root tells its own; the rest follow from where the motion leads
     double *mode = m->input + m->at_mode;
     enum ct_eval e = rhs(r, t, y, r->dy);
     if (e != CT_EVAL_OK)
         return e;
+    r->pending = next_time_event(r, t);
     ct_modes_start(m, t, y, r->dy);
     for (int i = 0; i < r->nroot; i++)
         if (crossed[i])
@@ -255,6 +298,7 @@ struct ct_run *ct_run_create(struct ct_ctx *ctx, struct ct_arena *a,
 {
     struct ct_run *r = CT_NEW(a, struct ct_run);
     *r = (struct ct_run){.ctx = ctx, .arena = a, .model = model, .e = e};
+    r->pending = INFINITY;
     r->m = ct_machine_create(a, model, e);
     r->s = ct_embed_create(a, ctx, r->m);
     r->ny = r->m->nq + r->m->nu + 1;
@@ -402,6 +446,10 @@ bool ct_run_simulate(struct ct_run *r, const struct ct_run_options *o,
                      struct ct_run_report *report)
 {
     const size_t n = o->nsample;
+    if (o->method->is_implicit && !r->e->residual)
+        return ct_error(r->ctx, (struct ct_mark){.file = r->model->file}, CT_E_INTEGRATE_OPTION,
+                        "the method '%s' is implicit: it needs equations with their residual",
+                        o->method->name);
     double *sample = CT_NEWN(r->arena, double, n + 1);
     bool *watched = CT_NEWN(r->arena, bool, r->ny);
     for (size_t i = 0; i < n; i++)
@@ -417,18 +465,21 @@ bool ct_run_simulate(struct ct_run *r, const struct ct_run_options *o,
     r->o = o;
     r->report = report;
     r->nevent = ct_time_events(r->arena, r->m, 0, o->duration, &r->event);
+    r->pending = next_time_event(r, 0);
     ct_modes_start(r->m, 0, r->y, r->dy);
-    const struct ct_problem p = {.user = r,
-                                 .ny = (int)r->ny,
-                                 .watched = watched,
-                                 .rhs = rhs,
-                                 .project = project,
-                                 .accepted = accepted,
-                                 .singular_in = singular_in,
-                                 .nroot = r->nroot,
-                                 .root = root,
-                                 .next_time_event = next_time_event,
-                                 .event = event};
+    const struct ct_problem p
+        = {.user = r,
+           .ny = (int)r->ny,
+           .dae = o->method->is_implicit ? ct_dae_create(r->arena, r->s) : NULL,
+           .watched = watched,
+           .rhs = rhs,
+           .project = project,
+           .accepted = accepted,
+           .singular_in = singular_in,
+           .nroot = r->nroot,
+           .root = root,
+           .next_time_event = next_time_event,
+           .event = event};
     const struct ct_integrate_options io = {.t1 = o->duration,
                                             .rtol = o->rtol,
                                             .atol = o->atol,

@@ -2,7 +2,6 @@
 . "$(dirname "$0")/lib.sh"
 m=$SYSTEMS/pendulum/model.yaml
 say equations "$m" --show reduced
-say equations "$m" --show circuit
 for format in latex html c json; do
   "$COTREE" equations "$m" --format $format -o a.txt
   case $format in latex) suffix=tex ;; *) suffix=$format ;; esac

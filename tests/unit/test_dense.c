@@ -1,6 +1,7 @@
 // Dense kernels against their definitions: residuals, orthogonality, ranks.
 #include "numeric/dense.h"
 
+#include <complex.h>
 #include <float.h>
 #include <math.h>
 #include <setjmp.h>
@@ -151,6 +152,32 @@ static void lu_solves_both_ways(void **unused)
     assert_false(ct_lu(singular, pivot, 2, 2));
 }
 
+static void complex_lu_solves(void **unused)
+{
+    (void)unused;
+    for (int n = 1; n <= MOST; n++) {
+        double _Complex A[LDA * MOST], LU[LDA * MOST], want[MOST], x[MOST] = {0};
+        int pivot[MOST];
+        for (int i = 0; i < LDA * MOST; i++)
+            A[i] = uniform() + uniform() * I;
+        for (int j = 0; j < n; j++)
+            A[n - 1 - j + LDA * j] += 3 + 2 * I; // well conditioned
+        memcpy(LU, A, sizeof A);
+        for (int j = 0; j < n; j++) {
+            want[j] = uniform() + uniform() * I;
+            for (int i = 0; i < n; i++)
+                x[i] += A[i + LDA * j] * want[j];
+        }
+        assert_true(ct_lu_complex(LU, pivot, n, LDA));
+        ct_lu_complex_solve(x, LU, pivot, n, LDA, 1, n);
+        for (int i = 0; i < n; i++)
+            check_close("|x - want|", cabs(x[i] - want[i]), 0, close_enough);
+    }
+    double _Complex singular[] = {1, I, I, -1};
+    int pivot[2];
+    assert_false(ct_lu_complex(singular, pivot, 2, 2));
+}
+
 static void pivoted_qr_finds_rank_and_columns(void **unused)
 {
     (void)unused;
@@ -277,6 +304,7 @@ int main(void)
         cmocka_unit_test(cholesky_solves_definite_matrices),
         cmocka_unit_test(cholesky_refuses_indefinite_and_nonfinite),
         cmocka_unit_test(lu_solves_both_ways),
+        cmocka_unit_test(complex_lu_solves),
         cmocka_unit_test(pivoted_qr_finds_rank_and_columns),
         cmocka_unit_test(least_squares_is_shortest_for_every_shape_and_rank),
         cmocka_unit_test(empty_least_squares_gives_zero),

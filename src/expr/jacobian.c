@@ -1,0 +1,149 @@
+// Sparse Jacobians by forward differentiation: one walk, each node with the list of its derivatives.
+//
+//     node  ->  [ (direction, derivative), ... ]      ascending directions, zeros left out
+//
+// A node's list is the merge of its arguments' lists by the chain rule, so a node costs as much as it has
+// directions: for a chain of n links about n^2 / 2 in all, and equal derivatives are one node of the store.
+// Source: Griewank and Walther (2008), 7.1, key griewank2008.
+#include "base/sort.h"
+#include "expr/ex.h"
+
+#include <string.h>
+
+struct tangent {
+    uint32_t direction;
+    ct_ex value;
+};
+
+// A node's list: `n` tangents from `first` on.
+struct list {
+    size_t first, n;
+};
+
+struct walk {
+    struct ct_exs *x;
+    struct ct_arena *scratch;
+    struct tangent *tangent;
+    size_t ntangent, cap;
+    uint32_t *place;   // by id: its place in the order of the walk, plus one
+    struct list *list; // by place
+};
+
+static void push(struct walk *w, uint32_t direction, ct_ex value)
+{
+    const struct tangent t = {direction, value};
+    if (!ct_ex_is_zero(value))
+        CT_PUSH(w->scratch, w->tangent, w->ntangent, w->cap, t);
+}
+
+static struct list list_of(const struct walk *w, uint32_t id)
+{
+    return w->list[w->place[id] - 1];
+}
+
+static int by_symbol(const void *context, const void *a, const void *b)
+{
+    (void)context;
+    const struct ct_seed *s = a, *t = b;
+    return s->symbol.id != t->symbol.id
+             ? (s->symbol.id > t->symbol.id) - (s->symbol.id < t->symbol.id)
+             : (s->direction > t->direction) - (s->direction < t->direction);
+}
+
+// A symbol's list is what its seeds say; the seeds are sorted.
+static void seed_symbol(struct walk *w, uint32_t id, const struct ct_seed *seed, size_t nseed)
+{
+    size_t low = 0, high = nseed;
+    while (low < high) {
+        const size_t middle = (low + high) / 2;
+        if (seed[middle].symbol.id < id)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    for (; low < nseed && seed[low].symbol.id == id; low++)
+        push(w, seed[low].direction, seed[low].value);
+}
+
+// The derivatives of a node's arguments in one direction -> the derivative of the node.
+static ct_ex combine(struct ct_exs *x, uint32_t id, const ct_ex *partial, const ct_ex *d,
+                     int narg)
+{
+    const struct ct_exnode n = x->node[id];
+    if (n.op == CT_OP_IF) // keeps one `if`, however deep the derivative
+        return ct_ex_if(x, (ct_ex){n.a}, d[1], d[2]);
+    if (n.op == CT_OP_DIV) // (a' - (a/b) b') / b
+        return ct_ex_div(x, ct_ex_sub(x, d[0], ct_ex_mul(x, (ct_ex){id}, d[1])), (ct_ex){n.b});
+    ct_ex sum = CT_EX_ZERO;
+    for (int i = 0; i < narg; i++)
+        if (!ct_ex_is_zero(d[i]))
+            sum = ct_ex_add(x, sum, ct_ex_mul(x, partial[i], d[i]));
+    return sum;
+}
+
+// Merge the lists of a node's arguments.
+static void chain(struct walk *w, uint32_t id)
+{
+    const struct ct_exnode n = w->x->node[id];
+    const uint32_t arg[3] = {n.a, n.b, n.c};
+    const int narg = ct_op_info[n.op].narg;
+    struct list l[3] = {{0}};
+    ct_ex partial[3] = {{0}};
+    for (int i = 0; i < narg; i++) {
+        l[i] = list_of(w, arg[i]);
+        if (l[i].n)
+            partial[i] = ct_ex_partial(w->x, id, i);
+    }
+    for (;;) {
+        uint32_t least = UINT32_MAX;
+        for (int i = 0; i < narg; i++)
+            if (l[i].n && w->tangent[l[i].first].direction < least)
+                least = w->tangent[l[i].first].direction;
+        if (least == UINT32_MAX)
+            return;
+        ct_ex d[3] = {{0}};
+        for (int i = 0; i < narg; i++)
+            if (l[i].n && w->tangent[l[i].first].direction == least) {
+                d[i] = w->tangent[l[i].first++].value;
+                l[i].n--;
+            }
+        push(w, least, combine(w->x, id, partial, d, narg));
+    }
+}
+
+size_t ct_ex_jacobian(struct ct_exs *x, struct ct_arena *scratch, struct ct_arena *a,
+                      const ct_ex *f, size_t nf, const struct ct_seed *seeds, size_t nseed,
+                      struct ct_slope **out)
+{
+    struct walk w = {.x = x, .scratch = scratch};
+    const size_t n = ct_ex_walk(x, f, nf);
+    uint32_t *id = CT_NEWN(scratch, uint32_t, n + 1), most = 0;
+    memcpy(id, x->stack, n * sizeof *id); // building derivatives may walk again
+    for (size_t k = 0; k < n; k++)
+        most = id[k] > most ? id[k] : most;
+    w.place = CT_NEWN(scratch, uint32_t, (size_t)most + 1);
+    w.list = CT_NEWN(scratch, struct list, n + 1);
+    struct ct_seed *seed = CT_NEWN(scratch, struct ct_seed, nseed + 1);
+    if (nseed)
+        memcpy(seed, seeds, nseed * sizeof *seed);
+    ct_sort(scratch, seed, nseed, sizeof *seed, by_symbol, NULL);
+    for (size_t k = 0; k < n; k++) {
+        w.list[k].first = w.ntangent;
+        if (x->node[id[k]].op == CT_OP_SYM)
+            seed_symbol(&w, id[k], seed, nseed);
+        else
+            chain(&w, id[k]);
+        w.list[k].n = w.ntangent - w.list[k].first;
+        w.place[id[k]] = (uint32_t)k + 1;
+    }
+    size_t nout = 0, cap = 0;
+    *out = NULL;
+    for (size_t r = 0; r < nf; r++) {
+        const struct list l = list_of(&w, f[r].id);
+        for (size_t k = l.first; k < l.first + l.n; k++) {
+            const struct ct_slope s = {(uint32_t)r, w.tangent[k].direction, w.tangent[k].value};
+            CT_PUSH(a, *out, nout, cap, s);
+        }
+    }
+    return nout;
+}

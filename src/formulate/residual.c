@@ -1,0 +1,86 @@
+// See residual.h.
+//
+// Coordinates are varied along the motions that speeds stand for: dq_i = sum_k Z_ik de_k with q' = Z(q) u.
+// For a plain coordinate that is the coordinate itself, for a quaternion a body rotation.
+#include "formulate/residual.h"
+
+// Directions of the seeds: the speeds k as variations of the place, of the speed, of u'.
+enum { PLACE, SPEED, ACCELERATION, NLEVEL };
+
+struct seeds {
+    struct ct_seed *e;
+    size_t n, cap;
+};
+
+static void plant(struct ct_build *b, struct seeds *s, ct_ex symbol, size_t direction,
+                  ct_ex value)
+{
+    const struct ct_seed seed = {symbol, (uint32_t)direction, value};
+    CT_PUSH(b->ctx->scratch, s->e, s->n, s->cap, seed);
+}
+
+static size_t direction(const struct ct_build *b, int level, size_t speed)
+{
+    return (size_t)level * b->eqs->nu + speed;
+}
+
+// Z, as seeds of the coordinates.
+static void plant_places(struct ct_build *b, struct seeds *s)
+{
+    const struct ct_equations *e = b->eqs;
+    struct ct_arena *scratch = b->ctx->scratch;
+    struct seeds speeds = {0};
+    struct ct_slope *Z;
+    ct_ex *rate = CT_NEWN(scratch, ct_ex, e->nq + 1);
+    for (size_t i = 0; i < e->nq; i++)
+        rate[i] = e->q[i].rate;
+    for (size_t k = 0; k < e->nu; k++)
+        plant(b, &speeds, e->u[k].symbol, k, CT_EX_ONE);
+    const size_t nZ
+        = ct_ex_jacobian(b->x, scratch, scratch, rate, e->nq, speeds.e, speeds.n, &Z);
+    for (size_t i = 0; i < nZ; i++)
+        plant(b, s, e->q[Z[i].row].symbol, direction(b, PLACE, Z[i].direction), Z[i].value);
+}
+
+// The entries of one level out of all, their directions counted from 0.
+static size_t pick(struct ct_build *b, const struct ct_slope *all, size_t n, int level,
+                   struct ct_slope **out)
+{
+    size_t nout = 0, cap = 0;
+    *out = NULL;
+    for (size_t i = 0; i < n; i++) {
+        struct ct_slope s = all[i];
+        if (s.direction / b->eqs->nu != (size_t)level)
+            continue;
+        s.direction %= (uint32_t)b->eqs->nu;
+        CT_PUSH(b->arena, *out, nout, cap, s);
+    }
+    return nout;
+}
+
+void ct_residual_derive(struct ct_build *b)
+{
+    struct ct_equations *e = b->eqs;
+    struct ct_arena *scratch = b->ctx->scratch;
+    struct ct_residual *f = e->residual = CT_NEW(b->arena, struct ct_residual);
+    struct seeds seeds = {0};
+    struct ct_slope *all;
+    f->r = CT_NEWN(b->arena, ct_ex, e->nu + 1);
+    for (size_t k = 0; k < e->nu; k++)
+        f->r[k] = ct_sweep_residual(b, (int)k);
+    plant_places(b, &seeds);
+    const size_t nplace = seeds.n;
+    for (size_t k = 0; k < e->nu; k++) {
+        plant(b, &seeds, e->u[k].symbol, direction(b, SPEED, k), CT_EX_ONE);
+        plant(b, &seeds, e->u[k].derivative, direction(b, ACCELERATION, k), CT_EX_ONE);
+    }
+    const size_t n
+        = ct_ex_jacobian(b->x, scratch, scratch, f->r, e->nu, seeds.e, seeds.n, &all);
+    f->ndq = pick(b, all, n, PLACE, &f->dq);
+    f->ndu = pick(b, all, n, SPEED, &f->du);
+    f->nda = pick(b, all, n, ACCELERATION, &f->da);
+    ct_ex *v = CT_NEWN(scratch, ct_ex, e->nrow + 1);
+    for (size_t i = 0; i < e->nrow; i++)
+        v[i] = e->row[i].v;
+    f->ndv = ct_ex_jacobian(b->x, scratch, b->arena, v, e->nrow, seeds.e, nplace, &f->dv);
+}

@@ -1,0 +1,274 @@
+// See alpha.h. One step is a simplified Newton iteration on the motion d of the places; speeds and accelerations follow
+// it linearly. Sources: Bruls, Cardona and Arnold (2012), key bruls2012; the error estimate and the rule for
+// step changes: formulation 8.2.
+//
+// J' of the correction J' eta is that of the iteration matrix: eta vanishes with the error of a step, so its
+// direction matters to no order.
+#include "integrate/alpha.h"
+#include "integrate/iteration.h"
+
+#include <math.h>
+#include <string.h>
+
+// What passes from step to step.
+struct memory {
+    double h;                // of the step that ends here
+    double *a, *u_dot, *lam; // (nu), (nu), (rows)
+    double *rate;            // of all states at that step's start  (ny)
+};
+
+struct state {
+    const struct ct_dae *dae;
+    const struct ct_alpha *c;
+    struct ct_iteration *it;
+    bool is_fresh, has_jerk;  // nothing is known of the time before; but u'' is
+    struct memory start, end; // of the step
+    double *a0, *jerk;        // (nu): a at the start, for this step's size; u''
+    double *d, *u, *q;        // the step's motion (nu), its end (nu, nq)
+    double *dd, *du;          // corrections (nu)
+    double *eta, *dlam, *r, *phi, *v;
+    double *rate, *rate1, *out; // for interpolation: d' at both ends; a motion (nu)
+    double *end_rate, *error;   // of all states: rates at the end, errors of quadratures  (ny)
+};
+
+void *ct_alpha_create(struct ct_arena *a, const struct ct_method *method,
+                      const struct ct_problem *p)
+{
+    struct state *s = CT_NEW(a, struct state);
+    s->dae = p->dae;
+    s->c = method->coefficients;
+    s->it = ct_iteration_create(a, p->dae, s->c->is_stabilised, false);
+    double **const speeds[] = {&s->start.a, &s->start.u_dot, &s->end.a, &s->end.u_dot, &s->a0,
+                               &s->jerk,    &s->d,           &s->u,     &s->dd,        &s->du,
+                               &s->r,       &s->rate,        &s->rate1, &s->out};
+    double **const rows[] = {&s->start.lam, &s->end.lam, &s->eta, &s->dlam, &s->phi, &s->v};
+    for (size_t i = 0; i < COUNT(speeds); i++)
+        *speeds[i] = CT_NEWN(a, double, p->dae->nu + 1);
+    for (size_t i = 0; i < COUNT(rows); i++)
+        *rows[i] = CT_NEWN(a, double, p->dae->most_rows + 1);
+    s->q = CT_NEWN(a, double, p->dae->nq + 1);
+    double **const states[] = {&s->start.rate, &s->end.rate, &s->end_rate, &s->error};
+    for (size_t i = 0; i < COUNT(states); i++)
+        *states[i] = CT_NEWN(a, double, p->ny);
+    s->is_fresh = true;
+    return s;
+}
+
+void ct_alpha_restart(void *work)
+{
+    struct state *s = work;
+    s->is_fresh = true;
+    s->has_jerk = false;
+}
+
+void ct_alpha_accept(void *work)
+{
+    struct state *s = work;
+    const struct memory spare = s->start;
+    s->start = s->end;
+    s->end = spare;
+    s->is_fresh = false;
+}
+
+// ---- the start of a step --------------------------------------------------------------------------
+
+// u'' by a difference along the motion; a hundredth of a step is far from rounding and from the step's error.
+static enum ct_eval find_jerk(struct state *s, const struct ct_problem *p, double t, double h,
+                              const double *y, const double *dy, double *y1, double *dy1,
+                              struct ct_integrate_stats *stats)
+{
+    const int nu = s->dae->nu, nq = s->dae->nq;
+    const double ahead = h / 100;
+    for (int i = 0; i < p->ny; i++)
+        y1[i] = y[i] + ahead * dy[i];
+    const enum ct_eval e = ct_stepper_rhs(p, t + ahead, y1, dy1, stats);
+    for (int k = 0; k < nu && e == CT_EVAL_OK; k++)
+        s->jerk[k] = (dy1[nq + k] - dy[nq + k]) / ahead;
+    s->has_jerk = e == CT_EVAL_OK;
+    return e;
+}
+
+// a0 at the size of this step, and multipliers of the rows as they now are.
+static enum ct_eval begin(struct state *s, const struct ct_problem *p, double t, double h,
+                          const double *y, const double *dy,
+                          const struct ct_tolerance *tolerance, double *y1, double *dy1,
+                          struct ct_integrate_stats *stats)
+{
+    const struct ct_alpha *c = s->c;
+    const int nu = s->dae->nu;
+    const double *u_dot = dy + s->dae->nq;
+    enum ct_eval e = CT_EVAL_OK;
+    if (s->is_fresh && !c->starts_anew && !s->has_jerk)
+        e = find_jerk(s, p, t, h, y, dy, y1, dy1, stats);
+    const bool has_new_rows = ct_iteration_begin(s->it, tolerance, y);
+    if (e == CT_EVAL_OK && (s->is_fresh || has_new_rows))
+        e = s->dae->start(s->dae->user, t, y, s->du, s->start.lam);
+    if (e != CT_EVAL_OK)
+        return e;
+    if (s->is_fresh || c->starts_anew)
+        memcpy(s->start.u_dot, u_dot, (size_t)nu * sizeof *u_dot);
+    for (int k = 0; k < nu; k++) {
+        const double now = s->start.u_dot[k];
+        s->a0[k] = c->starts_anew ? now
+                 : s->is_fresh    ? now + (c->alpha_m - c->alpha_f) * h * s->jerk[k]
+                                  : now + h / s->start.h * (s->start.a[k] - now);
+    }
+    return CT_EVAL_OK;
+}
+
+// ---- the iteration ----------------------------------------------------------------------------------
+
+// Where the step would end with the accelerations of its start.
+static void predict(struct state *s, double h, const double *y)
+{
+    const struct ct_alpha *c = s->c;
+    const struct ct_dae *dae = s->dae;
+    const double *u0 = y + dae->nq;
+    for (int k = 0; k < dae->nu; k++) {
+        const double u_dot = s->start.u_dot[k], a0 = s->a0[k];
+        const double a = (u_dot - c->alpha_m * a0) / (1 - c->alpha_m);
+        s->end.u_dot[k] = u_dot;
+        s->end.a[k] = a;
+        s->u[k] = u0[k] + h * ((1 - c->gamma) * a0 + c->gamma * a);
+        s->d[k] = h * (u0[k] + h * ((0.5 - c->beta) * a0 + c->beta * a));
+    }
+    memcpy(s->end.lam, s->start.lam, (size_t)s->it->m * sizeof *s->end.lam);
+    dae->retract(dae->user, y, s->d, s->q);
+}
+
+static enum ct_eval correct(struct state *s, double t1, double h, const double *y,
+                            enum ct_verdict *verdict, struct ct_integrate_stats *stats)
+{
+    const struct ct_alpha *c = s->c;
+    const struct ct_dae *dae = s->dae;
+    const double by_speed = c->gamma / (c->beta * h), by_a = 1 / (c->beta * h * h);
+    const double by_u_dot = by_a * (1 - c->alpha_m) / (1 - c->alpha_f);
+    stats->evaluations++;
+    const enum ct_eval e = dae->residual(dae->user, t1, s->q, s->u, s->end.u_dot, s->end.lam,
+                                         s->r, s->phi, s->v);
+    if (e != CT_EVAL_OK)
+        return e;
+    ct_iteration_solve(s->it, s->dd, s->eta, s->dlam, s->r, s->phi, s->v);
+    memcpy(s->du, s->dd, (size_t)dae->nu * sizeof *s->du);
+    ct_iteration_push(s->it, s->du, -1, s->eta); // eta moves places alone
+    for (int k = 0; k < dae->nu; k++) {
+        s->d[k] += s->dd[k];
+        s->end.a[k] += by_a * s->du[k];
+        s->end.u_dot[k] += by_u_dot * s->du[k];
+        s->du[k] *= by_speed;
+        s->u[k] += s->du[k];
+    }
+    for (int i = 0; i < s->it->m; i++)
+        s->end.lam[i] += s->dlam[i];
+    dae->retract(dae->user, y, s->d, s->q);
+    // in the index-3 form speeds have rounding over h in them: places alone decide
+    const double *du = c->is_stabilised ? s->du : NULL;
+    *verdict = ct_iteration_judge(s->it, ct_iteration_norm(s->it, s->dd, du, 1));
+    return CT_EVAL_OK;
+}
+
+static enum ct_eval iterate(struct state *s, double t1, double h, const double *y,
+                            struct ct_integrate_stats *stats)
+{
+    const struct ct_alpha *c = s->c;
+    const double by_speed = c->gamma / (c->beta * h);
+    const double by_u_dot = (1 - c->alpha_m) / ((1 - c->alpha_f) * c->beta * h * h);
+    do {
+        enum ct_verdict verdict = CT_GO_ON;
+        predict(s, h, y);
+        enum ct_eval e
+            = ct_iteration_refresh(s->it, t1, s->q, s->u, s->end.u_dot, s->end.lam, stats);
+        if (e == CT_EVAL_OK && !ct_iteration_factor(s->it, by_speed, by_u_dot, 0, stats))
+            e = CT_EVAL_RETRY;
+        ct_iteration_start(s->it);
+        while (e == CT_EVAL_OK && verdict == CT_GO_ON)
+            e = correct(s, t1, h, y, &verdict, stats);
+        if (e == CT_EVAL_FATAL || verdict == CT_CONVERGED)
+            return e;
+    } while (ct_iteration_can_renew(s->it));
+    return CT_EVAL_RETRY;
+}
+
+// ---- a step -----------------------------------------------------------------------------------------
+
+// The leading error of places, h^2 |beta + 1/12 - gamma/2| |a1 - a0|.  (8.3)
+static double estimate(struct state *s, double h)
+{
+    const struct ct_alpha *c = s->c;
+    const double factor = h * h * fabs(c->beta + 1. / 12 - c->gamma / 2);
+    for (int k = 0; k < s->dae->nu; k++)
+        s->dd[k] = factor * (s->end.a[k] - s->a0[k]);
+    return ct_iteration_norm(s->it, s->dd, NULL, 1);
+}
+
+// The error of the trapezoidal rule for quadratures, h^2/12 times the change of the slope of their rate; the slopes are
+// those of this step and of the one before, zero where there is none.
+static double estimate_quadratures(struct state *s, const struct ct_problem *p,
+                                   const struct ct_tolerance *tolerance, double h,
+                                   const double *y, const double *dy, const double *y1,
+                                   const double *dy1)
+{
+    const int first = s->dae->nq + s->dae->nu;
+    const double ratio = s->is_fresh ? 0 : h / s->start.h;
+    for (int i = first; i < p->ny; i++)
+        s->error[i] = h / 12 * (dy1[i] - dy[i] - ratio * (dy[i] - s->start.rate[i]));
+    return ct_stepper_largest(p, tolerance, first, y, y1, s->error);
+}
+
+// y1 and dy1 from the iteration's end; quadratures by the trapezoidal rule.
+static enum ct_eval finish(struct state *s, const struct ct_problem *p, double t1, double h,
+                           const double *y, const double *dy, double *y1, double *dy1,
+                           struct ct_integrate_stats *stats)
+{
+    const int nq = s->dae->nq, nu = s->dae->nu;
+    memcpy(y1, y, (size_t)p->ny * sizeof *y);
+    memcpy(y1, s->q, (size_t)nq * sizeof *y);
+    memcpy(y1 + nq, s->u, (size_t)nu * sizeof *y);
+    enum ct_eval e = CT_EVAL_OK;
+    if (s->c->is_stabilised && p->project) // takes off what the iteration left
+        e = p->project(p->user, t1, y1);
+    if (e == CT_EVAL_OK)
+        e = ct_stepper_rhs(p, t1, y1, dy1, stats);
+    for (int i = nq + nu; i < p->ny && e == CT_EVAL_OK; i++)
+        y1[i] = y[i] + h / 2 * (dy[i] + dy1[i]);
+    return e;
+}
+
+enum ct_eval ct_alpha_step(const struct ct_problem *p, double t, double h, const double *y,
+                           const double *dy, const struct ct_tolerance *tolerance, double *y1,
+                           double *dy1, double *err, void *work,
+                           struct ct_integrate_stats *stats)
+{
+    struct state *s = work;
+    const size_t bytes = (size_t)p->ny * sizeof *y;
+    enum ct_eval e = begin(s, p, t, h, y, dy, tolerance, y1, dy1, stats);
+    if (e == CT_EVAL_OK)
+        e = iterate(s, t + h, h, y, stats);
+    if (e == CT_EVAL_OK)
+        e = finish(s, p, t + h, h, y, dy, y1, dy1, stats);
+    if (e != CT_EVAL_OK)
+        return e;
+    if (tolerance)
+        *err = fmax(estimate(s, h), estimate_quadratures(s, p, tolerance, h, y, dy, y1, dy1));
+    s->end.h = h;
+    s->dae->chart_rate(s->dae->user, s->d, s->u, s->rate1);
+    memcpy(s->rate, y + s->dae->nq, (size_t)s->dae->nu * sizeof *y);
+    memcpy(s->end.rate, dy, bytes);
+    memcpy(s->end_rate, dy1, bytes);
+    return CT_EVAL_OK;
+}
+
+// Cubic Hermite: places in the chart at the start of the step, speeds and quadratures.
+void ct_alpha_dense(const struct ct_problem *p, double h, double theta, const double *y,
+                    const double *y1, void *work, double *out)
+{
+    struct state *s = work;
+    const int nq = s->dae->nq, nu = s->dae->nu;
+    memset(s->dd, 0, (size_t)nu * sizeof *s->dd);
+    ct_stepper_hermite(s->out, theta, h, s->dd, s->rate, s->d, s->rate1, nu);
+    s->dae->retract(s->dae->user, y, s->out, out);
+    ct_stepper_hermite(out + nq, theta, h, y + nq, s->start.u_dot, y1 + nq, s->end.u_dot, nu);
+    const int i = nq + nu;
+    ct_stepper_hermite(out + i, theta, h, y + i, s->end.rate + i, y1 + i, s->end_rate + i,
+                       p->ny - i);
+}

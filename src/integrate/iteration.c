@@ -1,0 +1,271 @@
+// See iteration.h. The rules of convergence are those of Hairer and Wanner (1996), IV.8, key hairer1996.
+#include "integrate/iteration.h"
+#include "numeric/dense.h"
+
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+// Derivatives are kept while a correction is less than this part of the one before.
+static const double slow = 0.1;
+// Factors serve as long as the step is the same but for this: it costs no iteration.
+static const double same_step = 1e-3;
+// With a tolerance the iteration errs by a small part of it, smaller the tighter it is.
+static const double kappa_most = 0.03;
+// Without one, corrections are followed down to rounding of well-scaled equations, and accepted at a
+// hundred times that where they stop to shrink.
+static const struct ct_tolerance finest = {1e-12, 1e-12};
+static const double kappa_finest = 0.1, rounding_finest = 100;
+// The first corrections come from a guess and may grow; not so much, though.
+static const double hopeless = 100;
+// In the index-3 form places alone are judged, and speeds follow them divided by the step.
+static const double kappa_index3 = 0.01;
+enum { MOST = 10, MOST_FINEST = 30 };
+
+struct ct_iteration *ct_iteration_create(struct ct_arena *a, const struct ct_dae *dae,
+                                         bool is_stabilised, bool is_complex)
+{
+    struct ct_iteration *it = CT_NEW(a, struct ct_iteration);
+    const int nu = dae->nu, m = dae->most_rows, n = nu + (is_stabilised ? 2 : 1) * m;
+    it->dae = dae;
+    it->is_stabilised = is_stabilised;
+    it->nu = nu;
+    it->version = -1;
+    it->eta = 1;
+    double **const square[] = {&it->M, &it->C, &it->K};
+    for (size_t i = 0; i < COUNT(square); i++)
+        *square[i] = CT_NEWN(a, double, nu *nu + 1);
+    it->J = CT_NEWN(a, double, m *nu + 1);
+    it->D = CT_NEWN(a, double, m *nu + 1);
+    double **const large[] = {&it->S, &it->X, &it->W, &it->G};
+    for (size_t i = 0; i < COUNT(large); i++)
+        *large[i] = CT_NEWN(a, double, n *n + 1);
+    it->b = CT_NEWN(a, double, n + 1);
+    it->pivot = CT_NEWN(a, int, n + 1);
+    it->weight = CT_NEWN(a, double, 2 * nu + 1);
+    if (is_complex) {
+        it->Gc = CT_NEWN(a, double _Complex, n *n + 1);
+        it->bc = CT_NEWN(a, double _Complex, n + 1);
+        it->pivotc = CT_NEWN(a, int, n + 1);
+    }
+    return it;
+}
+
+bool ct_iteration_begin(struct ct_iteration *it, const struct ct_tolerance *tolerance,
+                        const double *y)
+{
+    const struct ct_dae *dae = it->dae;
+    const struct ct_tolerance *tol = tolerance ? tolerance : &finest;
+    for (int k = 0; k < it->nu; k++) {
+        const int i = dae->q_of[k];
+        it->weight[k] = tol->rtol * (i < 0 ? 1 : fabs(y[i])) + tol->atol;
+        it->weight[it->nu + k] = tol->rtol * fabs(y[dae->nq + k]) + tol->atol;
+    }
+    it->kappa = tolerance ? fmin(kappa_most, sqrt(tol->rtol + tol->atol)) : kappa_finest;
+    it->kappa *= it->is_stabilised ? 1 : kappa_index3;
+    it->rounding = tolerance ? kappa_most : rounding_finest;
+    it->most = tolerance ? MOST : MOST_FINEST;
+    it->is_new = false;
+    const long before = it->version;
+    it->m = dae->rows(dae->user, &it->version);
+    it->n = it->nu + (it->is_stabilised ? 2 : 1) * it->m;
+    if (it->version == before)
+        return false;
+    it->has_tangent = false;
+    return true;
+}
+
+// ---- matrices -------------------------------------------------------------------------------------
+
+// -A J' into the columns of eta, A (rows x nu) at row `first` of B (n x n).
+static void fill_eta(const struct ct_iteration *it, double *B, const double *A, int rows,
+                     int first)
+{
+    const int nu = it->nu, m = it->m, n = it->n;
+    for (int j = 0; j < m; j++) {
+        double *column = B + n * (nu + j) + first;
+        for (int k = 0; k < nu; k++) {
+            const double push = it->J[j + m * k];
+            for (int i = 0; i < rows && push != 0; i++)
+                column[i] -= A[i + rows * k] * push;
+        }
+    }
+}
+
+// A (rows x nu) at row `first` of B (n x n).
+static void fill_place(const struct ct_iteration *it, double *B, const double *A, int rows,
+                       int first)
+{
+    for (int k = 0; k < it->nu; k++)
+        memcpy(B + it->n * k + first, A + rows * k, (size_t)rows * sizeof *A);
+}
+
+static void assemble(struct ct_iteration *it)
+{
+    const int nu = it->nu, m = it->m, n = it->n;
+    const size_t bytes = (size_t)n * (size_t)n * sizeof(double);
+    memset(it->S, 0, bytes);
+    memset(it->X, 0, bytes);
+    memset(it->W, 0, bytes);
+    fill_place(it, it->S, it->M, nu, 0);
+    fill_place(it, it->S, it->J, m, nu);
+    fill_place(it, it->X, it->C, nu, 0);
+    fill_place(it, it->W, it->K, nu, 0);
+    for (int j = 0; j < m; j++) // -J' behind all others
+        for (int k = 0; k < nu; k++)
+            it->S[k + n * (n - m + j)] = -it->J[j + m * k];
+    if (!it->is_stabilised)
+        return;
+    fill_place(it, it->S, it->J, m, nu + m);
+    fill_place(it, it->W, it->D, m, nu + m);
+    fill_eta(it, it->S, it->M, nu, 0);
+    fill_eta(it, it->X, it->C, nu, 0);
+    fill_eta(it, it->S, it->J, m, nu + m);
+}
+
+enum ct_eval ct_iteration_refresh(struct ct_iteration *it, double t, const double *q,
+                                  const double *u, const double *a, const double *lam,
+                                  struct ct_integrate_stats *stats)
+{
+    if (it->has_tangent && !(it->rate > slow))
+        return CT_EVAL_OK;
+    const enum ct_eval e
+        = it->dae->tangent(it->dae->user, t, q, u, a, lam, it->M, it->C, it->K, it->J, it->D);
+    it->has_tangent = e == CT_EVAL_OK;
+    if (e != CT_EVAL_OK)
+        return e;
+    stats->jacobians++;
+    assemble(it);
+    it->is_new = true;
+    it->rate = it->c = it->e = 0;
+    return CT_EVAL_OK;
+}
+
+static bool is_near(double a, double b)
+{
+    return fabs(a - b) <= same_step * fabs(b);
+}
+
+bool ct_iteration_factor(struct ct_iteration *it, double c, double e, double _Complex s,
+                         struct ct_integrate_stats *stats)
+{
+    if (is_near(it->c, c) && is_near(it->e, e))
+        return true;
+    const int n = it->n, split = it->nu;
+    const double x = c / e, y = 1 / e, z = 1 / c;
+    for (int j = 0; j < n; j++)
+        for (int i = j * n, k = 0; k < n; i++, k++)
+            it->G[i] = it->S[i] + x * it->X[i] + (k < split ? y : z) * it->W[i];
+    it->c = it->e = 0;
+    stats->factorizations++;
+    if (!ct_lu(it->G, it->pivot, n, n))
+        return false;
+    if (s != 0) {
+        const double _Complex w = 1 / s, ww = w * w;
+        for (int j = 0; j < n; j++)
+            for (int i = j * n, k = 0; k < n; i++, k++)
+                it->Gc[i] = it->S[i] + w * it->X[i] + (k < split ? ww : w) * it->W[i];
+        stats->factorizations++;
+        if (!ct_lu_complex(it->Gc, it->pivotc, n, n))
+            return false;
+    }
+    it->c = c;
+    it->e = e;
+    return true;
+}
+
+void ct_iteration_solve(struct ct_iteration *it, double *d, double *eta, double *lam,
+                        const double *r, const double *phi, const double *v)
+{
+    const int nu = it->nu, m = it->m, n = it->n;
+    double *b = it->b;
+    for (int i = 0; i < nu; i++)
+        b[i] = -r[i] / it->e;
+    for (int i = 0; i < m; i++)
+        b[nu + i] = -phi[i];
+    for (int i = 0; i < m && it->is_stabilised; i++)
+        b[nu + m + i] = -v[i] / it->c;
+    ct_lu_solve(b, it->G, it->pivot, n, n, 1, n, false);
+    memcpy(d, b, (size_t)nu * sizeof *b);
+    for (int i = 0; i < m; i++) {
+        eta[i] = it->is_stabilised ? b[nu + i] : 0;
+        lam[i] = it->e * b[n - m + i];
+    }
+}
+
+void ct_iteration_solve_complex(struct ct_iteration *it, double _Complex s, double _Complex *d,
+                                double _Complex *eta, double _Complex *lam,
+                                const double _Complex *r, const double _Complex *phi,
+                                const double _Complex *v)
+{
+    const int nu = it->nu, m = it->m, n = it->n;
+    double _Complex *b = it->bc;
+    for (int i = 0; i < nu; i++)
+        b[i] = -r[i] / (s * s);
+    for (int i = 0; i < m; i++) {
+        b[nu + i] = -phi[i];
+        b[nu + m + i] = -v[i] / s;
+    }
+    ct_lu_complex_solve(b, it->Gc, it->pivotc, n, n, 1, n);
+    memcpy(d, b, (size_t)nu * sizeof *b);
+    for (int i = 0; i < m; i++) {
+        eta[i] = b[nu + i];
+        lam[i] = s * s * b[nu + m + i];
+    }
+}
+
+void ct_iteration_push(const struct ct_iteration *it, double *x, double c, const double *eta)
+{
+    for (int k = 0; k < it->nu; k++)
+        for (int j = 0; j < it->m; j++)
+            x[k] += c * it->J[j + it->m * k] * eta[j];
+}
+
+// ---- convergence ------------------------------------------------------------------------------------
+
+double ct_iteration_norm(const struct ct_iteration *it, const double *d, const double *u, int k)
+{
+    const double *wd = it->weight, *wu = it->weight + it->nu;
+    double sum = 0;
+    for (int s = 0, i = 0; s < k; s++)
+        for (int j = 0; j < it->nu; j++, i++) {
+            sum += (d[i] / wd[j]) * (d[i] / wd[j]);
+            if (u)
+                sum += (u[i] / wu[j]) * (u[i] / wu[j]);
+        }
+    const int n = (u ? 2 : 1) * k * it->nu;
+    return n ? sqrt(sum / n) : 0;
+}
+
+void ct_iteration_start(struct ct_iteration *it)
+{
+    it->count = 0;
+    it->rate = 0;
+    it->eta = pow(fmax(it->eta, DBL_EPSILON), 0.8); // the last step's, trusted less and less
+}
+
+enum ct_verdict ct_iteration_judge(struct ct_iteration *it, double size)
+{
+    if (!isfinite(size))
+        return CT_DIVERGED;
+    if (it->count++ > 0) {
+        const double rate = size / it->size;
+        if (rate >= 1 && size <= it->rounding)
+            return CT_CONVERGED;
+        if (rate >= hopeless || (rate >= 1 && it->count > 3))
+            return CT_DIVERGED;
+        it->rate = it->count > 2 ? sqrt(rate * it->rate) : rate; // two in turn are often uneven
+        it->eta = it->rate < 1 ? it->rate / (1 - it->rate) : INFINITY;
+    }
+    it->size = size;
+    if (size == 0 || it->eta * size <= it->kappa)
+        return CT_CONVERGED;
+    return it->count < it->most ? CT_GO_ON : CT_DIVERGED;
+}
+
+bool ct_iteration_can_renew(struct ct_iteration *it)
+{
+    it->eta = 1;
+    it->has_tangent = false;
+    return !it->is_new;
+}

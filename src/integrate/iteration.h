@@ -1,0 +1,83 @@
+// The simplified Newton iteration that implicit methods share.
+//
+// Every method here solves, for a motion d of the places, multipliers eta that keep Phi = 0 beside v = 0, and the
+// multipliers lam of the equations of motion, linear systems of one form.  (8.2), (8.4)
+//
+//     [ M + x C + y K   -(M + x C) J'   -J' ] ( d        )     ( y r   )         speeds change by c d,
+//     [ J                0               0  ] ( eta      ) = - ( phi   )         accelerations by c/x d
+//     [ J + z D         -J J'            0  ] ( y lam    )     ( z v   )         (less the part J' eta of d)
+//
+// with x = c/e, y = 1/e, z = 1/c for c = d(speed)/d(place) and e = d(acceleration)/d(place). So scaled, its condition
+// does not depend on the step. Radau's complex pair has complex c; the index-3 form has neither eta nor the last row.
+//
+// What always holds: M, C, K, J, D are those of the last `tangent`; it is called again when convergence has become
+// slow, the factors are made again when c or e have changed.
+#ifndef CT_INTEGRATE_ITERATION_H
+#define CT_INTEGRATE_ITERATION_H
+
+#include "integrate/stepper.h"
+
+enum ct_verdict { CT_GO_ON, CT_CONVERGED, CT_DIVERGED };
+
+struct ct_iteration {
+    const struct ct_dae *dae;
+    bool is_stabilised;
+    int nu, m, n;             // speeds, rows, equations
+    long version;             // of the rows
+    bool has_tangent, is_new; // `is_new`: evaluated in this step
+    double *M, *C, *K, *J, *D;
+    double *S, *X, *W; // the matrix is S + x X + (y or z) W  (n x n)
+    double c, e;       // of the factors; 0: none
+    double *G;         // (n x n), and of the complex system
+    double _Complex *Gc;
+    int *pivot, *pivotc;
+    double *b; // (n)
+    double _Complex *bc;
+    double *weight; // what changes of places and speeds are measured against  (2 nu)
+    // the run of corrections
+    int count;
+    double kappa, rounding; // a correction below: converged; below: not to be bettered
+    double size, rate, eta;
+    int most;
+};
+
+/// Room for everything, the complex parts on request.
+struct ct_iteration *ct_iteration_create(struct ct_arena *a, const struct ct_dae *dae,
+                                         bool is_stabilised, bool is_complex);
+
+/// At the begin of a step: which rows count, what is small. True if the rows are others than before, so that
+/// multipliers must be found anew. tolerance == NULL: as small as rounding allows.
+bool ct_iteration_begin(struct ct_iteration *it, const struct ct_tolerance *tolerance,
+                        const double *y);
+
+/// Derivatives at a point, where they are too old; after it come the factors.
+enum ct_eval ct_iteration_refresh(struct ct_iteration *it, double t, const double *q,
+                                  const double *u, const double *a, const double *lam,
+                                  struct ct_integrate_stats *stats);
+/// Factors for c and e, unless they are there; false if singular. s: c of the complex system, e = s^2, or 0.
+bool ct_iteration_factor(struct ct_iteration *it, double c, double e, double _Complex s,
+                         struct ct_integrate_stats *stats);
+
+/// d (nu, out), eta (m, out; zero in the index-3 form), lam (m, out) from r (nu), phi, v (m).
+void ct_iteration_solve(struct ct_iteration *it, double *d, double *eta, double *lam,
+                        const double *r, const double *phi, const double *v);
+void ct_iteration_solve_complex(struct ct_iteration *it, double _Complex s, double _Complex *d,
+                                double _Complex *eta, double _Complex *lam,
+                                const double _Complex *r, const double _Complex *phi,
+                                const double _Complex *v);
+
+/// x (nu) += c J' eta.
+void ct_iteration_push(const struct ct_iteration *it, double *x, double c, const double *eta);
+
+/// Root mean square of k places and speeds (nu x k each) over their weights; u == NULL: of places alone.
+double ct_iteration_norm(const struct ct_iteration *it, const double *d, const double *u,
+                         int k);
+
+/// Before the first correction.
+void ct_iteration_start(struct ct_iteration *it);
+/// After a correction of this size.
+enum ct_verdict ct_iteration_judge(struct ct_iteration *it, double size);
+/// After divergence: true if newer derivatives may help.
+bool ct_iteration_can_renew(struct ct_iteration *it);
+
+#endif

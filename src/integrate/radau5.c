@@ -1,0 +1,501 @@
+// Radau IIA of three stages and order 5 on the stabilised index-2 form.
+//
+//     d' = T^-1(d) u + J' eta,   r(t, q, u, u', lam) = 0,   Phi(q) = 0,   v(q, u) = 0,   q = q0 (+) d
+//
+// collocated at three points of the step; d and u are of order 5, lam of order 3. The stages are found by
+// simplified Newton: the inverse of the Runge-Kutta matrix has one real and two complex eigenvalues, which leaves one
+// real and one complex system to solve for a correction. Places are charts d at the start of the step, so that
+// quaternions stay of norm one and the order is kept. Of T^-1 the iteration matrix knows the unit matrix alone: that
+// slows convergence by about a seventh of the angle turned in a step.
+//
+// The error of a step is that of an embedded formula of order 3 with the start as a further stage, filtered by the real
+// system; eta and lam take no part. Interpolated is the collocation polynomial.
+// Source: Hairer and Wanner (1996), IV.8 and VII.4, key hairer1996; formulation 8.4.
+#include "integrate/iteration.h"
+
+#include <complex.h>
+#include <math.h>
+#include <string.h>
+
+enum { STAGES = 3 };
+
+#define SQRT3 1.7320508075688772935
+#define SQRT6 2.4494897427831780982
+#define CBRT3 1.4422495703074083823
+
+static const double C[STAGES] = {(4 - SQRT6) / 10, (4 + SQRT6) / 10, 1};
+
+static const double A[STAGES][STAGES]
+    = {{(88 - 7 * SQRT6) / 360, (296 - 169 * SQRT6) / 1800, (-2 + 3 * SQRT6) / 225},
+       {(296 + 169 * SQRT6) / 1800, (88 + 7 * SQRT6) / 360, (-2 - 3 * SQRT6) / 225},
+       {(16 - SQRT6) / 36, (16 + SQRT6) / 36, 1. / 9}};
+
+// A^-1
+static const double INVERSE[STAGES][STAGES]
+    = {{2 + SQRT6 / 2, -6. / 5 + 29 * SQRT6 / 30, 2. / 5 - 4 * SQRT6 / 15},
+       {-6. / 5 - 29 * SQRT6 / 30, 2 - SQRT6 / 2, 2. / 5 + 4 * SQRT6 / 15},
+       {-1 + 8 * SQRT6 / 3, -1 - 8 * SQRT6 / 3, 5}};
+
+// Its eigenvalues, the roots of x^3 - 9 x^2 + 36 x - 60: GAMMA and ALPHA +- i BETA.
+static const double GAMMA = 3 - CBRT3 + CBRT3 * CBRT3;
+static const double ALPHA = 3 + (CBRT3 - CBRT3 * CBRT3) / 2;
+static const double BETA = SQRT3 / 2 * (CBRT3 + CBRT3 * CBRT3);
+
+// INVERSE = T diag(GAMMA, [ALPHA -BETA; BETA ALPHA]) T^-1, as in the program of the source.
+static const double T[STAGES][STAGES]
+    = {{9.1232394870892942792e-02, -0.14125529502095420843, -3.0029194105147424492e-02},
+       {0.24171793270710701896, 0.20412935229379993199, 0.38294211275726193779},
+       {0.96604818261509293619, 1, 0}};
+static const double T_INVERSE[STAGES][STAGES]
+    = {{4.3255798900631553510, 0.33919925181580986954, 0.54177053993587487119},
+       {-4.1787185915519047273, -0.32768282076106238708, 0.47662355450055045196},
+       {-0.50287263494578687595, 2.5719269498556054292, -0.59603920482822492497}};
+
+// Weights of the stages in the error.
+static const double E[STAGES] = {-(13 + 7 * SQRT6) / 3, (-13 + 7 * SQRT6) / 3, -1. / 3};
+
+// Stages of a step, or their corrections, one stage behind the other.
+struct stages {
+    double h;
+    double *d, *u;     // motion and change of speed since the start  (nu x 3)
+    double *lam, *eta; // (rows x 3)
+};
+
+struct state {
+    const struct ct_dae *dae;
+    struct ct_iteration *it;
+    bool is_fresh, was_tried;    // there is no step before
+    struct stages before, now;   // the last accepted step, this one
+    struct stages change;        // corrections, first in the basis of eigenvectors
+    double *rate, *F, *r;        // u' (nu); residuals of d' and u'  (nu x 3)
+    double *phi, *v;             // (rows x 3)
+    double *q, *u, *u_dot, *lam; // of a stage; of the start  (lam)
+    double *d, *error;           // (nu)
+    double *none;                // zeros  (rows)
+    double *gain, *defect;       // of quadratures: over h; error over h / GAMMA  (ny)
+    double *power, *power1;      // rates of all states at both ends  (ny)
+    double _Complex *Fc, *rc, *phic, *vc, *dc, *etac, *lamc;
+};
+
+static void create_stages(struct ct_arena *a, struct stages *s, const struct ct_dae *dae)
+{
+    s->d = CT_NEWN(a, double, STAGES * dae->nu + 1);
+    s->u = CT_NEWN(a, double, STAGES * dae->nu + 1);
+    s->lam = CT_NEWN(a, double, STAGES * dae->most_rows + 1);
+    s->eta = CT_NEWN(a, double, STAGES * dae->most_rows + 1);
+}
+
+static void *create(struct ct_arena *a, const struct ct_method *method,
+                    const struct ct_problem *p)
+{
+    struct state *s = CT_NEW(a, struct state);
+    const int nu = p->dae->nu, m = p->dae->most_rows;
+    (void)method;
+    s->dae = p->dae;
+    s->it = ct_iteration_create(a, p->dae, true, true);
+    create_stages(a, &s->before, p->dae);
+    create_stages(a, &s->now, p->dae);
+    create_stages(a, &s->change, p->dae);
+    double **const stages_of_speeds[] = {&s->F, &s->r};
+    double **const stages_of_rows[] = {&s->phi, &s->v};
+    double **const speeds[] = {&s->rate, &s->u, &s->u_dot, &s->d, &s->error};
+    double **const rows[] = {&s->lam, &s->none};
+    double _Complex **const complex_speeds[] = {&s->Fc, &s->rc, &s->dc};
+    double _Complex **const complex_rows[] = {&s->phic, &s->vc, &s->etac, &s->lamc};
+    for (size_t i = 0; i < COUNT(stages_of_speeds); i++)
+        *stages_of_speeds[i] = CT_NEWN(a, double, STAGES *nu + 1);
+    for (size_t i = 0; i < COUNT(stages_of_rows); i++)
+        *stages_of_rows[i] = CT_NEWN(a, double, STAGES *m + 1);
+    for (size_t i = 0; i < COUNT(speeds); i++)
+        *speeds[i] = CT_NEWN(a, double, nu + 1);
+    for (size_t i = 0; i < COUNT(rows); i++)
+        *rows[i] = CT_NEWN(a, double, m + 1);
+    for (size_t i = 0; i < COUNT(complex_speeds); i++)
+        *complex_speeds[i] = CT_NEWN(a, double _Complex, nu + 1);
+    for (size_t i = 0; i < COUNT(complex_rows); i++)
+        *complex_rows[i] = CT_NEWN(a, double _Complex, m + 1);
+    s->q = CT_NEWN(a, double, p->dae->nq + 1);
+    s->gain = CT_NEWN(a, double, p->ny);
+    s->defect = CT_NEWN(a, double, p->ny);
+    s->power = CT_NEWN(a, double, p->ny);
+    s->power1 = CT_NEWN(a, double, p->ny);
+    s->is_fresh = true;
+    return s;
+}
+
+static void restart(void *work)
+{
+    struct state *s = work;
+    s->is_fresh = true;
+    s->was_tried = false;
+}
+
+static void accept(void *work)
+{
+    struct state *s = work;
+    const struct stages spare = s->before;
+    s->before = s->now;
+    s->now = spare;
+    s->is_fresh = s->was_tried = false;
+}
+
+// ---- the polynomial ---------------------------------------------------------------------------------
+
+// w (out): weights of the stages at x of the step; at its start the value is zero.
+static void lagrange(double *w, double x)
+{
+    for (int i = 0; i < STAGES; i++) {
+        w[i] = x / C[i];
+        for (int j = 0; j < STAGES; j++)
+            if (j != i)
+                w[i] *= (x - C[j]) / (C[i] - C[j]);
+    }
+}
+
+// out (n) = weighted stages z (n x 3).
+static void weigh(double *out, const double *w, const double *z, int n)
+{
+    for (int k = 0; k < n; k++)
+        out[k] = w[0] * z[k] + w[1] * z[k + n] + w[2] * z[k + 2 * n];
+}
+
+// First values of the stages: the last step's polynomial continued, or a straight line.
+static void predict(struct state *s, double h, const double *u0, const double *u_dot0)
+{
+    const int nu = s->dae->nu, m = s->it->m;
+    struct stages *now = &s->now;
+    now->h = h;
+    memset(now->eta, 0, (size_t)(STAGES * m) * sizeof *now->eta);
+    for (int i = 0; i < STAGES; i++) {
+        double *d = now->d + i * nu, *u = now->u + i * nu, *lam = now->lam + i * m;
+        if (s->is_fresh) {
+            for (int k = 0; k < nu; k++) {
+                d[k] = C[i] * h * u0[k];
+                u[k] = C[i] * h * u_dot0[k];
+            }
+        } else {
+            double w[STAGES];
+            const double x = 1 + C[i] * h / s->before.h;
+            lagrange(w, x);
+            w[STAGES - 1] -= 1; // less the step's end
+            weigh(d, w, s->before.d, nu);
+            weigh(u, w, s->before.u, nu);
+        }
+        memcpy(lam, s->lam, (size_t)m * sizeof *lam);
+    }
+}
+
+// ---- the iteration ----------------------------------------------------------------------------------
+
+// Place and speed of stage i.
+static void place_stage(struct state *s, const double *y, int i)
+{
+    const int nq = s->dae->nq, nu = s->dae->nu;
+    s->dae->retract(s->dae->user, y, s->now.d + i * nu, s->q);
+    for (int k = 0; k < nu; k++)
+        s->u[k] = y[nq + k] + s->now.u[k + i * nu];
+}
+
+static enum ct_eval find_residuals(struct state *s, double t, const double *y,
+                                   struct ct_integrate_stats *stats)
+{
+    const struct ct_dae *dae = s->dae;
+    const int nu = dae->nu, m = s->it->m;
+    const struct stages *z = &s->now;
+    for (int i = 0; i < STAGES; i++) {
+        double w[STAGES], *F = s->F + i * nu;
+        for (int j = 0; j < STAGES; j++)
+            w[j] = INVERSE[i][j] / z->h;
+        place_stage(s, y, i);
+        dae->chart_rate(dae->user, z->d + i * nu, s->u, s->rate);
+        weigh(F, w, z->d, nu);
+        for (int k = 0; k < nu; k++)
+            F[k] -= s->rate[k];
+        ct_iteration_push(s->it, F, -1, z->eta + i * m);
+        weigh(s->rate, w, z->u, nu);
+        stats->evaluations++;
+        const enum ct_eval e
+            = dae->residual(dae->user, t + C[i] * z->h, s->q, s->u, s->rate, z->lam + i * m,
+                            s->r + i * nu, s->phi + i * m, s->v + i * m);
+        if (e != CT_EVAL_OK)
+            return e;
+    }
+    return CT_EVAL_OK;
+}
+
+// Stages z (n x 3) into the basis of eigenvectors by T^-1, and back by T.
+static void turn_basis(double *z, const double (*turn)[STAGES], int n)
+{
+    for (int k = 0; k < n; k++) {
+        const double x[STAGES] = {z[k], z[k + n], z[k + 2 * n]};
+        for (int i = 0; i < STAGES; i++)
+            z[k + i * n] = turn[i][0] * x[0] + turn[i][1] * x[1] + turn[i][2] * x[2];
+    }
+}
+
+// With u eliminated, r += (c M + C) F and v += J F; then u changes by c d - J' c eta + F.
+static void solve_real(struct state *s)
+{
+    struct ct_iteration *it = s->it;
+    const int nu = it->nu, m = it->m;
+    const double c = it->c, *F = s->F;
+    double *d = s->change.d, *u = s->change.u, *eta = s->change.eta;
+    for (int j = 0; j < nu; j++) {
+        for (int k = 0; k < nu; k++)
+            s->r[k] += (c * it->M[k + nu * j] + it->C[k + nu * j]) * F[j];
+        for (int i = 0; i < m; i++)
+            s->v[i] += it->J[i + m * j] * F[j];
+    }
+    ct_iteration_solve(it, d, eta, s->change.lam, s->r, s->phi, s->v);
+    for (int i = 0; i < m; i++)
+        eta[i] *= c;
+    for (int k = 0; k < nu; k++)
+        u[k] = c * d[k] + F[k];
+    ct_iteration_push(it, u, -1, eta);
+}
+
+// The second and third stage as real and imaginary part, there and back.
+static void join(double _Complex *out, const double *z, int n)
+{
+    for (int k = 0; k < n; k++)
+        out[k] = z[k + n] + z[k + 2 * n] * I;
+}
+
+static void part(double *z, const double _Complex *w, int n)
+{
+    for (int k = 0; k < n; k++) {
+        z[k + n] = creal(w[k]);
+        z[k + 2 * n] = cimag(w[k]);
+    }
+}
+
+// The same as solve_real for the other two columns.
+static void solve_complex(struct state *s)
+{
+    struct ct_iteration *it = s->it;
+    const int nu = it->nu, m = it->m;
+    const double _Complex c = (ALPHA + BETA * I) / s->now.h;
+    double _Complex *F = s->Fc;
+    join(F, s->F, nu);
+    join(s->rc, s->r, nu);
+    join(s->phic, s->phi, m);
+    join(s->vc, s->v, m);
+    for (int j = 0; j < nu; j++) {
+        for (int k = 0; k < nu; k++)
+            s->rc[k] += (c * it->M[k + nu * j] + it->C[k + nu * j]) * F[j];
+        for (int i = 0; i < m; i++)
+            s->vc[i] += it->J[i + m * j] * F[j];
+    }
+    ct_iteration_solve_complex(it, c, s->dc, s->etac, s->lamc, s->rc, s->phic, s->vc);
+    for (int i = 0; i < m; i++)
+        s->etac[i] *= c;
+    for (int k = 0; k < nu; k++)
+        F[k] += c * s->dc[k];
+    for (int k = 0; k < nu; k++)
+        for (int i = 0; i < m; i++)
+            F[k] -= it->J[i + m * k] * s->etac[i];
+    part(s->change.d, s->dc, nu);
+    part(s->change.u, F, nu);
+    part(s->change.eta, s->etac, m);
+    part(s->change.lam, s->lamc, m);
+}
+
+static void add(double *z, const double *change, int n)
+{
+    for (int i = 0; i < n; i++)
+        z[i] += change[i];
+}
+
+static enum ct_eval correct(struct state *s, double t, const double *y,
+                            enum ct_verdict *verdict, struct ct_integrate_stats *stats)
+{
+    const int nu = s->it->nu, m = s->it->m;
+    const enum ct_eval e = find_residuals(s, t, y, stats);
+    if (e != CT_EVAL_OK)
+        return e;
+    turn_basis(s->F, T_INVERSE, nu);
+    turn_basis(s->r, T_INVERSE, nu);
+    turn_basis(s->phi, T_INVERSE, m);
+    turn_basis(s->v, T_INVERSE, m);
+    solve_real(s);
+    solve_complex(s);
+    turn_basis(s->change.d, T, nu);
+    turn_basis(s->change.u, T, nu);
+    turn_basis(s->change.lam, T, m);
+    turn_basis(s->change.eta, T, m);
+    add(s->now.d, s->change.d, STAGES * nu);
+    add(s->now.u, s->change.u, STAGES * nu);
+    add(s->now.lam, s->change.lam, STAGES * m);
+    add(s->now.eta, s->change.eta, STAGES * m);
+    *verdict
+        = ct_iteration_judge(s->it, ct_iteration_norm(s->it, s->change.d, s->change.u, STAGES));
+    return CT_EVAL_OK;
+}
+
+static enum ct_eval iterate(struct state *s, double t, double h, const double *y,
+                            const double *dy, struct ct_integrate_stats *stats)
+{
+    const int nq = s->dae->nq;
+    const double c = GAMMA / h;
+    do {
+        enum ct_verdict verdict = CT_GO_ON;
+        predict(s, h, y + nq, dy + nq);
+        enum ct_eval e = ct_iteration_refresh(s->it, t, y, y + nq, dy + nq, s->lam, stats);
+        if (e == CT_EVAL_OK
+            && !ct_iteration_factor(s->it, c, c * c, (ALPHA + BETA * I) / h, stats))
+            e = CT_EVAL_RETRY;
+        ct_iteration_start(s->it);
+        while (e == CT_EVAL_OK && verdict == CT_GO_ON)
+            e = correct(s, t, y, &verdict, stats);
+        if (e == CT_EVAL_FATAL || verdict == CT_CONVERGED)
+            return e;
+    } while (ct_iteration_can_renew(s->it));
+    return CT_EVAL_RETRY;
+}
+
+// ---- a step -----------------------------------------------------------------------------------------
+
+// The filtered error of the embedded formula at the start y, whose rates are u and u_dot.
+static double filter(struct state *s, const double *u, const double *u_dot)
+{
+    struct ct_iteration *it = s->it;
+    const int nu = it->nu, m = it->m;
+    const struct stages *z = &s->now;
+    const double w[STAGES] = {E[0] / z->h, E[1] / z->h, E[2] / z->h};
+    double *F = s->F, *defect = s->rate;
+    weigh(F, w, z->d, nu);
+    weigh(defect, w, z->u, nu);
+    for (int k = 0; k < nu; k++) { // as residuals: the error is the correction they lead to
+        F[k] = -(F[k] + u[k]);
+        defect[k] = -(defect[k] + u_dot[k]);
+    }
+    memset(s->r, 0, (size_t)nu * sizeof *s->r);
+    for (int j = 0; j < nu; j++)
+        for (int k = 0; k < nu; k++)
+            s->r[k] += it->M[k + nu * j] * defect[j];
+    memset(s->phi, 0, (size_t)m * sizeof *s->phi);
+    memset(s->v, 0, (size_t)m * sizeof *s->v);
+    solve_real(s);
+    return ct_iteration_norm(it, s->change.d, s->change.u, 1);
+}
+
+// Error of the step. Where it is too large at first, on a first step or after a refusal, it is filtered once more, which
+// takes off what stiff components that start off their slow motion add to it.
+static enum ct_eval estimate(struct state *s, const struct ct_problem *p, double t,
+                             const double *y, const double *dy, double *y1, double *dy1,
+                             double *err, struct ct_integrate_stats *stats)
+{
+    const int nq = s->dae->nq, nu = s->dae->nu;
+    *err = filter(s, y + nq, dy + nq);
+    if (*err < 1 || !(s->is_fresh || s->was_tried))
+        return CT_EVAL_OK;
+    memcpy(y1, y, (size_t)p->ny * sizeof *y);
+    s->dae->retract(s->dae->user, y, s->change.d, y1);
+    for (int k = 0; k < nu; k++)
+        y1[nq + k] += s->change.u[k];
+    const enum ct_eval e = ct_stepper_rhs(p, t, y1, dy1, stats);
+    if (e == CT_EVAL_OK)
+        *err = filter(s, y1 + nq, dy1 + nq);
+    return e;
+}
+
+// y1 and dy1 from the last stage; quadratures and their errors from their rates at the stages.
+static enum ct_eval finish(struct state *s, const struct ct_problem *p, double t, double h,
+                           const double *y, const double *dy, double *y1, double *dy1,
+                           struct ct_integrate_stats *stats)
+{
+    const int nq = s->dae->nq, nu = s->dae->nu, first = nq + nu;
+    enum ct_eval e = CT_EVAL_OK;
+    memcpy(y1, y, (size_t)p->ny * sizeof *y);
+    memset(s->gain, 0, (size_t)p->ny * sizeof *s->gain);
+    memcpy(s->defect, dy, (size_t)p->ny * sizeof *s->defect);
+    for (int i = first < p->ny ? 0 : STAGES - 1; i < STAGES && e == CT_EVAL_OK; i++) {
+        place_stage(s, y, i);
+        memcpy(y1, s->q, (size_t)nq * sizeof *y);
+        memcpy(y1 + nq, s->u, (size_t)nu * sizeof *y);
+        if (i == STAGES - 1 && p->project) // takes off what the iteration left
+            e = p->project(p->user, t + h, y1);
+        if (e == CT_EVAL_OK)
+            e = ct_stepper_rhs(p, t + C[i] * h, y1, dy1, stats);
+        for (int k = first; k < p->ny && e == CT_EVAL_OK; k++) {
+            s->gain[k] += A[STAGES - 1][i] * dy1[k];
+            s->defect[k] += (E[0] * A[0][i] + E[1] * A[1][i] + E[2] * A[2][i]) * dy1[k];
+        }
+    }
+    for (int k = first; k < p->ny; k++) {
+        y1[k] += h * s->gain[k];
+        s->defect[k] *= h / GAMMA;
+    }
+    return e;
+}
+
+// The error estimate is that of order 3, but the step is better: a tolerance tol of the step is one of 0.1 tol^(2/3)
+// of the estimate, as in the program of the source.
+static struct ct_tolerance ease(const struct ct_tolerance *tolerance)
+{
+    const double tol = tolerance->rtol > 0 ? tolerance->rtol : tolerance->atol;
+    const double factor = fmax(1, 0.1 / cbrt(tol));
+    return (struct ct_tolerance){factor * tolerance->rtol, factor * tolerance->atol};
+}
+
+static enum ct_eval step(const struct ct_problem *p, double t, double h, const double *y,
+                         const double *dy, const struct ct_tolerance *tolerance, double *y1,
+                         double *dy1, double *err, void *work, struct ct_integrate_stats *stats)
+{
+    struct state *s = work;
+    const struct ct_tolerance eased = tolerance ? ease(tolerance) : (struct ct_tolerance){0};
+    const size_t bytes = (size_t)p->ny * sizeof *y;
+    ct_iteration_begin(s->it, tolerance ? &eased : NULL, y);
+    enum ct_eval e = s->dae->start(s->dae->user, t, y, s->u_dot, s->lam);
+    if (e == CT_EVAL_OK)
+        e = iterate(s, t, h, y, dy, stats);
+    if (e == CT_EVAL_OK && tolerance)
+        e = estimate(s, p, t, y, dy, y1, dy1, err, stats);
+    if (e == CT_EVAL_OK)
+        e = finish(s, p, t, h, y, dy, y1, dy1, stats);
+    s->was_tried = true;
+    if (e != CT_EVAL_OK)
+        return e;
+    if (tolerance)
+        *err = fmax(*err,
+                    ct_stepper_largest(p, &eased, s->dae->nq + s->dae->nu, y, y1, s->defect));
+    memcpy(s->power, dy, bytes);
+    memcpy(s->power1, dy1, bytes);
+    return CT_EVAL_OK;
+}
+
+// The collocation polynomial; cubic Hermite for quadratures.
+static void dense(const struct ct_problem *p, double h, double theta, const double *y,
+                  const double *y1, void *work, double *out)
+{
+    struct state *s = work;
+    const int nq = s->dae->nq, nu = s->dae->nu;
+    double w[STAGES];
+    lagrange(w, theta);
+    weigh(s->d, w, s->now.d, nu);
+    s->dae->retract(s->dae->user, y, s->d, out);
+    weigh(s->d, w, s->now.u, nu);
+    for (int k = 0; k < nu; k++)
+        out[nq + k] = y[nq + k] + s->d[k];
+    const int i = nq + nu;
+    ct_stepper_hermite(out + i, theta, h, y + i, s->power + i, y1 + i, s->power1 + i,
+                       p->ny - i);
+}
+
+const struct ct_method ct_method_radau5 = {
+    .name = "radau5",
+    .summary
+    = "Radau IIA of order 5 on the stabilised index-2 form, for stiffness at high accuracy",
+    .source = "hairer1996",
+    .order = 5,
+    .error_order = 3,
+    .gap = 0.4, // 0.155 to 0.645
+    .is_implicit = true,
+    .steady = {1, 1.2},
+    .most_growth = 8,
+    .create = create,
+    .restart = restart,
+    .accept = accept,
+    .step = step,
+    .dense = dense,
+};

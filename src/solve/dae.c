@@ -1,0 +1,136 @@
+// See dae.h.
+#include "solve/dae.h"
+
+#include <math.h>
+#include <string.h>
+
+static int rows(void *user, long *version)
+{
+    const struct ct_embed *s = user;
+    *version = s->switches;
+    return s->rank;
+}
+
+static void retract(void *user, const double *q, const double *d, double *q1)
+{
+    const struct ct_embed *s = user;
+    memcpy(q1, q, s->m->nq * sizeof *q);
+    ct_machine_retract(s->m, q1, d);
+}
+
+static void chart_rate(void *user, const double *d, const double *w, double *rate)
+{
+    const struct ct_embed *s = user;
+    ct_machine_chart_rate(s->m, d, w, rate);
+}
+
+static enum ct_eval start(void *user, double t, const double *y, double *a, double *lam)
+{
+    struct ct_embed *s = user;
+    ct_machine_set(s->m, t, y);
+    ct_machine_motion(s->m);
+    const enum ct_eval e = ct_embed_accelerate(s);
+    if (e != CT_EVAL_OK)
+        return e;
+    memcpy(a, s->a, s->m->nu * sizeof *a);
+    ct_embed_kept_multipliers(s, lam);
+    return CT_EVAL_OK;
+}
+
+static void set_input(const struct ct_embed *s, double t, const double *q, const double *u,
+                      const double *a, const double *lam)
+{
+    const struct ct_machine *m = s->m;
+    double *input = m->input;
+    input[0] = t;
+    memcpy(input + m->at_q, q, m->nq * sizeof *q);
+    memcpy(input + m->at_u, u, m->nu * sizeof *u);
+    memcpy(input + m->at_a, a, m->nu * sizeof *a);
+    memset(input + m->at_lam, 0, m->nrow * sizeof *lam);
+    for (int i = 0; i < s->rank; i++)
+        input[m->at_lam + (size_t)s->row[i]] = lam[i];
+}
+
+static enum ct_eval residual(void *user, double t, const double *q, const double *u,
+                             const double *a, const double *lam, double *r, double *phi,
+                             double *v)
+{
+    struct ct_embed *s = user;
+    const double *out = s->m->residual.out;
+    const size_t nu = s->m->nu, nrow = s->m->nrow;
+    set_input(s, t, q, u, a, lam);
+    ct_program_run(&s->m->residual, s->m->input);
+    for (size_t i = 0; i < s->m->residual.nout; i++)
+        if (!isfinite(out[i]))
+            return CT_EVAL_RETRY;
+    memcpy(r, out, nu * sizeof *r);
+    for (int i = 0; i < s->rank; i++) {
+        phi[i] = out[nu + (size_t)s->row[i]];
+        v[i] = out[nu + nrow + (size_t)s->row[i]];
+    }
+    return CT_EVAL_OK;
+}
+
+// A (n x nu, out) from its entries; place[row] is the row's place in A, or -1. Returns what follows the values.
+static const double *scatter(double *A, int n, size_t nu, const struct ct_slope *s, size_t ns,
+                             const double *value, const int *place)
+{
+    memset(A, 0, (size_t)n * nu * sizeof *A);
+    for (size_t i = 0; i < ns; i++) {
+        const int row = place ? place[s[i].row] : (int)s[i].row;
+        if (row >= 0)
+            A[row + n * (int)s[i].direction] = value[i];
+    }
+    return value + ns;
+}
+
+static enum ct_eval tangent(void *user, double t, const double *q, const double *u,
+                            const double *a, const double *lam, double *M, double *C, double *K,
+                            double *J, double *D)
+{
+    struct ct_embed *s = user;
+    const struct ct_equations *e = s->m->e;
+    const struct ct_residual *f = e->residual;
+    const double *value = s->m->tangent.out;
+    const int nu = (int)e->nu;
+    int *place = s->iwork;
+    for (size_t i = 0; i < e->nrow; i++)
+        place[i] = -1;
+    for (int i = 0; i < s->rank; i++)
+        place[s->row[i]] = i;
+    set_input(s, t, q, u, a, lam);
+    ct_program_run(&s->m->tangent, s->m->input);
+    for (size_t i = 0; i < s->m->tangent.nout; i++)
+        if (!isfinite(value[i]))
+            return CT_EVAL_RETRY;
+    value = scatter(K, nu, e->nu, f->dq, f->ndq, value, NULL);
+    value = scatter(C, nu, e->nu, f->du, f->ndu, value, NULL);
+    value = scatter(M, nu, e->nu, f->da, f->nda, value, NULL);
+    value = scatter(D, s->rank, e->nu, f->dv, f->ndv, value, place);
+    memset(J, 0, (size_t)s->rank * e->nu * sizeof *J);
+    for (size_t i = 0; i < e->nJ; i++)
+        if (place[e->J[i].row] >= 0)
+            J[place[e->J[i].row] + s->rank * e->J[i].column] = value[i];
+    return CT_EVAL_OK;
+}
+
+struct ct_dae *ct_dae_create(struct ct_arena *a, struct ct_embed *s)
+{
+    const struct ct_equations *e = s->m->e;
+    struct ct_dae *dae = CT_NEW(a, struct ct_dae);
+    int *q_of = CT_NEWN(a, int, e->nu + 1);
+    for (size_t k = 0; k < e->nu; k++)
+        q_of[k] = e->u[k].q;
+    *dae = (struct ct_dae){.user = s,
+                           .nq = (int)e->nq,
+                           .nu = (int)e->nu,
+                           .most_rows = (int)e->nrow,
+                           .q_of = q_of,
+                           .rows = rows,
+                           .retract = retract,
+                           .chart_rate = chart_rate,
+                           .start = start,
+                           .residual = residual,
+                           .tangent = tangent};
+    return dae;
+}

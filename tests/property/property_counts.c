@@ -1,0 +1,236 @@
+// Sizes and operation counts of the equations against the table of formulation 10: n_u, m, multiplications and
+// additions of M (lower), Q, J and gam, functions, entries of M. Lengths, masses and inertias are parameters.
+#include "expr/tape.h"
+#include "tests/property/system.h"
+
+struct row {
+    const char *T, *R; // branches, blank-separated
+    size_t nu, nrow;
+    long multiplications, additions, functions;
+    size_t nM;
+};
+
+static struct ct_tape_counts count(struct variant *v)
+{
+    const struct ct_equations *e = &v->e;
+    ct_ex *all = CT_NEWN(v->arena, ct_ex, e->nM + e->nu + e->nJ + e->nrow + 1);
+    size_t n = 0;
+    for (size_t i = 0; i < e->nM; i++)
+        all[n++] = e->M[i].value;
+    for (size_t i = 0; i < e->nu; i++)
+        all[n++] = e->Q[i];
+    for (size_t i = 0; i < e->nJ; i++)
+        all[n++] = e->J[i].value;
+    for (size_t i = 0; i < e->nrow; i++)
+        all[n++] = e->row[i].gam;
+    return ct_ex_count(v->arena, e->x, all, n);
+}
+
+static size_t split(struct ct_arena *a, const char *text, const char **word)
+{
+    size_t n = 0;
+    for (const char *p = text; *p; p += strspn(p, " ")) {
+        const size_t length = strcspn(p, " ");
+        word[n++] = ct_arena_strndup(a, p, length);
+        p += length;
+    }
+    return n;
+}
+
+static bool count_is_kept(struct system *s, const struct row *r)
+{
+    const char *T[64], *R[64];
+    const struct ct_formulate_options o = {.tree = CT_TREE_GIVEN,
+                                           .trans = T,
+                                           .ntrans = split(s->ctx.model, r->T, T),
+                                           .rot = R,
+                                           .nrot = split(s->ctx.model, r->R, R)};
+    struct variant v;
+    variant_open(s, &o, &v);
+    const struct ct_tape_counts c = count(&v);
+    print_message("%-40.40s | %zu %zu | %ld/%ld/%ld of %ld/%ld/%ld | %zu of %zu\n", r->T,
+                  v.e.nu, v.e.nrow, c.multiplications, c.additions, c.functions,
+                  r->multiplications, r->additions, r->functions, v.e.nM, r->nM);
+    const bool ok = v.e.nu == r->nu && v.e.nrow == r->nrow && v.e.nM <= r->nM
+                 && c.multiplications + c.divisions <= r->multiplications
+                 && c.additions <= r->additions && c.functions <= r->functions;
+    if (!ok)
+        print_error("%s: more than the table says: T = %s, R = %s\n", s->name, r->T, r->R);
+    variant_close(&v);
+    return ok;
+}
+
+static void counts_are_kept(struct system *s, const struct row *row, size_t n)
+{
+    bool ok = true;
+    for (size_t i = 0; i < n; i++)
+        ok &= count_is_kept(s, &row[i]);
+    system_close(s);
+    assert_true(ok);
+}
+
+static void slider_crank_needs_no_more_than_the_table_says(void **state)
+{
+    (void)state;
+    static const char text[]
+        = "cotree: 1\ngravity: [0, -g, 0]\n"
+          "parameters: {g: 9.81, r: 0.2, l: 0.4, c1: 0.1, c2: 0.2, m1: 1, m2: 2, m3: 3, J1: "
+          "0.1, J2: 0.2}\n"
+          "bodies:\n"
+          "  m1: {mass: m1, inertia: J1, com: [c1, 0, 0], points: {end: [r, 0, 0]}}\n"
+          "  m2: {mass: m2, inertia: J2, com: [c2, 0, 0], points: {end: [l, 0, 0]}}\n"
+          "  m3: {mass: m3}\n"
+          "joints:\n"
+          "  h1: {type: revolute, from: ground, to: m1, initial: {q: 0.8}}\n"
+          "  h2: {type: revolute, from: m1.end, to: m2, initial: {q: -1.1, guess: true}}\n"
+          "  h3: {type: revolute, from: m2.end, to: m3, initial: {q: 0.3, guess: true}}\n"
+          "  s4: {type: prismatic, from: ground, to: m3, initial: {q: 0.5, guess: true}}\n";
+    static const struct row row[] = {
+        {"m1 m2 m3", "m1 m2 m3", 9, 8, 24, 2, 4, 9},
+        {"h1 h2 s4", "h1 h2 s4", 3, 2, 48, 31, 4, 4},
+        {"h1 h2 h3", "h1 h2 h3", 3, 2, 64, 45, 4, 6},
+        {"h1 h2 h3", "h1 h2 s4", 2, 1, 64, 42, 4, 3},
+        {"h1 h2 h3", "m1 m2 s4", 2, 1, 64, 34, 4, 3},
+        {"h1 h3 s4", "m1 m2 s4", 3, 2, 40, 18, 4, 4},
+    };
+    struct system s;
+    system_open_text(&s, "slider-crank", text);
+    counts_are_kept(&s, row, COUNT(row));
+}
+
+static void four_bar_needs_no_more_than_the_table_says(void **state)
+{
+    (void)state;
+    static const char text[]
+        = "cotree: 1\ngravity: [0, -g, 0]\n"
+          "parameters: {g: 9.81, a: 0.2, b: 0.5, c: 0.4, d: 0.5, c1: 0.1, c2: 0.2, c3: 0.3, "
+          "m1: 1, m2: 2, m3: 3, "
+          "J1: 0.1, J2: 0.2, J3: 0.3}\n"
+          "bodies:\n"
+          "  ground: {points: {far: [d, 0, 0]}}\n"
+          "  m1: {mass: m1, inertia: J1, com: [c1, 0, 0], points: {end: [a, 0, 0]}}\n"
+          "  m2: {mass: m2, inertia: J2, com: [c2, 0, 0], points: {end: [b, 0, 0]}}\n"
+          "  m3: {mass: m3, inertia: J3, com: [c3, 0, 0], points: {end: [c, 0, 0]}}\n"
+          "joints:\n"
+          "  h1: {type: revolute, from: ground, to: m1, initial: {q: pi/2}}\n"
+          "  h2: {type: revolute, from: m1.end, to: m2, initial: {q: -1.2, guess: true}}\n"
+          "  h3: {type: revolute, from: m2.end, to: m3.end, initial: {q: 1.2, guess: true}}\n"
+          "  h4: {type: revolute, from: ground.far, to: m3, initial: {q: 1.6, guess: true}}\n";
+    static const struct row row[] = {
+        {"m1 m2 m3", "m1 m2 m3", 9, 8, 36, 4, 6, 9},
+        {"h1 h2 h3", "h1 h2 h3", 3, 2, 86, 68, 6, 6},
+        {"h1 h2 h3", "m1 m2 m3", 3, 2, 86, 45, 6, 6},
+        {"h1 h2 h4", "m1 m2 m3", 3, 2, 68, 33, 6, 4},
+        {"h1 h3 h4", "m1 m2 m3", 3, 2, 68, 33, 6, 4},
+    };
+    struct system s;
+    system_open_text(&s, "four-bar", text);
+    counts_are_kept(&s, row, COUNT(row));
+}
+
+static void andrews_mechanism_needs_no_more_than_the_table_says(void **state)
+{
+    (void)state;
+    static const struct row row[] = {
+        {"beta theta gamma delta phi epsilon omega", "beta theta gamma delta phi epsilon omega",
+         7, 6, 181, 135, 15, 10},
+        {"beta theta gamma delta phi epsilon omega", "K1 K2 K3 K4 K5 K6 K7", 7, 6, 181, 111, 15,
+         10},
+        {"K1 K2 K3 K4 K5 K6 K7", "K1 K2 K3 K4 K5 K6 K7", 21, 20, 101, 36, 15, 21},
+    };
+    struct system s;
+    system_open_file(&s, "systems/andrews/model.yaml");
+    counts_are_kept(&s, row, COUNT(row));
+}
+
+static void stewart_platform_needs_no_more_than_the_table_says(void **state)
+{
+    (void)state;
+    static const struct row row[] = {
+        {"u1 u2 u3 u4 u5 u6 p1 p2 p3 p4 p5 p6 s1", "u1 u2 u3 u4 u5 u6 p1 p2 p3 p4 p5 p6 s1", 21,
+         15, 1885, 1201, 24, 51},
+        {"u1 u2 u3 u4 u5 u6 s1 s2 s3 s4 s5 s6 p1", "u1 u2 u3 u4 u5 u6 p1 p2 p3 p4 p5 p6 s1", 16,
+         10, 2575, 1777, 24, 96},
+        {"u1 u2 u3 u4 u5 u6 s1 s2 s3 s4 s5 s6 plate",
+         "u1 u2 u3 u4 u5 u6 p1 p2 p3 p4 p5 p6 plate", 18, 12, 2010, 1306, 24, 102},
+        {"u1 u2 u3 u4 u5 u6 p1 p2 p3 p4 p5 p6 plate",
+         "u1 u2 u3 u4 u5 u6 p1 p2 p3 p4 p5 p6 plate", 24, 18, 1644, 933, 24, 45},
+        {"low1 low2 low3 low4 low5 low6 up1 up2 up3 up4 up5 up6 plate",
+         "low1 low2 low3 low4 low5 low6 up1 up2 up3 up4 up5 up6 plate", 78, 72, 3402, 2355, 0,
+         117},
+    };
+    struct system s;
+    struct ct_arena *a = ct_arena_create();
+    const char *points = "", *plate = "", *bodies = "", *joints = "";
+    for (int i = 0; i < 6; i++) {
+        const double base = 0.17 + 1.0472 * (i + i % 2), top = 0.87 + 1.0472 * (i - i % 2);
+        points = text_of(a, "%s b%d: [%.6g, %.6g, 0],", points, i + 1, 0.5 * cos(base),
+                         0.5 * sin(base));
+        plate = text_of(a, "%s p%d: [%.6g, %.6g, 0],", plate, i + 1, 0.3 * cos(top),
+                        0.3 * sin(top));
+        bodies = text_of(a,
+                         "%s  low%d: {mass: m1, inertia: [J1, J1, K1], com: [0, 0, c1]}\n"
+                         "  up%d: {mass: m2, inertia: [J2, J2, K2], com: [0, 0, c2]}\n",
+                         bodies, i + 1, i + 1);
+        joints = text_of(a,
+                         "%s  u%d: {type: universal, from: ground.b%d, to: low%d}\n"
+                         "  p%d: {type: prismatic, from: low%d, to: up%d, axis: z, initial: "
+                         "{q: 0.8, guess: true}}\n"
+                         "  s%d: {type: spherical, from: up%d, to: plate.p%d}\n",
+                         joints, i + 1, i + 1, i + 1, i + 1, i + 1, i + 1, i + 1, i + 1, i + 1);
+    }
+    system_open_text(&s, "Stewart platform",
+                     text_of(a,
+                             "cotree: 1\ngravity: [0, 0, -g]\n"
+                             "parameters: {g: 9.81, m: 20, J: 0.5, K: 0.95, c: 0.02, m1: 1.6, "
+                             "J1: 0.03, K1: 8e-4, "
+                             "c1: 0.2, m2: 0.8, J2: 0.014, K2: 3e-4, c2: -0.2}\n"
+                             "bodies:\n  ground: {points: {%s}}\n"
+                             "  plate: {mass: m, inertia: [J, J, K], com: [0, 0, c], points: "
+                             "{%s}}\n%sjoints:\n%s",
+                             points, plate, bodies, joints));
+    counts_are_kept(&s, row, COUNT(row));
+    ct_arena_destroy(a);
+}
+
+// ---- choices ------------------------------------------------------------------------------------------------
+
+static void chosen_trees_give_few_coordinates(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *file;
+        size_t least, most;
+    } wanted[] = {{"systems/andrews/model.yaml", 7, 7},
+                  {"systems/slider_crank/model.yaml", 2, 3},
+                  {"systems/four_bar/model.yaml", 3, 3},
+                  {"systems/spatial_slider_crank/model.yaml", 2, 5},
+                  {"systems/stewart/model.yaml", 16, 24},
+                  {"systems/pendulum/model.yaml", 1, 1},
+                  {"systems/tumbling_body/model.yaml", 6, 6},
+                  {"systems/chain40/model.yaml", 40, 40}};
+    for (size_t i = 0; i < COUNT(wanted); i++) {
+        struct system s;
+        struct variant v;
+        system_open_file(&s, wanted[i].file);
+        system_no_outputs(&s);
+        variant_open(&s, &by_choice, &v);
+        print_message("%s: %zu, %s\n", wanted[i].file, v.e.nu, v.report.how);
+        assert_in_range(v.e.nu, wanted[i].least, wanted[i].most);
+        assert_true(v.report.cost <= v.report.cost_least_weight);
+        variant_close(&v);
+        system_close(&s);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(slider_crank_needs_no_more_than_the_table_says),
+        cmocka_unit_test(four_bar_needs_no_more_than_the_table_says),
+        cmocka_unit_test(andrews_mechanism_needs_no_more_than_the_table_says),
+        cmocka_unit_test(stewart_platform_needs_no_more_than_the_table_says),
+        cmocka_unit_test(chosen_trees_give_few_coordinates),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,104 @@
+// Sparse Jacobians against one derivative at a time: the same expressions, none missing, in order.
+#include "random_ex.h"
+#include "tests/check.h"
+
+enum { NSYM = 6, NNODE = 120, NF = 9 };
+
+struct fixture {
+    struct ct_arena *a, *scratch;
+    struct ct_exs x;
+    ct_ex sym[NSYM];
+};
+
+static void begin(struct fixture *f)
+{
+    f->a = ct_arena_create();
+    f->scratch = ct_arena_create();
+    ct_exs_init(&f->x, f->a);
+    for (int i = 0; i < NSYM; i++)
+        f->sym[i] = ct_ex_sym(&f->x, CT_SYM_Q, "q", (uint32_t)i);
+}
+
+static void end(struct fixture *f)
+{
+    ct_arena_destroy(f->a);
+    ct_arena_destroy(f->scratch);
+}
+
+// Every operator, shared nodes: entry by entry the expression that ct_ex_diff gives, zeros left out.
+static void entries_are_single_derivatives(void **unused)
+{
+    (void)unused;
+    struct random r = random_start("jacobian");
+    for (int trial = 0; trial < 100; trial++) {
+        struct fixture f;
+        begin(&f);
+        ct_ex node[NSYM + NNODE], out[NF];
+        for (int i = 0; i < NSYM; i++)
+            node[i] = f.sym[i];
+        for (size_t i = NSYM; i < NSYM + NNODE; i++)
+            node[i] = random_node(&r, &f.x, node, i);
+        for (int i = 0; i < NF; i++)
+            out[i] = node[random_below(&r, NSYM + NNODE)];
+        struct ct_seed seed[NSYM];
+        for (int i = 0; i < NSYM; i++) // in any order
+            seed[i]
+                = (struct ct_seed){f.sym[NSYM - 1 - i], (uint32_t)(NSYM - 1 - i), CT_EX_ONE};
+        struct ct_slope *s;
+        const size_t n = ct_ex_jacobian(&f.x, f.scratch, f.a, out, NF, seed, NSYM, &s);
+        const double value[NSYM] = {0.3, -0.7, 1.1, 0.9, -1.3, 0.5};
+        size_t next = 0;
+        for (uint32_t row = 0; row < NF; row++)
+            for (uint32_t k = 0; k < NSYM; k++) {
+                const ct_ex want = ct_ex_diff(&f.x, out[row], f.sym[k]);
+                if (ct_ex_is_zero(want))
+                    continue;
+                if (next == n || s[next].row != row || s[next].direction != k) {
+                    // a quotient 0/0 that does not depend on the symbol is left out here
+                    assert_true(isnan(ct_ex_value(&f.x, want, value)));
+                    continue;
+                }
+                assert_int_equal(s[next].value.id, want.id);
+                next++;
+            }
+        assert_int_equal(next, n);
+        end(&f);
+    }
+}
+
+// A symbol that moves in several directions, and a direction in which several move.
+static void seeds_form_directions(void **unused)
+{
+    (void)unused;
+    struct fixture f;
+    begin(&f);
+    struct ct_exs *x = &f.x;
+    const ct_ex p = f.sym[0], q = f.sym[1], f0 = ct_ex_mul(x, p, q),
+                f1 = ct_ex_fun(x, CT_OP_SIN, q);
+    const ct_ex out[] = {f0, f1, f.sym[2]};
+    const struct ct_seed seed[] = {{p, 7, q}, {q, 7, ct_ex_neg(x, p)}, {q, 3, CT_EX_ONE}};
+    struct ct_slope *s;
+    // f0 by 3: p; by 7: q q - p p; f1 by 3: cos q; by 7: -p cos q; the last depends on neither
+    const ct_ex c = ct_ex_fun(x, CT_OP_COS, q);
+    const struct ct_slope want[]
+        = {{0, 3, p},
+           {0, 7, ct_ex_sub(x, ct_ex_mul(x, q, q), ct_ex_mul(x, p, p))},
+           {1, 3, c},
+           {1, 7, ct_ex_neg(x, ct_ex_mul(x, p, c))}};
+    assert_int_equal(ct_ex_jacobian(x, f.scratch, f.a, out, 3, seed, 3, &s), COUNT(want));
+    for (size_t i = 0; i < COUNT(want); i++) {
+        assert_int_equal(s[i].row, want[i].row);
+        assert_int_equal(s[i].direction, want[i].direction);
+        assert_int_equal(s[i].value.id, want[i].value.id);
+    }
+    end(&f);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(entries_are_single_derivatives),
+        cmocka_unit_test(seeds_form_directions),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
