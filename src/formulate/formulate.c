@@ -136,15 +136,14 @@ struct search {
     struct ct_ctx *ctx;
     const struct ct_model *model;
     const struct ct_formulate_options *options;
+    struct ct_arena *owner; // of trial generations
 };
 
 // The exact count of a trial generation; nothing of it is kept.
 static double pair_cost(void *data, const struct ct_tree *T, const struct ct_tree *R)
 {
     const struct search *s = data;
-    struct ct_arena *scratch = ct_arena_create();
-    if (!scratch)
-        return INFINITY;
+    struct ct_arena *scratch = ct_arena_create_under(s->owner);
     struct ct_ctx quiet
         = {.model = scratch, .scratch = scratch}; // errors are reported by the chosen pair
     struct ct_build *b = build_create(&quiet, scratch, s->model, s->options);
@@ -449,7 +448,7 @@ bool ct_formulate(struct ct_ctx *ctx, struct ct_arena *a, const struct ct_model 
                   struct ct_tree_report *report)
 {
     struct ct_build *b = build_create(ctx, a, m, options);
-    struct search s = {ctx, m, options};
+    struct search s = {ctx, m, options, a};
     *report = (struct ct_tree_report){0};
     if (!choose_trees(b, &s, report) || !derive(b))
         return false;

@@ -15,6 +15,7 @@ say simulate "$m" --quiet=yes
 say simulate "$m" --backend tap
 say simulate "$m" --method dopri6
 say simulate "$m" --method euler
+say simulate "$m" --method radau
 say simulate "$m" --tree jonts
 say graph "$m" --format png
 say graph "$m" --show tree
