@@ -14,11 +14,8 @@ say simulate "$m" --samples 2.5
 say simulate "$m" --quiet=yes
 say simulate "$m" --backend tap
 say simulate "$m" --method dopri6
-<<<<<<< HEAD
 say simulate "$m" --method euler
-=======
 say simulate "$m" --method radau
->>>>>>> main
 say simulate "$m" --tree jonts
 say graph "$m" --format png
 say graph "$m" --show tree
