@@ -34,8 +34,9 @@ enum cli_use {
     CLI_COMPONENTS = 16,
     CLI_METHODS = 32,
     CLI_SCHEMA = 64,
+    CLI_EXPORT = 128,
     CLI_LISTS = CLI_COMPONENTS | CLI_METHODS | CLI_SCHEMA,
-    CLI_MODELS = CLI_SIMULATE | CLI_EQUATIONS | CLI_GRAPH | CLI_CHECK
+    CLI_MODELS = CLI_SIMULATE | CLI_EQUATIONS | CLI_GRAPH | CLI_CHECK | CLI_EXPORT
 };
 
 struct cli_command {
@@ -47,7 +48,7 @@ struct cli_command {
     int (*run)(struct ct_ctx *ctx, const struct cli_args *args);
 };
 
-extern const struct cli_command cli_simulate, cli_equations, cli_graph, cli_check,
+extern const struct cli_command cli_simulate, cli_equations, cli_graph, cli_check, cli_export,
     cli_components, cli_methods, cli_schema;
 /// All commands in the order of --help; NULL at the end.
 extern const struct cli_command *const cli_commands[];
