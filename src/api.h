@@ -40,7 +40,9 @@ struct ct_sim {
     const struct ct_sim_results *results;
     struct ct_result_file *file; // sim.c
     struct ct_progress *progress;
-    bool has_run, is_done;
+    long nstep;      // accepted so far, for deadlines
+    double deadline; // on ct_clock, when the run is given up; 0: none
+    bool has_run, is_done, is_late;
     double time;                      // of the last sample
     double compile, integrate, write; // seconds
 };

@@ -16,6 +16,7 @@ static const double safety = 0.01;
 static const double least_rtol = 2e-14, least_rtol_loops = 1e-12;
 // Below this tolerance of the steps the higher order pays for its twelve evaluations.
 static const double high_order_below = 1e-8;
+static const long steps_between_looks = 32; // at the clock, for runs with a deadline
 
 // ---- results as a file --------------------------------------------------------------------------------
 
@@ -288,8 +289,12 @@ static bool at_row(void *user, double t, const double *value, size_t n)
 static bool at_progress(void *user, double t, double end)
 {
     struct ct_sim *sim = user;
-    ct_progress_update(sim->progress, end > 0 ? t / end : 1);
-    return true;
+    if (sim->progress)
+        ct_progress_update(sim->progress, end > 0 ? t / end : 1);
+    // a look at the clock costs as much as a step of a small system
+    if (sim->deadline > 0 && sim->nstep++ % steps_between_looks == 0)
+        sim->is_late = ct_clock() > sim->deadline;
+    return !sim->is_late;
 }
 
 static bool integrate(struct ct_sim *sim)
@@ -299,8 +304,9 @@ static bool integrate(struct ct_sim *sim)
     if (sim->results->progress) {
         ct_progress_init(&progress, sim->results->progress, "simulate");
         sim->progress = &progress;
-        o->progress = at_progress;
     }
+    if (sim->results->progress || sim->deadline > 0)
+        o->progress = at_progress;
     o->row = at_row;
     o->user = sim;
     const double start = ct_clock();

@@ -166,6 +166,42 @@ CT_API void ct_sim_print_check(const struct ct_sim *sim, FILE *out);
 CT_API bool ct_sim_export(struct ct_ctx *ctx, struct ct_sim *sim, const char *format,
                           const char *folder);
 
+/* ---- speed against error ------------------------------------------------------------------------- */
+
+struct ct_accuracy;
+
+/** Zero: the default. */
+struct ct_accuracy_options {
+    /** Of all runs. method: names separated by commas, NULL or "auto" for the usual ones; tolerance and
+     *  step, where they are given, are the only ones tried. */
+    struct ct_sim_options run;
+    double error;          /* wanted; 1e-6 */
+    const char *reference; /* CSV as simulate writes it; NULL: found by tight runs that agree */
+    FILE *progress;        /* a bar is shown there if it is a terminal */
+};
+
+/**
+ * Run a system with methods x tolerances and compare each run with a converged reference.
+ *
+ * The error of a run is the largest over outputs and samples of |difference to the reference| / largest
+ * |reference output|. Runs are timed three times; methods get a share of about a minute each.
+ *
+ * Errors   E003 for options; E134, E135 for the reference; E309 when none is found; those of runs
+ * Owner    the caller, until ct_accuracy_destroy
+ */
+CT_API struct ct_accuracy *ct_accuracy_create(struct ct_ctx *ctx, struct ct_system *sys,
+                                              const struct ct_accuracy_options *options);
+/** Accepts NULL. */
+CT_API void ct_accuracy_destroy(struct ct_accuracy *a);
+
+/** The table; FILE.json: an object of columns, else CSV; NULL or "-": CSV on standard output. Errors: E002. */
+CT_API bool ct_accuracy_write(struct ct_ctx *ctx, const struct ct_accuracy *a,
+                              const char *path);
+/** The work-precision plot as SVG. Errors: E002. */
+CT_API bool ct_accuracy_draw(struct ct_ctx *ctx, const struct ct_accuracy *a, const char *path);
+/** How good the reference is, and the cheapest setting that meets the wanted error, for people. */
+CT_API void ct_accuracy_print_summary(const struct ct_accuracy *a, FILE *out);
+
 /* ---- what there is ------------------------------------------------------------------------------- */
 
 /** Component types with their terminal equations and keys. */

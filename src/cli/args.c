@@ -8,8 +8,8 @@
 #include <string.h>
 
 const struct cli_command *const cli_commands[]
-    = {&cli_simulate,   &cli_equations, &cli_graph,  &cli_check, &cli_export,
-       &cli_components, &cli_methods,   &cli_schema, NULL};
+    = {&cli_simulate, &cli_equations,  &cli_graph,   &cli_accuracy, &cli_check,
+       &cli_export,   &cli_components, &cli_methods, &cli_schema,   NULL};
 
 // ---- options --------------------------------------------------------------------------------------------
 
@@ -35,20 +35,26 @@ static const struct option {
      "translation and rotation: lists of branches"},
     {"keep-all", 0, NULL, FLAG, FIELD(keep_all), CLI_MODELS, true,
      "leave nothing out: keep the spatial rows of planar models"},
-    {"tolerance", 0, "T", NUMBER, FIELD(tolerance), CLI_SIMULATE, true,
+    {"tolerance", 0, "T", NUMBER, FIELD(tolerance), CLI_RUNS, true,
      "wanted relative accuracy of the outputs"},
-    {"method", 0, "NAME", TEXT, FIELD(method), CLI_SIMULATE, true,
+    {"method", 0, "NAME", TEXT, FIELD(method), CLI_RUNS, true,
      "auto, or a name that 'cotree methods' lists"},
-    {"step", 0, "H", NUMBER, FIELD(step), CLI_SIMULATE, true,
+    {"step", 0, "H", NUMBER, FIELD(step), CLI_RUNS, true,
      "fixed step in seconds, without step control"},
-    {"until", 0, "T", NUMBER, FIELD(until), CLI_SIMULATE, true,
+    {"until", 0, "T", NUMBER, FIELD(until), CLI_RUNS, true,
      "end time in seconds; the spacing of samples is kept"},
-    {"samples", 0, "N", INTEGER, FIELD(samples), CLI_SIMULATE, true,
+    {"samples", 0, "N", INTEGER, FIELD(samples), CLI_RUNS, true,
      "number of samples, both ends included"},
-    {"backend", 0, "CHOICE", TEXT, FIELD(backend), CLI_SIMULATE, true,
+    {"backend", 0, "CHOICE", TEXT, FIELD(backend), CLI_RUNS, true,
      "what evaluates the equations: auto, native or tape"},
     {"summary", 0, "FILE.json", TEXT, FIELD(summary), CLI_SIMULATE | CLI_CHECK, true,
      "what the run did, for programs"},
+    {"error", 0, "E", NUMBER, FIELD(error), CLI_ACCURACY, false,
+     "the error that the cheapest setting must meet; 1e-6"},
+    {"reference", 0, "FILE.csv", TEXT, FIELD(reference), CLI_ACCURACY, false,
+     "what to compare with, as simulate writes it"},
+    {"plot", 0, "FILE.svg", TEXT, FIELD(plot), CLI_ACCURACY, false,
+     "error against seconds, a line for each method"},
     {"show", 0, "STAGES", TEXT, FIELD(show), CLI_EQUATIONS, false,
      "terminal,graph,tree,cutset,circuit,reduced;\n"
      "standard is tree,reduced"},

@@ -17,10 +17,10 @@ enum { CLI_DONE = 0, CLI_FAILED = 1, CLI_USAGE = 2 };
 /// What the command line says; zero where it says nothing.
 struct cli_args {
     const char *model;
-    const char *output, *summary, *format, *show, *tree, *method, *backend;
+    const char *output, *summary, *format, *show, *tree, *method, *backend, *reference, *plot;
     const char **set;
     size_t nset;
-    double tolerance, step, until;
+    double tolerance, step, until, error;
     long samples;
     bool keep_all, quiet, help, version;
 };
@@ -35,8 +35,10 @@ enum cli_use {
     CLI_METHODS = 32,
     CLI_SCHEMA = 64,
     CLI_EXPORT = 128,
+    CLI_ACCURACY = 256,
     CLI_LISTS = CLI_COMPONENTS | CLI_METHODS | CLI_SCHEMA,
-    CLI_MODELS = CLI_SIMULATE | CLI_EQUATIONS | CLI_GRAPH | CLI_CHECK | CLI_EXPORT
+    CLI_RUNS = CLI_SIMULATE | CLI_ACCURACY,
+    CLI_MODELS = CLI_RUNS | CLI_EQUATIONS | CLI_GRAPH | CLI_CHECK | CLI_EXPORT
 };
 
 struct cli_command {
@@ -48,8 +50,8 @@ struct cli_command {
     int (*run)(struct ct_ctx *ctx, const struct cli_args *args);
 };
 
-extern const struct cli_command cli_simulate, cli_equations, cli_graph, cli_check, cli_export,
-    cli_components, cli_methods, cli_schema;
+extern const struct cli_command cli_simulate, cli_equations, cli_graph, cli_accuracy, cli_check,
+    cli_export, cli_components, cli_methods, cli_schema;
 /// All commands in the order of --help; NULL at the end.
 extern const struct cli_command *const cli_commands[];
 
@@ -65,6 +67,8 @@ int cli_complain(const struct cli_command *command, const char *fmt, ...)
 
 /// The system that the arguments ask for, or NULL.
 struct ct_system *cli_load(struct ct_ctx *ctx, const struct cli_args *args);
+/// What the arguments say about runs.
+struct ct_sim_options cli_sim_options(const struct cli_args *args);
 /// A run with the options of the arguments, or NULL.
 struct ct_sim *cli_sim(struct ct_ctx *ctx, struct ct_system *sys, const struct cli_args *args);
 

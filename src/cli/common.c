@@ -15,15 +15,20 @@ struct ct_system *cli_load(struct ct_ctx *ctx, const struct cli_args *args)
                                                       .keep_all = args->keep_all});
 }
 
+struct ct_sim_options cli_sim_options(const struct cli_args *args)
+{
+    return (struct ct_sim_options){.method = args->method,
+                                   .tolerance = args->tolerance,
+                                   .step = args->step,
+                                   .until = args->until,
+                                   .samples = args->samples,
+                                   .backend = args->backend};
+}
+
 struct ct_sim *cli_sim(struct ct_ctx *ctx, struct ct_system *sys, const struct cli_args *args)
 {
-    return ct_sim_create(ctx, sys,
-                         &(struct ct_sim_options){.method = args->method,
-                                                  .tolerance = args->tolerance,
-                                                  .step = args->step,
-                                                  .until = args->until,
-                                                  .samples = args->samples,
-                                                  .backend = args->backend});
+    const struct ct_sim_options options = cli_sim_options(args);
+    return ct_sim_create(ctx, sys, &options);
 }
 
 const char *cli_format(const struct cli_args *args, const char *const *formats,

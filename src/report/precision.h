@@ -1,0 +1,45 @@
+// Work and precision: what settings of methods cost and how near they come, as a table and as a plot.
+//
+//     method,tolerance,elements,formulation,error,seconds,steps,evaluations
+//     dopri5,0.0001,,,3.1e-05,0.00042,81,487
+//
+// What always holds: points of one method stand together, in the order of the ladder; a failed run has no
+// error (NaN), is an empty field in CSV, null in JSON, and is not drawn.
+#ifndef CT_REPORT_PRECISION_H
+#define CT_REPORT_PRECISION_H
+
+#include "base/ctx.h"
+
+/// One setting.
+struct ct_precision_point {
+    const char *method;
+    double tolerance; // the step [s] if has_step
+    bool has_step;
+    double error;   // relative, of the outputs; NaN: the run failed
+    double seconds; // of the integration
+    long steps, evaluations;
+};
+
+/// What the plot shows beside the points.
+struct ct_precision_plot {
+    const char *title;
+    double wanted;      // error: a line is drawn there; 0: none
+    double uncertainty; // of the reference: errors below mean nothing; 0: not known
+    const struct ct_precision_point *best; // is marked; NULL: none
+};
+
+enum { CT_PRECISION_NUMBER_SIZE = 32 };
+/// v in the fewest digits that read back to it. Returns text.
+const char *ct_precision_number(char text[CT_PRECISION_NUMBER_SIZE], double v);
+
+/// The table: JSON (an object of columns) if path ends with .json, else CSV; path NULL or "-": CSV on
+/// standard output. Errors: E002.
+bool ct_precision_write(struct ct_ctx *ctx, const char *path,
+                        const struct ct_precision_point *point, size_t n);
+
+/// Error against seconds, both logarithmic, one line for each method, as SVG. Errors: E002.
+bool ct_precision_draw(struct ct_ctx *ctx, const char *path,
+                       const struct ct_precision_point *point, size_t n,
+                       const struct ct_precision_plot *plot);
+
+#endif

@@ -1,0 +1,54 @@
+# Speed against error: the table, its errors, the answer to --error, references that fit and that do not.
+. "$(dirname "$0")/lib.sh"
+m=$SYSTEMS/pendulum/model.yaml
+"$COTREE" accuracy "$m" --until 2 --samples 101 --error 1e-7 --plot plot.svg >table 2>summary || echo "exit $?"
+head -n 1 table
+echo '-- methods, and how many settings of each'
+cut -d, -f1 table | sed 1d | uniq -c | awk '{ print $2, $1 }'
+echo '-- errors fall with the tolerance, down to rounding; all fields are there'
+awk -F, '
+  NR > 1 && NF != 8 { print "fields:", $0 }
+  NR > 1 && !($6 > 0 && $7 > 0 && $8 > 0 && $3 == "" && $4 == "") { print "odd:", $0 }
+  NR > 1 && $1 == method && !($5 + 0 < error + 0 || $5 + 0 < 1e-10) { print "does not fall:", $0 }
+  $1 ~ /^dop/ && !($5 != "" && $5 + 0 < $2 + 0) { print "larger than wanted:", $0 }
+  { method = $1; error = $5 }' table
+echo '-- the reference is known better than what is asked'
+sed -n 's/^reference  *\(.*\): they differ by \(.*\)$/\1 \2/p' summary | awk '{ print $1, $4, ($NF < 1e-9 ? "agree" : "differ") }'
+echo '-- the cheapest setting that meets the error, as the table has it'
+setting=$(sed -n 's/^cheapest .* 1e-07: method \([a-z0-9-]*\), [a-z]* \([^:]*\): .*/\1 \2/p' summary)
+awk -F, -v setting="$setting" '
+  NR > 1 && $5 != "" && $5 + 0 <= 1e-7 && (best == "" || $6 + 0 < least + 0) { best = $1 " " $2; least = $6 }
+  END { print best == setting ? "is named" : "best " best " named " setting }' table
+grep -c '<polyline' plot.svg
+tail -n 1 plot.svg
+echo '-- none meets it'
+"$COTREE" accuracy "$m" --until 2 --samples 101 --method generalized-alpha --tolerance 1e-3 --error 1e-9 2>&1 >/dev/null |
+  sed -n 's/^cheapest  *\(.*\); .*/\1/p'
+echo '-- one method, its steps; the same in JSON'
+"$COTREE" accuracy "$m" --until 2 --samples 101 --method rk4 --step 0.01 -o one.csv --quiet
+cut -d, -f1,2,7,8 one.csv
+"$COTREE" accuracy "$m" --until 2 --samples 101 --method rk4 --step 0.01 -o one.json --quiet
+sed -n -e '/"tolerance"/p' -e '/"steps"/p' one.json
+echo '-- a reference from a file'
+"$COTREE" simulate "$m" --until 2 --samples 101 --tolerance 1e-11 --quiet -o reference.csv
+"$COTREE" accuracy "$m" --until 2 --samples 101 --method dop853 --tolerance 1e-9 --reference reference.csv 2>summary |
+  awk -F, 'NR == 2 { print $1, $2, ($5 > 0 && $5 < 1e-9 ? "small" : $5) }'
+sed -n '/^reference/p' summary
+cut -d, -f1,2 reference.csv >some.csv
+"$COTREE" accuracy "$m" --until 2 --samples 101 --method dop853 --tolerance 1e-9 --reference some.csv 2>&1 >/dev/null |
+  sed '/^cheapest/d'
+echo '-- and such as do not fit'
+sed '1s/pivot\.q/elbow.q/' some.csv >wrong.csv
+say accuracy "$m" --reference wrong.csv
+sed '1s/^t/time/' some.csv >wrong.csv
+say accuracy "$m" --reference wrong.csv
+printf 't,pivot.q\n0.0123,1\n' >wrong.csv
+say accuracy "$m" --reference wrong.csv
+printf 't,pivot.q\n0,one\n' >wrong.csv
+say accuracy "$m" --reference wrong.csv
+say accuracy "$m" --reference missing.csv
+echo '-- wrong options'
+say accuracy "$m" --error 0
+say accuracy "$m" --method dopri5,dopri6
+say simulate "$m" --error 1e-6
+ls
