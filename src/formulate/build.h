@@ -174,6 +174,7 @@ struct ct_build {
     size_t npull, pull_cap;
     const struct ct_sweep *sweep[2]; // by level, once asked for
     ct_ex *effort;                   // of joints along their unknown coordinates (nu)
+    struct ct_mark holding;          // where the expression stands whose comparisons are held
     int resolving;                   // depth of signals within signals
     bool is_open;                    // a signal was met that this planar model leaves open
     bool in_outputs; // accelerations and multipliers may be used, comparisons stay as they are

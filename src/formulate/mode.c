@@ -14,7 +14,7 @@ static ct_ex mode_symbol(struct ct_build *b, enum ct_op op, ct_ex g)
     for (size_t i = 0; i < s->nmode; i++)
         if (s->mode[i].op == op && ct_ex_same(s->mode[i].g, g))
             return s->mode[i].symbol;
-    struct ct_mode m = {.op = op, .g = g};
+    struct ct_mode m = {.op = op, .g = g, .mark = b->holding};
     const unsigned of_time = 1u << CT_SYM_PARAM | 1u << CT_SYM_MODE | 1u << CT_SYM_TIME;
     m.is_time = !(ct_ex_kinds(b->x, g) & ~of_time);
     m.symbol = ct_ex_sym(b->x, CT_SYM_MODE, ct_arena_printf(b->arena, "mode%zu", s->nmode + 1),

@@ -77,7 +77,7 @@ static void choose_driven(struct ct_build *b, const struct ct_edge_info *e,
 {
     struct ct_driver d = {.name = c->name, .joint = e->index, .place = c->place};
     const struct ct_value *motion = ct_instance_value(e->self, "motion");
-    d.mark = motion->at[c->place];
+    d.mark = b->holding = motion->at[c->place];
     d.value = ct_mode_hold(b, motion->e[c->place]);
     d.rate = ct_build_rate(b, d.value);
     d.acceleration = ct_build_rate(b, d.rate);

@@ -27,10 +27,16 @@ static void evaluate(struct ct_machine *m, double t, const double *y, const doub
 // Modes may stand inside the g of others; so many levels are settled.
 enum { MOST_LEVELS = 4 };
 
+// How far to look ahead for the later side, [s].
+static double ahead_of(double t)
+{
+    return 1e-7 * fmax(1, fabs(t));
+}
+
 void ct_modes_start(struct ct_machine *m, double t, const double *y, const double *dy)
 {
     const double zero = 1e-12; // g is zero when it is rounding beside its change in a second
-    const double ahead = 1e-7 * fmax(1, fabs(t));
+    const double ahead = ahead_of(t);
     double *mode = m->input + m->at_mode;
     for (size_t level = 0; level < MOST_LEVELS && level < m->e->nmode; level++) {
         evaluate(m, t, y, dy, 0, m->g[0]);
@@ -41,6 +47,21 @@ void ct_modes_start(struct ct_machine *m, double t, const double *y, const doubl
             mode[i] = side_of(m->e->mode[i].op, is_zero ? later : now);
         }
     }
+}
+
+int ct_modes_find_stuck(struct ct_machine *m, double t, const double *y, const double *dy)
+{
+    const double *mode = m->input + m->at_mode;
+    const double ahead = ahead_of(t), near = 1e-3; // of the way that g goes meanwhile
+    evaluate(m, t, y, dy, 0, m->g[0]);
+    evaluate(m, t, y, dy, ahead, m->g[1]);
+    for (size_t i = 0; i < m->e->nmode; i++) {
+        const double now = m->g[0][i], later = m->g[1][i];
+        if (!m->e->mode[i].is_time && fabs(now) < near * fabs(later - now)
+            && side_of(m->e->mode[i].op, later) != mode[i])
+            return (int)i;
+    }
+    return -1;
 }
 
 // ---- time events ----------------------------------------------------------------------------------------

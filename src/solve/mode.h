@@ -8,6 +8,10 @@
 /// (nq + nu; NULL: time alone moves).
 void ct_modes_start(struct ct_machine *m, double t, const double *y, const double *dy);
 
+/// A state mode whose root function is zero here and that the motion along dy leaves to the side where the mode is
+/// wrong: forces on both sides lead back. Its index, or -1.
+int ct_modes_find_stuck(struct ct_machine *m, double t, const double *y, const double *dy);
+
 /// All times in (t0, t1] at which something changes by time alone: modes of time, knots of linear tables. Ascending;
 /// the list lives in a. Changes closer than (t1 - t0)/4096 to each other may be missed in pairs.
 size_t ct_time_events(struct ct_arena *a, struct ct_machine *m, double t0, double t1,

@@ -1,6 +1,7 @@
 // See simulate.h.
 #include "solve/simulate.h"
 #include "solve/dae.h"
+#include "expr/print.h"
 #include "solve/mode.h"
 
 #include <math.h>
@@ -245,6 +246,28 @@ static enum ct_eval apply_jump(struct ct_run *r, double t, double *y, const doub
     return ct_embed_impulse(r->s, p, u);
 }
 
+// With the modes set: a force that on both sides of its switch leads back to it (dry friction at rest) has no
+// motion that f describes.
+static enum ct_eval refuse_stuck(struct ct_run *r, double t, const double *y)
+{
+    if (!r->nroot)
+        return CT_EVAL_OK;
+    const enum ct_eval e = rhs(r, t, y, r->dy);
+    if (e != CT_EVAL_OK)
+        return e;
+    const int i = ct_modes_find_stuck(r->m, t, y, r->dy);
+    if (i < 0)
+        return CT_EVAL_OK;
+    const struct ct_mode *mode = &r->e->mode[i];
+    ct_error(
+        r->ctx, mode->mark.file ? mode->mark : (struct ct_mark){.file = r->model->file},
+        CT_E_STUCK,
+        "at t = %.9g the motion is held where '%s' changes sign: on both sides the forces lead "
+        "back; let the force change over a small range, as tanh(u/0.001) does for sign(u)",
+        t, ct_ex_text(r->arena, r->e->x, mode->g, NULL));
+    return CT_EVAL_FATAL;
+}
+
 static enum ct_eval event(void *user, double t, double *y, const signed char *crossed,
                           bool is_time)
 {
@@ -273,7 +296,7 @@ static enum ct_eval event(void *user, double t, double *y, const signed char *cr
     if (e != CT_EVAL_OK)
         return e;
     y[r->ny - 1] += kinetic_energy(r, t, y) - kinetic;
-    return CT_EVAL_OK;
+    return refuse_stuck(r, t, y);
 }
 
 // ---- creation -------------------------------------------------------------------------------------------------
@@ -471,6 +494,8 @@ bool ct_run_simulate(struct ct_run *r, const struct ct_run_options *o,
     r->nevent = ct_time_events(r->arena, r->m, 0, o->duration, &r->event);
     r->pending = next_time_event(r, 0);
     ct_modes_start(r->m, 0, r->y, r->dy);
+    if (refuse_stuck(r, 0, r->y) == CT_EVAL_FATAL)
+        return false;
     const struct ct_problem p
         = {.user = r,
            .ny = (int)r->ny,
