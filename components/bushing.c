@@ -7,8 +7,6 @@
 #include "formulate/dynamics.h"
 #include "formulate/row.h"
 
-#include <string.h>
-
 static const struct ct_key keys[] = {
     {"from", CT_VALUE_FRAME, CT_KEY_REQUIRED, NULL, 1, 1, "frame in whose axes it acts"},
     {"to", CT_VALUE_FRAME, CT_KEY_REQUIRED, NULL, 1, 1, "frame on whose origin it acts"},
@@ -90,20 +88,9 @@ static bool signal(struct ct_build *b, const struct ct_instance *self, const cha
                    ct_ex *out)
 {
     for (size_t i = 0; i < b->nload; i++)
-        for (int k = 0; k < 3 && b->load[i].self == self; k++) {
-            const char axis[] = {"xyz"[k], 0};
-            const size_t n = strlen(name);
-            if (n < 2 || strcmp(name + n - 1, axis))
-                continue;
-            if (!strncmp(name, "force.", 6) && n == 7) {
-                *out = b->load[i].force.e[k];
-                return true;
-            }
-            if (!strncmp(name, "torque.", 7) && n == 8) {
-                *out = b->load[i].torque.e[k];
-                return true;
-            }
-        }
+        if (b->load[i].self == self)
+            return ct_vector_signal(name, "force", b->load[i].force, out)
+                || ct_vector_signal(name, "torque", b->load[i].torque, out);
     return false;
 }
 

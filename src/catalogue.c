@@ -42,7 +42,7 @@ void ct_components_print(FILE *out)
 
 void ct_methods_print(FILE *out)
 {
-    fputs("auto         dopri5 or dop853, by the tolerance\n", out);
+    fprintf(out, "%-24s %s\n", "auto", "dopri5 or dop853, by loops and tolerance");
     for (int i = 0; i < ct_nmethod; i++)
         fprintf(out, "%-24s %s (order %d, %s)\n", ct_methods[i]->name, ct_methods[i]->summary,
                 ct_methods[i]->order, ct_methods[i]->is_implicit ? "implicit" : "explicit");

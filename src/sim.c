@@ -326,6 +326,9 @@ static bool run(struct ct_sim *sim)
     if (!m->has_duration && !(sim->run_options.duration > 0))
         return ct_error(&sim->own, m->mark, CT_E_KEY_MISSING,
                         "there is no end time: 'simulation' needs a 'duration'");
+    if (sim->results->path && !sim->system->equations.nresult)
+        ct_warning(&sim->own, (struct ct_mark){.file = sim->system->model.file}, 0,
+                   "the model lists no 'outputs': only t is written");
     if (sim->results->path && !open_file(sim, sim->results->path))
         return false;
     sim->has_run = true;

@@ -117,8 +117,10 @@ static bool build(struct ct_system *s, const char *path, const struct ct_system_
     struct ct_formulate_options motion
         = {.keep_all = o->keep_all, .with_energy = true, .with_outputs = true};
     // the start must not depend on the trees that the equations use
-    const struct ct_formulate_options start
-        = {.tree = CT_TREE_JOINTS, .keep_all = o->keep_all, .measure_all = true};
+    const struct ct_formulate_options start = {.tree = CT_TREE_JOINTS,
+                                               .keep_all = o->keep_all,
+                                               .measure_all = true,
+                                               .without_dynamics = true};
     struct ct_tree_report unused;
     return choose_tree(&s->own, o->tree, &motion)         // which branches, if any are given
         && read_model(s, path, o)                         // text -> component instances

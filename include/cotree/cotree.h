@@ -157,6 +157,14 @@ CT_API bool ct_sim_write_summary(struct ct_ctx *ctx, const struct ct_sim *sim,
                                  const char *path);
 /** What the system is: freedoms, trees and how they were chosen, redundant constraints, costs. */
 CT_API void ct_sim_print_check(const struct ct_sim *sim, FILE *out);
+/**
+ * The equations of motion as source code in a folder, which is made if need be. Before the run.
+ *
+ * format: "c" or NULL: NAME.h, NAME.c and NAME_test.c, which compares with values computed here; NAME is
+ * that of the model. Errors: E002, E003.
+ */
+CT_API bool ct_sim_export(struct ct_ctx *ctx, struct ct_sim *sim, const char *format,
+                          const char *folder);
 
 /* ---- speed against error ------------------------------------------------------------------------- */
 

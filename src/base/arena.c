@@ -23,6 +23,7 @@ struct ending {
 struct ct_arena {
     struct chunk *head;
     struct ending *ending; // in a chunk
+    struct ending *under;  // of the owner, for this arena; may be NULL
     size_t total;
 };
 
@@ -48,6 +49,8 @@ void ct_arena_destroy(struct ct_arena *a)
 {
     if (!a)
         return;
+    if (a->under)
+        a->under->data = NULL;
     for (struct ending *e = a->ending; e; e = e->next)
         e->end(e->data);
     for (struct chunk *c = a->head, *next; c; c = next) {
@@ -62,6 +65,22 @@ void ct_arena_at_end(struct ct_arena *a, void (*end)(void *data), void *data)
     struct ending *e = CT_NEW(a, struct ending);
     *e = (struct ending){a->ending, end, data};
     a->ending = e;
+}
+
+static void end_under(void *arena)
+{
+    ct_arena_destroy(arena);
+}
+
+struct ct_arena *ct_arena_create_under(struct ct_arena *owner)
+{
+    ct_arena_at_end(owner, end_under, NULL); // first: it may run out of memory
+    struct ct_arena *a = ct_arena_create();
+    if (!a)
+        ct_guard_raise();
+    a->under = owner->ending;
+    a->under->data = a;
+    return a;
 }
 
 void *ct_arena_alloc(struct ct_arena *a, size_t size)

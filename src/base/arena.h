@@ -20,6 +20,9 @@ struct ct_arena;
 struct ct_arena *ct_arena_create(void);
 void ct_arena_destroy(struct ct_arena *a);
 
+/// An arena for a while, destroyed with its owner at the latest: nothing leaks when memory runs out.
+struct ct_arena *ct_arena_create_under(struct ct_arena *owner);
+
 /// Call end(data) when the arena is destroyed, before its memory goes; the latest first. For what a
 /// library or the system allocates.
 void ct_arena_at_end(struct ct_arena *a, void (*end)(void *data), void *data);

@@ -8,8 +8,8 @@
 #include <string.h>
 
 const struct cli_command *const cli_commands[]
-    = {&cli_simulate,   &cli_equations, &cli_graph,  &cli_accuracy, &cli_check,
-       &cli_components, &cli_methods,   &cli_schema, NULL};
+    = {&cli_simulate, &cli_equations,  &cli_graph,   &cli_accuracy, &cli_check,
+       &cli_export,   &cli_components, &cli_methods, &cli_schema,   NULL};
 
 // ---- options --------------------------------------------------------------------------------------------
 
@@ -61,6 +61,7 @@ static const struct option {
     {"format", 0, "FORMAT", TEXT, FIELD(format), CLI_EQUATIONS, false,
      "text, latex, html, c or json"},
     {"format", 0, "FORMAT", TEXT, FIELD(format), CLI_GRAPH, false, "text, svg, dot or json"},
+    {"format", 0, "FORMAT", TEXT, FIELD(format), CLI_EXPORT, false, "c"},
     {"quiet", 'q', NULL, FLAG, FIELD(quiet), CLI_MODELS, true,
      "no summary and no progress bar"},
     {"help", 'h', NULL, FLAG, FIELD(help), CLI_MODELS | CLI_LISTS, true, "this text"},

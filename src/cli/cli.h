@@ -34,9 +34,11 @@ enum cli_use {
     CLI_COMPONENTS = 16,
     CLI_METHODS = 32,
     CLI_SCHEMA = 64,
-    CLI_ACCURACY = 128,
+    CLI_EXPORT = 128,
+    CLI_ACCURACY = 256,
     CLI_LISTS = CLI_COMPONENTS | CLI_METHODS | CLI_SCHEMA,
-    CLI_MODELS = CLI_SIMULATE | CLI_EQUATIONS | CLI_GRAPH | CLI_CHECK | CLI_ACCURACY,
+    CLI_MODELS
+    = CLI_SIMULATE | CLI_EQUATIONS | CLI_GRAPH | CLI_CHECK | CLI_EXPORT | CLI_ACCURACY,
     CLI_RUNS = CLI_SIMULATE | CLI_ACCURACY
 };
 
@@ -50,7 +52,7 @@ struct cli_command {
 };
 
 extern const struct cli_command cli_simulate, cli_equations, cli_graph, cli_accuracy, cli_check,
-    cli_components, cli_methods, cli_schema;
+    cli_export, cli_components, cli_methods, cli_schema;
 /// All commands in the order of --help; NULL at the end.
 extern const struct cli_command *const cli_commands[];
 

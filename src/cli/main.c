@@ -22,8 +22,14 @@ static int finish(void)
     return cli_output_open(&o, NULL) ? cli_output_close(&o, true) : CLI_FAILED;
 }
 
+// OpenBLAS, where it is the BLAS, starts a thread a core even for matrices of ten rows: that costs
+// more than it gives, and results would depend on the machine.
+extern void openblas_set_num_threads(int n) __attribute__((weak));
+
 int main(int argc, char **argv)
 {
+    if (openblas_set_num_threads)
+        openblas_set_num_threads(1);
     const struct cli_command *command;
     struct cli_args args;
     int status = CLI_USAGE;

@@ -124,7 +124,8 @@ size_t ct_ex_jacobian(struct ct_exs *x, struct ct_arena *scratch, struct ct_aren
     w.place = CT_NEWN(scratch, uint32_t, (size_t)most + 1);
     w.list = CT_NEWN(scratch, struct list, n + 1);
     struct ct_seed *seed = CT_NEWN(scratch, struct ct_seed, nseed + 1);
-    memcpy(seed, seeds, nseed * sizeof *seed);
+    if (nseed)
+        memcpy(seed, seeds, nseed * sizeof *seed);
     ct_sort(scratch, seed, nseed, sizeof *seed, by_symbol, NULL);
     for (size_t k = 0; k < n; k++) {
         w.list[k].first = w.ntangent;

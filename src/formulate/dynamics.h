@@ -43,6 +43,10 @@ ct_ex ct_sweep_driver(struct ct_build *b, int driver);
 
 /// Add a load; the struct is copied.
 void ct_load_add(struct ct_build *b, const struct ct_load *load);
+/// The key `value` of a force or torque in ground components, turned out of the frame under `in`.
+ct_ex3 ct_load_vector(struct ct_build *b, const struct ct_instance *self);
+/// Is `name` "PROPERTY.x", .y or .z? Then *out is that component of v.
+bool ct_vector_signal(const char *name, const char *property, ct_ex3 v, ct_ex *out);
 /// Power of a wrench on head against tail: F . (v_head - v_tail - w_tail x d) + T . w_rel.  (0.3)
 ct_ex ct_load_power(struct ct_build *b, int tail, int head, ct_ex3 force, ct_ex3 torque);
 /// Spring, damper and applied effort of a joint along a coordinate.

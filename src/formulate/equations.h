@@ -74,7 +74,6 @@ struct ct_driver {
     struct ct_mark mark;
     ct_ex value, rate, acceleration; // functions of t (and of modes)
     ct_ex effort;                    // generalised force the driver gives [N or N m]
-    ct_ex impulse;                   // see formulate/bias.c
 };
 
 /// The equations as implicit methods solve them, and the derivatives their iteration needs. Positions are
@@ -116,8 +115,6 @@ struct ct_equations {
     ct_ex kinetic, potential;
     struct ct_residual *residual; // NULL if not asked for
     bool is_planar;
-    bool needs_work;           // some output or the ledger uses the work
-    const char **undetermined; // names of reaction components that are not unique
     struct ct_left_out *left_out;
     size_t nleft_out, left_out_cap;
     struct ct_coordinate *coordinate; // of all joints and bodies (build.h)

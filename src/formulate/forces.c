@@ -7,11 +7,33 @@
 #include "formulate/row.h"
 #include "formulate/signal.h"
 
+#include <string.h>
+
 // ---- loads ----------------------------------------------------------------------------------------
 
 void ct_load_add(struct ct_build *b, const struct ct_load *load)
 {
     CT_PUSH(b->arena, b->load, b->nload, b->load_cap, *load);
+}
+
+ct_ex3 ct_load_vector(struct ct_build *b, const struct ct_instance *self)
+{
+    const struct ct_value *value = ct_instance_value(self, "value");
+    const struct ct_value *in = ct_instance_value(self, "in");
+    ct_ex3 v;
+    for (int i = 0; i < 3; i++)
+        v.e[i] = ct_build_value(b, value->e[i]);
+    return in->given ? ct_node_turn(b, b->node_of_frame[in->frame], v) : v;
+}
+
+bool ct_vector_signal(const char *name, const char *property, ct_ex3 v, ct_ex *out)
+{
+    const size_t n = strlen(property);
+    if (strncmp(name, property, n) != 0 || name[n] != '.' || strlen(name) != n + 2
+        || name[n + 1] < 'x' || name[n + 1] > 'z')
+        return false;
+    *out = v.e[name[n + 1] - 'x'];
+    return true;
 }
 
 ct_ex ct_load_power(struct ct_build *b, int tail, int head, ct_ex3 force, ct_ex3 torque)

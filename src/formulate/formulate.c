@@ -54,16 +54,18 @@ static struct ct_build *build_create(struct ct_ctx *ctx, struct ct_arena *a,
     return b;
 }
 
-// Everything but outputs: M, Q, J, gam, Phi.
-static bool derive(struct ct_build *b)
+// Everything but outputs: Phi, J, gam and, unless only places and speeds are wanted, M and Q.
+static bool derive(struct ct_build *b, bool with_dynamics)
 {
     const size_t before = b->ctx->nerror;
     ct_unknowns_choose(b);
     b->eqs->Q = CT_NEWN(b->arena, ct_ex, b->eqs->nu + 1);
     ct_rotation_derive(b);
     ct_translation_derive(b);
-    ct_masses_lump(b);
     ct_rows_derive(b);
+    if (!with_dynamics)
+        return b->ctx->nerror == before;
+    ct_masses_lump(b);
     ct_loads_derive(b);
     ct_mass_matrix_derive(b);
     ct_forces_derive(b);
@@ -136,21 +138,20 @@ struct search {
     struct ct_ctx *ctx;
     const struct ct_model *model;
     const struct ct_formulate_options *options;
+    struct ct_arena *owner; // of trial generations
 };
 
 // The exact count of a trial generation; nothing of it is kept.
 static double pair_cost(void *data, const struct ct_tree *T, const struct ct_tree *R)
 {
     const struct search *s = data;
-    struct ct_arena *scratch = ct_arena_create();
-    if (!scratch)
-        return INFINITY;
+    struct ct_arena *scratch = ct_arena_create_under(s->owner);
     struct ct_ctx quiet
         = {.model = scratch, .scratch = scratch}; // errors are reported by the chosen pair
     struct ct_build *b = build_create(&quiet, scratch, s->model, s->options);
     b->T = *T;
     b->R = *R;
-    const double cost = derive(b) ? equations_cost(scratch, b->eqs) : INFINITY;
+    const double cost = derive(b, true) ? equations_cost(scratch, b->eqs) : INFINITY;
     ct_arena_destroy(scratch);
     return cost;
 }
@@ -449,9 +450,9 @@ bool ct_formulate(struct ct_ctx *ctx, struct ct_arena *a, const struct ct_model 
                   struct ct_tree_report *report)
 {
     struct ct_build *b = build_create(ctx, a, m, options);
-    struct search s = {ctx, m, options};
+    struct search s = {ctx, m, options, a};
     *report = (struct ct_tree_report){0};
-    if (!choose_trees(b, &s, report) || !derive(b))
+    if (!choose_trees(b, &s, report) || !derive(b, !options->without_dynamics))
         return false;
     if (options->with_residual)
         ct_residual_derive(b);

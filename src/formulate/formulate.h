@@ -22,6 +22,7 @@ struct ct_formulate_options {
     bool with_residual; // an implicit method will ask for the residual and its derivatives
     bool
         measure_all; // results are the coordinates of all joints and bodies instead (for assembly)
+    bool without_dynamics; // neither M nor Q: places and speeds are all that is wanted
 };
 
 /// What tree selection found, for the report.

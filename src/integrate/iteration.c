@@ -31,7 +31,7 @@ struct ct_iteration *ct_iteration_create(struct ct_arena *a, const struct ct_dae
     it->is_stabilised = is_stabilised;
     it->nu = nu;
     it->version = -1;
-    it->eta = 1;
+    it->tail = 1;
     double **const square[] = {&it->M, &it->C, &it->K};
     for (size_t i = 0; i < COUNT(square); i++)
         *square[i] = CT_NEWN(a, double, nu *nu + 1);
@@ -241,7 +241,7 @@ void ct_iteration_start(struct ct_iteration *it)
 {
     it->count = 0;
     it->rate = 0;
-    it->eta = pow(fmax(it->eta, DBL_EPSILON), 0.8); // the last step's, trusted less and less
+    it->tail = pow(fmax(it->tail, DBL_EPSILON), 0.8); // the last step's, trusted less and less
 }
 
 enum ct_verdict ct_iteration_judge(struct ct_iteration *it, double size)
@@ -255,17 +255,17 @@ enum ct_verdict ct_iteration_judge(struct ct_iteration *it, double size)
         if (rate >= hopeless || (rate >= 1 && it->count > 3))
             return CT_DIVERGED;
         it->rate = it->count > 2 ? sqrt(rate * it->rate) : rate; // two in turn are often uneven
-        it->eta = it->rate < 1 ? it->rate / (1 - it->rate) : INFINITY;
+        it->tail = it->rate < 1 ? it->rate / (1 - it->rate) : INFINITY;
     }
     it->size = size;
-    if (size == 0 || it->eta * size <= it->kappa)
+    if (size == 0 || it->tail * size <= it->kappa)
         return CT_CONVERGED;
     return it->count < it->most ? CT_GO_ON : CT_DIVERGED;
 }
 
 bool ct_iteration_can_renew(struct ct_iteration *it)
 {
-    it->eta = 1;
+    it->tail = 1;
     it->has_tangent = false;
     return !it->is_new;
 }

@@ -37,7 +37,8 @@ struct ct_iteration {
     // the run of corrections
     int count;
     double kappa, rounding; // a correction below: converged; below: not to be bettered
-    double size, rate, eta;
+    double size, rate,
+        tail; // of the last correction; over the one before; all that follow it, over it
     int most;
 };
 

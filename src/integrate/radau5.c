@@ -70,8 +70,7 @@ struct state {
     double *rate, *F, *r;        // u' (nu); residuals of d' and u'  (nu x 3)
     double *phi, *v;             // (rows x 3)
     double *q, *u, *u_dot, *lam; // of a stage; of the start  (lam)
-    double *d, *error;           // (nu)
-    double *none;                // zeros  (rows)
+    double *d;                   // a motion, or change of speed  (nu)
     double *gain, *defect;       // of quadratures: over h; error over h / GAMMA  (ny)
     double *power, *power1;      // rates of all states at both ends  (ny)
     double _Complex *Fc, *rc, *phic, *vc, *dc, *etac, *lamc;
@@ -98,8 +97,7 @@ static void *create(struct ct_arena *a, const struct ct_method *method,
     create_stages(a, &s->change, p->dae);
     double **const stages_of_speeds[] = {&s->F, &s->r};
     double **const stages_of_rows[] = {&s->phi, &s->v};
-    double **const speeds[] = {&s->rate, &s->u, &s->u_dot, &s->d, &s->error};
-    double **const rows[] = {&s->lam, &s->none};
+    double **const speeds[] = {&s->rate, &s->u, &s->u_dot, &s->d};
     double _Complex **const complex_speeds[] = {&s->Fc, &s->rc, &s->dc};
     double _Complex **const complex_rows[] = {&s->phic, &s->vc, &s->etac, &s->lamc};
     for (size_t i = 0; i < COUNT(stages_of_speeds); i++)
@@ -108,8 +106,7 @@ static void *create(struct ct_arena *a, const struct ct_method *method,
         *stages_of_rows[i] = CT_NEWN(a, double, STAGES *m + 1);
     for (size_t i = 0; i < COUNT(speeds); i++)
         *speeds[i] = CT_NEWN(a, double, nu + 1);
-    for (size_t i = 0; i < COUNT(rows); i++)
-        *rows[i] = CT_NEWN(a, double, m + 1);
+    s->lam = CT_NEWN(a, double, m + 1);
     for (size_t i = 0; i < COUNT(complex_speeds); i++)
         *complex_speeds[i] = CT_NEWN(a, double _Complex, nu + 1);
     for (size_t i = 0; i < COUNT(complex_rows); i++)

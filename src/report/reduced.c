@@ -42,9 +42,7 @@ static ct_ex collect(struct ct_equations *e, ct_ex v)
 {
     if (ct_ex_is_zero(v) || ct_ex_is_const(e->x, v, NULL) || ct_ex_symbol(e->x, v))
         return v;
-    struct ct_arena *work = ct_arena_create();
-    if (!work)
-        return v;
+    struct ct_arena *work = ct_arena_create_under(e->x->arena);
     const struct quaternions s = quaternions_of(work, e);
     const struct ct_collect_options o
         = {.scratch = work, .quaternion = s.at, .nquaternion = s.n};

@@ -119,9 +119,12 @@ static bool massless(struct ct_embed *s)
     for (size_t i = 1; i < n; i++)
         if (s->m->M[i + n * i] < s->m->M[least + n * least])
             least = i;
-    return ct_error(s->ctx, (struct ct_mark){0}, CT_E_MASSLESS,
+    const struct ct_u *u = &s->m->e->u[least];
+    const struct ct_mark mark = u->joint >= 0 ? s->m->model->joint[u->joint].mark
+                                              : s->m->model->body[u->body].instance.mark;
+    return ct_error(s->ctx, mark, CT_E_MASSLESS,
                     "coordinate '%s' moves no mass: give a mass or an inertia to what it moves",
-                    s->m->e->u[least].name);
+                    u->q >= 0 ? s->m->e->q[u->q].name : u->name);
 }
 
 bool ct_embed_choose(struct ct_embed *s)

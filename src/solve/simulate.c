@@ -427,6 +427,8 @@ static void compare_results(struct ct_run *r, const double *z, double *value, bo
 
 void ct_run_find_open(struct ct_run *r, double t, const double *y, bool *row, bool *result)
 {
+    for (size_t i = 0; i < r->e->nresult; i++)
+        result[i] |= r->e->result[i].undetermined;
     if (r->s->rank == (int)r->m->nrow || accelerate(r, t, y) != CT_EVAL_OK)
         return;
     multipliers(r);

@@ -38,5 +38,5 @@ ls ./*.csv ./*.tex ./*.c
 
 # the equations in the README are those of the program
 awk '/^```$/ { inside = !inside; next } inside' "$docs/../README.md" >shown
-"$COTREE" equations "$SYSTEMS/slider_crank/model.yaml" --show reduced | sed -n '/^motion/,/Phi = 0/p; /^  guide.across: /p' |
+"$COTREE" equations "$SYSTEMS/slider_crank/model.yaml" --show reduced --tree joints | sed -n '/^motion/,/Phi = 0/p; /^  guide.across: /p' |
   diff - shown && echo "so in the README"

@@ -14,6 +14,7 @@ say simulate "$m" --samples 2.5
 say simulate "$m" --quiet=yes
 say simulate "$m" --backend tap
 say simulate "$m" --method dopri6
+say simulate "$m" --method euler
 say simulate "$m" --method radau
 say simulate "$m" --tree jonts
 say graph "$m" --format png

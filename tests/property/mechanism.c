@@ -196,7 +196,7 @@ const struct mechanism mechanisms[] = {
              JOINT("measure", "ground.b", "B", "type: free"), .is_driven = true),
     LOOP_AND("loop: driven free", "type: spherical",
              JOINT("measure", "ground.b", "B",
-                   "type: free, motion: [0.05*sin(t) - 0.65, ~, ~, ~, ~, ~]"),
+                   "type: free, motion: [~, 0.05*sin(t) - 0.19, ~, ~, ~, ~]"),
              .is_driven = true),
     // two joints that must be branches close a loop: a weld behind the second one
     {.name = "closure",

@@ -162,6 +162,31 @@ static void guards_nest(void **state)
     assert_true(runs_out(*state, ask_for_too_much));
 }
 
+struct note {
+    char **p, letter;
+};
+
+static void note_letter(void *data)
+{
+    struct note *n = data;
+    *(*n->p)++ = n->letter;
+}
+
+static void endings_run_once_the_latest_first(void **state)
+{
+    (void)state;
+    char text[4] = "", *p = text;
+    struct ct_arena *a = ct_arena_create();
+    for (char c = 'a'; c <= 'c'; c++) {
+        struct note *n = CT_NEW(a, struct note); // still there when it is used
+        *n = (struct note){&p, c};
+        ct_arena_at_end(a, note_letter, n);
+    }
+    assert_string_equal(text, "");
+    ct_arena_destroy(a);
+    assert_string_equal(text, "cba");
+}
+
 int main(void)
 {
 #define CASE(f) cmocka_unit_test_setup_teardown(f, create, destroy)
@@ -177,6 +202,7 @@ int main(void)
         CASE(impossible_sizes_count_as_out_of_memory),
         CASE(creation_reports_a_refusal_by_null),
         CASE(guards_nest),
+        CASE(endings_run_once_the_latest_first),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

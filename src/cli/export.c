@@ -1,0 +1,33 @@
+// cotree export: writes the equations as source code.
+#include "cli/cli.h"
+
+#include <string.h>
+
+static int run(struct ct_ctx *ctx, const struct cli_args *args)
+{
+    if (args->format && strcmp(args->format, "c") != 0)
+        return cli_complain(&cli_export, "--format is '%s'; there is c", args->format);
+    if (!args->output || strcmp(args->output, "-") == 0)
+        return cli_complain(&cli_export, "-o FOLDER says where the files go");
+    struct ct_system *sys = cli_load(ctx, args);
+    struct ct_sim *sim = cli_sim(ctx, sys, args);
+    const bool ok = ct_sim_export(ctx, sim, args->format, args->output);
+    ct_sim_destroy(sim);
+    ct_system_destroy(sys);
+    return ok ? CLI_DONE : CLI_FAILED;
+}
+
+const struct cli_command cli_export = {
+    .name = "export",
+    .summary = "writes the equations of motion as C source",
+    .use = CLI_EXPORT,
+    .takes_model = true,
+    .more
+    = "\n"
+      "The folder gets NAME.h, NAME.c and NAME_test.c: C99 that needs libm alone. The last "
+      "one\n"
+      "compares with values computed here.\n",
+    .examples = {"cotree export puma560.yaml --format c -o arm",
+                 "cotree export four_bar.yaml --tree absolute -o bars"},
+    .run = run,
+};

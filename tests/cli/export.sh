@@ -1,0 +1,19 @@
+# Exported C compiles without a warning and has the values recorded beside it, in an empty folder. One open
+# system, one with rotations, two with redundant loops, one whose functions are split.
+. "$(dirname "$0")/lib.sh"
+for system in pendulum tumbling_body stewart bricard chain40; do
+  "$COTREE" export "$SYSTEMS/$system/model.yaml" --format c -o $system || echo "exit $?"
+  for cc in gcc clang; do
+    if command -v $cc >/dev/null; then
+      (cd $system && $cc -std=c99 -Wall -Wextra -Wpedantic -Werror -O1 -o self_test ./*.c -lm && ./self_test)
+    else
+      (cd $system && cc -std=c99 -O1 -o self_test ./*.c -lm && ./self_test) # a warning of others is no matter
+    fi
+  done
+done
+"$COTREE" export "$SYSTEMS/stewart/model.yaml" -o again
+for f in again/*; do cmp "$f" "stewart/${f#again/}"; done
+echo '-- what is missing'
+say export "$SYSTEMS/pendulum/model.yaml"
+say export "$SYSTEMS/pendulum/model.yaml" --format matlab -o p
+say export "$SYSTEMS/pendulum/model.yaml" -o no/such/folder
