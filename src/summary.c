@@ -27,6 +27,10 @@ static long solve_operations(long n, long r)
 static long operations(const struct ct_sim *sim)
 {
     const struct ct_machine *m = ct_run_machine(sim->run);
+    if (m->solved.nout) {
+        const struct ct_tape_counts all = ct_tape_counts(m->solved.tape);
+        return count(&all);
+    }
     const struct ct_tape_counts c = ct_tape_counts(m->motion.tape);
     return count(&c) + solve_operations((long)m->nu, sim->report.rank);
 }

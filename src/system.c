@@ -114,8 +114,10 @@ static bool formulate(struct ct_system *s, const struct ct_formulate_options *f,
 
 static bool build(struct ct_system *s, const char *path, const struct ct_system_options *o)
 {
-    struct ct_formulate_options motion
-        = {.keep_all = o->keep_all, .with_energy = true, .with_outputs = true};
+    struct ct_formulate_options motion = {.keep_all = o->keep_all,
+                                          .with_energy = true,
+                                          .with_outputs = true,
+                                          .with_solution = true};
     // the start must not depend on the trees that the equations use
     const struct ct_formulate_options start = {.tree = CT_TREE_JOINTS,
                                                .keep_all = o->keep_all,

@@ -97,6 +97,7 @@ struct ct_equations {
     size_t nu, u_cap;
     struct ct_entry *M; // lower triangle, row by row
     size_t nM, M_cap;
+    ct_ex *solution;    // u' of an open system in closed form (nu), or NULL
     ct_ex *Q;           // nu
     struct ct_entry *J; // row by row
     size_t nJ, J_cap;

@@ -5,6 +5,7 @@
 #include "formulate/residual.h"
 #include "formulate/row.h"
 #include "formulate/signal.h"
+#include "formulate/solution.h"
 #include "formulate/topology.h"
 #include "graph/exchange.h"
 
@@ -454,6 +455,8 @@ bool ct_formulate(struct ct_ctx *ctx, struct ct_arena *a, const struct ct_model 
     *report = (struct ct_tree_report){0};
     if (!choose_trees(b, &s, report) || !derive(b, !options->without_dynamics))
         return false;
+    if (options->with_solution)
+        ct_solution_derive(b);
     if (options->with_residual)
         ct_residual_derive(b);
     if (options->with_energy)

@@ -96,11 +96,12 @@ static void use(struct ct_arena *a, struct ct_program *p, struct ct_native *nati
 
 bool ct_machine_use(struct ct_arena *a, struct ct_machine *m, enum ct_backend backend)
 {
-    struct ct_program *const all[] = {&m->motion, &m->constraint, &m->residual, &m->tangent};
+    struct ct_program *const all[]
+        = {&m->solved, &m->motion, &m->constraint, &m->solved, &m->residual, &m->tangent};
     bool available = true;
     for (size_t i = 0; i < COUNT(all); i++) {
         struct ct_native *native = NULL;
-        if (i > 1 && !all[i]->nout) // no implicit method has asked for them
+        if (i > 1 && !all[i]->nout) // nobody has asked for them
             continue;
         if (backend != CT_BACKEND_TAPE)
             native = all[i]->native ? all[i]->native : ct_native_create(a, all[i]->listing, 1);
@@ -140,6 +141,17 @@ static void compile_motion(struct ct_arena *a, struct ct_machine *m, const struc
     for (size_t i = 0; i < e->nq; i++)
         push(&l, e->q[i].rate);
     compile(a, m, in, l.e, l.n, &m->motion);
+}
+
+static void compile_solved(struct ct_arena *a, struct ct_machine *m, const struct inputs *in)
+{
+    const struct ct_equations *e = m->e;
+    struct list l = {.a = a};
+    for (size_t i = 0; i < e->nu && e->solution; i++)
+        push(&l, e->solution[i]);
+    for (size_t i = 0; i < e->nq && e->solution; i++)
+        push(&l, e->q[i].rate);
+    compile(a, m, in, l.e, l.n, &m->solved);
 }
 
 static void compile_constraint(struct ct_arena *a, struct ct_machine *m,
@@ -239,6 +251,7 @@ struct ct_machine *ct_machine_create(struct ct_arena *a, const struct ct_model *
             m->input[m->at_memory + i] = 1;
 
     const struct inputs in = list_inputs(a, m);
+    compile_solved(a, m, &in);
     compile_motion(a, m, &in);
     compile_constraint(a, m, &in);
     compile_rest(a, m, &in);
@@ -292,6 +305,17 @@ void ct_machine_motion(struct ct_machine *m)
         m->M[r + m->nu * c] = m->M[c + m->nu * r] = m->motion.out[i];
     }
     scatter_J(m, m->Q + e->nu);
+}
+
+bool ct_machine_solved(struct ct_machine *m, double *a)
+{
+    if (!m->solved.nout)
+        return false;
+    m->evaluations++;
+    ct_program_run(&m->solved, m->input);
+    memcpy(a, m->solved.out, m->nu * sizeof *a);
+    memcpy(m->rate, m->solved.out + m->nu, m->nq * sizeof *m->rate);
+    return true;
 }
 
 void ct_machine_constraint(struct ct_machine *m)

@@ -33,7 +33,8 @@ struct ct_machine {
         struct ct_native *native; // NULL: the tape is run
         double *out, *work;
         size_t nout;
-    } motion,       // M, Q, J, gam, q'
+    } solved,       // u', q', where the equations have a solution; else empty
+        motion,     // M, Q, J, gam, q'
         constraint, // phi, v, J
         result,     // output columns
         power,      // d(work)/dt
@@ -67,6 +68,8 @@ bool ct_machine_use(struct ct_arena *a, struct ct_machine *m, enum ct_backend ba
 void ct_machine_set(struct ct_machine *m, double t, const double *y);
 /// M, Q, J, gam and q' at the input.
 void ct_machine_motion(struct ct_machine *m);
+/// u' (nu, out) and q' at the input where the equations have a solution; else false. M, Q stay as they were.
+bool ct_machine_solved(struct ct_machine *m, double *a);
 /// phi, v, J at the input.
 void ct_machine_constraint(struct ct_machine *m);
 void ct_program_run(struct ct_program *p, const double *input);

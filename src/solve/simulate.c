@@ -43,10 +43,12 @@ static double before_event(const struct ct_run *r, double t)
 static enum ct_eval accelerate(struct ct_run *r, double t, const double *y)
 {
     ct_machine_set(r->m, t, y);
-    ct_machine_motion(r->m);
-    const enum ct_eval e = ct_embed_accelerate(r->s);
-    if (e != CT_EVAL_OK)
-        return e;
+    if (!ct_machine_solved(r->m, r->s->a)) {
+        ct_machine_motion(r->m);
+        const enum ct_eval e = ct_embed_accelerate(r->s);
+        if (e != CT_EVAL_OK)
+            return e;
+    }
     for (size_t i = 0; i < r->m->nu; i++)
         if (!isfinite(r->s->a[i]))
             return CT_EVAL_RETRY;
