@@ -550,9 +550,15 @@ static bool study(struct ct_accuracy *a)
         if (!climb(a, method[i]))
             return false;
     }
-    if (a->uncertainty > reference_margin * a->wanted)
+    if (a->uncertainty > a->wanted)
+        ct_warning(
+            &a->own, (struct ct_mark){0}, CT_E_REFERENCE,
+            "the runs for the reference do not agree (%s): they differ by %.2g, so the error "
+            "of no run is known better than that",
+            a->source, a->uncertainty);
+    else if (a->uncertainty > reference_margin * a->wanted)
         ct_warning(&a->own, (struct ct_mark){0}, CT_E_REFERENCE,
-                   "the reference is %s, and they differ by %.2g: smaller errors mean nothing",
+                   "the reference (%s) is known to %.2g only: smaller errors mean nothing",
                    a->source, a->uncertainty);
     choose_best(a);
     return true;
