@@ -281,7 +281,7 @@ static struct ct_poly power(struct ct_collector *c, struct ct_poly a, struct ct_
 static struct ct_poly function(struct ct_collector *c, const struct ct_exnode *n,
                                const struct ct_poly p[3])
 {
-    ct_ex e[3];
+    ct_ex e[3] = {{0}};
     const int narg = ct_op_info[n->op].narg;
     for (int k = 0; k < narg; k++)
         e[k] = simplified(c, p[k]);

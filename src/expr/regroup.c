@@ -79,6 +79,7 @@ static double as_fraction(double k, double *divisor)
     *divisor = 1;
     if (k * 1e6 == floor(k * 1e6))
         return k;
+    // NOLINTNEXTLINE(clang-analyzer-security.FloatLoopCounter): small integers are exact
     for (double d = 3; d < 100; d++) {
         const double n = round(k * d);
         if (n != 0 && fabs(n) < 1000 && ct_same_number(n / d, k)) {
