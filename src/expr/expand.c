@@ -67,7 +67,7 @@ static struct ct_poly opaque(struct ct_collector *c, ct_ex e)
     if (ct_ex_is_const(c->x, e, &v))
         return number(c, v);
     const bool negative = n.op == CT_OP_NEG;
-    const uint32_t atom = ct_collector_atom(c, negative ? (ct_ex){n.a} : e);
+    const uint32_t atom = ct_collector_atom(c, !negative ? e : (ct_ex){n.a});
     return ct_poly_term(&c->ps, negative ? -1 : 1, ct_mono_atom(&c->ps, atom, 1));
 }
 

@@ -306,7 +306,7 @@ enum { LARGEST_GROUPED = 1000 };
 
 static ct_ex grouped(struct ct_collector *c, struct ct_poly p)
 {
-    const struct choice by = p.n > LARGEST_GROUPED ? (struct choice){0} : choose(c, p);
+    const struct choice by = p.n <= LARGEST_GROUPED ? choose(c, p) : (struct choice){0};
     if (!by.worth)
         return sum_of_terms(c, p);
     struct ct_poly with = {CT_NEWN(c->arena, struct ct_term, p.n), 0};
