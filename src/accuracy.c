@@ -368,7 +368,7 @@ static bool fill_reference(struct ct_accuracy *a, const struct ct_sheet *sheet, 
 
 static bool read_reference(struct ct_accuracy *a, const char *path)
 {
-    struct ct_sheet sheet;
+    struct ct_sheet sheet = {0};
     size_t time, *of = CT_NEWN(a->own.scratch, size_t, a->nresult + 1);
     if (!read_sheet(a, path, &sheet) || !find_columns(a, &sheet, &time, of))
         return false;

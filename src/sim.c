@@ -127,10 +127,11 @@ static bool no_method(struct ct_sim *sim, const char *name, bool is_option)
     names[0] = "auto";
     for (int i = 0; i < ct_nmethod; i++)
         names[i + 1] = ct_methods[i]->name;
-    return ct_error(
-        &sim->own, is_option ? (struct ct_mark){0} : sim->system->model.simulation.method_mark,
-        is_option ? CT_E_USAGE : CT_E_LATER, "this version has no method '%s'%s", name,
-        ct_suggest_or_list(sim->own.model, name, names, (size_t)ct_nmethod + 1));
+    const struct ct_mark none = {0};
+    return ct_error(&sim->own, is_option ? none : sim->system->model.simulation.method_mark,
+                    is_option ? CT_E_USAGE : CT_E_LATER, "this version has no method '%s'%s",
+                    name,
+                    ct_suggest_or_list(sim->own.model, name, names, (size_t)ct_nmethod + 1));
 }
 
 static bool choose_method(struct ct_sim *sim, const char *option)

@@ -13,6 +13,7 @@ static char *standard_path(const char *model)
     const size_t n = dot && dot > base ? (size_t)(dot - base) : strlen(base);
     char *path = malloc(n + sizeof ".csv");
     if (path) {
+        // NOLINTNEXTLINE(bugprone-not-null-terminated-result): the suffix ends it
         memcpy(path, base, n);
         memcpy(path + n, ".csv", sizeof ".csv");
     }

@@ -1,5 +1,5 @@
 // See native.h.
-#define _DEFAULT_SOURCE // MAP_ANONYMOUS
+#define _DEFAULT_SOURCE // MAP_ANONYMOUS; NOLINT(bugprone-reserved-identifier): the C library names it
 #include "codegen/native.h"
 
 #include "codegen/x86.h"

@@ -126,7 +126,7 @@ static void spline_slopes(size_t n, const double *x, const double *y, double *m,
 static bool fill_table(struct ct_reader *r, const struct ct_node *file,
                        const struct ct_node *column, bool cubic, struct ct_table *t)
 {
-    struct ct_sheet csv;
+    struct ct_sheet csv = {0};
     size_t kt = 0, ky = 0;
     if (!read_csv(r, file, t->file, &csv))
         return false;

@@ -44,7 +44,7 @@ struct sizes {
 static double tree_size(struct sizes *s, struct ct_exs *x, struct ct_arena *arena, ct_ex e)
 {
     const size_t n = ct_ex_walk(x, &e, 1);
-    if (s->cap < x->nnode) {
+    if (!s->at || s->cap < x->nnode) {
         s->cap = 2 * x->nnode;
         s->at = CT_NEWN(arena, double, s->cap);
     }

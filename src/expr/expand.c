@@ -67,7 +67,7 @@ static struct ct_poly opaque(struct ct_collector *c, ct_ex e)
     if (ct_ex_is_const(c->x, e, &v))
         return number(c, v);
     const bool negative = n.op == CT_OP_NEG;
-    const uint32_t atom = ct_collector_atom(c, negative ? (ct_ex){n.a} : e);
+    const uint32_t atom = ct_collector_atom(c, !negative ? e : (ct_ex){n.a});
     return ct_poly_term(&c->ps, negative ? -1 : 1, ct_mono_atom(&c->ps, atom, 1));
 }
 
@@ -281,7 +281,7 @@ static struct ct_poly power(struct ct_collector *c, struct ct_poly a, struct ct_
 static struct ct_poly function(struct ct_collector *c, const struct ct_exnode *n,
                                const struct ct_poly p[3])
 {
-    ct_ex e[3];
+    ct_ex e[3] = {{0}};
     const int narg = ct_op_info[n->op].narg;
     for (int k = 0; k < narg; k++)
         e[k] = simplified(c, p[k]);

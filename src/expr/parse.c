@@ -218,7 +218,7 @@ static bool scan_in(struct parser *s, const char **in, const char **at)
 
 static bool parse_signal(struct parser *s, const char *first, const char *start, ct_ex *e)
 {
-    const char *dotted, *in, *in_at = NULL, *why = "";
+    const char *dotted = NULL, *in = NULL, *in_at = NULL, *why = "";
     if (!scan_parts(s, start, &dotted) || !scan_in(s, &in, &in_at))
         return false;
     const char *text = in ? ct_arena_printf(s->ctx->scratch, "%s in %s", dotted, in) : dotted;

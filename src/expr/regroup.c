@@ -79,6 +79,7 @@ static double as_fraction(double k, double *divisor)
     *divisor = 1;
     if (k * 1e6 == floor(k * 1e6))
         return k;
+    // NOLINTNEXTLINE(clang-analyzer-security.FloatLoopCounter): small integers are exact
     for (double d = 3; d < 100; d++) {
         const double n = round(k * d);
         if (n != 0 && fabs(n) < 1000 && ct_same_number(n / d, k)) {
@@ -305,7 +306,7 @@ enum { LARGEST_GROUPED = 1000 };
 
 static ct_ex grouped(struct ct_collector *c, struct ct_poly p)
 {
-    const struct choice by = p.n > LARGEST_GROUPED ? (struct choice){0} : choose(c, p);
+    const struct choice by = p.n <= LARGEST_GROUPED ? choose(c, p) : (struct choice){0};
     if (!by.worth)
         return sum_of_terms(c, p);
     struct ct_poly with = {CT_NEWN(c->arena, struct ct_term, p.n), 0};

@@ -176,7 +176,7 @@ const char *ct_unit_nearest(const char *text)
     const size_t k = name_length(text, strlen(text));
     if (k == 0 || k >= sizeof name)
         return NULL;
-    memcpy(name, text, k);
+    memcpy(name, text, k); // NOLINT(bugprone-not-null-terminated-result): name is zeroed
     const char *names[COUNT(units)];
     for (size_t i = 0; i < COUNT(units); i++)
         names[i] = units[i].name;

@@ -50,6 +50,7 @@ static size_t pick(struct ct_build *b, const struct ct_slope *all, size_t n, int
     *out = NULL;
     for (size_t i = 0; i < n; i++) {
         struct ct_slope s = all[i];
+        // NOLINTNEXTLINE(clang-analyzer-core.DivideZero): without speeds there is no slope
         if (s.direction / b->eqs->nu != (size_t)level)
             continue;
         s.direction %= (uint32_t)b->eqs->nu;

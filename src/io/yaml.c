@@ -306,6 +306,7 @@ static bool read_node(struct source *s, size_t depth, const struct ct_node **out
 
 static bool read_document(struct source *s, const struct ct_node **root)
 {
+    // NOLINTNEXTLINE(misc-redundant-expression): each call takes the next event
     if (!next_event(s) || !next_event(s)) // start of stream; of document
         return false;
     if (s->event.type == YAML_STREAM_END_EVENT)

@@ -43,7 +43,7 @@ static size_t break_place(const char *s, size_t room)
 {
     size_t best = 0;
     int depth = 0, best_depth = 0, best_rank = 9;
-    for (size_t i = 0; s[i] && i <= room; i++) {
+    for (size_t i = 0; i <= room && s[i]; i++) {
         if (s[i] == '(' || s[i] == '[')
             depth++;
         if (s[i] == ')' || s[i] == ']')

@@ -336,7 +336,7 @@ static void show_accelerations(struct subject *s, const char *what, double per, 
 
 static double median_of(double (*f)(const char *path), const char *path, int n)
 {
-    double t[NSAMPLE];
+    double t[NSAMPLE] = {0};
     for (int i = 0; i < n; i++)
         t[i] = f(path);
     qsort(t, (size_t)n, sizeof t[0], compare_doubles);

@@ -52,6 +52,7 @@ static const char *joined(struct ct_arena *a, const char **line, size_t n, bool 
     for (size_t left = n; left > 0; left--) {
         size_t k = 0;
         for (size_t skip = shuffle ? (size_t)chance_of((int)left) : 0;; k++)
+            // NOLINTNEXTLINE(clang-analyzer-core.uninitialized.Branch): left of n lines are there
             if (line[k] && skip-- == 0)
                 break;
         text = ct_arena_printf(a, "%s%s", text, line[k]);

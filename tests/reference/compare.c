@@ -29,6 +29,7 @@ static _Noreturn void fail(const char *format, ...)
 
     va_start(args, format);
     fputs("compare: ", stderr);
+    // NOLINTNEXTLINE(clang-diagnostic-format-nonliteral): the callers' are literals
     vfprintf(stderr, format, args);
     fputc('\n', stderr);
     va_end(args);

@@ -177,6 +177,7 @@ static void endings_run_once_the_latest_first(void **state)
     (void)state;
     char text[4] = "", *p = text;
     struct ct_arena *a = ct_arena_create();
+    // NOLINTNEXTLINE(bugprone-too-small-loop-variable): the bound fits a char
     for (char c = 'a'; c <= 'c'; c++) {
         struct note *n = CT_NEW(a, struct note); // still there when it is used
         *n = (struct note){&p, c};

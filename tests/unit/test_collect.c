@@ -408,7 +408,7 @@ static void random_expressions_keep_their_values(void **unused)
     for (int round = 0; round < 3000; round++) {
         struct fixture f;
         start(&f);
-        ct_ex e[60], from = random_mechanics(&r, &f, e, 4 + random_below(&r, 50));
+        ct_ex e[60] = {0}, from = random_mechanics(&r, &f, e, 4 + random_below(&r, 50));
         ct_ex got = ct_ex_collect(&f.x, from, NULL);
         check_values(&f, &r, from, got);
         assert_true(ct_ex_tree_size(&f.x, f.arena, got)
@@ -425,7 +425,7 @@ static void bundled_sums_keep_their_values(void **unused)
     for (int round = 0; round < 300; round++) {
         struct fixture f;
         start(&f);
-        ct_ex e[200], from = random_mechanics(&r, &f, e, 20 + random_below(&r, 100));
+        ct_ex e[200] = {0}, from = random_mechanics(&r, &f, e, 20 + random_below(&r, 100));
         const struct ct_collect_options few = {.limit = 1 + random_below(&r, 12)};
         check_values(&f, &r, from, ct_ex_collect(&f.x, from, &few));
         finish(&f);
@@ -440,7 +440,7 @@ static void what_is_zero_becomes_zero(void **unused)
         struct fixture f;
         start(&f);
         struct ct_exs *x = &f.x;
-        ct_ex e[20], a = random_mechanics(&r, &f, e, 12), b = e[10], d = e[8];
+        ct_ex e[20] = {0}, a = random_mechanics(&r, &f, e, 12), b = e[10], d = e[8];
         // (a + b) d - a d - b d, where the store itself sees nothing to cancel
         ct_ex zero = ct_ex_sub(x, ct_ex_mul(x, ct_ex_add(x, a, b), d),
                                ct_ex_add(x, ct_ex_mul(x, a, d), ct_ex_mul(x, b, d)));
@@ -457,7 +457,7 @@ static void collecting_twice_rarely_changes_anything(void **unused)
     for (int round = 0; round < 300; round++) {
         struct fixture f;
         start(&f);
-        ct_ex e[60], from = random_mechanics(&r, &f, e, 4 + random_below(&r, 16));
+        ct_ex e[60] = {0}, from = random_mechanics(&r, &f, e, 4 + random_below(&r, 16));
         ct_ex once = ct_ex_collect(&f.x, from, NULL), twice = ct_ex_collect(&f.x, once, NULL);
         const char *s = ct_ex_text(f.arena, &f.x, once, NULL);
         changed += strcmp(s, ct_ex_text(f.arena, &f.x, twice, NULL)) != 0;

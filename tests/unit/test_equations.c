@@ -320,7 +320,7 @@ static void solve(const struct fixture *f, double *x)
 // f->symbol is set; accelerations by name of the joint.
 static double acceleration(struct fixture *f, const char *name)
 {
-    double x[8];
+    double x[8] = {0};
     evaluate(f);
     solve(f, x);
     for (size_t i = 0; i < f->e.nu; i++)

@@ -22,6 +22,7 @@ static int *dense(const struct ct_incidence *S)
             assert_in_range(S->row[k], 0, S->nrow - 1);
             assert_true(k == S->start[e] || S->row[k - 1] < S->row[k]);
             assert_true(S->value[k] == 1 || S->value[k] == -1);
+            // NOLINTNEXTLINE(bugprone-signed-char-misuse): 1 or -1, no character
             A[S->row[k] + S->nrow * e] = S->value[k];
         }
     return A;

@@ -500,6 +500,7 @@ static enum ct_eval near_top(void *user, double t, const double *y, double *g)
     const struct record *r = user;
     static const double scale[] = {1, -1, 5};
     for (int i = 0; i < r->nroot; i++)
+        // NOLINTNEXTLINE(clang-analyzer-core.UndefinedBinaryOperatorResult): nroot is at most 3
         g[i] = scale[i] * (y[0] - r->limit);
     return CT_EVAL_OK;
 }
