@@ -6,7 +6,7 @@
 // a complete orthogonal decomposition (Golub and Van Loan (2013), 5.5, key golub2013) rather than
 // taken from dgelsy, so that its rank is decided exactly as ct_qr_pivot decides it.
 //
-// Products with a matrix and Cholesky are plain loops: the mass matrix goes through them at every
+// Cholesky is plain loops: the mass matrix goes through it at every
 // stage, small matrices cost no more than a call, the result is the same with every BLAS and
 // number of threads, and a NaN is refused, which not every dpotrf does.
 #include "numeric/dense.h"
@@ -39,9 +39,6 @@ extern void dormrz_(const char *side, const char *trans, const int *m, const int
 extern void dtrtrs_(const char *uplo, const char *trans, const char *diag, const int *n,
                     const int *nrhs, const double *a, const int *lda, double *b, const int *ldb,
                     int *info, size_t, size_t, size_t);
-extern void dsysv_(const char *uplo, const int *n, const int *nrhs, double *a, const int *lda,
-                   int *ipiv, double *b, const int *ldb, double *work, const int *lwork,
-                   int *info, size_t);
 extern void dsyev_(const char *jobz, const char *uplo, const int *n, double *a, const int *lda,
                    double *w, double *work, const int *lwork, int *info, size_t, size_t);
 
@@ -53,29 +50,6 @@ static int min_int(int a, int b)
 static int max_int(int a, int b)
 {
     return a > b ? a : b;
-}
-
-void ct_gemv(double *restrict y, const double *A, const double *restrict x, int m, int n,
-             int lda)
-{
-    memset(y, 0, (size_t)m * sizeof *y);
-    for (int j = 0; j < n; j++) {
-        const double *a = A + (size_t)lda * j;
-        for (int i = 0; i < m; i++)
-            y[i] += a[i] * x[j];
-    }
-}
-
-void ct_gemv_t(double *restrict y, const double *A, const double *restrict x, int m, int n,
-               int lda)
-{
-    for (int j = 0; j < n; j++) {
-        const double *a = A + (size_t)lda * j;
-        double sum = 0;
-        for (int i = 0; i < m; i++)
-            sum += a[i] * x[i];
-        y[j] = sum;
-    }
 }
 
 // Right-looking: column k is finished, then taken off the columns behind it.
@@ -221,20 +195,6 @@ int ct_lstsq(double *b, double *A, int m, int n, int lda, double tol, int *iwork
 size_t ct_lstsq_work(int m, int n)
 {
     return (size_t)min_int(m, n) + (size_t)n + ct_qr_pivot_work(m, n); // tau, x, LAPACK's own
-}
-
-bool ct_symmetric_solve(double *b, double *A, int *pivot, int n, int lda, double *work)
-{
-    int info;
-    const int one = 1, ldb = max_int(1, n), lwork = (int)ct_symmetric_solve_work(n);
-    lda = max_int(1, lda);
-    dsysv_("L", &n, &one, A, &lda, pivot, b, &ldb, work, &lwork, &info, 1);
-    return info == 0;
-}
-
-size_t ct_symmetric_solve_work(int n)
-{
-    return (size_t)max_int(1, n);
 }
 
 bool ct_symmetric_eigenvalues(double *w, double *A, int n, int lda, double *work)

@@ -8,10 +8,6 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-/// y = A x, A (m x n).  y = A' x with transpose.
-void ct_gemv(double *y, const double *A, const double *x, int m, int n, int lda);
-void ct_gemv_t(double *y, const double *A, const double *x, int m, int n, int lda);
-
 /// Cholesky A = L L' in place (lower, n x n); false if A is not positive definite.
 bool ct_cholesky(double *A, int n, int lda);
 /// x (n x nrhs, in: right-hand sides, out: solutions) with the factor of ct_cholesky.
@@ -37,10 +33,6 @@ size_t ct_qr_pivot_work(int m, int n);
 /// A (m x n) is destroyed, b (max(m, n), in and out). Returns the rank with relative tolerance tol.
 int ct_lstsq(double *b, double *A, int m, int n, int lda, double tol, int *iwork, double *work);
 size_t ct_lstsq_work(int m, int n);
-
-/// Symmetric indefinite solve of A x = b, A (n x n, lower, destroyed); false if singular.
-bool ct_symmetric_solve(double *b, double *A, int *pivot, int n, int lda, double *work);
-size_t ct_symmetric_solve_work(int n);
 
 /// Eigenvalues w (n, ascending) of a symmetric matrix (lower; destroyed).
 bool ct_symmetric_eigenvalues(double *w, double *A, int n, int lda, double *work);
