@@ -13,7 +13,7 @@ enum { FEW_POINTS = 4, MANY_POINTS = 8 }; // sections that are constant, that va
 struct point {
     int element;
     ct_ex m, j[3];
-    ct_ex3 r, rate, bias;    // place from the base; bias: second derivative with u' = 0
+    ct_ex3 r, rate, bias;      // place from the base; bias: second derivative with u' = 0
     ct_ex along[CT_PLACE_DOF]; // d r_x/d dof
     ct_ex place[4], turn[4], linear[2]; // shapes there
     ct_ex3 spin;                        // rate of the section's rotation
@@ -31,7 +31,7 @@ struct ct_inertia {
 
 static enum ct_rule mass_rule(const struct ct_beam *beam)
 {
-    return beam->is_lumped                               ? CT_RULE_ENDS
+    return beam->is_lumped                        ? CT_RULE_ENDS
          : beam->integration == CT_BEAM_ONE_POINT ? CT_RULE_MIDDLE
                                                   : CT_RULE_FULL;
 }
@@ -93,8 +93,8 @@ static void place_point(struct ct_build *b, const struct ct_flexible *f, struct 
     const ct_ex rest = ct_ex_add(x, e->span.start, ct_ex_mul(x, xi, h));
     p->r = (ct_ex3){{ct_ex_add(x, rest, a.value), dot4(b, p->place, e->value + 2),
                      dot4(b, p->place, e->value + 6)}};
-    p->rate = (ct_ex3){
-        {a.rate, dot4(b, p->place, e->rate + 2), dot4(b, p->place, e->rate + 6)}};
+    p->rate
+        = (ct_ex3){{a.rate, dot4(b, p->place, e->rate + 2), dot4(b, p->place, e->rate + 6)}};
     p->bias = (ct_ex3){{a.bias, CT_EX_ZERO, CT_EX_ZERO}};
     p->spin = turning(b, p, e->rate);
 }
@@ -131,8 +131,8 @@ static ct_ex3 own_acceleration(struct ct_build *b, const struct ct_flexible *f,
     ct_ex along = chain ? chain[p->element] : CT_EX_ZERO;
     for (int i = 0; i < CT_PLACE_DOF; i++)
         along = ct_ex_add(b->x, along, ct_ex_mul(b->x, p->along[i], acceleration[i]));
-    return (ct_ex3){{along, dot4(b, p->place, acceleration + 2),
-                     dot4(b, p->place, acceleration + 6)}};
+    return (ct_ex3){
+        {along, dot4(b, p->place, acceleration + 2), dot4(b, p->place, acceleration + 6)}};
 }
 
 static ct_ex *chain_accelerations(struct ct_build *b, const struct ct_flexible *f)
@@ -143,9 +143,9 @@ static ct_ex *chain_accelerations(struct ct_build *b, const struct ct_flexible *
     for (int e = 0; e < f->beam->nelement; e++) {
         c[e + 1] = c[e];
         for (int j = 2; j < CT_PLACE_DOF; j++)
-            c[e + 1] = ct_ex_add(
-                b->x, c[e + 1],
-                ct_ex_mul(b->x, f->element[e].g[j], f->element[e].acceleration[j]));
+            c[e + 1]
+                = ct_ex_add(b->x, c[e + 1],
+                            ct_ex_mul(b->x, f->element[e].g[j], f->element[e].acceleration[j]));
     }
     return c;
 }
@@ -354,7 +354,8 @@ struct plane_matrices {
 };
 
 static ct_ex pair_integral(struct ct_build *b, const struct ct_flexible *f, int e, ct_ex g,
-                           const struct ct_shape *p, const struct ct_shape *q, enum ct_rule rule)
+                           const struct ct_shape *p, const struct ct_shape *q,
+                           enum ct_rule rule)
 {
     const struct ct_profile profile = {f->beam->x, g};
     const struct ct_shape both = ct_shape_mul(p, q);
@@ -396,7 +397,8 @@ static struct plane_matrices plane_matrices(struct ct_build *b, const struct ct_
                               &f->shape.place[k], mass),
                 pair_integral(b, f, e, J, &f->shape.rotation[j], &f->shape.rotation[k], mass));
             s.E[j][k] = ct_ex_add(
-                x, pair_integral(b, f, e, CT_EX_ONE, &f->shape.slope[j], &f->shape.slope[k], rule),
+                x,
+                pair_integral(b, f, e, CT_EX_ONE, &f->shape.slope[j], &f->shape.slope[k], rule),
                 pair_integral(b, f, e, radius, &bend[j], &bend[k], rule));
         }
     return s;
@@ -425,7 +427,8 @@ static void bend_element(struct ct_build *b, const struct ct_flexible *f, int e,
         ct_ex drag = ct_ex_mul(x, beam->damping_stiffness, product(b, s->K[j], r));
         drag = ct_ex_add(x, drag, ct_ex_mul(x, beam->damping_mass, product(b, s->M[j], r)));
         out->row[first + j] = ct_ex_add(x, out->row[first + j], ct_ex_add(x, elastic, drag));
-        out->energy = ct_ex_add(x, out->energy, ct_ex_scale(x, 0.5, ct_ex_mul(x, a[j], elastic)));
+        out->energy
+            = ct_ex_add(x, out->energy, ct_ex_scale(x, 0.5, ct_ex_mul(x, a[j], elastic)));
         out->drag = ct_ex_add(x, out->drag, ct_ex_mul(x, r[j], drag));
     }
 }
@@ -450,7 +453,8 @@ static struct stretch stretch_of(struct ct_build *b, const struct ct_flexible *f
             const int dof = (k ? 6 : 2) + j;
             const ct_ex Ea = product(b, plane[k].E[j], self->value + (k ? 6 : 2));
             s.slope[dof] = Ea;
-            s.value = ct_ex_add(x, s.value, ct_ex_scale(x, 0.5, ct_ex_mul(x, Ea, self->value[dof])));
+            s.value = ct_ex_add(x, s.value,
+                                ct_ex_scale(x, 0.5, ct_ex_mul(x, Ea, self->value[dof])));
             s.rate = ct_ex_add(x, s.rate, ct_ex_mul(x, Ea, self->rate[dof]));
         }
     return s;
@@ -471,14 +475,14 @@ static void stretch_element(struct ct_build *b, const struct ct_flexible *f, int
     const ct_ex N = ct_ex_add(x, elastic, drag);
     for (int j = 0; j < CT_PLACE_DOF; j++)
         out->row[j] = ct_ex_add(x, out->row[j], ct_ex_mul(x, N, s.slope[j]));
-    out->energy = ct_ex_add(x, out->energy, ct_ex_scale(x, 0.5, ct_ex_mul(x, elastic, s.value)));
+    out->energy
+        = ct_ex_add(x, out->energy, ct_ex_scale(x, 0.5, ct_ex_mul(x, elastic, s.value)));
     out->drag = ct_ex_add(x, out->drag, ct_ex_mul(x, drag, s.rate));
     for (int j = 0; j < 2 && !ct_ex_is_zero(beam->damping_mass); j++)
         for (int i = 0; i < 2; i++) {
             const ct_ex m = pair_integral(b, f, e, beam->mass_per_length, &f->linear[j],
                                           &f->linear[i], mass_rule(beam));
-            const ct_ex v
-                = ct_ex_mul(x, beam->damping_mass, ct_ex_mul(x, m, self->rate[i]));
+            const ct_ex v = ct_ex_mul(x, beam->damping_mass, ct_ex_mul(x, m, self->rate[i]));
             out->row[j] = ct_ex_add(x, out->row[j], v);
             out->drag = ct_ex_add(x, out->drag, ct_ex_mul(x, v, self->rate[j]));
         }
@@ -513,13 +517,13 @@ static void twist_element(struct ct_build *b, const struct ct_flexible *f, int e
     }
 }
 
-static struct element_force element_force(struct ct_build *b, const struct ct_flexible *f, int e)
+static struct element_force element_force(struct ct_build *b, const struct ct_flexible *f,
+                                          int e)
 {
     struct element_force out = {0};
     struct plane_matrices plane[2];
     for (int k = 0; k < 2; k++) {
-        const bool bends
-            = f->deformation & (k ? CT_BEAM_BENDING_Y : CT_BEAM_BENDING_Z);
+        const bool bends = f->deformation & (k ? CT_BEAM_BENDING_Y : CT_BEAM_BENDING_Z);
         plane[k] = bends ? plane_matrices(b, f, e, k) : (struct plane_matrices){0};
         if (bends)
             bend_element(b, f, e, k, &plane[k], &out);
@@ -580,8 +584,7 @@ static void relative_wrench(struct ct_build *b, const struct ct_flexible *f,
         spin = ct_ex3_add(x, spin, times(b, p->j, p->spin));
         if (level == CT_FULL)
             *torque = ct_ex3_add(
-                x, *torque,
-                times(b, p->j, turning(b, p, f->element[p->element].acceleration)));
+                x, *torque, times(b, p->j, turning(b, p, f->element[p->element].acceleration)));
     }
     *torque = ct_ex3_add(x, *torque, ct_ex3_cross(x, m->w, spin));
 }
@@ -662,7 +665,8 @@ struct ct_flexible_state ct_flexible_moving(struct ct_build *b, const struct ct_
 // Sums over the points of an element that its columns need.
 struct element_mass {
     ct_ex M[CT_DOF][CT_DOF];
-    ct_ex3 moved[CT_DOF], swept[CT_DOF]; // sum m dr, sum m r x dr (and of the sections' rotation)
+    ct_ex3 moved[CT_DOF],
+        swept[CT_DOF]; // sum m dr, sum m r x dr (and of the sections' rotation)
     ct_ex m;
     ct_ex3 moment;
 };
@@ -709,11 +713,12 @@ static void add_point_mass(struct ct_build *b, const struct point *p, struct ele
     }
 }
 
-static void push_pair(struct ct_build *b, const struct ct_flexible *f, int e, int j, int g, int k,
-                      ct_ex value, ct_ex *M)
+static void push_pair(struct ct_build *b, const struct ct_flexible *f, int e, int j, int g,
+                      int k, ct_ex value, ct_ex *M)
 {
     int sj, sk;
-    const struct ct_freedom *p = ct_dof_freedom(f, e, j, &sj), *q = ct_dof_freedom(f, g, k, &sk);
+    const struct ct_freedom *p = ct_dof_freedom(f, e, j, &sj),
+                            *q = ct_dof_freedom(f, g, k, &sk);
     if (!p || !q || ct_ex_is_zero(value))
         return;
     for (int i = 0; i < p->npart; i++)
@@ -788,8 +793,9 @@ static void elastic_block(struct ct_build *b, const struct ct_flexible *f, struc
 }
 
 // Rows of the elastic coordinates in the column of a speed that moves the base: coef (p . moved + s . swept).
-static void base_column(struct ct_build *b, const struct ct_flexible *f, const struct columns *c,
-                        ct_ex3 p, ct_ex3 s, const struct ct_term *term, int nterm, ct_ex *M)
+static void base_column(struct ct_build *b, const struct ct_flexible *f,
+                        const struct columns *c, ct_ex3 p, ct_ex3 s, const struct ct_term *term,
+                        int nterm, ct_ex *M)
 {
     for (int k = 0; k < f->nelastic; k++) {
         const ct_ex m = ct_ex_add(b->x, ct_ex3_dot(b->x, p, c->moved[k]),
@@ -822,9 +828,10 @@ static void base_columns(struct ct_build *b, const struct ct_flexible *f,
         for (int a = at->anchor; a > 0; a = b->anchor[a].parent)
             if (ct_cluster_is_outboard(b, spin->cluster, b->anchor[a].cluster))
                 reach = ct_ex3_add(x, reach, ct_link_vector(b, a));
-        const ct_ex3 p = ct_ex3_is_zero(reach)
-                           ? zero3
-                           : into(b, f, ct_ex3_cross(x, spin->axis, ct_build_in_plane(b, reach)));
+        const ct_ex3 p
+            = ct_ex3_is_zero(reach)
+                ? zero3
+                : into(b, f, ct_ex3_cross(x, spin->axis, ct_build_in_plane(b, reach)));
         if (ct_cluster_is_outboard(b, spin->cluster, at->frame)) {
             if (spin->cluster == at->frame && !ct_ex3_is_zero(spin->local))
                 s = ct_ex33_apply_t(x, &at->S, spin->local);
@@ -841,10 +848,9 @@ static void base_columns(struct ct_build *b, const struct ct_flexible *f,
             const struct ct_term term = {slide->speed, slide->driver, CT_EX_ONE};
             if (slide->speed < 0)
                 continue;
-            const ct_ex3 p
-                = b->anchor[a].cluster == at->frame
-                    ? ct_ex33_apply_t(x, &at->S, slide->p)
-                    : into(b, f, ct_cluster_turn(b, b->anchor[a].cluster, slide->p));
+            const ct_ex3 p = b->anchor[a].cluster == at->frame
+                               ? ct_ex33_apply_t(x, &at->S, slide->p)
+                               : into(b, f, ct_cluster_turn(b, b->anchor[a].cluster, slide->p));
             base_column(b, f, c, p, zero3, &term, 1, M);
         }
 }

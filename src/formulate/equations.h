@@ -115,7 +115,7 @@ struct ct_equations {
     ct_ex work_symbol;
     ct_ex power; // d(work)/dt, in terms of u' and lam where drivers push; 0 when nothing works
     ct_ex kinetic, potential, strain; // strain: of beams
-    struct ct_residual *residual; // NULL if not asked for
+    struct ct_residual *residual;     // NULL if not asked for
     bool is_planar;
     struct ct_left_out *left_out;
     size_t nleft_out, left_out_cap;

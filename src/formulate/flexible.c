@@ -13,8 +13,9 @@ static const ct_ex3 zero3 = {{{0}, {0}, {0}}};
 // Deformation a kind of freedom belongs to.
 static unsigned family_of(int kind)
 {
-    static const unsigned family[NKIND] = {CT_BEAM_AXIAL,   CT_BEAM_BENDING_Z, CT_BEAM_BENDING_Y,
-                                           CT_BEAM_TORSION, CT_BEAM_BENDING_Y, CT_BEAM_BENDING_Z};
+    static const unsigned family[NKIND]
+        = {CT_BEAM_AXIAL,   CT_BEAM_BENDING_Z, CT_BEAM_BENDING_Y,
+           CT_BEAM_TORSION, CT_BEAM_BENDING_Y, CT_BEAM_BENDING_Z};
     return family[kind];
 }
 
@@ -33,8 +34,8 @@ static bool is_fixed(const struct ct_flexible *f, int node, int kind)
 static void number_dofs(struct ct_flexible *f)
 {
     static const int kinds[CT_DOF / 2 * 2][2]
-        = {{0, U},  {1, U},  {0, V}, {0, RZ}, {1, V},  {1, RZ},
-           {0, W},  {0, RY}, {1, W}, {1, RY}, {0, RX}, {1, RX}};
+        = {{0, U}, {1, U},  {0, V}, {0, RZ}, {1, V},  {1, RZ},
+           {0, W}, {0, RY}, {1, W}, {1, RY}, {0, RX}, {1, RX}};
     for (int e = 0; e < f->beam->nelement; e++)
         for (int j = 0; j < CT_DOF; j++) {
             const int node = e + kinds[j][0], kind = kinds[j][1];
@@ -92,7 +93,7 @@ static enum ct_axial axial_of(const struct ct_flexible *f)
 static void settle(struct ct_build *b, struct ct_flexible *f)
 {
     const struct ct_beam *beam = f->beam;
-    f->deformation = beam->deformation & in_plane(b, f);
+    f->deformation = b->is_rigid ? 0 : beam->deformation & in_plane(b, f);
     f->formulation
         = beam->formulation == CT_BEAM_AUTO ? CT_BEAM_FORESHORTENING : beam->formulation;
     f->axial = axial_of(f);
@@ -149,12 +150,12 @@ static int new_unknown(struct ct_build *b, struct ct_flexible *f, const char *na
     u.q = (int)s->nq;
     q.symbol = ct_ex_sym(b->x, CT_SYM_Q, name, (uint32_t)s->nq);
     u.symbol = q.rate = ct_ex_sym(b->x, CT_SYM_U, u.name, (uint32_t)s->nu);
-    u.derivative = ct_ex_sym(b->x, CT_SYM_A, ct_arena_printf(b->arena, "%s.a", name),
-                             (uint32_t)s->nu);
+    u.derivative
+        = ct_ex_sym(b->x, CT_SYM_A, ct_arena_printf(b->arena, "%s.a", name), (uint32_t)s->nu);
     CT_PUSH(b->arena, s->q, s->nq, s->q_cap, q);
     CT_PUSH(b->arena, s->u, s->nu, s->u_cap, u);
-    f->elastic[f->nelastic] = (struct ct_elastic){
-        name, u.q, (int)s->nu - 1, q.symbol, u.symbol, u.derivative};
+    f->elastic[f->nelastic]
+        = (struct ct_elastic){name, u.q, (int)s->nu - 1, q.symbol, u.symbol, u.derivative};
     return f->nelastic++;
 }
 
@@ -193,7 +194,8 @@ static void run_chain(struct ct_build *b, struct ct_flexible *f)
                     Er = ct_ex_add(x, Er, ct_ex_mul(x, E, self->rate[first + k]));
                 }
                 self->g[first + j] = ct_ex_neg(x, Ea);
-                c = ct_ex_sub(x, c, ct_ex_scale(x, 0.5, ct_ex_mul(x, Ea, self->value[first + j])));
+                c = ct_ex_sub(x, c,
+                              ct_ex_scale(x, 0.5, ct_ex_mul(x, Ea, self->value[first + j])));
                 rate = ct_ex_sub(x, rate, ct_ex_mul(x, Ea, self->rate[first + j]));
                 bias = ct_ex_sub(x, bias, ct_ex_mul(x, Er, self->rate[first + j]));
             }
@@ -237,9 +239,9 @@ ct_ex ct_element_field(struct ct_build *b, const struct ct_element *e,
     ct_ex sum = CT_EX_ZERO;
     for (int j = 0; j < n; j++)
         if (!ct_ex_is_zero(of[from + j]))
-            sum = ct_ex_add(
-                b->x, sum,
-                ct_ex_mul(b->x, ct_shape_at(b->x, &shape[j], xi, e->span.length), of[from + j]));
+            sum = ct_ex_add(b->x, sum,
+                            ct_ex_mul(b->x, ct_shape_at(b->x, &shape[j], xi, e->span.length),
+                                      of[from + j]));
     return sum;
 }
 
@@ -260,9 +262,10 @@ void ct_axial_field(struct ct_build *b, const struct ct_flexible *f, int e, ct_e
     struct ct_exs *x = b->x;
     const struct ct_element *self = &f->element[e];
     memset(a, 0, sizeof *a);
-    a->value = ct_ex_add(x, self->c, ct_element_field(b, self, f->linear, self->value, 0, 2, xi));
-    a->rate
-        = ct_ex_add(x, self->c_rate, ct_element_field(b, self, f->linear, self->rate, 0, 2, xi));
+    a->value
+        = ct_ex_add(x, self->c, ct_element_field(b, self, f->linear, self->value, 0, 2, xi));
+    a->rate = ct_ex_add(x, self->c_rate,
+                        ct_element_field(b, self, f->linear, self->rate, 0, 2, xi));
     a->bias = self->c_bias;
     for (int j = 0; j < 2; j++)
         a->slope[j] = ct_shape_at(x, &f->linear[j], xi, self->span.length);
@@ -272,8 +275,8 @@ void ct_axial_field(struct ct_build *b, const struct ct_flexible *f, int e, ct_e
             const ct_ex s = quadratic_slope(b, f, e, plane, j, self->value, xi);
             const ct_ex r = quadratic_slope(b, f, e, plane, j, self->rate, xi);
             a->slope[dof] = s;
-            a->value
-                = ct_ex_add(x, a->value, ct_ex_scale(x, 0.5, ct_ex_mul(x, s, self->value[dof])));
+            a->value = ct_ex_add(x, a->value,
+                                 ct_ex_scale(x, 0.5, ct_ex_mul(x, s, self->value[dof])));
             a->rate = ct_ex_add(x, a->rate, ct_ex_mul(x, s, self->rate[dof]));
             a->bias = ct_ex_add(x, a->bias, ct_ex_mul(x, r, self->rate[dof]));
         }
@@ -298,9 +301,7 @@ void ct_flexible_station(struct ct_build *b, const struct ct_flexible *f, ct_ex 
     const struct ct_element *self = &f->element[e];
     const ct_ex xi = ct_ex_div(x, ct_ex_sub(x, place, self->span.start), self->span.length);
     const double where = ct_ex_value(x, xi, b->value);
-    s->xi = fabs(where) < at_node       ? CT_EX_ZERO
-          : fabs(where - 1) < at_node ? CT_EX_ONE
-                                        : xi;
+    s->xi = fabs(where) < at_node ? CT_EX_ZERO : fabs(where - 1) < at_node ? CT_EX_ONE : xi;
     struct ct_axial_field a;
     ct_axial_field(b, f, e, s->xi, &a);
     s->place.e[0] = ct_ex_add(x, place, a.value);
@@ -349,5 +350,6 @@ void ct_station_partials(struct ct_build *b, const struct ct_flexible *f,
     }
     for (int e = 0; e < s->element && f->axial == CT_AXIAL_CHAIN; e++)
         for (int j = 2; j < CT_PLACE_DOF; j++)
-            add_partial(b, f, e, j, (ct_ex3){{f->element[e].g[j], CT_EX_ZERO, CT_EX_ZERO}}, slide);
+            add_partial(b, f, e, j, (ct_ex3){{f->element[e].g[j], CT_EX_ZERO, CT_EX_ZERO}},
+                        slide);
 }

@@ -40,17 +40,18 @@ struct ct_freedom {
 
 struct ct_element {
     struct ct_span span;
-    int freedom[CT_DOF]; // -1: fixed
+    int freedom[CT_DOF];                                     // -1: fixed
     ct_ex value[CT_DOF], rate[CT_DOF], acceleration[CT_DOF]; // of the dofs
-    ct_ex c, c_rate, c_bias; // CHAIN: foreshortening at its start, its rate, second derivative with u' = 0
-    ct_ex g[CT_PLACE_DOF];   // CHAIN: d(c of the next element - c)/d(dof)
+    ct_ex c, c_rate,
+        c_bias; // CHAIN: foreshortening at its start, its rate, second derivative with u' = 0
+    ct_ex g[CT_PLACE_DOF]; // CHAIN: d(c of the next element - c)/d(dof)
 };
 
 /// A section of the beam: displacement u of the axis, rotation Rz(angle[2]) Ry(angle[1]) Rx(angle[0])  (1.7b).
 struct ct_station {
     int element;
     ct_ex xi;
-    ct_ex3 place;    // x + u
+    ct_ex3 place; // x + u
     ct_ex angle[3];
 };
 
@@ -68,14 +69,14 @@ struct ct_flexible {
     struct ct_bending shape;
     struct ct_shape linear[2];
     struct ct_shape shortening[4][4], bubble[4][4]; // E(xi), D(xi)
-    ct_ex strain;                                  // [J], once the stiffness is derived
-    struct ct_inertia *inertia;                    // elastic.c
+    ct_ex strain;                                   // [J], once the stiffness is derived
+    struct ct_inertia *inertia;                     // elastic.c
 };
 
 /// Axial displacement of the axis at one place of an element.
 struct ct_axial_field {
-    ct_ex value, rate, bias;      // bias: second derivative with u' = 0
-    ct_ex slope[CT_PLACE_DOF];    // by the element's own dofs
+    ct_ex value, rate, bias;   // bias: second derivative with u' = 0
+    ct_ex slope[CT_PLACE_DOF]; // by the element's own dofs
 };
 
 // ---- flexible.c: coordinates and places ----------------------------------------------------------
@@ -99,8 +100,9 @@ void ct_station_partials(struct ct_build *b, const struct ct_flexible *f,
 /// Parts of element e's dof j: *sign times those of the freedom; NULL if it is fixed.
 const struct ct_freedom *ct_dof_freedom(const struct ct_flexible *f, int e, int j, int *sign);
 /// sum over the dofs in [from, to) of the shape times the value (rate, ...) of each.
-ct_ex ct_element_field(struct ct_build *b, const struct ct_element *e, const struct ct_shape *shape,
-                       const ct_ex *of, int from, int n, ct_ex xi);
+ct_ex ct_element_field(struct ct_build *b, const struct ct_element *e,
+                       const struct ct_shape *shape, const ct_ex *of, int from, int n,
+                       ct_ex xi);
 
 // ---- elastic.c: dynamics ---------------------------------------------------------------------------
 
@@ -115,13 +117,14 @@ void ct_flexible_sweep(struct ct_build *b, enum ct_level level, const ct_ex3 *ap
 /// Mass, com (less the base's place), momentum, angular momentum about the base's origin, kinetic energy; ground axes.
 struct ct_flexible_state {
     ct_ex mass;
-    ct_ex3 moment;   // mass (com - base)
+    ct_ex3 moment; // mass (com - base)
     ct_ex3 momentum, spin;
     ct_ex twice_kinetic;
 };
 struct ct_flexible_state ct_flexible_moving(struct ct_build *b, const struct ct_flexible *f);
 /// Force and torque about the base that the beam's inertia and weight need, with the symbols u'; ground axes.
-void ct_flexible_wrench(struct ct_build *b, const struct ct_flexible *f, ct_ex3 *force, ct_ex3 *torque);
+void ct_flexible_wrench(struct ct_build *b, const struct ct_flexible *f, ct_ex3 *force,
+                        ct_ex3 *torque);
 /// [J]
 ct_ex ct_flexible_strain(struct ct_build *b, const struct ct_flexible *f);
 /// Power of the beams' own damping, negative.

@@ -47,7 +47,7 @@ static struct ct_build *build_create(struct ct_ctx *ctx, struct ct_arena *a,
                                      const struct ct_formulate_options *o)
 {
     struct ct_build *b = CT_NEW(a, struct ct_build);
-    *b = (struct ct_build){.ctx = ctx, .arena = a, .model = m};
+    *b = (struct ct_build){.ctx = ctx, .arena = a, .model = m, .is_rigid = o->measure_all};
     b->eqs = CT_NEW(a, struct ct_equations);
     b->x = b->eqs->x = clone_store(a, m->x);
     b->value = start_values(a, m);
@@ -446,17 +446,6 @@ static void measure_all(struct ct_build *b)
     }
 }
 
-static bool check_bodies(struct ct_ctx *ctx, const struct ct_model *m)
-{
-    bool ok = true;
-    for (size_t i = 1; i < m->nbody; i++)
-        if (m->body[i].beam)
-            ok = ct_error(ctx, m->body[i].instance.mark, CT_E_LATER,
-                          "body '%s': motions of beams are not available yet",
-                          m->body[i].instance.name);
-    return ok;
-}
-
 bool ct_formulate(struct ct_ctx *ctx, struct ct_arena *a, const struct ct_model *m,
                   const struct ct_formulate_options *options, struct ct_equations *out,
                   struct ct_tree_report *report)
@@ -464,8 +453,7 @@ bool ct_formulate(struct ct_ctx *ctx, struct ct_arena *a, const struct ct_model 
     struct ct_build *b = build_create(ctx, a, m, options);
     struct search s = {ctx, m, options, a};
     *report = (struct ct_tree_report){0};
-    if (!check_bodies(ctx, m) || !choose_trees(b, &s, report)
-        || !derive(b, !options->without_dynamics))
+    if (!choose_trees(b, &s, report) || !derive(b, !options->without_dynamics))
         return false;
     if (options->with_solution)
         ct_solution_derive(b);

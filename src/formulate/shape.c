@@ -1,7 +1,6 @@
 // See shape.h.
 #include "formulate/shape.h"
-
-#include <math.h>
+#include "expr/quadrature.h"
 
 static const struct ct_shape one = {.c = {1}};
 
@@ -79,9 +78,9 @@ void ct_shape_linear(struct ct_shape f[2])
 void ct_shape_bending(enum ct_beam_theory theory, struct ct_bending *s)
 {
     const struct ct_shape cubic[4] = {{.c = {1, 0, -3, 2}},
-                                     {.c = {0, 1, -2, 1}, .power = 1},
-                                     {.c = {0, 0, 3, -2}},
-                                     {.c = {0, 0, -1, 1}, .power = 1}};
+                                      {.c = {0, 1, -2, 1}, .power = 1},
+                                      {.c = {0, 0, 3, -2}},
+                                      {.c = {0, 0, -1, 1}, .power = 1}};
     struct ct_shape linear[2];
     ct_shape_linear(linear);
     for (int i = 0; i < 4; i++) {
@@ -99,36 +98,13 @@ void ct_shape_bending(enum ct_beam_theory theory, struct ct_bending *s)
 
 // ---- integrals --------------------------------------------------------------------------------------
 
-// Gauss-Legendre points and weights on [0, 1]: roots of P_n by Newton's method.
-static void gauss(int n, double *xi, double *w)
-{
-    const double pi = 3.14159265358979323846;
-    for (int i = 0; i < n; i++) {
-        double z = cos(pi * (i + 0.75) / (n + 0.5)), slope = 1;
-        for (int step = 0; step < 100; step++) {
-            double p = 1, last = 0;
-            for (int k = 0; k < n; k++) {
-                const double next = ((2 * k + 1) * z * p - k * last) / (k + 1);
-                last = p;
-                p = next;
-            }
-            slope = n * (z * p - last) / (z * z - 1);
-            const double d = p / slope;
-            z -= d;
-            if (fabs(d) < 1e-15)
-                break;
-        }
-        xi[n - 1 - i] = 0.5 * (1 + z);
-        w[n - 1 - i] = 1 / ((1 - z * z) * slope * slope);
-    }
-}
-
 static ct_ex place_at(struct ct_exs *x, const struct ct_span *e, double xi)
 {
     return ct_ex_add(x, e->start, ct_ex_scale(x, xi, e->length));
 }
 
-ct_ex ct_profile_at(struct ct_exs *x, const struct ct_profile *g, const struct ct_span *e, double xi)
+ct_ex ct_profile_at(struct ct_exs *x, const struct ct_profile *g, const struct ct_span *e,
+                    double xi)
 {
     const ct_ex at = place_at(x, e, xi);
     return ct_ex_subst(x, g->value, &g->x, &at, 1);
@@ -149,12 +125,12 @@ static double unit_integral(const struct ct_shape *p)
     return sum / common;
 }
 
-static ct_ex gauss_integral(struct ct_exs *x, const struct ct_profile *g, const struct ct_shape *p,
-                            const struct ct_span *e)
+static ct_ex gauss_integral(struct ct_exs *x, const struct ct_profile *g,
+                            const struct ct_shape *p, const struct ct_span *e)
 {
     double xi[CT_MAX_GAUSS], w[CT_MAX_GAUSS];
     ct_ex sum = CT_EX_ZERO;
-    gauss(CT_MAX_GAUSS, xi, w);
+    ct_gauss(CT_MAX_GAUSS, xi, w);
     for (int i = 0; i < CT_MAX_GAUSS; i++)
         sum = ct_ex_add(
             x, sum, ct_ex_scale(x, w[i] * value_at(p, xi[i]), ct_profile_at(x, g, e, xi[i])));
@@ -167,9 +143,9 @@ ct_ex ct_shape_integral(struct ct_exs *x, const struct ct_profile *g, const stru
     ct_ex sum;
     if (rule == CT_RULE_ENDS) {
         const double ends = 0.5 * (value_at(p, 0) + value_at(p, 1));
-        return with_power(
-            x, ct_ex_scale(x, ends, ct_shape_integral(x, g, &one, e, CT_RULE_FULL)), p->power,
-            e->length);
+        return with_power(x,
+                          ct_ex_scale(x, ends, ct_shape_integral(x, g, &one, e, CT_RULE_FULL)),
+                          p->power, e->length);
     }
     if (rule == CT_RULE_MIDDLE)
         sum = ct_ex_scale(x, value_at(p, 0.5), ct_profile_at(x, g, e, 0.5));
@@ -181,7 +157,8 @@ ct_ex ct_shape_integral(struct ct_exs *x, const struct ct_profile *g, const stru
 }
 
 int ct_shape_points(struct ct_exs *x, const struct ct_profile *g, const struct ct_span *e,
-                    enum ct_rule rule, int n, double xi[CT_MAX_GAUSS], ct_ex weight[CT_MAX_GAUSS])
+                    enum ct_rule rule, int n, double xi[CT_MAX_GAUSS],
+                    ct_ex weight[CT_MAX_GAUSS])
 {
     double w[CT_MAX_GAUSS] = {1};
     if (rule == CT_RULE_ENDS) {
@@ -195,9 +172,10 @@ int ct_shape_points(struct ct_exs *x, const struct ct_profile *g, const struct c
         n = 1;
         xi[0] = 0.5;
     } else {
-        gauss(n, xi, w);
+        ct_gauss(n, xi, w);
     }
     for (int i = 0; i < n; i++)
-        weight[i] = ct_ex_mul(x, ct_ex_scale(x, w[i], ct_profile_at(x, g, e, xi[i])), e->length);
+        weight[i]
+            = ct_ex_mul(x, ct_ex_scale(x, w[i], ct_profile_at(x, g, e, xi[i])), e->length);
     return n;
 }

@@ -50,8 +50,10 @@ ct_ex ct_shape_integral(struct ct_exs *x, const struct ct_profile *g, const stru
                         const struct ct_span *e, enum ct_rule rule);
 /// Points of a rule and what of the integral of g belongs to each; returns their number. FULL: n Gauss points.
 int ct_shape_points(struct ct_exs *x, const struct ct_profile *g, const struct ct_span *e,
-                    enum ct_rule rule, int n, double xi[CT_MAX_GAUSS], ct_ex weight[CT_MAX_GAUSS]);
+                    enum ct_rule rule, int n, double xi[CT_MAX_GAUSS],
+                    ct_ex weight[CT_MAX_GAUSS]);
 /// Value at xi.
-ct_ex ct_profile_at(struct ct_exs *x, const struct ct_profile *g, const struct ct_span *e, double xi);
+ct_ex ct_profile_at(struct ct_exs *x, const struct ct_profile *g, const struct ct_span *e,
+                    double xi);
 
 #endif

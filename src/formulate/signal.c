@@ -227,8 +227,7 @@ static ct_ex3 beam_vector(struct ct_build *b, const struct ct_flexible *f, int p
     const ct_ex3 r = ct_node_position(b, f->base);
     if (property == 0)
         return ct_ex3_add(x, ct_ex3_scale(x, s.mass, r), s.moment);
-    return property == 1 ? s.momentum
-                         : ct_ex3_add(x, ct_ex3_cross(x, r, s.momentum), s.spin);
+    return property == 1 ? s.momentum : ct_ex3_add(x, ct_ex3_cross(x, r, s.momentum), s.spin);
 }
 
 static ct_ex3 system_vector(struct ct_build *b, int property)
@@ -426,9 +425,8 @@ static ct_ex beam_energies(struct ct_build *b, const struct ct_flexible *f)
     struct ct_exs *x = b->x;
     const struct ct_flexible_state s = ct_flexible_moving(b, f);
     b->eqs->strain = ct_ex_add(x, b->eqs->strain, ct_flexible_strain(b, f));
-    b->eqs->potential
-        = ct_ex_sub(x, b->eqs->potential,
-                    ct_ex3_dot(x, b->model->gravity, beam_vector(b, f, 0)));
+    b->eqs->potential = ct_ex_sub(x, b->eqs->potential,
+                                  ct_ex3_dot(x, b->model->gravity, beam_vector(b, f, 0)));
     return s.twice_kinetic;
 }
 

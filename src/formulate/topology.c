@@ -47,7 +47,8 @@ static ct_ex33 turns_to_matrix(struct ct_exs *x, const struct ct_turn *turn, int
 
 // Arm of a beam, from its base to the section at x.
 static struct ct_edge_info *add_section(struct ct_build *b, struct ct_flexible *f,
-                                        const char *name, struct ct_mark mark, int node, ct_ex x)
+                                        const char *name, struct ct_mark mark, int node,
+                                        ct_ex x)
 {
     struct ct_edge_info *e = add_edge(b, CT_EDGE_ARM, name, mark, f->base, node);
     e->index = -1;

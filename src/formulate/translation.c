@@ -70,8 +70,7 @@ static void place_sliding(struct ct_build *b, const struct ct_edge_info *e,
     a->moves = true;
     a->slide = CT_NEWN(b->arena, struct ct_slide, (f ? f->nelastic : e->ncoordinate) + 1);
     for (int k = 0; f && k < f->nelastic; k++)
-        add_slide(b, a, f->elastic[k].u, -1, sign,
-                  ct_ex33_apply(b->x, &tail->S, e->slide[k]));
+        add_slide(b, a, f->elastic[k].u, -1, sign, ct_ex33_apply(b->x, &tail->S, e->slide[k]));
     for (int k = 0; k < e->ncoordinate; k++) {
         const struct ct_coordinate *c = &b->coordinate[e->first_coordinate + k];
         ct_ex3 p_tail;
