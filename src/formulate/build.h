@@ -55,7 +55,8 @@ struct ct_edge_info {
     struct ct_flexible *flexible;      // arms of beams: the beam, with the section at `along`
     ct_ex along;                       // [m]
     const struct ct_station *station;  // once the beam's coordinates are chosen
-    ct_ex3 *slide, *turn;              // of the station, by elastic coordinate
+    ct_ex3 *foreshortened; // slides that forces act along, where they differ; else NULL
+    ct_ex3 *slide, *turn;  // of the station, by elastic coordinate
 };
 
 /// coef times a speed: of an unknown (speed >= 0) or of a driver (driver >= 0).
@@ -93,6 +94,8 @@ struct ct_cluster {
 struct ct_slide {
     int speed, driver;
     ct_ex3 p;
+    ct_ex3
+        extra; // what forces act along besides: foreshortening that the kinematics leaves out
 };
 
 /// Vector from the parent anchor to this one: R_cluster (local).
