@@ -1,5 +1,6 @@
 // See flexible.h.
-#include "formulate/flexible.h"
+#include "formulate/excite.h"
+#include "formulate/topology.h"
 
 #include <math.h>
 #include <string.h>
@@ -90,10 +91,44 @@ static enum ct_axial axial_of(const struct ct_flexible *f)
              : CT_AXIAL_CHAIN;
 }
 
+// What has no stiffness given is no deformation: it would be free to go anywhere.
+static void leave_without_stiffness(struct ct_build *b, struct ct_flexible *f)
+{
+    const struct ct_beam *beam = f->beam;
+    const struct {
+        unsigned family;
+        ct_ex stiffness;
+        const char *what, *why;
+    } all[] = {{CT_BEAM_BENDING_Y, beam->Iy, "bending of %s in its x-z plane", "Iy is zero"},
+               {CT_BEAM_BENDING_Z, beam->Iz, "bending of %s in its x-y plane", "Iz is zero"},
+               {CT_BEAM_TORSION, beam->G, "torsion of %s", "neither G nor nu is given"}};
+    for (size_t i = 0; i < COUNT(all); i++) {
+        if (!(f->deformation & all[i].family) || !ct_ex_is_zero(all[i].stiffness))
+            continue;
+        f->deformation &= ~all[i].family;
+        ct_topology_left_out(b, ct_arena_printf(b->arena, all[i].what, f->name), all[i].why);
+    }
+}
+
 static void settle(struct ct_build *b, struct ct_flexible *f)
 {
     const struct ct_beam *beam = f->beam;
-    f->deformation = b->is_rigid ? 0 : beam->deformation & in_plane(b, f);
+    f->deformation = beam->deformation & in_plane(b, f);
+    leave_without_stiffness(b, f);
+    if (f->deformation & CT_BEAM_TORSION && !beam->deformation_given && !b->keep_all
+        && !ct_excite_twist(b, f)) {
+        f->deformation &= ~(unsigned)CT_BEAM_TORSION;
+        ct_topology_left_out(b, ct_arena_printf(b->arena, "torsion of %s", f->name),
+                             "nothing beyond its base can twist it");
+    }
+    if (b->is_planar && beam->deformation & ~(unsigned)(CT_BEAM_AXIAL | f->deformation))
+        ct_topology_left_out(b,
+                             ct_arena_printf(b->arena,
+                                             "bending of %s out of the plane, and its torsion",
+                                             f->name),
+                             "gravity, loads, masses and arms lie in the plane");
+    if (b->is_rigid)
+        f->deformation = 0;
     f->formulation
         = beam->formulation == CT_BEAM_AUTO ? CT_BEAM_FORESHORTENING : beam->formulation;
     f->axial = f->kinematics = axial_of(f);
