@@ -99,14 +99,15 @@ static void leave_without_stiffness(struct ct_build *b, struct ct_flexible *f)
         unsigned family;
         ct_ex stiffness;
         const char *what, *why;
-    } all[] = {{CT_BEAM_BENDING_Y, beam->Iy, "bending of %s in its x-z plane", "Iy is zero"},
-               {CT_BEAM_BENDING_Z, beam->Iz, "bending of %s in its x-y plane", "Iz is zero"},
-               {CT_BEAM_TORSION, beam->G, "torsion of %s", "neither G nor nu is given"}};
+    } all[] = {{CT_BEAM_BENDING_Y, beam->Iy, "its bending in the x-z plane", "Iy is zero"},
+               {CT_BEAM_BENDING_Z, beam->Iz, "its bending in the x-y plane", "Iz is zero"},
+               {CT_BEAM_TORSION, beam->G, "its torsion", "neither G nor nu is given"}};
     for (size_t i = 0; i < COUNT(all); i++) {
         if (!(f->deformation & all[i].family) || !ct_ex_is_zero(all[i].stiffness))
             continue;
         f->deformation &= ~all[i].family;
-        ct_topology_left_out(b, ct_arena_printf(b->arena, all[i].what, f->name), all[i].why);
+        ct_topology_left_out(b, ct_arena_printf(b->arena, "%s: %s", f->name, all[i].what),
+                             all[i].why);
     }
 }
 
