@@ -2,10 +2,10 @@
 #include "formulate/formulate.h"
 #include "expr/tape.h"
 #include "formulate/dynamics.h"
+#include "formulate/open.h"
 #include "formulate/residual.h"
 #include "formulate/row.h"
 #include "formulate/signal.h"
-#include "formulate/solution.h"
 #include "formulate/topology.h"
 #include "graph/exchange.h"
 
@@ -55,7 +55,7 @@ static struct ct_build *build_create(struct ct_ctx *ctx, struct ct_arena *a,
     return b;
 }
 
-// Everything but outputs: Phi, J, gam and, unless only places and speeds are wanted, M and Q.
+// What comes before M and Q: Phi, J, gam and, unless only places and speeds are wanted, the loads.
 static bool derive(struct ct_build *b, bool with_dynamics)
 {
     const size_t before = b->ctx->nerror;
@@ -64,12 +64,8 @@ static bool derive(struct ct_build *b, bool with_dynamics)
     ct_rotation_derive(b);
     ct_translation_derive(b);
     ct_rows_derive(b);
-    if (!with_dynamics)
-        return b->ctx->nerror == before;
-    ct_masses_lump(b);
-    ct_loads_derive(b);
-    ct_mass_matrix_derive(b);
-    ct_forces_derive(b);
+    if (with_dynamics)
+        ct_loads_derive(b);
     return b->ctx->nerror == before;
 }
 
@@ -129,10 +125,8 @@ static double equations_cost(struct ct_arena *scratch, const struct ct_equations
     for (size_t i = 0; i < e->nrow; i++)
         all[k++] = e->row[i].gam;
     const struct ct_tape_counts c = ct_ex_count(scratch, e->x, all, k);
-    const double per_function = 8, per_division = 4, per_speed = 20; // in multiplications
-    return (double)(c.multiplications + c.additions) + per_division * (double)c.divisions
-         + per_function * (double)c.functions + per_speed * (double)e->nu
-         + factor_cost(scratch, e);
+    const double per_speed = 20; // in multiplications
+    return ct_counted_cost(&c) + per_speed * (double)e->nu + factor_cost(scratch, e);
 }
 
 struct search {
@@ -152,7 +146,11 @@ static double pair_cost(void *data, const struct ct_tree *T, const struct ct_tre
     struct ct_build *b = build_create(&quiet, scratch, s->model, s->options);
     b->T = *T;
     b->R = *R;
-    const double cost = derive(b, true) ? equations_cost(scratch, b->eqs) : INFINITY;
+    double cost = INFINITY;
+    if (derive(b, true)) {
+        ct_dynamics_derive(b);
+        cost = equations_cost(scratch, b->eqs);
+    }
     ct_arena_destroy(scratch);
     return cost;
 }
@@ -446,6 +444,15 @@ static void measure_all(struct ct_build *b)
     }
 }
 
+static void derive_dynamics(struct ct_build *b, const struct ct_formulate_options *o)
+{
+    if (o->with_solution && !b->eqs->nrow && b->eqs->nu) {
+        ct_open_solve(b, o->form);
+        return;
+    }
+    ct_dynamics_derive(b);
+}
+
 bool ct_formulate(struct ct_ctx *ctx, struct ct_arena *a, const struct ct_model *m,
                   const struct ct_formulate_options *options, struct ct_equations *out,
                   struct ct_tree_report *report)
@@ -455,8 +462,8 @@ bool ct_formulate(struct ct_ctx *ctx, struct ct_arena *a, const struct ct_model 
     *report = (struct ct_tree_report){0};
     if (!choose_trees(b, &s, report) || !derive(b, !options->without_dynamics))
         return false;
-    if (options->with_solution)
-        ct_solution_derive(b);
+    if (!options->without_dynamics)
+        derive_dynamics(b, options);
     if (options->with_residual)
         ct_residual_derive(b);
     if (options->with_energy)
@@ -472,6 +479,18 @@ bool ct_formulate(struct ct_ctx *ctx, struct ct_arena *a, const struct ct_model 
     b->eqs->how = report->how;
     *out = *b->eqs;
     return true;
+}
+
+void ct_formulate_dynamics(struct ct_equations *e)
+{
+    if (e->has_dynamics)
+        return;
+    ct_dynamics_derive(e->build);
+    const struct ct_equations *made = e->build->eqs;
+    e->M = made->M;
+    e->nM = made->nM;
+    e->M_cap = made->M_cap;
+    e->has_dynamics = true;
 }
 
 void ct_formulate_residual(struct ct_equations *e)
