@@ -30,6 +30,7 @@ struct sweep {
     struct ct_build *b;
     const struct ct_members *s;
     const ct_ex *effort;
+    ct_ex *pivot;
     struct body *body;
 };
 
@@ -107,7 +108,8 @@ static void eliminate(struct sweep *w, struct body *k, int i, const struct ct_fr
 {
     struct ct_exs *x = w->b->x;
     ct_ex P[N], *G = k->G[i], rest = w->effort[s->speed];
-    const ct_ex g = ct_ex_div(x, CT_EX_ONE, project(w, k, s, P));
+    const ct_ex D = w->pivot[s->speed] = project(w, k, s, P),
+                g = ct_ex_div(x, CT_EX_ONE, D);
     for (int r = 0; r < N; r++) {
         G[r] = r == s->axis ? CT_EX_ONE : ct_ex_mul(x, P[r], g);
         rest = ct_ex_sub(x, rest, ct_ex_mul(x, direction(s, r), *force(k, r)));
@@ -233,9 +235,10 @@ static void accelerate(struct sweep *w, int i, ct_ex *out)
     }
 }
 
-ct_ex *ct_articulated_solve(struct ct_build *b, const struct ct_members *s, const ct_ex *effort)
+ct_ex *ct_articulated_solve(struct ct_build *b, const struct ct_members *s, const ct_ex *effort,
+                            ct_ex *pivot)
 {
-    struct sweep w = {.b = b, .s = s, .effort = effort};
+    struct sweep w = {.b = b, .s = s, .effort = effort, .pivot = pivot};
     ct_ex *out = CT_NEWN(b->arena, ct_ex, b->eqs->nu + 1);
     w.body = CT_NEWN(b->arena, struct body, s->n);
     for (size_t i = s->n; i-- > 1;) {

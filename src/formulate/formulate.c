@@ -447,7 +447,7 @@ static void measure_all(struct ct_build *b)
 static void derive_dynamics(struct ct_build *b, const struct ct_formulate_options *o)
 {
     if (o->with_solution && !b->eqs->nrow && b->eqs->nu) {
-        ct_open_solve(b, o->form);
+        ct_open_solve(b, o->formulation);
         return;
     }
     ct_dynamics_derive(b);

@@ -151,39 +151,40 @@ static struct trial try_composite(struct ct_build *b, const struct ct_members *s
 
 static struct trial try_articulated(struct ct_build *b, const struct ct_members *s)
 {
-    ct_ex *u = ct_articulated_solve(b, s, b->effort);
+    b->eqs->pivot = CT_NEWN(b->arena, ct_ex, b->eqs->nu + 1);
+    ct_ex *u = ct_articulated_solve(b, s, b->effort, b->eqs->pivot);
     return (struct trial){u, cost_of(b, u, b->eqs->nu)};
 }
 
-static enum ct_form cheapest(const struct trial *t, enum ct_form wanted)
+static enum ct_formulation cheapest(const struct trial *t, enum ct_formulation wanted)
 {
-    enum ct_form best = CT_FORM_CUTSETS;
-    if (wanted != CT_FORM_AUTO && isfinite(t[wanted].cost))
+    enum ct_formulation best = CT_FORMULATION_CUTSETS;
+    if (wanted != CT_FORMULATION_AUTO && isfinite(t[wanted].cost))
         return wanted;
-    for (int k = CT_FORM_CUTSETS; k < CT_NFORM; k++)
+    for (int k = CT_FORMULATION_CUTSETS; k < CT_NFORMULATION; k++)
         if (t[k].cost < t[best].cost)
-            best = (enum ct_form)k;
+            best = (enum ct_formulation)k;
     return best;
 }
 
-void ct_open_solve(struct ct_build *b, enum ct_form which)
+void ct_open_solve(struct ct_build *b, enum ct_formulation which)
 {
     struct ct_equations *e = b->eqs;
-    struct trial t[CT_NFORM];
-    const bool tries_members = which == CT_FORM_AUTO || which > CT_FORM_CUTSETS;
+    struct trial t[CT_NFORMULATION];
+    const bool tries_members = which == CT_FORMULATION_AUTO || which > CT_FORMULATION_CUTSETS;
     const struct ct_members *s = tries_members ? ct_members_derive(b) : NULL;
-    for (int k = 0; k < CT_NFORM; k++)
+    for (int k = 0; k < CT_NFORMULATION; k++)
         t[k] = (struct trial){NULL, INFINITY};
-    if (s && which != CT_FORM_COMPOSITE)
-        t[CT_FORM_ARTICULATED] = try_articulated(b, s);
-    const double known = t[CT_FORM_ARTICULATED].cost;
+    if (s && which != CT_FORMULATION_COMPOSITE)
+        t[CT_FORMULATION_ARTICULATED] = try_articulated(b, s);
+    const double known = t[CT_FORMULATION_ARTICULATED].cost;
     const bool by_matrix = e->nu <= small || !s || least_matrix_cost(b, s) < known;
-    if (by_matrix && s && (which != CT_FORM_ARTICULATED) && !b->is_planar)
-        t[CT_FORM_COMPOSITE] = try_composite(b, s);
+    if (by_matrix && s && (which != CT_FORMULATION_ARTICULATED) && !b->is_planar)
+        t[CT_FORMULATION_COMPOSITE] = try_composite(b, s);
     if (by_matrix)
-        t[CT_FORM_CUTSETS] = try_cutsets(b);
-    e->form = cheapest(t, which);
-    e->solution = t[e->form].solution;
-    for (int k = 0; k < CT_NFORM; k++)
-        e->form_cost[k] = t[k].cost;
+        t[CT_FORMULATION_CUTSETS] = try_cutsets(b);
+    e->formulation = cheapest(t, which);
+    e->solution = t[e->formulation].solution;
+    for (int k = 0; k < CT_NFORMULATION; k++)
+        e->formulation_cost[k] = t[k].cost;
 }

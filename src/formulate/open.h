@@ -8,11 +8,11 @@
 /// Operations in multiplications: a division counts 4, a function 8.
 double ct_counted_cost(const struct ct_tape_counts *c);
 
-/// Fill b->eqs->solution and b->eqs->form for a system without constraints. The solution stays NULL where a call of a
+/// Fill b->eqs->solution and b->eqs->formulation for a system without constraints. The solution stays NULL where a call of a
 /// solver for dense matrices is cheaper. M and Q of the equations stay open where no formulation that is in
 /// question needs them. After ct_loads_derive.
 ///
-/// which    CT_FORM_AUTO, or the one to take; another one where it does not apply
-void ct_open_solve(struct ct_build *b, enum ct_form which);
+/// which    CT_FORMULATION_AUTO, or the one to take; another one where it does not apply
+void ct_open_solve(struct ct_build *b, enum ct_formulation which);
 
 #endif

@@ -13,6 +13,7 @@
 struct ct_embed {
     struct ct_machine *m;
     struct ct_ctx *ctx;
+    struct ct_arena *arena;
     int rank;
     int *row;                   // kept rows, rank of them, then the redundant ones
     int *dependent;             // rank columns

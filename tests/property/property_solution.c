@@ -13,7 +13,7 @@ static const char *const form_name[] = {"auto", "cutsets", "composite", "articul
 static const double tolerance = 1e-11;
 
 struct tally {
-    size_t systems, tried[CT_NFORM];
+    size_t systems, tried[CT_NFORMULATION];
 };
 
 // u' by Cholesky of M, each entry changed by `rounding` of it, refined with residuals in extended precision.
@@ -61,7 +61,7 @@ static double find_reference(struct variant *v, const struct ct_start *state, do
 }
 
 // Accelerations of one form at a state against those of the reference.
-static bool form_agrees(struct system *s, enum ct_form form, struct variant *v,
+static bool form_agrees(struct system *s, enum ct_formulation form, struct variant *v,
                         const struct ct_start *state, const double *want, double sensitivity)
 {
     double *a = test_calloc(v->m->nu, sizeof *a), scale = 1e-3, worst = 0;
@@ -80,16 +80,16 @@ static bool form_agrees(struct system *s, enum ct_form form, struct variant *v,
 
 static bool forms_agree(struct system *s, enum ct_tree_choice tree, struct tally *tally)
 {
-    struct variant v[CT_NFORM];
+    struct variant v[CT_NFORMULATION];
     bool ok = true;
-    for (int form = 0; form < CT_NFORM; form++) {
-        const struct ct_formulate_options o = {.tree = tree, .with_solution = true, .form = (enum ct_form)form};
+    for (int form = 0; form < CT_NFORMULATION; form++) {
+        const struct ct_formulate_options o = {.tree = tree, .with_solution = true, .formulation = (enum ct_formulation)form};
         variant_open(s, &o, &v[form]);
         if (v[form].e.nrow || !v[form].e.nu) {
             variant_close(&v[form]);
             return ok;
         }
-        tally->tried[form] += v[form].e.form == (enum ct_form)form;
+        tally->tried[form] += v[form].e.formulation == (enum ct_formulation)form;
     }
     tally->systems++;
     for (int k = 0; k < 3; k++) {
@@ -97,13 +97,13 @@ static bool forms_agree(struct system *s, enum ct_tree_choice tree, struct tally
         double *want = test_calloc(2 * v[0].m->nu, sizeof *want);
         if (system_random_state(s, 0.1, 0.5, &state)) {
             const double sensitivity = find_reference(&v[0], &state, want);
-            for (int form = 0; form < CT_NFORM; form++)
+            for (int form = 0; form < CT_NFORMULATION; form++)
                 if (v[form].e.solution)
-                    ok &= form_agrees(s, (enum ct_form)form, &v[form], &state, want, sensitivity);
+                    ok &= form_agrees(s, (enum ct_formulation)form, &v[form], &state, want, sensitivity);
         }
         test_free(want);
     }
-    for (int form = 0; form < CT_NFORM; form++)
+    for (int form = 0; form < CT_NFORMULATION; form++)
         variant_close(&v[form]);
     return ok;
 }
@@ -130,10 +130,10 @@ static void forms_agree_on_shipped_systems(void **state)
         system_close(&s);
     }
     print_message("%zu open: %zu composite, %zu articulated\n", tally.systems,
-                  tally.tried[CT_FORM_COMPOSITE], tally.tried[CT_FORM_ARTICULATED]);
+                  tally.tried[CT_FORMULATION_COMPOSITE], tally.tried[CT_FORMULATION_ARTICULATED]);
     assert_true(ok);
     assert_true(tally.systems >= 16);
-    assert_true(tally.tried[CT_FORM_ARTICULATED] >= 16);
+    assert_true(tally.tried[CT_FORMULATION_ARTICULATED] >= 16);
 }
 
 static void forms_agree_on_small_mechanisms(void **state)
@@ -154,7 +154,7 @@ static void forms_agree_on_small_mechanisms(void **state)
             ct_arena_destroy(a);
         }
     print_message("%zu open: %zu composite, %zu articulated\n", tally.systems,
-                  tally.tried[CT_FORM_COMPOSITE], tally.tried[CT_FORM_ARTICULATED]);
+                  tally.tried[CT_FORMULATION_COMPOSITE], tally.tried[CT_FORMULATION_ARTICULATED]);
     assert_true(ok);
 }
 
@@ -221,9 +221,9 @@ static void forms_agree_on_trees_of_mixed_joints(void **state)
         ct_arena_destroy(a);
     }
     print_message("%zu open: %zu composite, %zu articulated\n", tally.systems,
-                  tally.tried[CT_FORM_COMPOSITE], tally.tried[CT_FORM_ARTICULATED]);
+                  tally.tried[CT_FORMULATION_COMPOSITE], tally.tried[CT_FORMULATION_ARTICULATED]);
     assert_true(ok);
-    assert_true(tally.tried[CT_FORM_ARTICULATED] == tally.systems);
+    assert_true(tally.tried[CT_FORMULATION_ARTICULATED] == tally.systems);
 }
 
 int main(void)
