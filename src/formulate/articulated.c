@@ -58,7 +58,7 @@ static ct_ex *force(struct body *k, int i)
     return i < 3 ? &k->n.e[i] : &k->f.e[i - 3];
 }
 
-static ct_ex direction(const struct ct_freedom *s, int i)
+static ct_ex direction(const struct ct_screw *s, int i)
 {
     return i < 3 ? s->turn.e[i] : s->slide.e[i - 3];
 }
@@ -89,7 +89,7 @@ static void add_own(struct sweep *w, int i)
 }
 
 // P = I s and D = s . P; axis: the one s points along, or -1.
-static ct_ex project(struct sweep *w, const struct body *k, const struct ct_freedom *s,
+static ct_ex project(struct sweep *w, const struct body *k, const struct ct_screw *s,
                      ct_ex P[N])
 {
     struct ct_exs *x = w->b->x;
@@ -104,7 +104,7 @@ static ct_ex project(struct sweep *w, const struct body *k, const struct ct_free
     return D;
 }
 
-static void eliminate(struct sweep *w, struct body *k, int i, const struct ct_freedom *s)
+static void eliminate(struct sweep *w, struct body *k, int i, const struct ct_screw *s)
 {
     struct ct_exs *x = w->b->x;
     ct_ex P[N], *G = k->G[i], rest = w->effort[s->speed];
@@ -215,7 +215,7 @@ static void accelerate(struct sweep *w, int i, ct_ex *out)
                            : ct_ex3_add(x, ct_member_in(w->b, m, p->al), m->al_relative);
     k->a = ct_member_in(w->b, m, ct_ex3_add(x, p->a, shifted));
     for (int j = m->nfree; j-- > 0;) {
-        const struct ct_freedom *s = &m->freedom[j];
+        const struct ct_screw *s = &m->screw[j];
         ct_ex v[N], u = k->u0[j];
         for (int r = 0; r < N; r++) {
             v[r] = r < 3 ? k->al.e[r] : k->a.e[r - 3];
@@ -245,7 +245,7 @@ ct_ex *ct_articulated_solve(struct ct_build *b, const struct ct_members *s, cons
         const struct ct_member *m = &s->member[i];
         add_own(&w, (int)i);
         for (int k = 0; k < m->nfree; k++)
-            eliminate(&w, &w.body[i], k, &m->freedom[k]);
+            eliminate(&w, &w.body[i], k, &m->screw[k]);
         if (m->parent)
             hand_inwards(&w, (int)i);
     }

@@ -21,7 +21,7 @@ static struct wrench hand_inwards(struct ct_build *b, const struct ct_member *m,
     return w;
 }
 
-static ct_ex power(struct ct_build *b, const struct ct_freedom *s, const struct wrench *w)
+static ct_ex power(struct ct_build *b, const struct ct_screw *s, const struct wrench *w)
 {
     return ct_ex_add(b->x, ct_ex3_dot(b->x, s->turn, w->n), ct_ex3_dot(b->x, s->slide, w->f));
 }
@@ -67,7 +67,7 @@ static void find_forces(struct ct_build *b, const struct ct_members *s, const ct
         w[i].n = ct_ex3_add(x, w[i].n, own.n);
         w[i].f = ct_ex3_add(x, w[i].f, own.f);
         for (int k = 0; k < m->nfree; k++) {
-            const struct ct_freedom *f = &m->freedom[k];
+            const struct ct_screw *f = &m->screw[k];
             Q[f->speed] = ct_ex_sub(x, effort[f->speed], power(b, f, &w[i]));
         }
         if (!m->parent)
@@ -129,7 +129,7 @@ static void gather(struct ct_build *b, const struct ct_member *m, const struct c
 }
 
 static void column(struct ct_build *b, const struct ct_members *s, const struct composite *own,
-                   int i, const struct ct_freedom *f, ct_ex *M)
+                   int i, const struct ct_screw *f, ct_ex *M)
 {
     struct ct_exs *x = b->x;
     const size_t n = b->eqs->nu;
@@ -140,8 +140,8 @@ static void column(struct ct_build *b, const struct ct_members *s, const struct 
     for (; i; i = s->member[i].parent) {
         const struct ct_member *m = &s->member[i];
         for (int k = 0; k < m->nfree; k++) {
-            const size_t r = (size_t)f->speed, c = (size_t)m->freedom[k].speed;
-            M[r > c ? r + n * c : c + n * r] = power(b, &m->freedom[k], &w);
+            const size_t r = (size_t)f->speed, c = (size_t)m->screw[k].speed;
+            M[r > c ? r + n * c : c + n * r] = power(b, &m->screw[k], &w);
         }
         w = hand_inwards(b, m, w);
     }
@@ -158,7 +158,7 @@ static void find_masses(struct ct_build *b, const struct ct_members *s, ct_ex *M
     }
     for (size_t i = 1; i < s->n; i++)
         for (int k = 0; k < s->member[i].nfree; k++)
-            column(b, s, &body[i], (int)i, &s->member[i].freedom[k], M);
+            column(b, s, &body[i], (int)i, &s->member[i].screw[k], M);
 }
 
 void ct_composite_derive(struct ct_build *b, const struct ct_members *s, const ct_ex *effort,

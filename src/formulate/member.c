@@ -117,13 +117,13 @@ static int add_member(struct work *w, int parent, int cluster, ct_ex3 r)
     return (int)w->s->n - 1;
 }
 
-static struct ct_freedom *freedom_of(struct ct_member *m, int speed)
+static struct ct_screw *screw_of(struct ct_member *m, int speed)
 {
     for (int k = 0; k < m->nfree; k++)
-        if (m->freedom[k].speed == speed)
-            return &m->freedom[k];
-    m->freedom[m->nfree] = (struct ct_freedom){.speed = speed, .axis = -1};
-    return &m->freedom[m->nfree++];
+        if (m->screw[k].speed == speed)
+            return &m->screw[k];
+    m->screw[m->nfree] = (struct ct_screw){.speed = speed, .axis = -1};
+    return &m->screw[m->nfree++];
 }
 
 static int coordinate_axis(struct ct_build *b, ct_ex3 v)
@@ -173,7 +173,7 @@ static void add_turn(struct work *w, int member, int cluster, const ct_ex33 *S)
         m->al_relative = ct_ex3_add(x, m->al_relative, ct_ex3_scale(x, s->bias, axis));
         for (int k = 0; k < s->nterm; k++)
             if (s->term[k].speed >= 0) {
-                struct ct_freedom *f = freedom_of(m, s->term[k].speed);
+                struct ct_screw *f = screw_of(m, s->term[k].speed);
                 f->turn = ct_ex3_add(x, f->turn, ct_ex3_scale(x, s->term[k].coef, axis));
             }
     }
@@ -196,7 +196,7 @@ static void add_slides(struct work *w, int member, const struct ct_edge_info *e)
         for (int i = 0; i < 3; i++)
             p.e[i] = ct_ex_diff(x, m->r.e[i], b->eqs->q[c->q].symbol);
         if (!ct_ex3_is_zero(p))
-            freedom_of(m, c->u)->slide = p;
+            screw_of(m, c->u)->slide = p;
     }
 }
 
@@ -394,7 +394,7 @@ static bool own_speeds(struct work *w)
     w->of_speed = CT_NEWN(w->b->arena, int, nu + 1);
     for (size_t m = 1; m < w->s->n; m++)
         for (int k = 0; k < w->s->member[m].nfree; k++) {
-            int *of = &w->of_speed[w->s->member[m].freedom[k].speed];
+            int *of = &w->of_speed[w->s->member[m].screw[k].speed];
             if (*of)
                 return false;
             *of = (int)m;
@@ -617,7 +617,7 @@ static void find_axes(struct work *w, struct ct_member *m)
         m->J.e[8] = about;
     }
     for (int k = 0; k < m->nfree; k++) {
-        struct ct_freedom *f = &m->freedom[k];
+        struct ct_screw *f = &m->screw[k];
         f->slide = ct_member_in(b, m, express(b, cluster, f->slide));
         const bool turns = !ct_ex3_is_zero(f->turn), slides = !ct_ex3_is_zero(f->slide);
         if (turns != slides)
@@ -641,7 +641,7 @@ const struct ct_members *ct_members_derive(struct ct_build *b)
 {
     struct ct_members *s = CT_NEW(b->arena, struct ct_members);
     struct work w = {.b = b, .s = s};
-    if (b->eqs->nrow || !place_nodes(&w) || !own_speeds(&w))
+    if (b->nflexible || b->eqs->nrow || !place_nodes(&w) || !own_speeds(&w))
         return NULL;
     flatten(&w);
     add_bodies(&w);

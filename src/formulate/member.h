@@ -15,7 +15,7 @@
 #include "formulate/dynamics.h"
 
 /// Motion per unit of a speed, at the member's origin, in its axes.
-struct ct_freedom {
+struct ct_screw {
     int speed;
     ct_ex3 turn, slide;
     int axis; // 0..2: a turn about this coordinate axis alone, 3..5: a slide along one; else -1
@@ -29,7 +29,7 @@ struct ct_member {
     ct_ex33 R;                // its axes -> its parent's
     ct_ex3 r;                 // parent's origin -> its own [m], in the parent's axes, and so
     ct_ex3 drift, drift_bias; // the rate of r seen from the parent, and its rate with all u' = 0
-    struct ct_freedom freedom[CT_MAX_COORD];
+    struct ct_screw screw[CT_MAX_COORD];
     int nfree;
     ct_ex3 w_relative, al_relative; // [rad/s], [rad/s^2] at u' = 0, own axes
     ct_ex mass;                     // [kg]

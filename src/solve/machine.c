@@ -190,7 +190,7 @@ static void compile_rest(struct ct_arena *a, struct ct_machine *m, const struct 
     }
     for (size_t i = 0; i < e->nrow; i++)
         push(&wanted, e->row[i].wanted);
-    const ct_ex energies[] = {e->kinetic, e->potential};
+    const ct_ex energies[] = {e->kinetic, ct_ex_add(e->x, e->potential, e->strain)};
     compile(a, m, in, result.e, result.n, &m->result);
     compile(a, m, in, root.e, root.n, &m->root);
     compile(a, m, in, memory.e, memory.n, &m->memory);
