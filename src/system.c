@@ -122,6 +122,7 @@ static bool build(struct ct_system *s, const char *path, const struct ct_system_
     const struct ct_formulate_options start = {.tree = CT_TREE_JOINTS,
                                                .keep_all = o->keep_all,
                                                .measure_all = true,
+                                               .measured_for = &s->equations,
                                                .without_dynamics = true};
     struct ct_tree_report unused;
     return choose_tree(&s->own, o->tree, &motion)         // which branches, if any are given

@@ -432,14 +432,17 @@ static void describe_graph(struct ct_build *b)
 }
 
 // Coordinates of all joints and bodies and their speeds, measured or not, in a fixed order.
-static void measure_all(struct ct_build *b)
+static void measure_all(struct ct_build *b, const struct ct_equations *needed_by)
 {
     for (size_t i = 0; i < b->ncoordinate; i++) {
-        const struct ct_result q
-            = {b->coordinate[i].name, ct_coordinate_value(b, (int)i), false};
+        const struct ct_coordinate *c = &b->coordinate[i];
+        struct ct_result q = {c->name, CT_EX_ZERO, false}, u = q;
+        if (!needed_by || b->edge[c->edge].kind != CT_EDGE_BODY || c->q >= 0
+            || needed_by->coordinate[i].q >= 0) {
+            q.value = ct_coordinate_value(b, (int)i);
+            u.value = ct_coordinate_speed(b, (int)i);
+        }
         CT_PUSH(b->arena, b->eqs->result, b->eqs->nresult, b->eqs->result_cap, q);
-        const struct ct_result u
-            = {b->coordinate[i].name, ct_coordinate_speed(b, (int)i), false};
         CT_PUSH(b->arena, b->eqs->result, b->eqs->nresult, b->eqs->result_cap, u);
     }
 }
@@ -469,7 +472,7 @@ bool ct_formulate(struct ct_ctx *ctx, struct ct_arena *a, const struct ct_model 
     if (options->with_energy)
         ct_energies_derive(b);
     if (options->measure_all)
-        measure_all(b);
+        measure_all(b, options->measured_for);
     else if (options->with_outputs && !ct_outputs_derive(b))
         return false;
     describe_graph(b);

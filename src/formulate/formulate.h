@@ -24,6 +24,9 @@ struct ct_formulate_options {
     bool with_residual; // an implicit method will ask for the residual and its derivatives
     bool
         measure_all; // results are the coordinates of all joints and bodies instead (for assembly)
+    // with measure_all: equations of motion that will start from the results. Coordinates of bodies that are not
+    // among their unknowns are then left 0; NULL: all are measured
+    const struct ct_equations *measured_for;
     bool without_dynamics; // neither M nor Q: places and speeds are all that is wanted
 };
 
