@@ -108,8 +108,7 @@ static void eliminate(struct sweep *w, struct body *k, int i, const struct ct_sc
 {
     struct ct_exs *x = w->b->x;
     ct_ex P[N], *G = k->G[i], rest = w->effort[s->speed];
-    const ct_ex D = w->pivot[s->speed] = project(w, k, s, P),
-                g = ct_ex_div(x, CT_EX_ONE, D);
+    const ct_ex D = w->pivot[s->speed] = project(w, k, s, P), g = ct_ex_div(x, CT_EX_ONE, D);
     for (int r = 0; r < N; r++) {
         G[r] = r == s->axis ? CT_EX_ONE : ct_ex_mul(x, P[r], g);
         rest = ct_ex_sub(x, rest, ct_ex_mul(x, direction(s, r), *force(k, r)));
@@ -209,8 +208,8 @@ static void accelerate(struct sweep *w, int i, ct_ex *out)
     const struct ct_member *m = &w->s->member[i];
     struct body *k = &w->body[i];
     const struct body *p = &w->body[m->parent];
-    const ct_ex3 shifted = ct_ex3_add(x, ct_ex3_cross(x, p->al, m->r),
-                                      ct_member_shift_bias(w->b, w->s, i));
+    const ct_ex3 shifted
+        = ct_ex3_add(x, ct_ex3_cross(x, p->al, m->r), ct_member_shift_bias(w->b, w->s, i));
     k->al = m->is_absolute ? m->al_relative
                            : ct_ex3_add(x, ct_member_in(w->b, m, p->al), m->al_relative);
     k->a = ct_member_in(w->b, m, ct_ex3_add(x, p->a, shifted));

@@ -179,7 +179,7 @@ struct ct_build {
     struct ct_star *star;
     size_t nstar, star_cap;
     bool is_lumped; // stars are made
-    int *child; // anchors, star by star
+    int *child;     // anchors, star by star
 
     struct ct_load *load;
     size_t nload, load_cap;

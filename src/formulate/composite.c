@@ -12,7 +12,8 @@ struct wrench {
     ct_ex3 n, f;
 };
 
-static struct wrench hand_inwards(struct ct_build *b, const struct ct_member *m, struct wrench w)
+static struct wrench hand_inwards(struct ct_build *b, const struct ct_member *m,
+                                  struct wrench w)
 {
     struct ct_exs *x = b->x;
     w.n = m->is_absolute ? zero3 : ct_member_out(b, m, w.n);
@@ -28,15 +29,15 @@ static ct_ex power(struct ct_build *b, const struct ct_screw *s, const struct wr
 
 // ---- forces ---------------------------------------------------------------------------------------------
 
-static void accelerate(struct ct_build *b, const struct ct_members *s, int i, ct_ex3 *al, ct_ex3 *a)
+static void accelerate(struct ct_build *b, const struct ct_members *s, int i, ct_ex3 *al,
+                       ct_ex3 *a)
 {
     struct ct_exs *x = b->x;
     const struct ct_member *m = &s->member[i];
     const ct_ex3 turning = ct_ex3_cross(x, al[m->parent], m->r),
                  shift = ct_ex3_add(x, turning, ct_member_shift_bias(b, s, i));
-    al[i] = m->is_absolute
-              ? m->al_relative
-              : ct_ex3_add(x, ct_member_in(b, m, al[m->parent]), m->al_relative);
+    al[i] = m->is_absolute ? m->al_relative
+                           : ct_ex3_add(x, ct_member_in(b, m, al[m->parent]), m->al_relative);
     a[i] = ct_member_in(b, m, ct_ex3_add(x, a[m->parent], shift));
 }
 
@@ -44,8 +45,8 @@ static struct wrench need(struct ct_build *b, const struct ct_member *m, ct_ex3 
 {
     struct ct_exs *x = b->x;
     struct wrench w;
-    const ct_ex3 pull = ct_ex3_add(x, ct_ex33_apply(x, &m->U, m->moment),
-                                   ct_ex3_cross(x, al, m->moment));
+    const ct_ex3 pull
+        = ct_ex3_add(x, ct_ex33_apply(x, &m->U, m->moment), ct_ex3_cross(x, al, m->moment));
     w.f = ct_ex3_sub(x, ct_ex3_add(x, ct_ex3_scale(x, m->mass, a), pull), m->force);
     w.n = ct_ex3_add(x, ct_ex33_apply(x, &m->J, al), ct_member_gyroscopic(b, m));
     w.n = ct_ex3_sub(x, ct_ex3_add(x, w.n, ct_ex3_cross(x, m->moment, a)), m->torque);
@@ -86,7 +87,8 @@ struct composite {
     ct_ex33 J;
 };
 
-static void add(struct ct_build *b, struct composite *sum, ct_ex mass, ct_ex3 h, const ct_ex33 *J)
+static void add(struct ct_build *b, struct composite *sum, ct_ex mass, ct_ex3 h,
+                const ct_ex33 *J)
 {
     sum->mass = ct_ex_add(b->x, sum->mass, mass);
     sum->h = ct_ex3_add(b->x, sum->h, h);
@@ -135,8 +137,7 @@ static void column(struct ct_build *b, const struct ct_members *s, const struct 
     const size_t n = b->eqs->nu;
     struct wrench w;
     w.n = ct_ex3_add(x, ct_ex33_apply(x, &own->J, f->turn), ct_ex3_cross(x, own->h, f->slide));
-    w.f = ct_ex3_add(x, ct_ex3_scale(x, own->mass, f->slide),
-                     ct_ex3_cross(x, f->turn, own->h));
+    w.f = ct_ex3_add(x, ct_ex3_scale(x, own->mass, f->slide), ct_ex3_cross(x, f->turn, own->h));
     for (; i; i = s->member[i].parent) {
         const struct ct_member *m = &s->member[i];
         for (int k = 0; k < m->nfree; k++) {

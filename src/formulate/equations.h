@@ -108,12 +108,12 @@ struct ct_equations {
     size_t nu, u_cap;
     struct ct_entry *M; // lower triangle, row by row
     size_t nM, M_cap;
-    ct_ex *solution;    // u' of an open system in closed form (nu), or NULL
-    ct_ex *pivot;       // of each speed in an articulated solution (nu): 0 where it moves no mass
+    ct_ex *solution; // u' of an open system in closed form (nu), or NULL
+    ct_ex *pivot;    // of each speed in an articulated solution (nu): 0 where it moves no mass
     enum ct_formulation formulation; // of the solution; AUTO where no choice was made
     // operations by formulation, the solution included; INFINITY: it does not apply or cannot win
     double formulation_cost[CT_NFORMULATION];
-    bool has_dynamics; // M and Q are derived; else ct_formulate_dynamics does it
+    bool has_dynamics;  // M and Q are derived; else ct_formulate_dynamics does it
     ct_ex *Q;           // nu
     struct ct_entry *J; // row by row
     size_t nJ, J_cap;

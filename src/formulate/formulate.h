@@ -20,7 +20,8 @@ struct ct_formulate_options {
     bool with_energy;   // kinetic and potential energy and the power are wanted
     bool with_outputs;  // the outputs of the model are wanted
     bool with_solution; // u' in closed form where that is cheap
-    enum ct_formulation formulation;  // of an open system with solution; AUTO: the one of fewest operations
+    enum ct_formulation
+        formulation;    // of an open system with solution; AUTO: the one of fewest operations
     bool with_residual; // an implicit method will ask for the residual and its derivatives
     bool
         measure_all; // results are the coordinates of all joints and bodies instead (for assembly)

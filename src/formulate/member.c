@@ -12,9 +12,9 @@ static const ct_ex3 zero3 = {{{0}, {0}, {0}}};
 struct work {
     struct ct_build *b;
     struct ct_members *s;
-    int *of_node;     // member
-    ct_ex3 *offset;   // of a node from its member's origin, in axes of the member's cluster
-    int *of_cluster;  // the member that turns it, or -1
+    int *of_node;    // member
+    ct_ex3 *offset;  // of a node from its member's origin, in axes of the member's cluster
+    int *of_cluster; // the member that turns it, or -1
     int *of_speed;
 };
 
@@ -99,8 +99,7 @@ void ct_member_turn_tensor(struct ct_build *b, const struct ct_member *m, ct_ex3
         for (int j = 0; j < 3; j++) {
             const ct_ex3 row = {{half.e[i], half.e[i + 3], half.e[i + 6]}},
                          column = {{m->R.e[j], m->R.e[j + 3], m->R.e[j + 6]}};
-            A->e[i + 3 * j]
-                = symmetric && j > i ? CT_EX_ZERO : ct_ex3_dot(x, row, column);
+            A->e[i + 3 * j] = symmetric && j > i ? CT_EX_ZERO : ct_ex3_dot(x, row, column);
         }
     for (int i = 0; i < 3 && symmetric; i++)
         for (int j = i + 1; j < 3; j++)
@@ -143,8 +142,8 @@ static ct_ex3 spin_axis(struct work *w, const struct ct_member *m, const struct 
     struct ct_build *b = w->b;
     if (b->is_planar) {
         const bool positive = ct_spin_is_positive(b, (size_t)(s - b->spin));
-        return (ct_ex3){{CT_EX_ZERO, CT_EX_ZERO,
-                         positive ? CT_EX_ONE : ct_ex_neg(b->x, CT_EX_ONE)}};
+        return (ct_ex3){
+            {CT_EX_ZERO, CT_EX_ZERO, positive ? CT_EX_ONE : ct_ex_neg(b->x, CT_EX_ONE)}};
     }
     if (!ct_ex3_is_zero(s->local))
         return s->local;
@@ -214,7 +213,7 @@ struct passage {
     const struct ct_edge_info *e;
     int cluster[CT_MAX_COORD], ncluster; // new ones, in order
     bool is_absolute;
-    ct_ex3 vector; // that of the joint, in axes of the cluster where it is fixed
+    ct_ex3 vector;    // that of the joint, in axes of the cluster where it is fixed
     bool vector_last; // in the axes behind the turns
     const ct_ex33 *S;
 };
@@ -528,8 +527,8 @@ static void apply_loads(struct work *w)
         if (l->tail == 0)
             continue;
         if (!l->is_central)
-            back = ct_ex3_add(
-                x, back, ct_ex3_cross(x, ct_path_position(b, l->tail, l->head), l->force));
+            back = ct_ex3_add(x, back,
+                              ct_ex3_cross(x, ct_path_position(b, l->tail, l->head), l->force));
         apply_at(w, l->tail, ct_ex3_neg(x, l->force), ct_ex3_neg(x, back));
     }
 }
@@ -558,8 +557,7 @@ ct_ex3 ct_member_shift_bias(struct ct_build *b, const struct ct_members *s, int 
     const ct_ex3 carried = ct_ex33_apply(x, &p->U, m->r);
     if (!m->slides)
         return carried;
-    const ct_ex3 coriolis
-        = ct_ex3_scale(x, ct_ex_const(x, 2), ct_ex3_cross(x, p->w, m->drift));
+    const ct_ex3 coriolis = ct_ex3_scale(x, ct_ex_const(x, 2), ct_ex3_cross(x, p->w, m->drift));
     return ct_ex3_add(x, carried, ct_ex3_add(x, coriolis, m->drift_bias));
 }
 
@@ -571,10 +569,11 @@ ct_ex3 ct_member_gyroscopic(struct ct_build *b, const struct ct_member *m)
     for (int i = 0; i < 3; i++) {
         const int j = (i + 1) % 3, k = (i + 2) % 3;
         const ct_ex33 *U = &m->U, *J = &m->J;
-        ct_ex sum = ct_ex_mul(x, ct_ex_sub(x, J->e[k + 3 * k], J->e[j + 3 * j]), U->e[j + 3 * k]);
-        sum = ct_ex_add(x, sum,
-                        ct_ex_mul(x, J->e[j + 3 * k],
-                                  ct_ex_sub(x, U->e[j + 3 * j], U->e[k + 3 * k])));
+        ct_ex sum
+            = ct_ex_mul(x, ct_ex_sub(x, J->e[k + 3 * k], J->e[j + 3 * j]), U->e[j + 3 * k]);
+        sum = ct_ex_add(
+            x, sum,
+            ct_ex_mul(x, J->e[j + 3 * k], ct_ex_sub(x, U->e[j + 3 * j], U->e[k + 3 * k])));
         sum = ct_ex_add(x, sum, ct_ex_mul(x, J->e[i + 3 * k], U->e[i + 3 * j]));
         out.e[i] = ct_ex_sub(x, sum, ct_ex_mul(x, J->e[i + 3 * j], U->e[i + 3 * k]));
     }

@@ -23,12 +23,14 @@ struct ct_screw {
 
 struct ct_member {
     int parent, cluster;
-    bool is_absolute; // its turn is measured from ground, its place from the parent (in a plane only)
+    bool
+        is_absolute; // its turn is measured from ground, its place from the parent (in a plane only)
     bool turns, slides;
-    int axis;                 // of the turn: 0..2, or -1 where it is no coordinate axis
-    ct_ex33 R;                // its axes -> its parent's
-    ct_ex3 r;                 // parent's origin -> its own [m], in the parent's axes, and so
-    ct_ex3 drift, drift_bias; // the rate of r seen from the parent, and its rate with all u' = 0
+    int axis;  // of the turn: 0..2, or -1 where it is no coordinate axis
+    ct_ex33 R; // its axes -> its parent's
+    ct_ex3 r;  // parent's origin -> its own [m], in the parent's axes, and so
+    ct_ex3 drift,
+        drift_bias; // the rate of r seen from the parent, and its rate with all u' = 0
     struct ct_screw screw[CT_MAX_COORD];
     int nfree;
     ct_ex3 w_relative, al_relative; // [rad/s], [rad/s^2] at u' = 0, own axes

@@ -29,6 +29,28 @@ static double cost_of(struct ct_build *b, const ct_ex *e, size_t n)
 
 // ---- M u' = Q -------------------------------------------------------------------------------------------
 
+// A pivot, and its reciprocal where it divides more than two numbers: that is cheaper, but rounds twice.
+struct pivot {
+    ct_ex value, reciprocal;
+};
+
+static struct pivot take_pivot(struct ct_exs *x, const ct_ex *H, size_t n, size_t k)
+{
+    struct pivot p = {H[k + n * k], CT_EX_ZERO};
+    size_t below = 0;
+    for (size_t i = 0; i < k; i++)
+        below += !ct_ex_is_zero(H[k + n * i]);
+    if (below > 1)
+        p.reciprocal = ct_ex_div(x, CT_EX_ONE, p.value);
+    return p;
+}
+
+static ct_ex divide(struct ct_exs *x, ct_ex a, const struct pivot *p)
+{
+    return ct_ex_is_zero(p->reciprocal) ? ct_ex_div(x, a, p->value)
+                                        : ct_ex_mul(x, a, p->reciprocal);
+}
+
 // M = L' D L from the last speed to the first, unrolled: speeds are numbered from ground outwards, so this order makes
 // no fill in a branched chain, and entries that are zero by structure cost nothing. M is positive definite, so no
 // pivots are sought. H: lower triangle of M. Source: Featherstone (2008), key featherstone2008, 8.5.
@@ -36,14 +58,15 @@ static ct_ex *solve_unrolled(struct ct_build *b, ct_ex *H, const ct_ex *Q)
 {
     struct ct_exs *x = b->x;
     const size_t n = b->eqs->nu;
-    ct_ex *u = CT_NEWN(b->arena, ct_ex, n + 1), *reciprocal = CT_NEWN(b->arena, ct_ex, n + 1);
+    struct pivot *pivot = CT_NEWN(b->arena, struct pivot, n + 1);
+    ct_ex *u = CT_NEWN(b->arena, ct_ex, n + 1);
     // H becomes D on the diagonal and L (unit, lower) below
     for (size_t k = n; k-- > 0;) {
-        reciprocal[k] = ct_ex_div(x, CT_EX_ONE, H[k + n * k]);
+        pivot[k] = take_pivot(x, H, n, k);
         for (size_t i = k; i-- > 0;) {
             if (ct_ex_is_zero(H[k + n * i]))
                 continue;
-            const ct_ex a = ct_ex_mul(x, H[k + n * i], reciprocal[k]);
+            const ct_ex a = divide(x, H[k + n * i], &pivot[k]);
             for (size_t j = 0; j <= i; j++)
                 H[i + n * j] = ct_ex_sub(x, H[i + n * j], ct_ex_mul(x, a, H[k + n * j]));
             H[k + n * i] = a;
@@ -55,7 +78,7 @@ static ct_ex *solve_unrolled(struct ct_build *b, ct_ex *H, const ct_ex *Q)
         for (size_t i = 0; i < k; i++)
             u[i] = ct_ex_sub(x, u[i], ct_ex_mul(x, H[k + n * i], u[k]));
     for (size_t k = 0; k < n; k++) { // D y = z, L u = y
-        u[k] = ct_ex_mul(x, u[k], reciprocal[k]);
+        u[k] = divide(x, u[k], &pivot[k]);
         for (size_t i = 0; i < k; i++)
             u[k] = ct_ex_sub(x, u[k], ct_ex_mul(x, H[k + n * i], u[i]));
     }
@@ -108,7 +131,7 @@ static struct trial try_matrix(struct ct_build *b, ct_ex *H, const ct_ex *Q)
 {
     const size_t n = b->eqs->nu;
     ct_ex *all = CT_NEWN(b->ctx->scratch, ct_ex, n * n + n + 1);
-    bool *pattern = CT_NEWN(b->ctx->scratch, bool, n * n + 1);
+    bool *pattern = CT_NEWN(b->ctx->scratch, bool, n *n + 1);
     size_t k = 0;
     for (size_t i = 0; i < n * n; i++) {
         pattern[i] = !ct_ex_is_zero(H[i]);

@@ -484,9 +484,9 @@ ct_ex3 ct_cluster_path_acceleration(struct ct_build *b, int from, int to, enum c
 ct_ex33 ct_cluster_relative(struct ct_build *b, int c)
 {
     const struct ct_cluster *self = &b->cluster[c];
-    return self->has_angle ? ct_ex33_axis_angle(b->x, b->spin[self->first_spin].local,
-                                                self->own_angle)
-                           : self->S;
+    return self->has_angle
+             ? ct_ex33_axis_angle(b->x, b->spin[self->first_spin].local, self->own_angle)
+             : self->S;
 }
 
 ct_ex3 ct_cluster_turn(struct ct_build *b, int c, ct_ex3 local)

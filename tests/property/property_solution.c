@@ -74,8 +74,7 @@ static bool form_agrees(struct system *s, enum ct_formulation form, struct varia
     }
     snprintf(what, sizeof what, "u' by %s", form_name[form]);
     test_free(a);
-    return agree(s->name, what, worst, 0, scale,
-                 fmax(tolerance, sensitivity));
+    return agree(s->name, what, worst, 0, scale, fmax(tolerance, sensitivity));
 }
 
 static bool forms_agree(struct system *s, enum ct_tree_choice tree, struct tally *tally)
@@ -83,7 +82,8 @@ static bool forms_agree(struct system *s, enum ct_tree_choice tree, struct tally
     struct variant v[CT_NFORMULATION];
     bool ok = true;
     for (int form = 0; form < CT_NFORMULATION; form++) {
-        const struct ct_formulate_options o = {.tree = tree, .with_solution = true, .formulation = (enum ct_formulation)form};
+        const struct ct_formulate_options o
+            = {.tree = tree, .with_solution = true, .formulation = (enum ct_formulation)form};
         variant_open(s, &o, &v[form]);
         if (v[form].e.nrow || !v[form].e.nu) {
             variant_close(&v[form]);
@@ -99,7 +99,8 @@ static bool forms_agree(struct system *s, enum ct_tree_choice tree, struct tally
             const double sensitivity = find_reference(&v[0], &state, want);
             for (int form = 0; form < CT_NFORMULATION; form++)
                 if (v[form].e.solution)
-                    ok &= form_agrees(s, (enum ct_formulation)form, &v[form], &state, want, sensitivity);
+                    ok &= form_agrees(s, (enum ct_formulation)form, &v[form], &state, want,
+                                      sensitivity);
         }
         test_free(want);
     }
@@ -130,7 +131,8 @@ static void forms_agree_on_shipped_systems(void **state)
         system_close(&s);
     }
     print_message("%zu open: %zu composite, %zu articulated\n", tally.systems,
-                  tally.tried[CT_FORMULATION_COMPOSITE], tally.tried[CT_FORMULATION_ARTICULATED]);
+                  tally.tried[CT_FORMULATION_COMPOSITE],
+                  tally.tried[CT_FORMULATION_ARTICULATED]);
     assert_true(ok);
     assert_true(tally.systems >= 16);
     assert_true(tally.tried[CT_FORMULATION_ARTICULATED] >= 16);
@@ -146,7 +148,9 @@ static void forms_agree_on_small_mechanisms(void **state)
         for (int r = 0; r < 3; r++) {
             struct system s;
             struct ct_arena *a = ct_arena_create();
-            const unsigned reversed = r == 0 || mechanisms[i].is_irreversible ? 0 : r == 1 ? ~0u : 5u;
+            const unsigned reversed = r == 0 || mechanisms[i].is_irreversible ? 0
+                                    : r == 1                                  ? ~0u
+                                                                              : 5u;
             system_open_text(&s, mechanisms[i].name,
                              mechanism_text(a, &mechanisms[i], NULL, reversed, false));
             ok &= all_trees_agree(&s, &tally);
@@ -154,7 +158,8 @@ static void forms_agree_on_small_mechanisms(void **state)
             ct_arena_destroy(a);
         }
     print_message("%zu open: %zu composite, %zu articulated\n", tally.systems,
-                  tally.tried[CT_FORMULATION_COMPOSITE], tally.tried[CT_FORMULATION_ARTICULATED]);
+                  tally.tried[CT_FORMULATION_COMPOSITE],
+                  tally.tried[CT_FORMULATION_ARTICULATED]);
     assert_true(ok);
 }
 
@@ -184,13 +189,16 @@ static char *tree_text(struct ct_arena *a, int n, int first)
 {
     const char *bodies = "", *joints = "";
     for (int i = 1; i <= n; i++) {
-        const int type = (first + i) % (int)COUNT(joint_text), parent = i - 1 - chance_of(i < 3 ? 1 : 2);
+        const int type = (first + i) % (int)COUNT(joint_text),
+                  parent = i - 1 - chance_of(i < 3 ? 1 : 2);
         const char *own = text_of(a, "b%d.j", i);
         const char *other = parent ? text_of(a, "b%d.%s", parent, i % 2 ? "p" : "e") : "ground";
         const bool backwards = chance_of(3) == 0;
         bodies = text_of(a,
-                         "%s  b%d: {mass: %.3g, com: [%.3g, %.3g, 0.1], inertia: [0.2, 0.25, 0.3, 0.01, -0.02, 0.03],\n"
-                         "    points: {j: {at: [0.1, 0.2, -0.1], rotate: [x, 0.3]}, e: {at: [0.5, 0, 0.1], rotate: "
+                         "%s  b%d: {mass: %.3g, com: [%.3g, %.3g, 0.1], inertia: [0.2, 0.25, "
+                         "0.3, 0.01, -0.02, 0.03],\n"
+                         "    points: {j: {at: [0.1, 0.2, -0.1], rotate: [x, 0.3]}, e: {at: "
+                         "[0.5, 0, 0.1], rotate: "
                          "[[z, 0.7], [y, -0.4]]}, p: [0.3, 0.4, 0]}}\n",
                          bodies, i, 1.5 + chance(), 0.3 * chance(), 0.3 * chance());
         joints = text_of(a, "%s  j%d: {%s, from: %s, to: %s}\n", joints, i, joint_text[type],
@@ -198,8 +206,10 @@ static char *tree_text(struct ct_arena *a, int n, int first)
     }
     return text_of(a,
                    "cotree: 1\ngravity: [1, -2, -9.81]\nbodies:\n%sjoints:\n%sforces:\n"
-                   "  s: {type: spring, from: ground, to: b%d.e, stiffness: 30, length: 0.4, damping: 0.7}\n"
-                   "  w: {type: bushing, from: b1, to: b%d, stiffness: [3, 4, 5, 1, 2, 3], damping: [1, 1, 1, 0.1, 0.1, 0.1]}\n"
+                   "  s: {type: spring, from: ground, to: b%d.e, stiffness: 30, length: 0.4, "
+                   "damping: 0.7}\n"
+                   "  w: {type: bushing, from: b1, to: b%d, stiffness: [3, 4, 5, 1, 2, 3], "
+                   "damping: [1, 1, 1, 0.1, 0.1, 0.1]}\n"
                    "  f: {type: force, at: b2.p, value: [1, \"2*t\", 3], in: b2}\n"
                    "  t: {type: torque, on: b%d, value: [0.3, 0, -0.2]}\n",
                    bodies, joints, n, n, n);
@@ -221,7 +231,8 @@ static void forms_agree_on_trees_of_mixed_joints(void **state)
         ct_arena_destroy(a);
     }
     print_message("%zu open: %zu composite, %zu articulated\n", tally.systems,
-                  tally.tried[CT_FORMULATION_COMPOSITE], tally.tried[CT_FORMULATION_ARTICULATED]);
+                  tally.tried[CT_FORMULATION_COMPOSITE],
+                  tally.tried[CT_FORMULATION_ARTICULATED]);
     assert_true(ok);
     assert_true(tally.tried[CT_FORMULATION_ARTICULATED] == tally.systems);
 }
