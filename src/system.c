@@ -299,6 +299,7 @@ static bool print_equations(void *task)
         ok = wrong_word(p->ctx, "format", name, strlen(name), formats, COUNT(formats));
     if (!ok)
         return false;
+    ct_formulate_dynamics(&p->s->equations);
     ok = ct_equations_print(p->out, p->s->own.scratch, &p->s->equations, &p->s->model, stages,
                             format)
       || ct_error(p->ctx, (struct ct_mark){0}, CT_E_FILE, "cannot write the equations");

@@ -273,6 +273,33 @@ static bool is_open(const struct ct_build *b, const struct ct_tree_pair *p)
     return true;
 }
 
+// Rows that the chords leave, and unknowns, by (2.1).
+static void count_weights(const struct ct_build *b, const struct ct_tree_pair *p, int *nrow,
+                          int *nu)
+{
+    const int directions[2] = {b->is_planar ? 2 : 3, b->is_planar ? 1 : 3};
+    *nrow = *nu = 0;
+    for (size_t i = 0; i < b->nedge; i++) {
+        const struct ct_edge_info *e = &b->edge[i];
+        const bool is_joint = e->kind == CT_EDGE_JOINT || e->kind == CT_EDGE_CLOSURE;
+        const int weight[2] = {e->weight_t, e->weight_r};
+        const bool branch[2] = {p->trans[i], p->rot[i] || !e->has_rotation};
+        for (int k = 0; k < 2; k++) {
+            *nu += branch[k] ? weight[k] : 0;
+            *nrow += is_joint && !branch[k] ? directions[k] - weight[k] : 0;
+        }
+    }
+}
+
+// In a plane angles are chosen from ground even in open chains, and joints are then chords without rows. For a long
+// chain there is nothing to gain by a search, whose trials would need its mass matrix.
+static bool is_long_chain(const struct ct_build *b, const struct ct_tree_pair *p)
+{
+    int nrow, nu;
+    count_weights(b, p, &nrow, &nu);
+    return nrow == 0 && nu > CT_SMALL_SYSTEM;
+}
+
 static bool least_weight(struct ct_build *b, const struct rules *r, struct ct_tree_pair *p)
 {
     int *w = CT_NEWN(b->arena, int, b->nedge);
@@ -382,7 +409,7 @@ static bool choose_trees(struct ct_build *b, const struct search *s,
     report->how = how[o->tree];
     if (o->tree == CT_TREE_GIVEN ? !given_trees(b, o, &r, &p) : !least_weight(b, &r, &p))
         return false;
-    if (o->tree == CT_TREE_AUTO && is_open(b, &p))
+    if (o->tree == CT_TREE_AUTO && (is_open(b, &p) || is_long_chain(b, &p)))
         report->how = "least weight; there are no loops to cut";
     else if (o->tree == CT_TREE_AUTO && !o->measure_all)
         improve(b, s, &r, &p, report);

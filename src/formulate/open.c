@@ -7,8 +7,6 @@
 
 #include <math.h>
 
-// Up to this many speeds every form is tried: they are cheap to generate, and the mass matrix is what people look at.
-static const size_t small = 24;
 // A call of a solver for dense matrices, in operations of straight-line code.
 static const double call_cost = 300;
 // Straight-line code of more operations does not fit the nearer caches, and loops over a matrix are faster.
@@ -201,10 +199,11 @@ void ct_open_solve(struct ct_build *b, enum ct_formulation which)
     if (s && which != CT_FORMULATION_COMPOSITE)
         t[CT_FORMULATION_ARTICULATED] = try_articulated(b, s);
     const double known = t[CT_FORMULATION_ARTICULATED].cost;
-    const bool by_matrix = e->nu <= small || !s || least_matrix_cost(b, s) < known;
-    if (by_matrix && s && (which != CT_FORMULATION_ARTICULATED) && !b->is_planar)
+    const bool by_matrix = e->nu <= CT_SMALL_SYSTEM || !s || least_matrix_cost(b, s) < known;
+    if (by_matrix && s && which != CT_FORMULATION_ARTICULATED && !b->is_planar)
         t[CT_FORMULATION_COMPOSITE] = try_composite(b, s);
-    if (by_matrix)
+    // in space axes of the bodies always need fewer operations than those of ground
+    if (by_matrix && !isfinite(t[CT_FORMULATION_COMPOSITE].cost))
         t[CT_FORMULATION_CUTSETS] = try_cutsets(b);
     e->formulation = cheapest(t, which);
     e->solution = t[e->formulation].solution;
