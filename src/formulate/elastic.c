@@ -29,7 +29,7 @@ struct ct_inertia {
 
 // ---- points -----------------------------------------------------------------------------------------
 
-static enum ct_rule mass_rule(const struct ct_beam *beam)
+enum ct_rule ct_flexible_mass_rule(const struct ct_beam *beam)
 {
     return beam->is_lumped                        ? CT_RULE_ENDS
          : beam->integration == CT_BEAM_ONE_POINT ? CT_RULE_MIDDLE
@@ -41,8 +41,7 @@ static enum ct_rule stiffness_rule(const struct ct_beam *beam)
     return beam->integration == CT_BEAM_FULL ? CT_RULE_FULL : CT_RULE_MIDDLE;
 }
 
-// Inertia per length about the axes; twist has some of its own where nothing else is given.
-static struct ct_profile rotary(const struct ct_flexible *f, int axis)
+struct ct_profile ct_flexible_rotary(const struct ct_flexible *f, int axis)
 {
     const struct ct_beam *beam = f->beam;
     struct ct_profile g = {beam->x, CT_EX_ZERO};
@@ -108,12 +107,12 @@ static void add_points(struct ct_build *b, const struct ct_flexible *f, int e, s
     ct_ex m[CT_MAX_GAUSS], j[3][CT_MAX_GAUSS];
     unsigned kinds = ct_ex_kinds(b->x, mass.value);
     for (int i = 0; i < 3; i++)
-        kinds |= ct_ex_kinds(b->x, rotary(f, i).value);
+        kinds |= ct_ex_kinds(b->x, ct_flexible_rotary(f, i).value);
     const int wanted = kinds & 1u << CT_SYM_LOCAL ? MANY_POINTS : FEW_POINTS;
-    const enum ct_rule rule = mass_rule(f->beam);
+    const enum ct_rule rule = ct_flexible_mass_rule(f->beam);
     const int n = ct_shape_points(b->x, &mass, s, rule, wanted, xi, m);
     for (int i = 0; i < 3; i++) {
-        const struct ct_profile g = rotary(f, i);
+        const struct ct_profile g = ct_flexible_rotary(f, i);
         ct_shape_points(b->x, &g, s, rule, wanted, xi, j[i]);
     }
     for (int i = 0; i < n; i++) {
@@ -369,13 +368,13 @@ static struct plane_matrices plane_matrices(struct ct_build *b, const struct ct_
 {
     struct ct_exs *x = b->x;
     const struct ct_beam *beam = f->beam;
-    const enum ct_rule rule = stiffness_rule(beam), mass = mass_rule(beam);
+    const enum ct_rule rule = stiffness_rule(beam), mass = ct_flexible_mass_rule(beam);
     const ct_ex second = plane ? beam->Iy : beam->Iz, EI = ct_ex_mul(x, beam->E, second);
     const ct_ex GA = beam->theory == CT_BEAM_TIMOSHENKO
                        ? ct_ex_mul(x, beam->shear_factor, ct_ex_mul(x, beam->G, beam->area))
                        : CT_EX_ZERO;
     const ct_ex radius = beam->higher_order ? ct_ex_div(x, second, beam->area) : CT_EX_ZERO;
-    const ct_ex J = rotary(f, plane ? 1 : 2).value;
+    const ct_ex J = ct_flexible_rotary(f, plane ? 1 : 2).value;
     struct plane_matrices s = {0};
     struct ct_shape bend[4], shear[4];
     for (int j = 0; j < 4; j++) {
@@ -481,7 +480,7 @@ static void stretch_element(struct ct_build *b, const struct ct_flexible *f, int
     for (int j = 0; j < 2 && !ct_ex_is_zero(beam->damping_mass); j++)
         for (int i = 0; i < 2; i++) {
             const ct_ex m = pair_integral(b, f, e, beam->mass_per_length, &f->linear[j],
-                                          &f->linear[i], mass_rule(beam));
+                                          &f->linear[i], ct_flexible_mass_rule(beam));
             const ct_ex v = ct_ex_mul(x, beam->damping_mass, ct_ex_mul(x, m, self->rate[i]));
             out->row[j] = ct_ex_add(x, out->row[j], v);
             out->drag = ct_ex_add(x, out->drag, ct_ex_mul(x, v, self->rate[j]));
@@ -495,7 +494,7 @@ static void twist_element(struct ct_build *b, const struct ct_flexible *f, int e
     const struct ct_beam *beam = f->beam;
     const ct_ex *value = f->element[e].value + CT_PLACE_DOF;
     const ct_ex *rate = f->element[e].rate + CT_PLACE_DOF;
-    const ct_ex GJ = ct_ex_mul(x, beam->G, beam->J), J = rotary(f, 0).value;
+    const ct_ex GJ = ct_ex_mul(x, beam->G, beam->J), J = ct_flexible_rotary(f, 0).value;
     for (int j = 0; j < 2; j++) {
         const struct ct_shape dj = ct_shape_slope(&f->linear[j]);
         ct_ex elastic = CT_EX_ZERO, drag = CT_EX_ZERO;
@@ -503,7 +502,7 @@ static void twist_element(struct ct_build *b, const struct ct_flexible *f, int e
             const struct ct_shape dk = ct_shape_slope(&f->linear[k]);
             const ct_ex K = pair_integral(b, f, e, GJ, &dj, &dk, stiffness_rule(beam));
             const ct_ex M
-                = pair_integral(b, f, e, J, &f->linear[j], &f->linear[k], mass_rule(beam));
+                = pair_integral(b, f, e, J, &f->linear[j], &f->linear[k], ct_flexible_mass_rule(beam));
             const ct_ex C = ct_ex_add(x, ct_ex_mul(x, beam->damping_stiffness, K),
                                       ct_ex_mul(x, beam->damping_mass, M));
             elastic = ct_ex_add(x, elastic, ct_ex_mul(x, K, value[k]));
