@@ -37,8 +37,7 @@ static ct_ex33 section_axes(struct ct_build *b, const struct ct_station *s)
     for (int axis = 3; axis-- > 0;) {
         double n[3] = {0};
         n[axis] = 1;
-        const ct_ex33 turn
-            = ct_ex33_axis_angle(b->x, ct_ex3_const(b->x, n), s->angle[axis]);
+        const ct_ex33 turn = ct_ex33_axis_angle(b->x, ct_ex3_const(b->x, n), s->angle[axis]);
         S = ct_ex33_mul(b->x, &S, &turn);
     }
     return S;
@@ -58,7 +57,8 @@ static ct_ex3 deformed_place(struct ct_build *b, const struct ct_flexible *f, ct
 static ct_ex3 seen_along(struct ct_build *b, ct_ex3 n, ct_ex3 v)
 {
     struct ct_exs *x = b->x;
-    const ct_ex across = ct_ex_add(x, ct_ex_mul(x, n.e[1], v.e[1]), ct_ex_mul(x, n.e[2], v.e[2]));
+    const ct_ex across
+        = ct_ex_add(x, ct_ex_mul(x, n.e[1], v.e[1]), ct_ex_mul(x, n.e[2], v.e[2]));
     const ct_ex share = ct_ex_div(x, across, ct_ex_add(x, CT_EX_ONE, n.e[0]));
     ct_ex3 out = {{ct_ex3_dot(x, n, v)}};
     for (int i = 1; i < 3; i++)
@@ -109,7 +109,8 @@ struct cut {
     struct ct_station s;
     double x, tolerance; // where it is [m]
     bool is_start;       // x = 0: what acts there belongs to the part before
-    ct_ex3 a, w, al;     // of the base: acceleration less gravity, angular velocity and acceleration
+    ct_ex3 a, w,
+        al; // of the base: acceleration less gravity, angular velocity and acceleration
     ct_ex3 force, torque;
 };
 
@@ -176,8 +177,8 @@ static void add_mass(struct ct_build *b, struct cut *c, const struct ct_element 
         turning.e[k] = ct_ex_mul(x, j[k], turning.e[k]);
         spin.e[k] = ct_ex_mul(x, j[k], spin.e[k]);
     }
-    add_wrench(b, c, ct_ex3_scale(x, m, a),
-               ct_ex3_add(x, turning, ct_ex3_cross(x, c->w, spin)), r);
+    add_wrench(b, c, ct_ex3_scale(x, m, a), ct_ex3_add(x, turning, ct_ex3_cross(x, c->w, spin)),
+               r);
 }
 
 // The element beyond xi = from. Lumped masses sit at its ends; that at the section's own place counts.
@@ -193,9 +194,8 @@ static void add_element(struct ct_build *b, struct cut *c, int number, ct_ex fro
         return;
     struct ct_span part = e->span;
     if (rule != CT_RULE_ENDS)
-        part = (struct ct_span){
-            ct_ex_add(x, e->span.start, ct_ex_mul(x, from, e->span.length)),
-            ct_ex_mul(x, rest, e->span.length)};
+        part = (struct ct_span){ct_ex_add(x, e->span.start, ct_ex_mul(x, from, e->span.length)),
+                                ct_ex_mul(x, rest, e->span.length)};
     const struct ct_profile mass = {beam->x, beam->mass_per_length};
     double at[CT_MAX_GAUSS];
     ct_ex m[CT_MAX_GAUSS], j[3][CT_MAX_GAUSS];
@@ -205,10 +205,9 @@ static void add_element(struct ct_build *b, struct cut *c, int number, ct_ex fro
         ct_shape_points(x, &rotary, &part, rule, CT_MAX_GAUSS, at, j[k]);
     }
     for (int i = rule == CT_RULE_ENDS && !is_whole ? 1 : 0; i < n; i++) {
-        const ct_ex xi
-            = rule == CT_RULE_ENDS
-                ? ct_ex_const(x, at[i])
-                : ct_ex_add(x, from, ct_ex_mul(x, rest, ct_ex_const(x, at[i])));
+        const ct_ex xi = rule == CT_RULE_ENDS
+                           ? ct_ex_const(x, at[i])
+                           : ct_ex_add(x, from, ct_ex_mul(x, rest, ct_ex_const(x, at[i])));
         const ct_ex own[3] = {j[0][i], j[1][i], j[2][i]};
         add_mass(b, c, e, xi, m[i], own, chain);
     }
@@ -221,8 +220,8 @@ static void add_inertia(struct ct_build *b, struct cut *c)
     if (c->is_start) {
         ct_ex3 force, torque;
         ct_flexible_wrench(b, f, &force, &torque);
-        add_wrench(b, c, ct_node_unturn(b, f->base, force),
-                   ct_node_unturn(b, f->base, torque), zero3);
+        add_wrench(b, c, ct_node_unturn(b, f->base, force), ct_node_unturn(b, f->base, torque),
+                   zero3);
         return;
     }
     ct_ex chain = CT_EX_ZERO;
@@ -230,8 +229,8 @@ static void add_inertia(struct ct_build *b, struct cut *c)
         if (e >= c->s.element)
             add_element(b, c, e, e == c->s.element ? c->s.xi : CT_EX_ZERO, chain);
         for (int j = 2; j < CT_PLACE_DOF && f->axial == CT_AXIAL_CHAIN; j++)
-            chain = ct_ex_add(
-                x, chain, ct_ex_mul(x, f->element[e].g[j], f->element[e].acceleration[j]));
+            chain = ct_ex_add(x, chain,
+                              ct_ex_mul(x, f->element[e].g[j], f->element[e].acceleration[j]));
     }
 }
 

@@ -501,8 +501,8 @@ static void twist_element(struct ct_build *b, const struct ct_flexible *f, int e
         for (int k = 0; k < 2; k++) {
             const struct ct_shape dk = ct_shape_slope(&f->linear[k]);
             const ct_ex K = pair_integral(b, f, e, GJ, &dj, &dk, stiffness_rule(beam));
-            const ct_ex M
-                = pair_integral(b, f, e, J, &f->linear[j], &f->linear[k], ct_flexible_mass_rule(beam));
+            const ct_ex M = pair_integral(b, f, e, J, &f->linear[j], &f->linear[k],
+                                          ct_flexible_mass_rule(beam));
             const ct_ex C = ct_ex_add(x, ct_ex_mul(x, beam->damping_stiffness, K),
                                       ct_ex_mul(x, beam->damping_mass, M));
             elastic = ct_ex_add(x, elastic, ct_ex_mul(x, K, value[k]));

@@ -229,8 +229,7 @@ bool ct_reaction_is_known(const struct ct_build *b, int joint, bool is_force, in
 
 bool ct_reaction_of_edge_is_known(const struct ct_build *b, int edge, bool is_force, int i)
 {
-    if (!b->is_planar
-        || is_of_plane(b, b->wiring[edge].tail, is_force, i))
+    if (!b->is_planar || is_of_plane(b, b->wiring[edge].tail, is_force, i))
         return true;
     if (!b->T.is_branch[edge] || (b->edge[edge].has_rotation && !b->R.is_branch[edge]))
         return false;
