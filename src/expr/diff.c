@@ -208,9 +208,16 @@ static ct_ex rebuild_mapped(struct ct_exs *x, const struct ct_exnode *n, const c
 
 ct_ex ct_ex_subst(struct ct_exs *x, ct_ex e, const ct_ex *from, const ct_ex *to, size_t ns)
 {
-    const size_t n = ct_ex_walk(x, &e, 1);
+    ct_ex_subst_list(x, &e, 1, from, to, ns);
+    return e;
+}
+
+void ct_ex_subst_list(struct ct_exs *x, ct_ex *a, size_t na, const ct_ex *from, const ct_ex *to,
+                      size_t ns)
+{
+    const size_t n = ct_ex_walk(x, a, na);
     const uint32_t *list = copy_list(x, n);
-    uint32_t *place = CT_NEWN(x->arena, uint32_t, (size_t)e.id + 1);
+    uint32_t *place = CT_NEWN(x->arena, uint32_t, (n ? list[n - 1] : 0) + (size_t)1);
     ct_ex *image = CT_NEWN(x->arena, ct_ex, n + 1);
     for (size_t k = 0; k < n; k++) {
         const struct ct_exnode node = x->node[list[k]];
@@ -224,7 +231,8 @@ ct_ex ct_ex_subst(struct ct_exs *x, ct_ex e, const ct_ex *from, const ct_ex *to,
             image[k] = rebuild_mapped(x, &node, image, place);
         }
     }
-    return image[place[e.id]];
+    for (size_t k = 0; k < na; k++)
+        a[k] = image[place[a[k].id]];
 }
 
 ct_ex ct_ex_import(struct ct_exs *x, const struct ct_exs *from, ct_ex e, ct_ex_leaf_fn leaf,

@@ -48,7 +48,7 @@ static ct_ex3 deformed_place(struct ct_build *b, const struct ct_flexible *f, ct
 {
     const ct_ex3 across = {{CT_EX_ZERO, rest.e[1], rest.e[2]}};
     struct ct_station s;
-    ct_flexible_station(b, f, rest.e[0], &s);
+    ct_flexible_station(b, f, rest.e[0], f->kinematics, &s);
     const ct_ex33 S = section_axes(b, &s);
     return ct_ex3_add(b->x, s.place, ct_ex33_apply(b->x, &S, across));
 }
@@ -84,7 +84,7 @@ ct_ex ct_beam_signal_strain(struct ct_build *b, int frame)
     struct ct_exs *x = b->x;
     const struct ct_flexible *f = beam_of(b, frame);
     struct ct_station s;
-    ct_flexible_station(b, f, rest_place(b, frame).e[0], &s);
+    ct_flexible_station(b, f, rest_place(b, frame).e[0], f->kinematics, &s);
     const struct ct_element *e = &f->element[s.element];
     const ct_ex h = e->span.length;
     ct_ex stretch = ct_ex_sub(x, e->value[1], e->value[0]);
@@ -120,7 +120,7 @@ static struct cut cut_at(struct ct_build *b, const struct ct_flexible *f, ct_ex 
 {
     struct cut c = {.f = f};
     const int frame = b->place[f->base].frame;
-    ct_flexible_station(b, f, x, &c.s);
+    ct_flexible_station(b, f, x, f->kinematics, &c.s);
     c.x = ct_ex_value(b->x, x, b->value);
     c.tolerance = same_place * ct_ex_value(b->x, f->beam->length, b->value);
     c.is_start = c.x < c.tolerance;
@@ -156,7 +156,7 @@ static void add_mass(struct ct_build *b, struct cut *c, const struct ct_element 
     struct ct_exs *x = b->x;
     const struct ct_flexible *f = c->f;
     struct ct_axial_field u;
-    ct_axial_field(b, f, (int)(e - f->element), xi, &u);
+    ct_axial_field(b, f, (int)(e - f->element), xi, f->kinematics, &u);
     ct_ex3 r = {{ct_ex_add(x, ct_ex_add(x, e->span.start, ct_ex_mul(x, xi, e->span.length)),
                            u.value)}},
            v = {{u.rate}}, a = {{ct_ex_add(x, u.bias, chain)}};
@@ -228,7 +228,7 @@ static void add_inertia(struct ct_build *b, struct cut *c)
     for (int e = 0; e < f->beam->nelement; e++) {
         if (e >= c->s.element)
             add_element(b, c, e, e == c->s.element ? c->s.xi : CT_EX_ZERO, chain);
-        for (int j = 2; j < CT_PLACE_DOF && f->axial == CT_AXIAL_CHAIN; j++)
+        for (int j = 2; j < CT_PLACE_DOF && f->kinematics == CT_AXIAL_CHAIN; j++)
             chain = ct_ex_add(x, chain,
                               ct_ex_mul(x, f->element[e].g[j], f->element[e].acceleration[j]));
     }
@@ -289,6 +289,6 @@ ct_ex3 ct_beam_signal_vector(struct ct_build *b, int frame, const char *property
         return chord_deflection(b, f, rest);
     if (strcmp(property, "slope"))
         return resultant(b, frame, !strcmp(property, "force"));
-    ct_flexible_station(b, f, rest.e[0], &s);
+    ct_flexible_station(b, f, rest.e[0], f->kinematics, &s);
     return (ct_ex3){{s.angle[0], s.angle[1], s.angle[2]}};
 }

@@ -55,7 +55,8 @@ struct ct_edge_info {
     struct ct_flexible *flexible;      // arms of beams: the beam, with the section at `along`
     ct_ex along;                       // [m]
     const struct ct_station *station;  // once the beam's coordinates are chosen
-    ct_ex3 *slide, *turn;              // of the station, by elastic coordinate
+    ct_ex3 *foreshortened; // slides that forces act along, where they differ; else NULL
+    ct_ex3 *slide, *turn;  // of the station, by elastic coordinate
 };
 
 /// coef times a speed: of an unknown (speed >= 0) or of a driver (driver >= 0).
@@ -93,6 +94,8 @@ struct ct_cluster {
 struct ct_slide {
     int speed, driver;
     ct_ex3 p;
+    ct_ex3
+        extra; // what forces act along besides: foreshortening that the kinematics leaves out
 };
 
 /// Vector from the parent anchor to this one: R_cluster (local).
@@ -145,6 +148,7 @@ struct ct_build {
 
     // planar mechanisms: common normal and a basis of the plane (ground components)
     bool is_planar;
+    bool keep_all;   // leave nothing out
     bool is_rigid;   // beams keep their shape: for assembly, where they are not deformed yet
     ct_ex3 plane[3]; // e1, e2, n
     ct_ex *layer;    // by node: its place along n [m]

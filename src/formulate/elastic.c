@@ -13,9 +13,11 @@ enum { FEW_POINTS = 4, MANY_POINTS = 8 }; // sections that are constant, that va
 struct point {
     int element;
     ct_ex m, j[3];
-    ct_ex3 r, rate, bias;      // place from the base; bias: second derivative with u' = 0
-    ct_ex along[CT_PLACE_DOF]; // d r_x/d dof
+    ct_ex3 r, rate, bias;        // place from the base; bias: second derivative with u' = 0
+    ct_ex along[CT_PLACE_DOF];   // d r_x/d dof
+    struct ct_axial_field axial; // the same of forces, where these alone foreshorten
     ct_ex place[4], turn[4], linear[2]; // shapes there
+    ct_ex linear_value;                 // axial displacement, of r
     ct_ex3 spin;                        // rate of the section's rotation
 };
 
@@ -80,7 +82,7 @@ static void place_point(struct ct_build *b, const struct ct_flexible *f, struct 
     const struct ct_element *e = &f->element[p->element];
     const ct_ex xi = ct_ex_const(x, at), h = e->span.length;
     struct ct_axial_field a;
-    ct_axial_field(b, f, p->element, xi, &a);
+    ct_axial_field(b, f, p->element, xi, f->kinematics, &a);
     for (int i = 0; i < CT_PLACE_DOF; i++)
         p->along[i] = a.slope[i];
     for (int i = 0; i < 4; i++) {
@@ -89,12 +91,15 @@ static void place_point(struct ct_build *b, const struct ct_flexible *f, struct 
     }
     for (int i = 0; i < 2; i++)
         p->linear[i] = ct_shape_at(x, &f->linear[i], xi, h);
+    p->linear_value = a.value;
     const ct_ex rest = ct_ex_add(x, e->span.start, ct_ex_mul(x, xi, h));
     p->r = (ct_ex3){{ct_ex_add(x, rest, a.value), dot4(b, p->place, e->value + 2),
                      dot4(b, p->place, e->value + 6)}};
     p->rate
         = (ct_ex3){{a.rate, dot4(b, p->place, e->rate + 2), dot4(b, p->place, e->rate + 6)}};
     p->bias = (ct_ex3){{a.bias, CT_EX_ZERO, CT_EX_ZERO}};
+    if (f->kinematics != f->axial)
+        ct_axial_field(b, f, p->element, xi, f->axial, &p->axial);
     p->spin = turning(b, p, e->rate);
 }
 
@@ -136,7 +141,7 @@ static ct_ex3 own_acceleration(struct ct_build *b, const struct ct_flexible *f,
 
 static ct_ex *chain_accelerations(struct ct_build *b, const struct ct_flexible *f)
 {
-    if (f->axial != CT_AXIAL_CHAIN)
+    if (f->kinematics != CT_AXIAL_CHAIN)
         return NULL;
     ct_ex *c = CT_NEWN(b->arena, ct_ex, f->beam->nelement + 1);
     for (int e = 0; e < f->beam->nelement; e++) {
@@ -291,13 +296,12 @@ static void push_dof(struct ct_build *b, const struct ct_flexible *f, int e, int
 }
 
 // Rows of the force F and the moment T at a point: dr . F + dth . T.
-static void push_point(struct ct_build *b, const struct ct_flexible *f, const struct point *p,
-                       ct_ex3 F, ct_ex3 T, ct_ex sum[CT_DOF])
+static void push_point(struct ct_build *b, const struct point *p, const ct_ex *along, ct_ex3 F,
+                       ct_ex3 T, ct_ex sum[CT_DOF])
 {
     struct ct_exs *x = b->x;
-    (void)f;
     for (int j = 0; j < CT_PLACE_DOF; j++) {
-        ct_ex v = ct_ex_mul(x, p->along[j], F.e[0]);
+        ct_ex v = ct_ex_mul(x, along[j], F.e[0]);
         if (j >= 2 && j < 6) {
             v = ct_ex_add(x, v, ct_ex_mul(x, p->place[j - 2], F.e[1]));
             v = ct_ex_add(x, v, ct_ex_mul(x, p->turn[j - 2], T.e[2]));
@@ -335,9 +339,46 @@ static void inertia_rows(struct ct_build *b, const struct ct_flexible *f, const 
             }
             const ct_ex3 F = ct_ex3_scale(x, p->m, c);
             axial = ct_ex_add(x, axial, F.e[0]);
-            push_point(b, f, p, F, times(b, p->j, al), sum);
+            push_point(b, p, p->along, F, times(b, p->j, al), sum);
         }
-        for (int j = 2; j < CT_PLACE_DOF && f->axial == CT_AXIAL_CHAIN; j++)
+        for (int j = 2; j < CT_PLACE_DOF && f->kinematics == CT_AXIAL_CHAIN; j++)
+            sum[j] = ct_ex_add(x, sum[j], ct_ex_mul(x, f->element[e].g[j], beyond));
+        beyond = ct_ex_add(x, beyond, axial);
+        for (int j = 0; j < CT_DOF; j++)
+            push_dof(b, f, e, j, sum[j], row);
+    }
+}
+
+// What foreshortening adds where it is left out of the kinematics: rows of the velocity-quadratic force of the
+// foreshortened beam less those of the linear one, which inertia_rows has.
+static void foreshortening_rows(struct ct_build *b, const struct ct_flexible *f,
+                                const struct base *m, ct_ex *row)
+{
+    struct ct_exs *x = b->x;
+    const struct ct_inertia *I = f->inertia;
+    const struct base turning_only = {.w = m->w};
+    const ct_ex33 ww = turning_matrix(b, &turning_only);
+    ct_ex beyond = CT_EX_ZERO;
+    for (size_t i = I->npoint; i > 0;) {
+        const int e = I->point[i - 1].element;
+        ct_ex sum[CT_DOF] = {{0}}, axial = CT_EX_ZERO;
+        for (; i > 0 && I->point[i - 1].element == e; i--) {
+            const struct point *p = &I->point[i - 1];
+            const ct_ex rest = ct_ex_sub(x, p->r.e[0], p->linear_value);
+            ct_ex3 r = p->r, rate = p->rate;
+            r.e[0] = ct_ex_add(x, rest, p->axial.value);
+            rate.e[0] = p->axial.rate;
+            ct_ex3 c = ct_ex3_add(x, ct_ex33_apply(x, &ww, r), twice_cross(b, m->w, rate));
+            c.e[0] = ct_ex_add(x, c.e[0], p->axial.bias);
+            const ct_ex3 linear
+                = ct_ex3_add(x, ct_ex33_apply(x, &ww, p->r), twice_cross(b, m->w, p->rate));
+            const ct_ex3 F = ct_ex3_scale(x, p->m, c);
+            axial = ct_ex_add(x, axial, F.e[0]);
+            push_point(b, p, p->axial.slope, F, zero3, sum);
+            push_point(b, p, p->along, ct_ex3_neg(x, ct_ex3_scale(x, p->m, linear)), zero3,
+                       sum);
+        }
+        for (int j = 2; j < CT_PLACE_DOF; j++)
             sum[j] = ct_ex_add(x, sum[j], ct_ex_mul(x, f->element[e].g[j], beyond));
         beyond = ct_ex_add(x, beyond, axial);
         for (int j = 0; j < CT_DOF; j++)
@@ -601,6 +642,8 @@ void ct_flexible_sweep(struct ct_build *b, enum ct_level level, const ct_ex3 *ap
         rest[p->anchor] = ct_ex3_add(x, rest[p->anchor], out_of(b, f, F));
         torque[p->frame] = ct_ex3_add(x, torque[p->frame], out_of(b, f, T));
         inertia_rows(b, f, &m, level, row);
+        if (f->kinematics != f->axial)
+            foreshortening_rows(b, f, &m, row);
         stiffness_rows(b, f, row);
     }
 }
@@ -757,7 +800,7 @@ static void elastic_block(struct ct_build *b, const struct ct_flexible *f, struc
 {
     struct ct_exs *x = b->x;
     const struct ct_inertia *I = f->inertia;
-    const bool chain = f->axial == CT_AXIAL_CHAIN;
+    const bool chain = f->kinematics == CT_AXIAL_CHAIN;
     const int n = f->beam->nelement;
     struct element_mass *s = CT_NEWN(b->arena, struct element_mass, n);
     for (size_t i = 0; i < I->npoint; i++)

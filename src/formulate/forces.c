@@ -243,6 +243,10 @@ static ct_ex sweep_row(struct ct_build *b, const struct ct_sweep *s, int speed, 
                 continue;
             const ct_ex3 p = ct_cluster_turn(b, b->anchor[a].cluster, t->p);
             sum = ct_ex_add(x, sum, ct_ex3_dot(x, p, s->force[a]));
+            if (ct_ex3_is_zero(t->extra))
+                continue;
+            const ct_ex3 extra = ct_cluster_turn(b, b->anchor[a].cluster, t->extra);
+            sum = ct_ex_add(x, sum, ct_ex3_dot(x, extra, ct_sweep_run(b, CT_BIAS)->force[a]));
         }
     return sum;
 }

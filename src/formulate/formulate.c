@@ -5,6 +5,7 @@
 #include "formulate/residual.h"
 #include "formulate/row.h"
 #include "formulate/signal.h"
+#include "formulate/small.h"
 #include "formulate/solution.h"
 #include "formulate/topology.h"
 #include "graph/exchange.h"
@@ -47,7 +48,11 @@ static struct ct_build *build_create(struct ct_ctx *ctx, struct ct_arena *a,
                                      const struct ct_formulate_options *o)
 {
     struct ct_build *b = CT_NEW(a, struct ct_build);
-    *b = (struct ct_build){.ctx = ctx, .arena = a, .model = m, .is_rigid = o->measure_all};
+    *b = (struct ct_build){.ctx = ctx,
+                           .arena = a,
+                           .model = m,
+                           .is_rigid = o->measure_all,
+                           .keep_all = o->keep_all};
     b->eqs = CT_NEW(a, struct ct_equations);
     b->x = b->eqs->x = clone_store(a, m->x);
     b->value = start_values(a, m);
@@ -70,6 +75,7 @@ static bool derive(struct ct_build *b, bool with_dynamics)
     ct_loads_derive(b);
     ct_mass_matrix_derive(b);
     ct_forces_derive(b);
+    ct_small_derive(b);
     return b->ctx->nerror == before;
 }
 
@@ -249,8 +255,9 @@ static struct rules make_rules(struct ct_build *b, enum ct_tree_choice choice)
         r.weight_t[i] = e->weight_t + extra;
         r.weight_r[i] = e->weight_r + extra;
         r.rank[i] = tie_rank(b, i, depth, turned, choice);
-        r.forced_t[i] = e->must_be_branch;
-        r.forced_r[i] = e->must_be_branch || is_particle;
+        const bool is_small = e->kind == CT_EDGE_JOINT && ct_small_joint(b, e->index);
+        r.forced_t[i] = e->must_be_branch || is_small;
+        r.forced_r[i] = e->must_be_branch || is_particle || (is_small && e->has_rotation);
         r.banned_t[i] = e->never_branch;
         r.banned_r[i] = e->never_branch || !e->has_rotation;
         r.tied[i] = e->must_be_branch;
