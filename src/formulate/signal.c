@@ -116,8 +116,12 @@ static bool frame_signal(struct ct_build *b, int frame, const struct signal *s,
         return true;
     }
     return unknown(b, mark, name,
-                   "a frame has position, velocity, acceleration, angular_velocity, "
-                   "angular_acceleration, rotation and quaternion");
+                   b->model->body[b->model->frame[frame].body].beam
+                       ? "a frame of a beam has deflection, slope, chord_deflection, strain, "
+                         "force, moment, position, velocity, acceleration, angular_velocity, "
+                         "angular_acceleration, rotation and quaternion"
+                       : "a frame has position, velocity, acceleration, angular_velocity, "
+                         "angular_acceleration, rotation and quaternion");
 }
 
 // ---- joints ----------------------------------------------------------------------------------------------------

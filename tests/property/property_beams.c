@@ -646,6 +646,24 @@ static void signals_of_shape_mean_what_the_manual_says(void **state)
     assert_true(ok);
 }
 
+// Shape may steer a force (`push` above); what follows from accelerations may not.
+static void a_force_cannot_depend_on_a_section_force(void **state)
+{
+    (void)state;
+    static const char *const signal[] = {"rod.mid.moment.z", "rod.tip.force.x"};
+    for (size_t i = 0; i < COUNT(signal); i++) {
+        struct ct_arena *a = ct_arena_create();
+        struct system s;
+        const char *text
+            = text_of(a, "%s  feed: {type: force, at: rod.tip, value: [0, %s, 0]}\n",
+                      text_of(a, hanging, kinds[0], "rod", "rod.tip"), signal[i]);
+        assert_false(system_try_text(&s, "feed", text));
+        assert_int_equal(s.ctx.diagnostic[0].code, CT_E_SIGNAL_USE);
+        system_close(&s);
+        ct_arena_destroy(a);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -654,6 +672,7 @@ int main(void)
         cmocka_unit_test(the_part_between_two_sections_is_balanced),
         cmocka_unit_test(cantilevers_are_those_of_the_textbook),
         cmocka_unit_test(signals_of_shape_mean_what_the_manual_says),
+        cmocka_unit_test(a_force_cannot_depend_on_a_section_force),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
