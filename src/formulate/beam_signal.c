@@ -1,5 +1,6 @@
 // See beam_signal.h.
 #include "formulate/beam_signal.h"
+#include "formulate/elastic.h"
 #include "formulate/reaction.h"
 
 #include <math.h>

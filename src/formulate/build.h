@@ -132,6 +132,12 @@ struct ct_load {
     ct_ex power;     // put in by the part that has no potential [W]
 };
 
+/// One piece of a path between two nodes: an anchor's link, or the offset of an end node (anchor < 0).
+struct ct_piece {
+    int anchor, cluster, sign;
+    ct_ex3 local;
+};
+
 struct ct_star;     // dynamics.h
 struct ct_flexible; // flexible.h
 struct ct_station;
@@ -174,6 +180,7 @@ struct ct_build {
     struct ct_anchor *anchor;
     size_t nanchor, anchor_cap;
     struct ct_place *place; // by node
+    struct ct_piece *piece; // of the path sought last (nanchor + 2)
 
     struct ct_flexible *flexible; // one per beam
     size_t nflexible;

@@ -109,10 +109,6 @@ ct_ex ct_element_field(struct ct_build *b, const struct ct_element *e,
 
 // ---- elastic.c: dynamics ---------------------------------------------------------------------------
 
-/// Where the inertia of an element is taken.
-enum ct_rule ct_flexible_mass_rule(const struct ct_beam *beam);
-/// Inertia per length about an axis; twist has some of its own where nothing else is given.
-struct ct_profile ct_flexible_rotary(const struct ct_flexible *f, int axis);
 /// Mass, first moment and inertia of the beams, added to anchors and clusters; before stars are linked.
 void ct_flexible_lump(struct ct_build *b);
 /// Rows and columns of the elastic coordinates, added to the lower triangle M (nu x nu).
