@@ -417,6 +417,7 @@ static const char *kind_name(const struct ct_build *b, size_t i)
     static const char *const plain[] = {"body", "arm", "joint", "closure", "force"};
     return e->self                            ? e->self->cls->name
          : b->edge[i].kind == CT_EDGE_CLOSURE ? "weld"
+         : b->edge[i].flexible                ? "flexible arm"
                                               : plain[e->kind];
 }
 
