@@ -84,6 +84,8 @@ struct ct_cluster {
     ct_ex3 axis; // local
     ct_ex angle;
     int has_angle;
+    ct_ex own_angle; // against its parent, where it is one turn
+    ct_ex33 S;       // else its axes -> its parent's
     ct_ex omega;     // planar: w = omega * normal
     ct_ex3 w, al[2]; // angular velocity, acceleration: [0] with u' = 0, [1] with symbols u'
     bool has_al[2];
@@ -132,6 +134,12 @@ struct ct_load {
     ct_ex power;     // put in by the part that has no potential [W]
 };
 
+/// One piece of a path between two nodes: an anchor's link, or the offset of an end node (anchor < 0).
+struct ct_piece {
+    int anchor, cluster, sign;
+    ct_ex3 local;
+};
+
 struct ct_star;     // dynamics.h
 struct ct_flexible; // flexible.h
 struct ct_station;
@@ -174,13 +182,15 @@ struct ct_build {
     struct ct_anchor *anchor;
     size_t nanchor, anchor_cap;
     struct ct_place *place; // by node
+    struct ct_piece *piece; // of the path sought last (nanchor + 2)
 
     struct ct_flexible *flexible; // one per beam
     size_t nflexible;
 
     struct ct_star *star;
     size_t nstar, star_cap;
-    int *child; // anchors, star by star
+    bool is_lumped; // stars are made
+    int *child;     // anchors, star by star
 
     struct ct_load *load;
     size_t nload, load_cap;

@@ -107,10 +107,11 @@ bool ct_excite_keeps_plane(struct ct_build *b, ct_ex33 *const *U)
         const bool about_y = fabs(ct_ex_value(b->x, n.e[1], b->value)) > 1 - rounding;
         const unsigned within
             = CT_BEAM_AXIAL | (about_z ? CT_BEAM_BENDING_Z : CT_BEAM_BENDING_Y);
-        if (!about_z && !about_y)
+        const bool leaves = f->beam->deformation_given && f->beam->deformation & ~within;
+        if ((!about_z && !about_y) || leaves)
             return false;
         longest = fmax(longest, ct_ex_value(b->x, f->beam->length, b->value));
-        asked = asked || !f->beam->deformation_given || f->beam->deformation & ~within;
+        asked = asked || !f->beam->deformation_given;
     }
     return !asked
         || (is_across(b, b->model->gravity, b->plane[2]) && loads_keep_plane(b, U)

@@ -6,7 +6,7 @@
 
 /// May the beams of a mechanism whose joints keep to the plane b->plane keep to it, too? Each must bend about the normal,
 /// and nothing may push it out of the plane: gravity, loads, inertia and arms lie in it; or the beam is told to deform
-/// there alone. U: axes of the nodes at rest (topology.c). layer: place of each node along the normal.
+/// there alone. One that is told to leave the plane does. U: axes of the nodes at rest (topology.c). layer: place of each node along the normal.
 bool ct_excite_keeps_plane(struct ct_build *b, ct_ex33 *const *U);
 
 /// Can anything twist the beam: a joint, a torque or an arm off its axis beyond the base?

@@ -89,6 +89,9 @@ static void link_children(struct ct_build *b)
 
 void ct_masses_lump(struct ct_build *b)
 {
+    if (b->is_lumped)
+        return;
+    b->is_lumped = true;
     for (size_t i = 1; i < b->model->nbody; i++) {
         const struct ct_body *body = &b->model->body[i];
         const struct ct_place *p = &b->place[b->node_of_com[i]];
@@ -130,6 +133,7 @@ struct reach {
     ct_ex33 *inertia;  // by cluster: augmented inertia of it and the clusters outboard, ground
     ct_ex33 *outboard; // the same of the clusters outboard alone
     int *first, *next; // stars of an anchor, chained
+    int *start; // by cluster: anchor from which on what turns with it is summed; -1: nothing does
 };
 
 static size_t at(const struct reach *s, int anchor, int cluster)
@@ -193,6 +197,29 @@ static enum share share(const struct reach *s, int anchor, int cluster)
 {
     const int n = s->nturning[at(s, anchor, cluster)];
     return !n ? NONE : n < s->nstar[anchor] ? SOME : ALL;
+}
+
+// The innermost anchor outboard of which everything turns with a cluster; if there is none, the outermost one
+// inboard of all that does.
+static void find_starts(struct reach *s)
+{
+    const struct ct_build *b = s->b;
+    for (size_t c = 0; c < b->ncluster; c++)
+        s->start[c] = -1;
+    for (size_t i = 0; i < b->nstar; i++)
+        for (int c = b->star[i].cluster; c > 0 && is_felt(b, &b->star[i]);
+             c = b->cluster[c].parent) {
+            int other = b->star[i].anchor;
+            if (s->start[c] < 0)
+                s->start[c] = other;
+            while (s->start[c] != other) // numbers grow outwards
+                *(s->start[c] > other ? &s->start[c] : &other)
+                    = b->anchor[s->start[c] > other ? s->start[c] : other].parent;
+        }
+    for (size_t c = 1; c < b->ncluster; c++)
+        for (int a = s->start[c]; a >= 0; a = a ? b->anchor[a].parent : -1)
+            if (share(s, a, (int)c) == ALL)
+                s->start[c] = a;
 }
 
 // Sum of the vectors on the path to an anchor that turn with a cluster.
@@ -499,7 +526,8 @@ static void spin_column(struct reach *s, ct_ex *M, size_t r, const struct column
         if ((same && row > r) || !is_row_of(b, depth, other->cluster, c->cluster)
             || !has_unknown(other->term, other->nterm))
             continue;
-        ct_ex3 torque = row_torque(s, c, other->cluster, 0);
+        const int start = s->start[other->cluster];
+        ct_ex3 torque = start < 0 ? zero3 : row_torque(s, c, other->cluster, start);
         const bool is_fixed = same && c->is_local && !ct_ex3_is_zero(other->local);
         if (!is_fixed && ct_cluster_is_outboard(b, other->cluster, c->cluster))
             torque = ct_ex3_add(b->x, own, torque);
@@ -579,7 +607,9 @@ static struct reach reach_create(struct ct_build *b)
     s.outboard = CT_NEWN(b->arena, ct_ex33, nc);
     s.first = CT_NEWN(b->arena, int, na);
     s.next = CT_NEWN(b->arena, int, ns);
+    s.start = CT_NEWN(b->arena, int, nc);
     count_stars(&s);
+    find_starts(&s);
     sum_inertias(&s);
     return s;
 }
