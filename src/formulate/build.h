@@ -84,6 +84,8 @@ struct ct_cluster {
     ct_ex3 axis; // local
     ct_ex angle;
     int has_angle;
+    ct_ex own_angle; // against its parent, where it is one turn
+    ct_ex33 S;       // else its axes -> its parent's
     ct_ex omega;     // planar: w = omega * normal
     ct_ex3 w, al[2]; // angular velocity, acceleration: [0] with u' = 0, [1] with symbols u'
     bool has_al[2];
@@ -187,7 +189,8 @@ struct ct_build {
 
     struct ct_star *star;
     size_t nstar, star_cap;
-    int *child; // anchors, star by star
+    bool is_lumped; // stars are made
+    int *child;     // anchors, star by star
 
     struct ct_load *load;
     size_t nload, load_cap;

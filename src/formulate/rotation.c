@@ -264,6 +264,7 @@ static int turn_cluster(struct ct_build *b, int parent, const struct ct_edge_inf
     const struct ct_cluster *p = &b->cluster[parent];
     const ct_ex3 opposite = ct_ex3_neg(x, axis);
     self->has_angle = true;
+    self->own_angle = angle;
     if (p->has_angle && (same3(p->axis, axis) || same3(p->axis, opposite))) {
         self->base = p->base;
         self->axis = p->axis;
@@ -312,6 +313,7 @@ static int quaternion_cluster(struct ct_build *b, int parent, const ct_ex33 *S,
     const ct_ex33 forward = quaternion_matrix(x, &e->motion.coord[k]);
     const ct_ex33 A = sign > 0 ? forward : ct_ex33_transpose(&forward);
     b->cluster[c].R = ct_ex33_mul(x, &P, &A);
+    b->cluster[c].S = ct_ex33_mul(x, S, &A);
     const ct_ex33 *to = sign > 0 ? &b->cluster[c].R : &P;
     for (int i = 0; i < 3; i++) {
         const struct ct_coordinate *coordinate = &b->coordinate[e->first_coordinate + k + i];
@@ -484,6 +486,14 @@ ct_ex3 ct_cluster_path_acceleration(struct ct_build *b, int from, int to, enum c
             from = b->cluster[from].parent;
         }
     return sum;
+}
+
+ct_ex33 ct_cluster_relative(struct ct_build *b, int c)
+{
+    const struct ct_cluster *self = &b->cluster[c];
+    return self->has_angle
+             ? ct_ex33_axis_angle(b->x, b->spin[self->first_spin].local, self->own_angle)
+             : self->S;
 }
 
 ct_ex3 ct_cluster_turn(struct ct_build *b, int c, ct_ex3 local)

@@ -165,7 +165,7 @@ static void compile_motion(struct ct_arena *a, struct ct_machine *m, const struc
     for (size_t i = 0; i < e->nM; i++)
         push(&l, e->M[i].value);
     for (size_t i = 0; i < e->nu; i++)
-        push(&l, e->Q[i]);
+        push(&l, e->has_dynamics ? e->Q[i] : CT_EX_ZERO);
     for (size_t i = 0; i < e->nJ; i++)
         push(&l, e->J[i].value);
     for (size_t i = 0; i < e->nrow; i++)
@@ -288,7 +288,7 @@ struct ct_machine *ct_machine_create(struct ct_arena *a, const struct ct_model *
     compile_constraint(a, m, &in);
     compile_rest(a, m, &in);
     compile_residual(a, m, &in);
-    m->M = CT_NEWN(a, double, m->nu * m->nu + 1);
+    m->M = CT_NEWN(a, double, (e->has_dynamics ? m->nu * m->nu : 0) + 1);
     m->J = CT_NEWN(a, double, m->nrow * m->nu + 1);
     m->g[0] = CT_NEWN(a, double, e->nmode + 1);
     m->g[1] = CT_NEWN(a, double, e->nmode + 1);
@@ -300,6 +300,17 @@ struct ct_machine *ct_machine_create(struct ct_arena *a, const struct ct_model *
     ct_machine_use(a, m, CT_BACKEND_BEST);
     ct_machine_prepare(m);
     return m;
+}
+
+void ct_machine_values(struct ct_arena *a, const struct ct_machine *m, const ct_ex *e, size_t n,
+                       double *out)
+{
+    const struct inputs in = list_inputs(a, m, m->e->x);
+    struct ct_program p = {0};
+    compile(a, m, &in, e, n, &p);
+    prepare(&p, m->input);
+    ct_program_run(&p, m->input);
+    memcpy(out, p.out, n * sizeof *out);
 }
 
 void ct_machine_prepare(struct ct_machine *m)

@@ -75,13 +75,16 @@ void ct_machine_forget(struct ct_machine *m, const struct ct_program *p);
 
 /// Copy time and state into the input. y: q, u, work.
 void ct_machine_set(struct ct_machine *m, double t, const double *y);
-/// M, Q, J, gam and q' at the input.
+/// M, Q, J, gam and q' at the input. Without dynamics in the equations M and Q are zero.
 void ct_machine_motion(struct ct_machine *m);
 /// u' (nu, out) and q' at the input where the equations have a solution; else false. M, Q stay as they were.
 bool ct_machine_solved(struct ct_machine *m, double *a);
 /// phi, v, J at the input.
 void ct_machine_constraint(struct ct_machine *m);
 void ct_program_run(struct ct_program *p, const double *input);
+/// Values of expressions at the input, once: everything needed is made in a.
+void ct_machine_values(struct ct_arena *a, const struct ct_machine *m, const ct_ex *e, size_t n,
+                       double *out);
 /// Parameters have changed: run the prologues again.
 void ct_machine_prepare(struct ct_machine *m);
 

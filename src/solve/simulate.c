@@ -334,7 +334,6 @@ struct ct_run *ct_run_create(struct ct_ctx *ctx, struct ct_arena *a,
     find_needs(r);
     ct_start_apply(start, r->m, r->y);
     ct_machine_constraint(r->m);
-    ct_machine_motion(r->m);
     if (!ct_embed_choose(r->s))
         return NULL;
     // measured on other trees, the loops close to rounding; the rest is taken off here
