@@ -220,15 +220,19 @@ static bool draw(void *task)
     struct ct_ctx *own = &d->s->own;
     static const char *const formats[] = {"text", "dot", "json"};
     bool *quiet = CT_NEWN(own->scratch, bool, e->graph->nedge + 1);
-    for (int i = 0; i < e->graph->nedge; i++)
+    bool *marked = CT_NEWN(own->scratch, bool, e->graph->nedge + 1);
+    for (int i = 0; i < e->graph->nedge; i++) {
         quiet[i] = strcmp(e->edge_kind[i], "arm") == 0;
+        marked[i] = strcmp(e->edge_kind[i], "flexible arm") == 0;
+    }
     const struct ct_graph_names names = {.node = node_name,
                                          .edge = edge_name,
                                          .kind = edge_kind,
                                          .data = e,
                                          .weight_trans = e->weight_t,
                                          .weight_rot = e->weight_r,
-                                         .is_quiet = quiet};
+                                         .is_quiet = quiet,
+                                         .is_marked = marked};
     const struct ct_graph_view view = {e->graph, e->T, e->R, &names};
     const char *format = d->format ? d->format : formats[0];
     bool ok = true;

@@ -34,9 +34,9 @@ static bool is_word(const char *s, size_t n, const char *word)
 static bool is_function(const char *s, size_t n)
 {
     static const char *const name[]
-        = {"sin",  "cos",  "tan", "asin", "acos",   "atan", "atan2", "sinh",
-           "cosh", "tanh", "exp", "log",  "sqrt",   "abs",  "sign",  "min",
-           "max",  "if",   "Rot", "diag", "effort", "const"};
+        = {"sin",  "cos",  "tan", "asin", "acos",   "atan",  "atan2", "sinh",
+           "cosh", "tanh", "exp", "log",  "sqrt",   "abs",   "sign",  "min",
+           "max",  "if",   "Rot", "diag", "effort", "const", "int"};
     for (size_t i = 0; i < COUNT(name); i++)
         if (is_word(s, n, name[i]))
             return true;
@@ -57,7 +57,7 @@ static void put_letter(FILE *out, const char *s, size_t n)
            {"theta", "&theta;"}, {"lambda", "&lambda;"}, {"mu", "&mu;"},
            {"rho", "&rho;"},     {"phi", "&phi;"},       {"psi", "&psi;"},
            {"omega", "&omega;"}, {"w", "&omega;"},       {"tau", "&tau;"},
-           {"pi", "&pi;"}};
+           {"pi", "&pi;"},       {"xi", "&xi;"}};
     for (size_t i = 0; i < COUNT(greek); i++)
         if (is_word(s, n, greek[i][0])) {
             fputs(greek[i][1], out);
