@@ -61,9 +61,7 @@ static void derive_shortening(struct ct_flexible *f)
         for (int k = 0; k < 4; k++) {
             const struct ct_shape both = ct_shape_mul(&f->shape.slope[j], &f->shape.slope[k]);
             const struct ct_shape E = ct_shape_primitive(&both);
-            struct ct_shape one = {.power = E.power};
-            for (int i = 0; i < CT_SHAPE_SIZE; i++)
-                one.c[0] += E.c[i];
+            const struct ct_shape one = {.c = {ct_shape_end(&E)}, .power = E.power};
             struct ct_shape D = ct_shape_mul(&xi, &one);
             for (int i = 0; i < CT_SHAPE_SIZE; i++)
                 D.c[i] -= E.c[i];

@@ -168,7 +168,10 @@ static void put_body(struct ct_derivation *d, const struct ct_flexible *f)
     ct_page_heading(&d->page, ct_arena_printf(d->a, "beam %s", f->name));
     ct_page_sentence(&d->page, "%s", ct_beam_sentence(d->a, f));
     ct_page_equations(&d->page);
-    put(d, rho(d), "[x + u, v, w]", "(x + u,\\; v,\\; w)",
+    const char *v = f->deformation & CT_BEAM_BENDING_Z ? "v" : "0";
+    const char *w = f->deformation & CT_BEAM_BENDING_Y ? "w" : "0";
+    put(d, rho(d), ct_arena_printf(d->a, "[x + u, %s, %s]", v, w),
+        ct_arena_printf(d->a, "(x + u,\\; %s,\\; %s)", v, w),
         ct_arena_printf(d->a, "place of the section at x, axes of %s", frame));
     put(d, latex ? "\\boldsymbol{c}" : "c",
         "a - g + al x rho + w x (w x rho) + 2*w x rho' + rho''",
@@ -223,7 +226,9 @@ static const char *axial_text(struct ct_derivation *d, const struct ct_flexible 
                               const char *plain)
 {
     const bool latex = ct_derivation_is_latex(d);
-    const char *more = f->kinematics == CT_AXIAL_LINEAR ? ""
+    const unsigned bending = CT_BEAM_BENDING_Y | CT_BEAM_BENDING_Z;
+    const bool is_straight = f->kinematics == CT_AXIAL_LINEAR || !(f->deformation & bending);
+    const char *more = is_straight ? ""
                      : f->kinematics == CT_AXIAL_LOCAL
                          ? latex ? " + \\xi \\, S(1) - S(\\xi)" : " + xi*S(1) - S(xi)"
                      : latex ? " - S_0 - S(\\xi)"
