@@ -62,8 +62,8 @@ const struct ct_component_class ct_component_beam = {
     .family = CT_FAMILY_BODY,
     .key = keys,
     .nkey = COUNT(keys),
-    .across = "section at x: d = rho(x, q), S(x, q)",
-    .through = "F = -int(mu*c), T = -int(mu*rho x c), effort(q) = -int(mu*rho_q.c) - V_q; c: "
+    .across = "section at x: d = r(x, q), S(x, q)",
+    .through = "F = -int(mu*c), T = -int(mu*r x c), effort(q) = -int(mu*r_q . c) - V_q; c: "
                "acceleration "
                "of the section less g",
 };

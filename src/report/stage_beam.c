@@ -133,9 +133,18 @@ void ct_beam_element_derive(struct ct_build *b, const struct ct_flexible *f,
     if (!out->is_constant)
         return;
     out->shortening = shortening(b, &one, e.value);
-    e.value[0] = CT_EX_ZERO;
-    e.value[1] = f->deformation & CT_BEAM_AXIAL ? out->stretch : CT_EX_ZERO;
-    out->energy = ct_flexible_strain(b, &one);
+    for (size_t i = 0; i < COUNT(families); i++) {
+        const int first = families[i].first, n = families[i].n;
+        struct ct_element own = {.span = e.span};
+        if (!(f->deformation & families[i].bit))
+            continue;
+        for (int j = first; j < first + n; j++)
+            own.value[j] = families[i].bit != CT_BEAM_AXIAL ? out->dof[j]
+                         : j == first                       ? CT_EX_ZERO
+                                                            : out->stretch;
+        one.element = &own;
+        out->energy[i] = ct_flexible_strain(b, &one);
+    }
 }
 
 // ---- terminal equations ------------------------------------------------------------------------------------
@@ -152,9 +161,9 @@ static const char *of(struct ct_derivation *d, const char *letter, const struct 
     return ct_derivation_of(d, letter, f->name);
 }
 
-static const char *rho(const struct ct_derivation *d)
+static const char *place(const struct ct_derivation *d)
 {
-    return ct_derivation_is_latex(d) ? "\\boldsymbol{\\rho}" : "rho";
+    return ct_derivation_is_latex(d) ? "\\boldsymbol{r}" : "r";
 }
 
 // (5.4), (5.5): the section at x, and what the whole needs of its frame and of its coordinates.
@@ -170,45 +179,62 @@ static void put_body(struct ct_derivation *d, const struct ct_flexible *f)
     ct_page_equations(&d->page);
     const char *v = f->deformation & CT_BEAM_BENDING_Z ? "v" : "0";
     const char *w = f->deformation & CT_BEAM_BENDING_Y ? "w" : "0";
-    put(d, rho(d), ct_arena_printf(d->a, "[x + u, %s, %s]", v, w),
+    put(d, place(d), ct_arena_printf(d->a, "[x + u, %s, %s]", v, w),
         ct_arena_printf(d->a, "(x + u,\\; %s,\\; %s)", v, w),
         ct_arena_printf(d->a, "place of the section at x, axes of %s", frame));
-    put(d, latex ? "\\boldsymbol{c}" : "c",
-        "a - g + al x rho + w x (w x rho) + 2*w x rho' + rho''",
-        "\\boldsymbol{a} - \\boldsymbol{g} + \\boldsymbol{\\alpha} \\times \\boldsymbol{\\rho} "
-        "+ "
-        "\\boldsymbol{\\omega} \\times (\\boldsymbol{\\omega} \\times \\boldsymbol{\\rho}) + 2 "
-        "\\, \\boldsymbol{\\omega} \\times \\dot{\\boldsymbol{\\rho}} + "
-        "\\ddot{\\boldsymbol{\\rho}}",
+    const char *const motion[] = {of(d, "a", f), of(d, "al", f), of(d, "w", f)};
+    ct_page_equation(
+        &d->page, NULL, latex ? "\\boldsymbol{c}" : "c",
+        ct_arena_printf(
+            d->a,
+            latex ? "%s - \\boldsymbol{g} + %s \\times \\boldsymbol{r} + %s \\times (%s "
+                    "\\times \\boldsymbol{r}) + 2 \\, %s \\times "
+                    "\\dot{\\boldsymbol{r}} + "
+                    "\\ddot{\\boldsymbol{r}}"
+                  : "%s - g + %s x r + %s x (%s x r) + 2*%s x r' + r''",
+            motion[0], motion[1], motion[2], motion[2], motion[2]),
         "its acceleration less gravity");
     ct_page_equation(&d->page, NULL, latex ? "\\mu" : "mu",
                      ct_derivation_text(d, f->beam->mass_per_length), "mass per length");
     put(d, of(d, "F", f), "-int(mu*c)", "-\\int \\mu \\, \\boldsymbol{c} \\, dx", NULL);
-    put(d, of(d, "T", f),
-        has_rotary ? "-int(mu*rho x c + J*(al + theta'') + w x J*(w + theta'))"
-                   : "-int(mu*rho x c)",
-        has_rotary
-            ? "-\\int \\left( \\mu \\, \\boldsymbol{\\rho} \\times \\boldsymbol{c} + J "
-              "(\\boldsymbol{\\alpha} + \\ddot{\\boldsymbol{\\theta}}) + \\boldsymbol{\\omega} "
-              "\\times J (\\boldsymbol{\\omega} + \\dot{\\boldsymbol{\\theta}}) \\right) dx"
-            : "-\\int \\mu \\, \\boldsymbol{\\rho} \\times \\boldsymbol{c} \\, dx",
-        NULL);
+    const char *turning = ct_arena_printf(
+        d->a, latex ? "J \\, (%s + \\ddot{\\boldsymbol{\\theta}})" : "J*(%s + theta'')",
+        motion[1]);
+    const char *spin
+        = ct_arena_printf(d->a,
+                          latex ? " + %s \\times J \\, (%s + \\dot{\\boldsymbol{\\theta}})"
+                                : " + %s x J*(%s + theta')",
+                          motion[2], motion[2]);
+    const char *const plus = has_rotary ? " + " : "";
+    ct_page_equation(&d->page, NULL, of(d, "T", f),
+                     ct_arena_printf(d->a,
+                                     latex ? "-\\int \\left( \\mu \\, \\boldsymbol{r} \\times "
+                                             "\\boldsymbol{c}%s%s%s \\right) dx"
+                                           : "-int(mu*r x c%s%s%s)",
+                                     plus, has_rotary ? turning : "", has_rotary ? spin : ""),
+                     NULL);
     const bool is_damped
         = !ct_ex_is_zero(f->beam->damping_mass) || !ct_ex_is_zero(f->beam->damping_stiffness);
-    put(d, ct_derivation_effort(d, "q"),
-        ct_arena_printf(d->a, "-int(mu*rho_q.c%s) - V_q%s",
-                        has_rotary ? " + theta_q.J*(al + theta'')" : "",
-                        is_damped ? " - damping" : ""),
+    const char *own = ct_arena_printf(
+        d->a, latex ? "\\boldsymbol{\\theta}_{,q} \\cdot %s" : "theta_q . %s", turning);
+    ct_page_equation(
+        &d->page, NULL, ct_derivation_effort(d, "q"),
         ct_arena_printf(d->a,
-                        "-\\int \\left( \\mu \\, \\boldsymbol{\\rho}_{,q} \\cdot "
-                        "\\boldsymbol{c}%s \\right) "
-                        "dx - V_{,q}%s",
-                        has_rotary
-                            ? " + \\boldsymbol{\\theta}_{,q} \\cdot J (\\boldsymbol{\\alpha} + "
-                              "\\ddot{\\boldsymbol{\\theta}})"
-                            : "",
-                        is_damped ? " - \\text{damping}" : ""),
-        "of each elastic coordinate q; rho_q, V_q: derivatives by it");
+                        latex ? "-\\int \\left( \\mu \\, \\boldsymbol{r}_{,q} \\cdot "
+                                "\\boldsymbol{c}%s%s \\right) dx - V_{,q}%s"
+                              : "-int(mu*r_q . c%s%s) - V_q%s",
+                        plus, has_rotary ? own : "",
+                        !is_damped ? ""
+                        : latex    ? " - C_{,q}"
+                                   : " - C_q"),
+        "of each elastic coordinate q; _q: derivative by it");
+    if (is_damped)
+        ct_page_sentence(
+            &d->page,
+            "C_q: alpha = %s times the mass of the elastic coordinates and beta = %s "
+            "times their stiffness, on their rates",
+            ct_derivation_text(d, f->beam->damping_mass),
+            ct_derivation_text(d, f->beam->damping_stiffness));
     if (!has_rotary)
         return;
     const char *list = "";
@@ -257,27 +283,54 @@ static void put_shortening(struct ct_derivation *d, const struct ct_flexible *f,
                 : "");
 }
 
+// Sections that vary along the beam.
+static void put_varying_energy(struct ct_derivation *d, const struct ct_flexible *f)
+{
+    const struct ct_beam *beam = f->beam;
+    const bool latex = ct_derivation_is_latex(d);
+    const struct {
+        unsigned bit;
+        const char *text, *latex, *name;
+        ct_ex section;
+    } part[]
+        = {{CT_BEAM_AXIAL, "E*area*(s/h)^2", "E \\, \\mathrm{area} \\, (s/h)^{2}", "area",
+            beam->area},
+           {CT_BEAM_BENDING_Z, "E*Iz*(d2v/dx2)^2", "E \\, I_z \\, v_{,xx}^{2}", "Iz", beam->Iz},
+           {CT_BEAM_BENDING_Y, "E*Iy*(d2w/dx2)^2", "E \\, I_y \\, w_{,xx}^{2}", "Iy", beam->Iy},
+           {CT_BEAM_TORSION, "G*J*(dphi/dx)^2", "G \\, J \\, \\varphi_{,x}^{2}", "J", beam->J}};
+    const char *sum = "";
+    for (size_t i = 0; i < COUNT(part); i++)
+        if (f->deformation & part[i].bit)
+            sum = ct_arena_printf(d->a, "%s%s%s", sum, *sum ? " + " : "",
+                                  latex ? part[i].latex : part[i].text);
+    ct_page_equation(
+        &d->page, NULL, "V",
+        ct_arena_printf(
+            d->a, latex ? "\\tfrac{1}{2} \\int \\left( %s \\right) dx" : "int(%s)/2", sum),
+        "strain energy");
+    for (size_t i = 0; i < COUNT(part); i++)
+        if (f->deformation & part[i].bit)
+            ct_page_equation(&d->page, NULL, ct_derivation_name(d, part[i].name),
+                             ct_derivation_text(d, part[i].section), NULL);
+}
+
 static void put_energy(struct ct_derivation *d, const struct ct_flexible *f,
                        const struct ct_beam_element *e)
 {
-    const bool latex = ct_derivation_is_latex(d);
     if (f->deformation & CT_BEAM_AXIAL) {
         const bool local = f->axial == CT_AXIAL_LOCAL;
         put(d, "s", local ? "u2 - u1 + S(1)" : "u2 - u1",
             local ? "u_{2} - u_{1} + S(1)" : "u_{2} - u_{1}", "stretch");
     }
+    const char *sum = "";
+    for (size_t i = 0; i < COUNT(families); i++)
+        if (!ct_ex_is_zero(e->energy[i]))
+            sum = ct_arena_printf(d->a, "%s%s%s", sum, *sum ? " + " : "",
+                                  ct_derivation_collected(d, e->energy[i]));
     if (e->is_constant)
-        ct_page_equation(&d->page, NULL, "V", ct_derivation_collected(d, e->energy),
-                         "strain energy");
+        ct_page_equation(&d->page, NULL, "V", sum, "strain energy");
     else
-        ct_page_equation(
-            &d->page, NULL, "V",
-            latex
-                ? "\\tfrac{1}{2} \\int \\left( EA \\, (s/h)^{2} + EI_z \\, v_{,xx}^{2} + EI_y "
-                  "\\, w_{,xx}^{2} + GJ \\, \\varphi_{,x}^{2} \\right) dx"
-                : "int(E*area*(s/h)^2 + E*Iz*(d2v/dx2)^2 + E*Iy*(d2w/dx2)^2 + "
-                  "G*J*(dphi/dx)^2)/2",
-            "strain energy; sections vary: 8 Gauss points");
+        put_varying_energy(d, f);
 }
 
 static void put_element(struct ct_derivation *d, const struct ct_flexible *f)
@@ -366,7 +419,7 @@ static const char *place_text(struct ct_derivation *d, const struct ct_edge_info
         size += ct_reduced_size(x, at.e[k], LARGEST_ARM + 1);
     if (size > LARGEST_ARM)
         return ct_arena_printf(
-            d->a, ct_derivation_is_latex(d) ? "\\boldsymbol{\\rho}(%s)" : "rho at x = %s",
+            d->a, ct_derivation_is_latex(d) ? "\\boldsymbol{r}(%s)" : "r at x = %s",
             ct_derivation_text(d, e->along));
     for (int k = 0; k < 3; k++)
         at.e[k] = ct_ex_collect(x, at.e[k], &o);
@@ -414,7 +467,7 @@ static const char *partial(struct ct_derivation *d, const char *letter, const ch
     return ct_derivation_is_latex(d)
              ? ct_arena_printf(d->a, "%s_{,q} \\cdot %s", ct_derivation_of(d, letter, arm),
                                ct_derivation_of(d, through, arm))
-             : ct_arena_printf(d->a, "%s_q(%s).%s", letter, arm,
+             : ct_arena_printf(d->a, "%s_q(%s) . %s", letter, arm,
                                ct_derivation_of(d, through, arm));
 }
 

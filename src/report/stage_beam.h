@@ -16,7 +16,8 @@ struct ct_beam_element {
     ct_ex shortening;  // int (v'^2 + w'^2)/2 dx over the element
     ct_ex v, w, twist;
     ct_ex stretch; // the symbol s
-    ct_ex energy;  // of strain, with s for the stretch [J]
+    ct_ex
+        energy[4]; // of strain: axial with s for the stretch, bending-z, bending-y, torsion [J]
     bool
         is_constant; // the sections do not vary: energy and shortening are known in closed form
 };
