@@ -3,6 +3,7 @@
 #include "codegen/native.h"
 
 #include "codegen/x86.h"
+#include "expr/sincos.h"
 
 #if defined(__x86_64__) && (defined(__unix__) || defined(__APPLE__))
 #define HAS_X86 1
@@ -13,6 +14,9 @@
 
 #include <math.h>
 #include <string.h>
+
+// Shorter programs gain too little from fused operations to give up the bits of the tape.
+static const size_t least_fused = 256;
 
 typedef void (*body_fn)(const double *input, double *out, double *work);
 
@@ -50,8 +54,8 @@ struct ct_native {
     }
 
 #define EACH_FUNCTION(ONE, TWO)                                                                \
-    ONE(CT_OP_SIN, sin)                                                                        \
-    ONE(CT_OP_COS, cos)                                                                        \
+    ONE(CT_OP_SIN, sine)                                                                       \
+    ONE(CT_OP_COS, cosine)                                                                     \
     ONE(CT_OP_TAN, tan)                                                                        \
     ONE(CT_OP_ASIN, asin)                                                                      \
     ONE(CT_OP_ACOS, acos)                                                                      \
@@ -66,21 +70,33 @@ struct ct_native {
 
 #if HAS_X86
 
+static double sine(double a)
+{
+    return ct_op_apply(CT_OP_SIN, a, 0, 0);
+}
+
+static double cosine(double a)
+{
+    return ct_op_apply(CT_OP_COS, a, 0, 0);
+}
+
 #define DEFINE_ONE(op, f) ONE_ARGUMENT(f)
 #define DEFINE_TWO(op, f) TWO_ARGUMENTS(f)
 EACH_FUNCTION(DEFINE_ONE, DEFINE_TWO)
 
 static void sincos_1(double *s, const double *a, double *c)
 {
-    const double angle = *a;
-    *s = sin(angle);
-    *c = cos(angle);
+    ct_sincos(*a, s, c);
 }
 
 static void sincos_4(double *s, const double *a, double *c)
 {
-    for (int i = 0; i < 4; i++)
-        sincos_1(s + i, a + i, c + i);
+    ct_sincos_many(a, s, c, 4);
+}
+
+static void sincos_many(double *s, const double *a, double *c, uint64_t n)
+{
+    ct_sincos_many(a, s, c, n);
 }
 
 static void table_1(double *res, const double *a, const struct ct_table *t, uint64_t order)
@@ -101,6 +117,7 @@ static struct ct_x86_calls list_calls(int lanes)
     EACH_FUNCTION(LIST, LIST)
     LIST(CT_OP_SINCOS, sincos)
     LIST(CT_OP_TABLE, table)
+    c.sincos_many = (uintptr_t)sincos_many;
     return c;
 }
 
@@ -204,6 +221,9 @@ struct ct_native *ct_native_create(struct ct_arena *a, const struct ct_listing *
 #if HAS_X86
     if (!ct_native_is_available(lanes) || (has_fused(l) && !__builtin_cpu_supports("fma")))
         return NULL;
+    if (l->fuse == CT_FUSE_NATIVE && l->nins - l->nprologue >= least_fused
+        && __builtin_cpu_supports("fma"))
+        l = ct_listing_fuse(a, l);
     struct ct_native *f = CT_NEW(a, struct ct_native);
     const struct ct_x86_calls calls = list_calls(lanes);
     *f = (struct ct_native){.l = l, .lanes = (size_t)lanes};

@@ -3,6 +3,7 @@
 // Passes, each linear in the live nodes: number the live nodes (values), turn them into instructions
 // (sin and cos of one argument become one), fuse products with sums if asked to, put the prologue first.
 #include "expr/listing.h"
+#include "expr/sincos.h"
 
 #include <assert.h>
 #include <math.h>
@@ -236,7 +237,7 @@ static void fuse_products(struct lister *s)
     struct ct_listing *l = s->l;
     uint32_t *nuse = CT_NEWN(s->arena, uint32_t, l->nvalue);
     uint32_t *made = CT_NEWN(s->arena, uint32_t, l->nvalue); // 1 + instruction
-    for (size_t i = 0; i < l->nins; i++) {
+    for (size_t i = l->nprologue; i < l->nins; i++) {
         for (uint32_t k = 0; k < l->ins[i].narg; k++)
             nuse[l->ins[i].arg[k]]++;
         for (uint32_t k = 0; k < l->ins[i].nres; k++)
@@ -244,7 +245,7 @@ static void fuse_products(struct lister *s)
     }
     for (size_t k = 0; k < l->nout; k++)
         nuse[l->out[k]] += 2;
-    for (size_t i = 0; i < l->nins; i++) {
+    for (size_t i = l->nprologue; i < l->nins; i++) {
         if (l->ins[i].op != CT_OP_ADD && l->ins[i].op != CT_OP_SUB)
             continue;
         for (uint32_t k = 0; k < 2; k++) {
@@ -288,6 +289,7 @@ const struct ct_listing *ct_listing_create(struct ct_arena *a, const struct ct_e
     struct ct_listing *l = CT_NEW(a, struct ct_listing);
     struct lister s = {.arena = a, .x = x, .l = l};
     l->x = x;
+    l->fuse = fuse;
     number_values(&s, out, nout);
     place_inputs(&s, in, slot, nin);
     l->nout = nout;
@@ -306,6 +308,18 @@ const struct ct_listing *ct_listing_create(struct ct_arena *a, const struct ct_e
         memcpy(table, x->table, x->ntable * sizeof *table);
     l->table = table;
     return l;
+}
+
+const struct ct_listing *ct_listing_fuse(struct ct_arena *a, const struct ct_listing *l)
+{
+    struct ct_listing *fused = CT_NEW(a, struct ct_listing);
+    *fused = *l;
+    fused->fuse = CT_FUSE_YES;
+    fused->ins = CT_NEWN(a, struct ct_instruction, l->nins);
+    if (l->nins)
+        memcpy(fused->ins, l->ins, l->nins * sizeof *l->ins);
+    fuse_products(&(struct lister){.arena = a, .x = l->x, .l = fused});
+    return fused;
 }
 
 struct ct_uses ct_listing_uses(struct ct_arena *a, const struct ct_listing *l)
@@ -329,8 +343,7 @@ void ct_instruction_apply(const struct ct_listing *l, const struct ct_instructio
 {
     switch (i->op) {
     case CT_OP_SINCOS:
-        res[0] = sin(arg[0]);
-        res[1] = cos(arg[0]);
+        ct_sincos(arg[0], &res[0], &res[1]);
         break;
     case CT_OP_FMA:
         res[0] = fma(arg[0], arg[1], arg[2]);

@@ -40,8 +40,13 @@ struct ct_tape_counts {
         functions; // of the body; functions: sin, cos, ...
 };
 
+/// Products used once, in a sum, become fused multiply-adds: never; in all back ends alike; in native code alone, where
+/// the processor has them and the program is long (native.h), so that its results are those of others to rounding.
+enum ct_fuse { CT_FUSE_NO, CT_FUSE_YES, CT_FUSE_NATIVE };
+
 struct ct_listing {
     const struct ct_exs *x;
+    enum ct_fuse fuse;
     size_t nvalue;
     uint32_t *node;         // by value: id of its node
     unsigned char *rate;    // by value: enum ct_rate
@@ -55,15 +60,15 @@ struct ct_listing {
     struct ct_tape_counts counts;
 };
 
-enum ct_fuse { CT_FUSE_NO, CT_FUSE_YES };
-
 /// List what nout expressions need. Inputs: in[k] is a symbol whose value is read from the input
 /// vector at slot[k] (distinct). Symbols of kind PARAM among them feed the prologue. A symbol that is
-/// needed but not listed is a program error (asserted). CT_FUSE_YES turns products used once, in a
-/// sum, into fused multiply-adds, in all back ends alike. Cost: the nodes below.
+/// needed but not listed is a program error (asserted). Cost: the nodes below.
 const struct ct_listing *ct_listing_create(struct ct_arena *a, const struct ct_exs *x,
                                            const ct_ex *out, size_t nout, const ct_ex *in,
                                            const size_t *slot, size_t nin, enum ct_fuse fuse);
+
+/// The same with the products of the body fused. Cost: instructions.
+const struct ct_listing *ct_listing_fuse(struct ct_arena *a, const struct ct_listing *l);
 
 /// use[start[v] ... start[v + 1]): instructions that read value v, ascending; one that reads it twice
 /// is twice in.

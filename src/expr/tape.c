@@ -14,6 +14,7 @@
 //     one argument      d a          two arguments   d a b          if, fused    d a b c
 //     sincos            d e a   (w[d] = sin, w[e] = cos)            table        d a table order
 #include "expr/tape.h"
+#include "expr/sincos.h"
 
 #include <assert.h>
 #include <math.h>

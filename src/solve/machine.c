@@ -59,14 +59,21 @@ static struct inputs list_inputs(struct ct_arena *a, const struct ct_machine *m)
     return in;
 }
 
-static void compile(struct ct_arena *a, const struct ct_machine *m, const struct inputs *in,
-                    const ct_ex *out, size_t n, struct ct_program *p)
+static void compile_fused(struct ct_arena *a, const struct ct_machine *m,
+                          const struct inputs *in, const ct_ex *out, size_t n,
+                          enum ct_fuse fuse, struct ct_program *p)
 {
-    p->listing = ct_listing_create(a, m->e->x, out, n, in->symbol, in->slot, in->n, CT_FUSE_NO);
+    p->listing = ct_listing_create(a, m->e->x, out, n, in->symbol, in->slot, in->n, fuse);
     p->tape = ct_tape_create(a, p->listing);
     p->out = CT_NEWN(a, double, n + 1);
     p->work = CT_NEWN(a, double, ct_tape_work(p->tape) + 1);
     p->nout = n;
+}
+
+static void compile(struct ct_arena *a, const struct ct_machine *m, const struct inputs *in,
+                    const ct_ex *out, size_t n, struct ct_program *p)
+{
+    compile_fused(a, m, in, out, n, CT_FUSE_NO, p);
 }
 
 static void prepare(struct ct_program *p, const double *input)
@@ -151,7 +158,7 @@ static void compile_solved(struct ct_arena *a, struct ct_machine *m, const struc
         push(&l, e->solution[i]);
     for (size_t i = 0; i < e->nq && e->solution; i++)
         push(&l, e->q[i].rate);
-    compile(a, m, in, l.e, l.n, &m->solved);
+    compile_fused(a, m, in, l.e, l.n, CT_FUSE_NATIVE, &m->solved);
 }
 
 static void compile_constraint(struct ct_arena *a, struct ct_machine *m,
