@@ -206,7 +206,14 @@ static ct_ex rebuild_mapped(struct ct_exs *x, const struct ct_exnode *n, const c
 
 ct_ex ct_ex_subst(struct ct_exs *x, ct_ex e, const ct_ex *from, const ct_ex *to, size_t ns)
 {
-    const size_t n = ct_ex_walk(x, &e, 1);
+    ct_ex_subst_list(x, &e, 1, from, to, ns);
+    return e;
+}
+
+void ct_ex_subst_list(struct ct_exs *x, ct_ex *a, size_t na, const ct_ex *from, const ct_ex *to,
+                      size_t ns)
+{
+    const size_t n = ct_ex_walk(x, a, na);
     const uint32_t *list = copy_list(x, n);
     ct_ex *image = x->memo; // by id; nothing below starts another walk
     for (size_t k = 0; k < n; k++) {
@@ -220,7 +227,8 @@ ct_ex ct_ex_subst(struct ct_exs *x, ct_ex e, const ct_ex *from, const ct_ex *to,
             image[list[k]] = rebuild_mapped(x, &node, image);
         }
     }
-    return image[e.id];
+    for (size_t k = 0; k < na; k++)
+        a[k] = image[a[k].id];
 }
 
 ct_ex ct_ex_import(struct ct_exs *x, const struct ct_exs *from, ct_ex e, ct_ex_leaf_fn leaf,

@@ -55,7 +55,8 @@ struct ct_edge_info {
     struct ct_flexible *flexible;      // arms of beams: the beam, with the section at `along`
     ct_ex along;                       // [m]
     const struct ct_station *station;  // once the beam's coordinates are chosen
-    ct_ex3 *slide, *turn;              // of the station, by elastic coordinate
+    ct_ex3 *foreshortened; // slides that forces act along, where they differ; else NULL
+    ct_ex3 *slide, *turn;  // of the station, by elastic coordinate
 };
 
 /// coef times a speed: of an unknown (speed >= 0) or of a driver (driver >= 0).
@@ -95,6 +96,8 @@ struct ct_cluster {
 struct ct_slide {
     int speed, driver;
     ct_ex3 p;
+    ct_ex3
+        extra; // what forces act along besides: foreshortening that the kinematics leaves out
 };
 
 /// Vector from the parent anchor to this one: R_cluster (local).
@@ -131,6 +134,12 @@ struct ct_load {
     ct_ex power;     // put in by the part that has no potential [W]
 };
 
+/// One piece of a path between two nodes: an anchor's link, or the offset of an end node (anchor < 0).
+struct ct_piece {
+    int anchor, cluster, sign;
+    ct_ex3 local;
+};
+
 struct ct_star;     // dynamics.h
 struct ct_flexible; // flexible.h
 struct ct_station;
@@ -147,6 +156,7 @@ struct ct_build {
 
     // planar mechanisms: common normal and a basis of the plane (ground components)
     bool is_planar;
+    bool keep_all;   // leave nothing out
     bool is_rigid;   // beams keep their shape: for assembly, where they are not deformed yet
     ct_ex3 plane[3]; // e1, e2, n
     ct_ex *layer;    // by node: its place along n [m]
@@ -172,6 +182,7 @@ struct ct_build {
     struct ct_anchor *anchor;
     size_t nanchor, anchor_cap;
     struct ct_place *place; // by node
+    struct ct_piece *piece; // of the path sought last (nanchor + 2)
 
     struct ct_flexible *flexible; // one per beam
     size_t nflexible;

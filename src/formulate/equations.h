@@ -132,6 +132,7 @@ struct ct_equations {
     ct_ex kinetic, potential, strain; // strain: of beams
     struct ct_residual *residual;     // NULL if not asked for
     bool is_planar;
+    bool is_truncated; // to first order in coordinates that are small
     struct ct_left_out *left_out;
     size_t nleft_out, left_out_cap;
     struct ct_coordinate *coordinate; // of all joints and bodies (build.h)

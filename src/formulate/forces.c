@@ -6,6 +6,7 @@
 #include "formulate/flexible.h"
 #include "formulate/row.h"
 #include "formulate/signal.h"
+#include "formulate/small.h"
 
 #include <string.h>
 
@@ -244,6 +245,10 @@ static ct_ex sweep_row(struct ct_build *b, const struct ct_sweep *s, int speed, 
                 continue;
             const ct_ex3 p = ct_cluster_turn(b, b->anchor[a].cluster, t->p);
             sum = ct_ex_add(x, sum, ct_ex3_dot(x, p, s->force[a]));
+            if (ct_ex3_is_zero(t->extra))
+                continue;
+            const ct_ex3 extra = ct_cluster_turn(b, b->anchor[a].cluster, t->extra);
+            sum = ct_ex_add(x, sum, ct_ex3_dot(x, extra, ct_sweep_run(b, CT_BIAS)->force[a]));
         }
     return sum;
 }
@@ -263,6 +268,7 @@ void ct_dynamics_derive(struct ct_build *b)
     ct_masses_lump(b);
     ct_mass_matrix_derive(b);
     ct_forces_derive(b);
+    ct_small_derive(b);
     b->eqs->has_dynamics = true;
 }
 

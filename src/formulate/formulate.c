@@ -6,6 +6,7 @@
 #include "formulate/residual.h"
 #include "formulate/row.h"
 #include "formulate/signal.h"
+#include "formulate/small.h"
 #include "formulate/topology.h"
 #include "graph/exchange.h"
 
@@ -13,25 +14,6 @@
 #include <string.h>
 
 // ---- one pair of trees ---------------------------------------------------------------------------
-
-static struct ct_exs *clone_store(struct ct_arena *a, const struct ct_exs *from)
-{
-    struct ct_exs *x = CT_NEW(a, struct ct_exs);
-    *x = *from;
-    x->arena = a;
-    x->node = CT_NEWN(a, struct ct_exnode, from->node_cap);
-    memcpy(x->node, from->node, from->nnode * sizeof *x->node);
-    x->kinds = CT_NEWN(a, uint16_t, from->kinds_cap);
-    memcpy(x->kinds, from->kinds, from->nnode * sizeof *x->kinds);
-    x->sym = CT_NEWN(a, struct ct_sym, from->sym_cap);
-    memcpy(x->sym, from->sym, from->nsym * sizeof *x->sym);
-    x->hash = CT_NEWN(a, uint32_t, from->hash_size);
-    memcpy(x->hash, from->hash, from->hash_size * sizeof *x->hash);
-    x->label = NULL;
-    x->label_cap = x->walk_cap = 0;
-    x->generation = 0;
-    return x;
-}
 
 static double *start_values(struct ct_arena *a, const struct ct_model *m)
 {
@@ -47,9 +29,13 @@ static struct ct_build *build_create(struct ct_ctx *ctx, struct ct_arena *a,
                                      const struct ct_formulate_options *o)
 {
     struct ct_build *b = CT_NEW(a, struct ct_build);
-    *b = (struct ct_build){.ctx = ctx, .arena = a, .model = m, .is_rigid = o->measure_all};
+    *b = (struct ct_build){.ctx = ctx,
+                           .arena = a,
+                           .model = m,
+                           .is_rigid = o->measure_all,
+                           .keep_all = o->keep_all};
     b->eqs = CT_NEW(a, struct ct_equations);
-    b->x = b->eqs->x = clone_store(a, m->x);
+    b->x = b->eqs->x = ct_exs_clone(a, m->x);
     b->value = start_values(a, m);
     ct_topology_derive(b, !o->keep_all);
     return b;
@@ -247,8 +233,9 @@ static struct rules make_rules(struct ct_build *b, enum ct_tree_choice choice)
         r.weight_t[i] = e->weight_t + extra;
         r.weight_r[i] = e->weight_r + extra;
         r.rank[i] = tie_rank(b, i, depth, turned, choice);
-        r.forced_t[i] = e->must_be_branch;
-        r.forced_r[i] = e->must_be_branch || is_particle;
+        const bool is_small = e->kind == CT_EDGE_JOINT && ct_small_joint(b, e->index);
+        r.forced_t[i] = e->must_be_branch || is_small;
+        r.forced_r[i] = e->must_be_branch || is_particle || (is_small && e->has_rotation);
         r.banned_t[i] = e->never_branch;
         r.banned_r[i] = e->never_branch || !e->has_rotation;
         r.tied[i] = e->must_be_branch;
@@ -430,6 +417,7 @@ static const char *kind_name(const struct ct_build *b, size_t i)
     static const char *const plain[] = {"body", "arm", "joint", "closure", "force"};
     return e->self                            ? e->self->cls->name
          : b->edge[i].kind == CT_EDGE_CLOSURE ? "weld"
+         : b->edge[i].flexible                ? "flexible arm"
                                               : plain[e->kind];
 }
 
@@ -489,11 +477,14 @@ bool ct_formulate(struct ct_ctx *ctx, struct ct_arena *a, const struct ct_model 
 {
     struct ct_build *b = build_create(ctx, a, m, options);
     struct search s = {ctx, m, options, a};
+    const size_t before = ctx->nerror;
     *report = (struct ct_tree_report){0};
     if (!choose_trees(b, &s, report) || !derive(b, !options->without_dynamics))
         return false;
     if (!options->without_dynamics)
         derive_dynamics(b, options);
+    if (ctx->nerror > before)
+        return false;
     if (options->with_residual)
         ct_residual_derive(b);
     if (options->with_energy)

@@ -133,6 +133,8 @@ struct reach {
     ct_ex33 *inertia;  // by cluster: augmented inertia of it and the clusters outboard, ground
     ct_ex33 *outboard; // the same of the clusters outboard alone
     int *first, *next; // stars of an anchor, chained
+    int *
+        start; // by cluster: anchor from which on what turns with it is summed; -1: nothing does
 };
 
 static size_t at(const struct reach *s, int anchor, int cluster)
@@ -196,6 +198,29 @@ static enum share share(const struct reach *s, int anchor, int cluster)
 {
     const int n = s->nturning[at(s, anchor, cluster)];
     return !n ? NONE : n < s->nstar[anchor] ? SOME : ALL;
+}
+
+// The innermost anchor outboard of which everything turns with a cluster; if there is none, the outermost one
+// inboard of all that does.
+static void find_starts(struct reach *s)
+{
+    const struct ct_build *b = s->b;
+    for (size_t c = 0; c < b->ncluster; c++)
+        s->start[c] = -1;
+    for (size_t i = 0; i < b->nstar; i++)
+        for (int c = b->star[i].cluster; c > 0 && is_felt(b, &b->star[i]);
+             c = b->cluster[c].parent) {
+            int other = b->star[i].anchor;
+            if (s->start[c] < 0)
+                s->start[c] = other;
+            while (s->start[c] != other) // numbers grow outwards
+                *(s->start[c] > other ? &s->start[c] : &other)
+                    = b->anchor[s->start[c] > other ? s->start[c] : other].parent;
+        }
+    for (size_t c = 1; c < b->ncluster; c++)
+        for (int a = s->start[c]; a >= 0; a = a ? b->anchor[a].parent : -1)
+            if (share(s, a, (int)c) == ALL)
+                s->start[c] = a;
 }
 
 // Sum of the vectors on the path to an anchor that turn with a cluster.
@@ -502,7 +527,8 @@ static void spin_column(struct reach *s, ct_ex *M, size_t r, const struct column
         if ((same && row > r) || !is_row_of(b, depth, other->cluster, c->cluster)
             || !has_unknown(other->term, other->nterm))
             continue;
-        ct_ex3 torque = row_torque(s, c, other->cluster, 0);
+        const int start = s->start[other->cluster];
+        ct_ex3 torque = start < 0 ? zero3 : row_torque(s, c, other->cluster, start);
         const bool is_fixed = same && c->is_local && !ct_ex3_is_zero(other->local);
         if (!is_fixed && ct_cluster_is_outboard(b, other->cluster, c->cluster))
             torque = ct_ex3_add(b->x, own, torque);
@@ -582,7 +608,9 @@ static struct reach reach_create(struct ct_build *b)
     s.outboard = CT_NEWN(b->arena, ct_ex33, nc);
     s.first = CT_NEWN(b->arena, int, na);
     s.next = CT_NEWN(b->arena, int, ns);
+    s.start = CT_NEWN(b->arena, int, nc);
     count_stars(&s);
+    find_starts(&s);
     sum_inertias(&s);
     return s;
 }

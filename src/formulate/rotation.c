@@ -104,11 +104,18 @@ static void find_station(struct ct_build *b, struct ct_edge_info *e)
     const struct ct_flexible *f = e->flexible;
     struct ct_station *s = CT_NEW(b->arena, struct ct_station);
     static const int axis_of_turn[3] = {2, 1, 0}; // (1.7b)
-    ct_flexible_station(b, f, e->along, s);
+    ct_flexible_station(b, f, e->along, f->kinematics, s);
     e->slide = CT_NEWN(b->arena, ct_ex3, f->nelastic + 1);
     e->turn = CT_NEWN(b->arena, ct_ex3, f->nelastic + 1);
     ct_station_partials(b, f, s, e->slide, e->turn);
     e->station = s;
+    if (f->kinematics != f->axial) {
+        struct ct_station forces;
+        e->foreshortened = CT_NEWN(b->arena, ct_ex3, f->nelastic + 1);
+        ct_flexible_station(b, f, e->along, f->axial, &forces);
+        ct_station_partials(b, f, &forces, e->foreshortened,
+                            CT_NEWN(b->arena, ct_ex3, f->nelastic + 1));
+    }
     e->at = s->place;
     for (int i = 0; i < 3; i++) {
         const int axis = axis_of_turn[i];

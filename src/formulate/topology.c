@@ -6,7 +6,7 @@
 //   edge         body  0 -> centre of mass     arm  body -> point or centre of mass
 //                joint from -> to              force, rod  from -> to (always chords)
 #include "formulate/topology.h"
-#include "formulate/flexible.h"
+#include "formulate/excite.h"
 
 #include <math.h>
 #include <string.h>
@@ -554,7 +554,7 @@ static bool find_normal(struct ct_build *b, ct_ex3 *normal)
         if (n[most] < 0)
             axis = ct_ex3_neg(b->x, axis);
         b->plane[2] = *normal = axis;
-        if (!is_plane(b, U))
+        if (!is_plane(b, U) || !ct_excite_keeps_plane(b, U))
             return false;
         keep_uprights(b, U);
         return true;
