@@ -54,8 +54,10 @@ struct ct_native {
     }
 
 #define EACH_FUNCTION(ONE, TWO)                                                                \
-    ONE(CT_OP_SIN, sine)                                                                       \
-    ONE(CT_OP_COS, cosine)                                                                     \
+    ONE(CT_OP_SIN, sin)                                                                        \
+    ONE(CT_OP_COS, cos)                                                                        \
+    ONE(CT_OP_ANGLE_SIN, sine)                                                                 \
+    ONE(CT_OP_ANGLE_COS, cosine)                                                               \
     ONE(CT_OP_TAN, tan)                                                                        \
     ONE(CT_OP_ASIN, asin)                                                                      \
     ONE(CT_OP_ACOS, acos)                                                                      \
@@ -72,12 +74,16 @@ struct ct_native {
 
 static double sine(double a)
 {
-    return ct_op_apply(CT_OP_SIN, a, 0, 0);
+    double s, c;
+    ct_sincos(a, &s, &c);
+    return s;
 }
 
 static double cosine(double a)
 {
-    return ct_op_apply(CT_OP_COS, a, 0, 0);
+    double s, c;
+    ct_sincos(a, &s, &c);
+    return c;
 }
 
 #define DEFINE_ONE(op, f) ONE_ARGUMENT(f)
@@ -86,10 +92,23 @@ EACH_FUNCTION(DEFINE_ONE, DEFINE_TWO)
 
 static void sincos_1(double *s, const double *a, double *c)
 {
-    ct_sincos(*a, s, c);
+    const double angle = *a;
+    *s = sin(angle);
+    *c = cos(angle);
 }
 
 static void sincos_4(double *s, const double *a, double *c)
+{
+    for (int i = 0; i < 4; i++)
+        sincos_1(s + i, a + i, c + i);
+}
+
+static void angle_1(double *s, const double *a, double *c)
+{
+    ct_sincos_many(a, s, c, 1);
+}
+
+static void angle_4(double *s, const double *a, double *c)
 {
     ct_sincos_many(a, s, c, 4);
 }
@@ -116,6 +135,7 @@ static struct ct_x86_calls list_calls(int lanes)
 #define LIST(op, f) c.by_op[op] = lanes == 1 ? (uintptr_t)f##_1 : (uintptr_t)f##_4;
     EACH_FUNCTION(LIST, LIST)
     LIST(CT_OP_SINCOS, sincos)
+    LIST(CT_OP_ANGLE_SINCOS, angle)
     LIST(CT_OP_TABLE, table)
     c.sincos_many = (uintptr_t)sincos_many;
     return c;

@@ -473,7 +473,7 @@ static void emit_call(struct emitter *e, const struct ct_instruction *i)
     put_vzeroupper(c);
     put_address(c, RDI, memory_of(e, e->home[i->res[0]]));
     put_address(c, RSI, memory_of(e, e->home[i->arg[0]]));
-    if (i->op == CT_OP_SINCOS) {
+    if (i->nres == 2) {
         put_address(c, RDX, memory_of(e, e->home[i->res[1]]));
     } else if (i->op == CT_OP_TABLE) {
         put_immediate(c, RDX, (uintptr_t)&e->l->table[i->table]);
@@ -667,8 +667,8 @@ static void place_waves(struct emitter *e, uint32_t sines, uint32_t cosines)
         const struct ct_instruction *i = wave(e, k);
         const uint32_t at[2] = {sines + k, cosines + k};
         for (uint32_t r = 0; r < 2; r++) {
-            if (i->op == CT_OP_SINCOS || (i->op == CT_OP_COS) == (r == 1))
-                e->home[i->res[i->op == CT_OP_SINCOS ? r : 0]] = (struct home){WORK, at[r]};
+            if (i->nres == 2 || (i->op == CT_OP_ANGLE_COS) == (r == 1))
+                e->home[i->res[i->nres == 2 ? r : 0]] = (struct home){WORK, at[r]};
             else
                 e->free[e->nfree++] = at[r];
         }
@@ -718,7 +718,7 @@ static bool is_call(const struct emitter *e, const struct ct_instruction *i)
 
 static bool is_wave(const struct ct_instruction *i)
 {
-    return i->op == CT_OP_SIN || i->op == CT_OP_COS || i->op == CT_OP_SINCOS;
+    return i->op >= CT_OP_ANGLE_SIN && i->op <= CT_OP_ANGLE_SINCOS;
 }
 
 // When an instruction comes: what angles need, their sines and cosines, other calls and what they need, the rest.

@@ -1,22 +1,7 @@
 // Values of operators, tables and whole expressions: what every evaluator must agree with.
 #include "expr/ex.h"
-#include "expr/sincos.h"
 
 #include <math.h>
-
-static double sine(double a)
-{
-    double s, c;
-    ct_sincos(a, &s, &c);
-    return s;
-}
-
-static double cosine(double a)
-{
-    double s, c;
-    ct_sincos(a, &s, &c);
-    return c;
-}
 
 double ct_op_apply(enum ct_op op, double a, double b, double c)
 {
@@ -36,9 +21,9 @@ double ct_op_apply(enum ct_op op, double a, double b, double c)
     case CT_OP_SQRT:
         return sqrt(a);
     case CT_OP_SIN:
-        return sine(a);
+        return sin(a);
     case CT_OP_COS:
-        return cosine(a);
+        return cos(a);
     case CT_OP_TAN:
         return tan(a);
     case CT_OP_ASIN:

@@ -34,6 +34,7 @@ static void count_op(struct ct_tape_counts *n, uint32_t op)
         n->additions++;
         break;
     case CT_OP_SINCOS:
+    case CT_OP_ANGLE_SINCOS:
         n->functions += 2;
         break;
     case CT_OP_CONST:
@@ -282,6 +283,33 @@ static void put_prologue_first(struct lister *s)
     l->ins = ordered;
 }
 
+// From so many on, all at once take less time than each by itself.
+static const size_t several_angles = 3;
+
+static void name_angles(struct ct_listing *l)
+{
+    size_t n = 0;
+    for (size_t i = l->nprologue; i < l->nins; i++) {
+        const uint32_t op = l->ins[i].op;
+        n += op == CT_OP_SIN || op == CT_OP_COS || op == CT_OP_SINCOS;
+    }
+    for (size_t i = l->nprologue; i < l->nins && n >= several_angles; i++) {
+        uint32_t *op = &l->ins[i].op;
+        *op = *op == CT_OP_SIN    ? CT_OP_ANGLE_SIN
+            : *op == CT_OP_COS    ? CT_OP_ANGLE_COS
+            : *op == CT_OP_SINCOS ? CT_OP_ANGLE_SINCOS
+                                  : *op;
+    }
+}
+
+bool ct_listing_has_angles(const struct ct_listing *l)
+{
+    for (size_t i = l->nprologue; i < l->nins; i++)
+        if (l->ins[i].op >= CT_OP_ANGLE_SIN && l->ins[i].op <= CT_OP_ANGLE_SINCOS)
+            return true;
+    return false;
+}
+
 const struct ct_listing *ct_listing_create(struct ct_arena *a, const struct ct_exs *x,
                                            const ct_ex *out, size_t nout, const ct_ex *in,
                                            const size_t *slot, size_t nin, enum ct_fuse fuse)
@@ -300,6 +328,7 @@ const struct ct_listing *ct_listing_create(struct ct_arena *a, const struct ct_e
     if (fuse == CT_FUSE_YES)
         fuse_products(&s);
     put_prologue_first(&s);
+    name_angles(l);
     for (size_t i = l->nprologue; i < l->nins; i++)
         count_op(&l->counts, l->ins[i].op);
     // the points of a table stay where they are, the list of tables may move
@@ -343,7 +372,17 @@ void ct_instruction_apply(const struct ct_listing *l, const struct ct_instructio
 {
     switch (i->op) {
     case CT_OP_SINCOS:
+        res[0] = sin(arg[0]);
+        res[1] = cos(arg[0]);
+        break;
+    case CT_OP_ANGLE_SINCOS:
         ct_sincos(arg[0], &res[0], &res[1]);
+        break;
+    case CT_OP_ANGLE_SIN:
+        ct_sincos(arg[0], &res[0], &res[1]);
+        break;
+    case CT_OP_ANGLE_COS:
+        ct_sincos(arg[0], &res[1], &res[0]);
         break;
     case CT_OP_FMA:
         res[0] = fma(arg[0], arg[1], arg[2]);

@@ -19,9 +19,13 @@
 /// Operators that no node has. `w[res]` are the results.
 enum {
     CT_OP_SINCOS = CT_NOP, // res[0] = sin(a), res[1] = cos(a)
-    CT_OP_FMA,             // a b + c, rounded once
-    CT_OP_FMS,             // a b - c
-    CT_OP_FNMA,            // c - a b
+    // the same where the body has several angles: by ct_sincos (sincos.h), for which back ends take many at once
+    CT_OP_ANGLE_SIN,
+    CT_OP_ANGLE_COS,
+    CT_OP_ANGLE_SINCOS,
+    CT_OP_FMA,  // a b + c, rounded once
+    CT_OP_FMS,  // a b - c
+    CT_OP_FNMA, // c - a b
     CT_NKIND
 };
 
@@ -76,6 +80,9 @@ struct ct_uses {
     uint32_t *start, *use;
 };
 struct ct_uses ct_listing_uses(struct ct_arena *a, const struct ct_listing *l);
+
+/// Does the listing take sines and cosines by ct_sincos?
+bool ct_listing_has_angles(const struct ct_listing *l);
 
 /// One instruction on numbers, arg and res in the order of its fields.
 void ct_instruction_apply(const struct ct_listing *l, const struct ct_instruction *i,

@@ -45,6 +45,20 @@ struct ct_tape {
 
 // ---- evaluation -------------------------------------------------------------------------------
 
+static double sine(double a)
+{
+    double s, c;
+    ct_sincos_many(&a, &s, &c, 1);
+    return s;
+}
+
+static double cosine(double a)
+{
+    double s, c;
+    ct_sincos_many(&a, &s, &c, 1);
+    return c;
+}
+
 // A slot of several lanes need not be aligned to more than a number.
 #define SLOT(lanes) double __attribute__((vector_size(8 * (lanes)), aligned(8), may_alias))
 typedef SLOT(4) slot4;
