@@ -176,6 +176,8 @@ static bool resolve_options(struct ct_sim *sim, const struct ct_sim_options *o)
                           : o->tolerance > 0 ? o->tolerance / 100
                                              : m->atol;
     const double least = sim->system->equations.nrow ? least_rtol_loops : least_rtol;
+    sim->least_rtol = least;
+    sim->is_verified = o->verify;
     sim->run_options = (struct ct_run_options){
         .duration = o->until > 0 ? o->until : m->duration,
         .rtol = fmax(safety * sim->tolerance, least),
@@ -280,6 +282,8 @@ static bool at_row(void *user, double t, const double *value, size_t n)
     struct ct_sim *sim = user;
     const double start = ct_clock();
     sim->time = t;
+    if (sim->kept)
+        memcpy(sim->kept + sim->nkept++ * n, value, n * sizeof *value);
     bool go_on = !sim->file || write_row(sim, t, value);
     if (go_on && sim->results->row)
         go_on = sim->results->row(sim->results->user, t, value, n);
@@ -333,6 +337,9 @@ static bool run(struct ct_sim *sim)
     if (sim->results->path && !open_file(sim, sim->results->path))
         return false;
     sim->has_run = true;
+    if (sim->is_verified)
+        sim->kept = CT_NEWN(sim->own.model, double,
+                            sim->run_options.nsample *sim->system->equations.nresult + 1);
     bool ok = integrate(sim) || sim->own.nerror == 0;
     const double start = ct_clock();
     if (ok)
@@ -340,6 +347,8 @@ static bool run(struct ct_sim *sim)
     if (sim->file)
         ok = close_file(sim, ok);
     sim->write += ct_clock() - start;
+    if (ok && sim->kept)
+        ct_sim_verify(sim);
     sim->is_done = ok;
     return ok;
 }

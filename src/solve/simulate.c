@@ -486,7 +486,7 @@ bool ct_run_simulate(struct ct_run *r, const struct ct_run_options *o,
         sample[0] = 0;
     for (size_t i = 0; i < r->ny; i++)
         watched[i] = i + 1 < r->ny || r->has_power; // the work is as good as the states
-    *report = (struct ct_run_report){0};
+    *report = (struct ct_run_report){.method = o->method};
     report->final = CT_NEWN(r->arena, double, r->e->nresult + 1);
     r->pivot_last = r->singular_in = INFINITY;
     r->o = o;

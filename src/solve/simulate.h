@@ -18,6 +18,7 @@ struct ct_run_options {
 };
 
 struct ct_run_report {
+    const struct ct_method *method; // that came to the end
     struct ct_integrate_stats stats;
     double energy_drift; // largest |total - total(0)| / scale of the energies
     double position_constraint, velocity_constraint; // largest residuals at samples
