@@ -41,22 +41,22 @@ struct ct_estimate {
     struct ct_output_error *output; // (nresult); NULL: not known
     size_t which;                   // the output that is worst; nresult: there is none
     double worst;                   // its relative error; NaN: not known
-    double holds_until; // the last sample up to which errors are as wanted
+    double holds_until;             // the last sample up to which errors are as wanted
 };
 
 struct ct_sim {
     struct ct_ctx own;
     struct ct_system *system;
     const char *method_why;
-    double tolerance; // wanted of outputs
+    double tolerance;  // wanted of outputs
     double least_rtol; // of steps: what double precision allows
     struct ct_run_options run_options;
     struct ct_start start;
     struct ct_run *run;
     struct ct_run_report report;
     struct ct_open open;
-    bool is_verified;            // a second run is wanted
-    double *kept;                // rows so far, for it  (nkept x nresult)
+    bool is_verified; // a second run is wanted
+    double *kept;     // rows so far, for it  (nkept x nresult)
     size_t nkept;
     struct ct_estimate estimate; // what it said
     const struct ct_sim_results *results;
@@ -65,7 +65,7 @@ struct ct_sim {
     long nstep;      // accepted so far, for deadlines
     double deadline; // on ct_clock, when the run is given up; 0: none
     bool has_run, is_done, is_late;
-    double time;                      // of the last sample
+    double time;                                      // of the last sample
     double compile, integrate, write, verify_seconds; // seconds
 };
 

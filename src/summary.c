@@ -13,17 +13,6 @@ static long count(const struct ct_tape_counts *c)
     return c->multiplications + c->additions + c->divisions + c->functions;
 }
 
-// Arithmetic operations of embedding, (6.2), for n speeds, r kept rows, f = n - r freedoms: LU of J_d,
-// its solutions, products M B and B' M B, Cholesky of the reduced mass matrix.
-static long solve_operations(long n, long r)
-{
-    const long f = n - r;
-    const long lu = 2 * r * r * r / 3 + 2 * r * r * (f + 1);
-    const long right = 2 * n * r + 2 * r * f;
-    const long reduced = r ? 2 * n * r * f + r * f * (f + 1) : 0;
-    return lu + right + reduced + f * f * f / 3 + 2 * f * f + 2 * r * f;
-}
-
 static long operations(const struct ct_sim *sim)
 {
     const struct ct_machine *m = ct_run_machine(sim->run);
@@ -32,7 +21,13 @@ static long operations(const struct ct_sim *sim)
         return count(&all);
     }
     const struct ct_tape_counts c = ct_tape_counts(m->motion.tape);
-    return count(&c) + solve_operations((long)m->nu, sim->report.rank);
+    return count(&c) + ct_embed_operations((long)m->nu, sim->report.rank);
+}
+
+// The report has none before the run.
+static const struct ct_method *last_method(const struct ct_sim *sim)
+{
+    return sim->report.method ? sim->report.method : sim->run_options.method;
 }
 
 static long freedoms(const struct ct_sim *sim)
@@ -151,7 +146,8 @@ static void write_estimate(struct ct_json *j, const struct ct_sim *sim)
 static void write_work(struct ct_json *j, const struct ct_sim *sim)
 {
     const struct ct_run_report *r = &sim->report;
-    ct_json_text(j, "method", sim->run_options.method->name);
+    ct_json_text(j, "method", last_method(sim)->name);
+    ct_json_text(j, "method_why", sim->method_why);
     ct_json_number(j, "tolerance", sim->tolerance);
     ct_json_text(j, "backend", ct_run_machine(sim->run)->backend);
     ct_json_integer(j, "steps", r->stats.steps);
@@ -292,7 +288,7 @@ static void print_output_errors(FILE *out, const struct ct_sim *sim)
     int column = 0;
     for (size_t i = 0; i < e->nresult && i < most_shown; i++) {
         const struct ct_output_error *o = &sim->estimate.output[i];
-        char text[24] = "rounding";
+        char text[24] = "zero";
         if (!isnan(o->relative))
             snprintf(text, sizeof text, "%.1e", o->relative);
         const int n = (int)(strlen(e->result[i].name) + strlen(text)) + 3;
@@ -344,12 +340,12 @@ void ct_sim_print_summary(const struct ct_sim *sim, FILE *out)
         fprintf(out, "step %g s\n", sim->run_options.step);
     else
         fprintf(out, "tolerance %g\n", sim->tolerance);
-    fprintf(out,
-            "work         %ld steps, %ld rejected (%ld for their error), %ld evaluations of %ld "
-            "operations (%s)\n",
-            r->stats.steps, r->stats.rejected_steps, r->stats.inaccurate_steps,
-            r->stats.evaluations, operations(sim),
-            ct_run_machine(sim->run)->backend);
+    fprintf(
+        out,
+        "work         %ld steps, %ld rejected (%ld for their error), %ld evaluations of %ld "
+        "operations (%s)\n",
+        r->stats.steps, r->stats.rejected_steps, r->stats.inaccurate_steps,
+        r->stats.evaluations, operations(sim), ct_run_machine(sim->run)->backend);
     fprintf(out, "error        energy drift %.2g, constraints %.2g, their rates %.2g\n",
             r->energy_drift, r->position_constraint, r->velocity_constraint);
     print_estimate(out, sim);

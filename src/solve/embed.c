@@ -396,3 +396,12 @@ void ct_embed_renew(struct ct_embed *s)
     if (s->rank && has_worn(s))
         ct_embed_choose(s);
 }
+
+long ct_embed_operations(long n, long r)
+{
+    const long f = n - r;
+    const long lu = 2 * r * r * r / 3 + 2 * r * r * (f + 1);
+    const long right = 2 * n * r + 2 * r * f;
+    const long reduced = r ? 2 * n * r * f + r * f * (f + 1) : 0;
+    return lu + right + reduced + f * f * f / 3 + 2 * f * f + 2 * r * f;
+}

@@ -31,6 +31,9 @@ struct ct_embed {
 struct ct_embed *ct_embed_create(struct ct_arena *arena, struct ct_ctx *ctx,
                                  struct ct_machine *m);
 
+/// Arithmetic operations of an ct_embed_accelerate for n speeds and r kept rows, f = n - r freedoms: LU of J_d, its
+/// solutions, products M B and B' M B, Cholesky of the reduced mass matrix.
+long ct_embed_operations(long n, long r);
 /// Choose rows and columns anew at the machine's input. False with a diagnostic if the mass matrix
 /// leaves a freedom without inertia.
 bool ct_embed_choose(struct ct_embed *s);

@@ -270,6 +270,15 @@ struct ct_machine *ct_machine_create(struct ct_arena *a, const struct ct_model *
     return m;
 }
 
+void ct_machine_add_residual(struct ct_arena *a, struct ct_machine *m)
+{
+    if (m->residual.nout)
+        return;
+    const struct inputs in = list_inputs(a, m);
+    compile_residual(a, m, &in);
+    ct_machine_use(a, m, m->motion.native ? CT_BACKEND_BEST : CT_BACKEND_TAPE);
+}
+
 void ct_machine_prepare(struct ct_machine *m)
 {
     struct ct_program *const all[]
