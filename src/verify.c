@@ -90,15 +90,20 @@ static bool has_digits(const struct ct_output_error *o)
 static void find_relative(struct ct_output_error *o, size_t n)
 {
     const double spread = 100; // sums of outputs add up their errors
-    double largest = 0, worst = 0;
+    const double small = 1e-3; // against others that have lost all digits
+    double largest = 0, worst = 0, largest_lost = 0;
     for (size_t i = 0; i < n; i++) {
         largest = fmax(largest, o[i].scale);
         if (has_digits(&o[i]))
             worst = fmax(worst, o[i].absolute / o[i].scale);
+        else
+            largest_lost = fmax(largest_lost, o[i].scale);
     }
     for (size_t i = 0; i < n; i++) {
         const bool is_zero = ct_is_rounding(o[i].scale, o[i].absolute, largest)
-                          || (!has_digits(&o[i]) && o[i].scale <= spread * worst * largest);
+                          || (!has_digits(&o[i])
+                              && (o[i].scale <= spread * worst * largest
+                                  || o[i].scale <= small * largest_lost));
         o[i].relative = is_zero ? NAN : o[i].absolute / o[i].scale;
     }
 }
