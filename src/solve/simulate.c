@@ -508,6 +508,15 @@ static double operations(const struct ct_program *p)
     return (double)(c.multiplications + c.additions + c.divisions + c.functions);
 }
 
+static double operations_of_accelerations(const struct ct_run *r)
+{
+    if (r->m->solved.nout)
+        return operations(&r->m->solved);
+    if (r->s->has_form)
+        return operations(&r->s->form[0]->solved);
+    return operations(&r->m->motion) + ct_embed_operations(r->s);
+}
+
 // Arithmetic operations, and some that stand for calls, copies and vectors: as measured on systems of few operations.
 static struct ct_cost find_cost(const struct ct_run *r)
 {
@@ -515,12 +524,8 @@ static struct ct_cost find_cost(const struct ct_run *r)
     const double explicit_overhead = 150, implicit_overhead = 400;
     const double n = (double)m->nu + 2. * r->s->rank;
     const double lu = 2. / 3 * n * n * n, solve = 2 * n * n, complex_also = 5;
-    const bool is_solved = m->solved.nout > 0;
-    const double embedding
-        = is_solved ? 0 : (double)ct_embed_operations((long)m->nu, r->s->rank);
     return (struct ct_cost){
-        .evaluation
-        = operations(is_solved ? &m->solved : &m->motion) + embedding + explicit_overhead,
+        .evaluation = operations_of_accelerations(r) + explicit_overhead,
         // three residuals make a correction
         .residual = operations(&m->residual) + complex_also * solve / 3 + implicit_overhead,
         .tangent = operations(&m->tangent) + 4 * n * n + implicit_overhead,
