@@ -386,6 +386,34 @@ static void orders_hold_for_models(void **unused)
         }
 }
 
+// The same of explicit methods, whose steps are projected.
+static void orders_of_explicit_methods_hold_for_models(void **unused)
+{
+    (void)unused;
+    static const char *const method[] = {"rk4", "dopri5", "dop853"};
+    static const struct {
+        const char *name;
+        double duration, step[3];
+    } cases[] = {{"R08a", 0.1, {0.0005, 0.001, 0.005}},
+                 {"R06_slender", 1, {0.05, 0.05, 0.2}},
+                 {"R14_k1e4", 0.5, {0.001, 0.0025, 0.01}},
+                 {"R01", 0.01, {5e-5, 1e-4, 1e-3}}};
+    for (size_t k = 0; k < COUNT(cases); k++)
+        for (size_t i = 0; i < COUNT(method); i++) {
+            struct ct_run_report report;
+            const double h = cases[k].step[i];
+            double error[2];
+            for (int half = 0; half < 2; half++)
+                error[half] = run_case(cases[k].name, method[i], 0, half ? h / 2 : h,
+                                       cases[k].duration, 2, &report);
+            const double order = log2(error[0] / error[1]);
+            printf("%s %s: order %.2f\n", cases[k].name, method[i], order);
+            // some leading terms are small enough for the next ones to show, which are an order higher
+            const int want = ct_method_find(method[i])->order;
+            assert_true(order > want - 0.3 && order < want + 1.3);
+        }
+}
+
 // Steps longer than the period of a spring (6e-3 s): explicit methods end in infinity, these follow the slow motion, and
 // give no energy to the fast one.
 static void a_stiff_spring_is_stepped_over(void **unused)
@@ -404,6 +432,7 @@ int main(void)
         cmocka_unit_test(residual_and_derivatives_of_all_systems),
         cmocka_unit_test(models_follow_their_references),
         cmocka_unit_test(orders_hold_for_models),
+        cmocka_unit_test(orders_of_explicit_methods_hold_for_models),
         cmocka_unit_test(a_stiff_spring_is_stepped_over),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
