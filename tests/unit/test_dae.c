@@ -40,7 +40,7 @@ struct job {
 };
 
 static bool open_job_with(struct job *j, const char *folder, const char *name,
-                          enum ct_tree_choice tree, const char **set, size_t nset)
+                          enum ct_tree_choice tree, const struct ct_set *set, size_t nset)
 {
     const struct ct_formulate_options o
         = {.tree = tree, .with_energy = true, .with_outputs = true, .with_residual = true};
@@ -439,7 +439,7 @@ static void energy_stays_bounded_without_damping(void **unused)
         = {.alpha_m = 0.5, .alpha_f = 0.5, .beta = 0.25, .gamma = 0.5, .is_stabilised = true};
     const struct ct_method method
         = {CT_ALPHA_METHOD, .name = "rho = 1", .coefficients = &rho_one};
-    const char *set[] = {"torque=0"};
+    const struct ct_set set[] = {{"torque=0"}};
     const char *asked = getenv("CT_LONG_STEPS");
     const double step = 1e-3, nstep = asked ? strtod(asked, NULL) : 20000;
     double drift[2];
