@@ -302,6 +302,15 @@ struct ct_machine *ct_machine_create(struct ct_arena *a, const struct ct_model *
     return m;
 }
 
+void ct_machine_add_residual(struct ct_arena *a, struct ct_machine *m)
+{
+    if (m->residual.nout)
+        return;
+    const struct inputs in = list_inputs(a, m, m->e->x);
+    compile_residual(a, m, &in);
+    ct_machine_use(a, m, m->motion.native ? CT_BACKEND_BEST : CT_BACKEND_TAPE);
+}
+
 void ct_machine_values(struct ct_arena *a, const struct ct_machine *m, const ct_ex *e, size_t n,
                        double *out)
 {

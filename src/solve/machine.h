@@ -64,6 +64,9 @@ struct ct_machine {
 struct ct_machine *ct_machine_create(struct ct_arena *a, const struct ct_model *model,
                                      const struct ct_equations *e);
 
+/// The equations have got their residual only now. a must be the machine's arena.
+void ct_machine_add_residual(struct ct_arena *a, struct ct_machine *m);
+
 /// Run these with another back end. False if native code is asked for and is not
 /// available; the tape is run then. Not for the inner loop: a must be the machine's arena.
 bool ct_machine_use(struct ct_arena *a, struct ct_machine *m, enum ct_backend backend);
