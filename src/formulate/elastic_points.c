@@ -6,9 +6,7 @@
 #include "formulate/elastic.h"
 
 static const ct_ex3 zero3 = {{{0}, {0}, {0}}};
-// Sections that are constant, that vary. The inertia of a foreshortened element is of degree 10 along it, as the
-// shortening is of degree 5: six points are exact.
-enum { FEW_POINTS = 6, MANY_POINTS = 8 };
+enum { FEW_POINTS = 6, MANY_POINTS = 8 }; // sections that are constant (exact), that vary
 
 // A point of mass m with the rotary inertia j of the section there.
 struct ct_point {
