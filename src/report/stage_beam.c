@@ -45,7 +45,9 @@ const char *ct_beam_sentence(struct ct_arena *a, const struct ct_flexible *f)
         a, "%d element%s, %d elastic coordinate%s; %s%s; %s%s; frame %s%s", beam->nelement,
         beam->nelement == 1 ? "" : "s", f->nelastic, f->nelastic == 1 ? "" : "s",
         *list ? "deforms by " : "keeps its shape", list, formulation_name(f->formulation),
-        beam->formulation == CT_BEAM_AUTO ? " (auto)" : "",
+        f->why                              ? ct_arena_printf(a, " (%s)", f->why)
+        : beam->formulation == CT_BEAM_AUTO ? " (auto)"
+                                            : "",
         beam->is_chord ? "chord" : "clamped",
         beam->theory == CT_BEAM_TIMOSHENKO ? "; timoshenko" : "");
 }
