@@ -182,8 +182,9 @@ static void put_body(struct ct_derivation *d, const struct ct_flexible *f)
     put(d, place(d), ct_arena_printf(d->a, "[x + u, %s, %s]", v, w),
         ct_arena_printf(d->a, "(x + u,\\; %s,\\; %s)", v, w),
         ct_arena_printf(d->a, "place of the section at x, axes of %s", frame));
-    const char *const motion[] = {ct_derivation_of(d, "a", frame), ct_derivation_of(d, "al", frame),
-                                  ct_derivation_of(d, "w", frame)};
+    const char *const motion[]
+        = {ct_derivation_of(d, "a", frame), ct_derivation_of(d, "al", frame),
+           ct_derivation_of(d, "w", frame)};
     ct_page_equation(
         &d->page, NULL, latex ? "\\boldsymbol{c}" : "c",
         ct_arena_printf(
