@@ -39,6 +39,9 @@ extern void dormrz_(const char *side, const char *trans, const int *m, const int
 extern void dtrtrs_(const char *uplo, const char *trans, const char *diag, const int *n,
                     const int *nrhs, const double *a, const int *lda, double *b, const int *ldb,
                     int *info, size_t, size_t, size_t);
+extern void dsygv_(const int *itype, const char *jobz, const char *uplo, const int *n,
+                   double *a, const int *lda, double *b, const int *ldb, double *w,
+                   double *work, const int *lwork, int *info, size_t, size_t);
 extern void dsyev_(const char *jobz, const char *uplo, const int *n, double *a, const int *lda,
                    double *w, double *work, const int *lwork, int *info, size_t, size_t);
 
@@ -195,6 +198,20 @@ int ct_lstsq(double *b, double *A, int m, int n, int lda, double tol, int *iwork
 size_t ct_lstsq_work(int m, int n)
 {
     return (size_t)min_int(m, n) + (size_t)n + ct_qr_pivot_work(m, n); // tau, x, LAPACK's own
+}
+
+bool ct_pencil_eigen(double *w, double *A, double *B, int n, int lda, double *work)
+{
+    int info;
+    const int itype = 1, lwork = (int)ct_pencil_eigen_work(n);
+    lda = max_int(1, lda);
+    dsygv_(&itype, "V", "L", &n, A, &lda, B, &lda, w, work, &lwork, &info, 1, 1);
+    return info == 0;
+}
+
+size_t ct_pencil_eigen_work(int n)
+{
+    return (size_t)max_int(1, 3 * n - 1);
 }
 
 bool ct_symmetric_eigenvalues(double *w, double *A, int n, int lda, double *work)
