@@ -202,6 +202,79 @@ CT_API bool ct_accuracy_draw(struct ct_ctx *ctx, const struct ct_accuracy *a, co
 /** How good the reference is, and the cheapest setting that meets the wanted error, for people. */
 CT_API void ct_accuracy_print_summary(const struct ct_accuracy *a, FILE *out);
 
+/* ---- analyses about a configuration ------------------------------------------------------------------ */
+
+struct ct_equilibrium;
+
+/** Zero: the default. */
+struct ct_equilibrium_options {
+    /** Motions stand still where they are at t = 0. Else those with a constant rate that turn the system as a whole go
+     *  on, and the equilibrium is one in the turning frame; others stand still in any case. */
+    bool hold_drivers;
+};
+
+/**
+ * The equilibrium that a system comes to from its assembled start, without inertia: at t = 0, speeds zero.
+ *
+ * Errors   E401, E405, E410; those of assembly
+ * Owner    the caller, until ct_equilibrium_destroy
+ */
+CT_API struct ct_equilibrium *
+ct_equilibrium_create(struct ct_ctx *ctx, struct ct_system *sys,
+                      const struct ct_equilibrium_options *options);
+/** Accepts NULL. */
+CT_API void ct_equilibrium_destroy(struct ct_equilibrium *q);
+/** Value of a column; NaN for one that does not exist. */
+CT_API double ct_equilibrium_value(const struct ct_equilibrium *q, const char *column);
+/** Does no small motion about it grow? */
+CT_API bool ct_equilibrium_is_stable(const struct ct_equilibrium *q);
+/** One row of outputs, t = 0. FILE.json: an object of columns, else CSV; NULL or "-": standard output. Errors: E002. */
+CT_API bool ct_equilibrium_write(struct ct_ctx *ctx, const struct ct_equilibrium *q,
+                                 const char *path);
+/** How good it is and whether it is stable, for people. */
+CT_API void ct_equilibrium_print_summary(const struct ct_equilibrium *q, FILE *out);
+
+struct ct_modes;
+
+/** Zero: the default. */
+struct ct_modes_options {
+    const char *about; /* "initial" (NULL), "equilibrium", or a time [s] of the motion */
+    long count;        /* of rows; 10 */
+    bool hold_drivers; /* as for equilibria */
+    struct ct_sim_options run; /* of the motion up to a time */
+};
+
+/** A natural motion exp(s t): a pair of complex eigenvalues, or a real one. */
+struct ct_mode_info {
+    double frequency_hz; /* |s| / (2 pi) */
+    double omega;        /* |s| [rad/s] */
+    double damping;      /* -Re(s) / |s|; -1: grows without oscillating; 0 where s = 0 */
+    double re, im;       /* s [1/s], im >= 0 */
+};
+
+/**
+ * Natural motions of a system linearised about a configuration.
+ *
+ * Errors   E003 for options; E401, E405, E410; those of assembly and of runs
+ * Owner    the caller, until ct_modes_destroy
+ */
+CT_API struct ct_modes *ct_modes_create(struct ct_ctx *ctx, struct ct_system *sys,
+                                        const struct ct_modes_options *options);
+/** Accepts NULL. */
+CT_API void ct_modes_destroy(struct ct_modes *modes);
+/** Modes by |s|, as many as asked for or as there are; mode i, or all zeros. */
+CT_API size_t ct_modes_count(const struct ct_modes *modes);
+CT_API struct ct_mode_info ct_modes_info(const struct ct_modes *modes, size_t i);
+/** Entry of a mode's shape: how the coordinate of that name moves; the largest entry is 1. False: no such name. */
+CT_API bool ct_modes_shape(const struct ct_modes *modes, size_t i, const char *coordinate,
+                           double *re, double *im);
+/** The table; FILE.json: with shapes, else CSV; NULL or "-": standard output. Errors: E002. */
+CT_API bool ct_modes_write(struct ct_ctx *ctx, const struct ct_modes *modes, const char *path);
+/** The shapes of the first modes as SVG: frames and the lines between them, at rest and displaced. Errors: E002. */
+CT_API bool ct_modes_draw(struct ct_ctx *ctx, struct ct_modes *modes, const char *path);
+/** What the modes are about, for people. */
+CT_API void ct_modes_print_summary(const struct ct_modes *modes, FILE *out);
+
 /* ---- what there is ------------------------------------------------------------------------------- */
 
 /** Component types with their terminal equations and keys. */

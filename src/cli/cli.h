@@ -17,12 +17,12 @@ enum { CLI_DONE = 0, CLI_FAILED = 1, CLI_USAGE = 2 };
 /// What the command line says; zero where it says nothing.
 struct cli_args {
     const char *model;
-    const char *output, *summary, *format, *show, *tree, *method, *backend, *reference, *plot;
+    const char *output, *summary, *format, *show, *tree, *method, *backend, *reference, *plot, *about;
     const char **set;
     size_t nset;
     double tolerance, step, until, error;
-    long samples;
-    bool keep_all, quiet, help, version;
+    long samples, count;
+    bool hold_drivers, keep_all, quiet, help, version;
 };
 
 /// One bit for each command, for the table of options.
@@ -36,9 +36,20 @@ enum cli_use {
     CLI_SCHEMA = 64,
     CLI_EXPORT = 128,
     CLI_ACCURACY = 256,
+    CLI_EQUILIBRIUM = 512,
+    CLI_MODES = 1024,
+    CLI_LINEARIZE = 2048,
+    CLI_KINEMATICS = 4096,
+    CLI_INVERSE = 8192,
+    CLI_BUCKLING = 16384,
     CLI_LISTS = CLI_COMPONENTS | CLI_METHODS | CLI_SCHEMA,
+    CLI_DRIVEN = CLI_KINEMATICS | CLI_INVERSE,
+    CLI_ABOUT = CLI_MODES | CLI_LINEARIZE, // a configuration
+    CLI_STATIC = CLI_ABOUT | CLI_EQUILIBRIUM,
     CLI_RUNS = CLI_SIMULATE | CLI_ACCURACY,
-    CLI_MODELS = CLI_RUNS | CLI_EQUATIONS | CLI_GRAPH | CLI_CHECK | CLI_EXPORT
+    CLI_TIMES = CLI_RUNS | CLI_DRIVEN,
+    CLI_MODELS = CLI_TIMES | CLI_STATIC | CLI_BUCKLING | CLI_EQUATIONS | CLI_GRAPH | CLI_CHECK
+               | CLI_EXPORT
 };
 
 struct cli_command {
@@ -51,7 +62,7 @@ struct cli_command {
 };
 
 extern const struct cli_command cli_simulate, cli_equations, cli_graph, cli_accuracy, cli_check,
-    cli_export, cli_components, cli_methods, cli_schema;
+    cli_equilibrium, cli_modes, cli_export, cli_components, cli_methods, cli_schema;
 /// All commands in the order of --help; NULL at the end.
 extern const struct cli_command *const cli_commands[];
 

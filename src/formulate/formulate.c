@@ -47,7 +47,7 @@ static struct ct_build *build_create(struct ct_ctx *ctx, struct ct_arena *a,
                                      const struct ct_formulate_options *o)
 {
     struct ct_build *b = CT_NEW(a, struct ct_build);
-    *b = (struct ct_build){.ctx = ctx, .arena = a, .model = m};
+    *b = (struct ct_build){.ctx = ctx, .arena = a, .model = m, .drivers_held = o->drivers_held};
     b->eqs = CT_NEW(a, struct ct_equations);
     b->x = b->eqs->x = clone_store(a, m->x);
     b->value = start_values(a, m);

@@ -23,6 +23,7 @@ struct ct_formulate_options {
     bool with_residual; // an implicit method will ask for the residual and its derivatives
     bool
         measure_all; // results are the coordinates of all joints and bodies instead (for assembly)
+    bool drivers_held; // motions keep their values; their rates are taken for zero (statics)
     bool without_dynamics; // neither M nor Q: places and speeds are all that is wanted
 };
 

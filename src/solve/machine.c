@@ -270,6 +270,15 @@ struct ct_machine *ct_machine_create(struct ct_arena *a, const struct ct_model *
     return m;
 }
 
+void ct_machine_add(struct ct_arena *a, const struct ct_machine *m, const ct_ex *out, size_t n,
+                    struct ct_program *p)
+{
+    const struct inputs in = list_inputs(a, m);
+    *p = (struct ct_program){0};
+    compile(a, m, &in, out, n, p);
+    prepare(p, m->input);
+}
+
 void ct_machine_prepare(struct ct_machine *m)
 {
     struct ct_program *const all[]

@@ -64,6 +64,10 @@ struct ct_machine *ct_machine_create(struct ct_arena *a, const struct ct_model *
 /// available; the tape is run then. Not for the inner loop: a must be the machine's arena.
 bool ct_machine_use(struct ct_arena *a, struct ct_machine *m, enum ct_backend backend);
 
+/// One more program on the machine's inputs, interpreted. a must be the machine's arena.
+void ct_machine_add(struct ct_arena *a, const struct ct_machine *m, const ct_ex *out, size_t n,
+                    struct ct_program *p);
+
 /// Copy time and state into the input. y: q, u, work.
 void ct_machine_set(struct ct_machine *m, double t, const double *y);
 /// M, Q, J, gam and q' at the input.
