@@ -84,17 +84,17 @@ static bool find_equilibrium(struct ct_ctx *own, struct ct_system *sys,
                              struct ct_configuration *c)
 {
     const bool has = has_drivers(&sys->model);
-    c->e = &sys->equations;
-    c->l = ct_configuration_start(own, sys, &sys->model, c->e, true);
+    c->e = c->equations;
+    c->l = ct_configuration_start(own, sys, c->model, c->e, true);
     if (!c->l)
         return false;
     c->are_drivers_steady = has && !c->hold_drivers && are_steady(c->e, c->l);
     c->are_drivers_held = has && !c->are_drivers_steady;
     if (c->are_drivers_held) {
-        if (!ct_equations_like(own, &sys->model, c->e, true, &c->held))
+        if (!ct_equations_like(own, c->model, c->e, true, &c->held))
             return false;
         c->e = &c->held;
-        c->l = ct_configuration_start(own, sys, &sys->model, c->e, true);
+        c->l = ct_configuration_start(own, sys, c->model, c->e, true);
     }
     c->is_equilibrium = true;
     return c->l && ct_equilibrium_find(c->l, NULL, &c->equilibrium);
@@ -102,8 +102,8 @@ static bool find_equilibrium(struct ct_ctx *own, struct ct_system *sys,
 
 static bool find_start(struct ct_ctx *own, struct ct_system *sys, struct ct_configuration *c)
 {
-    c->e = &sys->equations;
-    c->l = ct_configuration_start(own, sys, &sys->model, c->e, false);
+    c->e = c->equations;
+    c->l = ct_configuration_start(own, sys, c->model, c->e, false);
     return c->l && ct_linear_move(c->l);
 }
 
@@ -113,11 +113,18 @@ static bool find_time(struct ct_ctx *own, struct ct_system *sys, const struct ct
     struct ct_sim_options options = *o;
     options.until = time;
     options.samples = 2;
-    c->e = &sys->equations;
+    c->e = c->equations;
     c->sim = ct_sim_create(own, sys, &options);
     if (!c->sim || !ct_sim_run(own, c->sim, NULL))
         return false;
-    c->l = ct_linear_create(own, own->model, ct_run_machine(c->sim->run));
+    struct ct_machine *m = ct_run_machine(c->sim->run);
+    if (c->e != &sys->equations) { // the same unknowns: angles are followed from where they are
+        const struct ct_machine *from = m;
+        m = ct_machine_create(own->model, c->model, c->e);
+        for (size_t i = 0; i < c->e->nmemory && i < from->e->nmemory; i++)
+            m->input[m->at_memory + i] = from->input[from->at_memory + i];
+    }
+    c->l = ct_linear_create(own, own->model, m);
     c->l->t = time;
     memcpy(c->l->y, c->sim->report.y, (c->e->nq + c->e->nu + 1) * sizeof *c->l->y);
     return ct_linear_move(c->l);
@@ -129,6 +136,10 @@ bool ct_configuration_find(struct ct_ctx *own, struct ct_system *sys,
     static const char *const words[] = {"initial", "equilibrium"};
     static const struct ct_sim_options standard;
     ct_formulate_residual(&sys->equations);
+    if (!c->equations) {
+        c->model = &sys->model;
+        c->equations = &sys->equations;
+    }
     if (!c->about)
         c->about = words[0];
     if (strcmp(c->about, words[0]) == 0)

@@ -275,6 +275,40 @@ CT_API bool ct_modes_draw(struct ct_ctx *ctx, struct ct_modes *modes, const char
 /** What the modes are about, for people. */
 CT_API void ct_modes_print_summary(const struct ct_modes *modes, FILE *out);
 
+struct ct_linearization;
+
+/** Zero: the default. */
+struct ct_linearize_options {
+    const char *about;  /* as for modes */
+    /** Names separated by commas: "J.effort", "F.force.x", "T.torque.z" add to what the model says, others are its
+     *  parameters. NULL: the efforts that the model gives and the components of its forces and torques. */
+    const char *inputs;
+    bool hold_drivers;         /* as for equilibria */
+    struct ct_sim_options run; /* of the motion up to a time */
+};
+
+/**
+ * x' = A x + B u, y = C x + D u for small deviations from a configuration; y are the outputs of the model.
+ *
+ * Errors   E003 for options; E401, E405, E410, E412; those of assembly and of runs
+ * Owner    the caller, until ct_linearization_destroy
+ */
+CT_API struct ct_linearization *ct_linearize(struct ct_ctx *ctx, struct ct_system *sys,
+                                             const struct ct_linearize_options *options);
+/** Accepts NULL. */
+CT_API void ct_linearization_destroy(struct ct_linearization *s);
+/** 'A', 'B', 'C', 'D' (column-major), 'x', 'y', 'r': states, outputs and rates of the states at the configuration.
+ *  NULL for other names. */
+CT_API const double *ct_linearization_matrix(const struct ct_linearization *s, char name,
+                                             size_t *rows, size_t *columns);
+/** Name of state ('x'), input ('u') or output ('y') i; NULL beyond the last one. */
+CT_API const char *ct_linearization_name(const struct ct_linearization *s, char what, size_t i);
+/** FILE.npz for NumPy, FILE.json, else CSV of [A B; C D]; NULL or "-": CSV on standard output. Errors: E002. */
+CT_API bool ct_linearization_write(struct ct_ctx *ctx, const struct ct_linearization *s,
+                                   const char *path);
+/** Where, and the names, for people. */
+CT_API void ct_linearization_print_summary(const struct ct_linearization *s, FILE *out);
+
 /* ---- what there is ------------------------------------------------------------------------------- */
 
 /** Component types with their terminal equations and keys. */

@@ -17,7 +17,7 @@ enum { CLI_DONE = 0, CLI_FAILED = 1, CLI_USAGE = 2 };
 /// What the command line says; zero where it says nothing.
 struct cli_args {
     const char *model;
-    const char *output, *summary, *format, *show, *tree, *method, *backend, *reference, *plot, *about;
+    const char *output, *summary, *format, *show, *tree, *method, *backend, *reference, *plot, *about, *inputs;
     const char **set;
     size_t nset;
     double tolerance, step, until, error;
@@ -62,7 +62,7 @@ struct cli_command {
 };
 
 extern const struct cli_command cli_simulate, cli_equations, cli_graph, cli_accuracy, cli_check,
-    cli_equilibrium, cli_modes, cli_export, cli_components, cli_methods, cli_schema;
+    cli_equilibrium, cli_modes, cli_linearize, cli_export, cli_components, cli_methods, cli_schema;
 /// All commands in the order of --help; NULL at the end.
 extern const struct cli_command *const cli_commands[];
 
