@@ -29,6 +29,7 @@ bool ct_equations_like(struct ct_ctx *own, const struct ct_model *model,
                                      .keep_all = !like->is_planar,
                                      .with_energy = true,
                                      .with_outputs = true,
+                                     .more = like->more,
                                      .with_residual = true,
                                      .drivers_held = drivers_held};
     o.trans = branches(own->model, like, like->T, &o.ntrans);

@@ -303,7 +303,7 @@ static bool integrate(struct ct_sim *sim)
     struct ct_run_options *o = &sim->run_options;
     struct ct_progress progress = {0};
     if (sim->results->progress) {
-        ct_progress_init(&progress, sim->results->progress, "simulate");
+        ct_progress_init(&progress, sim->results->progress, sim->is_followed ? "follow" : "simulate");
         sim->progress = &progress;
     }
     if (sim->results->progress || sim->deadline > 0)
@@ -311,7 +311,8 @@ static bool integrate(struct ct_sim *sim)
     o->row = at_row;
     o->user = sim;
     const double start = ct_clock();
-    const bool ok = ct_run_simulate(sim->run, o, &sim->report);
+    const bool ok = sim->is_followed ? ct_run_follow(sim->run, o, &sim->report)
+                                     : ct_run_simulate(sim->run, o, &sim->report);
     sim->integrate = ct_clock() - start - sim->write;
     ct_progress_finish(&progress);
     sim->progress = NULL;
@@ -355,6 +356,13 @@ static bool run_and_report(void *task)
     const bool ok = run(w->sim);
     ct_ctx_hand_over(w->ctx, &w->sim->own);
     return ok;
+}
+
+bool ct_sim_follow(struct ct_ctx *ctx, struct ct_sim *sim, const struct ct_sim_results *results)
+{
+    if (sim)
+        sim->is_followed = true;
+    return ct_sim_run(ctx, sim, results);
 }
 
 bool ct_sim_run(struct ct_ctx *ctx, struct ct_sim *sim, const struct ct_sim_results *results)

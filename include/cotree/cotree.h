@@ -64,6 +64,12 @@ struct ct_system_options {
     size_t nset;
     const char *tree; /* "auto", "joints", "absolute", or a YAML file that names the branches */
     bool keep_all;    /* leave nothing out: planar mechanisms keep their spatial rows */
+    /** Columns beside the model's outputs. */
+    enum ct_columns_more {
+        CT_COLUMNS_OF_MODEL = 0,
+        CT_COLUMNS_COORDINATES, /* if it lists none: coordinates, speeds and accelerations of all joints */
+        CT_COLUMNS_EFFORTS      /* efforts of motions, forces and torques of all joints */
+    } columns;
 };
 
 /**
@@ -145,6 +151,15 @@ CT_API void ct_sim_destroy(struct ct_sim *sim);
  */
 CT_API bool ct_sim_run(struct ct_ctx *ctx, struct ct_sim *sim,
                        const struct ct_sim_results *results);
+
+/**
+ * The samples of a run whose freedoms are all driven, without integration: kinematics and inverse dynamics. Otherwise as
+ * ct_sim_run.
+ *
+ * Errors: as there; E411 when a freedom has no driver.
+ */
+CT_API bool ct_sim_follow(struct ct_ctx *ctx, struct ct_sim *sim,
+                          const struct ct_sim_results *results);
 
 /** Time of the last sample, and the value of a column there; NaN for a column that does not exist. */
 CT_API double ct_sim_time(const struct ct_sim *sim);

@@ -9,7 +9,7 @@
 
 const struct cli_command *const cli_commands[]
     = {&cli_simulate, &cli_equations,  &cli_graph,   &cli_accuracy, &cli_check,
-       &cli_equilibrium, &cli_modes, &cli_linearize, &cli_export,   &cli_components, &cli_methods, &cli_schema,   NULL};
+       &cli_equilibrium, &cli_modes, &cli_linearize, &cli_kinematics, &cli_inverse, &cli_export,   &cli_components, &cli_methods, &cli_schema,   NULL};
 
 // ---- options --------------------------------------------------------------------------------------------
 
@@ -47,7 +47,7 @@ static const struct option {
      "number of samples, both ends included"},
     {"backend", 0, "CHOICE", TEXT, FIELD(backend), CLI_RUNS, true,
      "what evaluates the equations: auto, native or tape"},
-    {"summary", 0, "FILE.json", TEXT, FIELD(summary), CLI_SIMULATE | CLI_CHECK, true,
+    {"summary", 0, "FILE.json", TEXT, FIELD(summary), CLI_SIMULATE | CLI_CHECK | CLI_DRIVEN, true,
      "what the run did, for programs"},
     {"about", 0, "WHERE", TEXT, FIELD(about), CLI_ABOUT, false,
      "initial, equilibrium, or a time in seconds"},

@@ -62,7 +62,7 @@ struct cli_command {
 };
 
 extern const struct cli_command cli_simulate, cli_equations, cli_graph, cli_accuracy, cli_check,
-    cli_equilibrium, cli_modes, cli_linearize, cli_export, cli_components, cli_methods, cli_schema;
+    cli_equilibrium, cli_modes, cli_linearize, cli_kinematics, cli_inverse, cli_export, cli_components, cli_methods, cli_schema;
 /// All commands in the order of --help; NULL at the end.
 extern const struct cli_command *const cli_commands[];
 
@@ -78,10 +78,16 @@ int cli_complain(const struct cli_command *command, const char *fmt, ...)
 
 /// The system that the arguments ask for, or NULL.
 struct ct_system *cli_load(struct ct_ctx *ctx, const struct cli_args *args);
+/// The same with further columns.
+struct ct_system *cli_load_with(struct ct_ctx *ctx, const struct cli_args *args,
+                                enum ct_columns_more columns);
 /// What the arguments say about runs.
 struct ct_sim_options cli_sim_options(const struct cli_args *args);
 /// A run with the options of the arguments, or NULL.
 struct ct_sim *cli_sim(struct ct_ctx *ctx, struct ct_system *sys, const struct cli_args *args);
+
+/// The model's file name with .csv, in the current folder; to be freed.
+char *cli_standard_path(const char *model);
 
 /// The format that --format or the suffix of -o asks for; suffixes[i] belongs to formats[i].
 const char *cli_format(const struct cli_args *args, const char *const *formats,

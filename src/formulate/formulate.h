@@ -19,6 +19,7 @@ struct ct_formulate_options {
     bool keep_all;      // leave nothing out: spatial rows for planar mechanisms
     bool with_energy;   // kinetic and potential energy and the power are wanted
     bool with_outputs;  // the outputs of the model are wanted
+    enum ct_more_outputs more;
     bool with_solution; // u' in closed form where that is cheap
     bool with_residual; // an implicit method will ask for the residual and its derivatives
     bool
