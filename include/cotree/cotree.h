@@ -324,6 +324,36 @@ CT_API bool ct_linearization_write(struct ct_ctx *ctx, const struct ct_lineariza
 /** Where, and the names, for people. */
 CT_API void ct_linearization_print_summary(const struct ct_linearization *s, FILE *out);
 
+struct ct_buckling;
+
+struct ct_buckling_options {
+    const char *load;  /* a force, a torque, a joint with an effort, or "gravity" */
+    long count;        /* of factors; 10 */
+    bool hold_drivers; /* as for equilibria */
+};
+
+/**
+ * Factors by which a load must be multiplied until the stiffness of the equilibrium vanishes, all other loads constant.
+ *
+ * Errors   E003 without a load; E405, E410, E413, E414; those of assembly
+ * Owner    the caller, until ct_buckling_destroy
+ */
+CT_API struct ct_buckling *ct_buckling_create(struct ct_ctx *ctx, struct ct_system *sys,
+                                              const struct ct_buckling_options *options);
+/** Accepts NULL. */
+CT_API void ct_buckling_destroy(struct ct_buckling *s);
+/** Positive factors, ascending; NaN beyond the last one. */
+CT_API size_t ct_buckling_count(const struct ct_buckling *s);
+CT_API double ct_buckling_factor(const struct ct_buckling *s, size_t i);
+/** The table; FILE.json: an object of columns, else CSV; NULL or "-": standard output. Errors: E002. */
+CT_API bool ct_buckling_write(struct ct_ctx *ctx, struct ct_buckling *s, const char *path);
+/** The lowest frequencies (count of them; 3) at 21 factors from 0 to the first one; negative where a motion grows
+ *  without oscillating. Files as above. */
+CT_API bool ct_buckling_write_curve(struct ct_ctx *ctx, struct ct_buckling *s, const char *path,
+                                    long count);
+/** How the factors were found, for people. */
+CT_API void ct_buckling_print_summary(const struct ct_buckling *s, FILE *out);
+
 /* ---- what there is ------------------------------------------------------------------------------- */
 
 /** Component types with their terminal equations and keys. */

@@ -310,6 +310,15 @@ bool ct_equilibrium_find(struct ct_linear *l, const bool *held,
     return true;
 }
 
+// Nothing but rounding is left. Where the stiffness vanishes, steps would follow it off the path.
+static bool is_balanced(const struct search *s)
+{
+    for (int k = 0; k < s->n; k++)
+        if (fabs(s->p[k]) > 8 * DBL_EPSILON * s->scale[k])
+            return false;
+    return true;
+}
+
 bool ct_equilibrium_follow(struct ct_linear *l, struct ct_equilibrium_result *out)
 {
     enum { MOST = 25 };
@@ -323,6 +332,8 @@ bool ct_equilibrium_follow(struct ct_linear *l, struct ct_equilibrium_result *ou
         const int f = l->nfree;
         find_directions(&s);
         find_forces(&s);
+        if (is_balanced(&s))
+            break;
         memcpy(s.A, l->Kr, (size_t)f * (size_t)f * sizeof *s.A);
         for (int i = 0; i < f; i++)
             s.g[i] = -l->force[i];

@@ -9,7 +9,7 @@
 
 const struct cli_command *const cli_commands[]
     = {&cli_simulate, &cli_equations,  &cli_graph,   &cli_accuracy, &cli_check,
-       &cli_equilibrium, &cli_modes, &cli_linearize, &cli_kinematics, &cli_inverse, &cli_export,   &cli_components, &cli_methods, &cli_schema,   NULL};
+       &cli_equilibrium, &cli_modes, &cli_linearize, &cli_buckling, &cli_kinematics, &cli_inverse, &cli_export,   &cli_components, &cli_methods, &cli_schema,   NULL};
 
 // ---- options --------------------------------------------------------------------------------------------
 
@@ -53,6 +53,10 @@ static const struct option {
      "initial, equilibrium, or a time in seconds"},
     {"inputs", 0, "NAMES", TEXT, FIELD(inputs), CLI_LINEARIZE, false,
      "J.effort, F.force.x, T.torque.z, parameters; a list"},
+    {"load", 0, "NAME", TEXT, FIELD(load), CLI_BUCKLING, false,
+     "a force, a torque, a joint with an effort, or gravity"},
+    {"curve", 0, "FILE.csv", TEXT, FIELD(curve), CLI_BUCKLING, false,
+     "the lowest frequencies against the load factor"},
     {"count", 0, "N", COUNT_OF, FIELD(count), CLI_MODES | CLI_BUCKLING, false,
      "number of rows, the lowest ones; 10"},
     {"hold-drivers", 0, NULL, FLAG, FIELD(hold_drivers), CLI_STATIC, false,

@@ -488,7 +488,7 @@ static bool check_driven(struct ct_run *r)
                               : u->body >= 0 ? r->model->body[u->body].instance.mark
                                              : (struct ct_mark){.file = r->model->file};
     return ct_error(r->ctx, mark, CT_E_NOT_DRIVEN,
-                    "%d of the freedoms have no driver, such as '%s': give each a 'motion'",
+                    "not all freedoms are driven: %d left, such as '%s'; give each a 'motion'",
                     (int)r->m->nu - r->s->rank, u->q >= 0 ? r->e->q[u->q].name : u->name);
 }
 
