@@ -148,7 +148,8 @@ static double signed_frequency(const struct ct_motion_mode *m)
 }
 
 // One row of the lowest frequencies at the present factor; empty fields where there are fewer.
-static bool add_level(struct ct_ctx *ctx, struct ct_buckling *s, struct ct_columns *t, long count)
+static bool add_level(struct ct_ctx *ctx, struct ct_buckling *s, struct ct_columns *t,
+                      long count)
 {
     struct ct_linear *l = s->at.l;
     struct ct_motion_mode *mode;
@@ -209,7 +210,9 @@ void ct_buckling_print_summary(const struct ct_buckling *s, FILE *out)
     else if (exact == list->n)
         fputs("factors       refined on the path of equilibria\n", out);
     else
-        fprintf(out, "factors       the first %zu refined on the path of equilibria, then linear estimates\n",
+        fprintf(out,
+                "factors       the first %zu refined on the path of equilibria, then linear "
+                "estimates\n",
                 exact);
     const struct ct_buckling_factor *f = &list->factor[0];
     fprintf(out, "first         %.9g", f->factor);

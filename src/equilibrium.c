@@ -12,10 +12,10 @@ struct ct_equilibrium {
     struct ct_ctx own;
     struct ct_system *system;
     struct ct_configuration at;
-    double *value;        // of the outputs
-    double stiffness;     // least eigenvalue of the stiffness against the masses [1/s^2]
-    double growth;        // largest real part of an eigenvalue [1/s]
-    const char *softest;  // coordinate that moves most in the least stiff direction
+    double *value;       // of the outputs
+    double stiffness;    // least eigenvalue of the stiffness against the masses [1/s^2]
+    double growth;       // largest real part of an eigenvalue [1/s]
+    const char *softest; // coordinate that moves most in the least stiff direction
 };
 
 // ---- finding it ---------------------------------------------------------------------------------------
@@ -152,10 +152,10 @@ void ct_equilibrium_print_summary(const struct ct_equilibrium *q, FILE *out)
         return;
     }
     fprintf(out, "stability     %s",
-            q->growth > 0          ? "unstable"
-            : q->stiffness > 0     ? "stable"
-            : q->stiffness < 0     ? "held by gyroscopic forces alone"
-                                   : "neutral");
+            q->growth > 0      ? "unstable"
+            : q->stiffness > 0 ? "stable"
+            : q->stiffness < 0 ? "held by gyroscopic forces alone"
+                               : "neutral");
     if (isfinite(q->stiffness))
         fprintf(out, ": least stiffness against mass %.9g 1/s^2, '%s' moves most", q->stiffness,
                 q->softest);

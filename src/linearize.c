@@ -22,9 +22,9 @@ struct ct_linearization {
     struct ct_equations equations;
     size_t nstate, ninput, noutput;
     const char **state, **input, **output;
-    size_t *parameter;          // of each input
-    double *A, *B, *C, *D;      // column-major
-    double *x0, *y0, *rate0;    // states, outputs, and rates of the states there
+    size_t *parameter;       // of each input
+    double *A, *B, *C, *D;   // column-major
+    double *x0, *y0, *rate0; // states, outputs, and rates of the states there
 };
 
 static double *matrix(struct ct_linearization *s, size_t n, size_t m)
@@ -91,9 +91,9 @@ static struct slopes evaluate_slopes(struct ct_linearization *s, const ct_ex *f,
     double *const level[] = {out.q, out.u, out.a};
     for (size_t i = 0; i < nslope; i++) {
         const size_t d = slope[i].direction, last = 3 * nu + e->nrow;
-        double *at = d >= last     ? out.p + n * (d - last)
+        double *at = d >= last   ? out.p + n * (d - last)
                    : d >= 3 * nu ? out.lam + n * (d - 3 * nu)
-                                   : level[d / nu] + n * (d % nu);
+                                 : level[d / nu] + n * (d % nu);
         at[slope[i].row] = program.out[i];
     }
     return out;
@@ -201,7 +201,8 @@ static void name_states(struct ct_linearization *s, const struct ct_state_space 
     s->rate0 = matrix(s, (size_t)x->n, 1);
     for (int i = 0; i < x->nplace; i++) {
         const int k = x->place[i] < 0 ? -1 : l->independent[x->place[i]];
-        s->state[i] = k < 0 ? ct_arena_printf(a, "place%d", i + 1) : ct_linear_coordinate(e, a, k);
+        s->state[i]
+            = k < 0 ? ct_arena_printf(a, "place%d", i + 1) : ct_linear_coordinate(e, a, k);
         s->x0[i] = k >= 0 && e->u[k].q >= 0 ? l->y[e->u[k].q] : 0;
         s->rate0[i] = k >= 0 ? l->y[e->nq + (size_t)k] : 0;
     }
@@ -331,9 +332,9 @@ const double *ct_linearization_matrix(const struct ct_linearization *s, char nam
         char name;
         const double *value;
         size_t rows, columns;
-    } all[] = {{'A', s->A, s->nstate, s->nstate},   {'B', s->B, s->nstate, s->ninput},
-               {'C', s->C, s->noutput, s->nstate},  {'D', s->D, s->noutput, s->ninput},
-               {'x', s->x0, s->nstate, 1},          {'y', s->y0, s->noutput, 1},
+    } all[] = {{'A', s->A, s->nstate, s->nstate},  {'B', s->B, s->nstate, s->ninput},
+               {'C', s->C, s->noutput, s->nstate}, {'D', s->D, s->noutput, s->ninput},
+               {'x', s->x0, s->nstate, 1},         {'y', s->y0, s->noutput, 1},
                {'r', s->rate0, s->nstate, 1}};
     for (size_t i = 0; i < COUNT(all); i++)
         if (all[i].name == name) {
@@ -347,7 +348,10 @@ const double *ct_linearization_matrix(const struct ct_linearization *s, char nam
 
 const char *ct_linearization_name(const struct ct_linearization *s, char what, size_t i)
 {
-    const size_t n = what == 'x' ? s->nstate : what == 'u' ? s->ninput : what == 'y' ? s->noutput : 0;
+    const size_t n = what == 'x' ? s->nstate
+                   : what == 'u' ? s->ninput
+                   : what == 'y' ? s->noutput
+                                 : 0;
     const char **const list = what == 'x' ? s->state : what == 'u' ? s->input : s->output;
     return i < n ? list[i] : NULL;
 }
@@ -375,7 +379,8 @@ static bool write_csv(const struct output *o)
         const bool is_state = i < s->nstate;
         const size_t r = is_state ? i : i - s->nstate, n = is_state ? s->nstate : s->noutput;
         const double *left = is_state ? s->A : s->C, *right = is_state ? s->B : s->D;
-        ct_columns_text(&t, 0, is_state ? ct_arena_printf(a, "d/dt %s", s->state[r]) : s->output[r]);
+        ct_columns_text(&t, 0,
+                        is_state ? ct_arena_printf(a, "d/dt %s", s->state[r]) : s->output[r]);
         for (size_t j = 0; j < s->nstate; j++)
             ct_columns_number(&t, 1 + j, left[r + n * j]);
         for (size_t j = 0; j < s->ninput; j++)
@@ -392,8 +397,8 @@ static void write_names(struct ct_json *j, const char *key, const char *const *n
     ct_json_end(j);
 }
 
-static void write_matrix(struct ct_json *j, struct ct_arena *a, const char *key, const double *A,
-                         size_t n, size_t m)
+static void write_matrix(struct ct_json *j, struct ct_arena *a, const char *key,
+                         const double *A, size_t n, size_t m)
 {
     double *row = CT_NEWN(a, double, m + 1);
     ct_json_array(j, key);
@@ -454,9 +459,9 @@ static bool write_all(void *task)
 {
     const struct output *o = task;
     const char *path = o->path ? o->path : "-";
-    return ct_has_suffix(path, ".npz")    ? write_npz(o)
+    return ct_has_suffix(path, ".npz")  ? write_npz(o)
          : ct_has_suffix(path, ".json") ? write_json(o)
-                                          : write_csv(o);
+                                        : write_csv(o);
 }
 
 bool ct_linearization_write(struct ct_ctx *ctx, const struct ct_linearization *s,

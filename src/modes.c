@@ -230,9 +230,9 @@ static void add_bones(struct skeleton *k, const struct ct_build *b)
         const enum ct_edge_kind kind = b->edge[i].kind;
         const struct ct_bone bone = {.from = b->wiring[i].tail,
                                      .to = b->wiring[i].head,
-                                     .kind = kind == CT_EDGE_ARM     ? CT_BONE_BODY
+                                     .kind = kind == CT_EDGE_ARM   ? CT_BONE_BODY
                                            : kind == CT_EDGE_FORCE ? CT_BONE_FORCE
-                                                                     : CT_BONE_JOINT};
+                                                                   : CT_BONE_JOINT};
         const bool hangs = kind == CT_EDGE_FORCE && bone.from == 0; // a load, not a spring
         if (kind != CT_EDGE_BODY && !hangs)
             CT_PUSH(k->s->own.model, k->bone, k->nbone, k->bone_cap, bone);
@@ -294,7 +294,8 @@ static bool draw(struct ct_ctx *ctx, struct ct_modes *s, const char *path)
     const double visible = 0.15, small = 1e-4, largest_turn = 0.5;
     struct skeleton k;
     skeleton_create(&k, s);
-    const size_t npanel = s->n < MOST_PANELS ? s->n : MOST_PANELS, ny = s->at.l->m->nq + s->at.l->m->nu + 1;
+    const size_t npanel = s->n < MOST_PANELS ? s->n : MOST_PANELS,
+                 ny = s->at.l->m->nq + s->at.l->m->nu + 1;
     struct ct_shape_panel *panel = CT_NEWN(a, struct ct_shape_panel, npanel + 1);
     double *y0 = CT_NEWN(a, double, ny), *rest = CT_NEWN(a, double, 2 * k.n + 1);
     memcpy(y0, s->at.l->y, ny * sizeof *y0);
@@ -307,9 +308,10 @@ static bool draw(struct ct_ctx *ctx, struct ct_modes *s, const char *path)
         const double amount = moved > 0 ? fmin(visible * size / moved, largest_turn) : 0;
         points_of(&k, y0, s->mode[i].shape, amount, p);
         panel[i].point = p;
-        panel[i].title = m.damping != 0 ? ct_arena_printf(a, "%zu: %.4g Hz, damping %.3g", i + 1,
-                                                          m.frequency_hz, m.damping)
-                                        : ct_arena_printf(a, "%zu: %.4g Hz", i + 1, m.frequency_hz);
+        panel[i].title = m.damping != 0
+                           ? ct_arena_printf(a, "%zu: %.4g Hz, damping %.3g", i + 1,
+                                             m.frequency_hz, m.damping)
+                           : ct_arena_printf(a, "%zu: %.4g Hz", i + 1, m.frequency_hz);
     }
     memcpy(s->at.l->y, y0, ny * sizeof *y0);
     return ct_shapes_draw(ctx, path, s->system->model.name, panel, npanel, rest, k.n, k.bone,

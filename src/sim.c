@@ -303,7 +303,8 @@ static bool integrate(struct ct_sim *sim)
     struct ct_run_options *o = &sim->run_options;
     struct ct_progress progress = {0};
     if (sim->results->progress) {
-        ct_progress_init(&progress, sim->results->progress, sim->is_followed ? "follow" : "simulate");
+        ct_progress_init(&progress, sim->results->progress,
+                         sim->is_followed ? "follow" : "simulate");
         sim->progress = &progress;
     }
     if (sim->results->progress || sim->deadline > 0)

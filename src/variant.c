@@ -23,7 +23,8 @@ struct ct_model *ct_variant_create(struct ct_ctx *own, const struct ct_model *m,
     return v;
 }
 
-static ct_ex add_parameter(struct ct_ctx *own, struct ct_model *v, const char *name, double value)
+static ct_ex add_parameter(struct ct_ctx *own, struct ct_model *v, const char *name,
+                           double value)
 {
     struct ct_parameter *p = &v->parameter[v->nparameter];
     *p = (struct ct_parameter){.name = ct_arena_strdup(v->x->arena, name), .value = value};
@@ -78,7 +79,8 @@ static const char *owner_of(struct ct_arena *a, const char *name, const char *pr
 }
 
 // "J.effort" or "J.effort3": joint and place; -1 if it is none.
-static int find_effort(struct ct_ctx *own, const struct ct_model *m, const char *name, int *place)
+static int find_effort(struct ct_ctx *own, const struct ct_model *m, const char *name,
+                       int *place)
 {
     char *text = ct_arena_strdup(own->model, name);
     size_t n = strlen(text);
@@ -177,10 +179,11 @@ static bool no_input(struct ct_ctx *own, const struct ct_model *m, const char *n
     struct names l = list_inputs(own->model, m, true);
     for (size_t i = 0; i < m->nparameter; i++)
         push(&l, m->parameter[i].name);
-    return ct_error(own, (struct ct_mark){.file = m->file}, CT_E_INPUT,
-                    "there is no input '%s': an effort of a joint without a motion "
-                    "(J.effort), a component of a force or torque (F.force.x), or a parameter%s",
-                    name, ct_suggest(own->model, name, l.name, l.n));
+    return ct_error(
+        own, (struct ct_mark){.file = m->file}, CT_E_INPUT,
+        "there is no input '%s': an effort of a joint without a motion "
+        "(J.effort), a component of a force or torque (F.force.x), or a parameter%s",
+        name, ct_suggest(own->model, name, l.name, l.n));
 }
 
 static void add_to(struct ct_ctx *own, struct ct_model *v, struct ct_value *value, int place,

@@ -68,7 +68,7 @@ struct ct_system_options {
     enum ct_columns_more {
         CT_COLUMNS_OF_MODEL = 0,
         CT_COLUMNS_COORDINATES, /* if it lists none: coordinates, speeds and accelerations of all joints */
-        CT_COLUMNS_EFFORTS      /* efforts of motions, forces and torques of all joints */
+        CT_COLUMNS_EFFORTS /* efforts of motions, forces and torques of all joints */
     } columns;
 };
 
@@ -294,7 +294,7 @@ struct ct_linearization;
 
 /** Zero: the default. */
 struct ct_linearize_options {
-    const char *about;  /* as for modes */
+    const char *about; /* as for modes */
     /** Names separated by commas: "J.effort", "F.force.x", "T.torque.z" add to what the model says, others are its
      *  parameters. NULL: the efforts that the model gives and the components of its forces and torques. */
     const char *inputs;

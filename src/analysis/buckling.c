@@ -7,7 +7,7 @@
 #include <math.h>
 #include <string.h>
 
-static const double none = 1e-11;      // of the largest eigenvalue: a direction without stiffness
+static const double none = 1e-11; // of the largest eigenvalue: a direction without stiffness
 static const double symmetric = 1e-8;  // relative
 static const double refined = 1e-13;   // of a factor
 static const double small_load = 1e-2; // of the first factor: the second load level
@@ -17,10 +17,10 @@ struct search {
     struct ct_linear *l;
     struct ct_arena *a;
     size_t at, count;
-    int n;                           // directions that have a stiffness with some load
-    int f;                           // free speeds
-    int *independent;                // of factor 0
-    double *P;                       // f x n
+    int n;            // directions that have a stiffness with some load
+    int f;            // free speeds
+    int *independent; // of factor 0
+    double *P;        // f x n
     double *K0, *K1, *K, *work, *B, *value, *T;
     int *pivot;
     struct ct_buckling_factor *found;
@@ -166,9 +166,9 @@ static int ascending(const void *context, const void *a, const void *b)
 static int linear_factors(struct search *s, double *c)
 {
     const int n = s->n;
-    double *K0 = CT_NEWN(s->a, double, (size_t)n * (size_t)n + 1),
-           *K1 = CT_NEWN(s->a, double, (size_t)n * (size_t)n + 1),
-           *V = CT_NEWN(s->a, double, (size_t)n * (size_t)n + 1),
+    double *K0 = CT_NEWN(s->a, double, (size_t)n *(size_t)n + 1),
+           *K1 = CT_NEWN(s->a, double, (size_t)n *(size_t)n + 1),
+           *V = CT_NEWN(s->a, double, (size_t)n *(size_t)n + 1),
            *re = CT_NEWN(s->a, double, n + 1), *im = CT_NEWN(s->a, double, n + 1),
            *work = CT_NEWN(s->a, double, ct_eigen_work(n));
     int found = 0;
@@ -243,8 +243,8 @@ static bool eigenvalue_at(struct search *s, const struct place *from, double fac
 
 // The factor in (a, b) where eigenvalue k falls through zero: the Illinois method, and bisection where the path ends
 // before b. va > 0 at a; vb <= 0 at b, or b cannot be reached.
-static void refine(struct search *s, struct place *a, double va, double b, double vb, bool reached,
-                   int k, struct ct_buckling_factor *out)
+static void refine(struct search *s, struct place *a, double va, double b, double vb,
+                   bool reached, int k, struct ct_buckling_factor *out)
 {
     double low = a->factor;
     for (int i = 0; i < MOST_REFINE && b - low > refined * b; i++) {
@@ -332,7 +332,7 @@ static struct search search_create(struct ct_linear *l, size_t at, size_t count)
     const size_t f = (size_t)s.f + 1;
     double **const squares[] = {&s.P, &s.K0, &s.K1, &s.K, &s.B, &s.T};
     for (size_t i = 0; i < COUNT(squares); i++)
-        *squares[i] = CT_NEWN(s.a, double, f * f);
+        *squares[i] = CT_NEWN(s.a, double, f *f);
     s.value = CT_NEWN(s.a, double, f);
     s.work = CT_NEWN(s.a, double, ct_symmetric_eigenvalues_work((int)f));
     s.pivot = CT_NEWN(s.a, int, f);
@@ -346,9 +346,10 @@ static bool no_buckling(const struct search *s)
     return ct_error(s->l->ctx, (struct ct_mark){.file = s->l->m->model->file}, CT_E_NO_BUCKLING,
                     "the load does not lead to buckling: no positive factor makes the "
                     "stiffness vanish%s",
-                    is_symmetric(s->K1, s->f) ? ""
-                                              : "; it has no potential and may lead to flutter: "
-                                                "see the modes of the loaded model");
+                    is_symmetric(s->K1, s->f)
+                        ? ""
+                        : "; it has no potential and may lead to flutter: "
+                          "see the modes of the loaded model");
 }
 
 bool ct_buckling_find(struct ct_linear *l, size_t at, size_t count,

@@ -17,7 +17,8 @@
 static const double massless = 1e-12;
 // An entry is zero if it is this small against the largest: what sums of n roundings leave.
 static const double rounding = 16 * DBL_EPSILON;
-static const double symmetric = 1e-9; // relative: derivatives of potentials are symmetric to rounding
+static const double symmetric
+    = 1e-9; // relative: derivatives of potentials are symmetric to rounding
 
 static double largest(const double *v, size_t n)
 {
@@ -28,7 +29,8 @@ static double largest(const double *v, size_t n)
 }
 
 // out (k x k) = V' A V, V (n x k)
-static void congruence(double *out, const double *V, const double *A, double *work, int n, int k)
+static void congruence(double *out, const double *V, const double *A, double *work, int n,
+                       int k)
 {
     ct_matrix_multiply(work, A, V, n, n, k);
     ct_matrix_multiply_transposed(out, V, work, k, n, k);
@@ -56,7 +58,7 @@ static void symmetrise(double *A, int n)
 struct basis {
     int n, k, n0;
     double *V, *w2, *N;
-    double *S; // n0 x k: along N what massless coordinates do while V moves
+    double *S;    // n0 x k: along N what massless coordinates do while V moves
     bool is_held; // they have places to follow to
 };
 

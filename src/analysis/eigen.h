@@ -6,9 +6,9 @@
 
 /// A motion dq(t) = Re(shape exp(s t)), s = re + i im, im >= 0: a pair of eigenvalues or a real one.
 struct ct_motion_mode {
-    double re, im;  // [1/s]
-    bool is_rigid;  // nothing resists: s = 0
-    double *shape;  // 2 nu: real parts, then imaginary parts; the largest entry is 1
+    double re, im; // [1/s]
+    bool is_rigid; // nothing resists: s = 0
+    double *shape; // 2 nu: real parts, then imaginary parts; the largest entry is 1
 };
 
 /// All modes of the reduced equations of l by |s|, of equal ones the growing one first. The list lives in a. How they

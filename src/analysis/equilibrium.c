@@ -7,23 +7,25 @@
 #include <math.h>
 #include <string.h>
 
-static const double longest_turn = 0.2; // [rad] in one step, against jumping to another equilibrium
+static const double longest_turn
+    = 0.2; // [rad] in one step, against jumping to another equilibrium
 static const double first_length = 0.2; // [m] at first; doubled after steps that went well
 static const double arrived = 1e-13;    // of a step against the coordinates: their rounding
-static const double nearly = 1e-8;      // from here on a step that is not shorter than half the last ends the search
-static const double flat = 1e-11;       // of the stiffest direction: no stiffness
-static const double balanced = 1e-9;    // of the forces that meet: a flat direction without force
+static const double nearly
+    = 1e-8; // from here on a step that is not shorter than half the last ends the search
+static const double flat = 1e-11;    // of the stiffest direction: no stiffness
+static const double balanced = 1e-9; // of the forces that meet: a flat direction without force
 enum { MOST_STEPS = 1000, MOST_HALVINGS = 40 };
 
 struct search {
     struct ct_linear *l;
     const bool *held;
-    bool *turns;            // speeds that are angular
-    int n;                  // directions that may move
-    double *S;              // nfree x n: these directions
-    double *p, *scale;      // forces along them (n), and the sizes of what meets there
-    double *gross;          // the same of each row (nu)
-    double *H, *V, *value;  // stiffness; its directions against the masses and their values
+    bool *turns;           // speeds that are angular
+    int n;                 // directions that may move
+    double *S;             // nfree x n: these directions
+    double *p, *scale;     // forces along them (n), and the sizes of what meets there
+    double *gross;         // the same of each row (nu)
+    double *H, *V, *value; // stiffness; its directions against the masses and their values
     double *g, *dq, *work, *A, *B, *kept_y, *kept_memory;
     int *pivot;
     double length;  // limit of lengths now [m]
@@ -56,7 +58,7 @@ static struct search search_create(struct ct_linear *l, const bool *held)
     struct search s = {.l = l, .held = held, .length = first_length};
     double **const squares[] = {&s.S, &s.H, &s.V, &s.A, &s.B};
     for (size_t i = 0; i < COUNT(squares); i++)
-        *squares[i] = CT_NEWN(a, double, n * n);
+        *squares[i] = CT_NEWN(a, double, n *n);
     double **const vectors[] = {&s.p, &s.scale, &s.gross, &s.value, &s.g, &s.dq};
     for (size_t i = 0; i < COUNT(vectors); i++)
         *vectors[i] = CT_NEWN(a, double, n);
@@ -199,7 +201,7 @@ static void find_step(struct search *s, double *c)
             size += fabs(v[i]) * s->scale[i];
         }
         const bool is_flat = fabs(s->value[k]) <= flat * stiffest;
-        const double along = !is_flat                    ? -g / fabs(s->value[k])
+        const double along = !is_flat                   ? -g / fabs(s->value[k])
                            : fabs(g) <= balanced * size ? 0
                                                         : copysign(far, -g);
         for (int i = 0; i < n; i++)
@@ -237,7 +239,8 @@ static bool go(struct search *s)
     const size_t nu = (size_t)l->nu;
     for (size_t k = 0; k < nu; k++)
         s->dq[k] *= part;
-    const bool is_fine = s->is_newton && largest(s->dq, nu) < nearly; // slopes are rounding here
+    const bool is_fine
+        = s->is_newton && largest(s->dq, nu) < nearly; // slopes are rounding here
     keep(s, false);
     for (int i = 0; i < MOST_HALVINGS; i++) {
         ct_machine_retract(l->m, l->y, s->dq);
@@ -269,8 +272,8 @@ static bool not_found(const struct search *s)
             most = k;
     const struct ct_u *u = &l->m->e->u[most];
     const struct ct_mark mark = u->joint >= 0 ? l->m->model->joint[u->joint].mark
-                              : u->body >= 0 ? l->m->model->body[u->body].instance.mark
-                                             : (struct ct_mark){.file = l->m->model->file};
+                              : u->body >= 0  ? l->m->model->body[u->body].instance.mark
+                                              : (struct ct_mark){.file = l->m->model->file};
     return ct_error(l->ctx, mark, CT_E_EQUILIBRIUM,
                     "no equilibrium is found: '%s' goes on to move; hold it by a stiffness, or "
                     "start nearer to an equilibrium",

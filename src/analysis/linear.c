@@ -8,7 +8,8 @@
 
 // A row counts as dependent when what is left of it is this small against the largest, as in embed.c.
 static const double rank_tolerance = 1e-9;
-static const double closed = 1e-13; // rows of positions: a few roundings of coordinates of order one
+static const double closed
+    = 1e-13; // rows of positions: a few roundings of coordinates of order one
 enum { MOST_NEWTON = 30 };
 
 static size_t larger(size_t a, size_t b)
@@ -28,12 +29,13 @@ struct ct_linear *ct_linear_create(struct ct_ctx *ctx, struct ct_arena *arena,
     double **const vector[] = {&l->a, &l->a0, &l->force, &l->scale, &l->r};
     for (size_t i = 0; i < COUNT(vector); i++)
         *vector[i] = CT_NEWN(arena, double, n);
-    double **const square[] = {&l->M, &l->C, &l->K, &l->Z, &l->X, &l->X2, &l->G, &l->Mr, &l->Cr, &l->Kr};
+    double **const square[]
+        = {&l->M, &l->C, &l->K, &l->Z, &l->X, &l->X2, &l->G, &l->Mr, &l->Cr, &l->Kr};
     for (size_t i = 0; i < COUNT(square); i++)
-        *square[i] = CT_NEWN(arena, double, n * n);
+        *square[i] = CT_NEWN(arena, double, n *n);
     double **const rows[] = {&l->J, &l->D, &l->D2};
     for (size_t i = 0; i < COUNT(rows); i++)
-        *rows[i] = CT_NEWN(arena, double, n * r);
+        *rows[i] = CT_NEWN(arena, double, n *r);
     l->lam = CT_NEWN(arena, double, r);
     l->row = CT_NEWN(arena, int, r);
     l->dependent = CT_NEWN(arena, int, k);
@@ -46,7 +48,8 @@ struct ct_linear *ct_linear_create(struct ct_ctx *ctx, struct ct_arena *arena,
     l->pivot = CT_NEWN(arena, int, k);
     l->column = CT_NEWN(arena, int, k);
     const int kk = (int)k;
-    l->work = CT_NEWN(arena, double, larger(ct_lstsq_work(kk, kk), ct_qr_pivot_work(kk, kk)) + k);
+    l->work
+        = CT_NEWN(arena, double, larger(ct_lstsq_work(kk, kk), ct_qr_pivot_work(kk, kk)) + k);
     return l;
 }
 
@@ -371,7 +374,8 @@ static bool begin(struct ct_linear *l)
 
 static bool finish(struct ct_linear *l)
 {
-    residual(l, l->r, l->a, l->lam); // lam is zero: what multipliers must bear, and what is left
+    residual(l, l->r, l->a,
+             l->lam); // lam is zero: what multipliers must bear, and what is left
     multipliers(l, l->r);
     ct_linear_project(l, l->force, l->r);
     l->acceleration = largest(l->a, (size_t)l->nu);

@@ -18,20 +18,20 @@ struct ct_linear {
     struct ct_ctx *ctx;
     struct ct_arena *arena;
     int nu, nrow, rank, nfree;
-    double t, *y;     // the state: q, u, work
-    double *a, *lam;  // u' and multipliers there
-    double *a0;       // the part of u' that the drivers ask for: J a0 + gam = 0
-    double *force;    // unbalanced, along the independent speeds (nfree)
-    double *scale;    // of the forces that meet in each row of r (nu)
+    double t, *y;        // the state: q, u, work
+    double *a, *lam;     // u' and multipliers there
+    double *a0;          // the part of u' that the drivers ask for: J a0 + gam = 0
+    double *force;       // unbalanced, along the independent speeds (nfree)
+    double *scale;       // of the forces that meet in each row of r (nu)
     double acceleration; // largest |u'|
 
-    double *M, *C, *K;             // nu x nu
-    double *J, *D, *D2;            // nrow x nu: of the speeds, of the accelerations
-    int *row;                      // rank kept rows, then the others
-    int *dependent, *independent;  // speeds: rank, nfree
-    double *Z, *X, *X2;            // nu x nfree
-    double *G, *Mr, *Cr, *Kr;      // nfree x nfree
-    bool is_moving;                // X, X2 or G is not zero
+    double *M, *C, *K;            // nu x nu
+    double *J, *D, *D2;           // nrow x nu: of the speeds, of the accelerations
+    int *row;                     // rank kept rows, then the others
+    int *dependent, *independent; // speeds: rank, nfree
+    double *Z, *X, *X2;           // nu x nfree
+    double *G, *Mr, *Cr, *Kr;     // nfree x nfree
+    bool is_moving;               // X, X2 or G is not zero
 
     // workspace
     double *r, *A, *b, *d, *work, *Jd;

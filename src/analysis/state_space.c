@@ -10,7 +10,8 @@
 #include <math.h>
 #include <string.h>
 
-static const double massless = 1e-12; // of the largest eigenvalue, in coordinates of unit mass each
+static const double massless
+    = 1e-12; // of the largest eigenvalue, in coordinates of unit mass each
 static const double uncoupled = 1e-9; // a damping that small against the largest is not there
 
 static double largest(const double *v, size_t n)
@@ -23,7 +24,7 @@ static double largest(const double *v, size_t n)
 
 static double *matrix(struct ct_arena *a, int n, int m)
 {
-    return CT_NEWN(a, double, (size_t)n * (size_t)m + 1);
+    return CT_NEWN(a, double, (size_t)n *(size_t)m + 1);
 }
 
 struct split {
@@ -52,7 +53,8 @@ static void find_massless(struct split *s)
     }
     for (int j = 0; j < f; j++)
         for (int i = 0; i < f; i++)
-            M[i + f * j] = (s->l->Mr[i + f * j] + s->l->Mr[j + f * i]) / 2 * scale[i] * scale[j];
+            M[i + f * j]
+                = (s->l->Mr[i + f * j] + s->l->Mr[j + f * i]) / 2 * scale[i] * scale[j];
     ct_symmetric_eigen(value, M, f, f, work);
     while (s->n0 < f && !(value[s->n0] > massless * value[f - 1]))
         s->n0++;
@@ -67,8 +69,8 @@ static void find_massless(struct split *s)
 static void choose_light(struct split *s)
 {
     const int f = s->f, n0 = s->n0;
-    double *A = matrix(s->a, n0, f), *tau = CT_NEWN(s->a, double, f + 1), *P = matrix(s->a, n0, n0),
-           *work = CT_NEWN(s->a, double, ct_qr_pivot_work(n0, f));
+    double *A = matrix(s->a, n0, f), *tau = CT_NEWN(s->a, double, f + 1),
+           *P = matrix(s->a, n0, n0), *work = CT_NEWN(s->a, double, ct_qr_pivot_work(n0, f));
     int *column = CT_NEWN(s->a, int, f + 1), *pivot = CT_NEWN(s->a, int, n0 + 1);
     bool *taken = CT_NEWN(s->a, bool, f + 1);
     s->heavy = CT_NEWN(s->a, int, f + 1);
@@ -103,8 +105,8 @@ static void choose_light(struct split *s)
 static void split_by_damping(struct split *s)
 {
     const int f = s->f, n0 = s->n0;
-    double *CN = matrix(s->a, f, n0), *Cnn = matrix(s->a, n0, n0), *turned = matrix(s->a, f, n0),
-           *value = CT_NEWN(s->a, double, n0 + 1),
+    double *CN = matrix(s->a, f, n0), *Cnn = matrix(s->a, n0, n0),
+           *turned = matrix(s->a, f, n0), *value = CT_NEWN(s->a, double, n0 + 1),
            *work = CT_NEWN(s->a, double, ct_symmetric_eigenvalues_work(n0));
     ct_matrix_multiply(CN, s->l->Cr, s->N, f, f, n0);
     ct_matrix_multiply_transposed(Cnn, s->N, CN, n0, f, n0);
@@ -119,7 +121,8 @@ static void split_by_damping(struct split *s)
     ct_matrix_multiply(turned, s->N, Cnn, f, n0, n0);
     int first = 0, last = s->n1;
     for (int j = 0; j < n0; j++)
-        memcpy(s->N + (size_t)f * (size_t)(fabs(value[j]) > uncoupled * size ? first++ : last++),
+        memcpy(s->N
+                   + (size_t)f * (size_t)(fabs(value[j]) > uncoupled * size ? first++ : last++),
                turned + (size_t)f * (size_t)j, (size_t)f * sizeof *turned);
     s->is_mixed = true;
 }
@@ -129,9 +132,9 @@ static bool not_held(struct split *s)
     const struct ct_equations *e = s->l->m->e;
     const struct ct_u *u = &e->u[s->l->independent[s->light[0]]];
     const struct ct_model *model = s->l->m->model;
-    const struct ct_mark mark = u->joint >= 0  ? model->joint[u->joint].mark
-                              : u->body >= 0 ? model->body[u->body].instance.mark
-                                             : (struct ct_mark){.file = model->file};
+    const struct ct_mark mark = u->joint >= 0 ? model->joint[u->joint].mark
+                              : u->body >= 0  ? model->body[u->body].instance.mark
+                                              : (struct ct_mark){.file = model->file};
     return ct_error(s->ctx, mark, CT_E_MASSLESS,
                     "coordinate '%s' moves no mass, and nothing holds it: give a mass, or a "
                     "stiffness to follow",
@@ -141,9 +144,9 @@ static bool not_held(struct split *s)
 // ---- the equations in z -----------------------------------------------------------------------------------------
 
 struct reduced {
-    int m;                  // k + n1
-    double *That, *y_g;     // y = That z + y_g g
-    double *M, *C, *K, *g;  // m x m; g (m x f): what is left of forces
+    int m;                 // k + n1
+    double *That, *y_g;    // y = That z + y_g g
+    double *M, *C, *K, *g; // m x m; g (m x f): what is left of forces
 };
 
 // y2 = -K22^-1 (N2' K T z - N2' g)
@@ -238,8 +241,9 @@ static bool rates(struct split *s, const struct reduced *r, struct ct_state_spac
 {
     const int f = s->f, k = s->k, n1 = s->n1, m = r->m, n = out->n;
     double *slow = matrix(s->a, n1, n), *slow_g = matrix(s->a, n1, f), // y_1'
-        *fast = matrix(s->a, k, n), *fast_g = matrix(s->a, k, f),      // w_p'
-        *turn = matrix(s->a, k, n), *GT = matrix(s->a, f, m), *none = matrix(s->a, k, f);
+                                            *fast = matrix(s->a, k, n),
+           *fast_g = matrix(s->a, k, f), // w_p'
+               *turn = matrix(s->a, k, n), *GT = matrix(s->a, f, m), *none = matrix(s->a, k, f);
     for (int i = 0; i < n1; i++) {
         for (int j = 0; j < m; j++)
             slow[i + n1 * j] = -r->K[k + i + m * j];
@@ -316,11 +320,10 @@ static void measures(struct split *s, const struct reduced *r, struct ct_state_s
 
 static void name_states(struct split *s, struct ct_state_space *out)
 {
-    int *place = CT_NEWN(s->a, int, out->nplace + 1), *speed = CT_NEWN(s->a, int, out->nspeed + 1);
+    int *place = CT_NEWN(s->a, int, out->nplace + 1),
+        *speed = CT_NEWN(s->a, int, out->nspeed + 1);
     for (int i = 0; i < out->nplace; i++)
-        place[i] = s->is_mixed    ? -1
-                 : i < s->k       ? s->heavy[i]
-                                  : s->light[i - s->k];
+        place[i] = s->is_mixed ? -1 : i < s->k ? s->heavy[i] : s->light[i - s->k];
     for (int i = 0; i < out->nspeed; i++)
         speed[i] = s->is_mixed ? -1 : s->heavy[i];
     out->place = place;

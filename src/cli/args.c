@@ -8,8 +8,10 @@
 #include <string.h>
 
 const struct cli_command *const cli_commands[]
-    = {&cli_simulate, &cli_equations,  &cli_graph,   &cli_accuracy, &cli_check,
-       &cli_equilibrium, &cli_modes, &cli_linearize, &cli_buckling, &cli_kinematics, &cli_inverse, &cli_export,   &cli_components, &cli_methods, &cli_schema,   NULL};
+    = {&cli_simulate,   &cli_equations,   &cli_graph,   &cli_accuracy,
+       &cli_check,      &cli_equilibrium, &cli_modes,   &cli_linearize,
+       &cli_buckling,   &cli_kinematics,  &cli_inverse, &cli_export,
+       &cli_components, &cli_methods,     &cli_schema,  NULL};
 
 // ---- options --------------------------------------------------------------------------------------------
 
@@ -47,8 +49,8 @@ static const struct option {
      "number of samples, both ends included"},
     {"backend", 0, "CHOICE", TEXT, FIELD(backend), CLI_RUNS, true,
      "what evaluates the equations: auto, native or tape"},
-    {"summary", 0, "FILE.json", TEXT, FIELD(summary), CLI_SIMULATE | CLI_CHECK | CLI_DRIVEN, true,
-     "what the run did, for programs"},
+    {"summary", 0, "FILE.json", TEXT, FIELD(summary), CLI_SIMULATE | CLI_CHECK | CLI_DRIVEN,
+     true, "what the run did, for programs"},
     {"about", 0, "WHERE", TEXT, FIELD(about), CLI_ABOUT, false,
      "initial, equilibrium, or a time in seconds"},
     {"inputs", 0, "NAMES", TEXT, FIELD(inputs), CLI_LINEARIZE, false,
@@ -67,8 +69,7 @@ static const struct option {
      "what to compare with, as simulate writes it"},
     {"plot", 0, "FILE.svg", TEXT, FIELD(plot), CLI_ACCURACY, false,
      "error against seconds, a line for each method"},
-    {"plot", 0, "FILE.svg", TEXT, FIELD(plot), CLI_MODES, false,
-     "shapes of the first modes"},
+    {"plot", 0, "FILE.svg", TEXT, FIELD(plot), CLI_MODES, false, "shapes of the first modes"},
     {"show", 0, "STAGES", TEXT, FIELD(show), CLI_EQUATIONS, false,
      "terminal,graph,tree,cutset,circuit,reduced;\n"
      "standard is tree,reduced"},

@@ -14,8 +14,9 @@ static bool report(struct ct_ctx *ctx, struct ct_buckling *s, const struct cli_a
 static int run(struct ct_ctx *ctx, const struct cli_args *args)
 {
     if (!args->load)
-        return cli_complain(&cli_buckling, "--load is wanted: a force, a torque, a joint with an "
-                                           "effort, or gravity");
+        return cli_complain(&cli_buckling,
+                            "--load is wanted: a force, a torque, a joint with an "
+                            "effort, or gravity");
     struct ct_system *sys = cli_load(ctx, args);
     const struct ct_buckling_options options
         = {.load = args->load, .count = args->count, .hold_drivers = args->hold_drivers};
@@ -31,10 +32,10 @@ const struct cli_command cli_buckling = {
     .summary = "factors by which a load must grow until the system buckles",
     .use = CLI_BUCKLING,
     .takes_model = true,
-    .more
-    = "\n"
-      "Prints mode and load factor, the lowest first; all other loads stay as they are. --curve\n"
-      "follows the lowest frequencies from no load to the first factor.\n",
+    .more = "\n"
+            "Prints mode and load factor, the lowest first; all other loads stay as they are. "
+            "--curve\n"
+            "follows the lowest frequencies from no load to the first factor.\n",
     .examples = {"cotree buckling column.yaml --load push",
                  "cotree buckling mast.yaml --load gravity --count 3 --curve frequencies.csv"},
     .run = run,

@@ -17,7 +17,8 @@ enum { CLI_DONE = 0, CLI_FAILED = 1, CLI_USAGE = 2 };
 /// What the command line says; zero where it says nothing.
 struct cli_args {
     const char *model;
-    const char *output, *summary, *format, *show, *tree, *method, *backend, *reference, *plot, *about, *inputs, *load, *curve;
+    const char *output, *summary, *format, *show, *tree, *method, *backend, *reference, *plot,
+        *about, *inputs, *load, *curve;
     const char **set;
     size_t nset;
     double tolerance, step, until, error;
@@ -48,8 +49,7 @@ enum cli_use {
     CLI_STATIC = CLI_ABOUT | CLI_EQUILIBRIUM | CLI_BUCKLING,
     CLI_RUNS = CLI_SIMULATE | CLI_ACCURACY,
     CLI_TIMES = CLI_RUNS | CLI_DRIVEN,
-    CLI_MODELS = CLI_TIMES | CLI_STATIC | CLI_EQUATIONS | CLI_GRAPH | CLI_CHECK
-               | CLI_EXPORT
+    CLI_MODELS = CLI_TIMES | CLI_STATIC | CLI_EQUATIONS | CLI_GRAPH | CLI_CHECK | CLI_EXPORT
 };
 
 struct cli_command {
@@ -62,7 +62,8 @@ struct cli_command {
 };
 
 extern const struct cli_command cli_simulate, cli_equations, cli_graph, cli_accuracy, cli_check,
-    cli_equilibrium, cli_modes, cli_linearize, cli_kinematics, cli_inverse, cli_buckling, cli_export, cli_components, cli_methods, cli_schema;
+    cli_equilibrium, cli_modes, cli_linearize, cli_kinematics, cli_inverse, cli_buckling,
+    cli_export, cli_components, cli_methods, cli_schema;
 /// All commands in the order of --help; NULL at the end.
 extern const struct cli_command *const cli_commands[];
 

@@ -48,7 +48,8 @@ const struct cli_command cli_kinematics = {
       "Writes the outputs at the samples; nothing is integrated, so each sample is as good as\n"
       "the last. Each freedom needs a motion. A model without outputs gets the coordinates,\n"
       "speeds and accelerations of all joints. Results go where simulate puts them.\n",
-    .examples = {"cotree kinematics robot.yaml", "cotree kinematics robot.yaml --samples 11 -o -"},
+    .examples
+    = {"cotree kinematics robot.yaml", "cotree kinematics robot.yaml --samples 11 -o -"},
     .run = run_kinematics,
 };
 
@@ -62,6 +63,7 @@ const struct cli_command cli_inverse = {
       "As kinematics; behind the outputs come the efforts of all motions (J.effort) and the\n"
       "forces and torques of all joints. A model whose efforts are tables of that file, as in\n"
       "effort: {table: robot.csv, column: J.effort, interpolate: cubic}, moves the same way.\n",
-    .examples = {"cotree inverse robot.yaml", "cotree inverse robot.yaml --samples 11 -o robot.json"},
+    .examples
+    = {"cotree inverse robot.yaml", "cotree inverse robot.yaml --samples 11 -o robot.json"},
     .run = run_inverse,
 };

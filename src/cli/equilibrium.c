@@ -21,9 +21,11 @@ const struct cli_command cli_equilibrium = {
     .takes_model = true,
     .more
     = "\n"
-      "Prints one row of outputs. From the assembled start the forces are followed down to the\n"
+      "Prints one row of outputs. From the assembled start the forces are followed down to "
+      "the\n"
       "nearest equilibrium. Motions with a constant rate go on, so that a system on a turning\n"
       "shaft finds its place in the turning frame; other motions are held.\n",
-    .examples = {"cotree equilibrium governor.yaml", "cotree equilibrium governor.yaml -o rest.json"},
+    .examples
+    = {"cotree equilibrium governor.yaml", "cotree equilibrium governor.yaml -o rest.json"},
     .run = run,
 };

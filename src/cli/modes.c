@@ -30,10 +30,10 @@ const struct cli_command cli_modes = {
     .summary = "natural frequencies, damping and shapes about a configuration",
     .use = CLI_MODES,
     .takes_model = true,
-    .more
-    = "\n"
-      "Prints mode, frequency, |s| and damping of the eigenvalues s, the lowest first; growing\n"
-      "motions have a negative damping. FILE.json has the shapes, too.\n",
+    .more = "\n"
+            "Prints mode, frequency, |s| and damping of the eigenvalues s, the lowest first; "
+            "growing\n"
+            "motions have a negative damping. FILE.json has the shapes, too.\n",
     .examples = {"cotree modes suspension.yaml --about equilibrium",
                  "cotree modes suspension.yaml --count 3 --plot shapes.svg -o modes.json"},
     .run = run,

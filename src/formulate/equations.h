@@ -89,7 +89,7 @@ struct ct_residual {
 enum ct_more_outputs {
     CT_MORE_NONE,
     CT_MORE_COORDINATES, // if the model lists no outputs: coordinates, speeds, accelerations of all joints
-    CT_MORE_EFFORTS      // efforts of motions, forces and torques of all joints
+    CT_MORE_EFFORTS // efforts of motions, forces and torques of all joints
 };
 
 struct ct_left_out {

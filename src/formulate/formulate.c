@@ -463,7 +463,8 @@ bool ct_formulate(struct ct_ctx *ctx, struct ct_arena *a, const struct ct_model 
         ct_energies_derive(b);
     if (options->measure_all)
         measure_all(b);
-    else if (options->with_outputs && (!ct_outputs_derive(b) || !ct_outputs_add(b, options->more)))
+    else if (options->with_outputs
+             && (!ct_outputs_derive(b) || !ct_outputs_add(b, options->more)))
         return false;
     describe_graph(b);
     b->eqs->coordinate = b->coordinate;

@@ -581,7 +581,8 @@ static bool effort_columns(struct ct_build *b, size_t j)
     bool ok = true;
     for (int k = 0; edge >= 0 && joint->cls->motion && k < joint->nfree; k++)
         if (b->coordinate[b->edge[edge].first_coordinate + k].is_driven) {
-            const char *number = joint->nfree == 1 ? "" : ct_arena_printf(b->arena, "%d", k + 1);
+            const char *number
+                = joint->nfree == 1 ? "" : ct_arena_printf(b->arena, "%d", k + 1);
             ok &= new_columns(b, ct_arena_printf(b->arena, "%s.effort%s", joint->name, number),
                               joint->mark);
         }
@@ -596,7 +597,8 @@ static bool reaction_columns(struct ct_build *b, size_t j)
         return new_columns(b, ct_arena_printf(b->arena, "%s.effort", joint->name), joint->mark);
     return new_columns(b, ct_arena_printf(b->arena, "%s.force", joint->name), joint->mark)
         && (!b->edge[edge].has_rotation
-            || new_columns(b, ct_arena_printf(b->arena, "%s.torque", joint->name), joint->mark));
+            || new_columns(b, ct_arena_printf(b->arena, "%s.torque", joint->name),
+                           joint->mark));
 }
 
 bool ct_outputs_add(struct ct_build *b, enum ct_more_outputs more)

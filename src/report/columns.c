@@ -15,7 +15,7 @@ bool ct_has_suffix(const char *path, const char *suffix)
 }
 
 void ct_columns_init(struct ct_columns *t, struct ct_arena *a, const char *name,
-                   enum ct_column_kind kind)
+                     enum ct_column_kind kind)
 {
     *t = (struct ct_columns){.arena = a};
     ct_columns_add(t, name, kind);

@@ -20,7 +20,7 @@ struct ct_columns {
 
 /// A table with its first column, number 0.
 void ct_columns_init(struct ct_columns *t, struct ct_arena *a, const char *name,
-                   enum ct_column_kind kind);
+                     enum ct_column_kind kind);
 /// One more column; returns its number.
 size_t ct_columns_add(struct ct_columns *t, const char *name, enum ct_column_kind kind);
 /// Append to a column. Not finite: an empty field, null in JSON.

@@ -36,9 +36,8 @@ static void put_number(struct bytes *out, double v)
 static void put_header(struct bytes *out, const char *type, const char *shape)
 {
     enum { BEFORE = 10, ALIGN = 64 };
-    char *text = ct_arena_printf(out->arena,
-                                 "{'descr': '%s', 'fortran_order': True, 'shape': (%s), }", type,
-                                 shape);
+    char *text = ct_arena_printf(
+        out->arena, "{'descr': '%s', 'fortran_order': True, 'shape': (%s), }", type, shape);
     const size_t n = strlen(text), all = (BEFORE + n + 1 + ALIGN - 1) / ALIGN * ALIGN;
     put(out, 0x93, 1);
     put_text(out, "NUMPY");
@@ -55,7 +54,11 @@ static void put_header(struct bytes *out, const char *type, const char *shape)
 static uint32_t next_point(const unsigned char **s)
 {
     const unsigned char first = *(*s)++;
-    const int more = first < 0x80 ? 0 : first >= 0xf0 ? 3 : first >= 0xe0 ? 2 : first >= 0xc0 ? 1 : -1;
+    const int more = first < 0x80  ? 0
+                   : first >= 0xf0 ? 3
+                   : first >= 0xe0 ? 2
+                   : first >= 0xc0 ? 1
+                                   : -1;
     if (more < 0)
         return 0xfffd;
     uint32_t v = more ? first & (0x3fu >> more) : first;
@@ -96,10 +99,10 @@ static uint32_t crc_of(const unsigned char *b, size_t n)
 // the same content is the same file.
 static void put_entry(struct bytes *out, const struct ct_npz_entry *e)
 {
-    put(out, 20, 2);     // version needed: 2.0
-    put(out, 0, 2);      // flags
-    put(out, 0, 2);      // stored
-    put(out, 0, 2);      // time
+    put(out, 20, 2);         // version needed: 2.0
+    put(out, 0, 2);          // flags
+    put(out, 0, 2);          // stored
+    put(out, 0, 2);          // time
     put(out, 1 << 5 | 1, 2); // date
     put(out, e->crc, 4);
     put(out, e->size, 4);

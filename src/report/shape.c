@@ -47,15 +47,16 @@ static void print_escaped(FILE *out, const char *text)
 static void draw_skeleton(const struct view *v, const double *p, const struct ct_bone *bone,
                           size_t nbone, const char *colour)
 {
-    static const int width[] = {[CT_BONE_BODY] = 36, [CT_BONE_JOINT] = 14, [CT_BONE_FORCE] = 12};
+    static const int width[]
+        = {[CT_BONE_BODY] = 36, [CT_BONE_JOINT] = 14, [CT_BONE_FORCE] = 12};
     fprintf(v->out, "<g stroke=\"%s\" fill=\"%s\" stroke-linecap=\"round\">\n", colour, colour);
     for (size_t i = 0; i < nbone; i++) {
         const double *a = p + 2 * bone[i].from, *b = p + 2 * bone[i].to;
         const int x0 = across(v, a), y0 = down(v, a), x1 = across(v, b), y1 = down(v, b);
         if (x0 != x1 || y0 != y1)
             fprintf(v->out,
-                    "<line x1=\"%d\" y1=\"%d\" x2=\"%d\" y2=\"%d\" stroke-width=\"%d\"%s/>\n", x0,
-                    y0, x1, y1, width[bone[i].kind],
+                    "<line x1=\"%d\" y1=\"%d\" x2=\"%d\" y2=\"%d\" stroke-width=\"%d\"%s/>\n",
+                    x0, y0, x1, y1, width[bone[i].kind],
                     bone[i].kind == CT_BONE_FORCE ? " stroke-dasharray=\"40 40\"" : "");
         if (bone[i].kind == CT_BONE_JOINT)
             fprintf(v->out, "<circle cx=\"%d\" cy=\"%d\" r=\"%d\" stroke=\"none\"/>\n", x1, y1,

@@ -484,9 +484,9 @@ static bool check_driven(struct ct_run *r)
     if (r->s->rank == (int)r->m->nu)
         return true;
     const struct ct_u *u = &r->e->u[r->s->independent[0]];
-    const struct ct_mark mark = u->joint >= 0  ? r->model->joint[u->joint].mark
-                              : u->body >= 0 ? r->model->body[u->body].instance.mark
-                                             : (struct ct_mark){.file = r->model->file};
+    const struct ct_mark mark = u->joint >= 0 ? r->model->joint[u->joint].mark
+                              : u->body >= 0  ? r->model->body[u->body].instance.mark
+                                              : (struct ct_mark){.file = r->model->file};
     return ct_error(r->ctx, mark, CT_E_NOT_DRIVEN,
                     "not all freedoms are driven: %d left, such as '%s'; give each a 'motion'",
                     (int)r->m->nu - r->s->rank, u->q >= 0 ? r->e->q[u->q].name : u->name);
@@ -531,11 +531,11 @@ static bool follow_to(struct ct_run *r, double t, double t1, double *y)
             h = (end - t) / 2;
             if (h > least * (t1 - t) && t + h > t)
                 continue;
-            return ct_error(r->ctx, (struct ct_mark){.file = r->model->file},
-                            CT_E_SAMPLE_REFUSED,
-                            "the mechanism cannot follow its motions beyond t = %.9g: it locks, "
-                            "or passes a singular position",
-                            t);
+            return ct_error(
+                r->ctx, (struct ct_mark){.file = r->model->file}, CT_E_SAMPLE_REFUSED,
+                "the mechanism cannot follow its motions beyond t = %.9g: it locks, "
+                "or passes a singular position",
+                t);
         }
         memcpy(y, next, r->ny * sizeof *y);
         ct_machine_set(r->m, before_event(r, end), y);
