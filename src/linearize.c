@@ -83,8 +83,9 @@ static struct slopes evaluate_slopes(struct ct_linearization *s, const ct_ex *f,
     value = CT_NEWN(a, ct_ex, nslope + 1);
     for (size_t i = 0; i < nslope; i++)
         value[i] = slope[i].value;
-    ct_machine_add(a, m, value, nslope, &program);
+    ct_machine_compile(a, m, e->x, value, nslope, &program);
     ct_program_run(&program, m->input);
+    ct_machine_forget(m, &program);
     const size_t nu = e->nu;
     struct slopes out = {matrix(s, n, nu), matrix(s, n, nu), matrix(s, n, nu),
                          matrix(s, n, e->nrow), matrix(s, n, s->ninput)};

@@ -252,7 +252,7 @@ static void skeleton_create(struct skeleton *k, struct ct_modes *s)
         place[2 * i] = ct_ex3_dot(b->x, right, r);
         place[2 * i + 1] = ct_ex3_dot(b->x, up, r);
     }
-    ct_machine_add(a, s->at.l->m, place, 2 * k->n, &k->places);
+    ct_machine_compile(a, s->at.l->m, b->x, place, 2 * k->n, &k->places);
     add_bones(k, b);
 }
 
@@ -314,6 +314,7 @@ static bool draw(struct ct_ctx *ctx, struct ct_modes *s, const char *path)
                            : ct_arena_printf(a, "%zu: %.4g Hz", i + 1, m.frequency_hz);
     }
     memcpy(s->at.l->y, y0, ny * sizeof *y0);
+    ct_machine_forget(s->at.l->m, &k.places);
     return ct_shapes_draw(ctx, path, s->system->model.name, panel, npanel, rest, k.n, k.bone,
                           k.nbone);
 }
