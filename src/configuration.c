@@ -1,6 +1,8 @@
 // See configuration.h.
 #include "configuration.h"
 
+#include "formulate/build.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -60,11 +62,26 @@ struct ct_linear *ct_configuration_start(struct ct_ctx *own, struct ct_system *s
     return NULL;
 }
 
-// Do all motions go on at constant rates that turn the system as a whole, so that what else there is can rest?
+// Does a motion do the same at any time: turn or slide at a constant rate, or push a slide at a constant acceleration?
+static bool is_steady(const struct ct_equations *e, const struct ct_linear *l, size_t i)
+{
+    const struct ct_driver *d = &e->driver[i];
+    const unsigned in_time = 1u << CT_SYM_TIME | 1u << CT_SYM_MODE;
+    if (ct_ex_is_zero(d->acceleration))
+        return true;
+    for (size_t k = 0; k < e->ncoordinate; k++)
+        if (e->coordinate[k].driver == (int)i && e->coordinate[k].in_rotation)
+            return false;
+    return !(ct_ex_kinds(e->x, d->acceleration) & in_time)
+        && l->m->driver.out[2 * i + 1] == 0;
+}
+
+// Do all motions move the system as a whole, so that what else there is can rest?
 static bool are_steady(const struct ct_equations *e, const struct ct_linear *l)
 {
+    ct_program_run(&l->m->driver, l->m->input);
     for (size_t i = 0; i < e->ndriver; i++)
-        if (!ct_ex_is_zero(e->driver[i].acceleration))
+        if (!is_steady(e, l, i))
             return false;
     for (size_t k = 0; k < l->m->nu; k++)
         if (fabs(l->y[l->m->nq + k]) > still) // rows ask for speeds
