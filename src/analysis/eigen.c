@@ -140,6 +140,33 @@ static void solve_symmetric(struct ct_arena *a, const double *Mr, const double *
             s->w2[j] = 0;
 }
 
+// Slow modes again, from M y = K y / w2: their eigenvalues are the largest there, and rounding does not measure itself by
+// the fastest. For a positive stiffness and the lower half, counted in octaves. M, K (n x n) symmetric.
+static void sharpen_slow(struct ct_arena *a, const double *M, const double *K, struct basis *s)
+{
+    const int n = s->n;
+    double *L = CT_NEWN(a, double, n *n + 1), *H = CT_NEWN(a, double, n *n + 1),
+           *value = CT_NEWN(a, double, n + 1),
+           *work = CT_NEWN(a, double, ct_symmetric_eigenvalues_work(n));
+    memcpy(L, K, (size_t)n * (size_t)n * sizeof *L);
+    memcpy(H, M, (size_t)n * (size_t)n * sizeof *H);
+    if (!s->k || !(s->w2[0] > 0) || !ct_cholesky(L, n, n))
+        return;
+    ct_cholesky_congruence(H, L, n, n);
+    if (!ct_symmetric_eigen(value, H, n, n, work))
+        return;
+    const double middle = sqrt(s->w2[0]) * sqrt(s->w2[s->k - 1]);
+    for (int j = 0; j < s->k && s->w2[j] < middle; j++) {
+        const int from = n - 1 - j; // of the ascending 1/w2
+        double *y = s->V + (size_t)n * (size_t)j;
+        memcpy(y, H + (size_t)n * (size_t)from, (size_t)n * sizeof *y);
+        ct_cholesky_back(y, L, n, n);
+        s->w2[j] = 1 / value[from];
+        for (int i = 0; i < n; i++)
+            y[i] *= sqrt(s->w2[j]);
+    }
+}
+
 double ct_stiffness_least(struct ct_arena *a, const struct ct_linear *l, double *y)
 {
     struct basis s;
@@ -333,6 +360,12 @@ bool ct_modes_solve(struct ct_ctx *ctx, struct ct_arena *a, const struct ct_line
             rigid += s.w2[j] == 0;
         if (!has_speeds && !l->is_moving && s.is_held && is_symmetric(l->Kr, f)) {
             *how = "symmetric";
+            double *M = CT_NEWN(a, double, ff + 1), *K = CT_NEWN(a, double, ff + 1);
+            memcpy(M, l->Mr, ff * sizeof *M);
+            memcpy(K, l->Kr, ff * sizeof *K);
+            symmetrise(M, f);
+            symmetrise(K, f);
+            sharpen_slow(a, M, K, &s);
             add_symmetric(&list, &s);
         } else if (!s.n0) {
             *how = "general";

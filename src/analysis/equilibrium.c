@@ -129,30 +129,11 @@ static void find_stiffness(struct search *s)
         W[i + n * i] += little * fmax(W[i + n * i], mean > 0 ? mean : 1 / little);
     restrict_to(s, s->H, s->l->Kr, true);
     ct_cholesky(W, n, n);
-    // H <- L^-1 H L^-T, then V = L^-T U
-    for (int side = 0; side < 2; side++) {
-        for (int j = 0; j < n; j++)
-            for (int i = 0; i < n; i++) {
-                double sum = s->H[i + n * j];
-                for (int k = 0; k < i; k++)
-                    sum -= W[i + n * k] * s->H[k + n * j];
-                s->H[i + n * j] = sum / W[i + n * i];
-            }
-        for (int j = 0; j < n; j++)
-            for (int i = 0; i < j; i++) {
-                const double swap = s->H[i + n * j];
-                s->H[i + n * j] = s->H[j + n * i];
-                s->H[j + n * i] = swap;
-            }
-    }
+    ct_cholesky_congruence(s->H, W, n, n);
     ct_symmetric_eigen(s->value, s->H, n, n, s->work);
+    memcpy(s->V, s->H, (size_t)n * (size_t)n * sizeof *s->V);
     for (int j = 0; j < n; j++)
-        for (int i = n; i-- > 0;) {
-            double sum = s->H[i + n * j];
-            for (int k = i + 1; k < n; k++)
-                sum -= W[k + n * i] * s->V[k + n * j];
-            s->V[i + n * j] = sum / W[i + n * i];
-        }
+        ct_cholesky_back(s->V + (size_t)n * (size_t)j, W, n, n);
 }
 
 // Forces p along S, and the sizes of what they are the sum of: constraints, weights, and stiffness over one unit.

@@ -122,6 +122,37 @@ void ct_cholesky_solve(double *x, const double *L, int n, int lda, int nrhs, int
     }
 }
 
+void ct_cholesky_back(double *x, const double *L, int n, int lda)
+{
+    for (int j = n; j-- > 0;) {
+        const double *l = L + (size_t)lda * j;
+        for (int i = j + 1; i < n; i++)
+            x[j] -= l[i] * x[i];
+        x[j] /= l[j];
+    }
+}
+
+void ct_cholesky_congruence(double *H, const double *L, int n, int lda)
+{
+    for (int side = 0; side < 2; side++) { // H <- (L^-1 H)', twice
+        for (int c = 0; c < n; c++) {
+            double *x = H + (size_t)n * c;
+            for (int j = 0; j < n; j++) {
+                const double *l = L + (size_t)lda * j;
+                x[j] /= l[j];
+                for (int i = j + 1; i < n; i++)
+                    x[i] -= l[i] * x[j];
+            }
+        }
+        for (int j = 0; j < n; j++)
+            for (int i = 0; i < j; i++) {
+                const double swap = H[i + (size_t)n * j];
+                H[i + (size_t)n * j] = H[j + (size_t)n * i];
+                H[j + (size_t)n * i] = swap;
+            }
+    }
+}
+
 bool ct_lu(double *A, int *pivot, int n, int lda)
 {
     int info;

@@ -20,6 +20,11 @@ bool ct_cholesky(double *A, int n, int lda);
 /// x (n x nrhs, in: right-hand sides, out: solutions) with the factor of ct_cholesky.
 void ct_cholesky_solve(double *x, const double *L, int n, int lda, int nrhs, int ldx);
 
+/// H (n x n, symmetric) = L^-1 H L^-T with that factor.
+void ct_cholesky_congruence(double *H, const double *L, int n, int lda);
+/// x = L^-T x.
+void ct_cholesky_back(double *x, const double *L, int n, int lda);
+
 /// LU with partial pivoting in place; false if exactly singular. pivot (n).
 bool ct_lu(double *A, int *pivot, int n, int lda);
 void ct_lu_solve(double *x, const double *LU, const int *pivot, int n, int lda, int nrhs,
