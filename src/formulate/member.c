@@ -640,7 +640,8 @@ const struct ct_members *ct_members_derive(struct ct_build *b)
 {
     struct ct_members *s = CT_NEW(b->arena, struct ct_members);
     struct work w = {.b = b, .s = s};
-    if (b->nflexible || b->model->simulation.small.given || b->eqs->nrow || !place_nodes(&w) || !own_speeds(&w))
+    if (b->nflexible || b->model->simulation.small.given || b->eqs->nrow || !place_nodes(&w)
+        || !own_speeds(&w))
         return NULL;
     flatten(&w);
     add_bodies(&w);

@@ -98,8 +98,9 @@ static const char *elastic_meaning(struct ct_derivation *d, const char *name, in
     if (stretches)
         return ct_arena_printf(d->a, "stretch of %s up to node %.*s", beam,
                                (int)strcspn(node, "."), node);
-    return ct_arena_printf(d->a, "%s of node %.*s of %s %s %c", turns ? "rotation" : "displacement",
-                           (int)strcspn(node, "."), node, beam, turns ? "about" : "along",
+    return ct_arena_printf(d->a, "%s of node %.*s of %s %s %c",
+                           turns ? "rotation" : "displacement", (int)strcspn(node, "."), node,
+                           beam, turns ? "about" : "along",
                            turns ? kind[1] : (char)('x' + (*kind - 'u')));
 }
 
