@@ -2,6 +2,7 @@
 #include "configuration.h"
 
 #include "formulate/build.h"
+#include "numeric/dense.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -43,12 +44,87 @@ bool ct_equations_like(struct ct_ctx *own, const struct ct_model *model,
 
 // ---- states --------------------------------------------------------------------------------------------
 
+// Any joint with a motion, be it a branch or a chord.
+static bool has_drivers(const struct ct_model *m)
+{
+    for (size_t i = 0; i < m->njoint; i++)
+        if (m->joint[i].cls->motion && ct_instance_value(&m->joint[i], "motion")->given)
+            return true;
+    return false;
+}
+
+// Speeds that keep still while beams settle: elastic coordinates of other beams, and those of joints, but for as many as
+// the loops decide.
+static bool *held_speeds(struct ct_arena *a, const struct ct_linear *l)
+{
+    const struct ct_machine *m = l->m;
+    const int nu = l->nu, nrow = l->nrow;
+    bool *held = CT_NEWN(a, bool, nu + 1);
+    int *joint = CT_NEWN(a, int, nu + 1), n = 0;
+    for (int k = 0; k < nu; k++) {
+        const int beam = m->e->u[k].beam;
+        held[k] = !beam || !m->model->body[beam].beam->starts_in_equilibrium;
+        if (!beam)
+            joint[n++] = k;
+    }
+    double *J = CT_NEWN(a, double, (size_t)nrow *(size_t)n + 1),
+           *tau = CT_NEWN(a, double, nu + nrow + 1),
+           *work = CT_NEWN(a, double, ct_qr_pivot_work(nrow, nu));
+    int *column = CT_NEWN(a, int, nu + 1);
+    const double tolerance = 1e-9; // of dependent rows, as in embed.c
+    ct_machine_constraint(l->m);
+    for (int j = 0; j < n; j++)
+        for (int i = 0; i < nrow; i++)
+            J[i + nrow * j] = m->J[i + nrow * joint[j]];
+    const int rank
+        = nrow && n ? ct_qr_pivot(J, column, tau, nrow, n, nrow, tolerance, work) : 0;
+    for (int i = 0; i < rank; i++)
+        held[joint[column[i]]] = false;
+    return held;
+}
+
+static bool settle(struct ct_ctx *own, struct ct_system *sys, struct ct_start *start)
+{
+    const struct ct_equations *e = &sys->equations;
+    struct ct_equations *held = CT_NEW(own->model, struct ct_equations);
+    ct_formulate_residual(&sys->equations);
+    if (has_drivers(&sys->model)) {
+        if (!ct_equations_like(own, &sys->model, e, true, held))
+            return false;
+        e = held;
+    }
+    struct ct_equilibrium_result result;
+    struct ct_machine *m = ct_machine_create(own->model, &sys->model, e);
+    struct ct_linear *l = ct_linear_create(own, own->model, m);
+    ct_start_apply(start, m, l->y);
+    memset(l->y + m->nq, 0, m->nu * sizeof *l->y);
+    if (!ct_linear_close(l))
+        return ct_error(own, (struct ct_mark){.file = sys->model.file}, CT_E_ASSEMBLY,
+                        "the assembled start is singular: the loops cannot be held there");
+    if (!ct_equilibrium_find(l, held_speeds(own->model, l), &result))
+        return false;
+    start->settled = l->y;
+    return true;
+}
+
+bool ct_configuration_assemble(struct ct_ctx *own, struct ct_system *sys,
+                               struct ct_start *start)
+{
+    *start = (struct ct_start){0};
+    if (!ct_assemble(own, own->model, &sys->model, &sys->start_equations, start))
+        return false;
+    for (size_t b = 1; b < sys->model.nbody; b++)
+        if (sys->model.body[b].beam && sys->model.body[b].beam->starts_in_equilibrium)
+            return settle(own, sys, start);
+    return true;
+}
+
 struct ct_linear *ct_configuration_start(struct ct_ctx *own, struct ct_system *sys,
                                          const struct ct_model *model,
                                          const struct ct_equations *e, bool at_rest)
 {
     struct ct_start start;
-    if (!ct_assemble(own, own->model, &sys->model, &sys->start_equations, &start))
+    if (!ct_configuration_assemble(own, sys, &start))
         return NULL;
     struct ct_machine *m = ct_machine_create(own->model, model, e);
     struct ct_linear *l = ct_linear_create(own, own->model, m);
@@ -72,8 +148,7 @@ static bool is_steady(const struct ct_equations *e, const struct ct_linear *l, s
     for (size_t k = 0; k < e->ncoordinate; k++)
         if (e->coordinate[k].driver == (int)i && e->coordinate[k].in_rotation)
             return false;
-    return !(ct_ex_kinds(e->x, d->acceleration) & in_time)
-        && l->m->driver.out[2 * i + 1] == 0;
+    return !(ct_ex_kinds(e->x, d->acceleration) & in_time) && l->m->driver.out[2 * i + 1] == 0;
 }
 
 // Do all motions move the system as a whole, so that what else there is can rest?
@@ -87,15 +162,6 @@ static bool are_steady(const struct ct_equations *e, const struct ct_linear *l)
         if (fabs(l->y[l->m->nq + k]) > still) // rows ask for speeds
             return false;
     return true;
-}
-
-// Any joint with a motion, be it a branch or a chord.
-static bool has_drivers(const struct ct_model *m)
-{
-    for (size_t i = 0; i < m->njoint; i++)
-        if (m->joint[i].cls->motion && ct_instance_value(&m->joint[i], "motion")->given)
-            return true;
-    return false;
 }
 
 static bool find_equilibrium(struct ct_ctx *own, struct ct_system *sys,

@@ -1,5 +1,6 @@
 // Runs: options resolved, the start assembled, the motion integrated and written.
 #include "api.h"
+#include "configuration.h"
 
 #include "report/json.h"
 #include "report/progress.h"
@@ -230,7 +231,7 @@ static bool prepare(struct ct_sim *sim, const struct ct_sim_options *o)
         ct_formulate_residual(&s->equations);
     if (needs_dynamics(&s->equations, sim->run_options.method))
         ct_formulate_dynamics(&s->equations);
-    if (!ct_assemble(&sim->own, sim->own.model, &s->model, &s->start_equations, &sim->start))
+    if (!ct_configuration_assemble(&sim->own, s, &sim->start))
         return false;
     sim->run = ct_run_create(&sim->own, sim->own.model, &s->model, &s->equations, &sim->start);
     sim->compile = ct_clock() - start;

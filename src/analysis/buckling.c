@@ -11,7 +11,7 @@ static const double none = 1e-11; // of the largest eigenvalue: a direction with
 static const double symmetric = 1e-8;  // relative
 static const double refined = 1e-13;   // of a factor
 static const double small_load = 1e-2; // of the first factor: the second load level
-enum { MOST_LEVELS = 40, MOST_HALVINGS = 30, MARCH = 16, MOST_REFINE = 100 };
+enum { MOST_LEVELS = 40, MOST_HALVINGS = 30, MOST_TRIES = 100, MARCH = 16, MOST_REFINE = 100 };
 
 struct search {
     struct ct_linear *l;
@@ -67,7 +67,8 @@ bool ct_buckling_load(struct ct_linear *l, size_t at, double factor)
     struct search s = {.l = l, .a = l->arena};
     struct place last = place_create(&s);
     keep(l, at, &last);
-    for (int i = 0; i < MOST_HALVINGS && last.factor != factor;) {
+    int tries = 0;
+    for (int i = 0; i < MOST_HALVINGS && tries < MOST_TRIES && last.factor != factor; tries++) {
         const double here = last.factor, next = here + (factor - here) * ldexp(1, -i);
         set_factor(l, at, next);
         if (ct_equilibrium_follow(l, &result)) {
@@ -285,8 +286,28 @@ static int count_negative(const struct search *s)
     return n;
 }
 
-// March along the path up to `end` and refine where eigenvalues change their sign.
-static bool march(struct search *s, const struct place *start, double step, double end)
+// Where to stop on the way: often before the first estimate, once behind it, then between one and the next and behind it.
+// Returns the number of stops.
+static int plan(const double *c, int n, double *stop)
+{
+    const double behind = 1 + 1. / MARCH;
+    int nstop = 0;
+    for (int i = 1; i <= MARCH; i++)
+        stop[nstop++] = behind * c[0] * i / MARCH;
+    for (int i = 1; i < n; i++) {
+        const double middle = (c[i - 1] + c[i]) / 2;
+        const double end
+            = i + 1 < n ? fmin(behind * c[i], (c[i] + c[i + 1]) / 2) : behind * c[i];
+        if (middle > stop[nstop - 1])
+            stop[nstop++] = middle;
+        if (end > stop[nstop - 1])
+            stop[nstop++] = end;
+    }
+    return nstop;
+}
+
+// March along the path and refine where eigenvalues change their sign.
+static bool march(struct search *s, const struct place *start, const double *stop, int nstop)
 {
     struct place here = place_create(s), first = place_create(s);
     go_back(s->l, s->at, start);
@@ -297,7 +318,8 @@ static bool march(struct search *s, const struct place *start, double step, doub
     int negative = count_negative(s);
     const int least = negative; // unstable without the load
     memcpy(before, s->value, (size_t)s->n * sizeof *before);
-    for (double c = step; s->nfound < s->count && here.factor < end; c += step) {
+    for (int i = 0; i < nstop && s->nfound < s->count; i++) {
+        const double c = stop[i];
         go_back(s->l, s->at, &here);
         const bool reached = ct_buckling_load(s->l, s->at, c) && eigenvalues(s);
         const int now = reached ? count_negative(s) : negative + 1;
@@ -367,8 +389,9 @@ bool ct_buckling_find(struct ct_linear *l, size_t at, size_t count,
     if (!n)
         return no_buckling(&s);
     list->has_potential = is_symmetric(s.K0, s.f) && is_symmetric(s.K1, s.f);
-    const int last = n < (int)count ? n - 1 : (int)count - 1;
-    if (list->has_potential && !march(&s, &start, c[0] / MARCH, c[last] * (1 + 2. / MARCH)))
+    double *stop = CT_NEWN(s.a, double, MARCH + 2 * n);
+    const int nstop = plan(c, n < (int)count ? n : (int)count, stop);
+    if (list->has_potential && !march(&s, &start, stop, nstop))
         return false;
     const bool ended = s.nfound && s.found[s.nfound - 1].is_limit;
     for (size_t k = s.nfound; k < (size_t)n && k < count && !ended; k++) {

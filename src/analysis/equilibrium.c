@@ -309,6 +309,8 @@ bool ct_equilibrium_follow(struct ct_linear *l, struct ct_equilibrium_result *ou
     struct search s = search_create(l, NULL);
     double last = INFINITY;
     const size_t before = l->ctx->nerror;
+    s.length
+        = INFINITY; // a path may lead far; what jumps to another one does not converge steadily
     *out = (struct ct_equilibrium_result){0};
     if (!ct_linear_rest(l))
         return false;
@@ -330,7 +332,7 @@ bool ct_equilibrium_follow(struct ct_linear *l, struct ct_equilibrium_result *ou
         out->last_step = size;
         if (size <= arrived || (size <= nearly && size > last / 2))
             break;
-        if (!isfinite(size) || out->iterations == MOST || allowed(&s) < 1)
+        if (!isfinite(size) || out->iterations == MOST || allowed(&s) < 1 || size > last / 2)
             return false;
         last = size;
         ct_machine_retract(l->m, l->y, s.dq);

@@ -157,11 +157,13 @@ static bool slopes(struct ct_linear *l)
     const double *u = l->y + m->nq;
     const size_t nu = m->nu, nrow = m->nrow;
     // the derivatives of J a replace those of J u; what drivers add is in the latter alone
-    speed_slopes(l, l->D2, l->a);
-    memset(l->b, 0, nu * sizeof *l->b);
-    speed_slopes(l, l->D, l->b);
-    for (size_t i = 0; i < nu * nrow; i++)
-        l->D2[i] -= l->D[i];
+    if (nrow) {
+        speed_slopes(l, l->D2, l->a);
+        memset(l->b, 0, nu * sizeof *l->b);
+        speed_slopes(l, l->D, l->b);
+        for (size_t i = 0; i < nu * nrow; i++)
+            l->D2[i] -= l->D[i];
+    }
     put_in(l, u, l->a, l->lam);
     ct_program_run(&l->m->tangent, m->input);
     if (!is_finite(m->tangent.out, m->tangent.nout))
@@ -292,7 +294,7 @@ static void add_reduced(struct ct_linear *l, double *out, const double *A, const
         }
 }
 
-static bool reduce(struct ct_linear *l)
+static void reduce(struct ct_linear *l)
 {
     const int n = l->nu, f = l->nfree, m = l->nrow;
     const size_t nf = (size_t)n * (size_t)f, ff = (size_t)f * (size_t)f;
@@ -305,6 +307,13 @@ static bool reduce(struct ct_linear *l)
         solve_dependent(l, l->X2, l->b);
     }
     turning_chart(l);
+    if (!m) { // Z = 1: all speeds are independent, in their order
+        memcpy(l->Mr, l->M, ff * sizeof *l->Mr);
+        memcpy(l->Cr, l->C, ff * sizeof *l->Cr);
+        memcpy(l->Kr, l->K, ff * sizeof *l->Kr);
+        l->is_moving = largest(l->G, ff) > 0;
+        return;
+    }
     double *const all[] = {l->Mr, l->Cr, l->Kr};
     for (size_t i = 0; i < COUNT(all); i++)
         memset(all[i], 0, ff * sizeof *all[i]);
@@ -318,7 +327,6 @@ static bool reduce(struct ct_linear *l)
         l->X2[i] += l->A[i];
     add_reduced(l, l->Kr, l->M, l->X2);
     l->is_moving = largest(l->X, nf) > 0 || largest(l->X2, nf) > 0 || largest(l->G, ff) > 0;
-    return true;
 }
 
 // ---- balance ------------------------------------------------------------------------------------------------
@@ -379,7 +387,10 @@ static bool finish(struct ct_linear *l)
     multipliers(l, l->r);
     ct_linear_project(l, l->force, l->r);
     l->acceleration = largest(l->a, (size_t)l->nu);
-    return slopes(l) && reduce(l);
+    if (!slopes(l))
+        return false;
+    reduce(l);
+    return true;
 }
 
 bool ct_linear_rest(struct ct_linear *l)

@@ -201,7 +201,7 @@ struct ct_build {
     struct ct_mark holding;          // where the expression stands whose comparisons are held
     int resolving;                   // depth of signals within signals
     bool is_open;                    // a signal was met that this planar model leaves open
-    bool drivers_held; // time stands still: rates of motions are zero
+    bool drivers_held;               // time stands still: rates of motions are zero
     bool in_outputs; // accelerations and multipliers may be used, comparisons stay as they are
     struct ct_kept_quaternion {
         bool made;

@@ -711,6 +711,8 @@ void ct_start_apply(const struct ct_start *s, struct ct_machine *m, double *y)
                 && edge->index == e->memory[k].joint && c->place == e->memory[k].place)
                 memory[k] = s->q[i];
     }
+    if (s->settled)
+        memcpy(y, s->settled, m->nq * sizeof *y);
     ct_machine_normalise(m, y);
     ct_machine_set(m, 0, y);
     ct_modes_start(m, 0, y, NULL);

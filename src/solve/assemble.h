@@ -11,6 +11,8 @@
 struct ct_start {
     double *q, *u;
     size_t n;
+    const double *
+        settled; // q of the equations of motion, where beams start in equilibrium; NULL: undeformed
     double residual; // largest |phi| left
 };
 

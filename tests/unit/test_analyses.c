@@ -278,6 +278,34 @@ static void what_nothing_holds_is_named(void **state)
     ct_ctx_destroy(ctx);
 }
 
+// The static deflection q L^4/(8 EI) + P L^3/(3 EI), which cubic elements have at their nodes exactly.
+static void a_beam_starts_in_its_static_shape(void **state)
+{
+    (void)state;
+    static const char text[]
+        = "cotree: 1\n"
+          "gravity: [0, -9.81, 0]\n"
+          "bodies:\n"
+          "  beam: {type: beam, length: 2, elements: 3, density: 1000, E: 1e9, nu: 0.3, area: "
+          "0.01, Iz: 1e-5,\n"
+          "    deformation: [bending-z], initial: equilibrium, points: {tip: length}}\n"
+          "  ball: {mass: 3}\n"
+          "joints:\n"
+          "  hinge: {type: revolute, from: ground, to: beam, motion: 0.4*sin(t)}\n"
+          "  socket: {type: weld, from: beam.tip, to: ball}\n"
+          "outputs: [beam.tip.deflection.y, hinge.q]\n"
+          "simulation: {duration: 1, samples: 2}\n";
+    struct ct_ctx *ctx = ct_ctx_create();
+    struct ct_system *sys = load_with(ctx, text, NULL);
+    struct ct_sim *sim = checked(ctx, ct_sim_create(ctx, sys, NULL));
+    const double EI = 1e4, weight = 98.1, end = 3 * 9.81;
+    CHECK_CLOSE(ct_sim_value(sim, "beam.tip.deflection.y"),
+                -(weight * 16 / 8 + end * 8 / 3) / EI, 1e-12, 0);
+    ct_sim_destroy(sim);
+    ct_system_destroy(sys);
+    ct_ctx_destroy(ctx);
+}
+
 // ---- buckling ---------------------------------------------------------------------------------------------
 
 static void check_buckling(const char *text, const char *load, const double *want, size_t n)
@@ -638,6 +666,7 @@ int main(void)
         cmocka_unit_test(pendulums_come_to_hang),
         cmocka_unit_test(an_unstable_equilibrium_is_one),
         cmocka_unit_test(what_nothing_holds_is_named),
+        cmocka_unit_test(a_beam_starts_in_its_static_shape),
         cmocka_unit_test(one_link_buckles_at_k_over_l),
         cmocka_unit_test(two_links_buckle_twice),
         cmocka_unit_test(a_mast_buckles_under_its_weight),
