@@ -2,7 +2,7 @@
 #include "configuration.h"
 
 #include "formulate/build.h"
-#include "numeric/dense.h"
+#include "solve/settle.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -34,10 +34,12 @@ bool ct_equations_like(struct ct_ctx *own, const struct ct_model *model,
                                      .with_outputs = true,
                                      .more = like->more,
                                      .with_residual = true,
-                                     .drivers_held = drivers_held};
+                                     .held = drivers_held};
     o.trans = branches(own->model, like, like->T, &o.ntrans);
     o.rot = branches(own->model, like, like->R, &o.nrot);
     const bool ok = ct_formulate(own, own->model, model, &o, out, &unused);
+    if (ok)
+        ct_formulate_dynamics(out);
     ct_own_next_stage(own);
     return ok;
 }
@@ -53,70 +55,12 @@ static bool has_drivers(const struct ct_model *m)
     return false;
 }
 
-// Speeds that keep still while beams settle: elastic coordinates of other beams, and those of joints, but for as many as
-// the loops decide.
-static bool *held_speeds(struct ct_arena *a, const struct ct_linear *l)
-{
-    const struct ct_machine *m = l->m;
-    const int nu = l->nu, nrow = l->nrow;
-    bool *held = CT_NEWN(a, bool, nu + 1);
-    int *joint = CT_NEWN(a, int, nu + 1), n = 0;
-    for (int k = 0; k < nu; k++) {
-        const int beam = m->e->u[k].beam;
-        held[k] = !beam || !m->model->body[beam].beam->starts_in_equilibrium;
-        if (!beam)
-            joint[n++] = k;
-    }
-    double *J = CT_NEWN(a, double, (size_t)nrow *(size_t)n + 1),
-           *tau = CT_NEWN(a, double, nu + nrow + 1),
-           *work = CT_NEWN(a, double, ct_qr_pivot_work(nrow, nu));
-    int *column = CT_NEWN(a, int, nu + 1);
-    const double tolerance = 1e-9; // of dependent rows, as in embed.c
-    ct_machine_constraint(l->m);
-    for (int j = 0; j < n; j++)
-        for (int i = 0; i < nrow; i++)
-            J[i + nrow * j] = m->J[i + nrow * joint[j]];
-    const int rank
-        = nrow && n ? ct_qr_pivot(J, column, tau, nrow, n, nrow, tolerance, work) : 0;
-    for (int i = 0; i < rank; i++)
-        held[joint[column[i]]] = false;
-    return held;
-}
-
-static bool settle(struct ct_ctx *own, struct ct_system *sys, struct ct_start *start)
-{
-    const struct ct_equations *e = &sys->equations;
-    struct ct_equations *held = CT_NEW(own->model, struct ct_equations);
-    ct_formulate_residual(&sys->equations);
-    if (has_drivers(&sys->model)) {
-        if (!ct_equations_like(own, &sys->model, e, true, held))
-            return false;
-        e = held;
-    }
-    struct ct_equilibrium_result result;
-    struct ct_machine *m = ct_machine_create(own->model, &sys->model, e);
-    struct ct_linear *l = ct_linear_create(own, own->model, m);
-    ct_start_apply(start, m, l->y);
-    memset(l->y + m->nq, 0, m->nu * sizeof *l->y);
-    if (!ct_linear_close(l))
-        return ct_error(own, (struct ct_mark){.file = sys->model.file}, CT_E_ASSEMBLY,
-                        "the assembled start is singular: the loops cannot be held there");
-    if (!ct_equilibrium_find(l, held_speeds(own->model, l), &result))
-        return false;
-    start->settled = l->y;
-    return true;
-}
-
 bool ct_configuration_assemble(struct ct_ctx *own, struct ct_system *sys,
                                struct ct_start *start)
 {
-    *start = (struct ct_start){0};
-    if (!ct_assemble(own, own->model, &sys->model, &sys->start_equations, start))
-        return false;
-    for (size_t b = 1; b < sys->model.nbody; b++)
-        if (sys->model.body[b].beam && sys->model.body[b].beam->starts_in_equilibrium)
-            return settle(own, sys, start);
-    return true;
+    return ct_assemble(own, own->model, &sys->model, &sys->start_equations, start)
+        && (!sys->held_equations.build
+            || ct_settle(own, own->model, &sys->model, &sys->held_equations, start));
 }
 
 struct ct_linear *ct_configuration_start(struct ct_ctx *own, struct ct_system *sys,
@@ -220,6 +164,7 @@ bool ct_configuration_find(struct ct_ctx *own, struct ct_system *sys,
     static const char *const words[] = {"initial", "equilibrium"};
     static const struct ct_sim_options standard;
     ct_formulate_residual(&sys->equations);
+    ct_formulate_dynamics(&sys->equations);
     if (!c->equations) {
         c->model = &sys->model;
         c->equations = &sys->equations;

@@ -32,9 +32,7 @@ bool ct_equations_like(struct ct_ctx *own, const struct ct_model *model,
 struct ct_linear *ct_configuration_start(struct ct_ctx *own, struct ct_system *sys,
                                          const struct ct_model *model,
                                          const struct ct_equations *e, bool at_rest);
-/// The assembled start; beams with `initial: equilibrium` in their static shape under the loads at t = 0. The freedoms
-/// that the joints would have between rigid bodies stay, drivers are held.
-/// Errors: those of ct_assemble, CT_E_EQUILIBRIUM.
+/// The assembled start, with beams settled that ask for it. Errors: those of ct_assemble and ct_settle.
 bool ct_configuration_assemble(struct ct_ctx *own, struct ct_system *sys,
                                struct ct_start *start);
 void ct_configuration_finish(struct ct_configuration *c);

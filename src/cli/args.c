@@ -63,6 +63,8 @@ static const struct option {
      "number of rows, the lowest ones; 10"},
     {"hold-drivers", 0, NULL, FLAG, FIELD(hold_drivers), CLI_STATIC, false,
      "equilibrium: motions stand still, even steady ones"},
+    {"verify", 0, NULL, FLAG, FIELD(verify), CLI_SIMULATE, false,
+     "a second run; the difference tells the global error"},
     {"error", 0, "E", NUMBER, FIELD(error), CLI_ACCURACY, false,
      "the error that the cheapest setting must meet; 1e-6"},
     {"reference", 0, "FILE.csv", TEXT, FIELD(reference), CLI_ACCURACY, false,

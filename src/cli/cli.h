@@ -23,7 +23,7 @@ struct cli_args {
     size_t nset;
     double tolerance, step, until, error;
     long samples, count;
-    bool hold_drivers, keep_all, quiet, help, version;
+    bool hold_drivers, keep_all, verify, quiet, help, version;
 };
 
 /// One bit for each command, for the table of options.

@@ -157,6 +157,7 @@ struct ct_build {
     // planar mechanisms: common normal and a basis of the plane (ground components)
     bool is_planar;
     bool keep_all;   // leave nothing out
+    bool is_held;    // drivers stand still: time does not go on
     bool is_rigid;   // beams keep their shape: for assembly, where they are not deformed yet
     ct_ex3 plane[3]; // e1, e2, n
     ct_ex *layer;    // by node: its place along n [m]
@@ -201,7 +202,6 @@ struct ct_build {
     struct ct_mark holding;          // where the expression stands whose comparisons are held
     int resolving;                   // depth of signals within signals
     bool is_open;                    // a signal was met that this planar model leaves open
-    bool drivers_held;               // time stands still: rates of motions are zero
     bool in_outputs; // accelerations and multipliers may be used, comparisons stay as they are
     struct ct_kept_quaternion {
         bool made;

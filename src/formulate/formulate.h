@@ -26,10 +26,10 @@ struct ct_formulate_options {
     bool with_residual; // an implicit method will ask for the residual and its derivatives
     bool
         measure_all; // results are the coordinates of all joints and bodies instead (for assembly)
-    bool drivers_held; // motions keep their values; their rates are taken for zero (statics)
     // with measure_all: equations of motion that will start from the results. Coordinates of bodies that are not
     // among their unknowns are then left 0; NULL: all are measured
     const struct ct_equations *measured_for;
+    bool held;             // drivers stand still at their values: for what is static
     bool without_dynamics; // neither M nor Q: places and speeds are all that is wanted
 };
 

@@ -79,8 +79,10 @@ static void choose_driven(struct ct_build *b, const struct ct_edge_info *e,
     const struct ct_value *motion = ct_instance_value(e->self, "motion");
     d.mark = b->holding = motion->at[c->place];
     d.value = ct_mode_hold(b, motion->e[c->place]);
-    d.rate = ct_build_rate(b, d.value);
-    d.acceleration = ct_build_rate(b, d.rate);
+    if (!b->is_held) {
+        d.rate = ct_build_rate(b, d.value);
+        d.acceleration = ct_build_rate(b, d.rate);
+    }
     c->value = d.value;
     c->rate = d.rate;
     c->driver = (int)b->eqs->ndriver;
@@ -162,7 +164,7 @@ bool ct_unknowns_choose(struct ct_build *b)
 ct_ex ct_build_rate(struct ct_build *b, ct_ex e)
 {
     const struct ct_equations *s = b->eqs;
-    const unsigned moving = 1u << CT_SYM_Q | (b->drivers_held ? 0 : 1u << CT_SYM_TIME);
+    const unsigned moving = 1u << CT_SYM_Q | (b->is_held ? 0 : 1u << CT_SYM_TIME);
     if (!(ct_ex_kinds(b->x, e) & moving))
         return CT_EX_ZERO;
     // only the symbols below e matter; joints have few

@@ -4,7 +4,7 @@
 // rows which depend on each other in the solution do not throw it off. Then Gauss-Newton steps along these
 // constraints take all other coordinates to their guesses, each followed by closing again.
 #include "solve/assemble.h"
-#include "formulate/build.h"
+#include "formulate/flexible.h"
 #include "numeric/dense.h"
 #include "solve/embed.h"
 #include "solve/mode.h"
@@ -687,6 +687,7 @@ static bool assemble(struct assembly *s, struct ct_arena *a, struct ct_start *ou
 bool ct_assemble(struct ct_ctx *ctx, struct ct_arena *a, const struct ct_model *model,
                  const struct ct_equations *e, struct ct_start *out)
 {
+    *out = (struct ct_start){0};
     struct ct_arena *own = ct_arena_create_under(a);
     struct assembly s = assembly_create(ctx, own, model, e);
     const bool ok = assemble(&s, a, out);
@@ -711,8 +712,9 @@ void ct_start_apply(const struct ct_start *s, struct ct_machine *m, double *y)
                 && edge->index == e->memory[k].joint && c->place == e->memory[k].place)
                 memory[k] = s->q[i];
     }
-    if (s->settled)
-        memcpy(y, s->settled, m->nq * sizeof *y);
+    for (size_t i = 0, k = 0; s->elastic && i < e->build->nflexible; i++)
+        for (int j = 0; j < e->build->flexible[i].nelastic; j++)
+            y[e->build->flexible[i].elastic[j].q] = s->elastic[k++];
     ct_machine_normalise(m, y);
     ct_machine_set(m, 0, y);
     ct_modes_start(m, 0, y, NULL);
