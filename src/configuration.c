@@ -34,6 +34,7 @@ bool ct_equations_like(struct ct_ctx *own, const struct ct_model *model,
                                      .with_outputs = true,
                                      .more = like->more,
                                      .with_residual = true,
+                                     .like = like,
                                      .held = drivers_held};
     o.trans = branches(own->model, like, like->T, &o.ntrans);
     o.rot = branches(own->model, like, like->R, &o.nrot);
