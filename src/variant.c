@@ -242,12 +242,29 @@ static bool no_load(struct ct_ctx *own, const struct ct_model *m, const char *na
                     name, ct_suggest_or_list(own->model, name, l.name, l.n));
 }
 
+// A linear beam cannot buckle: those left to the program know how bending shortens them.
+static void foreshorten(struct ct_ctx *own, struct ct_model *v)
+{
+    struct ct_body *body = CT_NEWN(own->model, struct ct_body, v->nbody + 1);
+    memcpy(body, v->body, v->nbody * sizeof *body);
+    for (size_t b = 1; b < v->nbody; b++) {
+        if (!body[b].beam || body[b].beam->formulation != CT_BEAM_AUTO)
+            continue;
+        struct ct_beam *beam = CT_NEW(own->model, struct ct_beam);
+        *beam = *body[b].beam;
+        beam->formulation = CT_BEAM_FORESHORTENING;
+        body[b].beam = beam;
+    }
+    v->body = body;
+}
+
 bool ct_variant_load(struct ct_ctx *own, struct ct_model *v, const char *name,
                      size_t *parameter)
 {
     *parameter = v->nparameter;
     const int force = ct_model_find_force(v, name), joint = ct_model_find_joint(v, name);
     const char *what = force >= 0 ? v->force[force].cls->name : "";
+    foreshorten(own, v);
     if (!strcmp(what, "force") || !strcmp(what, "torque")) {
         const ct_ex factor = add_parameter(own, v, "load factor", 1);
         scale(v, own_value(own, &v->force[force], "value", 3), factor);
