@@ -553,6 +553,8 @@ static void step_onto(struct ct_embed *s, const double *r, double *d)
 // Is another choice of rows or columns due?
 static bool has_worn(const struct ct_embed *s)
 {
+    if (!s->rank)
+        return false;
     return s->kappa > kappa_growth * s->kappa_chosen + 1 || s->kappa > kappa_largest
         || s->sigma * kappa_growth < s->sigma_chosen;
 }
@@ -653,7 +655,8 @@ enum ct_eval ct_embed_project(struct ct_embed *s, double t, double *y)
     if (e != CT_EVAL_OK)
         return e;
     tend_form(s);
-    ct_embed_renew(s);
+    if (has_worn(s))
+        ct_embed_choose(s);
     return CT_EVAL_OK;
 }
 
@@ -671,6 +674,10 @@ double ct_embed_pivot(struct ct_embed *s)
 
 void ct_embed_renew(struct ct_embed *s)
 {
-    if (s->rank && has_worn(s))
+    if (is_form_due(s)) {
+        s->strength = ct_form_close(s->form[0], s->m);
+        tend_form(s);
+    }
+    if (has_worn(s))
         ct_embed_choose(s);
 }

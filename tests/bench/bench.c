@@ -122,7 +122,8 @@ struct subject {
     struct ct_run *run;
     struct ct_machine *machine;
     double *state;
-    double generate, prepare; // seconds, from the file to equations; from there to the start of a run
+    double generate,
+        prepare; // seconds, from the file to equations; from there to the start of a run
 };
 
 static void give_up(const struct subject *s)
