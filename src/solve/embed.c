@@ -19,8 +19,8 @@ static const double small_pivot = 0.1;
 enum { MOST_NEWTON = 25 };
 
 // A form is used while its strength has changed by less than such a factor since sigma, which tells how near a
-// singular position is, was found by dense matrices, and never below the weakest: one in so many digits is lost.
-static const double most_change = 1.5, weakest = 1e-3;
+// singular position is, was found by dense matrices.
+static const double most_change = 1.5;
 // Where strength and sigma have fallen alike, up to so much, strength stands for sigma for longer.
 static const double alike = 1.02, most_change_alike = 4;
 // What may be left of the equations against their terms: beyond the first a refinement is made, beyond
@@ -157,7 +157,7 @@ static bool is_within(double ratio, double factor)
 
 static bool is_sound(const struct ct_embed *s)
 {
-    return s->strength > weakest
+    return s->strength > ct_form_weakest
         && is_within(s->strength / s->at_sigma, s->is_alike ? most_change_alike : most_change);
 }
 
@@ -224,7 +224,7 @@ static void check_form(struct ct_embed *s)
     struct ct_form *f = s->form[0];
     ct_form_check(f, s->m);
     s->is_rough = f->left > left_plain;
-    if (s->strength > weakest && f->left_better <= left_most) {
+    if (s->strength > ct_form_weakest && f->left_better <= left_most) {
         s->kappa = isnan(f->kappa) ? s->kappa : f->kappa;
         s->nweak = 0;
     } else if (++s->nweak >= MOST_WEAK * patience(s)) {

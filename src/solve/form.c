@@ -13,6 +13,8 @@ static const double most_nodes = 400000;
 // Checks and projections take up to so many times the nodes of the solution.
 static const double whole = 4;
 
+const double ct_form_weakest = 1e-3;
+
 static int ascending(const void *a, const void *b)
 {
     return *(const int *)a - *(const int *)b;

@@ -57,6 +57,18 @@ void ct_form_check(struct ct_form *f, struct ct_machine *m);
 /// Fill the results of close at the machine's input. Returns the strength.
 double ct_form_close(struct ct_form *f, struct ct_machine *m);
 
+/// Below this strength a form is of no use: one in so many digits is lost.
+extern const double ct_form_weakest;
+
+/// The program of an unrolled form: u', q', pivots of B' M B (nfree, positive), pivots of J_d (npivot), whose sizes
+/// times scale are strengths.
+struct ct_form_code {
+    const struct ct_listing *listing; // NULL: a form of another kind
+    size_t nfree, npivot;
+    const double *scale;
+};
+struct ct_form_code ct_form_code(const struct ct_form *f);
+
 // ---- for the kinds --------------------------------------------------------------------------------
 
 /// Fill row, dependent, rank.

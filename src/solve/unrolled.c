@@ -181,3 +181,11 @@ const struct ct_form_kind ct_form_unrolled = {.name = "unrolled",
                                               .check = check,
                                               .close = close,
                                               .destroy = destroy};
+
+struct ct_form_code ct_form_code(const struct ct_form *form)
+{
+    if (form->kind != &ct_form_unrolled)
+        return (struct ct_form_code){0};
+    const struct unrolled *f = (const struct unrolled *)form;
+    return (struct ct_form_code){f->solved.listing, f->c->nfree, f->c->npivot, f->c->scale};
+}
