@@ -199,30 +199,42 @@ static void forms_are_not_used_where_they_are_weak(void **state)
     assert_true(pivoted > 10);
 }
 
-// Across a singular position the rows and columns change, and with them the form.
-static void runs_make_another_form(void **state)
+static struct ct_solves run_for(const char *file, const struct ct_formulate_options *o,
+                                double duration)
 {
-    (void)state;
-    const struct ct_formulate_options o = {.tree = CT_TREE_JOINTS, .with_energy = true};
     const struct ct_run_options options = {.method = ct_method_find("dopri5"),
-                                           .duration = 2,
+                                           .duration = duration,
                                            .rtol = 1e-10,
                                            .atol = 1e-12,
                                            .nsample = 20};
     struct system s;
     struct variant v;
     struct ct_run_report report;
-    system_open_file(&s, "systems/n_four_bar/model.yaml");
+    system_open_file(&s, file);
     system_no_outputs(&s);
-    variant_open(&s, &o, &v);
+    variant_open(&s, o, &v);
     struct ct_run *run = ct_run_create(&v.ctx, v.arena, &s.model, &v.e, &s.start);
     assert_non_null(run);
     assert_true(ct_run_simulate(run, &options, &report));
-    assert_true(report.solves.reordered > 0);
     assert_true(report.solves.fixed > report.solves.pivoted);
     assert_true(report.energy_drift < 1e-8);
     variant_close(&v);
     system_close(&s);
+    return report.solves;
+}
+
+// Across a singular position the rows and columns change, and with them the form; beside it residuals grow and
+// are taken off.
+static void runs_refine_and_make_other_forms(void **state)
+{
+    (void)state;
+    const struct ct_formulate_options joints = {.tree = CT_TREE_JOINTS, .with_energy = true},
+                                      bodies = {.tree = CT_TREE_ABSOLUTE, .with_energy = true};
+    assert_true(run_for("systems/n_four_bar/model.yaml", &joints, 2).reordered > 0);
+    const struct ct_solves s
+        = run_for("systems/four_bar_near_singular/model.yaml", &bodies, 1.5);
+    assert_true(s.refined > 0);
+    assert_true(s.reordered > 0);
 }
 
 // A chain of links with a coordinate each for place and angle: everything is coupled with everything in the reduced
@@ -296,7 +308,7 @@ int main(void)
     const struct CMUnitTest tests[] = {cmocka_unit_test(unrolled_forms_solve_the_equations),
                                        cmocka_unit_test(sparse_forms_solve_the_equations),
                                        cmocka_unit_test(forms_are_not_used_where_they_are_weak),
-                                       cmocka_unit_test(runs_make_another_form),
+                                       cmocka_unit_test(runs_refine_and_make_other_forms),
                                        cmocka_unit_test(the_cheapest_form_is_chosen),
                                        cmocka_unit_test(back_ends_agree)};
     return cmocka_run_group_tests(tests, NULL, NULL);
