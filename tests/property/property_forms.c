@@ -279,6 +279,65 @@ static void the_cheapest_form_is_chosen(void **state)
         assert_ptr_equal(cheapest_for_chain(60), &ct_form_sparse);
 }
 
+// n four-bars in a row, as systems/n_four_bar has them.
+static const char *row_text(struct ct_arena *a, int n)
+{
+    static const char bar[]
+        = "{mass: 1, inertia: 1/12, com: [1/2, 0, 0], points: {end: [1, 0, 0]}}";
+    const char *text
+        = "cotree: 1\nname: row\ngravity: [0, -9.81, 0]\nbodies:\n  ground:\n    points:\n";
+    for (int i = 0; i <= n; i++)
+        text = text_of(a, "%s      a%d: [%d, 0, 0]\n", text, i, i);
+    for (int i = 0; i <= n; i++)
+        text = text_of(a, "%s  crank%d: %s\n", text, i, bar);
+    for (int i = 1; i <= n; i++)
+        text = text_of(a, "%s  coupler%d: %s\n", text, i, bar);
+    text = text_of(a, "%sjoints:\n", text);
+    for (int i = 0; i <= n; i++)
+        text = text_of(a,
+                       "%s  foot%d: {type: revolute, from: ground.a%d, to: crank%d, initial: "
+                       "{q: 1, u: -1, guess: %s}}\n",
+                       text, i, i, i, i ? "true" : "false");
+    for (int i = 1; i <= n; i++)
+        text
+            = text_of(a,
+                      "%s  left%d: {type: revolute, from: crank%d.end, to: coupler%d, initial: "
+                      "{q: -1, guess: true}}\n"
+                      "  right%d: {type: revolute, from: coupler%d.end, to: crank%d.end, "
+                      "initial: {q: 1, guess: true}}\n",
+                      text, i, i - 1, i, i, i, i);
+    return text;
+}
+
+static double operations_for_row(int n)
+{
+    struct system s;
+    struct variant v;
+    struct ct_arena *a = ct_arena_create();
+    assert_non_null(a);
+    system_open_text(&s, "row", row_text(a, n));
+    variant_open(&s, &by_joints, &v);
+    variant_set(&v, &s.start, 0);
+    assert_true(ct_embed_choose(v.s));
+    assert_true(v.s->has_form);
+    const double operations = v.s->form[0]->operations;
+    variant_close(&v);
+    system_close(&s);
+    ct_arena_destroy(a);
+    return operations;
+}
+
+// Twice the loops, twice the operations.
+static void cost_grows_with_the_number_of_loops(void **state)
+{
+    (void)state;
+    const double few = operations_for_row(10), many = operations_for_row(20),
+                 most = operations_for_row(40);
+    assert_true(few > 0);
+    assert_true(many - few > 0);
+    assert_true(fabs((most - many) / (many - few) - 2) < 0.05);
+}
+
 // The program of a form has the same bits in every back end.
 static void back_ends_agree(void **state)
 {
@@ -310,6 +369,7 @@ int main(void)
                                        cmocka_unit_test(forms_are_not_used_where_they_are_weak),
                                        cmocka_unit_test(runs_refine_and_make_other_forms),
                                        cmocka_unit_test(the_cheapest_form_is_chosen),
+                                       cmocka_unit_test(cost_grows_with_the_number_of_loops),
                                        cmocka_unit_test(back_ends_agree)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
