@@ -1,6 +1,8 @@
 // Runs: options resolved, the start assembled, the motion integrated and written.
 #include "api.h"
 
+#include "formulate/flexible.h"
+
 #include "report/json.h"
 #include "report/progress.h"
 
@@ -398,6 +400,23 @@ static bool integrate(struct ct_sim *sim)
     return ok;
 }
 
+// Linear beams whose motion left what they are good for.
+static void warn_of_beams(struct ct_sim *sim)
+{
+    const struct ct_equations *e = &sim->system->equations;
+    for (size_t i = 0; i < e->nvalidity; i++) {
+        const struct ct_validity_report *v = &sim->report.validity[i];
+        if (v->left_at < 0)
+            continue;
+        ct_warning(
+            &sim->own, e->validity[i].mark, 0,
+            "beam '%s' is linear and left its range: the validity indicator passes %.3g at "
+            "t = %.6g s and reaches %.3g; errors are of that relative size, and "
+            "`formulation: foreshortening` has none of them",
+            e->validity[i].beam, CT_VALIDITY_LIMIT, v->left_at, v->largest);
+    }
+}
+
 // A run that a callback stopped has no diagnostic: it is done, too.
 static bool run(struct ct_sim *sim)
 {
@@ -423,6 +442,8 @@ static bool run(struct ct_sim *sim)
     if (sim->file)
         ok = close_file(sim, ok);
     sim->write += ct_clock() - start;
+    if (ok)
+        warn_of_beams(sim);
     if (ok && sim->kept)
         ct_sim_verify(sim);
     sim->is_done = ok;

@@ -2,6 +2,7 @@
 #include "api.h"
 
 #include "report/json.h"
+#include "formulate/flexible.h"
 #include "report/stage_beam.h"
 
 #include <math.h>
@@ -174,6 +175,25 @@ static void write_formulation(struct ct_json *j, const struct ct_equations *e)
     ct_json_end(j);
 }
 
+// Validity indicators of linear beams.
+static void write_validity(struct ct_json *j, const struct ct_sim *sim)
+{
+    const struct ct_equations *e = &sim->system->equations;
+    if (!e->nvalidity || !sim->report.validity)
+        return;
+    ct_json_object(j, "validity");
+    for (size_t i = 0; i < e->nvalidity; i++) {
+        const struct ct_validity_report *v = &sim->report.validity[i];
+        ct_json_object(j, e->validity[i].beam);
+        ct_json_number(j, "largest", v->largest);
+        ct_json_number(j, "limit", CT_VALIDITY_LIMIT);
+        if (v->left_at >= 0)
+            ct_json_number(j, "left_at", v->left_at);
+        ct_json_end(j);
+    }
+    ct_json_end(j);
+}
+
 static void write_work(struct ct_json *j, const struct ct_sim *sim)
 {
     const struct ct_run_report *r = &sim->report;
@@ -205,6 +225,7 @@ static void write_work(struct ct_json *j, const struct ct_sim *sim)
     ct_json_number(j, "write", sim->write);
     ct_json_number(j, "verify", sim->verify_seconds);
     ct_json_end(j);
+    write_validity(j, sim);
     ct_json_object(j, "error");
     ct_json_number(j, "energy_drift", r->energy_drift);
     ct_json_number(j, "position_constraint", r->position_constraint);

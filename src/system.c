@@ -124,8 +124,8 @@ static bool build(struct ct_system *s, const char *path, const struct ct_system_
                                                .measure_all = true,
                                                .measured_for = &s->equations,
                                                .without_dynamics = true};
-    const struct ct_formulate_options held
-        = {.tree = CT_TREE_JOINTS, .keep_all = o->keep_all, .held = true};
+    const struct ct_formulate_options held = {
+        .tree = CT_TREE_JOINTS, .keep_all = o->keep_all, .held = true, .like = &s->equations};
     struct ct_tree_report unused;
     return choose_tree(&s->own, o->tree, &motion)         // which branches, if any are given
         && read_model(s, path, o)                         // text -> component instances

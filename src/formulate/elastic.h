@@ -61,6 +61,9 @@ ct_ex ct_flexible_integral(struct ct_build *b, const struct ct_flexible *f, int 
                            const struct ct_shape *p, const struct ct_shape *q,
                            enum ct_rule rule);
 
+/// How the base moves.
+struct ct_base ct_flexible_base(struct ct_build *b, const struct ct_flexible *f,
+                                enum ct_level level);
 /// al~ + w~ w~
 ct_ex33 ct_base_turning(struct ct_build *b, const struct ct_base *m);
 /// 2 w x v

@@ -86,6 +86,14 @@ struct ct_residual {
     size_t ndq, ndu, nda, ndv;
 };
 
+/// Validity indicator of a linear beam.
+struct ct_validity {
+    const char *beam;
+    struct ct_mark mark;
+    ct_ex eta;
+    double omega; // first bending frequency of the beam in its frame [rad/s]
+};
+
 struct ct_left_out {
     const char *what, *why;
 };
@@ -133,6 +141,8 @@ struct ct_equations {
     struct ct_residual *residual;     // NULL if not asked for
     bool is_planar;
     bool is_truncated; // to first order in coordinates that are small
+    struct ct_validity *validity;
+    size_t nvalidity, validity_cap;
     struct ct_left_out *left_out;
     size_t nleft_out, left_out_cap;
     struct ct_coordinate *coordinate; // of all joints and bodies (build.h)

@@ -115,6 +115,15 @@ static void need_stiffness(struct ct_build *b, struct ct_flexible *f)
     }
 }
 
+// Left to the program: as in equations that were made before, else the one that holds further.
+static void choose_formulation(const struct ct_build *b, struct ct_flexible *f)
+{
+    const struct ct_flexible *like = b->like ? ct_flexible_of(b->like->build, f->body) : NULL;
+    f->formulation = like ? like->formulation : CT_BEAM_FORESHORTENING;
+    if (b->is_linear)
+        f->formulation = b->is_linear[f->body] ? CT_BEAM_LINEAR : CT_BEAM_FORESHORTENING;
+}
+
 static void settle(struct ct_build *b, struct ct_flexible *f)
 {
     const struct ct_beam *beam = f->beam;
@@ -134,8 +143,9 @@ static void settle(struct ct_build *b, struct ct_flexible *f)
     need_stiffness(b, f);
     if (b->is_rigid)
         f->deformation = 0;
-    f->formulation
-        = beam->formulation == CT_BEAM_AUTO ? CT_BEAM_FORESHORTENING : beam->formulation;
+    f->formulation = beam->formulation;
+    if (beam->formulation == CT_BEAM_AUTO)
+        choose_formulation(b, f);
     f->axial = f->kinematics = axial_of(f);
     if (f->formulation == CT_BEAM_FORCE_ONLY)
         f->kinematics = CT_AXIAL_LINEAR;

@@ -8,6 +8,7 @@
 #include "formulate/signal.h"
 #include "formulate/small.h"
 #include "formulate/topology.h"
+#include "formulate/validity.h"
 #include "graph/exchange.h"
 
 #include <math.h>
@@ -26,7 +27,8 @@ static double *start_values(struct ct_arena *a, const struct ct_model *m)
 // Graph, nodes and edges of the model; trees are still open.
 static struct ct_build *build_create(struct ct_ctx *ctx, struct ct_arena *a,
                                      const struct ct_model *m,
-                                     const struct ct_formulate_options *o)
+                                     const struct ct_formulate_options *o,
+                                     const bool *is_linear)
 {
     struct ct_build *b = CT_NEW(a, struct ct_build);
     *b = (struct ct_build){.ctx = ctx,
@@ -34,7 +36,9 @@ static struct ct_build *build_create(struct ct_ctx *ctx, struct ct_arena *a,
                            .model = m,
                            .is_rigid = o->measure_all,
                            .keep_all = o->keep_all,
-                           .is_held = o->held};
+                           .is_held = o->held,
+                           .like = o->like,
+                           .is_linear = is_linear};
     b->eqs = CT_NEW(a, struct ct_equations);
     b->x = b->eqs->x = ct_exs_clone(a, m->x);
     b->value = start_values(a, m);
@@ -152,7 +156,7 @@ static double pair_cost(void *data, const struct ct_tree *T, const struct ct_tre
     struct ct_arena *scratch = ct_arena_create_under(s->owner);
     struct ct_ctx quiet
         = {.model = scratch, .scratch = scratch}; // errors are reported by the chosen pair
-    struct ct_build *b = build_create(&quiet, scratch, s->model, s->options);
+    struct ct_build *b = build_create(&quiet, scratch, s->model, s->options, NULL);
     b->T = *T;
     b->R = *R;
     double cost = INFINITY;
@@ -496,16 +500,41 @@ static void derive_dynamics(struct ct_build *b, const struct ct_formulate_option
     ct_dynamics_derive(b);
 }
 
+// Beams that leave their formulation to the program: what is known of their motion decides, and those that stay linear
+// make a new build on the same trees.
+static bool choose_beams(struct ct_ctx *ctx, struct ct_arena *a, const struct ct_model *m,
+                         const struct ct_formulate_options *o, struct ct_build **b)
+{
+    struct ct_build *old = *b;
+    const bool *linear = o->like || o->measure_all ? NULL : ct_validity_choose(old);
+    bool any = false;
+    for (size_t i = 0; linear && i < m->nbody; i++)
+        any = any || linear[i];
+    if (!any)
+        return true;
+    *b = build_create(ctx, a, m, o, linear);
+    (*b)->T = old->T;
+    (*b)->R = old->R;
+    for (size_t i = 0; i < old->nflexible; i++) {
+        struct ct_flexible *f = &(*b)->flexible[i];
+        f->why = old->flexible[i].why;
+        if (f->beam->formulation == CT_BEAM_AUTO && f->formulation == CT_BEAM_LINEAR)
+            ct_topology_left_out(*b, ct_arena_printf(a, "foreshortening of %s", f->name),
+                                 f->why);
+    }
+    return derive(*b, !o->without_dynamics);
+}
+
 bool ct_formulate(struct ct_ctx *ctx, struct ct_arena *a, const struct ct_model *m,
                   const struct ct_formulate_options *options, struct ct_equations *out,
                   struct ct_tree_report *report)
 {
     const size_t before = ctx->nerror;
-    struct ct_build *b = build_create(ctx, a, m, options);
+    struct ct_build *b = build_create(ctx, a, m, options, NULL);
     struct search s = {ctx, m, options, a};
     *report = (struct ct_tree_report){0};
     if (ctx->nerror > before || !choose_trees(b, &s, report)
-        || !derive(b, !options->without_dynamics))
+        || !derive(b, !options->without_dynamics) || !choose_beams(ctx, a, m, options, &b))
         return false;
     if (!options->without_dynamics)
         derive_dynamics(b, options);
@@ -519,6 +548,8 @@ bool ct_formulate(struct ct_ctx *ctx, struct ct_arena *a, const struct ct_model 
         measure_all(b, options->measured_for);
     else if (options->with_outputs && !ct_outputs_derive(b))
         return false;
+    if (options->with_energy)
+        ct_validity_monitor(b);
     describe_graph(b);
     b->eqs->coordinate = b->coordinate;
     b->eqs->ncoordinate = b->ncoordinate;

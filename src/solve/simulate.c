@@ -1,5 +1,6 @@
 // See simulate.h.
 #include "solve/simulate.h"
+#include "formulate/flexible.h"
 #include "integrate/stiffness.h"
 #include "solve/dae.h"
 #include "expr/print.h"
@@ -39,6 +40,7 @@ struct ct_run {
     bool is_suspect;                 // steps ended to think of another method
     double t_before, last_event;     // times
     size_t ngiven;                   // samples
+    double t_sample;                 // the last one
 };
 
 // ---- time ------------------------------------------------------------------------------------------------
@@ -418,6 +420,24 @@ static void keep_ledger(struct ct_run *r, const double *y)
         = fmax(r->report->velocity_constraint, largest(r->m->v, r->m->nrow));
 }
 
+// Indicators of linear beams, averaged over a period of the beam: what rings faster than it can follow does not count.
+static void watch_validity(struct ct_run *r, double t)
+{
+    if (!r->e->nvalidity)
+        return;
+    ct_program_run(&r->m->validity, r->m->input);
+    for (size_t i = 0; i < r->e->nvalidity; i++) {
+        struct ct_validity_report *v = &r->report->validity[i];
+        const double period = 6.283185307179586 / r->e->validity[i].omega;
+        const double share = r->ngiven ? -expm1(-(t - r->t_sample) / period) : 1;
+        v->mean += share * (r->m->validity.out[i] - v->mean);
+        v->largest = fmax(v->largest, fabs(v->mean));
+        if (v->largest > CT_VALIDITY_LIMIT && v->left_at < 0)
+            v->left_at = t;
+    }
+    r->t_sample = t;
+}
+
 static bool at_sample(void *user, double t, const double *y)
 {
     struct ct_run *r = user;
@@ -430,6 +450,7 @@ static bool at_sample(void *user, double t, const double *y)
                             "the output '%s' has no finite value at t = %.9g",
                             r->e->result[i].name, t);
     keep_ledger(r, y);
+    watch_validity(r, t);
     r->ngiven++;
     memcpy(r->report->final, r->value, r->e->nresult * sizeof *r->value);
     return !r->o->row || r->o->row(r->o->user, t, r->value, r->e->nresult);
@@ -665,6 +686,9 @@ bool ct_run_simulate(struct ct_run *r, const struct ct_run_options *o,
     *report
         = (struct ct_run_report){.method = o->method, .changed_at = NAN, .returned_at = NAN};
     report->final = CT_NEWN(r->arena, double, r->e->nresult + 1);
+    report->validity = CT_NEWN(r->arena, struct ct_validity_report, r->e->nvalidity + 1);
+    for (size_t i = 0; i < r->e->nvalidity; i++)
+        report->validity[i].left_at = -1;
     r->pivot_last = r->singular_in = INFINITY;
     r->o = o;
     r->method = o->method;

@@ -28,6 +28,11 @@ struct ct_run_report {
     /// did not, returned_at if it was not last left as not faster any more.
     double changed_at, fast, slow, gain, returned_at;
     struct ct_integrate_stats stats;
+    struct ct_validity_report {
+        double mean,
+            largest; // of the indicator: over the last period of the beam, and its largest size so far
+        double left_at;  // when that passed the limit; negative: never
+    } * validity;        // by indicator of the equations
     double energy_drift; // largest |total - total(0)| / scale of the energies
     double position_constraint, velocity_constraint; // largest residuals at samples
     int rank;
