@@ -704,7 +704,7 @@ static double operations_of_accelerations(const struct ct_run *r)
     if (r->m->solved.nout)
         return operations(&r->m->solved);
     if (r->s->has_form)
-        return operations(&r->s->form[0]->solved);
+        return r->s->form[0]->operations;
     return operations(&r->m->motion) + ct_embed_operations(r->s);
 }
 
