@@ -15,7 +15,7 @@ static const double kappa_largest = 1e3;
 // Projections stop here: a few roundings of coordinates of order one.
 static const double position_tolerance = 1e-13;
 // Pivots smaller than this against the largest enlarge what is left over noticeably.
-static const double small_pivot = 0.1;
+static const double small_pivot = 0.5;
 enum { MOST_NEWTON = 25 };
 
 static size_t larger(size_t a, size_t b)
@@ -370,8 +370,8 @@ enum ct_eval ct_embed_project(struct ct_embed *s, double t, double *y)
         const double size = largest(m->phi, m->nrow);
         // rounding keeps larger mechanisms from the tolerance: stop when nothing is gained any more
         // what is left is divided by the smallest pivot: beside a singular position go on to the end
-        const double wanted
-            = s->sigma < small_pivot ? position_tolerance * s->sigma : position_tolerance;
+        const double wanted = s->sigma < small_pivot ? position_tolerance * s->sigma * s->sigma
+                                                     : position_tolerance;
         if (size <= wanted || (size < 1e-10 && size > before / 4))
             break;
         if (i == MOST_NEWTON || !isfinite(size) || size > 1e3 * before)
