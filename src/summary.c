@@ -13,17 +13,6 @@ static long count(const struct ct_tape_counts *c)
     return c->multiplications + c->additions + c->divisions + c->functions;
 }
 
-// Arithmetic operations of embedding, (6.2), for n speeds, r kept rows, f = n - r freedoms: LU of J_d,
-// its solutions, products M B and B' M B, Cholesky of the reduced mass matrix.
-static long solve_operations(long n, long r)
-{
-    const long f = n - r;
-    const long lu = 2 * r * r * r / 3 + 2 * r * r * (f + 1);
-    const long right = 2 * n * r + 2 * r * f;
-    const long reduced = r ? 2 * n * r * f + r * f * (f + 1) : 0;
-    return lu + right + reduced + f * f * f / 3 + 2 * f * f + 2 * r * f;
-}
-
 static long operations(const struct ct_sim *sim)
 {
     const struct ct_machine *m = ct_run_machine(sim->run);
@@ -31,8 +20,13 @@ static long operations(const struct ct_sim *sim)
         const struct ct_tape_counts all = ct_tape_counts(m->solved.tape);
         return count(&all);
     }
+    const struct ct_embed *embed = ct_run_embed(sim->run);
+    if (embed->has_form) {
+        const struct ct_tape_counts all = ct_tape_counts(embed->form[0]->solved.tape);
+        return count(&all);
+    }
     const struct ct_tape_counts c = ct_tape_counts(m->motion.tape);
-    return count(&c) + solve_operations((long)m->nu, sim->report.rank);
+    return count(&c) + (long)ct_embed_operations(embed);
 }
 
 static long freedoms(const struct ct_sim *sim)
@@ -139,6 +133,12 @@ static void write_work(struct ct_json *j, const struct ct_sim *sim)
     ct_json_integer(j, "evaluations", r->stats.evaluations);
     ct_json_integer(j, "jacobians", r->stats.jacobians);
     ct_json_integer(j, "factorizations", r->factorizations);
+    ct_json_object(j, "solves");
+    ct_json_integer(j, "unrolled", r->solves.unrolled);
+    ct_json_integer(j, "refined", r->solves.refined);
+    ct_json_integer(j, "pivoted", r->solves.pivoted);
+    ct_json_integer(j, "reordered", r->solves.reordered);
+    ct_json_end(j);
     ct_json_integer(j, "events", r->stats.events);
     ct_json_integer(j, "operations", operations(sim));
     ct_json_object(j, "seconds");

@@ -100,6 +100,8 @@ struct ct_exs {
 };
 
 void ct_exs_init(struct ct_exs *x, struct ct_arena *arena);
+/// A copy that lives and grows in a; ids are the same. Labels stay behind.
+struct ct_exs *ct_exs_clone(struct ct_arena *a, const struct ct_exs *from);
 
 // ---- leaves ---------------------------------------------------------------------------------
 

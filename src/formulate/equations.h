@@ -27,6 +27,7 @@ struct ct_u {
     ct_ex derivative; // the symbol u'
     int q;            // the coordinate whose rate it is; -1 for angular velocities
     int joint, body;  // whose it is; the other is -1
+    int beam;         // body whose elastic coordinate it belongs to; 0: none
 };
 
 struct ct_entry { // of a sparse matrix
@@ -113,8 +114,8 @@ struct ct_equations {
     size_t nresult, result_cap;
     ct_ex work_symbol;
     ct_ex power; // d(work)/dt, in terms of u' and lam where drivers push; 0 when nothing works
-    ct_ex kinetic, potential;
-    struct ct_residual *residual; // NULL if not asked for
+    ct_ex kinetic, potential, strain; // strain: of beams
+    struct ct_residual *residual;     // NULL if not asked for
     bool is_planar;
     struct ct_left_out *left_out;
     size_t nleft_out, left_out_cap;

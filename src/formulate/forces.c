@@ -3,7 +3,7 @@
 // A link carries the force F = m a + what its outboard stars need to turn and slide; a cluster feels the
 // torque of its stars about their anchors. Summed from the leaves this is the cutset of each branch, and
 // its projection on the motion of the branch is a row of M u' - Q - J' lam.
-#include "formulate/dynamics.h"
+#include "formulate/flexible.h"
 #include "formulate/row.h"
 #include "formulate/signal.h"
 
@@ -200,8 +200,10 @@ const struct ct_sweep *ct_sweep_run(struct ct_build *b, enum ct_level level)
     s->local = CT_NEWN(b->arena, ct_ex3, b->ncluster);
     w.apparent = CT_NEWN(b->arena, ct_ex3, b->nanchor);
     s->force = CT_NEWN(b->arena, ct_ex3, b->nanchor);
+    s->row = CT_NEWN(b->arena, ct_ex, b->eqs->nu + 1);
     find_apparent(&w);
     apply_loads(&w);
+    ct_flexible_sweep(b, level, w.apparent, w.rest, w.torque, s->row);
     sweep_anchors(&w);
     for (size_t c = b->ncluster; c-- > 1;) {
         if (!local_inertia_torque(&w, (int)c, &s->local[c]))
@@ -223,7 +225,7 @@ const struct ct_sweep *ct_sweep_run(struct ct_build *b, enum ct_level level)
 static ct_ex sweep_row(struct ct_build *b, const struct ct_sweep *s, int speed, int driver)
 {
     struct ct_exs *x = b->x;
-    ct_ex sum = CT_EX_ZERO;
+    ct_ex sum = speed >= 0 ? s->row[speed] : CT_EX_ZERO;
     for (size_t r = 0; r < b->nspin; r++)
         for (int k = 0; k < b->spin[r].nterm; k++) {
             const struct ct_term *t = &b->spin[r].term[k];

@@ -14,25 +14,6 @@
 
 // ---- one pair of trees ---------------------------------------------------------------------------
 
-static struct ct_exs *clone_store(struct ct_arena *a, const struct ct_exs *from)
-{
-    struct ct_exs *x = CT_NEW(a, struct ct_exs);
-    *x = *from;
-    x->arena = a;
-    x->node = CT_NEWN(a, struct ct_exnode, from->node_cap);
-    memcpy(x->node, from->node, from->nnode * sizeof *x->node);
-    x->kinds = CT_NEWN(a, uint16_t, from->kinds_cap);
-    memcpy(x->kinds, from->kinds, from->nnode * sizeof *x->kinds);
-    x->sym = CT_NEWN(a, struct ct_sym, from->sym_cap);
-    memcpy(x->sym, from->sym, from->nsym * sizeof *x->sym);
-    x->hash = CT_NEWN(a, uint32_t, from->hash_size);
-    memcpy(x->hash, from->hash, from->hash_size * sizeof *x->hash);
-    x->label = NULL;
-    x->label_cap = x->walk_cap = 0;
-    x->generation = 0;
-    return x;
-}
-
 static double *start_values(struct ct_arena *a, const struct ct_model *m)
 {
     double *v = CT_NEWN(a, double, m->x->nsym + 1);
@@ -47,9 +28,9 @@ static struct ct_build *build_create(struct ct_ctx *ctx, struct ct_arena *a,
                                      const struct ct_formulate_options *o)
 {
     struct ct_build *b = CT_NEW(a, struct ct_build);
-    *b = (struct ct_build){.ctx = ctx, .arena = a, .model = m};
+    *b = (struct ct_build){.ctx = ctx, .arena = a, .model = m, .is_rigid = o->measure_all};
     b->eqs = CT_NEW(a, struct ct_equations);
-    b->x = b->eqs->x = clone_store(a, m->x);
+    b->x = b->eqs->x = ct_exs_clone(a, m->x);
     b->value = start_values(a, m);
     ct_topology_derive(b, !o->keep_all);
     return b;

@@ -3,6 +3,7 @@
 // A branch of T_T carries what its outboard nodes need (5.8); a branch of T_R the torques of its
 // outboard nodes and the moments of the translational branches whose tails lie there (5.9), (5.3).
 #include "formulate/reaction.h"
+#include "formulate/flexible.h"
 #include "formulate/row.h"
 
 #include <math.h>
@@ -32,7 +33,11 @@ static ct_ex3 own_force(struct ct_build *b, int node)
     struct ct_exs *x = b->x;
     ct_ex3 sum = zero3;
     for (size_t i = 1; i < b->model->nbody; i++)
-        if (b->node_of_com[i] == node) {
+        if (b->node_of_com[i] == node && b->model->body[i].beam) {
+            ct_ex3 force, torque;
+            ct_flexible_wrench(b, ct_flexible_of(b, (int)i), &force, &torque);
+            add(b, &sum, force);
+        } else if (b->node_of_com[i] == node) {
             const ct_ex3 a = ct_node_acceleration(b, node, CT_FULL);
             add(b, &sum,
                 ct_ex3_scale(x, b->model->body[i].mass, ct_ex3_sub(x, a, b->model->gravity)));
@@ -56,6 +61,11 @@ static ct_ex3 own_force(struct ct_build *b, int node)
 static ct_ex3 body_torque(struct ct_build *b, int body, int node)
 {
     struct ct_exs *x = b->x;
+    if (b->model->body[body].beam) {
+        ct_ex3 force, torque;
+        ct_flexible_wrench(b, ct_flexible_of(b, body), &force, &torque);
+        return torque;
+    }
     const ct_ex *I = b->model->body[body].inertia;
     const ct_ex33 own = {{I[0], I[3], I[4], I[3], I[1], I[5], I[4], I[5], I[2]}};
     const int c = b->place[node].frame;

@@ -33,24 +33,27 @@ struct ct_machine {
         struct ct_native *native; // NULL: the tape is run
         double *out, *work;
         size_t nout;
-    } solved,       // u', q', where the equations have a solution; else empty
-        motion,     // M, Q, J, gam, q'
-        constraint, // phi, v, J
-        result,     // output columns
-        power,      // d(work)/dt
-        energy,     // kinetic, potential
-        root,       // g of each mode
-        memory,     // next values
-        momentum,   // dT/du
-        driver,     // value, rate of each driver
-        wanted,     // of each row: not negative in the right assembly
-        residual,   // r, phi, v; nothing if the equations have no residual, and so the next
-        tangent;    // dr/dq, dr/du, dr/du', dv/dq, J: the entries
+        struct ct_program *next; // of those compiled apart
+    } solved,                    // u', q', where the equations have a solution; else empty
+        motion,                  // M, Q, J, gam, q'
+        constraint,              // phi, v, J
+        result,                  // output columns
+        power,                   // d(work)/dt
+        energy,                  // kinetic, potential
+        root,                    // g of each mode
+        memory,                  // next values
+        momentum,                // dT/du
+        driver,                  // value, rate of each driver
+        wanted,                  // of each row: not negative in the right assembly
+        residual, // r, phi, v; nothing if the equations have no residual, and so the next
+        tangent;  // dr/dq, dr/du, dr/du', dv/dq, J: the entries
 
     double *M, *Q, *J, *gam, *rate; // of the last ct_machine_motion
     double *phi, *v;                // of the last ct_machine_constraint (J as well)
     double *g[2];                   // values of root functions, for modes (nmode)
     long evaluations;
+    struct ct_program *apart; // ct_machine_compile
+    enum ct_backend asked;
     const char *backend; // of what steps evaluate: "native" or "tape"
 };
 
@@ -63,6 +66,12 @@ struct ct_machine *ct_machine_create(struct ct_arena *a, const struct ct_model *
 /// Run these with another back end. False if native code is asked for and is not
 /// available; the tape is run then. Not for the inner loop: a must be the machine's arena.
 bool ct_machine_use(struct ct_arena *a, struct ct_machine *m, enum ct_backend backend);
+
+/// A further program on the machine's input: out (n) from x, a copy of the equations' store that may have grown. It runs
+/// as the others do, with `use` and `prepare`, until it is forgotten; a and x must live as long.
+void ct_machine_compile(struct ct_arena *a, struct ct_machine *m, const struct ct_exs *x,
+                        const ct_ex *out, size_t n, struct ct_program *p);
+void ct_machine_forget(struct ct_machine *m, const struct ct_program *p);
 
 /// Copy time and state into the input. y: q, u, work.
 void ct_machine_set(struct ct_machine *m, double t, const double *y);

@@ -26,7 +26,6 @@ struct ct_run {
     struct ct_run_report *report;
     double energy0, energy_scale;
     double pivot_most, time_last, singular_in, singular_reach; // see foresee_singular
-    bool is_near_singular;
     double pending; // time of the event ahead; INFINITY if there is none
     bool started;
 };
@@ -53,12 +52,9 @@ static double largest(const double *v, size_t n)
 static enum ct_eval accelerate(struct ct_run *r, double t, const double *y)
 {
     ct_machine_set(r->m, t, y);
-    if (!ct_machine_solved(r->m, r->s->a)) {
-        ct_machine_motion(r->m);
-        const enum ct_eval e = ct_embed_accelerate(r->s);
-        if (e != CT_EVAL_OK)
-            return e;
-    }
+    const enum ct_eval e = ct_embed_solve(r->s);
+    if (e != CT_EVAL_OK)
+        return e;
     for (size_t i = 0; i < r->m->nu; i++)
         if (!isfinite(r->s->a[i]))
             return CT_EVAL_RETRY;
@@ -78,7 +74,7 @@ static enum ct_eval rhs(void *user, double time, const double *y, double *dy)
 {
     struct ct_run *r = user;
     const double t = before_event(r, time);
-    if (r->is_near_singular) {
+    if (r->s->is_delicate) {
         memcpy(r->stage, y, r->ny * sizeof *y);
         const enum ct_eval p = ct_embed_project(r->s, t, r->stage);
         if (p != CT_EVAL_OK)
@@ -133,14 +129,15 @@ static void foresee_singular(struct ct_run *r, double t, const double *y, const 
     const double dt = t - r->time_last, far = 4 * dt;
     r->time_last = t;
     r->singular_in = INFINITY;
-    r->is_near_singular = false;
+    r->s->is_delicate = false;
     if (!r->s->rank || !(dt > 0))
         return;
-    r->pivot_most = fmax(r->pivot_most, r->s->sigma); // at y or close to it
-    if (r->s->sigma > foreseen_pivot * r->pivot_most)
+    const double last = ct_embed_last_pivot(r->s); // at y or close to it
+    r->pivot_most = fmax(r->pivot_most, last);
+    if (last > foreseen_pivot * r->pivot_most)
         return;
     const double now = pivot_after(r, t, y, dy, 0);
-    r->is_near_singular = now < near_pivot * r->pivot_most;
+    r->s->is_delicate = now < near_pivot * r->pivot_most;
     double s = glance * dt, pivot = pivot_after(r, t, y, dy, s), slope = (pivot - now) / s;
     for (int i = 0; i < SECANTS && slope < 0 && s - pivot / slope < far; i++) {
         const double next = s - part * pivot / slope, there = pivot_after(r, t, y, dy, next);
@@ -591,6 +588,7 @@ bool ct_run_simulate(struct ct_run *r, const struct ct_run_options *o,
     const bool ok = ct_integrate(r->ctx, o->method, &p, &io, r->y, &report->stats);
     report->rank = r->s->rank;
     report->switches = r->s->switches;
+    report->solves = r->s->solves;
     report->factorizations = r->s->factorizations + report->stats.factorizations;
     report->y = r->y;
     if (r->energy_scale > 0)

@@ -309,6 +309,12 @@ static void compare_back_ends(struct subject *s, const char *what, const double 
 static void accelerate(void *data)
 {
     struct subject *s = data;
+    ct_embed_solve(ct_run_embed(s->run));
+}
+
+static void accelerate_by_matrices(void *data)
+{
+    struct subject *s = data;
     ct_machine_motion(s->machine);
     ct_embed_accelerate(ct_run_embed(s->run));
 }
@@ -322,12 +328,13 @@ static void assemble(void *data)
 // M, Q, J, gam and the solve, with a goal for both together.
 static void show_accelerations(struct subject *s, const char *what, double per, double goal)
 {
-    const call_fn f[] = {accelerate, assemble};
-    void *const data[] = {s, s};
-    double t[2];
+    const call_fn f[] = {accelerate, assemble, accelerate_by_matrices};
+    void *const data[] = {s, s, s};
+    double t[3];
     char text[96];
-    measure(f, data, 2, t);
+    measure(f, data, 3, t);
     line(what, t[0] / per, goal);
+    line("  the same by matrices", t[2] / per, 0);
     snprintf(text, sizeof text, "  of that assembly (%s)", s->machine->backend);
     line(text, t[1] / per, 0);
 }
