@@ -130,7 +130,8 @@ struct reach {
     ct_ex33 *inertia;  // by cluster: augmented inertia of it and the clusters outboard, ground
     ct_ex33 *outboard; // the same of the clusters outboard alone
     int *first, *next; // stars of an anchor, chained
-    int *start; // by cluster: anchor from which on what turns with it is summed; -1: nothing does
+    int *
+        start; // by cluster: anchor from which on what turns with it is summed; -1: nothing does
 };
 
 static size_t at(const struct reach *s, int anchor, int cluster)

@@ -314,7 +314,8 @@ static ct_ex3 piece_velocity(struct ct_build *b, const struct ct_piece *p)
                           : ct_cluster_swing(b, p->cluster, piece_vector(b, p));
 }
 
-static ct_ex3 piece_acceleration(struct ct_build *b, const struct ct_piece *p, enum ct_level level)
+static ct_ex3 piece_acceleration(struct ct_build *b, const struct ct_piece *p,
+                                 enum ct_level level)
 {
     return p->anchor >= 0 ? ct_link_acceleration(b, p->anchor, level)
                           : carried_acceleration(b, p->cluster, piece_vector(b, p), level);

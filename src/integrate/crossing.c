@@ -23,7 +23,7 @@ static const double gap = 0.3;
 
 // Sweeps end when stages move less than this part of the tolerance, or less than this part of themselves: then
 // the checks of the step are not spoilt by what sweeps have left at coarse tolerances.
-static const double settled = 0.01, settled_fine = 1e-10;
+static const double settled = 0.02, settled_fine = 1e-10;
 // A smooth motion meets the constraints also in the middle, up to this [m, rad] and up to so many times the
 // tolerance.
 static const double held = 1e-9, held_tolerance = 100;

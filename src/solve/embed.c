@@ -269,11 +269,6 @@ double ct_embed_pivot(struct ct_embed *s)
     return factor(s) ? s->sigma : 0;
 }
 
-double ct_embed_last_pivot(const struct ct_embed *s)
-{
-    return s->has_form && s->at_sigma > 0 ? s->sigma * s->strength / s->at_sigma : s->sigma;
-}
-
 static bool massless(struct ct_embed *s)
 {
     // the free direction with the least inertia: report the coordinate with the smallest diagonal entry

@@ -72,8 +72,6 @@ void ct_embed_renew(struct ct_embed *s);
 enum ct_eval ct_embed_project(struct ct_embed *s, double t, double *y);
 /// The smallest pivot of J_d against its largest at the last ct_machine_constraint.
 double ct_embed_pivot(struct ct_embed *s);
-/// The same as the last evaluation tells it; a guess where that was in closed form.
-double ct_embed_last_pivot(const struct ct_embed *s);
 /// Which multipliers are unique, into s->is_unique: rows of null(J') that vanish.  (6.5)
 void ct_embed_uniqueness(struct ct_embed *s);
 /// z (nrow, out) = the unit vector of `row` less its part in the range of J: a vector of null(J'), so that

@@ -25,8 +25,9 @@ struct ct_run {
     const struct ct_run_options *o;
     struct ct_run_report *report;
     double energy0, energy_scale;
-    double pivot_most, time_last, singular_in, singular_reach; // see foresee_singular
-    double pending; // time of the event ahead; INFINITY if there is none
+    double pivot_most, last_part, time_last, singular_in,
+        singular_reach; // see foresee_singular
+    double pending;     // time of the event ahead; INFINITY if there is none
     bool started;
 };
 
@@ -120,35 +121,52 @@ static double pivot_after(struct ct_run *r, double t, const double *y, const dou
 // and goes on falling; where it has fallen to the second part stages are projected, at the third f is better not computed.
 static const double foreseen_pivot = 0.7, near_pivot = 0.5, singular_pivot = 0.25;
 
-// The smallest pivot falls about linearly towards a singular position. Where it will vanish is found by secants from
-// one side, along the motion as the accelerations of now continue it.
-static void foresee_singular(struct ct_run *r, double t, const double *y, const double *dy)
+// The smallest pivot falls about linearly towards a singular position. Time to where it will vanish, by secants along
+// the motion as the accelerations of now continue it. INFINITY if it rises.
+static double time_to_singular(struct ct_run *r, double t, const double *y, const double *dy,
+                               double now, double dt)
 {
     enum { SECANTS = 3 };
     const double glance = 1e-3, part = 0.8; // of the last step; of the way, not to step across
-    const double dt = t - r->time_last, far = 4 * dt;
-    r->time_last = t;
-    r->singular_in = INFINITY;
-    r->s->is_delicate = false;
-    if (!r->s->rank || !(dt > 0))
-        return;
-    const double last = ct_embed_last_pivot(r->s); // at y or close to it
-    r->pivot_most = fmax(r->pivot_most, last);
-    if (last > foreseen_pivot * r->pivot_most)
-        return;
-    const double now = pivot_after(r, t, y, dy, 0);
-    r->s->is_delicate = now < near_pivot * r->pivot_most;
+    const double far = 4 * dt;
     double s = glance * dt, pivot = pivot_after(r, t, y, dy, s), slope = (pivot - now) / s;
-    for (int i = 0; i < SECANTS && slope < 0 && s - pivot / slope < far; i++) {
-        const double next = s - part * pivot / slope, there = pivot_after(r, t, y, dy, next);
+    if (!(slope < 0))
+        return INFINITY;
+    for (int i = 0; i < SECANTS && s - pivot / slope < far; i++) {
+        const double next = s - part * pivot / slope;
+        double there = pivot_after(r, t, y, dy, next);
+        if (there > fabs(pivot)) // it has changed its sign, which is not seen
+            there = -there;
+        if (there == pivot)
+            break;
         slope = (there - pivot) / (next - s);
         s = next;
         pivot = there;
     }
-    if (!(slope < 0))
-        return;
-    r->singular_in = s - pivot / slope;
-    r->singular_reach = r->singular_in * fmin(1, singular_pivot * r->pivot_most / now);
+    return s - pivot / slope;
+}
+
+// What is ahead of an accepted state. False if the step to it has come beside a singular position before that was
+// foreseen.
+static bool foresee_singular(struct ct_run *r, double t, const double *y, const double *dy)
+{
+    const double dt = t - r->time_last;
+    if (!r->s->rank || !(dt > 0))
+        return true;
+    const double now = pivot_after(r, t, y, dy, 0), part = now / fmax(r->pivot_most, now);
+    const bool was_unforeseen = isinf(r->singular_in) && r->last_part > near_pivot;
+    if (r->o->step == 0 && part < singular_pivot && was_unforeseen)
+        return false;
+    r->time_last = t;
+    r->last_part = part;
+    r->pivot_most = fmax(r->pivot_most, now);
+    r->singular_in = INFINITY;
+    r->s->is_delicate = part < near_pivot;
+    if (part > foreseen_pivot)
+        return true;
+    r->singular_in = time_to_singular(r, t, y, dy, now, dt);
+    r->singular_reach = r->singular_in * fmin(1, singular_pivot / part);
+    return true;
 }
 
 static double singular_in(void *user, double *reach)
@@ -169,13 +187,13 @@ static double residual(void *user, double t, const double *y)
 static enum ct_eval accepted(void *user, double t, double *y, const double *dy)
 {
     struct ct_run *r = user;
+    if (!r->o->method->is_implicit && !foresee_singular(r, t, y, dy))
+        return CT_EVAL_RETRY;
     ct_machine_set(r->m, before_event(r, t), y);
     ct_memory_follow(r->m);
     if (r->o->method->is_implicit) { // its steps may pass without a projection
         ct_machine_constraint(r->m);
         ct_embed_renew(r->s);
-    } else {
-        foresee_singular(r, t, y, dy);
     }
     return CT_EVAL_OK;
 }
