@@ -40,8 +40,9 @@ static const double pile_time = 1e-9;
 // the position is not singular but only nearly so.
 static const double nearer = 0.5;
 static const int most_crossings = 6;
-// This much further away than where it should begin, a crossing may begin at once.
-static const double early = 1.3;
+// This much further away than where it should begin, a crossing may begin at once; after one that failed only where
+// a step to there has ended.
+static const double early = 1.3, on_time = 1.02;
 // The end of a run is reached by a crossing, too, when it is this part of its reach before the position.
 static const double beside = 0.5;
 // Beside a singular position f has fewer digits: crossings may err by this part of the largest state.
@@ -250,7 +251,7 @@ static struct stride plan(const struct run *r, double stop, bool is_time)
     const double reach = is_time ? fmin(r->reach, rest - r->singular_in) : r->reach;
     // the run may end before the position, but beside it
     if (has_crossing(r) && reach > 0 && r->singular_in - beside * reach < rest) {
-        if (r->singular_in <= early * reach)
+        if (r->singular_in <= (r->failed_crossings ? on_time : early) * reach)
             return plan_crossing(r, stop, is_time);
         wanted = fit_free(r->singular_in - reach, wanted);
     }
