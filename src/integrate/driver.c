@@ -501,8 +501,9 @@ static bool step_too_small(struct run *r, double h)
     if (r->failed_crossings)
         return ct_error(
             r->ctx, nowhere, CT_E_STEP_SINGULAR,
-            "at t = %.9g the motion comes to a singular position (in %.3g s) and the "
-            "tolerance leaves no step across it: ask for less, or take dopri5",
+            "at t = %.9g the motion comes to a singular position (in %.3g s) and no smooth "
+            "motion across it is found: ask for a larger tolerance, or change a length "
+            "slightly",
             r->t, r->singular_in);
     return ct_error(r->ctx, nowhere, CT_E_STEP_SMALL,
                     "at t = %.9g the step size became too small (%.3g) to go on", r->t, h);
