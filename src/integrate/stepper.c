@@ -23,8 +23,8 @@ enum ct_eval ct_stepper_rhs(const struct ct_problem *p, double t, const double *
 // Four entries at a time: their sums stay in registers, whatever the number of stages.
 enum { LANES = 4 };
 
-static inline void combine_lanes(double *restrict out, const double *y, double h, const double *a,
-                          const double *k, int s, int n, int lanes)
+static inline void combine_lanes(double *restrict out, const double *y, double h,
+                                 const double *a, const double *k, int s, int n, int lanes)
 {
     double sum[LANES] = {0};
     for (int j = 0; j < s; j++, k += n) {

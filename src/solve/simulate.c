@@ -69,19 +69,10 @@ static void multipliers(struct ct_run *r)
     memcpy(r->m->input + r->m->at_lam, r->s->lam, r->m->nrow * sizeof *r->s->lam);
 }
 
-// Stages of a step lie off the manifold by more than its steps do. Beside a singular position that
-// little is divided by a small pivot, so there the stage is put onto the manifold first.
 static enum ct_eval rhs(void *user, double time, const double *y, double *dy)
 {
     struct ct_run *r = user;
     const double t = before_event(r, time);
-    if (r->s->is_delicate) {
-        memcpy(r->stage, y, r->ny * sizeof *y);
-        const enum ct_eval p = ct_embed_project(r->s, t, r->stage);
-        if (p != CT_EVAL_OK)
-            return p;
-        y = r->stage;
-    }
     const enum ct_eval e = accelerate(r, t, y);
     if (e != CT_EVAL_OK)
         return e;
@@ -118,7 +109,8 @@ static double pivot_after(struct ct_run *r, double t, const double *y, const dou
 }
 
 // A position counts as singular ahead when the smallest pivot has fallen to the first part of its largest value so far
-// and goes on falling; where it has fallen to the second part stages are projected, at the third f is better not computed.
+// and goes on falling; where it has fallen to the second part pivots are sought at every evaluation, at the third f is
+// better not computed.
 static const double foreseen_pivot = 0.7, near_pivot = 0.5, singular_pivot = 0.25;
 
 // The smallest pivot falls about linearly towards a singular position. Time to where it will vanish, by secants along
@@ -174,6 +166,14 @@ static double singular_in(void *user, double *reach)
     const struct ct_run *r = user;
     *reach = r->singular_reach;
     return r->singular_in;
+}
+
+// The stages of a crossing keep away from the position and are put onto the constraints: an order of pivots that holds
+// where it begins holds for all of them.
+static void set_crossing(void *user, bool is_crossing)
+{
+    struct ct_run *r = user;
+    r->s->is_delicate = !is_crossing && r->last_part < near_pivot;
 }
 
 static double residual(void *user, double t, const double *y)
@@ -589,6 +589,7 @@ bool ct_run_simulate(struct ct_run *r, const struct ct_run_options *o,
            .project = project,
            .accepted = accepted,
            .singular_in = singular_in,
+           .set_crossing = set_crossing,
            .residual = residual,
            .nroot = r->nroot,
            .root = root,
