@@ -49,6 +49,8 @@ static const struct option {
      "what evaluates the equations: auto, native or tape"},
     {"summary", 0, "FILE.json", TEXT, FIELD(summary), CLI_SIMULATE | CLI_CHECK, true,
      "what the run did, for programs"},
+    {"verify", 0, NULL, FLAG, FIELD(verify), CLI_SIMULATE, false,
+     "a second run; the difference tells the global error"},
     {"error", 0, "E", NUMBER, FIELD(error), CLI_ACCURACY, false,
      "the error that the cheapest setting must meet; 1e-6"},
     {"reference", 0, "FILE.csv", TEXT, FIELD(reference), CLI_ACCURACY, false,

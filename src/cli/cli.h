@@ -22,7 +22,7 @@ struct cli_args {
     size_t nset;
     double tolerance, step, until, error;
     long samples;
-    bool keep_all, quiet, help, version;
+    bool keep_all, verify, quiet, help, version;
 };
 
 /// One bit for each command, for the table of options.

@@ -183,6 +183,9 @@ size_t ct_ex_jacobian(struct ct_exs *x, struct ct_arena *scratch, struct ct_aren
 
 /// a with each symbol from[i] replaced by to[i].
 ct_ex ct_ex_subst(struct ct_exs *x, ct_ex a, const ct_ex *from, const ct_ex *to, size_t n);
+/// The same for all of a (na) in one walk.
+void ct_ex_subst_list(struct ct_exs *x, ct_ex *a, size_t na, const ct_ex *from, const ct_ex *to,
+                      size_t n);
 /// Copy a from store `from` into x; leaf(data, x, from, symbol) gives the node for a symbol.
 typedef ct_ex (*ct_ex_leaf_fn)(void *data, struct ct_exs *x, const struct ct_exs *from,
                                ct_ex s);

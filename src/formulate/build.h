@@ -55,7 +55,8 @@ struct ct_edge_info {
     struct ct_flexible *flexible;      // arms of beams: the beam, with the section at `along`
     ct_ex along;                       // [m]
     const struct ct_station *station;  // once the beam's coordinates are chosen
-    ct_ex3 *slide, *turn;              // of the station, by elastic coordinate
+    ct_ex3 *foreshortened; // slides that forces act along, where they differ; else NULL
+    ct_ex3 *slide, *turn;  // of the station, by elastic coordinate
 };
 
 /// coef times a speed: of an unknown (speed >= 0) or of a driver (driver >= 0).
@@ -83,6 +84,8 @@ struct ct_cluster {
     ct_ex3 axis; // local
     ct_ex angle;
     int has_angle;
+    ct_ex own_angle; // against its parent, where it is one turn
+    ct_ex33 S;       // else its axes -> its parent's
     ct_ex omega;     // planar: w = omega * normal
     ct_ex3 w, al[2]; // angular velocity, acceleration: [0] with u' = 0, [1] with symbols u'
     bool has_al[2];
@@ -93,6 +96,8 @@ struct ct_cluster {
 struct ct_slide {
     int speed, driver;
     ct_ex3 p;
+    ct_ex3
+        extra; // what forces act along besides: foreshortening that the kinematics leaves out
 };
 
 /// Vector from the parent anchor to this one: R_cluster (local).
@@ -151,6 +156,10 @@ struct ct_build {
 
     // planar mechanisms: common normal and a basis of the plane (ground components)
     bool is_planar;
+    const bool *is_linear; // by body: beams left to the program that are; NULL: not known yet
+    const struct ct_equations *like; // whose beams are formulated alike; NULL: none
+    bool keep_all;                   // leave nothing out
+    bool is_held;                    // drivers stand still
     bool is_rigid;   // beams keep their shape: for assembly, where they are not deformed yet
     ct_ex3 plane[3]; // e1, e2, n
     ct_ex *layer;    // by node: its place along n [m]
@@ -183,7 +192,8 @@ struct ct_build {
 
     struct ct_star *star;
     size_t nstar, star_cap;
-    int *child; // anchors, star by star
+    bool is_lumped; // stars are made
+    int *child;     // anchors, star by star
 
     struct ct_load *load;
     size_t nload, load_cap;

@@ -24,7 +24,7 @@ struct ct_sweep {
     ct_ex *row; // by speed: what the deformation of beams adds
 };
 
-/// Anchor masses, stars, augmented inertias.
+/// Anchor masses, stars, augmented inertias; once.
 void ct_masses_lump(struct ct_build *b);
 /// Augmented inertia of a cluster in ground components; planar: about the normal, in the last entry.
 ct_ex33 ct_cluster_inertia(struct ct_build *b, int c);
@@ -43,6 +43,8 @@ void ct_mass_matrix_derive(struct ct_build *b);
 const struct ct_sweep *ct_sweep_run(struct ct_build *b, enum ct_level level);
 /// Q from the bias sweep and the efforts of the joints.
 void ct_forces_derive(struct ct_build *b);
+/// M and Q, once. After ct_loads_derive.
+void ct_dynamics_derive(struct ct_build *b);
 /// Row of the full sweep less the efforts of the joints: M u' - Q - J' lam. After ct_forces_derive.
 ct_ex ct_sweep_residual(struct ct_build *b, int speed);
 /// Row of the full sweep for a driver: the effort that the branch must supply.

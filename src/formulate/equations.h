@@ -86,8 +86,26 @@ struct ct_residual {
     size_t ndq, ndu, nda, ndv;
 };
 
+/// Validity indicator of a linear beam.
+struct ct_validity {
+    const char *beam;
+    struct ct_mark mark;
+    ct_ex eta;
+    double omega; // first bending frequency of the beam in its frame [rad/s]
+};
+
 struct ct_left_out {
     const char *what, *why;
+};
+
+/// How accelerations of an open system are formulated. CUTSETS: mass matrix and forces by cutset sums in ground axes;
+/// COMPOSITE: the same in axes of the bodies; ARTICULATED: without a mass matrix.
+enum ct_formulation {
+    CT_FORMULATION_AUTO,
+    CT_FORMULATION_CUTSETS,
+    CT_FORMULATION_COMPOSITE,
+    CT_FORMULATION_ARTICULATED,
+    CT_NFORMULATION
 };
 
 struct ct_equations {
@@ -98,7 +116,12 @@ struct ct_equations {
     size_t nu, u_cap;
     struct ct_entry *M; // lower triangle, row by row
     size_t nM, M_cap;
-    ct_ex *solution;    // u' of an open system in closed form (nu), or NULL
+    ct_ex *solution; // u' of an open system in closed form (nu), or NULL
+    ct_ex *pivot;    // of each speed in an articulated solution (nu): 0 where it moves no mass
+    enum ct_formulation formulation; // of the solution; AUTO where no choice was made
+    // operations by formulation, the solution included; INFINITY: it does not apply or cannot win
+    double formulation_cost[CT_NFORMULATION];
+    bool has_dynamics;  // M and Q are derived; else ct_formulate_dynamics does it
     ct_ex *Q;           // nu
     struct ct_entry *J; // row by row
     size_t nJ, J_cap;
@@ -117,6 +140,9 @@ struct ct_equations {
     ct_ex kinetic, potential, strain; // strain: of beams
     struct ct_residual *residual;     // NULL if not asked for
     bool is_planar;
+    bool is_truncated; // to first order in coordinates that are small
+    struct ct_validity *validity;
+    size_t nvalidity, validity_cap;
     struct ct_left_out *left_out;
     size_t nleft_out, left_out_cap;
     struct ct_coordinate *coordinate; // of all joints and bodies (build.h)

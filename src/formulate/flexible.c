@@ -1,5 +1,6 @@
 // See flexible.h.
-#include "formulate/flexible.h"
+#include "formulate/excite.h"
+#include "formulate/topology.h"
 
 #include <math.h>
 #include <string.h>
@@ -60,9 +61,7 @@ static void derive_shortening(struct ct_flexible *f)
         for (int k = 0; k < 4; k++) {
             const struct ct_shape both = ct_shape_mul(&f->shape.slope[j], &f->shape.slope[k]);
             const struct ct_shape E = ct_shape_primitive(&both);
-            struct ct_shape one = {.power = E.power};
-            for (int i = 0; i < CT_SHAPE_SIZE; i++)
-                one.c[0] += E.c[i];
+            const struct ct_shape one = {.c = {ct_shape_end(&E)}, .power = E.power};
             struct ct_shape D = ct_shape_mul(&xi, &one);
             for (int i = 0; i < CT_SHAPE_SIZE; i++)
                 D.c[i] -= E.c[i];
@@ -90,13 +89,66 @@ static enum ct_axial axial_of(const struct ct_flexible *f)
              : CT_AXIAL_CHAIN;
 }
 
+// Deformations without a stiffness would be free to go anywhere: with --keep-all they are left out, else they are the
+// model's fault, as the scene excites them.
+static void need_stiffness(struct ct_build *b, struct ct_flexible *f)
+{
+    static const struct {
+        unsigned family;
+        const char *what, *key;
+    } all[] = {{CT_BEAM_AXIAL, "stretch", "area"},
+               {CT_BEAM_BENDING_Y, "bend in its x-z plane", "Iy"},
+               {CT_BEAM_BENDING_Z, "bend in its x-y plane", "Iz"},
+               {CT_BEAM_TORSION, "twist", "G or nu"}};
+    for (size_t i = 0; i < COUNT(all); i++) {
+        if (!(f->deformation & all[i].family & ~f->beam->known))
+            continue;
+        f->deformation &= ~all[i].family;
+        if (b->keep_all)
+            ct_topology_left_out(
+                b, ct_arena_printf(b->arena, "that %s can %s", f->name, all[i].what),
+                ct_arena_printf(b->arena, "%s is not given", all[i].key));
+        else
+            ct_error(b->ctx, b->model->body[f->body].instance.mark, CT_E_BEAM,
+                     "beam '%s' can %s here: give %s, or say with 'deformation' what it may do",
+                     f->name, all[i].what, all[i].key);
+    }
+}
+
+// Left to the program: as in equations that were made before, else the one that holds further.
+static void choose_formulation(const struct ct_build *b, struct ct_flexible *f)
+{
+    const struct ct_flexible *like = b->like ? ct_flexible_of(b->like->build, f->body) : NULL;
+    f->formulation = like ? like->formulation : CT_BEAM_FORESHORTENING;
+    if (b->is_linear)
+        f->formulation = b->is_linear[f->body] ? CT_BEAM_LINEAR : CT_BEAM_FORESHORTENING;
+}
+
 static void settle(struct ct_build *b, struct ct_flexible *f)
 {
     const struct ct_beam *beam = f->beam;
-    f->deformation = b->is_rigid ? 0 : beam->deformation & in_plane(b, f);
-    f->formulation
-        = beam->formulation == CT_BEAM_AUTO ? CT_BEAM_FORESHORTENING : beam->formulation;
-    f->axial = axial_of(f);
+    f->deformation = beam->deformation & in_plane(b, f);
+    if (f->deformation & CT_BEAM_TORSION && !beam->deformation_given && !b->keep_all
+        && !ct_excite_twist(b, f)) {
+        f->deformation &= ~(unsigned)CT_BEAM_TORSION;
+        ct_topology_left_out(b, ct_arena_printf(b->arena, "torsion of %s", f->name),
+                             "nothing beyond its base can twist it");
+    }
+    if (b->is_planar && beam->deformation & ~(unsigned)(CT_BEAM_AXIAL | f->deformation))
+        ct_topology_left_out(b,
+                             ct_arena_printf(b->arena,
+                                             "bending of %s out of the plane, and its torsion",
+                                             f->name),
+                             "gravity, loads, masses and arms lie in the plane");
+    need_stiffness(b, f);
+    if (b->is_rigid)
+        f->deformation = 0;
+    f->formulation = beam->formulation;
+    if (beam->formulation == CT_BEAM_AUTO)
+        choose_formulation(b, f);
+    f->axial = f->kinematics = axial_of(f);
+    if (f->formulation == CT_BEAM_FORCE_ONLY)
+        f->kinematics = CT_AXIAL_LINEAR;
     f->freedom = CT_NEWN(b->arena, struct ct_freedom, NKIND * (beam->nelement + 1));
     f->element = CT_NEWN(b->arena, struct ct_element, beam->nelement);
     ct_shape_bending(beam->theory, &f->shape);
@@ -247,33 +299,35 @@ ct_ex ct_element_field(struct ct_build *b, const struct ct_element *e,
 
 // (M a)_j of the matrix of shapes that the axial displacement is quadratic in, with its sign.
 static ct_ex quadratic_slope(struct ct_build *b, const struct ct_flexible *f, int e, int plane,
-                             int j, const ct_ex *of, ct_ex xi)
+                             int j, const ct_ex *of, enum ct_axial axial, ct_ex xi)
 {
     const struct ct_element *self = &f->element[e];
-    const bool local = f->axial == CT_AXIAL_LOCAL;
+    const bool local = axial == CT_AXIAL_LOCAL;
     const struct ct_shape *row = local ? f->bubble[j] : f->shortening[j];
     const ct_ex v = ct_element_field(b, self, row, of, plane ? 6 : 2, 4, xi);
     return local ? v : ct_ex_neg(b->x, v);
 }
 
 void ct_axial_field(struct ct_build *b, const struct ct_flexible *f, int e, ct_ex xi,
-                    struct ct_axial_field *a)
+                    enum ct_axial axial, struct ct_axial_field *a)
 {
     struct ct_exs *x = b->x;
     const struct ct_element *self = &f->element[e];
     memset(a, 0, sizeof *a);
-    a->value
-        = ct_ex_add(x, self->c, ct_element_field(b, self, f->linear, self->value, 0, 2, xi));
-    a->rate = ct_ex_add(x, self->c_rate,
-                        ct_element_field(b, self, f->linear, self->rate, 0, 2, xi));
-    a->bias = self->c_bias;
+    a->value = ct_element_field(b, self, f->linear, self->value, 0, 2, xi);
+    a->rate = ct_element_field(b, self, f->linear, self->rate, 0, 2, xi);
+    if (axial == CT_AXIAL_CHAIN) {
+        a->value = ct_ex_add(x, a->value, self->c);
+        a->rate = ct_ex_add(x, a->rate, self->c_rate);
+        a->bias = self->c_bias;
+    }
     for (int j = 0; j < 2; j++)
         a->slope[j] = ct_shape_at(x, &f->linear[j], xi, self->span.length);
-    for (int plane = 0; plane < 2 && f->axial != CT_AXIAL_LINEAR; plane++)
+    for (int plane = 0; plane < 2 && axial != CT_AXIAL_LINEAR; plane++)
         for (int j = 0; j < 4; j++) {
             const int dof = (plane ? 6 : 2) + j;
-            const ct_ex s = quadratic_slope(b, f, e, plane, j, self->value, xi);
-            const ct_ex r = quadratic_slope(b, f, e, plane, j, self->rate, xi);
+            const ct_ex s = quadratic_slope(b, f, e, plane, j, self->value, axial, xi);
+            const ct_ex r = quadratic_slope(b, f, e, plane, j, self->rate, axial, xi);
             a->slope[dof] = s;
             a->value = ct_ex_add(x, a->value,
                                  ct_ex_scale(x, 0.5, ct_ex_mul(x, s, self->value[dof])));
@@ -293,7 +347,7 @@ static int element_at(const struct ct_build *b, const struct ct_flexible *f, dou
 static const double at_node = 1e-9; // of the element's length: the place is that of the node
 
 void ct_flexible_station(struct ct_build *b, const struct ct_flexible *f, ct_ex place,
-                         struct ct_station *s)
+                         enum ct_axial axial, struct ct_station *s)
 {
     struct ct_exs *x = b->x;
     const double at = ct_ex_value(x, place, b->value);
@@ -303,7 +357,8 @@ void ct_flexible_station(struct ct_build *b, const struct ct_flexible *f, ct_ex 
     const double where = ct_ex_value(x, xi, b->value);
     s->xi = fabs(where) < at_node ? CT_EX_ZERO : fabs(where - 1) < at_node ? CT_EX_ONE : xi;
     struct ct_axial_field a;
-    ct_axial_field(b, f, e, s->xi, &a);
+    s->axial = axial;
+    ct_axial_field(b, f, e, s->xi, axial, &a);
     s->place.e[0] = ct_ex_add(x, place, a.value);
     s->place.e[1] = ct_element_field(b, self, f->shape.place, self->value, 2, 4, s->xi);
     s->place.e[2] = ct_element_field(b, self, f->shape.place, self->value, 6, 4, s->xi);
@@ -332,7 +387,7 @@ void ct_station_partials(struct ct_build *b, const struct ct_flexible *f,
     const struct ct_element *self = &f->element[s->element];
     const ct_ex h = self->span.length;
     struct ct_axial_field a;
-    ct_axial_field(b, f, s->element, s->xi, &a);
+    ct_axial_field(b, f, s->element, s->xi, s->axial, &a);
     for (int j = 0; j < CT_DOF; j++) {
         ct_ex3 d = zero3, t = zero3;
         const int plane = j >= 6, i = plane ? j - 6 : j - 2;
@@ -348,7 +403,7 @@ void ct_station_partials(struct ct_build *b, const struct ct_flexible *f,
         add_partial(b, f, s->element, j, d, slide);
         add_partial(b, f, s->element, j, t, turn);
     }
-    for (int e = 0; e < s->element && f->axial == CT_AXIAL_CHAIN; e++)
+    for (int e = 0; e < s->element && s->axial == CT_AXIAL_CHAIN; e++)
         for (int j = 2; j < CT_PLACE_DOF; j++)
             add_partial(b, f, e, j, (ct_ex3){{f->element[e].g[j], CT_EX_ZERO, CT_EX_ZERO}},
                         slide);

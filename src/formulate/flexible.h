@@ -18,6 +18,9 @@
 #include "formulate/dynamics.h"
 #include "formulate/shape.h"
 
+/// A linear beam is good enough below this indicator.
+#define CT_VALIDITY_LIMIT 0.01
+
 enum { CT_DOF = 12, CT_PLACE_DOF = 10 };
 enum ct_axial { CT_AXIAL_LINEAR, CT_AXIAL_LOCAL, CT_AXIAL_CHAIN };
 
@@ -50,6 +53,7 @@ struct ct_element {
 /// A section of the beam: displacement u of the axis, rotation Rz(angle[2]) Ry(angle[1]) Rx(angle[0])  (1.7b).
 struct ct_station {
     int element;
+    enum ct_axial axial;
     ct_ex xi;
     ct_ex3 place; // x + u
     ct_ex angle[3];
@@ -60,8 +64,11 @@ struct ct_flexible {
     const char *name;
     int body, base;
     unsigned deformation;
-    enum ct_axial axial;
+    enum ct_axial axial; // of forces
+    enum ct_axial
+        kinematics; // of places and of the mass matrix: the same, but LINEAR where only forces foreshorten
     enum ct_beam_formulation formulation;
+    const char *why; // this formulation; NULL: as asked for
     struct ct_elastic *elastic;
     int nelastic;
     struct ct_freedom *freedom; // 6 (nelement + 1)
@@ -90,10 +97,10 @@ struct ct_flexible *ct_flexible_of(const struct ct_build *b, int body);
 /// Unknowns of the elastic coordinates, after those of joints and bodies.
 void ct_flexible_unknowns(struct ct_build *b, struct ct_flexible *f);
 void ct_axial_field(struct ct_build *b, const struct ct_flexible *f, int e, ct_ex xi,
-                    struct ct_axial_field *a);
-/// The section at x.
+                    enum ct_axial axial, struct ct_axial_field *a);
+/// The section at x. axial: the kinematics in use; f->kinematics is that of places.
 void ct_flexible_station(struct ct_build *b, const struct ct_flexible *f, ct_ex x,
-                         struct ct_station *s);
+                         enum ct_axial axial, struct ct_station *s);
 /// Slides (m = 0 ... nelastic-1, beam axes) and turns of a station by elastic coordinate.
 void ct_station_partials(struct ct_build *b, const struct ct_flexible *f,
                          const struct ct_station *s, ct_ex3 *slide, ct_ex3 *turn);

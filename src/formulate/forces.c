@@ -6,6 +6,7 @@
 #include "formulate/flexible.h"
 #include "formulate/row.h"
 #include "formulate/signal.h"
+#include "formulate/small.h"
 
 #include <string.h>
 
@@ -194,6 +195,7 @@ const struct ct_sweep *ct_sweep_run(struct ct_build *b, enum ct_level level)
     if (b->sweep[level])
         return b->sweep[level];
     struct work w = {.b = b, .level = level};
+    ct_masses_lump(b);
     struct ct_sweep *s = CT_NEW(b->arena, struct ct_sweep);
     w.rest = CT_NEWN(b->arena, ct_ex3, b->nanchor);
     w.torque = s->torque = CT_NEWN(b->arena, ct_ex3, b->ncluster);
@@ -243,6 +245,10 @@ static ct_ex sweep_row(struct ct_build *b, const struct ct_sweep *s, int speed, 
                 continue;
             const ct_ex3 p = ct_cluster_turn(b, b->anchor[a].cluster, t->p);
             sum = ct_ex_add(x, sum, ct_ex3_dot(x, p, s->force[a]));
+            if (ct_ex3_is_zero(t->extra))
+                continue;
+            const ct_ex3 extra = ct_cluster_turn(b, b->anchor[a].cluster, t->extra);
+            sum = ct_ex_add(x, sum, ct_ex3_dot(x, extra, ct_sweep_run(b, CT_BIAS)->force[a]));
         }
     return sum;
 }
@@ -251,11 +257,19 @@ void ct_forces_derive(struct ct_build *b)
 {
     const struct ct_sweep *s = ct_sweep_run(b, CT_BIAS);
     struct ct_equations *e = b->eqs;
-    b->effort = CT_NEWN(b->arena, ct_ex, e->nu + 1);
-    for (size_t k = 0; k < e->nu; k++) {
-        b->effort[k] = e->Q[k]; // so far these are all that is in Q
-        e->Q[k] = ct_ex_sub(b->x, e->Q[k], sweep_row(b, s, (int)k, -1));
-    }
+    for (size_t k = 0; k < e->nu; k++)
+        e->Q[k] = ct_ex_sub(b->x, b->effort[k], sweep_row(b, s, (int)k, -1));
+}
+
+void ct_dynamics_derive(struct ct_build *b)
+{
+    if (b->eqs->has_dynamics)
+        return;
+    ct_masses_lump(b);
+    ct_mass_matrix_derive(b);
+    ct_forces_derive(b);
+    ct_small_derive(b);
+    b->eqs->has_dynamics = true;
 }
 
 ct_ex ct_sweep_residual(struct ct_build *b, int speed)
@@ -368,5 +382,8 @@ bool ct_loads_derive(struct ct_build *b)
         b->eqs->potential = ct_ex_add(b->x, b->eqs->potential, b->load[i].potential);
         b->eqs->power = ct_ex_add(b->x, b->eqs->power, b->load[i].power);
     }
+    b->effort = CT_NEWN(b->arena, ct_ex, b->eqs->nu + 1);
+    for (size_t k = 0; k < b->eqs->nu; k++)
+        b->effort[k] = b->eqs->Q[k]; // so far these are all that is in Q
     return b->ctx->nerror == before;
 }

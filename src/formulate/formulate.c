@@ -2,11 +2,13 @@
 #include "formulate/formulate.h"
 #include "expr/tape.h"
 #include "formulate/dynamics.h"
+#include "formulate/open.h"
 #include "formulate/residual.h"
 #include "formulate/row.h"
 #include "formulate/signal.h"
-#include "formulate/solution.h"
+#include "formulate/small.h"
 #include "formulate/topology.h"
+#include "formulate/validity.h"
 #include "graph/exchange.h"
 
 #include <math.h>
@@ -25,10 +27,18 @@ static double *start_values(struct ct_arena *a, const struct ct_model *m)
 // Graph, nodes and edges of the model; trees are still open.
 static struct ct_build *build_create(struct ct_ctx *ctx, struct ct_arena *a,
                                      const struct ct_model *m,
-                                     const struct ct_formulate_options *o)
+                                     const struct ct_formulate_options *o,
+                                     const bool *is_linear)
 {
     struct ct_build *b = CT_NEW(a, struct ct_build);
-    *b = (struct ct_build){.ctx = ctx, .arena = a, .model = m, .is_rigid = o->measure_all};
+    *b = (struct ct_build){.ctx = ctx,
+                           .arena = a,
+                           .model = m,
+                           .is_rigid = o->measure_all,
+                           .keep_all = o->keep_all,
+                           .is_held = o->held,
+                           .like = o->like,
+                           .is_linear = is_linear};
     b->eqs = CT_NEW(a, struct ct_equations);
     b->x = b->eqs->x = ct_exs_clone(a, m->x);
     b->value = start_values(a, m);
@@ -36,7 +46,7 @@ static struct ct_build *build_create(struct ct_ctx *ctx, struct ct_arena *a,
     return b;
 }
 
-// Everything but outputs: Phi, J, gam and, unless only places and speeds are wanted, M and Q.
+// What comes before M and Q: Phi, J, gam and, unless only places and speeds are wanted, the loads.
 static bool derive(struct ct_build *b, bool with_dynamics)
 {
     const size_t before = b->ctx->nerror;
@@ -45,12 +55,8 @@ static bool derive(struct ct_build *b, bool with_dynamics)
     ct_rotation_derive(b);
     ct_translation_derive(b);
     ct_rows_derive(b);
-    if (!with_dynamics)
-        return b->ctx->nerror == before;
-    ct_masses_lump(b);
-    ct_loads_derive(b);
-    ct_mass_matrix_derive(b);
-    ct_forces_derive(b);
+    if (with_dynamics)
+        ct_loads_derive(b);
     return b->ctx->nerror == before;
 }
 
@@ -110,10 +116,8 @@ static double equations_cost(struct ct_arena *scratch, const struct ct_equations
     for (size_t i = 0; i < e->nrow; i++)
         all[k++] = e->row[i].gam;
     const struct ct_tape_counts c = ct_ex_count(scratch, e->x, all, k);
-    const double per_function = 8, per_division = 4, per_speed = 20; // in multiplications
-    return (double)(c.multiplications + c.additions) + per_division * (double)c.divisions
-         + per_function * (double)c.functions + per_speed * (double)e->nu
-         + factor_cost(scratch, e);
+    const double per_speed = 20; // in multiplications
+    return ct_counted_cost(&c) + per_speed * (double)e->nu + factor_cost(scratch, e);
 }
 
 struct search {
@@ -130,10 +134,14 @@ static double pair_cost(void *data, const struct ct_tree *T, const struct ct_tre
     struct ct_arena *scratch = ct_arena_create_under(s->owner);
     struct ct_ctx quiet
         = {.model = scratch, .scratch = scratch}; // errors are reported by the chosen pair
-    struct ct_build *b = build_create(&quiet, scratch, s->model, s->options);
+    struct ct_build *b = build_create(&quiet, scratch, s->model, s->options, NULL);
     b->T = *T;
     b->R = *R;
-    const double cost = derive(b, true) ? equations_cost(scratch, b->eqs) : INFINITY;
+    double cost = INFINITY;
+    if (derive(b, true)) {
+        ct_dynamics_derive(b);
+        cost = equations_cost(scratch, b->eqs);
+    }
     ct_arena_destroy(scratch);
     return cost;
 }
@@ -230,8 +238,9 @@ static struct rules make_rules(struct ct_build *b, enum ct_tree_choice choice)
         r.weight_t[i] = e->weight_t + extra;
         r.weight_r[i] = e->weight_r + extra;
         r.rank[i] = tie_rank(b, i, depth, turned, choice);
-        r.forced_t[i] = e->must_be_branch;
-        r.forced_r[i] = e->must_be_branch || is_particle;
+        const bool is_small = e->kind == CT_EDGE_JOINT && ct_small_joint(b, e->index);
+        r.forced_t[i] = e->must_be_branch || is_small;
+        r.forced_r[i] = e->must_be_branch || is_particle || (is_small && e->has_rotation);
         r.banned_t[i] = e->never_branch;
         r.banned_r[i] = e->never_branch || !e->has_rotation;
         r.tied[i] = e->must_be_branch;
@@ -254,6 +263,33 @@ static bool is_open(const struct ct_build *b, const struct ct_tree_pair *p)
             return false;
     }
     return true;
+}
+
+// Rows that the chords leave, and unknowns, by (2.1).
+static void count_weights(const struct ct_build *b, const struct ct_tree_pair *p, int *nrow,
+                          int *nu)
+{
+    const int directions[2] = {b->is_planar ? 2 : 3, b->is_planar ? 1 : 3};
+    *nrow = *nu = 0;
+    for (size_t i = 0; i < b->nedge; i++) {
+        const struct ct_edge_info *e = &b->edge[i];
+        const bool is_joint = e->kind == CT_EDGE_JOINT || e->kind == CT_EDGE_CLOSURE;
+        const int weight[2] = {e->weight_t, e->weight_r};
+        const bool branch[2] = {p->trans[i], p->rot[i] || !e->has_rotation};
+        for (int k = 0; k < 2; k++) {
+            *nu += branch[k] ? weight[k] : 0;
+            *nrow += is_joint && !branch[k] ? directions[k] - weight[k] : 0;
+        }
+    }
+}
+
+// In a plane angles are chosen from ground even in open chains, and joints are then chords without rows. For a long
+// chain there is nothing to gain by a search, whose trials would need its mass matrix.
+static bool is_long_chain(const struct ct_build *b, const struct ct_tree_pair *p)
+{
+    int nrow, nu;
+    count_weights(b, p, &nrow, &nu);
+    return nrow == 0 && nu > CT_SMALL_SYSTEM;
 }
 
 static bool least_weight(struct ct_build *b, const struct rules *r, struct ct_tree_pair *p)
@@ -365,7 +401,7 @@ static bool choose_trees(struct ct_build *b, const struct search *s,
     report->how = how[o->tree];
     if (o->tree == CT_TREE_GIVEN ? !given_trees(b, o, &r, &p) : !least_weight(b, &r, &p))
         return false;
-    if (o->tree == CT_TREE_AUTO && is_open(b, &p))
+    if (o->tree == CT_TREE_AUTO && (is_open(b, &p) || is_long_chain(b, &p)))
         report->how = "least weight; there are no loops to cut";
     else if (o->tree == CT_TREE_AUTO && !o->measure_all)
         improve(b, s, &r, &p, report);
@@ -386,6 +422,7 @@ static const char *kind_name(const struct ct_build *b, size_t i)
     static const char *const plain[] = {"body", "arm", "joint", "closure", "force"};
     return e->self                            ? e->self->cls->name
          : b->edge[i].kind == CT_EDGE_CLOSURE ? "weld"
+         : b->edge[i].flexible                ? "flexible arm"
                                               : plain[e->kind];
 }
 
@@ -415,37 +452,80 @@ static void describe_graph(struct ct_build *b)
 }
 
 // Coordinates of all joints and bodies and their speeds, measured or not, in a fixed order.
-static void measure_all(struct ct_build *b)
+static void measure_all(struct ct_build *b, const struct ct_equations *needed_by)
 {
     for (size_t i = 0; i < b->ncoordinate; i++) {
-        const struct ct_result q
-            = {b->coordinate[i].name, ct_coordinate_value(b, (int)i), false};
+        const struct ct_coordinate *c = &b->coordinate[i];
+        struct ct_result q = {c->name, CT_EX_ZERO, false}, u = q;
+        if (!needed_by || b->edge[c->edge].kind != CT_EDGE_BODY || c->q >= 0
+            || needed_by->coordinate[i].q >= 0) {
+            q.value = ct_coordinate_value(b, (int)i);
+            u.value = ct_coordinate_speed(b, (int)i);
+        }
         CT_PUSH(b->arena, b->eqs->result, b->eqs->nresult, b->eqs->result_cap, q);
-        const struct ct_result u
-            = {b->coordinate[i].name, ct_coordinate_speed(b, (int)i), false};
         CT_PUSH(b->arena, b->eqs->result, b->eqs->nresult, b->eqs->result_cap, u);
     }
+}
+
+static void derive_dynamics(struct ct_build *b, const struct ct_formulate_options *o)
+{
+    if (o->with_solution && !b->eqs->nrow && b->eqs->nu) {
+        ct_open_solve(b, o->formulation);
+        return;
+    }
+    ct_dynamics_derive(b);
+}
+
+// Beams that leave their formulation to the program: what is known of their motion decides, and those that stay linear
+// make a new build on the same trees.
+static bool choose_beams(struct ct_ctx *ctx, struct ct_arena *a, const struct ct_model *m,
+                         const struct ct_formulate_options *o, struct ct_build **b)
+{
+    struct ct_build *old = *b;
+    const bool *linear = o->like || o->measure_all ? NULL : ct_validity_choose(old);
+    bool any = false;
+    for (size_t i = 0; linear && i < m->nbody; i++)
+        any = any || linear[i];
+    if (!any)
+        return true;
+    *b = build_create(ctx, a, m, o, linear);
+    (*b)->T = old->T;
+    (*b)->R = old->R;
+    for (size_t i = 0; i < old->nflexible; i++) {
+        struct ct_flexible *f = &(*b)->flexible[i];
+        f->why = old->flexible[i].why;
+        if (f->beam->formulation == CT_BEAM_AUTO && f->formulation == CT_BEAM_LINEAR)
+            ct_topology_left_out(*b, ct_arena_printf(a, "foreshortening of %s", f->name),
+                                 f->why);
+    }
+    return derive(*b, !o->without_dynamics);
 }
 
 bool ct_formulate(struct ct_ctx *ctx, struct ct_arena *a, const struct ct_model *m,
                   const struct ct_formulate_options *options, struct ct_equations *out,
                   struct ct_tree_report *report)
 {
-    struct ct_build *b = build_create(ctx, a, m, options);
+    const size_t before = ctx->nerror;
+    struct ct_build *b = build_create(ctx, a, m, options, NULL);
     struct search s = {ctx, m, options, a};
     *report = (struct ct_tree_report){0};
-    if (!choose_trees(b, &s, report) || !derive(b, !options->without_dynamics))
+    if (ctx->nerror > before || !choose_trees(b, &s, report)
+        || !derive(b, !options->without_dynamics) || !choose_beams(ctx, a, m, options, &b))
         return false;
-    if (options->with_solution)
-        ct_solution_derive(b);
+    if (!options->without_dynamics)
+        derive_dynamics(b, options);
+    if (ctx->nerror > before)
+        return false;
     if (options->with_residual)
         ct_residual_derive(b);
     if (options->with_energy)
         ct_energies_derive(b);
     if (options->measure_all)
-        measure_all(b);
+        measure_all(b, options->measured_for);
     else if (options->with_outputs && !ct_outputs_derive(b))
         return false;
+    if (options->with_energy)
+        ct_validity_monitor(b);
     describe_graph(b);
     b->eqs->coordinate = b->coordinate;
     b->eqs->ncoordinate = b->ncoordinate;
@@ -453,6 +533,18 @@ bool ct_formulate(struct ct_ctx *ctx, struct ct_arena *a, const struct ct_model 
     b->eqs->how = report->how;
     *out = *b->eqs;
     return true;
+}
+
+void ct_formulate_dynamics(struct ct_equations *e)
+{
+    if (e->has_dynamics)
+        return;
+    ct_dynamics_derive(e->build);
+    const struct ct_equations *made = e->build->eqs;
+    e->M = made->M;
+    e->nM = made->nM;
+    e->M_cap = made->M_cap;
+    e->has_dynamics = true;
 }
 
 void ct_formulate_residual(struct ct_equations *e)

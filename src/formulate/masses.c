@@ -89,6 +89,9 @@ static void link_children(struct ct_build *b)
 
 void ct_masses_lump(struct ct_build *b)
 {
+    if (b->is_lumped)
+        return;
+    b->is_lumped = true;
     for (size_t i = 1; i < b->model->nbody; i++) {
         const struct ct_body *body = &b->model->body[i];
         const struct ct_place *p = &b->place[b->node_of_com[i]];

@@ -79,8 +79,10 @@ static void choose_driven(struct ct_build *b, const struct ct_edge_info *e,
     const struct ct_value *motion = ct_instance_value(e->self, "motion");
     d.mark = b->holding = motion->at[c->place];
     d.value = ct_mode_hold(b, motion->e[c->place]);
-    d.rate = ct_build_rate(b, d.value);
-    d.acceleration = ct_build_rate(b, d.rate);
+    if (!b->is_held) {
+        d.rate = ct_build_rate(b, d.value);
+        d.acceleration = ct_build_rate(b, d.rate);
+    }
     c->value = d.value;
     c->rate = d.rate;
     c->driver = (int)b->eqs->ndriver;
@@ -104,11 +106,18 @@ static void find_station(struct ct_build *b, struct ct_edge_info *e)
     const struct ct_flexible *f = e->flexible;
     struct ct_station *s = CT_NEW(b->arena, struct ct_station);
     static const int axis_of_turn[3] = {2, 1, 0}; // (1.7b)
-    ct_flexible_station(b, f, e->along, s);
+    ct_flexible_station(b, f, e->along, f->kinematics, s);
     e->slide = CT_NEWN(b->arena, ct_ex3, f->nelastic + 1);
     e->turn = CT_NEWN(b->arena, ct_ex3, f->nelastic + 1);
     ct_station_partials(b, f, s, e->slide, e->turn);
     e->station = s;
+    if (f->kinematics != f->axial) {
+        struct ct_station forces;
+        e->foreshortened = CT_NEWN(b->arena, ct_ex3, f->nelastic + 1);
+        ct_flexible_station(b, f, e->along, f->axial, &forces);
+        ct_station_partials(b, f, &forces, e->foreshortened,
+                            CT_NEWN(b->arena, ct_ex3, f->nelastic + 1));
+    }
     e->at = s->place;
     for (int i = 0; i < 3; i++) {
         const int axis = axis_of_turn[i];
@@ -257,6 +266,7 @@ static int turn_cluster(struct ct_build *b, int parent, const struct ct_edge_inf
     const struct ct_cluster *p = &b->cluster[parent];
     const ct_ex3 opposite = ct_ex3_neg(x, axis);
     self->has_angle = true;
+    self->own_angle = angle;
     if (p->has_angle && (same3(p->axis, axis) || same3(p->axis, opposite))) {
         self->base = p->base;
         self->axis = p->axis;
@@ -305,6 +315,7 @@ static int quaternion_cluster(struct ct_build *b, int parent, const ct_ex33 *S,
     const ct_ex33 forward = quaternion_matrix(x, &e->motion.coord[k]);
     const ct_ex33 A = sign > 0 ? forward : ct_ex33_transpose(&forward);
     b->cluster[c].R = ct_ex33_mul(x, &P, &A);
+    b->cluster[c].S = ct_ex33_mul(x, S, &A);
     const ct_ex33 *to = sign > 0 ? &b->cluster[c].R : &P;
     for (int i = 0; i < 3; i++) {
         const struct ct_coordinate *coordinate = &b->coordinate[e->first_coordinate + k + i];
@@ -477,6 +488,14 @@ ct_ex3 ct_cluster_path_acceleration(struct ct_build *b, int from, int to, enum c
             from = b->cluster[from].parent;
         }
     return sum;
+}
+
+ct_ex33 ct_cluster_relative(struct ct_build *b, int c)
+{
+    const struct ct_cluster *self = &b->cluster[c];
+    return self->has_angle
+             ? ct_ex33_axis_angle(b->x, b->spin[self->first_spin].local, self->own_angle)
+             : self->S;
 }
 
 ct_ex3 ct_cluster_turn(struct ct_build *b, int c, ct_ex3 local)

@@ -1,6 +1,6 @@
 // Names of signals -> expressions; outputs and energies.  (format, section 6)
 #include "formulate/signal.h"
-#include "formulate/flexible.h"
+#include "formulate/beam_signal.h"
 #include "formulate/reaction.h"
 #include "formulate/topology.h"
 
@@ -116,8 +116,12 @@ static bool frame_signal(struct ct_build *b, int frame, const struct signal *s,
         return true;
     }
     return unknown(b, mark, name,
-                   "a frame has position, velocity, acceleration, angular_velocity, "
-                   "angular_acceleration, rotation and quaternion");
+                   b->model->body[b->model->frame[frame].body].beam
+                       ? "a frame of a beam has deflection, slope, chord_deflection, strain, "
+                         "force, moment, position, velocity, acceleration, angular_velocity, "
+                         "angular_acceleration, rotation and quaternion"
+                       : "a frame has position, velocity, acceleration, angular_velocity, "
+                         "angular_acceleration, rotation and quaternion");
 }
 
 // ---- joints ----------------------------------------------------------------------------------------------------
@@ -309,6 +313,22 @@ static ct_ex3 body_com(struct ct_build *b, int body)
                       ct_ex3_scale(b->x, ct_ex_div(b->x, CT_EX_ONE, s.mass), s.moment));
 }
 
+// ---- beams -----------------------------------------------------------------------------------------------------------
+
+static bool beam_signal(struct ct_build *b, int frame, const struct signal *s, const char *name,
+                        struct ct_mark mark, ct_ex *out)
+{
+    const bool is_force = !strcmp(s->property, "force");
+    const int i = index_of(s->component, axis_names, 3);
+    if (!strcmp(s->property, "strain")) {
+        *out = ct_beam_signal_strain(b, frame);
+        return !s->component || unknown(b, mark, name, "strain is a number");
+    }
+    if (is_force || !strcmp(s->property, "moment"))
+        b->is_open = b->is_open || (i >= 0 && !ct_beam_signal_is_known(b, frame, is_force, i));
+    return component_of(b, s, name, mark, ct_beam_signal_vector(b, frame, s->property), out);
+}
+
 // ---- any signal ----------------------------------------------------------------------------------------------------
 
 // Split at dots after the longest prefix that names something; " in AXES" is taken off the end.
@@ -374,6 +394,8 @@ bool ct_signal_resolve(struct ct_build *b, const char *name, struct ct_mark mark
     const int body = b->model->frame[frame].body;
     if (!strcmp(s.property, "com") && body > 0)
         return component_of(b, &s, name, mark, body_com(b, body), out);
+    if (b->model->body[body].beam && ct_beam_signal_exists(s.property))
+        return beam_signal(b, frame, &s, name, mark, out);
     return frame_signal(b, frame, &s, name, mark, out);
 }
 
@@ -492,7 +514,11 @@ static const char *const *components_of(struct ct_build *b, const char *name)
                                           "momentum",
                                           "angular_momentum",
                                           "force",
-                                          "torque"};
+                                          "torque",
+                                          "moment",
+                                          "deflection",
+                                          "slope",
+                                          "chord_deflection"};
     struct signal s = {0};
     int frame;
     if (!split(b, name, &s, &frame) || s.component)

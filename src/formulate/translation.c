@@ -45,11 +45,14 @@ static int anchor_at(struct ct_build *b, const struct ct_place *p)
 }
 
 static void add_slide(struct ct_build *b, struct ct_anchor *a, int speed, int driver, int sign,
-                      ct_ex3 along)
+                      ct_ex3 along, ct_ex3 extra)
 {
-    if (!ct_ex3_is_zero(along))
-        a->slide[a->nslide++]
-            = (struct ct_slide){speed, driver, sign > 0 ? along : ct_ex3_neg(b->x, along)};
+    if (sign < 0) {
+        along = ct_ex3_neg(b->x, along);
+        extra = ct_ex3_neg(b->x, extra);
+    }
+    if (!ct_ex3_is_zero(along) || !ct_ex3_is_zero(extra))
+        a->slide[a->nslide++] = (struct ct_slide){speed, driver, along, extra};
 }
 
 // Node beyond a branch that slides: an anchor of its own.
@@ -69,14 +72,19 @@ static void place_sliding(struct ct_build *b, const struct ct_edge_info *e,
     const struct ct_flexible *f = e->flexible;
     a->moves = true;
     a->slide = CT_NEWN(b->arena, struct ct_slide, (f ? f->nelastic : e->ncoordinate) + 1);
-    for (int k = 0; f && k < f->nelastic; k++)
-        add_slide(b, a, f->elastic[k].u, -1, sign, ct_ex33_apply(b->x, &tail->S, e->slide[k]));
+    for (int k = 0; f && k < f->nelastic; k++) {
+        const ct_ex3 along = ct_ex33_apply(b->x, &tail->S, e->slide[k]);
+        ct_ex3 extra = zero3;
+        if (e->foreshortened)
+            extra = ct_ex3_sub(b->x, ct_ex33_apply(b->x, &tail->S, e->foreshortened[k]), along);
+        add_slide(b, a, f->elastic[k].u, -1, sign, along, extra);
+    }
     for (int k = 0; k < e->ncoordinate; k++) {
         const struct ct_coordinate *c = &b->coordinate[e->first_coordinate + k];
         ct_ex3 p_tail;
         for (int j = 0; j < 3; j++)
             p_tail.e[j] = ct_edge_partial(b, e, e->trial.d.e[j], k);
-        add_slide(b, a, c->u, c->driver, sign, ct_ex33_apply(b->x, &tail->S, p_tail));
+        add_slide(b, a, c->u, c->driver, sign, ct_ex33_apply(b->x, &tail->S, p_tail), zero3);
     }
     a->drift = ct_build_rate3(b, vector);
     a->drift_bias = ct_build_rate3(b, a->drift);

@@ -1,7 +1,7 @@
 // The trees, and what they make of the model: unknowns, drivers, constraint rows.
 #include "report/derivation.h"
 
-#include "formulate/build.h"
+#include "formulate/flexible.h"
 
 #include <string.h>
 
@@ -62,7 +62,8 @@ static const char *meaning_of(struct ct_derivation *d, const struct ct_coordinat
     const struct ct_edge_info *e = &d->e->build->edge[c->edge];
     const struct ct_measure *m = measure_of(d->e, c);
     const char *what = e->kind == CT_EDGE_BODY
-                         ? ct_arena_printf(d->a, "body %s", e->name)
+                         ? ct_arena_printf(d->a, "%s %s",
+                                           d->m->body[e->index].beam ? "beam" : "body", e->name)
                          : ct_arena_printf(d->a, "%s joint %s", e->self->cls->name, e->name);
     *unit = "m";
     if (!m) {
@@ -78,11 +79,33 @@ static const char *meaning_of(struct ct_derivation *d, const struct ct_coordinat
         return ct_arena_printf(d->a, "angle of %s about %s", what,
                                ct_derivation_axis(d, m->about));
     }
+    if (e->kind == CT_EDGE_BODY && d->m->body[e->index].beam)
+        return ct_arena_printf(d->a, "place of the frame of beam %s along %s", e->name,
+                               ct_derivation_axis(d, m->along));
     return e->kind == CT_EDGE_BODY
              ? ct_arena_printf(d->a, "place of the centre of mass of %s along %s", what,
                                ct_derivation_axis(d, m->along))
              : ct_arena_printf(d->a, "displacement of %s along %s", what,
                                ct_derivation_axis(d, m->along));
+}
+
+// "rod.2.rx": of node 2 of beam rod.
+static const char *elastic_meaning(struct ct_derivation *d, const char *name, int body,
+                                   const char **unit)
+{
+    const char *beam = d->m->body[body].instance.name;
+    const char *node = name + strlen(beam) + 1, *kind = strrchr(name, '.') + 1;
+    const bool turns = *kind == 'r';
+    const struct ct_flexible *f = ct_flexible_of(d->e->build, body);
+    const bool stretches = *kind == 'u' && f->kinematics == CT_AXIAL_CHAIN;
+    *unit = turns ? "rad" : "m";
+    if (stretches)
+        return ct_arena_printf(d->a, "stretch of %s up to node %.*s", beam,
+                               (int)strcspn(node, "."), node);
+    return ct_arena_printf(d->a, "%s of node %.*s of %s %s %c",
+                           turns ? "rotation" : "displacement", (int)strcspn(node, "."), node,
+                           beam, turns ? "about" : "along",
+                           turns ? kind[1] : (char)('x' + (*kind - 'u')));
 }
 
 static void put_unknowns(struct ct_derivation *d)
@@ -97,7 +120,11 @@ static void put_unknowns(struct ct_derivation *d)
         const struct ct_u *u = &e->u[i];
         const char *unit;
         const char *speed = ct_derivation_text(d, u->symbol);
-        if (u->q >= 0) {
+        if (u->beam) {
+            const char *meaning = elastic_meaning(d, e->q[u->q].name, u->beam, &unit);
+            CT_PAGE_ROW(&d->page, ct_derivation_text(d, e->q[u->q].symbol), speed, unit,
+                        meaning);
+        } else if (u->q >= 0) {
             const char *meaning = meaning_of(d, coordinate_of(e, u->q), &unit);
             CT_PAGE_ROW(&d->page, ct_derivation_text(d, e->q[u->q].symbol), speed, unit,
                         meaning);

@@ -36,7 +36,9 @@ struct ct_embed *ct_embed_create(struct ct_arena *arena, struct ct_ctx *ctx,
                                  struct ct_machine *m)
 {
     const size_t n = m->nu, r = m->nrow, k = larger(n, r) + 1;
+    const size_t kk = m->e->has_dynamics || r ? k : 1; // else there is nothing to solve
     struct ct_embed *s = CT_NEW(arena, struct ct_embed);
+    s->arena = arena;
     s->m = m;
     s->ctx = ctx;
     s->arena = arena;
@@ -46,11 +48,11 @@ struct ct_embed *ct_embed_create(struct ct_arena *arena, struct ct_ctx *ctx,
     s->is_unique = CT_NEWN(arena, bool, r + 1);
     s->a = CT_NEWN(arena, double, n + 1);
     s->lam = CT_NEWN(arena, double, r + 1);
-    s->Jd = CT_NEWN(arena, double, k *k);
-    s->B = CT_NEWN(arena, double, k *k);
-    s->S = CT_NEWN(arena, double, k *k);
-    s->MB = CT_NEWN(arena, double, k *k);
-    s->A = CT_NEWN(arena, double, k *k);
+    s->Jd = CT_NEWN(arena, double, kk *kk);
+    s->B = CT_NEWN(arena, double, kk *kk);
+    s->S = CT_NEWN(arena, double, kk *kk);
+    s->MB = CT_NEWN(arena, double, kk *kk);
+    s->A = CT_NEWN(arena, double, kk *kk);
     s->c = CT_NEWN(arena, double, k);
     s->r = CT_NEWN(arena, double, k);
     s->b = CT_NEWN(arena, double, k);
@@ -58,9 +60,9 @@ struct ct_embed *ct_embed_create(struct ct_arena *arena, struct ct_ctx *ctx,
     s->pivot = CT_NEWN(arena, int, k);
     s->iwork = CT_NEWN(arena, int, k);
     s->column = CT_NEWN(arena, int, k);
-    const int kk = (int)k;
+    const int size = (int)kk;
     s->work = CT_NEWN(arena, double,
-                      larger(ct_lstsq_work(kk, kk), ct_qr_pivot_work(kk, kk)) + 3 * k);
+                      larger(ct_lstsq_work(size, size), ct_qr_pivot_work(size, size)) + 3 * k);
     return s;
 }
 
@@ -269,20 +271,43 @@ double ct_embed_pivot(struct ct_embed *s)
     return factor(s) ? s->sigma : 0;
 }
 
+// The speed with the smallest diagonal entry of M or, where there is none, with the smallest pivot of the closed form.
+static size_t lightest(struct ct_embed *s)
+{
+    const struct ct_equations *e = s->m->e;
+    const size_t n = s->m->nu;
+    double *inertia = s->r;
+    size_t least = 0;
+    for (size_t i = 0; i < n && e->has_dynamics; i++)
+        inertia[i] = s->m->M[i + n * i];
+    if (!e->has_dynamics)
+        ct_machine_values(s->arena, s->m, e->pivot, n, inertia);
+    for (size_t i = 1; i < n; i++)
+        if (!(inertia[i] >= inertia[least]))
+            least = i;
+    return least;
+}
+
 static bool massless(struct ct_embed *s)
 {
-    // the free direction with the least inertia: report the coordinate with the smallest diagonal entry
-    const size_t n = s->m->nu;
-    size_t least = 0;
-    for (size_t i = 1; i < n; i++)
-        if (s->m->M[i + n * i] < s->m->M[least + n * least])
-            least = i;
+    const size_t least = lightest(s);
     const struct ct_u *u = &s->m->e->u[least];
     const struct ct_mark mark = u->joint >= 0 ? s->m->model->joint[u->joint].mark
                                               : s->m->model->body[u->body].instance.mark;
     return ct_error(s->ctx, mark, CT_E_MASSLESS,
                     "coordinate '%s' moves no mass: give a mass or an inertia to what it moves",
                     u->q >= 0 ? s->m->e->q[u->q].name : u->name);
+}
+
+// The closed form has no result where a freedom moves no mass.
+static bool accelerates(struct ct_embed *s)
+{
+    if (!ct_machine_solved(s->m, s->a))
+        return false;
+    for (size_t i = 0; i < s->m->nu; i++)
+        if (!isfinite(s->a[i]))
+            return false;
+    return true;
 }
 
 bool ct_embed_choose(struct ct_embed *s)
@@ -299,6 +324,8 @@ bool ct_embed_choose(struct ct_embed *s)
     factor(s);
     s->kappa_chosen = s->kappa;
     s->sigma_chosen = s->sigma;
+    if (!s->m->e->has_dynamics && !s->rank)
+        return accelerates(s) || massless(s);
     ct_machine_motion(s->m);
     if (ct_embed_accelerate(s) != CT_EVAL_OK)
         return massless(s);

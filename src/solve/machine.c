@@ -60,9 +60,9 @@ static struct inputs list_inputs(struct ct_arena *a, const struct ct_machine *m,
 }
 
 static void compile_from(struct ct_arena *a, const struct ct_exs *x, const struct inputs *in,
-                         const ct_ex *out, size_t n, struct ct_program *p)
+                         const ct_ex *out, size_t n, enum ct_fuse fuse, struct ct_program *p)
 {
-    p->listing = ct_listing_create(a, x, out, n, in->symbol, in->slot, in->n, CT_FUSE_NO);
+    p->listing = ct_listing_create(a, x, out, n, in->symbol, in->slot, in->n, fuse);
     p->tape = ct_tape_create(a, p->listing);
     p->out = CT_NEWN(a, double, n + 1);
     p->work = CT_NEWN(a, double, ct_tape_work(p->tape) + 1);
@@ -72,7 +72,7 @@ static void compile_from(struct ct_arena *a, const struct ct_exs *x, const struc
 static void compile(struct ct_arena *a, const struct ct_machine *m, const struct inputs *in,
                     const ct_ex *out, size_t n, struct ct_program *p)
 {
-    compile_from(a, m->e->x, in, out, n, p);
+    compile_from(a, m->e->x, in, out, n, CT_FUSE_NO, p);
 }
 
 static void prepare(struct ct_program *p, const double *input)
@@ -131,7 +131,7 @@ void ct_machine_compile(struct ct_arena *a, struct ct_machine *m, const struct c
 {
     const struct inputs in = list_inputs(a, m, x);
     *p = (struct ct_program){.next = m->apart};
-    compile_from(a, x, &in, out, n, p);
+    compile_from(a, x, &in, out, n, CT_FUSE_NO, p);
     choose_backend(a, m, p);
     m->apart = p;
 }
@@ -165,7 +165,7 @@ static void compile_motion(struct ct_arena *a, struct ct_machine *m, const struc
     for (size_t i = 0; i < e->nM; i++)
         push(&l, e->M[i].value);
     for (size_t i = 0; i < e->nu; i++)
-        push(&l, e->Q[i]);
+        push(&l, e->has_dynamics ? e->Q[i] : CT_EX_ZERO);
     for (size_t i = 0; i < e->nJ; i++)
         push(&l, e->J[i].value);
     for (size_t i = 0; i < e->nrow; i++)
@@ -183,7 +183,7 @@ static void compile_solved(struct ct_arena *a, struct ct_machine *m, const struc
         push(&l, e->solution[i]);
     for (size_t i = 0; i < e->nq && e->solution; i++)
         push(&l, e->q[i].rate);
-    compile(a, m, in, l.e, l.n, &m->solved);
+    compile_from(a, m->e->x, in, l.e, l.n, CT_FUSE_NATIVE, &m->solved);
 }
 
 static void compile_constraint(struct ct_arena *a, struct ct_machine *m,
@@ -229,6 +229,10 @@ static void compile_rest(struct ct_arena *a, struct ct_machine *m, const struct 
     compile(a, m, in, momentum.e, momentum.n, &m->momentum);
     compile(a, m, in, driver.e, driver.n, &m->driver);
     compile(a, m, in, wanted.e, wanted.n, &m->wanted);
+    struct list validity = {.a = a};
+    for (size_t i = 0; i < e->nvalidity; i++)
+        push(&validity, e->validity[i].eta);
+    compile(a, m, in, validity.e, validity.n, &m->validity);
     compile(a, m, in, energies, 2, &m->energy);
     compile(a, m, in, &e->power, ct_ex_is_zero(e->power) ? 0 : 1, &m->power);
 }
@@ -288,7 +292,7 @@ struct ct_machine *ct_machine_create(struct ct_arena *a, const struct ct_model *
     compile_constraint(a, m, &in);
     compile_rest(a, m, &in);
     compile_residual(a, m, &in);
-    m->M = CT_NEWN(a, double, m->nu * m->nu + 1);
+    m->M = CT_NEWN(a, double, (e->has_dynamics ? m->nu * m->nu : 0) + 1);
     m->J = CT_NEWN(a, double, m->nrow * m->nu + 1);
     m->g[0] = CT_NEWN(a, double, e->nmode + 1);
     m->g[1] = CT_NEWN(a, double, e->nmode + 1);
@@ -302,12 +306,32 @@ struct ct_machine *ct_machine_create(struct ct_arena *a, const struct ct_model *
     return m;
 }
 
+void ct_machine_add_residual(struct ct_arena *a, struct ct_machine *m)
+{
+    if (m->residual.nout)
+        return;
+    const struct inputs in = list_inputs(a, m, m->e->x);
+    compile_residual(a, m, &in);
+    ct_machine_use(a, m, m->motion.native ? CT_BACKEND_BEST : CT_BACKEND_TAPE);
+}
+
+void ct_machine_values(struct ct_arena *a, const struct ct_machine *m, const ct_ex *e, size_t n,
+                       double *out)
+{
+    const struct inputs in = list_inputs(a, m, m->e->x);
+    struct ct_program p = {0};
+    compile(a, m, &in, e, n, &p);
+    prepare(&p, m->input);
+    ct_program_run(&p, m->input);
+    memcpy(out, p.out, n * sizeof *out);
+}
+
 void ct_machine_prepare(struct ct_machine *m)
 {
     struct ct_program *const all[]
         = {&m->solved, &m->motion,   &m->constraint, &m->result,   &m->power,
            &m->energy, &m->root,     &m->memory,     &m->momentum, &m->driver,
-           &m->wanted, &m->residual, &m->tangent};
+           &m->wanted, &m->residual, &m->tangent,    &m->validity};
     for (size_t i = 0; i < COUNT(all); i++)
         prepare(all[i], m->input);
     for (struct ct_program *p = m->apart; p; p = p->next)

@@ -12,7 +12,8 @@
 #include "expr/tape.h"
 #include "formulate/equations.h"
 
-/// Which form of the programs is run. All give the same bits.
+/// Which form of the programs is run. All give the same bits, but for the accelerations in closed form of larger systems:
+/// native code fuses their products and sums, which rounds less often.
 enum ct_backend {
     CT_BACKEND_BEST, // native code where it is available
     CT_BACKEND_TAPE,
@@ -39,6 +40,7 @@ struct ct_machine {
         constraint,              // phi, v, J
         result,                  // output columns
         power,                   // d(work)/dt
+        validity,                // indicators of linear beams
         energy,                  // kinetic, potential
         root,                    // g of each mode
         memory,                  // next values
@@ -63,6 +65,9 @@ struct ct_machine {
 struct ct_machine *ct_machine_create(struct ct_arena *a, const struct ct_model *model,
                                      const struct ct_equations *e);
 
+/// The equations have got their residual only now. a must be the machine's arena.
+void ct_machine_add_residual(struct ct_arena *a, struct ct_machine *m);
+
 /// Run these with another back end. False if native code is asked for and is not
 /// available; the tape is run then. Not for the inner loop: a must be the machine's arena.
 bool ct_machine_use(struct ct_arena *a, struct ct_machine *m, enum ct_backend backend);
@@ -75,13 +80,16 @@ void ct_machine_forget(struct ct_machine *m, const struct ct_program *p);
 
 /// Copy time and state into the input. y: q, u, work.
 void ct_machine_set(struct ct_machine *m, double t, const double *y);
-/// M, Q, J, gam and q' at the input.
+/// M, Q, J, gam and q' at the input. Without dynamics in the equations M and Q are zero.
 void ct_machine_motion(struct ct_machine *m);
 /// u' (nu, out) and q' at the input where the equations have a solution; else false. M, Q stay as they were.
 bool ct_machine_solved(struct ct_machine *m, double *a);
 /// phi, v, J at the input.
 void ct_machine_constraint(struct ct_machine *m);
 void ct_program_run(struct ct_program *p, const double *input);
+/// Values of expressions at the input, once: everything needed is made in a.
+void ct_machine_values(struct ct_arena *a, const struct ct_machine *m, const ct_ex *e, size_t n,
+                       double *out);
 /// Parameters have changed: run the prologues again.
 void ct_machine_prepare(struct ct_machine *m);
 

@@ -251,7 +251,7 @@ bool system_random_state(struct system *s, double t, double amplitude, struct ct
     ct_machine_set(m, t, y);
     ct_memory_follow(m);
     ct_program_run(&m->result, m->input);
-    out->n = s->assembly.ncoordinate;
+    *out = (struct ct_start){.n = s->assembly.ncoordinate};
     out->q = CT_NEWN(s->ctx.model, double, out->n + 1);
     out->u = CT_NEWN(s->ctx.model, double, out->n + 1);
     for (size_t i = 0; i < out->n; i++) {
@@ -271,6 +271,8 @@ bool variant_try(struct system *s, const struct ct_formulate_options *o, struct 
     v->ctx = (struct ct_ctx){.model = v->arena, .scratch = v->arena};
     if (!ct_formulate(&v->ctx, v->arena, &s->model, o, &v->e, &v->report))
         return false;
+    if (!o->without_dynamics)
+        ct_formulate_dynamics(&v->e);
     v->m = ct_machine_create(v->arena, &s->model, &v->e);
     v->s = ct_embed_create(v->arena, &v->ctx, v->m);
     v->y = CT_NEWN(v->arena, double, v->m->nq + v->m->nu + 1);
