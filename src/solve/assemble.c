@@ -628,36 +628,66 @@ static struct assembly assembly_create(struct ct_ctx *ctx, struct ct_arena *a,
     s.speeds = CT_NEWN(a, double, (nc + 1) * (nu + 1));
     s.iwork = CT_NEWN(a, int, s.most + nu);
     s.work = CT_NEWN(a, double, ct_lstsq_work((int)s.most, (int)nu + 1));
-    find_targets(&s, model);
     find_fixed_rows(&s, a);
     return s;
 }
 
-bool ct_assemble(struct ct_ctx *ctx, struct ct_arena *a, const struct ct_model *model,
-                 const struct ct_equations *e, struct ct_start *out)
+// From start values of the model to those of all coordinates.
+static bool find_start(struct assembly *s, struct ct_start *out)
 {
-    struct assembly s = assembly_create(ctx, a, model, e);
-    struct ct_machine *m = s.m;
-    const size_t nc = e->ncoordinate;
-    if (!assemble_positions(&s, &out->residual))
+    struct ct_machine *m = s->m;
+    const size_t nc = s->e->ncoordinate;
+    if (!assemble_positions(s, &out->residual))
         return false;
-    ct_machine_set(m, 0, s.y);
+    ct_machine_set(m, 0, s->y);
     ct_memory_start(m);
-    const double left = find_velocities(&s);
-    ct_machine_set(m, 0, s.y);
+    const double left = find_velocities(s);
+    ct_machine_set(m, 0, s->y);
     ct_program_run(&m->result, m->input);
     if (!(left < met * 1e3)) // speeds may be large; a contradiction is of their order
-        return report_velocities(&s);
-    if (!check_drivers(&s))
+        return report_velocities(s);
+    if (!check_drivers(s))
         return false;
-    out->n = nc;
-    out->q = CT_NEWN(a, double, nc + 1);
-    out->u = CT_NEWN(a, double, nc + 1);
     for (size_t i = 0; i < nc; i++) {
         out->q[i] = m->result.out[2 * i];
         out->u[i] = m->result.out[2 * i + 1];
     }
     return true;
+}
+
+struct ct_assembly {
+    struct assembly s;
+    const struct ct_model *model;
+    double *q, *u;
+};
+
+struct ct_assembly *ct_assembly_create(struct ct_ctx *ctx, struct ct_arena *a,
+                                       const struct ct_model *model,
+                                       const struct ct_equations *e)
+{
+    struct ct_assembly *s = CT_NEW(a, struct ct_assembly);
+    s->model = model;
+    s->s = assembly_create(ctx, a, model, e);
+    s->q = CT_NEWN(a, double, e->ncoordinate + 1);
+    s->u = CT_NEWN(a, double, e->ncoordinate + 1);
+    return s;
+}
+
+bool ct_assembly_find(struct ct_assembly *s, struct ct_start *out)
+{
+    const size_t n = s->s.e->ncoordinate;
+    *out = (struct ct_start){.q = s->q, .u = s->u, .n = n};
+    memset(s->s.q, 0, n * sizeof *s->s.q);
+    memset(s->s.u, 0, n * sizeof *s->s.u);
+    ct_machine_reset(s->s.m);
+    find_targets(&s->s, s->model);
+    return find_start(&s->s, out);
+}
+
+bool ct_assemble(struct ct_ctx *ctx, struct ct_arena *a, const struct ct_model *model,
+                 const struct ct_equations *e, struct ct_start *out)
+{
+    return ct_assembly_find(ct_assembly_create(ctx, a, model, e), out);
 }
 
 void ct_start_apply(const struct ct_start *s, struct ct_machine *m, double *y)
