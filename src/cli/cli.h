@@ -18,11 +18,14 @@ enum { CLI_DONE = 0, CLI_FAILED = 1, CLI_USAGE = 2 };
 struct cli_args {
     const char *model;
     const char *output, *summary, *format, *show, *tree, *method, *backend, *reference, *plot;
-    const char **set;
-    size_t nset;
+    struct cli_list { // what is given several times
+        const char **text;
+        size_t n;
+    } set, vary;
     double tolerance, step, until, error;
-    long samples;
-    bool keep_all, quiet, help, version;
+    long samples, sample, threads, lanes;
+    unsigned long long seed;
+    bool keep_all, resume, quiet, help, version;
 };
 
 /// One bit for each command, for the table of options.
@@ -36,8 +39,9 @@ enum cli_use {
     CLI_SCHEMA = 64,
     CLI_EXPORT = 128,
     CLI_ACCURACY = 256,
+    CLI_SWEEP = 512,
     CLI_LISTS = CLI_COMPONENTS | CLI_METHODS | CLI_SCHEMA,
-    CLI_RUNS = CLI_SIMULATE | CLI_ACCURACY,
+    CLI_RUNS = CLI_SIMULATE | CLI_ACCURACY | CLI_SWEEP,
     CLI_MODELS = CLI_RUNS | CLI_EQUATIONS | CLI_GRAPH | CLI_CHECK | CLI_EXPORT
 };
 
@@ -51,7 +55,7 @@ struct cli_command {
 };
 
 extern const struct cli_command cli_simulate, cli_equations, cli_graph, cli_accuracy, cli_check,
-    cli_export, cli_components, cli_methods, cli_schema;
+    cli_export, cli_sweep, cli_components, cli_methods, cli_schema;
 /// All commands in the order of --help; NULL at the end.
 extern const struct cli_command *const cli_commands[];
 
@@ -65,6 +69,8 @@ void cli_print_help(FILE *out, const struct cli_command *command);
 int cli_complain(const struct cli_command *command, const char *fmt, ...)
     __attribute__((format(printf, 2, 3)));
 
+/// What the arguments say about systems.
+struct ct_system_options cli_system_options(const struct cli_args *args);
 /// The system that the arguments ask for, or NULL.
 struct ct_system *cli_load(struct ct_ctx *ctx, const struct cli_args *args);
 /// What the arguments say about runs.
@@ -75,6 +81,9 @@ struct ct_sim *cli_sim(struct ct_ctx *ctx, struct ct_system *sys, const struct c
 /// The format that --format or the suffix of -o asks for; suffixes[i] belongs to formats[i].
 const char *cli_format(const struct cli_args *args, const char *const *formats,
                        const char *const *suffixes, size_t n);
+
+/// The model's file name with another suffix (".csv"), in the current folder; to be freed. NULL without memory.
+char *cli_standard_path(const char *model, const char *suffix);
 
 /// Text that appears under its name when it is complete; path NULL or "-": standard output.
 struct cli_output {

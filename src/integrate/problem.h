@@ -111,6 +111,8 @@ struct ct_tolerance {
     double rtol, atol;
 };
 
+enum { CT_MOST_STAGES = 13 }; // of a tableau
+
 /// The numbers of an explicit method whose last stage is the end of the step: for those who step by
 /// themselves. Stage s is at t + C_s h, y + h sum_j A_sj k_j; its error is h sum E_j k_j or, with a result B3 of
 /// order 3, |e| / hypot(1, |e3| / (10 |e|)) in the norms of both.

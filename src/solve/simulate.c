@@ -340,9 +340,8 @@ static bool begin(struct ct_run *r, const struct ct_start *start)
     return true;
 }
 
-struct ct_run *ct_run_create(struct ct_ctx *ctx, struct ct_arena *a,
-                             const struct ct_model *model, const struct ct_equations *e,
-                             const struct ct_start *start)
+struct ct_run *ct_run_prepare(struct ct_ctx *ctx, struct ct_arena *a,
+                              const struct ct_model *model, const struct ct_equations *e)
 {
     struct ct_run *r = CT_NEW(a, struct ct_run);
     *r = (struct ct_run){.ctx = ctx, .arena = a, .model = model, .e = e};
@@ -356,6 +355,14 @@ struct ct_run *ct_run_create(struct ct_ctx *ctx, struct ct_arena *a,
     r->scratch = CT_NEWN(a, double, 2 * r->m->nu + 2 * e->ndriver + 1);
     r->value = CT_NEWN(a, double, e->nresult + 1);
     find_needs(r);
+    return r;
+}
+
+struct ct_run *ct_run_create(struct ct_ctx *ctx, struct ct_arena *a,
+                             const struct ct_model *model, const struct ct_equations *e,
+                             const struct ct_start *start)
+{
+    struct ct_run *r = ct_run_prepare(ctx, a, model, e);
     return begin(r, start) ? r : NULL;
 }
 

@@ -1,0 +1,988 @@
+// See lanes.h. The steps are those of integrate/driver.c, the accelerations and projections those of
+// embed.c and simulate.c, formula by formula, so that a lane ends where a run alone ends, to rounding.
+#include "solve/lanes.h"
+
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+enum { W = CT_LANES };
+
+// One number of each lane; arenas align to 16 bytes only.
+typedef double vec __attribute__((vector_size(W * sizeof(double)), aligned(8), may_alias));
+
+// Constants of step control, projection and choice of rows: those of driver.c, simulate.c and embed.c.
+static const double safety = 0.9, most_shrink = 0.2, most_growth = 5, remembered_error = 1e-4;
+static const double stretch = 1.1, least_step = 16 * DBL_EPSILON, least_scale = 1e-6;
+static const double singular_pivot = 0.25, singular_steps = 3;
+static const double kappa_growth = 10, kappa_largest = 1e3, small_pivot = 0.1;
+static const double position_tolerance = 1e-13, gained_below = 1e-10;
+enum { MOST_NEWTON = 25, MOST_STEPS = 100000000 };
+
+// A generated program for all lanes at once.
+struct program {
+    const struct ct_tape *tape;
+    struct ct_native *native; // NULL: the tape is run
+    vec *out;
+    double *work;
+    size_t nout;
+};
+
+// What belongs to one member and is not computed in lanes.
+struct lane {
+    enum ct_lane_state state;
+    double t1, rtol, atol; // of the run
+    double h;              // size the next step should have
+    double error_before;
+    bool was_refused;
+    double end;       // time at the end of this try
+    bool is_refused;  // this try
+    double error;     // of it
+    double kappa_chosen, sigma_chosen;
+    double pivot_most, pivot_last, pivot_time; // see foresee_singular in simulate.c
+    int *row, *dependent, *independent;        // as in embed.h
+    long steps;
+};
+
+struct ct_lanes {
+    const struct ct_equations *e;
+    struct ct_run *run; // for what is done one by one
+    struct ct_machine *m;
+    struct ct_embed *embed;
+    int nq, nu, nrow, ny, rank;
+    bool is_solved, has_power, needs_lam, has_quaternion, is_used;
+    struct program motion, constraint, power, memory; // motion: u', q' themselves if is_solved
+    struct lane lane[W];
+    struct ct_lanes_count count;
+    const struct ct_method *method;
+    vec *input;
+    double t[W], h[W];         // of this try
+    double kappa[W], sigma[W]; // of the factors, as in embed.h
+    bool is_regular[W];        // the factors exist
+    // states (ny), stages (ny x stages)
+    vec *y, *dy, *y1, *dy1, *end, *dend, *stage, *point, *third, *k;
+    // matrices and vectors as in embed.h; Mp: M with rows and columns in the order dependent, independent
+    vec *M, *Mp, *J, *Jd, *B, *MB, *S, *a, *c, *r, *b, *d, *lam;
+    int *pivot;    // (nrow x W)
+    double *one_q; // a single lane's coordinates, step, state, derivative
+    double *one_d, *one_y, *one_dy, *one_point;
+};
+
+// ---- programs ---------------------------------------------------------------------------------------
+
+static void make_program(struct ct_arena *a, struct program *p, const struct ct_program *from,
+                         bool is_native)
+{
+    *p = (struct program){.tape = from->tape, .nout = from->nout};
+    if (!p->nout)
+        return;
+    p->native = is_native ? ct_native_create(a, from->listing, W) : NULL;
+    const size_t n = p->native ? ct_native_work(p->native) : W * ct_tape_work(p->tape);
+    p->out = CT_NEWN(a, vec, p->nout);
+    p->work = CT_NEWN(a, double, n + 1);
+}
+
+static void prepare(struct program *p, const vec *input)
+{
+    if (p->nout && p->native)
+        ct_native_prepare(p->native, (const double *)input, p->work);
+    else if (p->nout)
+        ct_tape_prepare_lanes(p->tape, W, (const double *)input, p->work);
+}
+
+static void run_program(struct program *p, const vec *input)
+{
+    if (p->nout && p->native)
+        ct_native_eval(p->native, (const double *)input, (double *)p->out, p->work);
+    else if (p->nout)
+        ct_tape_eval_lanes(p->tape, W, (const double *)input, (double *)p->out, p->work);
+}
+
+// ---- creation ---------------------------------------------------------------------------------------
+
+const char *ct_lanes_refusal(const struct ct_equations *e, const struct ct_run_options *o)
+{
+    if (!o->method->tableau)
+        return "the method is not an explicit one with step control";
+    if (o->step > 0)
+        return "the step is fixed";
+    if (e->nmode)
+        return "the model has switches";
+    if (e->x->ntable)
+        return "the model has tables";
+    return NULL;
+}
+
+static void make_room(struct ct_arena *a, struct ct_lanes *s)
+{
+    const size_t n = (size_t)s->nu, r = (size_t)s->nrow, ny = (size_t)s->ny;
+    const struct {
+        vec **v;
+        size_t n;
+    } all[] = {{&s->input, s->m->ninput}, {&s->y, ny},     {&s->dy, ny},    {&s->y1, ny},
+               {&s->dy1, ny},             {&s->end, ny},   {&s->dend, ny},  {&s->stage, ny},
+               {&s->point, ny},           {&s->third, ny}, {&s->M, n * n},  {&s->Mp, n * n},
+               {&s->J, r * n},            {&s->Jd, r * r}, {&s->B, r * n},  {&s->MB, n * n},
+               {&s->S, n * n},            {&s->a, n},      {&s->c, r},      {&s->r, n},
+               {&s->b, n},                {&s->d, n + r},  {&s->lam, n + r}};
+    for (size_t i = 0; i < COUNT(all); i++)
+        *all[i].v = CT_NEWN(a, vec, all[i].n + 1);
+    s->k = CT_NEWN(a, vec, ny * CT_MOST_STAGES);
+    s->pivot = CT_NEWN(a, int, W *(r + 1));
+    double **const one[] = {&s->one_q, &s->one_d, &s->one_y, &s->one_dy, &s->one_point};
+    for (size_t i = 0; i < COUNT(one); i++)
+        *one[i] = CT_NEWN(a, double, ny + 1);
+    for (int l = 0; l < W; l++) {
+        s->lane[l].row = CT_NEWN(a, int, r + 1);
+        s->lane[l].dependent = CT_NEWN(a, int, r + 1);
+        s->lane[l].independent = CT_NEWN(a, int, n + 1);
+    }
+}
+
+struct ct_lanes *ct_lanes_create(struct ct_arena *a, const struct ct_equations *e,
+                                 struct ct_run *run)
+{
+    struct ct_lanes *s = CT_NEW(a, struct ct_lanes);
+    struct ct_machine *m = ct_run_machine(run);
+    const bool is_native = m->motion.native && ct_native_is_available(W);
+    *s = (struct ct_lanes){.e = e, .run = run, .m = m, .embed = ct_run_embed(run)};
+    s->nq = (int)m->nq;
+    s->nu = (int)m->nu;
+    s->nrow = (int)m->nrow;
+    s->ny = s->nq + s->nu + 1;
+    s->has_power = !ct_ex_is_zero(e->power);
+    s->needs_lam = ct_ex_kinds(e->x, e->power) & 1u << CT_SYM_LAM;
+    for (size_t i = 0; i < e->nq; i++)
+        s->has_quaternion |= e->q[i].quaternion >= 0;
+    s->is_solved = m->solved.nout > 0 && s->nrow == 0;
+    make_program(a, &s->motion, s->is_solved ? &m->solved : &m->motion, is_native);
+    make_program(a, &s->constraint, &m->constraint, is_native);
+    make_program(a, &s->power, &m->power, is_native);
+    make_program(a, &s->memory, &m->memory, is_native);
+    make_room(a, s);
+    return s;
+}
+
+// ---- lanes and single numbers -----------------------------------------------------------------------
+
+static void take_lane(double *out, const vec *v, int l, size_t n)
+{
+    for (size_t i = 0; i < n; i++)
+        out[i] = v[i][l];
+}
+
+static void put_lane(vec *v, int l, const double *in, size_t n)
+{
+    for (size_t i = 0; i < n; i++)
+        v[i][l] = in[i];
+}
+
+static bool any(const bool *is)
+{
+    bool found = false;
+    for (int l = 0; l < W; l++)
+        found |= is[l];
+    return found;
+}
+
+static void give_up(struct ct_lanes *s, int l)
+{
+    s->lane[l].state = CT_LANE_GIVEN_UP;
+}
+
+// ---- small solves, all lanes at once ----------------------------------------------------------------
+
+static void exchange(vec *a, vec *b, int l)
+{
+    const double keep = (*a)[l];
+    (*a)[l] = (*b)[l];
+    (*b)[l] = keep;
+}
+
+// LU with partial pivoting of A (n x n, in place); rows are exchanged lane by lane.
+static void factor_lu(struct ct_lanes *s, vec *A, int n)
+{
+    for (int l = 0; l < W; l++)
+        s->is_regular[l] = true;
+    for (int k = 0; k < n; k++) {
+        for (int l = 0; l < W; l++) {
+            int p = k;
+            for (int i = k + 1; i < n; i++)
+                if (fabs(A[i + n * k][l]) > fabs(A[p + n * k][l]))
+                    p = i;
+            s->pivot[W * k + l] = p;
+            for (int j = 0; j < n && p != k; j++)
+                exchange(&A[k + n * j], &A[p + n * j], l);
+            s->is_regular[l] &= A[k + n * k][l] != 0;
+        }
+        for (int i = k + 1; i < n; i++)
+            A[i + n * k] /= A[k + n * k];
+        for (int j = k + 1; j < n; j++)
+            for (int i = k + 1; i < n; i++)
+                A[i + n * j] -= A[i + n * k] * A[k + n * j];
+    }
+}
+
+// x (n) <- A^-1 x with these factors.
+static void solve_lu(const struct ct_lanes *s, vec *x, const vec *A, int n)
+{
+    for (int k = 0; k < n - 1; k++)
+        for (int l = 0; l < W; l++)
+            exchange(&x[k], &x[s->pivot[W * k + l]], l);
+    for (int k = 0; k < n; k++)
+        for (int i = k + 1; i < n; i++)
+            x[i] -= A[i + n * k] * x[k];
+    for (int k = n - 1; k >= 0; k--) {
+        x[k] /= A[k + n * k];
+        for (int i = 0; i < k; i++)
+            x[i] -= A[i + n * k] * x[k];
+    }
+}
+
+// x (n) <- A'^-1 x.
+static void solve_lu_transposed(const struct ct_lanes *s, vec *x, const vec *A, int n)
+{
+    for (int k = 0; k < n; k++) {
+        for (int i = 0; i < k; i++)
+            x[k] -= A[i + n * k] * x[i];
+        x[k] /= A[k + n * k];
+    }
+    for (int k = n - 1; k >= 0; k--)
+        for (int i = k + 1; i < n; i++)
+            x[k] -= A[i + n * k] * x[i];
+    for (int k = n - 2; k >= 0; k--)
+        for (int l = 0; l < W; l++)
+            exchange(&x[k], &x[s->pivot[W * k + l]], l);
+}
+
+// x (n) <- S^-1 x by Cholesky, S (lower, in place). Where S is not positive definite x is not finite.
+static void solve_cholesky(vec *x, vec *S, int n)
+{
+    for (int k = 0; k < n; k++) {
+        for (int l = 0; l < W; l++)
+            S[k + n * k][l] = sqrt(S[k + n * k][l]);
+        for (int i = k + 1; i < n; i++)
+            S[i + n * k] /= S[k + n * k];
+        for (int j = k + 1; j < n; j++)
+            for (int i = j; i < n; i++)
+                S[i + n * j] -= S[i + n * k] * S[j + n * k];
+    }
+    for (int k = 0; k < n; k++) {
+        x[k] /= S[k + n * k];
+        for (int i = k + 1; i < n; i++)
+            x[i] -= S[i + n * k] * x[k];
+    }
+    for (int k = n - 1; k >= 0; k--) {
+        for (int i = k + 1; i < n; i++)
+            x[k] -= S[i + n * k] * x[i];
+        x[k] /= S[k + n * k];
+    }
+}
+
+// ---- embedding, as in embed.c -----------------------------------------------------------------------
+
+static void scatter_J(struct ct_lanes *s, const vec *value)
+{
+    const struct ct_equations *e = s->e;
+    for (size_t i = 0; i < e->nJ; i++)
+        s->J[e->J[i].row + s->nrow * e->J[i].column] = value[i];
+}
+
+// LU of J_d and B = -J_d^-1 J_i; kappa and sigma of the lanes asked for.
+static void factor(struct ct_lanes *s, const bool *wanted)
+{
+    const int r = s->rank, f = s->nu - r;
+    if (!r)
+        return;
+    for (int l = 0; l < W; l++) {
+        const struct lane *lane = &s->lane[l];
+        for (int j = 0; j < r; j++)
+            for (int i = 0; i < r; i++)
+                s->Jd[i + r * j][l] = s->J[lane->row[i] + s->nrow * lane->dependent[j]][l];
+        for (int j = 0; j < f; j++)
+            for (int i = 0; i < r; i++)
+                s->B[i + r * j][l] = -s->J[lane->row[i] + s->nrow * lane->independent[j]][l];
+    }
+    factor_lu(s, s->Jd, r);
+    for (int j = 0; j < f; j++)
+        solve_lu(s, s->B + r * j, s->Jd, r);
+    for (int l = 0; l < W; l++) {
+        if (!wanted[l])
+            continue;
+        double kappa = 0, least = INFINITY, most = 0;
+        for (int i = 0; i < r * f; i++)
+            kappa = fmax(kappa, fabs(s->B[i][l]));
+        for (int i = 0; i < r; i++) {
+            least = fmin(least, fabs(s->Jd[i + r * i][l]));
+            most = fmax(most, fabs(s->Jd[i + r * i][l]));
+        }
+        s->kappa[l] = kappa;
+        s->sigma[l] = most > 0 ? least / most : 0;
+        s->is_regular[l] &= isfinite(kappa);
+    }
+}
+
+// S (free x free, lower) = [B; 1]' Mp [B; 1], b (free) = [B; 1]' r.
+static void reduce(struct ct_lanes *s)
+{
+    const int n = s->nu, r = s->rank, f = n - r;
+    const vec *M = s->Mp;
+    for (int j = 0; j < f; j++)
+        for (int i = 0; i < n; i++) {
+            vec sum = M[i + n * (r + j)];
+            for (int k = 0; k < r; k++)
+                sum += M[i + n * k] * s->B[k + r * j];
+            s->MB[i + n * j] = sum;
+        }
+    for (int j = 0; j < f; j++) {
+        for (int i = j; i < f; i++) {
+            vec sum = s->MB[r + i + n * j];
+            for (int k = 0; k < r; k++)
+                sum += s->B[k + r * i] * s->MB[k + n * j];
+            s->S[i + f * j] = sum;
+        }
+        s->b[j] = s->r[r + j];
+        for (int k = 0; k < r; k++)
+            s->b[j] += s->B[k + r * j] * s->r[k];
+    }
+}
+
+// M, Q (into r), gam (into c) in the order dependent, independent.
+static void permute(struct ct_lanes *s, const vec *Q, const vec *gam)
+{
+    const int n = s->nu, r = s->rank;
+    for (int l = 0; l < W; l++) {
+        const struct lane *lane = &s->lane[l];
+        for (int j = 0; j < n; j++) {
+            const int cj = j < r ? lane->dependent[j] : lane->independent[j - r];
+            for (int i = 0; i < n; i++) {
+                const int ci = i < r ? lane->dependent[i] : lane->independent[i - r];
+                s->Mp[i + n * j][l] = s->M[ci + n * cj][l];
+            }
+            s->r[j][l] = Q[cj][l];
+        }
+        for (int k = 0; k < r; k++)
+            s->c[k][l] = -gam[lane->row[k]][l];
+    }
+}
+
+// u' into a from M, J and the program's Q, gam: (6.2). Where it does not exist it is not finite.
+static void accelerate(struct ct_lanes *s, const vec *Q, const vec *gam, const bool *wanted)
+{
+    const int n = s->nu, r = s->rank, f = n - r;
+    factor(s, wanted);
+    permute(s, Q, gam);
+    if (r)
+        solve_lu(s, s->c, s->Jd, r);
+    for (int i = 0; i < n; i++)
+        for (int k = 0; k < r; k++)
+            s->r[i] -= s->Mp[i + n * k] * s->c[k];
+    reduce(s);
+    solve_cholesky(s->b, s->S, f);
+    for (int k = 0; k < r; k++) {
+        s->d[k] = s->c[k];
+        for (int i = 0; i < f; i++)
+            s->d[k] += s->B[k + r * i] * s->b[i];
+    }
+    for (int i = 0; i < f; i++)
+        s->d[r + i] = s->b[i];
+    for (int l = 0; l < W; l++)
+        for (int i = 0; i < n; i++) {
+            const struct lane *lane = &s->lane[l];
+            s->a[i < r ? lane->dependent[i] : lane->independent[i - r]][l] = s->d[i][l];
+        }
+}
+
+// Multipliers of the kept rows into the input: J_d' lam = (M u' - Q)_d. All rows are kept (see ct_lanes_load).
+static void multipliers(struct ct_lanes *s, const vec *Q)
+{
+    const int n = s->nu, r = s->rank;
+    for (int i = 0; i < r; i++) {
+        s->lam[i] = (vec){0};
+        for (int j = 0; j < n; j++)
+            s->lam[i] += s->Mp[i + n * j] * s->d[j];
+        for (int l = 0; l < W; l++)
+            s->lam[i][l] -= Q[s->lane[l].dependent[i]][l];
+    }
+    solve_lu_transposed(s, s->lam, s->Jd, r);
+    for (int i = 0; i < r; i++)
+        for (int l = 0; l < W; l++)
+            s->input[s->m->at_lam + (size_t)s->lane[l].row[i]][l] = s->lam[i][l];
+}
+
+// ---- one lane as a run alone ------------------------------------------------------------------------
+
+// The run takes parameters, memories and choices of a lane, and its state y at t.
+static void become(struct ct_lanes *s, int l, double t, const vec *y)
+{
+    const struct lane *lane = &s->lane[l];
+    struct ct_embed *embed = s->embed;
+    take_lane(s->m->input, s->input, l, s->m->ninput);
+    ct_machine_prepare(s->m);
+    take_lane(s->one_y, y, l, (size_t)s->ny);
+    ct_machine_set(s->m, t, s->one_y);
+    embed->rank = s->rank;
+    memcpy(embed->row, lane->row, (size_t)s->nrow * sizeof *embed->row);
+    memcpy(embed->dependent, lane->dependent, (size_t)s->rank * sizeof *embed->dependent);
+    memcpy(embed->independent, lane->independent,
+           (size_t)(s->nu - s->rank) * sizeof *embed->independent);
+}
+
+static void take_choice(struct ct_lanes *s, int l)
+{
+    struct lane *lane = &s->lane[l];
+    const struct ct_embed *embed = s->embed;
+    memcpy(lane->row, embed->row, (size_t)s->nrow * sizeof *embed->row);
+    memcpy(lane->dependent, embed->dependent, (size_t)s->rank * sizeof *embed->dependent);
+    memcpy(lane->independent, embed->independent,
+           (size_t)(s->nu - s->rank) * sizeof *embed->independent);
+    lane->kappa_chosen = embed->kappa_chosen;
+    lane->sigma_chosen = embed->sigma_chosen;
+    s->kappa[l] = embed->kappa;
+    s->sigma[l] = embed->sigma;
+}
+
+// Rows and columns anew where J_d has worn; y as just projected.
+static void renew(struct ct_lanes *s, int l, const vec *y)
+{
+    const struct lane *lane = &s->lane[l];
+    const bool has_worn = s->kappa[l] > kappa_growth * lane->kappa_chosen + 1
+                       || s->kappa[l] > kappa_largest
+                       || s->sigma[l] * kappa_growth < lane->sigma_chosen;
+    if (!s->rank || !has_worn)
+        return;
+    become(s, l, s->input[0][l], y);
+    ct_machine_constraint(s->m);
+    if (ct_embed_choose(s->embed) && s->embed->rank == s->rank)
+        take_choice(s, l);
+    else
+        give_up(s, l);
+}
+
+// ---- projection, as in embed.c ----------------------------------------------------------------------
+
+static void set_input(struct ct_lanes *s, const double *t, const vec *y)
+{
+    for (int l = 0; l < W; l++)
+        s->input[0][l] = t[l];
+    memcpy(s->input + s->m->at_q, y, (size_t)(s->nq + s->nu) * sizeof *y);
+    s->input[s->m->at_work] = y[s->nq + s->nu];
+}
+
+static void evaluate_constraint(struct ct_lanes *s, const double *t, const vec *y)
+{
+    set_input(s, t, y);
+    run_program(&s->constraint, s->input);
+    scatter_J(s, s->constraint.out + 2 * s->nrow);
+}
+
+static double largest(const vec *v, int l, int n)
+{
+    double max = 0;
+    for (int i = 0; i < n; i++)
+        max = fabs(v[i][l]) > max || isnan(v[i][l]) ? fabs(v[i][l]) : max;
+    return max;
+}
+
+// d = correction of the dependent speeds by rows r, in every lane; a lane whose J_d is no good is given up.
+static void correction(struct ct_lanes *s, const vec *r, bool *active)
+{
+    const int n = s->rank;
+    for (int l = 0; l < W; l++) {
+        for (int k = 0; k < n; k++)
+            s->c[k][l] = -r[s->lane[l].row[k]][l];
+        if (active[l] && !(s->is_regular[l] && s->kappa[l] <= kappa_largest)) {
+            give_up(s, l);
+            active[l] = false;
+        }
+    }
+    solve_lu(s, s->c, s->Jd, n);
+}
+
+static void normalise(struct ct_lanes *s, vec *y, const bool *wanted)
+{
+    for (int l = 0; l < W && s->has_quaternion; l++)
+        if (wanted[l]) {
+            take_lane(s->one_q, y, l, (size_t)s->nq);
+            ct_machine_normalise(s->m, s->one_q);
+            put_lane(y, l, s->one_q, (size_t)s->nq);
+        }
+}
+
+// q (+) d where d = c in the dependent speeds.
+static void move(struct ct_lanes *s, vec *y, int l)
+{
+    const struct lane *lane = &s->lane[l];
+    if (!s->has_quaternion) {
+        for (int k = 0; k < s->rank; k++)
+            y[s->e->u[lane->dependent[k]].q][l] += s->c[k][l];
+        return;
+    }
+    memset(s->one_d, 0, (size_t)s->nu * sizeof *s->one_d);
+    for (int k = 0; k < s->rank; k++)
+        s->one_d[lane->dependent[k]] = s->c[k][l];
+    take_lane(s->one_q, y, l, (size_t)s->nq);
+    ct_machine_retract(s->m, s->one_q, s->one_d);
+    put_lane(y, l, s->one_q, (size_t)s->nq);
+}
+
+// Positions of the wanted lanes onto their constraints; what cannot be is taken out of `wanted`. J is that of the end.
+static void project_positions(struct ct_lanes *s, const double *t, vec *y, bool *wanted)
+{
+    bool active[W];
+    double before[W];
+    memcpy(active, wanted, sizeof active);
+    for (int l = 0; l < W; l++)
+        before[l] = INFINITY;
+    for (int i = 0;; i++) {
+        evaluate_constraint(s, t, y);
+        for (int l = 0; l < W; l++) {
+            if (!active[l])
+                continue;
+            const double size = largest(s->constraint.out, l, s->nrow), sigma = s->sigma[l];
+            const double enough
+                = sigma < small_pivot ? position_tolerance * sigma : position_tolerance;
+            if (size <= enough || (size < gained_below && size > before[l] / 4))
+                active[l] = false;
+            else if (i == MOST_NEWTON || !isfinite(size) || size > 1e3 * before[l])
+                active[l] = wanted[l] = false;
+            before[l] = size;
+        }
+        if (!any(active))
+            return;
+        factor(s, active);
+        correction(s, s->constraint.out, active);
+        for (int l = 0; l < W; l++)
+            if (active[l])
+                move(s, y, l);
+    }
+}
+
+// Lanes of y in `wanted` onto the constraints at t; those that cannot be are taken out.
+static void project(struct ct_lanes *s, const double *t, vec *y, bool *wanted)
+{
+    normalise(s, y, wanted);
+    if (!s->nrow || !any(wanted))
+        return;
+    project_positions(s, t, y, wanted);
+    factor(s, wanted);
+    for (int i = 0; i < 2; i++) { // linear; the second step takes off rounding
+        correction(s, s->constraint.out + s->nrow, wanted);
+        for (int l = 0; l < W; l++)
+            for (int k = 0; k < s->rank && wanted[l]; k++)
+                y[s->nq + s->lane[l].dependent[k]][l] += s->c[k][l];
+        if (i == 0)
+            evaluate_constraint(s, t, y);
+    }
+    for (int l = 0; l < W; l++)
+        if (wanted[l])
+            renew(s, l, y);
+}
+
+// ---- the derivative, as in simulate.c -----------------------------------------------------------------
+
+static bool is_near_singular(const struct ct_lanes *s, int l)
+{
+    return s->rank && s->sigma[l] < singular_pivot * s->lane[l].pivot_most;
+}
+
+// y as it is, or with the wanted lanes beside a singular position put onto the constraints.
+static const vec *put_stages(struct ct_lanes *s, const double *t, const vec *y, bool *wanted)
+{
+    bool near[W], still[W];
+    for (int l = 0; l < W; l++)
+        near[l] = wanted[l] && is_near_singular(s, l);
+    if (!any(near))
+        return y;
+    memcpy(s->stage, y, (size_t)s->ny * sizeof *y);
+    memcpy(still, near, sizeof still);
+    project(s, t, s->stage, still);
+    for (int l = 0; l < W; l++)
+        wanted[l] &= !near[l] || still[l];
+    return s->stage;
+}
+
+// dy = f(t, y); lanes without one are taken out of `wanted`.
+static void derive(struct ct_lanes *s, const double *t, const vec *y, vec *dy, bool *wanted)
+{
+    const struct ct_equations *e = s->e;
+    const int nu = s->nu;
+    const vec *out = s->motion.out, *rate = out + nu, *Q = NULL;
+    set_input(s, t, put_stages(s, t, y, wanted));
+    run_program(&s->motion, s->input);
+    s->count.evaluations++;
+    if (s->is_solved) {
+        memcpy(s->a, out, (size_t)nu * sizeof *out);
+    } else {
+        Q = out + e->nM;
+        const vec *J = Q + nu, *gam = J + e->nJ;
+        rate = gam + s->nrow;
+        for (size_t i = 0; i < e->nM; i++) {
+            const int r = e->M[i].row, c = e->M[i].column;
+            s->M[r + nu * c] = s->M[c + nu * r] = out[i];
+        }
+        scatter_J(s, J);
+        accelerate(s, Q, gam, wanted);
+    }
+    memcpy(dy, rate, (size_t)s->nq * sizeof *dy);
+    memcpy(dy + s->nq, s->a, (size_t)nu * sizeof *dy);
+    dy[s->ny - 1] = (vec){0};
+    if (s->has_power) {
+        memcpy(s->input + s->m->at_a, s->a, (size_t)nu * sizeof *s->a);
+        if (s->needs_lam && Q)
+            multipliers(s, Q);
+        run_program(&s->power, s->input);
+        dy[s->ny - 1] = s->power.out[0];
+    }
+    vec zero = {0}; // 0 * inf is NaN
+    for (int i = 0; i < s->ny; i++)
+        zero += 0 * dy[i];
+    for (int l = 0; l < W; l++)
+        wanted[l] &= zero[l] == 0;
+}
+
+// ---- a try ------------------------------------------------------------------------------------------
+
+// out = y + h (a_0 k_0 + ...); y NULL: without.
+static void combine(const struct ct_lanes *s, vec *out, const vec *y, const double *a, int n)
+{
+    vec h;
+    for (int l = 0; l < W; l++)
+        h[l] = s->h[l];
+    for (int i = 0; i < s->ny; i++) {
+        vec sum = {0};
+        for (int j = 0; j < n; j++)
+            if (a[j] != 0) // tables have many zeros
+                sum += a[j] * s->k[i + s->ny * j];
+        out[i] = y ? y[i] + h * sum : h * sum;
+    }
+}
+
+static double weight(const struct lane *lane, double y, double y1)
+{
+    return lane->rtol * fmax(fabs(y), fabs(y1)) + lane->atol;
+}
+
+static double norm(const struct ct_lanes *s, int l, const vec *e)
+{
+    const int n = s->has_power ? s->ny : s->ny - 1; // the work is as good as the states
+    double sum = 0;
+    for (int i = 0; i < n; i++) {
+        const double part = e[i][l] / weight(&s->lane[l], s->y[i][l], s->y1[i][l]);
+        sum += part * part;
+    }
+    return n ? sqrt(sum / n) : 0;
+}
+
+static void estimate(struct ct_lanes *s)
+{
+    const struct ct_tableau *b = s->method->tableau;
+    combine(s, s->point, NULL, b->E, b->nerror);
+    for (int l = 0; l < W; l++)
+        s->lane[l].error = norm(s, l, s->point);
+    if (!b->B3)
+        return;
+    combine(s, s->third, s->y, b->B3, b->nerror);
+    for (int i = 0; i < s->ny; i++)
+        s->third[i] = s->y1[i] - s->third[i];
+    for (int l = 0; l < W; l++) {
+        const double e = s->lane[l].error, e3 = norm(s, l, s->third);
+        s->lane[l].error = e == 0 ? 0 : e / hypot(1, 0.1 * (e3 / e));
+    }
+}
+
+// Ends of the stages at t + C h; the last one is the end of the step, y1 with dy1.
+static void take_stages(struct ct_lanes *s, bool *wanted)
+{
+    const struct ct_tableau *b = s->method->tableau;
+    const size_t n = (size_t)s->ny;
+    double t[W];
+    memcpy(s->k, s->dy, n * sizeof *s->k);
+    for (int stage = 1; stage < b->stages && any(wanted); stage++) {
+        vec *to = stage + 1 < b->stages ? s->point : s->y1;
+        combine(s, to, s->y, b->A + b->stride * stage, stage);
+        for (int l = 0; l < W; l++)
+            t[l] = s->t[l] + b->C[stage] * s->h[l];
+        derive(s, t, to, s->k + n * (size_t)stage, wanted);
+    }
+    memcpy(s->dy1, s->k + n * (size_t)(b->stages - 1), n * sizeof *s->dy1);
+}
+
+// end, dend = y1, dy1 on the constraints.
+static void project_end(struct ct_lanes *s, bool *wanted)
+{
+    const size_t n = (size_t)s->ny;
+    double t[W];
+    bool moved[W];
+    memcpy(s->end, s->y1, n * sizeof *s->end);
+    memcpy(s->dend, s->dy1, n * sizeof *s->dend);
+    if (!s->nrow && !s->has_quaternion)
+        return;
+    for (int l = 0; l < W; l++)
+        t[l] = s->lane[l].end;
+    project(s, t, s->end, wanted);
+    for (int l = 0; l < W; l++) {
+        moved[l] = false;
+        for (int i = 0; i < s->ny && wanted[l]; i++)
+            moved[l] |= s->end[i][l] != s->y1[i][l];
+    }
+    if (!any(moved))
+        return;
+    bool known[W];
+    memcpy(known, moved, sizeof known);
+    derive(s, t, s->end, s->dend, known);
+    for (int l = 0; l < W; l++)
+        if (!moved[l])
+            for (size_t i = 0; i < n; i++)
+                s->dend[i][l] = s->dy1[i][l];
+        else
+            wanted[l] &= known[l];
+}
+
+// ---- step control, as in driver.c -------------------------------------------------------------------
+
+static void plan(struct ct_lanes *s, int l)
+{
+    struct lane *lane = &s->lane[l];
+    const double rest = lane->t1 - s->t[l], wanted = fmin(lane->h, lane->t1);
+    const double h = rest <= stretch * wanted ? rest : rest < 2 * wanted ? rest / 2 : wanted;
+    const bool is_landing = h >= rest;
+    const double scale = fmax(fabs(s->t[l]), least_scale * lane->t1);
+    s->h[l] = h;
+    lane->end = is_landing ? lane->t1 : s->t[l] + h;
+    if ((!is_landing && h <= least_step * scale) || lane->steps >= MOST_STEPS)
+        give_up(s, l);
+}
+
+static void adapt_after_success(struct ct_lanes *s, int l)
+{
+    struct lane *lane = &s->lane[l];
+    const double beta = 0.2 / (s->method->error_order + 1);
+    const double alpha = 1.0 / (s->method->error_order + 1) - 0.75 * beta;
+    const double h = s->h[l], growth = s->method->most_growth > 0 ? s->method->most_growth
+                                                                  : most_growth;
+    const double factor = pow(lane->error, alpha) / pow(lane->error_before, beta) / safety;
+    const double *steady = s->method->steady;
+    double next = h / fmin(fmax(factor, 1 / growth), 1 / most_shrink);
+    if (next > steady[0] * h && next < steady[1] * h)
+        next = h;
+    if (lane->was_refused)
+        next = fmin(next, h);
+    else if (h < lane->h)
+        next = fmax(next, lane->h);
+    lane->h = next;
+    lane->error_before = fmax(lane->error, remembered_error);
+    lane->was_refused = false;
+}
+
+static void adapt_after_refusal(struct ct_lanes *s, int l)
+{
+    struct lane *lane = &s->lane[l];
+    const double alpha = 1.0 / (s->method->error_order + 1), error = lane->error;
+    lane->h = error > 1 ? s->h[l] * fmax(most_shrink, safety * pow(error, -alpha)) : s->h[l] / 2;
+    lane->was_refused = true;
+    s->count.rejected++;
+}
+
+// ---- after a try ------------------------------------------------------------------------------------
+
+// Memories follow the motion to y at t where wanted.
+static void follow(struct ct_lanes *s, const double *t, const vec *y, const bool *wanted)
+{
+    const struct ct_equations *e = s->e;
+    vec *memory = s->input + s->m->at_memory;
+    if (!e->nmemory)
+        return;
+    set_input(s, t, y);
+    run_program(&s->memory, s->input);
+    for (int l = 0; l < W; l++)
+        for (size_t i = 0; i < e->nmemory && wanted[l]; i++) {
+            if (e->memory[i].kind != CT_MEMORY_OFFSET)
+                memory[i][l] = s->memory.out[i][l];
+            if (e->memory[i].kind == CT_MEMORY_QUATERNION && e->memory[i].place == 3) {
+                double square = 0;
+                for (int k = -3; k <= 0; k++)
+                    square += memory[(int)i + k][l] * memory[(int)i + k][l];
+                const double length = sqrt(square);
+                for (int k = -3; k <= 0 && length > 0; k++)
+                    memory[(int)i + k][l] /= length;
+            }
+        }
+}
+
+// A singular position that comes within reach is for a run alone.
+static void foresee_singular(struct ct_lanes *s, const double *t, const vec *y, const bool *wanted)
+{
+    bool near[W];
+    for (int l = 0; l < W; l++) {
+        struct lane *lane = &s->lane[l];
+        if (wanted[l])
+            lane->pivot_most = fmax(lane->pivot_most, s->sigma[l]);
+        near[l] = wanted[l] && is_near_singular(s, l);
+        if (wanted[l] && !near[l])
+            lane->pivot_last = INFINITY;
+    }
+    if (!any(near))
+        return;
+    evaluate_constraint(s, t, y);
+    factor(s, near);
+    for (int l = 0; l < W; l++) {
+        struct lane *lane = &s->lane[l];
+        if (!near[l])
+            continue;
+        const double before = lane->pivot_last, now = s->sigma[l], dt = t[l] - lane->pivot_time;
+        lane->pivot_last = now;
+        lane->pivot_time = t[l];
+        if (isfinite(before) && before > now && dt > 0
+            && dt * now / (before - now) <= (singular_steps + s->method->gap) * lane->h)
+            give_up(s, l);
+    }
+}
+
+static void commit(struct ct_lanes *s, const bool *wanted)
+{
+    for (int l = 0; l < W; l++) {
+        struct lane *lane = &s->lane[l];
+        if (!wanted[l] || lane->state != CT_LANE_RUNNING)
+            continue;
+        for (int i = 0; i < s->ny; i++) {
+            s->y[i][l] = s->end[i][l];
+            s->dy[i][l] = s->dend[i][l];
+        }
+        s->t[l] = lane->end;
+        lane->steps++;
+        s->count.steps++;
+        if (lane->end >= lane->t1)
+            lane->state = CT_LANE_ARRIVED;
+    }
+}
+
+void ct_lanes_step(struct ct_lanes *s)
+{
+    bool wanted[W], tried[W];
+    double t[W];
+    for (int l = 0; l < W; l++) {
+        if (s->lane[l].state == CT_LANE_RUNNING)
+            plan(s, l);
+        tried[l] = wanted[l] = s->lane[l].state == CT_LANE_RUNNING;
+        s->lane[l].error = 0;
+    }
+    take_stages(s, wanted);
+    estimate(s);
+    for (int l = 0; l < W; l++) {
+        bool is_finite = isfinite(s->lane[l].error);
+        for (int i = 0; i < s->ny; i++)
+            is_finite &= isfinite(s->y1[i][l]) != 0;
+        if (!wanted[l] || !is_finite)
+            s->lane[l].error = 0; // not the error is why
+        wanted[l] &= is_finite && s->lane[l].error <= 1;
+    }
+    project_end(s, wanted);
+    for (int l = 0; l < W; l++)
+        t[l] = s->lane[l].end;
+    follow(s, t, s->end, wanted);
+    for (int l = 0; l < W; l++)
+        if (wanted[l])
+            adapt_after_success(s, l);
+        else if (tried[l])
+            adapt_after_refusal(s, l);
+    foresee_singular(s, t, s->end, wanted);
+    commit(s, wanted);
+}
+
+// ---- members come and go ----------------------------------------------------------------------------
+
+// A first step whose error should be near a hundredth of the tolerance; constants as in driver.c.
+static bool first_step(struct ct_lanes *s, int l, const double *y, const double *dy)
+{
+    struct lane *lane = &s->lane[l];
+    const int n = s->has_power ? s->ny : s->ny - 1;
+    double d0 = 0, d1 = 0, d2 = 0;
+    for (int i = 0; i < n; i++) {
+        const double w = weight(lane, y[i], y[i]);
+        d0 += y[i] / w * (y[i] / w);
+        d1 += dy[i] / w * (dy[i] / w);
+    }
+    d0 = n ? sqrt(d0 / n) : 0;
+    d1 = n ? sqrt(d1 / n) : 0;
+    double h = fmin(d0 < 1e-5 || d1 < 1e-5 ? 1e-6 : 0.01 * d0 / d1, lane->t1);
+    for (int i = 0; i < s->ny; i++)
+        s->one_point[i] = y[i] + h * dy[i];
+    lane->h = h; // step control will find a smaller one
+    if (ct_run_rhs(s->run, h, s->one_point, s->one_d) != CT_EVAL_OK)
+        return true;
+    for (int i = 0; i < n; i++) {
+        const double bend = (s->one_d[i] - dy[i]) / h / weight(lane, y[i], y[i]);
+        d2 += bend * bend;
+    }
+    const double d = fmax(d1, n ? sqrt(d2 / n) : 0);
+    if (!isfinite(d))
+        return false;
+    const double by_error
+        = d <= 1e-15 ? fmax(1e-6, 1e-3 * h) : pow(0.01 / d, 1.0 / (s->method->error_order + 1));
+    lane->h = fmin(fmin(100 * h, by_error), lane->t1);
+    return true;
+}
+
+bool ct_lanes_load(struct ct_lanes *s, int l, const struct ct_run_options *o)
+{
+    struct lane *lane = &s->lane[l];
+    const int rank = s->embed->rank;
+    const double *y = ct_run_state(s->run);
+    if (!(o->duration > 0) || ct_lanes_refusal(s->e, o) || (s->is_used && o->method != s->method)
+        || (s->is_used && rank != s->rank) || (s->needs_lam && rank != s->nrow))
+        return false;
+    s->method = o->method;
+    s->rank = rank;
+    lane->t1 = o->duration;
+    lane->rtol = o->rtol;
+    lane->atol = o->atol;
+    lane->error_before = remembered_error;
+    lane->was_refused = false;
+    lane->pivot_most = 0;
+    lane->pivot_last = INFINITY;
+    lane->pivot_time = 0;
+    lane->steps = 0;
+    if (ct_run_rhs(s->run, 0, y, s->one_dy) != CT_EVAL_OK || !first_step(s, l, y, s->one_dy))
+        return false;
+    for (int i = 0; i < W; i++) // lanes that never had a member follow the first, for finite numbers
+        if (i == l || !s->is_used) {
+            take_choice(s, i);
+            put_lane(s->input, i, s->m->input, s->m->ninput);
+            put_lane(s->y, i, y, (size_t)s->ny);
+            put_lane(s->dy, i, s->one_dy, (size_t)s->ny);
+            s->t[i] = 0;
+        }
+    struct program *const all[] = {&s->motion, &s->constraint, &s->power, &s->memory};
+    for (size_t i = 0; i < COUNT(all); i++)
+        prepare(all[i], s->input);
+    s->is_used = true;
+    lane->state = CT_LANE_RUNNING;
+    return true;
+}
+
+enum ct_lane_state ct_lanes_state(const struct ct_lanes *s, int lane)
+{
+    return s->lane[lane].state;
+}
+
+bool ct_lanes_results(struct ct_lanes *s, int l, double *out)
+{
+    become(s, l, s->lane[l].t1, s->y);
+    if (ct_run_results(s->run, s->lane[l].t1, s->one_y, out) != CT_EVAL_OK)
+        return false;
+    for (size_t i = 0; i < s->e->nresult; i++)
+        if (!isfinite(out[i]))
+            return false;
+    return true;
+}
+
+void ct_lanes_free(struct ct_lanes *s, int lane)
+{
+    s->lane[lane].state = CT_LANE_IDLE;
+}
+
+struct ct_lanes_count ct_lanes_count(const struct ct_lanes *s)
+{
+    return s->count;
+}
