@@ -11,6 +11,8 @@ enum { W = CT_LANES };
 // One number of each lane; arenas align to 16 bytes only.
 typedef double vec __attribute__((vector_size(W * sizeof(double)), aligned(8), may_alias));
 
+typedef long long mask __attribute__((vector_size(W * sizeof(long long)), may_alias));
+
 // Constants of step control, projection and choice of rows: those of driver.c, simulate.c and embed.c.
 static const double safety = 0.9, most_shrink = 0.2, most_growth = 5, remembered_error = 1e-4;
 static const double stretch = 1.1, least_step = 16 * DBL_EPSILON, least_scale = 1e-6;
@@ -31,12 +33,11 @@ struct program {
 // What belongs to one member and is not computed in lanes.
 struct lane {
     enum ct_lane_state state;
-    double t1, rtol, atol; // of the run
+    double t1;             // end of the run
     double h;              // size the next step should have
     double error_before;
     bool was_refused;
     double end;       // time at the end of this try
-    bool is_refused;  // this try
     double error;     // of it
     double kappa_chosen, sigma_chosen;
     double pivot_most, pivot_last, pivot_time; // see foresee_singular in simulate.c
@@ -51,6 +52,7 @@ struct ct_lanes {
     struct ct_embed *embed;
     int nq, nu, nrow, ny, rank;
     bool is_solved, has_power, needs_lam, has_quaternion, is_used;
+    bool is_uniform; // all lanes have chosen the same rows and columns: whole vectors move, not single numbers
     struct program motion, constraint, power, memory; // motion: u', q' themselves if is_solved
     struct lane lane[W];
     struct ct_lanes_count count;
@@ -59,11 +61,13 @@ struct ct_lanes {
     double t[W], h[W];         // of this try
     double kappa[W], sigma[W]; // of the factors, as in embed.h
     bool is_regular[W];        // the factors exist
+    vec rtol, atol;            // of the steps
     // states (ny), stages (ny x stages)
     vec *y, *dy, *y1, *dy1, *end, *dend, *stage, *point, *third, *k;
     // matrices and vectors as in embed.h; Mp: M with rows and columns in the order dependent, independent
     vec *M, *Mp, *J, *Jd, *B, *MB, *S, *a, *c, *r, *b, *d, *lam;
     int *pivot;    // (nrow x W)
+    int *order, *from_row, *from_J, *from_M; // (nu, nrow, nrow nu, nu nu x W): see index_choice
     double *one_q; // a single lane's coordinates, step, state, derivative
     double *one_d, *one_y, *one_dy, *one_point;
 };
@@ -129,6 +133,10 @@ static void make_room(struct ct_arena *a, struct ct_lanes *s)
         *all[i].v = CT_NEWN(a, vec, all[i].n + 1);
     s->k = CT_NEWN(a, vec, ny * CT_MOST_STAGES);
     s->pivot = CT_NEWN(a, int, W *(r + 1));
+    s->order = CT_NEWN(a, int, W *(n + 1));
+    s->from_row = CT_NEWN(a, int, W *(r + 1));
+    s->from_J = CT_NEWN(a, int, W *(r *n + 1));
+    s->from_M = CT_NEWN(a, int, W *(n *n + 1));
     double **const one[] = {&s->one_q, &s->one_d, &s->one_y, &s->one_dy, &s->one_point};
     for (size_t i = 0; i < COUNT(one); i++)
         *one[i] = CT_NEWN(a, double, ny + 1);
@@ -288,38 +296,61 @@ static void scatter_J(struct ct_lanes *s, const vec *value)
         s->J[e->J[i].row + s->nrow * e->J[i].column] = value[i];
 }
 
+// to (n) = from, each lane from places of its own: index (n x W).
+static void pick(const struct ct_lanes *s, vec *to, const vec *from, const int *index, int n)
+{
+    for (int i = 0; i < n; i++, index += W) {
+        to[i] = from[index[0]];
+        for (int l = 1; l < W && !s->is_uniform; l++)
+            to[i][l] = from[index[l]][l];
+    }
+}
+
+// a = max(a, |v|), number by number; what is no number in v does not count.
+static void raise(vec *a, const vec *v)
+{
+    const mask is_negative = *v < 0;
+    const vec size = (vec)(((mask)-*v & is_negative) | ((mask)*v & ~is_negative));
+    const mask is = size > *a;
+    *a = (vec)(((mask)size & is) | ((mask)*a & ~is));
+}
+
+// a = min(a, |v|).
+static void lower(vec *a, const vec *v)
+{
+    vec size = {0};
+    raise(&size, v);
+    const mask is = size < *a;
+    *a = (vec)(((mask)size & is) | ((mask)*a & ~is));
+}
+
 // LU of J_d and B = -J_d^-1 J_i; kappa and sigma of the lanes asked for.
 static void factor(struct ct_lanes *s, const bool *wanted)
 {
     const int r = s->rank, f = s->nu - r;
     if (!r)
         return;
-    for (int l = 0; l < W; l++) {
-        const struct lane *lane = &s->lane[l];
-        for (int j = 0; j < r; j++)
-            for (int i = 0; i < r; i++)
-                s->Jd[i + r * j][l] = s->J[lane->row[i] + s->nrow * lane->dependent[j]][l];
-        for (int j = 0; j < f; j++)
-            for (int i = 0; i < r; i++)
-                s->B[i + r * j][l] = -s->J[lane->row[i] + s->nrow * lane->independent[j]][l];
-    }
+    pick(s, s->Jd, s->J, s->from_J, r * r);
+    pick(s, s->B, s->J, s->from_J + W * r * r, r * f);
+    for (int i = 0; i < r * f; i++)
+        s->B[i] = -s->B[i];
     factor_lu(s, s->Jd, r);
     for (int j = 0; j < f; j++)
         solve_lu(s, s->B + r * j, s->Jd, r);
-    for (int l = 0; l < W; l++) {
-        if (!wanted[l])
-            continue;
-        double kappa = 0, least = INFINITY, most = 0;
-        for (int i = 0; i < r * f; i++)
-            kappa = fmax(kappa, fabs(s->B[i][l]));
-        for (int i = 0; i < r; i++) {
-            least = fmin(least, fabs(s->Jd[i + r * i][l]));
-            most = fmax(most, fabs(s->Jd[i + r * i][l]));
+    vec kappa = {0}, most = {0}, least;
+    for (int i = 0; i < r * f; i++)
+        raise(&kappa, &s->B[i]);
+    for (int i = 0; i < r; i++)
+        raise(&most, &s->Jd[i + r * i]);
+    least = most;
+    for (int i = 0; i < r; i++)
+        lower(&least, &s->Jd[i + r * i]);
+    for (int l = 0; l < W; l++)
+        if (wanted[l]) {
+            s->kappa[l] = kappa[l];
+            s->sigma[l] = most[l] > 0 ? least[l] / most[l] : 0;
+            s->is_regular[l] &= isfinite(kappa[l]) != 0;
         }
-        s->kappa[l] = kappa;
-        s->sigma[l] = most > 0 ? least / most : 0;
-        s->is_regular[l] &= isfinite(kappa);
-    }
 }
 
 // S (free x free, lower) = [B; 1]' Mp [B; 1], b (free) = [B; 1]' r.
@@ -347,23 +378,14 @@ static void reduce(struct ct_lanes *s)
     }
 }
 
-// M, Q (into r), gam (into c) in the order dependent, independent.
+// M, Q (into r), -gam (into c) in the order dependent, independent.
 static void permute(struct ct_lanes *s, const vec *Q, const vec *gam)
 {
-    const int n = s->nu, r = s->rank;
-    for (int l = 0; l < W; l++) {
-        const struct lane *lane = &s->lane[l];
-        for (int j = 0; j < n; j++) {
-            const int cj = j < r ? lane->dependent[j] : lane->independent[j - r];
-            for (int i = 0; i < n; i++) {
-                const int ci = i < r ? lane->dependent[i] : lane->independent[i - r];
-                s->Mp[i + n * j][l] = s->M[ci + n * cj][l];
-            }
-            s->r[j][l] = Q[cj][l];
-        }
-        for (int k = 0; k < r; k++)
-            s->c[k][l] = -gam[lane->row[k]][l];
-    }
+    pick(s, s->Mp, s->M, s->from_M, s->nu * s->nu);
+    pick(s, s->r, Q, s->order, s->nu);
+    pick(s, s->c, gam, s->from_row, s->rank);
+    for (int k = 0; k < s->rank; k++)
+        s->c[k] = -s->c[k];
 }
 
 // u' into a from M, J and the program's Q, gam: (6.2). Where it does not exist it is not finite.
@@ -386,23 +408,23 @@ static void accelerate(struct ct_lanes *s, const vec *Q, const vec *gam, const b
     }
     for (int i = 0; i < f; i++)
         s->d[r + i] = s->b[i];
-    for (int l = 0; l < W; l++)
-        for (int i = 0; i < n; i++) {
-            const struct lane *lane = &s->lane[l];
-            s->a[i < r ? lane->dependent[i] : lane->independent[i - r]][l] = s->d[i][l];
-        }
+    for (int i = 0; i < n; i++)
+        if (s->is_uniform)
+            s->a[s->order[W * i]] = s->d[i];
+        else
+            for (int l = 0; l < W; l++)
+                s->a[s->order[W * i + l]][l] = s->d[i][l];
 }
 
 // Multipliers of the kept rows into the input: J_d' lam = (M u' - Q)_d. All rows are kept (see ct_lanes_load).
 static void multipliers(struct ct_lanes *s, const vec *Q)
 {
     const int n = s->nu, r = s->rank;
+    pick(s, s->lam, Q, s->order, r);
     for (int i = 0; i < r; i++) {
-        s->lam[i] = (vec){0};
+        s->lam[i] = -s->lam[i];
         for (int j = 0; j < n; j++)
             s->lam[i] += s->Mp[i + n * j] * s->d[j];
-        for (int l = 0; l < W; l++)
-            s->lam[i][l] -= Q[s->lane[l].dependent[i]][l];
     }
     solve_lu_transposed(s, s->lam, s->Jd, r);
     for (int i = 0; i < r; i++)
@@ -428,6 +450,32 @@ static void become(struct ct_lanes *s, int l, double t, const vec *y)
            (size_t)(s->nu - s->rank) * sizeof *embed->independent);
 }
 
+static bool is_same_choice(const struct ct_lanes *s, const struct lane *a, const struct lane *b)
+{
+    const size_t r = (size_t)s->rank, f = (size_t)s->nu - r, row = (size_t)s->nrow;
+    return memcmp(a->row, b->row, row * sizeof *a->row) == 0
+        && memcmp(a->dependent, b->dependent, r * sizeof *a->dependent) == 0
+        && memcmp(a->independent, b->independent, f * sizeof *a->independent) == 0;
+}
+
+// Where a lane's rows and columns are, for `pick`.
+static void index_choice(struct ct_lanes *s, int l)
+{
+    const struct lane *lane = &s->lane[l];
+    const int n = s->nu, r = s->rank;
+    for (int j = 0; j < n; j++)
+        s->order[W * j + l] = j < r ? lane->dependent[j] : lane->independent[j - r];
+    for (int i = 0; i < r; i++)
+        s->from_row[W * i + l] = lane->row[i];
+    for (int j = 0; j < n; j++) {
+        const int column = s->order[W * j + l];
+        for (int i = 0; i < r; i++)
+            s->from_J[W * (i + r * j) + l] = lane->row[i] + s->nrow * column;
+        for (int i = 0; i < n; i++)
+            s->from_M[W * (i + n * j) + l] = s->order[W * i + l] + n * column;
+    }
+}
+
 static void take_choice(struct ct_lanes *s, int l)
 {
     struct lane *lane = &s->lane[l];
@@ -436,6 +484,10 @@ static void take_choice(struct ct_lanes *s, int l)
     memcpy(lane->dependent, embed->dependent, (size_t)s->rank * sizeof *embed->dependent);
     memcpy(lane->independent, embed->independent,
            (size_t)(s->nu - s->rank) * sizeof *embed->independent);
+    index_choice(s, l);
+    s->is_uniform = true;
+    for (int i = 1; i < W; i++)
+        s->is_uniform &= is_same_choice(s, &s->lane[0], &s->lane[i]);
     lane->kappa_chosen = embed->kappa_chosen;
     lane->sigma_chosen = embed->sigma_chosen;
     s->kappa[l] = embed->kappa;
@@ -488,9 +540,10 @@ static double largest(const vec *v, int l, int n)
 static void correction(struct ct_lanes *s, const vec *r, bool *active)
 {
     const int n = s->rank;
+    pick(s, s->c, r, s->from_row, n);
+    for (int k = 0; k < n; k++)
+        s->c[k] = -s->c[k];
     for (int l = 0; l < W; l++) {
-        for (int k = 0; k < n; k++)
-            s->c[k][l] = -r[s->lane[l].row[k]][l];
         if (active[l] && !(s->is_regular[l] && s->kappa[l] <= kappa_largest)) {
             give_up(s, l);
             active[l] = false;
@@ -658,37 +711,36 @@ static void combine(const struct ct_lanes *s, vec *out, const vec *y, const doub
     }
 }
 
-static double weight(const struct lane *lane, double y, double y1)
-{
-    return lane->rtol * fmax(fabs(y), fabs(y1)) + lane->atol;
-}
-
-static double norm(const struct ct_lanes *s, int l, const vec *e)
+// Root mean square of e against the tolerance, as ct_stepper_norm.
+static void norm(const struct ct_lanes *s, double *out, const vec *e)
 {
     const int n = s->has_power ? s->ny : s->ny - 1; // the work is as good as the states
-    double sum = 0;
+    vec sum = {0};
     for (int i = 0; i < n; i++) {
-        const double part = e[i][l] / weight(&s->lane[l], s->y[i][l], s->y1[i][l]);
+        vec size = {0};
+        raise(&size, &s->y[i]);
+        raise(&size, &s->y1[i]);
+        const vec part = e[i] / (s->rtol * size + s->atol);
         sum += part * part;
     }
-    return n ? sqrt(sum / n) : 0;
+    for (int l = 0; l < W; l++)
+        out[l] = n ? sqrt(sum[l] / n) : 0;
 }
 
 static void estimate(struct ct_lanes *s)
 {
     const struct ct_tableau *b = s->method->tableau;
+    double e[W], e3[W] = {0};
     combine(s, s->point, NULL, b->E, b->nerror);
-    for (int l = 0; l < W; l++)
-        s->lane[l].error = norm(s, l, s->point);
-    if (!b->B3)
-        return;
-    combine(s, s->third, s->y, b->B3, b->nerror);
-    for (int i = 0; i < s->ny; i++)
-        s->third[i] = s->y1[i] - s->third[i];
-    for (int l = 0; l < W; l++) {
-        const double e = s->lane[l].error, e3 = norm(s, l, s->third);
-        s->lane[l].error = e == 0 ? 0 : e / hypot(1, 0.1 * (e3 / e));
+    norm(s, e, s->point);
+    if (b->B3) {
+        combine(s, s->third, s->y, b->B3, b->nerror);
+        for (int i = 0; i < s->ny; i++)
+            s->third[i] = s->y1[i] - s->third[i];
+        norm(s, e3, s->third);
     }
+    for (int l = 0; l < W; l++)
+        s->lane[l].error = !b->B3 || e[l] == 0 ? e[l] : e[l] / hypot(1, 0.1 * (e3[l] / e[l]));
 }
 
 // Ends of the stages at t + C h; the last one is the end of the step, y1 with dy1.
@@ -857,6 +909,9 @@ static void commit(struct ct_lanes *s, const bool *wanted)
     }
 }
 
+#if defined(__x86_64__) && defined(__GLIBC__) && defined(__GNUC__) && !defined(__clang__)
+__attribute__((target_clones("avx2", "default"), flatten))
+#endif
 void ct_lanes_step(struct ct_lanes *s)
 {
     bool wanted[W], tried[W];
@@ -892,6 +947,11 @@ void ct_lanes_step(struct ct_lanes *s)
 
 // ---- members come and go ----------------------------------------------------------------------------
 
+static double weight(const struct ct_lanes *s, int l, double y)
+{
+    return s->rtol[l] * fabs(y) + s->atol[l];
+}
+
 // A first step whose error should be near a hundredth of the tolerance; constants as in driver.c.
 static bool first_step(struct ct_lanes *s, int l, const double *y, const double *dy)
 {
@@ -899,7 +959,7 @@ static bool first_step(struct ct_lanes *s, int l, const double *y, const double 
     const int n = s->has_power ? s->ny : s->ny - 1;
     double d0 = 0, d1 = 0, d2 = 0;
     for (int i = 0; i < n; i++) {
-        const double w = weight(lane, y[i], y[i]);
+        const double w = weight(s, l, y[i]);
         d0 += y[i] / w * (y[i] / w);
         d1 += dy[i] / w * (dy[i] / w);
     }
@@ -912,7 +972,7 @@ static bool first_step(struct ct_lanes *s, int l, const double *y, const double 
     if (ct_run_rhs(s->run, h, s->one_point, s->one_d) != CT_EVAL_OK)
         return true;
     for (int i = 0; i < n; i++) {
-        const double bend = (s->one_d[i] - dy[i]) / h / weight(lane, y[i], y[i]);
+        const double bend = (s->one_d[i] - dy[i]) / h / weight(s, l, y[i]);
         d2 += bend * bend;
     }
     const double d = fmax(d1, n ? sqrt(d2 / n) : 0);
@@ -935,8 +995,8 @@ bool ct_lanes_load(struct ct_lanes *s, int l, const struct ct_run_options *o)
     s->method = o->method;
     s->rank = rank;
     lane->t1 = o->duration;
-    lane->rtol = o->rtol;
-    lane->atol = o->atol;
+    s->rtol[l] = o->rtol;
+    s->atol[l] = o->atol;
     lane->error_before = remembered_error;
     lane->was_refused = false;
     lane->pivot_most = 0;
