@@ -50,6 +50,7 @@ struct ct_study {
     struct ct_system_options system_options; // with strings in own.model
     struct ct_sim_options run;
     struct ct_plan plan;
+    double *base; // what the file says of its axes
     struct ct_system *system; // with the values of the file; that of the first worker
     bool is_derived;          // each member needs equations of its own
     const char *derived_by;   // the parameter that is why
@@ -234,11 +235,19 @@ static void count_steps(struct ct_study *s, long steps, long rejected, long alon
     }
 }
 
+static void lose_memory(struct ct_study *s)
+{
+#ifdef _OPENMP
+#pragma omp critical(ct_study_rows)
+#endif
+    s->no_memory = true;
+}
+
 // ---- a member -----------------------------------------------------------------------------------------
 
-// The texts NAME=VALUE of a member behind those of the command line; member -1: values that the file has.
-static const char **member_set(const struct ct_study *s, struct ct_arena *a,
-                               const struct ct_model *file, long member, size_t *n)
+// The texts NAME=VALUE of a member behind those of the command line; member -1: what the file says.
+static const char **member_set(const struct ct_study *s, struct ct_arena *a, long member,
+                               size_t *n)
 {
     const struct ct_system_options *o = &s->system_options;
     const char **set = CT_NEWN(a, const char *, o->nset + s->plan.naxis + 1);
@@ -247,11 +256,9 @@ static const char **member_set(const struct ct_study *s, struct ct_arena *a,
         set[(*n)++] = o->set[i];
     for (size_t i = 0; i < s->plan.naxis; i++) {
         char text[CT_NUMBER_SIZE];
-        const char *name = s->plan.axis[i].name;
-        const double value
-            = file ? file->parameter[ct_names_get(&file->parameter_index, name)].value
-                   : ct_plan_value(&s->plan, member, i);
-        set[(*n)++] = ct_arena_printf(a, "%s=%s", name, ct_number_format(text, value));
+        const double value = member < 0 ? s->base[i] : ct_plan_value(&s->plan, member, i);
+        set[(*n)++]
+            = ct_arena_printf(a, "%s=%s", s->plan.axis[i].name, ct_number_format(text, value));
     }
     return set;
 }
@@ -279,7 +286,7 @@ static bool set_member(struct worker *w, long member)
     *ctx = (struct ct_ctx){0};
     ct_own_init(ctx);
     size_t n;
-    const char **text = member_set(s, ctx->model, NULL, member, &n);
+    const char **text = member_set(s, ctx->model, member, &n);
     struct ct_set *set = CT_NEWN(ctx->model, struct ct_set, n + 1);
     for (size_t i = 0; i < n; i++)
         set[i].text = text[i];
@@ -310,7 +317,7 @@ static void run_own(struct worker *w, long member)
 {
     struct ct_ctx *ctx = ct_ctx_create();
     if (!ctx) {
-        w->s->no_memory = true;
+        lose_memory(w->s);
         return;
     }
     run_alone(w->s, member, ctx, w->system);
@@ -322,11 +329,11 @@ static void run_derived(struct worker *w, long member)
     struct ct_study *s = w->s;
     struct ct_ctx *ctx = ct_ctx_create();
     if (!ctx) {
-        s->no_memory = true;
+        lose_memory(s);
         return;
     }
     struct ct_system_options o = s->system_options;
-    o.set = member_set(s, ctx->model, NULL, member, &o.nset);
+    o.set = member_set(s, ctx->model, member, &o.nset);
     struct ct_system *system = ct_system_load(ctx, s->path, &o);
     run_alone(s, member, ctx, system);
     ct_system_destroy(system);
@@ -406,11 +413,11 @@ static void run_lanes(struct worker *w)
 
 // ---- workers ------------------------------------------------------------------------------------------
 
-static struct ct_system *load(struct ct_ctx *ctx, const struct ct_study *s,
-                              const struct ct_model *file)
+// With what varies as numbers, so that all members order their parameters alike.
+static struct ct_system *load(struct ct_ctx *ctx, const struct ct_study *s)
 {
     struct ct_system_options o = s->system_options;
-    o.set = member_set(s, ctx->model, file, 0, &o.nset);
+    o.set = member_set(s, ctx->model, -1, &o.nset);
     return ct_system_load(ctx, s->path, &o);
 }
 
@@ -426,7 +433,7 @@ static bool work(void *task)
     ct_own_init(&w->member_ctx);
     ct_own_init(&w->sim.own);
     if (!w->system) // text and options are those of the first, which could be loaded
-        w->system = load(&w->sim.own, s, &s->system->model);
+        w->system = load(&w->sim.own, s);
     if (!w->system || !ct_sim_prepare(&w->sim, w->system, &s->run))
         return false;
     if (!s->alone_by) {
@@ -447,7 +454,7 @@ static void run_worker(struct ct_study *s, int thread)
     struct worker w = {.s = s, .system = thread == 0 ? s->system : NULL};
     struct ct_ctx *ctx = ct_ctx_create();
     if (!ctx || (!ct_enter(ctx, work, &w) && (thread == 0 || ctx->no_memory)))
-        s->no_memory = true;
+        lose_memory(s);
     ct_ctx_destroy(ctx);
     ct_own_finish(&w.sim.own);
     ct_own_finish(&w.member_ctx);
@@ -580,7 +587,11 @@ static bool prepare(struct ct_study *s, const struct ct_study_options *o)
         || !ct_model_parse(&s->own, s->path, s->text, s->ntext, set, so->nset, &file)
         || !ct_plan_read(&s->own, &file, o->vary, o->nvary, o->sample, o->seed, &s->plan))
         return false;
-    s->system = load(&s->own, s, &file);
+    s->base = CT_NEWN(s->own.model, double, s->plan.naxis);
+    for (size_t i = 0; i < s->plan.naxis; i++)
+        s->base[i]
+            = file.parameter[ct_names_get(&file.parameter_index, s->plan.axis[i].name)].value;
+    s->system = load(&s->own, s);
     if (!s->system)
         return false;
     find_deciding(s);
