@@ -29,10 +29,11 @@ static bool read_value(struct ct_ctx *ctx, const char *text, double *value)
 
 static bool wrong(struct ct_ctx *ctx, const struct ct_axis *axis, const char *why)
 {
-    return ct_error(ctx, none, CT_E_USAGE,
-                    "--vary '%s': %s; wanted is NAME=FROM:TO:N, as r=0.1:0.2:11, or with --sample "
-                    "NAME=FROM:TO or NAME=normal:MEAN:DEVIATION",
-                    axis->text, why);
+    return ct_error(
+        ctx, none, CT_E_USAGE,
+        "--vary '%s': %s; wanted is NAME=FROM:TO:N, as r=0.1:0.2:11, or with --sample "
+        "NAME=FROM:TO or NAME=normal:MEAN:DEVIATION",
+        axis->text, why);
 }
 
 static bool read_count(const char *text, long *n)
@@ -68,8 +69,9 @@ static bool read_numbers(struct ct_ctx *ctx, struct ct_axis *axis, const char *r
             return wrong(ctx, axis,
                          ct_arena_printf(ctx->model, "'%s' is no constant value", text[i]));
     if (axis->kind == CT_AXIS_NORMAL && (rest || !(axis->to >= 0)))
-        return wrong(ctx, axis, rest ? "there is something behind it"
-                                     : "the deviation must not be negative");
+        return wrong(ctx, axis,
+                     rest ? "there is something behind it"
+                          : "the deviation must not be negative");
     if (rest && !read_count(rest, &axis->n))
         return wrong(ctx, axis,
                      ct_arena_printf(ctx->model, "N is '%s', not an integer from 1 to %d", rest,
@@ -90,8 +92,7 @@ static bool find_parameter(struct ct_ctx *ctx, const struct ct_model *m,
                     ct_suggest_or_list(ctx->model, axis->name, names, m->nparameter));
 }
 
-static bool read_axis(struct ct_ctx *ctx, const struct ct_model *m, struct ct_plan *s,
-                      size_t i)
+static bool read_axis(struct ct_ctx *ctx, const struct ct_model *m, struct ct_plan *s, size_t i)
 {
     struct ct_axis *axis = &s->axis[i];
     const char *equals = strchr(axis->text, '=');
@@ -118,14 +119,15 @@ static bool count_members(struct ct_ctx *ctx, struct ct_plan *s, long sample)
     if (s->is_sampled)
         n = (double)sample;
     if (n > CT_MOST_MEMBERS)
-        return ct_error(ctx, none, CT_E_USAGE, "the study has %.6g members; at most %d are possible",
-                        n, CT_MOST_MEMBERS);
+        return ct_error(ctx, none, CT_E_USAGE,
+                        "the study has %.6g members; at most %d are possible", n,
+                        CT_MOST_MEMBERS);
     s->nmember = (long)n;
     return true;
 }
 
 bool ct_plan_read(struct ct_ctx *ctx, const struct ct_model *m, const char *const *vary,
-                   size_t n, long sample, uint64_t seed, struct ct_plan *out)
+                  size_t n, long sample, uint64_t seed, struct ct_plan *out)
 {
     *out = (struct ct_plan){.naxis = n, .is_sampled = sample > 0, .seed = seed};
     out->axis = CT_NEWN(ctx->model, struct ct_axis, n + 1);

@@ -37,7 +37,7 @@ struct ct_plan {
 
 /// Read `vary` (n texts); sample > 0: so many random members, else a grid. m: the model, for the names. Errors: E003.
 bool ct_plan_read(struct ct_ctx *ctx, const struct ct_model *m, const char *const *vary,
-                   size_t n, long sample, uint64_t seed, struct ct_plan *out);
+                  size_t n, long sample, uint64_t seed, struct ct_plan *out);
 /// Value of axis i in a member (from 0).
 double ct_plan_value(const struct ct_plan *s, long member, size_t i);
 

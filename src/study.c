@@ -50,7 +50,7 @@ struct ct_study {
     struct ct_system_options system_options; // with strings in own.model
     struct ct_sim_options run;
     struct ct_plan plan;
-    double *base; // what the file says of its axes
+    double *base;             // what the file says of its axes
     struct ct_system *system; // with the values of the file; that of the first worker
     bool is_derived;          // each member needs equations of its own
     const char *derived_by;   // the parameter that is why
@@ -67,7 +67,7 @@ struct ct_study {
     } sink;
     struct ct_progress progress;
     struct row *row;
-    double *varied; // values of a row  (naxis)
+    double *varied;                                       // values of a row  (naxis)
     long next, written, ndone, nfailed, nresumed, nalone; // next: member to run
     long steps, rejected;
     bool is_stopped, no_memory, has_run;
@@ -185,7 +185,8 @@ static double *copy_values(const double *value, size_t n)
 }
 
 // A member is over; value NULL: it failed with the errors in ctx.
-static void record(struct ct_study *s, long member, const double *value, const struct ct_ctx *ctx)
+static void record(struct ct_study *s, long member, const double *value,
+                   const struct ct_ctx *ctx)
 {
     struct row row = {.state = value ? DONE : FAILED};
     if (value)
@@ -506,8 +507,7 @@ static bool *find_changing(struct ct_study *s, const struct ct_model *m)
 static void find_deciding(struct ct_study *s)
 {
     const struct ct_model *m = &s->system->model;
-    const struct ct_exs *const store[]
-        = {s->system->equations.x, s->system->start_equations.x};
+    const struct ct_exs *const store[] = {s->system->equations.x, s->system->start_equations.x};
     const bool *changes = find_changing(s, m);
     for (size_t i = 0; i < m->nparameter && !s->is_derived; i++)
         for (size_t k = 0; k < COUNT(store); k++)
@@ -567,8 +567,8 @@ static bool choose_way(struct ct_study *s, const struct ct_study_options *o)
     s->alone_by = o->lanes == 1 ? "as asked"
                                 : ct_lanes_refusal(&s->system->equations, &probe->run_options);
     if (s->is_derived)
-        s->alone_by = ct_arena_printf(
-            s->own.model, "the equations depend on the value of '%s'", s->derived_by);
+        s->alone_by = ct_arena_printf(s->own.model, "the equations depend on the value of '%s'",
+                                      s->derived_by);
     s->lanes = s->alone_by ? 1 : CT_LANES;
     if (o->lanes != 0 && o->lanes != 1 && o->lanes != CT_LANES)
         return ct_error(&s->own, none, CT_E_USAGE, "there are no %ld lanes; there are 1 and %d",
@@ -629,8 +629,7 @@ struct ct_study *ct_study_create(struct ct_ctx *ctx, const char *path,
                                  const struct ct_study_options *options)
 {
     static const struct ct_system_options standard;
-    struct create c
-        = {ctx, calloc(1, sizeof *c.s), path, system ? system : &standard, options};
+    struct create c = {ctx, calloc(1, sizeof *c.s), path, system ? system : &standard, options};
     if (!c.s) {
         ctx->no_memory = true;
         return NULL;
@@ -728,9 +727,9 @@ static bool read_rows(struct ct_study *s, FILE *in, const char *path, long *kept
             break; // cut off in the middle
         const int status = i < s->plan.nmember ? read_status(s, i, line) : -1;
         ok = status >= 0
-          || not_resumable(s, path,
-                           ct_arena_printf(s->own.model, "row %ld is not one of this sweep",
-                                           i + 1));
+          || not_resumable(
+                 s, path,
+                 ct_arena_printf(s->own.model, "row %ld is not one of this sweep", i + 1));
         if (!ok)
             break;
         s->row[i].state = status ? RESUMED_FAILED : RESUMED;
@@ -810,7 +809,8 @@ static bool open_sink(struct ct_study *s, const struct ct_study_results *r)
     bool found = false;
     s->sink.is_json = has_suffix(path, ".json");
     if (r->resume && (s->sink.is_json || strcmp(path, "-") == 0))
-        return ct_error(&s->own, none, CT_E_USAGE, "only a sweep into a CSV file can be resumed");
+        return ct_error(&s->own, none, CT_E_USAGE,
+                        "only a sweep into a CSV file can be resumed");
     if (s->sink.is_json) {
         s->sink.is_open = ct_outfile_open(&s->own, &s->sink.json, path);
         return s->sink.is_open;
@@ -820,7 +820,8 @@ static bool open_sink(struct ct_study *s, const struct ct_study_results *r)
     if (r->resume && !resume(s, path, &found))
         return false;
     s->sink.is_open
-        = found || ct_csv_open(&s->own, &s->sink.csv, strcmp(path, "-") == 0 ? NULL : path, name, n);
+        = found
+       || ct_csv_open(&s->own, &s->sink.csv, strcmp(path, "-") == 0 ? NULL : path, name, n);
     return s->sink.is_open;
 }
 
@@ -837,11 +838,11 @@ static void write_columns(struct ct_study *s)
     for (size_t c = 0; c < ncolumn; c++) {
         for (long i = 0; i < n; i++) {
             const double *value = s->row[i].value;
-            column[i] = c == 0               ? (double)(i + 1)
-                      : c <= s->plan.naxis  ? ct_plan_value(&s->plan, i, c - 1)
-                      : c + 1 == ncolumn     ? s->row[i].state == FAILED
-                      : value                ? value[c - 1 - s->plan.naxis]
-                                             : NAN;
+            column[i] = c == 0             ? (double)(i + 1)
+                      : c <= s->plan.naxis ? ct_plan_value(&s->plan, i, c - 1)
+                      : c + 1 == ncolumn   ? s->row[i].state == FAILED
+                      : value              ? value[c - 1 - s->plan.naxis]
+                                           : NAN;
         }
         ct_json_numbers(&j, name[c], column, (size_t)n);
     }
@@ -902,7 +903,8 @@ static bool run_and_report(void *data)
     return ok;
 }
 
-bool ct_study_run(struct ct_ctx *ctx, struct ct_study *s, const struct ct_study_results *results)
+bool ct_study_run(struct ct_ctx *ctx, struct ct_study *s,
+                  const struct ct_study_results *results)
 {
     static const struct ct_study_results nowhere;
     struct task t = {ctx, s};
@@ -1037,7 +1039,8 @@ void ct_study_print_summary(const struct ct_study *s, FILE *out)
     if (s->nresumed)
         fprintf(out, ", %ld taken over", s->nresumed);
     fprintf(out, "\nmethod       %s, tolerance %g\n", s->method, s->tolerance);
-    fprintf(out, "work         %ld steps, %ld rejected (%s)\n", s->steps, s->rejected, s->backend);
+    fprintf(out, "work         %ld steps, %ld rejected (%s)\n", s->steps, s->rejected,
+            s->backend);
     fprintf(out, "lanes        %d in each of %d threads", s->lanes, s->threads);
     if (s->alone_by)
         fprintf(out, ": %s", s->alone_by);

@@ -222,8 +222,8 @@ struct ct_study_options {
 /** Where rows go. All of it may be zero. */
 struct ct_study_results {
     const char *path; /* FILE.csv or FILE.json; "-" is standard output as CSV; NULL: no file */
-    bool resume;      /* go on with the rows of an interrupted sweep, which are in PATH.partial */
-    FILE *progress;   /* a bar is shown there if it is a terminal */
+    bool resume;    /* go on with the rows of an interrupted sweep, which are in PATH.partial */
+    FILE *progress; /* a bar is shown there if it is a terminal */
     /** Called for each member in order, one at a time but from any thread: run from 1, what varies, the outputs at the
      *  end time, or value NULL and why it failed. Return false to stop, which is no failure. */
     bool (*row)(void *user, long run, const double *varied, const double *value,

@@ -40,13 +40,14 @@ const struct cli_command cli_sweep = {
     .summary = "runs over ranges of parameters, a row for each",
     .use = CLI_SWEEP,
     .takes_model = true,
-    .more = "\n"
-            "Writes run, the parameters that vary, the outputs at the end time, and status: 0\n"
-            "done, 1 failed (outputs empty; the summary says why). Several --vary span a grid,\n"
-            "the last one runs fastest. With --sample K members are drawn at random: uniform in\n"
-            "NAME=FROM:TO, or NAME=normal:MEAN:DEVIATION. Rows do not depend on --threads.\n"
-            "\n"
-            "Without -o: the model's file name with .sweep.csv, in this folder.\n",
+    .more
+    = "\n"
+      "Writes run, the parameters that vary, the outputs at the end time, and status: 0\n"
+      "done, 1 failed (outputs empty; the summary says why). Several --vary span a grid,\n"
+      "the last one runs fastest. With --sample K members are drawn at random: uniform in\n"
+      "NAME=FROM:TO, or NAME=normal:MEAN:DEVIATION. Rows do not depend on --threads.\n"
+      "\n"
+      "Without -o: the model's file name with .sweep.csv, in this folder.\n",
     .examples = {"cotree sweep pendulum.yaml --vary length=0.5:2:100",
                  "cotree sweep crank.yaml --vary r='140 mm:160 mm' --sample 1000 --seed 7"},
     .run = run,

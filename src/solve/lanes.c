@@ -33,12 +33,12 @@ struct program {
 // What belongs to one member and is not computed in lanes.
 struct lane {
     enum ct_lane_state state;
-    double t1;             // end of the run
-    double h;              // size the next step should have
+    double t1; // end of the run
+    double h;  // size the next step should have
     double error_before;
     bool was_refused;
-    double end;       // time at the end of this try
-    double error;     // of it
+    double end;   // time at the end of this try
+    double error; // of it
     double kappa_chosen, sigma_chosen;
     double pivot_most, pivot_last, pivot_time; // see foresee_singular in simulate.c
     int *row, *dependent, *independent;        // as in embed.h
@@ -52,7 +52,8 @@ struct ct_lanes {
     struct ct_embed *embed;
     int nq, nu, nrow, ny, rank;
     bool is_solved, has_power, needs_lam, has_quaternion, is_used;
-    bool is_uniform; // all lanes have chosen the same rows and columns: whole vectors move, not single numbers
+    bool
+        is_uniform; // all lanes have chosen the same rows and columns: whole vectors move, not single numbers
     struct program motion, constraint, power, memory; // motion: u', q' themselves if is_solved
     struct lane lane[W];
     struct ct_lanes_count count;
@@ -66,7 +67,7 @@ struct ct_lanes {
     vec *y, *dy, *y1, *dy1, *end, *dend, *stage, *point, *third, *k;
     // matrices and vectors as in embed.h; Mp: M with rows and columns in the order dependent, independent
     vec *M, *Mp, *J, *Jd, *B, *MB, *S, *a, *c, *r, *b, *d, *lam;
-    int *pivot;    // (nrow x W)
+    int *pivot;                              // (nrow x W)
     int *order, *from_row, *from_J, *from_M; // (nu, nrow, nrow nu, nu nu x W): see index_choice
     double *one_q; // a single lane's coordinates, step, state, derivative
     double *one_d, *one_y, *one_dy, *one_point;
@@ -123,20 +124,37 @@ static void make_room(struct ct_arena *a, struct ct_lanes *s)
     const struct {
         vec **v;
         size_t n;
-    } all[] = {{&s->input, s->m->ninput}, {&s->y, ny},     {&s->dy, ny},    {&s->y1, ny},
-               {&s->dy1, ny},             {&s->end, ny},   {&s->dend, ny},  {&s->stage, ny},
-               {&s->point, ny},           {&s->third, ny}, {&s->M, n * n},  {&s->Mp, n * n},
-               {&s->J, r * n},            {&s->Jd, r * r}, {&s->B, r * n},  {&s->MB, n * n},
-               {&s->S, n * n},            {&s->a, n},      {&s->c, r},      {&s->r, n},
-               {&s->b, n},                {&s->d, n + r},  {&s->lam, n + r}};
+    } all[] = {{&s->input, s->m->ninput},
+               {&s->y, ny},
+               {&s->dy, ny},
+               {&s->y1, ny},
+               {&s->dy1, ny},
+               {&s->end, ny},
+               {&s->dend, ny},
+               {&s->stage, ny},
+               {&s->point, ny},
+               {&s->third, ny},
+               {&s->M, n * n},
+               {&s->Mp, n * n},
+               {&s->J, r * n},
+               {&s->Jd, r * r},
+               {&s->B, r * n},
+               {&s->MB, n * n},
+               {&s->S, n * n},
+               {&s->a, n},
+               {&s->c, r},
+               {&s->r, n},
+               {&s->b, n},
+               {&s->d, n + r},
+               {&s->lam, n + r}};
     for (size_t i = 0; i < COUNT(all); i++)
         *all[i].v = CT_NEWN(a, vec, all[i].n + 1);
     s->k = CT_NEWN(a, vec, ny * CT_MOST_STAGES);
     s->pivot = CT_NEWN(a, int, W *(r + 1));
     s->order = CT_NEWN(a, int, W *(n + 1));
     s->from_row = CT_NEWN(a, int, W *(r + 1));
-    s->from_J = CT_NEWN(a, int, W *(r *n + 1));
-    s->from_M = CT_NEWN(a, int, W *(n *n + 1));
+    s->from_J = CT_NEWN(a, int, W *(r * n + 1));
+    s->from_M = CT_NEWN(a, int, W *(n * n + 1));
     double **const one[] = {&s->one_q, &s->one_d, &s->one_y, &s->one_dy, &s->one_point};
     for (size_t i = 0; i < COUNT(one); i++)
         *one[i] = CT_NEWN(a, double, ny + 1);
@@ -310,7 +328,7 @@ static void pick(const struct ct_lanes *s, vec *to, const vec *from, const int *
 static void raise(vec *a, const vec *v)
 {
     const mask is_negative = *v < 0;
-    const vec size = (vec)(((mask)-*v & is_negative) | ((mask)*v & ~is_negative));
+    const vec size = (vec)(((mask) - *v & is_negative) | ((mask)*v & ~is_negative));
     const mask is = size > *a;
     *a = (vec)(((mask)size & is) | ((mask)*a & ~is));
 }
@@ -811,8 +829,8 @@ static void adapt_after_success(struct ct_lanes *s, int l)
     struct lane *lane = &s->lane[l];
     const double beta = 0.2 / (s->method->error_order + 1);
     const double alpha = 1.0 / (s->method->error_order + 1) - 0.75 * beta;
-    const double h = s->h[l], growth = s->method->most_growth > 0 ? s->method->most_growth
-                                                                  : most_growth;
+    const double h = s->h[l],
+                 growth = s->method->most_growth > 0 ? s->method->most_growth : most_growth;
     const double factor = pow(lane->error, alpha) / pow(lane->error_before, beta) / safety;
     const double *steady = s->method->steady;
     double next = h / fmin(fmax(factor, 1 / growth), 1 / most_shrink);
@@ -831,7 +849,8 @@ static void adapt_after_refusal(struct ct_lanes *s, int l)
 {
     struct lane *lane = &s->lane[l];
     const double alpha = 1.0 / (s->method->error_order + 1), error = lane->error;
-    lane->h = error > 1 ? s->h[l] * fmax(most_shrink, safety * pow(error, -alpha)) : s->h[l] / 2;
+    lane->h
+        = error > 1 ? s->h[l] * fmax(most_shrink, safety * pow(error, -alpha)) : s->h[l] / 2;
     lane->was_refused = true;
     s->count.rejected++;
 }
@@ -863,7 +882,8 @@ static void follow(struct ct_lanes *s, const double *t, const vec *y, const bool
 }
 
 // A singular position that comes within reach is for a run alone.
-static void foresee_singular(struct ct_lanes *s, const double *t, const vec *y, const bool *wanted)
+static void foresee_singular(struct ct_lanes *s, const double *t, const vec *y,
+                             const bool *wanted)
 {
     bool near[W];
     for (int l = 0; l < W; l++) {
@@ -989,8 +1009,9 @@ bool ct_lanes_load(struct ct_lanes *s, int l, const struct ct_run_options *o)
     struct lane *lane = &s->lane[l];
     const int rank = s->embed->rank;
     const double *y = ct_run_state(s->run);
-    if (!(o->duration > 0) || ct_lanes_refusal(s->e, o) || (s->is_used && o->method != s->method)
-        || (s->is_used && rank != s->rank) || (s->needs_lam && rank != s->nrow))
+    if (!(o->duration > 0) || ct_lanes_refusal(s->e, o)
+        || (s->is_used && o->method != s->method) || (s->is_used && rank != s->rank)
+        || (s->needs_lam && rank != s->nrow))
         return false;
     s->method = o->method;
     s->rank = rank;
@@ -1005,7 +1026,8 @@ bool ct_lanes_load(struct ct_lanes *s, int l, const struct ct_run_options *o)
     lane->steps = 0;
     if (ct_run_rhs(s->run, 0, y, s->one_dy) != CT_EVAL_OK || !first_step(s, l, y, s->one_dy))
         return false;
-    for (int i = 0; i < W; i++) // lanes that never had a member follow the first, for finite numbers
+    for (int i = 0; i < W;
+         i++) // lanes that never had a member follow the first, for finite numbers
         if (i == l || !s->is_used) {
             take_choice(s, i);
             put_lane(s->input, i, s->m->input, s->m->ninput);

@@ -280,8 +280,9 @@ struct ct_machine *ct_machine_create(struct ct_arena *a, const struct ct_model *
 void ct_machine_prepare(struct ct_machine *m)
 {
     struct ct_program *const all[]
-        = {&m->solved, &m->motion,   &m->constraint, &m->result, &m->power,    &m->energy, &m->root,
-           &m->memory, &m->momentum, &m->driver,     &m->wanted, &m->residual, &m->tangent};
+        = {&m->solved, &m->motion,   &m->constraint, &m->result,   &m->power,
+           &m->energy, &m->root,     &m->memory,     &m->momentum, &m->driver,
+           &m->wanted, &m->residual, &m->tangent};
     for (size_t i = 0; i < COUNT(all); i++)
         prepare(all[i], m->input);
 }

@@ -16,7 +16,8 @@ static struct ct_run_options member_options(const char *method, int i)
                                    .nsample = 2};
 }
 
-static void run_alone(struct variant *v, struct system *s, const char *method, int i, double *out)
+static void run_alone(struct variant *v, struct system *s, const char *method, int i,
+                      double *out)
 {
     struct ct_run *run = ct_run_create(&v->ctx, v->arena, &s->model, &v->e, &s->start);
     const struct ct_run_options o = member_options(method, i);
@@ -56,8 +57,8 @@ static int run_lanes(struct variant *v, struct system *s, const char *method, in
 static bool check_members(struct system *s, struct variant *v, const char *method)
 {
     const size_t n = v->e.nresult;
-    double *lanes = CT_NEWN(v->arena, double, CT_LANES * n + 1);
-    double *other = CT_NEWN(v->arena, double, CT_LANES * n + 1);
+    double *lanes = CT_NEWN(v->arena, double, CT_LANES *n + 1);
+    double *other = CT_NEWN(v->arena, double, CT_LANES *n + 1);
     double *alone = CT_NEWN(v->arena, double, n + 1);
     bool ok = true;
     if (run_lanes(v, s, method, 0, CT_LANES, 0, CT_BACKEND_BEST, lanes))

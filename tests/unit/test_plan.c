@@ -22,8 +22,7 @@ static bool read(struct fixture *f, const char *const *vary, size_t n, long samp
                  uint64_t seed)
 {
     f->ctx = (struct ct_ctx){.model = ct_arena_create(), .scratch = ct_arena_create()};
-    assert_true(
-        ct_model_parse(&f->ctx, "m.yaml", text, sizeof text - 1, NULL, 0, &f->model));
+    assert_true(ct_model_parse(&f->ctx, "m.yaml", text, sizeof text - 1, NULL, 0, &f->model));
     return ct_plan_read(&f->ctx, &f->model, vary, n, sample, seed, &f->plan);
 }
 
