@@ -44,24 +44,25 @@ static bool read_count(const char *text, long *n)
     return end != text && !*end && !errno && *n >= 1 && *n <= CT_MOST_MEMBERS;
 }
 
-// The part up to the next colon; *rest (out) what is behind it, or NULL.
-static const char *take_part(struct ct_ctx *ctx, const char *text, const char **rest)
+// The part of *text up to the next colon; *text becomes what is behind it, NULL at the end.
+static const char *take_part(struct ct_ctx *ctx, const char **text)
 {
-    const size_t n = strcspn(text, ":");
-    *rest = text[n] ? text + n + 1 : NULL;
-    return ct_arena_strndup(ctx->model, text, n);
+    const char *part = *text;
+    const size_t n = strcspn(part, ":");
+    *text = part[n] ? part + n + 1 : NULL;
+    return ct_arena_strndup(ctx->model, part, n);
 }
 
 static bool read_numbers(struct ct_ctx *ctx, struct ct_axis *axis, const char *rest)
 {
-    const char *from = take_part(ctx, rest, &rest);
+    const char *from = take_part(ctx, &rest);
     if (strcmp(from, "normal") == 0 && rest) {
         axis->kind = CT_AXIS_NORMAL;
-        from = take_part(ctx, rest, &rest);
+        from = take_part(ctx, &rest);
     }
     if (!rest)
         return wrong(ctx, axis, "there is one value only");
-    const char *to = take_part(ctx, rest, &rest);
+    const char *to = take_part(ctx, &rest);
     const char *const text[] = {from, to};
     double *const value[] = {&axis->from, &axis->to};
     for (int i = 0; i < 2; i++)
