@@ -1,12 +1,24 @@
 // Lists of what there is: component types and methods.
 #include "api.h"
 
+#include <string.h>
+
 static const char *const family_names[] = {"bodies", "joints", "forces"};
+
+// Column of the descriptions: behind the longest key.
+static int key_width(const struct ct_key *key, int n)
+{
+    int width = 12;
+    for (int i = 0; i < n; i++)
+        if ((int)strlen(key[i].name) > width)
+            width = (int)strlen(key[i].name);
+    return width;
+}
 
 static void print_keys(FILE *out, const struct ct_key *key, int n)
 {
     for (int i = 0; i < n; i++) {
-        fprintf(out, "    %-12s %s", key[i].name, key[i].doc);
+        fprintf(out, "    %-*s %s", key_width(key, n), key[i].name, key[i].doc);
         if (key[i].unit && *key[i].unit)
             fprintf(out, " [%s]", key[i].unit);
         if (key[i].flags & CT_KEY_REQUIRED)
@@ -17,10 +29,12 @@ static void print_keys(FILE *out, const struct ct_key *key, int n)
 
 static void print_class(FILE *out, const struct ct_component_class *c)
 {
+    const int width = key_width(c->key, c->nkey);
     fprintf(out, "\n  %s: %s\n", c->name, c->summary);
     if (c->ncoord > 0)
-        fprintf(out, "    coordinates  %d, speeds %d\n", c->ncoord, c->nfree);
-    fprintf(out, "    across       %s\n    through      %s\n", c->across, c->through);
+        fprintf(out, "    %-*s %d, speeds %d\n", width, "coordinates", c->ncoord, c->nfree);
+    fprintf(out, "    %-*s %s\n    %-*s %s\n", width, "across", c->across, width, "through",
+            c->through);
     print_keys(out, c->key, c->nkey);
 }
 

@@ -97,9 +97,22 @@ static bool make_folder(struct work *w)
                     w->folder, strerror(errno));
 }
 
+// M and Q are what is exported; a run that had no use for them is made again.
+static bool want_dynamics(struct ct_sim *sim)
+{
+    struct ct_system *s = sim->system;
+    if (s->equations.has_dynamics)
+        return true;
+    ct_formulate_dynamics(&s->equations);
+    sim->run = ct_run_create(&sim->own, sim->own.model, &s->model, &s->equations, &sim->start);
+    return sim->run != NULL;
+}
+
 static bool write_c(void *task)
 {
     struct work *w = task;
+    if (!want_dynamics(w->sim))
+        return false;
     struct ct_arena *a = w->ctx->model;
     const struct ct_machine *m = ct_run_machine(w->sim->run);
     const char *title = w->sim->system->model.name;

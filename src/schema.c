@@ -79,7 +79,8 @@ static const char *scalar_of(const struct ct_key *key)
 static void describe(struct ct_json *j, const struct ct_key *key)
 {
     char doc[320];
-    const bool has_unit = key->unit && *key->unit;
+    const bool is_word = key->kind == CT_VALUE_WORD || key->kind == CT_VALUE_WORDS;
+    const bool has_unit = key->unit && *key->unit && !is_word;
     snprintf(doc, sizeof doc, "%s%s%s%s", key->doc, has_unit ? " [" : "",
              has_unit ? key->unit : "", has_unit ? "]" : "");
     text(j, "description", doc);
@@ -91,6 +92,36 @@ static void scalar_or_list(struct ct_json *j, const struct ct_key *key)
     refer(j, NULL, scalar_of(key), NULL);
     list_of(j, NULL, key->kind == CT_VALUE_COORDS ? "hole" : scalar_of(key), key->least,
             key->most);
+    ct_json_end(j);
+}
+
+// "enum": the choices of a key
+static void choices(struct ct_json *j, const struct ct_key *key)
+{
+    ct_json_array(j, "enum");
+    for (const char *p = key->unit; *p; p += *p == '|') {
+        const int length = (int)strcspn(p, "|");
+        char word[64];
+        snprintf(word, sizeof word, "%.*s", length, p);
+        text(j, NULL, word);
+        p += length;
+    }
+    ct_json_end(j);
+}
+
+static void auto_or_choices(struct ct_json *j, const struct ct_key *key)
+{
+    ct_json_array(j, "anyOf");
+    ct_json_object(j, NULL);
+    text(j, "const", "auto");
+    ct_json_end(j);
+    ct_json_object(j, NULL);
+    text(j, "type", "array");
+    ct_json_object(j, "items");
+    choices(j, key);
+    ct_json_end(j);
+    ct_json_bool(j, "uniqueItems", true);
+    ct_json_end(j);
     ct_json_end(j);
 }
 
@@ -140,6 +171,33 @@ static void write_key(struct ct_json *j, const struct ct_key *key)
         break;
     case CT_VALUE_INITIAL:
         text(j, "$ref", "#/$defs/initial");
+        break;
+    case CT_VALUE_COUNT:
+        text(j, "$ref", "#/$defs/scalar");
+        break;
+    case CT_VALUE_WORD:
+        choices(j, key);
+        break;
+    case CT_VALUE_WORDS:
+        auto_or_choices(j, key);
+        break;
+    case CT_VALUE_ELEMENTS:
+        ct_json_array(j, "anyOf");
+        refer(j, NULL, "scalar", NULL);
+        list_of(j, NULL, "scalar", 1, 0);
+        ct_json_end(j);
+        break;
+    case CT_VALUE_ROTARY:
+        ct_json_array(j, "anyOf");
+        typed(j, NULL, "boolean", NULL);
+        refer(j, NULL, "vector", NULL);
+        ct_json_end(j);
+        break;
+    case CT_VALUE_RAYLEIGH:
+        text(j, "$ref", "#/$defs/rayleigh");
+        break;
+    case CT_VALUE_PLACES:
+        text(j, "$ref", "#/$defs/places");
         break;
     }
     ct_json_end(j);
@@ -314,21 +372,41 @@ static void write_axes(struct ct_json *j)
     ct_json_end(j);
 }
 
-static void write_points(struct ct_json *j)
+// name: {point: a place, or {at: place, rotate: turns}}
+static void write_points(struct ct_json *j, const char *name, const char *place)
 {
-    closed_object(j, "points");
+    closed_object(j, name);
     ct_json_object(j, "additionalProperties");
     ct_json_array(j, "anyOf");
-    refer(j, NULL, "vector", NULL);
+    refer(j, NULL, place, NULL);
     closed_object(j, NULL);
     ct_json_object(j, "properties");
-    refer(j, "at", "vector", "place in axes of the body [m]");
+    refer(j, "at", place, "place in axes of the body [m]");
     refer(j, "rotate", "turns", "turns the point's axes out of the body's");
     ct_json_end(j);
     ct_json_bool(j, "additionalProperties", false);
     ct_json_end(j);
     ct_json_end(j);
     ct_json_end(j);
+    ct_json_end(j);
+}
+
+static void write_of_beams(struct ct_json *j)
+{
+    ct_json_object(j, "place");
+    text(j, "description", "distance along a beam, or [x, y, z]");
+    ct_json_array(j, "anyOf");
+    refer(j, NULL, "scalar", NULL);
+    refer(j, NULL, "vector", NULL);
+    ct_json_end(j);
+    ct_json_end(j);
+    write_points(j, "places", "place");
+    closed_object(j, "rayleigh");
+    ct_json_object(j, "properties");
+    refer(j, "alpha", "scalar", "times the mass matrix [1/s] (0)");
+    refer(j, "beta", "scalar", "times the stiffness matrix [s] (0)");
+    ct_json_end(j);
+    ct_json_bool(j, "additionalProperties", false);
     ct_json_end(j);
 }
 
@@ -415,7 +493,8 @@ static void write_definitions(struct ct_json *j)
     write_scalars(j);
     write_table(j);
     write_axes(j);
-    write_points(j);
+    write_points(j, "points", "vector");
+    write_of_beams(j);
     write_initial(j);
     write_outputs(j);
     write_simulation(j);

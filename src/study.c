@@ -394,6 +394,7 @@ static void run_lanes(struct worker *w)
     struct ct_sim *sim = &w->sim;
     w->assembly = ct_assembly_create(&sim->own, sim->own.model, &w->system->model,
                                      &w->system->start_equations);
+    ct_embed_stay_dense(ct_run_embed(sim->run));
     w->lanes = ct_lanes_create(sim->own.model, &w->system->equations, sim->run);
     w->value = CT_NEWN(sim->own.model, double, w->system->equations.nresult + 1);
     for (;;) {

@@ -13,17 +13,6 @@ static long count(const struct ct_tape_counts *c)
     return c->multiplications + c->additions + c->divisions + c->functions;
 }
 
-// Arithmetic operations of embedding, (6.2), for n speeds, r kept rows, f = n - r freedoms: LU of J_d,
-// its solutions, products M B and B' M B, Cholesky of the reduced mass matrix.
-static long solve_operations(long n, long r)
-{
-    const long f = n - r;
-    const long lu = 2 * r * r * r / 3 + 2 * r * r * (f + 1);
-    const long right = 2 * n * r + 2 * r * f;
-    const long reduced = r ? 2 * n * r * f + r * f * (f + 1) : 0;
-    return lu + right + reduced + f * f * f / 3 + 2 * f * f + 2 * r * f;
-}
-
 static long operations(const struct ct_sim *sim)
 {
     const struct ct_machine *m = ct_run_machine(sim->run);
@@ -31,8 +20,13 @@ static long operations(const struct ct_sim *sim)
         const struct ct_tape_counts all = ct_tape_counts(m->solved.tape);
         return count(&all);
     }
+    const struct ct_embed *embed = ct_run_embed(sim->run);
+    if (embed->has_form) {
+        const struct ct_tape_counts all = ct_tape_counts(embed->form[0]->solved.tape);
+        return count(&all);
+    }
     const struct ct_tape_counts c = ct_tape_counts(m->motion.tape);
-    return count(&c) + solve_operations((long)m->nu, sim->report.rank);
+    return count(&c) + (long)ct_embed_operations(embed);
 }
 
 static long freedoms(const struct ct_sim *sim)
@@ -128,17 +122,42 @@ static void write_open(struct ct_json *j, const struct ct_sim *sim)
     ct_json_end(j);
 }
 
+// How accelerations are formulated, and the predicted cost of what it was chosen from.
+static const struct {
+    const char *key, *name;
+} formulation[CT_NFORMULATION] = {{"embedding", "embedding of the constraints"},
+                                  {"cutsets", "cutset sums"},
+                                  {"composite", "composite bodies"},
+                                  {"articulated", "articulated bodies"}};
+
+static void write_formulation(struct ct_json *j, const struct ct_equations *e)
+{
+    ct_json_text(j, "formulation", formulation[e->formulation].key);
+    ct_json_object(j, "formulation_costs");
+    for (int k = CT_FORMULATION_CUTSETS; k < CT_NFORMULATION && e->formulation; k++)
+        if (isfinite(e->formulation_cost[k]))
+            ct_json_number(j, formulation[k].key, e->formulation_cost[k]);
+    ct_json_end(j);
+}
+
 static void write_work(struct ct_json *j, const struct ct_sim *sim)
 {
     const struct ct_run_report *r = &sim->report;
     ct_json_text(j, "method", sim->run_options.method->name);
     ct_json_number(j, "tolerance", sim->tolerance);
     ct_json_text(j, "backend", ct_run_machine(sim->run)->backend);
+    write_formulation(j, &sim->system->equations);
     ct_json_integer(j, "steps", r->stats.steps);
     ct_json_integer(j, "rejected_steps", r->stats.rejected_steps);
     ct_json_integer(j, "evaluations", r->stats.evaluations);
     ct_json_integer(j, "jacobians", r->stats.jacobians);
     ct_json_integer(j, "factorizations", r->factorizations);
+    ct_json_object(j, "solves");
+    ct_json_integer(j, "unrolled", r->solves.unrolled);
+    ct_json_integer(j, "refined", r->solves.refined);
+    ct_json_integer(j, "pivoted", r->solves.pivoted);
+    ct_json_integer(j, "reordered", r->solves.reordered);
+    ct_json_end(j);
     ct_json_integer(j, "events", r->stats.events);
     ct_json_integer(j, "operations", operations(sim));
     ct_json_object(j, "seconds");
@@ -292,6 +311,23 @@ static void print_counts(FILE *out, const char *title, const struct ct_program *
             title, c.multiplications, c.additions, c.divisions, c.functions);
 }
 
+static void print_formulation(FILE *out, const struct ct_equations *e)
+{
+    fprintf(out, "formulation  %s", formulation[e->formulation].name);
+    if (e->formulation && !e->solution)
+        fputs(", solved as a dense matrix", out);
+    for (int i = 0; i < CT_NFORMULATION && e->formulation; i++) { // the chosen one first
+        const int k = i == 0 ? (int)e->formulation : i;
+        if ((i > 0 && k == (int)e->formulation) || !isfinite(e->formulation_cost[k]))
+            continue;
+        if (i == 0)
+            fprintf(out, ", predicted cost %.0f", e->formulation_cost[k]);
+        else
+            fprintf(out, "; %s %.0f", formulation[k].name, e->formulation_cost[k]);
+    }
+    fputc('\n', out);
+}
+
 // The rows that take no part in the dynamics, by joint.
 static void print_redundant(FILE *out, const struct ct_sim *sim)
 {
@@ -336,7 +372,11 @@ void ct_sim_print_check(const struct ct_sim *sim, FILE *out)
     print_trees(out, e);
     for (size_t i = 0; i < e->nleft_out; i++)
         fprintf(out, "left out     %s: %s\n", e->left_out[i].what, e->left_out[i].why);
-    print_counts(out, "motion", &machine->motion);
+    print_formulation(out, e);
+    if (machine->solved.nout)
+        print_counts(out, "solution", &machine->solved);
+    if (e->has_dynamics)
+        print_counts(out, "motion", &machine->motion);
     print_counts(out, "constraints", &machine->constraint);
     fprintf(out, "evaluation   %ld operations, solving for accelerations included\n",
             operations(sim));

@@ -122,6 +122,7 @@ static bool build(struct ct_system *s, const char *path, const struct ct_system_
     const struct ct_formulate_options start = {.tree = CT_TREE_JOINTS,
                                                .keep_all = o->keep_all,
                                                .measure_all = true,
+                                               .measured_for = &s->equations,
                                                .without_dynamics = true};
     struct ct_tree_report unused;
     return choose_tree(&s->own, o->tree, &motion)         // which branches, if any are given
@@ -298,6 +299,7 @@ static bool print_equations(void *task)
         ok = wrong_word(p->ctx, "format", name, strlen(name), formats, COUNT(formats));
     if (!ok)
         return false;
+    ct_formulate_dynamics(&p->s->equations);
     ok = ct_equations_print(p->out, p->s->own.scratch, &p->s->equations, &p->s->model, stages,
                             format)
       || ct_error(p->ctx, (struct ct_mark){0}, CT_E_FILE, "cannot write the equations");

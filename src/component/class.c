@@ -38,6 +38,18 @@ const struct ct_key *ct_family_keys(enum ct_family family, int *nkey)
     return joint_keys;
 }
 
+const char *const *ct_key_choices(struct ct_arena *a, const struct ct_key *key, size_t *n)
+{
+    const char **word = CT_NEWN(a, const char *, strlen(key->unit)); // more than there can be
+    *n = 0;
+    for (const char *p = key->unit; *p; p += *p == '|') {
+        const size_t length = strcspn(p, "|");
+        word[(*n)++] = ct_arena_strndup(a, p, length);
+        p += length;
+    }
+    return word;
+}
+
 const struct ct_component_class *ct_component_find(enum ct_family family, const char *name)
 {
     for (int i = 0; i < ct_ncomponent_class; i++)

@@ -29,13 +29,23 @@ enum ct_value_kind {
     CT_VALUE_JOINTS,  // list of joint coordinates: `a` or `a.q2`
     CT_VALUE_POINTS,  // the points of a body
     CT_VALUE_INITIAL, // {q:, u:, rotate:, guess:} of a joint
+    CT_VALUE_WORD,    // one of the key's choices
+    CT_VALUE_WORDS,   // a list of them, each once; `auto` is the same as not given
+    CT_VALUE_COUNT,   // an integer, at least `least`
+    // of beams
+    CT_VALUE_ELEMENTS, // a count, or a list of positions
+    CT_VALUE_ROTARY,   // true, false or three expressions
+    CT_VALUE_RAYLEIGH, // {alpha: a, beta: b}: two expressions
+    CT_VALUE_PLACES,   // points; a place may be one number, the distance along the axis
 };
 
 enum {
     CT_KEY_REQUIRED = 1,
-    CT_KEY_TIME = 2,  // may use t, and may be a {table: ...}
-    CT_KEY_STATE = 4, // may use t and signals, and may be a {table: ...}
-    CT_KEY_LOCAL = 8  // may use the coordinate names of its own custom joint
+    CT_KEY_TIME = 2,     // may use t, and may be a {table: ...}
+    CT_KEY_STATE = 4,    // may use t and signals, and may be a {table: ...}
+    CT_KEY_LOCAL = 8,    // may use the coordinate names of its own custom joint
+    CT_KEY_LENGTH = 16,  // may use the `length` of its own beam
+    CT_KEY_SECTION = 32, // may use `length` and `x`, the place along its own beam
 };
 
 /// One key of a component in the model file.
@@ -44,6 +54,7 @@ struct ct_key {
     enum ct_value_kind kind;
     unsigned flags;
     const char *unit; // dimension of each expression: "kg", "N*m/rad", "" none; NULL: any
+                      // WORD, WORDS: the choices, "linear|lumped"; the first is the default
     int least, most;  // LIST: lengths lie in least..most (inertia also checks 1, 3, 6)
     const char *doc;  // one line, with the default
 };
@@ -55,6 +66,7 @@ struct ct_turn {
 
 struct ct_value {
     bool given;
+    bool is_wrong;           // which has been reported
     struct ct_mark mark;     // of the value
     size_t n;                // number of expressions
     ct_ex *e;                // expressions
@@ -64,6 +76,8 @@ struct ct_value {
     const char *const *name; // NAMES, JOINTS: n texts
     size_t nturn;
     struct ct_turn *turn; // TURNS
+    long count; // COUNT, ELEMENTS: the number; WORD: place among the choices; WORDS: a bit
+                // for each; ROTARY: 0 false, 1 true, 3 values
 };
 
 enum { CT_MAX_COORD = 12, CT_MAX_ROW = 6 };
@@ -164,6 +178,9 @@ void ct_motion_measure_angle(struct ct_motion *m, ct_ex3 n, ct_ex3 across);
 /// Two unit vectors that make a right-handed set with the unit vector n; coordinate axes where n is one.
 /// value: of all symbols, decides which coordinate axis to start from.
 void ct_axes_across(struct ct_exs *x, ct_ex3 n, const double *value, ct_ex3 *e1, ct_ex3 *e2);
+
+/// The choices of a WORD or WORDS key as n texts in arena a.
+const char *const *ct_key_choices(struct ct_arena *a, const struct ct_key *key, size_t *n);
 
 /// Keys that every joint has besides its own (from, to, initial, stiffness, damping, rest, effort,
 /// motion); empty for other families.

@@ -11,6 +11,7 @@
 #define CT_COMPONENT_MODEL_H
 
 #include "base/names.h"
+#include "component/beam.h"
 #include "component/class.h"
 
 struct ct_frame {
@@ -23,12 +24,13 @@ struct ct_frame {
 };
 
 struct ct_body {
-    struct ct_instance instance; // class rigid or particle; ground has class NULL
+    struct ct_instance instance; // class rigid, particle or beam; ground has class NULL
     int frame;                   // its own
     ct_ex mass;                  // [kg]
     ct_ex3 com;                  // [m] in body axes
     ct_ex inertia[6]; // xx yy zz xy xz yz about the centre of mass, body axes [kg m^2]
     bool is_particle;
+    const struct ct_beam *beam; // NULL: not a beam
 };
 
 struct ct_parameter {

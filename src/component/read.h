@@ -21,6 +21,8 @@ struct ct_reader {
     const struct ct_instance
         *local_of; // custom joint whose coordinate names are known, or NULL
     const char *const *local_name;
+    const struct ct_instance *beam; // whose `length` and `x` are known, or NULL
+    ct_ex beam_x;
     // of tables already read: their names ("file\ncolumn\nkind") -> number in the store
     struct ct_names table;
     struct ct_table *sampled; // the store's tables, while they grow
@@ -78,6 +80,12 @@ bool ct_read_frame(struct ct_reader *r, const struct ct_node *node, int *frame);
 /// A value of any kind that does not depend on coordinate counts.
 bool ct_read_value(struct ct_reader *r, const struct ct_node *node, const struct ct_key *key,
                    struct ct_value *value);
+/// An integer of least..10000, which may be computed from parameters.
+bool ct_read_count(struct ct_reader *r, const struct ct_node *node, const char *name,
+                   long least, long *count);
+/// ELEMENTS, ROTARY and RAYLEIGH values.
+bool ct_read_beam_value(struct ct_reader *r, const struct ct_node *node,
+                        const struct ct_key *key, struct ct_value *v);
 /// {table:, column:, interpolate:}
 bool ct_read_table(struct ct_reader *r, const struct ct_node *node, ct_ex *e);
 
@@ -102,6 +110,10 @@ bool ct_read_own_values(struct ct_reader *r, struct ct_instance *self,
 void ct_read_parameters(struct ct_reader *r, const struct ct_set *set, size_t nset);
 void ct_read_bodies_declare(struct ct_reader *r);
 void ct_read_bodies_fill(struct ct_reader *r);
+/// All of a beam besides its points; b->instance has its class. Fills b->beam, b->mass.
+bool ct_read_beam(struct ct_reader *r, struct ct_body *b, const struct ct_node *node);
+/// The points of a body; `length` is known in those of a beam while r->beam is set.
+bool ct_read_points(struct ct_reader *r, const struct ct_body *b, const struct ct_node *node);
 void ct_read_joints_declare(struct ct_reader *r);
 void ct_read_joints_fill(struct ct_reader *r);
 void ct_read_forces_declare(struct ct_reader *r);

@@ -4,8 +4,6 @@
 #include <math.h>
 #include <string.h>
 
-static const char *const later[] = {"beam"}; // types of the format that are not read yet
-
 static void add_frame(struct ct_reader *r, const char *name, struct ct_mark at, int body)
 {
     struct ct_model *m = r->m;
@@ -74,19 +72,50 @@ void ct_read_bodies_declare(struct ct_reader *r)
 
 // ---- points ---------------------------------------------------------------------------------------------
 
+// A point of a beam turns with the section it sits on, which must be one of the beam's.
+static bool check_on_beam(struct ct_reader *r, const struct ct_frame *f, struct ct_mark at)
+{
+    const struct ct_value *length = ct_instance_value(r->beam, "length");
+    double x, l;
+    if (!length->n || !ct_read_number(r, length->e[0], &l) || !(l > 0)
+        || !ct_read_number(r, f->at.e[0], &x))
+        return true;                   // which has been reported
+    const double rounding = 1e-12 * l; // as in 0.1 + 0.2
+    if (x >= -rounding && x <= l + rounding)
+        return true;
+    return ct_error(r->ctx, at, CT_E_RANGE,
+                    "point '%s' is at x = %g m, the beam reaches from 0 to %g m", f->name, x,
+                    l);
+}
+
+// [x, y, z]; on a beam also x alone
+static bool read_place(struct ct_reader *r, const struct ct_node *node, struct ct_frame *f)
+{
+    if (!r->beam)
+        return ct_read_vec3(r, node, 0, "m", &f->at, NULL);
+    const struct ct_node *along = node->kind == CT_NODE_LIST && node->n ? node->item[0] : node;
+    const bool ok = node->kind == CT_NODE_LIST
+                      ? ct_read_vec3(r, node, CT_KEY_LENGTH, "m", &f->at, NULL)
+                      : ct_read_expr(r, node, CT_KEY_LENGTH, "m", &f->at.e[0]);
+    return ok && check_on_beam(r, f, along->mark);
+}
+
 static bool read_point(struct ct_reader *r, const struct ct_node *node, struct ct_frame *f)
 {
     static const char *const keys[] = {"at", "rotate"};
-    if (node->kind == CT_NODE_LIST)
-        return ct_read_vec3(r, node, 0, "m", &f->at, NULL);
+    if (node->kind == CT_NODE_LIST
+        || (r->beam && node->kind == CT_NODE_SCALAR && !ct_node_is_null(node)))
+        return read_place(r, node, f);
     const char *what = ct_arena_printf(r->ctx->scratch, "point '%s'", f->name);
     if (!ct_read_shape(r, node, CT_NODE_MAP,
-                       "[x, y, z] or {at: [x, y, z], rotate: [axis, angle]}"))
+                       r->beam ? "a place along the beam, [x, y, z] or {at: PLACE, rotate: "
+                                 "[axis, angle]}"
+                               : "[x, y, z] or {at: [x, y, z], rotate: [axis, angle]}"))
         return false;
     bool ok = ct_read_keys(r, node, what, keys, COUNT(keys));
     const struct ct_node *at = ct_node_get(node, "at"), *rotate = ct_node_get(node, "rotate");
     if (at)
-        ok &= ct_read_vec3(r, at, 0, "m", &f->at, NULL);
+        ok &= read_place(r, at, f);
     if (rotate) {
         size_t n;
         ok &= ct_read_turns(r, rotate, 0, &f->turn, &n);
@@ -97,8 +126,7 @@ static bool read_point(struct ct_reader *r, const struct ct_node *node, struct c
     return ok;
 }
 
-static bool read_points(struct ct_reader *r, const struct ct_body *b,
-                        const struct ct_node *node)
+bool ct_read_points(struct ct_reader *r, const struct ct_body *b, const struct ct_node *node)
 {
     const struct ct_node *points = ct_node_get(node, "points");
     if (!points || ct_node_is_null(points))
@@ -126,7 +154,7 @@ static bool read_ground(struct ct_reader *r, const struct ct_node *node)
         if (strcmp(node->pair[i].key, "points") != 0)
             ok = ct_error(r->ctx, node->pair[i].mark, CT_E_GROUND,
                           "the ground has points only, no '%s'", node->pair[i].key);
-    return read_points(r, &r->m->body[0], node) && ok;
+    return ct_read_points(r, &r->m->body[0], node) && ok;
 }
 
 // ---- mass and inertia -------------------------------------------------------------------------------------
@@ -239,22 +267,19 @@ static bool read_body(struct ct_reader *r, struct ct_body *b, const struct ct_no
 {
     struct ct_instance *self = &b->instance;
     const struct ct_pair p = {self->name, self->mark, node};
-    const struct ct_node *type = ct_node_get(node, "type");
-    for (size_t i = 0; type && type->kind == CT_NODE_SCALAR && i < COUNT(later); i++)
-        if (strcmp(type->text, later[i]) == 0 && !ct_component_find(CT_FAMILY_BODY, later[i]))
-            return ct_error(r->ctx, type->mark, CT_E_LATER,
-                            "bodies of type '%s' are not available yet", later[i]);
     self->cls = ct_read_class(r, CT_FAMILY_BODY, &p, "body", "rigid");
     if (!self->cls)
         return false;
     ct_read_clear(r, self);
+    if (strcmp(self->cls->name, "beam") == 0)
+        return ct_read_beam(r, b, node);
     b->is_particle = is_particle_type(node);
     if (b->is_particle ? !check_particle_keys(r, b, node) : false)
         return false;
     bool ok = ct_read_component_keys(r, self, node, "body", false);
     ok &= ct_read_own_values(r, self, node);
     if (!b->is_particle)
-        ok &= read_points(r, b, node);
+        ok &= ct_read_points(r, b, node);
     if (!ok)
         return false;
     const struct ct_value *mass = ct_instance_value(self, "mass");

@@ -128,7 +128,8 @@ bool ct_read_own_values(struct ct_reader *r, struct ct_instance *self,
             r->local_of = self;
             r->local_name = names->name;
         } else if (v) {
-            ok &= ct_read_value(r, v, key, &value[nfamily + i]);
+            value[nfamily + i].is_wrong = !ct_read_value(r, v, key, &value[nfamily + i]);
+            ok &= !value[nfamily + i].is_wrong;
         }
     }
     return ok;

@@ -163,9 +163,22 @@ static bool read_sampling(struct ct_reader *r, const struct ct_node *node,
     return !interval || read_interval(r, interval->value, s);
 }
 
+// A joint or a beam: what has coordinates.
+static bool check_small(struct ct_reader *r, const char *name, struct ct_mark at)
+{
+    const int body = ct_model_find_body(r->m, name);
+    if (body < 0)
+        return ct_read_joint_name(r, name, at) >= 0;
+    const struct ct_component_class *cls = r->m->body[body].instance.cls;
+    return (body > 0 && !cls)
+        || (cls && strcmp(cls->name, "beam") == 0) // one without class has been reported
+        || ct_error(r->ctx, at, CT_E_JOINT, "'%s' is no beam; 'small' lists joints and beams",
+                    name);
+}
+
 static bool read_small(struct ct_reader *r, const struct ct_node *node, struct ct_value *v)
 {
-    if (!ct_read_shape(r, node, CT_NODE_LIST, "a list of joints"))
+    if (!ct_read_shape(r, node, CT_NODE_LIST, "a list of joints and beams"))
         return false;
     const char **name = CT_NEWN(r->a, const char *, node->n);
     bool ok = true;
@@ -177,7 +190,7 @@ static bool read_small(struct ct_reader *r, const struct ct_node *node, struct c
             ok = false;
             continue;
         }
-        ok &= ct_read_joint_name(r, name[i], v->at[i]) >= 0;
+        ok &= check_small(r, name[i], v->at[i]);
     }
     v->n = node->n;
     return ok;

@@ -140,11 +140,39 @@ static bool find_local(struct ct_reader *r, const char *name, ct_ex *e, const ch
     return false;
 }
 
+// In its section and its points a beam knows its own length, in its section the place along it too;
+// there these names go before parameters.
+static bool find_along(struct ct_reader *r, const char *name, ct_ex *e, const char **why,
+                       enum ct_name_result *result)
+{
+    if (!r->beam)
+        return false;
+    const bool is_x = strcmp(name, "x") == 0;
+    if (!is_x && strcmp(name, "length") != 0)
+        return false;
+    if (is_x && r->flags & CT_KEY_SECTION) {
+        *e = r->beam_x;
+        *result = CT_NAME_OK;
+        return true;
+    }
+    if (!is_x && r->flags & (CT_KEY_LENGTH | CT_KEY_SECTION)) {
+        const struct ct_value *length = ct_instance_value(r->beam, "length");
+        const bool known = length->n && !ct_ex_is_zero(length->e[0]);
+        *e = known ? length->e[0] : CT_EX_ONE; // a wrong one is reported
+        *result = CT_NAME_OK;
+        return true;
+    }
+    *why = is_x ? "only what belongs to the section changes along a beam"
+                : "elements, section and points of the beam know it";
+    *result = CT_NAME_FORBIDDEN;
+    return ct_names_get(&r->m->parameter_index, name) < 0;
+}
+
 static enum ct_name_result find_name(void *user, const char *name, ct_ex *e, const char **why)
 {
     struct ct_reader *r = user;
     enum ct_name_result result;
-    if (find_local(r, name, e, why, &result))
+    if (find_local(r, name, e, why, &result) || find_along(r, name, e, why, &result))
         return result;
     if (strcmp(name, "t") == 0) {
         *e = r->m->time;
@@ -502,6 +530,61 @@ static bool read_new_names(struct ct_reader *r, const struct ct_node *node,
     return ok;
 }
 
+static bool read_choice(struct ct_reader *r, const struct ct_node *node,
+                        const struct ct_key *key, struct ct_value *v)
+{
+    size_t n;
+    const char *const *word = ct_key_choices(r->ctx->scratch, key, &n);
+    v->count = ct_read_word(r, node, key->name, word, n);
+    return v->count >= 0;
+}
+
+static bool read_choices(struct ct_reader *r, const struct ct_node *node,
+                         const struct ct_key *key, struct ct_value *v)
+{
+    size_t n;
+    const char *const *word = ct_key_choices(r->ctx->scratch, key, &n);
+    if (node->kind == CT_NODE_SCALAR && strcmp(node->text, "auto") == 0) {
+        v->given = false;
+        return true;
+    }
+    if (!ct_read_shape(
+            r, node, CT_NODE_LIST,
+            ct_arena_printf(r->ctx->scratch, "'auto' or a list of words (%s, ...)", word[0])))
+        return false;
+    bool ok = true;
+    for (size_t i = 0; i < node->n; i++) {
+        const int k = ct_read_word(r, node->item[i], key->name, word, n);
+        if (k >= 0 && v->count & 1L << k)
+            ok = ct_error(r->ctx, node->item[i]->mark, CT_E_NAME_TWICE, "'%s' is there twice",
+                          word[k]);
+        else if (k >= 0)
+            v->count |= 1L << k;
+        ok &= k >= 0;
+    }
+    return ok;
+}
+
+bool ct_read_count(struct ct_reader *r, const struct ct_node *node, const char *name,
+                   long least, long *count)
+{
+    enum { MOST = 10000 };
+    ct_ex e;
+    double v;
+    *count = least;
+    if (!ct_read_expr(r, node, 0, "", &e) || !ct_read_number(r, e, &v))
+        return false;
+    // an integer computed from parameters: n * eps of rounding
+    if (fabs(v - round(v)) > 1e-9 * fabs(v))
+        return ct_error(r->ctx, node->mark, CT_E_RANGE, "'%s' is %g; it must be an integer",
+                        name, v);
+    if (!(v > (double)least - 0.5 && v <= MOST))
+        return ct_error(r->ctx, node->mark, CT_E_RANGE, "'%s' is %g; it must be %ld to %d",
+                        name, v, least, MOST);
+    *count = lround(v);
+    return true;
+}
+
 bool ct_read_value(struct ct_reader *r, const struct ct_node *node, const struct ct_key *key,
                    struct ct_value *v)
 {
@@ -534,7 +617,18 @@ bool ct_read_value(struct ct_reader *r, const struct ct_node *node, const struct
         return read_new_names(r, node, key, v);
     case CT_VALUE_JOINTS:
         return read_texts(r, node, key, "a list of two joints", v);
+    case CT_VALUE_WORD:
+        return read_choice(r, node, key, v);
+    case CT_VALUE_WORDS:
+        return read_choices(r, node, key, v);
+    case CT_VALUE_COUNT:
+        return ct_read_count(r, node, key->name, key->least, &v->count);
+    case CT_VALUE_ELEMENTS:
+    case CT_VALUE_ROTARY:
+    case CT_VALUE_RAYLEIGH:
+        return ct_read_beam_value(r, node, key, v);
     case CT_VALUE_POINTS:  // read_body.c
+    case CT_VALUE_PLACES:  // read_body.c
     case CT_VALUE_COORDS:  // read_joint.c
     case CT_VALUE_INITIAL: // read_joint.c
         break;

@@ -140,20 +140,20 @@ ct_ex ct_ex_partial(struct ct_exs *x, uint32_t id, int i)
 }
 
 // One chain-rule step; `d` holds the derivatives of smaller ids.
-static ct_ex chain(struct ct_exs *x, uint32_t id, const ct_ex *d, const uint32_t *place)
+static ct_ex chain(struct ct_exs *x, uint32_t id, const ct_ex *d)
 {
     const struct ct_exnode n = x->node[id];
     const uint32_t arg[3] = {n.a, n.b, n.c};
     const ct_ex a = {n.a}, b = {n.b};
     if (n.op == CT_OP_IF) // keeps one `if`, however deep the derivative
-        return ct_ex_if(x, a, d[place[n.b]], d[place[n.c]]);
+        return ct_ex_if(x, a, d[n.b], d[n.c]);
     if (n.op == CT_OP_DIV) { // (a' - (a/b) b') / b
-        const ct_ex da = d[place[n.a]], db = d[place[n.b]];
+        const ct_ex da = d[n.a], db = d[n.b];
         return ct_ex_div(x, ct_ex_sub(x, da, ct_ex_mul(x, (ct_ex){id}, db)), b);
     }
     ct_ex sum = CT_EX_ZERO;
     for (int i = 0; i < ct_op_info[n.op].narg; i++) {
-        const ct_ex da = d[place[arg[i]]];
+        const ct_ex da = d[arg[i]];
         if (!ct_ex_is_zero(da))
             sum = ct_ex_add(x, sum, ct_ex_mul(x, ct_ex_partial(x, id, i), da));
     }
@@ -164,19 +164,18 @@ ct_ex ct_ex_diff_along(struct ct_exs *x, ct_ex e, const ct_ex *s, const ct_ex *d
 {
     const size_t n = ct_ex_walk(x, &e, 1);
     const uint32_t *list = copy_list(x, n);
-    uint32_t *place = CT_NEWN(x->arena, uint32_t, (size_t)e.id + 1);
-    ct_ex *d = CT_NEWN(x->arena, ct_ex, n + 1);
+    ct_ex *d = x->memo; // by id; nothing below starts another walk
     for (size_t k = 0; k < n; k++) {
-        place[list[k]] = (uint32_t)k;
         if (x->node[list[k]].op == CT_OP_SYM) {
+            d[list[k]] = CT_EX_ZERO;
             for (size_t i = 0; i < ns; i++)
                 if (s[i].id == list[k])
-                    d[k] = ds[i];
+                    d[list[k]] = ds[i];
         } else {
-            d[k] = chain(x, list[k], d, place);
+            d[list[k]] = chain(x, list[k], d);
         }
     }
-    return d[place[e.id]];
+    return d[e.id];
 }
 
 ct_ex ct_ex_diff(struct ct_exs *x, ct_ex a, ct_ex s)
@@ -196,35 +195,40 @@ static ct_ex rebuild(struct ct_exs *x, const struct ct_exnode *n, ct_ex a, ct_ex
                                        : ct_ex_fun2(x, (enum ct_op)n->op, a, b);
 }
 
-static ct_ex rebuild_mapped(struct ct_exs *x, const struct ct_exnode *n, const ct_ex *image,
-                            const uint32_t *place)
+static ct_ex rebuild_mapped(struct ct_exs *x, const struct ct_exnode *n, const ct_ex *image)
 {
     const uint32_t arg[3] = {n->a, n->b, n->c};
     ct_ex m[3] = {{0}, {0}, {0}};
     for (int i = 0; i < ct_op_info[n->op].narg; i++)
-        m[i] = image[place[arg[i]]];
+        m[i] = image[arg[i]];
     return rebuild(x, n, m[0], m[1], m[2]);
 }
 
 ct_ex ct_ex_subst(struct ct_exs *x, ct_ex e, const ct_ex *from, const ct_ex *to, size_t ns)
 {
-    const size_t n = ct_ex_walk(x, &e, 1);
+    ct_ex_subst_list(x, &e, 1, from, to, ns);
+    return e;
+}
+
+void ct_ex_subst_list(struct ct_exs *x, ct_ex *a, size_t na, const ct_ex *from, const ct_ex *to,
+                      size_t ns)
+{
+    const size_t n = ct_ex_walk(x, a, na);
     const uint32_t *list = copy_list(x, n);
-    uint32_t *place = CT_NEWN(x->arena, uint32_t, (size_t)e.id + 1);
-    ct_ex *image = CT_NEWN(x->arena, ct_ex, n + 1);
+    ct_ex *image = x->memo; // by id; nothing below starts another walk
     for (size_t k = 0; k < n; k++) {
         const struct ct_exnode node = x->node[list[k]];
-        place[list[k]] = (uint32_t)k;
-        image[k] = (ct_ex){list[k]};
+        image[list[k]] = (ct_ex){list[k]};
         if (node.op == CT_OP_SYM) {
             for (size_t i = 0; i < ns; i++)
                 if (from[i].id == list[k])
-                    image[k] = to[i];
+                    image[list[k]] = to[i];
         } else if (ct_op_info[node.op].narg) {
-            image[k] = rebuild_mapped(x, &node, image, place);
+            image[list[k]] = rebuild_mapped(x, &node, image);
         }
     }
-    return image[place[e.id]];
+    for (size_t k = 0; k < na; k++)
+        a[k] = image[a[k].id];
 }
 
 ct_ex ct_ex_import(struct ct_exs *x, const struct ct_exs *from, ct_ex e, ct_ex_leaf_fn leaf,

@@ -71,6 +71,25 @@ void ct_exs_init(struct ct_exs *x, struct ct_arena *arena)
     assert(x->nnode == 2);
 }
 
+struct ct_exs *ct_exs_clone(struct ct_arena *a, const struct ct_exs *from)
+{
+    struct ct_exs *x = CT_NEW(a, struct ct_exs);
+    *x = *from;
+    x->arena = a;
+    x->node = CT_NEWN(a, struct ct_exnode, from->node_cap);
+    memcpy(x->node, from->node, from->nnode * sizeof *x->node);
+    x->kinds = CT_NEWN(a, uint16_t, from->kinds_cap);
+    memcpy(x->kinds, from->kinds, from->nnode * sizeof *x->kinds);
+    x->sym = CT_NEWN(a, struct ct_sym, from->sym_cap);
+    memcpy(x->sym, from->sym, from->nsym * sizeof *x->sym);
+    x->hash = CT_NEWN(a, uint32_t, from->hash_size);
+    memcpy(x->hash, from->hash, from->hash_size * sizeof *x->hash);
+    x->label = NULL;
+    x->label_cap = x->walk_cap = 0;
+    x->generation = 0;
+    return x;
+}
+
 // ---- leaves and questions -----------------------------------------------------------------------
 
 ct_ex ct_ex_const(struct ct_exs *x, double v)

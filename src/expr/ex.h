@@ -102,6 +102,8 @@ struct ct_exs {
 };
 
 void ct_exs_init(struct ct_exs *x, struct ct_arena *arena);
+/// A copy that lives and grows in a; ids are the same. Labels stay behind.
+struct ct_exs *ct_exs_clone(struct ct_arena *a, const struct ct_exs *from);
 
 // ---- leaves ---------------------------------------------------------------------------------
 
@@ -183,6 +185,9 @@ size_t ct_ex_jacobian(struct ct_exs *x, struct ct_arena *scratch, struct ct_aren
 
 /// a with each symbol from[i] replaced by to[i].
 ct_ex ct_ex_subst(struct ct_exs *x, ct_ex a, const ct_ex *from, const ct_ex *to, size_t n);
+/// The same for all of a (na) in one walk.
+void ct_ex_subst_list(struct ct_exs *x, ct_ex *a, size_t na, const ct_ex *from, const ct_ex *to,
+                      size_t n);
 /// Copy a from store `from` into x; leaf(data, x, from, symbol) gives the node for a symbol.
 typedef ct_ex (*ct_ex_leaf_fn)(void *data, struct ct_exs *x, const struct ct_exs *from,
                                ct_ex s);

@@ -52,6 +52,11 @@ struct ct_edge_info {
     bool must_be_branch, never_branch;
     int weight_t, weight_r;            // freedoms in the translational and rotational graph
     int first_coordinate, ncoordinate; // plain coordinates in build->coordinate
+    struct ct_flexible *flexible;      // arms of beams: the beam, with the section at `along`
+    ct_ex along;                       // [m]
+    const struct ct_station *station;  // once the beam's coordinates are chosen
+    ct_ex3 *foreshortened; // slides that forces act along, where they differ; else NULL
+    ct_ex3 *slide, *turn;  // of the station, by elastic coordinate
 };
 
 /// coef times a speed: of an unknown (speed >= 0) or of a driver (driver >= 0).
@@ -65,7 +70,7 @@ struct ct_spin {
     int cluster; // the one it introduces
     ct_ex3 axis; // unit vector
     int nterm;   // rate = sum of terms (+ what depends on time alone)
-    struct ct_term term[CT_MAX_COORD];
+    struct ct_term *term;
     ct_ex3 local;     // the axis in axes of the cluster; zero where it is not fixed there
     ct_ex rate, bias; // [rad/s], and [rad/s^2] with all u' = 0
 };
@@ -79,6 +84,8 @@ struct ct_cluster {
     ct_ex3 axis; // local
     ct_ex angle;
     int has_angle;
+    ct_ex own_angle; // against its parent, where it is one turn
+    ct_ex33 S;       // else its axes -> its parent's
     ct_ex omega;     // planar: w = omega * normal
     ct_ex3 w, al[2]; // angular velocity, acceleration: [0] with u' = 0, [1] with symbols u'
     bool has_al[2];
@@ -89,6 +96,8 @@ struct ct_cluster {
 struct ct_slide {
     int speed, driver;
     ct_ex3 p;
+    ct_ex3
+        extra; // what forces act along besides: foreshortening that the kinematics leaves out
 };
 
 /// Vector from the parent anchor to this one: R_cluster (local).
@@ -97,7 +106,7 @@ struct ct_anchor {
     int enter, leave; // preorder interval: holds those of the anchors outboard
     ct_ex3 local;
     int nslide;
-    struct ct_slide slide[CT_MAX_COORD];
+    struct ct_slide *slide;
     ct_ex3 drift,
         drift_bias; // local: rate of `local`, and its second derivative with all u' = 0
     bool moves;     // has slides or a drift
@@ -125,7 +134,15 @@ struct ct_load {
     ct_ex power;     // put in by the part that has no potential [W]
 };
 
-struct ct_star; // dynamics.h
+/// One piece of a path between two nodes: an anchor's link, or the offset of an end node (anchor < 0).
+struct ct_piece {
+    int anchor, cluster, sign;
+    ct_ex3 local;
+};
+
+struct ct_star;     // dynamics.h
+struct ct_flexible; // flexible.h
+struct ct_station;
 struct ct_sweep;
 struct ct_pull; // row.h
 
@@ -139,6 +156,8 @@ struct ct_build {
 
     // planar mechanisms: common normal and a basis of the plane (ground components)
     bool is_planar;
+    bool keep_all;   // leave nothing out
+    bool is_rigid;   // beams keep their shape: for assembly, where they are not deformed yet
     ct_ex3 plane[3]; // e1, e2, n
     ct_ex *layer;    // by node: its place along n [m]
     ct_ex33 *
@@ -163,10 +182,15 @@ struct ct_build {
     struct ct_anchor *anchor;
     size_t nanchor, anchor_cap;
     struct ct_place *place; // by node
+    struct ct_piece *piece; // of the path sought last (nanchor + 2)
+
+    struct ct_flexible *flexible; // one per beam
+    size_t nflexible;
 
     struct ct_star *star;
     size_t nstar, star_cap;
-    int *child; // anchors, star by star
+    bool is_lumped; // stars are made
+    int *child;     // anchors, star by star
 
     struct ct_load *load;
     size_t nload, load_cap;

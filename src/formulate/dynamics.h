@@ -21,12 +21,21 @@ struct ct_sweep {
     ct_ex3 *torque; // by cluster: about its spins, clusters outboard included [N m]
     ct_ex3 *
         local; // by cluster: what is missing there, in axes of the cluster; zero but for the innermost
+    ct_ex *row; // by speed: what the deformation of beams adds
 };
 
-/// Anchor masses, stars, augmented inertias.
+/// Anchor masses, stars, augmented inertias; once.
 void ct_masses_lump(struct ct_build *b);
 /// Augmented inertia of a cluster in ground components; planar: about the normal, in the last entry.
 ct_ex33 ct_cluster_inertia(struct ct_build *b, int c);
+/// m (v.v 1 - v v') added to a tensor.
+void ct_inertia_add_point(struct ct_build *b, ct_ex33 *L, ct_ex m, ct_ex3 v);
+/// A mass at an anchor whose first moment and inertia (both local) turn with a cluster.
+void ct_masses_add(struct ct_build *b, int anchor, int cluster, ct_ex m, ct_ex3 moment,
+                   const ct_ex33 *inertia);
+/// m between two motions, spread over the unknowns they belong to, added to the lower triangle M (nu x nu).
+void ct_mass_spread(struct ct_build *b, ct_ex *M, const struct ct_term *p, int np,
+                    const struct ct_term *q, int nq, ct_ex m);
 /// M, lower triangle.  (5.2)
 void ct_mass_matrix_derive(struct ct_build *b);
 /// Forward accelerations and reverse cutset sweep.  (5.3)  CT_BIAS: u' = 0 and no multipliers;
@@ -34,6 +43,8 @@ void ct_mass_matrix_derive(struct ct_build *b);
 const struct ct_sweep *ct_sweep_run(struct ct_build *b, enum ct_level level);
 /// Q from the bias sweep and the efforts of the joints.
 void ct_forces_derive(struct ct_build *b);
+/// M and Q, once. After ct_loads_derive.
+void ct_dynamics_derive(struct ct_build *b);
 /// Row of the full sweep less the efforts of the joints: M u' - Q - J' lam. After ct_forces_derive.
 ct_ex ct_sweep_residual(struct ct_build *b, int speed);
 /// Row of the full sweep for a driver: the effort that the branch must supply.

@@ -27,6 +27,7 @@ struct ct_u {
     ct_ex derivative; // the symbol u'
     int q;            // the coordinate whose rate it is; -1 for angular velocities
     int joint, body;  // whose it is; the other is -1
+    int beam;         // body whose elastic coordinate it belongs to; 0: none
 };
 
 struct ct_entry { // of a sparse matrix
@@ -89,6 +90,16 @@ struct ct_left_out {
     const char *what, *why;
 };
 
+/// How accelerations of an open system are formulated. CUTSETS: mass matrix and forces by cutset sums in ground axes;
+/// COMPOSITE: the same in axes of the bodies; ARTICULATED: without a mass matrix.
+enum ct_formulation {
+    CT_FORMULATION_AUTO,
+    CT_FORMULATION_CUTSETS,
+    CT_FORMULATION_COMPOSITE,
+    CT_FORMULATION_ARTICULATED,
+    CT_NFORMULATION
+};
+
 struct ct_equations {
     struct ct_exs *x;
     struct ct_q *q;
@@ -97,7 +108,12 @@ struct ct_equations {
     size_t nu, u_cap;
     struct ct_entry *M; // lower triangle, row by row
     size_t nM, M_cap;
-    ct_ex *solution;    // u' of an open system in closed form (nu), or NULL
+    ct_ex *solution; // u' of an open system in closed form (nu), or NULL
+    ct_ex *pivot;    // of each speed in an articulated solution (nu): 0 where it moves no mass
+    enum ct_formulation formulation; // of the solution; AUTO where no choice was made
+    // operations by formulation, the solution included; INFINITY: it does not apply or cannot win
+    double formulation_cost[CT_NFORMULATION];
+    bool has_dynamics;  // M and Q are derived; else ct_formulate_dynamics does it
     ct_ex *Q;           // nu
     struct ct_entry *J; // row by row
     size_t nJ, J_cap;
@@ -113,9 +129,10 @@ struct ct_equations {
     size_t nresult, result_cap;
     ct_ex work_symbol;
     ct_ex power; // d(work)/dt, in terms of u' and lam where drivers push; 0 when nothing works
-    ct_ex kinetic, potential;
-    struct ct_residual *residual; // NULL if not asked for
+    ct_ex kinetic, potential, strain; // strain: of beams
+    struct ct_residual *residual;     // NULL if not asked for
     bool is_planar;
+    bool is_truncated; // to first order in coordinates that are small
     struct ct_left_out *left_out;
     size_t nleft_out, left_out_cap;
     struct ct_coordinate *coordinate; // of all joints and bodies (build.h)

@@ -3,9 +3,10 @@
 // A link carries the force F = m a + what its outboard stars need to turn and slide; a cluster feels the
 // torque of its stars about their anchors. Summed from the leaves this is the cutset of each branch, and
 // its projection on the motion of the branch is a row of M u' - Q - J' lam.
-#include "formulate/dynamics.h"
+#include "formulate/flexible.h"
 #include "formulate/row.h"
 #include "formulate/signal.h"
+#include "formulate/small.h"
 
 #include <string.h>
 
@@ -194,14 +195,17 @@ const struct ct_sweep *ct_sweep_run(struct ct_build *b, enum ct_level level)
     if (b->sweep[level])
         return b->sweep[level];
     struct work w = {.b = b, .level = level};
+    ct_masses_lump(b);
     struct ct_sweep *s = CT_NEW(b->arena, struct ct_sweep);
     w.rest = CT_NEWN(b->arena, ct_ex3, b->nanchor);
     w.torque = s->torque = CT_NEWN(b->arena, ct_ex3, b->ncluster);
     s->local = CT_NEWN(b->arena, ct_ex3, b->ncluster);
     w.apparent = CT_NEWN(b->arena, ct_ex3, b->nanchor);
     s->force = CT_NEWN(b->arena, ct_ex3, b->nanchor);
+    s->row = CT_NEWN(b->arena, ct_ex, b->eqs->nu + 1);
     find_apparent(&w);
     apply_loads(&w);
+    ct_flexible_sweep(b, level, w.apparent, w.rest, w.torque, s->row);
     sweep_anchors(&w);
     for (size_t c = b->ncluster; c-- > 1;) {
         if (!local_inertia_torque(&w, (int)c, &s->local[c]))
@@ -223,7 +227,7 @@ const struct ct_sweep *ct_sweep_run(struct ct_build *b, enum ct_level level)
 static ct_ex sweep_row(struct ct_build *b, const struct ct_sweep *s, int speed, int driver)
 {
     struct ct_exs *x = b->x;
-    ct_ex sum = CT_EX_ZERO;
+    ct_ex sum = speed >= 0 ? s->row[speed] : CT_EX_ZERO;
     for (size_t r = 0; r < b->nspin; r++)
         for (int k = 0; k < b->spin[r].nterm; k++) {
             const struct ct_term *t = &b->spin[r].term[k];
@@ -241,6 +245,10 @@ static ct_ex sweep_row(struct ct_build *b, const struct ct_sweep *s, int speed, 
                 continue;
             const ct_ex3 p = ct_cluster_turn(b, b->anchor[a].cluster, t->p);
             sum = ct_ex_add(x, sum, ct_ex3_dot(x, p, s->force[a]));
+            if (ct_ex3_is_zero(t->extra))
+                continue;
+            const ct_ex3 extra = ct_cluster_turn(b, b->anchor[a].cluster, t->extra);
+            sum = ct_ex_add(x, sum, ct_ex3_dot(x, extra, ct_sweep_run(b, CT_BIAS)->force[a]));
         }
     return sum;
 }
@@ -249,11 +257,19 @@ void ct_forces_derive(struct ct_build *b)
 {
     const struct ct_sweep *s = ct_sweep_run(b, CT_BIAS);
     struct ct_equations *e = b->eqs;
-    b->effort = CT_NEWN(b->arena, ct_ex, e->nu + 1);
-    for (size_t k = 0; k < e->nu; k++) {
-        b->effort[k] = e->Q[k]; // so far these are all that is in Q
-        e->Q[k] = ct_ex_sub(b->x, e->Q[k], sweep_row(b, s, (int)k, -1));
-    }
+    for (size_t k = 0; k < e->nu; k++)
+        e->Q[k] = ct_ex_sub(b->x, b->effort[k], sweep_row(b, s, (int)k, -1));
+}
+
+void ct_dynamics_derive(struct ct_build *b)
+{
+    if (b->eqs->has_dynamics)
+        return;
+    ct_masses_lump(b);
+    ct_mass_matrix_derive(b);
+    ct_forces_derive(b);
+    ct_small_derive(b);
+    b->eqs->has_dynamics = true;
 }
 
 ct_ex ct_sweep_residual(struct ct_build *b, int speed)
@@ -366,5 +382,8 @@ bool ct_loads_derive(struct ct_build *b)
         b->eqs->potential = ct_ex_add(b->x, b->eqs->potential, b->load[i].potential);
         b->eqs->power = ct_ex_add(b->x, b->eqs->power, b->load[i].power);
     }
+    b->effort = CT_NEWN(b->arena, ct_ex, b->eqs->nu + 1);
+    for (size_t k = 0; k < b->eqs->nu; k++)
+        b->effort[k] = b->eqs->Q[k]; // so far these are all that is in Q
     return b->ctx->nerror == before;
 }

@@ -2,10 +2,11 @@
 #include "formulate/formulate.h"
 #include "expr/tape.h"
 #include "formulate/dynamics.h"
+#include "formulate/open.h"
 #include "formulate/residual.h"
 #include "formulate/row.h"
 #include "formulate/signal.h"
-#include "formulate/solution.h"
+#include "formulate/small.h"
 #include "formulate/topology.h"
 #include "graph/exchange.h"
 
@@ -13,25 +14,6 @@
 #include <string.h>
 
 // ---- one pair of trees ---------------------------------------------------------------------------
-
-static struct ct_exs *clone_store(struct ct_arena *a, const struct ct_exs *from)
-{
-    struct ct_exs *x = CT_NEW(a, struct ct_exs);
-    *x = *from;
-    x->arena = a;
-    x->node = CT_NEWN(a, struct ct_exnode, from->node_cap);
-    memcpy(x->node, from->node, from->nnode * sizeof *x->node);
-    x->kinds = CT_NEWN(a, uint16_t, from->kinds_cap);
-    memcpy(x->kinds, from->kinds, from->nnode * sizeof *x->kinds);
-    x->sym = CT_NEWN(a, struct ct_sym, from->sym_cap);
-    memcpy(x->sym, from->sym, from->nsym * sizeof *x->sym);
-    x->hash = CT_NEWN(a, uint32_t, from->hash_size);
-    memcpy(x->hash, from->hash, from->hash_size * sizeof *x->hash);
-    x->label = NULL;
-    x->label_cap = x->walk_cap = 0;
-    x->generation = 0;
-    return x;
-}
 
 static double *start_values(struct ct_arena *a, const struct ct_model *m)
 {
@@ -47,16 +29,20 @@ static struct ct_build *build_create(struct ct_ctx *ctx, struct ct_arena *a,
                                      const struct ct_formulate_options *o)
 {
     struct ct_build *b = CT_NEW(a, struct ct_build);
-    *b = (struct ct_build){.ctx = ctx, .arena = a, .model = m};
+    *b = (struct ct_build){.ctx = ctx,
+                           .arena = a,
+                           .model = m,
+                           .is_rigid = o->measure_all,
+                           .keep_all = o->keep_all};
     b->eqs = CT_NEW(a, struct ct_equations);
-    b->x = b->eqs->x = clone_store(a, m->x);
+    b->x = b->eqs->x = ct_exs_clone(a, m->x);
     b->value = start_values(a, m);
     b->x->decided = CT_NEWN(a, unsigned char, m->x->nsym + 1);
     ct_topology_derive(b, !o->keep_all);
     return b;
 }
 
-// Everything but outputs: Phi, J, gam and, unless only places and speeds are wanted, M and Q.
+// What comes before M and Q: Phi, J, gam and, unless only places and speeds are wanted, the loads.
 static bool derive(struct ct_build *b, bool with_dynamics)
 {
     const size_t before = b->ctx->nerror;
@@ -65,12 +51,8 @@ static bool derive(struct ct_build *b, bool with_dynamics)
     ct_rotation_derive(b);
     ct_translation_derive(b);
     ct_rows_derive(b);
-    if (!with_dynamics)
-        return b->ctx->nerror == before;
-    ct_masses_lump(b);
-    ct_loads_derive(b);
-    ct_mass_matrix_derive(b);
-    ct_forces_derive(b);
+    if (with_dynamics)
+        ct_loads_derive(b);
     return b->ctx->nerror == before;
 }
 
@@ -130,10 +112,8 @@ static double equations_cost(struct ct_arena *scratch, const struct ct_equations
     for (size_t i = 0; i < e->nrow; i++)
         all[k++] = e->row[i].gam;
     const struct ct_tape_counts c = ct_ex_count(scratch, e->x, all, k);
-    const double per_function = 8, per_division = 4, per_speed = 20; // in multiplications
-    return (double)(c.multiplications + c.additions) + per_division * (double)c.divisions
-         + per_function * (double)c.functions + per_speed * (double)e->nu
-         + factor_cost(scratch, e);
+    const double per_speed = 20; // in multiplications
+    return ct_counted_cost(&c) + per_speed * (double)e->nu + factor_cost(scratch, e);
 }
 
 struct search {
@@ -153,7 +133,11 @@ static double pair_cost(void *data, const struct ct_tree *T, const struct ct_tre
     struct ct_build *b = build_create(&quiet, scratch, s->model, s->options);
     b->T = *T;
     b->R = *R;
-    const double cost = derive(b, true) ? equations_cost(scratch, b->eqs) : INFINITY;
+    double cost = INFINITY;
+    if (derive(b, true)) {
+        ct_dynamics_derive(b);
+        cost = equations_cost(scratch, b->eqs);
+    }
     ct_arena_destroy(scratch);
     return cost;
 }
@@ -250,8 +234,9 @@ static struct rules make_rules(struct ct_build *b, enum ct_tree_choice choice)
         r.weight_t[i] = e->weight_t + extra;
         r.weight_r[i] = e->weight_r + extra;
         r.rank[i] = tie_rank(b, i, depth, turned, choice);
-        r.forced_t[i] = e->must_be_branch;
-        r.forced_r[i] = e->must_be_branch || is_particle;
+        const bool is_small = e->kind == CT_EDGE_JOINT && ct_small_joint(b, e->index);
+        r.forced_t[i] = e->must_be_branch || is_small;
+        r.forced_r[i] = e->must_be_branch || is_particle || (is_small && e->has_rotation);
         r.banned_t[i] = e->never_branch;
         r.banned_r[i] = e->never_branch || !e->has_rotation;
         r.tied[i] = e->must_be_branch;
@@ -274,6 +259,33 @@ static bool is_open(const struct ct_build *b, const struct ct_tree_pair *p)
             return false;
     }
     return true;
+}
+
+// Rows that the chords leave, and unknowns, by (2.1).
+static void count_weights(const struct ct_build *b, const struct ct_tree_pair *p, int *nrow,
+                          int *nu)
+{
+    const int directions[2] = {b->is_planar ? 2 : 3, b->is_planar ? 1 : 3};
+    *nrow = *nu = 0;
+    for (size_t i = 0; i < b->nedge; i++) {
+        const struct ct_edge_info *e = &b->edge[i];
+        const bool is_joint = e->kind == CT_EDGE_JOINT || e->kind == CT_EDGE_CLOSURE;
+        const int weight[2] = {e->weight_t, e->weight_r};
+        const bool branch[2] = {p->trans[i], p->rot[i] || !e->has_rotation};
+        for (int k = 0; k < 2; k++) {
+            *nu += branch[k] ? weight[k] : 0;
+            *nrow += is_joint && !branch[k] ? directions[k] - weight[k] : 0;
+        }
+    }
+}
+
+// In a plane angles are chosen from ground even in open chains, and joints are then chords without rows. For a long
+// chain there is nothing to gain by a search, whose trials would need its mass matrix.
+static bool is_long_chain(const struct ct_build *b, const struct ct_tree_pair *p)
+{
+    int nrow, nu;
+    count_weights(b, p, &nrow, &nu);
+    return nrow == 0 && nu > CT_SMALL_SYSTEM;
 }
 
 static bool least_weight(struct ct_build *b, const struct rules *r, struct ct_tree_pair *p)
@@ -385,7 +397,7 @@ static bool choose_trees(struct ct_build *b, const struct search *s,
     report->how = how[o->tree];
     if (o->tree == CT_TREE_GIVEN ? !given_trees(b, o, &r, &p) : !least_weight(b, &r, &p))
         return false;
-    if (o->tree == CT_TREE_AUTO && is_open(b, &p))
+    if (o->tree == CT_TREE_AUTO && (is_open(b, &p) || is_long_chain(b, &p)))
         report->how = "least weight; there are no loops to cut";
     else if (o->tree == CT_TREE_AUTO && !o->measure_all)
         improve(b, s, &r, &p, report);
@@ -406,6 +418,7 @@ static const char *kind_name(const struct ct_build *b, size_t i)
     static const char *const plain[] = {"body", "arm", "joint", "closure", "force"};
     return e->self                            ? e->self->cls->name
          : b->edge[i].kind == CT_EDGE_CLOSURE ? "weld"
+         : b->edge[i].flexible                ? "flexible arm"
                                               : plain[e->kind];
 }
 
@@ -435,16 +448,28 @@ static void describe_graph(struct ct_build *b)
 }
 
 // Coordinates of all joints and bodies and their speeds, measured or not, in a fixed order.
-static void measure_all(struct ct_build *b)
+static void measure_all(struct ct_build *b, const struct ct_equations *needed_by)
 {
     for (size_t i = 0; i < b->ncoordinate; i++) {
-        const struct ct_result q
-            = {b->coordinate[i].name, ct_coordinate_value(b, (int)i), false};
+        const struct ct_coordinate *c = &b->coordinate[i];
+        struct ct_result q = {c->name, CT_EX_ZERO, false}, u = q;
+        if (!needed_by || b->edge[c->edge].kind != CT_EDGE_BODY || c->q >= 0
+            || needed_by->coordinate[i].q >= 0) {
+            q.value = ct_coordinate_value(b, (int)i);
+            u.value = ct_coordinate_speed(b, (int)i);
+        }
         CT_PUSH(b->arena, b->eqs->result, b->eqs->nresult, b->eqs->result_cap, q);
-        const struct ct_result u
-            = {b->coordinate[i].name, ct_coordinate_speed(b, (int)i), false};
         CT_PUSH(b->arena, b->eqs->result, b->eqs->nresult, b->eqs->result_cap, u);
     }
+}
+
+static void derive_dynamics(struct ct_build *b, const struct ct_formulate_options *o)
+{
+    if (o->with_solution && !b->eqs->nrow && b->eqs->nu) {
+        ct_open_solve(b, o->formulation);
+        return;
+    }
+    ct_dynamics_derive(b);
 }
 
 bool ct_formulate(struct ct_ctx *ctx, struct ct_arena *a, const struct ct_model *m,
@@ -453,17 +478,20 @@ bool ct_formulate(struct ct_ctx *ctx, struct ct_arena *a, const struct ct_model 
 {
     struct ct_build *b = build_create(ctx, a, m, options);
     struct search s = {ctx, m, options, a};
+    const size_t before = ctx->nerror;
     *report = (struct ct_tree_report){0};
     if (!choose_trees(b, &s, report) || !derive(b, !options->without_dynamics))
         return false;
-    if (options->with_solution)
-        ct_solution_derive(b);
+    if (!options->without_dynamics)
+        derive_dynamics(b, options);
+    if (ctx->nerror > before)
+        return false;
     if (options->with_residual)
         ct_residual_derive(b);
     if (options->with_energy)
         ct_energies_derive(b);
     if (options->measure_all)
-        measure_all(b);
+        measure_all(b, options->measured_for);
     else if (options->with_outputs && !ct_outputs_derive(b))
         return false;
     describe_graph(b);
@@ -473,6 +501,18 @@ bool ct_formulate(struct ct_ctx *ctx, struct ct_arena *a, const struct ct_model 
     b->eqs->how = report->how;
     *out = *b->eqs;
     return true;
+}
+
+void ct_formulate_dynamics(struct ct_equations *e)
+{
+    if (e->has_dynamics)
+        return;
+    ct_dynamics_derive(e->build);
+    const struct ct_equations *made = e->build->eqs;
+    e->M = made->M;
+    e->nM = made->nM;
+    e->M_cap = made->M_cap;
+    e->has_dynamics = true;
 }
 
 void ct_formulate_residual(struct ct_equations *e)

@@ -20,9 +20,14 @@ struct ct_formulate_options {
     bool with_energy;   // kinetic and potential energy and the power are wanted
     bool with_outputs;  // the outputs of the model are wanted
     bool with_solution; // u' in closed form where that is cheap
+    enum ct_formulation
+        formulation;    // of an open system with solution; AUTO: the one of fewest operations
     bool with_residual; // an implicit method will ask for the residual and its derivatives
     bool
         measure_all; // results are the coordinates of all joints and bodies instead (for assembly)
+    // with measure_all: equations of motion that will start from the results. Coordinates of bodies that are not
+    // among their unknowns are then left 0; NULL: all are measured
+    const struct ct_equations *measured_for;
     bool without_dynamics; // neither M nor Q: places and speeds are all that is wanted
 };
 
@@ -37,6 +42,9 @@ struct ct_tree_report {
 bool ct_formulate(struct ct_ctx *ctx, struct ct_arena *a, const struct ct_model *m,
                   const struct ct_formulate_options *options, struct ct_equations *out,
                   struct ct_tree_report *report);
+
+/// M and Q, if the equations do not have them yet: for those who do not use the solution.
+void ct_formulate_dynamics(struct ct_equations *e);
 
 /// The residual form, if the equations do not have it yet: for an implicit method chosen after they were made.
 void ct_formulate_residual(struct ct_equations *e);

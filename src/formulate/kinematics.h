@@ -30,6 +30,8 @@ ct_ex3 ct_cluster_acceleration(struct ct_build *b, int c, enum ct_level); // al 
 /// w and al of cluster `to` less those of `from`, along the path of the rotational tree.
 ct_ex3 ct_cluster_path_velocity(struct ct_build *b, int from, int to);
 ct_ex3 ct_cluster_path_acceleration(struct ct_build *b, int from, int to, enum ct_level level);
+/// Axes of c -> axes of its parent.
+ct_ex33 ct_cluster_relative(struct ct_build *b, int c);
 /// R_c v for a local vector.
 ct_ex3 ct_cluster_turn(struct ct_build *b, int c, ct_ex3 local);
 /// w x v and w x (w x v) for a vector v fixed in the cluster (the planar form is -w^2 v).

@@ -9,7 +9,7 @@
 // where b is a star's first moment and h the sum of the first moments outboard of a link that turn
 // with r. Where everything outboard turns together, h and the inertia are composites that are summed
 // once. In a planar mechanism all this is scalar. Columns are taken for the outer of two spins.
-#include "formulate/dynamics.h"
+#include "formulate/flexible.h"
 
 #include <assert.h>
 
@@ -17,8 +17,7 @@ static const ct_ex3 zero3 = {{{0}, {0}, {0}}};
 
 // ---- lumping --------------------------------------------------------------------------------------
 
-// m (v.v 1 - v v') added to a tensor.
-static void add_point(struct ct_build *b, ct_ex33 *L, ct_ex m, ct_ex3 v)
+void ct_inertia_add_point(struct ct_build *b, ct_ex33 *L, ct_ex m, ct_ex3 v)
 {
     struct ct_exs *x = b->x;
     for (int i = 0; i < 3; i++) {
@@ -47,7 +46,18 @@ static void add_mass(struct ct_build *b, int anchor, int cluster, ct_ex m, ct_ex
     struct ct_star *s = star_of(b, anchor, cluster);
     const ct_ex3 v = ct_build_in_plane(b, local);
     s->moment = ct_ex3_add(b->x, s->moment, ct_ex3_scale(b->x, m, v));
-    add_point(b, &b->cluster[cluster].L, m, v);
+    ct_inertia_add_point(b, &b->cluster[cluster].L, m, v);
+}
+
+void ct_masses_add(struct ct_build *b, int anchor, int cluster, ct_ex m, ct_ex3 moment,
+                   const ct_ex33 *inertia)
+{
+    struct ct_star *s = star_of(b, anchor, cluster);
+    ct_ex33 *L = &b->cluster[cluster].L;
+    s->moment = ct_ex3_add(b->x, s->moment, ct_build_in_plane(b, moment));
+    for (int i = 0; i < 9; i++)
+        L->e[i] = ct_ex_add(b->x, L->e[i], inertia->e[i]);
+    b->anchor[anchor].mass = ct_ex_add(b->x, b->anchor[anchor].mass, m);
 }
 
 // Inertia of a body turned from its own axes into its cluster's: S I S'.
@@ -79,15 +89,21 @@ static void link_children(struct ct_build *b)
 
 void ct_masses_lump(struct ct_build *b)
 {
+    if (b->is_lumped)
+        return;
+    b->is_lumped = true;
     for (size_t i = 1; i < b->model->nbody; i++) {
         const struct ct_body *body = &b->model->body[i];
         const struct ct_place *p = &b->place[b->node_of_com[i]];
+        if (body->beam)
+            continue;
         b->anchor[p->anchor].mass = ct_ex_add(b->x, b->anchor[p->anchor].mass, body->mass);
         if (!ct_ex_is_zero(body->mass))
             add_mass(b, p->anchor, p->cluster, body->mass, p->local);
         if (!body->is_particle)
             add_inertia(b, body, p);
     }
+    ct_flexible_lump(b);
     for (size_t a = b->nanchor; a-- > 1;) {
         const struct ct_anchor *self = &b->anchor[a];
         b->anchor[self->parent].mass
@@ -117,6 +133,8 @@ struct reach {
     ct_ex33 *inertia;  // by cluster: augmented inertia of it and the clusters outboard, ground
     ct_ex33 *outboard; // the same of the clusters outboard alone
     int *first, *next; // stars of an anchor, chained
+    int *
+        start; // by cluster: anchor from which on what turns with it is summed; -1: nothing does
 };
 
 static size_t at(const struct reach *s, int anchor, int cluster)
@@ -180,6 +198,29 @@ static enum share share(const struct reach *s, int anchor, int cluster)
 {
     const int n = s->nturning[at(s, anchor, cluster)];
     return !n ? NONE : n < s->nstar[anchor] ? SOME : ALL;
+}
+
+// The innermost anchor outboard of which everything turns with a cluster; if there is none, the outermost one
+// inboard of all that does.
+static void find_starts(struct reach *s)
+{
+    const struct ct_build *b = s->b;
+    for (size_t c = 0; c < b->ncluster; c++)
+        s->start[c] = -1;
+    for (size_t i = 0; i < b->nstar; i++)
+        for (int c = b->star[i].cluster; c > 0 && is_felt(b, &b->star[i]);
+             c = b->cluster[c].parent) {
+            int other = b->star[i].anchor;
+            if (s->start[c] < 0)
+                s->start[c] = other;
+            while (s->start[c] != other) // numbers grow outwards
+                *(s->start[c] > other ? &s->start[c] : &other)
+                    = b->anchor[s->start[c] > other ? s->start[c] : other].parent;
+        }
+    for (size_t c = 1; c < b->ncluster; c++)
+        for (int a = s->start[c]; a >= 0; a = a ? b->anchor[a].parent : -1)
+            if (share(s, a, (int)c) == ALL)
+                s->start[c] = a;
 }
 
 // Sum of the vectors on the path to an anchor that turn with a cluster.
@@ -432,9 +473,8 @@ static void add_entry(struct ct_build *b, ct_ex *M, int k, int l, ct_ex v)
     M[i] = ct_ex_add(b->x, M[i], v);
 }
 
-// m between two different spins or slides, spread over the unknowns they belong to.
-static void spread(struct ct_build *b, ct_ex *M, const struct ct_term *p, int np,
-                   const struct ct_term *q, int nq, ct_ex m)
+void ct_mass_spread(struct ct_build *b, ct_ex *M, const struct ct_term *p, int np,
+                    const struct ct_term *q, int nq, ct_ex m)
 {
     for (int i = 0; i < np; i++)
         for (int j = 0; j < nq; j++) {
@@ -487,7 +527,8 @@ static void spin_column(struct reach *s, ct_ex *M, size_t r, const struct column
         if ((same && row > r) || !is_row_of(b, depth, other->cluster, c->cluster)
             || !has_unknown(other->term, other->nterm))
             continue;
-        ct_ex3 torque = row_torque(s, c, other->cluster, 0);
+        const int start = s->start[other->cluster];
+        ct_ex3 torque = start < 0 ? zero3 : row_torque(s, c, other->cluster, start);
         const bool is_fixed = same && c->is_local && !ct_ex3_is_zero(other->local);
         if (!is_fixed && ct_cluster_is_outboard(b, other->cluster, c->cluster))
             torque = ct_ex3_add(b->x, own, torque);
@@ -497,7 +538,7 @@ static void spin_column(struct reach *s, ct_ex *M, size_t r, const struct column
         if (row == r)
             spread_self(b, M, self->term, self->nterm, m);
         else
-            spread(b, M, self->term, self->nterm, other->term, other->nterm, m);
+            ct_mass_spread(b, M, self->term, self->nterm, other->term, other->nterm, m);
     }
     // slides carried by the spin, or that carry it: p . (s x (m g + h))
     for (size_t a = 1; a < b->nanchor; a++) {
@@ -514,7 +555,7 @@ static void spin_column(struct reach *s, ct_ex *M, size_t r, const struct column
                 continue;
             const ct_ex3 p = ct_cluster_turn(b, anchor->cluster, slide->p);
             const ct_ex m = ct_ex3_dot(b->x, p, ct_ex3_cross(b->x, c->axis, moved));
-            spread(b, M, self->term, self->nterm, &along, 1, m);
+            ct_mass_spread(b, M, self->term, self->nterm, &along, 1, m);
         }
     }
 }
@@ -542,7 +583,7 @@ static void slide_pairs(struct ct_build *b, ct_ex *M)
                     if (i == j && k == l)
                         spread_self(b, M, &tp, 1, m);
                     else
-                        spread(b, M, &tp, 1, &tq, 1, m);
+                        ct_mass_spread(b, M, &tp, 1, &tq, 1, m);
                 }
         }
 }
@@ -567,7 +608,9 @@ static struct reach reach_create(struct ct_build *b)
     s.outboard = CT_NEWN(b->arena, ct_ex33, nc);
     s.first = CT_NEWN(b->arena, int, na);
     s.next = CT_NEWN(b->arena, int, ns);
+    s.start = CT_NEWN(b->arena, int, nc);
     count_stars(&s);
+    find_starts(&s);
     sum_inertias(&s);
     return s;
 }
@@ -621,6 +664,7 @@ void ct_mass_matrix_derive(struct ct_build *b)
         spin_column(&s, M, r, &c, depth);
     }
     slide_pairs(b, M);
+    ct_flexible_mass(b, M);
     for (size_t i = 0; i < e->nu; i++)
         for (size_t j = 0; j <= i; j++) {
             const struct ct_entry entry = {(int)i, (int)j, M[i + e->nu * j]};

@@ -3,6 +3,7 @@
 // A branch of T_T carries what its outboard nodes need (5.8); a branch of T_R the torques of its
 // outboard nodes and the moments of the translational branches whose tails lie there (5.9), (5.3).
 #include "formulate/reaction.h"
+#include "formulate/flexible.h"
 #include "formulate/row.h"
 
 #include <math.h>
@@ -32,7 +33,11 @@ static ct_ex3 own_force(struct ct_build *b, int node)
     struct ct_exs *x = b->x;
     ct_ex3 sum = zero3;
     for (size_t i = 1; i < b->model->nbody; i++)
-        if (b->node_of_com[i] == node) {
+        if (b->node_of_com[i] == node && b->model->body[i].beam) {
+            ct_ex3 force, torque;
+            ct_flexible_wrench(b, ct_flexible_of(b, (int)i), &force, &torque);
+            add(b, &sum, force);
+        } else if (b->node_of_com[i] == node) {
             const ct_ex3 a = ct_node_acceleration(b, node, CT_FULL);
             add(b, &sum,
                 ct_ex3_scale(x, b->model->body[i].mass, ct_ex3_sub(x, a, b->model->gravity)));
@@ -56,6 +61,11 @@ static ct_ex3 own_force(struct ct_build *b, int node)
 static ct_ex3 body_torque(struct ct_build *b, int body, int node)
 {
     struct ct_exs *x = b->x;
+    if (b->model->body[body].beam) {
+        ct_ex3 force, torque;
+        ct_flexible_wrench(b, ct_flexible_of(b, body), &force, &torque);
+        return torque;
+    }
     const ct_ex *I = b->model->body[body].inertia;
     const ct_ex33 own = {{I[0], I[3], I[4], I[3], I[1], I[5], I[4], I[5], I[2]}};
     const int c = b->place[node].frame;
@@ -150,23 +160,28 @@ static int outboard_node(const struct ct_build *b, const struct ct_tree *t, int 
     return t->parent_edge[head] == edge ? head : b->wiring[edge].tail;
 }
 
-void ct_reaction_derive(struct ct_build *b, int joint, ct_ex3 *force, ct_ex3 *torque)
+void ct_reaction_of_edge(struct ct_build *b, int edge, ct_ex3 *force, ct_ex3 *torque)
 {
-    const int edge = b->edge_of_joint[joint];
-    const bool in_T = b->T.is_branch[edge], in_R = b->R.is_branch[edge];
     *force = *torque = zero3;
-    if (in_T) {
+    if (b->T.is_branch[edge]) {
         const int node = outboard_node(b, &b->T, edge);
         *force = cut_force(b, node);
         if (b->T.sign[node] < 0)
             *force = ct_ex3_neg(b->x, *force);
     }
-    if (in_R) {
+    if (b->R.is_branch[edge]) {
         const int node = outboard_node(b, &b->R, edge);
         *torque = cut_torque(b, node);
         if (b->R.sign[node] < 0)
             *torque = ct_ex3_neg(b->x, *torque);
     }
+}
+
+void ct_reaction_derive(struct ct_build *b, int joint, ct_ex3 *force, ct_ex3 *torque)
+{
+    const int edge = b->edge_of_joint[joint];
+    const bool in_T = b->T.is_branch[edge], in_R = b->R.is_branch[edge];
+    ct_reaction_of_edge(b, edge, force, torque);
     for (size_t i = 0; i < b->nload; i++)
         if (b->load[i].self == b->edge[edge].self) {
             if (!in_T)
@@ -208,8 +223,13 @@ static void mark_outboard(const struct ct_tree *t, int edge, bool *outboard)
 bool ct_reaction_is_known(const struct ct_build *b, int joint, bool is_force, int i)
 {
     const int edge = b->edge_of_joint[joint];
-    if (!b->is_planar || !b->edge[edge].self->cls->motion
-        || is_of_plane(b, b->wiring[edge].tail, is_force, i))
+    return !b->edge[edge].self->cls->motion
+        || ct_reaction_of_edge_is_known(b, edge, is_force, i);
+}
+
+bool ct_reaction_of_edge_is_known(const struct ct_build *b, int edge, bool is_force, int i)
+{
+    if (!b->is_planar || is_of_plane(b, b->wiring[edge].tail, is_force, i))
         return true;
     if (!b->T.is_branch[edge] || (b->edge[edge].has_rotation && !b->R.is_branch[edge]))
         return false;

@@ -12,4 +12,9 @@ void ct_reaction_derive(struct ct_build *b, int joint, ct_ex3 *force, ct_ex3 *to
 /// rows out of the plane: what they transmit there is open, and so is what shares a circuit with them.
 bool ct_reaction_is_known(const struct ct_build *b, int joint, bool is_force, int i);
 
+/// The same of any edge that is a branch of both trees: what it exerts on its head, about the head's origin.
+void ct_reaction_of_edge(struct ct_build *b, int edge, ct_ex3 *force, ct_ex3 *torque);
+/// The same question for such an edge; component i in axes that differ from its tail's by a turn in the plane.
+bool ct_reaction_of_edge_is_known(const struct ct_build *b, int edge, bool is_force, int i);
+
 #endif

@@ -59,6 +59,25 @@ static size_t pick(struct ct_build *b, const struct ct_slope *all, size_t n, int
     return nout;
 }
 
+// M u' - Q - J' lam, where M and Q are not those of the sweep.
+static void assemble_rows(struct ct_build *b, ct_ex *r)
+{
+    const struct ct_equations *e = b->eqs;
+    struct ct_exs *x = b->x;
+    for (size_t k = 0; k < e->nu; k++)
+        r[k] = ct_ex_neg(x, e->Q[k]);
+    for (size_t i = 0; i < e->nM; i++) {
+        const int k = e->M[i].row, l = e->M[i].column;
+        r[k] = ct_ex_add(x, r[k], ct_ex_mul(x, e->M[i].value, e->u[l].derivative));
+        if (k != l)
+            r[l] = ct_ex_add(x, r[l], ct_ex_mul(x, e->M[i].value, e->u[k].derivative));
+    }
+    for (size_t i = 0; i < e->nJ; i++) {
+        const int k = e->J[i].column;
+        r[k] = ct_ex_sub(x, r[k], ct_ex_mul(x, e->J[i].value, e->row[e->J[i].row].lam));
+    }
+}
+
 void ct_residual_derive(struct ct_build *b)
 {
     struct ct_equations *e = b->eqs;
@@ -67,7 +86,9 @@ void ct_residual_derive(struct ct_build *b)
     struct seeds seeds = {0};
     struct ct_slope *all;
     f->r = CT_NEWN(b->arena, ct_ex, e->nu + 1);
-    for (size_t k = 0; k < e->nu; k++)
+    if (e->is_truncated)
+        assemble_rows(b, f->r);
+    for (size_t k = 0; k < e->nu && !e->is_truncated; k++)
         f->r[k] = ct_sweep_residual(b, (int)k);
     plant_places(b, &seeds);
     const size_t nplace = seeds.n;

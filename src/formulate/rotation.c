@@ -2,7 +2,7 @@
 //
 // A branch with axes adds one cluster an axis. Rotations about one and the same axis are accumulated:
 // R = R_base Rot(axis, angle), so that a chain of parallel revolutes needs one sine and cosine a body.
-#include "formulate/kinematics.h"
+#include "formulate/flexible.h"
 #include "formulate/topology.h"
 
 #include <assert.h>
@@ -98,6 +98,34 @@ static void choose_plain(struct ct_build *b, const struct ct_edge_info *e,
     c->rate = b->eqs->q[c->q].rate = b->eqs->u[c->u].symbol;
 }
 
+// An arm of a beam: where its section is, and how that depends on the elastic coordinates.
+static void find_station(struct ct_build *b, struct ct_edge_info *e)
+{
+    const struct ct_flexible *f = e->flexible;
+    struct ct_station *s = CT_NEW(b->arena, struct ct_station);
+    static const int axis_of_turn[3] = {2, 1, 0}; // (1.7b)
+    ct_flexible_station(b, f, e->along, f->kinematics, s);
+    e->slide = CT_NEWN(b->arena, ct_ex3, f->nelastic + 1);
+    e->turn = CT_NEWN(b->arena, ct_ex3, f->nelastic + 1);
+    ct_station_partials(b, f, s, e->slide, e->turn);
+    e->station = s;
+    if (f->kinematics != f->axial) {
+        struct ct_station forces;
+        e->foreshortened = CT_NEWN(b->arena, ct_ex3, f->nelastic + 1);
+        ct_flexible_station(b, f, e->along, f->axial, &forces);
+        ct_station_partials(b, f, &forces, e->foreshortened,
+                            CT_NEWN(b->arena, ct_ex3, f->nelastic + 1));
+    }
+    e->at = s->place;
+    for (int i = 0; i < 3; i++) {
+        const int axis = axis_of_turn[i];
+        double n[3] = {0};
+        n[axis] = 1;
+        if (!ct_ex_is_zero(s->angle[axis]))
+            ct_motion_turn(&e->motion, ct_ex3_const(b->x, n), s->angle[axis]);
+    }
+}
+
 bool ct_unknowns_choose(struct ct_build *b)
 {
     for (size_t i = 0; i < b->nedge; i++) {
@@ -121,6 +149,11 @@ bool ct_unknowns_choose(struct ct_build *b)
         ct_topology_motion(b, e, &m);
         e->motion = m;
     }
+    for (size_t i = 0; i < b->nflexible; i++)
+        ct_flexible_unknowns(b, &b->flexible[i]);
+    for (size_t i = 0; i < b->nedge; i++)
+        if (b->edge[i].flexible)
+            find_station(b, &b->edge[i]);
     return true;
 }
 
@@ -176,6 +209,24 @@ ct_ex ct_edge_partial(struct ct_build *b, const struct ct_edge_info *e, ct_ex tr
     return ct_ex_subst(b->x, c, e->trial.coord, e->motion.coord, (size_t)e->ncoordinate);
 }
 
+static void add_term(struct ct_build *b, struct ct_spin *s, int speed, int driver, int sign,
+                     ct_ex coef)
+{
+    if (!ct_ex_is_zero(coef))
+        s->term[s->nterm++]
+            = (struct ct_term){speed, driver, sign > 0 ? coef : ct_ex_neg(b->x, coef)};
+}
+
+// The turn of a beam's section about an axis: its slope along the elastic coordinates.
+static void section_terms(struct ct_build *b, const struct ct_edge_info *e, ct_ex3 axis,
+                          int sign, struct ct_spin *s)
+{
+    const struct ct_flexible *f = e->flexible;
+    s->term = CT_NEWN(b->arena, struct ct_term, f->nelastic + 1);
+    for (int k = 0; k < f->nelastic; k++)
+        add_term(b, s, f->elastic[k].u, -1, sign, ct_ex3_dot(b->x, axis, e->turn[k]));
+}
+
 // Spin of the i-th turn of branch e, whose axis is fixed in the parent; the coefficients of its rate
 // are sign * d angle / d q_k.
 static void add_spin(struct ct_build *b, int cluster, const struct ct_edge_info *e, int i,
@@ -184,12 +235,15 @@ static void add_spin(struct ct_build *b, int cluster, const struct ct_edge_info 
     // fixed in the axes it starts from and in those it leads to
     struct ct_spin s
         = {.cluster = cluster, .axis = ct_cluster_turn(b, b->cluster[cluster].base, local)};
-    for (int k = 0; k < e->ncoordinate; k++) {
-        const struct ct_coordinate *c = &b->coordinate[e->first_coordinate + k];
-        const ct_ex coef = ct_edge_partial(b, e, e->trial.turn[i].angle, k);
-        if (!ct_ex_is_zero(coef))
-            s.term[s.nterm++]
-                = (struct ct_term){c->u, c->driver, sign > 0 ? coef : ct_ex_neg(b->x, coef)};
+    if (e->flexible) {
+        section_terms(b, e, e->motion.turn[i].axis, sign, &s);
+    } else {
+        s.term = CT_NEWN(b->arena, struct ct_term, e->ncoordinate + 1);
+        for (int k = 0; k < e->ncoordinate; k++) {
+            const struct ct_coordinate *c = &b->coordinate[e->first_coordinate + k];
+            add_term(b, &s, c->u, c->driver, sign,
+                     ct_edge_partial(b, e, e->trial.turn[i].angle, k));
+        }
     }
     s.local = local;
     s.rate = ct_build_rate(b, angle);
@@ -210,6 +264,7 @@ static int turn_cluster(struct ct_build *b, int parent, const struct ct_edge_inf
     const struct ct_cluster *p = &b->cluster[parent];
     const ct_ex3 opposite = ct_ex3_neg(x, axis);
     self->has_angle = true;
+    self->own_angle = angle;
     if (p->has_angle && (same3(p->axis, axis) || same3(p->axis, opposite))) {
         self->base = p->base;
         self->axis = p->axis;
@@ -258,6 +313,7 @@ static int quaternion_cluster(struct ct_build *b, int parent, const ct_ex33 *S,
     const ct_ex33 forward = quaternion_matrix(x, &e->motion.coord[k]);
     const ct_ex33 A = sign > 0 ? forward : ct_ex33_transpose(&forward);
     b->cluster[c].R = ct_ex33_mul(x, &P, &A);
+    b->cluster[c].S = ct_ex33_mul(x, S, &A);
     const ct_ex33 *to = sign > 0 ? &b->cluster[c].R : &P;
     for (int i = 0; i < 3; i++) {
         const struct ct_coordinate *coordinate = &b->coordinate[e->first_coordinate + k + i];
@@ -267,6 +323,7 @@ static int quaternion_cluster(struct ct_build *b, int parent, const ct_ex33 *S,
             s.axis = ct_ex3_neg(x, s.axis);
         else
             s.local.e[i] = CT_EX_ONE;
+        s.term = CT_NEW(b->arena, struct ct_term);
         s.term[0] = (struct ct_term){coordinate->u, -1, CT_EX_ONE};
         s.rate = b->eqs->u[coordinate->u].symbol;
         CT_PUSH(b->arena, b->spin, b->nspin, b->spin_cap, s);
@@ -282,17 +339,19 @@ static void place_axes(struct ct_build *b, int node)
     struct ct_place *self = &b->place[node];
     const int sign = b->R.sign[node];
     self->frame = p->frame;
-    self->S = p->S;
+    ct_ex33 S = p->S; // of the axes that turns are about
     if (e->kind == CT_EDGE_ARM) {
-        const ct_ex33 S = sign > 0 ? e->S : ct_ex33_transpose(&e->S);
-        self->S = ct_ex33_mul(b->x, &p->S, &S);
-        return;
+        const ct_ex33 own = sign > 0 ? e->S : ct_ex33_transpose(&e->S);
+        S = ct_ex33_mul(b->x, &p->S, &own);
     }
+    self->S = S;
     for (int i = 0; i < e->motion.nturn; i++) {
         const int k = sign > 0 ? i : e->motion.nturn - 1 - i; // backwards from `to` to `from`
-        const ct_ex3 axis = ct_ex33_apply(b->x, &p->S, e->motion.turn[k].axis);
+        const ct_ex3 axis = ct_ex33_apply(b->x, sign > 0 ? &p->S : &S, e->motion.turn[k].axis);
         self->frame = turn_cluster(b, self->frame, e, k, sign, axis);
     }
+    if (e->kind == CT_EDGE_ARM)
+        return;
     if (e->kind == CT_EDGE_BODY) // from ground outwards always
         self->S = e->S;
     if (e->motion.quaternion >= 0) {
@@ -427,6 +486,14 @@ ct_ex3 ct_cluster_path_acceleration(struct ct_build *b, int from, int to, enum c
             from = b->cluster[from].parent;
         }
     return sum;
+}
+
+ct_ex33 ct_cluster_relative(struct ct_build *b, int c)
+{
+    const struct ct_cluster *self = &b->cluster[c];
+    return self->has_angle
+             ? ct_ex33_axis_angle(b->x, b->spin[self->first_spin].local, self->own_angle)
+             : self->S;
 }
 
 ct_ex3 ct_cluster_turn(struct ct_build *b, int c, ct_ex3 local)

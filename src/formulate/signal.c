@@ -1,5 +1,6 @@
 // Names of signals -> expressions; outputs and energies.  (format, section 6)
 #include "formulate/signal.h"
+#include "formulate/beam_signal.h"
 #include "formulate/reaction.h"
 #include "formulate/topology.h"
 
@@ -115,8 +116,12 @@ static bool frame_signal(struct ct_build *b, int frame, const struct signal *s,
         return true;
     }
     return unknown(b, mark, name,
-                   "a frame has position, velocity, acceleration, angular_velocity, "
-                   "angular_acceleration, rotation and quaternion");
+                   b->model->body[b->model->frame[frame].body].beam
+                       ? "a frame of a beam has deflection, slope, chord_deflection, strain, "
+                         "force, moment, position, velocity, acceleration, angular_velocity, "
+                         "angular_acceleration, rotation and quaternion"
+                       : "a frame has position, velocity, acceleration, angular_velocity, "
+                         "angular_acceleration, rotation and quaternion");
 }
 
 // ---- joints ----------------------------------------------------------------------------------------------------
@@ -218,6 +223,17 @@ static ct_ex3 body_spin(struct ct_build *b, size_t i)
     return ct_node_turn(b, node, ct_ex33_apply(b->x, &own, w));
 }
 
+// The same sums of a beam: mass times place, momentum, angular momentum.
+static ct_ex3 beam_vector(struct ct_build *b, const struct ct_flexible *f, int property)
+{
+    struct ct_exs *x = b->x;
+    const struct ct_flexible_state s = ct_flexible_moving(b, f);
+    const ct_ex3 r = ct_node_position(b, f->base);
+    if (property == 0)
+        return ct_ex3_add(x, ct_ex3_scale(x, s.mass, r), s.moment);
+    return property == 1 ? s.momentum : ct_ex3_add(x, ct_ex3_cross(x, r, s.momentum), s.spin);
+}
+
 static ct_ex3 system_vector(struct ct_build *b, int property)
 {
     struct ct_exs *x = b->x;
@@ -226,6 +242,12 @@ static ct_ex3 system_vector(struct ct_build *b, int property)
     for (size_t i = 1; i < b->model->nbody; i++) {
         const ct_ex3 r = ct_node_position(b, b->node_of_com[i]);
         const ct_ex m = b->model->body[i].mass;
+        const struct ct_flexible *f = ct_flexible_of(b, (int)i);
+        mass = ct_ex_add(x, mass, m);
+        if (f) {
+            sum = ct_ex3_add(x, sum, beam_vector(b, f, property));
+            continue;
+        }
         if (property == 0)
             sum = ct_ex3_add(x, sum, ct_ex3_scale(x, m, r));
         else if (property == 1)
@@ -234,7 +256,6 @@ static ct_ex3 system_vector(struct ct_build *b, int property)
             sum = ct_ex3_add(
                 x, sum,
                 ct_ex3_add(x, ct_ex3_cross(x, r, body_momentum(b, i)), body_spin(b, i)));
-        mass = ct_ex_add(x, mass, m);
     }
     for (int i = 0; i < 3 && property == 0; i++)
         sum.e[i] = ct_ex_div(x, sum.e[i], mass);
@@ -272,13 +293,40 @@ static bool global_signal(struct ct_build *b, const struct signal *s, const char
         return true;
     }
     const int i = index_of(s->property, energies, 5);
-    const ct_ex stored = ct_ex_add(x, e->kinetic, e->potential);
-    const ct_ex values[] = {e->kinetic, e->potential, CT_EX_ZERO, e->work_symbol,
+    const ct_ex stored = ct_ex_add(x, e->kinetic, ct_ex_add(x, e->potential, e->strain));
+    const ct_ex values[] = {e->kinetic, e->potential, e->strain, e->work_symbol,
                             ct_ex_sub(x, stored, e->work_symbol)};
     if (i < 0)
         return unknown(b, mark, name, "energy has kinetic, potential, strain, work and total");
     *out = values[i];
     return true;
+}
+
+static ct_ex3 body_com(struct ct_build *b, int body)
+{
+    const struct ct_flexible *f = ct_flexible_of(b, body);
+    const ct_ex3 r = ct_node_position(b, b->node_of_com[body]);
+    if (!f)
+        return r;
+    const struct ct_flexible_state s = ct_flexible_moving(b, f);
+    return ct_ex3_add(b->x, r,
+                      ct_ex3_scale(b->x, ct_ex_div(b->x, CT_EX_ONE, s.mass), s.moment));
+}
+
+// ---- beams -----------------------------------------------------------------------------------------------------------
+
+static bool beam_signal(struct ct_build *b, int frame, const struct signal *s, const char *name,
+                        struct ct_mark mark, ct_ex *out)
+{
+    const bool is_force = !strcmp(s->property, "force");
+    const int i = index_of(s->component, axis_names, 3);
+    if (!strcmp(s->property, "strain")) {
+        *out = ct_beam_signal_strain(b, frame);
+        return !s->component || unknown(b, mark, name, "strain is a number");
+    }
+    if (is_force || !strcmp(s->property, "moment"))
+        b->is_open = b->is_open || (i >= 0 && !ct_beam_signal_is_known(b, frame, is_force, i));
+    return component_of(b, s, name, mark, ct_beam_signal_vector(b, frame, s->property), out);
 }
 
 // ---- any signal ----------------------------------------------------------------------------------------------------
@@ -345,7 +393,9 @@ bool ct_signal_resolve(struct ct_build *b, const char *name, struct ct_mark mark
         return unknown(b, mark, name, "nothing has this name");
     const int body = b->model->frame[frame].body;
     if (!strcmp(s.property, "com") && body > 0)
-        return component_of(b, &s, name, mark, ct_node_position(b, b->node_of_com[body]), out);
+        return component_of(b, &s, name, mark, body_com(b, body), out);
+    if (b->model->body[body].beam && ct_beam_signal_exists(s.property))
+        return beam_signal(b, frame, &s, name, mark, out);
     return frame_signal(b, frame, &s, name, mark, out);
 }
 
@@ -391,14 +441,30 @@ ct_ex ct_build_value(struct ct_build *b, ct_ex e)
 
 // ---- energies --------------------------------------------------------------------------------------------------------------
 
+// Twice the kinetic energy of a beam; its weight and strain.
+static ct_ex beam_energies(struct ct_build *b, const struct ct_flexible *f)
+{
+    struct ct_exs *x = b->x;
+    const struct ct_flexible_state s = ct_flexible_moving(b, f);
+    b->eqs->strain = ct_ex_add(x, b->eqs->strain, ct_flexible_strain(b, f));
+    b->eqs->potential = ct_ex_sub(x, b->eqs->potential,
+                                  ct_ex3_dot(x, b->model->gravity, beam_vector(b, f, 0)));
+    return s.twice_kinetic;
+}
+
 void ct_energies_derive(struct ct_build *b)
 {
     struct ct_exs *x = b->x;
     struct ct_equations *e = b->eqs;
     ct_ex kinetic = CT_EX_ZERO;
+    for (size_t i = 0; i < b->nflexible; i++)
+        kinetic = ct_ex_add(x, kinetic, beam_energies(b, &b->flexible[i]));
+    e->power = ct_ex_add(x, e->power, ct_flexible_dissipation(b));
     for (size_t i = 1; i < b->model->nbody; i++) {
         const struct ct_body *body = &b->model->body[i];
         const int node = b->node_of_com[i];
+        if (body->beam)
+            continue;
         const ct_ex3 v = ct_node_velocity(b, node);
         const ct_ex weight = ct_ex_mul(
             x, body->mass, ct_ex3_dot(x, b->model->gravity, ct_node_position(b, node)));
@@ -448,7 +514,11 @@ static const char *const *components_of(struct ct_build *b, const char *name)
                                           "momentum",
                                           "angular_momentum",
                                           "force",
-                                          "torque"};
+                                          "torque",
+                                          "moment",
+                                          "deflection",
+                                          "slope",
+                                          "chord_deflection"};
     struct signal s = {0};
     int frame;
     if (!split(b, name, &s, &frame) || s.component)

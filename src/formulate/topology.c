@@ -6,6 +6,7 @@
 //   edge         body  0 -> centre of mass     arm  body -> point or centre of mass
 //                joint from -> to              force, rod  from -> to (always chords)
 #include "formulate/topology.h"
+#include "formulate/excite.h"
 
 #include <math.h>
 #include <string.h>
@@ -44,17 +45,76 @@ static ct_ex33 turns_to_matrix(struct ct_exs *x, const struct ct_turn *turn, int
     return R;
 }
 
+// Arm of a beam, from its base to the section at x.
+static struct ct_edge_info *add_section(struct ct_build *b, struct ct_flexible *f,
+                                        const char *name, struct ct_mark mark, int node,
+                                        ct_ex x)
+{
+    struct ct_edge_info *e = add_edge(b, CT_EDGE_ARM, name, mark, f->base, node);
+    e->index = -1;
+    e->flexible = f;
+    e->along = x;
+    e->at = (ct_ex3){{x, CT_EX_ZERO, CT_EX_ZERO}};
+    e->has_rotation = e->must_be_branch = true;
+    return e;
+}
+
+// A point of a beam turns with its section; one off the axis hangs on it by a rigid arm.
+static void add_beam_point(struct ct_build *b, struct ct_flexible *f, size_t frame)
+{
+    const struct ct_frame *p = &b->model->frame[frame];
+    const ct_ex3 across = {{CT_EX_ZERO, p->at.e[1], p->at.e[2]}};
+    const ct_ex33 S = turns_to_matrix(b->x, p->turn, p->nturn);
+    const int node = b->node_of_frame[frame];
+    if (ct_ex3_is_zero(across)) {
+        struct ct_edge_info *e = add_section(b, f, p->name, p->mark, node, p->at.e[0]);
+        e->index = (int)frame;
+        e->S = S;
+        return;
+    }
+    const char *name = ct_arena_printf(b->arena, "%s.section", p->name);
+    const int section = add_node(b, name, p->mark, p->body);
+    add_section(b, f, name, p->mark, section, p->at.e[0]);
+    struct ct_edge_info *e = add_edge(b, CT_EDGE_ARM, p->name, p->mark, section, node);
+    e->index = (int)frame;
+    e->at = across;
+    e->S = S;
+    e->has_rotation = e->must_be_branch = true;
+}
+
+// The base of a beam is its own frame; with a frame on the chord the section at x = 0 turns against that.
+static void add_base(struct ct_build *b, struct ct_flexible *f)
+{
+    const struct ct_body *body = &b->model->body[f->body];
+    const int own = b->node_of_frame[body->frame];
+    f->base = own;
+    if (!f->beam->is_chord)
+        return;
+    const char *name = body->instance.name;
+    f->base = add_node(b, ct_arena_printf(b->arena, "%s.chord", name), body->instance.mark,
+                       f->body);
+    add_section(b, f, ct_arena_printf(b->arena, "%s.start", name), body->instance.mark, own,
+                CT_EX_ZERO);
+}
+
 static void add_frames(struct ct_build *b)
 {
     const struct ct_model *m = b->model;
     b->node_of_frame = CT_NEWN(b->arena, int, m->nframe);
     for (size_t i = 0; i < m->nframe; i++)
         b->node_of_frame[i] = add_node(b, m->frame[i].name, m->frame[i].mark, m->frame[i].body);
+    for (size_t i = 0; i < b->nflexible; i++)
+        add_base(b, &b->flexible[i]);
     for (size_t i = 0; i < m->nframe; i++) {
         const struct ct_frame *f = &m->frame[i];
         const int own = m->body[f->body].frame;
         if ((int)i == own)
             continue;
+        struct ct_flexible *beam = ct_flexible_of(b, f->body);
+        if (beam) {
+            add_beam_point(b, beam, i);
+            continue;
+        }
         struct ct_edge_info *e = add_edge(b, CT_EDGE_ARM, f->name, f->mark,
                                           b->node_of_frame[own], b->node_of_frame[i]);
         e->index = (int)i;
@@ -73,7 +133,8 @@ static void add_bodies(struct ct_build *b)
     b->edge_of_body[0] = -1;
     for (size_t i = 1; i < m->nbody; i++) {
         const struct ct_body *body = &m->body[i];
-        const int own = b->node_of_frame[body->frame];
+        const struct ct_flexible *f = ct_flexible_of(b, (int)i);
+        const int own = f ? f->base : b->node_of_frame[body->frame];
         b->node_of_com[i] = own;
         if (!ct_ex3_is_zero(body->com)) {
             const char *name = ct_arena_printf(b->arena, "%s.com", body->instance.name);
@@ -496,7 +557,7 @@ static bool find_normal(struct ct_build *b, ct_ex3 *normal)
         if (n[most] < 0)
             axis = ct_ex3_neg(b->x, axis);
         b->plane[2] = *normal = axis;
-        if (!is_plane(b, U))
+        if (!is_plane(b, U) || !ct_excite_keeps_plane(b, U))
             return false;
         keep_uprights(b, U);
         return true;
@@ -534,6 +595,7 @@ static void detect_plane(struct ct_build *b, bool allowed)
 
 bool ct_topology_derive(struct ct_build *b, bool planar_allowed)
 {
+    ct_flexible_create(b);
     add_frames(b);
     add_bodies(b);
     add_joints(b);
@@ -542,6 +604,7 @@ bool ct_topology_derive(struct ct_build *b, bool planar_allowed)
         if (b->edge[e].kind == CT_EDGE_JOINT || b->edge[e].kind == CT_EDGE_CLOSURE)
             add_coordinates(b, (int)e);
     detect_plane(b, planar_allowed);
+    ct_flexible_settle(b);
     for (size_t e = 0; e < b->nedge; e++)
         if (b->edge[e].kind == CT_EDGE_BODY) {
             if (b->is_planar && !b->node[b->wiring[e].head].is_particle)

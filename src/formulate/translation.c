@@ -2,7 +2,7 @@
 //
 // A branch whose vector is constant in the cluster of its predecessor's vector adds to that vector;
 // only where the cluster changes, or where the branch slides, does an anchor come into being.
-#include "formulate/kinematics.h"
+#include "formulate/flexible.h"
 
 #include <assert.h>
 
@@ -44,6 +44,17 @@ static int anchor_at(struct ct_build *b, const struct ct_place *p)
     return add_anchor(b, p->anchor, p->cluster, p->local);
 }
 
+static void add_slide(struct ct_build *b, struct ct_anchor *a, int speed, int driver, int sign,
+                      ct_ex3 along, ct_ex3 extra)
+{
+    if (sign < 0) {
+        along = ct_ex3_neg(b->x, along);
+        extra = ct_ex3_neg(b->x, extra);
+    }
+    if (!ct_ex3_is_zero(along) || !ct_ex3_is_zero(extra))
+        a->slide[a->nslide++] = (struct ct_slide){speed, driver, along, extra};
+}
+
 // Node beyond a branch that slides: an anchor of its own.
 static void place_sliding(struct ct_build *b, const struct ct_edge_info *e,
                           const struct ct_place *p, const struct ct_place *tail, int sign,
@@ -58,16 +69,22 @@ static void place_sliding(struct ct_build *b, const struct ct_edge_info *e,
         parent = anchor_at(b, p);
     const int i = add_anchor(b, parent, cluster, local);
     struct ct_anchor *a = &b->anchor[i];
+    const struct ct_flexible *f = e->flexible;
     a->moves = true;
+    a->slide = CT_NEWN(b->arena, struct ct_slide, (f ? f->nelastic : e->ncoordinate) + 1);
+    for (int k = 0; f && k < f->nelastic; k++) {
+        const ct_ex3 along = ct_ex33_apply(b->x, &tail->S, e->slide[k]);
+        ct_ex3 extra = zero3;
+        if (e->foreshortened)
+            extra = ct_ex3_sub(b->x, ct_ex33_apply(b->x, &tail->S, e->foreshortened[k]), along);
+        add_slide(b, a, f->elastic[k].u, -1, sign, along, extra);
+    }
     for (int k = 0; k < e->ncoordinate; k++) {
         const struct ct_coordinate *c = &b->coordinate[e->first_coordinate + k];
         ct_ex3 p_tail;
         for (int j = 0; j < 3; j++)
             p_tail.e[j] = ct_edge_partial(b, e, e->trial.d.e[j], k);
-        const ct_ex3 along = ct_ex33_apply(b->x, &tail->S, p_tail);
-        if (!ct_ex3_is_zero(along))
-            a->slide[a->nslide++] = (struct ct_slide){
-                c->u, c->driver, sign > 0 ? along : ct_ex3_neg(b->x, along)};
+        add_slide(b, a, c->u, c->driver, sign, ct_ex33_apply(b->x, &tail->S, p_tail), zero3);
     }
     a->drift = ct_build_rate3(b, vector);
     a->drift_bias = ct_build_rate3(b, a->drift);
@@ -121,11 +138,24 @@ static void number_anchors(struct ct_build *b)
     }
 }
 
+// The base of a beam is at an anchor, so that its masses are seen from there.
+static void anchor_base(struct ct_build *b, int node)
+{
+    struct ct_place *p = &b->place[node];
+    p->anchor = anchor_at(b, p);
+    p->cluster = p->frame;
+    p->local = zero3;
+}
+
 void ct_translation_derive(struct ct_build *b)
 {
     add_anchor(b, -1, 0, zero3);
-    for (size_t i = 1; i < b->nnode; i++)
+    for (size_t i = 1; i < b->nnode; i++) {
         place_node(b, b->T.order[i]);
+        const struct ct_flexible *f = ct_flexible_of(b, b->node[b->T.order[i]].body);
+        if (f && f->base == b->T.order[i])
+            anchor_base(b, b->T.order[i]);
+    }
     number_anchors(b);
 }
 
@@ -243,28 +273,25 @@ ct_ex3 ct_node_acceleration(struct ct_build *b, int node, enum ct_level level)
 
 // ---- paths ----------------------------------------------------------------------------------------
 
-// One piece of a path: an anchor's link, or the offset of an end node (anchor < 0).
-struct piece {
-    int anchor, cluster, sign;
-    ct_ex3 local;
-};
-
 struct path {
-    struct piece *piece;
+    struct ct_piece *piece;
     size_t n;
 };
 
 static void add_piece(struct path *p, int anchor, int cluster, int sign, ct_ex3 local)
 {
     if (!ct_ex3_is_zero(local))
-        p->piece[p->n++] = (struct piece){anchor, cluster, sign, local};
+        p->piece[p->n++] = (struct ct_piece){anchor, cluster, sign, local};
 }
 
-// From tail to head: offsets and links up to where both chains of anchors meet.
+// From tail to head: offsets and links up to where both chains of anchors meet. It holds until the next one is
+// sought: there are as many as pairs of a row and a speed.
 static struct path find_path(struct ct_build *b, int tail, int head)
 {
     const struct ct_place *t = &b->place[tail], *h = &b->place[head];
-    struct path p = {CT_NEWN(b->arena, struct piece, b->nanchor + 2), 0};
+    if (!b->piece)
+        b->piece = CT_NEWN(b->arena, struct ct_piece, b->nanchor + 2);
+    struct path p = {b->piece, 0};
     if (t->anchor == h->anchor && t->cluster == h->cluster) {
         add_piece(&p, -1, h->cluster, 1, ct_ex3_sub(b->x, h->local, t->local));
         return p;
@@ -283,19 +310,20 @@ static struct path find_path(struct ct_build *b, int tail, int head)
     return p;
 }
 
-static ct_ex3 piece_vector(struct ct_build *b, const struct piece *p)
+static ct_ex3 piece_vector(struct ct_build *b, const struct ct_piece *p)
 {
     return p->anchor >= 0 ? ct_link_vector(b, p->anchor)
                           : ct_cluster_turn(b, p->cluster, p->local);
 }
 
-static ct_ex3 piece_velocity(struct ct_build *b, const struct piece *p)
+static ct_ex3 piece_velocity(struct ct_build *b, const struct ct_piece *p)
 {
     return p->anchor >= 0 ? ct_link_velocity(b, p->anchor)
                           : ct_cluster_swing(b, p->cluster, piece_vector(b, p));
 }
 
-static ct_ex3 piece_acceleration(struct ct_build *b, const struct piece *p, enum ct_level level)
+static ct_ex3 piece_acceleration(struct ct_build *b, const struct ct_piece *p,
+                                 enum ct_level level)
 {
     return p->anchor >= 0 ? ct_link_acceleration(b, p->anchor, level)
                           : carried_acceleration(b, p->cluster, piece_vector(b, p), level);
@@ -355,7 +383,7 @@ bool ct_path_sweep(struct ct_build *b, int tail, int head, size_t r, bool carrie
     bool any = false, is_own = true;
     ct_ex3 reach = zero3, own = zero3;
     for (size_t i = 0; i < p.n; i++) {
-        const struct piece *piece = &p.piece[i];
+        const struct ct_piece *piece = &p.piece[i];
         const int turns = ct_cluster_is_outboard(b, s->cluster, piece->cluster);
         if (turns == base)
             continue;

@@ -1,7 +1,7 @@
 // The trees, and what they make of the model: unknowns, drivers, constraint rows.
 #include "report/derivation.h"
 
-#include "formulate/build.h"
+#include "formulate/flexible.h"
 
 #include <string.h>
 
@@ -85,6 +85,25 @@ static const char *meaning_of(struct ct_derivation *d, const struct ct_coordinat
                                ct_derivation_axis(d, m->along));
 }
 
+// "rod.2.rx": of node 2 of beam rod.
+static const char *elastic_meaning(struct ct_derivation *d, const char *name, int body,
+                                   const char **unit)
+{
+    const char *beam = d->m->body[body].instance.name;
+    const char *node = name + strlen(beam) + 1, *kind = strrchr(name, '.') + 1;
+    const bool turns = *kind == 'r';
+    const struct ct_flexible *f = ct_flexible_of(d->e->build, body);
+    const bool stretches = *kind == 'u' && f->kinematics == CT_AXIAL_CHAIN;
+    *unit = turns ? "rad" : "m";
+    if (stretches)
+        return ct_arena_printf(d->a, "stretch of %s up to node %.*s", beam,
+                               (int)strcspn(node, "."), node);
+    return ct_arena_printf(d->a, "%s of node %.*s of %s %s %c",
+                           turns ? "rotation" : "displacement", (int)strcspn(node, "."), node,
+                           beam, turns ? "about" : "along",
+                           turns ? kind[1] : (char)('x' + (*kind - 'u')));
+}
+
 static void put_unknowns(struct ct_derivation *d)
 {
     const struct ct_equations *e = d->e;
@@ -97,7 +116,11 @@ static void put_unknowns(struct ct_derivation *d)
         const struct ct_u *u = &e->u[i];
         const char *unit;
         const char *speed = ct_derivation_text(d, u->symbol);
-        if (u->q >= 0) {
+        if (u->beam) {
+            const char *meaning = elastic_meaning(d, e->q[u->q].name, u->beam, &unit);
+            CT_PAGE_ROW(&d->page, ct_derivation_text(d, e->q[u->q].symbol), speed, unit,
+                        meaning);
+        } else if (u->q >= 0) {
             const char *meaning = meaning_of(d, coordinate_of(e, u->q), &unit);
             CT_PAGE_ROW(&d->page, ct_derivation_text(d, e->q[u->q].symbol), speed, unit,
                         meaning);

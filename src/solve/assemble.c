@@ -605,22 +605,44 @@ static bool assemble_positions(struct assembly *s, double *residual)
     return *residual < met ? report_half_turn(s, half_turned_joint(s)) : report_positions(s);
 }
 
+// Without rows, and with all that is given or wanted among the unknowns, the targets are the start.
+static bool is_direct(const struct assembly *s)
+{
+    for (size_t i = 0; i < s->e->ncoordinate; i++) {
+        const struct ct_coordinate *c = &s->e->coordinate[i];
+        if ((s->q[i].wanted && c->q < 0) || (s->u[i].wanted && c->u < 0))
+            return false;
+    }
+    return s->m->nrow == 0;
+}
+
+static void take_targets(struct assembly *s)
+{
+    start_near_targets(s, 0);
+    for (size_t i = 0; i < s->e->ncoordinate; i++)
+        if (s->u[i].wanted)
+            s->y[s->m->nq + (size_t)s->e->coordinate[i].u] = s->u[i].value;
+}
+
 static struct assembly assembly_create(struct ct_ctx *ctx, struct ct_arena *a,
                                        const struct ct_model *model,
                                        const struct ct_equations *e)
 {
     struct assembly s = {.ctx = ctx, .e = e, .m = ct_machine_create(a, model, e)};
     const size_t nc = e->ncoordinate, nu = s.m->nu;
-    s.most = s.m->nrow + nc + nu + 1;
     s.q = CT_NEWN(a, struct target, nc + 1);
     s.u = CT_NEWN(a, struct target, nc + 1);
     s.y = CT_NEWN(a, double, s.m->nq + nu + 1);
     s.kept_y = CT_NEWN(a, double, s.m->nq + nu + 1);
     s.kept_memory = CT_NEWN(a, double, e->nmemory + 1);
+    s.b = CT_NEWN(a, double, s.m->nrow + nc + 2 * nu + 1);
+    find_targets(&s, model);
+    if (is_direct(&s))
+        return s;
+    s.most = s.m->nrow + nc + nu + 1;
     s.A = CT_NEWN(a, double, s.most *(nu + 1));
     s.kept_A = CT_NEWN(a, double, s.most *(nu + 1));
     s.step = CT_NEWN(a, double, nu + 1);
-    s.b = CT_NEWN(a, double, s.most + nu);
     s.r = CT_NEWN(a, double, s.most);
     s.shift = CT_NEWN(a, double, s.most);
     s.row = CT_NEWN(a, double, nu + 1);
@@ -637,11 +659,15 @@ static bool find_start(struct assembly *s, struct ct_start *out)
 {
     struct ct_machine *m = s->m;
     const size_t nc = s->e->ncoordinate;
-    if (!assemble_positions(s, &out->residual))
+    double left = 0;
+    if (is_direct(s))
+        take_targets(s);
+    else if (!assemble_positions(s, &out->residual))
         return false;
     ct_machine_set(m, 0, s->y);
     ct_memory_start(m);
-    const double left = find_velocities(s);
+    if (!is_direct(s))
+        left = find_velocities(s);
     ct_machine_set(m, 0, s->y);
     ct_program_run(&m->result, m->input);
     if (!(left < met * 1e3)) // speeds may be large; a contradiction is of their order
@@ -687,7 +713,13 @@ bool ct_assembly_find(struct ct_assembly *s, struct ct_start *out)
 bool ct_assemble(struct ct_ctx *ctx, struct ct_arena *a, const struct ct_model *model,
                  const struct ct_equations *e, struct ct_start *out)
 {
-    return ct_assembly_find(ct_assembly_create(ctx, a, model, e), out);
+    struct ct_arena *own = ct_arena_create_under(a); // what is made here is needed for the start alone
+    struct ct_assembly *s = ct_assembly_create(ctx, own, model, e);
+    s->q = CT_NEWN(a, double, e->ncoordinate + 1);
+    s->u = CT_NEWN(a, double, e->ncoordinate + 1);
+    const bool ok = ct_assembly_find(s, out);
+    ct_arena_destroy(own);
+    return ok;
 }
 
 void ct_start_apply(const struct ct_start *s, struct ct_machine *m, double *y)

@@ -18,6 +18,15 @@ static const double position_tolerance = 1e-13;
 static const double small_pivot = 0.1;
 enum { MOST_NEWTON = 25 };
 
+// A closed form is used while its strength has changed by less than these factors since the dense pivots that tell
+// how near a singular position is were found, and never below the weakest: one in so many digits is lost.
+static const double least_change = 0.7, most_change = 1.5, weakest = 1e-3;
+// What may be left of the equations against their terms: beyond the first a refinement is made, beyond
+// the second the form is not used.
+static const double left_plain = 1e-13, left_most = 1e-11;
+// So many weak checks in a row ask for another order.
+enum { MOST_WEAK = 3 };
+
 static size_t larger(size_t a, size_t b)
 {
     return a > b ? a : b;
@@ -27,20 +36,23 @@ struct ct_embed *ct_embed_create(struct ct_arena *arena, struct ct_ctx *ctx,
                                  struct ct_machine *m)
 {
     const size_t n = m->nu, r = m->nrow, k = larger(n, r) + 1;
+    const size_t kk = m->e->has_dynamics || r ? k : 1; // else there is nothing to solve
     struct ct_embed *s = CT_NEW(arena, struct ct_embed);
+    s->arena = arena;
     s->m = m;
     s->ctx = ctx;
+    s->arena = arena;
     s->row = CT_NEWN(arena, int, r + 1);
     s->dependent = CT_NEWN(arena, int, k);
     s->independent = CT_NEWN(arena, int, n + 1);
     s->is_unique = CT_NEWN(arena, bool, r + 1);
     s->a = CT_NEWN(arena, double, n + 1);
     s->lam = CT_NEWN(arena, double, r + 1);
-    s->Jd = CT_NEWN(arena, double, k *k);
-    s->B = CT_NEWN(arena, double, k *k);
-    s->S = CT_NEWN(arena, double, k *k);
-    s->MB = CT_NEWN(arena, double, k *k);
-    s->A = CT_NEWN(arena, double, k *k);
+    s->Jd = CT_NEWN(arena, double, kk *kk);
+    s->B = CT_NEWN(arena, double, kk *kk);
+    s->S = CT_NEWN(arena, double, kk *kk);
+    s->MB = CT_NEWN(arena, double, kk *kk);
+    s->A = CT_NEWN(arena, double, kk *kk);
     s->c = CT_NEWN(arena, double, k);
     s->r = CT_NEWN(arena, double, k);
     s->b = CT_NEWN(arena, double, k);
@@ -48,10 +60,162 @@ struct ct_embed *ct_embed_create(struct ct_arena *arena, struct ct_ctx *ctx,
     s->pivot = CT_NEWN(arena, int, k);
     s->iwork = CT_NEWN(arena, int, k);
     s->column = CT_NEWN(arena, int, k);
-    const int kk = (int)k;
+    const int size = (int)kk;
     s->work = CT_NEWN(arena, double,
-                      larger(ct_lstsq_work(kk, kk), ct_qr_pivot_work(kk, kk)) + 3 * k);
+                      larger(ct_lstsq_work(size, size), ct_qr_pivot_work(size, size)) + 3 * k);
     return s;
+}
+
+// ---- closed forms ---------------------------------------------------------------------------------------
+
+static struct ct_partition partition(const struct ct_embed *s)
+{
+    return (struct ct_partition){s->row, s->dependent, s->independent, (size_t)s->rank,
+                                 s->m->nu - (size_t)s->rank};
+}
+
+// Operations of embedding by matrices, (6.2), for n speeds, r kept rows, f = n - r freedoms: LU of J_d, its
+// solutions, products M B and B' M B, Cholesky of the reduced mass matrix.
+double ct_embed_operations(const struct ct_embed *s)
+{
+    const double n = (double)s->m->nu, r = s->rank, f = n - r;
+    const double lu = 2 * r * r * r / 3 + 2 * r * r * (f + 1);
+    const double right = 2 * n * r + 2 * r * f;
+    const double reduced = r > 0 ? 2 * n * r * f + r * f * (f + 1) : 0;
+    return lu + right + reduced + f * f * f / 3 + 2 * f * f + 2 * r * f;
+}
+
+// form[i] comes first, the others move behind it.
+static void put_first(struct ct_embed *s, size_t i)
+{
+    struct ct_form *f = s->form[i];
+    memmove(s->form + 1, s->form, i * sizeof *s->form);
+    s->form[0] = f;
+}
+
+// In the place of form[0], if that is for the rows and columns of now; the order of pivots is sought at the
+// machine's input.
+static void make_form(struct ct_embed *s)
+{
+    const struct ct_partition p = partition(s);
+    if (s->has_form || s->nform == CT_MOST_FORMS) {
+        put_first(s, s->has_form ? 0 : s->nform - 1);
+        ct_form_destroy(s->m, s->form[0]);
+        memmove(s->form, s->form + 1, --s->nform * sizeof *s->form);
+    }
+    ct_machine_motion(s->m);
+    struct ct_form *f = ct_form_create(s->arena, s->m, &p, ct_embed_operations(s));
+    s->solves.reordered += s->nmade++ > 0;
+    s->has_form = f != NULL;
+    if (f) {
+        s->form[s->nform] = f;
+        put_first(s, s->nform++);
+    }
+}
+
+// Projections to wait for with weak pivots, or without a form, until one is made: more and more, so that a motion
+// that changes its rows and columns all the time does not spend its time on forms.
+static long patience(const struct ct_embed *s)
+{
+    const long doublings = s->nmade / CT_MOST_FORMS;
+    return 1L << (doublings < 16 ? doublings : 16);
+}
+
+// The form for the rows and columns of now: one from before, or a new one.
+static void take_form(struct ct_embed *s)
+{
+    const struct ct_partition p = partition(s);
+    size_t i = 0;
+    s->has_form = s->is_rough = false;
+    s->nweak = 0;
+    s->at_sigma = 0;
+    if (!s->m->nrow || s->is_dear)
+        return;
+    while (i < s->nform && !ct_form_is_for(s->form[i], &p))
+        i++;
+    if (i < s->nform) {
+        s->has_form = true;
+        put_first(s, i);
+    } else if (patience(s) == 1) {
+        make_form(s);
+        s->is_dear = s->nmade == 1 && !s->has_form;
+    }
+}
+
+void ct_embed_stay_dense(struct ct_embed *s)
+{
+    s->is_dear = true;
+    s->has_form = false;
+}
+
+static bool is_sound(const struct ct_embed *s)
+{
+    return s->strength > weakest && s->strength > least_change * s->at_sigma
+        && s->strength < most_change * s->at_sigma;
+}
+
+static bool is_form_due(const struct ct_embed *s)
+{
+    return s->has_form && !s->is_delicate && s->nweak == 0;
+}
+
+// u' by the form of now; false if its pivots are not sound here.
+static bool solve_form(struct ct_embed *s)
+{
+    struct ct_form *f = s->form[0];
+    s->strength = ct_form_solve(f, s->m, s->a);
+    if (!is_sound(s))
+        return false;
+    s->solves.unrolled++;
+    if (!s->is_rough)
+        return true;
+    ct_form_check(f, s->m);
+    s->solves.refined++;
+    memcpy(s->a, f->a, s->m->nu * sizeof *s->a);
+    return f->left_better <= left_most;
+}
+
+enum ct_eval ct_embed_solve(struct ct_embed *s)
+{
+    struct ct_machine *m = s->m;
+    if (ct_machine_solved(m, s->a))
+        return CT_EVAL_OK;
+    const bool is_tried = is_form_due(s);
+    if (is_tried && solve_form(s))
+        return CT_EVAL_OK;
+    ct_machine_motion(m);
+    s->solves.pivoted++;
+    s->at_sigma = is_tried ? s->strength : 0; // it belongs to sigma, as it is found now
+    return ct_embed_accelerate(s);
+}
+
+// After a projection, at the machine's input: are the pivots still in a good order?
+static void check_form(struct ct_embed *s)
+{
+    struct ct_form *f = s->form[0];
+    ct_form_check(f, s->m);
+    s->is_rough = f->left > left_plain;
+    if (s->strength > weakest && f->left_better <= left_most) {
+        s->kappa = f->kappa;
+        s->at_sigma = s->nweak ? 0 : s->at_sigma;
+        s->nweak = 0;
+    } else if (++s->nweak >= MOST_WEAK * patience(s)) {
+        make_form(s);
+        s->nweak = 0;
+        s->at_sigma = 0;
+    }
+}
+
+static void tend_form(struct ct_embed *s)
+{
+    if (!s->m->nrow || s->is_dear || s->is_delicate)
+        return;
+    if (s->has_form)
+        check_form(s);
+    else if (++s->nweak >= patience(s)) {
+        make_form(s);
+        s->nweak = 0;
+    }
 }
 
 // ---- choice of rows and columns -----------------------------------------------------------------------
@@ -113,20 +277,43 @@ double ct_embed_pivot(struct ct_embed *s)
     return factor(s) ? s->sigma : 0;
 }
 
+// The speed with the smallest diagonal entry of M or, where there is none, with the smallest pivot of the closed form.
+static size_t lightest(struct ct_embed *s)
+{
+    const struct ct_equations *e = s->m->e;
+    const size_t n = s->m->nu;
+    double *inertia = s->r;
+    size_t least = 0;
+    for (size_t i = 0; i < n && e->has_dynamics; i++)
+        inertia[i] = s->m->M[i + n * i];
+    if (!e->has_dynamics)
+        ct_machine_values(s->arena, s->m, e->pivot, n, inertia);
+    for (size_t i = 1; i < n; i++)
+        if (!(inertia[i] >= inertia[least]))
+            least = i;
+    return least;
+}
+
 static bool massless(struct ct_embed *s)
 {
-    // the free direction with the least inertia: report the coordinate with the smallest diagonal entry
-    const size_t n = s->m->nu;
-    size_t least = 0;
-    for (size_t i = 1; i < n; i++)
-        if (s->m->M[i + n * i] < s->m->M[least + n * least])
-            least = i;
+    const size_t least = lightest(s);
     const struct ct_u *u = &s->m->e->u[least];
     const struct ct_mark mark = u->joint >= 0 ? s->m->model->joint[u->joint].mark
                                               : s->m->model->body[u->body].instance.mark;
     return ct_error(s->ctx, mark, CT_E_MASSLESS,
                     "coordinate '%s' moves no mass: give a mass or an inertia to what it moves",
                     u->q >= 0 ? s->m->e->q[u->q].name : u->name);
+}
+
+// The closed form has no result where a freedom moves no mass.
+static bool accelerates(struct ct_embed *s)
+{
+    if (!ct_machine_solved(s->m, s->a))
+        return false;
+    for (size_t i = 0; i < s->m->nu; i++)
+        if (!isfinite(s->a[i]))
+            return false;
+    return true;
 }
 
 bool ct_embed_choose(struct ct_embed *s)
@@ -143,8 +330,13 @@ bool ct_embed_choose(struct ct_embed *s)
     factor(s);
     s->kappa_chosen = s->kappa;
     s->sigma_chosen = s->sigma;
+    if (!s->m->e->has_dynamics && !s->rank)
+        return accelerates(s) || massless(s);
     ct_machine_motion(s->m);
-    return ct_embed_accelerate(s) == CT_EVAL_OK || massless(s);
+    if (ct_embed_accelerate(s) != CT_EVAL_OK)
+        return massless(s);
+    take_form(s);
+    return true;
 }
 
 // ---- accelerations --------------------------------------------------------------------------------------
@@ -219,11 +411,23 @@ enum ct_eval ct_embed_accelerate(struct ct_embed *s)
     return CT_EVAL_OK;
 }
 
+// Multipliers of all rows by the form of now, where they are unique.
+static bool form_multipliers(struct ct_embed *s)
+{
+    struct ct_form *f = s->form[0];
+    if (!is_form_due(s) || s->rank < (int)s->m->nrow || !is_sound(s))
+        return false;
+    ct_form_check(f, s->m);
+    memcpy(s->lam, f->lam, s->m->nrow * sizeof *s->lam); // all rows are kept, in their order
+    return f->left_better <= left_most;
+}
+
 void ct_embed_multipliers(struct ct_embed *s)
 {
     const int n = (int)s->m->nu, m = (int)s->m->nrow, ld = n > m ? n : m;
-    if (!m)
+    if (!m || form_multipliers(s))
         return;
+    ct_machine_motion(s->m);
     for (int i = 0; i < m; i++)
         for (int j = 0; j < n; j++)
             s->A[j + n * i] = *J_at(s, i, j);
@@ -357,24 +561,31 @@ static bool has_worn(const struct ct_embed *s)
         || s->sigma * kappa_growth < s->sigma_chosen;
 }
 
-enum ct_eval ct_embed_project(struct ct_embed *s, double t, double *y)
+// What is near enough: a few roundings, divided by the smallest pivot beside a singular position. Rounding keeps
+// larger mechanisms from it: stop when nothing is gained any more.
+static bool is_closed(const struct ct_embed *s, double size, double before)
+{
+    const double wanted
+        = s->sigma < small_pivot ? position_tolerance * s->sigma : position_tolerance;
+    return size <= wanted || (size < 1e-10 && size > before / 4);
+}
+
+static bool is_lost(int i, double size, double before)
+{
+    return i == MOST_NEWTON || !isfinite(size) || size > 1e3 * before;
+}
+
+static enum ct_eval project_by_matrices(struct ct_embed *s, double t, double *y)
 {
     struct ct_machine *m = s->m;
-    ct_machine_normalise(m, y);
-    if (!m->nrow)
-        return CT_EVAL_OK;
     double before = INFINITY;
     for (int i = 0;; i++) {
         ct_machine_set(m, t, y);
         ct_machine_constraint(m);
         const double size = largest(m->phi, m->nrow);
-        // rounding keeps larger mechanisms from the tolerance: stop when nothing is gained any more
-        // what is left is divided by the smallest pivot: beside a singular position go on to the end
-        const double wanted
-            = s->sigma < small_pivot ? position_tolerance * s->sigma : position_tolerance;
-        if (size <= wanted || (size < 1e-10 && size > before / 4))
+        if (is_closed(s, size, before))
             break;
-        if (i == MOST_NEWTON || !isfinite(size) || size > 1e3 * before)
+        if (is_lost(i, size, before))
             return CT_EVAL_RETRY;
         before = size;
         step_onto(s, m->phi, s->r);
@@ -387,6 +598,60 @@ enum ct_eval ct_embed_project(struct ct_embed *s, double t, double *y)
         ct_machine_set(m, t, y);
         ct_machine_constraint(m);
     }
+    return CT_EVAL_OK;
+}
+
+static bool close_form(struct ct_embed *s, double t, const double *y)
+{
+    ct_machine_set(s->m, t, y);
+    s->strength = ct_form_close(s->form[0], s->m);
+    return is_sound(s);
+}
+
+// The same by the form of now; *is_done is false where its pivots are not sound.
+static enum ct_eval project_by_form(struct ct_embed *s, double t, double *y, bool *is_done)
+{
+    struct ct_machine *m = s->m;
+    const struct ct_form *f = s->form[0];
+    double before = INFINITY;
+    *is_done = false;
+    if (s->kappa > kappa_largest)
+        return CT_EVAL_OK;
+    for (int i = 0; close_form(s, t, y); i++) {
+        const double size = largest(f->phi, m->nrow);
+        if (!is_closed(s, size, before)) {
+            if (is_lost(i, size, before))
+                return CT_EVAL_RETRY;
+            before = size;
+            ct_machine_retract(m, y, f->dq);
+            continue;
+        }
+        for (size_t k = 0; k < m->nu; k++)
+            y[m->nq + k] += f->du[k];
+        *is_done = close_form(s, t, y); // once more, to take off rounding
+        for (size_t k = 0; k < m->nu; k++)
+            y[m->nq + k] += f->du[k];
+        ct_machine_set(m, t, y);
+        return CT_EVAL_OK;
+    }
+    return CT_EVAL_OK;
+}
+
+enum ct_eval ct_embed_project(struct ct_embed *s, double t, double *y)
+{
+    bool is_done = false;
+    ct_machine_normalise(s->m, y);
+    if (!s->m->nrow)
+        return CT_EVAL_OK;
+    enum ct_eval e = is_form_due(s) ? project_by_form(s, t, y, &is_done) : CT_EVAL_OK;
+    if (e == CT_EVAL_OK && !is_done) {
+        e = project_by_matrices(s, t, y);
+        if (s->has_form) // sigma has just been found
+            s->at_sigma = s->strength = ct_form_close(s->form[0], s->m);
+    }
+    if (e != CT_EVAL_OK)
+        return e;
+    tend_form(s);
     ct_embed_renew(s);
     return CT_EVAL_OK;
 }

@@ -8,11 +8,22 @@
 #define CT_SOLVE_EMBED_H
 
 #include "integrate/problem.h"
-#include "solve/machine.h"
+#include "solve/closed.h"
+
+/// How accelerations were found, in evaluations, and how often a form was made for the run's new place.
+struct ct_solves {
+    long unrolled; // in closed form
+    long refined;  // of those, with a step of refinement
+    long pivoted;  // by matrices with pivots sought anew
+    long reordered;
+};
+
+enum { CT_MOST_FORMS = 8 };
 
 struct ct_embed {
     struct ct_machine *m;
     struct ct_ctx *ctx;
+    struct ct_arena *arena;
     int rank;
     int *row;                   // kept rows, rank of them, then the redundant ones
     int *dependent;             // rank columns
@@ -22,6 +33,17 @@ struct ct_embed {
         sigma_chosen; // smallest pivot of J_d against its largest: falls when kept rows depend
     bool *is_unique;  // per row: its multiplier is determined
     long switches, factorizations;
+    // closed forms, the latest used first
+    struct ct_form *form[CT_MOST_FORMS];
+    size_t nform;
+    long nmade;
+    bool has_form;    // form[0] is for the rows and columns of now
+    bool is_dear;     // matrices are cheaper
+    bool is_delicate; // near a singular position: pivots are sought at every evaluation
+    bool is_rough;    // the last check wanted a refinement
+    long nweak;       // checks in a row that found the form weak, or projections without one
+    double strength, at_sigma; // of the form, now and where sigma was found
+    struct ct_solves solves;
     double *a, *lam; // results: u' (nu), lam (nrow)
     // workspace
     double *Jd, *B, *c, *r, *S, *MB, *A, *b, *work, *d;
@@ -31,12 +53,18 @@ struct ct_embed {
 struct ct_embed *ct_embed_create(struct ct_arena *arena, struct ct_ctx *ctx,
                                  struct ct_machine *m);
 
+/// Matrices only: accelerations then depend on nothing that was done before.
+void ct_embed_stay_dense(struct ct_embed *s);
+/// Operations of one ct_embed_accelerate.
+double ct_embed_operations(const struct ct_embed *s);
 /// Choose rows and columns anew at the machine's input. False with a diagnostic if the mass matrix
 /// leaves a freedom without inertia.
 bool ct_embed_choose(struct ct_embed *s);
+/// u' into s->a and q' at the machine's input, in closed form where that is sound.
+enum ct_eval ct_embed_solve(struct ct_embed *s);
 /// u' into s->a from M, Q, J, gam of the last ct_machine_motion.
 enum ct_eval ct_embed_accelerate(struct ct_embed *s);
-/// Multipliers of least norm into s->lam, after ct_embed_accelerate.  (6.5)
+/// Multipliers of least norm into s->lam at the machine's input; s->a holds its u'.  (6.5)
 void ct_embed_multipliers(struct ct_embed *s);
 /// Multipliers lam (rank, out) of the kept rows alone, after ct_embed_accelerate: J_d' lam = (M u' - Q)_d.
 void ct_embed_kept_multipliers(struct ct_embed *s, double *lam);

@@ -13,9 +13,9 @@ struct inputs {
 };
 
 // Every symbol of the store that a run gives a value, with its slot.
-static struct inputs list_inputs(struct ct_arena *a, const struct ct_machine *m)
+static struct inputs list_inputs(struct ct_arena *a, const struct ct_machine *m,
+                                 const struct ct_exs *x)
 {
-    const struct ct_exs *x = m->e->x;
     struct inputs in = {CT_NEWN(a, ct_ex, x->nsym + 1), CT_NEWN(a, size_t, x->nsym + 1), 0};
     for (uint32_t id = 0; id < x->nnode; id++) {
         const struct ct_sym *s = ct_ex_symbol(x, (ct_ex){id});
@@ -59,14 +59,20 @@ static struct inputs list_inputs(struct ct_arena *a, const struct ct_machine *m)
     return in;
 }
 
-static void compile(struct ct_arena *a, const struct ct_machine *m, const struct inputs *in,
-                    const ct_ex *out, size_t n, struct ct_program *p)
+static void compile_from(struct ct_arena *a, const struct ct_exs *x, const struct inputs *in,
+                         const ct_ex *out, size_t n, struct ct_program *p)
 {
-    p->listing = ct_listing_create(a, m->e->x, out, n, in->symbol, in->slot, in->n, CT_FUSE_NO);
+    p->listing = ct_listing_create(a, x, out, n, in->symbol, in->slot, in->n, CT_FUSE_NO);
     p->tape = ct_tape_create(a, p->listing);
     p->out = CT_NEWN(a, double, n + 1);
     p->work = CT_NEWN(a, double, ct_tape_work(p->tape) + 1);
     p->nout = n;
+}
+
+static void compile(struct ct_arena *a, const struct ct_machine *m, const struct inputs *in,
+                    const ct_ex *out, size_t n, struct ct_program *p)
+{
+    compile_from(a, m->e->x, in, out, n, p);
 }
 
 static void prepare(struct ct_program *p, const double *input)
@@ -94,23 +100,49 @@ static void use(struct ct_arena *a, struct ct_program *p, struct ct_native *nati
     p->work = CT_NEWN(a, double, (native ? ct_native_work(native) : ct_tape_work(p->tape)) + 1);
 }
 
+// Native code where it is wanted and available; false if it is not available.
+static bool choose_backend(struct ct_arena *a, struct ct_machine *m, struct ct_program *p)
+{
+    struct ct_native *native = NULL;
+    if (m->asked != CT_BACKEND_TAPE)
+        native = p->native ? p->native : ct_native_create(a, p->listing, 1);
+    use(a, p, native);
+    prepare(p, m->input);
+    return native != NULL;
+}
+
 bool ct_machine_use(struct ct_arena *a, struct ct_machine *m, enum ct_backend backend)
 {
     struct ct_program *const all[]
-        = {&m->solved, &m->motion, &m->constraint, &m->solved, &m->residual, &m->tangent};
+        = {&m->motion, &m->constraint, &m->solved, &m->residual, &m->tangent};
     bool available = true;
-    for (size_t i = 0; i < COUNT(all); i++) {
-        struct ct_native *native = NULL;
-        if (i > 1 && !all[i]->nout) // nobody has asked for them
-            continue;
-        if (backend != CT_BACKEND_TAPE)
-            native = all[i]->native ? all[i]->native : ct_native_create(a, all[i]->listing, 1);
-        available &= native != NULL;
-        use(a, all[i], native);
-        prepare(all[i], m->input);
-    }
+    m->asked = backend;
+    for (size_t i = 0; i < COUNT(all); i++)
+        if (i < 2 || all[i]->nout) // some nobody has asked for
+            available &= choose_backend(a, m, all[i]);
+    for (struct ct_program *p = m->apart; p; p = p->next)
+        available &= choose_backend(a, m, p);
     m->backend = m->motion.native ? "native" : "tape";
     return available || backend != CT_BACKEND_NATIVE;
+}
+
+void ct_machine_compile(struct ct_arena *a, struct ct_machine *m, const struct ct_exs *x,
+                        const ct_ex *out, size_t n, struct ct_program *p)
+{
+    const struct inputs in = list_inputs(a, m, x);
+    *p = (struct ct_program){.next = m->apart};
+    compile_from(a, x, &in, out, n, p);
+    choose_backend(a, m, p);
+    m->apart = p;
+}
+
+void ct_machine_forget(struct ct_machine *m, const struct ct_program *p)
+{
+    for (struct ct_program **at = &m->apart; *at; at = &(*at)->next)
+        if (*at == p) {
+            *at = p->next;
+            return;
+        }
 }
 
 // ---- programs ---------------------------------------------------------------------------------------
@@ -133,7 +165,7 @@ static void compile_motion(struct ct_arena *a, struct ct_machine *m, const struc
     for (size_t i = 0; i < e->nM; i++)
         push(&l, e->M[i].value);
     for (size_t i = 0; i < e->nu; i++)
-        push(&l, e->Q[i]);
+        push(&l, e->has_dynamics ? e->Q[i] : CT_EX_ZERO);
     for (size_t i = 0; i < e->nJ; i++)
         push(&l, e->J[i].value);
     for (size_t i = 0; i < e->nrow; i++)
@@ -190,7 +222,7 @@ static void compile_rest(struct ct_arena *a, struct ct_machine *m, const struct 
     }
     for (size_t i = 0; i < e->nrow; i++)
         push(&wanted, e->row[i].wanted);
-    const ct_ex energies[] = {e->kinetic, e->potential};
+    const ct_ex energies[] = {e->kinetic, ct_ex_add(e->x, e->potential, e->strain)};
     compile(a, m, in, result.e, result.n, &m->result);
     compile(a, m, in, root.e, root.n, &m->root);
     compile(a, m, in, memory.e, memory.n, &m->memory);
@@ -257,13 +289,13 @@ struct ct_machine *ct_machine_create(struct ct_arena *a, const struct ct_model *
     m->input = CT_NEWN(a, double, m->ninput);
     start_input(m);
 
-    const struct inputs in = list_inputs(a, m);
+    const struct inputs in = list_inputs(a, m, m->e->x);
     compile_solved(a, m, &in);
     compile_motion(a, m, &in);
     compile_constraint(a, m, &in);
     compile_rest(a, m, &in);
     compile_residual(a, m, &in);
-    m->M = CT_NEWN(a, double, m->nu * m->nu + 1);
+    m->M = CT_NEWN(a, double, (e->has_dynamics ? m->nu * m->nu : 0) + 1);
     m->J = CT_NEWN(a, double, m->nrow * m->nu + 1);
     m->g[0] = CT_NEWN(a, double, e->nmode + 1);
     m->g[1] = CT_NEWN(a, double, e->nmode + 1);
@@ -277,6 +309,17 @@ struct ct_machine *ct_machine_create(struct ct_arena *a, const struct ct_model *
     return m;
 }
 
+void ct_machine_values(struct ct_arena *a, const struct ct_machine *m, const ct_ex *e, size_t n,
+                       double *out)
+{
+    const struct inputs in = list_inputs(a, m, m->e->x);
+    struct ct_program p = {0};
+    compile(a, m, &in, e, n, &p);
+    prepare(&p, m->input);
+    ct_program_run(&p, m->input);
+    memcpy(out, p.out, n * sizeof *out);
+}
+
 void ct_machine_prepare(struct ct_machine *m)
 {
     struct ct_program *const all[]
@@ -285,6 +328,8 @@ void ct_machine_prepare(struct ct_machine *m)
            &m->wanted, &m->residual, &m->tangent};
     for (size_t i = 0; i < COUNT(all); i++)
         prepare(all[i], m->input);
+    for (struct ct_program *p = m->apart; p; p = p->next)
+        prepare(p, m->input);
 }
 
 void ct_machine_reset(struct ct_machine *m)

@@ -33,24 +33,27 @@ struct ct_machine {
         struct ct_native *native; // NULL: the tape is run
         double *out, *work;
         size_t nout;
-    } solved,       // u', q', where the equations have a solution; else empty
-        motion,     // M, Q, J, gam, q'
-        constraint, // phi, v, J
-        result,     // output columns
-        power,      // d(work)/dt
-        energy,     // kinetic, potential
-        root,       // g of each mode
-        memory,     // next values
-        momentum,   // dT/du
-        driver,     // value, rate of each driver
-        wanted,     // of each row: not negative in the right assembly
-        residual,   // r, phi, v; nothing if the equations have no residual, and so the next
-        tangent;    // dr/dq, dr/du, dr/du', dv/dq, J: the entries
+        struct ct_program *next; // of those compiled apart
+    } solved,                    // u', q', where the equations have a solution; else empty
+        motion,                  // M, Q, J, gam, q'
+        constraint,              // phi, v, J
+        result,                  // output columns
+        power,                   // d(work)/dt
+        energy,                  // kinetic, potential
+        root,                    // g of each mode
+        memory,                  // next values
+        momentum,                // dT/du
+        driver,                  // value, rate of each driver
+        wanted,                  // of each row: not negative in the right assembly
+        residual, // r, phi, v; nothing if the equations have no residual, and so the next
+        tangent;  // dr/dq, dr/du, dr/du', dv/dq, J: the entries
 
     double *M, *Q, *J, *gam, *rate; // of the last ct_machine_motion
     double *phi, *v;                // of the last ct_machine_constraint (J as well)
     double *g[2];                   // values of root functions, for modes (nmode)
     long evaluations;
+    struct ct_program *apart; // ct_machine_compile
+    enum ct_backend asked;
     const char *backend; // of what steps evaluate: "native" or "tape"
 };
 
@@ -64,15 +67,24 @@ struct ct_machine *ct_machine_create(struct ct_arena *a, const struct ct_model *
 /// available; the tape is run then. Not for the inner loop: a must be the machine's arena.
 bool ct_machine_use(struct ct_arena *a, struct ct_machine *m, enum ct_backend backend);
 
+/// A further program on the machine's input: out (n) from x, a copy of the equations' store that may have grown. It runs
+/// as the others do, with `use` and `prepare`, until it is forgotten; a and x must live as long.
+void ct_machine_compile(struct ct_arena *a, struct ct_machine *m, const struct ct_exs *x,
+                        const ct_ex *out, size_t n, struct ct_program *p);
+void ct_machine_forget(struct ct_machine *m, const struct ct_program *p);
+
 /// Copy time and state into the input. y: q, u, work.
 void ct_machine_set(struct ct_machine *m, double t, const double *y);
-/// M, Q, J, gam and q' at the input.
+/// M, Q, J, gam and q' at the input. Without dynamics in the equations M and Q are zero.
 void ct_machine_motion(struct ct_machine *m);
 /// u' (nu, out) and q' at the input where the equations have a solution; else false. M, Q stay as they were.
 bool ct_machine_solved(struct ct_machine *m, double *a);
 /// phi, v, J at the input.
 void ct_machine_constraint(struct ct_machine *m);
 void ct_program_run(struct ct_program *p, const double *input);
+/// Values of expressions at the input, once: everything needed is made in a.
+void ct_machine_values(struct ct_arena *a, const struct ct_machine *m, const ct_ex *e, size_t n,
+                       double *out);
 /// Parameters have changed: run the prologues again.
 void ct_machine_prepare(struct ct_machine *m);
 /// As new, with the values that the model's parameters have now.

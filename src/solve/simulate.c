@@ -44,12 +44,9 @@ static double before_event(const struct ct_run *r, double t)
 static enum ct_eval accelerate(struct ct_run *r, double t, const double *y)
 {
     ct_machine_set(r->m, t, y);
-    if (!ct_machine_solved(r->m, r->s->a)) {
-        ct_machine_motion(r->m);
-        const enum ct_eval e = ct_embed_accelerate(r->s);
-        if (e != CT_EVAL_OK)
-            return e;
-    }
+    const enum ct_eval e = ct_embed_solve(r->s);
+    if (e != CT_EVAL_OK)
+        return e;
     for (size_t i = 0; i < r->m->nu; i++)
         if (!isfinite(r->s->a[i]))
             return CT_EVAL_RETRY;
@@ -78,7 +75,8 @@ static enum ct_eval rhs(void *user, double time, const double *y, double *dy)
 {
     struct ct_run *r = user;
     const double t = before_event(r, time);
-    if (is_near_singular(r)) {
+    r->s->is_delicate = is_near_singular(r);
+    if (r->s->is_delicate) {
         memcpy(r->stage, y, r->ny * sizeof *y);
         const enum ct_eval p = ct_embed_project(r->s, t, r->stage);
         if (p != CT_EVAL_OK)
@@ -103,6 +101,7 @@ static enum ct_eval rhs(void *user, double time, const double *y, double *dy)
 static enum ct_eval project(void *user, double t, double *y)
 {
     struct ct_run *r = user;
+    r->s->is_delicate = is_near_singular(r);
     return ct_embed_project(r->s, before_event(r, t), y);
 }
 
@@ -322,7 +321,6 @@ static bool begin(struct ct_run *r, const struct ct_start *start)
 {
     ct_start_apply(start, r->m, r->y);
     ct_machine_constraint(r->m);
-    ct_machine_motion(r->m);
     if (!ct_embed_choose(r->s))
         return false;
     // measured on other trees, the loops close to rounding; the rest is taken off here
@@ -548,6 +546,7 @@ bool ct_run_simulate(struct ct_run *r, const struct ct_run_options *o,
     const bool ok = ct_integrate(r->ctx, o->method, &p, &io, r->y, &report->stats);
     report->rank = r->s->rank;
     report->switches = r->s->switches;
+    report->solves = r->s->solves;
     report->factorizations = r->s->factorizations + report->stats.factorizations;
     report->y = r->y;
     if (r->energy_scale > 0)

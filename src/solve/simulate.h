@@ -24,6 +24,7 @@ struct ct_run_report {
     int rank;
     long switches;
     long factorizations;
+    struct ct_solves solves;
     double *final; // last row
     double *y;     // last state: q, u, work
 };

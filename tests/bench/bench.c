@@ -141,7 +141,8 @@ static void close_arenas(struct ct_ctx *ctx)
     ct_arena_destroy(ctx->model);
 }
 
-static const struct ct_formulate_options motion_options = {.tree = CT_TREE_AUTO};
+static const struct ct_formulate_options motion_options
+    = {.tree = CT_TREE_AUTO, .with_solution = true};
 
 static bool generate(struct subject *s)
 {
@@ -154,7 +155,10 @@ static bool generate(struct subject *s)
 // Everything up to a machine in a consistent state.
 static void open_subject(struct subject *s, const char *path)
 {
-    const struct ct_formulate_options assembly = {.tree = CT_TREE_JOINTS, .measure_all = true};
+    const struct ct_formulate_options assembly = {.tree = CT_TREE_JOINTS,
+                                                  .measure_all = true,
+                                                  .measured_for = &s->equations,
+                                                  .without_dynamics = true};
     struct ct_tree_report report;
     *s = (struct subject){.path = path};
     open_arenas(&s->ctx);
@@ -162,6 +166,8 @@ static void open_subject(struct subject *s, const char *path)
     if (!generate(s))
         give_up(s);
     s->generate = now() - start;
+    if (s->equations.nrow)
+        ct_formulate_dynamics(&s->equations);
     if (!ct_formulate(&s->ctx, s->ctx.model, &s->model, &assembly, &s->assembly, &report)
         || !ct_assemble(&s->ctx, s->ctx.model, &s->model, &s->assembly, &s->start))
         give_up(s);
@@ -177,43 +183,106 @@ static void close_subject(struct subject *s)
     close_arenas(&s->ctx);
 }
 
-// The file that systems/NAME/generate.sh N writes, or a chain of N spherical joints in space.
-static char *generated(const char *name, int n)
+static const char *temporary(void)
 {
     static char path[64];
-    char command[512];
     snprintf(path, sizeof path, "/tmp/ct_bench_%ld.yaml", (long)getpid());
-    snprintf(command, sizeof command, "sh '%s/systems/%s/generate.sh' %d > %s",
-             getenv("CT_SOURCE_DIR") ? getenv("CT_SOURCE_DIR") : ".", name, n, path);
-    if (system(command) != 0)
-        exit(1);
     return path;
 }
 
-static char *spatial_chain(int n)
+// The file that systems/NAME/generate.sh N writes.
+static const char *generated(const char *name, int n)
 {
-    static char path[64];
-    snprintf(path, sizeof path, "/tmp/ct_bench_%ld.yaml", (long)getpid());
-    FILE *f = fopen(path, "w");
+    char command[512];
+    snprintf(command, sizeof command, "sh '%s/systems/%s/generate.sh' %d > %s",
+             getenv("CT_SOURCE_DIR") ? getenv("CT_SOURCE_DIR") : ".", name, n, temporary());
+    if (system(command) != 0)
+        exit(1);
+    return temporary();
+}
+
+static FILE *open_model(const char *name, const char *gravity, const char *parameters)
+{
+    FILE *f = fopen(temporary(), "w");
     if (!f)
         exit(1);
-    fprintf(f, "cotree: 1\nname: chain of %d balls\n\ngravity: [0, 0, -9.81]\n\nbodies:\n", n);
+    fprintf(f, "cotree: 1\nname: %s\ngravity: %s\nparameters: {g: 9.81%s}\n", name, gravity,
+            parameters);
+    return f;
+}
+
+static const char *close_model(FILE *f)
+{
+    fprintf(f, "simulation: {duration: 1}\n");
+    fclose(f);
+    return temporary();
+}
+
+// n bodies "b1", ... in a chain by joints of a type, from point `end` to the next.
+static void put_joints(FILE *f, int n, const char *type)
+{
+    fprintf(f, "joints:\n");
+    for (int i = 1; i <= n; i++) {
+        fprintf(f, "  j%d: {type: %s, from: ", i, type);
+        if (i == 1)
+            fprintf(f, "ground, to: b1}\n");
+        else
+            fprintf(f, "b%d.end, to: b%d}\n", i - 1, i);
+    }
+}
+
+static const char *spatial_chain(int n)
+{
+    FILE *f = open_model("balls", "[0, 0, -g]", "");
+    fprintf(f, "bodies:\n");
     for (int i = 1; i <= n; i++)
         fprintf(f,
-                "  link%d: {mass: 1.%d, com: [0.5, 0.01, 0.02], inertia: [0.1, 0.2, 0.25],\n"
+                "  b%d: {mass: 1.%d, com: [0.5, 0.01, 0.02], inertia: [0.1, 0.2, 0.25],\n"
                 "    points: {end: [1, 0, 0]}}\n",
                 i, i);
-    fprintf(f, "\njoints:\n");
-    for (int i = 1; i <= n; i++) {
-        fprintf(f, "  ball%d: {type: spherical, from: ", i);
-        if (i == 1)
-            fprintf(f, "ground, to: link1}\n");
-        else
-            fprintf(f, "link%d.end, to: link%d}\n", i - 1, i);
-    }
-    fprintf(f, "\nsimulation: {duration: 1}\n");
-    fclose(f);
-    return path;
+    put_joints(f, n, "spherical");
+    return close_model(f);
+}
+
+static const char *planar_chain(int n)
+{
+    FILE *f = open_model("pins", "[0, -g, 0]", ", m: 1, l: 1, c: 0.5, J: 0.1");
+    fprintf(f, "bodies:\n");
+    for (int i = 1; i <= n; i++)
+        fprintf(f, "  b%d: {mass: m, com: [c, 0, 0], inertia: J, points: {end: [l, 0, 0]}}\n",
+                i);
+    put_joints(f, n, "revolute");
+    return close_model(f);
+}
+
+// Arm of 6 or 7 turning axes with everything a parameter: masses, centres of mass, full inertias, lengths.
+static const char *arm(int n)
+{
+    static const char *const end[2][7]
+        = {{"{at: [0, 0, 0], rotate: [x, -pi/2]}", "[a2, 0, d3]",
+            "{at: [a3, d4, 0], rotate: [x, -pi/2]}", "{at: [0, 0, 0], rotate: [x, pi/2]}",
+            "{at: [0, 0, 0], rotate: [x, -pi/2]}", "[0, 0, 0]"},
+           {"{at: [0, 0, d3], rotate: [x, -pi/2]}", "{at: [0, a2, 0], rotate: [x, pi/2]}",
+            "{at: [a3, 0, 0], rotate: [x, pi/2]}", "{at: [0, d4, 0], rotate: [x, -pi/2]}",
+            "{at: [0, 0, 0], rotate: [x, -pi/2]}", "{at: [a3, 0, 0], rotate: [x, pi/2]}",
+            "[0, 0, 0]"}};
+    char parameters[2048] = ", a2: 0.43, a3: 0.02, d3: 0.15, d4: 0.43";
+    size_t used = strlen(parameters);
+    for (int i = 1; i <= n; i++)
+        used += (size_t)snprintf(
+            parameters + used, sizeof parameters - used,
+            ", m%d: %d, x%d: 0.1, y%d: 0.05, z%d: 0.02, A%d: 1, B%d: 1.1, C%d: 1.2, D%d: 0.1, "
+            "E%d: 0.02, F%d: 0.05",
+            i, 8 - i, i, i, i, i, i, i, i, i, i);
+    FILE *f = open_model("arm", "[0, 0, -g]", parameters);
+    fprintf(f, "bodies:\n");
+    for (int i = 1; i <= n; i++)
+        fprintf(f,
+                "  b%d: {mass: m%d, com: [x%d, y%d, z%d], inertia: [A%d, B%d, C%d, D%d, E%d, "
+                "F%d], points: {end: %s}}\n",
+                i, i, i, i, i, i, i, i, i, i, i, end[n == 7][i - 1]);
+    put_joints(f, n, "revolute");
+    return close_model(f);
 }
 
 static const char *shipped(const char *name)
@@ -227,6 +296,7 @@ static const char *shipped(const char *name)
 // ---- back ends ----------------------------------------------------------------------------------
 
 struct evaluator {
+    const struct ct_program *program;
     const char *name;
     int lanes;
     const struct ct_tape *tape;
@@ -245,17 +315,17 @@ static void evaluate(void *data)
         ct_tape_eval_lanes(v->tape, v->lanes, v->input, v->out, v->work);
 }
 
-static bool open_evaluator(struct evaluator *v, struct subject *s, const char *name, int lanes,
-                           bool native)
+static bool open_evaluator(struct evaluator *v, struct subject *s, const struct ct_program *p,
+                           const char *name, int lanes, bool native)
 {
     struct ct_arena *a = s->ctx.model;
     const struct ct_machine *m = s->machine;
     const size_t n = (size_t)lanes;
-    *v = (struct evaluator){.name = name, .lanes = lanes, .tape = m->motion.tape};
-    if (native && !(v->native = ct_native_create(a, m->motion.listing, lanes)))
+    *v = (struct evaluator){.name = name, .lanes = lanes, .tape = p->tape};
+    if (native && !(v->native = ct_native_create(a, p->listing, lanes)))
         return false;
     v->input = CT_NEWN(a, double, n * m->ninput);
-    v->out = CT_NEWN(a, double, n * m->motion.nout + 1);
+    v->out = CT_NEWN(a, double, n * p->nout + 1);
     v->work = CT_NEWN(a, double,
                       v->native ? ct_native_work(v->native) : n *ct_tape_work(v->tape) + 1);
     for (size_t k = 0; k < m->ninput; k++) // lanes differ a little, as in a study
@@ -269,7 +339,8 @@ static bool open_evaluator(struct evaluator *v, struct subject *s, const char *n
 }
 
 // One line per back end; goals [s] in the same order.
-static void compare_back_ends(struct subject *s, const char *what, const double goal[5])
+static void compare_back_ends(struct subject *s, const struct ct_program *p, const char *what,
+                              const double goal[5])
 {
     static const struct {
         const char *name;
@@ -286,15 +357,15 @@ static void compare_back_ends(struct subject *s, const char *what, const double 
     double t[5];
     size_t n = 0;
     for (size_t i = 0; i < COUNT(all); i++)
-        n += open_evaluator(&v[n], s, all[i].name, all[i].lanes, all[i].native);
+        n += open_evaluator(&v[n], s, p, all[i].name, all[i].lanes, all[i].native);
     for (size_t i = 0; i < n; i++) {
         f[i] = evaluate;
         data[i] = &v[i];
     }
     measure(f, data, n, t);
-    const struct ct_tape_counts c = s->machine->motion.listing->counts;
+    const struct ct_tape_counts c = p->listing->counts;
     printf("\n%s: %ld mul, %ld add, %ld div, %ld functions, %zu outputs\n", what,
-           c.multiplications, c.additions, c.divisions, c.functions, s->machine->motion.nout);
+           c.multiplications, c.additions, c.divisions, c.functions, p->nout);
     for (size_t i = 0; i < n; i++) {
         char text[96];
         snprintf(text, sizeof text, "  %s", v[i].name);
@@ -311,6 +382,12 @@ static void compare_back_ends(struct subject *s, const char *what, const double 
 static void accelerate(void *data)
 {
     struct subject *s = data;
+    ct_embed_solve(ct_run_embed(s->run));
+}
+
+static void accelerate_by_matrices(void *data)
+{
+    struct subject *s = data;
     ct_machine_motion(s->machine);
     ct_embed_accelerate(ct_run_embed(s->run));
 }
@@ -324,12 +401,13 @@ static void assemble(void *data)
 // M, Q, J, gam and the solve, with a goal for both together.
 static void show_accelerations(struct subject *s, const char *what, double per, double goal)
 {
-    const call_fn f[] = {accelerate, assemble};
-    void *const data[] = {s, s};
-    double t[2];
+    const call_fn f[] = {accelerate, assemble, accelerate_by_matrices};
+    void *const data[] = {s, s, s};
+    double t[3];
     char text[96];
-    measure(f, data, 2, t);
+    measure(f, data, 3, t);
     line(what, t[0] / per, goal);
+    line("  the same by matrices", t[2] / per, 0);
     snprintf(text, sizeof text, "  of that assembly (%s)", s->machine->backend);
     line(text, t[1] / per, 0);
 }
@@ -429,10 +507,9 @@ static void make_listing(void *data)
     ct_arena_destroy(a);
 }
 
-// The outputs and inputs of the motion program, read off its listing.
-static struct listing_task motion_task(struct subject *s)
+// The outputs and inputs of a program, read off its listing.
+static struct listing_task listing_task(struct subject *s, const struct ct_listing *l)
 {
-    const struct ct_listing *l = s->machine->motion.listing;
     struct ct_arena *a = s->ctx.model;
     struct listing_task k = {s,
                              CT_NEWN(a, ct_ex, l->nout),
@@ -452,9 +529,9 @@ static struct listing_task motion_task(struct subject *s)
 
 static void show_generation(struct subject *s, const char *what)
 {
-    const struct ct_listing *l = s->machine->motion.listing;
+    const struct ct_listing *l = s->machine->solved.listing;
     struct nodes nodes = {s->equations.x};
-    struct listing_task task = motion_task(s);
+    struct listing_task task = listing_task(s, l);
     const call_fn f[] = {build_nodes, make_listing, make_tape, emit_native};
     union {
         const struct ct_listing *l;
@@ -475,23 +552,47 @@ static void show_generation(struct subject *s, const char *what)
 
 // ---- what is measured ---------------------------------------------------------------------------
 
-static void six_axis_arm(void)
+// An open chain: u' and q' by the formulation that was chosen. goal: as compare_back_ends, then of the way from the model
+// to native code, and the most instructions of memory per link (0: not shown).
+static void open_chain(const char *what, const char *path, const double goal[5],
+                       double generation_goal)
 {
+    static const char *const name[]
+        = {"", "cutset sums", "composite bodies", "articulated bodies"};
     struct subject s;
-    const double goal[5] = {0.8e-6, 0, 0, 120e-9, 42e-9};
-    open_subject(&s, shipped("puma560"));
-    compare_back_ends(&s, "6R arm (puma560, numbers folded), M and Q; goals with solve", goal);
-    show_accelerations(&s, "  accelerations, solve included", 1, 120e-9);
-    line("  model to native code", median_of(model_to_native, s.path, 11), 0.5e-3);
-    show_generation(&s, "6R arm");
+    char text[128];
+    open_subject(&s, path);
+    snprintf(text, sizeof text, "%s, u' by %s", what, name[s.equations.formulation]);
+    compare_back_ends(&s, &s.machine->solved, text, goal);
+    line("  model to native code", median_of(model_to_native, s.path, 5), generation_goal);
+    show_generation(&s, what);
+    printf("  %-56s %9zu KiB\n", "machine code",
+           s.machine->solved.native ? ct_native_code_size(s.machine->solved.native) / 1024 : 0);
     close_subject(&s);
+}
+
+static void open_chains(bool quick)
+{
+    static const double six_folded[5] = {0.8e-6, 0, 0, 120e-9, 42e-9},
+                        six[5] = {0.8e-6, 0, 0, 150e-9, 0}, seven[5] = {0, 0, 0, 190e-9, 0},
+                        planar[5] = {0, 0, 0, 1.5e-6, 0}, spatial[5] = {0, 0, 0, 4e-6, 0},
+                        long_spatial[5] = {0, 0, 0, 40e-6, 0};
+    open_chain("6R arm (puma560, numbers folded)", shipped("puma560"), six_folded, 0.5e-3);
+    open_chain("6R arm, parameters", arm(6), six, 0.5e-3);
+    open_chain("7-dof arm, parameters", arm(7), seven, 0);
+    if (quick)
+        return;
+    open_chain("planar chain of 50 pins", planar_chain(50), planar, 0);
+    open_chain("chain of 50 balls (150 freedoms)", spatial_chain(50), spatial, 5e-3);
+    open_chain("chain of 500 balls (1500 freedoms)", spatial_chain(500), long_spatial, 2);
+    unlink(temporary());
 }
 
 static void andrews(void)
 {
     struct subject s;
     open_subject(&s, shipped("andrews"));
-    compare_back_ends(&s, "Andrews' mechanism, M, Q, J, gam", NULL);
+    compare_back_ends(&s, &s.machine->motion, "Andrews' mechanism, M, Q, J, gam", NULL);
     show_accelerations(&s, "  accelerations, solve included", 1, 160e-9);
     ct_machine_use(s.ctx.model, s.machine, CT_BACKEND_TAPE);
     show_accelerations(&s, "  accelerations, solve included", 1, 0.6e-6);
@@ -504,25 +605,8 @@ static void four_bars(int n)
     char what[64];
     open_subject(&s, generated("n_four_bar", n));
     snprintf(what, sizeof what, "%d four-bar%s, M, Q, J, gam", n, n > 1 ? "s" : "");
-    compare_back_ends(&s, what, NULL);
+    compare_back_ends(&s, &s.machine->motion, what, NULL);
     show_accelerations(&s, "  accelerations, solve included, per loop", n, 60e-9);
-    close_subject(&s);
-    unlink(s.path);
-}
-
-static void long_chain(int n)
-{
-    struct subject s;
-    char what[64];
-    const double goal[5] = {0, 0, 0, 4e-6, 0};
-    open_subject(&s, spatial_chain(n));
-    snprintf(what, sizeof what, "chain of %d balls (%d freedoms), M, Q; goal with solve", n,
-             3 * n);
-    compare_back_ends(&s, what, goal);
-    show_accelerations(&s, "  accelerations, solve included", 1, 4e-6);
-    line("  model to equations", median_of(model_to_equations, s.path, 3), 100e-3);
-    line("  model to native code", median_of(model_to_native, s.path, 3), 5e-3);
-    show_generation(&s, "chain");
     close_subject(&s);
     unlink(s.path);
 }
@@ -583,14 +667,12 @@ int main(int argc, char **argv)
         sample_seconds = 5e-5;
     printf("native code: %s\n", ct_native_is_available(1) ? "available" : "not available");
     head("one core, warm");
-    six_axis_arm();
+    open_chains(quick);
     andrews();
     four_bars(1);
     four_bars(10);
     sweep(quick ? 8 : 10000);
-    if (!quick) {
+    if (!quick)
         four_bars(40);
-        long_chain(50);
-    }
     return 0;
 }

@@ -1,58 +1,248 @@
-// Accelerations in closed form are those of the numerical solution, for every open shipped system.
+// Every formulation of an open system gives the same accelerations: by cutset sums, by composite bodies, by articulated
+// bodies, each in closed form, and the numerical solution of M u' = Q.
+#include "formulate/member.h"
+#include "tests/property/mechanism.h"
 #include "tests/property/system.h"
 
-static const struct ct_formulate_options with_solution
-    = {.tree = CT_TREE_JOINTS, .with_energy = true, .with_solution = true};
+#include "numeric/dense.h"
 
-// u' by the closed form and by Cholesky of M at a random state; M may be ill-conditioned, so that the
-// residual M u' - Q is what is compared.
-static bool same_accelerations(struct system *s, struct variant *v)
+#include <float.h>
+
+static const char *const form_name[] = {"auto", "cutsets", "composite", "articulated"};
+// Accelerations agree to this, relative to the largest, or to what a few roundings of M do to them.
+static const double tolerance = 1e-11;
+
+struct tally {
+    size_t systems, tried[CT_NFORMULATION];
+};
+
+// u' by Cholesky of M, each entry changed by `rounding` of it, refined with residuals in extended precision.
+static bool reference_accelerations(struct ct_machine *m, double rounding, double *a)
 {
-    struct ct_start state;
-    struct ct_machine *m = v->m;
-    double a[64], scale = 1, worst = 0;
-    assert_true(m->nu <= COUNT(a));
-    if (!system_random_state(s, 0, 0.5, &state))
-        return true;
-    variant_set(v, &state, 0);
-    ct_machine_motion(m);
-    assert_true(ct_machine_solved(m, a));
-    for (size_t i = 0; i < m->nu; i++) {
-        double r = -m->Q[i];
-        for (size_t k = 0; k < m->nu; k++) {
-            r += m->M[i + m->nu * k] * a[k];
-            scale = fmax(scale, fabs(m->M[i + m->nu * k] * a[k]));
+    const size_t n = m->nu;
+    double *L = test_calloc(n * n, sizeof *L), *r = test_calloc(n, sizeof *r);
+    for (size_t i = 0; i < n && rounding > 0; i++)
+        for (size_t k = 0; k <= i; k++)
+            m->M[i + n * k] = m->M[k + n * i] *= 1 + rounding * chance();
+    memcpy(L, m->M, n * n * sizeof *L);
+    memcpy(a, m->Q, n * sizeof *a);
+    const bool ok = ct_cholesky(L, (int)n, (int)n);
+    if (ok)
+        ct_cholesky_solve(a, L, (int)n, (int)n, 1, (int)n);
+    for (int again = 0; again < 2 && ok; again++) {
+        for (size_t i = 0; i < n; i++) {
+            long double sum = m->Q[i];
+            for (size_t k = 0; k < n; k++)
+                sum -= (long double)m->M[i + n * k] * a[k];
+            r[i] = (double)sum;
         }
-        worst = fmax(worst, fabs(r));
+        ct_cholesky_solve(r, L, (int)n, (int)n, 1, (int)n);
+        for (size_t i = 0; i < n; i++)
+            a[i] += r[i];
     }
-    return agree(s->name, "M u' - Q", worst, 0, scale, 1e-12);
+    test_free(L);
+    test_free(r);
+    return ok;
 }
 
-static void closed_form_solves_the_equations(void **state)
+// The reference at a state (first nu of want) and how far it moves, relative to the largest, with a few roundings of M.
+static double find_reference(struct variant *v, const struct ct_start *state, double *want)
+{
+    const size_t n = v->m->nu;
+    double scale = 1e-3, change = 0;
+    variant_set(v, state, 0.1);
+    assert_true(reference_accelerations(v->m, 0, want));
+    assert_true(reference_accelerations(v->m, 10 * DBL_EPSILON, want + n));
+    for (size_t i = 0; i < n; i++) {
+        scale = fmax(scale, fabs(want[i]));
+        change = fmax(change, fabs(want[i] - want[n + i]));
+    }
+    return change / scale;
+}
+
+// Accelerations of one form at a state against those of the reference.
+static bool form_agrees(struct system *s, enum ct_formulation form, struct variant *v,
+                        const struct ct_start *state, const double *want, double sensitivity)
+{
+    double *a = test_calloc(v->m->nu, sizeof *a), scale = 1e-3, worst = 0;
+    char what[64];
+    variant_set(v, state, 0.1);
+    assert_true(ct_machine_solved(v->m, a));
+    for (size_t i = 0; i < v->m->nu; i++) {
+        scale = fmax(scale, fabs(want[i]));
+        worst = fmax(worst, isnan(a[i]) ? INFINITY : fabs(a[i] - want[i]));
+    }
+    snprintf(what, sizeof what, "u' by %s", form_name[form]);
+    test_free(a);
+    return agree(s->name, what, worst, 0, scale, fmax(tolerance, sensitivity));
+}
+
+static bool forms_agree(struct system *s, enum ct_tree_choice tree, struct tally *tally)
+{
+    struct variant v[CT_NFORMULATION];
+    bool ok = true;
+    for (int form = 0; form < CT_NFORMULATION; form++) {
+        const struct ct_formulate_options o
+            = {.tree = tree, .with_solution = true, .formulation = (enum ct_formulation)form};
+        variant_open(s, &o, &v[form]);
+        if (v[form].e.nrow || !v[form].e.nu) {
+            variant_close(&v[form]);
+            return ok;
+        }
+        tally->tried[form] += v[form].e.formulation == (enum ct_formulation)form;
+    }
+    tally->systems++;
+    for (int k = 0; k < 3; k++) {
+        struct ct_start state;
+        double *want = test_calloc(2 * v[0].m->nu, sizeof *want);
+        if (system_random_state(s, 0.1, 0.5, &state)) {
+            const double sensitivity = find_reference(&v[0], &state, want);
+            for (int form = 0; form < CT_NFORMULATION; form++)
+                if (v[form].e.solution)
+                    ok &= form_agrees(s, (enum ct_formulation)form, &v[form], &state, want,
+                                      sensitivity);
+        }
+        test_free(want);
+    }
+    for (int form = 0; form < CT_NFORMULATION; form++)
+        variant_close(&v[form]);
+    return ok;
+}
+
+static bool all_trees_agree(struct system *s, struct tally *tally)
+{
+    bool ok = true;
+    system_no_outputs(s);
+    ok &= forms_agree(s, CT_TREE_AUTO, tally);
+    ok &= forms_agree(s, CT_TREE_JOINTS, tally);
+    return ok;
+}
+
+static void forms_agree_on_shipped_systems(void **state)
 {
     (void)state;
-    size_t solved = 0;
+    struct tally tally = {0};
     bool ok = true;
     chance_start();
     for (size_t i = 0; i < nshipped; i++) {
         struct system s;
-        struct variant v;
         system_open_file(&s, shipped[i]);
-        system_no_outputs(&s);
-        variant_open(&s, &with_solution, &v);
-        assert_true(!v.e.solution || v.e.nrow == 0);
-        solved += v.e.solution != NULL;
-        for (int k = 0; k < 5 && v.e.solution; k++)
-            ok &= same_accelerations(&s, &v);
-        variant_close(&v);
+        ok &= all_trees_agree(&s, &tally);
         system_close(&s);
     }
+    print_message("%zu open: %zu composite, %zu articulated\n", tally.systems,
+                  tally.tried[CT_FORMULATION_COMPOSITE],
+                  tally.tried[CT_FORMULATION_ARTICULATED]);
     assert_true(ok);
-    assert_true(solved >= 6);
+    assert_true(tally.systems >= 16);
+    assert_true(tally.tried[CT_FORMULATION_ARTICULATED] >= 16);
+}
+
+static void forms_agree_on_small_mechanisms(void **state)
+{
+    (void)state;
+    struct tally tally = {0};
+    bool ok = true;
+    chance_start();
+    for (size_t i = 0; i < nmechanism; i++)
+        for (int r = 0; r < 3; r++) {
+            struct system s;
+            struct ct_arena *a = ct_arena_create();
+            const unsigned reversed = r == 0 || mechanisms[i].is_irreversible ? 0
+                                    : r == 1                                  ? ~0u
+                                                                              : 5u;
+            system_open_text(&s, mechanisms[i].name,
+                             mechanism_text(a, &mechanisms[i], NULL, reversed, false));
+            ok &= all_trees_agree(&s, &tally);
+            system_close(&s);
+            ct_arena_destroy(a);
+        }
+    print_message("%zu open: %zu composite, %zu articulated\n", tally.systems,
+                  tally.tried[CT_FORMULATION_COMPOSITE],
+                  tally.tried[CT_FORMULATION_ARTICULATED]);
+    assert_true(ok);
+}
+
+// ---- chains of mixed joints -----------------------------------------------------------------------------------
+
+static const char *const joint_text[] = {
+    "type: revolute",
+    "type: revolute, axis: [1, 2, -1]",
+    "type: revolute, axis: x, motion: \"0.3*sin(t)\"",
+    "type: prismatic, axis: y, stiffness: 20, damping: 0.3",
+    "type: prismatic, axis: [1, 1, 0]",
+    "type: spherical",
+    "type: universal, axes: [x, z]",
+    "type: cylindrical, axis: y",
+    "type: cylindrical, axis: [0, 1, 1], motion: [~, \"t^2\"]",
+    "type: screw, axis: z, pitch: 0.3",
+    "type: screw, axis: [1, 0, 2], pitch: -0.2",
+    "type: planar, normal: x",
+    "type: free",
+    "type: weld",
+    "type: custom, coordinates: [s], translate: [s, \"0.1*s^2\", 0], rotate: [[z, \"0.2*s\"]]",
+    "type: custom, coordinates: [a, b], rotate: [[x, \"a + 0.1*a^2\"], [y, b]]",
+};
+
+// A tree of n bodies: each hangs on one before it by the joint `first + i`, some seen backwards.
+static char *tree_text(struct ct_arena *a, int n, int first)
+{
+    const char *bodies = "", *joints = "";
+    for (int i = 1; i <= n; i++) {
+        const int type = (first + i) % (int)COUNT(joint_text),
+                  parent = i - 1 - chance_of(i < 3 ? 1 : 2);
+        const char *own = text_of(a, "b%d.j", i);
+        const char *other = parent ? text_of(a, "b%d.%s", parent, i % 2 ? "p" : "e") : "ground";
+        const bool backwards = chance_of(3) == 0;
+        bodies = text_of(a,
+                         "%s  b%d: {mass: %.3g, com: [%.3g, %.3g, 0.1], inertia: [0.2, 0.25, "
+                         "0.3, 0.01, -0.02, 0.03],\n"
+                         "    points: {j: {at: [0.1, 0.2, -0.1], rotate: [x, 0.3]}, e: {at: "
+                         "[0.5, 0, 0.1], rotate: "
+                         "[[z, 0.7], [y, -0.4]]}, p: [0.3, 0.4, 0]}}\n",
+                         bodies, i, 1.5 + chance(), 0.3 * chance(), 0.3 * chance());
+        joints = text_of(a, "%s  j%d: {%s, from: %s, to: %s}\n", joints, i, joint_text[type],
+                         backwards ? own : other, backwards ? other : own);
+    }
+    return text_of(a,
+                   "cotree: 1\ngravity: [1, -2, -9.81]\nbodies:\n%sjoints:\n%sforces:\n"
+                   "  s: {type: spring, from: ground, to: b%d.e, stiffness: 30, length: 0.4, "
+                   "damping: 0.7}\n"
+                   "  w: {type: bushing, from: b1, to: b%d, stiffness: [3, 4, 5, 1, 2, 3], "
+                   "damping: [1, 1, 1, 0.1, 0.1, 0.1]}\n"
+                   "  f: {type: force, at: b2.p, value: [1, \"2*t\", 3], in: b2}\n"
+                   "  t: {type: torque, on: b%d, value: [0.3, 0, -0.2]}\n",
+                   bodies, joints, n, n, n);
+}
+
+static void forms_agree_on_trees_of_mixed_joints(void **state)
+{
+    (void)state;
+    struct tally tally = {0};
+    bool ok = true;
+    chance_start();
+    for (int i = 0; i < 2 * (int)COUNT(joint_text); i++) {
+        struct system s;
+        struct ct_arena *a = ct_arena_create();
+        system_open_text(&s, text_of(a, "tree %d", i), tree_text(a, 3 + i % 3, i));
+        system_no_outputs(&s);
+        ok &= forms_agree(&s, CT_TREE_JOINTS, &tally);
+        system_close(&s);
+        ct_arena_destroy(a);
+    }
+    print_message("%zu open: %zu composite, %zu articulated\n", tally.systems,
+                  tally.tried[CT_FORMULATION_COMPOSITE],
+                  tally.tried[CT_FORMULATION_ARTICULATED]);
+    assert_true(ok);
+    assert_true(tally.tried[CT_FORMULATION_ARTICULATED] == tally.systems);
 }
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(closed_form_solves_the_equations)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(forms_agree_on_shipped_systems),
+        cmocka_unit_test(forms_agree_on_small_mechanisms),
+        cmocka_unit_test(forms_agree_on_trees_of_mixed_joints),
+    };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -271,6 +271,8 @@ bool variant_try(struct system *s, const struct ct_formulate_options *o, struct 
     v->ctx = (struct ct_ctx){.model = v->arena, .scratch = v->arena};
     if (!ct_formulate(&v->ctx, v->arena, &s->model, o, &v->e, &v->report))
         return false;
+    if (!o->without_dynamics)
+        ct_formulate_dynamics(&v->e);
     v->m = ct_machine_create(v->arena, &s->model, &v->e);
     v->s = ct_embed_create(v->arena, &v->ctx, v->m);
     v->y = CT_NEWN(v->arena, double, v->m->nq + v->m->nu + 1);

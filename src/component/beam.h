@@ -1,0 +1,63 @@
+// A beam as read: straight along its own x axis, from 0 to `length`.  (formulation 1.2, 5.3)
+//
+//     node 0 ---- element 1 ---- node 1 ---- ... ---- element N ---- node N
+//     body frame                 u v w rx ry rz of each: displacements along the beam's axes, right-handed
+//                                rotations (ry = -dw/dx, rz = dv/dx)
+//
+// What always holds after ct_model_read: length > 0, end[] increases strictly and ends at `length`, the values
+// have the right dimension and sign; only the section's values contain the symbol x. What a missing key leaves
+// open is 0 and not among `known`.
+#ifndef CT_COMPONENT_BEAM_H
+#define CT_COMPONENT_BEAM_H
+
+#include "expr/ex.h"
+
+enum ct_beam_theory { CT_BEAM_EULER_BERNOULLI, CT_BEAM_TIMOSHENKO };
+/// Where the integrals over an element are taken: REDUCED: stiffness at the middle; ONE_POINT: mass too.
+enum ct_beam_integration { CT_BEAM_FULL, CT_BEAM_REDUCED, CT_BEAM_ONE_POINT };
+enum ct_beam_formulation {
+    CT_BEAM_AUTO,
+    CT_BEAM_LINEAR,
+    CT_BEAM_FORESHORTENING,
+    CT_BEAM_FORCE_ONLY,
+    CT_BEAM_STRETCH_LINEAR
+};
+/// What a beam may do; bits of ct_beam.deformation. BENDING_Y is that in the x-z plane (Iy, w and ry).
+enum ct_beam_deformation {
+    CT_BEAM_AXIAL = 1,
+    CT_BEAM_BENDING_Y = 2,
+    CT_BEAM_BENDING_Z = 4,
+    CT_BEAM_TORSION = 8,
+    CT_BEAM_ALL = 15
+};
+
+struct ct_beam {
+    ct_ex x;      // the symbol of sections (LOCAL)
+    ct_ex length; // [m]
+    int nelement;
+    const ct_ex *end;      // [m] where elements end; end[nelement - 1] is `length`
+    ct_ex E, G;            // [Pa]; G is 0 where neither G nor nu is given
+    ct_ex area, Iy, Iz, J; // [m^2], [m^4]; may contain x
+    ct_ex mass_per_length; // [kg/m]; may contain x
+    bool has_rotary;       // `rotary_inertia` is neither absent nor false
+    ct_ex rotary[3];       // inertia per length about x, y, z [kg m]; may contain x
+    ct_ex
+        twist_inertia; // rho (Iy + Iz), of twist where torsion is present and has_rotary is false
+    enum ct_beam_theory theory;
+    ct_ex shear_factor; // Timoshenko
+    enum ct_beam_integration integration;
+    bool is_lumped;
+    bool higher_order; // geometric_stiffness: higher-order
+    enum ct_beam_formulation formulation;
+    bool is_chord; // frame: chord
+    unsigned
+        known; // bits: deformations whose stiffness is given (AXIAL: area, BENDING_Y: Iy, TORSION: G and J, ...)
+    bool deformation_given;
+    unsigned deformation;                  // bits; CT_BEAM_ALL unless given
+    int modes;                             // 0: nodal coordinates
+    ct_ex damping_mass, damping_stiffness; // Rayleigh: alpha [1/s], beta [s]
+    bool starts_in_equilibrium;            // `initial: equilibrium`
+    struct ct_mark formulation_mark, modes_mark, deformation_mark;
+};
+
+#endif

@@ -1,0 +1,455 @@
+// Beams: the values of the class as struct ct_beam, checked along the axis.
+#include "component/read.h"
+
+#include "expr/quadrature.h"
+
+#include <math.h>
+#include <string.h>
+
+// ---- values that only beams have ------------------------------------------------------------------------
+
+static void make_room(struct ct_reader *r, struct ct_value *v, size_t n)
+{
+    v->n = n;
+    v->e = CT_NEWN(r->a, ct_ex, n);
+    v->at = CT_NEWN(r->a, struct ct_mark, n);
+    for (size_t i = 0; i < n; i++)
+        v->e[i] = CT_EX_ZERO;
+}
+
+static bool read_items(struct ct_reader *r, const struct ct_node *node,
+                       const struct ct_key *key, struct ct_value *v)
+{
+    make_room(r, v, node->n);
+    bool ok = true;
+    for (size_t i = 0; i < node->n; i++) {
+        v->at[i] = node->item[i]->mark;
+        ok &= ct_read_expr(r, node->item[i], key->flags, key->unit, &v->e[i]);
+    }
+    return ok;
+}
+
+static bool read_elements(struct ct_reader *r, const struct ct_node *node,
+                          const struct ct_key *key, struct ct_value *v)
+{
+    enum { MOST = 10000 };
+    if (node->kind != CT_NODE_LIST)
+        return ct_read_count(r, node, key->name, 1, &v->count);
+    if (!ct_read_length(r, node, 1, MOST, "a list of the places where elements end"))
+        return false;
+    v->count = (long)node->n;
+    return read_items(r, node, key, v);
+}
+
+static bool read_rotary(struct ct_reader *r, const struct ct_node *node,
+                        const struct ct_key *key, struct ct_value *v)
+{
+    static const char *const words[] = {"false", "true"};
+    if (node->kind != CT_NODE_LIST) {
+        v->count = ct_read_word(r, node, key->name, words, COUNT(words));
+        return v->count >= 0;
+    }
+    v->count = 3;
+    return ct_read_length(r, node, 3, 3, "true, false or a list of 3")
+        && read_items(r, node, key, v);
+}
+
+static bool read_rayleigh(struct ct_reader *r, const struct ct_node *node,
+                          const struct ct_key *key, struct ct_value *v)
+{
+    static const char *const names[] = {"alpha", "beta"}, *const units[] = {"1/s", "s"};
+    if (!ct_read_shape(r, node, CT_NODE_MAP, "{alpha: a, beta: b}"))
+        return false;
+    bool ok = ct_read_keys(r, node, "'damping' of a beam", names, COUNT(names));
+    make_room(r, v, COUNT(names));
+    for (size_t i = 0; i < COUNT(names); i++) {
+        const struct ct_node *item = ct_node_get(node, names[i]);
+        double value;
+        v->at[i] = item ? item->mark : node->mark;
+        if (!item)
+            continue;
+        ok &= ct_read_expr(r, item, key->flags, units[i], &v->e[i]);
+        if (ct_read_number(r, v->e[i], &value) && !(value >= 0))
+            ok = ct_error(r->ctx, item->mark, CT_E_RANGE, "'%s' is %g; it must be at least 0",
+                          names[i], value);
+    }
+    return ok;
+}
+
+bool ct_read_beam_value(struct ct_reader *r, const struct ct_node *node,
+                        const struct ct_key *key, struct ct_value *v)
+{
+    if (key->kind == CT_VALUE_ELEMENTS)
+        return read_elements(r, node, key, v);
+    return key->kind == CT_VALUE_ROTARY ? read_rotary(r, node, key, v)
+                                        : read_rayleigh(r, node, key, v);
+}
+
+// ---- what is asked of single values ------------------------------------------------------------------------
+
+struct work {
+    struct ct_reader *r;
+    const struct ct_instance *self;
+    struct ct_beam *beam;
+    double *value; // of all symbols, x among them
+    size_t x;      // its place there
+};
+
+static const struct ct_value *get(const struct work *w, const char *key)
+{
+    return ct_instance_value(w->self, key);
+}
+
+static bool has(const struct work *w, const char *key)
+{
+    return get(w, key)->given;
+}
+
+// 0 where it is not given
+static ct_ex scalar(const struct work *w, const char *key)
+{
+    const struct ct_value *v = get(w, key);
+    return v->given ? v->e[0] : CT_EX_ZERO;
+}
+
+static bool needs(const struct work *w, const char *what, const char *why)
+{
+    return ct_error(w->r->ctx, w->self->mark, CT_E_KEY_MISSING, "body '%s' needs %s: %s",
+                    w->self->name, what, why);
+}
+
+static bool excludes(const struct work *w, const char *a, const char *b)
+{
+    if (!has(w, a) || !has(w, b))
+        return true;
+    const struct ct_mark p = get(w, a)->mark, q = get(w, b)->mark;
+    const bool first = p.line != q.line ? p.line > q.line : p.column > q.column;
+    return ct_error(w->r->ctx, first ? p : q, CT_E_CONFLICT,
+                    "body '%s': give '%s' or '%s', not both", w->self->name, a, b);
+}
+
+static bool check_above(const struct work *w, const char *key, double least, bool strict)
+{
+    const struct ct_value *v = get(w, key);
+    double number;
+    if (!v->given || v->is_wrong || !ct_read_number(w->r, v->e[0], &number) || number > least
+        || (!strict && number == least))
+        return true;
+    return ct_error(w->r->ctx, v->mark, CT_E_RANGE, "body '%s': '%s' is %g; it must be %s %g",
+                    w->self->name, key, number, strict ? "greater than" : "at least", least);
+}
+
+static bool check_density(const struct work *w)
+{
+    const struct ct_value *v = get(w, "density");
+    double number;
+    if (!v->given || v->is_wrong || !ct_read_number(w->r, v->e[0], &number) || number >= 0)
+        return true;
+    return ct_error(w->r->ctx, v->mark, CT_E_MASS,
+                    "body '%s': the density is negative (%g kg/m^3)", w->self->name, number);
+}
+
+static bool check_nu(const struct work *w)
+{
+    const struct ct_value *v = get(w, "nu");
+    double number;
+    if (!v->given || v->is_wrong || !ct_read_number(w->r, v->e[0], &number)
+        || (number > -1 && number <= 0.5))
+        return true;
+    return ct_error(w->r->ctx, v->mark, CT_E_RANGE,
+                    "body '%s': 'nu' is %g; it must lie between -1 and 0.5", w->self->name,
+                    number);
+}
+
+static bool check_scalars(const struct work *w)
+{
+    bool ok = check_above(w, "length", 0, true);
+    ok &= check_above(w, "E", 0, true);
+    ok &= check_above(w, "G", 0, true);
+    ok &= check_above(w, "shear_factor", 0, true);
+    ok &= check_nu(w);
+    return check_density(w) && ok;
+}
+
+// ---- which keys go together ---------------------------------------------------------------------------------
+
+static unsigned find_known(const struct work *w)
+{
+    const bool has_G = has(w, "G") || has(w, "nu");
+    const bool bends = get(w, "theory")->count == CT_BEAM_EULER_BERNOULLI || has_G;
+    const bool has_Iy = has(w, "Iy"), has_Iz = has(w, "Iz");
+    return (has(w, "area") ? CT_BEAM_AXIAL : 0u) | (bends && has_Iy ? CT_BEAM_BENDING_Y : 0u)
+         | (bends && has_Iz ? CT_BEAM_BENDING_Z : 0u)
+         | (has_G && (has(w, "J") || (has_Iy && has_Iz)) ? CT_BEAM_TORSION : 0u);
+}
+
+static bool check_mass_keys(const struct work *w)
+{
+    bool ok = excludes(w, "density", "mass_per_length");
+    if (!has(w, "density") && !has(w, "mass_per_length"))
+        ok = needs(w, "'density'", "the mass is density*area; or give 'mass_per_length'");
+    if (has(w, "density") && !has(w, "area"))
+        ok = needs(w, "'area'", "the mass is density*area");
+    else if (get(w, "rotary_inertia")->count == 1 && !has(w, "area"))
+        ok = needs(w, "'area'", "the density of 'rotary_inertia' is mass_per_length/area");
+    else if (get(w, "geometric_stiffness")->count == 1 && !has(w, "area"))
+        ok = needs(w, "'area'", "'geometric_stiffness: higher-order' contains I/area");
+    return ok;
+}
+
+static bool check_theory(const struct work *w)
+{
+    bool ok = excludes(w, "G", "nu");
+    if (get(w, "theory")->count != CT_BEAM_TIMOSHENKO)
+        return ok;
+    const char *why = "Timoshenko's theory has the shear stiffness shear_factor*G*area";
+    if (!has(w, "shear_factor"))
+        ok = needs(w, "'shear_factor'", why);
+    if (!has(w, "G") && !has(w, "nu"))
+        ok = needs(w, "'G' or 'nu'", why);
+    if (!has(w, "area") && !has(w, "density")) // else it has been asked for
+        ok = needs(w, "'area'", why);
+    return ok;
+}
+
+// What `deformation` lists must have a stiffness; a beam that may do anything must bend at least.
+static bool check_deformation(const struct work *w, unsigned known)
+{
+    static const struct {
+        unsigned bit;
+        const char *what, *why;
+    } wanted[] = {
+        {CT_BEAM_AXIAL, "'area'", "'deformation' lists axial"},
+        {CT_BEAM_BENDING_Y, "'Iy'", "'deformation' lists bending-y, in the x-z plane"},
+        {CT_BEAM_BENDING_Z, "'Iz'", "'deformation' lists bending-z, in the x-y plane"},
+        {CT_BEAM_TORSION, "'G' or 'nu', and 'J' or 'Iy' and 'Iz'",
+         "'deformation' lists torsion"},
+    };
+    const struct ct_value *v = get(w, "deformation");
+    const bool timoshenko = get(w, "theory")->count == CT_BEAM_TIMOSHENKO;
+    bool ok = true;
+    if (!v->given)
+        return has(w, "Iy") || has(w, "Iz")
+            || needs(w, "'Iz' or 'Iy'", "second moment of the section for bending");
+    for (size_t i = 0; i < COUNT(wanted); i++) {
+        const bool asked = // of a missing G a word has been said
+            timoshenko
+            && ((wanted[i].bit == CT_BEAM_BENDING_Y && has(w, "Iy"))
+                || (wanted[i].bit == CT_BEAM_BENDING_Z && has(w, "Iz")));
+        if ((unsigned)v->count & wanted[i].bit & ~known && !asked)
+            ok = needs(w, wanted[i].what, wanted[i].why);
+    }
+    return ok;
+}
+
+// ---- elements -----------------------------------------------------------------------------------------------
+
+static bool check_ends(const struct work *w, const struct ct_value *v, double length)
+{
+    const double rounding = 1e-12 * length; // as in 0.1 + 0.2
+    double last = 0, end;
+    bool ok = true;
+    for (size_t i = 0; i < v->n; i++) {
+        if (!ct_read_number(w->r, v->e[i], &end))
+            return true;
+        if (!(end > last))
+            ok = ct_error(w->r->ctx, v->at[i], CT_E_RANGE,
+                          "body '%s': element %zu ends at %g m, where it begins is %g m; the "
+                          "ends must increase from 0 to the length",
+                          w->self->name, i + 1, end, last);
+        else if (i + 1 == v->n && !(fabs(end - length) <= rounding))
+            ok = ct_error(w->r->ctx, v->at[i], CT_E_RANGE,
+                          "body '%s': the last element ends at %g m, the length is %g m",
+                          w->self->name, end, length);
+        last = end;
+    }
+    return ok;
+}
+
+static bool fill_elements(const struct work *w)
+{
+    struct ct_exs *x = w->r->m->x;
+    struct ct_beam *beam = w->beam;
+    const struct ct_value *v = get(w, "elements");
+    double length;
+    const bool ok
+        = !v->is_wrong
+       && (!v->n || !ct_read_number(w->r, beam->length, &length) || check_ends(w, v, length));
+    const int n = beam->nelement = v->given && ok ? (int)v->count : 1;
+    ct_ex *end = CT_NEWN(w->r->a, ct_ex, n);
+    for (int i = 0; i < n; i++)
+        end[i] = v->n && ok ? v->e[i] : ct_ex_scale(x, (i + 1.0) / n, beam->length);
+    end[n - 1] = beam->length; // without the rounding of the last one
+    beam->end = end;
+    return ok;
+}
+
+// ---- the section along the axis -------------------------------------------------------------------------------
+
+// Places inside an element at which the section is looked at: the ends themselves may be cusps or jumps.
+enum { NLOOK = 5 };
+
+// Value of a key's i-th expression must be positive (strict) or not negative all along the beam.
+static bool check_along(const struct work *w, const char *key, size_t i, bool strict)
+{
+    const struct ct_value *v = get(w, key);
+    struct ct_exs *x = w->r->m->x;
+    double point[NLOOK], weight[NLOOK];
+    if (!v->given || v->is_wrong || v->n <= i)
+        return true;
+    const bool varies = ct_ex_kinds(x, v->e[i]) & 1u << CT_SYM_LOCAL;
+    ct_gauss(NLOOK, point, weight);
+    double from = 0;
+    for (int k = 0; k < (varies ? w->beam->nelement : 1); k++) {
+        const double to = ct_model_number(w->r->m, w->beam->end[k]);
+        for (int p = 0; p < (varies ? NLOOK : 1); p++) {
+            const double at = w->value[w->x] = from + point[p] * (to - from);
+            const double value = ct_ex_value(x, v->e[i], w->value);
+            if (value > 0 || (!strict && value == 0))
+                continue;
+            const char *place
+                = varies ? ct_arena_printf(w->r->ctx->scratch, " at x = %g m", at) : "";
+            return ct_error(w->r->ctx, v->at[i], CT_E_RANGE,
+                            "body '%s': '%s' is %g%s; it must be %s 0", w->self->name, key,
+                            value, place, strict ? "greater than" : "at least");
+        }
+        from = to;
+    }
+    return true;
+}
+
+static bool check_section(const struct work *w)
+{
+    bool ok = check_along(w, "area", 0, true);
+    ok &= check_along(w, "Iy", 0, false);
+    ok &= check_along(w, "Iz", 0, false);
+    ok &= check_along(w, "J", 0, false);
+    ok &= check_along(w, "mass_per_length", 0, false);
+    for (size_t i = 0; i < 3; i++)
+        ok &= check_along(w, "rotary_inertia", i, false);
+    return ok;
+}
+
+// Exact where the mass per length is a polynomial; else by element, as jumps belong to ends of elements.
+static ct_ex integrate_mass(const struct work *w)
+{
+    enum { POINTS = 8 };
+    struct ct_exs *x = w->r->m->x;
+    const struct ct_beam *beam = w->beam;
+    const ct_ex m = beam->mass_per_length;
+    const int degree = ct_ex_degree(x, m, beam->x);
+    if (degree == 0)
+        return ct_ex_mul(x, m, beam->length);
+    if (degree > 0 && degree < 2 * CT_GAUSS_MOST)
+        return ct_ex_integral(x, m, beam->x, CT_EX_ZERO, beam->length, degree / 2 + 1);
+    ct_ex sum = CT_EX_ZERO, from = CT_EX_ZERO;
+    for (int i = 0; i < beam->nelement; i++) {
+        sum = ct_ex_add(x, sum, ct_ex_integral(x, m, beam->x, from, beam->end[i], POINTS));
+        from = beam->end[i];
+    }
+    return sum;
+}
+
+// ---- filling ----------------------------------------------------------------------------------------------------
+
+static void fill_material(const struct work *w)
+{
+    struct ct_exs *x = w->r->m->x;
+    struct ct_beam *beam = w->beam;
+    const bool has_area = has(w, "area");
+    beam->E = scalar(w, "E");
+    beam->G = scalar(w, "G");
+    if (has(w, "nu")) // E/(2 (1 + nu))
+        beam->G = ct_ex_div(x, beam->E,
+                            ct_ex_scale(x, 2, ct_ex_add(x, CT_EX_ONE, scalar(w, "nu"))));
+    beam->area = scalar(w, "area");
+    beam->Iy = scalar(w, "Iy");
+    beam->Iz = scalar(w, "Iz");
+    const ct_ex polar = ct_ex_add(x, beam->Iy, beam->Iz);
+    beam->J = has(w, "J") ? scalar(w, "J") : polar;
+    ct_ex density = scalar(w, "density");
+    beam->mass_per_length
+        = has(w, "density") ? ct_ex_mul(x, density, beam->area) : scalar(w, "mass_per_length");
+    if (!has(w, "density") && has_area)
+        density = ct_ex_div(x, beam->mass_per_length, beam->area);
+
+    const struct ct_value *rotary = get(w, "rotary_inertia");
+    const ct_ex of_section[] = {polar, beam->Iy, beam->Iz};
+    beam->has_rotary = rotary->count == 3 || (rotary->count == 1 && !beam->is_lumped);
+    for (int i = 0; i < 3; i++)
+        beam->rotary[i] = !beam->has_rotary  ? CT_EX_ZERO
+                        : rotary->count == 3 ? rotary->e[i]
+                                             : ct_ex_mul(x, density, of_section[i]);
+    beam->twist_inertia = beam->is_lumped ? CT_EX_ZERO : ct_ex_mul(x, density, polar);
+}
+
+static void fill_choices(const struct work *w)
+{
+    struct ct_beam *beam = w->beam;
+    beam->theory = (enum ct_beam_theory)get(w, "theory")->count;
+    beam->integration = (enum ct_beam_integration)get(w, "integration")->count;
+    beam->formulation = (enum ct_beam_formulation)get(w, "formulation")->count;
+    beam->formulation_mark = get(w, "formulation")->mark;
+    beam->is_lumped = get(w, "mass")->count == 1;
+    beam->higher_order = get(w, "geometric_stiffness")->count == 1;
+    beam->is_chord = get(w, "frame")->count == 1;
+    beam->starts_in_equilibrium = has(w, "initial");
+    const struct ct_value *deformation = get(w, "deformation");
+    beam->deformation_given = deformation->given;
+    beam->deformation = deformation->given ? (unsigned)deformation->count : CT_BEAM_ALL;
+    beam->deformation_mark = deformation->mark;
+    beam->modes = (int)get(w, "modes")->count;
+    beam->modes_mark = get(w, "modes")->mark;
+    beam->shear_factor = scalar(w, "shear_factor");
+    const struct ct_value *damping = get(w, "damping");
+    beam->damping_mass = damping->given ? damping->e[0] : CT_EX_ZERO;
+    beam->damping_stiffness = damping->given ? damping->e[1] : CT_EX_ZERO;
+}
+
+// Also when some values are wrong, as there may be more to say about the others.
+static bool fill(struct work *w, struct ct_body *b, bool values_ok)
+{
+    struct ct_exs *x = w->r->m->x;
+    struct ct_beam *beam = w->beam;
+    bool ok = check_scalars(w);
+    beam->known = find_known(w);
+    ok &= check_mass_keys(w);
+    ok &= check_theory(w);
+    ok &= check_deformation(w, beam->known);
+    double length;
+    beam->length = scalar(w, "length");
+    if (!ct_read_number(w->r, beam->length, &length) || !(length > 0))
+        return false;
+    ok &= fill_elements(w);
+    w->x = ct_ex_node(x, beam->x)->a;
+    w->value = CT_NEWN(w->r->ctx->scratch, double, x->nsym);
+    if (w->r->parameters_ok) {
+        memcpy(w->value, w->r->m->value, (1 + w->r->m->nparameter) * sizeof *w->value);
+        ok &= check_section(w);
+    }
+    if (!ok || !values_ok)
+        return false;
+    fill_choices(w);
+    fill_material(w);
+    b->mass = integrate_mass(w);
+    b->beam = beam;
+    return true;
+}
+
+bool ct_read_beam(struct ct_reader *r, struct ct_body *b, const struct ct_node *node)
+{
+    struct ct_instance *self = &b->instance;
+    struct ct_beam *beam = CT_NEW(r->a, struct ct_beam);
+    struct work w = {.r = r, .self = self, .beam = beam};
+    const size_t nknown = r->nknown;
+    r->beam_x = beam->x = ct_ex_sym(r->m->x, CT_SYM_LOCAL, "x", 0);
+    r->beam = self;
+    CT_PUSH(r->a, r->known, r->nknown, r->known_cap, "length");
+    CT_PUSH(r->a, r->known, r->nknown, r->known_cap, "x");
+    const bool keys = ct_read_component_keys(r, self, node, "body", false);
+    const bool values = ct_read_own_values(r, self, node);
+    const bool points = ct_read_points(r, b, node);
+    r->nknown = nknown;
+    r->beam = NULL;
+    return fill(&w, b, values) && keys && points;
+}

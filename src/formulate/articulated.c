@@ -1,0 +1,255 @@
+// See articulated.h.
+//
+// What hangs on a member, its joints free to move, acts on it like one body that has no single mass:
+//
+//     [ n ]   [ J   B ] [ al ]   [ n0 ]
+//     [ f ] = [ B'  M ] [ a  ] + [ f0 ]       at the member's origin, in its axes
+//
+// A freedom along s transmits its effort only: with P = I s, D = s . P this is solved for its u', and what is left
+// of I is I - P P'/D. Of a freedom along one coordinate axis the row of that axis vanishes, and its result is the
+// acceleration itself instead of the difference u'.
+//
+//     leaves -> ground   eliminate the freedoms, turn and shift to the parent
+//     ground -> leaves   a'' = what the parent hands on;  u' = (effort - s . f0 - P . a'')/D
+#include "formulate/articulated.h"
+
+enum { N = 6 }; // al, a or n, f
+
+static const ct_ex3 zero3 = {{{0}, {0}, {0}}};
+
+struct body {
+    ct_ex33 J, B, M;
+    ct_ex3 n, f;
+    // of each freedom, in the order of elimination
+    ct_ex G[CT_MAX_COORD][N]; // P/D
+    ct_ex u0[CT_MAX_COORD];   // (effort - s . f0)/D
+    ct_ex3 al, a;             // accelerations
+};
+
+struct sweep {
+    struct ct_build *b;
+    const struct ct_members *s;
+    const ct_ex *effort;
+    ct_ex *pivot;
+    struct body *body;
+};
+
+// ---- entries of the matrix ------------------------------------------------------------------------------
+
+static ct_ex entry(const struct body *k, int i, int j)
+{
+    if (i < 3)
+        return j < 3 ? k->J.e[i + 3 * j] : k->B.e[i + 3 * (j - 3)];
+    return j < 3 ? k->B.e[j + 3 * (i - 3)] : k->M.e[i - 3 + 3 * (j - 3)];
+}
+
+static void set_entry(struct body *k, int i, int j, ct_ex v)
+{
+    if (i < 3 && j < 3)
+        k->J.e[i + 3 * j] = k->J.e[j + 3 * i] = v;
+    else if (i >= 3 && j >= 3)
+        k->M.e[i - 3 + 3 * (j - 3)] = k->M.e[j - 3 + 3 * (i - 3)] = v;
+    else
+        k->B.e[(i < 3 ? i : j) + 3 * ((i < 3 ? j : i) - 3)] = v;
+}
+
+static ct_ex *force(struct body *k, int i)
+{
+    return i < 3 ? &k->n.e[i] : &k->f.e[i - 3];
+}
+
+static ct_ex direction(const struct ct_screw *s, int i)
+{
+    return i < 3 ? s->turn.e[i] : s->slide.e[i - 3];
+}
+
+// ---- leaves to ground -----------------------------------------------------------------------------------
+
+// The member's own inertia: n = J al + h x a, f = m a - h x al, and what its velocity and loads need.
+static void add_own(struct sweep *w, int i)
+{
+    struct ct_exs *x = w->b->x;
+    const struct ct_member *m = &w->s->member[i];
+    struct body *k = &w->body[i];
+    const ct_ex3 *h = &m->moment;
+    for (int r = 0; r < 3; r++) {
+        const int p = (r + 1) % 3, q = (r + 2) % 3;
+        for (int c = 0; c <= r; c++)
+            set_entry(k, r, c, ct_ex_add(x, entry(k, r, c), m->J.e[r + 3 * c]));
+        if (!w->b->is_planar || r < 2)
+            set_entry(k, 3 + r, 3 + r, ct_ex_add(x, entry(k, 3 + r, 3 + r), m->mass));
+        if (!w->b->is_planar || r == 2) { // (h x a)_r = h_p a_q - h_q a_p
+            set_entry(k, r, 3 + q, ct_ex_add(x, entry(k, r, 3 + q), h->e[p]));
+            set_entry(k, r, 3 + p, ct_ex_sub(x, entry(k, r, 3 + p), h->e[q]));
+        }
+    }
+    const ct_ex3 spin = ct_member_gyroscopic(w->b, m), pull = ct_ex33_apply(x, &m->U, *h);
+    k->n = ct_ex3_add(x, k->n, ct_ex3_sub(x, spin, m->torque));
+    k->f = ct_ex3_add(x, k->f, ct_ex3_sub(x, pull, m->force));
+}
+
+// P = I s and D = s . P; axis: the one s points along, or -1.
+static ct_ex project(struct sweep *w, const struct body *k, const struct ct_screw *s,
+                     ct_ex P[N])
+{
+    struct ct_exs *x = w->b->x;
+    ct_ex D = CT_EX_ZERO;
+    for (int i = 0; i < N; i++) {
+        P[i] = CT_EX_ZERO;
+        for (int j = 0; j < N; j++)
+            P[i] = ct_ex_add(x, P[i], ct_ex_mul(x, entry(k, i, j), direction(s, j)));
+    }
+    for (int i = 0; i < N; i++)
+        D = ct_ex_add(x, D, ct_ex_mul(x, P[i], direction(s, i)));
+    return D;
+}
+
+static void eliminate(struct sweep *w, struct body *k, int i, const struct ct_screw *s)
+{
+    struct ct_exs *x = w->b->x;
+    ct_ex P[N], *G = k->G[i], rest = w->effort[s->speed];
+    const ct_ex D = w->pivot[s->speed] = project(w, k, s, P), g = ct_ex_div(x, CT_EX_ONE, D);
+    for (int r = 0; r < N; r++) {
+        G[r] = r == s->axis ? CT_EX_ONE : ct_ex_mul(x, P[r], g);
+        rest = ct_ex_sub(x, rest, ct_ex_mul(x, direction(s, r), *force(k, r)));
+    }
+    k->u0[i] = ct_ex_mul(x, rest, g);
+    for (int r = 0; r < N; r++) {
+        const bool own = r == s->axis;
+        for (int c = 0; c <= r; c++)
+            set_entry(k, r, c,
+                      own || c == s->axis
+                          ? CT_EX_ZERO
+                          : ct_ex_sub(x, entry(k, r, c), ct_ex_mul(x, G[r], P[c])));
+        *force(k, r) = own ? ct_ex_mul(x, w->effort[s->speed], direction(s, r))
+                           : ct_ex_add(x, *force(k, r), ct_ex_mul(x, P[r], k->u0[i]));
+    }
+}
+
+static void add_tensor(struct ct_exs *x, ct_ex33 *sum, const ct_ex33 *A)
+{
+    for (int i = 0; i < 9; i++)
+        sum->e[i] = ct_ex_add(x, sum->e[i], A->e[i]);
+}
+
+// f and n that accelerations known beforehand take: n += J al + B a, f += B' al + M a.
+static void add_bias(struct ct_exs *x, struct body *k, ct_ex3 al, ct_ex3 a)
+{
+    k->n = ct_ex3_add(x, k->n,
+                      ct_ex3_add(x, ct_ex33_apply(x, &k->J, al), ct_ex33_apply(x, &k->B, a)));
+    k->f = ct_ex3_add(x, k->f,
+                      ct_ex3_add(x, ct_ex33_apply_t(x, &k->B, al), ct_ex33_apply(x, &k->M, a)));
+}
+
+static void turn(struct sweep *w, const struct ct_member *m, struct body *k)
+{
+    ct_member_turn_tensor(w->b, m, &k->J);
+    ct_member_turn_tensor(w->b, m, &k->B);
+    ct_member_turn_tensor(w->b, m, &k->M);
+    k->n = ct_member_out(w->b, m, k->n);
+    k->f = ct_member_out(w->b, m, k->f);
+}
+
+// To an origin from which the present one is at r:  C = B + r~ M,  J + r~ B' + (r~ C')',  n + r x f.
+static void shift(struct sweep *w, struct body *k, ct_ex3 r)
+{
+    struct ct_exs *x = w->b->x;
+    ct_ex33 C = k->B;
+    k->n = ct_ex3_add(x, k->n, ct_ex3_cross(x, r, k->f));
+    for (int c = 0; c < 3; c++) {
+        const ct_ex3 column = {{k->M.e[3 * c], k->M.e[3 * c + 1], k->M.e[3 * c + 2]}},
+                     moved = ct_ex3_cross(x, r, column);
+        for (int i = 0; i < 3; i++)
+            C.e[i + 3 * c] = ct_ex_add(x, C.e[i + 3 * c], moved.e[i]);
+    }
+    for (int j = 0; j < 3; j++) {
+        const ct_ex3 row = {{k->B.e[j], k->B.e[j + 3], k->B.e[j + 6]}},
+                     new_row = {{C.e[j], C.e[j + 3], C.e[j + 6]}};
+        const ct_ex3 of_row = ct_ex3_cross(x, r, row), of_new = ct_ex3_cross(x, r, new_row);
+        // entry (i, j) gets (r~ B')_ij and (r~ C')_ji: both columns j, into the lower triangle
+        for (int i = 0; i < 3; i++) {
+            if (i >= j)
+                k->J.e[i + 3 * j] = ct_ex_add(x, k->J.e[i + 3 * j], of_row.e[i]);
+            if (i <= j)
+                k->J.e[j + 3 * i] = ct_ex_add(x, k->J.e[j + 3 * i], of_new.e[i]);
+        }
+    }
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < i; j++)
+            k->J.e[j + 3 * i] = k->J.e[i + 3 * j];
+    k->B = C;
+}
+
+static void hand_inwards(struct sweep *w, int i)
+{
+    struct ct_exs *x = w->b->x;
+    const struct ct_member *m = &w->s->member[i];
+    struct body k = w->body[i], *p = &w->body[m->parent];
+    add_bias(x, &k, m->al_relative, zero3);
+    if (m->is_absolute) { // torques go to ground
+        k.n = zero3;
+        k.J = k.B = (ct_ex33){{{0}}};
+    }
+    turn(w, m, &k);
+    add_bias(x, &k, zero3, ct_member_shift_bias(w->b, w->s, i));
+    shift(w, &k, m->r);
+    add_tensor(x, &p->J, &k.J);
+    add_tensor(x, &p->B, &k.B);
+    add_tensor(x, &p->M, &k.M);
+    p->n = ct_ex3_add(x, p->n, k.n);
+    p->f = ct_ex3_add(x, p->f, k.f);
+}
+
+// ---- ground to leaves -----------------------------------------------------------------------------------
+
+static void accelerate(struct sweep *w, int i, ct_ex *out)
+{
+    struct ct_exs *x = w->b->x;
+    const struct ct_member *m = &w->s->member[i];
+    struct body *k = &w->body[i];
+    const struct body *p = &w->body[m->parent];
+    const ct_ex3 shifted
+        = ct_ex3_add(x, ct_ex3_cross(x, p->al, m->r), ct_member_shift_bias(w->b, w->s, i));
+    k->al = m->is_absolute ? m->al_relative
+                           : ct_ex3_add(x, ct_member_in(w->b, m, p->al), m->al_relative);
+    k->a = ct_member_in(w->b, m, ct_ex3_add(x, p->a, shifted));
+    for (int j = m->nfree; j-- > 0;) {
+        const struct ct_screw *s = &m->screw[j];
+        ct_ex v[N], u = k->u0[j];
+        for (int r = 0; r < N; r++) {
+            v[r] = r < 3 ? k->al.e[r] : k->a.e[r - 3];
+            if (r != s->axis)
+                u = ct_ex_sub(x, u, ct_ex_mul(x, k->G[j][r], v[r]));
+        }
+        if (s->axis >= 0) {
+            ct_ex *now = s->axis < 3 ? &k->al.e[s->axis] : &k->a.e[s->axis - 3];
+            const ct_ex along = direction(s, s->axis); // 1 or -1
+            *now = ct_ex_mul(x, along, u);
+            out[s->speed] = ct_ex_mul(x, along, ct_ex_sub(x, *now, v[s->axis]));
+            continue;
+        }
+        out[s->speed] = u;
+        k->al = ct_ex3_add(x, k->al, ct_ex3_scale(x, u, s->turn));
+        k->a = ct_ex3_add(x, k->a, ct_ex3_scale(x, u, s->slide));
+    }
+}
+
+ct_ex *ct_articulated_solve(struct ct_build *b, const struct ct_members *s, const ct_ex *effort,
+                            ct_ex *pivot)
+{
+    struct sweep w = {.b = b, .s = s, .effort = effort, .pivot = pivot};
+    ct_ex *out = CT_NEWN(b->arena, ct_ex, b->eqs->nu + 1);
+    w.body = CT_NEWN(b->arena, struct body, s->n);
+    for (size_t i = s->n; i-- > 1;) {
+        const struct ct_member *m = &s->member[i];
+        add_own(&w, (int)i);
+        for (int k = 0; k < m->nfree; k++)
+            eliminate(&w, &w.body[i], k, &m->screw[k]);
+        if (m->parent)
+            hand_inwards(&w, (int)i);
+    }
+    w.body[0].a = ct_members_fall(b);
+    for (size_t i = 1; i < s->n; i++)
+        accelerate(&w, (int)i, out);
+    return out;
+}

@@ -1,0 +1,170 @@
+// See composite.h.
+//
+//     Q   ground -> leaves   w, al, a at u' = 0;   f = m a + A h,  n = J al + w x J w + h x a,  A = U + al~
+//         leaves -> ground   f, n less loads, turned and shifted;   Q_k = effort - s_k . (n, f)
+//     M   leaves -> ground   mass, first moment, inertia of everything outboard as if it were one body
+//         column of s_k      (n, f) = I s_k, handed inwards;        M_kl = s_l . (n, f)
+#include "formulate/composite.h"
+
+static const ct_ex3 zero3 = {{{0}, {0}, {0}}};
+
+struct wrench {
+    ct_ex3 n, f;
+};
+
+static struct wrench hand_inwards(struct ct_build *b, const struct ct_member *m,
+                                  struct wrench w)
+{
+    struct ct_exs *x = b->x;
+    w.n = m->is_absolute ? zero3 : ct_member_out(b, m, w.n);
+    w.f = ct_member_out(b, m, w.f);
+    w.n = ct_ex3_add(x, w.n, ct_ex3_cross(x, m->r, w.f));
+    return w;
+}
+
+static ct_ex power(struct ct_build *b, const struct ct_screw *s, const struct wrench *w)
+{
+    return ct_ex_add(b->x, ct_ex3_dot(b->x, s->turn, w->n), ct_ex3_dot(b->x, s->slide, w->f));
+}
+
+// ---- forces ---------------------------------------------------------------------------------------------
+
+static void accelerate(struct ct_build *b, const struct ct_members *s, int i, ct_ex3 *al,
+                       ct_ex3 *a)
+{
+    struct ct_exs *x = b->x;
+    const struct ct_member *m = &s->member[i];
+    const ct_ex3 turning = ct_ex3_cross(x, al[m->parent], m->r),
+                 shift = ct_ex3_add(x, turning, ct_member_shift_bias(b, s, i));
+    al[i] = m->is_absolute ? m->al_relative
+                           : ct_ex3_add(x, ct_member_in(b, m, al[m->parent]), m->al_relative);
+    a[i] = ct_member_in(b, m, ct_ex3_add(x, a[m->parent], shift));
+}
+
+static struct wrench need(struct ct_build *b, const struct ct_member *m, ct_ex3 al, ct_ex3 a)
+{
+    struct ct_exs *x = b->x;
+    struct wrench w;
+    const ct_ex3 pull
+        = ct_ex3_add(x, ct_ex33_apply(x, &m->U, m->moment), ct_ex3_cross(x, al, m->moment));
+    w.f = ct_ex3_sub(x, ct_ex3_add(x, ct_ex3_scale(x, m->mass, a), pull), m->force);
+    w.n = ct_ex3_add(x, ct_ex33_apply(x, &m->J, al), ct_member_gyroscopic(b, m));
+    w.n = ct_ex3_sub(x, ct_ex3_add(x, w.n, ct_ex3_cross(x, m->moment, a)), m->torque);
+    return w;
+}
+
+static void find_forces(struct ct_build *b, const struct ct_members *s, const ct_ex *effort,
+                        ct_ex *Q)
+{
+    struct ct_exs *x = b->x;
+    ct_ex3 *al = CT_NEWN(b->arena, ct_ex3, s->n), *a = CT_NEWN(b->arena, ct_ex3, s->n);
+    struct wrench *w = CT_NEWN(b->arena, struct wrench, s->n);
+    a[0] = ct_members_fall(b);
+    for (size_t i = 1; i < s->n; i++)
+        accelerate(b, s, (int)i, al, a);
+    for (size_t i = s->n; i-- > 1;) {
+        const struct ct_member *m = &s->member[i];
+        const struct wrench own = need(b, m, al[i], a[i]);
+        w[i].n = ct_ex3_add(x, w[i].n, own.n);
+        w[i].f = ct_ex3_add(x, w[i].f, own.f);
+        for (int k = 0; k < m->nfree; k++) {
+            const struct ct_screw *f = &m->screw[k];
+            Q[f->speed] = ct_ex_sub(x, effort[f->speed], power(b, f, &w[i]));
+        }
+        if (!m->parent)
+            continue;
+        const struct wrench up = hand_inwards(b, m, w[i]);
+        w[m->parent].n = ct_ex3_add(x, w[m->parent].n, up.n);
+        w[m->parent].f = ct_ex3_add(x, w[m->parent].f, up.f);
+    }
+}
+
+// ---- mass matrix ----------------------------------------------------------------------------------------
+
+struct composite {
+    ct_ex mass;
+    ct_ex3 h;
+    ct_ex33 J;
+};
+
+static void add(struct ct_build *b, struct composite *sum, ct_ex mass, ct_ex3 h,
+                const ct_ex33 *J)
+{
+    sum->mass = ct_ex_add(b->x, sum->mass, mass);
+    sum->h = ct_ex3_add(b->x, sum->h, h);
+    for (int i = 0; i < 9; i++)
+        sum->J.e[i] = ct_ex_add(b->x, sum->J.e[i], J->e[i]);
+}
+
+// J += 2 (r.h) 1 - r h' - h r', with h the mean of the first moments about both origins.
+static void shift_inertia(struct ct_build *b, ct_ex33 *J, ct_ex3 r, ct_ex3 h)
+{
+    struct ct_exs *x = b->x;
+    const ct_ex along[3] = {ct_ex_mul(x, r.e[0], h.e[0]), ct_ex_mul(x, r.e[1], h.e[1]),
+                            ct_ex_mul(x, r.e[2], h.e[2])};
+    for (int i = 0; i < 3; i++) {
+        const int j = (i + 1) % 3, k = (i + 2) % 3;
+        const ct_ex other = ct_ex_scale(x, 2, ct_ex_add(x, along[j], along[k]));
+        const ct_ex cross
+            = ct_ex_add(x, ct_ex_mul(x, r.e[i], h.e[j]), ct_ex_mul(x, h.e[i], r.e[j]));
+        J->e[i + 3 * i] = ct_ex_add(x, J->e[i + 3 * i], other);
+        J->e[i + 3 * j] = J->e[j + 3 * i] = ct_ex_sub(x, J->e[i + 3 * j], cross);
+    }
+}
+
+// What a member and everything outboard of it hand to the parent.
+static void gather(struct ct_build *b, const struct ct_member *m, const struct composite *own,
+                   struct composite *parent)
+{
+    struct ct_exs *x = b->x;
+    ct_ex33 J = {{{0}}};
+    ct_ex3 h = zero3;
+    const ct_ex3 carried = ct_ex3_scale(x, own->mass, m->r),
+                 half = ct_ex3_scale(x, ct_ex_const(x, 0.5), carried);
+    if (!m->is_absolute) { // else it does not turn with the parent: a mass at its origin
+        J = own->J;
+        h = ct_member_out(b, m, own->h);
+        ct_member_turn_tensor(b, m, &J);
+    }
+    shift_inertia(b, &J, m->r, ct_ex3_add(x, h, half));
+    add(b, parent, own->mass, ct_ex3_add(x, h, carried), &J);
+}
+
+static void column(struct ct_build *b, const struct ct_members *s, const struct composite *own,
+                   int i, const struct ct_screw *f, ct_ex *M)
+{
+    struct ct_exs *x = b->x;
+    const size_t n = b->eqs->nu;
+    struct wrench w;
+    w.n = ct_ex3_add(x, ct_ex33_apply(x, &own->J, f->turn), ct_ex3_cross(x, own->h, f->slide));
+    w.f = ct_ex3_add(x, ct_ex3_scale(x, own->mass, f->slide), ct_ex3_cross(x, f->turn, own->h));
+    for (; i; i = s->member[i].parent) {
+        const struct ct_member *m = &s->member[i];
+        for (int k = 0; k < m->nfree; k++) {
+            const size_t r = (size_t)f->speed, c = (size_t)m->screw[k].speed;
+            M[r > c ? r + n * c : c + n * r] = power(b, &m->screw[k], &w);
+        }
+        w = hand_inwards(b, m, w);
+    }
+}
+
+static void find_masses(struct ct_build *b, const struct ct_members *s, ct_ex *M)
+{
+    struct composite *body = CT_NEWN(b->arena, struct composite, s->n);
+    for (size_t i = s->n; i-- > 1;) {
+        const struct ct_member *m = &s->member[i];
+        add(b, &body[i], m->mass, m->moment, &m->J);
+        if (m->parent)
+            gather(b, m, &body[i], &body[m->parent]);
+    }
+    for (size_t i = 1; i < s->n; i++)
+        for (int k = 0; k < s->member[i].nfree; k++)
+            column(b, s, &body[i], (int)i, &s->member[i].screw[k], M);
+}
+
+void ct_composite_derive(struct ct_build *b, const struct ct_members *s, const ct_ex *effort,
+                         ct_ex *M, ct_ex *Q)
+{
+    find_masses(b, s, M);
+    find_forces(b, s, effort, Q);
+}

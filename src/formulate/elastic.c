@@ -1,0 +1,296 @@
+// Dynamics of flexible bodies; see flexible.h. How integrals over a beam are taken is in elastic_points.c and
+// elastic_exact.c, its stiffness in elastic_stiffness.c.
+//
+// Everything is written in the beam's axes; the base's motion is turned into them once.
+#include "formulate/elastic.h"
+
+static const ct_ex3 zero3 = {{{0}, {0}, {0}}};
+
+// ---- the base -----------------------------------------------------------------------------------------
+
+// Ground components <-> axes of the beam.
+static ct_ex3 into(struct ct_build *b, const struct ct_flexible *f, ct_ex3 v)
+{
+    return ct_node_unturn(b, f->base, v);
+}
+
+static ct_ex3 out_of(struct ct_build *b, const struct ct_flexible *f, ct_ex3 v)
+{
+    return ct_node_turn(b, f->base, v);
+}
+
+// Angular rates summed in the cluster's own axes, where the axes of its turns are fixed in it and it turns
+// against ground; in a plane they stay along the normal.
+static bool plain_rates(struct ct_build *b, const struct ct_place *p, enum ct_level level,
+                        struct ct_base *out)
+{
+    struct ct_exs *x = b->x;
+    const struct ct_cluster *c = &b->cluster[p->frame];
+    ct_ex3 w = zero3, al = zero3;
+    if (b->is_planar) {
+        out->w = ct_ex33_apply_t(x, &p->S, ct_cluster_velocity(b, p->frame));
+        out->al = ct_ex33_apply_t(x, &p->S, ct_cluster_acceleration(b, p->frame, level));
+        return true;
+    }
+    if (p->frame && c->parent)
+        return false;
+    for (int i = 0; i < c->nspin; i++) {
+        const struct ct_spin *s = &b->spin[c->first_spin + i];
+        ct_ex rate = s->bias;
+        if (ct_ex3_is_zero(s->local))
+            return false;
+        for (int k = 0; level == CT_FULL && k < s->nterm; k++)
+            if (s->term[k].speed >= 0)
+                rate = ct_ex_add(
+                    x, rate,
+                    ct_ex_mul(x, s->term[k].coef, b->eqs->u[s->term[k].speed].derivative));
+        w = ct_ex3_add(x, w, ct_ex3_scale(x, s->rate, s->local));
+        al = ct_ex3_add(x, al, ct_ex3_scale(x, rate, s->local));
+    }
+    out->w = ct_ex33_apply_t(x, &p->S, w);
+    out->al = ct_ex33_apply_t(x, &p->S, al);
+    return true;
+}
+
+static struct ct_base base_motion(struct ct_build *b, const struct ct_flexible *f,
+                                  enum ct_level level, ct_ex3 apparent)
+{
+    const struct ct_place *p = &b->place[f->base];
+    struct ct_base m = {.a = into(b, f, apparent)};
+    if (!plain_rates(b, p, level, &m)) {
+        m.w = into(b, f, ct_cluster_velocity(b, p->frame));
+        m.al = into(b, f, ct_cluster_acceleration(b, p->frame, level));
+    }
+    return m;
+}
+
+// al~ + w~ w~
+ct_ex33 ct_base_turning(struct ct_build *b, const struct ct_base *m)
+{
+    struct ct_exs *x = b->x;
+    ct_ex33 Om;
+    ct_ex square[3];
+    for (int i = 0; i < 3; i++)
+        square[i] = ct_ex_mul(x, m->w.e[i], m->w.e[i]);
+    for (int i = 0; i < 3; i++) {
+        const int j = (i + 1) % 3, k = (i + 2) % 3;
+        const ct_ex both = ct_ex_mul(x, m->w.e[i], m->w.e[j]);
+        Om.e[4 * i] = ct_ex_neg(x, ct_ex_add(x, square[j], square[k]));
+        Om.e[i + 3 * j] = ct_ex_sub(x, both, m->al.e[k]);
+        Om.e[j + 3 * i] = ct_ex_add(x, both, m->al.e[k]);
+    }
+    return Om;
+}
+
+ct_ex3 ct_twice_cross(struct ct_build *b, ct_ex3 w, ct_ex3 v)
+{
+    return ct_ex3_scale(b->x, ct_ex_const(b->x, 2), ct_ex3_cross(b->x, w, v));
+}
+
+// ---- lumping ---------------------------------------------------------------------------------------------
+
+void ct_flexible_lump(struct ct_build *b)
+{
+    for (size_t i = 0; i < b->nflexible; i++) {
+        struct ct_flexible *f = &b->flexible[i];
+        const struct ct_place *p = &b->place[f->base];
+        f->inertia = CT_NEW(b->arena, struct ct_inertia);
+        f->inertia->mass = b->model->body[f->body].mass;
+        f->inertia->form = f->axial == CT_AXIAL_LINEAR ? &ct_inertia_exact : &ct_inertia_points;
+        f->inertia->form->derive(b, f);
+        const struct ct_inertia *I = f->inertia;
+        const ct_ex33 t = ct_ex33_transpose(&p->S), half = ct_ex33_mul(b->x, &I->inertia, &t);
+        const ct_ex33 turned = ct_ex33_mul(b->x, &p->S, &half);
+        ct_masses_add(b, p->anchor, p->frame, I->mass, ct_ex33_apply(b->x, &p->S, I->moment),
+                      &turned);
+    }
+}
+
+// ---- handing over to elastic coordinates ----------------------------------------------------------
+
+// Generalised force on a dof, handed to the elastic coordinates it stands for.
+void ct_dof_push(struct ct_build *b, const struct ct_flexible *f, int e, int j, ct_ex value,
+                 ct_ex *row)
+{
+    int sign;
+    const struct ct_freedom *d = ct_dof_freedom(f, e, j, &sign);
+    for (int p = 0; d && p < d->npart; p++) {
+        const ct_ex v = ct_ex_mul(b->x, d->part[p].coef, value);
+        ct_ex *r = &row[f->elastic[d->part[p].k].u];
+        *r = sign > 0 ? ct_ex_add(b->x, *r, v) : ct_ex_sub(b->x, *r, v);
+    }
+}
+
+void ct_dof_push_pair(struct ct_build *b, const struct ct_flexible *f, int e, int j, int g,
+                      int k, ct_ex value, ct_ex *M)
+{
+    int sj, sk;
+    const struct ct_freedom *p = ct_dof_freedom(f, e, j, &sj),
+                            *q = ct_dof_freedom(f, g, k, &sk);
+    if (!p || !q || ct_ex_is_zero(value))
+        return;
+    for (int i = 0; i < p->npart; i++)
+        for (int l = 0; l < q->npart; l++) {
+            const int row = f->elastic[p->part[i].k].u, column = f->elastic[q->part[l].k].u;
+            const ct_ex c = ct_ex_mul(b->x, p->part[i].coef, q->part[l].coef);
+            ct_ex v = ct_ex_mul(b->x, c, value);
+            if (row < column)
+                continue; // the transposed pair is pushed, too
+            v = sj == sk ? v : ct_ex_neg(b->x, v);
+            ct_ex *m = &M[(size_t)row + b->eqs->nu * (size_t)column];
+            *m = ct_ex_add(b->x, *m, v);
+        }
+}
+
+void ct_dof_push_column(struct ct_build *b, const struct ct_flexible *f, int e, int j,
+                        ct_ex3 moved, ct_ex3 swept, struct ct_columns *out)
+{
+    int sign;
+    const struct ct_freedom *d = ct_dof_freedom(f, e, j, &sign);
+    for (int i = 0; d && i < d->npart; i++) {
+        const int k = d->part[i].k;
+        const ct_ex c = sign > 0 ? d->part[i].coef : ct_ex_neg(b->x, d->part[i].coef);
+        out->moved[k] = ct_ex3_add(b->x, out->moved[k], ct_ex3_scale(b->x, c, moved));
+        out->swept[k] = ct_ex3_add(b->x, out->swept[k], ct_ex3_scale(b->x, c, swept));
+    }
+}
+
+// ---- sweep --------------------------------------------------------------------------------------------------
+
+void ct_flexible_sweep(struct ct_build *b, enum ct_level level, const ct_ex3 *apparent,
+                       ct_ex3 *rest, ct_ex3 *torque, ct_ex *row)
+{
+    struct ct_exs *x = b->x;
+    for (size_t i = 0; i < b->nflexible; i++) {
+        const struct ct_flexible *f = &b->flexible[i];
+        const struct ct_place *p = &b->place[f->base];
+        const struct ct_base m = base_motion(b, f, level, apparent[p->anchor]);
+        ct_ex3 F, T;
+        f->inertia->form->wrench(b, f, &m, level, &F, &T);
+        rest[p->anchor] = ct_ex3_add(x, rest[p->anchor], out_of(b, f, F));
+        torque[p->frame] = ct_ex3_add(x, torque[p->frame], out_of(b, f, T));
+        f->inertia->form->rows(b, f, &m, level, row);
+        ct_stiffness_rows(b, f, row);
+    }
+}
+
+void ct_flexible_wrench(struct ct_build *b, const struct ct_flexible *f, ct_ex3 *force,
+                        ct_ex3 *torque)
+{
+    struct ct_exs *x = b->x;
+    const struct ct_inertia *I = f->inertia;
+    const ct_ex3 a
+        = ct_ex3_sub(x, ct_node_acceleration(b, f->base, CT_FULL), b->model->gravity);
+    const struct ct_base m = base_motion(b, f, CT_FULL, a);
+    ct_ex3 F, T;
+    f->inertia->form->wrench(b, f, &m, CT_FULL, &F, &T);
+    F = ct_ex3_add(x, F, ct_ex3_scale(x, I->mass, m.a));
+    F = ct_ex3_add(x, F, ct_ex3_cross(x, m.al, I->moment));
+    F = ct_ex3_add(x, F, ct_ex3_cross(x, m.w, ct_ex3_cross(x, m.w, I->moment)));
+    T = ct_ex3_add(x, T, ct_ex3_cross(x, I->moment, m.a));
+    T = ct_ex3_add(x, T, ct_ex33_apply(x, &I->inertia, m.al));
+    T = ct_ex3_add(x, T, ct_ex3_cross(x, m.w, ct_ex33_apply(x, &I->inertia, m.w)));
+    *force = out_of(b, f, F);
+    *torque = out_of(b, f, T);
+}
+
+// ---- motion --------------------------------------------------------------------------------------------------
+
+struct ct_flexible_state ct_flexible_moving(struct ct_build *b, const struct ct_flexible *f)
+{
+    struct ct_exs *x = b->x;
+    const struct ct_inertia *I = f->inertia;
+    const struct ct_base m = base_motion(b, f, CT_BIAS, zero3);
+    const ct_ex3 v = into(b, f, ct_node_velocity(b, f->base));
+    struct ct_relative r = {zero3, zero3, CT_EX_ZERO};
+    I->form->moving(b, f, &r);
+    const ct_ex3 momentum = ct_ex3_add(x, ct_ex3_cross(x, m.w, I->moment), r.momentum);
+    const ct_ex3 Iw = ct_ex33_apply(x, &I->inertia, m.w);
+    ct_ex twice = ct_ex_add(x, r.twice_kinetic, ct_ex_mul(x, I->mass, ct_ex3_dot(x, v, v)));
+    twice = ct_ex_add(x, twice, ct_ex_scale(x, 2, ct_ex3_dot(x, v, momentum)));
+    twice = ct_ex_add(x, twice, ct_ex3_dot(x, m.w, Iw));
+    twice = ct_ex_add(x, twice, ct_ex_scale(x, 2, ct_ex3_dot(x, m.w, r.spin)));
+    const ct_ex3 spin = ct_ex3_add(x, ct_ex3_add(x, r.spin, Iw), ct_ex3_cross(x, I->moment, v));
+    const ct_ex3 whole = ct_ex3_add(x, momentum, ct_ex3_scale(x, I->mass, v));
+    return (struct ct_flexible_state){.mass = I->mass,
+                                      .moment = out_of(b, f, I->moment),
+                                      .momentum = out_of(b, f, whole),
+                                      .spin = out_of(b, f, spin),
+                                      .twice_kinetic = twice};
+}
+
+// ---- mass matrix ------------------------------------------------------------------------------------------------
+
+// Rows of the elastic coordinates in the column of a speed that moves the base: coef (p . moved + s . swept).
+static void base_column(struct ct_build *b, const struct ct_flexible *f,
+                        const struct ct_columns *c, ct_ex3 p, ct_ex3 s,
+                        const struct ct_term *term, int nterm, ct_ex *M)
+{
+    for (int k = 0; k < f->nelastic; k++) {
+        const ct_ex m = ct_ex_add(b->x, ct_ex3_dot(b->x, p, c->moved[k]),
+                                  ct_ex3_dot(b->x, s, c->swept[k]));
+        if (ct_ex_is_zero(m))
+            continue;
+        const struct ct_term own = {f->elastic[k].u, -1, CT_EX_ONE};
+        ct_mass_spread(b, M, &own, 1, term, nterm, m);
+    }
+}
+
+static bool has_unknown(const struct ct_term *p, int np)
+{
+    for (int i = 0; i < np; i++)
+        if (p[i].speed >= 0)
+            return true;
+    return false;
+}
+
+static void base_columns(struct ct_build *b, const struct ct_flexible *f,
+                         const struct ct_columns *c, ct_ex *M)
+{
+    struct ct_exs *x = b->x;
+    const struct ct_place *at = &b->place[f->base];
+    for (size_t r = 0; r < b->nspin; r++) {
+        const struct ct_spin *spin = &b->spin[r];
+        ct_ex3 reach = zero3, s = zero3;
+        if (!has_unknown(spin->term, spin->nterm))
+            continue;
+        for (int a = at->anchor; a > 0; a = b->anchor[a].parent)
+            if (ct_cluster_is_outboard(b, spin->cluster, b->anchor[a].cluster))
+                reach = ct_ex3_add(x, reach, ct_link_vector(b, a));
+        const ct_ex3 p
+            = ct_ex3_is_zero(reach)
+                ? zero3
+                : into(b, f, ct_ex3_cross(x, spin->axis, ct_build_in_plane(b, reach)));
+        if (ct_cluster_is_outboard(b, spin->cluster, at->frame)) {
+            if (spin->cluster == at->frame && !ct_ex3_is_zero(spin->local))
+                s = ct_ex33_apply_t(x, &at->S, spin->local);
+            else if (b->is_planar)
+                s = ct_ex33_apply_t(x, &at->S, spin->axis);
+            else
+                s = into(b, f, spin->axis);
+        }
+        base_column(b, f, c, p, s, spin->term, spin->nterm, M);
+    }
+    for (int a = at->anchor; a > 0; a = b->anchor[a].parent)
+        for (int k = 0; k < b->anchor[a].nslide; k++) {
+            const struct ct_slide *slide = &b->anchor[a].slide[k];
+            const struct ct_term term = {slide->speed, slide->driver, CT_EX_ONE};
+            if (slide->speed < 0)
+                continue;
+            const ct_ex3 p = b->anchor[a].cluster == at->frame
+                               ? ct_ex33_apply_t(x, &at->S, slide->p)
+                               : into(b, f, ct_cluster_turn(b, b->anchor[a].cluster, slide->p));
+            base_column(b, f, c, p, zero3, &term, 1, M);
+        }
+}
+
+void ct_flexible_mass(struct ct_build *b, ct_ex *M)
+{
+    for (size_t i = 0; i < b->nflexible; i++) {
+        const struct ct_flexible *f = &b->flexible[i];
+        struct ct_columns c = {CT_NEWN(b->arena, ct_ex3, f->nelastic + 1),
+                               CT_NEWN(b->arena, ct_ex3, f->nelastic + 1)};
+        f->inertia->form->mass(b, f, &c, M);
+        base_columns(b, f, &c, M);
+    }
+}

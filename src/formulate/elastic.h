@@ -1,0 +1,81 @@
+// Between the files of flexible bodies; see flexible.h and elastic.c.
+#ifndef CT_FORMULATE_ELASTIC_H
+#define CT_FORMULATE_ELASTIC_H
+
+#include "formulate/flexible.h"
+
+/// How the base moves, in axes of the beam.
+struct ct_base {
+    ct_ex3 a, w, al; // acceleration less gravity, angular velocity and acceleration
+};
+
+/// Columns of the base's motion: p . moved + s . swept for a velocity p and an angular velocity s of the base.
+struct ct_columns {
+    ct_ex3 *moved, *swept; // by elastic coordinate, axes of the beam
+};
+
+/// Motion relative to the base: momentum, angular momentum about it, twice the kinetic energy.
+struct ct_relative {
+    ct_ex3 momentum, spin;
+    ct_ex twice_kinetic;
+};
+
+/// A way to take the integrals over a beam. Vectors in axes of the beam.
+struct ct_inertia_form {
+    /// Mass, first moment, inertia about the base into f->inertia, and what the others need.
+    void (*derive)(struct ct_build *b, struct ct_flexible *f);
+    /// Rows of the elastic coordinates under inertia and weight, added to row (by speed).
+    void (*rows)(struct ct_build *b, const struct ct_flexible *f, const struct ct_base *m,
+                 enum ct_level level, ct_ex *row);
+    /// Force and torque of the motion relative to the base: m (2 w x r' + r''), and of the sections' rotation.
+    void (*wrench)(struct ct_build *b, const struct ct_flexible *f, const struct ct_base *m,
+                   enum ct_level level, ct_ex3 *force, ct_ex3 *torque);
+    void (*moving)(struct ct_build *b, const struct ct_flexible *f, struct ct_relative *out);
+    /// Entries between elastic coordinates, added to M; columns of the base's motion.
+    void (*mass)(struct ct_build *b, const struct ct_flexible *f, struct ct_columns *out,
+                 ct_ex *M);
+};
+
+struct ct_inertia {
+    const struct ct_inertia_form *form;
+    ct_ex mass;
+    ct_ex3 moment;
+    ct_ex33 inertia;        // about the base
+    struct ct_point *point; // of the form that sums over points
+    size_t npoint;
+    struct ct_element_mass *element; // of the exact form
+};
+
+/// Sums over points of the elements: any kinematics.
+extern const struct ct_inertia_form ct_inertia_points;
+/// Integrals over the elements, constant: linear kinematics.
+extern const struct ct_inertia_form ct_inertia_exact;
+
+/// Rules of integration of the beam's mass and stiffness.
+enum ct_rule ct_flexible_mass_rule(const struct ct_beam *beam);
+enum ct_rule ct_flexible_stiffness_rule(const struct ct_beam *beam);
+/// Inertia per length of the section about an axis.
+struct ct_profile ct_flexible_rotary(const struct ct_flexible *f, int axis);
+/// Integral of g p q over element e.
+ct_ex ct_flexible_integral(struct ct_build *b, const struct ct_flexible *f, int e, ct_ex g,
+                           const struct ct_shape *p, const struct ct_shape *q,
+                           enum ct_rule rule);
+
+/// al~ + w~ w~
+ct_ex33 ct_base_turning(struct ct_build *b, const struct ct_base *m);
+/// 2 w x v
+ct_ex3 ct_twice_cross(struct ct_build *b, ct_ex3 w, ct_ex3 v);
+
+/// Generalised force on a dof, handed to the elastic coordinates it stands for.
+void ct_dof_push(struct ct_build *b, const struct ct_flexible *f, int e, int j, ct_ex value,
+                 ct_ex *row);
+/// Entry of the mass matrix between dof j of element e and dof k of element g; the transposed pair is pushed by itself.
+void ct_dof_push_pair(struct ct_build *b, const struct ct_flexible *f, int e, int j, int g,
+                      int k, ct_ex value, ct_ex *M);
+void ct_dof_push_column(struct ct_build *b, const struct ct_flexible *f, int e, int j,
+                        ct_ex3 moved, ct_ex3 swept, struct ct_columns *out);
+
+/// Rows of the beam's own stiffness and damping.
+void ct_stiffness_rows(struct ct_build *b, const struct ct_flexible *f, ct_ex *row);
+
+#endif

@@ -1,0 +1,248 @@
+// Stiffness and damping of beams; see elastic.h.
+#include "formulate/elastic.h"
+
+enum ct_rule ct_flexible_mass_rule(const struct ct_beam *beam)
+{
+    return beam->is_lumped                        ? CT_RULE_ENDS
+         : beam->integration == CT_BEAM_ONE_POINT ? CT_RULE_MIDDLE
+                                                  : CT_RULE_FULL;
+}
+
+enum ct_rule ct_flexible_stiffness_rule(const struct ct_beam *beam)
+{
+    return beam->integration == CT_BEAM_FULL ? CT_RULE_FULL : CT_RULE_MIDDLE;
+}
+
+// Inertia per length about the axes; twist has some of its own where nothing else is given.
+struct ct_profile ct_flexible_rotary(const struct ct_flexible *f, int axis)
+{
+    const struct ct_beam *beam = f->beam;
+    struct ct_profile g = {beam->x, CT_EX_ZERO};
+    if (beam->has_rotary)
+        g.value = beam->rotary[axis];
+    else if (axis == 0 && f->deformation & CT_BEAM_TORSION)
+        g.value = beam->twist_inertia;
+    return g;
+}
+
+// ---- stiffness and damping ----------------------------------------------------------------------------------
+
+// Constant matrices of an element for its four dofs of a plane.
+struct plane_matrices {
+    ct_ex K[4][4], M[4][4], E[4][4];
+};
+
+ct_ex ct_flexible_integral(struct ct_build *b, const struct ct_flexible *f, int e, ct_ex g,
+                           const struct ct_shape *p, const struct ct_shape *q,
+                           enum ct_rule rule)
+{
+    const struct ct_profile profile = {f->beam->x, g};
+    const struct ct_shape both = ct_shape_mul(p, q);
+    if (ct_ex_is_zero(g) || ct_shape_is_zero(&both))
+        return CT_EX_ZERO;
+    return ct_shape_integral(b->x, &profile, &both, &f->element[e].span, rule);
+}
+
+static struct plane_matrices plane_matrices(struct ct_build *b, const struct ct_flexible *f,
+                                            int e, int plane)
+{
+    struct ct_exs *x = b->x;
+    const struct ct_beam *beam = f->beam;
+    const enum ct_rule rule = ct_flexible_stiffness_rule(beam),
+                       mass = ct_flexible_mass_rule(beam);
+    const ct_ex second = plane ? beam->Iy : beam->Iz, EI = ct_ex_mul(x, beam->E, second);
+    const ct_ex GA = beam->theory == CT_BEAM_TIMOSHENKO
+                       ? ct_ex_mul(x, beam->shear_factor, ct_ex_mul(x, beam->G, beam->area))
+                       : CT_EX_ZERO;
+    const ct_ex radius = beam->higher_order ? ct_ex_div(x, second, beam->area) : CT_EX_ZERO;
+    const ct_ex J = ct_flexible_rotary(f, plane ? 1 : 2).value;
+    struct plane_matrices s = {0};
+    struct ct_shape bend[4], shear[4];
+    for (int j = 0; j < 4; j++) {
+        bend[j] = ct_shape_slope(&f->shape.rotation[j]);
+        shear[j] = f->shape.slope[j];
+        if (ct_shape_is_zero(&shear[j]))
+            shear[j].power = f->shape.rotation[j].power;
+        // both are of one power of the length, or one of them is zero
+        for (int i = 0; i < CT_SHAPE_SIZE; i++)
+            shear[j].c[i] -= f->shape.rotation[j].c[i];
+    }
+    for (int j = 0; j < 4; j++)
+        for (int k = 0; k < 4; k++) {
+            s.K[j][k]
+                = ct_ex_add(x, ct_flexible_integral(b, f, e, EI, &bend[j], &bend[k], rule),
+                            ct_flexible_integral(b, f, e, GA, &shear[j], &shear[k], rule));
+            s.M[j][k]
+                = ct_ex_add(x,
+                            ct_flexible_integral(b, f, e, beam->mass_per_length,
+                                                 &f->shape.place[j], &f->shape.place[k], mass),
+                            ct_flexible_integral(b, f, e, J, &f->shape.rotation[j],
+                                                 &f->shape.rotation[k], mass));
+            s.E[j][k]
+                = ct_ex_add(x,
+                            ct_flexible_integral(b, f, e, CT_EX_ONE, &f->shape.slope[j],
+                                                 &f->shape.slope[k], rule),
+                            ct_flexible_integral(b, f, e, radius, &bend[j], &bend[k], rule));
+        }
+    return s;
+}
+
+static ct_ex product(struct ct_build *b, const ct_ex row[4], const ct_ex *v)
+{
+    ct_ex sum = CT_EX_ZERO;
+    for (int i = 0; i < 4; i++)
+        sum = ct_ex_add(b->x, sum, ct_ex_mul(b->x, row[i], v[i]));
+    return sum;
+}
+// What one element adds: rows of its dofs, strain energy, twice the power its damping takes.
+struct element_force {
+    ct_ex row[CT_DOF];
+    ct_ex energy, drag;
+};
+
+static void bend_element(struct ct_build *b, const struct ct_flexible *f, int e, int plane,
+                         const struct plane_matrices *s, struct element_force *out)
+{
+    struct ct_exs *x = b->x;
+    const struct ct_beam *beam = f->beam;
+    const int first = plane ? 6 : 2;
+    const ct_ex *a = f->element[e].value + first, *r = f->element[e].rate + first;
+    for (int j = 0; j < 4; j++) {
+        const ct_ex elastic = product(b, s->K[j], a);
+        ct_ex drag = ct_ex_mul(x, beam->damping_stiffness, product(b, s->K[j], r));
+        drag = ct_ex_add(x, drag, ct_ex_mul(x, beam->damping_mass, product(b, s->M[j], r)));
+        out->row[first + j] = ct_ex_add(x, out->row[first + j], ct_ex_add(x, elastic, drag));
+        out->energy
+            = ct_ex_add(x, out->energy, ct_ex_scale(x, 0.5, ct_ex_mul(x, a[j], elastic)));
+        out->drag = ct_ex_add(x, out->drag, ct_ex_mul(x, r[j], drag));
+    }
+}
+
+// Stretch of the element: the difference of the nodes' s, in LOCAL coordinates by what they and the slopes say.
+struct stretch {
+    ct_ex value, rate;
+    ct_ex slope[CT_PLACE_DOF];
+};
+
+static struct stretch stretch_of(struct ct_build *b, const struct ct_flexible *f, int e,
+                                 const struct plane_matrices plane[2])
+{
+    struct ct_exs *x = b->x;
+    const struct ct_element *self = &f->element[e];
+    struct stretch s = {.value = ct_ex_sub(x, self->value[1], self->value[0]),
+                        .rate = ct_ex_sub(x, self->rate[1], self->rate[0])};
+    s.slope[0] = ct_ex_const(x, -1);
+    s.slope[1] = CT_EX_ONE;
+    for (int k = 0; k < 2 && f->axial == CT_AXIAL_LOCAL; k++)
+        for (int j = 0; j < 4; j++) {
+            const int dof = (k ? 6 : 2) + j;
+            const ct_ex Ea = product(b, plane[k].E[j], self->value + (k ? 6 : 2));
+            s.slope[dof] = Ea;
+            s.value = ct_ex_add(x, s.value,
+                                ct_ex_scale(x, 0.5, ct_ex_mul(x, Ea, self->value[dof])));
+            s.rate = ct_ex_add(x, s.rate, ct_ex_mul(x, Ea, self->rate[dof]));
+        }
+    return s;
+}
+
+static void stretch_element(struct ct_build *b, const struct ct_flexible *f, int e,
+                            const struct plane_matrices plane[2], struct element_force *out)
+{
+    struct ct_exs *x = b->x;
+    const struct ct_beam *beam = f->beam;
+    const struct ct_element *self = &f->element[e];
+    const struct stretch s = stretch_of(b, f, e, plane);
+    const struct ct_shape dx = ct_shape_slope(&f->linear[1]);
+    const ct_ex k = ct_flexible_integral(b, f, e, ct_ex_mul(x, beam->E, beam->area), &dx, &dx,
+                                         ct_flexible_stiffness_rule(beam));
+    const ct_ex elastic = ct_ex_mul(x, k, s.value);
+    const ct_ex drag = ct_ex_mul(x, beam->damping_stiffness, ct_ex_mul(x, k, s.rate));
+    const ct_ex N = ct_ex_add(x, elastic, drag);
+    for (int j = 0; j < CT_PLACE_DOF; j++)
+        out->row[j] = ct_ex_add(x, out->row[j], ct_ex_mul(x, N, s.slope[j]));
+    out->energy
+        = ct_ex_add(x, out->energy, ct_ex_scale(x, 0.5, ct_ex_mul(x, elastic, s.value)));
+    out->drag = ct_ex_add(x, out->drag, ct_ex_mul(x, drag, s.rate));
+    for (int j = 0; j < 2 && !ct_ex_is_zero(beam->damping_mass); j++)
+        for (int i = 0; i < 2; i++) {
+            const ct_ex m = ct_flexible_integral(b, f, e, beam->mass_per_length, &f->linear[j],
+                                                 &f->linear[i], ct_flexible_mass_rule(beam));
+            const ct_ex v = ct_ex_mul(x, beam->damping_mass, ct_ex_mul(x, m, self->rate[i]));
+            out->row[j] = ct_ex_add(x, out->row[j], v);
+            out->drag = ct_ex_add(x, out->drag, ct_ex_mul(x, v, self->rate[j]));
+        }
+}
+
+static void twist_element(struct ct_build *b, const struct ct_flexible *f, int e,
+                          struct element_force *out)
+{
+    struct ct_exs *x = b->x;
+    const struct ct_beam *beam = f->beam;
+    const ct_ex *value = f->element[e].value + CT_PLACE_DOF;
+    const ct_ex *rate = f->element[e].rate + CT_PLACE_DOF;
+    const ct_ex GJ = ct_ex_mul(x, beam->G, beam->J), J = ct_flexible_rotary(f, 0).value;
+    for (int j = 0; j < 2; j++) {
+        const struct ct_shape dj = ct_shape_slope(&f->linear[j]);
+        ct_ex elastic = CT_EX_ZERO, drag = CT_EX_ZERO;
+        for (int k = 0; k < 2; k++) {
+            const struct ct_shape dk = ct_shape_slope(&f->linear[k]);
+            const ct_ex K
+                = ct_flexible_integral(b, f, e, GJ, &dj, &dk, ct_flexible_stiffness_rule(beam));
+            const ct_ex M = ct_flexible_integral(b, f, e, J, &f->linear[j], &f->linear[k],
+                                                 ct_flexible_mass_rule(beam));
+            const ct_ex C = ct_ex_add(x, ct_ex_mul(x, beam->damping_stiffness, K),
+                                      ct_ex_mul(x, beam->damping_mass, M));
+            elastic = ct_ex_add(x, elastic, ct_ex_mul(x, K, value[k]));
+            drag = ct_ex_add(x, drag, ct_ex_mul(x, C, rate[k]));
+        }
+        ct_ex *row = &out->row[CT_PLACE_DOF + j];
+        *row = ct_ex_add(x, *row, ct_ex_add(x, elastic, drag));
+        out->energy
+            = ct_ex_add(x, out->energy, ct_ex_scale(x, 0.5, ct_ex_mul(x, elastic, value[j])));
+        out->drag = ct_ex_add(x, out->drag, ct_ex_mul(x, drag, rate[j]));
+    }
+}
+
+static struct element_force element_force(struct ct_build *b, const struct ct_flexible *f,
+                                          int e)
+{
+    struct element_force out = {0};
+    struct plane_matrices plane[2];
+    for (int k = 0; k < 2; k++) {
+        const bool bends = f->deformation & (k ? CT_BEAM_BENDING_Y : CT_BEAM_BENDING_Z);
+        plane[k] = bends ? plane_matrices(b, f, e, k) : (struct plane_matrices){0};
+        if (bends)
+            bend_element(b, f, e, k, &plane[k], &out);
+    }
+    if (f->deformation & CT_BEAM_AXIAL)
+        stretch_element(b, f, e, plane, &out);
+    if (f->deformation & CT_BEAM_TORSION)
+        twist_element(b, f, e, &out);
+    return out;
+}
+
+void ct_stiffness_rows(struct ct_build *b, const struct ct_flexible *f, ct_ex *row)
+{
+    for (int e = 0; e < f->beam->nelement; e++) {
+        const struct element_force s = element_force(b, f, e);
+        for (int j = 0; j < CT_DOF; j++)
+            ct_dof_push(b, f, e, j, s.row[j], row);
+    }
+}
+
+ct_ex ct_flexible_strain(struct ct_build *b, const struct ct_flexible *f)
+{
+    ct_ex sum = CT_EX_ZERO;
+    for (int e = 0; e < f->beam->nelement; e++)
+        sum = ct_ex_add(b->x, sum, element_force(b, f, e).energy);
+    return sum;
+}
+
+ct_ex ct_flexible_dissipation(struct ct_build *b)
+{
+    ct_ex sum = CT_EX_ZERO;
+    for (size_t i = 0; i < b->nflexible; i++)
+        for (int e = 0; e < b->flexible[i].beam->nelement; e++)
+            sum = ct_ex_sub(b->x, sum, element_force(b, &b->flexible[i], e).drag);
+    return sum;
+}

@@ -1,0 +1,44 @@
+// Accelerations of a closed system in closed form: embedding, (6.2), unrolled along a fixed order of pivots.
+//
+//     J_d = L U in blocks of one or two rows      B = -J_d^-1 J_i,   J_d c = -gam
+//     (B' M B) z = B' (Q - M c)                   u' = [B; 1] z + [c; 0],   J_d' lam = (M u' - Q)_d
+//
+// Every entry carries its value at one state, a numeric shadow, beside its expression: pivots are taken
+// where they cost least among those that are large enough there. Two rows of one joint go together where
+// they can: the determinant of a planar loop does not care how the loop is turned, while a single entry
+// passes through zero.
+//
+// Source: pivots by least cost with a threshold, Markowitz (1957), key markowitz1957; the same in blocks,
+// Duff, Erisman and Reid (2017), key duff2017; refinement, Skeel (1980), key skeel1980.
+#ifndef CT_FORMULATE_ELIMINATION_H
+#define CT_FORMULATE_ELIMINATION_H
+
+#include "formulate/equations.h"
+
+/// What is eliminated: kept rows (rank), as many dependent columns, and the other columns (nfree).
+struct ct_partition {
+    const int *row, *dependent, *independent;
+    size_t rank, nfree;
+};
+
+struct ct_closed {
+    size_t rank, npivot, nfree, nB;
+    int *row;     // kept rows, ascending: what lam counts by
+    ct_ex *pivot; // of each block that is not constant: an entry, or a determinant
+    double *
+        scale; // pivot to strength: its size against the largest entries of its rows, 1 at most
+    ct_ex *inertia;  // pivots of B' M B (nfree), positive
+    ct_ex *B;        // its entries that are not zero by structure
+    ct_ex *a, *lam;  // u' (nu), multipliers (rank)
+    ct_ex *residual; // M u' - Q - J' lam, J u' + gam  (nu + rank)
+    ct_ex *better_a, *better_lam, *better_residual; // after one step of refinement
+    ct_ex *dq, *du; // -J_d^-1 Phi, -J_d^-1 v (nu, zero in the independent places)
+};
+
+/// Derive into x, a copy of e->x, with at most so many new nodes. J (nJ): values of e->J at the state of
+/// the shadow. The result lives in a. NULL if J_d is singular there or the nodes do not suffice.
+struct ct_closed *ct_closed_derive(struct ct_arena *a, struct ct_exs *x,
+                                   const struct ct_equations *e, const struct ct_partition *p,
+                                   const double *J, size_t most_nodes);
+
+#endif

@@ -1,0 +1,396 @@
+// See flexible.h.
+#include "formulate/excite.h"
+#include "formulate/topology.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { U, V, W, RX, RY, RZ, NKIND };
+static const char *const kind_name[NKIND] = {"u", "v", "w", "rx", "ry", "rz"};
+static const ct_ex3 zero3 = {{{0}, {0}, {0}}};
+
+// ---- freedoms ---------------------------------------------------------------------------------------
+
+// Deformation a kind of freedom belongs to.
+static unsigned family_of(int kind)
+{
+    static const unsigned family[NKIND]
+        = {CT_BEAM_AXIAL,   CT_BEAM_BENDING_Z, CT_BEAM_BENDING_Y,
+           CT_BEAM_TORSION, CT_BEAM_BENDING_Y, CT_BEAM_BENDING_Z};
+    return family[kind];
+}
+
+static bool is_fixed(const struct ct_flexible *f, int node, int kind)
+{
+    const bool is_end = node == f->beam->nelement;
+    if (!(f->deformation & family_of(kind)))
+        return true;
+    if (!f->beam->is_chord)
+        return node == 0;
+    // the chord's frame: origin at the start, x towards the end, not twisted at the start
+    const bool turns = kind == RY || kind == RZ;
+    return (node == 0 && !turns) || (is_end && (kind == V || kind == W));
+}
+
+static void number_dofs(struct ct_flexible *f)
+{
+    static const int kinds[CT_DOF / 2 * 2][2]
+        = {{0, U}, {1, U},  {0, V}, {0, RZ}, {1, V},  {1, RZ},
+           {0, W}, {0, RY}, {1, W}, {1, RY}, {0, RX}, {1, RX}};
+    for (int e = 0; e < f->beam->nelement; e++)
+        for (int j = 0; j < CT_DOF; j++) {
+            const int node = e + kinds[j][0], kind = kinds[j][1];
+            f->element[e].freedom[j] = is_fixed(f, node, kind) ? -1 : NKIND * node + kind;
+        }
+}
+
+const struct ct_freedom *ct_dof_freedom(const struct ct_flexible *f, int e, int j, int *sign)
+{
+    const int i = f->element[e].freedom[j];
+    *sign = j == 7 || j == 9 ? -1 : 1; // dw/dx = -ry
+    return i < 0 ? NULL : &f->freedom[i];
+}
+
+// ---- creation -----------------------------------------------------------------------------------------
+
+// E(xi) = integral of slope_j slope_k, and D = xi E(1) - E.
+static void derive_shortening(struct ct_flexible *f)
+{
+    const struct ct_shape xi = {.c = {0, 1}};
+    for (int j = 0; j < 4; j++)
+        for (int k = 0; k < 4; k++) {
+            const struct ct_shape both = ct_shape_mul(&f->shape.slope[j], &f->shape.slope[k]);
+            const struct ct_shape E = ct_shape_primitive(&both);
+            struct ct_shape one = {.power = E.power};
+            for (int i = 0; i < CT_SHAPE_SIZE; i++)
+                one.c[0] += E.c[i];
+            struct ct_shape D = ct_shape_mul(&xi, &one);
+            for (int i = 0; i < CT_SHAPE_SIZE; i++)
+                D.c[i] -= E.c[i];
+            f->shortening[j][k] = E;
+            f->bubble[j][k] = D;
+        }
+}
+
+// What may deform in a planar mechanism: bending about the normal; a beam's y or z axis points along it.
+static unsigned in_plane(const struct ct_build *b, const struct ct_flexible *f)
+{
+    if (!b->is_planar)
+        return CT_BEAM_ALL;
+    const ct_ex3 n = ct_ex33_apply_t(b->x, &b->upright[f->base], b->plane[2]);
+    const bool about_z = fabs(ct_ex_value(b->x, n.e[2], b->value)) > 0.5;
+    return CT_BEAM_AXIAL | (about_z ? CT_BEAM_BENDING_Z : CT_BEAM_BENDING_Y);
+}
+
+static enum ct_axial axial_of(const struct ct_flexible *f)
+{
+    if (f->formulation == CT_BEAM_LINEAR)
+        return CT_AXIAL_LINEAR;
+    return f->deformation & CT_BEAM_AXIAL && f->formulation == CT_BEAM_FORESHORTENING
+             ? CT_AXIAL_LOCAL
+             : CT_AXIAL_CHAIN;
+}
+
+// What has no stiffness given is no deformation: it would be free to go anywhere.
+static void leave_without_stiffness(struct ct_build *b, struct ct_flexible *f)
+{
+    const struct ct_beam *beam = f->beam;
+    const struct {
+        unsigned family;
+        ct_ex stiffness;
+        const char *what, *why;
+    } all[] = {{CT_BEAM_BENDING_Y, beam->Iy, "its bending in the x-z plane", "Iy is zero"},
+               {CT_BEAM_BENDING_Z, beam->Iz, "its bending in the x-y plane", "Iz is zero"},
+               {CT_BEAM_TORSION, beam->G, "its torsion", "neither G nor nu is given"}};
+    for (size_t i = 0; i < COUNT(all); i++) {
+        if (!(f->deformation & all[i].family) || !ct_ex_is_zero(all[i].stiffness))
+            continue;
+        f->deformation &= ~all[i].family;
+        ct_topology_left_out(b, ct_arena_printf(b->arena, "%s: %s", f->name, all[i].what),
+                             all[i].why);
+    }
+}
+
+static void settle(struct ct_build *b, struct ct_flexible *f)
+{
+    const struct ct_beam *beam = f->beam;
+    f->deformation = beam->deformation & in_plane(b, f);
+    leave_without_stiffness(b, f);
+    if (f->deformation & CT_BEAM_TORSION && !beam->deformation_given && !b->keep_all
+        && !ct_excite_twist(b, f)) {
+        f->deformation &= ~(unsigned)CT_BEAM_TORSION;
+        ct_topology_left_out(b, ct_arena_printf(b->arena, "torsion of %s", f->name),
+                             "nothing beyond its base can twist it");
+    }
+    if (b->is_planar && beam->deformation & ~(unsigned)(CT_BEAM_AXIAL | f->deformation))
+        ct_topology_left_out(b,
+                             ct_arena_printf(b->arena,
+                                             "bending of %s out of the plane, and its torsion",
+                                             f->name),
+                             "gravity, loads, masses and arms lie in the plane");
+    if (b->is_rigid)
+        f->deformation = 0;
+    f->formulation
+        = beam->formulation == CT_BEAM_AUTO ? CT_BEAM_FORESHORTENING : beam->formulation;
+    f->axial = f->kinematics = axial_of(f);
+    if (f->formulation == CT_BEAM_FORCE_ONLY)
+        f->kinematics = CT_AXIAL_LINEAR;
+    f->freedom = CT_NEWN(b->arena, struct ct_freedom, NKIND * (beam->nelement + 1));
+    f->element = CT_NEWN(b->arena, struct ct_element, beam->nelement);
+    ct_shape_bending(beam->theory, &f->shape);
+    ct_shape_linear(f->linear);
+    derive_shortening(f);
+    number_dofs(f);
+    for (int e = 0; e < beam->nelement; e++) {
+        struct ct_span *s = &f->element[e].span;
+        s->start = e ? beam->end[e - 1] : CT_EX_ZERO;
+        s->length = ct_ex_sub(b->x, beam->end[e], s->start);
+    }
+}
+
+void ct_flexible_create(struct ct_build *b)
+{
+    for (size_t i = 1; i < b->model->nbody; i++)
+        b->nflexible += b->model->body[i].beam != NULL;
+    b->flexible = CT_NEWN(b->arena, struct ct_flexible, b->nflexible + 1);
+    size_t n = 0;
+    for (size_t i = 1; i < b->model->nbody; i++) {
+        const struct ct_body *body = &b->model->body[i];
+        if (body->beam)
+            b->flexible[n++] = (struct ct_flexible){
+                .beam = body->beam, .body = (int)i, .name = body->instance.name};
+    }
+}
+
+void ct_flexible_settle(struct ct_build *b)
+{
+    for (size_t i = 0; i < b->nflexible; i++)
+        settle(b, &b->flexible[i]);
+}
+
+struct ct_flexible *ct_flexible_of(const struct ct_build *b, int body)
+{
+    for (size_t i = 0; i < b->nflexible; i++)
+        if (b->flexible[i].body == body)
+            return &b->flexible[i];
+    return NULL;
+}
+
+// ---- unknowns -------------------------------------------------------------------------------------------
+
+static int new_unknown(struct ct_build *b, struct ct_flexible *f, const char *name)
+{
+    struct ct_equations *s = b->eqs;
+    struct ct_q q = {.name = name, .quaternion = -1};
+    struct ct_u u = {.name = ct_arena_printf(b->arena, "%s.u", name)};
+    u.joint = u.body = -1;
+    u.beam = f->body;
+    u.q = (int)s->nq;
+    q.symbol = ct_ex_sym(b->x, CT_SYM_Q, name, (uint32_t)s->nq);
+    u.symbol = q.rate = ct_ex_sym(b->x, CT_SYM_U, u.name, (uint32_t)s->nu);
+    u.derivative
+        = ct_ex_sym(b->x, CT_SYM_A, ct_arena_printf(b->arena, "%s.a", name), (uint32_t)s->nu);
+    CT_PUSH(b->arena, s->q, s->nq, s->q_cap, q);
+    CT_PUSH(b->arena, s->u, s->nu, s->u_cap, u);
+    f->elastic[f->nelastic]
+        = (struct ct_elastic){name, u.q, (int)s->nu - 1, q.symbol, u.symbol, u.derivative};
+    return f->nelastic++;
+}
+
+static void dof_values(struct ct_build *b, struct ct_flexible *f)
+{
+    for (int e = 0; e < f->beam->nelement; e++) {
+        struct ct_element *self = &f->element[e];
+        for (int j = 0; j < CT_DOF; j++) {
+            int sign;
+            const struct ct_freedom *d = ct_dof_freedom(f, e, j, &sign);
+            if (!d)
+                continue;
+            self->value[j] = sign > 0 ? d->value : ct_ex_neg(b->x, d->value);
+            self->rate[j] = sign > 0 ? d->rate : ct_ex_neg(b->x, d->rate);
+            self->acceleration[j]
+                = sign > 0 ? d->acceleration : ct_ex_neg(b->x, d->acceleration);
+        }
+    }
+}
+
+// Foreshortening of element after element: c and its derivatives by running sums.
+static void run_chain(struct ct_build *b, struct ct_flexible *f)
+{
+    struct ct_exs *x = b->x;
+    for (int e = 0; e < f->beam->nelement; e++) {
+        struct ct_element *self = &f->element[e];
+        ct_ex c = self->c, rate = self->c_rate, bias = self->c_bias;
+        for (int plane = 0; plane < 2; plane++) {
+            const int first = plane ? 6 : 2;
+            for (int j = 0; j < 4; j++) {
+                ct_ex Ea = CT_EX_ZERO, Er = CT_EX_ZERO;
+                for (int k = 0; k < 4; k++) {
+                    const ct_ex E
+                        = ct_shape_at(x, &f->shortening[j][k], CT_EX_ONE, self->span.length);
+                    Ea = ct_ex_add(x, Ea, ct_ex_mul(x, E, self->value[first + k]));
+                    Er = ct_ex_add(x, Er, ct_ex_mul(x, E, self->rate[first + k]));
+                }
+                self->g[first + j] = ct_ex_neg(x, Ea);
+                c = ct_ex_sub(x, c,
+                              ct_ex_scale(x, 0.5, ct_ex_mul(x, Ea, self->value[first + j])));
+                rate = ct_ex_sub(x, rate, ct_ex_mul(x, Ea, self->rate[first + j]));
+                bias = ct_ex_sub(x, bias, ct_ex_mul(x, Er, self->rate[first + j]));
+            }
+        }
+        if (e + 1 < f->beam->nelement) {
+            self[1].c = c;
+            self[1].c_rate = rate;
+            self[1].c_bias = bias;
+        }
+    }
+}
+
+void ct_flexible_unknowns(struct ct_build *b, struct ct_flexible *f)
+{
+    const int nnode = f->beam->nelement + 1;
+    f->elastic = CT_NEWN(b->arena, struct ct_elastic, NKIND * nnode);
+    for (int node = 0; node < nnode; node++)
+        for (int kind = 0; kind < NKIND; kind++) {
+            if (is_fixed(f, node, kind))
+                continue;
+            const int k = new_unknown(
+                b, f, ct_arena_printf(b->arena, "%s.%d.%s", f->name, node, kind_name[kind]));
+            struct ct_freedom *d = &f->freedom[NKIND * node + kind];
+            d->value = f->elastic[k].value;
+            d->rate = f->elastic[k].rate;
+            d->acceleration = f->elastic[k].acceleration;
+            d->npart = 1;
+            d->part = CT_NEW(b->arena, struct ct_part);
+            *d->part = (struct ct_part){k, CT_EX_ONE};
+        }
+    dof_values(b, f);
+    if (f->axial == CT_AXIAL_CHAIN)
+        run_chain(b, f);
+}
+
+// ---- stations -----------------------------------------------------------------------------------------------
+
+ct_ex ct_element_field(struct ct_build *b, const struct ct_element *e,
+                       const struct ct_shape *shape, const ct_ex *of, int from, int n, ct_ex xi)
+{
+    ct_ex sum = CT_EX_ZERO;
+    for (int j = 0; j < n; j++)
+        if (!ct_ex_is_zero(of[from + j]))
+            sum = ct_ex_add(b->x, sum,
+                            ct_ex_mul(b->x, ct_shape_at(b->x, &shape[j], xi, e->span.length),
+                                      of[from + j]));
+    return sum;
+}
+
+// (M a)_j of the matrix of shapes that the axial displacement is quadratic in, with its sign.
+static ct_ex quadratic_slope(struct ct_build *b, const struct ct_flexible *f, int e, int plane,
+                             int j, const ct_ex *of, enum ct_axial axial, ct_ex xi)
+{
+    const struct ct_element *self = &f->element[e];
+    const bool local = axial == CT_AXIAL_LOCAL;
+    const struct ct_shape *row = local ? f->bubble[j] : f->shortening[j];
+    const ct_ex v = ct_element_field(b, self, row, of, plane ? 6 : 2, 4, xi);
+    return local ? v : ct_ex_neg(b->x, v);
+}
+
+void ct_axial_field(struct ct_build *b, const struct ct_flexible *f, int e, ct_ex xi,
+                    enum ct_axial axial, struct ct_axial_field *a)
+{
+    struct ct_exs *x = b->x;
+    const struct ct_element *self = &f->element[e];
+    memset(a, 0, sizeof *a);
+    a->value = ct_element_field(b, self, f->linear, self->value, 0, 2, xi);
+    a->rate = ct_element_field(b, self, f->linear, self->rate, 0, 2, xi);
+    if (axial == CT_AXIAL_CHAIN) {
+        a->value = ct_ex_add(x, a->value, self->c);
+        a->rate = ct_ex_add(x, a->rate, self->c_rate);
+        a->bias = self->c_bias;
+    }
+    for (int j = 0; j < 2; j++)
+        a->slope[j] = ct_shape_at(x, &f->linear[j], xi, self->span.length);
+    for (int plane = 0; plane < 2 && axial != CT_AXIAL_LINEAR; plane++)
+        for (int j = 0; j < 4; j++) {
+            const int dof = (plane ? 6 : 2) + j;
+            const ct_ex s = quadratic_slope(b, f, e, plane, j, self->value, axial, xi);
+            const ct_ex r = quadratic_slope(b, f, e, plane, j, self->rate, axial, xi);
+            a->slope[dof] = s;
+            a->value = ct_ex_add(x, a->value,
+                                 ct_ex_scale(x, 0.5, ct_ex_mul(x, s, self->value[dof])));
+            a->rate = ct_ex_add(x, a->rate, ct_ex_mul(x, s, self->rate[dof]));
+            a->bias = ct_ex_add(x, a->bias, ct_ex_mul(x, r, self->rate[dof]));
+        }
+}
+
+static int element_at(const struct ct_build *b, const struct ct_flexible *f, double x)
+{
+    int e = 0;
+    while (e + 1 < f->beam->nelement && x > ct_ex_value(b->x, f->beam->end[e], b->value))
+        e++;
+    return e;
+}
+
+static const double at_node = 1e-9; // of the element's length: the place is that of the node
+
+void ct_flexible_station(struct ct_build *b, const struct ct_flexible *f, ct_ex place,
+                         enum ct_axial axial, struct ct_station *s)
+{
+    struct ct_exs *x = b->x;
+    const double at = ct_ex_value(x, place, b->value);
+    const int e = s->element = element_at(b, f, at);
+    const struct ct_element *self = &f->element[e];
+    const ct_ex xi = ct_ex_div(x, ct_ex_sub(x, place, self->span.start), self->span.length);
+    const double where = ct_ex_value(x, xi, b->value);
+    s->xi = fabs(where) < at_node ? CT_EX_ZERO : fabs(where - 1) < at_node ? CT_EX_ONE : xi;
+    struct ct_axial_field a;
+    s->axial = axial;
+    ct_axial_field(b, f, e, s->xi, axial, &a);
+    s->place.e[0] = ct_ex_add(x, place, a.value);
+    s->place.e[1] = ct_element_field(b, self, f->shape.place, self->value, 2, 4, s->xi);
+    s->place.e[2] = ct_element_field(b, self, f->shape.place, self->value, 6, 4, s->xi);
+    s->angle[0] = ct_element_field(b, self, f->linear, self->value, 10, 2, s->xi);
+    s->angle[1]
+        = ct_ex_neg(x, ct_element_field(b, self, f->shape.rotation, self->value, 6, 4, s->xi));
+    s->angle[2] = ct_element_field(b, self, f->shape.rotation, self->value, 2, 4, s->xi);
+}
+
+static void add_partial(struct ct_build *b, const struct ct_flexible *f, int e, int j,
+                        ct_ex3 value, ct_ex3 *by_coordinate)
+{
+    int sign;
+    const struct ct_freedom *d = ct_dof_freedom(f, e, j, &sign);
+    for (int p = 0; d && p < d->npart; p++) {
+        const ct_ex c = sign > 0 ? d->part[p].coef : ct_ex_neg(b->x, d->part[p].coef);
+        ct_ex3 *sum = &by_coordinate[d->part[p].k];
+        *sum = ct_ex3_add(b->x, *sum, ct_ex3_scale(b->x, c, value));
+    }
+}
+
+void ct_station_partials(struct ct_build *b, const struct ct_flexible *f,
+                         const struct ct_station *s, ct_ex3 *slide, ct_ex3 *turn)
+{
+    struct ct_exs *x = b->x;
+    const struct ct_element *self = &f->element[s->element];
+    const ct_ex h = self->span.length;
+    struct ct_axial_field a;
+    ct_axial_field(b, f, s->element, s->xi, s->axial, &a);
+    for (int j = 0; j < CT_DOF; j++) {
+        ct_ex3 d = zero3, t = zero3;
+        const int plane = j >= 6, i = plane ? j - 6 : j - 2;
+        if (j < CT_PLACE_DOF)
+            d.e[0] = a.slope[j];
+        if (j >= 2 && j < CT_PLACE_DOF) {
+            const ct_ex r = ct_shape_at(x, &f->shape.rotation[i], s->xi, h);
+            d.e[1 + plane] = ct_shape_at(x, &f->shape.place[i], s->xi, h);
+            t.e[plane ? 1 : 2] = plane ? ct_ex_neg(x, r) : r;
+        } else if (j >= CT_PLACE_DOF) {
+            t.e[0] = ct_shape_at(x, &f->linear[j - CT_PLACE_DOF], s->xi, h);
+        }
+        add_partial(b, f, s->element, j, d, slide);
+        add_partial(b, f, s->element, j, t, turn);
+    }
+    for (int e = 0; e < s->element && s->axial == CT_AXIAL_CHAIN; e++)
+        for (int j = 2; j < CT_PLACE_DOF; j++)
+            add_partial(b, f, e, j, (ct_ex3){{f->element[e].g[j], CT_EX_ZERO, CT_EX_ZERO}},
+                        slide);
+}

@@ -1,0 +1,136 @@
+// Flexible bodies: elastic coordinates of beams, places along them, their inertia and stiffness.  (formulation 1.2, 5.3)
+//
+//   elastic coordinate k   an unknown of the model: a nodal displacement or rotation, or the share of a mode
+//   freedom f              6 per node (u v w rx ry rz): sum over k of part coef * coordinate; fixed ones are zero
+//   dof j                  12 of an element, each a freedom with a sign (the slope dw/dx is -ry):
+//                          0 1 axial | 2-5 along y: v, dv/dx, v, dv/dx | 6-9 along z the same | 10 11 twist
+//
+// Axes are those of the beam; `base` is the node of its body frame, at an anchor without offset.
+//
+// Axial displacement of the axis, c the foreshortening up to the element (formulation 1.7):
+//   LINEAR   (1 - xi) u_i + xi u_i+1
+//   LOCAL    the same of the axial places U = s + c of the nodes, + (a' D a + b' D b)/2,  D = xi E(1) - E(xi)
+//   CHAIN    the same of the stretch s, + c_i - (a' E a + b' E b)/2,  c_i+1 = c_i - (a' E(1) a + b' E(1) b)/2
+// LOCAL and CHAIN are one model in two sets of coordinates; in LOCAL ones an element sees its own nodes only.
+#ifndef CT_FORMULATE_FLEXIBLE_H
+#define CT_FORMULATE_FLEXIBLE_H
+
+#include "formulate/dynamics.h"
+#include "formulate/shape.h"
+
+enum { CT_DOF = 12, CT_PLACE_DOF = 10 };
+enum ct_axial { CT_AXIAL_LINEAR, CT_AXIAL_LOCAL, CT_AXIAL_CHAIN };
+
+struct ct_part {
+    int k; // elastic coordinate
+    ct_ex coef;
+};
+
+struct ct_elastic {
+    const char *name;
+    int q, u;
+    ct_ex value, rate, acceleration;
+};
+
+struct ct_freedom {
+    ct_ex value, rate, acceleration;
+    int npart;
+    struct ct_part *part;
+};
+
+struct ct_element {
+    struct ct_span span;
+    int freedom[CT_DOF];                                     // -1: fixed
+    ct_ex value[CT_DOF], rate[CT_DOF], acceleration[CT_DOF]; // of the dofs
+    ct_ex c, c_rate,
+        c_bias; // CHAIN: foreshortening at its start, its rate, second derivative with u' = 0
+    ct_ex g[CT_PLACE_DOF]; // CHAIN: d(c of the next element - c)/d(dof)
+};
+
+/// A section of the beam: displacement u of the axis, rotation Rz(angle[2]) Ry(angle[1]) Rx(angle[0])  (1.7b).
+struct ct_station {
+    int element;
+    enum ct_axial axial;
+    ct_ex xi;
+    ct_ex3 place; // x + u
+    ct_ex angle[3];
+};
+
+struct ct_flexible {
+    const struct ct_beam *beam;
+    const char *name;
+    int body, base;
+    unsigned deformation;
+    enum ct_axial axial; // of forces
+    enum ct_axial
+        kinematics; // of places and of the mass matrix: the same, but LINEAR where only forces foreshorten
+    enum ct_beam_formulation formulation;
+    struct ct_elastic *elastic;
+    int nelastic;
+    struct ct_freedom *freedom; // 6 (nelement + 1)
+    struct ct_element *element;
+    struct ct_bending shape;
+    struct ct_shape linear[2];
+    struct ct_shape shortening[4][4], bubble[4][4]; // E(xi), D(xi)
+    ct_ex strain;                                   // [J], once the stiffness is derived
+    struct ct_inertia *inertia;                     // elastic.c
+};
+
+/// Axial displacement of the axis at one place of an element.
+struct ct_axial_field {
+    ct_ex value, rate, bias;   // bias: second derivative with u' = 0
+    ct_ex slope[CT_PLACE_DOF]; // by the element's own dofs
+};
+
+// ---- flexible.c: coordinates and places ----------------------------------------------------------
+
+/// One per beam of the model, in b->flexible; their base is set where nodes are made.
+void ct_flexible_create(struct ct_build *b);
+/// What may deform, by the beam and the plane; elements and their freedoms.
+void ct_flexible_settle(struct ct_build *b);
+/// The beam of a body; NULL if it is none.
+struct ct_flexible *ct_flexible_of(const struct ct_build *b, int body);
+/// Unknowns of the elastic coordinates, after those of joints and bodies.
+void ct_flexible_unknowns(struct ct_build *b, struct ct_flexible *f);
+void ct_axial_field(struct ct_build *b, const struct ct_flexible *f, int e, ct_ex xi,
+                    enum ct_axial axial, struct ct_axial_field *a);
+/// The section at x. axial: the kinematics in use; f->kinematics is that of places.
+void ct_flexible_station(struct ct_build *b, const struct ct_flexible *f, ct_ex x,
+                         enum ct_axial axial, struct ct_station *s);
+/// Slides (m = 0 ... nelastic-1, beam axes) and turns of a station by elastic coordinate.
+void ct_station_partials(struct ct_build *b, const struct ct_flexible *f,
+                         const struct ct_station *s, ct_ex3 *slide, ct_ex3 *turn);
+/// Parts of element e's dof j: *sign times those of the freedom; NULL if it is fixed.
+const struct ct_freedom *ct_dof_freedom(const struct ct_flexible *f, int e, int j, int *sign);
+/// sum over the dofs in [from, to) of the shape times the value (rate, ...) of each.
+ct_ex ct_element_field(struct ct_build *b, const struct ct_element *e,
+                       const struct ct_shape *shape, const ct_ex *of, int from, int n,
+                       ct_ex xi);
+
+// ---- elastic.c: dynamics ---------------------------------------------------------------------------
+
+/// Mass, first moment and inertia of the beams, added to anchors and clusters; before stars are linked.
+void ct_flexible_lump(struct ct_build *b);
+/// Rows and columns of the elastic coordinates, added to the lower triangle M (nu x nu).
+void ct_flexible_mass(struct ct_build *b, ct_ex *M);
+/// What the beams' deformation adds to the sweep: force at the base's anchor, torque on its cluster, rows of the elastic
+/// coordinates. apparent: by anchor, acceleration less gravity.
+void ct_flexible_sweep(struct ct_build *b, enum ct_level level, const ct_ex3 *apparent,
+                       ct_ex3 *rest, ct_ex3 *torque, ct_ex *row);
+/// Mass, com (less the base's place), momentum, angular momentum about the base's origin, kinetic energy; ground axes.
+struct ct_flexible_state {
+    ct_ex mass;
+    ct_ex3 moment; // mass (com - base)
+    ct_ex3 momentum, spin;
+    ct_ex twice_kinetic;
+};
+struct ct_flexible_state ct_flexible_moving(struct ct_build *b, const struct ct_flexible *f);
+/// Force and torque about the base that the beam's inertia and weight need, with the symbols u'; ground axes.
+void ct_flexible_wrench(struct ct_build *b, const struct ct_flexible *f, ct_ex3 *force,
+                        ct_ex3 *torque);
+/// [J]
+ct_ex ct_flexible_strain(struct ct_build *b, const struct ct_flexible *f);
+/// Power of the beams' own damping, negative.
+ct_ex ct_flexible_dissipation(struct ct_build *b);
+
+#endif

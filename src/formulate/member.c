@@ -1,0 +1,654 @@
+// See member.h.
+//
+// Built node by node along the translational tree. A joint is taken apart into what slides and into turns, each
+// with a member of its own; those in between have no mass. Where one coordinate does both, as in a screw, one
+// member has both.
+#include "formulate/member.h"
+
+#include <string.h>
+
+static const ct_ex3 zero3 = {{{0}, {0}, {0}}};
+
+struct work {
+    struct ct_build *b;
+    struct ct_members *s;
+    int *of_node;    // member
+    ct_ex3 *offset;  // of a node from its member's origin, in axes of the member's cluster
+    int *of_cluster; // the member that turns it, or -1
+    int *of_speed;
+};
+
+// ---- components -------------------------------------------------------------------------------------
+
+// Out of axes of a cluster into those the member uses: in a plane e1, e2, n.
+static ct_ex3 express(struct ct_build *b, int cluster, ct_ex3 local)
+{
+    if (!b->is_planar)
+        return local;
+    const ct_ex3 v = ct_cluster_turn(b, cluster, local);
+    ct_ex3 out = zero3;
+    for (int i = 0; i < 2; i++)
+        out.e[i] = ct_ex3_dot(b->x, b->plane[i], v);
+    return out;
+}
+
+// Ground components of a force or a torque into the member's axes.
+static ct_ex3 express_ground(struct ct_build *b, int cluster, ct_ex3 v)
+{
+    if (!b->is_planar)
+        return ct_ex33_apply_t(b->x, &b->cluster[cluster].R, v);
+    ct_ex3 out;
+    for (int i = 0; i < 3; i++)
+        out.e[i] = ct_ex3_dot(b->x, b->plane[i], v);
+    return out;
+}
+
+ct_ex3 ct_member_out(struct ct_build *b, const struct ct_member *m, ct_ex3 v)
+{
+    return m->turns && !b->is_planar ? ct_ex33_apply(b->x, &m->R, v) : v;
+}
+
+ct_ex3 ct_member_in(struct ct_build *b, const struct ct_member *m, ct_ex3 v)
+{
+    return m->turns && !b->is_planar ? ct_ex33_apply_t(b->x, &m->R, v) : v;
+}
+
+static bool is_symmetric(const ct_ex33 *A)
+{
+    return ct_ex_same(A->e[1], A->e[3]) && ct_ex_same(A->e[2], A->e[6])
+        && ct_ex_same(A->e[5], A->e[7]);
+}
+
+// The part of A in the plane across the axis turns by twice the angle, all but its trace and its skew part:
+// with D = A_jj - A_kk, T = A_jk + A_kj, y = c D - s T these change by c y, -c y and s y.
+static void turn_about(struct ct_build *b, const struct ct_member *m, ct_ex33 *A)
+{
+    struct ct_exs *x = b->x;
+    const int i = m->axis, j = (i + 1) % 3, k = (i + 2) % 3;
+    const ct_ex c = m->R.e[j + 3 * j], s = m->R.e[k + 3 * j];
+    const ct_ex33 a = *A;
+    const ct_ex jj = a.e[j + 3 * j], kk = a.e[k + 3 * k], jk = a.e[j + 3 * k],
+                kj = a.e[k + 3 * j];
+    const ct_ex y = ct_ex_sub(x, ct_ex_mul(x, c, ct_ex_sub(x, jj, kk)),
+                              ct_ex_mul(x, s, ct_ex_add(x, jk, kj)));
+    const ct_ex along = ct_ex_mul(x, c, y), across = ct_ex_mul(x, s, y);
+    A->e[j + 3 * j] = ct_ex_add(x, kk, along);
+    A->e[k + 3 * k] = ct_ex_sub(x, jj, along);
+    A->e[j + 3 * k] = ct_ex_add(x, jk, across);
+    A->e[k + 3 * j] = ct_ex_add(x, kj, across);
+    const ct_ex ij = a.e[i + 3 * j], ik = a.e[i + 3 * k], ji = a.e[j + 3 * i],
+                ki = a.e[k + 3 * i];
+    A->e[i + 3 * j] = ct_ex_sub(x, ct_ex_mul(x, c, ij), ct_ex_mul(x, s, ik));
+    A->e[i + 3 * k] = ct_ex_add(x, ct_ex_mul(x, s, ij), ct_ex_mul(x, c, ik));
+    A->e[j + 3 * i] = ct_ex_sub(x, ct_ex_mul(x, c, ji), ct_ex_mul(x, s, ki));
+    A->e[k + 3 * i] = ct_ex_add(x, ct_ex_mul(x, s, ji), ct_ex_mul(x, c, ki));
+}
+
+void ct_member_turn_tensor(struct ct_build *b, const struct ct_member *m, ct_ex33 *A)
+{
+    struct ct_exs *x = b->x;
+    if (!m->turns || b->is_planar)
+        return;
+    if (m->axis >= 0) {
+        turn_about(b, m, A);
+        return;
+    }
+    const bool symmetric = is_symmetric(A);
+    const ct_ex33 half = ct_ex33_mul(x, &m->R, A);
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++) {
+            const ct_ex3 row = {{half.e[i], half.e[i + 3], half.e[i + 6]}},
+                         column = {{m->R.e[j], m->R.e[j + 3], m->R.e[j + 6]}};
+            A->e[i + 3 * j] = symmetric && j > i ? CT_EX_ZERO : ct_ex3_dot(x, row, column);
+        }
+    for (int i = 0; i < 3 && symmetric; i++)
+        for (int j = i + 1; j < 3; j++)
+            A->e[i + 3 * j] = A->e[j + 3 * i];
+}
+
+// ---- adding members -----------------------------------------------------------------------------------
+
+static int add_member(struct work *w, int parent, int cluster, ct_ex3 r)
+{
+    struct ct_member m = {.parent = parent, .cluster = cluster, .axis = -1, .r = r};
+    m.R = ct_ex33_identity();
+    CT_PUSH(w->b->arena, w->s->member, w->s->n, w->s->cap, m);
+    return (int)w->s->n - 1;
+}
+
+static struct ct_screw *screw_of(struct ct_member *m, int speed)
+{
+    for (int k = 0; k < m->nfree; k++)
+        if (m->screw[k].speed == speed)
+            return &m->screw[k];
+    m->screw[m->nfree] = (struct ct_screw){.speed = speed, .axis = -1};
+    return &m->screw[m->nfree++];
+}
+
+static int coordinate_axis(struct ct_build *b, ct_ex3 v)
+{
+    double one;
+    for (int i = 0; i < 3; i++)
+        if (ct_ex_is_zero(v.e[(i + 1) % 3]) && ct_ex_is_zero(v.e[(i + 2) % 3]))
+            return ct_ex_is_const(b->x, v.e[i], &one) && (one == 1 || one == -1) ? i : -1;
+    return -1;
+}
+
+// Axis of a spin in the member's axes. That of a quaternion seen backwards is fixed in the parent, as column i
+// of S there.
+static ct_ex3 spin_axis(struct work *w, const struct ct_member *m, const struct ct_spin *s,
+                        const ct_ex33 *S, int i)
+{
+    struct ct_build *b = w->b;
+    if (b->is_planar) {
+        const bool positive = ct_spin_is_positive(b, (size_t)(s - b->spin));
+        return (ct_ex3){
+            {CT_EX_ZERO, CT_EX_ZERO, positive ? CT_EX_ONE : ct_ex_neg(b->x, CT_EX_ONE)}};
+    }
+    if (!ct_ex3_is_zero(s->local))
+        return s->local;
+    const ct_ex3 fixed = {{S->e[3 * i], S->e[3 * i + 1], S->e[3 * i + 2]}};
+    return ct_ex33_apply_t(b->x, &m->R, ct_ex3_neg(b->x, fixed));
+}
+
+// The member turns as a cluster does; S: axes of the node the joint starts from.
+static void add_turn(struct work *w, int member, int cluster, const ct_ex33 *S)
+{
+    struct ct_build *b = w->b;
+    struct ct_exs *x = b->x;
+    struct ct_member *m = &w->s->member[member];
+    const struct ct_cluster *c = &b->cluster[cluster];
+    m->turns = true;
+    if (!b->is_planar)
+        m->R = ct_cluster_relative(b, cluster);
+    m->cluster = cluster;
+    w->of_cluster[cluster] = member;
+    for (int i = 0; i < c->nspin; i++) {
+        const struct ct_spin *s = &b->spin[c->first_spin + i];
+        const ct_ex3 axis = spin_axis(w, m, s, S, i);
+        if (c->nspin == 1)
+            m->axis = coordinate_axis(b, axis);
+        m->w_relative = ct_ex3_add(x, m->w_relative, ct_ex3_scale(x, s->rate, axis));
+        m->al_relative = ct_ex3_add(x, m->al_relative, ct_ex3_scale(x, s->bias, axis));
+        for (int k = 0; k < s->nterm; k++)
+            if (s->term[k].speed >= 0) {
+                struct ct_screw *f = screw_of(m, s->term[k].speed);
+                f->turn = ct_ex3_add(x, f->turn, ct_ex3_scale(x, s->term[k].coef, axis));
+            }
+    }
+}
+
+// The member's place moves with coordinates of joint e; r is in axes of the parent's cluster.
+static void add_slides(struct work *w, int member, const struct ct_edge_info *e)
+{
+    struct ct_build *b = w->b;
+    struct ct_exs *x = b->x;
+    struct ct_member *m = &w->s->member[member];
+    m->slides = true;
+    m->drift = ct_build_rate3(b, m->r);
+    m->drift_bias = ct_build_rate3(b, m->drift);
+    for (int k = 0; k < e->ncoordinate; k++) {
+        const struct ct_coordinate *c = &b->coordinate[e->first_coordinate + k];
+        ct_ex3 p;
+        if (c->u < 0 || c->q < 0)
+            continue;
+        for (int i = 0; i < 3; i++)
+            p.e[i] = ct_ex_diff(x, m->r.e[i], b->eqs->q[c->q].symbol);
+        if (!ct_ex3_is_zero(p))
+            screw_of(m, c->u)->slide = p;
+    }
+}
+
+// ---- joints -------------------------------------------------------------------------------------------
+
+static bool is_moving(const struct ct_build *b, ct_ex3 v)
+{
+    const unsigned moving = 1u << CT_SYM_Q | 1u << CT_SYM_TIME;
+    return (ct_ex_kinds(b->x, v.e[0]) | ct_ex_kinds(b->x, v.e[1]) | ct_ex_kinds(b->x, v.e[2]))
+         & moving;
+}
+
+// What a joint does between a node of member `from` and the next node.
+struct passage {
+    const struct ct_edge_info *e;
+    int cluster[CT_MAX_COORD], ncluster; // new ones, in order
+    bool is_absolute;
+    ct_ex3 vector;    // that of the joint, in axes of the cluster where it is fixed
+    bool vector_last; // in the axes behind the turns
+    const ct_ex33 *S;
+};
+
+static bool moves_slide(const struct ct_build *b, const struct ct_edge_info *e,
+                        const struct ct_term *t)
+{
+    for (int k = 0; k < e->ncoordinate; k++) {
+        const struct ct_coordinate *c = &b->coordinate[e->first_coordinate + k];
+        if (t->speed >= 0 && c->u == t->speed)
+            return c->in_translation;
+    }
+    return false;
+}
+
+// Does a coordinate that turns also slide?
+static bool is_coupled(const struct ct_build *b, const struct passage *p)
+{
+    for (int i = 0; i < p->ncluster; i++) {
+        const struct ct_cluster *c = &b->cluster[p->cluster[i]];
+        for (int k = 0; k < c->nspin; k++) {
+            const struct ct_spin *s = &b->spin[c->first_spin + k];
+            for (int j = 0; j < s->nterm; j++)
+                if (moves_slide(b, p->e, &s->term[j]))
+                    return true;
+        }
+    }
+    return false;
+}
+
+// Do two turns of the joint share a coordinate?
+static bool turns_share(const struct ct_build *b, const struct passage *p)
+{
+    for (int i = 0; i < p->ncluster; i++)
+        for (int j = 0; j < i; j++) {
+            const struct ct_spin *s = &b->spin[b->cluster[p->cluster[i]].first_spin],
+                                 *t = &b->spin[b->cluster[p->cluster[j]].first_spin];
+            for (int k = 0; k < s->nterm; k++)
+                for (int l = 0; l < t->nterm; l++)
+                    if (s->term[k].speed >= 0 && s->term[k].speed == t->term[l].speed)
+                        return true;
+        }
+    return false;
+}
+
+static int pass_slides(struct work *w, int member, const struct passage *p, ct_ex3 *offset)
+{
+    *offset = ct_ex3_add(w->b->x, *offset, p->vector);
+    if (!is_moving(w->b, p->vector))
+        return member;
+    const int m = add_member(w, member, w->s->member[member].cluster, *offset);
+    add_slides(w, m, p->e);
+    *offset = zero3;
+    return m;
+}
+
+static int pass_turns(struct work *w, int member, const struct passage *p, ct_ex3 *offset)
+{
+    for (int i = 0; i < p->ncluster; i++) {
+        member = add_member(w, member, -1, *offset);
+        add_turn(w, member, p->cluster[i], p->S);
+        w->s->member[member].is_absolute = p->is_absolute && i == 0;
+        *offset = zero3;
+    }
+    return member;
+}
+
+// One member that slides and turns.
+static int pass_coupled(struct work *w, int member, const struct passage *p, ct_ex3 *offset)
+{
+    struct ct_exs *x = w->b->x;
+    const int m = add_member(w, member, -1, *offset);
+    struct ct_member *self = &w->s->member[m];
+    const ct_ex33 A = ct_cluster_relative(w->b, p->cluster[0]);
+    const ct_ex3 v = p->vector_last ? ct_ex33_apply(x, &A, p->vector) : p->vector;
+    self->r = ct_ex3_add(x, self->r, v);
+    add_slides(w, m, p->e);
+    add_turn(w, m, p->cluster[0], p->S);
+    *offset = zero3;
+    return m;
+}
+
+static bool pass(struct work *w, const struct passage *p, int *member, ct_ex3 *offset)
+{
+    if (turns_share(w->b, p))
+        return false;
+    if (is_coupled(w->b, p)) {
+        if (p->ncluster != 1 || p->is_absolute)
+            return false;
+        *member = pass_coupled(w, *member, p, offset);
+        return true;
+    }
+    if (!p->vector_last)
+        *member = pass_slides(w, *member, p, offset);
+    *member = pass_turns(w, *member, p, offset);
+    if (p->vector_last)
+        *member = pass_slides(w, *member, p, offset);
+    return true;
+}
+
+// ---- nodes --------------------------------------------------------------------------------------------
+
+// The clusters between the axes of a node and those of its parent, or of ground in a plane. False where the node
+// turns with something else.
+static bool find_clusters(struct work *w, int from, int to, struct passage *p)
+{
+    const struct ct_build *b = w->b;
+    int list[CT_MAX_COORD], n = 0;
+    for (; to != from && to != 0 && w->of_cluster[to] < 0; to = b->cluster[to].parent) {
+        if (n == CT_MAX_COORD)
+            return false;
+        list[n++] = to;
+    }
+    p->is_absolute = to != from;
+    if (to != from && (to != 0 || !b->is_planar || n != 1))
+        return false;
+    for (p->ncluster = 0; p->ncluster < n; p->ncluster++)
+        p->cluster[p->ncluster] = list[n - 1 - p->ncluster];
+    return true;
+}
+
+// A particle has no axes: it is a point of its parent, or of what slides there.
+static bool place_particle(struct work *w, struct passage *p, int parent, int *member,
+                           ct_ex3 *offset)
+{
+    if (w->b->node[parent].is_particle || (p->vector_last && !ct_ex3_is_zero(p->vector)))
+        return false;
+    *member = pass_slides(w, *member, p, offset);
+    return true;
+}
+
+static bool place_node(struct work *w, int node)
+{
+    struct ct_build *b = w->b;
+    const int parent = b->T.parent[node], sign = b->T.sign[node];
+    const struct ct_edge_info *e = &b->edge[b->T.parent_edge[node]];
+    const struct ct_place *tail = &b->place[sign > 0 ? parent : node];
+    const ct_ex3 d = e->kind == CT_EDGE_ARM ? e->at : e->motion.d;
+    struct passage p = {.e = e, .vector_last = sign < 0, .S = &b->place[parent].S};
+    int member = w->of_node[parent];
+    ct_ex3 offset = w->offset[parent];
+    p.vector = ct_ex33_apply(b->x, &tail->S, d);
+    if (sign < 0)
+        p.vector = ct_ex3_neg(b->x, p.vector);
+    if (b->node[node].is_particle) {
+        if (!place_particle(w, &p, parent, &member, &offset))
+            return false;
+    } else if (b->node[parent].is_particle
+               || !find_clusters(w, b->place[parent].frame, b->place[node].frame, &p)
+               || !pass(w, &p, &member, &offset)) {
+        return false;
+    }
+    w->of_node[node] = member;
+    w->offset[node] = offset;
+    return true;
+}
+
+static bool place_nodes(struct work *w)
+{
+    const struct ct_build *b = w->b;
+    w->of_node = CT_NEWN(b->arena, int, b->nnode);
+    w->offset = CT_NEWN(b->arena, ct_ex3, b->nnode);
+    w->of_cluster = CT_NEWN(b->arena, int, b->ncluster);
+    for (size_t c = 1; c < b->ncluster; c++)
+        w->of_cluster[c] = -1;
+    add_member(w, -1, 0, zero3);
+    for (size_t i = 1; i < b->nnode; i++)
+        if (!place_node(w, b->T.order[i]))
+            return false;
+    return true;
+}
+
+// Each speed must move one member.
+static bool own_speeds(struct work *w)
+{
+    const size_t nu = w->b->eqs->nu;
+    w->of_speed = CT_NEWN(w->b->arena, int, nu + 1);
+    for (size_t m = 1; m < w->s->n; m++)
+        for (int k = 0; k < w->s->member[m].nfree; k++) {
+            int *of = &w->of_speed[w->s->member[m].screw[k].speed];
+            if (*of)
+                return false;
+            *of = (int)m;
+        }
+    for (size_t k = 0; k < nu; k++)
+        if (!w->of_speed[k])
+            return false;
+    w->s->of_speed = w->of_speed;
+    return true;
+}
+
+// ---- inertia --------------------------------------------------------------------------------------------
+
+static void add_tensor(struct ct_build *b, ct_ex33 *sum, const ct_ex33 *A)
+{
+    for (int i = 0; i < 9; i++)
+        sum->e[i] = ct_ex_add(b->x, sum->e[i], A->e[i]);
+}
+
+// c (d.h 1) - (d h' + h d')/2 twice over: the inertia of first moments h at d, and with h = m d/2 that of a mass.
+static void add_arm(struct ct_build *b, ct_ex33 *J, ct_ex3 d, ct_ex3 h)
+{
+    struct ct_exs *x = b->x;
+    for (int i = 0; i < 3; i++) {
+        const int j = (i + 1) % 3, k = (i + 2) % 3;
+        const ct_ex other
+            = ct_ex_add(x, ct_ex_mul(x, d.e[j], h.e[j]), ct_ex_mul(x, d.e[k], h.e[k]));
+        const ct_ex cross
+            = ct_ex_add(x, ct_ex_mul(x, d.e[i], h.e[j]), ct_ex_mul(x, h.e[i], d.e[j]));
+        J->e[i + 3 * i] = ct_ex_add(x, J->e[i + 3 * i], ct_ex_scale(x, 2, other));
+        J->e[i + 3 * j] = ct_ex_sub(x, J->e[i + 3 * j], cross);
+        J->e[j + 3 * i] = ct_ex_sub(x, J->e[j + 3 * i], cross);
+    }
+}
+
+// Mass m, first moment h and inertia J about a point, all at v from the member's origin.
+static void add_inertia(struct work *w, int member, ct_ex3 v, ct_ex mass, ct_ex3 h,
+                        const ct_ex33 *J)
+{
+    struct ct_exs *x = w->b->x;
+    struct ct_member *m = &w->s->member[member];
+    const ct_ex3 carried = ct_ex3_scale(x, mass, v);
+    if (!member)
+        return; // ground does not move
+    m->mass = ct_ex_add(x, m->mass, mass);
+    m->moment = ct_ex3_add(x, m->moment, ct_ex3_add(x, h, carried));
+    add_arm(w->b, &m->J, v, ct_ex3_add(x, h, ct_ex3_scale(x, ct_ex_const(x, 0.5), carried)));
+    add_tensor(w->b, &m->J, J);
+}
+
+static void add_bodies(struct work *w)
+{
+    struct ct_build *b = w->b;
+    for (size_t i = 1; i < b->model->nbody; i++) {
+        const struct ct_body *body = &b->model->body[i];
+        const int node = b->node_of_com[i];
+        const ct_ex *I = body->inertia;
+        ct_ex33 turned = {{{0}}};
+        if (!body->is_particle) {
+            const ct_ex33 own = {{I[0], I[3], I[4], I[3], I[1], I[5], I[4], I[5], I[2]}};
+            const ct_ex33 *S = &b->place[node].S, t = ct_ex33_transpose(S);
+            const ct_ex33 half = ct_ex33_mul(b->x, &own, &t);
+            turned = ct_ex33_mul(b->x, S, &half);
+        }
+        add_inertia(w, w->of_node[node], w->offset[node], body->mass, zero3, &turned);
+    }
+}
+
+// A first moment along the axis of a turn and the inertia of a rod along it are the parent's as well.
+static void take_off_axis(struct ct_build *b, struct ct_member *m, ct_ex3 *h, ct_ex33 *J)
+{
+    struct ct_exs *x = b->x;
+    const int i = m->axis, j = (i + 1) % 3, k = (i + 2) % 3;
+    h->e[i] = m->moment.e[i];
+    m->moment.e[i] = CT_EX_ZERO;
+    const ct_ex rod = m->J.e[j + 3 * j];
+    J->e[j + 3 * j] = J->e[k + 3 * k] = rod;
+    m->J.e[j + 3 * j] = CT_EX_ZERO;
+    m->J.e[k + 3 * k] = ct_ex_sub(x, m->J.e[k + 3 * k], rod);
+}
+
+// Hand over to the parent what motion in the joint does not feel.
+static void lump(struct work *w, struct ct_member *m)
+{
+    ct_ex33 J = {{{0}}};
+    ct_ex3 h = zero3;
+    ct_ex mass = CT_EX_ZERO;
+    if (m->turns && !m->slides) { // the origin is a point of the parent
+        mass = m->mass;
+        m->mass = CT_EX_ZERO;
+        if (m->axis >= 0 && !w->b->is_planar)
+            take_off_axis(w->b, m, &h, &J);
+    } else if (!m->turns) {
+        J = m->J;
+        m->J = (ct_ex33){{{0}}};
+        add_inertia(w, m->parent, zero3, mass, h, &J);
+        return;
+    }
+    add_inertia(w, m->parent, m->r, mass, h, &J);
+}
+
+static void lump_masses(struct work *w)
+{
+    for (size_t m = w->s->n; m-- > 1;)
+        lump(w, &w->s->member[m]);
+}
+
+// ---- loads ------------------------------------------------------------------------------------------------
+
+static void apply_at(struct work *w, int node, ct_ex3 force, ct_ex3 torque)
+{
+    struct ct_build *b = w->b;
+    struct ct_exs *x = b->x;
+    struct ct_member *m = &w->s->member[w->of_node[node]];
+    const ct_ex3 f = express_ground(b, m->cluster, force),
+                 arm = express(b, m->cluster, w->offset[node]);
+    m->force = ct_ex3_add(x, m->force, f);
+    m->torque = ct_ex3_add(x, m->torque, ct_ex3_cross(x, arm, f));
+    if (!b->node[node].is_particle)
+        m->torque = ct_ex3_add(x, m->torque, express_ground(b, m->cluster, torque));
+}
+
+static void apply_loads(struct work *w)
+{
+    struct ct_build *b = w->b;
+    struct ct_exs *x = b->x;
+    for (size_t i = 0; i < b->nload; i++) {
+        const struct ct_load *l = &b->load[i];
+        ct_ex3 back = l->torque;
+        apply_at(w, l->head, l->force, l->torque);
+        if (l->tail == 0)
+            continue;
+        if (!l->is_central)
+            back = ct_ex3_add(x, back,
+                              ct_ex3_cross(x, ct_path_position(b, l->tail, l->head), l->force));
+        apply_at(w, l->tail, ct_ex3_neg(x, l->force), ct_ex3_neg(x, back));
+    }
+}
+
+// ---- velocities -------------------------------------------------------------------------------------------
+
+// w w' - (w . w) 1
+static ct_ex33 swing_matrix(struct ct_exs *x, ct_ex3 w)
+{
+    ct_ex33 U;
+    ct_ex square[3];
+    for (int i = 0; i < 3; i++)
+        square[i] = ct_ex_mul(x, w.e[i], w.e[i]);
+    for (int i = 0; i < 3; i++) {
+        const int j = (i + 1) % 3, k = (i + 2) % 3;
+        U.e[i + 3 * i] = ct_ex_neg(x, ct_ex_add(x, square[j], square[k]));
+        U.e[i + 3 * j] = U.e[j + 3 * i] = ct_ex_mul(x, w.e[i], w.e[j]);
+    }
+    return U;
+}
+
+ct_ex3 ct_member_shift_bias(struct ct_build *b, const struct ct_members *s, int i)
+{
+    struct ct_exs *x = b->x;
+    const struct ct_member *m = &s->member[i], *p = &s->member[m->parent];
+    const ct_ex3 carried = ct_ex33_apply(x, &p->U, m->r);
+    if (!m->slides)
+        return carried;
+    const ct_ex3 coriolis = ct_ex3_scale(x, ct_ex_const(x, 2), ct_ex3_cross(x, p->w, m->drift));
+    return ct_ex3_add(x, carried, ct_ex3_add(x, coriolis, m->drift_bias));
+}
+
+// (w x J w)_i = (J_kk - J_jj) w_j w_k + J_jk (w_j^2 - w_k^2) + J_ik w_i w_j - J_ij w_i w_k
+ct_ex3 ct_member_gyroscopic(struct ct_build *b, const struct ct_member *m)
+{
+    struct ct_exs *x = b->x;
+    ct_ex3 out;
+    for (int i = 0; i < 3; i++) {
+        const int j = (i + 1) % 3, k = (i + 2) % 3;
+        const ct_ex33 *U = &m->U, *J = &m->J;
+        ct_ex sum
+            = ct_ex_mul(x, ct_ex_sub(x, J->e[k + 3 * k], J->e[j + 3 * j]), U->e[j + 3 * k]);
+        sum = ct_ex_add(
+            x, sum,
+            ct_ex_mul(x, J->e[j + 3 * k], ct_ex_sub(x, U->e[j + 3 * j], U->e[k + 3 * k])));
+        sum = ct_ex_add(x, sum, ct_ex_mul(x, J->e[i + 3 * k], U->e[i + 3 * j]));
+        out.e[i] = ct_ex_sub(x, sum, ct_ex_mul(x, J->e[i + 3 * j], U->e[i + 3 * k]));
+    }
+    return out;
+}
+
+ct_ex3 ct_members_fall(struct ct_build *b)
+{
+    return express_ground(b, 0, ct_build_in_plane(b, ct_ex3_neg(b->x, b->model->gravity)));
+}
+
+static void find_velocities(struct work *w)
+{
+    struct ct_build *b = w->b;
+    for (size_t i = 1; i < w->s->n; i++) {
+        struct ct_member *m = &w->s->member[i];
+        const struct ct_member *p = &w->s->member[m->parent];
+        const ct_ex3 carried = m->is_absolute ? zero3 : ct_member_in(b, m, p->w);
+        m->w = ct_ex3_add(b->x, carried, m->w_relative);
+        m->al_relative
+            = ct_ex3_add(b->x, m->al_relative, ct_ex3_cross(b->x, carried, m->w_relative));
+        m->U = swing_matrix(b->x, m->w);
+    }
+}
+
+// ---- into the axes that are used ----------------------------------------------------------------------------
+
+static void find_axes(struct work *w, struct ct_member *m)
+{
+    const int cluster = w->s->member[m->parent].cluster;
+    struct ct_build *b = w->b;
+    m->r = express(b, cluster, m->r);
+    m->drift = express(b, cluster, m->drift);
+    m->drift_bias = express(b, cluster, m->drift_bias);
+    m->moment = express(b, m->cluster, m->moment);
+    if (b->is_planar) {
+        const ct_ex3 n = b->plane[2];
+        const ct_ex about = ct_ex3_dot(b->x, n, ct_ex33_apply(b->x, &m->J, n));
+        m->J = (ct_ex33){{{0}}};
+        m->J.e[8] = about;
+    }
+    for (int k = 0; k < m->nfree; k++) {
+        struct ct_screw *f = &m->screw[k];
+        f->slide = ct_member_in(b, m, express(b, cluster, f->slide));
+        const bool turns = !ct_ex3_is_zero(f->turn), slides = !ct_ex3_is_zero(f->slide);
+        if (turns != slides)
+            f->axis = turns ? coordinate_axis(b, f->turn) : coordinate_axis(b, f->slide);
+        if (f->axis >= 0 && slides)
+            f->axis += 3;
+    }
+}
+
+// Lumping in a plane keeps to what lies in it.
+static void flatten(struct work *w)
+{
+    struct ct_build *b = w->b;
+    for (size_t i = 0; i < b->nnode; i++)
+        w->offset[i] = ct_build_in_plane(b, w->offset[i]);
+    for (size_t i = 1; i < w->s->n; i++)
+        w->s->member[i].r = ct_build_in_plane(b, w->s->member[i].r);
+}
+
+const struct ct_members *ct_members_derive(struct ct_build *b)
+{
+    struct ct_members *s = CT_NEW(b->arena, struct ct_members);
+    struct work w = {.b = b, .s = s};
+    if (b->nflexible || b->model->simulation.small.given || b->eqs->nrow || !place_nodes(&w)
+        || !own_speeds(&w))
+        return NULL;
+    flatten(&w);
+    add_bodies(&w);
+    lump_masses(&w);
+    for (size_t i = 1; i < s->n; i++)
+        find_axes(&w, &s->member[i]);
+    find_velocities(&w);
+    apply_loads(&w);
+    return s;
+}

@@ -1,0 +1,16 @@
+// Equations of motion to first order in chosen coordinates.  (format, section 7: `small`)
+#ifndef CT_FORMULATE_SMALL_H
+#define CT_FORMULATE_SMALL_H
+
+#include "formulate/build.h"
+
+/// Is joint j named under `small`?
+bool ct_small_joint(const struct ct_build *b, int j);
+/// M and Q to first order in the coordinates of all joints and beams that are small, and in their rates, about zero;
+/// constraint rows stay exact. In M the entries between two small coordinates are constant: their accelerations are small,
+/// too. Those between a small and another coordinate keep the first order in both rows, so that M stays symmetric; in the
+/// row of the other coordinate that is one term more than first order. After M and Q, before the solution.
+/// Errors: E204 for a coordinate that is no branch.
+bool ct_small_derive(struct ct_build *b);
+
+#endif
