@@ -396,6 +396,10 @@ static void run_lanes(struct worker *w)
                                      &w->system->start_equations);
     ct_embed_stay_dense(ct_run_embed(sim->run));
     w->lanes = ct_lanes_create(sim->own.model, &w->system->equations, sim->run);
+    // at the file's own values, which the system still has: the same in each worker
+    if (start_member(w))
+        ct_lanes_unroll(sim->own.model, w->lanes);
+    forget_errors(&sim->own);
     w->value = CT_NEWN(sim->own.model, double, w->system->equations.nresult + 1);
     for (;;) {
         bool is_running = false;

@@ -19,6 +19,8 @@ static const double stretch = 1.1, least_step = 16 * DBL_EPSILON, least_scale = 
 static const double singular_pivot = 0.25, singular_steps = 3;
 static const double kappa_growth = 10, kappa_largest = 1e3, small_pivot = 0.1;
 static const double position_tolerance = 1e-13, gained_below = 1e-10;
+static const double least_change = 0.7, most_change = 1.5, weakest = 1e-3;
+static const double left_plain = 1e-13, left_most = 1e-11;
 enum { MOST_NEWTON = 25, MOST_STEPS = 100000000 };
 
 // A generated program for all lanes at once.
@@ -59,10 +61,16 @@ struct ct_lanes {
     struct ct_lanes_count count;
     const struct ct_method *method;
     vec *input;
-    double t[W], h[W];         // of this try
-    double kappa[W], sigma[W]; // of the factors, as in embed.h
-    bool is_regular[W];        // the factors exist
-    vec rtol, atol;            // of the steps
+    // closed form for one choice of rows and columns (see closed.h), or NULL
+    const struct ct_form *form;
+    struct program solved, checked, closing;
+    bool fits[W];                    // the lane has made that choice
+    bool is_rough[W];                // the last check found the form not good enough
+    double strength[W], at_sigma[W]; // of the form, now and where sigma was found
+    double t[W], h[W];               // of this try
+    double kappa[W], sigma[W];       // of the factors, as in embed.h
+    bool is_regular[W];              // the factors exist
+    vec rtol, atol;                  // of the steps
     // states (ny), stages (ny x stages)
     vec *y, *dy, *y1, *dy1, *end, *dend, *stage, *point, *third, *k;
     // matrices and vectors as in embed.h; Mp: M with rows and columns in the order dependent, independent
@@ -75,13 +83,18 @@ struct ct_lanes {
 
 // ---- programs ---------------------------------------------------------------------------------------
 
-static void make_program(struct ct_arena *a, struct program *p, const struct ct_program *from,
-                         bool is_native)
+static bool is_native(const struct ct_lanes *s)
+{
+    return s->m->motion.native && ct_native_is_available(W);
+}
+
+static void make_program(struct ct_arena *a, const struct ct_lanes *s, struct program *p,
+                         const struct ct_program *from)
 {
     *p = (struct program){.tape = from->tape, .nout = from->nout};
     if (!p->nout)
         return;
-    p->native = is_native ? ct_native_create(a, from->listing, W) : NULL;
+    p->native = is_native(s) ? ct_native_create(a, from->listing, W) : NULL;
     const size_t n = p->native ? ct_native_work(p->native) : W * ct_tape_work(p->tape);
     p->out = CT_NEWN(a, vec, p->nout);
     p->work = CT_NEWN(a, double, n + 1);
@@ -170,7 +183,6 @@ struct ct_lanes *ct_lanes_create(struct ct_arena *a, const struct ct_equations *
 {
     struct ct_lanes *s = CT_NEW(a, struct ct_lanes);
     struct ct_machine *m = ct_run_machine(run);
-    const bool is_native = m->motion.native && ct_native_is_available(W);
     *s = (struct ct_lanes){.e = e, .run = run, .m = m, .embed = ct_run_embed(run)};
     s->nq = (int)m->nq;
     s->nu = (int)m->nu;
@@ -181,12 +193,30 @@ struct ct_lanes *ct_lanes_create(struct ct_arena *a, const struct ct_equations *
     for (size_t i = 0; i < e->nq; i++)
         s->has_quaternion |= e->q[i].quaternion >= 0;
     s->is_solved = m->solved.nout > 0 && s->nrow == 0;
-    make_program(a, &s->motion, s->is_solved ? &m->solved : &m->motion, is_native);
-    make_program(a, &s->constraint, &m->constraint, is_native);
-    make_program(a, &s->power, &m->power, is_native);
-    make_program(a, &s->memory, &m->memory, is_native);
+    make_program(a, s, &s->motion, s->is_solved ? &m->solved : &m->motion);
+    make_program(a, s, &s->constraint, &m->constraint);
+    make_program(a, s, &s->power, &m->power);
+    make_program(a, s, &s->memory, &m->memory);
     make_room(a, s);
     return s;
+}
+
+void ct_lanes_unroll(struct ct_arena *a, struct ct_lanes *s)
+{
+    const struct ct_embed *embed = s->embed;
+    const struct ct_partition p = {embed->row, embed->dependent, embed->independent,
+                                   (size_t)embed->rank, s->m->nu - (size_t)embed->rank};
+    if (!s->nrow || s->needs_lam)
+        return; // multipliers come with the matrices
+    ct_machine_set(s->m, 0, ct_run_state(s->run));
+    ct_machine_motion(s->m);
+    struct ct_form *f = ct_form_create(a, s->m, &p, ct_embed_operations(embed));
+    if (!f)
+        return;
+    make_program(a, s, &s->solved, &f->solved);
+    make_program(a, s, &s->checked, &f->checked);
+    make_program(a, s, &s->closing, &f->closing);
+    s->form = f;
 }
 
 // ---- lanes and single numbers -----------------------------------------------------------------------
@@ -506,6 +536,12 @@ static void take_choice(struct ct_lanes *s, int l)
     s->is_uniform = true;
     for (int i = 1; i < W; i++)
         s->is_uniform &= is_same_choice(s, &s->lane[0], &s->lane[i]);
+    const struct ct_partition p = {lane->row, lane->dependent, lane->independent,
+                                   (size_t)s->rank, (size_t)(s->nu - s->rank)};
+    s->fits[l] = s->form && ct_form_is_for(s->form, &p);
+    s->is_rough[l] = false;
+    s->at_sigma[l]
+        = 0; // sigma comes from matrices, the form is compared at the next evaluation
     lane->kappa_chosen = embed->kappa_chosen;
     lane->sigma_chosen = embed->sigma_chosen;
     s->kappa[l] = embed->kappa;
@@ -529,6 +565,104 @@ static void renew(struct ct_lanes *s, int l, const vec *y)
         give_up(s, l);
 }
 
+// ---- closed form, as in embed.c ---------------------------------------------------------------------
+
+static bool is_near_singular(const struct ct_lanes *s, int l)
+{
+    return s->rank && s->sigma[l] < singular_pivot * s->lane[l].pivot_most;
+}
+
+// Lanes of `wanted` that may use the form.
+static void find_formed(const struct ct_lanes *s, const bool *wanted, bool *formed)
+{
+    for (int l = 0; l < W; l++)
+        formed[l] = wanted[l] && s->fits[l] && !s->is_rough[l] && !is_near_singular(s, l);
+}
+
+// Strengths from pivots; lanes that are not sound are taken out.
+static void weigh(struct ct_lanes *s, const vec *pivot, bool *formed)
+{
+    vec least;
+    for (int l = 0; l < W; l++)
+        least[l] = 1;
+    for (size_t i = 0; i < s->form->c->npivot; i++) {
+        const vec scaled = pivot[i] * s->form->c->scale[i];
+        lower(&least, &scaled);
+    }
+    for (int l = 0; l < W; l++) {
+        if (!formed[l])
+            continue;
+        s->strength[l] = least[l];
+        formed[l] = least[l] > weakest && least[l] > least_change * s->at_sigma[l]
+                 && least[l] < most_change * s->at_sigma[l];
+    }
+}
+
+// u', q' by the form at the input; lanes for which it is not sound are taken out.
+static void solve_form(struct ct_lanes *s, bool *formed)
+{
+    const struct ct_closed *c = s->form->c;
+    run_program(&s->solved, s->input);
+    const vec *out = s->solved.out, *inertia = out + s->nu + s->nq;
+    for (int l = 0; l < W; l++)
+        for (size_t i = 0; i < c->nfree; i++)
+            formed[l] &= inertia[i][l] > 0;
+    weigh(s, inertia + c->nfree, formed);
+}
+
+// Largest of r (nu + rank) against the largest terms of the equations; NaN counts as infinite.
+static void weigh_left(const struct ct_lanes *s, const vec *r, double *left)
+{
+    const struct ct_closed *c = s->form->c;
+    const int nu = s->nu, rank = s->rank;
+    const vec *Q = s->checked.out + nu + rank + 2 * (nu + rank), *gam = Q + nu;
+    vec a = {0}, forces = {0}, rates = {0}, r0 = {0}, r1 = {0}, zero = {0};
+    for (int i = 0; i < nu; i++) {
+        raise(&a, &s->checked.out[i]);
+        raise(&forces, &Q[i]);
+        raise(&r0, &r[i]);
+        zero += 0 * r[i];
+    }
+    for (size_t i = 0; i < c->rank; i++) {
+        raise(&rates, &gam[i]);
+        raise(&r1, &r[nu + (int)i]);
+        zero += 0 * r[nu + (int)i];
+    }
+    const vec accelerations[] = {s->form->M_size * a, s->form->J_size * a};
+    raise(&forces, &accelerations[0]);
+    raise(&rates, &accelerations[1]);
+    for (int l = 0; l < W; l++) {
+        const double x = r0[l] > 0 ? r0[l] / forces[l] : 0,
+                     y = r1[l] > 0 ? r1[l] / rates[l] : 0;
+        left[l] = zero[l] == 0 ? fmax(x, y) : INFINITY;
+    }
+}
+
+// After a projection, at the input: is the form still good in lanes that have it?
+static void check_form(struct ct_lanes *s, const bool *wanted)
+{
+    double left[W], better[W];
+    const int n = s->nu + s->rank;
+    bool is_due = false;
+    for (int l = 0; l < W; l++)
+        is_due |= wanted[l] && s->fits[l] && !is_near_singular(s, l);
+    if (!is_due)
+        return;
+    run_program(&s->checked, s->input);
+    weigh_left(s, s->checked.out + n, left);
+    weigh_left(s, s->checked.out + 2 * n, better);
+    vec kappa = {0};
+    for (size_t i = 0; i < s->form->c->nB; i++)
+        raise(&kappa, &s->checked.out[4 * n + (int)i]);
+    for (int l = 0; l < W; l++) {
+        if (!wanted[l] || !s->fits[l] || is_near_singular(s, l))
+            continue;
+        s->is_rough[l] = !(left[l] <= left_plain && s->strength[l] > weakest);
+        if (s->strength[l] > weakest && better[l] <= left_most)
+            s->kappa[l] = kappa[l];
+    }
+}
+
 // ---- projection, as in embed.c ----------------------------------------------------------------------
 
 static void set_input(struct ct_lanes *s, const double *t, const vec *y)
@@ -544,14 +678,6 @@ static void evaluate_constraint(struct ct_lanes *s, const double *t, const vec *
     set_input(s, t, y);
     run_program(&s->constraint, s->input);
     scatter_J(s, s->constraint.out + 2 * s->nrow);
-}
-
-static double largest(const vec *v, int l, int n)
-{
-    double max = 0;
-    for (int i = 0; i < n; i++)
-        max = fabs(v[i][l]) > max || isnan(v[i][l]) ? fabs(v[i][l]) : max;
-    return max;
 }
 
 // d = correction of the dependent speeds by rows r, in every lane; a lane whose J_d is no good is given up.
@@ -597,28 +723,38 @@ static void move(struct ct_lanes *s, vec *y, int l)
     put_lane(y, l, s->one_q, (size_t)s->nq);
 }
 
+// What a Newton iteration does next in each active lane: arrived, lost (also taken out of `wanted`), or another step.
+static void judge(struct ct_lanes *s, const vec *phi, int i, double *before, bool *active,
+                  bool *wanted)
+{
+    vec size = {0}, zero = {0};
+    for (int k = 0; k < s->nrow; k++) {
+        raise(&size, &phi[k]);
+        zero += 0 * phi[k];
+    }
+    for (int l = 0; l < W; l++) {
+        if (!active[l])
+            continue;
+        const double now = zero[l] == 0 ? size[l] : INFINITY, sigma = s->sigma[l];
+        const double enough
+            = sigma < small_pivot ? position_tolerance * sigma : position_tolerance;
+        if (now <= enough || (now < gained_below && now > before[l] / 4))
+            active[l] = false;
+        else if (i == MOST_NEWTON || !isfinite(now) || now > 1e3 * before[l])
+            active[l] = wanted[l] = false;
+        before[l] = now;
+    }
+}
+
 // Positions of the wanted lanes onto their constraints; what cannot be is taken out of `wanted`. J is that of the end.
-static void project_positions(struct ct_lanes *s, const double *t, vec *y, bool *wanted)
+static void close_by_matrices(struct ct_lanes *s, const double *t, vec *y, bool *wanted)
 {
     bool active[W];
-    double before[W];
+    double before[W] = {INFINITY, INFINITY, INFINITY, INFINITY};
     memcpy(active, wanted, sizeof active);
-    for (int l = 0; l < W; l++)
-        before[l] = INFINITY;
     for (int i = 0;; i++) {
         evaluate_constraint(s, t, y);
-        for (int l = 0; l < W; l++) {
-            if (!active[l])
-                continue;
-            const double size = largest(s->constraint.out, l, s->nrow), sigma = s->sigma[l];
-            const double enough
-                = sigma < small_pivot ? position_tolerance * sigma : position_tolerance;
-            if (size <= enough || (size < gained_below && size > before[l] / 4))
-                active[l] = false;
-            else if (i == MOST_NEWTON || !isfinite(size) || size > 1e3 * before[l])
-                active[l] = wanted[l] = false;
-            before[l] = size;
-        }
+        judge(s, s->constraint.out, i, before, active, wanted);
         if (!any(active))
             return;
         factor(s, active);
@@ -629,13 +765,9 @@ static void project_positions(struct ct_lanes *s, const double *t, vec *y, bool 
     }
 }
 
-// Lanes of y in `wanted` onto the constraints at t; those that cannot be are taken out.
-static void project(struct ct_lanes *s, const double *t, vec *y, bool *wanted)
+static void project_by_matrices(struct ct_lanes *s, const double *t, vec *y, bool *wanted)
 {
-    normalise(s, y, wanted);
-    if (!s->nrow || !any(wanted))
-        return;
-    project_positions(s, t, y, wanted);
+    close_by_matrices(s, t, y, wanted);
     factor(s, wanted);
     for (int i = 0; i < 2; i++) { // linear; the second step takes off rounding
         correction(s, s->constraint.out + s->nrow, wanted);
@@ -645,17 +777,108 @@ static void project(struct ct_lanes *s, const double *t, vec *y, bool *wanted)
         if (i == 0)
             evaluate_constraint(s, t, y);
     }
+}
+
+// Phi, v and corrections by the form; lanes for which it is not sound are taken out.
+static void close_form(struct ct_lanes *s, const double *t, const vec *y, bool *formed)
+{
+    set_input(s, t, y);
+    run_program(&s->closing, s->input);
+    weigh(s, s->closing.out + 2 * s->nrow + 2 * s->nu, formed);
+}
+
+// y (+) what the form says, in the lanes asked for: dq for positions, du for speeds.
+static void add_positions(struct ct_lanes *s, vec *y, const bool *wanted)
+{
+    const vec *dq = s->closing.out + 2 * s->nrow;
+    for (int l = 0; l < W; l++) {
+        if (!wanted[l])
+            continue;
+        for (int k = 0; k < s->nu && !s->has_quaternion; k++)
+            y[s->e->u[k].q][l] += dq[k][l];
+        if (!s->has_quaternion)
+            continue;
+        take_lane(s->one_d, dq, l, (size_t)s->nu);
+        take_lane(s->one_q, y, l, (size_t)s->nq);
+        ct_machine_retract(s->m, s->one_q, s->one_d);
+        put_lane(y, l, s->one_q, (size_t)s->nq);
+    }
+}
+
+static void add_speeds(struct ct_lanes *s, vec *y, const bool *wanted)
+{
+    const vec *du = s->closing.out + 2 * s->nrow + s->nu;
+    for (int l = 0; l < W; l++)
+        for (int k = 0; k < s->nu && wanted[l]; k++)
+            y[s->nq + k][l] += du[k][l];
+}
+
+// Lanes of `formed` onto the constraints by the form. Those it is not sound for are taken out and go on by matrices;
+// those that are lost are taken out of `wanted`, too.
+static void project_by_form(struct ct_lanes *s, const double *t, vec *y, bool *formed,
+                            bool *wanted)
+{
+    double before[W] = {INFINITY, INFINITY, INFINITY, INFINITY};
+    bool active[W], arrived[W] = {false};
+    memcpy(active, formed, sizeof active);
+    for (int i = 0; any(active); i++) {
+        bool now[W];
+        close_form(s, t, y, active);
+        memcpy(now, active, sizeof now);
+        judge(s, s->closing.out, i, before, active, wanted);
+        for (int l = 0; l < W; l++) { // sound, but no step is left to take
+            now[l] &= !active[l] && wanted[l];
+            arrived[l] |= now[l];
+        }
+        add_positions(s, y, active);
+        add_speeds(s, y, now);
+    }
+    memcpy(formed, arrived, sizeof arrived);
+    if (!any(formed))
+        return;
+    close_form(s, t, y, formed); // once more, to take off rounding
+    add_speeds(s, y, formed);
+}
+
+// Lanes of y in `wanted` onto the constraints at t; those that cannot be are taken out.
+static void project(struct ct_lanes *s, const double *t, vec *y, bool *wanted)
+{
+    bool formed[W], rest[W];
+    normalise(s, y, wanted);
+    if (!s->nrow || !any(wanted))
+        return;
+    find_formed(s, wanted, formed);
+    for (int l = 0; l < W; l++)
+        formed[l] &= s->kappa[l] <= kappa_largest;
+    if (any(formed))
+        project_by_form(s, t, y, formed, wanted);
+    for (int l = 0; l < W; l++)
+        rest[l] = wanted[l] && !formed[l];
+    if (any(rest)) {
+        bool lost[W];
+        memcpy(lost, rest, sizeof lost);
+        project_by_matrices(s, t, y, rest);
+        for (int l = 0; l < W; l++) {
+            wanted[l] &= !lost[l] || rest[l];
+            rest[l] &= s->fits[l];
+        }
+        if (any(rest)) { // sigma has just been found
+            bool ignored[W];
+            memcpy(ignored, rest, sizeof ignored);
+            close_form(s, t, y, ignored);
+            for (int l = 0; l < W; l++)
+                s->at_sigma[l] = rest[l] ? s->strength[l] : s->at_sigma[l];
+        }
+    }
+    set_input(s, t, y);
+    if (s->form)
+        check_form(s, wanted);
     for (int l = 0; l < W; l++)
         if (wanted[l])
             renew(s, l, y);
 }
 
 // ---- the derivative, as in simulate.c -----------------------------------------------------------------
-
-static bool is_near_singular(const struct ct_lanes *s, int l)
-{
-    return s->rank && s->sigma[l] < singular_pivot * s->lane[l].pivot_most;
-}
 
 // y as it is, or with the wanted lanes beside a singular position put onto the constraints.
 static const vec *put_stages(struct ct_lanes *s, const double *t, const vec *y, bool *wanted)
@@ -673,29 +896,65 @@ static const vec *put_stages(struct ct_lanes *s, const double *t, const vec *y, 
     return s->stage;
 }
 
+// u' into a and q' into dy by matrices, in the lanes asked for.
+static void solve_matrices(struct ct_lanes *s, vec *dy, const bool *wanted)
+{
+    const struct ct_equations *e = s->e;
+    const vec *out = s->motion.out, *Q = out + e->nM, *J = Q + s->nu, *gam = J + e->nJ;
+    run_program(&s->motion, s->input);
+    for (size_t i = 0; i < e->nM; i++) {
+        const int r = e->M[i].row, c = e->M[i].column;
+        s->M[r + s->nu * c] = s->M[c + s->nu * r] = out[i];
+    }
+    scatter_J(s, J);
+    accelerate(s, Q, gam, wanted);
+    memcpy(dy, gam + s->nrow, (size_t)s->nq * sizeof *dy);
+}
+
+// u' into a, q' into dy, by the form where it is sound, else by matrices. Returns Q, as the latter have it.
+static const vec *solve(struct ct_lanes *s, vec *dy, const bool *wanted)
+{
+    bool formed[W], tried[W], rest[W];
+    find_formed(s, wanted, formed);
+    memcpy(tried, formed, sizeof tried);
+    if (any(formed))
+        solve_form(s, formed);
+    for (int l = 0; l < W; l++)
+        rest[l] = wanted[l] && !formed[l];
+    const bool is_mixed = any(rest);
+    if (is_mixed || !any(formed))
+        solve_matrices(s, dy, rest);
+    for (int l = 0; l < W; l++)
+        if (rest[l]) // the strength belongs to sigma, as it is found now
+            s->at_sigma[l] = tried[l] ? s->strength[l] : 0;
+    const vec *out = s->solved.out;
+    if (!is_mixed && any(formed)) {
+        memcpy(s->a, out, (size_t)s->nu * sizeof *out);
+        memcpy(dy, out + s->nu, (size_t)s->nq * sizeof *out);
+    }
+    for (int l = 0; l < W && is_mixed; l++) {
+        for (int i = 0; i < s->nu && formed[l]; i++)
+            s->a[i][l] = out[i][l];
+        for (int i = 0; i < s->nq && formed[l]; i++)
+            dy[i][l] = out[s->nu + i][l];
+    }
+    return s->motion.out + s->e->nM;
+}
+
 // dy = f(t, y); lanes without one are taken out of `wanted`.
 static void derive(struct ct_lanes *s, const double *t, const vec *y, vec *dy, bool *wanted)
 {
-    const struct ct_equations *e = s->e;
     const int nu = s->nu;
-    const vec *out = s->motion.out, *rate = out + nu, *Q = NULL;
+    const vec *Q = NULL;
     set_input(s, t, put_stages(s, t, y, wanted));
-    run_program(&s->motion, s->input);
     s->count.evaluations++;
     if (s->is_solved) {
-        memcpy(s->a, out, (size_t)nu * sizeof *out);
+        run_program(&s->motion, s->input);
+        memcpy(s->a, s->motion.out, (size_t)nu * sizeof *s->a);
+        memcpy(dy, s->motion.out + nu, (size_t)s->nq * sizeof *dy);
     } else {
-        Q = out + e->nM;
-        const vec *J = Q + nu, *gam = J + e->nJ;
-        rate = gam + s->nrow;
-        for (size_t i = 0; i < e->nM; i++) {
-            const int r = e->M[i].row, c = e->M[i].column;
-            s->M[r + nu * c] = s->M[c + nu * r] = out[i];
-        }
-        scatter_J(s, J);
-        accelerate(s, Q, gam, wanted);
+        Q = solve(s, dy, wanted);
     }
-    memcpy(dy, rate, (size_t)s->nq * sizeof *dy);
     memcpy(dy + s->nq, s->a, (size_t)nu * sizeof *dy);
     dy[s->ny - 1] = (vec){0};
     if (s->has_power) {
@@ -1035,7 +1294,8 @@ bool ct_lanes_load(struct ct_lanes *s, int l, const struct ct_run_options *o)
             put_lane(s->dy, i, s->one_dy, (size_t)s->ny);
             s->t[i] = 0;
         }
-    struct program *const all[] = {&s->motion, &s->constraint, &s->power, &s->memory};
+    struct program *const all[] = {&s->motion, &s->constraint, &s->power,  &s->memory,
+                                   &s->solved, &s->checked,    &s->closing};
     for (size_t i = 0; i < COUNT(all); i++)
         prepare(all[i], s->input);
     s->is_used = true;
