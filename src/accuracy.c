@@ -31,10 +31,6 @@ static const double reference_margin = 0.1;
 // Steps of fixed length: as many halvings, from the spacing of samples but at least so many in the run.
 static const int most_steps_of_ladder = 7;
 static const double least_fixed_steps = 100;
-// A column this small against the largest one is rounding: sums of terms of order 1 leave some hundred eps.
-static const double rounding = 1e-13;
-// The same where two references do not agree on a single digit of it.
-static const double rounding_without_digits = 1e-9;
 // Times of samples in a file are matched to this part of the run.
 static const double same_time = 1e-9;
 
@@ -175,8 +171,7 @@ static double compare_runs(const struct ct_accuracy *a, const double *x, const d
         largest = fmax(largest, scale[i]);
     }
     for (size_t i = 0; i < n; i++) {
-        const bool has_digits = deviation[i] < 0.5 * scale[i];
-        if (scale[i] <= (has_digits ? rounding : rounding_without_digits) * largest)
+        if (ct_is_rounding(scale[i], deviation[i], largest))
             scale[i] = 0;
         else
             worst = fmax(worst, deviation[i] / scale[i]);

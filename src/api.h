@@ -7,6 +7,7 @@
 
 #include "formulate/formulate.h"
 #include "report/csv.h"
+#include "solve/settle.h"
 #include "solve/simulate.h"
 
 #include <cotree/cotree.h>
@@ -18,7 +19,9 @@ struct ct_system {
     struct ct_equations equations;
     struct ct_tree_report tree;
     struct ct_equations start_equations; // on trees through joints, for assembling
-    double read, generate;               // seconds
+    struct ct_equations
+        held_equations;    // with drivers that stand still, where beams start in equilibrium
+    double read, generate; // seconds
 };
 
 /// What multipliers leave open, at the start and at the end of a run.
@@ -27,24 +30,46 @@ struct ct_open {
     bool *result; // depends on such a one
 };
 
+/// The estimated global error of an output.
+struct ct_output_error {
+    double absolute; // the largest over samples
+    double scale;    // largest |value|
+    double relative; // absolute / scale; NaN: the output is zero but for rounding
+};
+
+/// What a second run says about the first. See verify.c.
+struct ct_estimate {
+    const char *how;                // the second run; NULL: none was made
+    const char *why_not;            // it failed
+    struct ct_output_error *output; // (nresult); NULL: not known
+    size_t which;                   // the output that is worst; nresult: there is none
+    double worst;                   // its relative error; NaN: not known
+    double holds_until;             // the last sample up to which errors are as wanted
+};
+
 struct ct_sim {
     struct ct_ctx own;
     struct ct_system *system;
     const char *method_why;
-    double tolerance; // wanted of outputs
+    double tolerance;  // wanted of outputs
+    double least_rtol; // of steps: what double precision allows
     struct ct_run_options run_options;
     struct ct_start start;
     struct ct_run *run;
     struct ct_run_report report;
     struct ct_open open;
+    bool is_verified; // a second run is wanted
+    double *kept;     // rows so far, for it  (nkept x nresult)
+    size_t nkept;
+    struct ct_estimate estimate; // what it said
     const struct ct_sim_results *results;
     struct ct_result_file *file; // sim.c
     struct ct_progress *progress;
     long nstep;      // accepted so far, for deadlines
     double deadline; // on ct_clock, when the run is given up; 0: none
     bool has_run, is_done, is_late;
-    double time;                      // of the last sample
-    double compile, integrate, write; // seconds
+    double time;                                      // of the last sample
+    double compile, integrate, write, verify_seconds; // seconds
 };
 
 /// What the options and the model's `simulation` say about runs, into sim->run_options. Errors: E003.
@@ -67,6 +92,11 @@ const char *ct_suggest(struct ct_arena *a, const char *name, const char *const *
 /// The same; else "; there are x, y, z".
 const char *ct_suggest_or_list(struct ct_arena *a, const char *name, const char *const *names,
                                size_t n);
+/// After a run that kept its rows: another one, and what it says, in sim->estimate. Raises the guard.
+void ct_sim_verify(struct ct_sim *sim);
+/// True for a column whose largest value, scale, is rounding beside the largest column; deviation: how far
+/// two runs differ there.
+bool ct_is_rounding(double scale, double deviation, double largest);
 /// Monotonic time [s].
 double ct_clock(void);
 

@@ -8,14 +8,23 @@
 #include <stdlib.h>
 #include <string.h>
 
-// The error of a solution is larger than that of its steps: over the reference cases 10 to 600 times the
-// tolerance of the steps. So steps are held to this fraction of what is wanted, as far as double
-// precision has that many digits. Closed loops lose digits where they pass near singular positions: ten
-// four-bars in a row (R05_N10) need 1e-12, and then meet their reference to 4e-10.
-static const double safety = 0.01;
+// The error of a solution is larger than that of its steps, so steps are held to less than what is wanted, as far as
+// double precision has that many digits. Over the reference cases outputs err by up to 30 times the tolerance
+// of the steps with dopri5 where there are no loops, by up to 75 times past singular positions; with
+// dop853 by up to 6 times.
+static const double share_of_loops = 1e-3, share_of_low_order = 2e-3,
+                    share_of_high_order = 5e-3;
+// Steps of order p err by h^(p+1) and the solution by h^p: T = c tol^(p/(p+1)). For order 2, c is 10 to 50 in most cases.
+static const double order2_factor = 30;
+// Of Radau's steps the error of an estimate of order 3 is controlled, eased to tol^(2/3)/10: T/10 for this power of T.
+static const double radau_power = 1.5;
+static const double radau_share = 1e-2;  // for loose tolerances
+static const double radau_least = 1e-13; // below, rounding in its iterations shows
+// Closed loops lose digits where they pass near singular positions: ten four-bars in a row (R05_N10)
+// need 1e-12, and then meet their reference to 4e-10.
 static const double least_rtol = 2e-14, least_rtol_loops = 1e-12;
-// Below this tolerance of the steps the higher order pays for its twelve evaluations.
-static const double high_order_below = 1e-8;
+// Above this tolerance high order does not pay for its twelve evaluations.
+static const double high_order_up_to = 1e-4;
 static const long steps_between_looks = 32; // at the clock, for runs with a deadline
 
 // ---- results as a file --------------------------------------------------------------------------------
@@ -134,24 +143,52 @@ static bool no_method(struct ct_sim *sim, const char *name, bool is_option)
                     ct_suggest_or_list(sim->own.model, name, names, (size_t)ct_nmethod + 1));
 }
 
+// What steps are held to so that outputs err by about `tolerance`.
+static double tolerance_of_steps(const struct ct_sim *sim, const struct ct_method *m)
+{
+    const double t = sim->tolerance;
+    const bool has_loops = sim->system->equations.nrow > 0;
+    if (m->is_implicit)
+        return m->order < 3 ? pow(t / order2_factor, 1.5)
+                            : fmin(radau_share * t, pow(t, radau_power));
+    return t
+         * (m->order > 5 ? share_of_high_order
+            : has_loops  ? share_of_loops
+                         : share_of_low_order);
+}
+
+static void set_tolerances(const struct ct_sim *sim, const struct ct_method *m, double absolute,
+                           double *rtol, double *atol)
+{
+    *rtol = fmax(tolerance_of_steps(sim, m), sim->least_rtol);
+    *atol = absolute / sim->tolerance * *rtol;
+}
+
+static void choose_automatically(struct ct_sim *sim)
+{
+    struct ct_run_options *o = &sim->run_options;
+    // Where loops pass near singular positions, long steps of high order lose the branch they are on.
+    const bool is_open = sim->system->equations.nrow == 0;
+    const bool high = o->step == 0 && is_open && sim->tolerance <= high_order_up_to;
+    o->method = ct_method_find(high ? "dop853" : "dopri5");
+    sim->method_why = o->step > 0 ? "automatic: a fixed step"
+                    : !is_open    ? "automatic: closed loops"
+                    : high        ? "automatic: no loops"
+                                  : "automatic: a loose tolerance";
+    if (o->step == 0 && pow(sim->tolerance, radau_power) >= radau_least)
+        o->stiff_method = ct_method_find("radau5");
+}
+
 static bool choose_method(struct ct_sim *sim, const char *option)
 {
     const char *name = option ? option : sim->system->model.simulation.method;
     struct ct_run_options *o = &sim->run_options;
     sim->method_why = option ? "as asked" : "as the model says";
     o->method = ct_method_find(name);
-    if (o->method)
-        return true;
-    if (strcmp(name, "auto") != 0)
+    if (!o->method && strcmp(name, "auto") != 0)
         return no_method(sim, name, option != NULL);
-    // Where loops pass near singular positions, long steps of high order lose the branch they are on.
-    const bool is_open = sim->system->equations.nrow == 0;
-    const bool high = o->step == 0 && is_open && o->rtol < high_order_below;
-    o->method = ct_method_find(high ? "dop853" : "dopri5");
-    sim->method_why = o->step > 0 ? "automatic: a fixed step"
-                    : !is_open    ? "automatic: closed loops"
-                    : high        ? "automatic: no loops, a tight tolerance"
-                                  : "automatic: a moderate tolerance";
+    if (!o->method)
+        choose_automatically(sim);
     return true;
 }
 
@@ -175,18 +212,23 @@ bool ct_sim_resolve(struct ct_sim *sim, const struct ct_sim_options *o)
     const double absolute = o->absolute > 0  ? o->absolute
                           : o->tolerance > 0 ? o->tolerance / 100
                                              : m->atol;
-    const double least = sim->system->equations.nrow ? least_rtol_loops : least_rtol;
-    sim->run_options = (struct ct_run_options){
+    sim->least_rtol = sim->system->equations.nrow ? least_rtol_loops : least_rtol;
+    sim->is_verified = o->verify;
+    struct ct_run_options *run = &sim->run_options;
+    *run = (struct ct_run_options){
         .duration = o->until > 0 ? o->until : m->duration,
-        .rtol = fmax(safety * sim->tolerance, least),
-        .atol = fmax(safety * absolute, safety * least),
         .step = o->step > 0 ? o->step : m->step,
         .nsample = o->samples > 0 ? (size_t)o->samples
                  : o->until > 0   ? samples_until(m, o->until)
                                   : (size_t)m->samples,
         .rate_jumps = m->rate_jumps,
     };
-    return choose_method(sim, o->method);
+    if (!choose_method(sim, o->method))
+        return false;
+    set_tolerances(sim, run->method, absolute, &run->rtol, &run->atol);
+    if (run->stiff_method)
+        set_tolerances(sim, run->stiff_method, absolute, &run->stiff_rtol, &run->stiff_atol);
+    return true;
 }
 
 // Machine code where it can be had, unless the tape is asked for.
@@ -231,6 +273,9 @@ static bool prepare(struct ct_sim *sim, const struct ct_sim_options *o)
     if (needs_dynamics(&s->equations, sim->run_options.method))
         ct_formulate_dynamics(&s->equations);
     if (!ct_assemble(&sim->own, sim->own.model, &s->model, &s->start_equations, &sim->start))
+        return false;
+    if (s->held_equations.build
+        && !ct_settle(&sim->own, sim->own.model, &s->model, &s->held_equations, &sim->start))
         return false;
     sim->run = ct_run_create(&sim->own, sim->own.model, &s->model, &s->equations, &sim->start);
     sim->compile = ct_clock() - start;
@@ -297,6 +342,8 @@ static bool at_row(void *user, double t, const double *value, size_t n)
     struct ct_sim *sim = user;
     const double start = ct_clock();
     sim->time = t;
+    if (sim->kept)
+        memcpy(sim->kept + sim->nkept++ * n, value, n * sizeof *value);
     bool go_on = !sim->file || write_row(sim, t, value);
     if (go_on && sim->results->row)
         go_on = sim->results->row(sim->results->user, t, value, n);
@@ -315,6 +362,29 @@ static bool at_progress(void *user, double t, double end)
     return !sim->is_late;
 }
 
+static void want_residual(void *user)
+{
+    struct ct_sim *sim = user;
+    ct_formulate_residual(&sim->system->equations);
+}
+
+// Why the method is what it is: known when the run is over.
+static void explain_change(struct ct_sim *sim)
+{
+    const struct ct_run_report *r = &sim->report;
+    if (isnan(r->changed_at))
+        return;
+    const char *until = isnan(r->returned_at)
+                          ? ""
+                          : ct_arena_printf(sim->own.model, " to t = %.3g s", r->returned_at);
+    sim->method_why = ct_arena_printf(sim->own.model,
+                                      "automatic, but %s from t = %.3g s%s: stiff, motions of "
+                                      "%.2g 1/s are possible where there "
+                                      "are %.2g 1/s; %.2g times as far for the work",
+                                      sim->run_options.stiff_method->name, r->changed_at, until,
+                                      r->fast, r->slow, r->gain);
+}
+
 static bool integrate(struct ct_sim *sim)
 {
     struct ct_run_options *o = &sim->run_options;
@@ -326,12 +396,14 @@ static bool integrate(struct ct_sim *sim)
     if (sim->results->progress || sim->deadline > 0)
         o->progress = at_progress;
     o->row = at_row;
+    o->want_residual = want_residual;
     o->user = sim;
     const double start = ct_clock();
     const bool ok = ct_run_simulate(sim->run, o, &sim->report);
     sim->integrate = ct_clock() - start - sim->write;
     ct_progress_finish(&progress);
     sim->progress = NULL;
+    explain_change(sim);
     return ok;
 }
 
@@ -350,6 +422,9 @@ static bool run(struct ct_sim *sim)
     if (sim->results->path && !open_file(sim, sim->results->path))
         return false;
     sim->has_run = true;
+    if (sim->is_verified)
+        sim->kept = CT_NEWN(sim->own.model, double,
+                            sim->run_options.nsample * sim->system->equations.nresult + 1);
     bool ok = integrate(sim) || sim->own.nerror == 0;
     const double start = ct_clock();
     if (ok)
@@ -357,6 +432,8 @@ static bool run(struct ct_sim *sim)
     if (sim->file)
         ok = close_file(sim, ok);
     sim->write += ct_clock() - start;
+    if (ok && sim->kept)
+        ct_sim_verify(sim);
     sim->is_done = ok;
     return ok;
 }

@@ -2,6 +2,7 @@
 #include "api.h"
 
 #include "report/json.h"
+#include "report/stage_beam.h"
 
 #include <math.h>
 #include <string.h>
@@ -29,6 +30,12 @@ static long operations(const struct ct_sim *sim)
     return count(&c) + (long)ct_embed_operations(embed);
 }
 
+// The report has none before the run.
+static const struct ct_method *last_method(const struct ct_sim *sim)
+{
+    return sim->report.method ? sim->report.method : sim->run_options.method;
+}
+
 static long freedoms(const struct ct_sim *sim)
 {
     return (long)sim->system->equations.nu - sim->report.rank;
@@ -41,7 +48,7 @@ static long redundant(const struct ct_sim *sim)
 
 static bool is_arm(const struct ct_equations *e, int edge)
 {
-    return strcmp(e->edge_kind[edge], "arm") == 0;
+    return e->build->edge[edge].kind == CT_EDGE_ARM;
 }
 
 static bool same_trees(const struct ct_equations *e)
@@ -122,6 +129,26 @@ static void write_open(struct ct_json *j, const struct ct_sim *sim)
     ct_json_end(j);
 }
 
+// Null without --verify, and where the second run failed.
+static void write_estimate(struct ct_json *j, const struct ct_sim *sim)
+{
+    const struct ct_estimate *e = &sim->estimate;
+    const struct ct_equations *equations = &sim->system->equations;
+    ct_json_number(j, "global", e->output ? e->worst : NAN);
+    ct_json_text(j, "compared_with", e->how);
+    if (!e->output)
+        return;
+    ct_json_number(j, "holds_until", e->holds_until);
+    ct_json_object(j, "outputs");
+    for (size_t i = 0; i < equations->nresult; i++) {
+        ct_json_object(j, equations->result[i].name);
+        ct_json_number(j, "absolute", e->output[i].absolute);
+        ct_json_number(j, "relative", e->output[i].relative);
+        ct_json_end(j);
+    }
+    ct_json_end(j);
+}
+
 // How accelerations are formulated, and the predicted cost of what it was chosen from.
 static const struct {
     const char *key, *name;
@@ -143,12 +170,14 @@ static void write_formulation(struct ct_json *j, const struct ct_equations *e)
 static void write_work(struct ct_json *j, const struct ct_sim *sim)
 {
     const struct ct_run_report *r = &sim->report;
-    ct_json_text(j, "method", sim->run_options.method->name);
+    ct_json_text(j, "method", last_method(sim)->name);
+    ct_json_text(j, "method_why", sim->method_why);
     ct_json_number(j, "tolerance", sim->tolerance);
     ct_json_text(j, "backend", ct_run_machine(sim->run)->backend);
     write_formulation(j, &sim->system->equations);
     ct_json_integer(j, "steps", r->stats.steps);
     ct_json_integer(j, "rejected_steps", r->stats.rejected_steps);
+    ct_json_integer(j, "inaccurate_steps", r->stats.inaccurate_steps);
     ct_json_integer(j, "evaluations", r->stats.evaluations);
     ct_json_integer(j, "jacobians", r->stats.jacobians);
     ct_json_integer(j, "factorizations", r->factorizations);
@@ -166,11 +195,13 @@ static void write_work(struct ct_json *j, const struct ct_sim *sim)
     ct_json_number(j, "compile", sim->compile);
     ct_json_number(j, "integrate", sim->integrate);
     ct_json_number(j, "write", sim->write);
+    ct_json_number(j, "verify", sim->verify_seconds);
     ct_json_end(j);
     ct_json_object(j, "error");
     ct_json_number(j, "energy_drift", r->energy_drift);
     ct_json_number(j, "position_constraint", r->position_constraint);
     ct_json_number(j, "velocity_constraint", r->velocity_constraint);
+    write_estimate(j, sim);
     ct_json_end(j);
 }
 
@@ -278,6 +309,56 @@ static void print_open(FILE *out, const struct ct_sim *sim)
                 sim->open.result, e->nresult, result_name, e);
 }
 
+// The outputs with their errors, so many to a line as fit.
+static void print_output_errors(FILE *out, const struct ct_sim *sim)
+{
+    const struct ct_equations *e = &sim->system->equations;
+    const size_t most_shown = 24; // the rest is in the summary file
+    const int width = 88;
+    const char *separator = "";
+    int column = 0;
+    for (size_t i = 0; i < e->nresult && i < most_shown; i++) {
+        const struct ct_output_error *o = &sim->estimate.output[i];
+        char text[24] = "zero";
+        if (!isnan(o->relative))
+            snprintf(text, sizeof text, "%.1e", o->relative);
+        const int n = (int)(strlen(e->result[i].name) + strlen(text)) + 3;
+        if (column && column + n > width) {
+            fputs(",\n", out);
+            separator = "";
+            column = 0;
+        }
+        column += n;
+        fprintf(out, "%s%s %s", *separator || column > n ? separator : "             ",
+                e->result[i].name, text);
+        separator = ", ";
+    }
+    if (e->nresult > most_shown)
+        fprintf(out, ", %zu more", e->nresult - most_shown);
+    fputc('\n', out);
+}
+
+static void print_estimate(FILE *out, const struct ct_sim *sim)
+{
+    const struct ct_estimate *e = &sim->estimate;
+    const struct ct_equations *equations = &sim->system->equations;
+    if (!e->how)
+        return;
+    if (!e->output) {
+        fprintf(out, "global error not known: the second run, %s, failed: %s\n", e->how,
+                e->why_not);
+        return;
+    }
+    fprintf(out, "global error %.1e", e->worst);
+    if (e->which < equations->nresult)
+        fprintf(out, " in %s", equations->result[e->which].name);
+    fprintf(out, ", estimated from a second run (%s, %.3g s)\n", e->how, sim->verify_seconds);
+    print_output_errors(out, sim);
+    if (e->holds_until < sim->time && sim->run_options.step == 0)
+        fprintf(out, "note: more than ten times the tolerance after t = %.9g s\n",
+                e->holds_until);
+}
+
 void ct_sim_print_summary(const struct ct_sim *sim, FILE *out)
 {
     const struct ct_run_report *r = &sim->report;
@@ -290,12 +371,15 @@ void ct_sim_print_summary(const struct ct_sim *sim, FILE *out)
         fprintf(out, "step %g s\n", sim->run_options.step);
     else
         fprintf(out, "tolerance %g\n", sim->tolerance);
-    fprintf(out,
-            "work         %ld steps, %ld rejected, %ld evaluations of %ld operations (%s)\n",
-            r->stats.steps, r->stats.rejected_steps, r->stats.evaluations, operations(sim),
-            ct_run_machine(sim->run)->backend);
+    fprintf(
+        out,
+        "work         %ld steps, %ld rejected (%ld for their error), %ld evaluations of %ld "
+        "operations (%s)\n",
+        r->stats.steps, r->stats.rejected_steps, r->stats.inaccurate_steps,
+        r->stats.evaluations, operations(sim), ct_run_machine(sim->run)->backend);
     fprintf(out, "error        energy drift %.2g, constraints %.2g, their rates %.2g\n",
             r->energy_drift, r->position_constraint, r->velocity_constraint);
+    print_estimate(out, sim);
     fprintf(out,
             "seconds      read %.3g, generate %.3g, compile %.3g, integrate %.3g, write %.3g\n",
             sim->system->read, sim->system->generate, sim->compile, sim->integrate, sim->write);
@@ -346,6 +430,14 @@ static void print_redundant(FILE *out, const struct ct_sim *sim)
     fputc('\n', out);
 }
 
+static void print_beams(FILE *out, const struct ct_equations *e)
+{
+    for (size_t i = 0; i < e->build->nflexible; i++) {
+        const struct ct_flexible *f = &e->build->flexible[i];
+        fprintf(out, "beam         %s: %s\n", f->name, ct_beam_sentence(e->build->arena, f));
+    }
+}
+
 void ct_sim_print_check(const struct ct_sim *sim, FILE *out)
 {
     const struct ct_system *s = sim->system;
@@ -370,6 +462,7 @@ void ct_sim_print_check(const struct ct_sim *sim, FILE *out)
                 s->tree.cost_least_weight);
     fputc('\n', out);
     print_trees(out, e);
+    print_beams(out, e);
     for (size_t i = 0; i < e->nleft_out; i++)
         fprintf(out, "left out     %s: %s\n", e->left_out[i].what, e->left_out[i].why);
     print_formulation(out, e);

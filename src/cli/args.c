@@ -61,6 +61,8 @@ static const struct option {
     {"threads", 0, "N", COUNT, FIELD(threads), CLI_SWEEP, false, "at most so many; all cores"},
     {"lanes", 0, "N", COUNT, FIELD(lanes), CLI_SWEEP, false,
      "members side by side in a core: 4, or 1; 4 where it can be"},
+    {"verify", 0, NULL, FLAG, FIELD(verify), CLI_SIMULATE, false,
+     "a second run; the difference tells the global error"},
     {"error", 0, "E", NUMBER, FIELD(error), CLI_ACCURACY, false,
      "the error that the cheapest setting must meet; 1e-6"},
     {"reference", 0, "FILE.csv", TEXT, FIELD(reference), CLI_ACCURACY, false,

@@ -25,7 +25,7 @@ struct cli_args {
     double tolerance, step, until, error;
     long samples, sample, threads, lanes;
     unsigned long long seed;
-    bool keep_all, resume, quiet, help, version;
+    bool keep_all, resume, verify, quiet, help, version;
 };
 
 /// One bit for each command, for the table of options.

@@ -27,6 +27,7 @@ struct ct_sim_options cli_sim_options(const struct cli_args *args)
                                    .step = args->step,
                                    .until = args->until,
                                    .samples = args->samples,
+                                   .verify = args->verify,
                                    .backend = args->backend};
 }
 

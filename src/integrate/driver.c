@@ -259,6 +259,7 @@ static void adapt_after_refusal(struct run *r, double h, double error)
 {
     const double alpha = 1.0 / (r->method->error_order + 1);
     r->stats->rejected_steps++;
+    r->stats->inaccurate_steps += error > 1;
     r->h = error > 1 ? h * fmax(most_shrink, safety * pow(error, -alpha)) : h / 2;
     r->was_refused = true;
 }

@@ -103,7 +103,8 @@ struct ct_integrate_options {
 
 struct ct_integrate_stats {
     long steps, rejected_steps, evaluations, jacobians, factorizations, events;
-    double last_time; // reached, also on failure
+    long inaccurate_steps; // of those rejected: for their error; the others could not be done
+    double last_time;      // reached, also on failure
 };
 
 /// What an error is measured against: rtol * max(|y_i| at either end of the step) + atol.

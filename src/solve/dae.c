@@ -28,10 +28,12 @@ static enum ct_eval start(void *user, double t, const double *y, double *a, doub
 {
     struct ct_embed *s = user;
     ct_machine_set(s->m, t, y);
-    ct_machine_motion(s->m);
-    const enum ct_eval e = ct_embed_accelerate(s);
-    if (e != CT_EVAL_OK)
-        return e;
+    if (!ct_machine_solved(s->m, s->a)) {
+        ct_machine_motion(s->m);
+        const enum ct_eval e = ct_embed_accelerate(s);
+        if (e != CT_EVAL_OK)
+            return e;
+    }
     memcpy(a, s->a, s->m->nu * sizeof *a);
     ct_embed_kept_multipliers(s, lam);
     return CT_EVAL_OK;

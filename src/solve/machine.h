@@ -12,7 +12,8 @@
 #include "expr/tape.h"
 #include "formulate/equations.h"
 
-/// Which form of the programs is run. All give the same bits.
+/// Which form of the programs is run. All give the same bits, but for the accelerations in closed form of larger systems:
+/// native code fuses their products and sums, which rounds less often.
 enum ct_backend {
     CT_BACKEND_BEST, // native code where it is available
     CT_BACKEND_TAPE,
@@ -62,6 +63,9 @@ struct ct_machine {
 /// Everything lives in a.
 struct ct_machine *ct_machine_create(struct ct_arena *a, const struct ct_model *model,
                                      const struct ct_equations *e);
+
+/// The equations have got their residual only now. a must be the machine's arena.
+void ct_machine_add_residual(struct ct_arena *a, struct ct_machine *m);
 
 /// Run these with another back end. False if native code is asked for and is not
 /// available; the tape is run then. Not for the inner loop: a must be the machine's arena.

@@ -1,5 +1,6 @@
 // See simulate.h.
 #include "solve/simulate.h"
+#include "integrate/stiffness.h"
 #include "solve/dae.h"
 #include "expr/print.h"
 #include "solve/mode.h"
@@ -28,6 +29,16 @@ struct ct_run {
     double pivot_last, pivot_most, pivot_time, singular_in; // see foresee_singular
     double pending; // time of the event ahead; INFINITY if there is none
     bool started;
+    // the choice of the method
+    const struct ct_method *method;  // that steps now
+    struct ct_integrate_stats stats; // of it
+    struct ct_stiffness *stiffness;  // watched for; NULL: not
+    struct ct_trial *trial;          // under way
+    struct ct_trial implicit;        // what the implicit method gains since it took over
+    double explicit_pace;            // what was gained before
+    bool is_suspect;                 // steps ended to think of another method
+    double t_before, last_event;     // times
+    size_t ngiven;                   // samples
 };
 
 // ---- time ------------------------------------------------------------------------------------------------
@@ -132,7 +143,7 @@ static enum ct_eval accepted(void *user, double t, double *y)
     struct ct_run *r = user;
     ct_machine_set(r->m, before_event(r, t), y);
     ct_memory_follow(r->m);
-    if (r->o->method->is_implicit) { // its steps may pass without a projection
+    if (r->method->is_implicit) { // its steps may pass without a projection
         ct_machine_constraint(r->m);
         ct_embed_renew(r->s);
     }
@@ -273,6 +284,7 @@ static enum ct_eval event(void *user, double t, double *y, const signed char *cr
     struct ct_run *r = user;
     struct ct_machine *m = r->m;
     (void)is_time;
+    r->last_event = t;
     double *before = r->scratch + m->nu, *momentum = before + 2 * r->e->ndriver;
     ct_machine_set(m, before_event(r, t), y);
     ct_program_run(&m->driver, m->input);
@@ -446,15 +458,29 @@ static bool at_sample(void *user, double t, const double *y)
                             "the output '%s' has no finite value at t = %.9g",
                             r->e->result[i].name, t);
     keep_ledger(r, y);
+    r->ngiven++;
     memcpy(r->report->final, r->value, r->e->nresult * sizeof *r->value);
     return !r->o->row || r->o->row(r->o->user, t, r->value, r->e->nresult);
+}
+
+// After an event, and next to a singular position, steps had better go on.
+static bool is_to_be_reconsidered(struct ct_run *r, double t, const double *y)
+{
+    const bool may_stop = t > r->last_event && !is_near_singular(r);
+    if (r->method->is_implicit)
+        return ct_trial_has_lost(&r->implicit, t, r->explicit_pace) && may_stop;
+    return ct_stiffness_watch(r->stiffness, t, y, r->o->duration) && may_stop;
 }
 
 static bool at_step(void *user, double t, const double *y)
 {
     struct ct_run *r = user;
-    (void)y;
-    return !r->o->progress || r->o->progress(r->o->user, t, r->o->duration);
+    if (r->o->progress && !r->o->progress(r->o->user, t, r->o->duration))
+        return false;
+    r->is_suspect = r->stiffness && is_to_be_reconsidered(r, t, y);
+    if (!r->is_suspect)
+        r->t_before = t;
+    return !r->is_suspect;
 }
 
 // Results along one vector z of null(J'): those that change depend on the choice of multipliers.
@@ -495,6 +521,158 @@ void ct_run_find_open(struct ct_run *r, double t, const double *y, bool *row, bo
     }
 }
 
+// ---- the choice of the method ---------------------------------------------------------------------------------
+
+static bool at_trial_step(void *user, double t, const double *y)
+{
+    struct ct_run *r = user;
+    (void)y;
+    return ct_trial_step(r->trial, t);
+}
+
+static double operations(const struct ct_program *p)
+{
+    const struct ct_tape_counts c = ct_tape_counts(p->tape);
+    return (double)(c.multiplications + c.additions + c.divisions + c.functions);
+}
+
+static double operations_of_accelerations(const struct ct_run *r)
+{
+    if (r->m->solved.nout)
+        return operations(&r->m->solved);
+    if (r->s->has_form)
+        return operations(&r->s->form[0]->solved);
+    return operations(&r->m->motion) + ct_embed_operations(r->s);
+}
+
+// Arithmetic operations, and some that stand for calls, copies and vectors: as measured on systems of few operations.
+static struct ct_cost find_cost(const struct ct_run *r)
+{
+    const struct ct_machine *m = r->m;
+    const double explicit_overhead = 150, implicit_overhead = 400;
+    const double n = (double)m->nu + 2. * r->s->rank;
+    const double lu = 2. / 3 * n * n * n, solve = 2 * n * n, complex_also = 5;
+    return (struct ct_cost){
+        .evaluation = operations_of_accelerations(r) + explicit_overhead,
+        // three residuals make a correction
+        .residual = operations(&m->residual) + complex_also * solve / 3 + implicit_overhead,
+        .tangent = operations(&m->tangent) + 4 * n * n + implicit_overhead,
+        .factorization = complex_also * lu / 2 + implicit_overhead, // one of the two
+    };
+}
+
+// Time that the implicit method gains for its work, from here; nothing has changed afterwards.
+static double try_implicit(struct ct_run *r, const struct ct_problem *p,
+                           const struct ct_integrate_options *io, const struct ct_cost *cost)
+{
+    struct ct_machine *m = r->m;
+    struct ct_integrate_options trial_io = *io;
+    struct ct_trial trial = {.cost = *cost, .stats = &r->stats};
+    const size_t ndiagnostic = r->ctx->ndiagnostic, nerror = r->ctx->nerror;
+    const double pending = r->pending;
+    double *y = CT_NEWN(r->arena, double, r->ny), *input = CT_NEWN(r->arena, double, m->ninput);
+    memcpy(y, r->y, r->ny * sizeof *y);
+    memcpy(input, m->input, m->ninput * sizeof *input);
+    trial_io.nsample = 0;
+    trial_io.at_step = at_trial_step;
+    r->trial = &trial;
+    ct_integrate(r->ctx, r->o->stiff_method, p, &trial_io, y, &r->stats);
+    r->trial = NULL;
+    // a trial may fail, and may have met events: all that is as if it had not been
+    r->ctx->ndiagnostic = ndiagnostic;
+    r->ctx->nerror = nerror;
+    r->pending = pending;
+    memcpy(m->input, input, m->ninput * sizeof *input);
+    ct_machine_set(m, io->t0, r->y);
+    ct_machine_constraint(m);
+    ct_embed_renew(r->s);
+    return ct_trial_pace(&trial);
+}
+
+// Over to the implicit method if it gets farther for its work. True: it does.
+static bool go_implicit(struct ct_run *r, struct ct_problem *p,
+                        const struct ct_integrate_options *io)
+{
+    const double least_gain = 1.5; // what is counted is not quite what is spent
+    struct ct_run_report *report = r->report;
+    if (!p->dae) {
+        r->o->want_residual(r->o->user);
+        ct_machine_add_residual(r->arena, r->m);
+        p->dae = ct_dae_create(r->arena, r->s);
+    }
+    r->method = r->o->stiff_method; // what follows a step depends on it
+    const struct ct_cost cost = find_cost(r);
+    r->explicit_pace = ct_stiffness_pace(r->stiffness, &cost);
+    const double gain = try_implicit(r, p, io, &cost) / r->explicit_pace;
+    if (gain < least_gain) {
+        r->method = r->o->method;
+        return false;
+    }
+    r->implicit = (struct ct_trial){.cost = cost, .stats = &r->stats, .t0 = io->t0};
+    if (isnan(report->changed_at)) {
+        report->changed_at = io->t0;
+        report->fast = r->stiffness->fast;
+        report->slow = r->stiffness->slow;
+        report->gain = gain;
+    }
+    report->returned_at = NAN;
+    return true;
+}
+
+// Steps have ended at io->t0: which method is to go on?
+static void reconsider(struct ct_run *r, struct ct_problem *p, struct ct_integrate_options *io)
+{
+    io->rtol = r->o->stiff_rtol;
+    io->atol = r->o->stiff_atol;
+    io->first_step = r->method->is_implicit ? 0 : io->t0 - r->t_before;
+    if (!r->method->is_implicit && go_implicit(r, p, io)) {
+        io->first_step = 0;
+    } else {
+        if (r->method->is_implicit)
+            r->report->returned_at = io->t0;
+        r->method = r->o->method;
+        io->rtol = r->o->rtol;
+        io->atol = r->o->atol;
+        ct_stiffness_put_off(r->stiffness);
+    }
+    r->report->method = r->method;
+}
+
+static void add_stats(struct ct_integrate_stats *sum, const struct ct_integrate_stats *s)
+{
+    sum->steps += s->steps;
+    sum->rejected_steps += s->rejected_steps;
+    sum->inaccurate_steps += s->inaccurate_steps;
+    sum->evaluations += s->evaluations;
+    sum->jacobians += s->jacobians;
+    sum->factorizations += s->factorizations;
+    sum->events += s->events;
+    sum->last_time = s->last_time;
+}
+
+// From start to end, with another method from where that pays.
+static bool march(struct ct_run *r, struct ct_problem *p, struct ct_integrate_options io)
+{
+    const double *sample = io.sample;
+    if (r->o->stiff_method && io.step == 0)
+        r->stiffness = ct_stiffness_create(r->arena, p, &r->stats, (int)r->m->nq,
+                                           (int)(r->m->nq + r->m->nu));
+    for (;;) {
+        r->is_suspect = false;
+        const bool ok = ct_integrate(r->ctx, r->method, p, &io, r->y, &r->stats);
+        add_stats(&r->report->stats, &r->stats);
+        if (!ok || !r->is_suspect)
+            return ok;
+        io.t0 = r->stats.last_time;
+        io.sample = sample + r->ngiven;
+        io.nsample = r->o->nsample - r->ngiven;
+        reconsider(r, p, &io);
+        add_stats(&r->report->stats, &r->stats);
+        r->stats = (struct ct_integrate_stats){0};
+        r->t_before = io.t0;
+    }
+}
+
 bool ct_run_simulate(struct ct_run *r, const struct ct_run_options *o,
                      struct ct_run_report *report)
 {
@@ -512,29 +690,31 @@ bool ct_run_simulate(struct ct_run *r, const struct ct_run_options *o,
         sample[0] = 0;
     for (size_t i = 0; i < r->ny; i++)
         watched[i] = i + 1 < r->ny || r->has_power; // the work is as good as the states
-    *report = (struct ct_run_report){0};
+    *report
+        = (struct ct_run_report){.method = o->method, .changed_at = NAN, .returned_at = NAN};
     report->final = CT_NEWN(r->arena, double, r->e->nresult + 1);
     r->pivot_last = r->singular_in = INFINITY;
     r->o = o;
+    r->method = o->method;
+    r->last_event = -INFINITY;
     r->report = report;
     r->nevent = ct_time_events(r->arena, r->m, 0, o->duration, &r->event);
     r->pending = next_time_event(r, 0);
     ct_modes_start(r->m, 0, r->y, r->dy);
     if (refuse_stuck(r, 0, r->y) == CT_EVAL_FATAL)
         return false;
-    const struct ct_problem p
-        = {.user = r,
-           .ny = (int)r->ny,
-           .dae = o->method->is_implicit ? ct_dae_create(r->arena, r->s) : NULL,
-           .watched = watched,
-           .rhs = rhs,
-           .project = project,
-           .accepted = accepted,
-           .singular_in = singular_in,
-           .nroot = r->nroot,
-           .root = root,
-           .next_time_event = next_time_event,
-           .event = event};
+    struct ct_problem p = {.user = r,
+                           .ny = (int)r->ny,
+                           .dae = o->method->is_implicit ? ct_dae_create(r->arena, r->s) : NULL,
+                           .watched = watched,
+                           .rhs = rhs,
+                           .project = project,
+                           .accepted = accepted,
+                           .singular_in = singular_in,
+                           .nroot = r->nroot,
+                           .root = root,
+                           .next_time_event = next_time_event,
+                           .event = event};
     const struct ct_integrate_options io = {.t1 = o->duration,
                                             .rtol = o->rtol,
                                             .atol = o->atol,
@@ -543,7 +723,7 @@ bool ct_run_simulate(struct ct_run *r, const struct ct_run_options *o,
                                             .nsample = n,
                                             .at_sample = at_sample,
                                             .at_step = at_step};
-    const bool ok = ct_integrate(r->ctx, o->method, &p, &io, r->y, &report->stats);
+    const bool ok = march(r, &p, io);
     report->rank = r->s->rank;
     report->switches = r->s->switches;
     report->solves = r->s->solves;

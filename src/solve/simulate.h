@@ -9,6 +9,10 @@
 struct ct_run_options {
     const struct ct_method *method;
     double duration, rtol, atol, step;
+    /// Taken over where the run of an explicit method turns out stiff, with these tolerances; NULL: never.
+    const struct ct_method *stiff_method;
+    double stiff_rtol, stiff_atol;
+    void (*want_residual)(void *user); // it will be needed: the equations must get it
     size_t nsample;
     enum ct_rate_jumps rate_jumps;
     /// One row of results per sample; return false to stop.
@@ -18,6 +22,11 @@ struct ct_run_options {
 };
 
 struct ct_run_report {
+    const struct ct_method *method; // that came to the end
+    /// Where the implicit method first took over as the motion was stiff: rates of the fastest motion possible and of
+    /// the one there was [1/s], and how many times as far it got for the same work. changed_at is NaN if it
+    /// did not, returned_at if it was not last left as not faster any more.
+    double changed_at, fast, slow, gain, returned_at;
     struct ct_integrate_stats stats;
     double energy_drift; // largest |total - total(0)| / scale of the energies
     double position_constraint, velocity_constraint; // largest residuals at samples

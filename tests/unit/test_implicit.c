@@ -112,6 +112,8 @@ struct user {
     size_t used;    // of the arena after the first step
     bool has_grown; // since then
     double worst_phi, worst_v;
+    double last,
+        lam[MOST_M]; // of the last residual at the latest time: where the iteration ended
     int nevent;
     double event[100];
     double sample[3][MOST_NY];
@@ -157,7 +159,12 @@ static enum ct_eval residual(void *user, double t, const double *q, const double
                              const double *a, const double *lam, double *r, double *phi,
                              double *v)
 {
-    ((struct user *)user)->model->residual(t, q, u, a, lam, r, phi, v);
+    struct user *s = user;
+    s->model->residual(t, q, u, a, lam, r, phi, v);
+    if (t >= s->last && s->model->m) {
+        s->last = t;
+        memcpy(s->lam, lam, (size_t)s->model->m * sizeof *lam);
+    }
     return CT_EVAL_OK;
 }
 
@@ -298,6 +305,32 @@ static void orders_are_those_of_the_theory(void **unused)
         }
 }
 
+// The multipliers that the methods carry, at the end of the run.
+static void orders_of_multipliers_are_those_of_the_theory(void **unused)
+{
+    (void)unused;
+    const double t1 = 2;
+    double exact[MOST_NY], y[MOST_NY], a[MOST_NU], lam;
+    reference(&rodded, t1, exact);
+    rodded.solve(t1, exact, exact + rodded.nu, a, &lam);
+    for (size_t i = 0; i < COUNT(implicit); i++) {
+        const bool is_radau = i == 0;
+        const int nstep = is_radau ? 32 : 400;
+        double error[2];
+        for (int k = 0; k < 2; k++) {
+            struct user s;
+            assert_true(run(&s, &rodded, implicit[i], plain,
+                            (struct ct_integrate_options){.t1 = t1, .step = t1 / (nstep << k)},
+                            y));
+            assert_true(s.last == t1);
+            error[k] = fabs(s.lam[0] - lam);
+        }
+        const double order = log2(error[0] / error[1]), want = is_radau ? 3 : 2;
+        printf("%s: multipliers of order %.2f, error %.1e\n", implicit[i], order, error[1]);
+        CHECK_CLOSE(order, want, 0, 0.15 * want);
+    }
+}
+
 // The hidden constraint is met to second order by the index-3 form, at each step.
 static void index3_meets_speeds_to_second_order(void **unused)
 {
@@ -424,6 +457,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(orders_are_those_of_the_theory),
+        cmocka_unit_test(orders_of_multipliers_are_those_of_the_theory),
         cmocka_unit_test(index3_meets_speeds_to_second_order),
         cmocka_unit_test(errors_follow_the_tolerance),
         cmocka_unit_test(steps_restart_after_an_impact),

@@ -1,0 +1,174 @@
+// See stiffness.h. The power method for the fastest motion: Golub and Van Loan (2013), key golub2013, 7.3; that the
+// step times it shows stiffness: Hairer and Wanner (1996), key hairer1996, IV.2.
+#include "integrate/stiffness.h"
+
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+static const long test_every = 100; // steps
+static const int first_rounds
+    = 6; // of the power method, before v has turned to the fastest motion
+static const int suspicious_tests = 3;
+// Explicit methods become unstable, or lose their accuracy to what is fast, where step * fast is 1 to 6; with
+// half of that the step may be held up.
+static const double suspicious_step = 0.5;
+// Motions that go on at the rate of the fastest have to be followed, whatever the method.
+static const double least_separation = 10;
+// Fewer steps to come are not worth a trial, nor the preparation of an implicit method.
+static const double steps_worth_it = 1000;
+static const int put_off_by = 4; // the number of steps, until the next trial
+
+// The first steps of a trial bring the step to its size, the others count.
+static const int warming_steps = 6, counted_steps = 12;
+
+// ---- suspicion ---------------------------------------------------------------------------------------
+
+struct ct_stiffness *ct_stiffness_create(struct ct_arena *a, const struct ct_problem *p,
+                                         const struct ct_integrate_stats *stats, int first,
+                                         int last)
+{
+    struct ct_stiffness *s = CT_NEW(a, struct ct_stiffness);
+    *s = (struct ct_stiffness){.p = p, .stats = stats, .first = first, .last = last};
+    double **const vectors[] = {&s->v, &s->w, &s->f, &s->f0, &s->point, &s->y0};
+    for (size_t i = 0; i < COUNT(vectors); i++)
+        *vectors[i] = CT_NEWN(a, double, p->ny);
+    for (int i = first; i < last; i++) // a change of speeds in which none is singled out
+        s->v[i] = 1 + 0.5 * sin(i + 1.);
+    return s;
+}
+
+static double length(const double *x, int first, int last)
+{
+    double sum = 0;
+    for (int i = first; i < last; i++)
+        sum += x[i] * x[i];
+    return sqrt(sum);
+}
+
+// w (ny, out) = J v at y, where f is s->f; v has the length one.
+static bool apply_jacobian(struct ct_stiffness *s, double t, const double *y, const double *v,
+                           double *w)
+{
+    const int n = s->p->ny;
+    const double e = sqrt(DBL_EPSILON) * fmax(1, length(y, 0, s->last));
+    for (int i = 0; i < n; i++)
+        s->point[i] = y[i] + e * v[i];
+    if (s->p->rhs(s->p->user, t, s->point, w) != CT_EVAL_OK)
+        return false;
+    for (int i = 0; i < n; i++)
+        w[i] = i < s->last ? (w[i] - s->f[i]) / e : 0; // quadratures feed nothing back
+    return true;
+}
+
+// v <- x / |x|; |x|.
+static double turn_to(struct ct_stiffness *s, const double *x)
+{
+    const double size = length(x, 0, s->last);
+    if (size > 0 && isfinite(size))
+        for (int i = 0; i < s->p->ny; i++)
+            s->v[i] = x[i] / size;
+    return size;
+}
+
+// Two applications: one turns a vibration's places into speeds and back, its rate is the root of both gains.
+static bool find_fast(struct ct_stiffness *s, double t, const double *y)
+{
+    if (s->p->rhs(s->p->user, t, y, s->f) != CT_EVAL_OK)
+        return false;
+    turn_to(s, memcpy(s->w, s->v, (size_t)s->p->ny * sizeof *s->w));
+    for (int round = s->fast > 0 ? 1 : first_rounds; round > 0; round--) {
+        double gain = 1;
+        for (int i = 0; i < 2; i++) {
+            if (!apply_jacobian(s, t, y, s->v, s->w))
+                return false;
+            gain *= turn_to(s, s->w);
+        }
+        s->fast = sqrt(gain);
+    }
+    return isfinite(s->fast);
+}
+
+static double find_slow(const struct ct_stiffness *s, double h)
+{
+    double change = 0;
+    for (int i = s->first; i < s->last; i++)
+        change += (s->f[i] - s->f0[i]) * (s->f[i] - s->f0[i]);
+    const double size = length(s->f, s->first, s->last);
+    return size > 0 ? sqrt(change) / (h * size) : 0;
+}
+
+static bool test(struct ct_stiffness *s, double t, const double *y)
+{
+    const double steps = (double)(s->count - s->window_steps);
+    s->step = (t - s->window_t) / steps;
+    s->evaluations = (double)(s->stats->evaluations - s->window_evaluations) / steps;
+    s->window_t = t;
+    s->window_steps = s->count;
+    s->window_evaluations = s->stats->evaluations;
+    if (s->p->rhs(s->p->user, s->t0, s->y0, s->f0) != CT_EVAL_OK || !find_fast(s, t, y))
+        return false;
+    s->slow = find_slow(s, t - s->t0);
+    return s->step * s->fast > suspicious_step && s->fast > least_separation * s->slow;
+}
+
+bool ct_stiffness_watch(struct ct_stiffness *s, double t, const double *y, double end)
+{
+    s->count++;
+    if ((s->count + 1) % test_every == 0) {
+        memcpy(s->y0, y, (size_t)s->p->ny * sizeof *y);
+        s->t0 = t;
+    }
+    if (s->count % test_every != 0)
+        return false;
+    s->in_a_row = test(s, t, y) ? s->in_a_row + 1 : 0;
+    return s->in_a_row >= suspicious_tests && s->count >= s->next_trial
+        && end - t > steps_worth_it * s->step;
+}
+
+void ct_stiffness_put_off(struct ct_stiffness *s)
+{
+    s->next_trial = put_off_by * s->count;
+    s->window_evaluations = 0; // counts begin anew with the next steps
+    s->in_a_row = 0;
+}
+
+double ct_stiffness_pace(const struct ct_stiffness *s, const struct ct_cost *cost)
+{
+    return s->step / (s->evaluations * cost->evaluation);
+}
+
+// ---- the trial -----------------------------------------------------------------------------------------
+
+static double work(const struct ct_trial *r)
+{
+    return (double)r->stats->evaluations * r->cost.residual
+         + (double)r->stats->jacobians * r->cost.tangent
+         + (double)r->stats->factorizations * r->cost.factorization;
+}
+
+bool ct_trial_step(struct ct_trial *r, double t)
+{
+    r->t = t;
+    if (++r->nstep == warming_steps) {
+        r->t0 = t;
+        r->spent0 = work(r);
+    }
+    return r->nstep < warming_steps + counted_steps;
+}
+
+double ct_trial_pace(const struct ct_trial *r)
+{
+    return r->nstep > warming_steps ? (r->t - r->t0) / (work(r) - r->spent0) : 0;
+}
+
+bool ct_trial_has_lost(struct ct_trial *r, double t, double pace)
+{
+    r->t = t;
+    if (++r->nstep % test_every != 0)
+        return false;
+    const double spent = work(r), gained = (t - r->t0) / (spent - r->spent0);
+    r->t0 = t;
+    r->spent0 = spent;
+    return gained < pace;
+}

@@ -1,0 +1,68 @@
+// Is an explicit run held up by stability? The fastest motion the equations are capable of against the motion there is.
+//
+//     fast    |J^2 v|^(1/2), J = df/dy, v the result of the last test: the power method, one round each test
+//     slow    |change of the accelerations| / (h |accelerations|) over one step
+//     stiff   step * fast is near the limit of stability though fast is much more than slow
+//
+// What always holds: a test costs four evaluations and is made every hundred steps; it changes nothing in the problem.
+// Suspicion is no proof: a trial finds out whether an implicit method is faster.
+#ifndef CT_INTEGRATE_STIFFNESS_H
+#define CT_INTEGRATE_STIFFNESS_H
+
+#include "integrate/problem.h"
+
+struct ct_stiffness {
+    const struct ct_problem *p;
+    int first, last;                     // of y: the accelerations in f
+    double *v, *w, *f, *f0, *point, *y0; // (ny)
+    double t0;                           // time of y0
+    long count, next_trial;              // steps; when suspicion is next listened to
+    int in_a_row;                        // tests that were suspicious
+    double window_t;                     // where the last test was
+    long window_steps;
+    const struct ct_integrate_stats *stats; // of the run, live
+    long window_evaluations;
+    double fast, slow,
+        step;           // of the last test: [1/s], [1/s], mean step since the one before [s]
+    double evaluations; // for a step, since the test before
+};
+
+/// What the parts of a run cost, in common units.
+struct ct_cost {
+    double evaluation;    // of f
+    double residual;      // of r, phi, v, with its share of the solution for corrections
+    double tangent;       // of the derivatives
+    double factorization; // of the matrix of an iteration
+};
+
+/// A few steps of an implicit method, to see how far it gets for its work.
+struct ct_trial {
+    struct ct_cost cost;
+    const struct ct_integrate_stats *stats; // of the trial, while it runs
+    int nstep;
+    double t0, t, spent0; // where counting began, where it is, the work before
+};
+
+/// first, last: the range of y whose rates are accelerations.
+struct ct_stiffness *ct_stiffness_create(struct ct_arena *a, const struct ct_problem *p,
+                                         const struct ct_integrate_stats *stats, int first,
+                                         int last);
+
+/// After each accepted step to t, y; end: of the run. True if a trial is worth its work now: tests were suspicious and
+/// there are many steps to come.
+bool ct_stiffness_watch(struct ct_stiffness *s, double t, const double *y, double end);
+/// After a trial that was lost: not again before the number of steps has grown fourfold.
+void ct_stiffness_put_off(struct ct_stiffness *s);
+
+/// Time gained for the work since the one before last test of an explicit run.
+double ct_stiffness_pace(const struct ct_stiffness *s, const struct ct_cost *cost);
+
+/// After each step of a trial; false: it has come far enough.
+bool ct_trial_step(struct ct_trial *r, double t);
+/// Time gained for the work of the steps that counted, 0 if there were none.
+double ct_trial_pace(const struct ct_trial *r);
+/// After each step of a run that went over to the implicit method, begun as a trial that does not end: true if
+/// it now gains less than `pace`.
+bool ct_trial_has_lost(struct ct_trial *r, double t, double pace);
+
+#endif

@@ -1,0 +1,38 @@
+#!/bin/sh
+# asked.sh CASE: with `method: auto` and each tolerance T of the case's line in asked.txt, the outputs of CASE.yaml
+# are within 10 T of CASE.reference.csv, and the errors that --verify estimates are not less than a third of
+# the true ones, nor larger than 100 (T + 1e-9).
+# COTREE is the program, COMPARE the comparison tool.
+set -eu
+folder=$(dirname "$0")
+case=$1
+: "${COTREE:?is the program to test}" "${COMPARE:?is the comparison tool}"
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+# shellcheck disable=SC2046
+set -- $(grep "^$case " "$folder/asked.txt")
+shift
+failed=0
+for T in "$@"; do
+    "$COTREE" simulate "$folder/$case.yaml" -o "$work/result.csv" --quiet --method auto \
+        --tolerance "$T" --verify --summary "$work/summary.json"
+    # lines NAME ABSOLUTE RELATIVE, from  "NAME": { "absolute": ..., "relative": ... }
+    sed -n '/"outputs": {/,/^    }/p' "$work/summary.json" | tr -d ' ",' | awk -F: '
+        /{$/ { name = $1 } $1 == "absolute" { a = $2 } $1 == "relative" { print name, a, $2 }' >"$work/estimate"
+    [ -s "$work/estimate" ] || { echo "$case: no estimate at tolerance $T"; exit 1; }
+    # each output against its largest value in the run
+    awk -v T="$T" 'BEGIN { print 10 * T }
+        $3 != "null" && $3 > 0 { print $1, 10 * T, $2 / $3 }
+        $3 == "null" { print $1, 1, 1 }' "$work/estimate" >"$work/asked"
+    # a third of the true error; what is below 1e-13 is rounding
+    awk 'BEGIN { print 1 }
+        $3 != "null" { print $1, 3 * $3 + 1e-13, ($3 > 0 ? $2 / $3 : 1) }
+        $3 == "null" { print $1, 1, 1 }' "$work/estimate" >"$work/estimated"
+    echo "$case, asked for $T"
+    "$COMPARE" "$work/result.csv" "$folder/$case.reference.csv" "$work/asked" || failed=1
+    echo "$case, estimated at $T"
+    "$COMPARE" "$work/result.csv" "$folder/$case.reference.csv" "$work/estimated" || failed=1
+    awk -v T="$T" '$3 != "null" && $3 > 100 * (T + 1e-9) { print $1, "estimated as", $3; bad = 1 } END { exit bad }' \
+        "$work/estimate" || failed=1
+done
+exit "$failed"
