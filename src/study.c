@@ -512,11 +512,14 @@ static bool *find_changing(struct ct_study *s, const struct ct_model *m)
 static void find_deciding(struct ct_study *s)
 {
     const struct ct_model *m = &s->system->model;
-    const struct ct_exs *const store[] = {s->system->equations.x, s->system->start_equations.x};
+    const unsigned char *const decided[]
+        = {m->decided, s->system->equations.x->decided, s->system->start_equations.x->decided,
+           s->system->held_equations.x ? s->system->held_equations.x->decided : NULL};
     const bool *changes = find_changing(s, m);
     for (size_t i = 0; i < m->nparameter && !s->is_derived; i++)
-        for (size_t k = 0; k < COUNT(store); k++)
-            if (changes[i] && store[k]->decided[ct_ex_node(m->x, m->parameter[i].symbol)->a]) {
+        for (size_t k = 0; k < COUNT(decided); k++)
+            if (changes[i] && decided[k]
+                && decided[k][ct_ex_node(m->x, m->parameter[i].symbol)->a]) {
                 s->is_derived = true;
                 s->derived_by = m->parameter[i].name;
             }
@@ -570,7 +573,9 @@ static bool choose_way(struct ct_study *s, const struct ct_study_options *o)
     s->tolerance = probe->tolerance;
     s->backend = ct_run_machine(probe->run)->backend;
     s->alone_by = o->lanes == 1 ? "as asked"
-                                : ct_lanes_refusal(&s->system->equations, &probe->run_options);
+                : s->system->held_equations.build
+                    ? "beams start in equilibrium"
+                    : ct_lanes_refusal(&s->system->equations, &probe->run_options);
     if (s->is_derived)
         s->alone_by = ct_arena_printf(s->own.model, "the equations depend on the value of '%s'",
                                       s->derived_by);

@@ -21,6 +21,10 @@ static const double kappa_growth = 10, kappa_largest = 1e3, small_pivot = 0.1;
 static const double position_tolerance = 1e-13, gained_below = 1e-10;
 static const double least_change = 0.7, most_change = 1.5, weakest = 1e-3;
 static const double left_plain = 1e-13, left_most = 1e-11;
+// Where h times the rate of the fastest motions is beyond the first in so many steps, with fewer than so many others
+// between, the run is stiff; values of the program DOPRI5 for the stage before the last.
+static const double stiff_step = 3.25;
+enum { MOST_STIFF = 15, FEW_OTHERS = 6 };
 enum { MOST_NEWTON = 25, MOST_STEPS = 100000000 };
 
 // A generated program for all lanes at once.
@@ -45,6 +49,8 @@ struct lane {
     double pivot_most, pivot_last, pivot_time; // see foresee_singular in simulate.c
     int *row, *dependent, *independent;        // as in embed.h
     long steps;
+    bool is_watched; // for stiffness
+    int nstiff, nother;
 };
 
 struct ct_lanes {
@@ -72,7 +78,7 @@ struct ct_lanes {
     bool is_regular[W];              // the factors exist
     vec rtol, atol;                  // of the steps
     // states (ny), stages (ny x stages)
-    vec *y, *dy, *y1, *dy1, *end, *dend, *stage, *point, *third, *k;
+    vec *y, *dy, *y1, *dy1, *end, *dend, *stage, *point, *late, *third, *k;
     // matrices and vectors as in embed.h; Mp: M with rows and columns in the order dependent, independent
     vec *M, *Mp, *J, *Jd, *B, *MB, *S, *a, *c, *r, *b, *d, *lam;
     int *pivot;                              // (nrow x W)
@@ -146,6 +152,7 @@ static void make_room(struct ct_arena *a, struct ct_lanes *s)
                {&s->dend, ny},
                {&s->stage, ny},
                {&s->point, ny},
+               {&s->late, ny},
                {&s->third, ny},
                {&s->M, n * n},
                {&s->Mp, n * n},
@@ -1028,7 +1035,7 @@ static void take_stages(struct ct_lanes *s, bool *wanted)
     double t[W];
     memcpy(s->k, s->dy, n * sizeof *s->k);
     for (int stage = 1; stage < b->stages && any(wanted); stage++) {
-        vec *to = stage + 1 < b->stages ? s->point : s->y1;
+        vec *to = stage + 1 == b->stages ? s->y1 : stage + 2 == b->stages ? s->late : s->point;
         combine(s, to, s->y, b->A + b->stride * stage, stage);
         for (int l = 0; l < W; l++)
             t[l] = s->t[l] + b->C[stage] * s->h[l];
@@ -1112,6 +1119,33 @@ static void adapt_after_refusal(struct ct_lanes *s, int l)
         = error > 1 ? s->h[l] * fmax(most_shrink, safety * pow(error, -alpha)) : s->h[l] / 2;
     lane->was_refused = true;
     s->count.rejected++;
+}
+
+// The last two stages are both at the end of the step: their difference shows the fastest motions, as in DOPRI5
+// by Hairer, Norsett and Wanner (1993), IV.2 of the second volume, key hairer1996. A stiff run is one for a run alone,
+// which can change its method.
+static void watch_stiffness(struct ct_lanes *s, const bool *wanted)
+{
+    const size_t n = (size_t)s->ny - 1; // the work feeds nothing back
+    const int last = s->method->tableau->stages - 1;
+    const vec *k1 = s->k + (size_t)(last * s->ny), *k0 = k1 - s->ny;
+    vec rates = {0}, states = {0};
+    for (size_t i = 0; i < n; i++) {
+        rates += (k1[i] - k0[i]) * (k1[i] - k0[i]);
+        states += (s->y1[i] - s->late[i]) * (s->y1[i] - s->late[i]);
+    }
+    for (int l = 0; l < W; l++) {
+        struct lane *lane = &s->lane[l];
+        if (!wanted[l] || !lane->is_watched)
+            continue;
+        if (states[l] > 0 && s->h[l] * sqrt(rates[l] / states[l]) > stiff_step) {
+            lane->nother = 0;
+            if (++lane->nstiff >= MOST_STIFF)
+                give_up(s, l);
+        } else if (lane->nstiff && ++lane->nother >= FEW_OTHERS) {
+            lane->nstiff = lane->nother = 0;
+        }
+    }
 }
 
 // ---- after a try ------------------------------------------------------------------------------------
@@ -1221,6 +1255,7 @@ void ct_lanes_step(struct ct_lanes *s)
         else if (tried[l])
             adapt_after_refusal(s, l);
     foresee_singular(s, t, s->end, wanted);
+    watch_stiffness(s, wanted);
     commit(s, wanted);
 }
 
@@ -1283,6 +1318,8 @@ bool ct_lanes_load(struct ct_lanes *s, int l, const struct ct_run_options *o)
     lane->pivot_last = INFINITY;
     lane->pivot_time = 0;
     lane->steps = 0;
+    lane->is_watched = o->stiff_method != NULL;
+    lane->nstiff = lane->nother = 0;
     if (ct_run_rhs(s->run, 0, y, s->one_dy) != CT_EVAL_OK || !first_step(s, l, y, s->one_dy))
         return false;
     for (int i = 0; i < W;
