@@ -394,7 +394,6 @@ static void run_lanes(struct worker *w)
     struct ct_sim *sim = &w->sim;
     w->assembly = ct_assembly_create(&sim->own, sim->own.model, &w->system->model,
                                      &w->system->start_equations);
-    ct_embed_stay_dense(ct_run_embed(sim->run));
     w->lanes = ct_lanes_create(sim->own.model, &w->system->equations, sim->run);
     // at the file's own values, which the system still has: the same in each worker
     if (start_member(w))

@@ -97,10 +97,12 @@ static bool is_native(const struct ct_lanes *s)
 static void make_program(struct ct_arena *a, const struct ct_lanes *s, struct program *p,
                          const struct ct_program *from)
 {
-    *p = (struct program){.tape = from->tape, .nout = from->nout};
+    *p = (struct program){.nout = from->nout};
     if (!p->nout)
         return;
-    p->native = is_native(s) ? ct_native_create(a, from->listing, W) : NULL;
+    const struct ct_listing *l = ct_listing_for_lanes(a, from->listing);
+    p->tape = ct_tape_create(a, l);
+    p->native = is_native(s) ? ct_native_create(a, l, W) : NULL;
     const size_t n = p->native ? ct_native_work(p->native) : W * ct_tape_work(p->tape);
     p->out = CT_NEWN(a, vec, p->nout);
     p->work = CT_NEWN(a, double, n + 1);
@@ -191,6 +193,7 @@ struct ct_lanes *ct_lanes_create(struct ct_arena *a, const struct ct_equations *
     struct ct_lanes *s = CT_NEW(a, struct ct_lanes);
     struct ct_machine *m = ct_run_machine(run);
     *s = (struct ct_lanes){.e = e, .run = run, .m = m, .embed = ct_run_embed(run)};
+    ct_embed_stay_dense(s->embed);
     s->nq = (int)m->nq;
     s->nu = (int)m->nu;
     s->nrow = (int)m->nrow;

@@ -25,7 +25,8 @@ struct ct_lanes;
 
 /// Why runs of these equations with these options cannot be in lanes, or NULL when they can.
 const char *ct_lanes_refusal(const struct ct_equations *e, const struct ct_run_options *o);
-/// Programs compiled for lanes, by the back end that the run uses. All in a; run must live as long.
+/// Programs compiled for lanes, by the back end that the run uses. All in a; run must live as long, and from now on
+/// solves by matrices, so that what it does for one member does not depend on the members before.
 struct ct_lanes *ct_lanes_create(struct ct_arena *a, const struct ct_equations *e,
                                  struct ct_run *run);
 

@@ -36,6 +36,8 @@ static int run_lanes(struct variant *v, struct system *s, const char *method, in
     ct_machine_use(v->arena, ct_run_machine(run), backend);
     struct ct_lanes *lanes = ct_lanes_create(v->arena, &v->e, run);
     int given_up = 0;
+    assert_true(ct_run_restart(run, &s->start));
+    ct_lanes_unroll(v->arena, lanes);
     for (int i = 0; i < n; i++) {
         const struct ct_run_options o = member_options(method, first + i);
         assert_true(ct_run_restart(run, &s->start));
