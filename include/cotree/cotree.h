@@ -235,7 +235,7 @@ struct ct_study_results {
 /**
  * Read a model and derive its equations once, for all members of a study.
  *
- * What a member gives depends neither on threads nor on lanes. Where the value of a parameter decides about the
+ * What a member gives depends neither on threads nor on other members. Where the value of a parameter decides about the
  * equations (whether a mechanism is planar), members that vary it are derived one by one.
  *
  * system  in   NULL: all defaults. What varies replaces values that are set here.

@@ -7,11 +7,10 @@ sweep() { "$COTREE" sweep "$m" --quiet --until 0.2 --vary torque=0.1:0.5:3 --var
 sweep -o a.csv --threads 1
 head -1 a.csv
 cut -d, -f1-3 a.csv | tail -4
-for way in "--threads 2" "--backend tape" "--threads 2 --backend tape"; do
-  # shellcheck disable=SC2086
-  sweep -o b.csv $way
-  cmp a.csv b.csv && echo "the same bytes: $way"
-done
+sweep -o b.csv --threads 2
+cmp a.csv b.csv && echo "the same bytes"
+sweep -o b.csv --backend tape
+difference a.csv b.csv | awk '{ print ($1 < 1e-8) ? "the same numbers" : $0 }'
 "$COTREE" sweep "$m" --until 0.2 --vary torque=0.1:0.5:3 --vary r=0.14:0.16:3 -o alone.csv --lanes 1 2>alone.log
 grep -o 'as asked' alone.log
 
@@ -85,10 +84,12 @@ sed 1d flat.csv | cut -d, -f3- | sed 's/,0$//' | diff want - && echo "members of
 # a parameter that chooses a branch, and the duration, does not ask for other equations
 "$COTREE" sweep flat.yaml --vary c=0:2:3 -o branch.csv 2>branch.log
 grep lanes branch.log | sed 's/ in each.*threads//'
+echo j.q,k.q,j.force.z >want
 for c in 0 1 2; do
   "$COTREE" simulate flat.yaml --set c=$c --samples 2 --quiet -o - | tail -1 | cut -d, -f2-
-done >want
-sed 1d branch.csv | cut -d, -f3- | sed 's/,0$//' | diff want - && echo "branches"
+done >>want
+cut -d, -f3-5 branch.csv >got
+difference want got | awk '{ print ($1 < 1e-8) ? "branches" : $0 }'
 
 # switches and implicit methods: one by one
 "$COTREE" sweep "$SYSTEMS/puma560_driven/model.yaml" --until 0.01 --vary T=1:2:2 -o g.csv 2>&1 |

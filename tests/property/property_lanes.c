@@ -72,7 +72,9 @@ static bool check_members(struct system *s, struct variant *v, const char *metho
                         fmax(1, fabs(alone[k])), 1e-7);
     }
     assert_int_equal(run_lanes(v, s, method, 0, CT_LANES, 0, CT_BACKEND_TAPE, other), 0);
-    assert_memory_equal(lanes, other, CT_LANES * n * sizeof *lanes);
+    for (size_t k = 0; k < CT_LANES * n; k++) // native code may fuse products
+        ok &= agree(s->name, v->e.result[k % n].name, other[k], lanes[k],
+                    fmax(1, fabs(lanes[k])), 1e-8);
     assert_int_equal(run_lanes(v, s, method, 1, 1, 3, CT_BACKEND_BEST, other), 0);
     assert_memory_equal(lanes + n, other, n * sizeof *lanes);
     assert_true(ok);
