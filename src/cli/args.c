@@ -7,13 +7,27 @@
 #include <stdlib.h>
 #include <string.h>
 
-const struct cli_command *const cli_commands[]
-    = {&cli_simulate, &cli_equations,  &cli_graph,   &cli_accuracy, &cli_sweep, &cli_check,
-       &cli_export,   &cli_components, &cli_methods, &cli_schema,   NULL};
+const struct cli_command *const cli_commands[] = {&cli_simulate,
+                                                  &cli_equations,
+                                                  &cli_graph,
+                                                  &cli_accuracy,
+                                                  &cli_sweep,
+                                                  &cli_check,
+                                                  &cli_equilibrium,
+                                                  &cli_modes,
+                                                  &cli_linearize,
+                                                  &cli_buckling,
+                                                  &cli_kinematics,
+                                                  &cli_inverse,
+                                                  &cli_export,
+                                                  &cli_components,
+                                                  &cli_methods,
+                                                  &cli_schema,
+                                                  NULL};
 
 // ---- options --------------------------------------------------------------------------------------------
 
-enum kind { FLAG, TEXT, LIST, NUMBER, INTEGER, COUNT, SEED };
+enum kind { FLAG, TEXT, LIST, NUMBER, INTEGER, COUNT_OF, SEED };
 
 static const struct option {
     const char *name;
@@ -41,25 +55,38 @@ static const struct option {
      "auto, or a name that 'cotree methods' lists"},
     {"step", 0, "H", NUMBER, FIELD(step), CLI_RUNS, true,
      "fixed step in seconds, without step control"},
-    {"until", 0, "T", NUMBER, FIELD(until), CLI_RUNS, true,
+    {"until", 0, "T", NUMBER, FIELD(until), CLI_TIMES, true,
      "end time in seconds; the spacing of samples is kept"},
-    {"samples", 0, "N", INTEGER, FIELD(samples), CLI_RUNS, true,
+    {"samples", 0, "N", INTEGER, FIELD(samples), CLI_TIMES, true,
      "number of samples, both ends included"},
     {"backend", 0, "CHOICE", TEXT, FIELD(backend), CLI_RUNS, true,
      "what evaluates the equations: auto, native or tape"},
-    {"summary", 0, "FILE.json", TEXT, FIELD(summary), CLI_SIMULATE | CLI_CHECK | CLI_SWEEP,
-     true, "what the run did, for programs"},
+    {"summary", 0, "FILE.json", TEXT, FIELD(summary),
+     CLI_SIMULATE | CLI_CHECK | CLI_DRIVEN | CLI_SWEEP, true, "what the run did, for programs"},
+    {"about", 0, "WHERE", TEXT, FIELD(about), CLI_ABOUT, false,
+     "initial, equilibrium, or a time in seconds"},
+    {"inputs", 0, "NAMES", TEXT, FIELD(inputs), CLI_LINEARIZE, false,
+     "J.effort, F.force.x, T.torque.z, parameters; a list"},
+    {"load", 0, "NAME", TEXT, FIELD(load), CLI_BUCKLING, false,
+     "a force, a torque, a joint with an effort, or gravity"},
+    {"curve", 0, "FILE.csv", TEXT, FIELD(curve), CLI_BUCKLING, false,
+     "the lowest frequencies against the load factor"},
+    {"count", 0, "N", COUNT_OF, FIELD(count), CLI_MODES | CLI_BUCKLING, false,
+     "number of rows, the lowest ones; 10"},
+    {"hold-drivers", 0, NULL, FLAG, FIELD(hold_drivers), CLI_STATIC, false,
+     "equilibrium: motions stand still, even steady ones"},
     {"vary", 0, "NAME=FROM:TO:N", LIST, FIELD(vary), CLI_SWEEP, false,
      "N values of a parameter, both ends included;\n"
      "may be repeated"},
-    {"sample", 0, "K", COUNT, FIELD(sample), CLI_SWEEP, false,
+    {"sample", 0, "K", COUNT_OF, FIELD(sample), CLI_SWEEP, false,
      "K random members instead of a grid"},
     {"seed", 0, "S", SEED, FIELD(seed), CLI_SWEEP, false,
      "of the random numbers; 0. Same seed, same members"},
     {"resume", 0, NULL, FLAG, FIELD(resume), CLI_SWEEP, false,
      "go on with the rows in FILE.partial"},
-    {"threads", 0, "N", COUNT, FIELD(threads), CLI_SWEEP, false, "at most so many; all cores"},
-    {"lanes", 0, "N", COUNT, FIELD(lanes), CLI_SWEEP, false,
+    {"threads", 0, "N", COUNT_OF, FIELD(threads), CLI_SWEEP, false,
+     "at most so many; all cores"},
+    {"lanes", 0, "N", COUNT_OF, FIELD(lanes), CLI_SWEEP, false,
      "members side by side in a core: 4, or 1; 4 where it can be"},
     {"verify", 0, NULL, FLAG, FIELD(verify), CLI_SIMULATE, false,
      "a second run; the difference tells the global error"},
@@ -69,6 +96,7 @@ static const struct option {
      "what to compare with, as simulate writes it"},
     {"plot", 0, "FILE.svg", TEXT, FIELD(plot), CLI_ACCURACY, false,
      "error against seconds, a line for each method"},
+    {"plot", 0, "FILE.svg", TEXT, FIELD(plot), CLI_MODES, false, "shapes of the first modes"},
     {"show", 0, "STAGES", TEXT, FIELD(show), CLI_EQUATIONS, false,
      "terminal,graph,tree,cutset,circuit,reduced;\n"
      "standard is tree,reduced"},
@@ -164,7 +192,7 @@ static bool store(const struct cli_command *c, const struct option *o, const cha
     case SEED:
         return parse_seed(value, field)
             || wrong_value(c, o, value, "an integer from 0 to 18446744073709551615");
-    case COUNT:
+    case COUNT_OF:
         return parse_integer(value, 1, field)
             || wrong_value(c, o, value, "an integer from 1 to 1000000000");
     default: // both ends
@@ -238,7 +266,7 @@ static bool parse_short(struct parser *p, const char *text)
 
 static bool parse_command(struct parser *p, const char *name)
 {
-    const char *names[16];
+    const char *names[32];
     size_t n = 0;
     for (const struct cli_command *const *c = cli_commands; *c; c++) {
         if (strcmp((*c)->name, name) == 0) {

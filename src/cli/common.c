@@ -16,7 +16,14 @@ struct ct_system_options cli_system_options(const struct cli_args *args)
 
 struct ct_system *cli_load(struct ct_ctx *ctx, const struct cli_args *args)
 {
-    const struct ct_system_options options = cli_system_options(args);
+    return cli_load_with(ctx, args, CT_COLUMNS_OF_MODEL);
+}
+
+struct ct_system *cli_load_with(struct ct_ctx *ctx, const struct cli_args *args,
+                                enum ct_columns_more columns)
+{
+    struct ct_system_options options = cli_system_options(args);
+    options.columns = columns;
     return ct_system_load(ctx, args->model, &options);
 }
 

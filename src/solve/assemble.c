@@ -713,6 +713,7 @@ bool ct_assembly_find(struct ct_assembly *s, struct ct_start *out)
 bool ct_assemble(struct ct_ctx *ctx, struct ct_arena *a, const struct ct_model *model,
                  const struct ct_equations *e, struct ct_start *out)
 {
+    *out = (struct ct_start){0};
     struct ct_arena *own
         = ct_arena_create_under(a); // what is made here is needed for the start alone
     struct ct_assembly *s = ct_assembly_create(ctx, own, model, e);

@@ -16,7 +16,7 @@ typedef long long mask __attribute__((vector_size(W * sizeof(long long)), may_al
 // Constants of step control, projection and choice of rows: those of driver.c, simulate.c and embed.c.
 static const double safety = 0.9, most_shrink = 0.2, most_growth = 5, remembered_error = 1e-4;
 static const double stretch = 1.1, least_step = 16 * DBL_EPSILON, least_scale = 1e-6;
-static const double singular_pivot = 0.25, singular_steps = 3;
+static const double singular_pivot = 0.25, singular_steps = 4;
 static const double kappa_growth = 10, kappa_largest = 1e3, small_pivot = 0.1;
 static const double position_tolerance = 1e-13, gained_below = 1e-10;
 static const double least_change = 0.7, most_change = 1.5, weakest = 1e-3;
@@ -67,8 +67,9 @@ struct ct_lanes {
     struct ct_lanes_count count;
     const struct ct_method *method;
     vec *input;
-    // closed form for one choice of rows and columns (see closed.h), or NULL
+    // closed form for one choice of rows and columns (see form.h), or NULL
     const struct ct_form *form;
+    struct ct_form_code code; // its programs
     struct program solved, checked, closing;
     bool fits[W];                    // the lane has made that choice
     bool is_rough[W];                // the last check found the form not good enough
@@ -220,13 +221,16 @@ void ct_lanes_unroll(struct ct_arena *a, struct ct_lanes *s)
         return; // multipliers come with the matrices
     ct_machine_set(s->m, 0, ct_run_state(s->run));
     ct_machine_motion(s->m);
-    struct ct_form *f = ct_form_create(a, s->m, &p, ct_embed_operations(embed));
-    if (!f)
+    s->form = ct_form_create(a, s->m, &p, ct_embed_operations(embed), NULL);
+    if (s->form)
+        s->code = ct_form_code(s->form);
+    if (!s->code.listing) { // a form of another kind is not for lanes
+        s->form = NULL;
         return;
-    make_program(a, s, &s->solved, &f->solved);
-    make_program(a, s, &s->checked, &f->checked);
-    make_program(a, s, &s->closing, &f->closing);
-    s->form = f;
+    }
+    make_program(a, s, &s->solved, s->code.solved);
+    make_program(a, s, &s->checked, s->code.checked);
+    make_program(a, s, &s->closing, s->code.closing);
 }
 
 // ---- lanes and single numbers -----------------------------------------------------------------------
@@ -595,8 +599,8 @@ static void weigh(struct ct_lanes *s, const vec *pivot, bool *formed)
     vec least;
     for (int l = 0; l < W; l++)
         least[l] = 1;
-    for (size_t i = 0; i < s->form->c->npivot; i++) {
-        const vec scaled = pivot[i] * s->form->c->scale[i];
+    for (size_t i = 0; i < s->code.npivot; i++) {
+        const vec scaled = pivot[i] * s->code.scale[i];
         lower(&least, &scaled);
     }
     for (int l = 0; l < W; l++) {
@@ -611,7 +615,7 @@ static void weigh(struct ct_lanes *s, const vec *pivot, bool *formed)
 // u', q' by the form at the input; lanes for which it is not sound are taken out.
 static void solve_form(struct ct_lanes *s, bool *formed)
 {
-    const struct ct_closed *c = s->form->c;
+    const struct ct_form_code *c = &s->code;
     run_program(&s->solved, s->input);
     const vec *out = s->solved.out, *inertia = out + s->nu + s->nq;
     for (int l = 0; l < W; l++)
@@ -623,7 +627,6 @@ static void solve_form(struct ct_lanes *s, bool *formed)
 // Largest of r (nu + rank) against the largest terms of the equations; NaN counts as infinite.
 static void weigh_left(const struct ct_lanes *s, const vec *r, double *left)
 {
-    const struct ct_closed *c = s->form->c;
     const int nu = s->nu, rank = s->rank;
     const vec *Q = s->checked.out + nu + rank + 2 * (nu + rank), *gam = Q + nu;
     vec a = {0}, forces = {0}, rates = {0}, r0 = {0}, r1 = {0}, zero = {0};
@@ -633,12 +636,12 @@ static void weigh_left(const struct ct_lanes *s, const vec *r, double *left)
         raise(&r0, &r[i]);
         zero += 0 * r[i];
     }
-    for (size_t i = 0; i < c->rank; i++) {
+    for (int i = 0; i < rank; i++) {
         raise(&rates, &gam[i]);
-        raise(&r1, &r[nu + (int)i]);
-        zero += 0 * r[nu + (int)i];
+        raise(&r1, &r[nu + i]);
+        zero += 0 * r[nu + i];
     }
-    const vec accelerations[] = {s->form->M_size * a, s->form->J_size * a};
+    const vec accelerations[] = {s->code.M_size * a, s->code.J_size * a};
     raise(&forces, &accelerations[0]);
     raise(&rates, &accelerations[1]);
     for (int l = 0; l < W; l++) {
@@ -662,7 +665,7 @@ static void check_form(struct ct_lanes *s, const bool *wanted)
     weigh_left(s, s->checked.out + n, left);
     weigh_left(s, s->checked.out + 2 * n, better);
     vec kappa = {0};
-    for (size_t i = 0; i < s->form->c->nB; i++)
+    for (size_t i = 0; i < s->code.nB; i++)
         raise(&kappa, &s->checked.out[4 * n + (int)i]);
     for (int l = 0; l < W; l++) {
         if (!wanted[l] || !s->fits[l] || is_near_singular(s, l))
@@ -1202,7 +1205,7 @@ static void foresee_singular(struct ct_lanes *s, const double *t, const vec *y,
         lane->pivot_last = now;
         lane->pivot_time = t[l];
         if (isfinite(before) && before > now && dt > 0
-            && dt * now / (before - now) <= (singular_steps + s->method->gap) * lane->h)
+            && dt * now / (before - now) <= singular_steps * lane->h)
             give_up(s, l);
     }
 }
