@@ -193,7 +193,7 @@ figures() {
 elements() {
     echo "| elements | all terms: error | seconds | linear: error | seconds |"
     echo "| --- | --- | --- | --- | --- |"
-    for n in 1 2 3 4 5 6 8 10 15; do
+    for n in 1 2 3 4 5 6 8 10 15 20; do
         line="| $n"
         for kind in "" linear_; do
             sed "s/elements: .*/elements: $n/" "$reference/B01_${kind}N1.yaml" >"$work/beam.yaml"
@@ -219,11 +219,10 @@ frames() {
             { v = $column }
             END { printf "| %d | %d | %.9f | %.1e | %.2g |\n", k, n, v, v / -0.573786796554 - 1, seconds }' "$work/result.csv"
     done <<'END'
-1 16
-2 12
-4 8
-8 5
-16 3
+1 10
+2 6
+4 4
+8 3
 END
 }
 
