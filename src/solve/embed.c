@@ -268,7 +268,7 @@ static bool factor(struct ct_embed *s)
 
 double ct_embed_pivot(struct ct_embed *s)
 {
-    return factor(s) ? s->sigma : 0;
+    return factor(s) ? s->sigma * fmax(1, s->kappa) : 0;
 }
 
 // The speed with the smallest diagonal entry of M or, where there is none, with the smallest pivot of the closed form.
@@ -658,6 +658,8 @@ enum ct_eval ct_embed_project(struct ct_embed *s, double t, double *y)
 
 void ct_embed_renew(struct ct_embed *s)
 {
-    if (s->rank && has_worn(s))
-        ct_embed_choose(s);
+    if (!s->rank || !has_worn(s))
+        return;
+    ct_machine_constraint(s->m); // closed forms leave J as it was
+    ct_embed_choose(s);
 }
