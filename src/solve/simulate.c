@@ -29,6 +29,7 @@ struct ct_run {
     double energy0, energy_scale;
     double pivot_most, last_part, time_last, singular_in,
         singular_reach; // see foresee_singular
+    long last_switches; // of the embedding
     double pending;     // time of the event ahead; INFINITY if there is none
     bool started;
     // the choice of the method
@@ -159,11 +160,15 @@ static bool foresee_singular(struct ct_run *r, double t, const double *y, const 
     if (!r->s->rank || !(dt > 0))
         return true;
     const double now = pivot_after(r, t, y, dy, 0), part = now / fmax(r->pivot_most, now);
-    const bool was_unforeseen = isinf(r->singular_in) && r->last_part > near_pivot;
+    // after another choice of rows and columns the pivot is not to be compared with the last one
+    const bool is_comparable = r->s->switches == r->last_switches;
+    const bool was_unforeseen
+        = is_comparable && isinf(r->singular_in) && r->last_part > near_pivot;
     if (r->o->step == 0 && part < near_pivot && was_unforeseen)
         return false;
     r->time_last = t;
     r->last_part = part;
+    r->last_switches = r->s->switches;
     r->pivot_most = fmax(r->pivot_most, now);
     r->singular_in = INFINITY;
     r->s->is_delicate = part < near_pivot;
