@@ -1,5 +1,6 @@
 // Runs: options resolved, the start assembled, the motion integrated and written.
 #include "api.h"
+#include "configuration.h"
 
 #include "formulate/flexible.h"
 
@@ -202,7 +203,7 @@ static size_t samples_until(const struct ct_simulation *m, double until)
     return (size_t)ceil(until / spacing * (1 - 1e-12)) + 1; // 10/0.01 may round upwards
 }
 
-static bool resolve_options(struct ct_sim *sim, const struct ct_sim_options *o)
+bool ct_sim_resolve(struct ct_sim *sim, const struct ct_sim_options *o)
 {
     const struct ct_simulation *m = &sim->system->model.simulation;
     if (!check_numbers(sim, o))
@@ -264,17 +265,14 @@ static bool needs_dynamics(const struct ct_equations *e, const struct ct_method 
 static bool prepare(struct ct_sim *sim, const struct ct_sim_options *o)
 {
     struct ct_system *s = sim->system;
-    if (!resolve_options(sim, o))
+    if (!ct_sim_resolve(sim, o))
         return false;
     const double start = ct_clock();
     if (sim->run_options.method->is_implicit) // made once, when the first run asks for it
         ct_formulate_residual(&s->equations);
     if (needs_dynamics(&s->equations, sim->run_options.method))
         ct_formulate_dynamics(&s->equations);
-    if (!ct_assemble(&sim->own, sim->own.model, &s->model, &s->start_equations, &sim->start))
-        return false;
-    if (s->held_equations.build
-        && !ct_settle(&sim->own, sim->own.model, &s->model, &s->held_equations, &sim->start))
+    if (!ct_configuration_assemble(&sim->own, s, &sim->start))
         return false;
     sim->run = ct_run_create(&sim->own, sim->own.model, &s->model, &s->equations, &sim->start);
     sim->compile = ct_clock() - start;
@@ -289,6 +287,15 @@ static bool prepare(struct ct_sim *sim, const struct ct_sim_options *o)
                         "the equations are singular at the start");
     ct_run_find_open(sim->run, 0, ct_run_state(sim->run), sim->open.row, sim->open.result);
     return true;
+}
+
+bool ct_sim_prepare(struct ct_sim *sim, struct ct_system *sys, const struct ct_sim_options *o)
+{
+    sim->system = sys;
+    if (!ct_sim_resolve(sim, o))
+        return false;
+    sim->run = ct_run_prepare(&sim->own, sim->own.model, &sys->model, &sys->equations);
+    return choose_backend(sim, o->backend);
 }
 
 static bool create(void *task)
@@ -380,7 +387,8 @@ static bool integrate(struct ct_sim *sim)
     struct ct_run_options *o = &sim->run_options;
     struct ct_progress progress = {0};
     if (sim->results->progress) {
-        ct_progress_init(&progress, sim->results->progress, "simulate");
+        ct_progress_init(&progress, sim->results->progress,
+                         sim->is_followed ? "follow" : "simulate");
         sim->progress = &progress;
     }
     if (sim->results->progress || sim->deadline > 0)
@@ -389,7 +397,8 @@ static bool integrate(struct ct_sim *sim)
     o->want_residual = want_residual;
     o->user = sim;
     const double start = ct_clock();
-    const bool ok = ct_run_simulate(sim->run, o, &sim->report);
+    const bool ok = sim->is_followed ? ct_run_follow(sim->run, o, &sim->report)
+                                     : ct_run_simulate(sim->run, o, &sim->report);
     sim->integrate = ct_clock() - start - sim->write;
     ct_progress_finish(&progress);
     sim->progress = NULL;
@@ -458,6 +467,13 @@ static bool run_and_report(void *task)
     const bool ok = run(w->sim);
     ct_ctx_hand_over(w->ctx, &w->sim->own);
     return ok;
+}
+
+bool ct_sim_follow(struct ct_ctx *ctx, struct ct_sim *sim, const struct ct_sim_results *results)
+{
+    if (sim)
+        sim->is_followed = true;
+    return ct_sim_run(ctx, sim, results);
 }
 
 bool ct_sim_run(struct ct_ctx *ctx, struct ct_sim *sim, const struct ct_sim_results *results)
