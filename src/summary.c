@@ -33,9 +33,10 @@ static long operations(const struct ct_sim *sim)
 static const char *solver(const struct ct_sim *sim)
 {
     const struct ct_embed *embed = ct_run_embed(sim->run);
-    return ct_run_machine(sim->run)->solved.nout ? "unrolled"
-         : embed->nform                          ? embed->form[0]->kind->name
-                                                 : "dense";
+    return !embed->m->nu         ? "none"
+         : embed->m->solved.nout ? "unrolled"
+         : embed->nform          ? embed->form[0]->kind->name
+                                 : "dense";
 }
 
 // The report has none before the run.
