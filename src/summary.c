@@ -389,13 +389,9 @@ static void print_estimate(FILE *out, const struct ct_sim *sim)
                 e->holds_until);
 }
 
-void ct_sim_print_summary(const struct ct_sim *sim, FILE *out)
+static void print_method(FILE *out, const struct ct_sim *sim)
 {
     const struct ct_run_report *r = &sim->report;
-    fprintf(out, "%s: t = %.9g s\n", sim->system->model.name, sim->time);
-    print_freedoms(out, sim);
-    fprintf(out, "tree         %s\n", sim->system->tree.how);
-    print_trees(out, &sim->system->equations);
     fprintf(out, "method       %s (%s), ", sim->run_options.method->name, sim->method_why);
     if (sim->run_options.step > 0)
         fprintf(out, "step %g s\n", sim->run_options.step);
@@ -407,6 +403,19 @@ void ct_sim_print_summary(const struct ct_sim *sim, FILE *out)
         "operations (%s)\n",
         r->stats.steps, r->stats.rejected_steps, r->stats.inaccurate_steps,
         r->stats.evaluations, operations(sim), ct_run_machine(sim->run)->backend);
+}
+
+void ct_sim_print_summary(const struct ct_sim *sim, FILE *out)
+{
+    const struct ct_run_report *r = &sim->report;
+    fprintf(out, "%s: t = %.9g s\n", sim->system->model.name, sim->time);
+    print_freedoms(out, sim);
+    fprintf(out, "tree         %s\n", sim->system->tree.how);
+    print_trees(out, &sim->system->equations);
+    if (sim->is_followed)
+        fputs("method       motions followed, nothing integrated\n", out);
+    else
+        print_method(out, sim);
     fprintf(out, "error        energy drift %.2g, constraints %.2g, their rates %.2g\n",
             r->energy_drift, r->position_constraint, r->velocity_constraint);
     print_estimate(out, sim);

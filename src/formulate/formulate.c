@@ -546,7 +546,8 @@ bool ct_formulate(struct ct_ctx *ctx, struct ct_arena *a, const struct ct_model 
         ct_energies_derive(b);
     if (options->measure_all)
         measure_all(b, options->measured_for);
-    else if (options->with_outputs && !ct_outputs_derive(b))
+    else if (options->with_outputs
+             && (!ct_outputs_derive(b) || !ct_outputs_add(b, options->more)))
         return false;
     if (options->with_energy)
         ct_validity_monitor(b);

@@ -58,6 +58,12 @@ enum ct_eval ct_run_results(struct ct_run *r, double t, const double *y, double 
 /// result[i] if the result changes with such multipliers. What is true already stays.
 void ct_run_find_open(struct ct_run *r, double t, const double *y, bool *row, bool *result);
 
+/// Follow the motions of a run that has no freedom left, sample by sample: places by Newton's method, speeds and
+/// accelerations from the rows. Nothing is integrated but the work.
+/// Errors: CT_E_NOT_DRIVEN, CT_E_DRIVER_JUMP, CT_E_SAMPLE_REFUSED, CT_E_SINGULAR.
+bool ct_run_follow(struct ct_run *r, const struct ct_run_options *o,
+                   struct ct_run_report *report);
+
 /// Integrate over the duration.
 bool ct_run_simulate(struct ct_run *r, const struct ct_run_options *o,
                      struct ct_run_report *report);
