@@ -700,14 +700,20 @@ enum ct_eval ct_embed_project(struct ct_embed *s, double t, double *y)
 
 double ct_embed_pivot(struct ct_embed *s)
 {
+    // the place need not be one of the motion: what is known of the motion stays
+    const double sigma = s->sigma, kappa = s->kappa, strength = s->strength;
+    double pivot = -1;
     if (is_form_due(s) && s->is_alike) {
         s->strength = ct_form_close(s->form[0], s->m);
-        if (is_sound(s)) {
-            follow_sigma(s);
-            return s->sigma;
-        }
+        if (is_sound(s))
+            pivot = s->sigma_found * s->strength / s->at_sigma;
     }
-    return factor(s) ? s->sigma : 0;
+    if (pivot < 0)
+        pivot = factor(s) ? s->sigma : 0;
+    s->sigma = sigma;
+    s->kappa = kappa;
+    s->strength = strength;
+    return pivot;
 }
 
 void ct_embed_renew(struct ct_embed *s)
