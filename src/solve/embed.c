@@ -693,23 +693,30 @@ enum ct_eval ct_embed_project(struct ct_embed *s, double t, double *y)
     if (e != CT_EVAL_OK)
         return e;
     tend_form(s);
-    if (has_worn(s))
+    if (has_worn(s)) {
+        ct_machine_constraint(s->m); // forms leave J as it was
         ct_embed_choose(s);
+    }
     return CT_EVAL_OK;
+}
+
+// Dense pivots of larger systems cost more than a step does.
+static bool find_strength(struct ct_embed *s)
+{
+    enum { LARGE = 200 };
+    if (s->rank < LARGE || !is_form_due(s))
+        return false;
+    s->strength = ct_form_close(s->form[0], s->m);
+    s->sigma = s->sigma_found * s->strength / s->at_sigma;
+    return is_sound(s);
 }
 
 double ct_embed_pivot(struct ct_embed *s)
 {
     // the place need not be one of the motion: what is known of the motion stays
     const double sigma = s->sigma, kappa = s->kappa, strength = s->strength;
-    double pivot = -1;
-    if (is_form_due(s) && s->is_alike) {
-        s->strength = ct_form_close(s->form[0], s->m);
-        if (is_sound(s))
-            pivot = s->sigma_found * s->strength / s->at_sigma;
-    }
-    if (pivot < 0)
-        pivot = factor(s) ? s->sigma : 0;
+    const bool is_known = find_strength(s) || factor(s);
+    const double pivot = is_known ? s->sigma * fmax(1, s->kappa) : 0;
     s->sigma = sigma;
     s->kappa = kappa;
     s->strength = strength;
@@ -722,6 +729,8 @@ void ct_embed_renew(struct ct_embed *s)
         s->strength = ct_form_close(s->form[0], s->m);
         tend_form(s);
     }
-    if (has_worn(s))
-        ct_embed_choose(s);
+    if (!s->rank || !has_worn(s))
+        return;
+    ct_machine_constraint(s->m); // forms leave J as it was
+    ct_embed_choose(s);
 }
