@@ -199,10 +199,10 @@ static void stewart_platform_needs_no_more_than_the_table_says(void **state)
 // PUMA geometry, six turning axes: masses, centres of mass, full inertias and lengths are parameters.
 static const char *arm_text(struct ct_arena *a)
 {
-    static const char *const end[] = {"{at: [0, 0, 0], rotate: [x, -pi/2]}", "[a2, 0, d3]",
-                                      "{at: [a3, d4, 0], rotate: [x, -pi/2]}",
-                                      "{at: [0, 0, 0], rotate: [x, pi/2]}",
-                                      "{at: [0, 0, 0], rotate: [x, -pi/2]}", "[0, 0, 0]"};
+    static const char *const end[]
+        = {"{at: [0, 0, 0], rotate: [x, -pi/2]}",   "[a2, 0, d3]",
+           "{at: [a3, d4, 0], rotate: [x, -pi/2]}", "{at: [0, 0, 0], rotate: [x, pi/2]}",
+           "{at: [0, 0, 0], rotate: [x, -pi/2]}",   "[0, 0, 0]"};
     const char *parameters = "g: 9.81, a2: 0.43, a3: 0.02, d3: 0.15, d4: 0.43", *bodies = "",
                *joints = "";
     for (int i = 1; i <= 6; i++) {
@@ -215,7 +215,8 @@ static const char *arm_text(struct ct_arena *a)
                          "D%d, E%d, F%d], points: {end: %s}}\n",
                          bodies, i, i, i, i, i, i, i, i, i, i, i, end[i - 1]);
         const char *from = i == 1 ? "ground" : text_of(a, "b%d.end", i - 1);
-        joints = text_of(a, "%s  j%d: {type: revolute, from: %s, to: b%d}\n", joints, i, from, i);
+        joints
+            = text_of(a, "%s  j%d: {type: revolute, from: %s, to: b%d}\n", joints, i, from, i);
     }
     return text_of(a,
                    "cotree: 1\ngravity: [0, 0, -g]\nparameters: {%s}\nbodies:\n%sjoints:\n%s",
@@ -236,9 +237,8 @@ static void six_axis_arm_needs_no_more_than_its_goals(void **state)
     struct ct_arena *a = ct_arena_create();
     system_open_text(&s, "arm", arm_text(a));
     for (size_t i = 0; i < COUNT(most); i++) {
-        const struct ct_formulate_options o = {.tree = CT_TREE_AUTO,
-                                               .with_solution = true,
-                                               .formulation = most[i].formulation};
+        const struct ct_formulate_options o
+            = {.tree = CT_TREE_AUTO, .with_solution = true, .formulation = most[i].formulation};
         variant_open(&s, &o, &v);
         const struct ct_tape_counts c = ct_ex_count(v.arena, v.e.x, v.e.solution, v.e.nu);
         print_message("%ld/%ld/%ld/%ld\n", c.multiplications, c.additions, c.divisions,
@@ -273,7 +273,8 @@ static const char *chain_text(struct ct_arena *a, int n)
                          "%s  b%d: {mass: 1.%d, com: [0.5, 0.01, 0.02], inertia: [0.1, 0.2, "
                          "0.25], points: {end: [1, 0, 0]}}\n",
                          bodies, i, i);
-        joints = text_of(a, "%s  j%d: {type: spherical, from: %s, to: b%d}\n", joints, i, from, i);
+        joints
+            = text_of(a, "%s  j%d: {type: spherical, from: %s, to: b%d}\n", joints, i, from, i);
     }
     return text_of(a, "cotree: 1\ngravity: [0, 0, -9.81]\nbodies:\n%sjoints:\n%s", bodies,
                    joints);
