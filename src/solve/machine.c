@@ -326,16 +326,42 @@ void ct_machine_values(struct ct_arena *a, const struct ct_machine *m, const ct_
     memcpy(out, p.out, n * sizeof *out);
 }
 
-void ct_machine_prepare(struct ct_machine *m)
+enum { NPROGRAM = 14 };
+
+static void list_programs(struct ct_machine *m, struct ct_program *list[NPROGRAM])
 {
-    struct ct_program *const all[]
+    struct ct_program *const all[NPROGRAM]
         = {&m->solved, &m->motion,   &m->constraint, &m->result,   &m->power,
            &m->energy, &m->root,     &m->memory,     &m->momentum, &m->driver,
            &m->wanted, &m->residual, &m->tangent,    &m->validity};
+    memcpy(list, all, sizeof all);
+}
+
+void ct_machine_prepare(struct ct_machine *m)
+{
+    struct ct_program *all[NPROGRAM];
+    list_programs(m, all);
     for (size_t i = 0; i < COUNT(all); i++)
         prepare(all[i], m->input);
     for (struct ct_program *p = m->apart; p; p = p->next)
         prepare(p, m->input);
+}
+
+static size_t code_size(const struct ct_program *p)
+{
+    return p->native ? ct_native_code_size(p->native) : 0;
+}
+
+size_t ct_machine_code_size(struct ct_machine *m)
+{
+    struct ct_program *all[NPROGRAM];
+    size_t n = 0;
+    list_programs(m, all);
+    for (size_t i = 0; i < COUNT(all); i++)
+        n += code_size(all[i]);
+    for (const struct ct_program *p = m->apart; p; p = p->next)
+        n += code_size(p);
+    return n;
 }
 
 // ---- evaluation -------------------------------------------------------------------------------------

@@ -90,6 +90,8 @@ void ct_program_run(struct ct_program *p, const double *input);
 /// Values of expressions at the input, once: everything needed is made in a.
 void ct_machine_values(struct ct_arena *a, const struct ct_machine *m, const ct_ex *e, size_t n,
                        double *out);
+/// Bytes of machine code of all programs.
+size_t ct_machine_code_size(struct ct_machine *m);
 /// Parameters have changed: run the prologues again.
 void ct_machine_prepare(struct ct_machine *m);
 
