@@ -150,6 +150,12 @@ static void take_form(struct ct_embed *s)
     }
 }
 
+void ct_embed_stay_dense(struct ct_embed *s)
+{
+    s->is_dear = true;
+    s->has_form = false;
+}
+
 static bool is_within(double ratio, double factor)
 {
     return ratio < factor && ratio > 1 / factor;
@@ -324,9 +330,9 @@ static bool massless(struct ct_embed *s, size_t speed)
 static bool has_inertia(struct ct_embed *s)
 {
     const size_t n = s->m->nu;
-    double *pivot = s->r;
+    const double *pivot = s->m->solved.out + n + s->m->nq;
     size_t least = 0;
-    ct_machine_values(s->arena, s->m, s->m->e->pivot, n, pivot);
+    ct_program_run(&s->m->solved, s->m->input);
     for (size_t i = 1; i < n; i++)
         if (isnan(pivot[least]) || fabs(pivot[i]) < fabs(pivot[least]))
             least = i;

@@ -183,6 +183,8 @@ static void compile_solved(struct ct_arena *a, struct ct_machine *m, const struc
         push(&l, e->solution[i]);
     for (size_t i = 0; i < e->nq && e->solution; i++)
         push(&l, e->q[i].rate);
+    for (size_t i = 0; i < e->nu && e->solution; i++)
+        push(&l, e->pivot[i]);
     compile_from(a, m->e->x, in, l.e, l.n, CT_FUSE_NATIVE, &m->solved);
 }
 
@@ -266,6 +268,17 @@ static void compile_residual(struct ct_arena *a, struct ct_machine *m, const str
     compile(a, m, in, tangent.e, tangent.n, &m->tangent);
 }
 
+static void start_input(struct ct_machine *m)
+{
+    const struct ct_equations *e = m->e;
+    memset(m->input, 0, m->ninput * sizeof *m->input);
+    for (size_t i = 0; i < m->model->nparameter; i++)
+        m->input[1 + i] = m->model->parameter[i].value;
+    for (size_t i = 0; i < e->nmemory; i++)
+        if (e->memory[i].kind == CT_MEMORY_QUATERNION && e->memory[i].place == 0)
+            m->input[m->at_memory + i] = 1;
+}
+
 struct ct_machine *ct_machine_create(struct ct_arena *a, const struct ct_model *model,
                                      const struct ct_equations *e)
 {
@@ -280,11 +293,7 @@ struct ct_machine *ct_machine_create(struct ct_arena *a, const struct ct_model *
     m->at_work = m->at_memory + e->nmemory;
     m->ninput = m->at_work + 1;
     m->input = CT_NEWN(a, double, m->ninput);
-    for (size_t i = 0; i < model->nparameter; i++)
-        m->input[1 + i] = model->parameter[i].value;
-    for (size_t i = 0; i < e->nmemory; i++)
-        if (e->memory[i].kind == CT_MEMORY_QUATERNION && e->memory[i].place == 0)
-            m->input[m->at_memory + i] = 1;
+    start_input(m);
 
     const struct inputs in = list_inputs(a, m, m->e->x);
     compile_solved(a, m, &in);
@@ -313,17 +322,6 @@ void ct_machine_add_residual(struct ct_arena *a, struct ct_machine *m)
     const struct inputs in = list_inputs(a, m, m->e->x);
     compile_residual(a, m, &in);
     ct_machine_use(a, m, m->motion.native ? CT_BACKEND_BEST : CT_BACKEND_TAPE);
-}
-
-void ct_machine_values(struct ct_arena *a, const struct ct_machine *m, const ct_ex *e, size_t n,
-                       double *out)
-{
-    const struct inputs in = list_inputs(a, m, m->e->x);
-    struct ct_program p = {0};
-    compile(a, m, &in, e, n, &p);
-    prepare(&p, m->input);
-    ct_program_run(&p, m->input);
-    memcpy(out, p.out, n * sizeof *out);
 }
 
 enum { NPROGRAM = 14 };
@@ -362,6 +360,12 @@ size_t ct_machine_code_size(struct ct_machine *m)
     for (const struct ct_program *p = m->apart; p; p = p->next)
         n += code_size(p);
     return n;
+}
+
+void ct_machine_reset(struct ct_machine *m)
+{
+    start_input(m);
+    ct_machine_prepare(m);
 }
 
 // ---- evaluation -------------------------------------------------------------------------------------

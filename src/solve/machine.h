@@ -35,7 +35,7 @@ struct ct_machine {
         double *out, *work;
         size_t nout;
         struct ct_program *next; // of those compiled apart
-    } solved,                    // u', q', where the equations have a solution; else empty
+    } solved,                    // u', q', pivots, where the equations have a solution; else empty
         motion,                  // M, Q, J, gam, q'
         constraint,              // phi, v, J
         result,                  // output columns
@@ -87,13 +87,12 @@ bool ct_machine_solved(struct ct_machine *m, double *a);
 /// phi, v, J at the input.
 void ct_machine_constraint(struct ct_machine *m);
 void ct_program_run(struct ct_program *p, const double *input);
-/// Values of expressions at the input, once: everything needed is made in a.
-void ct_machine_values(struct ct_arena *a, const struct ct_machine *m, const ct_ex *e, size_t n,
-                       double *out);
 /// Bytes of machine code of all programs.
 size_t ct_machine_code_size(struct ct_machine *m);
 /// Parameters have changed: run the prologues again.
 void ct_machine_prepare(struct ct_machine *m);
+/// As new, with the values that the model's parameters have now.
+void ct_machine_reset(struct ct_machine *m);
 
 /// q (+) d for a small motion d (nu) in the speeds; quaternions are composed and normalised.  (7.4)
 void ct_machine_retract(const struct ct_machine *m, double *q, const double *d);
