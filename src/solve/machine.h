@@ -35,20 +35,20 @@ struct ct_machine {
         double *out, *work;
         size_t nout;
         struct ct_program *next; // of those compiled apart
-    } solved,                    // u', q', pivots, where the equations have a solution; else empty
-        motion,                  // M, Q, J, gam, q'
-        constraint,              // phi, v, J
-        result,                  // output columns
-        power,                   // d(work)/dt
-        validity,                // indicators of linear beams
-        energy,                  // kinetic, potential
-        root,                    // g of each mode
-        memory,                  // next values
-        momentum,                // dT/du
-        driver,                  // value, rate of each driver
-        wanted,                  // of each row: not negative in the right assembly
-        residual, // r, phi, v; nothing if the equations have no residual, and so the next
-        tangent;  // dr/dq, dr/du, dr/du', dv/dq, J: the entries
+    } solved,       // u', q', pivots, where the equations have a solution; else empty
+        motion,     // M, Q, J, gam, q'
+        constraint, // phi, v, J
+        result,     // output columns
+        power,      // d(work)/dt
+        validity,   // indicators of linear beams
+        energy,     // kinetic, potential
+        root,       // g of each mode
+        memory,     // next values
+        momentum,   // dT/du
+        driver,     // value, rate of each driver
+        wanted,     // of each row: not negative in the right assembly
+        residual,   // r, phi, v; nothing if the equations have no residual, and so the next
+        tangent;    // dr/dq, dr/du, dr/du', dv/dq, J: the entries
 
     double *M, *Q, *J, *gam, *rate; // of the last ct_machine_motion
     double *phi, *v;                // of the last ct_machine_constraint (J as well)
