@@ -256,10 +256,10 @@ struct create {
     const struct ct_sim_options *options;
 };
 
-// Implicit methods start from, and impulses at events need, the mass matrix.
-static bool needs_dynamics(const struct ct_equations *e, const struct ct_method *method)
+// Impulses at events need the mass matrix.
+static bool needs_dynamics(const struct ct_equations *e)
 {
-    return method->is_implicit || !e->solution || e->nmode || e->x->ntable;
+    return !e->solution || e->nmode || e->x->ntable;
 }
 
 static bool prepare(struct ct_sim *sim, const struct ct_sim_options *o)
@@ -270,7 +270,7 @@ static bool prepare(struct ct_sim *sim, const struct ct_sim_options *o)
     const double start = ct_clock();
     if (sim->run_options.method->is_implicit) // made once, when the first run asks for it
         ct_formulate_residual(&s->equations);
-    if (needs_dynamics(&s->equations, sim->run_options.method))
+    if (needs_dynamics(&s->equations))
         ct_formulate_dynamics(&s->equations);
     if (!ct_configuration_assemble(&sim->own, s, &sim->start))
         return false;
