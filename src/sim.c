@@ -141,7 +141,7 @@ static bool no_method(struct ct_sim *sim, const char *name, bool is_option)
         names[i + 1] = ct_methods[i]->name;
     const struct ct_mark none = {0};
     return ct_error(&sim->own, is_option ? none : sim->system->model.simulation.method_mark,
-                    is_option ? CT_E_USAGE : CT_E_LATER, "this version has no method '%s'%s",
+                    is_option ? CT_E_USAGE : CT_E_WORD, "this version has no method '%s'%s",
                     name,
                     ct_suggest_or_list(sim->own.model, name, names, (size_t)ct_nmethod + 1));
 }
