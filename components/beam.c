@@ -1,10 +1,10 @@
 // Beam: a straight elastic body, divided into finite elements along its own x axis.
 //
-//   across   d = R rho, v = v_B + R (w x rho + N q')         arm to a point P, rho = x_P + U(q)
+//   across   d = R r, v = v_B + R (w x r + r_q q')           arm to a point P, r = x_P + U(q)
 //            R_P = R S(theta), w_P = w_B + R Y q'
-//   through  F_B = -R int m c dx                             [N]     c: acceleration of the section
-//            T_B = -R int m rho x c dx                       [N m]   less gravity, in the body's axes
-//            0 = int m N' c dx + K q + C q' - loads at P     one per elastic coordinate
+//   through  F_B = -R int mu c dx                            [N]     c: acceleration of the section
+//            T_B = -R int mu r x c dx                        [N m]   less gravity, in the body's axes
+//            effort(q) = -int mu r_q . c dx - V_q            one per elastic coordinate; V: strain energy
 //
 // Source: formulation (1.6), (5.4), (5.5).
 #include "component/class.h"
@@ -62,8 +62,7 @@ const struct ct_component_class ct_component_beam = {
     .family = CT_FAMILY_BODY,
     .key = keys,
     .nkey = COUNT(keys),
-    .across = "arm to a point: d = R*rho, v = v_B + R*(w x rho + N*q'), R_P = R*S(theta), "
-              "w_P = w_B + R*Y*q'; rho = x + U(q)",
-    .through = "F = -R*int(m*c), T = -R*int(m*rho x c), 0 = int(m*N'*c) + K*q + C*q' - loads; "
-               "c = acceleration - g",
+    .across = "section at x: d = r(x, q), S(x, q)",
+    .through = "F = -int(mu*c), T = -int(mu*r x c), effort(q) = -int(mu*r_q . c) - V_q; c: "
+               "acceleration of the section less g",
 };

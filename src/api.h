@@ -7,6 +7,7 @@
 
 #include "formulate/formulate.h"
 #include "report/csv.h"
+#include "solve/settle.h"
 #include "solve/simulate.h"
 
 #include <cotree/cotree.h>
@@ -18,7 +19,9 @@ struct ct_system {
     struct ct_equations equations;
     struct ct_tree_report tree;
     struct ct_equations start_equations; // on trees through joints, for assembling
-    double read, generate;               // seconds
+    struct ct_equations
+        held_equations;    // with drivers that stand still, where beams start in equilibrium
+    double read, generate; // seconds
 };
 
 /// What multipliers leave open, at the start and at the end of a run.

@@ -274,6 +274,9 @@ static bool prepare(struct ct_sim *sim, const struct ct_sim_options *o)
         ct_formulate_dynamics(&s->equations);
     if (!ct_assemble(&sim->own, sim->own.model, &s->model, &s->start_equations, &sim->start))
         return false;
+    if (s->held_equations.build
+        && !ct_settle(&sim->own, sim->own.model, &s->model, &s->held_equations, &sim->start))
+        return false;
     sim->run = ct_run_create(&sim->own, sim->own.model, &s->model, &s->equations, &sim->start);
     sim->compile = ct_clock() - start;
     if (!sim->run || !choose_backend(sim, o->backend))

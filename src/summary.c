@@ -2,6 +2,7 @@
 #include "api.h"
 
 #include "report/json.h"
+#include "report/stage_beam.h"
 
 #include <math.h>
 #include <string.h>
@@ -47,7 +48,7 @@ static long redundant(const struct ct_sim *sim)
 
 static bool is_arm(const struct ct_equations *e, int edge)
 {
-    return strcmp(e->edge_kind[edge], "arm") == 0;
+    return e->build->edge[edge].kind == CT_EDGE_ARM;
 }
 
 static bool same_trees(const struct ct_equations *e)
@@ -429,6 +430,14 @@ static void print_redundant(FILE *out, const struct ct_sim *sim)
     fputc('\n', out);
 }
 
+static void print_beams(FILE *out, const struct ct_equations *e)
+{
+    for (size_t i = 0; i < e->build->nflexible; i++) {
+        const struct ct_flexible *f = &e->build->flexible[i];
+        fprintf(out, "beam         %s: %s\n", f->name, ct_beam_sentence(e->build->arena, f));
+    }
+}
+
 void ct_sim_print_check(const struct ct_sim *sim, FILE *out)
 {
     const struct ct_system *s = sim->system;
@@ -453,6 +462,7 @@ void ct_sim_print_check(const struct ct_sim *sim, FILE *out)
                 s->tree.cost_least_weight);
     fputc('\n', out);
     print_trees(out, e);
+    print_beams(out, e);
     for (size_t i = 0; i < e->nleft_out; i++)
         fprintf(out, "left out     %s: %s\n", e->left_out[i].what, e->left_out[i].why);
     print_formulation(out, e);

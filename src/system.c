@@ -124,11 +124,15 @@ static bool build(struct ct_system *s, const char *path, const struct ct_system_
                                                .measure_all = true,
                                                .measured_for = &s->equations,
                                                .without_dynamics = true};
+    const struct ct_formulate_options held
+        = {.tree = CT_TREE_JOINTS, .keep_all = o->keep_all, .held = true};
     struct ct_tree_report unused;
     return choose_tree(&s->own, o->tree, &motion)         // which branches, if any are given
         && read_model(s, path, o)                         // text -> component instances
         && formulate(s, &motion, &s->equations, &s->tree) // graph, trees, equations of motion
-        && formulate(s, &start, &s->start_equations, &unused); // equations for assembling
+        && formulate(s, &start, &s->start_equations, &unused) // equations for assembling
+        && (!ct_settle_wanted(&s->model)
+            || formulate(s, &held, &s->held_equations, &unused)); // and for static shapes
 }
 
 struct load {
@@ -220,15 +224,19 @@ static bool draw(void *task)
     struct ct_ctx *own = &d->s->own;
     static const char *const formats[] = {"text", "dot", "json"};
     bool *quiet = CT_NEWN(own->scratch, bool, e->graph->nedge + 1);
-    for (int i = 0; i < e->graph->nedge; i++)
+    bool *marked = CT_NEWN(own->scratch, bool, e->graph->nedge + 1);
+    for (int i = 0; i < e->graph->nedge; i++) {
         quiet[i] = strcmp(e->edge_kind[i], "arm") == 0;
+        marked[i] = strcmp(e->edge_kind[i], "flexible arm") == 0;
+    }
     const struct ct_graph_names names = {.node = node_name,
                                          .edge = edge_name,
                                          .kind = edge_kind,
                                          .data = e,
                                          .weight_trans = e->weight_t,
                                          .weight_rot = e->weight_r,
-                                         .is_quiet = quiet};
+                                         .is_quiet = quiet,
+                                         .is_marked = marked};
     const struct ct_graph_view view = {e->graph, e->T, e->R, &names};
     const char *format = d->format ? d->format : formats[0];
     bool ok = true;

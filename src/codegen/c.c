@@ -152,7 +152,12 @@ static const char *operation_text(const struct writer *w, const struct statement
     case CT_OP_TABLE:
         return ct_arena_printf(w->arena, "%s_table(%s_table%u, %u, %s)", w->o.name, w->o.name,
                                i->table, i->order, arg[0]);
+    case CT_OP_ANGLE_SIN:
+        return ct_c_operation(w->arena, CT_OP_SIN, arg);
+    case CT_OP_ANGLE_COS:
+        return ct_c_operation(w->arena, CT_OP_COS, arg);
     case CT_OP_SINCOS:
+    case CT_OP_ANGLE_SINCOS:
         return ct_c_operation(w->arena, s->result ? CT_OP_COS : CT_OP_SIN, arg);
     case CT_OP_FMA:
         return ct_arena_printf(w->arena, "fma(%s, %s, %s)", arg[0], arg[1], arg[2]);

@@ -3,6 +3,7 @@
 #include "codegen/native.h"
 
 #include "codegen/x86.h"
+#include "expr/sincos.h"
 
 #if defined(__x86_64__) && (defined(__unix__) || defined(__APPLE__))
 #define HAS_X86 1
@@ -13,6 +14,9 @@
 
 #include <math.h>
 #include <string.h>
+
+// Shorter programs gain too little from fused operations to give up the bits of the tape.
+static const size_t least_fused = 256;
 
 typedef void (*body_fn)(const double *input, double *out, double *work);
 
@@ -52,6 +56,8 @@ struct ct_native {
 #define EACH_FUNCTION(ONE, TWO)                                                                \
     ONE(CT_OP_SIN, sin)                                                                        \
     ONE(CT_OP_COS, cos)                                                                        \
+    ONE(CT_OP_ANGLE_SIN, sine)                                                                 \
+    ONE(CT_OP_ANGLE_COS, cosine)                                                               \
     ONE(CT_OP_TAN, tan)                                                                        \
     ONE(CT_OP_ASIN, asin)                                                                      \
     ONE(CT_OP_ACOS, acos)                                                                      \
@@ -65,6 +71,20 @@ struct ct_native {
     TWO(CT_OP_ATAN2, atan2)
 
 #if HAS_X86
+
+static double sine(double a)
+{
+    double s, c;
+    ct_sincos(a, &s, &c);
+    return s;
+}
+
+static double cosine(double a)
+{
+    double s, c;
+    ct_sincos(a, &s, &c);
+    return c;
+}
 
 #define DEFINE_ONE(op, f) ONE_ARGUMENT(f)
 #define DEFINE_TWO(op, f) TWO_ARGUMENTS(f)
@@ -81,6 +101,21 @@ static void sincos_4(double *s, const double *a, double *c)
 {
     for (int i = 0; i < 4; i++)
         sincos_1(s + i, a + i, c + i);
+}
+
+static void angle_1(double *s, const double *a, double *c)
+{
+    ct_sincos_many(a, s, c, 1);
+}
+
+static void angle_4(double *s, const double *a, double *c)
+{
+    ct_sincos_many(a, s, c, 4);
+}
+
+static void sincos_many(double *s, const double *a, double *c, uint64_t n)
+{
+    ct_sincos_many(a, s, c, n);
 }
 
 static void table_1(double *res, const double *a, const struct ct_table *t, uint64_t order)
@@ -100,7 +135,9 @@ static struct ct_x86_calls list_calls(int lanes)
 #define LIST(op, f) c.by_op[op] = lanes == 1 ? (uintptr_t)f##_1 : (uintptr_t)f##_4;
     EACH_FUNCTION(LIST, LIST)
     LIST(CT_OP_SINCOS, sincos)
+    LIST(CT_OP_ANGLE_SINCOS, angle)
     LIST(CT_OP_TABLE, table)
+    c.sincos_many = (uintptr_t)sincos_many;
     return c;
 }
 
@@ -204,6 +241,9 @@ struct ct_native *ct_native_create(struct ct_arena *a, const struct ct_listing *
 #if HAS_X86
     if (!ct_native_is_available(lanes) || (has_fused(l) && !__builtin_cpu_supports("fma")))
         return NULL;
+    if (l->fuse == CT_FUSE_NATIVE && l->nins - l->nprologue >= least_fused
+        && __builtin_cpu_supports("fma"))
+        l = ct_listing_fuse(a, l);
     struct ct_native *f = CT_NEW(a, struct ct_native);
     const struct ct_x86_calls calls = list_calls(lanes);
     *f = (struct ct_native){.l = l, .lanes = (size_t)lanes};

@@ -7,7 +7,7 @@
 // afterwards, never both.
 //
 // What always holds: results have the bits of the tape (tape.h) made from the same listing, lane by
-// lane; evaluation allocates nothing; the function is constant, the work array belongs to the caller
+// lane, unless the listing leaves fusing to native code; evaluation allocates nothing; the function is constant, the work array belongs to the caller
 // and holds the prologue's results between calls.
 #ifndef CT_CODEGEN_NATIVE_H
 #define CT_CODEGEN_NATIVE_H

@@ -235,6 +235,7 @@ struct emitter {
     int base[4];     // register that points at each area
     uint32_t *order; // of the body's instructions
     size_t norder;
+    uint32_t first_angle, nangle; // in the order: sines and cosines that are one call
 
     // reads of a value: places in the order, ascending; those before next[v] are done
     uint32_t *start, *use, *next;
@@ -472,7 +473,7 @@ static void emit_call(struct emitter *e, const struct ct_instruction *i)
     put_vzeroupper(c);
     put_address(c, RDI, memory_of(e, e->home[i->res[0]]));
     put_address(c, RSI, memory_of(e, e->home[i->arg[0]]));
-    if (i->op == CT_OP_SINCOS) {
+    if (i->nres == 2) {
         put_address(c, RDX, memory_of(e, e->home[i->res[1]]));
     } else if (i->op == CT_OP_TABLE) {
         put_immediate(c, RDX, (uintptr_t)&e->l->table[i->table]);
@@ -594,6 +595,120 @@ static void emit_instruction(struct emitter *e, uint32_t at)
     give_up_places(e, i->res, i->nres);
 }
 
+// ---- angles -----------------------------------------------------------------------------------
+
+static const struct ct_instruction *wave(const struct emitter *e, uint32_t k)
+{
+    return &e->l->ins[e->order[e->first_angle + k]];
+}
+
+// In the order of the places of their angles, so that inputs side by side can be read where they are.
+static void sort_waves(struct emitter *e)
+{
+    uint32_t *order = e->order + e->first_angle;
+    for (uint32_t i = 1; i < e->nangle; i++) // few, and mostly in order
+        for (uint32_t k = i; k > 0; k--) {
+            const struct home *a = &e->home[wave(e, k - 1)->arg[0]],
+                              *b = &e->home[wave(e, k)->arg[0]];
+            if (a->area != INPUT || b->area != INPUT || a->place <= b->place)
+                break;
+            const uint32_t kept = order[k];
+            order[k] = order[k - 1];
+            order[k - 1] = kept;
+        }
+}
+
+static bool are_side_by_side(const struct emitter *e)
+{
+    for (uint32_t k = 0; k < e->nangle; k++) {
+        const struct home *h = &e->home[wave(e, k)->arg[0]];
+        if (h->area != INPUT || h->place != e->home[wave(e, 0)->arg[0]].place + k)
+            return false;
+    }
+    return true;
+}
+
+// The reads of an angle are done.
+static void pass_reads(struct emitter *e, uint32_t v)
+{
+    while (next_use(e, v) < e->first_angle + e->nangle)
+        e->next[v]++;
+}
+
+// The angles copied to places side by side.
+static struct home gather_angles(struct emitter *e)
+{
+    const struct home first = {WORK, e->nwork};
+    e->nwork += e->nangle;
+    for (uint32_t k = 0; k < e->nangle; k++) {
+        const int r = load(e, wave(e, k)->arg[0]);
+        put_store(&e->code, memory_of(e, (struct home){WORK, first.place + k}), r);
+        pass_reads(e, wave(e, k)->arg[0]);
+        release_registers(e);
+    }
+    return first;
+}
+
+static void forget_registers(struct emitter *e)
+{
+    for (int r = 0; r < NREGISTER; r++) {
+        const uint32_t v = e->content[r];
+        if (v != none && next_use(e, v) != none)
+            need_home(e, v);
+        if (v != none)
+            leave_register(e, v);
+    }
+}
+
+// Sines and cosines where the call has put them; places that no value has become free.
+static void place_waves(struct emitter *e, uint32_t sines, uint32_t cosines)
+{
+    for (uint32_t k = 0; k < e->nangle; k++) {
+        const struct ct_instruction *i = wave(e, k);
+        const uint32_t at[2] = {sines + k, cosines + k};
+        for (uint32_t r = 0; r < 2; r++) {
+            if (i->nres == 2 || (i->op == CT_OP_ANGLE_COS) == (r == 1))
+                e->home[i->res[i->nres == 2 ? r : 0]] = (struct home){WORK, at[r]};
+            else
+                e->free[e->nfree++] = at[r];
+        }
+    }
+    for (uint32_t k = 0; k < e->nangle; k++) {
+        const struct ct_instruction *i = wave(e, k);
+        for (uint32_t r = 0; r < i->nres; r++)
+            for (uint32_t o = e->first_output[i->res[r]]; o; o = e->next_output[o - 1])
+                put_store(&e->code, memory_of(e, (struct home){OUT, o - 1}),
+                          load(e, i->res[r]));
+        release_registers(e);
+        give_up_places(e, i->arg, 1);
+        give_up_places(e, i->res, i->nres);
+    }
+}
+
+// One call for all of them.
+static void emit_angles(struct emitter *e)
+{
+    struct code *c = &e->code;
+    sort_waves(e);
+    const struct home inputs = e->home[wave(e, 0)->arg[0]];
+    const bool copied = !are_side_by_side(e);
+    const struct home angles = copied ? gather_angles(e) : inputs;
+    for (uint32_t k = 0; k < e->nangle; k++)
+        pass_reads(e, wave(e, k)->arg[0]);
+    const uint32_t sines = e->nwork, cosines = sines + e->nangle;
+    e->nwork += 2 * e->nangle;
+    forget_registers(e);
+    put_vzeroupper(c);
+    put_address(c, RDI, memory_of(e, (struct home){WORK, sines}));
+    put_address(c, RSI, memory_of(e, angles));
+    put_address(c, RDX, memory_of(e, (struct home){WORK, cosines}));
+    put_immediate(c, RCX, (uint64_t)e->nangle * (uint64_t)c->lanes);
+    put_call(c, e->calls->sincos_many);
+    place_waves(e, sines, cosines);
+    for (uint32_t k = 0; copied && k < e->nangle; k++)
+        e->free[e->nfree++] = angles.place + k;
+}
+
 // ---- the whole --------------------------------------------------------------------------------
 
 static bool is_call(const struct emitter *e, const struct ct_instruction *i)
@@ -601,26 +716,68 @@ static bool is_call(const struct emitter *e, const struct ct_instruction *i)
     return e->calls->by_op[i->op] != 0;
 }
 
-// Calls and what they need first, the rest behind; else in the order of the listing.
+static bool is_wave(const struct ct_instruction *i)
+{
+    return i->op >= CT_OP_ANGLE_SIN && i->op <= CT_OP_ANGLE_SINCOS;
+}
+
+// When an instruction comes: what angles need, their sines and cosines, other calls and what they need, the rest.
+enum turn { FOR_ANGLES, ANGLES, FOR_CALLS, REST, NTURN };
+
+// Angles are those that no call leads to.
+static void find_angles(const struct emitter *e, unsigned char *turn)
+{
+    const struct ct_listing *l = e->l;
+    unsigned char *behind = CT_NEWN(e->arena, unsigned char, l->nvalue); // a call, by value
+    for (size_t i = l->nprologue; i < l->nins; i++) {
+        const struct ct_instruction *ins = &l->ins[i];
+        bool after = false;
+        for (uint32_t k = 0; k < ins->narg; k++)
+            after |= behind[ins->arg[k]];
+        turn[i] = !after && is_wave(ins) ? ANGLES : REST;
+        for (uint32_t k = 0; k < ins->nres; k++)
+            behind[ins->res[k]] = after || is_call(e, ins);
+    }
+}
+
+// What calls need comes early; what angles need, earliest.
+static void mark_needed(const struct emitter *e, unsigned char *turn)
+{
+    const struct ct_listing *l = e->l;
+    unsigned char *latest = CT_NEWN(e->arena, unsigned char, l->nvalue); // by value
+    memset(latest, REST, l->nvalue);
+    for (size_t i = l->nins; i-- > l->nprologue;) {
+        const struct ct_instruction *ins = &l->ins[i];
+        for (uint32_t k = 0; k < ins->nres && turn[i] != ANGLES; k++)
+            turn[i] = latest[ins->res[k]] < turn[i] ? latest[ins->res[k]] : turn[i];
+        if (turn[i] == REST && is_call(e, ins))
+            turn[i] = FOR_CALLS;
+        const unsigned char before = turn[i] == ANGLES ? FOR_ANGLES : turn[i];
+        for (uint32_t k = 0; k < ins->narg; k++)
+            if (before < latest[ins->arg[k]])
+                latest[ins->arg[k]] = before;
+    }
+}
+
+// By turn, else in the order of the listing.
 static bool order_instructions(struct emitter *e)
 {
     const struct ct_listing *l = e->l;
-    unsigned char *early = CT_NEWN(e->arena, unsigned char, l->nvalue); // by value
+    unsigned char *turn = CT_NEWN(e->arena, unsigned char, l->nins + 1);
     bool any = false;
-    for (size_t i = l->nins; i-- > l->nprologue;) {
-        const struct ct_instruction *ins = &l->ins[i];
-        const bool first = is_call(e, ins) || early[ins->res[0]];
-        any |= is_call(e, ins);
-        for (uint32_t k = 0; first && k < ins->nres; k++)
-            early[ins->res[k]] = 1;
-        for (uint32_t k = 0; first && k < ins->narg; k++)
-            early[ins->arg[k]] = 1;
-    }
+    find_angles(e, turn);
+    mark_needed(e, turn);
     e->order = CT_NEWN(e->arena, uint32_t, l->nins);
-    for (int late = 0; late < 2; late++)
+    for (int now = FOR_ANGLES; now < NTURN; now++) {
+        if (now == ANGLES)
+            e->first_angle = (uint32_t)e->norder;
         for (size_t i = l->nprologue; i < l->nins; i++)
-            if (early[l->ins[i].res[0]] != late)
+            if (turn[i] == now)
                 e->order[e->norder++] = (uint32_t)i;
+        if (now == ANGLES)
+            e->nangle = (uint32_t)e->norder - e->first_angle;
+        any |= now < REST && e->norder > 0;
+    }
     return any;
 }
 
@@ -653,7 +810,7 @@ static void place_values(struct emitter *e, const uint32_t *home)
     const struct ct_listing *l = e->l;
     e->home = CT_NEWN(e->arena, struct home, l->nvalue);
     e->reg = CT_NEWN(e->arena, signed char, l->nvalue);
-    e->free = CT_NEWN(e->arena, uint32_t, l->nvalue);
+    e->free = CT_NEWN(e->arena, uint32_t, 4 * l->nvalue); // those of angles, too
     for (size_t v = 0; v < l->nvalue; v++) {
         e->reg[v] = -1;
         if (l->rate[v] != CT_RATE_CALL)
@@ -725,8 +882,14 @@ struct ct_x86_code ct_x86_emit(struct ct_arena *a, const struct ct_listing *l, i
     list_uses(&e);
     place_values(&e, home);
     emit_entry(&e, any_call);
-    for (uint32_t at = 0; at < e.norder; at++)
-        emit_instruction(&e, at);
+    for (uint32_t at = 0; at < e.norder; at++) {
+        const bool angles = e.nangle && at == e.first_angle;
+        if (angles)
+            emit_angles(&e);
+        else
+            emit_instruction(&e, at);
+        at += angles ? e.nangle - 1 : 0;
+    }
     copy_outputs(&e);
     emit_return(&e, any_call);
     put_pool(&e.code);

@@ -7,7 +7,8 @@
 // whose next use is farthest goes to its home in memory: its input, its output, its place in the work
 // array, or a place there that is given to it then. Operands that are not worth a register are read
 // from memory by the instruction itself. Functions (sine, powers, tables) are calls from memory to
-// memory; they and what they need come first, while few values are alive.
+// memory; they and what they need come first, while few values are alive. Sines and cosines of what needs no
+// other function, such as joint angles, are one call.
 //
 // Nothing here executes or allocates executable memory: that is native.c.
 //
@@ -24,9 +25,11 @@
 ///     one argument    f(res, arg)             two arguments   f(res, arg, arg2)
 ///     sincos          f(sin, arg, cos)        table           f(res, arg, table, order)
 ///
-/// Zero for operators that need none.
+/// Zero for operators that need none. sincos_many takes the angles that no other function leads to at once:
+/// f(sin, angle, cos, n) with n numbers each, lanes counted.
 struct ct_x86_calls {
     uintptr_t by_op[CT_NKIND];
+    uintptr_t sincos_many;
 };
 
 struct ct_x86_code {

@@ -3,6 +3,7 @@
 // Passes, each linear in the live nodes: number the live nodes (values), turn them into instructions
 // (sin and cos of one argument become one), fuse products with sums if asked to, put the prologue first.
 #include "expr/listing.h"
+#include "expr/sincos.h"
 
 #include <assert.h>
 #include <math.h>
@@ -33,6 +34,7 @@ static void count_op(struct ct_tape_counts *n, uint32_t op)
         n->additions++;
         break;
     case CT_OP_SINCOS:
+    case CT_OP_ANGLE_SINCOS:
         n->functions += 2;
         break;
     case CT_OP_CONST:
@@ -236,7 +238,7 @@ static void fuse_products(struct lister *s)
     struct ct_listing *l = s->l;
     uint32_t *nuse = CT_NEWN(s->arena, uint32_t, l->nvalue);
     uint32_t *made = CT_NEWN(s->arena, uint32_t, l->nvalue); // 1 + instruction
-    for (size_t i = 0; i < l->nins; i++) {
+    for (size_t i = l->nprologue; i < l->nins; i++) {
         for (uint32_t k = 0; k < l->ins[i].narg; k++)
             nuse[l->ins[i].arg[k]]++;
         for (uint32_t k = 0; k < l->ins[i].nres; k++)
@@ -244,7 +246,7 @@ static void fuse_products(struct lister *s)
     }
     for (size_t k = 0; k < l->nout; k++)
         nuse[l->out[k]] += 2;
-    for (size_t i = 0; i < l->nins; i++) {
+    for (size_t i = l->nprologue; i < l->nins; i++) {
         if (l->ins[i].op != CT_OP_ADD && l->ins[i].op != CT_OP_SUB)
             continue;
         for (uint32_t k = 0; k < 2; k++) {
@@ -281,6 +283,33 @@ static void put_prologue_first(struct lister *s)
     l->ins = ordered;
 }
 
+// From so many on, all at once take less time than each by itself.
+static const size_t several_angles = 3;
+
+static void name_angles(struct ct_listing *l)
+{
+    size_t n = 0;
+    for (size_t i = l->nprologue; i < l->nins; i++) {
+        const uint32_t op = l->ins[i].op;
+        n += op == CT_OP_SIN || op == CT_OP_COS || op == CT_OP_SINCOS;
+    }
+    for (size_t i = l->nprologue; i < l->nins && n >= several_angles; i++) {
+        uint32_t *op = &l->ins[i].op;
+        *op = *op == CT_OP_SIN    ? CT_OP_ANGLE_SIN
+            : *op == CT_OP_COS    ? CT_OP_ANGLE_COS
+            : *op == CT_OP_SINCOS ? CT_OP_ANGLE_SINCOS
+                                  : *op;
+    }
+}
+
+bool ct_listing_has_angles(const struct ct_listing *l)
+{
+    for (size_t i = l->nprologue; i < l->nins; i++)
+        if (l->ins[i].op >= CT_OP_ANGLE_SIN && l->ins[i].op <= CT_OP_ANGLE_SINCOS)
+            return true;
+    return false;
+}
+
 const struct ct_listing *ct_listing_create(struct ct_arena *a, const struct ct_exs *x,
                                            const ct_ex *out, size_t nout, const ct_ex *in,
                                            const size_t *slot, size_t nin, enum ct_fuse fuse)
@@ -288,6 +317,7 @@ const struct ct_listing *ct_listing_create(struct ct_arena *a, const struct ct_e
     struct ct_listing *l = CT_NEW(a, struct ct_listing);
     struct lister s = {.arena = a, .x = x, .l = l};
     l->x = x;
+    l->fuse = fuse;
     number_values(&s, out, nout);
     place_inputs(&s, in, slot, nin);
     l->nout = nout;
@@ -298,6 +328,7 @@ const struct ct_listing *ct_listing_create(struct ct_arena *a, const struct ct_e
     if (fuse == CT_FUSE_YES)
         fuse_products(&s);
     put_prologue_first(&s);
+    name_angles(l);
     for (size_t i = l->nprologue; i < l->nins; i++)
         count_op(&l->counts, l->ins[i].op);
     // the points of a table stay where they are, the list of tables may move
@@ -306,6 +337,18 @@ const struct ct_listing *ct_listing_create(struct ct_arena *a, const struct ct_e
         memcpy(table, x->table, x->ntable * sizeof *table);
     l->table = table;
     return l;
+}
+
+const struct ct_listing *ct_listing_fuse(struct ct_arena *a, const struct ct_listing *l)
+{
+    struct ct_listing *fused = CT_NEW(a, struct ct_listing);
+    *fused = *l;
+    fused->fuse = CT_FUSE_YES;
+    fused->ins = CT_NEWN(a, struct ct_instruction, l->nins);
+    if (l->nins)
+        memcpy(fused->ins, l->ins, l->nins * sizeof *l->ins);
+    fuse_products(&(struct lister){.arena = a, .x = l->x, .l = fused});
+    return fused;
 }
 
 struct ct_uses ct_listing_uses(struct ct_arena *a, const struct ct_listing *l)
@@ -331,6 +374,15 @@ void ct_instruction_apply(const struct ct_listing *l, const struct ct_instructio
     case CT_OP_SINCOS:
         res[0] = sin(arg[0]);
         res[1] = cos(arg[0]);
+        break;
+    case CT_OP_ANGLE_SINCOS:
+        ct_sincos(arg[0], &res[0], &res[1]);
+        break;
+    case CT_OP_ANGLE_SIN:
+        ct_sincos(arg[0], &res[0], &res[1]);
+        break;
+    case CT_OP_ANGLE_COS:
+        ct_sincos(arg[0], &res[1], &res[0]);
         break;
     case CT_OP_FMA:
         res[0] = fma(arg[0], arg[1], arg[2]);

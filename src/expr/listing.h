@@ -19,9 +19,13 @@
 /// Operators that no node has. `w[res]` are the results.
 enum {
     CT_OP_SINCOS = CT_NOP, // res[0] = sin(a), res[1] = cos(a)
-    CT_OP_FMA,             // a b + c, rounded once
-    CT_OP_FMS,             // a b - c
-    CT_OP_FNMA,            // c - a b
+    // the same where the body has several angles: by ct_sincos (sincos.h), for which back ends take many at once
+    CT_OP_ANGLE_SIN,
+    CT_OP_ANGLE_COS,
+    CT_OP_ANGLE_SINCOS,
+    CT_OP_FMA,  // a b + c, rounded once
+    CT_OP_FMS,  // a b - c
+    CT_OP_FNMA, // c - a b
     CT_NKIND
 };
 
@@ -40,8 +44,13 @@ struct ct_tape_counts {
         functions; // of the body; functions: sin, cos, ...
 };
 
+/// Products used once, in a sum, become fused multiply-adds: never; in all back ends alike; in native code alone, where
+/// the processor has them and the program is long (native.h), so that its results are those of others to rounding.
+enum ct_fuse { CT_FUSE_NO, CT_FUSE_YES, CT_FUSE_NATIVE };
+
 struct ct_listing {
     const struct ct_exs *x;
+    enum ct_fuse fuse;
     size_t nvalue;
     uint32_t *node;         // by value: id of its node
     unsigned char *rate;    // by value: enum ct_rate
@@ -55,15 +64,15 @@ struct ct_listing {
     struct ct_tape_counts counts;
 };
 
-enum ct_fuse { CT_FUSE_NO, CT_FUSE_YES };
-
 /// List what nout expressions need. Inputs: in[k] is a symbol whose value is read from the input
 /// vector at slot[k] (distinct). Symbols of kind PARAM among them feed the prologue. A symbol that is
-/// needed but not listed is a program error (asserted). CT_FUSE_YES turns products used once, in a
-/// sum, into fused multiply-adds, in all back ends alike. Cost: the nodes below.
+/// needed but not listed is a program error (asserted). Cost: the nodes below.
 const struct ct_listing *ct_listing_create(struct ct_arena *a, const struct ct_exs *x,
                                            const ct_ex *out, size_t nout, const ct_ex *in,
                                            const size_t *slot, size_t nin, enum ct_fuse fuse);
+
+/// The same with the products of the body fused. Cost: instructions.
+const struct ct_listing *ct_listing_fuse(struct ct_arena *a, const struct ct_listing *l);
 
 /// use[start[v] ... start[v + 1]): instructions that read value v, ascending; one that reads it twice
 /// is twice in.
@@ -71,6 +80,9 @@ struct ct_uses {
     uint32_t *start, *use;
 };
 struct ct_uses ct_listing_uses(struct ct_arena *a, const struct ct_listing *l);
+
+/// Does the listing take sines and cosines by ct_sincos?
+bool ct_listing_has_angles(const struct ct_listing *l);
 
 /// One instruction on numbers, arg and res in the order of its fields.
 void ct_instruction_apply(const struct ct_listing *l, const struct ct_instruction *i,

@@ -5,6 +5,7 @@
 #include "expr/print.h"
 
 #include "base/sort.h"
+#include "expr/fraction.h"
 
 #include <ctype.h>
 #include <math.h>
@@ -296,7 +297,17 @@ static int class_of_term(const struct printer *pr, const struct term *t)
     return kinds & ~(1u << CT_SYM_PARAM) ? TERM_FUNCTION : TERM_PARAM;
 }
 
-// 0.75 -> 3/4. Powers of two only, as they do not round.
+// 0.3714285714285714 -> 13/35.
+static void split_small_fraction(struct term *t)
+{
+    double n, d;
+    if (ct_fraction_find(t->number, &n, &d)) {
+        t->number = n;
+        t->divisor = d;
+    }
+}
+
+// 0.75 -> 3/4: powers of two do not round.
 static void split_fraction(struct term *t)
 {
     double divisor = 1;
@@ -312,9 +323,11 @@ static struct term make_term(struct printer *pr, ct_ex e, bool negative)
 {
     struct term t = {.negative = negative, .number = 1, .divisor = 1};
     flatten_product(pr, &t, e, 1);
-    // a number alone stays a decimal
+    // a number alone stays a short decimal
     if (pr->p.fractions && t.above.n && t.divisor == 1)
         split_fraction(&t);
+    if (pr->p.fractions && t.divisor == 1)
+        split_small_fraction(&t);
     ct_sort(pr->arena, t.above.at, t.above.n, sizeof *t.above.at, compare_factors, pr);
     ct_sort(pr->arena, t.below.at, t.below.n, sizeof *t.below.at, compare_factors, pr);
     t.class = class_of_term(pr, &t);
@@ -605,6 +618,15 @@ static void emit_power(struct printer *pr, const struct ct_exnode *n, enum level
 
 static void emit_const(struct printer *pr, double v, enum level level)
 {
+    double n, d;
+    if (pr->p.fractions && ct_fraction_find(v, &n, &d)) {
+        open_group(pr, level >= LEVEL_FACTOR);
+        put(pr,
+            ct_arena_printf(pr->arena, is_latex(pr) ? "%s\\frac{%.0f}{%.0f}" : "%s%.0f/%.0f",
+                            n < 0 ? "-" : "", fabs(n), d));
+        close_group(pr, level >= LEVEL_FACTOR);
+        return;
+    }
     const bool group
         = (v < 0 && level >= LEVEL_FACTOR)
        || (is_latex(pr) && level == LEVEL_BASE && strchr(ct_number_text(pr->arena, v), 'e'));

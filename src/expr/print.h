@@ -32,8 +32,9 @@ struct ct_print {
     /// each other are cut in any case. A graph of n nodes can be a tree of 2^n: name shared nodes
     /// first (share.h).
     size_t limit;
-    /// Halves, quarters, eighths as fractions: m*l^2/4, not 0.25*m*l^2. Reads back to the same value,
-    /// not to the same nodes. Text and LaTeX.
+    /// Halves, quarters, eighths as fractions: m*l^2/4, not 0.25*m*l^2; of other numbers those that are exactly the double
+    /// nearest to a small fraction (fraction.h): 13*m/35. Reads back to the same value up to rounding, not to the same
+    /// nodes. Text and LaTeX.
     bool fractions;
 };
 

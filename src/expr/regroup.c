@@ -3,6 +3,7 @@
 // What all terms share goes outside. Of the rest, the atom is chosen that saves most factors when it
 // is pulled out of the terms that contain it, and both parts are treated the same way.
 #include "expr/collector.h"
+#include "expr/fraction.h"
 
 #include <limits.h>
 #include <math.h>
@@ -96,6 +97,8 @@ static ct_ex product(struct ct_collector *c, double k, uint32_t mono, ct_ex body
     ct_ex below = CT_EX_ONE;
     double divisor;
     k = as_fraction(without_noise(k), &divisor);
+    if (divisor == 1)
+        k = ct_fraction_snap(k);
     for (size_t i = 0; i < ct_mono_length(&c->ps, mono); i++) {
         const struct ct_power p = ct_mono_power(&c->ps, mono, i);
         const ct_ex whole = ct_ex_const(c->x, abs(p.exponent));

@@ -14,6 +14,7 @@
 //     one argument      d a          two arguments   d a b          if, fused    d a b c
 //     sincos            d e a   (w[d] = sin, w[e] = cos)            table        d a table order
 #include "expr/tape.h"
+#include "expr/sincos.h"
 
 #include <assert.h>
 #include <math.h>
@@ -43,6 +44,20 @@ struct ct_tape {
 };
 
 // ---- evaluation -------------------------------------------------------------------------------
+
+static double sine(double a)
+{
+    double s, c;
+    ct_sincos_many(&a, &s, &c, 1);
+    return s;
+}
+
+static double cosine(double a)
+{
+    double s, c;
+    ct_sincos_many(&a, &s, &c, 1);
+    return c;
+}
 
 // A slot of several lanes need not be aligned to more than a number.
 #define SLOT(lanes) double __attribute__((vector_size(8 * (lanes)), aligned(8), may_alias))

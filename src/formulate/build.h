@@ -157,6 +157,7 @@ struct ct_build {
     // planar mechanisms: common normal and a basis of the plane (ground components)
     bool is_planar;
     bool keep_all;   // leave nothing out
+    bool is_held;    // drivers stand still
     bool is_rigid;   // beams keep their shape: for assembly, where they are not deformed yet
     ct_ex3 plane[3]; // e1, e2, n
     ct_ex *layer;    // by node: its place along n [m]

@@ -6,7 +6,7 @@
 #include "formulate/elastic.h"
 
 static const ct_ex3 zero3 = {{{0}, {0}, {0}}};
-enum { FEW_POINTS = 4, MANY_POINTS = 8 }; // sections that are constant, that vary
+enum { FEW_POINTS = 6, MANY_POINTS = 8 }; // sections that are constant (exact), that vary
 
 // A point of mass m with the rotary inertia j of the section there.
 struct ct_point {

@@ -61,9 +61,7 @@ static void derive_shortening(struct ct_flexible *f)
         for (int k = 0; k < 4; k++) {
             const struct ct_shape both = ct_shape_mul(&f->shape.slope[j], &f->shape.slope[k]);
             const struct ct_shape E = ct_shape_primitive(&both);
-            struct ct_shape one = {.power = E.power};
-            for (int i = 0; i < CT_SHAPE_SIZE; i++)
-                one.c[0] += E.c[i];
+            const struct ct_shape one = {.c = {ct_shape_end(&E)}, .power = E.power};
             struct ct_shape D = ct_shape_mul(&xi, &one);
             for (int i = 0; i < CT_SHAPE_SIZE; i++)
                 D.c[i] -= E.c[i];
@@ -91,23 +89,29 @@ static enum ct_axial axial_of(const struct ct_flexible *f)
              : CT_AXIAL_CHAIN;
 }
 
-// What has no stiffness given is no deformation: it would be free to go anywhere.
-static void leave_without_stiffness(struct ct_build *b, struct ct_flexible *f)
+// Deformations without a stiffness would be free to go anywhere: with --keep-all they are left out, else they are the
+// model's fault, as the scene excites them.
+static void need_stiffness(struct ct_build *b, struct ct_flexible *f)
 {
-    const struct ct_beam *beam = f->beam;
-    const struct {
+    static const struct {
         unsigned family;
-        ct_ex stiffness;
-        const char *what, *why;
-    } all[] = {{CT_BEAM_BENDING_Y, beam->Iy, "its bending in the x-z plane", "Iy is zero"},
-               {CT_BEAM_BENDING_Z, beam->Iz, "its bending in the x-y plane", "Iz is zero"},
-               {CT_BEAM_TORSION, beam->G, "its torsion", "neither G nor nu is given"}};
+        const char *what, *key;
+    } all[] = {{CT_BEAM_AXIAL, "stretch", "area"},
+               {CT_BEAM_BENDING_Y, "bend in its x-z plane", "Iy"},
+               {CT_BEAM_BENDING_Z, "bend in its x-y plane", "Iz"},
+               {CT_BEAM_TORSION, "twist", "G or nu"}};
     for (size_t i = 0; i < COUNT(all); i++) {
-        if (!(f->deformation & all[i].family) || !ct_ex_is_zero(all[i].stiffness))
+        if (!(f->deformation & all[i].family & ~f->beam->known))
             continue;
         f->deformation &= ~all[i].family;
-        ct_topology_left_out(b, ct_arena_printf(b->arena, "%s: %s", f->name, all[i].what),
-                             all[i].why);
+        if (b->keep_all)
+            ct_topology_left_out(
+                b, ct_arena_printf(b->arena, "that %s can %s", f->name, all[i].what),
+                ct_arena_printf(b->arena, "%s is not given", all[i].key));
+        else
+            ct_error(b->ctx, b->model->body[f->body].instance.mark, CT_E_BEAM,
+                     "beam '%s' can %s here: give %s, or say with 'deformation' what it may do",
+                     f->name, all[i].what, all[i].key);
     }
 }
 
@@ -115,7 +119,6 @@ static void settle(struct ct_build *b, struct ct_flexible *f)
 {
     const struct ct_beam *beam = f->beam;
     f->deformation = beam->deformation & in_plane(b, f);
-    leave_without_stiffness(b, f);
     if (f->deformation & CT_BEAM_TORSION && !beam->deformation_given && !b->keep_all
         && !ct_excite_twist(b, f)) {
         f->deformation &= ~(unsigned)CT_BEAM_TORSION;
@@ -128,6 +131,7 @@ static void settle(struct ct_build *b, struct ct_flexible *f)
                                              "bending of %s out of the plane, and its torsion",
                                              f->name),
                              "gravity, loads, masses and arms lie in the plane");
+    need_stiffness(b, f);
     if (b->is_rigid)
         f->deformation = 0;
     f->formulation

@@ -33,7 +33,8 @@ static struct ct_build *build_create(struct ct_ctx *ctx, struct ct_arena *a,
                            .arena = a,
                            .model = m,
                            .is_rigid = o->measure_all,
-                           .keep_all = o->keep_all};
+                           .keep_all = o->keep_all,
+                           .is_held = o->held};
     b->eqs = CT_NEW(a, struct ct_equations);
     b->x = b->eqs->x = ct_exs_clone(a, m->x);
     b->value = start_values(a, m);
@@ -475,11 +476,12 @@ bool ct_formulate(struct ct_ctx *ctx, struct ct_arena *a, const struct ct_model 
                   const struct ct_formulate_options *options, struct ct_equations *out,
                   struct ct_tree_report *report)
 {
+    const size_t before = ctx->nerror;
     struct ct_build *b = build_create(ctx, a, m, options);
     struct search s = {ctx, m, options, a};
-    const size_t before = ctx->nerror;
     *report = (struct ct_tree_report){0};
-    if (!choose_trees(b, &s, report) || !derive(b, !options->without_dynamics))
+    if (ctx->nerror > before || !choose_trees(b, &s, report)
+        || !derive(b, !options->without_dynamics))
         return false;
     if (!options->without_dynamics)
         derive_dynamics(b, options);

@@ -28,6 +28,7 @@ struct ct_formulate_options {
     // with measure_all: equations of motion that will start from the results. Coordinates of bodies that are not
     // among their unknowns are then left 0; NULL: all are measured
     const struct ct_equations *measured_for;
+    bool held;             // drivers stand still at their values: for what is static
     bool without_dynamics; // neither M nor Q: places and speeds are all that is wanted
 };
 

@@ -79,8 +79,10 @@ static void choose_driven(struct ct_build *b, const struct ct_edge_info *e,
     const struct ct_value *motion = ct_instance_value(e->self, "motion");
     d.mark = b->holding = motion->at[c->place];
     d.value = ct_mode_hold(b, motion->e[c->place]);
-    d.rate = ct_build_rate(b, d.value);
-    d.acceleration = ct_build_rate(b, d.rate);
+    if (!b->is_held) {
+        d.rate = ct_build_rate(b, d.value);
+        d.acceleration = ct_build_rate(b, d.rate);
+    }
     c->value = d.value;
     c->rate = d.rate;
     c->driver = (int)b->eqs->ndriver;

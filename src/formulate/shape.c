@@ -2,6 +2,9 @@
 #include "formulate/shape.h"
 #include "expr/quadrature.h"
 
+#include <float.h>
+#include <math.h>
+
 static const struct ct_shape one = {.c = {1}};
 
 // ---- polynomials --------------------------------------------------------------------------------
@@ -39,9 +42,24 @@ bool ct_shape_is_zero(const struct ct_shape *a)
     return true;
 }
 
+static const double common = 360360; // least common multiple of 1 ... 13
+
+double ct_shape_end(const struct ct_shape *a)
+{
+    double sum = 0;
+    for (int i = 0; i < CT_SHAPE_SIZE; i++) {
+        const double n = a->c[i] * common, whole = rint(n);
+        // coefficients are integers over 1 ... 13: n is an integer that may have been rounded twice
+        sum += fabs(n - whole) <= 4 * DBL_EPSILON * fabs(n) ? whole : n;
+    }
+    return sum / common;
+}
+
 static double value_at(const struct ct_shape *a, double xi)
 {
     double v = 0;
+    if (xi == 1)
+        return ct_shape_end(a);
     for (int i = CT_SHAPE_SIZE; i-- > 0;)
         v = v * xi + a->c[i];
     return v;
@@ -118,7 +136,6 @@ static bool is_constant(struct ct_exs *x, const struct ct_profile *g)
 // Sum of c_i/(i+1): over a common denominator, so that integer coefficients give the fraction rounded once.
 static double unit_integral(const struct ct_shape *p)
 {
-    const double common = 360360; // least common multiple of 1 ... 13
     double sum = 0;
     for (int i = 0; i < CT_SHAPE_SIZE; i++)
         sum += p->c[i] * (common / (i + 1));

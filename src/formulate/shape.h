@@ -41,6 +41,8 @@ struct ct_shape ct_shape_mul(const struct ct_shape *a, const struct ct_shape *b)
 struct ct_shape ct_shape_slope(const struct ct_shape *a);
 /// Integral over x from the start of the element to xi.
 struct ct_shape ct_shape_primitive(const struct ct_shape *a);
+/// Value at xi = 1 for h = 1, rounded once: what cancels there is zero.
+double ct_shape_end(const struct ct_shape *a);
 bool ct_shape_is_zero(const struct ct_shape *a);
 ct_ex ct_shape_at(struct ct_exs *x, const struct ct_shape *a, ct_ex xi, ct_ex length);
 

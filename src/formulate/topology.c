@@ -536,28 +536,37 @@ static void keep_uprights(struct ct_build *b, ct_ex33 **U)
     }
 }
 
-// The normal can only be the axis of the first joint that turns, as ground sees it.
-static bool find_normal(struct ct_build *b, ct_ex3 *normal)
+// Does everything keep to the plane across an axis (ground components)? The sense does not matter; prefer the one along
+// +z, +y, +x, so that coordinates read as usual.
+static bool takes_normal(struct ct_build *b, ct_ex33 **U, ct_ex3 axis)
+{
+    double n[3];
+    value3(b, axis, n);
+    const int most = fabs(n[2]) > 0.5 ? 2 : fabs(n[1]) > 0.5 ? 1 : 0;
+    b->plane[2] = n[most] < 0 ? ct_ex3_neg(b->x, axis) : axis;
+    if (!is_plane(b, U) || !ct_excite_keeps_plane(b, U))
+        return false;
+    keep_uprights(b, U);
+    return true;
+}
+
+// The normal can only be the axis of the first joint that turns, as ground sees it; where none does, an axis that a beam
+// bends about.
+static bool find_normal(struct ct_build *b)
 {
     ct_ex33 **U = upright_axes(b);
     for (size_t i = 0; i < b->nedge; i++) {
         const struct ct_edge_info *e = &b->edge[i];
-        if (e->kind != CT_EDGE_JOINT || !e->has_rotation || !e->trial.nturn)
-            continue;
-        if (!U[b->wiring[i].tail])
-            return false;
-        ct_ex3 axis = ct_ex33_apply(b->x, U[b->wiring[i].tail], e->trial.turn[0].axis);
-        double n[3];
-        value3(b, axis, n);
-        // the sense does not matter; prefer the one along +z, +y, +x, so that coordinates read as usual
-        const int most = fabs(n[2]) > 0.5 ? 2 : fabs(n[1]) > 0.5 ? 1 : 0;
-        if (n[most] < 0)
-            axis = ct_ex3_neg(b->x, axis);
-        b->plane[2] = *normal = axis;
-        if (!is_plane(b, U) || !ct_excite_keeps_plane(b, U))
-            return false;
-        keep_uprights(b, U);
-        return true;
+        const ct_ex33 *A = U[b->wiring[i].tail];
+        if (e->kind == CT_EDGE_JOINT && e->has_rotation && e->trial.nturn)
+            return A && takes_normal(b, U, ct_ex33_apply(b->x, A, e->trial.turn[0].axis));
+    }
+    for (int axis = 2; axis > 0 && b->nflexible; axis--) {
+        const ct_ex33 *A = U[b->flexible[0].base];
+        if (A
+            && takes_normal(b, U,
+                            (ct_ex3){{A->e[3 * axis], A->e[1 + 3 * axis], A->e[2 + 3 * axis]}}))
+            return true;
     }
     return false;
 }
@@ -573,15 +582,14 @@ static void detect_plane(struct ct_build *b, bool allowed)
     const double axes[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
     for (int i = 0; i < 3; i++)
         b->plane[i] = ct_ex3_const(b->x, axes + 3 * i);
-    ct_ex3 n;
-    if (!allowed || !find_normal(b, &n)) {
+    if (!allowed || !find_normal(b)) {
         b->plane[2] = ct_ex3_const(b->x, axes + 6);
         return;
     }
     b->is_planar = b->eqs->is_planar = true;
-    ct_axes_across(b->x, n, b->value, &b->plane[0], &b->plane[1]);
+    ct_axes_across(b->x, b->plane[2], b->value, &b->plane[0], &b->plane[1]);
     double v[3];
-    value3(b, n, v);
+    value3(b, b->plane[2], v);
     const char *why = ct_arena_printf(
         b->arena, "every joint turns about (%.6g, %.6g, %.6g) or slides across it", v[0], v[1],
         v[2]);

@@ -17,6 +17,8 @@ struct ct_graph_names {
     void *data;
     const int *weight_trans, *weight_rot; // per edge; NULL: not shown
     const bool *is_quiet; // per edge: drawn thin if a branch of both; may be NULL
+    const bool
+        *is_marked; // per edge: drawn in a colour of its own if a branch of both; may be NULL
 };
 
 /// What is printed: the graph, its trees of translation and rotation, and the names.

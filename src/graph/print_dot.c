@@ -12,25 +12,28 @@
 static const int large_graph = 12; // nodes; a slider-crank with its arms has 8
 static const int deep_tree = 10;   // edges from ground; beyond, a row of nodes overflows a page
 
-// How an edge looks by the trees it is a branch of; a quiet edge means what its kind says. The
+// How an edge looks by the trees it is a branch of; a quiet or marked edge means what its kind says. The
 // colours are those of Okabe and Ito, which the colour-blind can tell apart.
 struct look {
     const char *meaning, *color, *style, *penwidth;
 };
 
-enum { BOTH, TRANS_ONLY, ROT_ONLY, CHORD, QUIET, NLOOK };
+enum { BOTH, TRANS_ONLY, ROT_ONLY, CHORD, MARKED, QUIET, NLOOK };
 
 static const struct look looks[NLOOK] = {
     [BOTH] = {"branch of both trees", "#000000", "solid", "2.6"},
     [TRANS_ONLY] = {"translation only", "#0072B2", "solid", "2.6"},
     [ROT_ONLY] = {"rotation only", "#D55E00", "solid", "2.6"},
     [CHORD] = {"chord of both", "#8C8C8C", "dashed", "1.1"},
+    [MARKED] = {NULL, "#009E73", "solid", "2.0"},
     [QUIET] = {NULL, "#B4B4B4", "solid", "0.8"},
 };
 
 static int look_of(const struct ct_graph_view *view, int e)
 {
     const bool T = view->T->is_branch[e], R = view->R->is_branch[e];
+    if (T && R && view->names->is_marked && view->names->is_marked[e])
+        return MARKED;
     if (T && R)
         return view->names->is_quiet && view->names->is_quiet[e] ? QUIET : BOTH;
     return T ? TRANS_ONLY : R ? ROT_ONLY : CHORD;
@@ -78,8 +81,8 @@ static void print_legend(FILE *out, const struct ct_graph_view *view)
             continue;
         fprintf(out, "    <td><font color=\"%s\">%s</font> ", looks[k].color,
                 k == CHORD ? "- - -" : "<b>&mdash;&mdash;</b>");
-        print_escaped(out, k == QUIET ? view->names->kind(view->names->data, first[k])
-                                      : looks[k].meaning);
+        print_escaped(out, !looks[k].meaning ? view->names->kind(view->names->data, first[k])
+                                             : looks[k].meaning);
         fprintf(out, "</td>\n");
     }
     if (view->g->nnode > large_graph)

@@ -2,7 +2,7 @@
 //
 // Rows and columns count from 0; M holds its lower triangle. Expressions are in the grammar of model
 // files with speeds as J.u and accelerations as J.a; definitions use earlier ones only.
-#include "report/derivation.h"
+#include "report/stage_beam.h"
 
 #include "formulate/build.h"
 #include "report/equations.h"
@@ -21,6 +21,62 @@ static const char *text(struct writer *w, ct_ex v)
 
 // ---- topology -----------------------------------------------------------------------------------
 
+// Coordinates of an element by the names of its dofs; those that are fixed are left out.
+static void put_element(struct writer *w, const struct ct_flexible *f, int k)
+{
+    const struct ct_element *e = &f->element[k];
+    ct_json_object(&w->j, NULL);
+    ct_json_text(&w->j, "from", text(w, e->span.start));
+    ct_json_text(&w->j, "to", text(w, f->beam->end[k]));
+    ct_json_object(&w->j, "dofs");
+    for (int j = 0; j < CT_DOF; j++)
+        if (!ct_ex_is_zero(e->value[j]))
+            ct_json_text(&w->j, ct_beam_dof_name(j), text(w, e->value[j]));
+    ct_json_end(&w->j);
+    ct_json_end(&w->j);
+}
+
+// The element as a function of its dofs, xi and h; s: its stretch. Energy is not there where sections vary.
+static void put_function(struct writer *w, const struct ct_flexible *f)
+{
+    struct ct_beam_element e;
+    ct_beam_element_derive(w->d->e->build, f, &e);
+    ct_json_object(&w->j, "element");
+    ct_json_text(&w->j, "u", text(w, e.axial));
+    ct_json_text(&w->j, "v", text(w, e.v));
+    ct_json_text(&w->j, "w", text(w, e.w));
+    ct_json_text(&w->j, "phi", text(w, e.twist));
+    if (e.is_constant) {
+        ct_json_text(&w->j, "shortening", text(w, e.shortening));
+        ct_json_array(&w->j, "strain_energy"); // a sum
+        for (int i = 0; i < 4; i++)
+            if (!ct_ex_is_zero(e.energy[i]))
+                ct_json_text(&w->j, NULL, text(w, e.energy[i]));
+        ct_json_end(&w->j);
+    }
+    ct_json_end(&w->j);
+}
+
+static void put_beams(struct writer *w)
+{
+    const struct ct_build *b = w->d->e->build;
+    ct_json_array(&w->j, "beams");
+    for (size_t i = 0; i < b->nflexible; i++) {
+        const struct ct_flexible *f = &b->flexible[i];
+        ct_json_object(&w->j, NULL);
+        ct_json_text(&w->j, "name", f->name);
+        ct_json_text(&w->j, "is", ct_beam_sentence(w->d->a, f));
+        ct_json_text(&w->j, "mass_per_length", text(w, f->beam->mass_per_length));
+        put_function(w, f);
+        ct_json_array(&w->j, "elements");
+        for (int k = 0; k < f->beam->nelement; k++)
+            put_element(w, f, k);
+        ct_json_end(&w->j);
+        ct_json_end(&w->j);
+    }
+    ct_json_end(&w->j);
+}
+
 static void put_terminal(struct writer *w)
 {
     const struct ct_build *b = w->d->e->build;
@@ -30,11 +86,16 @@ static void put_terminal(struct writer *w)
         ct_json_object(&w->j, NULL);
         ct_json_text(&w->j, "name", e->name);
         ct_json_text(&w->j, "type", w->d->e->edge_kind[i]);
-        ct_json_text(&w->j, "across", e->self ? e->self->cls->across : "d, S constant");
+        ct_json_text(&w->j, "across",
+                     e->self       ? e->self->cls->across
+                     : e->flexible ? "d = r, S: place and turn of the section"
+                                   : "d, S constant");
         ct_json_text(&w->j, "through", e->self ? e->self->cls->through : "F, T are reactions");
         ct_json_end(&w->j);
     }
     ct_json_end(&w->j);
+    if (b->nflexible)
+        put_beams(w);
 }
 
 static void put_graph(struct writer *w)

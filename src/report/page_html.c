@@ -34,9 +34,9 @@ static bool is_word(const char *s, size_t n, const char *word)
 static bool is_function(const char *s, size_t n)
 {
     static const char *const name[]
-        = {"sin",  "cos",  "tan", "asin", "acos",   "atan", "atan2", "sinh",
-           "cosh", "tanh", "exp", "log",  "sqrt",   "abs",  "sign",  "min",
-           "max",  "if",   "Rot", "diag", "effort", "const"};
+        = {"sin",  "cos",  "tan", "asin", "acos",   "atan",  "atan2", "sinh",
+           "cosh", "tanh", "exp", "log",  "sqrt",   "abs",   "sign",  "min",
+           "max",  "if",   "Rot", "diag", "effort", "const", "int"};
     for (size_t i = 0; i < COUNT(name); i++)
         if (is_word(s, n, name[i]))
             return true;
@@ -57,7 +57,7 @@ static void put_letter(FILE *out, const char *s, size_t n)
            {"theta", "&theta;"}, {"lambda", "&lambda;"}, {"mu", "&mu;"},
            {"rho", "&rho;"},     {"phi", "&phi;"},       {"psi", "&psi;"},
            {"omega", "&omega;"}, {"w", "&omega;"},       {"tau", "&tau;"},
-           {"pi", "&pi;"}};
+           {"pi", "&pi;"},       {"xi", "&xi;"}};
     for (size_t i = 0; i < COUNT(greek); i++)
         if (is_word(s, n, greek[i][0])) {
             fputs(greek[i][1], out);
@@ -77,9 +77,12 @@ static void put_name(FILE *out, const char *s, size_t n, size_t nprime)
     const char *dot = NULL, *bar = memchr(s, '_', n);
     for (size_t i = 0; i < n; i++)
         dot = s[i] == '.' ? s + i : dot;
-    // a part behind the last dot that is a quantity stands first
-    const bool is_quantity = dot && strchr("qua", dot[1])
-                          && strspn(dot + 2, "0123456789") == (size_t)(s + n - dot) - 2;
+    // a part behind the last dot that is a quantity stands first: a coordinate of a joint or of a beam's node
+    const size_t behind = dot ? (size_t)(s + n - dot) - 2 : 0;
+    const bool is_quantity = dot
+                          && ((strchr("qua", dot[1]) && strspn(dot + 2, "0123456789") == behind)
+                              || (strchr("vw", dot[1]) && behind == 0)
+                              || (dot[1] == 'r' && behind == 1 && strchr("xyz", dot[2])));
     const char *base = is_quantity ? dot + 1 : s;
     const char *end = s + n;
     size_t length = (size_t)(is_quantity ? end - base : bar && bar > s ? bar - s : (long)n);
@@ -87,7 +90,10 @@ static void put_name(FILE *out, const char *s, size_t n, size_t nprime)
     while (letters > 1 && isdigit((unsigned char)base[letters - 1]))
         letters--;
     fputs("<i>", out);
-    put_letter(out, base, letters);
+    if (is_word(base, letters, "w") && !(bar && bar > s))
+        fputc('w', out); // a displacement; w_rod and w(rod) are angular velocities
+    else
+        put_letter(out, base, letters);
     fputs(nprime == 1 ? "&#775;" : nprime >= 2 ? "&#776;" : "", out);
     fputs("</i>", out);
     const bool has_digits = letters < length, has_rest = is_quantity || (bar && bar > s);
@@ -145,10 +151,21 @@ static size_t put_number(FILE *out, const char *s)
     return n;
 }
 
+// The x of a cross product stands between blanks and operands.
+static bool is_cross(const char *s, const char *start)
+{
+    return *s == 'x' && s > start + 1 && s[-1] == ' ' && !strchr("+-=,", s[-2]) && s[1] == ' '
+        && !strchr("+-=", s[2]);
+}
+
 static void put_math(FILE *out, const char *s)
 {
+    const char *const start = s;
     while (*s) {
-        if (isalpha((unsigned char)*s)) {
+        if (is_cross(s, start)) {
+            fputs("&times;", out);
+            s++;
+        } else if (isalpha((unsigned char)*s)) {
             s += put_word(out, s);
         } else if (isdigit((unsigned char)*s)) {
             s += put_number(out, s);

@@ -1,5 +1,5 @@
 // What each component says on its own: its law, with the names and data of this model.
-#include "report/derivation.h"
+#include "report/stage_beam.h"
 
 #include "formulate/build.h"
 #include "formulate/topology.h"
@@ -27,6 +27,9 @@ static void put_laws(struct ct_derivation *d)
     ct_page_table(&d->page, "lll");
     CT_PAGE_ROW(&d->page, "component", "across", "through");
     CT_PAGE_ROW(&d->page, "arm", "d, S constant in axes of its tail", "F, T are reactions");
+    if (b->nflexible)
+        CT_PAGE_ROW(&d->page, "flexible arm", "d = r, S: place and turn of the section",
+                    "F, T are reactions; effort(q) takes d_q . F + Y_q . T");
     for (size_t i = 0; i < b->nedge; i++) {
         const struct ct_instance *self = b->edge[i].self;
         if (self && b->edge[i].kind != CT_EDGE_CLOSURE && is_first_of_class(b, i))
@@ -108,6 +111,8 @@ static void put_bodies(struct ct_derivation *d)
         const struct ct_body *body = &m->body[i];
         const char *name = body->instance.name;
         const char *com = d->e->build->node[d->e->build->node_of_com[i]].name;
+        if (body->beam)
+            continue;
         ct_page_equation(&d->page, NULL, ct_derivation_of(d, "F", name),
                          inertia_force(d, body, com), NULL);
         if (body->is_particle)
@@ -136,7 +141,7 @@ static void put_arms(struct ct_derivation *d)
     bool any = false;
     for (size_t i = 0; i < b->nedge; i++) {
         const struct ct_edge_info *e = &b->edge[i];
-        if (e->kind != CT_EDGE_ARM)
+        if (e->kind != CT_EDGE_ARM || e->flexible)
             continue;
         if (!any) {
             ct_page_heading(&d->page, "arms: from the frame of a body to its points");
@@ -328,7 +333,9 @@ void ct_stage_terminal(struct ct_derivation *d)
         "through: force F and torque T of the component on its head");
     put_laws(d);
     put_bodies(d);
+    ct_beams_put_terminal(d);
     put_arms(d);
+    ct_beams_put_arms(d);
     put_joints(d);
     put_forces(d);
 }

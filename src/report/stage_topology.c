@@ -1,6 +1,6 @@
 // The linear graph, its cutsets and its circuits as equations of forces, torques, displacements and
 // rotations.
-#include "report/derivation.h"
+#include "report/stage_beam.h"
 
 #include "expr/collect.h"
 #include "formulate/kinematics.h"
@@ -122,7 +122,7 @@ static void put_carried(struct ct_derivation *d)
                 continue;
             const char *term = ct_derivation_of(d, "F", e->edge_name[edge]);
             bool positive = plus;
-            if (info->kind == CT_EDGE_BODY) {
+            if (info->kind == CT_EDGE_BODY && !d->m->body[info->index].beam) {
                 const struct ct_body *body = &d->m->body[info->index];
                 if (ct_ex_is_zero(body->mass))
                     continue;
@@ -149,6 +149,7 @@ void ct_stage_cutset(struct ct_derivation *d)
     ct_page_heading(&d->page, "forces, tree of translation");
     put_cutsets(d, d->e->T, "F", false);
     put_carried(d);
+    ct_beams_put_cutsets(d);
     ct_page_heading(&d->page,
                     "torques, tree of rotation (each with the moment of its force about one "
                     "common point)");

@@ -62,7 +62,8 @@ static const char *meaning_of(struct ct_derivation *d, const struct ct_coordinat
     const struct ct_edge_info *e = &d->e->build->edge[c->edge];
     const struct ct_measure *m = measure_of(d->e, c);
     const char *what = e->kind == CT_EDGE_BODY
-                         ? ct_arena_printf(d->a, "body %s", e->name)
+                         ? ct_arena_printf(d->a, "%s %s",
+                                           d->m->body[e->index].beam ? "beam" : "body", e->name)
                          : ct_arena_printf(d->a, "%s joint %s", e->self->cls->name, e->name);
     *unit = "m";
     if (!m) {
@@ -78,6 +79,9 @@ static const char *meaning_of(struct ct_derivation *d, const struct ct_coordinat
         return ct_arena_printf(d->a, "angle of %s about %s", what,
                                ct_derivation_axis(d, m->about));
     }
+    if (e->kind == CT_EDGE_BODY && d->m->body[e->index].beam)
+        return ct_arena_printf(d->a, "place of the frame of beam %s along %s", e->name,
+                               ct_derivation_axis(d, m->along));
     return e->kind == CT_EDGE_BODY
              ? ct_arena_printf(d->a, "place of the centre of mass of %s along %s", what,
                                ct_derivation_axis(d, m->along))

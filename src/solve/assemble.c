@@ -4,7 +4,7 @@
 // rows which depend on each other in the solution do not throw it off. Then Gauss-Newton steps along these
 // constraints take all other coordinates to their guesses, each followed by closing again.
 #include "solve/assemble.h"
-#include "formulate/build.h"
+#include "formulate/flexible.h"
 #include "numeric/dense.h"
 #include "solve/embed.h"
 #include "solve/mode.h"
@@ -711,6 +711,9 @@ void ct_start_apply(const struct ct_start *s, struct ct_machine *m, double *y)
                 && edge->index == e->memory[k].joint && c->place == e->memory[k].place)
                 memory[k] = s->q[i];
     }
+    for (size_t i = 0, k = 0; s->elastic && i < e->build->nflexible; i++)
+        for (int j = 0; j < e->build->flexible[i].nelastic; j++)
+            y[e->build->flexible[i].elastic[j].q] = s->elastic[k++];
     ct_machine_normalise(m, y);
     ct_machine_set(m, 0, y);
     ct_modes_start(m, 0, y, NULL);

@@ -12,6 +12,8 @@ struct ct_start {
     double *q, *u;
     size_t n;
     double residual; // largest |phi| left
+    double *elastic; // elastic coordinates of all beams, beam by beam; NULL: undeformed
+    size_t nelastic;
 };
 
 /// Find the start at t = 0. e: equations made with measure_all for trees through joints.

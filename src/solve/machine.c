@@ -60,9 +60,9 @@ static struct inputs list_inputs(struct ct_arena *a, const struct ct_machine *m,
 }
 
 static void compile_from(struct ct_arena *a, const struct ct_exs *x, const struct inputs *in,
-                         const ct_ex *out, size_t n, struct ct_program *p)
+                         const ct_ex *out, size_t n, enum ct_fuse fuse, struct ct_program *p)
 {
-    p->listing = ct_listing_create(a, x, out, n, in->symbol, in->slot, in->n, CT_FUSE_NO);
+    p->listing = ct_listing_create(a, x, out, n, in->symbol, in->slot, in->n, fuse);
     p->tape = ct_tape_create(a, p->listing);
     p->out = CT_NEWN(a, double, n + 1);
     p->work = CT_NEWN(a, double, ct_tape_work(p->tape) + 1);
@@ -72,7 +72,7 @@ static void compile_from(struct ct_arena *a, const struct ct_exs *x, const struc
 static void compile(struct ct_arena *a, const struct ct_machine *m, const struct inputs *in,
                     const ct_ex *out, size_t n, struct ct_program *p)
 {
-    compile_from(a, m->e->x, in, out, n, p);
+    compile_from(a, m->e->x, in, out, n, CT_FUSE_NO, p);
 }
 
 static void prepare(struct ct_program *p, const double *input)
@@ -131,7 +131,7 @@ void ct_machine_compile(struct ct_arena *a, struct ct_machine *m, const struct c
 {
     const struct inputs in = list_inputs(a, m, x);
     *p = (struct ct_program){.next = m->apart};
-    compile_from(a, x, &in, out, n, p);
+    compile_from(a, x, &in, out, n, CT_FUSE_NO, p);
     choose_backend(a, m, p);
     m->apart = p;
 }
@@ -183,7 +183,7 @@ static void compile_solved(struct ct_arena *a, struct ct_machine *m, const struc
         push(&l, e->solution[i]);
     for (size_t i = 0; i < e->nq && e->solution; i++)
         push(&l, e->q[i].rate);
-    compile(a, m, in, l.e, l.n, &m->solved);
+    compile_from(a, m->e->x, in, l.e, l.n, CT_FUSE_NATIVE, &m->solved);
 }
 
 static void compile_constraint(struct ct_arena *a, struct ct_machine *m,

@@ -23,6 +23,6 @@ BEGIN {
   printf "  - {name: beam_x, value: beam.tip.position.x}\n  - {name: beam_y, value: beam.tip.position.y}\n"
   printf "  - {name: chain_x, value: link%d.end.position.x}\n  - {name: chain_y, value: link%d.end.position.y}\n", N, N
   printf "  - {name: bend, value: beam.tip.deflection.y}\n"
-  printf "  - energy.total\n"
+  printf "  - energy.kinetic\n  - energy.total\n"
   printf "\nsimulation:\n  duration: 1\n  interval: 0.005\n  tolerance: 1e-8\n"
 }'

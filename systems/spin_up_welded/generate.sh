@@ -20,6 +20,6 @@ BEGIN {
   printf "\noutputs:\n"
   printf "  - {name: along, value: part%d.end.position.x in part1 - 10}\n", K
   printf "  - {name: across, value: part%d.end.position.y in part1}\n", K
-  printf "  - {name: torque, value: hub.effort}\n  - energy.total\n"
+  printf "  - {name: torque, value: hub.effort}\n  - energy.kinetic\n  - energy.total\n"
   printf "\nsimulation:\n  duration: 20\n  interval: 0.05\n  tolerance: 1e-8\n  method: radau5\n"
 }'

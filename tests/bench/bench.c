@@ -562,6 +562,7 @@ static void open_chain(const char *what, const char *path, const double goal[5],
     open_subject(&s, path);
     snprintf(text, sizeof text, "%s, u' by %s", what, name[s.equations.formulation]);
     compare_back_ends(&s, &s.machine->solved, text, goal);
+    line("  model to equations", median_of(model_to_equations, s.path, 5), 0);
     line("  model to native code", median_of(model_to_native, s.path, 5), generation_goal);
     show_generation(&s, what);
     printf("  %-56s %9zu KiB\n", "machine code",

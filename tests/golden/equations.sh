@@ -10,3 +10,11 @@ done
 "$PRINT_EQUATIONS" "$SYSTEMS/pendulum/model.yaml" all json >pendulum.json
 "$PRINT_EQUATIONS" "$SYSTEMS/pendulum/model.yaml" tree,reduced html >pendulum.html
 "$PRINT_EQUATIONS" "$SYSTEMS/slider_crank/model.yaml" reduced c >slider_crank.c.txt
+# beams: one element with all its terms, from two trees; several elements that foreshorten
+p="$SYSTEMS/pendulum_beam_tip_mass/model.yaml"
+"$PRINT_EQUATIONS" "$p" all text >pendulum_beam.txt
+"$PRINT_EQUATIONS" "$p" all latex >pendulum_beam.tex
+"$PRINT_EQUATIONS" "$p" terminal,reduced html >pendulum_beam.html
+"$PRINT_EQUATIONS" "$p" terminal,reduced json >pendulum_beam.json
+"$PRINT_EQUATIONS" "$p" tree,cutset,circuit,reduced text absolute >pendulum_beam_absolute.txt
+"$PRINT_EQUATIONS" "$SYSTEMS/spin_up_beam/model.yaml" terminal text >spin_up_beam.txt

@@ -1,4 +1,4 @@
-// print_equations MODEL STAGES FORMAT: the derivation of a model on standard output, for golden files.
+// print_equations MODEL STAGES FORMAT [absolute]: the derivation of a model on standard output, for golden files.
 #include "formulate/formulate.h"
 #include "report/equations.h"
 
@@ -16,12 +16,12 @@ static unsigned stages_of(const char *list)
 }
 
 static bool print(struct ct_ctx *ctx, const char *path, unsigned stages,
-                  enum ct_equations_format format)
+                  enum ct_equations_format format, enum ct_tree_choice tree)
 {
     struct ct_model m;
     struct ct_equations e;
     struct ct_tree_report report;
-    const struct ct_formulate_options o = {.tree = CT_TREE_AUTO};
+    const struct ct_formulate_options o = {.tree = tree};
     return ct_model_read(ctx, path, NULL, 0, &m)
         && ct_formulate(ctx, ctx->model, &m, &o, &e, &report)
         && ct_equations_print(stdout, ctx->scratch, &e, &m, stages, format);
@@ -30,13 +30,16 @@ static bool print(struct ct_ctx *ctx, const char *path, unsigned stages,
 int main(int argc, char **argv)
 {
     enum ct_equations_format format;
-    if (argc != 4 || !ct_equations_format_find(argv[3], &format)) {
-        fprintf(stderr, "usage: print_equations MODEL STAGES text|latex|html|c|json\n");
+    const bool is_absolute = argc == 5 && !strcmp(argv[4], "absolute");
+    if ((argc != 4 && !is_absolute) || !ct_equations_format_find(argv[3], &format)) {
+        fprintf(stderr,
+                "usage: print_equations MODEL STAGES text|latex|html|c|json [absolute]\n");
         return 2;
     }
     struct ct_ctx ctx = {.model = ct_arena_create(), .scratch = ct_arena_create()};
-    const bool ok
-        = ctx.model && ctx.scratch && print(&ctx, argv[1], stages_of(argv[2]), format);
+    const bool ok = ctx.model && ctx.scratch
+                 && print(&ctx, argv[1], stages_of(argv[2]), format,
+                          is_absolute ? CT_TREE_ABSOLUTE : CT_TREE_AUTO);
     if (!ok)
         ct_ctx_print(&ctx, stderr);
     ct_arena_destroy(ctx.scratch);

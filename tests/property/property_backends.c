@@ -2,6 +2,7 @@
 // native code, one lane and several, compiled C.
 #include "codegen/c.h"
 #include "codegen/native.h"
+#include "tests/own_sincos.h"
 #include "tests/property/system.h"
 
 #include <dlfcn.h>
@@ -104,6 +105,8 @@ static bool check_c(struct check *c)
     snprintf(path, sizeof path, "%s/e.c", folder);
     FILE *f = fopen(path, "w");
     assert_non_null(f);
+    if (ct_listing_has_angles(c->p->listing))
+        fputs(own_sincos, f);
     fputs(ct_c_listing(c->v->arena, c->p->listing, NULL), f);
     fclose(f);
     snprintf(command, sizeof command,
@@ -115,6 +118,8 @@ static bool check_c(struct check *c)
     void *handle = dlopen(path, RTLD_NOW), *symbol;
     assert_non_null(handle);
     assert_non_null(symbol = dlsym(handle, "evaluate"));
+    if (ct_listing_has_angles(c->p->listing))
+        own_sincos_set(handle);
     evaluate_fn evaluate;
     memcpy(&evaluate, &symbol, sizeof symbol); // C has no cast from an object to a function
     const bool ok = check_compiled(c, evaluate);

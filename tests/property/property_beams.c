@@ -664,6 +664,101 @@ static void a_force_cannot_depend_on_a_section_force(void **state)
     }
 }
 
+// ---- equations of a source -------------------------------------------------------------------------------------------
+
+// A hinge about y, one linear element, a particle at its tip.
+static const char pendulum_beam[]
+    = "cotree: 1\n"
+      "gravity: [1.1, -2.3, -9.81]\n"
+      "bodies:\n"
+      "  beam:\n"
+      "    type: beam\n"
+      "    length: 1.7\n"
+      "    density: 5\n"
+      "    E: 700\n"
+      "    G: 300\n"
+      "    area: 0.3\n"
+      "    Iy: 0.02\n"
+      "    Iz: 0.02\n"
+      "    formulation: linear\n"
+      "    deformation: [axial, bending-y, bending-z, torsion]\n"
+      "    points: {tip: length}\n"
+      "  mass: {type: particle, mass: 0.8}\n"
+      "joints:\n"
+      "  hinge: {type: revolute, axis: y, from: ground, to: beam}\n"
+      "  tip: {type: weld, from: beam.tip, to: mass}\n";
+
+// Mass matrix and forces, typed from formulation (3.7); z: theta, q7 ... q12, and their rates.
+static void source_equations(const double *z, const double *rate, double M[7][7], double Q[7])
+{
+    const double l = 1.7, m = 5 * 0.3 * l, ms = 0.8, EA = 700 * 0.3, EI = 700 * 0.02;
+    const double GIp = 300 * 0.04, Jt = 5 * 0.04 * l / 3, k = EI / (l * l * l);
+    const double g[3] = {1.1, -2.3, -9.81}, c = cos(z[0]), s = sin(z[0]);
+    const double gx = c * g[0] - s * g[2], gy = g[1], gz = s * g[0] + c * g[2];
+    const double q8 = z[2], q9 = z[3], q10 = z[4], q11 = z[5], q12 = z[6], xt = l + z[1];
+    const double Om = rate[0], d7 = rate[1], d9 = rate[3], d11 = rate[5];
+    const double Wd
+        = 13. / 35 * q9 * d9 + 11. / 210 * l * (q9 * d11 + q11 * d9) + l * l / 105 * q11 * d11;
+    memset(M, 0, 49 * sizeof(double));
+    M[0][0] = m
+                * (xt * xt / 3 + 13. / 35 * q9 * q9 + 11. / 105 * l * q9 * q11
+                   + l * l * q11 * q11 / 105)
+            + ms * (xt * xt + q9 * q9);
+    M[0][1] = M[1][0] = m * (7. / 20 * q9 + l / 20 * q11) + ms * q9;
+    M[0][3] = M[3][0] = -(7. / 20 * m + ms) * xt;
+    M[0][5] = M[5][0] = -m * l / 20 * xt;
+    M[1][1] = m / 3 + ms;
+    M[2][2] = M[3][3] = 13. / 35 * m + ms;
+    M[2][6] = M[6][2] = -11. / 210 * m * l;
+    M[3][5] = M[5][3] = 11. / 210 * m * l;
+    M[5][5] = M[6][6] = m * l * l / 105;
+    M[4][4] = Jt;
+    Q[0] = -2 * Om * (m * (xt * d7 / 3 + Wd) + ms * (xt * d7 + q9 * d9))
+         + gx * (m * (q9 / 2 + l * q11 / 12) + ms * q9) - gz * (m / 2 + ms) * xt;
+    Q[1] = Om * Om * (m / 3 + ms) * xt - 2 * Om * (m * (7. / 20 * d9 + l / 20 * d11) + ms * d9)
+         + gx * (m / 2 + ms) - EA / l * z[1];
+    Q[2] = gy * (m / 2 + ms) - 12 * k * q8 + 6 * k * l * q12;
+    Q[3] = Om * Om * (13. / 35 * m * q9 + 11. / 210 * m * l * q11 + ms * q9)
+         + 2 * Om * (7. / 20 * m + ms) * d7 + gz * (m / 2 + ms) - 12 * k * q9 - 6 * k * l * q11;
+    Q[4] = -GIp / l * q10;
+    Q[5] = Om * Om * (11. / 210 * m * l * q9 + m * l * l / 105 * q11)
+         + 2 * Om * (m * l / 20) * d7 + gz * m * l / 12 - 6 * k * l * q9 - 4 * k * l * l * q11;
+    Q[6] = -gy * m * l / 12 + 6 * k * l * q8 - 4 * k * l * l * q12;
+}
+
+static void the_pendulum_beam_has_the_equations_of_its_source(void **state)
+{
+    (void)state;
+    static const char *const name[] = {"hinge.q",   "beam.1.u",  "beam.1.v", "beam.1.w",
+                                       "beam.1.rx", "beam.1.ry", "beam.1.rz"};
+    struct system s;
+    struct variant v;
+    bool ok = true;
+    chance_start();
+    system_open_text(&s, "pendulum beam", pendulum_beam);
+    system_no_outputs(&s);
+    variant_open(&s, &by_choice, &v);
+    assert_int_equal(v.e.nu, 7);
+    for (int k = 0; k < 7; k++)
+        assert_string_equal(v.e.q[v.e.u[k].q].name, name[k]);
+    for (int trial = 0; trial < 5; trial++) {
+        double M[7][7], Q[7];
+        for (int k = 0; k < 14; k++)
+            v.y[k] = 2 * chance();
+        renew(&v, 0);
+        source_equations(v.y, v.y + 7, M, Q);
+        for (int i = 0; i < 7; i++) {
+            ok &= agree(s.name, name[i], v.m->Q[i], Q[i], 1 + fabs(Q[i]), 1e-13);
+            for (int j = 0; j < 7; j++)
+                ok &= agree(s.name, name[i], v.m->M[i + 7 * j], M[i][j], 1 + fabs(M[i][j]),
+                            1e-13);
+        }
+    }
+    variant_close(&v);
+    system_close(&s);
+    assert_true(ok);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -673,6 +768,7 @@ int main(void)
         cmocka_unit_test(cantilevers_are_those_of_the_textbook),
         cmocka_unit_test(signals_of_shape_mean_what_the_manual_says),
         cmocka_unit_test(a_force_cannot_depend_on_a_section_force),
+        cmocka_unit_test(the_pendulum_beam_has_the_equations_of_its_source),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -163,6 +163,55 @@ static void forms_agree_on_small_mechanisms(void **state)
     assert_true(ok);
 }
 
+// ---- back ends ------------------------------------------------------------------------------------------------
+
+// Native code, which fuses products and sums of longer programs, against the tape: to rounding, or to what a few
+// roundings of M do.
+static bool back_ends_agree_on(struct system *s)
+{
+    struct variant v;
+    const struct ct_formulate_options o = {.tree = CT_TREE_AUTO, .with_solution = true};
+    bool ok = true;
+    variant_open(s, &o, &v);
+    double *a = test_calloc(4 * v.m->nu + 1, sizeof *a), *native = a + 2 * v.m->nu,
+           *tape = native + v.m->nu;
+    for (int k = 0; k < 3 && v.e.solution; k++) {
+        struct ct_start state;
+        if (!system_random_state(s, 0.1, 0.5, &state))
+            continue;
+        const double sensitivity = find_reference(&v, &state, a);
+        ct_machine_use(v.arena, v.m, CT_BACKEND_BEST);
+        assert_true(ct_machine_solved(v.m, native));
+        ct_machine_use(v.arena, v.m, CT_BACKEND_TAPE);
+        assert_true(ct_machine_solved(v.m, tape));
+        double scale = 1e-3, worst = 0;
+        for (size_t i = 0; i < v.m->nu; i++) {
+            scale = fmax(scale, fabs(tape[i]));
+            worst = fmax(worst, isnan(native[i]) ? INFINITY : fabs(native[i] - tape[i]));
+        }
+        ok &= agree(s->name, "u', native and tape", worst, 0, scale,
+                    fmax(1e-13, 10 * sensitivity));
+    }
+    test_free(a);
+    variant_close(&v);
+    return ok;
+}
+
+static void back_ends_agree_to_rounding(void **state)
+{
+    (void)state;
+    bool ok = true;
+    chance_start();
+    for (size_t i = 0; i < nshipped; i++) {
+        struct system s;
+        system_open_file(&s, shipped[i]);
+        system_no_outputs(&s);
+        ok &= back_ends_agree_on(&s);
+        system_close(&s);
+    }
+    assert_true(ok);
+}
+
 // ---- chains of mixed joints -----------------------------------------------------------------------------------
 
 static const char *const joint_text[] = {
@@ -243,6 +292,7 @@ int main(void)
         cmocka_unit_test(forms_agree_on_shipped_systems),
         cmocka_unit_test(forms_agree_on_small_mechanisms),
         cmocka_unit_test(forms_agree_on_trees_of_mixed_joints),
+        cmocka_unit_test(back_ends_agree_to_rounding),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

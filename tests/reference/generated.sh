@@ -17,6 +17,8 @@ same() {
 
 same "$systems/n_four_bar/model.yaml" "$systems/n_four_bar/generate.sh"
 same "$systems/chain40/model.yaml" "$systems/chain40/generate.sh"
+same "$systems/chain_against_beam/model.yaml" "$systems/chain_against_beam/generate.sh"
+same "$systems/spin_up_welded/model.yaml" "$systems/spin_up_welded/generate.sh"
 for n in 1 2 3 5 10; do
     same "$folder/R05_N$n.yaml" "$systems/n_four_bar/generate.sh" "$n" 10 1 1e-10
 done
@@ -25,7 +27,7 @@ same "$folder/R05_N40.yaml" "$systems/n_four_bar/generate.sh" 40 20 1 1e-9
 same "$folder/R12.yaml" "$systems/chain40/generate.sh" 40 5 1 1e-9
 same "$folder/R12_pi.yaml" "$systems/chain40/generate.sh" 40 pi pi 1e-9
 
-for file in "$folder"/R*.yaml; do
+for file in "$folder"/[RB]*.yaml; do
     case=$(basename "$file" .yaml)
     grep -q "'$case'" "$folder/meson.build" && [ -f "$folder/$case.reference.csv" ] && [ -f "$folder/$case.tolerance" ] && continue
     echo "$case is not listed in meson.build, or lacks its reference or tolerance"

@@ -2,14 +2,9 @@
 #include "codegen/c.h"
 #include "expr/tape.h"
 #include "random_ex.h"
+#include "tests/own_sincos.h"
 
-#include <dlfcn.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <string.h>
 #include <unistd.h>
-
-#include <cmocka.h>
 
 static const double table_x[] = {-3, -1, 0, 1.5, 3}, table_y[] = {1, 2, 0, -1, 4},
                     table_m[] = {0.5, 0.1, -1, 0, 2};
@@ -62,10 +57,11 @@ struct object {
     evaluate_fn evaluate;
 };
 
-static void write_file(const char *path, const char *text)
+static void write_file(const char *path, const char *before, const char *text)
 {
     FILE *f = fopen(path, "w");
     assert_non_null(f);
+    assert_true(fputs(before, f) >= 0);
     assert_int_equal(fwrite(text, 1, strlen(text), f), strlen(text));
     assert_int_equal(fclose(f), 0);
 }
@@ -77,7 +73,7 @@ static void object_open(struct object *o, const char *text)
     assert_non_null(mkdtemp(o->folder));
     snprintf(o->source, sizeof o->source, "%s/e.c", o->folder);
     snprintf(o->object, sizeof o->object, "%s/e.so", o->folder);
-    write_file(o->source, text);
+    write_file(o->source, own_sincos, text);
     snprintf(command, sizeof command,
              "cc -std=c99 -Wall -Wextra -Wpedantic -Werror -O1 -ffp-contract=off -shared -fPIC "
              "-o %s %s -lm",
@@ -85,6 +81,7 @@ static void object_open(struct object *o, const char *text)
     assert_int_equal(system(command), 0);
     o->handle = dlopen(o->object, RTLD_NOW);
     assert_non_null(o->handle);
+    own_sincos_set(o->handle);
     void *symbol = dlsym(o->handle, "evaluate");
     assert_non_null(symbol);
     memcpy(&o->evaluate, &symbol, sizeof symbol); // C has no cast from an object to a function

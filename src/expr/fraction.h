@@ -1,0 +1,15 @@
+// Numbers that are small fractions: 13/35, 11/210.
+#ifndef CT_EXPR_FRACTION_H
+#define CT_EXPR_FRACTION_H
+
+#include <stdbool.h>
+
+/// Is v the double nearest to a fraction *n / *d with d up to 5000 and |n| up to 10000, and no decimal of six digits?
+/// Then n/d in double arithmetic gives the bits of v. Source: continued fractions; an approximation closer than 1/(2 d^2)
+/// is one of their convergents.
+bool ct_fraction_find(double v, double *n, double *d);
+
+/// The double nearest to such a fraction where v differs from it by a few roundings; otherwise v.
+double ct_fraction_snap(double v);
+
+#endif

@@ -1,0 +1,165 @@
+// See sincos.h.
+//
+// Reduction by multiples of pi/2 in three parts, the first two of 33 bits, so that their products with up to 2^20 are
+// exact; what is left is y + tail. Then polynomials, interpolated at the zeros of Chebyshev's polynomial in
+// [0, (1.01 pi/4)^2] of y^2 (relative errors 2^-59), whose first terms are kept with what their roundings lose.
+// Sources: reduction, Cody and Waite (1980), key cody1980; products in two parts, Dekker (1971), key dekker1971.
+#include "expr/sincos.h"
+
+#include <math.h>
+#include <stdbool.h>
+#include <stdint.h>
+#include <string.h>
+
+// Beyond this n has more bits than the parts of pi/2 leave free.
+static const double largest = 1e6;
+
+// Adding 1.5 * 2^52 rounds to an integer, which the last bits of the sum then hold.
+//
+//     sin y = y - y^3/6 + y^5 (S1 + S2 y^2 + ...),   cos y = 1 - y^2/2 + y^4/24 + y^6 (C1 + C2 y^2 + ...)
+#define EACH_CONSTANT(X)                                                                       \
+    X(ONE, 1)                                                                                  \
+    X(HALF, 0.5)                                                                               \
+    X(TWO, 2)                                                                                  \
+    X(two_over_pi, 0x1.45f306dc9c883p-1)                                                       \
+    X(to_integer, 0x1.8p52)                                                                    \
+    X(Q0, 0x1.921fb544p+0)                                                                     \
+    X(Q1, 0x1.0b4611a6p-34)                                                                    \
+    X(Q2, 0x1.3198a2e037073p-69)                                                               \
+    X(S0, -0x1.5555555555555p-3)                                                               \
+    X(S0_LOW, -0x1.5555555555555p-57)                                                          \
+    X(S1, 0x1.1111111111111p-7)                                                                \
+    X(S2, -0x1.a01a01a019eb4p-13)                                                              \
+    X(S3, 0x1.71de3a5504ca3p-19)                                                               \
+    X(S4, -0x1.ae64551fcba13p-26)                                                              \
+    X(S5, 0x1.6122463e0d6c2p-33)                                                               \
+    X(S6, -0x1.ab8502e1e7377p-41)                                                              \
+    X(C0, 0x1.5555555555555p-5)                                                                \
+    X(C0_LOW, 0x1.5555555555555p-59)                                                           \
+    X(C1, -0x1.6c16c16c16bedp-10)                                                              \
+    X(C2, 0x1.a01a019fe58bap-16)                                                               \
+    X(C3, -0x1.27e4fad0c2f58p-22)                                                              \
+    X(C4, 0x1.1eec1bc32393ap-29)                                                               \
+    X(C5, -0x1.90f4531a82130p-37)
+
+#define ONE_NUMBER(name, value) static const double k1_##name = value;
+EACH_CONSTANT(ONE_NUMBER)
+
+static inline int64_t bits_of(double v)
+{
+    int64_t bits;
+    memcpy(&bits, &v, sizeof bits);
+    return bits;
+}
+
+static inline double number_of(int64_t bits)
+{
+    double v;
+    memcpy(&v, &bits, sizeof v);
+    return v;
+}
+
+// a b - p for the rounded product p, without a fused operation (Dekker): both halves of a number have 26 bits.
+static inline double lost(double a, double b, double p)
+{
+    const double split = 0x1p27 + 1, x = split * a, y = split * b;
+    const double ah = x - (x - a), al = a - ah, bh = y - (y - b), bl = b - bh;
+    return ((ah * bh - p) + ah * bl + al * bh) + al * bl;
+}
+
+#define V double
+#define I int64_t
+#define BITS(v) bits_of(v)
+#define NUMBER(b) number_of(b)
+#define K(name) k1_##name
+#define LOST(a, b, p) lost(a, b, p)
+#define KERNEL kernel_1
+#define TARGET
+#include "expr/sincos_kernel.def"
+
+void ct_sincos(double a, double *s, double *c)
+{
+    if (fabs(a) <= largest) {
+        kernel_1(a, s, c);
+        return;
+    }
+    *s = sin(a);
+    *c = cos(a);
+}
+
+static void one_by_one(const double *a, double *s, double *c, size_t n)
+{
+    for (size_t i = 0; i < n; i++)
+        ct_sincos(a[i], &s[i], &c[i]);
+}
+
+#if defined(__x86_64__) && defined(__GNUC__)
+
+#include <immintrin.h>
+
+enum { LANES = 4 };
+typedef double four __attribute__((vector_size(32)));
+typedef int64_t four_integers __attribute__((vector_size(32)));
+
+#define FOUR_NUMBERS(name, value) static const four k4_##name = {value, value, value, value};
+EACH_CONSTANT(FOUR_NUMBERS)
+
+#define V four
+#define I four_integers
+#define BITS(v) ((four_integers)(v))
+#define NUMBER(b) ((four)(b))
+#define K(name) k4_##name
+#define LOST(a, b, p) _mm256_fmsub_pd(a, b, p)
+#define KERNEL kernel_4
+#define TARGET __attribute__((target("avx2,fma")))
+#include "expr/sincos_kernel.def"
+
+#define WIDE __attribute__((target("avx2,fma")))
+
+WIDE static inline bool has_large(four angle)
+{
+    const four_integers outside = ~((angle <= largest) & (angle >= -largest));
+    return _mm256_movemask_pd((four)outside);
+}
+
+// Angles beyond the range are done again.
+WIDE static void four_by_four(const double *a, double *s, double *c, size_t n)
+{
+    const size_t most = n / LANES * LANES;
+    four sine, cosine;
+    for (size_t i = 0; i < most; i += LANES) {
+        const four angle = _mm256_loadu_pd(a + i);
+        kernel_4(angle, &sine, &cosine);
+        _mm256_storeu_pd(s + i, sine);
+        _mm256_storeu_pd(c + i, cosine);
+        if (has_large(angle))
+            one_by_one(a + i, s + i, c + i, LANES);
+    }
+    if (most == n)
+        return;
+    static const int64_t on[2 * LANES - 1] = {-1, -1, -1};
+    const __m256i used = _mm256_loadu_si256((const __m256i *)(on + LANES - 1 - (n - most)));
+    const four angle = _mm256_maskload_pd(a + most, used);
+    kernel_4(angle, &sine, &cosine);
+    _mm256_maskstore_pd(s + most, used, sine);
+    _mm256_maskstore_pd(c + most, used, cosine);
+    if (has_large(angle))
+        one_by_one(a + most, s + most, c + most, n - most);
+}
+
+void ct_sincos_many(const double *a, double *s, double *c, size_t n)
+{
+    if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma"))
+        four_by_four(a, s, c, n);
+    else
+        one_by_one(a, s, c, n);
+}
+
+#else
+
+void ct_sincos_many(const double *a, double *s, double *c, size_t n)
+{
+    one_by_one(a, s, c, n);
+}
+
+#endif

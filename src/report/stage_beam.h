@@ -1,0 +1,40 @@
+// Beams on the pages of the derivation.
+//
+// An element is shown once, as a function of its own dofs; a table says which coordinates each element has for them.
+#ifndef CT_REPORT_STAGE_BEAM_H
+#define CT_REPORT_STAGE_BEAM_H
+
+#include "formulate/flexible.h"
+#include "report/derivation.h"
+
+/// The element of a beam, with symbols instead of its dofs; constants of the sections where these do not vary.
+struct ct_beam_element {
+    struct ct_exs *x;
+    ct_ex dof[CT_DOF]; // zero where the beam does not deform that way
+    ct_ex xi, h;       // place on the element, 0 ... 1; its length
+    ct_ex axial;       // displacement of the axis without what bending adds
+    ct_ex shortening;  // int (v'^2 + w'^2)/2 dx over the element
+    ct_ex v, w, twist;
+    ct_ex stretch; // the symbol s
+    ct_ex
+        energy[4]; // of strain: axial with s for the stretch, bending-z, bending-y, torsion [J]
+    bool
+        is_constant; // the sections do not vary: energy and shortening are known in closed form
+};
+
+/// Name of dof j: u1 u2 v1 alpha1 v2 alpha2 w1 beta1 w2 beta2 phi1 phi2.
+const char *ct_beam_dof_name(int j);
+void ct_beam_element_derive(struct ct_build *b, const struct ct_flexible *f,
+                            struct ct_beam_element *out);
+
+/// "2 elements, 12 elastic coordinates; deforms by axial, bending-z; foreshortening (auto); frame clamped"
+const char *ct_beam_sentence(struct ct_arena *a, const struct ct_flexible *f);
+
+/// Terminal equations: inertia, elastic coordinates, the element and its coordinates.
+void ct_beams_put_terminal(struct ct_derivation *d);
+/// Arms to sections.
+void ct_beams_put_arms(struct ct_derivation *d);
+/// One equation per elastic coordinate: what the beam gives goes into its arms.
+void ct_beams_put_cutsets(struct ct_derivation *d);
+
+#endif

@@ -1,0 +1,82 @@
+// Numbers recognised as fractions, and how they are printed.
+#include "expr/fraction.h"
+#include "expr/print.h"
+#include "tests/check.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static void fractions_have_the_bits_of_their_quotient(void **state)
+{
+    (void)state;
+    static const double number[][2] = {{13, 35}, {11, 210},    {1, 3},    {-26, 35}, {2, 105},
+                                       {1, 420}, {4999, 4998}, {9999, 7}, {17, 3780}};
+    for (size_t i = 0; i < COUNT(number); i++) {
+        const double v = number[i][0] / number[i][1];
+        double n, d;
+        assert_true(ct_fraction_find(v, &n, &d));
+        assert_true(n / d == v && d <= 5000);
+        // a neighbour is another number, though near enough to be one spoiled by rounding
+        const double next = nextafter(v, 1e9);
+        assert_false(ct_fraction_find(next, &n, &d));
+        assert_true(ct_fraction_snap(next) == v);
+        assert_true(ct_fraction_snap(v * (1 + 1e-13)) == v * (1 + 1e-13));
+    }
+}
+
+static void decimals_and_other_numbers_are_none(void **state)
+{
+    (void)state;
+    static const double number[] = {0,          1,
+                                    -3,         0.35,
+                                    0.05,       1e-8,
+                                    9.81,       152e-3,
+                                    7e10,       3.1415926535897931,
+                                    INFINITY,   NAN,
+                                    1e300,      1.4142135623730951,
+                                    1e-300,     1.0 / 5003,
+                                    10007.0 / 3};
+    for (size_t i = 0; i < COUNT(number); i++) {
+        double n, d;
+        assert_false(ct_fraction_find(number[i], &n, &d));
+    }
+}
+
+// Text and LaTeX show fractions if asked; C never does: its bits are those of the constant.
+static void fractions_are_printed_for_people_only(void **state)
+{
+    (void)state;
+    struct ct_arena *a = ct_arena_create();
+    struct ct_exs x;
+    ct_exs_init(&x, a);
+    const ct_ex m = ct_ex_sym(&x, CT_SYM_PARAM, "m", 0);
+    const ct_ex k = ct_ex_const(&x, 13.0 / 35);
+    const ct_ex e[] = {ct_ex_mul(&x, k, m), ct_ex_add(&x, m, ct_ex_const(&x, 1.0 / 3)),
+                       ct_ex_pow(&x, m, ct_ex_const(&x, -1.0 / 3)), k};
+    static const char *const text[] = {"13*m/35", "m + 1/3", "m^(-1/3)", "13/35"};
+    static const char *const latex[]
+        = {"\\frac{13 m}{35}", "m + \\frac{1}{3}", "m^{-\\frac{1}{3}}", "\\frac{13}{35}"};
+    static const char *const c[] = {"0.37142857142857144 * m", "m + 0.33333333333333331",
+                                    "pow(m, (-0.33333333333333331))", "0.37142857142857144"};
+    for (size_t i = 0; i < COUNT(e); i++) {
+        struct ct_print p = {.fractions = true};
+        assert_string_equal(ct_ex_text(a, &x, e[i], &p), text[i]);
+        p.style = CT_PRINT_LATEX;
+        assert_string_equal(ct_ex_text(a, &x, e[i], &p), latex[i]);
+        p.style = CT_PRINT_C;
+        assert_string_equal(ct_ex_text(a, &x, e[i], &p), c[i]);
+        p = (struct ct_print){0};
+        assert_null(strchr(ct_ex_text(a, &x, e[i], &p), '/'));
+    }
+    ct_arena_destroy(a);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(fractions_have_the_bits_of_their_quotient),
+        cmocka_unit_test(decimals_and_other_numbers_are_none),
+        cmocka_unit_test(fractions_are_printed_for_people_only),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
