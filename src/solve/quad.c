@@ -37,8 +37,10 @@ static quad apply(uint32_t op, quad a, quad b, quad c)
     case CT_OP_SQRT:
         return sqrtq(a);
     case CT_OP_SIN:
+    case CT_OP_ANGLE_SIN:
         return sinq(a);
     case CT_OP_COS:
+    case CT_OP_ANGLE_COS:
         return cosq(a);
     case CT_OP_TAN:
         return tanq(a);
@@ -123,7 +125,7 @@ static void evaluate(const struct program *p, const quad *input, quad *out)
         quad arg[3] = {0, 0, 0};
         for (uint32_t j = 0; j < i->narg; j++)
             arg[j] = p->value[i->arg[j]];
-        if (i->op == CT_OP_SINCOS)
+        if (i->op == CT_OP_SINCOS || i->op == CT_OP_ANGLE_SINCOS)
             sincosq(arg[0], &p->value[i->res[0]], &p->value[i->res[1]]);
         else
             p->value[i->res[0]] = apply(i->op, arg[0], arg[1], arg[2]);
