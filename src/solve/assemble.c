@@ -687,6 +687,7 @@ static bool assemble(struct assembly *s, struct ct_arena *a, struct ct_start *ou
 bool ct_assemble(struct ct_ctx *ctx, struct ct_arena *a, const struct ct_model *model,
                  const struct ct_equations *e, struct ct_start *out)
 {
+    *out = (struct ct_start){0};
     struct ct_arena *own = ct_arena_create_under(a);
     struct assembly s = assembly_create(ctx, own, model, e);
     const bool ok = assemble(&s, a, out);

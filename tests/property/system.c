@@ -251,7 +251,7 @@ bool system_random_state(struct system *s, double t, double amplitude, struct ct
     ct_machine_set(m, t, y);
     ct_memory_follow(m);
     ct_program_run(&m->result, m->input);
-    out->n = s->assembly.ncoordinate;
+    *out = (struct ct_start){.n = s->assembly.ncoordinate};
     out->q = CT_NEWN(s->ctx.model, double, out->n + 1);
     out->u = CT_NEWN(s->ctx.model, double, out->n + 1);
     for (size_t i = 0; i < out->n; i++) {
