@@ -9,22 +9,23 @@
 #include <string.h>
 
 // The error of a solution is larger than that of its steps, so steps are held to less than what is wanted, as far as
-// double precision has that many digits. Over the reference cases outputs err by up to 30 times the tolerance
-// of the steps with dopri5 where there are no loops, by up to 75 times past singular positions; with
-// dop853 by up to 6 times.
-static const double share_of_loops = 1e-3, share_of_low_order = 2e-3,
-                    share_of_high_order = 5e-3;
+// double precision has that many digits. Over the reference cases outputs err by up to 3000 times the tolerance of the
+// steps with dopri5, by up to 1300 times with dop853.
+static const double share_of_low_order = 2e-3, share_of_high_order = 5e-3;
 // Steps of order p err by h^(p+1) and the solution by h^p: T = c tol^(p/(p+1)). For order 2, c is 10 to 50 in most cases.
 static const double order2_factor = 30;
 // Of Radau's steps the error of an estimate of order 3 is controlled, eased to tol^(2/3)/10: T/10 for this power of T.
 static const double radau_power = 1.5;
 static const double radau_share = 1e-2;  // for loose tolerances
 static const double radau_least = 1e-13; // below, rounding in its iterations shows
-// Closed loops lose digits where they pass near singular positions: ten four-bars in a row (R05_N10)
-// need 1e-12, and then meet their reference to 4e-10.
-static const double least_rtol = 2e-14, least_rtol_loops = 1e-12;
-// Above this tolerance high order does not pay for its twelve evaluations.
-static const double high_order_up_to = 1e-4;
+// Closed loops lose digits where they pass near singular positions: with less than 1e-13 nothing is gained (R05_N10
+// meets its reference to 2e-10, R13_d1 to 2e-11).
+static const double least_rtol = 2e-14, least_rtol_loops = 1e-13;
+// Below this tolerance the higher order pays for its twelve evaluations (over the reference cases); where
+// state events cut steps short and want an interpolant of each, below the second; below the third its long steps cross
+// singular positions of loops with an error that the tolerance bounds.
+static const double high_order_below = 2e-3, high_order_with_switches = 1e-6,
+                    high_order_with_loops = 2e-7;
 static const long steps_between_looks = 32; // at the clock, for runs with a deadline
 
 // ---- results as a file --------------------------------------------------------------------------------
@@ -143,18 +144,23 @@ static bool no_method(struct ct_sim *sim, const char *name, bool is_option)
                     ct_suggest_or_list(sim->own.model, name, names, (size_t)ct_nmethod + 1));
 }
 
+// Does the motion decide when forces switch?
+static bool has_switches(const struct ct_equations *e)
+{
+    for (size_t i = 0; i < e->nmode; i++)
+        if (!e->mode[i].is_time)
+            return true;
+    return false;
+}
+
 // What steps are held to so that outputs err by about `tolerance`.
 static double tolerance_of_steps(const struct ct_sim *sim, const struct ct_method *m)
 {
     const double t = sim->tolerance;
-    const bool has_loops = sim->system->equations.nrow > 0;
     if (m->is_implicit)
         return m->order < 3 ? pow(t / order2_factor, 1.5)
                             : fmin(radau_share * t, pow(t, radau_power));
-    return t
-         * (m->order > 5 ? share_of_high_order
-            : has_loops  ? share_of_loops
-                         : share_of_low_order);
+    return t * (m->order > 5 ? share_of_high_order : share_of_low_order);
 }
 
 static void set_tolerances(const struct ct_sim *sim, const struct ct_method *m, double absolute,
@@ -167,14 +173,19 @@ static void set_tolerances(const struct ct_sim *sim, const struct ct_method *m, 
 static void choose_automatically(struct ct_sim *sim)
 {
     struct ct_run_options *o = &sim->run_options;
-    // Where loops pass near singular positions, long steps of high order lose the branch they are on.
-    const bool is_open = sim->system->equations.nrow == 0;
-    const bool high = o->step == 0 && is_open && sim->tolerance <= high_order_up_to;
+    const bool switches = has_switches(&sim->system->equations);
+    const bool has_loops = sim->system->equations.nrow > 0;
+    const double below = has_loops ? high_order_with_loops
+                       : switches  ? high_order_with_switches
+                                   : high_order_below;
+    const bool high = o->step == 0 && sim->tolerance < below;
     o->method = ct_method_find(high ? "dop853" : "dopri5");
-    sim->method_why = o->step > 0 ? "automatic: a fixed step"
-                    : !is_open    ? "automatic: closed loops"
-                    : high        ? "automatic: no loops"
-                                  : "automatic: a loose tolerance";
+    sim->method_why = o->step > 0                     ? "automatic: a fixed step"
+                    : high && (has_loops || switches) ? "automatic: a tight tolerance"
+                    : high                            ? "automatic: a smooth motion"
+                    : has_loops                       ? "automatic: closed loops"
+                    : switches                        ? "automatic: forces that switch"
+                                                      : "automatic: a coarse tolerance";
     if (o->step == 0 && pow(sim->tolerance, radau_power) >= radau_least)
         o->stiff_method = ct_method_find("radau5");
 }

@@ -15,7 +15,7 @@ static const double kappa_largest = 1e3;
 // Projections stop here: a few roundings of coordinates of order one.
 static const double position_tolerance = 1e-13;
 // Pivots smaller than this against the largest enlarge what is left over noticeably.
-static const double small_pivot = 0.1;
+static const double small_pivot = 0.5;
 enum { MOST_NEWTON = 25 };
 
 // A closed form is used while its strength has changed by less than these factors since the dense pivots that tell
@@ -527,25 +527,30 @@ static void least_norm_step(struct ct_embed *s, const double *r, double *d)
     memcpy(d, s->d, (size_t)n * sizeof *d);
 }
 
-// d = correction of the dependent part alone; false if J_d is too close to singular for it.
-static bool partitioned_step(struct ct_embed *s, const double *r, double *d)
+// d (nu) = correction of the dependent part alone, J_d as factored last.
+static void partitioned_step(struct ct_embed *s, const double *r, double *d)
 {
     const int k = s->rank;
-    if (!factor(s) || s->kappa > kappa_largest)
-        return false;
     memset(d, 0, s->m->nu * sizeof *d);
     for (int i = 0; i < k; i++)
         s->c[i] = -r[s->row[i]];
     ct_lu_solve(s->c, s->Jd, s->pivot, k, k, 1, k, false);
     for (int i = 0; i < k; i++)
         d[s->dependent[i]] = s->c[i];
-    return true;
 }
 
-static void step_onto(struct ct_embed *s, const double *r, double *d)
+// False if J_d is too close to singular for partitioned steps.
+static bool is_partitioned(struct ct_embed *s)
 {
-    if (!partitioned_step(s, r, d))
-        least_norm_step(s, r, d);
+    return factor(s) && s->kappa <= kappa_largest;
+}
+
+// r (nrow) += J d.
+static void add_change(const struct ct_embed *s, double *r, const double *d)
+{
+    for (size_t j = 0; j < s->m->nu; j++)
+        for (size_t i = 0; i < s->m->nrow && d[j] != 0; i++)
+            r[i] += s->m->J[i + s->m->nrow * j] * d[j];
 }
 
 // Is another choice of rows or columns due?
@@ -555,12 +560,12 @@ static bool has_worn(const struct ct_embed *s)
         || s->sigma * kappa_growth < s->sigma_chosen;
 }
 
-// What is near enough: a few roundings, divided by the smallest pivot beside a singular position. Rounding keeps
+// What is near enough: a few roundings, divided twice by the smallest pivot beside a singular position. Rounding keeps
 // larger mechanisms from it: stop when nothing is gained any more.
 static bool is_closed(const struct ct_embed *s, double size, double before)
 {
-    const double wanted
-        = s->sigma < small_pivot ? position_tolerance * s->sigma : position_tolerance;
+    const double wanted = s->sigma < small_pivot ? position_tolerance * s->sigma * s->sigma
+                                                 : position_tolerance;
     return size <= wanted || (size < 1e-10 && size > before / 4);
 }
 
@@ -582,16 +587,17 @@ static enum ct_eval project_by_matrices(struct ct_embed *s, double t, double *y)
         if (is_lost(i, size, before))
             return CT_EVAL_RETRY;
         before = size;
-        step_onto(s, m->phi, s->r);
+        (is_partitioned(s) ? partitioned_step : least_norm_step)(s, m->phi, s->r);
         ct_machine_retract(m, y, s->r);
     }
-    for (int i = 0; i < 2; i++) { // linear; the second step takes off rounding
-        step_onto(s, m->v, s->r);
+    const bool is_regular = is_partitioned(s);
+    for (int i = 0; i < 2; i++) { // v is linear in u; the second step takes off rounding
+        (is_regular ? partitioned_step : least_norm_step)(s, m->v, s->r);
         for (size_t k = 0; k < m->nu; k++)
             y[m->nq + k] += s->r[k];
-        ct_machine_set(m, t, y);
-        ct_machine_constraint(m);
+        add_change(s, m->v, s->r);
     }
+    ct_machine_set(m, t, y);
     return CT_EVAL_OK;
 }
 
