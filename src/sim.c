@@ -482,3 +482,12 @@ double ct_sim_value(const struct ct_sim *sim, const char *column)
             return sim->report.final[i];
     return NAN;
 }
+
+double ct_sim_error(const struct ct_sim *sim, const char *column)
+{
+    const struct ct_equations *e = &sim->system->equations;
+    for (size_t i = 0; i < e->nresult && sim->estimate.output; i++)
+        if (strcmp(e->result[i].name, column) == 0)
+            return sim->estimate.output[i].relative;
+    return NAN;
+}
