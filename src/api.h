@@ -67,7 +67,7 @@ struct ct_sim {
     struct ct_progress *progress;
     long nstep;      // accepted so far, for deadlines
     double deadline; // on ct_clock, when the run is given up; 0: none
-    bool has_run, is_done, is_late;
+    bool has_run, is_done, is_late, is_followed;
     double time;                                      // of the last sample
     double compile, integrate, write, verify_seconds; // seconds
 };

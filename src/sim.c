@@ -1,5 +1,8 @@
 // Runs: options resolved, the start assembled, the motion integrated and written.
 #include "api.h"
+#include "configuration.h"
+
+#include "formulate/flexible.h"
 
 #include "report/json.h"
 #include "report/progress.h"
@@ -18,12 +21,12 @@ static const double order2_factor = 30;
 static const double radau_power = 1.5;
 static const double radau_share = 1e-2;  // for loose tolerances
 static const double radau_least = 1e-13; // below, rounding in its iterations shows
-// Closed loops lose digits where they pass near singular positions: with less than 1e-13 nothing is gained (R05_N10
-// meets its reference to 2e-10, R13_d1 to 2e-11).
+// Closed loops lose digits where they pass near singular positions: with less than 1e-13 nothing is gained (R05_N10 meets its
+// reference to 2e-10, R13_d1 to 2e-11).
 static const double least_rtol = 2e-14, least_rtol_loops = 1e-13;
 // Below this tolerance the higher order pays for its twelve evaluations (over the reference cases); where
 // state events cut steps short and want an interpolant of each, below the second; below the third its long steps cross
-// singular positions of loops with an error that the tolerance bounds.
+// singular positions of loops with an error that the tolerance bounds (R13_d1 errs by 2e-4 at 1e-6).
 static const double high_order_below = 2e-3, high_order_with_switches = 1e-6,
                     high_order_with_loops = 2e-7;
 static const long steps_between_looks = 32; // at the clock, for runs with a deadline
@@ -180,12 +183,11 @@ static void choose_automatically(struct ct_sim *sim)
                                    : high_order_below;
     const bool high = o->step == 0 && sim->tolerance < below;
     o->method = ct_method_find(high ? "dop853" : "dopri5");
-    sim->method_why = o->step > 0                     ? "automatic: a fixed step"
-                    : high && (has_loops || switches) ? "automatic: a tight tolerance"
-                    : high                            ? "automatic: a smooth motion"
-                    : has_loops                       ? "automatic: closed loops"
-                    : switches                        ? "automatic: forces that switch"
-                                                      : "automatic: a coarse tolerance";
+    sim->method_why = o->step > 0 ? "automatic: a fixed step"
+                    : high        ? "automatic: high order"
+                    : has_loops   ? "automatic: closed loops"
+                    : switches    ? "automatic: forces that switch"
+                                  : "automatic: a loose tolerance";
     if (o->step == 0 && pow(sim->tolerance, radau_power) >= radau_least)
         o->stiff_method = ct_method_find("radau5");
 }
@@ -283,10 +285,7 @@ static bool prepare(struct ct_sim *sim, const struct ct_sim_options *o)
         ct_formulate_residual(&s->equations);
     if (needs_dynamics(&s->equations, sim->run_options.method))
         ct_formulate_dynamics(&s->equations);
-    if (!ct_assemble(&sim->own, sim->own.model, &s->model, &s->start_equations, &sim->start))
-        return false;
-    if (s->held_equations.build
-        && !ct_settle(&sim->own, sim->own.model, &s->model, &s->held_equations, &sim->start))
+    if (!ct_configuration_assemble(&sim->own, s, &sim->start))
         return false;
     sim->run = ct_run_create(&sim->own, sim->own.model, &s->model, &s->equations, &sim->start);
     sim->compile = ct_clock() - start;
@@ -392,7 +391,8 @@ static bool integrate(struct ct_sim *sim)
     struct ct_run_options *o = &sim->run_options;
     struct ct_progress progress = {0};
     if (sim->results->progress) {
-        ct_progress_init(&progress, sim->results->progress, "simulate");
+        ct_progress_init(&progress, sim->results->progress,
+                         sim->is_followed ? "follow" : "simulate");
         sim->progress = &progress;
     }
     if (sim->results->progress || sim->deadline > 0)
@@ -401,12 +401,30 @@ static bool integrate(struct ct_sim *sim)
     o->want_residual = want_residual;
     o->user = sim;
     const double start = ct_clock();
-    const bool ok = ct_run_simulate(sim->run, o, &sim->report);
+    const bool ok = sim->is_followed ? ct_run_follow(sim->run, o, &sim->report)
+                                     : ct_run_simulate(sim->run, o, &sim->report);
     sim->integrate = ct_clock() - start - sim->write;
     ct_progress_finish(&progress);
     sim->progress = NULL;
     explain_change(sim);
     return ok;
+}
+
+// Linear beams whose motion left what they are good for.
+static void warn_of_beams(struct ct_sim *sim)
+{
+    const struct ct_equations *e = &sim->system->equations;
+    for (size_t i = 0; i < e->nvalidity; i++) {
+        const struct ct_validity_report *v = &sim->report.validity[i];
+        if (v->left_at < 0)
+            continue;
+        ct_warning(
+            &sim->own, e->validity[i].mark, 0,
+            "beam '%s' is linear and left its range: the validity indicator passes %.3g at "
+            "t = %.6g s and reaches %.3g; errors are of that relative size, and "
+            "`formulation: foreshortening` has none of them",
+            e->validity[i].beam, CT_VALIDITY_LIMIT, v->left_at, v->largest);
+    }
 }
 
 // A run that a callback stopped has no diagnostic: it is done, too.
@@ -434,6 +452,8 @@ static bool run(struct ct_sim *sim)
     if (sim->file)
         ok = close_file(sim, ok);
     sim->write += ct_clock() - start;
+    if (ok)
+        warn_of_beams(sim);
     if (ok && sim->kept)
         ct_sim_verify(sim);
     sim->is_done = ok;
@@ -451,6 +471,13 @@ static bool run_and_report(void *task)
     const bool ok = run(w->sim);
     ct_ctx_hand_over(w->ctx, &w->sim->own);
     return ok;
+}
+
+bool ct_sim_follow(struct ct_ctx *ctx, struct ct_sim *sim, const struct ct_sim_results *results)
+{
+    if (sim)
+        sim->is_followed = true;
+    return ct_sim_run(ctx, sim, results);
 }
 
 bool ct_sim_run(struct ct_ctx *ctx, struct ct_sim *sim, const struct ct_sim_results *results)

@@ -119,13 +119,16 @@ static bool build(struct ct_system *s, const char *path, const struct ct_system_
                                           .with_outputs = true,
                                           .with_solution = true};
     // the start must not depend on the trees that the equations use
+    motion.more = o->columns == CT_COLUMNS_COORDINATES ? CT_MORE_COORDINATES
+                : o->columns == CT_COLUMNS_EFFORTS     ? CT_MORE_EFFORTS
+                                                       : CT_MORE_NONE;
     const struct ct_formulate_options start = {.tree = CT_TREE_JOINTS,
                                                .keep_all = o->keep_all,
                                                .measure_all = true,
                                                .measured_for = &s->equations,
                                                .without_dynamics = true};
-    const struct ct_formulate_options held
-        = {.tree = CT_TREE_JOINTS, .keep_all = o->keep_all, .held = true};
+    const struct ct_formulate_options held = {
+        .tree = CT_TREE_JOINTS, .keep_all = o->keep_all, .held = true, .like = &s->equations};
     struct ct_tree_report unused;
     return choose_tree(&s->own, o->tree, &motion)         // which branches, if any are given
         && read_model(s, path, o)                         // text -> component instances

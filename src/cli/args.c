@@ -8,12 +8,14 @@
 #include <string.h>
 
 const struct cli_command *const cli_commands[]
-    = {&cli_simulate, &cli_equations,  &cli_graph,   &cli_accuracy, &cli_check,
-       &cli_export,   &cli_components, &cli_methods, &cli_schema,   NULL};
+    = {&cli_simulate,   &cli_equations,   &cli_graph,   &cli_accuracy,
+       &cli_check,      &cli_equilibrium, &cli_modes,   &cli_linearize,
+       &cli_buckling,   &cli_kinematics,  &cli_inverse, &cli_export,
+       &cli_components, &cli_methods,     &cli_schema,  NULL};
 
 // ---- options --------------------------------------------------------------------------------------------
 
-enum kind { FLAG, TEXT, LIST, NUMBER, INTEGER };
+enum kind { FLAG, TEXT, LIST, NUMBER, INTEGER, COUNT_OF };
 
 static const struct option {
     const char *name;
@@ -41,14 +43,26 @@ static const struct option {
      "auto, or a name that 'cotree methods' lists"},
     {"step", 0, "H", NUMBER, FIELD(step), CLI_RUNS, true,
      "fixed step in seconds, without step control"},
-    {"until", 0, "T", NUMBER, FIELD(until), CLI_RUNS, true,
+    {"until", 0, "T", NUMBER, FIELD(until), CLI_TIMES, true,
      "end time in seconds; the spacing of samples is kept"},
-    {"samples", 0, "N", INTEGER, FIELD(samples), CLI_RUNS, true,
+    {"samples", 0, "N", INTEGER, FIELD(samples), CLI_TIMES, true,
      "number of samples, both ends included"},
     {"backend", 0, "CHOICE", TEXT, FIELD(backend), CLI_RUNS, true,
      "what evaluates the equations: auto, native or tape"},
-    {"summary", 0, "FILE.json", TEXT, FIELD(summary), CLI_SIMULATE | CLI_CHECK, true,
-     "what the run did, for programs"},
+    {"summary", 0, "FILE.json", TEXT, FIELD(summary), CLI_SIMULATE | CLI_CHECK | CLI_DRIVEN,
+     true, "what the run did, for programs"},
+    {"about", 0, "WHERE", TEXT, FIELD(about), CLI_ABOUT, false,
+     "initial, equilibrium, or a time in seconds"},
+    {"inputs", 0, "NAMES", TEXT, FIELD(inputs), CLI_LINEARIZE, false,
+     "J.effort, F.force.x, T.torque.z, parameters; a list"},
+    {"load", 0, "NAME", TEXT, FIELD(load), CLI_BUCKLING, false,
+     "a force, a torque, a joint with an effort, or gravity"},
+    {"curve", 0, "FILE.csv", TEXT, FIELD(curve), CLI_BUCKLING, false,
+     "the lowest frequencies against the load factor"},
+    {"count", 0, "N", COUNT_OF, FIELD(count), CLI_MODES | CLI_BUCKLING, false,
+     "number of rows, the lowest ones; 10"},
+    {"hold-drivers", 0, NULL, FLAG, FIELD(hold_drivers), CLI_STATIC, false,
+     "equilibrium: motions stand still, even steady ones"},
     {"verify", 0, NULL, FLAG, FIELD(verify), CLI_SIMULATE, false,
      "a second run; the difference tells the global error"},
     {"error", 0, "E", NUMBER, FIELD(error), CLI_ACCURACY, false,
@@ -57,6 +71,7 @@ static const struct option {
      "what to compare with, as simulate writes it"},
     {"plot", 0, "FILE.svg", TEXT, FIELD(plot), CLI_ACCURACY, false,
      "error against seconds, a line for each method"},
+    {"plot", 0, "FILE.svg", TEXT, FIELD(plot), CLI_MODES, false, "shapes of the first modes"},
     {"show", 0, "STAGES", TEXT, FIELD(show), CLI_EQUATIONS, false,
      "terminal,graph,tree,cutset,circuit,reduced;\n"
      "standard is tree,reduced"},
@@ -107,9 +122,9 @@ static bool parse_number(const char *text, double *v)
     return end != text && !*end && isfinite(*v) && *v > 0;
 }
 
-static bool parse_integer(const char *text, long *v)
+static bool parse_integer(const char *text, long least, long *v)
 {
-    const long least = 2, most = 1000000000; // both ends; what the model file allows
+    const long most = 1000000000; // what the model file allows
     char *end;
     errno = 0;
     *v = strtol(text, &end, 10);
@@ -135,11 +150,13 @@ static bool store(const struct cli_command *c, const struct option *o, const cha
             || (cli_complain(c, "--%s is '%s'; a number greater than 0 is wanted", o->name,
                              value),
                 false);
-    default:
-        return parse_integer(value, field)
-            || (cli_complain(c, "--%s is '%s'; an integer from 2 to 1000000000 is wanted",
-                             o->name, value),
+    default: {
+        const long least = o->kind == COUNT_OF ? 1 : 2; // samples: both ends
+        return parse_integer(value, least, field)
+            || (cli_complain(c, "--%s is '%s'; an integer from %ld to 1000000000 is wanted",
+                             o->name, value, least),
                 false);
+    }
     }
 }
 
@@ -208,7 +225,7 @@ static bool parse_short(struct parser *p, const char *text)
 
 static bool parse_command(struct parser *p, const char *name)
 {
-    const char *names[16];
+    const char *names[32];
     size_t n = 0;
     for (const struct cli_command *const *c = cli_commands; *c; c++) {
         if (strcmp((*c)->name, name) == 0) {

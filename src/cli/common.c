@@ -8,11 +8,18 @@
 
 struct ct_system *cli_load(struct ct_ctx *ctx, const struct cli_args *args)
 {
+    return cli_load_with(ctx, args, CT_COLUMNS_OF_MODEL);
+}
+
+struct ct_system *cli_load_with(struct ct_ctx *ctx, const struct cli_args *args,
+                                enum ct_columns_more columns)
+{
     return ct_system_load(ctx, args->model,
                           &(struct ct_system_options){.set = args->set,
                                                       .nset = args->nset,
                                                       .tree = args->tree,
-                                                      .keep_all = args->keep_all});
+                                                      .keep_all = args->keep_all,
+                                                      .columns = columns});
 }
 
 struct ct_sim_options cli_sim_options(const struct cli_args *args)
@@ -42,6 +49,21 @@ const char *cli_format(const struct cli_args *args, const char *const *formats,
         if (strcmp(dot + 1, suffixes[i]) == 0)
             return formats[i];
     return formats[0];
+}
+
+char *cli_standard_path(const char *model)
+{
+    const char *slash = strrchr(model, '/');
+    const char *base = slash ? slash + 1 : model;
+    const char *dot = strrchr(base, '.');
+    const size_t n = dot && dot > base ? (size_t)(dot - base) : strlen(base);
+    char *path = malloc(n + sizeof ".csv");
+    if (path) {
+        // NOLINTNEXTLINE(bugprone-not-null-terminated-result): the suffix ends it
+        memcpy(path, base, n);
+        memcpy(path + n, ".csv", sizeof ".csv");
+    }
+    return path;
 }
 
 // ---- files ---------------------------------------------------------------------------------------------

@@ -182,6 +182,17 @@ static void add_mass(struct ct_build *b, struct cut *c, const struct ct_element 
                r);
 }
 
+// Gauss points that integrate mu r x c: exact where sections are constant.
+static int points_of(const struct ct_build *b, const struct ct_flexible *f)
+{
+    unsigned kinds = ct_ex_kinds(b->x, f->beam->mass_per_length);
+    for (int k = 0; k < 3; k++)
+        kinds |= ct_ex_kinds(b->x, ct_flexible_rotary(f, k).value);
+    if (kinds & 1u << CT_SYM_LOCAL)
+        return CT_MAX_GAUSS;
+    return f->kinematics == CT_AXIAL_LINEAR ? 4 : 6; // r and c are of degree 3 or 5
+}
+
 // The element beyond xi = from. Lumped masses sit at its ends; that at the section's own place counts.
 static void add_element(struct ct_build *b, struct cut *c, int number, ct_ex from, ct_ex chain)
 {
@@ -200,10 +211,11 @@ static void add_element(struct ct_build *b, struct cut *c, int number, ct_ex fro
     const struct ct_profile mass = {beam->x, beam->mass_per_length};
     double at[CT_MAX_GAUSS];
     ct_ex m[CT_MAX_GAUSS], j[3][CT_MAX_GAUSS];
-    const int n = ct_shape_points(x, &mass, &part, rule, CT_MAX_GAUSS, at, m);
+    const int wanted = points_of(b, c->f);
+    const int n = ct_shape_points(x, &mass, &part, rule, wanted, at, m);
     for (int k = 0; k < 3; k++) {
         const struct ct_profile rotary = ct_flexible_rotary(c->f, k);
-        ct_shape_points(x, &rotary, &part, rule, CT_MAX_GAUSS, at, j[k]);
+        ct_shape_points(x, &rotary, &part, rule, wanted, at, j[k]);
     }
     for (int i = rule == CT_RULE_ENDS && !is_whole ? 1 : 0; i < n; i++) {
         const ct_ex xi = rule == CT_RULE_ENDS

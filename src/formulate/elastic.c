@@ -64,6 +64,13 @@ static struct ct_base base_motion(struct ct_build *b, const struct ct_flexible *
     return m;
 }
 
+struct ct_base ct_flexible_base(struct ct_build *b, const struct ct_flexible *f,
+                                enum ct_level level)
+{
+    const ct_ex3 a = ct_node_acceleration(b, f->base, level);
+    return base_motion(b, f, level, ct_ex3_sub(b->x, a, b->model->gravity));
+}
+
 // al~ + w~ w~
 ct_ex33 ct_base_turning(struct ct_build *b, const struct ct_base *m)
 {

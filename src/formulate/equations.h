@@ -86,6 +86,21 @@ struct ct_residual {
     size_t ndq, ndu, nda, ndv;
 };
 
+/// Results beside the outputs of the model.
+enum ct_more_outputs {
+    CT_MORE_NONE,
+    CT_MORE_COORDINATES, // if the model lists no outputs: coordinates, speeds, accelerations of all joints
+    CT_MORE_EFFORTS // efforts of motions, forces and torques of all joints
+};
+
+/// Validity indicator of a linear beam.
+struct ct_validity {
+    const char *beam;
+    struct ct_mark mark;
+    ct_ex eta;
+    double omega; // first bending frequency of the beam in its frame [rad/s]
+};
+
 struct ct_left_out {
     const char *what, *why;
 };
@@ -127,12 +142,15 @@ struct ct_equations {
     size_t ndriver, driver_cap;
     struct ct_result *result; // outputs, one per column
     size_t nresult, result_cap;
+    enum ct_more_outputs more; // among them
     ct_ex work_symbol;
     ct_ex power; // d(work)/dt, in terms of u' and lam where drivers push; 0 when nothing works
     ct_ex kinetic, potential, strain; // strain: of beams
     struct ct_residual *residual;     // NULL if not asked for
     bool is_planar;
     bool is_truncated; // to first order in coordinates that are small
+    struct ct_validity *validity;
+    size_t nvalidity, validity_cap;
     struct ct_left_out *left_out;
     size_t nleft_out, left_out_cap;
     struct ct_coordinate *coordinate; // of all joints and bodies (build.h)

@@ -18,6 +18,9 @@
 #include "formulate/dynamics.h"
 #include "formulate/shape.h"
 
+/// A linear beam is good enough below this indicator.
+#define CT_VALIDITY_LIMIT 0.01
+
 enum { CT_DOF = 12, CT_PLACE_DOF = 10 };
 enum ct_axial { CT_AXIAL_LINEAR, CT_AXIAL_LOCAL, CT_AXIAL_CHAIN };
 
@@ -65,6 +68,7 @@ struct ct_flexible {
     enum ct_axial
         kinematics; // of places and of the mass matrix: the same, but LINEAR where only forces foreshorten
     enum ct_beam_formulation formulation;
+    const char *why; // this formulation; NULL: as asked for
     struct ct_elastic *elastic;
     int nelastic;
     struct ct_freedom *freedom; // 6 (nelement + 1)

@@ -126,6 +126,20 @@ struct task {
     struct ct_integrate_stats *stats;
 };
 
+// f at stage j, put onto the constraints: how far it lies off them would be divided by a small pivot. The stage
+// itself stays the polynomial's.
+static enum ct_eval evaluate(const struct task *s, int j)
+{
+    struct work *w = s->w;
+    const double t = s->t + w->c[j] * s->h;
+    if (s->p->project) {
+        const enum ct_eval e = s->p->project(s->p->user, t, w->point);
+        if (e != CT_EVAL_OK)
+            return e;
+    }
+    return ct_stepper_rhs(s->p, t, w->point, w->k + j * s->p->ny, s->stats);
+}
+
 // Stage j with weights a; *moved grows to the norm by which it has moved.
 static enum ct_eval put_stage(const struct task *s, int j, const double *a, double *moved)
 {
@@ -139,7 +153,7 @@ static enum ct_eval put_stage(const struct task *s, int j, const double *a, doub
         stage[i] -= w->point[i];
     *moved = fmax(*moved, ct_stepper_norm(s->p, s->tolerance, s->y, w->point, stage));
     memcpy(stage, w->point, (size_t)n * sizeof *stage);
-    return ct_stepper_rhs(s->p, s->t + w->c[j] * s->h, stage, w->k + j * n, s->stats);
+    return evaluate(s, j);
 }
 
 // A first guess: sweeps over the left side, then extrapolation from stage to stage.
@@ -209,9 +223,13 @@ static enum ct_eval step(const struct ct_problem *p, double t, double h, const d
     memcpy(w->k, dy, bytes);
     for (int j = 0; j < STAGES; j++)
         memcpy(w->stage + j * n, y, bytes);
+    if (p->set_crossing)
+        p->set_crossing(p->user, true);
     enum ct_eval e = guess(&s);
     if (e == CT_EVAL_OK)
         e = sweep(&s);
+    if (p->set_crossing)
+        p->set_crossing(p->user, false);
     if (e != CT_EVAL_OK)
         return e;
     memcpy(y1, w->stage + (STAGES - 1) * n, bytes);

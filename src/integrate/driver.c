@@ -331,6 +331,7 @@ static void adapt_after_failed_crossing(struct run *r, double error)
 {
     const double power = -1.0 / (ct_crossing.error_order + 1);
     r->stats->rejected_steps++;
+    r->stats->inaccurate_steps += error > 1;
     r->reach = r->singular_in * (error > 1 ? fmax(nearer, safety * pow(error, power)) : nearer);
     r->failed_crossings = isinf(error) ? most_crossings : r->failed_crossings + 1;
 }

@@ -70,6 +70,9 @@ struct ct_problem {
     /// cross it in one step without evaluating close to it, see crossing.h. *reach (out): the time before
     /// and after it in which f is better not computed. May be NULL.
     double (*singular_in)(void *user, double *reach);
+    /// What is evaluated from now on belongs to the crossing of a singular position, none of it close by; or does not.
+    /// May be NULL.
+    void (*set_crossing)(void *user, bool is_crossing);
     /// How far y is from the constraints. May be NULL.
     double (*residual)(void *user, double t, const double *y);
 

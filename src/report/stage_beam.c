@@ -45,7 +45,9 @@ const char *ct_beam_sentence(struct ct_arena *a, const struct ct_flexible *f)
         a, "%d element%s, %d elastic coordinate%s; %s%s; %s%s; frame %s%s", beam->nelement,
         beam->nelement == 1 ? "" : "s", f->nelastic, f->nelastic == 1 ? "" : "s",
         *list ? "deforms by " : "keeps its shape", list, formulation_name(f->formulation),
-        beam->formulation == CT_BEAM_AUTO ? " (auto)" : "",
+        f->why                              ? ct_arena_printf(a, " (%s)", f->why)
+        : beam->formulation == CT_BEAM_AUTO ? " (auto)"
+                                            : "",
         beam->is_chord ? "chord" : "clamped",
         beam->theory == CT_BEAM_TIMOSHENKO ? "; timoshenko" : "");
 }
@@ -101,6 +103,25 @@ static ct_ex field(const struct ct_beam_element *e, const struct ct_shape *shape
     return sum;
 }
 
+// Strain energies of the element `one`, family by family.
+static void derive_energies(struct ct_build *b, struct ct_flexible *one,
+                            struct ct_beam_element *out)
+{
+    const struct ct_span span = one->element[0].span;
+    for (size_t i = 0; i < COUNT(families); i++) {
+        const int first = families[i].first, n = families[i].n;
+        struct ct_element own = {.span = span};
+        if (!(one->deformation & families[i].bit))
+            continue;
+        for (int j = first; j < first + n; j++)
+            own.value[j] = families[i].bit != CT_BEAM_AXIAL ? out->dof[j]
+                         : j == first                       ? CT_EX_ZERO
+                                                            : out->stretch;
+        one->element = &own;
+        out->energy[i] = ct_flexible_strain(b, one);
+    }
+}
+
 void ct_beam_element_derive(struct ct_build *b, const struct ct_flexible *f,
                             struct ct_beam_element *out)
 {
@@ -133,18 +154,7 @@ void ct_beam_element_derive(struct ct_build *b, const struct ct_flexible *f,
     if (!out->is_constant)
         return;
     out->shortening = shortening(b, &one, e.value);
-    for (size_t i = 0; i < COUNT(families); i++) {
-        const int first = families[i].first, n = families[i].n;
-        struct ct_element own = {.span = e.span};
-        if (!(f->deformation & families[i].bit))
-            continue;
-        for (int j = first; j < first + n; j++)
-            own.value[j] = families[i].bit != CT_BEAM_AXIAL ? out->dof[j]
-                         : j == first                       ? CT_EX_ZERO
-                                                            : out->stretch;
-        one.element = &own;
-        out->energy[i] = ct_flexible_strain(b, &one);
-    }
+    derive_energies(b, &one, out);
 }
 
 // ---- terminal equations ------------------------------------------------------------------------------------
@@ -182,7 +192,9 @@ static void put_body(struct ct_derivation *d, const struct ct_flexible *f)
     put(d, place(d), ct_arena_printf(d->a, "[x + u, %s, %s]", v, w),
         ct_arena_printf(d->a, "(x + u,\\; %s,\\; %s)", v, w),
         ct_arena_printf(d->a, "place of the section at x, axes of %s", frame));
-    const char *const motion[] = {of(d, "a", f), of(d, "al", f), of(d, "w", f)};
+    const char *const motion[]
+        = {ct_derivation_of(d, "a", frame), ct_derivation_of(d, "al", frame),
+           ct_derivation_of(d, "w", frame)};
     ct_page_equation(
         &d->page, NULL, latex ? "\\boldsymbol{c}" : "c",
         ct_arena_printf(
@@ -346,8 +358,11 @@ static void put_element(struct ct_derivation *d, const struct ct_flexible *f)
                   {"phi", "\\varphi", e.twist, CT_BEAM_TORSION}};
     ct_page_heading(&d->page, ct_arena_printf(d->a, "element of %s", f->name));
     ct_page_sentence(
-        &d->page, "xi = 0 ... 1 along its length h; dofs at its ends 1 and 2: u, v, w, alpha = "
-                  "dv/dx, beta = dw/dx, twist phi");
+        &d->page,
+        "xi = 0 ... 1 along its length h; dofs at its ends 1 and 2: u, v, w, %s, twist phi",
+        f->beam->theory == CT_BEAM_TIMOSHENKO
+            ? "alpha and beta (rotations of the sections, as dv/dx and dw/dx)"
+            : "alpha = dv/dx, beta = dw/dx");
     ct_page_equations(&d->page);
     ct_page_equation(&d->page, NULL, "u", axial_text(d, f, ct_derivation_text(d, e.axial)),
                      NULL);

@@ -229,6 +229,10 @@ static void compile_rest(struct ct_arena *a, struct ct_machine *m, const struct 
     compile(a, m, in, momentum.e, momentum.n, &m->momentum);
     compile(a, m, in, driver.e, driver.n, &m->driver);
     compile(a, m, in, wanted.e, wanted.n, &m->wanted);
+    struct list validity = {.a = a};
+    for (size_t i = 0; i < e->nvalidity; i++)
+        push(&validity, e->validity[i].eta);
+    compile(a, m, in, validity.e, validity.n, &m->validity);
     compile(a, m, in, energies, 2, &m->energy);
     compile(a, m, in, &e->power, ct_ex_is_zero(e->power) ? 0 : 1, &m->power);
 }
@@ -327,7 +331,7 @@ void ct_machine_prepare(struct ct_machine *m)
     struct ct_program *const all[]
         = {&m->solved, &m->motion,   &m->constraint, &m->result,   &m->power,
            &m->energy, &m->root,     &m->memory,     &m->momentum, &m->driver,
-           &m->wanted, &m->residual, &m->tangent};
+           &m->wanted, &m->residual, &m->tangent,    &m->validity};
     for (size_t i = 0; i < COUNT(all); i++)
         prepare(all[i], m->input);
     for (struct ct_program *p = m->apart; p; p = p->next)

@@ -1,5 +1,6 @@
 // See simulate.h.
 #include "solve/simulate.h"
+#include "formulate/flexible.h"
 #include "integrate/stiffness.h"
 #include "solve/dae.h"
 #include "expr/print.h"
@@ -16,7 +17,7 @@ struct ct_run {
     struct ct_machine *m;
     struct ct_embed *s;
     size_t ny;
-    double *y, *dy, *stage, *scratch, *value;
+    double *y, *dy, *stage, *scratch, *value, *next;
     double *sign;  // of each state mode's root function at the last event
     double *event; // times
     size_t nevent;
@@ -40,6 +41,7 @@ struct ct_run {
     bool is_suspect;                 // steps ended to think of another method
     double t_before, last_event;     // times
     size_t ngiven;                   // samples
+    double t_sample;                 // the last one
 };
 
 // ---- time ------------------------------------------------------------------------------------------------
@@ -80,19 +82,10 @@ static void multipliers(struct ct_run *r)
     memcpy(r->m->input + r->m->at_lam, r->s->lam, r->m->nrow * sizeof *r->s->lam);
 }
 
-// Stages of a step lie off the manifold by more than its steps do. Beside a singular position that
-// little is divided by a small pivot, so there the stage is put onto the manifold first.
 static enum ct_eval rhs(void *user, double time, const double *y, double *dy)
 {
     struct ct_run *r = user;
     const double t = before_event(r, time);
-    if (r->s->is_delicate) {
-        memcpy(r->stage, y, r->ny * sizeof *y);
-        const enum ct_eval p = ct_embed_project(r->s, t, r->stage);
-        if (p != CT_EVAL_OK)
-            return p;
-        y = r->stage;
-    }
     const enum ct_eval e = accelerate(r, t, y);
     if (e != CT_EVAL_OK)
         return e;
@@ -129,7 +122,8 @@ static double pivot_after(struct ct_run *r, double t, const double *y, const dou
 }
 
 // A position counts as singular ahead when the smallest pivot has fallen to the first part of its largest value so far
-// and goes on falling; where it has fallen to the second part stages are projected, at the third f is better not computed.
+// and goes on falling; where it has fallen to the second part pivots are sought at every evaluation, at the third f is
+// better not computed.
 static const double foreseen_pivot = 0.7, near_pivot = 0.5, singular_pivot = 0.25;
 
 // The smallest pivot falls about linearly towards a singular position. Time to where it will vanish, by secants along
@@ -185,6 +179,14 @@ static double singular_in(void *user, double *reach)
     const struct ct_run *r = user;
     *reach = r->singular_reach;
     return r->singular_in;
+}
+
+// The stages of a crossing keep away from the position and are put onto the constraints: an order of pivots that holds
+// where it begins holds for all of them.
+static void set_crossing(void *user, bool is_crossing)
+{
+    struct ct_run *r = user;
+    r->s->is_delicate = !is_crossing && r->last_part < near_pivot;
 }
 
 static double residual(void *user, double t, const double *y)
@@ -468,6 +470,24 @@ static void keep_ledger(struct ct_run *r, const double *y)
         = fmax(r->report->velocity_constraint, largest(r->m->v, r->m->nrow));
 }
 
+// Indicators of linear beams, averaged over a period of the beam: what rings faster than it can follow does not count.
+static void watch_validity(struct ct_run *r, double t)
+{
+    if (!r->e->nvalidity)
+        return;
+    ct_program_run(&r->m->validity, r->m->input);
+    for (size_t i = 0; i < r->e->nvalidity; i++) {
+        struct ct_validity_report *v = &r->report->validity[i];
+        const double period = 6.283185307179586 / r->e->validity[i].omega;
+        const double share = r->ngiven ? -expm1(-(t - r->t_sample) / period) : 1;
+        v->mean += share * (r->m->validity.out[i] - v->mean);
+        v->largest = fmax(v->largest, fabs(v->mean));
+        if (v->largest > CT_VALIDITY_LIMIT && v->left_at < 0)
+            v->left_at = t;
+    }
+    r->t_sample = t;
+}
+
 static bool give_row(struct ct_run *r, double t, const double *y)
 {
     for (size_t i = 0; i < r->e->nresult; i++)
@@ -476,6 +496,7 @@ static bool give_row(struct ct_run *r, double t, const double *y)
                             "the output '%s' has no finite value at t = %.9g",
                             r->e->result[i].name, t);
     keep_ledger(r, y);
+    watch_validity(r, t);
     r->ngiven++;
     memcpy(r->report->final, r->value, r->e->nresult * sizeof *r->value);
     return !r->o->row || r->o->row(r->o->user, t, r->value, r->e->nresult);
@@ -523,7 +544,7 @@ static bool at_singular_sample(void *user, double t, const double *y, const stru
 // After an event, and next to a singular position, steps had better go on.
 static bool is_to_be_reconsidered(struct ct_run *r, double t, const double *y)
 {
-    const bool may_stop = t > r->last_event && isinf(r->singular_in);
+    const bool may_stop = t > r->last_event && !(r->singular_in < INFINITY);
     if (r->method->is_implicit)
         return ct_trial_has_lost(&r->implicit, t, r->explicit_pace) && may_stop;
     return ct_stiffness_watch(r->stiffness, t, y, r->o->duration) && may_stop;
@@ -578,6 +599,176 @@ void ct_run_find_open(struct ct_run *r, double t, const double *y, bool *row, bo
     }
 }
 
+static double sample_time(const struct ct_run_options *o, size_t i)
+{
+    if (o->nsample == 1)
+        return 0;
+    return i + 1 == o->nsample ? o->duration
+                               : o->duration * (double)i / (double)(o->nsample - 1);
+}
+
+// ---- driven all through ----------------------------------------------------------------------------------------
+
+static bool check_driven(struct ct_run *r)
+{
+    if (r->s->rank == (int)r->m->nu)
+        return true;
+    const struct ct_u *u = &r->e->u[r->s->independent[0]];
+    const struct ct_mark mark = u->joint >= 0 ? r->model->joint[u->joint].mark
+                              : u->body >= 0  ? r->model->body[u->body].instance.mark
+                                              : (struct ct_mark){.file = r->model->file};
+    return ct_error(r->ctx, mark, CT_E_NOT_DRIVEN,
+                    "not all freedoms are driven: %d left, such as '%s'; give each a 'motion'",
+                    (int)r->m->nu - r->s->rank, u->q >= 0 ? r->e->q[u->q].name : u->name);
+}
+
+// From y at t to t1 in one go: along the motion to second order, then onto the rows. False if that leads too far.
+static bool follow_step(struct ct_run *r, double t, double t1, const double *y, double *out)
+{
+    const double longest = 0.3; // [rad or m]: more could lead to another assembly
+    const double part = 0.25;   // of the step: what the rows may correct
+    const size_t nq = r->m->nq, nu = r->m->nu;
+    const double h = t1 - t;
+    double most = 0, worst = 0, *d = r->scratch;
+    memcpy(out, y, r->ny * sizeof *y);
+    if (!nu)
+        return true;
+    if (accelerate(r, before_event(r, t), y) != CT_EVAL_OK)
+        return false;
+    for (size_t k = 0; k < nu; k++) {
+        d[k] = h * (y[nq + k] + h / 2 * r->s->a[k]);
+        out[nq + k] += h * r->s->a[k];
+        most = fmax(most, fabs(d[k]));
+    }
+    if (!(most <= longest))
+        return false;
+    ct_machine_retract(r->m, out, d);
+    memcpy(r->stage, out, nq * sizeof *out);
+    if (ct_embed_project(r->s, before_event(r, t1), out) != CT_EVAL_OK)
+        return false;
+    for (size_t i = 0; i < nq; i++)
+        worst = fmax(worst, fabs(out[i] - r->stage[i]));
+    return worst <= part * most + 1e-9;
+}
+
+static bool follow_to(struct ct_run *r, double t, double t1, double *y)
+{
+    const double least = 1e-9; // of the way: it does not go on
+    double h = t1 - t, *next = r->next;
+    while (t < t1) {
+        const double end = h >= t1 - t ? t1 : t + h;
+        if (!follow_step(r, t, end, y, next)) {
+            h = (end - t) / 2;
+            if (h > least * (t1 - t) && t + h > t)
+                continue;
+            return ct_error(
+                r->ctx, (struct ct_mark){.file = r->model->file}, CT_E_SAMPLE_REFUSED,
+                "the mechanism cannot follow its motions beyond t = %.9g: it locks, "
+                "or passes a singular position",
+                t);
+        }
+        memcpy(y, next, r->ny * sizeof *y);
+        ct_machine_set(r->m, before_event(r, end), y);
+        ct_memory_follow(r->m);
+        h = 2 * (end - t);
+        t = end;
+    }
+    return true;
+}
+
+// Work over an interval without events: Gauss's formula with three nodes.
+static bool follow_and_work(struct ct_run *r, double t, double t1, double *y)
+{
+    static const double node[] = {0.1127016653792583, 0.5, 0.8872983346207417},
+                        weight[] = {5. / 18, 8. / 18, 5. / 18};
+    double work = 0, now = t;
+    for (int i = 0; i < 3 && r->has_power; i++) {
+        const double at = t + node[i] * (t1 - t);
+        if (!follow_to(r, now, at, y))
+            return false;
+        now = at;
+        if (accelerate(r, before_event(r, at), y) != CT_EVAL_OK)
+            return ct_error(r->ctx, (struct ct_mark){.file = r->model->file}, CT_E_SINGULAR,
+                            "the equations are singular at t = %.9g", at);
+        multipliers(r);
+        ct_program_run(&r->m->power, r->m->input);
+        work += weight[i] * (t1 - t) * r->m->power.out[0];
+    }
+    if (!follow_to(r, now, t1, y))
+        return false;
+    y[r->ny - 1] += work;
+    return true;
+}
+
+// Sides after an event; the motions must not jump there. Their rates may: an impulse, whose work is booked.
+static bool pass_event(struct ct_run *r, double t, double *y)
+{
+    struct ct_machine *m = r->m;
+    double *before = r->scratch + m->nu;
+    ct_machine_set(m, before_event(r, t), y);
+    ct_program_run(&m->driver, m->input);
+    memcpy(before, m->driver.out, m->driver.nout * sizeof *before);
+    const double kinetic = kinetic_energy(r, before_event(r, t), y);
+    r->pending = next_time_event(r, t);
+    ct_modes_start(m, t, y, NULL);
+    ct_machine_set(m, t, y);
+    ct_program_run(&m->driver, m->input);
+    for (size_t i = 0; i < r->e->ndriver; i++) {
+        const double jump = m->driver.out[2 * i] - before[2 * i];
+        if (fabs(jump) > jump_tolerance * fmax(1, fabs(before[2 * i])))
+            return report_jump(r, r->e->driver[i].name, r->e->driver[i].mark, jump, t);
+    }
+    ct_machine_constraint(m);
+    if (!chords_are_closed(r, t))
+        return false;
+    if (ct_embed_project(r->s, t, y) != CT_EVAL_OK)
+        return ct_error(r->ctx, (struct ct_mark){.file = r->model->file}, CT_E_SAMPLE_REFUSED,
+                        "the mechanism cannot follow its motions at t = %.9g", t);
+    y[r->ny - 1] += kinetic_energy(r, t, y) - kinetic;
+    return true;
+}
+
+bool ct_run_follow(struct ct_run *r, const struct ct_run_options *o,
+                   struct ct_run_report *report)
+{
+    *report = (struct ct_run_report){.y = r->y,
+                                     .rank = r->s->rank,
+                                     .method = o->method,
+                                     .changed_at = NAN,
+                                     .returned_at = NAN};
+    report->final = CT_NEWN(r->arena, double, r->e->nresult + 1);
+    r->o = o;
+    r->report = report;
+    r->next = CT_NEWN(r->arena, double, r->ny);
+    r->nevent = ct_time_events(r->arena, r->m, 0, o->duration, &r->event);
+    r->pending = next_time_event(r, 0);
+    ct_modes_start(r->m, 0, r->y, NULL);
+    if (!check_driven(r))
+        return false;
+    double t = 0;
+    for (size_t i = 0; i < o->nsample; i++) {
+        const double end = sample_time(o, i);
+        while (r->pending <= end) {
+            const double event = r->pending;
+            if (!follow_and_work(r, t, event, r->y) || !pass_event(r, event, r->y))
+                return false;
+            t = event;
+        }
+        if (!follow_and_work(r, t, end, r->y))
+            return false;
+        t = end;
+        ct_modes_start(r->m, t, r->y, NULL);
+        if (!at_sample(r, t, r->y) || !at_step(r, t, r->y))
+            return false;
+    }
+    report->switches = r->s->switches;
+    report->factorizations = r->s->factorizations;
+    report->stats.evaluations = r->m->evaluations;
+    if (r->energy_scale > 0)
+        report->energy_drift /= r->energy_scale;
+    return true;
+}
+
 // ---- the choice of the method ---------------------------------------------------------------------------------
 
 static bool at_trial_step(void *user, double t, const double *y)
@@ -598,7 +789,7 @@ static double operations_of_accelerations(const struct ct_run *r)
     if (r->m->solved.nout)
         return operations(&r->m->solved);
     if (r->s->has_form)
-        return operations(&r->s->form[0]->solved);
+        return r->s->form[0]->operations;
     return operations(&r->m->motion) + ct_embed_operations(r->s);
 }
 
@@ -741,15 +932,15 @@ bool ct_run_simulate(struct ct_run *r, const struct ct_run_options *o,
     double *sample = CT_NEWN(r->arena, double, n + 1);
     bool *watched = CT_NEWN(r->arena, bool, r->ny);
     for (size_t i = 0; i < n; i++)
-        sample[i]
-            = n == 1 || i + 1 == n ? o->duration : o->duration * (double)i / (double)(n - 1);
-    if (n == 1)
-        sample[0] = 0;
+        sample[i] = sample_time(o, i);
     for (size_t i = 0; i < r->ny; i++)
         watched[i] = i + 1 < r->ny || r->has_power; // the work is as good as the states
     *report
         = (struct ct_run_report){.method = o->method, .changed_at = NAN, .returned_at = NAN};
     report->final = CT_NEWN(r->arena, double, r->e->nresult + 1);
+    report->validity = CT_NEWN(r->arena, struct ct_validity_report, r->e->nvalidity + 1);
+    for (size_t i = 0; i < r->e->nvalidity; i++)
+        report->validity[i].left_at = -1;
     r->singular_in = INFINITY;
     r->o = o;
     r->method = o->method;
@@ -768,6 +959,7 @@ bool ct_run_simulate(struct ct_run *r, const struct ct_run_options *o,
                            .project = project,
                            .accepted = accepted,
                            .singular_in = singular_in,
+                           .set_crossing = set_crossing,
                            .residual = residual,
                            .nroot = r->nroot,
                            .root = root,

@@ -28,6 +28,11 @@ struct ct_run_report {
     /// did not, returned_at if it was not last left as not faster any more.
     double changed_at, fast, slow, gain, returned_at;
     struct ct_integrate_stats stats;
+    struct ct_validity_report {
+        double mean,
+            largest; // of the indicator: over the last period of the beam, and its largest size so far
+        double left_at;  // when that passed the limit; negative: never
+    } * validity;        // by indicator of the equations
     double energy_drift; // largest |total - total(0)| / scale of the energies
     double position_constraint, velocity_constraint; // largest residuals at samples
     int rank;
@@ -52,6 +57,12 @@ enum ct_eval ct_run_results(struct ct_run *r, double t, const double *y, double 
 /// What redundant constraints leave open at t, y: row[i] becomes true if the multiplier of row i is not unique,
 /// result[i] if the result changes with such multipliers. What is true already stays.
 void ct_run_find_open(struct ct_run *r, double t, const double *y, bool *row, bool *result);
+
+/// Follow the motions of a run that has no freedom left, sample by sample: places by Newton's method, speeds and
+/// accelerations from the rows. Nothing is integrated but the work.
+/// Errors: CT_E_NOT_DRIVEN, CT_E_DRIVER_JUMP, CT_E_SAMPLE_REFUSED, CT_E_SINGULAR.
+bool ct_run_follow(struct ct_run *r, const struct ct_run_options *o,
+                   struct ct_run_report *report);
 
 /// Integrate over the duration.
 bool ct_run_simulate(struct ct_run *r, const struct ct_run_options *o,

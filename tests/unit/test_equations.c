@@ -162,25 +162,18 @@ static void check_all(struct fixture *f, const char *system)
         check_equal(f, system, "rate", i, f->r.rate[i], e->q[i].rate, 1);
 }
 
-static const char *const systems[] = {"andrews",
-                                      "bricard",
-                                      "cart_pole",
-                                      "chain40",
-                                      "double_pendulum",
-                                      "four_bar",
-                                      "gimbal_top",
-                                      "governor",
-                                      "heavy_top",
-                                      "light_cart",
-                                      "n_four_bar",
-                                      "pendulum",
-                                      "puma560",
-                                      "puma560_driven",
-                                      "slider_crank",
-                                      "spatial_four_bar",
-                                      "spatial_slider_crank",
-                                      "stewart",
-                                      "stiff_spring_pendulum",
+static const char *const systems[] = {"andrews",          "bricard",
+                                      "cart_pole",        "chain40",
+                                      "double_pendulum",  "flexible_manipulator",
+                                      "four_bar",         "gimbal_top",
+                                      "governor",         "heavy_top",
+                                      "light_cart",       "n_four_bar",
+                                      "pendulum",         "pendulum_beam_tip_mass",
+                                      "puma560",          "puma560_driven",
+                                      "slider_crank",     "slider_crank_flexible",
+                                      "spatial_four_bar", "spatial_slider_crank",
+                                      "stewart",          "stiff_spring_pendulum",
+                                      "spin_up_beam",     "tapered_cantilever",
                                       "tumbling_body"};
 
 static void what_is_printed_equals_the_engine(void **state)
@@ -247,8 +240,8 @@ static void check_reads_back(struct fixture *f, ct_ex e)
 static void text_for_programs_reads_back(void **state)
 {
     (void)state;
-    static const char *const small[]
-        = {"pendulum", "cart_pole", "double_pendulum", "slider_crank", "four_bar"};
+    static const char *const small[] = {"pendulum",     "cart_pole", "double_pendulum",
+                                        "slider_crank", "four_bar",  "pendulum_beam_tip_mass"};
     for (size_t i = 0; i < COUNT(small); i++) {
         struct fixture f;
         reduce(&f, small[i]);
@@ -456,8 +449,8 @@ static void all_formats_print_all_systems(void **state)
 static void small_systems_fit_a_screen(void **state)
 {
     (void)state;
-    static const char *const small[]
-        = {"pendulum", "cart_pole", "double_pendulum", "slider_crank", "four_bar"};
+    static const char *const small[] = {"pendulum",     "cart_pole", "double_pendulum",
+                                        "slider_crank", "four_bar",  "pendulum_beam_tip_mass"};
     for (size_t i = 0; i < COUNT(small); i++) {
         char *text = print(small[i], CT_STAGE_REDUCED, CT_FORMAT_TEXT);
         int lines = 0;

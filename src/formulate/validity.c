@@ -1,0 +1,361 @@
+// See validity.h.
+#include "formulate/validity.h"
+#include "expr/quadrature.h"
+#include "formulate/elastic.h"
+#include "numeric/dense.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { POINTS = 8, MOST_ITERATIONS = 200, INSTANTS = 400 };
+static const double arrived = 1e-12; // relative change of the first frequency
+
+// ---- numbers along the beam -----------------------------------------------------------------------------
+
+struct line {
+    struct ct_build *b;
+    const struct ct_flexible *f;
+    int plane;     // 0: along y, 1: along z
+    int n;         // freedoms of this plane
+    int *number;   // by freedom, -1: fixed or of another kind
+    double *K, *M; // n x n
+    double *Kg[2]; // with P1, P2
+    double xi[POINTS], weight[POINTS];
+};
+
+static double number(const struct line *s, ct_ex e)
+{
+    return ct_ex_value(s->b->x, e, s->b->value);
+}
+
+static double profile(const struct line *s, ct_ex g, int e, double xi)
+{
+    const struct ct_profile p = {s->f->beam->x, g};
+    return number(s, ct_profile_at(s->b->x, &p, &s->f->element[e].span, xi));
+}
+
+static double shape(const struct line *s, const struct ct_shape *p, double xi, double h)
+{
+    return number(s,
+                  ct_shape_at(s->b->x, p, ct_ex_const(s->b->x, xi), ct_ex_const(s->b->x, h)));
+}
+
+// Mass of a body that a weld holds to a point of the beam, and where; 0 for other joints.
+static double welded(const struct ct_build *b, const struct ct_flexible *f,
+                     const struct ct_instance *joint, double *x)
+{
+    const struct ct_model *m = b->model;
+    if (joint->from < 0 || strcmp(joint->cls->name, "weld") != 0)
+        return 0;
+    const struct ct_frame *ends[2] = {&m->frame[joint->from], &m->frame[joint->to]};
+    for (int k = 0; k < 2; k++)
+        if (ends[k]->body == f->body && !m->body[ends[1 - k]->body].beam) {
+            *x = ct_ex_value(b->x, ends[k]->at.e[0], b->value);
+            return ct_ex_value(b->x, m->body[ends[1 - k]->body].mass, b->value);
+        }
+    return 0;
+}
+
+// int_x^L of m and of m x from a place xi of element e, welded masses included.
+static void mass_beyond(const struct line *s, int e, double xi, double P[2])
+{
+    const struct ct_model *m = s->b->model;
+    const struct ct_flexible *f = s->f;
+    const double here
+        = number(s, f->element[e].span.start) + xi * number(s, f->element[e].span.length);
+    P[0] = P[1] = 0;
+    for (int i = e; i < f->beam->nelement; i++) {
+        const double start = number(s, f->element[i].span.start),
+                     h = number(s, f->element[i].span.length), from = i == e ? xi : 0;
+        for (int k = 0; k < POINTS; k++) {
+            const double at = from + (1 - from) * s->xi[k];
+            const double dm
+                = s->weight[k] * (1 - from) * h * profile(s, f->beam->mass_per_length, i, at);
+            P[0] += dm * (start + at * h);
+            P[1] += dm;
+        }
+    }
+    for (size_t j = 0; j < m->njoint; j++) {
+        double x;
+        const double mass = welded(s->b, f, &m->joint[j], &x);
+        if (mass > 0 && x > here) {
+            P[0] += mass * x;
+            P[1] += mass;
+        }
+    }
+}
+
+// ---- matrices of a plane -----------------------------------------------------------------------------------
+
+static void add(struct line *s, double *A, int e, int j, int k, double v)
+{
+    const int first = s->plane ? 6 : 2;
+    const int p = s->f->element[e].freedom[first + j], q = s->f->element[e].freedom[first + k];
+    if (p < 0 || q < 0)
+        return;
+    const bool opposed = s->plane && (j % 2) != (k % 2); // dw/dx = -ry
+    A[s->number[p] + s->n * s->number[q]] += opposed ? -v : v;
+}
+
+static void add_element(struct line *s, int e)
+{
+    const struct ct_beam *beam = s->f->beam;
+    const double h = number(s, s->f->element[e].span.length);
+    const ct_ex EI = ct_ex_mul(s->b->x, beam->E, s->plane ? beam->Iy : beam->Iz);
+    const bool shears = beam->theory == CT_BEAM_TIMOSHENKO;
+    const ct_ex GA
+        = ct_ex_mul(s->b->x, beam->shear_factor, ct_ex_mul(s->b->x, beam->G, beam->area));
+    for (int i = 0; i < POINTS; i++) {
+        const double xi = s->xi[i], w = s->weight[i] * h;
+        double place[4], slope[4], turn[4], bend[4], P[2];
+        for (int j = 0; j < 4; j++) {
+            const struct ct_shape d = ct_shape_slope(&s->f->shape.rotation[j]);
+            place[j] = shape(s, &s->f->shape.place[j], xi, h);
+            slope[j] = shape(s, &s->f->shape.slope[j], xi, h);
+            turn[j] = shape(s, &s->f->shape.rotation[j], xi, h);
+            bend[j] = shape(s, &d, xi, h);
+        }
+        const double stiffness = profile(s, EI, e, xi),
+                     shear = shears ? profile(s, GA, e, xi) : 0,
+                     m = profile(s, beam->mass_per_length, e, xi);
+        mass_beyond(s, e, xi, P);
+        for (int j = 0; j < 4; j++)
+            for (int k = 0; k < 4; k++) {
+                add(s, s->K, e, j, k,
+                    w
+                        * (stiffness * bend[j] * bend[k]
+                           + shear * (slope[j] - turn[j]) * (slope[k] - turn[k])));
+                add(s, s->M, e, j, k, w * m * place[j] * place[k]);
+                add(s, s->Kg[0], e, j, k, w * P[0] * slope[j] * slope[k]);
+                add(s, s->Kg[1], e, j, k, w * P[1] * slope[j] * slope[k]);
+            }
+    }
+}
+
+// Welded masses move with the shape at their point.
+static void add_welded(struct line *s)
+{
+    const struct ct_model *m = s->b->model;
+    for (size_t i = 0; i < m->njoint; i++) {
+        double x, h = 1;
+        const double mass = welded(s->b, s->f, &m->joint[i], &x);
+        int e = 0;
+        if (!(mass > 0))
+            continue;
+        while (e + 1 < s->f->beam->nelement && x > number(s, s->f->beam->end[e]))
+            e++;
+        h = number(s, s->f->element[e].span.length);
+        const double xi = (x - number(s, s->f->element[e].span.start)) / h;
+        for (int j = 0; j < 4; j++)
+            for (int k = 0; k < 4; k++)
+                add(s, s->M, e, j, k,
+                    mass * shape(s, &s->f->shape.place[j], xi, h)
+                        * shape(s, &s->f->shape.place[k], xi, h));
+    }
+}
+
+static void number_freedoms(struct line *s)
+{
+    const int nfreedom = 6 * (s->f->beam->nelement + 1), first = s->plane ? 6 : 2;
+    s->number = CT_NEWN(s->b->ctx->scratch, int, nfreedom);
+    for (int i = 0; i < nfreedom; i++)
+        s->number[i] = -1;
+    for (int e = 0; e < s->f->beam->nelement; e++)
+        for (int j = 0; j < 4; j++) {
+            const int i = s->f->element[e].freedom[first + j];
+            if (i >= 0 && s->number[i] < 0)
+                s->number[i] = s->n++;
+        }
+}
+
+// ---- first bending shape --------------------------------------------------------------------------------------
+
+static double form(const double *A, const double *v, int n)
+{
+    double sum = 0;
+    for (int j = 0; j < n; j++)
+        for (int i = 0; i < n; i++)
+            sum += v[i] * A[i + n * j] * v[j];
+    return sum;
+}
+
+// Inverse iteration: K v = M v; returns omega^2, 0 if it does not settle.
+static double first_shape(struct line *s, double *v)
+{
+    const int n = s->n;
+    struct ct_arena *a = s->b->ctx->scratch;
+    double *L = CT_NEWN(a, double, n *n), *w = CT_NEWN(a, double, n), last = 0;
+    memcpy(L, s->K, (size_t)(n * n) * sizeof *L);
+    if (!ct_cholesky(L, n, n))
+        return 0;
+    for (int i = 0; i < n; i++)
+        v[i] = 1;
+    for (int k = 0; k < MOST_ITERATIONS; k++) {
+        memset(w, 0, (size_t)n * sizeof *w);
+        for (int j = 0; j < n; j++)
+            for (int i = 0; i < n; i++)
+                w[i] += s->M[i + n * j] * v[j];
+        ct_cholesky_solve(w, L, n, n, 1, n);
+        const double size = sqrt(form(s->M, w, n));
+        if (!(size > 0))
+            return 0;
+        for (int i = 0; i < n; i++)
+            v[i] = w[i] / size;
+        const double omega2 = form(s->K, v, n);
+        if (fabs(omega2 - last) <= arrived * omega2)
+            return omega2;
+        last = omega2;
+    }
+    return 0;
+}
+
+// ka, kb of one plane; false where it does not bend.
+static bool coefficients(struct ct_build *b, const struct ct_flexible *f, int plane,
+                         double k[2], double *omega)
+{
+    struct line s = {.b = b, .f = f, .plane = plane};
+    struct ct_arena *a = b->ctx->scratch;
+    ct_gauss(POINTS, s.xi, s.weight);
+    number_freedoms(&s);
+    if (!s.n)
+        return false;
+    double *const v = CT_NEWN(a, double, s.n);
+    s.K = CT_NEWN(a, double, s.n *s.n);
+    s.M = CT_NEWN(a, double, s.n *s.n);
+    for (int i = 0; i < 2; i++)
+        s.Kg[i] = CT_NEWN(a, double, s.n *s.n);
+    for (int e = 0; e < f->beam->nelement; e++)
+        add_element(&s, e);
+    add_welded(&s);
+    const double omega2 = first_shape(&s, v), elastic = form(s.K, v, s.n);
+    if (!(omega2 > 0))
+        return false;
+    *omega = sqrt(omega2);
+    for (int i = 0; i < 2; i++)
+        k[i] = form(s.Kg[i], v, s.n) / elastic;
+    return true;
+}
+
+bool ct_validity_derive(struct ct_build *b, const struct ct_flexible *f,
+                        struct ct_validity *out)
+{
+    struct ct_exs *x = b->x;
+    double k[2][2], omega[2];
+    int best = -1;
+    for (int plane = 0; plane < 2; plane++)
+        if (coefficients(b, f, plane, k[plane], &omega[plane])
+            && (best < 0 || k[plane][0] > k[best][0]))
+            best = plane;
+    if (best < 0)
+        return false;
+    const struct ct_base m = ct_flexible_base(b, f, CT_FULL);
+    const ct_ex turning
+        = ct_ex_add(x, ct_ex_mul(x, m.w.e[1], m.w.e[1]), ct_ex_mul(x, m.w.e[2], m.w.e[2]));
+    *out = (struct ct_validity){.beam = f->name, .omega = omega[best]};
+    out->mark = f->beam->formulation_mark.line ? f->beam->formulation_mark
+                                               : b->model->body[f->body].instance.mark;
+    out->eta = ct_ex_sub(x, ct_ex_scale(x, k[best][0], turning),
+                         ct_ex_scale(x, k[best][1], m.a.e[0]));
+    return true;
+}
+
+// ---- choice -----------------------------------------------------------------------------------------------------
+
+// Does anything but a welded body hang on the beam beyond its base, or push it there?
+static bool carries(const struct ct_build *b, const struct ct_flexible *f)
+{
+    const struct ct_model *m = b->model;
+    const int own = f->beam->is_chord ? -1 : m->body[f->body].frame;
+    for (size_t i = 0; i < m->njoint; i++) {
+        const struct ct_instance *j = &m->joint[i];
+        double x;
+        const bool touches = j->from >= 0
+                          && ((m->frame[j->from].body == f->body && j->from != own)
+                              || (m->frame[j->to].body == f->body && j->to != own));
+        if (touches && !(welded(b, f, j, &x) > 0))
+            return true;
+    }
+    for (size_t i = 0; i < m->nforce; i++) {
+        const struct ct_instance *j = &m->force[i];
+        if ((j->from >= 0 && m->frame[j->from].body == f->body && j->from != own)
+            || (m->frame[j->to].body == f->body && j->to != own))
+            return true;
+    }
+    return false;
+}
+
+// Modes that depend on time alone, at the time in value.
+static bool set_modes(struct ct_build *b, double *value)
+{
+    for (size_t i = 0; i < b->eqs->nmode; i++) {
+        const struct ct_mode *m = &b->eqs->mode[i];
+        if (!m->is_time)
+            return false;
+        value[ct_ex_node(b->x, m->symbol)->a]
+            = ct_op_apply(m->op, ct_ex_value(b->x, m->g, value), 0, 0);
+    }
+    return true;
+}
+
+// Largest |eta| from 0 to the end of the run; NaN where it is no function of time alone.
+static double largest_over_run(struct ct_build *b, ct_ex eta)
+{
+    const unsigned known = 1u << CT_SYM_TIME | 1u << CT_SYM_PARAM | 1u << CT_SYM_MODE;
+    double most = 0, *value = CT_NEWN(b->ctx->scratch, double, b->x->nsym + 1);
+    if (ct_ex_kinds(b->x, eta) & ~known)
+        return NAN;
+    memcpy(value, b->value, b->model->x->nsym * sizeof *value);
+    const uint32_t t = ct_ex_node(b->x, b->model->time)->a;
+    for (int i = 0; i <= INSTANTS; i++) {
+        value[t] = b->model->simulation.duration * i / INSTANTS;
+        if (!set_modes(b, value))
+            return NAN;
+        const double v = fabs(ct_ex_value(b->x, eta, value));
+        most = v > most || isnan(v) ? v : most;
+    }
+    return most;
+}
+
+static bool stays_linear(struct ct_build *b, struct ct_flexible *f)
+{
+    struct ct_validity v;
+    if (carries(b, f)) {
+        f->why = "automatic: joints or loads beyond its base can stretch or press it";
+        return false;
+    }
+    if (!ct_validity_derive(b, f, &v)) {
+        f->why = "automatic: it does not bend";
+        return true;
+    }
+    const double most = largest_over_run(b, v.eta);
+    if (isnan(most))
+        f->why = "automatic: its motion is not known beforehand";
+    else
+        f->why = ct_arena_printf(b->arena, "automatic: validity indicator %.3g, limit %.3g",
+                                 most, CT_VALIDITY_LIMIT);
+    return most <= CT_VALIDITY_LIMIT;
+}
+
+const bool *ct_validity_choose(struct ct_build *b)
+{
+    bool *linear = NULL;
+    for (size_t i = 0; i < b->nflexible; i++) {
+        struct ct_flexible *f = &b->flexible[i];
+        if (f->beam->formulation != CT_BEAM_AUTO || !f->nelastic)
+            continue;
+        if (!linear)
+            linear = CT_NEWN(b->arena, bool, b->model->nbody);
+        linear[f->body] = stays_linear(b, f);
+    }
+    return linear;
+}
+
+void ct_validity_monitor(struct ct_build *b)
+{
+    for (size_t i = 0; i < b->nflexible; i++) {
+        struct ct_validity v;
+        if (b->flexible[i].formulation == CT_BEAM_LINEAR
+            && ct_validity_derive(b, &b->flexible[i], &v))
+            CT_PUSH(b->arena, b->eqs->validity, b->eqs->nvalidity, b->eqs->validity_cap, v);
+    }
+}

@@ -1,0 +1,28 @@
+// When is the linear model of a beam good enough?  (formulation 5.4)
+//
+// The axial force of the beam's rigid motion stiffens or softens its bending. Per unit of the first bending shape phi,
+//
+//     eta = (w_y^2 + w_z^2) ka - a_x kb,   ka = phi' Kg1 phi / phi' K phi,  kb = phi' Kg2 phi / phi' K phi
+//     Kg1 = int P1 s s' dx, P1(x) = int_x^L m x dx,   Kg2 the same with P2(x) = int_x^L m dx,   s: slopes of the shapes
+//
+// with the acceleration a_x of the base less gravity along the beam. eta is the ratio of motion-induced to elastic
+// stiffness, and with it the relative error of a linear beam that follows its loads.
+#ifndef CT_FORMULATE_VALIDITY_H
+#define CT_FORMULATE_VALIDITY_H
+
+#include "formulate/flexible.h"
+
+/// The indicator of a beam, the larger one of its planes of bending; masses welded to its points count. eta in terms of
+/// time, state and accelerations. False where nothing bends, or the first bending shape cannot be found.
+bool ct_validity_derive(struct ct_build *b, const struct ct_flexible *f,
+                        struct ct_validity *out);
+
+/// Beams that leave the choice to the program: does each stay below the limit all along? By body, in b->arena; reasons into
+/// the beams. NULL if there is no such beam. A beam whose motion the drivers do not prescribe, or that carries joints
+/// or loads, does not.
+const bool *ct_validity_choose(struct ct_build *b);
+
+/// Indicators of all linear beams into b->eqs->validity.
+void ct_validity_monitor(struct ct_build *b);
+
+#endif
