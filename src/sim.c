@@ -13,8 +13,8 @@
 
 // The error of a solution is larger than that of its steps, so steps are held to less than what is wanted, as far as
 // double precision has that many digits. Over the reference cases outputs err by up to 3000 times the tolerance of the
-// steps with dopri5, by up to 1300 times with dop853.
-static const double share_of_low_order = 2e-3, share_of_high_order = 5e-3;
+// steps with dopri5 and past singular positions, by up to 1300 times with dop853 where there are no loops.
+static const double usual_share = 2e-3, share_of_high_order = 5e-3;
 // Steps of order p err by h^(p+1) and the solution by h^p: T = c tol^(p/(p+1)). For order 2, c is 10 to 50 in most cases.
 static const double order2_factor = 30;
 // Of Radau's steps the error of an estimate of order 3 is controlled, eased to tol^(2/3)/10: T/10 for this power of T.
@@ -24,11 +24,8 @@ static const double radau_least = 1e-13; // below, rounding in its iterations sh
 // Closed loops lose digits where they pass near singular positions: with less than 1e-13 nothing is gained (R05_N10 meets its
 // reference to 2e-10, R13_d1 to 2e-11).
 static const double least_rtol = 2e-14, least_rtol_loops = 1e-13;
-// Below this tolerance the higher order pays for its twelve evaluations (over the reference cases); where
-// state events cut steps short and want an interpolant of each, below the second; below the third its long steps cross
-// singular positions of loops with an error that the tolerance bounds (R13_d1 errs by 2e-4 at 1e-6).
-static const double high_order_below = 2e-3, high_order_with_switches = 1e-6,
-                    high_order_with_loops = 2e-7;
+// Above this tolerance high order does not pay for its twelve evaluations.
+static const double high_order_up_to = 1e-4;
 static const long steps_between_looks = 32; // at the clock, for runs with a deadline
 
 // ---- results as a file --------------------------------------------------------------------------------
@@ -147,15 +144,6 @@ static bool no_method(struct ct_sim *sim, const char *name, bool is_option)
                     ct_suggest_or_list(sim->own.model, name, names, (size_t)ct_nmethod + 1));
 }
 
-// Does the motion decide when forces switch?
-static bool has_switches(const struct ct_equations *e)
-{
-    for (size_t i = 0; i < e->nmode; i++)
-        if (!e->mode[i].is_time)
-            return true;
-    return false;
-}
-
 // What steps are held to so that outputs err by about `tolerance`.
 static double tolerance_of_steps(const struct ct_sim *sim, const struct ct_method *m)
 {
@@ -163,7 +151,8 @@ static double tolerance_of_steps(const struct ct_sim *sim, const struct ct_metho
     if (m->is_implicit)
         return m->order < 3 ? pow(t / order2_factor, 1.5)
                             : fmin(radau_share * t, pow(t, radau_power));
-    return t * (m->order > 5 ? share_of_high_order : share_of_low_order);
+    const bool is_open = sim->system->equations.nrow == 0;
+    return t * (m->order > 5 && is_open ? share_of_high_order : usual_share);
 }
 
 static void set_tolerances(const struct ct_sim *sim, const struct ct_method *m, double absolute,
@@ -176,17 +165,10 @@ static void set_tolerances(const struct ct_sim *sim, const struct ct_method *m, 
 static void choose_automatically(struct ct_sim *sim)
 {
     struct ct_run_options *o = &sim->run_options;
-    const bool switches = has_switches(&sim->system->equations);
-    const bool has_loops = sim->system->equations.nrow > 0;
-    const double below = has_loops ? high_order_with_loops
-                       : switches  ? high_order_with_switches
-                                   : high_order_below;
-    const bool high = o->step == 0 && sim->tolerance < below;
+    const bool high = o->step == 0 && sim->tolerance <= high_order_up_to;
     o->method = ct_method_find(high ? "dop853" : "dopri5");
     sim->method_why = o->step > 0 ? "automatic: a fixed step"
                     : high        ? "automatic: high order"
-                    : has_loops   ? "automatic: closed loops"
-                    : switches    ? "automatic: forces that switch"
                                   : "automatic: a loose tolerance";
     if (o->step == 0 && pow(sim->tolerance, radau_power) >= radau_least)
         o->stiff_method = ct_method_find("radau5");
