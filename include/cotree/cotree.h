@@ -168,6 +168,8 @@ CT_API bool ct_sim_follow(struct ct_ctx *ctx, struct ct_sim *sim,
 /** Time of the last sample, and the value of a column there; NaN for a column that does not exist. */
 CT_API double ct_sim_time(const struct ct_sim *sim);
 CT_API double ct_sim_value(const struct ct_sim *sim, const char *column);
+/** The global error of a column against its largest value, estimated by a run with `verify`; NaN where it is not known. */
+CT_API double ct_sim_error(const struct ct_sim *sim, const char *column);
 
 /** What the run did and how well it kept energy and constraints, for people. */
 CT_API void ct_sim_print_summary(const struct ct_sim *sim, FILE *out);
