@@ -65,6 +65,7 @@ title() {
     R05_N2) echo "two four-bars, 10 s" ;;
     R05_N5) echo "five four-bars, 10 s" ;;
     R05_N10) echo "ten four-bars, 10 s" ;;
+    R05_N40) echo "forty four-bars, 20 s" ;;
     R06_brick) echo "Bricard mechanism (A04), 10 s" ;;
     R06_slender) echo "the same, thin rods" ;;
     R07_H) echo "spatial slider-crank, 5 s" ;;
@@ -134,7 +135,7 @@ hard_row() {
 hard() {
     echo "| case | T | error | estimated | energy drift | constraints | method | steps | evaluations | seconds |"
     echo "| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |"
-    for case in R13_d1 R13_d0999 R05_N10 R08b R12 R14_k1e4 R14_k1e6 R15_M1e-3 R15_M1e-6 R17a_20s R17b; do
+    for case in R13_d1 R13_d0999 R05_N10 R05_N40 R08b R12 R14_k1e4 R14_k1e6 R15_M1e-3 R15_M1e-6 R17a_20s R17b; do
         hard_row "$(title $case)" "$reference/$case.reference.csv" "$reference/$case.yaml" --tolerance 1e-6
     done
     while read -r case system options; do
