@@ -230,7 +230,6 @@ const struct ct_method ct_method_dop853 = {
     .source = "hairer1993",
     .order = 8,
     .error_order = 7,
-    .gap = 0.47,
     .create = create,
     .step = step,
     .prepare = prepare,

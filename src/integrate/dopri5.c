@@ -147,7 +147,6 @@ const struct ct_method ct_method_dopri5 = {
     .source = "dormand1980",
     .order = 5,
     .error_order = 4,
-    .gap = 0.55,
     .create = create,
     .step = step,
     .prepare = prepare,

@@ -46,6 +46,11 @@ size_t ct_qr_pivot_work(int m, int n);
 int ct_lstsq(double *b, double *A, int m, int n, int lda, double tol, int *iwork, double *work);
 size_t ct_lstsq_work(int m, int n);
 
+/// Eigenvalues w (n, ascending) and vectors (in place of A, v' B v = 1) of A v = w B v, A symmetric, B symmetric
+/// positive definite (lower; destroyed). False if B is not, or the iteration fails.
+bool ct_pencil_eigen(double *w, double *A, double *B, int n, int lda, double *work);
+size_t ct_pencil_eigen_work(int n);
+
 /// Eigenvalues w (n, ascending) of a symmetric matrix (lower; destroyed).
 bool ct_symmetric_eigenvalues(double *w, double *A, int n, int lda, double *work);
 size_t ct_symmetric_eigenvalues_work(int n);

@@ -27,8 +27,9 @@ struct ct_run {
     const struct ct_run_options *o;
     struct ct_run_report *report;
     double energy0, energy_scale;
-    double pivot_last, pivot_most, pivot_time, singular_in; // see foresee_singular
-    double pending; // time of the event ahead; INFINITY if there is none
+    double pivot_most, last_part, time_last, singular_in,
+        singular_reach; // see foresee_singular
+    double pending;     // time of the event ahead; INFINITY if there is none
     bool started;
     // the choice of the method
     const struct ct_method *method;  // that steps now
@@ -52,6 +53,14 @@ static double before_event(const struct ct_run *r, double t)
     return t < r->pending ? t : nextafter(r->pending, -INFINITY);
 }
 
+static double largest(const double *v, size_t n)
+{
+    double max = 0;
+    for (size_t i = 0; i < n; i++)
+        max = fmax(max, fabs(v[i]));
+    return max;
+}
+
 // ---- evaluation -------------------------------------------------------------------------------------------
 
 static enum ct_eval accelerate(struct ct_run *r, double t, const double *y)
@@ -73,29 +82,10 @@ static void multipliers(struct ct_run *r)
     memcpy(r->m->input + r->m->at_lam, r->s->lam, r->m->nrow * sizeof *r->s->lam);
 }
 
-// Stages of a step lie off the manifold by more than its steps do. Beside a singular position that
-// little is divided by a small pivot, so there the stage is put onto the manifold first.
-// A position counts as near to singular when the smallest pivot has fallen to this part of its largest
-// value so far.
-static const double singular_pivot = 0.25;
-
-static bool is_near_singular(const struct ct_run *r)
-{
-    return r->s->rank && r->s->sigma < singular_pivot * r->pivot_most;
-}
-
 static enum ct_eval rhs(void *user, double time, const double *y, double *dy)
 {
     struct ct_run *r = user;
     const double t = before_event(r, time);
-    r->s->is_delicate = is_near_singular(r);
-    if (r->s->is_delicate) {
-        memcpy(r->stage, y, r->ny * sizeof *y);
-        const enum ct_eval p = ct_embed_project(r->s, t, r->stage);
-        if (p != CT_EVAL_OK)
-            return p;
-        y = r->stage;
-    }
     const enum ct_eval e = accelerate(r, t, y);
     if (e != CT_EVAL_OK)
         return e;
@@ -114,42 +104,110 @@ static enum ct_eval rhs(void *user, double time, const double *y, double *dy)
 static enum ct_eval project(void *user, double t, double *y)
 {
     struct ct_run *r = user;
-    r->s->is_delicate = is_near_singular(r);
     return ct_embed_project(r->s, before_event(r, t), y);
 }
 
-// The smallest pivot of J_d falls about linearly towards a singular position: where it will vanish
-// is foreseen from two accepted states.
-static void foresee_singular(struct ct_run *r, double t)
+// The smallest pivot of J_d against its largest, s seconds after y along q' and q'' as they are there.
+static double pivot_after(struct ct_run *r, double t, const double *y, const double *dy,
+                          double s)
 {
-    const double before = r->pivot_last, dt = t - r->pivot_time;
-    r->singular_in = INFINITY;
-    r->pivot_last = INFINITY;
-    r->pivot_most = fmax(r->pivot_most, r->s->sigma);
-    if (!is_near_singular(r))
-        return;
+    const size_t nq = r->m->nq, nu = r->m->nu;
+    memcpy(r->stage, y, r->ny * sizeof *y);
+    for (size_t i = 0; i < nu; i++)
+        r->scratch[i] = s * (y[nq + i] + s / 2 * dy[nq + i]);
+    ct_machine_retract(r->m, r->stage, r->scratch);
+    ct_machine_set(r->m, before_event(r, t + s), r->stage);
     ct_machine_constraint(r->m);
-    r->pivot_last = ct_embed_pivot(r->s);
-    r->pivot_time = t;
-    if (isfinite(before) && before > r->pivot_last && dt > 0)
-        r->singular_in = dt * r->pivot_last / (before - r->pivot_last);
+    return ct_embed_pivot(r->s);
 }
 
-static double singular_in(void *user)
+// A position counts as singular ahead when the smallest pivot has fallen to the first part of its largest value so far
+// and goes on falling; where it has fallen to the second part pivots are sought at every evaluation, at the third f is
+// better not computed.
+static const double foreseen_pivot = 0.7, near_pivot = 0.5, singular_pivot = 0.25;
+
+// The smallest pivot falls about linearly towards a singular position. Time to where it will vanish, by secants along
+// the motion as the accelerations of now continue it. INFINITY if it rises.
+static double time_to_singular(struct ct_run *r, double t, const double *y, const double *dy,
+                               double now, double dt)
 {
-    return ((const struct ct_run *)user)->singular_in;
+    enum { SECANTS = 3 };
+    const double glance = 1e-3, part = 0.8; // of the last step; of the way, not to step across
+    const double far = 4 * dt;
+    double s = glance * dt, pivot = pivot_after(r, t, y, dy, s), slope = (pivot - now) / s;
+    if (!(slope < 0))
+        return INFINITY;
+    for (int i = 0; i < SECANTS && s - pivot / slope < far; i++) {
+        const double next = s - part * pivot / slope;
+        double there = pivot_after(r, t, y, dy, next);
+        if (there > fabs(pivot)) // it has changed its sign, which is not seen
+            there = -there;
+        if (there == pivot)
+            break;
+        slope = (there - pivot) / (next - s);
+        s = next;
+        pivot = there;
+    }
+    return s - pivot / slope;
 }
 
-static enum ct_eval accepted(void *user, double t, double *y)
+// What is ahead of an accepted state. False if the step to it has come beside a singular position before that was
+// foreseen.
+static bool foresee_singular(struct ct_run *r, double t, const double *y, const double *dy)
+{
+    const double dt = t - r->time_last;
+    if (!r->s->rank || !(dt > 0))
+        return true;
+    const double now = pivot_after(r, t, y, dy, 0), part = now / fmax(r->pivot_most, now);
+    const bool was_unforeseen = isinf(r->singular_in) && r->last_part > near_pivot;
+    if (r->o->step == 0 && part < singular_pivot && was_unforeseen)
+        return false;
+    r->time_last = t;
+    r->last_part = part;
+    r->pivot_most = fmax(r->pivot_most, now);
+    r->singular_in = INFINITY;
+    r->s->is_delicate = part < near_pivot;
+    if (part > foreseen_pivot)
+        return true;
+    r->singular_in = time_to_singular(r, t, y, dy, now, dt);
+    r->singular_reach = r->singular_in * fmin(1, singular_pivot / part);
+    return true;
+}
+
+static double singular_in(void *user, double *reach)
+{
+    const struct ct_run *r = user;
+    *reach = r->singular_reach;
+    return r->singular_in;
+}
+
+// The stages of a crossing keep away from the position and are put onto the constraints: an order of pivots that holds
+// where it begins holds for all of them.
+static void set_crossing(void *user, bool is_crossing)
 {
     struct ct_run *r = user;
+    r->s->is_delicate = !is_crossing && r->last_part < near_pivot;
+}
+
+static double residual(void *user, double t, const double *y)
+{
+    struct ct_run *r = user;
+    ct_machine_set(r->m, before_event(r, t), y);
+    ct_machine_constraint(r->m);
+    return largest(r->m->phi, r->m->nrow);
+}
+
+static enum ct_eval accepted(void *user, double t, double *y, const double *dy)
+{
+    struct ct_run *r = user;
+    if (!r->method->is_implicit && !foresee_singular(r, t, y, dy))
+        return CT_EVAL_RETRY;
     ct_machine_set(r->m, before_event(r, t), y);
     ct_memory_follow(r->m);
     if (r->method->is_implicit) { // its steps may pass without a projection
         ct_machine_constraint(r->m);
         ct_embed_renew(r->s);
     }
-    foresee_singular(r, t);
     return CT_EVAL_OK;
 }
 
@@ -343,7 +401,7 @@ struct ct_run *ct_run_create(struct ct_ctx *ctx, struct ct_arena *a,
     r->y = CT_NEWN(a, double, r->ny);
     r->dy = CT_NEWN(a, double, r->ny);
     r->stage = CT_NEWN(a, double, r->ny);
-    r->scratch = CT_NEWN(a, double, 2 * r->m->nu + 2 * e->ndriver + 1);
+    r->scratch = CT_NEWN(a, double, 2 * r->m->nu + 2 * e->ndriver + r->m->nrow + 1);
     r->value = CT_NEWN(a, double, e->nresult + 1);
     find_needs(r);
     ct_start_apply(start, r->m, r->y);
@@ -393,14 +451,6 @@ enum ct_eval ct_run_results(struct ct_run *r, double t, const double *y, double 
 
 // ---- the run ------------------------------------------------------------------------------------------------------
 
-static double largest(const double *v, size_t n)
-{
-    double max = 0;
-    for (size_t i = 0; i < n; i++)
-        max = fmax(max, fabs(v[i]));
-    return max;
-}
-
 // Energy, constraints: the ledger of a sample.
 static void keep_ledger(struct ct_run *r, const double *y)
 {
@@ -438,12 +488,8 @@ static void watch_validity(struct ct_run *r, double t)
     r->t_sample = t;
 }
 
-static bool at_sample(void *user, double t, const double *y)
+static bool give_row(struct ct_run *r, double t, const double *y)
 {
-    struct ct_run *r = user;
-    if (ct_run_results(r, t, y, r->value) != CT_EVAL_OK)
-        return ct_error(r->ctx, (struct ct_mark){.file = r->model->file}, CT_E_SINGULAR,
-                        "the equations are singular at t = %.9g", t);
     for (size_t i = 0; i < r->e->nresult; i++)
         if (!isfinite(r->value[i]))
             return ct_error(r->ctx, (struct ct_mark){.file = r->model->file}, CT_E_SINGULAR,
@@ -456,10 +502,49 @@ static bool at_sample(void *user, double t, const double *y)
     return !r->o->row || r->o->row(r->o->user, t, r->value, r->e->nresult);
 }
 
+static bool singular_at(struct ct_run *r, double t)
+{
+    return ct_error(r->ctx, (struct ct_mark){.file = r->model->file}, CT_E_SINGULAR,
+                    "the equations are singular at t = %.9g", t);
+}
+
+static bool at_sample(void *user, double t, const double *y)
+{
+    struct ct_run *r = user;
+    return ct_run_results(r, t, y, r->value) == CT_EVAL_OK ? give_row(r, t, y)
+                                                           : singular_at(r, t);
+}
+
+// Where accelerations and multipliers cannot be computed they are those at other times, interpolated.
+static bool at_singular_sample(void *user, double t, const double *y, const struct ct_bridge *b)
+{
+    struct ct_run *r = user;
+    struct ct_machine *m = r->m;
+    double *a = r->scratch, *lam = a + m->nu;
+    memset(a, 0, (m->nu + m->nrow) * sizeof *a);
+    for (int k = 0; k < b->n; k++) {
+        memcpy(r->stage, b->y + (size_t)k * r->ny, r->ny * sizeof *y);
+        if (ct_embed_project(r->s, b->t[k], r->stage) != CT_EVAL_OK
+            || accelerate(r, b->t[k], r->stage) != CT_EVAL_OK)
+            return singular_at(r, t);
+        ct_embed_multipliers(r->s);
+        for (size_t i = 0; i < m->nu; i++)
+            a[i] += b->weight[k] * r->s->a[i];
+        for (size_t i = 0; i < m->nrow; i++)
+            lam[i] += b->weight[k] * r->s->lam[i];
+    }
+    ct_machine_set(m, t, y);
+    memcpy(m->input + m->at_a, a, m->nu * sizeof *a);
+    memcpy(m->input + m->at_lam, lam, m->nrow * sizeof *lam);
+    ct_program_run(&m->result, m->input);
+    memcpy(r->value, m->result.out, r->e->nresult * sizeof *r->value);
+    return give_row(r, t, y);
+}
+
 // After an event, and next to a singular position, steps had better go on.
 static bool is_to_be_reconsidered(struct ct_run *r, double t, const double *y)
 {
-    const bool may_stop = t > r->last_event && !is_near_singular(r);
+    const bool may_stop = t > r->last_event && !(r->singular_in < INFINITY);
     if (r->method->is_implicit)
         return ct_trial_has_lost(&r->implicit, t, r->explicit_pace) && may_stop;
     return ct_stiffness_watch(r->stiffness, t, y, r->o->duration) && may_stop;
@@ -704,7 +789,7 @@ static double operations_of_accelerations(const struct ct_run *r)
     if (r->m->solved.nout)
         return operations(&r->m->solved);
     if (r->s->has_form)
-        return operations(&r->s->form[0]->solved);
+        return r->s->form[0]->operations;
     return operations(&r->m->motion) + ct_embed_operations(r->s);
 }
 
@@ -856,7 +941,7 @@ bool ct_run_simulate(struct ct_run *r, const struct ct_run_options *o,
     report->validity = CT_NEWN(r->arena, struct ct_validity_report, r->e->nvalidity + 1);
     for (size_t i = 0; i < r->e->nvalidity; i++)
         report->validity[i].left_at = -1;
-    r->pivot_last = r->singular_in = INFINITY;
+    r->singular_in = INFINITY;
     r->o = o;
     r->method = o->method;
     r->last_event = -INFINITY;
@@ -874,6 +959,8 @@ bool ct_run_simulate(struct ct_run *r, const struct ct_run_options *o,
                            .project = project,
                            .accepted = accepted,
                            .singular_in = singular_in,
+                           .set_crossing = set_crossing,
+                           .residual = residual,
                            .nroot = r->nroot,
                            .root = root,
                            .next_time_event = next_time_event,
@@ -885,6 +972,7 @@ bool ct_run_simulate(struct ct_run *r, const struct ct_run_options *o,
                                             .sample = sample,
                                             .nsample = n,
                                             .at_sample = at_sample,
+                                            .at_singular_sample = at_singular_sample,
                                             .at_step = at_step};
     const bool ok = march(r, &p, io);
     report->rank = r->s->rank;

@@ -59,6 +59,11 @@ static void line(const char *what, double t, double goal)
     putchar('\n');
 }
 
+static void size(const char *what, size_t bytes)
+{
+    printf("%-58s %9.4g MB %12s\n", what, 1e-6 * (double)bytes, "-");
+}
+
 static void ratio(const char *what, double r, double goal)
 {
     printf("%-58s %12.2f", what, r);
@@ -116,7 +121,9 @@ struct subject {
     struct ct_start start;
     struct ct_run *run;
     struct ct_machine *machine;
-    double generate; // seconds, from the file to equations
+    double *state;
+    double generate,
+        prepare; // seconds, from the file to equations; from there to the start of a run
 };
 
 static void give_up(const struct subject *s)
@@ -164,6 +171,7 @@ static void open_subject(struct subject *s, const char *path)
     if (!generate(s))
         give_up(s);
     s->generate = now() - start;
+    const double generated = now();
     if (s->equations.nrow)
         ct_formulate_dynamics(&s->equations);
     if (!ct_formulate(&s->ctx, s->ctx.model, &s->model, &assembly, &s->assembly, &report)
@@ -172,6 +180,7 @@ static void open_subject(struct subject *s, const char *path)
     s->run = ct_run_create(&s->ctx, s->ctx.model, &s->model, &s->equations, &s->start);
     if (!s->run)
         give_up(s);
+    s->prepare = now() - generated;
     s->machine = ct_run_machine(s->run);
     ct_machine_set(s->machine, 0, ct_run_state(s->run));
 }
@@ -410,6 +419,25 @@ static void show_accelerations(struct subject *s, const char *what, double per, 
     line(text, t[1] / per, 0);
 }
 
+// One projection of the state at hand, which meets the constraints already: the least that a step pays.
+static void project(void *data)
+{
+    struct subject *s = data;
+    ct_embed_project(ct_run_embed(s->run), 0, s->state);
+}
+
+static void show_projection(struct subject *s, double per)
+{
+    const call_fn f[] = {project};
+    void *const data[] = {s};
+    double t;
+    const size_t ny = s->machine->nq + s->machine->nu + 1;
+    s->state = CT_NEWN(s->ctx.model, double, ny);
+    memcpy(s->state, ct_run_state(s->run), ny * sizeof(double));
+    measure(f, data, 1, &t);
+    line("  projection, with the check of the pivots", t / per, 0);
+}
+
 // ---- generating ---------------------------------------------------------------------------------
 
 static double median_of(double (*f)(const char *path), const char *path, int n)
@@ -606,6 +634,24 @@ static void four_bars(int n)
     snprintf(what, sizeof what, "%d four-bar%s, M, Q, J, gam", n, n > 1 ? "s" : "");
     compare_back_ends(&s, &s.machine->motion, what, NULL);
     show_accelerations(&s, "  accelerations, solve included, per loop", n, 60e-9);
+    show_projection(&s, n);
+    close_subject(&s);
+    unlink(s.path);
+}
+
+// Cost per loop must not grow with the number of loops: 3 n + 1 bodies and joints, ground included.
+static void many_four_bars(int n)
+{
+    struct subject s;
+    open_subject(&s, generated("n_four_bar", n));
+    printf("\n%d four-bars in a row: %zu bodies, %zu joints, solved by %s\n", n,
+           s.model.nbody - 1, s.model.njoint,
+           ct_run_embed(s.run)->nform ? ct_run_embed(s.run)->form[0]->kind->name : "dense");
+    line("  model to equations", s.generate, 2);
+    line("  equations to the start of a run", s.prepare, 0);
+    size("  memory of model, equations and run", ct_arena_used(s.ctx.model));
+    show_accelerations(&s, "  accelerations, solve included, per loop", n, 60e-9);
+    show_projection(&s, n);
     close_subject(&s);
     unlink(s.path);
 }
@@ -621,7 +667,10 @@ int main(int argc, char **argv)
     andrews();
     four_bars(1);
     four_bars(10);
-    if (!quick)
+    if (!quick) {
         four_bars(40);
+        many_four_bars(100);
+        many_four_bars(333);
+    }
     return 0;
 }
