@@ -184,7 +184,7 @@ static bool is_symmetric(struct large *g)
 static bool is_of_this_kind(struct large *g)
 {
     const struct ct_machine *m = g->l->m;
-    if (m->e->ndriver || largest(g->l->y + m->nq, g->nu) > 0)
+    if ((g->nrow && m->e->ndriver) || largest(g->l->y + m->nq, g->nu) > 0)
         return false;
     ct_machine_set(g->l->m, g->l->t, g->l->y);
     ct_program_run(&g->l->m->residual, m->input); // phi, v behind r: motions of chords

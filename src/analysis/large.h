@@ -8,7 +8,7 @@
 enum { CT_MOST_DENSE = 300 };
 
 /**
- * The lowest modes of a system at rest without dampers, drivers and forces that have no potential.
+ * The lowest modes of a system at rest without dampers and forces that have no potential; with loops without drivers, too.
  *
  * Block Lanczos in the masses' metric on [K - s M, J'; J, 0]^-1 M, factored once, every block made orthogonal to all before;
  * blocks of four find what is fourfold, as bending of a round beam about two axes.
