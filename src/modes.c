@@ -48,8 +48,7 @@ static bool find(struct ct_modes *s, long count)
                         "the number of modes is %ld; it must be greater than 0", count);
     const size_t wanted = count ? (size_t)count : STANDARD_COUNT;
     s->at.may_be_large = true;
-    if (!ct_configuration_find(&s->own, s->system, &s->run, &s->at)
-        || !solve(s, wanted))
+    if (!ct_configuration_find(&s->own, s->system, &s->run, &s->at) || !solve(s, wanted))
         return false;
     s->n = s->all < wanted ? s->all : wanted;
     const int nu = s->at.l->nu;
@@ -217,8 +216,8 @@ void ct_modes_print_summary(const struct ct_modes *s, FILE *out)
 {
     ct_configuration_print(&s->at, out);
     fprintf(out, "%-14s%d, %s eigenvalue problem; %zu of %zu modes\n",
-            s->at.l->nfree ? "freedoms" : "speeds", s->at.l->nfree ? s->at.l->nfree : s->at.l->nu,
-            s->how, s->n, s->all);
+            s->at.l->nfree ? "freedoms" : "speeds",
+            s->at.l->nfree ? s->at.l->nfree : s->at.l->nu, s->how, s->n, s->all);
 }
 
 // ---- the picture -------------------------------------------------------------------------------------------

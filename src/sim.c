@@ -203,7 +203,7 @@ static size_t samples_until(const struct ct_simulation *m, double until)
     return (size_t)ceil(until / spacing * (1 - 1e-12)) + 1; // 10/0.01 may round upwards
 }
 
-static bool resolve_options(struct ct_sim *sim, const struct ct_sim_options *o)
+bool ct_sim_resolve(struct ct_sim *sim, const struct ct_sim_options *o)
 {
     const struct ct_simulation *m = &sim->system->model.simulation;
     if (!check_numbers(sim, o))
@@ -265,7 +265,7 @@ static bool needs_dynamics(const struct ct_equations *e, const struct ct_method 
 static bool prepare(struct ct_sim *sim, const struct ct_sim_options *o)
 {
     struct ct_system *s = sim->system;
-    if (!resolve_options(sim, o))
+    if (!ct_sim_resolve(sim, o))
         return false;
     const double start = ct_clock();
     if (sim->run_options.method->is_implicit) // made once, when the first run asks for it
@@ -287,6 +287,15 @@ static bool prepare(struct ct_sim *sim, const struct ct_sim_options *o)
                         "the equations are singular at the start");
     ct_run_find_open(sim->run, 0, ct_run_state(sim->run), sim->open.row, sim->open.result);
     return true;
+}
+
+bool ct_sim_prepare(struct ct_sim *sim, struct ct_system *sys, const struct ct_sim_options *o)
+{
+    sim->system = sys;
+    if (!ct_sim_resolve(sim, o))
+        return false;
+    sim->run = ct_run_prepare(&sim->own, sim->own.model, &sys->model, &sys->equations);
+    return choose_backend(sim, o->backend);
 }
 
 static bool create(void *task)

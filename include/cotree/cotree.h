@@ -218,6 +218,70 @@ CT_API bool ct_accuracy_draw(struct ct_ctx *ctx, const struct ct_accuracy *a, co
 /** How good the reference is, and the cheapest setting that meets the wanted error, for people. */
 CT_API void ct_accuracy_print_summary(const struct ct_accuracy *a, FILE *out);
 
+/* ---- parameter studies ---------------------------------------------------------------------------- */
+
+struct ct_study;
+
+/** Zero: the default. */
+struct ct_study_options {
+    struct ct_sim_options run; /* of all members */
+    /** "NAME=FROM:TO:N" each: a grid whose last axis runs fastest. With sample also "NAME=FROM:TO" (uniform) and
+     *  "NAME=normal:MEAN:DEVIATION"; N is of no use then. */
+    const char *const *vary;
+    size_t nvary;
+    long sample;             /* > 0: so many random members instead of the grid */
+    unsigned long long seed; /* of the random numbers: same seed, same members */
+    long threads;            /* at most; 0: all cores. One without OpenMP. */
+    long lanes;              /* members side by side in a core: 4, or 1; 0: 4 where possible */
+};
+
+/** Where rows go. All of it may be zero. */
+struct ct_study_results {
+    const char *path; /* FILE.csv or FILE.json; "-" is standard output as CSV; NULL: no file */
+    bool resume;    /* go on with the rows of an interrupted sweep, which are in PATH.partial */
+    FILE *progress; /* a bar is shown there if it is a terminal */
+    /** Called for each member in order, one at a time but from any thread: run from 1, what varies, the outputs at the
+     *  end time, or value NULL and why it failed. Return false to stop, which is no failure. */
+    bool (*row)(void *user, long run, const double *varied, const double *value,
+                const char *message);
+    void *user;
+};
+
+/**
+ * Read a model and derive its equations once, for all members of a study.
+ *
+ * What a member gives depends neither on threads nor on other members. Where the value of a parameter decides about the
+ * equations (whether a mechanism is planar), members that vary it are derived one by one.
+ *
+ * system  in   NULL: all defaults. What varies replaces values that are set here.
+ *
+ * Errors   those of ct_system_load and of the options of runs; E003 for what varies
+ * Owner    the caller, until ct_study_destroy
+ */
+CT_API struct ct_study *ct_study_create(struct ct_ctx *ctx, const char *path,
+                                        const struct ct_system_options *system,
+                                        const struct ct_study_options *options);
+/** Accepts NULL. */
+CT_API void ct_study_destroy(struct ct_study *study);
+/**
+ * Run all members, once per sweep. results may be NULL.
+ *
+ * A member that fails is a row; the sweep fails when rows cannot be written. The file appears under its name when
+ * it is complete; until then rows are in PATH.partial, in order.
+ *
+ * Errors: E002 for the file, E003 when it cannot be resumed.
+ */
+CT_API bool ct_study_run(struct ct_ctx *ctx, struct ct_study *study,
+                         const struct ct_study_results *results);
+/** Members in all, and of those that are over, the failed ones. */
+CT_API long ct_study_count(const struct ct_study *study);
+CT_API long ct_study_failed(const struct ct_study *study);
+/** What was done and which members failed, for people. */
+CT_API void ct_study_print_summary(const struct ct_study *study, FILE *out);
+/** The same for programs: a JSON object. Errors: E002. */
+CT_API bool ct_study_write_summary(struct ct_ctx *ctx, const struct ct_study *study,
+                                   const char *path);
+
 /* ---- analyses about a configuration ------------------------------------------------------------------ */
 
 struct ct_equilibrium;

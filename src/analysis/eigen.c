@@ -191,7 +191,7 @@ double ct_stiffness_least(struct ct_arena *a, const struct ct_linear *l, double 
     solve_symmetric(a, l->Mr, l->Kr, l->nfree, &s);
     if (!s.k)
         return INFINITY;
-    double *L = CT_NEWN(a, double, (size_t)s.n * (size_t)s.n + 1);
+    double *L = CT_NEWN(a, double, (size_t)s.n *(size_t)s.n + 1);
     if (factor_stiffness(L, l->Kr, s.n))
         sharpen_slow(a, l->Mr, L, &s);
     else
@@ -262,7 +262,8 @@ void ct_mode_add_undamped(struct ct_motion_mode *mode, size_t *nmode, double w2,
     const double w = sqrt(fabs(w2));
     normalise(shape, nu);
     if (w2 >= 0) {
-        mode[(*nmode)++] = (struct ct_motion_mode){.im = w, .is_rigid = w2 == 0, .shape = shape};
+        mode[(*nmode)++]
+            = (struct ct_motion_mode){.im = w, .is_rigid = w2 == 0, .shape = shape};
         return;
     }
     // an unstable pair: exp(w t) and exp(-w t)

@@ -8,11 +8,13 @@
 #include <string.h>
 
 enum { BLOCK = 4, MOST_BASIS = 400 };
-static const double still = 1e-9;     // accelerations beside those of the weights: an equilibrium to rounding
+static const double still
+    = 1e-9; // accelerations beside those of the weights: an equilibrium to rounding
 static const double absent = 1e-12;   // damping against the masses' rates: none
 static const double symmetric = 1e-9; // of K
-static const double found = 1e-9;     // residual of a mode: its eigenvalue is right to the square of that
-static const double gone = 1e-10;     // of a vector, once the basis is taken off: nothing new
+static const double found
+    = 1e-9; // residual of a mode: its eigenvalue is right to the square of that
+static const double gone = 1e-10; // of a vector, once the basis is taken off: nothing new
 
 struct large {
     struct ct_ctx *ctx;
@@ -25,9 +27,9 @@ struct large {
     double *value, *b, *x; // of the matrix; n each
     double shift;
     // Lanczos
-    size_t k, most;         // vectors so far
-    double *V, *MV, *T;     // nu x most, nu x most, most x most
-    double *W, *R;          // nu x BLOCK; BLOCK x BLOCK
+    size_t k, most;     // vectors so far
+    double *V, *MV, *T; // nu x most, nu x most, most x most
+    double *W, *R;      // nu x BLOCK; BLOCK x BLOCK
 };
 
 static double largest(const double *v, size_t n)
@@ -274,7 +276,8 @@ static size_t iterate(struct large *g, size_t count, struct ritz *z)
 {
     uint64_t state = 7;
     double size, *r = CT_NEWN(g->a, double, g->nu + 1);
-    for (size_t c = 0; c < BLOCK; c++) { // into the range: along the constraints, without what has no mass
+    for (size_t c = 0; c < BLOCK;
+         c++) { // into the range: along the constraints, without what has no mass
         double *w = g->W + g->nu * c;
         for (size_t i = 0; i < g->nu; i++)
             r[i] = chance(&state);
@@ -335,8 +338,8 @@ bool ct_large_modes(struct ct_ctx *ctx, struct ct_arena *a, struct ct_linear *l,
     g.n = g.nu + g.nrow;
     g.b = CT_NEWN(a, double, g.n + 1);
     g.x = CT_NEWN(a, double, g.n + 1);
-    g.W = CT_NEWN(a, double, BLOCK * g.nu + 1);
-    g.R = CT_NEWN(a, double, BLOCK * BLOCK);
+    g.W = CT_NEWN(a, double, BLOCK *g.nu + 1);
+    g.R = CT_NEWN(a, double, BLOCK *BLOCK);
     *applies = is_of_this_kind(&g);
     *nmode = 0;
     *how = "sparse symmetric";

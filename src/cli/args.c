@@ -7,15 +7,27 @@
 #include <stdlib.h>
 #include <string.h>
 
-const struct cli_command *const cli_commands[]
-    = {&cli_simulate,   &cli_equations,   &cli_graph,   &cli_accuracy,
-       &cli_check,      &cli_equilibrium, &cli_modes,   &cli_linearize,
-       &cli_buckling,   &cli_kinematics,  &cli_inverse, &cli_export,
-       &cli_components, &cli_methods,     &cli_schema,  NULL};
+const struct cli_command *const cli_commands[] = {&cli_simulate,
+                                                  &cli_equations,
+                                                  &cli_graph,
+                                                  &cli_accuracy,
+                                                  &cli_sweep,
+                                                  &cli_check,
+                                                  &cli_equilibrium,
+                                                  &cli_modes,
+                                                  &cli_linearize,
+                                                  &cli_buckling,
+                                                  &cli_kinematics,
+                                                  &cli_inverse,
+                                                  &cli_export,
+                                                  &cli_components,
+                                                  &cli_methods,
+                                                  &cli_schema,
+                                                  NULL};
 
 // ---- options --------------------------------------------------------------------------------------------
 
-enum kind { FLAG, TEXT, LIST, NUMBER, INTEGER, COUNT_OF };
+enum kind { FLAG, TEXT, LIST, NUMBER, INTEGER, COUNT_OF, SEED };
 
 static const struct option {
     const char *name;
@@ -49,8 +61,8 @@ static const struct option {
      "number of samples, both ends included"},
     {"backend", 0, "CHOICE", TEXT, FIELD(backend), CLI_RUNS, true,
      "what evaluates the equations: auto, native or tape"},
-    {"summary", 0, "FILE.json", TEXT, FIELD(summary), CLI_SIMULATE | CLI_CHECK | CLI_DRIVEN,
-     true, "what the run did, for programs"},
+    {"summary", 0, "FILE.json", TEXT, FIELD(summary),
+     CLI_SIMULATE | CLI_CHECK | CLI_DRIVEN | CLI_SWEEP, true, "what the run did, for programs"},
     {"about", 0, "WHERE", TEXT, FIELD(about), CLI_ABOUT, false,
      "initial, equilibrium, or a time in seconds"},
     {"inputs", 0, "NAMES", TEXT, FIELD(inputs), CLI_LINEARIZE, false,
@@ -63,6 +75,19 @@ static const struct option {
      "number of rows, the lowest ones; 10"},
     {"hold-drivers", 0, NULL, FLAG, FIELD(hold_drivers), CLI_STATIC, false,
      "equilibrium: motions stand still, even steady ones"},
+    {"vary", 0, "NAME=FROM:TO:N", LIST, FIELD(vary), CLI_SWEEP, false,
+     "N values of a parameter, both ends included;\n"
+     "may be repeated"},
+    {"sample", 0, "K", COUNT_OF, FIELD(sample), CLI_SWEEP, false,
+     "K random members instead of a grid"},
+    {"seed", 0, "S", SEED, FIELD(seed), CLI_SWEEP, false,
+     "of the random numbers; 0. Same seed, same members"},
+    {"resume", 0, NULL, FLAG, FIELD(resume), CLI_SWEEP, false,
+     "go on with the rows in FILE.partial"},
+    {"threads", 0, "N", COUNT_OF, FIELD(threads), CLI_SWEEP, false,
+     "at most so many; all cores"},
+    {"lanes", 0, "N", COUNT_OF, FIELD(lanes), CLI_SWEEP, false,
+     "members side by side in a core: 4, or 1; 4 where it can be"},
     {"verify", 0, NULL, FLAG, FIELD(verify), CLI_SIMULATE, false,
      "a second run; the difference tells the global error"},
     {"error", 0, "E", NUMBER, FIELD(error), CLI_ACCURACY, false,
@@ -131,6 +156,20 @@ static bool parse_integer(const char *text, long least, long *v)
     return end != text && !*end && !errno && *v >= least && *v <= most;
 }
 
+static bool parse_seed(const char *text, unsigned long long *v)
+{
+    char *end;
+    errno = 0;
+    *v = strtoull(text, &end, 10);
+    return text[0] >= '0' && text[0] <= '9' && !*end && !errno;
+}
+
+static bool wrong_value(const struct cli_command *c, const struct option *o, const char *value,
+                        const char *wanted)
+{
+    return cli_complain(c, "--%s is '%s'; %s is wanted", o->name, value, wanted), false;
+}
+
 static bool store(const struct cli_command *c, const struct option *o, const char *value,
                   struct cli_args *args)
 {
@@ -142,21 +181,23 @@ static bool store(const struct cli_command *c, const struct option *o, const cha
     case TEXT:
         *(const char **)field = value;
         return *value || (cli_complain(c, "--%s is empty", o->name), false);
-    case LIST:
-        args->set[args->nset++] = value;
+    case LIST: {
+        struct cli_list *list = field;
+        list->text[list->n++] = value;
         return true;
+    }
     case NUMBER:
         return parse_number(value, field)
-            || (cli_complain(c, "--%s is '%s'; a number greater than 0 is wanted", o->name,
-                             value),
-                false);
-    default: {
-        const long least = o->kind == COUNT_OF ? 1 : 2; // samples: both ends
-        return parse_integer(value, least, field)
-            || (cli_complain(c, "--%s is '%s'; an integer from %ld to 1000000000 is wanted",
-                             o->name, value, least),
-                false);
-    }
+            || wrong_value(c, o, value, "a number greater than 0");
+    case SEED:
+        return parse_seed(value, field)
+            || wrong_value(c, o, value, "an integer from 0 to 18446744073709551615");
+    case COUNT_OF:
+        return parse_integer(value, 1, field)
+            || wrong_value(c, o, value, "an integer from 1 to 1000000000");
+    default: // both ends
+        return parse_integer(value, 2, field)
+            || wrong_value(c, o, value, "an integer from 2 to 1000000000");
     }
 }
 
@@ -283,9 +324,11 @@ static bool check_backend(const struct parser *p)
 
 bool cli_parse(int argc, char **argv, const struct cli_command **command, struct cli_args *args)
 {
-    *args = (struct cli_args){.set = calloc((size_t)argc + 1, sizeof *args->set)};
+    *args = (struct cli_args){.set.text = calloc((size_t)argc + 1, sizeof(char *)),
+                              .vary.text = calloc((size_t)argc + 1, sizeof(char *))};
     struct parser p = {.argc = argc, .argv = argv, .args = args};
-    bool ok = args->set || (fputs("cotree: error: out of memory\n", stderr), false);
+    const bool has_room = args->set.text && args->vary.text;
+    bool ok = has_room || (fputs("cotree: error: out of memory\n", stderr), false);
     ok = ok && parse_all(&p);
     *command = p.command;
     if (!ok || args->help || args->version)
@@ -301,7 +344,8 @@ bool cli_parse(int argc, char **argv, const struct cli_command **command, struct
 
 void cli_args_finish(struct cli_args *args)
 {
-    free(args->set);
+    free(args->set.text);
+    free(args->vary.text);
 }
 
 // ---- help -----------------------------------------------------------------------------------------------------

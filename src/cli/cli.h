@@ -19,11 +19,14 @@ struct cli_args {
     const char *model;
     const char *output, *summary, *format, *show, *tree, *method, *backend, *reference, *plot,
         *about, *inputs, *load, *curve;
-    const char **set;
-    size_t nset;
+    struct cli_list { // what is given several times
+        const char **text;
+        size_t n;
+    } set, vary;
     double tolerance, step, until, error;
-    long samples, count;
-    bool hold_drivers, keep_all, verify, quiet, help, version;
+    long samples, count, sample, threads, lanes;
+    unsigned long long seed;
+    bool hold_drivers, keep_all, resume, verify, quiet, help, version;
 };
 
 /// One bit for each command, for the table of options.
@@ -43,11 +46,12 @@ enum cli_use {
     CLI_KINEMATICS = 4096,
     CLI_INVERSE = 8192,
     CLI_BUCKLING = 16384,
+    CLI_SWEEP = 32768,
     CLI_LISTS = CLI_COMPONENTS | CLI_METHODS | CLI_SCHEMA,
     CLI_DRIVEN = CLI_KINEMATICS | CLI_INVERSE,
     CLI_ABOUT = CLI_MODES | CLI_LINEARIZE, // a configuration
     CLI_STATIC = CLI_ABOUT | CLI_EQUILIBRIUM | CLI_BUCKLING,
-    CLI_RUNS = CLI_SIMULATE | CLI_ACCURACY,
+    CLI_RUNS = CLI_SIMULATE | CLI_ACCURACY | CLI_SWEEP,
     CLI_TIMES = CLI_RUNS | CLI_DRIVEN,
     CLI_MODELS = CLI_TIMES | CLI_STATIC | CLI_EQUATIONS | CLI_GRAPH | CLI_CHECK | CLI_EXPORT
 };
@@ -63,7 +67,7 @@ struct cli_command {
 
 extern const struct cli_command cli_simulate, cli_equations, cli_graph, cli_accuracy, cli_check,
     cli_equilibrium, cli_modes, cli_linearize, cli_kinematics, cli_inverse, cli_buckling,
-    cli_export, cli_components, cli_methods, cli_schema;
+    cli_sweep, cli_export, cli_components, cli_methods, cli_schema;
 /// All commands in the order of --help; NULL at the end.
 extern const struct cli_command *const cli_commands[];
 
@@ -77,6 +81,8 @@ void cli_print_help(FILE *out, const struct cli_command *command);
 int cli_complain(const struct cli_command *command, const char *fmt, ...)
     __attribute__((format(printf, 2, 3)));
 
+/// What the arguments say about systems.
+struct ct_system_options cli_system_options(const struct cli_args *args);
 /// The system that the arguments ask for, or NULL.
 struct ct_system *cli_load(struct ct_ctx *ctx, const struct cli_args *args);
 /// The same with further columns.
@@ -87,12 +93,12 @@ struct ct_sim_options cli_sim_options(const struct cli_args *args);
 /// A run with the options of the arguments, or NULL.
 struct ct_sim *cli_sim(struct ct_ctx *ctx, struct ct_system *sys, const struct cli_args *args);
 
-/// The model's file name with .csv, in the current folder; to be freed.
-char *cli_standard_path(const char *model);
-
 /// The format that --format or the suffix of -o asks for; suffixes[i] belongs to formats[i].
 const char *cli_format(const struct cli_args *args, const char *const *formats,
                        const char *const *suffixes, size_t n);
+
+/// The model's file name with another suffix (".csv"), in the current folder; to be freed. NULL without memory.
+char *cli_standard_path(const char *model, const char *suffix);
 
 /// Text that appears under its name when it is complete; path NULL or "-": standard output.
 struct cli_output {

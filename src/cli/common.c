@@ -6,6 +6,14 @@
 #include <string.h>
 #include <sys/stat.h>
 
+struct ct_system_options cli_system_options(const struct cli_args *args)
+{
+    return (struct ct_system_options){.set = args->set.text,
+                                      .nset = args->set.n,
+                                      .tree = args->tree,
+                                      .keep_all = args->keep_all};
+}
+
 struct ct_system *cli_load(struct ct_ctx *ctx, const struct cli_args *args)
 {
     return cli_load_with(ctx, args, CT_COLUMNS_OF_MODEL);
@@ -14,12 +22,9 @@ struct ct_system *cli_load(struct ct_ctx *ctx, const struct cli_args *args)
 struct ct_system *cli_load_with(struct ct_ctx *ctx, const struct cli_args *args,
                                 enum ct_columns_more columns)
 {
-    return ct_system_load(ctx, args->model,
-                          &(struct ct_system_options){.set = args->set,
-                                                      .nset = args->nset,
-                                                      .tree = args->tree,
-                                                      .keep_all = args->keep_all,
-                                                      .columns = columns});
+    struct ct_system_options options = cli_system_options(args);
+    options.columns = columns;
+    return ct_system_load(ctx, args->model, &options);
 }
 
 struct ct_sim_options cli_sim_options(const struct cli_args *args)
@@ -51,22 +56,20 @@ const char *cli_format(const struct cli_args *args, const char *const *formats,
     return formats[0];
 }
 
-char *cli_standard_path(const char *model)
+// ---- files ---------------------------------------------------------------------------------------------
+
+char *cli_standard_path(const char *model, const char *suffix)
 {
     const char *slash = strrchr(model, '/');
     const char *base = slash ? slash + 1 : model;
     const char *dot = strrchr(base, '.');
     const size_t n = dot && dot > base ? (size_t)(dot - base) : strlen(base);
-    char *path = malloc(n + sizeof ".csv");
-    if (path) {
-        // NOLINTNEXTLINE(bugprone-not-null-terminated-result): the suffix ends it
-        memcpy(path, base, n);
-        memcpy(path + n, ".csv", sizeof ".csv");
-    }
+    const size_t size = n + strlen(suffix) + 1;
+    char *path = malloc(size);
+    if (path)
+        snprintf(path, size, "%.*s%s", (int)n, base, suffix);
     return path;
 }
-
-// ---- files ---------------------------------------------------------------------------------------------
 
 static void cannot(const char *what, const char *path, int error)
 {

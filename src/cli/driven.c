@@ -5,7 +5,7 @@
 
 static bool follow(struct ct_ctx *ctx, struct ct_sim *sim, const struct cli_args *args)
 {
-    char *standard = args->output ? NULL : cli_standard_path(args->model);
+    char *standard = args->output ? NULL : cli_standard_path(args->model, ".csv");
     const char *path = args->output ? args->output : standard;
     const struct ct_sim_results results
         = {.path = path ? path : "-", .progress = args->quiet ? NULL : stderr};

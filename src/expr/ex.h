@@ -92,6 +92,8 @@ struct ct_exs {
     size_t kinds_cap;
     const char **label; // optional name by node id, for printing; NULL where none
     size_t label_cap;
+    unsigned char
+        *decided; // by symbol: its value has been asked for by ct_ex_value; NULL: not kept
     // workspace of walks over the graph: a generation stamp and a result per node, a stack
     uint32_t *stamp, generation;
     ct_ex *memo;

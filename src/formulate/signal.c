@@ -3,6 +3,7 @@
 #include "formulate/beam_signal.h"
 #include "formulate/reaction.h"
 #include "formulate/topology.h"
+#include "formulate/validity.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -392,6 +393,14 @@ bool ct_signal_resolve(struct ct_build *b, const char *name, struct ct_mark mark
     if (frame < 0)
         return unknown(b, mark, name, "nothing has this name");
     const int body = b->model->frame[frame].body;
+    if (!strcmp(s.property, "validity") && !s.component && frame == b->model->body[body].frame
+        && ct_flexible_of(b, body)) {
+        struct ct_validity v;
+        if (!ct_validity_derive(b, ct_flexible_of(b, body), &v))
+            return unknown(b, mark, name, "the beam does not bend");
+        *out = v.eta;
+        return true;
+    }
     if (!strcmp(s.property, "com") && body > 0)
         return component_of(b, &s, name, mark, body_com(b, body), out);
     if (b->model->body[body].beam && ct_beam_signal_exists(s.property))

@@ -128,11 +128,23 @@ struct ct_tolerance {
     double rtol, atol;
 };
 
+enum { CT_MOST_STAGES = 13 }; // of a tableau
+
+/// The numbers of an explicit method whose last stage is the end of the step: for those who step by
+/// themselves. Stage s is at t + C_s h, y + h sum_j A_sj k_j; its error is h sum E_j k_j or, with a result B3 of
+/// order 3, |e| / hypot(1, |e3| / (10 |e|)) in the norms of both.
+struct ct_tableau {
+    int stages, stride;           // A has rows of `stride` numbers
+    const double *C, *A, *E, *B3; // B3: NULL without
+    int nerror;                   // length of E and B3
+};
+
 /// One integration method: a constant table in a file of its own.
 struct ct_method {
-    const char *name;    // as in `simulation.method`
-    const char *summary; // one line for `cotree methods`
-    const char *source;  // key into docs/references.bib
+    const char *name;                 // as in `simulation.method`
+    const char *summary;              // one line for `cotree methods`
+    const char *source;               // key into docs/references.bib
+    const struct ct_tableau *tableau; // NULL: it is more than its numbers
     int order;
     int error_order; // the error of a step behaves as h^(error_order + 1), for step control
     /// Needs problem.dae, and meets the constraints by itself: the driver does not project its steps.

@@ -150,6 +150,12 @@ static void take_form(struct ct_embed *s)
     }
 }
 
+void ct_embed_stay_dense(struct ct_embed *s)
+{
+    s->is_dear = true;
+    s->has_form = false;
+}
+
 static bool is_within(double ratio, double factor)
 {
     return ratio < factor && ratio > 1 / factor;

@@ -56,6 +56,8 @@ struct ct_embed {
 struct ct_embed *ct_embed_create(struct ct_arena *arena, struct ct_ctx *ctx,
                                  struct ct_machine *m);
 
+/// Matrices only: accelerations then depend on nothing that was done before.
+void ct_embed_stay_dense(struct ct_embed *s);
 /// Operations of one ct_embed_accelerate.
 double ct_embed_operations(const struct ct_embed *s);
 /// Choose rows and columns anew at the machine's input. False with a diagnostic if the mass matrix

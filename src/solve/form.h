@@ -60,12 +60,18 @@ double ct_form_close(struct ct_form *f, struct ct_machine *m);
 /// Below this strength a form is of no use: one in so many digits is lost.
 extern const double ct_form_weakest;
 
-/// The program of an unrolled form: u', q', pivots of B' M B (nfree, positive), pivots of J_d (npivot), whose sizes
-/// times scale are strengths.
+/// The programs of an unrolled form.
+///
+///     listing   u', q', pivots of B' M B (nfree, positive), of J_d (npivot), whose sizes times scale are strengths
+///     checked   refined u' (nu) and lam (rank), residuals before and after (nu + rank each), Q, gam (rank), B (nB)
+///     closing   Phi, v (nrow each), corrections dq, du (nu each), pivots of J_d
 struct ct_form_code {
     const struct ct_listing *listing; // NULL: a form of another kind
     size_t nfree, npivot;
     const double *scale;
+    const struct ct_program *solved, *checked, *closing;
+    size_t nB;
+    double M_size, J_size; // largest entries where the form was made
 };
 struct ct_form_code ct_form_code(const struct ct_form *f);
 

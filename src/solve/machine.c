@@ -266,6 +266,17 @@ static void compile_residual(struct ct_arena *a, struct ct_machine *m, const str
     compile(a, m, in, tangent.e, tangent.n, &m->tangent);
 }
 
+static void start_input(struct ct_machine *m)
+{
+    const struct ct_equations *e = m->e;
+    memset(m->input, 0, m->ninput * sizeof *m->input);
+    for (size_t i = 0; i < m->model->nparameter; i++)
+        m->input[1 + i] = m->model->parameter[i].value;
+    for (size_t i = 0; i < e->nmemory; i++)
+        if (e->memory[i].kind == CT_MEMORY_QUATERNION && e->memory[i].place == 0)
+            m->input[m->at_memory + i] = 1;
+}
+
 struct ct_machine *ct_machine_create(struct ct_arena *a, const struct ct_model *model,
                                      const struct ct_equations *e)
 {
@@ -280,11 +291,7 @@ struct ct_machine *ct_machine_create(struct ct_arena *a, const struct ct_model *
     m->at_work = m->at_memory + e->nmemory;
     m->ninput = m->at_work + 1;
     m->input = CT_NEWN(a, double, m->ninput);
-    for (size_t i = 0; i < model->nparameter; i++)
-        m->input[1 + i] = model->parameter[i].value;
-    for (size_t i = 0; i < e->nmemory; i++)
-        if (e->memory[i].kind == CT_MEMORY_QUATERNION && e->memory[i].place == 0)
-            m->input[m->at_memory + i] = 1;
+    start_input(m);
 
     const struct inputs in = list_inputs(a, m, m->e->x);
     compile_solved(a, m, &in);
@@ -336,6 +343,12 @@ void ct_machine_prepare(struct ct_machine *m)
         prepare(all[i], m->input);
     for (struct ct_program *p = m->apart; p; p = p->next)
         prepare(p, m->input);
+}
+
+void ct_machine_reset(struct ct_machine *m)
+{
+    start_input(m);
+    ct_machine_prepare(m);
 }
 
 // ---- evaluation -------------------------------------------------------------------------------------

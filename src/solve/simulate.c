@@ -388,9 +388,30 @@ static void find_needs(struct ct_run *r)
             r->root_of[r->nroot++] = (int)i;
 }
 
-struct ct_run *ct_run_create(struct ct_ctx *ctx, struct ct_arena *a,
-                             const struct ct_model *model, const struct ct_equations *e,
-                             const struct ct_start *start)
+// To the start, assembled; rows and columns chosen there.
+static bool begin(struct ct_run *r, const struct ct_start *start)
+{
+    ct_start_apply(start, r->m, r->y);
+    ct_machine_constraint(r->m);
+    if (!ct_embed_choose(r->s))
+        return false;
+    // measured on other trees, the loops close to rounding; the rest is taken off here
+    if (ct_embed_project(r->s, 0, r->y) != CT_EVAL_OK) {
+        ct_error(r->ctx, (struct ct_mark){.file = r->model->file}, CT_E_ASSEMBLY,
+                 "the assembled start is singular: the loops cannot be held there");
+        return false;
+    }
+    if (rhs(r, 0, r->y, r->dy) != CT_EVAL_OK) {
+        ct_error(r->ctx, (struct ct_mark){.file = r->model->file}, CT_E_SINGULAR,
+                 "the accelerations at t = 0 cannot be found");
+        return false;
+    }
+    ct_modes_start(r->m, 0, r->y, r->dy);
+    return true;
+}
+
+struct ct_run *ct_run_prepare(struct ct_ctx *ctx, struct ct_arena *a,
+                              const struct ct_model *model, const struct ct_equations *e)
 {
     struct ct_run *r = CT_NEW(a, struct ct_run);
     *r = (struct ct_run){.ctx = ctx, .arena = a, .model = model, .e = e};
@@ -404,23 +425,30 @@ struct ct_run *ct_run_create(struct ct_ctx *ctx, struct ct_arena *a,
     r->scratch = CT_NEWN(a, double, 2 * r->m->nu + 2 * e->ndriver + r->m->nrow + 1);
     r->value = CT_NEWN(a, double, e->nresult + 1);
     find_needs(r);
-    ct_start_apply(start, r->m, r->y);
-    ct_machine_constraint(r->m);
-    if (!ct_embed_choose(r->s))
-        return NULL;
-    // measured on other trees, the loops close to rounding; the rest is taken off here
-    if (ct_embed_project(r->s, 0, r->y) != CT_EVAL_OK) {
-        ct_error(ctx, (struct ct_mark){.file = model->file}, CT_E_ASSEMBLY,
-                 "the assembled start is singular: the loops cannot be held there");
-        return NULL;
-    }
-    if (rhs(r, 0, r->y, r->dy) != CT_EVAL_OK) {
-        ct_error(ctx, (struct ct_mark){.file = model->file}, CT_E_SINGULAR,
-                 "the accelerations at t = 0 cannot be found");
-        return NULL;
-    }
-    ct_modes_start(r->m, 0, r->y, r->dy);
     return r;
+}
+
+struct ct_run *ct_run_create(struct ct_ctx *ctx, struct ct_arena *a,
+                             const struct ct_model *model, const struct ct_equations *e,
+                             const struct ct_start *start)
+{
+    struct ct_run *r = ct_run_prepare(ctx, a, model, e);
+    return begin(r, start) ? r : NULL;
+}
+
+bool ct_run_restart(struct ct_run *r, const struct ct_start *start)
+{
+    ct_machine_reset(r->m);
+    r->s->kappa = r->s->sigma = 0;
+    r->pending = INFINITY;
+    r->energy0 = r->energy_scale = r->pivot_most = 0;
+    r->started = false;
+    return begin(r, start);
+}
+
+enum ct_eval ct_run_rhs(struct ct_run *r, double t, const double *y, double *dy)
+{
+    return rhs(r, t, y, dy);
 }
 
 struct ct_machine *ct_run_machine(struct ct_run *r)

@@ -47,10 +47,17 @@ struct ct_run_report {
 struct ct_run *ct_run_create(struct ct_ctx *ctx, struct ct_arena *a,
                              const struct ct_model *model, const struct ct_equations *e,
                              const struct ct_start *start);
+/// Machine and embedding only: it has to be started.
+struct ct_run *ct_run_prepare(struct ct_ctx *ctx, struct ct_arena *a,
+                              const struct ct_model *model, const struct ct_equations *e);
+/// The run as new from another start, with the values that the model's parameters have now. False with a diagnostic.
+bool ct_run_restart(struct ct_run *r, const struct ct_start *start);
 struct ct_machine *ct_run_machine(struct ct_run *r);
 struct ct_embed *ct_run_embed(struct ct_run *r);
 /// State at the start: q, u, work.
 const double *ct_run_state(const struct ct_run *r);
+/// dy (out) = f(t, y), for y as ct_run_state has it.
+enum ct_eval ct_run_rhs(struct ct_run *r, double t, const double *y, double *dy);
 /// Accelerations, multipliers and results at t, y; out has nresult entries.
 enum ct_eval ct_run_results(struct ct_run *r, double t, const double *y, double *out);
 

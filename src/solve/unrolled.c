@@ -187,5 +187,7 @@ struct ct_form_code ct_form_code(const struct ct_form *form)
     if (form->kind != &ct_form_unrolled)
         return (struct ct_form_code){0};
     const struct unrolled *f = (const struct unrolled *)form;
-    return (struct ct_form_code){f->solved.listing, f->c->nfree, f->c->npivot, f->c->scale};
+    return (struct ct_form_code){f->solved.listing, f->c->nfree, f->c->npivot, f->c->scale,
+                                 &f->solved,        &f->checked, &f->closing,  f->c->nB,
+                                 f->M_size,         f->J_size};
 }

@@ -12,6 +12,8 @@
 #include "formulate/formulate.h"
 #include "solve/simulate.h"
 
+#include <cotree/cotree.h>
+
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -656,6 +658,55 @@ static void many_four_bars(int n)
     unlink(s.path);
 }
 
+// ---- parameter studies --------------------------------------------------------------------------
+
+// Seconds of integration of n single runs one after another, at values across the same range.
+static double single_runs(struct ct_ctx *ctx, const char *path, int n)
+{
+    double t = 0;
+    for (int i = 0; i < n; i++) {
+        char torque[32];
+        snprintf(torque, sizeof torque, "torque=%g", 0.4 + 0.2 * (i + 0.5) / n);
+        const char *const set[] = {torque};
+        struct ct_system *system
+            = ct_system_load(ctx, path, &(struct ct_system_options){.set = set, .nset = 1});
+        struct ct_sim *sim = ct_sim_create(ctx, system, &(struct ct_sim_options){.samples = 2});
+        const double start = now();
+        if (!ct_sim_run(ctx, sim, NULL))
+            exit(1);
+        t += now() - start;
+        ct_sim_destroy(sim);
+        ct_system_destroy(system);
+    }
+    return t;
+}
+
+// Members in lanes on one core against single runs, which are timed before and after.
+static void sweep(int members)
+{
+    const char *path = shipped("slider_crank");
+    const int n = members < 1000 ? 4 : 100;
+    char vary[64], text[96];
+    snprintf(vary, sizeof vary, "torque=0.4:0.6:%d", members);
+    const char *const list[] = {vary};
+    struct ct_ctx *ctx = ct_ctx_create();
+    struct ct_study *study = ct_study_create(
+        ctx, path, NULL, &(struct ct_study_options){.vary = list, .nvary = 1, .threads = 1});
+    double single = single_runs(ctx, path, n);
+    const double start = now();
+    if (!ct_study_run(ctx, study, NULL) || ct_study_failed(study))
+        exit(1);
+    const double lanes = (now() - start) / members;
+    single = (single + single_runs(ctx, path, n)) / (2 * n);
+    ct_study_destroy(study);
+    ct_ctx_destroy(ctx);
+    snprintf(text, sizeof text, "slider-crank, 2 s: sweep of %d, per member", members);
+    putchar('\n');
+    line(text, lanes, 0);
+    line("  single run, integration only", single, 0);
+    ratio("  single run / member", single / lanes, 3);
+}
+
 int main(int argc, char **argv)
 {
     const bool quick = argc > 1 && strcmp(argv[1], "--quick") == 0;
@@ -667,6 +718,7 @@ int main(int argc, char **argv)
     andrews();
     four_bars(1);
     four_bars(10);
+    sweep(quick ? 8 : 10000);
     if (!quick) {
         four_bars(40);
         many_four_bars(100);

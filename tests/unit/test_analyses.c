@@ -221,16 +221,17 @@ static char *row_of_masses(int n, bool is_held)
         at += (size_t)snprintf(text + at, room - at, "  m%d: {mass: 2}\n", i);
     at += (size_t)snprintf(text + at, room - at, "joints:\n");
     for (int i = 1; i <= n; i++)
-        at += (size_t)snprintf(text + at, room - at,
-                               "  r%d: {type: prismatic, from: ground, to: m%d, initial: {q: %d}}\n",
-                               i, i, i);
+        at += (size_t)snprintf(
+            text + at, room - at,
+            "  r%d: {type: prismatic, from: ground, to: m%d, initial: {q: %d}}\n", i, i, i);
     at += (size_t)snprintf(text + at, room - at, "forces:\n");
     for (int i = is_held ? 0 : 1; i < n; i++) {
         char from[16];
         snprintf(from, sizeof from, i ? "m%d" : "ground", i);
-        at += (size_t)snprintf(text + at, room - at,
-                               "  s%d: {type: spring, from: %s, to: m%d, stiffness: 800, length: 1}\n",
-                               i, from, i + 1);
+        at += (size_t)snprintf(
+            text + at, room - at,
+            "  s%d: {type: spring, from: %s, to: m%d, stiffness: 800, length: 1}\n", i, from,
+            i + 1);
     }
     return text;
 }
