@@ -36,6 +36,11 @@ static bool solve(struct ct_modes *s, size_t count)
         return false;
     if (applies)
         return true;
+    if (s->at.is_large)
+        ct_warning(&s->own, (struct ct_mark){.file = s->system->model.file}, 0,
+                   "%d speeds with dampers, moving drivers or redundant constraints: dense "
+                   "matrices, which takes long",
+                   s->at.l->nu);
     if (s->at.is_large && !ct_linear_move(s->at.l))
         return false;
     return ct_modes_solve(&s->own, a, s->at.l, &s->mode, &s->all, &s->how);
