@@ -27,7 +27,7 @@ static const double radau_least = 1e-13; // below, rounding in its iterations sh
 // reference to 2e-10, R13_d1 to 2e-11).
 static const double least_rtol = 2e-14, least_rtol_loops = 1e-13;
 // Above this tolerance high order does not pay for its twelve evaluations.
-static const double high_order_up_to = 1e-3;
+static const double high_order_up_to = 1e-4;
 static const long steps_between_looks = 32; // at the clock, for runs with a deadline
 
 // ---- results as a file --------------------------------------------------------------------------------

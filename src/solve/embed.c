@@ -700,14 +700,7 @@ enum ct_eval ct_embed_project(struct ct_embed *s, double t, double *y)
 
 double ct_embed_pivot(struct ct_embed *s)
 {
-    if (is_form_due(s) && s->is_alike) {
-        s->strength = ct_form_close(s->form[0], s->m);
-        if (is_sound(s)) {
-            follow_sigma(s);
-            return s->sigma;
-        }
-    }
-    return factor(s) ? s->sigma : 0;
+    return factor(s) ? s->sigma * fmax(1, s->kappa) : 0;
 }
 
 void ct_embed_renew(struct ct_embed *s)
@@ -716,6 +709,8 @@ void ct_embed_renew(struct ct_embed *s)
         s->strength = ct_form_close(s->form[0], s->m);
         tend_form(s);
     }
-    if (has_worn(s))
-        ct_embed_choose(s);
+    if (!s->rank || !has_worn(s))
+        return;
+    ct_machine_constraint(s->m); // closed forms leave J as it was
+    ct_embed_choose(s);
 }
