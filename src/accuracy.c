@@ -43,7 +43,9 @@ struct ct_accuracy {
     struct ct_ctx said; // what single runs say
     struct ct_system *system;
     const struct ct_accuracy_options *o; // while it works
-    struct ct_sim *sim;                  // the one that runs
+    const struct ct_accuracy_variant
+        *variant;       // of the system that runs; NULL: there is one only
+    struct ct_sim *sim; // the one that runs
     struct ct_progress progress;
     const char *name;
     double wanted;
@@ -126,6 +128,8 @@ static enum ending run_once(struct ct_accuracy *a, const struct setting *s, doub
                             struct ct_precision_point *p)
 {
     *p = (struct ct_precision_point){.method = s->method,
+                                     .elements = a->variant ? a->variant->elements : 0,
+                                     .formulation = a->variant ? a->variant->formulation : NULL,
                                      .tolerance = s->step > 0 ? s->step : s->tolerance,
                                      .has_step = s->step > 0,
                                      .error = NAN};
@@ -587,10 +591,18 @@ static bool study(struct ct_accuracy *a)
         return false;
     if (a->o->reference ? !read_reference(a, a->o->reference) : !find_reference(a))
         return false;
-    for (int i = 0; i < n; i++) {
-        ct_progress_update(&a->progress, (i + 1.) / (n + 1.));
-        if (!climb(a, method[i]))
-            return false;
+    const size_t nvariant = a->o->variant ? a->o->nvariant : 1;
+    const double all = (double)nvariant * n;
+    for (size_t v = 0; v < nvariant; v++) {
+        if (a->o->variant) {
+            a->variant = &a->o->variant[v];
+            a->system = a->variant->system;
+        }
+        for (int i = 0; i < n; i++) {
+            ct_progress_update(&a->progress, ((double)v * n + i + 1) / (all + 1));
+            if (!climb(a, method[i]))
+                return false;
+        }
     }
     if (a->uncertainty > a->wanted)
         ct_warning(
@@ -702,7 +714,9 @@ bool ct_accuracy_draw(struct ct_ctx *ctx, const struct ct_accuracy *a, const cha
 static void print_setting(const struct ct_precision_point *p, FILE *out)
 {
     char text[CT_PRECISION_NUMBER_SIZE];
-    fprintf(out, "method %s, %s %s: error %.2g in %.3g s\n", p->method,
+    char name[80];
+    ct_precision_name(name, sizeof name, p);
+    fprintf(out, "method %s, %s %s: error %.2g in %.3g s\n", name,
             p->has_step ? "step" : "tolerance", ct_precision_number(text, p->tolerance),
             p->error, p->seconds);
 }

@@ -140,7 +140,7 @@ static bool no_method(struct ct_sim *sim, const char *name, bool is_option)
         names[i + 1] = ct_methods[i]->name;
     const struct ct_mark none = {0};
     return ct_error(&sim->own, is_option ? none : sim->system->model.simulation.method_mark,
-                    is_option ? CT_E_USAGE : CT_E_LATER, "this version has no method '%s'%s",
+                    is_option ? CT_E_USAGE : CT_E_WORD, "this version has no method '%s'%s",
                     name,
                     ct_suggest_or_list(sim->own.model, name, names, (size_t)ct_nmethod + 1));
 }
@@ -255,10 +255,10 @@ struct create {
     const struct ct_sim_options *options;
 };
 
-// Implicit methods start from, and impulses at events need, the mass matrix.
-static bool needs_dynamics(const struct ct_equations *e, const struct ct_method *method)
+// Impulses at events need the mass matrix.
+static bool needs_dynamics(const struct ct_equations *e)
 {
-    return method->is_implicit || !e->solution || e->nmode || e->x->ntable;
+    return !e->solution || e->nmode || e->x->ntable;
 }
 
 static bool prepare(struct ct_sim *sim, const struct ct_sim_options *o)
@@ -269,7 +269,7 @@ static bool prepare(struct ct_sim *sim, const struct ct_sim_options *o)
     const double start = ct_clock();
     if (sim->run_options.method->is_implicit) // made once, when the first run asks for it
         ct_formulate_residual(&s->equations);
-    if (needs_dynamics(&s->equations, sim->run_options.method))
+    if (needs_dynamics(&s->equations))
         ct_formulate_dynamics(&s->equations);
     if (!ct_configuration_assemble(&sim->own, s, &sim->start))
         return false;
