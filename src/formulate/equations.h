@@ -28,6 +28,7 @@ struct ct_u {
     int q;            // the coordinate whose rate it is; -1 for angular velocities
     int joint, body;  // whose it is; the other is -1
     int beam;         // body whose elastic coordinate it belongs to; 0: none
+    bool is_slope;    // and that is the rotation of a section, no displacement
 };
 
 struct ct_entry { // of a sparse matrix

@@ -666,6 +666,30 @@ static bool march(struct ct_run *r, struct ct_problem *p, struct ct_integrate_op
     }
 }
 
+// Displacements, rotations and their rates of a beam are each measured by the largest of them: the stretch of a beam
+// is much smaller than its deflection, and matters no more.
+static const struct ct_groups *group_states(struct ct_run *r)
+{
+    struct ct_groups *g = CT_NEW(r->arena, struct ct_groups);
+    int *of = CT_NEWN(r->arena, int, r->ny);
+    const struct ct_u *before = NULL;
+    for (size_t i = 0; i < r->ny; i++)
+        of[i] = -1;
+    for (size_t k = 0; k < r->e->nu; k++) {
+        const struct ct_u *u = &r->e->u[k];
+        if (!u->beam)
+            continue;
+        if (!before || before->beam != u->beam) // a beam's coordinates follow each other
+            g->n += 4;
+        before = u;
+        of[r->e->nq + k] = g->n - (u->is_slope ? 1 : 2);
+        of[u->q] = g->n - (u->is_slope ? 3 : 4);
+    }
+    g->of = of;
+    g->size = CT_NEWN(r->arena, double, g->n + 1);
+    return g->n ? g : NULL;
+}
+
 bool ct_run_simulate(struct ct_run *r, const struct ct_run_options *o,
                      struct ct_run_report *report)
 {
@@ -703,6 +727,7 @@ bool ct_run_simulate(struct ct_run *r, const struct ct_run_options *o,
                            .ny = (int)r->ny,
                            .dae = o->method->is_implicit ? ct_dae_create(r->arena, r->s) : NULL,
                            .watched = watched,
+                           .groups = group_states(r),
                            .rhs = rhs,
                            .project = project,
                            .accepted = accepted,
