@@ -158,7 +158,9 @@ static void settle(struct ct_build *b, struct ct_flexible *f)
     for (int e = 0; e < beam->nelement; e++) {
         struct ct_span *s = &f->element[e].span;
         s->start = e ? beam->end[e - 1] : CT_EX_ZERO;
-        s->length = ct_ex_sub(b->x, beam->end[e], s->start);
+        // one and the same to the last bit, so that elements are one program
+        s->length = beam->is_even ? ct_ex_scale(b->x, 1.0 / beam->nelement, beam->length)
+                                  : ct_ex_sub(b->x, beam->end[e], s->start);
     }
 }
 
