@@ -195,14 +195,14 @@ struct ct_flexible *ct_flexible_of(const struct ct_build *b, int body)
 // ---- unknowns -------------------------------------------------------------------------------------------
 
 static int new_unknown(struct ct_build *b, struct ct_flexible *f, const char *name,
-                       bool is_slope)
+                       enum ct_elastic_kind kind)
 {
     struct ct_equations *s = b->eqs;
     struct ct_q q = {.name = name, .quaternion = -1};
     struct ct_u u = {.name = ct_arena_printf(b->arena, "%s.u", name)};
     u.joint = u.body = -1;
     u.beam = f->body;
-    u.is_slope = is_slope;
+    u.kind = kind;
     u.q = (int)s->nq;
     q.symbol = ct_ex_sym(b->x, CT_SYM_Q, name, (uint32_t)s->nq);
     u.symbol = q.rate = ct_ex_sym(b->x, CT_SYM_U, u.name, (uint32_t)s->nu);
@@ -274,7 +274,9 @@ void ct_flexible_unknowns(struct ct_build *b, struct ct_flexible *f)
                 continue;
             const int k = new_unknown(
                 b, f, ct_arena_printf(b->arena, "%s.%d.%s", f->name, node, kind_name[kind]),
-                kind >= 3);
+                !kind      ? CT_ELASTIC_ALONG
+                : kind < 3 ? CT_ELASTIC_ACROSS
+                           : CT_ELASTIC_TURN);
             struct ct_freedom *d = &f->freedom[NKIND * node + kind];
             d->value = f->elastic[k].value;
             d->rate = f->elastic[k].rate;

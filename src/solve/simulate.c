@@ -666,8 +666,8 @@ static bool march(struct ct_run *r, struct ct_problem *p, struct ct_integrate_op
     }
 }
 
-// Displacements, rotations and their rates of a beam are each measured by the largest of them: the stretch of a beam
-// is much smaller than its deflection, and matters no more.
+// Displacements of a beam along its axis, those across, rotations and the rates of each are measured by the largest of
+// their kind. Those along are much smaller than those across, but forces come from them.
 static const struct ct_groups *group_states(struct ct_run *r)
 {
     struct ct_groups *g = CT_NEW(r->arena, struct ct_groups);
@@ -680,10 +680,10 @@ static const struct ct_groups *group_states(struct ct_run *r)
         if (!u->beam)
             continue;
         if (!before || before->beam != u->beam) // a beam's coordinates follow each other
-            g->n += 4;
+            g->n += 2 * CT_NELASTIC;
         before = u;
-        of[r->e->nq + k] = g->n - (u->is_slope ? 1 : 2);
-        of[u->q] = g->n - (u->is_slope ? 3 : 4);
+        of[u->q] = g->n - 1 - (int)u->kind;
+        of[r->e->nq + k] = of[u->q] - CT_NELASTIC;
     }
     g->of = of;
     g->size = CT_NEWN(r->arena, double, g->n + 1);
