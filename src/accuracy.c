@@ -229,16 +229,16 @@ static void choose_single(struct ct_accuracy *a, const struct candidate *c, int 
 
 static bool find_reference(struct ct_accuracy *a)
 {
-    // None is a setting of the table. Loops lose digits below 1e-13, and long steps their branch; the last
+    // None is a setting of the table. Loops lose digits below 1e-13; the last
     // one is for mechanisms that no second method gets through.
     struct candidate open[NREFERENCE] = {{"dop853", 2e-14, NULL},
                                          {"dopri5", 7e-14, NULL},
                                          {"radau5", 5e-13, NULL},
                                          {"dop853", 3e-13, NULL}};
-    struct candidate loops[NREFERENCE] = {{"dopri5", 3e-13, NULL},
-                                          {"dop853", 3e-13, NULL},
+    struct candidate loops[NREFERENCE] = {{"dop853", 3e-13, NULL},
+                                          {"dopri5", 3e-13, NULL},
                                           {"radau5", 5e-13, NULL},
-                                          {"dopri5", 1.5e-12, NULL}};
+                                          {"dop853", 1.5e-12, NULL}};
     struct candidate *c = a->system->equations.nrow ? loops : open;
     a->uncertainty = INFINITY;
     for (int i = 0; i < NREFERENCE; i++) {
@@ -419,8 +419,6 @@ static bool climb_tolerances(struct ct_accuracy *a, const struct ct_method *m, d
         = {1, 1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11};
     int first, last;
     choose_powers(m, &first, &last);
-    if (a->system->equations.nrow && last > 10)
-        last = 10; // the steps of closed loops are not held to less
     struct setting s = {.method = m->name, .tolerance = a->o->run.tolerance};
     enum ending ending = DONE;
     if (s.tolerance > 0)

@@ -67,10 +67,15 @@ struct ct_sim {
     struct ct_progress *progress;
     long nstep;      // accepted so far, for deadlines
     double deadline; // on ct_clock, when the run is given up; 0: none
-    bool has_run, is_done, is_late;
+    bool has_run, is_done, is_late, is_followed;
     double time;                                      // of the last sample
     double compile, integrate, write, verify_seconds; // seconds
 };
+
+/// What the options and the model's `simulation` say about runs, into sim->run_options. Errors: E003.
+bool ct_sim_resolve(struct ct_sim *sim, const struct ct_sim_options *o);
+/// A run that has no start yet (see ct_run_restart), in a ct_sim of zeros whose context is open.
+bool ct_sim_prepare(struct ct_sim *sim, struct ct_system *sys, const struct ct_sim_options *o);
 
 /// Run work(task) with a guard: without memory false, and E001 in ctx.
 bool ct_enter(struct ct_ctx *ctx, bool (*work)(void *task), void *task);

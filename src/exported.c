@@ -108,6 +108,24 @@ static bool want_dynamics(struct ct_sim *sim)
     return sim->run != NULL;
 }
 
+// Accelerations in closed form, where the run has them.
+static void find_solution(struct work *w)
+{
+    const struct ct_embed *s = ct_run_embed(w->sim->run);
+    const struct ct_machine *m = s->m;
+    w->x.rank = (size_t)s->rank;
+    w->x.weakest = ct_form_weakest;
+    if (m->solved.nout) {
+        w->x.solved = m->solved.listing;
+    } else if (s->has_form) {
+        const struct ct_form_code code = ct_form_code(s->form[0]);
+        w->x.solved = code.listing;
+        w->x.nfree = code.nfree;
+        w->x.npivot = code.npivot;
+        w->x.scale = code.scale;
+    }
+}
+
 static bool write_c(void *task)
 {
     struct work *w = task;
@@ -127,6 +145,7 @@ static bool write_c(void *task)
                               .at_memory = m->at_memory,
                               .ninput = m->ninput,
                               .state = w->state};
+    find_solution(w);
     return make_folder(w) && record_states(w) && write_file(w, ".h", ct_export_header(a, &w->x))
         && write_file(w, ".c", ct_export_source(a, &w->x))
         && write_file(w, "_test.c", ct_export_test(a, &w->x));

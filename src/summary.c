@@ -23,12 +23,19 @@ static long operations(const struct ct_sim *sim)
         return count(&all);
     }
     const struct ct_embed *embed = ct_run_embed(sim->run);
-    if (embed->has_form) {
-        const struct ct_tape_counts all = ct_tape_counts(embed->form[0]->solved.tape);
-        return count(&all);
-    }
+    if (embed->nform)
+        return (long)embed->form[0]->operations;
     const struct ct_tape_counts c = ct_tape_counts(m->motion.tape);
     return count(&c) + (long)ct_embed_operations(embed);
+}
+
+// What finds the accelerations.
+static const char *solver(const struct ct_sim *sim)
+{
+    const struct ct_embed *embed = ct_run_embed(sim->run);
+    return ct_run_machine(sim->run)->solved.nout ? "unrolled"
+         : embed->nform                          ? embed->form[0]->kind->name
+                                                 : "dense";
 }
 
 // The report has none before the run.
@@ -194,6 +201,7 @@ static void write_work(struct ct_json *j, const struct ct_sim *sim)
     ct_json_text(j, "method_why", sim->method_why);
     ct_json_number(j, "tolerance", sim->tolerance);
     ct_json_text(j, "backend", ct_run_machine(sim->run)->backend);
+    ct_json_text(j, "solver", solver(sim));
     write_formulation(j, &sim->system->equations);
     ct_json_integer(j, "steps", r->stats.steps);
     ct_json_integer(j, "rejected_steps", r->stats.rejected_steps);
@@ -202,7 +210,7 @@ static void write_work(struct ct_json *j, const struct ct_sim *sim)
     ct_json_integer(j, "jacobians", r->stats.jacobians);
     ct_json_integer(j, "factorizations", r->factorizations);
     ct_json_object(j, "solves");
-    ct_json_integer(j, "unrolled", r->solves.unrolled);
+    ct_json_integer(j, "fixed", r->solves.fixed);
     ct_json_integer(j, "refined", r->solves.refined);
     ct_json_integer(j, "pivoted", r->solves.pivoted);
     ct_json_integer(j, "reordered", r->solves.reordered);
@@ -380,13 +388,9 @@ static void print_estimate(FILE *out, const struct ct_sim *sim)
                 e->holds_until);
 }
 
-void ct_sim_print_summary(const struct ct_sim *sim, FILE *out)
+static void print_method(FILE *out, const struct ct_sim *sim)
 {
     const struct ct_run_report *r = &sim->report;
-    fprintf(out, "%s: t = %.9g s\n", sim->system->model.name, sim->time);
-    print_freedoms(out, sim);
-    fprintf(out, "tree         %s\n", sim->system->tree.how);
-    print_trees(out, &sim->system->equations);
     fprintf(out, "method       %s (%s), ", sim->run_options.method->name, sim->method_why);
     if (sim->run_options.step > 0)
         fprintf(out, "step %g s\n", sim->run_options.step);
@@ -398,6 +402,19 @@ void ct_sim_print_summary(const struct ct_sim *sim, FILE *out)
         "operations (%s)\n",
         r->stats.steps, r->stats.rejected_steps, r->stats.inaccurate_steps,
         r->stats.evaluations, operations(sim), ct_run_machine(sim->run)->backend);
+}
+
+void ct_sim_print_summary(const struct ct_sim *sim, FILE *out)
+{
+    const struct ct_run_report *r = &sim->report;
+    fprintf(out, "%s: t = %.9g s\n", sim->system->model.name, sim->time);
+    print_freedoms(out, sim);
+    fprintf(out, "tree         %s\n", sim->system->tree.how);
+    print_trees(out, &sim->system->equations);
+    if (sim->is_followed)
+        fputs("method       motions followed, nothing integrated\n", out);
+    else
+        print_method(out, sim);
     fprintf(out, "error        energy drift %.2g, constraints %.2g, their rates %.2g\n",
             r->energy_drift, r->position_constraint, r->velocity_constraint);
     print_estimate(out, sim);
@@ -451,6 +468,18 @@ static void print_redundant(FILE *out, const struct ct_sim *sim)
     fputc('\n', out);
 }
 
+// The solver, chosen by what it is predicted to cost, and what dense matrices would.
+static void print_solver(FILE *out, const struct ct_sim *sim)
+{
+    const struct ct_machine *m = ct_run_machine(sim->run);
+    const struct ct_tape_counts motion = ct_tape_counts(m->motion.tape);
+    const long matrices = count(&motion) + (long)ct_embed_operations(ct_run_embed(sim->run));
+    fprintf(out, "solver       %s", solver(sim));
+    if (m->nrow && strcmp(solver(sim), "dense") != 0)
+        fprintf(out, "; with dense matrices an evaluation would be %ld operations", matrices);
+    fputc('\n', out);
+}
+
 static void print_beams(FILE *out, const struct ct_equations *e)
 {
     for (size_t i = 0; i < e->build->nflexible; i++) {
@@ -492,6 +521,7 @@ void ct_sim_print_check(const struct ct_sim *sim, FILE *out)
     if (e->has_dynamics)
         print_counts(out, "motion", &machine->motion);
     print_counts(out, "constraints", &machine->constraint);
+    print_solver(out, sim);
     fprintf(out, "evaluation   %ld operations, solving for accelerations included\n",
             operations(sim));
 }

@@ -119,6 +119,9 @@ static bool build(struct ct_system *s, const char *path, const struct ct_system_
                                           .with_outputs = true,
                                           .with_solution = true};
     // the start must not depend on the trees that the equations use
+    motion.more = o->columns == CT_COLUMNS_COORDINATES ? CT_MORE_COORDINATES
+                : o->columns == CT_COLUMNS_EFFORTS     ? CT_MORE_EFFORTS
+                                                       : CT_MORE_NONE;
     const struct ct_formulate_options start = {.tree = CT_TREE_JOINTS,
                                                .keep_all = o->keep_all,
                                                .measure_all = true,

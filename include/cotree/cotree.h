@@ -64,6 +64,12 @@ struct ct_system_options {
     size_t nset;
     const char *tree; /* "auto", "joints", "absolute", or a YAML file that names the branches */
     bool keep_all;    /* leave nothing out: planar mechanisms keep their spatial rows */
+    /** Columns beside the model's outputs. */
+    enum ct_columns_more {
+        CT_COLUMNS_OF_MODEL = 0,
+        CT_COLUMNS_COORDINATES, /* if it lists none: coordinates, speeds and accelerations of all joints */
+        CT_COLUMNS_EFFORTS /* efforts of motions, forces and torques of all joints */
+    } columns;
 };
 
 /**
@@ -147,6 +153,15 @@ CT_API void ct_sim_destroy(struct ct_sim *sim);
 CT_API bool ct_sim_run(struct ct_ctx *ctx, struct ct_sim *sim,
                        const struct ct_sim_results *results);
 
+/**
+ * The samples of a run whose freedoms are all driven, without integration: kinematics and inverse dynamics. Otherwise as
+ * ct_sim_run.
+ *
+ * Errors: as there; E411 when a freedom has no driver.
+ */
+CT_API bool ct_sim_follow(struct ct_ctx *ctx, struct ct_sim *sim,
+                          const struct ct_sim_results *results);
+
 /** Time of the last sample, and the value of a column there; NaN for a column that does not exist. */
 CT_API double ct_sim_time(const struct ct_sim *sim);
 CT_API double ct_sim_value(const struct ct_sim *sim, const char *column);
@@ -202,6 +217,207 @@ CT_API bool ct_accuracy_write(struct ct_ctx *ctx, const struct ct_accuracy *a,
 CT_API bool ct_accuracy_draw(struct ct_ctx *ctx, const struct ct_accuracy *a, const char *path);
 /** How good the reference is, and the cheapest setting that meets the wanted error, for people. */
 CT_API void ct_accuracy_print_summary(const struct ct_accuracy *a, FILE *out);
+
+/* ---- parameter studies ---------------------------------------------------------------------------- */
+
+struct ct_study;
+
+/** Zero: the default. */
+struct ct_study_options {
+    struct ct_sim_options run; /* of all members */
+    /** "NAME=FROM:TO:N" each: a grid whose last axis runs fastest. With sample also "NAME=FROM:TO" (uniform) and
+     *  "NAME=normal:MEAN:DEVIATION"; N is of no use then. */
+    const char *const *vary;
+    size_t nvary;
+    long sample;             /* > 0: so many random members instead of the grid */
+    unsigned long long seed; /* of the random numbers: same seed, same members */
+    long threads;            /* at most; 0: all cores. One without OpenMP. */
+    long lanes;              /* members side by side in a core: 4, or 1; 0: 4 where possible */
+};
+
+/** Where rows go. All of it may be zero. */
+struct ct_study_results {
+    const char *path; /* FILE.csv or FILE.json; "-" is standard output as CSV; NULL: no file */
+    bool resume;    /* go on with the rows of an interrupted sweep, which are in PATH.partial */
+    FILE *progress; /* a bar is shown there if it is a terminal */
+    /** Called for each member in order, one at a time but from any thread: run from 1, what varies, the outputs at the
+     *  end time, or value NULL and why it failed. Return false to stop, which is no failure. */
+    bool (*row)(void *user, long run, const double *varied, const double *value,
+                const char *message);
+    void *user;
+};
+
+/**
+ * Read a model and derive its equations once, for all members of a study.
+ *
+ * What a member gives depends neither on threads nor on other members. Where the value of a parameter decides about the
+ * equations (whether a mechanism is planar), members that vary it are derived one by one.
+ *
+ * system  in   NULL: all defaults. What varies replaces values that are set here.
+ *
+ * Errors   those of ct_system_load and of the options of runs; E003 for what varies
+ * Owner    the caller, until ct_study_destroy
+ */
+CT_API struct ct_study *ct_study_create(struct ct_ctx *ctx, const char *path,
+                                        const struct ct_system_options *system,
+                                        const struct ct_study_options *options);
+/** Accepts NULL. */
+CT_API void ct_study_destroy(struct ct_study *study);
+/**
+ * Run all members, once per sweep. results may be NULL.
+ *
+ * A member that fails is a row; the sweep fails when rows cannot be written. The file appears under its name when
+ * it is complete; until then rows are in PATH.partial, in order.
+ *
+ * Errors: E002 for the file, E003 when it cannot be resumed.
+ */
+CT_API bool ct_study_run(struct ct_ctx *ctx, struct ct_study *study,
+                         const struct ct_study_results *results);
+/** Members in all, and of those that are over, the failed ones. */
+CT_API long ct_study_count(const struct ct_study *study);
+CT_API long ct_study_failed(const struct ct_study *study);
+/** What was done and which members failed, for people. */
+CT_API void ct_study_print_summary(const struct ct_study *study, FILE *out);
+/** The same for programs: a JSON object. Errors: E002. */
+CT_API bool ct_study_write_summary(struct ct_ctx *ctx, const struct ct_study *study,
+                                   const char *path);
+
+/* ---- analyses about a configuration ------------------------------------------------------------------ */
+
+struct ct_equilibrium;
+
+/** Zero: the default. */
+struct ct_equilibrium_options {
+    /** Motions stand still where they are at t = 0. Else those with a constant rate that turn the system as a whole go
+     *  on, and the equilibrium is one in the turning frame; others stand still in any case. */
+    bool hold_drivers;
+};
+
+/**
+ * The equilibrium that a system comes to from its assembled start, without inertia: at t = 0, speeds zero.
+ *
+ * Errors   E401, E405, E410; those of assembly
+ * Owner    the caller, until ct_equilibrium_destroy
+ */
+CT_API struct ct_equilibrium *
+ct_equilibrium_create(struct ct_ctx *ctx, struct ct_system *sys,
+                      const struct ct_equilibrium_options *options);
+/** Accepts NULL. */
+CT_API void ct_equilibrium_destroy(struct ct_equilibrium *q);
+/** Value of a column; NaN for one that does not exist. */
+CT_API double ct_equilibrium_value(const struct ct_equilibrium *q, const char *column);
+/** Does no small motion about it grow? */
+CT_API bool ct_equilibrium_is_stable(const struct ct_equilibrium *q);
+/** One row of outputs, t = 0. FILE.json: an object of columns, else CSV; NULL or "-": standard output. Errors: E002. */
+CT_API bool ct_equilibrium_write(struct ct_ctx *ctx, const struct ct_equilibrium *q,
+                                 const char *path);
+/** How good it is and whether it is stable, for people. */
+CT_API void ct_equilibrium_print_summary(const struct ct_equilibrium *q, FILE *out);
+
+struct ct_modes;
+
+/** Zero: the default. */
+struct ct_modes_options {
+    const char *about; /* "initial" (NULL), "equilibrium", or a time [s] of the motion */
+    long count;        /* of rows; 10 */
+    bool hold_drivers; /* as for equilibria */
+    struct ct_sim_options run; /* of the motion up to a time */
+};
+
+/** A natural motion exp(s t): a pair of complex eigenvalues, or a real one. */
+struct ct_mode_info {
+    double frequency_hz; /* |s| / (2 pi) */
+    double omega;        /* |s| [rad/s] */
+    double damping;      /* -Re(s) / |s|; -1: grows without oscillating; 0 where s = 0 */
+    double re, im;       /* s [1/s], im >= 0 */
+};
+
+/**
+ * Natural motions of a system linearised about a configuration.
+ *
+ * Errors   E003 for options; E401, E405, E410; those of assembly and of runs
+ * Owner    the caller, until ct_modes_destroy
+ */
+CT_API struct ct_modes *ct_modes_create(struct ct_ctx *ctx, struct ct_system *sys,
+                                        const struct ct_modes_options *options);
+/** Accepts NULL. */
+CT_API void ct_modes_destroy(struct ct_modes *modes);
+/** Modes by |s|, as many as asked for or as there are; mode i, or all zeros. */
+CT_API size_t ct_modes_count(const struct ct_modes *modes);
+CT_API struct ct_mode_info ct_modes_info(const struct ct_modes *modes, size_t i);
+/** Entry of a mode's shape: how the coordinate of that name moves; the largest entry is 1. False: no such name. */
+CT_API bool ct_modes_shape(const struct ct_modes *modes, size_t i, const char *coordinate,
+                           double *re, double *im);
+/** The table; FILE.json: with shapes, else CSV; NULL or "-": standard output. Errors: E002. */
+CT_API bool ct_modes_write(struct ct_ctx *ctx, const struct ct_modes *modes, const char *path);
+/** The shapes of the first modes as SVG: frames and the lines between them, at rest and displaced. Errors: E002. */
+CT_API bool ct_modes_draw(struct ct_ctx *ctx, struct ct_modes *modes, const char *path);
+/** What the modes are about, for people. */
+CT_API void ct_modes_print_summary(const struct ct_modes *modes, FILE *out);
+
+struct ct_linearization;
+
+/** Zero: the default. */
+struct ct_linearize_options {
+    const char *about; /* as for modes */
+    /** Names separated by commas: "J.effort", "F.force.x", "T.torque.z" add to what the model says, others are its
+     *  parameters. NULL: the efforts that the model gives and the components of its forces and torques. */
+    const char *inputs;
+    bool hold_drivers;         /* as for equilibria */
+    struct ct_sim_options run; /* of the motion up to a time */
+};
+
+/**
+ * x' = A x + B u, y = C x + D u for small deviations from a configuration; y are the outputs of the model.
+ *
+ * Errors   E003 for options; E401, E405, E410, E412; those of assembly and of runs
+ * Owner    the caller, until ct_linearization_destroy
+ */
+CT_API struct ct_linearization *ct_linearize(struct ct_ctx *ctx, struct ct_system *sys,
+                                             const struct ct_linearize_options *options);
+/** Accepts NULL. */
+CT_API void ct_linearization_destroy(struct ct_linearization *s);
+/** 'A', 'B', 'C', 'D' (column-major), 'x', 'y', 'r': states, outputs and rates of the states at the configuration.
+ *  NULL for other names. */
+CT_API const double *ct_linearization_matrix(const struct ct_linearization *s, char name,
+                                             size_t *rows, size_t *columns);
+/** Name of state ('x'), input ('u') or output ('y') i; NULL beyond the last one. */
+CT_API const char *ct_linearization_name(const struct ct_linearization *s, char what, size_t i);
+/** FILE.npz for NumPy, FILE.json, else CSV of [A B; C D]; NULL or "-": CSV on standard output. Errors: E002. */
+CT_API bool ct_linearization_write(struct ct_ctx *ctx, const struct ct_linearization *s,
+                                   const char *path);
+/** Where, and the names, for people. */
+CT_API void ct_linearization_print_summary(const struct ct_linearization *s, FILE *out);
+
+struct ct_buckling;
+
+struct ct_buckling_options {
+    const char *load;  /* a force, a torque, a joint with an effort, or "gravity" */
+    long count;        /* of factors; 10 */
+    bool hold_drivers; /* as for equilibria */
+};
+
+/**
+ * Factors by which a load must be multiplied until the stiffness of the equilibrium vanishes, all other loads constant.
+ *
+ * Errors   E003 without a load; E405, E410, E413, E414; those of assembly
+ * Owner    the caller, until ct_buckling_destroy
+ */
+CT_API struct ct_buckling *ct_buckling_create(struct ct_ctx *ctx, struct ct_system *sys,
+                                              const struct ct_buckling_options *options);
+/** Accepts NULL. */
+CT_API void ct_buckling_destroy(struct ct_buckling *s);
+/** Positive factors, ascending; NaN beyond the last one. */
+CT_API size_t ct_buckling_count(const struct ct_buckling *s);
+CT_API double ct_buckling_factor(const struct ct_buckling *s, size_t i);
+/** The table; FILE.json: an object of columns, else CSV; NULL or "-": standard output. Errors: E002. */
+CT_API bool ct_buckling_write(struct ct_ctx *ctx, struct ct_buckling *s, const char *path);
+/** The lowest frequencies (count of them; 3) at 21 factors from 0 to the first one; negative where a motion grows
+ *  without oscillating. Files as above. */
+CT_API bool ct_buckling_write_curve(struct ct_ctx *ctx, struct ct_buckling *s, const char *path,
+                                    long count);
+/** How the factors were found, for people. */
+CT_API void ct_buckling_print_summary(const struct ct_buckling *s, FILE *out);
 
 /* ---- what there is ------------------------------------------------------------------------------- */
 

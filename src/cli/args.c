@@ -7,13 +7,27 @@
 #include <stdlib.h>
 #include <string.h>
 
-const struct cli_command *const cli_commands[]
-    = {&cli_simulate, &cli_equations,  &cli_graph,   &cli_accuracy, &cli_check,
-       &cli_export,   &cli_components, &cli_methods, &cli_schema,   NULL};
+const struct cli_command *const cli_commands[] = {&cli_simulate,
+                                                  &cli_equations,
+                                                  &cli_graph,
+                                                  &cli_accuracy,
+                                                  &cli_sweep,
+                                                  &cli_check,
+                                                  &cli_equilibrium,
+                                                  &cli_modes,
+                                                  &cli_linearize,
+                                                  &cli_buckling,
+                                                  &cli_kinematics,
+                                                  &cli_inverse,
+                                                  &cli_export,
+                                                  &cli_components,
+                                                  &cli_methods,
+                                                  &cli_schema,
+                                                  NULL};
 
 // ---- options --------------------------------------------------------------------------------------------
 
-enum kind { FLAG, TEXT, LIST, NUMBER, INTEGER };
+enum kind { FLAG, TEXT, LIST, NUMBER, INTEGER, COUNT_OF, SEED };
 
 static const struct option {
     const char *name;
@@ -41,14 +55,39 @@ static const struct option {
      "auto, or a name that 'cotree methods' lists"},
     {"step", 0, "H", NUMBER, FIELD(step), CLI_RUNS, true,
      "fixed step in seconds, without step control"},
-    {"until", 0, "T", NUMBER, FIELD(until), CLI_RUNS, true,
+    {"until", 0, "T", NUMBER, FIELD(until), CLI_TIMES, true,
      "end time in seconds; the spacing of samples is kept"},
-    {"samples", 0, "N", INTEGER, FIELD(samples), CLI_RUNS, true,
+    {"samples", 0, "N", INTEGER, FIELD(samples), CLI_TIMES, true,
      "number of samples, both ends included"},
     {"backend", 0, "CHOICE", TEXT, FIELD(backend), CLI_RUNS, true,
      "what evaluates the equations: auto, native or tape"},
-    {"summary", 0, "FILE.json", TEXT, FIELD(summary), CLI_SIMULATE | CLI_CHECK, true,
-     "what the run did, for programs"},
+    {"summary", 0, "FILE.json", TEXT, FIELD(summary),
+     CLI_SIMULATE | CLI_CHECK | CLI_DRIVEN | CLI_SWEEP, true, "what the run did, for programs"},
+    {"about", 0, "WHERE", TEXT, FIELD(about), CLI_ABOUT, false,
+     "initial, equilibrium, or a time in seconds"},
+    {"inputs", 0, "NAMES", TEXT, FIELD(inputs), CLI_LINEARIZE, false,
+     "J.effort, F.force.x, T.torque.z, parameters; a list"},
+    {"load", 0, "NAME", TEXT, FIELD(load), CLI_BUCKLING, false,
+     "a force, a torque, a joint with an effort, or gravity"},
+    {"curve", 0, "FILE.csv", TEXT, FIELD(curve), CLI_BUCKLING, false,
+     "the lowest frequencies against the load factor"},
+    {"count", 0, "N", COUNT_OF, FIELD(count), CLI_MODES | CLI_BUCKLING, false,
+     "number of rows, the lowest ones; 10"},
+    {"hold-drivers", 0, NULL, FLAG, FIELD(hold_drivers), CLI_STATIC, false,
+     "equilibrium: motions stand still, even steady ones"},
+    {"vary", 0, "NAME=FROM:TO:N", LIST, FIELD(vary), CLI_SWEEP, false,
+     "N values of a parameter, both ends included;\n"
+     "may be repeated"},
+    {"sample", 0, "K", COUNT_OF, FIELD(sample), CLI_SWEEP, false,
+     "K random members instead of a grid"},
+    {"seed", 0, "S", SEED, FIELD(seed), CLI_SWEEP, false,
+     "of the random numbers; 0. Same seed, same members"},
+    {"resume", 0, NULL, FLAG, FIELD(resume), CLI_SWEEP, false,
+     "go on with the rows in FILE.partial"},
+    {"threads", 0, "N", COUNT_OF, FIELD(threads), CLI_SWEEP, false,
+     "at most so many; all cores"},
+    {"lanes", 0, "N", COUNT_OF, FIELD(lanes), CLI_SWEEP, false,
+     "members side by side in a core: 4, or 1; 4 where it can be"},
     {"verify", 0, NULL, FLAG, FIELD(verify), CLI_SIMULATE, false,
      "a second run; the difference tells the global error"},
     {"error", 0, "E", NUMBER, FIELD(error), CLI_ACCURACY, false,
@@ -57,6 +96,7 @@ static const struct option {
      "what to compare with, as simulate writes it"},
     {"plot", 0, "FILE.svg", TEXT, FIELD(plot), CLI_ACCURACY, false,
      "error against seconds, a line for each method"},
+    {"plot", 0, "FILE.svg", TEXT, FIELD(plot), CLI_MODES, false, "shapes of the first modes"},
     {"show", 0, "STAGES", TEXT, FIELD(show), CLI_EQUATIONS, false,
      "terminal,graph,tree,cutset,circuit,reduced;\n"
      "standard is tree,reduced"},
@@ -107,13 +147,27 @@ static bool parse_number(const char *text, double *v)
     return end != text && !*end && isfinite(*v) && *v > 0;
 }
 
-static bool parse_integer(const char *text, long *v)
+static bool parse_integer(const char *text, long least, long *v)
 {
-    const long least = 2, most = 1000000000; // both ends; what the model file allows
+    const long most = 1000000000; // what the model file allows
     char *end;
     errno = 0;
     *v = strtol(text, &end, 10);
     return end != text && !*end && !errno && *v >= least && *v <= most;
+}
+
+static bool parse_seed(const char *text, unsigned long long *v)
+{
+    char *end;
+    errno = 0;
+    *v = strtoull(text, &end, 10);
+    return text[0] >= '0' && text[0] <= '9' && !*end && !errno;
+}
+
+static bool wrong_value(const struct cli_command *c, const struct option *o, const char *value,
+                        const char *wanted)
+{
+    return cli_complain(c, "--%s is '%s'; %s is wanted", o->name, value, wanted), false;
 }
 
 static bool store(const struct cli_command *c, const struct option *o, const char *value,
@@ -127,19 +181,23 @@ static bool store(const struct cli_command *c, const struct option *o, const cha
     case TEXT:
         *(const char **)field = value;
         return *value || (cli_complain(c, "--%s is empty", o->name), false);
-    case LIST:
-        args->set[args->nset++] = value;
+    case LIST: {
+        struct cli_list *list = field;
+        list->text[list->n++] = value;
         return true;
+    }
     case NUMBER:
         return parse_number(value, field)
-            || (cli_complain(c, "--%s is '%s'; a number greater than 0 is wanted", o->name,
-                             value),
-                false);
-    default:
-        return parse_integer(value, field)
-            || (cli_complain(c, "--%s is '%s'; an integer from 2 to 1000000000 is wanted",
-                             o->name, value),
-                false);
+            || wrong_value(c, o, value, "a number greater than 0");
+    case SEED:
+        return parse_seed(value, field)
+            || wrong_value(c, o, value, "an integer from 0 to 18446744073709551615");
+    case COUNT_OF:
+        return parse_integer(value, 1, field)
+            || wrong_value(c, o, value, "an integer from 1 to 1000000000");
+    default: // both ends
+        return parse_integer(value, 2, field)
+            || wrong_value(c, o, value, "an integer from 2 to 1000000000");
     }
 }
 
@@ -208,7 +266,7 @@ static bool parse_short(struct parser *p, const char *text)
 
 static bool parse_command(struct parser *p, const char *name)
 {
-    const char *names[16];
+    const char *names[32];
     size_t n = 0;
     for (const struct cli_command *const *c = cli_commands; *c; c++) {
         if (strcmp((*c)->name, name) == 0) {
@@ -266,9 +324,11 @@ static bool check_backend(const struct parser *p)
 
 bool cli_parse(int argc, char **argv, const struct cli_command **command, struct cli_args *args)
 {
-    *args = (struct cli_args){.set = calloc((size_t)argc + 1, sizeof *args->set)};
+    *args = (struct cli_args){.set.text = calloc((size_t)argc + 1, sizeof(char *)),
+                              .vary.text = calloc((size_t)argc + 1, sizeof(char *))};
     struct parser p = {.argc = argc, .argv = argv, .args = args};
-    bool ok = args->set || (fputs("cotree: error: out of memory\n", stderr), false);
+    const bool has_room = args->set.text && args->vary.text;
+    bool ok = has_room || (fputs("cotree: error: out of memory\n", stderr), false);
     ok = ok && parse_all(&p);
     *command = p.command;
     if (!ok || args->help || args->version)
@@ -284,7 +344,8 @@ bool cli_parse(int argc, char **argv, const struct cli_command **command, struct
 
 void cli_args_finish(struct cli_args *args)
 {
-    free(args->set);
+    free(args->set.text);
+    free(args->vary.text);
 }
 
 // ---- help -----------------------------------------------------------------------------------------------------

@@ -17,12 +17,16 @@ enum { CLI_DONE = 0, CLI_FAILED = 1, CLI_USAGE = 2 };
 /// What the command line says; zero where it says nothing.
 struct cli_args {
     const char *model;
-    const char *output, *summary, *format, *show, *tree, *method, *backend, *reference, *plot;
-    const char **set;
-    size_t nset;
+    const char *output, *summary, *format, *show, *tree, *method, *backend, *reference, *plot,
+        *about, *inputs, *load, *curve;
+    struct cli_list { // what is given several times
+        const char **text;
+        size_t n;
+    } set, vary;
     double tolerance, step, until, error;
-    long samples;
-    bool keep_all, verify, quiet, help, version;
+    long samples, count, sample, threads, lanes;
+    unsigned long long seed;
+    bool hold_drivers, keep_all, resume, verify, quiet, help, version;
 };
 
 /// One bit for each command, for the table of options.
@@ -36,9 +40,20 @@ enum cli_use {
     CLI_SCHEMA = 64,
     CLI_EXPORT = 128,
     CLI_ACCURACY = 256,
+    CLI_EQUILIBRIUM = 512,
+    CLI_MODES = 1024,
+    CLI_LINEARIZE = 2048,
+    CLI_KINEMATICS = 4096,
+    CLI_INVERSE = 8192,
+    CLI_BUCKLING = 16384,
+    CLI_SWEEP = 32768,
     CLI_LISTS = CLI_COMPONENTS | CLI_METHODS | CLI_SCHEMA,
-    CLI_RUNS = CLI_SIMULATE | CLI_ACCURACY,
-    CLI_MODELS = CLI_RUNS | CLI_EQUATIONS | CLI_GRAPH | CLI_CHECK | CLI_EXPORT
+    CLI_DRIVEN = CLI_KINEMATICS | CLI_INVERSE,
+    CLI_ABOUT = CLI_MODES | CLI_LINEARIZE, // a configuration
+    CLI_STATIC = CLI_ABOUT | CLI_EQUILIBRIUM | CLI_BUCKLING,
+    CLI_RUNS = CLI_SIMULATE | CLI_ACCURACY | CLI_SWEEP,
+    CLI_TIMES = CLI_RUNS | CLI_DRIVEN,
+    CLI_MODELS = CLI_TIMES | CLI_STATIC | CLI_EQUATIONS | CLI_GRAPH | CLI_CHECK | CLI_EXPORT
 };
 
 struct cli_command {
@@ -51,7 +66,8 @@ struct cli_command {
 };
 
 extern const struct cli_command cli_simulate, cli_equations, cli_graph, cli_accuracy, cli_check,
-    cli_export, cli_components, cli_methods, cli_schema;
+    cli_equilibrium, cli_modes, cli_linearize, cli_kinematics, cli_inverse, cli_buckling,
+    cli_sweep, cli_export, cli_components, cli_methods, cli_schema;
 /// All commands in the order of --help; NULL at the end.
 extern const struct cli_command *const cli_commands[];
 
@@ -65,8 +81,13 @@ void cli_print_help(FILE *out, const struct cli_command *command);
 int cli_complain(const struct cli_command *command, const char *fmt, ...)
     __attribute__((format(printf, 2, 3)));
 
+/// What the arguments say about systems.
+struct ct_system_options cli_system_options(const struct cli_args *args);
 /// The system that the arguments ask for, or NULL.
 struct ct_system *cli_load(struct ct_ctx *ctx, const struct cli_args *args);
+/// The same with further columns.
+struct ct_system *cli_load_with(struct ct_ctx *ctx, const struct cli_args *args,
+                                enum ct_columns_more columns);
 /// What the arguments say about runs.
 struct ct_sim_options cli_sim_options(const struct cli_args *args);
 /// A run with the options of the arguments, or NULL.
@@ -75,6 +96,9 @@ struct ct_sim *cli_sim(struct ct_ctx *ctx, struct ct_system *sys, const struct c
 /// The format that --format or the suffix of -o asks for; suffixes[i] belongs to formats[i].
 const char *cli_format(const struct cli_args *args, const char *const *formats,
                        const char *const *suffixes, size_t n);
+
+/// The model's file name with another suffix (".csv"), in the current folder; to be freed. NULL without memory.
+char *cli_standard_path(const char *model, const char *suffix);
 
 /// Text that appears under its name when it is complete; path NULL or "-": standard output.
 struct cli_output {

@@ -6,13 +6,25 @@
 #include <string.h>
 #include <sys/stat.h>
 
+struct ct_system_options cli_system_options(const struct cli_args *args)
+{
+    return (struct ct_system_options){.set = args->set.text,
+                                      .nset = args->set.n,
+                                      .tree = args->tree,
+                                      .keep_all = args->keep_all};
+}
+
 struct ct_system *cli_load(struct ct_ctx *ctx, const struct cli_args *args)
 {
-    return ct_system_load(ctx, args->model,
-                          &(struct ct_system_options){.set = args->set,
-                                                      .nset = args->nset,
-                                                      .tree = args->tree,
-                                                      .keep_all = args->keep_all});
+    return cli_load_with(ctx, args, CT_COLUMNS_OF_MODEL);
+}
+
+struct ct_system *cli_load_with(struct ct_ctx *ctx, const struct cli_args *args,
+                                enum ct_columns_more columns)
+{
+    struct ct_system_options options = cli_system_options(args);
+    options.columns = columns;
+    return ct_system_load(ctx, args->model, &options);
 }
 
 struct ct_sim_options cli_sim_options(const struct cli_args *args)
@@ -45,6 +57,19 @@ const char *cli_format(const struct cli_args *args, const char *const *formats,
 }
 
 // ---- files ---------------------------------------------------------------------------------------------
+
+char *cli_standard_path(const char *model, const char *suffix)
+{
+    const char *slash = strrchr(model, '/');
+    const char *base = slash ? slash + 1 : model;
+    const char *dot = strrchr(base, '.');
+    const size_t n = dot && dot > base ? (size_t)(dot - base) : strlen(base);
+    const size_t size = n + strlen(suffix) + 1;
+    char *path = malloc(size);
+    if (path)
+        snprintf(path, size, "%.*s%s", (int)n, base, suffix);
+    return path;
+}
 
 static void cannot(const char *what, const char *path, int error)
 {

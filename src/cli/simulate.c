@@ -2,27 +2,10 @@
 #include "cli/cli.h"
 
 #include <stdlib.h>
-#include <string.h>
-
-// The model's file name with .csv, in the current folder; to be freed.
-static char *standard_path(const char *model)
-{
-    const char *slash = strrchr(model, '/');
-    const char *base = slash ? slash + 1 : model;
-    const char *dot = strrchr(base, '.');
-    const size_t n = dot && dot > base ? (size_t)(dot - base) : strlen(base);
-    char *path = malloc(n + sizeof ".csv");
-    if (path) {
-        // NOLINTNEXTLINE(bugprone-not-null-terminated-result): the suffix ends it
-        memcpy(path, base, n);
-        memcpy(path + n, ".csv", sizeof ".csv");
-    }
-    return path;
-}
 
 static bool simulate(struct ct_ctx *ctx, struct ct_sim *sim, const struct cli_args *args)
 {
-    char *standard = args->output ? NULL : standard_path(args->model);
+    char *standard = args->output ? NULL : cli_standard_path(args->model, ".csv");
     const char *path = args->output ? args->output : standard;
     const struct ct_sim_results results
         = {.path = path ? path : "-", .progress = args->quiet ? NULL : stderr};

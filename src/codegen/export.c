@@ -101,8 +101,9 @@ static void put_layout(struct text *t, const struct ct_export *x)
     put_constant(t, "OUT_J2", 2 * e->nrow, "J again");
     put_constant(t, "NCONSTRAINT", x->constraint->nout, "");
     put(t, "\n    /* doubles of work for accelerations */\n");
-    const size_t n = e->nu + e->nrow;
-    put_constant(t, "NWORK", x->motion->nout + n * (n + 2), "");
+    const size_t n = e->nu + e->nrow, all = x->motion->nout + n * (n + 2);
+    const size_t fixed = x->solved ? x->solved->nout : 0;
+    put_constant(t, "NWORK", all > fixed ? all : fixed, "");
     put(t, "};\n\n");
 }
 
@@ -179,7 +180,9 @@ static const char solver[]
       "    enum { n = $_NU + $_NROW, m = n + 1 };\n"
       "    double *const out = work, *const K = work + $_NMOTION, *const x = K + n * m;\n"
       "    double largest = 0;\n"
-      "    int row[n + 1], column[n + 1], i, j, k, rank;\n"
+      "    int row[n + 1], column[n + 1], i, j, k, rank = fixed_pivots(in, a, work);\n"
+      "    if (rank)\n"
+      "        return rank;\n"
       "    @_motion(in, out);\n"
       "    for (i = 0; i < n * m; i++)\n"
       "        K[i] = 0;\n"
@@ -235,6 +238,27 @@ static const char solver[]
       "    return rank;\n"
       "}\n";
 
+// The same with the pivots of the start, where these are large enough; 0 if they are not.
+static const char fixed[]
+    = "static int fixed_pivots(const double *in, double *a, double *out)\n"
+      "{\n"
+      "    const double *const inertia = out + $_NU + $_NQ, *const pivot = inertia + nfree;\n"
+      "    int i;\n"
+      "    @_solved(in, out);\n"
+      "    for (i = 0; i < nfree; i++)\n"
+      "        if (!(inertia[i] > 0))\n"
+      "            return 0;\n"
+      "    for (i = 0; i < npivot; i++)\n"
+      "        if (!(fabs(pivot[i]) * scale[i] > weakest))\n"
+      "            return 0;\n"
+      "    for (i = 0; i < $_NU; i++) {\n"
+      "        if (!isfinite(out[i]))\n"
+      "            return 0;\n"
+      "        a[i] = out[i];\n"
+      "    }\n"
+      "    return rank_fixed;\n"
+      "}\n\n";
+
 static void put_program(struct text *t, const struct ct_export *x, const char *name,
                         const struct ct_listing *l)
 {
@@ -242,6 +266,22 @@ static void put_program(struct text *t, const struct ct_export *x, const char *n
         = {.name = ct_arena_printf(t->arena, "%s_%s", x->name, name), .title = name};
     put(t, ct_c_listing(t->arena, l, &o));
     put(t, "\n");
+}
+
+static void put_fixed(struct text *t, const struct ct_export *x)
+{
+    if (!x->solved || !x->e->nu) {
+        put(t, "static int fixed_pivots(const double *in, double *a, double *out)\n{\n"
+               "    (void)in;\n    (void)a;\n    (void)out;\n    return 0;\n}\n\n");
+        return;
+    }
+    put_program(t, x, "solved", x->solved);
+    putf(t, "enum { nfree = %zu, npivot = %zu, rank_fixed = %zu };\n", x->nfree, x->npivot,
+         x->e->nu + x->rank);
+    put(t, "static const double scale[] = ");
+    put_numbers(t, x->scale, x->npivot);
+    putf(t, ";\nstatic const double weakest = %s;\n\n", ct_number_c(t->arena, x->weakest));
+    put_named(t, fixed);
 }
 
 const char *ct_export_source(struct ct_arena *a, const struct ct_export *x)
@@ -259,6 +299,8 @@ const char *ct_export_source(struct ct_arena *a, const struct ct_export *x)
     put_named(&t, "const double @_start[$_NINPUT] = ");
     put_numbers(&t, x->state[0].input, x->ninput);
     put(&t, ";\n\n");
+    if (e->nu)
+        put_fixed(&t, x);
     put_named(&t, e->nu ? solver
                         : "int @_accelerations(const double *in, double *a, double *work)\n{\n"
                           "    (void)in;\n    (void)a;\n    (void)work;\n    return 0;\n}\n");

@@ -22,6 +22,13 @@ struct ct_export {
     const struct ct_equations *e;
     // outputs: M, Q, J, gam, q' and phi, v, J; inputs in one layout
     const struct ct_listing *motion, *constraint;
+    // u', q', then pivots that must be positive (nfree) and pivots whose sizes times scale must exceed the weakest
+    // (npivot): where they do not, accelerations are found from the motion program. NULL: everywhere
+    const struct ct_listing *solved;
+    size_t nfree, npivot;
+    const double *scale;
+    double weakest;
+    size_t rank; // of the constraints
     size_t at_q, at_u, at_mode, at_memory, ninput;
     const struct ct_export_state *state; // the first one is the start
     size_t nstate;

@@ -85,7 +85,8 @@ struct ct_model {
     struct ct_output *output;
     size_t noutput, output_cap;
     struct ct_simulation simulation;
-    double *value;                   // by number of symbol: t (0) and the parameters
+    unsigned char *decided; // by number of symbol: a count depends on it; NULL: none does
+    double *value;          // by number of symbol: t (0) and the parameters
     struct ct_names parameter_index; // names -> indices
     struct ct_names frame_index, body_index, joint_index, force_index;
 };

@@ -565,6 +565,18 @@ static bool read_choices(struct ct_reader *r, const struct ct_node *node,
     return ok;
 }
 
+// A count decides about the equations: keep account of the parameters in it.
+static bool read_deciding(struct ct_reader *r, ct_ex e, double *v)
+{
+    struct ct_model *m = r->m;
+    if (!m->decided)
+        m->decided = CT_NEWN(r->a, unsigned char, m->x->nsym);
+    m->x->decided = m->decided;
+    const bool ok = ct_read_number(r, e, v);
+    m->x->decided = NULL;
+    return ok;
+}
+
 bool ct_read_count(struct ct_reader *r, const struct ct_node *node, const char *name,
                    long least, long *count)
 {
@@ -572,7 +584,7 @@ bool ct_read_count(struct ct_reader *r, const struct ct_node *node, const char *
     ct_ex e;
     double v;
     *count = least;
-    if (!ct_read_expr(r, node, 0, "", &e) || !ct_read_number(r, e, &v))
+    if (!ct_read_expr(r, node, 0, "", &e) || !read_deciding(r, e, &v))
         return false;
     // an integer computed from parameters: n * eps of rounding
     if (fabs(v - round(v)) > 1e-9 * fabs(v))

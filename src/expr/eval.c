@@ -121,8 +121,11 @@ double ct_ex_value(const struct ct_exs *x, ct_ex a, const double *value)
     double v[3] = {0};
     if (ct_ex_is_const(x, a, v))
         return v[0];
-    if (n->op == CT_OP_SYM)
+    if (n->op == CT_OP_SYM) {
+        if (x->decided)
+            x->decided[n->a] = 1;
         return value[n->a];
+    }
     const uint32_t arg[3] = {n->a, n->b, n->c};
     for (int i = 0; i < ct_op_info[n->op].narg; i++)
         v[i] = ct_ex_value(x, (ct_ex){arg[i]}, value);

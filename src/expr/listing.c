@@ -286,20 +286,30 @@ static void put_prologue_first(struct lister *s)
 // From so many on, all at once take less time than each by itself.
 static const size_t several_angles = 3;
 
-static void name_angles(struct ct_listing *l)
+static void name_angles(struct ct_listing *l, size_t several)
 {
     size_t n = 0;
     for (size_t i = l->nprologue; i < l->nins; i++) {
         const uint32_t op = l->ins[i].op;
         n += op == CT_OP_SIN || op == CT_OP_COS || op == CT_OP_SINCOS;
     }
-    for (size_t i = l->nprologue; i < l->nins && n >= several_angles; i++) {
+    for (size_t i = l->nprologue; i < l->nins && n >= several; i++) {
         uint32_t *op = &l->ins[i].op;
         *op = *op == CT_OP_SIN    ? CT_OP_ANGLE_SIN
             : *op == CT_OP_COS    ? CT_OP_ANGLE_COS
             : *op == CT_OP_SINCOS ? CT_OP_ANGLE_SINCOS
                                   : *op;
     }
+}
+
+const struct ct_listing *ct_listing_for_lanes(struct ct_arena *a, const struct ct_listing *l)
+{
+    struct ct_listing *copy = CT_NEW(a, struct ct_listing);
+    *copy = *l;
+    copy->ins = CT_NEWN(a, struct ct_instruction, l->nins + 1);
+    memcpy(copy->ins, l->ins, l->nins * sizeof *l->ins);
+    name_angles(copy, 1);
+    return copy;
 }
 
 bool ct_listing_has_angles(const struct ct_listing *l)
@@ -328,7 +338,7 @@ const struct ct_listing *ct_listing_create(struct ct_arena *a, const struct ct_e
     if (fuse == CT_FUSE_YES)
         fuse_products(&s);
     put_prologue_first(&s);
-    name_angles(l);
+    name_angles(l, several_angles);
     for (size_t i = l->nprologue; i < l->nins; i++)
         count_op(&l->counts, l->ins[i].op);
     // the points of a table stay where they are, the list of tables may move

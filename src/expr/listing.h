@@ -74,6 +74,10 @@ const struct ct_listing *ct_listing_create(struct ct_arena *a, const struct ct_e
 /// The same with the products of the body fused. Cost: instructions.
 const struct ct_listing *ct_listing_fuse(struct ct_arena *a, const struct ct_listing *l);
 
+/// The same with all sines and cosines by the kernel that takes several angles at once, which is worth while in lanes even
+/// for a single one. Results may differ from those of l in the last place.
+const struct ct_listing *ct_listing_for_lanes(struct ct_arena *a, const struct ct_listing *l);
+
 /// use[start[v] ... start[v + 1]): instructions that read value v, ascending; one that reads it twice
 /// is twice in.
 struct ct_uses {

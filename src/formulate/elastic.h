@@ -78,6 +78,18 @@ void ct_dof_push_pair(struct ct_build *b, const struct ct_flexible *f, int e, in
 void ct_dof_push_column(struct ct_build *b, const struct ct_flexible *f, int e, int j,
                         ct_ex3 moved, ct_ex3 swept, struct ct_columns *out);
 
+/// Stiffness and mass of an element at rest by its dofs; those between stretch and bending are zero.
+void ct_element_matrices(struct ct_build *b, const struct ct_flexible *f, int e,
+                         ct_ex K[CT_DOF][CT_DOF], ct_ex M[CT_DOF][CT_DOF]);
+/// Shapes that stand for the nodal freedoms of a beam.
+struct ct_shapes {
+    int n, nshape,
+        nstatic; // freedoms; shapes, the static ones (of freedom[0], freedom[1] ...) first
+    int *freedom;
+    double *shape; // n x nshape
+};
+/// Shapes of `modes: n` (flexible_modes.c).  Errors: CT_E_BEAM.
+bool ct_flexible_reduce(struct ct_build *b, struct ct_flexible *f, struct ct_shapes *out);
 /// Rows of the beam's own stiffness and damping.
 void ct_stiffness_rows(struct ct_build *b, const struct ct_flexible *f, ct_ex *row);
 

@@ -1,6 +1,8 @@
 // Stiffness and damping of beams; see elastic.h.
 #include "formulate/elastic.h"
 
+#include <string.h>
+
 enum ct_rule ct_flexible_mass_rule(const struct ct_beam *beam)
 {
     return beam->is_lumped                        ? CT_RULE_ENDS
@@ -87,6 +89,42 @@ static struct plane_matrices plane_matrices(struct ct_build *b, const struct ct_
     return s;
 }
 
+// Two dofs that a constant k times the slopes of their shapes holds, with m per length: stretch and twist.
+static void line_matrices(struct ct_build *b, const struct ct_flexible *f, int e, int first,
+                          ct_ex k, ct_ex m, ct_ex K[CT_DOF][CT_DOF], ct_ex M[CT_DOF][CT_DOF])
+{
+    for (int i = 0; i < 2; i++)
+        for (int j = 0; j < 2; j++) {
+            const struct ct_shape di = ct_shape_slope(&f->linear[i]),
+                                  dj = ct_shape_slope(&f->linear[j]);
+            K[first + i][first + j] = ct_flexible_integral(b, f, e, k, &di, &dj,
+                                                           ct_flexible_stiffness_rule(f->beam));
+            M[first + i][first + j] = ct_flexible_integral(
+                b, f, e, m, &f->linear[i], &f->linear[j], ct_flexible_mass_rule(f->beam));
+        }
+}
+
+void ct_element_matrices(struct ct_build *b, const struct ct_flexible *f, int e,
+                         ct_ex K[CT_DOF][CT_DOF], ct_ex M[CT_DOF][CT_DOF])
+{
+    struct ct_exs *x = b->x;
+    const struct ct_beam *beam = f->beam;
+    memset(K, 0, sizeof(ct_ex[CT_DOF][CT_DOF]));
+    memset(M, 0, sizeof(ct_ex[CT_DOF][CT_DOF]));
+    line_matrices(b, f, e, 0, ct_ex_mul(x, beam->E, beam->area), beam->mass_per_length, K, M);
+    line_matrices(b, f, e, CT_PLACE_DOF, ct_ex_mul(x, beam->G, beam->J),
+                  ct_flexible_rotary(f, 0).value, K, M);
+    for (int plane = 0; plane < 2; plane++) {
+        const int first = plane ? 6 : 2;
+        const struct plane_matrices s = plane_matrices(b, f, e, plane);
+        for (int i = 0; i < 4; i++)
+            for (int j = 0; j < 4; j++) {
+                K[first + i][first + j] = s.K[i][j];
+                M[first + i][first + j] = s.M[i][j];
+            }
+    }
+}
+
 static ct_ex product(struct ct_build *b, const ct_ex row[4], const ct_ex *v)
 {
     ct_ex sum = CT_EX_ZERO;
@@ -94,6 +132,7 @@ static ct_ex product(struct ct_build *b, const ct_ex row[4], const ct_ex *v)
         sum = ct_ex_add(b->x, sum, ct_ex_mul(b->x, row[i], v[i]));
     return sum;
 }
+
 // What one element adds: rows of its dofs, strain energy, twice the power its damping takes.
 struct element_force {
     ct_ex row[CT_DOF];

@@ -21,8 +21,13 @@ struct ct_q {
     int quaternion; // -1, or which of the four numbers of a quaternion this is
 };
 
-/// What elastic coordinates of a beam are: along its axis, across, rotations of sections.
-enum ct_elastic_kind { CT_ELASTIC_ALONG, CT_ELASTIC_ACROSS, CT_ELASTIC_TURN, CT_NELASTIC };
+/// What elastic coordinates of a beam are: along its axis, across, rotations of sections; shares of modes.
+enum ct_elastic_kind {
+    CT_ELASTIC_ALONG,
+    CT_ELASTIC_ACROSS,
+    CT_ELASTIC_TURN,
+    CT_ELASTIC_MODE,
+};
 
 struct ct_u {
     const char *name; // "crank.u"
@@ -90,6 +95,13 @@ struct ct_residual {
     size_t ndq, ndu, nda, ndv;
 };
 
+/// Results beside the outputs of the model.
+enum ct_more_outputs {
+    CT_MORE_NONE,
+    CT_MORE_COORDINATES, // if the model lists no outputs: coordinates, speeds, accelerations of all joints
+    CT_MORE_EFFORTS // efforts of motions, forces and torques of all joints
+};
+
 /// Validity indicator of a linear beam.
 struct ct_validity {
     const char *beam;
@@ -139,6 +151,7 @@ struct ct_equations {
     size_t ndriver, driver_cap;
     struct ct_result *result; // outputs, one per column
     size_t nresult, result_cap;
+    enum ct_more_outputs more; // among them
     ct_ex work_symbol;
     ct_ex power; // d(work)/dt, in terms of u' and lam where drivers push; 0 when nothing works
     ct_ex kinetic, potential, strain; // strain: of beams

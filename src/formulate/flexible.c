@@ -1,4 +1,5 @@
 // See flexible.h.
+#include "formulate/elastic.h"
 #include "formulate/excite.h"
 #include "formulate/topology.h"
 
@@ -18,6 +19,11 @@ static unsigned family_of(int kind)
         = {CT_BEAM_AXIAL,   CT_BEAM_BENDING_Z, CT_BEAM_BENDING_Y,
            CT_BEAM_TORSION, CT_BEAM_BENDING_Y, CT_BEAM_BENDING_Z};
     return family[kind];
+}
+
+static enum ct_elastic_kind sort_of(int kind)
+{
+    return kind == U ? CT_ELASTIC_ALONG : kind < RX ? CT_ELASTIC_ACROSS : CT_ELASTIC_TURN;
 }
 
 static bool is_fixed(const struct ct_flexible *f, int node, int kind)
@@ -84,7 +90,9 @@ static enum ct_axial axial_of(const struct ct_flexible *f)
 {
     if (f->formulation == CT_BEAM_LINEAR)
         return CT_AXIAL_LINEAR;
+    // modes hold no room for the places of nodes that foreshortening moves
     return f->deformation & CT_BEAM_AXIAL && f->formulation == CT_BEAM_FORESHORTENING
+                && !f->beam->modes
              ? CT_AXIAL_LOCAL
              : CT_AXIAL_CHAIN;
 }
@@ -264,19 +272,53 @@ static void run_chain(struct ct_build *b, struct ct_flexible *f)
     }
 }
 
-void ct_flexible_unknowns(struct ct_build *b, struct ct_flexible *f)
+// Freedom i as a sum of shapes.
+static void combine_shapes(struct ct_build *b, struct ct_flexible *f, const struct ct_shapes *s,
+                           int i)
+{
+    struct ct_exs *x = b->x;
+    struct ct_freedom *d = &f->freedom[s->freedom[i]];
+    d->part = CT_NEWN(b->arena, struct ct_part, s->nshape);
+    for (int k = 0; k < s->nshape; k++) {
+        const double v = s->shape[(size_t)i + (size_t)s->n * (size_t)k];
+        if (v == 0)
+            continue;
+        d->part[d->npart++] = (struct ct_part){k, ct_ex_const(x, v)};
+        d->value = ct_ex_add(x, d->value, ct_ex_scale(x, v, f->elastic[k].value));
+        d->rate = ct_ex_add(x, d->rate, ct_ex_scale(x, v, f->elastic[k].rate));
+        d->acceleration
+            = ct_ex_add(x, d->acceleration, ct_ex_scale(x, v, f->elastic[k].acceleration));
+    }
+}
+
+static void modal_unknowns(struct ct_build *b, struct ct_flexible *f)
+{
+    struct ct_shapes s;
+    if (!ct_flexible_reduce(b, f, &s))
+        return;
+    for (int k = 0; k < s.nshape; k++) {
+        const int i = k < s.nstatic ? s.freedom[k] : 0;
+        new_unknown(b, f,
+                    k < s.nstatic
+                        ? ct_arena_printf(b->arena, "%s.%d.%s", f->name, i / NKIND,
+                                          kind_name[i % NKIND])
+                        : ct_arena_printf(b->arena, "%s.mode%d", f->name, k - s.nstatic + 1),
+                    k < s.nstatic ? sort_of(i % NKIND) : CT_ELASTIC_MODE);
+    }
+    for (int i = 0; i < s.n; i++)
+        combine_shapes(b, f, &s, i);
+}
+
+static void nodal_unknowns(struct ct_build *b, struct ct_flexible *f)
 {
     const int nnode = f->beam->nelement + 1;
-    f->elastic = CT_NEWN(b->arena, struct ct_elastic, NKIND * nnode);
     for (int node = 0; node < nnode; node++)
         for (int kind = 0; kind < NKIND; kind++) {
             if (is_fixed(f, node, kind))
                 continue;
             const int k = new_unknown(
                 b, f, ct_arena_printf(b->arena, "%s.%d.%s", f->name, node, kind_name[kind]),
-                !kind      ? CT_ELASTIC_ALONG
-                : kind < 3 ? CT_ELASTIC_ACROSS
-                           : CT_ELASTIC_TURN);
+                sort_of(kind));
             struct ct_freedom *d = &f->freedom[NKIND * node + kind];
             d->value = f->elastic[k].value;
             d->rate = f->elastic[k].rate;
@@ -285,6 +327,15 @@ void ct_flexible_unknowns(struct ct_build *b, struct ct_flexible *f)
             d->part = CT_NEW(b->arena, struct ct_part);
             *d->part = (struct ct_part){k, CT_EX_ONE};
         }
+}
+
+void ct_flexible_unknowns(struct ct_build *b, struct ct_flexible *f)
+{
+    f->elastic = CT_NEWN(b->arena, struct ct_elastic, NKIND * (f->beam->nelement + 1));
+    if (f->beam->modes && f->deformation)
+        modal_unknowns(b, f);
+    else
+        nodal_unknowns(b, f);
     dof_values(b, f);
     if (f->axial == CT_AXIAL_CHAIN)
         run_chain(b, f);

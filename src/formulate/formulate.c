@@ -42,6 +42,7 @@ static struct ct_build *build_create(struct ct_ctx *ctx, struct ct_arena *a,
     b->eqs = CT_NEW(a, struct ct_equations);
     b->x = b->eqs->x = ct_exs_clone(a, m->x);
     b->value = start_values(a, m);
+    b->x->decided = CT_NEWN(a, unsigned char, m->x->nsym + 1);
     ct_topology_derive(b, !o->keep_all);
     return b;
 }
@@ -62,41 +63,63 @@ static bool derive(struct ct_build *b, bool with_dynamics)
 
 // ---- cost of a pair ----------------------------------------------------------------------------------
 
+// Graph of a symmetric matrix under elimination.
+struct minor {
+    size_t n;
+    bool *near;     // n x n
+    size_t *degree; // neighbours that are left; SIZE_MAX: eliminated
+};
+
+static void join(struct minor *g, size_t i, size_t j)
+{
+    if (i == j || g->near[i + g->n * j])
+        return;
+    g->near[i + g->n * j] = g->near[j + g->n * i] = true;
+    g->degree[i]++;
+    g->degree[j]++;
+}
+
+static struct minor minor_of(struct ct_arena *scratch, const struct ct_equations *e)
+{
+    const size_t n = e->nu + e->nrow;
+    struct minor g = {n, CT_NEWN(scratch, bool, n *n + 1), CT_NEWN(scratch, size_t, n + 1)};
+    for (size_t i = 0; i < e->nM; i++)
+        join(&g, (size_t)e->M[i].row, (size_t)e->M[i].column);
+    for (size_t i = 0; i < e->nJ; i++)
+        join(&g, e->nu + (size_t)e->J[i].row, (size_t)e->J[i].column);
+    return g;
+}
+
+static size_t least_degree(const struct minor *g)
+{
+    size_t best = 0;
+    for (size_t i = 1; i < g->n; i++)
+        if (g->degree[i] < g->degree[best])
+            best = i;
+    return best;
+}
+
 // Operations of a sparse LDL' of [M J'; J 0] by minimum degree on its graph: sum of d^2 + 4 d + 3.
 static double factor_cost(struct ct_arena *scratch, const struct ct_equations *e)
 {
     const size_t n = e->nu + e->nrow;
-    if (n > 400)
+    if (n > 4000) // the table would be larger than what it is for
         return (double)n * (double)n * (double)n / 3;
-    bool *near = CT_NEWN(scratch, bool, n *n + 1), *done = CT_NEWN(scratch, bool, n + 1);
-    for (size_t i = 0; i < e->nM; i++)
-        near[(size_t)e->M[i].row + n * (size_t)e->M[i].column]
-            = near[(size_t)e->M[i].column + n * (size_t)e->M[i].row] = true;
-    for (size_t i = 0; i < e->nJ; i++) {
-        const size_t r = e->nu + (size_t)e->J[i].row, c = (size_t)e->J[i].column;
-        near[r + n * c] = near[c + n * r] = true;
-    }
+    struct minor g = minor_of(scratch, e);
     double cost = 0;
     size_t *list = CT_NEWN(scratch, size_t, n + 1);
     for (size_t step = 0; step < n; step++) {
-        size_t best = n, least = n;
-        for (size_t i = 0; i < n; i++) {
-            size_t degree = 0;
-            for (size_t j = 0; j < n && !done[i]; j++)
-                degree += near[j + n * i] && !done[j] && j != i;
-            if (!done[i] && degree < least) {
-                least = degree;
-                best = i;
-            }
-        }
+        const size_t best = least_degree(&g);
         size_t d = 0;
-        done[best] = true;
         for (size_t j = 0; j < n; j++)
-            if (near[j + n * best] && !done[j])
+            if (g.near[j + n * best] && g.degree[j] != SIZE_MAX) {
                 list[d++] = j;
+                g.degree[j]--;
+            }
+        g.degree[best] = SIZE_MAX;
         for (size_t i = 0; i < d; i++)
-            for (size_t j = 0; j < d; j++)
-                near[list[i] + n * list[j]] = true;
+            for (size_t j = 0; j < i; j++)
+                join(&g, list[i], list[j]);
         cost += (double)(d * d + 4 * d + 3);
     }
     return cost;
@@ -313,6 +336,8 @@ static bool least_weight(struct ct_build *b, const struct rules *r, struct ct_tr
 
 // Work of the search is bounded by nodes generated, not by time: same model, same tree.
 static const double search_nodes = 600000;
+// Fewer pairs than these are not worth their time: exchanges seldom find a cheaper one among so few.
+static const double fewest_pairs = 16;
 
 static void improve(struct ct_build *b, const struct search *s, const struct rules *r,
                     struct ct_tree_pair *p, struct ct_tree_report *report)
@@ -330,7 +355,7 @@ static void improve(struct ct_build *b, const struct search *s, const struct rul
            .limit = pairs < 1 ? -1 : fmin(pairs, 2000),
            .budget = (int)fmax(1, fmin(pairs, 400)),
            .excess = 2};
-    if (pairs < 4
+    if (pairs < fewest_pairs
         || !ct_tree_search(b->arena, &b->graph, &o, pair_cost, (void *)(uintptr_t)s, p,
                            &stats)) {
         report->how = "least weight";
@@ -522,7 +547,8 @@ bool ct_formulate(struct ct_ctx *ctx, struct ct_arena *a, const struct ct_model 
         ct_energies_derive(b);
     if (options->measure_all)
         measure_all(b, options->measured_for);
-    else if (options->with_outputs && !ct_outputs_derive(b))
+    else if (options->with_outputs
+             && (!ct_outputs_derive(b) || !ct_outputs_add(b, options->more)))
         return false;
     if (options->with_energy)
         ct_validity_monitor(b);

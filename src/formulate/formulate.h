@@ -16,9 +16,10 @@ struct ct_formulate_options {
     const char *const *trans, *const *rot; // GIVEN: names of the branches that are not arms
     const struct ct_mark *trans_mark, *rot_mark; // of each name; NULL: nowhere
     size_t ntrans, nrot;
-    bool keep_all;      // leave nothing out: spatial rows for planar mechanisms
-    bool with_energy;   // kinetic and potential energy and the power are wanted
-    bool with_outputs;  // the outputs of the model are wanted
+    bool keep_all;     // leave nothing out: spatial rows for planar mechanisms
+    bool with_energy;  // kinetic and potential energy and the power are wanted
+    bool with_outputs; // the outputs of the model are wanted
+    enum ct_more_outputs more;
     bool with_solution; // u' in closed form where that is cheap
     enum ct_formulation
         formulation;    // of an open system with solution; AUTO: the one of fewest operations

@@ -106,3 +106,21 @@ void ct_residual_derive(struct ct_build *b)
         v[i] = e->row[i].v;
     f->ndv = ct_ex_jacobian(b->x, scratch, b->arena, v, e->nrow, seeds.e, nplace, &f->dv);
 }
+
+size_t ct_slopes_derive(struct ct_build *b, struct ct_arena *a, const ct_ex *f, size_t nf,
+                        const ct_ex *more, size_t nmore, struct ct_slope **out)
+{
+    struct ct_equations *e = b->eqs;
+    struct seeds seeds = {0};
+    plant_places(b, &seeds);
+    for (size_t k = 0; k < e->nu; k++) {
+        plant(b, &seeds, e->u[k].symbol, direction(b, SPEED, k), CT_EX_ONE);
+        plant(b, &seeds, e->u[k].derivative, direction(b, ACCELERATION, k), CT_EX_ONE);
+    }
+    const size_t first = direction(b, NLEVEL, 0);
+    for (size_t i = 0; i < e->nrow; i++)
+        plant(b, &seeds, e->row[i].lam, first + i, CT_EX_ONE);
+    for (size_t i = 0; i < nmore; i++)
+        plant(b, &seeds, more[i], first + e->nrow + i, CT_EX_ONE);
+    return ct_ex_jacobian(b->x, b->ctx->scratch, a, f, nf, seeds.e, seeds.n, out);
+}

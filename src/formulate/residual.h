@@ -10,4 +10,9 @@
 /// Cost    O(nodes of r times the speeds each depends on)
 void ct_residual_derive(struct ct_build *b);
 
+/// Derivatives of f (nf) in the directions: places, speeds, u' (nu each), multipliers (nrow), then the symbols of `more`
+/// (nmore). *out lives in a.
+size_t ct_slopes_derive(struct ct_build *b, struct ct_arena *a, const ct_ex *f, size_t nf,
+                        const ct_ex *more, size_t nmore, struct ct_slope **out);
+
 #endif

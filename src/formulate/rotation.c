@@ -164,7 +164,7 @@ bool ct_unknowns_choose(struct ct_build *b)
 ct_ex ct_build_rate(struct ct_build *b, ct_ex e)
 {
     const struct ct_equations *s = b->eqs;
-    const unsigned moving = 1u << CT_SYM_Q | 1u << CT_SYM_TIME;
+    const unsigned moving = 1u << CT_SYM_Q | (b->is_held ? 0 : 1u << CT_SYM_TIME);
     if (!(ct_ex_kinds(b->x, e) & moving))
         return CT_EX_ZERO;
     // only the symbols below e matter; joints have few

@@ -540,7 +540,8 @@ static void driven_row(struct ct_build *b, int coordinate)
     struct ct_wrench w;
     if (!ct_coordinate_wrench(b, coordinate, &w))
         return;
-    const ct_ex s = ct_mode_hold(b, motion->e[c->place]), rate = ct_build_rate(b, s);
+    const ct_ex s = ct_mode_hold(b, motion->e[c->place]);
+    const ct_ex rate = ct_build_rate(b, s);
     const ct_ex phi = ct_ex_sub(x, ct_coordinate_value(b, coordinate), s);
     const ct_ex gam = ct_ex_sub(x, ct_coordinate_acceleration(b, coordinate, CT_BIAS),
                                 ct_build_rate(b, rate));

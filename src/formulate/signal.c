@@ -3,6 +3,7 @@
 #include "formulate/beam_signal.h"
 #include "formulate/reaction.h"
 #include "formulate/topology.h"
+#include "formulate/validity.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -392,6 +393,14 @@ bool ct_signal_resolve(struct ct_build *b, const char *name, struct ct_mark mark
     if (frame < 0)
         return unknown(b, mark, name, "nothing has this name");
     const int body = b->model->frame[frame].body;
+    if (!strcmp(s.property, "validity") && !s.component && frame == b->model->body[body].frame
+        && ct_flexible_of(b, body)) {
+        struct ct_validity v;
+        if (!ct_validity_derive(b, ct_flexible_of(b, body), &v))
+            return unknown(b, mark, name, "the beam does not bend");
+        *out = v.eta;
+        return true;
+    }
     if (!strcmp(s.property, "com") && body > 0)
         return component_of(b, &s, name, mark, body_com(b, body), out);
     if (b->model->body[body].beam && ct_beam_signal_exists(s.property))
@@ -614,4 +623,75 @@ bool ct_outputs_derive(struct ct_build *b)
     }
     b->in_outputs = false;
     return b->ctx->nerror == before;
+}
+
+// Columns of a signal whose first one is not there yet.
+static bool new_columns(struct ct_build *b, const char *name, struct ct_mark mark)
+{
+    const size_t first = b->eqs->nresult;
+    if (!signal_columns(b, name, mark))
+        return false;
+    size_t kept = first; // drop those that repeat a column of the model
+    for (size_t i = first; i < b->eqs->nresult; i++) {
+        bool is_new = true;
+        for (size_t k = 0; k < first && is_new; k++)
+            is_new = strcmp(b->eqs->result[k].name, b->eqs->result[i].name) != 0;
+        if (is_new)
+            b->eqs->result[kept++] = b->eqs->result[i];
+    }
+    b->eqs->nresult = kept;
+    return true;
+}
+
+static bool coordinate_columns(struct ct_build *b, const struct ct_instance *joint)
+{
+    static const char *const properties[] = {"q", "u", "a"};
+    bool ok = true;
+    for (size_t i = 0; i < COUNT(properties) && joint->cls->motion && joint->nfree; i++)
+        ok &= new_columns(b, ct_arena_printf(b->arena, "%s.%s", joint->name, properties[i]),
+                          joint->mark);
+    return ok;
+}
+
+static bool effort_columns(struct ct_build *b, size_t j)
+{
+    const struct ct_instance *joint = &b->model->joint[j];
+    const int edge = b->edge_of_joint[j];
+    bool ok = true;
+    for (int k = 0; edge >= 0 && joint->cls->motion && k < joint->nfree; k++)
+        if (b->coordinate[b->edge[edge].first_coordinate + k].is_driven) {
+            const char *number
+                = joint->nfree == 1 ? "" : ct_arena_printf(b->arena, "%d", k + 1);
+            ok &= new_columns(b, ct_arena_printf(b->arena, "%s.effort%s", joint->name, number),
+                              joint->mark);
+        }
+    return ok;
+}
+
+static bool reaction_columns(struct ct_build *b, size_t j)
+{
+    const struct ct_instance *joint = &b->model->joint[j];
+    const int edge = b->edge_of_joint[j];
+    if (edge < 0) // a gear: its effort on the first of its joints
+        return new_columns(b, ct_arena_printf(b->arena, "%s.effort", joint->name), joint->mark);
+    return new_columns(b, ct_arena_printf(b->arena, "%s.force", joint->name), joint->mark)
+        && (!b->edge[edge].has_rotation
+            || new_columns(b, ct_arena_printf(b->arena, "%s.torque", joint->name),
+                           joint->mark));
+}
+
+bool ct_outputs_add(struct ct_build *b, enum ct_more_outputs more)
+{
+    const size_t n = b->model->njoint;
+    bool ok = true;
+    b->eqs->more = more;
+    b->in_outputs = true;
+    for (size_t j = 0; j < n && more == CT_MORE_COORDINATES && b->model->noutput == 0; j++)
+        ok &= coordinate_columns(b, &b->model->joint[j]);
+    for (size_t j = 0; j < n && more == CT_MORE_EFFORTS; j++)
+        ok &= effort_columns(b, j);
+    for (size_t j = 0; j < n && more == CT_MORE_EFFORTS; j++)
+        ok &= reaction_columns(b, j);
+    b->in_outputs = false;
+    return ok;
 }

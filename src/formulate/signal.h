@@ -7,6 +7,8 @@
 
 /// The columns of all outputs; fills b->eqs->result.
 bool ct_outputs_derive(struct ct_build *b);
+/// Further columns, those left out that are there already.
+bool ct_outputs_add(struct ct_build *b, enum ct_more_outputs more);
 /// Kinetic energy, potential of gravity and power of drivers, added to b->eqs.
 void ct_energies_derive(struct ct_build *b);
 /// One scalar signal; false with a diagnostic at mark if it does not exist.

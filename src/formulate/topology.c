@@ -467,10 +467,13 @@ static const double layer_tolerance
 static double longest_arm(const struct ct_build *b)
 {
     double longest = 0, at[3];
+    unsigned char *decided = b->x->decided;
+    b->x->decided = NULL; // a scale of roundings: the equations do not depend on it
     for (size_t i = 0; i < b->nedge; i++) {
         value3(b, b->edge[i].at, at);
         longest = fmax(longest, sqrt(at[0] * at[0] + at[1] * at[1] + at[2] * at[2]));
     }
+    b->x->decided = decided;
     return longest;
 }
 

@@ -224,13 +224,21 @@ static void dense(const struct ct_problem *p, double h, double theta, const doub
     }
 }
 
+static const struct ct_tableau tableau = {.stages = STAGES,
+                                          .stride = ALL_STAGES,
+                                          .C = C,
+                                          .A = &A[0][0],
+                                          .E = E5,
+                                          .B3 = B3,
+                                          .nerror = STAGES - 1};
+
 const struct ct_method ct_method_dop853 = {
     .name = "dop853",
     .summary = "Dormand-Prince 8(5,3), explicit, for smooth motions and tight tolerances",
     .source = "hairer1993",
+    .tableau = &tableau,
     .order = 8,
     .error_order = 7,
-    .gap = 0.47,
     .create = create,
     .step = step,
     .prepare = prepare,

@@ -141,13 +141,16 @@ static void dense(const struct ct_problem *p, double h, double theta, const doub
         out[i] += h * bubble * (w.a[i] + theta * w.b[i]);
 }
 
+static const struct ct_tableau tableau
+    = {.stages = STAGES, .stride = STAGES, .C = C, .A = &A[0][0], .E = E, .nerror = STAGES};
+
 const struct ct_method ct_method_dopri5 = {
     .name = "dopri5",
     .summary = "Dormand-Prince 5(4), explicit, for smooth motions without stiff parts",
     .source = "dormand1980",
+    .tableau = &tableau,
     .order = 5,
     .error_order = 4,
-    .gap = 0.55,
     .create = create,
     .step = step,
     .prepare = prepare,

@@ -7,6 +7,7 @@
 // is tried again shorter; until `commit` nothing has changed. Step control is the PI controller of
 // Gustafsson (1991), key gustafsson1991, with the constants of Hairer, Norsett and Wanner (1993),
 // II.4, key hairer1993; the first step is the one of the same section.
+#include "integrate/crossing.h"
 #include "integrate/watch.h"
 
 #include <assert.h>
@@ -35,11 +36,17 @@ static const double event_steps = 50;
 static const int pile_events = 100;
 static const double pile_time = 1e-9;
 
-// Steps next to a singular position may err this much more, or by this part of the state, which is
-// about what rounding leaves there: a digit of one step, against losing them all by coming nearer.
-static const double singular_error = 30, singular_rounding = 3e-10;
-// Steps this much shorter than the way to the position do not get across any more.
-static const double crawl = 1e-4;
+// A step across a singular position that fails is tried again from nearer, after so many times not any more: then
+// the position is not singular but only nearly so.
+static const double nearer = 0.5;
+static const int most_crossings = 6;
+// This much further away than where it should begin, a crossing may begin at once; after one that failed only where
+// a step to there has ended.
+static const double early = 1.3, on_time = 1.02;
+// The end of a run is reached by a crossing, too, when it is this part of its reach before the position.
+static const double beside = 0.5;
+// Beside a singular position f has fewer digits: crossings may err by this part of the largest state.
+static const double crossing_rounding = 5e-13;
 
 // Corrections to the time of an event, each worth three digits or more.
 static const int most_corrections = 3;
@@ -62,18 +69,20 @@ struct run {
     double *point;        // a state to spare
     void *work;           // the method's own
     double error_before;  // of the last accepted step
-    double error_allowed; // 1, more beside a singular position
-    double singular_in;   // time to it, from t
-    bool is_leaping;      // it is in reach
-    double h_far;         // the step size when it came into reach
     bool was_refused;     // the step before this try was
+    void *crossing_work;  // of ct_crossing; NULL: there are no singular positions to cross
+    double singular_in;   // time to the next one, from t
+    double reach;         // crossing it is to begin this long before
+    int failed_crossings; // of it
     size_t sample;        // the next one to give
     double last_event;    // time of the last state event
     int piled;            // state events in a row without time going on
 };
 
-// A step as planned: to t1, which is t + h but for rounding.
+// A step as planned: to t1, which is t + h but for rounding, or the end of the run before that.
 struct stride {
+    const struct ct_method *method;
+    void *work; // the method's
     double h, t1;
     bool is_landing;      // t1 is the stop it was planned for
     bool is_event;        // a state event ends it
@@ -119,6 +128,8 @@ static void allocate(struct run *r)
     for (size_t i = 0; i < COUNT(vectors); i++)
         *vectors[i] = CT_NEWN(a, double, r->p->ny);
     r->work = r->method->create(a, r->method, r->p);
+    if (r->p->singular_in && r->o->step == 0 && !r->method->is_implicit)
+        r->crossing_work = ct_crossing.create(a, &ct_crossing, r->p);
     ct_watch_init(&r->watch, r->p, a);
 }
 
@@ -214,14 +225,43 @@ static double fit_free(double rest, double wanted)
     return rest < 2 * wanted ? rest / 2 : wanted;
 }
 
-static struct stride plan(const struct run *r, double stop)
+// The step across a singular position, centred on it. Beyond the end of the run f is the same function, beyond a
+// time event it is not.
+static struct stride plan_crossing(const struct run *r, double stop, bool is_time)
+{
+    const double rest = stop - r->t, whole = 2 * r->singular_in;
+    const double h = is_time ? fmin(whole, rest) : whole;
+    return (struct stride){.method = &ct_crossing,
+                           .work = r->crossing_work,
+                           .h = h,
+                           .t1 = h < rest ? r->t + h : stop,
+                           .is_landing = h >= rest};
+}
+
+// Is a singular position ahead that is to be crossed?
+static bool has_crossing(const struct run *r)
+{
+    return r->singular_in < INFINITY && r->failed_crossings < most_crossings;
+}
+
+static struct stride plan(const struct run *r, double stop, bool is_time)
 {
     const double rest = stop - r->t;
-    const double h = r->o->step > 0 ? fit_fixed(rest, r->o->step)
-                                    : fit_free(rest, fmin(r->h, step_limit(r)));
+    double wanted = fmin(r->h, step_limit(r));
+    const double reach = is_time ? fmin(r->reach, rest - r->singular_in) : r->reach;
+    // the run may end before the position, but beside it
+    if (has_crossing(r) && reach > 0 && r->singular_in - beside * reach < rest) {
+        if (r->singular_in <= (r->failed_crossings ? on_time : early) * reach)
+            return plan_crossing(r, stop, is_time);
+        wanted = fit_free(r->singular_in - reach, wanted);
+    }
+    const double h = r->o->step > 0 ? fit_fixed(rest, r->o->step) : fit_free(rest, wanted);
     const bool is_landing = h >= rest;
-    return (struct stride){
-        .h = h, .t1 = is_landing ? stop : r->t + h, .is_landing = is_landing};
+    return (struct stride){.method = r->method,
+                           .work = r->work,
+                           .h = h,
+                           .t1 = is_landing ? stop : r->t + h,
+                           .is_landing = is_landing};
 }
 
 static bool is_too_small(const struct run *r, const struct stride *s)
@@ -264,28 +304,36 @@ static void adapt_after_refusal(struct run *r, double h, double error)
     r->was_refused = true;
 }
 
-// A singular position ahead: make the step so long that the position falls into the widest gap
-// between the stages, and the steps before it so that it starts a gap away: the nearer a step ends, the
-// more of f is rounding. What rounding is left shows as error that no shorter step would mend.
-static void leap_over_singular(struct run *r)
+// Time to the next singular position, and where to begin to cross it.
+static void look_ahead(struct run *r)
 {
-    const double longest = 1.3, steps = 3; // against the step the error allows
-    const double gap = r->method->gap;
-    const double ahead = r->p->singular_in ? r->p->singular_in(r->p->user) : INFINITY;
-    // the step size from before: what the controller makes of rounding is of no use
-    const double h = r->is_leaping ? r->h_far : r->h;
-    r->is_leaping = false;
-    r->singular_in = ahead;
-    r->error_allowed = 1;
-    if (r->o->step > 0 || !(ahead <= (steps + gap) * h) || !(ahead > 0))
+    if (!r->crossing_work)
         return;
-    const double rest = ahead - gap * h;
-    r->h = ahead <= longest * gap * h ? ahead / gap : rest / ceil(rest / h);
-    r->h_far = h;
-    r->is_leaping = true;
-    r->error_allowed = ahead <= (1 + gap) * h
-                         ? fmax(singular_error, singular_rounding / r->tolerance.rtol)
-                         : 1;
+    double reach;
+    const double before = r->singular_in;
+    r->singular_in = r->p->singular_in(r->p->user, &reach);
+    if (!(r->singular_in < INFINITY) || r->singular_in > 2 * before) { // none, or another one
+        r->reach = INFINITY;
+        r->failed_crossings = 0;
+    }
+    if (r->singular_in < INFINITY)
+        r->reach = fmin(r->reach, reach);
+}
+
+static void adapt_after_crossing(struct run *r)
+{
+    r->singular_in = r->reach = INFINITY;
+    r->failed_crossings = 0;
+    r->was_refused = false;
+}
+
+static void adapt_after_failed_crossing(struct run *r, double error)
+{
+    const double power = -1.0 / (ct_crossing.error_order + 1);
+    r->stats->rejected_steps++;
+    r->stats->inaccurate_steps += error > 1;
+    r->reach = r->singular_in * (error > 1 ? fmax(nearer, safety * pow(error, power)) : nearer);
+    r->failed_crossings = isinf(error) ? most_crossings : r->failed_crossings + 1;
 }
 
 // --- one step --------------------------------------------------------------------------------
@@ -314,30 +362,61 @@ static enum ct_eval project_end(struct run *r, double t1)
                                             : CT_EVAL_RETRY;
 }
 
+static bool is_in_gap(const struct run *r, const struct stride *s, double t)
+{
+    return s->method == &ct_crossing && ct_crossing_is_gap((t - r->t) / s->h);
+}
+
+// end, dend (out) = the crossing at t1, within it.
+static enum ct_eval cut(struct run *r, const struct stride *s)
+{
+    const struct ct_problem *p = r->p;
+    s->method->dense(p, s->h, (s->t1 - r->t) / s->h, r->y, r->y1, s->work, r->end);
+    memcpy(r->dend, r->dy1, (size_t)p->ny * sizeof *r->dy1);
+    if (is_in_gap(r, s, s->t1))
+        return CT_EVAL_OK;
+    const enum ct_eval e = p->project ? p->project(p->user, s->t1, r->end) : CT_EVAL_OK;
+    return e == CT_EVAL_OK ? ct_stepper_rhs(p, s->t1, r->end, r->dend, r->stats) : e;
+}
+
+static struct ct_tolerance crossing_tolerance(const struct run *r)
+{
+    double largest = 0;
+    for (int i = 0; i < r->p->ny; i++)
+        largest = fmax(largest, fabs(r->y[i]));
+    return (struct ct_tolerance){r->tolerance.rtol,
+                                 fmax(r->tolerance.atol, crossing_rounding * largest)};
+}
+
 // From y to end by the method and the projection. Refused with s->error > 1 when that is the reason.
 static enum ct_eval attempt(struct run *r, struct stride *s)
 {
-    const struct ct_tolerance *tolerance = r->o->step > 0 ? NULL : &r->tolerance;
+    const struct ct_tolerance for_crossing = crossing_tolerance(r);
+    const struct ct_tolerance *tolerance = s->method == &ct_crossing ? &for_crossing
+                                         : r->o->step > 0            ? NULL
+                                                                     : &r->tolerance;
     double error = 0;
     s->error = 0;
     s->is_interpolated = false;
-    const enum ct_eval e = r->method->step(r->p, r->t, s->h, r->y, r->dy, tolerance, r->y1,
-                                           r->dy1, &error, r->work, r->stats);
+    const enum ct_eval e = s->method->step(r->p, r->t, s->h, r->y, r->dy, tolerance, r->y1,
+                                           r->dy1, &error, s->work, r->stats);
     if (e != CT_EVAL_OK)
         return e;
-    if (!ct_stepper_finite(r->y1, r->p->ny) || !isfinite(error))
+    if (!ct_stepper_finite(r->y1, r->p->ny) || isnan(error))
         return CT_EVAL_RETRY;
     s->error = error;
-    return error > r->error_allowed ? CT_EVAL_RETRY : project_end(r, s->t1);
+    if (error > 1)
+        return CT_EVAL_RETRY;
+    return r->t + s->h > s->t1 && s->method == &ct_crossing ? cut(r, s) : project_end(r, s->t1);
 }
 
 // Make the method ready to interpolate, once.
 static enum ct_eval interpolate(struct run *r, struct stride *s)
 {
-    if (s->is_interpolated || !r->method->prepare)
+    if (s->is_interpolated || !s->method->prepare)
         return CT_EVAL_OK;
     s->is_interpolated = true;
-    return r->method->prepare(r->p, r->t, s->h, r->y, r->y1, r->work, r->stats);
+    return s->method->prepare(r->p, r->t, s->h, r->y, r->y1, s->work, r->stats);
 }
 
 static enum ct_eval interpolate_for_samples(struct run *r, struct stride *s)
@@ -375,16 +454,21 @@ static enum ct_eval step_to_event(struct run *r, struct stride *s, double h)
 // If a root fires within the step, the step is made to end there.
 static enum ct_eval end_on_event(struct run *r, struct stride *s)
 {
-    const struct ct_stepper_span span = {r->method, r->p, r->t, s->h, r->y, r->y1, r->work};
+    const struct ct_stepper_span span = {s->method, r->p, r->t, s->h, r->y, r->y1, s->work};
     double theta;
     if (r->p->nroot == 0)
         return CT_EVAL_OK;
-    enum ct_eval e = r->method->has_rough_dense ? CT_EVAL_OK : interpolate(r, s);
+    enum ct_eval e = s->method->has_rough_dense ? CT_EVAL_OK : interpolate(r, s);
     if (e == CT_EVAL_OK)
         e = ct_watch_search(&r->watch, &span, r->end, &theta);
     if (e != CT_EVAL_OK || theta > 1)
         return e;
     s->is_event = true;
+    if (s->method == &ct_crossing) {
+        s->t1 = r->t + theta * s->h;
+        s->is_landing = false;
+        return cut(r, s);
+    }
     const double rest = (1 - theta) * s->h;
     return rest <= ct_watch_resolution(r->t, s->h) ? CT_EVAL_OK
                                                    : step_to_event(r, s, theta * s->h);
@@ -397,7 +481,7 @@ static enum ct_eval tell_accepted(struct run *r, const struct stride *s)
     if (!p->accepted)
         return CT_EVAL_OK;
     memcpy(r->point, r->end, (size_t)p->ny * sizeof *r->end);
-    const enum ct_eval e = p->accepted(p->user, s->t1, r->end);
+    const enum ct_eval e = p->accepted(p->user, s->t1, r->end, r->dend);
     if (e != CT_EVAL_OK || !differs(r->end, r->point, p->ny))
         return e;
     return ct_stepper_rhs(p, s->t1, r->end, r->dend, r->stats);
@@ -414,22 +498,28 @@ static enum ct_eval finish_step(struct run *r, struct stride *s, double h)
     return e == CT_EVAL_OK ? tell_accepted(r, s) : e;
 }
 
+static bool step_too_small(struct run *r, double h)
+{
+    if (r->failed_crossings)
+        return ct_error(
+            r->ctx, nowhere, CT_E_STEP_SINGULAR,
+            "at t = %.9g the motion comes to a singular position (in %.3g s) and no smooth "
+            "motion across it is found: ask for a larger tolerance, or change a length "
+            "slightly",
+            r->t, r->singular_in);
+    return ct_error(r->ctx, nowhere, CT_E_STEP_SMALL,
+                    "at t = %.9g the step size became too small (%.3g) to go on", r->t, h);
+}
+
 // One step that everybody accepts: from y to end.
-static bool find_step(struct run *r, double stop, struct stride *s)
+static bool find_step(struct run *r, double stop, bool is_time, struct stride *s)
 {
     for (;;) {
-        *s = plan(r, stop);
-        if (is_too_small(r, s))
-            return ct_error(r->ctx, nowhere, CT_E_STEP_SMALL,
-                            "at t = %.9g the step size became too small (%.3g) to go on", r->t,
-                            s->h);
+        *s = plan(r, stop, is_time);
+        const bool is_crossing = s->method == &ct_crossing;
         const double h = s->h;
-        if (r->error_allowed > 1 && h < crawl * r->singular_in)
-            return ct_error(
-                r->ctx, nowhere, CT_E_STEP_SINGULAR,
-                "at t = %.9g the motion comes to a singular position (in %.3g s) and the "
-                "tolerance leaves no step across it: ask for less, or take dopri5",
-                r->t, r->singular_in);
+        if (is_too_small(r, s))
+            return step_too_small(r, h);
         enum ct_eval e = attempt(r, s);
         const double error = s->error;
         if (e == CT_EVAL_OK)
@@ -437,14 +527,20 @@ static bool find_step(struct run *r, double stop, struct stride *s)
         if (e == CT_EVAL_FATAL)
             return false;
         if (e == CT_EVAL_OK) {
-            adapt_after_success(r, h, error);
-            leap_over_singular(r);
+            if (is_crossing)
+                adapt_after_crossing(r);
+            else
+                adapt_after_success(r, h, error);
+            look_ahead(r);
             return true;
         }
         if (r->o->step > 0)
             return ct_error(r->ctx, nowhere, CT_E_STEP_REFUSED,
                             "at t = %.9g a step of fixed size %.3g is too large", r->t, h);
-        adapt_after_refusal(r, h, error);
+        if (is_crossing)
+            adapt_after_failed_crossing(r, error);
+        else
+            adapt_after_refusal(r, h, error);
     }
 }
 
@@ -456,19 +552,40 @@ static bool give_sample(struct run *r, const double *y)
     return r->o->at_sample(r->p->user, t, y);
 }
 
-// Samples before `end`, from the interpolant of the step.
-static bool give_samples_before(struct run *r, const struct stride *s, double end)
+// A sample in the gap of a crossing is as good as the interpolant: projected it would be worse.
+static bool give_singular_sample(struct run *r, const struct stride *s, const double *y)
+{
+    const double t = r->o->sample[r->sample];
+    if (!r->o->at_singular_sample)
+        return give_sample(r, y);
+    const struct ct_bridge b = ct_crossing_bridge(s->work, r->t, s->h, (t - r->t) / s->h);
+    r->sample++;
+    return r->o->at_singular_sample(r->p->user, t, y, &b);
+}
+
+static bool give_projected_sample(struct run *r, double *y)
 {
     const struct ct_problem *p = r->p;
-    const struct ct_stepper_span span = {r->method, p, r->t, s->h, r->y, r->y1, r->work};
-    while (r->sample < r->o->nsample && r->o->sample[r->sample] < end) {
+    const double t = r->o->sample[r->sample];
+    const enum ct_eval e = p->project ? p->project(p->user, t, y) : CT_EVAL_OK;
+    if (e == CT_EVAL_RETRY)
+        return ct_error(r->ctx, nowhere, CT_E_SAMPLE_REFUSED,
+                        "the constraints cannot be met at t = %.9g", t);
+    return e == CT_EVAL_OK && give_sample(r, y);
+}
+
+// Samples before `end`, from the interpolant of the step; in the gap of a crossing also the one on its end.
+static bool give_samples_before(struct run *r, const struct stride *s, double end)
+{
+    const struct ct_stepper_span span = {s->method, r->p, r->t, s->h, r->y, r->y1, s->work};
+    for (; r->sample < r->o->nsample;) {
         const double t = r->o->sample[r->sample];
+        const bool is_singular = t <= s->t1 && !s->is_event && is_in_gap(r, s, t);
+        if (t >= end && !is_singular)
+            break;
         ct_stepper_point(&span, (t - r->t) / s->h, r->point);
-        const enum ct_eval e = p->project ? p->project(p->user, t, r->point) : CT_EVAL_OK;
-        if (e == CT_EVAL_RETRY)
-            return ct_error(r->ctx, nowhere, CT_E_SAMPLE_REFUSED,
-                            "the constraints cannot be met at t = %.9g", t);
-        if (e == CT_EVAL_FATAL || !give_sample(r, r->point))
+        if (is_singular ? !give_singular_sample(r, s, r->point)
+                        : !give_projected_sample(r, r->point))
             return false;
     }
     return true;
@@ -523,7 +640,7 @@ static bool advance(struct run *r)
     bool is_time;
     struct stride s;
     const double stop = next_stop(r, &is_time);
-    if (!find_step(r, stop, &s))
+    if (!find_step(r, stop, is_time, &s))
         return false;
     is_time = is_time && s.is_landing;
     const bool is_event = s.is_event || is_time;
@@ -585,7 +702,8 @@ bool ct_integrate(struct ct_ctx *ctx, const struct ct_method *method,
         .tolerance = {options->rtol, options->atol},
         .t = options->t0,
         .error_before = remembered_error,
-        .error_allowed = 1,
+        .singular_in = INFINITY,
+        .reach = INFINITY,
         .last_event = -INFINITY,
     };
     allocate(&r);

@@ -71,13 +71,19 @@ struct ct_problem {
     enum ct_eval (*project)(void *user, double t, double *y);
 
     /// After a step was accepted and projected: update memories and choices that keep f the same
-    /// function. May be NULL. Before it answers CT_EVAL_RETRY it must have changed nothing.
-    enum ct_eval (*accepted)(void *user, double t, double *y);
+    /// function. May be NULL. Before it answers CT_EVAL_RETRY it must have changed nothing. dy belongs to y.
+    enum ct_eval (*accepted)(void *user, double t, double *y, const double *dy);
 
     /// Time from the last accepted state to the next singular position as far as it can be foreseen,
-    /// else INFINITY. There f has a limit that cannot be computed: steps are placed so that it falls
-    /// where the method does not evaluate. May be NULL.
-    double (*singular_in)(void *user);
+    /// else INFINITY. There f has a limit along the motion that cannot be computed: methods with step control
+    /// cross it in one step without evaluating close to it, see crossing.h. *reach (out): the time before
+    /// and after it in which f is better not computed. May be NULL.
+    double (*singular_in)(void *user, double *reach);
+    /// What is evaluated from now on belongs to the crossing of a singular position, none of it close by; or does not.
+    /// May be NULL.
+    void (*set_crossing)(void *user, bool is_crossing);
+    /// How far y is from the constraints. May be NULL.
+    double (*residual)(void *user, double t, const double *y);
 
     /// Root functions on the state, g (nroot, out); a sign change within a step is an event. g is
     /// continuous within the step.
@@ -95,6 +101,13 @@ struct ct_problem {
                           bool is_time);
 };
 
+/// Times and states around a sample where f cannot be computed, and their weights in what is interpolated there.
+struct ct_bridge {
+    int n;
+    const double *t, *weight; // (n)
+    const double *y;          // (ny x n)
+};
+
 struct ct_integrate_options {
     double t0, t1;
     double rtol, atol;    // tolerance of the states; see ct_integrate
@@ -106,6 +119,9 @@ struct ct_integrate_options {
     /// Called once for each sample, in order. A sample on an event is given after it. y may be used
     /// freely; dy is not given. Return false to stop (a diagnostic is there).
     bool (*at_sample)(void *user, double t, const double *y);
+    /// The same for samples in singular positions or close to them. NULL: at_sample.
+    bool (*at_singular_sample)(void *user, double t, const double *y,
+                               const struct ct_bridge *b);
     /// Called after each accepted step for progress; may be NULL. Return false to stop quietly.
     bool (*at_step)(void *user, double t, const double *y);
 };
@@ -121,16 +137,27 @@ struct ct_tolerance {
     double rtol, atol;
 };
 
+enum { CT_MOST_STAGES = 13 }; // of a tableau
+
+/// The numbers of an explicit method whose last stage is the end of the step: for those who step by
+/// themselves. Stage s is at t + C_s h, y + h sum_j A_sj k_j; its error is h sum E_j k_j or, with a result B3 of
+/// order 3, |e| / hypot(1, |e3| / (10 |e|)) in the norms of both.
+struct ct_tableau {
+    int stages, stride;           // A has rows of `stride` numbers
+    const double *C, *A, *E, *B3; // B3: NULL without
+    int nerror;                   // length of E and B3
+};
+
 /// One integration method: a constant table in a file of its own.
 struct ct_method {
-    const char *name;    // as in `simulation.method`
-    const char *summary; // one line for `cotree methods`
-    const char *source;  // key into docs/references.bib
+    const char *name;                 // as in `simulation.method`
+    const char *summary;              // one line for `cotree methods`
+    const char *source;               // key into docs/references.bib
+    const struct ct_tableau *tableau; // NULL: it is more than its numbers
     int order;
     int error_order; // the error of a step behaves as h^(error_order + 1), for step control
     /// Needs problem.dae, and meets the constraints by itself: the driver does not project its steps.
     bool is_implicit;
-    double gap; // middle of the widest gap between the abscissae of its stages
     /// Rules of step control; 0: the usual ones. A next step that differs from the last by a factor between
     /// steady[0] and steady[1] is not made: it would cost a factorisation.
     double most_growth, steady[2];

@@ -486,7 +486,6 @@ const struct ct_method ct_method_radau5 = {
     .source = "hairer1996",
     .order = 5,
     .error_order = 3,
-    .gap = 0.4, // 0.155 to 0.645
     .is_implicit = true,
     .steady = {1, 1.2},
     .most_growth = 8,

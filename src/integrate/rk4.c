@@ -107,7 +107,6 @@ const struct ct_method ct_method_rk4 = {
     .source = "hairer1993",
     .order = 4,
     .error_order = 4,
-    .gap = 0.25,
     .create = create,
     .step = step,
     .dense = dense,

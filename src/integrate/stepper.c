@@ -20,18 +20,42 @@ enum ct_eval ct_stepper_rhs(const struct ct_problem *p, double t, const double *
     return e == CT_EVAL_OK && !ct_stepper_finite(dy, p->ny) ? CT_EVAL_RETRY : e;
 }
 
-void ct_stepper_combine(double *restrict out, const double *y, double h, const double *a,
-                        const double *k, int s, int n)
+// Four entries at a time: their sums stay in registers, whatever the number of stages.
+enum { LANES = 4 };
+
+static inline void combine_lanes(double *restrict out, const double *y, double h,
+                                 const double *a, const double *k, int s, int n, int lanes)
 {
-    memset(out, 0, (size_t)n * sizeof *out);
+    double sum[LANES] = {0};
     for (int j = 0; j < s; j++, k += n) {
         if (a[j] == 0) // tables have many zeros
             continue;
-        for (int i = 0; i < n; i++)
-            out[i] += a[j] * k[i];
+        for (int i = 0; i < lanes; i++)
+            sum[i] += a[j] * k[i];
     }
-    for (int i = 0; i < n; i++)
-        out[i] = (y ? y[i] : 0) + h * out[i];
+    for (int i = 0; i < lanes; i++)
+        out[i] = (y ? y[i] : 0) + h * sum[i];
+}
+
+void ct_stepper_combine(double *restrict out, const double *y, double h, const double *a,
+                        const double *k, int s, int n)
+{
+    int i = 0;
+    for (; i + LANES <= n; i += LANES)
+        combine_lanes(out + i, y ? y + i : NULL, h, a, k + i, s, n, LANES);
+    switch (n - i) { // a constant number of lanes is unrolled
+    case 3:
+        combine_lanes(out + i, y ? y + i : NULL, h, a, k + i, s, n, 3);
+        break;
+    case 2:
+        combine_lanes(out + i, y ? y + i : NULL, h, a, k + i, s, n, 2);
+        break;
+    case 1:
+        combine_lanes(out + i, y ? y + i : NULL, h, a, k + i, s, n, 1);
+        break;
+    default:
+        break;
+    }
 }
 
 void ct_stepper_group(const struct ct_groups *g, int ny, const double *y, const double *y1)

@@ -6,8 +6,8 @@
 // a complete orthogonal decomposition (Golub and Van Loan (2013), 5.5, key golub2013) rather than
 // taken from dgelsy, so that its rank is decided exactly as ct_qr_pivot decides it.
 //
-// Cholesky is plain loops: the mass matrix goes through it at every
-// stage, small matrices cost no more than a call, the result is the same with every BLAS and
+// Cholesky and LU of real matrices are plain loops: these go through them at every
+// stage, small matrices cost less than a call, the result is the same with every BLAS and
 // number of threads, and a NaN is refused, which not every dpotrf does.
 #include "numeric/dense.h"
 
@@ -15,11 +15,6 @@
 #include <string.h>
 
 // Fortran passes the length of each character argument behind the others.
-extern void dgetrf_(const int *m, const int *n, double *a, const int *lda, int *ipiv,
-                    int *info);
-extern void dgetrs_(const char *trans, const int *n, const int *nrhs, const double *a,
-                    const int *lda, const int *ipiv, double *b, const int *ldb, int *info,
-                    size_t);
 extern void zgetrf_(const int *m, const int *n, double _Complex *a, const int *lda, int *ipiv,
                     int *info);
 extern void zgetrs_(const char *trans, const int *n, const int *nrhs, const double _Complex *a,
@@ -39,8 +34,16 @@ extern void dormrz_(const char *side, const char *trans, const int *m, const int
 extern void dtrtrs_(const char *uplo, const char *trans, const char *diag, const int *n,
                     const int *nrhs, const double *a, const int *lda, double *b, const int *ldb,
                     int *info, size_t, size_t, size_t);
+extern void dsygv_(const int *itype, const char *jobz, const char *uplo, const int *n,
+                   double *a, const int *lda, double *b, const int *ldb, double *w,
+                   double *work, const int *lwork, int *info, size_t, size_t);
 extern void dsyev_(const char *jobz, const char *uplo, const int *n, double *a, const int *lda,
                    double *w, double *work, const int *lwork, int *info, size_t, size_t);
+extern void dgeevx_(const char *balanc, const char *jobvl, const char *jobvr, const char *sense,
+                    const int *n, double *a, const int *lda, double *wr, double *wi, double *vl,
+                    const int *ldvl, double *vr, const int *ldvr, int *ilo, int *ihi,
+                    double *scale, double *abnrm, double *rconde, double *rcondv, double *work,
+                    const int *lwork, int *iwork, int *info, size_t, size_t, size_t, size_t);
 
 static int min_int(int a, int b)
 {
@@ -50,6 +53,34 @@ static int min_int(int a, int b)
 static int max_int(int a, int b)
 {
     return a > b ? a : b;
+}
+
+void ct_matrix_multiply(double *restrict C, const double *restrict A, const double *restrict B,
+                        int n, int m, int k)
+{
+    for (int j = 0; j < k; j++) {
+        double *c = C + (size_t)n * (size_t)j;
+        for (int i = 0; i < n; i++)
+            c[i] = 0;
+        for (int p = 0; p < m; p++) {
+            const double *a = A + (size_t)n * (size_t)p, b = B[p + (size_t)m * (size_t)j];
+            for (int i = 0; i < n && b != 0; i++)
+                c[i] += a[i] * b;
+        }
+    }
+}
+
+void ct_matrix_multiply_transposed(double *restrict C, const double *restrict A,
+                                   const double *restrict B, int n, int m, int k)
+{
+    for (int j = 0; j < k; j++)
+        for (int i = 0; i < n; i++) {
+            const double *a = A + (size_t)m * (size_t)i, *b = B + (size_t)m * (size_t)j;
+            double sum = 0;
+            for (int p = 0; p < m; p++)
+                sum += a[p] * b[p];
+            C[i + (size_t)n * (size_t)j] = sum;
+        }
 }
 
 // Right-looking: column k is finished, then taken off the columns behind it.
@@ -89,21 +120,125 @@ void ct_cholesky_solve(double *x, const double *L, int n, int lda, int nrhs, int
     }
 }
 
+void ct_cholesky_back(double *x, const double *L, int n, int lda)
+{
+    for (int j = n; j-- > 0;) {
+        const double *l = L + (size_t)lda * j;
+        for (int i = j + 1; i < n; i++)
+            x[j] -= l[i] * x[i];
+        x[j] /= l[j];
+    }
+}
+
+void ct_cholesky_congruence(double *H, const double *L, int n, int lda)
+{
+    for (int side = 0; side < 2; side++) { // H <- (L^-1 H)', twice
+        for (int c = 0; c < n; c++) {
+            double *x = H + (size_t)n * c;
+            for (int j = 0; j < n; j++) {
+                const double *l = L + (size_t)lda * j;
+                x[j] /= l[j];
+                for (int i = j + 1; i < n; i++)
+                    x[i] -= l[i] * x[j];
+            }
+        }
+        for (int j = 0; j < n; j++)
+            for (int i = 0; i < j; i++) {
+                const double swap = H[i + (size_t)n * j];
+                H[i + (size_t)n * j] = H[j + (size_t)n * i];
+                H[j + (size_t)n * i] = swap;
+            }
+    }
+}
+
+static int largest_below(const double *col, int k, int n)
+{
+    int p = k;
+    for (int i = k + 1; i < n; i++)
+        if (fabs(col[i]) > fabs(col[p]))
+            p = i;
+    return p;
+}
+
+static void swap_rows(double *A, int lda, int ncol, int i, int j)
+{
+    for (int c = 0; c < ncol && i != j; c++, A += lda) {
+        const double a = A[i];
+        A[i] = A[j];
+        A[j] = a;
+    }
+}
+
+// Right-looking, with partial pivoting: pivot[k] is the row that column k exchanged with row k.
 bool ct_lu(double *A, int *pivot, int n, int lda)
 {
-    int info;
-    lda = max_int(1, lda);
-    dgetrf_(&n, &n, A, &lda, pivot, &info);
-    return info == 0;
+    bool ok = true;
+    for (int k = 0; k < n; k++) {
+        double *restrict col = A + (size_t)lda * k;
+        const int p = largest_below(col, k, n);
+        pivot[k] = p;
+        swap_rows(A, lda, n, k, p);
+        ok = ok && fabs(col[k]) > 0 && isfinite(col[k]); // so written, NaN is refused too
+        const double inverse = 1 / col[k];
+        for (int i = k + 1; i < n; i++)
+            col[i] *= inverse;
+        for (int j = k + 1; j < n; j++) {
+            double *restrict a = A + (size_t)lda * j;
+            const double f = a[k];
+            if (f == 0) // loops far apart do not meet
+                continue;
+            for (int i = k + 1; i < n; i++)
+                a[i] -= f * col[i];
+        }
+    }
+    return ok;
+}
+
+static void lu_solve(double *x, const double *LU, const int *pivot, int n, int lda)
+{
+    for (int k = 0; k < n; k++) {
+        const double f = x[pivot[k]];
+        x[pivot[k]] = x[k];
+        x[k] = f;
+    }
+    for (int k = 0; k < n; k++) { // L z = b
+        const double *l = LU + (size_t)lda * k;
+        for (int i = k + 1; i < n; i++)
+            x[i] -= l[i] * x[k];
+    }
+    for (int k = n; k-- > 0;) { // U x = z
+        const double *u = LU + (size_t)lda * k;
+        x[k] /= u[k];
+        for (int i = 0; i < k; i++)
+            x[i] -= u[i] * x[k];
+    }
+}
+
+static void lu_solve_transposed(double *x, const double *LU, const int *pivot, int n, int lda)
+{
+    for (int k = 0; k < n; k++) { // U' z = b
+        const double *u = LU + (size_t)lda * k;
+        for (int i = 0; i < k; i++)
+            x[k] -= u[i] * x[i];
+        x[k] /= u[k];
+    }
+    for (int k = n; k-- > 0;) { // L' x = z
+        const double *l = LU + (size_t)lda * k;
+        for (int i = k + 1; i < n; i++)
+            x[k] -= l[i] * x[i];
+    }
+    for (int k = n; k-- > 0;) {
+        const double f = x[pivot[k]];
+        x[pivot[k]] = x[k];
+        x[k] = f;
+    }
 }
 
 void ct_lu_solve(double *x, const double *LU, const int *pivot, int n, int lda, int nrhs,
                  int ldx, bool transpose)
 {
-    int info;
-    lda = max_int(1, lda);
-    ldx = max_int(1, ldx);
-    dgetrs_(transpose ? "T" : "N", &n, &nrhs, LU, &lda, pivot, x, &ldx, &info, 1);
+    for (int c = 0; c < nrhs; c++, x += ldx)
+        (transpose ? lu_solve_transposed : lu_solve)(x, LU, pivot, n, lda);
 }
 
 bool ct_lu_complex(double _Complex *A, int *pivot, int n, int lda)
@@ -197,6 +332,20 @@ size_t ct_lstsq_work(int m, int n)
     return (size_t)min_int(m, n) + (size_t)n + ct_qr_pivot_work(m, n); // tau, x, LAPACK's own
 }
 
+bool ct_pencil_eigen(double *w, double *A, double *B, int n, int lda, double *work)
+{
+    int info;
+    const int itype = 1, lwork = (int)ct_pencil_eigen_work(n);
+    lda = max_int(1, lda);
+    dsygv_(&itype, "V", "L", &n, A, &lda, B, &lda, w, work, &lwork, &info, 1, 1);
+    return info == 0;
+}
+
+size_t ct_pencil_eigen_work(int n)
+{
+    return (size_t)max_int(1, 3 * n - 1);
+}
+
 bool ct_symmetric_eigenvalues(double *w, double *A, int n, int lda, double *work)
 {
     int info;
@@ -209,4 +358,29 @@ bool ct_symmetric_eigenvalues(double *w, double *A, int n, int lda, double *work
 size_t ct_symmetric_eigenvalues_work(int n)
 {
     return (size_t)max_int(1, 3 * n - 1);
+}
+
+bool ct_symmetric_eigen(double *w, double *A, int n, int lda, double *work)
+{
+    int info;
+    const int lwork = (int)ct_symmetric_eigenvalues_work(n);
+    lda = max_int(1, lda);
+    dsyev_("V", "L", &n, A, &lda, w, work, &lwork, &info, 1, 1);
+    return info == 0;
+}
+
+bool ct_eigen(double *re, double *im, double *V, double *A, int n, int lda, double *work)
+{
+    int info, low, high;
+    const int lwork = max_int(1, 4 * n), ldv = max_int(1, n), one = 1;
+    double *scale = work, *condition = scale + n, *rest = condition + 2 * (size_t)n, norm;
+    lda = max_int(1, lda);
+    dgeevx_("B", "N", "V", "N", &n, A, &lda, re, im, NULL, &one, V, &ldv, &low, &high, scale,
+            &norm, condition, condition + n, rest, &lwork, NULL, &info, 1, 1, 1, 1);
+    return info == 0;
+}
+
+size_t ct_eigen_work(int n)
+{
+    return 7 * (size_t)n + 1; // scale, condition numbers that are not asked for, LAPACK's own
 }

@@ -8,10 +8,22 @@
 #include <stdbool.h>
 #include <stddef.h>
 
+/// C (n x k) = A (n x m) B (m x k), stored without gaps.
+void ct_matrix_multiply(double *restrict C, const double *restrict A, const double *restrict B,
+                        int n, int m, int k);
+/// C (n x k) = A' B, A (m x n), B (m x k).
+void ct_matrix_multiply_transposed(double *restrict C, const double *restrict A,
+                                   const double *restrict B, int n, int m, int k);
+
 /// Cholesky A = L L' in place (lower, n x n); false if A is not positive definite.
 bool ct_cholesky(double *A, int n, int lda);
 /// x (n x nrhs, in: right-hand sides, out: solutions) with the factor of ct_cholesky.
 void ct_cholesky_solve(double *x, const double *L, int n, int lda, int nrhs, int ldx);
+
+/// H (n x n, symmetric) = L^-1 H L^-T with that factor.
+void ct_cholesky_congruence(double *H, const double *L, int n, int lda);
+/// x = L^-T x.
+void ct_cholesky_back(double *x, const double *L, int n, int lda);
 
 /// LU with partial pivoting in place; false if exactly singular. pivot (n).
 bool ct_lu(double *A, int *pivot, int n, int lda);
@@ -34,8 +46,20 @@ size_t ct_qr_pivot_work(int m, int n);
 int ct_lstsq(double *b, double *A, int m, int n, int lda, double tol, int *iwork, double *work);
 size_t ct_lstsq_work(int m, int n);
 
+/// Eigenvalues w (n, ascending) and vectors (in place of A, v' B v = 1) of A v = w B v, A symmetric, B symmetric
+/// positive definite (lower; destroyed). False if B is not, or the iteration fails.
+bool ct_pencil_eigen(double *w, double *A, double *B, int n, int lda, double *work);
+size_t ct_pencil_eigen_work(int n);
+
 /// Eigenvalues w (n, ascending) of a symmetric matrix (lower; destroyed).
 bool ct_symmetric_eigenvalues(double *w, double *A, int n, int lda, double *work);
 size_t ct_symmetric_eigenvalues_work(int n);
+/// The same with orthonormal eigenvectors, which take the place of A. Workspace as above.
+bool ct_symmetric_eigen(double *w, double *A, int n, int lda, double *work);
+
+/// Eigenvalues re + i im (n) and right eigenvectors V (n x n, leading dimension n) of a square matrix, balanced
+/// first; A is destroyed. Of a complex pair the column with im > 0 comes first: real part, then imaginary part.
+bool ct_eigen(double *re, double *im, double *V, double *A, int n, int lda, double *work);
+size_t ct_eigen_work(int n);
 
 #endif

@@ -654,8 +654,8 @@ static struct assembly assembly_create(struct ct_ctx *ctx, struct ct_arena *a,
     return s;
 }
 
-// What is made here is needed for the start alone.
-static bool assemble(struct assembly *s, struct ct_arena *a, struct ct_start *out)
+// From start values of the model to those of all coordinates.
+static bool find_start(struct assembly *s, struct ct_start *out)
 {
     struct ct_machine *m = s->m;
     const size_t nc = s->e->ncoordinate;
@@ -674,9 +674,6 @@ static bool assemble(struct assembly *s, struct ct_arena *a, struct ct_start *ou
         return report_velocities(s);
     if (!check_drivers(s))
         return false;
-    out->n = nc;
-    out->q = CT_NEWN(a, double, nc + 1);
-    out->u = CT_NEWN(a, double, nc + 1);
     for (size_t i = 0; i < nc; i++) {
         out->q[i] = m->result.out[2 * i];
         out->u[i] = m->result.out[2 * i + 1];
@@ -684,13 +681,45 @@ static bool assemble(struct assembly *s, struct ct_arena *a, struct ct_start *ou
     return true;
 }
 
+struct ct_assembly {
+    struct assembly s;
+    const struct ct_model *model;
+    double *q, *u;
+};
+
+struct ct_assembly *ct_assembly_create(struct ct_ctx *ctx, struct ct_arena *a,
+                                       const struct ct_model *model,
+                                       const struct ct_equations *e)
+{
+    struct ct_assembly *s = CT_NEW(a, struct ct_assembly);
+    s->model = model;
+    s->s = assembly_create(ctx, a, model, e);
+    s->q = CT_NEWN(a, double, e->ncoordinate + 1);
+    s->u = CT_NEWN(a, double, e->ncoordinate + 1);
+    return s;
+}
+
+bool ct_assembly_find(struct ct_assembly *s, struct ct_start *out)
+{
+    const size_t n = s->s.e->ncoordinate;
+    *out = (struct ct_start){.q = s->q, .u = s->u, .n = n};
+    memset(s->s.q, 0, n * sizeof *s->s.q);
+    memset(s->s.u, 0, n * sizeof *s->s.u);
+    ct_machine_reset(s->s.m);
+    find_targets(&s->s, s->model);
+    return find_start(&s->s, out);
+}
+
 bool ct_assemble(struct ct_ctx *ctx, struct ct_arena *a, const struct ct_model *model,
                  const struct ct_equations *e, struct ct_start *out)
 {
     *out = (struct ct_start){0};
-    struct ct_arena *own = ct_arena_create_under(a);
-    struct assembly s = assembly_create(ctx, own, model, e);
-    const bool ok = assemble(&s, a, out);
+    struct ct_arena *own
+        = ct_arena_create_under(a); // what is made here is needed for the start alone
+    struct ct_assembly *s = ct_assembly_create(ctx, own, model, e);
+    s->q = CT_NEWN(a, double, e->ncoordinate + 1);
+    s->u = CT_NEWN(a, double, e->ncoordinate + 1);
+    const bool ok = ct_assembly_find(s, out);
     ct_arena_destroy(own);
     return ok;
 }

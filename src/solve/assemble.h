@@ -21,6 +21,14 @@ struct ct_start {
 bool ct_assemble(struct ct_ctx *ctx, struct ct_arena *a, const struct ct_model *model,
                  const struct ct_equations *e, struct ct_start *out);
 
+/// The same in two parts, for one start after another while the values of the model's parameters change. The
+/// arrays of `out` are the assembly's and good until the next start.
+struct ct_assembly;
+struct ct_assembly *ct_assembly_create(struct ct_ctx *ctx, struct ct_arena *a,
+                                       const struct ct_model *model,
+                                       const struct ct_equations *e);
+bool ct_assembly_find(struct ct_assembly *s, struct ct_start *out);
+
 /// Put a start into the state y (q, u, work) of a machine; memories of angles start at the values.
 void ct_start_apply(const struct ct_start *s, struct ct_machine *m, double *y);
 

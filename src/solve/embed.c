@@ -15,12 +15,14 @@ static const double kappa_largest = 1e3;
 // Projections stop here: a few roundings of coordinates of order one.
 static const double position_tolerance = 1e-13;
 // Pivots smaller than this against the largest enlarge what is left over noticeably.
-static const double small_pivot = 0.1;
+static const double small_pivot = 0.5;
 enum { MOST_NEWTON = 25 };
 
-// A closed form is used while its strength has changed by less than these factors since the dense pivots that tell
-// how near a singular position is were found, and never below the weakest: one in so many digits is lost.
-static const double least_change = 0.7, most_change = 1.5, weakest = 1e-3;
+// A form is used while its strength has changed by less than such a factor since sigma, which tells how near a
+// singular position is, was found by dense matrices.
+static const double most_change = 1.5;
+// Where strength and sigma have fallen alike, up to so much, strength stands for sigma for longer.
+static const double alike = 1.02, most_change_alike = 4;
 // What may be left of the equations against their terms: beyond the first a refinement is made, beyond
 // the second the form is not used.
 static const double left_plain = 1e-13, left_most = 1e-11;
@@ -41,7 +43,6 @@ struct ct_embed *ct_embed_create(struct ct_arena *arena, struct ct_ctx *ctx,
     s->arena = arena;
     s->m = m;
     s->ctx = ctx;
-    s->arena = arena;
     s->row = CT_NEWN(arena, int, r + 1);
     s->dependent = CT_NEWN(arena, int, k);
     s->independent = CT_NEWN(arena, int, n + 1);
@@ -104,10 +105,11 @@ static void make_form(struct ct_embed *s)
         memmove(s->form, s->form + 1, --s->nform * sizeof *s->form);
     }
     ct_machine_motion(s->m);
-    struct ct_form *f = ct_form_create(s->arena, s->m, &p, ct_embed_operations(s));
+    struct ct_form *f = ct_form_create(s->arena, s->m, &p, ct_embed_operations(s), s->kind);
     s->solves.reordered += s->nmade++ > 0;
     s->has_form = f != NULL;
     if (f) {
+        s->kind = f->kind;
         s->form[s->nform] = f;
         put_first(s, s->nform++);
     }
@@ -121,14 +123,20 @@ static long patience(const struct ct_embed *s)
     return 1L << (doublings < 16 ? doublings : 16);
 }
 
+static void forget_strength(struct ct_embed *s)
+{
+    s->nweak = 0;
+    s->at_sigma = 0;
+    s->is_alike = false;
+}
+
 // The form for the rows and columns of now: one from before, or a new one.
 static void take_form(struct ct_embed *s)
 {
     const struct ct_partition p = partition(s);
     size_t i = 0;
     s->has_form = s->is_rough = false;
-    s->nweak = 0;
-    s->at_sigma = 0;
+    forget_strength(s);
     if (!s->m->nrow || s->is_dear)
         return;
     while (i < s->nform && !ct_form_is_for(s->form[i], &p))
@@ -142,15 +150,43 @@ static void take_form(struct ct_embed *s)
     }
 }
 
-static bool is_sound(const struct ct_embed *s)
+void ct_embed_stay_dense(struct ct_embed *s)
 {
-    return s->strength > weakest && s->strength > least_change * s->at_sigma
-        && s->strength < most_change * s->at_sigma;
+    s->is_dear = true;
+    s->has_form = false;
 }
 
+static bool is_within(double ratio, double factor)
+{
+    return ratio < factor && ratio > 1 / factor;
+}
+
+static bool is_sound(const struct ct_embed *s)
+{
+    return s->strength > ct_form_weakest
+        && is_within(s->strength / s->at_sigma, s->is_alike ? most_change_alike : most_change);
+}
+
+// Can the form of now be tried? Beside singular positions only where it tells how near they are.
 static bool is_form_due(const struct ct_embed *s)
 {
-    return s->has_form && !s->is_delicate && s->nweak == 0;
+    return s->has_form && s->nweak == 0 && (s->is_alike || !s->is_delicate);
+}
+
+// sigma has been found by matrices where the form has this strength.
+static void compare_strength(struct ct_embed *s)
+{
+    const double change = s->strength / s->at_sigma;
+    if (s->at_sigma > 0 && !is_within(change, alike)) // else there is nothing to learn
+        s->is_alike = is_within(s->sigma / s->sigma_found / change, alike);
+    s->at_sigma = s->strength;
+    s->sigma_found = s->sigma;
+}
+
+static void follow_sigma(struct ct_embed *s)
+{
+    if (s->is_alike)
+        s->sigma = s->sigma_found * s->strength / s->at_sigma;
 }
 
 // u' by the form of now; false if its pivots are not sound here.
@@ -160,7 +196,8 @@ static bool solve_form(struct ct_embed *s)
     s->strength = ct_form_solve(f, s->m, s->a);
     if (!is_sound(s))
         return false;
-    s->solves.unrolled++;
+    follow_sigma(s);
+    s->solves.fixed++;
     if (!s->is_rough)
         return true;
     ct_form_check(f, s->m);
@@ -179,8 +216,12 @@ enum ct_eval ct_embed_solve(struct ct_embed *s)
         return CT_EVAL_OK;
     ct_machine_motion(m);
     s->solves.pivoted++;
-    s->at_sigma = is_tried ? s->strength : 0; // it belongs to sigma, as it is found now
-    return ct_embed_accelerate(s);
+    const enum ct_eval e = ct_embed_accelerate(s);
+    if (s->has_form && !is_tried)
+        s->strength = ct_form_close(s->form[0], m);
+    if (s->has_form)
+        compare_strength(s);
+    return e;
 }
 
 // After a projection, at the machine's input: are the pivots still in a good order?
@@ -189,26 +230,24 @@ static void check_form(struct ct_embed *s)
     struct ct_form *f = s->form[0];
     ct_form_check(f, s->m);
     s->is_rough = f->left > left_plain;
-    if (s->strength > weakest && f->left_better <= left_most) {
-        s->kappa = f->kappa;
-        s->at_sigma = s->nweak ? 0 : s->at_sigma;
+    if (s->strength > ct_form_weakest && f->left_better <= left_most) {
+        s->kappa = isnan(f->kappa) ? s->kappa : f->kappa;
         s->nweak = 0;
     } else if (++s->nweak >= MOST_WEAK * patience(s)) {
         make_form(s);
-        s->nweak = 0;
-        s->at_sigma = 0;
+        forget_strength(s);
     }
 }
 
 static void tend_form(struct ct_embed *s)
 {
-    if (!s->m->nrow || s->is_dear || s->is_delicate)
+    if (!s->m->nrow || s->is_dear || (s->is_delicate && !s->is_alike))
         return;
     if (s->has_form)
         check_form(s);
     else if (++s->nweak >= patience(s)) {
         make_form(s);
-        s->nweak = 0;
+        forget_strength(s);
     }
 }
 
@@ -264,11 +303,6 @@ static bool factor(struct ct_embed *s)
     }
     s->sigma = most > 0 ? least / most : 0;
     return isfinite(s->kappa);
-}
-
-double ct_embed_pivot(struct ct_embed *s)
-{
-    return factor(s) ? s->sigma : 0;
 }
 
 // The speed with the smallest diagonal entry of M or, where there is none, with the smallest pivot of the closed form.
@@ -527,40 +561,47 @@ static void least_norm_step(struct ct_embed *s, const double *r, double *d)
     memcpy(d, s->d, (size_t)n * sizeof *d);
 }
 
-// d = correction of the dependent part alone; false if J_d is too close to singular for it.
-static bool partitioned_step(struct ct_embed *s, const double *r, double *d)
+// d (nu) = correction of the dependent part alone, J_d as factored last.
+static void partitioned_step(struct ct_embed *s, const double *r, double *d)
 {
     const int k = s->rank;
-    if (!factor(s) || s->kappa > kappa_largest)
-        return false;
     memset(d, 0, s->m->nu * sizeof *d);
     for (int i = 0; i < k; i++)
         s->c[i] = -r[s->row[i]];
     ct_lu_solve(s->c, s->Jd, s->pivot, k, k, 1, k, false);
     for (int i = 0; i < k; i++)
         d[s->dependent[i]] = s->c[i];
-    return true;
 }
 
-static void step_onto(struct ct_embed *s, const double *r, double *d)
+// False if J_d is too close to singular for partitioned steps.
+static bool is_partitioned(struct ct_embed *s)
 {
-    if (!partitioned_step(s, r, d))
-        least_norm_step(s, r, d);
+    return factor(s) && s->kappa <= kappa_largest;
+}
+
+// r (nrow) += J d.
+static void add_change(const struct ct_embed *s, double *r, const double *d)
+{
+    for (size_t j = 0; j < s->m->nu; j++)
+        for (size_t i = 0; i < s->m->nrow && d[j] != 0; i++)
+            r[i] += s->m->J[i + s->m->nrow * j] * d[j];
 }
 
 // Is another choice of rows or columns due?
 static bool has_worn(const struct ct_embed *s)
 {
+    if (!s->rank)
+        return false;
     return s->kappa > kappa_growth * s->kappa_chosen + 1 || s->kappa > kappa_largest
         || s->sigma * kappa_growth < s->sigma_chosen;
 }
 
-// What is near enough: a few roundings, divided by the smallest pivot beside a singular position. Rounding keeps
+// What is near enough: a few roundings, divided twice by the smallest pivot beside a singular position. Rounding keeps
 // larger mechanisms from it: stop when nothing is gained any more.
 static bool is_closed(const struct ct_embed *s, double size, double before)
 {
-    const double wanted
-        = s->sigma < small_pivot ? position_tolerance * s->sigma : position_tolerance;
+    const double wanted = s->sigma < small_pivot ? position_tolerance * s->sigma * s->sigma
+                                                 : position_tolerance;
     return size <= wanted || (size < 1e-10 && size > before / 4);
 }
 
@@ -582,16 +623,17 @@ static enum ct_eval project_by_matrices(struct ct_embed *s, double t, double *y)
         if (is_lost(i, size, before))
             return CT_EVAL_RETRY;
         before = size;
-        step_onto(s, m->phi, s->r);
+        (is_partitioned(s) ? partitioned_step : least_norm_step)(s, m->phi, s->r);
         ct_machine_retract(m, y, s->r);
     }
-    for (int i = 0; i < 2; i++) { // linear; the second step takes off rounding
-        step_onto(s, m->v, s->r);
+    const bool is_regular = is_partitioned(s);
+    for (int i = 0; i < 2; i++) { // v is linear in u; the second step takes off rounding
+        (is_regular ? partitioned_step : least_norm_step)(s, m->v, s->r);
         for (size_t k = 0; k < m->nu; k++)
             y[m->nq + k] += s->r[k];
-        ct_machine_set(m, t, y);
-        ct_machine_constraint(m);
+        add_change(s, m->v, s->r);
     }
+    ct_machine_set(m, t, y);
     return CT_EVAL_OK;
 }
 
@@ -599,7 +641,10 @@ static bool close_form(struct ct_embed *s, double t, const double *y)
 {
     ct_machine_set(s->m, t, y);
     s->strength = ct_form_close(s->form[0], s->m);
-    return is_sound(s);
+    if (!is_sound(s))
+        return false;
+    follow_sigma(s);
+    return true;
 }
 
 // The same by the form of now; *is_done is false where its pivots are not sound.
@@ -640,18 +685,37 @@ enum ct_eval ct_embed_project(struct ct_embed *s, double t, double *y)
     enum ct_eval e = is_form_due(s) ? project_by_form(s, t, y, &is_done) : CT_EVAL_OK;
     if (e == CT_EVAL_OK && !is_done) {
         e = project_by_matrices(s, t, y);
-        if (s->has_form) // sigma has just been found
-            s->at_sigma = s->strength = ct_form_close(s->form[0], s->m);
+        if (s->has_form) { // sigma has just been found
+            s->strength = ct_form_close(s->form[0], s->m);
+            compare_strength(s);
+        }
     }
     if (e != CT_EVAL_OK)
         return e;
     tend_form(s);
-    ct_embed_renew(s);
+    if (has_worn(s))
+        ct_embed_choose(s);
     return CT_EVAL_OK;
+}
+
+double ct_embed_pivot(struct ct_embed *s)
+{
+    if (is_form_due(s) && s->is_alike) {
+        s->strength = ct_form_close(s->form[0], s->m);
+        if (is_sound(s)) {
+            follow_sigma(s);
+            return s->sigma;
+        }
+    }
+    return factor(s) ? s->sigma : 0;
 }
 
 void ct_embed_renew(struct ct_embed *s)
 {
-    if (s->rank && has_worn(s))
+    if (is_form_due(s)) {
+        s->strength = ct_form_close(s->form[0], s->m);
+        tend_form(s);
+    }
+    if (has_worn(s))
         ct_embed_choose(s);
 }

@@ -8,14 +8,14 @@
 #define CT_SOLVE_EMBED_H
 
 #include "integrate/problem.h"
-#include "solve/closed.h"
+#include "solve/form.h"
 
-/// How accelerations were found, in evaluations, and how often a form was made for the run's new place.
+/// How accelerations were found, in evaluations, and how often a form was made after the first.
 struct ct_solves {
-    long unrolled; // in closed form
-    long refined;  // of those, with a step of refinement
-    long pivoted;  // by matrices with pivots sought anew
-    long reordered;
+    long fixed;     // by a form, with the order of pivots it was made with
+    long refined;   // of those, with a step of refinement
+    long pivoted;   // by dense matrices, pivots sought anew
+    long reordered; // forms made for other rows, columns or pivots
 };
 
 enum { CT_MOST_FORMS = 8 };
@@ -36,13 +36,16 @@ struct ct_embed {
     // closed forms, the latest used first
     struct ct_form *form[CT_MOST_FORMS];
     size_t nform;
+    const struct ct_form_kind *kind; // chosen for the first one
     long nmade;
     bool has_form;    // form[0] is for the rows and columns of now
     bool is_dear;     // matrices are cheaper
     bool is_delicate; // near a singular position: pivots are sought at every evaluation
     bool is_rough;    // the last check wanted a refinement
     long nweak;       // checks in a row that found the form weak, or projections without one
-    double strength, at_sigma; // of the form, now and where sigma was found
+    double strength, at_sigma; // of the form, now and where sigma was found by matrices
+    double sigma_found;        // there
+    bool is_alike;             // strength and sigma have changed alike
     struct ct_solves solves;
     double *a, *lam; // results: u' (nu), lam (nrow)
     // workspace
@@ -53,6 +56,8 @@ struct ct_embed {
 struct ct_embed *ct_embed_create(struct ct_arena *arena, struct ct_ctx *ctx,
                                  struct ct_machine *m);
 
+/// Matrices only: accelerations then depend on nothing that was done before.
+void ct_embed_stay_dense(struct ct_embed *s);
 /// Operations of one ct_embed_accelerate.
 double ct_embed_operations(const struct ct_embed *s);
 /// Choose rows and columns anew at the machine's input. False with a diagnostic if the mass matrix

@@ -214,8 +214,14 @@ static void compile_rest(struct ct_arena *a, struct ct_machine *m, const struct 
     for (size_t i = 0; i < e->nmemory; i++) // rotations from which quaternions start
         for (int k = 0; k < 9 && e->memory[i].kind == CT_MEMORY_QUATERNION; k++)
             push(&memory, e->memory[i].R.e[k]);
-    for (size_t i = 0; i < e->nu && (e->nmode || e->x->ntable); i++) // rates can jump
-        push(&momentum, ct_ex_diff(e->x, e->kinetic, e->u[i].symbol));
+    if (e->nmode || e->x->ntable) { // rates can jump
+        ct_ex *u = CT_NEWN(a, ct_ex, e->nu + 1);
+        for (size_t i = 0; i < e->nu; i++)
+            u[i] = e->u[i].symbol;
+        momentum.e = CT_NEWN(a, ct_ex, e->nu + 1);
+        ct_ex_gradient(e->x, a, e->kinetic, u, e->nu, momentum.e);
+        momentum.n = e->nu;
+    }
     for (size_t i = 0; i < e->ndriver; i++) {
         push(&driver, e->driver[i].value);
         push(&driver, e->driver[i].rate);
@@ -266,6 +272,17 @@ static void compile_residual(struct ct_arena *a, struct ct_machine *m, const str
     compile(a, m, in, tangent.e, tangent.n, &m->tangent);
 }
 
+static void start_input(struct ct_machine *m)
+{
+    const struct ct_equations *e = m->e;
+    memset(m->input, 0, m->ninput * sizeof *m->input);
+    for (size_t i = 0; i < m->model->nparameter; i++)
+        m->input[1 + i] = m->model->parameter[i].value;
+    for (size_t i = 0; i < e->nmemory; i++)
+        if (e->memory[i].kind == CT_MEMORY_QUATERNION && e->memory[i].place == 0)
+            m->input[m->at_memory + i] = 1;
+}
+
 struct ct_machine *ct_machine_create(struct ct_arena *a, const struct ct_model *model,
                                      const struct ct_equations *e)
 {
@@ -280,11 +297,7 @@ struct ct_machine *ct_machine_create(struct ct_arena *a, const struct ct_model *
     m->at_work = m->at_memory + e->nmemory;
     m->ninput = m->at_work + 1;
     m->input = CT_NEWN(a, double, m->ninput);
-    for (size_t i = 0; i < model->nparameter; i++)
-        m->input[1 + i] = model->parameter[i].value;
-    for (size_t i = 0; i < e->nmemory; i++)
-        if (e->memory[i].kind == CT_MEMORY_QUATERNION && e->memory[i].place == 0)
-            m->input[m->at_memory + i] = 1;
+    start_input(m);
 
     const struct inputs in = list_inputs(a, m, m->e->x);
     compile_solved(a, m, &in);
@@ -336,6 +349,12 @@ void ct_machine_prepare(struct ct_machine *m)
         prepare(all[i], m->input);
     for (struct ct_program *p = m->apart; p; p = p->next)
         prepare(p, m->input);
+}
+
+void ct_machine_reset(struct ct_machine *m)
+{
+    start_input(m);
+    ct_machine_prepare(m);
 }
 
 // ---- evaluation -------------------------------------------------------------------------------------

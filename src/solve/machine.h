@@ -92,6 +92,8 @@ void ct_machine_values(struct ct_arena *a, const struct ct_machine *m, const ct_
                        double *out);
 /// Parameters have changed: run the prologues again.
 void ct_machine_prepare(struct ct_machine *m);
+/// As new, with the values that the model's parameters have now.
+void ct_machine_reset(struct ct_machine *m);
 
 /// q (+) d for a small motion d (nu) in the speeds; quaternions are composed and normalised.  (7.4)
 void ct_machine_retract(const struct ct_machine *m, double *q, const double *d);

@@ -17,7 +17,7 @@ struct ct_run {
     struct ct_machine *m;
     struct ct_embed *s;
     size_t ny;
-    double *y, *dy, *stage, *scratch, *value;
+    double *y, *dy, *stage, *scratch, *value, *next;
     double *sign;  // of each state mode's root function at the last event
     double *event; // times
     size_t nevent;
@@ -27,8 +27,9 @@ struct ct_run {
     const struct ct_run_options *o;
     struct ct_run_report *report;
     double energy0, energy_scale;
-    double pivot_last, pivot_most, pivot_time, singular_in; // see foresee_singular
-    double pending; // time of the event ahead; INFINITY if there is none
+    double pivot_most, last_part, time_last, singular_in,
+        singular_reach; // see foresee_singular
+    double pending;     // time of the event ahead; INFINITY if there is none
     bool started;
     // the choice of the method
     const struct ct_method *method;  // that steps now
@@ -52,6 +53,14 @@ static double before_event(const struct ct_run *r, double t)
     return t < r->pending ? t : nextafter(r->pending, -INFINITY);
 }
 
+static double largest(const double *v, size_t n)
+{
+    double max = 0;
+    for (size_t i = 0; i < n; i++)
+        max = fmax(max, fabs(v[i]));
+    return max;
+}
+
 // ---- evaluation -------------------------------------------------------------------------------------------
 
 static enum ct_eval accelerate(struct ct_run *r, double t, const double *y)
@@ -73,29 +82,10 @@ static void multipliers(struct ct_run *r)
     memcpy(r->m->input + r->m->at_lam, r->s->lam, r->m->nrow * sizeof *r->s->lam);
 }
 
-// Stages of a step lie off the manifold by more than its steps do. Beside a singular position that
-// little is divided by a small pivot, so there the stage is put onto the manifold first.
-// A position counts as near to singular when the smallest pivot has fallen to this part of its largest
-// value so far.
-static const double singular_pivot = 0.25;
-
-static bool is_near_singular(const struct ct_run *r)
-{
-    return r->s->rank && r->s->sigma < singular_pivot * r->pivot_most;
-}
-
 static enum ct_eval rhs(void *user, double time, const double *y, double *dy)
 {
     struct ct_run *r = user;
     const double t = before_event(r, time);
-    r->s->is_delicate = is_near_singular(r);
-    if (r->s->is_delicate) {
-        memcpy(r->stage, y, r->ny * sizeof *y);
-        const enum ct_eval p = ct_embed_project(r->s, t, r->stage);
-        if (p != CT_EVAL_OK)
-            return p;
-        y = r->stage;
-    }
     const enum ct_eval e = accelerate(r, t, y);
     if (e != CT_EVAL_OK)
         return e;
@@ -114,42 +104,110 @@ static enum ct_eval rhs(void *user, double time, const double *y, double *dy)
 static enum ct_eval project(void *user, double t, double *y)
 {
     struct ct_run *r = user;
-    r->s->is_delicate = is_near_singular(r);
     return ct_embed_project(r->s, before_event(r, t), y);
 }
 
-// The smallest pivot of J_d falls about linearly towards a singular position: where it will vanish
-// is foreseen from two accepted states.
-static void foresee_singular(struct ct_run *r, double t)
+// The smallest pivot of J_d against its largest, s seconds after y along q' and q'' as they are there.
+static double pivot_after(struct ct_run *r, double t, const double *y, const double *dy,
+                          double s)
 {
-    const double before = r->pivot_last, dt = t - r->pivot_time;
-    r->singular_in = INFINITY;
-    r->pivot_last = INFINITY;
-    r->pivot_most = fmax(r->pivot_most, r->s->sigma);
-    if (!is_near_singular(r))
-        return;
+    const size_t nq = r->m->nq, nu = r->m->nu;
+    memcpy(r->stage, y, r->ny * sizeof *y);
+    for (size_t i = 0; i < nu; i++)
+        r->scratch[i] = s * (y[nq + i] + s / 2 * dy[nq + i]);
+    ct_machine_retract(r->m, r->stage, r->scratch);
+    ct_machine_set(r->m, before_event(r, t + s), r->stage);
     ct_machine_constraint(r->m);
-    r->pivot_last = ct_embed_pivot(r->s);
-    r->pivot_time = t;
-    if (isfinite(before) && before > r->pivot_last && dt > 0)
-        r->singular_in = dt * r->pivot_last / (before - r->pivot_last);
+    return ct_embed_pivot(r->s);
 }
 
-static double singular_in(void *user)
+// A position counts as singular ahead when the smallest pivot has fallen to the first part of its largest value so far
+// and goes on falling; where it has fallen to the second part pivots are sought at every evaluation, at the third f is
+// better not computed.
+static const double foreseen_pivot = 0.7, near_pivot = 0.5, singular_pivot = 0.25;
+
+// The smallest pivot falls about linearly towards a singular position. Time to where it will vanish, by secants along
+// the motion as the accelerations of now continue it. INFINITY if it rises.
+static double time_to_singular(struct ct_run *r, double t, const double *y, const double *dy,
+                               double now, double dt)
 {
-    return ((const struct ct_run *)user)->singular_in;
+    enum { SECANTS = 3 };
+    const double glance = 1e-3, part = 0.8; // of the last step; of the way, not to step across
+    const double far = 4 * dt;
+    double s = glance * dt, pivot = pivot_after(r, t, y, dy, s), slope = (pivot - now) / s;
+    if (!(slope < 0))
+        return INFINITY;
+    for (int i = 0; i < SECANTS && s - pivot / slope < far; i++) {
+        const double next = s - part * pivot / slope;
+        double there = pivot_after(r, t, y, dy, next);
+        if (there > fabs(pivot)) // it has changed its sign, which is not seen
+            there = -there;
+        if (there == pivot)
+            break;
+        slope = (there - pivot) / (next - s);
+        s = next;
+        pivot = there;
+    }
+    return s - pivot / slope;
 }
 
-static enum ct_eval accepted(void *user, double t, double *y)
+// What is ahead of an accepted state. False if the step to it has come beside a singular position before that was
+// foreseen.
+static bool foresee_singular(struct ct_run *r, double t, const double *y, const double *dy)
+{
+    const double dt = t - r->time_last;
+    if (!r->s->rank || !(dt > 0))
+        return true;
+    const double now = pivot_after(r, t, y, dy, 0), part = now / fmax(r->pivot_most, now);
+    const bool was_unforeseen = isinf(r->singular_in) && r->last_part > near_pivot;
+    if (r->o->step == 0 && part < singular_pivot && was_unforeseen)
+        return false;
+    r->time_last = t;
+    r->last_part = part;
+    r->pivot_most = fmax(r->pivot_most, now);
+    r->singular_in = INFINITY;
+    r->s->is_delicate = part < near_pivot;
+    if (part > foreseen_pivot)
+        return true;
+    r->singular_in = time_to_singular(r, t, y, dy, now, dt);
+    r->singular_reach = r->singular_in * fmin(1, singular_pivot / part);
+    return true;
+}
+
+static double singular_in(void *user, double *reach)
+{
+    const struct ct_run *r = user;
+    *reach = r->singular_reach;
+    return r->singular_in;
+}
+
+// The stages of a crossing keep away from the position and are put onto the constraints: an order of pivots that holds
+// where it begins holds for all of them.
+static void set_crossing(void *user, bool is_crossing)
 {
     struct ct_run *r = user;
+    r->s->is_delicate = !is_crossing && r->last_part < near_pivot;
+}
+
+static double residual(void *user, double t, const double *y)
+{
+    struct ct_run *r = user;
+    ct_machine_set(r->m, before_event(r, t), y);
+    ct_machine_constraint(r->m);
+    return largest(r->m->phi, r->m->nrow);
+}
+
+static enum ct_eval accepted(void *user, double t, double *y, const double *dy)
+{
+    struct ct_run *r = user;
+    if (!r->method->is_implicit && !foresee_singular(r, t, y, dy))
+        return CT_EVAL_RETRY;
     ct_machine_set(r->m, before_event(r, t), y);
     ct_memory_follow(r->m);
     if (r->method->is_implicit) { // its steps may pass without a projection
         ct_machine_constraint(r->m);
         ct_embed_renew(r->s);
     }
-    foresee_singular(r, t);
     return CT_EVAL_OK;
 }
 
@@ -330,9 +388,30 @@ static void find_needs(struct ct_run *r)
             r->root_of[r->nroot++] = (int)i;
 }
 
-struct ct_run *ct_run_create(struct ct_ctx *ctx, struct ct_arena *a,
-                             const struct ct_model *model, const struct ct_equations *e,
-                             const struct ct_start *start)
+// To the start, assembled; rows and columns chosen there.
+static bool begin(struct ct_run *r, const struct ct_start *start)
+{
+    ct_start_apply(start, r->m, r->y);
+    ct_machine_constraint(r->m);
+    if (!ct_embed_choose(r->s))
+        return false;
+    // measured on other trees, the loops close to rounding; the rest is taken off here
+    if (ct_embed_project(r->s, 0, r->y) != CT_EVAL_OK) {
+        ct_error(r->ctx, (struct ct_mark){.file = r->model->file}, CT_E_ASSEMBLY,
+                 "the assembled start is singular: the loops cannot be held there");
+        return false;
+    }
+    if (rhs(r, 0, r->y, r->dy) != CT_EVAL_OK) {
+        ct_error(r->ctx, (struct ct_mark){.file = r->model->file}, CT_E_SINGULAR,
+                 "the accelerations at t = 0 cannot be found");
+        return false;
+    }
+    ct_modes_start(r->m, 0, r->y, r->dy);
+    return true;
+}
+
+struct ct_run *ct_run_prepare(struct ct_ctx *ctx, struct ct_arena *a,
+                              const struct ct_model *model, const struct ct_equations *e)
 {
     struct ct_run *r = CT_NEW(a, struct ct_run);
     *r = (struct ct_run){.ctx = ctx, .arena = a, .model = model, .e = e};
@@ -343,26 +422,33 @@ struct ct_run *ct_run_create(struct ct_ctx *ctx, struct ct_arena *a,
     r->y = CT_NEWN(a, double, r->ny);
     r->dy = CT_NEWN(a, double, r->ny);
     r->stage = CT_NEWN(a, double, r->ny);
-    r->scratch = CT_NEWN(a, double, 2 * r->m->nu + 2 * e->ndriver + 1);
+    r->scratch = CT_NEWN(a, double, 2 * r->m->nu + 2 * e->ndriver + r->m->nrow + 1);
     r->value = CT_NEWN(a, double, e->nresult + 1);
     find_needs(r);
-    ct_start_apply(start, r->m, r->y);
-    ct_machine_constraint(r->m);
-    if (!ct_embed_choose(r->s))
-        return NULL;
-    // measured on other trees, the loops close to rounding; the rest is taken off here
-    if (ct_embed_project(r->s, 0, r->y) != CT_EVAL_OK) {
-        ct_error(ctx, (struct ct_mark){.file = model->file}, CT_E_ASSEMBLY,
-                 "the assembled start is singular: the loops cannot be held there");
-        return NULL;
-    }
-    if (rhs(r, 0, r->y, r->dy) != CT_EVAL_OK) {
-        ct_error(ctx, (struct ct_mark){.file = model->file}, CT_E_SINGULAR,
-                 "the accelerations at t = 0 cannot be found");
-        return NULL;
-    }
-    ct_modes_start(r->m, 0, r->y, r->dy);
     return r;
+}
+
+struct ct_run *ct_run_create(struct ct_ctx *ctx, struct ct_arena *a,
+                             const struct ct_model *model, const struct ct_equations *e,
+                             const struct ct_start *start)
+{
+    struct ct_run *r = ct_run_prepare(ctx, a, model, e);
+    return begin(r, start) ? r : NULL;
+}
+
+bool ct_run_restart(struct ct_run *r, const struct ct_start *start)
+{
+    ct_machine_reset(r->m);
+    r->s->kappa = r->s->sigma = 0;
+    r->pending = INFINITY;
+    r->energy0 = r->energy_scale = r->pivot_most = 0;
+    r->started = false;
+    return begin(r, start);
+}
+
+enum ct_eval ct_run_rhs(struct ct_run *r, double t, const double *y, double *dy)
+{
+    return rhs(r, t, y, dy);
 }
 
 struct ct_machine *ct_run_machine(struct ct_run *r)
@@ -392,14 +478,6 @@ enum ct_eval ct_run_results(struct ct_run *r, double t, const double *y, double 
 }
 
 // ---- the run ------------------------------------------------------------------------------------------------------
-
-static double largest(const double *v, size_t n)
-{
-    double max = 0;
-    for (size_t i = 0; i < n; i++)
-        max = fmax(max, fabs(v[i]));
-    return max;
-}
 
 // Energy, constraints: the ledger of a sample.
 static void keep_ledger(struct ct_run *r, const double *y)
@@ -438,12 +516,8 @@ static void watch_validity(struct ct_run *r, double t)
     r->t_sample = t;
 }
 
-static bool at_sample(void *user, double t, const double *y)
+static bool give_row(struct ct_run *r, double t, const double *y)
 {
-    struct ct_run *r = user;
-    if (ct_run_results(r, t, y, r->value) != CT_EVAL_OK)
-        return ct_error(r->ctx, (struct ct_mark){.file = r->model->file}, CT_E_SINGULAR,
-                        "the equations are singular at t = %.9g", t);
     for (size_t i = 0; i < r->e->nresult; i++)
         if (!isfinite(r->value[i]))
             return ct_error(r->ctx, (struct ct_mark){.file = r->model->file}, CT_E_SINGULAR,
@@ -456,10 +530,49 @@ static bool at_sample(void *user, double t, const double *y)
     return !r->o->row || r->o->row(r->o->user, t, r->value, r->e->nresult);
 }
 
+static bool singular_at(struct ct_run *r, double t)
+{
+    return ct_error(r->ctx, (struct ct_mark){.file = r->model->file}, CT_E_SINGULAR,
+                    "the equations are singular at t = %.9g", t);
+}
+
+static bool at_sample(void *user, double t, const double *y)
+{
+    struct ct_run *r = user;
+    return ct_run_results(r, t, y, r->value) == CT_EVAL_OK ? give_row(r, t, y)
+                                                           : singular_at(r, t);
+}
+
+// Where accelerations and multipliers cannot be computed they are those at other times, interpolated.
+static bool at_singular_sample(void *user, double t, const double *y, const struct ct_bridge *b)
+{
+    struct ct_run *r = user;
+    struct ct_machine *m = r->m;
+    double *a = r->scratch, *lam = a + m->nu;
+    memset(a, 0, (m->nu + m->nrow) * sizeof *a);
+    for (int k = 0; k < b->n; k++) {
+        memcpy(r->stage, b->y + (size_t)k * r->ny, r->ny * sizeof *y);
+        if (ct_embed_project(r->s, b->t[k], r->stage) != CT_EVAL_OK
+            || accelerate(r, b->t[k], r->stage) != CT_EVAL_OK)
+            return singular_at(r, t);
+        ct_embed_multipliers(r->s);
+        for (size_t i = 0; i < m->nu; i++)
+            a[i] += b->weight[k] * r->s->a[i];
+        for (size_t i = 0; i < m->nrow; i++)
+            lam[i] += b->weight[k] * r->s->lam[i];
+    }
+    ct_machine_set(m, t, y);
+    memcpy(m->input + m->at_a, a, m->nu * sizeof *a);
+    memcpy(m->input + m->at_lam, lam, m->nrow * sizeof *lam);
+    ct_program_run(&m->result, m->input);
+    memcpy(r->value, m->result.out, r->e->nresult * sizeof *r->value);
+    return give_row(r, t, y);
+}
+
 // After an event, and next to a singular position, steps had better go on.
 static bool is_to_be_reconsidered(struct ct_run *r, double t, const double *y)
 {
-    const bool may_stop = t > r->last_event && !is_near_singular(r);
+    const bool may_stop = t > r->last_event && !(r->singular_in < INFINITY);
     if (r->method->is_implicit)
         return ct_trial_has_lost(&r->implicit, t, r->explicit_pace) && may_stop;
     return ct_stiffness_watch(r->stiffness, t, y, r->o->duration) && may_stop;
@@ -514,6 +627,176 @@ void ct_run_find_open(struct ct_run *r, double t, const double *y, bool *row, bo
     }
 }
 
+static double sample_time(const struct ct_run_options *o, size_t i)
+{
+    if (o->nsample == 1)
+        return 0;
+    return i + 1 == o->nsample ? o->duration
+                               : o->duration * (double)i / (double)(o->nsample - 1);
+}
+
+// ---- driven all through ----------------------------------------------------------------------------------------
+
+static bool check_driven(struct ct_run *r)
+{
+    if (r->s->rank == (int)r->m->nu)
+        return true;
+    const struct ct_u *u = &r->e->u[r->s->independent[0]];
+    const struct ct_mark mark = u->joint >= 0 ? r->model->joint[u->joint].mark
+                              : u->body >= 0  ? r->model->body[u->body].instance.mark
+                                              : (struct ct_mark){.file = r->model->file};
+    return ct_error(r->ctx, mark, CT_E_NOT_DRIVEN,
+                    "not all freedoms are driven: %d left, such as '%s'; give each a 'motion'",
+                    (int)r->m->nu - r->s->rank, u->q >= 0 ? r->e->q[u->q].name : u->name);
+}
+
+// From y at t to t1 in one go: along the motion to second order, then onto the rows. False if that leads too far.
+static bool follow_step(struct ct_run *r, double t, double t1, const double *y, double *out)
+{
+    const double longest = 0.3; // [rad or m]: more could lead to another assembly
+    const double part = 0.25;   // of the step: what the rows may correct
+    const size_t nq = r->m->nq, nu = r->m->nu;
+    const double h = t1 - t;
+    double most = 0, worst = 0, *d = r->scratch;
+    memcpy(out, y, r->ny * sizeof *y);
+    if (!nu)
+        return true;
+    if (accelerate(r, before_event(r, t), y) != CT_EVAL_OK)
+        return false;
+    for (size_t k = 0; k < nu; k++) {
+        d[k] = h * (y[nq + k] + h / 2 * r->s->a[k]);
+        out[nq + k] += h * r->s->a[k];
+        most = fmax(most, fabs(d[k]));
+    }
+    if (!(most <= longest))
+        return false;
+    ct_machine_retract(r->m, out, d);
+    memcpy(r->stage, out, nq * sizeof *out);
+    if (ct_embed_project(r->s, before_event(r, t1), out) != CT_EVAL_OK)
+        return false;
+    for (size_t i = 0; i < nq; i++)
+        worst = fmax(worst, fabs(out[i] - r->stage[i]));
+    return worst <= part * most + 1e-9;
+}
+
+static bool follow_to(struct ct_run *r, double t, double t1, double *y)
+{
+    const double least = 1e-9; // of the way: it does not go on
+    double h = t1 - t, *next = r->next;
+    while (t < t1) {
+        const double end = h >= t1 - t ? t1 : t + h;
+        if (!follow_step(r, t, end, y, next)) {
+            h = (end - t) / 2;
+            if (h > least * (t1 - t) && t + h > t)
+                continue;
+            return ct_error(
+                r->ctx, (struct ct_mark){.file = r->model->file}, CT_E_SAMPLE_REFUSED,
+                "the mechanism cannot follow its motions beyond t = %.9g: it locks, "
+                "or passes a singular position",
+                t);
+        }
+        memcpy(y, next, r->ny * sizeof *y);
+        ct_machine_set(r->m, before_event(r, end), y);
+        ct_memory_follow(r->m);
+        h = 2 * (end - t);
+        t = end;
+    }
+    return true;
+}
+
+// Work over an interval without events: Gauss's formula with three nodes.
+static bool follow_and_work(struct ct_run *r, double t, double t1, double *y)
+{
+    static const double node[] = {0.1127016653792583, 0.5, 0.8872983346207417},
+                        weight[] = {5. / 18, 8. / 18, 5. / 18};
+    double work = 0, now = t;
+    for (int i = 0; i < 3 && r->has_power; i++) {
+        const double at = t + node[i] * (t1 - t);
+        if (!follow_to(r, now, at, y))
+            return false;
+        now = at;
+        if (accelerate(r, before_event(r, at), y) != CT_EVAL_OK)
+            return ct_error(r->ctx, (struct ct_mark){.file = r->model->file}, CT_E_SINGULAR,
+                            "the equations are singular at t = %.9g", at);
+        multipliers(r);
+        ct_program_run(&r->m->power, r->m->input);
+        work += weight[i] * (t1 - t) * r->m->power.out[0];
+    }
+    if (!follow_to(r, now, t1, y))
+        return false;
+    y[r->ny - 1] += work;
+    return true;
+}
+
+// Sides after an event; the motions must not jump there. Their rates may: an impulse, whose work is booked.
+static bool pass_event(struct ct_run *r, double t, double *y)
+{
+    struct ct_machine *m = r->m;
+    double *before = r->scratch + m->nu;
+    ct_machine_set(m, before_event(r, t), y);
+    ct_program_run(&m->driver, m->input);
+    memcpy(before, m->driver.out, m->driver.nout * sizeof *before);
+    const double kinetic = kinetic_energy(r, before_event(r, t), y);
+    r->pending = next_time_event(r, t);
+    ct_modes_start(m, t, y, NULL);
+    ct_machine_set(m, t, y);
+    ct_program_run(&m->driver, m->input);
+    for (size_t i = 0; i < r->e->ndriver; i++) {
+        const double jump = m->driver.out[2 * i] - before[2 * i];
+        if (fabs(jump) > jump_tolerance * fmax(1, fabs(before[2 * i])))
+            return report_jump(r, r->e->driver[i].name, r->e->driver[i].mark, jump, t);
+    }
+    ct_machine_constraint(m);
+    if (!chords_are_closed(r, t))
+        return false;
+    if (ct_embed_project(r->s, t, y) != CT_EVAL_OK)
+        return ct_error(r->ctx, (struct ct_mark){.file = r->model->file}, CT_E_SAMPLE_REFUSED,
+                        "the mechanism cannot follow its motions at t = %.9g", t);
+    y[r->ny - 1] += kinetic_energy(r, t, y) - kinetic;
+    return true;
+}
+
+bool ct_run_follow(struct ct_run *r, const struct ct_run_options *o,
+                   struct ct_run_report *report)
+{
+    *report = (struct ct_run_report){.y = r->y,
+                                     .rank = r->s->rank,
+                                     .method = o->method,
+                                     .changed_at = NAN,
+                                     .returned_at = NAN};
+    report->final = CT_NEWN(r->arena, double, r->e->nresult + 1);
+    r->o = o;
+    r->report = report;
+    r->next = CT_NEWN(r->arena, double, r->ny);
+    r->nevent = ct_time_events(r->arena, r->m, 0, o->duration, &r->event);
+    r->pending = next_time_event(r, 0);
+    ct_modes_start(r->m, 0, r->y, NULL);
+    if (!check_driven(r))
+        return false;
+    double t = 0;
+    for (size_t i = 0; i < o->nsample; i++) {
+        const double end = sample_time(o, i);
+        while (r->pending <= end) {
+            const double event = r->pending;
+            if (!follow_and_work(r, t, event, r->y) || !pass_event(r, event, r->y))
+                return false;
+            t = event;
+        }
+        if (!follow_and_work(r, t, end, r->y))
+            return false;
+        t = end;
+        ct_modes_start(r->m, t, r->y, NULL);
+        if (!at_sample(r, t, r->y) || !at_step(r, t, r->y))
+            return false;
+    }
+    report->switches = r->s->switches;
+    report->factorizations = r->s->factorizations;
+    report->stats.evaluations = r->m->evaluations;
+    if (r->energy_scale > 0)
+        report->energy_drift /= r->energy_scale;
+    return true;
+}
+
 // ---- the choice of the method ---------------------------------------------------------------------------------
 
 static bool at_trial_step(void *user, double t, const double *y)
@@ -534,7 +817,7 @@ static double operations_of_accelerations(const struct ct_run *r)
     if (r->m->solved.nout)
         return operations(&r->m->solved);
     if (r->s->has_form)
-        return operations(&r->s->form[0]->solved);
+        return r->s->form[0]->operations;
     return operations(&r->m->motion) + ct_embed_operations(r->s);
 }
 
@@ -677,13 +960,13 @@ static const struct ct_groups *group_states(struct ct_run *r)
         of[i] = -1;
     for (size_t k = 0; k < r->e->nu; k++) {
         const struct ct_u *u = &r->e->u[k];
-        if (!u->beam)
+        if (!u->beam || u->kind == CT_ELASTIC_MODE)
             continue;
         if (!before || before->beam != u->beam) // a beam's coordinates follow each other
-            g->n += 2 * CT_NELASTIC;
+            g->n += 2 * CT_ELASTIC_MODE;
         before = u;
         of[u->q] = g->n - 1 - (int)u->kind;
-        of[r->e->nq + k] = of[u->q] - CT_NELASTIC;
+        of[r->e->nq + k] = of[u->q] - CT_ELASTIC_MODE;
     }
     g->of = of;
     g->size = CT_NEWN(r->arena, double, g->n + 1);
@@ -701,10 +984,7 @@ bool ct_run_simulate(struct ct_run *r, const struct ct_run_options *o,
     double *sample = CT_NEWN(r->arena, double, n + 1);
     bool *watched = CT_NEWN(r->arena, bool, r->ny);
     for (size_t i = 0; i < n; i++)
-        sample[i]
-            = n == 1 || i + 1 == n ? o->duration : o->duration * (double)i / (double)(n - 1);
-    if (n == 1)
-        sample[0] = 0;
+        sample[i] = sample_time(o, i);
     for (size_t i = 0; i < r->ny; i++)
         watched[i] = i + 1 < r->ny || r->has_power; // the work is as good as the states
     *report
@@ -713,7 +993,7 @@ bool ct_run_simulate(struct ct_run *r, const struct ct_run_options *o,
     report->validity = CT_NEWN(r->arena, struct ct_validity_report, r->e->nvalidity + 1);
     for (size_t i = 0; i < r->e->nvalidity; i++)
         report->validity[i].left_at = -1;
-    r->pivot_last = r->singular_in = INFINITY;
+    r->singular_in = INFINITY;
     r->o = o;
     r->method = o->method;
     r->last_event = -INFINITY;
@@ -732,6 +1012,8 @@ bool ct_run_simulate(struct ct_run *r, const struct ct_run_options *o,
                            .project = project,
                            .accepted = accepted,
                            .singular_in = singular_in,
+                           .set_crossing = set_crossing,
+                           .residual = residual,
                            .nroot = r->nroot,
                            .root = root,
                            .next_time_event = next_time_event,
@@ -743,6 +1025,7 @@ bool ct_run_simulate(struct ct_run *r, const struct ct_run_options *o,
                                             .sample = sample,
                                             .nsample = n,
                                             .at_sample = at_sample,
+                                            .at_singular_sample = at_singular_sample,
                                             .at_step = at_step};
     const bool ok = march(r, &p, io);
     report->rank = r->s->rank;

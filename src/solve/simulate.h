@@ -47,16 +47,29 @@ struct ct_run_report {
 struct ct_run *ct_run_create(struct ct_ctx *ctx, struct ct_arena *a,
                              const struct ct_model *model, const struct ct_equations *e,
                              const struct ct_start *start);
+/// Machine and embedding only: it has to be started.
+struct ct_run *ct_run_prepare(struct ct_ctx *ctx, struct ct_arena *a,
+                              const struct ct_model *model, const struct ct_equations *e);
+/// The run as new from another start, with the values that the model's parameters have now. False with a diagnostic.
+bool ct_run_restart(struct ct_run *r, const struct ct_start *start);
 struct ct_machine *ct_run_machine(struct ct_run *r);
 struct ct_embed *ct_run_embed(struct ct_run *r);
 /// State at the start: q, u, work.
 const double *ct_run_state(const struct ct_run *r);
+/// dy (out) = f(t, y), for y as ct_run_state has it.
+enum ct_eval ct_run_rhs(struct ct_run *r, double t, const double *y, double *dy);
 /// Accelerations, multipliers and results at t, y; out has nresult entries.
 enum ct_eval ct_run_results(struct ct_run *r, double t, const double *y, double *out);
 
 /// What redundant constraints leave open at t, y: row[i] becomes true if the multiplier of row i is not unique,
 /// result[i] if the result changes with such multipliers. What is true already stays.
 void ct_run_find_open(struct ct_run *r, double t, const double *y, bool *row, bool *result);
+
+/// Follow the motions of a run that has no freedom left, sample by sample: places by Newton's method, speeds and
+/// accelerations from the rows. Nothing is integrated but the work.
+/// Errors: CT_E_NOT_DRIVEN, CT_E_DRIVER_JUMP, CT_E_SAMPLE_REFUSED, CT_E_SINGULAR.
+bool ct_run_follow(struct ct_run *r, const struct ct_run_options *o,
+                   struct ct_run_report *report);
 
 /// Integrate over the duration.
 bool ct_run_simulate(struct ct_run *r, const struct ct_run_options *o,

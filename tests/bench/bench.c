@@ -12,6 +12,8 @@
 #include "formulate/formulate.h"
 #include "solve/simulate.h"
 
+#include <cotree/cotree.h>
+
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -57,6 +59,11 @@ static void line(const char *what, double t, double goal)
     if (goal > 0)
         printf(" %8.2f", t / goal);
     putchar('\n');
+}
+
+static void size(const char *what, size_t bytes)
+{
+    printf("%-58s %9.4g MB %12s\n", what, 1e-6 * (double)bytes, "-");
 }
 
 static void ratio(const char *what, double r, double goal)
@@ -116,7 +123,9 @@ struct subject {
     struct ct_start start;
     struct ct_run *run;
     struct ct_machine *machine;
-    double generate; // seconds, from the file to equations
+    double *state;
+    double generate,
+        prepare; // seconds, from the file to equations; from there to the start of a run
 };
 
 static void give_up(const struct subject *s)
@@ -164,6 +173,7 @@ static void open_subject(struct subject *s, const char *path)
     if (!generate(s))
         give_up(s);
     s->generate = now() - start;
+    const double generated = now();
     if (s->equations.nrow)
         ct_formulate_dynamics(&s->equations);
     if (!ct_formulate(&s->ctx, s->ctx.model, &s->model, &assembly, &s->assembly, &report)
@@ -172,6 +182,7 @@ static void open_subject(struct subject *s, const char *path)
     s->run = ct_run_create(&s->ctx, s->ctx.model, &s->model, &s->equations, &s->start);
     if (!s->run)
         give_up(s);
+    s->prepare = now() - generated;
     s->machine = ct_run_machine(s->run);
     ct_machine_set(s->machine, 0, ct_run_state(s->run));
 }
@@ -431,6 +442,25 @@ static void show_accelerations(struct subject *s, const char *what, double per, 
     line(text, t[1] / per, 0);
 }
 
+// One projection of the state at hand, which meets the constraints already: the least that a step pays.
+static void project(void *data)
+{
+    struct subject *s = data;
+    ct_embed_project(ct_run_embed(s->run), 0, s->state);
+}
+
+static void show_projection(struct subject *s, double per)
+{
+    const call_fn f[] = {project};
+    void *const data[] = {s};
+    double t;
+    const size_t ny = s->machine->nq + s->machine->nu + 1;
+    s->state = CT_NEWN(s->ctx.model, double, ny);
+    memcpy(s->state, ct_run_state(s->run), ny * sizeof(double));
+    measure(f, data, 1, &t);
+    line("  projection, with the check of the pivots", t / per, 0);
+}
+
 // ---- generating ---------------------------------------------------------------------------------
 
 static double median_of(double (*f)(const char *path), const char *path, int n)
@@ -627,9 +657,78 @@ static void four_bars(int n)
     snprintf(what, sizeof what, "%d four-bar%s, M, Q, J, gam", n, n > 1 ? "s" : "");
     compare_back_ends(&s, &s.machine->motion, what, NULL);
     show_accelerations(&s, "  accelerations, solve included, per loop", n, 60e-9);
+    show_projection(&s, n);
     close_subject(&s);
     unlink(s.path);
 }
+
+// Cost per loop must not grow with the number of loops: 3 n + 1 bodies and joints, ground included.
+static void many_four_bars(int n)
+{
+    struct subject s;
+    open_subject(&s, generated("n_four_bar", n));
+    printf("\n%d four-bars in a row: %zu bodies, %zu joints, solved by %s\n", n,
+           s.model.nbody - 1, s.model.njoint,
+           ct_run_embed(s.run)->nform ? ct_run_embed(s.run)->form[0]->kind->name : "dense");
+    line("  model to equations", s.generate, 2);
+    line("  equations to the start of a run", s.prepare, 0);
+    size("  memory of model, equations and run", ct_arena_used(s.ctx.model));
+    show_accelerations(&s, "  accelerations, solve included, per loop", n, 60e-9);
+    show_projection(&s, n);
+    close_subject(&s);
+    unlink(s.path);
+}
+
+// ---- parameter studies --------------------------------------------------------------------------
+
+// Seconds of integration of n single runs one after another, at values across the same range.
+static double single_runs(struct ct_ctx *ctx, const char *path, int n)
+{
+    double t = 0;
+    for (int i = 0; i < n; i++) {
+        char torque[32];
+        snprintf(torque, sizeof torque, "torque=%g", 0.4 + 0.2 * (i + 0.5) / n);
+        const char *const set[] = {torque};
+        struct ct_system *system
+            = ct_system_load(ctx, path, &(struct ct_system_options){.set = set, .nset = 1});
+        struct ct_sim *sim = ct_sim_create(ctx, system, &(struct ct_sim_options){.samples = 2});
+        const double start = now();
+        if (!ct_sim_run(ctx, sim, NULL))
+            exit(1);
+        t += now() - start;
+        ct_sim_destroy(sim);
+        ct_system_destroy(system);
+    }
+    return t;
+}
+
+// Members in lanes on one core against single runs, which are timed before and after.
+static void sweep(int members)
+{
+    const char *path = shipped("slider_crank");
+    const int n = members < 1000 ? 4 : 100;
+    char vary[64], text[96];
+    snprintf(vary, sizeof vary, "torque=0.4:0.6:%d", members);
+    const char *const list[] = {vary};
+    struct ct_ctx *ctx = ct_ctx_create();
+    struct ct_study *study = ct_study_create(
+        ctx, path, NULL, &(struct ct_study_options){.vary = list, .nvary = 1, .threads = 1});
+    double single = single_runs(ctx, path, n);
+    const double start = now();
+    if (!ct_study_run(ctx, study, NULL) || ct_study_failed(study))
+        exit(1);
+    const double lanes = (now() - start) / members;
+    single = (single + single_runs(ctx, path, n)) / (2 * n);
+    ct_study_destroy(study);
+    ct_ctx_destroy(ctx);
+    snprintf(text, sizeof text, "slider-crank, 2 s: sweep of %d, per member", members);
+    putchar('\n');
+    line(text, lanes, 0);
+    line("  single run, integration only", single, 0);
+    ratio("  single run / member", single / lanes, 3);
+}
+
+// ---- beams --------------------------------------------------------------------------------------
 
 static double accelerations(struct subject *s)
 {
@@ -697,8 +796,12 @@ int main(int argc, char **argv)
     andrews();
     four_bars(1);
     four_bars(10);
-    if (!quick)
+    sweep(quick ? 8 : 10000);
+    if (!quick) {
         four_bars(40);
+        many_four_bars(100);
+        many_four_bars(333);
+    }
     all_beams(quick);
     return 0;
 }

@@ -1,8 +1,8 @@
 # The keys of the summary, and what does not depend on the machine.
 "$COTREE" simulate "$SYSTEMS/slider_crank/model.yaml" --tree joints --until 0.1 --quiet --summary s.json
 grep -o '^  "[a-z_]*"' s.json
-sed -n '/"seconds"/,/}/p; /"error"/,/}/p' s.json | sed 's/: [0-9].*[0-9]//'
-grep -E '"(model|coordinates|speeds|constraints|redundant|degrees_of_freedom|planar|method|tolerance)":' s.json
+sed -n '/"solves"/,/}/p; /"seconds"/,/}/p; /"error"/,/}/p' s.json | sed 's/: [0-9].*[0-9]//'
+grep -E '"(model|coordinates|speeds|constraints|redundant|degrees_of_freedom|planar|method|tolerance|solver)":' s.json
 sed -n '/"trees"/,/^  }/p' s.json | tr -d ' \n'
 echo
 awk -F, 'END { print "last value of crank_angle:", $2 }' model.csv >a

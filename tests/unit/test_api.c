@@ -129,6 +129,74 @@ static void wrong_options_are_refused(void **state)
     ct_ctx_destroy(ctx);
 }
 
+struct rows {
+    double value[64];
+    char message[256];
+    long n, stop;
+};
+
+static bool take_row(void *user, long run, const double *varied, const double *value,
+                     const char *message)
+{
+    struct rows *r = user;
+    assert_int_equal(run, ++r->n);
+    if (value) {
+        r->value[run - 1] = value[0];
+        assert_true(isfinite(varied[0]));
+        assert_null(message);
+    } else {
+        snprintf(r->message, sizeof r->message, "%s", message);
+    }
+    return run != r->stop;
+}
+
+static void members_of_a_study_come_in_order(void **state)
+{
+    (void)state;
+    // l = -1: the rod stands upside down and swings, l = 0: no inertia
+    static const char *const vary[] = {"l=-1:1:3"};
+    for (long lanes = 0; lanes < 2; lanes++) {
+        struct ct_ctx *ctx = ct_ctx_create();
+        const struct ct_study_options o
+            = {.vary = vary, .nvary = 1, .threads = 1, .lanes = lanes};
+        struct ct_study *study = ct_study_create(ctx, path, NULL, &o);
+        struct rows rows = {.n = 0};
+        assert_non_null(study);
+        assert_int_equal(ct_study_count(study), 3);
+        assert_true(ct_study_run(ctx, study,
+                                 &(struct ct_study_results){.row = take_row, .user = &rows}));
+        assert_int_equal(rows.n, 3);
+        assert_int_equal(ct_study_failed(study), 1);
+        assert_non_null(strstr(rows.message, "moves no mass"));
+        // length -1 seen from the other side: the same pendulum, half a turn away
+        assert_true(rows.value[2] < 0 && rows.value[0] > 1);
+        assert_int_equal(ct_ctx_fault(ctx), CT_FAULT_NONE);
+        assert_false(ct_study_run(ctx, study, NULL)); // once
+        ct_study_destroy(study);
+        ct_ctx_destroy(ctx);
+    }
+}
+
+static void a_study_can_be_stopped(void **state)
+{
+    (void)state;
+    static const char *const vary[] = {"l=1:2:40"};
+    struct ct_ctx *ctx = ct_ctx_create();
+    struct ct_study *study = ct_study_create(
+        ctx, path, NULL, &(struct ct_study_options){.vary = vary, .nvary = 1, .threads = 1});
+    struct rows rows = {.stop = 3};
+    assert_true(
+        ct_study_run(ctx, study, &(struct ct_study_results){.row = take_row, .user = &rows}));
+    assert_int_equal(rows.n, 3);
+    assert_null(ct_study_create(ctx, path, NULL, &(struct ct_study_options){.nvary = 0}));
+    assert_null(
+        ct_study_create(ctx, "no such file", NULL, &(struct ct_study_options){.nvary = 0}));
+    assert_false(ct_study_run(ctx, NULL, NULL));
+    ct_study_destroy(NULL);
+    ct_study_destroy(study);
+    ct_ctx_destroy(ctx);
+}
+
 // Everything there is, with the n-th allocation failing; true if all went well.
 static bool use_all(const char *model, long n)
 {
@@ -161,6 +229,37 @@ static void memory_may_run_out_anywhere(void **state)
     assert_true(use_all(four_bar, 0));
 }
 
+// A member that finds no memory fails alone, if the others find some.
+static bool use_study(const char *model, const char *const *vary, long n)
+{
+    struct ct_ctx *ctx = ct_ctx_create();
+    const struct ct_study_options o
+        = {.run.until = 0.05, .vary = vary, .nvary = 1, .threads = 1};
+    ct_guard_fail_after(n);
+    struct ct_study *study = ct_study_create(ctx, model, NULL, &o);
+    const bool ok = ct_study_run(ctx, study, NULL);
+    ct_guard_fail_after(0);
+    assert_int_equal(ok ? CT_FAULT_NONE : CT_FAULT_MODEL, ct_ctx_fault(ctx));
+    const bool all = ok && ct_study_failed(study) == 0;
+    ct_study_destroy(study);
+    ct_ctx_destroy(ctx);
+    return all;
+}
+
+static void memory_may_run_out_in_a_study(void **state)
+{
+    (void)state;
+    static const char *const length[] = {"l=1:2:5"}, *const crank[] = {"a=0.2:0.21:5"};
+    int failures = 0;
+    for (long n = 1; n < 600; n += 1 + n / 40) {
+        failures += !use_study(path, length, n);
+        failures += !use_study(four_bar, crank, n);
+    }
+    assert_true(failures > 60);
+    assert_true(use_study(path, length, 0));
+    assert_true(use_study(four_bar, crank, 0));
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -168,7 +267,10 @@ int main(void)
         cmocka_unit_test(runs_share_a_system_and_can_be_stopped),
         cmocka_unit_test(failures_pass_through_a_chain),
         cmocka_unit_test(wrong_options_are_refused),
+        cmocka_unit_test(members_of_a_study_come_in_order),
+        cmocka_unit_test(a_study_can_be_stopped),
         cmocka_unit_test(memory_may_run_out_anywhere),
+        cmocka_unit_test(memory_may_run_out_in_a_study),
     };
     return cmocka_run_group_tests(tests, write_model, remove_model);
 }

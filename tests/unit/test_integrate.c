@@ -737,9 +737,9 @@ static enum ct_eval shortsighted(void *user, double t, const double *y, double *
     return (enum ct_eval)r->mode;
 }
 
-static enum ct_eval look_ahead(void *user, double t, double *y)
+static enum ct_eval look_ahead(void *user, double t, double *y, const double *dy)
 {
-    (void)y;
+    (void)y, (void)dy;
     ((struct record *)user)->limit = t;
     return CT_EVAL_OK;
 }

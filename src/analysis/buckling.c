@@ -1,0 +1,406 @@
+// See buckling.h.
+#include "analysis/buckling.h"
+#include "base/sort.h"
+#include "numeric/dense.h"
+
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+static const double none = 1e-11; // of the largest eigenvalue: a direction without stiffness
+static const double symmetric = 1e-8;  // relative
+static const double refined = 1e-13;   // of a factor
+static const double small_load = 1e-2; // of the first factor: the second load level
+enum { MOST_LEVELS = 40, MOST_HALVINGS = 30, MOST_TRIES = 100, MARCH = 16, MOST_REFINE = 100 };
+
+struct search {
+    struct ct_linear *l;
+    struct ct_arena *a;
+    size_t at, count;
+    int n;            // directions that have a stiffness with some load
+    int f;            // free speeds
+    int *independent; // of factor 0
+    double *P;        // f x n
+    double *K0, *K1, *K, *work, *B, *value, *T;
+    int *pivot;
+    struct ct_buckling_factor *found;
+    size_t nfound, cap;
+};
+
+// A place on the path.
+struct place {
+    double factor, *y, *memory;
+};
+
+static struct place place_create(struct search *s)
+{
+    const struct ct_machine *m = s->l->m;
+    return (struct place){.y = CT_NEWN(s->a, double, m->nq + m->nu + 1),
+                          .memory = CT_NEWN(s->a, double, m->e->nmemory + 1)};
+}
+
+static void keep(const struct ct_linear *l, size_t at, struct place *p)
+{
+    const struct ct_machine *m = l->m;
+    p->factor = m->input[at];
+    memcpy(p->y, l->y, (m->nq + m->nu + 1) * sizeof *p->y);
+    memcpy(p->memory, m->input + m->at_memory, m->e->nmemory * sizeof *p->memory);
+}
+
+static void set_factor(const struct ct_linear *l, size_t at, double factor)
+{
+    l->m->input[at] = factor;
+    ct_machine_prepare(l->m);
+}
+
+static void go_back(struct ct_linear *l, size_t at, const struct place *p)
+{
+    const struct ct_machine *m = l->m;
+    memcpy(l->y, p->y, (m->nq + m->nu + 1) * sizeof *p->y);
+    memcpy(m->input + m->at_memory, p->memory, m->e->nmemory * sizeof *p->memory);
+    set_factor(l, at, p->factor);
+}
+
+bool ct_buckling_load(struct ct_linear *l, size_t at, double factor)
+{
+    struct ct_equilibrium_result result;
+    struct search s = {.l = l, .a = l->arena};
+    struct place last = place_create(&s);
+    keep(l, at, &last);
+    int tries = 0;
+    for (int i = 0; i < MOST_HALVINGS && tries < MOST_TRIES && last.factor != factor; tries++) {
+        const double here = last.factor, next = here + (factor - here) * ldexp(1, -i);
+        set_factor(l, at, next);
+        if (ct_equilibrium_follow(l, &result)) {
+            keep(l, at, &last);
+            i = i > 0 ? i - 1 : 0;
+        } else {
+            go_back(l, at, &last);
+            i++;
+        }
+    }
+    return last.factor == factor;
+}
+
+// ---- stiffness in the coordinates of factor 0 ------------------------------------------------------------
+
+static double largest(const double *v, size_t n)
+{
+    double max = 0;
+    for (size_t i = 0; i < n; i++)
+        max = fmax(max, fabs(v[i]));
+    return max;
+}
+
+// K (f x f, out): y0 = T y, so that K = T^-T Kr T^-1
+static bool stiffness(struct search *s, double *K)
+{
+    const struct ct_linear *l = s->l;
+    const int f = s->f, nu = l->nu;
+    bool same = true;
+    memcpy(K, l->Kr, (size_t)f * (size_t)f * sizeof *K);
+    for (int i = 0; i < f; i++)
+        same &= l->independent[i] == s->independent[i];
+    if (same)
+        return l->nfree == f;
+    for (int j = 0; j < f; j++)
+        for (int i = 0; i < f; i++)
+            s->T[i + f * j] = l->Z[s->independent[i] + nu * j];
+    if (l->nfree != f || !ct_lu(s->T, s->pivot, f, f))
+        return false;
+    ct_lu_solve(K, s->T, s->pivot, f, f, f, f, true);
+    for (int j = 0; j < f; j++)
+        for (int i = 0; i < f; i++)
+            s->B[j + f * i] = K[i + f * j];
+    ct_lu_solve(s->B, s->T, s->pivot, f, f, f, f, true);
+    for (int j = 0; j < f; j++)
+        for (int i = 0; i < f; i++)
+            K[i + f * j] = s->B[j + f * i];
+    return true;
+}
+
+// out (n x n) = P' K P
+static void restrict_to(struct search *s, double *out, const double *K)
+{
+    ct_matrix_multiply(s->B, K, s->P, s->f, s->f, s->n);
+    ct_matrix_multiply_transposed(out, s->P, s->B, s->n, s->f, s->n);
+}
+
+static bool is_symmetric(const double *K, int n)
+{
+    double worst = 0;
+    for (int j = 0; j < n; j++)
+        for (int i = 0; i < j; i++)
+            worst = fmax(worst, fabs(K[i + n * j] - K[j + n * i]));
+    return worst <= symmetric * largest(K, (size_t)n * (size_t)n);
+}
+
+// Directions without stiffness whatever the load (rigid-body motions) are left out.
+static void find_directions(struct search *s)
+{
+    const int f = s->f;
+    double *H = s->K, *v = s->B;
+    for (int j = 0; j < f; j++)
+        for (int i = 0; i < f; i++)
+            H[i + f * j] = (s->K0[i + f * j] + s->K0[j + f * i]) / 2;
+    ct_symmetric_eigen(s->value, H, f, f, s->work);
+    const double stiffest = fmax(fabs(s->value[0]), fabs(s->value[f - 1]));
+    const double change = largest(s->K1, (size_t)f * (size_t)f);
+    s->n = 0;
+    for (int k = 0; k < f; k++) {
+        ct_matrix_multiply(v, s->K1, H + f * k, f, f, 1);
+        if (fabs(s->value[k]) > none * stiffest || largest(v, (size_t)f) > none * change)
+            memcpy(s->P + f * s->n++, H + f * k, (size_t)f * sizeof *s->P);
+    }
+}
+
+// ---- the linear problem -------------------------------------------------------------------------------------
+
+static int ascending(const void *context, const void *a, const void *b)
+{
+    (void)context;
+    const double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+// Positive c with det(K0 + c K1) = 0: c = -1/mu, mu eigenvalues of K0^-1 K1. Returns their number.
+static int linear_factors(struct search *s, double *c)
+{
+    const int n = s->n;
+    double *K0 = CT_NEWN(s->a, double, (size_t)n *(size_t)n + 1),
+           *K1 = CT_NEWN(s->a, double, (size_t)n *(size_t)n + 1),
+           *V = CT_NEWN(s->a, double, (size_t)n *(size_t)n + 1),
+           *re = CT_NEWN(s->a, double, n + 1), *im = CT_NEWN(s->a, double, n + 1),
+           *work = CT_NEWN(s->a, double, ct_eigen_work(n));
+    int found = 0;
+    restrict_to(s, K0, s->K0);
+    restrict_to(s, K1, s->K1);
+    if (!n || !ct_lu(K0, s->pivot, n, n))
+        return 0;
+    ct_lu_solve(K1, K0, s->pivot, n, n, n, n, false);
+    if (!ct_eigen(re, im, V, K1, n, n, work))
+        return 0;
+    double size = 0;
+    for (int k = 0; k < n; k++)
+        size = fmax(size, hypot(re[k], im[k]));
+    for (int k = 0; k < n; k++)
+        if (fabs(im[k]) <= sqrt(DBL_EPSILON) * size && re[k] < -none * size)
+            c[found++] = -1 / re[k];
+    ct_sort(s->a, c, (size_t)found, sizeof *c, ascending, NULL);
+    return found;
+}
+
+// K1 from factors 0 and c; false where the path does not reach c.
+static bool slope(struct search *s, const struct place *start, double c)
+{
+    const size_t ff = (size_t)s->f * (size_t)s->f;
+    go_back(s->l, s->at, start);
+    if (!ct_buckling_load(s->l, s->at, c) || !stiffness(s, s->K1))
+        return false;
+    for (size_t i = 0; i < ff; i++)
+        s->K1[i] = (s->K1[i] - s->K0[i]) / c;
+    find_directions(s);
+    return true;
+}
+
+// First with the load as it is, or less of it, then with a small part of what buckles.
+static int estimate(struct search *s, const struct place *start, double *c)
+{
+    double level = 1;
+    for (int i = 0; i < MOST_LEVELS && !slope(s, start, level); i++)
+        level /= 4;
+    int n = linear_factors(s, c);
+    if (n && level > small_load * c[0] && slope(s, start, small_load * c[0]))
+        n = linear_factors(s, c);
+    return n;
+}
+
+// ---- on the path -----------------------------------------------------------------------------------------------
+
+// Eigenvalues of the stiffness here, ascending, in s->value.
+static bool eigenvalues(struct search *s)
+{
+    const int n = s->n;
+    double *H = s->K0; // no longer needed
+    if (!stiffness(s, s->K))
+        return false;
+    restrict_to(s, H, s->K);
+    for (int j = 0; j < n; j++)
+        for (int i = 0; i < j; i++)
+            H[i + n * j] = H[j + n * i] = (H[i + n * j] + H[j + n * i]) / 2;
+    return ct_symmetric_eigenvalues(s->value, H, n, n, s->work);
+}
+
+// The k-th eigenvalue at a factor between two, from the lower place; false beyond the end of the path.
+static bool eigenvalue_at(struct search *s, const struct place *from, double factor, int k,
+                          double *value)
+{
+    go_back(s->l, s->at, from);
+    if (!ct_buckling_load(s->l, s->at, factor) || !eigenvalues(s))
+        return false;
+    *value = s->value[k];
+    return true;
+}
+
+// The factor in (a, b) where eigenvalue k falls through zero: the Illinois method, and bisection where the path ends
+// before b. va > 0 at a; vb <= 0 at b, or b cannot be reached.
+static void refine(struct search *s, struct place *a, double va, double b, double vb,
+                   bool reached, int k, struct ct_buckling_factor *out)
+{
+    double low = a->factor;
+    for (int i = 0; i < MOST_REFINE && b - low > refined * b; i++) {
+        double c = reached ? (low * vb - b * va) / (vb - va) : low + (b - low) / 2, v;
+        if (!(c > low && c < b))
+            c = low + (b - low) / 2;
+        if (!(c > low && c < b))
+            break;
+        if (!eigenvalue_at(s, a, c, k, &v)) {
+            b = c;
+            reached = false;
+            continue;
+        }
+        if (v > 0) {
+            keep(s->l, s->at, a);
+            low = c;
+            va = v;
+            vb /= 2;
+        } else {
+            b = c;
+            vb = v;
+            reached = true;
+            va /= 2;
+        }
+        if (v == 0)
+            low = b = c;
+    }
+    out->factor = low + (b - low) / 2;
+    out->is_exact = true;
+    out->is_limit = !reached;
+}
+
+static int count_negative(const struct search *s)
+{
+    int n = 0;
+    while (n < s->n && s->value[n] < 0)
+        n++;
+    return n;
+}
+
+// Where to stop on the way: often before the first estimate, once behind it, then between one and the next and behind it.
+// Returns the number of stops.
+static int plan(const double *c, int n, double *stop)
+{
+    const double behind = 1 + 1. / MARCH;
+    int nstop = 0;
+    for (int i = 1; i <= MARCH; i++)
+        stop[nstop++] = behind * c[0] * i / MARCH;
+    for (int i = 1; i < n; i++) {
+        const double middle = (c[i - 1] + c[i]) / 2;
+        const double end
+            = i + 1 < n ? fmin(behind * c[i], (c[i] + c[i + 1]) / 2) : behind * c[i];
+        if (middle > stop[nstop - 1])
+            stop[nstop++] = middle;
+        if (end > stop[nstop - 1])
+            stop[nstop++] = end;
+    }
+    return nstop;
+}
+
+// March along the path and refine where eigenvalues change their sign.
+static bool march(struct search *s, const struct place *start, const double *stop, int nstop)
+{
+    struct place here = place_create(s), first = place_create(s);
+    go_back(s->l, s->at, start);
+    if (!ct_linear_rest(s->l) || !eigenvalues(s))
+        return false;
+    keep(s->l, s->at, &here);
+    double *before = CT_NEWN(s->a, double, s->n + 1), *after = CT_NEWN(s->a, double, s->n + 1);
+    int negative = count_negative(s);
+    const int least = negative; // unstable without the load
+    memcpy(before, s->value, (size_t)s->n * sizeof *before);
+    for (int i = 0; i < nstop && s->nfound < s->count; i++) {
+        const double c = stop[i];
+        go_back(s->l, s->at, &here);
+        const bool reached = ct_buckling_load(s->l, s->at, c) && eigenvalues(s);
+        const int now = reached ? count_negative(s) : negative + 1;
+        struct place next = place_create(s);
+        if (reached) {
+            memcpy(after, s->value, (size_t)s->n * sizeof *after);
+            keep(s->l, s->at, &next);
+        }
+        for (int k = negative; k < now && s->nfound < s->count; k++) {
+            struct ct_buckling_factor f = {0};
+            memcpy(first.y, here.y, (s->l->m->nq + s->l->m->nu + 1) * sizeof *here.y);
+            memcpy(first.memory, here.memory, s->l->m->e->nmemory * sizeof *here.memory);
+            first.factor = here.factor;
+            refine(s, &first, before[k], c, reached ? after[k] : 0, reached, k, &f);
+            if (k >= least)
+                CT_PUSH(s->a, s->found, s->nfound, s->cap, f);
+        }
+        if (!reached)
+            break;
+        negative = now;
+        here = next;
+        memcpy(before, after, (size_t)s->n * sizeof *before);
+    }
+    return s->l->ctx->nerror == 0;
+}
+
+// ---- all of it -----------------------------------------------------------------------------------------------------
+
+static struct search search_create(struct ct_linear *l, size_t at, size_t count)
+{
+    struct search s = {.l = l, .a = l->arena, .at = at, .count = count, .f = l->nfree};
+    const size_t f = (size_t)s.f + 1;
+    double **const squares[] = {&s.P, &s.K0, &s.K1, &s.K, &s.B, &s.T};
+    for (size_t i = 0; i < COUNT(squares); i++)
+        *squares[i] = CT_NEWN(s.a, double, f *f);
+    s.value = CT_NEWN(s.a, double, f);
+    s.work = CT_NEWN(s.a, double, ct_symmetric_eigenvalues_work((int)f));
+    s.pivot = CT_NEWN(s.a, int, f);
+    s.independent = CT_NEWN(s.a, int, f);
+    memcpy(s.independent, l->independent, (size_t)s.f * sizeof *s.independent);
+    return s;
+}
+
+static bool no_buckling(const struct search *s)
+{
+    return ct_error(s->l->ctx, (struct ct_mark){.file = s->l->m->model->file}, CT_E_NO_BUCKLING,
+                    "the load does not lead to buckling: no positive factor makes the "
+                    "stiffness vanish%s",
+                    is_symmetric(s->K1, s->f)
+                        ? ""
+                        : "; it has no potential and may lead to flutter: "
+                          "see the modes of the loaded model");
+}
+
+bool ct_buckling_find(struct ct_linear *l, size_t at, size_t count,
+                      struct ct_buckling_list *list)
+{
+    struct search s = search_create(l, at, count);
+    struct place start = place_create(&s);
+    double *c = CT_NEWN(s.a, double, s.f + 1);
+    *list = (struct ct_buckling_list){.has_potential = true};
+    if (!s.f)
+        return no_buckling(&s);
+    keep(l, at, &start);
+    stiffness(&s, s.K0);
+    const int n = estimate(&s, &start, c);
+    if (!n)
+        return no_buckling(&s);
+    list->has_potential = is_symmetric(s.K0, s.f) && is_symmetric(s.K1, s.f);
+    double *stop = CT_NEWN(s.a, double, MARCH + 2 * n);
+    const int nstop = plan(c, n < (int)count ? n : (int)count, stop);
+    if (list->has_potential && !march(&s, &start, stop, nstop))
+        return false;
+    const bool ended = s.nfound && s.found[s.nfound - 1].is_limit;
+    for (size_t k = s.nfound; k < (size_t)n && k < count && !ended; k++) {
+        const struct ct_buckling_factor f = {.factor = c[k]};
+        CT_PUSH(s.a, s.found, s.nfound, s.cap, f);
+    }
+    for (size_t k = 0; k < s.nfound && k < (size_t)n; k++)
+        s.found[k].linear = c[k];
+    list->factor = s.found;
+    list->n = s.nfound;
+    return true;
+}

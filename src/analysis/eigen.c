@@ -1,0 +1,385 @@
+// See eigen.h.
+//
+// Without damping, gyroscopic or circulatory forces the problem is symmetric and solved as such. Otherwise it is written
+// in the modes of its symmetric part, where one unit of time and mass holds for all coordinates and what nothing
+// resists stands as exact zeros. Coordinates that move no mass are condensed; if dampers act on them, the state
+// space has their places as states of their own.
+#include "analysis/eigen.h"
+#include "analysis/state_space.h"
+#include "base/sort.h"
+#include "numeric/dense.h"
+
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+// Directions with less than this of the mass of the others, in coordinates of unit mass each: rounding.
+static const double massless = 1e-12;
+// An entry is zero if it is this small against the largest: what sums of n roundings leave.
+static const double rounding = 16 * DBL_EPSILON;
+static const double symmetric
+    = 1e-9; // relative: derivatives of potentials are symmetric to rounding
+
+static double largest(const double *v, size_t n)
+{
+    double max = 0;
+    for (size_t i = 0; i < n; i++)
+        max = fmax(max, fabs(v[i]));
+    return max;
+}
+
+// out (k x k) = V' A V, V (n x k)
+static void congruence(double *out, const double *V, const double *A, double *work, int n,
+                       int k)
+{
+    ct_matrix_multiply(work, A, V, n, n, k);
+    ct_matrix_multiply_transposed(out, V, work, k, n, k);
+}
+
+static bool is_symmetric(const double *A, int n)
+{
+    double worst = 0;
+    for (int j = 0; j < n; j++)
+        for (int i = 0; i < j; i++)
+            worst = fmax(worst, fabs(A[i + n * j] - A[j + n * i]));
+    return worst <= symmetric * largest(A, (size_t)n * (size_t)n);
+}
+
+static void symmetrise(double *A, int n)
+{
+    for (int j = 0; j < n; j++)
+        for (int i = 0; i < j; i++)
+            A[i + n * j] = A[j + n * i] = (A[i + n * j] + A[j + n * i]) / 2;
+}
+
+// ---- the symmetric problem ---------------------------------------------------------------------------------
+
+// Shapes V (n x k, out) with V' M V = 1, V' K V = diag(w2), and the directions N (n x n0) that move no mass.
+struct basis {
+    int n, k, n0;
+    double *V, *w2, *N;
+    double *S;    // n0 x k: along N what massless coordinates do while V moves
+    bool is_held; // they have places to follow to
+};
+
+// Mass-normalised directions and massless ones of Mr.
+static void split_by_mass(struct ct_arena *a, const double *Mr, int n, struct basis *s)
+{
+    double *M = CT_NEWN(a, double, n *n + 1), *scale = CT_NEWN(a, double, n + 1);
+    double *value = CT_NEWN(a, double, n + 1),
+           *work = CT_NEWN(a, double, ct_symmetric_eigenvalues_work(n));
+    for (int i = 0; i < n; i++)
+        scale[i] = Mr[i + n * i] > 0 ? 1 / sqrt(Mr[i + n * i]) : 1;
+    for (int j = 0; j < n; j++)
+        for (int i = 0; i < n; i++)
+            M[i + n * j] = (Mr[i + n * j] + Mr[j + n * i]) / 2 * scale[i] * scale[j];
+    ct_symmetric_eigen(value, M, n, n, work);
+    s->V = CT_NEWN(a, double, n *n + 1);
+    s->N = CT_NEWN(a, double, n *n + 1);
+    for (int k = 0; k < n; k++) {
+        const bool moves = value[k] > massless * value[n - 1];
+        double *out = moves ? s->V + n * s->k++ : s->N + n * s->n0++;
+        for (int i = 0; i < n; i++)
+            out[i] = scale[i] * M[i + n * k] / (moves ? sqrt(value[k]) : 1);
+    }
+}
+
+// The massless directions follow without inertia: K_nn s = -K_nv. False if nothing holds them.
+static bool condense(struct ct_arena *a, const double *K, struct basis *s)
+{
+    const int n = s->n, k = s->k, n0 = s->n0;
+    double *KV = CT_NEWN(a, double, n *n + 1), *Knn = CT_NEWN(a, double, n0 *n0 + 1);
+    int *pivot = CT_NEWN(a, int, n0 + 1);
+    s->S = CT_NEWN(a, double, n0 *k + 1);
+    congruence(Knn, s->N, K, KV, n, n0);
+    const double size = largest(Knn, (size_t)n0 * (size_t)n0);
+    ct_matrix_multiply(KV, K, s->V, n, n, k);
+    ct_matrix_multiply_transposed(s->S, s->N, KV, n0, n, k);
+    for (int i = 0; i < n0 * k; i++)
+        s->S[i] = -s->S[i];
+    if (!ct_lu(Knn, pivot, n0, n0))
+        return false;
+    for (int i = 0; i < n0; i++)
+        if (!(fabs(Knn[i + n0 * i]) > rounding * size))
+            return false;
+    ct_lu_solve(s->S, Knn, pivot, n0, n0, k, n0, false);
+    for (int j = 0; j < k; j++)
+        for (int i = 0; i < n0; i++)
+            for (int p = 0; p < n; p++)
+                s->V[p + n * j] += s->N[p + n * i] * s->S[i + n0 * j];
+    s->is_held = true;
+    return true;
+}
+
+// Shapes of the symmetric parts of K and M. Massless directions that nothing holds stay out.
+static void solve_symmetric(struct ct_arena *a, const double *Mr, const double *Kr, int n,
+                            struct basis *s)
+{
+    *s = (struct basis){.n = n};
+    split_by_mass(a, Mr, n, s);
+    const int k = s->k;
+    double *K = CT_NEWN(a, double, n *n + 1), *H = CT_NEWN(a, double, n *n + 1),
+           *work = CT_NEWN(a, double, n *n + ct_symmetric_eigenvalues_work(n));
+    memcpy(K, Kr, (size_t)n * (size_t)n * sizeof *K);
+    symmetrise(K, n);
+    if (s->n0)
+        condense(a, K, s);
+    else
+        s->is_held = true;
+    s->w2 = CT_NEWN(a, double, k + 1);
+    congruence(H, s->V, K, work, n, k);
+    symmetrise(H, k);
+    ct_symmetric_eigen(s->w2, H, k, k, work);
+    double *V = CT_NEWN(a, double, n *n + 1);
+    ct_matrix_multiply(V, s->V, H, n, k, k);
+    s->V = V;
+    // below the error of the eigenvalues themselves there is no telling from zero
+    const double zero = rounding * n * fmax(fabs(s->w2[k ? k - 1 : 0]), fabs(s->w2[0]));
+    for (int j = 0; j < k; j++)
+        if (fabs(s->w2[j]) <= zero)
+            s->w2[j] = 0;
+}
+
+// Slow modes again, from M y = K y / w2: their eigenvalues are the largest there, and rounding does not measure itself by
+// the fastest. For a positive stiffness and the lower half, counted in octaves. M, K (n x n) symmetric.
+static void sharpen_slow(struct ct_arena *a, const double *M, const double *K, struct basis *s)
+{
+    const int n = s->n;
+    double *L = CT_NEWN(a, double, n *n + 1), *H = CT_NEWN(a, double, n *n + 1),
+           *value = CT_NEWN(a, double, n + 1),
+           *work = CT_NEWN(a, double, ct_symmetric_eigenvalues_work(n));
+    memcpy(L, K, (size_t)n * (size_t)n * sizeof *L);
+    memcpy(H, M, (size_t)n * (size_t)n * sizeof *H);
+    if (!s->k || !(s->w2[0] > 0) || !ct_cholesky(L, n, n))
+        return;
+    ct_cholesky_congruence(H, L, n, n);
+    if (!ct_symmetric_eigen(value, H, n, n, work))
+        return;
+    const double middle = sqrt(s->w2[0]) * sqrt(s->w2[s->k - 1]);
+    for (int j = 0; j < s->k && s->w2[j] < middle; j++) {
+        const int from = n - 1 - j; // of the ascending 1/w2
+        double *y = s->V + (size_t)n * (size_t)j;
+        memcpy(y, H + (size_t)n * (size_t)from, (size_t)n * sizeof *y);
+        ct_cholesky_back(y, L, n, n);
+        s->w2[j] = 1 / value[from];
+        for (int i = 0; i < n; i++)
+            y[i] *= sqrt(s->w2[j]);
+    }
+}
+
+double ct_stiffness_least(struct ct_arena *a, const struct ct_linear *l, double *y)
+{
+    struct basis s;
+    memset(y, 0, (size_t)l->nfree * sizeof *y);
+    if (!l->nfree)
+        return INFINITY;
+    solve_symmetric(a, l->Mr, l->Kr, l->nfree, &s);
+    if (!s.k)
+        return INFINITY;
+    memcpy(y, s.V, (size_t)s.n * sizeof *y);
+    return s.w2[0];
+}
+
+// ---- lists of modes -----------------------------------------------------------------------------------------
+
+struct list {
+    struct ct_arena *a;
+    const struct ct_linear *l;
+    struct ct_motion_mode *mode;
+    size_t n, cap;
+};
+
+// The largest entry becomes 1.
+static void normalise(double *shape, int nu)
+{
+    int most = 0;
+    double size = 0;
+    for (int i = 0; i < nu; i++) {
+        const double here = hypot(shape[i], shape[i + nu]);
+        if (here > size * (1 + 1e-9)) { // the first of equal ones, whatever the rounding
+            size = here;
+            most = i;
+        }
+    }
+    const double re = shape[most], im = shape[most + nu];
+    for (int i = 0; i < nu && size > 0; i++) {
+        const double x = shape[i], y = shape[i + nu];
+        shape[i] = (x * re + y * im) / (size * size);
+        shape[i + nu] = (y * re - x * im) / (size * size);
+    }
+}
+
+// A mode with the reduced shape yr + i yi (yi NULL: real).
+static void add_mode(struct list *list, double re, double im, const double *yr,
+                     const double *yi)
+{
+    const int nu = list->l->nu;
+    struct ct_motion_mode mode = {.re = re, .im = im, .is_rigid = re == 0 && im == 0};
+    mode.shape = CT_NEWN(list->a, double, 2 * nu + 1);
+    ct_linear_expand(list->l, mode.shape, yr);
+    if (yi)
+        ct_linear_expand(list->l, mode.shape + nu, yi);
+    normalise(mode.shape, nu);
+    CT_PUSH(list->a, list->mode, list->n, list->cap, mode);
+}
+
+static int by_size(const void *context, const void *x, const void *y)
+{
+    (void)context;
+    const struct ct_motion_mode *a = x, *b = y;
+    const double sa = hypot(a->re, a->im), sb = hypot(b->re, b->im);
+    return sa != sb ? (sa > sb) - (sa < sb) : (a->re < b->re) - (a->re > b->re);
+}
+
+static void add_symmetric(struct list *list, const struct basis *s)
+{
+    for (int j = 0; j < s->k; j++) {
+        const double w2 = s->w2[j], w = sqrt(fabs(w2));
+        const double *y = s->V + (size_t)s->n * (size_t)j;
+        if (w2 >= 0) {
+            add_mode(list, 0, w, y, NULL);
+        } else { // an unstable pair: exp(w t) and exp(-w t)
+            add_mode(list, w, 0, y, NULL);
+            add_mode(list, -w, 0, y, NULL);
+        }
+    }
+}
+
+// Eigenvalues of x' = A x (n x n, destroyed); y = T x (nfree x n) gives the shape. Those this small are zero; as many
+// as `rigid` zeros, and half of what there are more, are rigid-body motions.
+static bool add_general(struct list *list, double *A, const double *T, int n, double zero,
+                        int rigid)
+{
+    const int f = list->l->nfree;
+    double *re = CT_NEWN(list->a, double, n + 1), *im = CT_NEWN(list->a, double, n + 1),
+           *V = CT_NEWN(list->a, double, n *n + 1), *y = CT_NEWN(list->a, double, 2 * f + 1),
+           *work = CT_NEWN(list->a, double, ct_eigen_work(n));
+    if (!ct_eigen(re, im, V, A, n, n, work))
+        return false;
+    int nzero = 0;
+    for (int k = 0; k < n; k++)
+        if (hypot(re[k], im[k]) <= zero) {
+            re[k] = im[k] = 0;
+            nzero++;
+        }
+    const int wanted = rigid > (nzero + 1) / 2 ? rigid : (nzero + 1) / 2;
+    for (int k = 0, found = 0; k < n; k++) {
+        if (im[k] < 0 || (re[k] == 0 && im[k] == 0 && found++ >= wanted))
+            continue;
+        memset(y, 0, 2 * (size_t)f * sizeof *y);
+        for (int p = 0; p < n; p++)
+            for (int i = 0; i < f; i++) {
+                y[i] += T[i + f * p] * V[p + (size_t)n * (size_t)k];
+                if (im[k] > 0)
+                    y[f + i] += T[i + f * p] * V[p + (size_t)n * (size_t)(k + 1)];
+            }
+        // rounding of a damping that is not there
+        const double small = 64 * DBL_EPSILON * fabs(im[k]);
+        add_mode(list, fabs(re[k]) <= small ? 0 : re[k], im[k], y, im[k] > 0 ? y + f : NULL);
+    }
+    return true;
+}
+
+// ---- in the modes of the symmetric part ------------------------------------------------------------------------
+
+static void clear_roundings(double *A, int n, double size)
+{
+    for (int i = 0; i < n * n; i++)
+        if (fabs(A[i]) <= rounding * n * size)
+            A[i] = 0;
+}
+
+// y = V e1/s, w = V e2:  e1' = s e2 + (s g /s) e1,  e2' = -(k/s) e1 - c e2
+static bool solve_modal(struct list *list, const struct basis *s)
+{
+    const struct ct_linear *l = list->l;
+    struct ct_arena *a = list->a;
+    const int f = s->n, n = 2 * f;
+    double *work = CT_NEWN(a, double, f *f + 1), *K = CT_NEWN(a, double, f *f + 1),
+           *C = CT_NEWN(a, double, f *f + 1), *G = CT_NEWN(a, double, f *f + 1),
+           *MV = CT_NEWN(a, double, f *f + 1), *A = CT_NEWN(a, double, n *n + 1),
+           *T = CT_NEWN(a, double, f *n + 1), *rate = CT_NEWN(a, double, f + 1);
+    congruence(K, s->V, l->Kr, work, f, f);
+    congruence(C, s->V, l->Cr, work, f, f);
+    ct_matrix_multiply(work, l->G, s->V, f, f, f); // V^-1 G V = V' M G V
+    ct_matrix_multiply(MV, l->Mr, work, f, f, f);
+    ct_matrix_multiply_transposed(G, s->V, MV, f, f, f);
+    const double size = largest(K, (size_t)f * (size_t)f);
+    clear_roundings(K, f, size);
+    clear_roundings(C, f, largest(C, (size_t)f * (size_t)f));
+    clear_roundings(G, f, largest(G, (size_t)f * (size_t)f));
+    double least = sqrt(size);
+    for (int i = 0; i < f; i++)
+        if (s->w2[i] != 0)
+            least = fmin(least, sqrt(fabs(s->w2[i])));
+    int rigid = 0;
+    for (int i = 0; i < f; i++) {
+        rate[i] = s->w2[i] != 0 ? sqrt(fabs(s->w2[i])) : least > 0 ? least : 1;
+        rigid += largest(K + f * i, (size_t)f) == 0 && largest(G + f * i, (size_t)f) == 0;
+    }
+    for (int j = 0; j < f; j++) {
+        A[j + n * (f + j)] = rate[j];
+        for (int i = 0; i < f; i++) {
+            A[i + n * j] = G[i + f * j] * rate[i] / rate[j];
+            A[f + i + n * j] = -K[i + f * j] / rate[j];
+            A[f + i + n * (f + j)] = -C[i + f * j];
+            T[i + f * j] = s->V[i + f * j] / rate[j];
+        }
+    }
+    const double zero = rounding * n * largest(A, (size_t)n * (size_t)n);
+    return add_general(list, A, T, n, zero, rigid);
+}
+
+// ---- all of it --------------------------------------------------------------------------------------------------
+
+// Massless coordinates with dampers: their places are states without speeds.
+static bool solve_state_space(struct list *list, int rigid)
+{
+    struct ct_state_space s;
+    if (!ct_state_space_create(list->l->ctx, list->a, list->l, &s))
+        return false;
+    const double zero = rounding * s.n * largest(s.A, (size_t)s.n * (size_t)s.n);
+    return add_general(list, s.A, s.y_x, s.n, zero, rigid);
+}
+
+bool ct_modes_solve(struct ct_ctx *ctx, struct ct_arena *a, const struct ct_linear *l,
+                    struct ct_motion_mode **mode, size_t *nmode, const char **how)
+{
+    struct list list = {.a = a, .l = l};
+    struct basis s;
+    const int f = l->nfree;
+    const size_t ff = (size_t)f * (size_t)f;
+    bool ok = true;
+    *how = "no freedoms";
+    if (f) {
+        solve_symmetric(a, l->Mr, l->Kr, f, &s);
+        const double rate = s.k ? sqrt(fmax(fabs(s.w2[s.k - 1]), fabs(s.w2[0]))) : 0;
+        const bool has_speeds = largest(l->Cr, ff) > DBL_EPSILON * rate * largest(l->Mr, ff);
+        int rigid = 0;
+        for (int j = 0; j < s.k; j++)
+            rigid += s.w2[j] == 0;
+        if (!has_speeds && !l->is_moving && s.is_held && is_symmetric(l->Kr, f)) {
+            *how = "symmetric";
+            double *M = CT_NEWN(a, double, ff + 1), *K = CT_NEWN(a, double, ff + 1);
+            memcpy(M, l->Mr, ff * sizeof *M);
+            memcpy(K, l->Kr, ff * sizeof *K);
+            symmetrise(M, f);
+            symmetrise(K, f);
+            sharpen_slow(a, M, K, &s);
+            add_symmetric(&list, &s);
+        } else if (!s.n0) {
+            *how = "general";
+            ok = solve_modal(&list, &s);
+        } else {
+            *how = "general, with massless coordinates";
+            ok = solve_state_space(&list, rigid);
+        }
+    }
+    if (!ok && !ctx->nerror)
+        ct_error(ctx, (struct ct_mark){.file = l->m->model->file}, CT_E_SINGULAR,
+                 "the eigenvalues cannot be found");
+    ct_sort(a, list.mode, list.n, sizeof *list.mode, by_size, NULL);
+    *mode = list.mode;
+    *nmode = list.n;
+    return ok;
+}

@@ -1,0 +1,24 @@
+// Natural motions of linearised equations: eigenvalues and shapes.  (formulation 9.4)
+#ifndef CT_ANALYSIS_EIGEN_H
+#define CT_ANALYSIS_EIGEN_H
+
+#include "analysis/linear.h"
+
+/// A motion dq(t) = Re(shape exp(s t)), s = re + i im, im >= 0: a pair of eigenvalues or a real one.
+struct ct_motion_mode {
+    double re, im; // [1/s]
+    bool is_rigid; // nothing resists: s = 0
+    double *shape; // 2 nu: real parts, then imaginary parts; the largest entry is 1
+};
+
+/// All modes of the reduced equations of l by |s|, of equal ones the growing one first. The list lives in a. How they
+/// were found: *how.
+/// Errors: CT_E_SINGULAR when the equations determine no motion.
+bool ct_modes_solve(struct ct_ctx *ctx, struct ct_arena *a, const struct ct_linear *l,
+                    struct ct_motion_mode **mode, size_t *nmode, const char **how);
+
+/// The smallest eigenvalue w2 [1/s^2] of (Kr, Mr), both made symmetric, massless coordinates condensed, and its
+/// shape y (nfree, out). 0 for a rigid-body motion. INFINITY without freedoms that move mass.
+double ct_stiffness_least(struct ct_arena *a, const struct ct_linear *l, double *y);
+
+#endif

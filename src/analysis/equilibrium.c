@@ -1,0 +1,343 @@
+// See equilibrium.h.
+#include "analysis/equilibrium.h"
+#include "formulate/build.h"
+#include "numeric/dense.h"
+
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+static const double longest_turn
+    = 0.2; // [rad] in one step, against jumping to another equilibrium
+static const double first_length = 0.2; // [m] at first; doubled after steps that went well
+static const double arrived = 1e-13;    // of a step against the coordinates: their rounding
+static const double nearly
+    = 1e-8; // from here on a step that is not shorter than half the last ends the search
+static const double flat = 1e-11;    // of the stiffest direction: no stiffness
+static const double balanced = 1e-9; // of the forces that meet: a flat direction without force
+enum { MOST_STEPS = 1000, MOST_HALVINGS = 40 };
+
+struct search {
+    struct ct_linear *l;
+    const bool *held;
+    bool *turns;           // speeds that are angular
+    int n;                 // directions that may move
+    double *S;             // nfree x n: these directions
+    double *p, *scale;     // forces along them (n), and the sizes of what meets there
+    double *gross;         // the same of each row (nu)
+    double *H, *V, *value; // stiffness; its directions against the masses and their values
+    double *g, *dq, *work, *A, *B, *kept_y, *kept_memory;
+    int *pivot;
+    double length;  // limit of lengths now [m]
+    bool is_newton; // nothing is unstable: the step is that of Newton's method
+};
+
+static double largest(const double *v, size_t n)
+{
+    double max = 0;
+    for (size_t i = 0; i < n; i++)
+        max = fmax(max, fabs(v[i]));
+    return max;
+}
+
+static void find_turns(struct search *s)
+{
+    const struct ct_equations *e = s->l->m->e;
+    for (size_t k = 0; k < e->nu; k++)
+        s->turns[k] = e->u[k].q < 0;
+    for (size_t i = 0; i < e->ncoordinate; i++)
+        if (e->coordinate[i].u >= 0 && e->coordinate[i].in_rotation
+            && !e->coordinate[i].in_translation)
+            s->turns[e->coordinate[i].u] = true;
+}
+
+static struct search search_create(struct ct_linear *l, const bool *held)
+{
+    struct ct_arena *a = l->arena;
+    const size_t n = (size_t)l->nu + 1;
+    struct search s = {.l = l, .held = held, .length = first_length};
+    double **const squares[] = {&s.S, &s.H, &s.V, &s.A, &s.B};
+    for (size_t i = 0; i < COUNT(squares); i++)
+        *squares[i] = CT_NEWN(a, double, n *n);
+    double **const vectors[] = {&s.p, &s.scale, &s.gross, &s.value, &s.g, &s.dq};
+    for (size_t i = 0; i < COUNT(vectors); i++)
+        *vectors[i] = CT_NEWN(a, double, n);
+    s.work = CT_NEWN(a, double, n + ct_symmetric_eigenvalues_work((int)n));
+    s.pivot = CT_NEWN(a, int, n);
+    s.turns = CT_NEWN(a, bool, n);
+    s.kept_y = CT_NEWN(a, double, l->m->nq + n + 1);
+    s.kept_memory = CT_NEWN(a, double, l->m->e->nmemory + 1);
+    find_turns(&s);
+    return s;
+}
+
+static void keep(struct search *s, bool back)
+{
+    const struct ct_linear *l = s->l;
+    double *memory = l->m->input + l->m->at_memory;
+    const size_t ny = l->m->nq + l->m->nu + 1, nm = l->m->e->nmemory;
+    memcpy(back ? l->y : s->kept_y, back ? s->kept_y : l->y, ny * sizeof *l->y);
+    memcpy(back ? memory : s->kept_memory, back ? s->kept_memory : memory, nm * sizeof *memory);
+}
+
+// ---- one step --------------------------------------------------------------------------------------------
+
+// S: all directions, or those that leave the held coordinates alone.
+static void find_directions(struct search *s)
+{
+    const struct ct_linear *l = s->l;
+    const int f = l->nfree;
+    const double still = 1e-12; // of a unit vector, squared: rounding
+    memset(s->S, 0, (size_t)f * (size_t)f * sizeof *s->S);
+    s->n = 0;
+    if (!s->held) {
+        for (s->n = 0; s->n < f; s->n++)
+            s->S[s->n + f * s->n] = 1;
+        return;
+    }
+    memset(s->A, 0, (size_t)f * (size_t)f * sizeof *s->A);
+    for (int k = 0; k < l->nu; k++)
+        for (int j = 0; j < f && s->held[k]; j++)
+            for (int i = 0; i < f; i++)
+                s->A[i + f * j] += l->Z[k + l->nu * i] * l->Z[k + l->nu * j];
+    ct_symmetric_eigen(s->value, s->A, f, f, s->work);
+    for (int k = 0; k < f && s->value[k] <= still; k++, s->n++)
+        memcpy(s->S + f * k, s->A + f * k, (size_t)f * sizeof *s->S);
+}
+
+// out (n x n) = S' A S, made symmetric if asked for
+static void restrict_to(struct search *s, double *out, const double *A, bool symmetric)
+{
+    const int f = s->l->nfree, n = s->n;
+    ct_matrix_multiply(s->B, A, s->S, f, f, n);
+    ct_matrix_multiply_transposed(out, s->S, s->B, n, f, n);
+    for (int j = 0; j < n && symmetric; j++)
+        for (int i = 0; i < j; i++)
+            out[i + n * j] = out[j + n * i] = (out[i + n * j] + out[j + n * i]) / 2;
+}
+
+// V' H V = diag(value), V' W V = 1: W are the masses, and a little where there are none.
+static void find_stiffness(struct search *s)
+{
+    const int n = s->n;
+    const double little = 1e-6;
+    double *W = s->A, mean = 0;
+    restrict_to(s, W, s->l->Mr, true);
+    for (int i = 0; i < n; i++)
+        mean += W[i + n * i] / n;
+    for (int i = 0; i < n; i++)
+        W[i + n * i] += little * fmax(W[i + n * i], mean > 0 ? mean : 1 / little);
+    restrict_to(s, s->H, s->l->Kr, true);
+    ct_cholesky(W, n, n);
+    ct_cholesky_congruence(s->H, W, n, n);
+    ct_symmetric_eigen(s->value, s->H, n, n, s->work);
+    memcpy(s->V, s->H, (size_t)n * (size_t)n * sizeof *s->V);
+    for (int j = 0; j < n; j++)
+        ct_cholesky_back(s->V + (size_t)n * (size_t)j, W, n, n);
+}
+
+// Forces p along S, and the sizes of what they are the sum of: constraints, weights, and stiffness over one unit.
+static void find_forces(struct search *s)
+{
+    const struct ct_linear *l = s->l;
+    const int f = l->nfree, nu = l->nu;
+    double weight = 0;
+    for (int k = 0; k < 3; k++)
+        weight = fmax(weight, fabs(ct_model_number(l->m->model, l->m->model->gravity.e[k])));
+    for (int j = 0; j < nu; j++) {
+        s->gross[j] = l->scale[j];
+        for (int i = 0; i < nu; i++)
+            s->gross[j] += fabs(l->M[j + nu * i]) * weight + fabs(l->K[j + nu * i]);
+    }
+    ct_matrix_multiply_transposed(s->p, s->S, l->force, s->n, f, 1);
+    for (int k = 0; k < s->n; k++) {
+        s->scale[k] = 0;
+        for (int i = 0; i < f; i++)
+            for (int j = 0; j < nu && s->S[i + f * k] != 0; j++)
+                s->scale[k] += fabs(s->S[i + f * k] * l->Z[j + nu * i]) * s->gross[j];
+    }
+}
+
+// Step c (n) along the directions of S.
+static void find_step(struct search *s, double *c)
+{
+    const int n = s->n;
+    const double stiffest = fmax(fabs(s->value[0]), fabs(s->value[n - 1]));
+    s->is_newton = s->value[0] > flat * stiffest;
+    memset(c, 0, (size_t)n * sizeof *c);
+    if (s->is_newton) { // exact, with forces that have no potential
+        restrict_to(s, s->A, s->l->Kr, false);
+        if (ct_lu(s->A, s->pivot, n, n)) {
+            for (int i = 0; i < n; i++)
+                c[i] = -s->p[i];
+            ct_lu_solve(c, s->A, s->pivot, n, n, 1, n, false);
+            return;
+        }
+    }
+    for (int k = 0; k < n; k++) {
+        const double *v = s->V + (size_t)n * (size_t)k, far = 1e30;
+        double g = 0, size = 0;
+        for (int i = 0; i < n; i++) {
+            g += v[i] * s->p[i];
+            size += fabs(v[i]) * s->scale[i];
+        }
+        const bool is_flat = fabs(s->value[k]) <= flat * stiffest;
+        const double along = !is_flat                   ? -g / fabs(s->value[k])
+                           : fabs(g) <= balanced * size ? 0
+                                                        : copysign(far, -g);
+        for (int i = 0; i < n; i++)
+            c[i] += along * v[i];
+    }
+}
+
+// The part of dq that the limits allow.
+static double allowed(const struct search *s)
+{
+    double part = 1;
+    for (int k = 0; k < s->l->nu; k++) {
+        const double most = s->turns[k] ? longest_turn : s->length;
+        if (fabs(s->dq[k]) * part > most)
+            part = most / fabs(s->dq[k]);
+    }
+    return part;
+}
+
+// Work of the forces along dq at the place in l: they are known along independent speeds.
+static double slope(const struct search *s)
+{
+    double sum = 0;
+    for (int i = 0; i < s->l->nfree; i++)
+        sum += s->l->force[i] * s->dq[s->l->independent[i]];
+    return sum;
+}
+
+// Go along dq as far as the forces still push on: the place is in l, linearised. False without a diagnostic if no
+// part of the step can be taken.
+static bool go(struct search *s)
+{
+    struct ct_linear *l = s->l;
+    const double before = slope(s), part = allowed(s), turned_back = 0.5;
+    const size_t nu = (size_t)l->nu;
+    for (size_t k = 0; k < nu; k++)
+        s->dq[k] *= part;
+    const bool is_fine
+        = s->is_newton && largest(s->dq, nu) < nearly; // slopes are rounding here
+    keep(s, false);
+    for (int i = 0; i < MOST_HALVINGS; i++) {
+        ct_machine_retract(l->m, l->y, s->dq);
+        if (ct_linear_close(l) && ct_linear_rest(l)
+            && (is_fine || slope(s) <= turned_back * fabs(before) * ldexp(1, -i) * part)) {
+            if (i == 0 && part < 1)
+                s->length *= 2;
+            else if (i)
+                s->length = fmax(largest(s->dq, nu), first_length * 1e-6);
+            return true;
+        }
+        if (l->ctx->nerror)
+            return false;
+        keep(s, true);
+        for (size_t k = 0; k < nu; k++)
+            s->dq[k] /= 2;
+    }
+    return false;
+}
+
+// ---- the search ---------------------------------------------------------------------------------------------
+
+static bool not_found(const struct search *s)
+{
+    const struct ct_linear *l = s->l;
+    int most = 0;
+    for (int k = 0; k < l->nu; k++)
+        if (fabs(s->dq[k]) > fabs(s->dq[most]))
+            most = k;
+    const struct ct_u *u = &l->m->e->u[most];
+    const struct ct_mark mark = u->joint >= 0 ? l->m->model->joint[u->joint].mark
+                              : u->body >= 0  ? l->m->model->body[u->body].instance.mark
+                                              : (struct ct_mark){.file = l->m->model->file};
+    return ct_error(l->ctx, mark, CT_E_EQUILIBRIUM,
+                    "no equilibrium is found: '%s' goes on to move; hold it by a stiffness, or "
+                    "start nearer to an equilibrium",
+                    ct_linear_coordinate(l->m->e, l->arena, most));
+}
+
+static double place_size(const struct ct_linear *l)
+{
+    return 1 + largest(l->y, l->m->nq);
+}
+
+bool ct_equilibrium_find(struct ct_linear *l, const bool *held,
+                         struct ct_equilibrium_result *out)
+{
+    struct search s = search_create(l, held);
+    double last = INFINITY, *c = s.g;
+    *out = (struct ct_equilibrium_result){0};
+    if (!ct_linear_rest(l))
+        return false;
+    for (;; out->iterations++) {
+        find_directions(&s);
+        find_forces(&s);
+        if (!s.n)
+            return true;
+        find_stiffness(&s);
+        find_step(&s, c);
+        ct_matrix_multiply(s.B, s.S, c, l->nfree, s.n, 1);
+        ct_linear_expand(l, s.dq, s.B);
+        const double size = largest(s.dq, (size_t)l->nu) / place_size(l);
+        out->last_step = size;
+        if (size <= arrived || (size <= nearly && size > last / 2))
+            break;
+        last = size;
+        if (out->iterations == MOST_STEPS || !go(&s))
+            return l->ctx->nerror ? false : not_found(&s);
+    }
+    return true;
+}
+
+// Nothing but rounding is left. Where the stiffness vanishes, steps would follow it off the path.
+static bool is_balanced(const struct search *s)
+{
+    for (int k = 0; k < s->n; k++)
+        if (fabs(s->p[k]) > 8 * DBL_EPSILON * s->scale[k])
+            return false;
+    return true;
+}
+
+bool ct_equilibrium_follow(struct ct_linear *l, struct ct_equilibrium_result *out)
+{
+    enum { MOST = 25 };
+    struct search s = search_create(l, NULL);
+    double last = INFINITY;
+    const size_t before = l->ctx->nerror;
+    s.length
+        = INFINITY; // a path may lead far; what jumps to another one does not converge steadily
+    *out = (struct ct_equilibrium_result){0};
+    if (!ct_linear_rest(l))
+        return false;
+    for (;; out->iterations++) {
+        const int f = l->nfree;
+        find_directions(&s);
+        find_forces(&s);
+        if (is_balanced(&s))
+            break;
+        memcpy(s.A, l->Kr, (size_t)f * (size_t)f * sizeof *s.A);
+        for (int i = 0; i < f; i++)
+            s.g[i] = -l->force[i];
+        if (f && !ct_lu(s.A, s.pivot, f, f))
+            return false;
+        if (f)
+            ct_lu_solve(s.g, s.A, s.pivot, f, f, 1, f, false);
+        ct_linear_expand(l, s.dq, s.g);
+        const double size = largest(s.dq, (size_t)l->nu) / place_size(l);
+        out->last_step = size;
+        if (size <= arrived || (size <= nearly && size > last / 2))
+            break;
+        if (!isfinite(size) || out->iterations == MOST || allowed(&s) < 1 || size > last / 2)
+            return false;
+        last = size;
+        ct_machine_retract(l->m, l->y, s.dq);
+        if (!ct_linear_close(l) || !ct_linear_rest(l) || l->ctx->nerror != before)
+            return false;
+    }
+    return true;
+}

@@ -1,0 +1,31 @@
+// cotree equilibrium: where the system comes to rest, and whether it stays there.
+#include "cli/cli.h"
+
+static int run(struct ct_ctx *ctx, const struct cli_args *args)
+{
+    struct ct_system *sys = cli_load_with(ctx, args, CT_COLUMNS_COORDINATES);
+    const struct ct_equilibrium_options options = {.hold_drivers = args->hold_drivers};
+    struct ct_equilibrium *q = ct_equilibrium_create(ctx, sys, &options);
+    const bool ok = q && ct_equilibrium_write(ctx, q, args->output);
+    if (ok && !args->quiet)
+        ct_equilibrium_print_summary(q, stderr);
+    ct_equilibrium_destroy(q);
+    ct_system_destroy(sys);
+    return ok ? CLI_DONE : CLI_FAILED;
+}
+
+const struct cli_command cli_equilibrium = {
+    .name = "equilibrium",
+    .summary = "where the system rests under the loads at t = 0, and whether it is stable",
+    .use = CLI_EQUILIBRIUM,
+    .takes_model = true,
+    .more
+    = "\n"
+      "Prints one row of outputs. From the assembled start the forces are followed down to "
+      "the\n"
+      "nearest equilibrium. Motions with a constant rate go on, so that a system on a turning\n"
+      "shaft finds its place in the turning frame; other motions are held.\n",
+    .examples
+    = {"cotree equilibrium governor.yaml", "cotree equilibrium governor.yaml -o rest.json"},
+    .run = run,
+};

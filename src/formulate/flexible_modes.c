@@ -1,0 +1,172 @@
+// Modal reduction of a beam; see flexible.h.
+//
+// The nodal freedoms become  q = Psi eta_c + Phi eta_m:  Psi, the static shapes of a unit displacement of each freedom
+// that joints or loads act on, the others of them held; Phi, the lowest modes with those freedoms held. A beam
+// that nothing acts on beyond its base has modes only.
+// Source: Craig & Bampton (1968), key craig1968.
+#include "formulate/elastic.h"
+#include "numeric/dense.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { NKIND = 6 };
+
+struct reduction {
+    struct ct_build *b;
+    struct ct_flexible *f;
+    int n, nkept;  // freedoms that are not fixed; of these with a static shape of their own
+    int *freedom;  // by number: those with a static shape come first
+    int *number;   // by freedom; -1: fixed
+    double *K, *M; // n x n
+    int nshape;
+    double *shape; // n x nshape
+};
+
+// ---- freedoms ---------------------------------------------------------------------------------------------
+
+// Does a joint or a load act on the beam at this frame?
+static bool is_used(const struct ct_model *m, size_t frame)
+{
+    for (size_t i = 0; i < m->njoint; i++)
+        if (m->joint[i].from == (int)frame || m->joint[i].to == (int)frame)
+            return true;
+    for (size_t i = 0; i < m->nforce; i++)
+        if (m->force[i].from == (int)frame || m->force[i].to == (int)frame)
+            return true;
+    return false;
+}
+
+// Nodes whose freedoms a used point sees.
+static void mark_nodes(const struct reduction *r, bool *held)
+{
+    const struct ct_model *m = r->b->model;
+    for (size_t i = 0; i < m->nframe; i++) {
+        struct ct_station s;
+        if (m->frame[i].body != r->f->body || !is_used(m, i))
+            continue;
+        if ((int)i == m->body[r->f->body].frame) {
+            held[0] = true; // only with a frame on the chord are there freedoms
+            continue;
+        }
+        ct_flexible_station(r->b, r->f, m->frame[i].at.e[0], CT_AXIAL_LINEAR, &s);
+        held[s.element] = held[s.element] || !ct_ex_same(s.xi, CT_EX_ONE);
+        held[s.element + 1] = held[s.element + 1] || !ct_ex_is_zero(s.xi);
+    }
+}
+
+static void number_freedoms(struct reduction *r)
+{
+    const int nnode = r->f->beam->nelement + 1;
+    bool *exists = CT_NEWN(r->b->ctx->scratch, bool, NKIND *nnode),
+         *held = CT_NEWN(r->b->ctx->scratch, bool, nnode);
+    r->freedom = CT_NEWN(r->b->ctx->scratch, int, NKIND *nnode);
+    r->number = CT_NEWN(r->b->ctx->scratch, int, NKIND *nnode);
+    for (int e = 0; e + 1 < nnode; e++)
+        for (int j = 0; j < CT_DOF; j++)
+            if (r->f->element[e].freedom[j] >= 0)
+                exists[r->f->element[e].freedom[j]] = true;
+    mark_nodes(r, held);
+    for (int pass = 0; pass < 2; pass++) {
+        for (int i = 0; i < NKIND * nnode; i++)
+            if (exists[i] && held[i / NKIND] == !pass) {
+                r->number[i] = r->n;
+                r->freedom[r->n++] = i;
+            }
+        r->nkept = pass ? r->nkept : r->n;
+    }
+    for (int i = 0; i < NKIND * nnode; i++)
+        if (!exists[i])
+            r->number[i] = -1;
+}
+
+static void assemble(struct reduction *r)
+{
+    ct_ex K[CT_DOF][CT_DOF], M[CT_DOF][CT_DOF];
+    const struct ct_build *b = r->b;
+    const size_t n = (size_t)r->n;
+    r->K = CT_NEWN(b->ctx->scratch, double, n *n);
+    r->M = CT_NEWN(b->ctx->scratch, double, n *n);
+    for (int e = 0; e < r->f->beam->nelement; e++) {
+        ct_element_matrices(r->b, r->f, e, K, M);
+        for (int j = 0; j < CT_DOF; j++)
+            for (int k = 0; k < CT_DOF; k++) {
+                int sj, sk;
+                if (!ct_dof_freedom(r->f, e, j, &sj) || !ct_dof_freedom(r->f, e, k, &sk))
+                    continue;
+                const size_t at = (size_t)r->number[r->f->element[e].freedom[j]]
+                                + n * (size_t)r->number[r->f->element[e].freedom[k]];
+                r->K[at] += sj * sk * ct_ex_value(b->x, K[j][k], b->value);
+                r->M[at] += sj * sk * ct_ex_value(b->x, M[j][k], b->value);
+            }
+    }
+}
+
+// ---- shapes -------------------------------------------------------------------------------------------------
+
+// The block of the freedoms without a static shape.
+static double *inner(const struct reduction *r, const double *A)
+{
+    const size_t m = (size_t)(r->n - r->nkept), n = (size_t)r->n, first = (size_t)r->nkept;
+    double *out = CT_NEWN(r->b->ctx->scratch, double, m *m + 1);
+    for (size_t j = 0; j < m; j++)
+        memcpy(out + m * j, A + first + n * (first + j), m * sizeof *out);
+    return out;
+}
+
+// Psi = [1; -K_ii^-1 K_ic]
+static bool static_shapes(struct reduction *r)
+{
+    const int m = r->n - r->nkept;
+    double *L = inner(r, r->K);
+    if (m && !ct_cholesky(L, m, m))
+        return false;
+    for (int c = 0; c < r->nkept; c++) {
+        double *v = r->shape + (size_t)r->n * (size_t)r->nshape++;
+        v[c] = 1;
+        for (int i = 0; i < m; i++)
+            v[r->nkept + i] = -r->K[r->nkept + i + (size_t)r->n * (size_t)c];
+        if (m)
+            ct_cholesky_solve(v + r->nkept, L, m, m, 1, m);
+    }
+    return true;
+}
+
+// K v = w^2 M v with the others held, solved as M v = (1/w^2) K v: M may be singular. Scaled to a largest component of 1.
+static bool modes(struct reduction *r, int wanted)
+{
+    const int m = r->n - r->nkept;
+    double *A = inner(r, r->M), *B = inner(r, r->K),
+           *w = CT_NEWN(r->b->ctx->scratch, double, m + 1);
+    double *work = CT_NEWN(r->b->ctx->scratch, double, ct_pencil_eigen_work(m));
+    if (m && !ct_pencil_eigen(w, A, B, m, m, work))
+        return false;
+    for (int k = 0; k < wanted && k < m; k++) {
+        const double *v = A + (size_t)m * (size_t)(m - 1 - k);
+        double most = 0, *out = r->shape + (size_t)r->n * (size_t)r->nshape++;
+        for (int i = 0; i < m; i++)
+            most = fabs(v[i]) > fabs(most) ? v[i] : most;
+        for (int i = 0; i < m; i++)
+            out[r->nkept + i] = v[i] / most;
+    }
+    return true;
+}
+
+bool ct_flexible_reduce(struct ct_build *b, struct ct_flexible *f, struct ct_shapes *out)
+{
+    struct reduction r = {.b = b, .f = f};
+    number_freedoms(&r);
+    assemble(&r);
+    r.shape = CT_NEWN(b->arena, double, (size_t)r.n *(size_t)(r.n + 1) + 1);
+    if (!static_shapes(&r) || !modes(&r, f->beam->modes))
+        return ct_error(b->ctx, f->beam->modes_mark, CT_E_BEAM,
+                        "beam '%s': its modes cannot be found; is every stiffness positive?",
+                        f->name);
+    out->n = r.n;
+    out->nshape = r.nshape;
+    out->nstatic = r.nkept;
+    out->freedom = CT_NEWN(b->arena, int, r.n + 1);
+    memcpy(out->freedom, r.freedom, (size_t)r.n * sizeof *out->freedom);
+    out->shape = r.shape;
+    return true;
+}

@@ -1,0 +1,277 @@
+// See crossing.h. The stages are 2 m: the zeros of a Chebyshev polynomial with the ends of the step, put onto the
+// two intervals that the gap leaves,
+//
+//     c = (1 -+ sqrt(s)) / 2,   s_j = g^2 + (1 - g^2) (1 + cos(2 pi j / (2 m - 1))) / 2,   j = 0 ... m - 1
+//
+// with g the gap as part of the step. In s they are nodes of least growth of the node polynomial,
+// and s = x^2 makes one interval of the two. Stages are found by sweeps, y_j = y + h sum_i A_ji f(y_i) with the newest
+// values: f is not stiff. The first sweep extrapolates, from stage to stage. The error is taken to be
+// the change when two of the inner stages are left out, which is more than it is.
+//
+// Source: collocation as in Hairer, Norsett and Wanner (1993), II.7, key hairer1993; the nodes are those of least
+// Chebyshev norm on two symmetric intervals.
+#include "integrate/crossing.h"
+
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+enum { SIDE = 7, STAGES = 2 * SIDE, MOST_SWEEPS = 30, QUADRATURE = 8 };
+
+// Part of the step in whose middle nothing is evaluated.
+static const double gap = 0.3;
+
+// Sweeps end when stages move less than this part of the tolerance, or less than this part of themselves: then
+// the checks of the step are not spoilt by what sweeps have left at coarse tolerances.
+static const double settled = 0.02, settled_fine = 1e-10;
+// A smooth motion meets the constraints also in the middle, up to this [m, rad] and up to so many times the
+// tolerance.
+static const double held = 1e-9, held_tolerance = 100;
+// Rounding stops sweeps: they end, too, when a sweep does not gain this factor any more and moves stages by less than
+// this many times the tolerance. Most of what moves then are coordinates that the constraints determine.
+static const double slow = 0.5, rounding = 10;
+
+struct work {
+    double c[STAGES];
+    double A[STAGES][STAGES];         // integrals of the Lagrange polynomials up to c_j
+    double left[SIDE][STAGES];        // the same for the polynomial through the left side alone
+    double first[STAGES][STAGES];     // and through all stages before j
+    double e[STAGES];                 // the same without two inner stages, less the last of A
+    double t[STAGES], weight[STAGES]; // of the bridge
+    double *k, *stage;                // (ny x STAGES) each
+    double *point, *end;              // (ny) each
+};
+
+// --- weights ---------------------------------------------------------------------------------
+
+// Product of (x - c_i) over the stages of `set` but j.
+static double product(const double *c, const bool *set, int j, double x)
+{
+    double value = 1;
+    for (int i = 0; i < STAGES; i++)
+        if (set[i] && i != j)
+            value *= x - c[i];
+    return value;
+}
+
+// w (STAGES, out): integral of the Lagrange polynomials on the stages of `set` from 0 to x; others get 0.
+static void integrate_lagrange(double *w, const double *c, const bool *set, double x)
+{
+    // Gauss-Legendre, exact for the degree 2 * 8 - 1 > STAGES - 1
+    static const double node[QUADRATURE / 2] = {0.1834346424956498049, 0.5255324099163289858,
+                                                0.7966664774136267396, 0.9602898564975362317};
+    static const double weight[QUADRATURE / 2] = {0.3626837833783619830, 0.3137066458778872873,
+                                                  0.2223810344533744705, 0.1012285362903762591};
+    for (int j = 0; j < STAGES; j++) {
+        double sum = 0;
+        for (int q = 0; q < QUADRATURE / 2 && set[j]; q++)
+            sum += weight[q]
+                 * (product(c, set, j, x / 2 * (1 + node[q]))
+                    + product(c, set, j, x / 2 * (1 - node[q])));
+        w[j] = set[j] ? x / 2 * sum / product(c, set, j, c[j]) : 0;
+    }
+}
+
+static void set_stages(double *c)
+{
+    const double pi = acos(-1);
+    for (int j = 0; j < SIDE; j++) {
+        const double s
+            = gap * gap + (1 - gap * gap) * (1 + cos(2 * pi * j / (2 * SIDE - 1))) / 2;
+        c[j] = 0.5 - sqrt(s) / 2;
+        c[STAGES - 1 - j] = 0.5 + sqrt(s) / 2;
+    }
+    c[0] = 0;
+    c[STAGES - 1] = 1;
+}
+
+static void *create(struct ct_arena *a, const struct ct_method *method,
+                    const struct ct_problem *p)
+{
+    (void)method;
+    struct work *w = CT_NEW(a, struct work);
+    const size_t n = (size_t)p->ny;
+    *w = (struct work){.k = CT_NEWN(a, double, n *STAGES),
+                       .stage = CT_NEWN(a, double, n *STAGES),
+                       .point = CT_NEWN(a, double, n),
+                       .end = CT_NEWN(a, double, n)};
+    set_stages(w->c);
+    bool all[STAGES], left[STAGES], before[STAGES] = {0}, some[STAGES];
+    for (int j = 0; j < STAGES; j++) {
+        all[j] = some[j] = true;
+        left[j] = j < SIDE;
+    }
+    for (int j = 0; j < STAGES; j++) {
+        integrate_lagrange(w->A[j], w->c, all, w->c[j]);
+        if (j < SIDE)
+            integrate_lagrange(w->left[j], w->c, left, w->c[j]);
+        integrate_lagrange(w->first[j], w->c, before, w->c[j]);
+        before[j] = true;
+    }
+    some[2] = some[STAGES - 3] = false;
+    integrate_lagrange(w->e, w->c, some, 1);
+    for (int j = 0; j < STAGES; j++)
+        w->e[j] -= w->A[STAGES - 1][j];
+    return w;
+}
+
+// --- the step --------------------------------------------------------------------------------
+
+struct task {
+    const struct ct_problem *p;
+    double t, h;
+    const double *y;
+    const struct ct_tolerance *tolerance;
+    struct work *w;
+    struct ct_integrate_stats *stats;
+};
+
+// f at stage j, put onto the constraints: how far it lies off them would be divided by a small pivot. The stage
+// itself stays the polynomial's.
+static enum ct_eval evaluate(const struct task *s, int j)
+{
+    struct work *w = s->w;
+    const double t = s->t + w->c[j] * s->h;
+    if (s->p->project) {
+        const enum ct_eval e = s->p->project(s->p->user, t, w->point);
+        if (e != CT_EVAL_OK)
+            return e;
+    }
+    return ct_stepper_rhs(s->p, t, w->point, w->k + j * s->p->ny, s->stats);
+}
+
+// Stage j with weights a; *moved grows to the norm by which it has moved.
+static enum ct_eval put_stage(const struct task *s, int j, const double *a, double *moved)
+{
+    struct work *w = s->w;
+    const int n = s->p->ny;
+    double *stage = w->stage + j * n;
+    ct_stepper_combine(w->point, s->y, s->h, a, w->k, STAGES, n);
+    if (!ct_stepper_finite(w->point, n))
+        return CT_EVAL_RETRY;
+    for (int i = 0; i < n; i++)
+        stage[i] -= w->point[i];
+    *moved = fmax(*moved, ct_stepper_norm(s->p, s->tolerance, s->y, w->point, stage));
+    memcpy(stage, w->point, (size_t)n * sizeof *stage);
+    return evaluate(s, j);
+}
+
+// A first guess: sweeps over the left side, then extrapolation from stage to stage.
+static enum ct_eval guess(const struct task *s)
+{
+    enum { LEFT_SWEEPS = 2 };
+    struct work *w = s->w;
+    double moved = 0;
+    enum ct_eval e = CT_EVAL_OK;
+    for (int j = 1; j < SIDE && e == CT_EVAL_OK; j++)
+        e = put_stage(s, j, w->first[j], &moved);
+    for (int i = 0; i < LEFT_SWEEPS; i++)
+        for (int j = 1; j < SIDE && e == CT_EVAL_OK; j++)
+            e = put_stage(s, j, w->left[j], &moved);
+    for (int j = SIDE; j < STAGES && e == CT_EVAL_OK; j++)
+        e = put_stage(s, j, w->first[j], &moved);
+    return e;
+}
+
+static enum ct_eval sweep(const struct task *s)
+{
+    const double fine = fmin(settled, settled_fine / s->tolerance->rtol);
+    double before = INFINITY;
+    for (int i = 0; i < MOST_SWEEPS; i++) {
+        double moved = 0;
+        enum ct_eval e = CT_EVAL_OK;
+        for (int j = 1; j < STAGES && e == CT_EVAL_OK; j++)
+            e = put_stage(s, j, s->w->A[j], &moved);
+        if (e != CT_EVAL_OK)
+            return e;
+        if (moved <= fine || (moved <= rounding && moved > slow * before))
+            return CT_EVAL_OK;
+        if (i > 1 && moved > before)
+            return CT_EVAL_RETRY;
+        before = moved;
+    }
+    return CT_EVAL_RETRY;
+}
+
+static double estimate(const struct task *s, const double *y1)
+{
+    struct work *w = s->w;
+    ct_stepper_combine(w->point, NULL, s->h, w->e, w->k, STAGES, s->p->ny);
+    return ct_stepper_norm(s->p, s->tolerance, s->y, y1, w->point);
+}
+
+// y (ny, out) at theta.
+static void point_at(const struct ct_problem *p, double h, double theta, const double *y,
+                     struct work *w, double *out)
+{
+    double a[STAGES];
+    bool all[STAGES];
+    memset(all, true, sizeof all);
+    integrate_lagrange(a, w->c, all, theta);
+    ct_stepper_combine(out, y, h, a, w->k, STAGES, p->ny);
+}
+
+static enum ct_eval step(const struct ct_problem *p, double t, double h, const double *y,
+                         const double *dy, const struct ct_tolerance *tolerance, double *y1,
+                         double *dy1, double *err, void *work, struct ct_integrate_stats *stats)
+{
+    struct work *w = work;
+    const int n = p->ny;
+    const size_t bytes = (size_t)n * sizeof *y;
+    const struct task s = {p, t, h, y, tolerance, w, stats};
+    memset(w->k, 0, STAGES * bytes);
+    memcpy(w->k, dy, bytes);
+    for (int j = 0; j < STAGES; j++)
+        memcpy(w->stage + j * n, y, bytes);
+    if (p->set_crossing)
+        p->set_crossing(p->user, true);
+    enum ct_eval e = guess(&s);
+    if (e == CT_EVAL_OK)
+        e = sweep(&s);
+    if (p->set_crossing)
+        p->set_crossing(p->user, false);
+    if (e != CT_EVAL_OK)
+        return e;
+    memcpy(y1, w->stage + (STAGES - 1) * n, bytes);
+    memcpy(dy1, w->k + (STAGES - 1) * n, bytes);
+    point_at(p, h, 0.5, y, w, w->end);
+    const double left = p->residual ? p->residual(p->user, t + h / 2, w->end) : 0;
+    *err = left > held + held_tolerance * tolerance->rtol ? INFINITY
+                                                          : fmax(estimate(&s, y1), left / held);
+    return CT_EVAL_OK;
+}
+
+static void dense(const struct ct_problem *p, double h, double theta, const double *y,
+                  const double *y1, void *work, double *out)
+{
+    (void)y1;
+    point_at(p, h, theta, y, work, out);
+}
+
+bool ct_crossing_is_gap(double theta)
+{
+    return fabs(theta - 0.5) < gap / 2;
+}
+
+struct ct_bridge ct_crossing_bridge(void *work, double t, double h, double theta)
+{
+    struct work *w = work;
+    bool all[STAGES];
+    memset(all, true, sizeof all);
+    for (int j = 0; j < STAGES; j++) {
+        w->t[j] = t + w->c[j] * h;
+        w->weight[j] = product(w->c, all, j, theta) / product(w->c, all, j, w->c[j]);
+    }
+    return (struct ct_bridge){STAGES, w->t, w->weight, w->stage};
+}
+
+const struct ct_method ct_crossing = {
+    .name = "crossing",
+    .summary = "across a singular position",
+    .source = "hairer1993",
+    .order = STAGES,
+    .error_order = STAGES - 3,
+    .create = create,
+    .step = step,
+    .dense = dense,
+};

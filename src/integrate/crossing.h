@@ -1,0 +1,20 @@
+// One step across a singular position: collocation whose stages stay away from it.
+//
+// f has a limit at the position but cannot be computed there or close by. Seen along the motion it is smooth,
+// so a polynomial of high order through values of f on both sides carries it across.
+#ifndef CT_INTEGRATE_CROSSING_H
+#define CT_INTEGRATE_CROSSING_H
+
+#include "integrate/stepper.h"
+
+/// Not in ct_methods: only the driver takes such steps, centred on the position. *err is infinite when there is no
+/// smooth motion across, since the polynomial leaves the constraints: the mechanism only passes close by.
+extern const struct ct_method ct_crossing;
+
+/// True where f is not to be computed.
+bool ct_crossing_is_gap(double theta);
+
+/// The stages of the step just taken from t by h, with weights for theta. Valid until the next one.
+struct ct_bridge ct_crossing_bridge(void *work, double t, double h, double theta);
+
+#endif

@@ -1,0 +1,44 @@
+// A parameter study: which parameters vary and what they are in each member.
+//
+//     grid      NAME=FROM:TO:N        N equal steps apart, both ends included; the last axis runs fastest
+//     sample    NAME=FROM:TO          uniform
+//               NAME=normal:MEAN:DEVIATION
+//
+// Samples are numbers of SplitMix64 (Steele, Lea and Flood (2014), key steele2014) in the order in which they
+// are needed: two for each axis, axis after axis, member after member, u = (number >> 11) / 2^53. Uniform:
+// FROM + u1 (TO - FROM). Normal: MEAN + DEVIATION sqrt(-2 log(1 - u1)) cos(2 pi u2).
+//
+// What always holds: a member's values depend on the study and its place alone, so that members can be made in any
+// order; at the ends of an axis they are FROM and TO to the last bit.
+#ifndef CT_PLAN_H
+#define CT_PLAN_H
+
+#include "component/model.h"
+
+#include <stdint.h>
+
+enum { CT_MOST_MEMBERS = 100000000 };
+
+struct ct_axis {
+    const char *name;
+    const char *text; // as given
+    enum { CT_AXIS_RANGE, CT_AXIS_NORMAL } kind;
+    double from, to; // or mean and deviation
+    long n;          // steps of a grid; 0: not given
+};
+
+struct ct_plan {
+    struct ct_axis *axis;
+    size_t naxis;
+    long nmember;
+    bool is_sampled;
+    uint64_t seed;
+};
+
+/// Read `vary` (n texts); sample > 0: so many random members, else a grid. m: the model, for the names. Errors: E003.
+bool ct_plan_read(struct ct_ctx *ctx, const struct ct_model *m, const char *const *vary,
+                  size_t n, long sample, uint64_t seed, struct ct_plan *out);
+/// Value of axis i in a member (from 0).
+double ct_plan_value(const struct ct_plan *s, long member, size_t i);
+
+#endif

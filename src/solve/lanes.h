@@ -1,0 +1,53 @@
+// Runs side by side: members of a parameter study, one in each lane, each with its own time and step.
+//
+//     lane        0        1        2        3
+//     y      [ y_0 ][ y_0 ][ y_0 ][ y_0 ]   [ y_1 ] ...      entry i of lane l is at LANES * i + l
+//
+// All lanes try a step at the same time: stages, accelerations, error and projection are computed for all
+// of them at once, by generated programs in lanes and small solves whose innermost loop is over the lanes.
+// What the error or a projection refuses is tried again shorter while the others go on, so that no lane
+// waits for the worst; a lane that has arrived is given the next member. Choices that are rare and differ
+// (rows, columns, the start, the results) are made one by one, by the run that the lanes are made for.
+//
+// What always holds: a member's numbers depend on nothing but the member, not on the lane, nor on what the
+// other lanes do. A member that meets what lanes do not do (a singular position, a step that becomes too
+// small) is given up: it has to be run alone, which says what is wrong, if anything is.
+#ifndef CT_SOLVE_LANES_H
+#define CT_SOLVE_LANES_H
+
+#include "solve/simulate.h"
+
+enum { CT_LANES = 4 };
+
+enum ct_lane_state { CT_LANE_IDLE, CT_LANE_RUNNING, CT_LANE_ARRIVED, CT_LANE_GIVEN_UP };
+
+struct ct_lanes;
+
+/// Why runs of these equations with these options cannot be in lanes, or NULL when they can.
+const char *ct_lanes_refusal(const struct ct_equations *e, const struct ct_run_options *o);
+/// Programs compiled for lanes, by the back end that the run uses. All in a; run must live as long, and from now on
+/// solves by matrices, so that what it does for one member does not depend on the members before.
+struct ct_lanes *ct_lanes_create(struct ct_arena *a, const struct ct_equations *e,
+                                 struct ct_run *run);
+
+/// Derive and use a closed form for the rows and columns that the run has chosen at its start. Members get the same bits
+/// if it is the same start: the order of its pivots is that of the state there.
+void ct_lanes_unroll(struct ct_arena *a, struct ct_lanes *s);
+
+/// Put the run, which has just been started, into an idle lane; `o` with its end time and tolerances. False:
+/// it has to be run alone.
+bool ct_lanes_load(struct ct_lanes *s, int lane, const struct ct_run_options *o);
+enum ct_lane_state ct_lanes_state(const struct ct_lanes *s, int lane);
+/// One try in every running lane.
+void ct_lanes_step(struct ct_lanes *s);
+/// Results (nresult, out) of a lane that has arrived. False: it has to be run alone.
+bool ct_lanes_results(struct ct_lanes *s, int lane, double *out);
+/// The lane is idle again.
+void ct_lanes_free(struct ct_lanes *s, int lane);
+
+/// Steps of all members so far, evaluations in lanes (each counts once for all lanes).
+struct ct_lanes_count {
+    long steps, rejected, evaluations;
+} ct_lanes_count(const struct ct_lanes *s);
+
+#endif

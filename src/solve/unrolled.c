@@ -1,0 +1,193 @@
+// Solutions of closed systems as programs; see form.h.
+//
+//     solved    u', q'                                  at every evaluation
+//     checked   u', lam after a refinement, residuals   once a step
+//     closing   Phi, v and the corrections for them     in projections
+#include "solve/form.h"
+
+#include <math.h>
+#include <string.h>
+
+struct unrolled {
+    struct ct_form form;
+    const struct ct_closed *c;
+    struct ct_program solved, checked, closing;
+    double M_size, J_size; // largest entries where it was made
+};
+
+static struct unrolled *unrolled_of(struct ct_form *f)
+{
+    return (struct unrolled *)f; // its first member
+}
+
+// ---- creation ---------------------------------------------------------------------------------------
+
+struct list {
+    struct ct_arena *a;
+    ct_ex *e;
+    size_t n, cap;
+};
+
+static void push(struct list *l, const ct_ex *e, size_t n)
+{
+    for (size_t i = 0; i < n; i++)
+        CT_PUSH(l->a, l->e, l->n, l->cap, e[i]);
+}
+
+static void compile_solved(struct unrolled *f, struct ct_machine *m, const struct ct_exs *x)
+{
+    struct list l = {.a = f->form.arena};
+    push(&l, f->c->a, m->nu);
+    for (size_t i = 0; i < m->nq; i++)
+        push(&l, &m->e->q[i].rate, 1);
+    push(&l, f->c->inertia, f->c->nfree);
+    push(&l, f->c->pivot, f->c->npivot);
+    ct_machine_compile(f->form.arena, m, x, l.e, l.n, &f->solved);
+}
+
+static void compile_checked(struct unrolled *f, struct ct_machine *m, const struct ct_exs *x)
+{
+    const struct ct_closed *c = f->c;
+    struct list l = {.a = f->form.arena};
+    push(&l, c->better_a, m->nu);
+    push(&l, c->better_lam, c->rank);
+    push(&l, c->residual, m->nu + c->rank);
+    push(&l, c->better_residual, m->nu + c->rank);
+    push(&l, m->e->Q, m->nu);
+    for (size_t i = 0; i < c->rank; i++)
+        push(&l, &m->e->row[c->row[i]].gam, 1);
+    push(&l, c->B, c->nB);
+    ct_machine_compile(f->form.arena, m, x, l.e, l.n, &f->checked);
+    f->form.a = f->checked.out;
+    f->form.lam = f->form.a + m->nu;
+}
+
+static void compile_closing(struct unrolled *f, struct ct_machine *m, const struct ct_exs *x)
+{
+    const struct ct_closed *c = f->c;
+    struct list l = {.a = f->form.arena};
+    for (size_t i = 0; i < m->nrow; i++)
+        push(&l, &m->e->row[i].phi, 1);
+    for (size_t i = 0; i < m->nrow; i++)
+        push(&l, &m->e->row[i].v, 1);
+    push(&l, c->dq, m->nu);
+    push(&l, c->du, m->nu);
+    push(&l, c->pivot, c->npivot);
+    ct_machine_compile(f->form.arena, m, x, l.e, l.n, &f->closing);
+    f->form.phi = f->closing.out;
+    f->form.v = f->form.phi + m->nrow;
+    f->form.dq = f->form.v + m->nrow;
+    f->form.du = f->form.dq + m->nu;
+}
+
+static double largest(const double *v, size_t n)
+{
+    double max = 0;
+    for (size_t i = 0; i < n; i++)
+        max = fabs(v[i]) > max || isnan(v[i]) ? fabs(v[i]) : max;
+    return max;
+}
+
+// ---- evaluation -----------------------------------------------------------------------------------------
+
+static double strength(const struct unrolled *f, const double *pivot)
+{
+    double least = 1;
+    for (size_t i = 0; i < f->c->npivot; i++)
+        least = fmin(least, fabs(pivot[i]) * f->c->scale[i]);
+    return least;
+}
+
+static double solve(struct ct_form *form, struct ct_machine *m, double *a)
+{
+    struct unrolled *f = unrolled_of(form);
+    const double *out = f->solved.out, *inertia = out + m->nu + m->nq;
+    m->evaluations++;
+    ct_program_run(&f->solved, m->input);
+    for (size_t i = 0; i < f->c->nfree; i++)
+        if (!(inertia[i] > 0))
+            return 0;
+    for (size_t i = 0; i < m->nu; i++)
+        if (!isfinite(out[i]))
+            return 0;
+    memcpy(a, out, m->nu * sizeof *a);
+    memcpy(m->rate, out + m->nu, m->nq * sizeof *m->rate);
+    return strength(f, inertia + f->c->nfree);
+}
+
+// r (nu + rank) against the largest terms of its equations. NaN counts as infinite.
+static double relative(const struct unrolled *f, const double *r, size_t nu, const double *Q)
+{
+    const double *gam = Q + nu, a = largest(f->form.a, nu);
+    const double forces = fmax(largest(Q, nu), f->M_size * a);
+    const double rates = fmax(largest(gam, f->c->rank), f->J_size * a);
+    const double r0 = largest(r, nu), r1 = largest(r + nu, f->c->rank);
+    const double left = fmax(r0 > 0 ? r0 / forces : 0, r1 > 0 ? r1 / rates : 0);
+    return isfinite(r0) && isfinite(r1) ? left : INFINITY;
+}
+
+static void check(struct ct_form *form, struct ct_machine *m)
+{
+    struct unrolled *f = unrolled_of(form);
+    const size_t n = m->nu + f->c->rank;
+    const double *r = form->lam + f->c->rank, *better = r + n, *Q = better + n;
+    ct_program_run(&f->checked, m->input);
+    form->left = relative(f, r, m->nu, Q);
+    form->left_better = relative(f, better, m->nu, Q);
+    form->kappa = largest(Q + n, f->c->nB);
+}
+
+static double close(struct ct_form *form, struct ct_machine *m)
+{
+    struct unrolled *f = unrolled_of(form);
+    ct_program_run(&f->closing, m->input);
+    return strength(f, form->du + m->nu);
+}
+
+static void destroy(struct ct_form *form, struct ct_machine *m)
+{
+    struct unrolled *f = unrolled_of(form);
+    struct ct_program *const all[] = {&f->solved, &f->checked, &f->closing};
+    for (size_t i = 0; i < COUNT(all); i++)
+        ct_machine_forget(m, all[i]);
+}
+
+static struct ct_form *create(struct ct_arena *a, struct ct_machine *m,
+                              const struct ct_partition *p, double most_nodes)
+{
+    struct ct_arena *own = ct_arena_create_under(a);
+    struct unrolled *f = CT_NEW(own, struct unrolled);
+    struct ct_exs *x = ct_exs_clone(own, m->e->x);
+    const double *J = m->Q + m->nu;
+    f->form = (struct ct_form){.kind = &ct_form_unrolled, .arena = own};
+    ct_form_place(&f->form, p);
+    f->M_size = largest(m->motion.out, m->e->nM);
+    f->J_size = largest(J, m->e->nJ);
+    f->c = ct_closed_derive(own, x, m->e, p, J, (size_t)most_nodes);
+    if (!f->c) {
+        ct_arena_destroy(own);
+        return NULL;
+    }
+    compile_solved(f, m, x);
+    compile_checked(f, m, x);
+    compile_closing(f, m, x);
+    f->form.operations = f->form.cost = ct_form_operations(&f->solved);
+    return &f->form;
+}
+
+const struct ct_form_kind ct_form_unrolled = {.name = "unrolled",
+                                              .create = create,
+                                              .solve = solve,
+                                              .check = check,
+                                              .close = close,
+                                              .destroy = destroy};
+
+struct ct_form_code ct_form_code(const struct ct_form *form)
+{
+    if (form->kind != &ct_form_unrolled)
+        return (struct ct_form_code){0};
+    const struct unrolled *f = (const struct unrolled *)form;
+    return (struct ct_form_code){f->solved.listing, f->c->nfree, f->c->npivot, f->c->scale,
+                                 &f->solved,        &f->checked, &f->closing,  f->c->nB,
+                                 f->M_size,         f->J_size};
+}

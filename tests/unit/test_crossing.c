@@ -1,0 +1,218 @@
+// Crossing positions where the derivative has a limit that cannot be computed.
+#include "integrate/crossing.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <string.h>
+#include <cmocka.h>
+
+enum { NY = 2, MOST = 512 };
+
+static const double singular = 1.3; // the time
+
+// y0' = cos t, y1' = -y0 with noise as of a division by the distance squared; closer than this: refused.
+static const double closest = 1e-3;
+
+struct record {
+    struct ct_ctx ctx;
+    struct ct_integrate_stats stats;
+    double now; // last accepted time
+    bool is_passed_by;
+    double worst, worst_bridged; // errors of steps and samples, and of derivatives by bridges
+    int nbridge, nevent;
+    double event, last;
+};
+
+static enum ct_eval rhs(void *user, double t, const double *y, double *dy)
+{
+    (void)user;
+    const double s = t - singular;
+    if (fabs(s) < closest)
+        return CT_EVAL_RETRY;
+    dy[0] = cos(t) + 1e-16 / (s * s) * sin(1e6 * t);
+    dy[1] = -y[0];
+    return CT_EVAL_OK;
+}
+
+static enum ct_eval accepted(void *user, double t, double *y, const double *dy)
+{
+    (void)y, (void)dy;
+    ((struct record *)user)->now = t;
+    return CT_EVAL_OK;
+}
+
+static double singular_in(void *user, double *reach)
+{
+    const struct record *r = user;
+    *reach = 0.25;
+    return r->now < singular ? singular - r->now : INFINITY;
+}
+
+static double residual(void *user, double t, const double *y)
+{
+    (void)y;
+    return ((struct record *)user)->is_passed_by && fabs(t - singular) < 0.1 ? 1e-3 : 0;
+}
+
+static double error_of(double t, const double *y)
+{
+    return fmax(fabs(y[0] - sin(t)), fabs(y[1] - cos(t)));
+}
+
+static bool at_step(void *user, double t, const double *y)
+{
+    struct record *r = user;
+    r->worst = fmax(r->worst, error_of(t, y));
+    r->last = t;
+    return true;
+}
+
+static bool at_sample(void *user, double t, const double *y)
+{
+    struct record *r = user;
+    r->worst = fmax(r->worst, error_of(t, y));
+    return true;
+}
+
+static bool at_singular_sample(void *user, double t, const double *y, const struct ct_bridge *b)
+{
+    struct record *r = user;
+    double rate = 0, dy[NY] = {0};
+    for (int k = 0; k < b->n; k++) {
+        assert_int_equal(rhs(user, b->t[k], b->y + NY * k, dy), CT_EVAL_OK);
+        rate += b->weight[k] * dy[0];
+    }
+    r->worst_bridged = fmax(r->worst_bridged, fabs(rate - cos(t)));
+    r->nbridge++;
+    return at_sample(user, t, y);
+}
+
+static enum ct_eval root(void *user, double t, const double *y, double *g)
+{
+    (void)user, (void)t;
+    g[0] = y[0] - sin(singular + 0.01); // in the gap
+    return CT_EVAL_OK;
+}
+
+static enum ct_eval event(void *user, double t, double *y, const signed char *crossed,
+                          bool is_time)
+{
+    struct record *r = user;
+    (void)y, (void)crossed, (void)is_time;
+    r->nevent++;
+    r->event = t;
+    return CT_EVAL_OK;
+}
+
+static const struct ct_problem problem = {.ny = NY,
+                                          .rhs = rhs,
+                                          .accepted = accepted,
+                                          .singular_in = singular_in,
+                                          .residual = residual};
+
+static bool run(struct record *r, const char *method, struct ct_problem p, double end,
+                double tolerance)
+{
+    double y[NY] = {0, 1}, sample[MOST];
+    for (int i = 0; i < MOST; i++)
+        sample[i] = end * i / (MOST - 1);
+    *r = (struct record){.is_passed_by = r->is_passed_by, .ctx = {.model = ct_arena_create()}};
+    p.user = r;
+    const bool ok
+        = ct_integrate(&r->ctx, ct_method_find(method), &p,
+                       &(struct ct_integrate_options){.t1 = end,
+                                                      .rtol = tolerance,
+                                                      .atol = tolerance,
+                                                      .sample = sample,
+                                                      .nsample = MOST,
+                                                      .at_sample = at_sample,
+                                                      .at_singular_sample = at_singular_sample,
+                                                      .at_step = at_step},
+                       y, &r->stats);
+    if (r->ctx.ndiagnostic)
+        ct_ctx_print(&r->ctx, stdout);
+    ct_arena_destroy(r->ctx.model);
+    return ok;
+}
+
+static void check_below(const char *what, double got, double limit)
+{
+    if (!(got <= limit)) {
+        printf("%s: got %.6g, wanted at most %.6g\n", what, got, limit);
+        fail();
+    }
+}
+
+static void any_tolerance_gets_across(void **unused)
+{
+    (void)unused;
+    static const char *const methods[] = {"dopri5", "dop853"};
+    for (size_t m = 0; m < COUNT(methods); m++)
+        for (double tolerance = 1e-3; tolerance > 5e-15; tolerance /= 10) {
+            struct record r = {0};
+            assert_true(run(&r, methods[m], problem, 3, tolerance));
+            check_below("error", r.worst, 10 * tolerance + 1e-13);
+            check_below("error of the bridge", r.worst_bridged, 1e3 * tolerance + 1e-11);
+            assert_true(r.nbridge > 10);
+        }
+}
+
+static void a_run_may_end_on_the_position(void **unused)
+{
+    (void)unused;
+    for (double end = singular - 0.02; end < singular + 0.05; end += 0.01) {
+        struct record r = {0};
+        assert_true(run(&r, "dop853", problem, end, 1e-10));
+        assert_true(r.last == end);
+        check_below("error", r.worst, 1e-9);
+    }
+}
+
+static void an_event_beside_the_position_is_found(void **unused)
+{
+    (void)unused;
+    struct ct_problem p = problem;
+    struct record r = {0};
+    p.nroot = 1;
+    p.root = root;
+    p.event = event;
+    assert_true(run(&r, "dop853", p, 1.5, 1e-10));
+    assert_int_equal(r.nevent, 1);
+    check_below("time of the event", fabs(r.event - singular - 0.01), 1e-8);
+}
+
+static enum ct_eval sharp(void *user, double t, const double *y, double *dy)
+{
+    (void)user, (void)y;
+    const double width = 1e-3, s = (t - singular) / width;
+    dy[0] = 1 / (width * (1 + s * s));
+    dy[1] = 0;
+    return CT_EVAL_OK;
+}
+
+// Where the constraints do not hold in the middle there is no position to be singular: short steps follow the motion.
+static void a_position_that_is_passed_by_is_not_crossed(void **unused)
+{
+    (void)unused;
+    struct ct_problem p = problem;
+    struct record r = {.is_passed_by = true};
+    p.rhs = sharp;
+    assert_true(run(&r, "dop853", p, 3, 1e-10));
+    assert_int_equal(r.nbridge, 0);
+    assert_true(r.stats.steps > 50);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(any_tolerance_gets_across),
+        cmocka_unit_test(a_run_may_end_on_the_position),
+        cmocka_unit_test(an_event_beside_the_position_is_found),
+        cmocka_unit_test(a_position_that_is_passed_by_is_not_crossed),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
