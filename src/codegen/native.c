@@ -22,8 +22,8 @@ typedef void (*body_fn)(const double *input, double *out, double *work);
 
 struct ct_native {
     const struct ct_listing *l;
-    size_t lanes, nwork; // nwork: places
-    uint32_t *place;     // of values that prepare computes
+    size_t lanes, nwork;         // nwork: places
+    uint32_t *place;             // of values that prepare computes
     const struct ct_copy *table; // and copies of them
     size_t ntable;
     void *memory;

@@ -7,8 +7,8 @@
 static const uint32_t none = CT_VALUE_NONE;
 
 enum {
-    WINDOW = 16,      // instructions that must repeat to be looked at
-    NEAR = 64,        // operands so close belong to what repeats
+    WINDOW = 16, // instructions that must repeat to be looked at
+    NEAR = 64,   // operands so close belong to what repeats
     MOST_PERIOD = 8192,
     MOST_TRIES = 64,
     LEAST_ROWS = 4,
@@ -22,9 +22,9 @@ struct plan {
     const struct ct_listing *l;
     const uint32_t *order;
     uint32_t n;
-    uint32_t *at;      // by value: the place in the order that makes it, or none
-    uint64_t *sign;    // by place: what must repeat
-    uint32_t *again;   // by place: the next one whose window has the same hash, or none
+    uint32_t *at;    // by value: the place in the order that makes it, or none
+    uint64_t *sign;  // by place: what must repeat
+    uint32_t *again; // by place: the next one whose window has the same hash, or none
     struct repeat *repeat;
     size_t nrepeat, repeat_cap;
     uint32_t *of_place; // the repeat of a place, or none
@@ -46,8 +46,9 @@ struct column {
 // How an operand is reached, before places are known.
 struct reach {
     enum { ROW, FIXED, INPUTS, RESULTS, COLUMN } kind;
-    uint32_t at;      // instruction of the body; value; input at row 0; instruction of the other body; column
-    uint32_t other;   // RESULTS: repeat
+    uint32_t
+        at; // instruction of the body; value; input at row 0; instruction of the other body; column
+    uint32_t other;    // RESULTS: repeat
     int32_t row, step; // RESULTS: its row at row 0, rows per row; INPUTS: step is the stride
 };
 

@@ -34,9 +34,9 @@ struct ct_copy {
 struct ct_loop {
     uint32_t first, period, count; // places in the order: the first one, of a row; rows
     struct ct_operand *operand;    // (3 x period)
-    uint32_t *result;              // (period) place at row 0, CT_VALUE_NONE: read in its row alone
-    int32_t width;                 // stride of results
-    struct ct_copy *copy;          // before the loop
+    uint32_t *result;     // (period) place at row 0, CT_VALUE_NONE: read in its row alone
+    int32_t width;        // stride of results
+    struct ct_copy *copy; // before the loop
     size_t ncopy, copy_cap;
 };
 

@@ -252,7 +252,7 @@ struct emitter {
     int base[NAREA + CT_ROLL_STREAMS]; // register that points at each area
     struct ct_roll roll;
     const bool *is_kept; // by value, in loops: it is stored at its home at once
-    uint32_t *order; // of the body's instructions
+    uint32_t *order;     // of the body's instructions
     size_t norder;
     uint32_t first_angle, nangle; // in the order: sines and cosines that are one call
 
@@ -800,8 +800,8 @@ static bool is_same_operand(const struct ct_operand *a, const struct ct_operand 
 }
 
 // The value that stands for an operand; operands at one place are one.
-static uint32_t value_of(struct body *b, const struct emitter *outer, const struct ct_loop *loop,
-                         const struct ct_operand *o)
+static uint32_t value_of(struct body *b, const struct emitter *outer,
+                         const struct ct_loop *loop, const struct ct_operand *o)
 {
     if (o->reach == CT_REACH_ROW)
         return o->at;
@@ -813,11 +813,12 @@ static uint32_t value_of(struct body *b, const struct emitter *outer, const stru
         if (!*slot) {
             const uint32_t v = (uint32_t)b->l.nvalue++;
             b->operand[v - loop->period] = *o;
-            b->e.home[v] = o->reach == CT_REACH_FIXED
-                             ? outer->home[o->at]
-                             : (struct home){stream_of(b, o->reach == CT_REACH_INPUT ? INPUT : WORK,
-                                                       o->stride),
-                                             o->at};
+            b->e.home[v]
+                = o->reach == CT_REACH_FIXED
+                    ? outer->home[o->at]
+                    : (struct home){
+                        stream_of(b, o->reach == CT_REACH_INPUT ? INPUT : WORK, o->stride),
+                        o->at};
             *slot = v + 1;
         }
         return *slot - 1;

@@ -36,7 +36,8 @@ struct ct_x86_code {
     const unsigned char *byte; // position independent but for addresses of functions and tables
     size_t nbyte;
     size_t nwork; // places of the work array, of `lanes` doubles
-    const struct ct_copy *table; // of constants and parameters, to be made whenever these change
+    const struct ct_copy
+        *table; // of constants and parameters, to be made whenever these change
     size_t ntable;
 };
 

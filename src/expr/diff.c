@@ -190,16 +190,18 @@ static ct_ex pass_down(struct ct_exs *x, uint32_t id, int i, ct_ex bar)
     const struct ct_exnode n = x->node[id];
     if (n.op != CT_OP_IF)
         return ct_ex_mul(x, bar, ct_ex_partial(x, id, i));
-    return i == 0 ? CT_EX_ZERO
-                  : ct_ex_if(x, (ct_ex){n.a}, i == 1 ? bar : CT_EX_ZERO, i == 2 ? bar : CT_EX_ZERO);
+    return i == 0
+             ? CT_EX_ZERO
+             : ct_ex_if(x, (ct_ex){n.a}, i == 1 ? bar : CT_EX_ZERO, i == 2 ? bar : CT_EX_ZERO);
 }
 
 // Backwards, parents before children. Source: Griewank and Walther (2008), 3.2, key griewank2008.
-void ct_ex_gradient(struct ct_exs *x, struct ct_arena *scratch, ct_ex a, const ct_ex *s, size_t n,
-                    ct_ex *out)
+void ct_ex_gradient(struct ct_exs *x, struct ct_arena *scratch, ct_ex a, const ct_ex *s,
+                    size_t n, ct_ex *out)
 {
     const size_t nnode = ct_ex_walk(x, &a, 1);
-    uint32_t *list = CT_NEWN(scratch, uint32_t, nnode + 1); // building derivatives may walk again
+    uint32_t *list
+        = CT_NEWN(scratch, uint32_t, nnode + 1); // building derivatives may walk again
     memcpy(list, x->stack, nnode * sizeof *list);
     bool *counts = CT_NEWN(scratch, bool, x->nnode); // by id: depends on a symbol
     ct_ex *bar = CT_NEWN(scratch, ct_ex, x->nnode);  // by id

@@ -30,12 +30,12 @@ enum ct_elastic_kind {
 };
 
 struct ct_u {
-    const char *name; // "crank.u"
-    ct_ex symbol;     // speed
-    ct_ex derivative; // the symbol u'
-    int q;            // the coordinate whose rate it is; -1 for angular velocities
-    int joint, body;  // whose it is; the other is -1
-    int beam;         // body whose elastic coordinate it belongs to; 0: none
+    const char *name;          // "crank.u"
+    ct_ex symbol;              // speed
+    ct_ex derivative;          // the symbol u'
+    int q;                     // the coordinate whose rate it is; -1 for angular velocities
+    int joint, body;           // whose it is; the other is -1
+    int beam;                  // body whose elastic coordinate it belongs to; 0: none
     enum ct_elastic_kind kind; // of those
 };
 

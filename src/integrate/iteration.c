@@ -69,8 +69,7 @@ bool ct_iteration_begin(struct ct_iteration *it, const struct ct_tolerance *tole
     for (int k = 0; k < it->nu; k++) {
         const int i = dae->q_of[k];
         it->weight[k] = tol->rtol * (i < 0 ? 1 : size_of(it->groups, i, y)) + tol->atol;
-        it->weight[it->nu + k]
-            = tol->rtol * size_of(it->groups, dae->nq + k, y) + tol->atol;
+        it->weight[it->nu + k] = tol->rtol * size_of(it->groups, dae->nq + k, y) + tol->atol;
     }
     it->kappa = tolerance ? fmin(kappa_most, sqrt(tol->rtol + tol->atol)) : kappa_finest;
     it->kappa *= it->is_stabilised ? 1 : kappa_index3;

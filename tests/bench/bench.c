@@ -304,7 +304,8 @@ static const char *beam(const struct beam *k, int n)
 {
     FILE *f = open_model("beam", k->is_spatial ? "[1, -g, 2]" : "[0, -g, 0]", "");
     fprintf(f,
-            "bodies:\n  base: {mass: 2, inertia: 0.5, points: {seat: [0.1, 0, 0]}}\n  beam: {type: beam, length: 10, elements: %d, density: 3000, E: 7e10, "
+            "bodies:\n  base: {mass: 2, inertia: 0.5, points: {seat: [0.1, 0, 0]}}\n  beam: "
+            "{type: beam, length: 10, elements: %d, density: 3000, E: 7e10, "
             "area: 4e-4,\n    Iy: 3e-7, Iz: 2e-7, G: 2.7e10, J: 4e-7, formulation: %s,\n"
             "    points: {tip: length}}\n",
             n, k->formulation);
@@ -752,7 +753,8 @@ static void beams(const char *what, const struct beam *kind, bool quick)
 {
     static const int all[] = {5, 10, 20, 50, 100};
     double first = 0, first_generation = 0;
-    printf("\n%s, u' with the solve: per evaluation, per element, ratio to 5 elements | model to native, per "
+    printf("\n%s, u' with the solve: per evaluation, per element, ratio to 5 elements | model "
+           "to native, per "
            "element, ratio | operations per element\n",
            what);
     for (size_t i = 0; i < (quick ? 2 : COUNT(all)); i++) {
@@ -771,6 +773,28 @@ static void beams(const char *what, const struct beam *kind, bool quick)
     }
 }
 
+static void run_residual(void *data)
+{
+    struct subject *s = data;
+    ct_program_run(&s->machine->residual, s->machine->input);
+}
+
+// Forces of inertia, stiffness and weight for given accelerations: what the feasibility study calls inertia forces, here
+// with the stiffness and all of the base's motion.
+static void beam_forces(const char *what, const struct beam *kind)
+{
+    struct subject s;
+    const call_fn f[] = {run_residual};
+    void *const data[] = {&s};
+    double t;
+    open_subject(&s, beam(kind, 10));
+    ct_formulate_residual(&s.equations);
+    ct_machine_add_residual(s.ctx.model, s.machine);
+    measure(f, data, 1, &t);
+    line(what, t, 1.2e-6);
+    close_subject(&s);
+}
+
 static void all_beams(bool quick)
 {
     static const struct {
@@ -782,6 +806,9 @@ static void all_beams(bool quick)
                {"linear beam in space", {"linear", true}}};
     for (size_t i = 0; i < COUNT(all); i++)
         beams(all[i].what, &all[i].kind, quick);
+    putchar('\n');
+    beam_forces("foreshortened beam in space, 10 elements: forces", &all[1].kind);
+    beam_forces("linear beam in space, 10 elements: forces", &all[3].kind);
     unlink(temporary());
 }
 

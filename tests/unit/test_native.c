@@ -265,7 +265,10 @@ static void same_listing_same_code(void **unused)
 
 // ---- loops ----------------------------------------------------------------------------------------
 
-enum { NROW = 5000, ODD = 701 }; // so many that four lanes are rolled up, too; every ODD-th row does more
+enum {
+    NROW = 5000,
+    ODD = 701
+}; // so many that four lanes are rolled up, too; every ODD-th row does more
 
 // A sweep forwards with a running sum and a neighbour, one backwards as a banded solve does it, a third that reads both;
 // constants by row, parameters, what is the same in all rows. out: 2 NROW + 1.
@@ -277,8 +280,9 @@ static void sweeps(struct ct_exs *x, const ct_ex *q, ct_ex p, ct_ex *out)
         const ct_ex a = q[3 * e], b = q[3 * e + 1], c = q[3 * e + 2];
         r[e] = ct_ex_add(x, ct_ex_mul(x, a, b),
                          ct_ex_mul(x, ct_ex_const(x, 1 + 0.37 * e), ct_ex_add(x, c, p)));
-        t[e] = ct_ex_sub(x, ct_ex_mul(x, r[e], a),
-                         ct_ex_div(x, ct_ex_mul(x, all, b), ct_ex_add(x, CT_EX_ONE, ct_ex_mul(x, c, c))));
+        t[e] = ct_ex_sub(
+            x, ct_ex_mul(x, r[e], a),
+            ct_ex_div(x, ct_ex_mul(x, all, b), ct_ex_add(x, CT_EX_ONE, ct_ex_mul(x, c, c))));
         if (e)
             t[e] = ct_ex_add(x, t[e], ct_ex_mul(x, r[e - 1], b));
         if (e % ODD == 0)
@@ -292,7 +296,8 @@ static void sweeps(struct ct_exs *x, const ct_ex *q, ct_ex p, ct_ex *out)
     }
     for (int e = 0; e < NROW; e++) {
         out[e] = y[e];
-        out[NROW + e] = ct_ex_sub(x, ct_ex_mul(x, y[NROW - 1 - e], sum[e]), ct_ex_mul(x, sum[NROW - 1], t[e]));
+        out[NROW + e] = ct_ex_sub(x, ct_ex_mul(x, y[NROW - 1 - e], sum[e]),
+                                  ct_ex_mul(x, sum[NROW - 1], t[e]));
     }
     out[2 * NROW] = sum[NROW - 1];
 }
