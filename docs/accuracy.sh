@@ -65,6 +65,7 @@ title() {
     R05_N2) echo "two four-bars, 10 s" ;;
     R05_N5) echo "five four-bars, 10 s" ;;
     R05_N10) echo "ten four-bars, 10 s" ;;
+    R05_N40) echo "forty four-bars, 20 s" ;;
     R06_brick) echo "Bricard mechanism (A04), 10 s" ;;
     R06_slender) echo "the same, thin rods" ;;
     R07_H) echo "spatial slider-crank, 5 s" ;;
@@ -134,7 +135,7 @@ hard_row() {
 hard() {
     echo "| case | T | error | estimated | energy drift | constraints | method | steps | evaluations | seconds |"
     echo "| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |"
-    for case in R13_d1 R13_d0999 R05_N10 R08b R12 R14_k1e4 R14_k1e6 R15_M1e-3 R15_M1e-6 R17a_20s R17b; do
+    for case in R13_d1 R13_d0999 R05_N10 R05_N40 R08b R12 R14_k1e4 R14_k1e6 R15_M1e-3 R15_M1e-6 R17a_20s R17b; do
         hard_row "$(title $case)" "$reference/$case.reference.csv" "$reference/$case.yaml" --tolerance 1e-6
     done
     while read -r case system options; do
@@ -187,6 +188,45 @@ figures() {
         "$root/systems/hard/flyball_governor/model.yaml"
 }
 
+# ---- beams -----------------------------------------------------------------------------------------------------
+
+# Errors of the mesh: against the same beam with a converged basis.
+elements() {
+    echo "| elements | all terms: error | seconds | linear: error | seconds |"
+    echo "| --- | --- | --- | --- | --- |"
+    for n in 1 2 3 4 5 6 8 10 15 20; do
+        line="| $n"
+        for kind in "" linear_; do
+            sed "s/elements: .*/elements: $n/" "$reference/B01_${kind}N1.yaml" >"$work/beam.yaml"
+            if run "$work/beam.yaml" --tolerance 1e-8 --until 8 --samples 5; then
+                line="$line | $(error_against "$reference/B01_${kind}fine.reference.csv") | $(value integrate | awk '{ printf "%.2g", $1 }')"
+            else
+                line="$line | fails |"
+            fi
+        done
+        echo "$line |"
+    done
+}
+
+# Errors of the frame: against the exact beam.
+frames() {
+    echo "| frames | elements of each | largest lag [m] | error | seconds |"
+    echo "| --- | --- | --- | --- | --- |"
+    while read -r k n; do
+        "$root/systems/spin_up_welded/generate.sh" "$k" "$n" >"$work/beam.yaml"
+        run "$work/beam.yaml" --until 6.76184525385 --samples 2
+        awk -F, -v k="$k" -v n="$n" -v seconds="$(value integrate)" '
+            NR == 1 { for (i = 1; i <= NF; i++) if ($i == "across") column = i }
+            { v = $column }
+            END { printf "| %d | %d | %.9f | %.1e | %.2g |\n", k, n, v, v / -0.573786796554 - 1, seconds }' "$work/result.csv"
+    done <<'END'
+1 10
+2 6
+4 4
+8 3
+END
+}
+
 # ---- the page ------------------------------------------------------------------------------------------------
 
 processor=$(sed -n 's/^model name[^:]*: *//p' /proc/cpuinfo 2>/dev/null | head -n 1)
@@ -194,6 +234,8 @@ asked >"$work/asked.md"
 hard >"$work/hard.md"
 lost >"$work/lost.md"
 figures >"$work/figures.md"
+elements >"$work/elements.md"
+frames >"$work/frames.md"
 awk -v folder="$work" -v processor="${processor:-an unknown processor}" '
     /^@[a-z]*@$/ {
         file = folder "/" substr($0, 2, length($0) - 2) ".md"

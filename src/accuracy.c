@@ -13,6 +13,7 @@
 #include "io/text.h"
 #include "report/precision.h"
 #include "report/progress.h"
+#include "solve/quad.h"
 
 #include <errno.h>
 #include <float.h>
@@ -22,7 +23,8 @@
 
 static const double standard_error = 1e-6;
 // Six methods within about a minute; more where already the reference takes long.  [s]
-static const double share_of_method = 9, share_of_reference = 1, reference_limit = 20;
+static const double share_of_method = 9, share_of_reference = 1, reference_limit = 20,
+                    quad_limit = 10;
 static const int repeats = 3;
 // Runs that agree to this need no third one to judge.
 static const double good_agreement = 1e-8;
@@ -41,7 +43,9 @@ struct ct_accuracy {
     struct ct_ctx said; // what single runs say
     struct ct_system *system;
     const struct ct_accuracy_options *o; // while it works
-    struct ct_sim *sim;                  // the one that runs
+    const struct ct_accuracy_variant
+        *variant;       // of the system that runs; NULL: there is one only
+    struct ct_sim *sim; // the one that runs
     struct ct_progress progress;
     const char *name;
     double wanted;
@@ -124,6 +128,8 @@ static enum ending run_once(struct ct_accuracy *a, const struct setting *s, doub
                             struct ct_precision_point *p)
 {
     *p = (struct ct_precision_point){.method = s->method,
+                                     .elements = a->variant ? a->variant->elements : 0,
+                                     .formulation = a->variant ? a->variant->formulation : NULL,
                                      .tolerance = s->step > 0 ? s->step : s->tolerance,
                                      .has_step = s->step > 0,
                                      .error = NAN};
@@ -227,6 +233,51 @@ static void choose_single(struct ct_accuracy *a, const struct candidate *c, int 
         }
 }
 
+// ---- the reference in quadruple precision --------------------------------------------------------------
+
+static bool is_in_time(void *user)
+{
+    const double *end = user;
+    return ct_clock() < *end;
+}
+
+// Two runs with different steps; the first is the reference if they agree better than runs in double precision do, and
+// with those as well as they among each other.
+static void run_quad(struct ct_accuracy *a)
+{
+    const double tolerance[2] = {1e-26, 1e-22};
+    const double as_runs_agree = 100; // times the distance of runs in double precision
+    const double double_rounding = 1e-15;
+    double *row[2], *scale = CT_NEWN(a->own.model, double, a->nresult + 1);
+    struct ct_sim_options o = a->o->run;
+    o.method = "dop853";
+    a->said.ndiagnostic = a->said.nerror = 0;
+    a->sim = ct_sim_create(&a->said, a->system, &o);
+    bool ok = a->sim && ct_quad_can_run(ct_run_machine(a->sim->run));
+    double end = ct_clock() + quad_limit;
+    for (int i = 0; i < 2 && ok; i++) {
+        row[i] = CT_NEWN(a->own.model, double, a->nsample * a->nresult + 1);
+        ok = ct_quad_run(a->own.model, ct_run_machine(a->sim->run), ct_run_state(a->sim->run),
+                         a->duration, a->nsample, tolerance[i], is_in_time, &end, row[i]);
+    }
+    end_run(a);
+    if (!ok)
+        return;
+    const double own = compare_runs(a, row[0], row[1], scale);
+    if (own > a->uncertainty)
+        return;
+    const double distance = compare_runs(a, row[0], a->reference, scale);
+    if (distance > as_runs_agree * (a->uncertainty + double_rounding))
+        return;
+    a->reference = row[0];
+    memcpy(a->scale, scale, a->nresult * sizeof *scale);
+    a->source = ct_arena_printf(a->own.model,
+                                "quadruple precision (from %s it differs by %.2g), checked "
+                                "with another tolerance",
+                                a->source, distance);
+    a->uncertainty = fmax(own, double_rounding);
+}
+
 static bool find_reference(struct ct_accuracy *a)
 {
     // None is a setting of the table. Loops lose digits below 1e-13; the last
@@ -259,6 +310,8 @@ static bool find_reference(struct ct_accuracy *a)
     a->own.ndiagnostic = a->own.nerror = 0;
     if (isinf(a->uncertainty))
         a->uncertainty = NAN;
+    else
+        run_quad(a);
     return true;
 }
 
@@ -538,10 +591,18 @@ static bool study(struct ct_accuracy *a)
         return false;
     if (a->o->reference ? !read_reference(a, a->o->reference) : !find_reference(a))
         return false;
-    for (int i = 0; i < n; i++) {
-        ct_progress_update(&a->progress, (i + 1.) / (n + 1.));
-        if (!climb(a, method[i]))
-            return false;
+    const size_t nvariant = a->o->variant ? a->o->nvariant : 1;
+    const double all = (double)nvariant * n;
+    for (size_t v = 0; v < nvariant; v++) {
+        if (a->o->variant) {
+            a->variant = &a->o->variant[v];
+            a->system = a->variant->system;
+        }
+        for (int i = 0; i < n; i++) {
+            ct_progress_update(&a->progress, ((double)v * n + i + 1) / (all + 1));
+            if (!climb(a, method[i]))
+                return false;
+        }
     }
     if (a->uncertainty > a->wanted)
         ct_warning(
@@ -653,7 +714,9 @@ bool ct_accuracy_draw(struct ct_ctx *ctx, const struct ct_accuracy *a, const cha
 static void print_setting(const struct ct_precision_point *p, FILE *out)
 {
     char text[CT_PRECISION_NUMBER_SIZE];
-    fprintf(out, "method %s, %s %s: error %.2g in %.3g s\n", p->method,
+    char name[80];
+    ct_precision_name(name, sizeof name, p);
+    fprintf(out, "method %s, %s %s: error %.2g in %.3g s\n", name,
             p->has_step ? "step" : "tolerance", ct_precision_number(text, p->tolerance),
             p->error, p->seconds);
 }

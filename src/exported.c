@@ -117,6 +117,7 @@ static void find_solution(struct work *w)
     w->x.weakest = ct_form_weakest;
     if (m->solved.nout) {
         w->x.solved = m->solved.listing;
+        w->x.nfree = m->nu;
     } else if (s->has_form) {
         const struct ct_form_code code = ct_form_code(s->form[0]);
         w->x.solved = code.listing;

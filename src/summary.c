@@ -5,6 +5,10 @@
 #include "formulate/flexible.h"
 #include "report/stage_beam.h"
 
+#if defined(__unix__) || defined(__APPLE__)
+#include <sys/resource.h>
+#endif
+
 #include <math.h>
 #include <string.h>
 
@@ -33,9 +37,10 @@ static long operations(const struct ct_sim *sim)
 static const char *solver(const struct ct_sim *sim)
 {
     const struct ct_embed *embed = ct_run_embed(sim->run);
-    return ct_run_machine(sim->run)->solved.nout ? "unrolled"
-         : embed->nform                          ? embed->form[0]->kind->name
-                                                 : "dense";
+    return !embed->m->nu         ? "none"
+         : embed->m->solved.nout ? "unrolled"
+         : embed->nform          ? embed->form[0]->kind->name
+                                 : "dense";
 }
 
 // The report has none before the run.
@@ -65,6 +70,23 @@ static bool same_trees(const struct ct_equations *e)
         if (e->T->is_branch[i] != e->R->is_branch[i])
             return false;
     return true;
+}
+
+// Most memory the process has had [bytes]; 0 where the system does not say.
+static long peak_memory(void)
+{
+#if defined(__unix__) || defined(__APPLE__)
+    struct rusage use;
+    if (getrusage(RUSAGE_SELF, &use))
+        return 0;
+#ifdef __APPLE__
+    return use.ru_maxrss;
+#else
+    return use.ru_maxrss * 1024;
+#endif
+#else
+    return 0;
+#endif
 }
 
 // ---- for programs ---------------------------------------------------------------------------------
@@ -226,6 +248,10 @@ static void write_work(struct ct_json *j, const struct ct_sim *sim)
     ct_json_number(j, "verify", sim->verify_seconds);
     ct_json_end(j);
     write_validity(j, sim);
+    ct_json_object(j, "memory");
+    ct_json_integer(j, "code", (long)ct_machine_code_size(ct_run_machine(sim->run)));
+    ct_json_integer(j, "peak", peak_memory());
+    ct_json_end(j);
     ct_json_object(j, "error");
     ct_json_number(j, "energy_drift", r->energy_drift);
     ct_json_number(j, "position_constraint", r->position_constraint);

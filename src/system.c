@@ -96,7 +96,9 @@ static bool read_model(struct ct_system *s, const char *path, const struct ct_sy
     struct ct_set *set = CT_NEWN(s->own.model, struct ct_set, o->nset + 1);
     for (size_t i = 0; i < o->nset; i++)
         set[i].text = o->set[i];
-    const bool ok = ct_model_read(&s->own, path, set, o->nset, &s->model);
+    const bool ok
+        = ct_model_read(&s->own, path, set, o->nset, &s->model)
+       && ct_model_change_beams(&s->own, &s->model, o->beam_elements, o->beam_formulation);
     ct_own_next_stage(&s->own);
     s->read = ct_clock() - start;
     return ok;

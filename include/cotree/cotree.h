@@ -70,6 +70,9 @@ struct ct_system_options {
         CT_COLUMNS_COORDINATES, /* if it lists none: coordinates, speeds and accelerations of all joints */
         CT_COLUMNS_EFFORTS /* efforts of motions, forces and torques of all joints */
     } columns;
+    long beam_elements; /* > 0: of every beam, equally long, whatever the file says */
+    const char *
+        beam_formulation; /* of every beam: "linear", "foreshortening" ...; NULL: as in the file */
 };
 
 /**
@@ -165,6 +168,8 @@ CT_API bool ct_sim_follow(struct ct_ctx *ctx, struct ct_sim *sim,
 /** Time of the last sample, and the value of a column there; NaN for a column that does not exist. */
 CT_API double ct_sim_time(const struct ct_sim *sim);
 CT_API double ct_sim_value(const struct ct_sim *sim, const char *column);
+/** The global error of a column against its largest value, estimated by a run with `verify`; NaN where it is not known. */
+CT_API double ct_sim_error(const struct ct_sim *sim, const char *column);
 
 /** What the run did and how well it kept energy and constraints, for people. */
 CT_API void ct_sim_print_summary(const struct ct_sim *sim, FILE *out);
@@ -191,7 +196,14 @@ struct ct_accuracy_options {
     /** Of all runs. method: names separated by commas, NULL or "auto" for the usual ones; tolerance and
      *  step, where they are given, are the only ones tried. */
     struct ct_sim_options run;
-    double error;          /* wanted; 1e-6 */
+    double error; /* wanted; 1e-6 */
+    /** Systems to run, the same model with other beams each; NULL: the system itself. It is the reference then. */
+    const struct ct_accuracy_variant {
+        struct ct_system *system;
+        long elements;           /* for the table; 0: none */
+        const char *formulation; /* NULL: none */
+    } * variant;
+    size_t nvariant;
     const char *reference; /* CSV as simulate writes it; NULL: found by tight runs that agree */
     FILE *progress;        /* a bar is shown there if it is a terminal */
 };

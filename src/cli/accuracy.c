@@ -1,6 +1,9 @@
 // cotree accuracy: speed against error, and the cheapest setting that is accurate enough.
 #include "cli/cli.h"
 
+#include <stdlib.h>
+#include <string.h>
+
 static bool report(struct ct_ctx *ctx, const struct ct_accuracy *a, const struct cli_args *args)
 {
     bool ok = ct_accuracy_write(ctx, a, args->output);
@@ -11,18 +14,111 @@ static bool report(struct ct_ctx *ctx, const struct ct_accuracy *a, const struct
     return ok;
 }
 
-static int run(struct ct_ctx *ctx, const struct cli_args *args)
+enum { MOST = 16 }; // entries of a list, so 256 variants
+
+// Entries of "a,b,c", in place; returns their number, 0 for NULL, -1 for too many.
+static int split(char *text, char *entry[MOST])
 {
-    struct ct_system *sys = cli_load(ctx, args);
+    int n = 0;
+    for (char *e = text; e; n++) {
+        char *comma = strchr(e, ',');
+        if (n == MOST)
+            return -1;
+        entry[n] = e;
+        e = comma ? comma + 1 : NULL;
+        if (comma)
+            *comma = 0;
+    }
+    return n;
+}
+
+// The beams to try, and those of the reference: twice the largest number of elements, the last formulation.
+struct beams {
+    char *text[2], *entry[2][MOST];
+    int n[2];
+    long elements[MOST], most;
+    struct ct_accuracy_variant variant[MOST * MOST];
+    size_t nvariant;
+};
+
+static bool read_lists(struct beams *b, const struct cli_args *args)
+{
+    const char *const given[2] = {args->elements, args->formulations};
+    for (int k = 0; k < 2; k++) {
+        b->text[k] = given[k] ? strdup(given[k]) : NULL;
+        if (given[k] && !b->text[k])
+            return cli_complain(&cli_accuracy, "out of memory"), false;
+        b->n[k] = split(b->text[k], b->entry[k]);
+        if (b->n[k] < 0)
+            return cli_complain(&cli_accuracy, "at most %d entries in a list of beams", MOST),
+                   false;
+    }
+    for (int i = 0; i < b->n[0]; i++) {
+        char *end;
+        b->elements[i] = strtol(b->entry[0][i], &end, 10);
+        if (*end || end == b->entry[0][i] || b->elements[i] < 1 || b->elements[i] > 1000)
+            return cli_complain(&cli_accuracy, "--elements: '%s' is no number of elements",
+                                b->entry[0][i]),
+                   false;
+        b->most = b->elements[i] > b->most ? b->elements[i] : b->most;
+    }
+    return true;
+}
+
+static struct ct_system *load(struct ct_ctx *ctx, const struct cli_args *args, long elements,
+                              const char *formulation)
+{
+    struct ct_system_options o = cli_system_options(args);
+    o.beam_elements = elements;
+    o.beam_formulation = formulation;
+    return ct_system_load(ctx, args->model, &o);
+}
+
+static bool load_variants(struct ct_ctx *ctx, const struct cli_args *args, struct beams *b)
+{
+    for (int i = 0; i < (b->n[0] ? b->n[0] : 1); i++)
+        for (int k = 0; k < (b->n[1] ? b->n[1] : 1); k++) {
+            struct ct_accuracy_variant *v = &b->variant[b->nvariant++];
+            v->elements = b->n[0] ? b->elements[i] : 0;
+            v->formulation = b->n[1] ? b->entry[1][k] : NULL;
+            v->system = load(ctx, args, v->elements, v->formulation);
+            if (!v->system)
+                return false;
+        }
+    return true;
+}
+
+static bool study(struct ct_ctx *ctx, const struct cli_args *args, struct beams *b)
+{
+    const bool varies = b->n[0] || b->n[1];
+    if (varies && !load_variants(ctx, args, b))
+        return false;
+    struct ct_system *sys
+        = load(ctx, args, 2 * b->most, b->n[1] ? b->entry[1][b->n[1] - 1] : NULL);
     const struct ct_accuracy_options options = {.run = cli_sim_options(args),
                                                 .error = args->error,
+                                                .variant = varies ? b->variant : NULL,
+                                                .nvariant = b->nvariant,
                                                 .reference = args->reference,
                                                 .progress = args->quiet ? NULL : stderr};
     struct ct_accuracy *a = ct_accuracy_create(ctx, sys, &options);
     const bool ok = a && report(ctx, a, args);
     ct_accuracy_destroy(a);
     ct_system_destroy(sys);
-    return ok ? CLI_DONE : CLI_FAILED;
+    return ok;
+}
+
+static int run(struct ct_ctx *ctx, const struct cli_args *args)
+{
+    static struct beams b;
+    int status = CLI_USAGE;
+    if (read_lists(&b, args))
+        status = study(ctx, args, &b) ? CLI_DONE : CLI_FAILED;
+    for (size_t i = 0; i < b.nvariant; i++)
+        ct_system_destroy(b.variant[i].system);
+    for (int k = 0; k < 2; k++)
+        free(b.text[k]);
+    return status;
 }
 
 const struct cli_command cli_accuracy = {
@@ -38,7 +134,11 @@ const struct cli_command cli_accuracy = {
       "that meets --error. Without --reference tight runs of two methods must agree.\n"
       "\n"
       "--method is a list here, as in dopri5,dop853. --tolerance and --step, where they are\n"
-      "given, are the only ones tried. Takes up to a minute, longer for large systems.\n",
+      "given, are the only ones tried. Takes up to a minute, longer for large systems.\n"
+      "\n"
+      "--elements and --formulations try beams other than the file's. The reference has twice "
+      "the\n"
+      "largest number of elements and the last formulation.\n",
     .examples = {"cotree accuracy pendulum.yaml --error 1e-8 --plot pendulum.svg",
                  "cotree accuracy pendulum.yaml --method dopri5,rk4 -o pendulum.csv"},
     .run = run,

@@ -105,6 +105,11 @@ bool ct_model_read(struct ct_ctx *ctx, const char *path, const struct ct_set *se
 bool ct_model_parse(struct ct_ctx *ctx, const char *file, const char *text, size_t n,
                     const struct ct_set *set, size_t nset, struct ct_model *m);
 
+/// Give all beams another number of equal elements (> 0) and another formulation (not NULL). False with an error if
+/// there is no such formulation.  Errors: E003.
+bool ct_model_change_beams(struct ct_ctx *ctx, struct ct_model *m, long elements,
+                           const char *formulation);
+
 /// Value of an expression of parameters alone; NaN if it contains anything else.
 double ct_model_number(const struct ct_model *m, ct_ex e);
 

@@ -386,8 +386,6 @@ void ct_instruction_apply(const struct ct_listing *l, const struct ct_instructio
         res[1] = cos(arg[0]);
         break;
     case CT_OP_ANGLE_SINCOS:
-        ct_sincos(arg[0], &res[0], &res[1]);
-        break;
     case CT_OP_ANGLE_SIN:
         ct_sincos(arg[0], &res[0], &res[1]);
         break;

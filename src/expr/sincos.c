@@ -45,14 +45,14 @@ static const double largest = 1e6;
 #define ONE_NUMBER(name, value) static const double k1_##name = value;
 EACH_CONSTANT(ONE_NUMBER)
 
-static inline int64_t bits_of(double v)
+static inline uint64_t bits_of(double v)
 {
-    int64_t bits;
+    uint64_t bits;
     memcpy(&bits, &v, sizeof bits);
     return bits;
 }
 
-static inline double number_of(int64_t bits)
+static inline double number_of(uint64_t bits)
 {
     double v;
     memcpy(&v, &bits, sizeof v);
@@ -68,7 +68,7 @@ static inline double lost(double a, double b, double p)
 }
 
 #define V double
-#define I int64_t
+#define I uint64_t
 #define BITS(v) bits_of(v)
 #define NUMBER(b) number_of(b)
 #define K(name) k1_##name
@@ -99,7 +99,7 @@ static void one_by_one(const double *a, double *s, double *c, size_t n)
 
 enum { LANES = 4 };
 typedef double four __attribute__((vector_size(32)));
-typedef int64_t four_integers __attribute__((vector_size(32)));
+typedef uint64_t four_integers __attribute__((vector_size(32)));
 
 #define FOUR_NUMBERS(name, value) static const four k4_##name = {value, value, value, value};
 EACH_CONSTANT(FOUR_NUMBERS)
@@ -118,8 +118,8 @@ EACH_CONSTANT(FOUR_NUMBERS)
 
 WIDE static inline bool has_large(four angle)
 {
-    const four_integers outside = ~((angle <= largest) & (angle >= -largest));
-    return _mm256_movemask_pd((four)outside);
+    enum { ALL = (1 << LANES) - 1 };
+    return _mm256_movemask_pd((four)((angle <= largest) & (angle >= -largest))) != ALL;
 }
 
 // Angles beyond the range are done again.

@@ -29,54 +29,97 @@ static ct_ex power(struct ct_build *b, const struct ct_screw *s, const struct wr
 
 // ---- forces ---------------------------------------------------------------------------------------------
 
-static void accelerate(struct ct_build *b, const struct ct_members *s, int i, ct_ex3 *al,
-                       ct_ex3 *a)
+struct forward { // by member, in its axes
+    enum ct_level level;
+    ct_ex3 *al, *a; // of its origin
+    ct_ex33 *A;     // al x v + w x (w x v) = A v
+};
+
+// What u' adds to a member's own accelerations.
+static void add_rates(struct ct_build *b, const struct ct_member *m, ct_ex3 *al, ct_ex3 *a)
+{
+    struct ct_exs *x = b->x;
+    for (int k = 0; k < m->nfree; k++) {
+        const struct ct_screw *s = &m->screw[k];
+        const ct_ex rate = b->eqs->u[s->speed].derivative;
+        *al = ct_ex3_add(x, *al, ct_ex3_scale(x, rate, s->turn));
+        *a = ct_ex3_add(x, *a, ct_ex3_scale(x, rate, s->slide));
+    }
+}
+
+// U + al~
+static ct_ex33 carrying_matrix(struct ct_exs *x, const ct_ex33 *U, ct_ex3 al)
+{
+    ct_ex33 A = *U;
+    for (int i = 0; i < 3; i++) {
+        const int j = (i + 1) % 3, k = (i + 2) % 3;
+        A.e[k + 3 * j] = ct_ex_add(x, U->e[k + 3 * j], al.e[i]);
+        A.e[j + 3 * k] = ct_ex_sub(x, U->e[j + 3 * k], al.e[i]);
+    }
+    return A;
+}
+
+static void accelerate(struct ct_build *b, const struct ct_members *s, int i, struct forward *w)
 {
     struct ct_exs *x = b->x;
     const struct ct_member *m = &s->member[i];
-    const ct_ex3 turning = ct_ex3_cross(x, al[m->parent], m->r),
-                 shift = ct_ex3_add(x, turning, ct_member_shift_bias(b, s, i));
-    al[i] = m->is_absolute ? m->al_relative
-                           : ct_ex3_add(x, ct_member_in(b, m, al[m->parent]), m->al_relative);
-    a[i] = ct_member_in(b, m, ct_ex3_add(x, a[m->parent], shift));
+    const int p = m->parent;
+    const ct_ex3 shift
+        = ct_ex3_add(x, ct_ex33_apply(x, &w->A[p], m->r), ct_member_slide_bias(b, s, i));
+    w->al[i] = m->is_absolute ? m->al_relative
+                              : ct_ex3_add(x, ct_member_in(b, m, w->al[p]), m->al_relative);
+    w->a[i] = ct_member_in(b, m, ct_ex3_add(x, w->a[p], shift));
+    if (w->level == CT_FULL)
+        add_rates(b, m, &w->al[i], &w->a[i]);
+    w->A[i] = carrying_matrix(x, &m->U, w->al[i]);
 }
 
-static struct wrench need(struct ct_build *b, const struct ct_member *m, ct_ex3 al, ct_ex3 a)
+static struct wrench need(struct ct_build *b, const struct ct_member *m, ct_ex3 al, ct_ex3 a,
+                          const ct_ex33 *A)
 {
     struct ct_exs *x = b->x;
     struct wrench w;
-    const ct_ex3 pull
-        = ct_ex3_add(x, ct_ex33_apply(x, &m->U, m->moment), ct_ex3_cross(x, al, m->moment));
-    w.f = ct_ex3_sub(x, ct_ex3_add(x, ct_ex3_scale(x, m->mass, a), pull), m->force);
+    w.f = ct_ex3_add(x, ct_ex3_scale(x, m->mass, a), ct_ex33_apply(x, A, m->moment));
+    w.f = ct_ex3_sub(x, w.f, m->force);
     w.n = ct_ex3_add(x, ct_ex33_apply(x, &m->J, al), ct_member_gyroscopic(b, m));
     w.n = ct_ex3_sub(x, ct_ex3_add(x, w.n, ct_ex3_cross(x, m->moment, a)), m->torque);
     return w;
 }
 
-static void find_forces(struct ct_build *b, const struct ct_members *s, const ct_ex *effort,
-                        ct_ex *Q)
+// Efforts that the motion takes, by speed: with u' = 0 or with the symbols u'.
+static void find_efforts(struct ct_build *b, const struct ct_members *s, enum ct_level level,
+                         ct_ex *out)
 {
     struct ct_exs *x = b->x;
-    ct_ex3 *al = CT_NEWN(b->arena, ct_ex3, s->n), *a = CT_NEWN(b->arena, ct_ex3, s->n);
+    struct forward f = {.level = level,
+                        .al = CT_NEWN(b->arena, ct_ex3, s->n),
+                        .a = CT_NEWN(b->arena, ct_ex3, s->n),
+                        .A = CT_NEWN(b->arena, ct_ex33, s->n)};
     struct wrench *w = CT_NEWN(b->arena, struct wrench, s->n);
-    a[0] = ct_members_fall(b);
+    f.a[0] = ct_members_fall(b);
     for (size_t i = 1; i < s->n; i++)
-        accelerate(b, s, (int)i, al, a);
+        accelerate(b, s, (int)i, &f);
     for (size_t i = s->n; i-- > 1;) {
         const struct ct_member *m = &s->member[i];
-        const struct wrench own = need(b, m, al[i], a[i]);
+        const struct wrench own = need(b, m, f.al[i], f.a[i], &f.A[i]);
         w[i].n = ct_ex3_add(x, w[i].n, own.n);
         w[i].f = ct_ex3_add(x, w[i].f, own.f);
-        for (int k = 0; k < m->nfree; k++) {
-            const struct ct_screw *f = &m->screw[k];
-            Q[f->speed] = ct_ex_sub(x, effort[f->speed], power(b, f, &w[i]));
-        }
+        for (int k = 0; k < m->nfree; k++)
+            out[m->screw[k].speed] = power(b, &m->screw[k], &w[i]);
         if (!m->parent)
             continue;
         const struct wrench up = hand_inwards(b, m, w[i]);
         w[m->parent].n = ct_ex3_add(x, w[m->parent].n, up.n);
         w[m->parent].f = ct_ex3_add(x, w[m->parent].f, up.f);
     }
+}
+
+void ct_composite_residual(struct ct_build *b, const struct ct_members *s, const ct_ex *effort,
+                           ct_ex *r)
+{
+    find_efforts(b, s, CT_FULL, r);
+    for (size_t k = 0; k < b->eqs->nu; k++)
+        r[k] = ct_ex_sub(b->x, r[k], effort[k]);
 }
 
 // ---- mass matrix ----------------------------------------------------------------------------------------
@@ -166,5 +209,7 @@ void ct_composite_derive(struct ct_build *b, const struct ct_members *s, const c
                          ct_ex *M, ct_ex *Q)
 {
     find_masses(b, s, M);
-    find_forces(b, s, effort, Q);
+    find_efforts(b, s, CT_BIAS, Q);
+    for (size_t k = 0; k < b->eqs->nu; k++)
+        Q[k] = ct_ex_sub(b->x, effort[k], Q[k]);
 }

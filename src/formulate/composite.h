@@ -12,4 +12,10 @@
 void ct_composite_derive(struct ct_build *b, const struct ct_members *s, const ct_ex *effort,
                          ct_ex *M, ct_ex *Q);
 
+/// r = M u' - Q (nu, out) with the symbols u': inverse dynamics less the efforts along the speeds.
+///
+/// Cost    O(members)
+void ct_composite_residual(struct ct_build *b, const struct ct_members *s, const ct_ex *effort,
+                           ct_ex *r);
+
 #endif

@@ -133,7 +133,7 @@ struct ct_equations {
     struct ct_entry *M; // lower triangle, row by row
     size_t nM, M_cap;
     ct_ex *solution; // u' of an open system in closed form (nu), or NULL
-    ct_ex *pivot;    // of each speed in an articulated solution (nu): 0 where it moves no mass
+    ct_ex *pivot;    // of each speed in that solution (nu): not positive where it moves no mass
     enum ct_formulation formulation; // of the solution; AUTO where no choice was made
     // operations by formulation, the solution included; INFINITY: it does not apply or cannot win
     double formulation_cost[CT_NFORMULATION];

@@ -550,15 +550,21 @@ static ct_ex33 swing_matrix(struct ct_exs *x, ct_ex3 w)
     return U;
 }
 
-ct_ex3 ct_member_shift_bias(struct ct_build *b, const struct ct_members *s, int i)
+ct_ex3 ct_member_slide_bias(struct ct_build *b, const struct ct_members *s, int i)
 {
     struct ct_exs *x = b->x;
     const struct ct_member *m = &s->member[i], *p = &s->member[m->parent];
-    const ct_ex3 carried = ct_ex33_apply(x, &p->U, m->r);
     if (!m->slides)
-        return carried;
+        return zero3;
     const ct_ex3 coriolis = ct_ex3_scale(x, ct_ex_const(x, 2), ct_ex3_cross(x, p->w, m->drift));
-    return ct_ex3_add(x, carried, ct_ex3_add(x, coriolis, m->drift_bias));
+    return ct_ex3_add(x, coriolis, m->drift_bias);
+}
+
+ct_ex3 ct_member_shift_bias(struct ct_build *b, const struct ct_members *s, int i)
+{
+    const struct ct_member *m = &s->member[i];
+    const ct_ex3 carried = ct_ex33_apply(b->x, &s->member[m->parent].U, m->r);
+    return ct_ex3_add(b->x, carried, ct_member_slide_bias(b, s, i));
 }
 
 // (w x J w)_i = (J_kk - J_jj) w_j w_k + J_jk (w_j^2 - w_k^2) + J_ik w_i w_j - J_ij w_i w_k

@@ -60,6 +60,8 @@ void ct_member_turn_tensor(struct ct_build *b, const struct ct_member *m, ct_ex3
 
 /// Accelerations of the origin that do not depend on u': centripetal, Coriolis, prescribed; in the parent's axes.
 ct_ex3 ct_member_shift_bias(struct ct_build *b, const struct ct_members *s, int m);
+/// The same without the centripetal part.
+ct_ex3 ct_member_slide_bias(struct ct_build *b, const struct ct_members *s, int m);
 /// Acceleration of ground that stands for gravity: -g.
 ct_ex3 ct_members_fall(struct ct_build *b);
 /// w x J w for a member's own inertia, by products of the components of w.

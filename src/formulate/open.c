@@ -52,7 +52,7 @@ static ct_ex divide(struct ct_exs *x, ct_ex a, const struct pivot *p)
 // M = L' D L from the last speed to the first, unrolled: speeds are numbered from ground outwards, so this order makes
 // no fill in a branched chain, and entries that are zero by structure cost nothing. M is positive definite, so no
 // pivots are sought. H: lower triangle of M. Source: Featherstone (2008), key featherstone2008, 8.5.
-static ct_ex *solve_unrolled(struct ct_build *b, ct_ex *H, const ct_ex *Q)
+static ct_ex *solve_unrolled(struct ct_build *b, ct_ex *H, const ct_ex *Q, ct_ex *pivots)
 {
     struct ct_exs *x = b->x;
     const size_t n = b->eqs->nu;
@@ -61,6 +61,7 @@ static ct_ex *solve_unrolled(struct ct_build *b, ct_ex *H, const ct_ex *Q)
     // H becomes D on the diagonal and L (unit, lower) below
     for (size_t k = n; k-- > 0;) {
         pivot[k] = take_pivot(x, H, n, k);
+        pivots[k] = pivot[k].value;
         for (size_t i = k; i-- > 0;) {
             if (ct_ex_is_zero(H[k + n * i]))
                 continue;
@@ -104,7 +105,7 @@ static double dense_cost(double n)
 // ---- candidates -----------------------------------------------------------------------------------------
 
 struct trial {
-    ct_ex *solution;
+    ct_ex *solution, *pivot;
     double cost; // INFINITY: does not apply
 };
 
@@ -140,9 +141,10 @@ static struct trial try_matrix(struct ct_build *b, ct_ex *H, const ct_ex *Q)
         all[k++] = Q[i];
     const double assembly = cost_of(b, all, k), unrolled = unrolled_cost(pattern, n),
                  dense = dense_cost((double)n);
-    struct trial t = {NULL, assembly + dense};
+    struct trial t = {NULL, NULL, assembly + dense};
     if (unrolled < dense && assembly + unrolled < longest_program) {
-        t.solution = solve_unrolled(b, H, Q);
+        t.pivot = CT_NEWN(b->arena, ct_ex, n + 1);
+        t.solution = solve_unrolled(b, H, Q, t.pivot);
         t.cost = cost_of(b, t.solution, n);
     }
     return t;
@@ -172,9 +174,9 @@ static struct trial try_composite(struct ct_build *b, const struct ct_members *s
 
 static struct trial try_articulated(struct ct_build *b, const struct ct_members *s)
 {
-    b->eqs->pivot = CT_NEWN(b->arena, ct_ex, b->eqs->nu + 1);
-    ct_ex *u = ct_articulated_solve(b, s, b->effort, b->eqs->pivot);
-    return (struct trial){u, cost_of(b, u, b->eqs->nu)};
+    ct_ex *pivot = CT_NEWN(b->arena, ct_ex, b->eqs->nu + 1),
+          *u = ct_articulated_solve(b, s, b->effort, pivot);
+    return (struct trial){u, pivot, cost_of(b, u, b->eqs->nu)};
 }
 
 // The mass matrix is what people look at, and its pivots lose least: another form must be cheaper by this.
@@ -198,7 +200,7 @@ void ct_open_solve(struct ct_build *b, enum ct_formulation which)
     const bool tries_members = which == CT_FORMULATION_AUTO || which > CT_FORMULATION_CUTSETS;
     const struct ct_members *s = tries_members ? ct_members_derive(b) : NULL;
     for (int k = 0; k < CT_NFORMULATION; k++)
-        t[k] = (struct trial){NULL, INFINITY};
+        t[k] = (struct trial){NULL, NULL, INFINITY};
     if (s && which != CT_FORMULATION_COMPOSITE)
         t[CT_FORMULATION_ARTICULATED] = try_articulated(b, s);
     const double known = t[CT_FORMULATION_ARTICULATED].cost;
@@ -210,6 +212,7 @@ void ct_open_solve(struct ct_build *b, enum ct_formulation which)
         t[CT_FORMULATION_CUTSETS] = try_cutsets(b);
     e->formulation = cheapest(t, which);
     e->solution = t[e->formulation].solution;
+    e->pivot = t[e->formulation].pivot;
     for (int k = 0; k < CT_NFORMULATION; k++)
         e->formulation_cost[k] = t[k].cost;
 }

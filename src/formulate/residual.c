@@ -3,6 +3,8 @@
 // Coordinates are varied along the motions that speeds stand for: dq_i = sum_k Z_ik de_k with q' = Z(q) u.
 // For a plain coordinate that is the coordinate itself, for a quaternion a body rotation.
 #include "formulate/residual.h"
+#include "formulate/composite.h"
+#include "formulate/open.h"
 
 // Directions of the seeds: the speeds k as variations of the place, of the speed, of u'.
 enum { PLACE, SPEED, ACCELERATION, NLEVEL };
@@ -78,6 +80,23 @@ static void assemble_rows(struct ct_build *b, ct_ex *r)
     }
 }
 
+// The sweep in ground axes or, in space, inverse dynamics in axes of the bodies, whichever takes fewer operations.
+static void derive_rows(struct ct_build *b, ct_ex *r)
+{
+    const size_t n = b->eqs->nu;
+    const struct ct_members *s = b->is_planar ? NULL : ct_members_derive(b);
+    for (size_t k = 0; k < n; k++)
+        r[k] = ct_sweep_residual(b, (int)k);
+    if (!s)
+        return;
+    ct_ex *by_members = CT_NEWN(b->ctx->scratch, ct_ex, n + 1);
+    ct_composite_residual(b, s, b->effort, by_members);
+    const struct ct_tape_counts swept = ct_ex_count(b->ctx->scratch, b->x, r, n),
+                                other = ct_ex_count(b->ctx->scratch, b->x, by_members, n);
+    for (size_t k = 0; k < n && ct_counted_cost(&other) < ct_counted_cost(&swept); k++)
+        r[k] = by_members[k];
+}
+
 void ct_residual_derive(struct ct_build *b)
 {
     struct ct_equations *e = b->eqs;
@@ -88,8 +107,8 @@ void ct_residual_derive(struct ct_build *b)
     f->r = CT_NEWN(b->arena, ct_ex, e->nu + 1);
     if (e->is_truncated)
         assemble_rows(b, f->r);
-    for (size_t k = 0; k < e->nu && !e->is_truncated; k++)
-        f->r[k] = ct_sweep_residual(b, (int)k);
+    else
+        derive_rows(b, f->r);
     plant_places(b, &seeds);
     const size_t nplace = seeds.n;
     for (size_t k = 0; k < e->nu; k++) {

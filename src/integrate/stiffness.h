@@ -22,9 +22,9 @@ struct ct_stiffness {
     long window_steps;
     const struct ct_integrate_stats *stats; // of the run, live
     long window_evaluations;
-    double fast, slow,
-        step;           // of the last test: [1/s], [1/s], mean step since the one before [s]
-    double evaluations; // for a step, since the test before
+    double fast, slow;  // of the last test [1/s]
+    double step;        // mean step since the test before [s]
+    double evaluations; // for a step, since then
 };
 
 /// What the parts of a run cost, in common units.
@@ -54,7 +54,7 @@ bool ct_stiffness_watch(struct ct_stiffness *s, double t, const double *y, doubl
 /// After a trial that was lost: not again before the number of steps has grown fourfold.
 void ct_stiffness_put_off(struct ct_stiffness *s);
 
-/// Time gained for the work since the one before last test of an explicit run.
+/// Time gained for the work of an explicit run between its last two tests.
 double ct_stiffness_pace(const struct ct_stiffness *s, const struct ct_cost *cost);
 
 /// After each step of a trial; false: it has come far enough.

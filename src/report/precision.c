@@ -5,9 +5,27 @@
 #include "report/json.h"
 #include "report/number.h"
 
+#include <stdio.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+
+bool ct_precision_is_alike(const struct ct_precision_point *p,
+                           const struct ct_precision_point *q)
+{
+    const bool same = !p->formulation == !q->formulation
+                   && (!p->formulation || strcmp(p->formulation, q->formulation) == 0);
+    return same && p->elements == q->elements && strcmp(p->method, q->method) == 0;
+}
+
+void ct_precision_name(char *text, size_t size, const struct ct_precision_point *p)
+{
+    int n = snprintf(text, size, "%s", p->method);
+    if (p->elements > 0)
+        n += snprintf(text + n, size - (size_t)n, ", N = %ld", p->elements);
+    if (p->formulation)
+        snprintf(text + n, size - (size_t)n, ", %s", p->formulation);
+}
 
 const char *ct_precision_number(char text[CT_PRECISION_NUMBER_SIZE], double v)
 {
@@ -43,8 +61,11 @@ static bool write_csv(struct ct_ctx *ctx, const char *path,
     for (size_t i = 0; i < n; i++) {
         ct_csv_text(&w, point[i].method);
         write_number(&w, point[i].tolerance);
-        ct_csv_text(&w, ""); // no beams, so neither elements nor formulations of them
-        ct_csv_text(&w, "");
+        if (point[i].elements > 0)
+            write_count(&w, point[i].elements);
+        else
+            ct_csv_text(&w, "");
+        ct_csv_text(&w, point[i].formulation ? point[i].formulation : "");
         write_number(&w, point[i].error);
         write_number(&w, point[i].seconds);
         write_count(&w, point[i].steps);
@@ -71,7 +92,6 @@ static bool write_json(struct ct_ctx *ctx, const char *path,
         column[3 * n + i] = (double)point[i].steps;
         column[4 * n + i] = (double)point[i].evaluations;
     }
-    static const char *const empty[] = {"elements", "formulation"};
     static const char *const rest[] = {"error", "seconds", "steps", "evaluations"};
     struct ct_json j;
     ct_json_init(&j, file.stream);
@@ -81,12 +101,14 @@ static bool write_json(struct ct_ctx *ctx, const char *path,
         ct_json_text(&j, NULL, point[i].method);
     ct_json_end(&j);
     ct_json_numbers(&j, "tolerance", column, n);
-    for (size_t k = 0; k < COUNT(empty); k++) {
-        ct_json_array(&j, empty[k]);
-        for (size_t i = 0; i < n; i++)
-            ct_json_text(&j, NULL, NULL);
-        ct_json_end(&j);
-    }
+    ct_json_array(&j, "elements");
+    for (size_t i = 0; i < n; i++)
+        ct_json_number(&j, NULL, point[i].elements > 0 ? (double)point[i].elements : NAN);
+    ct_json_end(&j);
+    ct_json_array(&j, "formulation");
+    for (size_t i = 0; i < n; i++)
+        ct_json_text(&j, NULL, point[i].formulation);
+    ct_json_end(&j);
     for (size_t k = 0; k < COUNT(rest); k++)
         ct_json_numbers(&j, rest[k], column + (k + 1) * n, n);
     ct_json_end(&j);

@@ -13,7 +13,9 @@
 /// One setting.
 struct ct_precision_point {
     const char *method;
-    double tolerance; // the step [s] if has_step
+    long elements;           // of beams; 0: none, or not all alike
+    const char *formulation; // of beams; NULL: none, or not all alike
+    double tolerance;        // the step [s] if has_step
     bool has_step;
     double error;   // relative, of the outputs; NaN: the run failed
     double seconds; // of the integration
@@ -27,6 +29,12 @@ struct ct_precision_plot {
     double uncertainty; // of the reference: errors below mean nothing; 0: not known
     const struct ct_precision_point *best; // is marked; NULL: none
 };
+
+/// Do both belong to one line of the plot: the same method and the same beams?
+bool ct_precision_is_alike(const struct ct_precision_point *p,
+                           const struct ct_precision_point *q);
+/// "radau5, N = 5, linear"
+void ct_precision_name(char *text, size_t size, const struct ct_precision_point *p);
 
 enum { CT_PRECISION_NUMBER_SIZE = 32 };
 /// v in the fewest digits that read back to it. Returns text.

@@ -179,7 +179,9 @@ static void draw_method(const struct canvas *c, const struct ct_precision_point 
     print_line(c->out, x, y, x + 300, y, "");
     draw_mark(c->out, x + 150, y, method);
     fputs("</g>\n", c->out);
-    print_text(c->out, x + 380, y + FONT / 3, "start", point->method);
+    char name[80];
+    ct_precision_name(name, sizeof name, point);
+    print_text(c->out, x + 380, y + FONT / 3, "start", name);
 }
 
 // An error across the plot, named at its end.
@@ -201,7 +203,7 @@ static void draw_all(const struct canvas *c, const struct ct_precision_point *po
     draw_level(c, plot->uncertainty, "uncertainty of the reference");
     size_t method = 0;
     for (size_t i = 0, end; i < n; i = end, method++) {
-        for (end = i + 1; end < n && strcmp(point[end].method, point[i].method) == 0; end++) {
+        for (end = i + 1; end < n && ct_precision_is_alike(&point[end], &point[i]); end++) {
         }
         draw_method(c, point + i, end - i, method);
     }

@@ -305,27 +305,20 @@ static bool factor(struct ct_embed *s)
     return isfinite(s->kappa);
 }
 
-// The speed with the smallest diagonal entry of M or, where there is none, with the smallest pivot of the closed form.
-static size_t lightest(struct ct_embed *s)
+// The speed with the smallest diagonal entry of M.
+static size_t lightest(const struct ct_embed *s)
 {
-    const struct ct_equations *e = s->m->e;
     const size_t n = s->m->nu;
-    double *inertia = s->r;
     size_t least = 0;
-    for (size_t i = 0; i < n && e->has_dynamics; i++)
-        inertia[i] = s->m->M[i + n * i];
-    if (!e->has_dynamics)
-        ct_machine_values(s->arena, s->m, e->pivot, n, inertia);
     for (size_t i = 1; i < n; i++)
-        if (!(inertia[i] >= inertia[least]))
+        if (s->m->M[i + n * i] < s->m->M[least + n * least])
             least = i;
     return least;
 }
 
-static bool massless(struct ct_embed *s)
+static bool massless(struct ct_embed *s, size_t speed)
 {
-    const size_t least = lightest(s);
-    const struct ct_u *u = &s->m->e->u[least];
+    const struct ct_u *u = &s->m->e->u[speed];
     const struct ct_mark mark = u->joint >= 0 ? s->m->model->joint[u->joint].mark
                                               : s->m->model->body[u->body].instance.mark;
     return ct_error(s->ctx, mark, CT_E_MASSLESS,
@@ -333,14 +326,19 @@ static bool massless(struct ct_embed *s)
                     u->q >= 0 ? s->m->e->q[u->q].name : u->name);
 }
 
-// The closed form has no result where a freedom moves no mass.
-static bool accelerates(struct ct_embed *s)
+// The pivots of a solution in closed form must be positive. Behind one that is not, others are no numbers.
+static bool has_inertia(struct ct_embed *s)
 {
-    if (!ct_machine_solved(s->m, s->a))
-        return false;
-    for (size_t i = 0; i < s->m->nu; i++)
-        if (!isfinite(s->a[i]))
-            return false;
+    const size_t n = s->m->nu;
+    const double *pivot = s->m->solved.out + n + s->m->nq;
+    size_t least = 0;
+    ct_program_run(&s->m->solved, s->m->input);
+    for (size_t i = 1; i < n; i++)
+        if (isnan(pivot[least]) || fabs(pivot[i]) < fabs(pivot[least]))
+            least = i;
+    for (size_t i = 0; i < n; i++)
+        if (!(pivot[i] > 0))
+            return massless(s, pivot[least] > 0 ? i : least);
     return true;
 }
 
@@ -358,11 +356,11 @@ bool ct_embed_choose(struct ct_embed *s)
     factor(s);
     s->kappa_chosen = s->kappa;
     s->sigma_chosen = s->sigma;
-    if (!s->m->e->has_dynamics && !s->rank)
-        return accelerates(s) || massless(s);
+    if (s->m->e->solution)
+        return has_inertia(s);
     ct_machine_motion(s->m);
     if (ct_embed_accelerate(s) != CT_EVAL_OK)
-        return massless(s);
+        return massless(s, lightest(s));
     take_form(s);
     return true;
 }
@@ -693,21 +691,34 @@ enum ct_eval ct_embed_project(struct ct_embed *s, double t, double *y)
     if (e != CT_EVAL_OK)
         return e;
     tend_form(s);
-    if (has_worn(s))
+    if (has_worn(s)) {
+        ct_machine_constraint(s->m); // forms leave J as it was
         ct_embed_choose(s);
+    }
     return CT_EVAL_OK;
+}
+
+// Dense pivots of larger systems cost more than a step does.
+static bool find_strength(struct ct_embed *s)
+{
+    enum { LARGE = 200 };
+    if (s->rank < LARGE || !is_form_due(s))
+        return false;
+    s->strength = ct_form_close(s->form[0], s->m);
+    s->sigma = s->sigma_found * s->strength / s->at_sigma;
+    return is_sound(s);
 }
 
 double ct_embed_pivot(struct ct_embed *s)
 {
-    if (is_form_due(s) && s->is_alike) {
-        s->strength = ct_form_close(s->form[0], s->m);
-        if (is_sound(s)) {
-            follow_sigma(s);
-            return s->sigma;
-        }
-    }
-    return factor(s) ? s->sigma : 0;
+    // the place need not be one of the motion: what is known of the motion stays
+    const double sigma = s->sigma, kappa = s->kappa, strength = s->strength;
+    const bool is_known = find_strength(s) || factor(s);
+    const double pivot = is_known ? s->sigma * fmax(1, s->kappa) : 0;
+    s->sigma = sigma;
+    s->kappa = kappa;
+    s->strength = strength;
+    return pivot;
 }
 
 void ct_embed_renew(struct ct_embed *s)
@@ -716,6 +727,8 @@ void ct_embed_renew(struct ct_embed *s)
         s->strength = ct_form_close(s->form[0], s->m);
         tend_form(s);
     }
-    if (has_worn(s))
-        ct_embed_choose(s);
+    if (!s->rank || !has_worn(s))
+        return;
+    ct_machine_constraint(s->m); // forms leave J as it was
+    ct_embed_choose(s);
 }

@@ -75,7 +75,8 @@ void ct_embed_kept_multipliers(struct ct_embed *s, double *lam);
 void ct_embed_renew(struct ct_embed *s);
 /// Move q, u in y onto the constraints, independent coordinates held where J_d allows.  (6.6)
 enum ct_eval ct_embed_project(struct ct_embed *s, double t, double *y);
-/// The smallest pivot of J_d against its largest at the last ct_machine_constraint.
+/// The smallest pivot of J_d against its largest at the last ct_machine_constraint, times the largest entry of B where that
+/// is above 1: small where J loses rank, not where another choice of columns would do.
 double ct_embed_pivot(struct ct_embed *s);
 /// Which multipliers are unique, into s->is_unique: rows of null(J') that vanish.  (6.5)
 void ct_embed_uniqueness(struct ct_embed *s);

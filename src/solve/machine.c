@@ -183,6 +183,8 @@ static void compile_solved(struct ct_arena *a, struct ct_machine *m, const struc
         push(&l, e->solution[i]);
     for (size_t i = 0; i < e->nq && e->solution; i++)
         push(&l, e->q[i].rate);
+    for (size_t i = 0; i < e->nu && e->solution; i++)
+        push(&l, e->pivot[i]);
     compile_from(a, m->e->x, in, l.e, l.n, CT_FUSE_NATIVE, &m->solved);
 }
 
@@ -328,27 +330,42 @@ void ct_machine_add_residual(struct ct_arena *a, struct ct_machine *m)
     ct_machine_use(a, m, m->motion.native ? CT_BACKEND_BEST : CT_BACKEND_TAPE);
 }
 
-void ct_machine_values(struct ct_arena *a, const struct ct_machine *m, const ct_ex *e, size_t n,
-                       double *out)
+enum { NPROGRAM = 14 };
+
+static void list_programs(struct ct_machine *m, struct ct_program *list[NPROGRAM])
 {
-    const struct inputs in = list_inputs(a, m, m->e->x);
-    struct ct_program p = {0};
-    compile(a, m, &in, e, n, &p);
-    prepare(&p, m->input);
-    ct_program_run(&p, m->input);
-    memcpy(out, p.out, n * sizeof *out);
+    struct ct_program *const all[NPROGRAM]
+        = {&m->solved, &m->motion,   &m->constraint, &m->result,   &m->power,
+           &m->energy, &m->root,     &m->memory,     &m->momentum, &m->driver,
+           &m->wanted, &m->residual, &m->tangent,    &m->validity};
+    memcpy(list, all, sizeof all);
 }
 
 void ct_machine_prepare(struct ct_machine *m)
 {
-    struct ct_program *const all[]
-        = {&m->solved, &m->motion,   &m->constraint, &m->result,   &m->power,
-           &m->energy, &m->root,     &m->memory,     &m->momentum, &m->driver,
-           &m->wanted, &m->residual, &m->tangent,    &m->validity};
+    struct ct_program *all[NPROGRAM];
+    list_programs(m, all);
     for (size_t i = 0; i < COUNT(all); i++)
         prepare(all[i], m->input);
     for (struct ct_program *p = m->apart; p; p = p->next)
         prepare(p, m->input);
+}
+
+static size_t code_size(const struct ct_program *p)
+{
+    return p->native ? ct_native_code_size(p->native) : 0;
+}
+
+size_t ct_machine_code_size(struct ct_machine *m)
+{
+    struct ct_program *all[NPROGRAM];
+    size_t n = 0;
+    list_programs(m, all);
+    for (size_t i = 0; i < COUNT(all); i++)
+        n += code_size(all[i]);
+    for (const struct ct_program *p = m->apart; p; p = p->next)
+        n += code_size(p);
+    return n;
 }
 
 void ct_machine_reset(struct ct_machine *m)

@@ -35,20 +35,20 @@ struct ct_machine {
         double *out, *work;
         size_t nout;
         struct ct_program *next; // of those compiled apart
-    } solved,                    // u', q', where the equations have a solution; else empty
-        motion,                  // M, Q, J, gam, q'
-        constraint,              // phi, v, J
-        result,                  // output columns
-        power,                   // d(work)/dt
-        validity,                // indicators of linear beams
-        energy,                  // kinetic, potential
-        root,                    // g of each mode
-        memory,                  // next values
-        momentum,                // dT/du
-        driver,                  // value, rate of each driver
-        wanted,                  // of each row: not negative in the right assembly
-        residual, // r, phi, v; nothing if the equations have no residual, and so the next
-        tangent;  // dr/dq, dr/du, dr/du', dv/dq, J: the entries
+    } solved,       // u', q', pivots, where the equations have a solution; else empty
+        motion,     // M, Q, J, gam, q'
+        constraint, // phi, v, J
+        result,     // output columns
+        power,      // d(work)/dt
+        validity,   // indicators of linear beams
+        energy,     // kinetic, potential
+        root,       // g of each mode
+        memory,     // next values
+        momentum,   // dT/du
+        driver,     // value, rate of each driver
+        wanted,     // of each row: not negative in the right assembly
+        residual,   // r, phi, v; nothing if the equations have no residual, and so the next
+        tangent;    // dr/dq, dr/du, dr/du', dv/dq, J: the entries
 
     double *M, *Q, *J, *gam, *rate; // of the last ct_machine_motion
     double *phi, *v;                // of the last ct_machine_constraint (J as well)
@@ -87,9 +87,8 @@ bool ct_machine_solved(struct ct_machine *m, double *a);
 /// phi, v, J at the input.
 void ct_machine_constraint(struct ct_machine *m);
 void ct_program_run(struct ct_program *p, const double *input);
-/// Values of expressions at the input, once: everything needed is made in a.
-void ct_machine_values(struct ct_arena *a, const struct ct_machine *m, const ct_ex *e, size_t n,
-                       double *out);
+/// Bytes of machine code of all programs.
+size_t ct_machine_code_size(struct ct_machine *m);
 /// Parameters have changed: run the prologues again.
 void ct_machine_prepare(struct ct_machine *m);
 /// As new, with the values that the model's parameters have now.

@@ -29,6 +29,7 @@ struct ct_run {
     double energy0, energy_scale;
     double pivot_most, last_part, time_last, singular_in,
         singular_reach; // see foresee_singular
+    long last_switches; // of the embedding
     double pending;     // time of the event ahead; INFINITY if there is none
     bool started;
     // the choice of the method
@@ -124,7 +125,7 @@ static double pivot_after(struct ct_run *r, double t, const double *y, const dou
 // A position counts as singular ahead when the smallest pivot has fallen to the first part of its largest value so far
 // and goes on falling; where it has fallen to the second part pivots are sought at every evaluation, at the third f is
 // better not computed.
-static const double foreseen_pivot = 0.7, near_pivot = 0.5, singular_pivot = 0.25;
+static const double foreseen_pivot = 0.8, near_pivot = 0.5, singular_pivot = 0.25;
 
 // The smallest pivot falls about linearly towards a singular position. Time to where it will vanish, by secants along
 // the motion as the accelerations of now continue it. INFINITY if it rises.
@@ -151,19 +152,23 @@ static double time_to_singular(struct ct_run *r, double t, const double *y, cons
     return s - pivot / slope;
 }
 
-// What is ahead of an accepted state. False if the step to it has come beside a singular position before that was
-// foreseen.
+// What is ahead of an accepted state. False if the step to it has come beside a singular position, or past it, before
+// that was foreseen.
 static bool foresee_singular(struct ct_run *r, double t, const double *y, const double *dy)
 {
     const double dt = t - r->time_last;
     if (!r->s->rank || !(dt > 0))
         return true;
     const double now = pivot_after(r, t, y, dy, 0), part = now / fmax(r->pivot_most, now);
-    const bool was_unforeseen = isinf(r->singular_in) && r->last_part > near_pivot;
-    if (r->o->step == 0 && part < singular_pivot && was_unforeseen)
+    // after another choice of rows and columns the pivot is not to be compared with the last one
+    const bool is_comparable = r->s->switches == r->last_switches;
+    const bool was_unforeseen
+        = is_comparable && isinf(r->singular_in) && r->last_part > near_pivot;
+    if (r->o->step == 0 && part < near_pivot && was_unforeseen)
         return false;
     r->time_last = t;
     r->last_part = part;
+    r->last_switches = r->s->switches;
     r->pivot_most = fmax(r->pivot_most, now);
     r->singular_in = INFINITY;
     r->s->is_delicate = part < near_pivot;

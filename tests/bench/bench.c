@@ -117,6 +117,7 @@ static void measure(const call_fn *f, void *const *data, size_t n, double *t)
 
 struct subject {
     const char *path;
+    enum ct_tree_choice tree; // the cheapest unless it is set
     struct ct_ctx ctx;
     struct ct_model model;
     struct ct_equations equations, assembly;
@@ -154,20 +155,21 @@ static const struct ct_formulate_options motion_options
 static bool generate(struct subject *s)
 {
     struct ct_tree_report report;
+    struct ct_formulate_options options = motion_options;
+    options.tree = s->tree;
     return ct_model_read(&s->ctx, s->path, NULL, 0, &s->model)
-        && ct_formulate(&s->ctx, s->ctx.model, &s->model, &motion_options, &s->equations,
-                        &report);
+        && ct_formulate(&s->ctx, s->ctx.model, &s->model, &options, &s->equations, &report);
 }
 
 // Everything up to a machine in a consistent state.
-static void open_subject(struct subject *s, const char *path)
+static void open_subject_on(struct subject *s, const char *path, enum ct_tree_choice tree)
 {
     const struct ct_formulate_options assembly = {.tree = CT_TREE_JOINTS,
                                                   .measure_all = true,
                                                   .measured_for = &s->equations,
                                                   .without_dynamics = true};
     struct ct_tree_report report;
-    *s = (struct subject){.path = path};
+    *s = (struct subject){.path = path, .tree = tree};
     open_arenas(&s->ctx);
     const double start = now();
     if (!generate(s))
@@ -185,6 +187,11 @@ static void open_subject(struct subject *s, const char *path)
     s->prepare = now() - generated;
     s->machine = ct_run_machine(s->run);
     ct_machine_set(s->machine, 0, ct_run_state(s->run));
+}
+
+static void open_subject(struct subject *s, const char *path)
+{
+    open_subject_on(s, path, CT_TREE_AUTO);
 }
 
 static void close_subject(struct subject *s)
@@ -663,14 +670,32 @@ static void four_bars(int n)
     unlink(s.path);
 }
 
+static const char *solver(const struct subject *s)
+{
+    const struct ct_embed *e = ct_run_embed(s->run);
+    return e->nform ? e->form[0]->kind->name : "dense";
+}
+
+// A coordinate for each place and angle: many freedoms, all of them coupled, and sparse matrices.
+static void links_by_bodies(int n)
+{
+    struct subject s;
+    open_subject_on(&s, generated("chain40", n), CT_TREE_ABSOLUTE);
+    printf("\nchain of %d links on trees of bodies: %zu speeds, %zu rows, solved by %s\n", n,
+           s.machine->nu, s.machine->nrow, solver(&s));
+    show_accelerations(&s, "  accelerations, solve included, per link", n, 0);
+    show_projection(&s, n);
+    close_subject(&s);
+    unlink(s.path);
+}
+
 // Cost per loop must not grow with the number of loops: 3 n + 1 bodies and joints, ground included.
 static void many_four_bars(int n)
 {
     struct subject s;
     open_subject(&s, generated("n_four_bar", n));
     printf("\n%d four-bars in a row: %zu bodies, %zu joints, solved by %s\n", n,
-           s.model.nbody - 1, s.model.njoint,
-           ct_run_embed(s.run)->nform ? ct_run_embed(s.run)->form[0]->kind->name : "dense");
+           s.model.nbody - 1, s.model.njoint, solver(&s));
     line("  model to equations", s.generate, 2);
     line("  equations to the start of a run", s.prepare, 0);
     size("  memory of model, equations and run", ct_arena_used(s.ctx.model));
@@ -828,6 +853,8 @@ int main(int argc, char **argv)
         four_bars(40);
         many_four_bars(100);
         many_four_bars(333);
+        links_by_bodies(20);
+        links_by_bodies(80);
     }
     all_beams(quick);
     return 0;

@@ -28,3 +28,9 @@ sed -n 's/^  "method": //p' s.json
 echo '-- a soft one: it does not'
 "$COTREE" simulate "$SYSTEMS/stiff_spring_pendulum/model.yaml" -o r.csv --quiet --set k=1e3 --tolerance 1e-4 --summary s.json
 sed -n 's/^  "method": //p' s.json
+echo '-- and in loops, past the time event'
+sed 's/stiffness: 60$/stiffness: 6e8/; s/damping: 4$/damping: 4e7/' "$SYSTEMS/governor/model.yaml" >governor.yaml
+"$COTREE" simulate governor.yaml -o r.csv --quiet --tolerance 1e-5 --verify --summary s.json
+sed -n 's/^  "method": //p' s.json
+awk -F': ' '/"global"|"energy_drift"/ { print $1, ($2 + 0 < 1e-4 ? "below 1e-4" : $2) }' s.json
+awk -F'[:,]' '/"steps"/ { print ($2 < 5000 ? "few steps" : $2) }' s.json

@@ -1,6 +1,7 @@
 // Sizes and operation counts of the equations against the table of formulation 10: n_u, m, multiplications and
 // additions of M (lower), Q, J and gam, functions, entries of M. Lengths, masses and inertias are parameters.
 #include "expr/tape.h"
+#include "formulate/composite.h"
 #include "tests/property/system.h"
 
 struct row {
@@ -193,6 +194,120 @@ static void stewart_platform_needs_no_more_than_the_table_says(void **state)
     ct_arena_destroy(a);
 }
 
+// ---- open chains --------------------------------------------------------------------------------------------
+
+// PUMA geometry, six turning axes: masses, centres of mass, full inertias and lengths are parameters.
+static const char *arm_text(struct ct_arena *a)
+{
+    static const char *const end[]
+        = {"{at: [0, 0, 0], rotate: [x, -pi/2]}",   "[a2, 0, d3]",
+           "{at: [a3, d4, 0], rotate: [x, -pi/2]}", "{at: [0, 0, 0], rotate: [x, pi/2]}",
+           "{at: [0, 0, 0], rotate: [x, -pi/2]}",   "[0, 0, 0]"};
+    const char *parameters = "g: 9.81, a2: 0.43, a3: 0.02, d3: 0.15, d4: 0.43", *bodies = "",
+               *joints = "";
+    for (int i = 1; i <= 6; i++) {
+        parameters = text_of(a,
+                             "%s, m%d: 1, x%d: 0.1, y%d: 0.05, z%d: 0.02, A%d: 1, B%d: 1.1, "
+                             "C%d: 1.2, D%d: 0.1, E%d: 0.02, F%d: 0.05",
+                             parameters, i, i, i, i, i, i, i, i, i, i);
+        bodies = text_of(a,
+                         "%s  b%d: {mass: m%d, com: [x%d, y%d, z%d], inertia: [A%d, B%d, C%d, "
+                         "D%d, E%d, F%d], points: {end: %s}}\n",
+                         bodies, i, i, i, i, i, i, i, i, i, i, i, end[i - 1]);
+        const char *from = i == 1 ? "ground" : text_of(a, "b%d.end", i - 1);
+        joints
+            = text_of(a, "%s  j%d: {type: revolute, from: %s, to: b%d}\n", joints, i, from, i);
+    }
+    return text_of(a,
+                   "cotree: 1\ngravity: [0, 0, -g]\nparameters: {%s}\nbodies:\n%sjoints:\n%s",
+                   parameters, bodies, joints);
+}
+
+// Goals of the feasibility study for such an arm: 514 and 441 for M and Q, 600 and 506 with the solution, 744 and 578
+// by articulated bodies, 6 divisions and 10 functions.
+static void six_axis_arm_needs_no_more_than_its_goals(void **state)
+{
+    (void)state;
+    static const struct {
+        enum ct_formulation formulation;
+        long multiplications, additions;
+    } most[] = {{CT_FORMULATION_COMPOSITE, 600, 506}, {CT_FORMULATION_ARTICULATED, 744, 578}};
+    struct system s;
+    struct variant v;
+    struct ct_arena *a = ct_arena_create();
+    system_open_text(&s, "arm", arm_text(a));
+    for (size_t i = 0; i < COUNT(most); i++) {
+        const struct ct_formulate_options o
+            = {.tree = CT_TREE_AUTO, .with_solution = true, .formulation = most[i].formulation};
+        variant_open(&s, &o, &v);
+        const struct ct_tape_counts c = ct_ex_count(v.arena, v.e.x, v.e.solution, v.e.nu);
+        print_message("%ld/%ld/%ld/%ld\n", c.multiplications, c.additions, c.divisions,
+                      c.functions);
+        assert_in_range(c.multiplications, 1, most[i].multiplications);
+        assert_in_range(c.additions, 1, most[i].additions);
+        assert_in_range(c.divisions, 1, 6);
+        assert_int_equal(c.functions, 10);
+        variant_close(&v);
+    }
+    const struct ct_formulate_options choice = {.tree = CT_TREE_AUTO, .with_solution = true};
+    variant_open(&s, &choice, &v);
+    assert_int_equal(v.e.formulation, CT_FORMULATION_COMPOSITE);
+    ct_ex *all = CT_NEWN(v.arena, ct_ex, 42);
+    struct ct_build *b = v.e.build;
+    ct_composite_derive(b, ct_members_derive(b), b->effort, all, all + 36);
+    const struct ct_tape_counts c = ct_ex_count(v.arena, v.e.x, all, 42);
+    print_message("M, Q: %ld/%ld\n", c.multiplications, c.additions);
+    assert_in_range(c.multiplications, 1, 514);
+    assert_in_range(c.additions, 1, 441);
+    variant_close(&v);
+    system_close(&s);
+    ct_arena_destroy(a);
+}
+
+static const char *chain_text(struct ct_arena *a, int n)
+{
+    const char *bodies = "", *joints = "";
+    for (int i = 1; i <= n; i++) {
+        const char *from = i == 1 ? "ground" : text_of(a, "b%d.end", i - 1);
+        bodies = text_of(a,
+                         "%s  b%d: {mass: 1.%d, com: [0.5, 0.01, 0.02], inertia: [0.1, 0.2, "
+                         "0.25], points: {end: [1, 0, 0]}}\n",
+                         bodies, i, i);
+        joints
+            = text_of(a, "%s  j%d: {type: spherical, from: %s, to: b%d}\n", joints, i, from, i);
+    }
+    return text_of(a, "cotree: 1\ngravity: [0, 0, -9.81]\nbodies:\n%sjoints:\n%s", bodies,
+                   joints);
+}
+
+static long operations_of_chain(struct ct_arena *a, int n)
+{
+    struct system s;
+    struct ct_equations e;
+    struct ct_tree_report report;
+    const struct ct_formulate_options o = {.tree = CT_TREE_AUTO, .with_solution = true};
+    system_open_text(&s, "chain", chain_text(a, n));
+    assert_true(ct_formulate(&s.ctx, s.ctx.model, &s.model, &o, &e, &report));
+    assert_int_equal(e.formulation, CT_FORMULATION_ARTICULATED);
+    assert_false(e.has_dynamics); // a mass matrix would have n^2 entries
+    const struct ct_tape_counts c = ct_ex_count(s.ctx.scratch, e.x, e.solution, e.nu);
+    system_close(&s);
+    return c.multiplications + c.additions + c.divisions;
+}
+
+static void cost_of_a_long_chain_is_linear(void **state)
+{
+    (void)state;
+    struct ct_arena *a = ct_arena_create();
+    const long n20 = operations_of_chain(a, 20), n40 = operations_of_chain(a, 40),
+               n80 = operations_of_chain(a, 80);
+    print_message("20: %ld, 40: %ld, 80: %ld\n", n20, n40, n80);
+    assert_int_equal(n80 - n40, 2 * (n40 - n20));
+    // of a recursion with every vector and matrix full; the feasibility study has 540 a link
+    assert_in_range((n80 - n40) / 40, 1, 540);
+    ct_arena_destroy(a);
+}
+
 // ---- choices ------------------------------------------------------------------------------------------------
 
 static void chosen_trees_give_few_coordinates(void **state)
@@ -230,6 +345,8 @@ int main(void)
         cmocka_unit_test(four_bar_needs_no_more_than_the_table_says),
         cmocka_unit_test(andrews_mechanism_needs_no_more_than_the_table_says),
         cmocka_unit_test(stewart_platform_needs_no_more_than_the_table_says),
+        cmocka_unit_test(six_axis_arm_needs_no_more_than_its_goals),
+        cmocka_unit_test(cost_of_a_long_chain_is_linear),
         cmocka_unit_test(chosen_trees_give_few_coordinates),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -216,7 +216,7 @@ static struct ct_solves run_for(const char *file, const struct ct_formulate_opti
     struct ct_run *run = ct_run_create(&v.ctx, v.arena, &s.model, &v.e, &s.start);
     assert_non_null(run);
     assert_true(ct_run_simulate(run, &options, &report));
-    assert_true(report.solves.fixed > report.solves.pivoted);
+    assert_true(report.solves.fixed > 0);
     assert_true(report.energy_drift < 1e-8);
     variant_close(&v);
     system_close(&s);
@@ -230,9 +230,10 @@ static void runs_refine_and_make_other_forms(void **state)
     (void)state;
     const struct ct_formulate_options joints = {.tree = CT_TREE_JOINTS, .with_energy = true},
                                       bodies = {.tree = CT_TREE_ABSOLUTE, .with_energy = true};
-    assert_true(run_for("systems/n_four_bar/model.yaml", &joints, 2).reordered > 0);
-    const struct ct_solves s
-        = run_for("systems/four_bar_near_singular/model.yaml", &bodies, 1.5);
+    struct ct_solves s = run_for("systems/n_four_bar/model.yaml", &joints, 2);
+    assert_true(s.reordered > 0);
+    assert_true(s.fixed > s.pivoted);
+    s = run_for("systems/four_bar_near_singular/model.yaml", &bodies, 1.5);
     assert_true(s.refined > 0);
     assert_true(s.reordered > 0);
 }

@@ -53,10 +53,13 @@ static void values_follow_the_run(void **state)
     assert_int_equal(ct_system_column_count(sys), 2);
     assert_string_equal(ct_system_column(sys, 0), "pivot.q");
     assert_null(ct_system_column(sys, 2));
-    struct ct_sim *sim = ct_sim_create(ctx, sys, NULL);
+    struct ct_sim *sim = ct_sim_create(ctx, sys, &(struct ct_sim_options){.verify = true});
     assert_non_null(sim);
     assert_true(ct_sim_value(sim, "pivot.q") == 1);
+    assert_true(isnan(ct_sim_error(sim, "pivot.q")));
     assert_true(ct_sim_run(ctx, sim, NULL));
+    assert_true(ct_sim_error(sim, "pivot.q") > 0 && ct_sim_error(sim, "pivot.q") < 1e-7);
+    assert_true(isnan(ct_sim_error(sim, "nothing")));
     assert_true(ct_sim_time(sim) == 1);
     assert_true(ct_sim_value(sim, "pivot.q") < 0);
     assert_true(isnan(ct_sim_value(sim, "nothing")));

@@ -1,0 +1,41 @@
+// Beams with other elements and another formulation than the file's.
+#include "base/names.h"
+#include "component/model.h"
+
+#include <string.h>
+
+static const char *const formulations[] = {"auto", "linear", "foreshortening", "force-only",
+                                           "stretch-linear"}; // by ct_beam_formulation
+
+bool ct_model_change_beams(struct ct_ctx *ctx, struct ct_model *m, long elements,
+                           const char *formulation)
+{
+    size_t which = 0;
+    while (formulation && which < COUNT(formulations)
+           && strcmp(formulations[which], formulation) != 0)
+        which++;
+    if (which == COUNT(formulations))
+        return ct_error(
+            ctx, (struct ct_mark){0}, CT_E_USAGE,
+            "there is no formulation '%s' of beams; there are %s, %s, %s, %s and %s",
+            formulation, formulations[0], formulations[1], formulations[2], formulations[3],
+            formulations[4]);
+    for (size_t i = 1; i < m->nbody; i++) {
+        if (!m->body[i].beam)
+            continue;
+        struct ct_beam *beam = CT_NEW(ctx->model, struct ct_beam);
+        *beam = *m->body[i].beam;
+        if (formulation)
+            beam->formulation = (enum ct_beam_formulation)which;
+        if (elements > 0) {
+            ct_ex *end = CT_NEWN(ctx->model, ct_ex, elements);
+            for (long k = 0; k < elements; k++)
+                end[k] = ct_ex_scale(m->x, (double)(k + 1) / (double)elements, beam->length);
+            end[elements - 1] = beam->length; // without the rounding of the last one
+            beam->end = end;
+            beam->nelement = (int)elements;
+        }
+        m->body[i].beam = beam;
+    }
+    return true;
+}

@@ -1,0 +1,340 @@
+// See quad.h. Extrapolation of the modified midpoint rule with 2, 4, 6, ... parts of a step, as many as the tolerance
+// wants: Hairer, Norsett and Wanner (1993), II.9, key hairer1993.
+#include "solve/quad.h"
+
+#ifdef CT_HAVE_QUADMATH
+
+#include <math.h>
+#include <quadmath.h>
+#include <string.h>
+
+__extension__ typedef __float128 quad;
+
+enum { COLUMNS = 14 }; // of the extrapolation: order 28 at most
+
+// ---- evaluation -----------------------------------------------------------------------------------------
+
+static quad sign_of(quad a)
+{
+    return (a > 0) - (a < 0);
+}
+
+static quad apply(uint32_t op, quad a, quad b, quad c)
+{
+    switch (op) {
+    case CT_OP_ADD:
+        return a + b;
+    case CT_OP_SUB:
+        return a - b;
+    case CT_OP_MUL:
+        return a * b;
+    case CT_OP_DIV:
+        return a / b;
+    case CT_OP_NEG:
+        return -a;
+    case CT_OP_POW:
+        return powq(a, b);
+    case CT_OP_SQRT:
+        return sqrtq(a);
+    case CT_OP_SIN:
+    case CT_OP_ANGLE_SIN:
+        return sinq(a);
+    case CT_OP_COS:
+    case CT_OP_ANGLE_COS:
+        return cosq(a);
+    case CT_OP_TAN:
+        return tanq(a);
+    case CT_OP_ASIN:
+        return asinq(a);
+    case CT_OP_ACOS:
+        return acosq(a);
+    case CT_OP_ATAN:
+        return atanq(a);
+    case CT_OP_ATAN2:
+        return atan2q(a, b);
+    case CT_OP_SINH:
+        return sinhq(a);
+    case CT_OP_COSH:
+        return coshq(a);
+    case CT_OP_TANH:
+        return tanhq(a);
+    case CT_OP_EXP:
+        return expq(a);
+    case CT_OP_LOG:
+        return logq(a);
+    case CT_OP_ABS:
+        return fabsq(a);
+    case CT_OP_SIGN:
+        return sign_of(a);
+    case CT_OP_MIN:
+        return a < b ? a : b;
+    case CT_OP_MAX:
+        return a > b ? a : b;
+    case CT_OP_LT:
+        return a < b;
+    case CT_OP_LE:
+        return a <= b;
+    case CT_OP_GT:
+        return a > b;
+    case CT_OP_GE:
+        return a >= b;
+    case CT_OP_EQ:
+        return a == b;
+    case CT_OP_IF:
+        return a != 0 ? b : c;
+    case CT_OP_FMA:
+        return a * b + c;
+    case CT_OP_FMS:
+        return a * b - c;
+    case CT_OP_FNMA:
+        return c - a * b;
+    default:
+        return nanq(""); // tables are not offered
+    }
+}
+
+// A listing with its values.
+struct program {
+    const struct ct_listing *l;
+    quad *value; // (l->nvalue)
+};
+
+static struct program load(struct ct_arena *a, const struct ct_program *p)
+{
+    struct program o = {p->listing, NULL};
+    if (!p->nout)
+        return o;
+    o.value = CT_NEWN(a, quad, o.l->nvalue + 1);
+    for (size_t v = 0; v < o.l->nvalue; v++) {
+        double number;
+        if (o.l->is_leaf[v] && ct_ex_is_const(o.l->x, (ct_ex){o.l->node[v]}, &number))
+            o.value[v] = number;
+    }
+    return o;
+}
+
+// out (nout) at the input.
+static void evaluate(const struct program *p, const quad *input, quad *out)
+{
+    const struct ct_listing *l = p->l;
+    for (size_t v = 0; v < l->nvalue; v++)
+        if (l->is_leaf[v] && l->input[v] != CT_VALUE_NONE)
+            p->value[v] = input[l->input[v]];
+    for (size_t k = 0; k < l->nins; k++) {
+        const struct ct_instruction *i = &l->ins[k];
+        quad arg[3] = {0, 0, 0};
+        for (uint32_t j = 0; j < i->narg; j++)
+            arg[j] = p->value[i->arg[j]];
+        if (i->op == CT_OP_SINCOS || i->op == CT_OP_ANGLE_SINCOS)
+            sincosq(arg[0], &p->value[i->res[0]], &p->value[i->res[1]]);
+        else
+            p->value[i->res[0]] = apply(i->op, arg[0], arg[1], arg[2]);
+    }
+    for (size_t k = 0; k < l->nout; k++)
+        out[k] = p->value[l->out[k]];
+}
+
+// ---- the system -------------------------------------------------------------------------------------------
+
+struct run {
+    const struct ct_machine *m;
+    size_t ny;
+    struct program solved, power, result, memory;
+    quad *input, *out;                    // of the machine's layout; of the largest program
+    quad *y, *dy, *end, *before, *at, *f; // (ny) each
+    quad *table[COLUMNS];                 // a row of the extrapolation  (ny) each
+};
+
+static void set(struct run *r, quad t, const quad *y)
+{
+    const struct ct_machine *m = r->m;
+    r->input[0] = t;
+    for (size_t i = 0; i < m->nq + m->nu; i++)
+        r->input[m->at_q + i] = y[i];
+    r->input[m->at_work] = y[r->ny - 1];
+    evaluate(&r->solved, r->input, r->out); // u', q'
+    for (size_t i = 0; i < m->nu; i++)
+        r->input[m->at_a + i] = r->out[i];
+}
+
+static void rhs(struct run *r, quad t, const quad *y, quad *dy)
+{
+    const struct ct_machine *m = r->m;
+    set(r, t, y);
+    for (size_t i = 0; i < m->nq; i++)
+        dy[i] = r->out[m->nu + i];
+    for (size_t i = 0; i < m->nu; i++)
+        dy[m->nq + i] = r->out[i];
+    dy[r->ny - 1] = 0;
+    if (r->power.value) {
+        evaluate(&r->power, r->input, r->out);
+        dy[r->ny - 1] = r->out[0];
+    }
+}
+
+static struct run create(struct ct_arena *a, const struct ct_machine *m, const double *y)
+{
+    struct run r = {.m = m, .ny = m->nq + m->nu + 1};
+    const size_t most = m->solved.nout + m->result.nout + m->memory.nout + 1;
+    r.solved = load(a, &m->solved);
+    r.power = load(a, &m->power);
+    r.result = load(a, &m->result);
+    r.memory = load(a, &m->memory);
+    r.input = CT_NEWN(a, quad, m->ninput);
+    r.out = CT_NEWN(a, quad, most);
+    quad **const vectors[] = {&r.y, &r.dy, &r.end, &r.before, &r.at, &r.f};
+    for (size_t i = 0; i < COUNT(vectors); i++)
+        *vectors[i] = CT_NEWN(a, quad, r.ny);
+    for (int k = 0; k < COLUMNS; k++)
+        r.table[k] = CT_NEWN(a, quad, r.ny);
+    for (size_t i = 0; i < m->ninput; i++)
+        r.input[i] = m->input[i];
+    for (size_t i = 0; i < r.ny; i++)
+        r.y[i] = y[i];
+    return r;
+}
+
+// ---- a step --------------------------------------------------------------------------------------------------
+
+// end = the state at t + h by the midpoint rule in n parts.
+static void midpoint(struct run *r, quad t, quad h, int n)
+{
+    const size_t bytes = r->ny * sizeof *r->y;
+    const quad part = h / n;
+    memcpy(r->before, r->y, bytes);
+    for (size_t i = 0; i < r->ny; i++)
+        r->at[i] = r->y[i] + part * r->dy[i];
+    for (int k = 1; k < n; k++) {
+        rhs(r, t + k * part, r->at, r->f);
+        for (size_t i = 0; i < r->ny; i++) {
+            const quad next = r->before[i] + 2 * part * r->f[i];
+            r->before[i] = r->at[i];
+            r->at[i] = next;
+        }
+    }
+    memcpy(r->end, r->at, bytes);
+}
+
+// The row of n = 2 (k + 1) parts from the row before; the error: the largest difference of its last two entries.
+static double extrapolate(struct run *r, int k)
+{
+    double error = 0;
+    for (size_t i = 0; i < r->ny; i++) {
+        quad better = r->end[i];
+        for (int j = 1; j <= k; j++) { // table[j - 1]: T of the row before
+            const quad ratio = (quad)(k + 1) / (k + 1 - j);
+            const quad old = r->table[j - 1][i];
+            r->table[j - 1][i] = better;
+            better += (better - old) / (ratio * ratio - 1);
+        }
+        r->table[k][i] = better;
+        const quad size = fmaxq(1, fabsq(r->y[i]));
+        const quad change = k > 0 ? better - r->table[k - 1][i] : size;
+        error = fmax(error, (double)(fabsq(change) / size));
+    }
+    return isfinite(error) ? error : INFINITY;
+}
+
+// Memories follow the motion, as ct_memory_follow has them.
+static void follow(struct run *r, quad t)
+{
+    const struct ct_machine *m = r->m;
+    quad *memory = r->input + m->at_memory;
+    if (!r->memory.value)
+        return;
+    set(r, t, r->y);
+    evaluate(&r->memory, r->input, r->out);
+    for (size_t i = 0; i < m->e->nmemory; i++)
+        if (m->e->memory[i].kind != CT_MEMORY_OFFSET)
+            memory[i] = r->out[i];
+}
+
+// True: y has gone on by h. *factor: what the next step should be.
+static bool step(struct run *r, quad t, quad h, double tolerance, double *factor)
+{
+    const int aim = 10; // columns that a step should need
+    rhs(r, t, r->y, r->dy);
+    for (int k = 0; k < COLUMNS; k++) {
+        midpoint(r, t, h, 2 * (k + 1));
+        const double error = extrapolate(r, k);
+        if (error > tolerance)
+            continue;
+        memcpy(r->y, r->table[k], r->ny * sizeof *r->y);
+        *factor = k < aim ? 1.3 : k > aim ? 0.8 : 1;
+        return true;
+    }
+    *factor = 0.4;
+    return false;
+}
+
+// ---- the run ---------------------------------------------------------------------------------------------------
+
+bool ct_quad_can_run(const struct ct_machine *m)
+{
+    const struct ct_equations *e = m->e;
+    for (size_t i = 0; i < e->nmemory; i++)
+        if (e->memory[i].kind == CT_MEMORY_QUATERNION) // steps turn too far to follow its sign
+            return false;
+    return m->solved.nout && !e->nrow && !e->nmode && !e->x->ntable;
+}
+
+static void keep_results(struct run *r, quad t, double *out)
+{
+    set(r, t, r->y);
+    evaluate(&r->result, r->input, r->out);
+    for (size_t i = 0; i < r->m->result.nout; i++)
+        out[i] = (double)r->out[i];
+}
+
+bool ct_quad_run(struct ct_arena *a, const struct ct_machine *m, const double *y,
+                 double duration, size_t nsample, double tolerance, bool (*go_on)(void *user),
+                 void *user, double *out)
+{
+    const double least = 1e-12; // of the duration: steps are not shorter
+    const double stretch = 1.1;
+    struct run r = create(a, m, y);
+    quad t = 0, h = (quad)duration / 1000;
+    if (m->result.nout)
+        keep_results(&r, t, out);
+    for (size_t k = 1; k < nsample; k++) {
+        // the time of the sample as runs in double precision have it
+        const quad sample
+            = k + 1 == nsample ? duration : duration * (double)k / (double)(nsample - 1);
+        while (t < sample) {
+            const bool is_last = h * stretch >= sample - t; // no crumbs
+            const quad now = is_last ? sample - t : h;
+            double factor;
+            if (!go_on(user) || (!is_last && now < least * duration))
+                return false;
+            if (step(&r, t, now, tolerance, &factor)) {
+                t = is_last ? sample : t + now;
+                follow(&r, t);
+                h = fmaxq(is_last ? h : 0, factor * now);
+            } else {
+                h = factor * now;
+            }
+        }
+        if (m->result.nout)
+            keep_results(&r, t, out + k * m->result.nout);
+    }
+    return true;
+}
+
+#else
+
+bool ct_quad_can_run(const struct ct_machine *m)
+{
+    (void)m;
+    return false;
+}
+
+bool ct_quad_run(struct ct_arena *a, const struct ct_machine *m, const double *y,
+                 double duration, size_t nsample, double tolerance, bool (*go_on)(void *user),
+                 void *user, double *out)
+{
+    (void)a, (void)m, (void)y, (void)duration, (void)nsample, (void)tolerance, (void)go_on;
+    (void)user, (void)out;
+    return false;
+}
+
+#endif
