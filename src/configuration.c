@@ -133,7 +133,8 @@ static bool find_start(struct ct_ctx *own, struct ct_system *sys, struct ct_conf
 {
     c->e = c->equations;
     c->l = ct_configuration_start(own, sys, c->model, c->e, false);
-    return c->l && ct_linear_move(c->l);
+    c->is_large = c->l && c->may_be_large && c->l->nu > CT_MOST_DENSE;
+    return c->l && (c->is_large || ct_linear_move(c->l));
 }
 
 static bool find_time(struct ct_ctx *own, struct ct_system *sys, const struct ct_sim_options *o,

@@ -3,10 +3,12 @@
 #define CT_CONFIGURATION_H
 
 #include "analysis/equilibrium.h"
+#include "analysis/large.h"
 #include "api.h"
 
 struct ct_configuration {
     const char *about; // "initial", "equilibrium" or a time [s]
+    bool may_be_large; // a start with many speeds is left without matrices: is_large
     bool hold_drivers; // at an equilibrium motions stand still, even steady ones
     /// A variant and its equations on the trees of the system; NULL: those of the system itself.
     const struct ct_model *model;
@@ -15,7 +17,7 @@ struct ct_configuration {
     const struct ct_equations *e;
     struct ct_linear *l; // linearised there
     struct ct_equilibrium_result equilibrium;
-    bool is_equilibrium, are_drivers_held, are_drivers_steady;
+    bool is_large, is_equilibrium, are_drivers_held, are_drivers_steady;
     struct ct_sim *sim; // that led to a time
     struct ct_equations held;
 };

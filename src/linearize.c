@@ -215,6 +215,13 @@ static void name_states(struct ct_linearization *s, const struct ct_state_space 
     }
 }
 
+// No negative zeros.
+static void clear_signs(double *A, size_t n)
+{
+    for (size_t i = 0; i < n; i++)
+        A[i] += 0.0;
+}
+
 static void restore_input(const struct ct_linear *l)
 {
     struct ct_machine *m = l->m;
@@ -260,6 +267,10 @@ static bool fill(struct ct_linearization *s)
                         by_input = full_motion(s, y, w, dw, ni);
     add_outputs(s, s->C, &h, &by_state, full_multipliers(s, &by_state, NULL, n), n);
     add_outputs(s, s->D, &h, &by_input, full_multipliers(s, &by_input, r.p, ni), ni);
+    clear_signs(s->A, n * n);
+    clear_signs(s->B, n * ni);
+    clear_signs(s->C, no * n);
+    clear_signs(s->D, no * ni);
     name_states(s, &x);
     ct_program_run(&l->m->result, l->m->input);
     s->y0 = matrix(s, no, 1);

@@ -26,15 +26,35 @@ struct ct_modes {
 
 // ---- finding them -------------------------------------------------------------------------------------
 
+// Sparse where that is possible, else as others.
+static bool solve(struct ct_modes *s, size_t count)
+{
+    struct ct_arena *a = s->own.model;
+    bool applies = false;
+    if (s->at.is_large
+        && !ct_large_modes(&s->own, a, s->at.l, count, &s->mode, &s->all, &s->how, &applies))
+        return false;
+    if (applies)
+        return true;
+    if (s->at.is_large)
+        ct_warning(&s->own, (struct ct_mark){.file = s->system->model.file}, 0,
+                   "%d speeds with dampers, moving drivers or redundant constraints: dense "
+                   "matrices, which takes long",
+                   s->at.l->nu);
+    if (s->at.is_large && !ct_linear_move(s->at.l))
+        return false;
+    return ct_modes_solve(&s->own, a, s->at.l, &s->mode, &s->all, &s->how);
+}
+
 static bool find(struct ct_modes *s, long count)
 {
     if (count < 0)
         return ct_error(&s->own, (struct ct_mark){0}, CT_E_USAGE,
                         "the number of modes is %ld; it must be greater than 0", count);
-    if (!ct_configuration_find(&s->own, s->system, &s->run, &s->at)
-        || !ct_modes_solve(&s->own, s->own.model, s->at.l, &s->mode, &s->all, &s->how))
-        return false;
     const size_t wanted = count ? (size_t)count : STANDARD_COUNT;
+    s->at.may_be_large = true;
+    if (!ct_configuration_find(&s->own, s->system, &s->run, &s->at) || !solve(s, wanted))
+        return false;
     s->n = s->all < wanted ? s->all : wanted;
     const int nu = s->at.l->nu;
     s->coordinate = CT_NEWN(s->own.model, const char *, nu + 1);
@@ -200,8 +220,9 @@ bool ct_modes_write(struct ct_ctx *ctx, const struct ct_modes *modes, const char
 void ct_modes_print_summary(const struct ct_modes *s, FILE *out)
 {
     ct_configuration_print(&s->at, out);
-    fprintf(out, "freedoms      %d, %s eigenvalue problem; %zu of %zu modes\n", s->at.l->nfree,
-            s->how, s->n, s->all);
+    fprintf(out, "%-14s%d, %s eigenvalue problem; %zu of %zu modes\n",
+            s->at.l->nfree ? "freedoms" : "speeds",
+            s->at.l->nfree ? s->at.l->nfree : s->at.l->nu, s->how, s->n, s->all);
 }
 
 // ---- the picture -------------------------------------------------------------------------------------------

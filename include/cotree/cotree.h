@@ -59,17 +59,19 @@ CT_API const char *ct_did_you_mean(const char *name, const char *const *names, s
 
 struct ct_system;
 
+/** Columns beside the model's outputs. */
+enum ct_columns_more {
+    CT_COLUMNS_OF_MODEL = 0,
+    CT_COLUMNS_COORDINATES, /* if it lists none: coordinates, speeds and accelerations of all joints */
+    CT_COLUMNS_EFFORTS /* efforts of motions, forces and torques of all joints */
+};
+
 struct ct_system_options {
     const char *const *set; /* "NAME=VALUE": values that replace those of parameters */
     size_t nset;
     const char *tree; /* "auto", "joints", "absolute", or a YAML file that names the branches */
     bool keep_all;    /* leave nothing out: planar mechanisms keep their spatial rows */
-    /** Columns beside the model's outputs. */
-    enum ct_columns_more {
-        CT_COLUMNS_OF_MODEL = 0,
-        CT_COLUMNS_COORDINATES, /* if it lists none: coordinates, speeds and accelerations of all joints */
-        CT_COLUMNS_EFFORTS /* efforts of motions, forces and torques of all joints */
-    } columns;
+    enum ct_columns_more columns;
     long beam_elements; /* > 0: of every beam, equally long, whatever the file says */
     const char *
         beam_formulation; /* of every beam: "linear", "foreshortening" ...; NULL: as in the file */

@@ -133,29 +133,44 @@ static void solve_symmetric(struct ct_arena *a, const double *Mr, const double *
     double *V = CT_NEWN(a, double, n *n + 1);
     ct_matrix_multiply(V, s->V, H, n, k, k);
     s->V = V;
-    // below the error of the eigenvalues themselves there is no telling from zero
-    const double zero = rounding * n * fmax(fabs(s->w2[k ? k - 1 : 0]), fabs(s->w2[0]));
-    for (int j = 0; j < k; j++)
+}
+
+// Below the error of the eigenvalues themselves there is no telling from zero.
+static void clear_zeros(struct basis *s)
+{
+    const double zero
+        = rounding * s->n * fmax(fabs(s->w2[s->k ? s->k - 1 : 0]), fabs(s->w2[0]));
+    for (int j = 0; j < s->k; j++)
         if (fabs(s->w2[j]) <= zero)
             s->w2[j] = 0;
 }
 
+// L (n x n, out) = Cholesky factor of the symmetric part of K; false unless K is positive beyond its rounding.
+static bool factor_stiffness(double *L, const double *K, int n)
+{
+    memcpy(L, K, (size_t)n * (size_t)n * sizeof *L);
+    symmetrise(L, n);
+    if (!ct_cholesky(L, n, n))
+        return false;
+    for (int i = 0; i < n; i++)
+        if (!(L[i + n * i] * L[i + n * i] > rounding * n * K[i + n * i]))
+            return false;
+    return true;
+}
+
 // Slow modes again, from M y = K y / w2: their eigenvalues are the largest there, and rounding does not measure itself by
-// the fastest. For a positive stiffness and the lower half, counted in octaves. M, K (n x n) symmetric.
-static void sharpen_slow(struct ct_arena *a, const double *M, const double *K, struct basis *s)
+// the fastest. The lower half, counted in octaves. L: factor of K; M (n x n).
+static void sharpen_slow(struct ct_arena *a, const double *M, const double *L, struct basis *s)
 {
     const int n = s->n;
-    double *L = CT_NEWN(a, double, n *n + 1), *H = CT_NEWN(a, double, n *n + 1),
-           *value = CT_NEWN(a, double, n + 1),
+    double *H = CT_NEWN(a, double, n *n + 1), *value = CT_NEWN(a, double, n + 1),
            *work = CT_NEWN(a, double, ct_symmetric_eigenvalues_work(n));
-    memcpy(L, K, (size_t)n * (size_t)n * sizeof *L);
     memcpy(H, M, (size_t)n * (size_t)n * sizeof *H);
-    if (!s->k || !(s->w2[0] > 0) || !ct_cholesky(L, n, n))
-        return;
+    symmetrise(H, n);
     ct_cholesky_congruence(H, L, n, n);
-    if (!ct_symmetric_eigen(value, H, n, n, work))
+    if (!s->k || !ct_symmetric_eigen(value, H, n, n, work))
         return;
-    const double middle = sqrt(s->w2[0]) * sqrt(s->w2[s->k - 1]);
+    const double middle = sqrt(1 / value[n - 1]) * sqrt(s->w2[s->k - 1]);
     for (int j = 0; j < s->k && s->w2[j] < middle; j++) {
         const int from = n - 1 - j; // of the ascending 1/w2
         double *y = s->V + (size_t)n * (size_t)j;
@@ -176,6 +191,11 @@ double ct_stiffness_least(struct ct_arena *a, const struct ct_linear *l, double 
     solve_symmetric(a, l->Mr, l->Kr, l->nfree, &s);
     if (!s.k)
         return INFINITY;
+    double *L = CT_NEWN(a, double, (size_t)s.n *(size_t)s.n + 1);
+    if (factor_stiffness(L, l->Kr, s.n))
+        sharpen_slow(a, l->Mr, L, &s);
+    else
+        clear_zeros(&s);
     memcpy(y, s.V, (size_t)s.n * sizeof *y);
     return s.w2[0];
 }
@@ -231,17 +251,34 @@ static int by_size(const void *context, const void *x, const void *y)
     return sa != sb ? (sa > sb) - (sa < sb) : (a->re < b->re) - (a->re > b->re);
 }
 
+void ct_modes_sort(struct ct_arena *a, struct ct_motion_mode *mode, size_t nmode)
+{
+    ct_sort(a, mode, nmode, sizeof *mode, by_size, NULL);
+}
+
+void ct_mode_add_undamped(struct ct_motion_mode *mode, size_t *nmode, double w2, double *shape,
+                          int nu)
+{
+    const double w = sqrt(fabs(w2));
+    normalise(shape, nu);
+    if (w2 >= 0) {
+        mode[(*nmode)++]
+            = (struct ct_motion_mode){.im = w, .is_rigid = w2 == 0, .shape = shape};
+        return;
+    }
+    // an unstable pair: exp(w t) and exp(-w t)
+    mode[(*nmode)++] = (struct ct_motion_mode){.re = w, .shape = shape};
+    mode[(*nmode)++] = (struct ct_motion_mode){.re = -w, .shape = shape};
+}
+
 static void add_symmetric(struct list *list, const struct basis *s)
 {
+    const int nu = list->l->nu;
+    list->mode = CT_NEWN(list->a, struct ct_motion_mode, 2 * s->k + 1);
     for (int j = 0; j < s->k; j++) {
-        const double w2 = s->w2[j], w = sqrt(fabs(w2));
-        const double *y = s->V + (size_t)s->n * (size_t)j;
-        if (w2 >= 0) {
-            add_mode(list, 0, w, y, NULL);
-        } else { // an unstable pair: exp(w t) and exp(-w t)
-            add_mode(list, w, 0, y, NULL);
-            add_mode(list, -w, 0, y, NULL);
-        }
+        double *shape = CT_NEWN(list->a, double, 2 * nu + 1);
+        ct_linear_expand(list->l, shape, s->V + (size_t)s->n * (size_t)j);
+        ct_mode_add_undamped(list->mode, &list->n, s->w2[j], shape, nu);
     }
 }
 
@@ -355,17 +392,17 @@ bool ct_modes_solve(struct ct_ctx *ctx, struct ct_arena *a, const struct ct_line
         solve_symmetric(a, l->Mr, l->Kr, f, &s);
         const double rate = s.k ? sqrt(fmax(fabs(s.w2[s.k - 1]), fabs(s.w2[0]))) : 0;
         const bool has_speeds = largest(l->Cr, ff) > DBL_EPSILON * rate * largest(l->Mr, ff);
+        double *L = CT_NEWN(a, double, ff + 1);
+        const bool is_positive = factor_stiffness(L, l->Kr, f);
         int rigid = 0;
+        if (!is_positive)
+            clear_zeros(&s);
         for (int j = 0; j < s.k; j++)
             rigid += s.w2[j] == 0;
         if (!has_speeds && !l->is_moving && s.is_held && is_symmetric(l->Kr, f)) {
             *how = "symmetric";
-            double *M = CT_NEWN(a, double, ff + 1), *K = CT_NEWN(a, double, ff + 1);
-            memcpy(M, l->Mr, ff * sizeof *M);
-            memcpy(K, l->Kr, ff * sizeof *K);
-            symmetrise(M, f);
-            symmetrise(K, f);
-            sharpen_slow(a, M, K, &s);
+            if (is_positive)
+                sharpen_slow(a, l->Mr, L, &s);
             add_symmetric(&list, &s);
         } else if (!s.n0) {
             *how = "general";
@@ -378,7 +415,7 @@ bool ct_modes_solve(struct ct_ctx *ctx, struct ct_arena *a, const struct ct_line
     if (!ok && !ctx->nerror)
         ct_error(ctx, (struct ct_mark){.file = l->m->model->file}, CT_E_SINGULAR,
                  "the eigenvalues cannot be found");
-    ct_sort(a, list.mode, list.n, sizeof *list.mode, by_size, NULL);
+    ct_modes_sort(a, list.mode, list.n);
     *mode = list.mode;
     *nmode = list.n;
     return ok;

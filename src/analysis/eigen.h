@@ -17,6 +17,13 @@ struct ct_motion_mode {
 bool ct_modes_solve(struct ct_ctx *ctx, struct ct_arena *a, const struct ct_linear *l,
                     struct ct_motion_mode **mode, size_t *nmode, const char **how);
 
+/// The modes of an eigenvalue w2 [1/s^2] of K y = w2 M y with the shape in the real part of `shape` (2 nu): one, or of a
+/// negative w2 two. mode has room for them.
+void ct_mode_add_undamped(struct ct_motion_mode *mode, size_t *nmode, double w2, double *shape,
+                          int nu);
+/// In the order of ct_modes_solve.
+void ct_modes_sort(struct ct_arena *a, struct ct_motion_mode *mode, size_t nmode);
+
 /// The smallest eigenvalue w2 [1/s^2] of (Kr, Mr), both made symmetric, massless coordinates condensed, and its
 /// shape y (nfree, out). 0 for a rigid-body motion. INFINITY without freedoms that move mass.
 double ct_stiffness_least(struct ct_arena *a, const struct ct_linear *l, double *y);

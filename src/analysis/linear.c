@@ -21,7 +21,7 @@ struct ct_linear *ct_linear_create(struct ct_ctx *ctx, struct ct_arena *arena,
                                    struct ct_machine *m)
 {
     struct ct_linear *l = CT_NEW(arena, struct ct_linear);
-    const size_t n = m->nu + 1, r = m->nrow + 1, k = larger(n, r);
+    const size_t n = m->nu + 1, r = m->nrow + 1;
     *l = (struct ct_linear){.m = m, .ctx = ctx, .arena = arena};
     l->nu = (int)m->nu;
     l->nrow = (int)m->nrow;
@@ -29,28 +29,34 @@ struct ct_linear *ct_linear_create(struct ct_ctx *ctx, struct ct_arena *arena,
     double **const vector[] = {&l->a, &l->a0, &l->force, &l->scale, &l->r};
     for (size_t i = 0; i < COUNT(vector); i++)
         *vector[i] = CT_NEWN(arena, double, n);
+    l->lam = CT_NEWN(arena, double, r);
+    return l;
+}
+
+// Room for matrices, once it is known that they will be full.
+static void reserve(struct ct_linear *l)
+{
+    struct ct_arena *a = l->arena;
+    const size_t n = (size_t)l->nu + 1, r = (size_t)l->nrow + 1, k = larger(n, r);
+    if (l->work)
+        return;
     double **const square[]
         = {&l->M, &l->C, &l->K, &l->Z, &l->X, &l->X2, &l->G, &l->Mr, &l->Cr, &l->Kr};
     for (size_t i = 0; i < COUNT(square); i++)
-        *square[i] = CT_NEWN(arena, double, n *n);
+        *square[i] = CT_NEWN(a, double, n *n);
     double **const rows[] = {&l->J, &l->D, &l->D2};
     for (size_t i = 0; i < COUNT(rows); i++)
-        *rows[i] = CT_NEWN(arena, double, n *r);
-    l->lam = CT_NEWN(arena, double, r);
-    l->row = CT_NEWN(arena, int, r);
-    l->dependent = CT_NEWN(arena, int, k);
-    l->independent = CT_NEWN(arena, int, n);
-    l->Jd = CT_NEWN(arena, double, k *k);
-    l->A = CT_NEWN(arena, double, k *k);
-    l->b = CT_NEWN(arena, double, k *k);
-    l->d = CT_NEWN(arena, double, k);
-    l->iwork = CT_NEWN(arena, int, k);
-    l->pivot = CT_NEWN(arena, int, k);
-    l->column = CT_NEWN(arena, int, k);
+        *rows[i] = CT_NEWN(a, double, n *r);
+    double **const largest[] = {&l->Jd, &l->A, &l->b};
+    for (size_t i = 0; i < COUNT(largest); i++)
+        *largest[i] = CT_NEWN(a, double, k *k);
+    int **const indices[]
+        = {&l->row, &l->dependent, &l->independent, &l->iwork, &l->pivot, &l->column};
+    for (size_t i = 0; i < COUNT(indices); i++)
+        *indices[i] = CT_NEWN(a, int, k);
     const int kk = (int)k;
-    l->work
-        = CT_NEWN(arena, double, larger(ct_lstsq_work(kk, kk), ct_qr_pivot_work(kk, kk)) + k);
-    return l;
+    l->d = CT_NEWN(a, double, k);
+    l->work = CT_NEWN(a, double, larger(ct_lstsq_work(kk, kk), ct_qr_pivot_work(kk, kk)) + k);
 }
 
 static bool is_finite(const double *v, size_t n)
@@ -75,6 +81,7 @@ static double largest(const double *v, size_t n)
 static void shortest(struct ct_linear *l, double *d, const double *r)
 {
     const size_t n = (size_t)l->nu, m = (size_t)l->nrow;
+    reserve(l);
     memcpy(l->A, l->m->J, n * m * sizeof *l->A);
     memset(l->d, 0, larger(n, m) * sizeof *l->d);
     for (size_t i = 0; i < m; i++)
@@ -106,15 +113,17 @@ bool ct_linear_close(struct ct_linear *l)
         if (left <= closed || left >= before / 2)
             break;
         before = left;
-        shortest(l, l->b, m->phi);
-        ct_machine_retract(m, l->y, l->b);
+        shortest(l, l->r, m->phi);
+        ct_machine_retract(m, l->y, l->r);
         enter(l);
     }
     if (!(largest(m->phi, m->nrow) < 1e-9)) // [m] or [rad]: not closed at all
         return false;
-    shortest(l, l->b, m->v);
+    if (largest(m->v, m->nrow) == 0)
+        return true;
+    shortest(l, l->r, m->v);
     for (int k = 0; k < l->nu; k++)
-        l->y[m->nq + (size_t)k] += l->b[k];
+        l->y[m->nq + (size_t)k] += l->r[k];
     enter(l);
     return true;
 }
@@ -364,6 +373,7 @@ static void multipliers(struct ct_linear *l, const double *r)
 static bool begin(struct ct_linear *l)
 {
     struct ct_machine *m = l->m;
+    reserve(l);
     enter(l);
     ct_machine_motion(m);
     ct_machine_constraint(m);

@@ -38,7 +38,8 @@ struct ct_linear {
     int *iwork, *pivot, *column;
 };
 
-/// Workspace for a machine whose equations have a residual. Everything lives in arena.
+/// For a machine whose equations have a residual. Matrices get their room when they are first asked for. Everything
+/// lives in arena.
 struct ct_linear *ct_linear_create(struct ct_ctx *ctx, struct ct_arena *arena,
                                    struct ct_machine *m);
 

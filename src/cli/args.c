@@ -380,7 +380,7 @@ static void print_program_help(FILE *out)
           "Equations of motion of a mechanism from its linear graph, and its motion.\n\n",
           out);
     for (const struct cli_command *const *c = cli_commands; *c; c++)
-        fprintf(out, "  %-11s %s\n", (*c)->name, (*c)->summary);
+        fprintf(out, "  %-12s %s\n", (*c)->name, (*c)->summary);
     fputs("\n  cotree COMMAND --help   the options of a command\n"
           "  cotree --version        the version of the program\n\n"
           "Results go to standard output or to -o FILE, messages to standard error.\n"

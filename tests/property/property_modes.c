@@ -192,6 +192,20 @@ static void ball_joints_and_rods_have_the_same_motions_on_all_trees(void **state
     check("tripod", tripod, false, 1, 20);
 }
 
+static void a_flexible_loop_has_the_same_motions_on_some_trees(void **state)
+{
+    (void)state;
+    struct system s;
+    size_t tried;
+    system_open_file(&s, "systems/slider_crank_flexible/model.yaml");
+    system_no_outputs(&s);
+    const double worst = compare_pairs(&s, false, true, 37, &tried);
+    print_message("flexible slider-crank: %zu pairs, largest difference %.2g\n", tried, worst);
+    assert_true(worst < tolerance);
+    assert_true(tried >= 5);
+    system_close(&s);
+}
+
 static void multipliers_count(void **state)
 {
     (void)state;
@@ -211,6 +225,7 @@ int main(void)
         cmocka_unit_test(a_slider_crank_has_the_same_motions_on_all_pairs_of_trees),
         cmocka_unit_test(redundant_loops_have_the_same_motions_on_all_trees),
         cmocka_unit_test(ball_joints_and_rods_have_the_same_motions_on_all_trees),
+        cmocka_unit_test(a_flexible_loop_has_the_same_motions_on_some_trees),
         cmocka_unit_test(multipliers_count),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -210,6 +210,93 @@ static void shapes_have_names(void **state)
     ct_ctx_destroy(ctx);
 }
 
+static double flapping(const char *speed, const char *plane)
+{
+    static const char text[]
+        = "cotree: 1\n"
+          "parameters: {W: 0}\n"
+          "bodies:\n"
+          "  hub: {inertia: 1}\n"
+          "  beam: {type: beam, length: 1, elements: 6, mass_per_length: 1, E: 1, nu: 0.3, "
+          "area: 1, Iy: 1, Iz: 1,\n"
+          "    formulation: foreshortening, deformation: [%s]}\n"
+          "joints:\n"
+          "  bearing: {type: revolute, from: ground, to: hub, motion: W*t}\n"
+          "  clamp: {type: weld, from: hub, to: beam}\n";
+    char model[sizeof text + 32];
+    struct ct_ctx *ctx = ct_ctx_create();
+    snprintf(model, sizeof model, text, plane);
+    struct ct_system *sys
+        = load_with(ctx, model, &(struct ct_system_options){.set = &speed, .nset = 1});
+    struct ct_modes *modes = checked(ctx, ct_modes_create(ctx, sys, NULL));
+    const double omega = ct_modes_info(modes, 0).omega;
+    ct_modes_destroy(modes);
+    ct_system_destroy(sys);
+    ct_ctx_destroy(ctx);
+    return omega * omega;
+}
+
+static void a_turning_beam_stiffens_by_southwell(void **state)
+{
+    (void)state;
+    // 1.1933 for slow turning and no hub, out of the plane; one less in it
+    CHECK_CLOSE((flapping("W=0.1", "bending-y") - flapping("W=0", "bending-y")) / 0.01, 1.1933,
+                0, 1e-4);
+    CHECK_CLOSE((flapping("W=0.1", "bending-z") - flapping("W=0", "bending-z")) / 0.01, 0.1933,
+                0, 1e-4);
+}
+
+// A row of masses on rails of their own, springs between neighbours, and one to ground if it is held there.
+static char *row_of_masses(int n, bool is_held)
+{
+    const size_t room = 256 * (size_t)n + 512;
+    char *text = malloc(room);
+    assert_non_null(text);
+    size_t at = (size_t)snprintf(text, room, "cotree: 1\nbodies:\n");
+    for (int i = 1; i <= n; i++)
+        at += (size_t)snprintf(text + at, room - at, "  m%d: {mass: 2}\n", i);
+    at += (size_t)snprintf(text + at, room - at, "joints:\n");
+    for (int i = 1; i <= n; i++)
+        at += (size_t)snprintf(
+            text + at, room - at,
+            "  r%d: {type: prismatic, from: ground, to: m%d, initial: {q: %d}}\n", i, i, i);
+    at += (size_t)snprintf(text + at, room - at, "forces:\n");
+    for (int i = is_held ? 0 : 1; i < n; i++) {
+        char from[16];
+        snprintf(from, sizeof from, i ? "m%d" : "ground", i);
+        at += (size_t)snprintf(
+            text + at, room - at,
+            "  s%d: {type: spring, from: %s, to: m%d, stiffness: 800, length: 1}\n", i, from,
+            i + 1);
+    }
+    return text;
+}
+
+// So many that only the lowest are sought, on sparse matrices.
+static void rows_of_many_masses(void **state)
+{
+    (void)state;
+    enum { N = 310, COUNT = 6 };
+    const double pi = 3.14159265358979323846;
+    for (int held = 0; held < 2; held++) {
+        struct ct_ctx *ctx = ct_ctx_create();
+        char *text = row_of_masses(N, held);
+        struct ct_system *sys = load_with(ctx, text, NULL);
+        struct ct_modes *modes = checked(
+            ctx, ct_modes_create(ctx, sys, &(struct ct_modes_options){.count = COUNT}));
+        assert_int_equal(ct_modes_count(modes), COUNT);
+        for (int i = 0; i < COUNT; i++) {
+            const double angle = held ? (2 * i + 1) * pi / (2 * (2 * N + 1)) : i * pi / (2 * N);
+            // the roundings of a stiffness whose slowest mode is a hundred thousandth of the fastest
+            CHECK_CLOSE(ct_modes_info(modes, (size_t)i).omega, 2 * 20 * sin(angle), 1e-9, 1e-9);
+        }
+        ct_modes_destroy(modes);
+        ct_system_destroy(sys);
+        ct_ctx_destroy(ctx);
+        free(text);
+    }
+}
+
 // ---- equilibria ------------------------------------------------------------------------------------------
 
 static struct ct_equilibrium *find_equilibrium(struct ct_ctx *ctx, struct ct_system *sys)
@@ -663,6 +750,8 @@ int main(void)
         cmocka_unit_test(a_sleeping_top_seen_from_the_top),
         cmocka_unit_test(a_motion_is_linearised_at_a_time),
         cmocka_unit_test(shapes_have_names),
+        cmocka_unit_test(a_turning_beam_stiffens_by_southwell),
+        cmocka_unit_test(rows_of_many_masses),
         cmocka_unit_test(pendulums_come_to_hang),
         cmocka_unit_test(an_unstable_equilibrium_is_one),
         cmocka_unit_test(what_nothing_holds_is_named),

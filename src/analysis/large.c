@@ -1,0 +1,372 @@
+// See large.h.
+#include "analysis/large.h"
+#include "numeric/dense.h"
+#include "numeric/sparse.h"
+
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+enum { BLOCK = 4, MOST_BASIS = 400 };
+static const double still
+    = 1e-9; // accelerations beside those of the weights: an equilibrium to rounding
+static const double absent = 1e-12;   // damping against the masses' rates: none
+static const double symmetric = 1e-9; // of K
+static const double found
+    = 1e-9; // residual of a mode: its eigenvalue is right to the square of that
+static const double gone = 1e-10; // of a vector, once the basis is taken off: nothing new
+
+struct large {
+    struct ct_ctx *ctx;
+    struct ct_arena *a;
+    struct ct_linear *l;
+    const struct ct_residual *f;
+    size_t nu, nrow, n;
+    const double *K, *C, *M, *J; // values of the slopes, in the tangent program
+    struct ct_sparse *matrix;
+    double *value, *b, *x; // of the matrix; n each
+    double shift;
+    // Lanczos
+    size_t k, most;     // vectors so far
+    double *V, *MV, *T; // nu x most, nu x most, most x most
+    double *W, *R;      // nu x BLOCK; BLOCK x BLOCK
+};
+
+static double largest(const double *v, size_t n)
+{
+    double max = 0;
+    for (size_t i = 0; i < n; i++)
+        max = fmax(max, fabs(v[i]));
+    return max;
+}
+
+// ---- matrices ---------------------------------------------------------------------------------------------
+
+// y (nu, out) = A x for slopes with their values
+static void apply(double *y, const struct ct_slope *s, size_t n, const double *value,
+                  const double *x, size_t nu)
+{
+    memset(y, 0, nu * sizeof *y);
+    for (size_t i = 0; i < n; i++)
+        y[s[i].row] += value[i] * x[s[i].direction];
+}
+
+static void set_motion(const struct large *g, const double *a, const double *lam)
+{
+    struct ct_machine *m = g->l->m;
+    memcpy(m->input + m->at_a, a, g->nu * sizeof *a);
+    memcpy(m->input + m->at_lam, lam, g->nrow * sizeof *lam);
+}
+
+static void evaluate(struct large *g, const double *a, const double *lam)
+{
+    struct ct_machine *m = g->l->m;
+    set_motion(g, a, lam);
+    ct_program_run(&m->tangent, m->input);
+    g->K = m->tangent.out;
+    g->C = g->K + g->f->ndq;
+    g->M = g->C + g->f->ndu;
+    g->J = g->M + g->f->nda + g->f->ndv;
+}
+
+// [ K - shift M, J'; J, 0 ], or with the masses alone [ M, J'; J, 0 ].
+static bool factor(struct large *g, bool masses_alone, double shift)
+{
+    const size_t nK = g->f->ndq, nM = g->f->nda, nJ = g->l->m->e->nJ;
+    double *v = g->value;
+    for (size_t i = 0; i < nK; i++)
+        *v++ = masses_alone ? 0 : g->K[i];
+    for (size_t i = 0; i < nM; i++)
+        *v++ = masses_alone ? g->M[i] : -shift * g->M[i];
+    for (size_t i = 0; i < nJ; i++) {
+        *v++ = g->J[i];
+        *v++ = g->J[i];
+    }
+    for (size_t i = 0; i < g->n; i++) // a place for every pivot
+        *v++ = 0;
+    g->shift = shift;
+    return ct_sparse_factor_anew(g->matrix, g->value);
+}
+
+static bool create_matrix(struct large *g)
+{
+    const struct ct_equations *e = g->l->m->e;
+    const size_t nentry = g->f->ndq + g->f->nda + 2 * e->nJ + g->n;
+    int *row = CT_NEWN(g->a, int, nentry + 1), *column = CT_NEWN(g->a, int, nentry + 1);
+    size_t k = 0;
+    for (size_t i = 0; i < g->f->ndq; i++, k++) {
+        row[k] = (int)g->f->dq[i].row;
+        column[k] = (int)g->f->dq[i].direction;
+    }
+    for (size_t i = 0; i < g->f->nda; i++, k++) {
+        row[k] = (int)g->f->da[i].row;
+        column[k] = (int)g->f->da[i].direction;
+    }
+    for (size_t i = 0; i < e->nJ; i++, k += 2) {
+        row[k] = column[k + 1] = (int)g->nu + e->J[i].row;
+        column[k] = row[k + 1] = e->J[i].column;
+    }
+    for (size_t i = 0; i < g->n; i++, k++)
+        row[k] = column[k] = (int)i;
+    g->matrix = ct_sparse_create(g->a, (int)g->n, row, column, nentry);
+    g->value = CT_NEWN(g->a, double, nentry + 1);
+    return g->matrix != NULL;
+}
+
+// x (nu, out): the first part of the solution for (r, s); s NULL: zero
+static void solve(struct large *g, double *x, const double *r, const double *s)
+{
+    bool refined = true;
+    memcpy(g->b, r, g->nu * sizeof *r);
+    if (s)
+        memcpy(g->b + g->nu, s, g->nrow * sizeof *s);
+    else
+        memset(g->b + g->nu, 0, g->nrow * sizeof *g->b);
+    ct_sparse_solve(g->matrix, g->x, g->b, &refined);
+    memcpy(x, g->x, g->nu * sizeof *x);
+}
+
+// ---- is it of this kind? -------------------------------------------------------------------------------------
+
+// Accelerations and multipliers at rest: r = 0, J a = 0. False where masses and rows are singular.
+static bool balance(struct large *g)
+{
+    struct ct_linear *l = g->l;
+    struct ct_machine *m = l->m;
+    double *r = CT_NEWN(g->a, double, g->nu + 1);
+    memset(l->a, 0, g->nu * sizeof *l->a);
+    memset(l->lam, 0, g->nrow * sizeof *l->lam);
+    evaluate(g, l->a, l->lam);
+    ct_program_run(&m->residual, m->input);
+    for (size_t i = 0; i < g->nu; i++)
+        r[i] = -m->residual.out[i];
+    if (largest(r, g->nu) == 0) // nothing acts
+        return true;
+    if (!factor(g, true, 0))
+        return false;
+    solve(g, l->a, r, NULL);
+    for (size_t i = 0; i < g->nrow; i++) // r - J' lam = -M a: the unknown of the matrix is -lam
+        l->lam[i] = -g->x[g->nu + i];
+    evaluate(g, l->a, l->lam);
+    l->acceleration = largest(l->a, g->nu);
+    return true;
+}
+
+// Numbers in [-1, 1) that are the same in every run.
+static double chance(uint64_t *state)
+{
+    *state = *state * 6364136223846793005u + 1442695040888963407u;
+    return (double)(*state >> 11) / 4503599627370496.0 - 1;
+}
+
+static double dot(const double *x, const double *y, size_t n)
+{
+    double sum = 0;
+    for (size_t i = 0; i < n; i++)
+        sum += x[i] * y[i];
+    return sum;
+}
+
+static bool is_symmetric(struct large *g)
+{
+    uint64_t state = 1;
+    double *x = g->W, *y = g->W + g->nu, *Kx = g->W + 2 * g->nu, *Ky = g->W + 3 * g->nu;
+    for (size_t i = 0; i < g->nu; i++) {
+        x[i] = chance(&state);
+        y[i] = chance(&state);
+    }
+    apply(Kx, g->f->dq, g->f->ndq, g->K, x, g->nu);
+    apply(Ky, g->f->dq, g->f->ndq, g->K, y, g->nu);
+    double size = 0;
+    for (size_t i = 0; i < g->nu; i++)
+        size += fabs(y[i] * Kx[i]);
+    return fabs(dot(y, Kx, g->nu) - dot(x, Ky, g->nu)) <= symmetric * size;
+}
+
+static bool is_of_this_kind(struct large *g)
+{
+    const struct ct_machine *m = g->l->m;
+    if ((g->nrow && m->e->ndriver) || largest(g->l->y + m->nq, g->nu) > 0)
+        return false;
+    ct_machine_set(g->l->m, g->l->t, g->l->y);
+    ct_program_run(&g->l->m->residual, m->input); // phi, v behind r: motions of chords
+    if (largest(m->residual.out + g->nu + g->nrow, g->nrow) > 0)
+        return false;
+    if (!create_matrix(g) || !balance(g))
+        return false;
+    if (g->nrow && g->l->acceleration > still)
+        return false; // the rows turn while it accelerates
+    const double rate = sqrt(largest(g->K, g->f->ndq) * largest(g->M, g->f->nda));
+    return largest(g->C, g->f->ndu) <= absent * rate && is_symmetric(g);
+}
+
+// ---- Lanczos -----------------------------------------------------------------------------------------------------
+
+// Take the basis off x, in the masses' metric, twice; what is left becomes a unit vector of the basis. c (k, may be NULL):
+// the coefficients are added. False if nothing is left.
+static bool take_in(struct large *g, double *x, double *c, double *size)
+{
+    double *Mx = g->MV + g->nu * g->k, *v = g->V + g->nu * g->k;
+    apply(Mx, g->f->da, g->f->nda, g->M, x, g->nu);
+    const double before = sqrt(fmax(dot(x, Mx, g->nu), 0));
+    for (int pass = 0; pass < 2; pass++)
+        for (size_t j = 0; j < g->k; j++) {
+            const double h = dot(g->MV + g->nu * j, x, g->nu);
+            for (size_t i = 0; i < g->nu; i++)
+                x[i] -= h * g->V[i + g->nu * j];
+            if (c)
+                c[j] += h;
+        }
+    apply(Mx, g->f->da, g->f->nda, g->M, x, g->nu);
+    *size = sqrt(fmax(dot(x, Mx, g->nu), 0));
+    if (!(*size > gone * before))
+        return false;
+    for (size_t i = 0; i < g->nu; i++) {
+        v[i] = x[i] / *size;
+        Mx[i] /= *size;
+    }
+    g->k++;
+    return true;
+}
+
+// The lowest modes that the basis holds: theta (descending |theta|), vectors S (k x k, by columns of the eigenproblem).
+struct ritz {
+    double *theta, *S, *residual;
+    size_t *order;
+};
+
+static void find_ritz(struct large *g, size_t k, size_t behind, struct ritz *z)
+{
+    double *work = CT_NEWN(g->a, double, ct_symmetric_eigenvalues_work((int)k));
+    for (size_t j = 0; j < k; j++)
+        for (size_t i = 0; i < k; i++)
+            z->S[i + k * j] = (g->T[i + g->most * j] + g->T[j + g->most * i]) / 2;
+    ct_symmetric_eigen(z->theta, z->S, (int)k, (int)k, work);
+    for (size_t i = 0; i < k; i++) {
+        size_t at = i;
+        for (; at > 0 && fabs(z->theta[z->order[at - 1]]) < fabs(z->theta[i]); at--)
+            z->order[at] = z->order[at - 1];
+        z->order[at] = i;
+    }
+    // what the last block leads to outside the basis: R s
+    for (size_t j = 0; j < k; j++) {
+        double sum = 0;
+        for (size_t r = 0; r < BLOCK; r++) {
+            double part = 0;
+            for (size_t c = 0; c < behind; c++)
+                part += g->R[r + BLOCK * c] * z->S[k - behind + c + k * j];
+            sum += part * part;
+        }
+        z->residual[j] = sqrt(sum);
+    }
+}
+
+static bool have_converged(const struct ritz *z, size_t k, size_t count)
+{
+    if (k < count)
+        return false;
+    for (size_t i = 0; i < count; i++)
+        if (z->residual[z->order[i]] > found * fabs(z->theta[z->order[i]]))
+            return false;
+    return true;
+}
+
+// Blocks until `count` modes are found, or the basis is complete. Returns the size of the basis.
+static size_t iterate(struct large *g, size_t count, struct ritz *z)
+{
+    uint64_t state = 7;
+    double size, *r = CT_NEWN(g->a, double, g->nu + 1);
+    for (size_t c = 0; c < BLOCK;
+         c++) { // into the range: along the constraints, without what has no mass
+        double *w = g->W + g->nu * c;
+        for (size_t i = 0; i < g->nu; i++)
+            r[i] = chance(&state);
+        apply(w, g->f->da, g->f->nda, g->M, r, g->nu);
+        solve(g, w, w, NULL);
+    }
+    size_t first = 0; // of the newest block
+    for (size_t c = 0; c < BLOCK; c++)
+        take_in(g, g->W + g->nu * c, NULL, &size);
+    for (;;) {
+        const size_t last = g->k, n = last - first;
+        for (size_t c = 0; c < n; c++)
+            solve(g, g->W + g->nu * c, g->MV + g->nu * (first + c), NULL);
+        for (size_t c = 0; c < n; c++)
+            for (size_t j = 0; j < last; j++)
+                g->T[j + g->most * (first + c)] = g->T[first + c + g->most * j]
+                    = dot(g->MV + g->nu * j, g->W + g->nu * c, g->nu);
+        memset(g->R, 0, BLOCK * BLOCK * sizeof *g->R);
+        const bool is_full = last + BLOCK > g->most;
+        for (size_t c = 0; c < n && !is_full; c++) {
+            double *coefficient = CT_NEWN(g->a, double, g->k + 1);
+            const size_t at = g->k;
+            if (take_in(g, g->W + g->nu * c, coefficient, &size))
+                g->R[at - last + BLOCK * c] = size;
+            for (size_t j = last; j < at; j++)
+                g->R[j - last + BLOCK * c] = coefficient[j];
+        }
+        find_ritz(g, last, n, z);
+        if (have_converged(z, last, count) || g->k == last || is_full)
+            return last;
+        first = last;
+    }
+}
+
+static void add_modes(struct large *g, const struct ritz *z, size_t k, size_t count,
+                      struct ct_motion_mode *mode, size_t *nmode)
+{
+    for (size_t i = 0; i < count && i < k; i++) {
+        const size_t j = z->order[i];
+        double *y = CT_NEWN(g->a, double, 2 * g->nu + 1);
+        for (size_t p = 0; p < k; p++)
+            for (size_t q = 0; q < g->nu; q++)
+                y[q] += g->V[q + g->nu * p] * z->S[p + k * j];
+        double w2 = g->shift + 1 / z->theta[j];
+        if (fabs(w2) <= 1e-6 * fabs(g->shift))
+            w2 = 0; // rounding of the shift
+        ct_mode_add_undamped(mode, nmode, w2, y, (int)g->nu);
+    }
+}
+
+bool ct_large_modes(struct ct_ctx *ctx, struct ct_arena *a, struct ct_linear *l, size_t count,
+                    struct ct_motion_mode **mode, size_t *nmode, const char **how,
+                    bool *applies)
+{
+    struct large g = {.ctx = ctx, .a = a, .l = l, .f = l->m->e->residual};
+    g.nu = l->m->nu;
+    g.nrow = l->m->nrow;
+    g.n = g.nu + g.nrow;
+    g.b = CT_NEWN(a, double, g.n + 1);
+    g.x = CT_NEWN(a, double, g.n + 1);
+    g.W = CT_NEWN(a, double, BLOCK *g.nu + 1);
+    g.R = CT_NEWN(a, double, BLOCK *BLOCK);
+    *applies = is_of_this_kind(&g);
+    *nmode = 0;
+    *how = "sparse symmetric";
+    if (!*applies)
+        return true;
+    if (!factor(&g, false, 0)) { // something is free to move: shifted by a little of the lowest
+        double ratio = 0;
+        for (size_t i = 0; i < g.f->nda; i++)
+            ratio = fmax(ratio, fabs(g.M[i]));
+        ratio = largest(g.K, g.f->ndq) / fmax(ratio, DBL_MIN);
+        if (!factor(&g, false, -1e-9 * fmax(ratio, 1)))
+            return ct_error(ctx, (struct ct_mark){.file = l->m->model->file}, CT_E_SINGULAR,
+                            "the stiffness and the constraints are singular");
+    }
+    g.most = 8 * count + 20 * BLOCK;
+    g.most = g.most > MOST_BASIS ? MOST_BASIS : g.most;
+    g.most = g.most > g.nu ? g.nu + BLOCK : g.most;
+    g.V = CT_NEWN(a, double, g.nu *(g.most + BLOCK));
+    g.MV = CT_NEWN(a, double, g.nu *(g.most + BLOCK));
+    g.T = CT_NEWN(a, double, g.most *g.most);
+    struct ritz z = {.theta = CT_NEWN(a, double, g.most + 1),
+                     .S = CT_NEWN(a, double, g.most *g.most + 1),
+                     .residual = CT_NEWN(a, double, g.most + 1),
+                     .order = CT_NEWN(a, size_t, g.most + 1)};
+    const size_t k = iterate(&g, count, &z);
+    *mode = CT_NEWN(a, struct ct_motion_mode, 2 * count + 1);
+    add_modes(&g, &z, k, count, *mode, nmode);
+    ct_modes_sort(a, *mode, *nmode);
+    return true;
+}

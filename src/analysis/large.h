@@ -1,0 +1,29 @@
+// Modes of large systems: sparse matrices, the lowest few eigenvalues only.
+#ifndef CT_ANALYSIS_LARGE_H
+#define CT_ANALYSIS_LARGE_H
+
+#include "analysis/eigen.h"
+
+/// More speeds than this, and dense matrices would take long.
+enum { CT_MOST_DENSE = 300 };
+
+/**
+ * The lowest modes of a system at rest without dampers and forces that have no potential; with loops without drivers, too.
+ *
+ * Block Lanczos in the masses' metric on [K - s M, J'; J, 0]^-1 M, factored once, every block made orthogonal to all before;
+ * blocks of four find what is fourfold, as bending of a round beam about two axes.
+ *
+ * l     in   the state in l->y; no matrices are needed
+ * mode  out  `count` of them at most, ascending
+ * how   out  for reports
+ *
+ * *applies is false, and nothing else is done, where the system is not of this kind or its constraints are redundant.
+ *
+ * Errors   CT_E_SINGULAR
+ * Source   Grimes, Lewis and Simon (1994), key grimes1994
+ */
+bool ct_large_modes(struct ct_ctx *ctx, struct ct_arena *a, struct ct_linear *l, size_t count,
+                    struct ct_motion_mode **mode, size_t *nmode, const char **how,
+                    bool *applies);
+
+#endif
