@@ -126,7 +126,8 @@ static struct repeat best_repeat(const struct plan *p, uint32_t i)
 {
     struct repeat best = {.first = i};
     uint32_t saved = LEAST_SAVED - 1, c = p->again[i];
-    for (int tries = 0; tries < MOST_TRIES && c != none && c - i <= MOST_PERIOD; tries++) {
+    for (int tries = 0; tries < MOST_TRIES && c > i && c != none && c - i <= MOST_PERIOD;
+         tries++) {
         const uint32_t period = c - i;
         uint32_t same = 0;
         while (c + same < p->n && p->sign[i + same] == p->sign[c + same])

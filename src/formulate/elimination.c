@@ -529,7 +529,7 @@ static double eliminate_pattern(struct elimination *s, bool by_degree, size_t *o
         for (size_t i = 0; i < f; i++)
             if (!is_done[i] && joined[i + f * k])
                 near[n++] = i;
-        cost += (double)(n * (n + 3) / 2);
+        cost += 0.5 * (double)(n * (n + 3));
         for (size_t a = 0; a < n; a++) {
             degree[near[a]]--;
             for (size_t b = 0; b < a; b++)
