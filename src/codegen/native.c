@@ -22,8 +22,10 @@ typedef void (*body_fn)(const double *input, double *out, double *work);
 
 struct ct_native {
     const struct ct_listing *l;
-    size_t lanes, nwork; // nwork: places
-    uint32_t *place;     // of values that prepare computes
+    size_t lanes, nwork;         // nwork: places
+    uint32_t *place;             // of values that prepare computes
+    const struct ct_copy *table; // and copies of them
+    size_t ntable;
     void *memory;
     size_t nmemory, ncode;
     body_fn body;
@@ -213,6 +215,9 @@ void ct_native_prepare(const struct ct_native *f, const double *input, double *w
             take_leaf(f, v, input, work);
     for (size_t i = 0; i < f->l->nprologue; i++)
         run_instruction(f, &f->l->ins[i], work);
+    for (size_t i = 0; i < f->ntable; i++)
+        memcpy(work + f->lanes * f->table[i].place,
+               work + f->lanes * f->place[f->table[i].value], f->lanes * sizeof *work);
 }
 
 // ---- entries ----------------------------------------------------------------------------------
@@ -250,6 +255,8 @@ struct ct_native *ct_native_create(struct ct_arena *a, const struct ct_listing *
     place_prologue(a, f);
     const struct ct_x86_code code = ct_x86_emit(a, l, lanes, f->place, f->nwork, &calls);
     f->nwork = code.nwork;
+    f->table = code.table;
+    f->ntable = code.ntable;
     ct_arena_at_end(a, unmap, f); // first: it may run out of memory
     return map(f, code.byte, code.nbyte) ? f : NULL;
 #else

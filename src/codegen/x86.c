@@ -9,7 +9,7 @@ static const uint32_t none = CT_VALUE_NONE;
 
 // ---- encoding ---------------------------------------------------------------------------------
 
-enum { RAX, RCX, RDX, RBX, RSP, RBP, RSI, RDI, R14 = 14, RIP = 16 };
+enum { RAX, RCX, RDX, RBX, RSP, RBP, RSI, RDI, R8, R9, R10, R11, R13 = 13, R14, R15, RIP };
 
 // An instruction of the VEX map: prefix, map, opcode.
 struct vex {
@@ -196,6 +196,22 @@ static void put_call(struct code *c, uintptr_t function)
     put(c, 0xD0);
 }
 
+static void put_advance(struct code *c, int reg, int32_t by)
+{
+    put(c, reg >= 8 ? 0x49 : 0x48);
+    put(c, 0x81);
+    put(c, 0xC0 | (unsigned)(reg & 7));
+    put_number(c, (uint64_t)by, 4);
+}
+
+// Back to byte `to`, unless RAX, one less, is 0.
+static void put_back(struct code *c, size_t to)
+{
+    put_number(c, 0xC8FF48, 3); // dec rax
+    put_number(c, 0x850F, 2);   // jnz
+    put_number(c, (uint64_t)to - (uint64_t)(c->n + 4), 4);
+}
+
 // The constants that are used, and the displacements to them. RIP is that of the next instruction,
 // four bytes behind the place of the displacement.
 static void put_pool(struct code *c)
@@ -220,10 +236,11 @@ static void put_pool(struct code *c)
 
 enum { NREGISTER = 16 };
 
-enum area { NOWHERE, INPUT, OUT, WORK };
+// Beyond WORK: what a stream of a loop points at.
+enum area { NOWHERE, INPUT, OUT, WORK, NAREA };
 
 struct home {
-    enum area area;
+    unsigned area;
     uint32_t place;
 };
 
@@ -232,8 +249,10 @@ struct emitter {
     struct ct_arena *arena;
     const struct ct_listing *l;
     const struct ct_x86_calls *calls;
-    int base[4];     // register that points at each area
-    uint32_t *order; // of the body's instructions
+    int base[NAREA + CT_ROLL_STREAMS]; // register that points at each area
+    struct ct_roll roll;
+    const bool *is_kept; // by value, in loops: it is stored at its home at once
+    uint32_t *order;     // of the body's instructions
     size_t norder;
     uint32_t first_angle, nangle; // in the order: sines and cosines that are one call
 
@@ -576,6 +595,12 @@ static void store_outputs(struct emitter *e, uint32_t v)
         put_store(&e->code, memory_of(e, (struct home){OUT, k - 1}), load(e, v));
 }
 
+static void keep_result(struct emitter *e, uint32_t v)
+{
+    if (e->is_kept && e->is_kept[v])
+        put_store(&e->code, memory_of(e, e->home[v]), load(e, v));
+}
+
 static void emit_instruction(struct emitter *e, uint32_t at)
 {
     const struct ct_instruction *i = &e->l->ins[e->order[at]];
@@ -588,8 +613,10 @@ static void emit_instruction(struct emitter *e, uint32_t at)
     for (uint32_t r = 0; r < i->nres; r++)
         claim_output(e, i->res[r]);
     emit_operation(e, i);
-    for (uint32_t r = 0; r < i->nres; r++)
+    for (uint32_t r = 0; r < i->nres; r++) {
         store_outputs(e, i->res[r]);
+        keep_result(e, i->res[r]);
+    }
     release_registers(e);
     give_up_places(e, i->arg, i->narg);
     give_up_places(e, i->res, i->nres);
@@ -709,6 +736,192 @@ static void emit_angles(struct emitter *e)
         e->free[e->nfree++] = angles.place + k;
 }
 
+static void list_uses(struct emitter *e)
+{
+    const struct ct_listing *l = e->l;
+    uint32_t nuse = 0;
+    e->start = CT_NEWN(e->arena, uint32_t, l->nvalue + 1);
+    e->next = CT_NEWN(e->arena, uint32_t, l->nvalue);
+    for (size_t i = l->nprologue; i < l->nins; i++)
+        for (uint32_t k = 0; k < l->ins[i].narg; k++)
+            e->start[l->ins[i].arg[k]]++;
+    for (size_t v = 0; v <= l->nvalue; v++) {
+        const uint32_t n = e->start[v];
+        e->start[v] = nuse;
+        nuse += n;
+        if (v < l->nvalue)
+            e->next[v] = e->start[v];
+    }
+    e->use = CT_NEWN(e->arena, uint32_t, nuse);
+    for (uint32_t at = 0; at < e->norder; at++)
+        for (uint32_t k = 0; k < l->ins[e->order[at]].narg; k++)
+            e->use[e->next[l->ins[e->order[at]].arg[k]]++] = at;
+    for (size_t v = 0; v < l->nvalue; v++)
+        e->next[v] = e->start[v];
+}
+
+// ---- loops ------------------------------------------------------------------------------------
+
+// What the streams of a loop point at.
+struct stream {
+    unsigned area;
+    int32_t stride;
+};
+
+static const int stream_register[CT_ROLL_STREAMS] = {RCX, R8, R9, R10, R11, R13, R15};
+
+// The body of a loop as a listing: values 0 ... period-1 are its results, further ones its operands from memory.
+struct body {
+    struct emitter e;
+    struct ct_listing l;
+    struct stream stream[CT_ROLL_STREAMS];
+    unsigned nstream;
+    uint32_t *slot; // 1 + value, by hash
+    size_t mask;
+    struct ct_operand *operand; // by value from period on
+};
+
+static unsigned stream_of(struct body *b, unsigned area, int32_t stride)
+{
+    unsigned i = 0;
+    while (i < b->nstream && (b->stream[i].area != area || b->stream[i].stride != stride))
+        i++;
+    assert(i < CT_ROLL_STREAMS);
+    if (i == b->nstream) {
+        b->stream[b->nstream++] = (struct stream){area, stride};
+        b->e.base[NAREA + i] = stream_register[i];
+    }
+    return NAREA + i;
+}
+
+static bool is_same_operand(const struct ct_operand *a, const struct ct_operand *b)
+{
+    return a->reach == b->reach && a->at == b->at && a->stride == b->stride;
+}
+
+// The value that stands for an operand; operands at one place are one.
+static uint32_t value_of(struct body *b, const struct emitter *outer,
+                         const struct ct_loop *loop, const struct ct_operand *o)
+{
+    if (o->reach == CT_REACH_ROW)
+        return o->at;
+    size_t h = (o->at * 31u + (uint32_t)o->stride) * 2654435761u + (unsigned)o->reach;
+    for (;; h++) {
+        uint32_t *slot = &b->slot[h & b->mask];
+        if (*slot && !is_same_operand(&b->operand[*slot - 1 - loop->period], o))
+            continue;
+        if (!*slot) {
+            const uint32_t v = (uint32_t)b->l.nvalue++;
+            b->operand[v - loop->period] = *o;
+            b->e.home[v]
+                = o->reach == CT_REACH_FIXED
+                    ? outer->home[o->at]
+                    : (struct home){
+                        stream_of(b, o->reach == CT_REACH_INPUT ? INPUT : WORK, o->stride),
+                        o->at};
+            *slot = v + 1;
+        }
+        return *slot - 1;
+    }
+}
+
+static void list_body(struct body *b, const struct emitter *outer, const struct ct_loop *loop)
+{
+    struct ct_arena *a = b->e.arena;
+    const size_t most = 4 * (size_t)loop->period;
+    bool *is_kept = CT_NEWN(a, bool, most);
+    for (b->mask = 64; b->mask < 2 * most; b->mask *= 2)
+        ;
+    b->slot = CT_NEWN(a, uint32_t, b->mask);
+    b->mask--;
+    b->operand = CT_NEWN(a, struct ct_operand, most);
+    b->l.ins = CT_NEWN(a, struct ct_instruction, loop->period);
+    b->l.nvalue = loop->period;
+    b->e.home = CT_NEWN(a, struct home, most);
+    b->e.order = CT_NEWN(a, uint32_t, loop->period);
+    for (uint32_t i = 0; i < loop->period; i++) {
+        struct ct_instruction *ins = &b->l.ins[b->l.nins++];
+        *ins = outer->l->ins[outer->order[loop->first + i]];
+        for (uint32_t k = 0; k < ins->narg; k++)
+            ins->arg[k] = value_of(b, outer, loop, &loop->operand[3 * i + k]);
+        ins->res[0] = b->e.order[i] = i;
+        is_kept[i] = loop->result[i] != none;
+        if (is_kept[i])
+            b->e.home[i] = (struct home){stream_of(b, WORK, loop->width), loop->result[i]};
+    }
+    b->e.norder = loop->period;
+    b->e.is_kept = is_kept;
+    b->e.reg = CT_NEWN(a, signed char, b->l.nvalue);
+    memset(b->e.reg, -1, b->l.nvalue);
+    b->e.first_output = CT_NEWN(a, uint32_t, b->l.nvalue);
+    b->e.free = CT_NEWN(a, uint32_t, b->l.nvalue);
+    list_uses(&b->e);
+}
+
+static void emit_body(struct body *b, const struct ct_loop *loop)
+{
+    struct code *c = &b->e.code;
+    for (unsigned i = 0; i < b->nstream; i++)
+        put_move(c, stream_register[i], b->e.base[b->stream[i].area]);
+    put_immediate(c, RAX, loop->count);
+    const size_t start = c->n;
+    for (uint32_t at = 0; at < b->e.norder; at++)
+        emit_instruction(&b->e, at);
+    for (unsigned i = 0; i < b->nstream; i++)
+        put_advance(c, stream_register[i], b->stream[i].stride * 8 * c->lanes);
+    put_back(c, start);
+}
+
+// Reads within a loop are done; what nobody else reads gives up its place.
+static void pass_loop(struct emitter *e, const struct ct_loop *loop)
+{
+    const uint32_t end = loop->first + loop->period * loop->count;
+    for (uint32_t at = loop->first; at < end; at++) {
+        const struct ct_instruction *i = &e->l->ins[e->order[at]];
+        for (uint32_t k = 0; k < i->narg; k++)
+            while (next_use(e, i->arg[k]) < end)
+                e->next[i->arg[k]]++;
+        give_up_places(e, i->arg, i->narg);
+    }
+}
+
+static void emit_loop(struct emitter *e, const struct ct_loop *loop)
+{
+    for (size_t i = 0; i < loop->ncopy; i++) {
+        const int r = load(e, loop->copy[i].value);
+        put_store(&e->code, memory_of(e, (struct home){WORK, loop->copy[i].place}), r);
+        release_registers(e);
+    }
+    forget_registers(e);
+    struct body b = {.e = *e};
+    b.e.l = &b.l;
+    b.e.nfixed = e->nwork; // values of outside stay where they are
+    b.e.nfree = 0;
+    list_body(&b, e, loop);
+    emit_body(&b, loop);
+    e->code = b.e.code;
+    e->nwork = b.e.nwork;
+    pass_loop(e, loop);
+}
+
+// Loops keep code in the nearer caches, but results of their rows in memory, four times as many in four lanes:
+// instructions from which on they are faster, as measured on beams and chains.
+static uint32_t least_rolled(int lanes)
+{
+    return lanes == 1 ? 4000 : 100000;
+}
+
+static void roll_up(struct emitter *e)
+{
+    bool is_alone[CT_NKIND];
+    for (int op = 0; op < CT_NKIND; op++)
+        is_alone[op] = e->calls->by_op[op] != 0;
+    if (e->norder < least_rolled(e->code.lanes))
+        return;
+    e->roll = ct_roll_find(e->arena, e->l, e->order, (uint32_t)e->norder, is_alone, e->nfixed);
+    e->nfixed = e->nwork = e->roll.nwork;
+}
+
 // ---- the whole --------------------------------------------------------------------------------
 
 static bool is_call(const struct emitter *e, const struct ct_instruction *i)
@@ -781,30 +994,6 @@ static bool order_instructions(struct emitter *e)
     return any;
 }
 
-static void list_uses(struct emitter *e)
-{
-    const struct ct_listing *l = e->l;
-    uint32_t nuse = 0;
-    e->start = CT_NEWN(e->arena, uint32_t, l->nvalue + 1);
-    e->next = CT_NEWN(e->arena, uint32_t, l->nvalue);
-    for (size_t i = l->nprologue; i < l->nins; i++)
-        for (uint32_t k = 0; k < l->ins[i].narg; k++)
-            e->start[l->ins[i].arg[k]]++;
-    for (size_t v = 0; v <= l->nvalue; v++) {
-        const uint32_t n = e->start[v];
-        e->start[v] = nuse;
-        nuse += n;
-        if (v < l->nvalue)
-            e->next[v] = e->start[v];
-    }
-    e->use = CT_NEWN(e->arena, uint32_t, nuse);
-    for (uint32_t at = 0; at < e->norder; at++)
-        for (uint32_t k = 0; k < l->ins[e->order[at]].narg; k++)
-            e->use[e->next[l->ins[e->order[at]].arg[k]]++] = at;
-    for (size_t v = 0; v < l->nvalue; v++)
-        e->next[v] = e->start[v];
-}
-
 static void place_values(struct emitter *e, const uint32_t *home)
 {
     const struct ct_listing *l = e->l;
@@ -817,6 +1006,8 @@ static void place_values(struct emitter *e, const uint32_t *home)
             e->home[v] = (struct home){WORK, home[v]};
         else if (l->is_leaf[v])
             e->home[v] = (struct home){INPUT, l->input[v]};
+        else if (e->roll.nloop && e->roll.place[v] != none)
+            e->home[v] = (struct home){WORK, e->roll.place[v]};
     }
     for (int r = 0; r < NREGISTER; r++)
         e->content[r] = none;
@@ -829,7 +1020,7 @@ static void place_values(struct emitter *e, const uint32_t *home)
 }
 
 // The areas are pointed at by the arguments themselves, or by registers that calls leave alone. Three
-// pushes and the return address keep the stack aligned to 16.
+// pushes and the return address keep the stack aligned to 16, and so do two more.
 static void emit_entry(struct emitter *e, bool calls)
 {
     if (calls) {
@@ -840,17 +1031,22 @@ static void emit_entry(struct emitter *e, bool calls)
         put_move(&e->code, R14, RSI);
         put_move(&e->code, RBX, RDX);
     }
+    if (e->roll.nloop) {
+        put_push(&e->code, R13);
+        put_push(&e->code, R15);
+    }
     e->base[INPUT] = calls ? RBP : RDI;
     e->base[OUT] = calls ? R14 : RSI;
     e->base[WORK] = calls ? RBX : RDX;
 }
 
-// Outputs that the body does not compute.
+// Outputs that are not stored when they are computed: those of the prologue and of loops.
 static void copy_outputs(struct emitter *e)
 {
     for (uint32_t k = 0; k < e->l->nout; k++) {
         const uint32_t v = e->l->out[k];
-        if (e->l->rate[v] == CT_RATE_CALL && !e->l->is_leaf[v])
+        const bool is_rolled = e->roll.nloop && e->roll.place[v] != none;
+        if (e->l->rate[v] == CT_RATE_CALL && !e->l->is_leaf[v] && !is_rolled)
             continue;
         put_load(&e->code, 0, memory_of(e, e->home[v]));
         put_store(&e->code, memory_of(e, (struct home){OUT, k}), 0);
@@ -860,6 +1056,10 @@ static void copy_outputs(struct emitter *e)
 static void emit_return(struct emitter *e, bool calls)
 {
     put_vzeroupper(&e->code);
+    if (e->roll.nloop) {
+        put_pop(&e->code, R15);
+        put_pop(&e->code, R13);
+    }
     if (calls) {
         put_pop(&e->code, R14);
         put_pop(&e->code, RBP);
@@ -880,9 +1080,17 @@ struct ct_x86_code ct_x86_emit(struct ct_arena *a, const struct ct_listing *l, i
                         .nwork = (uint32_t)nhome};
     const bool any_call = order_instructions(&e);
     list_uses(&e);
+    roll_up(&e);
     place_values(&e, home);
     emit_entry(&e, any_call);
+    const struct ct_loop *loop = e.roll.loop, *end = loop + e.roll.nloop;
     for (uint32_t at = 0; at < e.norder; at++) {
+        if (loop < end && at == loop->first) {
+            emit_loop(&e, loop);
+            at += loop->period * loop->count - 1;
+            loop++;
+            continue;
+        }
         const bool angles = e.nangle && at == e.first_angle;
         if (angles)
             emit_angles(&e);
@@ -893,5 +1101,5 @@ struct ct_x86_code ct_x86_emit(struct ct_arena *a, const struct ct_listing *l, i
     copy_outputs(&e);
     emit_return(&e, any_call);
     put_pool(&e.code);
-    return (struct ct_x86_code){e.code.byte, e.code.n, e.nwork};
+    return (struct ct_x86_code){e.code.byte, e.code.n, e.nwork, e.roll.table, e.roll.ntable};
 }

@@ -36,6 +36,7 @@ struct ct_beam {
     ct_ex length; // [m]
     int nelement;
     const ct_ex *end;      // [m] where elements end; end[nelement - 1] is `length`
+    bool is_even;          // they are of one length
     ct_ex E, G;            // [Pa]; G is 0 where neither G nor nu is given
     ct_ex area, Iy, Iz, J; // [m^2], [m^4]; may contain x
     ct_ex mass_per_length; // [kg/m]; may contain x

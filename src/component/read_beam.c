@@ -281,6 +281,7 @@ static bool fill_elements(const struct work *w)
         end[i] = v->n && ok ? v->e[i] : ct_ex_scale(x, (i + 1.0) / n, beam->length);
     end[n - 1] = beam->length; // without the rounding of the last one
     beam->end = end;
+    beam->is_even = !v->n;
     return ok;
 }
 

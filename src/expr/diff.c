@@ -184,6 +184,50 @@ ct_ex ct_ex_diff(struct ct_exs *x, ct_ex a, ct_ex s)
     return ct_ex_diff_along(x, a, &s, &one, 1);
 }
 
+// Share of the i-th argument in the derivative by a node: bar times the partial derivative.
+static ct_ex pass_down(struct ct_exs *x, uint32_t id, int i, ct_ex bar)
+{
+    const struct ct_exnode n = x->node[id];
+    if (n.op != CT_OP_IF)
+        return ct_ex_mul(x, bar, ct_ex_partial(x, id, i));
+    return i == 0
+             ? CT_EX_ZERO
+             : ct_ex_if(x, (ct_ex){n.a}, i == 1 ? bar : CT_EX_ZERO, i == 2 ? bar : CT_EX_ZERO);
+}
+
+// Backwards, parents before children. Source: Griewank and Walther (2008), 3.2, key griewank2008.
+void ct_ex_gradient(struct ct_exs *x, struct ct_arena *scratch, ct_ex a, const ct_ex *s,
+                    size_t n, ct_ex *out)
+{
+    const size_t nnode = ct_ex_walk(x, &a, 1);
+    uint32_t *list
+        = CT_NEWN(scratch, uint32_t, nnode + 1); // building derivatives may walk again
+    memcpy(list, x->stack, nnode * sizeof *list);
+    bool *counts = CT_NEWN(scratch, bool, x->nnode); // by id: depends on a symbol
+    ct_ex *bar = CT_NEWN(scratch, ct_ex, x->nnode);  // by id
+    for (size_t i = 0; i < n; i++)
+        counts[s[i].id] = true;
+    for (size_t k = 0; k < nnode; k++) {
+        const struct ct_exnode *node = &x->node[list[k]];
+        const uint32_t arg[3] = {node->a, node->b, node->c};
+        for (int i = 0; node->op != CT_OP_SYM && i < ct_op_info[node->op].narg; i++)
+            counts[list[k]] |= counts[arg[i]];
+    }
+    bar[a.id] = CT_EX_ONE;
+    for (size_t k = nnode; k-- > 0;) {
+        const uint32_t id = list[k];
+        const struct ct_exnode node = x->node[id];
+        const uint32_t arg[3] = {node.a, node.b, node.c};
+        if (!counts[id] || node.op == CT_OP_SYM || ct_ex_is_zero(bar[id]))
+            continue;
+        for (int i = 0; i < ct_op_info[node.op].narg; i++)
+            if (counts[arg[i]])
+                bar[arg[i]] = ct_ex_add(x, bar[arg[i]], pass_down(x, id, i, bar[id]));
+    }
+    for (size_t i = 0; i < n; i++)
+        out[i] = bar[s[i].id];
+}
+
 // The node rebuilt with new arguments, through the public constructors so that the rules apply.
 static ct_ex rebuild(struct ct_exs *x, const struct ct_exnode *n, ct_ex a, ct_ex b, ct_ex c)
 {

@@ -163,6 +163,9 @@ size_t ct_ex_walk(struct ct_exs *x, const ct_ex *root, size_t n);
 ct_ex ct_ex_diff(struct ct_exs *x, ct_ex a, ct_ex s);
 /// Sum over i of da/ds[i] * ds[i]: the directional (or total time) derivative. Same cost.
 ct_ex ct_ex_diff_along(struct ct_exs *x, ct_ex a, const ct_ex *s, const ct_ex *ds, size_t n);
+/// out[i] = da/ds[i] for all of n symbols in one walk from a down. Cost: nodes below a, however many symbols.
+void ct_ex_gradient(struct ct_exs *x, struct ct_arena *scratch, ct_ex a, const ct_ex *s,
+                    size_t n, ct_ex *out);
 /// Derivative of node id by its i-th argument, as an expression of the node and its arguments.
 ct_ex ct_ex_partial(struct ct_exs *x, uint32_t id, int i);
 

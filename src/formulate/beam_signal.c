@@ -44,12 +44,13 @@ static ct_ex33 section_axes(struct ct_build *b, const struct ct_station *s)
     return S;
 }
 
-// Place of a frame on the deformed beam, axes of the beam; a frame off the axis turns with its section.
+// Place of a frame on the deformed beam, axes of the beam; a frame off the axis turns with its section. The axis is
+// foreshortened where its forces are, also if the kinematics leaves that out.
 static ct_ex3 deformed_place(struct ct_build *b, const struct ct_flexible *f, ct_ex3 rest)
 {
     const ct_ex3 across = {{CT_EX_ZERO, rest.e[1], rest.e[2]}};
     struct ct_station s;
-    ct_flexible_station(b, f, rest.e[0], f->kinematics, &s);
+    ct_flexible_station(b, f, rest.e[0], f->axial, &s);
     const ct_ex33 S = section_axes(b, &s);
     return ct_ex3_add(b->x, s.place, ct_ex33_apply(b->x, &S, across));
 }

@@ -47,8 +47,9 @@ struct elimination {
     size_t nblock;
     struct step *step;
     size_t nstep, step_cap;
-    ct_ex *B; // (nu x nfree), unit rows in the independent places
-    ct_ex *S; // (nfree x nfree) L' D L of B' M B: D, and L below
+    ct_ex *B;      // (nu x nfree), unit rows in the independent places
+    ct_ex *S;      // (nfree x nfree) L' D L of B' M B, lower triangle: D, and L beside it
+    size_t *order; // (nfree) of the pivots of S, the first one last
 };
 
 enum { INDEPENDENT = -1, OPEN = -2 };
@@ -499,6 +500,58 @@ static void derive_B(struct elimination *s)
     }
 }
 
+// The entry of S between two free columns, in either order.
+static ct_ex *S_at(const struct elimination *s, size_t i, size_t j)
+{
+    return &s->S[(i > j ? i : j) + s->p->nfree * (i > j ? j : i)];
+}
+
+// Products of eliminating S by its pattern, from the last column to the first or always the one with the fewest
+// neighbours; order (nfree, out).
+static double eliminate_pattern(struct elimination *s, bool by_degree, size_t *order)
+{
+    const size_t f = s->p->nfree;
+    bool *joined = CT_NEWN(s->a, bool, f *f + 1), *is_done = CT_NEWN(s->a, bool, f + 1);
+    size_t *degree = CT_NEWN(s->a, size_t, f + 1), *near = CT_NEWN(s->a, size_t, f + 1);
+    double cost = 0;
+    for (size_t i = 0; i < f; i++)
+        for (size_t j = 0; j < f; j++) {
+            joined[i + f * j] = i != j && !ct_ex_is_zero(*S_at(s, i, j));
+            degree[j] += joined[i + f * j];
+        }
+    for (size_t left = f; left-- > 0;) {
+        size_t k = left, n = 0;
+        for (size_t i = f; by_degree && i-- > 0;)
+            if (!is_done[i] && (is_done[k] || degree[i] < degree[k]))
+                k = i;
+        order[left] = k;
+        is_done[k] = true;
+        for (size_t i = 0; i < f; i++)
+            if (!is_done[i] && joined[i + f * k])
+                near[n++] = i;
+        cost += 0.5 * (double)(n * (n + 3));
+        for (size_t a = 0; a < n; a++) {
+            degree[near[a]]--;
+            for (size_t b = 0; b < a; b++)
+                if (!joined[near[a] + f * near[b]]) {
+                    joined[near[a] + f * near[b]] = joined[near[b] + f * near[a]] = true;
+                    degree[near[a]]++;
+                    degree[near[b]]++;
+                }
+        }
+    }
+    return cost;
+}
+
+// A beam in a loop has a sparse S whose columns next to the cut are joined to all others: they come last.
+static void choose_order(struct elimination *s)
+{
+    size_t *last_first = CT_NEWN(s->a, size_t, s->p->nfree + 1);
+    s->order = CT_NEWN(s->a, size_t, s->p->nfree + 1);
+    if (eliminate_pattern(s, false, last_first) <= eliminate_pattern(s, true, s->order))
+        s->order = last_first;
+}
+
 // B' M B = L' D L; false if the nodes do not suffice.
 static bool reduce(struct elimination *s, size_t most_nodes)
 {
@@ -512,16 +565,21 @@ static bool reduce(struct elimination *s, size_t most_nodes)
         if (s->x->nnode > most_nodes)
             return false;
     }
-    for (size_t k = f; k-- > 0;) {
+    choose_order(s);
+    for (size_t at = f; at-- > 0;) {
+        const size_t k = s->order[at];
         if (s->x->nnode > most_nodes)
             return false;
-        for (size_t i = k; i-- > 0;) {
-            if (ct_ex_is_zero(s->S[k + f * i]))
+        for (size_t i = at; i-- > 0;) {
+            ct_ex *beside = S_at(s, k, s->order[i]);
+            if (ct_ex_is_zero(*beside))
                 continue;
-            const ct_ex l = ct_ex_div(s->x, s->S[k + f * i], s->S[k + f * k]);
-            for (size_t j = 0; j <= i; j++)
-                s->S[i + f * j] = sub_product(s->x, s->S[i + f * j], l, s->S[k + f * j]);
-            s->S[k + f * i] = l;
+            const ct_ex l = ct_ex_div(s->x, *beside, *S_at(s, k, k));
+            for (size_t j = 0; j <= i; j++) {
+                ct_ex *entry = S_at(s, s->order[i], s->order[j]);
+                *entry = sub_product(s->x, *entry, l, *S_at(s, k, s->order[j]));
+            }
+            *beside = l;
         }
     }
     return true;
@@ -531,13 +589,16 @@ static bool reduce(struct elimination *s, size_t most_nodes)
 static void solve_reduced(struct elimination *s, ct_ex *z)
 {
     const size_t f = s->p->nfree;
-    for (size_t k = f; k-- > 0;)
-        for (size_t i = 0; i < k; i++)
-            z[i] = sub_product(s->x, z[i], s->S[k + f * i], z[k]);
-    for (size_t k = 0; k < f; k++) {
-        z[k] = ct_ex_div(s->x, z[k], s->S[k + f * k]);
-        for (size_t i = 0; i < k; i++)
-            z[k] = sub_product(s->x, z[k], s->S[k + f * i], z[i]);
+    for (size_t at = f; at-- > 0;)
+        for (size_t i = 0; i < at; i++) {
+            const size_t k = s->order[at], to = s->order[i];
+            z[to] = sub_product(s->x, z[to], *S_at(s, k, to), z[k]);
+        }
+    for (size_t at = 0; at < f; at++) {
+        const size_t k = s->order[at];
+        z[k] = ct_ex_div(s->x, z[k], *S_at(s, k, k));
+        for (size_t i = 0; i < at; i++)
+            z[k] = sub_product(s->x, z[k], *S_at(s, k, s->order[i]), z[s->order[i]]);
     }
 }
 

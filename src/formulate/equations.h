@@ -21,13 +21,22 @@ struct ct_q {
     int quaternion; // -1, or which of the four numbers of a quaternion this is
 };
 
+/// What elastic coordinates of a beam are: along its axis, across, rotations of sections; shares of modes.
+enum ct_elastic_kind {
+    CT_ELASTIC_ALONG,
+    CT_ELASTIC_ACROSS,
+    CT_ELASTIC_TURN,
+    CT_ELASTIC_MODE,
+};
+
 struct ct_u {
-    const char *name; // "crank.u"
-    ct_ex symbol;     // speed
-    ct_ex derivative; // the symbol u'
-    int q;            // the coordinate whose rate it is; -1 for angular velocities
-    int joint, body;  // whose it is; the other is -1
-    int beam;         // body whose elastic coordinate it belongs to; 0: none
+    const char *name;          // "crank.u"
+    ct_ex symbol;              // speed
+    ct_ex derivative;          // the symbol u'
+    int q;                     // the coordinate whose rate it is; -1 for angular velocities
+    int joint, body;           // whose it is; the other is -1
+    int beam;                  // body whose elastic coordinate it belongs to; 0: none
+    enum ct_elastic_kind kind; // of those
 };
 
 struct ct_entry { // of a sparse matrix

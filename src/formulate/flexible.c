@@ -21,6 +21,11 @@ static unsigned family_of(int kind)
     return family[kind];
 }
 
+static enum ct_elastic_kind sort_of(int kind)
+{
+    return kind == U ? CT_ELASTIC_ALONG : kind < RX ? CT_ELASTIC_ACROSS : CT_ELASTIC_TURN;
+}
+
 static bool is_fixed(const struct ct_flexible *f, int node, int kind)
 {
     const bool is_end = node == f->beam->nelement;
@@ -161,7 +166,9 @@ static void settle(struct ct_build *b, struct ct_flexible *f)
     for (int e = 0; e < beam->nelement; e++) {
         struct ct_span *s = &f->element[e].span;
         s->start = e ? beam->end[e - 1] : CT_EX_ZERO;
-        s->length = ct_ex_sub(b->x, beam->end[e], s->start);
+        // one and the same to the last bit, so that elements are one program
+        s->length = beam->is_even ? ct_ex_scale(b->x, 1.0 / beam->nelement, beam->length)
+                                  : ct_ex_sub(b->x, beam->end[e], s->start);
     }
 }
 
@@ -195,13 +202,15 @@ struct ct_flexible *ct_flexible_of(const struct ct_build *b, int body)
 
 // ---- unknowns -------------------------------------------------------------------------------------------
 
-static int new_unknown(struct ct_build *b, struct ct_flexible *f, const char *name)
+static int new_unknown(struct ct_build *b, struct ct_flexible *f, const char *name,
+                       enum ct_elastic_kind kind)
 {
     struct ct_equations *s = b->eqs;
     struct ct_q q = {.name = name, .quaternion = -1};
     struct ct_u u = {.name = ct_arena_printf(b->arena, "%s.u", name)};
     u.joint = u.body = -1;
     u.beam = f->body;
+    u.kind = kind;
     u.q = (int)s->nq;
     q.symbol = ct_ex_sym(b->x, CT_SYM_Q, name, (uint32_t)s->nq);
     u.symbol = q.rate = ct_ex_sym(b->x, CT_SYM_U, u.name, (uint32_t)s->nu);
@@ -293,7 +302,8 @@ static void modal_unknowns(struct ct_build *b, struct ct_flexible *f)
                     k < s.nstatic
                         ? ct_arena_printf(b->arena, "%s.%d.%s", f->name, i / NKIND,
                                           kind_name[i % NKIND])
-                        : ct_arena_printf(b->arena, "%s.mode%d", f->name, k - s.nstatic + 1));
+                        : ct_arena_printf(b->arena, "%s.mode%d", f->name, k - s.nstatic + 1),
+                    k < s.nstatic ? sort_of(i % NKIND) : CT_ELASTIC_MODE);
     }
     for (int i = 0; i < s.n; i++)
         combine_shapes(b, f, &s, i);
@@ -307,7 +317,8 @@ static void nodal_unknowns(struct ct_build *b, struct ct_flexible *f)
             if (is_fixed(f, node, kind))
                 continue;
             const int k = new_unknown(
-                b, f, ct_arena_printf(b->arena, "%s.%d.%s", f->name, node, kind_name[kind]));
+                b, f, ct_arena_printf(b->arena, "%s.%d.%s", f->name, node, kind_name[kind]),
+                sort_of(kind));
             struct ct_freedom *d = &f->freedom[NKIND * node + kind];
             d->value = f->elastic[k].value;
             d->rate = f->elastic[k].rate;

@@ -9,8 +9,8 @@
 
 // A call of a solver for dense matrices, in operations of straight-line code.
 static const double call_cost = 300;
-// Straight-line code of more operations does not fit the nearer caches, and loops over a matrix are faster.
-static const double longest_program = 60000;
+// What is made of more operations takes too much memory; below, repeats are rolled up (codegen/roll.h).
+static const double longest_program = 1e7;
 
 double ct_counted_cost(const struct ct_tape_counts *c)
 {

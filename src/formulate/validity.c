@@ -44,6 +44,7 @@ static double shape(const struct line *s, const struct ct_shape *p, double xi, d
 static double welded(const struct ct_build *b, const struct ct_flexible *f,
                      const struct ct_instance *joint, double *x)
 {
+    *x = 0;
     const struct ct_model *m = b->model;
     if (joint->from < 0 || strcmp(joint->cls->name, "weld") != 0)
         return 0;

@@ -37,7 +37,7 @@ void *ct_alpha_create(struct ct_arena *a, const struct ct_method *method,
     struct state *s = CT_NEW(a, struct state);
     s->dae = p->dae;
     s->c = method->coefficients;
-    s->it = ct_iteration_create(a, p->dae, s->c->is_stabilised, false);
+    s->it = ct_iteration_create(a, p, s->c->is_stabilised, false);
     double **const speeds[] = {&s->start.a, &s->start.u_dot, &s->end.a, &s->end.u_dot, &s->a0,
                                &s->jerk,    &s->d,           &s->u,     &s->dd,        &s->du,
                                &s->r,       &s->rate,        &s->rate1, &s->out};

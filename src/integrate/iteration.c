@@ -1,5 +1,6 @@
 // See iteration.h. The rules of convergence are those of Hairer and Wanner (1996), IV.8, key hairer1996.
 #include "integrate/iteration.h"
+#include "integrate/stepper.h"
 #include "numeric/dense.h"
 
 #include <float.h>
@@ -22,12 +23,14 @@ static const double hopeless = 100;
 static const double kappa_index3 = 0.01;
 enum { MOST = 10, MOST_FINEST = 30 };
 
-struct ct_iteration *ct_iteration_create(struct ct_arena *a, const struct ct_dae *dae,
+struct ct_iteration *ct_iteration_create(struct ct_arena *a, const struct ct_problem *p,
                                          bool is_stabilised, bool is_complex)
 {
     struct ct_iteration *it = CT_NEW(a, struct ct_iteration);
+    const struct ct_dae *dae = p->dae;
     const int nu = dae->nu, m = dae->most_rows, n = nu + (is_stabilised ? 2 : 1) * m;
     it->dae = dae;
+    it->groups = p->groups;
     it->is_stabilised = is_stabilised;
     it->nu = nu;
     it->version = -1;
@@ -51,15 +54,22 @@ struct ct_iteration *ct_iteration_create(struct ct_arena *a, const struct ct_dae
     return it;
 }
 
+// The size of a state, or of its group.
+static double size_of(const struct ct_groups *g, int i, const double *y)
+{
+    return g && g->of[i] >= 0 ? g->size[g->of[i]] : fabs(y[i]);
+}
+
 bool ct_iteration_begin(struct ct_iteration *it, const struct ct_tolerance *tolerance,
                         const double *y)
 {
     const struct ct_dae *dae = it->dae;
     const struct ct_tolerance *tol = tolerance ? tolerance : &finest;
+    ct_stepper_group(it->groups, dae->nq + dae->nu, y, y);
     for (int k = 0; k < it->nu; k++) {
         const int i = dae->q_of[k];
-        it->weight[k] = tol->rtol * (i < 0 ? 1 : fabs(y[i])) + tol->atol;
-        it->weight[it->nu + k] = tol->rtol * fabs(y[dae->nq + k]) + tol->atol;
+        it->weight[k] = tol->rtol * (i < 0 ? 1 : size_of(it->groups, i, y)) + tol->atol;
+        it->weight[it->nu + k] = tol->rtol * size_of(it->groups, dae->nq + k, y) + tol->atol;
     }
     it->kappa = tolerance ? fmin(kappa_most, sqrt(tol->rtol + tol->atol)) : kappa_finest;
     it->kappa *= it->is_stabilised ? 1 : kappa_index3;

@@ -21,6 +21,7 @@ enum ct_verdict { CT_GO_ON, CT_CONVERGED, CT_DIVERGED };
 
 struct ct_iteration {
     const struct ct_dae *dae;
+    const struct ct_groups *groups; // of the states
     bool is_stabilised;
     int nu, m, n;             // speeds, rows, equations
     long version;             // of the rows
@@ -43,7 +44,7 @@ struct ct_iteration {
 };
 
 /// Room for everything, the complex parts on request.
-struct ct_iteration *ct_iteration_create(struct ct_arena *a, const struct ct_dae *dae,
+struct ct_iteration *ct_iteration_create(struct ct_arena *a, const struct ct_problem *p,
                                          bool is_stabilised, bool is_complex);
 
 /// At the begin of a step: which rows count, what is small. True if the rows are others than before, so that

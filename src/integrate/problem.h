@@ -47,6 +47,13 @@ struct ct_dae {
                             double *J, double *D);
 };
 
+/// States that are components of one thing, as those of a vector: all are measured by the largest of them.
+struct ct_groups {
+    int n;
+    const int *of; // per state: 0 ... n - 1; -1: measured by itself
+    double *size;  // workspace (n)
+};
+
 struct ct_problem {
     void *user;
     int ny; // states
@@ -54,6 +61,8 @@ struct ct_problem {
     const struct ct_dae *dae;
     /// Per state: counts in error control (quadratures do not). NULL: all do.
     const bool *watched;
+    /// NULL: every state is measured by itself.
+    const struct ct_groups *groups;
 
     /// dy (ny, out) = f(t, y).
     enum ct_eval (*rhs)(void *user, double t, const double *y, double *dy);
@@ -123,7 +132,7 @@ struct ct_integrate_stats {
     double last_time;      // reached, also on failure
 };
 
-/// What an error is measured against: rtol * max(|y_i| at either end of the step) + atol.
+/// What an error is measured against: rtol * max(|y_i| at either end of the step) + atol, of a group the largest |y_i|.
 struct ct_tolerance {
     double rtol, atol;
 };

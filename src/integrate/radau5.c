@@ -91,7 +91,7 @@ static void *create(struct ct_arena *a, const struct ct_method *method,
     const int nu = p->dae->nu, m = p->dae->most_rows;
     (void)method;
     s->dae = p->dae;
-    s->it = ct_iteration_create(a, p->dae, true, true);
+    s->it = ct_iteration_create(a, p, true, true);
     create_stages(a, &s->before, p->dae);
     create_stages(a, &s->now, p->dae);
     create_stages(a, &s->change, p->dae);

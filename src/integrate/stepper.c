@@ -58,15 +58,34 @@ void ct_stepper_combine(double *restrict out, const double *y, double h, const d
     }
 }
 
+void ct_stepper_group(const struct ct_groups *g, int ny, const double *y, const double *y1)
+{
+    if (!g)
+        return;
+    memset(g->size, 0, (size_t)g->n * sizeof *g->size);
+    for (int i = 0; i < ny; i++) {
+        const int k = g->of[i];
+        if (k >= 0)
+            g->size[k] = fmax(g->size[k], fmax(fabs(y[i]), fabs(y1[i])));
+    }
+}
+
+// Of the state or, where they are known, its group.
+static double size_of(const struct ct_groups *g, int i, const double *y, const double *y1)
+{
+    return g && g->of[i] >= 0 ? g->size[g->of[i]] : fmax(fabs(y[i]), fabs(y1[i]));
+}
+
 double ct_stepper_norm(const struct ct_problem *p, const struct ct_tolerance *tolerance,
                        const double *y, const double *y1, const double *e)
 {
     double sum = 0;
     int n = 0;
+    ct_stepper_group(p->groups, p->ny, y, y1);
     for (int i = 0; i < p->ny; i++) {
         if (p->watched && !p->watched[i])
             continue;
-        const double weight = tolerance->rtol * fmax(fabs(y[i]), fabs(y1[i])) + tolerance->atol;
+        const double weight = tolerance->rtol * size_of(p->groups, i, y, y1) + tolerance->atol;
         sum += (e[i] / weight) * (e[i] / weight);
         n++;
     }

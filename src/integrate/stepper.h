@@ -13,6 +13,9 @@ enum ct_eval ct_stepper_rhs(const struct ct_problem *p, double t, const double *
 void ct_stepper_combine(double *restrict out, const double *y, double h, const double *a,
                         const double *k, int s, int n);
 
+/// g->size = the largest |y_i|, |y1_i| of each group. g may be NULL.
+void ct_stepper_group(const struct ct_groups *g, int ny, const double *y, const double *y1);
+
 /// Root mean square of e_i / (rtol max(|y_i|, |y1_i|) + atol) over the watched states; 0 if there
 /// are none. e (ny).
 double ct_stepper_norm(const struct ct_problem *p, const struct ct_tolerance *tolerance,

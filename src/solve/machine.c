@@ -216,8 +216,14 @@ static void compile_rest(struct ct_arena *a, struct ct_machine *m, const struct 
     for (size_t i = 0; i < e->nmemory; i++) // rotations from which quaternions start
         for (int k = 0; k < 9 && e->memory[i].kind == CT_MEMORY_QUATERNION; k++)
             push(&memory, e->memory[i].R.e[k]);
-    for (size_t i = 0; i < e->nu && (e->nmode || e->x->ntable); i++) // rates can jump
-        push(&momentum, ct_ex_diff(e->x, e->kinetic, e->u[i].symbol));
+    if (e->nmode || e->x->ntable) { // rates can jump
+        ct_ex *u = CT_NEWN(a, ct_ex, e->nu + 1);
+        for (size_t i = 0; i < e->nu; i++)
+            u[i] = e->u[i].symbol;
+        momentum.e = CT_NEWN(a, ct_ex, e->nu + 1);
+        ct_ex_gradient(e->x, a, e->kinetic, u, e->nu, momentum.e);
+        momentum.n = e->nu;
+    }
     for (size_t i = 0; i < e->ndriver; i++) {
         push(&driver, e->driver[i].value);
         push(&driver, e->driver[i].rate);

@@ -954,6 +954,30 @@ static bool march(struct ct_run *r, struct ct_problem *p, struct ct_integrate_op
     }
 }
 
+// Displacements of a beam along its axis, those across, rotations and the rates of each are measured by the largest of
+// their kind. Those along are much smaller than those across, but forces come from them.
+static const struct ct_groups *group_states(struct ct_run *r)
+{
+    struct ct_groups *g = CT_NEW(r->arena, struct ct_groups);
+    int *of = CT_NEWN(r->arena, int, r->ny);
+    const struct ct_u *before = NULL;
+    for (size_t i = 0; i < r->ny; i++)
+        of[i] = -1;
+    for (size_t k = 0; k < r->e->nu; k++) {
+        const struct ct_u *u = &r->e->u[k];
+        if (!u->beam || u->kind == CT_ELASTIC_MODE)
+            continue;
+        if (!before || before->beam != u->beam) // a beam's coordinates follow each other
+            g->n += 2 * CT_ELASTIC_MODE;
+        before = u;
+        of[u->q] = g->n - 1 - (int)u->kind;
+        of[r->e->nq + k] = of[u->q] - CT_ELASTIC_MODE;
+    }
+    g->of = of;
+    g->size = CT_NEWN(r->arena, double, g->n + 1);
+    return g->n ? g : NULL;
+}
+
 bool ct_run_simulate(struct ct_run *r, const struct ct_run_options *o,
                      struct ct_run_report *report)
 {
@@ -988,6 +1012,7 @@ bool ct_run_simulate(struct ct_run *r, const struct ct_run_options *o,
                            .ny = (int)r->ny,
                            .dae = o->method->is_implicit ? ct_dae_create(r->arena, r->s) : NULL,
                            .watched = watched,
+                           .groups = group_states(r),
                            .rhs = rhs,
                            .project = project,
                            .accepted = accepted,

@@ -301,6 +301,28 @@ static const char *arm(int n)
     return close_model(f);
 }
 
+// A beam of n elements on a body that turns freely: a pendulum in the plane, in space on a ball joint.
+struct beam {
+    const char *formulation;
+    bool is_spatial;
+};
+
+static const char *beam(const struct beam *k, int n)
+{
+    FILE *f = open_model("beam", k->is_spatial ? "[1, -g, 2]" : "[0, -g, 0]", "");
+    fprintf(f,
+            "bodies:\n  base: {mass: 2, inertia: 0.5, points: {seat: [0.1, 0, 0]}}\n  beam: "
+            "{type: beam, length: 10, elements: %d, density: 3000, E: 7e10, "
+            "area: 4e-4,\n    Iy: 3e-7, Iz: 2e-7, G: 2.7e10, J: 4e-7, formulation: %s,\n"
+            "    points: {tip: length}}\n",
+            n, k->formulation);
+    fprintf(f,
+            "joints:\n  hub: {type: %s, from: ground, to: base}\n"
+            "  clamp: {type: weld, from: base.seat, to: beam}\n",
+            k->is_spatial ? "spherical" : "revolute");
+    return close_model(f);
+}
+
 static const char *shipped(const char *name)
 {
     static char path[512];
@@ -732,6 +754,89 @@ static void sweep(int members)
     ratio("  single run / member", single / lanes, 3);
 }
 
+// ---- beams --------------------------------------------------------------------------------------
+
+static double accelerations(struct subject *s)
+{
+    const call_fn f[] = {accelerate};
+    void *const data[] = {s};
+    double t;
+    measure(f, data, 1, &t);
+    return t;
+}
+
+static double operations(const struct subject *s)
+{
+    const struct ct_machine *m = s->machine;
+    const struct ct_tape_counts c = (m->solved.nout ? &m->solved : &m->motion)->listing->counts;
+    return (double)(c.multiplications + c.additions + c.divisions + c.functions)
+         + (m->solved.nout ? 0 : ct_embed_operations(ct_run_embed(s->run)));
+}
+
+// Cost against the number of elements; it should be in proportion.
+static void beams(const char *what, const struct beam *kind, bool quick)
+{
+    static const int all[] = {5, 10, 20, 50, 100};
+    double first = 0, first_generation = 0;
+    printf("\n%s, u' with the solve: per evaluation, per element, ratio to 5 elements | model "
+           "to native, per "
+           "element, ratio | operations per element\n",
+           what);
+    for (size_t i = 0; i < (quick ? 2 : COUNT(all)); i++) {
+        struct subject s;
+        const int n = all[i];
+        const char *path = beam(kind, n);
+        const double generation = median_of(model_to_native, path, quick ? 1 : 3) / n;
+        open_subject(&s, path);
+        const double t = accelerations(&s) / n;
+        first = i ? first : t;
+        first_generation = i ? first_generation : generation;
+        printf("  N = %3d %22.3f us %10.1f ns %8.2f | %8.3f ms %8.1f us %8.2f | %8.0f\n", n,
+               1e6 * n * t, 1e9 * t, t / first, 1e3 * n * generation, 1e6 * generation,
+               generation / first_generation, operations(&s) / n);
+        close_subject(&s);
+    }
+}
+
+static void run_residual(void *data)
+{
+    struct subject *s = data;
+    ct_program_run(&s->machine->residual, s->machine->input);
+}
+
+// Forces of inertia, stiffness and weight for given accelerations: what the feasibility study calls inertia forces, here
+// with the stiffness and all of the base's motion.
+static void beam_forces(const char *what, const struct beam *kind)
+{
+    struct subject s;
+    const call_fn f[] = {run_residual};
+    void *const data[] = {&s};
+    double t;
+    open_subject(&s, beam(kind, 10));
+    ct_formulate_residual(&s.equations);
+    ct_machine_add_residual(s.ctx.model, s.machine);
+    measure(f, data, 1, &t);
+    line(what, t, 1.2e-6);
+    close_subject(&s);
+}
+
+static void all_beams(bool quick)
+{
+    static const struct {
+        const char *what;
+        struct beam kind;
+    } all[] = {{"foreshortened beam in a plane", {"foreshortening", false}},
+               {"foreshortened beam in space", {"foreshortening", true}},
+               {"linear beam in a plane", {"linear", false}},
+               {"linear beam in space", {"linear", true}}};
+    for (size_t i = 0; i < COUNT(all); i++)
+        beams(all[i].what, &all[i].kind, quick);
+    putchar('\n');
+    beam_forces("foreshortened beam in space, 10 elements: forces", &all[1].kind);
+    beam_forces("linear beam in space, 10 elements: forces", &all[3].kind);
+    unlink(temporary());
+}
+
 int main(int argc, char **argv)
 {
     const bool quick = argc > 1 && strcmp(argv[1], "--quick") == 0;
@@ -751,5 +856,6 @@ int main(int argc, char **argv)
         links_by_bodies(20);
         links_by_bodies(80);
     }
+    all_beams(quick);
     return 0;
 }

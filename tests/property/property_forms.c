@@ -310,13 +310,33 @@ static const char *row_text(struct ct_arena *a, int n)
     return text;
 }
 
-static double operations_for_row(int n)
+// A four-bar whose coupler is a beam of n elements.
+static const char *beam_text(struct ct_arena *a, int n)
+{
+    return text_of(
+        a,
+        "cotree: 1\nname: beam\ngravity: [0, -9.81, 0]\nbodies:\n"
+        "  ground: {points: {foot: [1, 0, 0]}}\n"
+        "  crank: {mass: 1, inertia: 1/12, com: [1/2, 0, 0], points: {end: [1, 0, 0]}}\n"
+        "  rocker: {mass: 1, inertia: 1/12, com: [1/2, 0, 0], points: {end: [1, 0, 0]}}\n"
+        "  coupler: {type: beam, length: 1, elements: %d, density: 3000, E: 7e10, area: 4e-4, "
+        "Iz: 2e-7, formulation: foreshortening, points: {end: length}}\n"
+        "joints:\n"
+        "  a: {type: revolute, from: ground, to: crank, initial: {q: 1, u: -1}}\n"
+        "  b: {type: revolute, from: crank.end, to: coupler, initial: {q: -1, guess: true}}\n"
+        "  c: {type: revolute, from: coupler.end, to: rocker.end, initial: {q: 1, guess: "
+        "true}}\n"
+        "  d: {type: revolute, from: ground.foot, to: rocker, initial: {q: 1, guess: true}}\n",
+        n);
+}
+
+static double operations_for(const char *(*text)(struct ct_arena *a, int n), int n)
 {
     struct system s;
     struct variant v;
     struct ct_arena *a = ct_arena_create();
     assert_non_null(a);
-    system_open_text(&s, "row", row_text(a, n));
+    system_open_text(&s, "row", text(a, n));
     variant_open(&s, &by_joints, &v);
     variant_set(&v, &s.start, 0);
     assert_true(ct_embed_choose(v.s));
@@ -332,11 +352,22 @@ static double operations_for_row(int n)
 static void cost_grows_with_the_number_of_loops(void **state)
 {
     (void)state;
-    const double few = operations_for_row(10), many = operations_for_row(20),
-                 most = operations_for_row(40);
+    const double few = operations_for(row_text, 10), many = operations_for(row_text, 20),
+                 most = operations_for(row_text, 40);
     assert_true(few > 0);
     assert_true(many - few > 0);
     assert_true(fabs((most - many) / (many - few) - 2) < 0.05);
+}
+
+// Twice the elements, twice the operations, though the columns next to the cut are joined to all of them.
+static void cost_grows_with_the_number_of_elements(void **state)
+{
+    (void)state;
+    const double few = operations_for(beam_text, 5), many = operations_for(beam_text, 10),
+                 most = operations_for(beam_text, 20);
+    assert_true(few > 0);
+    assert_true(many - few > 0);
+    assert_true(fabs((most - many) / (many - few) - 2) < 0.1);
 }
 
 // The program of a form has the same bits in every back end.
@@ -371,6 +402,7 @@ int main(void)
                                        cmocka_unit_test(runs_refine_and_make_other_forms),
                                        cmocka_unit_test(the_cheapest_form_is_chosen),
                                        cmocka_unit_test(cost_grows_with_the_number_of_loops),
+                                       cmocka_unit_test(cost_grows_with_the_number_of_elements),
                                        cmocka_unit_test(back_ends_agree)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

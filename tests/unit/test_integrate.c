@@ -1,6 +1,7 @@
 // Integration against solutions in closed form: orders, tolerances, events, samples, refusals. The explicit methods,
 // which stand first in the table; test_implicit.c has the others.
 #include "integrate/problem.h"
+#include "integrate/stepper.h"
 
 #include <float.h>
 #include <math.h>
@@ -892,6 +893,38 @@ static void a_quadrature_does_not_shorten_steps(void **unused)
     }
 }
 
+static void a_group_is_measured_by_its_largest_member(void **unused)
+{
+    (void)unused;
+    static const int of[] = {0, -1, 0, 1};
+    double size[2];
+    const struct ct_groups g = {2, of, size};
+    const double y[] = {1e-9, 2, -3, 0}, y1[] = {0, 1, 4, 0.5}, e[] = {4, 2, 8, 1};
+    const struct ct_tolerance tolerance = {.rtol = 1};
+    struct ct_problem p = {.ny = 4, .groups = &g};
+    assert_true(fabs(ct_stepper_norm(&p, &tolerance, y, y1, e) - sqrt((1 + 1 + 4 + 4) / 4.))
+                < 1e-15);
+    p.groups = NULL;
+    assert_true(ct_stepper_norm(&p, &tolerance, y, y1, e) > 1e9);
+    // an oscillation has the size of its amplitude, not of the place that passes through zero
+    static const int both[] = {0, 0};
+    const struct ct_groups one = {1, both, size};
+    for (int m = 0; m < ct_nmethod && !ct_methods[m]->is_implicit; m++) {
+        long steps[2];
+        for (int k = 0; k < 2; k++) {
+            struct record *r = begin();
+            double state[NY] = {1, 0};
+            check_fine(r, run(r, ct_methods[m],
+                              (struct ct_problem){
+                                  .ny = 2, .rhs = oscillator, .groups = k ? &one : NULL},
+                              (struct ct_integrate_options){.t1 = 100, .atol = 1e-12}, state));
+            steps[k] = r->stats.steps;
+            end(r);
+        }
+        assert_true(steps[1] < steps[0]);
+    }
+}
+
 // A pendulum of length 1 in gravity 1 as a point (x, y, x', y') on a circle.
 static enum ct_eval point_on_circle(void *user, double t, const double *y, double *dy)
 {
@@ -1014,6 +1047,7 @@ int main(void)
         cmocka_unit_test(limits_and_senseless_options_are_errors),
         cmocka_unit_test(the_caller_may_stop_a_run),
         cmocka_unit_test(a_quadrature_does_not_shorten_steps),
+        cmocka_unit_test(a_group_is_measured_by_its_largest_member),
         cmocka_unit_test(projection_keeps_steps_and_samples_on_the_circle),
         cmocka_unit_test(nothing_is_allocated_while_stepping),
     };

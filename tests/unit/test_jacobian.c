@@ -2,6 +2,8 @@
 #include "random_ex.h"
 #include "tests/check.h"
 
+#include <string.h>
+
 enum { NSYM = 6, NNODE = 120, NF = 9 };
 
 struct fixture {
@@ -94,10 +96,42 @@ static void seeds_form_directions(void **unused)
     end(&f);
 }
 
+// Backwards the same numbers as one derivative at a time.
+static void gradients_are_single_derivatives(void **unused)
+{
+    (void)unused;
+    struct random r = random_start("gradient");
+    const double value[NSYM] = {0.3, -0.7, 1.1, 0.9, -1.3, 0.5};
+    int ncompared = 0;
+    for (int trial = 0; trial < 300; trial++) {
+        enum { NSMALL = 20 };
+        struct fixture f;
+        begin(&f);
+        ct_ex node[NSYM + NSMALL], got[NSYM];
+        memcpy(node, f.sym, sizeof f.sym);
+        for (size_t i = NSYM; i < NSYM + NSMALL; i++)
+            node[i] = random_node(&r, &f.x, node, i);
+        const ct_ex top = node[NSYM + NSMALL - 1];
+        ct_ex_gradient(&f.x, f.scratch, top, f.sym, NSYM, got);
+        for (size_t k = 0; k < NSYM; k++) {
+            const double want = ct_ex_value(&f.x, ct_ex_diff(&f.x, top, f.sym[k]), value);
+            if (!isfinite(want) || fabs(want) > 1e6)
+                continue;
+            const double is = ct_ex_value(&f.x, got[k], value);
+            if (!isnan(is)) // 0 times infinity where forwards there is no such product
+                assert_true(fabs(is - want) <= 1e-9 * (1 + fabs(want)));
+            ncompared += !isnan(is) && want != 0;
+        }
+        end(&f);
+    }
+    assert_true(ncompared > 100);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(entries_are_single_derivatives),
+        cmocka_unit_test(gradients_are_single_derivatives),
         cmocka_unit_test(seeds_form_directions),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -263,6 +263,88 @@ static void same_listing_same_code(void **unused)
     finish(&f);
 }
 
+// ---- loops ----------------------------------------------------------------------------------------
+
+enum {
+    NROW = 5000,
+    ODD = 701
+}; // so many that four lanes are rolled up, too; every ODD-th row does more
+
+// A sweep forwards with a running sum and a neighbour, one backwards as a banded solve does it, a third that reads both;
+// constants by row, parameters, what is the same in all rows. out: 2 NROW + 1.
+static void sweeps(struct ct_exs *x, const ct_ex *q, ct_ex p, ct_ex *out)
+{
+    static ct_ex r[NROW], t[NROW], sum[NROW], y[NROW];
+    const ct_ex all = ct_ex_fun(x, CT_OP_SIN, q[3 * NROW]);
+    for (int e = 0; e < NROW; e++) {
+        const ct_ex a = q[3 * e], b = q[3 * e + 1], c = q[3 * e + 2];
+        r[e] = ct_ex_add(x, ct_ex_mul(x, a, b),
+                         ct_ex_mul(x, ct_ex_const(x, 1 + 0.37 * e), ct_ex_add(x, c, p)));
+        t[e] = ct_ex_sub(
+            x, ct_ex_mul(x, r[e], a),
+            ct_ex_div(x, ct_ex_mul(x, all, b), ct_ex_add(x, CT_EX_ONE, ct_ex_mul(x, c, c))));
+        if (e)
+            t[e] = ct_ex_add(x, t[e], ct_ex_mul(x, r[e - 1], b));
+        if (e % ODD == 0)
+            t[e] = ct_ex_fun(x, CT_OP_SQRT, ct_ex_add(x, CT_EX_ONE, ct_ex_mul(x, t[e], t[e])));
+        sum[e] = ct_ex_add(x, e ? sum[e - 1] : p, ct_ex_mul(x, t[e], r[e]));
+    }
+    for (int e = NROW; e-- > 0;) {
+        const ct_ex down = ct_ex_add(x, ct_ex_const(x, 2), ct_ex_mul(x, r[e], r[e]));
+        const ct_ex next = e + 1 < NROW ? y[e + 1] : all;
+        y[e] = ct_ex_div(x, ct_ex_sub(x, t[e], ct_ex_mul(x, next, q[3 * e])), down);
+    }
+    for (int e = 0; e < NROW; e++) {
+        out[e] = y[e];
+        out[NROW + e] = ct_ex_sub(x, ct_ex_mul(x, y[NROW - 1 - e], sum[e]),
+                                  ct_ex_mul(x, sum[NROW - 1], t[e]));
+    }
+    out[2 * NROW] = sum[NROW - 1];
+}
+
+static void loops_have_the_same_bits(void **unused)
+{
+    (void)unused;
+    enum { NIN = 3 * NROW + 2, NOUT = 2 * NROW + 1, MOST = 4 };
+    static ct_ex q[NIN], out[NOUT];
+    static size_t slot[NIN];
+    static double input[MOST * NIN], want[NOUT], alone[NIN], got[MOST * NOUT];
+    struct random r = random_start(__func__);
+    struct ct_arena *a = ct_arena_create();
+    struct ct_exs x;
+    ct_exs_init(&x, a);
+    for (size_t i = 0; i < NIN; i++) {
+        q[i] = ct_ex_sym(&x, i + 1 < NIN ? CT_SYM_Q : CT_SYM_PARAM, "q", (uint32_t)i);
+        slot[i] = i;
+    }
+    sweeps(&x, q, q[NIN - 1], out);
+    const struct ct_listing *l = ct_listing_create(a, &x, out, NOUT, q, slot, NIN, CT_FUSE_NO);
+    const struct ct_tape *tape = ct_tape_create(a, l);
+    double *work = CT_NEWN(a, double, ct_tape_work(tape) + 1);
+    for (int lanes = 1; lanes <= MOST; lanes += 3) {
+        const struct ct_native *f = ct_native_create(a, l, lanes);
+        if (!f)
+            continue;
+        const size_t straight = 6; // bytes of an instruction at least
+        assert_true(ct_native_code_size(f) < straight * l->nins);
+        for (size_t i = 0; i < (size_t)lanes * NIN; i++)
+            input[i] = random_double(&r);
+        double *mine = CT_NEWN(a, double, ct_native_work(f) + 1);
+        ct_native_prepare(f, input, mine);
+        for (int again = 0; again < 2; again++) // nothing is left behind
+            ct_native_eval(f, input, got, mine);
+        for (int lane = 0; lane < lanes; lane++) {
+            for (int i = 0; i < NIN; i++)
+                alone[i] = input[lanes * i + lane];
+            ct_tape_prepare(tape, alone, work);
+            ct_tape_eval(tape, alone, want, work);
+            for (size_t k = 0; k < NOUT; k++)
+                assert_same(got[(size_t)lanes * k + (size_t)lane], want[k], "native", k);
+        }
+    }
+    ct_arena_destroy(a);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -271,6 +353,7 @@ int main(void)
         cmocka_unit_test(also_with_fused_products),
         cmocka_unit_test(only_lonely_products_are_fused),
         cmocka_unit_test(same_listing_same_code),
+        cmocka_unit_test(loops_have_the_same_bits),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

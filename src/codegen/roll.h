@@ -1,0 +1,58 @@
+// Loops in a straight-line program: stretches that do the same on other operands again and again, as the elements of a
+// beam and the bodies of a chain make them.
+//
+//     order     ... | body, row 0 | body, row 1 | ... | body, row count - 1 | ...
+//     work      results of a row that something beyond it reads, row after row, `width` places each
+//
+// Operands of the body are results of the same row, values that are the same in all rows, or at
+//
+//     place + row * stride     of the inputs or of the work array.
+//
+// Where they are not, as at the first row of a running sum, they are copied to such places before the loop.
+//
+// What always holds: rolled or not, the same instructions are done on the same operands in the same order.
+#ifndef CT_CODEGEN_ROLL_H
+#define CT_CODEGEN_ROLL_H
+
+#include "expr/listing.h"
+
+/// Strides that one loop can have.
+enum { CT_ROLL_STREAMS = 7 };
+
+enum ct_reach { CT_REACH_ROW, CT_REACH_FIXED, CT_REACH_INPUT, CT_REACH_WORK };
+
+struct ct_operand {
+    enum ct_reach reach;
+    uint32_t at; // ROW: instruction of the body; FIXED: value; else the place at row 0
+    int32_t stride;
+};
+
+struct ct_copy {
+    uint32_t value, place; // of the work array
+};
+
+struct ct_loop {
+    uint32_t first, period, count; // places in the order: the first one, of a row; rows
+    struct ct_operand *operand;    // (3 x period)
+    uint32_t *result;     // (period) place at row 0, CT_VALUE_NONE: read in its row alone
+    int32_t width;        // stride of results
+    struct ct_copy *copy; // before the loop
+    size_t ncopy, copy_cap;
+};
+
+struct ct_roll {
+    struct ct_loop *loop; // ascending
+    size_t nloop;
+    uint32_t *place;       // by value: where a result of a loop is kept; CT_VALUE_NONE: others
+    struct ct_copy *table; // constants and parameters by row: copied once
+    size_t ntable, table_cap;
+    uint32_t nwork; // places of the work array, up to here
+};
+
+/// The loops of n instructions in the order of their execution. is_alone: by operator, not in loops. Places of the work
+/// array from nwork on are used. Cost: about n.
+struct ct_roll ct_roll_find(struct ct_arena *a, const struct ct_listing *l,
+                            const uint32_t *order, uint32_t n, const bool is_alone[CT_NKIND],
+                            uint32_t nwork);
+
+#endif
