@@ -123,8 +123,8 @@ struct ct_sim_options {
     double until;    /* end time [s]; the spacing of samples stays that of the model */
     long samples;    /* number of samples, both ends included */
     bool verify; /* after the run another one, and from both the global error of each output */
-    const char
-        *backend; /* what evaluates the equations: "auto", "native" or "tape"; same to rounding */
+    const char *
+        backend; /* what evaluates the equations: "auto", "native" or "tape"; same to rounding */
 };
 
 /** Where results go. All of it may be zero. */
