@@ -319,11 +319,18 @@ static size_t lightest(const struct ct_embed *s)
 static bool massless(struct ct_embed *s, size_t speed)
 {
     const struct ct_u *u = &s->m->e->u[speed];
-    const struct ct_mark mark = u->joint >= 0 ? s->m->model->joint[u->joint].mark
-                                              : s->m->model->body[u->body].instance.mark;
+    const struct ct_model *model = s->m->model;
+    const char *name = u->q >= 0 ? s->m->e->q[u->q].name : u->name;
+    if (u->beam > 0)
+        return ct_error(s->ctx, model->body[u->beam].instance.mark, CT_E_MASSLESS,
+                        "coordinate '%s' moves no mass: give the beam a 'rotary_inertia', or "
+                        "consistent mass",
+                        name);
+    const struct ct_mark mark
+        = u->joint >= 0 ? model->joint[u->joint].mark : model->body[u->body].instance.mark;
     return ct_error(s->ctx, mark, CT_E_MASSLESS,
                     "coordinate '%s' moves no mass: give a mass or an inertia to what it moves",
-                    u->q >= 0 ? s->m->e->q[u->q].name : u->name);
+                    name);
 }
 
 // The pivots of a solution in closed form must be positive. Behind one that is not, others are no numbers.

@@ -29,3 +29,14 @@ echo '-- signals that are not there'
 sed -i '/^outputs:/q' signals.yaml
 printf '  - %s\n' beam.tip.bending beam.tip.strain.x beam.tip.moment.q mass.deflection >>signals.yaml
 say check signals.yaml
+echo '-- rotations of nodes that move no mass'
+cat >lumped.yaml <<'END'
+cotree: 1
+bodies:
+  rod: {type: beam, length: 1, elements: 3, density: 2700, mass: lumped, E: 7e10, area: 1e-4, Iz: 1e-9}
+joints:
+  root: {type: revolute, from: ground, to: rod}
+simulation: {duration: 1}
+outputs: [root.q]
+END
+say simulate lumped.yaml
