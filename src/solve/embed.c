@@ -660,20 +660,28 @@ enum ct_eval ct_embed_project(struct ct_embed *s, double t, double *y)
     return CT_EVAL_OK;
 }
 
-// Dense pivots of larger systems cost more than a step does.
-static bool find_strength(struct ct_embed *s)
+// Dense factors of larger systems cost more than a step does.
+static bool is_large(const struct ct_embed *s)
 {
     enum { LARGE = 200 };
-    if (s->rank < LARGE || !is_form_due(s))
+    return s->rank >= LARGE;
+}
+
+static bool find_strength(struct ct_embed *s)
+{
+    if (!is_large(s) || !is_form_due(s))
         return false;
     s->strength.now = ct_form_close(s->form[0], s->m);
     s->sigma = ct_strength_sigma(&s->strength);
     return is_sound(s);
 }
 
-// The smallest singular value of J that is not that of a redundant row, against its largest: of redundant rows those
-// that are kept may lose rank where the others do not.
-static double nearness_of_all(struct ct_embed *s)
+static bool has_redundant_rows(const struct ct_embed *s)
+{
+    return s->rank < (int)s->m->nrow;
+}
+
+static double smallest_singular_value(struct ct_embed *s)
 {
     const size_t n = s->m->nu, m = s->m->nrow;
     memcpy(s->A, s->m->J, m * n * sizeof *s->A);
@@ -682,10 +690,15 @@ static double nearness_of_all(struct ct_embed *s)
     return s->b[s->rank - 1] / s->b[0];
 }
 
+bool ct_embed_has_pivot(const struct ct_embed *s)
+{
+    return s->rank && !(has_redundant_rows(s) && is_large(s));
+}
+
 double ct_embed_pivot(struct ct_embed *s)
 {
-    if (s->rank < (int)s->m->nrow)
-        return nearness_of_all(s);
+    if (has_redundant_rows(s))
+        return smallest_singular_value(s);
     // the place need not be one of the motion: what is known of the motion stays
     const double sigma = s->sigma, kappa = s->kappa, strength = s->strength.now;
     const bool is_known = find_strength(s) || factor(s);
@@ -694,6 +707,25 @@ double ct_embed_pivot(struct ct_embed *s)
     s->kappa = kappa;
     s->strength.now = strength;
     return pivot;
+}
+
+bool ct_embed_dependence(struct ct_embed *s, double *x, double *log_det)
+{
+    const int r = s->rank;
+    const double sigma = s->sigma, kappa = s->kappa;
+    const bool is_found = !is_large(s) && factor(s);
+    s->sigma = sigma;
+    s->kappa = kappa;
+    *log_det = 0;
+    for (int i = 0; i < r && is_found; i++) {
+        x[i] = 1 + fmod(i * 0.6180339887498949, 1); // in no simple relation
+        *log_det += log(fabs(s->Jd[i + r * i]));
+    }
+    if (is_found) {
+        ct_lu_solve(x, s->Jd, s->pivot, r, r, 1, r, false);
+        ct_lu_solve(x, s->Jd, s->pivot, r, r, 1, r, true);
+    }
+    return is_found;
 }
 
 void ct_embed_renew(struct ct_embed *s)

@@ -13,7 +13,7 @@ typedef double vec __attribute__((vector_size(W * sizeof(double)), aligned(8), m
 
 typedef long long mask __attribute__((vector_size(W * sizeof(long long)), may_alias));
 
-// Constants of step control, projection and choice of rows: those of driver.c, simulate.c and embed.c.
+// Constants of step control, projection and choice of rows: those of driver.c, simulate.c, singular.c and embed.c.
 static const double safety = 0.9, most_shrink = 0.2, most_growth = 5, remembered_error = 1e-4;
 static const double stretch = 1.1, least_step = 16 * DBL_EPSILON, least_scale = 1e-6;
 static const double singular_pivot = 0.25, singular_steps = 4;
@@ -46,7 +46,7 @@ struct lane {
     double end;   // time at the end of this try
     double error; // of it
     double kappa_chosen, sigma_chosen;
-    double pivot_most, pivot_last, pivot_time; // see foresee_singular in simulate.c
+    double pivot_most, pivot_last, pivot_time; // see singular.h
     int *row, *dependent, *independent;        // as in embed.h
     long steps;
     bool is_watched; // for stiffness
