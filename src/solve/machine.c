@@ -1,5 +1,6 @@
 // See machine.h.
 #include "solve/machine.h"
+#include "solve/tangent.h"
 
 #include <math.h>
 #include <string.h>
@@ -49,6 +50,9 @@ static struct inputs list_inputs(struct ct_arena *a, const struct ct_machine *m,
             break;
         case CT_SYM_WORK:
             slot = m->at_work;
+            break;
+        case CT_SYM_SEED: // behind the input: of tangents alone
+            slot = m->ninput + s->index;
             break;
         default:
             continue; // trial symbols and signals do not reach the equations
@@ -122,6 +126,8 @@ bool ct_machine_use(struct ct_arena *a, struct ct_machine *m, enum ct_backend ba
             available &= choose_backend(a, m, all[i]);
     for (struct ct_program *p = m->apart; p; p = p->next)
         available &= choose_backend(a, m, p);
+    if (m->lanes)
+        ct_tangent_lanes_use(a, m->lanes, m->asked != CT_BACKEND_TAPE, m->input);
     m->backend = m->motion.native ? "native" : "tape";
     return available || backend != CT_BACKEND_NATIVE;
 }
@@ -262,16 +268,26 @@ static void compile_residual(struct ct_arena *a, struct ct_machine *m, const str
         push(&residual, e->row[i].phi);
     for (size_t i = 0; i < e->nrow && f; i++)
         push(&residual, e->row[i].v);
-    if (f) {
+    if (f && !f->along) {
         push_slopes(&tangent, f->dq, f->ndq);
         push_slopes(&tangent, f->du, f->ndu);
         push_slopes(&tangent, f->da, f->nda);
         push_slopes(&tangent, f->dv, f->ndv);
-        for (size_t i = 0; i < e->nJ; i++)
-            push(&tangent, e->J[i].value);
     }
+    for (size_t i = 0; i < e->nJ && f; i++)
+        push(&tangent, e->J[i].value);
     compile(a, m, in, residual.e, residual.n, &m->residual);
     compile(a, m, in, tangent.e, tangent.n, &m->tangent);
+    m->slopes = m->tangent.out;
+    m->nslope = tangent.n;
+    if (!f || !f->along)
+        return;
+    const size_t own = f->ndq + f->ndu + f->nda + f->ndv;
+    const struct ct_listing *l = ct_listing_create(a, e->x, f->along->rate, e->nu + e->nrow,
+                                                   in->symbol, in->slot, in->n, CT_FUSE_NO);
+    m->nslope = own + e->nJ;
+    m->slopes = CT_NEWN(a, double, m->nslope + 1);
+    m->lanes = ct_tangent_lanes_create(a, f, l, e->nu, m->ninput);
 }
 
 static void start_input(struct ct_machine *m)
@@ -349,6 +365,8 @@ void ct_machine_prepare(struct ct_machine *m)
         prepare(all[i], m->input);
     for (struct ct_program *p = m->apart; p; p = p->next)
         prepare(p, m->input);
+    if (m->lanes)
+        ct_tangent_lanes_prepare(m->lanes, m->input);
 }
 
 static size_t code_size(const struct ct_program *p)
@@ -365,7 +383,7 @@ size_t ct_machine_code_size(struct ct_machine *m)
         n += code_size(all[i]);
     for (const struct ct_program *p = m->apart; p; p = p->next)
         n += code_size(p);
-    return n;
+    return n + (m->lanes ? ct_tangent_lanes_code_size(m->lanes) : 0);
 }
 
 void ct_machine_reset(struct ct_machine *m)
@@ -417,6 +435,23 @@ void ct_machine_constraint(struct ct_machine *m)
 {
     ct_program_run(&m->constraint, m->input);
     scatter_J(m, m->v + m->nrow);
+}
+
+void ct_machine_tangent(struct ct_machine *m)
+{
+    const size_t nJ = m->tangent.nout;
+    ct_program_run(&m->tangent, m->input);
+    if (!m->lanes)
+        return;
+    ct_tangent_lanes_run(m->lanes, m->input, m->slopes);
+    memcpy(m->slopes + m->nslope - nJ, m->tangent.out, nJ * sizeof *m->slopes);
+}
+
+double ct_machine_tangent_operations(const struct ct_machine *m)
+{
+    const struct ct_tape_counts c = ct_tape_counts(m->tangent.tape);
+    return (double)(c.multiplications + c.additions + c.divisions + c.functions)
+         + (m->lanes ? ct_tangent_lanes_operations(m->lanes) : 0);
 }
 
 // ---- retraction -------------------------------------------------------------------------------------

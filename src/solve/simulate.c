@@ -839,7 +839,7 @@ static struct ct_cost find_cost(const struct ct_run *r)
         .evaluation = operations_of_accelerations(r) + explicit_overhead,
         // three residuals make a correction
         .residual = operations(&m->residual) + complex_also * solve / 3 + implicit_overhead,
-        .tangent = operations(&m->tangent) + 4 * n * n + implicit_overhead,
+        .tangent = ct_machine_tangent_operations(m) + 4 * n * n + implicit_overhead,
         .factorization = complex_also * lu / 2 + implicit_overhead, // one of the two
     };
 }
