@@ -30,8 +30,8 @@ struct ct_machine {
 
     struct ct_program { // with its outputs
         const struct ct_listing *listing;
-        struct ct_tape *tape;
         struct ct_native *native; // NULL: the tape is run
+        struct ct_tape *tape;     // NULL until it is needed
         double *out, *work;
         size_t nout;
         struct ct_program *next; // of those compiled apart

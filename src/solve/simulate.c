@@ -815,7 +815,7 @@ static bool at_trial_step(void *user, double t, const double *y)
 
 static double operations(const struct ct_program *p)
 {
-    const struct ct_tape_counts c = ct_tape_counts(p->tape);
+    const struct ct_tape_counts c = p->listing->counts;
     return (double)(c.multiplications + c.additions + c.divisions + c.functions);
 }
 

@@ -20,6 +20,7 @@ struct ct_tangent_lanes {
     const struct ct_tape *tape;
     struct ct_native *native; // NULL: the tape is run
     double *input, *out, *work;
+    size_t nwork;
     size_t ninput; // without the seeds
     uint32_t ncolour;
     size_t *first_seed, *first_reading; // by colour, and the end
@@ -87,10 +88,8 @@ struct ct_tangent_lanes *ct_tangent_lanes_create(struct ct_arena *a,
     t->l = l;
     t->ninput = ninput;
     t->ncolour = f->along->ncolour;
-    t->tape = ct_tape_create(a, l);
     t->input = CT_NEWN(a, double, LANES *(ninput + f->along->nseed) + 1);
     t->out = CT_NEWN(a, double, LANES * l->nout + 1);
-    t->work = CT_NEWN(a, double, LANES *ct_tape_work(t->tape) + 1);
     list_seeds(a, t, f->along);
     list_readings(a, t, f, nu);
     return t;
@@ -99,14 +98,15 @@ struct ct_tangent_lanes *ct_tangent_lanes_create(struct ct_arena *a,
 void ct_tangent_lanes_use(struct ct_arena *a, struct ct_tangent_lanes *t, bool native,
                           const double *input)
 {
-    if (native && !t->native) {
-        t->native = ct_native_create(a, t->l, LANES);
-        if (t->native)
-            t->work = CT_NEWN(a, double, ct_native_work(t->native) + 1);
-    } else if (!native && t->native) {
+    if (!native)
         t->native = NULL;
-        t->work = CT_NEWN(a, double, LANES *ct_tape_work(t->tape) + 1);
-    }
+    else if (!t->native)
+        t->native = ct_native_create(a, t->l, LANES);
+    if (!t->native && !t->tape)
+        t->tape = ct_tape_create(a, t->l);
+    const size_t most = t->native ? ct_native_work(t->native) : LANES * ct_tape_work(t->tape);
+    if (most >= t->nwork)
+        t->work = CT_NEWN(a, double, t->nwork = most + 1);
     ct_tangent_lanes_prepare(t, input);
 }
 

@@ -7,8 +7,8 @@
 
 struct ct_tangent_lanes;
 
-/// l: the derivatives `along` of f, which reads its seeds behind ninput numbers of a machine. Everything lives in a; the
-/// tape is used until native code is.
+/// l: the derivatives `along` of f, which reads its seeds behind ninput numbers of a machine. Everything lives in a.
+/// Call `use` before all else.
 struct ct_tangent_lanes *ct_tangent_lanes_create(struct ct_arena *a,
                                                  const struct ct_residual *f,
                                                  const struct ct_listing *l, size_t nu,
