@@ -399,7 +399,7 @@ static void run_lanes(struct worker *w)
     w->lanes = ct_lanes_create(sim->own.model, &w->system->equations, sim->run);
     // at the file's own values, which the system still has: the same in each worker
     if (start_member(w))
-        ct_lanes_unroll(sim->own.model, w->lanes);
+        ct_lanes_begin(w->lanes);
     forget_errors(&sim->own);
     w->value = CT_NEWN(sim->own.model, double, w->system->equations.nresult + 1);
     for (;;) {
