@@ -79,6 +79,7 @@ struct ct_lanes {
     struct ct_lane_form *form[CT_MOST_FORMS];
     size_t nform;
     double *origin;          // the machine's input there; NULL: there are no forms
+    bool form_has_power;     // beside the accelerations
     set rough;               // the last check found the form not good enough
     set near;                // beside a singular position: pivots are sought at every evaluation
     vec low, high, strength; // of the forms: sound between, and now
@@ -90,7 +91,6 @@ struct ct_lanes {
     vec *input;
     // states (ny), stages (ny x stages)
     vec *y, *dy, *y1, *dy1, *end, *dend, *point, *late, *k;
-    vec *a;                                       // u' (nu)
     double *one_y, *one_dy, *one_point, *one_end; // a single lane's states
 };
 
@@ -125,7 +125,7 @@ bool ct_lane_choose(struct ct_lanes *s, int lane);
 
 /// The run gets parameters, memories and choices of a lane, and its state y at t.
 void ct_lane_become(struct ct_lanes *s, int lane, double t, const vec *y);
-/// u' into s->a and q' into dy by matrices at (t, y), and what they say of kappa and sigma. False: not there.
+/// dy by matrices at (t, y), the power if forms have it, and what they say of kappa and sigma. False: not there.
 bool ct_lane_solve(struct ct_lanes *s, int lane, double t, const vec *y, vec *dy);
 /// The lane of y onto the constraints at t by matrices; may give it up.
 bool ct_lane_project(struct ct_lanes *s, int lane, double t, vec *y);
@@ -133,8 +133,8 @@ bool ct_lane_project(struct ct_lanes *s, int lane, double t, vec *y);
 void ct_lane_renew(struct ct_lanes *s, int lane, double t, const vec *y);
 /// ct_embed_pivot at (t, y).
 double ct_lane_pivot(struct ct_lanes *s, int lane, double t, const vec *y);
-/// Multipliers at (t, y) into the input, u' as in s->a.
-void ct_lane_multipliers(struct ct_lanes *s, int lane, double t, const vec *y);
+/// Multipliers at (t, y) into the input, u' as in dy.
+void ct_lane_multipliers(struct ct_lanes *s, int lane, double t, const vec *y, const vec *dy);
 /// The strength of the lane's form belongs to its sigma, found by matrices just now.
 void ct_lane_compare(struct ct_lanes *s, int lane);
 void ct_lane_give_up(struct ct_lanes *s, int lane);

@@ -40,8 +40,13 @@ bool ct_lane_solve(struct ct_lanes *s, int l, double t, const vec *y, vec *dy)
     if (ct_embed_solve(s->embed) != CT_EVAL_OK)
         return false;
     keep_measures(s, l);
-    ct_lane_put(s->a, l, s->embed->a, (size_t)s->nu);
     ct_lane_put(dy, l, s->m->rate, (size_t)s->nq);
+    ct_lane_put(dy + s->nq, l, s->embed->a, (size_t)s->nu);
+    dy[s->ny - 1][l] = 0;
+    if (s->form_has_power) { // else it is computed in lanes
+        ct_program_run(&s->m->power, s->m->input);
+        dy[s->ny - 1][l] = s->m->power.out[0];
+    }
     return true;
 }
 
@@ -73,10 +78,10 @@ double ct_lane_pivot(struct ct_lanes *s, int l, double t, const vec *y)
     return ct_embed_pivot(s->embed);
 }
 
-void ct_lane_multipliers(struct ct_lanes *s, int l, double t, const vec *y)
+void ct_lane_multipliers(struct ct_lanes *s, int l, double t, const vec *y, const vec *dy)
 {
     ct_lane_become(s, l, t, y);
-    ct_lane_take(s->embed->a, s->a, l, (size_t)s->nu);
+    ct_lane_take(s->embed->a, dy + s->nq, l, (size_t)s->nu);
     ct_embed_multipliers(s->embed);
     ct_lane_put(s->input + s->m->at_lam, l, s->embed->lam, (size_t)s->nrow);
 }

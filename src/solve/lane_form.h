@@ -14,20 +14,22 @@ static inline void set_input(struct ct_lanes *s, vec t, const vec *y)
 
 // ---- accelerations ----------------------------------------------------------------------------------
 
-// Strengths from pivots; lanes of `here` in which the form is sound.
-static inline set weigh(struct ct_lanes *s, const struct ct_form_code *c, const vec *pivot,
-                        set here)
+// Strengths from pivots in the lanes `here`; where the form is sound there.
+static inline mask weigh(struct ct_lanes *s, const struct ct_form_code *c, const vec *pivot,
+                         set here)
 {
     vec least = all_lanes(1);
     for (size_t i = 0; i < c->npivot; i++)
         least = smaller(least, pivot[i] * c->scale[i]);
-    const mask is_sound = mask_of(here) & (least > s->low) & (least < s->high);
-    s->strength = choose(mask_of(here), least, s->strength);
+    const mask is_here = mask_of(here);
+    const mask is_sound = is_here & (least > s->low) & (least < s->high);
+    s->strength = choose(is_here, least, s->strength);
     s->sigma = choose(is_sound & (s->slope > 0), s->slope * least, s->sigma);
-    return set_of(is_sound);
+    return is_sound;
 }
 
-// u' into a and q' into dy by the forms of lanes in `wanted`. Returns the lanes where they are sound.
+// q', u' into dy by the forms of lanes in `wanted`, and the power where they have it. Returns the lanes where they are
+// sound.
 static inline set solve_by_forms(struct ct_lanes *s, vec *dy, set wanted)
 {
     const set able = wanted & ~(s->rough | s->near);
@@ -39,14 +41,21 @@ static inline set solve_by_forms(struct ct_lanes *s, vec *dy, set wanted)
         if (!here)
             continue;
         ct_lane_run(&form->solved, s->input);
-        const vec *out = form->solved.out, *inertia = out + s->nu + s->nq;
+        const vec *a = form->solved.out, *rate = a + s->nu, *inertia = rate + s->nq,
+                  *pivot = inertia + c->nfree, *power = pivot + c->npivot;
         mask is_sound = mask_of(here);
         for (size_t i = 0; i < c->nfree; i++)
             is_sound &= inertia[i] > 0;
-        const set good = set_of(is_sound) & weigh(s, c, inertia + c->nfree, here)
-                       & finite(out, s->nu);
-        put(s->a, out, s->nu, good);
-        put(dy, out + s->nu, s->nq, good);
+        const set good = set_of(is_sound & weigh(s, c, pivot, here));
+        if (good == wanted || !done) { // of other lanes nobody takes anything, or they come later
+            copy(dy, rate, s->nq);
+            copy(dy + s->nq, a, s->nu);
+            dy[s->ny - 1] = c->has_power ? *power : (vec){0};
+        } else {
+            put(dy, rate, s->nq, good);
+            put(dy + s->nq, a, s->nu, good);
+            put(dy + s->ny - 1, power, c->has_power, good);
+        }
         done |= good;
     }
     return done;
@@ -107,7 +116,7 @@ static inline set close_form(struct ct_lanes *s, struct ct_lane_form *f, vec t, 
 {
     set_input(s, t, y);
     ct_lane_run(&f->closing, s->input);
-    return weigh(s, &f->code, f->closing.out + 2 * (s->nrow + s->nu), here);
+    return set_of(weigh(s, &f->code, f->closing.out + 2 * (s->nrow + s->nu), here));
 }
 
 // y (+) dq in these lanes.

@@ -66,7 +66,8 @@ static set project(struct ct_lanes *s, vec t, vec *y, set wanted)
 
 // ---- the derivative, as in simulate.c -----------------------------------------------------------------
 
-// u' into a and q' into dy at the input, (t, y): by forms where they are sound, else by matrices, one by one.
+// dy but for the power, which some forms know, at the input, (t, y): by forms where they are sound, else by matrices, one
+// by one.
 static set solve(struct ct_lanes *s, vec t, const vec *y, vec *dy, set wanted)
 {
     const set done = solve_by_forms(s, dy, wanted), rest = wanted & ~done;
@@ -81,7 +82,7 @@ static set solve(struct ct_lanes *s, vec t, const vec *y, vec *dy, set wanted)
 }
 
 // Multipliers into the input, for the power of motions; all rows are kept.
-static void find_multipliers(struct ct_lanes *s, vec t, const vec *y, set wanted)
+static void find_multipliers(struct ct_lanes *s, vec t, const vec *y, const vec *dy, set wanted)
 {
     const int n = s->nu + s->rank;
     set rest = wanted;
@@ -98,28 +99,28 @@ static void find_multipliers(struct ct_lanes *s, vec t, const vec *y, set wanted
     }
     for (int l = 0; l < W && rest; l++)
         if (ct_has_lane(rest, l))
-            ct_lane_multipliers(s, l, t[l], y);
+            ct_lane_multipliers(s, l, t[l], y, dy);
 }
 
 // dy = f(t, y). Returns the lanes of `wanted` that have one.
 static set derive(struct ct_lanes *s, vec t, const vec *y, vec *dy, set wanted)
 {
     const int nu = s->nu, nq = s->nq;
+    const bool with_power = s->has_power && !s->form_has_power;
     set_input(s, t, y);
     s->count.evaluations++;
     if (s->is_solved) {
         ct_lane_run(&s->motion, s->input);
-        copy(s->a, s->motion.out, nu);
         copy(dy, s->motion.out + nu, nq);
+        copy(dy + nq, s->motion.out, nu);
+        dy[s->ny - 1] = (vec){0};
     } else {
         wanted = solve(s, t, y, dy, wanted);
     }
-    copy(dy + nq, s->a, nu);
-    dy[s->ny - 1] = (vec){0};
-    if (s->has_power) {
-        copy(s->input + s->m->at_a, s->a, nu);
+    if (with_power) {
+        copy(s->input + s->m->at_a, dy + nq, nu);
         if (s->needs_lam)
-            find_multipliers(s, t, y, wanted);
+            find_multipliers(s, t, y, dy, wanted);
         ct_lane_run(&s->power, s->input);
         dy[s->ny - 1] = s->power.out[0];
     }
@@ -176,17 +177,20 @@ static void estimate(struct ct_lanes *s)
         s->lane[l].error = s->third.n ? ct_stepper_join(e[l], e3[l]) : e[l];
 }
 
-// Ends of the stages at t + C h; the last one is the end of the step, y1 with dy1.
+// Ends of the stages at t + C h; the last one is the end of the step, y1 with dy1. That is not evaluated where its error
+// does not depend on it and a projection follows.
 static set take_stages(struct ct_lanes *s, set wanted)
 {
     const struct ct_tableau *b = s->method->tableau;
     const int n = s->ny, last = b->stages - 1;
+    const bool is_last_wanted = b->nerror > last || !s->nrow;
     copy(s->k, s->dy, n);
     for (int stage = 1; stage <= last && wanted; stage++) {
         vec *to = stage == last ? s->y1 : stage + 1 == last ? s->late : s->point;
         for (int i = 0; i < n; i++)
             to[i] = s->y[i] + s->h * sum_stages(s, &s->stage[stage], i);
-        wanted = derive(s, s->t + b->C[stage] * s->h, to, s->k + n * stage, wanted);
+        if (stage < last || is_last_wanted)
+            wanted = derive(s, s->t + b->C[stage] * s->h, to, s->k + n * stage, wanted);
     }
     copy(s->dy1, s->k + n * last, n);
     return wanted;
@@ -197,19 +201,12 @@ static set project_end(struct ct_lanes *s, vec t, set wanted)
 {
     const int n = s->ny;
     copy(s->end, s->y1, n);
-    copy(s->dend, s->dy1, n);
-    if (!wanted || (!s->nrow && !s->has_quaternion))
+    if (!wanted || (!s->nrow && !s->has_quaternion)) {
+        copy(s->dend, s->dy1, n);
         return wanted;
+    }
     wanted = project(s, t, s->end, wanted);
-    mask differs = {0};
-    for (int i = 0; i < n; i++)
-        differs |= s->end[i] != s->y1[i];
-    const set moved = wanted & set_of(differs);
-    if (!moved)
-        return wanted;
-    const set known = derive(s, t, s->end, s->dend, moved);
-    put(s->dend, s->dy1, n, ~moved);
-    return (wanted & ~moved) | known;
+    return derive(s, t, s->end, s->dend, wanted);
 }
 
 // ---- step control, as in driver.c -------------------------------------------------------------------
@@ -239,17 +236,17 @@ static void adapt(struct ct_lanes *s, set tried, set wanted)
     }
 }
 
-// The last two stages are both at the end of the step: their difference shows the fastest motions, as in DOPRI5
-// by Hairer, Norsett and Wanner (1993), IV.2 of the second volume, key hairer1996. A stiff run is one for a run alone,
-// which can change its method.
+// The stage before the last and the end of the step are at the same time: their difference shows the fastest motions,
+// as in DOPRI5 by Hairer, Norsett and Wanner (1993), IV.2 of the second volume, key hairer1996. A stiff run is one for
+// a run alone, which can change its method.
 static void watch_stiffness(struct ct_lanes *s, set wanted)
 {
     const int n = s->ny - 1; // the work feeds nothing back
-    const vec *k1 = s->k + (s->method->tableau->stages - 1) * s->ny, *k0 = k1 - s->ny;
+    const vec *late = s->k + (s->method->tableau->stages - 2) * s->ny;
     vec rates = {0}, states = {0};
     for (int i = 0; i < n; i++) {
-        rates += (k1[i] - k0[i]) * (k1[i] - k0[i]);
-        states += (s->y1[i] - s->late[i]) * (s->y1[i] - s->late[i]);
+        rates += (s->dend[i] - late[i]) * (s->dend[i] - late[i]);
+        states += (s->end[i] - s->late[i]) * (s->end[i] - s->late[i]);
     }
     const set is_fast = set_of((states > 0) & (s->h * s->h * rates > stiff_step * stiff_step * states));
     for (int l = 0; l < W; l++) {

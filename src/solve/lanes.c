@@ -77,7 +77,6 @@ static void make_room(struct ct_arena *a, struct ct_lanes *s)
     for (size_t i = 0; i < COUNT(one); i++)
         *one[i] = CT_NEWN(a, double, ny);
     s->input = CT_NEWN(a, vec, s->m->ninput);
-    s->a = CT_NEWN(a, vec, n + 1);
     s->k = CT_NEWN(a, vec, ny * CT_MOST_STAGES);
     s->group_size = CT_NEWN(a, vec, (size_t)(s->groups ? s->groups->n : 0) + 1);
     s->stage = CT_NEWN(a, struct ct_lane_sum, CT_MOST_STAGES);
@@ -163,6 +162,7 @@ static struct ct_lane_form *make_form(struct ct_lanes *s, const struct ct_partit
     make_program(s, &f->checked, f->code.checked);
     make_program(s, &f->closing, f->code.closing);
     prepare_form(f, s->input);
+    s->form_has_power = f->code.has_power; // a matter of the equations
     return s->form[s->nform++] = f;
 }
 
