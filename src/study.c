@@ -236,7 +236,7 @@ static bool run_all(struct ct_study *s)
     s->seconds = ct_clock() - start;
     s->own.no_memory |= s->no_memory;
     return ct_study_close(s, !s->no_memory && !s->sink.has_failed
-                             && (s->written == s->plan.nmember || s->is_stopped));
+                                 && (s->written == s->plan.nmember || s->is_stopped));
 }
 
 struct task {
@@ -279,4 +279,3 @@ long ct_study_failed(const struct ct_study *s)
 {
     return s->nfailed;
 }
-

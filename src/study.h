@@ -15,7 +15,13 @@
 #include "report/progress.h"
 
 struct ct_study_row {
-    enum { CT_ROW_PENDING, CT_ROW_DONE, CT_ROW_FAILED, CT_ROW_RESUMED, CT_ROW_RESUMED_FAILED } state;
+    enum {
+        CT_ROW_PENDING,
+        CT_ROW_DONE,
+        CT_ROW_FAILED,
+        CT_ROW_RESUMED,
+        CT_ROW_RESUMED_FAILED
+    } state;
     int code;      // of the first error
     double *value; // nresult, until it is written
     char *message;
@@ -26,7 +32,7 @@ struct ct_study {
     const char *path;
     char *text; // of the model file
     size_t ntext;
-    const struct ct_node *root; // the same, parsed
+    const struct ct_node *root;              // the same, parsed
     struct ct_system_options system_options; // with strings in own.model
     struct ct_sim_options run;
     struct ct_plan plan;

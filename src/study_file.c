@@ -398,4 +398,3 @@ bool ct_study_close(struct ct_study *s, bool ok)
     ct_outfile_abandon(&k->json);
     return ok;
 }
-

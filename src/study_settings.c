@@ -170,7 +170,8 @@ const char *ct_study_compare_settings(struct ct_arena *a, const char *before, co
             continue;
         const char *old_name = name_of(a, old), *new_name = name_of(a, new);
         if (strcmp(old_name, new_name) == 0) {
-            const bool is_file = strcmp(new_name, "model") == 0 || strcmp(new_name, "tables") == 0;
+            const bool is_file
+                = strcmp(new_name, "model") == 0 || strcmp(new_name, "tables") == 0;
             return is_file ? ct_arena_printf(a, "the %s has changed since", new_name)
                            : ct_arena_printf(a, "'%s' was %s and is %s now", new_name,
                                              value_of(old), value_of(new));

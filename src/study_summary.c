@@ -127,4 +127,3 @@ void ct_study_print_summary(const struct ct_study *s, FILE *out)
             s->system->generate, s->seconds);
     print_failures(out, s);
 }
-

@@ -51,8 +51,8 @@ struct ct_lane {
     double end;   // time at the end of this try
     double error; // of it
     double kappa_chosen, sigma_chosen;
-    double pivot_last, pivot_time; // see foresee_singular
-    struct ct_strength strength;   // of its form
+    double pivot_last, pivot_time;      // see foresee_singular
+    struct ct_strength strength;        // of its form
     int *row, *dependent, *independent; // as in embed.h
     long steps;
     bool is_watched; // for stiffness
@@ -67,6 +67,7 @@ struct ct_lanes {
     struct ct_arena *arena;
     int nq, nu, nrow, ny, rank;
     bool is_solved, has_power, needs_lam, has_quaternion, is_used;
+    int whose; // the lane whose parameters the run has for matrices; -1: not known
     struct ct_lane_program motion, power, memory; // motion: u', q' themselves if is_solved
     struct ct_lane lane[W];
     struct ct_lanes_count count;
@@ -76,12 +77,13 @@ struct ct_lanes {
     vec *group_size;
     int *place; // of the coordinate that a speed moves (nu); without quaternions
     // closed forms: their orders of pivots are those of the file's own values
-    struct ct_lane_form *form[CT_MOST_FORMS];
-    size_t nform;
-    double *origin;          // the machine's input there; NULL: there are no forms
-    bool form_has_power;     // beside the accelerations
-    set rough;               // the last check found the form not good enough
-    set near;                // beside a singular position: pivots are sought at every evaluation
+    struct ct_lane_form **form;
+    size_t nform, form_cap;
+    double *origin;      // the machine's input there; NULL: there are no forms
+    bool form_has_power; // beside the accelerations
+    set rough;           // the last check found the form not good enough
+    set near;            // beside a singular position: pivots are sought at every evaluation,
+    set alike;           // if strength and sigma are not known to fall alike
     vec low, high, strength; // of the forms: sound between, and now
     vec slope;               // sigma for their strength where both fall alike, else 0
     vec kappa, sigma;        // as in embed.h
@@ -97,6 +99,12 @@ struct ct_lanes {
 // ---- sets of lanes ----------------------------------------------------------------------------------
 
 static const set ct_all_lanes = (1u << W) - 1;
+
+// Lanes that cannot use their forms now.
+static inline set ct_lanes_without_form(const struct ct_lanes *s)
+{
+    return s->rough | (s->near & ~s->alike);
+}
 
 static inline bool ct_has_lane(set s, int l)
 {
@@ -123,7 +131,8 @@ bool ct_lane_choose(struct ct_lanes *s, int lane);
 
 // ---- lane_alone.c -----------------------------------------------------------------------------------
 
-/// The run gets parameters, memories and choices of a lane, and its state y at t.
+/// The run gets parameters, memories and choices of a lane, and its state y at t; for matrices, or for everything.
+void ct_lane_become_whole(struct ct_lanes *s, int lane, double t, const vec *y);
 void ct_lane_become(struct ct_lanes *s, int lane, double t, const vec *y);
 /// dy by matrices at (t, y), the power if forms have it, and what they say of kappa and sigma. False: not there.
 bool ct_lane_solve(struct ct_lanes *s, int lane, double t, const vec *y, vec *dy);

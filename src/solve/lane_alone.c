@@ -9,13 +9,11 @@ void ct_lane_give_up(struct ct_lanes *s, int l)
     s->lane[l].state = CT_LANE_GIVEN_UP;
 }
 
-void ct_lane_become(struct ct_lanes *s, int l, double t, const vec *y)
+static void take_choice(struct ct_lanes *s, int l, double t, const vec *y)
 {
     const struct ct_lane *lane = &s->lane[l];
     struct ct_embed *embed = s->embed;
     const size_t rank = (size_t)s->rank, n = (size_t)s->nu;
-    ct_lane_take(s->m->input, s->input, l, s->m->ninput);
-    ct_machine_prepare(s->m);
     ct_lane_take(s->one_y, y, l, (size_t)s->ny);
     ct_machine_set(s->m, t, s->one_y);
     embed->rank = s->rank;
@@ -26,6 +24,27 @@ void ct_lane_become(struct ct_lanes *s, int l, double t, const vec *y)
     embed->sigma = s->sigma[l];
     embed->kappa_chosen = lane->kappa_chosen;
     embed->sigma_chosen = lane->sigma_chosen;
+}
+
+void ct_lane_become_whole(struct ct_lanes *s, int l, double t, const vec *y)
+{
+    ct_lane_take(s->m->input, s->input, l, s->m->ninput);
+    ct_machine_prepare(s->m);
+    s->whose = l;
+    take_choice(s, l, t, y);
+}
+
+void ct_lane_become(struct ct_lanes *s, int l, double t, const vec *y)
+{
+    const size_t at = s->m->at_memory;
+    if (s->whose == l) {
+        ct_lane_take(s->m->input + at, s->input + at, l, s->e->nmemory);
+    } else {
+        ct_lane_take(s->m->input, s->input, l, s->m->ninput);
+        ct_machine_prepare_motion(s->m);
+        s->whose = l;
+    }
+    take_choice(s, l, t, y);
 }
 
 static void keep_measures(struct ct_lanes *s, int l)
@@ -96,4 +115,5 @@ void ct_lane_compare(struct ct_lanes *s, int l)
     s->low[l] = low;
     s->high[l] = high;
     s->slope[l] = strength->is_alike ? strength->sigma_found / strength->at_sigma : 0;
+    s->alike = (s->alike & ~(1u << l)) | (unsigned)strength->is_alike << l;
 }

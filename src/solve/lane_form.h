@@ -32,7 +32,7 @@ static inline mask weigh(struct ct_lanes *s, const struct ct_form_code *c, const
 // sound.
 static inline set solve_by_forms(struct ct_lanes *s, vec *dy, set wanted)
 {
-    const set able = wanted & ~(s->rough | s->near);
+    const set able = wanted & ~ct_lanes_without_form(s);
     set done = 0;
     for (size_t f = 0; f < s->nform; f++) {
         struct ct_lane_form *form = s->form[f];
@@ -47,7 +47,8 @@ static inline set solve_by_forms(struct ct_lanes *s, vec *dy, set wanted)
         for (size_t i = 0; i < c->nfree; i++)
             is_sound &= inertia[i] > 0;
         const set good = set_of(is_sound & weigh(s, c, pivot, here));
-        if (good == wanted || !done) { // of other lanes nobody takes anything, or they come later
+        if (good == wanted
+            || !done) { // of other lanes nobody takes anything, or they come later
             copy(dy, rate, s->nq);
             copy(dy + s->nq, a, s->nu);
             dy[s->ny - 1] = c->has_power ? *power : (vec){0};
@@ -92,7 +93,7 @@ static inline void check_forms(struct ct_lanes *s, set wanted)
     const int n = s->nu + s->rank;
     for (size_t k = 0; k < s->nform; k++) {
         struct ct_lane_form *f = s->form[k];
-        const set here = wanted & f->lanes & ~s->near;
+        const set here = wanted & f->lanes & ~(s->near & ~s->alike);
         if (!here)
             continue;
         ct_lane_run(&f->checked, s->input);
@@ -191,8 +192,7 @@ static inline set project_by_form(struct ct_lanes *s, struct ct_lane_form *f, ve
 
 static inline set project_by_forms(struct ct_lanes *s, vec t, vec *y, set *wanted)
 {
-    const set able
-        = *wanted & ~(s->rough | s->near) & set_of(s->kappa <= ct_kappa_largest);
+    const set able = *wanted & ~ct_lanes_without_form(s) & set_of(s->kappa <= ct_kappa_largest);
     set done = 0;
     for (size_t k = 0; k < s->nform; k++)
         if (able & s->form[k]->lanes)

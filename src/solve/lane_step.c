@@ -29,9 +29,11 @@ static void normalise(struct ct_lanes *s, vec *y, set lanes)
 // Lanes for which sigma was found by matrices just now; their forms' strength at the same place.
 static void compare_forms(struct ct_lanes *s, vec t, const vec *y, set lanes)
 {
+    const vec sigma = s->sigma;
     for (size_t k = 0; k < s->nform; k++)
         if (lanes & s->form[k]->lanes)
             close_form(s, s->form[k], t, y, lanes & s->form[k]->lanes);
+    s->sigma = sigma;
     for (int l = 0; l < W; l++)
         if (ct_has_lane(lanes, l))
             ct_lane_compare(s, l);
@@ -73,11 +75,10 @@ static set solve(struct ct_lanes *s, vec t, const vec *y, vec *dy, set wanted)
     const set done = solve_by_forms(s, dy, wanted), rest = wanted & ~done;
     set found = 0;
     for (int l = 0; l < W && rest; l++)
-        if (ct_has_lane(rest, l) && ct_lane_solve(s, l, t[l], y, dy)) {
+        if (ct_has_lane(rest, l) && ct_lane_solve(s, l, t[l], y, dy))
             found |= 1u << l;
-            if (!ct_has_lane(s->rough | s->near, l)) // its form has just been tried here
-                ct_lane_compare(s, l);
-        }
+    if (found)
+        compare_forms(s, t, y, found);
     return done | found;
 }
 
@@ -88,7 +89,7 @@ static void find_multipliers(struct ct_lanes *s, vec t, const vec *y, const vec 
     set rest = wanted;
     for (size_t k = 0; k < s->nform; k++) {
         struct ct_lane_form *f = s->form[k];
-        const set here = wanted & f->lanes & ~(s->rough | s->near);
+        const set here = wanted & f->lanes & ~ct_lanes_without_form(s);
         if (!here)
             continue;
         ct_lane_run(&f->checked, s->input);
@@ -248,7 +249,8 @@ static void watch_stiffness(struct ct_lanes *s, set wanted)
         rates += (s->dend[i] - late[i]) * (s->dend[i] - late[i]);
         states += (s->end[i] - s->late[i]) * (s->end[i] - s->late[i]);
     }
-    const set is_fast = set_of((states > 0) & (s->h * s->h * rates > stiff_step * stiff_step * states));
+    const set is_fast
+        = set_of((states > 0) & (s->h * s->h * rates > stiff_step * stiff_step * states));
     for (int l = 0; l < W; l++) {
         struct ct_lane *lane = &s->lane[l];
         if (!ct_has_lane(wanted, l) || !lane->is_watched)
@@ -354,6 +356,7 @@ void ct_lanes_step(struct ct_lanes *s)
 {
     set tried = 0;
     vec end = s->t;
+    s->whose = -1; // runs may have been started since
     for (int l = 0; l < W; l++) {
         struct ct_lane *lane = &s->lane[l];
         if (lane->state == CT_LANE_RUNNING)

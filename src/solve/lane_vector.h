@@ -8,7 +8,8 @@
 #include <math.h>
 
 #ifdef __GNUC__
-#pragma GCC diagnostic ignored "-Wpsabi" // all of this is compiled into the functions that call it
+#pragma GCC diagnostic ignored                                                                 \
+    "-Wpsabi" // all of this is compiled into the functions that call it
 #endif
 
 static inline set set_of(mask m)

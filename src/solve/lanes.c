@@ -69,8 +69,8 @@ const char *ct_lanes_refusal(const struct ct_equations *e, const struct ct_run_o
 static void make_room(struct ct_arena *a, struct ct_lanes *s)
 {
     const size_t n = (size_t)s->nu, r = (size_t)s->nrow, ny = (size_t)s->ny;
-    vec **const states[] = {&s->y,   &s->dy,   &s->y1,    &s->dy1,
-                            &s->end, &s->dend, &s->point, &s->late};
+    vec **const states[]
+        = {&s->y, &s->dy, &s->y1, &s->dy1, &s->end, &s->dend, &s->point, &s->late};
     double **const one[] = {&s->one_y, &s->one_dy, &s->one_point, &s->one_end};
     for (size_t i = 0; i < COUNT(states); i++)
         *states[i] = CT_NEWN(a, vec, ny);
@@ -115,13 +115,6 @@ struct ct_lanes *ct_lanes_create(struct ct_arena *a, const struct ct_equations *
     return s;
 }
 
-void ct_lanes_begin(struct ct_lanes *s)
-{
-    s->origin = CT_NEWN(s->arena, double, s->m->ninput);
-    ct_machine_set(s->m, 0, ct_run_state(s->run));
-    memcpy(s->origin, s->m->input, s->m->ninput * sizeof *s->origin);
-}
-
 // ---- lanes and single numbers -----------------------------------------------------------------------
 
 void ct_lane_take(double *out, const vec *v, int l, size_t n)
@@ -138,16 +131,25 @@ void ct_lane_put(vec *v, int l, const double *in, size_t n)
 
 // ---- forms ------------------------------------------------------------------------------------------
 
-// Whoever needs it first: made where the file's own values start, a form is the same for all.
+// Large systems have very many choices, and take long to get a form: only that of the start has one.
+static bool is_allowed(const struct ct_lanes *s)
+{
+    enum { LARGE = 20000 }; // operations
+    return s->origin
+        && (!s->nform || (s->form[0]->code.listing && s->form[0]->form->operations < LARGE));
+}
+
+// Made where the file's own values start, a form is the same whoever needs it first.
 static struct ct_lane_form *make_form(struct ct_lanes *s, const struct ct_partition *p)
 {
     struct ct_machine *m = s->m;
     const size_t size = m->ninput * sizeof *m->input;
-    if (!s->origin || s->nform == CT_MOST_FORMS)
+    if (!is_allowed(s))
         return NULL;
     double *now = CT_NEWN(s->arena, double, m->ninput);
     memcpy(now, m->input, size);
     memcpy(m->input, s->origin, size);
+    s->whose = -1;
     ct_machine_prepare(m);
     ct_machine_motion(m);
     struct ct_lane_form *f = CT_NEW(s->arena, struct ct_lane_form);
@@ -156,14 +158,19 @@ static struct ct_lane_form *make_form(struct ct_lanes *s, const struct ct_partit
     ct_machine_prepare(m);
     if (f->form)
         f->code = ct_form_code(f->form);
-    if (!f->code.listing) // none, or one of another kind, which is not for lanes
-        return NULL;
-    make_program(s, &f->solved, f->code.solved);
-    make_program(s, &f->checked, f->code.checked);
-    make_program(s, &f->closing, f->code.closing);
-    prepare_form(f, s->input);
-    s->form_has_power = f->code.has_power; // a matter of the equations
-    return s->form[s->nform++] = f;
+    if (f->code.listing) {
+        make_program(s, &f->solved, f->code.solved);
+        make_program(s, &f->checked, f->code.checked);
+        make_program(s, &f->closing, f->code.closing);
+        prepare_form(f, s->input);
+        s->form_has_power = f->code.has_power; // a matter of the equations
+    } else { // none, or one of another kind: what has been tried is not tried again
+        f->form = CT_NEW(s->arena, struct ct_form);
+        f->form->arena = s->arena;
+        ct_form_place(f->form, p);
+    }
+    CT_PUSH(s->arena, s->form, s->nform, s->form_cap, f);
+    return f;
 }
 
 static struct ct_lane_form *find_form(struct ct_lanes *s, const struct ct_partition *p)
@@ -172,6 +179,19 @@ static struct ct_lane_form *find_form(struct ct_lanes *s, const struct ct_partit
         if (ct_form_is_for(s->form[i]->form, p))
             return s->form[i];
     return make_form(s, p);
+}
+
+void ct_lanes_begin(struct ct_lanes *s)
+{
+    const struct ct_embed *embed = s->embed;
+    const size_t rank = (size_t)embed->rank, n = (size_t)s->nu;
+    const struct ct_partition p
+        = {embed->row, embed->dependent, embed->independent, rank, n - rank};
+    s->origin = CT_NEWN(s->arena, double, s->m->ninput);
+    ct_machine_set(s->m, 0, ct_run_state(s->run));
+    memcpy(s->origin, s->m->input, s->m->ninput * sizeof *s->origin);
+    if (s->nrow)
+        find_form(s, &p);
 }
 
 bool ct_lane_choose(struct ct_lanes *s, int l)
@@ -191,6 +211,7 @@ bool ct_lane_choose(struct ct_lanes *s, int l)
     s->sigma[l] = embed->sigma;
     s->low[l] = s->high[l] = s->slope[l] = 0;
     s->rough &= ~(1u << l);
+    s->alike &= ~(1u << l);
     for (size_t i = 0; i < s->nform; i++)
         s->form[i]->lanes &= ~(1u << l);
     if (!s->nrow)
@@ -198,7 +219,7 @@ bool ct_lane_choose(struct ct_lanes *s, int l)
     const struct ct_partition p
         = {lane->row, lane->dependent, lane->independent, rank, n - rank};
     struct ct_lane_form *f = find_form(s, &p);
-    if (!f)
+    if (!f || !f->code.listing)
         return false;
     f->lanes |= 1u << l;
     return true;
@@ -320,7 +341,7 @@ enum ct_lane_state ct_lanes_state(const struct ct_lanes *s, int lane)
 
 bool ct_lanes_results(struct ct_lanes *s, int l, double *out)
 {
-    ct_lane_become(s, l, s->lane[l].t1, s->y);
+    ct_lane_become_whole(s, l, s->lane[l].t1, s->y);
     if (ct_run_results(s->run, s->lane[l].t1, s->one_y, out) != CT_EVAL_OK)
         return false;
     for (size_t i = 0; i < s->e->nresult; i++)

@@ -200,5 +200,5 @@ struct ct_form_code ct_form_code(const struct ct_form *form)
     const struct unrolled *f = (const struct unrolled *)form;
     return (struct ct_form_code){f->solved.listing, f->c->nfree, f->c->npivot, f->c->scale,
                                  &f->solved,        &f->checked, &f->closing,  f->c->nB,
-                                 f->M_size,         f->J_size,  f->has_power};
+                                 f->M_size,         f->J_size,   f->has_power};
 }
