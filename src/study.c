@@ -48,7 +48,7 @@ struct ct_study {
     const char *path;
     char *text; // of the model file
     size_t ntext;
-    const struct ct_node *root; // the same, parsed
+    const struct ct_node *root;              // the same, parsed
     struct ct_system_options system_options; // with strings in own.model
     struct ct_sim_options run;
     struct ct_plan plan;

@@ -50,7 +50,7 @@ struct run {
     struct ct_integrate_stats *stats;
     struct ct_tolerance tolerance;
     struct ct_watch watch;
-    double t;             // time of y and dy
+    double t; // time of y and dy
     struct ct_control control;
     double *y, *dy;       // (ny) each, as all that follow
     double *y1, *dy1;     // end of the step as the method gives it
@@ -143,7 +143,8 @@ static bool take_bearings(struct run *r)
 static double step_limit(const struct run *r)
 {
     const double run = r->o->t1 - r->o->t0;
-    return r->p->nroot ? run / event_steps : run;
+    const double limit = r->p->nroot ? run / event_steps : run;
+    return r->p->longest_step ? fmin(limit, r->p->longest_step(r->p->user)) : limit;
 }
 
 static double first_step(struct run *r, double limit)
@@ -229,7 +230,8 @@ static struct stride plan(const struct run *r, double stop, bool is_time)
             return plan_crossing(r, stop, is_time);
         wanted = ct_control_fit(r->singular_in - reach, wanted);
     }
-    const double h = r->o->step > 0 ? fit_fixed(rest, r->o->step) : ct_control_fit(rest, wanted);
+    const double h
+        = r->o->step > 0 ? fit_fixed(rest, r->o->step) : ct_control_fit(rest, wanted);
     const bool is_landing = h >= rest;
     return (struct stride){.method = r->method,
                            .work = r->work,
@@ -625,8 +627,8 @@ static bool start(struct run *r)
         if (!take_bearings(r))
             return false;
         r->control.h = r->o->step > 0       ? r->o->step
-             : r->o->first_step > 0 ? r->o->first_step
-                                    : first_step(r, limit);
+                     : r->o->first_step > 0 ? r->o->first_step
+                                            : first_step(r, limit);
     }
     return give_samples_here(r);
 }

@@ -710,11 +710,12 @@ static void many_four_bars(int n)
 // What a member costs where one run follows another, at values of the sweep's own, between its rows.
 struct singles {
     const char *path;
-    long every;          // members between two of them
-    long n;              // of them so far
-    double spent;        // on all this [s]
-    double prepare, run; // of these: a run made ready of a system that is there, and its integration [s]
-    double difference;   // largest |row - run| / max(|run|, 1)
+    long every;   // members between two of them
+    long n;       // of them so far
+    double spent; // on all this [s]
+    double prepare,
+        run; // of these: a run made ready of a system that is there, and its integration [s]
+    double difference; // largest |row - run| / max(|run|, 1)
 };
 
 // The last row of a run stays.
@@ -750,8 +751,7 @@ static bool run_single(void *user, long member, const double *varied, const doub
     s->run += now() - ready;
     s->prepare += ready - start;
     for (size_t i = 0; i + 1 < ct_system_column_count(system); i++)
-        s->difference
-            = fmax(s->difference, fabs(value[i] - last[i]) / fmax(fabs(last[i]), 1));
+        s->difference = fmax(s->difference, fabs(value[i] - last[i]) / fmax(fabs(last[i]), 1));
     s->n++;
     ct_sim_destroy(sim);
     ct_system_destroy(system);
