@@ -286,11 +286,41 @@ static size_t lightest(const struct ct_embed *s)
     return least;
 }
 
+// A beam without inertia of sections whose first section a joint turns and nothing else holds; 0: none.
+static int bare_beam(const struct ct_model *model)
+{
+    for (size_t i = 1; i < model->nbody; i++) {
+        const struct ct_beam *beam = model->body[i].beam;
+        int njoint = 0, nturn = 0;
+        if (!beam || beam->has_rotary || beam->is_chord
+            || (!beam->is_lumped && beam->theory == CT_BEAM_EULER_BERNOULLI))
+            continue;
+        for (size_t j = 0; j < model->njoint; j++) {
+            const struct ct_instance *joint = &model->joint[j];
+            if (joint->from != model->body[i].frame && joint->to != model->body[i].frame)
+                continue;
+            njoint++;
+            nturn += joint->nfree > 0;
+        }
+        if (njoint == 1 && nturn == 1)
+            return (int)i;
+    }
+    return 0;
+}
+
 static bool massless(struct ct_embed *s, size_t speed)
 {
     const struct ct_u *u = &s->m->e->u[speed];
     const struct ct_model *model = s->m->model;
     const char *name = u->q >= 0 ? s->m->e->q[u->q].name : u->name;
+    const int bare = bare_beam(model);
+    if (bare && (u->joint >= 0 || u->beam > 0))
+        return ct_error(
+            s->ctx, model->body[bare].instance.mark, CT_E_MASSLESS,
+            "coordinate '%s' moves no mass: the first section of beam '%s' has no inertia; "
+            "give the beam a 'rotary_inertia', or, if no moment acts on that section, 'frame: "
+            "chord'",
+            name, model->body[bare].instance.name);
     if (u->beam > 0)
         return ct_error(s->ctx, model->body[u->beam].instance.mark, CT_E_MASSLESS,
                         "coordinate '%s' moves no mass: give the beam a 'rotary_inertia', or "
@@ -319,6 +349,21 @@ static bool has_inertia(struct ct_embed *s)
     return true;
 }
 
+// After ct_embed_accelerate: the first independent speed whose pivot of B' M B is rounding of what it is left of; -1: none.
+static int rounded_pivot(const struct ct_embed *s)
+{
+    const int n = (int)s->m->nu, r = s->rank, f = n - r;
+    for (int i = 0; i < f; i++) {
+        double gross = fabs(s->MB[s->independent[i] + n * i]);
+        for (int k = 0; k < r; k++)
+            gross += fabs(s->B[k + r * i] * s->MB[s->dependent[k] + n * i]);
+        const double pivot = s->S[i + f * i] * s->S[i + f * i];
+        if (pivot <= 16 * DBL_EPSILON * gross)
+            return s->independent[i];
+    }
+    return -1;
+}
+
 bool ct_embed_choose(struct ct_embed *s)
 {
     s->switches++;
@@ -338,6 +383,9 @@ bool ct_embed_choose(struct ct_embed *s)
     ct_machine_motion(s->m);
     if (ct_embed_accelerate(s) != CT_EVAL_OK)
         return massless(s, lightest(s));
+    const int rounded = rounded_pivot(s);
+    if (rounded >= 0)
+        return massless(s, (size_t)rounded);
     take_form(s);
     return true;
 }
