@@ -6,6 +6,8 @@
 #include "solve/assemble.h"
 #include "solve/embed.h"
 
+struct ct_singular;
+
 struct ct_run_options {
     const struct ct_method *method;
     double duration, rtol, atol, step;
@@ -39,8 +41,9 @@ struct ct_run_report {
     long switches;
     long factorizations;
     struct ct_solves solves;
-    double *final; // last row
-    double *y;     // last state: q, u, work
+    const struct ct_singular *singular; // positions passed; NULL: nothing was integrated
+    double *final;                      // last row
+    double *y;                          // last state: q, u, work
 };
 
 /// Machine, embedding and state at t = 0, assembled; choices made and modes set. NULL with a diagnostic on failure.
