@@ -50,7 +50,7 @@ struct run {
     struct ct_integrate_stats *stats;
     struct ct_tolerance tolerance;
     struct ct_watch watch;
-    double t;             // time of y and dy
+    double t; // time of y and dy
     struct ct_control control;
     double *y, *dy;       // (ny) each, as all that follow
     double *y1, *dy1;     // end of the step as the method gives it
@@ -229,7 +229,8 @@ static struct stride plan(const struct run *r, double stop, bool is_time)
             return plan_crossing(r, stop, is_time);
         wanted = ct_control_fit(r->singular_in - reach, wanted);
     }
-    const double h = r->o->step > 0 ? fit_fixed(rest, r->o->step) : ct_control_fit(rest, wanted);
+    const double h
+        = r->o->step > 0 ? fit_fixed(rest, r->o->step) : ct_control_fit(rest, wanted);
     const bool is_landing = h >= rest;
     return (struct stride){.method = r->method,
                            .work = r->work,
@@ -266,8 +267,11 @@ static void look_ahead(struct run *r)
         r->reach = fmin(r->reach, reach);
 }
 
-static void adapt_after_crossing(struct run *r)
+static void adapt_after_crossing(struct run *r, const struct stride *s)
 {
+    const struct ct_stepper_span span = {s->method, r->p, r->t, s->h, r->y, r->y1, s->work};
+    if (r->p->crossed)
+        r->p->crossed(r->p->user, &span, s->t1);
     r->singular_in = r->reach = INFINITY;
     r->failed_crossings = 0;
     r->control.was_refused = false;
@@ -474,7 +478,7 @@ static bool find_step(struct run *r, double stop, bool is_time, struct stride *s
             return false;
         if (e == CT_EVAL_OK) {
             if (is_crossing)
-                adapt_after_crossing(r);
+                adapt_after_crossing(r, s);
             else
                 ct_control_accept(&r->control, r->method, h, error);
             look_ahead(r);
@@ -622,8 +626,8 @@ static bool start(struct run *r)
         if (!take_bearings(r))
             return false;
         r->control.h = r->o->step > 0       ? r->o->step
-             : r->o->first_step > 0 ? r->o->first_step
-                                    : first_step(r, limit);
+                     : r->o->first_step > 0 ? r->o->first_step
+                                            : first_step(r, limit);
     }
     return give_samples_here(r);
 }

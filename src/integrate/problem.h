@@ -54,6 +54,8 @@ struct ct_groups {
     double *size;  // workspace (n)
 };
 
+struct ct_stepper_span;
+
 struct ct_problem {
     void *user;
     int ny; // states
@@ -82,6 +84,8 @@ struct ct_problem {
     /// What is evaluated from now on belongs to the crossing of a singular position, none of it close by; or does not.
     /// May be NULL.
     void (*set_crossing)(void *user, bool is_crossing);
+    /// A singular position was crossed by this step, which ends at t1 at the latest. May be NULL.
+    void (*crossed)(void *user, const struct ct_stepper_span *step, double t1);
     /// How far y is from the constraints. May be NULL.
     double (*residual)(void *user, double t, const double *y);
 

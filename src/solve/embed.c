@@ -286,11 +286,41 @@ static size_t lightest(const struct ct_embed *s)
     return least;
 }
 
+// A beam without inertia of sections whose first section a joint turns and nothing else holds; 0: none.
+static int bare_beam(const struct ct_model *model)
+{
+    for (size_t i = 1; i < model->nbody; i++) {
+        const struct ct_beam *beam = model->body[i].beam;
+        int njoint = 0, nturn = 0;
+        if (!beam || beam->has_rotary || beam->is_chord
+            || (!beam->is_lumped && beam->theory == CT_BEAM_EULER_BERNOULLI))
+            continue;
+        for (size_t j = 0; j < model->njoint; j++) {
+            const struct ct_instance *joint = &model->joint[j];
+            if (joint->from != model->body[i].frame && joint->to != model->body[i].frame)
+                continue;
+            njoint++;
+            nturn += joint->nfree > 0;
+        }
+        if (njoint == 1 && nturn == 1)
+            return (int)i;
+    }
+    return 0;
+}
+
 static bool massless(struct ct_embed *s, size_t speed)
 {
     const struct ct_u *u = &s->m->e->u[speed];
     const struct ct_model *model = s->m->model;
     const char *name = u->q >= 0 ? s->m->e->q[u->q].name : u->name;
+    const int bare = bare_beam(model);
+    if (bare && (u->joint >= 0 || u->beam > 0))
+        return ct_error(
+            s->ctx, model->body[bare].instance.mark, CT_E_MASSLESS,
+            "coordinate '%s' moves no mass: the first section of beam '%s' has no inertia; "
+            "give the beam a 'rotary_inertia', or, if no moment acts on that section, 'frame: "
+            "chord'",
+            name, model->body[bare].instance.name);
     if (u->beam > 0)
         return ct_error(s->ctx, model->body[u->beam].instance.mark, CT_E_MASSLESS,
                         "coordinate '%s' moves no mass: give the beam a 'rotary_inertia', or "
@@ -319,6 +349,21 @@ static bool has_inertia(struct ct_embed *s)
     return true;
 }
 
+// After ct_embed_accelerate: the first independent speed whose pivot of B' M B is rounding of what it is left of; -1: none.
+static int rounded_pivot(const struct ct_embed *s)
+{
+    const int n = (int)s->m->nu, r = s->rank, f = n - r;
+    for (int i = 0; i < f; i++) {
+        double gross = fabs(s->MB[s->independent[i] + n * i]);
+        for (int k = 0; k < r; k++)
+            gross += fabs(s->B[k + r * i] * s->MB[s->dependent[k] + n * i]);
+        const double pivot = s->S[i + f * i] * s->S[i + f * i];
+        if (pivot <= 16 * DBL_EPSILON * gross)
+            return s->independent[i];
+    }
+    return -1;
+}
+
 bool ct_embed_choose(struct ct_embed *s)
 {
     s->switches++;
@@ -338,6 +383,9 @@ bool ct_embed_choose(struct ct_embed *s)
     ct_machine_motion(s->m);
     if (ct_embed_accelerate(s) != CT_EVAL_OK)
         return massless(s, lightest(s));
+    const int rounded = rounded_pivot(s);
+    if (rounded >= 0)
+        return massless(s, (size_t)rounded);
     take_form(s);
     return true;
 }
@@ -660,20 +708,28 @@ enum ct_eval ct_embed_project(struct ct_embed *s, double t, double *y)
     return CT_EVAL_OK;
 }
 
-// Dense pivots of larger systems cost more than a step does.
-static bool find_strength(struct ct_embed *s)
+// Dense factors of larger systems cost more than a step does.
+static bool is_large(const struct ct_embed *s)
 {
     enum { LARGE = 200 };
-    if (s->rank < LARGE || !is_form_due(s))
+    return s->rank >= LARGE;
+}
+
+static bool find_strength(struct ct_embed *s)
+{
+    if (!is_large(s) || !is_form_due(s))
         return false;
     s->strength.now = ct_form_close(s->form[0], s->m);
     s->sigma = ct_strength_sigma(&s->strength);
     return is_sound(s);
 }
 
-// The smallest singular value of J that is not that of a redundant row, against its largest: of redundant rows those
-// that are kept may lose rank where the others do not.
-static double nearness_of_all(struct ct_embed *s)
+static bool has_redundant_rows(const struct ct_embed *s)
+{
+    return s->rank < (int)s->m->nrow;
+}
+
+static double smallest_singular_value(struct ct_embed *s)
 {
     const size_t n = s->m->nu, m = s->m->nrow;
     memcpy(s->A, s->m->J, m * n * sizeof *s->A);
@@ -682,10 +738,15 @@ static double nearness_of_all(struct ct_embed *s)
     return s->b[s->rank - 1] / s->b[0];
 }
 
+bool ct_embed_has_pivot(const struct ct_embed *s)
+{
+    return s->rank && !(has_redundant_rows(s) && is_large(s));
+}
+
 double ct_embed_pivot(struct ct_embed *s)
 {
-    if (s->rank < (int)s->m->nrow)
-        return nearness_of_all(s);
+    if (has_redundant_rows(s))
+        return smallest_singular_value(s);
     // the place need not be one of the motion: what is known of the motion stays
     const double sigma = s->sigma, kappa = s->kappa, strength = s->strength.now;
     const bool is_known = find_strength(s) || factor(s);
@@ -694,6 +755,25 @@ double ct_embed_pivot(struct ct_embed *s)
     s->kappa = kappa;
     s->strength.now = strength;
     return pivot;
+}
+
+bool ct_embed_dependence(struct ct_embed *s, double *x, double *log_det)
+{
+    const int r = s->rank;
+    const double sigma = s->sigma, kappa = s->kappa;
+    const bool is_found = !is_large(s) && factor(s);
+    s->sigma = sigma;
+    s->kappa = kappa;
+    *log_det = 0;
+    for (int i = 0; i < r && is_found; i++) {
+        x[i] = 1 + fmod(i * 0.6180339887498949, 1); // in no simple relation
+        *log_det += log(fabs(s->Jd[i + r * i]));
+    }
+    if (is_found) {
+        ct_lu_solve(x, s->Jd, s->pivot, r, r, 1, r, false);
+        ct_lu_solve(x, s->Jd, s->pivot, r, r, 1, r, true);
+    }
+    return is_found;
 }
 
 void ct_embed_renew(struct ct_embed *s)

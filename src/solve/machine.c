@@ -376,6 +376,13 @@ void ct_machine_prepare(struct ct_machine *m)
         ct_tangent_lanes_prepare(m->lanes, m->input);
 }
 
+void ct_machine_prepare_motion(struct ct_machine *m)
+{
+    prepare(&m->motion, m->input);
+    prepare(&m->constraint, m->input);
+    prepare(&m->power, m->input);
+}
+
 static size_t code_size(const struct ct_program *p)
 {
     return p->native ? ct_native_code_size(p->native) : 0;

@@ -99,6 +99,8 @@ void ct_program_run(struct ct_program *p, const double *input);
 size_t ct_machine_code_size(struct ct_machine *m);
 /// Parameters have changed: run the prologues again.
 void ct_machine_prepare(struct ct_machine *m);
+/// Those of motion, constraint and power alone: all that ct_machine_motion and ct_machine_constraint need.
+void ct_machine_prepare_motion(struct ct_machine *m);
 /// As new, with the values that the model's parameters have now.
 void ct_machine_reset(struct ct_machine *m);
 
