@@ -90,6 +90,12 @@ struct ct_shapes {
 };
 /// Shapes of `modes: n` (flexible_modes.c).  Errors: CT_E_BEAM.
 bool ct_flexible_reduce(struct ct_build *b, struct ct_flexible *f, struct ct_shapes *out);
+/// Rotations of nodes without inertia and moment (flexible_massless.c). follows (6 per node, out): by freedom, fixed ones
+/// included. False if there are none.
+bool ct_flexible_follow(struct ct_build *b, const struct ct_flexible *f, bool *follows);
+/// Shapes of the freedoms that do not follow, each with the others of them held and those that follow in equilibrium. False
+/// if all are coordinates, or the stiffness of those that follow is not positive.
+bool ct_flexible_condense(struct ct_build *b, struct ct_flexible *f, struct ct_shapes *out);
 /// Rows of the beam's own stiffness and damping.
 void ct_stiffness_rows(struct ct_build *b, const struct ct_flexible *f, ct_ex *row);
 
