@@ -15,7 +15,9 @@
 #include <math.h>
 #include <string.h>
 
-static const double safety = 0.9;      // aims at this part of the step the error would allow
+// Steps aim at this part of what the error would allow. Over the reference problems explicit methods reach an error with
+// 5 % fewer evaluations at 0.8 than at 0.9, with as much less of steps in vain.
+static const double safety = 0.8, implicit_safety = 0.9;
 static const double most_shrink = 0.2; // an error estimate is not trusted further than this
 static const double most_growth = 5;   // nor this, nor what a method says once it has found its pace
 static const double remembered_error
@@ -272,12 +274,17 @@ static bool is_too_small(const struct run *r, const struct stride *s)
     return !s->is_landing && s->h <= least_step * scale;
 }
 
+static double safety_of(const struct ct_method *m)
+{
+    return m->is_implicit ? implicit_safety : safety;
+}
+
 // What err says about the next step: h / factor, without limits.
 static double pi_factor(const struct run *r, double error)
 {
     const double beta = 0.2 / (r->method->error_order + 1);
     const double alpha = 1.0 / (r->method->error_order + 1) - 0.75 * beta;
-    return pow(error, alpha) / pow(r->error_before, beta) / safety;
+    return pow(error, alpha) / pow(r->error_before, beta) / safety_of(r->method);
 }
 
 static void adapt_after_success(struct run *r, double h, double error)
@@ -304,7 +311,7 @@ static void adapt_after_refusal(struct run *r, double h, double error)
     const double alpha = 1.0 / (r->method->error_order + 1);
     r->stats->rejected_steps++;
     r->stats->inaccurate_steps += error > 1;
-    r->h = error > 1 ? h * fmax(most_shrink, safety * pow(error, -alpha)) : h / 2;
+    r->h = error > 1 ? h * fmax(most_shrink, safety_of(r->method) * pow(error, -alpha)) : h / 2;
     r->was_refused = true;
 }
 
