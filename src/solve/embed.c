@@ -12,6 +12,9 @@ static const double rank_tolerance = 1e-9;
 // Choose anew when the dependent part has become this much worse than when it was chosen, (6.3)
 static const double kappa_growth = 10;
 static const double kappa_largest = 1e3;
+// Where rows are redundant others can do for those that are kept, so they are exchanged before they become nearly dependent:
+// beside that stages, which lie off the rows that are left out, see another field.
+static const double sigma_fall = 10, sigma_fall_redundant = 2.5;
 // Projections stop here: a few roundings of coordinates of order one.
 static const double position_tolerance = 1e-13;
 // Pivots smaller than this against the largest enlarge what is left over noticeably.
@@ -597,8 +600,9 @@ static bool has_worn(const struct ct_embed *s)
 {
     if (!s->rank)
         return false;
+    const double fall = s->rank < (int)s->m->nrow ? sigma_fall_redundant : sigma_fall;
     return s->kappa > kappa_growth * s->kappa_chosen + 1 || s->kappa > kappa_largest
-        || s->sigma * kappa_growth < s->sigma_chosen;
+        || s->sigma * fall < s->sigma_chosen;
 }
 
 // What is near enough: a few roundings, divided twice by the smallest pivot beside a singular position. Rounding keeps
