@@ -17,7 +17,7 @@
 
 static const double safety = 0.9;      // aims at this part of the step the error would allow
 static const double most_shrink = 0.2; // an error estimate is not trusted further than this
-static const double most_growth = 5;   // nor this
+static const double most_growth = 5;   // nor this, nor what a method says once it has found its pace
 static const double remembered_error
     = 1e-4;                        // least error the controller remembers: smaller ones
                                    // are luck and would make it shrink the next step
@@ -70,6 +70,7 @@ struct run {
     void *work;           // the method's own
     double error_before;  // of the last accepted step
     bool was_refused;     // the step before this try was
+    bool is_starting;     // errors since the start, or an event, say that steps are much too short
     void *crossing_work;  // of ct_crossing; NULL: there are no singular positions to cross
     double singular_in;   // time to the next one, from t
     double reach;         // crossing it is to begin this long before
@@ -146,6 +147,7 @@ static bool take_bearings(struct run *r)
 {
     if (r->method->restart)
         r->method->restart(r->work);
+    r->is_starting = true;
     enum ct_eval e = ct_stepper_rhs(r->p, r->t, r->y, r->dy, r->stats);
     if (e == CT_EVAL_OK)
         e = ct_watch_start(&r->watch, r->t, r->h, r->y, r->dy);
@@ -280,7 +282,9 @@ static double pi_factor(const struct run *r, double error)
 
 static void adapt_after_success(struct run *r, double h, double error)
 {
-    const double growth = r->method->most_growth > 0 ? r->method->most_growth : most_growth;
+    r->is_starting = r->is_starting && error < remembered_error;
+    const bool has_own = r->method->most_growth > 0 && !r->is_starting;
+    const double growth = has_own ? r->method->most_growth : most_growth;
     const double factor = fmin(fmax(pi_factor(r, error), 1 / growth), 1 / most_shrink);
     const double *steady = r->method->steady;
     double next = h / factor;
@@ -346,6 +350,19 @@ static bool differs(const double *a, const double *b, int n)
     return false;
 }
 
+// Has the projection moved y1 so far that its derivative must be found again? That of the step errs by h df/dy times
+// the way, so less than `unnoticed` of the tolerance is lost in the error of the step.
+static bool has_moved(struct run *r)
+{
+    const double unnoticed = 0.01;
+    const struct ct_problem *p = r->p;
+    if (r->o->step > 0)
+        return differs(r->end, r->y1, p->ny);
+    for (int i = 0; i < p->ny; i++)
+        r->point[i] = r->end[i] - r->y1[i];
+    return !(ct_stepper_norm(p, &r->tolerance, r->y, r->y1, r->point) <= unnoticed);
+}
+
 // end, dend (out) = y1, dy1 on the constraints.
 static enum ct_eval project_end(struct run *r, double t1)
 {
@@ -356,7 +373,7 @@ static enum ct_eval project_end(struct run *r, double t1)
     if (!p->project || r->method->is_implicit)
         return CT_EVAL_OK;
     const enum ct_eval e = p->project(p->user, t1, r->end);
-    if (e != CT_EVAL_OK || !differs(r->end, r->y1, p->ny))
+    if (e != CT_EVAL_OK || !has_moved(r))
         return e;
     return ct_stepper_finite(r->end, p->ny) ? ct_stepper_rhs(p, t1, r->end, r->dend, r->stats)
                                             : CT_EVAL_RETRY;

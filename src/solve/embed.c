@@ -696,7 +696,7 @@ enum ct_eval ct_embed_project(struct ct_embed *s, double t, double *y)
             compare_strength(s);
         }
     }
-    if (e != CT_EVAL_OK)
+    if (e != CT_EVAL_OK || s->is_crossing)
         return e;
     tend_form(s);
     if (has_worn(s)) {

@@ -41,6 +41,7 @@ struct ct_embed {
     bool has_form;    // form[0] is for the rows and columns of now
     bool is_dear;     // matrices are cheaper
     bool is_delicate; // near a singular position: pivots are sought at every evaluation
+    bool is_crossing; // stages are projected that steps do not end on: choices stay
     bool is_rough;    // the last check wanted a refinement
     long nweak;       // checks in a row that found the form weak, or projections without one
     double strength, at_sigma; // of the form, now and where sigma was found by matrices

@@ -191,6 +191,7 @@ static double singular_in(void *user, double *reach)
 static void set_crossing(void *user, bool is_crossing)
 {
     struct ct_run *r = user;
+    r->s->is_crossing = is_crossing;
     r->s->is_delicate = !is_crossing && r->last_part < near_pivot;
 }
 
