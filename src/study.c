@@ -2,8 +2,8 @@
 //
 //     file -> text -> [ worker: system, assembly, run, lanes ] x threads -> rows in order -> FILE
 //
-// Parameters are inputs of the generated programs. A member is read again from the text of the file with its
-// values, so that whatever the reader refuses is refused here too, and so that initial values and `simulation`
+// Parameters are inputs of the generated programs. A member is read again from the parsed text of the file with
+// its values, so that whatever the reader refuses is refused here too, and so that initial values and `simulation`
 // may depend on what varies; then its values go into the worker's own system, whose equations stay. Three ways:
 //
 //     in lanes    the usual one; see solve/lanes.h
@@ -16,6 +16,7 @@
 #include "plan.h"
 
 #include "io/text.h"
+#include "io/yaml.h"
 #include "report/json.h"
 #include "report/number.h"
 #include "report/progress.h"
@@ -47,6 +48,7 @@ struct ct_study {
     const char *path;
     char *text; // of the model file
     size_t ntext;
+    const struct ct_node *root;              // the same, parsed
     struct ct_system_options system_options; // with strings in own.model
     struct ct_sim_options run;
     struct ct_plan plan;
@@ -292,7 +294,7 @@ static bool set_member(struct worker *w, long member)
     for (size_t i = 0; i < n; i++)
         set[i].text = text[i];
     struct ct_model model;
-    if (!ct_model_parse(ctx, s->path, s->text, s->ntext, set, n, &model))
+    if (!ct_model_resolve(ctx, s->path, s->root, set, n, &model))
         return false;
     take_values(&w->system->model, &model);
     return true;
@@ -592,8 +594,8 @@ static bool prepare(struct ct_study *s, const struct ct_study_options *o)
     struct ct_set *set = CT_NEWN(s->own.model, struct ct_set, so->nset + 1);
     for (size_t i = 0; i < so->nset; i++)
         set[i].text = so->set[i];
-    if (!read_text(s)
-        || !ct_model_parse(&s->own, s->path, s->text, s->ntext, set, so->nset, &file)
+    if (!read_text(s) || !ct_yaml_parse(&s->own, s->path, s->text, s->ntext, &s->root)
+        || !ct_model_resolve(&s->own, s->path, s->root, set, so->nset, &file)
         || !ct_plan_read(&s->own, &file, o->vary, o->nvary, o->sample, o->seed, &s->plan))
         return false;
     s->base = CT_NEWN(s->own.model, double, s->plan.naxis);

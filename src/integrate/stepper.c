@@ -38,13 +38,12 @@ static void combine_few(double *restrict out, const double *y, double h, const d
 
 #if defined(__GNUC__)
 
-typedef double four __attribute__((vector_size(LANES * sizeof(double)), aligned(sizeof(double)),
-                                   may_alias));
+typedef double four
+    __attribute__((vector_size(LANES * sizeof(double)), aligned(sizeof(double)), may_alias));
 
 // Inlined into callers, each with the registers that it may use.
-__attribute__((always_inline)) static inline void by_fours(double *out, const double *y, double h,
-                                                           const double *a, const double *k,
-                                                           int s, int n)
+__attribute__((always_inline)) static inline void
+by_fours(double *out, const double *y, double h, const double *a, const double *k, int s, int n)
 {
     for (int i = 0; i < n; i += LANES) {
         const int at = i + LANES <= n ? i : n - LANES;

@@ -65,8 +65,9 @@ struct ct_embed *ct_embed_create(struct ct_arena *arena, struct ct_ctx *ctx,
     s->iwork = CT_NEWN(arena, int, k);
     s->column = CT_NEWN(arena, int, k);
     const int size = (int)kk;
-    s->work = CT_NEWN(arena, double,
-                      larger(ct_lstsq_work(size, size), ct_qr_pivot_work(size, size)) + 3 * k);
+    const size_t for_qr = larger(ct_lstsq_work(size, size), ct_qr_pivot_work(size, size));
+    s->work
+        = CT_NEWN(arena, double, larger(for_qr, ct_singular_values_work(size, size)) + 3 * k);
     return s;
 }
 
@@ -729,8 +730,21 @@ static bool find_strength(struct ct_embed *s)
     return is_sound(s);
 }
 
+// The smallest singular value of J that is not that of a redundant row, against its largest: of redundant rows those
+// that are kept may lose rank where the others do not.
+static double nearness_of_all(struct ct_embed *s)
+{
+    const size_t n = s->m->nu, m = s->m->nrow;
+    memcpy(s->A, s->m->J, m * n * sizeof *s->A);
+    if (!ct_singular_values(s->b, s->A, (int)m, (int)n, (int)m, s->work) || !(s->b[0] > 0))
+        return 0;
+    return s->b[s->rank - 1] / s->b[0];
+}
+
 double ct_embed_pivot(struct ct_embed *s)
 {
+    if (s->rank < (int)s->m->nrow)
+        return nearness_of_all(s);
     // the place need not be one of the motion: what is known of the motion stays
     const double sigma = s->sigma, kappa = s->kappa, strength = s->strength;
     const bool is_known = find_strength(s) || factor(s);

@@ -156,8 +156,6 @@ static double time_to_singular(struct ct_run *r, double t, const double *y, cons
 // that was foreseen.
 static bool foresee_singular(struct ct_run *r, double t, const double *y, const double *dy)
 {
-    if (r->s->rank < (int)r->m->nrow)
-        return true; // of redundant rows those that are kept may lose rank where the others do not
     const double dt = t - r->time_last;
     if (!r->s->rank || !(dt > 0))
         return true;

@@ -1,6 +1,6 @@
 // Speed of generated programs and of generating them: a table of measured times beside their goals.
 //
-//     bench [--quick]
+//     bench [--quick | --sweep [MEMBERS]]
 //
 // Models are read from YAML and go through the normal stages. A time is the median of 11 samples of
 // processor time, each of many calls; what a ratio compares is measured alternately in one run, so that
@@ -707,51 +707,84 @@ static void many_four_bars(int n)
 
 // ---- parameter studies --------------------------------------------------------------------------
 
-// Seconds of integration of n single runs one after another, at values across the same range.
-static double single_runs(struct ct_ctx *ctx, const char *path, int n)
+// What a member costs where one run follows another, at values of the sweep's own, between its rows.
+struct singles {
+    const char *path;
+    long every;   // members between two of them
+    long n;       // of them so far
+    double spent; // on all this [s]
+    double prepare,
+        run; // of these: a run made ready of a system that is there, and its integration [s]
+    double difference; // largest |row - run| / max(|run|, 1)
+};
+
+// The last row of a run stays.
+static bool keep_row(void *user, double t, const double *value, size_t n)
 {
-    double t = 0;
-    for (int i = 0; i < n; i++) {
-        char torque[32];
-        snprintf(torque, sizeof torque, "torque=%g", 0.4 + 0.2 * (i + 0.5) / n);
-        const char *const set[] = {torque};
-        struct ct_system *system
-            = ct_system_load(ctx, path, &(struct ct_system_options){.set = set, .nset = 1});
-        struct ct_sim *sim = ct_sim_create(ctx, system, &(struct ct_sim_options){.samples = 2});
-        const double start = now();
-        if (!ct_sim_run(ctx, sim, NULL))
-            exit(1);
-        t += now() - start;
-        ct_sim_destroy(sim);
-        ct_system_destroy(system);
-    }
-    return t;
+    (void)t;
+    memcpy(user, value, n * sizeof *value);
+    return true;
 }
 
-// Members in lanes on one core against single runs, which are timed before and after.
+static bool run_single(void *user, long member, const double *varied, const double *value,
+                       const char *message)
+{
+    struct singles *s = user;
+    if (message)
+        exit(1);
+    if (member % s->every)
+        return true;
+    enum { MOST_COLUMNS = 64 };
+    double last[MOST_COLUMNS];
+    const double before = now();
+    char torque[40];
+    snprintf(torque, sizeof torque, "torque=%.17g", varied[0]);
+    const char *const set[] = {torque};
+    struct ct_ctx *ctx = ct_ctx_create();
+    struct ct_system *system
+        = ct_system_load(ctx, s->path, &(struct ct_system_options){.set = set, .nset = 1});
+    const double start = now();
+    struct ct_sim *sim = ct_sim_create(ctx, system, &(struct ct_sim_options){.samples = 2});
+    const double ready = now();
+    if (!ct_sim_run(ctx, sim, &(struct ct_sim_results){.row = keep_row, .user = last}))
+        exit(1);
+    s->run += now() - ready;
+    s->prepare += ready - start;
+    for (size_t i = 0; i + 1 < ct_system_column_count(system); i++)
+        s->difference = fmax(s->difference, fabs(value[i] - last[i]) / fmax(fabs(last[i]), 1));
+    s->n++;
+    ct_sim_destroy(sim);
+    ct_system_destroy(system);
+    ct_ctx_destroy(ctx);
+    s->spent += now() - before;
+    return true;
+}
+
+// Members in lanes on one core, everything included, against single runs in between.
 static void sweep(int members)
 {
-    const char *path = shipped("slider_crank");
-    const int n = members < 1000 ? 4 : 100;
+    struct singles s = {.path = shipped("slider_crank"), .every = members < 1000 ? 2 : 50};
     char vary[64], text[96];
     snprintf(vary, sizeof vary, "torque=0.4:0.6:%d", members);
     const char *const list[] = {vary};
     struct ct_ctx *ctx = ct_ctx_create();
     struct ct_study *study = ct_study_create(
-        ctx, path, NULL, &(struct ct_study_options){.vary = list, .nvary = 1, .threads = 1});
-    double single = single_runs(ctx, path, n);
+        ctx, s.path, NULL, &(struct ct_study_options){.vary = list, .nvary = 1, .threads = 1});
     const double start = now();
-    if (!ct_study_run(ctx, study, NULL) || ct_study_failed(study))
+    if (!ct_study_run(ctx, study, &(struct ct_study_results){.row = run_single, .user = &s}))
         exit(1);
-    const double lanes = (now() - start) / members;
-    single = (single + single_runs(ctx, path, n)) / (2 * n);
+    const double lanes = (now() - start - s.spent) / members;
     ct_study_destroy(study);
     ct_ctx_destroy(ctx);
-    snprintf(text, sizeof text, "slider-crank, 2 s: sweep of %d, per member", members);
+    snprintf(text, sizeof text, "slider-crank, 2 s: sweep of %d, per member, all included",
+             members);
     putchar('\n');
     line(text, lanes, 0);
-    line("  single run, integration only", single, 0);
-    ratio("  single run / member", single / lanes, 3);
+    line("  single run: integration only, the system ready", s.run / (double)s.n, 0);
+    line("  single run: made ready of a system that is there", s.prepare / (double)s.n, 0);
+    ratio("  integration only / member", s.run / (double)s.n / lanes, 3);
+    ratio("  made ready and integrated / member", (s.prepare + s.run) / (double)s.n / lanes, 0);
+    printf("%-58s %12.1e\n", "  largest difference of a row from its single run", s.difference);
 }
 
 // ---- beams --------------------------------------------------------------------------------------
@@ -844,6 +877,10 @@ int main(int argc, char **argv)
         sample_seconds = 5e-5;
     printf("native code: %s\n", ct_native_is_available(1) ? "available" : "not available");
     head("one core, warm");
+    if (argc > 1 && strcmp(argv[1], "--sweep") == 0) {
+        sweep(argc > 2 ? atoi(argv[2]) : 10000);
+        return 0;
+    }
     open_chains(quick);
     andrews();
     four_bars(1);
