@@ -37,6 +37,14 @@ static size_t larger(size_t a, size_t b)
     return a > b ? a : b;
 }
 
+static double largest(const double *v, size_t n)
+{
+    double max = 0;
+    for (size_t i = 0; i < n; i++)
+        max = fabs(v[i]) > max || isnan(v[i]) ? fabs(v[i]) : max;
+    return max;
+}
+
 struct ct_embed *ct_embed_create(struct ct_arena *arena, struct ct_ctx *ctx,
                                  struct ct_machine *m)
 {
@@ -57,6 +65,7 @@ struct ct_embed *ct_embed_create(struct ct_arena *arena, struct ct_ctx *ctx,
     s->S = CT_NEWN(arena, double, kk *kk);
     s->MB = CT_NEWN(arena, double, kk *kk);
     s->A = CT_NEWN(arena, double, kk *kk);
+    s->q = CT_NEWN(arena, double, m->nq + 1);
     s->c = CT_NEWN(arena, double, k);
     s->r = CT_NEWN(arena, double, k);
     s->b = CT_NEWN(arena, double, k);
@@ -262,13 +271,14 @@ static double *J_at(const struct ct_embed *s, int row, int column)
     return &s->m->J[(size_t)row + s->m->nrow * (size_t)column];
 }
 
-static void choose_rows(struct ct_embed *s)
+// Rows of J, the best first, into s->row; the number of independent ones.
+static int order_rows(struct ct_embed *s)
 {
     const int n = (int)s->m->nu, m = (int)s->m->nrow;
     for (int i = 0; i < m; i++) // A = J', n x m
         for (int j = 0; j < n; j++)
             s->A[j + n * i] = *J_at(s, i, j);
-    s->rank = ct_qr_pivot(s->A, s->row, s->b, n, m, n, rank_tolerance, s->work);
+    return ct_qr_pivot(s->A, s->row, s->b, n, m, n, rank_tolerance, s->work);
 }
 
 static void choose_columns(struct ct_embed *s)
@@ -353,18 +363,65 @@ static bool has_inertia(struct ct_embed *s)
     return true;
 }
 
+// Time in which a coordinate has moved by `way` along the motion of now, the first one; 0 at rest.
+static double time_ahead(const struct ct_embed *s, double way)
+{
+    const double u = largest(s->m->input + s->m->at_u, s->m->nu), a = largest(s->a, s->m->nu);
+    return u > 0 || a > 0 ? 2 * way / (u + sqrt(u * u + 2 * way * a)) : 0;
+}
+
+// Rows and columns chosen by what they are ahead on the motion, with u' as found last; the machine's input stays.
+static void choose_there(struct ct_embed *s)
+{
+    const double way = 0.3; // [rad or m]: far enough to tell them apart, near enough to be known
+    struct ct_machine *m = s->m;
+    double *q = m->input + m->at_q;
+    const double *u = m->input + m->at_u, h = time_ahead(s, way);
+    for (size_t k = 0; k < m->nu; k++)
+        s->r[k] = h * (u[k] + h / 2 * s->a[k]);
+    memcpy(s->q, q, m->nq * sizeof *q);
+    ct_machine_retract(m, q, s->r);
+    ct_machine_constraint(m);
+    order_rows(s);
+    choose_columns(s);
+    memcpy(q, s->q, m->nq * sizeof *q);
+    ct_machine_constraint(m);
+}
+
+static bool choose_here(struct ct_embed *s)
+{
+    s->rank = order_rows(s);
+    choose_columns(s);
+    return factor(s);
+}
+
+// In a symmetric position, where many motions begin, several choices are equally good, and only further on some of them
+// fail. Where the choice ahead is nearly as good here it is taken: another one costs more than many steps.
+static bool choose_ahead(struct ct_embed *s)
+{
+    enum { LARGE = 200 }; // the choice costs more than the form
+    const double nearly = 0.5;
+    if (!choose_here(s) || s->rank > LARGE || s->rank == (int)s->m->nu || s->m->e->solution)
+        return true;
+    const double sigma = s->sigma, kappa = s->kappa;
+    ct_machine_motion(s->m);
+    if (ct_embed_accelerate(s) != CT_EVAL_OK)
+        return false;
+    choose_there(s);
+    return (factor(s) && s->sigma >= nearly * sigma && nearly * s->kappa <= kappa)
+        || choose_here(s);
+}
+
 bool ct_embed_choose(struct ct_embed *s)
 {
     s->switches++;
     s->rank = 0;
-    if (s->m->nrow)
-        choose_rows(s);
-    if (s->rank)
-        choose_columns(s);
-    else
-        for (int j = 0; j < (int)s->m->nu; j++)
-            s->independent[j] = j;
-    factor(s);
+    for (int j = 0; j < (int)s->m->nu; j++)
+        s->independent[j] = j;
+    if (!s->m->nrow)
+        factor(s);
+    else if (!choose_ahead(s))
+        return massless(s, lightest(s));
     s->kappa_chosen = s->kappa;
     s->sigma_chosen = s->sigma;
     if (s->m->e->solution)
@@ -549,14 +606,6 @@ enum ct_eval ct_embed_impulse(struct ct_embed *s, const double *p, double *u)
 }
 
 // ---- projection -------------------------------------------------------------------------------------------
-
-static double largest(const double *v, size_t n)
-{
-    double max = 0;
-    for (size_t i = 0; i < n; i++)
-        max = fabs(v[i]) > max || isnan(v[i]) ? fabs(v[i]) : max;
-    return max;
-}
 
 // d (nu) = -J+ r: least norm, all rows.
 static void least_norm_step(struct ct_embed *s, const double *r, double *d)
