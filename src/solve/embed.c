@@ -790,10 +790,8 @@ static double nearness_of_all(struct ct_embed *s)
     return s->b[s->rank - 1] / s->b[0];
 }
 
-double ct_embed_pivot(struct ct_embed *s)
+double ct_embed_kept_pivot(struct ct_embed *s)
 {
-    if (s->rank < (int)s->m->nrow)
-        return nearness_of_all(s);
     // the place need not be one of the motion: what is known of the motion stays
     const double sigma = s->sigma, kappa = s->kappa, strength = s->strength;
     const bool is_known = find_strength(s) || factor(s);
@@ -802,6 +800,11 @@ double ct_embed_pivot(struct ct_embed *s)
     s->kappa = kappa;
     s->strength = strength;
     return pivot;
+}
+
+double ct_embed_pivot(struct ct_embed *s)
+{
+    return s->rank < (int)s->m->nrow ? nearness_of_all(s) : ct_embed_kept_pivot(s);
 }
 
 void ct_embed_renew(struct ct_embed *s)

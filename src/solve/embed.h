@@ -79,6 +79,8 @@ enum ct_eval ct_embed_project(struct ct_embed *s, double t, double *y);
 /// The smallest pivot of J_d against its largest at the last ct_machine_constraint, times the largest entry of B where that
 /// is above 1: small where J loses rank, not where another choice of columns would do.
 double ct_embed_pivot(struct ct_embed *s);
+/// The same of the kept rows alone, which are never further from losing rank than all rows are.
+double ct_embed_kept_pivot(struct ct_embed *s);
 /// Which multipliers are unique, into s->is_unique: rows of null(J') that vanish.  (6.5)
 void ct_embed_uniqueness(struct ct_embed *s);
 /// z (nrow, out) = the unit vector of `row` less its part in the range of J: a vector of null(J'), so that

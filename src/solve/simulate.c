@@ -28,7 +28,7 @@ struct ct_run {
     struct ct_run_report *report;
     double energy0, energy_scale;
     double pivot_most, last_part, time_last, singular_in,
-        singular_reach; // see foresee_singular
+        singular_reach, kept_far; // see foresee_singular
     long last_switches; // of the embedding
     double pending;     // time of the event ahead; INFINITY if there is none
     bool started;
@@ -152,6 +152,17 @@ static double time_to_singular(struct ct_run *r, double t, const double *y, cons
     return s - pivot / slope;
 }
 
+// With redundant rows what tells of all of them costs as much as some evaluations. As long as the kept rows have not come
+// nearer to losing rank than when nothing was ahead, nothing is.
+static bool is_far_still(struct ct_run *r, double t, const double *y)
+{
+    if (r->s->rank == (int)r->m->nrow || r->singular_in < INFINITY || r->s->switches != r->last_switches)
+        return false;
+    ct_machine_set(r->m, before_event(r, t), y);
+    ct_machine_constraint(r->m);
+    return ct_embed_kept_pivot(r->s) >= r->kept_far;
+}
+
 // What is ahead of an accepted state. False if the step to it has come beside a singular position, or past it, before
 // that was foreseen.
 static bool foresee_singular(struct ct_run *r, double t, const double *y, const double *dy)
@@ -159,6 +170,10 @@ static bool foresee_singular(struct ct_run *r, double t, const double *y, const 
     const double dt = t - r->time_last;
     if (!r->s->rank || !(dt > 0))
         return true;
+    if (is_far_still(r, t, y)) {
+        r->time_last = t;
+        return true;
+    }
     const double now = pivot_after(r, t, y, dy, 0), part = now / fmax(r->pivot_most, now);
     // after another choice of rows and columns the pivot is not to be compared with the last one
     const bool is_comparable = r->s->switches == r->last_switches;
@@ -172,8 +187,11 @@ static bool foresee_singular(struct ct_run *r, double t, const double *y, const 
     r->pivot_most = fmax(r->pivot_most, now);
     r->singular_in = INFINITY;
     r->s->is_delicate = part < near_pivot;
-    if (part > foreseen_pivot)
+    r->kept_far = INFINITY;
+    if (part > foreseen_pivot) {
+        r->kept_far = foreseen_pivot * ct_embed_kept_pivot(r->s);
         return true;
+    }
     r->singular_in = time_to_singular(r, t, y, dy, now, dt);
     r->singular_reach = r->singular_in * fmin(1, singular_pivot / part);
     return true;
@@ -448,6 +466,7 @@ bool ct_run_restart(struct ct_run *r, const struct ct_start *start)
     r->s->kappa = r->s->sigma = 0;
     r->pending = INFINITY;
     r->energy0 = r->energy_scale = r->pivot_most = 0;
+    r->kept_far = INFINITY;
     r->started = false;
     return begin(r, start);
 }
@@ -999,7 +1018,7 @@ bool ct_run_simulate(struct ct_run *r, const struct ct_run_options *o,
     report->validity = CT_NEWN(r->arena, struct ct_validity_report, r->e->nvalidity + 1);
     for (size_t i = 0; i < r->e->nvalidity; i++)
         report->validity[i].left_at = -1;
-    r->singular_in = INFINITY;
+    r->singular_in = r->kept_far = INFINITY;
     r->o = o;
     r->method = o->method;
     r->last_event = -INFINITY;
