@@ -9,26 +9,9 @@
 // A row counts as dependent when what is left of it is this small against the largest: the
 // constraints of a closed mechanism are known to about 1e-12 after projection.
 static const double rank_tolerance = 1e-9;
-// Choose anew when the dependent part has become this much worse than when it was chosen, (6.3)
-static const double kappa_growth = 10;
-static const double kappa_largest = 1e3;
 // Where rows are redundant others can do for those that are kept, so they are exchanged before they become nearly dependent:
 // beside that stages, which lie off the rows that are left out, see another field.
-static const double sigma_fall = 10, sigma_fall_redundant = 2.5;
-// Projections stop here: a few roundings of coordinates of order one.
-static const double position_tolerance = 1e-13;
-// Pivots smaller than this against the largest enlarge what is left over noticeably.
-static const double small_pivot = 0.5;
-enum { MOST_NEWTON = 25 };
-
-// A form is used while its strength has changed by less than such a factor since sigma, which tells how near a
-// singular position is, was found by dense matrices.
-static const double most_change = 1.5;
-// Where strength and sigma have fallen alike, up to so much, strength stands for sigma for longer.
-static const double alike = 1.02, most_change_alike = 4;
-// What may be left of the equations against their terms: beyond the first a refinement is made, beyond
-// the second the form is not used.
-static const double left_plain = 1e-13, left_most = 1e-11;
+static const double redundant_fall = 2.5;
 // So many weak checks in a row ask for another order.
 enum { MOST_WEAK = 3 };
 
@@ -139,8 +122,8 @@ static long patience(const struct ct_embed *s)
 static void forget_strength(struct ct_embed *s)
 {
     s->nweak = 0;
-    s->at_sigma = 0;
-    s->is_alike = false;
+    s->strength.at_sigma = 0;
+    s->strength.is_alike = false;
 }
 
 // The form for the rows and columns of now: one from before, or a new one.
@@ -169,44 +152,30 @@ void ct_embed_stay_dense(struct ct_embed *s)
     s->has_form = false;
 }
 
-static bool is_within(double ratio, double factor)
-{
-    return ratio < factor && ratio > 1 / factor;
-}
-
 static bool is_sound(const struct ct_embed *s)
 {
-    return s->strength > ct_form_weakest
-        && is_within(s->strength / s->at_sigma, s->is_alike ? most_change_alike : most_change);
+    double low, high;
+    ct_strength_range(&s->strength, &low, &high);
+    return s->strength.now > low && s->strength.now < high;
 }
 
 // Can the form of now be tried? Beside singular positions only where it tells how near they are.
 static bool is_form_due(const struct ct_embed *s)
 {
-    return s->has_form && s->nweak == 0 && (s->is_alike || !s->is_delicate);
-}
-
-// sigma has been found by matrices where the form has this strength.
-static void compare_strength(struct ct_embed *s)
-{
-    const double change = s->strength / s->at_sigma;
-    if (s->at_sigma > 0 && !is_within(change, alike)) // else there is nothing to learn
-        s->is_alike = is_within(s->sigma / s->sigma_found / change, alike);
-    s->at_sigma = s->strength;
-    s->sigma_found = s->sigma;
+    return s->has_form && s->nweak == 0 && (s->strength.is_alike || !s->is_delicate);
 }
 
 static void follow_sigma(struct ct_embed *s)
 {
-    if (s->is_alike)
-        s->sigma = s->sigma_found * s->strength / s->at_sigma;
+    if (s->strength.is_alike)
+        s->sigma = ct_strength_sigma(&s->strength);
 }
 
 // u' by the form of now; false if its pivots are not sound here.
 static bool solve_form(struct ct_embed *s)
 {
     struct ct_form *f = s->form[0];
-    s->strength = ct_form_solve(f, s->m, s->a);
+    s->strength.now = ct_form_solve(f, s->m, s->a);
     if (!is_sound(s))
         return false;
     follow_sigma(s);
@@ -216,7 +185,7 @@ static bool solve_form(struct ct_embed *s)
     ct_form_check(f, s->m);
     s->solves.refined++;
     memcpy(s->a, f->a, s->m->nu * sizeof *s->a);
-    return f->left_better <= left_most;
+    return f->left_better <= ct_left_most;
 }
 
 enum ct_eval ct_embed_solve(struct ct_embed *s)
@@ -231,9 +200,9 @@ enum ct_eval ct_embed_solve(struct ct_embed *s)
     s->solves.pivoted++;
     const enum ct_eval e = ct_embed_accelerate(s);
     if (s->has_form && !is_tried)
-        s->strength = ct_form_close(s->form[0], m);
+        s->strength.now = ct_form_close(s->form[0], m);
     if (s->has_form)
-        compare_strength(s);
+        ct_strength_compare(&s->strength, s->sigma);
     return e;
 }
 
@@ -242,8 +211,8 @@ static void check_form(struct ct_embed *s)
 {
     struct ct_form *f = s->form[0];
     ct_form_check(f, s->m);
-    s->is_rough = f->left > left_plain;
-    if (s->strength > ct_form_weakest && f->left_better <= left_most) {
+    s->is_rough = f->left > ct_left_plain;
+    if (s->strength.now > ct_form_weakest && f->left_better <= ct_left_most) {
         s->kappa = isnan(f->kappa) ? s->kappa : f->kappa;
         s->nweak = 0;
     } else if (++s->nweak >= MOST_WEAK * patience(s)) {
@@ -254,7 +223,7 @@ static void check_form(struct ct_embed *s)
 
 static void tend_form(struct ct_embed *s)
 {
-    if (!s->m->nrow || s->is_dear || (s->is_delicate && !s->is_alike))
+    if (!s->m->nrow || s->is_dear || (s->is_delicate && !s->strength.is_alike))
         return;
     if (s->has_form)
         check_form(s);
@@ -513,7 +482,7 @@ static bool form_multipliers(struct ct_embed *s)
         return false;
     ct_form_check(f, s->m);
     memcpy(s->lam, f->lam, s->m->nrow * sizeof *s->lam); // all rows are kept, in their order
-    return f->left_better <= left_most;
+    return f->left_better <= ct_left_most;
 }
 
 void ct_embed_multipliers(struct ct_embed *s)
@@ -634,7 +603,7 @@ static void partitioned_step(struct ct_embed *s, const double *r, double *d)
 // False if J_d is too close to singular for partitioned steps.
 static bool is_partitioned(struct ct_embed *s)
 {
-    return factor(s) && s->kappa <= kappa_largest;
+    return factor(s) && s->kappa <= ct_kappa_largest;
 }
 
 // r (nrow) += J d.
@@ -650,23 +619,9 @@ static bool has_worn(const struct ct_embed *s)
 {
     if (!s->rank)
         return false;
-    const double fall = s->rank < (int)s->m->nrow ? sigma_fall_redundant : sigma_fall;
-    return s->kappa > kappa_growth * s->kappa_chosen + 1 || s->kappa > kappa_largest
-        || s->sigma * fall < s->sigma_chosen;
-}
-
-// What is near enough: a few roundings, divided twice by the smallest pivot beside a singular position. Rounding keeps
-// larger mechanisms from it: stop when nothing is gained any more.
-static bool is_closed(const struct ct_embed *s, double size, double before)
-{
-    const double wanted = s->sigma < small_pivot ? position_tolerance * s->sigma * s->sigma
-                                                 : position_tolerance;
-    return size <= wanted || (size < 1e-10 && size > before / 4);
-}
-
-static bool is_lost(int i, double size, double before)
-{
-    return i == MOST_NEWTON || !isfinite(size) || size > 1e3 * before;
+    const bool is_redundant = s->rank < (int)s->m->nrow;
+    return ct_has_worn(s->kappa, s->kappa_chosen, s->sigma, s->sigma_chosen)
+        || (is_redundant && s->sigma * redundant_fall < s->sigma_chosen);
 }
 
 static enum ct_eval project_by_matrices(struct ct_embed *s, double t, double *y)
@@ -677,9 +632,9 @@ static enum ct_eval project_by_matrices(struct ct_embed *s, double t, double *y)
         ct_machine_set(m, t, y);
         ct_machine_constraint(m);
         const double size = largest(m->phi, m->nrow);
-        if (is_closed(s, size, before))
+        if (ct_is_closed(s->sigma, size, before))
             break;
-        if (is_lost(i, size, before))
+        if (ct_is_stray(i, size, before))
             return CT_EVAL_RETRY;
         before = size;
         (is_partitioned(s) ? partitioned_step : least_norm_step)(s, m->phi, s->r);
@@ -708,7 +663,7 @@ static void change_speeds(const struct ct_machine *m, double *y, const double *d
 static bool close_form(struct ct_embed *s, double t, const double *y)
 {
     ct_machine_set(s->m, t, y);
-    s->strength = ct_form_close(s->form[0], s->m);
+    s->strength.now = ct_form_close(s->form[0], s->m);
     if (!is_sound(s))
         return false;
     follow_sigma(s);
@@ -722,12 +677,12 @@ static enum ct_eval project_by_form(struct ct_embed *s, double t, double *y, boo
     const struct ct_form *f = s->form[0];
     double before = INFINITY;
     *is_done = false;
-    if (s->kappa > kappa_largest)
+    if (s->kappa > ct_kappa_largest)
         return CT_EVAL_OK;
     for (int i = 0; close_form(s, t, y); i++) {
         const double size = largest(f->phi, m->nrow);
-        if (!is_closed(s, size, before)) {
-            if (is_lost(i, size, before))
+        if (!ct_is_closed(s->sigma, size, before)) {
+            if (ct_is_stray(i, size, before))
                 return CT_EVAL_RETRY;
             before = size;
             ct_machine_retract(m, y, f->dq);
@@ -754,8 +709,8 @@ enum ct_eval ct_embed_project(struct ct_embed *s, double t, double *y)
     if (e == CT_EVAL_OK && !is_done) {
         e = project_by_matrices(s, t, y);
         if (s->has_form) { // sigma has just been found
-            s->strength = ct_form_close(s->form[0], s->m);
-            compare_strength(s);
+            s->strength.now = ct_form_close(s->form[0], s->m);
+            ct_strength_compare(&s->strength, s->sigma);
         }
     }
     if (e != CT_EVAL_OK || s->is_crossing)
@@ -774,8 +729,8 @@ static bool find_strength(struct ct_embed *s)
     enum { LARGE = 200 };
     if (s->rank < LARGE || !is_form_due(s))
         return false;
-    s->strength = ct_form_close(s->form[0], s->m);
-    s->sigma = s->sigma_found * s->strength / s->at_sigma;
+    s->strength.now = ct_form_close(s->form[0], s->m);
+    s->sigma = ct_strength_sigma(&s->strength);
     return is_sound(s);
 }
 
@@ -793,12 +748,12 @@ static double nearness_of_all(struct ct_embed *s)
 double ct_embed_kept_pivot(struct ct_embed *s)
 {
     // the place need not be one of the motion: what is known of the motion stays
-    const double sigma = s->sigma, kappa = s->kappa, strength = s->strength;
+    const double sigma = s->sigma, kappa = s->kappa, strength = s->strength.now;
     const bool is_known = find_strength(s) || factor(s);
     const double pivot = is_known ? s->sigma * fmax(1, s->kappa) : 0;
     s->sigma = sigma;
     s->kappa = kappa;
-    s->strength = strength;
+    s->strength.now = strength;
     return pivot;
 }
 
@@ -810,7 +765,7 @@ double ct_embed_pivot(struct ct_embed *s)
 void ct_embed_renew(struct ct_embed *s)
 {
     if (is_form_due(s)) {
-        s->strength = ct_form_close(s->form[0], s->m);
+        s->strength.now = ct_form_close(s->form[0], s->m);
         tend_form(s);
     }
     if (!s->rank || !has_worn(s))

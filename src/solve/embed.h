@@ -8,7 +8,7 @@
 #define CT_SOLVE_EMBED_H
 
 #include "integrate/problem.h"
-#include "solve/form.h"
+#include "solve/criterion.h"
 
 /// How accelerations were found, in evaluations, and how often a form was made after the first.
 struct ct_solves {
@@ -44,9 +44,7 @@ struct ct_embed {
     bool is_crossing; // stages are projected that steps do not end on: choices stay
     bool is_rough;    // the last check wanted a refinement
     long nweak;       // checks in a row that found the form weak, or projections without one
-    double strength, at_sigma; // of the form, now and where sigma was found by matrices
-    double sigma_found;        // there
-    bool is_alike;             // strength and sigma have changed alike
+    struct ct_strength strength; // of the form
     struct ct_solves solves;
     double *a, *lam; // results: u' (nu), lam (nrow)
     // workspace
