@@ -183,7 +183,7 @@ static enum ct_eval put_stage(const struct task *s, int j, const double *a, doub
 // A first guess: sweeps over the left side, then extrapolation from stage to stage.
 static enum ct_eval guess(const struct task *s)
 {
-    const int LEFT_SWEEPS = getenv("LS")?atoi(getenv("LS")):2;
+    const int LEFT_SWEEPS = getenv("LS") ? atoi(getenv("LS")) : 2;
     struct work *w = s->w;
     double moved = 0;
     enum ct_eval e = CT_EVAL_OK;
@@ -199,7 +199,8 @@ static enum ct_eval guess(const struct task *s)
 
 static enum ct_eval sweep(const struct task *s)
 {
-    const double fine = fmin(getenv("SE")?atof(getenv("SE")):settled, settled_fine / s->tolerance->rtol);
+    const double fine
+        = fmin(getenv("SE") ? atof(getenv("SE")) : settled, settled_fine / s->tolerance->rtol);
     double before = INFINITY;
     for (int i = 0; i < MOST_SWEEPS; i++) {
         double moved = 0;

@@ -342,7 +342,8 @@ static double time_ahead(const struct ct_embed *s, double way)
 // Rows and columns chosen by what they are ahead on the motion, with u' as found last; the machine's input stays.
 static void choose_there(struct ct_embed *s)
 {
-    const double way = 0.3; // [rad or m]: far enough to tell them apart, near enough to be known
+    const double way
+        = 0.3; // [rad or m]: far enough to tell them apart, near enough to be known
     struct ct_machine *m = s->m;
     double *q = m->input + m->at_q;
     const double *u = m->input + m->at_u, h = time_ahead(s, way);

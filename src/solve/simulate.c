@@ -27,8 +27,8 @@ struct ct_run {
     const struct ct_run_options *o;
     struct ct_run_report *report;
     double energy0, energy_scale;
-    double pivot_most, last_part, time_last, singular_in,
-        singular_reach, kept_far; // see foresee_singular
+    double pivot_most, last_part, time_last, singular_in, singular_reach,
+        kept_far;       // see foresee_singular
     long last_switches; // of the embedding
     double pending;     // time of the event ahead; INFINITY if there is none
     bool started;
@@ -156,7 +156,8 @@ static double time_to_singular(struct ct_run *r, double t, const double *y, cons
 // nearer to losing rank than when nothing was ahead, nothing is.
 static bool is_far_still(struct ct_run *r, double t, const double *y)
 {
-    if (r->s->rank == (int)r->m->nrow || r->singular_in < INFINITY || r->s->switches != r->last_switches)
+    if (r->s->rank == (int)r->m->nrow || r->singular_in < INFINITY
+        || r->s->switches != r->last_switches)
         return false;
     ct_machine_set(r->m, before_event(r, t), y);
     ct_machine_constraint(r->m);
