@@ -5,6 +5,7 @@
 #include "solve/dae.h"
 #include "expr/print.h"
 #include "solve/mode.h"
+#include "solve/fidelity.h"
 
 #include <math.h>
 #include <string.h>
@@ -24,6 +25,7 @@ struct ct_run {
     int *root_of; // state modes, in order
     int nroot;
     bool needs_lam, has_power;
+    struct ct_fidelity *fidelity; // of outputs; NULL: none is controlled
     const struct ct_run_options *o;
     struct ct_run_report *report;
     double energy0, energy_scale;
@@ -214,6 +216,13 @@ static void set_crossing(void *user, bool is_crossing)
     r->s->is_delicate = !is_crossing && r->last_part < near_pivot;
 }
 
+static double output_error(void *user, double t, const double *y, const double *e,
+                           const struct ct_tolerance *tolerance, double states)
+{
+    struct ct_run *r = user;
+    return ct_fidelity_error(r->fidelity, before_event(r, t), y, e, tolerance, states);
+}
+
 static double residual(void *user, double t, const double *y)
 {
     struct ct_run *r = user;
@@ -227,6 +236,8 @@ static enum ct_eval accepted(void *user, double t, double *y, const double *dy)
     struct ct_run *r = user;
     if (!r->method->is_implicit && !foresee_singular(r, t, y, dy))
         return CT_EVAL_RETRY;
+    if (r->fidelity)
+        ct_fidelity_accept(r->fidelity);
     ct_machine_set(r->m, before_event(r, t), y);
     ct_memory_follow(r->m);
     if (r->method->is_implicit) { // its steps may pass without a projection
@@ -450,6 +461,7 @@ struct ct_run *ct_run_prepare(struct ct_ctx *ctx, struct ct_arena *a,
     r->scratch = CT_NEWN(a, double, 2 * r->m->nu + 2 * e->ndriver + r->m->nrow + 1);
     r->value = CT_NEWN(a, double, e->nresult + 1);
     find_needs(r);
+    r->fidelity = ct_fidelity_create(a, r->m);
     return r;
 }
 
@@ -1020,6 +1032,8 @@ bool ct_run_simulate(struct ct_run *r, const struct ct_run_options *o,
     for (size_t i = 0; i < r->e->nvalidity; i++)
         report->validity[i].left_at = -1;
     r->singular_in = r->kept_far = INFINITY;
+    if (r->fidelity)
+        ct_fidelity_start(r->fidelity);
     r->o = o;
     r->method = o->method;
     r->last_event = -INFINITY;
@@ -1034,6 +1048,7 @@ bool ct_run_simulate(struct ct_run *r, const struct ct_run_options *o,
                            .dae = o->method->is_implicit ? ct_dae_create(r->arena, r->s) : NULL,
                            .watched = watched,
                            .groups = group_states(r),
+                           .output_error = r->fidelity ? output_error : NULL,
                            .rhs = rhs,
                            .project = project,
                            .accepted = accepted,
