@@ -8,8 +8,8 @@
 // Where outputs have at most this part of the error of states, that of so many further steps is not looked at.
 static const double harmless = 0.25;
 enum { STEPS_BETWEEN = 7 };
-// State errors below this say nothing about the ratio of the two.
-static const double least_error = 0.1;
+// State errors below this say nothing about the ratio of the two: steps are still growing.
+static const double least_error = 0.02;
 // Rounding is felt by a change of the states by this part of themselves, far above it so that it can be measured.
 static const double change = 0x1p-40;
 // An output counts from so many roundings on, and need not be better than so many.
@@ -112,7 +112,7 @@ double ct_fidelity_error(struct ct_fidelity *p, double t, const double *y, const
     p->has_seen = true;
     measure_rounding(p, t, y);
     const double error = error_of_outputs(p, t, y, e, tolerance);
-    p->skip = error <= harmless * fmax(states, least_error) ? STEPS_BETWEEN : 0;
+    p->skip = states >= least_error && error <= harmless * states ? STEPS_BETWEEN : 0;
     return error;
 }
 
