@@ -192,7 +192,8 @@ static bool foresee_singular(struct ct_run *r, double t, const double *y, const 
     r->s->is_delicate = part < near_pivot;
     r->kept_far = INFINITY;
     if (part > foreseen_pivot) {
-        r->kept_far = foreseen_pivot * ct_embed_kept_pivot(r->s);
+        if (r->s->rank < (int)r->m->nrow)
+            r->kept_far = foreseen_pivot * ct_embed_kept_pivot(r->s);
         return true;
     }
     r->singular_in = time_to_singular(r, t, y, dy, now, dt);
