@@ -34,7 +34,7 @@ static struct ct_build *build_create(struct ct_ctx *ctx, struct ct_arena *a,
     *b = (struct ct_build){.ctx = ctx,
                            .arena = a,
                            .model = m,
-                           .is_rigid = o->measure_all,
+                           .is_rigid = o->measure_all && !o->deformed,
                            .keep_all = o->keep_all,
                            .is_held = o->held,
                            .like = o->like,
@@ -172,7 +172,7 @@ static double pair_cost(void *data, const struct ct_tree *T, const struct ct_tre
 // ---- rules for trees -----------------------------------------------------------------------------------
 
 struct rules {
-    int *weight_t, *weight_r, *rank;
+    int *weight_t, *weight_r, *rank; // weight -1: before all others that are not forced
     bool *forced_t, *forced_r, *banned_t, *banned_r, *tied;
 };
 
@@ -240,8 +240,9 @@ static void rank_by_name(const struct ct_build *b, int *rank)
 
 // Arms are branches, force drivers chords (R1, R2); shared coordinates tie a joint (R3). Ties go to
 // joints nearer to ground.
-static struct rules make_rules(struct ct_build *b, enum ct_tree_choice choice)
+static struct rules make_rules(struct ct_build *b, const struct ct_formulate_options *o)
 {
+    const enum ct_tree_choice choice = o->tree;
     const size_t n = b->nedge;
     struct rules r = {.weight_t = CT_NEWN(b->arena, int, n),
                       .weight_r = CT_NEWN(b->arena, int, n),
@@ -260,6 +261,8 @@ static struct rules make_rules(struct ct_build *b, enum ct_tree_choice choice)
         const int extra = choice != CT_TREE_AUTO && dear && !e->must_be_branch ? 100 : 0;
         r.weight_t[i] = e->weight_t + extra;
         r.weight_r[i] = e->weight_r + extra;
+        if (o->first && e->kind == CT_EDGE_JOINT && o->first[e->index])
+            r.weight_t[i] = r.weight_r[i] = -1;
         r.rank[i] = tie_rank(b, i, depth, turned, choice);
         const bool is_small = e->kind == CT_EDGE_JOINT && ct_small_joint(b, e->index);
         r.forced_t[i] = e->must_be_branch || is_small;
@@ -325,7 +328,7 @@ static bool least_weight(struct ct_build *b, const struct rules *r, struct ct_tr
                    *banned = k ? r->banned_r : r->banned_t;
         const int *weight = k ? r->weight_r : r->weight_t;
         for (size_t i = 0; i < b->nedge; i++)
-            w[i] = banned[i] ? -1 : forced[i] ? 0 : weight[i] + 1;
+            w[i] = banned[i] ? -1 : forced[i] ? 0 : weight[i] + 2;
         if (!ct_tree_kruskal(b->arena, &b->graph, w, r->rank, &t, NULL))
             return ct_error(b->ctx, (struct ct_mark){0}, CT_E_TREE,
                             "the model's graph has no spanning tree");
@@ -419,7 +422,7 @@ static bool choose_trees(struct ct_build *b, const struct search *s,
                          struct ct_tree_report *report)
 {
     const struct ct_formulate_options *o = s->options;
-    const struct rules r = make_rules(b, o->tree);
+    const struct rules r = make_rules(b, o);
     struct ct_tree_pair p;
     static const char *const how[]
         = {"least weight", "through joints", "absolute coordinates", "given"};
@@ -542,7 +545,7 @@ bool ct_formulate(struct ct_ctx *ctx, struct ct_arena *a, const struct ct_model 
     if (ctx->nerror > before)
         return false;
     if (options->with_residual)
-        ct_residual_derive(b);
+        ct_residual_derive(b, CT_SLOPES_AUTO);
     if (options->with_energy)
         ct_energies_derive(b);
     if (options->measure_all)
@@ -576,6 +579,6 @@ void ct_formulate_dynamics(struct ct_equations *e)
 void ct_formulate_residual(struct ct_equations *e)
 {
     if (!e->residual)
-        ct_residual_derive(e->build);
+        ct_residual_derive(e->build, CT_SLOPES_AUTO);
     e->residual = e->build->eqs->residual;
 }

@@ -12,7 +12,6 @@
 // 85 up to order 7 (interpolant) to the 28 digits that are published.
 #include "integrate/stepper.h"
 
-#include <math.h>
 #include <string.h>
 
 enum { STAGES = 13, ALL_STAGES = 16, CORRECTIONS = 4 };
@@ -179,14 +178,11 @@ static double estimate(const struct ct_problem *p, double t, double h, const dou
     ct_stepper_combine(y3, y, h, B3, k, STAGES - 1, n);
     for (int i = 0; i < n; i++)
         y3[i] = y1[i] - y3[i];
-    const double e3 = ct_stepper_norm(p, tolerance, y, y1, y3);
-    if (e5 == 0)
-        return 0;
-    const double less = 1 / hypot(1, 0.1 * (e3 / e5));
-    if (!p->output_error)
-        return less * e5;
+    const double joint = ct_stepper_join(e5, ct_stepper_norm(p, tolerance, y, y1, y3));
+    if (e5 == 0 || !p->output_error)
+        return joint;
     for (int i = 0; i < n; i++)
-        e[i] *= less;
+        e[i] *= joint / e5;
     return ct_stepper_error(p, tolerance, t + h, y, y1, e);
 }
 

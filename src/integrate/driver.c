@@ -144,7 +144,8 @@ static bool take_bearings(struct run *r)
 static double step_limit(const struct run *r)
 {
     const double run = r->o->t1 - r->o->t0;
-    return r->p->nroot ? run / event_steps : run;
+    const double limit = r->p->nroot ? run / event_steps : run;
+    return r->p->longest_step ? fmin(limit, r->p->longest_step(r->p->user)) : limit;
 }
 
 static double first_step(struct run *r, double limit)
@@ -268,8 +269,11 @@ static void look_ahead(struct run *r)
         r->reach = fmin(r->reach, reach);
 }
 
-static void adapt_after_crossing(struct run *r)
+static void adapt_after_crossing(struct run *r, const struct stride *s)
 {
+    const struct ct_stepper_span span = {s->method, r->p, r->t, s->h, r->y, r->y1, s->work};
+    if (r->p->crossed)
+        r->p->crossed(r->p->user, &span, s->t1);
     r->singular_in = r->reach = INFINITY;
     r->failed_crossings = 0;
     r->control.was_refused = false;
@@ -489,7 +493,7 @@ static bool find_step(struct run *r, double stop, bool is_time, struct stride *s
             return false;
         if (e == CT_EVAL_OK) {
             if (is_crossing)
-                adapt_after_crossing(r);
+                adapt_after_crossing(r, s);
             else
                 ct_control_accept(&r->control, r->method, h, error);
             look_ahead(r);

@@ -144,6 +144,11 @@ double ct_stepper_error(const struct ct_problem *p, const struct ct_tolerance *t
     return fmax(states, p->output_error(p->user, t1, y1, e, tolerance, states));
 }
 
+double ct_stepper_join(double e5, double e3)
+{
+    return e5 == 0 ? 0 : e5 / hypot(1, 0.1 * (e3 / e5));
+}
+
 double ct_stepper_largest(const struct ct_problem *p, const struct ct_tolerance *tolerance,
                           int first, const double *y, const double *y1, const double *e)
 {

@@ -299,11 +299,41 @@ static size_t lightest(const struct ct_embed *s)
     return least;
 }
 
+// A beam without inertia of sections whose first section a joint turns and nothing else holds; 0: none.
+static int bare_beam(const struct ct_model *model)
+{
+    for (size_t i = 1; i < model->nbody; i++) {
+        const struct ct_beam *beam = model->body[i].beam;
+        int njoint = 0, nturn = 0;
+        if (!beam || beam->has_rotary || beam->is_chord
+            || (!beam->is_lumped && beam->theory == CT_BEAM_EULER_BERNOULLI))
+            continue;
+        for (size_t j = 0; j < model->njoint; j++) {
+            const struct ct_instance *joint = &model->joint[j];
+            if (joint->from != model->body[i].frame && joint->to != model->body[i].frame)
+                continue;
+            njoint++;
+            nturn += joint->nfree > 0;
+        }
+        if (njoint == 1 && nturn == 1)
+            return (int)i;
+    }
+    return 0;
+}
+
 static bool massless(struct ct_embed *s, size_t speed)
 {
     const struct ct_u *u = &s->m->e->u[speed];
     const struct ct_model *model = s->m->model;
     const char *name = u->q >= 0 ? s->m->e->q[u->q].name : u->name;
+    const int bare = bare_beam(model);
+    if (bare && (u->joint >= 0 || u->beam > 0))
+        return ct_error(
+            s->ctx, model->body[bare].instance.mark, CT_E_MASSLESS,
+            "coordinate '%s' moves no mass: the first section of beam '%s' has no inertia; "
+            "give the beam a 'rotary_inertia', or, if no moment acts on that section, 'frame: "
+            "chord'",
+            name, model->body[bare].instance.name);
     if (u->beam > 0)
         return ct_error(s->ctx, model->body[u->beam].instance.mark, CT_E_MASSLESS,
                         "coordinate '%s' moves no mass: give the beam a 'rotary_inertia', or "
@@ -330,6 +360,13 @@ static bool has_inertia(struct ct_embed *s)
         if (!(pivot[i] > 0))
             return massless(s, pivot[least] > 0 ? i : least);
     return true;
+}
+
+// Dense factors of larger systems cost more than a step does.
+static bool is_large(const struct ct_embed *s)
+{
+    enum { LARGE = 200 };
+    return s->rank >= LARGE;
 }
 
 // Time in which a coordinate has moved by `way` along the motion of now, the first one; 0 at rest.
@@ -369,9 +406,8 @@ static bool choose_here(struct ct_embed *s)
 // fail. Where the choice ahead is nearly as good here it is taken: another one costs more than many steps.
 static bool choose_ahead(struct ct_embed *s)
 {
-    enum { LARGE = 200 }; // the choice costs more than the form
     const double nearly = 0.5;
-    if (!choose_here(s) || s->rank > LARGE || s->rank == (int)s->m->nu || s->m->e->solution)
+    if (!choose_here(s) || is_large(s) || s->rank == (int)s->m->nu || s->m->e->solution)
         return true;
     const double sigma = s->sigma, kappa = s->kappa;
     ct_machine_motion(s->m);
@@ -380,6 +416,21 @@ static bool choose_ahead(struct ct_embed *s)
     choose_there(s);
     return (factor(s) && s->sigma >= nearly * sigma && nearly * s->kappa <= kappa)
         || choose_here(s);
+}
+
+// After ct_embed_accelerate: the first independent speed whose pivot of B' M B is rounding of what it is left of; -1: none.
+static int rounded_pivot(const struct ct_embed *s)
+{
+    const int n = (int)s->m->nu, r = s->rank, f = n - r;
+    for (int i = 0; i < f; i++) {
+        double gross = fabs(s->MB[s->independent[i] + n * i]);
+        for (int k = 0; k < r; k++)
+            gross += fabs(s->B[k + r * i] * s->MB[s->dependent[k] + n * i]);
+        const double pivot = s->S[i + f * i] * s->S[i + f * i];
+        if (pivot <= 16 * DBL_EPSILON * gross)
+            return s->independent[i];
+    }
+    return -1;
 }
 
 bool ct_embed_choose(struct ct_embed *s)
@@ -399,6 +450,9 @@ bool ct_embed_choose(struct ct_embed *s)
     ct_machine_motion(s->m);
     if (ct_embed_accelerate(s) != CT_EVAL_OK)
         return massless(s, lightest(s));
+    const int rounded = rounded_pivot(s);
+    if (rounded >= 0)
+        return massless(s, (size_t)rounded);
     take_form(s);
     return true;
 }
@@ -689,10 +743,10 @@ static enum ct_eval project_by_form(struct ct_embed *s, double t, double *y, boo
             ct_machine_retract(m, y, f->dq);
             continue;
         }
-        const bool is_large = largest(f->du, m->nu) > small_change;
+        const bool is_rough = largest(f->du, m->nu) > small_change;
         change_speeds(m, y, f->du);
-        *is_done = !is_large || close_form(s, t, y);
-        if (is_large)
+        *is_done = !is_rough || close_form(s, t, y);
+        if (is_rough)
             change_speeds(m, y, f->du);
         ct_machine_set(m, t, y);
         return CT_EVAL_OK;
@@ -724,26 +778,32 @@ enum ct_eval ct_embed_project(struct ct_embed *s, double t, double *y)
     return CT_EVAL_OK;
 }
 
-// Dense pivots of larger systems cost more than a step does.
 static bool find_strength(struct ct_embed *s)
 {
-    enum { LARGE = 200 };
-    if (s->rank < LARGE || !is_form_due(s))
+    if (!is_large(s) || !is_form_due(s))
         return false;
     s->strength.now = ct_form_close(s->form[0], s->m);
     s->sigma = ct_strength_sigma(&s->strength);
     return is_sound(s);
 }
 
-// The smallest singular value of J that is not that of a redundant row, against its largest: of redundant rows those
-// that are kept may lose rank where the others do not.
-static double nearness_of_all(struct ct_embed *s)
+static bool has_redundant_rows(const struct ct_embed *s)
+{
+    return s->rank < (int)s->m->nrow;
+}
+
+static double smallest_singular_value(struct ct_embed *s)
 {
     const size_t n = s->m->nu, m = s->m->nrow;
     memcpy(s->A, s->m->J, m * n * sizeof *s->A);
     if (!ct_singular_values(s->b, s->A, (int)m, (int)n, (int)m, s->work) || !(s->b[0] > 0))
         return 0;
     return s->b[s->rank - 1] / s->b[0];
+}
+
+bool ct_embed_has_pivot(const struct ct_embed *s)
+{
+    return s->rank && !(has_redundant_rows(s) && is_large(s));
 }
 
 double ct_embed_kept_pivot(struct ct_embed *s)
@@ -760,7 +820,26 @@ double ct_embed_kept_pivot(struct ct_embed *s)
 
 double ct_embed_pivot(struct ct_embed *s)
 {
-    return s->rank < (int)s->m->nrow ? nearness_of_all(s) : ct_embed_kept_pivot(s);
+    return has_redundant_rows(s) ? smallest_singular_value(s) : ct_embed_kept_pivot(s);
+}
+
+bool ct_embed_dependence(struct ct_embed *s, double *x, double *log_det)
+{
+    const int r = s->rank;
+    const double sigma = s->sigma, kappa = s->kappa;
+    const bool is_found = !is_large(s) && factor(s);
+    s->sigma = sigma;
+    s->kappa = kappa;
+    *log_det = 0;
+    for (int i = 0; i < r && is_found; i++) {
+        x[i] = 1 + fmod(i * 0.6180339887498949, 1); // in no simple relation
+        *log_det += log(fabs(s->Jd[i + r * i]));
+    }
+    if (is_found) {
+        ct_lu_solve(x, s->Jd, s->pivot, r, r, 1, r, false);
+        ct_lu_solve(x, s->Jd, s->pivot, r, r, 1, r, true);
+    }
+    return is_found;
 }
 
 void ct_embed_renew(struct ct_embed *s)

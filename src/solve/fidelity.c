@@ -19,12 +19,13 @@ struct ct_fidelity {
     struct ct_machine *m;
     struct ct_program program;
     size_t n, ny;
-    double *largest, *seen; // (n) |g| over the steps that were accepted, at the last one looked at
-    double *at;             // (n) g there
-    double *rounding;       // (n)
-    double *y;              // (ny) to spare
-    int skip;               // steps that are not looked at
-    bool has_seen;          // since the last acceptance
+    double *largest,
+        *seen;        // (n) |g| over the steps that were accepted, at the last one looked at
+    double *at;       // (n) g there
+    double *rounding; // (n)
+    double *y;        // (ny) to spare
+    int skip;         // steps that are not looked at
+    bool has_seen;    // since the last acceptance
 };
 
 // A function of time and states, but not a single one of them, which is controlled as it is.
@@ -81,8 +82,8 @@ static void measure_rounding(struct ct_fidelity *p, double t, const double *y)
         p->rounding[i] = fabs(g[i] - p->at[i]) * (DBL_EPSILON / change);
 }
 
-static double error_of_outputs(struct ct_fidelity *p, double t, const double *y, const double *e,
-                               const struct ct_tolerance *tolerance)
+static double error_of_outputs(struct ct_fidelity *p, double t, const double *y,
+                               const double *e, const struct ct_tolerance *tolerance)
 {
     const double *g = evaluate(p, t, y, e, 1);
     double sum = 0;
@@ -100,7 +101,7 @@ static double error_of_outputs(struct ct_fidelity *p, double t, const double *y,
 }
 
 double ct_fidelity_error(struct ct_fidelity *p, double t, const double *y, const double *e,
-                          const struct ct_tolerance *tolerance, double states)
+                         const struct ct_tolerance *tolerance, double states)
 {
     if (p->skip > 0) {
         p->skip--;

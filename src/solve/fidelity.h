@@ -20,7 +20,7 @@ void ct_fidelity_start(struct ct_fidelity *p);
 /// Root mean square over the outputs of their errors at y (ny) for errors e (ny), where 1 is the tolerance; `states` is the
 /// same of the states. As long as outputs are not nearly as bad as those, only every eighth step is looked at; else 0.
 double ct_fidelity_error(struct ct_fidelity *p, double t, const double *y, const double *e,
-                          const struct ct_tolerance *tolerance, double states);
+                         const struct ct_tolerance *tolerance, double states);
 /// The last step that was looked at is accepted.
 void ct_fidelity_accept(struct ct_fidelity *p);
 
