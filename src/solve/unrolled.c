@@ -49,7 +49,7 @@ static void compile_solved(struct unrolled *f, struct ct_machine *m, const struc
     for (size_t i = 0; i < m->nq; i++)
         push(&l, &m->e->q[i].rate, 1);
     push(&l, f->c->inertia, f->c->nfree);
-    push(&l, f->c->pivot, f->c->npivot);
+    push(&l, f->c->solve_pivot, f->c->nsolve_pivot);
     f->has_power = has_power(m->e);
     if (f->has_power)
         push(&l, &m->e->power, 1);
@@ -101,11 +101,11 @@ static double largest(const double *v, size_t n)
 
 // ---- evaluation -----------------------------------------------------------------------------------------
 
-static double strength(const struct unrolled *f, const double *pivot)
+static double strength(const double *pivot, const double *scale, size_t n)
 {
     double least = 1;
-    for (size_t i = 0; i < f->c->npivot; i++)
-        least = fmin(least, fabs(pivot[i]) * f->c->scale[i]);
+    for (size_t i = 0; i < n; i++)
+        least = fmin(least, fabs(pivot[i]) * scale[i]);
     return least;
 }
 
@@ -123,7 +123,7 @@ static double solve(struct ct_form *form, struct ct_machine *m, double *a)
             return 0;
     memcpy(a, out, m->nu * sizeof *a);
     memcpy(m->rate, out + m->nu, m->nq * sizeof *m->rate);
-    return strength(f, inertia + f->c->nfree);
+    return strength(inertia + f->c->nfree, f->c->solve_scale, f->c->nsolve_pivot);
 }
 
 // r (nu + rank) against the largest terms of its equations. NaN counts as infinite.
@@ -145,14 +145,14 @@ static void check(struct ct_form *form, struct ct_machine *m)
     ct_program_run(&f->checked, m->input);
     form->left = relative(f, r, m->nu, Q);
     form->left_better = relative(f, better, m->nu, Q);
-    form->kappa = largest(Q + n, f->c->nB);
+    form->kappa = form->kind == &ct_form_whole ? NAN : largest(Q + n, f->c->nB);
 }
 
 static double close(struct ct_form *form, struct ct_machine *m)
 {
     struct unrolled *f = unrolled_of(form);
     ct_program_run(&f->closing, m->input);
-    return strength(f, form->du + m->nu);
+    return strength(form->du + m->nu, f->c->scale, f->c->npivot);
 }
 
 static void destroy(struct ct_form *form, struct ct_machine *m)
@@ -164,17 +164,20 @@ static void destroy(struct ct_form *form, struct ct_machine *m)
 }
 
 static struct ct_form *create(struct ct_arena *a, struct ct_machine *m,
-                              const struct ct_partition *p, double most_nodes)
+                              const struct ct_partition *p, double most_nodes,
+                              const struct ct_form_kind *kind)
 {
     struct ct_arena *own = ct_arena_create_under(a);
     struct unrolled *f = CT_NEW(own, struct unrolled);
     struct ct_exs *x = ct_exs_clone(own, m->e->x);
     const double *J = m->Q + m->nu;
-    f->form = (struct ct_form){.kind = &ct_form_unrolled, .arena = own};
+    f->form = (struct ct_form){.kind = kind, .arena = own};
     ct_form_place(&f->form, p);
     f->M_size = largest(m->motion.out, m->e->nM);
     f->J_size = largest(J, m->e->nJ);
-    f->c = ct_closed_derive(own, x, m->e, p, J, (size_t)most_nodes);
+    f->c = ct_closed_derive(own, x, m->e, p, m->motion.out, J,
+                            kind == &ct_form_whole ? CT_CLOSED_WHOLE : CT_CLOSED_EMBEDDING,
+                            (size_t)most_nodes);
     if (!f->c) {
         ct_arena_destroy(own);
         return NULL;
@@ -186,19 +189,50 @@ static struct ct_form *create(struct ct_arena *a, struct ct_machine *m,
     return &f->form;
 }
 
+static struct ct_form *create_embedded(struct ct_arena *a, struct ct_machine *m,
+                                       const struct ct_partition *p, double most_nodes)
+{
+    return create(a, m, p, most_nodes, &ct_form_unrolled);
+}
+
+static struct ct_form *create_whole(struct ct_arena *a, struct ct_machine *m,
+                                    const struct ct_partition *p, double most_nodes)
+{
+    // where the rows determine all accelerations, they are found without M
+    return p->nfree ? create(a, m, p, most_nodes, &ct_form_whole) : NULL;
+}
+
+double ct_form_predict_whole(struct ct_arena *a, const struct ct_machine *m,
+                             const struct ct_partition *p)
+{
+    struct ct_arena *own = ct_arena_create_under(a);
+    const double solution
+        = ct_closed_predict(own, m->e->x, m->e, p, m->motion.out, m->Q + m->nu);
+    ct_arena_destroy(own);
+    return ct_form_operations(&m->motion) + solution;
+}
+
 const struct ct_form_kind ct_form_unrolled = {.name = "unrolled",
-                                              .create = create,
+                                              .create = create_embedded,
                                               .solve = solve,
                                               .check = check,
                                               .close = close,
                                               .destroy = destroy};
 
+const struct ct_form_kind ct_form_whole = {.name = "unrolled as one system",
+                                           .create = create_whole,
+                                           .solve = solve,
+                                           .check = check,
+                                           .close = close,
+                                           .destroy = destroy};
+
 struct ct_form_code ct_form_code(const struct ct_form *form)
 {
-    if (form->kind != &ct_form_unrolled)
+    if (form->kind != &ct_form_unrolled && form->kind != &ct_form_whole)
         return (struct ct_form_code){0};
     const struct unrolled *f = (const struct unrolled *)form;
-    return (struct ct_form_code){f->solved.listing, f->c->nfree, f->c->npivot, f->c->scale,
-                                 &f->solved,        &f->checked, &f->closing,  f->c->nB,
-                                 f->M_size,         f->J_size,   f->has_power};
+    return (struct ct_form_code){f->solved.listing, f->c->nfree, f->c->nsolve_pivot,
+                                 f->c->solve_scale, &f->solved,  &f->checked,
+                                 &f->closing,       f->c->nB,    f->M_size,
+                                 f->J_size,         f->has_power};
 }
