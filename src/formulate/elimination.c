@@ -649,19 +649,6 @@ static struct elimination create(struct ct_arena *a, struct ct_exs *x,
     return s;
 }
 
-static void list_whole(const struct elimination *s, struct ct_closed *c)
-{
-    const struct ct_kkt *k = s->whole;
-    c->nfree = 0;
-    c->solve_pivot = CT_NEWN(s->a, ct_ex, k->npivot + 1);
-    c->solve_scale = CT_NEWN(s->a, double, k->npivot + 1);
-    for (size_t i = 0; i < k->npivot; i++)
-        if (moves(s, k->pivot[i].value)) {
-            c->solve_scale[c->nsolve_pivot] = 1 / fabs(k->pivot[i].number); // against here
-            c->solve_pivot[c->nsolve_pivot++] = k->pivot[i].value;
-        }
-}
-
 static void list_pivots(const struct elimination *s, struct ct_closed *c)
 {
     c->pivot = CT_NEWN(s->a, ct_ex, s->nblock + 1);
@@ -672,12 +659,9 @@ static void list_pivots(const struct elimination *s, struct ct_closed *c)
             c->pivot[c->npivot++] = s->block[k].pivot;
         }
     if (s->whole) {
-        list_whole(s, c);
+        c->nfree = 0;
         return;
     }
-    c->solve_pivot = c->pivot;
-    c->solve_scale = c->scale;
-    c->nsolve_pivot = c->npivot;
     c->inertia = CT_NEWN(s->a, ct_ex, c->nfree + 1);
     for (size_t j = 0; j < c->nfree; j++)
         c->inertia[j] = s->S[j + c->nfree * j];

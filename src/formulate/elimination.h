@@ -27,10 +27,6 @@ struct ct_closed {
     ct_ex *pivot; // of each block of J_d that is not constant: an entry, or a determinant
     double *
         scale; // pivot to strength: its size against the largest entries of its rows, 1 at most
-    ct_ex *
-        solve_pivot; // the same of what the accelerations are solved by: J_d, or all equations as one system
-    double *solve_scale;
-    size_t nsolve_pivot;
     ct_ex *inertia;  // pivots of B' M B (nfree), positive; as one system: none
     ct_ex *B;        // its entries that are not zero by structure; as one system: none
     ct_ex *a, *lam;  // u' (nu), multipliers (rank)

@@ -49,7 +49,7 @@ static void compile_solved(struct unrolled *f, struct ct_machine *m, const struc
     for (size_t i = 0; i < m->nq; i++)
         push(&l, &m->e->q[i].rate, 1);
     push(&l, f->c->inertia, f->c->nfree);
-    push(&l, f->c->solve_pivot, f->c->nsolve_pivot);
+    push(&l, f->c->pivot, f->c->npivot);
     f->has_power = has_power(m->e);
     if (f->has_power)
         push(&l, &m->e->power, 1);
@@ -101,11 +101,11 @@ static double largest(const double *v, size_t n)
 
 // ---- evaluation -----------------------------------------------------------------------------------------
 
-static double strength(const double *pivot, const double *scale, size_t n)
+static double strength(const struct unrolled *f, const double *pivot)
 {
     double least = 1;
-    for (size_t i = 0; i < n; i++)
-        least = fmin(least, fabs(pivot[i]) * scale[i]);
+    for (size_t i = 0; i < f->c->npivot; i++)
+        least = fmin(least, fabs(pivot[i]) * f->c->scale[i]);
     return least;
 }
 
@@ -123,7 +123,7 @@ static double solve(struct ct_form *form, struct ct_machine *m, double *a)
             return 0;
     memcpy(a, out, m->nu * sizeof *a);
     memcpy(m->rate, out + m->nu, m->nq * sizeof *m->rate);
-    return strength(inertia + f->c->nfree, f->c->solve_scale, f->c->nsolve_pivot);
+    return strength(f, inertia + f->c->nfree);
 }
 
 // r (nu + rank) against the largest terms of its equations. NaN counts as infinite.
@@ -152,7 +152,7 @@ static double close(struct ct_form *form, struct ct_machine *m)
 {
     struct unrolled *f = unrolled_of(form);
     ct_program_run(&f->closing, m->input);
-    return strength(form->du + m->nu, f->c->scale, f->c->npivot);
+    return strength(f, form->du + m->nu);
 }
 
 static void destroy(struct ct_form *form, struct ct_machine *m)
@@ -231,8 +231,7 @@ struct ct_form_code ct_form_code(const struct ct_form *form)
     if (form->kind != &ct_form_unrolled && form->kind != &ct_form_whole)
         return (struct ct_form_code){0};
     const struct unrolled *f = (const struct unrolled *)form;
-    return (struct ct_form_code){f->solved.listing, f->c->nfree, f->c->nsolve_pivot,
-                                 f->c->solve_scale, &f->solved,  &f->checked,
-                                 &f->closing,       f->c->nB,    f->M_size,
-                                 f->J_size,         f->has_power};
+    return (struct ct_form_code){f->solved.listing, f->c->nfree, f->c->npivot, f->c->scale,
+                                 &f->solved,        &f->checked, &f->closing,  f->c->nB,
+                                 f->M_size,         f->J_size,   f->has_power};
 }
