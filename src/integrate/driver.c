@@ -143,7 +143,8 @@ static bool take_bearings(struct run *r)
 static double step_limit(const struct run *r)
 {
     const double run = r->o->t1 - r->o->t0;
-    return r->p->nroot ? run / event_steps : run;
+    const double limit = r->p->nroot ? run / event_steps : run;
+    return r->p->longest_step ? fmin(limit, r->p->longest_step(r->p->user)) : limit;
 }
 
 static double first_step(struct run *r, double limit)

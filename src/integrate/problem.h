@@ -76,6 +76,8 @@ struct ct_problem {
     /// function. May be NULL. Before it answers CT_EVAL_RETRY it must have changed nothing. dy belongs to y.
     enum ct_eval (*accepted)(void *user, double t, double *y, const double *dy);
 
+    /// Longest step from the last accepted state, or from where the start or an event has put it. May be NULL.
+    double (*longest_step)(void *user);
     /// Time from the last accepted state to the next singular position as far as it can be foreseen,
     /// else INFINITY. There f has a limit along the motion that cannot be computed: methods with step control
     /// cross it in one step without evaluating close to it, see crossing.h. *reach (out): the time before

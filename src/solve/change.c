@@ -61,7 +61,7 @@ static double try_implicit(struct ct_run *r, const struct ct_problem *p,
     struct ct_integrate_options trial_io = *io;
     struct ct_trial trial = {.cost = *cost, .stats = &r->stats};
     const size_t ndiagnostic = r->ctx->ndiagnostic, nerror = r->ctx->nerror;
-    const double pending = r->pending;
+    const double pending = r->pending, turning = r->turning, t_turning = r->t_turning;
     double *y = CT_NEWN(r->arena, double, r->ny), *input = CT_NEWN(r->arena, double, m->ninput);
     memcpy(y, r->y, r->ny * sizeof *y);
     memcpy(input, m->input, m->ninput * sizeof *input);
@@ -74,6 +74,8 @@ static double try_implicit(struct ct_run *r, const struct ct_problem *p,
     r->ctx->ndiagnostic = ndiagnostic;
     r->ctx->nerror = nerror;
     r->pending = pending;
+    r->turning = turning;
+    r->t_turning = t_turning;
     memcpy(m->input, input, m->ninput * sizeof *input);
     ct_machine_set(m, io->t0, r->y);
     ct_machine_constraint(m);

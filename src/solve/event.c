@@ -158,5 +158,6 @@ enum ct_eval ct_run_event(void *user, double t, double *y, const signed char *cr
     if (e != CT_EVAL_OK)
         return e;
     y[r->ny - 1] += ct_run_kinetic_energy(r, t, y) - kinetic;
+    ct_run_note_turning(r, t, y);
     return ct_run_refuse_stuck(r, t, y);
 }

@@ -50,9 +50,11 @@ static bool follow_to(struct ct_run *r, double t, double t1, double *y)
 {
     const double least = 1e-9; // of the way: it does not go on
     double h = t1 - t, *next = r->next;
+    ct_run_note_turning(r, t, y);
     while (t < t1) {
+        h = fmin(h, ct_run_longest_step(r));
         const double end = h >= t1 - t ? t1 : t + h;
-        if (!follow_step(r, t, end, y, next)) {
+        if (!follow_step(r, t, end, y, next) || !ct_run_is_followed(r, end, next)) {
             h = (end - t) / 2;
             if (h > least * (t1 - t) && t + h > t)
                 continue;

@@ -334,6 +334,9 @@ struct ct_machine *ct_machine_create(struct ct_arena *a, const struct ct_model *
     m->J = CT_NEWN(a, double, m->nrow * m->nu + 1);
     m->g[0] = CT_NEWN(a, double, e->nmode + 1);
     m->g[1] = CT_NEWN(a, double, e->nmode + 1);
+    m->turned = CT_NEWN(a, double, e->nmemory + 1);
+    m->ahead = CT_NEWN(a, double, e->nq + e->nu + 1);
+    m->moved = CT_NEWN(a, double, e->nu + 1);
     m->Q = m->motion.out + e->nM;
     m->gam = m->Q + e->nu + e->nJ;
     m->rate = m->gam + e->nrow;
@@ -599,4 +602,35 @@ void ct_memory_follow(struct ct_machine *m)
         if (m->e->memory[i].kind == CT_MEMORY_QUATERNION && m->e->memory[i].place == 3)
             normalise4(memory + i - 3);
     }
+}
+
+static bool turns(const struct ct_machine *m)
+{
+    for (size_t i = 0; i < m->e->nmemory; i++)
+        if (m->e->memory[i].kind != CT_MEMORY_OFFSET)
+            return true;
+    return false;
+}
+
+double ct_memory_turning(struct ct_machine *m, double t, const double *y, double dt)
+{
+    const size_t n = m->e->nmemory;
+    double most = 0, *now = m->turned;
+    if (!turns(m))
+        return 0;
+    memcpy(m->ahead, y, (m->nq + m->nu) * sizeof *y);
+    ct_machine_set(m, t, m->ahead);
+    ct_program_run(&m->memory, m->input);
+    memcpy(now, m->memory.out, n * sizeof *now);
+    for (size_t i = 0; i < m->nu; i++)
+        m->moved[i] = dt * y[m->nq + i];
+    ct_machine_retract(m, m->ahead, m->moved);
+    ct_machine_set(m, t + dt, m->ahead);
+    ct_program_run(&m->memory, m->input);
+    for (size_t i = 0; i < n; i++) {
+        const bool is_half = m->e->memory[i].kind == CT_MEMORY_QUATERNION;
+        if (m->e->memory[i].kind != CT_MEMORY_OFFSET)
+            most = fmax(most, (is_half ? 2 : 1) * fabs(m->memory.out[i] - now[i]) / dt);
+    }
+    return most;
 }

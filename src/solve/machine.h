@@ -57,6 +57,7 @@ struct ct_machine {
     double *M, *Q, *J, *gam, *rate; // of the last ct_machine_motion
     double *phi, *v;                // of the last ct_machine_constraint (J as well)
     double *g[2];                   // values of root functions, for modes (nmode)
+    double *turned, *ahead, *moved; // for ct_memory_turning (nmemory, nq + nu + 1, nu)
     long evaluations;
     struct ct_program *apart; // ct_machine_compile
     enum ct_backend asked;
@@ -115,7 +116,10 @@ void ct_machine_normalise(const struct ct_machine *m, double *q);
 /// Memories take their values at the input as if from scratch: quaternions from their rotation (scalar part
 /// >= 0), angles near their present memory, offsets from now.
 void ct_memory_start(struct ct_machine *m);
-/// Memories follow the motion; offsets stay.
+/// Memories follow the motion; offsets stay. Right for angles and rotations that have turned less than half a turn.
 void ct_memory_follow(struct ct_machine *m);
+/// How fast angles and rotations that are followed turn at t, y [rad/s], the largest, from a difference over dt. 0
+/// where none is followed.
+double ct_memory_turning(struct ct_machine *m, double t, const double *y, double dt);
 
 #endif

@@ -32,7 +32,8 @@ struct ct_run {
     struct ct_run_report *report;
     double energy0, energy_scale;
     struct ct_singular *singular;
-    double pending; // time of the event ahead; INFINITY if there is none
+    double pending;            // time of the event ahead; INFINITY if there is none
+    double turning, t_turning; // how fast followed angles turn [rad/s], and when that was
     bool started;
     // the choice of the method
     const struct ct_method *method;  // that steps now
@@ -58,6 +59,14 @@ enum ct_eval ct_run_accelerate(struct ct_run *r, double t, const double *y);
 /// Multipliers that belong to them, into the machine's input.
 void ct_run_find_multipliers(struct ct_run *r);
 double ct_run_kinetic_energy(struct ct_run *r, double t, const double *y);
+
+/// Angles and rotations that are followed from step to step may make less than half a turn in each: note how fast they
+/// turn at t, y.
+void ct_run_note_turning(struct ct_run *r, double t, const double *y);
+/// The longest step from there.
+double ct_run_longest_step(void *user);
+/// False where a step from there to t, y is too long, else noted.
+bool ct_run_is_followed(struct ct_run *r, double t, const double *y);
 
 /// A sample, results and ledger; false to stop, with a diagnostic if that is an error. user is the run.
 bool ct_run_at_sample(void *user, double t, const double *y);

@@ -87,12 +87,50 @@ static double residual(void *user, double t, const double *y)
     return largest(r->m->phi, r->m->nrow);
 }
 
+// A followed angle that turns faster at the end of a step than at its start must still stay within half a turn.
+static const double aimed_turn = 2, most_turn = 3; // [rad]
+
+static double turning(struct ct_run *r, double t, const double *y)
+{
+    const double glance = 1e-6; // of the run, or [s]
+    const double dt = glance * (r->o ? fmin(1, r->o->duration) : 1);
+    return ct_memory_turning(r->m, ct_run_before(r, t), y, dt > 0 ? dt : glance);
+}
+
+void ct_run_note_turning(struct ct_run *r, double t, const double *y)
+{
+    r->turning = turning(r, t, y);
+    r->t_turning = t;
+}
+
+double ct_run_longest_step(void *user)
+{
+    const struct ct_run *r = user;
+    return r->turning > 0 ? aimed_turn / r->turning : INFINITY;
+}
+
+bool ct_run_is_followed(struct ct_run *r, double t, const double *y)
+{
+    const double now = turning(r, t, y);
+    if ((t - r->t_turning) * fmax(now, r->turning) > most_turn)
+        return false;
+    r->turning = now;
+    r->t_turning = t;
+    return true;
+}
+
 static enum ct_eval accepted(void *user, double t, double *y, const double *dy)
 {
     struct ct_run *r = user;
-    if (!r->method->is_implicit
-        && !ct_singular_foresee(r->singular, t, y, dy, r->pending, r->o->step == 0))
+    const double turning_before = r->turning, t_before = r->t_turning;
+    if (!ct_run_is_followed(r, t, y))
         return CT_EVAL_RETRY;
+    if (!r->method->is_implicit
+        && !ct_singular_foresee(r->singular, t, y, dy, r->pending, r->o->step == 0)) {
+        r->turning = turning_before;
+        r->t_turning = t_before;
+        return CT_EVAL_RETRY;
+    }
     ct_machine_set(r->m, ct_run_before(r, t), y);
     ct_memory_follow(r->m);
     if (r->method->is_implicit) { // its steps may pass without a projection
@@ -411,6 +449,7 @@ bool ct_run_simulate(struct ct_run *r, const struct ct_run_options *o,
     r->nevent = ct_time_events(r->arena, r->m, 0, o->duration, &r->event);
     r->pending = ct_run_next_event(r, 0);
     ct_modes_start(r->m, 0, r->y, r->dy);
+    ct_run_note_turning(r, 0, r->y);
     if (ct_run_refuse_stuck(r, 0, r->y) == CT_EVAL_FATAL)
         return false;
     struct ct_problem p = {.user = r,
@@ -421,6 +460,7 @@ bool ct_run_simulate(struct ct_run *r, const struct ct_run_options *o,
                            .rhs = rhs,
                            .project = project,
                            .accepted = accepted,
+                           .longest_step = ct_run_longest_step,
                            .singular_in = singular_in,
                            .set_crossing = set_crossing,
                            .crossed = crossed,

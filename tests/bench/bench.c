@@ -351,8 +351,25 @@ static const char *arm(int n)
 // A beam of n elements on a body that turns freely: a pendulum in the plane, in space on a ball joint.
 struct beam {
     const char *formulation;
-    bool is_spatial;
+    bool is_spatial, is_chain; // chain: n beams of two elements, welded end to end
 };
+
+static const char *chain_of_beams(const struct beam *k, int n)
+{
+    FILE *f = open_model("beam", k->is_spatial ? "[1, -g, 2]" : "[0, -g, 0]", "");
+    fprintf(f, "bodies:\n");
+    for (int i = 1; i <= n; i++)
+        fprintf(f,
+                "  b%d: {type: beam, length: 10/%d, elements: 2, density: 3000, E: 7e10, area: "
+                "4e-4, Iy: 3e-7, Iz: 2e-7, G: 2.7e10, J: 4e-7, formulation: %s, points: {end: "
+                "length}}\n",
+                i, n, k->formulation);
+    fprintf(f, "joints:\n  hub: {type: %s, from: ground, to: b1}\n",
+            k->is_spatial ? "spherical" : "revolute");
+    for (int i = 2; i <= n; i++)
+        fprintf(f, "  w%d: {type: weld, from: b%d.end, to: b%d}\n", i, i - 1, i);
+    return close_model(f);
+}
 
 static const char *beam(const struct beam *k, int n)
 {
@@ -1066,19 +1083,21 @@ static double operations(const struct subject *s)
          + (m->solved.nout ? 0 : ct_embed_operations(ct_run_embed(s->run)));
 }
 
-// Cost against the number of elements; it should be in proportion.
+// Cost against the number of elements, or of beams in a chain; it should be in proportion.
 static void beams(const char *what, const struct beam *kind, bool quick)
 {
-    static const int all[] = {5, 10, 20, 50, 100};
+    static const int element[] = {5, 10, 20, 50, 100}, link[] = {4, 8, 16, 32, 64};
+    const int *all = kind->is_chain ? link : element;
+    const char *of = kind->is_chain ? "beam" : "element";
     double first = 0, first_generation = 0;
-    printf("\n%s, u' with the solve: per evaluation, per element, ratio to 5 elements | model "
-           "to native, per "
-           "element, ratio | operations per element\n",
-           what);
-    for (size_t i = 0; i < (quick ? 2 : COUNT(all)); i++) {
+    printf(
+        "\n%s, u' with the solve: per evaluation, per %s, ratio to %d | model to native, per "
+        "%s, ratio | operations per %s\n",
+        what, of, all[0], of, of);
+    for (size_t i = 0; i < (quick ? 2 : COUNT(element)); i++) {
         struct subject s;
         const int n = all[i];
-        const char *path = beam(kind, n);
+        const char *path = kind->is_chain ? chain_of_beams(kind, n) : beam(kind, n);
         const double generation = median_of(model_to_native, path, quick ? 1 : 3) / n;
         open_subject(&s, path);
         const double t = accelerations(&s) / n;
@@ -1112,10 +1131,12 @@ static void all_beams(bool quick)
     static const struct {
         const char *what;
         struct beam kind;
-    } all[] = {{"foreshortened beam in a plane", {"foreshortening", false}},
-               {"foreshortened beam in space", {"foreshortening", true}},
-               {"linear beam in a plane", {"linear", false}},
-               {"linear beam in space", {"linear", true}}};
+    } all[] = {{"foreshortened beam in a plane", {"foreshortening", false, false}},
+               {"foreshortened beam in space", {"foreshortening", true, false}},
+               {"linear beam in a plane", {"linear", false, false}},
+               {"linear beam in space", {"linear", true, false}},
+               {"beams welded end to end in a plane", {"foreshortening", false, true}},
+               {"beams welded end to end in space", {"foreshortening", true, true}}};
     for (size_t i = 0; i < COUNT(all); i++)
         beams(all[i].what, &all[i].kind, quick);
     putchar('\n');
