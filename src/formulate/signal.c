@@ -138,6 +138,21 @@ static ct_ex driver_effort(struct ct_build *b, int coordinate)
     return ct_ex_sub(x, row, ct_joint_passive(b, coordinate));
 }
 
+// "joint 'pin' (cylindrical) has q1 and q2"
+static const char *coordinates_of(struct ct_build *b, const struct ct_instance *self,
+                                  const char *kind, bool is_stored)
+{
+    const int n = is_stored ? self->ncoord : self->nfree;
+    const char *const head
+        = ct_arena_printf(b->arena, "joint '%s' (%s) has", self->name, self->cls->name);
+    if (self->from < 0 || n < 1)
+        return ct_arena_printf(b->arena, "%s no coordinate of its own", head);
+    if (n == 1)
+        return ct_arena_printf(b->arena, "%s %s alone", head, kind);
+    return ct_arena_printf(b->arena, "%s %s1 %s %s%d", head, kind, n == 2 ? "and" : "to", kind,
+                           n);
+}
+
 static bool effort_signal(struct ct_build *b, int joint, int k, const char *name,
                           struct ct_mark mark, ct_ex *out)
 {
@@ -149,7 +164,7 @@ static bool effort_signal(struct ct_build *b, int joint, int k, const char *name
         return true;
     }
     if (k >= self->nfree)
-        return unknown(b, mark, name, "the joint has fewer coordinates");
+        return unknown(b, mark, name, coordinates_of(b, self, "effort", false));
     const int coordinate = b->edge[b->edge_of_joint[joint]].first_coordinate + k;
     if (b->coordinate[coordinate].is_driven) {
         *out = driver_effort(b, coordinate);
@@ -173,7 +188,7 @@ static bool coordinate_signal(struct ct_build *b, int joint, const char *propert
         return effort_signal(b, joint, (int)number - 1, name, mark, out);
     const bool stored = !strcmp(kind, "q");
     if (self->from < 0 || number < 1 || number > (stored ? self->ncoord : self->nfree))
-        return unknown(b, mark, name, "the joint has no such coordinate");
+        return unknown(b, mark, name, coordinates_of(b, self, kind, stored));
     const int coordinate = b->edge[b->edge_of_joint[joint]].first_coordinate + (int)number - 1;
     if (stored)
         *out = ct_coordinate_value(b, coordinate);
@@ -388,7 +403,9 @@ bool ct_signal_resolve(struct ct_build *b, const char *name, struct ct_mark mark
                                  : s.property;
         if (self->cls->signal && self->cls->signal(b, self, property, out))
             return true;
-        return unknown(b, mark, name, "this force has no such property");
+        return unknown(b, mark, name,
+                       ct_arena_printf(b->arena, "force '%s' (%s) has %s", self->name,
+                                       self->cls->name, self->cls->signals));
     }
     if (frame < 0)
         return unknown(b, mark, name, "nothing has this name");
