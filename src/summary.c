@@ -24,13 +24,13 @@ static long operations(const struct ct_sim *sim)
 {
     const struct ct_machine *m = ct_run_machine(sim->run);
     if (m->solved.nout) {
-        const struct ct_tape_counts all = ct_tape_counts(m->solved.tape);
+        const struct ct_tape_counts all = m->solved.listing->counts;
         return count(&all);
     }
     const struct ct_embed *embed = ct_run_embed(sim->run);
     if (embed->nform)
         return (long)embed->form[0]->operations;
-    const struct ct_tape_counts c = ct_tape_counts(m->motion.tape);
+    const struct ct_tape_counts c = m->motion.listing->counts;
     return count(&c) + (long)ct_embed_operations(embed);
 }
 
@@ -556,7 +556,7 @@ void ct_sim_print_summary(const struct ct_sim *sim, FILE *out)
 
 static void print_counts(FILE *out, const char *title, const struct ct_program *p)
 {
-    const struct ct_tape_counts c = ct_tape_counts(p->tape);
+    const struct ct_tape_counts c = p->listing->counts;
     fprintf(out, "%-13s%ld multiplications, %ld additions, %ld divisions, %ld functions\n",
             title, c.multiplications, c.additions, c.divisions, c.functions);
 }
@@ -602,7 +602,7 @@ static void print_redundant(FILE *out, const struct ct_sim *sim)
 static void print_solver(FILE *out, const struct ct_sim *sim)
 {
     const struct ct_machine *m = ct_run_machine(sim->run);
-    const struct ct_tape_counts motion = ct_tape_counts(m->motion.tape);
+    const struct ct_tape_counts motion = m->motion.listing->counts;
     const long matrices = count(&motion) + (long)ct_embed_operations(ct_run_embed(sim->run));
     fprintf(out, "solver       %s", solver(sim));
     if (m->nrow && strcmp(solver(sim), "dense") != 0)

@@ -22,7 +22,7 @@ struct large {
     struct ct_linear *l;
     const struct ct_residual *f;
     size_t nu, nrow, n;
-    const double *K, *C, *M, *J; // values of the slopes, in the tangent program
+    const double *K, *C, *M, *J; // values of the slopes, as the machine lists them
     struct ct_sparse *matrix;
     double *value, *b, *x; // of the matrix; n each
     double shift;
@@ -62,8 +62,8 @@ static void evaluate(struct large *g, const double *a, const double *lam)
 {
     struct ct_machine *m = g->l->m;
     set_motion(g, a, lam);
-    ct_program_run(&m->tangent, m->input);
-    g->K = m->tangent.out;
+    ct_machine_tangent(m);
+    g->K = m->slopes;
     g->C = g->K + g->f->ndq;
     g->M = g->C + g->f->ndu;
     g->J = g->M + g->f->nda + g->f->ndv;

@@ -545,7 +545,7 @@ bool ct_formulate(struct ct_ctx *ctx, struct ct_arena *a, const struct ct_model 
     if (ctx->nerror > before)
         return false;
     if (options->with_residual)
-        ct_residual_derive(b);
+        ct_residual_derive(b, CT_SLOPES_AUTO);
     if (options->with_energy)
         ct_energies_derive(b);
     if (options->measure_all)
@@ -579,6 +579,6 @@ void ct_formulate_dynamics(struct ct_equations *e)
 void ct_formulate_residual(struct ct_equations *e)
 {
     if (!e->residual)
-        ct_residual_derive(e->build);
+        ct_residual_derive(e->build, CT_SLOPES_AUTO);
     e->residual = e->build->eqs->residual;
 }

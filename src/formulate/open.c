@@ -139,10 +139,13 @@ static struct trial try_matrix(struct ct_build *b, ct_ex *H, const ct_ex *Q)
     }
     for (size_t i = 0; i < n; i++)
         all[k++] = Q[i];
-    const double assembly = cost_of(b, all, k), unrolled = unrolled_cost(pattern, n),
-                 dense = dense_cost((double)n);
+    const double unrolled = unrolled_cost(pattern, n), dense = dense_cost((double)n);
+    // nodes are at least as many as operations: only where they are very many need these be counted
+    const double most = (double)b->x->nnode + unrolled;
+    const bool is_short = unrolled < dense && most < longest_program;
+    const double assembly = is_short ? 0 : cost_of(b, all, k);
     struct trial t = {NULL, NULL, assembly + dense};
-    if (unrolled < dense && assembly + unrolled < longest_program) {
+    if (is_short || (unrolled < dense && assembly + unrolled < longest_program)) {
         t.pivot = CT_NEWN(b->arena, ct_ex, n + 1);
         t.solution = solve_unrolled(b, H, Q, t.pivot);
         t.cost = cost_of(b, t.solution, n);

@@ -24,7 +24,7 @@ static bool at_trial_step(void *user, double t, const double *y)
 
 static double operations(const struct ct_program *p)
 {
-    const struct ct_tape_counts c = ct_tape_counts(p->tape);
+    const struct ct_tape_counts c = p->listing->counts;
     return (double)(c.multiplications + c.additions + c.divisions + c.functions);
 }
 
@@ -48,7 +48,7 @@ static struct ct_cost find_cost(const struct ct_run *r)
         .evaluation = operations_of_accelerations(r) + explicit_overhead,
         // three residuals make a correction
         .residual = operations(&m->residual) + complex_also * solve / 3 + implicit_overhead,
-        .tangent = operations(&m->tangent) + 4 * n * n + implicit_overhead,
+        .tangent = ct_machine_tangent_operations(m) + 4 * n * n + implicit_overhead,
         .factorization = complex_also * lu / 2 + implicit_overhead, // one of the two
     };
 }

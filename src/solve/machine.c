@@ -1,5 +1,6 @@
 // See machine.h.
 #include "solve/machine.h"
+#include "solve/tangent.h"
 
 #include <math.h>
 #include <string.h>
@@ -50,6 +51,9 @@ static struct inputs list_inputs(struct ct_arena *a, const struct ct_machine *m,
         case CT_SYM_WORK:
             slot = m->at_work;
             break;
+        case CT_SYM_SEED: // behind the input: of tangents alone
+            slot = m->ninput + s->index;
+            break;
         default:
             continue; // trial symbols and signals do not reach the equations
         }
@@ -63,9 +67,7 @@ static void compile_from(struct ct_arena *a, const struct ct_exs *x, const struc
                          const ct_ex *out, size_t n, enum ct_fuse fuse, struct ct_program *p)
 {
     p->listing = ct_listing_create(a, x, out, n, in->symbol, in->slot, in->n, fuse);
-    p->tape = ct_tape_create(a, p->listing);
     p->out = CT_NEWN(a, double, n + 1);
-    p->work = CT_NEWN(a, double, ct_tape_work(p->tape) + 1);
     p->nout = n;
 }
 
@@ -79,7 +81,7 @@ static void prepare(struct ct_program *p, const double *input)
 {
     if (p->native)
         ct_native_prepare(p->native, input, p->work);
-    else
+    else if (p->tape)
         ct_tape_prepare(p->tape, input, p->work);
 }
 
@@ -91,11 +93,13 @@ void ct_program_run(struct ct_program *p, const double *input)
         ct_tape_eval(p->tape, input, p->out, p->work);
 }
 
-// The two ways keep different things in the work array.
+// The two ways keep different things in the work array. A tape is made only where it is run.
 static void use(struct ct_arena *a, struct ct_program *p, struct ct_native *native)
 {
-    if (!p->native == !native)
+    if (p->work && !p->native == !native)
         return;
+    if (!native && !p->tape)
+        p->tape = ct_tape_create(a, p->listing);
     p->native = native;
     p->work = CT_NEWN(a, double, (native ? ct_native_work(native) : ct_tape_work(p->tape)) + 1);
 }
@@ -115,14 +119,16 @@ bool ct_machine_use(struct ct_arena *a, struct ct_machine *m, enum ct_backend ba
 {
     struct ct_program *const all[]
         = {&m->motion, &m->constraint, &m->solved, &m->residual, &m->tangent};
-    bool available = true;
+    bool available = ct_native_is_available(1);
     m->asked = backend;
     for (size_t i = 0; i < COUNT(all); i++)
-        if (i < 2 || all[i]->nout) // some nobody has asked for
+        if (all[i]->nout)
             available &= choose_backend(a, m, all[i]);
     for (struct ct_program *p = m->apart; p; p = p->next)
         available &= choose_backend(a, m, p);
-    m->backend = m->motion.native ? "native" : "tape";
+    if (m->lanes)
+        ct_tangent_lanes_use(a, m->lanes, m->asked != CT_BACKEND_TAPE, m->input);
+    m->backend = m->asked != CT_BACKEND_TAPE && available ? "native" : "tape";
     return available || backend != CT_BACKEND_NATIVE;
 }
 
@@ -243,6 +249,13 @@ static void compile_rest(struct ct_arena *a, struct ct_machine *m, const struct 
     compile(a, m, in, validity.e, validity.n, &m->validity);
     compile(a, m, in, energies, 2, &m->energy);
     compile(a, m, in, &e->power, ct_ex_is_zero(e->power) ? 0 : 1, &m->power);
+    // seldom run: not worth native code
+    struct ct_program *const all[]
+        = {&m->result, &m->root,   &m->memory,   &m->momentum, &m->driver,
+           &m->wanted, &m->energy, &m->validity, &m->power};
+    for (size_t i = 0; i < COUNT(all); i++)
+        if (all[i]->nout)
+            use(a, all[i], NULL);
 }
 
 static void push_slopes(struct list *l, const struct ct_slope *s, size_t n)
@@ -262,16 +275,26 @@ static void compile_residual(struct ct_arena *a, struct ct_machine *m, const str
         push(&residual, e->row[i].phi);
     for (size_t i = 0; i < e->nrow && f; i++)
         push(&residual, e->row[i].v);
-    if (f) {
+    if (f && !f->along) {
         push_slopes(&tangent, f->dq, f->ndq);
         push_slopes(&tangent, f->du, f->ndu);
         push_slopes(&tangent, f->da, f->nda);
         push_slopes(&tangent, f->dv, f->ndv);
-        for (size_t i = 0; i < e->nJ; i++)
-            push(&tangent, e->J[i].value);
     }
+    for (size_t i = 0; i < e->nJ && f; i++)
+        push(&tangent, e->J[i].value);
     compile(a, m, in, residual.e, residual.n, &m->residual);
     compile(a, m, in, tangent.e, tangent.n, &m->tangent);
+    m->slopes = m->tangent.out;
+    m->nslope = tangent.n;
+    if (!f || !f->along)
+        return;
+    const size_t own = f->ndq + f->ndu + f->nda + f->ndv;
+    const struct ct_listing *l = ct_listing_create(a, e->x, f->along->rate, e->nu + e->nrow,
+                                                   in->symbol, in->slot, in->n, CT_FUSE_NO);
+    m->nslope = own + e->nJ;
+    m->slopes = CT_NEWN(a, double, m->nslope + 1);
+    m->lanes = ct_tangent_lanes_create(a, f, l, e->nu, m->ninput);
 }
 
 static void start_input(struct ct_machine *m)
@@ -330,7 +353,7 @@ void ct_machine_add_residual(struct ct_arena *a, struct ct_machine *m)
         return;
     const struct inputs in = list_inputs(a, m, m->e->x);
     compile_residual(a, m, &in);
-    ct_machine_use(a, m, m->motion.native ? CT_BACKEND_BEST : CT_BACKEND_TAPE);
+    ct_machine_use(a, m, m->asked);
 }
 
 enum { NPROGRAM = 14 };
@@ -352,6 +375,15 @@ void ct_machine_prepare(struct ct_machine *m)
         prepare(all[i], m->input);
     for (struct ct_program *p = m->apart; p; p = p->next)
         prepare(p, m->input);
+    if (m->lanes)
+        ct_tangent_lanes_prepare(m->lanes, m->input);
+}
+
+void ct_machine_prepare_motion(struct ct_machine *m)
+{
+    prepare(&m->motion, m->input);
+    prepare(&m->constraint, m->input);
+    prepare(&m->power, m->input);
 }
 
 static size_t code_size(const struct ct_program *p)
@@ -368,7 +400,7 @@ size_t ct_machine_code_size(struct ct_machine *m)
         n += code_size(all[i]);
     for (const struct ct_program *p = m->apart; p; p = p->next)
         n += code_size(p);
-    return n;
+    return n + (m->lanes ? ct_tangent_lanes_code_size(m->lanes) : 0);
 }
 
 void ct_machine_reset(struct ct_machine *m)
@@ -420,6 +452,23 @@ void ct_machine_constraint(struct ct_machine *m)
 {
     ct_program_run(&m->constraint, m->input);
     scatter_J(m, m->v + m->nrow);
+}
+
+void ct_machine_tangent(struct ct_machine *m)
+{
+    const size_t nJ = m->tangent.nout;
+    ct_program_run(&m->tangent, m->input);
+    if (!m->lanes)
+        return;
+    ct_tangent_lanes_run(m->lanes, m->input, m->slopes);
+    memcpy(m->slopes + m->nslope - nJ, m->tangent.out, nJ * sizeof *m->slopes);
+}
+
+double ct_machine_tangent_operations(const struct ct_machine *m)
+{
+    const struct ct_tape_counts c = m->tangent.listing->counts;
+    return (double)(c.multiplications + c.additions + c.divisions + c.functions)
+         + (m->lanes ? ct_tangent_lanes_operations(m->lanes) : 0);
 }
 
 // ---- retraction -------------------------------------------------------------------------------------

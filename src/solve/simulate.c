@@ -399,7 +399,7 @@ double ct_run_sample_time(const struct ct_run_options *o, size_t i)
 
 // Displacements of a beam along its axis, those across, rotations and the rates of each are measured by the largest of
 // their kind. Those along are much smaller than those across, but forces come from them.
-static const struct ct_groups *group_states(struct ct_run *r)
+const struct ct_groups *ct_run_groups(struct ct_run *r)
 {
     struct ct_groups *g = CT_NEW(r->arena, struct ct_groups);
     int *of = CT_NEWN(r->arena, int, r->ny);
@@ -456,7 +456,7 @@ bool ct_run_simulate(struct ct_run *r, const struct ct_run_options *o,
                            .ny = (int)r->ny,
                            .dae = o->method->is_implicit ? ct_dae_create(r->arena, r->s) : NULL,
                            .watched = watched,
-                           .groups = group_states(r),
+                           .groups = ct_run_groups(r),
                            .rhs = rhs,
                            .project = project,
                            .accepted = accepted,

@@ -59,6 +59,8 @@ struct ct_machine *ct_run_machine(struct ct_run *r);
 struct ct_embed *ct_run_embed(struct ct_run *r);
 /// State at the start: q, u, work.
 const double *ct_run_state(const struct ct_run *r);
+/// Which states are measured together for the error of steps; NULL: none. In the run's arena, anew at each call.
+const struct ct_groups *ct_run_groups(struct ct_run *r);
 /// dy (out) = f(t, y), for y as ct_run_state has it.
 enum ct_eval ct_run_rhs(struct ct_run *r, double t, const double *y, double *dy);
 /// Accelerations, multipliers and results at t, y; out has nresult entries.

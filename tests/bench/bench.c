@@ -359,7 +359,8 @@ static bool open_evaluator(struct evaluator *v, struct subject *s, const struct 
     struct ct_arena *a = s->ctx.model;
     const struct ct_machine *m = s->machine;
     const size_t n = (size_t)lanes;
-    *v = (struct evaluator){.name = name, .lanes = lanes, .tape = p->tape};
+    *v = (struct evaluator){
+        .name = name, .lanes = lanes, .tape = native ? NULL : ct_tape_create(a, p->listing)};
     if (native && !(v->native = ct_native_create(a, p->listing, lanes)))
         return false;
     v->input = CT_NEWN(a, double, n * m->ninput);
