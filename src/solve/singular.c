@@ -119,6 +119,30 @@ void ct_singular_set_crossing(struct ct_singular *w, bool is_crossing)
     w->s->is_delicate = !is_crossing && w->part < near_pivot;
 }
 
+// Rows with part in x (rank), a vector of null(J') that has come out of ct_embed_dependence.
+static void mark_rows(const struct ct_singular *w, bool *row)
+{
+    const double involved = 1e-3; // of the largest entry; rows that take no part have the square of the distance
+    const int n = w->s->rank;
+    double most = 0;
+    for (int i = 0; i < n; i++)
+        most = fmax(most, fabs(w->x[i]));
+    for (int i = 0; i < n; i++)
+        row[w->s->row[i]] = fabs(w->x[i]) > involved * most;
+}
+
+bool ct_singular_is_beside(struct ct_singular *w, double t, const double *y, bool *row)
+{
+    const double beside = 1e-2; // of the largest pivot
+    double log_det;
+    memset(row, 0, w->m->nrow * sizeof *row);
+    if (!ct_embed_has_pivot(w->s) || !(pivot_at(w, t, y) < beside * w->most))
+        return false;
+    if (ct_embed_dependence(w->s, w->x, &log_det))
+        mark_rows(w, row);
+    return true;
+}
+
 // ---- passed -----------------------------------------------------------------------------------------------
 
 struct passage {
@@ -153,8 +177,7 @@ static void find_dependence(struct ct_singular *w, const struct passage *p, doub
                             struct ct_singular_position *at)
 {
     const double d = 0.02, nearer = 0.5;
-    const double involved = 1e-3; // of the largest entry; rows that take no part have d^2 of it
-    double far, near, most = 0;
+    double far, near;
     const int n = w->s->rank;
     memset(at->row, 0, w->m->nrow * sizeof *at->row);
     at->rank_loss = 0;
@@ -165,10 +188,7 @@ static void find_dependence(struct ct_singular *w, const struct passage *p, doub
     if (!ct_embed_dependence(w->s, w->x, &near))
         return;
     at->rank_loss = (int)fmin(n, fmax(1, round((near - far) / log(nearer))));
-    for (int i = 0; i < n; i++)
-        most = fmax(most, fabs(w->x[i]));
-    for (int i = 0; i < n; i++)
-        at->row[w->s->row[i]] = fabs(w->x[i]) > involved * most;
+    mark_rows(w, at->row);
 }
 
 void ct_singular_pass(struct ct_singular *w, const struct ct_stepper_span *span, double t1,

@@ -38,6 +38,8 @@ void ct_singular_start(struct ct_singular *w);
 /// position, or past it, before that was foreseen, and may be taken again.
 bool ct_singular_foresee(struct ct_singular *w, double t, const double *y, const double *dy,
                          double pending, bool may_repeat);
+/// Is y beside a singular position, foreseen or not? row (nrow, out): those that depend there; none of a large system.
+bool ct_singular_is_beside(struct ct_singular *w, double t, const double *y, bool *row);
 /// What is evaluated from now on belongs to a crossing, or does not.
 void ct_singular_set_crossing(struct ct_singular *w, bool is_crossing);
 /// A crossing has been made and goes on to t1: find the position on it and keep it.
