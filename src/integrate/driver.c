@@ -351,8 +351,8 @@ static enum ct_eval attempt(struct run *r, struct stride *s)
     s->error = 0;
     s->is_interpolated = false;
     r->is_open = false;
-    enum ct_eval e = s->method->step(r->p, r->t, s->h, r->y, r->dy, tolerance, r->y1,
-                                           r->dy1, &error, s->work, r->stats);
+    enum ct_eval e = s->method->step(r->p, r->t, s->h, r->y, r->dy, tolerance, r->y1, r->dy1,
+                                     &error, s->work, r->stats);
     if (e != CT_EVAL_OK)
         return e;
     if (!ct_stepper_finite(r->y1, r->p->ny) || isnan(error))
@@ -464,10 +464,11 @@ static bool step_too_small(struct run *r, double h)
             "length that differs slightly",
             r->t, r->singular_in);
     if (r->is_open)
-        return ct_error(r->ctx, nowhere, CT_E_STEP_OPEN,
-                        "the constraints cannot be met beyond t = %.9g: drivers contradict each "
-                        "other, or the mechanism locks",
-                        r->t);
+        return ct_error(
+            r->ctx, nowhere, CT_E_STEP_OPEN,
+            "the constraints cannot be met beyond t = %.9g: drivers contradict each "
+            "other, or the mechanism locks",
+            r->t);
     return ct_error(r->ctx, nowhere, CT_E_STEP_SMALL,
                     "at t = %.9g the step size became too small (%.3g) to go on", r->t, h);
 }

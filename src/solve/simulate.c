@@ -442,18 +442,21 @@ static void name_singular(struct ct_run *r)
         if (!row[i] || n++ >= MOST_NAMES)
             continue;
         first = first < 0 ? (int)i : first;
-        names = ct_arena_printf(r->arena, "%s%s%s", names, *names ? ", " : "", r->e->row[i].name);
+        names
+            = ct_arena_printf(r->arena, "%s%s%s", names, *names ? ", " : "", r->e->row[i].name);
     }
-    ct_note(r->ctx, mark_of_row(r, first < 0 ? 0 : (size_t)first),
-            "the constraints come to depend on each other there (%s%s): the mechanism is at the "
-            "end of its reach or in a singular position",
-            names, n > MOST_NAMES ? ", ..." : "");
+    ct_note(
+        r->ctx, mark_of_row(r, first < 0 ? 0 : (size_t)first),
+        "the constraints come to depend on each other there (%s%s): the mechanism is at the "
+        "end of its reach or in a singular position",
+        names, n > MOST_NAMES ? ", ..." : "");
 }
 
 // Where steps ended as the constraints could not be met: the row that stays open farthest a little later.
 static void name_open_row(struct ct_run *r)
 {
-    const double later = 1e-3; // of the run: far enough for a contradiction to be more than rounding
+    const double later
+        = 1e-3; // of the run: far enough for a contradiction to be more than rounding
     if (rhs(r, r->stats.last_time, r->y, r->dy))
         return;
     const double dt = later * r->o->duration, t = r->stats.last_time + dt;

@@ -28,6 +28,7 @@ void ct_singular_start(struct ct_singular *w)
     w->reach = w->most = w->part = w->t = 0;
     w->switches = -1;
     w->npassed = 0;
+    w->s->nearness = 1;
 }
 
 // ---- ahead ------------------------------------------------------------------------------------------------
@@ -105,6 +106,7 @@ bool ct_singular_foresee(struct ct_singular *w, double t, const double *y, const
     w->most = fmax(w->most, now);
     w->in = INFINITY;
     w->s->is_delicate = part < near_pivot;
+    w->s->nearness = part;
     if (part > foreseen_pivot)
         return true;
     w->in = time_to_singular(w, &ahead, now, dt);
@@ -122,7 +124,8 @@ void ct_singular_set_crossing(struct ct_singular *w, bool is_crossing)
 // Rows with part in x (rank), a vector of null(J') that has come out of ct_embed_dependence.
 static void mark_rows(const struct ct_singular *w, bool *row)
 {
-    const double involved = 1e-3; // of the largest entry; rows that take no part have the square of the distance
+    const double involved
+        = 1e-3; // of the largest entry; rows that take no part have the square of the distance
     const int n = w->s->rank;
     double most = 0;
     for (int i = 0; i < n; i++)
