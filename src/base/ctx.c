@@ -43,6 +43,15 @@ void ct_note(struct ct_ctx *ctx, struct ct_mark mark, const char *fmt, ...)
     va_end(ap);
 }
 
+// Text that may be the file's own, in one line and without what would steer a terminal.
+static void print_plain(const char *text, FILE *out)
+{
+    for (; *text; text++) {
+        const unsigned char c = (unsigned char)*text;
+        fputc((c < ' ' && c != '\t') || c == 127 ? '?' : c, out);
+    }
+}
+
 // Of a long line so much is shown, and so much of it before the column.
 enum { EXCERPT = 250, EXCERPT_BEFORE = 60 };
 
@@ -76,8 +85,9 @@ static void print_source_line(struct ct_mark m, FILE *out)
     if (is_there && n > 0 && m.column - start <= n) {
         const char *const before = start > 0 ? "..." : "";
         const bool is_cut = n == EXCERPT && !is_end_of_line(getc(f));
-        fprintf(out, "%5d | %s%s%s\n      | %*s", m.line + 1, before, line, is_cut ? "..." : "",
-                (int)strlen(before), "");
+        fprintf(out, "%5d | %s", m.line + 1, before);
+        print_plain(line, out);
+        fprintf(out, "%s\n      | %*s", is_cut ? "..." : "", (int)strlen(before), "");
         for (int i = 0; i < m.column - start; i++)
             fputc(line[i] == '\t' ? '\t' : ' ', out);
         fputs("^\n", out);
@@ -94,7 +104,8 @@ void ct_ctx_print(const struct ct_ctx *ctx, FILE *out)
             fprintf(out, "%s:%d:%d: ", d->mark.file, d->mark.line + 1, d->mark.column + 1);
         else
             fputs("cotree: ", out);
-        fprintf(out, "%s: %s", word[d->severity], d->text);
+        fprintf(out, "%s: ", word[d->severity]);
+        print_plain(d->text, out);
         if (d->code)
             fprintf(out, " [E%03d]", d->code);
         fputc('\n', out);

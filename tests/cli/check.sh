@@ -27,3 +27,7 @@ forces:
 outputs: [pin.q2, slot.q3, slot.effort3, rod.q, pull.lenght]
 END
 say check signals.yaml
+echo '-- beams with nothing left out'
+for model in "$SYSTEMS"/spin_up_stiff/model.yaml "$SYSTEMS"/tapered_cantilever/model.yaml "$SYSTEMS"/slider_crank_flexible/model.yaml; do
+  "$COTREE" check "$model" --keep-all | grep '^beam'
+done
