@@ -152,6 +152,21 @@ static ct_ex driver_effort(struct ct_build *b, int coordinate)
     return ct_ex_sub(x, row, ct_joint_passive(b, coordinate));
 }
 
+// "joint 'pin' (cylindrical) has q1 and q2"
+static const char *coordinates_of(struct ct_build *b, const struct ct_instance *self,
+                                  const char *kind, bool is_stored)
+{
+    const int n = is_stored ? self->ncoord : self->nfree;
+    const char *const head
+        = ct_arena_printf(b->arena, "joint '%s' (%s) has", self->name, self->cls->name);
+    if (self->from < 0 || n < 1)
+        return ct_arena_printf(b->arena, "%s no coordinate of its own", head);
+    if (n == 1)
+        return ct_arena_printf(b->arena, "%s %s alone", head, kind);
+    return ct_arena_printf(b->arena, "%s %s1 %s %s%d", head, kind, n == 2 ? "and" : "to", kind,
+                           n);
+}
+
 static bool effort_signal(struct ct_build *b, int joint, int k, const char *name,
                           struct ct_mark mark, ct_ex *out)
 {
@@ -165,7 +180,7 @@ static bool effort_signal(struct ct_build *b, int joint, int k, const char *name
         return true;
     }
     if (k >= self->nfree)
-        return unknown(b, mark, name, "the joint has no such coordinate");
+        return unknown(b, mark, name, coordinates_of(b, self, "effort", false));
     const int coordinate = b->edge[b->edge_of_joint[joint]].first_coordinate + k;
     if (b->coordinate[coordinate].is_driven) {
         *out = driver_effort(b, coordinate);
@@ -199,7 +214,7 @@ static bool coordinate_signal(struct ct_build *b, int joint, const struct signal
     if (!is_number(b, s, name, mark))
         return false;
     if (number < 1)
-        return unknown(b, mark, name, "the joint has no such coordinate");
+        return unknown(b, mark, name, coordinates_of(b, self, kind, stored));
     if (!s->property[letters] && n > 1)
         return unknown(b, mark, name,
                        ct_arena_printf(b->arena,
@@ -208,7 +223,7 @@ static bool coordinate_signal(struct ct_build *b, int joint, const struct signal
     if (!strcmp(kind, "effort"))
         return effort_signal(b, joint, number - 1, name, mark, out);
     if (self->from < 0 || number > n)
-        return unknown(b, mark, name, "the joint has no such coordinate");
+        return unknown(b, mark, name, coordinates_of(b, self, kind, stored));
     const int coordinate = b->edge[b->edge_of_joint[joint]].first_coordinate + number - 1;
     if (stored)
         *out = ct_coordinate_value(b, coordinate);
@@ -256,7 +271,9 @@ static bool force_signal(struct ct_build *b, const struct ct_instance *self,
         has = self->cls->signal(
             b, self, ct_arena_printf(b->arena, "%s.%s", s->property, axis_names[i]), &v.e[i]);
     if (!has)
-        return unknown(b, mark, name, "this force has no such property");
+        return unknown(b, mark, name,
+                       ct_arena_printf(b->arena, "force '%s' (%s) has %s", self->name,
+                                       self->cls->name, self->cls->signals));
     return !s->axes || component_of(b, s, name, mark, v, out);
 }
 

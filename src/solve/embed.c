@@ -37,6 +37,7 @@ struct ct_embed *ct_embed_create(struct ct_arena *arena, struct ct_ctx *ctx,
     s->arena = arena;
     s->m = m;
     s->ctx = ctx;
+    s->nearness = 1;
     s->row = CT_NEWN(arena, int, r + 1);
     s->dependent = CT_NEWN(arena, int, k);
     s->independent = CT_NEWN(arena, int, n + 1);
@@ -285,6 +286,7 @@ static bool factor(struct ct_embed *s)
         most = fmax(most, fabs(s->Jd[i + r * i]));
     }
     s->sigma = most > 0 ? least / most : 0;
+    s->largest = most;
     return isfinite(s->kappa);
 }
 
@@ -679,6 +681,12 @@ static bool has_worn(const struct ct_embed *s)
         || (is_redundant && s->sigma * redundant_fall < s->sigma_chosen);
 }
 
+// With a single row sigma is 1 everywhere.
+static double nearness(const struct ct_embed *s)
+{
+    return fmin(s->sigma, s->nearness);
+}
+
 static enum ct_eval project_by_matrices(struct ct_embed *s, double t, double *y)
 {
     struct ct_machine *m = s->m;
@@ -687,7 +695,7 @@ static enum ct_eval project_by_matrices(struct ct_embed *s, double t, double *y)
         ct_machine_set(m, t, y);
         ct_machine_constraint(m);
         const double size = largest(m->phi, m->nrow);
-        if (ct_is_closed(s->sigma, size, before))
+        if (ct_is_closed(nearness(s), size, before))
             break;
         if (ct_is_stray(i, size, before))
             return CT_EVAL_RETRY;
@@ -736,7 +744,7 @@ static enum ct_eval project_by_form(struct ct_embed *s, double t, double *y, boo
         return CT_EVAL_OK;
     for (int i = 0; close_form(s, t, y); i++) {
         const double size = largest(f->phi, m->nrow);
-        if (!ct_is_closed(s->sigma, size, before)) {
+        if (!ct_is_closed(nearness(s), size, before)) {
             if (ct_is_stray(i, size, before))
                 return CT_EVAL_RETRY;
             before = size;
@@ -796,9 +804,9 @@ static double smallest_singular_value(struct ct_embed *s)
 {
     const size_t n = s->m->nu, m = s->m->nrow;
     memcpy(s->A, s->m->J, m * n * sizeof *s->A);
-    if (!ct_singular_values(s->b, s->A, (int)m, (int)n, (int)m, s->work) || !(s->b[0] > 0))
+    if (!ct_singular_values(s->b, s->A, (int)m, (int)n, (int)m, s->work))
         return 0;
-    return s->b[s->rank - 1] / s->b[0];
+    return s->b[s->rank - 1];
 }
 
 bool ct_embed_has_pivot(const struct ct_embed *s)
@@ -811,7 +819,7 @@ double ct_embed_kept_pivot(struct ct_embed *s)
     // the place need not be one of the motion: what is known of the motion stays
     const double sigma = s->sigma, kappa = s->kappa, strength = s->strength.now;
     const bool is_known = find_strength(s) || factor(s);
-    const double pivot = is_known ? s->sigma * fmax(1, s->kappa) : 0;
+    const double pivot = is_known ? s->sigma * s->largest * fmax(1, s->kappa) : 0;
     s->sigma = sigma;
     s->kappa = kappa;
     s->strength.now = strength;
