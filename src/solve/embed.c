@@ -806,8 +806,10 @@ bool ct_embed_has_pivot(const struct ct_embed *s)
     return s->rank && !(has_redundant_rows(s) && is_large(s));
 }
 
-double ct_embed_kept_pivot(struct ct_embed *s)
+double ct_embed_pivot(struct ct_embed *s)
 {
+    if (has_redundant_rows(s))
+        return smallest_singular_value(s);
     // the place need not be one of the motion: what is known of the motion stays
     const double sigma = s->sigma, kappa = s->kappa, strength = s->strength.now;
     const bool is_known = find_strength(s) || factor(s);
@@ -816,11 +818,6 @@ double ct_embed_kept_pivot(struct ct_embed *s)
     s->kappa = kappa;
     s->strength.now = strength;
     return pivot;
-}
-
-double ct_embed_pivot(struct ct_embed *s)
-{
-    return has_redundant_rows(s) ? smallest_singular_value(s) : ct_embed_kept_pivot(s);
 }
 
 bool ct_embed_dependence(struct ct_embed *s, double *x, double *log_det)
