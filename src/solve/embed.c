@@ -59,7 +59,7 @@ struct ct_embed *ct_embed_create(struct ct_arena *arena, struct ct_ctx *ctx,
     const int size = (int)kk;
     const size_t for_qr = larger(ct_lstsq_work(size, size), ct_qr_pivot_work(size, size));
     s->work
-        = CT_NEWN(arena, double, larger(for_qr, ct_singular_values_work(size, size)) + 3 * k);
+        = CT_NEWN(arena, double, larger(for_qr, ct_symmetric_eigenvalues_work(size)) + 3 * k);
     return s;
 }
 
@@ -794,11 +794,17 @@ static bool has_redundant_rows(const struct ct_embed *s)
 
 static double smallest_singular_value(struct ct_embed *s)
 {
+    // from the eigenvalues of J J', which cost a third of a decomposition; half the digits are enough
     const size_t n = s->m->nu, m = s->m->nrow;
-    memcpy(s->A, s->m->J, m * n * sizeof *s->A);
-    if (!ct_singular_values(s->b, s->A, (int)m, (int)n, (int)m, s->work) || !(s->b[0] > 0))
+    const double *J = s->m->J;
+    memset(s->A, 0, m * m * sizeof *s->A);
+    for (size_t k = 0; k < n; k++, J += m)
+        for (size_t j = 0; j < m; j++)
+            for (size_t i = j; i < m && J[j] != 0; i++)
+                s->A[i + m * j] += J[i] * J[j];
+    if (!ct_symmetric_eigenvalues(s->b, s->A, (int)m, (int)m, s->work) || !(s->b[m - 1] > 0))
         return 0;
-    return s->b[s->rank - 1] / s->b[0];
+    return sqrt(fmax(0, s->b[m - (size_t)s->rank] / s->b[m - 1]));
 }
 
 bool ct_embed_has_pivot(const struct ct_embed *s)
