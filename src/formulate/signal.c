@@ -351,7 +351,6 @@ static bool global_signal(struct ct_build *b, const struct signal *s, const char
     static const char *const sums[] = {"com", "momentum", "angular_momentum"};
     static const char *const energies[] = {"kinetic", "potential", "strain", "work", "total"};
     struct ct_equations *e = b->eqs;
-    struct ct_exs *x = b->x;
     if (!strcmp(s->owner, "system")) {
         const int i = index_of(s->property, sums, 3);
         return i < 0
@@ -368,9 +367,7 @@ static bool global_signal(struct ct_build *b, const struct signal *s, const char
         return true;
     }
     const int i = index_of(s->property, energies, 5);
-    const ct_ex stored = ct_ex_add(x, e->kinetic, ct_ex_add(x, e->potential, e->strain));
-    const ct_ex values[] = {e->kinetic, e->potential, e->strain, e->work_symbol,
-                            ct_ex_sub(x, stored, e->work_symbol)};
+    const ct_ex values[] = {e->kinetic, e->potential, e->strain, e->work_symbol, e->total};
     if (!is_number(b, s, name, mark))
         return false;
     if (i < 0)
@@ -567,6 +564,8 @@ void ct_energies_derive(struct ct_build *b)
     e->work_symbol = ct_ex_sym(x, CT_SYM_WORK, "work", 0);
     if (ct_ex_is_zero(e->power))
         e->work_symbol = CT_EX_ZERO;
+    const ct_ex stored = ct_ex_add(x, e->kinetic, ct_ex_add(x, e->potential, e->strain));
+    e->total = ct_ex_sub(x, stored, e->work_symbol);
 }
 
 // ---- outputs -----------------------------------------------------------------------------------------------------------------

@@ -60,7 +60,7 @@ struct ct_embed *ct_embed_create(struct ct_arena *arena, struct ct_ctx *ctx,
     const int size = (int)kk;
     const size_t for_qr = larger(ct_lstsq_work(size, size), ct_qr_pivot_work(size, size));
     s->work
-        = CT_NEWN(arena, double, larger(for_qr, ct_singular_values_work(size, size)) + 3 * k);
+        = CT_NEWN(arena, double, larger(for_qr, ct_symmetric_eigenvalues_work(size)) + 3 * k);
     return s;
 }
 
@@ -802,11 +802,17 @@ static bool has_redundant_rows(const struct ct_embed *s)
 
 static double smallest_singular_value(struct ct_embed *s)
 {
+    // from the eigenvalues of J J', which cost a third of a decomposition; half the digits are enough
     const size_t n = s->m->nu, m = s->m->nrow;
-    memcpy(s->A, s->m->J, m * n * sizeof *s->A);
-    if (!ct_singular_values(s->b, s->A, (int)m, (int)n, (int)m, s->work))
+    const double *J = s->m->J;
+    memset(s->A, 0, m * m * sizeof *s->A);
+    for (size_t k = 0; k < n; k++, J += m)
+        for (size_t j = 0; j < m; j++)
+            for (size_t i = j; i < m && J[j] != 0; i++)
+                s->A[i + m * j] += J[i] * J[j];
+    if (!ct_symmetric_eigenvalues(s->b, s->A, (int)m, (int)m, s->work))
         return 0;
-    return s->b[s->rank - 1];
+    return sqrt(fmax(0, s->b[m - (size_t)s->rank]));
 }
 
 bool ct_embed_has_pivot(const struct ct_embed *s)
@@ -814,8 +820,10 @@ bool ct_embed_has_pivot(const struct ct_embed *s)
     return s->rank && !(has_redundant_rows(s) && is_large(s));
 }
 
-double ct_embed_kept_pivot(struct ct_embed *s)
+double ct_embed_pivot(struct ct_embed *s)
 {
+    if (has_redundant_rows(s))
+        return smallest_singular_value(s);
     // the place need not be one of the motion: what is known of the motion stays
     const double sigma = s->sigma, kappa = s->kappa, strength = s->strength.now;
     const bool is_known = find_strength(s) || factor(s);
@@ -824,11 +832,6 @@ double ct_embed_kept_pivot(struct ct_embed *s)
     s->kappa = kappa;
     s->strength.now = strength;
     return pivot;
-}
-
-double ct_embed_pivot(struct ct_embed *s)
-{
-    return has_redundant_rows(s) ? smallest_singular_value(s) : ct_embed_kept_pivot(s);
 }
 
 bool ct_embed_dependence(struct ct_embed *s, double *x, double *log_det)
