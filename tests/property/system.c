@@ -1,5 +1,6 @@
 // See system.h.
 #include "tests/property/system.h"
+#include "tests/property/mechanism.h"
 
 #include <stdarg.h>
 
@@ -146,13 +147,59 @@ void system_close(struct system *s)
     ct_arena_destroy(s->ctx.model);
 }
 
+bool holds_for_shipped(bool (*holds)(struct system *s), size_t most)
+{
+    bool ok = true;
+    for (size_t i = 0; i < nshipped; i++) {
+        struct system s;
+        system_open_file(&s, shipped[i]);
+        if (s.model.nbody < most)
+            ok &= holds(&s);
+        system_close(&s);
+    }
+    return ok;
+}
+
+bool holds_for_mechanisms(bool (*holds)(struct system *s), unsigned reversed)
+{
+    bool ok = true;
+    for (size_t i = 0; i < nmechanism; i++)
+        for (unsigned k = 0; k < (mechanisms[i].is_irreversible ? 1u : 2u); k++) {
+            struct system s;
+            struct ct_arena *a = ct_arena_create();
+            system_open_text(&s, text_of(a, "%s%s", mechanisms[i].name, k ? ", reversed" : ""),
+                             mechanism_text(a, &mechanisms[i], NULL, k * reversed, false));
+            ok &= holds(&s);
+            system_close(&s);
+            ct_arena_destroy(a);
+        }
+    return ok;
+}
+
 void system_no_outputs(struct system *s)
 {
     s->model.noutput = 0;
 }
 
+// "rod.position.x" is one of the columns of "rod.position", "pivot.u2" of "pivot.u".
+static bool is_part_of(const char *signal, const char *whole)
+{
+    const size_t n = strlen(whole);
+    return !strncmp(signal, whole, n)
+        && (signal[n] == 0 || signal[n] == '.' || (signal[n] >= '1' && signal[n] <= '9'));
+}
+
+// A column that is there already is not there twice.
 void system_output(struct system *s, const char *signal)
 {
+    size_t kept = 0;
+    for (size_t i = 0; i < s->model.noutput; i++) {
+        if (is_part_of(signal, s->model.output[i].name))
+            return;
+        if (!is_part_of(s->model.output[i].name, signal))
+            s->model.output[kept++] = s->model.output[i];
+    }
+    s->model.noutput = kept;
     struct ct_model *m = &s->model;
     struct ct_output o = {.name = ct_arena_strdup(s->ctx.model, signal), .is_signal = true};
     o.value = ct_ex_sym(m->x, CT_SYM_SIGNAL, o.name, 0);
