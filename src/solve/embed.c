@@ -323,6 +323,13 @@ static int bare_beam(const struct ct_model *model)
     return 0;
 }
 
+// What gives sections an inertia.
+static const char *rotary_of(const struct ct_beam *beam)
+{
+    return beam->is_lumped ? "values of 'rotary_inertia', which lumped mass has not by itself"
+                           : "a 'rotary_inertia'";
+}
+
 static bool massless(struct ct_embed *s, size_t speed)
 {
     const struct ct_u *u = &s->m->e->u[speed];
@@ -333,14 +340,12 @@ static bool massless(struct ct_embed *s, size_t speed)
         return ct_error(
             s->ctx, model->body[bare].instance.mark, CT_E_MASSLESS,
             "coordinate '%s' moves no mass: the first section of beam '%s' has no inertia; "
-            "give the beam a 'rotary_inertia', or, if no moment acts on that section, 'frame: "
-            "chord'",
-            name, model->body[bare].instance.name);
+            "give the beam %s, or, if no moment acts on that section, 'frame: chord'",
+            name, model->body[bare].instance.name, rotary_of(model->body[bare].beam));
     if (u->beam > 0)
         return ct_error(s->ctx, model->body[u->beam].instance.mark, CT_E_MASSLESS,
-                        "coordinate '%s' moves no mass: give the beam a 'rotary_inertia', or "
-                        "consistent mass",
-                        name);
+                        "coordinate '%s' moves no mass: give the beam %s, or consistent mass",
+                        name, rotary_of(model->body[u->beam].beam));
     const struct ct_mark mark
         = u->joint >= 0 ? model->joint[u->joint].mark : model->body[u->body].instance.mark;
     return ct_error(s->ctx, mark, CT_E_MASSLESS,
