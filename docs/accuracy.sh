@@ -81,6 +81,9 @@ title() {
     R15_M1e-3) echo "light cart, 1 g, 10 s" ;;
     R15_M1e-6) echo "light cart, 1 mg, 10 s" ;;
     R16) echo "six-axis arm, 2 s" ;;
+    R04_2000s) echo "pendulum, 2000 s" ;;
+    R05_N2_20s) echo "two four-bars, 20 s" ;;
+    R16_5s) echo "six-axis arm, 5 s" ;;
     R17a) echo "double pendulum, 10 s" ;;
     R17a_20s) echo "double pendulum, 20 s" ;;
     R17b) echo "double pendulum, middle mass 1 mg, 2 s" ;;
@@ -98,7 +101,7 @@ title() {
 asked() {
     echo "| case | 1e-4 | 1e-6 | 1e-8 | 1e-10 | method |"
     echo "| --- | --- | --- | --- | --- | --- |"
-    for case in $(cut -d' ' -f1 "$reference/asked.txt") R17a_20s R17b; do
+    for case in $(cut -d' ' -f1 "$reference/asked.txt") R17a_20s R17b R04_2000s R05_N2_20s R16_5s; do
         line="| $(title "$case") ($case)"
         methods=
         for T in 1e-4 1e-6 1e-8 1e-10; do
