@@ -4,7 +4,7 @@
 #   CASE FROM TO STEP  LAG TIME  AMPLITUDE FREQUENCY EXTENSION
 #
 # its largest lag [m] and when [s]; from FROM to TO [s] amplitude [m] and frequency [rad/s] of what vibration is left and the mean
-# extension [m]. STEP is that of the samples. COTREE is the program.
+# extension [m]. STEP is that of the samples. The reference of B02 leaves 2e-11 m, of an amplitude of 1.1e-8 m. COTREE is the program.
 set -eu
 folder=$(dirname "$0")
 : "${COTREE:?is the program to test}"
@@ -25,8 +25,8 @@ awk -F, -v line="$line" '
         return v[i] - b * b / (4 * a)
     }
     function agree(what, found, wanted, allowed) {
-        printf "%-10s %.10g (%.10g)%s\n", what, found, wanted, size(found - wanted) > allowed * size(wanted) ? "  FAILED" : ""
-        bad += size(found - wanted) > allowed * size(wanted)
+        printf "%-10s %.10g (%.10g)%s\n", what, found, wanted, (size(found - wanted) > allowed * size(wanted) ? "  FAILED" : "")
+        bad += (size(found - wanted) > allowed * size(wanted))
     }
     NR == 1 { for (i = 1; i <= NF; i++) of[$i] = i; next }
     { n++; t[n] = $1; v[n] = $(of["v"]); u[n] = $(of["u"]) }
@@ -36,7 +36,7 @@ awk -F, -v line="$line" '
         for (i = 2; i < n; i++) if (v[i] < v[low]) low = i
         lag = top(low)
         agree("lag", lag, want[5], 1e-7)
-        agree("at", place, want[6], 1e-5)
+        agree("at", place, want[6], 2e-5)
         for (i = 2; i < n; i++) {
             if (t[i] < want[2] - 1e-9) continue
             sum += u[i]
@@ -48,8 +48,8 @@ awk -F, -v line="$line" '
                 if (!crossings++) first = last
             }
         }
-        agree("amplitude", (high - deep) / 2, want[7], 1e-3)
+        agree("amplitude", (high - deep) / 2, want[7], 2e-3)
         agree("frequency", 2 * 3.14159265358979 * (crossings - 1) / (last - first), want[8], 1e-3)
-        agree("extension", sum / count, want[9], 1e-6)
-        exit bad > 0
+        agree("extension", sum / count, want[9], 3e-6)
+        exit (bad > 0)
     }' "$work/result.csv"
