@@ -49,7 +49,8 @@ static void find_deciding(struct ct_study *s)
     const struct ct_model *m = &s->system->model;
     const unsigned char *const decided[]
         = {m->decided, s->system->equations.x->decided, s->system->start_equations.x->decided,
-           s->system->held_equations.x ? s->system->held_equations.x->decided : NULL};
+           s->system->held_equations.x ? s->system->held_equations.x->decided : NULL,
+           s->system->moving_equations.x ? s->system->moving_equations.x->decided : NULL};
     const bool *changes = find_changing(s, m);
     for (size_t i = 0; i < m->nparameter && !s->is_derived; i++)
         for (size_t k = 0; k < COUNT(decided); k++)
