@@ -133,7 +133,6 @@ static bool find_start(struct ct_ctx *own, struct ct_system *sys, struct ct_conf
 {
     c->e = c->equations;
     c->l = ct_configuration_start(own, sys, c->model, c->e, false);
-    c->is_large = c->l && c->may_be_large && c->l->nu > CT_MOST_DENSE;
     return c->l && (c->is_large || ct_linear_move(c->l));
 }
 
@@ -165,14 +164,20 @@ bool ct_configuration_find(struct ct_ctx *own, struct ct_system *sys,
 {
     static const char *const words[] = {"initial", "equilibrium"};
     static const struct ct_sim_options standard;
-    ct_formulate_residual(&sys->equations);
-    ct_formulate_dynamics(&sys->equations);
     if (!c->equations) {
         c->model = &sys->model;
         c->equations = &sys->equations;
     }
     if (!c->about)
         c->about = words[0];
+    c->is_large = c->may_be_large && c->equations->nu > CT_MOST_DENSE
+               && strcmp(c->about, words[0]) == 0;
+    if (!c->is_large || !sys->equations.is_analysed)
+        ct_formulate_dynamics(&sys->equations);
+    if (c->is_large)
+        ct_formulate_rows(&sys->equations);
+    else
+        ct_formulate_residual(&sys->equations);
     if (strcmp(c->about, words[0]) == 0)
         return find_start(own, sys, c);
     if (strcmp(c->about, words[1]) == 0)

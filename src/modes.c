@@ -41,7 +41,8 @@ static bool solve(struct ct_modes *s, size_t count)
                    "%d speeds with dampers, moving drivers or redundant constraints: dense "
                    "matrices, which takes long",
                    s->at.l->nu);
-    if (s->at.is_large && !ct_linear_move(s->at.l))
+    s->at.may_be_large = false;
+    if (s->at.is_large && !ct_configuration_find(&s->own, s->system, &s->run, &s->at))
         return false;
     return ct_modes_solve(&s->own, a, s->at.l, &s->mode, &s->all, &s->how);
 }

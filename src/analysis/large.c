@@ -1,7 +1,7 @@
 // See large.h.
 #include "analysis/large.h"
+#include "analysis/point.h"
 #include "numeric/dense.h"
-#include "numeric/sparse.h"
 
 #include <float.h>
 #include <math.h>
@@ -20,11 +20,10 @@ struct large {
     struct ct_ctx *ctx;
     struct ct_arena *a;
     struct ct_linear *l;
-    const struct ct_residual *f;
+    struct ct_point *p;
     size_t nu, nrow, n;
-    const double *K, *C, *M, *J; // values of the slopes, in the tangent program
     struct ct_sparse *matrix;
-    double *value, *b, *x; // of the matrix; n each
+    double *b, *x; // n each
     double shift;
     // Lanczos
     size_t k, most;     // vectors so far
@@ -40,88 +39,35 @@ static double largest(const double *v, size_t n)
     return max;
 }
 
+static double largest_entry(const struct ct_number *A, size_t n)
+{
+    double max = 0;
+    for (size_t i = 0; i < n; i++)
+        max = fmax(max, fabs(A[i].value));
+    return max;
+}
+
 // ---- matrices ---------------------------------------------------------------------------------------------
 
-// y (nu, out) = A x for slopes with their values
-static void apply(double *y, const struct ct_slope *s, size_t n, const double *value,
-                  const double *x, size_t nu)
+static void apply_masses(struct large *g, double *y, const double *x)
 {
-    memset(y, 0, nu * sizeof *y);
-    for (size_t i = 0; i < n; i++)
-        y[s[i].row] += value[i] * x[s[i].direction];
+    ct_point_apply(y, g->p->M, g->p->nM, x, g->nu);
 }
 
-static void set_motion(const struct large *g, const double *a, const double *lam)
+// [ K - shift M, J'; J, 0 ]
+static bool factor(struct large *g, double shift)
 {
-    struct ct_machine *m = g->l->m;
-    memcpy(m->input + m->at_a, a, g->nu * sizeof *a);
-    memcpy(m->input + m->at_lam, lam, g->nrow * sizeof *lam);
-}
-
-static void evaluate(struct large *g, const double *a, const double *lam)
-{
-    struct ct_machine *m = g->l->m;
-    set_motion(g, a, lam);
-    ct_program_run(&m->tangent, m->input);
-    g->K = m->tangent.out;
-    g->C = g->K + g->f->ndq;
-    g->M = g->C + g->f->ndu;
-    g->J = g->M + g->f->nda + g->f->ndv;
-}
-
-// [ K - shift M, J'; J, 0 ], or with the masses alone [ M, J'; J, 0 ].
-static bool factor(struct large *g, bool masses_alone, double shift)
-{
-    const size_t nK = g->f->ndq, nM = g->f->nda, nJ = g->l->m->e->nJ;
-    double *v = g->value;
-    for (size_t i = 0; i < nK; i++)
-        *v++ = masses_alone ? 0 : g->K[i];
-    for (size_t i = 0; i < nM; i++)
-        *v++ = masses_alone ? g->M[i] : -shift * g->M[i];
-    for (size_t i = 0; i < nJ; i++) {
-        *v++ = g->J[i];
-        *v++ = g->J[i];
-    }
-    for (size_t i = 0; i < g->n; i++) // a place for every pivot
-        *v++ = 0;
+    g->matrix = ct_point_factor(g->p, 1, -shift);
     g->shift = shift;
-    return ct_sparse_factor_anew(g->matrix, g->value);
-}
-
-static bool create_matrix(struct large *g)
-{
-    const struct ct_equations *e = g->l->m->e;
-    const size_t nentry = g->f->ndq + g->f->nda + 2 * e->nJ + g->n;
-    int *row = CT_NEWN(g->a, int, nentry + 1), *column = CT_NEWN(g->a, int, nentry + 1);
-    size_t k = 0;
-    for (size_t i = 0; i < g->f->ndq; i++, k++) {
-        row[k] = (int)g->f->dq[i].row;
-        column[k] = (int)g->f->dq[i].direction;
-    }
-    for (size_t i = 0; i < g->f->nda; i++, k++) {
-        row[k] = (int)g->f->da[i].row;
-        column[k] = (int)g->f->da[i].direction;
-    }
-    for (size_t i = 0; i < e->nJ; i++, k += 2) {
-        row[k] = column[k + 1] = (int)g->nu + e->J[i].row;
-        column[k] = row[k + 1] = e->J[i].column;
-    }
-    for (size_t i = 0; i < g->n; i++, k++)
-        row[k] = column[k] = (int)i;
-    g->matrix = ct_sparse_create(g->a, (int)g->n, row, column, nentry);
-    g->value = CT_NEWN(g->a, double, nentry + 1);
     return g->matrix != NULL;
 }
 
-// x (nu, out): the first part of the solution for (r, s); s NULL: zero
-static void solve(struct large *g, double *x, const double *r, const double *s)
+// x (nu, out): the first part of the solution for (r, 0)
+static void solve(struct large *g, double *x, const double *r)
 {
     bool refined = true;
     memcpy(g->b, r, g->nu * sizeof *r);
-    if (s)
-        memcpy(g->b + g->nu, s, g->nrow * sizeof *s);
-    else
-        memset(g->b + g->nu, 0, g->nrow * sizeof *g->b);
+    memset(g->b + g->nu, 0, g->nrow * sizeof *g->b);
     ct_sparse_solve(g->matrix, g->x, g->b, &refined);
     memcpy(x, g->x, g->nu * sizeof *x);
 }
@@ -132,24 +78,23 @@ static void solve(struct large *g, double *x, const double *r, const double *s)
 static bool balance(struct large *g)
 {
     struct ct_linear *l = g->l;
-    struct ct_machine *m = l->m;
     double *r = CT_NEWN(g->a, double, g->nu + 1);
     memset(l->a, 0, g->nu * sizeof *l->a);
     memset(l->lam, 0, g->nrow * sizeof *l->lam);
-    evaluate(g, l->a, l->lam);
-    ct_program_run(&m->residual, m->input);
+    if (!ct_point_evaluate(g->p))
+        return false;
     for (size_t i = 0; i < g->nu; i++)
-        r[i] = -m->residual.out[i];
+        r[i] = -g->p->r[i];
     if (largest(r, g->nu) == 0) // nothing acts
         return true;
-    if (!factor(g, true, 0))
+    g->matrix = ct_point_factor(g->p, 0, 1);
+    if (!g->matrix)
         return false;
-    solve(g, l->a, r, NULL);
+    solve(g, l->a, r);
     for (size_t i = 0; i < g->nrow; i++) // r - J' lam = -M a: the unknown of the matrix is -lam
         l->lam[i] = -g->x[g->nu + i];
-    evaluate(g, l->a, l->lam);
     l->acceleration = largest(l->a, g->nu);
-    return true;
+    return ct_point_evaluate(g->p);
 }
 
 // Numbers in [-1, 1) that are the same in every run.
@@ -175,8 +120,8 @@ static bool is_symmetric(struct large *g)
         x[i] = chance(&state);
         y[i] = chance(&state);
     }
-    apply(Kx, g->f->dq, g->f->ndq, g->K, x, g->nu);
-    apply(Ky, g->f->dq, g->f->ndq, g->K, y, g->nu);
+    ct_point_apply(Kx, g->p->K, g->p->nK, x, g->nu);
+    ct_point_apply(Ky, g->p->K, g->p->nK, y, g->nu);
     double size = 0;
     for (size_t i = 0; i < g->nu; i++)
         size += fabs(y[i] * Kx[i]);
@@ -188,16 +133,12 @@ static bool is_of_this_kind(struct large *g)
     const struct ct_machine *m = g->l->m;
     if ((g->nrow && m->e->ndriver) || largest(g->l->y + m->nq, g->nu) > 0)
         return false;
-    ct_machine_set(g->l->m, g->l->t, g->l->y);
-    ct_program_run(&g->l->m->residual, m->input); // phi, v behind r: motions of chords
-    if (largest(m->residual.out + g->nu + g->nrow, g->nrow) > 0)
-        return false;
-    if (!create_matrix(g) || !balance(g))
+    if (!balance(g) || largest(g->p->v, g->nrow) > 0) // motions of chords
         return false;
     if (g->nrow && g->l->acceleration > still)
         return false; // the rows turn while it accelerates
-    const double rate = sqrt(largest(g->K, g->f->ndq) * largest(g->M, g->f->nda));
-    return largest(g->C, g->f->ndu) <= absent * rate && is_symmetric(g);
+    const double rate = sqrt(largest_entry(g->p->K, g->p->nK) * largest_entry(g->p->M, g->p->nM));
+    return largest_entry(g->p->C, g->p->nC) <= absent * rate && is_symmetric(g);
 }
 
 // ---- Lanczos -----------------------------------------------------------------------------------------------------
@@ -207,7 +148,7 @@ static bool is_of_this_kind(struct large *g)
 static bool take_in(struct large *g, double *x, double *c, double *size)
 {
     double *Mx = g->MV + g->nu * g->k, *v = g->V + g->nu * g->k;
-    apply(Mx, g->f->da, g->f->nda, g->M, x, g->nu);
+    apply_masses(g, Mx, x);
     const double before = sqrt(fmax(dot(x, Mx, g->nu), 0));
     for (int pass = 0; pass < 2; pass++)
         for (size_t j = 0; j < g->k; j++) {
@@ -217,7 +158,7 @@ static bool take_in(struct large *g, double *x, double *c, double *size)
             if (c)
                 c[j] += h;
         }
-    apply(Mx, g->f->da, g->f->nda, g->M, x, g->nu);
+    apply_masses(g, Mx, x);
     *size = sqrt(fmax(dot(x, Mx, g->nu), 0));
     if (!(*size > gone * before))
         return false;
@@ -281,8 +222,8 @@ static size_t iterate(struct large *g, size_t count, struct ritz *z)
         double *w = g->W + g->nu * c;
         for (size_t i = 0; i < g->nu; i++)
             r[i] = chance(&state);
-        apply(w, g->f->da, g->f->nda, g->M, r, g->nu);
-        solve(g, w, w, NULL);
+        apply_masses(g, w, r);
+        solve(g, w, w);
     }
     size_t first = 0; // of the newest block
     for (size_t c = 0; c < BLOCK; c++)
@@ -290,7 +231,7 @@ static size_t iterate(struct large *g, size_t count, struct ritz *z)
     for (;;) {
         const size_t last = g->k, n = last - first;
         for (size_t c = 0; c < n; c++)
-            solve(g, g->W + g->nu * c, g->MV + g->nu * (first + c), NULL);
+            solve(g, g->W + g->nu * c, g->MV + g->nu * (first + c));
         for (size_t c = 0; c < n; c++)
             for (size_t j = 0; j < last; j++)
                 g->T[j + g->most * (first + c)] = g->T[first + c + g->most * j]
@@ -332,7 +273,7 @@ bool ct_large_modes(struct ct_ctx *ctx, struct ct_arena *a, struct ct_linear *l,
                     struct ct_motion_mode **mode, size_t *nmode, const char **how,
                     bool *applies)
 {
-    struct large g = {.ctx = ctx, .a = a, .l = l, .f = l->m->e->residual};
+    struct large g = {.ctx = ctx, .a = a, .l = l, .p = ct_point_create(l)};
     g.nu = l->m->nu;
     g.nrow = l->m->nrow;
     g.n = g.nu + g.nrow;
@@ -345,12 +286,10 @@ bool ct_large_modes(struct ct_ctx *ctx, struct ct_arena *a, struct ct_linear *l,
     *how = "sparse symmetric";
     if (!*applies)
         return true;
-    if (!factor(&g, false, 0)) { // something is free to move: shifted by a little of the lowest
-        double ratio = 0;
-        for (size_t i = 0; i < g.f->nda; i++)
-            ratio = fmax(ratio, fabs(g.M[i]));
-        ratio = largest(g.K, g.f->ndq) / fmax(ratio, DBL_MIN);
-        if (!factor(&g, false, -1e-9 * fmax(ratio, 1)))
+    if (!factor(&g, 0)) { // something is free to move: shifted by a little of the lowest
+        const double ratio = largest_entry(g.p->K, g.p->nK)
+                           / fmax(largest_entry(g.p->M, g.p->nM), DBL_MIN);
+        if (!factor(&g, -1e-9 * fmax(ratio, 1)))
             return ct_error(ctx, (struct ct_mark){.file = l->m->model->file}, CT_E_SINGULAR,
                             "the stiffness and the constraints are singular");
     }

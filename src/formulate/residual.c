@@ -10,6 +10,7 @@
 enum { PLACE, SPEED, ACCELERATION, NLEVEL };
 
 struct seeds {
+    struct ct_arena *a; // NULL: scratch
     struct ct_seed *e;
     size_t n, cap;
 };
@@ -18,7 +19,7 @@ static void plant(struct ct_build *b, struct seeds *s, ct_ex symbol, size_t dire
                   ct_ex value)
 {
     const struct ct_seed seed = {symbol, (uint32_t)direction, value};
-    CT_PUSH(b->ctx->scratch, s->e, s->n, s->cap, seed);
+    CT_PUSH(s->a ? s->a : b->ctx->scratch, s->e, s->n, s->cap, seed);
 }
 
 static size_t direction(const struct ct_build *b, int level, size_t speed)
@@ -97,33 +98,54 @@ static void derive_rows(struct ct_build *b, ct_ex *r)
         r[k] = by_members[k];
 }
 
-void ct_residual_derive(struct ct_build *b)
+void ct_residual_rows(struct ct_build *b)
 {
     struct ct_equations *e = b->eqs;
-    struct ct_arena *scratch = b->ctx->scratch;
-    struct ct_residual *f = e->residual = CT_NEW(b->arena, struct ct_residual);
-    struct seeds seeds = {0};
-    struct ct_slope *all;
-    f->r = CT_NEWN(b->arena, ct_ex, e->nu + 1);
+    if (e->residual)
+        return;
+    e->residual = CT_NEW(b->arena, struct ct_residual);
+    e->residual->r = CT_NEWN(b->arena, ct_ex, e->nu + 1);
     if (e->is_truncated)
-        assemble_rows(b, f->r);
+        assemble_rows(b, e->residual->r);
     else
-        derive_rows(b, f->r);
+        derive_rows(b, e->residual->r);
+}
+
+size_t ct_residual_seeds(struct ct_build *b, struct ct_arena *a, struct ct_seed **out,
+                         size_t *nplace)
+{
+    const struct ct_equations *e = b->eqs;
+    struct seeds seeds = {.a = a};
     plant_places(b, &seeds);
-    const size_t nplace = seeds.n;
+    *nplace = seeds.n;
     for (size_t k = 0; k < e->nu; k++) {
         plant(b, &seeds, e->u[k].symbol, direction(b, SPEED, k), CT_EX_ONE);
         plant(b, &seeds, e->u[k].derivative, direction(b, ACCELERATION, k), CT_EX_ONE);
     }
+    *out = seeds.e;
+    return seeds.n;
+}
+
+void ct_residual_derive(struct ct_build *b)
+{
+    struct ct_equations *e = b->eqs;
+    struct ct_arena *scratch = b->ctx->scratch;
+    struct ct_seed *seed;
+    struct ct_slope *all;
+    size_t nplace;
+    ct_residual_rows(b);
+    struct ct_residual *f = e->residual;
+    f->has_slopes = true;
+    const size_t nseed = ct_residual_seeds(b, scratch, &seed, &nplace);
     const size_t n
-        = ct_ex_jacobian(b->x, scratch, scratch, f->r, e->nu, seeds.e, seeds.n, &all);
+        = ct_ex_jacobian(b->x, scratch, scratch, f->r, e->nu, seed, nseed, &all);
     f->ndq = pick(b, all, n, PLACE, &f->dq);
     f->ndu = pick(b, all, n, SPEED, &f->du);
     f->nda = pick(b, all, n, ACCELERATION, &f->da);
     ct_ex *v = CT_NEWN(scratch, ct_ex, e->nrow + 1);
     for (size_t i = 0; i < e->nrow; i++)
         v[i] = e->row[i].v;
-    f->ndv = ct_ex_jacobian(b->x, scratch, b->arena, v, e->nrow, seeds.e, nplace, &f->dv);
+    f->ndv = ct_ex_jacobian(b->x, scratch, b->arena, v, e->nrow, seed, nplace, &f->dv);
 }
 
 size_t ct_slopes_derive(struct ct_build *b, struct ct_arena *a, const ct_ex *f, size_t nf,
@@ -131,11 +153,8 @@ size_t ct_slopes_derive(struct ct_build *b, struct ct_arena *a, const ct_ex *f, 
 {
     struct ct_equations *e = b->eqs;
     struct seeds seeds = {0};
-    plant_places(b, &seeds);
-    for (size_t k = 0; k < e->nu; k++) {
-        plant(b, &seeds, e->u[k].symbol, direction(b, SPEED, k), CT_EX_ONE);
-        plant(b, &seeds, e->u[k].derivative, direction(b, ACCELERATION, k), CT_EX_ONE);
-    }
+    size_t nplace;
+    seeds.n = seeds.cap = ct_residual_seeds(b, b->ctx->scratch, &seeds.e, &nplace);
     const size_t first = direction(b, NLEVEL, 0);
     for (size_t i = 0; i < e->nrow; i++)
         plant(b, &seeds, e->row[i].lam, first + i, CT_EX_ONE);
