@@ -447,7 +447,7 @@ static enum ct_tree_choice choose_for_analysis(struct ct_build *b,
                                                const struct ct_formulate_options *o,
                                                const struct ct_tree_pair *p)
 {
-    const double most = 100; // for each unknown
+    const double most = 400; // for each unknown
     double n = 0;
     for (size_t i = 1; i < b->model->nbody; i++)
         n += own_unknowns(b, i);
