@@ -68,9 +68,8 @@ bool ct_point_evaluate(struct ct_point *p)
     memcpy(m->input + m->at_lam, l->lam, m->nrow * sizeof *l->lam);
     ct_program_run(&m->constraint, m->input);
     ct_machine_values(m, e->x, p->value);
-    const size_t n
-        = ct_ex_jacobian_at(e->x, scratch, scratch, e->residual->r, m->nu, p->seed, p->nseed,
-                            p->value, p->r, &all);
+    const size_t n = ct_ex_jacobian_at(e->x, scratch, scratch, e->residual->r, m->nu, p->seed,
+                                       p->nseed, p->value, p->r, &all);
     if (m->nu) {
         p->nK = pick(p->a, all, n, 0, m->nu, &p->K);
         p->nC = pick(p->a, all, n, 1, m->nu, &p->C);
@@ -122,9 +121,10 @@ static void add_rows(struct entries *s, const struct ct_machine *m)
     }
 }
 
-static struct ct_sparse *factor(struct entries *s, size_t n)
+static struct ct_sparse *factor(struct entries *s, size_t n, size_t nrow)
 {
-    struct ct_sparse *matrix = ct_sparse_create(s->a, (int)n, s->row, s->column, s->n);
+    const enum ct_sparse_order order = nrow ? CT_SPARSE_ANY : CT_SPARSE_DIAGONAL;
+    struct ct_sparse *matrix = ct_sparse_create(s->a, (int)n, s->row, s->column, s->n, order);
     return matrix && ct_sparse_factor(matrix, s->value) ? matrix : NULL;
 }
 
@@ -140,7 +140,7 @@ struct ct_sparse *ct_point_factor(struct ct_point *p, double k, double m)
     add_rows(&s, machine);
     for (size_t i = 0; i < n; i++) // a place for every pivot
         add(&s, i, i, 0);
-    return factor(&s, n);
+    return factor(&s, n, machine->nrow);
 }
 
 bool ct_point_shortest(struct ct_linear *l, double *d, const double *r)
@@ -154,7 +154,7 @@ bool ct_point_shortest(struct ct_linear *l, double *d, const double *r)
     add_rows(&s, m);
     for (size_t i = 0; i < m->nrow; i++)
         add(&s, m->nu + i, m->nu + i, 0);
-    struct ct_sparse *matrix = factor(&s, n);
+    struct ct_sparse *matrix = factor(&s, n, m->nrow);
     if (matrix) {
         double *b = CT_NEWN(a, double, n), *x = CT_NEWN(a, double, n);
         bool refined = true;

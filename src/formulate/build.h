@@ -190,6 +190,13 @@ struct ct_build {
     struct ct_piece *piece; // of the path sought last (nanchor + 2)
     bool *marked;           // clusters that matter to it (ncluster)
     ct_ex *coefficient;     // of the speeds, in the row in hand (nu)
+    struct ct_user {        // a spin or an anchor's slide that a speed moves
+        bool slides;
+        size_t at, next; // next: its number plus one, 0 at the end
+        int k;           // term or slide
+    } * user;
+    size_t nuser, user_cap,
+        *first_user; // first_user by speed, numbers plus one; NULL: not listed yet
 
     struct ct_flexible *flexible; // one per beam
     size_t nflexible;

@@ -69,7 +69,7 @@ static void compress(struct ct_arena *a, struct ct_sparse *s, const int *row, co
 }
 
 struct ct_sparse *ct_sparse_create(struct ct_arena *a, int n, const int *row, const int *column,
-                                   size_t nentry)
+                                   size_t nentry, enum ct_sparse_order order)
 {
     struct ct_sparse *s = CT_NEW(a, struct ct_sparse);
     if (n == 0)
@@ -82,6 +82,7 @@ struct ct_sparse *ct_sparse_create(struct ct_arena *a, int n, const int *row, co
     s->scale = CT_NEWN(a, double, n);
     klu_defaults(&s->common);
     s->common.tol = diagonal_preference;
+    s->common.ordering = order == CT_SPARSE_ANY; // COLAMD, else AMD
     s->common.scale = 0; // pivots in the units of the rows: they are compared with each other
     ct_arena_at_end(a, release, s);
     s->symbolic = klu_analyze(n, s->start, s->row, &s->common);
@@ -176,9 +177,9 @@ double ct_sparse_fill(const struct ct_sparse *s)
 #else
 
 struct ct_sparse *ct_sparse_create(struct ct_arena *a, int n, const int *row, const int *column,
-                                   size_t nentry)
+                                   size_t nentry, enum ct_sparse_order order)
 {
-    (void)a, (void)n, (void)row, (void)column, (void)nentry;
+    (void)a, (void)n, (void)row, (void)column, (void)nentry, (void)order;
     return NULL;
 }
 

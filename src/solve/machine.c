@@ -269,8 +269,7 @@ static void push_slopes(struct list *l, const struct ct_slope *s, size_t n)
 static void compile_residual(struct ct_arena *a, struct ct_machine *m, const struct inputs *in)
 {
     const struct ct_equations *e = m->e;
-    const struct ct_residual *f
-        = e->residual && e->residual->has_slopes ? e->residual : NULL;
+    const struct ct_residual *f = e->residual && e->residual->has_slopes ? e->residual : NULL;
     struct list residual = {.a = a}, tangent = {.a = a};
     for (size_t i = 0; i < e->nu && f; i++)
         push(&residual, f->r[i]);
