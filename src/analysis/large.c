@@ -65,10 +65,9 @@ static bool factor(struct large *g, double shift)
 // x (nu, out): the first part of the solution for (r, 0)
 static void solve(struct large *g, double *x, const double *r)
 {
-    bool refined = true;
     memcpy(g->b, r, g->nu * sizeof *r);
     memset(g->b + g->nu, 0, g->nrow * sizeof *g->b);
-    ct_sparse_solve(g->matrix, g->x, g->b, &refined);
+    ct_sparse_solve_precisely(g->matrix, g->x, g->b);
     memcpy(x, g->x, g->nu * sizeof *x);
 }
 
