@@ -1,13 +1,15 @@
 // See large.h.
 #include "analysis/large.h"
 #include "analysis/point.h"
+#include "base/sort.h"
+#include "numeric/arpack.h"
 #include "numeric/dense.h"
 
 #include <float.h>
 #include <math.h>
 #include <string.h>
 
-enum { BLOCK = 4, MOST_BASIS = 400 };
+enum { BLOCK = 4 };
 static const double still
     = 1e-9; // accelerations beside those of the weights: an equilibrium to rounding
 static const double absent = 1e-12;   // damping against the masses' rates: none
@@ -136,7 +138,8 @@ static bool is_of_this_kind(struct large *g)
         return false;
     if (g->nrow && g->l->acceleration > still)
         return false; // the rows turn while it accelerates
-    const double rate = sqrt(largest_entry(g->p->K, g->p->nK) * largest_entry(g->p->M, g->p->nM));
+    const double rate
+        = sqrt(largest_entry(g->p->K, g->p->nK) * largest_entry(g->p->M, g->p->nM));
     return largest_entry(g->p->C, g->p->nC) <= absent * rate && is_symmetric(g);
 }
 
@@ -252,20 +255,135 @@ static size_t iterate(struct large *g, size_t count, struct ritz *z)
     }
 }
 
-static void add_modes(struct large *g, const struct ritz *z, size_t k, size_t count,
-                      struct ct_motion_mode *mode, size_t *nmode)
+// Eigenvalues theta of [K - s M, J'; J, 0]^-1 M (n of them, |theta| descending) and vectors (nu x n) of unit mass.
+struct pairs {
+    double *theta, *vector;
+    size_t n;
+};
+
+static struct pairs by_lanczos(struct large *g, size_t count)
 {
-    for (size_t i = 0; i < count && i < k; i++) {
-        const size_t j = z->order[i];
-        double *y = CT_NEWN(g->a, double, 2 * g->nu + 1);
+    struct ct_arena *a = g->a;
+    g->most = 8 * count + 20 * BLOCK;
+    g->most = g->most > g->nu ? g->nu + BLOCK : g->most;
+    g->V = CT_NEWN(a, double, g->nu *(g->most + BLOCK));
+    g->MV = CT_NEWN(a, double, g->nu *(g->most + BLOCK));
+    g->T = CT_NEWN(a, double, g->most * g->most);
+    struct ritz z = {.theta = CT_NEWN(a, double, g->most + 1),
+                     .S = CT_NEWN(a, double, g->most * g->most + 1),
+                     .residual = CT_NEWN(a, double, g->most + 1),
+                     .order = CT_NEWN(a, size_t, g->most + 1)};
+    const size_t k = iterate(g, count, &z);
+    struct pairs out = {CT_NEWN(a, double, count + 1), CT_NEWN(a, double, g->nu *count + 1), 0};
+    for (; out.n < count && out.n < k; out.n++) {
+        const size_t j = z.order[out.n];
+        double *y = out.vector + g->nu * out.n;
+        if (z.residual[j] > found * fabs(z.theta[j]))
+            break;
+        out.theta[out.n] = z.theta[j];
         for (size_t p = 0; p < k; p++)
             for (size_t q = 0; q < g->nu; q++)
-                y[q] += g->V[q + g->nu * p] * z->S[p + k * j];
-        double w2 = g->shift + 1 / z->theta[j];
+                y[q] += g->V[q + g->nu * p] * z.S[p + k * j];
+    }
+    return out;
+}
+
+// ---- ARPACK ------------------------------------------------------------------------------------------------------
+
+static void operator_solve(void *data, double *y, const double *f)
+{
+    solve(data, y, f);
+}
+
+static void operator_masses(void *data, double *y, const double *x)
+{
+    apply_masses(data, y, x);
+}
+
+struct ranked {
+    double theta;
+    size_t at;
+};
+
+static int by_rank(const void *context, const void *x, const void *y)
+{
+    (void)context;
+    const struct ranked *p = x, *q = y;
+    const double a = fabs(p->theta), b = fabs(q->theta);
+    return a != b ? (a < b) - (a > b) : (p->at > q->at) - (p->at < q->at);
+}
+
+static void rank(struct large *g, struct pairs *out, struct ranked *order)
+{
+    for (size_t i = 0; i < out->n; i++)
+        order[i] = (struct ranked){out->theta[i], i};
+    ct_sort(g->a, order, out->n, sizeof *order, by_rank, NULL);
+}
+
+// A single vector leads to one of several equal eigenvalues, and to others by rounding only (a round beam bends about two
+// axes alike, a free body has six motions of frequency 0). So the search is repeated in the complement of what was
+// found until that holds nothing more of the wanted ones. n is 0 where ARPACK is not available or fails.
+static struct pairs by_arpack(struct large *g, size_t count)
+{
+    enum { MORE = 2, MOST_SEARCHES = 50 };
+    const struct ct_operator op = {operator_solve, operator_masses, g};
+    const size_t most = count + MORE * MOST_SEARCHES;
+    uint64_t state = 7;
+    struct pairs all = {CT_NEWN(g->a, double, most), CT_NEWN(g->a, double, g->nu *most), 0},
+                 out;
+    struct ranked *order = CT_NEWN(g->a, struct ranked, most);
+    double *start = CT_NEWN(g->a, double, g->nu), last = 0; // of the wanted ones so far
+    for (int i = 0; i < MOST_SEARCHES; i++) {
+        for (size_t k = 0; k < g->nu; k++)
+            start[k] = chance(&state);
+        struct ct_arena *meanwhile = ct_arena_create_under(g->a);
+        const int n = ct_arpack_largest(meanwhile, &op, (int)g->nu, i ? MORE : (int)count,
+                                        all.vector, (int)all.n, start, all.theta + all.n,
+                                        all.vector + g->nu * all.n);
+        ct_arena_destroy(meanwhile);
+        if (n <= 0)
+            return (struct pairs){0};
+        double largest_new = 0;
+        for (int k = 0; k < n; k++)
+            largest_new = fmax(largest_new, fabs(all.theta[all.n + (size_t)k]));
+        const bool is_complete = all.n >= count && largest_new <= last;
+        all.n += (size_t)n;
+        rank(g, &all, order);
+        if (is_complete)
+            break;
+        last = all.n >= count ? fabs(order[count - 1].theta) : 0;
+    }
+    if (all.n < count)
+        return (struct pairs){0};
+    out = (struct pairs){CT_NEWN(g->a, double, count + 1),
+                         CT_NEWN(g->a, double, g->nu *count + 1), count};
+    for (size_t i = 0; i < count; i++) {
+        out.theta[i] = order[i].theta;
+        memcpy(out.vector + g->nu * i, all.vector + g->nu * order[i].at,
+               g->nu * sizeof *out.vector);
+    }
+    return out;
+}
+
+// ---- all of it ---------------------------------------------------------------------------------------------------
+
+static void add_modes(struct large *g, const struct pairs *z, struct ct_motion_mode *mode,
+                      size_t *nmode)
+{
+    for (size_t i = 0; i < z->n; i++) {
+        double *y = CT_NEWN(g->a, double, 2 * g->nu + 1);
+        memcpy(y, z->vector + g->nu * i, g->nu * sizeof *y);
+        double w2 = g->shift + 1 / z->theta[i];
         if (fabs(w2) <= 1e-6 * fabs(g->shift))
             w2 = 0; // rounding of the shift
         ct_mode_add_undamped(mode, nmode, w2, y, (int)g->nu);
     }
+}
+
+// Few against what is free to move; else their complement would be too small for restarts.
+static bool are_few(const struct large *g, size_t count)
+{
+    return 4 * count + 40 < g->nu - (g->nrow < g->nu ? g->nrow : g->nu);
 }
 
 bool ct_large_modes(struct ct_ctx *ctx, struct ct_arena *a, struct ct_linear *l, size_t count,
@@ -286,25 +404,23 @@ bool ct_large_modes(struct ct_ctx *ctx, struct ct_arena *a, struct ct_linear *l,
     if (!*applies)
         return true;
     if (!factor(&g, 0)) { // something is free to move: shifted by a little of the lowest
-        const double ratio = largest_entry(g.p->K, g.p->nK)
-                           / fmax(largest_entry(g.p->M, g.p->nM), DBL_MIN);
+        const double ratio
+            = largest_entry(g.p->K, g.p->nK) / fmax(largest_entry(g.p->M, g.p->nM), DBL_MIN);
         if (!factor(&g, -1e-9 * fmax(ratio, 1)))
             return ct_error(ctx, (struct ct_mark){.file = l->m->model->file}, CT_E_SINGULAR,
                             "the stiffness and the constraints are singular");
     }
-    g.most = 8 * count + 20 * BLOCK;
-    g.most = g.most > MOST_BASIS ? MOST_BASIS : g.most;
-    g.most = g.most > g.nu ? g.nu + BLOCK : g.most;
-    g.V = CT_NEWN(a, double, g.nu *(g.most + BLOCK));
-    g.MV = CT_NEWN(a, double, g.nu *(g.most + BLOCK));
-    g.T = CT_NEWN(a, double, g.most *g.most);
-    struct ritz z = {.theta = CT_NEWN(a, double, g.most + 1),
-                     .S = CT_NEWN(a, double, g.most *g.most + 1),
-                     .residual = CT_NEWN(a, double, g.most + 1),
-                     .order = CT_NEWN(a, size_t, g.most + 1)};
-    const size_t k = iterate(&g, count, &z);
+    struct pairs z = {0};
+    if (are_few(&g, count))
+        z = by_arpack(&g, count);
+    if (!z.n)
+        z = by_lanczos(&g, count);
+    if (z.n < count && z.n < g.nu)
+        ct_warning(ctx, (struct ct_mark){.file = l->m->model->file}, 0,
+                   "%zu of %zu modes are found to rounding, the others are left out", z.n,
+                   count);
     *mode = CT_NEWN(a, struct ct_motion_mode, 2 * count + 1);
-    add_modes(&g, &z, k, count, *mode, nmode);
+    add_modes(&g, &z, *mode, nmode);
     ct_modes_sort(a, *mode, *nmode);
     return true;
 }
