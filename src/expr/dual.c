@@ -27,11 +27,11 @@ enum { NSIZE = 32 };
 struct walk {
     struct ct_exs *x;
     struct ct_arena *scratch;
-    const double *value; // by symbol
-    double *v;           // by place
-    struct list *list;   // by place
-    uint32_t *place;     // by id
-    uint32_t *readers;   // by place: nodes and roots still to come
+    const double *value;         // by symbol
+    double *v;                   // by place
+    struct list *list;           // by place
+    uint32_t *place;             // by id
+    uint32_t *readers;           // by place: nodes and roots still to come
     struct tangent *free[NSIZE]; // lists given up, chained through their first bytes
     struct tangent *merged;      // of the node in hand
     size_t nmerged, cap;
@@ -184,9 +184,8 @@ static void chain(struct walk *w, const struct ct_exnode *n, const uint32_t *arg
         const struct list *l = &w->list[arg[i]];
         if (!l->n)
             continue;
-        partial[m] = n->op == CT_OP_TABLE
-                       ? ct_table_value(&w->x->table[n->b], n->c + 1, a[0])
-                       : ct_op_partial((enum ct_op)n->op, i, a[0], a[1], v);
+        partial[m] = n->op == CT_OP_TABLE ? ct_table_value(&w->x->table[n->b], n->c + 1, a[0])
+                                          : ct_op_partial((enum ct_op)n->op, i, a[0], a[1], v);
         at[m] = l->at;
         end[m] = l->at + l->n;
         m += partial[m] != 0;

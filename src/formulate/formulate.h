@@ -32,8 +32,9 @@ struct ct_formulate_options {
     const struct ct_equations *like; // beams as in these; NULL: choose
     bool held;                       // drivers stand still at their values: for what is static
     bool without_dynamics; // neither M nor Q: places and speeds are all that is wanted
-    bool for_analysis;     // large systems will be linearised, not integrated: neither M nor Q nor a
-                           // solution, and trees that couple few unknowns
+    bool
+        for_analysis; // large systems will be linearised, not integrated: neither M nor Q nor a
+                      // solution, and trees that couple few unknowns
 };
 
 enum { CT_MOST_DENSE = 300 }; // speeds; larger systems are analysed with sparse matrices

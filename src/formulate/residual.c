@@ -137,8 +137,7 @@ void ct_residual_derive(struct ct_build *b)
     struct ct_residual *f = e->residual;
     f->has_slopes = true;
     const size_t nseed = ct_residual_seeds(b, scratch, &seed, &nplace);
-    const size_t n
-        = ct_ex_jacobian(b->x, scratch, scratch, f->r, e->nu, seed, nseed, &all);
+    const size_t n = ct_ex_jacobian(b->x, scratch, scratch, f->r, e->nu, seed, nseed, &all);
     f->ndq = pick(b, all, n, PLACE, &f->dq);
     f->ndu = pick(b, all, n, SPEED, &f->du);
     f->nda = pick(b, all, n, ACCELERATION, &f->da);

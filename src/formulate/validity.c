@@ -19,13 +19,15 @@ struct lump { // a body that a weld holds to a point of the beam
 struct line {
     struct ct_build *b;
     const struct ct_flexible *f;
-    int plane;      // 0: along y, 1: along z
-    int n, band;    // freedoms of this plane; the most by which the numbers of two that meet differ
-    int *number;    // by freedom, -1: fixed or of another kind
-    double *K, *M;  // lower triangles, A(i, j) at i - j + (band + 1) j
-    double *Kg[2];  // with P1, P2
-    double *beyond; // by element and one more: int m x and int m from its start to the end of the beam  (2 x)
-    double *value;  // of symbols
+    int plane; // 0: along y, 1: along z
+    int n,
+        band; // freedoms of this plane; the most by which the numbers of two that meet differ
+    int *number;   // by freedom, -1: fixed or of another kind
+    double *K, *M; // lower triangles, A(i, j) at i - j + (band + 1) j
+    double *Kg[2]; // with P1, P2
+    double *
+        beyond; // by element and one more: int m x and int m from its start to the end of the beam  (2 x)
+    double *value; // of symbols
     struct lump *lump;
     size_t nlump;
     double xi[POINTS], weight[POINTS];
