@@ -19,8 +19,9 @@ struct ct_system {
     struct ct_equations equations;
     struct ct_tree_report tree;
     struct ct_equations start_equations; // on trees through joints, for assembling
-    struct ct_equations
-        held_equations;    // with drivers that stand still, where beams start in equilibrium
+    // where beams start in equilibrium, on trees through joints: with drivers that stand still, and, in closed loops,
+    // with drivers that move
+    struct ct_equations held_equations, moving_equations;
     double read, generate; // seconds
 };
 

@@ -61,7 +61,8 @@ bool ct_configuration_assemble(struct ct_ctx *own, struct ct_system *sys,
 {
     return ct_assemble(own, own->model, &sys->model, &sys->start_equations, start)
         && (!sys->held_equations.build
-            || ct_settle(own, own->model, &sys->model, &sys->held_equations, start));
+            || ct_settle(own, own->model, &sys->model, &sys->held_equations,
+                         &sys->moving_equations, start));
 }
 
 struct ct_linear *ct_configuration_start(struct ct_ctx *own, struct ct_system *sys,

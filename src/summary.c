@@ -3,6 +3,7 @@
 
 #include "report/json.h"
 #include "formulate/flexible.h"
+#include "solve/singular.h"
 #include "report/stage_beam.h"
 
 #if defined(__unix__) || defined(__APPLE__)
@@ -23,13 +24,13 @@ static long operations(const struct ct_sim *sim)
 {
     const struct ct_machine *m = ct_run_machine(sim->run);
     if (m->solved.nout) {
-        const struct ct_tape_counts all = ct_tape_counts(m->solved.tape);
+        const struct ct_tape_counts all = m->solved.listing->counts;
         return count(&all);
     }
     const struct ct_embed *embed = ct_run_embed(sim->run);
     if (embed->nform)
         return (long)embed->form[0]->operations;
-    const struct ct_tape_counts c = ct_tape_counts(m->motion.tape);
+    const struct ct_tape_counts c = m->motion.listing->counts;
     return count(&c) + (long)ct_embed_operations(embed);
 }
 
@@ -216,6 +217,53 @@ static void write_validity(struct ct_json *j, const struct ct_sim *sim)
     ct_json_end(j);
 }
 
+// Is row i the first of its joint among those that depend there? Rows of no joint count for themselves.
+static bool is_first_of_joint(const struct ct_equations *e, const bool *row, size_t i)
+{
+    for (size_t k = 0; k < i && e->row[i].joint >= 0; k++)
+        if (row[k] && e->row[k].joint == e->row[i].joint)
+            return false;
+    return row[i];
+}
+
+static const char *owner(const struct ct_sim *sim, size_t row)
+{
+    const struct ct_row *r = &sim->system->equations.row[row];
+    return r->joint < 0 ? r->name : sim->system->model.joint[r->joint].name;
+}
+
+static void write_position(struct ct_json *j, const struct ct_sim *sim,
+                           const struct ct_singular_position *at)
+{
+    const struct ct_equations *e = &sim->system->equations;
+    ct_json_object(j, NULL);
+    ct_json_number(j, "time", at->t);
+    if (at->rank_loss) {
+        ct_json_integer(j, "rank_loss", at->rank_loss);
+        ct_json_array(j, "joints");
+        for (size_t i = 0; i < e->nrow; i++)
+            if (is_first_of_joint(e, at->row, i))
+                ct_json_text(j, NULL, owner(sim, i));
+        ct_json_end(j);
+    }
+    ct_json_end(j);
+}
+
+static long kept_positions(const struct ct_singular *w)
+{
+    return w->npassed < CT_MOST_SINGULAR ? w->npassed : CT_MOST_SINGULAR;
+}
+
+static void write_singular(struct ct_json *j, const struct ct_sim *sim)
+{
+    const struct ct_singular *w = sim->report.singular;
+    ct_json_integer(j, "singular_positions_passed", w ? w->npassed : 0);
+    ct_json_array(j, "singular_positions");
+    for (long i = 0; w && i < kept_positions(w); i++)
+        write_position(j, sim, &w->passed[i]);
+    ct_json_end(j);
+}
+
 static void write_work(struct ct_json *j, const struct ct_sim *sim)
 {
     const struct ct_run_report *r = &sim->report;
@@ -238,6 +286,7 @@ static void write_work(struct ct_json *j, const struct ct_sim *sim)
     ct_json_integer(j, "reordered", r->solves.reordered);
     ct_json_end(j);
     ct_json_integer(j, "events", r->stats.events);
+    write_singular(j, sim);
     ct_json_integer(j, "operations", operations(sim));
     ct_json_object(j, "seconds");
     ct_json_number(j, "read", sim->system->read);
@@ -301,17 +350,43 @@ bool ct_sim_write_summary(struct ct_ctx *ctx, const struct ct_sim *sim, const ch
 
 // ---- for people ---------------------------------------------------------------------------------------
 
+// A titled list, broken into lines that fit.
+struct list {
+    FILE *out;
+    const char *title;
+    int column; // 0: nothing is written yet
+};
+
+enum { TITLE_WIDTH = 13, LINE_WIDTH = 100 };
+
+static void add(struct list *l, const char *entry)
+{
+    const int n = (int)strlen(entry);
+    if (!l->column)
+        l->column = fprintf(l->out, "%-*s", TITLE_WIDTH, l->title);
+    else if (l->column + n + 2 > LINE_WIDTH)
+        l->column = fprintf(l->out, ",\n%*s", TITLE_WIDTH, "") - 2;
+    else
+        l->column += fprintf(l->out, ", ");
+    l->column += fprintf(l->out, "%s", entry);
+}
+
+static void end_list(struct list *l)
+{
+    if (l->column)
+        fputc('\n', l->out);
+}
+
 static void print_branches(FILE *out, const char *title, const struct ct_equations *e,
                            const struct ct_tree *t)
 {
-    fprintf(out, "%-13s", title);
-    const char *comma = "";
+    struct list l = {out, title, 0};
     for (int i = 0; i < t->nbranch; i++)
-        if (!is_arm(e, t->branch[i])) {
-            fprintf(out, "%s%s", comma, e->edge_name[t->branch[i]]);
-            comma = ", ";
-        }
-    fputs(*comma ? "\n" : "none\n", out);
+        if (!is_arm(e, t->branch[i]))
+            add(&l, e->edge_name[t->branch[i]]);
+    if (!l.column)
+        add(&l, "none");
+    end_list(&l);
 }
 
 static void print_trees(FILE *out, const struct ct_equations *e)
@@ -335,14 +410,11 @@ static void print_names(FILE *out, const char *title, const bool *is, size_t n,
                         const char *(*name)(const struct ct_equations *e, size_t i),
                         const struct ct_equations *e)
 {
-    const char *comma = title;
+    struct list l = {out, title, 0};
     for (size_t i = 0; i < n; i++)
-        if (is[i]) {
-            fprintf(out, "%s%s", comma, name(e, i));
-            comma = ", ";
-        }
-    if (comma != title)
-        fputc('\n', out);
+        if (is[i])
+            add(&l, name(e, i));
+    end_list(&l);
 }
 
 static const char *row_name(const struct ct_equations *e, size_t i)
@@ -359,7 +431,7 @@ static const char *result_name(const struct ct_equations *e, size_t i)
 static void print_open(FILE *out, const struct ct_sim *sim)
 {
     const struct ct_equations *e = &sim->system->equations;
-    print_names(out, "undetermined ", sim->open.row, e->nrow, row_name, e);
+    print_names(out, "undetermined", sim->open.row, e->nrow, row_name, e);
     print_names(out, "note: redundant constraints do not determine the outputs ",
                 sim->open.result, e->nresult, result_name, e);
 }
@@ -430,6 +502,35 @@ static void print_method(FILE *out, const struct ct_sim *sim)
         r->stats.evaluations, operations(sim), ct_run_machine(sim->run)->backend);
 }
 
+static void print_position(FILE *out, const struct ct_sim *sim,
+                           const struct ct_singular_position *at)
+{
+    enum { MOST_NAMES = 8 };
+    const struct ct_equations *e = &sim->system->equations;
+    int nname = 0;
+    fprintf(out, "%*st = %.6g s", TITLE_WIDTH, "", at->t);
+    if (at->rank_loss)
+        fprintf(out, ", rank less by %d at", at->rank_loss);
+    for (size_t i = 0; i < e->nrow && at->rank_loss; i++)
+        if (is_first_of_joint(e, at->row, i) && nname++ < MOST_NAMES)
+            fprintf(out, "%s%s", nname > 1 ? ", " : " ", owner(sim, i));
+    if (nname > MOST_NAMES)
+        fprintf(out, " and %d more", nname - MOST_NAMES);
+    fputc('\n', out);
+}
+
+static void print_singular(FILE *out, const struct ct_sim *sim)
+{
+    enum { MOST_SHOWN = 5 };
+    const struct ct_singular *w = sim->report.singular;
+    if (!w || !w->npassed)
+        return;
+    fprintf(out, "singular     %ld position%s passed%s\n", w->npassed,
+            w->npassed == 1 ? "" : "s", w->npassed > MOST_SHOWN ? "; the first:" : ":");
+    for (long i = 0; i < w->npassed && i < MOST_SHOWN; i++)
+        print_position(out, sim, &w->passed[i]);
+}
+
 void ct_sim_print_summary(const struct ct_sim *sim, FILE *out)
 {
     const struct ct_run_report *r = &sim->report;
@@ -443,6 +544,7 @@ void ct_sim_print_summary(const struct ct_sim *sim, FILE *out)
         print_method(out, sim);
     fprintf(out, "error        energy drift %.2g, constraints %.2g, their rates %.2g\n",
             r->energy_drift, r->position_constraint, r->velocity_constraint);
+    print_singular(out, sim);
     print_estimate(out, sim);
     fprintf(out,
             "seconds      read %.3g, generate %.3g, compile %.3g, integrate %.3g, write %.3g\n",
@@ -454,7 +556,7 @@ void ct_sim_print_summary(const struct ct_sim *sim, FILE *out)
 
 static void print_counts(FILE *out, const char *title, const struct ct_program *p)
 {
-    const struct ct_tape_counts c = ct_tape_counts(p->tape);
+    const struct ct_tape_counts c = p->listing->counts;
     fprintf(out, "%-13s%ld multiplications, %ld additions, %ld divisions, %ld functions\n",
             title, c.multiplications, c.additions, c.divisions, c.functions);
 }
@@ -483,22 +585,24 @@ static void print_redundant(FILE *out, const struct ct_sim *sim)
     const struct ct_equations *e = &sim->system->equations;
     if (s->rank == (int)e->nrow)
         return;
-    fputs("redundant    ", out);
+    struct list l = {out, "redundant", 0};
     for (int i = s->rank; i < (int)e->nrow; i++) {
         const struct ct_row *row = &e->row[s->row[i]];
-        fprintf(out, "%s%s", i > s->rank ? ", " : "", row->name);
-        if (row->joint >= 0
-            && strcmp(sim->system->model.joint[row->joint].name, row->name) != 0)
-            fprintf(out, " (of joint %s)", sim->system->model.joint[row->joint].name);
+        const char *joint = row->joint < 0 ? NULL : sim->system->model.joint[row->joint].name;
+        // rows are named after their joint: "pin.z"
+        const bool is_told = !joint || strncmp(joint, row->name, strlen(joint)) == 0;
+        add(&l, is_told
+                    ? row->name
+                    : ct_arena_printf(e->build->arena, "%s (of joint %s)", row->name, joint));
     }
-    fputc('\n', out);
+    end_list(&l);
 }
 
 // The solver, chosen by what it is predicted to cost, and what dense matrices would.
 static void print_solver(FILE *out, const struct ct_sim *sim)
 {
     const struct ct_machine *m = ct_run_machine(sim->run);
-    const struct ct_tape_counts motion = ct_tape_counts(m->motion.tape);
+    const struct ct_tape_counts motion = m->motion.listing->counts;
     const long matrices = count(&motion) + (long)ct_embed_operations(ct_run_embed(sim->run));
     fprintf(out, "solver       %s", solver(sim));
     if (m->nrow && strcmp(solver(sim), "dense") != 0)
@@ -523,14 +627,23 @@ void ct_sim_print_check(const struct ct_sim *sim, FILE *out)
     fprintf(out, "%s\n", m->name);
     if (*m->description)
         fprintf(out, "%s\n", m->description);
-    fprintf(out,
-            "model        %zu bodies, %zu joints, %zu forces, %zu parameters, %zu outputs\n",
-            m->nbody - 1, m->njoint, m->nforce, m->nparameter, m->noutput);
+    const struct {
+        size_t n;
+        const char *one, *many;
+    } parts[] = {{m->nbody - 1, "body", "bodies"},
+                 {m->njoint, "joint", "joints"},
+                 {m->nforce, "force", "forces"},
+                 {m->nparameter, "parameter", "parameters"},
+                 {m->noutput, "output", "outputs"}};
+    for (size_t i = 0; i < COUNT(parts); i++)
+        fprintf(out, "%s%zu %s", i ? ", " : "model        ", parts[i].n,
+                parts[i].n == 1 ? parts[i].one : parts[i].many);
+    fputc('\n', out);
     print_freedoms(out, sim);
     fprintf(out, "freedoms     %ld = %zu speeds - rank %d of the constraints\n", freedoms(sim),
             e->nu, sim->report.rank);
     print_redundant(out, sim);
-    print_names(out, "undetermined ", sim->open.row, e->nrow, row_name, e);
+    print_names(out, "undetermined", sim->open.row, e->nrow, row_name, e);
     print_names(out, "undetermined outputs: ", sim->open.result, e->nresult, result_name, e);
     fprintf(out, "tree         %s", s->tree.how);
     if (s->tree.cost > 0)

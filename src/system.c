@@ -114,6 +114,25 @@ static bool formulate(struct ct_system *s, const struct ct_formulate_options *f,
     return ok;
 }
 
+// Equations for beams that start in equilibrium.
+static bool formulate_settled(struct ct_system *s, const struct ct_system_options *o)
+{
+    struct ct_tree_report unused;
+    struct ct_formulate_options f = {.tree = CT_TREE_JOINTS,
+                                     .first = ct_settle_first(s->own.model, &s->model),
+                                     .keep_all = o->keep_all,
+                                     .held = true,
+                                     .measure_all = true,
+                                     .measured_for = &s->equations,
+                                     .deformed = true,
+                                     .like = &s->equations};
+    if (!formulate(s, &f, &s->held_equations, &unused))
+        return false;
+    f.held = false;
+    f.without_dynamics = true;
+    return s->held_equations.nrow == 0 || formulate(s, &f, &s->moving_equations, &unused);
+}
+
 static bool build(struct ct_system *s, const char *path, const struct ct_system_options *o)
 {
     struct ct_formulate_options motion = {.keep_all = o->keep_all,
@@ -130,15 +149,12 @@ static bool build(struct ct_system *s, const char *path, const struct ct_system_
                                                .measure_all = true,
                                                .measured_for = &s->equations,
                                                .without_dynamics = true};
-    const struct ct_formulate_options held = {
-        .tree = CT_TREE_JOINTS, .keep_all = o->keep_all, .held = true, .like = &s->equations};
     struct ct_tree_report unused;
     return choose_tree(&s->own, o->tree, &motion)         // which branches, if any are given
         && read_model(s, path, o)                         // text -> component instances
         && formulate(s, &motion, &s->equations, &s->tree) // graph, trees, equations of motion
         && formulate(s, &start, &s->start_equations, &unused) // equations for assembling
-        && (!ct_settle_wanted(&s->model)
-            || formulate(s, &held, &s->held_equations, &unused)); // and for static shapes
+        && (!ct_settle_wanted(&s->model) || formulate_settled(s, o)); // and for static shapes
 }
 
 struct load {

@@ -158,9 +158,9 @@ static void speed_slopes(struct ct_linear *l, double *D, const double *u)
 {
     const struct ct_residual *f = l->m->e->residual;
     put_in(l, u, l->a, l->lam);
-    ct_program_run(&l->m->tangent, l->m->input);
+    ct_machine_tangent(l->m);
     scatter(D, (size_t)l->nrow, (size_t)l->nu, f->dv, f->ndv,
-            l->m->tangent.out + f->ndq + f->ndu + f->nda);
+            l->m->slopes + f->ndq + f->ndu + f->nda);
 }
 
 // M, C, K, J, D at the state, with its accelerations and multipliers.
@@ -179,11 +179,11 @@ static bool slopes(struct ct_linear *l)
             l->D2[i] -= l->D[i];
     }
     put_in(l, u, l->a, l->lam);
-    ct_program_run(&l->m->tangent, m->input);
-    if (!is_finite(m->tangent.out, m->tangent.nout))
+    ct_machine_tangent(l->m);
+    if (!is_finite(m->slopes, m->nslope))
         return ct_error(l->ctx, (struct ct_mark){.file = m->model->file}, CT_E_SINGULAR,
                         "the equations have no finite derivatives at this configuration");
-    const double *value = m->tangent.out;
+    const double *value = m->slopes;
     value = scatter(l->K, nu, nu, f->dq, f->ndq, value);
     value = scatter(l->C, nu, nu, f->du, f->ndu, value);
     value = scatter(l->M, nu, nu, f->da, f->nda, value);

@@ -3,6 +3,7 @@
 
 #include "base/guard.h"
 
+#include <stdbool.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -11,6 +12,7 @@
 struct chunk {
     struct chunk *next;
     size_t size, used; // bytes of payload
+    bool is_zero;      // what is not used yet
     _Alignas(16) unsigned char data[];
 };
 
@@ -28,14 +30,17 @@ struct ct_arena {
 };
 
 static const size_t first_chunk = 4096, largest_chunk = 1 << 22;
+// Smaller chunks come from memory that has been used, and most of it in one piece: zeros are written as it is given out.
+static const size_t least_fresh = 1 << 18;
 
 static struct chunk *chunk_create(size_t size)
 {
     if (ct_guard_must_fail())
         return NULL;
-    struct chunk *c = calloc(1, sizeof *c + size);
+    const bool is_zero = size >= least_fresh;
+    struct chunk *c = is_zero ? calloc(1, sizeof *c + size) : malloc(sizeof *c + size);
     if (c)
-        c->size = size;
+        *c = (struct chunk){.size = size, .is_zero = is_zero};
     return c;
 }
 
@@ -104,7 +109,7 @@ void *ct_arena_alloc(struct ct_arena *a, size_t size)
     void *p = c->data + c->used;
     c->used += size;
     a->total += size;
-    return p;
+    return c->is_zero ? p : memset(p, 0, size);
 }
 
 void *ct_arena_calloc(struct ct_arena *a, size_t n, size_t size)
@@ -128,11 +133,14 @@ char *ct_arena_strdup(struct ct_arena *a, const char *s)
 
 char *ct_arena_vprintf(struct ct_arena *a, const char *fmt, va_list ap)
 {
+    char most[256]; // formatted once where it is short
     va_list again;
     va_copy(again, ap);
-    int n = vsnprintf(NULL, 0, fmt, ap);
+    const int n = vsnprintf(most, sizeof most, fmt, ap);
     char *p = ct_arena_alloc(a, (size_t)(n < 0 ? 0 : n) + 1);
-    if (n >= 0)
+    if (n >= 0 && (size_t)n < sizeof most)
+        memcpy(p, most, (size_t)n);
+    else if (n >= 0)
         vsnprintf(p, (size_t)n + 1, fmt, again);
     va_end(again);
     return p;

@@ -174,6 +174,14 @@ static bool map(struct ct_native *f, const unsigned char *byte, size_t n)
     return true;
 }
 
+static const struct ct_copy *copy_table(struct ct_arena *a, const struct ct_x86_code *code)
+{
+    struct ct_copy *table = CT_NEWN(a, struct ct_copy, code->ntable + 1);
+    if (code->ntable)
+        memcpy(table, code->table, code->ntable * sizeof *table);
+    return table;
+}
+
 #endif
 
 // ---- prologue ---------------------------------------------------------------------------------
@@ -253,12 +261,15 @@ struct ct_native *ct_native_create(struct ct_arena *a, const struct ct_listing *
     const struct ct_x86_calls calls = list_calls(lanes);
     *f = (struct ct_native){.l = l, .lanes = (size_t)lanes};
     place_prologue(a, f);
-    const struct ct_x86_code code = ct_x86_emit(a, l, lanes, f->place, f->nwork, &calls);
+    struct ct_arena *scratch = ct_arena_create_under(a); // several times what is kept
+    const struct ct_x86_code code = ct_x86_emit(scratch, l, lanes, f->place, f->nwork, &calls);
     f->nwork = code.nwork;
-    f->table = code.table;
     f->ntable = code.ntable;
+    f->table = copy_table(a, &code);
     ct_arena_at_end(a, unmap, f); // first: it may run out of memory
-    return map(f, code.byte, code.nbyte) ? f : NULL;
+    const bool ok = map(f, code.byte, code.nbyte);
+    ct_arena_destroy(scratch);
+    return ok ? f : NULL;
 #else
     (void)a;
     (void)l;

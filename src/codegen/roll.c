@@ -108,14 +108,17 @@ static void link_windows(struct plan *p)
     while (size < 2 * (size_t)p->n)
         size *= 2;
     uint32_t *last = CT_NEWN(p->arena, uint32_t, size); // 1 + place, by hash
+    // h = sum of sign[i + k] base^k over the window, moved on by one place
+    const uint64_t base = UINT64_C(0x9E3779B97F4A7C15);
+    uint64_t h = 0, leaving = 1;
+    for (int k = 0; k < WINDOW; k++)
+        leaving *= base;
     for (uint32_t i = p->n; i-- > 0;) {
+        h = p->sign[i] + base * h - (i + WINDOW < p->n ? leaving * p->sign[i + WINDOW] : 0);
         p->again[i] = none;
         if (i + WINDOW > p->n)
             continue;
-        uint64_t h = 0;
-        for (uint32_t k = 0; k < WINDOW; k++)
-            h = mix(h, p->sign[i + k]);
-        uint32_t *slot = &last[h & (size - 1)];
+        uint32_t *slot = &last[mix(0, h) & (size - 1)];
         p->again[i] = *slot ? *slot - 1 : none;
         *slot = i + 1;
     }

@@ -258,10 +258,12 @@ struct emitter {
 
     // reads of a value: places in the order, ascending; those before next[v] are done
     uint32_t *start, *use, *next;
-    struct home *home;                    // by value
-    signed char *reg;                     // by value: its register or -1
-    uint32_t content[NREGISTER];          // by register: its value or none
-    bool pinned[NREGISTER];               // may not be given away by this instruction
+    struct home *home;           // by value
+    signed char *reg;            // by value: its register or -1
+    uint32_t content[NREGISTER]; // by register: its value or none
+    uint32_t until[NREGISTER];   // by register: next read of its value, or none
+    unsigned used,
+        pinned; // registers with a value; those not to be given away by this instruction
     uint32_t *first_output, *next_output; // by value, by output: 1 + k of the next one
     uint32_t *free;                       // places of the work array to be used again
     uint32_t nfree, nwork, nfixed;
@@ -295,9 +297,20 @@ static void need_home(struct emitter *e, uint32_t v)
 
 static void leave_register(struct emitter *e, uint32_t v)
 {
-    if (e->reg[v] >= 0)
+    if (e->reg[v] >= 0) {
         e->content[e->reg[v]] = none;
+        e->used &= ~(1u << e->reg[v]);
+    }
     e->reg[v] = -1;
+}
+
+// Reads of v before a place in the order are done.
+static void pass_reads_before(struct emitter *e, uint32_t v, uint32_t at)
+{
+    while (next_use(e, v) < at)
+        e->next[v]++;
+    if (e->reg[v] >= 0)
+        e->until[e->reg[v]] = next_use(e, v);
 }
 
 // The register that is free, or else whose value is read last; -1 if all are pinned.
@@ -306,14 +319,13 @@ static int best_register(const struct emitter *e)
     int best = -1;
     uint32_t farthest = 0;
     for (int r = 0; r < NREGISTER; r++) {
-        if (e->pinned[r])
+        if (e->pinned >> r & 1)
             continue;
-        if (e->content[r] == none)
+        if (!(e->used >> r & 1))
             return r;
-        const uint32_t at = next_use(e, e->content[r]);
-        if (best < 0 || at > farthest) {
+        if (best < 0 || e->until[r] > farthest) {
             best = r;
-            farthest = at;
+            farthest = e->until[r];
         }
     }
     return best;
@@ -329,9 +341,12 @@ static int take_register(struct emitter *e, uint32_t v)
         leave_register(e, e->content[r]);
     }
     e->content[r] = v;
-    e->pinned[r] = true;
-    if (v != none)
+    e->pinned |= 1u << r;
+    if (v != none) {
         e->reg[v] = (signed char)r;
+        e->until[r] = next_use(e, v);
+        e->used |= 1u << r;
+    }
     return r;
 }
 
@@ -339,7 +354,7 @@ static int take_register(struct emitter *e, uint32_t v)
 static int load(struct emitter *e, uint32_t v)
 {
     if (e->reg[v] >= 0) {
-        e->pinned[e->reg[v]] = true;
+        e->pinned |= 1u << e->reg[v];
         return e->reg[v];
     }
     const int r = take_register(e, v);
@@ -353,7 +368,7 @@ static struct rm operand(struct emitter *e, uint32_t v)
     if (e->reg[v] < 0) {
         const uint32_t again = next_use(e, v);
         const int r = again == none ? -1 : best_register(e);
-        if (r < 0 || (e->content[r] != none && next_use(e, e->content[r]) <= again))
+        if (r < 0 || (e->used >> r & 1 && e->until[r] <= again))
             return memory_of(e, e->home[v]);
     }
     return in_register(load(e, v));
@@ -368,21 +383,26 @@ static bool prefer_second(const struct emitter *e, uint32_t a, uint32_t b)
 
 // ---- instructions -----------------------------------------------------------------------------
 
-// Pins come off, and values that are not read again leave.
-static void release_registers(struct emitter *e)
+static void release(struct emitter *e, const uint32_t *v, uint32_t n)
 {
-    for (int r = 0; r < NREGISTER; r++) {
-        e->pinned[r] = false;
-        if (e->content[r] != none && next_use(e, e->content[r]) == none)
-            leave_register(e, e->content[r]);
-    }
+    for (uint32_t k = 0; k < n; k++)
+        if (e->reg[v[k]] >= 0 && e->until[e->reg[v[k]]] == none)
+            leave_register(e, v[k]);
+}
+
+// Pins come off, and values of an instruction that are not read again leave.
+static void release_registers(struct emitter *e, const struct ct_instruction *i)
+{
+    e->pinned = 0;
+    release(e, i->arg, i->narg);
+    release(e, i->res, i->nres);
 }
 
 // The register of the result, which may be that of an operand: an operand read again is stored before
 // its register is given away, and instructions read before they write.
 static int result(struct emitter *e, const struct ct_instruction *i)
 {
-    release_registers(e);
+    release_registers(e, i);
     return take_register(e, i->res[0]);
 }
 
@@ -605,10 +625,9 @@ static void emit_instruction(struct emitter *e, uint32_t at)
 {
     const struct ct_instruction *i = &e->l->ins[e->order[at]];
     for (uint32_t k = 0; k < i->narg; k++) {
-        while (next_use(e, i->arg[k]) == at)
-            e->next[i->arg[k]]++;
+        pass_reads_before(e, i->arg[k], at + 1);
         if (e->reg[i->arg[k]] >= 0)
-            e->pinned[e->reg[i->arg[k]]] = true;
+            e->pinned |= 1u << e->reg[i->arg[k]];
     }
     for (uint32_t r = 0; r < i->nres; r++)
         claim_output(e, i->res[r]);
@@ -617,7 +636,7 @@ static void emit_instruction(struct emitter *e, uint32_t at)
         store_outputs(e, i->res[r]);
         keep_result(e, i->res[r]);
     }
-    release_registers(e);
+    release_registers(e, i);
     give_up_places(e, i->arg, i->narg);
     give_up_places(e, i->res, i->nres);
 }
@@ -655,13 +674,6 @@ static bool are_side_by_side(const struct emitter *e)
     return true;
 }
 
-// The reads of an angle are done.
-static void pass_reads(struct emitter *e, uint32_t v)
-{
-    while (next_use(e, v) < e->first_angle + e->nangle)
-        e->next[v]++;
-}
-
 // The angles copied to places side by side.
 static struct home gather_angles(struct emitter *e)
 {
@@ -670,8 +682,8 @@ static struct home gather_angles(struct emitter *e)
     for (uint32_t k = 0; k < e->nangle; k++) {
         const int r = load(e, wave(e, k)->arg[0]);
         put_store(&e->code, memory_of(e, (struct home){WORK, first.place + k}), r);
-        pass_reads(e, wave(e, k)->arg[0]);
-        release_registers(e);
+        pass_reads_before(e, wave(e, k)->arg[0], e->first_angle + e->nangle);
+        release_registers(e, wave(e, k));
     }
     return first;
 }
@@ -706,7 +718,7 @@ static void place_waves(struct emitter *e, uint32_t sines, uint32_t cosines)
             for (uint32_t o = e->first_output[i->res[r]]; o; o = e->next_output[o - 1])
                 put_store(&e->code, memory_of(e, (struct home){OUT, o - 1}),
                           load(e, i->res[r]));
-        release_registers(e);
+        release_registers(e, i);
         give_up_places(e, i->arg, 1);
         give_up_places(e, i->res, i->nres);
     }
@@ -721,7 +733,7 @@ static void emit_angles(struct emitter *e)
     const bool copied = !are_side_by_side(e);
     const struct home angles = copied ? gather_angles(e) : inputs;
     for (uint32_t k = 0; k < e->nangle; k++)
-        pass_reads(e, wave(e, k)->arg[0]);
+        pass_reads_before(e, wave(e, k)->arg[0], e->first_angle + e->nangle);
     const uint32_t sines = e->nwork, cosines = sines + e->nangle;
     e->nwork += 2 * e->nangle;
     forget_registers(e);
@@ -879,8 +891,7 @@ static void pass_loop(struct emitter *e, const struct ct_loop *loop)
     for (uint32_t at = loop->first; at < end; at++) {
         const struct ct_instruction *i = &e->l->ins[e->order[at]];
         for (uint32_t k = 0; k < i->narg; k++)
-            while (next_use(e, i->arg[k]) < end)
-                e->next[i->arg[k]]++;
+            pass_reads_before(e, i->arg[k], end);
         give_up_places(e, i->arg, i->narg);
     }
 }
@@ -890,7 +901,8 @@ static void emit_loop(struct emitter *e, const struct ct_loop *loop)
     for (size_t i = 0; i < loop->ncopy; i++) {
         const int r = load(e, loop->copy[i].value);
         put_store(&e->code, memory_of(e, (struct home){WORK, loop->copy[i].place}), r);
-        release_registers(e);
+        e->pinned = 0;
+        release(e, &loop->copy[i].value, 1);
     }
     forget_registers(e);
     struct body b = {.e = *e};
@@ -1079,6 +1091,9 @@ struct ct_x86_code ct_x86_emit(struct ct_arena *a, const struct ct_listing *l, i
                         .nfixed = (uint32_t)nhome,
                         .nwork = (uint32_t)nhome};
     const bool any_call = order_instructions(&e);
+    const size_t usual = 10; // bytes of an instruction, a load or store counted in
+    e.code.cap = usual * e.norder + 512;
+    e.code.byte = CT_NEWN(a, unsigned char, e.code.cap);
     list_uses(&e);
     roll_up(&e);
     place_values(&e, home);

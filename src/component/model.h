@@ -14,6 +14,8 @@
 #include "component/beam.h"
 #include "component/class.h"
 
+struct ct_node;
+
 struct ct_frame {
     const char *name; // "crank", "crank.tip"
     struct ct_mark mark;
@@ -104,6 +106,9 @@ bool ct_model_read(struct ct_ctx *ctx, const char *path, const struct ct_set *se
 /// The same for n bytes of text; `file` names it in marks and says where tables are sought.
 bool ct_model_parse(struct ct_ctx *ctx, const char *file, const char *text, size_t n,
                     const struct ct_set *set, size_t nset, struct ct_model *m);
+/// The same for text that has been parsed (io/yaml.h), which stays as it is and must live as long as the model.
+bool ct_model_resolve(struct ct_ctx *ctx, const char *file, const struct ct_node *root,
+                      const struct ct_set *set, size_t nset, struct ct_model *m);
 
 /// Give all beams another number of equal elements (> 0) and another formulation (not NULL). False with an error if
 /// there is no such formulation.  Errors: E003.

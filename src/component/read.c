@@ -127,9 +127,10 @@ static bool read_model(struct ct_ctx *ctx, const char *file, const struct ct_nod
     return true;
 }
 
-static bool read_tree(struct ct_ctx *ctx, const char *file, const struct ct_node *root,
-                      size_t nerror, size_t ndiagnostic, const struct ct_set *set, size_t nset,
-                      struct ct_model *m)
+// Errors counted from `nerror`, those of the text before.
+static bool finish(struct ct_ctx *ctx, const char *file, const struct ct_node *root,
+                   size_t nerror, size_t ndiagnostic, const struct ct_set *set, size_t nset,
+                   struct ct_model *m)
 {
     if (root) // also with keys given twice: there may be more to say
         read_model(ctx, file, root, set, nset, m);
@@ -143,8 +144,8 @@ bool ct_model_read(struct ct_ctx *ctx, const char *path, const struct ct_set *se
     const size_t nerror = ctx->nerror, ndiagnostic = ctx->ndiagnostic;
     const struct ct_node *root = NULL;
     ct_yaml_read(ctx, path, &root);
-    return read_tree(ctx, ct_arena_strdup(ctx->model, path), root, nerror, ndiagnostic, set,
-                     nset, m);
+    return finish(ctx, ct_arena_strdup(ctx->model, path), root, nerror, ndiagnostic, set, nset,
+                  m);
 }
 
 bool ct_model_parse(struct ct_ctx *ctx, const char *file, const char *text, size_t n,
@@ -153,7 +154,13 @@ bool ct_model_parse(struct ct_ctx *ctx, const char *file, const char *text, size
     const size_t nerror = ctx->nerror, ndiagnostic = ctx->ndiagnostic;
     const struct ct_node *root = NULL;
     ct_yaml_parse(ctx, file, text, n, &root);
-    return read_tree(ctx, file, root, nerror, ndiagnostic, set, nset, m);
+    return finish(ctx, file, root, nerror, ndiagnostic, set, nset, m);
+}
+
+bool ct_model_resolve(struct ct_ctx *ctx, const char *file, const struct ct_node *root,
+                      const struct ct_set *set, size_t nset, struct ct_model *m)
+{
+    return finish(ctx, file, root, ctx->nerror, ctx->ndiagnostic, set, nset, m);
 }
 
 // ---- questions to a model ------------------------------------------------------------------------------------------

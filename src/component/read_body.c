@@ -169,23 +169,42 @@ static bool check_mass(struct ct_reader *r, const struct ct_body *b,
                     b->instance.name, v);
 }
 
-// Principal moments (3, ascending) of I = [xx yy zz xy xz yz]; trigonometric solution of the cubic.
+// One rotation in the plane of i and j makes A_ij vanish.  (golub2013, 8.5)
+static void rotate_away(double A[3][3], int i, int j)
+{
+    const int k = 3 - i - j;
+    if (A[i][j] == 0)
+        return;
+    const double tau = (A[j][j] - A[i][i]) / (2 * A[i][j]);
+    const double t = (tau < 0 ? -1 : 1) / (fabs(tau) + hypot(1, tau));
+    const double c = 1 / hypot(1, t), s = t * c, ki = A[k][i], kj = A[k][j];
+    A[i][i] -= t * A[i][j];
+    A[j][j] += t * A[i][j];
+    A[i][j] = A[j][i] = 0;
+    A[k][i] = A[i][k] = c * ki - s * kj;
+    A[k][j] = A[j][k] = s * ki + c * kj;
+}
+
+static void order(double *a, double *b)
+{
+    const double low = fmin(*a, *b);
+    *b = fmax(*a, *b);
+    *a = low;
+}
+
+// Principal moments (3, ascending) of I = [xx yy zz xy xz yz], by Jacobi's rotations: exact where I is diagonal.
 static void principal_moments(const double I[6], double lam[3])
 {
-    const double mean = (I[0] + I[1] + I[2]) / 3;
-    const double x = I[0] - mean, y = I[1] - mean, z = I[2] - mean;
-    const double p
-        = sqrt((x * x + y * y + z * z + 2 * (I[3] * I[3] + I[4] * I[4] + I[5] * I[5])) / 6);
-    double angle = 0;
-    if (p > 0) {
-        const double det = x * (y * z - I[5] * I[5]) - I[3] * (I[3] * z - I[5] * I[4])
-                         + I[4] * (I[3] * I[5] - y * I[4]);
-        angle = acos(fmax(-1, fmin(1, det / (2 * p * p * p)))) / 3;
-    }
-    const double third = 2.0943951023931953; // a third of a turn
-    lam[2] = mean + 2 * p * cos(angle);
-    lam[0] = mean + 2 * p * cos(angle + third);
-    lam[1] = 3 * mean - lam[0] - lam[2];
+    enum { SWEEPS = 8 }; // they converge quadratically
+    double A[3][3] = {{I[0], I[3], I[4]}, {I[3], I[1], I[5]}, {I[4], I[5], I[2]}};
+    for (int n = 0; n < SWEEPS; n++)
+        for (int k = 2; k >= 0; k--)
+            rotate_away(A, k == 0, k == 2 ? 1 : 2);
+    for (int i = 0; i < 3; i++)
+        lam[i] = A[i][i];
+    order(&lam[0], &lam[1]);
+    order(&lam[1], &lam[2]);
+    order(&lam[0], &lam[1]);
 }
 
 // The moments of any mass distribution are sums of squares: none is negative, none exceeds the sum of

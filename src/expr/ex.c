@@ -22,9 +22,13 @@ static uint32_t hash_node(const struct ct_exnode *n)
     return (uint32_t)(h ^ (h >> 32));
 }
 
-static void rehash(struct ct_exs *x)
+enum { LEAST_HASH = 1024 };
+// Room in a copy, which is made to grow, for the equations of a small model: growing step by step copies.
+enum { CLONE_HASH = 8192, CLONE_NODES = 4096 };
+
+static void rehash(struct ct_exs *x, size_t size)
 {
-    x->hash_size = x->hash_size ? 2 * x->hash_size : 1024;
+    x->hash_size = size;
     x->hash = CT_NEWN(x->arena, uint32_t, x->hash_size);
     for (uint32_t id = 0; id < x->nnode; id++) {
         size_t i = hash_node(&x->node[id]) & (x->hash_size - 1);
@@ -50,7 +54,7 @@ static ct_ex intern(struct ct_exs *x, uint32_t op, uint32_t a, uint32_t b, uint3
 {
     const struct ct_exnode n = {op, a, b, c};
     if (2 * (x->nnode + 1) > x->hash_size)
-        rehash(x);
+        rehash(x, x->hash_size ? 2 * x->hash_size : LEAST_HASH);
     size_t i = hash_node(&n) & (x->hash_size - 1);
     for (; x->hash[i]; i = (i + 1) & (x->hash_size - 1))
         if (!memcmp(&x->node[x->hash[i] - 1], &n, sizeof n))
@@ -76,14 +80,20 @@ struct ct_exs *ct_exs_clone(struct ct_arena *a, const struct ct_exs *from)
     struct ct_exs *x = CT_NEW(a, struct ct_exs);
     *x = *from;
     x->arena = a;
-    x->node = CT_NEWN(a, struct ct_exnode, from->node_cap);
+    if (x->node_cap < CLONE_NODES)
+        x->node_cap = x->kinds_cap = CLONE_NODES;
+    x->node = CT_NEWN(a, struct ct_exnode, x->node_cap);
     memcpy(x->node, from->node, from->nnode * sizeof *x->node);
-    x->kinds = CT_NEWN(a, uint16_t, from->kinds_cap);
+    x->kinds = CT_NEWN(a, uint16_t, x->kinds_cap);
     memcpy(x->kinds, from->kinds, from->nnode * sizeof *x->kinds);
     x->sym = CT_NEWN(a, struct ct_sym, from->sym_cap);
     memcpy(x->sym, from->sym, from->nsym * sizeof *x->sym);
-    x->hash = CT_NEWN(a, uint32_t, from->hash_size);
-    memcpy(x->hash, from->hash, from->hash_size * sizeof *x->hash);
+    if (x->hash_size < CLONE_HASH) {
+        rehash(x, CLONE_HASH);
+    } else {
+        x->hash = CT_NEWN(a, uint32_t, from->hash_size);
+        memcpy(x->hash, from->hash, from->hash_size * sizeof *x->hash);
+    }
     x->label = NULL;
     x->label_cap = x->walk_cap = 0;
     x->generation = 0;

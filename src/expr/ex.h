@@ -54,6 +54,7 @@ enum ct_sym_kind {
     CT_SYM_MEMORY, // value kept from the last accepted step (angle of a chord)
     CT_SYM_WORK,   // energy.work: a quadrature beside the states
     CT_SYM_LOCAL, // argument of an expression of its own: coordinate of a custom joint, x of a beam
+    CT_SYM_SEED,   // one number of a direction along which derivatives are taken
     CT_SYM_SIGNAL, // a signal name not yet resolved; formulate substitutes it
 };
 
@@ -94,6 +95,8 @@ struct ct_exs {
     size_t label_cap;
     unsigned char
         *decided; // by symbol: its value has been asked for by ct_ex_value; NULL: not kept
+    size_t
+        ndecided; // symbols that were there when the account was opened; of later ones none is kept
     // workspace of walks over the graph: a generation stamp and a result per node, a stack
     uint32_t *stamp, generation;
     ct_ex *memo;
@@ -185,6 +188,11 @@ struct ct_slope {
 size_t ct_ex_jacobian(struct ct_exs *x, struct ct_arena *scratch, struct ct_arena *a,
                       const ct_ex *f, size_t nf, const struct ct_seed *seeds, size_t nseed,
                       struct ct_slope **out);
+/// Where that Jacobian may have entries (values 0, *out lives in a), and about how many operations it would take.
+/// Directions count from 0 to ndirection. Cost: nodes below f for every 64 directions.
+size_t ct_ex_pattern(struct ct_exs *x, struct ct_arena *scratch, struct ct_arena *a,
+                     const ct_ex *f, size_t nf, const struct ct_seed *seed, size_t nseed,
+                     uint32_t ndirection, struct ct_slope **out, double *operations);
 
 /// Entry of a sparse Jacobian at a point.
 struct ct_number {

@@ -271,16 +271,20 @@ static void fuse_products(struct lister *s)
 static void put_prologue_first(struct lister *s)
 {
     struct ct_listing *l = s->l;
-    struct ct_instruction *ordered = CT_NEWN(s->arena, struct ct_instruction, l->nins);
-    size_t n = 0;
-    for (int rate = CT_RATE_PARAM; rate <= CT_RATE_CALL; rate++) {
-        l->nprologue = rate == CT_RATE_CALL ? n : 0;
-        for (size_t i = 0; i < l->nins; i++)
-            if (l->rate[l->ins[i].res[0]] == rate)
-                ordered[n++] = l->ins[i];
-    }
-    assert(n == l->nins);
-    l->ins = ordered;
+    size_t n = 0, nbody = 0;
+    for (size_t i = 0; i < l->nins; i++)
+        n += l->rate[l->ins[i].res[0]] != CT_RATE_CALL;
+    if (n == 0)
+        return;
+    struct ct_instruction *body = CT_NEWN(s->arena, struct ct_instruction, l->nins - n + 1);
+    l->nprologue = n;
+    n = 0;
+    for (size_t i = 0; i < l->nins; i++)
+        if (l->rate[l->ins[i].res[0]] != CT_RATE_CALL)
+            l->ins[n++] = l->ins[i];
+        else
+            body[nbody++] = l->ins[i];
+    memcpy(l->ins + n, body, nbody * sizeof *body);
 }
 
 // From so many on, all at once take less time than each by itself.
@@ -294,7 +298,7 @@ static void name_angles(struct ct_listing *l, size_t several)
         n += op == CT_OP_SIN || op == CT_OP_COS || op == CT_OP_SINCOS;
     }
     for (size_t i = l->nprologue; i < l->nins && n >= several; i++) {
-        uint32_t *op = &l->ins[i].op;
+        unsigned char *op = &l->ins[i].op;
         *op = *op == CT_OP_SIN    ? CT_OP_ANGLE_SIN
             : *op == CT_OP_COS    ? CT_OP_ANGLE_COS
             : *op == CT_OP_SINCOS ? CT_OP_ANGLE_SINCOS

@@ -33,10 +33,11 @@ enum {
 enum ct_rate { CT_RATE_NEVER, CT_RATE_PARAM, CT_RATE_CALL };
 
 struct ct_instruction {
-    uint32_t op; // enum ct_op or one of the above
-    uint32_t narg, nres;
+    unsigned char op; // enum ct_op or one of the above
+    unsigned char narg, nres;
+    unsigned char order;     // of CT_OP_TABLE, and the table
     uint32_t arg[3], res[2]; // values
-    uint32_t table, order;   // of CT_OP_TABLE
+    uint32_t table;
 };
 
 struct ct_tape_counts {

@@ -54,6 +54,9 @@ extern const struct ct_inertia_form ct_inertia_exact;
 /// Rules of integration of the beam's mass and stiffness.
 enum ct_rule ct_flexible_mass_rule(const struct ct_beam *beam);
 enum ct_rule ct_flexible_stiffness_rule(const struct ct_beam *beam);
+/// Does the rotary inertia of the sections turn with them? Where bending shortens the axis; else to first order, along the axes
+/// of the beam.
+bool ct_flexible_turns_inertia(const struct ct_build *b, const struct ct_flexible *f);
 /// Inertia per length of the section about an axis.
 struct ct_profile ct_flexible_rotary(const struct ct_flexible *f, int axis);
 /// Integral of g p q over element e.
@@ -90,6 +93,12 @@ struct ct_shapes {
 };
 /// Shapes of `modes: n` (flexible_modes.c).  Errors: CT_E_BEAM.
 bool ct_flexible_reduce(struct ct_build *b, struct ct_flexible *f, struct ct_shapes *out);
+/// Rotations of nodes without inertia and moment (flexible_massless.c). follows (6 per node, out): by freedom, fixed ones
+/// included. False if there are none.
+bool ct_flexible_follow(struct ct_build *b, const struct ct_flexible *f, bool *follows);
+/// Shapes of the freedoms that do not follow, each with the others of them held and those that follow in equilibrium. False
+/// if all are coordinates, or the stiffness of those that follow is not positive.
+bool ct_flexible_condense(struct ct_build *b, struct ct_flexible *f, struct ct_shapes *out);
 /// Rows of the beam's own stiffness and damping.
 void ct_stiffness_rows(struct ct_build *b, const struct ct_flexible *f, ct_ex *row);
 

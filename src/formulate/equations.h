@@ -94,6 +94,17 @@ struct ct_residual {
     struct ct_slope *dq, *du, *da; // of r by q, u, u'
     struct ct_slope *dv;           // of the rows' v by q
     size_t ndq, ndu, nda, ndv;
+    struct ct_directional
+        *along; // NULL: the slopes have values as expressions; else their places only
+};
+
+/// Derivatives along a motion (places, speeds, u': nu numbers each), from which slopes are read colour by colour.
+struct ct_directional {
+    ct_ex *seed;      // symbols of these numbers (nseed)
+    ct_ex *rate;      // of r (nu), and of v (nrow) along the places
+    uint32_t *colour; // by seed: those of one colour share no row
+    size_t nseed;
+    uint32_t ncolour;
 };
 
 /// Results beside the outputs of the model.

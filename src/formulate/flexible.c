@@ -160,7 +160,8 @@ static void settle(struct ct_build *b, struct ct_flexible *f)
 {
     const struct ct_beam *beam = f->beam;
     f->deformation = beam->deformation & in_plane(b, f);
-    if (f->deformation & CT_BEAM_TORSION && !beam->deformation_given && !b->keep_all
+    // nor has it an inertia of its own then, so there is no coordinate to keep
+    if (f->deformation & CT_BEAM_TORSION && !beam->deformation_given
         && !ct_excite_twist(b, f)) {
         f->deformation &= ~(unsigned)CT_BEAM_TORSION;
         ct_topology_left_out(b, ct_arena_printf(b->arena, "torsion of %s", f->name),
@@ -319,22 +320,20 @@ static void combine_shapes(struct ct_build *b, struct ct_flexible *f, const stru
     }
 }
 
-static void modal_unknowns(struct ct_build *b, struct ct_flexible *f)
+static void unknowns_of_shapes(struct ct_build *b, struct ct_flexible *f,
+                               const struct ct_shapes *s)
 {
-    struct ct_shapes s;
-    if (!ct_flexible_reduce(b, f, &s))
-        return;
-    for (int k = 0; k < s.nshape; k++) {
-        const int i = k < s.nstatic ? s.freedom[k] : 0;
+    for (int k = 0; k < s->nshape; k++) {
+        const int i = k < s->nstatic ? s->freedom[k] : 0;
         new_unknown(b, f,
-                    k < s.nstatic
+                    k < s->nstatic
                         ? ct_arena_printf(b->arena, "%s.%d.%s", f->name, i / NKIND,
                                           kind_name[i % NKIND])
-                        : ct_arena_printf(b->arena, "%s.mode%d", f->name, k - s.nstatic + 1),
-                    k < s.nstatic ? sort_of(i % NKIND) : CT_ELASTIC_MODE);
+                        : ct_arena_printf(b->arena, "%s.mode%d", f->name, k - s->nstatic + 1),
+                    k < s->nstatic ? sort_of(i % NKIND) : CT_ELASTIC_MODE);
     }
-    for (int i = 0; i < s.n; i++)
-        combine_shapes(b, f, &s, i);
+    for (int i = 0; i < s->n; i++)
+        combine_shapes(b, f, s, i);
 }
 
 static void nodal_unknowns(struct ct_build *b, struct ct_flexible *f)
@@ -360,9 +359,15 @@ static void nodal_unknowns(struct ct_build *b, struct ct_flexible *f)
 void ct_flexible_unknowns(struct ct_build *b, struct ct_flexible *f)
 {
     f->elastic = CT_NEWN(b->arena, struct ct_elastic, NKIND * (f->beam->nelement + 1));
-    if (f->beam->modes && f->deformation)
-        modal_unknowns(b, f);
-    else
+    struct ct_shapes s;
+    if (f->beam->modes && f->deformation) {
+        if (ct_flexible_reduce(b, f, &s))
+            unknowns_of_shapes(b, f, &s);
+    } else if (ct_flexible_condense(b, f, &s)) {
+        unknowns_of_shapes(b, f, &s);
+        ct_topology_left_out(b, ct_arena_printf(b->arena, "rotations of %s's nodes", f->name),
+                             "without inertia and moment they follow the other coordinates");
+    } else
         nodal_unknowns(b, f);
     dof_values(b, f);
     if (f->axial == CT_AXIAL_CHAIN)

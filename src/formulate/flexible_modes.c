@@ -1,6 +1,9 @@
-// Modal reduction of a beam; see flexible.h.
+// Reduction of a beam to shapes; see elastic.h.
 //
-// The nodal freedoms become  q = Psi eta_c + Phi eta_m:  Psi, the static shapes of a unit displacement of each freedom
+// Condensed: rotations that move no mass follow the other freedoms.
+//
+// Modal:
+// the nodal freedoms become  q = Psi eta_c + Phi eta_m:  Psi, the static shapes of a unit displacement of each freedom
 // that joints or loads act on, the others of them held; Phi, the lowest modes with those freedoms held. A beam
 // that nothing acts on beyond its base has modes only.
 // Source: Craig & Bampton (1968), key craig1968.
@@ -55,21 +58,20 @@ static void mark_nodes(const struct reduction *r, bool *held)
     }
 }
 
-static void number_freedoms(struct reduction *r)
+// kept: by freedom, those with a static shape.
+static void number_freedoms(struct reduction *r, const bool *kept)
 {
     const int nnode = r->f->beam->nelement + 1;
-    bool *exists = CT_NEWN(r->b->ctx->scratch, bool, NKIND *nnode),
-         *held = CT_NEWN(r->b->ctx->scratch, bool, nnode);
+    bool *exists = CT_NEWN(r->b->ctx->scratch, bool, NKIND *nnode);
     r->freedom = CT_NEWN(r->b->ctx->scratch, int, NKIND *nnode);
     r->number = CT_NEWN(r->b->ctx->scratch, int, NKIND *nnode);
     for (int e = 0; e + 1 < nnode; e++)
         for (int j = 0; j < CT_DOF; j++)
             if (r->f->element[e].freedom[j] >= 0)
                 exists[r->f->element[e].freedom[j]] = true;
-    mark_nodes(r, held);
     for (int pass = 0; pass < 2; pass++) {
         for (int i = 0; i < NKIND * nnode; i++)
-            if (exists[i] && held[i / NKIND] == !pass) {
+            if (exists[i] && kept[i] == !pass) {
                 r->number[i] = r->n;
                 r->freedom[r->n++] = i;
             }
@@ -152,21 +154,54 @@ static bool modes(struct reduction *r, int wanted)
     return true;
 }
 
+static void hand_over(const struct reduction *r, struct ct_shapes *out)
+{
+    out->n = r->n;
+    out->nshape = r->nshape;
+    out->nstatic = r->nkept;
+    out->freedom = CT_NEWN(r->b->arena, int, r->n + 1);
+    memcpy(out->freedom, r->freedom, (size_t)r->n * sizeof *out->freedom);
+    out->shape = r->shape;
+}
+
+static bool *new_marks(const struct ct_build *b, const struct ct_flexible *f)
+{
+    return CT_NEWN(b->ctx->scratch, bool, NKIND *(f->beam->nelement + 1));
+}
+
 bool ct_flexible_reduce(struct ct_build *b, struct ct_flexible *f, struct ct_shapes *out)
 {
     struct reduction r = {.b = b, .f = f};
-    number_freedoms(&r);
+    bool *node = new_marks(b, f), *kept = new_marks(b, f);
+    mark_nodes(&r, node);
+    for (int i = 0; i < NKIND * (f->beam->nelement + 1); i++)
+        kept[i] = node[i / NKIND];
+    number_freedoms(&r, kept);
     assemble(&r);
     r.shape = CT_NEWN(b->arena, double, (size_t)r.n *(size_t)(r.n + 1) + 1);
     if (!static_shapes(&r) || !modes(&r, f->beam->modes))
         return ct_error(b->ctx, f->beam->modes_mark, CT_E_BEAM,
                         "beam '%s': its modes cannot be found; is every stiffness positive?",
                         f->name);
-    out->n = r.n;
-    out->nshape = r.nshape;
-    out->nstatic = r.nkept;
-    out->freedom = CT_NEWN(b->arena, int, r.n + 1);
-    memcpy(out->freedom, r.freedom, (size_t)r.n * sizeof *out->freedom);
-    out->shape = r.shape;
+    hand_over(&r, out);
+    return true;
+}
+
+bool ct_flexible_condense(struct ct_build *b, struct ct_flexible *f, struct ct_shapes *out)
+{
+    struct reduction r = {.b = b, .f = f};
+    bool *kept = new_marks(b, f);
+    if (!ct_flexible_follow(b, f, kept))
+        return false;
+    for (int i = 0; i < NKIND * (f->beam->nelement + 1); i++)
+        kept[i] = !kept[i];
+    number_freedoms(&r, kept);
+    if (r.nkept == r.n)
+        return false;
+    assemble(&r);
+    r.shape = CT_NEWN(b->arena, double, (size_t)r.n *(size_t)(r.nkept + 1) + 1);
+    if (!static_shapes(&r))
+        return false;
+    hand_over(&r, out);
     return true;
 }

@@ -34,7 +34,7 @@ static struct ct_build *build_create(struct ct_ctx *ctx, struct ct_arena *a,
     *b = (struct ct_build){.ctx = ctx,
                            .arena = a,
                            .model = m,
-                           .is_rigid = o->measure_all,
+                           .is_rigid = o->measure_all && !o->deformed,
                            .keep_all = o->keep_all,
                            .is_held = o->held,
                            .like = o->like,
@@ -42,6 +42,7 @@ static struct ct_build *build_create(struct ct_ctx *ctx, struct ct_arena *a,
     b->eqs = CT_NEW(a, struct ct_equations);
     b->x = b->eqs->x = ct_exs_clone(a, m->x);
     b->value = start_values(a, m);
+    b->x->ndecided = m->x->nsym;
     b->x->decided = CT_NEWN(a, unsigned char, m->x->nsym + 1);
     ct_topology_derive(b, !o->keep_all);
     return b;
@@ -172,7 +173,7 @@ static double pair_cost(void *data, const struct ct_tree *T, const struct ct_tre
 // ---- rules for trees -----------------------------------------------------------------------------------
 
 struct rules {
-    int *weight_t, *weight_r, *rank;
+    int *weight_t, *weight_r, *rank; // weight -1: before all others that are not forced
     bool *forced_t, *forced_r, *banned_t, *banned_r, *tied;
 };
 
@@ -240,8 +241,9 @@ static void rank_by_name(const struct ct_build *b, int *rank)
 
 // Arms are branches, force drivers chords (R1, R2); shared coordinates tie a joint (R3). Ties go to
 // joints nearer to ground.
-static struct rules make_rules(struct ct_build *b, enum ct_tree_choice choice)
+static struct rules make_rules(struct ct_build *b, const struct ct_formulate_options *o)
 {
+    const enum ct_tree_choice choice = o->tree;
     const size_t n = b->nedge;
     struct rules r = {.weight_t = CT_NEWN(b->arena, int, n),
                       .weight_r = CT_NEWN(b->arena, int, n),
@@ -260,6 +262,8 @@ static struct rules make_rules(struct ct_build *b, enum ct_tree_choice choice)
         const int extra = choice != CT_TREE_AUTO && dear && !e->must_be_branch ? 100 : 0;
         r.weight_t[i] = e->weight_t + extra;
         r.weight_r[i] = e->weight_r + extra;
+        if (o->first && e->kind == CT_EDGE_JOINT && o->first[e->index])
+            r.weight_t[i] = r.weight_r[i] = -1;
         r.rank[i] = tie_rank(b, i, depth, turned, choice);
         const bool is_small = e->kind == CT_EDGE_JOINT && ct_small_joint(b, e->index);
         r.forced_t[i] = e->must_be_branch || is_small;
@@ -325,7 +329,7 @@ static bool least_weight(struct ct_build *b, const struct rules *r, struct ct_tr
                    *banned = k ? r->banned_r : r->banned_t;
         const int *weight = k ? r->weight_r : r->weight_t;
         for (size_t i = 0; i < b->nedge; i++)
-            w[i] = banned[i] ? -1 : forced[i] ? 0 : weight[i] + 1;
+            w[i] = banned[i] ? -1 : forced[i] ? 0 : weight[i] + 2;
         if (!ct_tree_kruskal(b->arena, &b->graph, w, r->rank, &t, NULL))
             return ct_error(b->ctx, (struct ct_mark){0}, CT_E_TREE,
                             "the model's graph has no spanning tree");
@@ -461,7 +465,7 @@ static bool choose_trees(struct ct_build *b, const struct search *s,
                          struct ct_tree_report *report)
 {
     const struct ct_formulate_options *o = s->options;
-    const struct rules r = make_rules(b, o->tree);
+    const struct rules r = make_rules(b, o);
     struct ct_tree_pair p;
     static const char *const how[]
         = {"least weight", "through joints", "absolute coordinates", "given"};
@@ -469,14 +473,17 @@ static bool choose_trees(struct ct_build *b, const struct search *s,
     if (o->tree == CT_TREE_GIVEN ? !given_trees(b, o, &r, &p) : !least_weight(b, &r, &p))
         return false;
     if (choose_for_analysis(b, o, &p) != o->tree) {
-        const struct rules absolute = make_rules(b, CT_TREE_ABSOLUTE);
+        struct ct_formulate_options from_ground = *o;
+        from_ground.tree = CT_TREE_ABSOLUTE;
+        const struct rules absolute = make_rules(b, &from_ground);
         report->how = "absolute coordinates: through the joints the mass matrix would be full";
         if (!least_weight(b, &absolute, &p))
             return false;
-    } else if (o->tree == CT_TREE_AUTO && (is_open(b, &p) || is_long_chain(b, &p)))
+    } else if (o->tree == CT_TREE_AUTO && (is_open(b, &p) || is_long_chain(b, &p))) {
         report->how = "least weight; there are no loops to cut";
-    else if (o->tree == CT_TREE_AUTO && !o->measure_all)
+    } else if (o->tree == CT_TREE_AUTO && !o->measure_all) {
         improve(b, s, &r, &p, report);
+    }
     if (!ct_tree_from_branches(b->arena, &b->graph, p.trans, &b->T))
         return ct_error(b->ctx, (struct ct_mark){0}, CT_E_TREE,
                         "tree: the translational branches are no spanning tree");
@@ -595,7 +602,7 @@ bool ct_formulate(struct ct_ctx *ctx, struct ct_arena *a, const struct ct_model 
     if (ctx->nerror > before)
         return false;
     if (options->with_residual)
-        ct_residual_derive(b);
+        ct_residual_derive(b, CT_SLOPES_AUTO);
     if (options->with_energy)
         ct_energies_derive(b);
     if (options->measure_all)
@@ -630,7 +637,7 @@ void ct_formulate_dynamics(struct ct_equations *e)
 void ct_formulate_residual(struct ct_equations *e)
 {
     if (!e->residual || !e->residual->has_slopes)
-        ct_residual_derive(e->build);
+        ct_residual_derive(e->build, CT_SLOPES_AUTO);
     e->residual = e->build->eqs->residual;
 }
 

@@ -29,6 +29,9 @@ struct ct_formulate_options {
     // with measure_all: equations of motion that will start from the results. Coordinates of bodies that are not
     // among their unknowns are then left 0; NULL: all are measured
     const struct ct_equations *measured_for;
+    bool deformed; // with measure_all: beams are not rigid there
+    const bool
+        *first; // by joint: of those a tree through joints has all it can have; NULL: none
     const struct ct_equations *like; // beams as in these; NULL: choose
     bool held;                       // drivers stand still at their values: for what is static
     bool without_dynamics; // neither M nor Q: places and speeds are all that is wanted

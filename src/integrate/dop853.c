@@ -12,7 +12,6 @@
 // 85 up to order 7 (interpolant) to the 28 digits that are published.
 #include "integrate/stepper.h"
 
-#include <math.h>
 #include <string.h>
 
 enum { STAGES = 13, ALL_STAGES = 16, CORRECTIONS = 4 };
@@ -179,7 +178,7 @@ static double estimate(const struct ct_problem *p, double h, const double *y, co
     for (int i = 0; i < n; i++)
         e[i] = y1[i] - y3[i];
     const double e3 = ct_stepper_norm(p, tolerance, y, y1, e);
-    return e5 == 0 ? 0 : e5 / hypot(1, 0.1 * (e3 / e5));
+    return ct_stepper_join(e5, e3);
 }
 
 static enum ct_eval step(const struct ct_problem *p, double t, double h, const double *y,

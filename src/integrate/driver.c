@@ -4,28 +4,17 @@
 //         -> samples on the way -> commit -> event -> sample on it
 //
 // A step that the method, the projection or a root function refuses, or whose error is too large,
-// is tried again shorter; until `commit` nothing has changed. Step control is the PI controller of
-// Gustafsson (1991), key gustafsson1991, with the constants of Hairer, Norsett and Wanner (1993),
-// II.4, key hairer1993; the first step is the one of the same section.
+// is tried again shorter; until `commit` nothing has changed. Step control is that of control.h.
+#include "integrate/control.h"
 #include "integrate/crossing.h"
 #include "integrate/watch.h"
 
 #include <assert.h>
-#include <float.h>
 #include <math.h>
 #include <string.h>
 
-static const double safety = 0.9;      // aims at this part of the step the error would allow
-static const double most_shrink = 0.2; // an error estimate is not trusted further than this
-static const double most_growth = 5;   // nor this
-static const double remembered_error
-    = 1e-4;                        // least error the controller remembers: smaller ones
-                                   // are luck and would make it shrink the next step
-static const double stretch = 1.1; // a step may be this much longer to end on a stop: no crumbs
-
-// A step must change t by more than its rounding: 16 * eps leaves room for the stage times. Near
-// t = 0 the scale is a millionth of the run, below which no motion of interest begins.
-static const double least_step = 16 * DBL_EPSILON, least_scale = 1e-6;
+// What a crossing that failed shrinks its reach by aims at this part of what its error would allow.
+static const double safety = 0.9;
 
 // With events a run has at least this many steps, so that probes are never too far apart when
 // the motion between events is so simple (free fall) that steps could grow without limit.
@@ -61,15 +50,13 @@ struct run {
     struct ct_integrate_stats *stats;
     struct ct_tolerance tolerance;
     struct ct_watch watch;
-    double t;             // time of y and dy
-    double h;             // size the next step should have
+    double t; // time of y and dy
+    struct ct_control control;
     double *y, *dy;       // (ny) each, as all that follow
     double *y1, *dy1;     // end of the step as the method gives it
     double *end, *dend;   // the same, projected
     double *point;        // a state to spare
     void *work;           // the method's own
-    double error_before;  // of the last accepted step
-    bool was_refused;     // the step before this try was
     void *crossing_work;  // of ct_crossing; NULL: there are no singular positions to cross
     double singular_in;   // time to the next one, from t
     double reach;         // crossing it is to begin this long before
@@ -148,7 +135,7 @@ static bool take_bearings(struct run *r)
         r->method->restart(r->work);
     enum ct_eval e = ct_stepper_rhs(r->p, r->t, r->y, r->dy, r->stats);
     if (e == CT_EVAL_OK)
-        e = ct_watch_start(&r->watch, r->t, r->h, r->y, r->dy);
+        e = ct_watch_start(&r->watch, r->t, r->control.h, r->y, r->dy);
     return e == CT_EVAL_OK || state_refused(r, e);
 }
 
@@ -156,28 +143,24 @@ static bool take_bearings(struct run *r)
 static double step_limit(const struct run *r)
 {
     const double run = r->o->t1 - r->o->t0;
-    return r->p->nroot ? run / event_steps : run;
+    const double limit = r->p->nroot ? run / event_steps : run;
+    return r->p->longest_step ? fmin(limit, r->p->longest_step(r->p->user)) : limit;
 }
 
-// A first step whose error should be near a hundredth of the tolerance, from the size of the
-// derivative and its change along an Euler step; all constants are those of the source.
 static double first_step(struct run *r, double limit)
 {
     const struct ct_problem *p = r->p;
     const double d0 = ct_stepper_norm(p, &r->tolerance, r->y, r->y, r->y);
     const double d1 = ct_stepper_norm(p, &r->tolerance, r->y, r->y, r->dy);
-    double h = d0 < 1e-5 || d1 < 1e-5 ? 1e-6 : 0.01 * d0 / d1;
-    h = fmin(h, limit);
+    const double h = ct_control_glance(d0, d1, limit);
     for (int i = 0; i < p->ny; i++)
         r->y1[i] = r->y[i] + h * r->dy[i];
     if (ct_stepper_rhs(p, r->t + h, r->y1, r->dy1, r->stats) != CT_EVAL_OK)
         return h; // step control will find a smaller one
     for (int i = 0; i < p->ny; i++)
         r->point[i] = (r->dy1[i] - r->dy[i]) / h;
-    const double d = fmax(d1, ct_stepper_norm(p, &r->tolerance, r->y, r->y, r->point));
-    const double by_error
-        = d <= 1e-15 ? fmax(1e-6, 1e-3 * h) : pow(0.01 / d, 1.0 / (r->method->error_order + 1));
-    return fmin(fmin(100 * h, by_error), limit);
+    const double d2 = ct_stepper_norm(p, &r->tolerance, r->y, r->y, r->point);
+    return ct_control_first(r->method, h, d1, d2, limit);
 }
 
 // --- how far ---------------------------------------------------------------------------------
@@ -217,14 +200,6 @@ static double fit_fixed(double rest, double step)
     return rest / fmax(1, ceil(rest / step - rounding));
 }
 
-// The step wanted, adapted so that neither it nor the one after it is a crumb.
-static double fit_free(double rest, double wanted)
-{
-    if (rest <= stretch * wanted)
-        return rest;
-    return rest < 2 * wanted ? rest / 2 : wanted;
-}
-
 // The step across a singular position, centred on it. Beyond the end of the run f is the same function, beyond a
 // time event it is not.
 static struct stride plan_crossing(const struct run *r, double stop, bool is_time)
@@ -247,15 +222,16 @@ static bool has_crossing(const struct run *r)
 static struct stride plan(const struct run *r, double stop, bool is_time)
 {
     const double rest = stop - r->t;
-    double wanted = fmin(r->h, step_limit(r));
+    double wanted = fmin(r->control.h, step_limit(r));
     const double reach = is_time ? fmin(r->reach, rest - r->singular_in) : r->reach;
     // the run may end before the position, but beside it
     if (has_crossing(r) && reach > 0 && r->singular_in - beside * reach < rest) {
         if (r->singular_in <= (r->failed_crossings ? on_time : early) * reach)
             return plan_crossing(r, stop, is_time);
-        wanted = fit_free(r->singular_in - reach, wanted);
+        wanted = ct_control_fit(r->singular_in - reach, wanted);
     }
-    const double h = r->o->step > 0 ? fit_fixed(rest, r->o->step) : fit_free(rest, wanted);
+    const double h
+        = r->o->step > 0 ? fit_fixed(rest, r->o->step) : ct_control_fit(rest, wanted);
     const bool is_landing = h >= rest;
     return (struct stride){.method = r->method,
                            .work = r->work,
@@ -266,42 +242,14 @@ static struct stride plan(const struct run *r, double stop, bool is_time)
 
 static bool is_too_small(const struct run *r, const struct stride *s)
 {
-    const double scale = fmax(fabs(r->t), least_scale * (r->o->t1 - r->o->t0));
-    return !s->is_landing && s->h <= least_step * scale;
-}
-
-// What err says about the next step: h / factor, without limits.
-static double pi_factor(const struct run *r, double error)
-{
-    const double beta = 0.2 / (r->method->error_order + 1);
-    const double alpha = 1.0 / (r->method->error_order + 1) - 0.75 * beta;
-    return pow(error, alpha) / pow(r->error_before, beta) / safety;
-}
-
-static void adapt_after_success(struct run *r, double h, double error)
-{
-    const double growth = r->method->most_growth > 0 ? r->method->most_growth : most_growth;
-    const double factor = fmin(fmax(pi_factor(r, error), 1 / growth), 1 / most_shrink);
-    const double *steady = r->method->steady;
-    double next = h / factor;
-    if (next > steady[0] * h && next < steady[1] * h)
-        next = h;
-    if (r->was_refused)
-        next = fmin(next, h); // not at once back to what has just failed
-    else if (h < r->h)
-        next = fmax(next, r->h); // the step was cut for a stop, not for its error
-    r->h = next;
-    r->error_before = fmax(error, remembered_error);
-    r->was_refused = false;
+    return !s->is_landing && ct_control_is_lost(s->h, r->t, r->o->t1 - r->o->t0);
 }
 
 static void adapt_after_refusal(struct run *r, double h, double error)
 {
-    const double alpha = 1.0 / (r->method->error_order + 1);
     r->stats->rejected_steps++;
     r->stats->inaccurate_steps += error > 1;
-    r->h = error > 1 ? h * fmax(most_shrink, safety * pow(error, -alpha)) : h / 2;
-    r->was_refused = true;
+    ct_control_refuse(&r->control, r->method, h, error);
 }
 
 // Time to the next singular position, and where to begin to cross it.
@@ -320,11 +268,14 @@ static void look_ahead(struct run *r)
         r->reach = fmin(r->reach, reach);
 }
 
-static void adapt_after_crossing(struct run *r)
+static void adapt_after_crossing(struct run *r, const struct stride *s)
 {
+    const struct ct_stepper_span span = {s->method, r->p, r->t, s->h, r->y, r->y1, s->work};
+    if (r->p->crossed)
+        r->p->crossed(r->p->user, &span, s->t1);
     r->singular_in = r->reach = INFINITY;
     r->failed_crossings = 0;
-    r->was_refused = false;
+    r->control.was_refused = false;
 }
 
 static void adapt_after_failed_crossing(struct run *r, double error)
@@ -528,9 +479,9 @@ static bool find_step(struct run *r, double stop, bool is_time, struct stride *s
             return false;
         if (e == CT_EVAL_OK) {
             if (is_crossing)
-                adapt_after_crossing(r);
+                adapt_after_crossing(r, s);
             else
-                adapt_after_success(r, h, error);
+                ct_control_accept(&r->control, r->method, h, error);
             look_ahead(r);
             return true;
         }
@@ -672,12 +623,12 @@ static bool start(struct run *r)
     if (r->o->t0 < r->o->t1) { // else there is nothing to step
         bool is_time;
         const double limit = fmin(step_limit(r), next_stop(r, &is_time) - r->t);
-        r->h = limit; // a scale for the bearings
+        r->control.h = limit; // a scale for the bearings
         if (!take_bearings(r))
             return false;
-        r->h = r->o->step > 0       ? r->o->step
-             : r->o->first_step > 0 ? r->o->first_step
-                                    : first_step(r, limit);
+        r->control.h = r->o->step > 0       ? r->o->step
+                     : r->o->first_step > 0 ? r->o->first_step
+                                            : first_step(r, limit);
     }
     return give_samples_here(r);
 }
@@ -701,7 +652,7 @@ bool ct_integrate(struct ct_ctx *ctx, const struct ct_method *method,
         .stats = stats,
         .tolerance = {options->rtol, options->atol},
         .t = options->t0,
-        .error_before = remembered_error,
+        .control = ct_control_start(),
         .singular_in = INFINITY,
         .reach = INFINITY,
         .last_event = -INFINITY,

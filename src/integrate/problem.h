@@ -54,6 +54,8 @@ struct ct_groups {
     double *size;  // workspace (n)
 };
 
+struct ct_stepper_span;
+
 struct ct_problem {
     void *user;
     int ny; // states
@@ -74,6 +76,8 @@ struct ct_problem {
     /// function. May be NULL. Before it answers CT_EVAL_RETRY it must have changed nothing. dy belongs to y.
     enum ct_eval (*accepted)(void *user, double t, double *y, const double *dy);
 
+    /// Longest step from the last accepted state, or from where the start or an event has put it. May be NULL.
+    double (*longest_step)(void *user);
     /// Time from the last accepted state to the next singular position as far as it can be foreseen,
     /// else INFINITY. There f has a limit along the motion that cannot be computed: methods with step control
     /// cross it in one step without evaluating close to it, see crossing.h. *reach (out): the time before
@@ -82,6 +86,8 @@ struct ct_problem {
     /// What is evaluated from now on belongs to the crossing of a singular position, none of it close by; or does not.
     /// May be NULL.
     void (*set_crossing)(void *user, bool is_crossing);
+    /// A singular position was crossed by this step, which ends at t1 at the latest. May be NULL.
+    void (*crossed)(void *user, const struct ct_stepper_span *step, double t1);
     /// How far y is from the constraints. May be NULL.
     double (*residual)(void *user, double t, const double *y);
 

@@ -92,6 +92,11 @@ double ct_stepper_norm(const struct ct_problem *p, const struct ct_tolerance *to
     return n ? sqrt(sum / n) : 0;
 }
 
+double ct_stepper_join(double e5, double e3)
+{
+    return e5 == 0 ? 0 : e5 / hypot(1, 0.1 * (e3 / e5));
+}
+
 double ct_stepper_largest(const struct ct_problem *p, const struct ct_tolerance *tolerance,
                           int first, const double *y, const double *y1, const double *e)
 {

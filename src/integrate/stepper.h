@@ -21,6 +21,9 @@ void ct_stepper_group(const struct ct_groups *g, int ny, const double *y, const 
 double ct_stepper_norm(const struct ct_problem *p, const struct ct_tolerance *tolerance,
                        const double *y, const double *y1, const double *e);
 
+/// One error of those of order 5 and 3 of a method of order 8: the source of dop853.c.
+double ct_stepper_join(double e5, double e3);
+
 /// Largest |e_i| / (rtol max(|y_i|, |y1_i|) + atol) over the watched states from `first` on: quadratures, which implicit
 /// methods measure apart. e (ny).
 double ct_stepper_largest(const struct ct_problem *p, const struct ct_tolerance *tolerance,

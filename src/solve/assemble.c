@@ -685,6 +685,7 @@ struct ct_assembly {
     struct assembly s;
     const struct ct_model *model;
     double *q, *u;
+    bool *is_given;
 };
 
 struct ct_assembly *ct_assembly_create(struct ct_ctx *ctx, struct ct_arena *a,
@@ -696,17 +697,20 @@ struct ct_assembly *ct_assembly_create(struct ct_ctx *ctx, struct ct_arena *a,
     s->s = assembly_create(ctx, a, model, e);
     s->q = CT_NEWN(a, double, e->ncoordinate + 1);
     s->u = CT_NEWN(a, double, e->ncoordinate + 1);
+    s->is_given = CT_NEWN(a, bool, e->ncoordinate + 1);
     return s;
 }
 
 bool ct_assembly_find(struct ct_assembly *s, struct ct_start *out)
 {
     const size_t n = s->s.e->ncoordinate;
-    *out = (struct ct_start){.q = s->q, .u = s->u, .n = n};
+    *out = (struct ct_start){.q = s->q, .u = s->u, .is_given = s->is_given, .n = n};
     memset(s->s.q, 0, n * sizeof *s->s.q);
     memset(s->s.u, 0, n * sizeof *s->s.u);
     ct_machine_reset(s->s.m);
     find_targets(&s->s, s->model);
+    for (size_t i = 0; i < n; i++)
+        s->is_given[i] = s->s.q[i].is_given;
     return find_start(&s->s, out);
 }
 
@@ -719,6 +723,7 @@ bool ct_assemble(struct ct_ctx *ctx, struct ct_arena *a, const struct ct_model *
     struct ct_assembly *s = ct_assembly_create(ctx, own, model, e);
     s->q = CT_NEWN(a, double, e->ncoordinate + 1);
     s->u = CT_NEWN(a, double, e->ncoordinate + 1);
+    s->is_given = CT_NEWN(a, bool, e->ncoordinate + 1);
     const bool ok = ct_assembly_find(s, out);
     ct_arena_destroy(own);
     return ok;

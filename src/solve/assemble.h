@@ -10,6 +10,7 @@
 /// Start values of every coordinate of joints and bodies, by number of coordinate (eqs->coordinate).
 struct ct_start {
     double *q, *u;
+    const bool *is_given; // of each: its place is given, not guessed or left open
     size_t n;
     double residual; // largest |phi| left
     double *elastic; // elastic coordinates of all beams, beam by beam; NULL: undeformed

@@ -93,7 +93,7 @@ static enum ct_eval tangent(void *user, double t, const double *q, const double 
     struct ct_embed *s = user;
     const struct ct_equations *e = s->m->e;
     const struct ct_residual *f = e->residual;
-    const double *value = s->m->tangent.out;
+    const double *value = s->m->slopes;
     const int nu = (int)e->nu;
     int *place = s->iwork;
     for (size_t i = 0; i < e->nrow; i++)
@@ -101,8 +101,8 @@ static enum ct_eval tangent(void *user, double t, const double *q, const double 
     for (int i = 0; i < s->rank; i++)
         place[s->row[i]] = i;
     set_input(s, t, q, u, a, lam);
-    ct_program_run(&s->m->tangent, s->m->input);
-    for (size_t i = 0; i < s->m->tangent.nout; i++)
+    ct_machine_tangent(s->m);
+    for (size_t i = 0; i < s->m->nslope; i++)
         if (!isfinite(value[i]))
             return CT_EVAL_RETRY;
     value = scatter(K, nu, e->nu, f->dq, f->ndq, value, NULL);

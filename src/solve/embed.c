@@ -9,23 +9,6 @@
 // A row counts as dependent when what is left of it is this small against the largest: the
 // constraints of a closed mechanism are known to about 1e-12 after projection.
 static const double rank_tolerance = 1e-9;
-// Choose anew when the dependent part has become this much worse than when it was chosen, (6.3)
-static const double kappa_growth = 10;
-static const double kappa_largest = 1e3;
-// Projections stop here: a few roundings of coordinates of order one.
-static const double position_tolerance = 1e-13;
-// Pivots smaller than this against the largest enlarge what is left over noticeably.
-static const double small_pivot = 0.5;
-enum { MOST_NEWTON = 25 };
-
-// A form is used while its strength has changed by less than such a factor since sigma, which tells how near a
-// singular position is, was found by dense matrices.
-static const double most_change = 1.5;
-// Where strength and sigma have fallen alike, up to so much, strength stands for sigma for longer.
-static const double alike = 1.02, most_change_alike = 4;
-// What may be left of the equations against their terms: beyond the first a refinement is made, beyond
-// the second the form is not used.
-static const double left_plain = 1e-13, left_most = 1e-11;
 // So many weak checks in a row ask for another order.
 enum { MOST_WEAK = 3 };
 
@@ -62,8 +45,9 @@ struct ct_embed *ct_embed_create(struct ct_arena *arena, struct ct_ctx *ctx,
     s->iwork = CT_NEWN(arena, int, k);
     s->column = CT_NEWN(arena, int, k);
     const int size = (int)kk;
-    s->work = CT_NEWN(arena, double,
-                      larger(ct_lstsq_work(size, size), ct_qr_pivot_work(size, size)) + 3 * k);
+    const size_t for_qr = larger(ct_lstsq_work(size, size), ct_qr_pivot_work(size, size));
+    s->work
+        = CT_NEWN(arena, double, larger(for_qr, ct_singular_values_work(size, size)) + 3 * k);
     return s;
 }
 
@@ -126,8 +110,8 @@ static long patience(const struct ct_embed *s)
 static void forget_strength(struct ct_embed *s)
 {
     s->nweak = 0;
-    s->at_sigma = 0;
-    s->is_alike = false;
+    s->strength.at_sigma = 0;
+    s->strength.is_alike = false;
 }
 
 // The form for the rows and columns of now: one from before, or a new one.
@@ -156,44 +140,30 @@ void ct_embed_stay_dense(struct ct_embed *s)
     s->has_form = false;
 }
 
-static bool is_within(double ratio, double factor)
-{
-    return ratio < factor && ratio > 1 / factor;
-}
-
 static bool is_sound(const struct ct_embed *s)
 {
-    return s->strength > ct_form_weakest
-        && is_within(s->strength / s->at_sigma, s->is_alike ? most_change_alike : most_change);
+    double low, high;
+    ct_strength_range(&s->strength, &low, &high);
+    return s->strength.now > low && s->strength.now < high;
 }
 
 // Can the form of now be tried? Beside singular positions only where it tells how near they are.
 static bool is_form_due(const struct ct_embed *s)
 {
-    return s->has_form && s->nweak == 0 && (s->is_alike || !s->is_delicate);
-}
-
-// sigma has been found by matrices where the form has this strength.
-static void compare_strength(struct ct_embed *s)
-{
-    const double change = s->strength / s->at_sigma;
-    if (s->at_sigma > 0 && !is_within(change, alike)) // else there is nothing to learn
-        s->is_alike = is_within(s->sigma / s->sigma_found / change, alike);
-    s->at_sigma = s->strength;
-    s->sigma_found = s->sigma;
+    return s->has_form && s->nweak == 0 && (s->strength.is_alike || !s->is_delicate);
 }
 
 static void follow_sigma(struct ct_embed *s)
 {
-    if (s->is_alike)
-        s->sigma = s->sigma_found * s->strength / s->at_sigma;
+    if (s->strength.is_alike)
+        s->sigma = ct_strength_sigma(&s->strength);
 }
 
 // u' by the form of now; false if its pivots are not sound here.
 static bool solve_form(struct ct_embed *s)
 {
     struct ct_form *f = s->form[0];
-    s->strength = ct_form_solve(f, s->m, s->a);
+    s->strength.now = ct_form_solve(f, s->m, s->a);
     if (!is_sound(s))
         return false;
     follow_sigma(s);
@@ -203,7 +173,7 @@ static bool solve_form(struct ct_embed *s)
     ct_form_check(f, s->m);
     s->solves.refined++;
     memcpy(s->a, f->a, s->m->nu * sizeof *s->a);
-    return f->left_better <= left_most;
+    return f->left_better <= ct_left_most;
 }
 
 enum ct_eval ct_embed_solve(struct ct_embed *s)
@@ -218,9 +188,9 @@ enum ct_eval ct_embed_solve(struct ct_embed *s)
     s->solves.pivoted++;
     const enum ct_eval e = ct_embed_accelerate(s);
     if (s->has_form && !is_tried)
-        s->strength = ct_form_close(s->form[0], m);
+        s->strength.now = ct_form_close(s->form[0], m);
     if (s->has_form)
-        compare_strength(s);
+        ct_strength_compare(&s->strength, s->sigma);
     return e;
 }
 
@@ -229,8 +199,8 @@ static void check_form(struct ct_embed *s)
 {
     struct ct_form *f = s->form[0];
     ct_form_check(f, s->m);
-    s->is_rough = f->left > left_plain;
-    if (s->strength > ct_form_weakest && f->left_better <= left_most) {
+    s->is_rough = f->left > ct_left_plain;
+    if (s->strength.now > ct_form_weakest && f->left_better <= ct_left_most) {
         s->kappa = isnan(f->kappa) ? s->kappa : f->kappa;
         s->nweak = 0;
     } else if (++s->nweak >= MOST_WEAK * patience(s)) {
@@ -241,7 +211,7 @@ static void check_form(struct ct_embed *s)
 
 static void tend_form(struct ct_embed *s)
 {
-    if (!s->m->nrow || s->is_dear || (s->is_delicate && !s->is_alike))
+    if (!s->m->nrow || s->is_dear || (s->is_delicate && !s->strength.is_alike))
         return;
     if (s->has_form)
         check_form(s);
@@ -316,11 +286,41 @@ static size_t lightest(const struct ct_embed *s)
     return least;
 }
 
+// A beam without inertia of sections whose first section a joint turns and nothing else holds; 0: none.
+static int bare_beam(const struct ct_model *model)
+{
+    for (size_t i = 1; i < model->nbody; i++) {
+        const struct ct_beam *beam = model->body[i].beam;
+        int njoint = 0, nturn = 0;
+        if (!beam || beam->has_rotary || beam->is_chord
+            || (!beam->is_lumped && beam->theory == CT_BEAM_EULER_BERNOULLI))
+            continue;
+        for (size_t j = 0; j < model->njoint; j++) {
+            const struct ct_instance *joint = &model->joint[j];
+            if (joint->from != model->body[i].frame && joint->to != model->body[i].frame)
+                continue;
+            njoint++;
+            nturn += joint->nfree > 0;
+        }
+        if (njoint == 1 && nturn == 1)
+            return (int)i;
+    }
+    return 0;
+}
+
 static bool massless(struct ct_embed *s, size_t speed)
 {
     const struct ct_u *u = &s->m->e->u[speed];
     const struct ct_model *model = s->m->model;
     const char *name = u->q >= 0 ? s->m->e->q[u->q].name : u->name;
+    const int bare = bare_beam(model);
+    if (bare && (u->joint >= 0 || u->beam > 0))
+        return ct_error(
+            s->ctx, model->body[bare].instance.mark, CT_E_MASSLESS,
+            "coordinate '%s' moves no mass: the first section of beam '%s' has no inertia; "
+            "give the beam a 'rotary_inertia', or, if no moment acts on that section, 'frame: "
+            "chord'",
+            name, model->body[bare].instance.name);
     if (u->beam > 0)
         return ct_error(s->ctx, model->body[u->beam].instance.mark, CT_E_MASSLESS,
                         "coordinate '%s' moves no mass: give the beam a 'rotary_inertia', or "
@@ -349,6 +349,21 @@ static bool has_inertia(struct ct_embed *s)
     return true;
 }
 
+// After ct_embed_accelerate: the first independent speed whose pivot of B' M B is rounding of what it is left of; -1: none.
+static int rounded_pivot(const struct ct_embed *s)
+{
+    const int n = (int)s->m->nu, r = s->rank, f = n - r;
+    for (int i = 0; i < f; i++) {
+        double gross = fabs(s->MB[s->independent[i] + n * i]);
+        for (int k = 0; k < r; k++)
+            gross += fabs(s->B[k + r * i] * s->MB[s->dependent[k] + n * i]);
+        const double pivot = s->S[i + f * i] * s->S[i + f * i];
+        if (pivot <= 16 * DBL_EPSILON * gross)
+            return s->independent[i];
+    }
+    return -1;
+}
+
 bool ct_embed_choose(struct ct_embed *s)
 {
     s->switches++;
@@ -368,6 +383,9 @@ bool ct_embed_choose(struct ct_embed *s)
     ct_machine_motion(s->m);
     if (ct_embed_accelerate(s) != CT_EVAL_OK)
         return massless(s, lightest(s));
+    const int rounded = rounded_pivot(s);
+    if (rounded >= 0)
+        return massless(s, (size_t)rounded);
     take_form(s);
     return true;
 }
@@ -452,7 +470,7 @@ static bool form_multipliers(struct ct_embed *s)
         return false;
     ct_form_check(f, s->m);
     memcpy(s->lam, f->lam, s->m->nrow * sizeof *s->lam); // all rows are kept, in their order
-    return f->left_better <= left_most;
+    return f->left_better <= ct_left_most;
 }
 
 void ct_embed_multipliers(struct ct_embed *s)
@@ -581,7 +599,7 @@ static void partitioned_step(struct ct_embed *s, const double *r, double *d)
 // False if J_d is too close to singular for partitioned steps.
 static bool is_partitioned(struct ct_embed *s)
 {
-    return factor(s) && s->kappa <= kappa_largest;
+    return factor(s) && s->kappa <= ct_kappa_largest;
 }
 
 // r (nrow) += J d.
@@ -597,22 +615,7 @@ static bool has_worn(const struct ct_embed *s)
 {
     if (!s->rank)
         return false;
-    return s->kappa > kappa_growth * s->kappa_chosen + 1 || s->kappa > kappa_largest
-        || s->sigma * kappa_growth < s->sigma_chosen;
-}
-
-// What is near enough: a few roundings, divided twice by the smallest pivot beside a singular position. Rounding keeps
-// larger mechanisms from it: stop when nothing is gained any more.
-static bool is_closed(const struct ct_embed *s, double size, double before)
-{
-    const double wanted = s->sigma < small_pivot ? position_tolerance * s->sigma * s->sigma
-                                                 : position_tolerance;
-    return size <= wanted || (size < 1e-10 && size > before / 4);
-}
-
-static bool is_lost(int i, double size, double before)
-{
-    return i == MOST_NEWTON || !isfinite(size) || size > 1e3 * before;
+    return ct_has_worn(s->kappa, s->kappa_chosen, s->sigma, s->sigma_chosen);
 }
 
 static enum ct_eval project_by_matrices(struct ct_embed *s, double t, double *y)
@@ -623,9 +626,9 @@ static enum ct_eval project_by_matrices(struct ct_embed *s, double t, double *y)
         ct_machine_set(m, t, y);
         ct_machine_constraint(m);
         const double size = largest(m->phi, m->nrow);
-        if (is_closed(s, size, before))
+        if (ct_is_closed(s->sigma, size, before))
             break;
-        if (is_lost(i, size, before))
+        if (ct_is_stray(i, size, before))
             return CT_EVAL_RETRY;
         before = size;
         (is_partitioned(s) ? partitioned_step : least_norm_step)(s, m->phi, s->r);
@@ -645,7 +648,7 @@ static enum ct_eval project_by_matrices(struct ct_embed *s, double t, double *y)
 static bool close_form(struct ct_embed *s, double t, const double *y)
 {
     ct_machine_set(s->m, t, y);
-    s->strength = ct_form_close(s->form[0], s->m);
+    s->strength.now = ct_form_close(s->form[0], s->m);
     if (!is_sound(s))
         return false;
     follow_sigma(s);
@@ -659,12 +662,12 @@ static enum ct_eval project_by_form(struct ct_embed *s, double t, double *y, boo
     const struct ct_form *f = s->form[0];
     double before = INFINITY;
     *is_done = false;
-    if (s->kappa > kappa_largest)
+    if (s->kappa > ct_kappa_largest)
         return CT_EVAL_OK;
     for (int i = 0; close_form(s, t, y); i++) {
         const double size = largest(f->phi, m->nrow);
-        if (!is_closed(s, size, before)) {
-            if (is_lost(i, size, before))
+        if (!ct_is_closed(s->sigma, size, before)) {
+            if (ct_is_stray(i, size, before))
                 return CT_EVAL_RETRY;
             before = size;
             ct_machine_retract(m, y, f->dq);
@@ -691,8 +694,8 @@ enum ct_eval ct_embed_project(struct ct_embed *s, double t, double *y)
     if (e == CT_EVAL_OK && !is_done) {
         e = project_by_matrices(s, t, y);
         if (s->has_form) { // sigma has just been found
-            s->strength = ct_form_close(s->form[0], s->m);
-            compare_strength(s);
+            s->strength.now = ct_form_close(s->form[0], s->m);
+            ct_strength_compare(&s->strength, s->sigma);
         }
     }
     if (e != CT_EVAL_OK)
@@ -705,33 +708,78 @@ enum ct_eval ct_embed_project(struct ct_embed *s, double t, double *y)
     return CT_EVAL_OK;
 }
 
-// Dense pivots of larger systems cost more than a step does.
-static bool find_strength(struct ct_embed *s)
+// Dense factors of larger systems cost more than a step does.
+static bool is_large(const struct ct_embed *s)
 {
     enum { LARGE = 200 };
-    if (s->rank < LARGE || !is_form_due(s))
+    return s->rank >= LARGE;
+}
+
+static bool find_strength(struct ct_embed *s)
+{
+    if (!is_large(s) || !is_form_due(s))
         return false;
-    s->strength = ct_form_close(s->form[0], s->m);
-    s->sigma = s->sigma_found * s->strength / s->at_sigma;
+    s->strength.now = ct_form_close(s->form[0], s->m);
+    s->sigma = ct_strength_sigma(&s->strength);
     return is_sound(s);
+}
+
+static bool has_redundant_rows(const struct ct_embed *s)
+{
+    return s->rank < (int)s->m->nrow;
+}
+
+static double smallest_singular_value(struct ct_embed *s)
+{
+    const size_t n = s->m->nu, m = s->m->nrow;
+    memcpy(s->A, s->m->J, m * n * sizeof *s->A);
+    if (!ct_singular_values(s->b, s->A, (int)m, (int)n, (int)m, s->work) || !(s->b[0] > 0))
+        return 0;
+    return s->b[s->rank - 1] / s->b[0];
+}
+
+bool ct_embed_has_pivot(const struct ct_embed *s)
+{
+    return s->rank && !(has_redundant_rows(s) && is_large(s));
 }
 
 double ct_embed_pivot(struct ct_embed *s)
 {
+    if (has_redundant_rows(s))
+        return smallest_singular_value(s);
     // the place need not be one of the motion: what is known of the motion stays
-    const double sigma = s->sigma, kappa = s->kappa, strength = s->strength;
+    const double sigma = s->sigma, kappa = s->kappa, strength = s->strength.now;
     const bool is_known = find_strength(s) || factor(s);
     const double pivot = is_known ? s->sigma * fmax(1, s->kappa) : 0;
     s->sigma = sigma;
     s->kappa = kappa;
-    s->strength = strength;
+    s->strength.now = strength;
     return pivot;
+}
+
+bool ct_embed_dependence(struct ct_embed *s, double *x, double *log_det)
+{
+    const int r = s->rank;
+    const double sigma = s->sigma, kappa = s->kappa;
+    const bool is_found = !is_large(s) && factor(s);
+    s->sigma = sigma;
+    s->kappa = kappa;
+    *log_det = 0;
+    for (int i = 0; i < r && is_found; i++) {
+        x[i] = 1 + fmod(i * 0.6180339887498949, 1); // in no simple relation
+        *log_det += log(fabs(s->Jd[i + r * i]));
+    }
+    if (is_found) {
+        ct_lu_solve(x, s->Jd, s->pivot, r, r, 1, r, false);
+        ct_lu_solve(x, s->Jd, s->pivot, r, r, 1, r, true);
+    }
+    return is_found;
 }
 
 void ct_embed_renew(struct ct_embed *s)
 {
     if (is_form_due(s)) {
-        s->strength = ct_form_close(s->form[0], s->m);
+        s->strength.now = ct_form_close(s->form[0], s->m);
         tend_form(s);
     }
     if (!s->rank || !has_worn(s))

@@ -8,7 +8,7 @@
 #define CT_SOLVE_EMBED_H
 
 #include "integrate/problem.h"
-#include "solve/form.h"
+#include "solve/criterion.h"
 
 /// How accelerations were found, in evaluations, and how often a form was made after the first.
 struct ct_solves {
@@ -43,9 +43,7 @@ struct ct_embed {
     bool is_delicate; // near a singular position: pivots are sought at every evaluation
     bool is_rough;    // the last check wanted a refinement
     long nweak;       // checks in a row that found the form weak, or projections without one
-    double strength, at_sigma; // of the form, now and where sigma was found by matrices
-    double sigma_found;        // there
-    bool is_alike;             // strength and sigma have changed alike
+    struct ct_strength strength; // of the form
     struct ct_solves solves;
     double *a, *lam; // results: u' (nu), lam (nrow)
     // workspace
@@ -75,9 +73,17 @@ void ct_embed_kept_multipliers(struct ct_embed *s, double *lam);
 void ct_embed_renew(struct ct_embed *s);
 /// Move q, u in y onto the constraints, independent coordinates held where J_d allows.  (6.6)
 enum ct_eval ct_embed_project(struct ct_embed *s, double t, double *y);
-/// The smallest pivot of J_d against its largest at the last ct_machine_constraint, times the largest entry of B where that
-/// is above 1: small where J loses rank, not where another choice of columns would do.
+/// Is there a measure of how near J is to losing rank? Not of large systems with redundant rows, where it would cost more
+/// than the steps.
+bool ct_embed_has_pivot(const struct ct_embed *s);
+/// How near J is to losing rank at the last ct_machine_constraint: the smallest pivot of J_d against its largest, times the
+/// largest entry of B where that is above 1, small where J loses rank, not where another choice of columns would do. With
+/// redundant rows, of which the kept ones may lose rank where the others do not, the smallest singular value of J above those
+/// of the redundant rows against its largest.
 double ct_embed_pivot(struct ct_embed *s);
+/// At the last ct_machine_constraint, beside a place where J loses rank: x (rank, out) = (J_d J_d')^-1 v for a v without
+/// meaning, which has come into null(J') of that place, and log |det J_d|. False where that costs too much.
+bool ct_embed_dependence(struct ct_embed *s, double *x, double *log_det);
 /// Which multipliers are unique, into s->is_unique: rows of null(J') that vanish.  (6.5)
 void ct_embed_uniqueness(struct ct_embed *s);
 /// z (nrow, out) = the unit vector of `row` less its part in the range of J: a vector of null(J'), so that

@@ -62,7 +62,8 @@ extern const double ct_form_weakest;
 
 /// The programs of an unrolled form.
 ///
-///     listing   u', q', pivots of B' M B (nfree, positive), of J_d (npivot), whose sizes times scale are strengths
+///     solved    u', q', pivots of B' M B (nfree, positive), of J_d (npivot), whose sizes times scale are strengths; the
+///               power if it depends on neither u' nor multipliers
 ///     checked   refined u' (nu) and lam (rank), residuals before and after (nu + rank each), Q, gam (rank), B (nB)
 ///     closing   Phi, v (nrow each), corrections dq, du (nu each), pivots of J_d
 struct ct_form_code {
@@ -72,6 +73,7 @@ struct ct_form_code {
     const struct ct_program *solved, *checked, *closing;
     size_t nB;
     double M_size, J_size; // largest entries where the form was made
+    bool has_power;        // behind the pivots of `solved`
 };
 struct ct_form_code ct_form_code(const struct ct_form *f);
 

@@ -30,9 +30,9 @@ const char *ct_lanes_refusal(const struct ct_equations *e, const struct ct_run_o
 struct ct_lanes *ct_lanes_create(struct ct_arena *a, const struct ct_equations *e,
                                  struct ct_run *run);
 
-/// Derive and use a closed form for the rows and columns that the run has chosen at its start. Members get the same bits
-/// if it is the same start: the order of its pivots is that of the state there.
-void ct_lanes_unroll(struct ct_arena *a, struct ct_lanes *s);
+/// The run has just been started with the file's own values: closed forms get the order of their pivots there, whoever
+/// needs them, so that a member gets the same bits after any others. Without it closed systems cannot be in lanes.
+void ct_lanes_begin(struct ct_lanes *s);
 
 /// Put the run, which has just been started, into an idle lane; `o` with its end time and tolerances. False:
 /// it has to be run alone.

@@ -1,5 +1,6 @@
 // See machine.h.
 #include "solve/machine.h"
+#include "solve/tangent.h"
 
 #include <math.h>
 #include <string.h>
@@ -43,6 +44,9 @@ static bool find_slot(const struct ct_machine *m, const struct ct_sym *s, size_t
     case CT_SYM_WORK:
         *slot = m->at_work;
         return true;
+    case CT_SYM_SEED: // behind the input: of tangents alone
+        *slot = m->ninput + s->index;
+        return true;
     case CT_SYM_LOCAL:
     case CT_SYM_SIGNAL:
         break;
@@ -54,7 +58,7 @@ void ct_machine_values(const struct ct_machine *m, const struct ct_exs *x, doubl
 {
     for (size_t k = 0; k < x->nsym; k++) {
         size_t slot;
-        value[k] = find_slot(m, &x->sym[k], &slot) ? m->input[slot] : NAN;
+        value[k] = find_slot(m, &x->sym[k], &slot) && slot < m->ninput ? m->input[slot] : NAN;
     }
 }
 
@@ -78,9 +82,7 @@ static void compile_from(struct ct_arena *a, const struct ct_exs *x, const struc
                          const ct_ex *out, size_t n, enum ct_fuse fuse, struct ct_program *p)
 {
     p->listing = ct_listing_create(a, x, out, n, in->symbol, in->slot, in->n, fuse);
-    p->tape = ct_tape_create(a, p->listing);
     p->out = CT_NEWN(a, double, n + 1);
-    p->work = CT_NEWN(a, double, ct_tape_work(p->tape) + 1);
     p->nout = n;
 }
 
@@ -94,7 +96,7 @@ static void prepare(struct ct_program *p, const double *input)
 {
     if (p->native)
         ct_native_prepare(p->native, input, p->work);
-    else
+    else if (p->tape)
         ct_tape_prepare(p->tape, input, p->work);
 }
 
@@ -106,11 +108,13 @@ void ct_program_run(struct ct_program *p, const double *input)
         ct_tape_eval(p->tape, input, p->out, p->work);
 }
 
-// The two ways keep different things in the work array.
+// The two ways keep different things in the work array. A tape is made only where it is run.
 static void use(struct ct_arena *a, struct ct_program *p, struct ct_native *native)
 {
-    if (!p->native == !native)
+    if (p->work && !p->native == !native)
         return;
+    if (!native && !p->tape)
+        p->tape = ct_tape_create(a, p->listing);
     p->native = native;
     p->work = CT_NEWN(a, double, (native ? ct_native_work(native) : ct_tape_work(p->tape)) + 1);
 }
@@ -130,14 +134,16 @@ bool ct_machine_use(struct ct_arena *a, struct ct_machine *m, enum ct_backend ba
 {
     struct ct_program *const all[]
         = {&m->motion, &m->constraint, &m->solved, &m->residual, &m->tangent};
-    bool available = true;
+    bool available = ct_native_is_available(1);
     m->asked = backend;
     for (size_t i = 0; i < COUNT(all); i++)
-        if (i < 2 || all[i]->nout) // some nobody has asked for
+        if (all[i]->nout)
             available &= choose_backend(a, m, all[i]);
     for (struct ct_program *p = m->apart; p; p = p->next)
         available &= choose_backend(a, m, p);
-    m->backend = m->motion.native ? "native" : "tape";
+    if (m->lanes)
+        ct_tangent_lanes_use(a, m->lanes, m->asked != CT_BACKEND_TAPE, m->input);
+    m->backend = m->asked != CT_BACKEND_TAPE && available ? "native" : "tape";
     return available || backend != CT_BACKEND_NATIVE;
 }
 
@@ -258,6 +264,13 @@ static void compile_rest(struct ct_arena *a, struct ct_machine *m, const struct 
     compile(a, m, in, validity.e, validity.n, &m->validity);
     compile(a, m, in, energies, 2, &m->energy);
     compile(a, m, in, &e->power, ct_ex_is_zero(e->power) ? 0 : 1, &m->power);
+    // seldom run: not worth native code
+    struct ct_program *const all[]
+        = {&m->result, &m->root,   &m->memory,   &m->momentum, &m->driver,
+           &m->wanted, &m->energy, &m->validity, &m->power};
+    for (size_t i = 0; i < COUNT(all); i++)
+        if (all[i]->nout)
+            use(a, all[i], NULL);
 }
 
 static void push_slopes(struct list *l, const struct ct_slope *s, size_t n)
@@ -277,16 +290,26 @@ static void compile_residual(struct ct_arena *a, struct ct_machine *m, const str
         push(&residual, e->row[i].phi);
     for (size_t i = 0; i < e->nrow && f; i++)
         push(&residual, e->row[i].v);
-    if (f) {
+    if (f && !f->along) {
         push_slopes(&tangent, f->dq, f->ndq);
         push_slopes(&tangent, f->du, f->ndu);
         push_slopes(&tangent, f->da, f->nda);
         push_slopes(&tangent, f->dv, f->ndv);
-        for (size_t i = 0; i < e->nJ; i++)
-            push(&tangent, e->J[i].value);
     }
+    for (size_t i = 0; i < e->nJ && f; i++)
+        push(&tangent, e->J[i].value);
     compile(a, m, in, residual.e, residual.n, &m->residual);
     compile(a, m, in, tangent.e, tangent.n, &m->tangent);
+    m->slopes = m->tangent.out;
+    m->nslope = tangent.n;
+    if (!f || !f->along)
+        return;
+    const size_t own = f->ndq + f->ndu + f->nda + f->ndv;
+    const struct ct_listing *l = ct_listing_create(a, e->x, f->along->rate, e->nu + e->nrow,
+                                                   in->symbol, in->slot, in->n, CT_FUSE_NO);
+    m->nslope = own + e->nJ;
+    m->slopes = CT_NEWN(a, double, m->nslope + 1);
+    m->lanes = ct_tangent_lanes_create(a, f, l, e->nu, m->ninput);
 }
 
 static void start_input(struct ct_machine *m)
@@ -326,6 +349,9 @@ struct ct_machine *ct_machine_create(struct ct_arena *a, const struct ct_model *
     m->J = CT_NEWN(a, double, m->nrow * m->nu + 1);
     m->g[0] = CT_NEWN(a, double, e->nmode + 1);
     m->g[1] = CT_NEWN(a, double, e->nmode + 1);
+    m->turned = CT_NEWN(a, double, e->nmemory + 1);
+    m->ahead = CT_NEWN(a, double, e->nq + e->nu + 1);
+    m->moved = CT_NEWN(a, double, e->nu + 1);
     m->Q = m->motion.out + e->nM;
     m->gam = m->Q + e->nu + e->nJ;
     m->rate = m->gam + e->nrow;
@@ -342,7 +368,7 @@ void ct_machine_add_residual(struct ct_arena *a, struct ct_machine *m)
         return;
     const struct inputs in = list_inputs(a, m, m->e->x);
     compile_residual(a, m, &in);
-    ct_machine_use(a, m, m->motion.native ? CT_BACKEND_BEST : CT_BACKEND_TAPE);
+    ct_machine_use(a, m, m->asked);
 }
 
 enum { NPROGRAM = 14 };
@@ -364,6 +390,15 @@ void ct_machine_prepare(struct ct_machine *m)
         prepare(all[i], m->input);
     for (struct ct_program *p = m->apart; p; p = p->next)
         prepare(p, m->input);
+    if (m->lanes)
+        ct_tangent_lanes_prepare(m->lanes, m->input);
+}
+
+void ct_machine_prepare_motion(struct ct_machine *m)
+{
+    prepare(&m->motion, m->input);
+    prepare(&m->constraint, m->input);
+    prepare(&m->power, m->input);
 }
 
 static size_t code_size(const struct ct_program *p)
@@ -380,7 +415,7 @@ size_t ct_machine_code_size(struct ct_machine *m)
         n += code_size(all[i]);
     for (const struct ct_program *p = m->apart; p; p = p->next)
         n += code_size(p);
-    return n;
+    return n + (m->lanes ? ct_tangent_lanes_code_size(m->lanes) : 0);
 }
 
 void ct_machine_reset(struct ct_machine *m)
@@ -432,6 +467,23 @@ void ct_machine_constraint(struct ct_machine *m)
 {
     ct_program_run(&m->constraint, m->input);
     scatter_J(m, m->v + m->nrow);
+}
+
+void ct_machine_tangent(struct ct_machine *m)
+{
+    const size_t nJ = m->tangent.nout;
+    ct_program_run(&m->tangent, m->input);
+    if (!m->lanes)
+        return;
+    ct_tangent_lanes_run(m->lanes, m->input, m->slopes);
+    memcpy(m->slopes + m->nslope - nJ, m->tangent.out, nJ * sizeof *m->slopes);
+}
+
+double ct_machine_tangent_operations(const struct ct_machine *m)
+{
+    const struct ct_tape_counts c = m->tangent.listing->counts;
+    return (double)(c.multiplications + c.additions + c.divisions + c.functions)
+         + (m->lanes ? ct_tangent_lanes_operations(m->lanes) : 0);
 }
 
 // ---- retraction -------------------------------------------------------------------------------------
@@ -565,4 +617,35 @@ void ct_memory_follow(struct ct_machine *m)
         if (m->e->memory[i].kind == CT_MEMORY_QUATERNION && m->e->memory[i].place == 3)
             normalise4(memory + i - 3);
     }
+}
+
+static bool turns(const struct ct_machine *m)
+{
+    for (size_t i = 0; i < m->e->nmemory; i++)
+        if (m->e->memory[i].kind != CT_MEMORY_OFFSET)
+            return true;
+    return false;
+}
+
+double ct_memory_turning(struct ct_machine *m, double t, const double *y, double dt)
+{
+    const size_t n = m->e->nmemory;
+    double most = 0, *now = m->turned;
+    if (!turns(m))
+        return 0;
+    memcpy(m->ahead, y, (m->nq + m->nu) * sizeof *y);
+    ct_machine_set(m, t, m->ahead);
+    ct_program_run(&m->memory, m->input);
+    memcpy(now, m->memory.out, n * sizeof *now);
+    for (size_t i = 0; i < m->nu; i++)
+        m->moved[i] = dt * y[m->nq + i];
+    ct_machine_retract(m, m->ahead, m->moved);
+    ct_machine_set(m, t + dt, m->ahead);
+    ct_program_run(&m->memory, m->input);
+    for (size_t i = 0; i < n; i++) {
+        const bool is_half = m->e->memory[i].kind == CT_MEMORY_QUATERNION;
+        if (m->e->memory[i].kind != CT_MEMORY_OFFSET)
+            most = fmax(most, (is_half ? 2 : 1) * fabs(m->memory.out[i] - now[i]) / dt);
+    }
+    return most;
 }

@@ -30,8 +30,8 @@ struct ct_machine {
 
     struct ct_program { // with its outputs
         const struct ct_listing *listing;
-        struct ct_tape *tape;
         struct ct_native *native; // NULL: the tape is run
+        struct ct_tape *tape;     // NULL until it is needed
         double *out, *work;
         size_t nout;
         struct ct_program *next; // of those compiled apart
@@ -48,11 +48,16 @@ struct ct_machine {
         driver,     // value, rate of each driver
         wanted,     // of each row: not negative in the right assembly
         residual,   // r, phi, v; nothing if the equations have no residual, and so the next
-        tangent;    // dr/dq, dr/du, dr/du', dv/dq, J: the entries
+        tangent; // dr/dq, dr/du, dr/du', dv/dq, J: the entries; J alone where the rest is found along directions
+    struct ct_tangent_lanes *lanes; // those, or NULL
+    double *
+        slopes; // of the last ct_machine_tangent: dr/dq, dr/du, dr/du', dv/dq, J, as the residual lists them
+    size_t nslope;
 
     double *M, *Q, *J, *gam, *rate; // of the last ct_machine_motion
     double *phi, *v;                // of the last ct_machine_constraint (J as well)
     double *g[2];                   // values of root functions, for modes (nmode)
+    double *turned, *ahead, *moved; // for ct_memory_turning (nmemory, nq + nu + 1, nu)
     long evaluations;
     struct ct_program *apart; // ct_machine_compile
     enum ct_backend asked;
@@ -88,11 +93,17 @@ void ct_machine_motion(struct ct_machine *m);
 bool ct_machine_solved(struct ct_machine *m, double *a);
 /// phi, v, J at the input.
 void ct_machine_constraint(struct ct_machine *m);
+/// Derivatives of the residual at the input, into slopes.
+void ct_machine_tangent(struct ct_machine *m);
+/// Operations of it, of lanes those of one.
+double ct_machine_tangent_operations(const struct ct_machine *m);
 void ct_program_run(struct ct_program *p, const double *input);
 /// Bytes of machine code of all programs.
 size_t ct_machine_code_size(struct ct_machine *m);
 /// Parameters have changed: run the prologues again.
 void ct_machine_prepare(struct ct_machine *m);
+/// Those of motion, constraint and power alone: all that ct_machine_motion and ct_machine_constraint need.
+void ct_machine_prepare_motion(struct ct_machine *m);
 /// As new, with the values that the model's parameters have now.
 void ct_machine_reset(struct ct_machine *m);
 
@@ -107,7 +118,10 @@ void ct_machine_normalise(const struct ct_machine *m, double *q);
 /// Memories take their values at the input as if from scratch: quaternions from their rotation (scalar part
 /// >= 0), angles near their present memory, offsets from now.
 void ct_memory_start(struct ct_machine *m);
-/// Memories follow the motion; offsets stay.
+/// Memories follow the motion; offsets stay. Right for angles and rotations that have turned less than half a turn.
 void ct_memory_follow(struct ct_machine *m);
+/// How fast angles and rotations that are followed turn at t, y [rad/s], the largest, from a difference over dt. 0
+/// where none is followed.
+double ct_memory_turning(struct ct_machine *m, double t, const double *y, double dt);
 
 #endif

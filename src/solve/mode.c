@@ -151,3 +151,8 @@ size_t ct_time_events(struct ct_arena *a, struct ct_machine *m, double t0, doubl
     *time = list.t;
     return kept;
 }
+
+double ct_time_before(double t, double pending)
+{
+    return t < pending ? t : nextafter(pending, -INFINITY);
+}

@@ -17,4 +17,8 @@ int ct_modes_find_stuck(struct ct_machine *m, double t, const double *y, const d
 size_t ct_time_events(struct ct_arena *a, struct ct_machine *m, double t0, double t1,
                       double **time);
 
+/// t, but before an event that is pending what holds before it counts, also at its very instant: the knots of linear
+/// tables have no modes that could hold their slopes.
+double ct_time_before(double t, double pending);
+
 #endif

@@ -273,7 +273,8 @@ bool ct_quad_can_run(const struct ct_machine *m)
 {
     const struct ct_equations *e = m->e;
     for (size_t i = 0; i < e->nmemory; i++)
-        if (e->memory[i].kind == CT_MEMORY_QUATERNION) // steps turn too far to follow its sign
+        if (e->memory[i].kind
+            != CT_MEMORY_OFFSET) // steps turn too far to follow angles and signs
             return false;
     return m->solved.nout && !e->nrow && !e->nmode && !e->x->ntable;
 }

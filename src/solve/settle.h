@@ -7,11 +7,22 @@
 /// Does a beam of the model ask for it?
 bool ct_settle_wanted(const struct ct_model *model);
 
-/// The elastic coordinates of the beams that start in equilibrium: Q = 0 in their rows at t = 0, everything at rest, all
-/// other coordinates as in the start. e: equations for held drivers (formulate.h: `held`), on trees through joints.
-/// Fills start->elastic. Newton's method with the exact derivative.
-/// Errors: CT_E_SETTLE in closed loops, or when no equilibrium is found.
+/// By joint: are places given for its start, so that its coordinates are to stay? They then are unknowns where the trees
+/// allow it (formulate.h: `first`).
+bool *ct_settle_first(struct ct_arena *a, const struct ct_model *model);
+
+/// The elastic coordinates of the beams that start in equilibrium: Q + J' lam = 0 in their rows at t = 0, everything at
+/// rest. Other coordinates stay as in the start; in closed loops those that are given, then others, as far as the loops
+/// leave them free, while the rest follows.
+///
+/// e       in      for held drivers (formulate.h: `held`), all joints measured, on trees through joints with those given first
+/// moving  in      the same on the same trees, drivers not held: for speeds; used in closed loops alone
+/// start   in/out  elastic; in closed loops q and u of all coordinates, too
+///
+/// Newton's method with the exact derivative.
+/// Errors: CT_E_SETTLE when no equilibrium is found.
 bool ct_settle(struct ct_ctx *ctx, struct ct_arena *a, const struct ct_model *model,
-               const struct ct_equations *e, struct ct_start *start);
+               const struct ct_equations *e, const struct ct_equations *moving,
+               struct ct_start *start);
 
 #endif

@@ -6,6 +6,8 @@
 #include "solve/assemble.h"
 #include "solve/embed.h"
 
+struct ct_singular;
+
 struct ct_run_options {
     const struct ct_method *method;
     double duration, rtol, atol, step;
@@ -39,8 +41,9 @@ struct ct_run_report {
     long switches;
     long factorizations;
     struct ct_solves solves;
-    double *final; // last row
-    double *y;     // last state: q, u, work
+    const struct ct_singular *singular; // positions passed; NULL: nothing was integrated
+    double *final;                      // last row
+    double *y;                          // last state: q, u, work
 };
 
 /// Machine, embedding and state at t = 0, assembled; choices made and modes set. NULL with a diagnostic on failure.
@@ -56,6 +59,8 @@ struct ct_machine *ct_run_machine(struct ct_run *r);
 struct ct_embed *ct_run_embed(struct ct_run *r);
 /// State at the start: q, u, work.
 const double *ct_run_state(const struct ct_run *r);
+/// Which states are measured together for the error of steps; NULL: none. In the run's arena, anew at each call.
+const struct ct_groups *ct_run_groups(struct ct_run *r);
 /// dy (out) = f(t, y), for y as ct_run_state has it.
 enum ct_eval ct_run_rhs(struct ct_run *r, double t, const double *y, double *dy);
 /// Accelerations, multipliers and results at t, y; out has nresult entries.

@@ -13,6 +13,7 @@ struct unrolled {
     const struct ct_closed *c;
     struct ct_program solved, checked, closing;
     double M_size, J_size; // largest entries where it was made
+    bool has_power;        // behind the pivots of solved
 };
 
 static struct unrolled *unrolled_of(struct ct_form *f)
@@ -34,6 +35,13 @@ static void push(struct list *l, const ct_ex *e, size_t n)
         CT_PUSH(l->a, l->e, l->n, l->cap, e[i]);
 }
 
+// Can it be computed beside the accelerations?
+static bool has_power(const struct ct_equations *e)
+{
+    const unsigned later = 1u << CT_SYM_A | 1u << CT_SYM_LAM;
+    return !ct_ex_is_zero(e->power) && !(ct_ex_kinds(e->x, e->power) & later);
+}
+
 static void compile_solved(struct unrolled *f, struct ct_machine *m, const struct ct_exs *x)
 {
     struct list l = {.a = f->form.arena};
@@ -42,6 +50,9 @@ static void compile_solved(struct unrolled *f, struct ct_machine *m, const struc
         push(&l, &m->e->q[i].rate, 1);
     push(&l, f->c->inertia, f->c->nfree);
     push(&l, f->c->pivot, f->c->npivot);
+    f->has_power = has_power(m->e);
+    if (f->has_power)
+        push(&l, &m->e->power, 1);
     ct_machine_compile(f->form.arena, m, x, l.e, l.n, &f->solved);
 }
 
@@ -189,5 +200,5 @@ struct ct_form_code ct_form_code(const struct ct_form *form)
     const struct unrolled *f = (const struct unrolled *)form;
     return (struct ct_form_code){f->solved.listing, f->c->nfree, f->c->npivot, f->c->scale,
                                  &f->solved,        &f->checked, &f->closing,  f->c->nB,
-                                 f->M_size,         f->J_size};
+                                 f->M_size,         f->J_size,   f->has_power};
 }

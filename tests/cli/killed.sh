@@ -28,3 +28,26 @@ echo '-- the next run begins anew'
 "$COTREE" simulate "$m" -o old.csv --quiet --until 1
 cmp old.csv kept.csv && echo "the same"
 [ -e old.csv.partial ] || echo "nothing partial"
+echo '-- a sweep goes on, twice'
+m=$SYSTEMS/slider_crank/model.yaml
+sweep() { "$COTREE" sweep "$m" --quiet --until 0.5 --threads 1 --vary torque=0.4:0.6:8000 "$@"; }
+bytes() { cat c.csv.partial 2>/dev/null | wc -c; }
+# sweep_and_kill: killed once there are more bytes of rows than before
+sweep_and_kill() {
+  before=$(bytes)
+  "$COTREE" sweep "$m" --quiet --until 0.5 --threads 1 --vary torque=0.4:0.6:8000 -o c.csv --resume &
+  run=$!
+  tries=0
+  until [ "$(bytes)" -gt "$before" ] || [ -e c.csv ] || [ $tries -ge 300 ]; do
+    sleep 0.02
+    tries=$((tries + 1))
+  done
+  kill -9 $run 2>/dev/null
+  wait $run 2>/dev/null
+}
+sweep_and_kill
+sweep_and_kill
+sweep -o c.csv --resume --summary c.json
+awk '/"resumed"/ && $2 + 0 > 0 { print "rows were taken over" }' c.json
+sweep -o want.csv
+cmp c.csv want.csv && echo "the same bytes"

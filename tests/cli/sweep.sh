@@ -43,22 +43,45 @@ cmp s.csv t.csv && echo "same members"
 cut -d, -f1-3 s.csv | sed -n '2,3s/\(\.[0-9]\{8\}\)[0-9]*/\1/gp'
 
 # a sweep that was cut off in the middle of a row
-head -5 a.csv >c.csv.partial
-printf '5,0.3,' >>c.csv.partial
+cut_off() { # NAME ROWS: what an interruption of a.csv leaves
+  head -"$2" a.csv >"$1.partial"
+  printf '5,0.3,' >>"$1.partial"
+  cp a.csv.settings "$1.partial.settings"
+}
+cut_off c.csv 5
 sweep -o c.csv --resume --summary c.json
 cmp a.csv c.csv && echo "resumed: the same bytes"
 grep '"resumed"' c.json
 ls c.csv*
-sweep -o c.csv --resume --summary c.json
+sweep -o c.csv --resume --summary c.json --threads 1 --lanes 1
 grep '"resumed"' c.json
-head -3 a.csv >c.csv.partial
-rm c.csv
-say sweep "$m" --until 0.2 --vary torque=0.2:0.5:3 --vary r=0.14:0.16:3 -o c.csv --resume --quiet
+sed 's/^program .*/program      .../; s/[0-9a-f]\{16\}, .*/..., ... bytes/' c.csv.settings
+# complete, but with another tolerance: anew
+sweep -o c.csv --resume --tolerance 1e-6 --summary c.json
+grep '"resumed"' c.json
+# rows of other settings are not gone on with
+rm c.csv*
+refused() { # NAME OPTION...
+  name=$1
+  shift
+  cut_off "$name" 3
+  say sweep "$m" --until 0.2 --vary torque=0.1:0.5:3 --vary r='140 mm:160 mm:3' --resume --quiet -o "$name" "$@"
+}
+refused c.csv --tolerance 1e-6
+refused c.csv --until 0.3
+refused c.csv --set m3=1
+refused c.csv --tree absolute --method dopri5
+say sweep "$m" --until 0.2 --vary torque=0.2:0.5:3 --vary r='140 mm:160 mm:3' -o c.csv --resume --quiet
+say sweep "$m" --until 0.2 --vary torque=0.1:0.5:3 -o c.csv --resume --quiet
 sed '1s/torque/moment/' a.csv >c.csv.partial
-say sweep "$m" --until 0.2 --vary torque=0.1:0.5:3 --vary r=0.14:0.16:3 -o c.csv --resume --quiet
-head -3 a.csv >old.csv.partial
-touch -t 200001010000 old.csv.partial
-say sweep "$m" --until 0.2 --vary torque=0.1:0.5:3 --vary r=0.14:0.16:3 -o old.csv --resume --quiet
+say sweep "$m" --until 0.2 --vary torque=0.1:0.5:3 --vary r='140 mm:160 mm:3' -o c.csv --resume --quiet
+sed 's/^2,/4,/' a.csv >c.csv.partial
+say sweep "$m" --until 0.2 --vary torque=0.1:0.5:3 --vary r='140 mm:160 mm:3' -o c.csv --resume --quiet
+rm c.csv.partial.settings
+say sweep "$m" --until 0.2 --vary torque=0.1:0.5:3 --vary r='140 mm:160 mm:3' -o c.csv --resume --quiet
+cut_off c.csv 3
+{ cat "$m"; echo; } >model.yaml
+"$COTREE" sweep model.yaml --until 0.2 --vary torque=0.1:0.5:3 --vary r='140 mm:160 mm:3' -o c.csv --resume --quiet 2>&1
 say sweep "$m" --vary r=0.14:0.16:3 -o c.json --resume
 
 # a height out of the plane makes a planar mechanism spatial: such members have equations of their own

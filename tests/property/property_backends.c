@@ -45,6 +45,7 @@ struct check {
     const char *system;
     struct variant *v;
     const struct ct_program *p;
+    const struct ct_tape *tape;
     double *input, *want; // of NLANE lanes
     double *in, *out, *expected;
 };
@@ -52,7 +53,7 @@ struct check {
 static bool check_lanes(struct check *c, const char *who, const struct ct_native *native,
                         size_t lanes)
 {
-    const size_t nwork = native ? ct_native_work(native) : lanes * ct_tape_work(c->p->tape);
+    const size_t nwork = native ? ct_native_work(native) : lanes * ct_tape_work(c->tape);
     double *work = CT_NEWN(c->v->arena, double, nwork + 1);
     bool ok = true;
     for (size_t first = 0; first < NLANE; first += lanes) {
@@ -62,8 +63,8 @@ static bool check_lanes(struct check *c, const char *who, const struct ct_native
             ct_native_prepare(native, c->in, work);
             ct_native_eval(native, c->in, c->out, work);
         } else {
-            ct_tape_prepare_lanes(c->p->tape, (int)lanes, c->in, work);
-            ct_tape_eval_lanes(c->p->tape, (int)lanes, c->in, c->out, work);
+            ct_tape_prepare_lanes(c->tape, (int)lanes, c->in, work);
+            ct_tape_eval_lanes(c->tape, (int)lanes, c->in, c->out, work);
         }
         ok &= same_bits(c->system, who, c->out, c->expected, c->p->nout, lanes);
     }
@@ -72,11 +73,11 @@ static bool check_lanes(struct check *c, const char *who, const struct ct_native
 
 static void evaluate_by_one(struct check *c)
 {
-    double *work = CT_NEWN(c->v->arena, double, ct_tape_work(c->p->tape) + 1);
+    double *work = CT_NEWN(c->v->arena, double, ct_tape_work(c->tape) + 1);
     for (size_t i = 0; i < NLANE; i++) {
         take_lanes(c->in, c->input, c->v->m->ninput, i, 1);
-        ct_tape_prepare(c->p->tape, c->in, work);
-        ct_tape_eval(c->p->tape, c->in, c->out, work);
+        ct_tape_prepare(c->tape, c->in, work);
+        ct_tape_eval(c->tape, c->in, c->out, work);
         for (size_t k = 0; k < c->p->nout; k++)
             c->want[NLANE * k + i] = c->out[k];
     }
@@ -138,6 +139,7 @@ static bool check_program(const char *system, struct variant *v, const struct ct
 {
     struct ct_arena *a = v->arena;
     struct check c = {.system = system, .v = v, .p = p, .input = random_inputs(v)};
+    c.tape = ct_tape_create(a, p->listing);
     c.want = CT_NEWN(a, double, NLANE * p->nout + 1);
     c.in = CT_NEWN(a, double, NLANE * v->m->ninput);
     c.out = CT_NEWN(a, double, NLANE * p->nout + 1);

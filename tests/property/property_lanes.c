@@ -37,7 +37,7 @@ static int run_lanes(struct variant *v, struct system *s, const char *method, in
     struct ct_lanes *lanes = ct_lanes_create(v->arena, &v->e, run);
     int given_up = 0;
     assert_true(ct_run_restart(run, &s->start));
-    ct_lanes_unroll(v->arena, lanes);
+    ct_lanes_begin(lanes);
     for (int i = 0; i < n; i++) {
         const struct ct_run_options o = member_options(method, first + i);
         assert_true(ct_run_restart(run, &s->start));

@@ -92,11 +92,11 @@ static bool find_motions(struct system *s, struct variant *v, bool with_multipli
     if (!with_multipliers) { // K of the forces alone
         for (size_t i = 0; i < v->m->nrow; i++)
             v->m->input[v->m->at_lam + i] = 0;
-        ct_program_run(&v->m->tangent, v->m->input);
+        ct_machine_tangent(v->m);
         const struct ct_residual *f = v->e.residual;
         double *K = CT_NEWN(v->arena, double, v->m->nu * v->m->nu);
         for (size_t i = 0; i < f->ndq; i++)
-            K[f->dq[i].row + v->m->nu * f->dq[i].direction] = v->m->tangent.out[i];
+            K[f->dq[i].row + v->m->nu * f->dq[i].direction] = v->m->slopes[i];
         for (int j = 0; j < l->nfree; j++)
             for (int i = 0; i < l->nfree; i++) {
                 l->Kr[i + l->nfree * j] = 0;

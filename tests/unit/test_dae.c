@@ -2,6 +2,7 @@
 #include "tests/check.h"
 
 #include "formulate/formulate.h"
+#include "formulate/residual.h"
 #include "integrate/alpha.h"
 #include "solve/dae.h"
 #include "solve/quad.h"
@@ -244,6 +245,77 @@ static void residual_and_derivatives_of_all_systems(void **unused)
             if (tree != CT_TREE_ABSOLUTE
                 || strcmp(systems[i], "chain40") != 0) // 120 rows dense
                 check_derivatives(systems[i], (enum ct_tree_choice)tree);
+}
+
+// All derivatives of a form (4 tables of nu or nrow x nu, out) at the input of a machine, by a back end.
+static double *tables_of(struct job *j, enum ct_slope_form form, enum ct_backend backend,
+                         const double *input)
+{
+    struct ct_arena *a = j->ctx.model;
+    struct ct_equations *e = CT_NEW(a, struct ct_equations);
+    const size_t nu = j->e.nu, n = nu > j->e.nrow ? nu : j->e.nrow;
+    double *table = CT_NEWN(a, double, 4 * n * nu + 1);
+    *e = j->e;
+    ct_residual_derive(e->build, form);
+    const struct ct_residual *f = e->residual = e->build->eqs->residual;
+    assert_int_equal(f->along != NULL, form == CT_SLOPES_ALONG);
+    struct ct_machine *m = ct_machine_create(a, &j->model, e);
+    ct_machine_use(a, m, backend);
+    memcpy(m->input, input, m->ninput * sizeof *input);
+    ct_machine_tangent(m);
+    const struct {
+        const struct ct_slope *s;
+        size_t n;
+    } list[] = {{f->dq, f->ndq}, {f->du, f->ndu}, {f->da, f->nda}, {f->dv, f->ndv}};
+    const double *value = m->slopes;
+    for (size_t k = 0; k < COUNT(list); k++)
+        for (size_t i = 0; i < list[k].n; i++)
+            table[n * nu * k + n * list[k].s[i].direction + list[k].s[i].row] = *value++;
+    return table;
+}
+
+// Entry by entry and along directions, by native code and tape.
+static void compare_forms(const char *name, enum ct_tree_choice tree)
+{
+    struct job j;
+    char path[100];
+    snprintf(path, sizeof path, "%s/model.yaml", name);
+    assert_true(open_job(&j, "../systems", path, tree));
+    const struct ct_dae *dae = ct_dae_create(j.ctx.model, ct_run_embed(j.run));
+    long version;
+    const int m = dae->rows(dae->user, &version);
+    struct ct_machine *machine = ct_run_machine(j.run);
+    const struct point p = random_point(&j, dae, m, 0.05);
+    memcpy(machine->input + machine->at_q, p.q, machine->nq * sizeof *p.q);
+    memcpy(machine->input + machine->at_u, p.u, machine->nu * sizeof *p.u);
+    memcpy(machine->input + machine->at_a, p.a, machine->nu * sizeof *p.a);
+    for (size_t i = 0; i < machine->nrow; i++)
+        machine->input[machine->at_lam + i] = random_number();
+    const double *entries = tables_of(&j, CT_SLOPES_ENTRIES, CT_BACKEND_BEST, machine->input),
+                 *along = tables_of(&j, CT_SLOPES_ALONG, CT_BACKEND_BEST, machine->input),
+                 *tape = tables_of(&j, CT_SLOPES_ALONG, CT_BACKEND_TAPE, machine->input);
+    const size_t nu = machine->nu, n = nu > machine->nrow ? nu : machine->nrow;
+    double worst = 0;
+    for (size_t k = 0; k < 4; k++) {
+        const double size = largest(entries + n * nu * k, (int)(n * nu));
+        for (size_t i = n * nu * k; i < n * nu * (k + 1); i++) {
+            worst = fmax(worst, fabs(along[i] - entries[i]) / fmax(size, 1e-300));
+            assert_true(along[i] == tape[i]);
+        }
+    }
+    printf("%s, tree %d: %zu directions in %u colours, %.0e\n", name, tree, 3 * nu,
+           j.e.build->eqs->residual->along->ncolour, worst);
+    assert_true(worst <= 1e-12); // the same products in sums of some hundred terms
+    close_job(&j);
+}
+
+static void derivatives_along_directions_are_the_entries(void **unused)
+{
+    (void)unused;
+    for (size_t i = 0; i < COUNT(systems); i++)
+        for (int tree = CT_TREE_AUTO; tree <= CT_TREE_ABSOLUTE; tree++)
+            if (tree != CT_TREE_ABSOLUTE || strcmp(systems[i], "chain40") != 0)
+                compare_forms(systems[i], (enum ct_tree_choice)tree);
 }
 
 // ---- runs against references --------------------------------------------------------------------------
@@ -530,6 +602,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(residual_and_derivatives_of_all_systems),
+        cmocka_unit_test(derivatives_along_directions_are_the_entries),
         cmocka_unit_test(models_follow_their_references),
         cmocka_unit_test(orders_hold_for_models),
         cmocka_unit_test(orders_of_explicit_methods_hold_for_models),

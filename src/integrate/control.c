@@ -1,0 +1,78 @@
+// See control.h.
+#include "integrate/control.h"
+
+#include <float.h>
+#include <math.h>
+
+static const double safety = 0.9;      // aims at this part of the step the error would allow
+static const double most_shrink = 0.2; // an error estimate is not trusted further than this
+static const double most_growth = 5;   // nor this
+static const double remembered_error
+    = 1e-4;                        // least error the controller remembers: smaller ones
+                                   // are luck and would make it shrink the next step
+static const double stretch = 1.1; // a step may be this much longer to end on a stop: no crumbs
+
+// A step must change t by more than its rounding: 16 * eps leaves room for the stage times. Near
+// t = 0 the scale is a millionth of the run, below which no motion of interest begins.
+static const double least_step = 16 * DBL_EPSILON, least_scale = 1e-6;
+
+struct ct_control ct_control_start(void)
+{
+    return (struct ct_control){.error_before = remembered_error};
+}
+
+double ct_control_fit(double rest, double wanted)
+{
+    if (rest <= stretch * wanted)
+        return rest;
+    return rest < 2 * wanted ? rest / 2 : wanted;
+}
+
+bool ct_control_is_lost(double h, double t, double run)
+{
+    return h <= least_step * fmax(fabs(t), least_scale * run);
+}
+
+// What the error says about the next step: h / factor, without limits.
+static double pi_factor(const struct ct_control *c, const struct ct_method *m, double error)
+{
+    const double beta = 0.2 / (m->error_order + 1);
+    const double alpha = 1.0 / (m->error_order + 1) - 0.75 * beta;
+    return pow(error, alpha) / pow(c->error_before, beta) / safety;
+}
+
+void ct_control_accept(struct ct_control *c, const struct ct_method *m, double h, double error)
+{
+    const double growth = m->most_growth > 0 ? m->most_growth : most_growth;
+    const double factor = fmin(fmax(pi_factor(c, m, error), 1 / growth), 1 / most_shrink);
+    double next = h / factor;
+    if (next > m->steady[0] * h && next < m->steady[1] * h)
+        next = h;
+    if (c->was_refused)
+        next = fmin(next, h); // not at once back to what has just failed
+    else if (h < c->h)
+        next = fmax(next, c->h); // the step was cut for a stop, not for its error
+    c->h = next;
+    c->error_before = fmax(error, remembered_error);
+    c->was_refused = false;
+}
+
+void ct_control_refuse(struct ct_control *c, const struct ct_method *m, double h, double error)
+{
+    const double alpha = 1.0 / (m->error_order + 1);
+    c->h = error > 1 ? h * fmax(most_shrink, safety * pow(error, -alpha)) : h / 2;
+    c->was_refused = true;
+}
+
+double ct_control_glance(double d0, double d1, double limit)
+{
+    return fmin(d0 < 1e-5 || d1 < 1e-5 ? 1e-6 : 0.01 * d0 / d1, limit);
+}
+
+double ct_control_first(const struct ct_method *m, double h, double d1, double d2, double limit)
+{
+    const double d = fmax(d1, d2);
+    const double by_error
+        = d <= 1e-15 ? fmax(1e-6, 1e-3 * h) : pow(0.01 / d, 1.0 / (m->error_order + 1));
+    return fmin(fmin(100 * h, by_error), limit);
+}

@@ -1,0 +1,34 @@
+// Step control: how long the next step is to be, from the error of the last one.
+//
+// The PI controller of Gustafsson (1991), key gustafsson1991, with the constants of Hairer, Norsett and Wanner (1993),
+// II.4, key hairer1993; the first step is the one of the same section.
+#ifndef CT_INTEGRATE_CONTROL_H
+#define CT_INTEGRATE_CONTROL_H
+
+#include "integrate/problem.h"
+
+struct ct_control {
+    double h;            // size the next step should have
+    double error_before; // of the last accepted step
+    bool was_refused;    // the step before this try was
+};
+
+/// Before the first step.
+struct ct_control ct_control_start(void);
+/// The step wanted, adapted to the rest of the way to a stop so that neither it nor the one after it is a crumb.
+double ct_control_fit(double rest, double wanted);
+/// Is h, which does not end on a stop, too small to move t by more than rounding? run: the whole time.
+bool ct_control_is_lost(double h, double t, double run);
+/// A step of size h was accepted, its error 1 at the tolerance.
+void ct_control_accept(struct ct_control *c, const struct ct_method *m, double h, double error);
+/// A step was refused, for its error if that is greater than 1.
+void ct_control_refuse(struct ct_control *c, const struct ct_method *m, double h, double error);
+
+/// The Euler step that looks ahead, from the norms of y and y' against the tolerance.
+double ct_control_glance(double d0, double d1, double limit);
+/// A first step whose error should be near a hundredth of the tolerance; d1, d2: norms of y' and of its change
+/// over the Euler step h, divided by h.
+double ct_control_first(const struct ct_method *m, double h, double d1, double d2,
+                        double limit);
+
+#endif

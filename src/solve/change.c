@@ -1,0 +1,168 @@
+// The choice of the method while a run goes on: steps end where the motion turns stiff, an implicit method is tried, and
+// the one that gets farther for its work goes on.  (8.1)
+#include "solve/run.h"
+
+#include "solve/dae.h"
+
+#include <string.h>
+
+// After an event, and next to a singular position, steps had better go on.
+bool ct_run_is_suspect(struct ct_run *r, double t, const double *y)
+{
+    const bool may_stop = t > r->last_event && !(r->singular->in < INFINITY);
+    if (r->method->is_implicit)
+        return ct_trial_has_lost(&r->implicit, t, r->explicit_pace) && may_stop;
+    return ct_stiffness_watch(r->stiffness, t, y, r->o->duration) && may_stop;
+}
+
+static bool at_trial_step(void *user, double t, const double *y)
+{
+    struct ct_run *r = user;
+    (void)y;
+    return ct_trial_step(r->trial, t);
+}
+
+static double operations(const struct ct_program *p)
+{
+    const struct ct_tape_counts c = p->listing->counts;
+    return (double)(c.multiplications + c.additions + c.divisions + c.functions);
+}
+
+static double operations_of_accelerations(const struct ct_run *r)
+{
+    if (r->m->solved.nout)
+        return operations(&r->m->solved);
+    if (r->s->has_form)
+        return r->s->form[0]->operations;
+    return operations(&r->m->motion) + ct_embed_operations(r->s);
+}
+
+// Arithmetic operations, and some that stand for calls, copies and vectors: as measured on systems of few operations.
+static struct ct_cost find_cost(const struct ct_run *r)
+{
+    const struct ct_machine *m = r->m;
+    const double explicit_overhead = 150, implicit_overhead = 400;
+    const double n = (double)m->nu + 2. * r->s->rank;
+    const double lu = 2. / 3 * n * n * n, solve = 2 * n * n, complex_also = 5;
+    return (struct ct_cost){
+        .evaluation = operations_of_accelerations(r) + explicit_overhead,
+        // three residuals make a correction
+        .residual = operations(&m->residual) + complex_also * solve / 3 + implicit_overhead,
+        .tangent = ct_machine_tangent_operations(m) + 4 * n * n + implicit_overhead,
+        .factorization = complex_also * lu / 2 + implicit_overhead, // one of the two
+    };
+}
+
+// Time that the implicit method gains for its work, from here; nothing has changed afterwards.
+static double try_implicit(struct ct_run *r, const struct ct_problem *p,
+                           const struct ct_integrate_options *io, const struct ct_cost *cost)
+{
+    struct ct_machine *m = r->m;
+    struct ct_integrate_options trial_io = *io;
+    struct ct_trial trial = {.cost = *cost, .stats = &r->stats};
+    const size_t ndiagnostic = r->ctx->ndiagnostic, nerror = r->ctx->nerror;
+    const double pending = r->pending, turning = r->turning, t_turning = r->t_turning;
+    double *y = CT_NEWN(r->arena, double, r->ny), *input = CT_NEWN(r->arena, double, m->ninput);
+    memcpy(y, r->y, r->ny * sizeof *y);
+    memcpy(input, m->input, m->ninput * sizeof *input);
+    trial_io.nsample = 0;
+    trial_io.at_step = at_trial_step;
+    r->trial = &trial;
+    ct_integrate(r->ctx, r->o->stiff_method, p, &trial_io, y, &r->stats);
+    r->trial = NULL;
+    // a trial may fail, and may have met events: all that is as if it had not been
+    r->ctx->ndiagnostic = ndiagnostic;
+    r->ctx->nerror = nerror;
+    r->pending = pending;
+    r->turning = turning;
+    r->t_turning = t_turning;
+    memcpy(m->input, input, m->ninput * sizeof *input);
+    ct_machine_set(m, io->t0, r->y);
+    ct_machine_constraint(m);
+    ct_embed_renew(r->s);
+    return ct_trial_pace(&trial);
+}
+
+// Over to the implicit method if it gets farther for its work. True: it does.
+static bool go_implicit(struct ct_run *r, struct ct_problem *p,
+                        const struct ct_integrate_options *io)
+{
+    const double least_gain = 1.5; // what is counted is not quite what is spent
+    struct ct_run_report *report = r->report;
+    if (!p->dae) {
+        r->o->want_residual(r->o->user);
+        ct_machine_add_residual(r->arena, r->m);
+        p->dae = ct_dae_create(r->arena, r->s);
+    }
+    r->method = r->o->stiff_method; // what follows a step depends on it
+    const struct ct_cost cost = find_cost(r);
+    r->explicit_pace = ct_stiffness_pace(r->stiffness, &cost);
+    const double gain = try_implicit(r, p, io, &cost) / r->explicit_pace;
+    if (gain < least_gain) {
+        r->method = r->o->method;
+        return false;
+    }
+    r->implicit = (struct ct_trial){.cost = cost, .stats = &r->stats, .t0 = io->t0};
+    if (isnan(report->changed_at)) {
+        report->changed_at = io->t0;
+        report->fast = r->stiffness->fast;
+        report->slow = r->stiffness->slow;
+        report->gain = gain;
+    }
+    report->returned_at = NAN;
+    return true;
+}
+
+// Steps have ended at io->t0: which method is to go on?
+static void reconsider(struct ct_run *r, struct ct_problem *p, struct ct_integrate_options *io)
+{
+    io->rtol = r->o->stiff_rtol;
+    io->atol = r->o->stiff_atol;
+    io->first_step = r->method->is_implicit ? 0 : io->t0 - r->t_before;
+    if (!r->method->is_implicit && go_implicit(r, p, io)) {
+        io->first_step = 0;
+    } else {
+        if (r->method->is_implicit)
+            r->report->returned_at = io->t0;
+        r->method = r->o->method;
+        io->rtol = r->o->rtol;
+        io->atol = r->o->atol;
+        ct_stiffness_put_off(r->stiffness);
+    }
+    r->report->method = r->method;
+}
+
+static void add_stats(struct ct_integrate_stats *sum, const struct ct_integrate_stats *s)
+{
+    sum->steps += s->steps;
+    sum->rejected_steps += s->rejected_steps;
+    sum->inaccurate_steps += s->inaccurate_steps;
+    sum->evaluations += s->evaluations;
+    sum->jacobians += s->jacobians;
+    sum->factorizations += s->factorizations;
+    sum->events += s->events;
+    sum->last_time = s->last_time;
+}
+
+// From start to end, with another method from where that pays.
+bool ct_run_march(struct ct_run *r, struct ct_problem *p, struct ct_integrate_options io)
+{
+    const double *sample = io.sample;
+    if (r->o->stiff_method && io.step == 0)
+        r->stiffness = ct_stiffness_create(r->arena, p, &r->stats, (int)r->m->nq,
+                                           (int)(r->m->nq + r->m->nu));
+    for (;;) {
+        r->is_suspect = false;
+        const bool ok = ct_integrate(r->ctx, r->method, p, &io, r->y, &r->stats);
+        add_stats(&r->report->stats, &r->stats);
+        if (!ok || !r->is_suspect)
+            return ok;
+        io.t0 = r->stats.last_time;
+        io.sample = sample + r->ngiven;
+        io.nsample = r->o->nsample - r->ngiven;
+        reconsider(r, p, &io);
+        add_stats(&r->report->stats, &r->stats);
+        r->stats = (struct ct_integrate_stats){0};
+        r->t_before = io.t0;
+    }
+}

@@ -1,0 +1,86 @@
+// When an embedding is good enough: what runs alone (embed.c) and runs side by side (lanes.c) judge alike.
+//
+//     kappa   largest |J_d^-1 J_i|       sigma   smallest pivot of J_d against its largest: falls when kept rows depend
+#ifndef CT_SOLVE_CRITERION_H
+#define CT_SOLVE_CRITERION_H
+
+#include "solve/form.h"
+
+#include <math.h>
+
+// Choose anew when the dependent part has become this much worse than when it was chosen, (6.3)
+static const double ct_kappa_growth = 10;
+static const double ct_kappa_largest = 1e3;
+// Projections stop here: a few roundings of coordinates of order one.
+static const double ct_position_tolerance = 1e-13;
+// Pivots smaller than this against the largest enlarge what is left over noticeably.
+static const double ct_small_pivot = 0.5;
+enum { CT_MOST_NEWTON = 25 };
+// A form is used while its strength has changed by less than such a factor since sigma, which tells how near a
+// singular position is, was found by dense matrices.
+static const double ct_most_change = 1.5;
+// Where strength and sigma have fallen alike, up to so much, strength stands for sigma for longer.
+static const double ct_alike = 1.02, ct_most_change_alike = 4;
+// What may be left of the equations against their terms: beyond the first a refinement is made, beyond
+// the second the form is not used.
+static const double ct_left_plain = 1e-13, ct_left_most = 1e-11;
+
+/// Is another choice of rows or columns due?
+static inline bool ct_has_worn(double kappa, double kappa_chosen, double sigma,
+                               double sigma_chosen)
+{
+    return kappa > ct_kappa_growth * kappa_chosen + 1 || kappa > ct_kappa_largest
+        || sigma * ct_kappa_growth < sigma_chosen;
+}
+
+/// What is near enough in a projection: a few roundings, divided twice by the smallest pivot beside a singular
+/// position. Rounding keeps larger mechanisms from it: stop when nothing is gained any more.
+static inline bool ct_is_closed(double sigma, double size, double before)
+{
+    const double wanted = sigma < ct_small_pivot ? ct_position_tolerance * sigma * sigma
+                                                 : ct_position_tolerance;
+    return size <= wanted || (size < 1e-10 && size > before / 4);
+}
+
+/// Newton's iteration number i (from 0) leads nowhere.
+static inline bool ct_is_stray(int i, double size, double before)
+{
+    return i == CT_MOST_NEWTON || !isfinite(size) || size > 1e3 * before;
+}
+
+/// Strength of a form, and sigma beside it where that was last found by matrices.
+struct ct_strength {
+    double now, at_sigma, sigma_found;
+    bool is_alike; // strength and sigma have changed alike
+};
+
+static inline bool ct_is_within(double ratio, double factor)
+{
+    return ratio < factor && ratio > 1 / factor;
+}
+
+/// The form is sound while its strength is between the two.
+static inline void ct_strength_range(const struct ct_strength *s, double *low, double *high)
+{
+    const double most = s->is_alike ? ct_most_change_alike : ct_most_change;
+    *low = fmax(ct_form_weakest, s->at_sigma / most);
+    *high = s->at_sigma * most;
+}
+
+/// sigma has been found by matrices where the form has this strength.
+static inline void ct_strength_compare(struct ct_strength *s, double sigma)
+{
+    const double change = s->now / s->at_sigma;
+    if (s->at_sigma > 0 && !ct_is_within(change, ct_alike)) // else there is nothing to learn
+        s->is_alike = ct_is_within(sigma / s->sigma_found / change, ct_alike);
+    s->at_sigma = s->now;
+    s->sigma_found = sigma;
+}
+
+/// sigma as the strength shows it.
+static inline double ct_strength_sigma(const struct ct_strength *s)
+{
+    return s->sigma_found * s->now / s->at_sigma;
+}
+
+#endif

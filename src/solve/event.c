@@ -1,0 +1,163 @@
+// Events of a run: switches, jumps of driven rates, and the impulses that these mean. See run.h.
+#include "solve/run.h"
+
+#include "expr/print.h"
+
+#include <string.h>
+
+enum ct_eval ct_run_root(void *user, double t, const double *y, double *g)
+{
+    struct ct_run *r = user;
+    ct_machine_set(r->m, ct_run_before(r, t), y);
+    ct_program_run(&r->m->root, r->m->input);
+    for (int i = 0; i < r->nroot; i++)
+        g[i] = r->m->root.out[r->root_of[i]];
+    return CT_EVAL_OK;
+}
+
+double ct_run_next_event(void *user, double t)
+{
+    const struct ct_run *r = user;
+    size_t low = 0, high = r->nevent;
+    while (low < high) { // first event after t
+        const size_t middle = (low + high) / 2;
+        if (r->event[middle] > t)
+            high = middle;
+        else
+            low = middle + 1;
+    }
+    return low < r->nevent ? r->event[low] : INFINITY;
+}
+
+double ct_run_kinetic_energy(struct ct_run *r, double t, const double *y)
+{
+    ct_machine_set(r->m, t, y);
+    ct_program_run(&r->m->energy, r->m->input);
+    return r->m->energy.out[0];
+}
+
+// Largest change of driver values and rates between two records (value, rate alternating).
+static double largest_jump(const struct ct_run *r, const double *before, int which)
+{
+    double jump = 0;
+    for (size_t i = 0; i < r->e->ndriver; i++)
+        jump = fmax(jump, fabs(r->m->driver.out[2 * i + (size_t)which]
+                               - before[2 * i + (size_t)which]));
+    return jump;
+}
+
+const double ct_run_jump_tolerance = 1e-9;
+
+bool ct_run_report_jump(struct ct_run *r, const char *name, struct ct_mark mark, double jump,
+                        double t)
+{
+    return ct_error(
+        r->ctx, mark, CT_E_DRIVER_JUMP,
+        "the motion '%s' jumps by %.6g at t = %.9g: a place cannot change in no time", name,
+        jump, t);
+}
+
+// Rows were met before; one that is not any more belongs to a driver on a chord.
+bool ct_run_chords_are_closed(struct ct_run *r, double t)
+{
+    const struct ct_row *row = r->e->row;
+    for (size_t i = 0; i < r->m->nrow; i++)
+        if (fabs(r->m->phi[i]) > ct_run_jump_tolerance) {
+            const struct ct_instance *joint
+                = row[i].joint < 0 ? NULL : &r->model->joint[row[i].joint];
+            const bool is_driven = joint && joint->cls->motion;
+            return ct_run_report_jump(r, is_driven ? joint->name : row[i].name,
+                                      is_driven ? ct_instance_value(joint, "motion")->mark
+                                                : (struct ct_mark){.file = r->model->file},
+                                      -r->m->phi[i], t);
+        }
+    return true;
+}
+
+// Driven values after a change of modes; impulse or not, the speeds must fit the new rates.  (8.5)
+static enum ct_eval apply_jump(struct ct_run *r, double t, double *y, const double *before,
+                               const double *momentum)
+{
+    struct ct_machine *m = r->m;
+    ct_machine_set(m, t, y);
+    ct_program_run(&m->driver, m->input);
+    for (size_t i = 0; i < r->e->ndriver; i++)
+        if (fabs(m->driver.out[2 * i] - before[2 * i])
+            > ct_run_jump_tolerance * fmax(1, fabs(before[2 * i]))) {
+            ct_run_report_jump(r, r->e->driver[i].name, r->e->driver[i].mark,
+                               m->driver.out[2 * i] - before[2 * i], t);
+            return CT_EVAL_FATAL;
+        }
+    ct_machine_constraint(m);
+    if (!ct_run_chords_are_closed(r, t))
+        return CT_EVAL_FATAL;
+    double worst = largest_jump(r, before, 1);
+    for (size_t i = 0; i < m->nrow; i++)
+        worst = fmax(worst, fabs(m->v[i]));
+    if (worst <= ct_run_jump_tolerance)
+        return CT_EVAL_OK;
+    if (r->o && r->o->rate_jumps == CT_RATE_CONTINUOUS)
+        return ct_embed_project(r->s, t, y);
+    // p = momentum before - momentum after, both with the old unknown speeds
+    const double *after = m->momentum.out;
+    double *p = r->scratch, *u = y + m->nq;
+    ct_program_run(&m->momentum, m->input);
+    for (size_t i = 0; i < m->nu; i++)
+        p[i] = momentum[i] - after[i];
+    return ct_embed_impulse(r->s, p, u);
+}
+
+// With the modes set: a force that on both sides of its switch leads back to it (dry friction at rest) has no
+// motion that f describes.
+enum ct_eval ct_run_refuse_stuck(struct ct_run *r, double t, const double *y)
+{
+    if (!r->nroot)
+        return CT_EVAL_OK;
+    const enum ct_eval e = ct_run_rhs(r, t, y, r->dy);
+    if (e != CT_EVAL_OK)
+        return e;
+    const int i = ct_modes_find_stuck(r->m, t, y, r->dy);
+    if (i < 0)
+        return CT_EVAL_OK;
+    const struct ct_mode *mode = &r->e->mode[i];
+    ct_error(
+        r->ctx, mode->mark.file ? mode->mark : (struct ct_mark){.file = r->model->file},
+        CT_E_STUCK,
+        "at t = %.9g the motion is held where '%s' changes sign: on both sides the forces lead "
+        "back; let the force change over a small range, as tanh(u/0.001) does for sign(u)",
+        t, ct_ex_text(r->arena, r->e->x, mode->g, NULL));
+    return CT_EVAL_FATAL;
+}
+
+enum ct_eval ct_run_event(void *user, double t, double *y, const signed char *crossed,
+                          bool is_time)
+{
+    struct ct_run *r = user;
+    struct ct_machine *m = r->m;
+    (void)is_time;
+    r->last_event = t;
+    double *before = r->scratch + m->nu, *momentum = before + 2 * r->e->ndriver;
+    ct_machine_set(m, ct_run_before(r, t), y);
+    ct_program_run(&m->driver, m->input);
+    memcpy(before, m->driver.out, m->driver.nout * sizeof *before);
+    ct_program_run(&m->momentum, m->input);
+    memcpy(momentum, m->momentum.out, m->momentum.nout * sizeof *momentum);
+    const double kinetic = ct_run_kinetic_energy(r, ct_run_before(r, t), y);
+
+    // sides: a crossed root tells its own; the rest follow from where the motion leads
+    double *mode = m->input + m->at_mode;
+    enum ct_eval e = ct_run_rhs(r, t, y, r->dy);
+    if (e != CT_EVAL_OK)
+        return e;
+    r->pending = ct_run_next_event(r, t);
+    ct_modes_start(m, t, y, r->dy);
+    for (int i = 0; i < r->nroot; i++)
+        if (crossed[i])
+            mode[r->root_of[i]] = ct_op_apply(r->e->mode[r->root_of[i]].op, crossed[i], 0, 0);
+    e = apply_jump(r, t, y, before, momentum);
+    if (e != CT_EVAL_OK)
+        return e;
+    y[r->ny - 1] += ct_run_kinetic_energy(r, t, y) - kinetic;
+    ct_run_note_turning(r, t, y);
+    return ct_run_refuse_stuck(r, t, y);
+}

@@ -1,0 +1,151 @@
+// What the files of lanes share: numbers of all lanes at once, and the lanes themselves. See lanes.h.
+//
+//     lanes.c        members come and go
+//     lane_step.c    a try in all lanes: stages, error, projection, step control
+//     lane_form.h    of that, closed forms and the projection by them
+//     lane_alone.c   one lane as a run alone: what is rare, by the run's own functions
+#ifndef CT_SOLVE_LANE_H
+#define CT_SOLVE_LANE_H
+
+#include "integrate/control.h"
+#include "solve/lanes.h"
+
+enum { W = CT_LANES };
+
+// One number of each lane; arenas align to 16 bytes only.
+typedef double vec __attribute__((vector_size(W * sizeof(double)), aligned(8), may_alias));
+// Bits of such: all or none where something holds.
+typedef long long mask __attribute__((vector_size(W * sizeof(long long)), may_alias));
+// Some of the lanes: bit l is lane l.
+typedef unsigned set;
+
+// A generated program for all lanes at once.
+struct ct_lane_program {
+    const struct ct_tape *tape;
+    struct ct_native *native; // NULL: the tape is run
+    vec *out;
+    double *work;
+    size_t nout;
+};
+
+// A closed form for one choice of rows and columns, and the lanes that have made it.
+struct ct_lane_form {
+    struct ct_form *form;
+    struct ct_form_code code;
+    struct ct_lane_program solved, checked, closing;
+    set lanes;
+};
+
+// The stages of a method without the zeros of its table: sum over i of a[i] k[at[i]].
+struct ct_lane_sum {
+    int n;
+    size_t at[CT_MOST_STAGES]; // in the vectors of all stages
+    double a[CT_MOST_STAGES];
+};
+
+// What belongs to one member and is not computed in lanes.
+struct ct_lane {
+    enum ct_lane_state state;
+    double t1; // end of the run
+    struct ct_control control;
+    double end;   // time at the end of this try
+    double error; // of it
+    double kappa_chosen, sigma_chosen;
+    double pivot_last, pivot_time;      // see foresee_singular
+    struct ct_strength strength;        // of its form
+    int *row, *dependent, *independent; // as in embed.h
+    long steps;
+    bool is_watched; // for stiffness
+    int nstiff, nother;
+};
+
+struct ct_lanes {
+    const struct ct_equations *e;
+    struct ct_run *run; // for what is done one by one
+    struct ct_machine *m;
+    struct ct_embed *embed;
+    struct ct_arena *arena;
+    int nq, nu, nrow, ny, rank;
+    bool is_solved, has_power, needs_lam, has_quaternion, is_used;
+    int whose; // the lane whose parameters the run has for matrices; -1: not known
+    struct ct_lane_program motion, power, memory; // motion: u', q' themselves if is_solved
+    struct ct_lane lane[W];
+    struct ct_lanes_count count;
+    const struct ct_method *method;
+    struct ct_lane_sum *stage, error, third; // of the method
+    const struct ct_groups *groups;          // of states, for the error
+    vec *group_size;
+    int *place; // of the coordinate that a speed moves (nu); without quaternions
+    // closed forms: their orders of pivots are those of the file's own values
+    struct ct_lane_form **form;
+    size_t nform, form_cap;
+    double *origin;      // the machine's input there; NULL: there are no forms
+    bool form_has_power; // beside the accelerations
+    set rough;           // the last check found the form not good enough
+    set near;            // beside a singular position: pivots are sought at every evaluation,
+    set alike;           // if strength and sigma are not known to fall alike
+    vec low, high, strength; // of the forms: sound between, and now
+    vec slope;               // sigma for their strength where both fall alike, else 0
+    vec kappa, sigma;        // as in embed.h
+    vec pivot_most;          // the largest sigma so far
+    vec t, h;                // of this try
+    vec rtol, atol;          // of the steps
+    vec *input;
+    // states (ny), stages (ny x stages)
+    vec *y, *dy, *y1, *dy1, *end, *dend, *point, *late, *k;
+    double *one_y, *one_dy, *one_point, *one_end; // a single lane's states
+};
+
+// ---- sets of lanes ----------------------------------------------------------------------------------
+
+static const set ct_all_lanes = (1u << W) - 1;
+
+// Lanes that cannot use their forms now.
+static inline set ct_lanes_without_form(const struct ct_lanes *s)
+{
+    return s->rough | (s->near & ~s->alike);
+}
+
+static inline bool ct_has_lane(set s, int l)
+{
+    return s >> l & 1;
+}
+
+// ---- programs ---------------------------------------------------------------------------------------
+
+static inline void ct_lane_run(struct ct_lane_program *p, const vec *input)
+{
+    if (p->nout && p->native)
+        ct_native_eval(p->native, (const double *)input, (double *)p->out, p->work);
+    else if (p->nout)
+        ct_tape_eval_lanes(p->tape, W, (const double *)input, (double *)p->out, p->work);
+}
+
+// ---- lanes.c ----------------------------------------------------------------------------------------
+
+/// Take numbers (n) of a lane out of vectors, or put them there.
+void ct_lane_take(double *out, const vec *v, int lane, size_t n);
+void ct_lane_put(vec *v, int lane, const double *in, size_t n);
+/// The lane takes the choice of rows and columns that the run has now, and the form for it. False if there is none.
+bool ct_lane_choose(struct ct_lanes *s, int lane);
+
+// ---- lane_alone.c -----------------------------------------------------------------------------------
+
+/// The run gets parameters, memories and choices of a lane, and its state y at t; for matrices, or for everything.
+void ct_lane_become_whole(struct ct_lanes *s, int lane, double t, const vec *y);
+void ct_lane_become(struct ct_lanes *s, int lane, double t, const vec *y);
+/// dy by matrices at (t, y), the power if forms have it, and what they say of kappa and sigma. False: not there.
+bool ct_lane_solve(struct ct_lanes *s, int lane, double t, const vec *y, vec *dy);
+/// The lane of y onto the constraints at t by matrices; may give it up.
+bool ct_lane_project(struct ct_lanes *s, int lane, double t, vec *y);
+/// Rows and columns anew at (t, y).
+void ct_lane_renew(struct ct_lanes *s, int lane, double t, const vec *y);
+/// ct_embed_pivot at (t, y).
+double ct_lane_pivot(struct ct_lanes *s, int lane, double t, const vec *y);
+/// Multipliers at (t, y) into the input, u' as in dy.
+void ct_lane_multipliers(struct ct_lanes *s, int lane, double t, const vec *y, const vec *dy);
+/// The strength of the lane's form belongs to its sigma, found by matrices just now.
+void ct_lane_compare(struct ct_lanes *s, int lane);
+void ct_lane_give_up(struct ct_lanes *s, int lane);
+
+#endif

@@ -1,0 +1,119 @@
+// One lane as a run alone, by the functions of embed.c: see lane.h.
+#include "solve/lane.h"
+
+#include <math.h>
+#include <string.h>
+
+void ct_lane_give_up(struct ct_lanes *s, int l)
+{
+    s->lane[l].state = CT_LANE_GIVEN_UP;
+}
+
+static void take_choice(struct ct_lanes *s, int l, double t, const vec *y)
+{
+    const struct ct_lane *lane = &s->lane[l];
+    struct ct_embed *embed = s->embed;
+    const size_t rank = (size_t)s->rank, n = (size_t)s->nu;
+    ct_lane_take(s->one_y, y, l, (size_t)s->ny);
+    ct_machine_set(s->m, t, s->one_y);
+    embed->rank = s->rank;
+    memcpy(embed->row, lane->row, (size_t)s->nrow * sizeof *embed->row);
+    memcpy(embed->dependent, lane->dependent, rank * sizeof *embed->dependent);
+    memcpy(embed->independent, lane->independent, (n - rank) * sizeof *embed->independent);
+    embed->kappa = s->kappa[l];
+    embed->sigma = s->sigma[l];
+    embed->kappa_chosen = lane->kappa_chosen;
+    embed->sigma_chosen = lane->sigma_chosen;
+}
+
+void ct_lane_become_whole(struct ct_lanes *s, int l, double t, const vec *y)
+{
+    ct_lane_take(s->m->input, s->input, l, s->m->ninput);
+    ct_machine_prepare(s->m);
+    s->whose = l;
+    take_choice(s, l, t, y);
+}
+
+void ct_lane_become(struct ct_lanes *s, int l, double t, const vec *y)
+{
+    const size_t at = s->m->at_memory;
+    if (s->whose == l) {
+        ct_lane_take(s->m->input + at, s->input + at, l, s->e->nmemory);
+    } else {
+        ct_lane_take(s->m->input, s->input, l, s->m->ninput);
+        ct_machine_prepare_motion(s->m);
+        s->whose = l;
+    }
+    take_choice(s, l, t, y);
+}
+
+static void keep_measures(struct ct_lanes *s, int l)
+{
+    s->kappa[l] = s->embed->kappa;
+    s->sigma[l] = s->embed->sigma;
+}
+
+bool ct_lane_solve(struct ct_lanes *s, int l, double t, const vec *y, vec *dy)
+{
+    ct_lane_become(s, l, t, y);
+    if (ct_embed_solve(s->embed) != CT_EVAL_OK)
+        return false;
+    keep_measures(s, l);
+    ct_lane_put(dy, l, s->m->rate, (size_t)s->nq);
+    ct_lane_put(dy + s->nq, l, s->embed->a, (size_t)s->nu);
+    dy[s->ny - 1][l] = 0;
+    if (s->form_has_power) { // else it is computed in lanes
+        ct_program_run(&s->m->power, s->m->input);
+        dy[s->ny - 1][l] = s->m->power.out[0];
+    }
+    return true;
+}
+
+bool ct_lane_project(struct ct_lanes *s, int l, double t, vec *y)
+{
+    const long switches = s->embed->switches;
+    ct_lane_become(s, l, t, y);
+    if (ct_embed_project(s->embed, t, s->one_y) != CT_EVAL_OK)
+        return false;
+    keep_measures(s, l);
+    ct_lane_put(y, l, s->one_y, (size_t)s->ny);
+    if (s->embed->switches != switches && !ct_lane_choose(s, l))
+        ct_lane_give_up(s, l);
+    return true;
+}
+
+void ct_lane_renew(struct ct_lanes *s, int l, double t, const vec *y)
+{
+    ct_lane_become(s, l, t, y);
+    ct_machine_constraint(s->m);
+    if (!ct_embed_choose(s->embed) || !ct_lane_choose(s, l))
+        ct_lane_give_up(s, l);
+}
+
+double ct_lane_pivot(struct ct_lanes *s, int l, double t, const vec *y)
+{
+    ct_lane_become(s, l, t, y);
+    ct_machine_constraint(s->m);
+    return ct_embed_pivot(s->embed);
+}
+
+void ct_lane_multipliers(struct ct_lanes *s, int l, double t, const vec *y, const vec *dy)
+{
+    ct_lane_become(s, l, t, y);
+    ct_lane_take(s->embed->a, dy + s->nq, l, (size_t)s->nu);
+    ct_embed_multipliers(s->embed);
+    ct_lane_put(s->input + s->m->at_lam, l, s->embed->lam, (size_t)s->nrow);
+}
+
+void ct_lane_compare(struct ct_lanes *s, int l)
+{
+    struct ct_strength *strength = &s->lane[l].strength;
+    double low, high;
+    strength->now = s->strength[l];
+    ct_strength_compare(strength, s->sigma[l]);
+    ct_strength_range(strength, &low, &high);
+    s->low[l] = low;
+    s->high[l] = high;
+    s->slope[l] = strength->is_alike ? strength->sigma_found / strength->at_sigma : 0;
+    s->alike = (s->alike & ~(1u << l)) | (unsigned)strength->is_alike << l;
+}

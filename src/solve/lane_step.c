@@ -1,0 +1,378 @@
+// A try in all lanes at once: see lanes.h. The steps are those of integrate/driver.c, the derivative and the
+// projection those of simulate.c and embed.c, so that a lane ends where a run alone ends, to rounding.
+#include "integrate/stepper.h"
+#include "solve/lane_form.h"
+
+#include <limits.h>
+#include <math.h>
+#include <string.h>
+
+static const double singular_pivot = 0.25, singular_steps = 4; // see foresee_singular
+// Where h times the rate of the fastest motions is beyond the first in so many steps, with fewer than so many others
+// between, the run is stiff; values of the program DOPRI5 for the stage before the last.
+static const double stiff_step = 3.25;
+enum { MOST_STIFF = 15, FEW_OTHERS = 6 };
+enum { MOST_STEPS = 100000000 };
+
+// ---- projection, as in embed.c ----------------------------------------------------------------------
+
+static void normalise(struct ct_lanes *s, vec *y, set lanes)
+{
+    for (int l = 0; l < W && s->has_quaternion; l++)
+        if (ct_has_lane(lanes, l)) {
+            ct_lane_take(s->one_y, y, l, (size_t)s->nq);
+            ct_machine_normalise(s->m, s->one_y);
+            ct_lane_put(y, l, s->one_y, (size_t)s->nq);
+        }
+}
+
+// Lanes for which sigma was found by matrices just now; their forms' strength at the same place.
+static void compare_forms(struct ct_lanes *s, vec t, const vec *y, set lanes)
+{
+    const vec sigma = s->sigma;
+    for (size_t k = 0; k < s->nform; k++)
+        if (lanes & s->form[k]->lanes)
+            close_form(s, s->form[k], t, y, lanes & s->form[k]->lanes);
+    s->sigma = sigma;
+    for (int l = 0; l < W; l++)
+        if (ct_has_lane(lanes, l))
+            ct_lane_compare(s, l);
+}
+
+static void renew(struct ct_lanes *s, vec t, const vec *y, set lanes)
+{
+    for (int l = 0; l < W && s->rank; l++)
+        if (ct_has_lane(lanes, l)
+            && ct_has_worn(s->kappa[l], s->lane[l].kappa_chosen, s->sigma[l],
+                           s->lane[l].sigma_chosen))
+            ct_lane_renew(s, l, t[l], y);
+}
+
+// Lanes of y in `wanted` onto the constraints at t. Returns those that could be; some may be given up.
+static set project(struct ct_lanes *s, vec t, vec *y, set wanted)
+{
+    normalise(s, y, wanted);
+    if (!s->nrow || !wanted)
+        return wanted;
+    const set done = project_by_forms(s, t, y, &wanted), rest = wanted & ~done;
+    for (int l = 0; l < W && rest; l++)
+        if (ct_has_lane(rest, l) && !ct_lane_project(s, l, t[l], y))
+            wanted &= ~(1u << l);
+    if (rest & wanted)
+        compare_forms(s, t, y, rest & wanted);
+    set_input(s, t, y);
+    check_forms(s, wanted);
+    renew(s, t, y, wanted);
+    return wanted;
+}
+
+// ---- the derivative, as in simulate.c -----------------------------------------------------------------
+
+// dy but for the power, which some forms know, at the input, (t, y): by forms where they are sound, else by matrices, one
+// by one.
+static set solve(struct ct_lanes *s, vec t, const vec *y, vec *dy, set wanted)
+{
+    const set done = solve_by_forms(s, dy, wanted), rest = wanted & ~done;
+    set found = 0;
+    for (int l = 0; l < W && rest; l++)
+        if (ct_has_lane(rest, l) && ct_lane_solve(s, l, t[l], y, dy))
+            found |= 1u << l;
+    if (found)
+        compare_forms(s, t, y, found);
+    return done | found;
+}
+
+// Multipliers into the input, for the power of motions; all rows are kept.
+static void find_multipliers(struct ct_lanes *s, vec t, const vec *y, const vec *dy, set wanted)
+{
+    const int n = s->nu + s->rank;
+    set rest = wanted;
+    for (size_t k = 0; k < s->nform; k++) {
+        struct ct_lane_form *f = s->form[k];
+        const set here = wanted & f->lanes & ~ct_lanes_without_form(s);
+        if (!here)
+            continue;
+        ct_lane_run(&f->checked, s->input);
+        const set good
+            = here & set_of(weigh_left(s, f, f->checked.out + 2 * n) <= ct_left_most);
+        put(s->input + s->m->at_lam, f->checked.out + s->nu, s->rank, good);
+        rest &= ~good;
+    }
+    for (int l = 0; l < W && rest; l++)
+        if (ct_has_lane(rest, l))
+            ct_lane_multipliers(s, l, t[l], y, dy);
+}
+
+// dy = f(t, y). Returns the lanes of `wanted` that have one.
+static set derive(struct ct_lanes *s, vec t, const vec *y, vec *dy, set wanted)
+{
+    const int nu = s->nu, nq = s->nq;
+    const bool with_power = s->has_power && !s->form_has_power;
+    set_input(s, t, y);
+    s->count.evaluations++;
+    if (s->is_solved) {
+        ct_lane_run(&s->motion, s->input);
+        copy(dy, s->motion.out + nu, nq);
+        copy(dy + nq, s->motion.out, nu);
+        dy[s->ny - 1] = (vec){0};
+    } else {
+        wanted = solve(s, t, y, dy, wanted);
+    }
+    if (with_power) {
+        copy(s->input + s->m->at_a, dy + nq, nu);
+        if (s->needs_lam)
+            find_multipliers(s, t, y, dy, wanted);
+        ct_lane_run(&s->power, s->input);
+        dy[s->ny - 1] = s->power.out[0];
+    }
+    return wanted & finite(dy, s->ny);
+}
+
+// ---- a try ------------------------------------------------------------------------------------------
+
+static vec sum_stages(const struct ct_lanes *s, const struct ct_lane_sum *b, int i)
+{
+    const vec *k = s->k + i;
+    vec sum = {0};
+    for (int j = 0; j < b->n; j++)
+        sum += b->a[j] * k[b->at[j]];
+    return sum;
+}
+
+// Root mean square of e against the tolerance, as ct_stepper_norm.
+static vec norm(const struct ct_lanes *s, const vec *e)
+{
+    const int n = s->has_power ? s->ny : s->ny - 1; // the work is as good as the states
+    const struct ct_groups *g = s->groups;
+    vec sum = {0};
+    for (int i = 0; g && i < g->n; i++)
+        s->group_size[i] = (vec){0};
+    for (int i = 0; g && i < s->ny; i++)
+        if (g->of[i] >= 0) {
+            vec *size = &s->group_size[g->of[i]];
+            *size = larger(larger(*size, s->y[i]), s->y1[i]);
+        }
+    for (int i = 0; i < n; i++) {
+        const vec size = g && g->of[i] >= 0 ? s->group_size[g->of[i]]
+                                            : larger(magnitude(s->y[i]), s->y1[i]);
+        const vec part = e[i] / (s->rtol * size + s->atol);
+        sum += part * part;
+    }
+    for (int l = 0; l < W; l++)
+        sum[l] = n ? sqrt(sum[l] / n) : 0;
+    return sum;
+}
+
+static void estimate(struct ct_lanes *s)
+{
+    const vec h = s->h;
+    vec e3 = {0};
+    for (int i = 0; i < s->ny; i++)
+        s->point[i] = h * sum_stages(s, &s->error, i);
+    const vec e = norm(s, s->point);
+    for (int i = 0; i < s->ny && s->third.n; i++)
+        s->point[i] = s->y1[i] - (s->y[i] + h * sum_stages(s, &s->third, i));
+    if (s->third.n)
+        e3 = norm(s, s->point);
+    for (int l = 0; l < W; l++)
+        s->lane[l].error = s->third.n ? ct_stepper_join(e[l], e3[l]) : e[l];
+}
+
+// Ends of the stages at t + C h; the last one is the end of the step, y1 with dy1. That is not evaluated where its error
+// does not depend on it and a projection follows.
+static set take_stages(struct ct_lanes *s, set wanted)
+{
+    const struct ct_tableau *b = s->method->tableau;
+    const int n = s->ny, last = b->stages - 1;
+    const bool is_last_wanted = b->nerror > last || !s->nrow;
+    copy(s->k, s->dy, n);
+    for (int stage = 1; stage <= last && wanted; stage++) {
+        vec *to = stage == last ? s->y1 : stage + 1 == last ? s->late : s->point;
+        for (int i = 0; i < n; i++)
+            to[i] = s->y[i] + s->h * sum_stages(s, &s->stage[stage], i);
+        if (stage < last || is_last_wanted)
+            wanted = derive(s, s->t + b->C[stage] * s->h, to, s->k + n * stage, wanted);
+    }
+    copy(s->dy1, s->k + n * last, n);
+    return wanted;
+}
+
+// end, dend = y1, dy1 on the constraints.
+static set project_end(struct ct_lanes *s, vec t, set wanted)
+{
+    const int n = s->ny;
+    copy(s->end, s->y1, n);
+    if (!wanted || (!s->nrow && !s->has_quaternion)) {
+        copy(s->dend, s->dy1, n);
+        return wanted;
+    }
+    wanted = project(s, t, s->end, wanted);
+    return derive(s, t, s->end, s->dend, wanted);
+}
+
+// ---- step control, as in driver.c -------------------------------------------------------------------
+
+static void plan(struct ct_lanes *s, int l)
+{
+    struct ct_lane *lane = &s->lane[l];
+    const double rest = lane->t1 - s->t[l], wanted = fmin(lane->control.h, lane->t1);
+    const double h = ct_control_fit(rest, wanted);
+    const bool is_landing = h >= rest;
+    s->h[l] = h;
+    lane->end = is_landing ? lane->t1 : s->t[l] + h;
+    if ((!is_landing && ct_control_is_lost(h, s->t[l], lane->t1)) || lane->steps >= MOST_STEPS)
+        ct_lane_give_up(s, l);
+}
+
+static void adapt(struct ct_lanes *s, set tried, set wanted)
+{
+    for (int l = 0; l < W; l++) {
+        struct ct_lane *lane = &s->lane[l];
+        if (ct_has_lane(wanted, l)) {
+            ct_control_accept(&lane->control, s->method, s->h[l], lane->error);
+        } else if (ct_has_lane(tried, l)) {
+            ct_control_refuse(&lane->control, s->method, s->h[l], lane->error);
+            s->count.rejected++;
+        }
+    }
+}
+
+// The stage before the last and the end of the step are at the same time: their difference shows the fastest motions,
+// as in DOPRI5 by Hairer, Norsett and Wanner (1993), IV.2 of the second volume, key hairer1996. A stiff run is one for
+// a run alone, which can change its method.
+static void watch_stiffness(struct ct_lanes *s, set wanted)
+{
+    const int n = s->ny - 1; // the work feeds nothing back
+    const vec *late = s->k + (s->method->tableau->stages - 2) * s->ny;
+    vec rates = {0}, states = {0};
+    for (int i = 0; i < n; i++) {
+        rates += (s->dend[i] - late[i]) * (s->dend[i] - late[i]);
+        states += (s->end[i] - s->late[i]) * (s->end[i] - s->late[i]);
+    }
+    const set is_fast
+        = set_of((states > 0) & (s->h * s->h * rates > stiff_step * stiff_step * states));
+    for (int l = 0; l < W; l++) {
+        struct ct_lane *lane = &s->lane[l];
+        if (!ct_has_lane(wanted, l) || !lane->is_watched)
+            continue;
+        if (ct_has_lane(is_fast, l)) {
+            lane->nother = 0;
+            if (++lane->nstiff >= MOST_STIFF)
+                ct_lane_give_up(s, l);
+        } else if (lane->nstiff && ++lane->nother >= FEW_OTHERS) {
+            lane->nstiff = lane->nother = 0;
+        }
+    }
+}
+
+// ---- after a try ------------------------------------------------------------------------------------
+
+// Memories follow the motion to y at t where wanted.
+static void follow(struct ct_lanes *s, vec t, const vec *y, set wanted)
+{
+    const struct ct_equations *e = s->e;
+    vec *memory = s->input + s->m->at_memory;
+    if (!e->nmemory)
+        return;
+    set_input(s, t, y);
+    ct_lane_run(&s->memory, s->input);
+    for (size_t i = 0; i < e->nmemory; i++) {
+        if (e->memory[i].kind != CT_MEMORY_OFFSET)
+            put(&memory[i], &s->memory.out[i], 1, wanted);
+        if (e->memory[i].kind != CT_MEMORY_QUATERNION || e->memory[i].place != 3)
+            continue;
+        vec square = {0}, *last = &memory[i];
+        for (int k = -3; k <= 0; k++)
+            square += last[k] * last[k];
+        for (int l = 0; l < W; l++) {
+            const double length = sqrt(square[l]);
+            for (int k = -3; k <= 0 && length > 0 && ct_has_lane(wanted, l); k++)
+                last[k][l] /= length;
+        }
+    }
+}
+
+// Where the pivots have become small they are looked at after every step, and a singular position that comes within
+// reach is for a run alone.
+static void foresee_singular(struct ct_lanes *s, vec t, const vec *y, set wanted)
+{
+    if (!s->rank)
+        return;
+    s->pivot_most = choose(mask_of(wanted), larger(s->pivot_most, s->sigma), s->pivot_most);
+    s->near = set_of(s->sigma < singular_pivot * s->pivot_most);
+    for (int l = 0; l < W; l++) {
+        struct ct_lane *lane = &s->lane[l];
+        if (!ct_has_lane(wanted, l))
+            continue;
+        const double before = lane->pivot_last, dt = t[l] - lane->pivot_time;
+        const double now = ct_has_lane(s->near, l) ? ct_lane_pivot(s, l, t[l], y) : INFINITY;
+        lane->pivot_last = now;
+        lane->pivot_time = t[l];
+        if (isfinite(before) && before > now && dt > 0
+            && dt * now / (before - now) <= singular_steps * lane->control.h)
+            ct_lane_give_up(s, l);
+    }
+}
+
+static void commit(struct ct_lanes *s, set wanted)
+{
+    for (int l = 0; l < W; l++)
+        if (s->lane[l].state != CT_LANE_RUNNING)
+            wanted &= ~(1u << l);
+    put(s->y, s->end, s->ny, wanted);
+    put(s->dy, s->dend, s->ny, wanted);
+    for (int l = 0; l < W; l++) {
+        struct ct_lane *lane = &s->lane[l];
+        if (!ct_has_lane(wanted, l))
+            continue;
+        s->t[l] = lane->end;
+        lane->steps++;
+        s->count.steps++;
+        if (lane->end >= lane->t1)
+            lane->state = CT_LANE_ARRIVED;
+    }
+}
+
+// Lanes whose error is small enough; where the step is refused for something else the error says nothing.
+static set accept(struct ct_lanes *s, set wanted)
+{
+    const set is_finite = finite(s->y1, s->ny);
+    for (int l = 0; l < W; l++) {
+        struct ct_lane *lane = &s->lane[l];
+        if (!ct_has_lane(wanted & is_finite, l) || !isfinite(lane->error)) {
+            wanted &= ~(1u << l);
+            lane->error = 0;
+        } else if (lane->error > 1) {
+            wanted &= ~(1u << l);
+        }
+    }
+    return wanted;
+}
+
+#if defined(__x86_64__) && defined(__GLIBC__) && defined(__GNUC__) && !defined(__clang__)
+__attribute__((target_clones("avx2", "default"), flatten))
+#endif
+void ct_lanes_step(struct ct_lanes *s)
+{
+    set tried = 0;
+    vec end = s->t;
+    s->whose = -1; // runs may have been started since
+    for (int l = 0; l < W; l++) {
+        struct ct_lane *lane = &s->lane[l];
+        if (lane->state == CT_LANE_RUNNING)
+            plan(s, l);
+        if (lane->state != CT_LANE_RUNNING)
+            continue;
+        tried |= 1u << l;
+        end[l] = lane->end;
+    }
+    set wanted = take_stages(s, tried);
+    estimate(s);
+    wanted = accept(s, wanted);
+    wanted = project_end(s, end, wanted);
+    follow(s, end, s->end, wanted);
+    adapt(s, tried, wanted);
+    foresee_singular(s, end, s->end, wanted);
+    watch_stiffness(s, wanted);
+    commit(s, wanted);
+}

@@ -1,0 +1,97 @@
+// A run from inside: what its parts share. For simulate.c and the files beside it that it is made of.
+//
+//     simulate.c  evaluation, creation, samples      singular.c  singular positions
+//     event.c     events, jumps, impulses            follow.c    motions driven all through
+//     change.c    the choice of the method, when the motion turns stiff
+#ifndef CT_SOLVE_RUN_H
+#define CT_SOLVE_RUN_H
+
+#include "integrate/stiffness.h"
+#include "solve/mode.h"
+#include "solve/simulate.h"
+#include "solve/singular.h"
+
+#include <math.h>
+
+struct ct_run {
+    struct ct_ctx *ctx;
+    struct ct_arena *arena;
+    const struct ct_model *model;
+    const struct ct_equations *e;
+    struct ct_machine *m;
+    struct ct_embed *s;
+    size_t ny;
+    double *y, *dy, *stage, *scratch, *value, *next;
+    double *sign;  // of each state mode's root function at the last event
+    double *event; // times
+    size_t nevent;
+    int *root_of; // state modes, in order
+    int nroot;
+    bool needs_lam, has_power;
+    const struct ct_run_options *o;
+    struct ct_run_report *report;
+    double energy0, energy_scale;
+    struct ct_singular *singular;
+    double pending;            // time of the event ahead; INFINITY if there is none
+    double turning, t_turning; // how fast followed angles turn [rad/s], and when that was
+    bool started;
+    // the choice of the method
+    const struct ct_method *method;  // that steps now
+    struct ct_integrate_stats stats; // of it
+    struct ct_stiffness *stiffness;  // watched for; NULL: not
+    struct ct_trial *trial;          // under way
+    struct ct_trial implicit;        // what the implicit method gains since it took over
+    double explicit_pace;            // what was gained before
+    bool is_suspect;                 // steps ended to think of another method
+    double t_before, last_event;     // times
+    size_t ngiven;                   // samples
+    double t_sample;                 // the last one
+};
+
+/// The time to evaluate at for t.
+static inline double ct_run_before(const struct ct_run *r, double t)
+{
+    return ct_time_before(t, r->pending);
+}
+
+/// u' into the embedding's a and the machine's input, q' into its rate.
+enum ct_eval ct_run_accelerate(struct ct_run *r, double t, const double *y);
+/// Multipliers that belong to them, into the machine's input.
+void ct_run_find_multipliers(struct ct_run *r);
+double ct_run_kinetic_energy(struct ct_run *r, double t, const double *y);
+
+/// Angles and rotations that are followed from step to step may make less than half a turn in each: note how fast they
+/// turn at t, y.
+void ct_run_note_turning(struct ct_run *r, double t, const double *y);
+/// The longest step from there.
+double ct_run_longest_step(void *user);
+/// False where a step from there to t, y is too long, else noted.
+bool ct_run_is_followed(struct ct_run *r, double t, const double *y);
+
+/// A sample, results and ledger; false to stop, with a diagnostic if that is an error. user is the run.
+bool ct_run_at_sample(void *user, double t, const double *y);
+bool ct_run_at_step(void *user, double t, const double *y);
+double ct_run_sample_time(const struct ct_run_options *o, size_t i);
+
+// Events of ct_problem, user being the run.
+double ct_run_next_event(void *user, double t);
+enum ct_eval ct_run_root(void *user, double t, const double *y, double *g);
+enum ct_eval ct_run_event(void *user, double t, double *y, const signed char *crossed,
+                          bool is_time);
+/// With the modes set: CT_EVAL_FATAL with CT_E_STUCK where a force on both sides of its switch leads back to it (dry
+/// friction at rest): there is no motion that f describes.
+enum ct_eval ct_run_refuse_stuck(struct ct_run *r, double t, const double *y);
+/// Of a driver's value or rate, beside rounding [rad, m, 1/s].
+extern const double ct_run_jump_tolerance;
+/// Always false, with CT_E_DRIVER_JUMP.
+bool ct_run_report_jump(struct ct_run *r, const char *name, struct ct_mark mark, double jump,
+                        double t);
+/// At the last ct_machine_constraint. False with CT_E_DRIVER_JUMP.
+bool ct_run_chords_are_closed(struct ct_run *r, double t);
+
+/// From start to end, with another method from where that pays.
+bool ct_run_march(struct ct_run *r, struct ct_problem *p, struct ct_integrate_options io);
+/// Is another method worth a thought after this step?
+bool ct_run_is_suspect(struct ct_run *r, double t, const double *y);
+
+#endif

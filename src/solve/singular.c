@@ -1,0 +1,186 @@
+// See singular.h.
+#include "solve/singular.h"
+
+#include "solve/mode.h"
+
+#include <math.h>
+#include <string.h>
+
+struct ct_singular *ct_singular_create(struct ct_arena *arena, struct ct_machine *m,
+                                       struct ct_embed *s)
+{
+    struct ct_singular *w = CT_NEW(arena, struct ct_singular);
+    const size_t kept = m->nrow ? CT_MOST_SINGULAR : 0;
+    *w = (struct ct_singular){.m = m, .s = s};
+    w->y = CT_NEWN(arena, double, m->nq + m->nu + 1);
+    w->d = CT_NEWN(arena, double, m->nu + 1);
+    w->x = CT_NEWN(arena, double, m->nrow + 1);
+    w->passed = CT_NEWN(arena, struct ct_singular_position, kept + 1);
+    for (size_t i = 0; i < kept; i++)
+        w->passed[i].row = CT_NEWN(arena, bool, m->nrow);
+    ct_singular_start(w);
+    return w;
+}
+
+void ct_singular_start(struct ct_singular *w)
+{
+    w->in = INFINITY;
+    w->reach = w->most = w->part = w->t = 0;
+    w->switches = -1;
+    w->npassed = 0;
+}
+
+// ---- ahead ------------------------------------------------------------------------------------------------
+
+// The smallest pivot at y, where the time is t.
+static double pivot_at(struct ct_singular *w, double t, const double *y)
+{
+    ct_machine_set(w->m, t, y);
+    ct_machine_constraint(w->m);
+    return ct_embed_pivot(w->s);
+}
+
+struct sight { // along q' and q'' as they are at an accepted state
+    double t, pending;
+    const double *y, *dy;
+};
+
+// The same s seconds later.
+static double pivot_after(struct ct_singular *w, const struct sight *a, double s)
+{
+    const size_t nq = w->m->nq, nu = w->m->nu;
+    memcpy(w->y, a->y, (nq + nu + 1) * sizeof *w->y);
+    for (size_t i = 0; i < nu; i++)
+        w->d[i] = s * (a->y[nq + i] + s / 2 * a->dy[nq + i]);
+    ct_machine_retract(w->m, w->y, w->d);
+    return pivot_at(w, ct_time_before(a->t + s, a->pending), w->y);
+}
+
+// A position counts as singular ahead when the smallest pivot has fallen to the first part of its largest value so far
+// and goes on falling; where it has fallen to the second part pivots are sought at every evaluation, at the third f is
+// better not computed.
+static const double foreseen_pivot = 0.8, near_pivot = 0.5, singular_pivot = 0.25;
+
+// The smallest pivot falls about linearly towards a singular position. Time to where it will vanish, by secants along
+// the motion as the accelerations of now continue it. INFINITY if it rises.
+static double time_to_singular(struct ct_singular *w, const struct sight *a, double now,
+                               double dt)
+{
+    enum { SECANTS = 3 };
+    const double glance = 1e-3, part = 0.8; // of the last step; of the way, not to step across
+    const double far = 4 * dt;
+    double s = glance * dt, pivot = pivot_after(w, a, s), slope = (pivot - now) / s;
+    if (!(slope < 0))
+        return INFINITY;
+    for (int i = 0; i < SECANTS && s - pivot / slope < far; i++) {
+        const double next = s - part * pivot / slope;
+        double there = pivot_after(w, a, next);
+        if (there > fabs(pivot)) // it has changed its sign, which is not seen
+            there = -there;
+        if (there == pivot)
+            break;
+        slope = (there - pivot) / (next - s);
+        s = next;
+        pivot = there;
+    }
+    return s - pivot / slope;
+}
+
+bool ct_singular_foresee(struct ct_singular *w, double t, const double *y, const double *dy,
+                         double pending, bool may_repeat)
+{
+    const struct sight ahead = {t, pending, y, dy};
+    const double dt = t - w->t;
+    if (!ct_embed_has_pivot(w->s) || !(dt > 0))
+        return true;
+    const double now = pivot_after(w, &ahead, 0), part = now / fmax(w->most, now);
+    // after another choice of rows and columns the pivot is not to be compared with the last one
+    const bool is_comparable = w->s->switches == w->switches;
+    const bool was_unforeseen = is_comparable && isinf(w->in) && w->part > near_pivot;
+    if (may_repeat && part < near_pivot && was_unforeseen)
+        return false;
+    w->t = t;
+    w->part = part;
+    w->switches = w->s->switches;
+    w->most = fmax(w->most, now);
+    w->in = INFINITY;
+    w->s->is_delicate = part < near_pivot;
+    if (part > foreseen_pivot)
+        return true;
+    w->in = time_to_singular(w, &ahead, now, dt);
+    w->reach = w->in * fmin(1, singular_pivot / part);
+    return true;
+}
+
+// The stages of a crossing keep away from the position and are put onto the constraints: an order of pivots that holds
+// where it begins holds for all of them.
+void ct_singular_set_crossing(struct ct_singular *w, bool is_crossing)
+{
+    w->s->is_delicate = !is_crossing && w->part < near_pivot;
+}
+
+// ---- passed -----------------------------------------------------------------------------------------------
+
+struct passage {
+    const struct ct_stepper_span *span;
+    double pending;
+};
+
+static double pivot_on(struct ct_singular *w, const struct passage *p, double theta)
+{
+    ct_stepper_point(p->span, theta, w->y);
+    return pivot_at(w, ct_time_before(p->span->t + theta * p->span->h, p->pending), w->y);
+}
+
+// Where on the crossing the pivot vanishes, as part of it: the pivot falls and rises about linearly, so that its sizes
+// before and behind tell. NaN if it does not vanish.
+static double find_position(struct ct_singular *w, const struct passage *p)
+{
+    enum { LOOKS = 3 };
+    const double nearer = 0.125, vanished = 1e-3; // of the pivot where the crossing began
+    const double first = pivot_on(w, p, 0);
+    double theta = 0.5, d = 0.1;
+    for (int i = 0; i < LOOKS; i++) {
+        const double before = pivot_on(w, p, theta - d), behind = pivot_on(w, p, theta + d);
+        theta += d * (before - behind) / (before + behind);
+        d *= nearer;
+    }
+    return pivot_on(w, p, theta) < vanished * first ? theta : NAN;
+}
+
+// Rows that depend there and by how much the rank falls: with d the distance from the position det J_d is as d^loss.
+static void find_dependence(struct ct_singular *w, const struct passage *p, double theta,
+                            struct ct_singular_position *at)
+{
+    const double d = 0.02, nearer = 0.5;
+    const double involved = 1e-3; // of the largest entry; rows that take no part have d^2 of it
+    double far, near, most = 0;
+    const int n = w->s->rank;
+    memset(at->row, 0, w->m->nrow * sizeof *at->row);
+    at->rank_loss = 0;
+    pivot_on(w, p, theta - d);
+    if (!ct_embed_dependence(w->s, w->x, &far))
+        return;
+    pivot_on(w, p, theta - d * nearer);
+    if (!ct_embed_dependence(w->s, w->x, &near))
+        return;
+    at->rank_loss = (int)fmin(n, fmax(1, round((near - far) / log(nearer))));
+    for (int i = 0; i < n; i++)
+        most = fmax(most, fabs(w->x[i]));
+    for (int i = 0; i < n; i++)
+        at->row[w->s->row[i]] = fabs(w->x[i]) > involved * most;
+}
+
+void ct_singular_pass(struct ct_singular *w, const struct ct_stepper_span *span, double t1,
+                      double pending)
+{
+    const struct passage p = {span, pending};
+    const double theta = find_position(w, &p), t = span->t + theta * span->h;
+    if (!(t <= t1))
+        return;
+    if (w->npassed++ >= CT_MOST_SINGULAR)
+        return;
+    struct ct_singular_position *at = &w->passed[w->npassed - 1];
+    at->t = t;
+    find_dependence(w, &p, theta, at);
+}

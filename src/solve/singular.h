@@ -1,0 +1,47 @@
+// Singular positions: seen ahead of a motion, and kept for the report when it has passed them.
+//
+// Where J loses rank u' has a limit along the motion that cannot be computed. The driver of the integration crosses
+// such a position in one step (integrate/crossing.h); where it is and how near, is found here.  (6.8)
+#ifndef CT_SOLVE_SINGULAR_H
+#define CT_SOLVE_SINGULAR_H
+
+#include "integrate/stepper.h"
+#include "solve/embed.h"
+
+enum { CT_MOST_SINGULAR = 100 }; // kept for the report
+
+/// What was passed.
+struct ct_singular_position {
+    double t;
+    int rank_loss; // of J; 0: not known, the system is too large
+    bool *row;     // (nrow) those that depend on each other there
+};
+
+struct ct_singular {
+    struct ct_machine *m;
+    struct ct_embed *s;
+    double in;            // time to the position ahead; INFINITY: there is none
+    double reach;         // time before it in which f is better not computed
+    double most, part, t; // the largest pivot so far, the last one against it, and its time
+    long switches;        // of the embedding, there
+    long npassed;
+    struct ct_singular_position *passed; // the first of them (CT_MOST_SINGULAR)
+    double *y, *d, *x;                   // (ny), (nu), (nrow)
+};
+
+struct ct_singular *ct_singular_create(struct ct_arena *arena, struct ct_machine *m,
+                                       struct ct_embed *s);
+/// Nothing is known and nothing was passed: before a run.
+void ct_singular_start(struct ct_singular *w);
+
+/// What is ahead of an accepted state, up to the event that is pending. False if the step to it has come beside a singular
+/// position, or past it, before that was foreseen, and may be taken again.
+bool ct_singular_foresee(struct ct_singular *w, double t, const double *y, const double *dy,
+                         double pending, bool may_repeat);
+/// What is evaluated from now on belongs to a crossing, or does not.
+void ct_singular_set_crossing(struct ct_singular *w, bool is_crossing);
+/// A crossing has been made and goes on to t1: find the position on it and keep it.
+void ct_singular_pass(struct ct_singular *w, const struct ct_stepper_span *span, double t1,
+                      double pending);
+
+#endif

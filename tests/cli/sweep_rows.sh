@@ -1,0 +1,55 @@
+# A row of a sweep is what `simulate --set` gives: closed and open systems, redundant rows, beams, switches, implicit
+# methods, trees, members that lock or cannot be assembled.
+. "$(dirname "$0")/lib.sh"
+
+# check SYSTEM UNTIL VARY OPTION...: says how many members, how many failed, and every difference
+check() {
+  m=$1 until=$2 vary=$3
+  shift 3
+  "$COTREE" sweep "$m" --quiet --until "$until" --vary "$vary" -o rows.csv --summary rows.json "$@"
+  : >differences
+  sed 1d rows.csv | while IFS=, read -r run value rest; do
+    status=0
+    "$COTREE" simulate "$m" --quiet --until "$until" --set "${vary%%=*}=$value" -o run.csv "$@" 2>/dev/null || status=1
+    [ "${rest##*,}" = $status ] || echo "run $run: status ${rest##*,}, alone $status" >>differences
+    [ $status = 0 ] || continue
+    echo "${rest%,*}" >want
+    tail -1 run.csv | cut -d, -f2- | paste -d, want - | awk -F, -v run="$run" '{
+      n = NF / 2
+      for (i = 1; i <= n; i++) {
+        d = $i - $(n + i); d = d < 0 ? -d : d
+        size = $i < 0 ? -$i : $i
+        if (!(d <= 1e-7 * (size > 1 ? size : 1))) print "run " run ": value " i ": " $i ", alone " $(n + i)
+      }
+    }' >>differences
+  done
+  lanes=$(awk '/"lanes"/ { print $2 + 0 }' rows.json)
+  echo "$(basename "$(dirname "$m")") $vary $*: $(awk '/"members"/ { print $2 + 0 }' rows.json) members," \
+    "$(awk '/"failed"/ { print $2 + 0 }' rows.json) failed, lanes $lanes"
+  cat differences
+}
+
+check "$SYSTEMS/four_bar/model.yaml" 1.5 b=0.3:1.1:5
+check "$SYSTEMS/four_bar/model.yaml" 0.5 a=0.18:0.22:2 --method radau5
+check "$SYSTEMS/four_bar/model.yaml" 0.2 a=0.18:0.22:2 --method generalized-alpha --step 0.001
+check "$SYSTEMS/four_bar_near_singular/model.yaml" 1.5 d=0.99:0.9999:3
+check "$SYSTEMS/slider_crank/model.yaml" 0.5 l=0.1:0.2:3
+check "$SYSTEMS/slider_crank/model.yaml" 0.3 r=0.12:0.16:2 --keep-all
+check "$SYSTEMS/slider_crank/model.yaml" 0.3 r=0.12:0.16:2 --tree absolute
+check "$SYSTEMS/stewart/model.yaml" 0.3 k=6000:9000:2
+check "$SYSTEMS/double_pendulum/model.yaml" 1 m2=-0.5:1:3
+check "$SYSTEMS/tapered_cantilever/model.yaml" 0.02 load=500:1500:2
+check "$SYSTEMS/slider_crank_flexible/model.yaml" 0.02 r=0.14:0.16:2
+check "$SYSTEMS/puma560_driven/model.yaml" 0.3 T=1:2:2
+mkdir -p bouncing
+cat >bouncing/model.yaml <<'END'
+cotree: 1
+parameters: {h: 1, k: 1e4, c: 5}
+gravity: [0, -9.81, 0]
+bodies: {ball: {mass: 1}}
+joints:
+  j: {type: prismatic, from: ground, to: ball, axis: y, initial: {q: h}, effort: "if(j.q < 0, -k*j.q - c*j.u, 0)"}
+outputs: [j.q, j.u, energy.total]
+simulation: {duration: 3}
+END
+check bouncing/model.yaml 2 k=1e3:1e5:3
