@@ -261,21 +261,25 @@ static bool go(struct search *s)
 
 // ---- the search ---------------------------------------------------------------------------------------------
 
-static bool not_found(const struct search *s)
+bool ct_equilibrium_missing(const struct ct_linear *l, int k)
 {
-    const struct ct_linear *l = s->l;
-    int most = 0;
-    for (int k = 0; k < l->nu; k++)
-        if (fabs(s->dq[k]) > fabs(s->dq[most]))
-            most = k;
-    const struct ct_u *u = &l->m->e->u[most];
+    const struct ct_u *u = &l->m->e->u[k];
     const struct ct_mark mark = u->joint >= 0 ? l->m->model->joint[u->joint].mark
                               : u->body >= 0  ? l->m->model->body[u->body].instance.mark
                                               : (struct ct_mark){.file = l->m->model->file};
     return ct_error(l->ctx, mark, CT_E_EQUILIBRIUM,
                     "no equilibrium is found: '%s' goes on to move; hold it by a stiffness, or "
                     "start nearer to an equilibrium",
-                    ct_linear_coordinate(l->m->e, l->arena, most));
+                    ct_linear_coordinate(l->m->e, l->arena, k));
+}
+
+static bool not_found(const struct search *s)
+{
+    int most = 0;
+    for (int k = 0; k < s->l->nu; k++)
+        if (fabs(s->dq[k]) > fabs(s->dq[most]))
+            most = k;
+    return ct_equilibrium_missing(s->l, most);
 }
 
 static double place_size(const struct ct_linear *l)

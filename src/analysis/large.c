@@ -80,6 +80,8 @@ static bool balance(struct large *g)
 {
     struct ct_linear *l = g->l;
     double *r = CT_NEWN(g->a, double, g->nu + 1);
+    if (l->is_resting)
+        return ct_point_evaluate(g->p);
     memset(l->a, 0, g->nu * sizeof *l->a);
     memset(l->lam, 0, g->nrow * sizeof *l->lam);
     if (!ct_point_evaluate(g->p))
