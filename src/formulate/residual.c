@@ -305,7 +305,8 @@ void ct_residual_derive(struct ct_build *b, enum ct_slope_form form)
     const struct ct_equations *e = b->eqs;
     struct slopes s = {.nu = e->nu, .nrow = e->nrow};
     ct_residual_rows(b);
-    struct ct_residual *f = CT_NEW(b->arena, struct ct_residual); // an earlier one stays as it is
+    struct ct_residual *f
+        = CT_NEW(b->arena, struct ct_residual); // an earlier one stays as it is
     *f = (struct ct_residual){.r = e->residual->r, .has_slopes = true};
     b->eqs->residual = f;
     s.r = f->r;

@@ -7,6 +7,7 @@
 #define CT_SOLVE_RUN_H
 
 #include "integrate/stiffness.h"
+#include "solve/fidelity.h"
 #include "solve/mode.h"
 #include "solve/simulate.h"
 #include "solve/singular.h"
@@ -28,6 +29,7 @@ struct ct_run {
     int *root_of; // state modes, in order
     int nroot;
     bool needs_lam, has_power;
+    struct ct_fidelity *fidelity; // of outputs; NULL: none is controlled
     const struct ct_run_options *o;
     struct ct_run_report *report;
     double energy0, energy_scale;
@@ -75,6 +77,8 @@ double ct_run_sample_time(const struct ct_run_options *o, size_t i);
 
 // Events of ct_problem, user being the run.
 double ct_run_next_event(void *user, double t);
+/// Do the tables tell what follows t? An error if not (E310).
+bool ct_run_tables_reach(struct ct_run *r, double t);
 enum ct_eval ct_run_root(void *user, double t, const double *y, double *g);
 enum ct_eval ct_run_event(void *user, double t, double *y, const signed char *crossed,
                           bool is_time);
