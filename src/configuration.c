@@ -127,6 +127,17 @@ static bool find_equilibrium(struct ct_ctx *own, struct ct_system *sys,
         c->l = ct_configuration_start(own, sys, c->model, c->e, true);
     }
     c->is_equilibrium = true;
+    if (c->is_large) {
+        bool applies;
+        if (!ct_equilibrium_find_large(c->l, &c->equilibrium, &applies))
+            return false;
+        if (applies)
+            return true;
+        c->is_large = c->may_be_large = false; // full matrices
+        ct_formulate_dynamics(&sys->equations);
+        ct_formulate_residual(&sys->equations);
+        c->l = ct_configuration_start(own, sys, c->model, c->e, true);
+    }
     return c->l && ct_equilibrium_find(c->l, NULL, &c->equilibrium);
 }
 
@@ -134,7 +145,6 @@ static bool find_start(struct ct_ctx *own, struct ct_system *sys, struct ct_conf
 {
     c->e = c->equations;
     c->l = ct_configuration_start(own, sys, c->model, c->e, false);
-    c->is_large = c->l && c->may_be_large && c->l->nu > CT_MOST_DENSE;
     return c->l && (c->is_large || ct_linear_move(c->l));
 }
 
@@ -166,14 +176,21 @@ bool ct_configuration_find(struct ct_ctx *own, struct ct_system *sys,
 {
     static const char *const words[] = {"initial", "equilibrium"};
     static const struct ct_sim_options standard;
-    ct_formulate_residual(&sys->equations);
-    ct_formulate_dynamics(&sys->equations);
     if (!c->equations) {
         c->model = &sys->model;
         c->equations = &sys->equations;
     }
     if (!c->about)
         c->about = words[0];
+    c->is_large = c->may_be_large && c->equations->nu > CT_MOST_DENSE
+               && (strcmp(c->about, words[0]) == 0
+                   || (strcmp(c->about, words[1]) == 0 && !has_drivers(&sys->model)));
+    if (!c->is_large || !sys->equations.is_analysed)
+        ct_formulate_dynamics(&sys->equations);
+    if (c->is_large)
+        ct_formulate_rows(&sys->equations);
+    else
+        ct_formulate_residual(&sys->equations);
     if (strcmp(c->about, words[0]) == 0)
         return find_start(own, sys, c);
     if (strcmp(c->about, words[1]) == 0)

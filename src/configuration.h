@@ -8,7 +8,8 @@
 
 struct ct_configuration {
     const char *about; // "initial", "equilibrium" or a time [s]
-    bool may_be_large; // a start with many speeds is left without matrices: is_large
+    bool
+        may_be_large; // with many speeds a start or an equilibrium is left without matrices: is_large
     bool hold_drivers; // at an equilibrium motions stand still, even steady ones
     /// A variant and its equations on the trees of the system; NULL: those of the system itself.
     const struct ct_model *model;

@@ -20,6 +20,35 @@ struct ct_equilibrium {
 
 // ---- finding it ---------------------------------------------------------------------------------------
 
+// By the lowest modes on sparse matrices.
+static bool judge_large(struct ct_equilibrium *q, bool *applies)
+{
+    enum { COUNT_OF_MODES = 6 };
+    struct ct_arena *a = q->own.model;
+    struct ct_motion_mode *mode;
+    size_t n;
+    const char *how;
+    if (!ct_large_modes(&q->own, a, q->at.l, COUNT_OF_MODES, &mode, &n, &how, applies))
+        return false;
+    if (!*applies || !n)
+        return true;
+    q->stiffness = INFINITY;
+    q->growth = -INFINITY;
+    for (size_t i = 0; i < n; i++) {
+        const double w2 = mode[i].im * mode[i].im - mode[i].re * mode[i].re;
+        q->growth = fmax(q->growth, mode[i].re);
+        if (w2 >= q->stiffness)
+            continue;
+        int most = 0;
+        for (int k = 0; k < q->at.l->nu; k++)
+            if (fabs(mode[i].shape[k]) > fabs(mode[i].shape[most]) * (1 + 1e-9))
+                most = k;
+        q->stiffness = w2;
+        q->softest = ct_linear_coordinate(q->at.e, a, most);
+    }
+    return true;
+}
+
 static bool judge(struct ct_equilibrium *q)
 {
     struct ct_arena *a = q->own.model;
@@ -47,9 +76,17 @@ static bool judge(struct ct_equilibrium *q)
 
 static bool find(struct ct_equilibrium *q)
 {
+    bool is_judged = false;
     q->at.about = "equilibrium";
-    if (!ct_configuration_find(&q->own, q->system, NULL, &q->at))
+    q->at.may_be_large = true;
+    if (!ct_configuration_find(&q->own, q->system, NULL, &q->at)
+        || (q->at.is_large && !judge_large(q, &is_judged)))
         return false;
+    if (q->at.is_large && !is_judged) { // dampers, or redundant rows
+        q->at.may_be_large = false;
+        if (!ct_configuration_find(&q->own, q->system, NULL, &q->at))
+            return false;
+    }
     struct ct_machine *m = q->at.l->m;
     const size_t n = q->at.e->nresult;
     memcpy(m->input + m->at_a, q->at.l->a, m->nu * sizeof *m->input);
@@ -59,7 +96,7 @@ static bool find(struct ct_equilibrium *q)
     q->value = CT_NEWN(q->own.model, double, n + 1);
     for (size_t i = 0; i < n; i++)
         q->value[i] = m->result.out[i] + 0.0; // no negative zeros
-    return judge(q);
+    return is_judged || judge(q);
 }
 
 struct create {
@@ -147,7 +184,7 @@ void ct_equilibrium_print_summary(const struct ct_equilibrium *q, FILE *out)
     ct_configuration_print(&q->at, out);
     fprintf(out, "balance       the last step moved coordinates by %.2g\n",
             q->at.equilibrium.last_step);
-    if (!q->at.l->nfree) {
+    if (!q->at.is_large && !q->at.l->nfree) {
         fputs("stability     nothing is free to move\n", out);
         return;
     }

@@ -2,6 +2,7 @@
 #include "configuration.h"
 
 #include "analysis/eigen.h"
+#include "formulate/flexible.h"
 #include "formulate/kinematics.h"
 #include "report/json.h"
 #include "report/shape.h"
@@ -41,7 +42,8 @@ static bool solve(struct ct_modes *s, size_t count)
                    "%d speeds with dampers, moving drivers or redundant constraints: dense "
                    "matrices, which takes long",
                    s->at.l->nu);
-    if (s->at.is_large && !ct_linear_move(s->at.l))
+    s->at.may_be_large = false;
+    if (s->at.is_large && !ct_configuration_find(&s->own, s->system, &s->run, &s->at))
         return false;
     return ct_modes_solve(&s->own, a, s->at.l, &s->mode, &s->all, &s->how);
 }
@@ -227,7 +229,7 @@ void ct_modes_print_summary(const struct ct_modes *s, FILE *out)
 
 // ---- the picture -------------------------------------------------------------------------------------------
 
-// Points of the skeleton: the nodes of the graph, in two directions of the view.
+// Points of the skeleton in two directions of the view: the nodes of the graph, then points along the axes of beams.
 struct skeleton {
     struct ct_modes *s;
     struct ct_program places;
@@ -255,7 +257,31 @@ static void add_bones(struct skeleton *k, const struct ct_build *b)
                                            : kind == CT_EDGE_FORCE ? CT_BONE_FORCE
                                                                    : CT_BONE_JOINT};
         const bool hangs = kind == CT_EDGE_FORCE && bone.from == 0; // a load, not a spring
-        if (kind != CT_EDGE_BODY && !hangs)
+        if (kind != CT_EDGE_BODY && !hangs && !b->edge[i].flexible)
+            CT_PUSH(k->s->own.model, k->bone, k->nbone, k->bone_cap, bone);
+    }
+}
+
+static int points_of_beam(const struct ct_flexible *f)
+{
+    enum { FEWEST = 40, MOST = 400 };
+    const int n = f->beam->nelement;
+    return 1 + (n >= MOST ? MOST : n * (n >= FEWEST ? 1 : (FEWEST + n - 1) / n));
+}
+
+// The axis of a beam as a line of points from number `at` on.
+static void add_axis(struct skeleton *k, struct ct_build *b, const struct ct_flexible *f,
+                     int at, ct_ex3 *place)
+{
+    const int n = points_of_beam(f);
+    const ct_ex3 base = ct_node_position(b, f->base);
+    for (int i = 0; i < n; i++) {
+        struct ct_station s;
+        ct_flexible_station(b, f, ct_ex_scale(b->x, (double)i / (n - 1), f->beam->length),
+                            f->kinematics, &s);
+        place[at + i] = ct_ex3_add(b->x, base, ct_node_turn(b, f->base, s.place));
+        const struct ct_bone bone = {.from = at + i - 1, .to = at + i, .kind = CT_BONE_BODY};
+        if (i > 0)
             CT_PUSH(k->s->own.model, k->bone, k->nbone, k->bone_cap, bone);
     }
 }
@@ -266,12 +292,19 @@ static void skeleton_create(struct skeleton *k, struct ct_modes *s)
     struct ct_arena *a = s->own.model;
     ct_ex3 right, up;
     *k = (struct skeleton){.s = s, .n = b->nnode};
+    for (size_t i = 0; i < b->nflexible; i++)
+        k->n += (size_t)points_of_beam(&b->flexible[i]);
     ct_ex *place = CT_NEWN(a, ct_ex, 2 * k->n + 1);
+    ct_ex3 *r = CT_NEWN(a, ct_ex3, k->n + 1);
     view_directions(b, &right, &up);
+    for (size_t i = 0; i < b->nnode; i++)
+        r[i] = ct_node_position(b, (int)i);
+    int at = (int)b->nnode;
+    for (size_t i = 0; i < b->nflexible; at += points_of_beam(&b->flexible[i++]))
+        add_axis(k, b, &b->flexible[i], at, r);
     for (size_t i = 0; i < k->n; i++) {
-        const ct_ex3 r = ct_node_position(b, (int)i);
-        place[2 * i] = ct_ex3_dot(b->x, right, r);
-        place[2 * i + 1] = ct_ex3_dot(b->x, up, r);
+        place[2 * i] = ct_ex3_dot(b->x, right, r[i]);
+        place[2 * i + 1] = ct_ex3_dot(b->x, up, r[i]);
     }
     ct_machine_compile(a, s->at.l->m, b->x, place, 2 * k->n, &k->places);
     add_bones(k, b);
@@ -291,6 +324,14 @@ static void points_of(struct skeleton *k, const double *y0, const double *shape,
     ct_machine_set(l->m, l->t, l->y);
     ct_program_run(&k->places, l->m->input);
     memcpy(out, k->places.out, 2 * k->n * sizeof *out);
+}
+
+// The motion of points that a small part of the shape gives, as large as `amount`: p (2 x n, in and out). Beams would draw
+// in their ends and bend back with a shape that is large against a wave.
+static void enlarge(double *p, const double *rest, size_t n, double factor)
+{
+    for (size_t i = 0; i < 2 * n; i++)
+        p[i] = rest[i] + factor * (p[i] - rest[i]);
 }
 
 static double farthest(const double *p, const double *q, size_t n)
@@ -325,14 +366,19 @@ static bool draw(struct ct_ctx *ctx, struct ct_modes *s, const char *path)
         double *p = CT_NEWN(a, double, 2 * k.n + 1);
         const struct ct_mode_info m = ct_modes_info(s, i);
         points_of(&k, y0, s->mode[i].shape, small, p);
-        const double moved = farthest(p, rest, k.n) / small, size = extent(rest, k.n);
+        const double size = extent(rest, k.n), unseen = 1e-6 * small * size, // sections turn
+            far = farthest(p, rest, k.n), moved = far > unseen ? far / small : 0;
         const double amount = moved > 0 ? fmin(visible * size / moved, largest_turn) : 0;
-        points_of(&k, y0, s->mode[i].shape, amount, p);
+        if (s->at.e->build->nflexible)
+            enlarge(p, rest, k.n, moved > 0 ? visible * size / (moved * small) : 0);
+        else
+            points_of(&k, y0, s->mode[i].shape, amount, p);
         panel[i].point = p;
+        const char *turns = moved > 0 ? "" : ", turns about its axis";
         panel[i].title = m.damping != 0
-                           ? ct_arena_printf(a, "%zu: %.4g Hz, damping %.3g", i + 1,
-                                             m.frequency_hz, m.damping)
-                           : ct_arena_printf(a, "%zu: %.4g Hz", i + 1, m.frequency_hz);
+                           ? ct_arena_printf(a, "%zu: %.4g Hz, damping %.3g%s", i + 1,
+                                             m.frequency_hz, m.damping, turns)
+                           : ct_arena_printf(a, "%zu: %.4g Hz%s", i + 1, m.frequency_hz, turns);
     }
     memcpy(s->at.l->y, y0, ny * sizeof *y0);
     ct_machine_forget(s->at.l->m, &k.places);

@@ -153,7 +153,8 @@ static bool build(struct ct_system *s, const char *path, const struct ct_system_
     struct ct_formulate_options motion = {.keep_all = o->keep_all,
                                           .with_energy = true,
                                           .with_outputs = true,
-                                          .with_solution = true};
+                                          .with_solution = true,
+                                          .for_analysis = o->for_analysis};
     // the start must not depend on the trees that the equations use
     motion.more = o->columns == CT_COLUMNS_COORDINATES ? CT_MORE_COORDINATES
                 : o->columns == CT_COLUMNS_EFFORTS     ? CT_MORE_EFFORTS

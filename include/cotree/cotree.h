@@ -72,6 +72,8 @@ struct ct_system_options {
     const char *tree; /* "auto", "joints", "absolute", or a YAML file that names the branches */
     bool keep_all;    /* leave nothing out: planar mechanisms keep their spatial rows */
     enum ct_columns_more columns;
+    bool
+        for_analysis; /* modes, equilibria and the like, no runs: large systems are then made in less time */
     long beam_elements; /* > 0: of every beam, equally long, whatever the file says */
     const char *
         beam_formulation; /* of every beam: "linear", "foreshortening" ...; NULL: as in the file */

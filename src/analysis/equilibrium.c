@@ -158,12 +158,29 @@ static void find_forces(struct search *s)
     }
 }
 
+// Is the stiffness positive beyond its rounding? Its pivots are compared each with its own diagonal, so that a structure of
+// many elements, whose soft directions are far below its stiff ones, is not taken for a mechanism.
+static bool is_positive(struct search *s)
+{
+    const int n = s->n;
+    double *L = s->A, *diagonal = s->dq;
+    restrict_to(s, L, s->l->Kr, true);
+    for (int i = 0; i < n; i++)
+        diagonal[i] = L[i + n * i];
+    if (!ct_cholesky(L, n, n))
+        return false;
+    for (int i = 0; i < n; i++)
+        if (!(L[i + n * i] * L[i + n * i] > 16 * n * DBL_EPSILON * diagonal[i]))
+            return false;
+    return true;
+}
+
 // Step c (n) along the directions of S.
 static void find_step(struct search *s, double *c)
 {
     const int n = s->n;
     const double stiffest = fmax(fabs(s->value[0]), fabs(s->value[n - 1]));
-    s->is_newton = s->value[0] > flat * stiffest;
+    s->is_newton = s->value[0] > flat * stiffest || is_positive(s);
     memset(c, 0, (size_t)n * sizeof *c);
     if (s->is_newton) { // exact, with forces that have no potential
         restrict_to(s, s->A, s->l->Kr, false);
@@ -244,21 +261,25 @@ static bool go(struct search *s)
 
 // ---- the search ---------------------------------------------------------------------------------------------
 
-static bool not_found(const struct search *s)
+bool ct_equilibrium_missing(const struct ct_linear *l, int k)
 {
-    const struct ct_linear *l = s->l;
-    int most = 0;
-    for (int k = 0; k < l->nu; k++)
-        if (fabs(s->dq[k]) > fabs(s->dq[most]))
-            most = k;
-    const struct ct_u *u = &l->m->e->u[most];
+    const struct ct_u *u = &l->m->e->u[k];
     const struct ct_mark mark = u->joint >= 0 ? l->m->model->joint[u->joint].mark
                               : u->body >= 0  ? l->m->model->body[u->body].instance.mark
                                               : (struct ct_mark){.file = l->m->model->file};
     return ct_error(l->ctx, mark, CT_E_EQUILIBRIUM,
                     "no equilibrium is found: '%s' goes on to move; hold it by a stiffness, or "
                     "start nearer to an equilibrium",
-                    ct_linear_coordinate(l->m->e, l->arena, most));
+                    ct_linear_coordinate(l->m->e, l->arena, k));
+}
+
+static bool not_found(const struct search *s)
+{
+    int most = 0;
+    for (int k = 0; k < s->l->nu; k++)
+        if (fabs(s->dq[k]) > fabs(s->dq[most]))
+            most = k;
+    return ct_equilibrium_missing(s->l, most);
 }
 
 static double place_size(const struct ct_linear *l)

@@ -1,13 +1,15 @@
 // See large.h.
 #include "analysis/large.h"
+#include "analysis/point.h"
+#include "base/sort.h"
+#include "numeric/arpack.h"
 #include "numeric/dense.h"
-#include "numeric/sparse.h"
 
 #include <float.h>
 #include <math.h>
 #include <string.h>
 
-enum { BLOCK = 4, MOST_BASIS = 400 };
+enum { BLOCK = 4 };
 static const double still
     = 1e-9; // accelerations beside those of the weights: an equilibrium to rounding
 static const double absent = 1e-12;   // damping against the masses' rates: none
@@ -20,11 +22,10 @@ struct large {
     struct ct_ctx *ctx;
     struct ct_arena *a;
     struct ct_linear *l;
-    const struct ct_residual *f;
+    struct ct_point *p;
     size_t nu, nrow, n;
-    const double *K, *C, *M, *J; // values of the slopes, as the machine lists them
     struct ct_sparse *matrix;
-    double *value, *b, *x; // of the matrix; n each
+    double *b, *x; // n each
     double shift;
     // Lanczos
     size_t k, most;     // vectors so far
@@ -40,89 +41,35 @@ static double largest(const double *v, size_t n)
     return max;
 }
 
+static double largest_entry(const struct ct_number *A, size_t n)
+{
+    double max = 0;
+    for (size_t i = 0; i < n; i++)
+        max = fmax(max, fabs(A[i].value));
+    return max;
+}
+
 // ---- matrices ---------------------------------------------------------------------------------------------
 
-// y (nu, out) = A x for slopes with their values
-static void apply(double *y, const struct ct_slope *s, size_t n, const double *value,
-                  const double *x, size_t nu)
+static void apply_masses(struct large *g, double *y, const double *x)
 {
-    memset(y, 0, nu * sizeof *y);
-    for (size_t i = 0; i < n; i++)
-        y[s[i].row] += value[i] * x[s[i].direction];
+    ct_point_apply(y, g->p->M, g->p->nM, x, g->nu);
 }
 
-static void set_motion(const struct large *g, const double *a, const double *lam)
+// [ K - shift M, J'; J, 0 ]
+static bool factor(struct large *g, double shift)
 {
-    struct ct_machine *m = g->l->m;
-    memcpy(m->input + m->at_a, a, g->nu * sizeof *a);
-    memcpy(m->input + m->at_lam, lam, g->nrow * sizeof *lam);
-}
-
-static void evaluate(struct large *g, const double *a, const double *lam)
-{
-    struct ct_machine *m = g->l->m;
-    set_motion(g, a, lam);
-    ct_machine_tangent(m);
-    g->K = m->slopes;
-    g->C = g->K + g->f->ndq;
-    g->M = g->C + g->f->ndu;
-    g->J = g->M + g->f->nda + g->f->ndv;
-}
-
-// [ K - shift M, J'; J, 0 ], or with the masses alone [ M, J'; J, 0 ].
-static bool factor(struct large *g, bool masses_alone, double shift)
-{
-    const size_t nK = g->f->ndq, nM = g->f->nda, nJ = g->l->m->e->nJ;
-    double *v = g->value;
-    for (size_t i = 0; i < nK; i++)
-        *v++ = masses_alone ? 0 : g->K[i];
-    for (size_t i = 0; i < nM; i++)
-        *v++ = masses_alone ? g->M[i] : -shift * g->M[i];
-    for (size_t i = 0; i < nJ; i++) {
-        *v++ = g->J[i];
-        *v++ = g->J[i];
-    }
-    for (size_t i = 0; i < g->n; i++) // a place for every pivot
-        *v++ = 0;
+    g->matrix = ct_point_factor(g->p, 1, -shift);
     g->shift = shift;
-    return ct_sparse_factor_anew(g->matrix, g->value);
-}
-
-static bool create_matrix(struct large *g)
-{
-    const struct ct_equations *e = g->l->m->e;
-    const size_t nentry = g->f->ndq + g->f->nda + 2 * e->nJ + g->n;
-    int *row = CT_NEWN(g->a, int, nentry + 1), *column = CT_NEWN(g->a, int, nentry + 1);
-    size_t k = 0;
-    for (size_t i = 0; i < g->f->ndq; i++, k++) {
-        row[k] = (int)g->f->dq[i].row;
-        column[k] = (int)g->f->dq[i].direction;
-    }
-    for (size_t i = 0; i < g->f->nda; i++, k++) {
-        row[k] = (int)g->f->da[i].row;
-        column[k] = (int)g->f->da[i].direction;
-    }
-    for (size_t i = 0; i < e->nJ; i++, k += 2) {
-        row[k] = column[k + 1] = (int)g->nu + e->J[i].row;
-        column[k] = row[k + 1] = e->J[i].column;
-    }
-    for (size_t i = 0; i < g->n; i++, k++)
-        row[k] = column[k] = (int)i;
-    g->matrix = ct_sparse_create(g->a, (int)g->n, row, column, nentry);
-    g->value = CT_NEWN(g->a, double, nentry + 1);
     return g->matrix != NULL;
 }
 
-// x (nu, out): the first part of the solution for (r, s); s NULL: zero
-static void solve(struct large *g, double *x, const double *r, const double *s)
+// x (nu, out): the first part of the solution for (r, 0)
+static void solve(struct large *g, double *x, const double *r)
 {
-    bool refined = true;
     memcpy(g->b, r, g->nu * sizeof *r);
-    if (s)
-        memcpy(g->b + g->nu, s, g->nrow * sizeof *s);
-    else
-        memset(g->b + g->nu, 0, g->nrow * sizeof *g->b);
-    ct_sparse_solve(g->matrix, g->x, g->b, &refined);
+    memset(g->b + g->nu, 0, g->nrow * sizeof *g->b);
+    ct_sparse_solve_precisely(g->matrix, g->x, g->b);
     memcpy(x, g->x, g->nu * sizeof *x);
 }
 
@@ -132,24 +79,25 @@ static void solve(struct large *g, double *x, const double *r, const double *s)
 static bool balance(struct large *g)
 {
     struct ct_linear *l = g->l;
-    struct ct_machine *m = l->m;
     double *r = CT_NEWN(g->a, double, g->nu + 1);
+    if (l->is_resting)
+        return ct_point_evaluate(g->p);
     memset(l->a, 0, g->nu * sizeof *l->a);
     memset(l->lam, 0, g->nrow * sizeof *l->lam);
-    evaluate(g, l->a, l->lam);
-    ct_program_run(&m->residual, m->input);
+    if (!ct_point_evaluate(g->p))
+        return false;
     for (size_t i = 0; i < g->nu; i++)
-        r[i] = -m->residual.out[i];
+        r[i] = -g->p->r[i];
     if (largest(r, g->nu) == 0) // nothing acts
         return true;
-    if (!factor(g, true, 0))
+    g->matrix = ct_point_factor(g->p, 0, 1);
+    if (!g->matrix)
         return false;
-    solve(g, l->a, r, NULL);
+    solve(g, l->a, r);
     for (size_t i = 0; i < g->nrow; i++) // r - J' lam = -M a: the unknown of the matrix is -lam
         l->lam[i] = -g->x[g->nu + i];
-    evaluate(g, l->a, l->lam);
     l->acceleration = largest(l->a, g->nu);
-    return true;
+    return ct_point_evaluate(g->p);
 }
 
 // Numbers in [-1, 1) that are the same in every run.
@@ -175,8 +123,8 @@ static bool is_symmetric(struct large *g)
         x[i] = chance(&state);
         y[i] = chance(&state);
     }
-    apply(Kx, g->f->dq, g->f->ndq, g->K, x, g->nu);
-    apply(Ky, g->f->dq, g->f->ndq, g->K, y, g->nu);
+    ct_point_apply(Kx, g->p->K, g->p->nK, x, g->nu);
+    ct_point_apply(Ky, g->p->K, g->p->nK, y, g->nu);
     double size = 0;
     for (size_t i = 0; i < g->nu; i++)
         size += fabs(y[i] * Kx[i]);
@@ -188,16 +136,13 @@ static bool is_of_this_kind(struct large *g)
     const struct ct_machine *m = g->l->m;
     if ((g->nrow && m->e->ndriver) || largest(g->l->y + m->nq, g->nu) > 0)
         return false;
-    ct_machine_set(g->l->m, g->l->t, g->l->y);
-    ct_program_run(&g->l->m->residual, m->input); // phi, v behind r: motions of chords
-    if (largest(m->residual.out + g->nu + g->nrow, g->nrow) > 0)
-        return false;
-    if (!create_matrix(g) || !balance(g))
+    if (!balance(g) || largest(g->p->v, g->nrow) > 0) // motions of chords
         return false;
     if (g->nrow && g->l->acceleration > still)
         return false; // the rows turn while it accelerates
-    const double rate = sqrt(largest(g->K, g->f->ndq) * largest(g->M, g->f->nda));
-    return largest(g->C, g->f->ndu) <= absent * rate && is_symmetric(g);
+    const double rate
+        = sqrt(largest_entry(g->p->K, g->p->nK) * largest_entry(g->p->M, g->p->nM));
+    return largest_entry(g->p->C, g->p->nC) <= absent * rate && is_symmetric(g);
 }
 
 // ---- Lanczos -----------------------------------------------------------------------------------------------------
@@ -207,7 +152,7 @@ static bool is_of_this_kind(struct large *g)
 static bool take_in(struct large *g, double *x, double *c, double *size)
 {
     double *Mx = g->MV + g->nu * g->k, *v = g->V + g->nu * g->k;
-    apply(Mx, g->f->da, g->f->nda, g->M, x, g->nu);
+    apply_masses(g, Mx, x);
     const double before = sqrt(fmax(dot(x, Mx, g->nu), 0));
     for (int pass = 0; pass < 2; pass++)
         for (size_t j = 0; j < g->k; j++) {
@@ -217,7 +162,7 @@ static bool take_in(struct large *g, double *x, double *c, double *size)
             if (c)
                 c[j] += h;
         }
-    apply(Mx, g->f->da, g->f->nda, g->M, x, g->nu);
+    apply_masses(g, Mx, x);
     *size = sqrt(fmax(dot(x, Mx, g->nu), 0));
     if (!(*size > gone * before))
         return false;
@@ -281,8 +226,8 @@ static size_t iterate(struct large *g, size_t count, struct ritz *z)
         double *w = g->W + g->nu * c;
         for (size_t i = 0; i < g->nu; i++)
             r[i] = chance(&state);
-        apply(w, g->f->da, g->f->nda, g->M, r, g->nu);
-        solve(g, w, w, NULL);
+        apply_masses(g, w, r);
+        solve(g, w, w);
     }
     size_t first = 0; // of the newest block
     for (size_t c = 0; c < BLOCK; c++)
@@ -290,7 +235,7 @@ static size_t iterate(struct large *g, size_t count, struct ritz *z)
     for (;;) {
         const size_t last = g->k, n = last - first;
         for (size_t c = 0; c < n; c++)
-            solve(g, g->W + g->nu * c, g->MV + g->nu * (first + c), NULL);
+            solve(g, g->W + g->nu * c, g->MV + g->nu * (first + c));
         for (size_t c = 0; c < n; c++)
             for (size_t j = 0; j < last; j++)
                 g->T[j + g->most * (first + c)] = g->T[first + c + g->most * j]
@@ -312,27 +257,142 @@ static size_t iterate(struct large *g, size_t count, struct ritz *z)
     }
 }
 
-static void add_modes(struct large *g, const struct ritz *z, size_t k, size_t count,
-                      struct ct_motion_mode *mode, size_t *nmode)
+// Eigenvalues theta of [K - s M, J'; J, 0]^-1 M (n of them, |theta| descending) and vectors (nu x n) of unit mass.
+struct pairs {
+    double *theta, *vector;
+    size_t n;
+};
+
+static struct pairs by_lanczos(struct large *g, size_t count)
 {
-    for (size_t i = 0; i < count && i < k; i++) {
-        const size_t j = z->order[i];
-        double *y = CT_NEWN(g->a, double, 2 * g->nu + 1);
+    struct ct_arena *a = g->a;
+    g->most = 8 * count + 20 * BLOCK;
+    g->most = g->most > g->nu ? g->nu + BLOCK : g->most;
+    g->V = CT_NEWN(a, double, g->nu *(g->most + BLOCK));
+    g->MV = CT_NEWN(a, double, g->nu *(g->most + BLOCK));
+    g->T = CT_NEWN(a, double, g->most * g->most);
+    struct ritz z = {.theta = CT_NEWN(a, double, g->most + 1),
+                     .S = CT_NEWN(a, double, g->most * g->most + 1),
+                     .residual = CT_NEWN(a, double, g->most + 1),
+                     .order = CT_NEWN(a, size_t, g->most + 1)};
+    const size_t k = iterate(g, count, &z);
+    struct pairs out = {CT_NEWN(a, double, count + 1), CT_NEWN(a, double, g->nu *count + 1), 0};
+    for (; out.n < count && out.n < k; out.n++) {
+        const size_t j = z.order[out.n];
+        double *y = out.vector + g->nu * out.n;
+        if (z.residual[j] > found * fabs(z.theta[j]))
+            break;
+        out.theta[out.n] = z.theta[j];
         for (size_t p = 0; p < k; p++)
             for (size_t q = 0; q < g->nu; q++)
-                y[q] += g->V[q + g->nu * p] * z->S[p + k * j];
-        double w2 = g->shift + 1 / z->theta[j];
+                y[q] += g->V[q + g->nu * p] * z.S[p + k * j];
+    }
+    return out;
+}
+
+// ---- ARPACK ------------------------------------------------------------------------------------------------------
+
+static void operator_solve(void *data, double *y, const double *f)
+{
+    solve(data, y, f);
+}
+
+static void operator_masses(void *data, double *y, const double *x)
+{
+    apply_masses(data, y, x);
+}
+
+struct ranked {
+    double theta;
+    size_t at;
+};
+
+static int by_rank(const void *context, const void *x, const void *y)
+{
+    (void)context;
+    const struct ranked *p = x, *q = y;
+    const double a = fabs(p->theta), b = fabs(q->theta);
+    return a != b ? (a < b) - (a > b) : (p->at > q->at) - (p->at < q->at);
+}
+
+static void rank(struct large *g, struct pairs *out, struct ranked *order)
+{
+    for (size_t i = 0; i < out->n; i++)
+        order[i] = (struct ranked){out->theta[i], i};
+    ct_sort(g->a, order, out->n, sizeof *order, by_rank, NULL);
+}
+
+// A single vector leads to one of several equal eigenvalues, and to others by rounding only (a round beam bends about two
+// axes alike, a free body has six motions of frequency 0). So the search is repeated in the complement of what was
+// found until that holds nothing more of the wanted ones. n is 0 where ARPACK is not available or fails.
+static struct pairs by_arpack(struct large *g, size_t count)
+{
+    enum { MORE = 2, MOST_SEARCHES = 50 };
+    const struct ct_operator op = {operator_solve, operator_masses, g};
+    const size_t most = count + MORE * MOST_SEARCHES;
+    uint64_t state = 7;
+    struct pairs all = {CT_NEWN(g->a, double, most), CT_NEWN(g->a, double, g->nu *most), 0},
+                 out;
+    struct ranked *order = CT_NEWN(g->a, struct ranked, most);
+    double *start = CT_NEWN(g->a, double, g->nu), last = 0; // of the wanted ones so far
+    for (int i = 0; i < MOST_SEARCHES; i++) {
+        for (size_t k = 0; k < g->nu; k++)
+            start[k] = chance(&state);
+        struct ct_arena *meanwhile = ct_arena_create_under(g->a);
+        const int n = ct_arpack_largest(meanwhile, &op, (int)g->nu, i ? MORE : (int)count,
+                                        all.vector, (int)all.n, start, all.theta + all.n,
+                                        all.vector + g->nu * all.n);
+        ct_arena_destroy(meanwhile);
+        if (n <= 0)
+            return (struct pairs){0};
+        double largest_new = 0;
+        for (int k = 0; k < n; k++)
+            largest_new = fmax(largest_new, fabs(all.theta[all.n + (size_t)k]));
+        const bool is_complete = all.n >= count && largest_new <= last;
+        all.n += (size_t)n;
+        rank(g, &all, order);
+        if (is_complete)
+            break;
+        last = all.n >= count ? fabs(order[count - 1].theta) : 0;
+    }
+    if (all.n < count)
+        return (struct pairs){0};
+    out = (struct pairs){CT_NEWN(g->a, double, count + 1),
+                         CT_NEWN(g->a, double, g->nu *count + 1), count};
+    for (size_t i = 0; i < count; i++) {
+        out.theta[i] = order[i].theta;
+        memcpy(out.vector + g->nu * i, all.vector + g->nu * order[i].at,
+               g->nu * sizeof *out.vector);
+    }
+    return out;
+}
+
+// ---- all of it ---------------------------------------------------------------------------------------------------
+
+static void add_modes(struct large *g, const struct pairs *z, struct ct_motion_mode *mode,
+                      size_t *nmode)
+{
+    for (size_t i = 0; i < z->n; i++) {
+        double *y = CT_NEWN(g->a, double, 2 * g->nu + 1);
+        memcpy(y, z->vector + g->nu * i, g->nu * sizeof *y);
+        double w2 = g->shift + 1 / z->theta[i];
         if (fabs(w2) <= 1e-6 * fabs(g->shift))
             w2 = 0; // rounding of the shift
         ct_mode_add_undamped(mode, nmode, w2, y, (int)g->nu);
     }
 }
 
+// Few against what is free to move; else their complement would be too small for restarts.
+static bool are_few(const struct large *g, size_t count)
+{
+    return 4 * count + 40 < g->nu - (g->nrow < g->nu ? g->nrow : g->nu);
+}
+
 bool ct_large_modes(struct ct_ctx *ctx, struct ct_arena *a, struct ct_linear *l, size_t count,
                     struct ct_motion_mode **mode, size_t *nmode, const char **how,
                     bool *applies)
 {
-    struct large g = {.ctx = ctx, .a = a, .l = l, .f = l->m->e->residual};
+    struct large g = {.ctx = ctx, .a = a, .l = l, .p = ct_point_create(l)};
     g.nu = l->m->nu;
     g.nrow = l->m->nrow;
     g.n = g.nu + g.nrow;
@@ -345,28 +405,24 @@ bool ct_large_modes(struct ct_ctx *ctx, struct ct_arena *a, struct ct_linear *l,
     *how = "sparse symmetric";
     if (!*applies)
         return true;
-    if (!factor(&g, false, 0)) { // something is free to move: shifted by a little of the lowest
-        double ratio = 0;
-        for (size_t i = 0; i < g.f->nda; i++)
-            ratio = fmax(ratio, fabs(g.M[i]));
-        ratio = largest(g.K, g.f->ndq) / fmax(ratio, DBL_MIN);
-        if (!factor(&g, false, -1e-9 * fmax(ratio, 1)))
+    if (!factor(&g, 0)) { // something is free to move: shifted by a little of the lowest
+        const double ratio
+            = largest_entry(g.p->K, g.p->nK) / fmax(largest_entry(g.p->M, g.p->nM), DBL_MIN);
+        if (!factor(&g, -1e-9 * fmax(ratio, 1)))
             return ct_error(ctx, (struct ct_mark){.file = l->m->model->file}, CT_E_SINGULAR,
                             "the stiffness and the constraints are singular");
     }
-    g.most = 8 * count + 20 * BLOCK;
-    g.most = g.most > MOST_BASIS ? MOST_BASIS : g.most;
-    g.most = g.most > g.nu ? g.nu + BLOCK : g.most;
-    g.V = CT_NEWN(a, double, g.nu *(g.most + BLOCK));
-    g.MV = CT_NEWN(a, double, g.nu *(g.most + BLOCK));
-    g.T = CT_NEWN(a, double, g.most *g.most);
-    struct ritz z = {.theta = CT_NEWN(a, double, g.most + 1),
-                     .S = CT_NEWN(a, double, g.most *g.most + 1),
-                     .residual = CT_NEWN(a, double, g.most + 1),
-                     .order = CT_NEWN(a, size_t, g.most + 1)};
-    const size_t k = iterate(&g, count, &z);
+    struct pairs z = {0};
+    if (are_few(&g, count))
+        z = by_arpack(&g, count);
+    if (!z.n)
+        z = by_lanczos(&g, count);
+    if (z.n < count && z.n < g.nu)
+        ct_warning(ctx, (struct ct_mark){.file = l->m->model->file}, 0,
+                   "%zu of %zu modes are found to rounding, the others are left out", z.n,
+                   count);
     *mode = CT_NEWN(a, struct ct_motion_mode, 2 * count + 1);
-    add_modes(&g, &z, k, count, *mode, nmode);
+    add_modes(&g, &z, *mode, nmode);
     ct_modes_sort(a, *mode, *nmode);
     return true;
 }

@@ -4,9 +4,6 @@
 
 #include "analysis/eigen.h"
 
-/// More speeds than this, and dense matrices would take long.
-enum { CT_MOST_DENSE = 300 };
-
 /**
  * The lowest modes of a system at rest without dampers and forces that have no potential; with loops without drivers, too.
  *

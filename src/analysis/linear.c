@@ -1,7 +1,10 @@
 // See linear.h.
 #include "analysis/linear.h"
+#include "analysis/point.h"
 #include "numeric/dense.h"
 #include "solve/mode.h"
+
+#include "formulate/formulate.h"
 
 #include <math.h>
 #include <string.h>
@@ -81,6 +84,8 @@ static double largest(const double *v, size_t n)
 static void shortest(struct ct_linear *l, double *d, const double *r)
 {
     const size_t n = (size_t)l->nu, m = (size_t)l->nrow;
+    if (l->nu > CT_MOST_DENSE && ct_point_shortest(l, d, r))
+        return;
     reserve(l);
     memcpy(l->A, l->m->J, n * m * sizeof *l->A);
     memset(l->d, 0, larger(n, m) * sizeof *l->d);

@@ -24,6 +24,7 @@ struct ct_linear {
     double *force;       // unbalanced, along the independent speeds (nfree)
     double *scale;       // of the forces that meet in each row of r (nu)
     double acceleration; // largest |u'|
+    bool is_resting;     // at an equilibrium: a is zero, lam holds it, what is left is rounding
 
     double *M, *C, *K;            // nu x nu
     double *J, *D, *D2;           // nrow x nu: of the speeds, of the accelerations

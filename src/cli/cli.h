@@ -85,6 +85,9 @@ int cli_complain(const struct cli_command *command, const char *fmt, ...)
 struct ct_system_options cli_system_options(const struct cli_args *args);
 /// The system that the arguments ask for, or NULL.
 struct ct_system *cli_load(struct ct_ctx *ctx, const struct cli_args *args);
+/// The same for analyses at a place.
+struct ct_system *cli_load_for_analysis(struct ct_ctx *ctx, const struct cli_args *args,
+                                        enum ct_columns_more columns);
 /// The same with further columns.
 struct ct_system *cli_load_with(struct ct_ctx *ctx, const struct cli_args *args,
                                 enum ct_columns_more columns);

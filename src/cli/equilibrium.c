@@ -3,7 +3,7 @@
 
 static int run(struct ct_ctx *ctx, const struct cli_args *args)
 {
-    struct ct_system *sys = cli_load_with(ctx, args, CT_COLUMNS_COORDINATES);
+    struct ct_system *sys = cli_load_for_analysis(ctx, args, CT_COLUMNS_COORDINATES);
     const struct ct_equilibrium_options options = {.hold_drivers = args->hold_drivers};
     struct ct_equilibrium *q = ct_equilibrium_create(ctx, sys, &options);
     const bool ok

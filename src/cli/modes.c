@@ -13,7 +13,7 @@ static bool report(struct ct_ctx *ctx, struct ct_modes *modes, const struct cli_
 
 static int run(struct ct_ctx *ctx, const struct cli_args *args)
 {
-    struct ct_system *sys = cli_load(ctx, args);
+    struct ct_system *sys = cli_load_for_analysis(ctx, args, CT_COLUMNS_OF_MODEL);
     const struct ct_modes_options options = {.about = args->about,
                                              .count = args->count,
                                              .hold_drivers = args->hold_drivers,

@@ -194,6 +194,17 @@ size_t ct_ex_pattern(struct ct_exs *x, struct ct_arena *scratch, struct ct_arena
                      const ct_ex *f, size_t nf, const struct ct_seed *seed, size_t nseed,
                      uint32_t ndirection, struct ct_slope **out, double *operations);
 
+/// Entry of a sparse Jacobian at a point.
+struct ct_number {
+    uint32_t row, direction;
+    double value;
+};
+/// The same as numbers, without new nodes: with value[k] for symbol k, fvalue (nf, out) and the derivatives that are not
+/// zero there, by row and then by direction. *out lives in a.
+size_t ct_ex_jacobian_at(struct ct_exs *x, struct ct_arena *scratch, struct ct_arena *a,
+                         const ct_ex *f, size_t nf, const struct ct_seed *seeds, size_t nseed,
+                         const double *value, double *fvalue, struct ct_number **out);
+
 /// a with each symbol from[i] replaced by to[i].
 ct_ex ct_ex_subst(struct ct_exs *x, ct_ex a, const ct_ex *from, const ct_ex *to, size_t n);
 /// The same for all of a (na) in one walk.
@@ -208,6 +219,8 @@ ct_ex ct_ex_import(struct ct_exs *x, const struct ct_exs *from, ct_ex a, ct_ex_l
 double ct_ex_value(const struct ct_exs *x, ct_ex a, const double *value);
 /// One operator on numbers: what every evaluator must agree with.
 double ct_op_apply(enum ct_op op, double a, double b, double c);
+/// Its derivative by the i-th argument, where its value is v; of all but CT_OP_TABLE.
+double ct_op_partial(enum ct_op op, int i, double a, double b, double v);
 /// Value of the order-th derivative of a table at x; NaN outside its range.
 double ct_table_value(const struct ct_table *t, uint32_t order, double x);
 

@@ -15,6 +15,8 @@
 #include "formulate/equations.h"
 #include "graph/graph.h"
 
+enum { CT_LONG_PATH = 40 }; // pieces between two nodes
+
 enum ct_edge_kind { CT_EDGE_BODY, CT_EDGE_ARM, CT_EDGE_JOINT, CT_EDGE_CLOSURE, CT_EDGE_FORCE };
 
 struct ct_node_info {
@@ -186,6 +188,15 @@ struct ct_build {
     size_t nanchor, anchor_cap;
     struct ct_place *place; // by node
     struct ct_piece *piece; // of the path sought last (nanchor + 2)
+    bool *marked;           // clusters that matter to it (ncluster)
+    ct_ex *coefficient;     // of the speeds, in the row in hand (nu)
+    struct ct_user {        // a spin or an anchor's slide that a speed moves
+        bool slides;
+        size_t at, next; // next: its number plus one, 0 at the end
+        int k;           // term or slide
+    } * user;
+    size_t nuser, user_cap,
+        *first_user; // first_user by speed, numbers plus one; NULL: not listed yet
 
     struct ct_flexible *flexible; // one per beam
     size_t nflexible;

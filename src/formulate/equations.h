@@ -90,6 +90,7 @@ struct ct_driver {
 /// varied along the retraction, so that an entry's direction is a speed's index.  (formulation 5.2, 8.2)
 struct ct_residual {
     ct_ex *r;                      // M u' - Q - J' lam  (nu)
+    bool has_slopes;               // those below are derived
     struct ct_slope *dq, *du, *da; // of r by q, u, u'
     struct ct_slope *dv;           // of the rows' v by q
     size_t ndq, ndu, nda, ndv;
@@ -149,6 +150,7 @@ struct ct_equations {
     // operations by formulation, the solution included; INFINITY: it does not apply or cannot win
     double formulation_cost[CT_NFORMULATION];
     bool has_dynamics;  // M and Q are derived; else ct_formulate_dynamics does it
+    bool is_analysed;   // to be linearised, not to be integrated: a few evaluations
     ct_ex *Q;           // nu
     struct ct_entry *J; // row by row
     size_t nJ, J_cap;

@@ -59,7 +59,7 @@ const struct ct_freedom *ct_dof_freedom(const struct ct_flexible *f, int e, int 
 
 // ---- creation -----------------------------------------------------------------------------------------
 
-// E(xi) = integral of slope_j slope_k, and D = xi E(1) - E.
+// E(xi) = integral of slope_j slope_k, D = xi E(1) - E, and the integral of the sections' rotation gradients.
 static void derive_shortening(struct ct_flexible *f)
 {
     const struct ct_shape xi = {.c = {0, 1}};
@@ -71,9 +71,33 @@ static void derive_shortening(struct ct_flexible *f)
             struct ct_shape D = ct_shape_mul(&xi, &one);
             for (int i = 0; i < CT_SHAPE_SIZE; i++)
                 D.c[i] -= E.c[i];
+            const struct ct_shape bend[2] = {ct_shape_slope(&f->shape.rotation[j]),
+                                             ct_shape_slope(&f->shape.rotation[k])};
+            const struct ct_shape curved = ct_shape_mul(&bend[0], &bend[1]);
+            f->curving[j][k] = ct_shape_primitive(&curved);
             f->shortening[j][k] = E;
             f->bubble[j][k] = D;
         }
+}
+
+// The mean strain of a section with rotations g is u' + (v'^2 + (I/A) g'^2)/2: with higher-order terms an axis that does
+// not stretch is drawn in by both. I/A of a tapered element is its mean.
+static void derive_radii(struct ct_build *b, struct ct_flexible *f, struct ct_element *e)
+{
+    const struct ct_beam *beam = f->beam;
+    const struct ct_shape one = {.c = {1}};
+    const ct_ex second[2] = {beam->Iz, beam->Iy};
+    for (int plane = 0; plane < 2 && beam->higher_order && f->axial == CT_AXIAL_CHAIN;
+         plane++) {
+        const struct ct_profile radius = {beam->x, ct_ex_div(b->x, second[plane], beam->area)};
+        const bool varies = ct_ex_kinds(b->x, radius.value) & 1u << CT_SYM_LOCAL;
+        e->radius[plane]
+            = !varies
+                ? radius.value
+                : ct_ex_div(b->x,
+                            ct_shape_integral(b->x, &radius, &one, &e->span, CT_RULE_FULL),
+                            e->span.length);
+    }
 }
 
 // What may deform in a planar mechanism: bending about the normal; a beam's y or z axis points along it.
@@ -170,6 +194,7 @@ static void settle(struct ct_build *b, struct ct_flexible *f)
         // one and the same to the last bit, so that elements are one program
         s->length = beam->is_even ? ct_ex_scale(b->x, 1.0 / beam->nelement, beam->length)
                                   : ct_ex_sub(b->x, beam->end[e], s->start);
+        derive_radii(b, f, &f->element[e]);
     }
 }
 
@@ -253,8 +278,11 @@ static void run_chain(struct ct_build *b, struct ct_flexible *f)
             for (int j = 0; j < 4; j++) {
                 ct_ex Ea = CT_EX_ZERO, Er = CT_EX_ZERO;
                 for (int k = 0; k < 4; k++) {
+                    const ct_ex h = self->span.length;
                     const ct_ex E
-                        = ct_shape_at(x, &f->shortening[j][k], CT_EX_ONE, self->span.length);
+                        = ct_ex_add(x, ct_shape_at(x, &f->shortening[j][k], CT_EX_ONE, h),
+                                    ct_ex_mul(x, self->radius[plane],
+                                              ct_shape_at(x, &f->curving[j][k], CT_EX_ONE, h)));
                     Ea = ct_ex_add(x, Ea, ct_ex_mul(x, E, self->value[first + k]));
                     Er = ct_ex_add(x, Er, ct_ex_mul(x, E, self->rate[first + k]));
                 }
@@ -375,7 +403,12 @@ static ct_ex quadratic_slope(struct ct_build *b, const struct ct_flexible *f, in
     const struct ct_element *self = &f->element[e];
     const bool local = axial == CT_AXIAL_LOCAL;
     const struct ct_shape *row = local ? f->bubble[j] : f->shortening[j];
-    const ct_ex v = ct_element_field(b, self, row, of, plane ? 6 : 2, 4, xi);
+    ct_ex v = ct_element_field(b, self, row, of, plane ? 6 : 2, 4, xi);
+    if (!ct_ex_is_zero(self->radius[plane]))
+        v = ct_ex_add(
+            b->x, v,
+            ct_ex_mul(b->x, self->radius[plane],
+                      ct_element_field(b, self, f->curving[j], of, plane ? 6 : 2, 4, xi)));
     return local ? v : ct_ex_neg(b->x, v);
 }
 

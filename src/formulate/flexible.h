@@ -43,6 +43,8 @@ struct ct_freedom {
 
 struct ct_element {
     struct ct_span span;
+    ct_ex radius
+        [2]; // CHAIN, higher-order: I/A by plane, what rotation gradients draw the axis in by  [m^2]
     int freedom[CT_DOF];                                     // -1: fixed
     ct_ex value[CT_DOF], rate[CT_DOF], acceleration[CT_DOF]; // of the dofs
     ct_ex c, c_rate,
@@ -76,8 +78,9 @@ struct ct_flexible {
     struct ct_bending shape;
     struct ct_shape linear[2];
     struct ct_shape shortening[4][4], bubble[4][4]; // E(xi), D(xi)
-    ct_ex strain;                                   // [J], once the stiffness is derived
-    struct ct_inertia *inertia;                     // elastic.c
+    struct ct_shape curving[4][4]; // integral of the sections' rotation gradients, as E
+    ct_ex strain;                  // [J], once the stiffness is derived
+    struct ct_inertia *inertia;    // elastic.c
 };
 
 /// Axial displacement of the axis at one place of an element.

@@ -224,32 +224,79 @@ const struct ct_sweep *ct_sweep_run(struct ct_build *b, enum ct_level level)
 // ---- rows -----------------------------------------------------------------------------------------
 
 // Sum over the motion of a speed or a driver: s . torque and p . force.
-static ct_ex sweep_row(struct ct_build *b, const struct ct_sweep *s, int speed, int driver)
+static ct_ex add_spin(struct ct_build *b, const struct ct_sweep *s, ct_ex sum, size_t r,
+                      const struct ct_term *t)
 {
     struct ct_exs *x = b->x;
-    ct_ex sum = speed >= 0 ? s->row[speed] : CT_EX_ZERO;
+    const int c = b->spin[r].cluster;
+    const ct_ex moment = ct_ex_add(x, ct_ex3_dot(x, b->spin[r].axis, s->torque[c]),
+                                   ct_ex3_dot(x, b->spin[r].local, s->local[c]));
+    return ct_ex_add(x, sum, ct_ex_mul(x, t->coef, moment));
+}
+
+static ct_ex add_slide(struct ct_build *b, const struct ct_sweep *s, ct_ex sum, size_t a,
+                       const struct ct_slide *t)
+{
+    struct ct_exs *x = b->x;
+    const ct_ex3 p = ct_cluster_turn(b, b->anchor[a].cluster, t->p);
+    sum = ct_ex_add(x, sum, ct_ex3_dot(x, p, s->force[a]));
+    if (ct_ex3_is_zero(t->extra))
+        return sum;
+    const ct_ex3 extra = ct_cluster_turn(b, b->anchor[a].cluster, t->extra);
+    return ct_ex_add(x, sum, ct_ex3_dot(x, extra, ct_sweep_run(b, CT_BIAS)->force[a]));
+}
+
+static void list_user(struct ct_build *b, int speed, bool slides, size_t at, int k,
+                      size_t *last)
+{
+    if (speed < 0)
+        return;
+    const struct ct_user user = {.slides = slides, .at = at, .k = k};
+    CT_PUSH(b->arena, b->user, b->nuser, b->user_cap, user);
+    if (b->first_user[speed])
+        b->user[last[speed] - 1].next = b->nuser;
+    else
+        b->first_user[speed] = b->nuser;
+    last[speed] = b->nuser;
+}
+
+// What each speed moves, in the order of spins and anchors.
+static void list_users(struct ct_build *b)
+{
+    size_t *last = CT_NEWN(b->ctx->scratch, size_t, b->eqs->nu + 1);
+    b->first_user = CT_NEWN(b->arena, size_t, b->eqs->nu + 1);
     for (size_t r = 0; r < b->nspin; r++)
-        for (int k = 0; k < b->spin[r].nterm; k++) {
-            const struct ct_term *t = &b->spin[r].term[k];
-            if (t->speed != speed || t->driver != driver)
-                continue;
-            const int c = b->spin[r].cluster;
-            const ct_ex moment = ct_ex_add(x, ct_ex3_dot(x, b->spin[r].axis, s->torque[c]),
-                                           ct_ex3_dot(x, b->spin[r].local, s->local[c]));
-            sum = ct_ex_add(x, sum, ct_ex_mul(x, t->coef, moment));
-        }
+        for (int k = 0; k < b->spin[r].nterm; k++)
+            list_user(b, b->spin[r].term[k].speed, false, r, k, last);
     for (size_t a = 1; a < b->nanchor; a++)
-        for (int k = 0; k < b->anchor[a].nslide; k++) {
-            const struct ct_slide *t = &b->anchor[a].slide[k];
-            if (t->speed != speed || t->driver != driver)
-                continue;
-            const ct_ex3 p = ct_cluster_turn(b, b->anchor[a].cluster, t->p);
-            sum = ct_ex_add(x, sum, ct_ex3_dot(x, p, s->force[a]));
-            if (ct_ex3_is_zero(t->extra))
-                continue;
-            const ct_ex3 extra = ct_cluster_turn(b, b->anchor[a].cluster, t->extra);
-            sum = ct_ex_add(x, sum, ct_ex3_dot(x, extra, ct_sweep_run(b, CT_BIAS)->force[a]));
-        }
+        for (int k = 0; k < b->anchor[a].nslide; k++)
+            list_user(b, b->anchor[a].slide[k].speed, true, a, k, last);
+}
+
+static ct_ex sweep_row(struct ct_build *b, const struct ct_sweep *s, int speed)
+{
+    ct_ex sum = s->row[speed];
+    if (!b->first_user)
+        list_users(b);
+    for (size_t i = b->first_user[speed]; i > 0; i = b->user[i - 1].next) {
+        const struct ct_user *m = &b->user[i - 1];
+        sum = m->slides ? add_slide(b, s, sum, m->at, &b->anchor[m->at].slide[m->k])
+                        : add_spin(b, s, sum, m->at, &b->spin[m->at].term[m->k]);
+    }
+    return sum;
+}
+
+static ct_ex sweep_driver_row(struct ct_build *b, const struct ct_sweep *s, int driver)
+{
+    ct_ex sum = CT_EX_ZERO;
+    for (size_t r = 0; r < b->nspin; r++)
+        for (int k = 0; k < b->spin[r].nterm; k++)
+            if (b->spin[r].term[k].speed == -1 && b->spin[r].term[k].driver == driver)
+                sum = add_spin(b, s, sum, r, &b->spin[r].term[k]);
+    for (size_t a = 1; a < b->nanchor; a++)
+        for (int k = 0; k < b->anchor[a].nslide; k++)
+            if (b->anchor[a].slide[k].speed == -1 && b->anchor[a].slide[k].driver == driver)
+                sum = add_slide(b, s, sum, a, &b->anchor[a].slide[k]);
     return sum;
 }
 
@@ -258,7 +305,7 @@ void ct_forces_derive(struct ct_build *b)
     const struct ct_sweep *s = ct_sweep_run(b, CT_BIAS);
     struct ct_equations *e = b->eqs;
     for (size_t k = 0; k < e->nu; k++)
-        e->Q[k] = ct_ex_sub(b->x, b->effort[k], sweep_row(b, s, (int)k, -1));
+        e->Q[k] = ct_ex_sub(b->x, b->effort[k], sweep_row(b, s, (int)k));
 }
 
 void ct_dynamics_derive(struct ct_build *b)
@@ -274,12 +321,12 @@ void ct_dynamics_derive(struct ct_build *b)
 
 ct_ex ct_sweep_residual(struct ct_build *b, int speed)
 {
-    return ct_ex_sub(b->x, sweep_row(b, ct_sweep_run(b, CT_FULL), speed, -1), b->effort[speed]);
+    return ct_ex_sub(b->x, sweep_row(b, ct_sweep_run(b, CT_FULL), speed), b->effort[speed]);
 }
 
 ct_ex ct_sweep_driver(struct ct_build *b, int driver)
 {
-    return sweep_row(b, ct_sweep_run(b, CT_FULL), -1, driver);
+    return sweep_driver_row(b, ct_sweep_run(b, CT_FULL), driver);
 }
 
 // ---- efforts of joints ------------------------------------------------------------------------------

@@ -420,6 +420,48 @@ static bool given_trees(struct ct_build *b, const struct ct_formulate_options *o
     return ok;
 }
 
+// Unknowns of a body: those of its joint are as many at least.
+static double own_unknowns(const struct ct_build *b, size_t body)
+{
+    const struct ct_beam *beam = b->model->body[body].beam;
+    return 1 + (beam ? 6. * beam->nelement : 0);
+}
+
+// Entries of the mass matrix between different bodies, roughly: each body against all that carry it in the tree.
+static double coupling(struct ct_build *b, const bool *branch)
+{
+    struct ct_tree t;
+    ct_tree_from_branches(b->arena, &b->graph, branch, &t);
+    double *inboard = CT_NEWN(b->ctx->scratch, double, b->nnode), sum = 0;
+    for (size_t k = 0; k < b->nnode; k++) { // in the order from ground
+        const int v = t.order[k], from = t.parent[v];
+        if (from < 0)
+            continue;
+        const int body = b->node[v].body;
+        const bool enters = body > 0 && b->node[from].body != body;
+        const double own = enters ? own_unknowns(b, (size_t)body) : 0;
+        sum += own * inboard[from];
+        inboard[v] = inboard[from] + own;
+    }
+    return sum;
+}
+
+// Long chains of many unknowns: with each body counted from its neighbour the mass matrix is full, with each counted from
+// ground it is not. The rows of the joints are sparse either way.
+static enum ct_tree_choice choose_for_analysis(struct ct_build *b,
+                                               const struct ct_formulate_options *o,
+                                               const struct ct_tree_pair *p)
+{
+    const double most = 400; // for each unknown
+    double n = 0;
+    for (size_t i = 1; i < b->model->nbody; i++)
+        n += own_unknowns(b, i);
+    if (!o->for_analysis || o->tree != CT_TREE_AUTO || n <= CT_MOST_DENSE
+        || (coupling(b, p->trans) <= most * n && coupling(b, p->rot) <= most * n))
+        return o->tree;
+    return CT_TREE_ABSOLUTE;
+}
+
 static bool choose_trees(struct ct_build *b, const struct search *s,
                          struct ct_tree_report *report)
 {
@@ -431,9 +473,16 @@ static bool choose_trees(struct ct_build *b, const struct search *s,
     report->how = how[o->tree];
     if (o->tree == CT_TREE_GIVEN ? !given_trees(b, o, &r, &p) : !least_weight(b, &r, &p))
         return false;
-    if (o->tree == CT_TREE_AUTO && (is_open(b, &p) || is_long_chain(b, &p)))
+    if (choose_for_analysis(b, o, &p) != o->tree) {
+        struct ct_formulate_options from_ground = *o;
+        from_ground.tree = CT_TREE_ABSOLUTE;
+        const struct rules absolute = make_rules(b, &from_ground);
+        report->how = "absolute coordinates: through the joints the mass matrix would be full";
+        if (!least_weight(b, &absolute, &p))
+            return false;
+    } else if (o->tree == CT_TREE_AUTO && (is_open(b, &p) || is_long_chain(b, &p))) {
         report->how = "least weight; there are no loops to cut";
-    else if (o->tree == CT_TREE_AUTO && !o->measure_all) {
+    } else if (o->tree == CT_TREE_AUTO && !o->measure_all) {
         struct search of_trees = *s;
         int nrow, nu;
         count_weights(b, &p, &nrow, &nu);
@@ -504,6 +553,12 @@ static void measure_all(struct ct_build *b, const struct ct_equations *needed_by
 
 static void derive_dynamics(struct ct_build *b, const struct ct_formulate_options *o)
 {
+    b->eqs->is_analysed
+        = o->for_analysis && b->eqs->nu > CT_MOST_DENSE && !ct_small_is_wanted(b);
+    if (b->eqs->is_analysed) {
+        ct_masses_lump(b); // for energies and rows
+        return;
+    }
     if (o->with_solution && !b->eqs->nrow && b->eqs->nu) {
         ct_open_solve(b, o->formulation);
         return;
@@ -581,11 +636,18 @@ void ct_formulate_dynamics(struct ct_equations *e)
     e->nM = made->nM;
     e->M_cap = made->M_cap;
     e->has_dynamics = true;
+    e->is_analysed = e->build->eqs->is_analysed = false;
 }
 
 void ct_formulate_residual(struct ct_equations *e)
 {
-    if (!e->residual)
+    if (!e->residual || !e->residual->has_slopes)
         ct_residual_derive(e->build, CT_SLOPES_AUTO);
+    e->residual = e->build->eqs->residual;
+}
+
+void ct_formulate_rows(struct ct_equations *e)
+{
+    ct_residual_rows(e->build);
     e->residual = e->build->eqs->residual;
 }

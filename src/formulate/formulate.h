@@ -35,7 +35,12 @@ struct ct_formulate_options {
     const struct ct_equations *like; // beams as in these; NULL: choose
     bool held;                       // drivers stand still at their values: for what is static
     bool without_dynamics; // neither M nor Q: places and speeds are all that is wanted
+    bool
+        for_analysis; // large systems will be linearised, not integrated: neither M nor Q nor a
+                      // solution, and trees that couple few unknowns
 };
+
+enum { CT_MOST_DENSE = 300 }; // speeds; larger systems are analysed with sparse matrices
 
 /// What tree selection found, for the report.
 struct ct_tree_report {
@@ -51,6 +56,9 @@ bool ct_formulate(struct ct_ctx *ctx, struct ct_arena *a, const struct ct_model 
 
 /// M and Q, if the equations do not have them yet: for those who do not use the solution.
 void ct_formulate_dynamics(struct ct_equations *e);
+
+/// Only the rows of the residual form, for derivatives as numbers.
+void ct_formulate_rows(struct ct_equations *e);
 
 /// The residual form, if the equations do not have it yet: for an implicit method chosen after they were made.
 void ct_formulate_residual(struct ct_equations *e);

@@ -67,6 +67,9 @@ ct_ex3 ct_path_position(struct ct_build *b, int tail, int head);
 ct_ex3 ct_path_velocity(struct ct_build *b, int tail, int head);
 ct_ex3 ct_path_acceleration(struct ct_build *b, int tail, int head, enum ct_level level);
 
+/// marked (ncluster, out): clusters whose spins may change the path from tail to head or the axes at its ends.
+void ct_path_mark(struct ct_build *b, int tail, int head, bool *marked);
+
 /// Sweep of node `head` seen from node `tail` for a unit rate of spin r: axis_r x the sum of the path's vectors that
 /// turn with r, less those that would turn with the tail when carried is true (then the path is seen from the tail's
 /// axes): dv_head - dv_tail (- dw_tail x d).  False if it is zero by structure.

@@ -12,6 +12,7 @@
 enum { PLACE, SPEED, ACCELERATION, NLEVEL };
 
 struct seeds {
+    struct ct_arena *a; // NULL: scratch
     struct ct_seed *e;
     size_t n, cap;
 };
@@ -20,7 +21,7 @@ static void plant(struct ct_build *b, struct seeds *s, ct_ex symbol, size_t dire
                   ct_ex value)
 {
     const struct ct_seed seed = {symbol, (uint32_t)direction, value};
-    CT_PUSH(b->ctx->scratch, s->e, s->n, s->cap, seed);
+    CT_PUSH(s->a ? s->a : b->ctx->scratch, s->e, s->n, s->cap, seed);
 }
 
 static size_t direction(const struct ct_build *b, int level, size_t speed)
@@ -276,19 +277,42 @@ static bool try_along(struct ct_build *b, struct ct_residual *f, const struct sl
     return true;
 }
 
-void ct_residual_derive(struct ct_build *b, enum ct_slope_form form)
+size_t ct_residual_seeds(struct ct_build *b, struct ct_arena *a, struct ct_seed **out,
+                         size_t *nplace)
+{
+    struct slopes s = {.all = {.a = a}};
+    plant_all(b, &s);
+    *nplace = s.nplace;
+    *out = s.all.e;
+    return s.all.n;
+}
+
+void ct_residual_rows(struct ct_build *b)
 {
     struct ct_equations *e = b->eqs;
-    struct ct_residual *f = e->residual = CT_NEW(b->arena, struct ct_residual);
+    if (e->residual)
+        return;
+    e->residual = CT_NEW(b->arena, struct ct_residual);
+    e->residual->r = CT_NEWN(b->arena, ct_ex, e->nu + 1);
+    if (e->is_truncated)
+        assemble_rows(b, e->residual->r);
+    else
+        derive_rows(b, e->residual->r);
+}
+
+void ct_residual_derive(struct ct_build *b, enum ct_slope_form form)
+{
+    const struct ct_equations *e = b->eqs;
     struct slopes s = {.nu = e->nu, .nrow = e->nrow};
-    s.r = f->r = CT_NEWN(b->arena, ct_ex, e->nu + 1);
+    ct_residual_rows(b);
+    struct ct_residual *f
+        = CT_NEW(b->arena, struct ct_residual); // an earlier one stays as it is
+    *f = (struct ct_residual){.r = e->residual->r, .has_slopes = true};
+    b->eqs->residual = f;
+    s.r = f->r;
     s.v = CT_NEWN(b->ctx->scratch, ct_ex, e->nrow + 1);
     for (size_t i = 0; i < e->nrow; i++)
         s.v[i] = e->row[i].v;
-    if (e->is_truncated)
-        assemble_rows(b, f->r);
-    else
-        derive_rows(b, f->r);
     plant_all(b, &s);
     if (form == CT_SLOPES_ENTRIES || !try_along(b, f, &s, form))
         derive_entries(b, f, &s);
@@ -299,11 +323,8 @@ size_t ct_slopes_derive(struct ct_build *b, struct ct_arena *a, const ct_ex *f, 
 {
     struct ct_equations *e = b->eqs;
     struct seeds seeds = {0};
-    plant_places(b, &seeds);
-    for (size_t k = 0; k < e->nu; k++) {
-        plant(b, &seeds, e->u[k].symbol, direction(b, SPEED, k), CT_EX_ONE);
-        plant(b, &seeds, e->u[k].derivative, direction(b, ACCELERATION, k), CT_EX_ONE);
-    }
+    size_t nplace;
+    seeds.n = seeds.cap = ct_residual_seeds(b, b->ctx->scratch, &seeds.e, &nplace);
     const size_t first = direction(b, NLEVEL, 0);
     for (size_t i = 0; i < e->nrow; i++)
         plant(b, &seeds, e->row[i].lam, first + i, CT_EX_ONE);

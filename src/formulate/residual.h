@@ -14,6 +14,12 @@
 /// Cost    ENTRIES: O(nodes of r times the speeds each depends on); ALONG: O(nodes of r)
 enum ct_slope_form { CT_SLOPES_AUTO, CT_SLOPES_ENTRIES, CT_SLOPES_ALONG };
 void ct_residual_derive(struct ct_build *b, enum ct_slope_form form);
+/// Only r.
+void ct_residual_rows(struct ct_build *b);
+/// What its derivatives are taken by: symbols and their rates of change in the directions k of the places, nu + k of the
+/// speeds, 2 nu + k of u'. Returns their number; *nplace: those of the places, which come first. *out lives in a.
+size_t ct_residual_seeds(struct ct_build *b, struct ct_arena *a, struct ct_seed **out,
+                         size_t *nplace);
 
 /// Derivatives of f (nf) in the directions: places, speeds, u' (nu each), multipliers (nrow), then the symbols of `more`
 /// (nmore). *out lives in a.

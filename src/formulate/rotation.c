@@ -469,6 +469,11 @@ ct_ex3 ct_cluster_acceleration(struct ct_build *b, int c, enum ct_level level)
 ct_ex3 ct_cluster_path_velocity(struct ct_build *b, int from, int to)
 {
     ct_ex3 sum = {{{0}, {0}, {0}}};
+    int n = 0;
+    for (int c = to; c > 0 && n <= CT_LONG_PATH; c = b->cluster[c].parent)
+        n++;
+    if (from == 0 && n > CT_LONG_PATH)
+        return ct_cluster_velocity(b, to);
     while (from != to) // numbers grow outwards: the larger one steps inwards
         if (to > from) {
             sum = ct_ex3_add(b->x, sum, relative_velocity(b, to));

@@ -258,9 +258,13 @@ static void add_term(struct ct_build *b, struct ct_linear *l, int speed, int dri
         l->driven = ct_ex_add(x, l->driven, ct_ex_mul(x, v, b->eqs->driver[driver].rate));
 }
 
+// One at a time.
 static struct ct_linear linear_zero(struct ct_build *b)
 {
-    return (struct ct_linear){CT_NEWN(b->arena, ct_ex, b->eqs->nu + 1), CT_EX_ZERO};
+    if (!b->coefficient)
+        b->coefficient = CT_NEWN(b->arena, ct_ex, b->eqs->nu + 1);
+    memset(b->coefficient, 0, (b->eqs->nu + 1) * sizeof *b->coefficient);
+    return (struct ct_linear){b->coefficient, CT_EX_ZERO};
 }
 
 // p . (dv_head - dv_tail [- dw_tail x d]) + h . (dw_head - dw_tail) in terms of the speeds.  (4.2)-(4.4)
@@ -269,10 +273,15 @@ static void wrench_terms(struct ct_build *b, struct pair n, const struct ct_wren
 {
     struct ct_exs *x = b->x;
     const int from = b->place[n.tail].frame, to = b->place[n.head].frame;
+    if (!b->marked)
+        b->marked = CT_NEWN(b->arena, bool, b->ncluster + 1);
+    ct_path_mark(b, n.tail, n.head, b->marked);
     for (size_t r = 0; r < b->nspin; r++) {
         const struct ct_spin *s = &b->spin[r];
         ct_ex3 sweep;
         ct_ex v = CT_EX_ZERO;
+        if (!b->marked[s->cluster])
+            continue;
         if (!ct_ex3_is_zero(w->force) && ct_path_sweep(b, n.tail, n.head, r, carried, &sweep))
             v = ct_ex3_dot(x, w->force, sweep);
         const int turns = (int)ct_cluster_is_outboard(b, s->cluster, to)

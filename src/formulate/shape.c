@@ -65,6 +65,16 @@ static double value_at(const struct ct_shape *a, double xi)
     return v;
 }
 
+double ct_shape_value(const struct ct_shape *a, double xi, double length)
+{
+    double v = value_at(a, xi);
+    for (int k = a->power; k > 0; k--)
+        v *= length;
+    for (int k = a->power; k < 0; k++)
+        v /= length;
+    return v;
+}
+
 static ct_ex with_power(struct ct_exs *x, ct_ex v, int power, ct_ex length)
 {
     for (; power > 0; power--)

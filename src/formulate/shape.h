@@ -45,6 +45,7 @@ struct ct_shape ct_shape_primitive(const struct ct_shape *a);
 double ct_shape_end(const struct ct_shape *a);
 bool ct_shape_is_zero(const struct ct_shape *a);
 ct_ex ct_shape_at(struct ct_exs *x, const struct ct_shape *a, ct_ex xi, ct_ex length);
+double ct_shape_value(const struct ct_shape *a, double xi, double length);
 
 /// Integral of g p over the element. FULL is exact for a constant g (fractions correctly rounded) and for a polynomial
 /// g p up to degree 15; ENDS takes half of the integral of g at each end.

@@ -128,6 +128,14 @@ static void truncate_masses(struct ct_build *b, const struct small *s)
     e->nM = kept;
 }
 
+bool ct_small_is_wanted(const struct ct_build *b)
+{
+    for (size_t i = 0; i < b->nflexible; i++)
+        if (b->flexible[i].formulation == CT_BEAM_STRETCH_LINEAR)
+            return true;
+    return b->model->simulation.small.given && b->model->simulation.small.n > 0;
+}
+
 bool ct_small_derive(struct ct_build *b)
 {
     struct small s = {0};

@@ -6,6 +6,8 @@
 
 /// Is joint j named under `small`?
 bool ct_small_joint(const struct ct_build *b, int j);
+/// Are there coordinates that are small?
+bool ct_small_is_wanted(const struct ct_build *b);
 /// M and Q to first order in the coordinates of all joints and beams that are small, and in their rates, about zero;
 /// constraint rows stay exact. In M the entries between two small coordinates are constant: their accelerations are small,
 /// too. Those between a small and another coordinate keep the first order in both rows, so that M stays symmetric; in the

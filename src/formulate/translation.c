@@ -5,6 +5,7 @@
 #include "formulate/flexible.h"
 
 #include <assert.h>
+#include <string.h>
 
 static const ct_ex3 zero3 = {{{0}, {0}, {0}}};
 
@@ -334,10 +335,18 @@ static ct_ex3 accumulate(struct ct_build *b, ct_ex3 sum, int sign, ct_ex3 v)
     return sign > 0 ? ct_ex3_add(b->x, sum, v) : ct_ex3_sub(b->x, sum, v);
 }
 
+// From ground over many pieces: places and velocities that nodes on the way share cost less than a sum of one's own.
+static bool is_long(const struct path *p, int tail)
+{
+    return tail == 0 && p->n > CT_LONG_PATH;
+}
+
 ct_ex3 ct_path_position(struct ct_build *b, int tail, int head)
 {
     const struct path p = find_path(b, tail, head);
     ct_ex3 sum = zero3;
+    if (is_long(&p, tail))
+        return ct_node_position(b, head);
     for (size_t i = 0; i < p.n; i++)
         sum = accumulate(b, sum, p.piece[i].sign, piece_vector(b, &p.piece[i]));
     return sum;
@@ -347,6 +356,8 @@ ct_ex3 ct_path_velocity(struct ct_build *b, int tail, int head)
 {
     const struct path p = find_path(b, tail, head);
     ct_ex3 sum = zero3;
+    if (is_long(&p, tail))
+        return ct_node_velocity(b, head);
     for (size_t i = 0; i < p.n; i++)
         sum = accumulate(b, sum, p.piece[i].sign, piece_velocity(b, &p.piece[i]));
     return sum;
@@ -372,6 +383,17 @@ static bool local_sweep(struct ct_build *b, const struct ct_spin *s, ct_ex3 v, c
         return false;
     *sweep = ct_cluster_turn(b, s->cluster, local);
     return true;
+}
+
+void ct_path_mark(struct ct_build *b, int tail, int head, bool *marked)
+{
+    const struct path p = find_path(b, tail, head);
+    int end[2] = {b->place[tail].frame, b->place[head].frame};
+    memset(marked, 0, b->ncluster * sizeof *marked);
+    for (size_t i = 0; i < p.n + COUNT(end); i++)
+        for (int c = i < p.n ? p.piece[i].cluster : end[i - p.n]; c > 0 && !marked[c];
+             c = b->cluster[c].parent)
+            marked[c] = true;
 }
 
 bool ct_path_sweep(struct ct_build *b, int tail, int head, size_t r, bool carried,

@@ -12,32 +12,40 @@ static const double arrived = 1e-12; // relative change of the first frequency
 
 // ---- numbers along the beam -----------------------------------------------------------------------------
 
+struct lump { // a body that a weld holds to a point of the beam
+    double mass, x;
+};
+
 struct line {
     struct ct_build *b;
     const struct ct_flexible *f;
-    int plane;     // 0: along y, 1: along z
-    int n;         // freedoms of this plane
+    int plane; // 0: along y, 1: along z
+    int n,
+        band; // freedoms of this plane; the most by which the numbers of two that meet differ
     int *number;   // by freedom, -1: fixed or of another kind
-    double *K, *M; // n x n
+    double *K, *M; // lower triangles, A(i, j) at i - j + (band + 1) j
     double *Kg[2]; // with P1, P2
+    double *
+        beyond; // by element and one more: int m x and int m from its start to the end of the beam  (2 x)
+    double *value; // of symbols
+    struct lump *lump;
+    size_t nlump;
     double xi[POINTS], weight[POINTS];
 };
 
 static double number(const struct line *s, ct_ex e)
 {
-    return ct_ex_value(s->b->x, e, s->b->value);
+    return ct_ex_value(s->b->x, e, s->value);
 }
 
 static double profile(const struct line *s, ct_ex g, int e, double xi)
 {
-    const struct ct_profile p = {s->f->beam->x, g};
-    return number(s, ct_profile_at(s->b->x, &p, &s->f->element[e].span, xi));
-}
-
-static double shape(const struct line *s, const struct ct_shape *p, double xi, double h)
-{
-    return number(s,
-                  ct_shape_at(s->b->x, p, ct_ex_const(s->b->x, xi), ct_ex_const(s->b->x, h)));
+    const struct ct_span *span = &s->f->element[e].span;
+    const ct_ex x = s->f->beam->x;
+    if (ct_ex_kinds(s->b->x, g) & 1u << CT_SYM_LOCAL)
+        s->value[ct_ex_node(s->b->x, x)->a]
+            = number(s, span->start) + xi * number(s, span->length);
+    return number(s, g);
 }
 
 // Mass of a body that a weld holds to a point of the beam, and where; 0 for other joints.
@@ -57,33 +65,58 @@ static double welded(const struct ct_build *b, const struct ct_flexible *f,
     return 0;
 }
 
-// int_x^L of m and of m x from a place xi of element e, welded masses included.
-static void mass_beyond(const struct line *s, int e, double xi, double P[2])
+static void list_lumps(struct line *s)
 {
     const struct ct_model *m = s->b->model;
-    const struct ct_flexible *f = s->f;
-    const double here
-        = number(s, f->element[e].span.start) + xi * number(s, f->element[e].span.length);
-    P[0] = P[1] = 0;
-    for (int i = e; i < f->beam->nelement; i++) {
-        const double start = number(s, f->element[i].span.start),
-                     h = number(s, f->element[i].span.length), from = i == e ? xi : 0;
-        for (int k = 0; k < POINTS; k++) {
-            const double at = from + (1 - from) * s->xi[k];
-            const double dm
-                = s->weight[k] * (1 - from) * h * profile(s, f->beam->mass_per_length, i, at);
-            P[0] += dm * (start + at * h);
-            P[1] += dm;
-        }
-    }
+    s->lump = CT_NEWN(s->b->ctx->scratch, struct lump, m->njoint + 1);
     for (size_t j = 0; j < m->njoint; j++) {
-        double x;
-        const double mass = welded(s->b, f, &m->joint[j], &x);
-        if (mass > 0 && x > here) {
-            P[0] += mass * x;
-            P[1] += mass;
-        }
+        struct lump at;
+        at.mass = welded(s->b, s->f, &m->joint[j], &at.x);
+        if (at.mass > 0)
+            s->lump[s->nlump++] = at;
     }
+}
+
+// P (2, out) = int m x and int m over element e from xi on.
+static void mass_within(const struct line *s, int e, double xi, double P[2])
+{
+    const double start = number(s, s->f->element[e].span.start),
+                 h = number(s, s->f->element[e].span.length);
+    P[0] = P[1] = 0;
+    for (int k = 0; k < POINTS; k++) {
+        const double at = xi + (1 - xi) * s->xi[k];
+        const double dm
+            = s->weight[k] * (1 - xi) * h * profile(s, s->f->beam->mass_per_length, e, at);
+        P[0] += dm * (start + at * h);
+        P[1] += dm;
+    }
+}
+
+static void sum_masses(struct line *s)
+{
+    const int n = s->f->beam->nelement;
+    s->beyond = CT_NEWN(s->b->ctx->scratch, double, 2 * (n + 1));
+    for (int e = n; e-- > 0;) {
+        double P[2];
+        mass_within(s, e, 0, P);
+        for (int i = 0; i < 2; i++)
+            s->beyond[2 * e + i] = s->beyond[2 * e + 2 + i] + P[i];
+    }
+}
+
+// int_x^L of m x and of m from a place xi of element e, welded masses included.
+static void mass_beyond(const struct line *s, int e, double xi, double P[2])
+{
+    const double here
+        = number(s, s->f->element[e].span.start) + xi * number(s, s->f->element[e].span.length);
+    mass_within(s, e, xi, P);
+    for (int i = 0; i < 2; i++)
+        P[i] += s->beyond[2 * e + 2 + i];
+    for (size_t j = 0; j < s->nlump; j++)
+        if (s->lump[j].x > here) {
+            P[0] += s->lump[j].mass * s->lump[j].x;
+            P[1] += s->lump[j].mass;
+        }
 }
 
 // ---- matrices of a plane -----------------------------------------------------------------------------------
@@ -92,10 +125,10 @@ static void add(struct line *s, double *A, int e, int j, int k, double v)
 {
     const int first = s->plane ? 6 : 2;
     const int p = s->f->element[e].freedom[first + j], q = s->f->element[e].freedom[first + k];
-    if (p < 0 || q < 0)
+    if (p < 0 || q < 0 || s->number[p] < s->number[q])
         return;
     const bool opposed = s->plane && (j % 2) != (k % 2); // dw/dx = -ry
-    A[s->number[p] + s->n * s->number[q]] += opposed ? -v : v;
+    A[s->number[p] - s->number[q] + (s->band + 1) * s->number[q]] += opposed ? -v : v;
 }
 
 static void add_element(struct line *s, int e)
@@ -111,10 +144,10 @@ static void add_element(struct line *s, int e)
         double place[4], slope[4], turn[4], bend[4], P[2];
         for (int j = 0; j < 4; j++) {
             const struct ct_shape d = ct_shape_slope(&s->f->shape.rotation[j]);
-            place[j] = shape(s, &s->f->shape.place[j], xi, h);
-            slope[j] = shape(s, &s->f->shape.slope[j], xi, h);
-            turn[j] = shape(s, &s->f->shape.rotation[j], xi, h);
-            bend[j] = shape(s, &d, xi, h);
+            place[j] = ct_shape_value(&s->f->shape.place[j], xi, h);
+            slope[j] = ct_shape_value(&s->f->shape.slope[j], xi, h);
+            turn[j] = ct_shape_value(&s->f->shape.rotation[j], xi, h);
+            bend[j] = ct_shape_value(&d, xi, h);
         }
         const double stiffness = profile(s, EI, e, xi),
                      shear = shears ? profile(s, GA, e, xi) : 0,
@@ -134,24 +167,20 @@ static void add_element(struct line *s, int e)
 }
 
 // Welded masses move with the shape at their point.
-static void add_welded(struct line *s)
+static void add_lumps(struct line *s)
 {
-    const struct ct_model *m = s->b->model;
-    for (size_t i = 0; i < m->njoint; i++) {
-        double x, h = 1;
-        const double mass = welded(s->b, s->f, &m->joint[i], &x);
-        int e = 0;
-        if (!(mass > 0))
-            continue;
-        while (e + 1 < s->f->beam->nelement && x > number(s, s->f->beam->end[e]))
+    int e = 0;
+    for (size_t i = 0; i < s->nlump; i++) {
+        const double x = s->lump[i].x;
+        for (e = 0; e + 1 < s->f->beam->nelement && x > number(s, s->f->beam->end[e]);)
             e++;
-        h = number(s, s->f->element[e].span.length);
-        const double xi = (x - number(s, s->f->element[e].span.start)) / h;
+        const double h = number(s, s->f->element[e].span.length),
+                     xi = (x - number(s, s->f->element[e].span.start)) / h;
         for (int j = 0; j < 4; j++)
             for (int k = 0; k < 4; k++)
                 add(s, s->M, e, j, k,
-                    mass * shape(s, &s->f->shape.place[j], xi, h)
-                        * shape(s, &s->f->shape.place[k], xi, h));
+                    s->lump[i].mass * ct_shape_value(&s->f->shape.place[j], xi, h)
+                        * ct_shape_value(&s->f->shape.place[k], xi, h));
     }
 }
 
@@ -167,42 +196,53 @@ static void number_freedoms(struct line *s)
             if (i >= 0 && s->number[i] < 0)
                 s->number[i] = s->n++;
         }
+    for (int e = 0; e < s->f->beam->nelement; e++)
+        for (int j = 0; j < 16; j++) {
+            const int p = s->f->element[e].freedom[first + j % 4],
+                      q = s->f->element[e].freedom[first + j / 4];
+            if (p >= 0 && q >= 0 && s->number[p] - s->number[q] > s->band)
+                s->band = s->number[p] - s->number[q];
+        }
 }
 
 // ---- first bending shape --------------------------------------------------------------------------------------
 
-static double form(const double *A, const double *v, int n)
+// y (n, out) = A v, and v' A v
+static double apply(const struct line *s, double *y, const double *A, const double *v)
 {
     double sum = 0;
-    for (int j = 0; j < n; j++)
-        for (int i = 0; i < n; i++)
-            sum += v[i] * A[i + n * j] * v[j];
+    memset(y, 0, (size_t)s->n * sizeof *y);
+    for (int j = 0; j < s->n; j++)
+        for (int i = j; i < s->n && i <= j + s->band; i++) {
+            const double a = A[i - j + (s->band + 1) * j];
+            y[i] += a * v[j];
+            y[j] += i > j ? a * v[i] : 0;
+        }
+    for (int i = 0; i < s->n; i++)
+        sum += v[i] * y[i];
     return sum;
 }
 
-// Inverse iteration: K v = M v; returns omega^2, 0 if it does not settle.
-static double first_shape(struct line *s, double *v)
+// Inverse iteration: K v = M v; returns omega^2, 0 if it does not settle. y: n
+static double first_shape(struct line *s, double *v, double *y)
 {
-    const int n = s->n;
-    struct ct_arena *a = s->b->ctx->scratch;
-    double *L = CT_NEWN(a, double, n *n), *w = CT_NEWN(a, double, n), last = 0;
-    memcpy(L, s->K, (size_t)(n * n) * sizeof *L);
-    if (!ct_cholesky(L, n, n))
+    const int n = s->n, size = (s->band + 1) * n;
+    double *L = CT_NEWN(s->b->ctx->scratch, double, size), last = 0;
+    memcpy(L, s->K, (size_t)size * sizeof *L);
+    if (!ct_band_cholesky(L, n, s->band))
         return 0;
     for (int i = 0; i < n; i++)
         v[i] = 1;
     for (int k = 0; k < MOST_ITERATIONS; k++) {
-        memset(w, 0, (size_t)n * sizeof *w);
-        for (int j = 0; j < n; j++)
-            for (int i = 0; i < n; i++)
-                w[i] += s->M[i + n * j] * v[j];
-        ct_cholesky_solve(w, L, n, n, 1, n);
-        const double size = sqrt(form(s->M, w, n));
-        if (!(size > 0))
+        apply(s, y, s->M, v);
+        memcpy(v, y, (size_t)n * sizeof *v);
+        ct_band_cholesky_solve(v, L, n, s->band);
+        const double moved = sqrt(apply(s, y, s->M, v));
+        if (!(moved > 0))
             return 0;
         for (int i = 0; i < n; i++)
-            v[i] = w[i] / size;
-        const double omega2 = form(s->K, v, n);
+            v[i] /= moved;
+        const double omega2 = apply(s, y, s->K, v);
         if (fabs(omega2 - last) <= arrived * omega2)
             return omega2;
         last = omega2;
@@ -220,20 +260,24 @@ static bool coefficients(struct ct_build *b, const struct ct_flexible *f, int pl
     number_freedoms(&s);
     if (!s.n)
         return false;
-    double *const v = CT_NEWN(a, double, s.n);
-    s.K = CT_NEWN(a, double, s.n *s.n);
-    s.M = CT_NEWN(a, double, s.n *s.n);
-    for (int i = 0; i < 2; i++)
-        s.Kg[i] = CT_NEWN(a, double, s.n *s.n);
+    const int size = (s.band + 1) * s.n;
+    double *const v = CT_NEWN(a, double, s.n), *const y = CT_NEWN(a, double, s.n);
+    double **const matrix[] = {&s.K, &s.M, &s.Kg[0], &s.Kg[1]};
+    for (size_t i = 0; i < COUNT(matrix); i++)
+        *matrix[i] = CT_NEWN(a, double, size);
+    s.value = CT_NEWN(a, double, b->model->x->nsym + 1);
+    memcpy(s.value, b->value, b->model->x->nsym * sizeof *s.value);
+    list_lumps(&s);
+    sum_masses(&s);
     for (int e = 0; e < f->beam->nelement; e++)
         add_element(&s, e);
-    add_welded(&s);
-    const double omega2 = first_shape(&s, v), elastic = form(s.K, v, s.n);
+    add_lumps(&s);
+    const double omega2 = first_shape(&s, v, y), elastic = apply(&s, y, s.K, v);
     if (!(omega2 > 0))
         return false;
     *omega = sqrt(omega2);
     for (int i = 0; i < 2; i++)
-        k[i] = form(s.Kg[i], v, s.n) / elastic;
+        k[i] = apply(&s, y, s.Kg[i], v) / elastic;
     return true;
 }
 

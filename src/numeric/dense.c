@@ -34,6 +34,13 @@ extern void dormrz_(const char *side, const char *trans, const int *m, const int
 extern void dtrtrs_(const char *uplo, const char *trans, const char *diag, const int *n,
                     const int *nrhs, const double *a, const int *lda, double *b, const int *ldb,
                     int *info, size_t, size_t, size_t);
+extern void dsygst_(const int *itype, const char *uplo, const int *n, double *a, const int *lda,
+                    const double *b, const int *ldb, int *info, size_t);
+extern void dpbtrf_(const char *uplo, const int *n, const int *kd, double *ab, const int *ldab,
+                    int *info, size_t);
+extern void dpbtrs_(const char *uplo, const int *n, const int *kd, const int *nrhs,
+                    const double *ab, const int *ldab, double *b, const int *ldb, int *info,
+                    size_t);
 extern void dsygv_(const int *itype, const char *jobz, const char *uplo, const int *n,
                    double *a, const int *lda, double *b, const int *ldb, double *w,
                    double *work, const int *lwork, int *info, size_t, size_t);
@@ -122,33 +129,33 @@ void ct_cholesky_solve(double *x, const double *L, int n, int lda, int nrhs, int
 
 void ct_cholesky_back(double *x, const double *L, int n, int lda)
 {
-    for (int j = n; j-- > 0;) {
-        const double *l = L + (size_t)lda * j;
-        for (int i = j + 1; i < n; i++)
-            x[j] -= l[i] * x[i];
-        x[j] /= l[j];
-    }
+    int info;
+    const int one = 1, ldx = max_int(1, n);
+    lda = max_int(1, lda);
+    dtrtrs_("L", "T", "N", &n, &one, L, &lda, x, &ldx, &info, 1, 1, 1);
 }
 
 void ct_cholesky_congruence(double *H, const double *L, int n, int lda)
 {
-    for (int side = 0; side < 2; side++) { // H <- (L^-1 H)', twice
-        for (int c = 0; c < n; c++) {
-            double *x = H + (size_t)n * c;
-            for (int j = 0; j < n; j++) {
-                const double *l = L + (size_t)lda * j;
-                x[j] /= l[j];
-                for (int i = j + 1; i < n; i++)
-                    x[i] -= l[i] * x[j];
-            }
-        }
-        for (int j = 0; j < n; j++)
-            for (int i = 0; i < j; i++) {
-                const double swap = H[i + (size_t)n * j];
-                H[i + (size_t)n * j] = H[j + (size_t)n * i];
-                H[j + (size_t)n * i] = swap;
-            }
-    }
+    int info;
+    const int itype = 1, ldh = max_int(1, n);
+    lda = max_int(1, lda);
+    dsygst_(&itype, "L", &n, H, &ldh, L, &lda, &info, 1);
+}
+
+bool ct_band_cholesky(double *A, int n, int band)
+{
+    int info;
+    const int lda = band + 1;
+    dpbtrf_("L", &n, &band, A, &lda, &info, 1);
+    return info == 0;
+}
+
+void ct_band_cholesky_solve(double *x, const double *L, int n, int band)
+{
+    int info;
+    const int lda = band + 1, one = 1, ldx = max_int(1, n);
+    dpbtrs_("L", &n, &band, &one, L, &lda, x, &ldx, &info, 1);
 }
 
 static int largest_below(const double *col, int k, int n)

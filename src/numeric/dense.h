@@ -20,10 +20,16 @@ bool ct_cholesky(double *A, int n, int lda);
 /// x (n x nrhs, in: right-hand sides, out: solutions) with the factor of ct_cholesky.
 void ct_cholesky_solve(double *x, const double *L, int n, int lda, int nrhs, int ldx);
 
-/// H (n x n, symmetric) = L^-1 H L^-T with that factor.
+/// H (n x n, symmetric: lower) = L^-1 H L^-T with that factor.
 void ct_cholesky_congruence(double *H, const double *L, int n, int lda);
 /// x = L^-T x.
 void ct_cholesky_back(double *x, const double *L, int n, int lda);
+
+/// Cholesky of a banded matrix in place: A(i, j), j <= i <= j + band, at A[i - j + (band + 1) * j]. False if it is not
+/// positive definite.
+bool ct_band_cholesky(double *A, int n, int band);
+/// x (n, in: right-hand side, out: solution) with that factor.
+void ct_band_cholesky_solve(double *x, const double *L, int n, int band);
 
 /// LU with partial pivoting in place; false if exactly singular. pivot (n).
 bool ct_lu(double *A, int *pivot, int n, int lda);

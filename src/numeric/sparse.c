@@ -8,6 +8,7 @@
 #include <klu.h>
 #endif
 
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -24,6 +25,7 @@ struct ct_sparse {
     size_t nentry;
     int *place; // of each entry among the values
     double *r, *scale;
+    long double *sum;
     double operations; // of the last pivots
     klu_common common;
     klu_symbolic *symbolic;
@@ -69,7 +71,7 @@ static void compress(struct ct_arena *a, struct ct_sparse *s, const int *row, co
 }
 
 struct ct_sparse *ct_sparse_create(struct ct_arena *a, int n, const int *row, const int *column,
-                                   size_t nentry)
+                                   size_t nentry, enum ct_sparse_order order)
 {
     struct ct_sparse *s = CT_NEW(a, struct ct_sparse);
     if (n == 0)
@@ -79,9 +81,11 @@ struct ct_sparse *ct_sparse_create(struct ct_arena *a, int n, const int *row, co
     compress(a, s, row, column);
     s->value = CT_NEWN(a, double, s->nz + 1);
     s->r = CT_NEWN(a, double, n);
+    s->sum = CT_NEWN(a, long double, n);
     s->scale = CT_NEWN(a, double, n);
     klu_defaults(&s->common);
     s->common.tol = diagonal_preference;
+    s->common.ordering = order == CT_SPARSE_ANY; // COLAMD, else AMD
     s->common.scale = 0; // pivots in the units of the rows: they are compared with each other
     ct_arena_at_end(a, release, s);
     s->symbolic = klu_analyze(n, s->start, s->row, &s->common);
@@ -152,6 +156,47 @@ double ct_sparse_solve(struct ct_sparse *s, double *x, const double *b, bool *is
     return backward_error(s, x, b);
 }
 
+// r = b - A x
+static void precise_residual(struct ct_sparse *s, const double *x, const double *b)
+{
+    long double *sum = s->sum;
+    for (int i = 0; i < s->n; i++)
+        sum[i] = b[i];
+    for (int j = 0; j < s->n; j++)
+        for (int k = s->start[j]; k < s->start[j + 1]; k++)
+            sum[s->row[k]] -= (long double)s->value[k] * x[j];
+    for (int i = 0; i < s->n; i++)
+        s->r[i] = (double)sum[i];
+}
+
+static double largest(const double *v, int n)
+{
+    double max = 0;
+    for (int i = 0; i < n; i++)
+        max = fmax(max, fabs(v[i]));
+    return max;
+}
+
+void ct_sparse_solve_precisely(struct ct_sparse *s, double *x, const double *b)
+{
+    enum { MOST = 8 };
+    double last = INFINITY;
+    memcpy(x, b, (size_t)s->n * sizeof *x);
+    klu_solve(s->symbolic, s->numeric, s->n, 1, x, &s->common);
+    for (int i = 0; i < MOST; i++) {
+        precise_residual(s, x, b);
+        klu_solve(s->symbolic, s->numeric, s->n, 1, s->r, &s->common);
+        const double size = largest(s->r, s->n);
+        if (!(size < last / 2))
+            return;
+        for (int k = 0; k < s->n; k++)
+            x[k] += s->r[k];
+        if (size <= DBL_EPSILON * largest(x, s->n))
+            return;
+        last = size;
+    }
+}
+
 double ct_sparse_pivot(const struct ct_sparse *s)
 {
     const double *d = s->numeric->Udiag;
@@ -176,9 +221,9 @@ double ct_sparse_fill(const struct ct_sparse *s)
 #else
 
 struct ct_sparse *ct_sparse_create(struct ct_arena *a, int n, const int *row, const int *column,
-                                   size_t nentry)
+                                   size_t nentry, enum ct_sparse_order order)
 {
-    (void)a, (void)n, (void)row, (void)column, (void)nentry;
+    (void)a, (void)n, (void)row, (void)column, (void)nentry, (void)order;
     return NULL;
 }
 
@@ -200,6 +245,11 @@ double ct_sparse_solve(struct ct_sparse *s, double *x, const double *b, bool *is
 {
     (void)s, (void)x, (void)b, (void)is_refined;
     return 0;
+}
+
+void ct_sparse_solve_precisely(struct ct_sparse *s, double *x, const double *b)
+{
+    (void)s, (void)x, (void)b;
 }
 
 double ct_sparse_pivot(const struct ct_sparse *s)

@@ -13,10 +13,16 @@
 
 struct ct_sparse;
 
+/// For which pivots the rows and columns are put in order.
+enum ct_sparse_order {
+    CT_SPARSE_DIAGONAL, // they will be on the diagonal, or next to it
+    CT_SPARSE_ANY,      // borders without a diagonal: wherever they may be
+};
+
 /// Analyse the pattern of nentry entries (row[k], column[k]) of an n x n matrix; entries at one place are added.
 /// What the library allocates goes with the arena. NULL where the library is not available or n is 0.
 struct ct_sparse *ct_sparse_create(struct ct_arena *a, int n, const int *row, const int *column,
-                                   size_t nentry);
+                                   size_t nentry, enum ct_sparse_order order);
 /// Factor the matrix of these values, in the order of the pattern, with the pivots of before. The first time pivots
 /// are sought. False if it is singular.
 bool ct_sparse_factor(struct ct_sparse *s, const double *value);
@@ -25,6 +31,9 @@ bool ct_sparse_factor_anew(struct ct_sparse *s, const double *value);
 /// x (n, out) = A^-1 b by the last factors, with one step of refinement if *is_refined (in: it is wanted at once;
 /// out: it was made). Returns the largest backward error of a row, |b - A x| / (|b| + most |A| most |x|).
 double ct_sparse_solve(struct ct_sparse *s, double *x, const double *b, bool *is_refined);
+/// The same, refined with residuals in extended precision (where long double has it) until corrections no longer fall: what
+/// the condition of the matrix takes from double precision comes back. Allocates nothing.
+void ct_sparse_solve_precisely(struct ct_sparse *s, double *x, const double *b);
 /// The smallest pivot against the largest, of the last factors.
 double ct_sparse_pivot(const struct ct_sparse *s);
 /// Multiplications and additions of factoring, and entries of the factors: what it costs.

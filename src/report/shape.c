@@ -5,13 +5,22 @@
 
 #include <math.h>
 
-enum { COLUMNS = 3, SIDE = 2600, GAP = 200, TITLE = 500, HEAD = 260, FONT = 130, DOT = 45 };
+enum {
+    COLUMNS = 3,
+    SIDE = 2600,
+    LEAST_HEIGHT = 700,
+    GAP = 200,
+    TITLE = 400,
+    HEAD = 260,
+    FONT = 130,
+    DOT = 45
+};
 
 struct view {
     FILE *out;
     double low[2], scale; // of the points; tenths of a pixel for a metre
     double extent[2];
-    int x, y; // of the panel
+    int x, y, height; // of the panel
 };
 
 static void include(struct view *v, double high[2], const double *p, size_t n)
@@ -30,7 +39,8 @@ static int across(const struct view *v, const double *p)
 
 static int down(const struct view *v, const double *p)
 {
-    return v->y + (int)lround(SIDE / 2.0 - (p[1] - v->low[1] - v->extent[1] / 2) * v->scale);
+    return v->y
+         + (int)lround(v->height / 2.0 - (p[1] - v->low[1] - v->extent[1] / 2) * v->scale);
 }
 
 static void print_escaped(FILE *out, const char *text)
@@ -90,9 +100,11 @@ bool ct_shapes_draw(struct ct_ctx *ctx, const char *path, const char *title,
         size = fmax(size, v.extent[k]);
     }
     v.scale = size > 0 ? (SIDE - 2 * GAP) / size : 1;
+    v.height = (int)fmax(LEAST_HEIGHT, ceil(v.extent[1] * v.scale) + 2 * GAP);
     const int columns = npanel < COLUMNS ? (int)npanel : COLUMNS;
     const int rows = columns ? ((int)npanel + columns - 1) / columns : 0;
-    const int width = columns * SIDE + 2 * GAP, height = TITLE + rows * (SIDE + HEAD) + GAP;
+    const int width = columns * SIDE + 2 * GAP,
+              height = TITLE + rows * (v.height + HEAD) + TITLE;
     fprintf(v.out,
             "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"%d\" height=\"%d\" "
             "viewBox=\"0 0 %d %d\" font-family=\"sans-serif\" font-size=\"%d\">\n"
@@ -102,11 +114,12 @@ bool ct_shapes_draw(struct ct_ctx *ctx, const char *path, const char *title,
     for (size_t i = 0; i < npanel; i++) {
         const int row = (int)i / columns, column = (int)i % columns;
         v.x = GAP + column * SIDE;
-        v.y = TITLE + row * (SIDE + HEAD) + HEAD;
+        v.y = TITLE + row * (v.height + HEAD) + HEAD;
         print_title(&v, v.x + SIDE / 2, v.y - FONT / 2, panel[i].title);
         draw_skeleton(&v, rest, bone, nbone, "#c0c0c0");
         draw_skeleton(&v, panel[i].point, bone, nbone, "#0072b2");
     }
+    print_title(&v, width / 2, height - TITLE / 2, "grey: at rest; blue: the mode, enlarged");
     fputs("</svg>\n", v.out);
     return ct_outfile_close(ctx, &file);
 }

@@ -13,6 +13,55 @@ struct inputs {
     size_t n;
 };
 
+// Where the value of a symbol stands; false for trial symbols and signals, which do not reach the equations.
+static bool find_slot(const struct ct_machine *m, const struct ct_sym *s, size_t *slot)
+{
+    switch (s->kind) {
+    case CT_SYM_TIME:
+        *slot = 0;
+        return true;
+    case CT_SYM_PARAM:
+        *slot = 1 + s->index;
+        return true;
+    case CT_SYM_Q:
+        *slot = m->at_q + s->index;
+        return true;
+    case CT_SYM_U:
+        *slot = m->at_u + s->index;
+        return true;
+    case CT_SYM_A:
+        *slot = m->at_a + s->index;
+        return true;
+    case CT_SYM_LAM:
+        *slot = m->at_lam + s->index;
+        return true;
+    case CT_SYM_MODE:
+        *slot = m->at_mode + s->index;
+        return true;
+    case CT_SYM_MEMORY:
+        *slot = m->at_memory + s->index;
+        return true;
+    case CT_SYM_WORK:
+        *slot = m->at_work;
+        return true;
+    case CT_SYM_SEED: // behind the input: of tangents alone
+        *slot = m->ninput + s->index;
+        return true;
+    case CT_SYM_LOCAL:
+    case CT_SYM_SIGNAL:
+        break;
+    }
+    return false;
+}
+
+void ct_machine_values(const struct ct_machine *m, const struct ct_exs *x, double *value)
+{
+    for (size_t k = 0; k < x->nsym; k++) {
+        size_t slot;
+        value[k] = find_slot(m, &x->sym[k], &slot) && slot < m->ninput ? m->input[slot] : NAN;
+    }
+}
+
 // Every symbol of the store that a run gives a value, with its slot.
 static struct inputs list_inputs(struct ct_arena *a, const struct ct_machine *m,
                                  const struct ct_exs *x)
@@ -20,43 +69,9 @@ static struct inputs list_inputs(struct ct_arena *a, const struct ct_machine *m,
     struct inputs in = {CT_NEWN(a, ct_ex, x->nsym + 1), CT_NEWN(a, size_t, x->nsym + 1), 0};
     for (uint32_t id = 0; id < x->nnode; id++) {
         const struct ct_sym *s = ct_ex_symbol(x, (ct_ex){id});
-        if (!s)
-            continue;
         size_t slot;
-        switch (s->kind) {
-        case CT_SYM_TIME:
-            slot = 0;
-            break;
-        case CT_SYM_PARAM:
-            slot = 1 + s->index;
-            break;
-        case CT_SYM_Q:
-            slot = m->at_q + s->index;
-            break;
-        case CT_SYM_U:
-            slot = m->at_u + s->index;
-            break;
-        case CT_SYM_A:
-            slot = m->at_a + s->index;
-            break;
-        case CT_SYM_LAM:
-            slot = m->at_lam + s->index;
-            break;
-        case CT_SYM_MODE:
-            slot = m->at_mode + s->index;
-            break;
-        case CT_SYM_MEMORY:
-            slot = m->at_memory + s->index;
-            break;
-        case CT_SYM_WORK:
-            slot = m->at_work;
-            break;
-        case CT_SYM_SEED: // behind the input: of tangents alone
-            slot = m->ninput + s->index;
-            break;
-        default:
-            continue; // trial symbols and signals do not reach the equations
-        }
+        if (!s || !find_slot(m, s, &slot))
+            continue;
         in.symbol[in.n] = (ct_ex){id};
         in.slot[in.n++] = slot;
     }
@@ -267,7 +282,7 @@ static void push_slopes(struct list *l, const struct ct_slope *s, size_t n)
 static void compile_residual(struct ct_arena *a, struct ct_machine *m, const struct inputs *in)
 {
     const struct ct_equations *e = m->e;
-    const struct ct_residual *f = e->residual;
+    const struct ct_residual *f = e->residual && e->residual->has_slopes ? e->residual : NULL;
     struct list residual = {.a = a}, tangent = {.a = a};
     for (size_t i = 0; i < e->nu && f; i++)
         push(&residual, f->r[i]);
@@ -342,7 +357,7 @@ struct ct_machine *ct_machine_create(struct ct_arena *a, const struct ct_model *
     m->rate = m->gam + e->nrow;
     m->phi = m->constraint.out;
     m->v = m->phi + e->nrow;
-    ct_machine_use(a, m, CT_BACKEND_BEST);
+    ct_machine_use(a, m, e->is_analysed ? CT_BACKEND_TAPE : CT_BACKEND_BEST);
     ct_machine_prepare(m);
     return m;
 }

@@ -83,6 +83,8 @@ void ct_machine_compile(struct ct_arena *a, struct ct_machine *m, const struct c
                         const ct_ex *out, size_t n, struct ct_program *p);
 void ct_machine_forget(struct ct_machine *m, const struct ct_program *p);
 
+/// The input by symbol of x (nsym), for ct_ex_value and ct_ex_jacobian_at; NaN for those that are no inputs.
+void ct_machine_values(const struct ct_machine *m, const struct ct_exs *x, double *value);
 /// Copy time and state into the input. y: q, u, work.
 void ct_machine_set(struct ct_machine *m, double t, const double *y);
 /// M, Q, J, gam and q' at the input. Without dynamics in the equations M and Q are zero.

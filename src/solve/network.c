@@ -157,7 +157,8 @@ static struct ct_sparse *analyse_whole(struct network *f, struct ct_machine *m)
     int *row = CT_NEWN(f->form.arena, int, most), *column = CT_NEWN(f->form.arena, int, most);
     f->value = CT_NEWN(f->form.arena, double, most);
     const size_t n = fill_whole(f, m, row, column, f->value);
-    return ct_sparse_create(f->form.arena, (int)(e->nu + f->form.rank), row, column, n);
+    return ct_sparse_create(f->form.arena, (int)(e->nu + f->form.rank), row, column, n,
+                            CT_SPARSE_DIAGONAL);
 }
 
 static struct ct_sparse *analyse_Jd(struct network *f, const struct ct_machine *m,
@@ -178,7 +179,7 @@ static struct ct_sparse *analyse_Jd(struct network *f, const struct ct_machine *
         column[f->nJd] = place[e->J[i].column] - 1;
         f->Jd_from[f->nJd++] = i;
     }
-    return ct_sparse_create(a, (int)p->rank, row, column, f->nJd);
+    return ct_sparse_create(a, (int)p->rank, row, column, f->nJd, CT_SPARSE_DIAGONAL);
 }
 
 static struct ct_form *create(struct ct_arena *a, struct ct_machine *m,

@@ -19,6 +19,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/resource.h>
 #include <time.h>
 #include <unistd.h>
 
@@ -1150,6 +1151,64 @@ static void all_beams(bool quick)
     unlink(temporary());
 }
 
+// ---- modes of large systems --------------------------------------------------------------------------
+
+// A cantilever of 10 m, cut into nbeam beams of nelement elements each that are welded end to end.
+static void write_cantilever(FILE *f, int nbeam, int nelement)
+{
+    fprintf(f, "cotree: 1\nbodies:\n");
+    for (int i = 0; i < nbeam; i++)
+        fprintf(f,
+                "  b%d: {type: beam, length: 10/%d, elements: %d, mass_per_length: 1, E: 1e7, "
+                "nu: 0.3, "
+                "area: 1, Iy: 1/12, Iz: 1/10, J: 1/6, points: {tip: length}, "
+                "deformation: [axial, bending-y, bending-z, torsion]}\n",
+                i, nbeam, nelement);
+    fprintf(f, "joints:\n  j0: {type: weld, from: ground, to: b0}\n");
+    for (int i = 1; i < nbeam; i++)
+        fprintf(f, "  j%d: {type: weld, from: b%d.tip, to: b%d}\n", i, i - 1, i);
+}
+
+// The first ten modes, from the file to the table. exact: the first frequency of the continuous beam [rad/s].
+static void modes_of(const char *what, int nbeam, int nelement, double goal)
+{
+    const double exact = 32.096681251501935;
+    char text[96];
+    FILE *f = fopen(temporary(), "w");
+    if (!f)
+        return;
+    write_cantilever(f, nbeam, nelement);
+    fclose(f);
+    const double start = now();
+    struct ct_ctx *ctx = ct_ctx_create();
+    struct ct_system *sys
+        = ct_system_load(ctx, temporary(), &(struct ct_system_options){.for_analysis = true});
+    struct ct_modes *modes = ct_modes_create(ctx, sys, NULL);
+    const double t = now() - start;
+    if (modes) {
+        struct rusage use;
+        getrusage(RUSAGE_SELF, &use);
+        snprintf(text, sizeof text, "%s, %d dof", what, 6 * nbeam * nelement);
+        line(text, t, goal);
+        printf("  %-56s %9.1f MB\n", "memory, the most so far", 1e-3 * (double)use.ru_maxrss);
+        printf("  %-56s %12.1e\n", "first frequency against the continuous beam",
+               fabs(ct_modes_info(modes, 0).omega / exact - 1));
+    }
+    ct_modes_destroy(modes);
+    ct_system_destroy(sys);
+    ct_ctx_destroy(ctx);
+}
+
+static void large_modes(bool quick)
+{
+    static const int n[] = {17, 50, 167}; // tens of elements: 1000, 3000, 10 000 dof
+    head("first 10 modes, from the file to the table");
+    for (int i = 0; i < (quick ? 1 : 3); i++)
+        modes_of("one beam", 1, 10 * n[i], i == 2 ? 5 : 0);
+    for (int i = 0; i < (quick ? 1 : 3); i++)
+        modes_of("chain of beams of 10 elements", n[i], 10, i == 2 ? 5 : 0);
+}
+
 int main(int argc, char **argv)
 {
     const bool quick = argc > 1 && strcmp(argv[1], "--quick") == 0;
@@ -1173,6 +1232,7 @@ int main(int argc, char **argv)
         links_by_bodies(20);
         links_by_bodies(80);
     }
+    large_modes(quick);
     all_beams(quick);
     show_goals();
     return 0;

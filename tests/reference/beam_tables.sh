@@ -1,5 +1,5 @@
 #!/bin/sh
-# beam_tables.sh KIND: the lines of beam_tables.txt of a kind (modes, buckling, accelerated) from YAML through the command
+# beam_tables.sh KIND: the lines of beam_tables.txt of a kind (modes, buckling, weight, accelerated) from YAML through the command
 # line, to a relative tolerance.
 set -eu
 folder=$(dirname "$0")
@@ -11,7 +11,7 @@ tolerance=1e-9 # the condition of a mesh of 32 elements, N^4, in roundings
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
-# write_model THEORY INTEGRATION MASS ROTARY GEOMETRIC FORMULATION
+# write_model THEORY INTEGRATION MASS ROTARY GEOMETRIC FORMULATION DEFORMATION
 write_model() {
   cat <<END
 cotree: 1
@@ -35,7 +35,7 @@ bodies:
 $([ "$4" = 0 ] || echo "    rotary_inertia: [0, h^3/12, h^3/12]")
     geometric_stiffness: $5
     formulation: $6
-    deformation: $([ "$5" = standard ] && echo '[bending-z]' || echo '[axial, bending-z]')
+    deformation: $7
     points: {tip: length}
 joints:
   clamp: {type: weld, from: ground, to: beam}
@@ -44,27 +44,12 @@ forces:
 END
 }
 
-count=0
-while read -r what table theory integration mass rotary geometric h n values; do
-  [ "$what" = "$kind" ] || continue
-  count=$((count + 1))
-  formulation=foreshortening
-  [ "$kind" = modes ] && formulation=linear
-  write_model "$theory" "$integration" "$mass" "$rotary" "$geometric" "$formulation" >"$work/model.yaml"
-  case $kind in
-  modes) set -- modes --count 1000 ;;
-  buckling) set -- buckling --load push --count 5 ;;
-  accelerated)
-    set -- modes --count 1 --set "a=${values% *}"
-    values=${values#* }
-    ;;
-  esac
-  command=$1
-  shift
-  "$COTREE" "$command" "$work/model.yaml" "$@" --set "h=$h" --set "n=$n" --quiet >"$work/got"
-  # shellcheck disable=SC2086
-  printf '%s\n' $values | awk -F, -v tolerance=$tolerance -v what="$table, $n elements" -v column="$command" '
-    BEGIN { column = column == "modes" ? 3 : 2 }
+# compare WHAT COLUMN VALUES ...: the rows of $work/got
+compare() {
+  title=$1
+  column=$2
+  shift 2
+  printf '%s\n' "$@" | awk -F, -v tolerance=$tolerance -v what="$title" -v column="$column" '
     FNR == NR { if (FNR > 1) got[FNR - 1] = $column; next }
     {
       d = got[FNR] / $1 - 1
@@ -74,6 +59,38 @@ while read -r what table theory integration mass rotary geometric h n values; do
       }
     }
     END { exit bad }' "$work/got" - || bad=1
+}
+
+count=0
+while read -r what table theory integration mass rotary geometric h n values; do
+  [ "$what" = "$kind" ] || continue
+  count=$((count + 1))
+  formulation=foreshortening
+  [ "$kind" = modes ] && formulation=linear
+  column=2
+  case $kind in
+  modes)
+    set -- modes --count 1000
+    column=3
+    ;;
+  buckling) set -- buckling --load push --count 5 ;;
+  weight) set -- buckling --load gravity --count 1 --set a=1 ;;
+  accelerated)
+    set -- modes --count 1 --set "a=${values% *}"
+    values=${values#* }
+    column=3
+    ;;
+  esac
+  command=$1
+  shift
+  # what buckles does so whether its axis is rigid or not; its stress resultants are the same
+  for deformation in '[bending-z]' '[axial, bending-z]'; do
+    [ "$deformation" = '[bending-z]' ] || [ "$kind" = buckling ] || continue
+    write_model "$theory" "$integration" "$mass" "$rotary" "$geometric" "$formulation" "$deformation" >"$work/model.yaml"
+    "$COTREE" "$command" "$work/model.yaml" "$@" --set "h=$h" --set "n=$n" --quiet >"$work/got"
+    # shellcheck disable=SC2086
+    compare "$table, $n elements, $deformation" $column $values
+  done
 done <"$folder/beam_tables.txt"
 echo "$count lines"
 [ "$count" -gt 0 ] && [ -z "${bad:-}" ]

@@ -68,6 +68,53 @@ static void entries_are_single_derivatives(void **unused)
     }
 }
 
+// As numbers: the values of the expressions, those that vanish left out; every operator.
+static void numbers_are_values_of_derivatives(void **unused)
+{
+    (void)unused;
+    struct random r = random_start("numbers");
+    const double value[NSYM] = {0.3, -0.7, 1.1, 0.9, -1.3, 0.5};
+    int ncompared = 0;
+    for (int trial = 0; trial < 200; trial++) {
+        enum { NSMALL = 30 };
+        struct fixture f;
+        begin(&f);
+        ct_ex node[NSYM + NSMALL], out[NF];
+        memcpy(node, f.sym, sizeof f.sym);
+        for (size_t i = NSYM; i < NSYM + NSMALL; i++)
+            node[i] = random_node(&r, &f.x, node, i);
+        for (int i = 0; i < NF; i++)
+            out[i] = node[random_below(&r, NSYM + NSMALL)];
+        struct ct_seed seed[NSYM];
+        for (int i = 0; i < NSYM; i++)
+            seed[i] = (struct ct_seed){f.sym[i], (uint32_t)i, CT_EX_ONE};
+        struct ct_number *s;
+        double at[NF], got[NF][NSYM] = {{0}};
+        const size_t n
+            = ct_ex_jacobian_at(&f.x, f.scratch, f.a, out, NF, seed, NSYM, value, at, &s);
+        for (size_t i = 0; i < n; i++) {
+            assert_true(s[i].value != 0);
+            assert_true(i == 0 || s[i].row > s[i - 1].row
+                        || (s[i].row == s[i - 1].row && s[i].direction > s[i - 1].direction));
+            got[s[i].row][s[i].direction] = s[i].value;
+        }
+        for (int row = 0; row < NF; row++) {
+            const double here = ct_ex_value(&f.x, out[row], value);
+            assert_true(at[row] == here || (isnan(at[row]) && isnan(here)));
+            for (int k = 0; k < NSYM; k++) {
+                const double want
+                    = ct_ex_value(&f.x, ct_ex_diff(&f.x, out[row], f.sym[k]), value);
+                if (!isfinite(want) || fabs(want) > 1e6 || !isfinite(got[row][k]))
+                    continue;                               // 0 times infinity on the way
+                CHECK_CLOSE(got[row][k], want, 1e-9, 1e-9); // sums in another order
+                ncompared++;
+            }
+        }
+        end(&f);
+    }
+    assert_true(ncompared > 3000);
+}
+
 // A symbol that moves in several directions, and a direction in which several move.
 static void seeds_form_directions(void **unused)
 {
@@ -131,6 +178,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(entries_are_single_derivatives),
+        cmocka_unit_test(numbers_are_values_of_derivatives),
         cmocka_unit_test(gradients_are_single_derivatives),
         cmocka_unit_test(seeds_form_directions),
     };
