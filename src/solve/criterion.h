@@ -13,6 +13,8 @@ static const double ct_kappa_growth = 10;
 static const double ct_kappa_largest = 1e3;
 // Projections stop here: a few roundings of coordinates of order one.
 static const double ct_position_tolerance = 1e-13;
+// Speeds need a second correction, for the rounding of the first, from such a one on [rad/s, m/s].
+static const double ct_small_change = 1e-4;
 // Pivots smaller than this against the largest enlarge what is left over noticeably.
 static const double ct_small_pivot = 0.5;
 enum { CT_MOST_NEWTON = 25 };
