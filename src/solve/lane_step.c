@@ -130,13 +130,28 @@ static set derive(struct ct_lanes *s, vec t, const vec *y, vec *dy, set wanted)
 
 // ---- a try ------------------------------------------------------------------------------------------
 
-static vec sum_stages(const struct ct_lanes *s, const struct ct_lane_sum *b, int i)
+// out (ny) = y + h sum_j a_j k_j, y NULL: without. A few states at a time: coefficients and places are read once for them.
+static void combine(const struct ct_lanes *s, vec *out, const vec *y,
+                    const struct ct_lane_sum *b)
 {
-    const vec *k = s->k + i;
-    vec sum = {0};
-    for (int j = 0; j < b->n; j++)
-        sum += b->a[j] * k[b->at[j]];
-    return sum;
+    enum { FEW = 3 };
+    const vec h = s->h;
+    int i = 0;
+    for (; i + FEW <= s->ny; i += FEW) {
+        const vec *k = s->k + i;
+        vec sum[FEW] = {{0}};
+        for (int j = 0; j < b->n; j++)
+            for (int l = 0; l < FEW; l++)
+                sum[l] += b->a[j] * k[b->at[j] + (size_t)l];
+        for (int l = 0; l < FEW; l++)
+            out[i + l] = y ? y[i + l] + h * sum[l] : h * sum[l];
+    }
+    for (; i < s->ny; i++) {
+        vec sum = {0};
+        for (int j = 0; j < b->n; j++)
+            sum += b->a[j] * s->k[b->at[j] + (size_t)i];
+        out[i] = y ? y[i] + h * sum : h * sum;
+    }
 }
 
 // Root mean square of e against the tolerance, as ct_stepper_norm.
@@ -165,15 +180,15 @@ static vec norm(const struct ct_lanes *s, const vec *e)
 
 static void estimate(struct ct_lanes *s)
 {
-    const vec h = s->h;
     vec e3 = {0};
-    for (int i = 0; i < s->ny; i++)
-        s->point[i] = h * sum_stages(s, &s->error, i);
+    combine(s, s->point, NULL, &s->error);
     const vec e = norm(s, s->point);
-    for (int i = 0; i < s->ny && s->third.n; i++)
-        s->point[i] = s->y1[i] - (s->y[i] + h * sum_stages(s, &s->third, i));
-    if (s->third.n)
+    if (s->third.n) {
+        combine(s, s->point, s->y, &s->third);
+        for (int i = 0; i < s->ny; i++)
+            s->point[i] = s->y1[i] - s->point[i];
         e3 = norm(s, s->point);
+    }
     for (int l = 0; l < W; l++)
         s->lane[l].error = s->third.n ? ct_stepper_join(e[l], e3[l]) : e[l];
 }
@@ -188,8 +203,7 @@ static set take_stages(struct ct_lanes *s, set wanted)
     copy(s->k, s->dy, n);
     for (int stage = 1; stage <= last && wanted; stage++) {
         vec *to = stage == last ? s->y1 : stage + 1 == last ? s->late : s->point;
-        for (int i = 0; i < n; i++)
-            to[i] = s->y[i] + s->h * sum_stages(s, &s->stage[stage], i);
+        combine(s, to, s->y, &s->stage[stage]);
         if (stage < last || is_last_wanted)
             wanted = derive(s, s->t + b->C[stage] * s->h, to, s->k + n * stage, wanted);
     }
