@@ -4,6 +4,7 @@
 // is left to the reader: a number or text stands for every scalar.
 #include "api.h"
 
+#include "integrate/problem.h"
 #include "report/json.h"
 
 #include <string.h>
@@ -66,6 +67,14 @@ static void typed(struct ct_json *j, const char *key, const char *type, const ch
         text(j, NULL, other);
         ct_json_end(j);
     }
+    ct_json_end(j);
+}
+
+// Keys are names of the model's own.
+static void named_keys(struct ct_json *j)
+{
+    ct_json_object(j, "propertyNames");
+    text(j, "pattern", "^[A-Za-z_][A-Za-z0-9_]*$");
     ct_json_end(j);
 }
 
@@ -376,6 +385,7 @@ static void write_axes(struct ct_json *j)
 static void write_points(struct ct_json *j, const char *name, const char *place)
 {
     closed_object(j, name);
+    named_keys(j);
     ct_json_object(j, "additionalProperties");
     ct_json_array(j, "anyOf");
     refer(j, NULL, place, NULL);
@@ -454,22 +464,42 @@ static void write_simulation(struct ct_json *j)
 {
     static const char *const jumps[] = {"impulse", "continuous"};
     static const struct {
-        const char *name, *doc;
-    } numbers[] = {{"duration", "end time [s]"},
-                   {"samples", "number of samples, both ends included (1001)"},
-                   {"interval", "spacing of samples, instead of their number [s]"},
-                   {"tolerance", "wanted relative accuracy of the outputs (1e-8)"},
-                   {"absolute", "wanted accuracy of quantities near zero (tolerance/100)"},
-                   {"step", "fixed step [s]"}};
+        const char *name, *doc, *bound; // of a number; an expression has none here
+        int least;
+    } numbers[] = {
+        {"duration", "end time [s]", "minimum", 0},
+        {"samples", "number of samples, both ends included (1001)", "minimum", 2},
+        {"interval", "spacing of samples, instead of their number [s]", "exclusiveMinimum", 0},
+        {"tolerance", "wanted relative accuracy of the outputs (1e-8)", "exclusiveMinimum", 0},
+        {"absolute", "wanted accuracy of quantities near zero (tolerance/100)",
+         "exclusiveMinimum", 0},
+        {"step", "fixed step [s]", "exclusiveMinimum", 0}};
     closed_object(j, "simulation");
     ct_json_object(j, "properties");
-    for (size_t i = 0; i < COUNT(numbers); i++)
-        refer(j, numbers[i].name, "scalar", numbers[i].doc);
-    typed(j, "method", "string", NULL);
+    for (size_t i = 0; i < COUNT(numbers); i++) {
+        ct_json_object(j, numbers[i].name);
+        text(j, "$ref", "#/$defs/scalar");
+        text(j, "description", numbers[i].doc);
+        ct_json_integer(j, numbers[i].bound, numbers[i].least);
+        ct_json_end(j);
+    }
+    ct_json_object(j, "method");
+    ct_json_array(j, "enum");
+    text(j, NULL, "auto");
+    for (int i = 0; i < ct_nmethod; i++)
+        text(j, NULL, ct_methods[i]->name);
+    ct_json_end(j);
+    ct_json_end(j);
     words(j, "rate_jumps", jumps, COUNT(jumps));
     ct_json_object(j, "small");
     text(j, "type", "array");
     typed(j, "items", "string", NULL);
+    ct_json_end(j);
+    ct_json_end(j);
+    ct_json_object(j, "not");
+    ct_json_array(j, "required");
+    text(j, NULL, "samples");
+    text(j, NULL, "interval");
     ct_json_end(j);
     ct_json_end(j);
     ct_json_bool(j, "additionalProperties", false);
@@ -518,6 +548,7 @@ static void write_section(struct ct_json *j, const char *key, const char *item, 
     text(j, NULL, "object");
     text(j, NULL, "null");
     ct_json_end(j);
+    named_keys(j);
     if (has_ground) {
         ct_json_object(j, "properties");
         refer(j, "ground", "ground", NULL);

@@ -15,11 +15,14 @@ struct ct_model *ct_variant_create(struct ct_ctx *own, const struct ct_model *m,
     *v = *m;
     v->parameter_cap = m->nparameter + most;
     v->parameter = CT_NEWN(a, struct ct_parameter, v->parameter_cap + 1);
-    memcpy(v->parameter, m->parameter, m->nparameter * sizeof *v->parameter);
+    if (m->nparameter)
+        memcpy(v->parameter, m->parameter, m->nparameter * sizeof *v->parameter);
     v->joint = CT_NEWN(a, struct ct_instance, m->njoint + 1);
-    memcpy(v->joint, m->joint, m->njoint * sizeof *v->joint);
+    if (m->njoint)
+        memcpy(v->joint, m->joint, m->njoint * sizeof *v->joint);
     v->force = CT_NEWN(a, struct ct_instance, m->nforce + 1);
-    memcpy(v->force, m->force, m->nforce * sizeof *v->force);
+    if (m->nforce)
+        memcpy(v->force, m->force, m->nforce * sizeof *v->force);
     return v;
 }
 

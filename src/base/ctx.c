@@ -43,6 +43,15 @@ void ct_note(struct ct_ctx *ctx, struct ct_mark mark, const char *fmt, ...)
     va_end(ap);
 }
 
+// Text that may be the file's own, in one line and without what would steer a terminal.
+static void print_plain(const char *text, FILE *out)
+{
+    for (; *text; text++) {
+        const unsigned char c = (unsigned char)*text;
+        fputc((c < ' ' && c != '\t') || c == 127 ? '?' : c, out);
+    }
+}
+
 // The line of a file with a caret under the column; silent when the file cannot be read again.
 static void print_source_line(struct ct_mark m, FILE *out)
 {
@@ -56,7 +65,9 @@ static void print_source_line(struct ct_mark m, FILE *out)
         if (i == m.line) {
             line[strcspn(line, "\r\n")] = 0;
             if ((size_t)m.column <= strlen(line)) {
-                fprintf(out, "%5d | %s\n      | ", m.line + 1, line);
+                fprintf(out, "%5d | ", m.line + 1);
+                print_plain(line, out);
+                fputs("\n      | ", out);
                 for (int c = 0; c < m.column; c++)
                     fputc(line[c] == '\t' ? '\t' : ' ', out);
                 fputs("^\n", out);
@@ -77,7 +88,8 @@ void ct_ctx_print(const struct ct_ctx *ctx, FILE *out)
             fprintf(out, "%s:%d:%d: ", d->mark.file, d->mark.line + 1, d->mark.column + 1);
         else
             fputs("cotree: ", out);
-        fprintf(out, "%s: %s", word[d->severity], d->text);
+        fprintf(out, "%s: ", word[d->severity]);
+        print_plain(d->text, out);
         if (d->code)
             fprintf(out, " [E%03d]", d->code);
         fputc('\n', out);

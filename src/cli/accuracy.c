@@ -102,7 +102,7 @@ static bool study(struct ct_ctx *ctx, const struct cli_args *args, struct beams 
                                                 .reference = args->reference,
                                                 .progress = args->quiet ? NULL : stderr};
     struct ct_accuracy *a = ct_accuracy_create(ctx, sys, &options);
-    const bool ok = a && report(ctx, a, args);
+    const bool ok = a && report(ctx, a, args) && cli_summarize(ctx, sys, args);
     ct_accuracy_destroy(a);
     ct_system_destroy(sys);
     return ok;

@@ -21,7 +21,7 @@ static int run(struct ct_ctx *ctx, const struct cli_args *args)
     const struct ct_buckling_options options
         = {.load = args->load, .count = args->count, .hold_drivers = args->hold_drivers};
     struct ct_buckling *s = ct_buckling_create(ctx, sys, &options);
-    const bool ok = s && report(ctx, s, args);
+    const bool ok = s && report(ctx, s, args) && cli_summarize(ctx, sys, args);
     ct_buckling_destroy(s);
     ct_system_destroy(sys);
     return ok ? CLI_DONE : CLI_FAILED;

@@ -93,6 +93,16 @@ struct ct_sim_options cli_sim_options(const struct cli_args *args);
 /// A run with the options of the arguments, or NULL.
 struct ct_sim *cli_sim(struct ct_ctx *ctx, struct ct_system *sys, const struct cli_args *args);
 
+/// The file of --summary, if one is asked for, of a command that runs nothing: what the system is.
+bool cli_summarize(struct ct_ctx *ctx, struct ct_system *sys, const struct cli_args *args);
+
+/// Integrates or follows a motion: ct_sim_run, ct_sim_follow.
+typedef bool cli_motion(struct ct_ctx *ctx, struct ct_sim *sim,
+                        const struct ct_sim_results *results);
+/// The whole of a command that writes the samples of a motion; returns its exit status.
+int cli_run_motion(struct ct_ctx *ctx, const struct cli_args *args,
+                   enum ct_columns_more columns, cli_motion *motion);
+
 /// The format that --format or the suffix of -o asks for; suffixes[i] belongs to formats[i].
 const char *cli_format(const struct cli_args *args, const char *const *formats,
                        const char *const *suffixes, size_t n);

@@ -44,6 +44,43 @@ struct ct_sim *cli_sim(struct ct_ctx *ctx, struct ct_system *sys, const struct c
     return ct_sim_create(ctx, sys, &options);
 }
 
+bool cli_summarize(struct ct_ctx *ctx, struct ct_system *sys, const struct cli_args *args)
+{
+    if (!args->summary)
+        return true;
+    struct ct_sim *sim = cli_sim(ctx, sys, args);
+    const bool ok = sim && ct_sim_write_summary(ctx, sim, args->summary);
+    ct_sim_destroy(sim);
+    return ok;
+}
+
+static bool write_motion(struct ct_ctx *ctx, struct ct_sim *sim, const struct cli_args *args,
+                         cli_motion *motion)
+{
+    char *standard = args->output ? NULL : cli_standard_path(args->model, ".csv");
+    const char *path = args->output ? args->output : standard;
+    const struct ct_sim_results results
+        = {.path = path ? path : "-", .progress = args->quiet ? NULL : stderr};
+    bool ok = motion(ctx, sim, &results);
+    if (ok && args->summary)
+        ok = ct_sim_write_summary(ctx, sim, args->summary);
+    if (ok && !args->quiet)
+        ct_sim_print_summary(sim, stderr);
+    free(standard);
+    return ok;
+}
+
+int cli_run_motion(struct ct_ctx *ctx, const struct cli_args *args,
+                   enum ct_columns_more columns, cli_motion *motion)
+{
+    struct ct_system *sys = cli_load_with(ctx, args, columns);
+    struct ct_sim *sim = cli_sim(ctx, sys, args);
+    const bool ok = sim && write_motion(ctx, sim, args, motion);
+    ct_sim_destroy(sim);
+    ct_system_destroy(sys);
+    return ok ? CLI_DONE : CLI_FAILED;
+}
+
 const char *cli_format(const struct cli_args *args, const char *const *formats,
                        const char *const *suffixes, size_t n)
 {

@@ -1,41 +1,14 @@
 // cotree kinematics, cotree inverse: the samples of a motion that is driven all through.
 #include "cli/cli.h"
 
-#include <stdlib.h>
-
-static bool follow(struct ct_ctx *ctx, struct ct_sim *sim, const struct cli_args *args)
-{
-    char *standard = args->output ? NULL : cli_standard_path(args->model, ".csv");
-    const char *path = args->output ? args->output : standard;
-    const struct ct_sim_results results
-        = {.path = path ? path : "-", .progress = args->quiet ? NULL : stderr};
-    bool ok = ct_sim_follow(ctx, sim, &results);
-    if (ok && args->summary)
-        ok = ct_sim_write_summary(ctx, sim, args->summary);
-    if (ok && !args->quiet)
-        ct_sim_print_summary(sim, stderr);
-    free(standard);
-    return ok;
-}
-
-static int run(struct ct_ctx *ctx, const struct cli_args *args, enum ct_columns_more columns)
-{
-    struct ct_system *sys = cli_load_with(ctx, args, columns);
-    struct ct_sim *sim = cli_sim(ctx, sys, args);
-    const bool ok = sim && follow(ctx, sim, args);
-    ct_sim_destroy(sim);
-    ct_system_destroy(sys);
-    return ok ? CLI_DONE : CLI_FAILED;
-}
-
 static int run_kinematics(struct ct_ctx *ctx, const struct cli_args *args)
 {
-    return run(ctx, args, CT_COLUMNS_COORDINATES);
+    return cli_run_motion(ctx, args, CT_COLUMNS_COORDINATES, ct_sim_follow);
 }
 
 static int run_inverse(struct ct_ctx *ctx, const struct cli_args *args)
 {
-    return run(ctx, args, CT_COLUMNS_EFFORTS);
+    return cli_run_motion(ctx, args, CT_COLUMNS_EFFORTS, ct_sim_follow);
 }
 
 const struct cli_command cli_kinematics = {

@@ -12,6 +12,8 @@ static int run(struct ct_ctx *ctx, const struct cli_args *args)
     if (sys && cli_output_open(&o, args->output))
         status = cli_output_close(
             &o, ct_system_print_equations(ctx, sys, args->show, format, o.stream));
+    if (status == CLI_DONE && !cli_summarize(ctx, sys, args))
+        status = CLI_FAILED;
     ct_system_destroy(sys);
     return status;
 }

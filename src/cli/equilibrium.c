@@ -6,7 +6,8 @@ static int run(struct ct_ctx *ctx, const struct cli_args *args)
     struct ct_system *sys = cli_load_with(ctx, args, CT_COLUMNS_COORDINATES);
     const struct ct_equilibrium_options options = {.hold_drivers = args->hold_drivers};
     struct ct_equilibrium *q = ct_equilibrium_create(ctx, sys, &options);
-    const bool ok = q && ct_equilibrium_write(ctx, q, args->output);
+    const bool ok
+        = q && ct_equilibrium_write(ctx, q, args->output) && cli_summarize(ctx, sys, args);
     if (ok && !args->quiet)
         ct_equilibrium_print_summary(q, stderr);
     ct_equilibrium_destroy(q);

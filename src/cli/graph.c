@@ -59,6 +59,8 @@ static int run(struct ct_ctx *ctx, const struct cli_args *args)
                           : ct_system_print_graph(ctx, sys, format, o.stream);
         status = cli_output_close(&o, ok);
     }
+    if (status == CLI_DONE && !cli_summarize(ctx, sys, args))
+        status = CLI_FAILED;
     ct_system_destroy(sys);
     return status;
 }

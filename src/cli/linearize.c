@@ -9,7 +9,8 @@ static int run(struct ct_ctx *ctx, const struct cli_args *args)
                                                  .hold_drivers = args->hold_drivers,
                                                  .run = cli_sim_options(args)};
     struct ct_linearization *s = ct_linearize(ctx, sys, &options);
-    const bool ok = s && ct_linearization_write(ctx, s, args->output);
+    const bool ok
+        = s && ct_linearization_write(ctx, s, args->output) && cli_summarize(ctx, sys, args);
     if (ok && !args->quiet)
         ct_linearization_print_summary(s, stderr);
     ct_linearization_destroy(s);

@@ -19,7 +19,7 @@ static int run(struct ct_ctx *ctx, const struct cli_args *args)
                                              .hold_drivers = args->hold_drivers,
                                              .run = cli_sim_options(args)};
     struct ct_modes *modes = ct_modes_create(ctx, sys, &options);
-    const bool ok = modes && report(ctx, modes, args);
+    const bool ok = modes && report(ctx, modes, args) && cli_summarize(ctx, sys, args);
     ct_modes_destroy(modes);
     ct_system_destroy(sys);
     return ok ? CLI_DONE : CLI_FAILED;

@@ -569,8 +569,10 @@ static bool read_choices(struct ct_reader *r, const struct ct_node *node,
 static bool read_deciding(struct ct_reader *r, ct_ex e, double *v)
 {
     struct ct_model *m = r->m;
-    if (!m->decided)
+    if (!m->decided) {
+        m->x->ndecided = m->x->nsym;
         m->decided = CT_NEWN(r->a, unsigned char, m->x->nsym);
+    }
     m->x->decided = m->decided;
     const bool ok = ct_read_number(r, e, v);
     m->x->decided = NULL;

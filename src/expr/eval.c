@@ -122,7 +122,7 @@ double ct_ex_value(const struct ct_exs *x, ct_ex a, const double *value)
     if (ct_ex_is_const(x, a, v))
         return v[0];
     if (n->op == CT_OP_SYM) {
-        if (x->decided)
+        if (x->decided && n->a < x->ndecided)
             x->decided[n->a] = 1;
         return value[n->a];
     }

@@ -95,6 +95,8 @@ struct ct_exs {
     size_t label_cap;
     unsigned char
         *decided; // by symbol: its value has been asked for by ct_ex_value; NULL: not kept
+    size_t
+        ndecided; // symbols that were there when the account was opened; of later ones none is kept
     // workspace of walks over the graph: a generation stamp and a result per node, a stack
     uint32_t *stamp, generation;
     ct_ex *memo;

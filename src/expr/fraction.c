@@ -6,8 +6,11 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-static const double largest_divisor = 5000, largest_number = 10000;
+// So few fractions that a number made in another way is hardly ever near one by chance.
+static const double largest_divisor = 1e5, largest_number = 1e9, largest_product = 1e9;
 static const double few_roundings = 8 * DBL_EPSILON;
+static const double many_roundings = 64 * DBL_EPSILON; // of an integral over an element
+static const double pi = 3.14159265358979323846;
 
 static bool is_short(double v)
 {
@@ -16,15 +19,16 @@ static bool is_short(double v)
     return strtod(s, NULL) == v;
 }
 
-static bool find(double v, double tolerance, double *n, double *d)
+static bool nearest(double v, double tolerance, double *n, double *d)
 {
     const double size = fabs(v);
     double p0 = 0, p = 1, q0 = 1, q = 0, x = size; // the last two convergents
-    if (!(size < largest_number) || is_short(v))
+    if (!(size < largest_number))
         return false;
     for (;;) {
         const double whole = floor(x), next_p = whole * p + p0, next_q = whole * q + q0;
-        if (next_q > largest_divisor || next_p > largest_number)
+        if (next_q > largest_divisor || next_p > largest_number
+            || next_p * next_q > largest_product)
             return false;
         p0 = p;
         q0 = q;
@@ -43,11 +47,38 @@ static bool find(double v, double tolerance, double *n, double *d)
 
 bool ct_fraction_find(double v, double *n, double *d)
 {
-    return find(v, 0, n, d);
+    return !is_short(v) && nearest(v, 0, n, d);
+}
+
+// 0.21755580000000002 -> 0.2175558
+static double without_noise(double v)
+{
+    char s[32];
+    snprintf(s, sizeof s, "%.13g", v);
+    const double rounded = strtod(s, NULL);
+    return fabs(rounded - v) <= few_roundings / 2 * fabs(v) ? rounded : v;
 }
 
 double ct_fraction_snap(double v)
 {
     double n, d;
-    return find(v, few_roundings, &n, &d) ? n / d : v;
+    return !is_short(v) && nearest(v, few_roundings, &n, &d) ? n / d : v;
+}
+
+double ct_fraction_tidy(double v)
+{
+    double n, d;
+    if (is_short(v))
+        return v;
+    return nearest(v, many_roundings, &n, &d) ? n / d : without_noise(v);
+}
+
+int ct_fraction_of_pi(double v, double *n, double *d)
+{
+    static const int powers[] = {1, 2, -1, -2};
+    const double most = 1000, tolerance = 4 * DBL_EPSILON;
+    for (size_t i = 0; i < sizeof powers / sizeof *powers && !is_short(v); i++)
+        if (nearest(v / pow(pi, powers[i]), tolerance, n, d) && fabs(*n) <= most && *d <= most)
+            return powers[i];
+    return 0;
 }

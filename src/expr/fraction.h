@@ -4,12 +4,19 @@
 
 #include <stdbool.h>
 
-/// Is v the double nearest to a fraction *n / *d with d up to 5000 and |n| up to 10000, and no decimal of six digits?
+/// Is v the double nearest to a fraction *n / *d with d up to 10^5, |n d| up to 10^9, and no decimal of six digits?
 /// Then n/d in double arithmetic gives the bits of v. Source: continued fractions; an approximation closer than 1/(2 d^2)
 /// is one of their convergents.
 bool ct_fraction_find(double v, double *n, double *d);
 
 /// The double nearest to such a fraction where v differs from it by a few roundings; otherwise v.
 double ct_fraction_snap(double v);
+
+/// v as people read it: such a fraction, also after more roundings, or a decimal of 13 digits where v differs from
+/// it by noise; otherwise v.
+double ct_fraction_tidy(double v);
+
+/// The power k, 1, 2, -1 or -2, for which v is *n / *d pi^k but for a few roundings, n and d up to 1000; 0: none.
+int ct_fraction_of_pi(double v, double *n, double *d);
 
 #endif

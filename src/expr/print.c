@@ -210,6 +210,7 @@ struct factors {
 struct term {
     bool negative;
     double number, divisor;
+    int pi; // its exponent
     struct factors above, below;
     int class;
 };
@@ -307,6 +308,17 @@ static void split_small_fraction(struct term *t)
     }
 }
 
+// 6.283185307179586 -> 2 pi.
+static void split_pi(struct term *t)
+{
+    double n, d;
+    t->pi = ct_fraction_of_pi(t->number / t->divisor, &n, &d);
+    if (t->pi) {
+        t->number = n;
+        t->divisor = d;
+    }
+}
+
 // 0.75 -> 3/4: powers of two do not round.
 static void split_fraction(struct term *t)
 {
@@ -323,10 +335,14 @@ static struct term make_term(struct printer *pr, ct_ex e, bool negative)
 {
     struct term t = {.negative = negative, .number = 1, .divisor = 1};
     flatten_product(pr, &t, e, 1);
+    if (pr->p.fractions) {
+        t.number = ct_fraction_tidy(t.number);
+        split_pi(&t);
+    }
     // a number alone stays a short decimal
-    if (pr->p.fractions && t.above.n && t.divisor == 1)
+    if (pr->p.fractions && t.above.n && t.divisor == 1 && !t.pi)
         split_fraction(&t);
-    if (pr->p.fractions && t.divisor == 1)
+    if (pr->p.fractions && t.divisor == 1 && !t.pi)
         split_small_fraction(&t);
     ct_sort(pr->arena, t.above.at, t.above.n, sizeof *t.above.at, compare_factors, pr);
     ct_sort(pr->arena, t.below.at, t.below.n, sizeof *t.below.at, compare_factors, pr);
@@ -384,36 +400,47 @@ static void emit_factor(struct printer *pr, const struct factor *f, bool alone)
     put(pr, ct_arena_printf(pr->arena, is_latex(pr) ? "^{%d}" : "^%d", f->exponent));
 }
 
-// In LaTeX \frac groups, so a single factor needs no parentheses.
-static void emit_factors(struct printer *pr, double number, const struct factors *f,
+static void put_pi(struct printer *pr, int exponent)
+{
+    put(pr, is_latex(pr) ? "\\pi" : "pi");
+    if (exponent == 2)
+        put(pr, "^2");
+}
+
+// In LaTeX \frac groups, so a single factor needs no parentheses. pi: its exponent, 0 for none.
+static void emit_factors(struct printer *pr, double number, int pi, const struct factors *f,
                          bool grouped)
 {
     const char *times = is_latex(pr) ? " \\, " : "*";
-    const bool show = number != 1 || f->n == 0;
+    const bool show = number != 1 || (f->n == 0 && pi < 1);
     if (show)
         put_number(pr, number);
+    if (show && pi > 0)
+        put(pr, is_latex(pr) ? " " : times);
+    if (pi > 0)
+        put_pi(pr, pi);
     for (size_t k = 0; k < f->n; k++) {
-        if (k > 0 || show)
+        if (k > 0 || show || pi > 0)
             put(pr, k == 0 && is_latex(pr) ? " " : times);
-        emit_factor(pr, &f->at[k], grouped && f->n == 1 && !show);
+        emit_factor(pr, &f->at[k], grouped && f->n == 1 && !show && pi < 1);
     }
 }
 
 static void emit_term(struct printer *pr, const struct term *t)
 {
-    const size_t below = t->below.n + (t->divisor != 1);
+    const size_t below = t->below.n + (t->divisor != 1) + (t->pi < 0);
     if (!below) {
-        emit_factors(pr, t->number, &t->above, false);
+        emit_factors(pr, t->number, t->pi, &t->above, false);
     } else if (is_latex(pr)) {
         put(pr, "\\frac{");
-        emit_factors(pr, t->number, &t->above, true);
+        emit_factors(pr, t->number, t->pi, &t->above, true);
         put(pr, "}{");
-        emit_factors(pr, t->divisor, &t->below, true);
+        emit_factors(pr, t->divisor, -t->pi, &t->below, true);
         put(pr, "}");
     } else {
-        emit_factors(pr, t->number, &t->above, false);
+        emit_factors(pr, t->number, t->pi, &t->above, false);
         put(pr, below > 1 ? "/(" : "/");
-        emit_factors(pr, t->divisor, &t->below, false);
+        emit_factors(pr, t->divisor, -t->pi, &t->below, false);
         put(pr, below > 1 ? ")" : "");
     }
 }
@@ -616,9 +643,27 @@ static void emit_power(struct printer *pr, const struct ct_exnode *n, enum level
     close_group(pr, level == LEVEL_BASE);
 }
 
+// Where a fraction of a power of pi stands alone it is a term.
+static bool emit_pi(struct printer *pr, double v, enum level level)
+{
+    struct term t = {.negative = v < 0, .number = fabs(v), .divisor = 1};
+    split_pi(&t);
+    if (!t.pi)
+        return false;
+    open_group(pr, level >= LEVEL_FACTOR);
+    put(pr, t.negative ? "-" : "");
+    emit_term(pr, &t);
+    close_group(pr, level >= LEVEL_FACTOR);
+    return true;
+}
+
 static void emit_const(struct printer *pr, double v, enum level level)
 {
     double n, d;
+    if (pr->p.fractions)
+        v = ct_fraction_tidy(v);
+    if (pr->p.fractions && emit_pi(pr, v, level))
+        return;
     if (pr->p.fractions && ct_fraction_find(v, &n, &d)) {
         open_group(pr, level >= LEVEL_FACTOR);
         put(pr,

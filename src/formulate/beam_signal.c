@@ -2,6 +2,7 @@
 #include "formulate/beam_signal.h"
 #include "formulate/elastic.h"
 #include "formulate/reaction.h"
+#include "formulate/section.h"
 
 #include <math.h>
 #include <string.h>
@@ -32,18 +33,6 @@ static ct_ex3 rest_place(const struct ct_build *b, int frame)
     return frame == b->model->body[p->body].frame ? zero3 : p->at;
 }
 
-static ct_ex33 section_axes(struct ct_build *b, const struct ct_station *s)
-{
-    ct_ex33 S = ct_ex33_identity();
-    for (int axis = 3; axis-- > 0;) {
-        double n[3] = {0};
-        n[axis] = 1;
-        const ct_ex33 turn = ct_ex33_axis_angle(b->x, ct_ex3_const(b->x, n), s->angle[axis]);
-        S = ct_ex33_mul(b->x, &S, &turn);
-    }
-    return S;
-}
-
 // Place of a frame on the deformed beam, axes of the beam; a frame off the axis turns with its section. The axis is
 // foreshortened where its forces are, also if the kinematics leaves that out.
 static ct_ex3 deformed_place(struct ct_build *b, const struct ct_flexible *f, ct_ex3 rest)
@@ -51,7 +40,7 @@ static ct_ex3 deformed_place(struct ct_build *b, const struct ct_flexible *f, ct
     const ct_ex3 across = {{CT_EX_ZERO, rest.e[1], rest.e[2]}};
     struct ct_station s;
     ct_flexible_station(b, f, rest.e[0], f->axial, &s);
-    const ct_ex33 S = section_axes(b, &s);
+    const ct_ex33 S = ct_section_axes(b->x, s.angle);
     return ct_ex3_add(b->x, s.place, ct_ex33_apply(b->x, &S, across));
 }
 
@@ -142,7 +131,7 @@ static void add_wrench(struct ct_build *b, struct cut *c, ct_ex3 force, ct_ex3 t
     c->torque = ct_ex3_add(b->x, c->torque, ct_ex3_cross(b->x, arm, force));
 }
 
-// Twist, -dw/dx, dv/dx of the dofs' rates or accelerations.
+// Twist, -dw/dx, dv/dx of the dofs' values, rates or accelerations.
 static ct_ex3 section_rate(struct ct_build *b, const struct ct_flexible *f,
                            const struct ct_element *e, const ct_ex *of, ct_ex xi)
 {
@@ -173,14 +162,16 @@ static void add_mass(struct ct_build *b, struct cut *c, const struct ct_element 
     a = ct_ex3_add(x, a, ct_ex3_add(x, c->a, ct_ex3_cross(x, c->al, r)));
     a = ct_ex3_add(x, a, ct_ex3_cross(x, c->w, ct_ex3_cross(x, c->w, r)));
     a = ct_ex3_add(x, a, ct_ex3_scale(x, ct_ex_const(x, 2), ct_ex3_cross(x, c->w, v)));
-    ct_ex3 turning = ct_ex3_add(x, c->al, section_rate(b, f, e, e->acceleration, xi));
-    ct_ex3 spin = ct_ex3_add(x, c->w, section_rate(b, f, e, e->rate, xi));
-    for (int k = 0; k < 3; k++) {
-        turning.e[k] = ct_ex_mul(x, j[k], turning.e[k]);
-        spin.e[k] = ct_ex_mul(x, j[k], spin.e[k]);
-    }
-    add_wrench(b, c, ct_ex3_scale(x, m, a), ct_ex3_add(x, turning, ct_ex3_cross(x, c->w, spin)),
-               r);
+    struct ct_section s;
+    const ct_ex3 second = section_rate(b, f, e, e->acceleration, xi);
+    ct_section_motion(x, !ct_flexible_turns_inertia(b, f), j,
+                      section_rate(b, f, e, e->value, xi), section_rate(b, f, e, e->rate, xi),
+                      &s);
+    const ct_ex3 momentum = ct_ex33_apply(x, &s.J, ct_ex3_add(x, c->w, s.spin));
+    ct_ex3 moment = ct_section_own(x, &s, c->w, &second);
+    moment = ct_ex3_add(x, moment, ct_ex33_apply(x, &s.J, c->al));
+    moment = ct_ex3_add(x, moment, ct_ex3_cross(x, c->w, momentum));
+    add_wrench(b, c, ct_ex3_scale(x, m, a), moment, r);
 }
 
 // Gauss points that integrate mu r x c: exact where sections are constant.
@@ -274,7 +265,7 @@ static ct_ex3 resultant(struct ct_build *b, int frame, bool is_force)
     struct cut c = cut_at(b, beam_of(b, frame), rest_place(b, frame).e[0]);
     add_inertia(b, &c);
     add_arms(b, &c);
-    const ct_ex33 S = section_axes(b, &c.s);
+    const ct_ex33 S = ct_section_axes(b->x, c.s.angle);
     return ct_ex3_neg(b->x, ct_ex33_apply_t(b->x, &S, is_force ? c.force : c.torque));
 }
 

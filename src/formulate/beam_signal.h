@@ -2,7 +2,8 @@
 //
 //   deflection         of the point from its undeformed place, axes of the beam              [m]
 //   slope              rotation of its section: the axes of the section are those of the beam turned by
-//                      Rz(slope.z) Ry(slope.y) Rx(slope.x); small ones are twist, -dw/dx, dv/dx     [rad]
+//                      Rz(slope.z/2) Ry(slope.y) Rz(slope.z/2) Rx(slope.x); small ones are twist, -dw/dx,
+//                      dv/dx                                                                  [rad]
 //   chord_deflection   of the point from its undeformed place, seen from axes whose x runs from the start to
 //                      the end of the beam                                                    [m]
 //   strain             of the axis

@@ -54,6 +54,9 @@ extern const struct ct_inertia_form ct_inertia_exact;
 /// Rules of integration of the beam's mass and stiffness.
 enum ct_rule ct_flexible_mass_rule(const struct ct_beam *beam);
 enum ct_rule ct_flexible_stiffness_rule(const struct ct_beam *beam);
+/// Does the rotary inertia of the sections turn with them? Where bending shortens the axis; else to first order, along the axes
+/// of the beam.
+bool ct_flexible_turns_inertia(const struct ct_build *b, const struct ct_flexible *f);
 /// Inertia per length of the section about an axis.
 struct ct_profile ct_flexible_rotary(const struct ct_flexible *f, int axis);
 /// Integral of g p q over element e.

@@ -4,20 +4,21 @@
 //
 //     c = a + Om r + 2 w x r' + r''        force m c  (5.4), (5.5)
 #include "formulate/elastic.h"
+#include "formulate/section.h"
 
 static const ct_ex3 zero3 = {{{0}, {0}, {0}}};
 enum { FEW_POINTS = 6, MANY_POINTS = 8 }; // sections that are constant (exact), that vary
 
-// A point of mass m with the rotary inertia j of the section there.
+// A point of mass m with the section there.
 struct ct_point {
     int element;
-    ct_ex m, j[3];
+    ct_ex m;
+    struct ct_section section;
     ct_ex3 r, rate, bias;        // place from the base; bias: second derivative with u' = 0
     ct_ex along[CT_PLACE_DOF];   // d r_x/d dof
     struct ct_axial_field axial; // the same of forces, where these alone foreshorten
     ct_ex place[4], turn[4], linear[2]; // shapes there
     ct_ex linear_value;                 // axial displacement, of r
-    ct_ex3 spin;                        // rate of the section's rotation
 };
 
 // ---- points -----------------------------------------------------------------------------------------
@@ -43,15 +44,8 @@ static ct_ex3 turning(struct ct_build *b, const struct ct_point *p, const ct_ex 
                      dot4(b, p->turn, of + 2)}};
 }
 
-static ct_ex3 times(struct ct_build *b, const ct_ex j[3], ct_ex3 v)
-{
-    for (int i = 0; i < 3; i++)
-        v.e[i] = ct_ex_mul(b->x, j[i], v.e[i]);
-    return v;
-}
-
 static void place_point(struct ct_build *b, const struct ct_flexible *f, struct ct_point *p,
-                        double at)
+                        double at, const ct_ex j[3])
 {
     struct ct_exs *x = b->x;
     const struct ct_element *e = &f->element[p->element];
@@ -75,7 +69,8 @@ static void place_point(struct ct_build *b, const struct ct_flexible *f, struct 
     p->bias = (ct_ex3){{a.bias, CT_EX_ZERO, CT_EX_ZERO}};
     if (f->kinematics != f->axial)
         ct_axial_field(b, f, p->element, xi, f->axial, &p->axial);
-    p->spin = turning(b, p, e->rate);
+    ct_section_motion(x, !ct_flexible_turns_inertia(b, f), j, turning(b, p, e->value),
+                      turning(b, p, e->rate), &p->section);
 }
 
 static void add_points(struct ct_build *b, const struct ct_flexible *f, int e, size_t *cap)
@@ -96,8 +91,9 @@ static void add_points(struct ct_build *b, const struct ct_flexible *f, int e, s
         ct_shape_points(b->x, &g, s, rule, wanted, xi, j[i]);
     }
     for (int i = 0; i < n; i++) {
-        struct ct_point p = {.element = e, .m = m[i], .j = {j[0][i], j[1][i], j[2][i]}};
-        place_point(b, f, &p, xi[i]);
+        struct ct_point p = {.element = e, .m = m[i]};
+        const ct_ex own[3] = {j[0][i], j[1][i], j[2][i]};
+        place_point(b, f, &p, xi[i], own);
         CT_PUSH(b->arena, I->point, I->npoint, *cap, p);
     }
 }
@@ -142,12 +138,12 @@ static void derive(struct ct_build *b, struct ct_flexible *f)
         const struct ct_point *p = &I->point[i];
         I->moment = ct_ex3_add(x, I->moment, ct_ex3_scale(x, p->m, p->r));
         ct_inertia_add_point(b, &I->inertia, p->m, p->r);
-        for (int k = 0; k < 3; k++)
-            I->inertia.e[4 * k] = ct_ex_add(x, I->inertia.e[4 * k], p->j[k]);
+        for (int k = 0; k < 9; k++)
+            I->inertia.e[k] = ct_ex_add(x, I->inertia.e[k], p->section.J.e[k]);
     }
 }
 
-// Rows of the force F and the moment T at a point: dr . F + dth . T.
+// Rows of the force F and of T, which does work on twist, -dw/dx and dv/dx at a point.
 static void push_point(struct ct_build *b, const struct ct_point *p, const ct_ex *along,
                        ct_ex3 F, ct_ex3 T, ct_ex sum[CT_DOF])
 {
@@ -184,14 +180,14 @@ static void inertia_rows(struct ct_build *b, const struct ct_flexible *f,
             ct_ex3 c = ct_ex3_add(x, m->a, ct_ex33_apply(x, &Om, p->r));
             c = ct_ex3_add(x, c, ct_twice_cross(b, m->w, p->rate));
             c = ct_ex3_add(x, c, p->bias);
-            ct_ex3 al = m->al;
-            if (level == CT_FULL) {
+            const ct_ex3 second = turning(b, p, f->element[e].acceleration);
+            if (level == CT_FULL)
                 c = ct_ex3_add(x, c, own_acceleration(b, f, p, chain));
-                al = ct_ex3_add(x, al, turning(b, p, f->element[e].acceleration));
-            }
+            const ct_ex3 on_angles = ct_section_on_angles(x, &p->section, m->w, m->al,
+                                                          level == CT_FULL ? &second : NULL);
             const ct_ex3 F = ct_ex3_scale(x, p->m, c);
             axial = ct_ex_add(x, axial, F.e[0]);
-            push_point(b, p, p->along, F, times(b, p->j, al), sum);
+            push_point(b, p, p->along, F, on_angles, sum);
         }
         for (int j = 2; j < CT_PLACE_DOF && f->kinematics == CT_AXIAL_CHAIN; j++)
             sum[j] = ct_ex_add(x, sum[j], ct_ex_mul(x, f->element[e].g[j], beyond));
@@ -252,12 +248,13 @@ static void moving(struct ct_build *b, const struct ct_flexible *f, struct ct_re
     for (size_t i = 0; i < f->inertia->npoint; i++) {
         const struct ct_point *p = &f->inertia->point[i];
         const ct_ex3 moved = ct_ex3_scale(x, p->m, p->rate);
-        const ct_ex3 turns = times(b, p->j, p->spin);
+        const ct_ex3 turns = ct_ex33_apply(x, &p->section.J, p->section.spin);
         out->momentum = ct_ex3_add(x, out->momentum, moved);
         out->spin
             = ct_ex3_add(x, out->spin, ct_ex3_add(x, ct_ex3_cross(x, p->r, moved), turns));
         out->twice_kinetic = ct_ex_add(x, out->twice_kinetic, ct_ex3_dot(x, p->rate, moved));
-        out->twice_kinetic = ct_ex_add(x, out->twice_kinetic, ct_ex3_dot(x, p->spin, turns));
+        out->twice_kinetic
+            = ct_ex_add(x, out->twice_kinetic, ct_ex3_dot(x, p->section.spin, turns));
     }
 }
 
@@ -278,10 +275,11 @@ static void wrench(struct ct_build *b, const struct ct_flexible *f, const struct
         d = ct_ex3_scale(x, p->m, d);
         *force = ct_ex3_add(x, *force, d);
         *torque = ct_ex3_add(x, *torque, ct_ex3_cross(x, p->r, d));
-        spin = ct_ex3_add(x, spin, times(b, p->j, p->spin));
-        if (level == CT_FULL)
-            *torque = ct_ex3_add(
-                x, *torque, times(b, p->j, turning(b, p, f->element[p->element].acceleration)));
+        const ct_ex3 second = turning(b, p, f->element[p->element].acceleration);
+        spin = ct_ex3_add(x, spin, ct_ex33_apply(x, &p->section.J, p->section.spin));
+        *torque = ct_ex3_add(
+            x, *torque,
+            ct_section_own(x, &p->section, m->w, level == CT_FULL ? &second : NULL));
     }
     *torque = ct_ex3_add(x, *torque, ct_ex3_cross(x, m->w, spin));
 }
@@ -309,14 +307,12 @@ static ct_ex3 point_partial(const struct ct_point *p, int j)
 
 static ct_ex3 point_turn(struct ct_build *b, const struct ct_point *p, int j)
 {
-    ct_ex3 d = zero3;
+    const struct ct_section *s = &p->section;
     if (j >= CT_PLACE_DOF)
-        d.e[0] = p->linear[j - CT_PLACE_DOF];
-    else if (j >= 6)
-        d.e[1] = ct_ex_neg(b->x, p->turn[j - 6]);
-    else if (j >= 2)
-        d.e[2] = p->turn[j - 2];
-    return d;
+        return ct_ex3_scale(b->x, p->linear[j - CT_PLACE_DOF], s->turn[0]);
+    if (j >= 6)
+        return ct_ex3_scale(b->x, ct_ex_neg(b->x, p->turn[j - 6]), s->turn[1]);
+    return j >= 2 ? ct_ex3_scale(b->x, p->turn[j - 2], s->turn[2]) : zero3;
 }
 
 static void add_point_mass(struct ct_build *b, const struct ct_point *p, struct element_mass *s)
@@ -326,7 +322,7 @@ static void add_point_mass(struct ct_build *b, const struct ct_point *p, struct 
     s->moment = ct_ex3_add(x, s->moment, ct_ex3_scale(x, p->m, p->r));
     for (int j = 0; j < CT_DOF; j++) {
         const ct_ex3 dr = ct_ex3_scale(x, p->m, point_partial(p, j));
-        const ct_ex3 dth = times(b, p->j, point_turn(b, p, j));
+        const ct_ex3 dth = ct_ex33_apply(x, &p->section.J, point_turn(b, p, j));
         s->moved[j] = ct_ex3_add(x, s->moved[j], dr);
         s->swept[j] = ct_ex3_add(x, s->swept[j], ct_ex3_add(x, ct_ex3_cross(x, p->r, dr), dth));
         for (int k = 0; k <= j; k++) {

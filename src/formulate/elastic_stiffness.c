@@ -16,6 +16,11 @@ enum ct_rule ct_flexible_stiffness_rule(const struct ct_beam *beam)
 }
 
 // Inertia per length about the axes; twist has some of its own where nothing else is given.
+bool ct_flexible_turns_inertia(const struct ct_build *b, const struct ct_flexible *f)
+{
+    return f->formulation == CT_BEAM_FORESHORTENING && f->beam->has_rotary && !b->is_planar;
+}
+
 struct ct_profile ct_flexible_rotary(const struct ct_flexible *f, int axis)
 {
     const struct ct_beam *beam = f->beam;

@@ -136,7 +136,8 @@ static void settle(struct ct_build *b, struct ct_flexible *f)
 {
     const struct ct_beam *beam = f->beam;
     f->deformation = beam->deformation & in_plane(b, f);
-    if (f->deformation & CT_BEAM_TORSION && !beam->deformation_given && !b->keep_all
+    // nor has it an inertia of its own then, so there is no coordinate to keep
+    if (f->deformation & CT_BEAM_TORSION && !beam->deformation_given
         && !ct_excite_twist(b, f)) {
         f->deformation &= ~(unsigned)CT_BEAM_TORSION;
         ct_topology_left_out(b, ct_arena_printf(b->arena, "torsion of %s", f->name),

@@ -50,7 +50,7 @@ struct ct_element {
     ct_ex g[CT_PLACE_DOF]; // CHAIN: d(c of the next element - c)/d(dof)
 };
 
-/// A section of the beam: displacement u of the axis, rotation Rz(angle[2]) Ry(angle[1]) Rx(angle[0])  (1.7b).
+/// A section of the beam: displacement u of the axis, rotation by angle as of section.h  (1.7b).
 struct ct_station {
     int element;
     enum ct_axial axial;

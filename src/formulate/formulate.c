@@ -42,6 +42,7 @@ static struct ct_build *build_create(struct ct_ctx *ctx, struct ct_arena *a,
     b->eqs = CT_NEW(a, struct ct_equations);
     b->x = b->eqs->x = ct_exs_clone(a, m->x);
     b->value = start_values(a, m);
+    b->x->ndecided = m->x->nsym;
     b->x->decided = CT_NEWN(a, unsigned char, m->x->nsym + 1);
     ct_topology_derive(b, !o->keep_all);
     return b;

@@ -4,7 +4,9 @@
 // with a member of its own; those in between have no mass. Where one coordinate does both, as in a screw, one
 // member has both.
 #include "formulate/member.h"
+#include "formulate/elastic.h"
 
+#include <math.h>
 #include <string.h>
 
 static const ct_ex3 zero3 = {{{0}, {0}, {0}}};
@@ -45,12 +47,12 @@ static ct_ex3 express_ground(struct ct_build *b, int cluster, ct_ex3 v)
 
 ct_ex3 ct_member_out(struct ct_build *b, const struct ct_member *m, ct_ex3 v)
 {
-    return m->turns && !b->is_planar ? ct_ex33_apply(b->x, &m->R, v) : v;
+    return m->has_axes ? ct_ex33_apply(b->x, &m->R, v) : v;
 }
 
 ct_ex3 ct_member_in(struct ct_build *b, const struct ct_member *m, ct_ex3 v)
 {
-    return m->turns && !b->is_planar ? ct_ex33_apply_t(b->x, &m->R, v) : v;
+    return m->has_axes ? ct_ex33_apply_t(b->x, &m->R, v) : v;
 }
 
 static bool is_symmetric(const ct_ex33 *A)
@@ -87,7 +89,7 @@ static void turn_about(struct ct_build *b, const struct ct_member *m, ct_ex33 *A
 void ct_member_turn_tensor(struct ct_build *b, const struct ct_member *m, ct_ex33 *A)
 {
     struct ct_exs *x = b->x;
-    if (!m->turns || b->is_planar)
+    if (!m->has_axes)
         return;
     if (m->axis >= 0) {
         turn_about(b, m, A);
@@ -116,12 +118,14 @@ static int add_member(struct work *w, int parent, int cluster, ct_ex3 r)
     return (int)w->s->n - 1;
 }
 
-static struct ct_screw *screw_of(struct ct_member *m, int speed)
+static struct ct_screw *screw_of(struct ct_build *b, struct ct_member *m, int speed)
 {
+    const struct ct_screw fresh = {.speed = speed, .axis = -1};
+    size_t n = (size_t)m->nfree;
     for (int k = 0; k < m->nfree; k++)
         if (m->screw[k].speed == speed)
             return &m->screw[k];
-    m->screw[m->nfree] = (struct ct_screw){.speed = speed, .axis = -1};
+    CT_PUSH(b->arena, m->screw, n, m->screw_cap, fresh);
     return &m->screw[m->nfree++];
 }
 
@@ -159,6 +163,7 @@ static void add_turn(struct work *w, int member, int cluster, const ct_ex33 *S)
     struct ct_member *m = &w->s->member[member];
     const struct ct_cluster *c = &b->cluster[cluster];
     m->turns = true;
+    m->has_axes = !b->is_planar;
     if (!b->is_planar)
         m->R = ct_cluster_relative(b, cluster);
     m->cluster = cluster;
@@ -172,7 +177,7 @@ static void add_turn(struct work *w, int member, int cluster, const ct_ex33 *S)
         m->al_relative = ct_ex3_add(x, m->al_relative, ct_ex3_scale(x, s->bias, axis));
         for (int k = 0; k < s->nterm; k++)
             if (s->term[k].speed >= 0) {
-                struct ct_screw *f = screw_of(m, s->term[k].speed);
+                struct ct_screw *f = screw_of(b, m, s->term[k].speed);
                 f->turn = ct_ex3_add(x, f->turn, ct_ex3_scale(x, s->term[k].coef, axis));
             }
     }
@@ -195,7 +200,7 @@ static void add_slides(struct work *w, int member, const struct ct_edge_info *e)
         for (int i = 0; i < 3; i++)
             p.e[i] = ct_ex_diff(x, m->r.e[i], b->eqs->q[c->q].symbol);
         if (!ct_ex3_is_zero(p))
-            screw_of(m, c->u)->slide = p;
+            screw_of(b, m, c->u)->slide = p;
     }
 }
 
@@ -314,6 +319,138 @@ static bool pass(struct work *w, const struct passage *p, int *member, ct_ex3 *o
     return true;
 }
 
+// ---- beams --------------------------------------------------------------------------------------------
+
+static int beam_of(const struct ct_build *b, const struct ct_flexible *f)
+{
+    return (int)(f - b->flexible);
+}
+
+// Axes of the beam -> those of its base: its cluster's, in a plane (x, n x x, n).
+static ct_ex33 base_axes(struct ct_build *b, const struct ct_flexible *f)
+{
+    if (!b->is_planar)
+        return b->place[f->base].S;
+    const ct_ex3 n = ct_ex33_apply_t(b->x, &b->upright[f->base], b->plane[2]);
+    ct_ex33 A = {{{0}}};
+    double v[3]; // one of the beam's axes, but for rounding
+    for (int i = 0; i < 3; i++) {
+        v[i] = rint(ct_ex_value(b->x, n.e[i], b->value)) + 0.0; // no negative zero
+        A.e[2 + 3 * i] = ct_ex_const(b->x, v[i]);
+    }
+    A.e[0] = CT_EX_ONE;
+    A.e[1 + 3 * 1] = ct_ex_const(b->x, v[2]);
+    A.e[1 + 3 * 2] = ct_ex_const(b->x, 0 - v[1]);
+    return A;
+}
+
+// In a plane: axes of the beam's base -> those of the plane.
+static ct_ex33 beam_turn(struct ct_build *b, const struct ct_flexible *f)
+{
+    const struct ct_place *p = &b->place[f->base];
+    const ct_ex3 x = {{CT_EX_ONE, CT_EX_ZERO, CT_EX_ZERO}};
+    const ct_ex3 v = express(b, p->frame, ct_ex33_apply(b->x, &p->S, x));
+    return (ct_ex33){{v.e[0], v.e[1], CT_EX_ZERO, ct_ex_neg(b->x, v.e[1]), v.e[0], CT_EX_ZERO,
+                      CT_EX_ZERO, CT_EX_ZERO, CT_EX_ONE}};
+}
+
+// In a plane: member m has the axes of the beam, its parent those of the plane, or the other way round.
+static void change_axes(struct work *w, int m, const struct ct_flexible *f, bool into_beam)
+{
+    struct ct_member *self = &w->s->member[m];
+    const ct_ex33 R = beam_turn(w->b, f);
+    self->R = into_beam ? R : ct_ex33_transpose(&R);
+    self->has_axes = true;
+    self->axis = 2;
+}
+
+static int rigid_member(struct work *w, int parent, const struct ct_flexible *f, ct_ex3 r)
+{
+    const int m = add_member(w, parent, w->s->member[parent].cluster, r);
+    w->s->member[m].beam = beam_of(w->b, f) + 1;
+    return m;
+}
+
+// The base of a beam that a node carries which is not one of its own sections.
+static void hang_base(struct work *w, const struct ct_flexible *f, int member, ct_ex3 offset)
+{
+    struct ct_member_beam *beam = &w->s->beam[beam_of(w->b, f)];
+    beam->A = base_axes(w->b, f);
+    beam->base = beam->root = rigid_member(w, member, f, offset);
+    if (w->b->is_planar)
+        change_axes(w, beam->base, f, true);
+}
+
+// What slides between the base and a section, from the member at whose origin r begins; in axes of the base.
+static int slide_section(struct work *w, int from, ct_ex3 r, const struct ct_edge_info *e,
+                         int sign)
+{
+    struct ct_build *b = w->b;
+    const struct ct_flexible *f = e->flexible;
+    const ct_ex33 *A = &w->s->beam[beam_of(b, f)].A;
+    ct_ex3 place = ct_ex33_apply(b->x, A, e->at);
+    place = sign > 0 ? place : ct_ex3_neg(b->x, place);
+    const int i = add_member(w, from, b->place[f->base].frame, ct_ex3_add(b->x, r, place));
+    struct ct_member *m = &w->s->member[i];
+    m->beam = beam_of(b, f) + 1;
+    m->slides = m->is_ready = true;
+    m->drift = ct_build_rate3(b, place);
+    m->drift_bias = ct_build_rate3(b, m->drift);
+    for (int k = 0; k < f->nelastic; k++) {
+        const ct_ex3 p = ct_ex33_apply(b->x, A, e->slide[k]);
+        if (!ct_ex3_is_zero(p))
+            screw_of(b, m, f->elastic[k].u)->slide = sign > 0 ? p : ct_ex3_neg(b->x, p);
+    }
+    return i;
+}
+
+// Turns of a section, in a plane with the change of axes.
+static int turn_section(struct work *w, int from, ct_ex3 r, const struct passage *p, int sign)
+{
+    const struct ct_flexible *f = p->e->flexible;
+    int m = from;
+    for (int i = 0; i < p->ncluster; i++, r = zero3) {
+        m = add_member(w, m, -1, r);
+        w->s->member[m].beam = beam_of(w->b, f) + 1;
+        add_turn(w, m, p->cluster[i], p->S);
+    }
+    if (!w->b->is_planar)
+        return m;
+    if (!p->ncluster)
+        m = rigid_member(w, m, f, r);
+    change_axes(w, m, f, sign < 0);
+    return m;
+}
+
+// From the base of a beam to a section (sign +1) or back.
+static bool pass_section(struct work *w, const struct passage *p, int sign, int *member,
+                         ct_ex3 *offset)
+{
+    struct ct_build *b = w->b;
+    const struct ct_flexible *f = p->e->flexible;
+    struct ct_member_beam *beam = &w->s->beam[beam_of(b, f)];
+    if (p->is_absolute || (sign < 0 && beam->base))
+        return false;
+    if (sign > 0) {
+        *member = slide_section(w, beam->base, zero3, p->e, sign);
+        *member = turn_section(w, *member, zero3, p, sign);
+    } else {
+        const size_t first = w->s->n;
+        beam->A = base_axes(b, f);
+        const int turned = turn_section(w, *member, *offset, p, sign);
+        const bool is_new = turned != *member;
+        *member = slide_section(w, turned, is_new ? zero3 : *offset, p->e, sign);
+        beam->root = (int)first;
+        beam->base = *member;
+        if (b->is_planar) { // what else the base carries
+            *member = rigid_member(w, *member, f, zero3);
+            change_axes(w, *member, f, false);
+        }
+    }
+    *offset = zero3;
+    return true;
+}
+
 // ---- nodes --------------------------------------------------------------------------------------------
 
 // The clusters between the axes of a node and those of its parent, or of ground in a plane. False where the node
@@ -363,11 +500,15 @@ static bool place_node(struct work *w, int node)
             return false;
     } else if (b->node[parent].is_particle
                || !find_clusters(w, b->place[parent].frame, b->place[node].frame, &p)
-               || !pass(w, &p, &member, &offset)) {
+               || !(e->flexible ? pass_section(w, &p, sign, &member, &offset)
+                                : pass(w, &p, &member, &offset))) {
         return false;
     }
     w->of_node[node] = member;
     w->offset[node] = offset;
+    const struct ct_flexible *f = ct_flexible_of(b, b->node[node].body);
+    if (f && f->base == node && !w->s->beam[beam_of(b, f)].base)
+        hang_base(w, f, member, offset);
     return true;
 }
 
@@ -392,14 +533,14 @@ static bool own_speeds(struct work *w)
     const size_t nu = w->b->eqs->nu;
     w->of_speed = CT_NEWN(w->b->arena, int, nu + 1);
     for (size_t m = 1; m < w->s->n; m++)
-        for (int k = 0; k < w->s->member[m].nfree; k++) {
+        for (int k = 0; k < w->s->member[m].nfree && !w->s->member[m].beam; k++) {
             int *of = &w->of_speed[w->s->member[m].screw[k].speed];
             if (*of)
                 return false;
             *of = (int)m;
         }
     for (size_t k = 0; k < nu; k++)
-        if (!w->of_speed[k])
+        if (!w->of_speed[k] && !w->b->eqs->u[k].beam)
             return false;
     w->s->of_speed = w->of_speed;
     return true;
@@ -450,6 +591,8 @@ static void add_bodies(struct work *w)
     for (size_t i = 1; i < b->model->nbody; i++) {
         const struct ct_body *body = &b->model->body[i];
         const int node = b->node_of_com[i];
+        if (body->beam)
+            continue;
         const ct_ex *I = body->inertia;
         ct_ex33 turned = {{{0}}};
         if (!body->is_particle) {
@@ -611,6 +754,8 @@ static void find_axes(struct work *w, struct ct_member *m)
 {
     const int cluster = w->s->member[m->parent].cluster;
     struct ct_build *b = w->b;
+    if (m->is_ready)
+        return;
     m->r = express(b, cluster, m->r);
     m->drift = express(b, cluster, m->drift);
     m->drift_bias = express(b, cluster, m->drift_bias);
@@ -639,21 +784,62 @@ static void flatten(struct work *w)
     for (size_t i = 0; i < b->nnode; i++)
         w->offset[i] = ct_build_in_plane(b, w->offset[i]);
     for (size_t i = 1; i < w->s->n; i++)
-        w->s->member[i].r = ct_build_in_plane(b, w->s->member[i].r);
+        if (!w->s->member[i].is_ready)
+            w->s->member[i].r = ct_build_in_plane(b, w->s->member[i].r);
+}
+
+// Rigid part of the inertia of beams now, at their bases.
+static void add_beams(struct work *w)
+{
+    struct ct_build *b = w->b;
+    if (w->s->nbeam)
+        ct_masses_lump(b);
+    for (size_t i = 0; i < w->s->nbeam; i++) {
+        const struct ct_member_beam *at = &w->s->beam[i];
+        const struct ct_inertia *I = b->flexible[i].inertia;
+        struct ct_member *m = &w->s->member[at->base];
+        const ct_ex33 t = ct_ex33_transpose(&at->A), half = ct_ex33_mul(b->x, &I->inertia, &t);
+        const ct_ex33 J = ct_ex33_mul(b->x, &at->A, &half);
+        ct_ex3 moment = ct_ex33_apply(b->x, &at->A, I->moment);
+        m->mass = ct_ex_add(b->x, m->mass, I->mass);
+        if (b->is_planar) {
+            moment.e[2] = CT_EX_ZERO;
+            m->J.e[8] = ct_ex_add(b->x, m->J.e[8], J.e[8]);
+        } else {
+            add_tensor(b, &m->J, &J);
+        }
+        m->moment = ct_ex3_add(b->x, m->moment, moment);
+    }
+}
+
+static bool beams_fit(const struct ct_build *b)
+{
+    for (size_t i = 0; i < b->nflexible; i++)
+        if (b->flexible[i].kinematics != b->flexible[i].axial
+            || b->flexible[i].formulation == CT_BEAM_STRETCH_LINEAR)
+            return false;
+    return true;
 }
 
 const struct ct_members *ct_members_derive(struct ct_build *b)
 {
     struct ct_members *s = CT_NEW(b->arena, struct ct_members);
     struct work w = {.b = b, .s = s};
-    if (b->nflexible || b->model->simulation.small.given || b->eqs->nrow || !place_nodes(&w)
-        || !own_speeds(&w))
+    if (b->model->simulation.small.given || b->eqs->nrow || !beams_fit(b))
         return NULL;
+    s->nbeam = b->nflexible;
+    s->beam = CT_NEWN(b->arena, struct ct_member_beam, s->nbeam + 1);
+    if (!place_nodes(&w) || !own_speeds(&w))
+        return NULL;
+    for (size_t i = 0; i < s->nbeam; i++)
+        if (!s->beam[i].base)
+            return NULL;
     flatten(&w);
     add_bodies(&w);
     lump_masses(&w);
     for (size_t i = 1; i < s->n; i++)
         find_axes(&w, &s->member[i]);
+    add_beams(&w);
     find_velocities(&w);
     apply_loads(&w);
     return s;

@@ -6,7 +6,11 @@
 // of joints are constant: what recursions along a chain use. In a plane all members share the axes
 // (e1, e2, n) of the plane, in which nothing need be turned.
 //
-// What always holds: a member's parent has a smaller number; number 0 is ground. Each unknown speed moves
+// A beam hangs on a member of its own, its base; a section is one or more members that elastic coordinates move against it. All
+// members that elastic coordinates of a beam move, and its base, are connected; the innermost of them is the root. In a plane
+// the base and what slides against it have axes (x of the beam, n x x, n).
+//
+// What always holds: a member's parent has a smaller number; number 0 is ground. Each unknown speed of a joint moves
 // one member. Masses are lumped towards ground: what a joint cannot move - a mass on its axis, a rod along it,
 // for a slide the moments of inertia - is counted with the parent.
 #ifndef CT_FORMULATE_MEMBER_H
@@ -26,13 +30,17 @@ struct ct_member {
     bool
         is_absolute; // its turn is measured from ground, its place from the parent (in a plane only)
     bool turns, slides;
+    bool has_axes; // R is not the unit matrix
+    bool is_ready; // made in the axes that are used
+    int beam;  // whose elastic coordinates its screws belong to, plus one; 0: those of joints
     int axis;  // of the turn: 0..2, or -1 where it is no coordinate axis
     ct_ex33 R; // its axes -> its parent's
     ct_ex3 r;  // parent's origin -> its own [m], in the parent's axes, and so
     ct_ex3 drift,
         drift_bias; // the rate of r seen from the parent, and its rate with all u' = 0
-    struct ct_screw screw[CT_MAX_COORD];
+    struct ct_screw *screw;
     int nfree;
+    size_t screw_cap;
     ct_ex3 w_relative, al_relative; // [rad/s], [rad/s^2] at u' = 0, own axes
     ct_ex mass;                     // [kg]
     ct_ex3 moment;                  // first moment about the origin [kg m]
@@ -42,14 +50,23 @@ struct ct_member {
     ct_ex33 U;                      // w x (w x v) = U v
 };
 
+/// Where a beam is among the members.
+struct ct_member_beam {
+    int base, root;
+    ct_ex33 A; // axes of the beam -> those of its base
+};
+
 struct ct_members {
     struct ct_member *member;
     size_t n, cap;
-    const int *of_speed; // by speed: the member it moves
+    const int *of_speed;         // by speed: the member it moves; elastic ones: 0
+    struct ct_member_beam *beam; // by b->flexible
+    size_t nbeam;
 };
 
 /// Members of an open system; NULL where this form does not apply: translational and rotational trees that
-/// differ (but for angles in a plane), freedoms that are not those of joints between rigid bodies. After ct_loads_derive.
+/// differ (but for angles in a plane), equations that are cut to first order, beams whose forces alone foreshorten. After
+/// ct_loads_derive.
 const struct ct_members *ct_members_derive(struct ct_build *b);
 
 /// R v and R' v: a vector out of a member's axes into its parent's, and back.

@@ -4,6 +4,7 @@
 #include "formulate/articulated.h"
 #include "formulate/composite.h"
 #include "formulate/dynamics.h"
+#include "formulate/flexible.h"
 
 #include <math.h>
 
@@ -116,9 +117,11 @@ static double least_matrix_cost(struct ct_build *b, const struct ct_members *s)
     double *above = CT_NEWN(b->ctx->scratch, double, s->n), cost = 0, nonzeros = 0;
     for (size_t i = 1; i < s->n; i++) {
         const struct ct_member *m = &s->member[i];
-        above[i] = above[m->parent] + m->nfree;
-        for (int k = 0; k < m->nfree; k++) {
-            const double d = above[m->parent] + k;
+        const bool is_root = m->beam && s->beam[m->beam - 1].root == (int)i;
+        const int own = is_root ? b->flexible[m->beam - 1].nelastic : m->beam ? 0 : m->nfree;
+        above[i] = above[m->parent] + own;
+        for (int k = 0; k < own; k++) { // within a beam there may be a band
+            const double d = above[m->parent] + (m->beam ? 0 : k);
             cost += d * d + 6 * d + 5;
             nonzeros += d + 1;
         }
@@ -208,7 +211,7 @@ void ct_open_solve(struct ct_build *b, enum ct_formulation which)
         t[CT_FORMULATION_ARTICULATED] = try_articulated(b, s);
     const double known = t[CT_FORMULATION_ARTICULATED].cost;
     const bool by_matrix = e->nu <= CT_SMALL_SYSTEM || !s || least_matrix_cost(b, s) < known;
-    if (by_matrix && s && which != CT_FORMULATION_ARTICULATED && !b->is_planar)
+    if (by_matrix && s && !s->nbeam && which != CT_FORMULATION_ARTICULATED && !b->is_planar)
         t[CT_FORMULATION_COMPOSITE] = try_composite(b, s);
     // in space axes of the bodies always need fewer operations than those of ground
     if (by_matrix && !isfinite(t[CT_FORMULATION_COMPOSITE].cost))

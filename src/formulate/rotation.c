@@ -3,6 +3,7 @@
 // A branch with axes adds one cluster an axis. Rotations about one and the same axis are accumulated:
 // R = R_base Rot(axis, angle), so that a chain of parallel revolutes needs one sine and cosine a body.
 #include "formulate/flexible.h"
+#include "formulate/section.h"
 #include "formulate/topology.h"
 
 #include <assert.h>
@@ -105,7 +106,6 @@ static void find_station(struct ct_build *b, struct ct_edge_info *e)
 {
     const struct ct_flexible *f = e->flexible;
     struct ct_station *s = CT_NEW(b->arena, struct ct_station);
-    static const int axis_of_turn[3] = {2, 1, 0}; // (1.7b)
     ct_flexible_station(b, f, e->along, f->kinematics, s);
     e->slide = CT_NEWN(b->arena, ct_ex3, f->nelastic + 1);
     e->turn = CT_NEWN(b->arena, ct_ex3, f->nelastic + 1);
@@ -119,12 +119,13 @@ static void find_station(struct ct_build *b, struct ct_edge_info *e)
                             CT_NEWN(b->arena, ct_ex3, f->nelastic + 1));
     }
     e->at = s->place;
-    for (int i = 0; i < 3; i++) {
-        const int axis = axis_of_turn[i];
-        double n[3] = {0};
-        n[axis] = 1;
-        if (!ct_ex_is_zero(s->angle[axis]))
-            ct_motion_turn(&e->motion, ct_ex3_const(b->x, n), s->angle[axis]);
+    struct ct_section_turn turn[4];
+    const int n = ct_section_turns(s->angle, turn);
+    for (int i = 0; i < n; i++) {
+        double axis[3] = {0};
+        axis[turn[i].axis] = 1;
+        ct_motion_turn(&e->motion, ct_ex3_const(b->x, axis),
+                       ct_ex_scale(b->x, turn[i].share, s->angle[turn[i].axis]));
     }
 }
 
@@ -219,14 +220,17 @@ static void add_term(struct ct_build *b, struct ct_spin *s, int speed, int drive
             = (struct ct_term){speed, driver, sign > 0 ? coef : ct_ex_neg(b->x, coef)};
 }
 
-// The turn of a beam's section about an axis: its slope along the elastic coordinates.
-static void section_terms(struct ct_build *b, const struct ct_edge_info *e, ct_ex3 axis,
-                          int sign, struct ct_spin *s)
+// The i-th turn of a beam's section: slopes of its angle along the elastic coordinates.
+static void section_terms(struct ct_build *b, const struct ct_edge_info *e, int i, int sign,
+                          struct ct_spin *s)
 {
     const struct ct_flexible *f = e->flexible;
+    struct ct_section_turn turn[4];
+    ct_section_turns(e->station->angle, turn);
     s->term = CT_NEWN(b->arena, struct ct_term, f->nelastic + 1);
     for (int k = 0; k < f->nelastic; k++)
-        add_term(b, s, f->elastic[k].u, -1, sign, ct_ex3_dot(b->x, axis, e->turn[k]));
+        add_term(b, s, f->elastic[k].u, -1, sign,
+                 ct_ex_scale(b->x, turn[i].share, e->turn[k].e[turn[i].axis]));
 }
 
 // Spin of the i-th turn of branch e, whose axis is fixed in the parent; the coefficients of its rate
@@ -238,7 +242,7 @@ static void add_spin(struct ct_build *b, int cluster, const struct ct_edge_info 
     struct ct_spin s
         = {.cluster = cluster, .axis = ct_cluster_turn(b, b->cluster[cluster].base, local)};
     if (e->flexible) {
-        section_terms(b, e, e->motion.turn[i].axis, sign, &s);
+        section_terms(b, e, i, sign, &s);
     } else {
         s.term = CT_NEWN(b->arena, struct ct_term, e->ncoordinate + 1);
         for (int k = 0; k < e->ncoordinate; k++) {

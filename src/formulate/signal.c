@@ -66,6 +66,18 @@ static bool in_axes(struct ct_build *b, const struct signal *s, const char *name
     return true;
 }
 
+// What is one number has neither components nor axes: "j.q.x", "energy.total in b".
+static bool is_number(struct ct_build *b, const struct signal *s, const char *name,
+                      struct ct_mark mark)
+{
+    if (s->component)
+        return unknown(
+            b, mark, name,
+            ct_arena_printf(b->arena, "%s.%s has no components", s->owner, s->property));
+    return !s->axes
+        || unknown(b, mark, name, "'in' gives the axes of a vector, and this is none");
+}
+
 static bool component_of(struct ct_build *b, const struct signal *s, const char *name,
                          struct ct_mark mark, ct_ex3 v, ct_ex *out)
 {
@@ -102,6 +114,8 @@ static bool frame_signal(struct ct_build *b, int frame, const struct signal *s,
     const int property = index_of(s->property, vector_properties, COUNT(vector_properties));
     if (property >= 0)
         return component_of(b, s, name, mark, frame_vector(b, node, property), out);
+    if (s->axes && (!strcmp(s->property, "rotation") || !strcmp(s->property, "quaternion")))
+        return unknown(b, mark, name, "'in' gives the axes of a vector, and this is none");
     if (!strcmp(s->property, "rotation")) {
         const int i = index_of(s->component, entries, 9);
         if (i < 0)
@@ -143,13 +157,15 @@ static bool effort_signal(struct ct_build *b, int joint, int k, const char *name
 {
     const struct ct_instance *self = &b->model->joint[joint];
     if (self->from < 0) {
+        if (k > 0)
+            return unknown(b, mark, name, "the joint has no such coordinate");
         for (size_t i = 0; i < b->eqs->nrow; i++)
             if (b->eqs->row[i].joint == joint)
                 *out = b->eqs->row[i].lam;
         return true;
     }
     if (k >= self->nfree)
-        return unknown(b, mark, name, "the joint has fewer coordinates");
+        return unknown(b, mark, name, "the joint has no such coordinate");
     const int coordinate = b->edge[b->edge_of_joint[joint]].first_coordinate + k;
     if (b->coordinate[coordinate].is_driven) {
         *out = driver_effort(b, coordinate);
@@ -161,20 +177,39 @@ static bool effort_signal(struct ct_build *b, int joint, int k, const char *name
     return true;
 }
 
+// The number of "q2": 1 without one; 0 for what is no number from 1, as in "q0", "q02", "q2x".
+static int number_of(const char *digits)
+{
+    const size_t n = strspn(digits, "0123456789");
+    if (!*digits)
+        return 1;
+    return digits[0] == '0' || digits[n] || n > 9 ? 0 : (int)strtol(digits, NULL, 10);
+}
+
 // q, u, a, effort with or without a number.
-static bool coordinate_signal(struct ct_build *b, int joint, const char *property,
+static bool coordinate_signal(struct ct_build *b, int joint, const struct signal *s,
                               const char *name, struct ct_mark mark, ct_ex *out)
 {
     const struct ct_instance *self = &b->model->joint[joint];
-    const size_t letters = strcspn(property, "0123456789");
-    const long number = property[letters] ? strtol(property + letters, NULL, 10) : 1;
-    const char *const kind = ct_arena_strndup(b->arena, property, letters);
-    if (!strcmp(kind, "effort"))
-        return effort_signal(b, joint, (int)number - 1, name, mark, out);
+    const size_t letters = strcspn(s->property, "0123456789");
+    const int number = number_of(s->property + letters);
+    const char *const kind = ct_arena_strndup(b->arena, s->property, letters);
     const bool stored = !strcmp(kind, "q");
-    if (self->from < 0 || number < 1 || number > (stored ? self->ncoord : self->nfree))
+    const int n = stored ? self->ncoord : self->nfree;
+    if (!is_number(b, s, name, mark))
+        return false;
+    if (number < 1)
         return unknown(b, mark, name, "the joint has no such coordinate");
-    const int coordinate = b->edge[b->edge_of_joint[joint]].first_coordinate + (int)number - 1;
+    if (!s->property[letters] && n > 1)
+        return unknown(b, mark, name,
+                       ct_arena_printf(b->arena,
+                                       "the joint has %d of them; name one, as in %s.%s2", n,
+                                       s->owner, kind));
+    if (!strcmp(kind, "effort"))
+        return effort_signal(b, joint, number - 1, name, mark, out);
+    if (self->from < 0 || number > n)
+        return unknown(b, mark, name, "the joint has no such coordinate");
+    const int coordinate = b->edge[b->edge_of_joint[joint]].first_coordinate + number - 1;
     if (stored)
         *out = ct_coordinate_value(b, coordinate);
     else if (!strcmp(kind, "u"))
@@ -195,14 +230,34 @@ static bool joint_signal(struct ct_build *b, int joint, const struct signal *s,
         const int tail = b->wiring[b->edge_of_joint[joint]].tail;
         const int i = index_of(s->component, axis_names, 3);
         b->is_open = b->is_open || (i >= 0 && !ct_reaction_is_known(b, joint, is_force, i));
-        return component_of(b, s, name, mark,
-                            ct_node_unturn(b, tail, is_force ? force : torque), out);
+        const ct_ex3 v = is_force ? force : torque;
+        return component_of(b, s, name, mark, s->axes ? v : ct_node_unturn(b, tail, v), out);
     }
     const size_t letters = strcspn(s->property, "0123456789");
     for (size_t i = 0; i < COUNT(kinds); i++)
         if (strlen(kinds[i]) == letters && !strncmp(s->property, kinds[i], letters))
-            return coordinate_signal(b, joint, s->property, name, mark, out);
+            return coordinate_signal(b, joint, s, name, mark, out);
     return unknown(b, mark, name, "a joint has q, u, a, effort, force and torque");
+}
+
+// ---- forces ---------------------------------------------------------------------------------------------------
+
+static bool force_signal(struct ct_build *b, const struct ct_instance *self,
+                         const struct signal *s, const char *name, struct ct_mark mark,
+                         ct_ex *out)
+{
+    const char *component = s->component ? s->component : "";
+    const char *dot = s->component ? "." : "";
+    ct_ex3 v = zero3;
+    bool has = self->cls->signal
+            && self->cls->signal(
+                b, self, ct_arena_printf(b->arena, "%s%s%s", s->property, dot, component), out);
+    for (int i = 0; i < 3 && has && s->axes; i++)
+        has = self->cls->signal(
+            b, self, ct_arena_printf(b->arena, "%s.%s", s->property, axis_names[i]), &v.e[i]);
+    if (!has)
+        return unknown(b, mark, name, "this force has no such property");
+    return !s->axes || component_of(b, s, name, mark, v, out);
 }
 
 // ---- sums over the system -----------------------------------------------------------------------------------------
@@ -288,6 +343,8 @@ static bool global_signal(struct ct_build *b, const struct signal *s, const char
     }
     if (!strcmp(s->owner, "constraint")) {
         const bool position = !strcmp(s->property, "position");
+        if (!is_number(b, s, name, mark))
+            return false;
         if (!position && strcmp(s->property, "velocity"))
             return unknown(b, mark, name, "constraint has position and velocity");
         *out = largest(b, position);
@@ -297,6 +354,8 @@ static bool global_signal(struct ct_build *b, const struct signal *s, const char
     const ct_ex stored = ct_ex_add(x, e->kinetic, ct_ex_add(x, e->potential, e->strain));
     const ct_ex values[] = {e->kinetic, e->potential, e->strain, e->work_symbol,
                             ct_ex_sub(x, stored, e->work_symbol)};
+    if (!is_number(b, s, name, mark))
+        return false;
     if (i < 0)
         return unknown(b, mark, name, "energy has kinetic, potential, strain, work and total");
     *out = values[i];
@@ -323,8 +382,11 @@ static bool beam_signal(struct ct_build *b, int frame, const struct signal *s, c
     const int i = index_of(s->component, axis_names, 3);
     if (!strcmp(s->property, "strain")) {
         *out = ct_beam_signal_strain(b, frame);
-        return !s->component || unknown(b, mark, name, "strain is a number");
+        return is_number(b, s, name, mark);
     }
+    if (s->axes)
+        return unknown(b, mark, name,
+                       "it is in axes of the beam; 'in' is for vectors of the ground's");
     if (is_force || !strcmp(s->property, "moment"))
         b->is_open = b->is_open || (i >= 0 && !ct_beam_signal_is_known(b, frame, is_force, i));
     return component_of(b, s, name, mark, ct_beam_signal_vector(b, frame, s->property), out);
@@ -381,25 +443,18 @@ bool ct_signal_resolve(struct ct_build *b, const char *name, struct ct_mark mark
     if (joint >= 0)
         return joint_signal(b, joint, &s, name, mark, out);
     const int force = ct_model_find_force(b->model, s.owner);
-    if (force >= 0) {
-        const struct ct_instance *self = &b->model->force[force];
-        const char *property = s.component
-                                 ? ct_arena_printf(b->arena, "%s.%s", s.property, s.component)
-                                 : s.property;
-        if (self->cls->signal && self->cls->signal(b, self, property, out))
-            return true;
-        return unknown(b, mark, name, "this force has no such property");
-    }
+    if (force >= 0)
+        return force_signal(b, &b->model->force[force], &s, name, mark, out);
     if (frame < 0)
         return unknown(b, mark, name, "nothing has this name");
     const int body = b->model->frame[frame].body;
-    if (!strcmp(s.property, "validity") && !s.component && frame == b->model->body[body].frame
+    if (!strcmp(s.property, "validity") && frame == b->model->body[body].frame
         && ct_flexible_of(b, body)) {
         struct ct_validity v;
         if (!ct_validity_derive(b, ct_flexible_of(b, body), &v))
             return unknown(b, mark, name, "the beam does not bend");
         *out = v.eta;
-        return true;
+        return is_number(b, &s, name, mark);
     }
     if (!strcmp(s.property, "com") && body > 0)
         return component_of(b, &s, name, mark, body_com(b, body), out);
@@ -610,16 +665,36 @@ static void named_columns(struct ct_build *b, const struct ct_output *o)
         b->eqs->result[first].name = o->name;
 }
 
+// Columns from `first` on are those of output i; none may be there already: "a.position" has "a.position.x".
+static void new_names(struct ct_build *b, struct ct_names *names, size_t first, size_t i)
+{
+    const struct ct_output *output = b->model->output;
+    for (size_t k = first; k < b->eqs->nresult; k++) {
+        const char *column = b->eqs->result[k].name;
+        const int known = ct_names_get(names, column);
+        if (known >= 0) {
+            ct_error(b->ctx, output[i].mark, CT_E_NAME_TWICE, "the output '%s' is there twice",
+                     column);
+            ct_note(b->ctx, output[known].mark, "the first one is here");
+            return;
+        }
+        ct_names_put(b->arena, names, column, (int)i);
+    }
+}
+
 bool ct_outputs_derive(struct ct_build *b)
 {
     const size_t before = b->ctx->nerror;
+    struct ct_names names = {0};
     b->in_outputs = true;
     for (size_t i = 0; i < b->model->noutput; i++) {
         const struct ct_output *o = &b->model->output[i];
+        const size_t first = b->eqs->nresult;
         if (o->is_signal)
             named_columns(b, o);
         else
             push_result(b, o->name, ct_build_value(b, o->value));
+        new_names(b, &names, first, i);
     }
     b->in_outputs = false;
     return b->ctx->nerror == before;

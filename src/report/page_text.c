@@ -37,32 +37,32 @@ static void put_words(FILE *out, const char *s, size_t indent)
     fputs("\n", out);
 }
 
-// Where to break s so that at most `room` characters stay before: at the sign of a sum with the
-// fewest open brackets, the last of those; then after a comma or before a factor; 0 if nowhere.
+// Where to break s so that at most `room` characters stay before: at the sign of a sum or the comma of a list
+// with the fewest open brackets, the last of those; then before a factor; 0 if nowhere.
 static size_t break_place(const char *s, size_t room)
 {
     size_t best = 0;
-    int depth = 0, best_depth = 0, best_rank = 9;
+    int depth = 0, best_level = 0, best_rank = 9;
     for (size_t i = 0; i <= room && s[i]; i++) {
         if (s[i] == '(' || s[i] == '[')
             depth++;
         if (s[i] == ')' || s[i] == ']')
             depth--;
-        int rank = 9;
+        int rank = 9, level = 2 * depth;
         if (i > 4 && s[i] == ' ' && (s[i + 1] == '+' || s[i + 1] == '-') && s[i + 2] == ' ')
             rank = 0;
         else if (i > 4 && s[i] == ' ' && s[i - 1] == ',')
-            rank = 1;
+            rank = 0, level--; // a list falls apart before the sums in it
         else if (i > 4 && s[i] == '*' && depth == 0)
-            rank = 2;
+            rank = 1;
         if (rank == 9)
             continue;
         // a deeper sign is taken only if all at the shallower level stand in the first third
         const bool better = best == 0 || rank < best_rank
-                         || (rank == best_rank && (depth <= best_depth || 3 * best < room));
+                         || (rank == best_rank && (level <= best_level || 3 * best < room));
         if (better) {
             best = i;
-            best_depth = depth;
+            best_level = level;
             best_rank = rank;
         }
     }
@@ -95,6 +95,14 @@ static void put_note(FILE *out, const char *note)
     fputs("\n", out);
 }
 
+// Below an equation that leaves no room.
+static void put_line_of_note(FILE *out, const char *note, size_t indent)
+{
+    fputs("\n", out);
+    put_indent(out, indent);
+    fprintf(out, "(%s)\n", note);
+}
+
 static void put_equation(FILE *out, const struct ct_page_equation *e, size_t label_width,
                          size_t left_width)
 {
@@ -121,22 +129,32 @@ static void put_equation(FILE *out, const struct ct_page_equation *e, size_t lab
         put_indent(out, pad);
         if (e->right)
             fprintf(out, " = %s", e->right);
-        put_note(out, column + left + right + note <= CT_PAGE_WIDTH ? e->note : NULL);
+        const bool fits = column + pad + left + right + note <= CT_PAGE_WIDTH;
+        if (!fits)
+            put_line_of_note(out, e->note, column + pad + left + 3);
+        else
+            put_note(out, e->note);
         return;
     }
-    // a short left side keeps the right one on its line
-    const bool is_short = left < 14;
+    // a short left side, or one of a column, keeps the right one on its line
+    const bool is_short = left < 14 || (!e->label && left <= left_width);
     put_wrapped(out, e->left, column, column + 4);
-    if (e->right) {
-        if (!is_short) {
-            fputs("\n", out);
-            put_indent(out, column + 2);
-        }
-        fputs(is_short ? " = " : "= ", out);
-        const size_t start = column + (is_short ? left + 3 : 4);
-        put_wrapped(out, e->right, start, is_short ? start - 2 : start);
+    size_t start = column + 4;
+    if (e->right && is_short) {
+        put_indent(out, pad);
+        fputs(" = ", out);
+        start = column + pad + left + 3;
+        put_wrapped(out, e->right, start, *e->right == '[' ? start + 1 : start - 2);
+    } else if (e->right) {
+        fputs("\n", out);
+        put_indent(out, column + 2);
+        fputs("= ", out);
+        put_wrapped(out, e->right, start, start);
     }
-    fputs("\n", out);
+    if (e->note)
+        put_line_of_note(out, e->note, start);
+    else
+        fputs("\n", out);
 }
 
 // Left sides up to this are brought to one width, so that the equal signs stand below each other.

@@ -176,6 +176,30 @@ static const char *place(const struct ct_derivation *d)
     return ct_derivation_is_latex(d) ? "\\boldsymbol{r}" : "r";
 }
 
+// Rotation of the section at x, to first order.
+static void put_rotation(struct ct_derivation *d, const struct ct_flexible *f)
+{
+    const bool has_shear = f->beam->theory == CT_BEAM_TIMOSHENKO;
+    const struct {
+        unsigned family;
+        const char *text, *latex;
+    } about[] = {{CT_BEAM_TORSION, "phi", "\\varphi"},
+                 {CT_BEAM_BENDING_Y, has_shear ? "-beta" : "-dw/dx",
+                  has_shear ? "-\\beta" : "-w_{,x}"},
+                 {CT_BEAM_BENDING_Z, has_shear ? "alpha" : "dv/dx",
+                  has_shear ? "\\alpha" : "v_{,x}"}};
+    const char *part[3], *latex[3];
+    for (int i = 0; i < 3; i++) {
+        const bool is_free = f->deformation & about[i].family;
+        part[i] = is_free ? about[i].text : "0";
+        latex[i] = is_free ? about[i].latex : "0";
+    }
+    put(d, ct_derivation_is_latex(d) ? "\\boldsymbol{\\theta}" : "theta",
+        ct_arena_printf(d->a, "[%s, %s, %s]", part[0], part[1], part[2]),
+        ct_arena_printf(d->a, "(%s,\\; %s,\\; %s)", latex[0], latex[1], latex[2]),
+        "rotation of the section at x");
+}
+
 // (5.4), (5.5): the section at x, and what the whole needs of its frame and of its coordinates.
 static void put_body(struct ct_derivation *d, const struct ct_flexible *f)
 {
@@ -239,7 +263,7 @@ static void put_body(struct ct_derivation *d, const struct ct_flexible *f)
                         !is_damped ? ""
                         : latex    ? " - C_{,q}"
                                    : " - C_q"),
-        "of each elastic coordinate q; _q: derivative by it");
+        "of each elastic coordinate q; _q: derivative by it; V: strain energy, below");
     if (is_damped)
         ct_page_sentence(
             &d->page,
@@ -249,6 +273,7 @@ static void put_body(struct ct_derivation *d, const struct ct_flexible *f)
             ct_derivation_text(d, f->beam->damping_stiffness));
     if (!has_rotary)
         return;
+    put_rotation(d, f);
     const char *list = "";
     for (int i = 0; i < 3; i++)
         list = ct_arena_printf(d->a, "%s%s%s", list, *list ? ", " : "",

@@ -106,8 +106,30 @@ static void put_efforts(struct ct_derivation *d, const struct group *g)
                          ct_derivation_text(d, g->at[i].left), NULL);
 }
 
+// Does a symbol stand in one of the equations, or in a definition?
+static bool shows(struct ct_derivation *d, const struct group g[NGROUP],
+                  const struct ct_reduced *r, ct_ex symbol)
+{
+    struct ct_exs *x = d->e->x;
+    ct_ex *e = NULL;
+    size_t n = 0, cap = 0;
+    for (size_t k = 0; k < NGROUP; k++)
+        for (size_t i = 0; i < g[k].n; i++) {
+            CT_PUSH(d->a, e, n, cap, g[k].at[i].left);
+            CT_PUSH(d->a, e, n, cap, g[k].at[i].right);
+        }
+    for (size_t i = 0; i < r->ndefinition; i++)
+        CT_PUSH(d->a, e, n, cap, r->definition[i].value);
+    const size_t nwalk = ct_ex_walk(x, e, n);
+    for (size_t i = 0; i < nwalk; i++)
+        if (x->stack[i] == symbol.id)
+            return true;
+    return false;
+}
+
 // Symbols that stand for what changes at events, or from one step to the next.
-static void put_held(struct ct_derivation *d)
+static void put_held(struct ct_derivation *d, const struct group g[NGROUP],
+                     const struct ct_reduced *r)
 {
     const struct ct_equations *e = d->e;
     if (e->nmode) {
@@ -121,7 +143,8 @@ static void put_held(struct ct_derivation *d)
                          ct_derivation_text(d, holds), NULL);
     }
     for (size_t i = 0; i < e->nmemory; i++)
-        ct_page_sentence(&d->page, "%s: %s", ct_ex_symbol(e->x, e->memory[i].symbol)->name,
+        if (shows(d, g, r, e->memory[i].symbol))
+            ct_page_sentence(&d->page, "%s: %s", ct_ex_symbol(e->x, e->memory[i].symbol)->name,
                          e->memory[i].kind == CT_MEMORY_OFFSET
                              ? "constant, from the assembled start"
                              : "value at the last step");
@@ -181,7 +204,7 @@ void ct_stage_reduced(struct ct_derivation *d)
     }
     if (g[EFFORT].n)
         put_efforts(d, &g[EFFORT]);
-    put_held(d);
+    put_held(d, g, &r);
     if (g[KINEMATIC].n)
         put_kinematic(d, &g[KINEMATIC]);
 }

@@ -3,8 +3,9 @@
 //     bench [--quick | --sweep [MEMBERS]]
 //
 // Models are read from YAML and go through the normal stages. A time is the median of 11 samples of
-// processor time, each of many calls; what a ratio compares is measured alternately in one run, so that
-// a busy machine slows both sides. Goals are those of the project's feasibility study, measured there on
+// processor time, each of many calls, and of three such medians the least; what a ratio compares is measured
+// alternately in one run, so that a busy machine slows both sides. At the end all quantities with a goal stand
+// together. Goals are those of the project's feasibility study, measured there on
 // one core of a server processor at 3.6 GHz; they include solving for the accelerations where the name
 // says so.
 #include "codegen/native.h"
@@ -21,7 +22,7 @@
 #include <time.h>
 #include <unistd.h>
 
-enum { NSAMPLE = 11 };
+enum { NSAMPLE = 11, NREPEAT = 3 };
 
 static double sample_seconds = 2e-3;
 
@@ -34,9 +35,45 @@ static double now(void)
 
 // ---- table --------------------------------------------------------------------------------------
 
+// What a line with a goal is about: the title above it.
+static char context[96];
+
+struct goal {
+    char what[160], measured[32], goal[32];
+    double ratio;
+};
+static struct goal goals[64];
+static size_t ngoal;
+
+static void keep_goal(const char *what, const char *measured, const char *goal, double ratio)
+{
+    if (ngoal == COUNT(goals))
+        return;
+    struct goal *g = &goals[ngoal++];
+    while (*what == ' ')
+        what++;
+    snprintf(g->what, sizeof g->what, "%s%s%s", context, *context ? ": " : "", what);
+    snprintf(g->measured, sizeof g->measured, "%s", measured);
+    snprintf(g->goal, sizeof g->goal, "%s", goal);
+    g->ratio = ratio;
+}
+
+static void show_goals(void)
+{
+    printf("\n| quantity | measured | goal | of goal |\n|---|---:|---:|---:|\n");
+    for (size_t i = 0; i < ngoal; i++)
+        printf("| %s | %s | %s | %.2f |\n", goals[i].what, goals[i].measured, goals[i].goal,
+               goals[i].ratio);
+}
+
 static void head(const char *title)
 {
     printf("\n%-58s %12s %12s %8s\n", title, "measured", "goal", "of goal");
+}
+
+static void about(const char *what)
+{
+    snprintf(context, sizeof context, "%s", what);
 }
 
 // A time [s], and what it should be at most; 0: no goal.
@@ -56,8 +93,10 @@ static void line(const char *what, double t, double goal)
                 break;
             }
     printf("%-58s %12s %12s", what, text[0], text[1]);
-    if (goal > 0)
+    if (goal > 0) {
         printf(" %8.2f", t / goal);
+        keep_goal(what, text[0], text[1], t / goal);
+    }
     putchar('\n');
 }
 
@@ -68,9 +107,14 @@ static void size(const char *what, size_t bytes)
 
 static void ratio(const char *what, double r, double goal)
 {
-    printf("%-58s %12.2f", what, r);
-    if (goal > 0)
-        printf(" %12.2f %8.2f", goal, r / goal);
+    char text[2][32];
+    snprintf(text[0], sizeof text[0], "%.3g", r);
+    snprintf(text[1], sizeof text[1], "%.3g", goal);
+    printf("%-58s %12s", what, text[0]);
+    if (goal > 0) {
+        printf(" %12s %8.2f", text[1], r / goal);
+        keep_goal(what, text[0], text[1], r / goal);
+    }
     putchar('\n');
 }
 
@@ -104,12 +148,15 @@ static void measure(const call_fn *f, void *const *data, size_t n, double *t)
             calls[k] *= 2;
         calls[k] = (long)ceil((double)calls[k] * sample_seconds / once);
     }
-    for (int i = 0; i < NSAMPLE; i++)
-        for (size_t k = 0; k < n; k++)
-            sample[k][i] = time_of_calls(f[k], data[k], calls[k]) / (double)calls[k];
-    for (size_t k = 0; k < n; k++) {
-        qsort(sample[k], NSAMPLE, sizeof sample[k][0], compare_doubles);
-        t[k] = sample[k][NSAMPLE / 2];
+    for (int repeat = 0; repeat < NREPEAT; repeat++) {
+        for (int i = 0; i < NSAMPLE; i++)
+            for (size_t k = 0; k < n; k++)
+                sample[k][i] = time_of_calls(f[k], data[k], calls[k]) / (double)calls[k];
+        for (size_t k = 0; k < n; k++) {
+            qsort(sample[k], NSAMPLE, sizeof sample[k][0], compare_doubles);
+            const double median = sample[k][NSAMPLE / 2];
+            t[k] = repeat && t[k] < median ? t[k] : median;
+        }
     }
 }
 
@@ -304,8 +351,25 @@ static const char *arm(int n)
 // A beam of n elements on a body that turns freely: a pendulum in the plane, in space on a ball joint.
 struct beam {
     const char *formulation;
-    bool is_spatial;
+    bool is_spatial, is_chain; // chain: n beams of two elements, welded end to end
 };
+
+static const char *chain_of_beams(const struct beam *k, int n)
+{
+    FILE *f = open_model("beam", k->is_spatial ? "[1, -g, 2]" : "[0, -g, 0]", "");
+    fprintf(f, "bodies:\n");
+    for (int i = 1; i <= n; i++)
+        fprintf(f,
+                "  b%d: {type: beam, length: 10/%d, elements: 2, density: 3000, E: 7e10, area: "
+                "4e-4, Iy: 3e-7, Iz: 2e-7, G: 2.7e10, J: 4e-7, formulation: %s, points: {end: "
+                "length}}\n",
+                i, n, k->formulation);
+    fprintf(f, "joints:\n  hub: {type: %s, from: ground, to: b1}\n",
+            k->is_spatial ? "spherical" : "revolute");
+    for (int i = 2; i <= n; i++)
+        fprintf(f, "  w%d: {type: weld, from: b%d.end, to: b%d}\n", i, i - 1, i);
+    return close_model(f);
+}
 
 static const char *beam(const struct beam *k, int n)
 {
@@ -377,9 +441,14 @@ static bool open_evaluator(struct evaluator *v, struct subject *s, const struct 
     return true;
 }
 
+// Seconds a call, in the order of the back ends.
+struct times {
+    double t[5];
+};
+
 // One line per back end; goals [s] in the same order.
-static void compare_back_ends(struct subject *s, const struct ct_program *p, const char *what,
-                              const double goal[5])
+static struct times compare_back_ends(struct subject *s, const struct ct_program *p,
+                                      const char *what, const double goal[5])
 {
     static const struct {
         const char *name;
@@ -414,6 +483,57 @@ static void compare_back_ends(struct subject *s, const struct ct_program *p, con
         ratio("  tape / native", t[0] / t[3], 0);
         ratio("  native / native, 4 lanes, per lane", 4 * t[3] / t[4], 0);
     }
+    struct times all_times = {{0}};
+    for (size_t i = 0; i < n; i++)
+        all_times.t[i] = t[i] / v[i].lanes;
+    return all_times;
+}
+
+// Twelve chains of fused products and sums, which do not wait for each other: what the processor can do at most, in
+// multiplications and additions a second.
+static double peak(int lanes)
+{
+    enum { NCHAIN = 12, LENGTH = 200 };
+    struct ct_arena *a = ct_arena_create();
+    struct ct_exs x;
+    ct_exs_init(&x, a);
+    ct_ex in[2 + NCHAIN], sum[NCHAIN];
+    size_t slot[2 + NCHAIN];
+    for (uint32_t k = 0; k < 2 + NCHAIN; k++) {
+        in[k] = ct_ex_sym(&x, CT_SYM_Q, "x", k);
+        slot[k] = k;
+    }
+    memcpy(sum, in + 2, sizeof sum);
+    for (int i = 0; i < LENGTH; i++)
+        for (int k = 0; k < NCHAIN; k++)
+            sum[k] = ct_ex_add(&x, ct_ex_mul(&x, sum[k], in[0]), in[1]);
+    const struct ct_listing *l
+        = ct_listing_create(a, &x, sum, NCHAIN, in, slot, 2 + NCHAIN, CT_FUSE_YES);
+    double input[4 * (2 + NCHAIN)], out[4 * NCHAIN], t = INFINITY;
+    for (size_t k = 0; k < COUNT(input); k++)
+        input[k] = 0.5;
+    struct evaluator v = {.lanes = lanes, .input = input, .out = out};
+    v.native = ct_native_create(a, l, lanes);
+    const call_fn f[] = {evaluate};
+    void *const data[] = {&v};
+    if (v.native) {
+        v.work = CT_NEWN(a, double, ct_native_work(v.native) + 1);
+        ct_native_prepare(v.native, input, v.work);
+        measure(f, data, 1, &t);
+    }
+    ct_arena_destroy(a);
+    return 2. * lanes * NCHAIN * LENGTH / t;
+}
+
+// How much of that a program uses.
+static void show_use(const struct ct_program *p, const struct times *t)
+{
+    const struct ct_tape_counts c = p->listing->counts;
+    const double n = (double)(c.multiplications + c.additions + c.divisions);
+    if (!(t->t[4] > 0))
+        return;
+    ratio("  part of the peak of fused operations, at least", n / t->t[3] / peak(1), 0.45);
+    ratio("  the same in 4 lanes, at least", n / t->t[4] / peak(4), 0.45);
 }
 
 // ---- accelerations ------------------------------------------------------------------------------
@@ -474,11 +594,14 @@ static void show_projection(struct subject *s, double per)
 
 static double median_of(double (*f)(const char *path), const char *path, int n)
 {
-    double t[NSAMPLE] = {0};
-    for (int i = 0; i < n; i++)
-        t[i] = f(path);
-    qsort(t, (size_t)n, sizeof t[0], compare_doubles);
-    return t[n / 2];
+    double t[NSAMPLE] = {0}, least = 0;
+    for (int repeat = 0; repeat < NREPEAT; repeat++) {
+        for (int i = 0; i < n; i++)
+            t[i] = f(path);
+        qsort(t, (size_t)n, sizeof t[0], compare_doubles);
+        least = repeat && least < t[n / 2] ? least : t[n / 2];
+    }
+    return least;
 }
 
 // From the file to machine code of the motion program.
@@ -611,9 +734,10 @@ static void show_generation(struct subject *s, const char *what)
 // ---- what is measured ---------------------------------------------------------------------------
 
 // An open chain: u' and q' by the formulation that was chosen. goal: as compare_back_ends, then of the way from the model
-// to native code, and the most instructions of memory per link (0: not shown).
-static void open_chain(const char *what, const char *path, const double goal[5],
-                       double generation_goal)
+// to native code. is_throughput: show which part of the processor's peak it reaches. Returns the time from the model to
+// native code.
+static double open_chain(const char *what, const char *path, const double goal[5],
+                         double generation_goal, bool is_throughput)
 {
     static const char *const name[]
         = {"", "cutset sums", "composite bodies", "articulated bodies"};
@@ -621,29 +745,172 @@ static void open_chain(const char *what, const char *path, const double goal[5],
     char text[128];
     open_subject(&s, path);
     snprintf(text, sizeof text, "%s, u' by %s", what, name[s.equations.formulation]);
-    compare_back_ends(&s, &s.machine->solved, text, goal);
+    about(what);
+    const struct times t = compare_back_ends(&s, &s.machine->solved, text, goal);
+    if (is_throughput)
+        show_use(&s.machine->solved, &t);
     line("  model to equations", median_of(model_to_equations, s.path, 5), 0);
-    line("  model to native code", median_of(model_to_native, s.path, 5), generation_goal);
+    const double generation = median_of(model_to_native, s.path, 5);
+    line("  model to native code", generation, generation_goal);
     show_generation(&s, what);
     printf("  %-56s %9zu KiB\n", "machine code",
            s.machine->solved.native ? ct_native_code_size(s.machine->solved.native) / 1024 : 0);
+    close_subject(&s);
+    return generation;
+}
+
+static void run_residual(void *data)
+{
+    struct subject *s = data;
+    ct_program_run(&s->machine->residual, s->machine->input);
+}
+
+// Forces for given motion.
+static void inverse_dynamics(const char *what, const char *path, double goal)
+{
+    struct subject s;
+    const call_fn f[] = {run_residual};
+    void *const data[] = {&s};
+    double t;
+    open_subject(&s, path);
+    ct_formulate_residual(&s.equations);
+    ct_machine_add_residual(s.ctx.model, s.machine);
+    measure(f, data, 1, &t);
+    about("");
+    putchar('\n');
+    line(what, t, goal);
+    close_subject(&s);
+}
+
+struct apart {
+    struct ct_program program;
+    const double *input;
+};
+
+static void run_apart(void *data)
+{
+    struct apart *p = data;
+    ct_program_run(&p->program, p->input);
+}
+
+// Residual and all its derivatives, as one program.
+static void residual_and_slopes(struct subject *s, const char *what, double goal)
+{
+    struct ct_arena *a = s->ctx.model;
+    ct_formulate_residual(&s->equations);
+    const struct ct_equations *e = &s->equations;
+    const struct ct_residual *r = e->residual;
+    const struct {
+        const struct ct_slope *s;
+        size_t n;
+    } list[] = {{r->dq, r->ndq}, {r->du, r->ndu}, {r->da, r->nda}, {r->dv, r->ndv}};
+    ct_ex *out = CT_NEWN(a, ct_ex,
+                         e->nu + 2 * e->nrow + e->nJ + r->ndq + r->ndu + r->nda + r->ndv + 1);
+    size_t n = 0;
+    for (size_t i = 0; i < e->nu; i++)
+        out[n++] = r->r[i];
+    for (size_t i = 0; i < e->nrow; i++) {
+        out[n++] = e->row[i].phi;
+        out[n++] = e->row[i].v;
+    }
+    for (size_t k = 0; k < COUNT(list); k++)
+        for (size_t i = 0; i < list[k].n; i++)
+            out[n++] = list[k].s[i].value;
+    for (size_t i = 0; i < e->nJ; i++)
+        out[n++] = e->J[i].value;
+    struct apart p = {.input = s->machine->input};
+    ct_machine_compile(a, s->machine, e->x, out, n, &p.program);
+    const call_fn f[] = {run_apart};
+    void *const data[] = {&p};
+    double t;
+    measure(f, data, 1, &t);
+    line(what, t, goal);
+    ct_machine_forget(s->machine, &p.program);
+}
+
+// Accelerations with the order of pivots made at the start against pivots sought anew, at places and speeds around it:
+// the relative difference that one state in a hundred exceeds.
+static void fixed_against_pivoted(struct subject *s)
+{
+    enum { NSTATE = 1000 };
+    static double difference[NSTATE];
+    struct ct_machine *m = s->machine;
+    struct ct_embed *e = ct_run_embed(s->run);
+    double *kept = CT_NEWN(s->ctx.model, double, m->ninput),
+           *a = CT_NEWN(s->ctx.model, double, m->nu + 1);
+    uint64_t chance = 1;
+    memcpy(kept, m->input, m->ninput * sizeof *kept);
+    for (int k = 0; k < NSTATE && e->nform; k++) {
+        double most = 0, worst = 0;
+        for (size_t i = m->at_q; i < m->at_u + m->nu; i++) {
+            chance = chance * 6364136223846793005u + 1442695040888963407u;
+            m->input[i] = kept[i] + 0.5 * ((double)(chance >> 11) / (double)(1ll << 52) - 1);
+        }
+        ct_machine_motion(m);
+        ct_embed_accelerate(e);
+        const bool ok = ct_form_solve(e->form[0], m, a) > 0;
+        for (size_t i = 0; i < m->nu; i++) {
+            most = fmax(most, fabs(e->a[i]));
+            worst = fmax(worst, fabs(a[i] - e->a[i]));
+        }
+        difference[k] = ok ? worst / most : INFINITY;
+    }
+    memcpy(m->input, kept, m->ninput * sizeof *kept);
+    qsort(difference, NSTATE, sizeof difference[0], compare_doubles);
+    ratio("  fixed against sought pivots, 99 % of random states", difference[NSTATE / 100 * 99],
+          1e-9);
+}
+
+// The first step of an implicit method: what it needs beside the equations, and its derivatives.
+static void run_tangent(void *data)
+{
+    ct_machine_tangent(data);
+}
+
+static void implicit_chain(int n)
+{
+    struct subject s;
+    char text[96];
+    open_subject(&s, spatial_chain(n));
+    const double start = now();
+    ct_formulate_residual(&s.equations);
+    ct_machine_add_residual(s.ctx.model, s.machine);
+    const double made = now() - start;
+    const call_fn f[] = {run_tangent};
+    void *const data[] = {s.machine};
+    double t;
+    measure(f, data, 1, &t);
+    const struct ct_directional *along = s.equations.residual->along;
+    printf("\nchain of %d balls, derivatives for implicit methods %s\n", n,
+           along ? "along directions" : "entry by entry");
+    line("  residual and derivatives, from equations to native code", made, 0);
+    snprintf(text, sizeof text, "  all derivatives (%zu x %zu)", s.machine->nu,
+             3 * s.machine->nu);
+    line(text, t, 0);
     close_subject(&s);
 }
 
 static void open_chains(bool quick)
 {
     static const double six_folded[5] = {0.8e-6, 0, 0, 120e-9, 42e-9},
-                        six[5] = {0.8e-6, 0, 0, 150e-9, 0}, seven[5] = {0, 0, 0, 190e-9, 0},
+                        six[5] = {0.8e-6, 0, 0, 150e-9, 42e-9}, seven[5] = {0, 0, 0, 190e-9, 0},
                         planar[5] = {0, 0, 0, 1.5e-6, 0}, spatial[5] = {0, 0, 0, 4e-6, 0},
                         long_spatial[5] = {0, 0, 0, 40e-6, 0};
-    open_chain("6R arm (puma560, numbers folded)", shipped("puma560"), six_folded, 0.5e-3);
-    open_chain("6R arm, parameters", arm(6), six, 0.5e-3);
-    open_chain("7-dof arm, parameters", arm(7), seven, 0);
+    open_chain("6R arm (puma560, numbers folded)", shipped("puma560"), six_folded, 0.5e-3,
+               false);
+    open_chain("6R arm, parameters", arm(6), six, 0.5e-3, false);
+    inverse_dynamics("6R arm, parameters: inverse dynamics, native", arm(6), 140e-9);
+    open_chain("7-dof arm, parameters", arm(7), seven, 0, false);
+    implicit_chain(quick ? 5 : 50);
     if (quick)
         return;
-    open_chain("planar chain of 50 pins", planar_chain(50), planar, 0);
-    open_chain("chain of 50 balls (150 freedoms)", spatial_chain(50), spatial, 5e-3);
-    open_chain("chain of 500 balls (1500 freedoms)", spatial_chain(500), long_spatial, 2);
+    open_chain("planar chain of 50 pins", planar_chain(50), planar, 0, false);
+    const double t50 = open_chain("chain of 50 balls (150 freedoms)", spatial_chain(50),
+                                  spatial, 5e-3, true);
+    const double t500 = open_chain("chain of 500 balls (1500 freedoms)", spatial_chain(500),
+                                   long_spatial, 2, false);
+    about("");
+    ratio("model to native code, 500 balls / 50 balls", t500 / t50, 15);
     unlink(temporary());
 }
 
@@ -651,10 +918,13 @@ static void andrews(void)
 {
     struct subject s;
     open_subject(&s, shipped("andrews"));
+    about("Andrews' mechanism");
     compare_back_ends(&s, &s.machine->motion, "Andrews' mechanism, M, Q, J, gam", NULL);
-    show_accelerations(&s, "  accelerations, solve included", 1, 160e-9);
+    show_accelerations(&s, "  accelerations, solve included, native", 1, 160e-9);
+    residual_and_slopes(&s, "  residual and its sparse Jacobian", 160e-9);
+    fixed_against_pivoted(&s);
     ct_machine_use(s.ctx.model, s.machine, CT_BACKEND_TAPE);
-    show_accelerations(&s, "  accelerations, solve included", 1, 0.6e-6);
+    show_accelerations(&s, "  accelerations, solve included, tape", 1, 0.6e-6);
     close_subject(&s);
 }
 
@@ -663,6 +933,8 @@ static void four_bars(int n)
     struct subject s;
     char what[64];
     open_subject(&s, generated("n_four_bar", n));
+    snprintf(what, sizeof what, "%d four-bar%s", n, n > 1 ? "s" : "");
+    about(what);
     snprintf(what, sizeof what, "%d four-bar%s, M, Q, J, gam", n, n > 1 ? "s" : "");
     compare_back_ends(&s, &s.machine->motion, what, NULL);
     show_accelerations(&s, "  accelerations, solve included, per loop", n, 60e-9);
@@ -695,6 +967,9 @@ static void many_four_bars(int n)
 {
     struct subject s;
     open_subject(&s, generated("n_four_bar", n));
+    char what[64];
+    snprintf(what, sizeof what, "%d four-bars", n);
+    about(what);
     printf("\n%d four-bars in a row: %zu bodies, %zu joints, solved by %s\n", n,
            s.model.nbody - 1, s.model.njoint, solver(&s));
     line("  model to equations", s.generate, 2);
@@ -779,6 +1054,7 @@ static void sweep(int members)
     ct_ctx_destroy(ctx);
     snprintf(text, sizeof text, "slider-crank, 2 s: sweep of %d, per member, all included",
              members);
+    about("sweep of the slider-crank, at least");
     putchar('\n');
     line(text, lanes, 0);
     line("  single run: integration only, the system ready", s.run / (double)s.n, 0);
@@ -807,19 +1083,21 @@ static double operations(const struct subject *s)
          + (m->solved.nout ? 0 : ct_embed_operations(ct_run_embed(s->run)));
 }
 
-// Cost against the number of elements; it should be in proportion.
+// Cost against the number of elements, or of beams in a chain; it should be in proportion.
 static void beams(const char *what, const struct beam *kind, bool quick)
 {
-    static const int all[] = {5, 10, 20, 50, 100};
+    static const int element[] = {5, 10, 20, 50, 100}, link[] = {4, 8, 16, 32, 64};
+    const int *all = kind->is_chain ? link : element;
+    const char *of = kind->is_chain ? "beam" : "element";
     double first = 0, first_generation = 0;
-    printf("\n%s, u' with the solve: per evaluation, per element, ratio to 5 elements | model "
-           "to native, per "
-           "element, ratio | operations per element\n",
-           what);
-    for (size_t i = 0; i < (quick ? 2 : COUNT(all)); i++) {
+    printf(
+        "\n%s, u' with the solve: per evaluation, per %s, ratio to %d | model to native, per "
+        "%s, ratio | operations per %s\n",
+        what, of, all[0], of, of);
+    for (size_t i = 0; i < (quick ? 2 : COUNT(element)); i++) {
         struct subject s;
         const int n = all[i];
-        const char *path = beam(kind, n);
+        const char *path = kind->is_chain ? chain_of_beams(kind, n) : beam(kind, n);
         const double generation = median_of(model_to_native, path, quick ? 1 : 3) / n;
         open_subject(&s, path);
         const double t = accelerations(&s) / n;
@@ -830,12 +1108,6 @@ static void beams(const char *what, const struct beam *kind, bool quick)
                generation / first_generation, operations(&s) / n);
         close_subject(&s);
     }
-}
-
-static void run_residual(void *data)
-{
-    struct subject *s = data;
-    ct_program_run(&s->machine->residual, s->machine->input);
 }
 
 // Forces of inertia, stiffness and weight for given accelerations: what the feasibility study calls inertia forces, here
@@ -859,13 +1131,16 @@ static void all_beams(bool quick)
     static const struct {
         const char *what;
         struct beam kind;
-    } all[] = {{"foreshortened beam in a plane", {"foreshortening", false}},
-               {"foreshortened beam in space", {"foreshortening", true}},
-               {"linear beam in a plane", {"linear", false}},
-               {"linear beam in space", {"linear", true}}};
+    } all[] = {{"foreshortened beam in a plane", {"foreshortening", false, false}},
+               {"foreshortened beam in space", {"foreshortening", true, false}},
+               {"linear beam in a plane", {"linear", false, false}},
+               {"linear beam in space", {"linear", true, false}},
+               {"beams welded end to end in a plane", {"foreshortening", false, true}},
+               {"beams welded end to end in space", {"foreshortening", true, true}}};
     for (size_t i = 0; i < COUNT(all); i++)
         beams(all[i].what, &all[i].kind, quick);
     putchar('\n');
+    about("");
     beam_forces("foreshortened beam in space, 10 elements: forces", &all[1].kind);
     beam_forces("linear beam in space, 10 elements: forces", &all[3].kind);
     unlink(temporary());
@@ -895,5 +1170,6 @@ int main(int argc, char **argv)
         links_by_bodies(80);
     }
     all_beams(quick);
+    show_goals();
     return 0;
 }

@@ -12,3 +12,7 @@ sed 's/^outputs:/outputs:\n  - top_pin.force.x\n  - top_pin.force.z\n  - crank_p
 plain check four_bar.yaml --keep-all --tree joints
 plain simulate four_bar.yaml --keep-all --tree joints --until 0.1 | grep undetermined
 "$COTREE" check four_bar.yaml --keep-all --tree joints --summary - | sed -n '/"undetermined"/,/]/p'
+echo '-- beams with nothing left out'
+for model in "$SYSTEMS"/spin_up_stiff/model.yaml "$SYSTEMS"/tapered_cantilever/model.yaml "$SYSTEMS"/slider_crank_flexible/model.yaml; do
+  "$COTREE" check "$model" --keep-all | grep '^beam'
+done

@@ -8,3 +8,9 @@ echo
 awk -F, 'END { print "last value of crank_angle:", $2 }' model.csv >a
 sed -n 's/.*"crank_angle": \(.*\),/last value of crank_angle: \1/p' s.json >b
 awk '{ v[NR] = $NF } END { d = v[1] - v[2]; print (d < 1e-15 && d > -1e-15) ? "final agrees" : "final differs" }' a b
+# Commands that run nothing write the same keys.
+grep -o '^  "[a-z_]*"' s.json >keys
+for command in check equations graph equilibrium modes linearize; do
+  "$COTREE" $command "$SYSTEMS/cart_pole/model.yaml" --quiet --summary $command.json >text
+  grep -o '^  "[a-z_]*"' $command.json | cmp - keys && echo "$command: the same keys"
+done

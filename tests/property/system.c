@@ -151,8 +151,25 @@ void system_no_outputs(struct system *s)
     s->model.noutput = 0;
 }
 
+// "rod.position.x" is one of the columns of "rod.position", "pivot.u2" of "pivot.u".
+static bool is_part_of(const char *signal, const char *whole)
+{
+    const size_t n = strlen(whole);
+    return !strncmp(signal, whole, n)
+        && (signal[n] == 0 || signal[n] == '.' || (signal[n] >= '1' && signal[n] <= '9'));
+}
+
+// A column that is there already is not there twice.
 void system_output(struct system *s, const char *signal)
 {
+    size_t kept = 0;
+    for (size_t i = 0; i < s->model.noutput; i++) {
+        if (is_part_of(signal, s->model.output[i].name))
+            return;
+        if (!is_part_of(s->model.output[i].name, signal))
+            s->model.output[kept++] = s->model.output[i];
+    }
+    s->model.noutput = kept;
     struct ct_model *m = &s->model;
     struct ct_output o = {.name = ct_arena_strdup(s->ctx.model, signal), .is_signal = true};
     o.value = ct_ex_sym(m->x, CT_SYM_SIGNAL, o.name, 0);
