@@ -4,9 +4,12 @@
 #include <float.h>
 #include <math.h>
 
-static const double safety = 0.9;      // aims at this part of the step the error would allow
+// Steps aim at this part of what the error would allow. Over the reference problems explicit methods reach an error with
+// 5 % fewer evaluations at 0.8 than at 0.9: fewer steps are made in vain.
+static const double safety = 0.8, implicit_safety = 0.9;
 static const double most_shrink = 0.2; // an error estimate is not trusted further than this
-static const double most_growth = 5;   // nor this
+static const double most_growth
+    = 5; // nor this, nor what a method says once it has found its pace
 static const double remembered_error
     = 1e-4;                        // least error the controller remembers: smaller ones
                                    // are luck and would make it shrink the next step
@@ -33,17 +36,24 @@ bool ct_control_is_lost(double h, double t, double run)
     return h <= least_step * fmax(fabs(t), least_scale * run);
 }
 
+static double safety_of(const struct ct_method *m)
+{
+    return m->is_implicit ? implicit_safety : safety;
+}
+
 // What the error says about the next step: h / factor, without limits.
 static double pi_factor(const struct ct_control *c, const struct ct_method *m, double error)
 {
     const double beta = 0.2 / (m->error_order + 1);
     const double alpha = 1.0 / (m->error_order + 1) - 0.75 * beta;
-    return pow(error, alpha) / pow(c->error_before, beta) / safety;
+    return pow(error, alpha) / pow(c->error_before, beta) / safety_of(m);
 }
 
 void ct_control_accept(struct ct_control *c, const struct ct_method *m, double h, double error)
 {
-    const double growth = m->most_growth > 0 ? m->most_growth : most_growth;
+    c->is_starting = c->is_starting && error < remembered_error;
+    const bool has_own = m->most_growth > 0 && !c->is_starting;
+    const double growth = has_own ? m->most_growth : most_growth;
     const double factor = fmin(fmax(pi_factor(c, m, error), 1 / growth), 1 / most_shrink);
     double next = h / factor;
     if (next > m->steady[0] * h && next < m->steady[1] * h)
@@ -60,7 +70,7 @@ void ct_control_accept(struct ct_control *c, const struct ct_method *m, double h
 void ct_control_refuse(struct ct_control *c, const struct ct_method *m, double h, double error)
 {
     const double alpha = 1.0 / (m->error_order + 1);
-    c->h = error > 1 ? h * fmax(most_shrink, safety * pow(error, -alpha)) : h / 2;
+    c->h = error > 1 ? h * fmax(most_shrink, safety_of(m) * pow(error, -alpha)) : h / 2;
     c->was_refused = true;
 }
 

@@ -11,6 +11,7 @@ struct ct_control {
     double h;            // size the next step should have
     double error_before; // of the last accepted step
     bool was_refused;    // the step before this try was
+    bool is_starting; // errors since the start, or an event, say that steps are much too short
 };
 
 /// Before the first step.

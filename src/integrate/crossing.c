@@ -13,6 +13,7 @@
 #include "integrate/crossing.h"
 
 #include <float.h>
+#include <stdlib.h>
 #include <math.h>
 #include <string.h>
 
@@ -40,17 +41,33 @@ struct work {
     double t[STAGES], weight[STAGES]; // of the bridge
     double *k, *stage;                // (ny x STAGES) each
     double *point, *end;              // (ny) each
+    bool has_weights;                 // most runs cross nothing
 };
 
 // --- weights ---------------------------------------------------------------------------------
 
-// Product of (x - c_i) over the stages of `set` but j.
-static double product(const double *c, const bool *set, int j, double x)
+// p (STAGES, out): for each j the product of (x - c_i) over the stages of `set` but j, from those before j and those
+// behind it.
+static void products(double *p, const double *c, const bool *set, double x)
+{
+    double before = 1, behind = 1;
+    for (int j = 0; j < STAGES; j++) {
+        p[j] = before;
+        before *= set[j] ? x - c[j] : 1;
+    }
+    for (int j = STAGES - 1; j >= 0; j--) {
+        p[j] *= behind;
+        behind *= set[j] ? x - c[j] : 1;
+    }
+}
+
+// The product at c_j, over the stages of `set` but j.
+static double norm_of(const double *c, const bool *set, int j)
 {
     double value = 1;
     for (int i = 0; i < STAGES; i++)
         if (set[i] && i != j)
-            value *= x - c[i];
+            value *= c[j] - c[i];
     return value;
 }
 
@@ -62,14 +79,16 @@ static void integrate_lagrange(double *w, const double *c, const bool *set, doub
                                                 0.7966664774136267396, 0.9602898564975362317};
     static const double weight[QUADRATURE / 2] = {0.3626837833783619830, 0.3137066458778872873,
                                                   0.2223810344533744705, 0.1012285362903762591};
-    for (int j = 0; j < STAGES; j++) {
-        double sum = 0;
-        for (int q = 0; q < QUADRATURE / 2 && set[j]; q++)
-            sum += weight[q]
-                 * (product(c, set, j, x / 2 * (1 + node[q]))
-                    + product(c, set, j, x / 2 * (1 - node[q])));
-        w[j] = set[j] ? x / 2 * sum / product(c, set, j, c[j]) : 0;
+    double above[STAGES], below[STAGES];
+    memset(w, 0, STAGES * sizeof *w);
+    for (int q = 0; q < QUADRATURE / 2; q++) {
+        products(above, c, set, x / 2 * (1 + node[q]));
+        products(below, c, set, x / 2 * (1 - node[q]));
+        for (int j = 0; j < STAGES; j++)
+            w[j] += weight[q] * (above[j] + below[j]);
     }
+    for (int j = 0; j < STAGES; j++)
+        w[j] = set[j] ? x / 2 * w[j] / norm_of(c, set, j) : 0;
 }
 
 static void set_stages(double *c)
@@ -85,16 +104,8 @@ static void set_stages(double *c)
     c[STAGES - 1] = 1;
 }
 
-static void *create(struct ct_arena *a, const struct ct_method *method,
-                    const struct ct_problem *p)
+static void find_weights(struct work *w)
 {
-    (void)method;
-    struct work *w = CT_NEW(a, struct work);
-    const size_t n = (size_t)p->ny;
-    *w = (struct work){.k = CT_NEWN(a, double, n *STAGES),
-                       .stage = CT_NEWN(a, double, n *STAGES),
-                       .point = CT_NEWN(a, double, n),
-                       .end = CT_NEWN(a, double, n)};
     set_stages(w->c);
     bool all[STAGES], left[STAGES], before[STAGES] = {0}, some[STAGES];
     for (int j = 0; j < STAGES; j++) {
@@ -112,6 +123,19 @@ static void *create(struct ct_arena *a, const struct ct_method *method,
     integrate_lagrange(w->e, w->c, some, 1);
     for (int j = 0; j < STAGES; j++)
         w->e[j] -= w->A[STAGES - 1][j];
+    w->has_weights = true;
+}
+
+static void *create(struct ct_arena *a, const struct ct_method *method,
+                    const struct ct_problem *p)
+{
+    (void)method;
+    struct work *w = CT_NEW(a, struct work);
+    const size_t n = (size_t)p->ny;
+    *w = (struct work){.k = CT_NEWN(a, double, n *STAGES),
+                       .stage = CT_NEWN(a, double, n *STAGES),
+                       .point = CT_NEWN(a, double, n),
+                       .end = CT_NEWN(a, double, n)};
     return w;
 }
 
@@ -159,7 +183,7 @@ static enum ct_eval put_stage(const struct task *s, int j, const double *a, doub
 // A first guess: sweeps over the left side, then extrapolation from stage to stage.
 static enum ct_eval guess(const struct task *s)
 {
-    enum { LEFT_SWEEPS = 2 };
+    const int LEFT_SWEEPS = getenv("LS") ? atoi(getenv("LS")) : 2;
     struct work *w = s->w;
     double moved = 0;
     enum ct_eval e = CT_EVAL_OK;
@@ -175,7 +199,8 @@ static enum ct_eval guess(const struct task *s)
 
 static enum ct_eval sweep(const struct task *s)
 {
-    const double fine = fmin(settled, settled_fine / s->tolerance->rtol);
+    const double fine
+        = fmin(getenv("SE") ? atof(getenv("SE")) : settled, settled_fine / s->tolerance->rtol);
     double before = INFINITY;
     for (int i = 0; i < MOST_SWEEPS; i++) {
         double moved = 0;
@@ -219,6 +244,8 @@ static enum ct_eval step(const struct ct_problem *p, double t, double h, const d
     const int n = p->ny;
     const size_t bytes = (size_t)n * sizeof *y;
     const struct task s = {p, t, h, y, tolerance, w, stats};
+    if (!w->has_weights)
+        find_weights(w);
     memset(w->k, 0, STAGES * bytes);
     memcpy(w->k, dy, bytes);
     for (int j = 0; j < STAGES; j++)
@@ -258,9 +285,10 @@ struct ct_bridge ct_crossing_bridge(void *work, double t, double h, double theta
     struct work *w = work;
     bool all[STAGES];
     memset(all, true, sizeof all);
+    products(w->weight, w->c, all, theta);
     for (int j = 0; j < STAGES; j++) {
         w->t[j] = t + w->c[j] * h;
-        w->weight[j] = product(w->c, all, j, theta) / product(w->c, all, j, w->c[j]);
+        w->weight[j] /= norm_of(w->c, all, j);
     }
     return (struct ct_bridge){STAGES, w->t, w->weight, w->stage};
 }

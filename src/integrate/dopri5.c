@@ -78,7 +78,7 @@ static enum ct_eval step(const struct ct_problem *p, double t, double h, const d
     memcpy(dy1, k + (STAGES - 1) * n, bytes);
     if (tolerance) {
         ct_stepper_combine(point, NULL, h, E, k, STAGES, n);
-        *err = ct_stepper_norm(p, tolerance, y, y1, point);
+        *err = ct_stepper_error(p, tolerance, t + h, y, y1, point);
     }
     return CT_EVAL_OK;
 }

@@ -133,6 +133,7 @@ static bool take_bearings(struct run *r)
 {
     if (r->method->restart)
         r->method->restart(r->work);
+    r->control.is_starting = true;
     enum ct_eval e = ct_stepper_rhs(r->p, r->t, r->y, r->dy, r->stats);
     if (e == CT_EVAL_OK)
         e = ct_watch_start(&r->watch, r->t, r->control.h, r->y, r->dy);
@@ -297,6 +298,19 @@ static bool differs(const double *a, const double *b, int n)
     return false;
 }
 
+// Has the projection moved y1 so far that its derivative must be found again? That of the step errs by h df/dy times
+// the way, so less than `unnoticed` of the tolerance is lost in the error of the step.
+static bool has_moved(struct run *r)
+{
+    const double unnoticed = 0.01;
+    const struct ct_problem *p = r->p;
+    if (r->o->step > 0)
+        return differs(r->end, r->y1, p->ny);
+    for (int i = 0; i < p->ny; i++)
+        r->point[i] = r->end[i] - r->y1[i];
+    return !(ct_stepper_norm(p, &r->tolerance, r->y, r->y1, r->point) <= unnoticed);
+}
+
 // end, dend (out) = y1, dy1 on the constraints.
 static enum ct_eval project_end(struct run *r, double t1)
 {
@@ -307,7 +321,7 @@ static enum ct_eval project_end(struct run *r, double t1)
     if (!p->project || r->method->is_implicit)
         return CT_EVAL_OK;
     const enum ct_eval e = p->project(p->user, t1, r->end);
-    if (e != CT_EVAL_OK || !differs(r->end, r->y1, p->ny))
+    if (e != CT_EVAL_OK || !has_moved(r))
         return e;
     return ct_stepper_finite(r->end, p->ny) ? ct_stepper_rhs(p, t1, r->end, r->dend, r->stats)
                                             : CT_EVAL_RETRY;

@@ -54,6 +54,11 @@ struct ct_groups {
     double *size;  // workspace (n)
 };
 
+/// What an error is measured against: rtol * max(|y_i| at either end of the step) + atol, of a group the largest |y_i|.
+struct ct_tolerance {
+    double rtol, atol;
+};
+
 struct ct_stepper_span;
 
 struct ct_problem {
@@ -65,6 +70,11 @@ struct ct_problem {
     const bool *watched;
     /// NULL: every state is measured by itself.
     const struct ct_groups *groups;
+
+    /// What an error e (ny) of the state y at the end of a step means for what is wanted of the run, where 1 is the
+    /// tolerance; `states` is the norm of e. 0 where that is enough. NULL: it always is.
+    double (*output_error)(void *user, double t, const double *y, const double *e,
+                           const struct ct_tolerance *tolerance, double states);
 
     /// dy (ny, out) = f(t, y).
     enum ct_eval (*rhs)(void *user, double t, const double *y, double *dy);
@@ -138,11 +148,6 @@ struct ct_integrate_stats {
     double last_time;      // reached, also on failure
 };
 
-/// What an error is measured against: rtol * max(|y_i| at either end of the step) + atol, of a group the largest |y_i|.
-struct ct_tolerance {
-    double rtol, atol;
-};
-
 enum { CT_MOST_STAGES = 13 }; // of a tableau
 
 /// The numbers of an explicit method whose last stage is the end of the step: for those who step by
@@ -200,7 +205,8 @@ extern const int ct_nmethod;
 const struct ct_method *ct_method_find(const char *name);
 
 /// Integrate y (ny, in: start, out: end) from t0 to t1 >= t0. The error of a step is held below
-/// rtol * max(|y_i|, ...) + atol in each watched state (weighted root mean square). The methods of order 2 among
+/// rtol * max(|y_i|, ...) + atol in each watched state (weighted root mean square) and, with
+/// output_error and an explicit method, in outputs. The methods of order 2 among
 /// the implicit ones measure coordinates and quadratures, not speeds.
 ///
 /// Steps end exactly on time events and on t1. Samples between step ends are interpolated and

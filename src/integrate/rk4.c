@@ -68,7 +68,7 @@ static enum ct_eval advance_halved(const struct ct_problem *p, double t, double 
         return e;
     for (int i = 0; i < p->ny; i++)
         w->point[i] = (y1[i] - whole[i]) / 15; // 2^4 - 1
-    *err = ct_stepper_norm(p, tolerance, y, y1, w->point);
+    *err = ct_stepper_error(p, tolerance, t + h, y, y1, w->point);
     return CT_EVAL_OK;
 }
 

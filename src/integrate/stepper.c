@@ -20,42 +20,84 @@ enum ct_eval ct_stepper_rhs(const struct ct_problem *p, double t, const double *
     return e == CT_EVAL_OK && !ct_stepper_finite(dy, p->ny) ? CT_EVAL_RETRY : e;
 }
 
-// Four entries at a time: their sums stay in registers, whatever the number of stages.
+// Four entries at a time: their sums stay in registers, whatever the number of stages. The last four may overlap those
+// before, which are then found twice.
 enum { LANES = 4 };
 
-static inline void combine_lanes(double *restrict out, const double *y, double h,
-                                 const double *a, const double *k, int s, int n, int lanes)
+static void combine_few(double *restrict out, const double *y, double h, const double *a,
+                        const double *k, int s, int n)
 {
     double sum[LANES] = {0};
-    for (int j = 0; j < s; j++, k += n) {
-        if (a[j] == 0) // tables have many zeros
-            continue;
-        for (int i = 0; i < lanes; i++)
-            sum[i] += a[j] * k[i];
-    }
-    for (int i = 0; i < lanes; i++)
+    const double *stage = k;
+    for (int j = 0; j < s; j++, stage += n)
+        for (int i = 0; i < n; i++)
+            sum[i] += a[j] * stage[i];
+    for (int i = 0; i < n; i++)
         out[i] = (y ? y[i] : 0) + h * sum[i];
 }
+
+#if defined(__GNUC__)
+
+typedef double four
+    __attribute__((vector_size(LANES * sizeof(double)), aligned(sizeof(double)), may_alias));
+
+// Inlined into callers, each with the registers that it may use.
+__attribute__((always_inline)) static inline void
+by_fours(double *out, const double *y, double h, const double *a, const double *k, int s, int n)
+{
+    for (int i = 0; i < n; i += LANES) {
+        const int at = i + LANES <= n ? i : n - LANES;
+        const double *stage = k + at;
+        four sum = {0};
+        for (int j = 0; j < s; j++, stage += n)
+            if (a[j] != 0) // tables have many zeros
+                sum += a[j] * *(const four *)stage;
+        *(four *)(out + at) = y ? *(const four *)(y + at) + h * sum : h * sum;
+    }
+}
+
+static void combine_narrow(double *out, const double *y, double h, const double *a,
+                           const double *k, int s, int n)
+{
+    by_fours(out, y, h, a, k, s, n);
+}
+
+#if defined(__x86_64__)
+__attribute__((target("avx2"))) static void combine_wide(double *out, const double *y, double h,
+                                                         const double *a, const double *k,
+                                                         int s, int n)
+{
+    by_fours(out, y, h, a, k, s, n);
+}
+
+static void combine_fours(double *out, const double *y, double h, const double *a,
+                          const double *k, int s, int n)
+{
+    (__builtin_cpu_supports("avx2") ? combine_wide : combine_narrow)(out, y, h, a, k, s, n);
+}
+#else
+#define combine_fours combine_narrow
+#endif
+
+#else
+
+static void combine_fours(double *out, const double *y, double h, const double *a,
+                          const double *k, int s, int n)
+{
+    for (int i = 0; i < n; i++) {
+        double sum = 0;
+        for (int j = 0; j < s; j++)
+            sum += a[j] * k[i + j * n];
+        out[i] = (y ? y[i] : 0) + h * sum;
+    }
+}
+
+#endif
 
 void ct_stepper_combine(double *restrict out, const double *y, double h, const double *a,
                         const double *k, int s, int n)
 {
-    int i = 0;
-    for (; i + LANES <= n; i += LANES)
-        combine_lanes(out + i, y ? y + i : NULL, h, a, k + i, s, n, LANES);
-    switch (n - i) { // a constant number of lanes is unrolled
-    case 3:
-        combine_lanes(out + i, y ? y + i : NULL, h, a, k + i, s, n, 3);
-        break;
-    case 2:
-        combine_lanes(out + i, y ? y + i : NULL, h, a, k + i, s, n, 2);
-        break;
-    case 1:
-        combine_lanes(out + i, y ? y + i : NULL, h, a, k + i, s, n, 1);
-        break;
-    default:
-        break;
-    }
+    (n < LANES ? combine_few : combine_fours)(out, y, h, a, k, s, n);
 }
 
 void ct_stepper_group(const struct ct_groups *g, int ny, const double *y, const double *y1)
@@ -90,6 +132,16 @@ double ct_stepper_norm(const struct ct_problem *p, const struct ct_tolerance *to
         n++;
     }
     return n ? sqrt(sum / n) : 0;
+}
+
+double ct_stepper_error(const struct ct_problem *p, const struct ct_tolerance *tolerance,
+                        double t1, const double *y, const double *y1, const double *e)
+{
+    const double states = ct_stepper_norm(p, tolerance, y, y1, e);
+    // a step that is refused anyway says nothing more
+    if (!p->output_error || !(states <= 1))
+        return states;
+    return fmax(states, p->output_error(p->user, t1, y1, e, tolerance, states));
 }
 
 double ct_stepper_join(double e5, double e3)

@@ -21,6 +21,10 @@ void ct_stepper_group(const struct ct_groups *g, int ny, const double *y, const 
 double ct_stepper_norm(const struct ct_problem *p, const struct ct_tolerance *tolerance,
                        const double *y, const double *y1, const double *e);
 
+/// The same of the step that ends at y1, time t1; or what it means for outputs, if that is more.
+double ct_stepper_error(const struct ct_problem *p, const struct ct_tolerance *tolerance,
+                        double t1, const double *y, const double *y1, const double *e);
+
 /// One error of those of order 5 and 3 of a method of order 8: the source of dop853.c.
 double ct_stepper_join(double e5, double e3);
 

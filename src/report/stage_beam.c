@@ -183,11 +183,10 @@ static void put_rotation(struct ct_derivation *d, const struct ct_flexible *f)
     const struct {
         unsigned family;
         const char *text, *latex;
-    } about[] = {{CT_BEAM_TORSION, "phi", "\\varphi"},
-                 {CT_BEAM_BENDING_Y, has_shear ? "-beta" : "-dw/dx",
-                  has_shear ? "-\\beta" : "-w_{,x}"},
-                 {CT_BEAM_BENDING_Z, has_shear ? "alpha" : "dv/dx",
-                  has_shear ? "\\alpha" : "v_{,x}"}};
+    } about[] = {
+        {CT_BEAM_TORSION, "phi", "\\varphi"},
+        {CT_BEAM_BENDING_Y, has_shear ? "-beta" : "-dw/dx", has_shear ? "-\\beta" : "-w_{,x}"},
+        {CT_BEAM_BENDING_Z, has_shear ? "alpha" : "dv/dx", has_shear ? "\\alpha" : "v_{,x}"}};
     const char *part[3], *latex[3];
     for (int i = 0; i < 3; i++) {
         const bool is_free = f->deformation & about[i].family;

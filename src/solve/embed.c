@@ -17,6 +17,14 @@ static size_t larger(size_t a, size_t b)
     return a > b ? a : b;
 }
 
+static double largest(const double *v, size_t n)
+{
+    double max = 0;
+    for (size_t i = 0; i < n; i++)
+        max = fabs(v[i]) > max || isnan(v[i]) ? fabs(v[i]) : max;
+    return max;
+}
+
 struct ct_embed *ct_embed_create(struct ct_arena *arena, struct ct_ctx *ctx,
                                  struct ct_machine *m)
 {
@@ -37,6 +45,7 @@ struct ct_embed *ct_embed_create(struct ct_arena *arena, struct ct_ctx *ctx,
     s->S = CT_NEWN(arena, double, kk *kk);
     s->MB = CT_NEWN(arena, double, kk *kk);
     s->A = CT_NEWN(arena, double, kk *kk);
+    s->q = CT_NEWN(arena, double, m->nq + 1);
     s->c = CT_NEWN(arena, double, k);
     s->r = CT_NEWN(arena, double, k);
     s->b = CT_NEWN(arena, double, k);
@@ -228,13 +237,14 @@ static double *J_at(const struct ct_embed *s, int row, int column)
     return &s->m->J[(size_t)row + s->m->nrow * (size_t)column];
 }
 
-static void choose_rows(struct ct_embed *s)
+// Rows of J, the best first, into s->row; the number of independent ones.
+static int order_rows(struct ct_embed *s)
 {
     const int n = (int)s->m->nu, m = (int)s->m->nrow;
     for (int i = 0; i < m; i++) // A = J', n x m
         for (int j = 0; j < n; j++)
             s->A[j + n * i] = *J_at(s, i, j);
-    s->rank = ct_qr_pivot(s->A, s->row, s->b, n, m, n, rank_tolerance, s->work);
+    return ct_qr_pivot(s->A, s->row, s->b, n, m, n, rank_tolerance, s->work);
 }
 
 static void choose_columns(struct ct_embed *s)
@@ -349,6 +359,62 @@ static bool has_inertia(struct ct_embed *s)
     return true;
 }
 
+// Dense factors of larger systems cost more than a step does.
+static bool is_large(const struct ct_embed *s)
+{
+    enum { LARGE = 200 };
+    return s->rank >= LARGE;
+}
+
+// Time in which a coordinate has moved by `way` along the motion of now, the first one; 0 at rest.
+static double time_ahead(const struct ct_embed *s, double way)
+{
+    const double u = largest(s->m->input + s->m->at_u, s->m->nu), a = largest(s->a, s->m->nu);
+    return u > 0 || a > 0 ? 2 * way / (u + sqrt(u * u + 2 * way * a)) : 0;
+}
+
+// Rows and columns chosen by what they are ahead on the motion, with u' as found last; the machine's input stays.
+static void choose_there(struct ct_embed *s)
+{
+    const double way
+        = 0.3; // [rad or m]: far enough to tell them apart, near enough to be known
+    struct ct_machine *m = s->m;
+    double *q = m->input + m->at_q;
+    const double *u = m->input + m->at_u, h = time_ahead(s, way);
+    for (size_t k = 0; k < m->nu; k++)
+        s->r[k] = h * (u[k] + h / 2 * s->a[k]);
+    memcpy(s->q, q, m->nq * sizeof *q);
+    ct_machine_retract(m, q, s->r);
+    ct_machine_constraint(m);
+    order_rows(s);
+    choose_columns(s);
+    memcpy(q, s->q, m->nq * sizeof *q);
+    ct_machine_constraint(m);
+}
+
+static bool choose_here(struct ct_embed *s)
+{
+    s->rank = order_rows(s);
+    choose_columns(s);
+    return factor(s);
+}
+
+// In a symmetric position, where many motions begin, several choices are equally good, and only further on some of them
+// fail. Where the choice ahead is nearly as good here it is taken: another one costs more than many steps.
+static bool choose_ahead(struct ct_embed *s)
+{
+    const double nearly = 0.5;
+    if (!choose_here(s) || is_large(s) || s->rank == (int)s->m->nu || s->m->e->solution)
+        return true;
+    const double sigma = s->sigma, kappa = s->kappa;
+    ct_machine_motion(s->m);
+    if (ct_embed_accelerate(s) != CT_EVAL_OK)
+        return false;
+    choose_there(s);
+    return (factor(s) && s->sigma >= nearly * sigma && nearly * s->kappa <= kappa)
+        || choose_here(s);
+}
+
 // After ct_embed_accelerate: the first independent speed whose pivot of B' M B is rounding of what it is left of; -1: none.
 static int rounded_pivot(const struct ct_embed *s)
 {
@@ -368,14 +434,12 @@ bool ct_embed_choose(struct ct_embed *s)
 {
     s->switches++;
     s->rank = 0;
-    if (s->m->nrow)
-        choose_rows(s);
-    if (s->rank)
-        choose_columns(s);
-    else
-        for (int j = 0; j < (int)s->m->nu; j++)
-            s->independent[j] = j;
-    factor(s);
+    for (int j = 0; j < (int)s->m->nu; j++)
+        s->independent[j] = j;
+    if (!s->m->nrow)
+        factor(s);
+    else if (!choose_ahead(s))
+        return massless(s, lightest(s));
     s->kappa_chosen = s->kappa;
     s->sigma_chosen = s->sigma;
     if (s->m->e->solution)
@@ -564,14 +628,6 @@ enum ct_eval ct_embed_impulse(struct ct_embed *s, const double *p, double *u)
 
 // ---- projection -------------------------------------------------------------------------------------------
 
-static double largest(const double *v, size_t n)
-{
-    double max = 0;
-    for (size_t i = 0; i < n; i++)
-        max = fabs(v[i]) > max || isnan(v[i]) ? fabs(v[i]) : max;
-    return max;
-}
-
 // d (nu) = -J+ r: least norm, all rows.
 static void least_norm_step(struct ct_embed *s, const double *r, double *d)
 {
@@ -615,7 +671,8 @@ static bool has_worn(const struct ct_embed *s)
 {
     if (!s->rank)
         return false;
-    return ct_has_worn(s->kappa, s->kappa_chosen, s->sigma, s->sigma_chosen);
+    return ct_has_worn(s->kappa, s->kappa_chosen, s->sigma, s->sigma_chosen,
+                       s->rank < (int)s->m->nrow);
 }
 
 static enum ct_eval project_by_matrices(struct ct_embed *s, double t, double *y)
@@ -643,6 +700,12 @@ static enum ct_eval project_by_matrices(struct ct_embed *s, double t, double *y)
     }
     ct_machine_set(m, t, y);
     return CT_EVAL_OK;
+}
+
+static void change_speeds(const struct ct_machine *m, double *y, const double *du)
+{
+    for (size_t k = 0; k < m->nu; k++)
+        y[m->nq + k] += du[k];
 }
 
 static bool close_form(struct ct_embed *s, double t, const double *y)
@@ -673,11 +736,11 @@ static enum ct_eval project_by_form(struct ct_embed *s, double t, double *y, boo
             ct_machine_retract(m, y, f->dq);
             continue;
         }
-        for (size_t k = 0; k < m->nu; k++)
-            y[m->nq + k] += f->du[k];
-        *is_done = close_form(s, t, y); // once more, to take off rounding
-        for (size_t k = 0; k < m->nu; k++)
-            y[m->nq + k] += f->du[k];
+        const bool is_rough = largest(f->du, m->nu) > ct_small_change;
+        change_speeds(m, y, f->du);
+        *is_done = !is_rough || close_form(s, t, y);
+        if (is_rough)
+            change_speeds(m, y, f->du);
         ct_machine_set(m, t, y);
         return CT_EVAL_OK;
     }
@@ -698,7 +761,7 @@ enum ct_eval ct_embed_project(struct ct_embed *s, double t, double *y)
             ct_strength_compare(&s->strength, s->sigma);
         }
     }
-    if (e != CT_EVAL_OK)
+    if (e != CT_EVAL_OK || s->is_crossing)
         return e;
     tend_form(s);
     if (has_worn(s)) {
@@ -706,13 +769,6 @@ enum ct_eval ct_embed_project(struct ct_embed *s, double t, double *y)
         ct_embed_choose(s);
     }
     return CT_EVAL_OK;
-}
-
-// Dense factors of larger systems cost more than a step does.
-static bool is_large(const struct ct_embed *s)
-{
-    enum { LARGE = 200 };
-    return s->rank >= LARGE;
 }
 
 static bool find_strength(struct ct_embed *s)
@@ -743,10 +799,8 @@ bool ct_embed_has_pivot(const struct ct_embed *s)
     return s->rank && !(has_redundant_rows(s) && is_large(s));
 }
 
-double ct_embed_pivot(struct ct_embed *s)
+double ct_embed_kept_pivot(struct ct_embed *s)
 {
-    if (has_redundant_rows(s))
-        return smallest_singular_value(s);
     // the place need not be one of the motion: what is known of the motion stays
     const double sigma = s->sigma, kappa = s->kappa, strength = s->strength.now;
     const bool is_known = find_strength(s) || factor(s);
@@ -755,6 +809,11 @@ double ct_embed_pivot(struct ct_embed *s)
     s->kappa = kappa;
     s->strength.now = strength;
     return pivot;
+}
+
+double ct_embed_pivot(struct ct_embed *s)
+{
+    return has_redundant_rows(s) ? smallest_singular_value(s) : ct_embed_kept_pivot(s);
 }
 
 bool ct_embed_dependence(struct ct_embed *s, double *x, double *log_det)

@@ -41,13 +41,14 @@ struct ct_embed {
     bool has_form;    // form[0] is for the rows and columns of now
     bool is_dear;     // matrices are cheaper
     bool is_delicate; // near a singular position: pivots are sought at every evaluation
+    bool is_crossing; // stages are projected that steps do not end on: choices stay
     bool is_rough;    // the last check wanted a refinement
     long nweak;       // checks in a row that found the form weak, or projections without one
     struct ct_strength strength; // of the form
     struct ct_solves solves;
     double *a, *lam; // results: u' (nu), lam (nrow)
     // workspace
-    double *Jd, *B, *c, *r, *S, *MB, *A, *b, *work, *d;
+    double *Jd, *B, *c, *r, *S, *MB, *A, *b, *work, *d, *q;
     int *pivot, *iwork, *column;
 };
 
@@ -81,6 +82,8 @@ bool ct_embed_has_pivot(const struct ct_embed *s);
 /// redundant rows, of which the kept ones may lose rank where the others do not, the smallest singular value of J above those
 /// of the redundant rows against its largest.
 double ct_embed_pivot(struct ct_embed *s);
+/// The same of the kept rows alone, which are never further from losing rank than all rows are.
+double ct_embed_kept_pivot(struct ct_embed *s);
 /// At the last ct_machine_constraint, beside a place where J loses rank: x (rank, out) = (J_d J_d')^-1 v for a v without
 /// meaning, which has come into null(J') of that place, and log |det J_d|. False where that costs too much.
 bool ct_embed_dependence(struct ct_embed *s, double *x, double *log_det);

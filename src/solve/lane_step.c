@@ -44,7 +44,7 @@ static void renew(struct ct_lanes *s, vec t, const vec *y, set lanes)
     for (int l = 0; l < W && s->rank; l++)
         if (ct_has_lane(lanes, l)
             && ct_has_worn(s->kappa[l], s->lane[l].kappa_chosen, s->sigma[l],
-                           s->lane[l].sigma_chosen))
+                           s->lane[l].sigma_chosen, s->rank < s->nrow))
             ct_lane_renew(s, l, t[l], y);
 }
 
@@ -178,19 +178,69 @@ static vec norm(const struct ct_lanes *s, const vec *e)
     return sum;
 }
 
-static void estimate(struct ct_lanes *s)
+// Outputs that are controlled at (t, y).
+static const vec *outputs(struct ct_lanes *s, vec t, const vec *y)
 {
-    vec e3 = {0};
-    combine(s, s->point, NULL, &s->error);
-    const vec e = norm(s, s->point);
-    if (s->third.n) {
-        combine(s, s->point, s->y, &s->third);
-        for (int i = 0; i < s->ny; i++)
-            s->point[i] = s->y1[i] - s->point[i];
-        e3 = norm(s, s->point);
+    set_input(s, t, y);
+    ct_lane_run(&s->output, s->input);
+    return s->output.out;
+}
+
+// What errors e of the states at the end of the step mean for outputs, in these lanes: as ct_fidelity_error.
+static void judge_outputs(struct ct_lanes *s, const vec *e, set lanes)
+{
+    const size_t n = s->output.nout;
+    const vec t = s->t + s->h;
+    vec *y = s->end;
+    copy(s->at, outputs(s, t, s->y1), (int)n);
+    for (int i = 0; i < s->ny; i++)
+        y[i] = s->y1[i] + ct_fidelity_probe(i) * s->y1[i];
+    copy(s->probed, outputs(s, t, y), (int)n);
+    for (int i = 0; i < s->ny; i++)
+        y[i] = s->y1[i] + e[i];
+    const vec *off = outputs(s, t, y);
+    for (int l = 0; l < W; l++) {
+        struct ct_lane *lane = &s->lane[l];
+        if (!ct_has_lane(lanes, l))
+            continue;
+        ct_lane_take(s->one_at, s->at, l, n);
+        ct_lane_take(s->one_probed, s->probed, l, n);
+        ct_lane_take(s->one_off, off, l, n);
+        const struct ct_tolerance tolerance = {s->rtol[l], s->atol[l]};
+        lane->error
+            = fmax(lane->error, ct_fidelity_judge(&lane->outputs, s->one_at, s->one_probed,
+                                                  s->one_off, &tolerance, lane->error));
     }
-    for (int l = 0; l < W; l++)
-        s->lane[l].error = s->third.n ? ct_stepper_join(e[l], e3[l]) : e[l];
+}
+
+static void estimate(struct ct_lanes *s, set wanted)
+{
+    vec e3 = {0}, *e = s->point;
+    set due = 0;
+    combine(s, e, NULL, &s->error);
+    const vec size = norm(s, e);
+    vec joint = size;
+    if (s->third.n) {
+        combine(s, s->end, s->y, &s->third);
+        for (int i = 0; i < s->ny; i++)
+            s->end[i] = s->y1[i] - s->end[i];
+        e3 = norm(s, s->end);
+    }
+    for (int l = 0; l < W; l++) {
+        struct ct_lane *lane = &s->lane[l];
+        if (s->third.n)
+            joint[l] = ct_stepper_join(size[l], e3[l]);
+        lane->error = joint[l];
+        if (s->output.nout && ct_has_lane(wanted, l) && joint[l] <= 1
+            && ct_fidelity_is_due(&lane->outputs))
+            due |= 1u << l;
+    }
+    if (!due)
+        return;
+    const vec part = choose(size > 0, joint / size, all_lanes(1));
+    for (int i = 0; i < s->ny; i++)
+        e[i] *= part;
+    judge_outputs(s, e, due);
 }
 
 // Ends of the stages at t + C h; the last one is the end of the step, y1 with dy1. That is not evaluated where its error
@@ -244,6 +294,7 @@ static void adapt(struct ct_lanes *s, set tried, set wanted)
         struct ct_lane *lane = &s->lane[l];
         if (ct_has_lane(wanted, l)) {
             ct_control_accept(&lane->control, s->method, s->h[l], lane->error);
+            ct_fidelity_keep(&lane->outputs);
         } else if (ct_has_lane(tried, l)) {
             ct_control_refuse(&lane->control, s->method, s->h[l], lane->error);
             s->count.rejected++;
@@ -381,7 +432,7 @@ void ct_lanes_step(struct ct_lanes *s)
         end[l] = lane->end;
     }
     set wanted = take_stages(s, tried);
-    estimate(s);
+    estimate(s, wanted);
     wanted = accept(s, wanted);
     wanted = project_end(s, end, wanted);
     follow(s, end, s->end, wanted);

@@ -7,6 +7,7 @@
 #define CT_SOLVE_RUN_H
 
 #include "integrate/stiffness.h"
+#include "solve/fidelity.h"
 #include "solve/mode.h"
 #include "solve/simulate.h"
 #include "solve/singular.h"
@@ -28,6 +29,7 @@ struct ct_run {
     int *root_of; // state modes, in order
     int nroot;
     bool needs_lam, has_power;
+    struct ct_fidelity *fidelity; // of outputs; NULL: none is controlled
     const struct ct_run_options *o;
     struct ct_run_report *report;
     double energy0, energy_scale;

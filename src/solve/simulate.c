@@ -79,6 +79,13 @@ static void crossed(void *user, const struct ct_stepper_span *span, double t1)
     ct_singular_pass(r->singular, span, t1, r->pending);
 }
 
+static double output_error(void *user, double t, const double *y, const double *e,
+                           const struct ct_tolerance *tolerance, double states)
+{
+    struct ct_run *r = user;
+    return ct_fidelity_error(r->fidelity, ct_run_before(r, t), y, e, tolerance, states);
+}
+
 static double residual(void *user, double t, const double *y)
 {
     struct ct_run *r = user;
@@ -131,6 +138,8 @@ static enum ct_eval accepted(void *user, double t, double *y, const double *dy)
         r->t_turning = t_before;
         return CT_EVAL_RETRY;
     }
+    if (r->fidelity)
+        ct_fidelity_accept(r->fidelity);
     ct_machine_set(r->m, ct_run_before(r, t), y);
     ct_memory_follow(r->m);
     if (r->method->is_implicit) { // its steps may pass without a projection
@@ -196,6 +205,7 @@ struct ct_run *ct_run_prepare(struct ct_ctx *ctx, struct ct_arena *a,
     r->scratch = CT_NEWN(a, double, 2 * r->m->nu + 2 * e->ndriver + r->m->nrow + 1);
     r->value = CT_NEWN(a, double, e->nresult + 1);
     find_needs(r);
+    r->fidelity = ct_fidelity_create(a, r->m);
     return r;
 }
 
@@ -215,6 +225,11 @@ bool ct_run_restart(struct ct_run *r, const struct ct_start *start)
     r->energy0 = r->energy_scale = 0;
     r->started = false;
     return begin(r, start);
+}
+
+const struct ct_fidelity *ct_run_fidelity(const struct ct_run *r)
+{
+    return r->fidelity;
 }
 
 enum ct_eval ct_run_rhs(struct ct_run *r, double t, const double *y, double *dy)
@@ -442,6 +457,8 @@ bool ct_run_simulate(struct ct_run *r, const struct ct_run_options *o,
     for (size_t i = 0; i < r->e->nvalidity; i++)
         report->validity[i].left_at = -1;
     ct_singular_start(r->singular);
+    if (r->fidelity)
+        ct_fidelity_start(r->fidelity);
     r->o = o;
     r->method = o->method;
     r->last_event = -INFINITY;
@@ -457,6 +474,7 @@ bool ct_run_simulate(struct ct_run *r, const struct ct_run_options *o,
                            .dae = o->method->is_implicit ? ct_dae_create(r->arena, r->s) : NULL,
                            .watched = watched,
                            .groups = ct_run_groups(r),
+                           .output_error = r->fidelity ? output_error : NULL,
                            .rhs = rhs,
                            .project = project,
                            .accepted = accepted,

@@ -24,7 +24,7 @@ struct ct_singular *ct_singular_create(struct ct_arena *arena, struct ct_machine
 
 void ct_singular_start(struct ct_singular *w)
 {
-    w->in = INFINITY;
+    w->in = w->kept_far = INFINITY;
     w->reach = w->most = w->part = w->t = 0;
     w->switches = -1;
     w->npassed = 0;
@@ -86,6 +86,17 @@ static double time_to_singular(struct ct_singular *w, const struct sight *a, dou
     return s - pivot / slope;
 }
 
+// With redundant rows what tells of all of them costs as much as some evaluations. As long as the kept rows have not come
+// nearer to losing rank than when nothing was ahead, nothing is.
+static bool is_far_still(struct ct_singular *w, const struct sight *a)
+{
+    if (w->s->rank == (int)w->m->nrow || w->in < INFINITY || w->s->switches != w->switches)
+        return false;
+    ct_machine_set(w->m, ct_time_before(a->t, a->pending), a->y);
+    ct_machine_constraint(w->m);
+    return ct_embed_kept_pivot(w->s) >= w->kept_far;
+}
+
 bool ct_singular_foresee(struct ct_singular *w, double t, const double *y, const double *dy,
                          double pending, bool may_repeat)
 {
@@ -93,6 +104,10 @@ bool ct_singular_foresee(struct ct_singular *w, double t, const double *y, const
     const double dt = t - w->t;
     if (!ct_embed_has_pivot(w->s) || !(dt > 0))
         return true;
+    if (is_far_still(w, &ahead)) {
+        w->t = t;
+        return true;
+    }
     const double now = pivot_after(w, &ahead, 0), part = now / fmax(w->most, now);
     // after another choice of rows and columns the pivot is not to be compared with the last one
     const bool is_comparable = w->s->switches == w->switches;
@@ -105,8 +120,12 @@ bool ct_singular_foresee(struct ct_singular *w, double t, const double *y, const
     w->most = fmax(w->most, now);
     w->in = INFINITY;
     w->s->is_delicate = part < near_pivot;
-    if (part > foreseen_pivot)
+    w->kept_far = INFINITY;
+    if (part > foreseen_pivot) {
+        if (w->s->rank < (int)w->m->nrow)
+            w->kept_far = foreseen_pivot * ct_embed_kept_pivot(w->s);
         return true;
+    }
     w->in = time_to_singular(w, &ahead, now, dt);
     w->reach = w->in * fmin(1, singular_pivot / part);
     return true;
@@ -116,6 +135,7 @@ bool ct_singular_foresee(struct ct_singular *w, double t, const double *y, const
 // where it begins holds for all of them.
 void ct_singular_set_crossing(struct ct_singular *w, bool is_crossing)
 {
+    w->s->is_crossing = is_crossing;
     w->s->is_delicate = !is_crossing && w->part < near_pivot;
 }
 

@@ -23,7 +23,9 @@ struct ct_singular {
     double in;            // time to the position ahead; INFINITY: there is none
     double reach;         // time before it in which f is better not computed
     double most, part, t; // the largest pivot so far, the last one against it, and its time
-    long switches;        // of the embedding, there
+    double
+        kept_far; // the pivot of the kept rows down to which redundant ones need not be looked at
+    long switches; // of the embedding, there
     long npassed;
     struct ct_singular_position *passed; // the first of them (CT_MOST_SINGULAR)
     double *y, *d, *x;                   // (ny), (nu), (nrow)

@@ -17,7 +17,7 @@ echo '-- without it there is no estimate'
 "$COTREE" simulate "$m" -o r.csv --quiet --summary s.json
 grep -E '"(global|compared_with|verify)"' s.json
 echo '-- the line of the summary'
-"$COTREE" simulate "$m" -o r.csv --verify 2>&1 | sed -n '/^global/{s/[0-9.]*e-[0-9]*/NUMBER/;s/(.*)/(...)/;p}'
+"$COTREE" simulate "$m" -o r.csv --verify 2>&1 | sed -n '/^global/{s/[0-9.]*e-[0-9]*/NUMBER/;s/ in [^,]*,/ in OUTPUT,/;s/(.*)/(...)/;p}'
 echo '-- a chaotic motion is lost'
 "$COTREE" simulate "$SYSTEMS/double_pendulum/model.yaml" -o r.csv --until 60 --samples 61 --tolerance 1e-6 --verify 2>&1 |
   awk '/^note: more/ { print ($(NF - 1) > 5 && $(NF - 1) < 40) ? "not before 5 s, not after 40 s" : $0 }'

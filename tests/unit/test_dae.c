@@ -424,11 +424,11 @@ static void models_follow_their_references(void **unused)
         double duration, radau, radau_error, alpha, alpha_error;
         size_t nsample;
     } cases[] = {
-        {"R14_k1e4", 2, 1e-9, 3e-5, 1e-8, 1.2e-3, 5},  // pendulum on a stiff spring
-        {"R01", 0.03, 1e-8, 4e-6, 1e-7, 5e-3, 4},      // Andrews' squeezing mechanism
-        {"R07_H", 1, 1e-8, 4e-7, 1e-8, 1.2e-4, 11},    // spatial slider-crank
-        {"R08a", 0.5, 1e-8, 4e-6, 1e-8, 8e-3, 6},      // heavy top: quaternion
-        {"R06_slender", 2, 1e-8, 7e-8, 1e-8, 2e-5, 3}, // Bricard: redundant rows
+        {"R14_k1e4", 2, 1e-9, 3e-5, 1e-8, 1.2e-3, 5},    // pendulum on a stiff spring
+        {"R01", 0.03, 1e-8, 4e-6, 1e-7, 5e-3, 4},        // Andrews' squeezing mechanism
+        {"R07_H", 1, 1e-8, 4e-7, 1e-8, 1.2e-4, 11},      // spatial slider-crank
+        {"R08a", 0.5, 1e-8, 4e-6, 1e-8, 8e-3, 6},        // heavy top: quaternion
+        {"R06_slender", 2, 1e-8, 2.4e-7, 1e-8, 2e-5, 3}, // Bricard: redundant rows
         {"R12_pi", 3.14159265358979323846, 1e-8, 1e-5, 1e-7, 1e-2,
          2}, // forty links, a load that ends
     };
@@ -479,7 +479,7 @@ static void orders_of_explicit_methods_hold_for_models(void **unused)
         const char *name;
         double duration, step[3];
     } cases[] = {{"R08a", 0.1, {0.0005, 0.001, 0.005}},
-                 {"R06_slender", 1, {0.05, 0.05, 0.2}},
+                 {"R06_slender", 2, {0.05, 0.06, 0.2}},
                  {"R14_k1e4", 0.5, {0.001, 0.0025, 0.01}},
                  {"R01", 0.01, {5e-5, 1e-4, 0}}};
     for (size_t k = 0; k < COUNT(cases); k++)
@@ -494,9 +494,9 @@ static void orders_of_explicit_methods_hold_for_models(void **unused)
                                        cases[k].duration, 2, &report);
             const double order = log2(error[0] / error[1]);
             printf("%s %s: order %.2f\n", cases[k].name, method[i], order);
-            // some leading terms are small enough for the next ones to show, which are an order higher
+            // some leading terms are small enough for the next ones to show, which are an order or two higher
             const int want = ct_method_find(method[i])->order;
-            assert_true(order > want - 0.3 && order < want + 1.3);
+            assert_true(order > want - 0.3 && order < want + 1.7);
         }
 }
 
