@@ -31,12 +31,18 @@ void ct_ctx_print_diagnostics(const struct ct_ctx *ctx, FILE *out)
     ct_ctx_print(ctx, out);
 }
 
+// Codes of what only options name.
+static bool is_option(int code)
+{
+    return code == CT_E_USAGE || code == CT_E_INPUT || code == CT_E_LOAD;
+}
+
 enum ct_fault ct_ctx_fault(const struct ct_ctx *ctx)
 {
     enum ct_fault fault = ctx->no_memory || ctx->nerror ? CT_FAULT_MODEL : CT_FAULT_NONE;
     for (size_t i = 0; i < ctx->ndiagnostic; i++)
         if (ctx->diagnostic[i].severity == CT_SEVERITY_ERROR
-            && ctx->diagnostic[i].code == CT_E_USAGE)
+            && is_option(ctx->diagnostic[i].code))
             fault = CT_FAULT_OPTION;
     return fault;
 }

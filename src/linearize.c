@@ -113,7 +113,7 @@ static bool check_inputs(struct ct_linearization *s)
     for (size_t k = 0; k < s->ninput; k++)
         for (size_t i = 0; i < 2 * e->nrow; i++)
             if (f.p[i + 2 * e->nrow * k] != 0)
-                return ct_error(&s->own, (struct ct_mark){.file = s->variant->file}, CT_E_INPUT,
+                return ct_error(&s->own, (struct ct_mark){.file = NULL}, CT_E_INPUT,
                                 "the parameter '%s' changes lengths or places, which cannot be "
                                 "an input",
                                 s->input[k]);

@@ -183,7 +183,7 @@ static bool no_input(struct ct_ctx *own, const struct ct_model *m, const char *n
     for (size_t i = 0; i < m->nparameter; i++)
         push(&l, m->parameter[i].name);
     return ct_error(
-        own, (struct ct_mark){.file = m->file}, CT_E_INPUT,
+        own, (struct ct_mark){.file = NULL}, CT_E_INPUT,
         "there is no input '%s': an effort of a joint without a motion "
         "(J.effort), a component of a force or torque (F.force.x), or a parameter%s",
         name, ct_suggest(own->model, name, l.name, l.n));
@@ -239,7 +239,7 @@ static bool no_load(struct ct_ctx *own, const struct ct_model *m, const char *na
     for (size_t i = 0; i < m->njoint; i++)
         if (m->joint[i].cls->motion && ct_instance_value(&m->joint[i], "effort")->given)
             push(&l, m->joint[i].name);
-    return ct_error(own, (struct ct_mark){.file = m->file}, CT_E_LOAD,
+    return ct_error(own, (struct ct_mark){.file = NULL}, CT_E_LOAD,
                     "there is no load '%s': a force, a torque, a joint with an effort, or "
                     "gravity%s",
                     name, ct_suggest_or_list(own->model, name, l.name, l.n));

@@ -282,6 +282,26 @@ static void add_symmetric(struct list *list, const struct basis *s)
     }
 }
 
+// A free coordinate has a double zero with one vector, which rounding splits into a pair of the order of its square
+// root: up to `most` of those not larger than `small` are zero, too. Returns how many are.
+static int take_split_zeros(double *re, double *im, int n, int nzero, int most, double small)
+{
+    while (nzero < most) {
+        int least = -1;
+        for (int k = 0; k < n; k++) {
+            const double s = hypot(re[k], im[k]);
+            if (s > 0 && s <= small && (least < 0 || s < hypot(re[least], im[least])))
+                least = k;
+        }
+        if (least < 0)
+            break;
+        const bool is_pair = im[least] != 0;
+        for (int k = least; k <= least + is_pair; k++, nzero++)
+            re[k] = im[k] = 0;
+    }
+    return nzero;
+}
+
 // Eigenvalues of x' = A x (n x n, destroyed); y = T x (nfree x n) gives the shape. Those this small are zero; as many
 // as `rigid` zeros, and half of what there are more, are rigid-body motions.
 static bool add_general(struct list *list, double *A, const double *T, int n, double zero,
@@ -291,6 +311,7 @@ static bool add_general(struct list *list, double *A, const double *T, int n, do
     double *re = CT_NEWN(list->a, double, n + 1), *im = CT_NEWN(list->a, double, n + 1),
            *V = CT_NEWN(list->a, double, n *n + 1), *y = CT_NEWN(list->a, double, 2 * f + 1),
            *work = CT_NEWN(list->a, double, ct_eigen_work(n));
+    const double size = largest(A, (size_t)n * (size_t)n);
     if (!ct_eigen(re, im, V, A, n, n, work))
         return false;
     int nzero = 0;
@@ -299,6 +320,7 @@ static bool add_general(struct list *list, double *A, const double *T, int n, do
             re[k] = im[k] = 0;
             nzero++;
         }
+    nzero = take_split_zeros(re, im, n, nzero, 2 * rigid, sqrt(zero * size));
     const int wanted = rigid > (nzero + 1) / 2 ? rigid : (nzero + 1) / 2;
     for (int k = 0, found = 0; k < n; k++) {
         if (im[k] < 0 || (re[k] == 0 && im[k] == 0 && found++ >= wanted))
@@ -326,6 +348,17 @@ static void clear_roundings(double *A, int n, double size)
             A[i] = 0;
 }
 
+// Coordinates that no force depends on.
+static int count_free(const struct ct_linear *l, int f)
+{
+    const double size = largest(l->Kr, (size_t)f * (size_t)f);
+    int n = 0;
+    for (int i = 0; i < f; i++)
+        n += largest(l->Kr + f * i, (size_t)f) <= rounding * size
+          && largest(l->G + f * i, (size_t)f) == 0;
+    return n;
+}
+
 // y = V e1/s, w = V e2:  e1' = s e2 + (s g /s) e1,  e2' = -(k/s) e1 - c e2
 static bool solve_modal(struct list *list, const struct basis *s)
 {
@@ -350,6 +383,7 @@ static bool solve_modal(struct list *list, const struct basis *s)
         if (s->w2[i] != 0)
             least = fmin(least, sqrt(fabs(s->w2[i])));
     int rigid = 0;
+    const int free = count_free(l, f);
     for (int i = 0; i < f; i++) {
         rate[i] = s->w2[i] != 0 ? sqrt(fabs(s->w2[i])) : least > 0 ? least : 1;
         rigid += largest(K + f * i, (size_t)f) == 0 && largest(G + f * i, (size_t)f) == 0;
@@ -364,7 +398,7 @@ static bool solve_modal(struct list *list, const struct basis *s)
         }
     }
     const double zero = rounding * n * largest(A, (size_t)n * (size_t)n);
-    return add_general(list, A, T, n, zero, rigid);
+    return add_general(list, A, T, n, zero, rigid > free ? rigid : free);
 }
 
 // ---- all of it --------------------------------------------------------------------------------------------------

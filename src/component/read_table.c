@@ -94,6 +94,18 @@ static bool check_increasing(struct ct_reader *r, const struct ct_sheet *csv, si
     return true;
 }
 
+// Runs start at t = 0.
+static bool check_start(struct ct_reader *r, const struct ct_sheet *csv, size_t column,
+                        const double *x, size_t n)
+{
+    const size_t row = x[0] > 0 ? 1 : n;
+    if (x[0] <= 0 && x[n - 1] >= 0)
+        return true;
+    return ct_error(r->ctx, csv->mark[row * csv->ncolumn + column], CT_E_TABLE_DATA,
+                    "the table %s at t = %g, but runs start at t = 0",
+                    x[0] > 0 ? "begins" : "ends", x[row - 1]);
+}
+
 // Slopes m (n, out) of the natural spline through (x, y), n >= 2: the second derivative is continuous at
 // inner points and 0 at the ends. Rows h_i = x_i+1 - x_i, d_i = (y_i+1 - y_i)/h_i:
 //   2 m_0 + m_1 = 3 d_0
@@ -139,7 +151,7 @@ static bool fill_table(struct ct_reader *r, const struct ct_node *file,
     t->n = csv.nrow - 1;
     double *x = CT_NEWN(r->a, double, t->n), *y = CT_NEWN(r->a, double, t->n), *m = NULL;
     if (!read_column(r, &csv, kt, x) || !read_column(r, &csv, ky, y)
-        || !check_increasing(r, &csv, kt, x)) {
+        || !check_increasing(r, &csv, kt, x) || !check_start(r, &csv, kt, x, t->n)) {
         ct_note(r->ctx, file->mark, "the table is used here");
         return false;
     }

@@ -6,71 +6,19 @@
 double ct_op_apply(enum ct_op op, double a, double b, double c)
 {
     switch (op) {
-    case CT_OP_ADD:
-        return a + b;
-    case CT_OP_SUB:
-        return a - b;
-    case CT_OP_MUL:
-        return a * b;
-    case CT_OP_DIV:
-        return a / b;
-    case CT_OP_NEG:
-        return -a;
-    case CT_OP_POW:
-        return pow(a, b);
-    case CT_OP_SQRT:
-        return sqrt(a);
-    case CT_OP_SIN:
-        return sin(a);
-    case CT_OP_COS:
-        return cos(a);
-    case CT_OP_TAN:
-        return tan(a);
-    case CT_OP_ASIN:
-        return asin(a);
-    case CT_OP_ACOS:
-        return acos(a);
-    case CT_OP_ATAN:
-        return atan(a);
-    case CT_OP_ATAN2:
-        return atan2(a, b);
-    case CT_OP_SINH:
-        return sinh(a);
-    case CT_OP_COSH:
-        return cosh(a);
-    case CT_OP_TANH:
-        return tanh(a);
-    case CT_OP_EXP:
-        return exp(a);
-    case CT_OP_LOG:
-        return log(a);
-    case CT_OP_ABS:
-        return fabs(a);
-    case CT_OP_SIGN:
-        return (a > 0) - (a < 0);
-    case CT_OP_MIN:
-        return a < b ? a : b;
-    case CT_OP_MAX:
-        return a > b ? a : b;
-    case CT_OP_LT:
-        return a < b;
-    case CT_OP_LE:
-        return a <= b;
-    case CT_OP_GT:
-        return a > b;
-    case CT_OP_GE:
-        return a >= b;
-    case CT_OP_EQ:
-        return a == b;
-    case CT_OP_IF:
-        return a != 0 ? b : c;
-    case CT_OP_CONST:
-    case CT_OP_SYM:
-    case CT_OP_TABLE:
+#define FN(function) function
+#define NO_VALUE NAN
+#define OP(op, narg, name, value)                                                              \
+    case op:                                                                                   \
+        return value;
+#include "expr/ops.def"
+#undef OP
+#undef NO_VALUE
+#undef FN
     case CT_NOP:
         break;
     }
-    return NAN; // leaves and tables have no operator value
+    return NAN;
 }
 
 // Interval i with x[i] <= at <= x[i + 1].

@@ -6,7 +6,7 @@
 #include <string.h>
 
 const struct ct_op_info ct_op_info[CT_NOP] = {
-#define OP(op, narg, name) {name, narg},
+#define OP(op, narg, name, value) {name, narg},
 #include "expr/ops.def"
 #undef OP
 };

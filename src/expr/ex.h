@@ -31,7 +31,7 @@ typedef struct {
 } ct_ex33; // column-major 3 x 3, e[row + 3 * column]
 
 enum ct_op {
-#define OP(op, narg, name) op,
+#define OP(op, narg, name, value) op,
 #include "expr/ops.def"
 #undef OP
     CT_NOP

@@ -48,6 +48,16 @@ struct ct_inertia {
 
 /// Sums over points of the elements: any kinematics.
 extern const struct ct_inertia_form ct_inertia_points;
+/// Sums over the points of an element that its columns need; in a CHAIN without what the foreshortening at its start does.
+struct ct_element_sums {
+    ct_ex M[CT_DOF][CT_DOF];
+    ct_ex3 moved[CT_DOF],
+        swept[CT_DOF]; // sum m dr, sum m r x dr (and of the sections' rotation)
+    ct_ex m;
+    ct_ex3 moment;
+};
+/// Of all elements, in b->arena; for ct_inertia_points.
+struct ct_element_sums *ct_points_sum(struct ct_build *b, const struct ct_flexible *f);
 /// Integrals over the elements, constant: linear kinematics.
 extern const struct ct_inertia_form ct_inertia_exact;
 

@@ -284,15 +284,6 @@ static void wrench(struct ct_build *b, const struct ct_flexible *f, const struct
     *torque = ct_ex3_add(x, *torque, ct_ex3_cross(x, m->w, spin));
 }
 
-// Sums over the points of an element that its columns need.
-struct element_mass {
-    ct_ex M[CT_DOF][CT_DOF];
-    ct_ex3 moved[CT_DOF],
-        swept[CT_DOF]; // sum m dr, sum m r x dr (and of the sections' rotation)
-    ct_ex m;
-    ct_ex3 moment;
-};
-
 static ct_ex3 point_partial(const struct ct_point *p, int j)
 {
     ct_ex3 d = zero3;
@@ -315,7 +306,8 @@ static ct_ex3 point_turn(struct ct_build *b, const struct ct_point *p, int j)
     return j >= 2 ? ct_ex3_scale(b->x, p->turn[j - 2], s->turn[2]) : zero3;
 }
 
-static void add_point_mass(struct ct_build *b, const struct ct_point *p, struct element_mass *s)
+static void add_point_mass(struct ct_build *b, const struct ct_point *p,
+                           struct ct_element_sums *s)
 {
     struct ct_exs *x = b->x;
     s->m = ct_ex_add(x, s->m, p->m);
@@ -333,17 +325,23 @@ static void add_point_mass(struct ct_build *b, const struct ct_point *p, struct 
     }
 }
 
+struct ct_element_sums *ct_points_sum(struct ct_build *b, const struct ct_flexible *f)
+{
+    const struct ct_inertia *I = f->inertia;
+    struct ct_element_sums *s = CT_NEWN(b->arena, struct ct_element_sums, f->beam->nelement);
+    for (size_t i = 0; i < I->npoint; i++)
+        add_point_mass(b, &I->point[i], &s[I->point[i].element]);
+    return s;
+}
+
 // Elements from the tip inwards: with a CHAIN what lies beyond moves along with an element's bending.
 static void mass(struct ct_build *b, const struct ct_flexible *f, struct ct_columns *out,
                  ct_ex *M)
 {
     struct ct_exs *x = b->x;
-    const struct ct_inertia *I = f->inertia;
     const bool chain = f->kinematics == CT_AXIAL_CHAIN;
     const int n = f->beam->nelement;
-    struct element_mass *s = CT_NEWN(b->arena, struct element_mass, n);
-    for (size_t i = 0; i < I->npoint; i++)
-        add_point_mass(b, &I->point[i], &s[I->point[i].element]);
+    const struct ct_element_sums *s = ct_points_sum(b, f);
     ct_ex m = CT_EX_ZERO;
     ct_ex3 moment = zero3;
     for (int e = n; e-- > 0;) {

@@ -1,5 +1,7 @@
 // See elimination.h.
 #include "formulate/elimination.h"
+#include "formulate/kkt.h"
+#include "formulate/shadow.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -7,17 +9,6 @@
 
 // A pivot is large enough from this part of the largest entries of its rows.
 static const double threshold = 0.1;
-
-struct entry {
-    int column;
-    ct_ex value;
-    double number; // the value at the state of the shadow
-};
-
-struct line { // of a sparse matrix, columns ascending
-    struct entry *e;
-    size_t n, cap;
-};
 
 // Pivots P: P^-1 is the adjoint divided by the determinant. The quotient is taken last, so that a row that
 // repeats the pivot's gives 1 exactly: mechanisms of equal parts stay symmetric to the last bit.
@@ -37,17 +28,18 @@ struct elimination {
     struct ct_exs *x;
     const struct ct_equations *e;
     const struct ct_partition *p;
-    int *row;           // kept rows, ascending
-    struct line *J, *M; // (rank), as given; (nu), both triangles
-    struct line *left;  // (rank) what elimination has left of J
-    bool *is_done;      // (rank) rows
-    int *block_of;      // (nu) columns; OPEN, INDEPENDENT
+    int *row;                    // kept rows, ascending
+    struct ct_shadow_row *J, *M; // (rank), as given; (nu), both triangles
+    struct ct_shadow_row *left;  // (rank) what elimination has left of J
+    bool *is_done;               // (rank) rows
+    int *block_of;               // (nu) columns; OPEN, INDEPENDENT
     int *level, *count; // (rank) steps that must come before; (nu) open rows with that column
     struct block *block;
     size_t nblock;
     struct step *step;
     size_t nstep, step_cap;
-    ct_ex *B;      // (nu x nfree), unit rows in the independent places
+    struct ct_kkt *whole; // all equations as one system, or NULL: embedding
+    ct_ex *B;             // (nu x nfree), unit rows in the independent places
     ct_ex *S;      // (nfree x nfree) L' D L of B' M B, lower triangle: D, and L beside it
     size_t *order; // (nfree) of the pivots of S, the first one last
 };
@@ -56,44 +48,12 @@ enum { INDEPENDENT = -1, OPEN = -2 };
 
 // ---- lines ----------------------------------------------------------------------------------------
 
-static void put(struct ct_arena *a, struct line *l, int column, ct_ex value, double number)
-{
-    const struct entry e = {column, value, number};
-    CT_PUSH(a, l->e, l->n, l->cap, e);
-}
-
-static const struct entry *find(const struct line *l, int column)
-{
-    size_t low = 0, high = l->n;
-    while (low < high) {
-        const size_t middle = (low + high) / 2;
-        if (l->e[middle].column < column)
-            low = middle + 1;
-        else
-            high = middle;
-    }
-    return low < l->n && l->e[low].column == column ? &l->e[low] : NULL;
-}
-
-static int by_column(const void *a, const void *b)
-{
-    const struct entry *p = a, *q = b;
-    return p->column - q->column;
-}
-
 static int ascending(const void *a, const void *b)
 {
     return *(const int *)a - *(const int *)b;
 }
 
-static void sort_lines(struct line *l, size_t n)
-{
-    for (size_t i = 0; i < n; i++)
-        if (l[i].n)
-            qsort(l[i].e, l[i].n, sizeof *l[i].e, by_column);
-}
-
-static void read_matrices(struct elimination *s, const double *J)
+static void read_matrices(struct elimination *s, const double *M, const double *J)
 {
     const struct ct_equations *e = s->e;
     int *place = CT_NEWN(s->a, int, e->nrow + 1); // 1 + place of a kept row
@@ -102,17 +62,17 @@ static void read_matrices(struct elimination *s, const double *J)
     for (size_t i = 0; i < e->nJ; i++)
         if (place[e->J[i].row]) {
             const int r = place[e->J[i].row] - 1;
-            put(s->a, &s->J[r], e->J[i].column, e->J[i].value, J[i]);
-            put(s->a, &s->left[r], e->J[i].column, e->J[i].value, J[i]);
+            ct_shadow_put(s->a, &s->J[r], e->J[i].column, e->J[i].value, J[i]);
+            ct_shadow_put(s->a, &s->left[r], e->J[i].column, e->J[i].value, J[i]);
         }
     for (size_t i = 0; i < e->nM; i++) {
-        put(s->a, &s->M[e->M[i].row], e->M[i].column, e->M[i].value, 0);
+        ct_shadow_put(s->a, &s->M[e->M[i].row], e->M[i].column, e->M[i].value, M[i]);
         if (e->M[i].row != e->M[i].column)
-            put(s->a, &s->M[e->M[i].column], e->M[i].row, e->M[i].value, 0);
+            ct_shadow_put(s->a, &s->M[e->M[i].column], e->M[i].row, e->M[i].value, M[i]);
     }
-    sort_lines(s->J, s->p->rank);
-    sort_lines(s->left, s->p->rank);
-    sort_lines(s->M, e->nu);
+    ct_shadow_sort(s->J, s->p->rank);
+    ct_shadow_sort(s->left, s->p->rank);
+    ct_shadow_sort(s->M, e->nu);
 }
 
 // ---- choice of pivots -------------------------------------------------------------------------------
@@ -125,7 +85,7 @@ struct choice {
     double strength;
 };
 
-static bool is_open(const struct elimination *s, const struct entry *e)
+static bool is_open(const struct elimination *s, const struct ct_shadow_entry *e)
 {
     return s->block_of[e->column] == OPEN;
 }
@@ -156,9 +116,9 @@ static bool moves(const struct elimination *s, ct_ex v)
 
 static void try_single(const struct elimination *s, int row, double size, struct choice *best)
 {
-    const struct line *l = &s->left[row];
+    const struct ct_shadow_row *l = &s->left[row];
     for (size_t i = 0; i < l->n; i++) {
-        const struct entry *e = &l->e[i];
+        const struct ct_shadow_entry *e = &l->e[i];
         const double strength = fabs(e->number) / size;
         if (!is_open(s, e) || !(strength >= threshold))
             continue;
@@ -174,22 +134,23 @@ static void try_single(const struct elimination *s, int row, double size, struct
     }
 }
 
-static double number_at(const struct line *l, int column)
+static double number_at(const struct ct_shadow_row *l, int column)
 {
-    const struct entry *e = find(l, column);
+    const struct ct_shadow_entry *e = ct_shadow_find(l, column);
     return e ? e->number : 0;
 }
 
 static void try_columns(const struct elimination *s, struct choice c, double size, double width,
                         struct choice *best)
 {
-    const struct line *l = &s->left[c.row[0]], *k = &s->left[c.row[1]];
+    const struct ct_shadow_row *l = &s->left[c.row[0]], *k = &s->left[c.row[1]];
     double a[2], b[2];
     int inside = 0;
     for (int i = 0; i < 2; i++) {
         a[i] = number_at(l, c.column[i]);
         b[i] = number_at(k, c.column[i]);
-        inside += (find(l, c.column[i]) != NULL) + (find(k, c.column[i]) != NULL);
+        inside += (ct_shadow_find(l, c.column[i]) != NULL)
+                + (ct_shadow_find(k, c.column[i]) != NULL);
     }
     c.strength = fabs(a[0] * b[1] - a[1] * b[0]) / size;
     c.cost = (s->count[c.column[0]] + s->count[c.column[1]] - inside) * (width - 1) / 2;
@@ -200,12 +161,12 @@ static void try_columns(const struct elimination *s, struct choice c, double siz
 static void try_pair(const struct elimination *s, int i, int k, double size,
                      struct choice *best)
 {
-    const struct line *l[2] = {&s->left[i], &s->left[k]};
+    const struct ct_shadow_row *l[2] = {&s->left[i], &s->left[k]};
     struct choice c = {.size = 2, .row = {i, k}};
     c.level = s->level[i] > s->level[k] ? s->level[i] : s->level[k];
     double width = (double)l[0]->n;
     for (size_t q = 0; q < l[1]->n; q++)
-        width += !find(l[0], l[1]->e[q].column);
+        width += !ct_shadow_find(l[0], l[1]->e[q].column);
     for (size_t p = 0; p < l[0]->n; p++)
         for (size_t q = 0; q < l[1]->n; q++) {
             c.column[0] = l[0]->e[p].column;
@@ -222,7 +183,7 @@ static void try_largest(const struct elimination *s, struct choice *best)
     for (int i = 0; i < (int)s->p->rank; i++) {
         const double size = s->is_done[i] ? 0 : row_size(s, i);
         for (size_t k = 0; size > 0 && k < s->left[i].n; k++) {
-            const struct entry *e = &s->left[i].e[k];
+            const struct ct_shadow_entry *e = &s->left[i].e[k];
             const double strength = fabs(e->number) / size;
             if (is_open(s, e) && strength > best->strength)
                 *best = (struct choice){
@@ -256,9 +217,9 @@ static struct choice choose(struct elimination *s)
 
 // ---- elimination --------------------------------------------------------------------------------------
 
-static ct_ex value_at(const struct line *l, int column)
+static ct_ex value_at(const struct ct_shadow_row *l, int column)
 {
-    const struct entry *e = find(l, column);
+    const struct ct_shadow_entry *e = ct_shadow_find(l, column);
     return e ? e->value : CT_EX_ZERO;
 }
 
@@ -275,7 +236,7 @@ static ct_ex add_product(struct ct_exs *x, ct_ex a, ct_ex b, ct_ex c)
 static void invert(struct elimination *s, struct block *b)
 {
     struct ct_exs *x = s->x;
-    const struct line *l[2] = {&s->left[b->row[0]], &s->left[b->row[b->size - 1]]};
+    const struct ct_shadow_row *l[2] = {&s->left[b->row[0]], &s->left[b->row[b->size - 1]]};
     const int i = b->column[0], k = b->column[b->size - 1];
     if (b->size == 1) {
         b->adjoint[0] = CT_EX_ONE;
@@ -297,7 +258,7 @@ static void invert(struct elimination *s, struct block *b)
 }
 
 // The next column of up to three lines, from places at[] on.
-static int next_column(const struct line *const l[3], const size_t at[3], int n)
+static int next_column(const struct ct_shadow_row *const l[3], const size_t at[3], int n)
 {
     int next = INT32_MAX;
     for (int i = 0; i < n; i++)
@@ -310,10 +271,10 @@ static int next_column(const struct line *const l[3], const size_t at[3], int n)
 static void subtract_rows(struct elimination *s, int row, const struct block *b,
                           const ct_ex *factor, const double *number)
 {
-    const struct line *const l[3]
+    const struct ct_shadow_row *const l[3]
         = {&s->left[row], &s->left[b->row[0]], &s->left[b->row[b->size - 1]]};
     const int n = 1 + b->size;
-    struct line sum = {0};
+    struct ct_shadow_row sum = {0};
     size_t at[3] = {0};
     for (int c; (c = next_column(l, at, n)) != INT32_MAX;) {
         ct_ex v = CT_EX_ZERO;
@@ -321,12 +282,12 @@ static void subtract_rows(struct elimination *s, int row, const struct block *b,
         for (int i = 0; i < n; i++) {
             if (at[i] >= l[i]->n || l[i]->e[at[i]].column != c)
                 continue;
-            const struct entry *e = &l[i]->e[at[i]++];
+            const struct ct_shadow_entry *e = &l[i]->e[at[i]++];
             v = i ? sub_product(s->x, v, factor[i - 1], e->value) : e->value;
             v_number = i ? v_number - number[i - 1] * e->number : e->number;
         }
         if (c != b->column[0] && c != b->column[b->size - 1] && !ct_ex_is_zero(v))
-            put(s->a, &sum, c, v, v_number);
+            ct_shadow_put(s->a, &sum, c, v, v_number);
     }
     s->left[row] = sum;
 }
@@ -334,12 +295,12 @@ static void subtract_rows(struct elimination *s, int row, const struct block *b,
 static void eliminate_row(struct elimination *s, int row, int k)
 {
     const struct block *b = &s->block[k];
-    const struct line *l = &s->left[row];
+    const struct ct_shadow_row *l = &s->left[row];
     struct step step = {.row = row, .block = k};
     double number[2] = {0};
     bool is_needed = false;
     for (int i = 0; i < b->size; i++)
-        is_needed |= find(l, b->column[i]) != NULL;
+        is_needed |= ct_shadow_find(l, b->column[i]) != NULL;
     if (!is_needed)
         return;
     for (int i = 0; i < b->size; i++) {
@@ -399,7 +360,7 @@ static void solve_block(struct elimination *s, const struct block *b, int k, con
 {
     ct_ex rest[2] = {CT_EX_ZERO, CT_EX_ZERO};
     for (int i = 0; i < b->size; i++) {
-        const struct line *l = &s->left[b->row[i]];
+        const struct ct_shadow_row *l = &s->left[b->row[i]];
         rest[i] = t[i];
         for (size_t q = l->n; q-- > 0;)
             if (s->block_of[l->e[q].column] > k)
@@ -444,7 +405,7 @@ static void solve_columns(struct elimination *s, const ct_ex *w, ct_ex *lam)
             lam[b->row[i]] = ct_ex_div(x, v, b->pivot);
         }
         for (int i = 0; i < b->size; i++) {
-            const struct line *l = &s->left[b->row[i]];
+            const struct ct_shadow_row *l = &s->left[b->row[i]];
             for (size_t q = 0; q < l->n; q++)
                 if (s->block_of[l->e[q].column] > (int)k)
                     t[l->e[q].column]
@@ -462,8 +423,8 @@ static void solve_columns(struct elimination *s, const ct_ex *w, ct_ex *lam)
 // ---- reduced equations ------------------------------------------------------------------------------------------
 
 // y (out) = A x for a sparse matrix of n lines.
-static void apply(struct elimination *s, const struct line *A, size_t n, const ct_ex *x,
-                  ct_ex *y)
+static void apply(struct elimination *s, const struct ct_shadow_row *A, size_t n,
+                  const ct_ex *x, ct_ex *y)
 {
     for (size_t i = 0; i < n; i++) {
         y[i] = CT_EX_ZERO;
@@ -602,11 +563,30 @@ static void solve_reduced(struct elimination *s, ct_ex *z)
     }
 }
 
+// The same from the factors of all equations.
+static void solve_whole(struct elimination *s, const ct_ex *Q, const ct_ex *g, ct_ex *a,
+                        ct_ex *lam)
+{
+    const size_t nu = s->e->nu, m = s->p->rank;
+    ct_ex *b = CT_NEWN(s->a, ct_ex, nu + m + 1), *y = CT_NEWN(s->a, ct_ex, nu + m + 1);
+    memcpy(b, Q, nu * sizeof *b);
+    if (m)
+        memcpy(b + nu, g, m * sizeof *b);
+    ct_kkt_solve(s->whole, s->x, b, y);
+    memcpy(a, y, nu * sizeof *a);
+    for (size_t i = 0; i < m; i++)
+        lam[i] = ct_ex_neg(s->x, y[nu + i]);
+}
+
 // a (nu, out), lam (rank, out): M a - J' lam = Q (nu), J a = g (rank; lost).
 static void solve(struct elimination *s, const ct_ex *Q, ct_ex *g, ct_ex *a, ct_ex *lam)
 {
     struct ct_exs *x = s->x;
     const size_t nu = s->e->nu, f = s->p->nfree;
+    if (s->whole) {
+        solve_whole(s, Q, g, a, lam);
+        return;
+    }
     ct_ex *c = CT_NEWN(s->a, ct_ex, nu + 1), *w = CT_NEWN(s->a, ct_ex, nu + 1);
     ct_ex *z = CT_NEWN(s->a, ct_ex, f + 1), *term = CT_NEWN(s->a, ct_ex, nu + 1);
     solve_rows(s, g, c);
@@ -654,9 +634,9 @@ static struct elimination create(struct ct_arena *a, struct ct_exs *x,
     s.row = CT_NEWN(a, int, m + 1);
     memcpy(s.row, p->row, m * sizeof *s.row);
     qsort(s.row, m, sizeof *s.row, ascending);
-    s.J = CT_NEWN(a, struct line, m + 1);
-    s.left = CT_NEWN(a, struct line, m + 1);
-    s.M = CT_NEWN(a, struct line, e->nu + 1);
+    s.J = CT_NEWN(a, struct ct_shadow_row, m + 1);
+    s.left = CT_NEWN(a, struct ct_shadow_row, m + 1);
+    s.M = CT_NEWN(a, struct ct_shadow_row, e->nu + 1);
     s.is_done = CT_NEWN(a, bool, m + 1);
     s.level = CT_NEWN(a, int, m + 1);
     s.count = CT_NEWN(a, int, e->nu + 1);
@@ -678,6 +658,10 @@ static void list_pivots(const struct elimination *s, struct ct_closed *c)
             c->scale[c->npivot] = s->block[k].strength / fabs(s->block[k].pivot_number);
             c->pivot[c->npivot++] = s->block[k].pivot;
         }
+    if (s->whole) {
+        c->nfree = 0;
+        return;
+    }
     c->inertia = CT_NEWN(s->a, ct_ex, c->nfree + 1);
     for (size_t j = 0; j < c->nfree; j++)
         c->inertia[j] = s->S[j + c->nfree * j];
@@ -721,18 +705,53 @@ static void derive_projections(struct elimination *s, struct ct_closed *c)
     solve_rows(s, r, c->du);
 }
 
+// Operations of the better order, which may be wanted.
+static double predict(const struct elimination *s, struct ct_arena *scratch,
+                      enum ct_kkt_order *best)
+{
+    double least = INFINITY;
+    for (int order = 0; order < CT_KKT_NORDER; order++) {
+        const struct ct_kkt *k = ct_kkt_factor(scratch, NULL, s->M, s->e->nu, s->J, s->p->rank,
+                                               (enum ct_kkt_order)order, 0);
+        if (!k || k->operations >= least)
+            continue;
+        least = k->operations;
+        if (best)
+            *best = (enum ct_kkt_order)order;
+    }
+    return least;
+}
+
+double ct_closed_predict(struct ct_arena *scratch, struct ct_exs *x,
+                         const struct ct_equations *e, const struct ct_partition *p,
+                         const double *M, const double *J)
+{
+    struct elimination s = create(scratch, x, e, p);
+    read_matrices(&s, M, J);
+    return predict(&s, scratch, NULL);
+}
+
 struct ct_closed *ct_closed_derive(struct ct_arena *a, struct ct_exs *x,
                                    const struct ct_equations *e, const struct ct_partition *p,
-                                   const double *J, size_t most_nodes)
+                                   const double *M, const double *J, enum ct_closed_way way,
+                                   size_t most_nodes)
 {
     struct elimination s = create(a, x, e, p);
     const size_t most = x->nnode + most_nodes, nu = e->nu, m = p->rank;
-    read_matrices(&s, J);
+    read_matrices(&s, M, J);
     if (!eliminate(&s, most))
         return NULL;
-    derive_B(&s);
-    if (!reduce(&s, most))
-        return NULL;
+    if (way == CT_CLOSED_WHOLE) {
+        enum ct_kkt_order order = CT_KKT_DEGREE;
+        predict(&s, a, &order);
+        s.whole = ct_kkt_factor(a, x, s.M, nu, s.J, m, order, most);
+        if (!s.whole)
+            return NULL;
+    } else {
+        derive_B(&s);
+        if (!reduce(&s, most))
+            return NULL;
+    }
     struct ct_closed *c = CT_NEW(a, struct ct_closed);
     *c = (struct ct_closed){.rank = m, .nfree = p->nfree, .row = s.row};
     ct_ex **const speeds[] = {&c->a, &c->better_a, &c->dq, &c->du};

@@ -24,21 +24,30 @@ struct ct_partition {
 struct ct_closed {
     size_t rank, npivot, nfree, nB;
     int *row;     // kept rows, ascending: what lam counts by
-    ct_ex *pivot; // of each block that is not constant: an entry, or a determinant
+    ct_ex *pivot; // of each block of J_d that is not constant: an entry, or a determinant
     double *
         scale; // pivot to strength: its size against the largest entries of its rows, 1 at most
-    ct_ex *inertia;  // pivots of B' M B (nfree), positive
-    ct_ex *B;        // its entries that are not zero by structure
+    ct_ex *inertia;  // pivots of B' M B (nfree), positive; as one system: none
+    ct_ex *B;        // its entries that are not zero by structure; as one system: none
     ct_ex *a, *lam;  // u' (nu), multipliers (rank)
     ct_ex *residual; // M u' - Q - J' lam, J u' + gam  (nu + rank)
     ct_ex *better_a, *better_lam, *better_residual; // after one step of refinement
     ct_ex *dq, *du; // -J_d^-1 Phi, -J_d^-1 v (nu, zero in the independent places)
 };
 
-/// Derive into x, a copy of e->x, with at most so many new nodes. J (nJ): values of e->J at the state of
+/// Accelerations by embedding, as above, or from [M J'; J 0] as one system (kkt.h). Projections take J_d in both.
+enum ct_closed_way { CT_CLOSED_EMBEDDING, CT_CLOSED_WHOLE };
+
+/// Derive into x, a copy of e->x, with at most so many new nodes. M (nM), J (nJ): values of e->M, e->J at the state of
 /// the shadow. The result lives in a. NULL if J_d is singular there or the nodes do not suffice.
 struct ct_closed *ct_closed_derive(struct ct_arena *a, struct ct_exs *x,
                                    const struct ct_equations *e, const struct ct_partition *p,
-                                   const double *J, size_t most_nodes);
+                                   const double *M, const double *J, enum ct_closed_way way,
+                                   size_t most_nodes);
+/// Operations that the solution as one system would take beside M, Q, J and gam, by the pattern; INFINITY if it is
+/// singular.
+double ct_closed_predict(struct ct_arena *scratch, struct ct_exs *x,
+                         const struct ct_equations *e, const struct ct_partition *p,
+                         const double *M, const double *J);
 
 #endif

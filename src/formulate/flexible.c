@@ -346,6 +346,14 @@ void ct_flexible_unknowns(struct ct_build *b, struct ct_flexible *f)
         run_chain(b, f);
 }
 
+bool ct_flexible_is_carried(const struct ct_flexible *f)
+{
+    bool is_nodal = !f->beam->modes;
+    for (int i = 0; i < NKIND * (f->beam->nelement + 1); i++)
+        is_nodal = is_nodal && f->freedom[i].npart <= 1;
+    return is_nodal && f->kinematics == CT_AXIAL_CHAIN;
+}
+
 // ---- stations -----------------------------------------------------------------------------------------------
 
 ct_ex ct_element_field(struct ct_build *b, const struct ct_element *e,
@@ -443,8 +451,8 @@ static void add_partial(struct ct_build *b, const struct ct_flexible *f, int e, 
     }
 }
 
-void ct_station_partials(struct ct_build *b, const struct ct_flexible *f,
-                         const struct ct_station *s, ct_ex3 *slide, ct_ex3 *turn)
+void ct_station_own_partials(struct ct_build *b, const struct ct_flexible *f,
+                             const struct ct_station *s, ct_ex3 *slide, ct_ex3 *turn)
 {
     struct ct_exs *x = b->x;
     const struct ct_element *self = &f->element[s->element];
@@ -466,6 +474,12 @@ void ct_station_partials(struct ct_build *b, const struct ct_flexible *f,
         add_partial(b, f, s->element, j, d, slide);
         add_partial(b, f, s->element, j, t, turn);
     }
+}
+
+void ct_station_partials(struct ct_build *b, const struct ct_flexible *f,
+                         const struct ct_station *s, ct_ex3 *slide, ct_ex3 *turn)
+{
+    ct_station_own_partials(b, f, s, slide, turn);
     for (int e = 0; e < s->element && s->axial == CT_AXIAL_CHAIN; e++)
         for (int j = 2; j < CT_PLACE_DOF; j++)
             add_partial(b, f, e, j, (ct_ex3){{f->element[e].g[j], CT_EX_ZERO, CT_EX_ZERO}},

@@ -104,6 +104,11 @@ void ct_flexible_station(struct ct_build *b, const struct ct_flexible *f, ct_ex 
 /// Slides (m = 0 ... nelastic-1, beam axes) and turns of a station by elastic coordinate.
 void ct_station_partials(struct ct_build *b, const struct ct_flexible *f,
                          const struct ct_station *s, ct_ex3 *slide, ct_ex3 *turn);
+/// The same without what the elements before its own do in a CHAIN.
+void ct_station_own_partials(struct ct_build *b, const struct ct_flexible *f,
+                             const struct ct_station *s, ct_ex3 *slide, ct_ex3 *turn);
+/// CHAIN in coordinates of nodes: an element sees its own nodes and the foreshortening at its start, nothing else.
+bool ct_flexible_is_carried(const struct ct_flexible *f);
 /// Parts of element e's dof j: *sign times those of the freedom; NULL if it is fixed.
 const struct ct_freedom *ct_dof_freedom(const struct ct_flexible *f, int e, int j, int *sign);
 /// sum over the dofs in [from, to) of the shape times the value (rate, ...) of each.

@@ -149,6 +149,7 @@ struct search {
     const struct ct_model *model;
     const struct ct_formulate_options *options;
     struct ct_arena *owner; // of trial generations
+    bool stays_open;        // there is a pair without rows, and none with rows is wanted
 };
 
 // The exact count of a trial generation; nothing of it is kept.
@@ -162,7 +163,7 @@ static double pair_cost(void *data, const struct ct_tree *T, const struct ct_tre
     b->T = *T;
     b->R = *R;
     double cost = INFINITY;
-    if (derive(b, true)) {
+    if (derive(b, true) && !(s->stays_open && b->eqs->nrow)) {
         ct_dynamics_derive(b);
         cost = equations_cost(scratch, b->eqs);
     }
@@ -432,8 +433,13 @@ static bool choose_trees(struct ct_build *b, const struct search *s,
         return false;
     if (o->tree == CT_TREE_AUTO && (is_open(b, &p) || is_long_chain(b, &p)))
         report->how = "least weight; there are no loops to cut";
-    else if (o->tree == CT_TREE_AUTO && !o->measure_all)
-        improve(b, s, &r, &p, report);
+    else if (o->tree == CT_TREE_AUTO && !o->measure_all) {
+        struct search of_trees = *s;
+        int nrow, nu;
+        count_weights(b, &p, &nrow, &nu);
+        of_trees.stays_open = nrow == 0;
+        improve(b, &of_trees, &r, &p, report);
+    }
     if (!ct_tree_from_branches(b->arena, &b->graph, p.trans, &b->T))
         return ct_error(b->ctx, (struct ct_mark){0}, CT_E_TREE,
                         "tree: the translational branches are no spanning tree");

@@ -120,8 +120,9 @@ static double least_matrix_cost(struct ct_build *b, const struct ct_members *s)
         const bool is_root = m->beam && s->beam[m->beam - 1].root == (int)i;
         const int own = is_root ? b->flexible[m->beam - 1].nelastic : m->beam ? 0 : m->nfree;
         above[i] = above[m->parent] + own;
-        for (int k = 0; k < own; k++) { // within a beam there may be a band
-            const double d = above[m->parent] + (m->beam ? 0 : k);
+        const bool is_band = m->beam && b->flexible[m->beam - 1].kinematics != CT_AXIAL_CHAIN;
+        for (int k = 0; k < own; k++) { // within a band more may be zero
+            const double d = above[m->parent] + (is_band ? 0 : k);
             cost += d * d + 6 * d + 5;
             nonzeros += d + 1;
         }

@@ -29,6 +29,21 @@ double ct_run_next_event(void *user, double t)
     return low < r->nevent ? r->event[low] : INFINITY;
 }
 
+bool ct_run_tables_reach(struct ct_run *r, double t)
+{
+    const struct ct_exs *x = r->e->x;
+    for (size_t k = 0; k < x->ntable; k++) {
+        const struct ct_table *b = &x->table[k];
+        const double last = b->x[b->n - 1];
+        if (t >= last && t < r->o->duration)
+            return ct_error(r->ctx, (struct ct_mark){.file = NULL}, CT_E_TABLE_END,
+                            "at t = %.9g the run leaves the table '%s', whose column '%s' is "
+                            "known from t = %.9g to %.9g",
+                            t, b->file, b->column, b->x[0], last);
+    }
+    return true;
+}
+
 double ct_run_kinetic_energy(struct ct_run *r, double t, const double *y)
 {
     ct_machine_set(r->m, t, y);
@@ -144,6 +159,8 @@ enum ct_eval ct_run_event(void *user, double t, double *y, const signed char *cr
     memcpy(momentum, m->momentum.out, m->momentum.nout * sizeof *momentum);
     const double kinetic = ct_run_kinetic_energy(r, ct_run_before(r, t), y);
 
+    if (!ct_run_tables_reach(r, t))
+        return CT_EVAL_FATAL;
     // sides: a crossed root tells its own; the rest follow from where the motion leads
     double *mode = m->input + m->at_mode;
     enum ct_eval e = ct_run_rhs(r, t, y, r->dy);

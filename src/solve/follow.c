@@ -107,6 +107,8 @@ static bool pass_event(struct ct_run *r, double t, double *y)
     memcpy(before, m->driver.out, m->driver.nout * sizeof *before);
     const double kinetic = ct_run_kinetic_energy(r, ct_run_before(r, t), y);
     r->pending = ct_run_next_event(r, t);
+    if (!ct_run_tables_reach(r, t))
+        return false;
     ct_modes_start(m, t, y, NULL);
     ct_machine_set(m, t, y);
     ct_program_run(&m->driver, m->input);
@@ -139,6 +141,8 @@ bool ct_run_follow(struct ct_run *r, const struct ct_run_options *o,
     r->next = CT_NEWN(r->arena, double, r->ny);
     r->nevent = ct_time_events(r->arena, r->m, 0, o->duration, &r->event);
     r->pending = ct_run_next_event(r, 0);
+    if (!ct_run_tables_reach(r, 0))
+        return false;
     ct_modes_start(r->m, 0, r->y, NULL);
     if (!check_driven(r))
         return false;

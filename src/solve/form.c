@@ -1,6 +1,7 @@
 // See form.h.
 #include "solve/form.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -11,7 +12,11 @@ enum { LEAST_SPARSE = 100 };
 // Beyond so many nodes code leaves the caches.
 static const double most_nodes = 400000;
 // Checks and projections take up to so many times the nodes of the solution.
-static const double whole = 4;
+static const double programs = 4;
+// Solving all equations as one system must promise so much to be tried.
+static const double worth = 0.9;
+// Beyond so many unknowns finding its order takes too long.
+enum { MOST_WHOLE = 3000 };
 
 const double ct_form_weakest = 1e-3;
 
@@ -53,10 +58,14 @@ struct ct_form *ct_form_create(struct ct_arena *a, struct ct_machine *m,
     struct ct_form *sparse = NULL;
     if (m->nu + p->rank >= LEAST_SPARSE)
         sparse = ct_form_sparse.create(a, m, p, 0);
-    const double most = sparse ? smaller(dense, sparse->cost) : dense;
-    struct ct_form *unrolled
-        = ct_form_unrolled.create(a, m, p, smaller(whole * most, most_nodes));
-    struct ct_form *f = cheaper(m, sparse, unrolled);
+    const double predicted
+        = p->nfree && m->nu + p->rank <= MOST_WHOLE ? ct_form_predict_whole(a, m, p) : INFINITY;
+    const double most = smaller(predicted, sparse ? smaller(dense, sparse->cost) : dense);
+    struct ct_form *f = cheaper(
+        m, sparse, ct_form_unrolled.create(a, m, p, smaller(programs * most, most_nodes)));
+    if (predicted < worth * (f ? f->cost : dense))
+        f = cheaper(m, f,
+                    ct_form_whole.create(a, m, p, smaller(programs * predicted, most_nodes)));
     if (!f || f->cost <= dense)
         return f;
     ct_form_destroy(m, f);

@@ -1,6 +1,7 @@
 // Forms: ways to solve a closed system for one choice of rows and columns without seeking pivots again.
 //
 //     unrolled   programs made by elimination on the expressions               (formulate/elimination.h)
+//     unrolled as one system   the same of [M J'; J 0]                         (formulate/kkt.h)
 //     sparse     [M J'; J 0] and J_d as sparse matrices, factored with the pivots of before
 //
 // The order of pivots is fixed, so it is watched: the strength of a form is that of its weakest pivot against
@@ -39,7 +40,7 @@ struct ct_form_kind {
     void (*destroy)(struct ct_form *f, struct ct_machine *m); // may be NULL
 };
 
-extern const struct ct_form_kind ct_form_unrolled, ct_form_sparse;
+extern const struct ct_form_kind ct_form_unrolled, ct_form_whole, ct_form_sparse;
 
 /// The cheapest form of a partition by counts of operations, its order of pivots sought at the machine's input, after
 /// ct_machine_motion. NULL if the solve by dense matrices is cheaper: operations [multiplications or
@@ -76,6 +77,10 @@ struct ct_form_code {
     bool has_power;        // behind the pivots of `solved`
 };
 struct ct_form_code ct_form_code(const struct ct_form *f);
+
+/// Operations that `whole` is predicted to take, M, Q, J and gam included, after ct_machine_motion.
+double ct_form_predict_whole(struct ct_arena *a, const struct ct_machine *m,
+                             const struct ct_partition *p);
 
 // ---- for the kinds --------------------------------------------------------------------------------
 

@@ -138,9 +138,13 @@ size_t ct_time_events(struct ct_arena *a, struct ct_machine *m, double t0, doubl
         if (m->e->mode[i].is_time)
             find_changes(m, i, t0, t1, &list);
     for (size_t k = 0; k < x->ntable; k++)
-        for (size_t i = 0; i < x->table[k].n && !x->table[k].m; i++)
-            if (x->table[k].x[i] > t0 && x->table[k].x[i] <= t1)
-                CT_PUSH(a, list.t, list.n, list.cap, x->table[k].x[i]);
+        for (size_t i = 0; i < x->table[k].n; i++) {
+            const double at = x->table[k].x[i];
+            const bool is_kink = !x->table[k].m && at <= t1;
+            const bool is_end = i + 1 == x->table[k].n && at < t1;
+            if (at > t0 && (is_kink || is_end))
+                CT_PUSH(a, list.t, list.n, list.cap, at);
+        }
     if (list.n)
         qsort(list.t, list.n, sizeof *list.t, ascending);
     size_t kept = 0;

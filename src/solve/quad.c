@@ -14,74 +14,22 @@ enum { COLUMNS = 14 }; // of the extrapolation: order 28 at most
 
 // ---- evaluation -----------------------------------------------------------------------------------------
 
-static quad sign_of(quad a)
-{
-    return (a > 0) - (a < 0);
-}
-
 static quad apply(uint32_t op, quad a, quad b, quad c)
 {
     switch (op) {
-    case CT_OP_ADD:
-        return a + b;
-    case CT_OP_SUB:
-        return a - b;
-    case CT_OP_MUL:
-        return a * b;
-    case CT_OP_DIV:
-        return a / b;
-    case CT_OP_NEG:
-        return -a;
-    case CT_OP_POW:
-        return powq(a, b);
-    case CT_OP_SQRT:
-        return sqrtq(a);
-    case CT_OP_SIN:
+#define FN(function) function##q
+#define NO_VALUE nanq("") // tables are not offered
+#define OP(op, narg, name, value)                                                              \
+    case op:                                                                                   \
+        return value;
+#include "expr/ops.def"
+#undef OP
+#undef NO_VALUE
+#undef FN
     case CT_OP_ANGLE_SIN:
         return sinq(a);
-    case CT_OP_COS:
     case CT_OP_ANGLE_COS:
         return cosq(a);
-    case CT_OP_TAN:
-        return tanq(a);
-    case CT_OP_ASIN:
-        return asinq(a);
-    case CT_OP_ACOS:
-        return acosq(a);
-    case CT_OP_ATAN:
-        return atanq(a);
-    case CT_OP_ATAN2:
-        return atan2q(a, b);
-    case CT_OP_SINH:
-        return sinhq(a);
-    case CT_OP_COSH:
-        return coshq(a);
-    case CT_OP_TANH:
-        return tanhq(a);
-    case CT_OP_EXP:
-        return expq(a);
-    case CT_OP_LOG:
-        return logq(a);
-    case CT_OP_ABS:
-        return fabsq(a);
-    case CT_OP_SIGN:
-        return sign_of(a);
-    case CT_OP_MIN:
-        return a < b ? a : b;
-    case CT_OP_MAX:
-        return a > b ? a : b;
-    case CT_OP_LT:
-        return a < b;
-    case CT_OP_LE:
-        return a <= b;
-    case CT_OP_GT:
-        return a > b;
-    case CT_OP_GE:
-        return a >= b;
-    case CT_OP_EQ:
-        return a == b;
-    case CT_OP_IF:
-        return a != 0 ? b : c;
     case CT_OP_FMA:
         return a * b + c;
     case CT_OP_FMS:
@@ -89,7 +37,7 @@ static quad apply(uint32_t op, quad a, quad b, quad c)
     case CT_OP_FNMA:
         return c - a * b;
     default:
-        return nanq(""); // tables are not offered
+        return nanq("");
     }
 }
 

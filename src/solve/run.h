@@ -77,6 +77,8 @@ double ct_run_sample_time(const struct ct_run_options *o, size_t i);
 
 // Events of ct_problem, user being the run.
 double ct_run_next_event(void *user, double t);
+/// Do the tables tell what follows t? An error if not (E310).
+bool ct_run_tables_reach(struct ct_run *r, double t);
 enum ct_eval ct_run_root(void *user, double t, const double *y, double *g);
 enum ct_eval ct_run_event(void *user, double t, double *y, const signed char *crossed,
                           bool is_time);

@@ -465,6 +465,8 @@ bool ct_run_simulate(struct ct_run *r, const struct ct_run_options *o,
     r->report = report;
     r->nevent = ct_time_events(r->arena, r->m, 0, o->duration, &r->event);
     r->pending = ct_run_next_event(r, 0);
+    if (!ct_run_tables_reach(r, 0))
+        return false;
     ct_modes_start(r->m, 0, r->y, r->dy);
     ct_run_note_turning(r, 0, r->y);
     if (ct_run_refuse_stuck(r, 0, r->y) == CT_EVAL_FATAL)

@@ -145,7 +145,7 @@ static void check(struct ct_form *form, struct ct_machine *m)
     ct_program_run(&f->checked, m->input);
     form->left = relative(f, r, m->nu, Q);
     form->left_better = relative(f, better, m->nu, Q);
-    form->kappa = largest(Q + n, f->c->nB);
+    form->kappa = form->kind == &ct_form_whole ? NAN : largest(Q + n, f->c->nB);
 }
 
 static double close(struct ct_form *form, struct ct_machine *m)
@@ -164,17 +164,20 @@ static void destroy(struct ct_form *form, struct ct_machine *m)
 }
 
 static struct ct_form *create(struct ct_arena *a, struct ct_machine *m,
-                              const struct ct_partition *p, double most_nodes)
+                              const struct ct_partition *p, double most_nodes,
+                              const struct ct_form_kind *kind)
 {
     struct ct_arena *own = ct_arena_create_under(a);
     struct unrolled *f = CT_NEW(own, struct unrolled);
     struct ct_exs *x = ct_exs_clone(own, m->e->x);
     const double *J = m->Q + m->nu;
-    f->form = (struct ct_form){.kind = &ct_form_unrolled, .arena = own};
+    f->form = (struct ct_form){.kind = kind, .arena = own};
     ct_form_place(&f->form, p);
     f->M_size = largest(m->motion.out, m->e->nM);
     f->J_size = largest(J, m->e->nJ);
-    f->c = ct_closed_derive(own, x, m->e, p, J, (size_t)most_nodes);
+    f->c = ct_closed_derive(own, x, m->e, p, m->motion.out, J,
+                            kind == &ct_form_whole ? CT_CLOSED_WHOLE : CT_CLOSED_EMBEDDING,
+                            (size_t)most_nodes);
     if (!f->c) {
         ct_arena_destroy(own);
         return NULL;
@@ -186,16 +189,46 @@ static struct ct_form *create(struct ct_arena *a, struct ct_machine *m,
     return &f->form;
 }
 
+static struct ct_form *create_embedded(struct ct_arena *a, struct ct_machine *m,
+                                       const struct ct_partition *p, double most_nodes)
+{
+    return create(a, m, p, most_nodes, &ct_form_unrolled);
+}
+
+static struct ct_form *create_whole(struct ct_arena *a, struct ct_machine *m,
+                                    const struct ct_partition *p, double most_nodes)
+{
+    // where the rows determine all accelerations, they are found without M
+    return p->nfree ? create(a, m, p, most_nodes, &ct_form_whole) : NULL;
+}
+
+double ct_form_predict_whole(struct ct_arena *a, const struct ct_machine *m,
+                             const struct ct_partition *p)
+{
+    struct ct_arena *own = ct_arena_create_under(a);
+    const double solution
+        = ct_closed_predict(own, m->e->x, m->e, p, m->motion.out, m->Q + m->nu);
+    ct_arena_destroy(own);
+    return ct_form_operations(&m->motion) + solution;
+}
+
 const struct ct_form_kind ct_form_unrolled = {.name = "unrolled",
-                                              .create = create,
+                                              .create = create_embedded,
                                               .solve = solve,
                                               .check = check,
                                               .close = close,
                                               .destroy = destroy};
 
+const struct ct_form_kind ct_form_whole = {.name = "unrolled as one system",
+                                           .create = create_whole,
+                                           .solve = solve,
+                                           .check = check,
+                                           .close = close,
+                                           .destroy = destroy};
+
 struct ct_form_code ct_form_code(const struct ct_form *form)
 {
-    if (form->kind != &ct_form_unrolled)
+    if (form->kind != &ct_form_unrolled && form->kind != &ct_form_whole)
         return (struct ct_form_code){0};
     const struct unrolled *f = (const struct unrolled *)form;
     return (struct ct_form_code){f->solved.listing, f->c->nfree, f->c->npivot, f->c->scale,

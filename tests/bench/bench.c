@@ -1135,6 +1135,10 @@ static void all_beams(bool quick)
                {"foreshortened beam in space", {"foreshortening", true, false}},
                {"linear beam in a plane", {"linear", false, false}},
                {"linear beam in space", {"linear", true, false}},
+               {"beam in a plane that does not stretch",
+                {"foreshortening, deformation: [bending-z]", false, false}},
+               {"beam in space that does not stretch",
+                {"foreshortening, deformation: [bending-y, bending-z]", true, false}},
                {"beams welded end to end in a plane", {"foreshortening", false, true}},
                {"beams welded end to end in space", {"foreshortening", true, true}}};
     for (size_t i = 0; i < COUNT(all); i++)

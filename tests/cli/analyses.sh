@@ -33,3 +33,5 @@ d=$SYSTEMS/puma560_driven/model.yaml
 "$COTREE" kinematics "$d" --samples 3 -q && ls model.csv && wc -l <model.csv
 "$COTREE" inverse "$d" --samples 3 -o - -q | cut -d, -f20-26 | head -1
 "$COTREE" inverse "$m"
+echo '-- a free cart under a leaning pole: one rigid-body motion, whatever rounding makes of its double zero'
+"$COTREE" modes "$SYSTEMS/cart_pole/model.yaml" --quiet | sed -n 2p

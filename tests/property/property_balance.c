@@ -1,6 +1,5 @@
 // Newton and Euler for every body: the wrenches of its joints, as they are put out, and of the forces, worked
 // out here from their laws, make up for its d'Alembert wrench.
-#include "tests/property/mechanism.h"
 #include "tests/property/system.h"
 
 static const double tolerance = 1e-9; // solutions of small, well conditioned systems
@@ -371,35 +370,15 @@ static bool system_is_balanced(struct system *s)
 static void bodies_of_shipped_systems_are_balanced(void **state)
 {
     (void)state;
-    bool ok = true;
     chance_start();
-    for (size_t i = 0; i < nshipped; i++) {
-        struct system s;
-        system_open_file(&s, shipped[i]);
-        if (s.model.nbody < 20)
-            ok &= system_is_balanced(&s);
-        system_close(&s);
-    }
-    assert_true(ok);
+    assert_true(holds_for_shipped(system_is_balanced, 20));
 }
 
 static void bodies_of_every_mechanism_are_balanced(void **state)
 {
     (void)state;
-    bool ok = true;
     chance_start();
-    for (size_t i = 0; i < nmechanism; i++)
-        for (unsigned reversed = 0; reversed < (mechanisms[i].is_irreversible ? 1u : 2u);
-             reversed++) {
-            struct system s;
-            struct ct_arena *a = ct_arena_create();
-            system_open_text(&s, mechanisms[i].name,
-                             mechanism_text(a, &mechanisms[i], NULL, reversed * 0xff, false));
-            ok &= system_is_balanced(&s);
-            system_close(&s);
-            ct_arena_destroy(a);
-        }
-    assert_true(ok);
+    assert_true(holds_for_mechanisms(system_is_balanced, 0xff));
 }
 
 int main(void)

@@ -1,6 +1,5 @@
 // Rows of constraints against differences: J and v of phi, gam of v.  (formulation 4.3)
 #include "numeric/dense.h"
-#include "tests/property/mechanism.h"
 #include "tests/property/system.h"
 
 // Central differences with step h err by h^2/6 of the third derivative and eps/h: 1e-9 at 1e-5 and order one;
@@ -159,6 +158,7 @@ static bool system_agrees(struct system *s)
                {"joints, spatial", &by_joints_spatial},
                {"bodies, spatial", &by_bodies_spatial}};
     bool ok = true;
+    system_no_outputs(s);
     for (size_t i = 0; i < COUNT(how); i++) {
         struct variant v;
         if (how[i].o->keep_all && !how[i - 1].o->keep_all)
@@ -193,36 +193,15 @@ static bool system_agrees(struct system *s)
 static void rows_of_shipped_systems_agree_with_differences(void **state)
 {
     (void)state;
-    bool ok = true;
     chance_start();
-    for (size_t i = 0; i < nshipped; i++) {
-        struct system s;
-        system_open_file(&s, shipped[i]);
-        system_no_outputs(&s);
-        ok &= system_agrees(&s);
-        system_close(&s);
-    }
-    assert_true(ok);
+    assert_true(holds_for_shipped(system_agrees, SIZE_MAX));
 }
 
 static void rows_of_every_joint_agree_with_differences(void **state)
 {
     (void)state;
-    bool ok = true;
     chance_start();
-    for (size_t i = 0; i < nmechanism; i++)
-        for (unsigned reversed = 0; reversed < (mechanisms[i].is_irreversible ? 1u : 2u);
-             reversed++) {
-            struct system s;
-            struct ct_arena *a = ct_arena_create();
-            system_open_text(
-                &s, text_of(a, "%s%s", mechanisms[i].name, reversed ? ", reversed" : ""),
-                mechanism_text(a, &mechanisms[i], NULL, reversed * 0xff, false));
-            ok &= system_agrees(&s);
-            system_close(&s);
-            ct_arena_destroy(a);
-        }
-    assert_true(ok);
+    assert_true(holds_for_mechanisms(system_agrees, 0xff));
 }
 
 int main(void)

@@ -1,5 +1,6 @@
 // See system.h.
 #include "tests/property/system.h"
+#include "tests/property/mechanism.h"
 
 #include <stdarg.h>
 
@@ -144,6 +145,35 @@ void system_close(struct system *s)
 {
     ct_arena_destroy(s->ctx.scratch);
     ct_arena_destroy(s->ctx.model);
+}
+
+bool holds_for_shipped(bool (*holds)(struct system *s), size_t most)
+{
+    bool ok = true;
+    for (size_t i = 0; i < nshipped; i++) {
+        struct system s;
+        system_open_file(&s, shipped[i]);
+        if (s.model.nbody < most)
+            ok &= holds(&s);
+        system_close(&s);
+    }
+    return ok;
+}
+
+bool holds_for_mechanisms(bool (*holds)(struct system *s), unsigned reversed)
+{
+    bool ok = true;
+    for (size_t i = 0; i < nmechanism; i++)
+        for (unsigned k = 0; k < (mechanisms[i].is_irreversible ? 1u : 2u); k++) {
+            struct system s;
+            struct ct_arena *a = ct_arena_create();
+            system_open_text(&s, text_of(a, "%s%s", mechanisms[i].name, k ? ", reversed" : ""),
+                             mechanism_text(a, &mechanisms[i], NULL, k * reversed, false));
+            ok &= holds(&s);
+            system_close(&s);
+            ct_arena_destroy(a);
+        }
+    return ok;
 }
 
 void system_no_outputs(struct system *s)

@@ -51,6 +51,10 @@ void system_close(struct system *s);
 /// All model files of systems/, relative to the source root.
 extern const char *const shipped[];
 extern const size_t nshipped;
+/// Does something hold for each of them with fewer than `most` bodies?
+bool holds_for_shipped(bool (*holds)(struct system *s), size_t most);
+/// For each mechanism of mechanism.h, and for all but irreversible ones with the joints in `reversed` exchanged?
+bool holds_for_mechanisms(bool (*holds)(struct system *s), unsigned reversed);
 
 /// Replace the outputs by one signal more.
 void system_output(struct system *s, const char *signal);
