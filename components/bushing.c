@@ -104,4 +104,5 @@ const struct ct_component_class ct_component_bushing = {
     .through = "F = -k*d - c*d', T = -k*phi - c*w in axes of `from`",
     .apply = apply,
     .signal = signal,
+    .signals = "force.x, .y, .z and torque.x, .y, .z",
 };

@@ -33,4 +33,5 @@ const struct ct_component_class ct_component_force = {
     .through = "F = value, T = 0",
     .apply = apply,
     .signal = signal,
+    .signals = "force.x, .y, .z",
 };

@@ -85,4 +85,5 @@ const struct ct_component_class ct_component_spring = {
     .through = "F = -(stiffness*(|d| - length) + damping*|d|')*d/|d|, T = 0",
     .apply = apply,
     .signal = signal,
+    .signals = "force, length and rate",
 };

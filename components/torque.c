@@ -34,4 +34,5 @@ const struct ct_component_class ct_component_torque = {
     .through = "F = 0, T = value",
     .apply = apply,
     .signal = signal,
+    .signals = "torque.x, .y, .z",
 };

@@ -81,6 +81,9 @@ title() {
     R15_M1e-3) echo "light cart, 1 g, 10 s" ;;
     R15_M1e-6) echo "light cart, 1 mg, 10 s" ;;
     R16) echo "six-axis arm, 2 s" ;;
+    R04_2000s) echo "pendulum, 2000 s" ;;
+    R05_N2_20s) echo "two four-bars, 20 s" ;;
+    R16_5s) echo "six-axis arm, 5 s" ;;
     R17a) echo "double pendulum, 10 s" ;;
     R17a_20s) echo "double pendulum, 20 s" ;;
     R17b) echo "double pendulum, middle mass 1 mg, 2 s" ;;
@@ -98,7 +101,7 @@ title() {
 asked() {
     echo "| case | 1e-4 | 1e-6 | 1e-8 | 1e-10 | method |"
     echo "| --- | --- | --- | --- | --- | --- |"
-    for case in $(cut -d' ' -f1 "$reference/asked.txt") R17a_20s R17b; do
+    for case in $(cut -d' ' -f1 "$reference/asked.txt") R17a_20s R17b R04_2000s R05_N2_20s R16_5s; do
         line="| $(title "$case") ($case)"
         methods=
         for T in 1e-4 1e-6 1e-8 1e-10; do
@@ -210,21 +213,88 @@ elements() {
 
 # Errors of the frame: against the exact beam.
 frames() {
-    echo "| frames | elements of each | largest lag [m] | error | seconds |"
-    echo "| --- | --- | --- | --- | --- |"
+    echo "| frames | elements of each | clamped: largest lag [m] | error | seconds | on the chord: lag [m] | error |"
+    echo "| --- | --- | --- | --- | --- | --- | --- |"
     while read -r k n; do
-        "$root/systems/spin_up_welded/generate.sh" "$k" "$n" >"$work/beam.yaml"
-        run "$work/beam.yaml" --until 6.76184525385 --samples 2
-        awk -F, -v k="$k" -v n="$n" -v seconds="$(value integrate)" '
-            NR == 1 { for (i = 1; i <= NF; i++) if ($i == "across") column = i }
-            { v = $column }
-            END { printf "| %d | %d | %.9f | %.1e | %.2g |\n", k, n, v, v / -0.573786796554 - 1, seconds }' "$work/result.csv"
+        printf '| %d | %d ' "$k" "$n"
+        for frame in clamped chord; do
+            "$root/systems/spin_up_welded/generate.sh" "$k" "$n" |
+                sed "s/formulation: foreshortening/frame: $frame\n    &/" >"$work/beam.yaml"
+            run "$work/beam.yaml" --until 6.76184525385 --samples 2
+            awk -F, -v seconds="$(value integrate)" -v frame="$frame" '
+                function size(x) { return x < 0 ? -x : x }
+                NR == 1 { for (i = 1; i <= NF; i++) if ($i == "across") column = i }
+                { v = $column }
+                END {
+                    printf "| %.9f | %.1e ", v, size(v / -0.573786796554 - 1)
+                    if (frame == "clamped") printf "| %.2g ", seconds
+                }' "$work/result.csv"
+        done
+        echo "|"
     done <<'END'
 1 10
 2 6
 4 4
 8 3
 END
+}
+
+# halving CASE SIZE UNTIL COMMAND...: for each N of standard input, of the model that COMMAND N prints, its error against the case and
+# that of the values extrapolated from it and the one before; over SIZE, 0: over the largest value of each column
+halving() {
+    case=$1 common=$2 until=$3
+    shift 3
+    rm -f "$work/before.csv"
+    while read -r n; do
+        "$@" "$n" >"$work/beam.yaml"
+        run "$work/beam.yaml" --until "$until"
+        [ -f "$work/before.csv" ] || cp "$work/result.csv" "$work/before.csv"
+        awk -F, -v n="$n" -v common="$common" '
+            function size(x) { return x < 0 ? -x : x }
+            FNR == 1 { file++; for (i = 1; i <= NF; i++) { if (file == 1) name[i] = $i; of[file, $i] = i }; if (file == 1) n1 = NF; next }
+            file == 1 { rows++; for (i = 1; i <= n1; i++) { want[rows, i] = $i; if (size($i) > most[i]) most[i] = size($i) }; next }
+            {
+                for (r = 1; r <= rows; r++)
+                    if (size($1 - want[r, 1]) < 1e-9) {
+                        at[file, r] = 1
+                        for (i = 2; i <= n1; i++) got[file, r, i] = $(of[file, name[i]])
+                    }
+            }
+            END {
+                for (r = 1; r <= rows; r++)
+                    for (i = 2; i <= n1 && at[3, r]; i++) {
+                        scale = common ? common : most[i]
+                        e = size(got[3, r, i] - want[r, i]) / scale
+                        x = size((4 * got[3, r, i] - got[2, r, i]) / 3 - want[r, i]) / scale
+                        if (e > error) error = e
+                        if (x > best) best = x
+                    }
+                printf "| %d | %.1e | %s |\n", n, error, best == error ? "" : sprintf("%.1e", best)
+            }' "$reference/$case.reference.csv" "$work/before.csv" "$work/result.csv"
+        cp "$work/result.csv" "$work/before.csv"
+    done
+}
+
+cantilever() {
+    "$root/systems/right_angle_cantilever/generate.sh" "$1" 1
+}
+
+spatial() {
+    echo "| frames in each leg | error | extrapolated |"
+    echo "| --- | --- | --- |"
+    printf '1\n2\n4\n8\n' | halving R11_K4 10 3 cantilever
+}
+
+with_shear() {
+    sed -e "s/elements: .*/elements: $1/" \
+        -e 's|^    type: beam|    type: beam\n    theory: timoshenko\n    integration: reduced\n    G: E/3\n    shear_factor: 1|' \
+        "$reference/R09_K4.yaml"
+}
+
+shear() {
+    echo "| elements of each frame | error | extrapolated |"
+    echo "| --- | --- | --- |"
+    printf '1\n2\n4\n8\n' | halving R09_K4 0 7.5 with_shear
 }
 
 # ---- the page ------------------------------------------------------------------------------------------------
@@ -236,6 +306,8 @@ lost >"$work/lost.md"
 figures >"$work/figures.md"
 elements >"$work/elements.md"
 frames >"$work/frames.md"
+spatial >"$work/spatial.md"
+shear >"$work/shear.md"
 awk -v folder="$work" -v processor="${processor:-an unknown processor}" '
     /^@[a-z]*@$/ {
         file = folder "/" substr($0, 2, length($0) - 2) ".md"

@@ -52,29 +52,45 @@ static void print_plain(const char *text, FILE *out)
     }
 }
 
+// Of a long line so much is shown, and so much of it before the column.
+enum { EXCERPT = 250, EXCERPT_BEFORE = 60 };
+
+static bool skip_lines(FILE *f, int n)
+{
+    for (int c = 0; n > 0 && c != EOF; n -= c == '\n')
+        c = getc(f);
+    return n == 0;
+}
+
+static bool is_end_of_line(int c)
+{
+    return c == EOF || c == '\n' || c == '\r';
+}
+
 // The line of a file with a caret under the column; silent when the file cannot be read again.
 static void print_source_line(struct ct_mark m, FILE *out)
 {
     FILE *f = fopen(m.file, "r");
     if (!f)
         return;
-    char line[256];
-    for (int i = 0; fgets(line, sizeof line, f);) {
-        const size_t n = strlen(line);
-        const bool whole = n && line[n - 1] == '\n';
-        if (i == m.line) {
-            line[strcspn(line, "\r\n")] = 0;
-            if ((size_t)m.column <= strlen(line)) {
-                fprintf(out, "%5d | ", m.line + 1);
-                print_plain(line, out);
-                fputs("\n      | ", out);
-                for (int c = 0; c < m.column; c++)
-                    fputc(line[c] == '\t' ? '\t' : ' ', out);
-                fputs("^\n", out);
-            }
-            break;
-        }
-        i += whole;
+    char line[EXCERPT + 1];
+    const int start = m.column < EXCERPT - EXCERPT_BEFORE ? 0 : m.column - EXCERPT_BEFORE;
+    int n = 0, c = 0;
+    bool is_there = skip_lines(f, m.line);
+    for (int i = 0; is_there && i < start; i++)
+        is_there = !is_end_of_line(getc(f));
+    while (is_there && n < EXCERPT && !is_end_of_line(c = getc(f)))
+        line[n++] = (char)c;
+    line[n] = 0;
+    if (is_there && n > 0 && m.column - start <= n) {
+        const char *const before = start > 0 ? "..." : "";
+        const bool is_cut = n == EXCERPT && !is_end_of_line(getc(f));
+        fprintf(out, "%5d | %s", m.line + 1, before);
+        print_plain(line, out);
+        fprintf(out, "%s\n      | %*s", is_cut ? "..." : "", (int)strlen(before), "");
+        for (int i = 0; i < m.column - start; i++)
+            fputc(line[i] == '\t' ? '\t' : ' ', out);
+        fputs("^\n", out);
     }
     fclose(f);
 }

@@ -1,236 +1,11 @@
-// See x86.h. Two halves: encoding of instructions, and the walk over the listing that decides in which
-// register each value is.
+// See x86.h: the walk over the listing that decides in which register each value is.
 #include "codegen/x86.h"
+#include "codegen/encode.h"
 
 #include <assert.h>
 #include <string.h>
 
 static const uint32_t none = CT_VALUE_NONE;
-
-// ---- encoding ---------------------------------------------------------------------------------
-
-enum { RAX, RCX, RDX, RBX, RSP, RBP, RSI, RDI, R8, R9, R10, R11, R13 = 13, R14, R15, RIP };
-
-// An instruction of the VEX map: prefix, map, opcode.
-struct vex {
-    unsigned char prefix; // 0: none, 1: 66, 2: F3, 3: F2
-    unsigned char map;    // 1: 0F, 2: 0F 38, 3: 0F 3A
-    unsigned char w, op;
-};
-
-// The last operand: a register, or memory at base + disp (base RIP: a constant of the pool).
-struct rm {
-    int reg; // -1: memory
-    int base;
-    int32_t disp;
-};
-
-// Bit patterns that instructions read from behind the code, four times each.
-enum constant { SIGN_BIT, ALL_BUT_SIGN, ONE, NCONSTANT };
-static const uint64_t pattern[NCONSTANT]
-    = {UINT64_C(1) << 63, ~(UINT64_C(1) << 63), UINT64_C(0x3FF) << 52};
-
-struct fixup {
-    size_t at; // of the 32-bit displacement
-    enum constant constant;
-};
-
-struct code {
-    struct ct_arena *arena;
-    unsigned char *byte;
-    size_t n, cap;
-    struct fixup *fixup;
-    size_t nfixup, fixup_cap;
-    int lanes;
-};
-
-static struct rm in_register(int reg)
-{
-    return (struct rm){.reg = reg};
-}
-
-static struct rm in_memory(int base, int32_t disp)
-{
-    return (struct rm){.reg = -1, .base = base, .disp = disp};
-}
-
-static struct rm in_pool(enum constant c)
-{
-    return in_memory(RIP, (int32_t)c);
-}
-
-static void put(struct code *c, unsigned byte)
-{
-    if (c->n == c->cap)
-        c->byte = ct_arena_grow(c->arena, c->byte, c->n, &c->cap, 1);
-    c->byte[c->n++] = (unsigned char)byte;
-}
-
-static void put_number(struct code *c, uint64_t v, int nbyte)
-{
-    for (int i = 0; i < nbyte; i++)
-        put(c, (unsigned)(v >> 8 * i & 0xFF));
-}
-
-// ModRM and displacement. R14 as a base needs no SIB byte, as R12 would.
-static void put_operand(struct code *c, int reg, struct rm rm)
-{
-    const unsigned middle = (unsigned)(reg & 7) << 3;
-    if (rm.reg >= 0) {
-        put(c, 0xC0 | middle | (unsigned)(rm.reg & 7));
-    } else if (rm.base == RIP) {
-        put(c, 0x05 | middle);
-        const struct fixup f = {c->n, (enum constant)rm.disp};
-        CT_PUSH(c->arena, c->fixup, c->nfixup, c->fixup_cap, f);
-        put_number(c, 0, 4);
-    } else if (rm.disp >= -128 && rm.disp < 128) {
-        put(c, 0x40 | middle | (unsigned)(rm.base & 7));
-        put_number(c, (uint64_t)rm.disp, 1);
-    } else {
-        put(c, 0x80 | middle | (unsigned)(rm.base & 7));
-        put_number(c, (uint64_t)rm.disp, 4);
-    }
-}
-
-// op reg, vvvv, rm. `wide`: 256 bits. Instructions with one source have vvvv = 0.
-static void put_vex(struct code *c, struct vex i, bool wide, int reg, int vvvv, struct rm rm)
-{
-    const bool far_reg = reg >= 8,
-               far_rm = rm.reg >= 0 ? rm.reg >= 8 : rm.base >= 8 && rm.base != RIP;
-    const unsigned low = (unsigned)(~vvvv & 15) << 3 | (wide ? 4 : 0) | i.prefix;
-    if (i.map == 1 && !i.w && !far_rm) {
-        put(c, 0xC5);
-        put(c, (far_reg ? 0 : 0x80) | low);
-    } else {
-        put(c, 0xC4);
-        put(c, (far_reg ? 0 : 0x80) | 0x40 | (far_rm ? 0 : 0x20) | i.map);
-        put(c, (i.w ? 0x80 : 0) | low);
-    }
-    put(c, i.op);
-    put_operand(c, reg, rm);
-}
-
-// Arithmetic on one double (xx..SD) or four (xx..PD).
-static void put_arithmetic(struct code *c, unsigned op, int reg, int vvvv, struct rm rm)
-{
-    const struct vex i = {c->lanes == 1 ? 3 : 1, 1, 0, (unsigned char)op};
-    put_vex(c, i, c->lanes > 1, reg, vvvv, rm);
-}
-
-// Bitwise operations exist on whole registers only, so a scalar operand must not be in memory.
-static void put_bitwise(struct code *c, unsigned op, int reg, int vvvv, struct rm rm)
-{
-    put_vex(c, (struct vex){1, 1, 0, (unsigned char)op}, c->lanes > 1, reg, vvvv, rm);
-}
-
-static void put_load(struct code *c, int reg, struct rm from)
-{
-    put_arithmetic(c, 0x10, reg, 0, from); // vmovsd, vmovupd
-}
-
-static void put_store(struct code *c, struct rm to, int reg)
-{
-    put_arithmetic(c, 0x11, reg, 0, to);
-}
-
-static void put_compare(struct code *c, int reg, int vvvv, struct rm rm, unsigned predicate)
-{
-    assert(rm.reg >= 0 || rm.base != RIP); // the byte behind would move a displacement to RIP
-    put_arithmetic(c, 0xC2, reg, vvvv, rm);
-    put(c, predicate);
-}
-
-// reg = mask ? yes : no, by the sign of each number of mask
-static void put_blend(struct code *c, int reg, int no, int yes, int mask)
-{
-    put_vex(c, (struct vex){1, 3, 0, 0x4B}, c->lanes > 1, reg, no, in_register(yes));
-    put(c, (unsigned)mask << 4);
-}
-
-static void put_vzeroupper(struct code *c)
-{
-    if (c->lanes > 1)
-        put_number(c, 0x77F8C5, 3);
-}
-
-static void put_push(struct code *c, int reg)
-{
-    if (reg >= 8)
-        put(c, 0x41);
-    put(c, 0x50 | (unsigned)(reg & 7));
-}
-
-static void put_pop(struct code *c, int reg)
-{
-    if (reg >= 8)
-        put(c, 0x41);
-    put(c, 0x58 | (unsigned)(reg & 7));
-}
-
-// 64-bit to = from, from among the lower eight
-static void put_move(struct code *c, int to, int from)
-{
-    put(c, to >= 8 ? 0x49 : 0x48);
-    put(c, 0x89);
-    put(c, 0xC0 | (unsigned)from << 3 | (unsigned)(to & 7));
-}
-
-static void put_address(struct code *c, int reg, struct rm rm)
-{
-    put(c, rm.base >= 8 ? 0x49 : 0x48);
-    put(c, 0x8D);
-    put_operand(c, reg, rm);
-}
-
-static void put_immediate(struct code *c, int reg, uint64_t v)
-{
-    put(c, 0x48);
-    put(c, 0xB8 | (unsigned)reg);
-    put_number(c, v, 8);
-}
-
-static void put_call(struct code *c, uintptr_t function)
-{
-    put_immediate(c, RAX, function);
-    put(c, 0xFF);
-    put(c, 0xD0);
-}
-
-static void put_advance(struct code *c, int reg, int32_t by)
-{
-    put(c, reg >= 8 ? 0x49 : 0x48);
-    put(c, 0x81);
-    put(c, 0xC0 | (unsigned)(reg & 7));
-    put_number(c, (uint64_t)by, 4);
-}
-
-// Back to byte `to`, unless RAX, one less, is 0.
-static void put_back(struct code *c, size_t to)
-{
-    put_number(c, 0xC8FF48, 3); // dec rax
-    put_number(c, 0x850F, 2);   // jnz
-    put_number(c, (uint64_t)to - (uint64_t)(c->n + 4), 4);
-}
-
-// The constants that are used, and the displacements to them. RIP is that of the next instruction,
-// four bytes behind the place of the displacement.
-static void put_pool(struct code *c)
-{
-    size_t at[NCONSTANT] = {0};
-    while (c->n % 32)
-        put(c, 0xCC);
-    for (size_t k = 0; k < c->nfixup; k++) {
-        const struct fixup *f = &c->fixup[k];
-        if (!at[f->constant]) {
-            at[f->constant] = c->n;
-            for (int i = 0; i < 4; i++)
-                put_number(c, pattern[f->constant], 8);
-        }
-        const uint32_t disp = (uint32_t)(at[f->constant] - (f->at + 4));
-        for (int i = 0; i < 4; i++)
-            c->byte[f->at + (size_t)i] = (unsigned char)(disp >> 8 * i);
-    }
-}
 
 // ---- where values are -------------------------------------------------------------------------
 
@@ -245,7 +20,7 @@ struct home {
 };
 
 struct emitter {
-    struct code code;
+    struct ct_bytes code;
     struct ct_arena *arena;
     const struct ct_listing *l;
     const struct ct_x86_calls *calls;
@@ -269,10 +44,10 @@ struct emitter {
     uint32_t nfree, nwork, nfixed;
 };
 
-static struct rm memory_of(const struct emitter *e, struct home h)
+static struct ct_rm memory_of(const struct emitter *e, struct home h)
 {
     assert(h.area != NOWHERE);
-    return in_memory(e->base[h.area], (int32_t)(h.place * 8u * (uint32_t)e->code.lanes));
+    return ct_in_memory(e->base[h.area], (int32_t)(h.place * 8u * (uint32_t)e->code.lanes));
 }
 
 // Place in the order of the next read of v; none: never again.
@@ -292,7 +67,7 @@ static void need_home(struct emitter *e, uint32_t v)
         return;
     e->home[v] = (struct home){WORK, e->nfree ? e->free[--e->nfree] : e->nwork++};
     if (e->reg[v] >= 0)
-        put_store(&e->code, memory_of(e, e->home[v]), e->reg[v]);
+        ct_put_store(&e->code, memory_of(e, e->home[v]), e->reg[v]);
 }
 
 static void leave_register(struct emitter *e, uint32_t v)
@@ -358,12 +133,12 @@ static int load(struct emitter *e, uint32_t v)
         return e->reg[v];
     }
     const int r = take_register(e, v);
-    put_load(&e->code, r, memory_of(e, e->home[v]));
+    ct_put_load(&e->code, r, memory_of(e, e->home[v]));
     return r;
 }
 
 // v as a last operand: a register if it is in one or will be read again before some value that is.
-static struct rm operand(struct emitter *e, uint32_t v)
+static struct ct_rm operand(struct emitter *e, uint32_t v)
 {
     if (e->reg[v] < 0) {
         const uint32_t again = next_use(e, v);
@@ -371,7 +146,7 @@ static struct rm operand(struct emitter *e, uint32_t v)
         if (r < 0 || (e->used >> r & 1 && e->until[r] <= again))
             return memory_of(e, e->home[v]);
     }
-    return in_register(load(e, v));
+    return ct_in_register(load(e, v));
 }
 
 // Which of two exchangeable operands must be in a register: one that is, or the one read again first.
@@ -411,22 +186,22 @@ static void emit_binary(struct emitter *e, const struct ct_instruction *i, unsig
 {
     const bool swap = commutes && prefer_second(e, i->arg[0], i->arg[1]);
     const int a = load(e, i->arg[swap]);
-    const struct rm b = operand(e, i->arg[!swap]);
-    put_arithmetic(&e->code, op, result(e, i), a, b);
+    const struct ct_rm b = operand(e, i->arg[!swap]);
+    ct_put_arithmetic(&e->code, op, result(e, i), a, b);
 }
 
 static void emit_sqrt(struct emitter *e, const struct ct_instruction *i)
 {
     const int a = load(e, i->arg[0]), d = result(e, i);
-    put_arithmetic(&e->code, 0x51, d, e->code.lanes == 1 ? a : 0, in_register(a));
+    ct_put_arithmetic(&e->code, 0x51, d, e->code.lanes == 1 ? a : 0, ct_in_register(a));
 }
 
 // Flip or clear the sign.
 static void emit_sign_bit(struct emitter *e, const struct ct_instruction *i, unsigned op,
-                          enum constant c)
+                          enum ct_pattern c)
 {
     const int a = load(e, i->arg[0]);
-    put_bitwise(&e->code, op, result(e, i), a, in_pool(c));
+    ct_put_bitwise(&e->code, op, result(e, i), a, ct_in_pool(c));
 }
 
 enum { AND = 0x54, XOR = 0x57 };
@@ -437,10 +212,10 @@ static void emit_comparison(struct emitter *e, const struct ct_instruction *i,
                             unsigned predicate)
 {
     const int a = load(e, i->arg[0]);
-    const struct rm b = operand(e, i->arg[1]);
+    const struct ct_rm b = operand(e, i->arg[1]);
     const int d = result(e, i);
-    put_compare(&e->code, d, a, b, predicate);
-    put_bitwise(&e->code, AND, d, d, in_pool(ONE));
+    ct_put_compare(&e->code, d, a, b, predicate);
+    ct_put_bitwise(&e->code, AND, d, d, ct_in_pool(CT_ONE));
 }
 
 // (0 < a) - (a < 0) in ones
@@ -448,21 +223,21 @@ static void emit_signum(struct emitter *e, const struct ct_instruction *i)
 {
     const int a = load(e, i->arg[0]), plus = take_register(e, none),
               minus = take_register(e, none);
-    put_bitwise(&e->code, XOR, minus, minus, in_register(minus));
-    put_compare(&e->code, plus, minus, in_register(a), LT_OQ);
-    put_compare(&e->code, minus, a, in_register(minus), LT_OQ);
-    put_bitwise(&e->code, AND, plus, plus, in_pool(ONE));
-    put_bitwise(&e->code, AND, minus, minus, in_pool(ONE));
-    put_arithmetic(&e->code, 0x5C, result(e, i), plus, in_register(minus));
+    ct_put_bitwise(&e->code, XOR, minus, minus, ct_in_register(minus));
+    ct_put_compare(&e->code, plus, minus, ct_in_register(a), LT_OQ);
+    ct_put_compare(&e->code, minus, a, ct_in_register(minus), LT_OQ);
+    ct_put_bitwise(&e->code, AND, plus, plus, ct_in_pool(CT_ONE));
+    ct_put_bitwise(&e->code, AND, minus, minus, ct_in_pool(CT_ONE));
+    ct_put_arithmetic(&e->code, 0x5C, result(e, i), plus, ct_in_register(minus));
 }
 
 static void emit_if(struct emitter *e, const struct ct_instruction *i)
 {
     const int yes = load(e, i->arg[1]), no = load(e, i->arg[2]), mask = take_register(e, none);
-    const struct rm condition = operand(e, i->arg[0]);
-    put_bitwise(&e->code, XOR, mask, mask, in_register(mask));
-    put_compare(&e->code, mask, mask, condition, NEQ_UQ);
-    put_blend(&e->code, result(e, i), no, yes, mask);
+    const struct ct_rm condition = operand(e, i->arg[0]);
+    ct_put_bitwise(&e->code, XOR, mask, mask, ct_in_register(mask));
+    ct_put_compare(&e->code, mask, mask, condition, NEQ_UQ);
+    ct_put_blend(&e->code, result(e, i), no, yes, mask);
 }
 
 // Three forms, by which operand the result overwrites. `op` is that of form 132.
@@ -472,31 +247,32 @@ static void emit_fused(struct emitter *e, const struct ct_instruction *i, unsign
 {
     const bool swap = prefer_second(e, i->arg[0], i->arg[1]);
     const int a = load(e, i->arg[swap]), b = load(e, i->arg[!swap]);
-    const struct rm c = operand(e, i->arg[2]);
-    const struct vex form = {1, 2, 1, (unsigned char)(op + (e->code.lanes == 1))};
-    const struct vex f132 = form, f213 = {1, 2, 1, form.op + 0x10},
-                     f231 = {1, 2, 1, form.op + 0x20};
+    const struct ct_rm c = operand(e, i->arg[2]);
+    const struct ct_vex form = {1, 2, 1, (unsigned char)(op + (e->code.lanes == 1))};
+    const struct ct_vex f132 = form, f213 = {1, 2, 1, form.op + 0x10},
+                        f231 = {1, 2, 1, form.op + 0x20};
     const bool wide = e->code.lanes > 1;
     const int d = result(e, i);
     if (d == a)
-        put_vex(&e->code, f213, wide, d, b, c);
+        ct_put_vex(&e->code, f213, wide, d, b, c);
     else if (d == b)
-        put_vex(&e->code, f213, wide, d, a, c);
+        ct_put_vex(&e->code, f213, wide, d, a, c);
     else if (c.reg == d)
-        put_vex(&e->code, f231, wide, d, a, in_register(b));
+        ct_put_vex(&e->code, f231, wide, d, a, ct_in_register(b));
     else if (c.reg >= 0) {
-        put_vex(&e->code, (struct vex){1, 1, 0, 0x28}, wide, d, 0, in_register(a)); // vmovapd
-        put_vex(&e->code, f132, wide, d, c.reg, in_register(b));
+        ct_put_vex(&e->code, (struct ct_vex){1, 1, 0, 0x28}, wide, d, 0,
+                   ct_in_register(a)); // vmovapd
+        ct_put_vex(&e->code, f132, wide, d, c.reg, ct_in_register(b));
     } else {
-        put_load(&e->code, d, c);
-        put_vex(&e->code, f231, wide, d, a, in_register(b));
+        ct_put_load(&e->code, d, c);
+        ct_put_vex(&e->code, f231, wide, d, a, ct_in_register(b));
     }
 }
 
 // All registers are lost in a call.
 static void emit_call(struct emitter *e, const struct ct_instruction *i)
 {
-    struct code *c = &e->code;
+    struct ct_bytes *c = &e->code;
     for (int r = 0; r < NREGISTER; r++) {
         const uint32_t v = e->content[r];
         bool is_argument = false;
@@ -509,18 +285,18 @@ static void emit_call(struct emitter *e, const struct ct_instruction *i)
     }
     for (uint32_t r = 0; r < i->nres; r++)
         need_home(e, i->res[r]);
-    put_vzeroupper(c);
-    put_address(c, RDI, memory_of(e, e->home[i->res[0]]));
-    put_address(c, RSI, memory_of(e, e->home[i->arg[0]]));
+    ct_put_vzeroupper(c);
+    ct_put_address(c, CT_RDI, memory_of(e, e->home[i->res[0]]));
+    ct_put_address(c, CT_RSI, memory_of(e, e->home[i->arg[0]]));
     if (i->nres == 2) {
-        put_address(c, RDX, memory_of(e, e->home[i->res[1]]));
+        ct_put_address(c, CT_RDX, memory_of(e, e->home[i->res[1]]));
     } else if (i->op == CT_OP_TABLE) {
-        put_immediate(c, RDX, (uintptr_t)&e->l->table[i->table]);
-        put_immediate(c, RCX, i->order);
+        ct_put_immediate(c, CT_RDX, (uintptr_t)&e->l->table[i->table]);
+        ct_put_immediate(c, CT_RCX, i->order);
     } else if (i->narg > 1) {
-        put_address(c, RDX, memory_of(e, e->home[i->arg[1]]));
+        ct_put_address(c, CT_RDX, memory_of(e, e->home[i->arg[1]]));
     }
-    put_call(c, e->calls->by_op[i->op]);
+    ct_put_call(c, e->calls->by_op[i->op]);
 }
 
 static void emit_operation(struct emitter *e, const struct ct_instruction *i)
@@ -549,10 +325,10 @@ static void emit_operation(struct emitter *e, const struct ct_instruction *i)
         emit_sqrt(e, i);
         break;
     case CT_OP_NEG:
-        emit_sign_bit(e, i, XOR, SIGN_BIT);
+        emit_sign_bit(e, i, XOR, CT_SIGN_BIT);
         break;
     case CT_OP_ABS:
-        emit_sign_bit(e, i, AND, ALL_BUT_SIGN);
+        emit_sign_bit(e, i, AND, CT_ALL_BUT_SIGN);
         break;
     case CT_OP_SIGN:
         emit_signum(e, i);
@@ -612,13 +388,13 @@ static void store_outputs(struct emitter *e, uint32_t v)
     if (k && e->reg[v] < 0) // a function has written it there
         k = e->next_output[k - 1];
     for (; k; k = e->next_output[k - 1])
-        put_store(&e->code, memory_of(e, (struct home){OUT, k - 1}), load(e, v));
+        ct_put_store(&e->code, memory_of(e, (struct home){OUT, k - 1}), load(e, v));
 }
 
 static void keep_result(struct emitter *e, uint32_t v)
 {
     if (e->is_kept && e->is_kept[v])
-        put_store(&e->code, memory_of(e, e->home[v]), load(e, v));
+        ct_put_store(&e->code, memory_of(e, e->home[v]), load(e, v));
 }
 
 static void emit_instruction(struct emitter *e, uint32_t at)
@@ -681,7 +457,7 @@ static struct home gather_angles(struct emitter *e)
     e->nwork += e->nangle;
     for (uint32_t k = 0; k < e->nangle; k++) {
         const int r = load(e, wave(e, k)->arg[0]);
-        put_store(&e->code, memory_of(e, (struct home){WORK, first.place + k}), r);
+        ct_put_store(&e->code, memory_of(e, (struct home){WORK, first.place + k}), r);
         pass_reads_before(e, wave(e, k)->arg[0], e->first_angle + e->nangle);
         release_registers(e, wave(e, k));
     }
@@ -716,8 +492,8 @@ static void place_waves(struct emitter *e, uint32_t sines, uint32_t cosines)
         const struct ct_instruction *i = wave(e, k);
         for (uint32_t r = 0; r < i->nres; r++)
             for (uint32_t o = e->first_output[i->res[r]]; o; o = e->next_output[o - 1])
-                put_store(&e->code, memory_of(e, (struct home){OUT, o - 1}),
-                          load(e, i->res[r]));
+                ct_put_store(&e->code, memory_of(e, (struct home){OUT, o - 1}),
+                             load(e, i->res[r]));
         release_registers(e, i);
         give_up_places(e, i->arg, 1);
         give_up_places(e, i->res, i->nres);
@@ -727,7 +503,7 @@ static void place_waves(struct emitter *e, uint32_t sines, uint32_t cosines)
 // One call for all of them.
 static void emit_angles(struct emitter *e)
 {
-    struct code *c = &e->code;
+    struct ct_bytes *c = &e->code;
     sort_waves(e);
     const struct home inputs = e->home[wave(e, 0)->arg[0]];
     const bool copied = !are_side_by_side(e);
@@ -737,12 +513,12 @@ static void emit_angles(struct emitter *e)
     const uint32_t sines = e->nwork, cosines = sines + e->nangle;
     e->nwork += 2 * e->nangle;
     forget_registers(e);
-    put_vzeroupper(c);
-    put_address(c, RDI, memory_of(e, (struct home){WORK, sines}));
-    put_address(c, RSI, memory_of(e, angles));
-    put_address(c, RDX, memory_of(e, (struct home){WORK, cosines}));
-    put_immediate(c, RCX, (uint64_t)e->nangle * (uint64_t)c->lanes);
-    put_call(c, e->calls->sincos_many);
+    ct_put_vzeroupper(c);
+    ct_put_address(c, CT_RDI, memory_of(e, (struct home){WORK, sines}));
+    ct_put_address(c, CT_RSI, memory_of(e, angles));
+    ct_put_address(c, CT_RDX, memory_of(e, (struct home){WORK, cosines}));
+    ct_put_immediate(c, CT_RCX, (uint64_t)e->nangle * (uint64_t)c->lanes);
+    ct_put_call(c, e->calls->sincos_many);
     place_waves(e, sines, cosines);
     for (uint32_t k = 0; copied && k < e->nangle; k++)
         e->free[e->nfree++] = angles.place + k;
@@ -780,7 +556,8 @@ struct stream {
     int32_t stride;
 };
 
-static const int stream_register[CT_ROLL_STREAMS] = {RCX, R8, R9, R10, R11, R13, R15};
+static const int stream_register[CT_ROLL_STREAMS]
+    = {CT_RCX, CT_R8, CT_R9, CT_R10, CT_R11, CT_R13, CT_R15};
 
 // The body of a loop as a listing: values 0 ... period-1 are its results, further ones its operands from memory.
 struct body {
@@ -872,16 +649,16 @@ static void list_body(struct body *b, const struct emitter *outer, const struct 
 
 static void emit_body(struct body *b, const struct ct_loop *loop)
 {
-    struct code *c = &b->e.code;
+    struct ct_bytes *c = &b->e.code;
     for (unsigned i = 0; i < b->nstream; i++)
-        put_move(c, stream_register[i], b->e.base[b->stream[i].area]);
-    put_immediate(c, RAX, loop->count);
+        ct_put_move(c, stream_register[i], b->e.base[b->stream[i].area]);
+    ct_put_immediate(c, CT_RAX, loop->count);
     const size_t start = c->n;
     for (uint32_t at = 0; at < b->e.norder; at++)
         emit_instruction(&b->e, at);
     for (unsigned i = 0; i < b->nstream; i++)
-        put_advance(c, stream_register[i], b->stream[i].stride * 8 * c->lanes);
-    put_back(c, start);
+        ct_put_advance(c, stream_register[i], b->stream[i].stride * 8 * c->lanes);
+    ct_put_back(c, start);
 }
 
 // Reads within a loop are done; what nobody else reads gives up its place.
@@ -900,7 +677,7 @@ static void emit_loop(struct emitter *e, const struct ct_loop *loop)
 {
     for (size_t i = 0; i < loop->ncopy; i++) {
         const int r = load(e, loop->copy[i].value);
-        put_store(&e->code, memory_of(e, (struct home){WORK, loop->copy[i].place}), r);
+        ct_put_store(&e->code, memory_of(e, (struct home){WORK, loop->copy[i].place}), r);
         e->pinned = 0;
         release(e, &loop->copy[i].value, 1);
     }
@@ -1036,20 +813,20 @@ static void place_values(struct emitter *e, const uint32_t *home)
 static void emit_entry(struct emitter *e, bool calls)
 {
     if (calls) {
-        put_push(&e->code, RBX);
-        put_push(&e->code, RBP);
-        put_push(&e->code, R14);
-        put_move(&e->code, RBP, RDI);
-        put_move(&e->code, R14, RSI);
-        put_move(&e->code, RBX, RDX);
+        ct_put_push(&e->code, CT_RBX);
+        ct_put_push(&e->code, CT_RBP);
+        ct_put_push(&e->code, CT_R14);
+        ct_put_move(&e->code, CT_RBP, CT_RDI);
+        ct_put_move(&e->code, CT_R14, CT_RSI);
+        ct_put_move(&e->code, CT_RBX, CT_RDX);
     }
     if (e->roll.nloop) {
-        put_push(&e->code, R13);
-        put_push(&e->code, R15);
+        ct_put_push(&e->code, CT_R13);
+        ct_put_push(&e->code, CT_R15);
     }
-    e->base[INPUT] = calls ? RBP : RDI;
-    e->base[OUT] = calls ? R14 : RSI;
-    e->base[WORK] = calls ? RBX : RDX;
+    e->base[INPUT] = calls ? CT_RBP : CT_RDI;
+    e->base[OUT] = calls ? CT_R14 : CT_RSI;
+    e->base[WORK] = calls ? CT_RBX : CT_RDX;
 }
 
 // Outputs that are not stored when they are computed: those of the prologue and of loops.
@@ -1060,24 +837,24 @@ static void copy_outputs(struct emitter *e)
         const bool is_rolled = e->roll.nloop && e->roll.place[v] != none;
         if (e->l->rate[v] == CT_RATE_CALL && !e->l->is_leaf[v] && !is_rolled)
             continue;
-        put_load(&e->code, 0, memory_of(e, e->home[v]));
-        put_store(&e->code, memory_of(e, (struct home){OUT, k}), 0);
+        ct_put_load(&e->code, 0, memory_of(e, e->home[v]));
+        ct_put_store(&e->code, memory_of(e, (struct home){OUT, k}), 0);
     }
 }
 
 static void emit_return(struct emitter *e, bool calls)
 {
-    put_vzeroupper(&e->code);
+    ct_put_vzeroupper(&e->code);
     if (e->roll.nloop) {
-        put_pop(&e->code, R15);
-        put_pop(&e->code, R13);
+        ct_put_pop(&e->code, CT_R15);
+        ct_put_pop(&e->code, CT_R13);
     }
     if (calls) {
-        put_pop(&e->code, R14);
-        put_pop(&e->code, RBP);
-        put_pop(&e->code, RBX);
+        ct_put_pop(&e->code, CT_R14);
+        ct_put_pop(&e->code, CT_RBP);
+        ct_put_pop(&e->code, CT_RBX);
     }
-    put(&e->code, 0xC3);
+    ct_put(&e->code, 0xC3);
 }
 
 struct ct_x86_code ct_x86_emit(struct ct_arena *a, const struct ct_listing *l, int lanes,
@@ -1115,6 +892,6 @@ struct ct_x86_code ct_x86_emit(struct ct_arena *a, const struct ct_listing *l, i
     }
     copy_outputs(&e);
     emit_return(&e, any_call);
-    put_pool(&e.code);
+    ct_put_pool(&e.code);
     return (struct ct_x86_code){e.code.byte, e.code.n, e.nwork, e.roll.table, e.roll.ntable};
 }

@@ -157,6 +157,7 @@ struct ct_component_class {
     /// Signals of its own (S.force, S.length ...): false if there is none of that name.
     bool (*signal)(struct ct_build *b, const struct ct_instance *self, const char *name,
                    ct_ex *out);
+    const char *signals; // what they are, for messages: "force, length and rate"
 };
 
 // ---- what classes of joints use to fill a motion ------------------------------------------------

@@ -40,6 +40,7 @@ struct ct_parameter {
     struct ct_mark mark;
     ct_ex symbol;     // CT_SYM_PARAM, index = place in model->parameter
     ct_ex definition; // in terms of parameters before it
+    const char *unit; // that it was given with; NULL: none
     double value;
 };
 

@@ -66,7 +66,9 @@ static bool parse_override(struct ct_reader *r, const char *text, struct work *w
     const struct ct_node value
         = {.kind = CT_NODE_SCALAR, .text = ct_arena_strdup(r->a, equals + 1), .is_plain = true};
     w->node[i] = NULL;
-    w->is_wrong[i] = !ct_read_expr(r, &value, 0, NULL, &r->m->parameter[i].definition);
+    struct ct_parameter *p = &r->m->parameter[i];
+    w->is_wrong[i] = !ct_read_expr(r, &value, 0, p->unit, &p->definition);
+    p->unit = ct_parse_unit(value.text) ? ct_parse_unit(value.text) : p->unit;
     return !w->is_wrong[i];
 }
 
@@ -226,6 +228,8 @@ void ct_read_parameters(struct ct_reader *r, const struct ct_set *set, size_t ns
     r->m->value = CT_NEWN(r->a, double, r->m->x->nsym);
     for (size_t i = 0; i < w.n; i++) {
         w.is_wrong[i] = !ct_read_expr(r, w.node[i], 0, NULL, &r->m->parameter[i].definition);
+        if (w.node[i]->kind == CT_NODE_SCALAR)
+            r->m->parameter[i].unit = ct_parse_unit(w.node[i]->text);
         r->m->parameter[i].value = NAN; // until it is known
         r->m->value[1 + i] = NAN;
     }

@@ -2,6 +2,7 @@
 #include "component/read.h"
 
 #include "expr/parse.h"
+#include "expr/unit.h"
 
 #include <math.h>
 #include <string.h>
@@ -214,6 +215,17 @@ static const char *nearest_subject(struct ct_reader *r, const char *first)
 
 static bool check_frame(struct ct_reader *r, const char *name, struct ct_mark at);
 
+// The point in BODY.POINT.PROPERTY or BODY.POINT.PROPERTY.COMPONENT; components have one or two letters.
+static bool point_exists(struct ct_reader *r, const char *text, struct ct_mark where)
+{
+    const char *const dot = strchr(text, '.'), *const next = dot ? strchr(dot + 1, '.') : NULL;
+    if (!next || strcspn(next + 1, ". ") < 3)
+        return true;
+    const char *const body = ct_arena_strndup(r->ctx->scratch, text, (size_t)(dot - text));
+    const char *const frame = ct_arena_strndup(r->ctx->scratch, text, (size_t)(next - text));
+    return ct_model_find_body(r->m, body) < 0 || check_frame(r, frame, where);
+}
+
 static enum ct_name_result find_signal(void *user, const char *text, const char *first,
                                        const char *in, struct ct_mark where,
                                        struct ct_mark where_in, ct_ex *e, const char **why)
@@ -230,6 +242,8 @@ static enum ct_name_result find_signal(void *user, const char *text, const char 
         ok = ct_error(r->ctx, where, CT_E_SIGNAL_NAME,
                       "'%s': there is no body, joint or force '%s'%s", text, first,
                       nearest_subject(r, first));
+    else if (!point_exists(r, text, where))
+        ok = false;
     if (in && !check_frame(r, in, where_in))
         ok = false;
     if (!ok)
@@ -247,6 +261,37 @@ bool ct_read_number(struct ct_reader *r, ct_ex e, double *value)
         return false;
     *value = ct_ex_value(r->m->x, e, r->m->value);
     return !kinds || r->parameters_ok || isfinite(*value); // else a wrong parameter may be why
+}
+
+static bool is_same_dimension(const char *a, const char *b)
+{
+    struct ct_unit u, v;
+    size_t at;
+    return ct_unit_parse(a, strlen(a), &u, &at) != CT_UNIT_OK
+        || ct_unit_parse(b, strlen(b), &v, &at) != CT_UNIT_OK || ct_unit_same(&u, &v);
+}
+
+// A parameter that stands alone, or with a minus, has the dimension it was given with; in expressions numbers are SI, and nothing is known.
+static bool check_parameter_unit(struct ct_reader *r, const struct ct_node *node,
+                                 const char *unit, ct_ex e)
+{
+    const struct ct_exnode *top = ct_ex_node(r->m->x, e);
+    const struct ct_sym *s = ct_ex_symbol(r->m->x, top->op == CT_OP_NEG ? (ct_ex){top->a} : e);
+    const bool is_parameter = s && s->kind == CT_SYM_PARAM;
+    const int i = is_parameter ? ct_names_get(&r->m->parameter_index, s->name) : -1;
+    const struct ct_parameter *p = i < 0 ? NULL : &r->m->parameter[i];
+    if (!unit || !p || !p->unit || is_same_dimension(p->unit, unit))
+        return true;
+    if (*unit)
+        ct_error(r->ctx, node->mark, CT_E_DIMENSION,
+                 "the parameter '%s' is in %s, but a quantity in %s is wanted here", p->name,
+                 p->unit, unit);
+    else
+        ct_error(r->ctx, node->mark, CT_E_DIMENSION,
+                 "the parameter '%s' is in %s, but a number without a unit is wanted here",
+                 p->name, p->unit);
+    ct_note(r->ctx, p->mark, "it is given here");
+    return false;
 }
 
 bool ct_read_expr(struct ct_reader *r, const struct ct_node *node, unsigned flags,
@@ -279,7 +324,7 @@ bool ct_read_expr(struct ct_reader *r, const struct ct_node *node, unsigned flag
     if (ct_read_number(r, *e, &value) && !isfinite(value))
         return ct_error(r->ctx, node->mark, CT_E_NUMBER, "'%s' is not a finite number",
                         node->text);
-    return true;
+    return check_parameter_unit(r, node, unit, *e);
 }
 
 bool ct_read_vec3(struct ct_reader *r, const struct ct_node *node, unsigned flags,

@@ -546,6 +546,13 @@ static bool is_infinite_word(const char *text)
     return false;
 }
 
+const char *ct_parse_unit(const char *text)
+{
+    double value;
+    const char *unit;
+    return split_quantity(text, &value, &unit) ? unit : NULL;
+}
+
 bool ct_parse(struct ct_ctx *ctx, const struct ct_scope *scope, struct ct_text text, ct_ex *e)
 {
     struct parser s

@@ -55,6 +55,9 @@ struct ct_scope {
 /// Errors: E113 to E120.
 bool ct_parse(struct ct_ctx *ctx, const struct ct_scope *scope, struct ct_text text, ct_ex *e);
 
+/// The unit of a text that is one quantity, a number with a unit; NULL if it is not.
+const char *ct_parse_unit(const char *text);
+
 /// Is it one signal and nothing else? Writes its normal form (arena a) and first part.
 bool ct_parse_is_signal(struct ct_arena *a, const char *text, const char **normal);
 

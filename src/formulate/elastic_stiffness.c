@@ -15,12 +15,12 @@ enum ct_rule ct_flexible_stiffness_rule(const struct ct_beam *beam)
     return beam->integration == CT_BEAM_FULL ? CT_RULE_FULL : CT_RULE_MIDDLE;
 }
 
-// Inertia per length about the axes; twist has some of its own where nothing else is given.
 bool ct_flexible_turns_inertia(const struct ct_build *b, const struct ct_flexible *f)
 {
     return f->formulation == CT_BEAM_FORESHORTENING && f->beam->has_rotary && !b->is_planar;
 }
 
+// Inertia per length about the axes; twist has some of its own where nothing else is given.
 struct ct_profile ct_flexible_rotary(const struct ct_flexible *f, int axis)
 {
     const struct ct_beam *beam = f->beam;
@@ -247,6 +247,97 @@ static void twist_element(struct ct_build *b, const struct ct_flexible *f, int e
     }
 }
 
+// ---- twist with bending ---------------------------------------------------------------------------------------
+
+enum { COUPLING_POINTS = 2 }; // exact where sections are constant
+
+static bool couples(const struct ct_flexible *f)
+{
+    const unsigned all = CT_BEAM_TORSION | CT_BEAM_BENDING_Y | CT_BEAM_BENDING_Z;
+    return f->formulation == CT_BEAM_FORESHORTENING && (f->deformation & all) == all;
+}
+
+// An angle of the section and its slope at a point, by n dofs of an element.
+struct angle {
+    ct_ex value, slope;
+    ct_ex shape[4], shape_slope[4];
+};
+
+static struct angle angle_at(struct ct_build *b, const struct ct_shape *shape, int n,
+                             const ct_ex *dof, ct_ex xi, ct_ex h)
+{
+    struct ct_exs *x = b->x;
+    struct angle a = {.value = CT_EX_ZERO};
+    for (int i = 0; i < n; i++) {
+        const struct ct_shape d = ct_shape_slope(&shape[i]);
+        a.shape[i] = ct_shape_at(x, &shape[i], xi, h);
+        a.shape_slope[i] = ct_shape_at(x, &d, xi, h);
+        a.value = ct_ex_add(x, a.value, ct_ex_mul(x, a.shape[i], dof[i]));
+        a.slope = ct_ex_add(x, a.slope, ct_ex_mul(x, a.shape_slope[i], dof[i]));
+    }
+    return a;
+}
+
+static void push_angle(struct ct_build *b, const struct angle *a, int n, ct_ex by_value,
+                       ct_ex by_slope, ct_ex *row)
+{
+    struct ct_exs *x = b->x;
+    for (int i = 0; i < n; i++) {
+        const ct_ex v = ct_ex_add(x, ct_ex_mul(x, a->shape[i], by_value),
+                                  ct_ex_mul(x, a->shape_slope[i], by_slope));
+        row[i] = ct_ex_add(x, row[i], v);
+    }
+}
+
+// Bending turns the axes of twist and twist those of bending: GJ p' (b' g - g' b)/2 + E (Iy - Iz) p b' g'.  (5.6b)
+static void couple_point(struct ct_build *b, const struct ct_flexible *f, int e, ct_ex xi,
+                         ct_ex GJ, ct_ex EI, struct element_force *out)
+{
+    struct ct_exs *x = b->x;
+    const struct ct_element *self = &f->element[e];
+    const ct_ex h = self->span.length, half = ct_ex_scale(x, 0.5, GJ);
+    const struct angle p = angle_at(b, f->linear, 2, self->value + CT_PLACE_DOF, xi, h),
+                       g = angle_at(b, f->shape.rotation, 4, self->value + 2, xi, h),
+                       w = angle_at(b, f->shape.rotation, 4, self->value + 6, xi, h); // -b
+    // derivatives by p, g and w of GJ p' (g' w - w' g)/2 - EI p w' g'
+    const ct_ex turn
+        = ct_ex_sub(x, ct_ex_mul(x, g.slope, w.value), ct_ex_mul(x, w.slope, g.value));
+    const ct_ex torque = ct_ex_mul(x, half, p.slope), bend = ct_ex_mul(x, EI, p.value);
+    const ct_ex twist = ct_ex_neg(x, ct_ex_mul(x, EI, ct_ex_mul(x, w.slope, g.slope)));
+    push_angle(b, &p, 2, twist, ct_ex_mul(x, half, turn), out->row + CT_PLACE_DOF);
+    push_angle(b, &g, 4, ct_ex_neg(x, ct_ex_mul(x, torque, w.slope)),
+               ct_ex_sub(x, ct_ex_mul(x, torque, w.value), ct_ex_mul(x, bend, w.slope)),
+               out->row + 2);
+    push_angle(
+        b, &w, 4, ct_ex_mul(x, torque, g.slope),
+        ct_ex_neg(x, ct_ex_add(x, ct_ex_mul(x, torque, g.value), ct_ex_mul(x, bend, g.slope))),
+        out->row + 6);
+    out->energy = ct_ex_add(x, out->energy, ct_ex_mul(x, torque, turn));
+    out->energy = ct_ex_add(x, out->energy, ct_ex_mul(x, p.value, twist));
+}
+
+static void couple_element(struct ct_build *b, const struct ct_flexible *f, int e,
+                           struct element_force *out)
+{
+    struct ct_exs *x = b->x;
+    const struct ct_beam *beam = f->beam;
+    const struct ct_profile torsion
+        = {beam->x, ct_ex_mul(x, beam->G, beam->J)},
+        bending = {beam->x, ct_ex_mul(x, beam->E, ct_ex_sub(x, beam->Iy, beam->Iz))};
+    const bool varies
+        = (ct_ex_kinds(x, torsion.value) | ct_ex_kinds(x, bending.value)) & 1u << CT_SYM_LOCAL;
+    const enum ct_rule rule = ct_flexible_stiffness_rule(beam);
+    const int wanted = varies ? CT_MAX_GAUSS : COUPLING_POINTS;
+    double xi[CT_MAX_GAUSS];
+    ct_ex GJ[CT_MAX_GAUSS], EI[CT_MAX_GAUSS];
+    const int n = ct_shape_points(x, &torsion, &f->element[e].span, rule, wanted, xi, GJ);
+    ct_shape_points(x, &bending, &f->element[e].span, rule, wanted, xi, EI);
+    for (int i = 0; i < n; i++)
+        couple_point(b, f, e, ct_ex_const(x, xi[i]), GJ[i], EI[i], out);
+}
+
+// ---- elements ---------------------------------------------------------------------------------------------------
+
 static struct element_force element_force(struct ct_build *b, const struct ct_flexible *f,
                                           int e)
 {
@@ -262,6 +353,8 @@ static struct element_force element_force(struct ct_build *b, const struct ct_fl
         stretch_element(b, f, e, plane, &out);
     if (f->deformation & CT_BEAM_TORSION)
         twist_element(b, f, e, &out);
+    if (couples(f))
+        couple_element(b, f, e, &out);
     return out;
 }
 

@@ -166,6 +166,7 @@ struct ct_equations {
     ct_ex work_symbol;
     ct_ex power; // d(work)/dt, in terms of u' and lam where drivers push; 0 when nothing works
     ct_ex kinetic, potential, strain; // strain: of beams
+    ct_ex total;                      // energy less the work put in: constant
     struct ct_residual *residual;     // NULL if not asked for
     bool is_planar;
     bool is_truncated; // to first order in coordinates that are small

@@ -152,6 +152,21 @@ static ct_ex driver_effort(struct ct_build *b, int coordinate)
     return ct_ex_sub(x, row, ct_joint_passive(b, coordinate));
 }
 
+// "joint 'pin' (cylindrical) has q1 and q2"
+static const char *coordinates_of(struct ct_build *b, const struct ct_instance *self,
+                                  const char *kind, bool is_stored)
+{
+    const int n = is_stored ? self->ncoord : self->nfree;
+    const char *const head
+        = ct_arena_printf(b->arena, "joint '%s' (%s) has", self->name, self->cls->name);
+    if (self->from < 0 || n < 1)
+        return ct_arena_printf(b->arena, "%s no coordinate of its own", head);
+    if (n == 1)
+        return ct_arena_printf(b->arena, "%s %s alone", head, kind);
+    return ct_arena_printf(b->arena, "%s %s1 %s %s%d", head, kind, n == 2 ? "and" : "to", kind,
+                           n);
+}
+
 static bool effort_signal(struct ct_build *b, int joint, int k, const char *name,
                           struct ct_mark mark, ct_ex *out)
 {
@@ -165,7 +180,7 @@ static bool effort_signal(struct ct_build *b, int joint, int k, const char *name
         return true;
     }
     if (k >= self->nfree)
-        return unknown(b, mark, name, "the joint has no such coordinate");
+        return unknown(b, mark, name, coordinates_of(b, self, "effort", false));
     const int coordinate = b->edge[b->edge_of_joint[joint]].first_coordinate + k;
     if (b->coordinate[coordinate].is_driven) {
         *out = driver_effort(b, coordinate);
@@ -199,7 +214,7 @@ static bool coordinate_signal(struct ct_build *b, int joint, const struct signal
     if (!is_number(b, s, name, mark))
         return false;
     if (number < 1)
-        return unknown(b, mark, name, "the joint has no such coordinate");
+        return unknown(b, mark, name, coordinates_of(b, self, kind, stored));
     if (!s->property[letters] && n > 1)
         return unknown(b, mark, name,
                        ct_arena_printf(b->arena,
@@ -208,7 +223,7 @@ static bool coordinate_signal(struct ct_build *b, int joint, const struct signal
     if (!strcmp(kind, "effort"))
         return effort_signal(b, joint, number - 1, name, mark, out);
     if (self->from < 0 || number > n)
-        return unknown(b, mark, name, "the joint has no such coordinate");
+        return unknown(b, mark, name, coordinates_of(b, self, kind, stored));
     const int coordinate = b->edge[b->edge_of_joint[joint]].first_coordinate + number - 1;
     if (stored)
         *out = ct_coordinate_value(b, coordinate);
@@ -256,7 +271,9 @@ static bool force_signal(struct ct_build *b, const struct ct_instance *self,
         has = self->cls->signal(
             b, self, ct_arena_printf(b->arena, "%s.%s", s->property, axis_names[i]), &v.e[i]);
     if (!has)
-        return unknown(b, mark, name, "this force has no such property");
+        return unknown(b, mark, name,
+                       ct_arena_printf(b->arena, "force '%s' (%s) has %s", self->name,
+                                       self->cls->name, self->cls->signals));
     return !s->axes || component_of(b, s, name, mark, v, out);
 }
 
@@ -334,7 +351,6 @@ static bool global_signal(struct ct_build *b, const struct signal *s, const char
     static const char *const sums[] = {"com", "momentum", "angular_momentum"};
     static const char *const energies[] = {"kinetic", "potential", "strain", "work", "total"};
     struct ct_equations *e = b->eqs;
-    struct ct_exs *x = b->x;
     if (!strcmp(s->owner, "system")) {
         const int i = index_of(s->property, sums, 3);
         return i < 0
@@ -351,9 +367,7 @@ static bool global_signal(struct ct_build *b, const struct signal *s, const char
         return true;
     }
     const int i = index_of(s->property, energies, 5);
-    const ct_ex stored = ct_ex_add(x, e->kinetic, ct_ex_add(x, e->potential, e->strain));
-    const ct_ex values[] = {e->kinetic, e->potential, e->strain, e->work_symbol,
-                            ct_ex_sub(x, stored, e->work_symbol)};
+    const ct_ex values[] = {e->kinetic, e->potential, e->strain, e->work_symbol, e->total};
     if (!is_number(b, s, name, mark))
         return false;
     if (i < 0)
@@ -550,6 +564,8 @@ void ct_energies_derive(struct ct_build *b)
     e->work_symbol = ct_ex_sym(x, CT_SYM_WORK, "work", 0);
     if (ct_ex_is_zero(e->power))
         e->work_symbol = CT_EX_ZERO;
+    const ct_ex stored = ct_ex_add(x, e->kinetic, ct_ex_add(x, e->potential, e->strain));
+    e->total = ct_ex_sub(x, stored, e->work_symbol);
 }
 
 // ---- outputs -----------------------------------------------------------------------------------------------------------------

@@ -61,6 +61,7 @@ struct run {
     double singular_in;   // time to the next one, from t
     double reach;         // crossing it is to begin this long before
     int failed_crossings; // of it
+    bool is_open;         // the last step met everything but the constraints
     size_t sample;        // the next one to give
     double last_event;    // time of the last state event
     int piled;            // state events in a row without time going on
@@ -363,8 +364,9 @@ static enum ct_eval attempt(struct run *r, struct stride *s)
     double error = 0;
     s->error = 0;
     s->is_interpolated = false;
-    const enum ct_eval e = s->method->step(r->p, r->t, s->h, r->y, r->dy, tolerance, r->y1,
-                                           r->dy1, &error, s->work, r->stats);
+    r->is_open = false;
+    enum ct_eval e = s->method->step(r->p, r->t, s->h, r->y, r->dy, tolerance, r->y1, r->dy1,
+                                     &error, s->work, r->stats);
     if (e != CT_EVAL_OK)
         return e;
     if (!ct_stepper_finite(r->y1, r->p->ny) || isnan(error))
@@ -372,7 +374,10 @@ static enum ct_eval attempt(struct run *r, struct stride *s)
     s->error = error;
     if (error > 1)
         return CT_EVAL_RETRY;
-    return r->t + s->h > s->t1 && s->method == &ct_crossing ? cut(r, s) : project_end(r, s->t1);
+    const bool is_cut = r->t + s->h > s->t1 && s->method == &ct_crossing;
+    e = is_cut ? cut(r, s) : project_end(r, s->t1);
+    r->is_open = e == CT_EVAL_RETRY;
+    return e;
 }
 
 // Make the method ready to interpolate, once.
@@ -469,9 +474,15 @@ static bool step_too_small(struct run *r, double h)
         return ct_error(
             r->ctx, nowhere, CT_E_STEP_SINGULAR,
             "at t = %.9g the motion comes to a singular position (in %.3g s) and no smooth "
-            "motion across it is found: ask for a larger tolerance, or change a length "
-            "slightly",
+            "motion across it is found: it locks there, or wants a larger tolerance, or a "
+            "length that differs slightly",
             r->t, r->singular_in);
+    if (r->is_open)
+        return ct_error(
+            r->ctx, nowhere, CT_E_STEP_OPEN,
+            "the constraints cannot be met beyond t = %.9g: drivers contradict each "
+            "other, or the mechanism locks",
+            r->t);
     return ct_error(r->ctx, nowhere, CT_E_STEP_SMALL,
                     "at t = %.9g the step size became too small (%.3g) to go on", r->t, h);
 }

@@ -39,9 +39,6 @@ extern void dsygv_(const int *itype, const char *jobz, const char *uplo, const i
                    double *work, const int *lwork, int *info, size_t, size_t);
 extern void dsyev_(const char *jobz, const char *uplo, const int *n, double *a, const int *lda,
                    double *w, double *work, const int *lwork, int *info, size_t, size_t);
-extern void dgesvd_(const char *jobu, const char *jobvt, const int *m, const int *n, double *a,
-                    const int *lda, double *s, double *u, const int *ldu, double *vt,
-                    const int *ldvt, double *work, const int *lwork, int *info, size_t, size_t);
 extern void dgeevx_(const char *balanc, const char *jobvl, const char *jobvr, const char *sense,
                     const int *n, double *a, const int *lda, double *wr, double *wi, double *vl,
                     const int *ldvl, double *vr, const int *ldvr, int *ilo, int *ihi,
@@ -370,21 +367,6 @@ bool ct_symmetric_eigen(double *w, double *A, int n, int lda, double *work)
     lda = max_int(1, lda);
     dsyev_("V", "L", &n, A, &lda, w, work, &lwork, &info, 1, 1);
     return info == 0;
-}
-
-bool ct_singular_values(double *s, double *A, int m, int n, int lda, double *work)
-{
-    int info;
-    const int one = 1, lwork = (int)ct_singular_values_work(m, n);
-    lda = max_int(1, lda);
-    dgesvd_("N", "N", &m, &n, A, &lda, s, NULL, &one, NULL, &one, work, &lwork, &info, 1, 1);
-    return info == 0;
-}
-
-size_t ct_singular_values_work(int m, int n)
-{
-    const int least = min_int(m, n), most = max_int(m, n);
-    return (size_t)max_int(1, max_int(3 * least + most, 5 * least));
 }
 
 bool ct_eigen(double *re, double *im, double *V, double *A, int n, int lda, double *work)

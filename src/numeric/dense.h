@@ -57,10 +57,6 @@ size_t ct_symmetric_eigenvalues_work(int n);
 /// The same with orthonormal eigenvectors, which take the place of A. Workspace as above.
 bool ct_symmetric_eigen(double *w, double *A, int n, int lda, double *work);
 
-/// Singular values s (min(m, n), descending) of A (m x n; destroyed). False if the iteration fails.
-bool ct_singular_values(double *s, double *A, int m, int n, int lda, double *work);
-size_t ct_singular_values_work(int m, int n);
-
 /// Eigenvalues re + i im (n) and right eigenvectors V (n x n, leading dimension n) of a square matrix, balanced
 /// first; A is destroyed. Of a complex pair the column with im > 0 comes first: real part, then imaginary part.
 bool ct_eigen(double *re, double *im, double *V, double *A, int n, int lda, double *work);

@@ -95,6 +95,7 @@ static bool go_implicit(struct ct_run *r, struct ct_problem *p,
         p->dae = ct_dae_create(r->arena, r->s);
     }
     r->method = r->o->stiff_method; // what follows a step depends on it
+    r->s->nearness = 1;
     const struct ct_cost cost = find_cost(r);
     r->explicit_pace = ct_stiffness_pace(r->stiffness, &cost);
     const double gain = try_implicit(r, p, io, &cost) / r->explicit_pace;

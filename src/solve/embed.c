@@ -34,6 +34,7 @@ struct ct_embed *ct_embed_create(struct ct_arena *arena, struct ct_ctx *ctx,
     s->arena = arena;
     s->m = m;
     s->ctx = ctx;
+    s->nearness = 1;
     s->row = CT_NEWN(arena, int, r + 1);
     s->dependent = CT_NEWN(arena, int, k);
     s->independent = CT_NEWN(arena, int, n + 1);
@@ -56,7 +57,7 @@ struct ct_embed *ct_embed_create(struct ct_arena *arena, struct ct_ctx *ctx,
     const int size = (int)kk;
     const size_t for_qr = larger(ct_lstsq_work(size, size), ct_qr_pivot_work(size, size));
     s->work
-        = CT_NEWN(arena, double, larger(for_qr, ct_singular_values_work(size, size)) + 3 * k);
+        = CT_NEWN(arena, double, larger(for_qr, ct_symmetric_eigenvalues_work(size)) + 3 * k);
     return s;
 }
 
@@ -282,6 +283,7 @@ static bool factor(struct ct_embed *s)
         most = fmax(most, fabs(s->Jd[i + r * i]));
     }
     s->sigma = most > 0 ? least / most : 0;
+    s->largest = most;
     return isfinite(s->kappa);
 }
 
@@ -318,6 +320,13 @@ static int bare_beam(const struct ct_model *model)
     return 0;
 }
 
+// What gives sections an inertia.
+static const char *rotary_of(const struct ct_beam *beam)
+{
+    return beam->is_lumped ? "values of 'rotary_inertia', which lumped mass has not by itself"
+                           : "a 'rotary_inertia'";
+}
+
 static bool massless(struct ct_embed *s, size_t speed)
 {
     const struct ct_u *u = &s->m->e->u[speed];
@@ -328,14 +337,12 @@ static bool massless(struct ct_embed *s, size_t speed)
         return ct_error(
             s->ctx, model->body[bare].instance.mark, CT_E_MASSLESS,
             "coordinate '%s' moves no mass: the first section of beam '%s' has no inertia; "
-            "give the beam a 'rotary_inertia', or, if no moment acts on that section, 'frame: "
-            "chord'",
-            name, model->body[bare].instance.name);
+            "give the beam %s, or, if no moment acts on that section, 'frame: chord'",
+            name, model->body[bare].instance.name, rotary_of(model->body[bare].beam));
     if (u->beam > 0)
         return ct_error(s->ctx, model->body[u->beam].instance.mark, CT_E_MASSLESS,
-                        "coordinate '%s' moves no mass: give the beam a 'rotary_inertia', or "
-                        "consistent mass",
-                        name);
+                        "coordinate '%s' moves no mass: give the beam %s, or consistent mass",
+                        name, rotary_of(model->body[u->beam].beam));
     const struct ct_mark mark
         = u->joint >= 0 ? model->joint[u->joint].mark : model->body[u->body].instance.mark;
     return ct_error(s->ctx, mark, CT_E_MASSLESS,
@@ -675,6 +682,12 @@ static bool has_worn(const struct ct_embed *s)
                        s->rank < (int)s->m->nrow);
 }
 
+// With a single row sigma is 1 everywhere.
+static double nearness(const struct ct_embed *s)
+{
+    return fmin(s->sigma, s->nearness);
+}
+
 static enum ct_eval project_by_matrices(struct ct_embed *s, double t, double *y)
 {
     struct ct_machine *m = s->m;
@@ -683,7 +696,7 @@ static enum ct_eval project_by_matrices(struct ct_embed *s, double t, double *y)
         ct_machine_set(m, t, y);
         ct_machine_constraint(m);
         const double size = largest(m->phi, m->nrow);
-        if (ct_is_closed(s->sigma, size, before))
+        if (ct_is_closed(nearness(s), size, before))
             break;
         if (ct_is_stray(i, size, before))
             return CT_EVAL_RETRY;
@@ -729,7 +742,7 @@ static enum ct_eval project_by_form(struct ct_embed *s, double t, double *y, boo
         return CT_EVAL_OK;
     for (int i = 0; close_form(s, t, y); i++) {
         const double size = largest(f->phi, m->nrow);
-        if (!ct_is_closed(s->sigma, size, before)) {
+        if (!ct_is_closed(nearness(s), size, before)) {
             if (ct_is_stray(i, size, before))
                 return CT_EVAL_RETRY;
             before = size;
@@ -787,11 +800,17 @@ static bool has_redundant_rows(const struct ct_embed *s)
 
 static double smallest_singular_value(struct ct_embed *s)
 {
+    // from the eigenvalues of J J', which cost a third of a decomposition; half the digits are enough
     const size_t n = s->m->nu, m = s->m->nrow;
-    memcpy(s->A, s->m->J, m * n * sizeof *s->A);
-    if (!ct_singular_values(s->b, s->A, (int)m, (int)n, (int)m, s->work) || !(s->b[0] > 0))
+    const double *J = s->m->J;
+    memset(s->A, 0, m * m * sizeof *s->A);
+    for (size_t k = 0; k < n; k++, J += m)
+        for (size_t j = 0; j < m; j++)
+            for (size_t i = j; i < m && J[j] != 0; i++)
+                s->A[i + m * j] += J[i] * J[j];
+    if (!ct_symmetric_eigenvalues(s->b, s->A, (int)m, (int)m, s->work))
         return 0;
-    return s->b[s->rank - 1] / s->b[0];
+    return sqrt(fmax(0, s->b[m - (size_t)s->rank]));
 }
 
 bool ct_embed_has_pivot(const struct ct_embed *s)
@@ -799,21 +818,18 @@ bool ct_embed_has_pivot(const struct ct_embed *s)
     return s->rank && !(has_redundant_rows(s) && is_large(s));
 }
 
-double ct_embed_kept_pivot(struct ct_embed *s)
+double ct_embed_pivot(struct ct_embed *s)
 {
+    if (has_redundant_rows(s))
+        return smallest_singular_value(s);
     // the place need not be one of the motion: what is known of the motion stays
     const double sigma = s->sigma, kappa = s->kappa, strength = s->strength.now;
     const bool is_known = find_strength(s) || factor(s);
-    const double pivot = is_known ? s->sigma * fmax(1, s->kappa) : 0;
+    const double pivot = is_known ? s->sigma * s->largest * fmax(1, s->kappa) : 0;
     s->sigma = sigma;
     s->kappa = kappa;
     s->strength.now = strength;
     return pivot;
-}
-
-double ct_embed_pivot(struct ct_embed *s)
-{
-    return has_redundant_rows(s) ? smallest_singular_value(s) : ct_embed_kept_pivot(s);
 }
 
 bool ct_embed_dependence(struct ct_embed *s, double *x, double *log_det)

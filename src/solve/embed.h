@@ -31,7 +31,10 @@ struct ct_embed {
     double kappa, kappa_chosen; // largest |J_d^-1 J_i|, now and when chosen
     double sigma,
         sigma_chosen; // smallest pivot of J_d against its largest: falls when kept rows depend
-    bool *is_unique;  // per row: its multiplier is determined
+    double largest;   // pivot of J_d
+    double
+        nearness; // how near J is to losing rank at the last accepted state, 1 at its farthest and where nobody looks
+    bool *is_unique; // per row: its multiplier is determined
     long switches, factorizations;
     // closed forms, the latest used first
     struct ct_form *form[CT_MOST_FORMS];
@@ -77,13 +80,11 @@ enum ct_eval ct_embed_project(struct ct_embed *s, double t, double *y);
 /// Is there a measure of how near J is to losing rank? Not of large systems with redundant rows, where it would cost more
 /// than the steps.
 bool ct_embed_has_pivot(const struct ct_embed *s);
-/// How near J is to losing rank at the last ct_machine_constraint: the smallest pivot of J_d against its largest, times the
-/// largest entry of B where that is above 1, small where J loses rank, not where another choice of columns would do. With
-/// redundant rows, of which the kept ones may lose rank where the others do not, the smallest singular value of J above those
-/// of the redundant rows against its largest.
+/// How near J is to losing rank at the last ct_machine_constraint: the smallest pivot of J_d, times the largest entry of B
+/// where that is above 1, small where J loses rank, not where another choice of columns would do. With redundant rows, of
+/// which the kept ones may lose rank where the others do not, the smallest of the first `rank` singular values of J. To be
+/// compared with what it is elsewhere on the motion.
 double ct_embed_pivot(struct ct_embed *s);
-/// The same of the kept rows alone, which are never further from losing rank than all rows are.
-double ct_embed_kept_pivot(struct ct_embed *s);
 /// At the last ct_machine_constraint, beside a place where J loses rank: x (rank, out) = (J_d J_d')^-1 v for a v without
 /// meaning, which has come into null(J') of that place, and log |det J_d|. False where that costs too much.
 bool ct_embed_dependence(struct ct_embed *s, double *x, double *log_det);

@@ -24,13 +24,16 @@ struct ct_fidelity {
     double *y;           // (ny) to spare
 };
 
-// A function of time and states, but not a single one of them, which is controlled as it is.
-static bool is_controlled(const struct ct_exs *x, ct_ex v)
+// A function of time and states, but not a single one of them, which is controlled as it is, nor the total energy, which is a
+// check of the run: as a small difference of large terms it would ask for digits that nothing else needs.
+static bool is_controlled(const struct ct_equations *e, ct_ex v)
 {
+    const struct ct_exs *x = e->x;
     const unsigned states = 1u << CT_SYM_Q | 1u << CT_SYM_U, kinds = ct_ex_kinds(x, v);
     const unsigned others
         = 1u << CT_SYM_TIME | 1u << CT_SYM_PARAM | 1u << CT_SYM_MODE | 1u << CT_SYM_MEMORY;
-    return kinds & states && !(kinds & ~(states | others)) && x->node[v.id].op != CT_OP_SYM;
+    return kinds & states && !(kinds & ~(states | others)) && x->node[v.id].op != CT_OP_SYM
+        && v.id != e->total.id;
 }
 
 struct ct_fidelity *ct_fidelity_create(struct ct_arena *a, struct ct_machine *m)
@@ -39,7 +42,7 @@ struct ct_fidelity *ct_fidelity_create(struct ct_arena *a, struct ct_machine *m)
     ct_ex *g = CT_NEWN(a, ct_ex, e->nresult + 1);
     size_t n = 0;
     for (size_t i = 0; i < e->nresult; i++)
-        if (is_controlled(e->x, e->result[i].value))
+        if (is_controlled(e, e->result[i].value))
             g[n++] = e->result[i].value;
     if (!n)
         return NULL;

@@ -4,7 +4,7 @@
 //
 // Controlled are outputs that are functions of time and states, other than states themselves: accelerations and
 // reactions would cost an evaluation of the equations a step. Nor are those controlled that are rounding beside
-// what they are made of, such as residuals of constraints.
+// what they are made of, such as residuals of constraints, nor the total energy.
 #ifndef CT_SOLVE_FIDELITY_H
 #define CT_SOLVE_FIDELITY_H
 

@@ -149,6 +149,9 @@ void ct_lane_renew(struct ct_lanes *s, int lane, double t, const vec *y);
 double ct_lane_pivot(struct ct_lanes *s, int lane, double t, const vec *y);
 /// Multipliers at (t, y) into the input, u' as in dy.
 void ct_lane_multipliers(struct ct_lanes *s, int lane, double t, const vec *y, const vec *dy);
+/// Angles and rotations that are followed may turn by so much in a step [rad], else the member runs alone, where steps are
+/// held back: less than a fifth of a turn, as the step that follows may be five times as long.
+static const double ct_lane_most_turn = 1;
 /// The strength of the lane's form belongs to its sigma, found by matrices just now.
 void ct_lane_compare(struct ct_lanes *s, int lane);
 void ct_lane_give_up(struct ct_lanes *s, int lane);

@@ -332,6 +332,19 @@ static void watch_stiffness(struct ct_lanes *s, set wanted)
 
 // ---- after a try ------------------------------------------------------------------------------------
 
+// Lanes in which something turns too fast to be followed by steps of this length.
+static void give_up_fast(struct ct_lanes *s, const vec *memory, set wanted)
+{
+    for (size_t i = 0; i < s->e->nmemory; i++) {
+        const bool is_half = s->e->memory[i].kind == CT_MEMORY_QUATERNION;
+        for (int l = 0; l < W && s->e->memory[i].kind != CT_MEMORY_OFFSET; l++) {
+            const double turn = (is_half ? 2 : 1) * fabs(s->memory.out[i][l] - memory[i][l]);
+            if (ct_has_lane(wanted, l) && turn > ct_lane_most_turn)
+                ct_lane_give_up(s, l);
+        }
+    }
+}
+
 // Memories follow the motion to y at t where wanted.
 static void follow(struct ct_lanes *s, vec t, const vec *y, set wanted)
 {
@@ -341,6 +354,7 @@ static void follow(struct ct_lanes *s, vec t, const vec *y, set wanted)
         return;
     set_input(s, t, y);
     ct_lane_run(&s->memory, s->input);
+    give_up_fast(s, memory, wanted);
     for (size_t i = 0; i < e->nmemory; i++) {
         if (e->memory[i].kind != CT_MEMORY_OFFSET)
             put(&memory[i], &s->memory.out[i], 1, wanted);
@@ -365,6 +379,8 @@ static void foresee_singular(struct ct_lanes *s, vec t, const vec *y, set wanted
         return;
     s->pivot_most = choose(mask_of(wanted), larger(s->pivot_most, s->sigma), s->pivot_most);
     s->near = set_of(s->sigma < singular_pivot * s->pivot_most);
+    if (s->rank == 1) // sigma is 1 everywhere
+        s->near = wanted;
     for (int l = 0; l < W; l++) {
         struct ct_lane *lane = &s->lane[l];
         if (!ct_has_lane(wanted, l))

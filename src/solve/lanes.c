@@ -339,12 +339,17 @@ bool ct_lanes_load(struct ct_lanes *s, int l, const struct ct_run_options *o)
     s->pivot_most[l] = 0;
     s->near &= ~(1u << l);
     start_lane(&s->lane[l], o);
+    const double glance = 1e-6; // of the run, or [s]
+    const double turning = ct_memory_turning(s->m, 0, y, glance * fmin(1, o->duration));
+    ct_machine_set(s->m, 0, y);
     if (!ct_lane_choose(s, l) || ct_run_rhs(s->run, 0, y, s->one_dy) != CT_EVAL_OK)
         return false;
     s->sigma[l] = s->embed->sigma; // of y now
     compare_at_start(s, l);
     if (!first_step(s, l, y))
         return false;
+    if (turning > 0)
+        s->lane[l].control.h = fmin(s->lane[l].control.h, ct_lane_most_turn / turning / 2);
     fill(s, l, y);
     s->lane[l].state = CT_LANE_RUNNING;
     return true;

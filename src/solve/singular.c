@@ -24,10 +24,11 @@ struct ct_singular *ct_singular_create(struct ct_arena *arena, struct ct_machine
 
 void ct_singular_start(struct ct_singular *w)
 {
-    w->in = w->kept_far = INFINITY;
+    w->in = INFINITY;
     w->reach = w->most = w->part = w->t = 0;
     w->switches = -1;
     w->npassed = 0;
+    w->s->nearness = 1;
 }
 
 // ---- ahead ------------------------------------------------------------------------------------------------
@@ -86,17 +87,6 @@ static double time_to_singular(struct ct_singular *w, const struct sight *a, dou
     return s - pivot / slope;
 }
 
-// With redundant rows what tells of all of them costs as much as some evaluations. As long as the kept rows have not come
-// nearer to losing rank than when nothing was ahead, nothing is.
-static bool is_far_still(struct ct_singular *w, const struct sight *a)
-{
-    if (w->s->rank == (int)w->m->nrow || w->in < INFINITY || w->s->switches != w->switches)
-        return false;
-    ct_machine_set(w->m, ct_time_before(a->t, a->pending), a->y);
-    ct_machine_constraint(w->m);
-    return ct_embed_kept_pivot(w->s) >= w->kept_far;
-}
-
 bool ct_singular_foresee(struct ct_singular *w, double t, const double *y, const double *dy,
                          double pending, bool may_repeat)
 {
@@ -104,10 +94,6 @@ bool ct_singular_foresee(struct ct_singular *w, double t, const double *y, const
     const double dt = t - w->t;
     if (!ct_embed_has_pivot(w->s) || !(dt > 0))
         return true;
-    if (is_far_still(w, &ahead)) {
-        w->t = t;
-        return true;
-    }
     const double now = pivot_after(w, &ahead, 0), part = now / fmax(w->most, now);
     // after another choice of rows and columns the pivot is not to be compared with the last one
     const bool is_comparable = w->s->switches == w->switches;
@@ -120,12 +106,9 @@ bool ct_singular_foresee(struct ct_singular *w, double t, const double *y, const
     w->most = fmax(w->most, now);
     w->in = INFINITY;
     w->s->is_delicate = part < near_pivot;
-    w->kept_far = INFINITY;
-    if (part > foreseen_pivot) {
-        if (w->s->rank < (int)w->m->nrow)
-            w->kept_far = foreseen_pivot * ct_embed_kept_pivot(w->s);
+    w->s->nearness = part;
+    if (part > foreseen_pivot)
         return true;
-    }
     w->in = time_to_singular(w, &ahead, now, dt);
     w->reach = w->in * fmin(1, singular_pivot / part);
     return true;
@@ -137,6 +120,31 @@ void ct_singular_set_crossing(struct ct_singular *w, bool is_crossing)
 {
     w->s->is_crossing = is_crossing;
     w->s->is_delicate = !is_crossing && w->part < near_pivot;
+}
+
+// Rows with part in x (rank), a vector of null(J') that has come out of ct_embed_dependence.
+static void mark_rows(const struct ct_singular *w, bool *row)
+{
+    const double involved
+        = 1e-3; // of the largest entry; rows that take no part have the square of the distance
+    const int n = w->s->rank;
+    double most = 0;
+    for (int i = 0; i < n; i++)
+        most = fmax(most, fabs(w->x[i]));
+    for (int i = 0; i < n; i++)
+        row[w->s->row[i]] = fabs(w->x[i]) > involved * most;
+}
+
+bool ct_singular_is_beside(struct ct_singular *w, double t, const double *y, bool *row)
+{
+    const double beside = 1e-2; // of the largest pivot
+    double log_det;
+    memset(row, 0, w->m->nrow * sizeof *row);
+    if (!ct_embed_has_pivot(w->s) || !(pivot_at(w, t, y) < beside * w->most))
+        return false;
+    if (ct_embed_dependence(w->s, w->x, &log_det))
+        mark_rows(w, row);
+    return true;
 }
 
 // ---- passed -----------------------------------------------------------------------------------------------
@@ -173,8 +181,7 @@ static void find_dependence(struct ct_singular *w, const struct passage *p, doub
                             struct ct_singular_position *at)
 {
     const double d = 0.02, nearer = 0.5;
-    const double involved = 1e-3; // of the largest entry; rows that take no part have d^2 of it
-    double far, near, most = 0;
+    double far, near;
     const int n = w->s->rank;
     memset(at->row, 0, w->m->nrow * sizeof *at->row);
     at->rank_loss = 0;
@@ -185,10 +192,7 @@ static void find_dependence(struct ct_singular *w, const struct passage *p, doub
     if (!ct_embed_dependence(w->s, w->x, &near))
         return;
     at->rank_loss = (int)fmin(n, fmax(1, round((near - far) / log(nearer))));
-    for (int i = 0; i < n; i++)
-        most = fmax(most, fabs(w->x[i]));
-    for (int i = 0; i < n; i++)
-        at->row[w->s->row[i]] = fabs(w->x[i]) > involved * most;
+    mark_rows(w, at->row);
 }
 
 void ct_singular_pass(struct ct_singular *w, const struct ct_stepper_span *span, double t1,

@@ -23,9 +23,7 @@ struct ct_singular {
     double in;            // time to the position ahead; INFINITY: there is none
     double reach;         // time before it in which f is better not computed
     double most, part, t; // the largest pivot so far, the last one against it, and its time
-    double
-        kept_far; // the pivot of the kept rows down to which redundant ones need not be looked at
-    long switches; // of the embedding, there
+    long switches;        // of the embedding, there
     long npassed;
     struct ct_singular_position *passed; // the first of them (CT_MOST_SINGULAR)
     double *y, *d, *x;                   // (ny), (nu), (nrow)
@@ -40,6 +38,8 @@ void ct_singular_start(struct ct_singular *w);
 /// position, or past it, before that was foreseen, and may be taken again.
 bool ct_singular_foresee(struct ct_singular *w, double t, const double *y, const double *dy,
                          double pending, bool may_repeat);
+/// Is y beside a singular position, foreseen or not? row (nrow, out): those that depend there; none of a large system.
+bool ct_singular_is_beside(struct ct_singular *w, double t, const double *y, bool *row);
 /// What is evaluated from now on belongs to a crossing, or does not.
 void ct_singular_set_crossing(struct ct_singular *w, bool is_crossing);
 /// A crossing has been made and goes on to t1: find the position on it and keep it.

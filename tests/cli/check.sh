@@ -12,6 +12,21 @@ sed 's/^outputs:/outputs:\n  - top_pin.force.x\n  - top_pin.force.z\n  - crank_p
 plain check four_bar.yaml --keep-all --tree joints
 plain simulate four_bar.yaml --keep-all --tree joints --until 0.1 | grep undetermined
 "$COTREE" check four_bar.yaml --keep-all --tree joints --summary - | sed -n '/"undetermined"/,/]/p'
+echo '-- signals that joints and forces do not have'
+cat >signals.yaml <<'END'
+cotree: 1
+bodies:
+  crank: {mass: 1, inertia: 1}
+  block: {mass: 1, inertia: 1}
+joints:
+  pin: {type: revolute, from: ground, to: crank}
+  slot: {type: cylindrical, from: crank, to: block}
+  rod: {type: distance, from: ground, to: block, length: 1}
+forces:
+  pull: {type: spring, from: ground, to: block, stiffness: 1, length: 1}
+outputs: [pin.q2, slot.q3, slot.effort3, rod.q, pull.lenght]
+END
+say check signals.yaml
 echo '-- beams with nothing left out'
 for model in "$SYSTEMS"/spin_up_stiff/model.yaml "$SYSTEMS"/tapered_cantilever/model.yaml "$SYSTEMS"/slider_crank_flexible/model.yaml; do
   "$COTREE" check "$model" --keep-all | grep '^beam'

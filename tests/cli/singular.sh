@@ -24,3 +24,42 @@ for options in "" --keep-all "--tree joints" "--tree absolute"; do
     grep -o '"rank_loss": .*' s.json | sort | uniq -c | tr -s ' '
     sed -n 's/.*"time": //p' s.json | tr -d , | awk '{ printf "%s%.4f", (NR > 1 ? " " : ""), $1 } END { print "" }'
 done
+echo '-- members of a sweep'
+cat >isosceles.yaml <<'END'
+cotree: 1
+name: isosceles slider-crank
+parameters: {g: 9.81}
+gravity: [0, -g, 0]
+bodies:
+  crank: {mass: 1, inertia: 0.0834, com: [0.5, 0, 0], points: {end: [1, 0, 0]}}
+  rod: {mass: 1, inertia: 0.0834, com: [0.5, 0, 0], points: {end: [1, 0, 0]}}
+  block: {mass: 1, inertia: 0.01}
+joints:
+  pin: {type: revolute, from: ground, to: crank, initial: {q: 0.5, u: 3}}
+  elbow: {type: revolute, from: crank.end, to: rod, initial: {q: -1, guess: true}}
+  wrist: {type: revolute, from: rod.end, to: block, initial: {q: 0.5, guess: true}}
+  slide: {type: prismatic, from: ground, to: block}
+outputs: [slide.q, elbow.q]
+simulation: {duration: 4, samples: 5, tolerance: 1e-9}
+END
+"$COTREE" sweep isosceles.yaml --vary g=9.5:10:5 -o sweep.csv --quiet
+tail -n +2 sweep.csv | while IFS=, read -r run g q elbow status; do
+    "$COTREE" simulate isosceles.yaml --set "g=$g" -o one.csv --quiet
+    tail -n 1 one.csv | awk -F, -v run="$run" -v q="$q" -v elbow="$elbow" -v status="$status" \
+        '{ d = $2 - q; e = $3 - elbow
+           printf "%s %.5f %.5f %s %s\n", run, q, elbow, (d*d + e*e < 1e-16 ? "as alone" : "another"), status }'
+done
+echo '-- in a sweep, what is followed turns fast'
+cat >turning.yaml <<'END'
+cotree: 1
+parameters: {w: 100}
+bodies: {a: {mass: 1, inertia: 1}, b: {mass: 1, inertia: 1}}
+joints:
+  s: {type: revolute, from: ground, to: a, initial: {u: w}}
+  c: {type: revolute, from: ground, to: b, initial: {u: -50}}
+  rel: {type: revolute, from: a, to: b}
+outputs: [rel.q]
+simulation: {duration: 10, samples: 3}
+END
+"$COTREE" sweep turning.yaml --vary w=0:1000:5 -o sweep.csv --quiet
+tail -n +2 sweep.csv | awk -F, '{ printf "%s %.6f %s\n", $1, $3, $4 }'

@@ -25,9 +25,17 @@ cut() {
 size=0
 case $1 in
 R11) # frames of one element in each leg
-    reference=R11_K4 until=3 order=2 ratio=3 allowed=4e-4 size=10
+    reference=R11_K4 until=3 order=2 ratio=2.9 allowed=4e-4 size=10
     "$folder/../../systems/right_angle_cantilever/generate.sh" 2 1 >"$work/coarse.yaml"
     "$folder/../../systems/right_angle_cantilever/generate.sh" 4 1 >"$work/fine.yaml"
+    ;;
+R10) # elements; to the folded position at 120 degrees
+    reference=R10 until=40 order=2 ratio=4 allowed=3e-3
+    for n in 2 4; do
+        sed "s/elements: 4/elements: $n/" "$folder/../../systems/flexible_four_bar/model.yaml" >"$work/$n.yaml"
+    done
+    mv "$work/2.yaml" "$work/coarse.yaml"
+    mv "$work/4.yaml" "$work/fine.yaml"
     ;;
 R09_K4 | R09_K6) # elements
     reference=$1 until=7.5 order=2 ratio=3.9 allowed=2e-6

@@ -20,6 +20,7 @@ same "$systems/chain40/model.yaml" "$systems/chain40/generate.sh"
 same "$systems/chain_against_beam/model.yaml" "$systems/chain_against_beam/generate.sh"
 same "$systems/spin_up_roberts/model.yaml" "$systems/spin_up_roberts/generate.sh"
 same "$systems/spin_up_welded/model.yaml" "$systems/spin_up_welded/generate.sh"
+same "$systems/right_angle_frame/model.yaml" "$systems/right_angle_frame/generate.sh"
 same "$systems/right_angle_cantilever/model.yaml" "$systems/right_angle_cantilever/generate.sh"
 for n in 1 2 3 5 10; do
     same "$folder/R05_N$n.yaml" "$systems/n_four_bar/generate.sh" "$n" 10 1 1e-10
