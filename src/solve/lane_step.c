@@ -377,10 +377,12 @@ static void foresee_singular(struct ct_lanes *s, vec t, const vec *y, set wanted
 {
     if (!s->rank)
         return;
-    s->pivot_most = choose(mask_of(wanted), larger(s->pivot_most, s->sigma), s->pivot_most);
-    s->near = set_of(s->sigma < singular_pivot * s->pivot_most);
-    if (s->rank == 1) // sigma is 1 everywhere
-        s->near = wanted;
+    // with a single row sigma is 1 everywhere, but the strength of the form falls
+    vec pivot = s->sigma;
+    if (s->rank == 1)
+        pivot = s->strength * larger(all_lanes(1), s->kappa);
+    s->pivot_most = choose(mask_of(wanted), larger(s->pivot_most, pivot), s->pivot_most);
+    s->near = set_of(pivot < singular_pivot * s->pivot_most);
     for (int l = 0; l < W; l++) {
         struct ct_lane *lane = &s->lane[l];
         if (!ct_has_lane(wanted, l))
