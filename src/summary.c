@@ -554,11 +554,28 @@ void ct_sim_print_summary(const struct ct_sim *sim, FILE *out)
 
 // ---- what a system is ----------------------------------------------------------------------------------
 
+struct part {
+    long n;
+    const char *one, *many;
+};
+
+static void print_parts(FILE *out, const char *title, const struct part *part, size_t n)
+{
+    fprintf(out, "%-*s", TITLE_WIDTH, title);
+    for (size_t i = 0; i < n; i++)
+        fprintf(out, "%s%ld %s", i ? ", " : "", part[i].n,
+                part[i].n == 1 ? part[i].one : part[i].many);
+    fputc('\n', out);
+}
+
 static void print_counts(FILE *out, const char *title, const struct ct_program *p)
 {
     const struct ct_tape_counts c = p->listing->counts;
-    fprintf(out, "%-13s%ld multiplications, %ld additions, %ld divisions, %ld functions\n",
-            title, c.multiplications, c.additions, c.divisions, c.functions);
+    const struct part parts[] = {{c.multiplications, "multiplication", "multiplications"},
+                                 {c.additions, "addition", "additions"},
+                                 {c.divisions, "division", "divisions"},
+                                 {c.functions, "function", "functions"}};
+    print_parts(out, title, parts, COUNT(parts));
 }
 
 static void print_formulation(FILE *out, const struct ct_equations *e)
@@ -627,18 +644,12 @@ void ct_sim_print_check(const struct ct_sim *sim, FILE *out)
     fprintf(out, "%s\n", m->name);
     if (*m->description)
         fprintf(out, "%s\n", m->description);
-    const struct {
-        size_t n;
-        const char *one, *many;
-    } parts[] = {{m->nbody - 1, "body", "bodies"},
-                 {m->njoint, "joint", "joints"},
-                 {m->nforce, "force", "forces"},
-                 {m->nparameter, "parameter", "parameters"},
-                 {m->noutput, "output", "outputs"}};
-    for (size_t i = 0; i < COUNT(parts); i++)
-        fprintf(out, "%s%zu %s", i ? ", " : "model        ", parts[i].n,
-                parts[i].n == 1 ? parts[i].one : parts[i].many);
-    fputc('\n', out);
+    const struct part parts[] = {{(long)m->nbody - 1, "body", "bodies"},
+                                 {(long)m->njoint, "joint", "joints"},
+                                 {(long)m->nforce, "force", "forces"},
+                                 {(long)m->nparameter, "parameter", "parameters"},
+                                 {(long)m->noutput, "output", "outputs"}};
+    print_parts(out, "model", parts, COUNT(parts));
     print_freedoms(out, sim);
     fprintf(out, "freedoms     %ld = %zu speeds - rank %d of the constraints\n", freedoms(sim),
             e->nu, sim->report.rank);
