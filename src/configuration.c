@@ -33,13 +33,16 @@ bool ct_equations_like(struct ct_ctx *own, const struct ct_model *model,
                                      .with_energy = true,
                                      .with_outputs = true,
                                      .more = like->more,
-                                     .with_residual = true,
+                                     .with_residual = !like->is_analysed,
+                                     .for_analysis = like->is_analysed,
                                      .like = like,
                                      .held = drivers_held};
     o.trans = branches(own->model, like, like->T, &o.ntrans);
     o.rot = branches(own->model, like, like->R, &o.nrot);
     const bool ok = ct_formulate(own, own->model, model, &o, out, &unused);
-    if (ok)
+    if (ok && out->is_analysed)
+        ct_formulate_rows(out);
+    else if (ok)
         ct_formulate_dynamics(out);
     ct_own_next_stage(own);
     return ok;
@@ -134,8 +137,8 @@ static bool find_equilibrium(struct ct_ctx *own, struct ct_system *sys,
         if (applies)
             return true;
         c->is_large = c->may_be_large = false; // full matrices
-        ct_formulate_dynamics(&sys->equations);
-        ct_formulate_residual(&sys->equations);
+        ct_formulate_dynamics(c->equations);
+        ct_formulate_residual(c->equations);
         c->l = ct_configuration_start(own, sys, c->model, c->e, true);
     }
     return c->l && ct_equilibrium_find(c->l, NULL, &c->equilibrium);
@@ -171,6 +174,16 @@ static bool find_time(struct ct_ctx *own, struct ct_system *sys, const struct ct
     return ct_linear_move(c->l);
 }
 
+static void formulate_for(struct ct_equations *e, bool is_large)
+{
+    if (!is_large || !e->is_analysed)
+        ct_formulate_dynamics(e);
+    if (is_large)
+        ct_formulate_rows(e);
+    else
+        ct_formulate_residual(e);
+}
+
 bool ct_configuration_find(struct ct_ctx *own, struct ct_system *sys,
                            const struct ct_sim_options *o, struct ct_configuration *c)
 {
@@ -185,12 +198,9 @@ bool ct_configuration_find(struct ct_ctx *own, struct ct_system *sys,
     c->is_large = c->may_be_large && c->equations->nu > CT_MOST_DENSE
                && (strcmp(c->about, words[0]) == 0
                    || (strcmp(c->about, words[1]) == 0 && !has_drivers(&sys->model)));
-    if (!c->is_large || !sys->equations.is_analysed)
-        ct_formulate_dynamics(&sys->equations);
-    if (c->is_large)
-        ct_formulate_rows(&sys->equations);
-    else
-        ct_formulate_residual(&sys->equations);
+    formulate_for(&sys->equations, c->is_large);
+    if (c->equations != &sys->equations)
+        formulate_for(c->equations, c->is_large);
     if (strcmp(c->about, words[0]) == 0)
         return find_start(own, sys, c);
     if (strcmp(c->about, words[1]) == 0)

@@ -13,7 +13,7 @@ struct ct_configuration {
     bool hold_drivers; // at an equilibrium motions stand still, even steady ones
     /// A variant and its equations on the trees of the system; NULL: those of the system itself.
     const struct ct_model *model;
-    const struct ct_equations *equations;
+    struct ct_equations *equations;
     // found
     const struct ct_equations *e;
     struct ct_linear *l; // linearised there

@@ -39,7 +39,8 @@ static bool solve(struct ct_modes *s, size_t count)
         return true;
     if (s->at.is_large)
         ct_warning(&s->own, (struct ct_mark){.file = s->system->model.file}, 0,
-                   "%d speeds with dampers, moving drivers or redundant constraints: dense "
+                   "%d speeds with dampers, moving drivers, redundant constraints or loads "
+                   "without potential: dense "
                    "matrices, which takes long",
                    s->at.l->nu);
     s->at.may_be_large = false;
