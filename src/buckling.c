@@ -69,9 +69,8 @@ static bool find(struct ct_buckling *s)
             return false;
         if (applies)
             return true;
-        s->at.may_be_large = false;
         s->variant->parameter[parameter].value = 0;
-        if (!ct_configuration_find(&s->own, s->system, NULL, &s->at))
+        if (!ct_configuration_find_full(&s->own, s->system, NULL, &s->at))
             return false;
     }
     keep_start(s);
@@ -176,7 +175,8 @@ static bool add_level(struct ct_ctx *ctx, struct ct_buckling *s, struct ct_colum
     (void)ctx;
     bool applies = true;
     if (s->at.is_large
-            ? !ct_large_modes(&s->own, s->own.model, l, (size_t)count + 2, &mode, &n, &how, &applies)
+            ? !ct_large_modes(&s->own, s->own.model, l, (size_t)count + 2, &mode, &n, &how,
+                              &applies)
                   || !applies
             : !ct_linear_rest(l) || !ct_modes_solve(&s->own, s->own.model, l, &mode, &n, &how))
         return false;

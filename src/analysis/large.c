@@ -12,8 +12,8 @@
 enum { BLOCK = 4 };
 static const double still
     = 1e-9; // accelerations beside those of the weights: an equilibrium to rounding
-static const double absent = 1e-12;   // damping against the masses' rates: none
-static const double symmetric = 1e-10; // of K
+static const double absent = 1e-12;    // damping against the masses' rates: none
+static const double symmetric = 1e-12; // of K
 static const double found
     = 1e-9; // residual of a mode: its eigenvalue is right to the square of that
 static const double gone = 1e-10; // of a vector, once the basis is taken off: nothing new

@@ -13,7 +13,8 @@
 #include <string.h>
 
 static const double refined = 1e-13, nearly = 1e-6; // of a factor
-static const double part = 0.5; // of the first factor: the second load level, large against rounding of K
+static const double part
+    = 0.5; // of the first factor: the second load level, large against rounding of K
 enum { MOST_LEVELS = 40, MOST_STEPS = 30 };
 
 struct search {
@@ -84,8 +85,8 @@ static bool is_stable(struct search *s)
 }
 
 // With the load `level`: how many there are; false where the path does not lead there.
-static bool factors_with(struct search *s, double level, size_t count, double *c,
-                         double *shape, size_t *n)
+static bool factors_with(struct search *s, double level, size_t count, double *c, double *shape,
+                         size_t *n)
 {
     *n = 0;
     start_again(s);
@@ -167,8 +168,7 @@ bool ct_buckling_find_large(struct ct_linear *l, size_t at, size_t count,
                             struct ct_buckling_list *list, bool *applies)
 {
     struct search s = search_create(l, at);
-    double *c = CT_NEWN(s.a, double, count + 1),
-           *shape = CT_NEWN(s.a, double, s.nu *count + 1);
+    double *c = CT_NEWN(s.a, double, count + 1), *shape = CT_NEWN(s.a, double, s.nu *count + 1);
     *list = (struct ct_buckling_list){.has_potential = true};
     list->factor = CT_NEWN(s.a, struct ct_buckling_factor, count + 1);
     *applies = is_stable(&s) && ct_point_evaluate(s.free);
