@@ -122,10 +122,13 @@ static void run_alone(struct ct_study *s, long member, struct ct_ctx *ctx,
     if (system && !(o.step > 0) && !(system->model.simulation.step > 0))
         o.samples = 2;
     struct ct_sim *sim = ct_sim_create(ctx, system, &o);
+    if (!sim) {
+        ct_study_record(s, member, NULL, ctx);
+        return;
+    }
     const bool ok = ct_sim_run(ctx, sim, NULL);
     ct_study_record(s, member, ok ? sim->report.final : NULL, ctx);
-    if (sim)
-        count_steps(s, sim->report.stats.steps, sim->report.stats.rejected_steps, 1);
+    count_steps(s, sim->report.stats.steps, sim->report.stats.rejected_steps, 1);
     ct_sim_destroy(sim);
 }
 
@@ -196,7 +199,7 @@ static void empty_lane(struct worker *w, int lane)
     const long member = w->member[lane];
     const bool has_arrived = ct_lanes_state(w->lanes, lane) == CT_LANE_ARRIVED;
     if (has_arrived && ct_lanes_results(w->lanes, lane, w->value)) {
-        ct_study_record(w->s, member, w->value, NULL);
+        ct_study_record(w->s, member, w->value, &w->sim.own);
     } else { // it is known to be readable
         forget_errors(&w->sim.own);
         if (set_member(w, member))
