@@ -199,7 +199,7 @@ static void empty_lane(struct worker *w, int lane)
     const long member = w->member[lane];
     const bool has_arrived = ct_lanes_state(w->lanes, lane) == CT_LANE_ARRIVED;
     if (has_arrived && ct_lanes_results(w->lanes, lane, w->value)) {
-        ct_study_record(w->s, member, w->value, NULL);
+        ct_study_record(w->s, member, w->value, &w->sim.own);
     } else { // it is known to be readable
         forget_errors(&w->sim.own);
         if (set_member(w, member))

@@ -283,9 +283,10 @@ CT_API void ct_study_destroy(struct ct_study *study);
  * Run all members, once per sweep. results may be NULL.
  *
  * A member that fails is a row; the sweep fails when rows cannot be written. The file appears under its name when
- * it is complete; until then rows are in PATH.partial, in order.
+ * it is complete; until then rows are in PATH.partial, in order. PATH.settings, until then PATH.partial.settings, says what
+ * they depend on.
  *
- * Errors: E002 for the file, E003 when it cannot be resumed.
+ * Errors: E002 for the file, E003 when it cannot be resumed, as when settings or the model are others.
  */
 CT_API bool ct_study_run(struct ct_ctx *ctx, struct ct_study *study,
                          const struct ct_study_results *results);

@@ -11,8 +11,13 @@
 // Choose anew when the dependent part has become this much worse than when it was chosen, (6.3)
 static const double ct_kappa_growth = 10;
 static const double ct_kappa_largest = 1e3;
+// Where rows are redundant others can do for those that are kept, so they are exchanged before they become nearly dependent:
+// beside that stages, which lie off the rows that are left out, see another field.
+static const double ct_redundant_fall = 2.5;
 // Projections stop here: a few roundings of coordinates of order one.
 static const double ct_position_tolerance = 1e-13;
+// v is linear in u: one correction is enough but for its own rounding, which counts from here on [rad/s, m/s].
+static const double ct_small_change = 1e-4;
 // Pivots smaller than this against the largest enlarge what is left over noticeably.
 static const double ct_small_pivot = 0.5;
 enum { CT_MOST_NEWTON = 25 };
@@ -25,12 +30,13 @@ static const double ct_alike = 1.02, ct_most_change_alike = 4;
 // the second the form is not used.
 static const double ct_left_plain = 1e-13, ct_left_most = 1e-11;
 
-/// Is another choice of rows or columns due?
+/// Is another choice of rows or columns due? is_redundant: there are rows that are not kept.
 static inline bool ct_has_worn(double kappa, double kappa_chosen, double sigma,
-                               double sigma_chosen)
+                               double sigma_chosen, bool is_redundant)
 {
+    const double fall = is_redundant ? ct_redundant_fall : ct_kappa_growth;
     return kappa > ct_kappa_growth * kappa_chosen + 1 || kappa > ct_kappa_largest
-        || sigma * ct_kappa_growth < sigma_chosen;
+        || sigma * fall < sigma_chosen;
 }
 
 /// What is near enough in a projection: a few roundings, divided twice by the smallest pivot beside a singular

@@ -9,9 +9,6 @@
 // A row counts as dependent when what is left of it is this small against the largest: the
 // constraints of a closed mechanism are known to about 1e-12 after projection.
 static const double rank_tolerance = 1e-9;
-// Where rows are redundant others can do for those that are kept, so they are exchanged before they become nearly dependent:
-// beside that stages, which lie off the rows that are left out, see another field.
-static const double redundant_fall = 2.5;
 // So many weak checks in a row ask for another order.
 enum { MOST_WEAK = 3 };
 
@@ -681,9 +678,8 @@ static bool has_worn(const struct ct_embed *s)
 {
     if (!s->rank)
         return false;
-    const bool is_redundant = s->rank < (int)s->m->nrow;
-    return ct_has_worn(s->kappa, s->kappa_chosen, s->sigma, s->sigma_chosen)
-        || (is_redundant && s->sigma * redundant_fall < s->sigma_chosen);
+    return ct_has_worn(s->kappa, s->kappa_chosen, s->sigma, s->sigma_chosen,
+                       s->rank < (int)s->m->nrow);
 }
 
 // With a single row sigma is 1 everywhere.
@@ -719,9 +715,6 @@ static enum ct_eval project_by_matrices(struct ct_embed *s, double t, double *y)
     return CT_EVAL_OK;
 }
 
-// v is linear in u: one correction is enough but for its own rounding, which counts from here on [rad/s, m/s].
-static const double small_change = 1e-4;
-
 static void change_speeds(const struct ct_machine *m, double *y, const double *du)
 {
     for (size_t k = 0; k < m->nu; k++)
@@ -756,7 +749,7 @@ static enum ct_eval project_by_form(struct ct_embed *s, double t, double *y, boo
             ct_machine_retract(m, y, f->dq);
             continue;
         }
-        const bool is_rough = largest(f->du, m->nu) > small_change;
+        const bool is_rough = largest(f->du, m->nu) > ct_small_change;
         change_speeds(m, y, f->du);
         *is_done = !is_rough || close_form(s, t, y);
         if (is_rough)

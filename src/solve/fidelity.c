@@ -10,7 +10,7 @@ static const double harmless = 0.25;
 enum { STEPS_BETWEEN = 7 };
 // State errors below this say nothing about the ratio of the two: steps are still growing.
 static const double least_error = 0.02;
-// Rounding is felt by a change of the states by this part of themselves, far above it so that it can be measured.
+// Rounding is felt by a change of the states by such a part of themselves, far above it so that it can be measured.
 static const double change = 0x1p-40;
 // An output counts from so many roundings on, and need not be better than so many.
 static const double least_size = 1e6, most_precise = 16;
@@ -18,14 +18,10 @@ static const double least_size = 1e6, most_precise = 16;
 struct ct_fidelity {
     struct ct_machine *m;
     struct ct_program program;
-    size_t n, ny;
-    double *largest,
-        *seen;        // (n) |g| over the steps that were accepted, at the last one looked at
-    double *at;       // (n) g there
-    double *rounding; // (n)
-    double *y;        // (ny) to spare
-    int skip;         // steps that are not looked at
-    bool has_seen;    // since the last acceptance
+    size_t ny;
+    struct ct_fidelity_record record;
+    double *at, *probed; // (n) g there
+    double *y;           // (ny) to spare
 };
 
 // A function of time and states, but not a single one of them, which is controlled as it is, nor the total energy, which is a
@@ -51,78 +47,105 @@ struct ct_fidelity *ct_fidelity_create(struct ct_arena *a, struct ct_machine *m)
     if (!n)
         return NULL;
     struct ct_fidelity *p = CT_NEW(a, struct ct_fidelity);
-    *p = (struct ct_fidelity){.m = m, .n = n, .ny = m->nq + m->nu + 1};
+    *p = (struct ct_fidelity){.m = m, .ny = m->nq + m->nu + 1};
     ct_machine_compile(a, m, e->x, g, n, &p->program);
-    double **const vectors[] = {&p->largest, &p->seen, &p->at, &p->rounding};
-    for (size_t i = 0; i < COUNT(vectors); i++)
-        *vectors[i] = CT_NEWN(a, double, n);
+    p->record = ct_fidelity_record(a, n);
+    p->at = CT_NEWN(a, double, n);
+    p->probed = CT_NEWN(a, double, n);
     p->y = CT_NEWN(a, double, p->ny);
     return p;
 }
 
-void ct_fidelity_start(struct ct_fidelity *p)
+const struct ct_program *ct_fidelity_program(const struct ct_fidelity *p)
 {
-    memset(p->largest, 0, p->n * sizeof *p->largest);
-    p->skip = 0;
-    p->has_seen = false;
+    return &p->program;
 }
 
-// g at y + s e; e == NULL: at y with changes of both signs by the part s.
-static const double *evaluate(struct ct_fidelity *p, double t, const double *y, const double *e,
-                              double s)
+// ---- what is known --------------------------------------------------------------------------------
+
+struct ct_fidelity_record ct_fidelity_record(struct ct_arena *a, size_t n)
 {
-    for (size_t i = 0; i < p->ny; i++)
-        p->y[i] = y[i] + s * (e ? e[i] : i % 2 ? -y[i] : y[i]);
+    return (struct ct_fidelity_record){
+        .n = n, .largest = CT_NEWN(a, double, n), .seen = CT_NEWN(a, double, n)};
+}
+
+void ct_fidelity_clear(struct ct_fidelity_record *r)
+{
+    if (r->n)
+        memset(r->largest, 0, r->n * sizeof *r->largest);
+    r->skip = 0;
+    r->has_seen = false;
+}
+
+bool ct_fidelity_is_due(struct ct_fidelity_record *r)
+{
+    if (r->skip == 0)
+        return true;
+    r->skip--;
+    return false;
+}
+
+double ct_fidelity_judge(struct ct_fidelity_record *r, const double *at, const double *probed,
+                         const double *off, const struct ct_tolerance *tolerance, double states)
+{
+    double sum = 0;
+    size_t n = 0;
+    r->has_seen = true;
+    for (size_t i = 0; i < r->n; i++) {
+        const double rounding = fabs(probed[i] - at[i]) * (DBL_EPSILON / change);
+        r->seen[i] = fabs(at[i]);
+        const double size = fmax(r->largest[i], r->seen[i]);
+        if (!(size >= least_size * rounding))
+            continue;
+        const double wanted = tolerance->rtol * size + tolerance->atol;
+        const double part = (off[i] - at[i]) / fmax(wanted, most_precise * rounding);
+        sum += part * part;
+        n++;
+    }
+    const double error = n && isfinite(sum) ? sqrt(sum / (double)n) : 0;
+    r->skip = states >= least_error && error <= harmless * states ? STEPS_BETWEEN : 0;
+    return error;
+}
+
+void ct_fidelity_keep(struct ct_fidelity_record *r)
+{
+    for (size_t i = 0; i < r->n && r->has_seen; i++)
+        r->largest[i] = fmax(r->largest[i], r->seen[i]);
+    r->has_seen = false;
+}
+
+// ---- a run alone ------------------------------------------------------------------------------------
+
+void ct_fidelity_start(struct ct_fidelity *p)
+{
+    ct_fidelity_clear(&p->record);
+}
+
+// g at p->y.
+static const double *evaluate(struct ct_fidelity *p, double t)
+{
     ct_machine_set(p->m, t, p->y);
     ct_program_run(&p->program, p->m->input);
     return p->program.out;
 }
 
-static void measure_rounding(struct ct_fidelity *p, double t, const double *y)
-{
-    const double *g = evaluate(p, t, y, NULL, change);
-    for (size_t i = 0; i < p->n; i++)
-        p->rounding[i] = fabs(g[i] - p->at[i]) * (DBL_EPSILON / change);
-}
-
-static double error_of_outputs(struct ct_fidelity *p, double t, const double *y,
-                               const double *e, const struct ct_tolerance *tolerance)
-{
-    const double *g = evaluate(p, t, y, e, 1);
-    double sum = 0;
-    size_t n = 0;
-    for (size_t i = 0; i < p->n; i++) {
-        const double size = fmax(p->largest[i], p->seen[i]);
-        if (!(size >= least_size * p->rounding[i]))
-            continue;
-        const double wanted = tolerance->rtol * size + tolerance->atol;
-        const double part = (g[i] - p->at[i]) / fmax(wanted, most_precise * p->rounding[i]);
-        sum += part * part;
-        n++;
-    }
-    return n && isfinite(sum) ? sqrt(sum / (double)n) : 0;
-}
-
 double ct_fidelity_error(struct ct_fidelity *p, double t, const double *y, const double *e,
                          const struct ct_tolerance *tolerance, double states)
 {
-    if (p->skip > 0) {
-        p->skip--;
+    const size_t bytes = p->record.n * sizeof *p->at;
+    if (!ct_fidelity_is_due(&p->record))
         return 0;
-    }
-    memcpy(p->at, evaluate(p, t, y, e, 0), p->n * sizeof *p->at);
-    for (size_t i = 0; i < p->n; i++)
-        p->seen[i] = fabs(p->at[i]);
-    p->has_seen = true;
-    measure_rounding(p, t, y);
-    const double error = error_of_outputs(p, t, y, e, tolerance);
-    p->skip = states >= least_error && error <= harmless * states ? STEPS_BETWEEN : 0;
-    return error;
+    memcpy(p->y, y, p->ny * sizeof *y);
+    memcpy(p->at, evaluate(p, t), bytes);
+    for (size_t i = 0; i < p->ny; i++)
+        p->y[i] = y[i] + ct_fidelity_probe((int)i) * y[i];
+    memcpy(p->probed, evaluate(p, t), bytes);
+    for (size_t i = 0; i < p->ny; i++)
+        p->y[i] = y[i] + e[i];
+    return ct_fidelity_judge(&p->record, p->at, p->probed, evaluate(p, t), tolerance, states);
 }
 
 void ct_fidelity_accept(struct ct_fidelity *p)
 {
-    for (size_t i = 0; i < p->n && p->has_seen; i++)
-        p->largest[i] = fmax(p->largest[i], p->seen[i]);
-    p->has_seen = false;
+    ct_fidelity_keep(&p->record);
 }

@@ -24,4 +24,33 @@ double ct_fidelity_error(struct ct_fidelity *p, double t, const double *y, const
 /// The last step that was looked at is accepted.
 void ct_fidelity_accept(struct ct_fidelity *p);
 
+// ---- for runs side by side, which evaluate outputs themselves --------------------------------------
+
+/// The outputs that are controlled, of the machine's input.
+const struct ct_program *ct_fidelity_program(const struct ct_fidelity *p);
+
+/// What is known of the outputs of a run.
+struct ct_fidelity_record {
+    size_t n;
+    double *largest,
+        *seen;     // (n) |g| over the steps that were accepted, at the last one looked at
+    int skip;      // steps that are not looked at
+    bool has_seen; // since the last acceptance
+};
+/// Of n outputs; all zero.
+struct ct_fidelity_record ct_fidelity_record(struct ct_arena *a, size_t n);
+void ct_fidelity_clear(struct ct_fidelity_record *r);
+/// Is this step looked at?
+bool ct_fidelity_is_due(struct ct_fidelity_record *r);
+/// The error from outputs (n each) at y, at y as ct_fidelity_probe changes it, and at y + e.
+double ct_fidelity_judge(struct ct_fidelity_record *r, const double *at, const double *probed,
+                         const double *off, const struct ct_tolerance *tolerance,
+                         double states);
+void ct_fidelity_keep(struct ct_fidelity_record *r);
+/// State i changed so little that outputs change by rounding only, enlarged by a factor.
+static inline double ct_fidelity_probe(int i)
+{
+    return i % 2 ? -0x1p-40 : 0x1p-40;
+}
+
 #endif

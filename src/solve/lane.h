@@ -8,6 +8,7 @@
 #define CT_SOLVE_LANE_H
 
 #include "integrate/control.h"
+#include "solve/fidelity.h"
 #include "solve/lanes.h"
 
 enum { W = CT_LANES };
@@ -51,8 +52,9 @@ struct ct_lane {
     double end;   // time at the end of this try
     double error; // of it
     double kappa_chosen, sigma_chosen;
-    double pivot_last, pivot_time;      // see foresee_singular
-    struct ct_strength strength;        // of its form
+    double pivot_last, pivot_time; // see foresee_singular
+    struct ct_strength strength;   // of its form
+    struct ct_fidelity_record outputs;
     int *row, *dependent, *independent; // as in embed.h
     long steps;
     bool is_watched; // for stiffness
@@ -69,6 +71,7 @@ struct ct_lanes {
     bool is_solved, has_power, needs_lam, has_quaternion, is_used;
     int whose; // the lane whose parameters the run has for matrices; -1: not known
     struct ct_lane_program motion, power, memory; // motion: u', q' themselves if is_solved
+    struct ct_lane_program output;                // those that are controlled
     struct ct_lane lane[W];
     struct ct_lanes_count count;
     const struct ct_method *method;
@@ -94,6 +97,8 @@ struct ct_lanes {
     // states (ny), stages (ny x stages)
     vec *y, *dy, *y1, *dy1, *end, *dend, *point, *late, *k;
     double *one_y, *one_dy, *one_point, *one_end; // a single lane's states
+    vec *at, *probed;                             // outputs that are controlled
+    double *one_at, *one_probed, *one_off;        // of a single lane
 };
 
 // ---- sets of lanes ----------------------------------------------------------------------------------

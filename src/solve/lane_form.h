@@ -145,6 +145,15 @@ static inline void add_speeds(struct ct_lanes *s, vec *y, const vec *du, set lan
         y[s->nq + k] = choose(m, y[s->nq + k] + du[k], y[s->nq + k]);
 }
 
+// Lanes whose correction of speeds is so large that its rounding counts; else one is enough, as v is linear in u.
+static inline set large_speeds(const struct ct_lanes *s, const vec *du)
+{
+    vec most = {0};
+    for (int k = 0; k < s->nu; k++)
+        most = larger(most, du[k]);
+    return set_of(most > ct_small_change);
+}
+
 // What a Newton iteration does next in each active lane: arrived, lost (also taken out of `wanted`), or another step,
 // which is what is returned.
 static inline set judge(const struct ct_lanes *s, const vec *phi, int i, vec *before,
@@ -174,20 +183,21 @@ static inline set project_by_form(struct ct_lanes *s, struct ct_lane_form *f, ve
 {
     const vec *dq = f->closing.out + 2 * s->nrow, *du = dq + s->nu;
     vec before = all_lanes(INFINITY);
-    set active = formed, arrived = 0;
+    set active = formed, arrived = 0, again = 0;
     for (int i = 0; active; i++) {
         const set sound = close_form(s, f, t, y, active);
         active = judge(s, f->closing.out, i, &before, sound, wanted);
         const set now = sound & ~active & *wanted; // no step is left to take
         add_positions(s, y, dq, active);
         add_speeds(s, y, du, now);
+        again |= now & large_speeds(s, du);
         arrived |= now;
     }
-    if (!arrived)
-        return 0;
-    const set done = close_form(s, f, t, y, arrived); // once more, to take off rounding
+    if (!again)
+        return arrived;
+    const set done = close_form(s, f, t, y, again);
     add_speeds(s, y, du, done);
-    return done;
+    return (arrived & ~again) | done;
 }
 
 static inline set project_by_forms(struct ct_lanes *s, vec t, vec *y, set *wanted)

@@ -44,7 +44,7 @@ static void renew(struct ct_lanes *s, vec t, const vec *y, set lanes)
     for (int l = 0; l < W && s->rank; l++)
         if (ct_has_lane(lanes, l)
             && ct_has_worn(s->kappa[l], s->lane[l].kappa_chosen, s->sigma[l],
-                           s->lane[l].sigma_chosen))
+                           s->lane[l].sigma_chosen, s->rank < s->nrow))
             ct_lane_renew(s, l, t[l], y);
 }
 
@@ -130,13 +130,28 @@ static set derive(struct ct_lanes *s, vec t, const vec *y, vec *dy, set wanted)
 
 // ---- a try ------------------------------------------------------------------------------------------
 
-static vec sum_stages(const struct ct_lanes *s, const struct ct_lane_sum *b, int i)
+// out (ny) = y + h sum_j a_j k_j, y NULL: without. A few states at a time: coefficients and places are read once for them.
+static void combine(const struct ct_lanes *s, vec *out, const vec *y,
+                    const struct ct_lane_sum *b)
 {
-    const vec *k = s->k + i;
-    vec sum = {0};
-    for (int j = 0; j < b->n; j++)
-        sum += b->a[j] * k[b->at[j]];
-    return sum;
+    enum { FEW = 3 };
+    const vec h = s->h;
+    int i = 0;
+    for (; i + FEW <= s->ny; i += FEW) {
+        const vec *k = s->k + i;
+        vec sum[FEW] = {{0}};
+        for (int j = 0; j < b->n; j++)
+            for (int l = 0; l < FEW; l++)
+                sum[l] += b->a[j] * k[b->at[j] + (size_t)l];
+        for (int l = 0; l < FEW; l++)
+            out[i + l] = y ? y[i + l] + h * sum[l] : h * sum[l];
+    }
+    for (; i < s->ny; i++) {
+        vec sum = {0};
+        for (int j = 0; j < b->n; j++)
+            sum += b->a[j] * s->k[b->at[j] + (size_t)i];
+        out[i] = y ? y[i] + h * sum : h * sum;
+    }
 }
 
 // Root mean square of e against the tolerance, as ct_stepper_norm.
@@ -163,19 +178,69 @@ static vec norm(const struct ct_lanes *s, const vec *e)
     return sum;
 }
 
-static void estimate(struct ct_lanes *s)
+// Outputs that are controlled at (t, y).
+static const vec *outputs(struct ct_lanes *s, vec t, const vec *y)
 {
-    const vec h = s->h;
-    vec e3 = {0};
+    set_input(s, t, y);
+    ct_lane_run(&s->output, s->input);
+    return s->output.out;
+}
+
+// What errors e of the states at the end of the step mean for outputs, in these lanes: as ct_fidelity_error.
+static void judge_outputs(struct ct_lanes *s, const vec *e, set lanes)
+{
+    const size_t n = s->output.nout;
+    const vec t = s->t + s->h;
+    vec *y = s->end;
+    copy(s->at, outputs(s, t, s->y1), (int)n);
     for (int i = 0; i < s->ny; i++)
-        s->point[i] = h * sum_stages(s, &s->error, i);
-    const vec e = norm(s, s->point);
-    for (int i = 0; i < s->ny && s->third.n; i++)
-        s->point[i] = s->y1[i] - (s->y[i] + h * sum_stages(s, &s->third, i));
-    if (s->third.n)
-        e3 = norm(s, s->point);
-    for (int l = 0; l < W; l++)
-        s->lane[l].error = s->third.n ? ct_stepper_join(e[l], e3[l]) : e[l];
+        y[i] = s->y1[i] + ct_fidelity_probe(i) * s->y1[i];
+    copy(s->probed, outputs(s, t, y), (int)n);
+    for (int i = 0; i < s->ny; i++)
+        y[i] = s->y1[i] + e[i];
+    const vec *off = outputs(s, t, y);
+    for (int l = 0; l < W; l++) {
+        struct ct_lane *lane = &s->lane[l];
+        if (!ct_has_lane(lanes, l))
+            continue;
+        ct_lane_take(s->one_at, s->at, l, n);
+        ct_lane_take(s->one_probed, s->probed, l, n);
+        ct_lane_take(s->one_off, off, l, n);
+        const struct ct_tolerance tolerance = {s->rtol[l], s->atol[l]};
+        lane->error
+            = fmax(lane->error, ct_fidelity_judge(&lane->outputs, s->one_at, s->one_probed,
+                                                  s->one_off, &tolerance, lane->error));
+    }
+}
+
+static void estimate(struct ct_lanes *s, set wanted)
+{
+    vec e3 = {0}, *e = s->point;
+    set due = 0;
+    combine(s, e, NULL, &s->error);
+    const vec size = norm(s, e);
+    vec joint = size;
+    if (s->third.n) {
+        combine(s, s->end, s->y, &s->third);
+        for (int i = 0; i < s->ny; i++)
+            s->end[i] = s->y1[i] - s->end[i];
+        e3 = norm(s, s->end);
+    }
+    for (int l = 0; l < W; l++) {
+        struct ct_lane *lane = &s->lane[l];
+        if (s->third.n)
+            joint[l] = ct_stepper_join(size[l], e3[l]);
+        lane->error = joint[l];
+        if (s->output.nout && ct_has_lane(wanted, l) && joint[l] <= 1
+            && ct_fidelity_is_due(&lane->outputs))
+            due |= 1u << l;
+    }
+    if (!due)
+        return;
+    const vec part = choose(size > 0, joint / size, all_lanes(1));
+    for (int i = 0; i < s->ny; i++)
+        e[i] *= part;
+    judge_outputs(s, e, due);
 }
 
 // Ends of the stages at t + C h; the last one is the end of the step, y1 with dy1. That is not evaluated where its error
@@ -188,8 +253,7 @@ static set take_stages(struct ct_lanes *s, set wanted)
     copy(s->k, s->dy, n);
     for (int stage = 1; stage <= last && wanted; stage++) {
         vec *to = stage == last ? s->y1 : stage + 1 == last ? s->late : s->point;
-        for (int i = 0; i < n; i++)
-            to[i] = s->y[i] + s->h * sum_stages(s, &s->stage[stage], i);
+        combine(s, to, s->y, &s->stage[stage]);
         if (stage < last || is_last_wanted)
             wanted = derive(s, s->t + b->C[stage] * s->h, to, s->k + n * stage, wanted);
     }
@@ -230,6 +294,7 @@ static void adapt(struct ct_lanes *s, set tried, set wanted)
         struct ct_lane *lane = &s->lane[l];
         if (ct_has_lane(wanted, l)) {
             ct_control_accept(&lane->control, s->method, s->h[l], lane->error);
+            ct_fidelity_keep(&lane->outputs);
         } else if (ct_has_lane(tried, l)) {
             ct_control_refuse(&lane->control, s->method, s->h[l], lane->error);
             s->count.rejected++;
@@ -312,10 +377,12 @@ static void foresee_singular(struct ct_lanes *s, vec t, const vec *y, set wanted
 {
     if (!s->rank)
         return;
-    s->pivot_most = choose(mask_of(wanted), larger(s->pivot_most, s->sigma), s->pivot_most);
-    s->near = set_of(s->sigma < singular_pivot * s->pivot_most);
-    if (s->rank == 1) // sigma is 1 everywhere
-        s->near = wanted;
+    // with a single row sigma is 1 everywhere, but the strength of the form falls
+    vec pivot = s->sigma;
+    if (s->rank == 1)
+        pivot = s->strength * larger(all_lanes(1), s->kappa);
+    s->pivot_most = choose(mask_of(wanted), larger(s->pivot_most, pivot), s->pivot_most);
+    s->near = set_of(pivot < singular_pivot * s->pivot_most);
     for (int l = 0; l < W; l++) {
         struct ct_lane *lane = &s->lane[l];
         if (!ct_has_lane(wanted, l))
@@ -383,7 +450,7 @@ void ct_lanes_step(struct ct_lanes *s)
         end[l] = lane->end;
     }
     set wanted = take_stages(s, tried);
-    estimate(s);
+    estimate(s, wanted);
     wanted = accept(s, wanted);
     wanted = project_end(s, end, wanted);
     follow(s, end, s->end, wanted);

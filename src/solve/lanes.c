@@ -47,6 +47,7 @@ static void prepare_all(struct ct_lanes *s)
     prepare(&s->motion, s->input);
     prepare(&s->power, s->input);
     prepare(&s->memory, s->input);
+    prepare(&s->output, s->input);
     for (size_t i = 0; i < s->nform; i++)
         prepare_form(s->form[i], s->input);
 }
@@ -79,11 +80,18 @@ static void make_room(struct ct_arena *a, struct ct_lanes *s)
     s->input = CT_NEWN(a, vec, s->m->ninput);
     s->k = CT_NEWN(a, vec, ny * CT_MOST_STAGES);
     s->group_size = CT_NEWN(a, vec, (size_t)(s->groups ? s->groups->n : 0) + 1);
+    const size_t noutput = s->output.nout;
+    s->at = CT_NEWN(a, vec, noutput + 1);
+    s->probed = CT_NEWN(a, vec, noutput + 1);
+    double **const outputs[] = {&s->one_at, &s->one_probed, &s->one_off};
+    for (size_t i = 0; i < COUNT(outputs); i++)
+        *outputs[i] = CT_NEWN(a, double, noutput + 1);
     s->stage = CT_NEWN(a, struct ct_lane_sum, CT_MOST_STAGES);
     s->place = CT_NEWN(a, int, n + 1);
     for (size_t i = 0; i < n; i++)
         s->place[i] = s->e->u[i].q;
     for (int l = 0; l < W; l++) {
+        s->lane[l].outputs = ct_fidelity_record(a, noutput);
         s->lane[l].row = CT_NEWN(a, int, r + 1);
         s->lane[l].dependent = CT_NEWN(a, int, r + 1);
         s->lane[l].independent = CT_NEWN(a, int, n + 1);
@@ -111,6 +119,8 @@ struct ct_lanes *ct_lanes_create(struct ct_arena *a, const struct ct_equations *
         make_program(s, &s->motion, &m->solved);
     make_program(s, &s->power, &m->power);
     make_program(s, &s->memory, &m->memory);
+    if (ct_run_fidelity(run))
+        make_program(s, &s->output, ct_fidelity_program(ct_run_fidelity(run)));
     make_room(a, s);
     return s;
 }
@@ -289,6 +299,8 @@ static void start_lane(struct ct_lane *lane, const struct ct_run_options *o)
 {
     lane->t1 = o->duration;
     lane->control = ct_control_start();
+    lane->control.is_starting = true;
+    ct_fidelity_clear(&lane->outputs);
     lane->pivot_last = INFINITY;
     lane->pivot_time = 0;
     lane->steps = 0;

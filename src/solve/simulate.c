@@ -227,6 +227,11 @@ bool ct_run_restart(struct ct_run *r, const struct ct_start *start)
     return begin(r, start);
 }
 
+const struct ct_fidelity *ct_run_fidelity(const struct ct_run *r)
+{
+    return r->fidelity;
+}
+
 enum ct_eval ct_run_rhs(struct ct_run *r, double t, const double *y, double *dy)
 {
     return rhs(r, t, y, dy);

@@ -61,6 +61,8 @@ struct ct_embed *ct_run_embed(struct ct_run *r);
 const double *ct_run_state(const struct ct_run *r);
 /// Which states are measured together for the error of steps; NULL: none. In the run's arena, anew at each call.
 const struct ct_groups *ct_run_groups(struct ct_run *r);
+/// The control of outputs; NULL: none is controlled.
+const struct ct_fidelity *ct_run_fidelity(const struct ct_run *r);
 /// dy (out) = f(t, y), for y as ct_run_state has it.
 enum ct_eval ct_run_rhs(struct ct_run *r, double t, const double *y, double *dy);
 /// Accelerations, multipliers and results at t, y; out has nresult entries.

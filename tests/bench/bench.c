@@ -1012,7 +1012,7 @@ static bool run_single(void *user, long member, const double *varied, const doub
     if (member % s->every)
         return true;
     enum { MOST_COLUMNS = 64 };
-    double last[MOST_COLUMNS];
+    double last[MOST_COLUMNS] = {0};
     const double before = now();
     char torque[40];
     snprintf(torque, sizeof torque, "torque=%.17g", varied[0]);
