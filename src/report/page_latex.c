@@ -49,7 +49,72 @@ static size_t width_of(const char *s, size_t length)
     return n;
 }
 
-enum { LINE = 85 };
+// Widths of a line, and of what a further one is indented by.
+enum { LINE = 85, AFTER_BREAK = 8 };
+
+// Length of a piece up to the next place where a line may end: before a sign, or a factor, at any depth of
+// parentheses but not within braces or cases.
+static size_t piece_of(const char *s, bool at_factors)
+{
+    int braces = 0;
+    for (size_t i = 0; s[i]; i++) {
+        braces += (s[i] == '{') - (s[i] == '}');
+        braces += !strncmp(s + i, "\\begin", 6) - !strncmp(s + i, "\\end", 4);
+        if (i == 0 || braces > 0)
+            continue;
+        if (!strncmp(s + i, " + ", 3) || !strncmp(s + i, " - ", 3)
+            || (at_factors && !strncmp(s + i, " \\, ", 4)))
+            return i;
+    }
+    return strlen(s);
+}
+
+// A delimiter cannot be open at the end of a line: invisible ones close and open the `depth` that are. A sign
+// after the empty group is that of a sum.
+static void end_line(FILE *out, int depth, const char *indent)
+{
+    for (int i = 0; i < depth; i++)
+        fputs(" \\right.", out);
+    fprintf(out, " \\\\\n    %s", indent);
+    for (int i = 0; i < depth; i++)
+        fputs(i + 1 < depth ? "\\left. " : "\\left. {}", out);
+}
+
+static int depth_after(int depth, const char *s, size_t n)
+{
+    for (size_t i = 0; i < n; i++)
+        depth += !strncmp(s + i, "\\left", 5) - !strncmp(s + i, "\\right", 6);
+    return depth;
+}
+
+// A term wider than a line, broken within: between products where a sum in it does not fit either.
+static size_t put_wide_term(FILE *out, const char *s, size_t length, size_t column,
+                            const char *indent)
+{
+    const char *end = s + length;
+    int depth = 0;
+    while (s < end) {
+        size_t n = piece_of(s, false);
+        if (width_of(s, n) > LINE - AFTER_BREAK)
+            n = piece_of(s, true);
+        n = n < (size_t)(end - s) ? n : (size_t)(end - s);
+        const size_t width = width_of(s, n);
+        if (column + width > LINE && column > AFTER_BREAK) {
+            end_line(out, depth, indent);
+            column = AFTER_BREAK;
+            if (!strncmp(s, " \\, ", 4)) { // the product is said
+                fputs(depth ? " \\cdot" : "{} \\cdot", out);
+                s += 3;
+                n -= 3;
+            }
+        }
+        fprintf(out, "%.*s", (int)n, s);
+        depth = depth_after(depth, s, n);
+        column += width;
+        s += n;
+    }
+    return column;
+}
 
 // Terms of a sum, on further lines where they do not fit.
 static void put_sum(FILE *out, const char *s, size_t column, const char *indent)
@@ -57,11 +122,15 @@ static void put_sum(FILE *out, const char *s, size_t column, const char *indent)
     while (*s) {
         const size_t n = ct_page_first_term(s), width = width_of(s, n);
         if (column + width > LINE && column > 20) {
-            fprintf(out, " \\\\\n    %s", indent);
-            column = 8;
+            end_line(out, 0, indent);
+            column = AFTER_BREAK;
         }
-        fprintf(out, "%.*s", (int)n, s);
-        column += width;
+        if (column + width > LINE) {
+            column = put_wide_term(out, s, n, column, indent);
+        } else {
+            fprintf(out, "%.*s", (int)n, s);
+            column += width;
+        }
         s += n;
     }
 }
