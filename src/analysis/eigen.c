@@ -359,6 +359,16 @@ static int count_free(const struct ct_linear *l, int f)
     return n;
 }
 
+// Motions that go on for ever: what A (n x n) takes to nothing.
+static int count_steady(struct ct_arena *a, const double *A, int n)
+{
+    double *R = CT_NEWN(a, double, n *n + 1), *tau = CT_NEWN(a, double, n + 1),
+           *work = CT_NEWN(a, double, ct_qr_pivot_work(n, n));
+    int *column = CT_NEWN(a, int, n + 1);
+    memcpy(R, A, (size_t)n * (size_t)n * sizeof *R);
+    return n - ct_qr_pivot(R, column, tau, n, n, n, rounding * n, work);
+}
+
 // y = V e1/s, w = V e2:  e1' = s e2 + (s g /s) e1,  e2' = -(k/s) e1 - c e2
 static bool solve_modal(struct list *list, const struct basis *s)
 {
@@ -382,12 +392,8 @@ static bool solve_modal(struct list *list, const struct basis *s)
     for (int i = 0; i < f; i++)
         if (s->w2[i] != 0)
             least = fmin(least, sqrt(fabs(s->w2[i])));
-    int rigid = 0;
-    const int free = count_free(l, f);
-    for (int i = 0; i < f; i++) {
+    for (int i = 0; i < f; i++)
         rate[i] = s->w2[i] != 0 ? sqrt(fabs(s->w2[i])) : least > 0 ? least : 1;
-        rigid += largest(K + f * i, (size_t)f) == 0 && largest(G + f * i, (size_t)f) == 0;
-    }
     for (int j = 0; j < f; j++) {
         A[j + n * (f + j)] = rate[j];
         for (int i = 0; i < f; i++) {
@@ -398,7 +404,8 @@ static bool solve_modal(struct list *list, const struct basis *s)
         }
     }
     const double zero = rounding * n * largest(A, (size_t)n * (size_t)n);
-    return add_general(list, A, T, n, zero, rigid > free ? rigid : free);
+    const int free = count_free(l, f), steady = count_steady(a, A, n);
+    return add_general(list, A, T, n, zero, steady > free ? steady : free);
 }
 
 // ---- all of it --------------------------------------------------------------------------------------------------

@@ -47,6 +47,7 @@ struct ct_iteration *ct_iteration_create(struct ct_arena *a, const struct ct_pro
     it->pivot = CT_NEWN(a, int, n + 1);
     it->weight = CT_NEWN(a, double, 2 * nu + 1);
     if (is_complex) {
+        it->w = CT_NEWN(a, double, nu + 1);
         it->Gc = CT_NEWN(a, double _Complex, n *n + 1);
         it->bc = CT_NEWN(a, double _Complex, n + 1);
         it->pivotc = CT_NEWN(a, int, n + 1);
@@ -110,6 +111,38 @@ static void fill_place(const struct ct_iteration *it, double *B, const double *A
         memcpy(B + it->n * k + first, A + rows * k, (size_t)rows * sizeof *A);
 }
 
+void ct_iteration_turn(const struct ct_iteration *it, double *x, const double *d)
+{
+    for (int k = 0; k < it->nu; k++) {
+        if (it->dae->q_of[k] >= 0)
+            continue;
+        const double *w = it->w + k, *th = d + k;
+        x[k] += (th[1] * w[2] - th[2] * w[1]) / 2;
+        x[k + 1] += (th[2] * w[0] - th[0] * w[2]) / 2;
+        x[k + 2] += (th[0] * w[1] - th[1] * w[0]) / 2;
+        k += 2;
+    }
+}
+
+// Less A N, A (rows x nu), at row `first` of B (n x n); N' = -N.
+static void fill_turn(const struct ct_iteration *it, double *B, const double *A, int rows,
+                      int first)
+{
+    const int n = it->n;
+    for (int k = 0; k < it->nu; k++) {
+        if (it->dae->q_of[k] >= 0)
+            continue;
+        const double *w = it->w + k, *a = A + rows * k, *b = a + rows, *c = b + rows;
+        double *x = B + n * k + first, *y = x + n, *z = y + n;
+        for (int i = 0; i < rows; i++) {
+            x[i] += (b[i] * w[2] - c[i] * w[1]) / 2;
+            y[i] += (c[i] * w[0] - a[i] * w[2]) / 2;
+            z[i] += (a[i] * w[1] - b[i] * w[0]) / 2;
+        }
+        k += 2;
+    }
+}
+
 static void assemble(struct ct_iteration *it)
 {
     const int nu = it->nu, m = it->m, n = it->n;
@@ -131,6 +164,11 @@ static void assemble(struct ct_iteration *it)
     fill_eta(it, it->S, it->M, nu, 0);
     fill_eta(it, it->X, it->C, nu, 0);
     fill_eta(it, it->S, it->J, m, nu + m);
+    if (!it->w)
+        return;
+    fill_turn(it, it->X, it->M, nu, 0);
+    fill_turn(it, it->W, it->C, nu, 0);
+    fill_turn(it, it->W, it->J, m, nu + m);
 }
 
 enum ct_eval ct_iteration_refresh(struct ct_iteration *it, double t, const double *q,
@@ -145,6 +183,8 @@ enum ct_eval ct_iteration_refresh(struct ct_iteration *it, double t, const doubl
     if (e != CT_EVAL_OK)
         return e;
     stats->jacobians++;
+    if (it->w)
+        memcpy(it->w, u, (size_t)it->nu * sizeof *u);
     assemble(it);
     it->is_new = true;
     it->rate = it->c = it->e = 0;
@@ -262,9 +302,9 @@ enum ct_verdict ct_iteration_judge(struct ct_iteration *it, double size)
         const double rate = size / it->size;
         if (rate >= 1 && size <= it->rounding)
             return CT_CONVERGED;
-        if (rate >= hopeless || (rate >= 1 && it->count > 3))
-            return CT_DIVERGED;
         it->rate = it->count > 2 ? sqrt(rate * it->rate) : rate; // two in turn are often uneven
+        if (rate >= hopeless || (it->rate >= 1 && it->count > 3))
+            return CT_DIVERGED;
         it->tail = it->rate < 1 ? it->rate / (1 - it->rate) : INFINITY;
     }
     it->size = size;

@@ -10,6 +10,9 @@
 // with x = c/e, y = 1/e, z = 1/c for c = d(speed)/d(place) and e = d(acceleration)/d(place). So scaled, its condition
 // does not depend on the step. Radau's complex pair has complex c; the index-3 form has neither eta nor the last row.
 //
+// Where d' = T^-1(d) u is collocated, by Radau, speeds change by (c - N) d with N d = d x w / 2 for rotations at speeds
+// w: C d becomes (C - M N) d, K d becomes (K - C N) d, D d becomes (D - J N) d, beside eta nothing changes.
+//
 // What always holds: M, C, K, J, D are those of the last `tangent`; it is called again when convergence has become
 // slow, the factors are made again when c or e have changed.
 #ifndef CT_INTEGRATE_ITERATION_H
@@ -32,6 +35,7 @@ struct ct_iteration {
     double *G;         // (n x n), and of the complex system
     double _Complex *Gc;
     int *pivot, *pivotc;
+    double *w; // speeds of the derivatives (nu), for N; NULL: the method knows no N
     double *b; // (n)
     double _Complex *bc;
     double *weight; // what changes of places and speeds are measured against  (2 nu)
@@ -68,6 +72,8 @@ void ct_iteration_solve_complex(struct ct_iteration *it, double _Complex s, doub
                                 const double _Complex *r, const double _Complex *phi,
                                 const double _Complex *v);
 
+/// x (nu) += N d, with `w`.
+void ct_iteration_turn(const struct ct_iteration *it, double *x, const double *d);
 /// x (nu) += c J' eta.
 void ct_iteration_push(const struct ct_iteration *it, double *x, double c, const double *eta);
 

@@ -35,3 +35,5 @@ d=$SYSTEMS/puma560_driven/model.yaml
 "$COTREE" inverse "$m"
 echo '-- a free cart under a leaning pole: one rigid-body motion, whatever rounding makes of its double zero'
 "$COTREE" modes "$SYSTEMS/cart_pole/model.yaml" --quiet | sed -n 2p
+echo '-- a free body that spins: three motions of its centre and its spin, nothing beside them'
+"$COTREE" modes "$SYSTEMS/tumbling_body/model.yaml" --quiet | awk -F, 'NR > 1 && NR < 7 { print $1 "," substr($2, 1, 9) "," $4 }'

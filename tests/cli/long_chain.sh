@@ -22,3 +22,17 @@ awk -F, 'NR == 2 { first = $2 }
 echo '-- the last link is a rod without a moment of inertia along its axis, seen far from ground'
 chain 60 'mass: 0.1, com: [0.05, 0, 0], inertia: [0, 1e-4, 1e-4]' >rod.yaml
 say check rod.yaml
+echo '-- radau5 on a fall from rest, in which the balls turn ever faster: its iteration converges'
+awk 'BEGIN {
+  print "cotree: 1\ngravity: [0, 0, -9.81]\nbodies:"
+  for (i = 1; i <= 40; i++)
+    printf "  b%d: {mass: 1.%d, com: [0.5, 0.01, 0.02], inertia: [0.1, 0.2, 0.25], points: {end: [1, 0, 0]}}\n", i, i
+  print "joints:"
+  for (i = 1; i <= 40; i++)
+    printf "  j%d: {type: spherical, from: %s, to: b%d}\n", i, (i > 1 ? "b" (i - 1) ".end" : "ground"), i
+  print "outputs: [j1.u, j40.u]\nsimulation: {duration: 0.1, samples: 2, tolerance: 1e-8}"
+}' >fall.yaml
+"$COTREE" simulate fall.yaml -o implicit.csv --quiet --method radau5 --summary fall.json
+"$COTREE" simulate fall.yaml -o explicit.csv --quiet --tolerance 1e-11
+awk -F'[:,]' '/"rejected_steps"/ { print ($2 <= 3 ? "few rejected" : "rejected " $2) }' fall.json
+difference implicit.csv explicit.csv | awk '{ print ($1 < 1e-6) ? "same motion" : $0 }'
