@@ -35,5 +35,5 @@ echo '-- derivatives for implicit methods'
 for model in slider_crank chain40; do
   "$COTREE" check "$SYSTEMS/$model/model.yaml" --tree joints --method radau5 | grep '^derivatives'
 done
-"$COTREE" simulate "$SYSTEMS/slider_crank/model.yaml" --tree joints --until 0.01 --method hht | grep '^derivatives'
+"$COTREE" simulate "$SYSTEMS/slider_crank/model.yaml" --tree joints --until 0.01 --method hht 2>&1 | grep '^derivatives'
 "$COTREE" check "$SYSTEMS/slider_crank/model.yaml" | grep -c '^derivatives' || :
