@@ -122,10 +122,13 @@ static void run_alone(struct ct_study *s, long member, struct ct_ctx *ctx,
     if (system && !(o.step > 0) && !(system->model.simulation.step > 0))
         o.samples = 2;
     struct ct_sim *sim = ct_sim_create(ctx, system, &o);
-    const bool ok = sim && ct_sim_run(ctx, sim, NULL);
+    if (!sim) {
+        ct_study_record(s, member, NULL, ctx);
+        return;
+    }
+    const bool ok = ct_sim_run(ctx, sim, NULL);
     ct_study_record(s, member, ok ? sim->report.final : NULL, ctx);
-    if (sim)
-        count_steps(s, sim->report.stats.steps, sim->report.stats.rejected_steps, 1);
+    count_steps(s, sim->report.stats.steps, sim->report.stats.rejected_steps, 1);
     ct_sim_destroy(sim);
 }
 

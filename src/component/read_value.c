@@ -276,7 +276,9 @@ static bool check_parameter_unit(struct ct_reader *r, const struct ct_node *node
                                  const char *unit, ct_ex e)
 {
     const struct ct_exnode *top = ct_ex_node(r->m->x, e);
-    const struct ct_sym *s = ct_ex_symbol(r->m->x, top->op == CT_OP_NEG ? (ct_ex){top->a} : e);
+    if (top->op == CT_OP_NEG)
+        e.id = top->a;
+    const struct ct_sym *s = ct_ex_symbol(r->m->x, e);
     const bool is_parameter = s && s->kind == CT_SYM_PARAM;
     const int i = is_parameter ? ct_names_get(&r->m->parameter_index, s->name) : -1;
     const struct ct_parameter *p = i < 0 ? NULL : &r->m->parameter[i];

@@ -27,13 +27,13 @@ enum { NSIZE = 32 };
 struct walk {
     struct ct_exs *x;
     struct ct_arena *scratch;
-    const double *value;         // by symbol
-    double *v;                   // by place
-    struct list *list;           // by place
-    uint32_t *place;             // by id
-    uint32_t *readers;           // by place: nodes and roots still to come
-    struct tangent *free[NSIZE]; // lists given up, chained through their first bytes
-    struct tangent *merged;      // of the node in hand
+    const double *value;    // by symbol
+    double *v;              // by place
+    struct list *list;      // by place
+    uint32_t *place;        // by id
+    uint32_t *readers;      // by place: nodes and roots still to come
+    void *free[NSIZE];      // lists given up, chained through their first bytes
+    struct tangent *merged; // of the node in hand
     size_t nmerged, cap;
 };
 
@@ -48,7 +48,7 @@ static void keep_merged(struct walk *w, struct list *l)
         l->size++;
     l->at = w->free[l->size];
     if (l->at)
-        memcpy(&w->free[l->size], l->at, sizeof l->at);
+        memcpy(&w->free[l->size], l->at, sizeof w->free[l->size]);
     else
         l->at = CT_NEWN(w->scratch, struct tangent, (size_t)1 << l->size);
     memcpy(l->at, w->merged, l->n * sizeof *l->at);
@@ -59,7 +59,7 @@ static void read_once(struct walk *w, uint32_t place)
     struct list *l = &w->list[place];
     if (--w->readers[place] || !l->n)
         return;
-    memcpy(l->at, &w->free[l->size], sizeof l->at);
+    memcpy(l->at, &w->free[l->size], sizeof w->free[l->size]);
     w->free[l->size] = l->at;
     l->n = 0;
 }
@@ -177,8 +177,8 @@ static double value_of(struct walk *w, const struct ct_exnode *n, const double a
 static void chain(struct walk *w, const struct ct_exnode *n, const uint32_t *arg, int narg,
                   const double a[3], double v)
 {
-    const struct tangent *at[3], *end[3];
-    double partial[3];
+    const struct tangent *at[3] = {0}, *end[3] = {0};
+    double partial[3] = {0};
     int m = 0; // arguments that have derivatives
     for (int i = 0; i < narg; i++) {
         const struct list *l = &w->list[arg[i]];

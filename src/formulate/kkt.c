@@ -322,7 +322,7 @@ static void update_row(struct work *w, const struct ct_kkt_pivot *p, size_t nnea
         if (least == p->at[0] || least == p->at[p->size - 1])
             continue;
         struct ct_shadow_entry e = {0};
-        if (d != least) {
+        if (was && d != least) {
             e = *was;
         } else if (least < r) {
             const struct ct_shadow_entry *other = ct_shadow_find(&w->row[least], r);

@@ -424,68 +424,108 @@ static double find_velocities(struct assembly *s)
 
 // ---- what went wrong -------------------------------------------------------------------------------------------
 
-// The joint and the row or value that is missed most.
+// By how much the start misses what `initial` gives a coordinate; 0 where it gives nothing.
+static double missed(const struct assembly *s, size_t i, bool is_speed)
+{
+    double r = 0;
+    if (is_speed && s->u[i].is_given)
+        r = s->m->result.out[2 * i + 1] - s->u[i].value;
+    else if (!is_speed && s->q[i].is_given && !deviation(s, i, &r))
+        r = 0;
+    return isnan(r) ? INFINITY : fabs(r);
+}
+
+static struct ct_mark initial_mark(const struct assembly *s, size_t i, bool is_speed)
+{
+    const struct ct_edge_info *e = &s->e->build->edge[s->e->coordinate[i].edge];
+    const struct ct_value *turns = &e->self->initial.rotate;
+    const bool is_turn = !is_speed && s->q[i].in_quaternion && turns->given;
+    return is_turn ? turns->mark : initial_value(e, is_speed)->mark;
+}
+
+// The given value that is missed most, with the others that are missed as notes; true if none is.
+static bool report_missed(struct assembly *s, bool is_speed)
+{
+    enum { MOST_NOTES = 4 };
+    const double slight
+        = 1e-3; // against the worst: what iterations that found no end leave of the rest
+    size_t worst = 0, nmissed = 0;
+    for (size_t i = 1; i < s->e->ncoordinate; i++)
+        if (missed(s, i, is_speed) > missed(s, worst, is_speed))
+            worst = i;
+    const double most = s->e->ncoordinate ? missed(s, worst, is_speed) : 0;
+    if (!(most > met))
+        return true;
+    const struct ct_coordinate *c = s->e->coordinate;
+    ct_error(s->ctx, initial_mark(s, worst, is_speed), CT_E_START,
+             "initial %s contradict each other: %s'%s' of joint '%s' is missed by %.3g",
+             is_speed ? "speeds" : "values", is_speed ? "the rate of " : "", c[worst].name,
+             s->e->build->edge[c[worst].edge].self->name, most);
+    for (size_t i = 0; i < s->e->ncoordinate; i++)
+        nmissed += i != worst && missed(s, i, is_speed) > fmax(met, slight * most);
+    for (size_t i = 0, n = 0; i < s->e->ncoordinate && n < MOST_NOTES; i++) {
+        if (i == worst || !(missed(s, i, is_speed) > fmax(met, slight * most)))
+            continue;
+        const bool is_last = ++n == MOST_NOTES && nmissed > MOST_NOTES;
+        ct_note(s->ctx, initial_mark(s, i, is_speed), "and %s'%s' of joint '%s', by %.3g%s",
+                is_speed ? "the rate of " : "", c[i].name,
+                s->e->build->edge[c[i].edge].self->name, missed(s, i, is_speed),
+                is_last
+                    ? ct_arena_printf(s->e->build->arena, "; %zu more", nmissed - MOST_NOTES)
+                    : "");
+    }
+    return false;
+}
+
+// The row of the constraints that `residual` misses most, of those that count.
+static size_t worst_row(const struct assembly *s, const double *residual, const bool *counts)
+{
+    size_t worst = 0;
+    for (size_t i = 1; i < s->m->nrow; i++)
+        if ((!counts || counts[i])
+            && (fabs(residual[i]) > fabs(residual[worst]) || (counts && !counts[worst])))
+            worst = i;
+    return worst;
+}
+
+static struct ct_mark row_mark(const struct assembly *s, size_t row)
+{
+    const int joint = s->e->row[row].joint;
+    const struct ct_model *model = s->e->build->model;
+    if (joint < 0)
+        return (struct ct_mark){.file = model->file};
+    return model->joint[joint].mark;
+}
+
 static bool report_positions(struct assembly *s)
 {
-    const struct ct_build *b = s->e->build;
-    double worst_row = 0, worst_value = 0, r;
-    size_t row = 0, value = 0;
-    for (size_t i = 0; i < s->m->nrow; i++)
-        if (s->fixed_row[i] && fabs(s->m->phi[i]) > worst_row) {
-            worst_row = fabs(s->m->phi[i]);
-            row = i;
-        }
+    if (!report_missed(s, false))
+        return false;
     bool any_given = false;
     for (size_t i = 0; i < s->e->ncoordinate; i++)
-        if (s->q[i].is_given) {
-            any_given = true;
-            if (deviation(s, i, &r) && fabs(r) > worst_value) {
-                worst_value = fabs(r);
-                value = i;
-            }
-        }
-    if (worst_value > met) {
-        const struct ct_coordinate *c = &s->e->coordinate[value];
-        const struct ct_instance *joint = b->edge[c->edge].self;
-        const struct ct_value *turns = &joint->initial.rotate;
-        const bool is_turn = s->q[value].in_quaternion && turns->given;
-        return ct_error(
-            s->ctx, is_turn ? turns->mark : joint->initial.q.mark, CT_E_START,
-            "initial values contradict each other: '%s' of joint '%s' is missed by %.3g",
-            c->name, joint->name, worst_value);
-    }
-    const int joint = s->e->row[row].joint;
-    const struct ct_mark mark
-        = joint >= 0 ? b->model->joint[joint].mark : (struct ct_mark){.file = b->model->file};
-    ct_error(s->ctx, mark, CT_E_ASSEMBLY,
-             "the mechanism cannot be assembled: '%s' stays open by %.3g; check lengths and "
-             "places%s",
-             s->e->row[row].name, worst_row,
-             any_given ? ", the given initial values" : " and give guesses in `initial`");
-    return false;
+        any_given |= s->q[i].is_given;
+    const size_t row = worst_row(s, s->m->phi, s->fixed_row);
+    return ct_error(
+        s->ctx, row_mark(s, row), CT_E_ASSEMBLY,
+        "the mechanism cannot be assembled: '%s' stays open by %.3g; check lengths and "
+        "places%s",
+        s->e->row[row].name, fabs(s->m->phi[row]),
+        any_given ? ", the given initial values" : " and give guesses in `initial`");
 }
 
 static bool report_velocities(struct assembly *s)
 {
-    const struct ct_build *b = s->e->build;
-    double worst = 0;
-    size_t value = s->e->ncoordinate;
-    for (size_t i = 0; i < s->e->ncoordinate; i++) {
-        const double r = s->m->result.out[2 * i + 1] - s->u[i].value;
-        if (s->u[i].is_given && fabs(r) > worst) {
-            worst = fabs(r);
-            value = i;
-        }
-    }
-    if (value < s->e->ncoordinate) {
-        const struct ct_coordinate *c = &s->e->coordinate[value];
-        return ct_error(
-            s->ctx, initial_value(&b->edge[c->edge], true)->mark, CT_E_START,
-            "initial speeds contradict each other: the one of '%s' is missed by %.3g", c->name,
-            worst);
-    }
-    return ct_error(s->ctx, (struct ct_mark){.file = b->model->file}, CT_E_START,
-                    "the drivers ask for speeds that the mechanism cannot have");
+    if (!report_missed(s, true))
+        return false;
+    const size_t row = worst_row(s, s->m->v, NULL);
+    const int joint = s->e->row[row].joint;
+    return ct_error(
+        s->ctx, row_mark(s, row), CT_E_START,
+        "the drivers ask for speeds that the mechanism cannot have: '%s'%s%s%s is missed "
+        "by %.3g; check the rates of the motions",
+        s->e->row[row].name, joint < 0 ? "" : " of joint '",
+        joint < 0 ? "" : s->e->build->model->joint[joint].name, joint < 0 ? "" : "'",
+        fabs(s->m->v[row]));
 }
 
 // A driven joint starts on its motion.

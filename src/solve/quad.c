@@ -6,12 +6,21 @@
 #ifdef CT_HAVE_QUADMATH
 
 #include <math.h>
-#include <quadmath.h>
 #include <string.h>
 
 typedef ct_quad quad;
 
 enum { COLUMNS = 14 }; // of the extrapolation: order 28 at most
+
+static quad larger(quad a, quad b)
+{
+    return b > a ? b : a;
+}
+
+static quad magnitude(quad a)
+{
+    return a < 0 ? -a : a;
+}
 
 // ---- the system -------------------------------------------------------------------------------------------
 
@@ -107,9 +116,9 @@ static double extrapolate(struct run *r, int k)
             better += (better - old) / (ratio * ratio - 1);
         }
         r->table[k][i] = better;
-        const quad size = fmaxq(1, fabsq(r->y[i]));
+        const quad size = larger(1, magnitude(r->y[i]));
         const quad change = k > 0 ? better - r->table[k - 1][i] : size;
-        error = fmax(error, (double)(fabsq(change) / size));
+        error = fmax(error, (double)(magnitude(change) / size));
     }
     return isfinite(error) ? error : INFINITY;
 }
@@ -189,7 +198,7 @@ bool ct_quad_run(struct ct_arena *a, const struct ct_machine *m, const double *y
             if (step(&r, t, now, tolerance, &factor)) {
                 t = is_last ? sample : t + now;
                 follow(&r, t);
-                h = fmaxq(is_last ? h : 0, factor * now);
+                h = larger(is_last ? h : 0, factor * now);
             } else {
                 h = factor * now;
             }

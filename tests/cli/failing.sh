@@ -26,3 +26,17 @@ cut -d, -f1 pushed.csv.partial
 say simulate pushed.yaml --quiet --until 2 -o - | cut -d, -f1
 sed -i '2s/0/0.5/' force.csv
 say simulate pushed.yaml --quiet --until 2 -o -
+echo '-- speeds that contradict each other: one freedom, seven values; that of `apart` is met'
+{
+  echo 'cotree: 1'
+  echo "bodies: {b1: {mass: 1}, b2: {mass: 1}, b3: {mass: 1}, b4: {mass: 1}, b5: {mass: 1}, b6: {mass: 1}, b7: {mass: 1}, free: {mass: 1}}"
+  echo 'joints:'
+  echo '  apart: {type: prismatic, axis: x, from: ground, to: free, initial: {u: 9}}'
+  for i in 1 2 3 4 5 6 7; do
+    echo "  s$i: {type: prismatic, axis: x, from: ground, to: b$i, initial: {u: $i}}"
+    [ $i = 1 ] || echo "  g$i: {type: gear, joints: [s1, s$i], ratio: -1}"
+  done
+} >speeds.yaml
+say check speeds.yaml
+sed 's/, initial: {u: \([12]\)}/, motion: \1*t/; s/, initial: {u: [3-9]}//' speeds.yaml >motions.yaml
+say check motions.yaml

@@ -688,7 +688,7 @@ static const char pendulum_beam[]
       "  hinge: {type: revolute, axis: y, from: ground, to: beam}\n"
       "  tip: {type: weld, from: beam.tip, to: mass}\n";
 
-// Mass matrix and forces, typed from formulation (3.7); z: theta, q7 ... q12, and their rates.
+// Mass matrix and forces of the system of docs/theory.md, section 3.4, written out by hand; z: theta, q7 ... q12, and their rates.
 static void source_equations(const double *z, const double *rate, double M[7][7], double Q[7])
 {
     const double l = 1.7, m = 5 * 0.3 * l, ms = 0.8, EA = 700 * 0.3, EI = 700 * 0.02;
