@@ -4,6 +4,7 @@
 #include "formulate/flexible.h"
 #include "report/stage_beam.h"
 #include "solve/singular.h"
+#include "solve/tangent.h"
 
 #include <math.h>
 #include <string.h>
@@ -156,6 +157,19 @@ static void print_estimate(FILE *out, const struct ct_sim *sim)
                 e->holds_until);
 }
 
+// How implicit methods get their derivatives, where one runs.
+static void print_derivatives(FILE *out, const struct ct_sim *sim)
+{
+    const struct ct_machine *m = ct_run_machine(sim->run);
+    if (!m->nslope)
+        return;
+    if (m->lanes)
+        fprintf(out, "derivatives  along %u directions, %d at a time\n",
+                m->e->residual->along->ncolour, CT_TANGENT_LANES);
+    else
+        fprintf(out, "derivatives  table of %zu entries\n", m->nslope);
+}
+
 static void print_method(FILE *out, const struct ct_sim *sim)
 {
     const struct ct_run_report *r = &sim->report;
@@ -170,6 +184,8 @@ static void print_method(FILE *out, const struct ct_sim *sim)
         "operations (%s)\n",
         r->stats.steps, r->stats.rejected_steps, r->stats.inaccurate_steps,
         r->stats.evaluations, ct_sim_operations(sim), ct_run_machine(sim->run)->backend);
+    if (r->stats.jacobians > 0)
+        print_derivatives(out, sim);
 }
 
 static void print_position(FILE *out, const struct ct_sim *sim,
@@ -343,6 +359,7 @@ void ct_sim_print_check(const struct ct_sim *sim, FILE *out)
         print_counts(out, "motion", &machine->motion);
     print_counts(out, "constraints", &machine->constraint);
     print_solver(out, sim);
+    print_derivatives(out, sim);
     fprintf(out, "evaluation   %ld operations, solving for accelerations included\n",
             ct_sim_operations(sim));
 }

@@ -1,85 +1,25 @@
 // See quad.h. Extrapolation of the modified midpoint rule with 2, 4, 6, ... parts of a step, as many as the tolerance
 // wants: Hairer, Norsett and Wanner (1993), II.9, key hairer1993.
 #include "solve/quad.h"
+#include "solve/quad_program.h"
 
 #ifdef CT_HAVE_QUADMATH
 
 #include <math.h>
-#include <quadmath.h>
 #include <string.h>
 
-__extension__ typedef __float128 quad;
+typedef ct_quad quad;
 
 enum { COLUMNS = 14 }; // of the extrapolation: order 28 at most
 
-// ---- evaluation -----------------------------------------------------------------------------------------
-
-static quad apply(uint32_t op, quad a, quad b, quad c)
+static quad larger(quad a, quad b)
 {
-    switch (op) {
-#define FN(function) function##q
-#define NO_VALUE nanq("") // tables are not offered
-#define OP(op, narg, name, value)                                                              \
-    case op:                                                                                   \
-        return value;
-#include "expr/ops.def"
-#undef OP
-#undef NO_VALUE
-#undef FN
-    case CT_OP_ANGLE_SIN:
-        return sinq(a);
-    case CT_OP_ANGLE_COS:
-        return cosq(a);
-    case CT_OP_FMA:
-        return a * b + c;
-    case CT_OP_FMS:
-        return a * b - c;
-    case CT_OP_FNMA:
-        return c - a * b;
-    default:
-        return nanq("");
-    }
+    return b > a ? b : a;
 }
 
-// A listing with its values.
-struct program {
-    const struct ct_listing *l;
-    quad *value; // (l->nvalue)
-};
-
-static struct program load(struct ct_arena *a, const struct ct_program *p)
+static quad magnitude(quad a)
 {
-    struct program o = {p->listing, NULL};
-    if (!p->nout)
-        return o;
-    o.value = CT_NEWN(a, quad, o.l->nvalue + 1);
-    for (size_t v = 0; v < o.l->nvalue; v++) {
-        double number;
-        if (o.l->is_leaf[v] && ct_ex_is_const(o.l->x, (ct_ex){o.l->node[v]}, &number))
-            o.value[v] = number;
-    }
-    return o;
-}
-
-// out (nout) at the input.
-static void evaluate(const struct program *p, const quad *input, quad *out)
-{
-    const struct ct_listing *l = p->l;
-    for (size_t v = 0; v < l->nvalue; v++)
-        if (l->is_leaf[v] && l->input[v] != CT_VALUE_NONE)
-            p->value[v] = input[l->input[v]];
-    for (size_t k = 0; k < l->nins; k++) {
-        const struct ct_instruction *i = &l->ins[k];
-        quad arg[3] = {0, 0, 0};
-        for (uint32_t j = 0; j < i->narg; j++)
-            arg[j] = p->value[i->arg[j]];
-        if (i->op == CT_OP_SINCOS || i->op == CT_OP_ANGLE_SINCOS)
-            sincosq(arg[0], &p->value[i->res[0]], &p->value[i->res[1]]);
-        else
-            p->value[i->res[0]] = apply(i->op, arg[0], arg[1], arg[2]);
-    }
-    for (size_t k = 0; k < l->nout; k++)
-        out[k] = p->value[l->out[k]];
+    return a < 0 ? -a : a;
 }
 
 // ---- the system -------------------------------------------------------------------------------------------
@@ -87,7 +27,7 @@ static void evaluate(const struct program *p, const quad *input, quad *out)
 struct run {
     const struct ct_machine *m;
     size_t ny;
-    struct program solved, power, result, memory;
+    struct ct_quad_program solved, power, result, memory;
     quad *input, *out;                    // of the machine's layout; of the largest program
     quad *y, *dy, *end, *before, *at, *f; // (ny) each
     quad *table[COLUMNS];                 // a row of the extrapolation  (ny) each
@@ -100,7 +40,7 @@ static void set(struct run *r, quad t, const quad *y)
     for (size_t i = 0; i < m->nq + m->nu; i++)
         r->input[m->at_q + i] = y[i];
     r->input[m->at_work] = y[r->ny - 1];
-    evaluate(&r->solved, r->input, r->out); // u', q'
+    ct_quad_evaluate(&r->solved, r->input, r->out); // u', q'
     for (size_t i = 0; i < m->nu; i++)
         r->input[m->at_a + i] = r->out[i];
 }
@@ -115,7 +55,7 @@ static void rhs(struct run *r, quad t, const quad *y, quad *dy)
         dy[m->nq + i] = r->out[i];
     dy[r->ny - 1] = 0;
     if (r->power.value) {
-        evaluate(&r->power, r->input, r->out);
+        ct_quad_evaluate(&r->power, r->input, r->out);
         dy[r->ny - 1] = r->out[0];
     }
 }
@@ -124,10 +64,10 @@ static struct run create(struct ct_arena *a, const struct ct_machine *m, const d
 {
     struct run r = {.m = m, .ny = m->nq + m->nu + 1};
     const size_t most = m->solved.nout + m->result.nout + m->memory.nout + 1;
-    r.solved = load(a, &m->solved);
-    r.power = load(a, &m->power);
-    r.result = load(a, &m->result);
-    r.memory = load(a, &m->memory);
+    r.solved = ct_quad_load(a, &m->solved);
+    r.power = ct_quad_load(a, &m->power);
+    r.result = ct_quad_load(a, &m->result);
+    r.memory = ct_quad_load(a, &m->memory);
     r.input = CT_NEWN(a, quad, m->ninput);
     r.out = CT_NEWN(a, quad, most);
     quad **const vectors[] = {&r.y, &r.dy, &r.end, &r.before, &r.at, &r.f};
@@ -176,9 +116,9 @@ static double extrapolate(struct run *r, int k)
             better += (better - old) / (ratio * ratio - 1);
         }
         r->table[k][i] = better;
-        const quad size = fmaxq(1, fabsq(r->y[i]));
+        const quad size = larger(1, magnitude(r->y[i]));
         const quad change = k > 0 ? better - r->table[k - 1][i] : size;
-        error = fmax(error, (double)(fabsq(change) / size));
+        error = fmax(error, (double)(magnitude(change) / size));
     }
     return isfinite(error) ? error : INFINITY;
 }
@@ -191,7 +131,7 @@ static void follow(struct run *r, quad t)
     if (!r->memory.value)
         return;
     set(r, t, r->y);
-    evaluate(&r->memory, r->input, r->out);
+    ct_quad_evaluate(&r->memory, r->input, r->out);
     for (size_t i = 0; i < m->e->nmemory; i++)
         if (m->e->memory[i].kind != CT_MEMORY_OFFSET)
             memory[i] = r->out[i];
@@ -230,7 +170,7 @@ bool ct_quad_can_run(const struct ct_machine *m)
 static void keep_results(struct run *r, quad t, double *out)
 {
     set(r, t, r->y);
-    evaluate(&r->result, r->input, r->out);
+    ct_quad_evaluate(&r->result, r->input, r->out);
     for (size_t i = 0; i < r->m->result.nout; i++)
         out[i] = (double)r->out[i];
 }
@@ -258,7 +198,7 @@ bool ct_quad_run(struct ct_arena *a, const struct ct_machine *m, const double *y
             if (step(&r, t, now, tolerance, &factor)) {
                 t = is_last ? sample : t + now;
                 follow(&r, t);
-                h = fmaxq(is_last ? h : 0, factor * now);
+                h = larger(is_last ? h : 0, factor * now);
             } else {
                 h = factor * now;
             }

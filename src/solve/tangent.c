@@ -8,7 +8,7 @@
 
 #include <string.h>
 
-enum { LANES = 4 };
+enum { LANES = CT_TANGENT_LANES };
 
 // Entry `slope` of the result is output `row` of its colour.
 struct reading {

@@ -5,6 +5,8 @@
 #include "expr/listing.h"
 #include "formulate/equations.h"
 
+enum { CT_TANGENT_LANES = 4 };
+
 struct ct_tangent_lanes;
 
 /// l: the derivatives `along` of f, which reads its seeds behind ninput numbers of a machine. Everything lives in a.

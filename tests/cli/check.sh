@@ -31,3 +31,9 @@ echo '-- beams with nothing left out'
 for model in "$SYSTEMS"/spin_up_stiff/model.yaml "$SYSTEMS"/tapered_cantilever/model.yaml "$SYSTEMS"/slider_crank_flexible/model.yaml; do
   "$COTREE" check "$model" --keep-all | grep '^beam'
 done
+echo '-- derivatives for implicit methods'
+for model in slider_crank chain40; do
+  "$COTREE" check "$SYSTEMS/$model/model.yaml" --tree joints --method radau5 | grep '^derivatives'
+done
+"$COTREE" simulate "$SYSTEMS/slider_crank/model.yaml" --tree joints --until 0.01 --method hht 2>&1 | grep '^derivatives'
+"$COTREE" check "$SYSTEMS/slider_crank/model.yaml" | grep -c '^derivatives' || :
