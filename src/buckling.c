@@ -35,6 +35,16 @@ static void start_again(struct ct_buckling *s)
     ct_machine_prepare(l->m);
 }
 
+static void keep_start(struct ct_buckling *s)
+{
+    const struct ct_linear *l = s->at.l;
+    const size_t ny = l->m->nq + l->m->nu + 1, nm = l->m->e->nmemory;
+    s->y0 = CT_NEWN(s->own.model, double, ny);
+    s->memory0 = CT_NEWN(s->own.model, double, nm + 1);
+    memcpy(s->y0, l->y, ny * sizeof *s->y0);
+    memcpy(s->memory0, l->m->input + l->m->at_memory, nm * sizeof *s->memory0);
+}
+
 static bool find(struct ct_buckling *s)
 {
     size_t parameter;
@@ -49,15 +59,22 @@ static bool find(struct ct_buckling *s)
     s->at.model = s->variant;
     s->at.equations = &s->equations;
     s->at.about = "equilibrium";
+    s->at.may_be_large = true;
     if (!ct_configuration_find(&s->own, s->system, NULL, &s->at))
         return false;
-    struct ct_linear *l = s->at.l;
-    const size_t ny = l->m->nq + l->m->nu + 1, nm = l->m->e->nmemory;
-    s->y0 = CT_NEWN(s->own.model, double, ny);
-    s->memory0 = CT_NEWN(s->own.model, double, nm + 1);
-    memcpy(s->y0, l->y, ny * sizeof *s->y0);
-    memcpy(s->memory0, l->m->input + l->m->at_memory, nm * sizeof *s->memory0);
-    return ct_buckling_find(l, s->input, s->count, &s->list);
+    if (s->at.is_large) {
+        bool applies;
+        keep_start(s);
+        if (!ct_buckling_find_large(s->at.l, s->input, s->count, &s->list, &applies))
+            return false;
+        if (applies)
+            return true;
+        s->variant->parameter[parameter].value = 0;
+        if (!ct_configuration_find_full(&s->own, s->system, NULL, &s->at))
+            return false;
+    }
+    keep_start(s);
+    return ct_buckling_find(s->at.l, s->input, s->count, &s->list);
 }
 
 struct create {
@@ -155,9 +172,14 @@ static bool add_level(struct ct_ctx *ctx, struct ct_buckling *s, struct ct_colum
     struct ct_motion_mode *mode;
     size_t n;
     const char *how;
-    if (!ct_linear_rest(l) || !ct_modes_solve(&s->own, s->own.model, l, &mode, &n, &how))
-        return false;
     (void)ctx;
+    bool applies = true;
+    if (s->at.is_large
+            ? !ct_large_modes(&s->own, s->own.model, l, (size_t)count + 2, &mode, &n, &how,
+                              &applies)
+                  || !applies
+            : !ct_linear_rest(l) || !ct_modes_solve(&s->own, s->own.model, l, &mode, &n, &how))
+        return false;
     ct_columns_number(t, 0, l->m->input[s->input]);
     size_t k = 0;
     for (size_t i = 0; i < n && k < (size_t)count; i++)

@@ -33,13 +33,16 @@ bool ct_equations_like(struct ct_ctx *own, const struct ct_model *model,
                                      .with_energy = true,
                                      .with_outputs = true,
                                      .more = like->more,
-                                     .with_residual = true,
+                                     .with_residual = !like->is_analysed,
+                                     .for_analysis = like->is_analysed,
                                      .like = like,
                                      .held = drivers_held};
     o.trans = branches(own->model, like, like->T, &o.ntrans);
     o.rot = branches(own->model, like, like->R, &o.nrot);
     const bool ok = ct_formulate(own, own->model, model, &o, out, &unused);
-    if (ok)
+    if (ok && out->is_analysed)
+        ct_formulate_rows(out);
+    else if (ok)
         ct_formulate_dynamics(out);
     ct_own_next_stage(own);
     return ok;
@@ -110,6 +113,17 @@ static bool are_steady(const struct ct_equations *e, const struct ct_linear *l)
     return true;
 }
 
+static bool can_be_full(struct ct_ctx *own, const struct ct_system *sys,
+                        const struct ct_configuration *c)
+{
+    return c->equations->nu <= CT_MOST_FULL
+        || ct_error(
+               own, (struct ct_mark){.file = sys->model.file}, CT_E_FULL,
+               "%zu speeds are too many for full matrices, which this analysis needs here; "
+               "%d are the most",
+               c->equations->nu, CT_MOST_FULL);
+}
+
 static bool find_equilibrium(struct ct_ctx *own, struct ct_system *sys,
                              struct ct_configuration *c)
 {
@@ -134,8 +148,10 @@ static bool find_equilibrium(struct ct_ctx *own, struct ct_system *sys,
         if (applies)
             return true;
         c->is_large = c->may_be_large = false; // full matrices
-        ct_formulate_dynamics(&sys->equations);
-        ct_formulate_residual(&sys->equations);
+        if (!can_be_full(own, sys, c))
+            return false;
+        ct_formulate_dynamics(c->equations);
+        ct_formulate_residual(c->equations);
         c->l = ct_configuration_start(own, sys, c->model, c->e, true);
     }
     return c->l && ct_equilibrium_find(c->l, NULL, &c->equilibrium);
@@ -171,6 +187,16 @@ static bool find_time(struct ct_ctx *own, struct ct_system *sys, const struct ct
     return ct_linear_move(c->l);
 }
 
+static void formulate_for(struct ct_equations *e, bool is_large)
+{
+    if (!is_large || !e->is_analysed)
+        ct_formulate_dynamics(e);
+    if (is_large)
+        ct_formulate_rows(e);
+    else
+        ct_formulate_residual(e);
+}
+
 bool ct_configuration_find(struct ct_ctx *own, struct ct_system *sys,
                            const struct ct_sim_options *o, struct ct_configuration *c)
 {
@@ -185,12 +211,11 @@ bool ct_configuration_find(struct ct_ctx *own, struct ct_system *sys,
     c->is_large = c->may_be_large && c->equations->nu > CT_MOST_DENSE
                && (strcmp(c->about, words[0]) == 0
                    || (strcmp(c->about, words[1]) == 0 && !has_drivers(&sys->model)));
-    if (!c->is_large || !sys->equations.is_analysed)
-        ct_formulate_dynamics(&sys->equations);
-    if (c->is_large)
-        ct_formulate_rows(&sys->equations);
-    else
-        ct_formulate_residual(&sys->equations);
+    if (!c->is_large && !can_be_full(own, sys, c))
+        return false;
+    formulate_for(&sys->equations, c->is_large);
+    if (c->equations != &sys->equations)
+        formulate_for(c->equations, c->is_large);
     if (strcmp(c->about, words[0]) == 0)
         return find_start(own, sys, c);
     if (strcmp(c->about, words[1]) == 0)
@@ -204,6 +229,18 @@ bool ct_configuration_find(struct ct_ctx *own, struct ct_system *sys,
                         c->about, ct_suggest(own->model, c->about, words, COUNT(words)));
     return time == 0 ? find_start(own, sys, c)
                      : find_time(own, sys, o ? o : &standard, time, c);
+}
+
+bool ct_configuration_find_full(struct ct_ctx *own, struct ct_system *sys,
+                                const struct ct_sim_options *o, struct ct_configuration *c)
+{
+    if (c->equations->nu <= CT_MOST_FULL)
+        ct_warning(own, (struct ct_mark){.file = sys->model.file}, 0,
+                   "%zu speeds with dampers, moving drivers, redundant constraints or loads "
+                   "without potential: dense matrices, which takes long",
+                   c->equations->nu);
+    c->may_be_large = false;
+    return ct_configuration_find(own, sys, o, c);
 }
 
 void ct_configuration_finish(struct ct_configuration *c)

@@ -13,7 +13,7 @@ struct ct_configuration {
     bool hold_drivers; // at an equilibrium motions stand still, even steady ones
     /// A variant and its equations on the trees of the system; NULL: those of the system itself.
     const struct ct_model *model;
-    const struct ct_equations *equations;
+    struct ct_equations *equations;
     // found
     const struct ct_equations *e;
     struct ct_linear *l; // linearised there
@@ -38,6 +38,9 @@ struct ct_linear *ct_configuration_start(struct ct_ctx *own, struct ct_system *s
 /// The assembled start, with beams settled that ask for it. Errors: those of ct_assemble and ct_settle.
 bool ct_configuration_assemble(struct ct_ctx *own, struct ct_system *sys,
                                struct ct_start *start);
+/// The same with full matrices, after a find that was large. Warns that this takes long. Errors: CT_E_FULL for what would take hours.
+bool ct_configuration_find_full(struct ct_ctx *own, struct ct_system *sys,
+                                const struct ct_sim_options *o, struct ct_configuration *c);
 void ct_configuration_finish(struct ct_configuration *c);
 /// A line for people: where, and how near to equilibrium.
 void ct_configuration_print(const struct ct_configuration *c, FILE *out);

@@ -37,13 +37,7 @@ static bool solve(struct ct_modes *s, size_t count)
         return false;
     if (applies)
         return true;
-    if (s->at.is_large)
-        ct_warning(&s->own, (struct ct_mark){.file = s->system->model.file}, 0,
-                   "%d speeds with dampers, moving drivers or redundant constraints: dense "
-                   "matrices, which takes long",
-                   s->at.l->nu);
-    s->at.may_be_large = false;
-    if (s->at.is_large && !ct_configuration_find(&s->own, s->system, &s->run, &s->at))
+    if (s->at.is_large && !ct_configuration_find_full(&s->own, s->system, &s->run, &s->at))
         return false;
     return ct_modes_solve(&s->own, a, s->at.l, &s->mode, &s->all, &s->how);
 }

@@ -71,7 +71,8 @@ bool ct_buckling_load(struct ct_linear *l, size_t at, double factor)
     for (int i = 0; i < MOST_HALVINGS && tries < MOST_TRIES && last.factor != factor; tries++) {
         const double here = last.factor, next = here + (factor - here) * ldexp(1, -i);
         set_factor(l, at, next);
-        if (ct_equilibrium_follow(l, &result)) {
+        if (l->M ? ct_equilibrium_follow(l, &result)
+                 : ct_equilibrium_follow_large(l, &result)) {
             keep(l, at, &last);
             i = i > 0 ? i - 1 : 0;
         } else {

@@ -36,13 +36,20 @@ static void congruence(double *out, const double *V, const double *A, double *wo
     ct_matrix_multiply_transposed(out, V, work, k, n, k);
 }
 
-static bool is_symmetric(const double *A, int n)
+// Entries against the largest of their columns: beside stiff elements a load without potential is small.
+static bool is_symmetric(struct ct_arena *a, const double *A, int n)
 {
-    double worst = 0;
+    double *size = CT_NEWN(a, double, n + 1), most = 0;
+    for (int j = 0; j < n; j++) {
+        size[j] = sqrt(largest(A + (size_t)n * (size_t)j, (size_t)n));
+        most = fmax(most, size[j] * size[j]);
+    }
     for (int j = 0; j < n; j++)
         for (int i = 0; i < j; i++)
-            worst = fmax(worst, fabs(A[i + n * j] - A[j + n * i]));
-    return worst <= symmetric * largest(A, (size_t)n * (size_t)n);
+            if (fabs(A[i + n * j] - A[j + n * i])
+                > symmetric * size[i] * size[j] + rounding * n * most)
+                return false;
+    return true;
 }
 
 static void symmetrise(double *A, int n)
@@ -440,7 +447,7 @@ bool ct_modes_solve(struct ct_ctx *ctx, struct ct_arena *a, const struct ct_line
             clear_zeros(&s);
         for (int j = 0; j < s.k; j++)
             rigid += s.w2[j] == 0;
-        if (!has_speeds && !l->is_moving && s.is_held && is_symmetric(l->Kr, f)) {
+        if (!has_speeds && !l->is_moving && s.is_held && is_symmetric(a, l->Kr, f)) {
             *how = "symmetric";
             if (is_positive)
                 sharpen_slow(a, l->Mr, L, &s);

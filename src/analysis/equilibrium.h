@@ -36,5 +36,7 @@ bool ct_equilibrium_missing(const struct ct_linear *l, int k);
 
 /// Newton alone, from a place next to an equilibrium, stable or not: along a path of loads. No diagnostic.
 bool ct_equilibrium_follow(struct ct_linear *l, struct ct_equilibrium_result *out);
+/// The same of large systems: no matrices are left in l.
+bool ct_equilibrium_follow_large(struct ct_linear *l, struct ct_equilibrium_result *out);
 
 #endif

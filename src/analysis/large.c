@@ -12,8 +12,8 @@
 enum { BLOCK = 4 };
 static const double still
     = 1e-9; // accelerations beside those of the weights: an equilibrium to rounding
-static const double absent = 1e-12;   // damping against the masses' rates: none
-static const double symmetric = 1e-9; // of K
+static const double absent = 1e-12;    // damping against the masses' rates: none
+static const double symmetric = 1e-12; // of K
 static const double found
     = 1e-9; // residual of a mode: its eigenvalue is right to the square of that
 static const double gone = 1e-10; // of a vector, once the basis is taken off: nothing new
@@ -27,6 +27,9 @@ struct large {
     struct ct_sparse *matrix;
     double *b, *x; // n each
     double shift;
+    // buckling: K takes the place of the masses, and the operator is -K^-1 dK
+    const struct ct_point *loaded; // NULL: modes
+    double factor;                 // there
     // Lanczos
     size_t k, most;     // vectors so far
     double *V, *MV, *T; // nu x most, nu x most, most x most
@@ -51,13 +54,26 @@ static double largest_entry(const struct ct_number *A, size_t n)
 
 // ---- matrices ---------------------------------------------------------------------------------------------
 
+// The metric.
 static void apply_masses(struct large *g, double *y, const double *x)
 {
-    ct_point_apply(y, g->p->M, g->p->nM, x, g->nu);
+    if (g->loaded)
+        ct_point_apply(y, g->p->K, g->p->nK, x, g->nu);
+    else
+        ct_point_apply(y, g->p->M, g->p->nM, x, g->nu);
+}
+
+// y = -dK x, dK = (K_loaded - K)/factor
+static void apply_softening(struct large *g, double *y, const double *x)
+{
+    ct_point_apply(y, g->p->K, g->p->nK, x, g->nu);
+    ct_point_apply(g->b, g->loaded->K, g->loaded->nK, x, g->nu);
+    for (size_t i = 0; i < g->nu; i++)
+        y[i] = (y[i] - g->b[i]) / g->factor;
 }
 
 // [ K - shift M, J'; J, 0 ]
-static bool factor(struct large *g, double shift)
+static bool factor_point(struct large *g, double shift)
 {
     g->matrix = ct_point_factor(g->p, 1, -shift);
     g->shift = shift;
@@ -71,6 +87,17 @@ static void solve(struct large *g, double *x, const double *r)
     memset(g->b + g->nu, 0, g->nrow * sizeof *g->b);
     ct_sparse_solve_precisely(g->matrix, g->x, g->b);
     memcpy(x, g->x, g->nu * sizeof *x);
+}
+
+// The operator, symmetric in the metric: y (nu, out) of x, Mx its product with the metric.
+static void operate(struct large *g, double *y, const double *x, const double *Mx)
+{
+    if (g->loaded) {
+        apply_softening(g, y, x);
+        solve(g, y, y);
+    } else {
+        solve(g, y, Mx);
+    }
 }
 
 // ---- is it of this kind? -------------------------------------------------------------------------------------
@@ -115,20 +142,27 @@ static double dot(const double *x, const double *y, size_t n)
     return sum;
 }
 
-static bool is_symmetric(struct large *g)
+// K x against K' x, each row and column measured by its largest entry: a load that follows the end of a long beam is small
+// beside the stiffness of its elements.
+static bool is_symmetric(struct large *g, const struct ct_point *p)
 {
     uint64_t state = 1;
-    double *x = g->W, *y = g->W + g->nu, *Kx = g->W + 2 * g->nu, *Ky = g->W + 3 * g->nu;
+    double *size = g->W, *x = g->W + g->nu, *Kx = g->W + 2 * g->nu, *transposed = Kx + g->nu;
+    memset(size, 0, g->nu * sizeof *size);
+    memset(transposed, 0, g->nu * sizeof *transposed);
+    for (size_t i = 0; i < p->nK; i++)
+        size[p->K[i].row] = fmax(size[p->K[i].row], fabs(p->K[i].value));
     for (size_t i = 0; i < g->nu; i++) {
-        x[i] = chance(&state);
-        y[i] = chance(&state);
+        size[i] = size[i] > 0 ? sqrt(size[i]) : 1;
+        x[i] = chance(&state) / size[i];
     }
-    ct_point_apply(Kx, g->p->K, g->p->nK, x, g->nu);
-    ct_point_apply(Ky, g->p->K, g->p->nK, y, g->nu);
-    double size = 0;
+    ct_point_apply(Kx, p->K, p->nK, x, g->nu);
+    for (size_t i = 0; i < p->nK; i++)
+        transposed[p->K[i].direction] += p->K[i].value * x[p->K[i].row];
     for (size_t i = 0; i < g->nu; i++)
-        size += fabs(y[i] * Kx[i]);
-    return fabs(dot(y, Kx, g->nu) - dot(x, Ky, g->nu)) <= symmetric * size;
+        if (!(fabs(Kx[i] - transposed[i]) <= symmetric * size[i]))
+            return false;
+    return true;
 }
 
 static bool is_of_this_kind(struct large *g)
@@ -142,7 +176,7 @@ static bool is_of_this_kind(struct large *g)
         return false; // the rows turn while it accelerates
     const double rate
         = sqrt(largest_entry(g->p->K, g->p->nK) * largest_entry(g->p->M, g->p->nM));
-    return largest_entry(g->p->C, g->p->nC) <= absent * rate && is_symmetric(g);
+    return largest_entry(g->p->C, g->p->nC) <= absent * rate && is_symmetric(g, g->p);
 }
 
 // ---- Lanczos -----------------------------------------------------------------------------------------------------
@@ -227,7 +261,7 @@ static size_t iterate(struct large *g, size_t count, struct ritz *z)
         for (size_t i = 0; i < g->nu; i++)
             r[i] = chance(&state);
         apply_masses(g, w, r);
-        solve(g, w, w);
+        operate(g, w, r, w);
     }
     size_t first = 0; // of the newest block
     for (size_t c = 0; c < BLOCK; c++)
@@ -235,7 +269,8 @@ static size_t iterate(struct large *g, size_t count, struct ritz *z)
     for (;;) {
         const size_t last = g->k, n = last - first;
         for (size_t c = 0; c < n; c++)
-            solve(g, g->W + g->nu * c, g->MV + g->nu * (first + c));
+            operate(g, g->W + g->nu * c, g->V + g->nu * (first + c),
+                    g->MV + g->nu * (first + c));
         for (size_t c = 0; c < n; c++)
             for (size_t j = 0; j < last; j++)
                 g->T[j + g->most * (first + c)] = g->T[first + c + g->most * j]
@@ -388,9 +423,7 @@ static bool are_few(const struct large *g, size_t count)
     return 4 * count + 40 < g->nu - (g->nrow < g->nu ? g->nrow : g->nu);
 }
 
-bool ct_large_modes(struct ct_ctx *ctx, struct ct_arena *a, struct ct_linear *l, size_t count,
-                    struct ct_motion_mode **mode, size_t *nmode, const char **how,
-                    bool *applies)
+static struct large large_create(struct ct_ctx *ctx, struct ct_arena *a, struct ct_linear *l)
 {
     struct large g = {.ctx = ctx, .a = a, .l = l, .p = ct_point_create(l)};
     g.nu = l->m->nu;
@@ -400,15 +433,23 @@ bool ct_large_modes(struct ct_ctx *ctx, struct ct_arena *a, struct ct_linear *l,
     g.x = CT_NEWN(a, double, g.n + 1);
     g.W = CT_NEWN(a, double, BLOCK *g.nu + 1);
     g.R = CT_NEWN(a, double, BLOCK *BLOCK);
+    return g;
+}
+
+bool ct_large_modes(struct ct_ctx *ctx, struct ct_arena *a, struct ct_linear *l, size_t count,
+                    struct ct_motion_mode **mode, size_t *nmode, const char **how,
+                    bool *applies)
+{
+    struct large g = large_create(ctx, a, l);
     *applies = is_of_this_kind(&g);
     *nmode = 0;
     *how = "sparse symmetric";
     if (!*applies)
         return true;
-    if (!factor(&g, 0)) { // something is free to move: shifted by a little of the lowest
+    if (!factor_point(&g, 0)) { // something is free to move: shifted by a little of the lowest
         const double ratio
             = largest_entry(g.p->K, g.p->nK) / fmax(largest_entry(g.p->M, g.p->nM), DBL_MIN);
-        if (!factor(&g, -1e-9 * fmax(ratio, 1)))
+        if (!factor_point(&g, -1e-9 * fmax(ratio, 1)))
             return ct_error(ctx, (struct ct_mark){.file = l->m->model->file}, CT_E_SINGULAR,
                             "the stiffness and the constraints are singular");
     }
@@ -425,4 +466,25 @@ bool ct_large_modes(struct ct_ctx *ctx, struct ct_arena *a, struct ct_linear *l,
     add_modes(&g, &z, *mode, nmode);
     ct_modes_sort(a, *mode, *nmode);
     return true;
+}
+
+size_t ct_large_factors(struct ct_ctx *ctx, struct ct_arena *a, struct ct_linear *l,
+                        const struct ct_point *loaded, double factor, size_t count, double *c,
+                        double *shape)
+{
+    const double none = 1e-9; // of the largest 1/c
+    struct large g = large_create(ctx, a, l);
+    size_t n = 0;
+    if (!is_of_this_kind(&g) || !is_symmetric(&g, loaded) || !factor_point(&g, 0))
+        return 0;
+    g.loaded = loaded;
+    g.factor = factor;
+    const size_t both = 2 * count < g.nu ? 2 * count : g.nu; // of loads that pull, too
+    const struct pairs z = by_lanczos(&g, both);
+    for (size_t i = 0; i < z.n && n < count; i++)
+        if (z.theta[i] > none * fabs(z.theta[0])) {
+            c[n] = 1 / z.theta[i];
+            memcpy(shape + g.nu * n++, z.vector + g.nu * i, g.nu * sizeof *shape);
+        }
+    return n;
 }

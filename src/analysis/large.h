@@ -3,6 +3,7 @@
 #define CT_ANALYSIS_LARGE_H
 
 #include "analysis/eigen.h"
+#include "analysis/point.h"
 
 /**
  * The lowest modes of a system at rest without dampers and forces that have no potential; with loops without drivers, too.
@@ -22,5 +23,21 @@
 bool ct_large_modes(struct ct_ctx *ctx, struct ct_arena *a, struct ct_linear *l, size_t count,
                     struct ct_motion_mode **mode, size_t *nmode, const char **how,
                     bool *applies);
+
+/**
+ * The lowest positive factors c with det(K + c (K_loaded - K)/factor) = 0 along the rows, the linear problem of buckling.
+ *
+ * The same iteration, with K as its metric. K is positive: the equilibrium without the load is stable.
+ *
+ * l       in   at the equilibrium with factor 0, as ct_equilibrium_find_large leaves it
+ * loaded  in   evaluated at the equilibrium with `factor`
+ * c       out  count, ascending
+ * shape   out  nu x count
+ *
+ * Returns how many there are; 0, too, where the system is not of the kind of ct_large_modes.
+ */
+size_t ct_large_factors(struct ct_ctx *ctx, struct ct_arena *a, struct ct_linear *l,
+                        const struct ct_point *loaded, double factor, size_t count, double *c,
+                        double *shape);
 
 #endif

@@ -180,3 +180,56 @@ bool ct_equilibrium_find_large(struct ct_linear *l, struct ct_equilibrium_result
     l->is_resting = true;
     return true;
 }
+
+// ---- along a path of loads -----------------------------------------------------------------------------------
+
+// Nothing but rounding is left of the forces that meet.
+static bool is_balanced(const struct search *s)
+{
+    const struct ct_linear *l = s->l;
+    double *meet = s->b;
+    memset(meet, 0, s->nu * sizeof *meet);
+    for (size_t i = 0; i < s->p->nK; i++) {
+        const int q = l->m->e->u[s->p->K[i].direction].q;
+        if (q >= 0)
+            meet[s->p->K[i].row] += fabs(s->p->K[i].value * l->y[q]);
+    }
+    return largest(s->p->r, s->nu) <= 8 * DBL_EPSILON * largest(meet, s->nu);
+}
+
+static bool follow(struct search *s, struct ct_equilibrium_result *out)
+{
+    enum { MOST = 25 };
+    struct ct_linear *l = s->l;
+    double last = INFINITY;
+    if (!ct_point_evaluate(s->p))
+        return false;
+    for (; !is_balanced(s); out->iterations++) {
+        if (!solve(s, 0))
+            return false;
+        const double size = largest(s->x, s->nu) / (1 + largest(l->y, l->m->nq));
+        out->last_step = size;
+        for (size_t k = 0; k < s->nrow; k++)
+            l->lam[k] -= s->x[s->nu + k];
+        if (size <= arrived || (size <= nearly && size > last / 2))
+            return true;
+        if (out->iterations == MOST || allowed(s) < 1 || size > last / 2)
+            return false;
+        last = size;
+        ct_machine_retract(l->m, l->y, s->x);
+        if (!ct_linear_close(l) || !ct_point_evaluate(s->p))
+            return false;
+    }
+    return true;
+}
+
+bool ct_equilibrium_follow_large(struct ct_linear *l, struct ct_equilibrium_result *out)
+{
+    struct search s = search_create(l);
+    const size_t before = l->ctx->nerror;
+    s.length = INFINITY; // as for small systems
+    *out = (struct ct_equilibrium_result){0};
+    const bool ok = follow(&s, out) && l->ctx->nerror == before;
+    ct_arena_destroy(s.p->a);
+    return ok;
+}

@@ -452,26 +452,35 @@ struct terms {
     size_t n, cap;
 };
 
-static void flatten_sum(struct printer *pr, struct terms *t, ct_ex e, bool negative)
+struct summand {
+    ct_ex e;
+    bool negative;
+};
+
+// Sums may be nested deeper than calls can be.
+static void flatten_sum(struct printer *pr, struct terms *t, ct_ex e)
 {
-    const struct ct_exnode *n = ct_ex_node(pr->x, e);
-    if (!name_of(pr, e) && pr->left) {
-        pr->left--;
-        switch (n->op) {
-        case CT_OP_ADD:
-        case CT_OP_SUB:
-            flatten_sum(pr, t, (ct_ex){n->a}, negative);
-            flatten_sum(pr, t, (ct_ex){n->b}, negative ^ (n->op == CT_OP_SUB));
-            return;
-        case CT_OP_NEG:
-            flatten_sum(pr, t, (ct_ex){n->a}, !negative);
-            return;
-        default:
-            break;
+    struct summand *wait = NULL, next = {e, false};
+    size_t n = 0, cap = 0;
+    CT_PUSH(pr->arena, wait, n, cap, next);
+    while (n) {
+        const struct summand s = wait[--n];
+        const struct ct_exnode *node = ct_ex_node(pr->x, s.e);
+        const bool is_whole = name_of(pr, s.e) || !pr->left;
+        const bool is_sum = node->op == CT_OP_ADD || node->op == CT_OP_SUB;
+        pr->left -= !is_whole;
+        if (is_whole || !(is_sum || node->op == CT_OP_NEG)) {
+            const struct term one = make_term(pr, s.e, s.negative);
+            CT_PUSH(pr->arena, t->at, t->n, t->cap, one);
+            continue;
         }
+        if (is_sum) {
+            next = (struct summand){{node->b}, s.negative ^ (node->op == CT_OP_SUB)};
+            CT_PUSH(pr->arena, wait, n, cap, next);
+        }
+        next = (struct summand){{node->a}, s.negative ^ (node->op == CT_OP_NEG)};
+        CT_PUSH(pr->arena, wait, n, cap, next);
     }
-    const struct term one = make_term(pr, e, negative);
-    CT_PUSH(pr->arena, t->at, t->n, t->cap, one);
 }
 
 static size_t count_class(const struct terms *t, int class)
@@ -502,7 +511,7 @@ static void lead_with_positive(struct terms *t)
 static void emit_sum(struct printer *pr, ct_ex e, enum level level)
 {
     struct terms t = {0};
-    flatten_sum(pr, &t, e, false);
+    flatten_sum(pr, &t, e);
     ct_sort(pr->arena, t.at, t.n, sizeof *t.at, compare_terms, pr);
     lead_with_positive(&t);
     const bool group

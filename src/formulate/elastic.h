@@ -106,6 +106,9 @@ bool ct_flexible_reduce(struct ct_build *b, struct ct_flexible *f, struct ct_sha
 /// Rotations of nodes without inertia and moment (flexible_massless.c). follows (6 per node, out): by freedom, fixed ones
 /// included. False if there are none.
 bool ct_flexible_follow(struct ct_build *b, const struct ct_flexible *f, bool *follows);
+/// The joint about whose axis nothing but the section at the beam's start turns, without inertia, where the other nodes stay:
+/// exactly where the axis is straight, nearly where foreshortening moves nodes of a bent one. -1: none.
+int ct_flexible_bare_joint(struct ct_build *b, const struct ct_flexible *f);
 /// Shapes of the freedoms that do not follow, each with the others of them held and those that follow in equilibrium. False
 /// if all are coordinates, or the stiffness of those that follow is not positive.
 bool ct_flexible_condense(struct ct_build *b, struct ct_flexible *f, struct ct_shapes *out);

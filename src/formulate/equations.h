@@ -171,6 +171,8 @@ struct ct_equations {
     ct_ex total;                      // energy less the work put in: constant
     struct ct_residual *residual;     // NULL if not asked for
     bool is_planar;
+    int bare_beam,
+        bare_joint; // body whose first section has no inertia, the joint it turns on; 0: none
     bool is_truncated; // to first order in coordinates that are small
     struct ct_validity *validity;
     size_t nvalidity, validity_cap;

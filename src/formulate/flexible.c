@@ -360,6 +360,11 @@ void ct_flexible_unknowns(struct ct_build *b, struct ct_flexible *f)
 {
     f->elastic = CT_NEWN(b->arena, struct ct_elastic, NKIND * (f->beam->nelement + 1));
     struct ct_shapes s;
+    const int bare = ct_flexible_bare_joint(b, f);
+    if (bare >= 0) {
+        b->eqs->bare_beam = f->body;
+        b->eqs->bare_joint = bare;
+    }
     if (f->beam->modes && f->deformation) {
         if (ct_flexible_reduce(b, f, &s))
             unknowns_of_shapes(b, f, &s);

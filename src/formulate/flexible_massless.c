@@ -121,6 +121,63 @@ static void mark_frame(struct node_moments *w, size_t frame)
     w->about[s.element + 1] |= at_start ? 0 : about;
 }
 
+// ---- the section at the start --------------------------------------------------------------------------------
+
+// Axes of the beam, bits, about which joint j alone lets the section at the frame turn.
+static unsigned turns_freely(const struct node_moments *w, size_t j, const struct ct_frame *at)
+{
+    struct ct_build *b = w->b;
+    const struct ct_instance *self = &b->model->joint[j];
+    if (b->edge_of_joint[j] < 0 || !strcmp(self->cls->name, "custom")
+        || ct_instance_value(self, "motion")->given)
+        return 0;
+    const struct ct_edge_info *e = &b->edge[b->edge_of_joint[j]];
+    if (e->weight_r == (b->is_planar ? 1 : NAXIS))
+        return b->is_planar ? about_normal(w) : ALL;
+    if (e->weight_r != 1 || e->trial.nturn != 1)
+        return 0;
+    const int axis = axis_along(b, at, e->trial.turn[0].axis);
+    return axis < 0 ? 0 : 1u << axis;
+}
+
+// Does the frame move with the section at the start?
+static bool is_at_start(const struct node_moments *w, size_t frame)
+{
+    struct ct_station s;
+    ct_flexible_station(w->b, w->f, w->b->model->frame[frame].at.e[0], CT_AXIAL_LINEAR, &s);
+    return s.element == 0 && !ct_ex_same(s.xi, CT_EX_ONE);
+}
+
+int ct_flexible_bare_joint(struct ct_build *b, const struct ct_flexible *f)
+{
+    const struct ct_model *m = b->model;
+    const struct node_moments w = {.b = b, .f = f};
+    const unsigned bends = (f->deformation & CT_BEAM_BENDING_Y ? 2 : 0)
+                         | (f->deformation & CT_BEAM_BENDING_Z ? 4 : 0);
+    unsigned about = 0;
+    int only = -1;
+    if (!bends || f->beam->modes || f->beam->is_chord
+        || (!f->beam->is_lumped && f->beam->theory != CT_BEAM_TIMOSHENKO))
+        return -1;
+    for (size_t j = 0; j < m->njoint; j++) {
+        const int end[2] = {m->joint[j].from, m->joint[j].to};
+        for (int i = 0; i < 2; i++) {
+            if (m->frame[end[i]].body != f->body || !is_at_start(&w, (size_t)end[i]))
+                continue;
+            if (only >= 0 || end[i] != m->body[f->body].frame)
+                return -1;
+            only = (int)j;
+            about = turns_freely(&w, j, &m->frame[end[i]]);
+        }
+    }
+    for (int axis = 1; axis < NAXIS; axis++)
+        if (about & bends & 1u << axis && ct_ex_is_zero(ct_flexible_rotary(f, axis).value))
+            return only;
+    return -1;
+}
+
+// ---- all ---------------------------------------------------------------------------------------------------
+
 bool ct_flexible_follow(struct ct_build *b, const struct ct_flexible *f, bool *follows)
 {
     const int nnode = f->beam->nelement + 1;

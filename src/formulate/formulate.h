@@ -40,6 +40,7 @@ struct ct_formulate_options {
                       // solution, and trees that couple few unknowns
 };
 
+enum { CT_MOST_FULL = 3000 }; // speeds; full matrices of larger systems would take hours
 enum { CT_MOST_DENSE = 300 }; // speeds; larger systems are analysed with sparse matrices
 
 /// What tree selection found, for the report.

@@ -265,7 +265,8 @@ static bool try_along(struct ct_build *b, struct ct_residual *f, const struct sl
     f->ndv = ct_ex_pattern(b->x, scratch, b->arena, s->v, s->nrow, s->all.e, s->nplace,
                            (uint32_t)ndirection, &f->dv, &more_operations);
     more = CT_NEWN(scratch, struct ct_slope, n + f->ndv + 1);
-    memcpy(more, all, n * sizeof *more);
+    if (n)
+        memcpy(more, all, n * sizeof *more);
     for (size_t i = 0; i < f->ndv; i++, n++) {
         more[n] = f->dv[i];
         more[n].row += (uint32_t)s->nu;

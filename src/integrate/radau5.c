@@ -64,6 +64,7 @@ struct stages {
 struct state {
     const struct ct_dae *dae;
     struct ct_iteration *it;
+    bool turns;                  // there are rotations
     bool is_fresh, was_tried;    // there is no step before
     struct stages before, now;   // the last accepted step, this one
     struct stages change;        // corrections, first in the basis of eigenvectors
@@ -91,6 +92,8 @@ static void *create(struct ct_arena *a, const struct ct_method *method,
     const int nu = p->dae->nu, m = p->dae->most_rows;
     (void)method;
     s->dae = p->dae;
+    for (int k = 0; k < nu; k++)
+        s->turns |= p->dae->q_of[k] < 0;
     s->it = ct_iteration_create(a, p, true, true);
     create_stages(a, &s->before, p->dae);
     create_stages(a, &s->now, p->dae);
@@ -336,14 +339,14 @@ static enum ct_eval correct(struct state *s, double t, const double *y,
     return CT_EVAL_OK;
 }
 
-// Derivatives, where they are too old: at the second stage as predicted, nearer to all stages than the start is; on a
-// first step, whose prediction is a straight line, at the start.
+// Derivatives, where they are too old: with rotations at the second stage as predicted, nearer to all stages than the
+// start is; else, and on a first step, whose prediction is a straight line, at the start.
 static enum ct_eval refresh(struct state *s, double t, double h, const double *y,
                             const double *dy, struct ct_integrate_stats *stats)
 {
     const int nq = s->dae->nq, middle = 1;
     double w[STAGES];
-    if (s->is_fresh)
+    if (s->is_fresh || !s->turns)
         return ct_iteration_refresh(s->it, t, y, y + nq, dy + nq, s->lam, stats);
     for (int j = 0; j < STAGES; j++)
         w[j] = INVERSE[middle][j] / h;

@@ -13,6 +13,9 @@ static const int suspicious_tests = 3;
 // Explicit methods become unstable, or lose their accuracy to what is fast, where step * fast is 1 to 6; with
 // half of that the step may be held up.
 static const double suspicious_step = 0.5;
+// With as much no method follows the fastest motion: what changes from step to step at its rate then is no motion but
+// errors at the limit of stability, and `slow` is not known.
+static const double unfollowed_step = 3;
 // Motions that go on at the rate of the fastest have to be followed, whatever the method.
 static const double least_separation = 10;
 // Fewer steps to come are not worth a trial, nor the preparation of an implicit method.
@@ -109,7 +112,9 @@ static bool test(struct ct_stiffness *s, double t, const double *y)
     if (s->p->rhs(s->p->user, s->t0, s->y0, s->f0) != CT_EVAL_OK || !find_fast(s, t, y))
         return false;
     s->slow = find_slow(s, t - s->t0);
-    return s->step * s->fast > suspicious_step && s->fast > least_separation * s->slow;
+    const double reach = s->step * s->fast;
+    return reach > unfollowed_step
+        || (reach > suspicious_step && s->fast > least_separation * s->slow);
 }
 
 bool ct_stiffness_watch(struct ct_stiffness *s, double t, const double *y, double end)

@@ -298,28 +298,6 @@ static size_t lightest(const struct ct_embed *s)
     return least;
 }
 
-// A beam without inertia of sections whose first section a joint turns and nothing else holds; 0: none.
-static int bare_beam(const struct ct_model *model)
-{
-    for (size_t i = 1; i < model->nbody; i++) {
-        const struct ct_beam *beam = model->body[i].beam;
-        int njoint = 0, nturn = 0;
-        if (!beam || beam->has_rotary || beam->is_chord
-            || (!beam->is_lumped && beam->theory == CT_BEAM_EULER_BERNOULLI))
-            continue;
-        for (size_t j = 0; j < model->njoint; j++) {
-            const struct ct_instance *joint = &model->joint[j];
-            if (joint->from != model->body[i].frame && joint->to != model->body[i].frame)
-                continue;
-            njoint++;
-            nturn += joint->nfree > 0;
-        }
-        if (njoint == 1 && nturn == 1)
-            return (int)i;
-    }
-    return 0;
-}
-
 // What gives sections an inertia.
 static const char *rotary_of(const struct ct_beam *beam)
 {
@@ -332,8 +310,8 @@ static bool massless(struct ct_embed *s, size_t speed)
     const struct ct_u *u = &s->m->e->u[speed];
     const struct ct_model *model = s->m->model;
     const char *name = u->q >= 0 ? s->m->e->q[u->q].name : u->name;
-    const int bare = bare_beam(model);
-    if (bare && (u->joint >= 0 || u->beam > 0))
+    const int bare = s->m->e->bare_beam;
+    if (bare)
         return ct_error(
             s->ctx, model->body[bare].instance.mark, CT_E_MASSLESS,
             "coordinate '%s' moves no mass: the first section of beam '%s' has no inertia; "
@@ -348,6 +326,17 @@ static bool massless(struct ct_embed *s, size_t speed)
     return ct_error(s->ctx, mark, CT_E_MASSLESS,
                     "coordinate '%s' moves no mass: give a mass or an inertia to what it moves",
                     name);
+}
+
+// The speed of the joint that turns a beam's first section where that has no inertia: an axis that bends leaves it next to
+// none, with which no step is right.
+static size_t bare_speed(const struct ct_embed *s)
+{
+    const struct ct_equations *e = s->m->e;
+    for (size_t k = 0; k < e->nu; k++)
+        if (e->u[k].joint == e->bare_joint)
+            return k;
+    return lightest(s);
 }
 
 // The pivots of a solution in closed form must be positive. Behind one that is not, others are no numbers.
@@ -449,6 +438,8 @@ bool ct_embed_choose(struct ct_embed *s)
         return massless(s, lightest(s));
     s->kappa_chosen = s->kappa;
     s->sigma_chosen = s->sigma;
+    if (s->m->e->bare_beam)
+        return massless(s, bare_speed(s));
     if (s->m->e->solution)
         return has_inertia(s);
     ct_machine_motion(s->m);

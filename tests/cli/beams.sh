@@ -161,3 +161,23 @@ END
 "$COTREE" simulate twist.yaml --quiet -o some.csv
 "$COTREE" simulate twist.yaml --quiet --keep-all -o all.csv
 difference some.csv all.csv | awk '{ print ($1 < 1e-11) ? "same" : $0 }'
+echo '-- a first section without inertia that turns freely, whatever the axis does'
+cat >bare.yaml <<'BARE'
+cotree: 1
+gravity: [0, -9.81, 0]
+bodies:
+  rod: {type: beam, length: 1, elements: 12, density: 2700, E: 7.2e7, nu: 0.3, area: 1e-3, Iz: 1e-7, theory: timoshenko, shear_factor: 5/6, deformation: [bending-z], formulation: FORM, points: {root: 0}}
+  disc: {inertia: 1e-3}
+joints:
+  pin: {type: revolute, from: ground, to: rod}
+  JOINT
+outputs: [pin.q]
+simulation: {duration: 1e-4, samples: 2}
+BARE
+for f in linear foreshortening auto; do
+  sed -e "s/FORM/$f/" -e 's/JOINT/far: {type: revolute, from: ground, to: disc}/' bare.yaml >bare_$f.yaml
+  "$COTREE" simulate bare_$f.yaml --quiet -o bare.csv 2>&1 | sed -n 's/.*error: //p'
+done
+echo '-- and with a disc on it'
+sed -e 's/FORM/foreshortening/' -e 's/JOINT/on: {type: weld, from: rod.root, to: disc}/' bare.yaml >disc.yaml
+"$COTREE" simulate disc.yaml --quiet -o disc.csv && echo moves

@@ -18,3 +18,6 @@ echo '-- a parameter from the command line: length 1 m against 4 m, at twice the
 "$COTREE" simulate "$m" -o short.csv --until 1 --samples 2 --quiet
 awk -F, 'FNR == 3 { q[++n] = $2 } END { d = q[1] - q[2]; print (d < 1e-8 && d > -1e-8) ? "same angle" : "differs" }' \
   long.csv short.csv
+echo '-- so stiff that no explicit step is worth taking'
+timeout 60 "$COTREE" simulate "$SYSTEMS/hard/flyball_governor/model.yaml" --set C=1e12 --set rho=1 --until 0.001 -o stiff.csv 2>&1 |
+  sed -n 's/.*\(automatic, but radau5\).*/\1/p'

@@ -1,18 +1,18 @@
 #!/bin/sh
-# validity.sh SPEED: brings the beam of systems/spin_up_beam to SPEED rad/s as a linear beam and as a foreshortened one. At
-# the instant of the foreshortened beam's largest deflection the linear one is off by what the validity
-# indicator says there, within a factor of 3.
+# validity.sh SPEED [SYSTEM UNTIL]: brings the beam of systems/SYSTEM (else systems/spin_up_beam, until 8 s) to SPEED rad/s as a
+# linear beam and as a foreshortened one. At the instant of the foreshortened beam's largest deflection the linear one is off by
+# what the validity indicator says there, within a factor of 3. COTREE is the program.
 set -eu
 : "${COTREE:?is the program to test}"
 folder=$(dirname "$0")
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 for formulation in linear foreshortening; do
-    sed -e "s/formulation: foreshortening/formulation: $formulation/" \
+    sed -e "s/formulation: .*/formulation: $formulation/" \
         -e 's/^outputs:/outputs:\n  - {name: eta, value: beam.validity}/' \
-        "$folder/../../systems/spin_up_beam/model.yaml" > "$work/$formulation.yaml"
+        "$folder/../../systems/${2:-spin_up_beam}/model.yaml" > "$work/$formulation.yaml"
     "$COTREE" simulate "$work/$formulation.yaml" -o "$work/$formulation.csv" --quiet --set "speed=$1" \
-        --method radau5 --tolerance 1e-6 --until 8 --samples 161
+        --method radau5 --tolerance 1e-6 --until "${3:-8}" --samples 161
 done
 paste -d, "$work/linear.csv" "$work/foreshortening.csv" | awk -F, '
 function size(x) { return x < 0 ? -x : x }
