@@ -117,8 +117,9 @@ void ct_shape_bending(enum ct_beam_theory theory, struct ct_bending *s)
             s->place[i] = cubic[i];
             s->rotation[i] = ct_shape_slope(&cubic[i]);
         } else {
-            s->place[i] = turns ? (struct ct_shape){.power = 0} : linear[i / 2];
-            s->rotation[i] = turns ? linear[i / 2] : (struct ct_shape){.power = 0};
+            const struct ct_shape none = {0};
+            s->place[i] = turns ? none : linear[i / 2];
+            s->rotation[i] = turns ? linear[i / 2] : none;
         }
         s->slope[i] = ct_shape_slope(&s->place[i]);
     }

@@ -440,7 +440,9 @@ const struct ct_groups *ct_run_groups(struct ct_run *r)
 static struct ct_mark mark_of_row(const struct ct_run *r, size_t row)
 {
     const int joint = r->e->row[row].joint;
-    return joint < 0 ? (struct ct_mark){.file = r->model->file} : r->model->joint[joint].mark;
+    if (joint < 0)
+        return (struct ct_mark){.file = r->model->file};
+    return r->model->joint[joint].mark;
 }
 
 // Where steps ended as they became too short: beside a singular position?
