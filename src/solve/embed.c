@@ -789,24 +789,42 @@ static bool has_redundant_rows(const struct ct_embed *s)
     return s->rank < (int)s->m->nrow;
 }
 
-static double smallest_singular_value(struct ct_embed *s)
+// A (nrow x nrow, out) = J J', its lower triangle.
+static void square(const struct ct_embed *s, double *A)
 {
-    // from the eigenvalues of J J', which cost a third of a decomposition; half the digits are enough
     const size_t n = s->m->nu, m = s->m->nrow;
     const double *J = s->m->J;
-    memset(s->A, 0, m * m * sizeof *s->A);
+    memset(A, 0, m * m * sizeof *A);
     for (size_t k = 0; k < n; k++, J += m)
         for (size_t j = 0; j < m; j++)
             for (size_t i = j; i < m && J[j] != 0; i++)
-                s->A[i + m * j] += J[i] * J[j];
-    if (!ct_symmetric_eigenvalues(s->b, s->A, (int)m, (int)m, s->work))
+                A[i + m * j] += J[i] * J[j];
+}
+
+static double smallest_singular_value(struct ct_embed *s)
+{
+    // from the eigenvalues of J J', which cost a third of a decomposition; half the digits are enough
+    const int m = (int)s->m->nrow;
+    square(s, s->A);
+    if (!ct_symmetric_eigenvalues(s->b, s->A, m, m, s->work))
         return 0;
-    return sqrt(fmax(0, s->b[m - (size_t)s->rank]));
+    return sqrt(fmax(0, s->b[m - s->rank]));
 }
 
 bool ct_embed_has_pivot(const struct ct_embed *s)
 {
     return s->rank && !(has_redundant_rows(s) && is_large(s));
+}
+
+bool ct_embed_pivot_is_between(struct ct_embed *s, double low, double high)
+{
+    const int m = (int)s->m->nrow, nzero = m - s->rank;
+    if (!has_redundant_rows(s))
+        return false;
+    square(s, s->A);
+    memcpy(s->MB, s->A, (size_t)(m * m) * sizeof *s->A);
+    return ct_symmetric_count_below(s->A, m, m, low * low) == nzero
+        && ct_symmetric_count_below(s->MB, m, m, high * high) > nzero;
 }
 
 double ct_embed_pivot(struct ct_embed *s)

@@ -132,8 +132,8 @@ static bool choose_backend(struct ct_arena *a, struct ct_machine *m, struct ct_p
 
 bool ct_machine_use(struct ct_arena *a, struct ct_machine *m, enum ct_backend backend)
 {
-    struct ct_program *const all[]
-        = {&m->motion, &m->constraint, &m->solved, &m->residual, &m->tangent};
+    struct ct_program *const all[] = {&m->motion, &m->constraint, &m->solved, &m->power,
+                                      &m->memory, &m->residual,   &m->tangent};
     bool available = ct_native_is_available(1);
     m->asked = backend;
     for (size_t i = 0; i < COUNT(all); i++)
@@ -265,9 +265,8 @@ static void compile_rest(struct ct_arena *a, struct ct_machine *m, const struct 
     compile(a, m, in, energies, 2, &m->energy);
     compile(a, m, in, &e->power, ct_ex_is_zero(e->power) ? 0 : 1, &m->power);
     // seldom run: not worth native code
-    struct ct_program *const all[]
-        = {&m->result, &m->root,   &m->memory,   &m->momentum, &m->driver,
-           &m->wanted, &m->energy, &m->validity, &m->power};
+    struct ct_program *const all[] = {&m->result, &m->root,   &m->momentum, &m->driver,
+                                      &m->wanted, &m->energy, &m->validity};
     for (size_t i = 0; i < COUNT(all); i++)
         if (all[i]->nout)
             use(a, all[i], NULL);
