@@ -175,7 +175,6 @@ static bool build(struct ct_system *s, const char *path, const struct ct_system_
 }
 
 struct load {
-    struct ct_ctx *ctx;
     struct ct_system *s;
     const char *path;
     const struct ct_system_options *options;
@@ -183,23 +182,18 @@ struct load {
 
 static bool load(void *task)
 {
-    struct load *l = task;
-    ct_own_init(&l->s->own);
-    const bool ok = build(l->s, l->path, l->options);
-    ct_ctx_hand_over(l->ctx, &l->s->own);
-    return ok;
+    const struct load *l = task;
+    return build(l->s, l->path, l->options);
 }
 
 struct ct_system *ct_system_load(struct ct_ctx *ctx, const char *path,
                                  const struct ct_system_options *options)
 {
     static const struct ct_system_options standard;
-    struct load l = {ctx, calloc(1, sizeof *l.s), path, options ? options : &standard};
-    if (!l.s) {
-        ctx->no_memory = true;
+    struct load l = {ct_own_alloc(ctx, sizeof *l.s), path, options ? options : &standard};
+    if (!l.s)
         return NULL;
-    }
-    if (ct_enter(ctx, load, &l))
+    if (ct_own_enter(ctx, &l.s->own, load, &l))
         return l.s;
     ct_system_destroy(l.s);
     return NULL;
