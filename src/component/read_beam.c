@@ -8,27 +8,6 @@
 
 // ---- values that only beams have ------------------------------------------------------------------------
 
-static void make_room(struct ct_reader *r, struct ct_value *v, size_t n)
-{
-    v->n = n;
-    v->e = CT_NEWN(r->a, ct_ex, n);
-    v->at = CT_NEWN(r->a, struct ct_mark, n);
-    for (size_t i = 0; i < n; i++)
-        v->e[i] = CT_EX_ZERO;
-}
-
-static bool read_items(struct ct_reader *r, const struct ct_node *node,
-                       const struct ct_key *key, struct ct_value *v)
-{
-    make_room(r, v, node->n);
-    bool ok = true;
-    for (size_t i = 0; i < node->n; i++) {
-        v->at[i] = node->item[i]->mark;
-        ok &= ct_read_expr(r, node->item[i], key->flags, key->unit, &v->e[i]);
-    }
-    return ok;
-}
-
 static bool read_elements(struct ct_reader *r, const struct ct_node *node,
                           const struct ct_key *key, struct ct_value *v)
 {
@@ -38,7 +17,7 @@ static bool read_elements(struct ct_reader *r, const struct ct_node *node,
     if (!ct_read_length(r, node, 1, MOST, "a list of the places where elements end"))
         return false;
     v->count = (long)node->n;
-    return read_items(r, node, key, v);
+    return ct_read_items(r, node, key, v);
 }
 
 static bool read_rotary(struct ct_reader *r, const struct ct_node *node,
@@ -51,7 +30,7 @@ static bool read_rotary(struct ct_reader *r, const struct ct_node *node,
     }
     v->count = 3;
     return ct_read_length(r, node, 3, 3, "true, false or a list of 3")
-        && read_items(r, node, key, v);
+        && ct_read_items(r, node, key, v);
 }
 
 static bool read_rayleigh(struct ct_reader *r, const struct ct_node *node,
@@ -61,7 +40,7 @@ static bool read_rayleigh(struct ct_reader *r, const struct ct_node *node,
     if (!ct_read_shape(r, node, CT_NODE_MAP, "{alpha: a, beta: b}"))
         return false;
     bool ok = ct_read_keys(r, node, "'damping' of a beam", names, COUNT(names));
-    make_room(r, v, COUNT(names));
+    ct_read_room(r, v, COUNT(names));
     for (size_t i = 0; i < COUNT(names); i++) {
         const struct ct_node *item = ct_node_get(node, names[i]);
         double value;
