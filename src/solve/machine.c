@@ -68,9 +68,8 @@ static struct inputs list_inputs(struct ct_arena *a, const struct ct_machine *m,
 {
     struct inputs in = {CT_NEWN(a, ct_ex, x->nsym + 1), CT_NEWN(a, size_t, x->nsym + 1), 0};
     for (uint32_t id = 0; id < x->nnode; id++) {
-        const struct ct_sym *s = ct_ex_symbol(x, (ct_ex){id});
         size_t slot;
-        if (!s || !find_slot(m, s, &slot))
+        if (x->node[id].op != CT_OP_SYM || !find_slot(m, &x->sym[x->node[id].a], &slot))
             continue;
         in.symbol[in.n] = (ct_ex){id};
         in.slot[in.n++] = slot;

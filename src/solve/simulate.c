@@ -2,17 +2,10 @@
 #include "solve/run.h"
 
 #include "formulate/flexible.h"
+#include "numeric/dense.h"
 #include "solve/dae.h"
 
 #include <string.h>
-
-static double largest(const double *v, size_t n)
-{
-    double max = 0;
-    for (size_t i = 0; i < n; i++)
-        max = fmax(max, fabs(v[i]));
-    return max;
-}
 
 // ---- evaluation -------------------------------------------------------------------------------------------
 
@@ -100,7 +93,7 @@ static double residual(void *user, double t, const double *y)
     struct ct_run *r = user;
     ct_machine_set(r->m, ct_run_before(r, t), y);
     ct_machine_constraint(r->m);
-    return largest(r->m->phi, r->m->nrow);
+    return ct_vector_largest(r->m->phi, r->m->nrow);
 }
 
 // A followed angle that turns faster at the end of a step than at its start must still stay within half a turn.
@@ -288,9 +281,9 @@ static void keep_ledger(struct ct_run *r, const double *y)
         r->report->energy_drift = fmax(r->report->energy_drift, fabs(total - r->energy0));
     ct_machine_constraint(r->m);
     r->report->position_constraint
-        = fmax(r->report->position_constraint, largest(r->m->phi, r->m->nrow));
+        = fmax(r->report->position_constraint, ct_vector_largest(r->m->phi, r->m->nrow));
     r->report->velocity_constraint
-        = fmax(r->report->velocity_constraint, largest(r->m->v, r->m->nrow));
+        = fmax(r->report->velocity_constraint, ct_vector_largest(r->m->v, r->m->nrow));
 }
 
 // Indicators of linear beams, averaged over a period of the beam: what rings faster than it can follow does not count.
