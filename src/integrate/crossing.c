@@ -24,9 +24,9 @@ static const double gap = 0.3;
 // Sweeps end when stages move less than this part of the tolerance, or less than this part of themselves: then
 // the checks of the step are not spoilt by what sweeps have left at coarse tolerances.
 static const double settled = 0.02, settled_fine = 1e-10;
-// A smooth motion meets the constraints also in the middle, up to this [m, rad] and up to so many times the
-// tolerance.
-static const double held = 1e-9, held_tolerance = 100;
+const double ct_crossing_held = 1e-9;
+// Further off than that and so many times the tolerance there is nothing to be had from nearer by.
+static const double held_tolerance = 100;
 // Rounding stops sweeps: they end, too, when a sweep does not gain this factor any more and moves stages by less than
 // this many times the tolerance. Most of what moves then are coordinates that the constraints determine.
 static const double slow = 0.5, rounding = 10;
@@ -268,8 +268,9 @@ static enum ct_eval step(const struct ct_problem *p, double t, double h, const d
     memcpy(dy1, w->k + (STAGES - 1) * n, bytes);
     point_at(p, h, 0.5, y, w, w->end);
     const double left = p->residual ? p->residual(p->user, t + h / 2, w->end) : 0;
-    *err = left > held + held_tolerance * tolerance->rtol ? INFINITY
-                                                          : fmax(estimate(&s, y1), left / held);
+    *err = left > ct_crossing_held + held_tolerance * tolerance->rtol
+             ? INFINITY
+             : fmax(estimate(&s, y1), left / ct_crossing_held);
     return CT_EVAL_OK;
 }
 
@@ -296,6 +297,19 @@ struct ct_bridge ct_crossing_bridge(void *work, double t, double h, double theta
         w->weight[j] /= w->norm[j];
     }
     return (struct ct_bridge){STAGES, w->t, w->weight, w->stage};
+}
+
+struct ct_bridge ct_crossing_bridge_over(void *work, const struct ct_stepper_span *span,
+                                         double from, double to, double theta)
+{
+    struct work *w = work;
+    const double length = (to - from) / gap, begin = (from + to) / 2 - length / 2;
+    if (!w->has_weights)
+        find_weights(w);
+    for (int j = 0; j < STAGES; j++)
+        ct_stepper_point(span, begin + w->c[j] * length, w->stage + j * span->p->ny);
+    return ct_crossing_bridge(work, span->t + begin * span->h, length * span->h,
+                              (theta - begin) / length);
 }
 
 const struct ct_method ct_crossing = {

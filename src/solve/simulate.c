@@ -96,6 +96,21 @@ static double residual(void *user, double t, const double *y)
     return ct_vector_largest(r->m->phi, r->m->nrow);
 }
 
+// Its rows times the vector that they are combined with to nothing.
+static double mismatch(void *user, double t, const double *y)
+{
+    struct ct_run *r = user;
+    const struct ct_machine *m = r->m;
+    double log_det, sum = 0, *x = r->scratch;
+    ct_machine_set(r->m, ct_run_before(r, t), y);
+    ct_machine_constraint(r->m);
+    if (!ct_embed_dependence(r->s, x, &log_det))
+        return ct_vector_largest(m->phi, m->nrow);
+    for (int i = 0; i < r->s->rank; i++)
+        sum += x[i] * m->phi[r->s->row[i]];
+    return fabs(sum) / ct_vector_largest(x, (size_t)r->s->rank);
+}
+
 // A followed angle that turns faster at the end of a step than at its start must still stay within half a turn.
 static const double aimed_turn = 2, most_turn = 3; // [rad]
 
@@ -556,6 +571,7 @@ bool ct_run_simulate(struct ct_run *r, const struct ct_run_options *o,
                            .set_crossing = set_crossing,
                            .crossed = crossed,
                            .residual = residual,
+                           .mismatch = mismatch,
                            .nroot = r->nroot,
                            .root = ct_run_root,
                            .next_time_event = ct_run_next_event,
