@@ -540,6 +540,8 @@ static bool find_step(struct run *r, double stop, bool is_time, struct stride *s
         const double h = s->h;
         if (is_too_small(r, s))
             return step_too_small(r, h);
+        if (!is_crossing)
+            s->h = s->t1 - r->t; // as rounded, so that steps add up to the time
         enum ct_eval e = attempt(r, s);
         const double error = s->error;
         if (e == CT_EVAL_OK)
