@@ -154,6 +154,7 @@ static bool build(struct ct_system *s, const char *path, const struct ct_system_
                                           .with_energy = true,
                                           .with_outputs = true,
                                           .with_solution = true,
+                                          .frees_beams = o->for_analysis,
                                           .for_analysis = o->for_analysis};
     // the start must not depend on the trees that the equations use
     motion.more = o->columns == CT_COLUMNS_COORDINATES ? CT_MORE_COORDINATES
@@ -161,6 +162,7 @@ static bool build(struct ct_system *s, const char *path, const struct ct_system_
                                                        : CT_MORE_NONE;
     const struct ct_formulate_options start = {.tree = CT_TREE_JOINTS,
                                                .keep_all = o->keep_all,
+                                               .frees_beams = o->for_analysis,
                                                .measure_all = true,
                                                .measured_for = &s->equations,
                                                .without_dynamics = true};
