@@ -506,13 +506,16 @@ static bool open_evaluator(struct evaluator *v, struct subject *s, const struct 
 }
 
 // Seconds a call, in the order of the back ends.
+enum { NBACKEND = 6 };
+
 struct times {
-    double t[5];
+    double t[NBACKEND];
 };
 
 // One line per back end; goals [s] in the same order. name: of the model; what: the program does.
 static struct times compare_back_ends(struct subject *s, const struct ct_program *p,
-                                      const char *name, const char *what, const double goal[5])
+                                      const char *name, const char *what,
+                                      const double goal[NBACKEND])
 {
     static const struct {
         const char *name;
@@ -522,11 +525,12 @@ static struct times compare_back_ends(struct subject *s, const struct ct_program
                {"tape, 4 lanes, per lane", 4, false},
                {"tape, 8 lanes, per lane", 8, false},
                {"native", 1, true},
-               {"native, 4 lanes, per lane", 4, true}};
-    struct evaluator v[5];
-    call_fn f[5] = {0};
-    void *data[5] = {0};
-    double t[5];
+               {"native, 4 lanes, per lane", 4, true},
+               {"native, 8 lanes, per lane", 8, true}};
+    struct evaluator v[NBACKEND];
+    call_fn f[NBACKEND] = {0};
+    void *data[NBACKEND] = {0};
+    double t[NBACKEND];
     size_t n = 0;
     for (size_t i = 0; i < COUNT(all); i++)
         n += open_evaluator(&v[n], s, p, all[i].name, all[i].lanes, all[i].native);
@@ -543,7 +547,7 @@ static struct times compare_back_ends(struct subject *s, const struct ct_program
         snprintf(text, sizeof text, "  %s", v[i].name);
         line(text, t[i] / v[i].lanes, goal ? goal[i] : 0);
     }
-    if (n == 5) {
+    if (n == NBACKEND) {
         ratio("  tape / native", t[0] / t[3], 0);
         ratio("  native / native, 4 lanes, per lane", 4 * t[3] / t[4], 0);
     }
@@ -800,7 +804,7 @@ static void show_generation(struct subject *s, const char *what)
 // An open chain: u' and q' by the formulation that was chosen. goal: as compare_back_ends, then of the way from the model
 // to native code. is_throughput: show which part of the processor's peak it reaches. Returns the time from the model to
 // native code.
-static double open_chain(const char *what, const char *path, const double goal[5],
+static double open_chain(const char *what, const char *path, const double goal[NBACKEND],
                          double generation_goal, bool is_throughput)
 {
     static const char *const name[]
@@ -954,10 +958,11 @@ static void implicit_chain(int n)
 
 static void open_chains(bool quick)
 {
-    static const double six_folded[5] = {0.8e-6, 0, 0, 120e-9, 42e-9},
-                        six[5] = {0.8e-6, 0, 0, 150e-9, 42e-9}, seven[5] = {0, 0, 0, 190e-9, 0},
-                        planar[5] = {0, 0, 0, 1.5e-6, 0}, spatial[5] = {0, 0, 0, 4e-6, 0},
-                        long_spatial[5] = {0, 0, 0, 40e-6, 0};
+    static const double six_folded[NBACKEND]
+        = {0.8e-6, 0, 0, 120e-9, 42e-9},
+        six[NBACKEND] = {0.8e-6, 0, 0, 150e-9, 42e-9}, seven[NBACKEND] = {0, 0, 0, 190e-9, 0},
+        planar[NBACKEND] = {0, 0, 0, 1.5e-6, 0}, spatial[NBACKEND] = {0, 0, 0, 4e-6, 0},
+        long_spatial[NBACKEND] = {0, 0, 0, 40e-6, 0};
     open_chain("6R arm (puma560, numbers folded)", shipped("puma560"), six_folded, 0.5e-3,
                false);
     open_chain("6R arm, parameters", arm(6), six, 0.5e-3, false);

@@ -149,10 +149,13 @@ static bool check_program(const char *system, struct variant *v, const struct ct
     evaluate_by_one(&c);
     bool ok = check_lanes(&c, "tape x4", NULL, 4);
     ok &= check_lanes(&c, "tape x8", NULL, 8);
-    for (int lanes = 1; lanes <= 4; lanes += 3) {
-        const struct ct_native *native = ct_native_create(a, p->listing, lanes);
-        ok &= !native
-           || check_lanes(&c, lanes == 1 ? "native" : "native x4", native, (size_t)lanes);
+    static const struct {
+        const char *name;
+        int lanes;
+    } all[] = {{"native", 1}, {"native x4", 4}, {"native x8", 8}};
+    for (size_t i = 0; i < COUNT(all); i++) {
+        const struct ct_native *native = ct_native_create(a, p->listing, all[i].lanes);
+        ok &= !native || check_lanes(&c, all[i].name, native, (size_t)all[i].lanes);
     }
     return (!with_c || check_c(&c)) && ok;
 }
