@@ -5,7 +5,8 @@
 #include <stdint.h>
 #include <stdlib.h>
 
-#ifdef __linux__
+// The address sanitizer watches what the C library gives.
+#if defined(__linux__) && !defined(__SANITIZE_ADDRESS__)
 #include <sys/mman.h>
 
 // Pages of the processor; a size for its large ones; how much is asked for at once.

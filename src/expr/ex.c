@@ -283,6 +283,16 @@ ct_ex ct_ex_scale(struct ct_exs *x, double c, ct_ex a)
     return ct_ex_mul(x, ct_ex_const(x, c), a);
 }
 
+ct_ex ct_ex_add_product(struct ct_exs *x, ct_ex a, ct_ex b, ct_ex c)
+{
+    return ct_ex_add(x, a, ct_ex_mul(x, b, c));
+}
+
+ct_ex ct_ex_sub_product(struct ct_exs *x, ct_ex a, ct_ex b, ct_ex c)
+{
+    return ct_ex_sub(x, a, ct_ex_mul(x, b, c));
+}
+
 // c * b with a constant c: signs outwards, constants merged, the constant is the first operand. k: its node, 0 where it
 // is not at hand.
 static ct_ex scaled(struct ct_exs *x, double c, ct_ex k, ct_ex b)

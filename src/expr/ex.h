@@ -139,6 +139,9 @@ ct_ex ct_ex_fun2(struct ct_exs *x, enum ct_op op, ct_ex a, ct_ex b);
 ct_ex ct_ex_if(struct ct_exs *x, ct_ex c, ct_ex a, ct_ex b);
 ct_ex ct_ex_table(struct ct_exs *x, uint32_t table, uint32_t order, ct_ex a);
 ct_ex ct_ex_scale(struct ct_exs *x, double c, ct_ex a);
+/// a + b c and a - b c
+ct_ex ct_ex_add_product(struct ct_exs *x, ct_ex a, ct_ex b, ct_ex c);
+ct_ex ct_ex_sub_product(struct ct_exs *x, ct_ex a, ct_ex b, ct_ex c);
 /// Give a node a name by meaning ("rod.position.x"); the first name stays.
 void ct_ex_label(struct ct_exs *x, ct_ex a, const char *name);
 

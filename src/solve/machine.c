@@ -428,7 +428,7 @@ void ct_machine_reset(struct ct_machine *m)
 void ct_machine_set(struct ct_machine *m, double t, const double *y)
 {
     m->input[0] = t;
-    memcpy(m->input + m->at_q, y, (m->nq + m->nu) * sizeof *y);
+    ct_machine_copy(m->input + m->at_q, y, m->nq + m->nu);
     m->input[m->at_work] = y[m->nq + m->nu];
 }
 
@@ -457,8 +457,8 @@ bool ct_machine_solved(struct ct_machine *m, double *a)
         return false;
     m->evaluations++;
     ct_program_run(&m->solved, m->input);
-    memcpy(a, m->solved.out, m->nu * sizeof *a);
-    memcpy(m->rate, m->solved.out + m->nu, m->nq * sizeof *m->rate);
+    ct_machine_copy(a, m->solved.out, m->nu);
+    ct_machine_copy(m->rate, m->solved.out + m->nu, m->nq);
     return true;
 }
 
