@@ -1,4 +1,4 @@
-// Integrals over a beam whose mass per length is constant, element by element by the amplitudes of amplitude.h: what
+// Integrals (5.5) over a beam whose mass per length is constant, by the amplitudes (5.5b) of amplitude.h: what
 // elastic_points.c sums over points, to round-off. Where the sections' rotary inertia counts, it stays along the axes of
 // the beam.
 #include "formulate/amplitude.h"
