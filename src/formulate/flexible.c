@@ -1,4 +1,5 @@
 // See flexible.h.
+#include "formulate/amplitude.h"
 #include "formulate/elastic.h"
 #include "formulate/excite.h"
 #include "formulate/topology.h"
@@ -279,33 +280,68 @@ static void dof_values(struct ct_build *b, struct ct_flexible *f)
     }
 }
 
+// Foreshortening of one element by the integrals E of slope products and of the sections' rotation gradients.
+static void draw_by_matrices(struct ct_build *b, struct ct_flexible *f, int e, ct_ex *c,
+                             ct_ex *rate, ct_ex *bias)
+{
+    struct ct_exs *x = b->x;
+    struct ct_element *self = &f->element[e];
+    for (int plane = 0; plane < 2; plane++) {
+        const int first = plane ? 6 : 2;
+        for (int j = 0; j < 4; j++) {
+            ct_ex Ea = CT_EX_ZERO, Er = CT_EX_ZERO;
+            for (int k = 0; k < 4; k++) {
+                const ct_ex h = self->span.length;
+                const ct_ex E
+                    = ct_ex_add(x, ct_shape_at(x, &f->shortening[j][k], CT_EX_ONE, h),
+                                ct_ex_mul(x, self->radius[plane],
+                                          ct_shape_at(x, &f->curving[j][k], CT_EX_ONE, h)));
+                Ea = ct_ex_add(x, Ea, ct_ex_mul(x, E, self->value[first + k]));
+                Er = ct_ex_add(x, Er, ct_ex_mul(x, E, self->rate[first + k]));
+            }
+            self->g[first + j] = ct_ex_neg(x, Ea);
+            *c = ct_ex_sub(x, *c,
+                           ct_ex_scale(x, 0.5, ct_ex_mul(x, Ea, self->value[first + j])));
+            *rate = ct_ex_sub(x, *rate, ct_ex_mul(x, Ea, self->rate[first + j]));
+            *bias = ct_ex_sub(x, *bias, ct_ex_mul(x, Er, self->rate[first + j]));
+        }
+    }
+}
+
+// The same by amplitudes of the slopes.
+static void draw_by_slopes(struct ct_build *b, struct ct_flexible *f, int e, ct_ex *c,
+                           ct_ex *rate, ct_ex *bias)
+{
+    struct ct_exs *x = b->x;
+    struct ct_element *self = &f->element[e];
+    const ct_ex h = self->span.length;
+    const struct ct_draw by = ct_draw_whole_push(x, h, ct_ex_const(x, -1));
+    struct ct_bend value[2], speed[2];
+    for (int plane = 0; plane < 2; plane++) {
+        const int first = plane ? 6 : 2;
+        struct ct_bend force = {0};
+        value[plane] = ct_bend_of(x, f->beam->theory, h, self->value + first);
+        speed[plane] = ct_bend_of(x, f->beam->theory, h, self->rate + first);
+        ct_draw_push(x, &value[plane], &by, &force);
+        ct_bend_push(x, f->beam->theory, h, &force, self->g + first);
+    }
+    const struct ct_draw drawn = ct_draw_of(x, value), first = ct_draw_by(x, value, speed),
+                         second = ct_draw_by(x, speed, speed);
+    *c = ct_ex_sub(x, *c, ct_draw_whole(x, h, &drawn));
+    *rate = ct_ex_sub(x, *rate, ct_draw_whole(x, h, &first));
+    *bias = ct_ex_sub(x, *bias, ct_draw_whole(x, h, &second));
+}
+
 // Foreshortening of element after element: c and its derivatives by running sums.
 static void run_chain(struct ct_build *b, struct ct_flexible *f)
 {
-    struct ct_exs *x = b->x;
     for (int e = 0; e < f->beam->nelement; e++) {
         struct ct_element *self = &f->element[e];
         ct_ex c = self->c, rate = self->c_rate, bias = self->c_bias;
-        for (int plane = 0; plane < 2; plane++) {
-            const int first = plane ? 6 : 2;
-            for (int j = 0; j < 4; j++) {
-                ct_ex Ea = CT_EX_ZERO, Er = CT_EX_ZERO;
-                for (int k = 0; k < 4; k++) {
-                    const ct_ex h = self->span.length;
-                    const ct_ex E
-                        = ct_ex_add(x, ct_shape_at(x, &f->shortening[j][k], CT_EX_ONE, h),
-                                    ct_ex_mul(x, self->radius[plane],
-                                              ct_shape_at(x, &f->curving[j][k], CT_EX_ONE, h)));
-                    Ea = ct_ex_add(x, Ea, ct_ex_mul(x, E, self->value[first + k]));
-                    Er = ct_ex_add(x, Er, ct_ex_mul(x, E, self->rate[first + k]));
-                }
-                self->g[first + j] = ct_ex_neg(x, Ea);
-                c = ct_ex_sub(x, c,
-                              ct_ex_scale(x, 0.5, ct_ex_mul(x, Ea, self->value[first + j])));
-                rate = ct_ex_sub(x, rate, ct_ex_mul(x, Ea, self->rate[first + j]));
-                bias = ct_ex_sub(x, bias, ct_ex_mul(x, Er, self->rate[first + j]));
-            }
-        }
+        if (f->beam->higher_order)
+            draw_by_matrices(b, f, e, &c, &rate, &bias);
+        else
+            draw_by_slopes(b, f, e, &c, &rate, &bias);
         if (e + 1 < f->beam->nelement) {
             self[1].c = c;
             self[1].c_rate = rate;
