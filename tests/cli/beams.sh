@@ -176,7 +176,7 @@ cotree: 1
 bodies:
   beam: {type: beam, length: 10, elements: 2, density: 3000, E: 7e10, area: 4e-4, Iz: 2e-7, formulation: stretch-linear, points: {tip: length}}
 joints:
-  spin: {type: revolute, from: ground, to: beam, motion: 3*t^2/2}
+  spin: {type: revolute, from: ground, to: beam, motion: t^2/4}
 outputs: [beam.tip.deflection, spin.effort]
 simulation: {duration: 1, samples: 5}
 END
