@@ -170,6 +170,20 @@ sed 's/formulation/deformation: [axial, bending-y, bending-z, torsion], formulat
 difference some.csv all.csv | awk '{ print ($1 < 1e-11) ? "same" : $0 }'
 sed 's/nu: 0.3, //' oblique.yaml >unknown.yaml
 "$COTREE" check unknown.yaml | grep 'left out'
+echo '-- what was chosen, in the summaries of a run'
+cat >chosen.yaml <<'END'
+cotree: 1
+bodies:
+  slow: {type: beam, length: 1, density: 2700, E: 7e10, area: 4e-4, Iz: 2e-8}
+  fast: {type: beam, length: 1, density: 2700, E: 7e8, area: 4e-4, Iz: 2e-8}
+joints:
+  a: {type: revolute, from: ground, to: slow, motion: t^2/2}
+  b: {type: revolute, from: ground, to: fast, motion: 4*t^2}
+outputs: [a.effort]
+simulation: {duration: 1, samples: 3}
+END
+"$COTREE" simulate chosen.yaml --summary chosen.json 2>&1 | grep '^beam'
+grep -A 7 '"beams"' chosen.json
 echo '-- a foreshortened beam that is small keeps the stiffness by its motion: it is stretch-linear'
 cat >small.yaml <<'END'
 cotree: 1
