@@ -162,6 +162,7 @@ struct ct_build {
     const struct ct_equations *like; // whose beams are formulated alike; NULL: none
     bool keep_all;                   // leave nothing out
     bool is_held;                    // drivers stand still: time does not go on
+    bool has_gaps;                   // loops need not be closed (gap.h)
     bool is_rigid;   // beams keep their shape: for assembly, where they are not deformed yet
     ct_ex3 plane[3]; // e1, e2, n
     ct_ex *layer;    // by node: its place along n [m]
