@@ -132,8 +132,8 @@ static enum ct_axial axial_of(const struct ct_flexible *f)
              : CT_AXIAL_CHAIN;
 }
 
-// Deformations without a stiffness would be free to go anywhere: with --keep-all they are left out, else they are the
-// model's fault, as the scene excites them.
+// Deformations without a stiffness would be free to go anywhere: where the scene does not excite them they are left out,
+// else they are the model's fault.
 static void need_stiffness(struct ct_build *b, struct ct_flexible *f)
 {
     static const struct {
@@ -147,7 +147,7 @@ static void need_stiffness(struct ct_build *b, struct ct_flexible *f)
         if (!(f->deformation & all[i].family & ~f->beam->known))
             continue;
         f->deformation &= ~all[i].family;
-        if (b->keep_all)
+        if (b->keep_all || b->is_freed)
             ct_topology_left_out(
                 b, ct_arena_printf(b->arena, "that %s can %s", f->name, all[i].what),
                 ct_arena_printf(b->arena, "%s is not given", all[i].key));
@@ -170,13 +170,17 @@ static void choose_formulation(const struct ct_build *b, struct ct_flexible *f)
 static void settle(struct ct_build *b, struct ct_flexible *f)
 {
     const struct ct_beam *beam = f->beam;
+    f->formulation = beam->formulation;
+    if (beam->formulation == CT_BEAM_AUTO)
+        choose_formulation(b, f);
     f->deformation = beam->deformation & in_plane(b, f);
     // nor has it an inertia of its own then, so there is no coordinate to keep
-    if (f->deformation & CT_BEAM_TORSION && !beam->deformation_given
-        && !ct_excite_twist(b, f)) {
+    const char *untwisted = f->deformation & CT_BEAM_TORSION && !beam->deformation_given
+                              ? ct_excite_no_twist(b, f)
+                              : NULL;
+    if (untwisted) {
         f->deformation &= ~(unsigned)CT_BEAM_TORSION;
-        ct_topology_left_out(b, ct_arena_printf(b->arena, "torsion of %s", f->name),
-                             "nothing beyond its base can twist it");
+        ct_topology_left_out(b, ct_arena_printf(b->arena, "torsion of %s", f->name), untwisted);
     }
     if (b->is_planar && beam->deformation & ~(unsigned)(CT_BEAM_AXIAL | f->deformation))
         ct_topology_left_out(b,
@@ -187,9 +191,6 @@ static void settle(struct ct_build *b, struct ct_flexible *f)
     need_stiffness(b, f);
     if (b->is_rigid)
         f->deformation = 0;
-    f->formulation = beam->formulation;
-    if (beam->formulation == CT_BEAM_AUTO)
-        choose_formulation(b, f);
     f->axial = f->kinematics = axial_of(f);
     if (f->formulation == CT_BEAM_FORCE_ONLY)
         f->kinematics = CT_AXIAL_LINEAR;
