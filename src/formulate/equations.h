@@ -168,6 +168,8 @@ struct ct_equations {
     size_t nmode, mode_cap;
     struct ct_memory *memory;
     size_t nmemory, memory_cap;
+    struct ct_gap *gap; // of rows (gap.h)
+    size_t ngap, gap_cap;
     struct ct_driver *driver;
     size_t ndriver, driver_cap;
     struct ct_result *result; // outputs, one per column

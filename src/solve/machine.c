@@ -563,8 +563,7 @@ void ct_machine_chart_rate(const struct ct_machine *m, const double *d, const do
 
 // ---- memories ---------------------------------------------------------------------------------------
 
-// Unit quaternion of a rotation (column-major), the largest of the four numbers found first.
-static void quaternion_of(const double *R, double *p)
+void ct_quaternion_of(const double *R, double *p)
 {
     const double square[4] = {1 + R[0] + R[4] + R[8], 1 + R[0] - R[4] - R[8],
                               1 - R[0] + R[4] - R[8], 1 - R[0] - R[4] + R[8]};
@@ -600,7 +599,7 @@ void ct_memory_start(struct ct_machine *m)
             memory[i] = m->memory.out[i];
         } else {
             if (m->e->memory[i].place == 0)
-                quaternion_of(R, memory + i);
+                ct_quaternion_of(R, memory + i);
             R += 9;
         }
     }
