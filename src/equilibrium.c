@@ -74,8 +74,9 @@ static bool judge(struct ct_equilibrium *q)
     return true;
 }
 
-static bool find(struct ct_equilibrium *q)
+static bool find(void *task)
 {
+    struct ct_equilibrium *q = task;
     bool is_judged = false;
     q->at.about = "equilibrium";
     q->at.may_be_large = true;
@@ -99,35 +100,19 @@ static bool find(struct ct_equilibrium *q)
     return is_judged || judge(q);
 }
 
-struct create {
-    struct ct_ctx *ctx;
-    struct ct_equilibrium *q;
-};
-
-static bool create(void *task)
-{
-    struct create *c = task;
-    ct_own_init(&c->q->own);
-    const bool ok = find(c->q);
-    ct_ctx_hand_over(c->ctx, &c->q->own);
-    return ok;
-}
-
 struct ct_equilibrium *ct_equilibrium_create(struct ct_ctx *ctx, struct ct_system *sys,
                                              const struct ct_equilibrium_options *options)
 {
     if (!sys)
         return NULL;
-    struct create c = {ctx, calloc(1, sizeof *c.q)};
-    if (!c.q) {
-        ctx->no_memory = true;
+    struct ct_equilibrium *q = ct_own_alloc(ctx, sizeof *q);
+    if (!q)
         return NULL;
-    }
-    c.q->system = sys;
-    c.q->at.hold_drivers = options && options->hold_drivers;
-    if (ct_enter(ctx, create, &c))
-        return c.q;
-    ct_equilibrium_destroy(c.q);
+    q->system = sys;
+    q->at.hold_drivers = options && options->hold_drivers;
+    if (ct_own_enter(ctx, &q->own, find, q))
+        return q;
+    ct_equilibrium_destroy(q);
     return NULL;
 }
 

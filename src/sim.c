@@ -247,7 +247,6 @@ static bool choose_backend(struct ct_sim *sim, const char *name)
 // ---- the start ---------------------------------------------------------------------------------------
 
 struct create {
-    struct ct_ctx *ctx;
     struct ct_sim *sim;
     const struct ct_sim_options *options;
 };
@@ -296,11 +295,8 @@ bool ct_sim_prepare(struct ct_sim *sim, struct ct_system *sys, const struct ct_s
 
 static bool create(void *task)
 {
-    struct create *c = task;
-    ct_own_init(&c->sim->own);
-    const bool ok = prepare(c->sim, c->options);
-    ct_ctx_hand_over(c->ctx, &c->sim->own);
-    return ok;
+    const struct create *c = task;
+    return prepare(c->sim, c->options);
 }
 
 struct ct_sim *ct_sim_create(struct ct_ctx *ctx, struct ct_system *sys,
@@ -309,13 +305,11 @@ struct ct_sim *ct_sim_create(struct ct_ctx *ctx, struct ct_system *sys,
     static const struct ct_sim_options standard;
     if (!sys)
         return NULL;
-    struct create c = {ctx, calloc(1, sizeof *c.sim), options ? options : &standard};
-    if (!c.sim) {
-        ctx->no_memory = true;
+    struct create c = {ct_own_alloc(ctx, sizeof *c.sim), options ? options : &standard};
+    if (!c.sim)
         return NULL;
-    }
     c.sim->system = sys;
-    if (ct_enter(ctx, create, &c))
+    if (ct_own_enter(ctx, &c.sim->own, create, &c))
         return c.sim;
     ct_sim_destroy(c.sim);
     return NULL;

@@ -73,7 +73,8 @@ struct ct_system_options {
     bool keep_all;    /* leave nothing out: planar mechanisms keep their spatial rows */
     enum ct_columns_more columns;
     bool
-        for_analysis; /* modes, equilibria and the like, no runs: large systems are then made in less time */
+        for_analysis; /* modes, equilibria, buckling, no runs: beams keep all that their sections allow, also what the
+                         scene does not excite, and large systems are made in less time */
     long beam_elements; /* > 0: of every beam, equally long, whatever the file says */
     const char *
         beam_formulation; /* of every beam: "linear", "foreshortening" ...; NULL: as in the file */

@@ -1,4 +1,4 @@
-// What the parts of the reader share: read.c (the file), read_value.c (values by kind) and one file per
+// What the parts of the reader share: read.c (the file), read_value.c (values by kind), read_expr.c (expressions) and one file per
 // section: read_parameter.c, read_body.c, read_joint.c, read_force.c, read_run.c; tables in read_table.c.
 //
 // What always holds: a function that returns false has reported; reading then goes on with the next
@@ -71,6 +71,11 @@ bool ct_read_expr(struct ct_reader *r, const struct ct_node *node, unsigned flag
                   const char *unit, ct_ex *e);
 /// Its value, if it has one: false without error when it cannot be known (a parameter is wrong).
 bool ct_read_number(struct ct_reader *r, ct_ex e, double *value);
+/// Room for n expressions and their places, all zero.
+void ct_read_room(struct ct_reader *r, struct ct_value *v, size_t n);
+/// The entries of a list as expressions, each with the key's flags and unit.
+bool ct_read_items(struct ct_reader *r, const struct ct_node *node, const struct ct_key *key,
+                   struct ct_value *v);
 bool ct_read_vec3(struct ct_reader *r, const struct ct_node *node, unsigned flags,
                   const char *unit, ct_ex3 *v, struct ct_mark at[3]);
 bool ct_read_axis(struct ct_reader *r, const struct ct_node *node, ct_ex3 *axis);

@@ -8,27 +8,6 @@
 
 // ---- values that only beams have ------------------------------------------------------------------------
 
-static void make_room(struct ct_reader *r, struct ct_value *v, size_t n)
-{
-    v->n = n;
-    v->e = CT_NEWN(r->a, ct_ex, n);
-    v->at = CT_NEWN(r->a, struct ct_mark, n);
-    for (size_t i = 0; i < n; i++)
-        v->e[i] = CT_EX_ZERO;
-}
-
-static bool read_items(struct ct_reader *r, const struct ct_node *node,
-                       const struct ct_key *key, struct ct_value *v)
-{
-    make_room(r, v, node->n);
-    bool ok = true;
-    for (size_t i = 0; i < node->n; i++) {
-        v->at[i] = node->item[i]->mark;
-        ok &= ct_read_expr(r, node->item[i], key->flags, key->unit, &v->e[i]);
-    }
-    return ok;
-}
-
 static bool read_elements(struct ct_reader *r, const struct ct_node *node,
                           const struct ct_key *key, struct ct_value *v)
 {
@@ -38,7 +17,7 @@ static bool read_elements(struct ct_reader *r, const struct ct_node *node,
     if (!ct_read_length(r, node, 1, MOST, "a list of the places where elements end"))
         return false;
     v->count = (long)node->n;
-    return read_items(r, node, key, v);
+    return ct_read_items(r, node, key, v);
 }
 
 static bool read_rotary(struct ct_reader *r, const struct ct_node *node,
@@ -51,7 +30,7 @@ static bool read_rotary(struct ct_reader *r, const struct ct_node *node,
     }
     v->count = 3;
     return ct_read_length(r, node, 3, 3, "true, false or a list of 3")
-        && read_items(r, node, key, v);
+        && ct_read_items(r, node, key, v);
 }
 
 static bool read_rayleigh(struct ct_reader *r, const struct ct_node *node,
@@ -61,7 +40,7 @@ static bool read_rayleigh(struct ct_reader *r, const struct ct_node *node,
     if (!ct_read_shape(r, node, CT_NODE_MAP, "{alpha: a, beta: b}"))
         return false;
     bool ok = ct_read_keys(r, node, "'damping' of a beam", names, COUNT(names));
-    make_room(r, v, COUNT(names));
+    ct_read_room(r, v, COUNT(names));
     for (size_t i = 0; i < COUNT(names); i++) {
         const struct ct_node *item = ct_node_get(node, names[i]);
         double value;
@@ -210,6 +189,18 @@ static bool check_theory(const struct work *w)
     if (!has(w, "area") && !has(w, "density")) // else it has been asked for
         ok = needs(w, "'area'", why);
     return ok;
+}
+
+// A twist whose middle moves by itself has no stiffness at the middle and no mass at the ends.
+static bool check_twist(const struct work *w)
+{
+    const char *rule = get(w, "mass")->count ? "mass" : "integration";
+    if (!get(w, "twist")->count || !get(w, rule)->count)
+        return true;
+    return ct_error(w->r->ctx, get(w, "twist")->mark, CT_E_CONFLICT,
+                    "body '%s': 'twist: quadratic' needs 'integration: full' and 'mass: "
+                    "consistent'; leave '%s' out",
+                    w->self->name, rule);
 }
 
 // What `deformation` lists must have a stiffness; a beam that may do anything must bend at least.
@@ -394,6 +385,7 @@ static void fill_choices(const struct work *w)
     beam->is_lumped = get(w, "mass")->count == 1;
     beam->higher_order = get(w, "geometric_stiffness")->count == 1;
     beam->is_chord = get(w, "frame")->count == 1;
+    beam->has_quadratic_twist = get(w, "twist")->count == 1;
     beam->starts_in_equilibrium = has(w, "initial");
     const struct ct_value *deformation = get(w, "deformation");
     beam->deformation_given = deformation->given;
@@ -416,6 +408,7 @@ static bool fill(struct work *w, struct ct_body *b, bool values_ok)
     beam->known = find_known(w);
     ok &= check_mass_keys(w);
     ok &= check_theory(w);
+    ok &= check_twist(w);
     ok &= check_deformation(w, beam->known);
     double length;
     beam->length = scalar(w, "length");

@@ -102,248 +102,6 @@ bool ct_read_name(struct ct_reader *r, const char *name, struct ct_mark at, cons
                     name, sort);
 }
 
-// ---- expressions --------------------------------------------------------------------------------------
-
-// The one symbol of a signal.
-static ct_ex signal_symbol(struct ct_reader *r, const char *text, struct ct_mark at)
-{
-    const int known = ct_names_get(&r->signal, text);
-    if (known >= 0)
-        return (ct_ex){(uint32_t)known};
-    const char *name = ct_arena_strdup(r->a, text);
-    const ct_ex e = ct_ex_sym(r->m->x, CT_SYM_SIGNAL, name, (uint32_t)r->signal.n);
-    r->m->x->sym[ct_ex_node(r->m->x, e)->a].mark = at;
-    ct_names_put(r->ctx->scratch, &r->signal, name, (int)e.id);
-    return e;
-}
-
-// Inside its own expressions a custom joint's coordinates go by their own names: in its motion they are
-// the arguments, in its efforts what J.q1 ... are elsewhere.
-static bool find_local(struct ct_reader *r, const char *name, ct_ex *e, const char **why,
-                       enum ct_name_result *result)
-{
-    const struct ct_instance *custom = r->local_of;
-    for (int i = 0; custom && i < custom->ncoord; i++) {
-        if (strcmp(r->local_name[i], name) != 0)
-            continue;
-        *result = CT_NAME_OK;
-        if (r->flags & CT_KEY_LOCAL) {
-            *e = custom->local[i];
-        } else if (r->flags & CT_KEY_STATE) {
-            *e = signal_symbol(r, ct_arena_printf(r->a, "%s.q%d", custom->name, i + 1),
-                               custom->mark);
-        } else {
-            *why = "it changes with the motion of the joint, this value does not";
-            *result = CT_NAME_FORBIDDEN;
-        }
-        return true;
-    }
-    return false;
-}
-
-// In its section and its points a beam knows its own length, in its section the place along it too;
-// there these names go before parameters.
-static bool find_along(struct ct_reader *r, const char *name, ct_ex *e, const char **why,
-                       enum ct_name_result *result)
-{
-    if (!r->beam)
-        return false;
-    const bool is_x = strcmp(name, "x") == 0;
-    if (!is_x && strcmp(name, "length") != 0)
-        return false;
-    if (is_x && r->flags & CT_KEY_SECTION) {
-        *e = r->beam_x;
-        *result = CT_NAME_OK;
-        return true;
-    }
-    if (!is_x && r->flags & (CT_KEY_LENGTH | CT_KEY_SECTION)) {
-        const struct ct_value *length = ct_instance_value(r->beam, "length");
-        const bool known = length->n && !ct_ex_is_zero(length->e[0]);
-        *e = known ? length->e[0] : CT_EX_ONE; // a wrong one is reported
-        *result = CT_NAME_OK;
-        return true;
-    }
-    *why = is_x ? "only what belongs to the section changes along a beam"
-                : "elements, section and points of the beam know it";
-    *result = CT_NAME_FORBIDDEN;
-    return ct_names_get(&r->m->parameter_index, name) < 0;
-}
-
-static enum ct_name_result find_name(void *user, const char *name, ct_ex *e, const char **why)
-{
-    struct ct_reader *r = user;
-    enum ct_name_result result;
-    if (find_local(r, name, e, why, &result) || find_along(r, name, e, why, &result))
-        return result;
-    if (strcmp(name, "t") == 0) {
-        *e = r->m->time;
-        *why = "this value is constant in time";
-        return r->flags & (CT_KEY_TIME | CT_KEY_STATE) ? CT_NAME_OK : CT_NAME_FORBIDDEN;
-    }
-    const int i = ct_names_get(&r->m->parameter_index, name);
-    if (i < 0)
-        return CT_NAME_UNKNOWN;
-    *e = r->m->parameter[i].symbol;
-    return CT_NAME_OK;
-}
-
-// Something signals can be about: the names a first part may have.
-static bool signal_exists(const struct ct_reader *r, const char *first)
-{
-    static const char *const own[] = {"system", "energy", "constraint"};
-    for (size_t i = 0; i < COUNT(own); i++)
-        if (strcmp(own[i], first) == 0)
-            return true;
-    return ct_model_find_body(r->m, first) >= 0 || ct_names_get(&r->component, first) >= 0;
-}
-
-static const char *nearest_subject(struct ct_reader *r, const char *first)
-{
-    if (!ct_read_suggests(r))
-        return "";
-    const char **names = CT_NEWN(r->ctx->scratch, const char *, r->ncomponent + 4);
-    size_t n = r->ncomponent;
-    for (size_t i = 0; i < r->component.size; i++) // each goes to its place in the file's order
-        if (r->component.slot[i].name)
-            names[r->component.slot[i].index] = r->component.slot[i].name;
-    names[n++] = "ground";
-    names[n++] = "system";
-    names[n++] = "energy";
-    names[n++] = "constraint";
-    return ct_read_near(r, first, names, n);
-}
-
-static bool check_frame(struct ct_reader *r, const char *name, struct ct_mark at);
-
-// The point in BODY.POINT.PROPERTY or BODY.POINT.PROPERTY.COMPONENT; components have one or two letters.
-static bool point_exists(struct ct_reader *r, const char *text, struct ct_mark where)
-{
-    const char *const dot = strchr(text, '.'), *const next = dot ? strchr(dot + 1, '.') : NULL;
-    if (!next || strcspn(next + 1, ". ") < 3)
-        return true;
-    const char *const body = ct_arena_strndup(r->ctx->scratch, text, (size_t)(dot - text));
-    const char *const frame = ct_arena_strndup(r->ctx->scratch, text, (size_t)(next - text));
-    return ct_model_find_body(r->m, body) < 0 || check_frame(r, frame, where);
-}
-
-static enum ct_name_result find_signal(void *user, const char *text, const char *first,
-                                       const char *in, struct ct_mark where,
-                                       struct ct_mark where_in, ct_ex *e, const char **why)
-{
-    struct ct_reader *r = user;
-    if (!(r->flags & CT_KEY_STATE)) {
-        *why = r->flags & CT_KEY_TIME
-                 ? "this is a function of time alone"
-                 : "this value is constant; signals are known in forces, efforts and outputs";
-        return CT_NAME_FORBIDDEN;
-    }
-    bool ok = true;
-    if (!signal_exists(r, first))
-        ok = ct_error(r->ctx, where, CT_E_SIGNAL_NAME,
-                      "'%s': there is no body, joint or force '%s'%s", text, first,
-                      nearest_subject(r, first));
-    else if (!point_exists(r, text, where))
-        ok = false;
-    if (in && !check_frame(r, in, where_in))
-        ok = false;
-    if (!ok)
-        return CT_NAME_REPORTED;
-    *e = signal_symbol(r, text, where);
-    return CT_NAME_OK;
-}
-
-bool ct_read_number(struct ct_reader *r, ct_ex e, double *value)
-{
-    if (ct_ex_is_const(r->m->x, e, value))
-        return true;
-    const unsigned kinds = ct_ex_kinds(r->m->x, e);
-    if (kinds & ~(1u << CT_SYM_PARAM))
-        return false;
-    *value = ct_ex_value(r->m->x, e, r->m->value);
-    return !kinds || r->parameters_ok || isfinite(*value); // else a wrong parameter may be why
-}
-
-static bool is_same_dimension(const char *a, const char *b)
-{
-    struct ct_unit u, v;
-    size_t at;
-    return ct_unit_parse(a, strlen(a), &u, &at) != CT_UNIT_OK
-        || ct_unit_parse(b, strlen(b), &v, &at) != CT_UNIT_OK || ct_unit_same(&u, &v);
-}
-
-// A parameter that stands alone, or with a minus, has the dimension it was given with; in expressions numbers are SI, and nothing is known.
-static bool check_parameter_unit(struct ct_reader *r, const struct ct_node *node,
-                                 const char *unit, ct_ex e)
-{
-    const struct ct_exnode *top = ct_ex_node(r->m->x, e);
-    if (top->op == CT_OP_NEG)
-        e.id = top->a;
-    const struct ct_sym *s = ct_ex_symbol(r->m->x, e);
-    const bool is_parameter = s && s->kind == CT_SYM_PARAM;
-    const int i = is_parameter ? ct_names_get(&r->m->parameter_index, s->name) : -1;
-    const struct ct_parameter *p = i < 0 ? NULL : &r->m->parameter[i];
-    if (!unit || !p || !p->unit || is_same_dimension(p->unit, unit))
-        return true;
-    if (*unit)
-        ct_error(r->ctx, node->mark, CT_E_DIMENSION,
-                 "the parameter '%s' is in %s, but a quantity in %s is wanted here", p->name,
-                 p->unit, unit);
-    else
-        ct_error(r->ctx, node->mark, CT_E_DIMENSION,
-                 "the parameter '%s' is in %s, but a number without a unit is wanted here",
-                 p->name, p->unit);
-    ct_note(r->ctx, p->mark, "it is given here");
-    return false;
-}
-
-bool ct_read_expr(struct ct_reader *r, const struct ct_node *node, unsigned flags,
-                  const char *unit, ct_ex *e)
-{
-    *e = CT_EX_ZERO;
-    if (node->kind == CT_NODE_MAP && ct_node_get(node, "table")) {
-        if (flags & (CT_KEY_TIME | CT_KEY_STATE))
-            return ct_read_table(r, node, e);
-        return ct_error(r->ctx, node->mark, CT_E_NOT_HERE,
-                        "a table cannot be used here: this value is constant in time");
-    }
-    if (!ct_read_shape(r, node, CT_NODE_SCALAR, "a number or an expression"))
-        return false;
-    r->flags = flags;
-    const struct ct_scope scope = {.x = r->m->x,
-                                   .user = r,
-                                   .name = find_name,
-                                   .signal = find_signal,
-                                   .known = r->known,
-                                   .nknown = r->nknown,
-                                   .unit = unit};
-    const struct ct_text text
-        = {node->text, node->mark, node->is_exact, node->is_plain ? 0 : 1};
-    if (!ct_parse(r->ctx, &scope, text, e)) {
-        *e = CT_EX_ZERO; // not the part before the mistake
-        return false;
-    }
-    double value;
-    if (ct_read_number(r, *e, &value) && !isfinite(value))
-        return ct_error(r->ctx, node->mark, CT_E_NUMBER, "'%s' is not a finite number",
-                        node->text);
-    return check_parameter_unit(r, node, unit, *e);
-}
-
-bool ct_read_vec3(struct ct_reader *r, const struct ct_node *node, unsigned flags,
-                  const char *unit, ct_ex3 *v, struct ct_mark at[3])
-{
-    *v = (ct_ex3){{CT_EX_ZERO, CT_EX_ZERO, CT_EX_ZERO}};
-    if (!ct_read_length(r, node, 3, 3, "a list of 3"))
-        return false;
-    bool ok = true;
-    for (int i = 0; i < 3; i++) {
-        ok &= ct_read_expr(r, node->item[i], flags, unit, &v->e[i]);
-        if (at)
-            at[i] = node->item[i]->mark;
-    }
-    return ok;
-}
-
 // ---- directions and rotations -------------------------------------------------------------------------
 
 static bool normalise(struct ct_reader *r, const struct ct_node *node, ct_ex3 *axis)
@@ -425,45 +183,9 @@ bool ct_read_turns(struct ct_reader *r, const struct ct_node *node, unsigned fla
     return ok;
 }
 
-// ---- frames -------------------------------------------------------------------------------------------
-
-static const char *nearest_frame(struct ct_reader *r, const char *name)
-{
-    if (!ct_read_suggests(r))
-        return "";
-    const char **names = CT_NEWN(r->ctx->scratch, const char *, r->m->nframe);
-    for (size_t i = 0; i < r->m->nframe; i++)
-        names[i] = r->m->frame[i].name;
-    return ct_read_near(r, name, names, r->m->nframe);
-}
-
-static bool check_frame(struct ct_reader *r, const char *name, struct ct_mark at)
-{
-    if (ct_model_find_frame(r->m, name) >= 0)
-        return true;
-    const char *dot = strchr(name, '.');
-    const char *body
-        = dot ? ct_arena_strndup(r->ctx->scratch, name, (size_t)(dot - name)) : name;
-    if (dot && ct_model_find_body(r->m, body) >= 0)
-        return ct_error(r->ctx, at, CT_E_FRAME, "body '%s' has no point '%s'%s", body, dot + 1,
-                        nearest_frame(r, name));
-    return ct_error(r->ctx, at, CT_E_FRAME, "there is no frame '%s'%s", name,
-                    nearest_frame(r, name));
-}
-
-bool ct_read_frame(struct ct_reader *r, const struct ct_node *node, int *frame)
-{
-    *frame = -1;
-    if (!ct_read_shape(r, node, CT_NODE_SCALAR, "the name of a frame")
-        || !check_frame(r, node->text, node->mark))
-        return false;
-    *frame = ct_model_find_frame(r->m, node->text);
-    return true;
-}
-
 // ---- a value of any kind ---------------------------------------------------------------------------------
 
-static void make_room(struct ct_reader *r, struct ct_value *v, size_t n)
+void ct_read_room(struct ct_reader *r, struct ct_value *v, size_t n)
 {
     v->n = n;
     v->e = CT_NEWN(r->a, ct_ex, n);
@@ -472,10 +194,22 @@ static void make_room(struct ct_reader *r, struct ct_value *v, size_t n)
         v->e[i] = CT_EX_ZERO;
 }
 
+bool ct_read_items(struct ct_reader *r, const struct ct_node *node, const struct ct_key *key,
+                   struct ct_value *v)
+{
+    ct_read_room(r, v, node->n);
+    bool ok = true;
+    for (size_t i = 0; i < node->n; i++) {
+        v->at[i] = node->item[i]->mark;
+        ok &= ct_read_expr(r, node->item[i], key->flags, key->unit, &v->e[i]);
+    }
+    return ok;
+}
+
 static bool read_scalar(struct ct_reader *r, const struct ct_node *node,
                         const struct ct_key *key, struct ct_value *v)
 {
-    make_room(r, v, 1);
+    ct_read_room(r, v, 1);
     v->at[0] = node->mark;
     return ct_read_expr(r, node, key->flags, key->unit, &v->e[0]);
 }
@@ -491,13 +225,7 @@ static bool read_list(struct ct_reader *r, const struct ct_node *node, const str
             : ct_arena_printf(r->ctx->scratch, "a list of %d to %d", key->least, key->most);
     if (!ct_read_length(r, node, (size_t)key->least, (size_t)key->most, wanted))
         return false;
-    make_room(r, v, node->n);
-    bool ok = true;
-    for (size_t i = 0; i < node->n; i++) {
-        v->at[i] = node->item[i]->mark;
-        ok &= ct_read_expr(r, node->item[i], key->flags, key->unit, &v->e[i]);
-    }
-    return ok;
+    return ct_read_items(r, node, key, v);
 }
 
 // Unit vectors a and b (6 numbers): |a x b|^2 = 1 - (a.b)^2 to rounding of some eps
@@ -517,7 +245,7 @@ static bool check_crossed(struct ct_reader *r, const struct ct_value *v)
 static bool read_axes(struct ct_reader *r, const struct ct_node *node, size_t n,
                       struct ct_value *v)
 {
-    make_room(r, v, 3 * n);
+    ct_read_room(r, v, 3 * n);
     if (n == 2 && !ct_read_length(r, node, 2, 2, "a list of two axes"))
         return false;
     bool ok = true;
@@ -539,7 +267,7 @@ static bool read_texts(struct ct_reader *r, const struct ct_node *node,
     if (!ct_read_length(r, node, (size_t)key->least, (size_t)key->most, wanted))
         return false;
     const char **name = CT_NEWN(r->a, const char *, node->n);
-    make_room(r, v, node->n);
+    ct_read_room(r, v, node->n);
     v->name = name;
     bool ok = true;
     for (size_t i = 0; i < node->n; i++) {
@@ -656,7 +384,7 @@ bool ct_read_value(struct ct_reader *r, const struct ct_node *node, const struct
         return read_scalar(r, node, key, v);
     case CT_VALUE_VEC3: {
         ct_ex3 e;
-        make_room(r, v, 3);
+        ct_read_room(r, v, 3);
         const bool ok = ct_read_vec3(r, node, key->flags, key->unit, &e, v->at);
         for (int i = 0; i < 3; i++)
             v->e[i] = e.e[i];

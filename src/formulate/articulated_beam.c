@@ -3,7 +3,7 @@
 
 #include <string.h>
 
-enum { FREEDOMS = 6 }; // of a node
+enum { FREEDOMS = CT_NODE_FREEDOM };
 
 // ---- arithmetic -----------------------------------------------------------------------------------------
 

@@ -17,16 +17,18 @@ struct ct_point {
     ct_ex3 r, rate, bias;        // place from the base; bias: second derivative with u' = 0
     ct_ex along[CT_PLACE_DOF];   // d r_x/d dof
     struct ct_axial_field axial; // the same of forces, where these alone foreshorten
-    ct_ex place[4], turn[4], linear[2]; // shapes there
-    ct_ex linear_value;                 // axial displacement, of r
+    ct_ex place[4], turn[4], twist[CT_TWIST_DOF]; // shapes there
+    ct_ex linear_value;                           // axial displacement, of r
 };
 
 // ---- points -----------------------------------------------------------------------------------------
 
-static ct_ex with_linear(struct ct_build *b, const struct ct_point *p, const ct_ex *of)
+static ct_ex with_twist(struct ct_build *b, const struct ct_point *p, const ct_ex *of)
 {
-    return ct_ex_add(b->x, ct_ex_mul(b->x, p->linear[0], of[10]),
-                     ct_ex_mul(b->x, p->linear[1], of[11]));
+    ct_ex sum = CT_EX_ZERO;
+    for (int i = 0; i < CT_TWIST_DOF; i++)
+        sum = ct_ex_add(b->x, sum, ct_ex_mul(b->x, p->twist[i], of[CT_PLACE_DOF + i]));
+    return sum;
 }
 
 static ct_ex dot4(struct ct_build *b, const ct_ex shape[4], const ct_ex *of)
@@ -40,7 +42,7 @@ static ct_ex dot4(struct ct_build *b, const ct_ex shape[4], const ct_ex *of)
 // (twist, -dw/dx, dv/dx) of the dofs' values, rates or accelerations.
 static ct_ex3 turning(struct ct_build *b, const struct ct_point *p, const ct_ex *of)
 {
-    return (ct_ex3){{with_linear(b, p, of), ct_ex_neg(b->x, dot4(b, p->turn, of + 6)),
+    return (ct_ex3){{with_twist(b, p, of), ct_ex_neg(b->x, dot4(b, p->turn, of + 6)),
                      dot4(b, p->turn, of + 2)}};
 }
 
@@ -58,8 +60,8 @@ static void place_point(struct ct_build *b, const struct ct_flexible *f, struct 
         p->place[i] = ct_shape_at(x, &f->shape.place[i], xi, h);
         p->turn[i] = ct_shape_at(x, &f->shape.rotation[i], xi, h);
     }
-    for (int i = 0; i < 2; i++)
-        p->linear[i] = ct_shape_at(x, &f->linear[i], xi, h);
+    for (int i = 0; i < CT_TWIST_DOF; i++)
+        p->twist[i] = ct_shape_at(x, &f->twist[i], xi, h);
     p->linear_value = a.value;
     const ct_ex rest = ct_ex_add(x, e->span.start, ct_ex_mul(x, xi, h));
     p->r = (ct_ex3){{ct_ex_add(x, rest, a.value), dot4(b, p->place, e->value + 2),
@@ -159,9 +161,9 @@ static void push_point(struct ct_build *b, const struct ct_point *p, const ct_ex
         }
         sum[j] = ct_ex_add(x, sum[j], v);
     }
-    for (int j = 0; j < 2; j++)
+    for (int j = 0; j < CT_TWIST_DOF; j++)
         sum[CT_PLACE_DOF + j]
-            = ct_ex_add(x, sum[CT_PLACE_DOF + j], ct_ex_mul(x, p->linear[j], T.e[0]));
+            = ct_ex_add(x, sum[CT_PLACE_DOF + j], ct_ex_mul(x, p->twist[j], T.e[0]));
 }
 
 static void inertia_rows(struct ct_build *b, const struct ct_flexible *f,
@@ -300,7 +302,7 @@ static ct_ex3 point_turn(struct ct_build *b, const struct ct_point *p, int j)
 {
     const struct ct_section *s = &p->section;
     if (j >= CT_PLACE_DOF)
-        return ct_ex3_scale(b->x, p->linear[j - CT_PLACE_DOF], s->turn[0]);
+        return ct_ex3_scale(b->x, p->twist[j - CT_PLACE_DOF], s->turn[0]);
     if (j >= 6)
         return ct_ex3_scale(b->x, ct_ex_neg(b->x, p->turn[j - 6]), s->turn[1]);
     return j >= 2 ? ct_ex3_scale(b->x, p->turn[j - 2], s->turn[2]) : zero3;

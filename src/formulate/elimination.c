@@ -1,27 +1,12 @@
 // See elimination.h.
 #include "formulate/elimination.h"
+
+#include "formulate/blocks.h"
 #include "formulate/kkt.h"
-#include "formulate/shadow.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-// A pivot is large enough from this part of the largest entries of its rows.
-static const double threshold = 0.1;
-
-// Pivots P: P^-1 is the adjoint divided by the determinant. The quotient is taken last, so that a row that
-// repeats the pivot's gives 1 exactly: mechanisms of equal parts stay symmetric to the last bit.
-struct block {
-    int size, row[2], column[2];
-    ct_ex adjoint[4], pivot;                  // by rows; the determinant
-    double number[4], pivot_number, strength; // at the state of the shadow
-};
-
-struct step { // of elimination: row -= factor * rows of the block
-    int row, block;
-    ct_ex factor[2];
-};
 
 struct elimination {
     struct ct_arena *a;
@@ -30,21 +15,12 @@ struct elimination {
     const struct ct_partition *p;
     int *row;                    // kept rows, ascending
     struct ct_shadow_row *J, *M; // (rank), as given; (nu), both triangles
-    struct ct_shadow_row *left;  // (rank) what elimination has left of J
-    bool *is_done;               // (rank) rows
-    int *block_of;               // (nu) columns; OPEN, INDEPENDENT
-    int *level, *count; // (rank) steps that must come before; (nu) open rows with that column
-    struct block *block;
-    size_t nblock;
-    struct step *step;
-    size_t nstep, step_cap;
-    struct ct_kkt *whole; // all equations as one system, or NULL: embedding
-    ct_ex *B;             // (nu x nfree), unit rows in the independent places
+    struct ct_blocks d;          // J_d
+    struct ct_kkt *whole;        // all equations as one system, or NULL: embedding
+    ct_ex *B;                    // (nu x nfree), unit rows in the independent places
     ct_ex *S;      // (nfree x nfree) L' D L of B' M B, lower triangle: D, and L beside it
     size_t *order; // (nfree) of the pivots of S, the first one last
 };
-
-enum { INDEPENDENT = -1, OPEN = -2 };
 
 // ---- lines ----------------------------------------------------------------------------------------
 
@@ -63,7 +39,7 @@ static void read_matrices(struct elimination *s, const double *M, const double *
         if (place[e->J[i].row]) {
             const int r = place[e->J[i].row] - 1;
             ct_shadow_put(s->a, &s->J[r], e->J[i].column, e->J[i].value, J[i]);
-            ct_shadow_put(s->a, &s->left[r], e->J[i].column, e->J[i].value, J[i]);
+            ct_shadow_put(s->a, &s->d.left[r], e->J[i].column, e->J[i].value, J[i]);
         }
     for (size_t i = 0; i < e->nM; i++) {
         ct_shadow_put(s->a, &s->M[e->M[i].row], e->M[i].column, e->M[i].value, M[i]);
@@ -71,279 +47,11 @@ static void read_matrices(struct elimination *s, const double *M, const double *
             ct_shadow_put(s->a, &s->M[e->M[i].column], e->M[i].row, e->M[i].value, M[i]);
     }
     ct_shadow_sort(s->J, s->p->rank);
-    ct_shadow_sort(s->left, s->p->rank);
+    ct_shadow_sort(s->d.left, s->p->rank);
     ct_shadow_sort(s->M, e->nu);
 }
 
-// ---- choice of pivots -------------------------------------------------------------------------------
-
-struct choice {
-    int size, row[2], column[2];
-    bool is_loose; // a single entry that moves: it may vanish somewhere
-    double cost;   // products per row
-    int level;
-    double strength;
-};
-
-static bool is_open(const struct elimination *s, const struct ct_shadow_entry *e)
-{
-    return s->block_of[e->column] == OPEN;
-}
-
-// The largest number of a row among the dependent columns.
-static double row_size(const struct elimination *s, int row)
-{
-    double most = 0;
-    for (size_t i = 0; i < s->left[row].n; i++)
-        if (is_open(s, &s->left[row].e[i]))
-            most = fmax(most, fabs(s->left[row].e[i].number));
-    return most;
-}
-
-static bool is_better(const struct choice *a, const struct choice *b)
-{
-    if (b->size == 0 || a->is_loose != b->is_loose)
-        return b->size == 0 || b->is_loose;
-    if (a->cost < b->cost || a->cost > b->cost)
-        return a->cost < b->cost;
-    return a->level < b->level;
-}
-
-static bool moves(const struct elimination *s, ct_ex v)
-{
-    return (ct_ex_kinds(s->x, v) & ~(1u << CT_SYM_PARAM)) != 0;
-}
-
-static void try_single(const struct elimination *s, int row, double size, struct choice *best)
-{
-    const struct ct_shadow_row *l = &s->left[row];
-    for (size_t i = 0; i < l->n; i++) {
-        const struct ct_shadow_entry *e = &l->e[i];
-        const double strength = fabs(e->number) / size;
-        if (!is_open(s, e) || !(strength >= threshold))
-            continue;
-        const struct choice c = {.size = 1,
-                                 .row = {row},
-                                 .column = {e->column},
-                                 .is_loose = moves(s, e->value),
-                                 .cost = (s->count[e->column] - 1) * ((double)l->n - 1),
-                                 .level = s->level[row],
-                                 .strength = strength};
-        if (is_better(&c, best))
-            *best = c;
-    }
-}
-
-static double number_at(const struct ct_shadow_row *l, int column)
-{
-    const struct ct_shadow_entry *e = ct_shadow_find(l, column);
-    return e ? e->number : 0;
-}
-
-static void try_columns(const struct elimination *s, struct choice c, double size, double width,
-                        struct choice *best)
-{
-    const struct ct_shadow_row *l = &s->left[c.row[0]], *k = &s->left[c.row[1]];
-    double a[2], b[2];
-    int inside = 0;
-    for (int i = 0; i < 2; i++) {
-        a[i] = number_at(l, c.column[i]);
-        b[i] = number_at(k, c.column[i]);
-        inside += (ct_shadow_find(l, c.column[i]) != NULL)
-                + (ct_shadow_find(k, c.column[i]) != NULL);
-    }
-    c.strength = fabs(a[0] * b[1] - a[1] * b[0]) / size;
-    c.cost = (s->count[c.column[0]] + s->count[c.column[1]] - inside) * (width - 1) / 2;
-    if (c.strength >= threshold && is_better(&c, best))
-        *best = c;
-}
-
-static void try_pair(const struct elimination *s, int i, int k, double size,
-                     struct choice *best)
-{
-    const struct ct_shadow_row *l[2] = {&s->left[i], &s->left[k]};
-    struct choice c = {.size = 2, .row = {i, k}};
-    c.level = s->level[i] > s->level[k] ? s->level[i] : s->level[k];
-    double width = (double)l[0]->n;
-    for (size_t q = 0; q < l[1]->n; q++)
-        width += !ct_shadow_find(l[0], l[1]->e[q].column);
-    for (size_t p = 0; p < l[0]->n; p++)
-        for (size_t q = 0; q < l[1]->n; q++) {
-            c.column[0] = l[0]->e[p].column;
-            c.column[1] = l[1]->e[q].column;
-            if (is_open(s, &l[0]->e[p]) && is_open(s, &l[1]->e[q])
-                && c.column[0] != c.column[1])
-                try_columns(s, c, size, width, best);
-        }
-}
-
-// Where nothing is large enough, the largest there is.
-static void try_largest(const struct elimination *s, struct choice *best)
-{
-    for (int i = 0; i < (int)s->p->rank; i++) {
-        const double size = s->is_done[i] ? 0 : row_size(s, i);
-        for (size_t k = 0; size > 0 && k < s->left[i].n; k++) {
-            const struct ct_shadow_entry *e = &s->left[i].e[k];
-            const double strength = fabs(e->number) / size;
-            if (is_open(s, e) && strength > best->strength)
-                *best = (struct choice){
-                    .size = 1, .row = {i}, .column = {e->column}, .strength = strength};
-        }
-    }
-}
-
-static struct choice choose(struct elimination *s)
-{
-    struct choice best = {0};
-    const int n = (int)s->p->rank;
-    memset(s->count, 0, s->e->nu * sizeof *s->count);
-    for (int i = 0; i < n; i++)
-        for (size_t k = 0; k < s->left[i].n && !s->is_done[i]; k++)
-            s->count[s->left[i].e[k].column]++;
-    for (int i = 0; i < n; i++) {
-        const double size = s->is_done[i] ? 0 : row_size(s, i);
-        if (!(size > 0))
-            continue;
-        try_single(s, i, size, &best);
-        const int joint = s->e->row[s->row[i]].joint;
-        for (int k = i + 1; k < n && joint >= 0 && s->e->row[s->row[k]].joint == joint; k++)
-            if (!s->is_done[k])
-                try_pair(s, i, k, size * row_size(s, k), &best);
-    }
-    if (!best.size)
-        try_largest(s, &best);
-    return best;
-}
-
-// ---- elimination --------------------------------------------------------------------------------------
-
-static ct_ex value_at(const struct ct_shadow_row *l, int column)
-{
-    const struct ct_shadow_entry *e = ct_shadow_find(l, column);
-    return e ? e->value : CT_EX_ZERO;
-}
-
-static ct_ex sub_product(struct ct_exs *x, ct_ex a, ct_ex b, ct_ex c)
-{
-    return ct_ex_sub(x, a, ct_ex_mul(x, b, c));
-}
-
-static ct_ex add_product(struct ct_exs *x, ct_ex a, ct_ex b, ct_ex c)
-{
-    return ct_ex_add(x, a, ct_ex_mul(x, b, c));
-}
-
-static void invert(struct elimination *s, struct block *b)
-{
-    struct ct_exs *x = s->x;
-    const struct ct_shadow_row *l[2] = {&s->left[b->row[0]], &s->left[b->row[b->size - 1]]};
-    const int i = b->column[0], k = b->column[b->size - 1];
-    if (b->size == 1) {
-        b->adjoint[0] = CT_EX_ONE;
-        b->number[0] = 1;
-        b->pivot = value_at(l[0], i);
-        b->pivot_number = number_at(l[0], i);
-        return;
-    }
-    const ct_ex P[4]
-        = {value_at(l[0], i), value_at(l[0], k), value_at(l[1], i), value_at(l[1], k)};
-    const double N[4]
-        = {number_at(l[0], i), number_at(l[0], k), number_at(l[1], i), number_at(l[1], k)};
-    const ct_ex adjoint[4] = {P[3], ct_ex_neg(x, P[1]), ct_ex_neg(x, P[2]), P[0]};
-    const double number[4] = {N[3], -N[1], -N[2], N[0]};
-    memcpy(b->adjoint, adjoint, sizeof adjoint);
-    memcpy(b->number, number, sizeof number);
-    b->pivot = sub_product(x, ct_ex_mul(x, P[0], P[3]), P[1], P[2]);
-    b->pivot_number = N[0] * N[3] - N[1] * N[2];
-}
-
-// The next column of up to three lines, from places at[] on.
-static int next_column(const struct ct_shadow_row *const l[3], const size_t at[3], int n)
-{
-    int next = INT32_MAX;
-    for (int i = 0; i < n; i++)
-        if (at[i] < l[i]->n && l[i]->e[at[i]].column < next)
-            next = l[i]->e[at[i]].column;
-    return next;
-}
-
-// left[row] -= factor * rows of b; the columns of b go.
-static void subtract_rows(struct elimination *s, int row, const struct block *b,
-                          const ct_ex *factor, const double *number)
-{
-    const struct ct_shadow_row *const l[3]
-        = {&s->left[row], &s->left[b->row[0]], &s->left[b->row[b->size - 1]]};
-    const int n = 1 + b->size;
-    struct ct_shadow_row sum = {0};
-    size_t at[3] = {0};
-    for (int c; (c = next_column(l, at, n)) != INT32_MAX;) {
-        ct_ex v = CT_EX_ZERO;
-        double v_number = 0;
-        for (int i = 0; i < n; i++) {
-            if (at[i] >= l[i]->n || l[i]->e[at[i]].column != c)
-                continue;
-            const struct ct_shadow_entry *e = &l[i]->e[at[i]++];
-            v = i ? sub_product(s->x, v, factor[i - 1], e->value) : e->value;
-            v_number = i ? v_number - number[i - 1] * e->number : e->number;
-        }
-        if (c != b->column[0] && c != b->column[b->size - 1] && !ct_ex_is_zero(v))
-            ct_shadow_put(s->a, &sum, c, v, v_number);
-    }
-    s->left[row] = sum;
-}
-
-static void eliminate_row(struct elimination *s, int row, int k)
-{
-    const struct block *b = &s->block[k];
-    const struct ct_shadow_row *l = &s->left[row];
-    struct step step = {.row = row, .block = k};
-    double number[2] = {0};
-    bool is_needed = false;
-    for (int i = 0; i < b->size; i++)
-        is_needed |= ct_shadow_find(l, b->column[i]) != NULL;
-    if (!is_needed)
-        return;
-    for (int i = 0; i < b->size; i++) {
-        for (int q = 0; q < b->size; q++) {
-            const int p = b->size * q + i;
-            step.factor[i]
-                = add_product(s->x, step.factor[i], value_at(l, b->column[q]), b->adjoint[p]);
-            number[i] += number_at(l, b->column[q]) * b->number[p] / b->pivot_number;
-        }
-        step.factor[i] = ct_ex_div(s->x, step.factor[i], b->pivot);
-    }
-    subtract_rows(s, row, b, step.factor, number);
-    CT_PUSH(s->a, s->step, s->nstep, s->step_cap, step);
-    for (int i = 0; i < b->size; i++)
-        if (s->level[row] <= s->level[b->row[i]])
-            s->level[row] = s->level[b->row[i]] + 1;
-}
-
-static bool eliminate(struct elimination *s, size_t most_nodes)
-{
-    for (size_t done = 0; done < s->p->rank;) {
-        const struct choice c = choose(s);
-        if (!c.size || s->x->nnode > most_nodes)
-            return false;
-        const int k = (int)s->nblock++;
-        struct block *b = &s->block[k];
-        *b = (struct block){.size = c.size, .strength = c.strength};
-        for (int i = 0; i < c.size; i++) {
-            b->row[i] = c.row[i];
-            b->column[i] = c.column[i];
-            s->is_done[c.row[i]] = true;
-            s->block_of[c.column[i]] = k;
-        }
-        invert(s, b);
-        for (int i = 0; i < (int)s->p->rank; i++)
-            if (!s->is_done[i])
-                eliminate_row(s, i, k);
-        done += (size_t)c.size;
-    }
-    return true;
-}
-
-// ---- solutions ----------------------------------------------------------------------------------------------
+// ---- reduced equations ------------------------------------------------------------------------------------------
 
 // In pairs, so that the sum of many terms is not one long chain.
 static ct_ex sum(struct ct_exs *x, ct_ex *term, size_t n)
@@ -354,74 +62,6 @@ static ct_ex sum(struct ct_exs *x, ct_ex *term, size_t n)
     return n ? term[0] : CT_EX_ZERO;
 }
 
-// x = P^-1 t for the columns of block k, the rest of its rows taken off t.
-static void solve_block(struct elimination *s, const struct block *b, int k, const ct_ex *t,
-                        ct_ex *x)
-{
-    ct_ex rest[2] = {CT_EX_ZERO, CT_EX_ZERO};
-    for (int i = 0; i < b->size; i++) {
-        const struct ct_shadow_row *l = &s->left[b->row[i]];
-        rest[i] = t[i];
-        for (size_t q = l->n; q-- > 0;)
-            if (s->block_of[l->e[q].column] > k)
-                rest[i] = sub_product(s->x, rest[i], l->e[q].value, x[l->e[q].column]);
-    }
-    for (int i = 0; i < b->size; i++) {
-        ct_ex v = CT_EX_ZERO;
-        for (int q = 0; q < b->size; q++)
-            v = add_product(s->x, v, b->adjoint[b->size * i + q], rest[q]);
-        x[b->column[i]] = ct_ex_div(s->x, v, b->pivot);
-    }
-}
-
-// x (nu, out in the dependent places) = J_d^-1 r; r (rank) is lost.
-static void solve_rows(struct elimination *s, ct_ex *r, ct_ex *x)
-{
-    for (size_t i = 0; i < s->nstep; i++) {
-        const struct step *t = &s->step[i];
-        const struct block *b = &s->block[t->block];
-        for (int q = 0; q < b->size; q++)
-            r[t->row] = sub_product(s->x, r[t->row], t->factor[q], r[b->row[q]]);
-    }
-    for (int k = (int)s->nblock; k-- > 0;) {
-        const struct block *b = &s->block[k];
-        const ct_ex t[2] = {r[b->row[0]], r[b->row[b->size - 1]]};
-        solve_block(s, b, k, t, x);
-    }
-}
-
-// lam (rank, out) = J_d^-T w (nu).
-static void solve_columns(struct elimination *s, const ct_ex *w, ct_ex *lam)
-{
-    struct ct_exs *x = s->x;
-    ct_ex *t = CT_NEWN(s->a, ct_ex, s->e->nu + 1);
-    memcpy(t, w, s->e->nu * sizeof *t);
-    for (size_t k = 0; k < s->nblock; k++) {
-        const struct block *b = &s->block[k];
-        for (int i = 0; i < b->size; i++) {
-            ct_ex v = CT_EX_ZERO;
-            for (int q = 0; q < b->size; q++)
-                v = add_product(x, v, b->adjoint[b->size * q + i], t[b->column[q]]);
-            lam[b->row[i]] = ct_ex_div(x, v, b->pivot);
-        }
-        for (int i = 0; i < b->size; i++) {
-            const struct ct_shadow_row *l = &s->left[b->row[i]];
-            for (size_t q = 0; q < l->n; q++)
-                if (s->block_of[l->e[q].column] > (int)k)
-                    t[l->e[q].column]
-                        = sub_product(x, t[l->e[q].column], l->e[q].value, lam[b->row[i]]);
-        }
-    }
-    for (size_t i = s->nstep; i-- > 0;) {
-        const struct block *b = &s->block[s->step[i].block];
-        for (int q = 0; q < b->size; q++)
-            lam[b->row[q]]
-                = sub_product(x, lam[b->row[q]], s->step[i].factor[q], lam[s->step[i].row]);
-    }
-}
-
-// ---- reduced equations ------------------------------------------------------------------------------------------
-
 // y (out) = A x for a sparse matrix of n lines.
 static void apply(struct elimination *s, const struct ct_shadow_row *A, size_t n,
                   const ct_ex *x, ct_ex *y)
@@ -429,7 +69,7 @@ static void apply(struct elimination *s, const struct ct_shadow_row *A, size_t n
     for (size_t i = 0; i < n; i++) {
         y[i] = CT_EX_ZERO;
         for (size_t k = 0; k < A[i].n; k++)
-            y[i] = add_product(s->x, y[i], A[i].e[k].value, x[A[i].e[k].column]);
+            y[i] = ct_ex_add_product(s->x, y[i], A[i].e[k].value, x[A[i].e[k].column]);
     }
 }
 
@@ -450,13 +90,7 @@ static void derive_B(struct elimination *s)
     for (size_t j = 0; j < s->p->nfree; j++) {
         ct_ex *x = s->B + nu * j;
         const int column = s->p->independent[j];
-        for (int k = (int)s->nblock; k-- > 0;) {
-            const struct block *b = &s->block[k];
-            ct_ex t[2];
-            for (int i = 0; i < 2; i++)
-                t[i] = ct_ex_neg(s->x, value_at(&s->left[b->row[i < b->size ? i : 0]], column));
-            solve_block(s, b, k, t, x);
-        }
+        ct_blocks_solve_column(&s->d, column, x);
         x[column] = CT_EX_ONE;
     }
 }
@@ -538,7 +172,7 @@ static bool reduce(struct elimination *s, size_t most_nodes)
             const ct_ex l = ct_ex_div(s->x, *beside, *S_at(s, k, k));
             for (size_t j = 0; j <= i; j++) {
                 ct_ex *entry = S_at(s, s->order[i], s->order[j]);
-                *entry = sub_product(s->x, *entry, l, *S_at(s, k, s->order[j]));
+                *entry = ct_ex_sub_product(s->x, *entry, l, *S_at(s, k, s->order[j]));
             }
             *beside = l;
         }
@@ -553,13 +187,13 @@ static void solve_reduced(struct elimination *s, ct_ex *z)
     for (size_t at = f; at-- > 0;)
         for (size_t i = 0; i < at; i++) {
             const size_t k = s->order[at], to = s->order[i];
-            z[to] = sub_product(s->x, z[to], *S_at(s, k, to), z[k]);
+            z[to] = ct_ex_sub_product(s->x, z[to], *S_at(s, k, to), z[k]);
         }
     for (size_t at = 0; at < f; at++) {
         const size_t k = s->order[at];
         z[k] = ct_ex_div(s->x, z[k], *S_at(s, k, k));
         for (size_t i = 0; i < at; i++)
-            z[k] = sub_product(s->x, z[k], *S_at(s, k, s->order[i]), z[s->order[i]]);
+            z[k] = ct_ex_sub_product(s->x, z[k], *S_at(s, k, s->order[i]), z[s->order[i]]);
     }
 }
 
@@ -589,7 +223,7 @@ static void solve(struct elimination *s, const ct_ex *Q, ct_ex *g, ct_ex *a, ct_
     }
     ct_ex *c = CT_NEWN(s->a, ct_ex, nu + 1), *w = CT_NEWN(s->a, ct_ex, nu + 1);
     ct_ex *z = CT_NEWN(s->a, ct_ex, f + 1), *term = CT_NEWN(s->a, ct_ex, nu + 1);
-    solve_rows(s, g, c);
+    ct_blocks_solve(&s->d, g, c);
     apply(s, s->M, nu, c, w);
     for (size_t i = 0; i < nu; i++)
         w[i] = ct_ex_sub(x, Q[i], w[i]);
@@ -599,12 +233,12 @@ static void solve(struct elimination *s, const ct_ex *Q, ct_ex *g, ct_ex *a, ct_
     for (size_t i = 0; i < nu; i++) {
         a[i] = c[i];
         for (size_t j = 0; j < f; j++)
-            a[i] = add_product(x, a[i], s->B[i + nu * j], z[j]);
+            a[i] = ct_ex_add_product(x, a[i], s->B[i + nu * j], z[j]);
     }
     apply(s, s->M, nu, a, w);
     for (size_t i = 0; i < nu; i++)
         w[i] = ct_ex_sub(x, w[i], Q[i]);
-    solve_columns(s, w, lam);
+    ct_blocks_solve_transposed(&s->d, w, lam);
 }
 
 // r (nu + rank, out) = M a - Q - J' lam, J a + gam.
@@ -617,7 +251,7 @@ static void residual(struct elimination *s, const ct_ex *a, const ct_ex *lam, ct
     for (size_t i = 0; i < m; i++)
         for (size_t k = 0; k < s->J[i].n; k++) {
             ct_ex *to = &r[s->J[i].e[k].column];
-            *to = sub_product(s->x, *to, s->J[i].e[k].value, lam[i]);
+            *to = ct_ex_sub_product(s->x, *to, s->J[i].e[k].value, lam[i]);
         }
     apply(s, s->J, m, a, r + nu);
     for (size_t i = 0; i < m; i++)
@@ -635,28 +269,25 @@ static struct elimination create(struct ct_arena *a, struct ct_exs *x,
     memcpy(s.row, p->row, m * sizeof *s.row);
     qsort(s.row, m, sizeof *s.row, ascending);
     s.J = CT_NEWN(a, struct ct_shadow_row, m + 1);
-    s.left = CT_NEWN(a, struct ct_shadow_row, m + 1);
     s.M = CT_NEWN(a, struct ct_shadow_row, e->nu + 1);
-    s.is_done = CT_NEWN(a, bool, m + 1);
-    s.level = CT_NEWN(a, int, m + 1);
-    s.count = CT_NEWN(a, int, e->nu + 1);
-    s.block = CT_NEWN(a, struct block, m + 1);
-    s.block_of = CT_NEWN(a, int, e->nu + 1);
-    for (size_t i = 0; i < m; i++)
-        s.block_of[p->dependent[i]] = OPEN;
+    s.d = ct_blocks_create(a, x, m, e->nu);
+    for (size_t i = 0; i < m; i++) {
+        s.d.group[i] = e->row[s.row[i]].joint;
+        s.d.block_of[p->dependent[i]] = CT_BLOCK_OPEN;
+    }
     for (size_t i = 0; i < p->nfree; i++)
-        s.block_of[p->independent[i]] = INDEPENDENT;
+        s.d.block_of[p->independent[i]] = CT_BLOCK_NEVER;
     return s;
 }
 
 static void list_pivots(const struct elimination *s, struct ct_closed *c)
 {
-    c->pivot = CT_NEWN(s->a, ct_ex, s->nblock + 1);
-    c->scale = CT_NEWN(s->a, double, s->nblock + 1);
-    for (size_t k = 0; k < s->nblock; k++)
-        if (moves(s, s->block[k].pivot)) {
-            c->scale[c->npivot] = s->block[k].strength / fabs(s->block[k].pivot_number);
-            c->pivot[c->npivot++] = s->block[k].pivot;
+    c->pivot = CT_NEWN(s->a, ct_ex, s->d.nblock + 1);
+    c->scale = CT_NEWN(s->a, double, s->d.nblock + 1);
+    for (size_t k = 0; k < s->d.nblock; k++)
+        if (ct_blocks_moves(&s->d, s->d.block[k].pivot)) {
+            c->scale[c->npivot] = s->d.block[k].strength / fabs(s->d.block[k].pivot_number);
+            c->pivot[c->npivot++] = s->d.block[k].pivot;
         }
     if (s->whole) {
         c->nfree = 0;
@@ -667,7 +298,7 @@ static void list_pivots(const struct elimination *s, struct ct_closed *c)
         c->inertia[j] = s->S[j + c->nfree * j];
     c->B = CT_NEWN(s->a, ct_ex, s->e->nu * c->nfree + 1);
     for (size_t i = 0; i < s->e->nu * c->nfree; i++)
-        if (s->block_of[i % s->e->nu] >= 0 && !ct_ex_is_zero(s->B[i]))
+        if (s->d.block_of[i % s->e->nu] >= 0 && !ct_ex_is_zero(s->B[i]))
             c->B[c->nB++] = s->B[i];
 }
 
@@ -699,10 +330,10 @@ static void derive_projections(struct elimination *s, struct ct_closed *c)
     ct_ex *r = CT_NEWN(s->a, ct_ex, m + 1);
     for (size_t i = 0; i < m; i++)
         r[i] = ct_ex_neg(s->x, s->e->row[s->row[i]].phi);
-    solve_rows(s, r, c->dq);
+    ct_blocks_solve(&s->d, r, c->dq);
     for (size_t i = 0; i < m; i++)
         r[i] = ct_ex_neg(s->x, s->e->row[s->row[i]].v);
-    solve_rows(s, r, c->du);
+    ct_blocks_solve(&s->d, r, c->du);
 }
 
 // Operations of the better order, which may be wanted.
@@ -739,7 +370,7 @@ struct ct_closed *ct_closed_derive(struct ct_arena *a, struct ct_exs *x,
     struct elimination s = create(a, x, e, p);
     const size_t most = x->nnode + most_nodes, nu = e->nu, m = p->rank;
     read_matrices(&s, M, J);
-    if (!eliminate(&s, most))
+    if (!ct_blocks_factor(&s.d, most))
         return NULL;
     if (way == CT_CLOSED_WHOLE) {
         enum ct_kkt_order order = CT_KKT_DEGREE;

@@ -6,8 +6,17 @@
 #include <math.h>
 #include <string.h>
 
-enum { U, V, W, RX, RY, RZ, NKIND };
-static const char *const kind_name[NKIND] = {"u", "v", "w", "rx", "ry", "rz"};
+enum {
+    U = CT_FREEDOM_U,
+    V = CT_FREEDOM_V,
+    W = CT_FREEDOM_W,
+    RX = CT_FREEDOM_RX,
+    RY = CT_FREEDOM_RY,
+    RZ = CT_FREEDOM_RZ,
+    RM = CT_FREEDOM_RM,
+    NKIND = CT_NODE_FREEDOM
+};
+static const char *const kind_name[NKIND] = {"u", "v", "w", "rx", "ry", "rz", "rm"};
 static const ct_ex3 zero3 = {{{0}, {0}, {0}}};
 
 // ---- freedoms ---------------------------------------------------------------------------------------
@@ -16,8 +25,8 @@ static const ct_ex3 zero3 = {{{0}, {0}, {0}}};
 static unsigned family_of(int kind)
 {
     static const unsigned family[NKIND]
-        = {CT_BEAM_AXIAL,   CT_BEAM_BENDING_Z, CT_BEAM_BENDING_Y,
-           CT_BEAM_TORSION, CT_BEAM_BENDING_Y, CT_BEAM_BENDING_Z};
+        = {CT_BEAM_AXIAL,     CT_BEAM_BENDING_Z, CT_BEAM_BENDING_Y, CT_BEAM_TORSION,
+           CT_BEAM_BENDING_Y, CT_BEAM_BENDING_Z, CT_BEAM_TORSION};
     return family[kind];
 }
 
@@ -31,6 +40,8 @@ static bool is_fixed(const struct ct_flexible *f, int node, int kind)
     const bool is_end = node == f->beam->nelement;
     if (!(f->deformation & family_of(kind)))
         return true;
+    if (kind == RM)
+        return node == 0 || !f->beam->has_quadratic_twist;
     if (!f->beam->is_chord)
         return node == 0;
     // the chord's frame: origin at the start, x towards the end, not twisted at the start
@@ -40,9 +51,9 @@ static bool is_fixed(const struct ct_flexible *f, int node, int kind)
 
 static void number_dofs(struct ct_flexible *f)
 {
-    static const int kinds[CT_DOF / 2 * 2][2]
-        = {{0, U}, {1, U},  {0, V}, {0, RZ}, {1, V},  {1, RZ},
-           {0, W}, {0, RY}, {1, W}, {1, RY}, {0, RX}, {1, RX}};
+    static const int kinds[CT_DOF][2]
+        = {{0, U},  {1, U}, {0, V},  {0, RZ}, {1, V},  {1, RZ}, {0, W},
+           {0, RY}, {1, W}, {1, RY}, {0, RX}, {1, RX}, {1, RM}};
     for (int e = 0; e < f->beam->nelement; e++)
         for (int j = 0; j < CT_DOF; j++) {
             const int node = e + kinds[j][0], kind = kinds[j][1];
@@ -121,8 +132,8 @@ static enum ct_axial axial_of(const struct ct_flexible *f)
              : CT_AXIAL_CHAIN;
 }
 
-// Deformations without a stiffness would be free to go anywhere: with --keep-all they are left out, else they are the
-// model's fault, as the scene excites them.
+// Deformations without a stiffness would be free to go anywhere: where the scene does not excite them they are left out,
+// else they are the model's fault.
 static void need_stiffness(struct ct_build *b, struct ct_flexible *f)
 {
     static const struct {
@@ -136,7 +147,7 @@ static void need_stiffness(struct ct_build *b, struct ct_flexible *f)
         if (!(f->deformation & all[i].family & ~f->beam->known))
             continue;
         f->deformation &= ~all[i].family;
-        if (b->keep_all)
+        if (b->keep_all || b->is_freed)
             ct_topology_left_out(
                 b, ct_arena_printf(b->arena, "that %s can %s", f->name, all[i].what),
                 ct_arena_printf(b->arena, "%s is not given", all[i].key));
@@ -159,13 +170,17 @@ static void choose_formulation(const struct ct_build *b, struct ct_flexible *f)
 static void settle(struct ct_build *b, struct ct_flexible *f)
 {
     const struct ct_beam *beam = f->beam;
+    f->formulation = beam->formulation;
+    if (beam->formulation == CT_BEAM_AUTO)
+        choose_formulation(b, f);
     f->deformation = beam->deformation & in_plane(b, f);
     // nor has it an inertia of its own then, so there is no coordinate to keep
-    if (f->deformation & CT_BEAM_TORSION && !beam->deformation_given
-        && !ct_excite_twist(b, f)) {
+    const char *untwisted = f->deformation & CT_BEAM_TORSION && !beam->deformation_given
+                              ? ct_excite_no_twist(b, f)
+                              : NULL;
+    if (untwisted) {
         f->deformation &= ~(unsigned)CT_BEAM_TORSION;
-        ct_topology_left_out(b, ct_arena_printf(b->arena, "torsion of %s", f->name),
-                             "nothing beyond its base can twist it");
+        ct_topology_left_out(b, ct_arena_printf(b->arena, "torsion of %s", f->name), untwisted);
     }
     if (b->is_planar && beam->deformation & ~(unsigned)(CT_BEAM_AXIAL | f->deformation))
         ct_topology_left_out(b,
@@ -176,9 +191,6 @@ static void settle(struct ct_build *b, struct ct_flexible *f)
     need_stiffness(b, f);
     if (b->is_rigid)
         f->deformation = 0;
-    f->formulation = beam->formulation;
-    if (beam->formulation == CT_BEAM_AUTO)
-        choose_formulation(b, f);
     f->axial = f->kinematics = axial_of(f);
     if (f->formulation == CT_BEAM_FORCE_ONLY)
         f->kinematics = CT_AXIAL_LINEAR;
@@ -186,6 +198,7 @@ static void settle(struct ct_build *b, struct ct_flexible *f)
     f->element = CT_NEWN(b->arena, struct ct_element, beam->nelement);
     ct_shape_bending(beam->theory, &f->shape);
     ct_shape_linear(f->linear);
+    ct_shape_twist(f->twist);
     derive_shortening(f);
     number_dofs(f);
     for (int e = 0; e < beam->nelement; e++) {
@@ -471,7 +484,8 @@ void ct_flexible_station(struct ct_build *b, const struct ct_flexible *f, ct_ex 
     s->place.e[0] = ct_ex_add(x, place, a.value);
     s->place.e[1] = ct_element_field(b, self, f->shape.place, self->value, 2, 4, s->xi);
     s->place.e[2] = ct_element_field(b, self, f->shape.place, self->value, 6, 4, s->xi);
-    s->angle[0] = ct_element_field(b, self, f->linear, self->value, 10, 2, s->xi);
+    s->angle[0]
+        = ct_element_field(b, self, f->twist, self->value, CT_PLACE_DOF, CT_TWIST_DOF, s->xi);
     s->angle[1]
         = ct_ex_neg(x, ct_element_field(b, self, f->shape.rotation, self->value, 6, 4, s->xi));
     s->angle[2] = ct_element_field(b, self, f->shape.rotation, self->value, 2, 4, s->xi);
@@ -507,7 +521,7 @@ void ct_station_own_partials(struct ct_build *b, const struct ct_flexible *f,
             d.e[1 + plane] = ct_shape_at(x, &f->shape.place[i], s->xi, h);
             t.e[plane ? 1 : 2] = plane ? ct_ex_neg(x, r) : r;
         } else if (j >= CT_PLACE_DOF) {
-            t.e[0] = ct_shape_at(x, &f->linear[j - CT_PLACE_DOF], s->xi, h);
+            t.e[0] = ct_shape_at(x, &f->twist[j - CT_PLACE_DOF], s->xi, h);
         }
         add_partial(b, f, s->element, j, d, slide);
         add_partial(b, f, s->element, j, t, turn);

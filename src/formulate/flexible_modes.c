@@ -13,7 +13,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { NKIND = 6 };
+enum { NKIND = CT_NODE_FREEDOM };
 
 struct reduction {
     struct ct_build *b;
@@ -175,7 +175,7 @@ bool ct_flexible_reduce(struct ct_build *b, struct ct_flexible *f, struct ct_sha
     bool *node = new_marks(b, f), *kept = new_marks(b, f);
     mark_nodes(&r, node);
     for (int i = 0; i < NKIND * (f->beam->nelement + 1); i++)
-        kept[i] = node[i / NKIND];
+        kept[i] = node[i / NKIND] && i % NKIND != CT_FREEDOM_RM;
     number_freedoms(&r, kept);
     assemble(&r);
     r.shape = CT_NEWN(b->arena, double, (size_t)r.n *(size_t)(r.n + 1) + 1);

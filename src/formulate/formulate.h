@@ -36,6 +36,8 @@ struct ct_formulate_options {
     bool held;                       // drivers stand still at their values: for what is static
     bool without_dynamics; // neither M nor Q: places and speeds are all that is wanted
     bool
+        frees_beams; // what the scene does not excite in beams is kept, too; as in `like`, where given
+    bool
         for_analysis; // large systems will be linearised, not integrated: neither M nor Q nor a
                       // solution, and trees that couple few unknowns
 };

@@ -3,7 +3,8 @@
 // Built node by node along the translational tree. A joint is taken apart into what slides and into turns, each
 // with a member of its own; those in between have no mass. Where one coordinate does both, as in a screw, one
 // member has both.
-#include "formulate/member.h"
+#include "formulate/member_work.h"
+
 #include "formulate/elastic.h"
 
 #include <math.h>
@@ -11,19 +12,9 @@
 
 static const ct_ex3 zero3 = {{{0}, {0}, {0}}};
 
-struct work {
-    struct ct_build *b;
-    struct ct_members *s;
-    int *of_node;    // member
-    ct_ex3 *offset;  // of a node from its member's origin, in axes of the member's cluster
-    int *of_cluster; // the member that turns it, or -1
-    int *of_speed;
-};
-
 // ---- components -------------------------------------------------------------------------------------
 
-// Out of axes of a cluster into those the member uses: in a plane e1, e2, n.
-static ct_ex3 express(struct ct_build *b, int cluster, ct_ex3 local)
+ct_ex3 ct_member_express(struct ct_build *b, int cluster, ct_ex3 local)
 {
     if (!b->is_planar)
         return local;
@@ -34,8 +25,7 @@ static ct_ex3 express(struct ct_build *b, int cluster, ct_ex3 local)
     return out;
 }
 
-// Ground components of a force or a torque into the member's axes.
-static ct_ex3 express_ground(struct ct_build *b, int cluster, ct_ex3 v)
+ct_ex3 ct_member_express_ground(struct ct_build *b, int cluster, ct_ex3 v)
 {
     if (!b->is_planar)
         return ct_ex33_apply_t(b->x, &b->cluster[cluster].R, v);
@@ -45,72 +35,9 @@ static ct_ex3 express_ground(struct ct_build *b, int cluster, ct_ex3 v)
     return out;
 }
 
-ct_ex3 ct_member_out(struct ct_build *b, const struct ct_member *m, ct_ex3 v)
-{
-    return m->has_axes ? ct_ex33_apply(b->x, &m->R, v) : v;
-}
-
-ct_ex3 ct_member_in(struct ct_build *b, const struct ct_member *m, ct_ex3 v)
-{
-    return m->has_axes ? ct_ex33_apply_t(b->x, &m->R, v) : v;
-}
-
-static bool is_symmetric(const ct_ex33 *A)
-{
-    return ct_ex_same(A->e[1], A->e[3]) && ct_ex_same(A->e[2], A->e[6])
-        && ct_ex_same(A->e[5], A->e[7]);
-}
-
-// The part of A in the plane across the axis turns by twice the angle, all but its trace and its skew part:
-// with D = A_jj - A_kk, T = A_jk + A_kj, y = c D - s T these change by c y, -c y and s y.
-static void turn_about(struct ct_build *b, const struct ct_member *m, ct_ex33 *A)
-{
-    struct ct_exs *x = b->x;
-    const int i = m->axis, j = (i + 1) % 3, k = (i + 2) % 3;
-    const ct_ex c = m->R.e[j + 3 * j], s = m->R.e[k + 3 * j];
-    const ct_ex33 a = *A;
-    const ct_ex jj = a.e[j + 3 * j], kk = a.e[k + 3 * k], jk = a.e[j + 3 * k],
-                kj = a.e[k + 3 * j];
-    const ct_ex y = ct_ex_sub(x, ct_ex_mul(x, c, ct_ex_sub(x, jj, kk)),
-                              ct_ex_mul(x, s, ct_ex_add(x, jk, kj)));
-    const ct_ex along = ct_ex_mul(x, c, y), across = ct_ex_mul(x, s, y);
-    A->e[j + 3 * j] = ct_ex_add(x, kk, along);
-    A->e[k + 3 * k] = ct_ex_sub(x, jj, along);
-    A->e[j + 3 * k] = ct_ex_add(x, jk, across);
-    A->e[k + 3 * j] = ct_ex_add(x, kj, across);
-    const ct_ex ij = a.e[i + 3 * j], ik = a.e[i + 3 * k], ji = a.e[j + 3 * i],
-                ki = a.e[k + 3 * i];
-    A->e[i + 3 * j] = ct_ex_sub(x, ct_ex_mul(x, c, ij), ct_ex_mul(x, s, ik));
-    A->e[i + 3 * k] = ct_ex_add(x, ct_ex_mul(x, s, ij), ct_ex_mul(x, c, ik));
-    A->e[j + 3 * i] = ct_ex_sub(x, ct_ex_mul(x, c, ji), ct_ex_mul(x, s, ki));
-    A->e[k + 3 * i] = ct_ex_add(x, ct_ex_mul(x, s, ji), ct_ex_mul(x, c, ki));
-}
-
-void ct_member_turn_tensor(struct ct_build *b, const struct ct_member *m, ct_ex33 *A)
-{
-    struct ct_exs *x = b->x;
-    if (!m->has_axes)
-        return;
-    if (m->axis >= 0) {
-        turn_about(b, m, A);
-        return;
-    }
-    const bool symmetric = is_symmetric(A);
-    const ct_ex33 half = ct_ex33_mul(x, &m->R, A);
-    for (int i = 0; i < 3; i++)
-        for (int j = 0; j < 3; j++) {
-            const ct_ex3 row = {{half.e[i], half.e[i + 3], half.e[i + 6]}},
-                         column = {{m->R.e[j], m->R.e[j + 3], m->R.e[j + 6]}};
-            A->e[i + 3 * j] = symmetric && j > i ? CT_EX_ZERO : ct_ex3_dot(x, row, column);
-        }
-    for (int i = 0; i < 3 && symmetric; i++)
-        for (int j = i + 1; j < 3; j++)
-            A->e[i + 3 * j] = A->e[j + 3 * i];
-}
-
 // ---- adding members -----------------------------------------------------------------------------------
 
-static int add_member(struct work *w, int parent, int cluster, ct_ex3 r)
+static int add_member(struct ct_member_work *w, int parent, int cluster, ct_ex3 r)
 {
     struct ct_member m = {.parent = parent, .cluster = cluster, .axis = -1, .r = r};
     m.R = ct_ex33_identity();
@@ -140,8 +67,8 @@ static int coordinate_axis(struct ct_build *b, ct_ex3 v)
 
 // Axis of a spin in the member's axes. That of a quaternion seen backwards is fixed in the parent, as column i
 // of S there.
-static ct_ex3 spin_axis(struct work *w, const struct ct_member *m, const struct ct_spin *s,
-                        const ct_ex33 *S, int i)
+static ct_ex3 spin_axis(struct ct_member_work *w, const struct ct_member *m,
+                        const struct ct_spin *s, const ct_ex33 *S, int i)
 {
     struct ct_build *b = w->b;
     if (b->is_planar) {
@@ -156,7 +83,7 @@ static ct_ex3 spin_axis(struct work *w, const struct ct_member *m, const struct 
 }
 
 // The member turns as a cluster does; S: axes of the node the joint starts from.
-static void add_turn(struct work *w, int member, int cluster, const ct_ex33 *S)
+static void add_turn(struct ct_member_work *w, int member, int cluster, const ct_ex33 *S)
 {
     struct ct_build *b = w->b;
     struct ct_exs *x = b->x;
@@ -184,7 +111,7 @@ static void add_turn(struct work *w, int member, int cluster, const ct_ex33 *S)
 }
 
 // The member's place moves with coordinates of joint e; r is in axes of the parent's cluster.
-static void add_slides(struct work *w, int member, const struct ct_edge_info *e)
+static void add_slides(struct ct_member_work *w, int member, const struct ct_edge_info *e)
 {
     struct ct_build *b = w->b;
     struct ct_exs *x = b->x;
@@ -264,7 +191,8 @@ static bool turns_share(const struct ct_build *b, const struct passage *p)
     return false;
 }
 
-static int pass_slides(struct work *w, int member, const struct passage *p, ct_ex3 *offset)
+static int pass_slides(struct ct_member_work *w, int member, const struct passage *p,
+                       ct_ex3 *offset)
 {
     *offset = ct_ex3_add(w->b->x, *offset, p->vector);
     if (!is_moving(w->b, p->vector))
@@ -275,7 +203,8 @@ static int pass_slides(struct work *w, int member, const struct passage *p, ct_e
     return m;
 }
 
-static int pass_turns(struct work *w, int member, const struct passage *p, ct_ex3 *offset)
+static int pass_turns(struct ct_member_work *w, int member, const struct passage *p,
+                      ct_ex3 *offset)
 {
     for (int i = 0; i < p->ncluster; i++) {
         member = add_member(w, member, -1, *offset);
@@ -287,7 +216,8 @@ static int pass_turns(struct work *w, int member, const struct passage *p, ct_ex
 }
 
 // One member that slides and turns.
-static int pass_coupled(struct work *w, int member, const struct passage *p, ct_ex3 *offset)
+static int pass_coupled(struct ct_member_work *w, int member, const struct passage *p,
+                        ct_ex3 *offset)
 {
     struct ct_exs *x = w->b->x;
     const int m = add_member(w, member, -1, *offset);
@@ -301,7 +231,7 @@ static int pass_coupled(struct work *w, int member, const struct passage *p, ct_
     return m;
 }
 
-static bool pass(struct work *w, const struct passage *p, int *member, ct_ex3 *offset)
+static bool pass(struct ct_member_work *w, const struct passage *p, int *member, ct_ex3 *offset)
 {
     if (turns_share(w->b, p))
         return false;
@@ -349,13 +279,14 @@ static ct_ex33 beam_turn(struct ct_build *b, const struct ct_flexible *f)
 {
     const struct ct_place *p = &b->place[f->base];
     const ct_ex3 x = {{CT_EX_ONE, CT_EX_ZERO, CT_EX_ZERO}};
-    const ct_ex3 v = express(b, p->frame, ct_ex33_apply(b->x, &p->S, x));
+    const ct_ex3 v = ct_member_express(b, p->frame, ct_ex33_apply(b->x, &p->S, x));
     return (ct_ex33){{v.e[0], v.e[1], CT_EX_ZERO, ct_ex_neg(b->x, v.e[1]), v.e[0], CT_EX_ZERO,
                       CT_EX_ZERO, CT_EX_ZERO, CT_EX_ONE}};
 }
 
 // In a plane: member m has the axes of the beam, its parent those of the plane, or the other way round.
-static void change_axes(struct work *w, int m, const struct ct_flexible *f, bool into_beam)
+static void change_axes(struct ct_member_work *w, int m, const struct ct_flexible *f,
+                        bool into_beam)
 {
     struct ct_member *self = &w->s->member[m];
     const ct_ex33 R = beam_turn(w->b, f);
@@ -364,7 +295,8 @@ static void change_axes(struct work *w, int m, const struct ct_flexible *f, bool
     self->axis = 2;
 }
 
-static int rigid_member(struct work *w, int parent, const struct ct_flexible *f, ct_ex3 r)
+static int rigid_member(struct ct_member_work *w, int parent, const struct ct_flexible *f,
+                        ct_ex3 r)
 {
     const int m = add_member(w, parent, w->s->member[parent].cluster, r);
     w->s->member[m].beam = beam_of(w->b, f) + 1;
@@ -372,7 +304,8 @@ static int rigid_member(struct work *w, int parent, const struct ct_flexible *f,
 }
 
 // The base of a beam that a node carries which is not one of its own sections.
-static void hang_base(struct work *w, const struct ct_flexible *f, int member, ct_ex3 offset)
+static void hang_base(struct ct_member_work *w, const struct ct_flexible *f, int member,
+                      ct_ex3 offset)
 {
     struct ct_member_beam *beam = &w->s->beam[beam_of(w->b, f)];
     beam->A = base_axes(w->b, f);
@@ -382,8 +315,8 @@ static void hang_base(struct work *w, const struct ct_flexible *f, int member, c
 }
 
 // What slides between the base and a section, from the member at whose origin r begins; in axes of the base.
-static int slide_section(struct work *w, int from, ct_ex3 r, const struct ct_edge_info *e,
-                         int sign)
+static int slide_section(struct ct_member_work *w, int from, ct_ex3 r,
+                         const struct ct_edge_info *e, int sign)
 {
     struct ct_build *b = w->b;
     const struct ct_flexible *f = e->flexible;
@@ -416,7 +349,8 @@ static int slide_section(struct work *w, int from, ct_ex3 r, const struct ct_edg
 }
 
 // Turns of a section, in a plane with the change of axes.
-static int turn_section(struct work *w, int from, ct_ex3 r, const struct passage *p, int sign)
+static int turn_section(struct ct_member_work *w, int from, ct_ex3 r, const struct passage *p,
+                        int sign)
 {
     const struct ct_flexible *f = p->e->flexible;
     int m = from;
@@ -434,8 +368,8 @@ static int turn_section(struct work *w, int from, ct_ex3 r, const struct passage
 }
 
 // From the base of a beam to a section (sign +1) or back.
-static bool pass_section(struct work *w, const struct passage *p, int sign, int *member,
-                         ct_ex3 *offset)
+static bool pass_section(struct ct_member_work *w, const struct passage *p, int sign,
+                         int *member, ct_ex3 *offset)
 {
     struct ct_build *b = w->b;
     const struct ct_flexible *f = p->e->flexible;
@@ -466,7 +400,7 @@ static bool pass_section(struct work *w, const struct passage *p, int sign, int 
 
 // The clusters between the axes of a node and those of its parent, or of ground in a plane. False where the node
 // turns with something else.
-static bool find_clusters(struct work *w, int from, int to, struct passage *p)
+static bool find_clusters(struct ct_member_work *w, int from, int to, struct passage *p)
 {
     const struct ct_build *b = w->b;
     int list[CT_MAX_COORD], n = 0;
@@ -484,7 +418,7 @@ static bool find_clusters(struct work *w, int from, int to, struct passage *p)
 }
 
 // A particle has no axes: it is a point of its parent, or of what slides there.
-static bool place_particle(struct work *w, struct passage *p, int parent, int *member,
+static bool place_particle(struct ct_member_work *w, struct passage *p, int parent, int *member,
                            ct_ex3 *offset)
 {
     if (w->b->node[parent].is_particle || (p->vector_last && !ct_ex3_is_zero(p->vector)))
@@ -493,7 +427,7 @@ static bool place_particle(struct work *w, struct passage *p, int parent, int *m
     return true;
 }
 
-static bool place_node(struct work *w, int node)
+static bool place_node(struct ct_member_work *w, int node)
 {
     struct ct_build *b = w->b;
     const int parent = b->T.parent[node], sign = b->T.sign[node];
@@ -523,7 +457,7 @@ static bool place_node(struct work *w, int node)
     return true;
 }
 
-static bool place_nodes(struct work *w)
+static bool place_nodes(struct ct_member_work *w)
 {
     const struct ct_build *b = w->b;
     w->of_node = CT_NEWN(b->arena, int, b->nnode);
@@ -539,7 +473,7 @@ static bool place_nodes(struct work *w)
 }
 
 // Each speed must move one member.
-static bool own_speeds(struct work *w)
+static bool own_speeds(struct ct_member_work *w)
 {
     const size_t nu = w->b->eqs->nu;
     w->of_speed = CT_NEWN(w->b->arena, int, nu + 1);
@@ -557,220 +491,18 @@ static bool own_speeds(struct work *w)
     return true;
 }
 
-// ---- inertia --------------------------------------------------------------------------------------------
-
-static void add_tensor(struct ct_build *b, ct_ex33 *sum, const ct_ex33 *A)
-{
-    for (int i = 0; i < 9; i++)
-        sum->e[i] = ct_ex_add(b->x, sum->e[i], A->e[i]);
-}
-
-// c (d.h 1) - (d h' + h d')/2 twice over: the inertia of first moments h at d, and with h = m d/2 that of a mass.
-static void add_arm(struct ct_build *b, ct_ex33 *J, ct_ex3 d, ct_ex3 h)
-{
-    struct ct_exs *x = b->x;
-    for (int i = 0; i < 3; i++) {
-        const int j = (i + 1) % 3, k = (i + 2) % 3;
-        const ct_ex other
-            = ct_ex_add(x, ct_ex_mul(x, d.e[j], h.e[j]), ct_ex_mul(x, d.e[k], h.e[k]));
-        const ct_ex cross
-            = ct_ex_add(x, ct_ex_mul(x, d.e[i], h.e[j]), ct_ex_mul(x, h.e[i], d.e[j]));
-        J->e[i + 3 * i] = ct_ex_add(x, J->e[i + 3 * i], ct_ex_scale(x, 2, other));
-        J->e[i + 3 * j] = ct_ex_sub(x, J->e[i + 3 * j], cross);
-        J->e[j + 3 * i] = ct_ex_sub(x, J->e[j + 3 * i], cross);
-    }
-}
-
-// Mass m, first moment h and inertia J about a point, all at v from the member's origin.
-static void add_inertia(struct work *w, int member, ct_ex3 v, ct_ex mass, ct_ex3 h,
-                        const ct_ex33 *J)
-{
-    struct ct_exs *x = w->b->x;
-    struct ct_member *m = &w->s->member[member];
-    const ct_ex3 carried = ct_ex3_scale(x, mass, v);
-    if (!member)
-        return; // ground does not move
-    m->mass = ct_ex_add(x, m->mass, mass);
-    m->moment = ct_ex3_add(x, m->moment, ct_ex3_add(x, h, carried));
-    add_arm(w->b, &m->J, v, ct_ex3_add(x, h, ct_ex3_scale(x, ct_ex_const(x, 0.5), carried)));
-    add_tensor(w->b, &m->J, J);
-}
-
-static void add_bodies(struct work *w)
-{
-    struct ct_build *b = w->b;
-    for (size_t i = 1; i < b->model->nbody; i++) {
-        const struct ct_body *body = &b->model->body[i];
-        const int node = b->node_of_com[i];
-        if (body->beam)
-            continue;
-        const ct_ex *I = body->inertia;
-        ct_ex33 turned = {{{0}}};
-        if (!body->is_particle) {
-            const ct_ex33 own = {{I[0], I[3], I[4], I[3], I[1], I[5], I[4], I[5], I[2]}};
-            const ct_ex33 *S = &b->place[node].S, t = ct_ex33_transpose(S);
-            const ct_ex33 half = ct_ex33_mul(b->x, &own, &t);
-            turned = ct_ex33_mul(b->x, S, &half);
-        }
-        add_inertia(w, w->of_node[node], w->offset[node], body->mass, zero3, &turned);
-    }
-}
-
-// A first moment along the axis of a turn and the inertia of a rod along it are the parent's as well.
-static void take_off_axis(struct ct_build *b, struct ct_member *m, ct_ex3 *h, ct_ex33 *J)
-{
-    struct ct_exs *x = b->x;
-    const int i = m->axis, j = (i + 1) % 3, k = (i + 2) % 3;
-    h->e[i] = m->moment.e[i];
-    m->moment.e[i] = CT_EX_ZERO;
-    const ct_ex rod = m->J.e[j + 3 * j];
-    J->e[j + 3 * j] = J->e[k + 3 * k] = rod;
-    m->J.e[j + 3 * j] = CT_EX_ZERO;
-    m->J.e[k + 3 * k] = ct_ex_sub(x, m->J.e[k + 3 * k], rod);
-}
-
-// Hand over to the parent what motion in the joint does not feel.
-static void lump(struct work *w, struct ct_member *m)
-{
-    ct_ex33 J = {{{0}}};
-    ct_ex3 h = zero3;
-    ct_ex mass = CT_EX_ZERO;
-    if (m->turns && !m->slides) { // the origin is a point of the parent
-        mass = m->mass;
-        m->mass = CT_EX_ZERO;
-        if (m->axis >= 0 && !w->b->is_planar)
-            take_off_axis(w->b, m, &h, &J);
-    } else if (!m->turns) {
-        J = m->J;
-        m->J = (ct_ex33){{{0}}};
-        add_inertia(w, m->parent, zero3, mass, h, &J);
-        return;
-    }
-    add_inertia(w, m->parent, m->r, mass, h, &J);
-}
-
-static void lump_masses(struct work *w)
-{
-    for (size_t m = w->s->n; m-- > 1;)
-        lump(w, &w->s->member[m]);
-}
-
-// ---- loads ------------------------------------------------------------------------------------------------
-
-static void apply_at(struct work *w, int node, ct_ex3 force, ct_ex3 torque)
-{
-    struct ct_build *b = w->b;
-    struct ct_exs *x = b->x;
-    struct ct_member *m = &w->s->member[w->of_node[node]];
-    const ct_ex3 f = express_ground(b, m->cluster, force),
-                 arm = express(b, m->cluster, w->offset[node]);
-    m->force = ct_ex3_add(x, m->force, f);
-    m->torque = ct_ex3_add(x, m->torque, ct_ex3_cross(x, arm, f));
-    if (!b->node[node].is_particle)
-        m->torque = ct_ex3_add(x, m->torque, express_ground(b, m->cluster, torque));
-}
-
-static void apply_loads(struct work *w)
-{
-    struct ct_build *b = w->b;
-    struct ct_exs *x = b->x;
-    for (size_t i = 0; i < b->nload; i++) {
-        const struct ct_load *l = &b->load[i];
-        ct_ex3 back = l->torque;
-        apply_at(w, l->head, l->force, l->torque);
-        if (l->tail == 0)
-            continue;
-        if (!l->is_central)
-            back = ct_ex3_add(x, back,
-                              ct_ex3_cross(x, ct_path_position(b, l->tail, l->head), l->force));
-        apply_at(w, l->tail, ct_ex3_neg(x, l->force), ct_ex3_neg(x, back));
-    }
-}
-
-// ---- velocities -------------------------------------------------------------------------------------------
-
-// w w' - (w . w) 1
-static ct_ex33 swing_matrix(struct ct_exs *x, ct_ex3 w)
-{
-    ct_ex33 U;
-    ct_ex square[3];
-    for (int i = 0; i < 3; i++)
-        square[i] = ct_ex_mul(x, w.e[i], w.e[i]);
-    for (int i = 0; i < 3; i++) {
-        const int j = (i + 1) % 3, k = (i + 2) % 3;
-        U.e[i + 3 * i] = ct_ex_neg(x, ct_ex_add(x, square[j], square[k]));
-        U.e[i + 3 * j] = U.e[j + 3 * i] = ct_ex_mul(x, w.e[i], w.e[j]);
-    }
-    return U;
-}
-
-ct_ex3 ct_member_slide_bias(struct ct_build *b, const struct ct_members *s, int i)
-{
-    struct ct_exs *x = b->x;
-    const struct ct_member *m = &s->member[i], *p = &s->member[m->parent];
-    if (!m->slides)
-        return zero3;
-    const ct_ex3 coriolis = ct_ex3_scale(x, ct_ex_const(x, 2), ct_ex3_cross(x, p->w, m->drift));
-    return ct_ex3_add(x, coriolis, m->drift_bias);
-}
-
-ct_ex3 ct_member_shift_bias(struct ct_build *b, const struct ct_members *s, int i)
-{
-    const struct ct_member *m = &s->member[i];
-    const ct_ex3 carried = ct_ex33_apply(b->x, &s->member[m->parent].U, m->r);
-    return ct_ex3_add(b->x, carried, ct_member_slide_bias(b, s, i));
-}
-
-// (w x J w)_i = (J_kk - J_jj) w_j w_k + J_jk (w_j^2 - w_k^2) + J_ik w_i w_j - J_ij w_i w_k
-ct_ex3 ct_member_gyroscopic(struct ct_build *b, const struct ct_member *m)
-{
-    struct ct_exs *x = b->x;
-    ct_ex3 out;
-    for (int i = 0; i < 3; i++) {
-        const int j = (i + 1) % 3, k = (i + 2) % 3;
-        const ct_ex33 *U = &m->U, *J = &m->J;
-        ct_ex sum
-            = ct_ex_mul(x, ct_ex_sub(x, J->e[k + 3 * k], J->e[j + 3 * j]), U->e[j + 3 * k]);
-        sum = ct_ex_add(
-            x, sum,
-            ct_ex_mul(x, J->e[j + 3 * k], ct_ex_sub(x, U->e[j + 3 * j], U->e[k + 3 * k])));
-        sum = ct_ex_add(x, sum, ct_ex_mul(x, J->e[i + 3 * k], U->e[i + 3 * j]));
-        out.e[i] = ct_ex_sub(x, sum, ct_ex_mul(x, J->e[i + 3 * j], U->e[i + 3 * k]));
-    }
-    return out;
-}
-
-ct_ex3 ct_members_fall(struct ct_build *b)
-{
-    return express_ground(b, 0, ct_build_in_plane(b, ct_ex3_neg(b->x, b->model->gravity)));
-}
-
-static void find_velocities(struct work *w)
-{
-    struct ct_build *b = w->b;
-    for (size_t i = 1; i < w->s->n; i++) {
-        struct ct_member *m = &w->s->member[i];
-        const struct ct_member *p = &w->s->member[m->parent];
-        const ct_ex3 carried = m->is_absolute ? zero3 : ct_member_in(b, m, p->w);
-        m->w = ct_ex3_add(b->x, carried, m->w_relative);
-        m->al_relative
-            = ct_ex3_add(b->x, m->al_relative, ct_ex3_cross(b->x, carried, m->w_relative));
-        m->U = swing_matrix(b->x, m->w);
-    }
-}
-
 // ---- into the axes that are used ----------------------------------------------------------------------------
 
-static void find_axes(struct work *w, struct ct_member *m)
+static void find_axes(struct ct_member_work *w, struct ct_member *m)
 {
     const int cluster = w->s->member[m->parent].cluster;
     struct ct_build *b = w->b;
     if (m->is_ready)
         return;
-    m->r = express(b, cluster, m->r);
-    m->drift = express(b, cluster, m->drift);
-    m->drift_bias = express(b, cluster, m->drift_bias);
-    m->moment = express(b, m->cluster, m->moment);
+    m->r = ct_member_express(b, cluster, m->r);
+    m->drift = ct_member_express(b, cluster, m->drift);
+    m->drift_bias = ct_member_express(b, cluster, m->drift_bias);
+    m->moment = ct_member_express(b, m->cluster, m->moment);
     if (b->is_planar) {
         const ct_ex3 n = b->plane[2];
         const ct_ex about = ct_ex3_dot(b->x, n, ct_ex33_apply(b->x, &m->J, n));
@@ -779,7 +511,7 @@ static void find_axes(struct work *w, struct ct_member *m)
     }
     for (int k = 0; k < m->nfree; k++) {
         struct ct_screw *f = &m->screw[k];
-        f->slide = ct_member_in(b, m, express(b, cluster, f->slide));
+        f->slide = ct_member_in(b, m, ct_member_express(b, cluster, f->slide));
         const bool turns = !ct_ex3_is_zero(f->turn), slides = !ct_ex3_is_zero(f->slide);
         if (turns != slides)
             f->axis = turns ? coordinate_axis(b, f->turn) : coordinate_axis(b, f->slide);
@@ -789,7 +521,7 @@ static void find_axes(struct work *w, struct ct_member *m)
 }
 
 // Lumping in a plane keeps to what lies in it.
-static void flatten(struct work *w)
+static void flatten(struct ct_member_work *w)
 {
     struct ct_build *b = w->b;
     for (size_t i = 0; i < b->nnode; i++)
@@ -797,30 +529,6 @@ static void flatten(struct work *w)
     for (size_t i = 1; i < w->s->n; i++)
         if (!w->s->member[i].is_ready)
             w->s->member[i].r = ct_build_in_plane(b, w->s->member[i].r);
-}
-
-// Rigid part of the inertia of beams now, at their bases.
-static void add_beams(struct work *w)
-{
-    struct ct_build *b = w->b;
-    if (w->s->nbeam)
-        ct_masses_lump(b);
-    for (size_t i = 0; i < w->s->nbeam; i++) {
-        const struct ct_member_beam *at = &w->s->beam[i];
-        const struct ct_inertia *I = b->flexible[i].inertia;
-        struct ct_member *m = &w->s->member[at->base];
-        const ct_ex33 t = ct_ex33_transpose(&at->A), half = ct_ex33_mul(b->x, &I->inertia, &t);
-        const ct_ex33 J = ct_ex33_mul(b->x, &at->A, &half);
-        ct_ex3 moment = ct_ex33_apply(b->x, &at->A, I->moment);
-        m->mass = ct_ex_add(b->x, m->mass, I->mass);
-        if (b->is_planar) {
-            moment.e[2] = CT_EX_ZERO;
-            m->J.e[8] = ct_ex_add(b->x, m->J.e[8], J.e[8]);
-        } else {
-            add_tensor(b, &m->J, &J);
-        }
-        m->moment = ct_ex3_add(b->x, m->moment, moment);
-    }
 }
 
 static bool beams_fit(const struct ct_build *b)
@@ -832,10 +540,16 @@ static bool beams_fit(const struct ct_build *b)
     return true;
 }
 
+ct_ex3 ct_members_fall(struct ct_build *b)
+{
+    return ct_member_express_ground(b, 0,
+                                    ct_build_in_plane(b, ct_ex3_neg(b->x, b->model->gravity)));
+}
+
 const struct ct_members *ct_members_derive(struct ct_build *b)
 {
     struct ct_members *s = CT_NEW(b->arena, struct ct_members);
-    struct work w = {.b = b, .s = s};
+    struct ct_member_work w = {.b = b, .s = s};
     if (b->model->simulation.small.given || b->eqs->nrow || !beams_fit(b))
         return NULL;
     s->nbeam = b->nflexible;
@@ -846,12 +560,12 @@ const struct ct_members *ct_members_derive(struct ct_build *b)
         if (!s->beam[i].base)
             return NULL;
     flatten(&w);
-    add_bodies(&w);
-    lump_masses(&w);
+    ct_members_add_bodies(&w);
+    ct_members_lump(&w);
     for (size_t i = 1; i < s->n; i++)
         find_axes(&w, &s->member[i]);
-    add_beams(&w);
-    find_velocities(&w);
-    apply_loads(&w);
+    ct_members_add_beams(&w);
+    ct_members_turn(b, s);
+    ct_members_load(&w);
     return s;
 }

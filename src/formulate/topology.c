@@ -601,9 +601,18 @@ static void detect_plane(struct ct_build *b, bool allowed)
 
 // ---- the stage ------------------------------------------------------------------------------------
 
+// Rooms for what most models have, so that nothing is copied as the list grows: edges are large.
+static void reserve_edges(struct ct_build *b)
+{
+    const struct ct_model *m = b->model;
+    b->edge_cap = m->nframe + m->nbody + m->njoint + m->nforce; // a body has an arm and an edge
+    b->edge = CT_NEWN(b->arena, struct ct_edge_info, b->edge_cap);
+}
+
 bool ct_topology_derive(struct ct_build *b, bool planar_allowed)
 {
     ct_flexible_create(b);
+    reserve_edges(b);
     add_frames(b);
     add_bodies(b);
     add_joints(b);

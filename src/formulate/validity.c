@@ -186,7 +186,7 @@ static void add_lumps(struct line *s)
 
 static void number_freedoms(struct line *s)
 {
-    const int nfreedom = 6 * (s->f->beam->nelement + 1), first = s->plane ? 6 : 2;
+    const int nfreedom = CT_NODE_FREEDOM * (s->f->beam->nelement + 1), first = s->plane ? 6 : 2;
     s->number = CT_NEWN(s->b->ctx->scratch, int, nfreedom);
     for (int i = 0; i < nfreedom; i++)
         s->number[i] = -1;

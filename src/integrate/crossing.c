@@ -13,11 +13,10 @@
 #include "integrate/crossing.h"
 
 #include <float.h>
-#include <stdlib.h>
 #include <math.h>
 #include <string.h>
 
-enum { SIDE = 7, STAGES = 2 * SIDE, MOST_SWEEPS = 30, QUADRATURE = 8 };
+enum { SIDE = 7, STAGES = 2 * SIDE, LEFT_SWEEPS = 2, MOST_SWEEPS = 30, QUADRATURE = 8 };
 
 // Part of the step in whose middle nothing is evaluated.
 static const double gap = 0.3;
@@ -183,7 +182,6 @@ static enum ct_eval put_stage(const struct task *s, int j, const double *a, doub
 // A first guess: sweeps over the left side, then extrapolation from stage to stage.
 static enum ct_eval guess(const struct task *s)
 {
-    const int LEFT_SWEEPS = getenv("LS") ? atoi(getenv("LS")) : 2;
     struct work *w = s->w;
     double moved = 0;
     enum ct_eval e = CT_EVAL_OK;
@@ -199,8 +197,7 @@ static enum ct_eval guess(const struct task *s)
 
 static enum ct_eval sweep(const struct task *s)
 {
-    const double fine
-        = fmin(getenv("SE") ? atof(getenv("SE")) : settled, settled_fine / s->tolerance->rtol);
+    const double fine = fmin(settled, settled_fine / s->tolerance->rtol);
     double before = INFINITY;
     for (int i = 0; i < MOST_SWEEPS; i++) {
         double moved = 0;

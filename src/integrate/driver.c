@@ -506,7 +506,7 @@ static bool find_step(struct run *r, double stop, bool is_time, struct stride *s
         if (e == CT_EVAL_OK) {
             if (is_crossing)
                 adapt_after_crossing(r, s);
-            else
+            else if (r->o->step == 0)
                 ct_control_accept(&r->control, r->method, h, error);
             look_ahead(r);
             return true;

@@ -6,10 +6,10 @@
 
 bool ct_stepper_finite(const double *x, int n)
 {
-    double zero = 0; // stays 0 unless an entry is infinite or NaN: 0 * inf is NaN
     for (int i = 0; i < n; i++)
-        zero += 0 * x[i];
-    return zero == 0;
+        if (!isfinite(x[i]))
+            return false;
+    return true;
 }
 
 enum ct_eval ct_stepper_rhs(const struct ct_problem *p, double t, const double *y, double *dy,
@@ -21,19 +21,30 @@ enum ct_eval ct_stepper_rhs(const struct ct_problem *p, double t, const double *
 }
 
 // Four entries at a time: their sums stay in registers, whatever the number of stages. The last four may overlap those
-// before, which are then found twice.
+// before, which are then found twice. Fewer than four are summed side by side, each number of them by code of its own.
 enum { LANES = 4 };
+
+static inline void by_ones(double *restrict out, const double *y, double h, const double *a,
+                           const double *k, int s, const int n)
+{
+    double sum[LANES] = {0};
+    for (int j = 0; j < s; j++, k += n)
+        if (a[j] != 0) // tables have many zeros
+            for (int i = 0; i < n; i++)
+                sum[i] += a[j] * k[i];
+    for (int i = 0; i < n; i++)
+        out[i] = (y ? y[i] : 0) + h * sum[i];
+}
 
 static void combine_few(double *restrict out, const double *y, double h, const double *a,
                         const double *k, int s, int n)
 {
-    double sum[LANES] = {0};
-    const double *stage = k;
-    for (int j = 0; j < s; j++, stage += n)
-        for (int i = 0; i < n; i++)
-            sum[i] += a[j] * stage[i];
-    for (int i = 0; i < n; i++)
-        out[i] = (y ? y[i] : 0) + h * sum[i];
+    if (n == 1)
+        by_ones(out, y, h, a, k, s, 1);
+    else if (n == 2)
+        by_ones(out, y, h, a, k, s, 2);
+    else if (n == 3)
+        by_ones(out, y, h, a, k, s, 3);
 }
 
 #if defined(__GNUC__)
@@ -50,7 +61,7 @@ by_fours(double *out, const double *y, double h, const double *a, const double *
         const double *stage = k + at;
         four sum = {0};
         for (int j = 0; j < s; j++, stage += n)
-            if (a[j] != 0) // tables have many zeros
+            if (a[j] != 0)
                 sum += a[j] * *(const four *)stage;
         *(four *)(out + at) = y ? *(const four *)(y + at) + h * sum : h * sum;
     }

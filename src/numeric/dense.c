@@ -62,6 +62,22 @@ static int max_int(int a, int b)
     return a > b ? a : b;
 }
 
+double ct_vector_largest(const double *v, size_t n)
+{
+    double max = 0;
+    for (size_t i = 0; i < n; i++)
+        max = fmax(max, fabs(v[i]));
+    return max;
+}
+
+double ct_vector_dot(const double *x, const double *y, size_t n)
+{
+    double sum = 0;
+    for (size_t i = 0; i < n; i++)
+        sum += x[i] * y[i];
+    return sum;
+}
+
 void ct_matrix_multiply(double *restrict C, const double *restrict A, const double *restrict B,
                         int n, int m, int k)
 {

@@ -8,6 +8,11 @@
 #include <stdbool.h>
 #include <stddef.h>
 
+/// Largest |v_i| of n; 0 where n is 0. What is no number is passed over.
+double ct_vector_largest(const double *v, size_t n);
+/// x . y of n numbers
+double ct_vector_dot(const double *x, const double *y, size_t n);
+
 /// C (n x k) = A (n x m) B (m x k), stored without gaps.
 void ct_matrix_multiply(double *restrict C, const double *restrict A, const double *restrict B,
                         int n, int m, int k);

@@ -500,9 +500,23 @@ static void expand(const struct ct_embed *s, double *x, const double *z, const d
     }
 }
 
+// x (nu) = [B; 1] (B' M B)^-1 B' r + [c; 0] by the numbers of now.
+static enum ct_eval reduce_and_expand(struct ct_embed *s, double *x)
+{
+    const int f = (int)s->m->nu - s->rank;
+    reduce_mass(s);
+    reduce_force(s, s->b, s->r);
+    if (f && !ct_cholesky(s->S, f, f))
+        return CT_EVAL_RETRY;
+    if (f)
+        ct_cholesky_solve(s->b, s->S, f, f, 1, f);
+    expand(s, x, s->b, s->c);
+    return CT_EVAL_OK;
+}
+
 enum ct_eval ct_embed_accelerate(struct ct_embed *s)
 {
-    const int n = (int)s->m->nu, r = s->rank, f = n - r;
+    const int n = (int)s->m->nu, r = s->rank;
     if (r && !factor(s))
         return CT_EVAL_RETRY;
     for (int k = 0; k < r; k++)
@@ -514,14 +528,7 @@ enum ct_eval ct_embed_accelerate(struct ct_embed *s)
         for (int k = 0; k < r; k++)
             s->r[i] -= s->m->M[i + n * s->dependent[k]] * s->c[k];
     }
-    reduce_mass(s);
-    reduce_force(s, s->b, s->r);
-    if (f && !ct_cholesky(s->S, f, f))
-        return CT_EVAL_RETRY;
-    if (f)
-        ct_cholesky_solve(s->b, s->S, f, f, 1, f);
-    expand(s, s->a, s->b, s->c);
-    return CT_EVAL_OK;
+    return reduce_and_expand(s, s->a);
 }
 
 // Multipliers of all rows by the form of now, where they are unique.
@@ -594,7 +601,7 @@ void ct_embed_uniqueness(struct ct_embed *s)
 enum ct_eval ct_embed_impulse(struct ct_embed *s, const double *p, double *u)
 {
     // with u+ = [B; 1] z + [c; 0]: B' M B z = B' (M u- + p - M c)
-    const int n = (int)s->m->nu, r = s->rank, f = n - r;
+    const int n = (int)s->m->nu, r = s->rank;
     ct_machine_motion(s->m);
     ct_machine_constraint(s->m);
     if (r && !factor(s))
@@ -614,14 +621,7 @@ enum ct_eval ct_embed_impulse(struct ct_embed *s, const double *p, double *u)
         for (int k = 0; k < r; k++)
             s->r[i] -= s->m->M[i + n * s->dependent[k]] * s->c[k];
     }
-    reduce_mass(s);
-    reduce_force(s, s->b, s->r);
-    if (f && !ct_cholesky(s->S, f, f))
-        return CT_EVAL_RETRY;
-    if (f)
-        ct_cholesky_solve(s->b, s->S, f, f, 1, f);
-    expand(s, u, s->b, s->c);
-    return CT_EVAL_OK;
+    return reduce_and_expand(s, u);
 }
 
 // ---- projection -------------------------------------------------------------------------------------------

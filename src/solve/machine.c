@@ -68,9 +68,8 @@ static struct inputs list_inputs(struct ct_arena *a, const struct ct_machine *m,
 {
     struct inputs in = {CT_NEWN(a, ct_ex, x->nsym + 1), CT_NEWN(a, size_t, x->nsym + 1), 0};
     for (uint32_t id = 0; id < x->nnode; id++) {
-        const struct ct_sym *s = ct_ex_symbol(x, (ct_ex){id});
         size_t slot;
-        if (!s || !find_slot(m, s, &slot))
+        if (x->node[id].op != CT_OP_SYM || !find_slot(m, &x->sym[x->node[id].a], &slot))
             continue;
         in.symbol[in.n] = (ct_ex){id};
         in.slot[in.n++] = slot;
@@ -429,7 +428,7 @@ void ct_machine_reset(struct ct_machine *m)
 void ct_machine_set(struct ct_machine *m, double t, const double *y)
 {
     m->input[0] = t;
-    memcpy(m->input + m->at_q, y, (m->nq + m->nu) * sizeof *y);
+    ct_machine_copy(m->input + m->at_q, y, m->nq + m->nu);
     m->input[m->at_work] = y[m->nq + m->nu];
 }
 
@@ -458,8 +457,8 @@ bool ct_machine_solved(struct ct_machine *m, double *a)
         return false;
     m->evaluations++;
     ct_program_run(&m->solved, m->input);
-    memcpy(a, m->solved.out, m->nu * sizeof *a);
-    memcpy(m->rate, m->solved.out + m->nu, m->nq * sizeof *m->rate);
+    ct_machine_copy(a, m->solved.out, m->nu);
+    ct_machine_copy(m->rate, m->solved.out + m->nu, m->nq);
     return true;
 }
 

@@ -85,6 +85,13 @@ void ct_machine_forget(struct ct_machine *m, const struct ct_program *p);
 
 /// The input by symbol of x (nsym), for ct_ex_value and ct_ex_jacobian_at; NaN for those that are no inputs.
 void ct_machine_values(const struct ct_machine *m, const struct ct_exs *x, double *value);
+/// out (n) = v, read one by one: numbers that have just been written so would make a wider read wait for them.
+static inline void ct_machine_copy(double *out, const volatile double *v, size_t n)
+{
+    for (size_t i = 0; i < n; i++)
+        out[i] = v[i];
+}
+
 /// Copy time and state into the input. y: q, u, work.
 void ct_machine_set(struct ct_machine *m, double t, const double *y);
 /// M, Q, J, gam and q' at the input. Without dynamics in the equations M and Q are zero.

@@ -2,17 +2,10 @@
 #include "solve/run.h"
 
 #include "formulate/flexible.h"
+#include "numeric/dense.h"
 #include "solve/dae.h"
 
 #include <string.h>
-
-static double largest(const double *v, size_t n)
-{
-    double max = 0;
-    for (size_t i = 0; i < n; i++)
-        max = fmax(max, fabs(v[i]));
-    return max;
-}
 
 // ---- evaluation -------------------------------------------------------------------------------------------
 
@@ -25,7 +18,7 @@ enum ct_eval ct_run_accelerate(struct ct_run *r, double t, const double *y)
     for (size_t i = 0; i < r->m->nu; i++)
         if (!isfinite(r->s->a[i]))
             return CT_EVAL_RETRY;
-    memcpy(r->m->input + r->m->at_a, r->s->a, r->m->nu * sizeof *r->s->a);
+    ct_machine_copy(r->m->input + r->m->at_a, r->s->a, r->m->nu);
     return CT_EVAL_OK;
 }
 
@@ -42,8 +35,8 @@ static enum ct_eval rhs(void *user, double time, const double *y, double *dy)
     const enum ct_eval e = ct_run_accelerate(r, t, y);
     if (e != CT_EVAL_OK)
         return e;
-    memcpy(dy, r->m->rate, r->m->nq * sizeof *dy);
-    memcpy(dy + r->m->nq, r->s->a, r->m->nu * sizeof *dy);
+    ct_machine_copy(dy, r->m->rate, r->m->nq);
+    ct_machine_copy(dy + r->m->nq, r->s->a, r->m->nu);
     dy[r->ny - 1] = 0;
     if (r->has_power) {
         if (r->needs_lam)
@@ -58,6 +51,15 @@ static enum ct_eval project(void *user, double t, double *y)
 {
     struct ct_run *r = user;
     return ct_embed_project(r->s, ct_run_before(r, t), y);
+}
+
+// Rows, or quaternions of unit length.
+static bool has_constraints(const struct ct_run *r)
+{
+    bool has = r->m->nrow > 0;
+    for (size_t i = 0; i < r->e->nq; i++)
+        has |= r->e->q[i].quaternion == 0;
+    return has;
 }
 
 static double singular_in(void *user, double *reach)
@@ -91,7 +93,7 @@ static double residual(void *user, double t, const double *y)
     struct ct_run *r = user;
     ct_machine_set(r->m, ct_run_before(r, t), y);
     ct_machine_constraint(r->m);
-    return largest(r->m->phi, r->m->nrow);
+    return ct_vector_largest(r->m->phi, r->m->nrow);
 }
 
 // A followed angle that turns faster at the end of a step than at its start must still stay within half a turn.
@@ -279,9 +281,9 @@ static void keep_ledger(struct ct_run *r, const double *y)
         r->report->energy_drift = fmax(r->report->energy_drift, fabs(total - r->energy0));
     ct_machine_constraint(r->m);
     r->report->position_constraint
-        = fmax(r->report->position_constraint, largest(r->m->phi, r->m->nrow));
+        = fmax(r->report->position_constraint, ct_vector_largest(r->m->phi, r->m->nrow));
     r->report->velocity_constraint
-        = fmax(r->report->velocity_constraint, largest(r->m->v, r->m->nrow));
+        = fmax(r->report->velocity_constraint, ct_vector_largest(r->m->v, r->m->nrow));
 }
 
 // Indicators of linear beams, averaged over a period of the beam: what rings faster than it can follow does not count.
@@ -553,7 +555,7 @@ bool ct_run_simulate(struct ct_run *r, const struct ct_run_options *o,
                            .groups = ct_run_groups(r),
                            .output_error = r->fidelity ? output_error : NULL,
                            .rhs = rhs,
-                           .project = project,
+                           .project = has_constraints(r) ? project : NULL,
                            .accepted = accepted,
                            .longest_step = ct_run_longest_step,
                            .singular_in = singular_in,

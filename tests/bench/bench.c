@@ -16,6 +16,7 @@
 #include <cotree/cotree.h>
 
 #include <math.h>
+#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -36,7 +37,7 @@ static double now(void)
 
 // ---- table --------------------------------------------------------------------------------------
 
-// What a line with a goal is about: the title above it.
+// What the lines below a title are about, for the table of goals.
 static char context[96];
 
 struct goal {
@@ -67,14 +68,27 @@ static void show_goals(void)
                goals[i].ratio);
 }
 
-static void head(const char *title)
+static void set_context(const char *name)
 {
+    snprintf(context, sizeof context, "%s", name);
+}
+
+static void head(const char *name, const char *title)
+{
+    set_context(name);
     printf("\n%-58s %12s %12s %8s\n", title, "measured", "goal", "of goal");
 }
 
-static void about(const char *what)
+// Above the lines of one model. name: what each of them is about; the title says more.
+__attribute__((format(printf, 2, 3))) static void title(const char *name, const char *fmt, ...)
 {
-    snprintf(context, sizeof context, "%s", what);
+    va_list ap;
+    set_context(name);
+    putchar('\n');
+    va_start(ap, fmt);
+    vprintf(fmt, ap);
+    va_end(ap);
+    putchar('\n');
 }
 
 // A time [s], and what it should be at most; 0: no goal.
@@ -447,9 +461,9 @@ struct times {
     double t[5];
 };
 
-// One line per back end; goals [s] in the same order.
+// One line per back end; goals [s] in the same order. name: of the model; what: the program does.
 static struct times compare_back_ends(struct subject *s, const struct ct_program *p,
-                                      const char *what, const double goal[5])
+                                      const char *name, const char *what, const double goal[5])
 {
     static const struct {
         const char *name;
@@ -473,8 +487,8 @@ static struct times compare_back_ends(struct subject *s, const struct ct_program
     }
     measure(f, data, n, t);
     const struct ct_tape_counts c = p->listing->counts;
-    printf("\n%s: %ld mul, %ld add, %ld div, %ld functions, %zu outputs\n", what,
-           c.multiplications, c.additions, c.divisions, c.functions, p->nout);
+    title(name, "%s, %s: %ld mul, %ld add, %ld div, %ld functions, %zu outputs", name, what,
+          c.multiplications, c.additions, c.divisions, c.functions, p->nout);
     for (size_t i = 0; i < n; i++) {
         char text[96];
         snprintf(text, sizeof text, "  %s", v[i].name);
@@ -723,8 +737,8 @@ static void show_generation(struct subject *s, const char *what)
     double t[4];
     measure(f, data, 4, t);
     const double nnode = (double)s->equations.x->nnode, nins = (double)l->nins;
-    printf("\n%s: %zu nodes in the store, %zu instructions\n", what, s->equations.x->nnode,
-           l->nins);
+    title(what, "%s: %zu nodes in the store, %zu instructions", what, s->equations.x->nnode,
+          l->nins);
     line("  graph construction, per node", t[0] / nnode, 40e-9);
     line("  listing, per instruction", t[1] / nins, 0);
     line("  tape from the listing, per instruction", t[2] / nins, 0);
@@ -745,9 +759,8 @@ static double open_chain(const char *what, const char *path, const double goal[5
     struct subject s;
     char text[128];
     open_subject(&s, path);
-    snprintf(text, sizeof text, "%s, u' by %s", what, name[s.equations.formulation]);
-    about(what);
-    const struct times t = compare_back_ends(&s, &s.machine->solved, text, goal);
+    snprintf(text, sizeof text, "u' by %s", name[s.equations.formulation]);
+    const struct times t = compare_back_ends(&s, &s.machine->solved, what, text, goal);
     if (is_throughput)
         show_use(&s.machine->solved, &t);
     line("  model to equations", median_of(model_to_equations, s.path, 5), 0);
@@ -767,7 +780,7 @@ static void run_residual(void *data)
 }
 
 // Forces for given motion.
-static void inverse_dynamics(const char *what, const char *path, double goal)
+static void inverse_dynamics(const char *name, const char *path, double goal)
 {
     struct subject s;
     const call_fn f[] = {run_residual};
@@ -777,9 +790,8 @@ static void inverse_dynamics(const char *what, const char *path, double goal)
     ct_formulate_residual(&s.equations);
     ct_machine_add_residual(s.ctx.model, s.machine);
     measure(f, data, 1, &t);
-    about("");
-    putchar('\n');
-    line(what, t, goal);
+    title(name, "%s, forces for given motion", name);
+    line("  inverse dynamics, native", t, goal);
     close_subject(&s);
 }
 
@@ -882,8 +894,8 @@ static void implicit_chain(int n)
     double t;
     measure(f, data, 1, &t);
     const struct ct_directional *along = s.equations.residual->along;
-    printf("\nchain of %d balls, derivatives for implicit methods %s\n", n,
-           along ? "along directions" : "entry by entry");
+    title("", "chain of %d balls, derivatives for implicit methods %s", n,
+          along ? "along directions" : "entry by entry");
     line("  residual and derivatives, from equations to native code", made, 0);
     snprintf(text, sizeof text, "  all derivatives (%zu x %zu)", s.machine->nu,
              3 * s.machine->nu);
@@ -900,7 +912,7 @@ static void open_chains(bool quick)
     open_chain("6R arm (puma560, numbers folded)", shipped("puma560"), six_folded, 0.5e-3,
                false);
     open_chain("6R arm, parameters", arm(6), six, 0.5e-3, false);
-    inverse_dynamics("6R arm, parameters: inverse dynamics, native", arm(6), 140e-9);
+    inverse_dynamics("6R arm, parameters", arm(6), 140e-9);
     open_chain("7-dof arm, parameters", arm(7), seven, 0, false);
     implicit_chain(quick ? 5 : 50);
     if (quick)
@@ -910,8 +922,8 @@ static void open_chains(bool quick)
                                   spatial, 5e-3, true);
     const double t500 = open_chain("chain of 500 balls (1500 freedoms)", spatial_chain(500),
                                    long_spatial, 2, false);
-    about("");
-    ratio("model to native code, 500 balls / 50 balls", t500 / t50, 15);
+    title("", "chains of balls");
+    ratio("  model to native code, 500 balls / 50 balls", t500 / t50, 15);
     unlink(temporary());
 }
 
@@ -919,8 +931,7 @@ static void andrews(void)
 {
     struct subject s;
     open_subject(&s, shipped("andrews"));
-    about("Andrews' mechanism");
-    compare_back_ends(&s, &s.machine->motion, "Andrews' mechanism, M, Q, J, gam", NULL);
+    compare_back_ends(&s, &s.machine->motion, "Andrews' mechanism", "M, Q, J, gam", NULL);
     show_accelerations(&s, "  accelerations, solve included, native", 1, 160e-9);
     residual_and_slopes(&s, "  residual and its sparse Jacobian", 160e-9);
     fixed_against_pivoted(&s);
@@ -935,9 +946,7 @@ static void four_bars(int n)
     char what[64];
     open_subject(&s, generated("n_four_bar", n));
     snprintf(what, sizeof what, "%d four-bar%s", n, n > 1 ? "s" : "");
-    about(what);
-    snprintf(what, sizeof what, "%d four-bar%s, M, Q, J, gam", n, n > 1 ? "s" : "");
-    compare_back_ends(&s, &s.machine->motion, what, NULL);
+    compare_back_ends(&s, &s.machine->motion, what, "M, Q, J, gam", NULL);
     show_accelerations(&s, "  accelerations, solve included, per loop", n, 60e-9);
     show_projection(&s, n);
     close_subject(&s);
@@ -955,8 +964,8 @@ static void links_by_bodies(int n)
 {
     struct subject s;
     open_subject_on(&s, generated("chain40", n), CT_TREE_ABSOLUTE);
-    printf("\nchain of %d links on trees of bodies: %zu speeds, %zu rows, solved by %s\n", n,
-           s.machine->nu, s.machine->nrow, solver(&s));
+    title("", "chain of %d links on trees of bodies: %zu speeds, %zu rows, solved by %s", n,
+          s.machine->nu, s.machine->nrow, solver(&s));
     show_accelerations(&s, "  accelerations, solve included, per link", n, 0);
     show_projection(&s, n);
     close_subject(&s);
@@ -970,9 +979,8 @@ static void many_four_bars(int n)
     open_subject(&s, generated("n_four_bar", n));
     char what[64];
     snprintf(what, sizeof what, "%d four-bars", n);
-    about(what);
-    printf("\n%d four-bars in a row: %zu bodies, %zu joints, solved by %s\n", n,
-           s.model.nbody - 1, s.model.njoint, solver(&s));
+    title(what, "%s in a row: %zu bodies, %zu joints, solved by %s", what, s.model.nbody - 1,
+          s.model.njoint, solver(&s));
     line("  model to equations", s.generate, 2);
     line("  equations to the start of a run", s.prepare, 0);
     size("  memory of model, equations and run", ct_arena_used(s.ctx.model));
@@ -1041,7 +1049,7 @@ static bool run_single(void *user, long member, const double *varied, const doub
 static void sweep(int members)
 {
     struct singles s = {.path = shipped("slider_crank"), .every = members < 1000 ? 2 : 50};
-    char vary[64], text[96];
+    char vary[64];
     snprintf(vary, sizeof vary, "torque=0.4:0.6:%d", members);
     const char *const list[] = {vary};
     struct ct_ctx *ctx = ct_ctx_create();
@@ -1053,14 +1061,11 @@ static void sweep(int members)
     const double lanes = (now() - start - s.spent) / members;
     ct_study_destroy(study);
     ct_ctx_destroy(ctx);
-    snprintf(text, sizeof text, "slider-crank, 2 s: sweep of %d, per member, all included",
-             members);
-    about("sweep of the slider-crank, at least");
-    putchar('\n');
-    line(text, lanes, 0);
+    title("sweep of the slider-crank", "slider-crank, 2 s: sweep of %d members", members);
+    line("  per member, all included", lanes, 0);
     line("  single run: integration only, the system ready", s.run / (double)s.n, 0);
     line("  single run: made ready of a system that is there", s.prepare / (double)s.n, 0);
-    ratio("  integration only / member", s.run / (double)s.n / lanes, 3);
+    ratio("  integration only / member, at least", s.run / (double)s.n / lanes, 3);
     ratio("  made ready and integrated / member", (s.prepare + s.run) / (double)s.n / lanes, 0);
     printf("%-58s %12.1e\n", "  largest difference of a row from its single run", s.difference);
 }
@@ -1091,10 +1096,10 @@ static void beams(const char *what, const struct beam *kind, bool quick)
     const int *all = kind->is_chain ? link : element;
     const char *of = kind->is_chain ? "beam" : "element";
     double first = 0, first_generation = 0;
-    printf(
-        "\n%s, u' with the solve: per evaluation, per %s, ratio to %d | model to native, per "
-        "%s, ratio | operations per %s\n",
-        what, of, all[0], of, of);
+    title(what,
+          "%s, u' with the solve: per evaluation, per %s, ratio to %d | model to native, per "
+          "%s, ratio | operations per %s",
+          what, of, all[0], of, of);
     for (size_t i = 0; i < (quick ? 2 : COUNT(element)); i++) {
         struct subject s;
         const int n = all[i];
@@ -1144,8 +1149,7 @@ static void all_beams(bool quick)
                {"beams welded end to end in space", {"foreshortening", true, true}}};
     for (size_t i = 0; i < COUNT(all); i++)
         beams(all[i].what, &all[i].kind, quick);
-    putchar('\n');
-    about("");
+    title("", "forces of inertia, stiffness and weight");
     beam_forces("foreshortened beam in space, 10 elements: forces", &all[1].kind);
     beam_forces("linear beam in space, 10 elements: forces", &all[3].kind);
     unlink(temporary());
@@ -1202,7 +1206,7 @@ static void modes_of(const char *what, int nbeam, int nelement, double goal)
 static void large_modes(bool quick)
 {
     static const int n[] = {17, 50, 167}; // tens of elements: 1000, 3000, 10 000 dof
-    head("first 10 modes, from the file to the table");
+    head("first 10 modes", "first 10 modes, from the file to the table");
     for (int i = 0; i < (quick ? 1 : 3); i++)
         modes_of("one beam", 1, 10 * n[i], i == 2 ? 5 : 0);
     for (int i = 0; i < (quick ? 1 : 3); i++)
@@ -1215,7 +1219,7 @@ int main(int argc, char **argv)
     if (quick)
         sample_seconds = 5e-5;
     printf("native code: %s\n", ct_native_is_available(1) ? "available" : "not available");
-    head("one core, warm");
+    head("", "one core, warm");
     if (argc > 1 && strcmp(argv[1], "--sweep") == 0) {
         sweep(argc > 2 ? atoi(argv[2]) : 10000);
         return 0;

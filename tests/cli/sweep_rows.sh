@@ -13,15 +13,7 @@ check() {
     "$COTREE" simulate "$m" --quiet --until "$until" --set "${vary%%=*}=$value" -o run.csv "$@" 2>/dev/null || status=1
     [ "${rest##*,}" = $status ] || echo "run $run: status ${rest##*,}, alone $status" >>differences
     [ $status = 0 ] || continue
-    echo "${rest%,*}" >want
-    tail -1 run.csv | cut -d, -f2- | paste -d, want - | awk -F, -v run="$run" '{
-      n = NF / 2
-      for (i = 1; i <= n; i++) {
-        d = $i - $(n + i); d = d < 0 ? -d : d
-        size = $i < 0 ? -$i : $i
-        if (!(d <= 1e-7 * (size > 1 ? size : 1))) print "run " run ": value " i ": " $i ", alone " $(n + i)
-      }
-    }' >>differences
+    same_row "$run" "${rest%,*}" >>differences
   done
   lanes=$(awk '/"lanes"/ { print $2 + 0 }' rows.json)
   echo "$(basename "$(dirname "$m")") $vary $*: $(awk '/"members"/ { print $2 + 0 }' rows.json) members," \

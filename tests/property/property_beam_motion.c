@@ -87,6 +87,9 @@ static const char *const kinds[] = {
     "formulation: foreshortening\n    theory: timoshenko\n    shear_factor: 5/6\n    "
     "integration: reduced\n    elements: 3\n    rotary_inertia: true",
     "formulation: linear\n    frame: chord\n    elements: 2",
+    "formulation: foreshortening\n    frame: chord\n    twist: quadratic\n    rotary_inertia: "
+    "true\n    "
+    "elements: 2",
 };
 
 // A soft pendulum that bends by a tenth of its length; a body at its tip.

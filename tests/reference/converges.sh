@@ -25,7 +25,12 @@ cut() {
 size=0
 case $1 in
 R11) # frames of one element in each leg
-    reference=R11_K4 until=3 order=2 ratio=2.9 allowed=4e-4 size=10
+    reference=R11_K8 until=3 order=2 ratio=2.9 allowed=4e-4 size=10
+    "$folder/../../systems/right_angle_cantilever/generate.sh" 2 1 linear >"$work/coarse.yaml"
+    "$folder/../../systems/right_angle_cantilever/generate.sh" 4 1 linear >"$work/fine.yaml"
+    ;;
+R11_quadratic) # the same with quadratic twist; at least as frames that bend alone, B12_chord
+    reference=R11_K8 until=10 order=3 ratio=8 allowed=3e-4 size=10
     "$folder/../../systems/right_angle_cantilever/generate.sh" 2 1 >"$work/coarse.yaml"
     "$folder/../../systems/right_angle_cantilever/generate.sh" 4 1 >"$work/fine.yaml"
     ;;

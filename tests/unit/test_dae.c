@@ -73,6 +73,13 @@ static bool open_job(struct job *j, const char *folder, const char *name,
     return open_job_with(j, folder, name, tree, NULL, 0, false);
 }
 
+static void open_system(struct job *j, const char *name, enum ct_tree_choice tree)
+{
+    char path[100];
+    snprintf(path, sizeof path, "%s/model.yaml", name);
+    assert_true(open_job(j, "../systems", path, tree));
+}
+
 static void close_job(struct job *j)
 {
     ct_arena_destroy(j->ctx.model);
@@ -193,9 +200,7 @@ static double compare(const double *A, int rows, int k, const double *column)
 static void check_derivatives(const char *name, enum ct_tree_choice tree)
 {
     struct job j;
-    char path[100];
-    snprintf(path, sizeof path, "%s/model.yaml", name);
-    assert_true(open_job(&j, "../systems", path, tree));
+    open_system(&j, name, tree);
     const struct ct_dae *dae = ct_dae_create(j.ctx.model, ct_run_embed(j.run));
     long version;
     const int nu = dae->nu, m = dae->rows(dae->user, &version), n = nu + 2 * m;
@@ -278,9 +283,7 @@ static double *tables_of(struct job *j, enum ct_slope_form form, enum ct_backend
 static void compare_forms(const char *name, enum ct_tree_choice tree)
 {
     struct job j;
-    char path[100];
-    snprintf(path, sizeof path, "%s/model.yaml", name);
-    assert_true(open_job(&j, "../systems", path, tree));
+    open_system(&j, name, tree);
     const struct ct_dae *dae = ct_dae_create(j.ctx.model, ct_run_embed(j.run));
     long version;
     const int m = dae->rows(dae->user, &version);
