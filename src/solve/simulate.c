@@ -526,6 +526,12 @@ static void explain_end(struct ct_run *r)
 {
     const size_t n = r->ctx->ndiagnostic;
     const enum ct_code code = n ? r->ctx->diagnostic[n - 1].code : 0;
+    if (code == CT_E_STEP_COUNT)
+        ct_note(
+            r->ctx, (struct ct_mark){0},
+            "steps follow vibrations that are excited: start beams with 'initial: "
+            "equilibrium', leave out or damp what is stiff, or raise 'absolute' above them; "
+            "what is not excited holds up explicit methods only");
     if (!r->m->nrow)
         return;
     if (code == CT_E_STEP_OPEN)
