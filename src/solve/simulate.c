@@ -96,7 +96,8 @@ static double residual(void *user, double t, const double *y)
     return ct_vector_largest(r->m->phi, r->m->nrow);
 }
 
-// Its rows times the vector that they are combined with to nothing.
+// Its rows times the vector that they are combined with to nothing. Where rows are redundant, those that are kept may come to
+// depend before all do: positions are then better crossed from further away.
 static double mismatch(void *user, double t, const double *y)
 {
     struct ct_run *r = user;
@@ -592,7 +593,7 @@ bool ct_run_simulate(struct ct_run *r, const struct ct_run_options *o,
                            .set_crossing = set_crossing,
                            .crossed = crossed,
                            .residual = residual,
-                           .mismatch = mismatch,
+                           .mismatch = (size_t)r->s->rank < r->m->nrow ? NULL : mismatch,
                            .nroot = r->nroot,
                            .root = ct_run_root,
                            .next_time_event = ct_run_next_event,
