@@ -40,7 +40,7 @@ struct ct_machine {
         constraint, // phi, v, J
         result,     // output columns
         power,      // d(work)/dt
-        validity,   // indicators of linear beams
+        validity,   // indicators of linear beams, then squared slopes of all beams
         energy,     // kinetic, potential
         root,       // g of each mode
         memory,     // next values
