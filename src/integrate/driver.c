@@ -7,6 +7,7 @@
 // is tried again shorter; until `commit` nothing has changed. Step control is that of control.h.
 #include "integrate/control.h"
 #include "integrate/crossing.h"
+#include "integrate/repeat.h"
 #include "integrate/watch.h"
 
 #include <assert.h>
@@ -49,6 +50,8 @@ struct run {
     const struct ct_integrate_options *o;
     struct ct_integrate_stats *stats;
     struct ct_tolerance tolerance;
+    struct ct_repeat repeat;
+    double *y0; // where the run began
     struct ct_watch watch;
     double t; // time of y and dy
     struct ct_control control;
@@ -113,7 +116,8 @@ static bool check_options(struct ct_ctx *ctx, const struct ct_integrate_options 
 static void allocate(struct run *r)
 {
     struct ct_arena *a = r->ctx->model;
-    double **const vectors[] = {&r->y, &r->dy, &r->y1, &r->dy1, &r->end, &r->dend, &r->point};
+    double **const vectors[]
+        = {&r->y0, &r->y, &r->dy, &r->y1, &r->dy1, &r->end, &r->dend, &r->point};
     for (size_t i = 0; i < COUNT(vectors); i++)
         *vectors[i] = CT_NEWN(a, double, r->p->ny);
     r->work = r->method->create(a, r->method, r->p);
@@ -578,8 +582,28 @@ static bool give_samples_here(struct run *r)
 
 // --- the march -------------------------------------------------------------------------------
 
+// Steps from y to end, which repeat what has been or not.
+static void count_turns(struct run *r, double t1)
+{
+    const int nq = r->p->nq, n = nq + r->p->nu;
+    double dq = 0, q = 0, du = 0, u = 0;
+    for (int i = 0; i < nq; i++) {
+        dq += (r->end[i] - r->y[i]) * (r->end[i] - r->y[i]);
+        q += (r->end[i] - r->y0[i]) * (r->end[i] - r->y0[i]);
+    }
+    for (int i = nq; i < n; i++) {
+        du += (r->end[i] - r->y[i]) * (r->end[i] - r->y[i]);
+        u += r->end[i] * r->end[i];
+    }
+    if (ct_repeat_add(&r->repeat, t1, dq, q, du, u))
+        r->tolerance
+            = ct_repeat_tolerance(&r->repeat, r->o->rtol, r->o->atol, r->o->least_rtol);
+}
+
 static void commit(struct run *r, const struct stride *s)
 {
+    if (r->o->least_rtol > 0 && r->o->step == 0)
+        count_turns(r, s->t1);
     double *y = r->y, *dy = r->dy;
     r->y = r->end;
     r->dy = r->dend;
@@ -684,6 +708,7 @@ bool ct_integrate(struct ct_ctx *ctx, const struct ct_method *method,
         .stats = stats,
         .tolerance = {options->rtol, options->atol},
         .t = options->t0,
+        .repeat = ct_repeat_start(options->t0, options->t1),
         .control = ct_control_start(),
         .pace = {.t = options->t0},
         .singular_in = INFINITY,
@@ -692,6 +717,7 @@ bool ct_integrate(struct ct_ctx *ctx, const struct ct_method *method,
     };
     allocate(&r);
     memcpy(r.y, y, (size_t)p->ny * sizeof *y);
+    memcpy(r.y0, y, (size_t)p->ny * sizeof *y);
     const bool ok = start(&r) && march(&r);
     memcpy(y, r.y, (size_t)p->ny * sizeof *y);
     stats->last_time = r.t;
