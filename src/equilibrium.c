@@ -77,10 +77,10 @@ static bool judge(struct ct_equilibrium *q)
 static void watch_bending(struct ct_equilibrium *q, struct ct_machine *m)
 {
     struct ct_slope_report *report
-        = CT_NEWN(q->own.model, struct ct_slope_report, m->e->nslopes + 1);
-    for (size_t i = 0; i < m->e->nslopes; i++)
+        = CT_NEWN(q->own.model, struct ct_slope_report, m->e->nbend + 1);
+    for (size_t i = 0; i < m->e->nbend; i++)
         report[i].passed_at = -1;
-    if (m->e->nslopes) {
+    if (m->e->nbend) {
         ct_program_run(&m->validity, m->input);
         ct_slope_watch(report, m, 0);
     }

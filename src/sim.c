@@ -6,6 +6,7 @@
 
 #include "report/json.h"
 #include "report/progress.h"
+#include "solve/singular.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -258,6 +259,43 @@ static bool needs_dynamics(const struct ct_equations *e)
     return !e->solution || e->nmode || e->x->ntable;
 }
 
+// Names of the joints of the rows that are marked, each once: "a, b".
+static const char *joints_of(const struct ct_sim *sim, const bool *row, int *first)
+{
+    const struct ct_equations *e = &sim->system->equations;
+    const char *names = "";
+    *first = -1;
+    for (size_t j = 0; j < sim->system->model.njoint; j++) {
+        bool is_there = false;
+        for (size_t i = 0; i < e->nrow; i++)
+            is_there |= row[i] && e->row[i].joint == (int)j;
+        if (!is_there)
+            continue;
+        names = ct_arena_printf(sim->own.model, "%s%s'%s'", names, *first < 0 ? "" : ", ",
+                                sim->system->model.joint[j].name);
+        *first = *first < 0 ? (int)j : *first;
+    }
+    return names;
+}
+
+// What is said of a start in a singular position holds for that position: freedoms, redundant rows.
+static void warn_of_singular_start(struct ct_sim *sim)
+{
+    bool *row = CT_NEWN(sim->own.model, bool, sim->system->equations.nrow + 1);
+    int first;
+    if (!ct_singular_is_start(sim->own.scratch, ct_run_embed(sim->run), 0,
+                              ct_run_state(sim->run), row))
+        return;
+    const char *names = joints_of(sim, row, &first);
+    if (first >= 0)
+        ct_warning(
+            &sim->own, sim->system->model.joint[first].mark, 0,
+            "the mechanism starts in a singular position: constraints of %s depend on others "
+            "there and not elsewhere; beside it there are fewer freedoms, and several "
+            "motions may begin in it",
+            names);
+}
+
 static bool prepare(struct ct_sim *sim, const struct ct_sim_options *o)
 {
     struct ct_system *s = sim->system;
@@ -278,6 +316,7 @@ static bool prepare(struct ct_sim *sim, const struct ct_sim_options *o)
     sim->open.result = CT_NEWN(sim->own.model, bool, s->equations.nresult + 1);
     sim->report.final = CT_NEWN(sim->own.model, double, s->equations.nresult + 1);
     sim->report.rank = ct_run_embed(sim->run)->rank;
+    warn_of_singular_start(sim);
     if (ct_run_results(sim->run, 0, ct_run_state(sim->run), sim->report.final) != CT_EVAL_OK)
         return ct_error(&sim->own, (struct ct_mark){.file = s->model.file}, CT_E_SINGULAR,
                         "the equations are singular at the start");
@@ -400,7 +439,7 @@ static bool integrate(struct ct_sim *sim)
 void ct_slope_warn(struct ct_ctx *ctx, const struct ct_equations *e,
                    const struct ct_slope_report *report)
 {
-    for (size_t i = 0; i < e->nslopes; i++) {
+    for (size_t i = 0; i < e->nbend; i++) {
         if (report[i].passed_at < 0)
             continue;
         const char *since
@@ -408,10 +447,10 @@ void ct_slope_warn(struct ct_ctx *ctx, const struct ct_equations *e,
                 ? ct_arena_printf(ctx->scratch, ", more than %g from t = %.6g s on",
                                   CT_SLOPE_LIMIT, report[i].passed_at)
                 : "";
-        ct_warning(ctx, e->slopes[i].mark, 0,
+        ct_warning(ctx, e->bend[i].mark, 0,
                    "sections of beam '%s' turn by up to %.3g rad against its frame%s: one "
                    "frame is good for %g; cut the beam into several that are welded end to end",
-                   e->slopes[i].beam, report[i].largest, since, CT_SLOPE_LIMIT);
+                   e->bend[i].beam, report[i].largest, since, CT_SLOPE_LIMIT);
     }
 }
 
@@ -419,7 +458,7 @@ void ct_slope_warn(struct ct_ctx *ctx, const struct ct_equations *e,
 static void warn_of_beams(struct ct_sim *sim)
 {
     const struct ct_equations *e = &sim->system->equations;
-    ct_slope_warn(&sim->own, e, sim->report.slopes);
+    ct_slope_warn(&sim->own, e, sim->report.bend);
     for (size_t i = 0; i < e->nvalidity; i++) {
         const struct ct_validity_report *v = &sim->report.validity[i];
         if (v->left_at < 0)

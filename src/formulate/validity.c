@@ -405,16 +405,16 @@ static ct_ex squared_slope(struct ct_build *b, const struct ct_element *e, int e
 static void watch_bending(struct ct_build *b, const struct ct_flexible *f)
 {
     const int n = f->beam->nelement;
-    struct ct_slopes slopes = {.beam = f->name,
-                               .mark = b->model->body[f->body].instance.mark,
-                               .square = CT_NEWN(b->arena, ct_ex, n + 1)};
+    struct ct_bent_beam bend = {.beam = f->name,
+                                .mark = b->model->body[f->body].instance.mark,
+                                .square = CT_NEWN(b->arena, ct_ex, n + 1)};
     for (int k = 0; k <= n; k++) {
         const ct_ex square = squared_slope(b, &f->element[k ? k - 1 : 0], k > 0);
         if (!ct_ex_is_zero(square))
-            slopes.square[slopes.n++] = square;
+            bend.square[bend.n++] = square;
     }
-    if (slopes.n)
-        CT_PUSH(b->arena, b->eqs->slopes, b->eqs->nslopes, b->eqs->slopes_cap, slopes);
+    if (bend.n)
+        CT_PUSH(b->arena, b->eqs->bend, b->eqs->nbend, b->eqs->bend_cap, bend);
 }
 
 void ct_validity_monitor(struct ct_build *b)

@@ -260,9 +260,9 @@ static void compile_rest(struct ct_arena *a, struct ct_machine *m, const struct 
     struct list validity = {.a = a};
     for (size_t i = 0; i < e->nvalidity; i++)
         push(&validity, e->validity[i].eta);
-    for (size_t i = 0; i < e->nslopes; i++)
-        for (size_t k = 0; k < e->slopes[i].n; k++)
-            push(&validity, e->slopes[i].square[k]);
+    for (size_t i = 0; i < e->nbend; i++)
+        for (size_t k = 0; k < e->bend[i].n; k++)
+            push(&validity, e->bend[i].square[k]);
     compile(a, m, in, validity.e, validity.n, &m->validity);
     compile(a, m, in, energies, 2, &m->energy);
     compile(a, m, in, &e->power, ct_ex_is_zero(e->power) ? 0 : 1, &m->power);

@@ -96,7 +96,8 @@ static double residual(void *user, double t, const double *y)
     return ct_vector_largest(r->m->phi, r->m->nrow);
 }
 
-// Its rows times the vector that they are combined with to nothing.
+// Its rows times the vector that they are combined with to nothing. Where rows are redundant, those that are kept may come to
+// depend before all do: positions are then better crossed from further away.
 static double mismatch(void *user, double t, const double *y)
 {
     struct ct_run *r = user;
@@ -304,8 +305,8 @@ static void keep_ledger(struct ct_run *r, const double *y)
 void ct_slope_watch(struct ct_slope_report *report, const struct ct_machine *m, double t)
 {
     const double *square = m->validity.out + m->e->nvalidity;
-    for (size_t i = 0; i < m->e->nslopes; i++) {
-        for (size_t k = 0; k < m->e->slopes[i].n; k++)
+    for (size_t i = 0; i < m->e->nbend; i++) {
+        for (size_t k = 0; k < m->e->bend[i].n; k++)
             report[i].largest = fmax(report[i].largest, sqrt(*square++));
         if (report[i].largest > CT_SLOPE_LIMIT && report[i].passed_at < 0)
             report[i].passed_at = t;
@@ -318,7 +319,7 @@ static void watch_validity(struct ct_run *r, double t)
     if (!r->m->validity.nout)
         return;
     ct_program_run(&r->m->validity, r->m->input);
-    ct_slope_watch(r->report->slopes, r->m, t);
+    ct_slope_watch(r->report->bend, r->m, t);
     for (size_t i = 0; i < r->e->nvalidity; i++) {
         struct ct_validity_report *v = &r->report->validity[i];
         const double period = 6.283185307179586 / r->e->validity[i].omega;
@@ -560,9 +561,9 @@ bool ct_run_simulate(struct ct_run *r, const struct ct_run_options *o,
     report->validity = CT_NEWN(r->arena, struct ct_validity_report, r->e->nvalidity + 1);
     for (size_t i = 0; i < r->e->nvalidity; i++)
         report->validity[i].left_at = -1;
-    report->slopes = CT_NEWN(r->arena, struct ct_slope_report, r->e->nslopes + 1);
-    for (size_t i = 0; i < r->e->nslopes; i++)
-        report->slopes[i].passed_at = -1;
+    report->bend = CT_NEWN(r->arena, struct ct_slope_report, r->e->nbend + 1);
+    for (size_t i = 0; i < r->e->nbend; i++)
+        report->bend[i].passed_at = -1;
     ct_singular_start(r->singular);
     if (r->fidelity)
         ct_fidelity_start(r->fidelity);
@@ -594,7 +595,7 @@ bool ct_run_simulate(struct ct_run *r, const struct ct_run_options *o,
                            .set_crossing = set_crossing,
                            .crossed = crossed,
                            .residual = residual,
-                           .mismatch = mismatch,
+                           .mismatch = (size_t)r->s->rank < r->m->nrow ? NULL : mismatch,
                            .nroot = r->nroot,
                            .root = ct_run_root,
                            .next_time_event = ct_run_next_event,

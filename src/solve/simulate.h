@@ -43,10 +43,10 @@ struct ct_run_report {
     struct ct_validity_report {
         double mean,
             largest; // of the indicator: over the last period of the beam, and its largest size so far
-        double left_at;             // when that passed the limit; negative: never
-    } * validity;                   // by indicator of the equations
-    struct ct_slope_report *slopes; // by ct_slopes of the equations
-    double energy_drift;            // largest |total - total(0)| / scale of the energies
+        double left_at;           // when that passed the limit; negative: never
+    } * validity;                 // by indicator of the equations
+    struct ct_slope_report *bend; // by bent beam of the equations
+    double energy_drift;          // largest |total - total(0)| / scale of the energies
     double position_constraint, velocity_constraint; // largest residuals at samples
     int rank;
     long switches;
