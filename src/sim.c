@@ -396,10 +396,29 @@ static bool integrate(struct ct_sim *sim)
     return ok;
 }
 
-// Linear beams whose motion left what they are good for.
+void ct_bend_warn(struct ct_ctx *ctx, const struct ct_equations *e,
+                  const struct ct_bend_report *report)
+{
+    for (size_t i = 0; i < e->nbend; i++) {
+        if (report[i].passed_at < 0)
+            continue;
+        const char *since
+            = report[i].passed_at > 0
+                ? ct_arena_printf(ctx->scratch, ", more than %g from t = %.6g s on",
+                                  CT_SLOPE_LIMIT, report[i].passed_at)
+                : "";
+        ct_warning(ctx, e->bend[i].mark, 0,
+                   "sections of beam '%s' turn by up to %.3g rad against its frame%s: one "
+                   "frame is good for %g; cut the beam into several that are welded end to end",
+                   e->bend[i].beam, report[i].largest, since, CT_SLOPE_LIMIT);
+    }
+}
+
+// Beams whose motion left what they are good for.
 static void warn_of_beams(struct ct_sim *sim)
 {
     const struct ct_equations *e = &sim->system->equations;
+    ct_bend_warn(&sim->own, e, sim->report.bend);
     for (size_t i = 0; i < e->nvalidity; i++) {
         const struct ct_validity_report *v = &sim->report.validity[i];
         if (v->left_at < 0)

@@ -2,6 +2,7 @@
 #include "formulate/amplitude.h"
 #include "formulate/elastic.h"
 #include "formulate/excite.h"
+#include "formulate/small.h"
 #include "formulate/topology.h"
 
 #include <math.h>
@@ -122,13 +123,14 @@ static unsigned in_plane(const struct ct_build *b, const struct ct_flexible *f)
     return CT_BEAM_AXIAL | (about_z ? CT_BEAM_BENDING_Z : CT_BEAM_BENDING_Y);
 }
 
-static enum ct_axial axial_of(const struct ct_flexible *f)
+// Modes hold no room for the places of nodes that foreshortening moves; and it is the stretch that is small, not the places,
+// which are of second order in the slopes.
+static enum ct_axial axial_of(const struct ct_build *b, const struct ct_flexible *f)
 {
     if (f->formulation == CT_BEAM_LINEAR)
         return CT_AXIAL_LINEAR;
-    // modes hold no room for the places of nodes that foreshortening moves
     return f->deformation & CT_BEAM_AXIAL && f->formulation == CT_BEAM_FORESHORTENING
-                && !f->beam->modes
+                && !f->beam->modes && !ct_small_beam(b, f->name)
              ? CT_AXIAL_LOCAL
              : CT_AXIAL_CHAIN;
 }
@@ -137,13 +139,14 @@ static enum ct_axial axial_of(const struct ct_flexible *f)
 // else they are the model's fault.
 static void need_stiffness(struct ct_build *b, struct ct_flexible *f)
 {
-    static const struct {
+    const struct {
         unsigned family;
         const char *what, *key;
-    } all[] = {{CT_BEAM_AXIAL, "stretch", "area"},
-               {CT_BEAM_BENDING_Y, "bend in its x-z plane", "Iy"},
-               {CT_BEAM_BENDING_Z, "bend in its x-y plane", "Iz"},
-               {CT_BEAM_TORSION, "twist", "G or nu"}};
+    } all[] = {
+        {CT_BEAM_AXIAL, "stretch", "area"},
+        {CT_BEAM_BENDING_Y, "bend in its x-z plane", "Iy"},
+        {CT_BEAM_BENDING_Z, "bend in its x-y plane", "Iz"},
+        {CT_BEAM_TORSION, "twist", ct_ex_is_zero(f->beam->G) ? "G or nu" : "J, or Iy and Iz"}};
     for (size_t i = 0; i < COUNT(all); i++) {
         if (!(f->deformation & all[i].family & ~f->beam->known))
             continue;
@@ -154,7 +157,8 @@ static void need_stiffness(struct ct_build *b, struct ct_flexible *f)
                 ct_arena_printf(b->arena, "%s is not given", all[i].key));
         else
             ct_error(b->ctx, b->model->body[f->body].instance.mark, CT_E_BEAM,
-                     "beam '%s' can %s here: give %s, or say with 'deformation' what it may do",
+                     "beam '%s' can %s here, and nothing resists it: give %s, or say with "
+                     "'deformation' what it may do",
                      f->name, all[i].what, all[i].key);
     }
 }
@@ -192,7 +196,7 @@ static void settle(struct ct_build *b, struct ct_flexible *f)
     need_stiffness(b, f);
     if (b->is_rigid)
         f->deformation = 0;
-    f->axial = f->kinematics = axial_of(f);
+    f->axial = f->kinematics = axial_of(b, f);
     if (f->formulation == CT_BEAM_FORCE_ONLY)
         f->kinematics = CT_AXIAL_LINEAR;
     f->freedom = CT_NEWN(b->arena, struct ct_freedom, NKIND * (beam->nelement + 1));
@@ -414,7 +418,7 @@ void ct_flexible_unknowns(struct ct_build *b, struct ct_flexible *f)
         b->eqs->bare_beam = f->body;
         b->eqs->bare_joint = bare;
     }
-    if (f->beam->modes && f->deformation) {
+    if (f->beam->modes && f->deformation && !ct_flexible_keeps_all_modes(b, f)) {
         if (ct_flexible_reduce(b, f, &s))
             unknowns_of_shapes(b, f, &s);
     } else if (ct_flexible_condense(b, f, &s)) {

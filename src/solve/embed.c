@@ -317,6 +317,11 @@ static bool massless(struct ct_embed *s, size_t speed)
             "coordinate '%s' moves no mass: the first section of beam '%s' has no inertia; "
             "give the beam %s, or, if no moment acts on that section, 'frame: chord'",
             name, model->body[bare].instance.name, rotary_of(model->body[bare].beam));
+    if (u->beam > 0 && !(ct_model_number(model, model->body[u->beam].mass) > 0))
+        return ct_error(s->ctx, model->body[u->beam].instance.mark, CT_E_MASSLESS,
+                        "coordinate '%s' moves no mass: beam '%s' has none; give it a density, "
+                        "a mass_per_length, or 'deformation: []'",
+                        name, model->body[u->beam].instance.name);
     if (u->beam > 0)
         return ct_error(s->ctx, model->body[u->beam].instance.mark, CT_E_MASSLESS,
                         "coordinate '%s' moves no mass: give the beam %s, or consistent mass",
@@ -789,24 +794,42 @@ static bool has_redundant_rows(const struct ct_embed *s)
     return s->rank < (int)s->m->nrow;
 }
 
-static double smallest_singular_value(struct ct_embed *s)
+// A (nrow x nrow, out) = J J', its lower triangle.
+static void square(const struct ct_embed *s, double *A)
 {
-    // from the eigenvalues of J J', which cost a third of a decomposition; half the digits are enough
     const size_t n = s->m->nu, m = s->m->nrow;
     const double *J = s->m->J;
-    memset(s->A, 0, m * m * sizeof *s->A);
+    memset(A, 0, m * m * sizeof *A);
     for (size_t k = 0; k < n; k++, J += m)
         for (size_t j = 0; j < m; j++)
             for (size_t i = j; i < m && J[j] != 0; i++)
-                s->A[i + m * j] += J[i] * J[j];
-    if (!ct_symmetric_eigenvalues(s->b, s->A, (int)m, (int)m, s->work))
+                A[i + m * j] += J[i] * J[j];
+}
+
+static double smallest_singular_value(struct ct_embed *s)
+{
+    // from the eigenvalues of J J', which cost a third of a decomposition; half the digits are enough
+    const int m = (int)s->m->nrow;
+    square(s, s->A);
+    if (!ct_symmetric_eigenvalues(s->b, s->A, m, m, s->work))
         return 0;
-    return sqrt(fmax(0, s->b[m - (size_t)s->rank]));
+    return sqrt(fmax(0, s->b[m - s->rank]));
 }
 
 bool ct_embed_has_pivot(const struct ct_embed *s)
 {
     return s->rank && !(has_redundant_rows(s) && is_large(s));
+}
+
+bool ct_embed_pivot_is_between(struct ct_embed *s, double low, double high)
+{
+    const int m = (int)s->m->nrow, nzero = m - s->rank;
+    if (!has_redundant_rows(s))
+        return false;
+    square(s, s->A);
+    memcpy(s->MB, s->A, (size_t)(m * m) * sizeof *s->A);
+    return ct_symmetric_count_below(s->A, m, m, low * low) == nzero
+        && ct_symmetric_count_below(s->MB, m, m, high * high) > nzero;
 }
 
 double ct_embed_pivot(struct ct_embed *s)

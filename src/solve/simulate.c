@@ -96,6 +96,21 @@ static double residual(void *user, double t, const double *y)
     return ct_vector_largest(r->m->phi, r->m->nrow);
 }
 
+// Its rows times the vector that they are combined with to nothing.
+static double mismatch(void *user, double t, const double *y)
+{
+    struct ct_run *r = user;
+    const struct ct_machine *m = r->m;
+    double log_det, sum = 0, *x = r->scratch;
+    ct_machine_set(r->m, ct_run_before(r, t), y);
+    ct_machine_constraint(r->m);
+    if (!ct_embed_dependence(r->s, x, &log_det))
+        return ct_vector_largest(m->phi, m->nrow);
+    for (int i = 0; i < r->s->rank; i++)
+        sum += x[i] * m->phi[r->s->row[i]];
+    return fabs(sum) / ct_vector_largest(x, (size_t)r->s->rank);
+}
+
 // A followed angle that turns faster at the end of a step than at its start must still stay within half a turn.
 static const double aimed_turn = 2, most_turn = 3; // [rad]
 
@@ -286,12 +301,24 @@ static void keep_ledger(struct ct_run *r, const double *y)
         = fmax(r->report->velocity_constraint, ct_vector_largest(r->m->v, r->m->nrow));
 }
 
-// Indicators of linear beams, averaged over a period of the beam: what rings faster than it can follow does not count.
+void ct_bend_watch(struct ct_bend_report *report, const struct ct_machine *m, double t)
+{
+    const double *square = m->validity.out + m->e->nvalidity;
+    for (size_t i = 0; i < m->e->nbend; i++) {
+        for (size_t k = 0; k < m->e->bend[i].n; k++)
+            report[i].largest = fmax(report[i].largest, sqrt(*square++));
+        if (report[i].largest > CT_SLOPE_LIMIT && report[i].passed_at < 0)
+            report[i].passed_at = t;
+    }
+}
+
+// Slopes of beams, and indicators of linear ones, averaged over a period of the beam: what rings faster than it can follow does not count.
 static void watch_validity(struct ct_run *r, double t)
 {
-    if (!r->e->nvalidity)
+    if (!r->m->validity.nout)
         return;
     ct_program_run(&r->m->validity, r->m->input);
+    ct_bend_watch(r->report->bend, r->m, t);
     for (size_t i = 0; i < r->e->nvalidity; i++) {
         struct ct_validity_report *v = &r->report->validity[i];
         const double period = 6.283185307179586 / r->e->validity[i].omega;
@@ -499,6 +526,12 @@ static void explain_end(struct ct_run *r)
 {
     const size_t n = r->ctx->ndiagnostic;
     const enum ct_code code = n ? r->ctx->diagnostic[n - 1].code : 0;
+    if (code == CT_E_STEP_COUNT)
+        ct_note(
+            r->ctx, (struct ct_mark){0},
+            "steps follow vibrations that are excited: start beams with 'initial: "
+            "equilibrium', leave out or damp what is stiff, or raise 'absolute' above them; "
+            "what is not excited holds up explicit methods only");
     if (!r->m->nrow)
         return;
     if (code == CT_E_STEP_OPEN)
@@ -527,6 +560,9 @@ bool ct_run_simulate(struct ct_run *r, const struct ct_run_options *o,
     report->validity = CT_NEWN(r->arena, struct ct_validity_report, r->e->nvalidity + 1);
     for (size_t i = 0; i < r->e->nvalidity; i++)
         report->validity[i].left_at = -1;
+    report->bend = CT_NEWN(r->arena, struct ct_bend_report, r->e->nbend + 1);
+    for (size_t i = 0; i < r->e->nbend; i++)
+        report->bend[i].passed_at = -1;
     ct_singular_start(r->singular);
     if (r->fidelity)
         ct_fidelity_start(r->fidelity);
@@ -556,6 +592,7 @@ bool ct_run_simulate(struct ct_run *r, const struct ct_run_options *o,
                            .set_crossing = set_crossing,
                            .crossed = crossed,
                            .residual = residual,
+                           .mismatch = mismatch,
                            .nroot = r->nroot,
                            .root = ct_run_root,
                            .next_time_event = ct_run_next_event,

@@ -113,13 +113,14 @@ static void evaluate(const struct fixture *f, struct evaluator *v, bool prepare,
 }
 
 static size_t list_evaluators(struct fixture *f, const struct ct_listing *l,
-                              struct evaluator v[5])
+                              struct evaluator v[6])
 {
-    static const char *const name[] = {"tape", "tape x4", "tape x8", "native", "native x4"};
-    static const int lanes[] = {1, 4, 8, 1, 4};
+    static const char *const name[]
+        = {"tape", "tape x4", "tape x8", "native", "native x4", "native x8"};
+    static const int lanes[] = {1, 4, 8, 1, 4, 8};
     const struct ct_tape *tape = ct_tape_create(f->arena, l);
     size_t n = 0;
-    for (size_t i = 0; i < 5; i++) {
+    for (size_t i = 0; i < COUNT(lanes); i++) {
         v[n] = (struct evaluator){.name = name[i], .lanes = (size_t)lanes[i]};
         if (i < 3)
             v[n].tape = tape;
@@ -140,7 +141,7 @@ static size_t list_evaluators(struct fixture *f, const struct ct_listing *l,
 // The tape of one lane is compared with the operators themselves in test_tape.c.
 static void compare(struct fixture *f, struct random *r, const struct ct_listing *l)
 {
-    struct evaluator v[5];
+    struct evaluator v[6];
     const size_t n = list_evaluators(f, l, v);
     double *want = CT_NEWN(f->arena, double, NLANE * l->nout),
            *got = CT_NEWN(f->arena, double, NLANE * l->nout);
@@ -203,7 +204,7 @@ static void operators_have_the_bits_of_ct_op_apply(void **unused)
                                                  : ct_ex_fun2(&f.x, (enum ct_op)op, a, b);
         const struct ct_listing *l
             = ct_listing_create(f.arena, &f.x, &e, 1, f.sym, f.slot, NSYM, CT_FUSE_NO);
-        struct evaluator v[5];
+        struct evaluator v[6];
         const size_t n = list_evaluators(&f, l, v);
         for (size_t i = 0; i < COUNT(odd); i++)
             for (size_t j = 0; j < COUNT(odd); j++) {
