@@ -41,6 +41,9 @@ static const struct ct_key keys[] = {
      "lumped: half of each element's mass at its ends"},
     {"formulation", CT_VALUE_WORD, 0, "auto|linear|foreshortening|force-only|stretch-linear", 1,
      1, "how bending shortens the axis"},
+    {"twist", CT_VALUE_WORD, 0, "linear|quadratic", 1, 1,
+     "shape of the twist in an element; quadratic needs integration: full and mass: "
+     "consistent"},
     {"frame", CT_VALUE_WORD, 0, "clamped|chord", 1, 1,
      "the body's frame follows the section at x = 0 or the line between the ends"},
     {"deformation", CT_VALUE_WORDS, 0, "axial|bending-y|bending-z|torsion", 0, 4,

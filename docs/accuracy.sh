@@ -276,13 +276,16 @@ halving() {
 }
 
 cantilever() {
-    "$root/systems/right_angle_cantilever/generate.sh" "$1" 1
+    "$root/systems/right_angle_cantilever/generate.sh" "$2" 1 "$1"
 }
 
 spatial() {
-    echo "| frames in each leg | error | extrapolated |"
+    echo "| frames in each leg | linear twist | quadratic twist |"
     echo "| --- | --- | --- |"
-    printf '1\n2\n4\n8\n' | halving R11_K4 10 3 cantilever
+    for twist in linear quadratic; do
+        printf '1\n2\n4\n8\n16\n' | halving R11_K8 10 10 cantilever "$twist" | cut -d '|' -f 1-3 >"$work/$twist.errors"
+    done
+    cut -d '|' -f 3 "$work/quadratic.errors" | paste -d '|' "$work/linear.errors" - | sed 's/$/|/'
 }
 
 with_shear() {

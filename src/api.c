@@ -85,6 +85,35 @@ void ct_own_finish(struct ct_ctx *own)
     ct_arena_destroy(own->model);
 }
 
+void *ct_own_alloc(struct ct_ctx *ctx, size_t size)
+{
+    void *object = calloc(1, size);
+    ctx->no_memory |= !object;
+    return object;
+}
+
+struct owner {
+    struct ct_ctx *ctx, *own;
+    bool (*work)(void *task);
+    void *task;
+};
+
+static bool work_in_own(void *task)
+{
+    const struct owner *o = task;
+    ct_own_init(o->own);
+    const bool ok = o->work(o->task);
+    o->ctx->no_memory |= o->own->no_memory;
+    ct_ctx_hand_over(o->ctx, o->own);
+    return ok;
+}
+
+bool ct_own_enter(struct ct_ctx *ctx, struct ct_ctx *own, bool (*work)(void *task), void *task)
+{
+    struct owner o = {ctx, own, work, task};
+    return ct_enter(ctx, work_in_own, &o);
+}
+
 void ct_own_next_stage(struct ct_ctx *own)
 {
     struct ct_arena *fresh = ct_arena_create();

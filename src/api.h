@@ -85,6 +85,10 @@ void ct_own_init(struct ct_ctx *own);
 void ct_own_finish(struct ct_ctx *own);
 /// A new stage starts: nothing in the scratch arena is needed any more.
 void ct_own_next_stage(struct ct_ctx *own);
+/// Zeros for an object that owns a context; NULL, and E001 in ctx, where there is no memory. Freed with free.
+void *ct_own_alloc(struct ct_ctx *ctx, size_t size);
+/// Open the context of a new object, run work(task) with a guard, and hand over what it says: true if all went well.
+bool ct_own_enter(struct ct_ctx *ctx, struct ct_ctx *own, bool (*work)(void *task), void *task);
 /// Diagnostics of `from` go to `to`, as copies.
 void ct_ctx_hand_over(struct ct_ctx *to, struct ct_ctx *from);
 /// "; did you mean 'x'?" for the nearest of n names, else ""; in arena a.
@@ -100,5 +104,9 @@ void ct_sim_verify(struct ct_sim *sim);
 bool ct_is_rounding(double scale, double deviation, double largest);
 /// Monotonic time [s].
 double ct_clock(void);
+
+/// Warn of beams that bent too far for one frame.
+void ct_bend_warn(struct ct_ctx *ctx, const struct ct_equations *e,
+                  const struct ct_bend_report *report);
 
 #endif

@@ -45,8 +45,9 @@ static void keep_start(struct ct_buckling *s)
     memcpy(s->memory0, l->m->input + l->m->at_memory, nm * sizeof *s->memory0);
 }
 
-static bool find(struct ct_buckling *s)
+static bool find(void *task)
 {
+    struct ct_buckling *s = task;
     size_t parameter;
     if (!s->load)
         return ct_error(&s->own, (struct ct_mark){0}, CT_E_USAGE, "which load is to grow?");
@@ -77,37 +78,21 @@ static bool find(struct ct_buckling *s)
     return ct_buckling_find(s->at.l, s->input, s->count, &s->list);
 }
 
-struct create {
-    struct ct_ctx *ctx;
-    struct ct_buckling *s;
-};
-
-static bool create(void *task)
-{
-    struct create *c = task;
-    ct_own_init(&c->s->own);
-    const bool ok = find(c->s);
-    ct_ctx_hand_over(c->ctx, &c->s->own);
-    return ok;
-}
-
 struct ct_buckling *ct_buckling_create(struct ct_ctx *ctx, struct ct_system *sys,
                                        const struct ct_buckling_options *options)
 {
     if (!sys)
         return NULL;
-    struct create c = {ctx, calloc(1, sizeof *c.s)};
-    if (!c.s) {
-        ctx->no_memory = true;
+    struct ct_buckling *s = ct_own_alloc(ctx, sizeof *s);
+    if (!s)
         return NULL;
-    }
-    c.s->system = sys;
-    c.s->load = options ? options->load : NULL;
-    c.s->count = options && options->count > 0 ? (size_t)options->count : STANDARD_COUNT;
-    c.s->at.hold_drivers = options && options->hold_drivers;
-    if (ct_enter(ctx, create, &c))
-        return c.s;
-    ct_buckling_destroy(c.s);
+    s->system = sys;
+    s->load = options ? options->load : NULL;
+    s->count = options && options->count > 0 ? (size_t)options->count : STANDARD_COUNT;
+    s->at.hold_drivers = options && options->hold_drivers;
+    if (ct_own_enter(ctx, &s->own, find, s))
+        return s;
+    ct_buckling_destroy(s);
     return NULL;
 }
 

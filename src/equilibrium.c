@@ -74,8 +74,22 @@ static bool judge(struct ct_equilibrium *q)
     return true;
 }
 
-static bool find(struct ct_equilibrium *q)
+static void watch_bending(struct ct_equilibrium *q, struct ct_machine *m)
 {
+    struct ct_bend_report *report
+        = CT_NEWN(q->own.model, struct ct_bend_report, m->e->nbend + 1);
+    for (size_t i = 0; i < m->e->nbend; i++)
+        report[i].passed_at = -1;
+    if (m->e->nbend) {
+        ct_program_run(&m->validity, m->input);
+        ct_bend_watch(report, m, 0);
+    }
+    ct_bend_warn(&q->own, m->e, report);
+}
+
+static bool find(void *task)
+{
+    struct ct_equilibrium *q = task;
     bool is_judged = false;
     q->at.about = "equilibrium";
     q->at.may_be_large = true;
@@ -96,21 +110,8 @@ static bool find(struct ct_equilibrium *q)
     q->value = CT_NEWN(q->own.model, double, n + 1);
     for (size_t i = 0; i < n; i++)
         q->value[i] = m->result.out[i] + 0.0; // no negative zeros
+    watch_bending(q, m);
     return is_judged || judge(q);
-}
-
-struct create {
-    struct ct_ctx *ctx;
-    struct ct_equilibrium *q;
-};
-
-static bool create(void *task)
-{
-    struct create *c = task;
-    ct_own_init(&c->q->own);
-    const bool ok = find(c->q);
-    ct_ctx_hand_over(c->ctx, &c->q->own);
-    return ok;
 }
 
 struct ct_equilibrium *ct_equilibrium_create(struct ct_ctx *ctx, struct ct_system *sys,
@@ -118,16 +119,14 @@ struct ct_equilibrium *ct_equilibrium_create(struct ct_ctx *ctx, struct ct_syste
 {
     if (!sys)
         return NULL;
-    struct create c = {ctx, calloc(1, sizeof *c.q)};
-    if (!c.q) {
-        ctx->no_memory = true;
+    struct ct_equilibrium *q = ct_own_alloc(ctx, sizeof *q);
+    if (!q)
         return NULL;
-    }
-    c.q->system = sys;
-    c.q->at.hold_drivers = options && options->hold_drivers;
-    if (ct_enter(ctx, create, &c))
-        return c.q;
-    ct_equilibrium_destroy(c.q);
+    q->system = sys;
+    q->at.hold_drivers = options && options->hold_drivers;
+    if (ct_own_enter(ctx, &q->own, find, q))
+        return q;
+    ct_equilibrium_destroy(q);
     return NULL;
 }
 

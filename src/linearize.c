@@ -18,6 +18,7 @@ struct ct_linearization {
     struct ct_system *system;
     struct ct_configuration at;
     struct ct_sim_options run;
+    const char *inputs; // asked for, during creation
     struct ct_model *variant;
     struct ct_equations equations;
     size_t nstate, ninput, noutput;
@@ -280,29 +281,15 @@ static bool fill(struct ct_linearization *s)
 
 // ---- creation --------------------------------------------------------------------------------------------------
 
-struct create {
-    struct ct_ctx *ctx;
-    struct ct_linearization *s;
-    const struct ct_linearize_options *o;
-};
-
-static bool find(struct ct_linearization *s, const struct ct_linearize_options *o)
+static bool find(void *task)
 {
-    if (!make_variant(s, o->inputs))
+    struct ct_linearization *s = task;
+    if (!make_variant(s, s->inputs))
         return false;
     s->at.model = s->variant;
     s->at.equations = &s->equations;
     return ct_configuration_find(&s->own, s->system, &s->run, &s->at) && check_inputs(s)
         && fill(s);
-}
-
-static bool create(void *task)
-{
-    struct create *c = task;
-    ct_own_init(&c->s->own);
-    const bool ok = find(c->s, c->o);
-    ct_ctx_hand_over(c->ctx, &c->s->own);
-    return ok;
 }
 
 struct ct_linearization *ct_linearize(struct ct_ctx *ctx, struct ct_system *sys,
@@ -311,18 +298,18 @@ struct ct_linearization *ct_linearize(struct ct_ctx *ctx, struct ct_system *sys,
     static const struct ct_linearize_options standard;
     if (!sys)
         return NULL;
-    struct create c = {ctx, calloc(1, sizeof *c.s), options ? options : &standard};
-    if (!c.s) {
-        ctx->no_memory = true;
+    const struct ct_linearize_options *o = options ? options : &standard;
+    struct ct_linearization *s = ct_own_alloc(ctx, sizeof *s);
+    if (!s)
         return NULL;
-    }
-    c.s->system = sys;
-    c.s->run = c.o->run;
-    c.s->at.about = c.o->about;
-    c.s->at.hold_drivers = c.o->hold_drivers;
-    if (ct_enter(ctx, create, &c))
-        return c.s;
-    ct_linearization_destroy(c.s);
+    s->system = sys;
+    s->run = o->run;
+    s->inputs = o->inputs;
+    s->at.about = o->about;
+    s->at.hold_drivers = o->hold_drivers;
+    if (ct_own_enter(ctx, &s->own, find, s))
+        return s;
+    ct_linearization_destroy(s);
     return NULL;
 }
 

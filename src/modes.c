@@ -19,6 +19,7 @@ struct ct_modes {
     struct ct_system *system;
     struct ct_configuration at;
     struct ct_sim_options run;
+    long count; // asked for; 0: the usual number
     struct ct_motion_mode *mode;
     size_t n, all; // shown, found
     const char *how;
@@ -42,12 +43,13 @@ static bool solve(struct ct_modes *s, size_t count)
     return ct_modes_solve(&s->own, a, s->at.l, &s->mode, &s->all, &s->how);
 }
 
-static bool find(struct ct_modes *s, long count)
+static bool find(void *task)
 {
-    if (count < 0)
+    struct ct_modes *s = task;
+    if (s->count < 0)
         return ct_error(&s->own, (struct ct_mark){0}, CT_E_USAGE,
-                        "the number of modes is %ld; it must be greater than 0", count);
-    const size_t wanted = count ? (size_t)count : STANDARD_COUNT;
+                        "the number of modes is %ld; it must be greater than 0", s->count);
+    const size_t wanted = s->count ? (size_t)s->count : STANDARD_COUNT;
     s->at.may_be_large = true;
     if (!ct_configuration_find(&s->own, s->system, &s->run, &s->at) || !solve(s, wanted))
         return false;
@@ -59,21 +61,6 @@ static bool find(struct ct_modes *s, long count)
     return true;
 }
 
-struct create {
-    struct ct_ctx *ctx;
-    struct ct_modes *s;
-    long count;
-};
-
-static bool create(void *task)
-{
-    struct create *c = task;
-    ct_own_init(&c->s->own);
-    const bool ok = find(c->s, c->count);
-    ct_ctx_hand_over(c->ctx, &c->s->own);
-    return ok;
-}
-
 struct ct_modes *ct_modes_create(struct ct_ctx *ctx, struct ct_system *sys,
                                  const struct ct_modes_options *options)
 {
@@ -81,18 +68,17 @@ struct ct_modes *ct_modes_create(struct ct_ctx *ctx, struct ct_system *sys,
     if (!sys)
         return NULL;
     const struct ct_modes_options *o = options ? options : &standard;
-    struct create c = {ctx, calloc(1, sizeof *c.s), o->count};
-    if (!c.s) {
-        ctx->no_memory = true;
+    struct ct_modes *s = ct_own_alloc(ctx, sizeof *s);
+    if (!s)
         return NULL;
-    }
-    c.s->system = sys;
-    c.s->run = o->run;
-    c.s->at.about = o->about;
-    c.s->at.hold_drivers = o->hold_drivers;
-    if (ct_enter(ctx, create, &c))
-        return c.s;
-    ct_modes_destroy(c.s);
+    s->system = sys;
+    s->run = o->run;
+    s->count = o->count;
+    s->at.about = o->about;
+    s->at.hold_drivers = o->hold_drivers;
+    if (ct_own_enter(ctx, &s->own, find, s))
+        return s;
+    ct_modes_destroy(s);
     return NULL;
 }
 

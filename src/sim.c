@@ -246,7 +246,6 @@ static bool choose_backend(struct ct_sim *sim, const char *name)
 // ---- the start ---------------------------------------------------------------------------------------
 
 struct create {
-    struct ct_ctx *ctx;
     struct ct_sim *sim;
     const struct ct_sim_options *options;
 };
@@ -295,11 +294,8 @@ bool ct_sim_prepare(struct ct_sim *sim, struct ct_system *sys, const struct ct_s
 
 static bool create(void *task)
 {
-    struct create *c = task;
-    ct_own_init(&c->sim->own);
-    const bool ok = prepare(c->sim, c->options);
-    ct_ctx_hand_over(c->ctx, &c->sim->own);
-    return ok;
+    const struct create *c = task;
+    return prepare(c->sim, c->options);
 }
 
 struct ct_sim *ct_sim_create(struct ct_ctx *ctx, struct ct_system *sys,
@@ -308,13 +304,11 @@ struct ct_sim *ct_sim_create(struct ct_ctx *ctx, struct ct_system *sys,
     static const struct ct_sim_options standard;
     if (!sys)
         return NULL;
-    struct create c = {ctx, calloc(1, sizeof *c.sim), options ? options : &standard};
-    if (!c.sim) {
-        ctx->no_memory = true;
+    struct create c = {ct_own_alloc(ctx, sizeof *c.sim), options ? options : &standard};
+    if (!c.sim)
         return NULL;
-    }
     c.sim->system = sys;
-    if (ct_enter(ctx, create, &c))
+    if (ct_own_enter(ctx, &c.sim->own, create, &c))
         return c.sim;
     ct_sim_destroy(c.sim);
     return NULL;
@@ -401,10 +395,29 @@ static bool integrate(struct ct_sim *sim)
     return ok;
 }
 
-// Linear beams whose motion left what they are good for.
+void ct_bend_warn(struct ct_ctx *ctx, const struct ct_equations *e,
+                  const struct ct_bend_report *report)
+{
+    for (size_t i = 0; i < e->nbend; i++) {
+        if (report[i].passed_at < 0)
+            continue;
+        const char *since
+            = report[i].passed_at > 0
+                ? ct_arena_printf(ctx->scratch, ", more than %g from t = %.6g s on",
+                                  CT_SLOPE_LIMIT, report[i].passed_at)
+                : "";
+        ct_warning(ctx, e->bend[i].mark, 0,
+                   "sections of beam '%s' turn by up to %.3g rad against its frame%s: one "
+                   "frame is good for %g; cut the beam into several that are welded end to end",
+                   e->bend[i].beam, report[i].largest, since, CT_SLOPE_LIMIT);
+    }
+}
+
+// Beams whose motion left what they are good for.
 static void warn_of_beams(struct ct_sim *sim)
 {
     const struct ct_equations *e = &sim->system->equations;
+    ct_bend_warn(&sim->own, e, sim->report.bend);
     for (size_t i = 0; i < e->nvalidity; i++) {
         const struct ct_validity_report *v = &sim->report.validity[i];
         if (v->left_at < 0)

@@ -166,7 +166,6 @@ static bool prepare(struct ct_study *s, const struct ct_study_options *o)
 }
 
 struct create {
-    struct ct_ctx *ctx;
     struct ct_study *s;
     const char *path;
     const struct ct_system_options *system;
@@ -175,13 +174,9 @@ struct create {
 
 static bool create(void *task)
 {
-    struct create *c = task;
-    ct_own_init(&c->s->own);
+    const struct create *c = task;
     take_options(c->s, c->path, c->system, c->options);
-    const bool ok = prepare(c->s, c->options);
-    c->ctx->no_memory |= c->s->own.no_memory;
-    ct_ctx_hand_over(c->ctx, &c->s->own);
-    return ok;
+    return prepare(c->s, c->options);
 }
 
 struct ct_study *ct_study_create(struct ct_ctx *ctx, const char *path,
@@ -189,12 +184,11 @@ struct ct_study *ct_study_create(struct ct_ctx *ctx, const char *path,
                                  const struct ct_study_options *options)
 {
     static const struct ct_system_options standard;
-    struct create c = {ctx, calloc(1, sizeof *c.s), path, system ? system : &standard, options};
-    if (!c.s) {
-        ctx->no_memory = true;
+    struct create c
+        = {ct_own_alloc(ctx, sizeof *c.s), path, system ? system : &standard, options};
+    if (!c.s)
         return NULL;
-    }
-    if (ct_enter(ctx, create, &c))
+    if (ct_own_enter(ctx, &c.s->own, create, &c))
         return c.s;
     ct_study_destroy(c.s);
     return NULL;

@@ -137,13 +137,14 @@ static bool formulate_settled(struct ct_system *s, const struct ct_system_option
                                      .first = ct_settle_first(s->own.model, &s->model),
                                      .keep_all = o->keep_all,
                                      .held = true,
+                                     .gaps = true,
                                      .measure_all = true,
                                      .measured_for = &s->equations,
                                      .deformed = true,
                                      .like = &s->equations};
     if (!formulate(s, &f, &s->held_equations, &unused))
         return false;
-    f.held = false;
+    f.held = f.gaps = false;
     f.without_dynamics = true;
     return s->held_equations.nrow == 0 || formulate(s, &f, &s->moving_equations, &unused);
 }
@@ -154,6 +155,7 @@ static bool build(struct ct_system *s, const char *path, const struct ct_system_
                                           .with_energy = true,
                                           .with_outputs = true,
                                           .with_solution = true,
+                                          .frees_beams = o->for_analysis,
                                           .for_analysis = o->for_analysis};
     // the start must not depend on the trees that the equations use
     motion.more = o->columns == CT_COLUMNS_COORDINATES ? CT_MORE_COORDINATES
@@ -161,6 +163,7 @@ static bool build(struct ct_system *s, const char *path, const struct ct_system_
                                                        : CT_MORE_NONE;
     const struct ct_formulate_options start = {.tree = CT_TREE_JOINTS,
                                                .keep_all = o->keep_all,
+                                               .frees_beams = o->for_analysis,
                                                .measure_all = true,
                                                .measured_for = &s->equations,
                                                .without_dynamics = true};
@@ -175,7 +178,6 @@ static bool build(struct ct_system *s, const char *path, const struct ct_system_
 }
 
 struct load {
-    struct ct_ctx *ctx;
     struct ct_system *s;
     const char *path;
     const struct ct_system_options *options;
@@ -183,23 +185,18 @@ struct load {
 
 static bool load(void *task)
 {
-    struct load *l = task;
-    ct_own_init(&l->s->own);
-    const bool ok = build(l->s, l->path, l->options);
-    ct_ctx_hand_over(l->ctx, &l->s->own);
-    return ok;
+    const struct load *l = task;
+    return build(l->s, l->path, l->options);
 }
 
 struct ct_system *ct_system_load(struct ct_ctx *ctx, const char *path,
                                  const struct ct_system_options *options)
 {
     static const struct ct_system_options standard;
-    struct load l = {ctx, calloc(1, sizeof *l.s), path, options ? options : &standard};
-    if (!l.s) {
-        ctx->no_memory = true;
+    struct load l = {ct_own_alloc(ctx, sizeof *l.s), path, options ? options : &standard};
+    if (!l.s)
         return NULL;
-    }
-    if (ct_enter(ctx, load, &l))
+    if (ct_own_enter(ctx, &l.s->own, load, &l))
         return l.s;
     ct_system_destroy(l.s);
     return NULL;

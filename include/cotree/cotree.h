@@ -73,7 +73,8 @@ struct ct_system_options {
     bool keep_all;    /* leave nothing out: planar mechanisms keep their spatial rows */
     enum ct_columns_more columns;
     bool
-        for_analysis; /* modes, equilibria and the like, no runs: large systems are then made in less time */
+        for_analysis; /* modes, equilibria, buckling, no runs: beams keep all that their sections allow, also what the
+                         scene does not excite, and large systems are made in less time */
     long beam_elements; /* > 0: of every beam, equally long, whatever the file says */
     const char *
         beam_formulation; /* of every beam: "linear", "foreshortening" ...; NULL: as in the file */
@@ -283,8 +284,8 @@ CT_API void ct_study_destroy(struct ct_study *study);
  * Run all members, once per sweep. results may be NULL.
  *
  * A member that fails is a row; the sweep fails when rows cannot be written. The file appears under its name when
- * it is complete; until then rows are in PATH.partial, in order. PATH.settings, until then PATH.partial.settings, says what
- * they depend on.
+ * it is complete; until then rows are in PATH.partial, in order, and what they depend on in PATH.partial.settings. With
+ * `resume` the latter stays as PATH.settings.
  *
  * Errors: E002 for the file, E003 when it cannot be resumed, as when settings or the model are others.
  */

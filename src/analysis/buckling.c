@@ -85,14 +85,6 @@ bool ct_buckling_load(struct ct_linear *l, size_t at, double factor)
 
 // ---- stiffness in the coordinates of factor 0 ------------------------------------------------------------
 
-static double largest(const double *v, size_t n)
-{
-    double max = 0;
-    for (size_t i = 0; i < n; i++)
-        max = fmax(max, fabs(v[i]));
-    return max;
-}
-
 // K (f x f, out): y0 = T y, so that K = T^-T Kr T^-1
 static bool stiffness(struct search *s, double *K)
 {
@@ -133,7 +125,7 @@ static bool is_symmetric(const double *K, int n)
     for (int j = 0; j < n; j++)
         for (int i = 0; i < j; i++)
             worst = fmax(worst, fabs(K[i + n * j] - K[j + n * i]));
-    return worst <= symmetric * largest(K, (size_t)n * (size_t)n);
+    return worst <= symmetric * ct_vector_largest(K, (size_t)n * (size_t)n);
 }
 
 // Directions without stiffness whatever the load (rigid-body motions) are left out.
@@ -146,11 +138,12 @@ static void find_directions(struct search *s)
             H[i + f * j] = (s->K0[i + f * j] + s->K0[j + f * i]) / 2;
     ct_symmetric_eigen(s->value, H, f, f, s->work);
     const double stiffest = fmax(fabs(s->value[0]), fabs(s->value[f - 1]));
-    const double change = largest(s->K1, (size_t)f * (size_t)f);
+    const double change = ct_vector_largest(s->K1, (size_t)f * (size_t)f);
     s->n = 0;
     for (int k = 0; k < f; k++) {
         ct_matrix_multiply(v, s->K1, H + f * k, f, f, 1);
-        if (fabs(s->value[k]) > none * stiffest || largest(v, (size_t)f) > none * change)
+        if (fabs(s->value[k]) > none * stiffest
+            || ct_vector_largest(v, (size_t)f) > none * change)
             memcpy(s->P + f * s->n++, H + f * k, (size_t)f * sizeof *s->P);
     }
 }

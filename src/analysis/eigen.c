@@ -20,14 +20,6 @@ static const double rounding = 16 * DBL_EPSILON;
 static const double symmetric
     = 1e-9; // relative: derivatives of potentials are symmetric to rounding
 
-static double largest(const double *v, size_t n)
-{
-    double max = 0;
-    for (size_t i = 0; i < n; i++)
-        max = fmax(max, fabs(v[i]));
-    return max;
-}
-
 // out (k x k) = V' A V, V (n x k)
 static void congruence(double *out, const double *V, const double *A, double *work, int n,
                        int k)
@@ -41,7 +33,7 @@ static bool is_symmetric(struct ct_arena *a, const double *A, int n)
 {
     double *size = CT_NEWN(a, double, n + 1), most = 0;
     for (int j = 0; j < n; j++) {
-        size[j] = sqrt(largest(A + (size_t)n * (size_t)j, (size_t)n));
+        size[j] = sqrt(ct_vector_largest(A + (size_t)n * (size_t)j, (size_t)n));
         most = fmax(most, size[j] * size[j]);
     }
     for (int j = 0; j < n; j++)
@@ -99,7 +91,7 @@ static bool condense(struct ct_arena *a, const double *K, struct basis *s)
     int *pivot = CT_NEWN(a, int, n0 + 1);
     s->S = CT_NEWN(a, double, n0 *k + 1);
     congruence(Knn, s->N, K, KV, n, n0);
-    const double size = largest(Knn, (size_t)n0 * (size_t)n0);
+    const double size = ct_vector_largest(Knn, (size_t)n0 * (size_t)n0);
     ct_matrix_multiply(KV, K, s->V, n, n, k);
     ct_matrix_multiply_transposed(s->S, s->N, KV, n0, n, k);
     for (int i = 0; i < n0 * k; i++)
@@ -318,7 +310,7 @@ static bool add_general(struct list *list, double *A, const double *T, int n, do
     double *re = CT_NEWN(list->a, double, n + 1), *im = CT_NEWN(list->a, double, n + 1),
            *V = CT_NEWN(list->a, double, n *n + 1), *y = CT_NEWN(list->a, double, 2 * f + 1),
            *work = CT_NEWN(list->a, double, ct_eigen_work(n));
-    const double size = largest(A, (size_t)n * (size_t)n);
+    const double size = ct_vector_largest(A, (size_t)n * (size_t)n);
     if (!ct_eigen(re, im, V, A, n, n, work))
         return false;
     int nzero = 0;
@@ -358,11 +350,11 @@ static void clear_roundings(double *A, int n, double size)
 // Coordinates that no force depends on.
 static int count_free(const struct ct_linear *l, int f)
 {
-    const double size = largest(l->Kr, (size_t)f * (size_t)f);
+    const double size = ct_vector_largest(l->Kr, (size_t)f * (size_t)f);
     int n = 0;
     for (int i = 0; i < f; i++)
-        n += largest(l->Kr + f * i, (size_t)f) <= rounding * size
-          && largest(l->G + f * i, (size_t)f) == 0;
+        n += ct_vector_largest(l->Kr + f * i, (size_t)f) <= rounding * size
+          && ct_vector_largest(l->G + f * i, (size_t)f) == 0;
     return n;
 }
 
@@ -391,10 +383,10 @@ static bool solve_modal(struct list *list, const struct basis *s)
     ct_matrix_multiply(work, l->G, s->V, f, f, f); // V^-1 G V = V' M G V
     ct_matrix_multiply(MV, l->Mr, work, f, f, f);
     ct_matrix_multiply_transposed(G, s->V, MV, f, f, f);
-    const double size = largest(K, (size_t)f * (size_t)f);
+    const double size = ct_vector_largest(K, (size_t)f * (size_t)f);
     clear_roundings(K, f, size);
-    clear_roundings(C, f, largest(C, (size_t)f * (size_t)f));
-    clear_roundings(G, f, largest(G, (size_t)f * (size_t)f));
+    clear_roundings(C, f, ct_vector_largest(C, (size_t)f * (size_t)f));
+    clear_roundings(G, f, ct_vector_largest(G, (size_t)f * (size_t)f));
     double least = sqrt(size);
     for (int i = 0; i < f; i++)
         if (s->w2[i] != 0)
@@ -410,7 +402,7 @@ static bool solve_modal(struct list *list, const struct basis *s)
             T[i + f * j] = s->V[i + f * j] / rate[j];
         }
     }
-    const double zero = rounding * n * largest(A, (size_t)n * (size_t)n);
+    const double zero = rounding * n * ct_vector_largest(A, (size_t)n * (size_t)n);
     const int free = count_free(l, f), steady = count_steady(a, A, n);
     return add_general(list, A, T, n, zero, steady > free ? steady : free);
 }
@@ -423,7 +415,7 @@ static bool solve_state_space(struct list *list, int rigid)
     struct ct_state_space s;
     if (!ct_state_space_create(list->l->ctx, list->a, list->l, &s))
         return false;
-    const double zero = rounding * s.n * largest(s.A, (size_t)s.n * (size_t)s.n);
+    const double zero = rounding * s.n * ct_vector_largest(s.A, (size_t)s.n * (size_t)s.n);
     return add_general(list, s.A, s.y_x, s.n, zero, rigid);
 }
 
@@ -439,7 +431,8 @@ bool ct_modes_solve(struct ct_ctx *ctx, struct ct_arena *a, const struct ct_line
     if (f) {
         solve_symmetric(a, l->Mr, l->Kr, f, &s);
         const double rate = s.k ? sqrt(fmax(fabs(s.w2[s.k - 1]), fabs(s.w2[0]))) : 0;
-        const bool has_speeds = largest(l->Cr, ff) > DBL_EPSILON * rate * largest(l->Mr, ff);
+        const bool has_speeds
+            = ct_vector_largest(l->Cr, ff) > DBL_EPSILON * rate * ct_vector_largest(l->Mr, ff);
         double *L = CT_NEWN(a, double, ff + 1);
         const bool is_positive = factor_stiffness(L, l->Kr, f);
         int rigid = 0;

@@ -32,14 +32,6 @@ struct search {
     bool is_newton; // nothing is unstable: the step is that of Newton's method
 };
 
-static double largest(const double *v, size_t n)
-{
-    double max = 0;
-    for (size_t i = 0; i < n; i++)
-        max = fmax(max, fabs(v[i]));
-    return max;
-}
-
 static void find_turns(struct search *s)
 {
     const struct ct_equations *e = s->l->m->e;
@@ -238,7 +230,7 @@ static bool go(struct search *s)
     for (size_t k = 0; k < nu; k++)
         s->dq[k] *= part;
     const bool is_fine
-        = s->is_newton && largest(s->dq, nu) < nearly; // slopes are rounding here
+        = s->is_newton && ct_vector_largest(s->dq, nu) < nearly; // slopes are rounding here
     keep(s, false);
     for (int i = 0; i < MOST_HALVINGS; i++) {
         ct_machine_retract(l->m, l->y, s->dq);
@@ -247,7 +239,7 @@ static bool go(struct search *s)
             if (i == 0 && part < 1)
                 s->length *= 2;
             else if (i)
-                s->length = fmax(largest(s->dq, nu), first_length * 1e-6);
+                s->length = fmax(ct_vector_largest(s->dq, nu), first_length * 1e-6);
             return true;
         }
         if (l->ctx->nerror)
@@ -284,7 +276,7 @@ static bool not_found(const struct search *s)
 
 static double place_size(const struct ct_linear *l)
 {
-    return 1 + largest(l->y, l->m->nq);
+    return 1 + ct_vector_largest(l->y, l->m->nq);
 }
 
 bool ct_equilibrium_find(struct ct_linear *l, const bool *held,
@@ -304,7 +296,7 @@ bool ct_equilibrium_find(struct ct_linear *l, const bool *held,
         find_step(&s, c);
         ct_matrix_multiply(s.B, s.S, c, l->nfree, s.n, 1);
         ct_linear_expand(l, s.dq, s.B);
-        const double size = largest(s.dq, (size_t)l->nu) / place_size(l);
+        const double size = ct_vector_largest(s.dq, (size_t)l->nu) / place_size(l);
         out->last_step = size;
         if (size <= arrived || (size <= nearly && size > last / 2))
             break;
@@ -349,7 +341,7 @@ bool ct_equilibrium_follow(struct ct_linear *l, struct ct_equilibrium_result *ou
         if (f)
             ct_lu_solve(s.g, s.A, s.pivot, f, f, 1, f, false);
         ct_linear_expand(l, s.dq, s.g);
-        const double size = largest(s.dq, (size_t)l->nu) / place_size(l);
+        const double size = ct_vector_largest(s.dq, (size_t)l->nu) / place_size(l);
         out->last_step = size;
         if (size <= arrived || (size <= nearly && size > last / 2))
             break;

@@ -36,22 +36,6 @@ struct large {
     double *W, *R;      // nu x BLOCK; BLOCK x BLOCK
 };
 
-static double largest(const double *v, size_t n)
-{
-    double max = 0;
-    for (size_t i = 0; i < n; i++)
-        max = fmax(max, fabs(v[i]));
-    return max;
-}
-
-static double largest_entry(const struct ct_number *A, size_t n)
-{
-    double max = 0;
-    for (size_t i = 0; i < n; i++)
-        max = fmax(max, fabs(A[i].value));
-    return max;
-}
-
 // ---- matrices ---------------------------------------------------------------------------------------------
 
 // The metric.
@@ -115,7 +99,7 @@ static bool balance(struct large *g)
         return false;
     for (size_t i = 0; i < g->nu; i++)
         r[i] = -g->p->r[i];
-    if (largest(r, g->nu) == 0) // nothing acts
+    if (ct_vector_largest(r, g->nu) == 0) // nothing acts
         return true;
     g->matrix = ct_point_factor(g->p, 0, 1);
     if (!g->matrix)
@@ -123,7 +107,7 @@ static bool balance(struct large *g)
     solve(g, l->a, r);
     for (size_t i = 0; i < g->nrow; i++) // r - J' lam = -M a: the unknown of the matrix is -lam
         l->lam[i] = -g->x[g->nu + i];
-    l->acceleration = largest(l->a, g->nu);
+    l->acceleration = ct_vector_largest(l->a, g->nu);
     return ct_point_evaluate(g->p);
 }
 
@@ -132,14 +116,6 @@ static double chance(uint64_t *state)
 {
     *state = *state * 6364136223846793005u + 1442695040888963407u;
     return (double)(*state >> 11) / 4503599627370496.0 - 1;
-}
-
-static double dot(const double *x, const double *y, size_t n)
-{
-    double sum = 0;
-    for (size_t i = 0; i < n; i++)
-        sum += x[i] * y[i];
-    return sum;
 }
 
 // K x against K' x, each row and column measured by its largest entry: a load that follows the end of a long beam is small
@@ -168,15 +144,15 @@ static bool is_symmetric(struct large *g, const struct ct_point *p)
 static bool is_of_this_kind(struct large *g)
 {
     const struct ct_machine *m = g->l->m;
-    if ((g->nrow && m->e->ndriver) || largest(g->l->y + m->nq, g->nu) > 0)
+    if ((g->nrow && m->e->ndriver) || ct_vector_largest(g->l->y + m->nq, g->nu) > 0)
         return false;
-    if (!balance(g) || largest(g->p->v, g->nrow) > 0) // motions of chords
+    if (!balance(g) || ct_vector_largest(g->p->v, g->nrow) > 0) // motions of chords
         return false;
     if (g->nrow && g->l->acceleration > still)
         return false; // the rows turn while it accelerates
     const double rate
-        = sqrt(largest_entry(g->p->K, g->p->nK) * largest_entry(g->p->M, g->p->nM));
-    return largest_entry(g->p->C, g->p->nC) <= absent * rate && is_symmetric(g, g->p);
+        = sqrt(ct_point_largest(g->p->K, g->p->nK) * ct_point_largest(g->p->M, g->p->nM));
+    return ct_point_largest(g->p->C, g->p->nC) <= absent * rate && is_symmetric(g, g->p);
 }
 
 // ---- Lanczos -----------------------------------------------------------------------------------------------------
@@ -187,17 +163,17 @@ static bool take_in(struct large *g, double *x, double *c, double *size)
 {
     double *Mx = g->MV + g->nu * g->k, *v = g->V + g->nu * g->k;
     apply_masses(g, Mx, x);
-    const double before = sqrt(fmax(dot(x, Mx, g->nu), 0));
+    const double before = sqrt(fmax(ct_vector_dot(x, Mx, g->nu), 0));
     for (int pass = 0; pass < 2; pass++)
         for (size_t j = 0; j < g->k; j++) {
-            const double h = dot(g->MV + g->nu * j, x, g->nu);
+            const double h = ct_vector_dot(g->MV + g->nu * j, x, g->nu);
             for (size_t i = 0; i < g->nu; i++)
                 x[i] -= h * g->V[i + g->nu * j];
             if (c)
                 c[j] += h;
         }
     apply_masses(g, Mx, x);
-    *size = sqrt(fmax(dot(x, Mx, g->nu), 0));
+    *size = sqrt(fmax(ct_vector_dot(x, Mx, g->nu), 0));
     if (!(*size > gone * before))
         return false;
     for (size_t i = 0; i < g->nu; i++) {
@@ -274,7 +250,7 @@ static size_t iterate(struct large *g, size_t count, struct ritz *z)
         for (size_t c = 0; c < n; c++)
             for (size_t j = 0; j < last; j++)
                 g->T[j + g->most * (first + c)] = g->T[first + c + g->most * j]
-                    = dot(g->MV + g->nu * j, g->W + g->nu * c, g->nu);
+                    = ct_vector_dot(g->MV + g->nu * j, g->W + g->nu * c, g->nu);
         memset(g->R, 0, BLOCK * BLOCK * sizeof *g->R);
         const bool is_full = last + BLOCK > g->most;
         for (size_t c = 0; c < n && !is_full; c++) {
@@ -447,8 +423,8 @@ bool ct_large_modes(struct ct_ctx *ctx, struct ct_arena *a, struct ct_linear *l,
     if (!*applies)
         return true;
     if (!factor_point(&g, 0)) { // something is free to move: shifted by a little of the lowest
-        const double ratio
-            = largest_entry(g.p->K, g.p->nK) / fmax(largest_entry(g.p->M, g.p->nM), DBL_MIN);
+        const double ratio = ct_point_largest(g.p->K, g.p->nK)
+                           / fmax(ct_point_largest(g.p->M, g.p->nM), DBL_MIN);
         if (!factor_point(&g, -1e-9 * fmax(ratio, 1)))
             return ct_error(ctx, (struct ct_mark){.file = l->m->model->file}, CT_E_SINGULAR,
                             "the stiffness and the constraints are singular");

@@ -8,6 +8,7 @@
 // takes the factor from c to c + d and the shape from x to y; once K is singular, d vanishes.
 #include "analysis/buckling.h"
 #include "analysis/large.h"
+#include "numeric/dense.h"
 
 #include <math.h>
 #include <string.h>
@@ -52,14 +53,6 @@ static void start_again(struct search *s)
     memcpy(m->input + m->at_memory, s->memory0, m->e->nmemory * sizeof *s->memory0);
     m->input[s->at] = 0;
     ct_machine_prepare(m);
-}
-
-static double dot(const double *x, const double *y, size_t n)
-{
-    double sum = 0;
-    for (size_t i = 0; i < n; i++)
-        sum += x[i] * y[i];
-    return sum;
 }
 
 // y = K1 x from factors 0 and c; f: work
@@ -118,10 +111,10 @@ static bool step(struct search *s, double c, double *x, double *d)
     apply_change(s, s->b, x, c);
     ct_sparse_solve_precisely(matrix, s->x, s->b);
     double *K1y = x; // no longer needed
-    const double work = dot(s->x, s->b, s->nu);
+    const double work = ct_vector_dot(s->x, s->b, s->nu);
     apply_change(s, K1y, s->x, c);
-    *d = -work / dot(s->x, K1y, s->nu);
-    const double size = sqrt(dot(s->x, s->x, s->nu));
+    *d = -work / ct_vector_dot(s->x, K1y, s->nu);
+    const double size = sqrt(ct_vector_dot(s->x, s->x, s->nu));
     for (size_t i = 0; i < s->nu; i++)
         x[i] = s->x[i] / size;
     return isfinite(size);

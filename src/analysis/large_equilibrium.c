@@ -5,6 +5,7 @@
 #include "analysis/equilibrium.h"
 #include "analysis/point.h"
 #include "formulate/build.h"
+#include "numeric/dense.h"
 
 #include <float.h>
 #include <math.h>
@@ -23,22 +24,6 @@ struct search {
     bool *turns;
     double length; // limit of lengths now [m]; doubled after steps that went well
 };
-
-static double largest(const double *v, size_t n)
-{
-    double max = 0;
-    for (size_t i = 0; i < n; i++)
-        max = fmax(max, fabs(v[i]));
-    return max;
-}
-
-static double largest_entry(const struct ct_number *A, size_t n)
-{
-    double max = 0;
-    for (size_t i = 0; i < n; i++)
-        max = fmax(max, fabs(A[i].value));
-    return max;
-}
 
 static struct search search_create(struct ct_linear *l)
 {
@@ -89,10 +74,10 @@ static bool solve(struct search *s, double shift)
 
 static bool find_step(struct search *s)
 {
-    const double ratio
-        = largest_entry(s->p->K, s->p->nK) / fmax(largest_entry(s->p->M, s->p->nM), DBL_MIN);
+    const double ratio = ct_point_largest(s->p->K, s->p->nK)
+                       / fmax(ct_point_largest(s->p->M, s->p->nM), DBL_MIN);
     double shift = 1e-12 * fmax(ratio, 1);
-    if (solve(s, 0) && (work(s, s->x) > 0 || largest(s->x, s->nu) < nearly))
+    if (solve(s, 0) && (work(s, s->x) > 0 || ct_vector_largest(s->x, s->nu) < nearly))
         return true;
     for (int i = 0; i < MOST_SHIFTS; i++, shift *= 30)
         if (solve(s, shift) && work(s, s->x) >= 0)
@@ -118,7 +103,8 @@ static bool go(struct search *s)
     const size_t ny = l->m->nq + s->nu + 1;
     const double before = work(s, s->x), turned_back = 0.5;
     double part = allowed(s);
-    const bool is_fine = part == 1 && largest(s->x, s->nu) < nearly; // forces are rounding here
+    const bool is_fine
+        = part == 1 && ct_vector_largest(s->x, s->nu) < nearly; // forces are rounding here
     memcpy(s->kept_y, l->y, ny * sizeof *l->y);
     memcpy(s->kept_lam, l->lam, s->nrow * sizeof *l->lam);
     const bool is_cut = part < 1;
@@ -156,8 +142,8 @@ bool ct_equilibrium_find_large(struct ct_linear *l, struct ct_equilibrium_result
     *out = (struct ct_equilibrium_result){0};
     memset(l->a, 0, s.nu * sizeof *l->a);
     memset(l->lam, 0, s.nrow * sizeof *l->lam);
-    *applies = largest(l->y + l->m->nq, s.nu) == 0 && ct_point_evaluate(s.p)
-            && largest(s.p->v, s.nrow) == 0;
+    *applies = ct_vector_largest(l->y + l->m->nq, s.nu) == 0 && ct_point_evaluate(s.p)
+            && ct_vector_largest(s.p->v, s.nrow) == 0;
     if (!*applies)
         return true;
     for (;; out->iterations++) {
@@ -166,7 +152,8 @@ bool ct_equilibrium_find_large(struct ct_linear *l, struct ct_equilibrium_result
                 = out->iterations > 0; // else nothing can be said about it with these factors
             return *applies ? not_found(&s) : true;
         }
-        const double size = largest(s.x, s.nu) / (1 + largest(l->y, l->m->nq));
+        const double size
+            = ct_vector_largest(s.x, s.nu) / (1 + ct_vector_largest(l->y, l->m->nq));
         out->last_step = size;
         if (size <= arrived || (size <= nearly && size > last / 2))
             break;
@@ -194,7 +181,8 @@ static bool is_balanced(const struct search *s)
         if (q >= 0)
             meet[s->p->K[i].row] += fabs(s->p->K[i].value * l->y[q]);
     }
-    return largest(s->p->r, s->nu) <= 8 * DBL_EPSILON * largest(meet, s->nu);
+    return ct_vector_largest(s->p->r, s->nu)
+        <= 8 * DBL_EPSILON * ct_vector_largest(meet, s->nu);
 }
 
 static bool follow(struct search *s, struct ct_equilibrium_result *out)
@@ -207,7 +195,8 @@ static bool follow(struct search *s, struct ct_equilibrium_result *out)
     for (; !is_balanced(s); out->iterations++) {
         if (!solve(s, 0))
             return false;
-        const double size = largest(s->x, s->nu) / (1 + largest(l->y, l->m->nq));
+        const double size
+            = ct_vector_largest(s->x, s->nu) / (1 + ct_vector_largest(l->y, l->m->nq));
         out->last_step = size;
         for (size_t k = 0; k < s->nrow; k++)
             l->lam[k] -= s->x[s->nu + k];

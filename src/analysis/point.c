@@ -87,6 +87,14 @@ void ct_point_apply(double *y, const struct ct_number *A, size_t n, const double
         y[A[i].row] += A[i].value * x[A[i].direction];
 }
 
+double ct_point_largest(const struct ct_number *A, size_t n)
+{
+    double max = 0;
+    for (size_t i = 0; i < n; i++)
+        max = fmax(max, fabs(A[i].value));
+    return max;
+}
+
 // ---- factors ----------------------------------------------------------------------------------------------
 
 struct entries {

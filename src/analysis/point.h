@@ -30,6 +30,9 @@ bool ct_point_evaluate(struct ct_point *p);
 /// y (nu, out) = A x
 void ct_point_apply(double *y, const struct ct_number *A, size_t n, const double *x, size_t nu);
 
+/// Largest |value| of n entries.
+double ct_point_largest(const struct ct_number *A, size_t n);
+
 /// Factors of [ k K + m M, J'; J, 0 ] at the last evaluation, which they live with. NULL where it is singular or sparse
 /// factors are not available.
 struct ct_sparse *ct_point_factor(struct ct_point *p, double k, double m);

@@ -14,14 +14,6 @@ static const double massless
     = 1e-12; // of the largest eigenvalue, in coordinates of unit mass each
 static const double uncoupled = 1e-9; // a damping that small against the largest is not there
 
-static double largest(const double *v, size_t n)
-{
-    double max = 0;
-    for (size_t i = 0; i < n; i++)
-        max = fmax(max, fabs(v[i]));
-    return max;
-}
-
 static double *matrix(struct ct_arena *a, int n, int m)
 {
     return CT_NEWN(a, double, (size_t)n *(size_t)m + 1);
@@ -112,7 +104,7 @@ static void split_by_damping(struct split *s)
     ct_matrix_multiply_transposed(Cnn, s->N, CN, n0, f, n0);
     if (n0)
         ct_symmetric_eigen(value, Cnn, n0, n0, work);
-    const double size = largest(s->l->Cr, (size_t)f * (size_t)f);
+    const double size = ct_vector_largest(s->l->Cr, (size_t)f * (size_t)f);
     for (int j = 0; j < n0; j++)
         s->n1 += fabs(value[j]) > uncoupled * size;
     s->n2 = n0 - s->n1;
@@ -161,7 +153,8 @@ static bool follow(struct split *s, struct reduced *r)
     if (!n2)
         return true;
     ct_matrix_multiply(CN, C, N2, f, f, n2);
-    if (largest(CN, (size_t)f * (size_t)n2) > uncoupled * largest(C, (size_t)f * (size_t)f))
+    if (ct_vector_largest(CN, (size_t)f * (size_t)n2)
+        > uncoupled * ct_vector_largest(C, (size_t)f * (size_t)f))
         return not_held(s);
     ct_matrix_multiply(KN, K, N2, f, f, n2);
     ct_matrix_multiply_transposed(K22, N2, KN, n2, f, n2);
@@ -170,7 +163,7 @@ static bool follow(struct split *s, struct reduced *r)
     for (int i = 0; i < f; i++)
         for (int j = 0; j < n2; j++)
             Y[j + n2 * i] = N2[i + f * j];
-    const double size = largest(K22, (size_t)n2 * (size_t)n2);
+    const double size = ct_vector_largest(K22, (size_t)n2 * (size_t)n2);
     if (!ct_lu(K22, pivot, n2, n2))
         return not_held(s);
     for (int i = 0; i < n2; i++)

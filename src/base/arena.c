@@ -2,6 +2,7 @@
 #include "base/arena.h"
 
 #include "base/guard.h"
+#include "base/pages.h"
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -12,7 +13,8 @@
 struct chunk {
     struct chunk *next;
     size_t size, used; // bytes of payload
-    bool is_zero;      // what is not used yet
+    size_t ready;      // of pages: bytes from the chunk's start that are there
+    bool is_pages;     // from pages.h, and what is not used yet is zero; else from malloc
     _Alignas(16) unsigned char data[];
 };
 
@@ -29,19 +31,41 @@ struct ct_arena {
     size_t total;
 };
 
-static const size_t first_chunk = 4096, largest_chunk = 1 << 22;
+// With what precedes the payload.
+static const size_t first_chunk = 1 << 12, largest_chunk = 1 << 22;
 // Smaller chunks come from memory that has been used, and most of it in one piece: zeros are written as it is given out.
-static const size_t least_fresh = 1 << 18;
+static const size_t least_pages = 1 << 18;
 
+// size: of all.
 static struct chunk *chunk_create(size_t size)
 {
     if (ct_guard_must_fail())
         return NULL;
-    const bool is_zero = size >= least_fresh;
-    struct chunk *c = is_zero ? calloc(1, sizeof *c + size) : malloc(sizeof *c + size);
+    const bool is_pages = size >= least_pages;
+    struct chunk *c = is_pages ? ct_pages_create(size) : malloc(size);
+    const size_t ready = c && is_pages ? ct_pages_extend(c, size, 0, sizeof *c) : 0;
     if (c)
-        *c = (struct chunk){.size = size, .is_zero = is_zero};
+        *c = (struct chunk){.size = size - sizeof *c, .ready = ready, .is_pages = is_pages};
     return c;
+}
+
+static void chunk_destroy(struct chunk *c)
+{
+    if (c->is_pages)
+        ct_pages_destroy(c, sizeof *c + c->size);
+    else
+        free(c);
+}
+
+static void *chunk_take(struct chunk *c, size_t size)
+{
+    void *p = c->data + c->used;
+    c->used += size;
+    if (!c->is_pages)
+        return memset(p, 0, size);
+    if (sizeof *c + c->used > c->ready)
+        c->ready = ct_pages_extend(c, sizeof *c + c->size, c->ready, sizeof *c + c->used);
+    return p;
 }
 
 struct ct_arena *ct_arena_create(void)
@@ -60,7 +84,7 @@ void ct_arena_destroy(struct ct_arena *a)
         e->end(e->data);
     for (struct chunk *c = a->head, *next; c; c = next) {
         next = c->next;
-        free(c);
+        chunk_destroy(c);
     }
     free(a);
 }
@@ -95,21 +119,19 @@ void *ct_arena_alloc(struct ct_arena *a, size_t size)
     size = (size + 15) & ~(size_t)15;
     struct chunk *c = a->head;
     if (!c || c->size - c->used < size) {
-        size_t want = c ? 2 * c->size : first_chunk;
+        size_t want = c ? 2 * (sizeof *c + c->size) : first_chunk;
         if (want > largest_chunk)
             want = largest_chunk;
-        if (want < size)
-            want = size;
+        if (want < size + sizeof *c)
+            want = size + sizeof *c;
         c = chunk_create(want);
         if (!c)
             ct_guard_raise();
         c->next = a->head;
         a->head = c;
     }
-    void *p = c->data + c->used;
-    c->used += size;
     a->total += size;
-    return c->is_zero ? p : memset(p, 0, size);
+    return chunk_take(c, size);
 }
 
 void *ct_arena_calloc(struct ct_arena *a, size_t n, size_t size)
@@ -131,8 +153,37 @@ char *ct_arena_strdup(struct ct_arena *a, const char *s)
     return ct_arena_strndup(a, s, strlen(s));
 }
 
+// Texts put together, as most names are: the length where fmt has no conversion but %s, else -1. to: NULL to measure.
+static long join(char *to, const char *fmt, va_list ap)
+{
+    long n = 0;
+    for (; *fmt; fmt++) {
+        const char *s = fmt;
+        size_t length = 1;
+        if (*fmt == '%') {
+            if (*++fmt != 's')
+                return -1;
+            s = va_arg(ap, const char *);
+            length = strlen(s);
+        }
+        if (to)
+            memcpy(to + n, s, length);
+        n += (long)length;
+    }
+    return n;
+}
+
 char *ct_arena_vprintf(struct ct_arena *a, const char *fmt, va_list ap)
 {
+    va_list measured;
+    va_copy(measured, ap);
+    const long length = join(NULL, fmt, measured);
+    va_end(measured);
+    if (length >= 0) {
+        char *joined = ct_arena_alloc(a, (size_t)length + 1);
+        join(joined, fmt, ap);
+        return joined;
+    }
     char most[256]; // formatted once where it is short
     va_list again;
     va_copy(again, ap);

@@ -50,7 +50,8 @@ void *ct_arena_grow(struct ct_arena *a, void *array, size_t n, size_t *cap, size
 
 /// Append v to array (an lvalue pointer) with counters n and cap (lvalues, size_t).
 #define CT_PUSH(a, array, n, cap, v)                                                           \
-    ((array) = ct_arena_grow((a), (array), (n), &(cap), sizeof *(array)),                      \
+    ((void)((n) < (cap)                                                                        \
+            || ((array) = ct_arena_grow((a), (array), (n), &(cap), sizeof *(array)))),         \
      (void)((array)[(n)++] = (v)))
 
 #endif

@@ -13,6 +13,7 @@ enum {
     MOST_TRIES = 64,
     LEAST_ROWS = 4,
     LEAST_SAVED = 48, // instructions
+    MOST_CUTS = 3,    // see cut
 };
 
 // ---- repeats ----------------------------------------------------------------------------------
@@ -22,9 +23,10 @@ struct plan {
     const struct ct_listing *l;
     const uint32_t *order;
     uint32_t n;
-    uint32_t *at;    // by value: the place in the order that makes it, or none
-    uint64_t *sign;  // by place: what must repeat
-    uint32_t *again; // by place: the next one whose window has the same hash, or none
+    uint32_t *at;     // by value: the place in the order that makes it, or none
+    uint64_t *sign;   // by place: what must repeat
+    uint32_t *again;  // by place: the next one whose window has the same hash, or none
+    bool *is_swapped; // by place, see operand_at
     struct repeat *repeat;
     size_t nrepeat, repeat_cap;
     uint32_t *of_place; // the repeat of a place, or none
@@ -60,6 +62,7 @@ struct stream {
 
 struct repeat {
     uint32_t first, period, count;
+    uint32_t ncut, whole_first, whole_count; // before it was cut
     bool is_dropped;
     struct reach *reach; // (3 x period)
     bool *escapes;       // (period) read beyond its row
@@ -81,6 +84,33 @@ static const struct ct_instruction *instruction(const struct plan *p, uint32_t p
     return &p->l->ins[p->order[place]];
 }
 
+// Operand k of what is at a place. The first two of sums and products are taken in an order of their own: the store sorts
+// them by age, so that a constant that something else has made before comes first in one row and second in another.
+static uint32_t operand_at(const struct plan *p, uint32_t place, uint32_t k)
+{
+    return instruction(p, place)->arg[k < 2 && p->is_swapped[place] ? 1 - k : k];
+}
+
+static bool is_commutative(unsigned op)
+{
+    return op == CT_OP_ADD || op == CT_OP_MUL || op == CT_OP_FMA || op == CT_OP_FMS
+        || op == CT_OP_FNMA;
+}
+
+// Constants and parameters, inputs, results.
+static uint32_t age(const struct plan *p, uint32_t v)
+{
+    return p->at[v] != none ? p->at[v] + 2 : p->l->rate[v] == CT_RATE_CALL;
+}
+
+static void order_operands(struct plan *p)
+{
+    for (uint32_t i = 0; i < p->n; i++) {
+        const struct ct_instruction *ins = instruction(p, i);
+        p->is_swapped[i] = is_commutative(ins->op) && age(p, ins->arg[0]) < age(p, ins->arg[1]);
+    }
+}
+
 static uint64_t mix(uint64_t h, uint64_t v)
 {
     h = (h ^ v) * UINT64_C(0x9E3779B97F4A7C15);
@@ -95,7 +125,7 @@ static void sign_places(struct plan *p, const bool is_alone[CT_NKIND])
         if (is_alone[ins->op] || ins->nres != 1)
             h = mix(h, (uint64_t)i + CT_NKIND);
         for (uint32_t k = 0; k < ins->narg; k++) {
-            const uint32_t from = p->at[ins->arg[k]];
+            const uint32_t from = p->at[operand_at(p, i, k)];
             h = mix(h, from != none && i - from < NEAR ? i - from : 0);
         }
         p->sign[i] = h;
@@ -168,7 +198,7 @@ static void find_repeats(struct plan *p)
 static uint32_t argument(const struct plan *p, const struct repeat *r, uint32_t row,
                          uint32_t operand)
 {
-    return instruction(p, r->first + row * r->period + operand / 3)->arg[operand % 3];
+    return operand_at(p, r->first + row * r->period + operand / 3, operand % 3);
 }
 
 // The repeat that makes v, with its row and instruction; NULL if none does.
@@ -381,7 +411,34 @@ static void clear(const struct plan *p, struct repeat *r)
     r->before = r->behind = 0;
 }
 
-// False if a repeat had to be dropped: others may rely on it.
+static void set_places(const struct plan *p, const struct repeat *r, uint32_t to)
+{
+    for (uint32_t k = 0; k < r->period * r->count; k++)
+        p->of_place[r->first + k] = to;
+}
+
+// Some operand cannot be reached. The rows at the ends may do it on something else, as the first beam of a chain does that
+// nothing hangs on: without the first row, without the last one, without both; then none.
+static void cut(struct plan *p, struct repeat *r)
+{
+    static const struct {
+        unsigned first, less; // rows
+    } without[MOST_CUTS] = {{1, 1}, {0, 1}, {1, 2}};
+    set_places(p, r, none);
+    if (r->ncut == 0) {
+        r->whole_first = r->first;
+        r->whole_count = r->count;
+    }
+    r->is_dropped = r->ncut == MOST_CUTS || r->whole_count < without[r->ncut].less + LEAST_ROWS;
+    if (r->is_dropped)
+        return;
+    r->first = r->whole_first + without[r->ncut].first * r->period;
+    r->count = r->whole_count - without[r->ncut].less;
+    r->ncut++;
+    set_places(p, r, (uint32_t)(r - p->repeat));
+}
+
+// False if a repeat had to be cut: others may rely on it.
 static bool settle(struct plan *p)
 {
     for (size_t i = 0; i < p->nrepeat; i++)
@@ -391,9 +448,7 @@ static bool settle(struct plan *p)
         struct repeat *r = &p->repeat[i];
         if (r->is_dropped || reach_operands(p, r))
             continue;
-        r->is_dropped = true;
-        for (uint32_t k = 0; k < r->period * r->count; k++)
-            p->of_place[r->first + k] = none;
+        cut(p, r);
         return false;
     }
     return true;
@@ -527,11 +582,13 @@ struct ct_roll ct_roll_find(struct ct_arena *a, const struct ct_listing *l,
     p.sign = CT_NEWN(a, uint64_t, n + 1);
     p.again = CT_NEWN(a, uint32_t, n + 1);
     p.of_place = CT_NEWN(a, uint32_t, n + 1);
+    p.is_swapped = CT_NEWN(a, bool, n + 1);
     for (size_t v = 0; v < l->nvalue; v++)
         p.at[v] = out.place[v] = none;
     for (uint32_t i = 0; i < n; i++)
         for (uint32_t k = 0; k < instruction(&p, i)->nres; k++)
             p.at[instruction(&p, i)->res[k]] = i;
+    order_operands(&p);
     sign_places(&p, is_alone);
     link_windows(&p);
     find_repeats(&p);

@@ -91,17 +91,14 @@ static void pass_reads_before(struct emitter *e, uint32_t v, uint32_t at)
 // The register that is free, or else whose value is read last; -1 if all are pinned.
 static int best_register(const struct emitter *e)
 {
+    const unsigned unused = ~(e->used | e->pinned) & ((1u << NREGISTER) - 1);
+    if (unused)
+        return __builtin_ctz(unused);
     int best = -1;
-    uint32_t farthest = 0;
-    for (int r = 0; r < NREGISTER; r++) {
-        if (e->pinned >> r & 1)
-            continue;
-        if (!(e->used >> r & 1))
-            return r;
-        if (best < 0 || e->until[r] > farthest) {
+    for (unsigned left = e->used & ~e->pinned; left; left &= left - 1) {
+        const int r = __builtin_ctz(left);
+        if (best < 0 || e->until[r] > e->until[best])
             best = r;
-            farthest = e->until[r];
-        }
     }
     return best;
 }

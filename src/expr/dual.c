@@ -5,8 +5,7 @@
 // The walk of jacobian.c without new nodes. Derivatives that vanish at the point are left out with all that would follow
 // from them, and a list is given up with the last node that reads it, so that memory follows what is alive and not
 // the length of the walk.  Source: Griewank and Walther (2008), 3.1 and 7.1, key griewank2008.
-#include "base/sort.h"
-#include "expr/ex.h"
+#include "expr/seed.h"
 
 #include <math.h>
 #include <string.h>
@@ -73,27 +72,10 @@ static void push(struct walk *w, uint32_t direction, double value)
 
 // ---- nodes ----------------------------------------------------------------------------------------------
 
-static int by_symbol(const void *context, const void *a, const void *b)
-{
-    (void)context;
-    const struct ct_seed *s = a, *t = b;
-    return s->symbol.id != t->symbol.id
-             ? (s->symbol.id > t->symbol.id) - (s->symbol.id < t->symbol.id)
-             : (s->direction > t->direction) - (s->direction < t->direction);
-}
-
 static void seed_symbol(struct walk *w, uint32_t id, const struct ct_seed *seed, size_t nseed)
 {
-    size_t low = 0, high = nseed;
-    while (low < high) {
-        const size_t middle = (low + high) / 2;
-        if (seed[middle].symbol.id < id)
-            low = middle + 1;
-        else
-            high = middle;
-    }
-    for (; low < nseed && seed[low].symbol.id == id; low++)
-        push(w, seed[low].direction, ct_ex_value(w->x, seed[low].value, w->value));
+    for (size_t k = ct_seeds_find(seed, nseed, id); k < nseed && seed[k].symbol.id == id; k++)
+        push(w, seed[k].direction, ct_ex_value(w->x, seed[k].value, w->value));
 }
 
 double ct_op_partial(enum ct_op op, int i, double a, double b, double v)
@@ -263,10 +245,7 @@ size_t ct_ex_jacobian_at(struct ct_exs *x, struct ct_arena *scratch, struct ct_a
     for (size_t k = 0; k < n; k++)
         w.place[id[k]] = (uint32_t)k;
     count_readers(&w, id, n, f, nf);
-    struct ct_seed *seed = CT_NEWN(scratch, struct ct_seed, nseed + 1);
-    if (nseed)
-        memcpy(seed, seeds, nseed * sizeof *seed);
-    ct_sort(scratch, seed, nseed, sizeof *seed, by_symbol, NULL);
+    const struct ct_seed *seed = ct_seeds_sorted(scratch, seeds, nseed);
     size_t nout = 0, cap = 0, next = 0;
     *out = NULL;
     for (size_t k = 0; k < n; k++) {

@@ -13,58 +13,113 @@ const struct ct_op_info ct_op_info[CT_NOP] = {
 
 // ---- the store ------------------------------------------------------------------------------
 
-static uint32_t hash_node(const struct ct_exnode *n)
+// Room in a copy, which is made to grow, for the equations of a small model: growing step by step copies.
+enum { LEAST_NODES = 256, CLONE_NODES = 4096 };
+// Nodes with one newest operand that are listed; further ones are in the table.
+enum { MOST_LISTED = 8, LEAST_TABLE = 256 };
+
+static bool is_node(const struct ct_exnode *m, const struct ct_exnode *n)
+{
+    return ((m->op ^ n->op) | (m->a ^ n->a) | (m->b ^ n->b) | (m->c ^ n->c)) == 0;
+}
+
+static size_t hash_node(const struct ct_exnode *n)
 {
     uint64_t h = n->op * 0x9E3779B97F4A7C15u;
     h = (h ^ n->a) * 0xD6E8FEB86659FD93u;
     h = (h ^ (h >> 32) ^ n->b) * 0xD6E8FEB86659FD93u;
     h = (h ^ (h >> 32) ^ n->c) * 0xD6E8FEB86659FD93u;
-    return (uint32_t)(h ^ (h >> 32));
+    return (size_t)(h ^ (h >> 32));
 }
 
-enum { LEAST_HASH = 1024 };
-// Room in a copy, which is made to grow, for the equations of a small model: growing step by step copies.
-enum { CLONE_HASH = 8192, CLONE_NODES = 4096 };
-
-static void rehash(struct ct_exs *x, size_t size)
+// The slot of n in the table, or the free one where it belongs.
+static uint32_t *slot_of(const struct ct_exs *x, const struct ct_exnode *n)
 {
-    x->hash_size = size;
+    size_t i = hash_node(n) & (x->hash_size - 1);
+    while (x->hash[i] && !is_node(&x->node[x->hash[i] - 1], n))
+        i = (i + 1) & (x->hash_size - 1);
+    return &x->hash[i];
+}
+
+static void rehash(struct ct_exs *x)
+{
+    const uint32_t *old = x->hash;
+    const size_t nold = x->hash_size;
+    x->hash_size = nold ? 2 * nold : LEAST_TABLE;
     x->hash = CT_NEWN(x->arena, uint32_t, x->hash_size);
-    for (uint32_t id = 0; id < x->nnode; id++) {
-        size_t i = hash_node(&x->node[id]) & (x->hash_size - 1);
-        while (x->hash[i])
-            i = (i + 1) & (x->hash_size - 1);
-        x->hash[i] = id + 1;
-    }
+    for (size_t i = 0; i < nold; i++)
+        if (old[i])
+            *slot_of(x, &x->node[old[i] - 1]) = old[i];
 }
 
 static unsigned kinds_of(const struct ct_exs *x, const struct ct_exnode *n)
 {
     if (n->op == CT_OP_SYM)
         return 1u << x->sym[n->a].kind;
-    unsigned k = 0;
-    const uint32_t arg[3] = {n->a, n->b, n->c};
-    for (int i = 0; i < ct_op_info[n->op].narg; i++)
-        k |= x->kinds[arg[i]];
+    const int narg = ct_op_info[n->op].narg;
+    unsigned k = narg > 0 ? x->kinds[n->a] : 0;
+    if (narg > 1)
+        k |= x->kinds[n->b];
+    if (narg > 2)
+        k |= x->kinds[n->c];
     return k;
 }
 
-// The node's id; made if it does not exist.
+// Node, kinds and link grow together.
+static void reserve_nodes(struct ct_exs *x, size_t cap, struct ct_arena *a)
+{
+    const struct ct_exnode *node = x->node;
+    const uint16_t *kinds = x->kinds;
+    const struct ct_exlink *link = x->link;
+    x->node = CT_NEWN(a, struct ct_exnode, cap);
+    x->kinds = CT_NEWN(a, uint16_t, cap);
+    x->link = CT_NEWN(a, struct ct_exlink, cap);
+    x->node_cap = cap;
+    if (!x->nnode)
+        return;
+    memcpy(x->node, node, x->nnode * sizeof *node);
+    memcpy(x->kinds, kinds, x->nnode * sizeof *kinds);
+    memcpy(x->link, link, x->nnode * sizeof *link);
+}
+
+static ct_ex append(struct ct_exs *x, const struct ct_exnode *n)
+{
+    if (x->nnode == x->node_cap)
+        reserve_nodes(x, x->nnode ? 2 * x->nnode : LEAST_NODES, x->arena);
+    x->node[x->nnode] = *n;
+    x->kinds[x->nnode] = (uint16_t)kinds_of(x, n);
+    return (ct_ex){(uint32_t)x->nnode++};
+}
+
+static ct_ex intern_in_table(struct ct_exs *x, const struct ct_exnode *n)
+{
+    if (2 * (x->nhash + 1) > x->hash_size)
+        rehash(x);
+    uint32_t *slot = slot_of(x, n);
+    if (*slot)
+        return (ct_ex){*slot - 1};
+    const ct_ex e = append(x, n);
+    *slot = e.id + 1;
+    x->nhash++;
+    return e;
+}
+
+// The node's id; made if it does not exist. It is listed with its newest operand: seldom has one more than a few, and
+// the next node mostly asks for what was made just before, so that a large store is used a few cache lines at a time.
 static ct_ex intern(struct ct_exs *x, uint32_t op, uint32_t a, uint32_t b, uint32_t c)
 {
     const struct ct_exnode n = {op, a, b, c};
-    if (2 * (x->nnode + 1) > x->hash_size)
-        rehash(x, x->hash_size ? 2 * x->hash_size : LEAST_HASH);
-    size_t i = hash_node(&n) & (x->hash_size - 1);
-    for (; x->hash[i]; i = (i + 1) & (x->hash_size - 1))
-        if (!memcmp(&x->node[x->hash[i] - 1], &n, sizeof n))
-            return (ct_ex){x->hash[i] - 1};
-    size_t nkinds = x->nnode;
-    const uint16_t kinds = (uint16_t)kinds_of(x, &n);
-    CT_PUSH(x->arena, x->node, x->nnode, x->node_cap, n);
-    CT_PUSH(x->arena, x->kinds, nkinds, x->kinds_cap, kinds);
-    x->hash[i] = (uint32_t)x->nnode;
-    return (ct_ex){(uint32_t)x->nnode - 1};
+    const uint32_t newest = ct_op_info[op].narg > 1 && b > a ? b : a;
+    int nlisted = 0;
+    for (uint32_t id = x->link[newest].first; id; id = x->link[id].next, nlisted++)
+        if (is_node(&x->node[id], &n))
+            return (ct_ex){id};
+    if (nlisted == MOST_LISTED)
+        return intern_in_table(x, &n);
+    const ct_ex e = append(x, &n);
+    x->link[e.id].next = x->link[newest].first;
+    x->link[newest].first = e.id;
+    return e;
 }
 
 void ct_exs_init(struct ct_exs *x, struct ct_arena *arena)
@@ -80,20 +135,11 @@ struct ct_exs *ct_exs_clone(struct ct_arena *a, const struct ct_exs *from)
     struct ct_exs *x = CT_NEW(a, struct ct_exs);
     *x = *from;
     x->arena = a;
-    if (x->node_cap < CLONE_NODES)
-        x->node_cap = x->kinds_cap = CLONE_NODES;
-    x->node = CT_NEWN(a, struct ct_exnode, x->node_cap);
-    memcpy(x->node, from->node, from->nnode * sizeof *x->node);
-    x->kinds = CT_NEWN(a, uint16_t, x->kinds_cap);
-    memcpy(x->kinds, from->kinds, from->nnode * sizeof *x->kinds);
+    reserve_nodes(x, from->node_cap < CLONE_NODES ? CLONE_NODES : from->node_cap, a);
     x->sym = CT_NEWN(a, struct ct_sym, from->sym_cap);
     memcpy(x->sym, from->sym, from->nsym * sizeof *x->sym);
-    if (x->hash_size < CLONE_HASH) {
-        rehash(x, CLONE_HASH);
-    } else {
-        x->hash = CT_NEWN(a, uint32_t, from->hash_size);
-        memcpy(x->hash, from->hash, from->hash_size * sizeof *x->hash);
-    }
+    x->hash = CT_NEWN(a, uint32_t, from->hash_size);
+    memcpy(x->hash, from->hash, from->hash_size * sizeof *x->hash);
     x->label = NULL;
     x->label_cap = x->walk_cap = 0;
     x->generation = 0;
@@ -107,14 +153,16 @@ ct_ex ct_ex_const(struct ct_exs *x, double v)
     v += 0.0; // -0 becomes 0
     uint64_t bits;
     memcpy(&bits, &v, sizeof bits);
-    return intern(x, CT_OP_CONST, (uint32_t)bits, (uint32_t)(bits >> 32), 0);
+    const struct ct_exnode n = {CT_OP_CONST, (uint32_t)bits, (uint32_t)(bits >> 32), 0};
+    return intern_in_table(x, &n);
 }
 
 ct_ex ct_ex_sym(struct ct_exs *x, enum ct_sym_kind kind, const char *name, uint32_t index)
 {
     const struct ct_sym s = {.kind = kind, .name = name, .index = index};
     CT_PUSH(x->arena, x->sym, x->nsym, x->sym_cap, s);
-    return intern(x, CT_OP_SYM, (uint32_t)x->nsym - 1, 0, 0);
+    const struct ct_exnode n = {CT_OP_SYM, (uint32_t)x->nsym - 1, 0, 0};
+    return append(x, &n); // there is none like it
 }
 
 bool ct_ex_is_const(const struct ct_exs *x, ct_ex a, double *v)
@@ -245,19 +293,22 @@ ct_ex ct_ex_sub_product(struct ct_exs *x, ct_ex a, ct_ex b, ct_ex c)
     return ct_ex_sub(x, a, ct_ex_mul(x, b, c));
 }
 
-// c * b with a constant c: signs outwards, constants merged, the constant is the first operand.
-static ct_ex scaled(struct ct_exs *x, double c, ct_ex b)
+// c * b with a constant c: signs outwards, constants merged, the constant is the first operand. k: its node, 0 where it
+// is not at hand.
+static ct_ex scaled(struct ct_exs *x, double c, ct_ex k, ct_ex b)
 {
     if (c < 0)
-        return ct_ex_neg(x, scaled(x, -c, b));
+        return ct_ex_neg(x, scaled(x, -c, CT_EX_ZERO, b));
     if (c == 1)
         return b;
     const struct ct_exnode n = x->node[b.id];
     double d;
     if (n.op == CT_OP_MUL && ct_ex_is_const(x, (ct_ex){n.a}, &d) && isfinite(c * d)
         && c * d != 0)
-        return scaled(x, c * d, (ct_ex){n.b});
-    return intern(x, CT_OP_MUL, ct_ex_const(x, c).id, b.id, 0);
+        return scaled(x, c * d, CT_EX_ZERO, (ct_ex){n.b});
+    if (ct_ex_is_zero(k))
+        k = ct_ex_const(x, c);
+    return intern(x, CT_OP_MUL, k.id, b.id, 0);
 }
 
 ct_ex ct_ex_mul(struct ct_exs *x, ct_ex a, ct_ex b)
@@ -273,16 +324,16 @@ ct_ex ct_ex_mul(struct ct_exs *x, ct_ex a, ct_ex b)
     if (is_neg(x, b, &p))
         return ct_ex_neg(x, ct_ex_mul(x, a, p));
     if (ct_ex_is_const(x, a, &c))
-        return scaled(x, c, b);
+        return scaled(x, c, a, b);
     if (ct_ex_is_const(x, b, &c))
-        return scaled(x, c, a);
+        return scaled(x, c, b, a);
     // constants outwards: (c x) y = c (x y)
     struct ct_exnode n = x->node[a.id];
     if (n.op == CT_OP_MUL && ct_ex_is_const(x, (ct_ex){n.a}, &c))
-        return scaled(x, c, ct_ex_mul(x, (ct_ex){n.b}, b));
+        return scaled(x, c, (ct_ex){n.a}, ct_ex_mul(x, (ct_ex){n.b}, b));
     n = x->node[b.id];
     if (n.op == CT_OP_MUL && ct_ex_is_const(x, (ct_ex){n.a}, &c))
-        return scaled(x, c, ct_ex_mul(x, a, (ct_ex){n.b}));
+        return scaled(x, c, (ct_ex){n.a}, ct_ex_mul(x, a, (ct_ex){n.b}));
     return a.id < b.id ? intern(x, CT_OP_MUL, a.id, b.id, 0)
                        : intern(x, CT_OP_MUL, b.id, a.id, 0);
 }
@@ -308,7 +359,7 @@ ct_ex ct_ex_div(struct ct_exs *x, ct_ex a, ct_ex b)
         if (c < 0)
             return ct_ex_neg(x, ct_ex_div(x, a, ct_ex_const(x, -c)));
         if (frexp(c, &exponent) == 0.5 && isnormal(1 / c))
-            return scaled(x, 1 / c, a); // a power of two: exact
+            return scaled(x, 1 / c, CT_EX_ZERO, a); // a power of two: exact
     }
     return intern(x, CT_OP_DIV, a.id, b.id, 0);
 }

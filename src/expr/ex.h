@@ -71,6 +71,12 @@ struct ct_exnode {
     uint32_t op, a, b, c;
 };
 
+/// Nodes by their newest operand: the last one of which a node is the newest operand, and the one before that with the
+/// same newest operand; 0: none.
+struct ct_exlink {
+    uint32_t first, next;
+};
+
 /// A sampled function of one variable, for CT_OP_TABLE (drivers from files).
 struct ct_table {
     const char *file, *column;
@@ -87,10 +93,11 @@ struct ct_exs {
     size_t nsym, sym_cap;
     const struct ct_table *table;
     size_t ntable, table_cap;
-    uint32_t *hash; // open addressing, 0 is free, else id + 1
-    size_t hash_size;
-    uint16_t *kinds; // per node: bit set of the kinds of symbols below it
-    size_t kinds_cap;
+    uint16_t *kinds;        // per node: bit set of the kinds of symbols below it
+    struct ct_exlink *link; // per node
+    uint32_t
+        *hash; // of constants and what is not linked; open addressing, 0 is free, else id + 1
+    size_t hash_size, nhash;
     const char **label; // optional name by node id, for printing; NULL where none
     size_t label_cap;
     unsigned char

@@ -5,8 +5,7 @@
 // A node's list is the merge of its arguments' lists by the chain rule, so a node costs as much as it has
 // directions: for a chain of n links about n^2 / 2 in all, and equal derivatives are one node of the store.
 // Source: Griewank and Walther (2008), 7.1, key griewank2008.
-#include "base/sort.h"
-#include "expr/ex.h"
+#include "expr/seed.h"
 
 #include <string.h>
 
@@ -41,28 +40,11 @@ static struct list list_of(const struct walk *w, uint32_t id)
     return w->list[w->place[id] - 1];
 }
 
-static int by_symbol(const void *context, const void *a, const void *b)
-{
-    (void)context;
-    const struct ct_seed *s = a, *t = b;
-    return s->symbol.id != t->symbol.id
-             ? (s->symbol.id > t->symbol.id) - (s->symbol.id < t->symbol.id)
-             : (s->direction > t->direction) - (s->direction < t->direction);
-}
-
 // A symbol's list is what its seeds say; the seeds are sorted.
 static void seed_symbol(struct walk *w, uint32_t id, const struct ct_seed *seed, size_t nseed)
 {
-    size_t low = 0, high = nseed;
-    while (low < high) {
-        const size_t middle = (low + high) / 2;
-        if (seed[middle].symbol.id < id)
-            low = middle + 1;
-        else
-            high = middle;
-    }
-    for (; low < nseed && seed[low].symbol.id == id; low++)
-        push(w, seed[low].direction, seed[low].value);
+    for (size_t k = ct_seeds_find(seed, nseed, id); k < nseed && seed[k].symbol.id == id; k++)
+        push(w, seed[k].direction, seed[k].value);
 }
 
 // The derivatives of a node's arguments in one direction -> the derivative of the node.
@@ -123,10 +105,7 @@ size_t ct_ex_jacobian(struct ct_exs *x, struct ct_arena *scratch, struct ct_aren
         most = id[k] > most ? id[k] : most;
     w.place = CT_NEWN(scratch, uint32_t, (size_t)most + 1);
     w.list = CT_NEWN(scratch, struct list, n + 1);
-    struct ct_seed *seed = CT_NEWN(scratch, struct ct_seed, nseed + 1);
-    if (nseed)
-        memcpy(seed, seeds, nseed * sizeof *seed);
-    ct_sort(scratch, seed, nseed, sizeof *seed, by_symbol, NULL);
+    const struct ct_seed *seed = ct_seeds_sorted(scratch, seeds, nseed);
     for (size_t k = 0; k < n; k++) {
         w.list[k].first = w.ntangent;
         if (x->node[id[k]].op == CT_OP_SYM)

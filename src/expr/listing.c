@@ -71,7 +71,7 @@ static int arguments(const struct ct_exnode *n, uint32_t arg[3])
 static uint32_t mark_live(unsigned char **live, struct ct_arena *a, const struct ct_exs *x,
                           const ct_ex *e, size_t n)
 {
-    uint32_t end = 0, arg[3];
+    uint32_t end = 0;
     for (size_t k = 0; k < n; k++)
         end = e[k].id >= end ? e[k].id + 1 : end;
     *live = CT_NEWN(a, unsigned char, end);
@@ -81,8 +81,14 @@ static uint32_t mark_live(unsigned char **live, struct ct_arena *a, const struct
     for (uint32_t id = end; id-- > 0;) {
         if (!(*live)[id])
             continue;
-        for (int i = arguments(&x->node[id], arg); i-- > 0;)
-            (*live)[arg[i]] = 1;
+        const struct ct_exnode *node = &x->node[id];
+        const int narg = ct_op_info[node->op].narg;
+        if (narg > 0)
+            (*live)[node->a] = 1;
+        if (narg > 1)
+            (*live)[node->b] = 1;
+        if (narg > 2)
+            (*live)[node->c] = 1;
     }
     return end;
 }
@@ -94,11 +100,13 @@ static enum ct_rate node_rate(const struct ct_exs *x, const struct ct_exnode *n,
         return CT_RATE_NEVER;
     if (n->op == CT_OP_SYM)
         return x->sym[n->a].kind == CT_SYM_PARAM ? CT_RATE_PARAM : CT_RATE_CALL;
-    enum ct_rate r = CT_RATE_PARAM;
-    uint32_t arg[3];
-    for (int i = arguments(n, arg); i-- > 0;)
-        r = rate[arg[i]] > r ? rate[arg[i]] : r;
-    return r;
+    const int narg = ct_op_info[n->op].narg;
+    unsigned r = rate[n->a] > CT_RATE_PARAM ? rate[n->a] : CT_RATE_PARAM;
+    if (narg > 1 && rate[n->b] > r)
+        r = rate[n->b];
+    if (narg > 2 && rate[n->c] > r)
+        r = rate[n->c];
+    return (enum ct_rate)r;
 }
 
 struct ct_tape_counts ct_ex_count(struct ct_arena *scratch, const struct ct_exs *x,

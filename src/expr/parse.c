@@ -568,6 +568,10 @@ bool ct_parse(struct ct_ctx *ctx, const struct ct_scope *scope, struct ct_text t
     const char *unit;
     if (split_quantity(text.text, &value, &unit))
         return parse_quantity(&s, value, unit, e);
+    if (is_digit(*text.text) && !*unit && isfinite(value)) { // as most texts are
+        *e = ct_ex_const(scope->x, value);
+        return true;
+    }
     if (!parse_comparison(&s, e))
         return false;
     skip_blanks(&s);

@@ -1,8 +1,8 @@
 // See sincos.h.
 //
 // Reduction by multiples of pi/2 in three parts, the first two of 33 bits, so that their products with up to 2^20 are
-// exact; what is left is y + tail. Then polynomials, interpolated at the zeros of Chebyshev's polynomial in
-// [0, (1.01 pi/4)^2] of y^2 (relative errors 2^-59), whose first terms are kept with what their roundings lose.
+// exact; what is left is y = p - w. Then polynomials, interpolated at the zeros of Chebyshev's polynomial in
+// [0, (1.01 pi/4)^2] of y^2 (relative errors 2^-59), summed in short chains: the time is that of the longest one.
 // Sources: reduction, Cody and Waite (1980), key cody1980; products in two parts, Dekker (1971), key dekker1971.
 #include "expr/sincos.h"
 
@@ -20,14 +20,12 @@ static const double largest = 1e6;
 #define EACH_CONSTANT(X)                                                                       \
     X(ONE, 1)                                                                                  \
     X(HALF, 0.5)                                                                               \
-    X(TWO, 2)                                                                                  \
     X(two_over_pi, 0x1.45f306dc9c883p-1)                                                       \
     X(to_integer, 0x1.8p52)                                                                    \
     X(Q0, 0x1.921fb544p+0)                                                                     \
     X(Q1, 0x1.0b4611a6p-34)                                                                    \
     X(Q2, 0x1.3198a2e037073p-69)                                                               \
     X(S0, -0x1.5555555555555p-3)                                                               \
-    X(S0_LOW, -0x1.5555555555555p-57)                                                          \
     X(S1, 0x1.1111111111111p-7)                                                                \
     X(S2, -0x1.a01a01a019eb4p-13)                                                              \
     X(S3, 0x1.71de3a5504ca3p-19)                                                               \
@@ -35,7 +33,6 @@ static const double largest = 1e6;
     X(S5, 0x1.6122463e0d6c2p-33)                                                               \
     X(S6, -0x1.ab8502e1e7377p-41)                                                              \
     X(C0, 0x1.5555555555555p-5)                                                                \
-    X(C0_LOW, 0x1.5555555555555p-59)                                                           \
     X(C1, -0x1.6c16c16c16bedp-10)                                                              \
     X(C2, 0x1.a01a019fe58bap-16)                                                               \
     X(C3, -0x1.27e4fad0c2f58p-22)                                                              \
@@ -73,6 +70,7 @@ static inline double lost(double a, double b, double p)
 #define NUMBER(b) number_of(b)
 #define K(name) k1_##name
 #define LOST(a, b, p) lost(a, b, p)
+#define REST(a, n, q) ((a) - (n) * (q))
 #define KERNEL kernel_1
 #define TARGET
 #include "expr/sincos_kernel.def"
@@ -110,6 +108,7 @@ EACH_CONSTANT(FOUR_NUMBERS)
 #define NUMBER(b) ((four)(b))
 #define K(name) k4_##name
 #define LOST(a, b, p) _mm256_fmsub_pd(a, b, p)
+#define REST(a, n, q) _mm256_fnmadd_pd(n, q, a)
 #define KERNEL kernel_4
 #define TARGET __attribute__((target("avx2,fma")))
 #include "expr/sincos_kernel.def"
@@ -122,29 +121,45 @@ WIDE static inline bool has_large(four angle)
     return _mm256_movemask_pd((four)((angle <= largest) & (angle >= -largest))) != ALL;
 }
 
-// Angles beyond the range are done again.
+// Lanes are gathered from single numbers: callers have just written them one by one, and a vector that is read before its
+// parts have left the store buffer has to wait for them.
+WIDE static inline four gather(const double *a, size_t n)
+{
+    return (four){a[0], a[n > 1 ? 1 : 0], a[n > 2 ? 2 : 0], a[n > 3 ? 3 : 0]};
+}
+
+WIDE static inline void scatter(double *v, four lanes, size_t n)
+{
+    if (n == LANES)
+        _mm256_storeu_pd(v, lanes);
+    for (size_t i = 0; i < n && n < LANES; i++)
+        v[i] = lanes[i];
+}
+
+// n <= LANES. Angles beyond the range are done again.
+WIDE static inline void few(const double *a, double *s, double *c, size_t n)
+{
+    const four angle = gather(a, n);
+    four sine, cosine;
+    kernel_4(angle, &sine, &cosine);
+    scatter(s, sine, n);
+    scatter(c, cosine, n);
+    if (has_large(angle))
+        one_by_one(a, s, c, n);
+}
+
 WIDE static void four_by_four(const double *a, double *s, double *c, size_t n)
 {
-    const size_t most = n / LANES * LANES;
-    four sine, cosine;
-    for (size_t i = 0; i < most; i += LANES) {
-        const four angle = _mm256_loadu_pd(a + i);
-        kernel_4(angle, &sine, &cosine);
-        _mm256_storeu_pd(s + i, sine);
-        _mm256_storeu_pd(c + i, cosine);
-        if (has_large(angle))
-            one_by_one(a + i, s + i, c + i, LANES);
-    }
-    if (most == n)
-        return;
-    static const int64_t on[2 * LANES - 1] = {-1, -1, -1};
-    const __m256i used = _mm256_loadu_si256((const __m256i *)(on + LANES - 1 - (n - most)));
-    const four angle = _mm256_maskload_pd(a + most, used);
-    kernel_4(angle, &sine, &cosine);
-    _mm256_maskstore_pd(s + most, used, sine);
-    _mm256_maskstore_pd(c + most, used, cosine);
-    if (has_large(angle))
-        one_by_one(a + most, s + most, c + most, n - most);
+    for (; n > LANES; n -= LANES, a += LANES, s += LANES, c += LANES)
+        few(a, s, c, LANES);
+    if (n == 4)
+        few(a, s, c, 4);
+    else if (n == 3)
+        few(a, s, c, 3);
+    else if (n == 2)
+        few(a, s, c, 2);
+    else if (n == 1)
+        few(a, s, c, 1);
 }
 
 void ct_sincos_many(const double *a, double *s, double *c, size_t n)

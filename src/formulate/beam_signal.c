@@ -136,7 +136,8 @@ static ct_ex3 section_rate(struct ct_build *b, const struct ct_flexible *f,
                            const struct ct_element *e, const ct_ex *of, ct_ex xi)
 {
     const ct_ex in_z = ct_element_field(b, e, f->shape.rotation, of, 6, 4, xi);
-    return (ct_ex3){{ct_element_field(b, e, f->linear, of, 10, 2, xi), ct_ex_neg(b->x, in_z),
+    return (ct_ex3){{ct_element_field(b, e, f->twist, of, CT_PLACE_DOF, CT_TWIST_DOF, xi),
+                     ct_ex_neg(b->x, in_z),
                      ct_element_field(b, e, f->shape.rotation, of, 2, 4, xi)}};
 }
 

@@ -41,8 +41,8 @@ static const struct ct_shape *place_shape(const struct ct_flexible *f, int dof)
 // Right-handed: a slope dw/dx turns about -y.
 static struct ct_shape turn_shape(const struct ct_flexible *f, int dof)
 {
-    struct ct_shape s = dof >= CT_PLACE_DOF ? f->linear[dof - CT_PLACE_DOF]
-                                            : f->shape.rotation[(dof - 2) % 4];
+    struct ct_shape s
+        = dof >= CT_PLACE_DOF ? f->twist[dof - CT_PLACE_DOF] : f->shape.rotation[(dof - 2) % 4];
     for (int i = 0; i < CT_SHAPE_SIZE && axis(dof) == 1; i++)
         s.c[i] = -s.c[i];
     return s;

@@ -94,18 +94,19 @@ static struct plane_matrices plane_matrices(struct ct_build *b, const struct ct_
     return s;
 }
 
-// Two dofs that a constant k times the slopes of their shapes holds, with m per length: stretch and twist.
+// n dofs with their shapes, which a constant k times the slopes holds, with m per length: stretch and twist.
 static void line_matrices(struct ct_build *b, const struct ct_flexible *f, int e, int first,
-                          ct_ex k, ct_ex m, ct_ex K[CT_DOF][CT_DOF], ct_ex M[CT_DOF][CT_DOF])
+                          const struct ct_shape *shape, int n, ct_ex k, ct_ex m,
+                          ct_ex K[CT_DOF][CT_DOF], ct_ex M[CT_DOF][CT_DOF])
 {
-    for (int i = 0; i < 2; i++)
-        for (int j = 0; j < 2; j++) {
-            const struct ct_shape di = ct_shape_slope(&f->linear[i]),
-                                  dj = ct_shape_slope(&f->linear[j]);
+    for (int i = 0; i < n; i++)
+        for (int j = 0; j < n; j++) {
+            const struct ct_shape di = ct_shape_slope(&shape[i]),
+                                  dj = ct_shape_slope(&shape[j]);
             K[first + i][first + j] = ct_flexible_integral(b, f, e, k, &di, &dj,
                                                            ct_flexible_stiffness_rule(f->beam));
-            M[first + i][first + j] = ct_flexible_integral(
-                b, f, e, m, &f->linear[i], &f->linear[j], ct_flexible_mass_rule(f->beam));
+            M[first + i][first + j] = ct_flexible_integral(b, f, e, m, &shape[i], &shape[j],
+                                                           ct_flexible_mass_rule(f->beam));
         }
 }
 
@@ -116,8 +117,9 @@ void ct_element_matrices(struct ct_build *b, const struct ct_flexible *f, int e,
     const struct ct_beam *beam = f->beam;
     memset(K, 0, sizeof(ct_ex[CT_DOF][CT_DOF]));
     memset(M, 0, sizeof(ct_ex[CT_DOF][CT_DOF]));
-    line_matrices(b, f, e, 0, ct_ex_mul(x, beam->E, beam->area), beam->mass_per_length, K, M);
-    line_matrices(b, f, e, CT_PLACE_DOF, ct_ex_mul(x, beam->G, beam->J),
+    line_matrices(b, f, e, 0, f->linear, 2, ct_ex_mul(x, beam->E, beam->area),
+                  beam->mass_per_length, K, M);
+    line_matrices(b, f, e, CT_PLACE_DOF, f->twist, CT_TWIST_DOF, ct_ex_mul(x, beam->G, beam->J),
                   ct_flexible_rotary(f, 0).value, K, M);
     for (int plane = 0; plane < 2; plane++) {
         const int first = plane ? 6 : 2;
@@ -138,14 +140,8 @@ static ct_ex product(struct ct_build *b, const ct_ex row[4], const ct_ex *v)
     return sum;
 }
 
-// What one element adds: rows of its dofs, strain energy, twice the power its damping takes.
-struct element_force {
-    ct_ex row[CT_DOF];
-    ct_ex energy, drag;
-};
-
 static void bend_element(struct ct_build *b, const struct ct_flexible *f, int e, int plane,
-                         const struct plane_matrices *s, struct element_force *out)
+                         const struct plane_matrices *s, struct ct_element_force *out)
 {
     struct ct_exs *x = b->x;
     const struct ct_beam *beam = f->beam;
@@ -190,7 +186,7 @@ static struct stretch stretch_of(struct ct_build *b, const struct ct_flexible *f
 }
 
 static void stretch_element(struct ct_build *b, const struct ct_flexible *f, int e,
-                            const struct plane_matrices plane[2], struct element_force *out)
+                            const struct plane_matrices plane[2], struct ct_element_force *out)
 {
     struct ct_exs *x = b->x;
     const struct ct_beam *beam = f->beam;
@@ -218,21 +214,21 @@ static void stretch_element(struct ct_build *b, const struct ct_flexible *f, int
 }
 
 static void twist_element(struct ct_build *b, const struct ct_flexible *f, int e,
-                          struct element_force *out)
+                          struct ct_element_force *out)
 {
     struct ct_exs *x = b->x;
     const struct ct_beam *beam = f->beam;
     const ct_ex *value = f->element[e].value + CT_PLACE_DOF;
     const ct_ex *rate = f->element[e].rate + CT_PLACE_DOF;
     const ct_ex GJ = ct_ex_mul(x, beam->G, beam->J), J = ct_flexible_rotary(f, 0).value;
-    for (int j = 0; j < 2; j++) {
-        const struct ct_shape dj = ct_shape_slope(&f->linear[j]);
+    for (int j = 0; j < CT_TWIST_DOF; j++) {
+        const struct ct_shape dj = ct_shape_slope(&f->twist[j]);
         ct_ex elastic = CT_EX_ZERO, drag = CT_EX_ZERO;
-        for (int k = 0; k < 2; k++) {
-            const struct ct_shape dk = ct_shape_slope(&f->linear[k]);
+        for (int k = 0; k < CT_TWIST_DOF; k++) {
+            const struct ct_shape dk = ct_shape_slope(&f->twist[k]);
             const ct_ex K
                 = ct_flexible_integral(b, f, e, GJ, &dj, &dk, ct_flexible_stiffness_rule(beam));
-            const ct_ex M = ct_flexible_integral(b, f, e, J, &f->linear[j], &f->linear[k],
+            const ct_ex M = ct_flexible_integral(b, f, e, J, &f->twist[j], &f->twist[k],
                                                  ct_flexible_mass_rule(beam));
             const ct_ex C = ct_ex_add(x, ct_ex_mul(x, beam->damping_stiffness, K),
                                       ct_ex_mul(x, beam->damping_mass, M));
@@ -249,7 +245,7 @@ static void twist_element(struct ct_build *b, const struct ct_flexible *f, int e
 
 // ---- twist with bending ---------------------------------------------------------------------------------------
 
-enum { COUPLING_POINTS = 2 }; // exact where sections are constant
+enum { COUPLING_POINTS = 2, WITH_QUADRATIC_TWIST = 3 }; // exact where sections are constant
 
 static bool couples(const struct ct_flexible *f)
 {
@@ -291,20 +287,21 @@ static void push_angle(struct ct_build *b, const struct angle *a, int n, ct_ex b
 
 // Bending turns the axes of twist and twist those of bending: GJ p' (b' g - g' b)/2 + E (Iy - Iz) p b' g'.  (5.6b)
 static void couple_point(struct ct_build *b, const struct ct_flexible *f, int e, ct_ex xi,
-                         ct_ex GJ, ct_ex EI, struct element_force *out)
+                         ct_ex GJ, ct_ex EI, struct ct_element_force *out)
 {
     struct ct_exs *x = b->x;
     const struct ct_element *self = &f->element[e];
     const ct_ex h = self->span.length, half = ct_ex_scale(x, 0.5, GJ);
-    const struct angle p = angle_at(b, f->linear, 2, self->value + CT_PLACE_DOF, xi, h),
-                       g = angle_at(b, f->shape.rotation, 4, self->value + 2, xi, h),
-                       w = angle_at(b, f->shape.rotation, 4, self->value + 6, xi, h); // -b
+    const struct angle p
+        = angle_at(b, f->twist, CT_TWIST_DOF, self->value + CT_PLACE_DOF, xi, h),
+        g = angle_at(b, f->shape.rotation, 4, self->value + 2, xi, h),
+        w = angle_at(b, f->shape.rotation, 4, self->value + 6, xi, h); // -b
     // derivatives by p, g and w of GJ p' (g' w - w' g)/2 - EI p w' g'
     const ct_ex turn
         = ct_ex_sub(x, ct_ex_mul(x, g.slope, w.value), ct_ex_mul(x, w.slope, g.value));
     const ct_ex torque = ct_ex_mul(x, half, p.slope), bend = ct_ex_mul(x, EI, p.value);
     const ct_ex twist = ct_ex_neg(x, ct_ex_mul(x, EI, ct_ex_mul(x, w.slope, g.slope)));
-    push_angle(b, &p, 2, twist, ct_ex_mul(x, half, turn), out->row + CT_PLACE_DOF);
+    push_angle(b, &p, CT_TWIST_DOF, twist, ct_ex_mul(x, half, turn), out->row + CT_PLACE_DOF);
     push_angle(b, &g, 4, ct_ex_neg(x, ct_ex_mul(x, torque, w.slope)),
                ct_ex_sub(x, ct_ex_mul(x, torque, w.value), ct_ex_mul(x, bend, w.slope)),
                out->row + 2);
@@ -317,7 +314,7 @@ static void couple_point(struct ct_build *b, const struct ct_flexible *f, int e,
 }
 
 static void couple_element(struct ct_build *b, const struct ct_flexible *f, int e,
-                           struct element_force *out)
+                           struct ct_element_force *out)
 {
     struct ct_exs *x = b->x;
     const struct ct_beam *beam = f->beam;
@@ -327,7 +324,9 @@ static void couple_element(struct ct_build *b, const struct ct_flexible *f, int 
     const bool varies
         = (ct_ex_kinds(x, torsion.value) | ct_ex_kinds(x, bending.value)) & 1u << CT_SYM_LOCAL;
     const enum ct_rule rule = ct_flexible_stiffness_rule(beam);
-    const int wanted = varies ? CT_MAX_GAUSS : COUPLING_POINTS;
+    const int wanted = varies                    ? CT_MAX_GAUSS
+                     : beam->has_quadratic_twist ? WITH_QUADRATIC_TWIST
+                                                 : COUPLING_POINTS;
     double xi[CT_MAX_GAUSS];
     ct_ex GJ[CT_MAX_GAUSS], EI[CT_MAX_GAUSS];
     const int n = ct_shape_points(x, &torsion, &f->element[e].span, rule, wanted, xi, GJ);
@@ -338,10 +337,12 @@ static void couple_element(struct ct_build *b, const struct ct_flexible *f, int 
 
 // ---- elements ---------------------------------------------------------------------------------------------------
 
-static struct element_force element_force(struct ct_build *b, const struct ct_flexible *f,
-                                          int e)
+static struct ct_element_force element_force(struct ct_build *b, const struct ct_flexible *f,
+                                             int e)
 {
-    struct element_force out = {0};
+    struct ct_element_force out = {0};
+    if (ct_stiffness_has_amplitudes(b, f))
+        return ct_element_bent(b, f, e);
     struct plane_matrices plane[2];
     for (int k = 0; k < 2; k++) {
         const bool bends = f->deformation & (k ? CT_BEAM_BENDING_Y : CT_BEAM_BENDING_Z);
@@ -361,7 +362,7 @@ static struct element_force element_force(struct ct_build *b, const struct ct_fl
 void ct_stiffness_rows(struct ct_build *b, const struct ct_flexible *f, ct_ex *row)
 {
     for (int e = 0; e < f->beam->nelement; e++) {
-        const struct element_force s = element_force(b, f, e);
+        const struct ct_element_force s = element_force(b, f, e);
         for (int j = 0; j < CT_DOF; j++)
             ct_dof_push(b, f, e, j, s.row[j], row);
     }

@@ -98,7 +98,9 @@ static bool masses_keep_plane(struct ct_build *b, ct_ex33 *const *U, double allo
 
 bool ct_excite_keeps_plane(struct ct_build *b, ct_ex33 *const *U)
 {
+    const unsigned both = CT_BEAM_BENDING_Y | CT_BEAM_BENDING_Z;
     bool asked = false; // does any beam leave the choice to us?
+    bool frees = false; // can one that does leave the plane?
     double longest = 0;
     for (size_t i = 0; i < b->nflexible; i++) {
         const struct ct_flexible *f = &b->flexible[i];
@@ -110,12 +112,15 @@ bool ct_excite_keeps_plane(struct ct_build *b, ct_ex33 *const *U)
         const bool leaves = f->beam->deformation_given && f->beam->deformation & ~within;
         if ((!about_z && !about_y) || leaves)
             return false;
+        frees = frees || (!f->beam->deformation_given && (f->beam->known & both) == both);
         longest = fmax(longest, ct_ex_value(b->x, f->beam->length, b->value));
         asked = asked || !f->beam->deformation_given;
     }
-    return !asked
-        || (is_across(b, b->model->gravity, b->plane[2]) && loads_keep_plane(b, U)
-            && masses_keep_plane(b, U, 1e-9 * longest));
+    const bool keeps = !asked
+                    || (is_across(b, b->model->gravity, b->plane[2]) && loads_keep_plane(b, U)
+                        && masses_keep_plane(b, U, 1e-9 * longest));
+    b->is_freed = b->is_freed || (keeps && frees && b->frees_beams);
+    return keeps && !b->is_freed;
 }
 
 // Does the joint hand torques on to the section it sits at?
@@ -128,7 +133,20 @@ static bool turns_section(const struct ct_build *b, int frame, const struct ct_f
     return !is_base || f->beam->is_chord;
 }
 
-bool ct_excite_twist(const struct ct_build *b, const struct ct_flexible *f)
+// Bending about both axes twists a beam by (5.6b), if it is stiffer about one of them; in an analysis the smallest motion
+// counts.
+static bool bending_twists(const struct ct_build *b, const struct ct_flexible *f)
+{
+    const struct ct_beam *beam = f->beam;
+    const unsigned both = CT_BEAM_BENDING_Y | CT_BEAM_BENDING_Z;
+    return (f->deformation & beam->known & both) == both
+        && (b->frees_beams
+            || (f->formulation == CT_BEAM_FORESHORTENING
+                && !ct_ex_is_zero(ct_ex_sub(b->x, beam->Iy, beam->Iz))));
+}
+
+// Does the scene twist it by a joint, a torque or an arm off its axis beyond the base?
+static bool is_twisted(const struct ct_build *b, const struct ct_flexible *f)
 {
     const struct ct_model *m = b->model;
     if (f->beam->has_rotary && !ct_ex_is_zero(f->beam->rotary[0]))
@@ -153,4 +171,17 @@ bool ct_excite_twist(const struct ct_build *b, const struct ct_flexible *f)
             return true;
     }
     return false;
+}
+
+const char *ct_excite_no_twist(const struct ct_build *b, const struct ct_flexible *f)
+{
+    if (is_twisted(b, f))
+        return NULL;
+    if (!bending_twists(b, f))
+        return "nothing beyond its base can twist it";
+    if (!(f->beam->known & CT_BEAM_TORSION))
+        return "only bending about both axes twists it, and G or nu, or J, is not given";
+    return ct_ex_is_zero(f->beam->twist_inertia)
+             ? "only bending about both axes twists it, and its sections have no inertia"
+             : NULL;
 }

@@ -1,13 +1,24 @@
 // See flexible.h.
+#include "formulate/amplitude.h"
 #include "formulate/elastic.h"
 #include "formulate/excite.h"
+#include "formulate/small.h"
 #include "formulate/topology.h"
 
 #include <math.h>
 #include <string.h>
 
-enum { U, V, W, RX, RY, RZ, NKIND };
-static const char *const kind_name[NKIND] = {"u", "v", "w", "rx", "ry", "rz"};
+enum {
+    U = CT_FREEDOM_U,
+    V = CT_FREEDOM_V,
+    W = CT_FREEDOM_W,
+    RX = CT_FREEDOM_RX,
+    RY = CT_FREEDOM_RY,
+    RZ = CT_FREEDOM_RZ,
+    RM = CT_FREEDOM_RM,
+    NKIND = CT_NODE_FREEDOM
+};
+static const char *const kind_name[NKIND] = {"u", "v", "w", "rx", "ry", "rz", "rm"};
 static const ct_ex3 zero3 = {{{0}, {0}, {0}}};
 
 // ---- freedoms ---------------------------------------------------------------------------------------
@@ -16,8 +27,8 @@ static const ct_ex3 zero3 = {{{0}, {0}, {0}}};
 static unsigned family_of(int kind)
 {
     static const unsigned family[NKIND]
-        = {CT_BEAM_AXIAL,   CT_BEAM_BENDING_Z, CT_BEAM_BENDING_Y,
-           CT_BEAM_TORSION, CT_BEAM_BENDING_Y, CT_BEAM_BENDING_Z};
+        = {CT_BEAM_AXIAL,     CT_BEAM_BENDING_Z, CT_BEAM_BENDING_Y, CT_BEAM_TORSION,
+           CT_BEAM_BENDING_Y, CT_BEAM_BENDING_Z, CT_BEAM_TORSION};
     return family[kind];
 }
 
@@ -31,6 +42,8 @@ static bool is_fixed(const struct ct_flexible *f, int node, int kind)
     const bool is_end = node == f->beam->nelement;
     if (!(f->deformation & family_of(kind)))
         return true;
+    if (kind == RM)
+        return node == 0 || !f->beam->has_quadratic_twist;
     if (!f->beam->is_chord)
         return node == 0;
     // the chord's frame: origin at the start, x towards the end, not twisted at the start
@@ -40,9 +53,9 @@ static bool is_fixed(const struct ct_flexible *f, int node, int kind)
 
 static void number_dofs(struct ct_flexible *f)
 {
-    static const int kinds[CT_DOF / 2 * 2][2]
-        = {{0, U}, {1, U},  {0, V}, {0, RZ}, {1, V},  {1, RZ},
-           {0, W}, {0, RY}, {1, W}, {1, RY}, {0, RX}, {1, RX}};
+    static const int kinds[CT_DOF][2]
+        = {{0, U},  {1, U}, {0, V},  {0, RZ}, {1, V},  {1, RZ}, {0, W},
+           {0, RY}, {1, W}, {1, RY}, {0, RX}, {1, RX}, {1, RM}};
     for (int e = 0; e < f->beam->nelement; e++)
         for (int j = 0; j < CT_DOF; j++) {
             const int node = e + kinds[j][0], kind = kinds[j][1];
@@ -110,39 +123,42 @@ static unsigned in_plane(const struct ct_build *b, const struct ct_flexible *f)
     return CT_BEAM_AXIAL | (about_z ? CT_BEAM_BENDING_Z : CT_BEAM_BENDING_Y);
 }
 
-static enum ct_axial axial_of(const struct ct_flexible *f)
+// Modes hold no room for the places of nodes that foreshortening moves; and it is the stretch that is small, not the places,
+// which are of second order in the slopes.
+static enum ct_axial axial_of(const struct ct_build *b, const struct ct_flexible *f)
 {
     if (f->formulation == CT_BEAM_LINEAR)
         return CT_AXIAL_LINEAR;
-    // modes hold no room for the places of nodes that foreshortening moves
     return f->deformation & CT_BEAM_AXIAL && f->formulation == CT_BEAM_FORESHORTENING
-                && !f->beam->modes
+                && !f->beam->modes && !ct_small_beam(b, f->name)
              ? CT_AXIAL_LOCAL
              : CT_AXIAL_CHAIN;
 }
 
-// Deformations without a stiffness would be free to go anywhere: with --keep-all they are left out, else they are the
-// model's fault, as the scene excites them.
+// Deformations without a stiffness would be free to go anywhere: where the scene does not excite them they are left out,
+// else they are the model's fault.
 static void need_stiffness(struct ct_build *b, struct ct_flexible *f)
 {
-    static const struct {
+    const struct {
         unsigned family;
         const char *what, *key;
-    } all[] = {{CT_BEAM_AXIAL, "stretch", "area"},
-               {CT_BEAM_BENDING_Y, "bend in its x-z plane", "Iy"},
-               {CT_BEAM_BENDING_Z, "bend in its x-y plane", "Iz"},
-               {CT_BEAM_TORSION, "twist", "G or nu"}};
+    } all[] = {
+        {CT_BEAM_AXIAL, "stretch", "area"},
+        {CT_BEAM_BENDING_Y, "bend in its x-z plane", "Iy"},
+        {CT_BEAM_BENDING_Z, "bend in its x-y plane", "Iz"},
+        {CT_BEAM_TORSION, "twist", ct_ex_is_zero(f->beam->G) ? "G or nu" : "J, or Iy and Iz"}};
     for (size_t i = 0; i < COUNT(all); i++) {
         if (!(f->deformation & all[i].family & ~f->beam->known))
             continue;
         f->deformation &= ~all[i].family;
-        if (b->keep_all)
+        if (b->keep_all || b->is_freed)
             ct_topology_left_out(
                 b, ct_arena_printf(b->arena, "that %s can %s", f->name, all[i].what),
                 ct_arena_printf(b->arena, "%s is not given", all[i].key));
         else
             ct_error(b->ctx, b->model->body[f->body].instance.mark, CT_E_BEAM,
-                     "beam '%s' can %s here: give %s, or say with 'deformation' what it may do",
+                     "beam '%s' can %s here, and nothing resists it: give %s, or say with "
+                     "'deformation' what it may do",
                      f->name, all[i].what, all[i].key);
     }
 }
@@ -159,13 +175,17 @@ static void choose_formulation(const struct ct_build *b, struct ct_flexible *f)
 static void settle(struct ct_build *b, struct ct_flexible *f)
 {
     const struct ct_beam *beam = f->beam;
+    f->formulation = beam->formulation;
+    if (beam->formulation == CT_BEAM_AUTO)
+        choose_formulation(b, f);
     f->deformation = beam->deformation & in_plane(b, f);
     // nor has it an inertia of its own then, so there is no coordinate to keep
-    if (f->deformation & CT_BEAM_TORSION && !beam->deformation_given
-        && !ct_excite_twist(b, f)) {
+    const char *untwisted = f->deformation & CT_BEAM_TORSION && !beam->deformation_given
+                              ? ct_excite_no_twist(b, f)
+                              : NULL;
+    if (untwisted) {
         f->deformation &= ~(unsigned)CT_BEAM_TORSION;
-        ct_topology_left_out(b, ct_arena_printf(b->arena, "torsion of %s", f->name),
-                             "nothing beyond its base can twist it");
+        ct_topology_left_out(b, ct_arena_printf(b->arena, "torsion of %s", f->name), untwisted);
     }
     if (b->is_planar && beam->deformation & ~(unsigned)(CT_BEAM_AXIAL | f->deformation))
         ct_topology_left_out(b,
@@ -176,16 +196,14 @@ static void settle(struct ct_build *b, struct ct_flexible *f)
     need_stiffness(b, f);
     if (b->is_rigid)
         f->deformation = 0;
-    f->formulation = beam->formulation;
-    if (beam->formulation == CT_BEAM_AUTO)
-        choose_formulation(b, f);
-    f->axial = f->kinematics = axial_of(f);
+    f->axial = f->kinematics = axial_of(b, f);
     if (f->formulation == CT_BEAM_FORCE_ONLY)
         f->kinematics = CT_AXIAL_LINEAR;
     f->freedom = CT_NEWN(b->arena, struct ct_freedom, NKIND * (beam->nelement + 1));
     f->element = CT_NEWN(b->arena, struct ct_element, beam->nelement);
     ct_shape_bending(beam->theory, &f->shape);
     ct_shape_linear(f->linear);
+    ct_shape_twist(f->twist);
     derive_shortening(f);
     number_dofs(f);
     for (int e = 0; e < beam->nelement; e++) {
@@ -266,33 +284,68 @@ static void dof_values(struct ct_build *b, struct ct_flexible *f)
     }
 }
 
+// Foreshortening of one element by the integrals E of slope products and of the sections' rotation gradients.
+static void draw_by_matrices(struct ct_build *b, struct ct_flexible *f, int e, ct_ex *c,
+                             ct_ex *rate, ct_ex *bias)
+{
+    struct ct_exs *x = b->x;
+    struct ct_element *self = &f->element[e];
+    for (int plane = 0; plane < 2; plane++) {
+        const int first = plane ? 6 : 2;
+        for (int j = 0; j < 4; j++) {
+            ct_ex Ea = CT_EX_ZERO, Er = CT_EX_ZERO;
+            for (int k = 0; k < 4; k++) {
+                const ct_ex h = self->span.length;
+                const ct_ex E
+                    = ct_ex_add(x, ct_shape_at(x, &f->shortening[j][k], CT_EX_ONE, h),
+                                ct_ex_mul(x, self->radius[plane],
+                                          ct_shape_at(x, &f->curving[j][k], CT_EX_ONE, h)));
+                Ea = ct_ex_add(x, Ea, ct_ex_mul(x, E, self->value[first + k]));
+                Er = ct_ex_add(x, Er, ct_ex_mul(x, E, self->rate[first + k]));
+            }
+            self->g[first + j] = ct_ex_neg(x, Ea);
+            *c = ct_ex_sub(x, *c,
+                           ct_ex_scale(x, 0.5, ct_ex_mul(x, Ea, self->value[first + j])));
+            *rate = ct_ex_sub(x, *rate, ct_ex_mul(x, Ea, self->rate[first + j]));
+            *bias = ct_ex_sub(x, *bias, ct_ex_mul(x, Er, self->rate[first + j]));
+        }
+    }
+}
+
+// The same by amplitudes of the slopes.
+static void draw_by_slopes(struct ct_build *b, struct ct_flexible *f, int e, ct_ex *c,
+                           ct_ex *rate, ct_ex *bias)
+{
+    struct ct_exs *x = b->x;
+    struct ct_element *self = &f->element[e];
+    const ct_ex h = self->span.length;
+    const struct ct_draw by = ct_draw_whole_push(x, h, ct_ex_const(x, -1));
+    struct ct_bend value[2], speed[2];
+    for (int plane = 0; plane < 2; plane++) {
+        const int first = plane ? 6 : 2;
+        struct ct_bend force = {0};
+        value[plane] = ct_bend_of(x, f->beam->theory, h, self->value + first);
+        speed[plane] = ct_bend_of(x, f->beam->theory, h, self->rate + first);
+        ct_draw_push(x, &value[plane], &by, &force);
+        ct_bend_push(x, f->beam->theory, h, &force, self->g + first);
+    }
+    const struct ct_draw drawn = ct_draw_of(x, value), first = ct_draw_by(x, value, speed),
+                         second = ct_draw_by(x, speed, speed);
+    *c = ct_ex_sub(x, *c, ct_draw_whole(x, h, &drawn));
+    *rate = ct_ex_sub(x, *rate, ct_draw_whole(x, h, &first));
+    *bias = ct_ex_sub(x, *bias, ct_draw_whole(x, h, &second));
+}
+
 // Foreshortening of element after element: c and its derivatives by running sums.
 static void run_chain(struct ct_build *b, struct ct_flexible *f)
 {
-    struct ct_exs *x = b->x;
     for (int e = 0; e < f->beam->nelement; e++) {
         struct ct_element *self = &f->element[e];
         ct_ex c = self->c, rate = self->c_rate, bias = self->c_bias;
-        for (int plane = 0; plane < 2; plane++) {
-            const int first = plane ? 6 : 2;
-            for (int j = 0; j < 4; j++) {
-                ct_ex Ea = CT_EX_ZERO, Er = CT_EX_ZERO;
-                for (int k = 0; k < 4; k++) {
-                    const ct_ex h = self->span.length;
-                    const ct_ex E
-                        = ct_ex_add(x, ct_shape_at(x, &f->shortening[j][k], CT_EX_ONE, h),
-                                    ct_ex_mul(x, self->radius[plane],
-                                              ct_shape_at(x, &f->curving[j][k], CT_EX_ONE, h)));
-                    Ea = ct_ex_add(x, Ea, ct_ex_mul(x, E, self->value[first + k]));
-                    Er = ct_ex_add(x, Er, ct_ex_mul(x, E, self->rate[first + k]));
-                }
-                self->g[first + j] = ct_ex_neg(x, Ea);
-                c = ct_ex_sub(x, c,
-                              ct_ex_scale(x, 0.5, ct_ex_mul(x, Ea, self->value[first + j])));
-                rate = ct_ex_sub(x, rate, ct_ex_mul(x, Ea, self->rate[first + j]));
-                bias = ct_ex_sub(x, bias, ct_ex_mul(x, Er, self->rate[first + j]));
-            }
-        }
+        if (f->beam->higher_order)
+            draw_by_matrices(b, f, e, &c, &rate, &bias);
+        else
+            draw_by_slopes(b, f, e, &c, &rate, &bias);
         if (e + 1 < f->beam->nelement) {
             self[1].c = c;
             self[1].c_rate = rate;
@@ -365,7 +418,7 @@ void ct_flexible_unknowns(struct ct_build *b, struct ct_flexible *f)
         b->eqs->bare_beam = f->body;
         b->eqs->bare_joint = bare;
     }
-    if (f->beam->modes && f->deformation) {
+    if (f->beam->modes && f->deformation && !ct_flexible_keeps_all_modes(b, f)) {
         if (ct_flexible_reduce(b, f, &s))
             unknowns_of_shapes(b, f, &s);
     } else if (ct_flexible_condense(b, f, &s)) {
@@ -471,7 +524,8 @@ void ct_flexible_station(struct ct_build *b, const struct ct_flexible *f, ct_ex 
     s->place.e[0] = ct_ex_add(x, place, a.value);
     s->place.e[1] = ct_element_field(b, self, f->shape.place, self->value, 2, 4, s->xi);
     s->place.e[2] = ct_element_field(b, self, f->shape.place, self->value, 6, 4, s->xi);
-    s->angle[0] = ct_element_field(b, self, f->linear, self->value, 10, 2, s->xi);
+    s->angle[0]
+        = ct_element_field(b, self, f->twist, self->value, CT_PLACE_DOF, CT_TWIST_DOF, s->xi);
     s->angle[1]
         = ct_ex_neg(x, ct_element_field(b, self, f->shape.rotation, self->value, 6, 4, s->xi));
     s->angle[2] = ct_element_field(b, self, f->shape.rotation, self->value, 2, 4, s->xi);
@@ -507,7 +561,7 @@ void ct_station_own_partials(struct ct_build *b, const struct ct_flexible *f,
             d.e[1 + plane] = ct_shape_at(x, &f->shape.place[i], s->xi, h);
             t.e[plane ? 1 : 2] = plane ? ct_ex_neg(x, r) : r;
         } else if (j >= CT_PLACE_DOF) {
-            t.e[0] = ct_shape_at(x, &f->linear[j - CT_PLACE_DOF], s->xi, h);
+            t.e[0] = ct_shape_at(x, &f->twist[j - CT_PLACE_DOF], s->xi, h);
         }
         add_partial(b, f, s->element, j, d, slide);
         add_partial(b, f, s->element, j, t, turn);

@@ -1,9 +1,10 @@
 // Flexible bodies: elastic coordinates of beams, places along them, their inertia and stiffness.  (formulation 1.2, 5.3)
 //
 //   elastic coordinate k   an unknown of the model: a nodal displacement or rotation, or the share of a mode
-//   freedom f              6 per node (u v w rx ry rz): sum over k of part coef * coordinate; fixed ones are zero
-//   dof j                  12 of an element, each a freedom with a sign (the slope dw/dx is -ry):
-//                          0 1 axial | 2-5 along y: v, dv/dx, v, dv/dx | 6-9 along z the same | 10 11 twist
+//   freedom f              7 per node (u v w rx ry rz, and rm of the element before it): sum over k of part coef *
+//                          coordinate; fixed ones are zero
+//   dof j                  13 of an element, each a freedom with a sign (the slope dw/dx is -ry):
+//                          0 1 axial | 2-5 along y: v, dv/dx, v, dv/dx | 6-9 along z the same | 10-12 twist
 //
 // Axes are those of the beam; `base` is the node of its body frame, at an anchor without offset.
 //
@@ -20,8 +21,21 @@
 
 /// A linear beam is good enough below this indicator.
 #define CT_VALIDITY_LIMIT 0.01
+/// Slope of a section against the frame of its beam up to which displacements of second order in it will do (section 5.3).
+#define CT_SLOPE_LIMIT 0.3
 
-enum { CT_DOF = 12, CT_PLACE_DOF = 10 };
+enum { CT_DOF = 13, CT_PLACE_DOF = 10, CT_TWIST_DOF = 3 };
+/// Kinds of freedoms of a node. CT_FREEDOM_RM: twist in the middle of the element before it beyond the mean of its ends.
+enum ct_freedom_kind {
+    CT_FREEDOM_U,
+    CT_FREEDOM_V,
+    CT_FREEDOM_W,
+    CT_FREEDOM_RX,
+    CT_FREEDOM_RY,
+    CT_FREEDOM_RZ,
+    CT_FREEDOM_RM,
+    CT_NODE_FREEDOM
+};
 enum ct_axial { CT_AXIAL_LINEAR, CT_AXIAL_LOCAL, CT_AXIAL_CHAIN };
 
 struct ct_part {
@@ -73,10 +87,10 @@ struct ct_flexible {
     const char *why; // this formulation; NULL: as asked for
     struct ct_elastic *elastic;
     int nelastic;
-    struct ct_freedom *freedom; // 6 (nelement + 1)
+    struct ct_freedom *freedom; // CT_NODE_FREEDOM (nelement + 1)
     struct ct_element *element;
     struct ct_bending shape;
-    struct ct_shape linear[2];
+    struct ct_shape linear[2], twist[CT_TWIST_DOF];
     struct ct_shape shortening[4][4], bubble[4][4]; // E(xi), D(xi)
     struct ct_shape curving[4][4]; // integral of the sections' rotation gradients, as E
     ct_ex strain;                  // [J], once the stiffness is derived

@@ -9,7 +9,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { RX = 3, RZ = 5, NKIND = 6, NAXIS = 3 };
+enum { RX = CT_FREEDOM_RX, RZ = CT_FREEDOM_RZ, NKIND = CT_NODE_FREEDOM, NAXIS = 3 };
 enum { ALL = 7 }; // about each axis of the beam: bits
 
 struct node_moments {
@@ -196,6 +196,8 @@ bool ct_flexible_follow(struct ct_build *b, const struct ct_flexible *f, bool *f
         marked = true;
         for (int node = 0; node < nnode; node++)
             any |= follows[NKIND * node + RX + axis] = !(w.about[node] & 1u << axis);
+        for (int node = 0; node < nnode && axis == 0; node++)
+            any |= follows[NKIND * node + CT_FREEDOM_RM] = f->beam->has_quadratic_twist;
     }
     return any;
 }

@@ -36,7 +36,10 @@ static struct ct_build *build_create(struct ct_ctx *ctx, struct ct_arena *a,
                            .model = m,
                            .is_rigid = o->measure_all && !o->deformed,
                            .keep_all = o->keep_all,
+                           .frees_beams
+                           = o->frees_beams || (o->like && o->like->build->frees_beams),
                            .is_held = o->held,
+                           .has_gaps = o->gaps,
                            .like = o->like,
                            .is_linear = is_linear};
     b->eqs = CT_NEW(a, struct ct_equations);

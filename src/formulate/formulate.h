@@ -33,8 +33,11 @@ struct ct_formulate_options {
     const bool
         *first; // by joint: of those a tree through joints has all it can have; NULL: none
     const struct ct_equations *like; // beams as in these; NULL: choose
+    bool gaps;                       // rows of joints hold where they start (gap.h)
     bool held;                       // drivers stand still at their values: for what is static
     bool without_dynamics; // neither M nor Q: places and speeds are all that is wanted
+    bool
+        frees_beams; // what the scene does not excite in beams is kept, too; as in `like`, where given
     bool
         for_analysis; // large systems will be linearised, not integrated: neither M nor Q nor a
                       // solution, and trees that couple few unknowns

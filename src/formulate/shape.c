@@ -103,6 +103,12 @@ void ct_shape_linear(struct ct_shape f[2])
     f[1] = (struct ct_shape){.c = {0, 1}};
 }
 
+void ct_shape_twist(struct ct_shape f[3])
+{
+    ct_shape_linear(f);
+    f[2] = (struct ct_shape){.c = {0, 4, -4}};
+}
+
 void ct_shape_bending(enum ct_beam_theory theory, struct ct_bending *s)
 {
     const struct ct_shape cubic[4] = {{.c = {1, 0, -3, 2}},

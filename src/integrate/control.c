@@ -21,7 +21,7 @@ static const double least_step = 16 * DBL_EPSILON, least_scale = 1e-6;
 
 struct ct_control ct_control_start(void)
 {
-    return (struct ct_control){.error_before = remembered_error};
+    return (struct ct_control){.log_before = log(remembered_error)};
 }
 
 double ct_control_fit(double rest, double wanted)
@@ -41,12 +41,12 @@ static double safety_of(const struct ct_method *m)
     return m->is_implicit ? implicit_safety : safety;
 }
 
-// What the error says about the next step: h / factor, without limits.
-static double pi_factor(const struct ct_control *c, const struct ct_method *m, double error)
+// What the error says about the next step: h / factor, without limits. error^alpha / error_before^beta by logarithms.
+static double pi_factor(const struct ct_control *c, const struct ct_method *m, double log_error)
 {
     const double beta = 0.2 / (m->error_order + 1);
     const double alpha = 1.0 / (m->error_order + 1) - 0.75 * beta;
-    return pow(error, alpha) / pow(c->error_before, beta) / safety_of(m);
+    return exp(alpha * log_error - beta * c->log_before) / safety_of(m);
 }
 
 void ct_control_accept(struct ct_control *c, const struct ct_method *m, double h, double error)
@@ -54,7 +54,8 @@ void ct_control_accept(struct ct_control *c, const struct ct_method *m, double h
     c->is_starting = c->is_starting && error < remembered_error;
     const bool has_own = m->most_growth > 0 && !c->is_starting;
     const double growth = has_own ? m->most_growth : most_growth;
-    const double factor = fmin(fmax(pi_factor(c, m, error), 1 / growth), 1 / most_shrink);
+    const double log_error = log(error);
+    const double factor = fmin(fmax(pi_factor(c, m, log_error), 1 / growth), 1 / most_shrink);
     double next = h / factor;
     if (next > m->steady[0] * h && next < m->steady[1] * h)
         next = h;
@@ -63,7 +64,7 @@ void ct_control_accept(struct ct_control *c, const struct ct_method *m, double h
     else if (h < c->h)
         next = fmax(next, c->h); // the step was cut for a stop, not for its error
     c->h = next;
-    c->error_before = fmax(error, remembered_error);
+    c->log_before = error > remembered_error ? log_error : log(remembered_error);
     c->was_refused = false;
 }
 

@@ -8,10 +8,10 @@
 #include "integrate/problem.h"
 
 struct ct_control {
-    double h;            // size the next step should have
-    double error_before; // of the last accepted step
-    bool was_refused;    // the step before this try was
-    bool is_starting; // errors since the start, or an event, say that steps are much too short
+    double h;          // size the next step should have
+    double log_before; // logarithm of the error of the last accepted step
+    bool was_refused;  // the step before this try was
+    bool is_starting;  // errors since the start, or an event, say that steps are much too short
 };
 
 /// Before the first step.

@@ -13,11 +13,10 @@
 #include "integrate/crossing.h"
 
 #include <float.h>
-#include <stdlib.h>
 #include <math.h>
 #include <string.h>
 
-enum { SIDE = 7, STAGES = 2 * SIDE, MOST_SWEEPS = 30, QUADRATURE = 8 };
+enum { SIDE = 7, STAGES = 2 * SIDE, LEFT_SWEEPS = 2, MOST_SWEEPS = 30, QUADRATURE = 8 };
 
 // Part of the step in whose middle nothing is evaluated.
 static const double gap = 0.3;
@@ -25,15 +24,15 @@ static const double gap = 0.3;
 // Sweeps end when stages move less than this part of the tolerance, or less than this part of themselves: then
 // the checks of the step are not spoilt by what sweeps have left at coarse tolerances.
 static const double settled = 0.02, settled_fine = 1e-10;
-// A smooth motion meets the constraints also in the middle, up to this [m, rad] and up to so many times the
-// tolerance.
-static const double held = 1e-9, held_tolerance = 100;
+const double ct_crossing_held = 1e-9;
+// Further off than that and so many times the tolerance there is nothing to be had from nearer by.
+static const double held_tolerance = 100;
 // Rounding stops sweeps: they end, too, when a sweep does not gain this factor any more and moves stages by less than
 // this many times the tolerance. Most of what moves then are coordinates that the constraints determine.
 static const double slow = 0.5, rounding = 10;
 
 struct work {
-    double c[STAGES];
+    double c[STAGES], norm[STAGES];   // norms of find_norms, of all stages
     double A[STAGES][STAGES];         // integrals of the Lagrange polynomials up to c_j
     double left[SIDE][STAGES];        // the same for the polynomial through the left side alone
     double first[STAGES][STAGES];     // and through all stages before j
@@ -61,18 +60,20 @@ static void products(double *p, const double *c, const bool *set, double x)
     }
 }
 
-// The product at c_j, over the stages of `set` but j.
-static double norm_of(const double *c, const bool *set, int j)
+// norm (STAGES, out): at each c_j of `set` the product over the others.
+static void find_norms(double *norm, const double *c, const bool *set)
 {
-    double value = 1;
-    for (int i = 0; i < STAGES; i++)
-        if (set[i] && i != j)
-            value *= c[j] - c[i];
-    return value;
+    for (int j = 0; j < STAGES; j++) {
+        norm[j] = 1;
+        for (int i = 0; i < STAGES; i++)
+            norm[j] *= set[i] && i != j ? c[j] - c[i] : 1;
+    }
 }
 
-// w (STAGES, out): integral of the Lagrange polynomials on the stages of `set` from 0 to x; others get 0.
-static void integrate_lagrange(double *w, const double *c, const bool *set, double x)
+// w (STAGES, out): integral of the Lagrange polynomials on the stages of `set`, which has these norms, from 0 to x;
+// others get 0.
+static void integrate_lagrange(double *w, const double *c, const bool *set, const double *norm,
+                               double x)
 {
     // Gauss-Legendre, exact for the degree 2 * 8 - 1 > STAGES - 1
     static const double node[QUADRATURE / 2] = {0.1834346424956498049, 0.5255324099163289858,
@@ -88,7 +89,7 @@ static void integrate_lagrange(double *w, const double *c, const bool *set, doub
             w[j] += weight[q] * (above[j] + below[j]);
     }
     for (int j = 0; j < STAGES; j++)
-        w[j] = set[j] ? x / 2 * w[j] / norm_of(c, set, j) : 0;
+        w[j] = set[j] ? x / 2 * w[j] / norm[j] : 0;
 }
 
 static void set_stages(double *c)
@@ -108,19 +109,25 @@ static void find_weights(struct work *w)
 {
     set_stages(w->c);
     bool all[STAGES], left[STAGES], before[STAGES] = {0}, some[STAGES];
+    double norm[STAGES];
     for (int j = 0; j < STAGES; j++) {
         all[j] = some[j] = true;
         left[j] = j < SIDE;
     }
+    find_norms(w->norm, w->c, all);
+    find_norms(norm, w->c, left);
+    for (int j = 0; j < STAGES; j++)
+        integrate_lagrange(w->A[j], w->c, all, w->norm, w->c[j]);
+    for (int j = 0; j < SIDE; j++)
+        integrate_lagrange(w->left[j], w->c, left, norm, w->c[j]);
     for (int j = 0; j < STAGES; j++) {
-        integrate_lagrange(w->A[j], w->c, all, w->c[j]);
-        if (j < SIDE)
-            integrate_lagrange(w->left[j], w->c, left, w->c[j]);
-        integrate_lagrange(w->first[j], w->c, before, w->c[j]);
+        find_norms(norm, w->c, before);
+        integrate_lagrange(w->first[j], w->c, before, norm, w->c[j]);
         before[j] = true;
     }
     some[2] = some[STAGES - 3] = false;
-    integrate_lagrange(w->e, w->c, some, 1);
+    find_norms(norm, w->c, some);
+    integrate_lagrange(w->e, w->c, some, norm, 1);
     for (int j = 0; j < STAGES; j++)
         w->e[j] -= w->A[STAGES - 1][j];
     w->has_weights = true;
@@ -183,7 +190,6 @@ static enum ct_eval put_stage(const struct task *s, int j, const double *a, doub
 // A first guess: sweeps over the left side, then extrapolation from stage to stage.
 static enum ct_eval guess(const struct task *s)
 {
-    const int LEFT_SWEEPS = getenv("LS") ? atoi(getenv("LS")) : 2;
     struct work *w = s->w;
     double moved = 0;
     enum ct_eval e = CT_EVAL_OK;
@@ -199,8 +205,7 @@ static enum ct_eval guess(const struct task *s)
 
 static enum ct_eval sweep(const struct task *s)
 {
-    const double fine
-        = fmin(getenv("SE") ? atof(getenv("SE")) : settled, settled_fine / s->tolerance->rtol);
+    const double fine = fmin(settled, settled_fine / s->tolerance->rtol);
     double before = INFINITY;
     for (int i = 0; i < MOST_SWEEPS; i++) {
         double moved = 0;
@@ -232,7 +237,7 @@ static void point_at(const struct ct_problem *p, double h, double theta, const d
     double a[STAGES];
     bool all[STAGES];
     memset(all, true, sizeof all);
-    integrate_lagrange(a, w->c, all, theta);
+    integrate_lagrange(a, w->c, all, w->norm, theta);
     ct_stepper_combine(out, y, h, a, w->k, STAGES, p->ny);
 }
 
@@ -263,8 +268,9 @@ static enum ct_eval step(const struct ct_problem *p, double t, double h, const d
     memcpy(dy1, w->k + (STAGES - 1) * n, bytes);
     point_at(p, h, 0.5, y, w, w->end);
     const double left = p->residual ? p->residual(p->user, t + h / 2, w->end) : 0;
-    *err = left > held + held_tolerance * tolerance->rtol ? INFINITY
-                                                          : fmax(estimate(&s, y1), left / held);
+    *err = left > ct_crossing_held + held_tolerance * tolerance->rtol
+             ? INFINITY
+             : fmax(estimate(&s, y1), left / ct_crossing_held);
     return CT_EVAL_OK;
 }
 
@@ -288,9 +294,22 @@ struct ct_bridge ct_crossing_bridge(void *work, double t, double h, double theta
     products(w->weight, w->c, all, theta);
     for (int j = 0; j < STAGES; j++) {
         w->t[j] = t + w->c[j] * h;
-        w->weight[j] /= norm_of(w->c, all, j);
+        w->weight[j] /= w->norm[j];
     }
     return (struct ct_bridge){STAGES, w->t, w->weight, w->stage};
+}
+
+struct ct_bridge ct_crossing_bridge_over(void *work, const struct ct_stepper_span *span,
+                                         double from, double to, double theta)
+{
+    struct work *w = work;
+    const double length = (to - from) / gap, begin = (from + to) / 2 - length / 2;
+    if (!w->has_weights)
+        find_weights(w);
+    for (int j = 0; j < STAGES; j++)
+        ct_stepper_point(span, begin + w->c[j] * length, w->stage + j * span->p->ny);
+    return ct_crossing_bridge(work, span->t + begin * span->h, length * span->h,
+                              (theta - begin) / length);
 }
 
 const struct ct_method ct_crossing = {

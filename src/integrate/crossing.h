@@ -11,10 +11,16 @@
 /// smooth motion across, since the polynomial leaves the constraints: the mechanism only passes close by.
 extern const struct ct_method ct_crossing;
 
+/// A smooth motion meets the constraints also in the middle, up to this [m, rad].
+extern const double ct_crossing_held;
+
 /// True where f is not to be computed.
 bool ct_crossing_is_gap(double theta);
 
 /// The stages of the step just taken from t by h, with weights for theta. Valid until the next one.
 struct ct_bridge ct_crossing_bridge(void *work, double t, double h, double theta);
+/// The same around the gap from `from` to `to` of a step of another method, with states of its interpolant.
+struct ct_bridge ct_crossing_bridge_over(void *work, const struct ct_stepper_span *span,
+                                         double from, double to, double theta);
 
 #endif

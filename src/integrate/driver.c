@@ -7,6 +7,7 @@
 // is tried again shorter; until `commit` nothing has changed. Step control is that of control.h.
 #include "integrate/control.h"
 #include "integrate/crossing.h"
+#include "integrate/striding.h"
 #include "integrate/watch.h"
 
 #include <assert.h>
@@ -52,19 +53,21 @@ struct run {
     struct ct_watch watch;
     double t; // time of y and dy
     struct ct_control control;
-    double *y, *dy;       // (ny) each, as all that follow
-    double *y1, *dy1;     // end of the step as the method gives it
-    double *end, *dend;   // the same, projected
-    double *point;        // a state to spare
-    void *work;           // the method's own
-    void *crossing_work;  // of ct_crossing; NULL: there are no singular positions to cross
-    double singular_in;   // time to the next one, from t
-    double reach;         // crossing it is to begin this long before
-    int failed_crossings; // of it
-    bool is_open;         // the last step met everything but the constraints
-    size_t sample;        // the next one to give
-    double last_event;    // time of the last state event
-    int piled;            // state events in a row without time going on
+    double *y, *dy;      // (ny) each, as all that follow
+    double *y1, *dy1;    // end of the step as the method gives it
+    double *end, *dend;  // the same, projected
+    double *point;       // a state to spare
+    void *work;          // the method's own
+    void *crossing_work; // of ct_crossing; NULL: there are no singular positions to cross
+    double singular_in;  // time to the next one, from t
+    double reach;        // crossing it is to begin this long before
+    struct ct_striding *striding; // NULL: no crossings by steps of the method itself
+    bool has_failed_stride;       // across the next position
+    int failed_crossings;         // of it
+    bool is_open;                 // the last step met everything but the constraints
+    size_t sample;                // the next one to give
+    double last_event;            // time of the last state event
+    int piled;                    // state events in a row without time going on
 };
 
 // A step as planned: to t1, which is t + h but for rounding, or the end of the run before that.
@@ -75,6 +78,7 @@ struct stride {
     bool is_landing;      // t1 is the stop it was planned for
     bool is_event;        // a state event ends it
     bool is_interpolated; // the method is ready to interpolate it
+    bool is_striding;     // across a singular position
     double error;
 };
 
@@ -118,6 +122,8 @@ static void allocate(struct run *r)
     r->work = r->method->create(a, r->method, r->p);
     if (r->p->singular_in && r->o->step == 0 && !r->method->is_implicit)
         r->crossing_work = ct_crossing.create(a, &ct_crossing, r->p);
+    if (r->crossing_work)
+        r->striding = ct_striding_create(a, r->method, r->p);
     ct_watch_init(&r->watch, r->p, a);
 }
 
@@ -221,13 +227,38 @@ static bool has_crossing(const struct run *r)
     return r->singular_in < INFINITY && r->failed_crossings < most_crossings;
 }
 
+// The length of the step that strides across the next singular position from here, or 0; *wanted becomes that of a step to
+// where it may begin. False if it is to be crossed otherwise.
+static bool plan_striding(const struct run *r, double rest, double *wanted, double *length)
+{
+    *length = 0;
+    if (!r->striding || r->has_failed_stride || !has_crossing(r) || !(r->reach < INFINITY))
+        return false;
+    const double step = ct_striding_approach(r->striding, r->singular_in, r->reach, *wanted);
+    if (!(ct_striding_length(r->striding, r->singular_in) < rest) || isinf(step))
+        return false;
+    if (step == 0)
+        *length = ct_striding_length(r->striding, r->singular_in);
+    else
+        *wanted = step;
+    return true;
+}
+
 static struct stride plan(const struct run *r, double stop, bool is_time)
 {
     const double rest = stop - r->t;
-    double wanted = fmin(r->control.h, step_limit(r));
+    double wanted = fmin(r->control.h, step_limit(r)), length;
     const double reach = is_time ? fmin(r->reach, rest - r->singular_in) : r->reach;
+    const bool is_strideable = plan_striding(r, rest, &wanted, &length);
+    if (length > 0)
+        return (struct stride){.method = r->method,
+                               .work = r->work,
+                               .h = length,
+                               .t1 = r->t + length,
+                               .is_striding = true};
     // the run may end before the position, but beside it
-    if (has_crossing(r) && reach > 0 && r->singular_in - beside * reach < rest) {
+    if (!is_strideable && has_crossing(r) && reach > 0
+        && r->singular_in - beside * reach < rest) {
         if (r->singular_in <= (r->failed_crossings ? on_time : early) * reach)
             return plan_crossing(r, stop, is_time);
         wanted = ct_control_fit(r->singular_in - reach, wanted);
@@ -265,6 +296,7 @@ static void look_ahead(struct run *r)
     if (!(r->singular_in < INFINITY) || r->singular_in > 2 * before) { // none, or another one
         r->reach = INFINITY;
         r->failed_crossings = 0;
+        r->has_failed_stride = false;
     }
     if (r->singular_in < INFINITY)
         r->reach = fmin(r->reach, reach);
@@ -277,14 +309,19 @@ static void adapt_after_crossing(struct run *r, const struct stride *s)
         r->p->crossed(r->p->user, &span, s->t1);
     r->singular_in = r->reach = INFINITY;
     r->failed_crossings = 0;
+    r->has_failed_stride = false;
     r->control.was_refused = false;
 }
 
-static void adapt_after_failed_crossing(struct run *r, double error)
+static void adapt_after_failed_crossing(struct run *r, const struct stride *s, double error)
 {
     const double power = -1.0 / (ct_crossing.error_order + 1);
     r->stats->rejected_steps++;
     r->stats->inaccurate_steps += error > 1;
+    if (s->is_striding) {
+        r->has_failed_stride = true;
+        return;
+    }
     r->reach = r->singular_in * (error > 1 ? fmax(nearer, safety * pow(error, power)) : nearer);
     r->failed_crossings = isinf(error) ? most_crossings : r->failed_crossings + 1;
 }
@@ -330,7 +367,10 @@ static enum ct_eval project_end(struct run *r, double t1)
 
 static bool is_in_gap(const struct run *r, const struct stride *s, double t)
 {
-    return s->method == &ct_crossing && ct_crossing_is_gap((t - r->t) / s->h);
+    const double theta = (t - r->t) / s->h;
+    double from, to;
+    return s->is_striding ? ct_striding_is_gap(r->striding, theta, &from, &to)
+                          : s->method == &ct_crossing && ct_crossing_is_gap(theta);
 }
 
 // end, dend (out) = the crossing at t1, within it.
@@ -365,10 +405,14 @@ static enum ct_eval attempt(struct run *r, struct stride *s)
     s->error = 0;
     s->is_interpolated = false;
     r->is_open = false;
-    enum ct_eval e = s->method->step(r->p, r->t, s->h, r->y, r->dy, tolerance, r->y1, r->dy1,
-                                     &error, s->work, r->stats);
+    enum ct_eval e = s->is_striding
+                       ? ct_striding_step(r->striding, r->t, s->h, r->y, r->dy, tolerance,
+                                          r->y1, r->dy1, &error, s->work, r->stats)
+                       : s->method->step(r->p, r->t, s->h, r->y, r->dy, tolerance, r->y1,
+                                         r->dy1, &error, s->work, r->stats);
     if (e != CT_EVAL_OK)
         return e;
+    s->is_interpolated = s->is_striding;
     if (!ct_stepper_finite(r->y1, r->p->ny) || isnan(error))
         return CT_EVAL_RETRY;
     s->error = error;
@@ -492,10 +536,12 @@ static bool find_step(struct run *r, double stop, bool is_time, struct stride *s
 {
     for (;;) {
         *s = plan(r, stop, is_time);
-        const bool is_crossing = s->method == &ct_crossing;
+        const bool is_crossing = s->method == &ct_crossing || s->is_striding;
         const double h = s->h;
         if (is_too_small(r, s))
             return step_too_small(r, h);
+        if (!is_crossing)
+            s->h = s->t1 - r->t; // as rounded, so that steps add up to the time
         enum ct_eval e = attempt(r, s);
         const double error = s->error;
         if (e == CT_EVAL_OK)
@@ -505,7 +551,7 @@ static bool find_step(struct run *r, double stop, bool is_time, struct stride *s
         if (e == CT_EVAL_OK) {
             if (is_crossing)
                 adapt_after_crossing(r, s);
-            else
+            else if (r->o->step == 0)
                 ct_control_accept(&r->control, r->method, h, error);
             look_ahead(r);
             return true;
@@ -514,7 +560,7 @@ static bool find_step(struct run *r, double stop, bool is_time, struct stride *s
             return ct_error(r->ctx, nowhere, CT_E_STEP_REFUSED,
                             "at t = %.9g a step of fixed size %.3g is too large", r->t, h);
         if (is_crossing)
-            adapt_after_failed_crossing(r, error);
+            adapt_after_failed_crossing(r, s, error);
         else
             adapt_after_refusal(r, h, error);
     }
@@ -528,13 +574,23 @@ static bool give_sample(struct run *r, const double *y)
     return r->o->at_sample(r->p->user, t, y);
 }
 
+static struct ct_bridge bridge(const struct run *r, const struct stride *s, double theta)
+{
+    const struct ct_stepper_span span = {s->method, r->p, r->t, s->h, r->y, r->y1, s->work};
+    double from, to;
+    if (!s->is_striding)
+        return ct_crossing_bridge(s->work, r->t, s->h, theta);
+    ct_striding_is_gap(r->striding, theta, &from, &to);
+    return ct_crossing_bridge_over(r->crossing_work, &span, from, to, theta);
+}
+
 // A sample in the gap of a crossing is as good as the interpolant: projected it would be worse.
 static bool give_singular_sample(struct run *r, const struct stride *s, const double *y)
 {
     const double t = r->o->sample[r->sample];
     if (!r->o->at_singular_sample)
         return give_sample(r, y);
-    const struct ct_bridge b = ct_crossing_bridge(s->work, r->t, s->h, (t - r->t) / s->h);
+    const struct ct_bridge b = bridge(r, s, (t - r->t) / s->h);
     r->sample++;
     return r->o->at_singular_sample(r->p->user, t, y, &b);
 }

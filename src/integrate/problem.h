@@ -100,6 +100,10 @@ struct ct_problem {
     void (*crossed)(void *user, const struct ct_stepper_span *step, double t1);
     /// How far y is from the constraints. May be NULL.
     double (*residual)(void *user, double t, const double *y);
+    /// Beside a singular position: how far y is from them in what they ask of no motion there, the part that depends. It
+    /// vanishes with the square of the distance where the position is singular, but not where it is only nearly so.
+    /// May be NULL.
+    double (*mismatch)(void *user, double t, const double *y);
 
     /// Root functions on the state, g (nroot, out); a sign change within a step is an event. g is
     /// continuous within the step.
@@ -172,6 +176,9 @@ struct ct_method {
     /// Rules of step control; 0: the usual ones. A next step that differs from the last by a factor between
     /// steady[0] and steady[1] is not made: it would cost a factorisation.
     double most_growth, steady[2];
+    /// The part of a step in which neither `step` nor `prepare` evaluates f, where a singular position may lie; see
+    /// striding.h. 0, 0: there is none to speak of.
+    double quiet[2];
     const void *coefficients; // of families of methods
     /// The private workspace for a run. What it keeps from step to step begins with `restart` and moves on
     /// with `accept`; both may be NULL.

@@ -6,10 +6,10 @@
 
 bool ct_stepper_finite(const double *x, int n)
 {
-    double zero = 0; // stays 0 unless an entry is infinite or NaN: 0 * inf is NaN
     for (int i = 0; i < n; i++)
-        zero += 0 * x[i];
-    return zero == 0;
+        if (!isfinite(x[i]))
+            return false;
+    return true;
 }
 
 enum ct_eval ct_stepper_rhs(const struct ct_problem *p, double t, const double *y, double *dy,
@@ -21,19 +21,30 @@ enum ct_eval ct_stepper_rhs(const struct ct_problem *p, double t, const double *
 }
 
 // Four entries at a time: their sums stay in registers, whatever the number of stages. The last four may overlap those
-// before, which are then found twice.
+// before, which are then found twice. Fewer than four are summed side by side, each number of them by code of its own.
 enum { LANES = 4 };
+
+static inline void by_ones(double *restrict out, const double *y, double h, const double *a,
+                           const double *k, int s, const int n)
+{
+    double sum[LANES] = {0};
+    for (int j = 0; j < s; j++, k += n)
+        if (a[j] != 0) // tables have many zeros
+            for (int i = 0; i < n; i++)
+                sum[i] += a[j] * k[i];
+    for (int i = 0; i < n; i++)
+        out[i] = (y ? y[i] : 0) + h * sum[i];
+}
 
 static void combine_few(double *restrict out, const double *y, double h, const double *a,
                         const double *k, int s, int n)
 {
-    double sum[LANES] = {0};
-    const double *stage = k;
-    for (int j = 0; j < s; j++, stage += n)
-        for (int i = 0; i < n; i++)
-            sum[i] += a[j] * stage[i];
-    for (int i = 0; i < n; i++)
-        out[i] = (y ? y[i] : 0) + h * sum[i];
+    if (n == 1)
+        by_ones(out, y, h, a, k, s, 1);
+    else if (n == 2)
+        by_ones(out, y, h, a, k, s, 2);
+    else if (n == 3)
+        by_ones(out, y, h, a, k, s, 3);
 }
 
 #if defined(__GNUC__)
@@ -50,7 +61,7 @@ by_fours(double *out, const double *y, double h, const double *a, const double *
         const double *stage = k + at;
         four sum = {0};
         for (int j = 0; j < s; j++, stage += n)
-            if (a[j] != 0) // tables have many zeros
+            if (a[j] != 0)
                 sum += a[j] * *(const four *)stage;
         *(four *)(out + at) = y ? *(const four *)(y + at) + h * sum : h * sum;
     }
@@ -100,6 +111,39 @@ void ct_stepper_combine(double *restrict out, const double *y, double h, const d
     (n < LANES ? combine_few : combine_fours)(out, y, h, a, k, s, n);
 }
 
+struct ct_carry ct_carry_create(struct ct_arena *a, int n)
+{
+    return (struct ct_carry){CT_NEWN(a, double, n), CT_NEWN(a, double, n), n};
+}
+
+void ct_carry_clear(struct ct_carry *c)
+{
+    memset(c->now, 0, (size_t)c->n * sizeof *c->now);
+}
+
+void ct_carry_keep(struct ct_carry *c)
+{
+    double *now = c->now;
+    c->now = c->next;
+    c->next = now;
+}
+
+void ct_stepper_advance(double *restrict out, const double *y, double h, const double *a,
+                        const double *k, int s, struct ct_carry *c)
+{
+    ct_stepper_combine(out, NULL, h, a, k, s, c->n);
+    for (int i = 0; i < c->n; i++) {
+        const double way = out[i] + c->now[i];
+        out[i] = y[i] + way;
+        c->next[i] = way - (out[i] - y[i]);
+    }
+}
+
+static double larger(double a, double b)
+{
+    return a > b ? a : b;
+}
+
 void ct_stepper_group(const struct ct_groups *g, int ny, const double *y, const double *y1)
 {
     if (!g)
@@ -115,7 +159,7 @@ void ct_stepper_group(const struct ct_groups *g, int ny, const double *y, const 
 // Of the state or, where they are known, its group.
 static double size_of(const struct ct_groups *g, int i, const double *y, const double *y1)
 {
-    return g && g->of[i] >= 0 ? g->size[g->of[i]] : fmax(fabs(y[i]), fabs(y1[i]));
+    return g && g->of[i] >= 0 ? g->size[g->of[i]] : larger(fabs(y[i]), fabs(y1[i]));
 }
 
 double ct_stepper_norm(const struct ct_problem *p, const struct ct_tolerance *tolerance,
@@ -128,7 +172,8 @@ double ct_stepper_norm(const struct ct_problem *p, const struct ct_tolerance *to
         if (p->watched && !p->watched[i])
             continue;
         const double weight = tolerance->rtol * size_of(p->groups, i, y, y1) + tolerance->atol;
-        sum += (e[i] / weight) * (e[i] / weight);
+        const double part = e[i] / weight;
+        sum += part * part;
         n++;
     }
     return n ? sqrt(sum / n) : 0;

@@ -62,6 +62,22 @@ static int max_int(int a, int b)
     return a > b ? a : b;
 }
 
+double ct_vector_largest(const double *v, size_t n)
+{
+    double max = 0;
+    for (size_t i = 0; i < n; i++)
+        max = fmax(max, fabs(v[i]));
+    return max;
+}
+
+double ct_vector_dot(const double *x, const double *y, size_t n)
+{
+    double sum = 0;
+    for (size_t i = 0; i < n; i++)
+        sum += x[i] * y[i];
+    return sum;
+}
+
 void ct_matrix_multiply(double *restrict C, const double *restrict A, const double *restrict B,
                         int n, int m, int k)
 {
@@ -365,6 +381,28 @@ bool ct_symmetric_eigenvalues(double *w, double *A, int n, int lda, double *work
 size_t ct_symmetric_eigenvalues_work(int n)
 {
     return (size_t)max_int(1, 3 * n - 1);
+}
+
+int ct_symmetric_count_below(double *A, int n, int lda, double x)
+{
+    const double certain
+        = 1e-6; // the roundings of other entries then stay below 1e-9 of the largest
+    double largest = 0;
+    int count = 0;
+    for (int k = 0; k < n; k++) {
+        A[k + lda * k] -= x;
+        largest = fmax(largest, fabs(A[k + lda * k]));
+    }
+    for (int k = 0; k < n; k++) {
+        const double pivot = A[k + lda * k];
+        if (!(fabs(pivot) > certain * largest))
+            return -1;
+        count += pivot < 0;
+        for (int j = k + 1; j < n; j++)
+            for (int i = j; i < n; i++)
+                A[i + lda * j] -= A[j + lda * k] / pivot * A[i + lda * k];
+    }
+    return count;
 }
 
 bool ct_symmetric_eigen(double *w, double *A, int n, int lda, double *work)

@@ -1,6 +1,8 @@
 // See sparse.h.
 #include "numeric/sparse.h"
 
+#include "numeric/dense.h"
+
 #if CT_HAS_KLU
 #if __has_include(<suitesparse/klu.h>)
 #include <suitesparse/klu.h>
@@ -169,14 +171,6 @@ static void precise_residual(struct ct_sparse *s, const double *x, const double 
         s->r[i] = (double)sum[i];
 }
 
-static double largest(const double *v, int n)
-{
-    double max = 0;
-    for (int i = 0; i < n; i++)
-        max = fmax(max, fabs(v[i]));
-    return max;
-}
-
 void ct_sparse_solve_precisely(struct ct_sparse *s, double *x, const double *b)
 {
     enum { MOST = 8 };
@@ -186,12 +180,12 @@ void ct_sparse_solve_precisely(struct ct_sparse *s, double *x, const double *b)
     for (int i = 0; i < MOST; i++) {
         precise_residual(s, x, b);
         klu_solve(s->symbolic, s->numeric, s->n, 1, s->r, &s->common);
-        const double size = largest(s->r, s->n);
+        const double size = ct_vector_largest(s->r, (size_t)s->n);
         if (!(size < last / 2))
             return;
         for (int k = 0; k < s->n; k++)
             x[k] += s->r[k];
-        if (size <= DBL_EPSILON * largest(x, s->n))
+        if (size <= DBL_EPSILON * ct_vector_largest(x, (size_t)s->n))
             return;
         last = size;
     }

@@ -18,16 +18,25 @@ static const struct {
 } families[] = {{CT_BEAM_AXIAL, "axial", 0, 2},
                 {CT_BEAM_BENDING_Z, "bending-z", 2, 4},
                 {CT_BEAM_BENDING_Y, "bending-y", 6, 4},
-                {CT_BEAM_TORSION, "torsion", 10, 2}};
+                {CT_BEAM_TORSION, "torsion", CT_PLACE_DOF, CT_TWIST_DOF}};
+
+// Dofs of family i that the beam's elements have.
+static int ndof_of(const struct ct_beam *beam, size_t i)
+{
+    const bool is_linear_twist
+        = families[i].bit == CT_BEAM_TORSION && !beam->has_quadratic_twist;
+    return families[i].n - is_linear_twist;
+}
 
 const char *ct_beam_dof_name(int j)
 {
-    static const char *const name[CT_DOF] = {"u1", "u2",    "v1", "alpha1", "v2",   "alpha2",
-                                             "w1", "beta1", "w2", "beta2",  "phi1", "phi2"};
+    static const char *const name[CT_DOF]
+        = {"u1",    "u2", "v1",    "alpha1", "v2",   "alpha2", "w1",
+           "beta1", "w2", "beta2", "phi1",   "phi2", "phi3"};
     return name[j];
 }
 
-static const char *formulation_name(enum ct_beam_formulation f)
+const char *ct_beam_formulation_name(enum ct_beam_formulation f)
 {
     static const char *const name[]
         = {"auto", "linear", "foreshortening", "force-only", "stretch-linear"};
@@ -41,15 +50,16 @@ const char *ct_beam_sentence(struct ct_arena *a, const struct ct_flexible *f)
     for (size_t i = 0; i < COUNT(families); i++)
         if (f->deformation & families[i].bit)
             list = ct_arena_printf(a, "%s%s%s", list, *list ? ", " : "", families[i].name);
-    return ct_arena_printf(
-        a, "%d element%s, %d elastic coordinate%s; %s%s; %s%s; frame %s%s", beam->nelement,
-        beam->nelement == 1 ? "" : "s", f->nelastic, f->nelastic == 1 ? "" : "s",
-        *list ? "deforms by " : "keeps its shape", list, formulation_name(f->formulation),
-        f->why                              ? ct_arena_printf(a, " (%s)", f->why)
-        : beam->formulation == CT_BEAM_AUTO ? " (auto)"
-                                            : "",
-        beam->is_chord ? "chord" : "clamped",
-        beam->theory == CT_BEAM_TIMOSHENKO ? "; timoshenko" : "");
+    return ct_arena_printf(a, "%d element%s, %d elastic coordinate%s; %s%s; %s%s; frame %s%s",
+                           beam->nelement, beam->nelement == 1 ? "" : "s", f->nelastic,
+                           f->nelastic == 1 ? "" : "s",
+                           *list ? "deforms by " : "keeps its shape", list,
+                           ct_beam_formulation_name(f->formulation),
+                           f->why ? ct_arena_printf(a, " (%s)", f->why)
+                           : beam->formulation == CT_BEAM_AUTO ? " (auto)"
+                                                               : "",
+                           beam->is_chord ? "chord" : "clamped",
+                           beam->theory == CT_BEAM_TIMOSHENKO ? "; timoshenko" : "");
 }
 
 // ---- the element -----------------------------------------------------------------------------------------
@@ -109,7 +119,7 @@ static void derive_energies(struct ct_build *b, struct ct_flexible *one,
 {
     const struct ct_span span = one->element[0].span;
     for (size_t i = 0; i < COUNT(families); i++) {
-        const int first = families[i].first, n = families[i].n;
+        const int first = families[i].first, n = ndof_of(one->beam, i);
         struct ct_element own = {.span = span};
         if (!(one->deformation & families[i].bit))
             continue;
@@ -141,14 +151,14 @@ void ct_beam_element_derive(struct ct_build *b, const struct ct_flexible *f,
     one.axial = CT_AXIAL_CHAIN; // the stretch is that of the axial dofs
     e.span.length = out->h;
     for (size_t i = 0; i < COUNT(families); i++)
-        for (int j = families[i].first; j < families[i].first + families[i].n; j++)
+        for (int j = families[i].first; j < families[i].first + ndof_of(&beam, i); j++)
             if (f->deformation & families[i].bit)
                 e.value[j] = out->dof[j]
                     = ct_ex_sym(x, CT_SYM_LOCAL, ct_beam_dof_name(j), (uint32_t)j);
     out->axial = field(out, f->linear, 0, 2);
     out->v = field(out, f->shape.place, 2, 4);
     out->w = field(out, f->shape.place, 6, 4);
-    out->twist = field(out, f->linear, 10, 2);
+    out->twist = field(out, f->twist, CT_PLACE_DOF, CT_TWIST_DOF);
     out->is_constant = !varies(b, beam.area) && !varies(b, beam.Iy) && !varies(b, beam.Iz)
                     && !varies(b, beam.J);
     if (!out->is_constant)
@@ -383,10 +393,11 @@ static void put_element(struct ct_derivation *d, const struct ct_flexible *f)
     ct_page_heading(&d->page, ct_arena_printf(d->a, "element of %s", f->name));
     ct_page_sentence(
         &d->page,
-        "xi = 0 ... 1 along its length h; dofs at its ends 1 and 2: u, v, w, %s, twist phi",
+        "xi = 0 ... 1 along its length h; dofs at its ends 1 and 2: u, v, w, %s, twist phi%s",
         f->beam->theory == CT_BEAM_TIMOSHENKO
             ? "alpha and beta (rotations of the sections, as dv/dx and dw/dx)"
-            : "alpha = dv/dx, beta = dw/dx");
+            : "alpha = dv/dx, beta = dw/dx",
+        f->beam->has_quadratic_twist ? ", phi3 in the middle beyond the mean of its ends" : "");
     ct_page_equations(&d->page);
     ct_page_equation(&d->page, NULL, "u", axial_text(d, f, ct_derivation_text(d, e.axial)),
                      NULL);
@@ -408,9 +419,10 @@ static void put_index(struct ct_derivation *d, const struct ct_flexible *f)
     for (size_t i = 0; i < COUNT(families); i++) {
         if (!(f->deformation & families[i].bit))
             continue;
-        const int first = families[i].first, ndof = families[i].n;
-        static const char *const align[] = {"", "rLL", "rLLLL", "rLLLLLL"};
-        ct_page_table(&d->page, align[ndof / 2 + is_first]);
+        const int first = families[i].first, ndof = ndof_of(f->beam, i);
+        static const char align[] = "rLLLLLL"; // places of the first table, dofs
+        const size_t ncolumn = (size_t)(1 + (is_first ? 2 : 0) + ndof);
+        ct_page_table(&d->page, ct_arena_printf(d->a, "%.*s", (int)ncolumn, align));
         ct_page_cell(&d->page, "element");
         if (is_first) {
             ct_page_cell(&d->page, "from x");

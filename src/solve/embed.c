@@ -317,6 +317,11 @@ static bool massless(struct ct_embed *s, size_t speed)
             "coordinate '%s' moves no mass: the first section of beam '%s' has no inertia; "
             "give the beam %s, or, if no moment acts on that section, 'frame: chord'",
             name, model->body[bare].instance.name, rotary_of(model->body[bare].beam));
+    if (u->beam > 0 && !(ct_model_number(model, model->body[u->beam].mass) > 0))
+        return ct_error(s->ctx, model->body[u->beam].instance.mark, CT_E_MASSLESS,
+                        "coordinate '%s' moves no mass: beam '%s' has none; give it a density, "
+                        "a mass_per_length, or 'deformation: []'",
+                        name, model->body[u->beam].instance.name);
     if (u->beam > 0)
         return ct_error(s->ctx, model->body[u->beam].instance.mark, CT_E_MASSLESS,
                         "coordinate '%s' moves no mass: give the beam %s, or consistent mass",
@@ -500,9 +505,23 @@ static void expand(const struct ct_embed *s, double *x, const double *z, const d
     }
 }
 
+// x (nu) = [B; 1] (B' M B)^-1 B' r + [c; 0] by the numbers of now.
+static enum ct_eval reduce_and_expand(struct ct_embed *s, double *x)
+{
+    const int f = (int)s->m->nu - s->rank;
+    reduce_mass(s);
+    reduce_force(s, s->b, s->r);
+    if (f && !ct_cholesky(s->S, f, f))
+        return CT_EVAL_RETRY;
+    if (f)
+        ct_cholesky_solve(s->b, s->S, f, f, 1, f);
+    expand(s, x, s->b, s->c);
+    return CT_EVAL_OK;
+}
+
 enum ct_eval ct_embed_accelerate(struct ct_embed *s)
 {
-    const int n = (int)s->m->nu, r = s->rank, f = n - r;
+    const int n = (int)s->m->nu, r = s->rank;
     if (r && !factor(s))
         return CT_EVAL_RETRY;
     for (int k = 0; k < r; k++)
@@ -514,14 +533,7 @@ enum ct_eval ct_embed_accelerate(struct ct_embed *s)
         for (int k = 0; k < r; k++)
             s->r[i] -= s->m->M[i + n * s->dependent[k]] * s->c[k];
     }
-    reduce_mass(s);
-    reduce_force(s, s->b, s->r);
-    if (f && !ct_cholesky(s->S, f, f))
-        return CT_EVAL_RETRY;
-    if (f)
-        ct_cholesky_solve(s->b, s->S, f, f, 1, f);
-    expand(s, s->a, s->b, s->c);
-    return CT_EVAL_OK;
+    return reduce_and_expand(s, s->a);
 }
 
 // Multipliers of all rows by the form of now, where they are unique.
@@ -594,7 +606,7 @@ void ct_embed_uniqueness(struct ct_embed *s)
 enum ct_eval ct_embed_impulse(struct ct_embed *s, const double *p, double *u)
 {
     // with u+ = [B; 1] z + [c; 0]: B' M B z = B' (M u- + p - M c)
-    const int n = (int)s->m->nu, r = s->rank, f = n - r;
+    const int n = (int)s->m->nu, r = s->rank;
     ct_machine_motion(s->m);
     ct_machine_constraint(s->m);
     if (r && !factor(s))
@@ -614,14 +626,7 @@ enum ct_eval ct_embed_impulse(struct ct_embed *s, const double *p, double *u)
         for (int k = 0; k < r; k++)
             s->r[i] -= s->m->M[i + n * s->dependent[k]] * s->c[k];
     }
-    reduce_mass(s);
-    reduce_force(s, s->b, s->r);
-    if (f && !ct_cholesky(s->S, f, f))
-        return CT_EVAL_RETRY;
-    if (f)
-        ct_cholesky_solve(s->b, s->S, f, f, 1, f);
-    expand(s, u, s->b, s->c);
-    return CT_EVAL_OK;
+    return reduce_and_expand(s, u);
 }
 
 // ---- projection -------------------------------------------------------------------------------------------
@@ -789,24 +794,42 @@ static bool has_redundant_rows(const struct ct_embed *s)
     return s->rank < (int)s->m->nrow;
 }
 
-static double smallest_singular_value(struct ct_embed *s)
+// A (nrow x nrow, out) = J J', its lower triangle.
+static void square(const struct ct_embed *s, double *A)
 {
-    // from the eigenvalues of J J', which cost a third of a decomposition; half the digits are enough
     const size_t n = s->m->nu, m = s->m->nrow;
     const double *J = s->m->J;
-    memset(s->A, 0, m * m * sizeof *s->A);
+    memset(A, 0, m * m * sizeof *A);
     for (size_t k = 0; k < n; k++, J += m)
         for (size_t j = 0; j < m; j++)
             for (size_t i = j; i < m && J[j] != 0; i++)
-                s->A[i + m * j] += J[i] * J[j];
-    if (!ct_symmetric_eigenvalues(s->b, s->A, (int)m, (int)m, s->work))
+                A[i + m * j] += J[i] * J[j];
+}
+
+static double smallest_singular_value(struct ct_embed *s)
+{
+    // from the eigenvalues of J J', which cost a third of a decomposition; half the digits are enough
+    const int m = (int)s->m->nrow;
+    square(s, s->A);
+    if (!ct_symmetric_eigenvalues(s->b, s->A, m, m, s->work))
         return 0;
-    return sqrt(fmax(0, s->b[m - (size_t)s->rank]));
+    return sqrt(fmax(0, s->b[m - s->rank]));
 }
 
 bool ct_embed_has_pivot(const struct ct_embed *s)
 {
     return s->rank && !(has_redundant_rows(s) && is_large(s));
+}
+
+bool ct_embed_pivot_is_between(struct ct_embed *s, double low, double high)
+{
+    const int m = (int)s->m->nrow, nzero = m - s->rank;
+    if (!has_redundant_rows(s))
+        return false;
+    square(s, s->A);
+    memcpy(s->MB, s->A, (size_t)(m * m) * sizeof *s->A);
+    return ct_symmetric_count_below(s->A, m, m, low * low) == nzero
+        && ct_symmetric_count_below(s->MB, m, m, high * high) > nzero;
 }
 
 double ct_embed_pivot(struct ct_embed *s)

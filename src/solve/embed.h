@@ -85,6 +85,9 @@ bool ct_embed_has_pivot(const struct ct_embed *s);
 /// which the kept ones may lose rank where the others do not, the smallest of the first `rank` singular values of J. To be
 /// compared with what it is elsewhere on the motion.
 double ct_embed_pivot(struct ct_embed *s);
+/// Is it between the two? Cheaper than to find it where rows are redundant, false where that is not certain or where they
+/// are not.
+bool ct_embed_pivot_is_between(struct ct_embed *s, double low, double high);
 /// At the last ct_machine_constraint, beside a place where J loses rank: x (rank, out) = (J_d J_d')^-1 v for a v without
 /// meaning, which has come into null(J') of that place, and log |det J_d|. False where that costs too much.
 bool ct_embed_dependence(struct ct_embed *s, double *x, double *log_det);

@@ -62,9 +62,19 @@ const char *ct_lanes_refusal(const struct ct_equations *e, const struct ct_run_o
         return "the step is fixed";
     if (e->nmode)
         return "the model has switches";
-    if (e->x->ntable)
-        return "the model has tables";
+    for (size_t i = 0; i < e->x->ntable; i++)
+        if (!e->x->table[i].m)
+            return "the model has tables with kinks";
     return NULL;
+}
+
+// Beyond their ends tables have no values: a run alone says so.
+static bool tables_reach(const struct ct_exs *x, double end)
+{
+    for (size_t i = 0; i < x->ntable; i++)
+        if (x->table[i].x[x->table[i].n - 1] < end)
+            return false;
+    return true;
 }
 
 static void make_room(struct ct_arena *a, struct ct_lanes *s)
@@ -327,7 +337,7 @@ bool ct_lanes_load(struct ct_lanes *s, int l, const struct ct_run_options *o)
 {
     const double *y = ct_run_state(s->run);
     const int rank = s->embed->rank;
-    if (!(o->duration > 0) || ct_lanes_refusal(s->e, o)
+    if (!(o->duration > 0) || ct_lanes_refusal(s->e, o) || !tables_reach(s->e->x, o->duration)
         || (s->is_used && (o->method != s->method || rank != s->rank))
         || (s->needs_lam && rank != s->nrow))
         return false;

@@ -68,9 +68,8 @@ static struct inputs list_inputs(struct ct_arena *a, const struct ct_machine *m,
 {
     struct inputs in = {CT_NEWN(a, ct_ex, x->nsym + 1), CT_NEWN(a, size_t, x->nsym + 1), 0};
     for (uint32_t id = 0; id < x->nnode; id++) {
-        const struct ct_sym *s = ct_ex_symbol(x, (ct_ex){id});
         size_t slot;
-        if (!s || !find_slot(m, s, &slot))
+        if (x->node[id].op != CT_OP_SYM || !find_slot(m, &x->sym[x->node[id].a], &slot))
             continue;
         in.symbol[in.n] = (ct_ex){id};
         in.slot[in.n++] = slot;
@@ -132,8 +131,8 @@ static bool choose_backend(struct ct_arena *a, struct ct_machine *m, struct ct_p
 
 bool ct_machine_use(struct ct_arena *a, struct ct_machine *m, enum ct_backend backend)
 {
-    struct ct_program *const all[]
-        = {&m->motion, &m->constraint, &m->solved, &m->residual, &m->tangent};
+    struct ct_program *const all[] = {&m->motion, &m->constraint, &m->solved, &m->power,
+                                      &m->memory, &m->residual,   &m->tangent};
     bool available = ct_native_is_available(1);
     m->asked = backend;
     for (size_t i = 0; i < COUNT(all); i++)
@@ -261,13 +260,15 @@ static void compile_rest(struct ct_arena *a, struct ct_machine *m, const struct 
     struct list validity = {.a = a};
     for (size_t i = 0; i < e->nvalidity; i++)
         push(&validity, e->validity[i].eta);
+    for (size_t i = 0; i < e->nbend; i++)
+        for (size_t k = 0; k < e->bend[i].n; k++)
+            push(&validity, e->bend[i].square[k]);
     compile(a, m, in, validity.e, validity.n, &m->validity);
     compile(a, m, in, energies, 2, &m->energy);
     compile(a, m, in, &e->power, ct_ex_is_zero(e->power) ? 0 : 1, &m->power);
     // seldom run: not worth native code
-    struct ct_program *const all[]
-        = {&m->result, &m->root,   &m->memory,   &m->momentum, &m->driver,
-           &m->wanted, &m->energy, &m->validity, &m->power};
+    struct ct_program *const all[] = {&m->result, &m->root,   &m->momentum, &m->driver,
+                                      &m->wanted, &m->energy, &m->validity};
     for (size_t i = 0; i < COUNT(all); i++)
         if (all[i]->nout)
             use(a, all[i], NULL);
@@ -429,7 +430,7 @@ void ct_machine_reset(struct ct_machine *m)
 void ct_machine_set(struct ct_machine *m, double t, const double *y)
 {
     m->input[0] = t;
-    memcpy(m->input + m->at_q, y, (m->nq + m->nu) * sizeof *y);
+    ct_machine_copy(m->input + m->at_q, y, m->nq + m->nu);
     m->input[m->at_work] = y[m->nq + m->nu];
 }
 
@@ -458,8 +459,8 @@ bool ct_machine_solved(struct ct_machine *m, double *a)
         return false;
     m->evaluations++;
     ct_program_run(&m->solved, m->input);
-    memcpy(a, m->solved.out, m->nu * sizeof *a);
-    memcpy(m->rate, m->solved.out + m->nu, m->nq * sizeof *m->rate);
+    ct_machine_copy(a, m->solved.out, m->nu);
+    ct_machine_copy(m->rate, m->solved.out + m->nu, m->nq);
     return true;
 }
 
@@ -562,8 +563,7 @@ void ct_machine_chart_rate(const struct ct_machine *m, const double *d, const do
 
 // ---- memories ---------------------------------------------------------------------------------------
 
-// Unit quaternion of a rotation (column-major), the largest of the four numbers found first.
-static void quaternion_of(const double *R, double *p)
+void ct_quaternion_of(const double *R, double *p)
 {
     const double square[4] = {1 + R[0] + R[4] + R[8], 1 + R[0] - R[4] - R[8],
                               1 - R[0] + R[4] - R[8], 1 - R[0] - R[4] + R[8]};
@@ -599,7 +599,7 @@ void ct_memory_start(struct ct_machine *m)
             memory[i] = m->memory.out[i];
         } else {
             if (m->e->memory[i].place == 0)
-                quaternion_of(R, memory + i);
+                ct_quaternion_of(R, memory + i);
             R += 9;
         }
     }

@@ -2,17 +2,10 @@
 #include "solve/run.h"
 
 #include "formulate/flexible.h"
+#include "numeric/dense.h"
 #include "solve/dae.h"
 
 #include <string.h>
-
-static double largest(const double *v, size_t n)
-{
-    double max = 0;
-    for (size_t i = 0; i < n; i++)
-        max = fmax(max, fabs(v[i]));
-    return max;
-}
 
 // ---- evaluation -------------------------------------------------------------------------------------------
 
@@ -25,7 +18,7 @@ enum ct_eval ct_run_accelerate(struct ct_run *r, double t, const double *y)
     for (size_t i = 0; i < r->m->nu; i++)
         if (!isfinite(r->s->a[i]))
             return CT_EVAL_RETRY;
-    memcpy(r->m->input + r->m->at_a, r->s->a, r->m->nu * sizeof *r->s->a);
+    ct_machine_copy(r->m->input + r->m->at_a, r->s->a, r->m->nu);
     return CT_EVAL_OK;
 }
 
@@ -42,8 +35,8 @@ static enum ct_eval rhs(void *user, double time, const double *y, double *dy)
     const enum ct_eval e = ct_run_accelerate(r, t, y);
     if (e != CT_EVAL_OK)
         return e;
-    memcpy(dy, r->m->rate, r->m->nq * sizeof *dy);
-    memcpy(dy + r->m->nq, r->s->a, r->m->nu * sizeof *dy);
+    ct_machine_copy(dy, r->m->rate, r->m->nq);
+    ct_machine_copy(dy + r->m->nq, r->s->a, r->m->nu);
     dy[r->ny - 1] = 0;
     if (r->has_power) {
         if (r->needs_lam)
@@ -58,6 +51,15 @@ static enum ct_eval project(void *user, double t, double *y)
 {
     struct ct_run *r = user;
     return ct_embed_project(r->s, ct_run_before(r, t), y);
+}
+
+// Rows, or quaternions of unit length.
+static bool has_constraints(const struct ct_run *r)
+{
+    bool has = r->m->nrow > 0;
+    for (size_t i = 0; i < r->e->nq; i++)
+        has |= r->e->q[i].quaternion == 0;
+    return has;
 }
 
 static double singular_in(void *user, double *reach)
@@ -91,7 +93,22 @@ static double residual(void *user, double t, const double *y)
     struct ct_run *r = user;
     ct_machine_set(r->m, ct_run_before(r, t), y);
     ct_machine_constraint(r->m);
-    return largest(r->m->phi, r->m->nrow);
+    return ct_vector_largest(r->m->phi, r->m->nrow);
+}
+
+// Its rows times the vector that they are combined with to nothing.
+static double mismatch(void *user, double t, const double *y)
+{
+    struct ct_run *r = user;
+    const struct ct_machine *m = r->m;
+    double log_det, sum = 0, *x = r->scratch;
+    ct_machine_set(r->m, ct_run_before(r, t), y);
+    ct_machine_constraint(r->m);
+    if (!ct_embed_dependence(r->s, x, &log_det))
+        return ct_vector_largest(m->phi, m->nrow);
+    for (int i = 0; i < r->s->rank; i++)
+        sum += x[i] * m->phi[r->s->row[i]];
+    return fabs(sum) / ct_vector_largest(x, (size_t)r->s->rank);
 }
 
 // A followed angle that turns faster at the end of a step than at its start must still stay within half a turn.
@@ -279,17 +296,29 @@ static void keep_ledger(struct ct_run *r, const double *y)
         r->report->energy_drift = fmax(r->report->energy_drift, fabs(total - r->energy0));
     ct_machine_constraint(r->m);
     r->report->position_constraint
-        = fmax(r->report->position_constraint, largest(r->m->phi, r->m->nrow));
+        = fmax(r->report->position_constraint, ct_vector_largest(r->m->phi, r->m->nrow));
     r->report->velocity_constraint
-        = fmax(r->report->velocity_constraint, largest(r->m->v, r->m->nrow));
+        = fmax(r->report->velocity_constraint, ct_vector_largest(r->m->v, r->m->nrow));
 }
 
-// Indicators of linear beams, averaged over a period of the beam: what rings faster than it can follow does not count.
+void ct_bend_watch(struct ct_bend_report *report, const struct ct_machine *m, double t)
+{
+    const double *square = m->validity.out + m->e->nvalidity;
+    for (size_t i = 0; i < m->e->nbend; i++) {
+        for (size_t k = 0; k < m->e->bend[i].n; k++)
+            report[i].largest = fmax(report[i].largest, sqrt(*square++));
+        if (report[i].largest > CT_SLOPE_LIMIT && report[i].passed_at < 0)
+            report[i].passed_at = t;
+    }
+}
+
+// Slopes of beams, and indicators of linear ones, averaged over a period of the beam: what rings faster than it can follow does not count.
 static void watch_validity(struct ct_run *r, double t)
 {
-    if (!r->e->nvalidity)
+    if (!r->m->validity.nout)
         return;
     ct_program_run(&r->m->validity, r->m->input);
+    ct_bend_watch(r->report->bend, r->m, t);
     for (size_t i = 0; i < r->e->nvalidity; i++) {
         struct ct_validity_report *v = &r->report->validity[i];
         const double period = 6.283185307179586 / r->e->validity[i].omega;
@@ -525,6 +554,9 @@ bool ct_run_simulate(struct ct_run *r, const struct ct_run_options *o,
     report->validity = CT_NEWN(r->arena, struct ct_validity_report, r->e->nvalidity + 1);
     for (size_t i = 0; i < r->e->nvalidity; i++)
         report->validity[i].left_at = -1;
+    report->bend = CT_NEWN(r->arena, struct ct_bend_report, r->e->nbend + 1);
+    for (size_t i = 0; i < r->e->nbend; i++)
+        report->bend[i].passed_at = -1;
     ct_singular_start(r->singular);
     if (r->fidelity)
         ct_fidelity_start(r->fidelity);
@@ -547,13 +579,14 @@ bool ct_run_simulate(struct ct_run *r, const struct ct_run_options *o,
                            .groups = ct_run_groups(r),
                            .output_error = r->fidelity ? output_error : NULL,
                            .rhs = rhs,
-                           .project = project,
+                           .project = has_constraints(r) ? project : NULL,
                            .accepted = accepted,
                            .longest_step = ct_run_longest_step,
                            .singular_in = singular_in,
                            .set_crossing = set_crossing,
                            .crossed = crossed,
                            .residual = residual,
+                           .mismatch = mismatch,
                            .nroot = r->nroot,
                            .root = ct_run_root,
                            .next_time_event = ct_run_next_event,

@@ -33,11 +33,16 @@ void ct_singular_start(struct ct_singular *w)
 
 // ---- ahead ------------------------------------------------------------------------------------------------
 
-// The smallest pivot at y, where the time is t.
-static double pivot_at(struct ct_singular *w, double t, const double *y)
+static void look_at(struct ct_singular *w, double t, const double *y)
 {
     ct_machine_set(w->m, t, y);
     ct_machine_constraint(w->m);
+}
+
+// The smallest pivot at y, where the time is t.
+static double pivot_at(struct ct_singular *w, double t, const double *y)
+{
+    look_at(w, t, y);
     return ct_embed_pivot(w->s);
 }
 
@@ -94,7 +99,12 @@ bool ct_singular_foresee(struct ct_singular *w, double t, const double *y, const
     const double dt = t - w->t;
     if (!ct_embed_has_pivot(w->s) || !(dt > 0))
         return true;
-    const double now = pivot_after(w, &ahead, 0), part = now / fmax(w->most, now);
+    look_at(w, ct_time_before(t, pending), y);
+    const bool is_far = w->most > 0
+                     && ct_embed_pivot_is_between(w->s, foreseen_pivot * w->most,
+                                                  w->most); // then at least so much
+    const double now = is_far ? foreseen_pivot * w->most : ct_embed_pivot(w->s);
+    const double part = now / fmax(w->most, now);
     // after another choice of rows and columns the pivot is not to be compared with the last one
     const bool is_comparable = w->s->switches == w->switches;
     const bool was_unforeseen = is_comparable && isinf(w->in) && w->part > near_pivot;
@@ -107,7 +117,7 @@ bool ct_singular_foresee(struct ct_singular *w, double t, const double *y, const
     w->in = INFINITY;
     w->s->is_delicate = part < near_pivot;
     w->s->nearness = part;
-    if (part > foreseen_pivot)
+    if (is_far || part > foreseen_pivot)
         return true;
     w->in = time_to_singular(w, &ahead, now, dt);
     w->reach = w->in * fmin(1, singular_pivot / part);

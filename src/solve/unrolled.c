@@ -121,8 +121,8 @@ static double solve(struct ct_form *form, struct ct_machine *m, double *a)
     for (size_t i = 0; i < m->nu; i++)
         if (!isfinite(out[i]))
             return 0;
-    memcpy(a, out, m->nu * sizeof *a);
-    memcpy(m->rate, out + m->nu, m->nq * sizeof *m->rate);
+    ct_machine_copy(a, out, m->nu);
+    ct_machine_copy(m->rate, out + m->nu, m->nq);
     return strength(f, inertia + f->c->nfree);
 }
 

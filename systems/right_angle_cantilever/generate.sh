@@ -1,6 +1,7 @@
 #!/bin/sh
-# generate.sh [K [N]]: writes the right-angle cantilever, each leg cut into K beams of N elements, to standard output.
-LC_ALL=C exec awk -v K="${1:-4}" -v N="${2:-1}" '
+# generate.sh [K [N [TWIST]]]: writes the right-angle cantilever, each leg cut into K beams of N elements, to standard output.
+# TWIST: linear or quadratic.
+LC_ALL=C exec awk -v K="${1:-4}" -v N="${2:-1}" -v twist="${3:-quadratic}" '
 BEGIN {
   if (K !~ /^[1-9][0-9]*$/ || N !~ /^[1-9][0-9]*$/) {
     print "generate.sh: K and N are positive integers" > "/dev/stderr"
@@ -12,7 +13,8 @@ BEGIN {
   for (k = 1; k <= 2 * K; k++) {
     printf "  part%d:\n    type: beam\n    length: 10/%d\n    elements: %d\n    mass_per_length: 1\n    rotary_inertia: [20, 10, 10]\n", k, K, N
     printf "    E: 1\n    G: 1\n    area: EA\n    Iy: EI\n    Iz: EI\n    J: EI\n"
-    printf "    formulation: foreshortening\n    frame: chord\n"
+    printf "    formulation: foreshortening\n    frame: chord\n    twist: %s\n", twist
+    printf "    deformation: [bending-y, bending-z, torsion]\n"
     printf "    points: {end: %s}\n", (k == K ? "{at: length, rotate: [[z, pi/2]]}" : "length")
   }
   printf "\njoints:\n  clamp: {type: weld, from: ground, to: part1}\n"
@@ -22,5 +24,5 @@ BEGIN {
   printf "\noutputs:\n"
   for (c = 1; c <= 3; c++) printf "  - {name: tip_%s, value: part%d.end.position.%s}\n", substr("xyz", c, 1), 2 * K, substr("xyz", c, 1)
   for (c = 1; c <= 3; c++) printf "  - {name: elbow_%s, value: part%d.end.position.%s}\n", substr("xyz", c, 1), K, substr("xyz", c, 1)
-  printf "  - energy.kinetic\n  - energy.total\n\nsimulation:\n  duration: 10\n  interval: 0.5\n  tolerance: 1e-5\n  method: dop853\n"
+  printf "  - energy.kinetic\n  - energy.total\n\nsimulation:\n  duration: 10\n  interval: 1\n  tolerance: 1e-5\n  method: dop853\n"
 }'

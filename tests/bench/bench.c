@@ -3,9 +3,10 @@
 //     bench [--quick | --sweep [MEMBERS]]
 //
 // Models are read from YAML and go through the normal stages. A time is the median of 11 samples of
-// processor time, each of many calls, and of three such medians the least; what a ratio compares is measured
-// alternately in one run, so that a busy machine slows both sides. At the end all quantities with a goal stand
-// together. Goals are those of the project's feasibility study, measured there on
+// the thread's processor time, each of many calls, and of three such medians the least; what a ratio compares is measured
+// alternately in one run, so that a busy machine slows both sides. A loop whose work is always the same is timed along
+// with every row: where it takes longer than it did before, the row is measured again (whatever slows everything at once,
+// for a second or so, is not the program). At the end all quantities with a goal stand together. Goals are those of the project's feasibility study, measured there on
 // one core of a server processor at 3.6 GHz; they include solving for the accelerations where the name
 // says so.
 #include "codegen/native.h"
@@ -16,6 +17,7 @@
 #include <cotree/cotree.h>
 
 #include <math.h>
+#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -27,16 +29,28 @@ enum { NSAMPLE = 11, NREPEAT = 3 };
 
 static double sample_seconds = 2e-3;
 
-static double now(void)
+static double read_clock(clockid_t clock)
 {
     struct timespec t;
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
+    clock_gettime(clock, &t);
     return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+// Of this thread: those of a library for matrices wait for work by running.
+static double now(void)
+{
+    return read_clock(CLOCK_THREAD_CPUTIME_ID);
+}
+
+// Of all threads.
+static double now_of_all(void)
+{
+    return read_clock(CLOCK_PROCESS_CPUTIME_ID);
 }
 
 // ---- table --------------------------------------------------------------------------------------
 
-// What a line with a goal is about: the title above it.
+// What the lines below a title are about, for the table of goals.
 static char context[96];
 
 struct goal {
@@ -67,14 +81,27 @@ static void show_goals(void)
                goals[i].ratio);
 }
 
-static void head(const char *title)
+static void set_context(const char *name)
 {
+    snprintf(context, sizeof context, "%s", name);
+}
+
+static void head(const char *name, const char *title)
+{
+    set_context(name);
     printf("\n%-58s %12s %12s %8s\n", title, "measured", "goal", "of goal");
 }
 
-static void about(const char *what)
+// Above the lines of one model. name: what each of them is about; the title says more.
+__attribute__((format(printf, 2, 3))) static void title(const char *name, const char *fmt, ...)
 {
-    snprintf(context, sizeof context, "%s", what);
+    va_list ap;
+    set_context(name);
+    putchar('\n');
+    va_start(ap, fmt);
+    vprintf(fmt, ap);
+    va_end(ap);
+    putchar('\n');
 }
 
 // A time [s], and what it should be at most; 0: no goal.
@@ -137,11 +164,22 @@ static double time_of_calls(call_fn f, void *data, long n)
     return now() - start;
 }
 
-// Seconds per call of each of n functions, sampled in turn.
-static void measure(const call_fn *f, void *const *data, size_t n, double *t)
+// Products that wait for each other: the same time whatever is measured beside it.
+static void run_reference(void *data)
 {
-    double sample[8][NSAMPLE];
-    long calls[8];
+    volatile double *v = data;
+    double x = 1 + 1e-9 * *v;
+    for (int i = 0; i < 4000; i++)
+        x *= 0.999999;
+    *v = x;
+}
+
+enum { MOST_MEASURED = 8 };
+
+static void measure_once(const call_fn *f, void *const *data, size_t n, double *t)
+{
+    double sample[MOST_MEASURED + 1][NSAMPLE];
+    long calls[MOST_MEASURED + 1];
     for (size_t k = 0; k < n; k++) {
         double once;
         for (calls[k] = 1;
@@ -159,6 +197,31 @@ static void measure(const call_fn *f, void *const *data, size_t n, double *t)
             t[k] = repeat && t[k] < median ? t[k] : median;
         }
     }
+}
+
+// Seconds per call of each of n functions, sampled in turn.
+static void measure(const call_fn *f, void *const *data, size_t n, double *t)
+{
+    enum { MOST_TRIES = 4 };
+    static double reference = INFINITY; // the least so far
+    const double slower = 1.15; // clocks that change speed, and samples that differ, stay below
+    call_fn all[MOST_MEASURED + 1];
+    void *of_all[MOST_MEASURED + 1];
+    double time[MOST_MEASURED + 1] = {0}, one = 0;
+    memcpy(all, f, n * sizeof *f);
+    memcpy(of_all, data, n * sizeof *data);
+    all[n] = run_reference;
+    of_all[n] = &one;
+    for (int i = 0; i < MOST_TRIES; i++) {
+        measure_once(all, of_all, n + 1, time);
+        for (size_t k = 0; k < n; k++)
+            t[k] = i && t[k] < time[k] ? t[k] : time[k];
+        reference = fmin(reference, time[n]);
+        if (time[n] <= slower * reference)
+            return;
+    }
+    printf("  (the machine was slow: the reference took %.2f of its time)\n",
+           time[n] / reference);
 }
 
 // ---- models -------------------------------------------------------------------------------------
@@ -443,13 +506,16 @@ static bool open_evaluator(struct evaluator *v, struct subject *s, const struct 
 }
 
 // Seconds a call, in the order of the back ends.
+enum { NBACKEND = 6 };
+
 struct times {
-    double t[5];
+    double t[NBACKEND];
 };
 
-// One line per back end; goals [s] in the same order.
+// One line per back end; goals [s] in the same order. name: of the model; what: the program does.
 static struct times compare_back_ends(struct subject *s, const struct ct_program *p,
-                                      const char *what, const double goal[5])
+                                      const char *name, const char *what,
+                                      const double goal[NBACKEND])
 {
     static const struct {
         const char *name;
@@ -459,11 +525,12 @@ static struct times compare_back_ends(struct subject *s, const struct ct_program
                {"tape, 4 lanes, per lane", 4, false},
                {"tape, 8 lanes, per lane", 8, false},
                {"native", 1, true},
-               {"native, 4 lanes, per lane", 4, true}};
-    struct evaluator v[5];
-    call_fn f[5] = {0};
-    void *data[5] = {0};
-    double t[5];
+               {"native, 4 lanes, per lane", 4, true},
+               {"native, 8 lanes, per lane", 8, true}};
+    struct evaluator v[NBACKEND];
+    call_fn f[NBACKEND] = {0};
+    void *data[NBACKEND] = {0};
+    double t[NBACKEND];
     size_t n = 0;
     for (size_t i = 0; i < COUNT(all); i++)
         n += open_evaluator(&v[n], s, p, all[i].name, all[i].lanes, all[i].native);
@@ -473,14 +540,14 @@ static struct times compare_back_ends(struct subject *s, const struct ct_program
     }
     measure(f, data, n, t);
     const struct ct_tape_counts c = p->listing->counts;
-    printf("\n%s: %ld mul, %ld add, %ld div, %ld functions, %zu outputs\n", what,
-           c.multiplications, c.additions, c.divisions, c.functions, p->nout);
+    title(name, "%s, %s: %ld mul, %ld add, %ld div, %ld functions, %zu outputs", name, what,
+          c.multiplications, c.additions, c.divisions, c.functions, p->nout);
     for (size_t i = 0; i < n; i++) {
         char text[96];
         snprintf(text, sizeof text, "  %s", v[i].name);
         line(text, t[i] / v[i].lanes, goal ? goal[i] : 0);
     }
-    if (n == 5) {
+    if (n == NBACKEND) {
         ratio("  tape / native", t[0] / t[3], 0);
         ratio("  native / native, 4 lanes, per lane", 4 * t[3] / t[4], 0);
     }
@@ -723,8 +790,8 @@ static void show_generation(struct subject *s, const char *what)
     double t[4];
     measure(f, data, 4, t);
     const double nnode = (double)s->equations.x->nnode, nins = (double)l->nins;
-    printf("\n%s: %zu nodes in the store, %zu instructions\n", what, s->equations.x->nnode,
-           l->nins);
+    title(what, "%s: %zu nodes in the store, %zu instructions", what, s->equations.x->nnode,
+          l->nins);
     line("  graph construction, per node", t[0] / nnode, 40e-9);
     line("  listing, per instruction", t[1] / nins, 0);
     line("  tape from the listing, per instruction", t[2] / nins, 0);
@@ -737,7 +804,7 @@ static void show_generation(struct subject *s, const char *what)
 // An open chain: u' and q' by the formulation that was chosen. goal: as compare_back_ends, then of the way from the model
 // to native code. is_throughput: show which part of the processor's peak it reaches. Returns the time from the model to
 // native code.
-static double open_chain(const char *what, const char *path, const double goal[5],
+static double open_chain(const char *what, const char *path, const double goal[NBACKEND],
                          double generation_goal, bool is_throughput)
 {
     static const char *const name[]
@@ -745,9 +812,8 @@ static double open_chain(const char *what, const char *path, const double goal[5
     struct subject s;
     char text[128];
     open_subject(&s, path);
-    snprintf(text, sizeof text, "%s, u' by %s", what, name[s.equations.formulation]);
-    about(what);
-    const struct times t = compare_back_ends(&s, &s.machine->solved, text, goal);
+    snprintf(text, sizeof text, "u' by %s", name[s.equations.formulation]);
+    const struct times t = compare_back_ends(&s, &s.machine->solved, what, text, goal);
     if (is_throughput)
         show_use(&s.machine->solved, &t);
     line("  model to equations", median_of(model_to_equations, s.path, 5), 0);
@@ -767,7 +833,7 @@ static void run_residual(void *data)
 }
 
 // Forces for given motion.
-static void inverse_dynamics(const char *what, const char *path, double goal)
+static void inverse_dynamics(const char *name, const char *path, double goal)
 {
     struct subject s;
     const call_fn f[] = {run_residual};
@@ -777,9 +843,8 @@ static void inverse_dynamics(const char *what, const char *path, double goal)
     ct_formulate_residual(&s.equations);
     ct_machine_add_residual(s.ctx.model, s.machine);
     measure(f, data, 1, &t);
-    about("");
-    putchar('\n');
-    line(what, t, goal);
+    title(name, "%s, forces for given motion", name);
+    line("  inverse dynamics, native", t, goal);
     close_subject(&s);
 }
 
@@ -882,8 +947,8 @@ static void implicit_chain(int n)
     double t;
     measure(f, data, 1, &t);
     const struct ct_directional *along = s.equations.residual->along;
-    printf("\nchain of %d balls, derivatives for implicit methods %s\n", n,
-           along ? "along directions" : "entry by entry");
+    title("", "chain of %d balls, derivatives for implicit methods %s", n,
+          along ? "along directions" : "entry by entry");
     line("  residual and derivatives, from equations to native code", made, 0);
     snprintf(text, sizeof text, "  all derivatives (%zu x %zu)", s.machine->nu,
              3 * s.machine->nu);
@@ -893,14 +958,15 @@ static void implicit_chain(int n)
 
 static void open_chains(bool quick)
 {
-    static const double six_folded[5] = {0.8e-6, 0, 0, 120e-9, 42e-9},
-                        six[5] = {0.8e-6, 0, 0, 150e-9, 42e-9}, seven[5] = {0, 0, 0, 190e-9, 0},
-                        planar[5] = {0, 0, 0, 1.5e-6, 0}, spatial[5] = {0, 0, 0, 4e-6, 0},
-                        long_spatial[5] = {0, 0, 0, 40e-6, 0};
+    static const double six_folded[NBACKEND]
+        = {0.8e-6, 0, 0, 120e-9, 42e-9},
+        six[NBACKEND] = {0.8e-6, 0, 0, 150e-9, 42e-9}, seven[NBACKEND] = {0, 0, 0, 190e-9, 0},
+        planar[NBACKEND] = {0, 0, 0, 1.5e-6, 0}, spatial[NBACKEND] = {0, 0, 0, 4e-6, 0},
+        long_spatial[NBACKEND] = {0, 0, 0, 40e-6, 0};
     open_chain("6R arm (puma560, numbers folded)", shipped("puma560"), six_folded, 0.5e-3,
                false);
     open_chain("6R arm, parameters", arm(6), six, 0.5e-3, false);
-    inverse_dynamics("6R arm, parameters: inverse dynamics, native", arm(6), 140e-9);
+    inverse_dynamics("6R arm, parameters", arm(6), 140e-9);
     open_chain("7-dof arm, parameters", arm(7), seven, 0, false);
     implicit_chain(quick ? 5 : 50);
     if (quick)
@@ -910,8 +976,8 @@ static void open_chains(bool quick)
                                   spatial, 5e-3, true);
     const double t500 = open_chain("chain of 500 balls (1500 freedoms)", spatial_chain(500),
                                    long_spatial, 2, false);
-    about("");
-    ratio("model to native code, 500 balls / 50 balls", t500 / t50, 15);
+    title("", "chains of balls");
+    ratio("  model to native code, 500 balls / 50 balls", t500 / t50, 15);
     unlink(temporary());
 }
 
@@ -919,8 +985,7 @@ static void andrews(void)
 {
     struct subject s;
     open_subject(&s, shipped("andrews"));
-    about("Andrews' mechanism");
-    compare_back_ends(&s, &s.machine->motion, "Andrews' mechanism, M, Q, J, gam", NULL);
+    compare_back_ends(&s, &s.machine->motion, "Andrews' mechanism", "M, Q, J, gam", NULL);
     show_accelerations(&s, "  accelerations, solve included, native", 1, 160e-9);
     residual_and_slopes(&s, "  residual and its sparse Jacobian", 160e-9);
     fixed_against_pivoted(&s);
@@ -935,9 +1000,7 @@ static void four_bars(int n)
     char what[64];
     open_subject(&s, generated("n_four_bar", n));
     snprintf(what, sizeof what, "%d four-bar%s", n, n > 1 ? "s" : "");
-    about(what);
-    snprintf(what, sizeof what, "%d four-bar%s, M, Q, J, gam", n, n > 1 ? "s" : "");
-    compare_back_ends(&s, &s.machine->motion, what, NULL);
+    compare_back_ends(&s, &s.machine->motion, what, "M, Q, J, gam", NULL);
     show_accelerations(&s, "  accelerations, solve included, per loop", n, 60e-9);
     show_projection(&s, n);
     close_subject(&s);
@@ -955,8 +1018,8 @@ static void links_by_bodies(int n)
 {
     struct subject s;
     open_subject_on(&s, generated("chain40", n), CT_TREE_ABSOLUTE);
-    printf("\nchain of %d links on trees of bodies: %zu speeds, %zu rows, solved by %s\n", n,
-           s.machine->nu, s.machine->nrow, solver(&s));
+    title("", "chain of %d links on trees of bodies: %zu speeds, %zu rows, solved by %s", n,
+          s.machine->nu, s.machine->nrow, solver(&s));
     show_accelerations(&s, "  accelerations, solve included, per link", n, 0);
     show_projection(&s, n);
     close_subject(&s);
@@ -970,9 +1033,8 @@ static void many_four_bars(int n)
     open_subject(&s, generated("n_four_bar", n));
     char what[64];
     snprintf(what, sizeof what, "%d four-bars", n);
-    about(what);
-    printf("\n%d four-bars in a row: %zu bodies, %zu joints, solved by %s\n", n,
-           s.model.nbody - 1, s.model.njoint, solver(&s));
+    title(what, "%s in a row: %zu bodies, %zu joints, solved by %s", what, s.model.nbody - 1,
+          s.model.njoint, solver(&s));
     line("  model to equations", s.generate, 2);
     line("  equations to the start of a run", s.prepare, 0);
     size("  memory of model, equations and run", ct_arena_used(s.ctx.model));
@@ -1041,7 +1103,7 @@ static bool run_single(void *user, long member, const double *varied, const doub
 static void sweep(int members)
 {
     struct singles s = {.path = shipped("slider_crank"), .every = members < 1000 ? 2 : 50};
-    char vary[64], text[96];
+    char vary[64];
     snprintf(vary, sizeof vary, "torque=0.4:0.6:%d", members);
     const char *const list[] = {vary};
     struct ct_ctx *ctx = ct_ctx_create();
@@ -1053,14 +1115,11 @@ static void sweep(int members)
     const double lanes = (now() - start - s.spent) / members;
     ct_study_destroy(study);
     ct_ctx_destroy(ctx);
-    snprintf(text, sizeof text, "slider-crank, 2 s: sweep of %d, per member, all included",
-             members);
-    about("sweep of the slider-crank, at least");
-    putchar('\n');
-    line(text, lanes, 0);
+    title("sweep of the slider-crank", "slider-crank, 2 s: sweep of %d members", members);
+    line("  per member, all included", lanes, 0);
     line("  single run: integration only, the system ready", s.run / (double)s.n, 0);
     line("  single run: made ready of a system that is there", s.prepare / (double)s.n, 0);
-    ratio("  integration only / member", s.run / (double)s.n / lanes, 3);
+    ratio("  integration only / member, at least", s.run / (double)s.n / lanes, 3);
     ratio("  made ready and integrated / member", (s.prepare + s.run) / (double)s.n / lanes, 0);
     printf("%-58s %12.1e\n", "  largest difference of a row from its single run", s.difference);
 }
@@ -1091,10 +1150,10 @@ static void beams(const char *what, const struct beam *kind, bool quick)
     const int *all = kind->is_chain ? link : element;
     const char *of = kind->is_chain ? "beam" : "element";
     double first = 0, first_generation = 0;
-    printf(
-        "\n%s, u' with the solve: per evaluation, per %s, ratio to %d | model to native, per "
-        "%s, ratio | operations per %s\n",
-        what, of, all[0], of, of);
+    title(what,
+          "%s, u' with the solve: per evaluation, per %s, ratio to %d | model to native, per "
+          "%s, ratio | operations per %s",
+          what, of, all[0], of, of);
     for (size_t i = 0; i < (quick ? 2 : COUNT(element)); i++) {
         struct subject s;
         const int n = all[i];
@@ -1144,8 +1203,7 @@ static void all_beams(bool quick)
                {"beams welded end to end in space", {"foreshortening", true, true}}};
     for (size_t i = 0; i < COUNT(all); i++)
         beams(all[i].what, &all[i].kind, quick);
-    putchar('\n');
-    about("");
+    title("", "forces of inertia, stiffness and weight");
     beam_forces("foreshortened beam in space, 10 elements: forces", &all[1].kind);
     beam_forces("linear beam in space, 10 elements: forces", &all[3].kind);
     unlink(temporary());
@@ -1179,12 +1237,12 @@ static void modes_of(const char *what, int nbeam, int nelement, double goal)
         return;
     write_cantilever(f, nbeam, nelement);
     fclose(f);
-    const double start = now();
+    const double start = now_of_all();
     struct ct_ctx *ctx = ct_ctx_create();
     struct ct_system *sys
         = ct_system_load(ctx, temporary(), &(struct ct_system_options){.for_analysis = true});
     struct ct_modes *modes = ct_modes_create(ctx, sys, NULL);
-    const double t = now() - start;
+    const double t = now_of_all() - start;
     if (modes) {
         struct rusage use;
         getrusage(RUSAGE_SELF, &use);
@@ -1202,7 +1260,7 @@ static void modes_of(const char *what, int nbeam, int nelement, double goal)
 static void large_modes(bool quick)
 {
     static const int n[] = {17, 50, 167}; // tens of elements: 1000, 3000, 10 000 dof
-    head("first 10 modes, from the file to the table");
+    head("first 10 modes", "first 10 modes, from the file to the table");
     for (int i = 0; i < (quick ? 1 : 3); i++)
         modes_of("one beam", 1, 10 * n[i], i == 2 ? 5 : 0);
     for (int i = 0; i < (quick ? 1 : 3); i++)
@@ -1215,7 +1273,7 @@ int main(int argc, char **argv)
     if (quick)
         sample_seconds = 5e-5;
     printf("native code: %s\n", ct_native_is_available(1) ? "available" : "not available");
-    head("one core, warm");
+    head("", "one core, warm");
     if (argc > 1 && strcmp(argv[1], "--sweep") == 0) {
         sweep(argc > 2 ? atoi(argv[2]) : 10000);
         return 0;

@@ -25,3 +25,18 @@ difference() {
     function size(x) { return x < 0 ? -x : x }
     END { if (bad || FNR != rows) print "different shapes"; else printf "%.17g\n", worst + 0 }' "$1" "$2"
 }
+
+# A row of a sweep, its values separated by commas, against the last row of run.csv, a run of its own at a tolerance of
+# 1e-8: says every value that differs.  same_row RUN VALUES
+same_row() {
+  echo "$2" >want
+  tail -1 run.csv | cut -d, -f2- | paste -d, want - | awk -F, -v run="$1" '{
+    n = NF / 2
+    for (i = 1; i <= n; i++) {
+      d = $i - $(n + i); d = d < 0 ? -d : d
+      size = $i < 0 ? -$i : $i
+      if (!(d <= 1e-7 * (size > 1 ? size : 1))) print "run " run ": value " i ": " $i ", alone " $(n + i)
+    }
+    if (NF % 2) print "run " run ": another number of values"
+  } END { if (NR != 1) print "run " run ": no values" }'
+}

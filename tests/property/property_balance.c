@@ -1,12 +1,9 @@
 // Newton and Euler for every body: the wrenches of its joints, as they are put out, and of the forces, worked
 // out here from their laws, make up for its d'Alembert wrench.
 #include "tests/property/system.h"
+#include "tests/property/vector.h"
 
 static const double tolerance = 1e-9; // solutions of small, well conditioned systems
-
-struct vector {
-    double e[3];
-};
 
 struct scene {
     struct system *s;
@@ -15,28 +12,6 @@ struct scene {
     double *value;        // of the model's symbols
     struct vector *F, *T; // by body: sum of wrenches, torque about the ground origin
 };
-
-static struct vector add(struct vector a, struct vector b, double f)
-{
-    for (int i = 0; i < 3; i++)
-        a.e[i] += f * b.e[i];
-    return a;
-}
-
-static struct vector cross(struct vector a, struct vector b)
-{
-    struct vector c;
-    for (int i = 0; i < 3; i++) {
-        const int j = (i + 1) % 3, k = (i + 2) % 3;
-        c.e[i] = a.e[j] * b.e[k] - a.e[k] * b.e[j];
-    }
-    return c;
-}
-
-static double dot(struct vector a, struct vector b)
-{
-    return a.e[0] * b.e[0] + a.e[1] * b.e[1] + a.e[2] * b.e[2];
-}
 
 // ---- what the program says ----------------------------------------------------------------------------------
 
@@ -126,8 +101,8 @@ static void act(struct scene *c, int frame, struct vector F, struct vector T, st
                 double sign)
 {
     const int body = frame < 0 ? 0 : c->s->model.frame[frame].body;
-    c->F[body] = add(c->F[body], F, sign);
-    c->T[body] = add(add(c->T[body], T, sign), cross(r, F), sign);
+    c->F[body] = plus(c->F[body], sign, F);
+    c->T[body] = plus(plus(c->T[body], sign, T), sign, cross(r, F));
 }
 
 static void act_pair(struct scene *c, int from, int to, struct vector F, struct vector T)
@@ -159,13 +134,13 @@ static void act_spring(struct scene *c, const struct ct_instance *f)
 {
     const struct vector zero = {{0, 0, 0}};
     const struct vector d
-        = add(of_frame(c, f->to, "position"), of_frame(c, f->from, "position"), -1);
+        = plus(of_frame(c, f->to, "position"), -1, of_frame(c, f->from, "position"));
     const struct vector v
-        = add(of_frame(c, f->to, "velocity"), of_frame(c, f->from, "velocity"), -1);
+        = plus(of_frame(c, f->to, "velocity"), -1, of_frame(c, f->from, "velocity"));
     const double l = sqrt(dot(d, d));
     const double pull = number(c, f, "stiffness", 0) * (l - number(c, f, "length", 0))
                       + number(c, f, "damping", 0) * dot(d, v) / l;
-    act_pair(c, f->from, f->to, add(zero, d, -pull / l), zero);
+    act_pair(c, f->from, f->to, plus(zero, -pull / l, d), zero);
 }
 
 // Rotation vector between the axes of two frames, from the quaternion-free formula phi = t/sin(t) axial part.
@@ -191,14 +166,14 @@ static void act_bushing(struct scene *c, const struct ct_instance *f)
 {
     struct vector F, T;
     const struct vector d
-        = add(of_frame(c, f->to, "position"), of_frame(c, f->from, "position"), -1);
+        = plus(of_frame(c, f->to, "position"), -1, of_frame(c, f->from, "position"));
     const struct vector w = of_frame(c, f->from, "angular_velocity");
     const struct vector v
-        = add(of_frame(c, f->to, "velocity"), of_frame(c, f->from, "velocity"), -1);
+        = plus(of_frame(c, f->to, "velocity"), -1, of_frame(c, f->from, "velocity"));
     const struct vector place = turned(c, f->from, d, true);
-    const struct vector rate = turned(c, f->from, add(v, cross(w, d), -1), true);
+    const struct vector rate = turned(c, f->from, plus(v, -1, cross(w, d)), true);
     const struct vector spin
-        = turned(c, f->from, add(of_frame(c, f->to, "angular_velocity"), w, -1), true);
+        = turned(c, f->from, plus(of_frame(c, f->to, "angular_velocity"), -1, w), true);
     const struct vector phi = rotation_vector(c, f->from, f->to);
     for (int i = 0; i < 3; i++) {
         F.e[i] = -number(c, f, "stiffness", i) * place.e[i]
@@ -274,11 +249,11 @@ static bool body_is_balanced(struct scene *c, size_t i, const struct vector *nor
                         w = of_frame(c, b->frame, "angular_velocity"),
                         al = signal_of(c, b->instance.name, "angular_acceleration");
     const struct vector arm = turned(c, b->frame, body_vector(m, b->com.e), false);
-    const struct vector place = add(r, arm, 1);
+    const struct vector place = plus(r, 1, arm);
     struct vector a = signal_of(c, b->instance.name, "acceleration");
-    a = add(add(a, cross(al, arm), 1), cross(w, cross(w, arm)), 1);
+    a = plus(plus(a, 1, cross(al, arm)), 1, cross(w, cross(w, arm)));
     // d'Alembert: m (a - g), I al + w x I w
-    struct vector F = add(a, body_vector(m, m->gravity.e), -1);
+    struct vector F = plus(a, -1, body_vector(m, m->gravity.e));
     for (int k = 0; k < 3; k++)
         F.e[k] *= mass;
     struct vector T = {{0, 0, 0}};
@@ -295,10 +270,10 @@ static bool body_is_balanced(struct scene *c, size_t i, const struct vector *nor
                 Ia.e[k] += I[at[k][l]] * al_b.e[l];
                 Iw.e[k] += I[at[k][l]] * w_b.e[l];
             }
-        T = turned(c, b->frame, add(Ia, cross(w_b, Iw), 1), false);
+        T = turned(c, b->frame, plus(Ia, 1, cross(w_b, Iw)), false);
     }
-    const struct vector left = add(c->F[i], F, -1);
-    const struct vector moment = add(add(c->T[i], cross(place, c->F[i]), -1), T, -1);
+    const struct vector left = plus(c->F[i], -1, F);
+    const struct vector moment = plus(plus(c->T[i], -1, cross(place, c->F[i])), -1, T);
     double scale = 1 + sqrt(dot(F, F)) + sqrt(dot(T, T));
     for (size_t k = 0; k < c->v->e.nresult; k++)
         if (strstr(c->v->e.result[k].name, ".force.")

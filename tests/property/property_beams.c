@@ -1,36 +1,11 @@
 // Beams: reactions and stress resultants do not depend on the trees and obey Newton and Euler, for the whole and for
 // the part between two sections; textbook cantilevers; what the kinematic signals mean.
 #include "tests/property/system.h"
+#include "tests/property/vector.h"
 
 static const double tolerance = 1e-9; // solutions of small, well conditioned systems
 
 // ---- vectors --------------------------------------------------------------------------------------------------
-
-struct vector {
-    double e[3];
-};
-
-static struct vector plus(struct vector a, double f, struct vector b)
-{
-    for (int i = 0; i < 3; i++)
-        a.e[i] += f * b.e[i];
-    return a;
-}
-
-static struct vector cross(struct vector a, struct vector b)
-{
-    struct vector c;
-    for (int i = 0; i < 3; i++) {
-        const int j = (i + 1) % 3, k = (i + 2) % 3;
-        c.e[i] = a.e[j] * b.e[k] - a.e[k] * b.e[j];
-    }
-    return c;
-}
-
-static double norm(struct vector a)
-{
-    return sqrt(a.e[0] * a.e[0] + a.e[1] * a.e[1] + a.e[2] * a.e[2]);
-}
 
 static struct vector signal_of(const struct variant *v, const char *owner, const char *property)
 {
@@ -63,16 +38,6 @@ static void put_out(struct system *s, const char *frame)
 
 // ---- states -----------------------------------------------------------------------------------------------------
 
-static void renew(struct variant *v, double t)
-{
-    ct_machine_set(v->m, t, v->y);
-    ct_modes_start(v->m, t, v->y, NULL);
-    ct_machine_set(v->m, t, v->y);
-    ct_memory_start(v->m);
-    ct_machine_motion(v->m);
-    ct_machine_constraint(v->m);
-}
-
 // A random state of joints and bodies with random elastic coordinates, brought onto the constraints.
 static void move_anywhere(struct system *s, struct variant *v, double t, double amplitude)
 {
@@ -84,10 +49,10 @@ static void move_anywhere(struct system *s, struct variant *v, double t, double 
             v->y[v->e.u[k].q] = amplitude * chance();
             v->y[v->e.nq + k] = amplitude * chance();
         }
-    renew(v, t);
+    variant_renew(v, t);
     assert_true(ct_embed_choose(v->s));
     assert_int_equal(ct_embed_project(v->s, t, v->y), CT_EVAL_OK);
-    renew(v, t);
+    variant_renew(v, t);
 }
 
 // The state of v in other coordinates: those that v has, too, are the same; those of joints are results of v.
@@ -107,7 +72,7 @@ static void take_over(const struct variant *v, struct variant *w, double t)
         *q = v->result[variant_result(v, w->e.q[u->q].name)];
         *rate = v->result[variant_result(v, u->name)];
     }
-    renew(w, t);
+    variant_renew(w, t);
 }
 
 // ---- trees ------------------------------------------------------------------------------------------------------
@@ -154,6 +119,9 @@ static const char *const kinds[] = {
      "elements: 3\n"
      "    rotary_inertia: true"),
     ("formulation: linear\n    elements: 3\n    mass: lumped\n"
+     "    rotary_inertia: [0.02, 0.01, 0.01]"),
+    "formulation: linear\n    twist: quadratic\n    elements: 2",
+    ("formulation: foreshortening\n    twist: quadratic\n    elements: 2\n"
      "    rotary_inertia: [0.02, 0.01, 0.01]"),
 };
 
@@ -270,7 +238,7 @@ static bool system_is_balanced(struct system *s, double total_mass)
     for (int side = -1; side <= 1; side += 2) {
         for (size_t i = 0; i < n; i++)
             v.y[i] = y[i] + side * h * rate[i];
-        renew(&v, 0.3);
+        variant_renew(&v, 0.3);
         assert_true(variant_solve(&v));
         dp = plus(dp, side / (2 * h), signal_of(&v, "system", "momentum"));
         dL = plus(dL, side / (2 * h), signal_of(&v, "system", "angular_momentum"));
@@ -510,7 +478,7 @@ static bool cantilever_is_exact(struct system *s, int nelement)
                     exact_shape((double)L * node / nelement, shape);
                     v.y[i] = shape[k];
                 }
-    renew(&v, 0);
+    variant_renew(&v, 0);
     assert_true(variant_solve(&v));
     for (size_t k = 0; k < v.e.nu; k++) // loads of 1e-7 would accelerate by as much
         ok &= agree(s->name, v.e.u[k].name, v.s->a[k], 0, 1e-7, 1e-5);
@@ -745,7 +713,7 @@ static void the_pendulum_beam_has_the_equations_of_its_source(void **state)
         double M[7][7], Q[7];
         for (int k = 0; k < 14; k++)
             v.y[k] = 2 * chance();
-        renew(&v, 0);
+        variant_renew(&v, 0);
         source_equations(v.y, v.y + 7, M, Q);
         for (int i = 0; i < 7; i++) {
             ok &= agree(s.name, name[i], v.m->Q[i], Q[i], 1 + fabs(Q[i]), 1e-13);

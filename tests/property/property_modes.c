@@ -136,14 +136,9 @@ static double compare_pairs(struct system *s, bool keep_all, bool with_multiplie
     double worst = 0;
     *tried = 0;
     for (size_t k = 0; k < T.n * R.n; k += step) {
-        const struct tree_names *t = &T.tree[k / R.n], *r = &R.tree[k % R.n];
-        const struct ct_formulate_options o = {.tree = CT_TREE_GIVEN,
-                                               .trans = t->name,
-                                               .ntrans = t->n,
-                                               .rot = r->name,
-                                               .nrot = r->n,
-                                               .keep_all = keep_all,
-                                               .with_residual = true};
+        struct ct_formulate_options o = trees_given(&T.tree[k / R.n], &R.tree[k % R.n]);
+        o.keep_all = keep_all;
+        o.with_residual = true;
         struct variant v;
         variant_open(s, &o, &v);
         if (!find_motions(s, &v, with_multipliers, *tried ? &here : &first)) {

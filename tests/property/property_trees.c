@@ -160,13 +160,8 @@ static bool pairs_agree(struct system *s, size_t pairs, size_t *tried)
     solve_at(s, &first, &state, 0.2);
     for (size_t k = 0; k < all; k += step) {
         const struct tree_names *t = &T.tree[k / R.n], *r = &R.tree[k % R.n];
-        const struct ct_formulate_options o = {.tree = CT_TREE_GIVEN,
-                                               .trans = t->name,
-                                               .ntrans = t->n,
-                                               .rot = r->name,
-                                               .nrot = r->n,
-                                               .with_energy = true,
-                                               .with_outputs = true};
+        struct ct_formulate_options o = trees_given(t, r);
+        o.with_energy = o.with_outputs = true;
         struct variant v;
         char *how = text_of(first.arena, "T =");
         for (size_t i = 0; i < t->n; i++)

@@ -341,15 +341,20 @@ void variant_close(struct variant *v)
     ct_arena_destroy(v->arena);
 }
 
-void variant_set(struct variant *v, const struct ct_start *state, double t)
+void variant_renew(struct variant *v, double t)
 {
-    ct_start_apply(state, v->m, v->y);
     ct_machine_set(v->m, t, v->y);
     ct_modes_start(v->m, t, v->y, NULL);
     ct_machine_set(v->m, t, v->y);
     ct_memory_start(v->m);
     ct_machine_motion(v->m);
     ct_machine_constraint(v->m);
+}
+
+void variant_set(struct variant *v, const struct ct_start *state, double t)
+{
+    ct_start_apply(state, v->m, v->y);
+    variant_renew(v, t);
 }
 
 bool variant_solve(struct variant *v)
@@ -417,4 +422,14 @@ struct tree_list system_trees(struct system *s, bool keep_all, bool rotation)
     struct collecting c = {s, b, &list};
     ct_tree_enumerate(s->ctx.model, e->graph, forced, banned, collect, &c);
     return list;
+}
+
+struct ct_formulate_options trees_given(const struct tree_names *trans,
+                                        const struct tree_names *rot)
+{
+    return (struct ct_formulate_options){.tree = CT_TREE_GIVEN,
+                                         .trans = trans->name,
+                                         .ntrans = trans->n,
+                                         .rot = rot->name,
+                                         .nrot = rot->n};
 }

@@ -75,6 +75,8 @@ void variant_open(struct system *s, const struct ct_formulate_options *o, struct
 void variant_close(struct variant *v);
 /// Put a state in at time t; modes and memories follow.
 void variant_set(struct variant *v, const struct ct_start *state, double t);
+/// The same with the state that is in v->y.
+void variant_renew(struct variant *v, double t);
 /// Accelerations, multipliers and results there.
 bool variant_solve(struct variant *v);
 /// Index of a result by name; fails if there is none.
@@ -95,6 +97,9 @@ struct tree_list {
 };
 /// T (rotation false) or R (true) of a model; the list lives in s.
 struct tree_list system_trees(struct system *s, bool keep_all, bool rotation);
+/// Options that give these two trees; nothing else is set.
+struct ct_formulate_options trees_given(const struct tree_names *trans,
+                                        const struct tree_names *rot);
 
 // ---- chance and comparison ------------------------------------------------------------------------------------
 

@@ -54,13 +54,39 @@ static void a_block_larger_than_any_chunk_is_given(void **state)
     assert_true(ct_arena_used(*state) >= size);
 }
 
+// Chunks of all sizes, small and large pages, and what is used again after another arena has gone.
+static void many_megabytes_are_zeroed_and_stay(void **state)
+{
+    enum { N = 300, SIZE = 100000 };
+    static const unsigned char zero[SIZE];
+    (void)state;
+    for (int round = 0; round < 2; round++) {
+        struct ct_arena *a = ct_arena_create();
+        unsigned char *p[N];
+        assert_non_null(a);
+        for (int i = 0; i < N; i++) {
+            const size_t size = (size_t)(SIZE >> i % 12);
+            p[i] = ct_arena_alloc(a, size);
+            assert_memory_equal(p[i], zero, size);
+            memset(p[i], i % 255 + 1, size);
+        }
+        for (int i = 0; i < N; i++)
+            assert_true(p[i][0] == i % 255 + 1 && p[i][(SIZE >> i % 12) - 1] == i % 255 + 1);
+        ct_arena_destroy(a);
+    }
+}
+
 static void strings_are_copied_whole(void **state)
 {
     struct ct_arena *a = *state;
     char text[] = "crank";
     const char *all = ct_arena_strdup(a, text), *part = ct_arena_strndup(a, text, 2);
-    const char *made = ct_arena_printf(a, "%s.%d", text, 12);
+    const char *made = ct_arena_printf(a, "%s.%d", text, 12),
+               *joined = ct_arena_printf(a, "%s of %s:%s", text, "a-to-b", ""),
+               *share = ct_arena_printf(a, "%s: 5 %%", text);
     text[0] = 'X';
+    assert_string_equal(joined, "crank of a-to-b:");
+    assert_string_equal(share, "crank: 5 %");
     assert_string_equal(all, "crank");
     assert_string_equal(part, "cr");
     assert_string_equal(made, "crank.12");
@@ -195,6 +221,7 @@ int main(void)
         CASE(allocations_are_aligned_and_zeroed),
         CASE(allocations_do_not_overlap_or_move),
         CASE(a_block_larger_than_any_chunk_is_given),
+        CASE(many_megabytes_are_zeroed_and_stay),
         CASE(strings_are_copied_whole),
         CASE(a_pushed_array_keeps_its_elements),
         CASE(destroying_nothing_is_allowed),

@@ -233,6 +233,17 @@ static enum ct_eval bounce(void *user, double t, double *y, const signed char *c
     return CT_EVAL_OK;
 }
 
+static const struct ct_problem bouncing
+    = {.ny = 2, .rhs = ball, .nroot = 1, .root = height, .event = bounce};
+
+// ... with what is due as well
+static const struct ct_problem bouncing_on_time = {.ny = 2,
+                                                   .rhs = ball,
+                                                   .nroot = 1,
+                                                   .root = height,
+                                                   .next_time_event = next_due,
+                                                   .event = bounce};
+
 // --- orders and tolerances -------------------------------------------------------------------
 
 static void methods_are_found_by_name(void **unused)
@@ -271,6 +282,31 @@ static void halving_a_fixed_step_shows_the_order(void **unused)
             = log2(kepler_error(m, cases[i].nstep) / kepler_error(m, 2 * cases[i].nstep));
         printf("%s: order %.2f\n", m->name, order);
         check_close("order", order, m->order, 0.45);
+    }
+}
+
+static enum ct_eval even(void *user, double t, const double *y, double *dy)
+{
+    (void)user;
+    (void)t;
+    (void)y;
+    dy[0] = 1. / 3;
+    return CT_EVAL_OK;
+}
+
+// Summed without care, a hundred thousand steps leave an error of some hundred roundings or more.
+static void roundings_of_many_steps_do_not_add_up(void **unused)
+{
+    (void)unused;
+    static const char *const names[] = {"rk4", "dopri5", "dop853"};
+    for (size_t i = 0; i < COUNT(names); i++) {
+        struct record *r = begin();
+        double y[1] = {1};
+        check_fine(r,
+                   run(r, ct_method_find(names[i]), (struct ct_problem){.ny = 1, .rhs = even},
+                       (struct ct_integrate_options){.t1 = 1, .step = 1e-5}, y));
+        check_close(names[i], y[0], 4. / 3, 2 * DBL_EPSILON);
+        end(r);
     }
 }
 
@@ -423,11 +459,8 @@ static void a_bouncing_ball_hits_when_it_should(void **unused)
         struct record *r = begin();
         r->limit = restitution;
         double y[NY] = {1, 0}; // falls for 1 s, hits with 2 m/s
-        check_fine(r,
-                   run(r, ct_methods[m],
-                       (struct ct_problem){
-                           .ny = 2, .rhs = ball, .nroot = 1, .root = height, .event = bounce},
-                       (struct ct_integrate_options){.t1 = 8, .atol = 1e-9}, y));
+        check_fine(r, run(r, ct_methods[m], bouncing,
+                          (struct ct_integrate_options){.t1 = 8, .atol = 1e-9}, y));
         double t = 1, v = 2;
         int n = 0;
         for (; t < 8; n++) {
@@ -454,13 +487,7 @@ static void a_state_event_on_a_time_event_loses_neither(void **unused)
             r->limit = 1;
             r->due = due;
             double y[NY] = {1, 0};
-            check_fine(r, run(r, ct_methods[m],
-                              (struct ct_problem){.ny = 2,
-                                                  .rhs = ball,
-                                                  .nroot = 1,
-                                                  .root = height,
-                                                  .next_time_event = next_due,
-                                                  .event = bounce},
+            check_fine(r, run(r, ct_methods[m], bouncing_on_time,
                               (struct ct_integrate_options){.t1 = 2.5, .atol = 1e-9}, y));
             int ntime = 0, nimpact = 0;
             for (int i = 0; i < r->nevent; i++) {
@@ -483,11 +510,8 @@ static void infinitely_many_bounces_are_an_error(void **unused)
         struct record *r = begin();
         r->limit = 0.5; // rests after 1 + 2 (0.5 + 0.25 + ...) = 3 s
         double y[NY] = {1, 0};
-        const bool ok
-            = run(r, ct_methods[m],
-                  (struct ct_problem){
-                      .ny = 2, .rhs = ball, .nroot = 1, .root = height, .event = bounce},
-                  (struct ct_integrate_options){.t1 = 10, .atol = 1e-9}, y);
+        const bool ok = run(r, ct_methods[m], bouncing,
+                            (struct ct_integrate_options){.t1 = 10, .atol = 1e-9}, y);
         check_error(r, ok, CT_E_EVENT_PILE);
         check_close("time", r->stats.last_time, 3, 1e-8);
         check_below("depth", fabs(y[0]), 1e-9);
@@ -649,13 +673,7 @@ static void a_sample_on_an_event_is_taken_after_it(void **unused)
             r->limit = 1;
             r->due = due;
             double y[NY] = {1, 0};
-            check_fine(r, run(r, ct_methods[m],
-                              (struct ct_problem){.ny = 2,
-                                                  .rhs = ball,
-                                                  .nroot = 1,
-                                                  .root = height,
-                                                  .next_time_event = next_due,
-                                                  .event = bounce},
+            check_fine(r, run(r, ct_methods[m], bouncing_on_time,
                               (struct ct_integrate_options){.t1 = 1.5,
                                                             .atol = 1e-10,
                                                             .step = is_fixed ? 0.01 : 0,
@@ -1005,13 +1023,10 @@ static void nothing_is_allocated_while_stepping(void **unused)
         struct record *r = begin();
         r->limit = 0.9;
         double y[NY] = {1, 0};
-        check_fine(r,
-                   run(r, ct_methods[m],
-                       (struct ct_problem){
-                           .ny = 2, .rhs = ball, .nroot = 1, .root = height, .event = bounce},
-                       (struct ct_integrate_options){
-                           .t1 = 8, .atol = 1e-9, .sample = times, .nsample = 101},
-                       y));
+        check_fine(r, run(r, ct_methods[m], bouncing,
+                          (struct ct_integrate_options){
+                              .t1 = 8, .atol = 1e-9, .sample = times, .nsample = 101},
+                          y));
         assert_true(r->nevent > 2);
         for (int i = 1; i < r->nstep; i++)
             assert_int_equal(r->used[i], r->used[0]);
@@ -1024,6 +1039,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(methods_are_found_by_name),
         cmocka_unit_test(halving_a_fixed_step_shows_the_order),
+        cmocka_unit_test(roundings_of_many_steps_do_not_add_up),
         cmocka_unit_test(interpolants_have_their_order),
         cmocka_unit_test(errors_follow_the_tolerance),
         cmocka_unit_test(samples_of_dopri5_are_as_good_as_steps),

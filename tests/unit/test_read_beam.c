@@ -2,32 +2,10 @@
 // What is refused is in tests/broken.
 #include "base/guard.h"
 #include "component/model.h"
-#include "tests/check.h"
+#include "tests/unit/read_state.h"
 
 #include <stdlib.h>
 #include <string.h>
-
-struct bench {
-    struct ct_ctx ctx;
-    struct ct_model m;
-};
-
-static int create(void **state)
-{
-    struct bench *s = calloc(1, sizeof *s);
-    *state = s;
-    return s && (s->ctx.model = ct_arena_create()) && (s->ctx.scratch = ct_arena_create()) ? 0
-                                                                                           : -1;
-}
-
-static int destroy(void **state)
-{
-    struct bench *s = *state;
-    ct_arena_destroy(s->ctx.model);
-    ct_arena_destroy(s->ctx.scratch);
-    free(s);
-    return 0;
-}
 
 // The model of one beam 'b' with these lines of keys, two blanks before each.
 static const struct ct_beam *read_beam(struct bench *s, const char *top, const char *keys)
