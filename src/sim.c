@@ -395,8 +395,8 @@ static bool integrate(struct ct_sim *sim)
     return ok;
 }
 
-void ct_bend_warn(struct ct_ctx *ctx, const struct ct_equations *e,
-                  const struct ct_bend_report *report)
+void ct_slope_warn(struct ct_ctx *ctx, const struct ct_equations *e,
+                   const struct ct_slope_report *report)
 {
     for (size_t i = 0; i < e->nbend; i++) {
         if (report[i].passed_at < 0)
@@ -417,7 +417,7 @@ void ct_bend_warn(struct ct_ctx *ctx, const struct ct_equations *e,
 static void warn_of_beams(struct ct_sim *sim)
 {
     const struct ct_equations *e = &sim->system->equations;
-    ct_bend_warn(&sim->own, e, sim->report.bend);
+    ct_slope_warn(&sim->own, e, sim->report.bend);
     for (size_t i = 0; i < e->nvalidity; i++) {
         const struct ct_validity_report *v = &sim->report.validity[i];
         if (v->left_at < 0)

@@ -53,6 +53,7 @@ struct run {
     struct ct_watch watch;
     double t; // time of y and dy
     struct ct_control control;
+    struct ct_pace pace;
     double *y, *dy;      // (ny) each, as all that follow
     double *y1, *dy1;    // end of the step as the method gives it
     double *end, *dend;  // the same, projected
@@ -693,6 +694,12 @@ static bool march(struct run *r)
                 r->t);
         if (!advance(r))
             return false;
+        if (ct_control_is_endless(&r->pace, r->stats->steps, most, r->t, r->o->t1 - r->t))
+            return ct_error(r->ctx, nowhere, CT_E_STEP_COUNT,
+                            "at t = %.3g after %ld steps, of %.2g s now: up to t = %.9g they "
+                            "would be more than the %ld that are allowed",
+                            r->t, r->stats->steps, r->pace.gain * 1000 / (double)most, r->o->t1,
+                            most);
         if (r->o->at_step && !r->o->at_step(r->p->user, r->t, r->y))
             return true;
     }
@@ -734,6 +741,7 @@ bool ct_integrate(struct ct_ctx *ctx, const struct ct_method *method,
         .tolerance = {options->rtol, options->atol},
         .t = options->t0,
         .control = ct_control_start(),
+        .pace = {.t = options->t0},
         .singular_in = INFINITY,
         .reach = INFINITY,
         .last_event = -INFINITY,

@@ -213,8 +213,8 @@ const struct ct_method *ct_method_find(const char *name);
 
 /// Integrate y (ny, in: start, out: end) from t0 to t1 >= t0. The error of a step is held below
 /// rtol * max(|y_i|, ...) + atol in each watched state (weighted root mean square) and, with
-/// output_error and an explicit method, in outputs. The methods of order 2 among
-/// the implicit ones measure coordinates and quadratures, not speeds.
+/// output_error, in outputs. The methods of order 2 among the implicit ones measure coordinates,
+/// quadratures and outputs, not speeds.
 ///
 /// Steps end exactly on time events and on t1. Samples between step ends are interpolated and
 /// projected. State events are located on the interpolant; the step is then taken again up to the

@@ -179,14 +179,19 @@ double ct_stepper_norm(const struct ct_problem *p, const struct ct_tolerance *to
     return n ? sqrt(sum / n) : 0;
 }
 
-double ct_stepper_error(const struct ct_problem *p, const struct ct_tolerance *tolerance,
-                        double t1, const double *y, const double *y1, const double *e)
+double ct_stepper_worse(const struct ct_problem *p, const struct ct_tolerance *tolerance,
+                        double t1, const double *y1, const double *e, double states)
 {
-    const double states = ct_stepper_norm(p, tolerance, y, y1, e);
     // a step that is refused anyway says nothing more
     if (!p->output_error || !(states <= 1))
         return states;
     return fmax(states, p->output_error(p->user, t1, y1, e, tolerance, states));
+}
+
+double ct_stepper_error(const struct ct_problem *p, const struct ct_tolerance *tolerance,
+                        double t1, const double *y, const double *y1, const double *e)
+{
+    return ct_stepper_worse(p, tolerance, t1, y1, e, ct_stepper_norm(p, tolerance, y, y1, e));
 }
 
 double ct_stepper_join(double e5, double e3)

@@ -37,7 +37,12 @@ void ct_stepper_group(const struct ct_groups *g, int ny, const double *y, const 
 double ct_stepper_norm(const struct ct_problem *p, const struct ct_tolerance *tolerance,
                        const double *y, const double *y1, const double *e);
 
-/// The same of the step that ends at y1, time t1; or what it means for outputs, if that is more.
+/// `states`, the norm of the error e (ny) of a step that ends at y1, time t1; or what e means for outputs, if that is
+/// more.  (8.6)
+double ct_stepper_worse(const struct ct_problem *p, const struct ct_tolerance *tolerance,
+                        double t1, const double *y1, const double *e, double states);
+
+/// Both at once.
 double ct_stepper_error(const struct ct_problem *p, const struct ct_tolerance *tolerance,
                         double t1, const double *y, const double *y1, const double *e);
 

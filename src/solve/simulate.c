@@ -301,7 +301,7 @@ static void keep_ledger(struct ct_run *r, const double *y)
         = fmax(r->report->velocity_constraint, ct_vector_largest(r->m->v, r->m->nrow));
 }
 
-void ct_bend_watch(struct ct_bend_report *report, const struct ct_machine *m, double t)
+void ct_slope_watch(struct ct_slope_report *report, const struct ct_machine *m, double t)
 {
     const double *square = m->validity.out + m->e->nvalidity;
     for (size_t i = 0; i < m->e->nbend; i++) {
@@ -318,7 +318,7 @@ static void watch_validity(struct ct_run *r, double t)
     if (!r->m->validity.nout)
         return;
     ct_program_run(&r->m->validity, r->m->input);
-    ct_bend_watch(r->report->bend, r->m, t);
+    ct_slope_watch(r->report->bend, r->m, t);
     for (size_t i = 0; i < r->e->nvalidity; i++) {
         struct ct_validity_report *v = &r->report->validity[i];
         const double period = 6.283185307179586 / r->e->validity[i].omega;
@@ -526,6 +526,12 @@ static void explain_end(struct ct_run *r)
 {
     const size_t n = r->ctx->ndiagnostic;
     const enum ct_code code = n ? r->ctx->diagnostic[n - 1].code : 0;
+    if (code == CT_E_STEP_COUNT)
+        ct_note(
+            r->ctx, (struct ct_mark){0},
+            "steps follow vibrations that are excited: start beams with 'initial: "
+            "equilibrium', leave out or damp what is stiff, or raise 'absolute' above them; "
+            "what is not excited holds up explicit methods only");
     if (!r->m->nrow)
         return;
     if (code == CT_E_STEP_OPEN)
@@ -554,7 +560,7 @@ bool ct_run_simulate(struct ct_run *r, const struct ct_run_options *o,
     report->validity = CT_NEWN(r->arena, struct ct_validity_report, r->e->nvalidity + 1);
     for (size_t i = 0; i < r->e->nvalidity; i++)
         report->validity[i].left_at = -1;
-    report->bend = CT_NEWN(r->arena, struct ct_bend_report, r->e->nbend + 1);
+    report->bend = CT_NEWN(r->arena, struct ct_slope_report, r->e->nbend + 1);
     for (size_t i = 0; i < r->e->nbend; i++)
         report->bend[i].passed_at = -1;
     ct_singular_start(r->singular);

@@ -866,6 +866,37 @@ static void limits_and_senseless_options_are_errors(void **unused)
     end(r);
 }
 
+// An oscillator whose turns become ever slower: the phase is 100 log(1 + t).
+static enum ct_eval slowing(void *user, double t, const double *y, double *dy)
+{
+    (void)user;
+    dy[0] = 100 / (1 + t) * y[1];
+    dy[1] = -100 / (1 + t) * y[0];
+    return CT_EVAL_OK;
+}
+
+// Two thousandths of the steps allowed tell that there are too many; steps that grow may still arrive.
+static void endless_runs_end_early(void **unused)
+{
+    (void)unused;
+    const struct ct_method *method = ct_method_find("dopri5");
+    const struct ct_integrate_options o = {.t1 = 1e4, .atol = 1e-8, .max_steps = 1000000};
+    struct ct_integrate_options endless = o;
+    double y[NY] = {1, 0};
+    struct record *r = begin();
+    endless.t1 = 1e7;
+    check_error(r, run(r, method, (struct ct_problem){.ny = 2, .rhs = oscillator}, endless, y),
+                CT_E_STEP_COUNT);
+    assert_int_equal(r->stats.steps, 2000);
+    end(r);
+    r = begin();
+    double z[NY] = {1, 0};
+    check_fine(r, run(r, method, (struct ct_problem){.ny = 2, .rhs = slowing}, o, z));
+    assert_true(fabs(z[0] - cos(100 * log1p(1e4))) < 1e-3);
+    assert_true(r->stats.steps > 4000 && r->step[999] < 1e4 / 3000); // far too slow at first
+    end(r);
+}
+
 static void the_caller_may_stop_a_run(void **unused)
 {
     (void)unused;
@@ -1061,6 +1092,7 @@ int main(void)
         cmocka_unit_test(a_fatal_answer_stops_at_once),
         cmocka_unit_test(a_fixed_step_is_not_shortened),
         cmocka_unit_test(limits_and_senseless_options_are_errors),
+        cmocka_unit_test(endless_runs_end_early),
         cmocka_unit_test(the_caller_may_stop_a_run),
         cmocka_unit_test(a_quadrature_does_not_shorten_steps),
         cmocka_unit_test(a_group_is_measured_by_its_largest_member),
