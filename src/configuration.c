@@ -62,10 +62,11 @@ static bool has_drivers(const struct ct_model *m)
 bool ct_configuration_assemble(struct ct_ctx *own, struct ct_system *sys,
                                struct ct_start *start)
 {
-    return ct_assemble(own, own->model, &sys->model, &sys->start_equations, start)
-        && (!sys->held_equations.build
-            || ct_settle(own, own->model, &sys->model, &sys->held_equations,
-                         &sys->moving_equations, start));
+    if (!sys->held_equations.build)
+        return ct_assemble(own, own->model, &sys->model, &sys->start_equations, start);
+    return ct_assemble_open(own, own->model, &sys->model, &sys->start_equations, start)
+        && ct_settle(own, own->model, &sys->model, &sys->held_equations, &sys->moving_equations,
+                     start);
 }
 
 struct ct_linear *ct_configuration_start(struct ct_ctx *own, struct ct_system *sys,

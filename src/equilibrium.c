@@ -74,6 +74,19 @@ static bool judge(struct ct_equilibrium *q)
     return true;
 }
 
+static void watch_bending(struct ct_equilibrium *q, struct ct_machine *m)
+{
+    struct ct_slope_report *report
+        = CT_NEWN(q->own.model, struct ct_slope_report, m->e->nbend + 1);
+    for (size_t i = 0; i < m->e->nbend; i++)
+        report[i].passed_at = -1;
+    if (m->e->nbend) {
+        ct_program_run(&m->validity, m->input);
+        ct_slope_watch(report, m, 0);
+    }
+    ct_slope_warn(&q->own, m->e, report);
+}
+
 static bool find(void *task)
 {
     struct ct_equilibrium *q = task;
@@ -97,6 +110,7 @@ static bool find(void *task)
     q->value = CT_NEWN(q->own.model, double, n + 1);
     for (size_t i = 0; i < n; i++)
         q->value[i] = m->result.out[i] + 0.0; // no negative zeros
+    watch_bending(q, m);
     return is_judged || judge(q);
 }
 

@@ -228,9 +228,11 @@ static bool read_rows(struct ct_study *s, FILE *in, const char *path, long *kept
 
 // ---- settings beside the rows ---------------------------------------------------------------------------
 
-//     FILE.partial, FILE.partial.settings  -- complete -->  FILE, then FILE.settings
+//     FILE.partial, FILE.partial.settings  -- complete -->  FILE
+//                                          with `resume`:   FILE, then FILE.settings
 //
-// Whatever happens in between, rows never stand beside settings of others.
+// Who goes on with sweeps wants complete ones to be known as such; for all others the rows are all there is. Whatever
+// happens in between, rows never stand beside settings of others.
 
 static const char *settings_path(struct ct_study *s, const char *rows)
 {
@@ -250,14 +252,35 @@ static bool write_settings(struct ct_study *s)
     return ct_outfile_close(&s->own, &o);
 }
 
+// Those of rows that have stood there before.
+static bool remove_old_settings(struct ct_study *s)
+{
+    const struct ct_outfile *rows = &s->sink.csv.file;
+    if (!rows->partial)
+        return true;
+    const char *old = settings_path(s, rows->path);
+    return remove(old) == 0 || errno == ENOENT
+        || ct_error(&s->own, none, CT_E_FILE, "cannot remove '%s': %s", old, strerror(errno));
+}
+
 static bool move_settings(struct ct_study *s)
 {
     const struct ct_outfile *rows = &s->sink.csv.file;
     if (!rows->partial)
         return true;
-    const char *to = settings_path(s, rows->path);
-    return rename(settings_path(s, rows->partial), to) == 0
+    const char *from = settings_path(s, rows->partial), *to = settings_path(s, rows->path);
+    if (!s->results->resume)
+        return remove(from) == 0
+            || ct_error(&s->own, none, CT_E_FILE, "cannot remove '%s': %s", from,
+                        strerror(errno));
+    return rename(from, to) == 0
         || ct_error(&s->own, none, CT_E_FILE, "cannot write '%s': %s", to, strerror(errno));
+}
+
+// The rows appear under their name.
+static bool finish_rows(struct ct_study *s)
+{
+    return remove_old_settings(s) && ct_csv_close(&s->own, &s->sink.csv) && move_settings(s);
 }
 
 // How the rows were made differs so from what is asked for now; NULL: it does not.
@@ -392,8 +415,7 @@ bool ct_study_close(struct ct_study *s, bool ok)
     if (ok && k->is_json)
         write_columns(s);
     if (ok)
-        ok = k->is_json ? ct_outfile_close(&s->own, &k->json)
-                        : ct_csv_close(&s->own, &k->csv) && move_settings(s);
+        ok = k->is_json ? ct_outfile_close(&s->own, &k->json) : finish_rows(s);
     ct_csv_abandon(&k->csv);
     ct_outfile_abandon(&k->json);
     return ok;

@@ -3,6 +3,7 @@
 
 #include "formulate/flexible.h"
 #include "report/json.h"
+#include "report/stage_beam.h"
 #include "solve/singular.h"
 
 #if defined(__unix__) || defined(__APPLE__)
@@ -69,6 +70,25 @@ static void write_left_out(struct ct_json *j, const struct ct_equations *e)
     ct_json_end(j);
 }
 
+static void write_beams(struct ct_json *j, const struct ct_equations *e)
+{
+    if (!e->build->nflexible)
+        return;
+    ct_json_array(j, "beams");
+    for (size_t i = 0; i < e->build->nflexible; i++) {
+        const struct ct_flexible *f = &e->build->flexible[i];
+        ct_json_object(j, NULL);
+        ct_json_text(j, "name", f->name);
+        ct_json_integer(j, "elements", f->beam->nelement);
+        ct_json_integer(j, "elastic_coordinates", f->nelastic);
+        ct_json_text(j, "formulation", ct_beam_formulation_name(f->formulation));
+        if (f->why)
+            ct_json_text(j, "why", f->why);
+        ct_json_end(j);
+    }
+    ct_json_end(j);
+}
+
 static void write_structure(struct ct_json *j, const struct ct_sim *sim)
 {
     const struct ct_equations *e = &sim->system->equations;
@@ -86,6 +106,7 @@ static void write_structure(struct ct_json *j, const struct ct_sim *sim)
     ct_json_end(j);
     ct_json_text(j, "tree_choice", sim->system->tree.how);
     write_left_out(j, e);
+    write_beams(j, e);
 }
 
 static void write_open(struct ct_json *j, const struct ct_sim *sim)

@@ -217,6 +217,17 @@ static void print_singular(FILE *out, const struct ct_sim *sim)
         print_position(out, sim, &w->passed[i]);
 }
 
+// Formulations that were left to the program, and why these.
+static void print_choices(FILE *out, const struct ct_equations *e)
+{
+    for (size_t i = 0; i < e->build->nflexible; i++) {
+        const struct ct_flexible *f = &e->build->flexible[i];
+        if (f->why)
+            fprintf(out, "beam         %s: %s (%s)\n", f->name,
+                    ct_beam_formulation_name(f->formulation), f->why);
+    }
+}
+
 void ct_sim_print_summary(const struct ct_sim *sim, FILE *out)
 {
     const struct ct_run_report *r = &sim->report;
@@ -224,6 +235,7 @@ void ct_sim_print_summary(const struct ct_sim *sim, FILE *out)
     print_freedoms(out, sim);
     fprintf(out, "tree         %s\n", sim->system->tree.how);
     print_trees(out, &sim->system->equations);
+    print_choices(out, &sim->system->equations);
     if (sim->is_followed)
         fputs("method       motions followed, nothing integrated\n", out);
     else

@@ -137,13 +137,14 @@ static bool formulate_settled(struct ct_system *s, const struct ct_system_option
                                      .first = ct_settle_first(s->own.model, &s->model),
                                      .keep_all = o->keep_all,
                                      .held = true,
+                                     .gaps = true,
                                      .measure_all = true,
                                      .measured_for = &s->equations,
                                      .deformed = true,
                                      .like = &s->equations};
     if (!formulate(s, &f, &s->held_equations, &unused))
         return false;
-    f.held = false;
+    f.held = f.gaps = false;
     f.without_dynamics = true;
     return s->held_equations.nrow == 0 || formulate(s, &f, &s->moving_equations, &unused);
 }

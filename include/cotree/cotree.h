@@ -284,8 +284,8 @@ CT_API void ct_study_destroy(struct ct_study *study);
  * Run all members, once per sweep. results may be NULL.
  *
  * A member that fails is a row; the sweep fails when rows cannot be written. The file appears under its name when
- * it is complete; until then rows are in PATH.partial, in order. PATH.settings, until then PATH.partial.settings, says what
- * they depend on.
+ * it is complete; until then rows are in PATH.partial, in order, and what they depend on in PATH.partial.settings. With
+ * `resume` the latter stays as PATH.settings.
  *
  * Errors: E002 for the file, E003 when it cannot be resumed, as when settings or the model are others.
  */

@@ -1,6 +1,7 @@
 // See native.h.
 #define _DEFAULT_SOURCE // MAP_ANONYMOUS; NOLINT(bugprone-reserved-identifier): the C library names it
 #include "codegen/native.h"
+#include "codegen/pair.h"
 
 #include "codegen/x86.h"
 #include "expr/sincos.h"
@@ -29,6 +30,8 @@ struct ct_native {
     void *memory;
     size_t nmemory, ncode;
     body_fn body;
+    struct ct_native *four;     // of eight lanes, which have no code of their own
+    const struct ct_pair *pair; // and their two halves
 };
 
 // ---- functions that code calls ----------------------------------------------------------------
@@ -140,6 +143,7 @@ static struct ct_x86_calls list_calls(int lanes)
     LIST(CT_OP_ANGLE_SINCOS, angle)
     LIST(CT_OP_TABLE, table)
     c.sincos_many = (uintptr_t)sincos_many;
+    c.rows_together = ct_native_is_available(4);
     return c;
 }
 
@@ -218,6 +222,10 @@ static void run_instruction(const struct ct_native *f, const struct ct_instructi
 
 void ct_native_prepare(const struct ct_native *f, const double *input, double *work)
 {
+    if (f->pair) {
+        ct_pair_prepare(f->pair, input, work);
+        return;
+    }
     for (size_t v = 0; v < f->l->nvalue; v++)
         if (f->l->is_leaf[v] && f->l->rate[v] != CT_RATE_CALL)
             take_leaf(f, v, input, work);
@@ -249,8 +257,23 @@ static bool has_fused(const struct ct_listing *l)
     return false;
 }
 
+static struct ct_native *create_pair(struct ct_arena *a, const struct ct_listing *l)
+{
+    struct ct_native *four = ct_native_create(a, l, CT_PAIR_LANES / 2), *f;
+    if (!four)
+        return NULL;
+    f = CT_NEW(a, struct ct_native);
+    *f = (struct ct_native){.l = four->l,
+                            .lanes = CT_PAIR_LANES,
+                            .four = four,
+                            .pair = ct_pair_create(a, four, four->l)};
+    return f;
+}
+
 struct ct_native *ct_native_create(struct ct_arena *a, const struct ct_listing *l, int lanes)
 {
+    if (lanes == CT_PAIR_LANES)
+        return create_pair(a, l);
 #if HAS_X86
     if (!ct_native_is_available(lanes) || (has_fused(l) && !__builtin_cpu_supports("fma")))
         return NULL;
@@ -282,20 +305,23 @@ struct ct_native *ct_native_create(struct ct_arena *a, const struct ct_listing *
 
 size_t ct_native_work(const struct ct_native *f)
 {
-    return f->nwork * f->lanes;
+    return f->pair ? ct_pair_work(f->pair) : f->nwork * f->lanes;
 }
 
 size_t ct_native_code_size(const struct ct_native *f)
 {
-    return f->ncode;
+    return f->four ? f->four->ncode : f->ncode;
 }
 
 const unsigned char *ct_native_code(const struct ct_native *f)
 {
-    return f->memory;
+    return f->four ? f->four->memory : f->memory;
 }
 
 void ct_native_eval(const struct ct_native *f, const double *input, double *out, double *work)
 {
-    f->body(input, out, work);
+    if (f->pair)
+        ct_pair_eval(f->pair, input, out, work);
+    else
+        f->body(input, out, work);
 }

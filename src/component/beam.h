@@ -53,7 +53,7 @@ struct ct_beam {
     bool is_chord;            // frame: chord
     bool has_quadratic_twist; // twist: quadratic
     unsigned
-        known; // bits: deformations whose stiffness is given (AXIAL: area, BENDING_Y: Iy, TORSION: G and J, ...)
+        known; // bits: deformations whose stiffness is given and not 0 (AXIAL: area, BENDING_Y: Iy, TORSION: G and J, ...)
     bool deformation_given;
     unsigned deformation;                  // bits; CT_BEAM_ALL unless given
     int modes;                             // 0: nodal coordinates

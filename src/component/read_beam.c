@@ -281,33 +281,83 @@ static bool fill_elements(const struct work *w)
 // Places inside an element at which the section is looked at: the ends themselves may be cusps or jumps.
 enum { NLOOK = 5 };
 
-// Value of a key's i-th expression must be positive (strict) or not negative all along the beam.
+static bool is_along(const struct work *w, const struct ct_value *v, size_t i)
+{
+    return ct_ex_kinds(w->r->m->x, v->e[i]) & 1u << CT_SYM_LOCAL;
+}
+
+static double value_at(const struct work *w, const struct ct_value *v, size_t i, double place)
+{
+    w->value[w->x] = place;
+    return ct_ex_value(w->r->m->x, v->e[i], w->value);
+}
+
+static bool wrong_along(const struct work *w, const char *key, size_t i, double place,
+                        double value, const char *wanted)
+{
+    const struct ct_value *v = get(w, key);
+    struct ct_arena *a = w->r->ctx->scratch;
+    const char *where = is_along(w, v, i) ? ct_arena_printf(a, " at x = %g m", place) : "";
+    const char *what = isnan(value) ? "not a number" : ct_arena_printf(a, "%g", value);
+    return ct_error(w->r->ctx, v->at[i], CT_E_RANGE, "body '%s': '%s' is %s%s; it must be %s",
+                    w->self->name, key, what, where, wanted);
+}
+
+// Value of a key's i-th expression must be positive (strict) or not negative all along the beam, and infinite nowhere.
 static bool check_along(const struct work *w, const char *key, size_t i, bool strict)
 {
     const struct ct_value *v = get(w, key);
-    struct ct_exs *x = w->r->m->x;
+    const char *wanted = strict ? "greater than 0" : "at least 0";
     double point[NLOOK], weight[NLOOK];
     if (!v->given || v->is_wrong || v->n <= i)
         return true;
-    const bool varies = ct_ex_kinds(x, v->e[i]) & 1u << CT_SYM_LOCAL;
+    const bool varies = is_along(w, v, i);
     ct_gauss(NLOOK, point, weight);
     double from = 0;
     for (int k = 0; k < (varies ? w->beam->nelement : 1); k++) {
         const double to = ct_model_number(w->r->m, w->beam->end[k]);
+        const double ends[] = {from, to};
         for (int p = 0; p < (varies ? NLOOK : 1); p++) {
-            const double at = w->value[w->x] = from + point[p] * (to - from);
-            const double value = ct_ex_value(x, v->e[i], w->value);
-            if (value > 0 || (!strict && value == 0))
-                continue;
-            const char *place
-                = varies ? ct_arena_printf(w->r->ctx->scratch, " at x = %g m", at) : "";
-            return ct_error(w->r->ctx, v->at[i], CT_E_RANGE,
-                            "body '%s': '%s' is %g%s; it must be %s 0", w->self->name, key,
-                            value, place, strict ? "greater than" : "at least");
+            const double at = from + point[p] * (to - from), value = value_at(w, v, i, at);
+            if (!(value > 0 || (!strict && value == 0)))
+                return wrong_along(w, key, i, at, value, wanted);
         }
+        for (int p = 0; p < 2; p++)
+            if (isinf(value_at(w, v, i, ends[p])))
+                return wrong_along(w, key, i, ends[p], INFINITY, "finite");
         from = to;
     }
     return true;
+}
+
+// Does nothing of the key's value resist anywhere in one of the elements?
+static bool vanishes(const struct work *w, const char *key)
+{
+    const struct ct_value *v = get(w, key);
+    double point[NLOOK], weight[NLOOK];
+    if (!v->given || v->is_wrong)
+        return false;
+    ct_gauss(NLOOK, point, weight);
+    double from = 0;
+    for (int k = 0; k < (is_along(w, v, 0) ? w->beam->nelement : 1); k++) {
+        const double to = ct_model_number(w->r->m, w->beam->end[k]);
+        int nzero = 0;
+        for (int p = 0; p < NLOOK; p++)
+            nzero += value_at(w, v, 0, from + point[p] * (to - from)) == 0;
+        if (nzero == NLOOK)
+            return true;
+        from = to;
+    }
+    return false;
+}
+
+// A value of 0 is no more than none.
+static unsigned find_stiff(const struct work *w)
+{
+    return w->beam->known
+         & ~((vanishes(w, "Iy") ? CT_BEAM_BENDING_Y : 0u)
+             | (vanishes(w, "Iz") ? CT_BEAM_BENDING_Z : 0u)
+             | (vanishes(w, "J") ? CT_BEAM_TORSION : 0u));
 }
 
 static bool check_section(const struct work *w)
@@ -420,6 +470,8 @@ static bool fill(struct work *w, struct ct_body *b, bool values_ok)
     if (w->r->parameters_ok) {
         memcpy(w->value, w->r->m->value, (1 + w->r->m->nparameter) * sizeof *w->value);
         ok &= check_section(w);
+        beam->known = find_stiff(w);
+        ok = ok && check_deformation(w, beam->known);
     }
     if (!ok || !values_ok)
         return false;

@@ -78,7 +78,7 @@ static void add_elements(struct ct_articulated *w, struct ct_articulated_body *k
 {
     struct ct_build *b = w->b;
     struct ct_exs *x = b->x;
-    const struct ct_element_sums *s = ct_points_sum(b, e->f);
+    const struct ct_element_sums *s = e->f->inertia->form->sums(b, e->f);
     for (int i = 0; i < e->f->beam->nelement; i++) {
         const int carried = e->n + i;
         for (int j = 0; j < CT_DOF; j++) {
@@ -121,7 +121,7 @@ static void add_beam(struct ct_articulated *w, int i, struct ct_articulated_beam
     if (e->is_carried)
         add_elements(w, k, e, A, &c);
     else
-        I->form->mass(b, f, &c, w->M);
+        ct_flexible_columns(b, f, &c, w->M);
     k->n = ct_ex3_add(x, k->n, ct_ex33_apply(x, A, T));
     k->f = ct_ex3_add(x, k->f, ct_ex33_apply(x, A, F));
     for (int j = 0; j < e->n; j++) {

@@ -164,6 +164,7 @@ struct ct_build {
     bool frees_beams; // beams do what their sections allow, whether the scene excites it or not
     bool is_freed;    // for that alone the mechanism is not planar
     bool is_held;     // drivers stand still: time does not go on
+    bool has_gaps;    // loops need not be closed (gap.h)
     bool is_rigid;    // beams keep their shape: for assembly, where they are not deformed yet
     ct_ex3 plane[3];  // e1, e2, n
     ct_ex *layer;     // by node: its place along n [m]

@@ -94,6 +94,21 @@ ct_ex3 ct_twice_cross(struct ct_build *b, ct_ex3 w, ct_ex3 v)
     return ct_ex3_scale(b->x, ct_ex_const(b->x, 2), ct_ex3_cross(b->x, w, v));
 }
 
+ct_ex *ct_chain_accelerations(struct ct_build *b, const struct ct_flexible *f)
+{
+    if (f->kinematics != CT_AXIAL_CHAIN)
+        return NULL;
+    ct_ex *c = CT_NEWN(b->arena, ct_ex, f->beam->nelement + 1);
+    for (int e = 0; e < f->beam->nelement; e++) {
+        c[e + 1] = c[e];
+        for (int j = 2; j < CT_PLACE_DOF; j++)
+            c[e + 1]
+                = ct_ex_add(b->x, c[e + 1],
+                            ct_ex_mul(b->x, f->element[e].g[j], f->element[e].acceleration[j]));
+    }
+    return c;
+}
+
 // ---- lumping ---------------------------------------------------------------------------------------------
 
 void ct_flexible_lump(struct ct_build *b)
@@ -103,7 +118,9 @@ void ct_flexible_lump(struct ct_build *b)
         const struct ct_place *p = &b->place[f->base];
         f->inertia = CT_NEW(b->arena, struct ct_inertia);
         f->inertia->mass = b->model->body[f->body].mass;
-        f->inertia->form = f->axial == CT_AXIAL_LINEAR ? &ct_inertia_exact : &ct_inertia_points;
+        f->inertia->form = f->axial == CT_AXIAL_LINEAR ? &ct_inertia_exact
+                         : ct_inertia_has_series(b, f) ? &ct_inertia_series
+                                                       : &ct_inertia_points;
         f->inertia->form->derive(b, f);
         const struct ct_inertia *I = f->inertia;
         const ct_ex33 t = ct_ex33_transpose(&p->S), half = ct_ex33_mul(b->x, &I->inertia, &t);
@@ -228,6 +245,43 @@ struct ct_flexible_state ct_flexible_moving(struct ct_build *b, const struct ct_
 
 // ---- mass matrix ------------------------------------------------------------------------------------------------
 
+// Elements from the tip inwards: with a CHAIN what lies beyond moves along with an element's bending.
+static void mass_of_sums(struct ct_build *b, const struct ct_flexible *f,
+                         struct ct_columns *out, ct_ex *M)
+{
+    struct ct_exs *x = b->x;
+    const bool chain = f->kinematics == CT_AXIAL_CHAIN;
+    const int n = f->beam->nelement;
+    const struct ct_element_sums *s = f->inertia->form->sums(b, f);
+    ct_ex m = CT_EX_ZERO;
+    ct_ex3 moment = zero3;
+    for (int e = n; e-- > 0;) {
+        const struct ct_element *self = &f->element[e];
+        for (int j = 0; j < CT_DOF; j++) {
+            const ct_ex g = chain && j < CT_PLACE_DOF ? self->g[j] : CT_EX_ZERO;
+            const ct_ex3 along = {{ct_ex_mul(x, g, m), CT_EX_ZERO, CT_EX_ZERO}};
+            const ct_ex3 about = {{CT_EX_ZERO, ct_ex_mul(x, g, moment.e[2]),
+                                   ct_ex_neg(x, ct_ex_mul(x, g, moment.e[1]))}};
+            const ct_ex3 moved = ct_ex3_add(x, s[e].moved[j], along);
+            ct_dof_push_column(b, f, e, j, moved, ct_ex3_add(x, s[e].swept[j], about), out);
+            for (int k = 0; k < CT_DOF; k++) {
+                const ct_ex gk = chain && k < CT_PLACE_DOF ? self->g[k] : CT_EX_ZERO;
+                const ct_ex v
+                    = ct_ex_add(x, s[e].M[j][k], ct_ex_mul(x, ct_ex_mul(x, g, gk), m));
+                ct_dof_push_pair(b, f, e, j, e, k, v, M);
+            }
+            for (int inner = 0; inner < e && chain; inner++)
+                for (int k = 2; k < CT_PLACE_DOF; k++) {
+                    const ct_ex v = ct_ex_mul(x, f->element[inner].g[k], moved.e[0]);
+                    ct_dof_push_pair(b, f, e, j, inner, k, v, M);
+                    ct_dof_push_pair(b, f, inner, k, e, j, v, M);
+                }
+        }
+        m = ct_ex_add(x, m, s[e].m);
+        moment = ct_ex3_add(x, moment, s[e].moment);
+    }
+}
+
 // Rows of the elastic coordinates in the column of a speed that moves the base: coef (p . moved + s . swept).
 static void base_column(struct ct_build *b, const struct ct_flexible *f,
                         const struct ct_columns *c, ct_ex3 p, ct_ex3 s,
@@ -291,13 +345,20 @@ static void base_columns(struct ct_build *b, const struct ct_flexible *f,
         }
 }
 
+void ct_flexible_columns(struct ct_build *b, const struct ct_flexible *f,
+                         struct ct_columns *out, ct_ex *M)
+{
+    const struct ct_inertia_form *form = f->inertia->form;
+    form->mass ? form->mass(b, f, out, M) : mass_of_sums(b, f, out, M);
+}
+
 void ct_flexible_mass(struct ct_build *b, ct_ex *M)
 {
     for (size_t i = 0; i < b->nflexible; i++) {
         const struct ct_flexible *f = &b->flexible[i];
         struct ct_columns c = {CT_NEWN(b->arena, ct_ex3, f->nelastic + 1),
                                CT_NEWN(b->arena, ct_ex3, f->nelastic + 1)};
-        f->inertia->form->mass(b, f, &c, M);
+        ct_flexible_columns(b, f, &c, M);
         base_columns(b, f, &c, M);
     }
 }

@@ -31,6 +31,8 @@ struct ct_inertia_form {
     void (*wrench)(struct ct_build *b, const struct ct_flexible *f, const struct ct_base *m,
                    enum ct_level level, ct_ex3 *force, ct_ex3 *torque);
     void (*moving)(struct ct_build *b, const struct ct_flexible *f, struct ct_relative *out);
+    /// What the columns of the elements need, in b->arena; NULL: mass finds them itself.
+    struct ct_element_sums *(*sums)(struct ct_build *b, const struct ct_flexible *f);
     /// Entries between elastic coordinates, added to M; columns of the base's motion.
     void (*mass)(struct ct_build *b, const struct ct_flexible *f, struct ct_columns *out,
                  ct_ex *M);
@@ -44,20 +46,22 @@ struct ct_inertia {
     struct ct_point *point; // of the form that sums over points
     size_t npoint;
     struct ct_element_mass *element; // of the exact form
+    struct ct_series *series;        // of the series, by element
 };
 
-/// Sums over points of the elements: any kinematics.
-extern const struct ct_inertia_form ct_inertia_points;
-/// Sums over the points of an element that its columns need; in a CHAIN without what the foreshortening at its start does.
+/// Integrals over an element that its columns need; in a CHAIN without what the foreshortening at its start does.
 struct ct_element_sums {
     ct_ex M[CT_DOF][CT_DOF];
     ct_ex3 moved[CT_DOF],
-        swept[CT_DOF]; // sum m dr, sum m r x dr (and of the sections' rotation)
+        swept[CT_DOF]; // int mu dr, int mu r x dr (and of the sections' rotation)
     ct_ex m;
     ct_ex3 moment;
 };
-/// Of all elements, in b->arena; for ct_inertia_points.
-struct ct_element_sums *ct_points_sum(struct ct_build *b, const struct ct_flexible *f);
+/// Sums over points of the elements: any kinematics.
+extern const struct ct_inertia_form ct_inertia_points;
+/// Amplitudes of polynomials (elastic_series.c), exact: foreshortening with the same mass all along the beam.
+extern const struct ct_inertia_form ct_inertia_series;
+bool ct_inertia_has_series(struct ct_build *b, const struct ct_flexible *f);
 /// Integrals over the elements, constant: linear kinematics.
 extern const struct ct_inertia_form ct_inertia_exact;
 
@@ -79,6 +83,11 @@ struct ct_base ct_flexible_base(struct ct_build *b, const struct ct_flexible *f,
                                 enum ct_level level);
 /// al~ + w~ w~
 ct_ex33 ct_base_turning(struct ct_build *b, const struct ct_base *m);
+/// Entries between elastic coordinates, added to M; columns of the base's motion.
+void ct_flexible_columns(struct ct_build *b, const struct ct_flexible *f,
+                         struct ct_columns *out, ct_ex *M);
+/// Second derivatives of the foreshortening at the start of each element of a CHAIN with the symbols u', less the bias.
+ct_ex *ct_chain_accelerations(struct ct_build *b, const struct ct_flexible *f);
 /// 2 w x v
 ct_ex3 ct_twice_cross(struct ct_build *b, ct_ex3 w, ct_ex3 v);
 
@@ -101,6 +110,8 @@ struct ct_shapes {
     int *freedom;
     double *shape; // n x nshape
 };
+/// Does `modes: n` ask for as many as there are, or more? The nodes' own coordinates then do the same for less.
+bool ct_flexible_keeps_all_modes(struct ct_build *b, struct ct_flexible *f);
 /// Shapes of `modes: n` (flexible_modes.c).  Errors: CT_E_BEAM.
 bool ct_flexible_reduce(struct ct_build *b, struct ct_flexible *f, struct ct_shapes *out);
 /// Rotations of nodes without inertia and moment (flexible_massless.c). follows (6 per node, out): by freedom, fixed ones
@@ -112,6 +123,14 @@ int ct_flexible_bare_joint(struct ct_build *b, const struct ct_flexible *f);
 /// Shapes of the freedoms that do not follow, each with the others of them held and those that follow in equilibrium. False
 /// if all are coordinates, or the stiffness of those that follow is not positive.
 bool ct_flexible_condense(struct ct_build *b, struct ct_flexible *f, struct ct_shapes *out);
+/// What the stiffness of one element adds: rows of its dofs, strain energy, twice the power its damping takes.
+struct ct_element_force {
+    ct_ex row[CT_DOF];
+    ct_ex energy, drag;
+};
+/// By amplitudes (elastic_bent.c): foreshortened cubic elements of constant sections.
+bool ct_stiffness_has_amplitudes(struct ct_build *b, const struct ct_flexible *f);
+struct ct_element_force ct_element_bent(struct ct_build *b, const struct ct_flexible *f, int e);
 /// Rows of the beam's own stiffness and damping.
 void ct_stiffness_rows(struct ct_build *b, const struct ct_flexible *f, ct_ex *row);
 

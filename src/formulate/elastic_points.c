@@ -112,21 +112,6 @@ static ct_ex3 own_acceleration(struct ct_build *b, const struct ct_flexible *f,
         {along, dot4(b, p->place, acceleration + 2), dot4(b, p->place, acceleration + 6)}};
 }
 
-static ct_ex *chain_accelerations(struct ct_build *b, const struct ct_flexible *f)
-{
-    if (f->kinematics != CT_AXIAL_CHAIN)
-        return NULL;
-    ct_ex *c = CT_NEWN(b->arena, ct_ex, f->beam->nelement + 1);
-    for (int e = 0; e < f->beam->nelement; e++) {
-        c[e + 1] = c[e];
-        for (int j = 2; j < CT_PLACE_DOF; j++)
-            c[e + 1]
-                = ct_ex_add(b->x, c[e + 1],
-                            ct_ex_mul(b->x, f->element[e].g[j], f->element[e].acceleration[j]));
-    }
-    return c;
-}
-
 // ---- the form ---------------------------------------------------------------------------------------
 
 static void derive(struct ct_build *b, struct ct_flexible *f)
@@ -172,7 +157,7 @@ static void inertia_rows(struct ct_build *b, const struct ct_flexible *f,
     struct ct_exs *x = b->x;
     const struct ct_inertia *I = f->inertia;
     const ct_ex33 Om = ct_base_turning(b, m);
-    const ct_ex *chain = level == CT_FULL ? chain_accelerations(b, f) : NULL;
+    const ct_ex *chain = level == CT_FULL ? ct_chain_accelerations(b, f) : NULL;
     ct_ex beyond = CT_EX_ZERO; // axial force of the elements beyond
     for (size_t i = I->npoint; i > 0;) {
         const int e = I->point[i - 1].element;
@@ -266,7 +251,7 @@ static void wrench(struct ct_build *b, const struct ct_flexible *f, const struct
 {
     struct ct_exs *x = b->x;
     const struct ct_inertia *I = f->inertia;
-    const ct_ex *chain = level == CT_FULL ? chain_accelerations(b, f) : NULL;
+    const ct_ex *chain = level == CT_FULL ? ct_chain_accelerations(b, f) : NULL;
     ct_ex3 spin = zero3;
     *force = *torque = zero3;
     for (size_t i = 0; i < I->npoint; i++) {
@@ -327,7 +312,7 @@ static void add_point_mass(struct ct_build *b, const struct ct_point *p,
     }
 }
 
-struct ct_element_sums *ct_points_sum(struct ct_build *b, const struct ct_flexible *f)
+static struct ct_element_sums *sums_of(struct ct_build *b, const struct ct_flexible *f)
 {
     const struct ct_inertia *I = f->inertia;
     struct ct_element_sums *s = CT_NEWN(b->arena, struct ct_element_sums, f->beam->nelement);
@@ -336,42 +321,5 @@ struct ct_element_sums *ct_points_sum(struct ct_build *b, const struct ct_flexib
     return s;
 }
 
-// Elements from the tip inwards: with a CHAIN what lies beyond moves along with an element's bending.
-static void mass(struct ct_build *b, const struct ct_flexible *f, struct ct_columns *out,
-                 ct_ex *M)
-{
-    struct ct_exs *x = b->x;
-    const bool chain = f->kinematics == CT_AXIAL_CHAIN;
-    const int n = f->beam->nelement;
-    const struct ct_element_sums *s = ct_points_sum(b, f);
-    ct_ex m = CT_EX_ZERO;
-    ct_ex3 moment = zero3;
-    for (int e = n; e-- > 0;) {
-        const struct ct_element *self = &f->element[e];
-        for (int j = 0; j < CT_DOF; j++) {
-            const ct_ex g = chain && j < CT_PLACE_DOF ? self->g[j] : CT_EX_ZERO;
-            const ct_ex3 along = {{ct_ex_mul(x, g, m), CT_EX_ZERO, CT_EX_ZERO}};
-            const ct_ex3 about = {{CT_EX_ZERO, ct_ex_mul(x, g, moment.e[2]),
-                                   ct_ex_neg(x, ct_ex_mul(x, g, moment.e[1]))}};
-            const ct_ex3 moved = ct_ex3_add(x, s[e].moved[j], along);
-            ct_dof_push_column(b, f, e, j, moved, ct_ex3_add(x, s[e].swept[j], about), out);
-            for (int k = 0; k < CT_DOF; k++) {
-                const ct_ex gk = chain && k < CT_PLACE_DOF ? self->g[k] : CT_EX_ZERO;
-                const ct_ex v
-                    = ct_ex_add(x, s[e].M[j][k], ct_ex_mul(x, ct_ex_mul(x, g, gk), m));
-                ct_dof_push_pair(b, f, e, j, e, k, v, M);
-            }
-            for (int inner = 0; inner < e && chain; inner++)
-                for (int k = 2; k < CT_PLACE_DOF; k++) {
-                    const ct_ex v = ct_ex_mul(x, f->element[inner].g[k], moved.e[0]);
-                    ct_dof_push_pair(b, f, e, j, inner, k, v, M);
-                    ct_dof_push_pair(b, f, inner, k, e, j, v, M);
-                }
-        }
-        m = ct_ex_add(x, m, s[e].m);
-        moment = ct_ex3_add(x, moment, s[e].moment);
-    }
-}
-
 const struct ct_inertia_form ct_inertia_points
-    = {.derive = derive, .rows = rows, .wrench = wrench, .moving = moving, .mass = mass};
+    = {.derive = derive, .rows = rows, .wrench = wrench, .moving = moving, .sums = sums_of};

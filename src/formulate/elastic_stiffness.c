@@ -140,14 +140,8 @@ static ct_ex product(struct ct_build *b, const ct_ex row[4], const ct_ex *v)
     return sum;
 }
 
-// What one element adds: rows of its dofs, strain energy, twice the power its damping takes.
-struct element_force {
-    ct_ex row[CT_DOF];
-    ct_ex energy, drag;
-};
-
 static void bend_element(struct ct_build *b, const struct ct_flexible *f, int e, int plane,
-                         const struct plane_matrices *s, struct element_force *out)
+                         const struct plane_matrices *s, struct ct_element_force *out)
 {
     struct ct_exs *x = b->x;
     const struct ct_beam *beam = f->beam;
@@ -192,7 +186,7 @@ static struct stretch stretch_of(struct ct_build *b, const struct ct_flexible *f
 }
 
 static void stretch_element(struct ct_build *b, const struct ct_flexible *f, int e,
-                            const struct plane_matrices plane[2], struct element_force *out)
+                            const struct plane_matrices plane[2], struct ct_element_force *out)
 {
     struct ct_exs *x = b->x;
     const struct ct_beam *beam = f->beam;
@@ -220,7 +214,7 @@ static void stretch_element(struct ct_build *b, const struct ct_flexible *f, int
 }
 
 static void twist_element(struct ct_build *b, const struct ct_flexible *f, int e,
-                          struct element_force *out)
+                          struct ct_element_force *out)
 {
     struct ct_exs *x = b->x;
     const struct ct_beam *beam = f->beam;
@@ -293,7 +287,7 @@ static void push_angle(struct ct_build *b, const struct angle *a, int n, ct_ex b
 
 // Bending turns the axes of twist and twist those of bending: GJ p' (b' g - g' b)/2 + E (Iy - Iz) p b' g'.  (5.6b)
 static void couple_point(struct ct_build *b, const struct ct_flexible *f, int e, ct_ex xi,
-                         ct_ex GJ, ct_ex EI, struct element_force *out)
+                         ct_ex GJ, ct_ex EI, struct ct_element_force *out)
 {
     struct ct_exs *x = b->x;
     const struct ct_element *self = &f->element[e];
@@ -320,7 +314,7 @@ static void couple_point(struct ct_build *b, const struct ct_flexible *f, int e,
 }
 
 static void couple_element(struct ct_build *b, const struct ct_flexible *f, int e,
-                           struct element_force *out)
+                           struct ct_element_force *out)
 {
     struct ct_exs *x = b->x;
     const struct ct_beam *beam = f->beam;
@@ -343,10 +337,12 @@ static void couple_element(struct ct_build *b, const struct ct_flexible *f, int 
 
 // ---- elements ---------------------------------------------------------------------------------------------------
 
-static struct element_force element_force(struct ct_build *b, const struct ct_flexible *f,
-                                          int e)
+static struct ct_element_force element_force(struct ct_build *b, const struct ct_flexible *f,
+                                             int e)
 {
-    struct element_force out = {0};
+    struct ct_element_force out = {0};
+    if (ct_stiffness_has_amplitudes(b, f))
+        return ct_element_bent(b, f, e);
     struct plane_matrices plane[2];
     for (int k = 0; k < 2; k++) {
         const bool bends = f->deformation & (k ? CT_BEAM_BENDING_Y : CT_BEAM_BENDING_Z);
@@ -366,7 +362,7 @@ static struct element_force element_force(struct ct_build *b, const struct ct_fl
 void ct_stiffness_rows(struct ct_build *b, const struct ct_flexible *f, ct_ex *row)
 {
     for (int e = 0; e < f->beam->nelement; e++) {
-        const struct element_force s = element_force(b, f, e);
+        const struct ct_element_force s = element_force(b, f, e);
         for (int j = 0; j < CT_DOF; j++)
             ct_dof_push(b, f, e, j, s.row[j], row);
     }

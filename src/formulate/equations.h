@@ -122,6 +122,14 @@ struct ct_validity {
     double omega; // first bending frequency of the beam in its frame [rad/s]
 };
 
+/// How far a beam bends: squared slopes of its nodes against its frame.
+struct ct_bent_beam {
+    const char *beam;
+    struct ct_mark mark;
+    ct_ex *square;
+    size_t n;
+};
+
 struct ct_left_out {
     const char *what, *why;
 };
@@ -160,6 +168,8 @@ struct ct_equations {
     size_t nmode, mode_cap;
     struct ct_memory *memory;
     size_t nmemory, memory_cap;
+    struct ct_gap *gap; // of rows (gap.h)
+    size_t ngap, gap_cap;
     struct ct_driver *driver;
     size_t ndriver, driver_cap;
     struct ct_result *result; // outputs, one per column
@@ -176,6 +186,8 @@ struct ct_equations {
     bool is_truncated; // to first order in coordinates that are small
     struct ct_validity *validity;
     size_t nvalidity, validity_cap;
+    struct ct_bent_beam *bend;
+    size_t nbend, bend_cap;
     struct ct_left_out *left_out;
     size_t nleft_out, left_out_cap;
     struct ct_coordinate *coordinate; // of all joints and bodies (build.h)

@@ -1,6 +1,8 @@
 // See flexible.h.
+#include "formulate/amplitude.h"
 #include "formulate/elastic.h"
 #include "formulate/excite.h"
+#include "formulate/small.h"
 #include "formulate/topology.h"
 
 #include <math.h>
@@ -121,13 +123,14 @@ static unsigned in_plane(const struct ct_build *b, const struct ct_flexible *f)
     return CT_BEAM_AXIAL | (about_z ? CT_BEAM_BENDING_Z : CT_BEAM_BENDING_Y);
 }
 
-static enum ct_axial axial_of(const struct ct_flexible *f)
+// Modes hold no room for the places of nodes that foreshortening moves; and it is the stretch that is small, not the places,
+// which are of second order in the slopes.
+static enum ct_axial axial_of(const struct ct_build *b, const struct ct_flexible *f)
 {
     if (f->formulation == CT_BEAM_LINEAR)
         return CT_AXIAL_LINEAR;
-    // modes hold no room for the places of nodes that foreshortening moves
     return f->deformation & CT_BEAM_AXIAL && f->formulation == CT_BEAM_FORESHORTENING
-                && !f->beam->modes
+                && !f->beam->modes && !ct_small_beam(b, f->name)
              ? CT_AXIAL_LOCAL
              : CT_AXIAL_CHAIN;
 }
@@ -136,13 +139,14 @@ static enum ct_axial axial_of(const struct ct_flexible *f)
 // else they are the model's fault.
 static void need_stiffness(struct ct_build *b, struct ct_flexible *f)
 {
-    static const struct {
+    const struct {
         unsigned family;
         const char *what, *key;
-    } all[] = {{CT_BEAM_AXIAL, "stretch", "area"},
-               {CT_BEAM_BENDING_Y, "bend in its x-z plane", "Iy"},
-               {CT_BEAM_BENDING_Z, "bend in its x-y plane", "Iz"},
-               {CT_BEAM_TORSION, "twist", "G or nu"}};
+    } all[] = {
+        {CT_BEAM_AXIAL, "stretch", "area"},
+        {CT_BEAM_BENDING_Y, "bend in its x-z plane", "Iy"},
+        {CT_BEAM_BENDING_Z, "bend in its x-y plane", "Iz"},
+        {CT_BEAM_TORSION, "twist", ct_ex_is_zero(f->beam->G) ? "G or nu" : "J, or Iy and Iz"}};
     for (size_t i = 0; i < COUNT(all); i++) {
         if (!(f->deformation & all[i].family & ~f->beam->known))
             continue;
@@ -153,7 +157,8 @@ static void need_stiffness(struct ct_build *b, struct ct_flexible *f)
                 ct_arena_printf(b->arena, "%s is not given", all[i].key));
         else
             ct_error(b->ctx, b->model->body[f->body].instance.mark, CT_E_BEAM,
-                     "beam '%s' can %s here: give %s, or say with 'deformation' what it may do",
+                     "beam '%s' can %s here, and nothing resists it: give %s, or say with "
+                     "'deformation' what it may do",
                      f->name, all[i].what, all[i].key);
     }
 }
@@ -191,7 +196,7 @@ static void settle(struct ct_build *b, struct ct_flexible *f)
     need_stiffness(b, f);
     if (b->is_rigid)
         f->deformation = 0;
-    f->axial = f->kinematics = axial_of(f);
+    f->axial = f->kinematics = axial_of(b, f);
     if (f->formulation == CT_BEAM_FORCE_ONLY)
         f->kinematics = CT_AXIAL_LINEAR;
     f->freedom = CT_NEWN(b->arena, struct ct_freedom, NKIND * (beam->nelement + 1));
@@ -279,33 +284,68 @@ static void dof_values(struct ct_build *b, struct ct_flexible *f)
     }
 }
 
+// Foreshortening of one element by the integrals E of slope products and of the sections' rotation gradients.
+static void draw_by_matrices(struct ct_build *b, struct ct_flexible *f, int e, ct_ex *c,
+                             ct_ex *rate, ct_ex *bias)
+{
+    struct ct_exs *x = b->x;
+    struct ct_element *self = &f->element[e];
+    for (int plane = 0; plane < 2; plane++) {
+        const int first = plane ? 6 : 2;
+        for (int j = 0; j < 4; j++) {
+            ct_ex Ea = CT_EX_ZERO, Er = CT_EX_ZERO;
+            for (int k = 0; k < 4; k++) {
+                const ct_ex h = self->span.length;
+                const ct_ex E
+                    = ct_ex_add(x, ct_shape_at(x, &f->shortening[j][k], CT_EX_ONE, h),
+                                ct_ex_mul(x, self->radius[plane],
+                                          ct_shape_at(x, &f->curving[j][k], CT_EX_ONE, h)));
+                Ea = ct_ex_add(x, Ea, ct_ex_mul(x, E, self->value[first + k]));
+                Er = ct_ex_add(x, Er, ct_ex_mul(x, E, self->rate[first + k]));
+            }
+            self->g[first + j] = ct_ex_neg(x, Ea);
+            *c = ct_ex_sub(x, *c,
+                           ct_ex_scale(x, 0.5, ct_ex_mul(x, Ea, self->value[first + j])));
+            *rate = ct_ex_sub(x, *rate, ct_ex_mul(x, Ea, self->rate[first + j]));
+            *bias = ct_ex_sub(x, *bias, ct_ex_mul(x, Er, self->rate[first + j]));
+        }
+    }
+}
+
+// The same by amplitudes of the slopes.
+static void draw_by_slopes(struct ct_build *b, struct ct_flexible *f, int e, ct_ex *c,
+                           ct_ex *rate, ct_ex *bias)
+{
+    struct ct_exs *x = b->x;
+    struct ct_element *self = &f->element[e];
+    const ct_ex h = self->span.length;
+    const struct ct_draw by = ct_draw_whole_push(x, h, ct_ex_const(x, -1));
+    struct ct_bent value[2], speed[2];
+    for (int plane = 0; plane < 2; plane++) {
+        const int first = plane ? 6 : 2;
+        struct ct_bent force = {0};
+        value[plane] = ct_bent_of(x, f->beam->theory, h, self->value + first);
+        speed[plane] = ct_bent_of(x, f->beam->theory, h, self->rate + first);
+        ct_draw_push(x, &value[plane], &by, &force);
+        ct_bent_push(x, f->beam->theory, h, &force, self->g + first);
+    }
+    const struct ct_draw drawn = ct_draw_of(x, value), first = ct_draw_by(x, value, speed),
+                         second = ct_draw_by(x, speed, speed);
+    *c = ct_ex_sub(x, *c, ct_draw_whole(x, h, &drawn));
+    *rate = ct_ex_sub(x, *rate, ct_draw_whole(x, h, &first));
+    *bias = ct_ex_sub(x, *bias, ct_draw_whole(x, h, &second));
+}
+
 // Foreshortening of element after element: c and its derivatives by running sums.
 static void run_chain(struct ct_build *b, struct ct_flexible *f)
 {
-    struct ct_exs *x = b->x;
     for (int e = 0; e < f->beam->nelement; e++) {
         struct ct_element *self = &f->element[e];
         ct_ex c = self->c, rate = self->c_rate, bias = self->c_bias;
-        for (int plane = 0; plane < 2; plane++) {
-            const int first = plane ? 6 : 2;
-            for (int j = 0; j < 4; j++) {
-                ct_ex Ea = CT_EX_ZERO, Er = CT_EX_ZERO;
-                for (int k = 0; k < 4; k++) {
-                    const ct_ex h = self->span.length;
-                    const ct_ex E
-                        = ct_ex_add(x, ct_shape_at(x, &f->shortening[j][k], CT_EX_ONE, h),
-                                    ct_ex_mul(x, self->radius[plane],
-                                              ct_shape_at(x, &f->curving[j][k], CT_EX_ONE, h)));
-                    Ea = ct_ex_add(x, Ea, ct_ex_mul(x, E, self->value[first + k]));
-                    Er = ct_ex_add(x, Er, ct_ex_mul(x, E, self->rate[first + k]));
-                }
-                self->g[first + j] = ct_ex_neg(x, Ea);
-                c = ct_ex_sub(x, c,
-                              ct_ex_scale(x, 0.5, ct_ex_mul(x, Ea, self->value[first + j])));
-                rate = ct_ex_sub(x, rate, ct_ex_mul(x, Ea, self->rate[first + j]));
-                bias = ct_ex_sub(x, bias, ct_ex_mul(x, Er, self->rate[first + j]));
-            }
-        }
+        if (f->beam->higher_order)
+            draw_by_matrices(b, f, e, &c, &rate, &bias);
+        else
+            draw_by_slopes(b, f, e, &c, &rate, &bias);
         if (e + 1 < f->beam->nelement) {
             self[1].c = c;
             self[1].c_rate = rate;
@@ -378,7 +418,7 @@ void ct_flexible_unknowns(struct ct_build *b, struct ct_flexible *f)
         b->eqs->bare_beam = f->body;
         b->eqs->bare_joint = bare;
     }
-    if (f->beam->modes && f->deformation) {
+    if (f->beam->modes && f->deformation && !ct_flexible_keeps_all_modes(b, f)) {
         if (ct_flexible_reduce(b, f, &s))
             unknowns_of_shapes(b, f, &s);
     } else if (ct_flexible_condense(b, f, &s)) {

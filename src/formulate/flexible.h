@@ -21,6 +21,8 @@
 
 /// A linear beam is good enough below this indicator.
 #define CT_VALIDITY_LIMIT 0.01
+/// Slope of a section against the frame of its beam up to which displacements of second order in it will do (section 5.3).
+#define CT_SLOPE_LIMIT 0.3
 
 enum { CT_DOF = 13, CT_PLACE_DOF = 10, CT_TWIST_DOF = 3 };
 /// Kinds of freedoms of a node. CT_FREEDOM_RM: twist in the middle of the element before it beyond the mean of its ends.

@@ -169,14 +169,27 @@ static bool *new_marks(const struct ct_build *b, const struct ct_flexible *f)
     return CT_NEWN(b->ctx->scratch, bool, NKIND *(f->beam->nelement + 1));
 }
 
+// Freedoms by number, those first that keep a static shape.
+static void number_modal(struct reduction *r)
+{
+    bool *node = new_marks(r->b, r->f), *kept = new_marks(r->b, r->f);
+    mark_nodes(r, node);
+    for (int i = 0; i < NKIND * (r->f->beam->nelement + 1); i++)
+        kept[i] = node[i / NKIND] && i % NKIND != CT_FREEDOM_RM;
+    number_freedoms(r, kept);
+}
+
+bool ct_flexible_keeps_all_modes(struct ct_build *b, struct ct_flexible *f)
+{
+    struct reduction r = {.b = b, .f = f};
+    number_modal(&r);
+    return f->beam->modes >= r.n - r.nkept;
+}
+
 bool ct_flexible_reduce(struct ct_build *b, struct ct_flexible *f, struct ct_shapes *out)
 {
     struct reduction r = {.b = b, .f = f};
-    bool *node = new_marks(b, f), *kept = new_marks(b, f);
-    mark_nodes(&r, node);
-    for (int i = 0; i < NKIND * (f->beam->nelement + 1); i++)
-        kept[i] = node[i / NKIND] && i % NKIND != CT_FREEDOM_RM;
-    number_freedoms(&r, kept);
+    number_modal(&r);
     assemble(&r);
     r.shape = CT_NEWN(b->arena, double, (size_t)r.n *(size_t)(r.n + 1) + 1);
     if (!static_shapes(&r) || !modes(&r, f->beam->modes))

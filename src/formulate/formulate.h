@@ -33,6 +33,7 @@ struct ct_formulate_options {
     const bool
         *first; // by joint: of those a tree through joints has all it can have; NULL: none
     const struct ct_equations *like; // beams as in these; NULL: choose
+    bool gaps;                       // rows of joints hold where they start (gap.h)
     bool held;                       // drivers stand still at their values: for what is static
     bool without_dynamics; // neither M nor Q: places and speeds are all that is wanted
     bool

@@ -1,6 +1,7 @@
 // Measured coordinates and constraint rows of chords.  (formulation 1.3, 4.2)
 #include "formulate/row.h"
 #include "formulate/dynamics.h"
+#include "formulate/gap.h"
 
 #include <string.h>
 
@@ -362,12 +363,17 @@ void ct_row_add(struct ct_build *b, const struct ct_instance *self, const char *
     add_row(b, joint_index(b, self), name, (struct pair){tail, head}, w, carried, phi, gam);
 }
 
-ct_ex ct_row_offset(struct ct_build *b, const struct ct_instance *self, ct_ex at_start)
+ct_ex ct_row_keep(struct ct_build *b, const char *name, int joint, ct_ex at_start)
 {
     const size_t i = b->eqs->nmemory;
-    const ct_ex s = new_memory(b, CT_MEMORY_OFFSET, self->name, joint_index(b, self), 0);
+    const ct_ex s = new_memory(b, CT_MEMORY_OFFSET, name, joint, 0);
     b->eqs->memory[i].update = at_start;
     return s;
+}
+
+ct_ex ct_row_offset(struct ct_build *b, const struct ct_instance *self, ct_ex at_start)
+{
+    return ct_row_keep(b, self->name, joint_index(b, self), at_start);
 }
 
 void ct_row_couple(struct ct_build *b, const struct ct_instance *self, int coordinate_a,
@@ -407,7 +413,7 @@ void ct_row_couple(struct ct_build *b, const struct ct_instance *self, int coord
 // ---- translational rows of a joint ----------------------------------------------------------------------
 
 // Origins coincide: one row along each ground direction, in the plane two.  (4.2)
-static void place_rows(struct ct_build *b, int joint, const char *name, struct pair n)
+static void place_rows(struct ct_build *b, const struct ct_edge_info *e, struct pair n)
 {
     struct ct_exs *x = b->x;
     static const char *const letter[] = {"x", "y", "z"};
@@ -415,16 +421,18 @@ static void place_rows(struct ct_build *b, int joint, const char *name, struct p
     const ct_ex3 a = ct_path_acceleration(b, n.tail, n.head, CT_BIAS);
     for (int i = 0; i < (b->is_planar ? 2 : 3); i++) {
         const struct ct_wrench w = {b->plane[i], zero3};
-        add_row(b, joint, ct_arena_printf(b->arena, "%s.%s", name, letter[i]), n, &w, false,
-                ct_ex3_dot(x, b->plane[i], d), ct_ex3_dot(x, b->plane[i], a));
+        add_row(b, e->index, ct_arena_printf(b->arena, "%s.%s", e->name, letter[i]), n, &w,
+                false, ct_gap_number(b, e, ct_ex3_dot(x, b->plane[i], d)),
+                ct_ex3_dot(x, b->plane[i], a));
     }
 }
 
-static void across_row(struct ct_build *b, int joint, const char *name, struct pair n, ct_ex3 p)
+static void across_row(struct ct_build *b, const struct ct_edge_info *e, const char *name,
+                       struct pair n, ct_ex3 p)
 {
     const struct ct_wrench w = {p, zero3};
-    add_row(b, joint, name, n, &w, true,
-            ct_ex3_dot(b->x, p, ct_path_position(b, n.tail, n.head)),
+    add_row(b, e->index, name, n, &w, true,
+            ct_gap_number(b, e, ct_ex3_dot(b->x, p, ct_path_position(b, n.tail, n.head))),
             along_acceleration(b, n, p, CT_BIAS));
 }
 
@@ -449,15 +457,15 @@ static void translation_rows(struct ct_build *b, int edge)
     ct_ex3 dir[3];
     const int nslide = slide_directions(b, e, dir);
     if (nslide == 0) {
-        place_rows(b, e->index, e->name, n);
+        place_rows(b, e, n);
     } else if (b->is_planar) {
         if (nslide == 1) {
             const ct_ex3 p = ct_ex3_cross(b->x, b->plane[2], ct_node_turn(b, n.tail, dir[0]));
-            across_row(b, e->index, ct_arena_printf(b->arena, "%s.across", e->name), n, p);
+            across_row(b, e, ct_arena_printf(b->arena, "%s.across", e->name), n, p);
         }
     } else {
         for (int i = 0; i < e->motion.ntrans; i++)
-            across_row(b, e->index, ct_arena_printf(b->arena, "%s.across%d", e->name, i + 1), n,
+            across_row(b, e, ct_arena_printf(b->arena, "%s.across%d", e->name, i + 1), n,
                        ct_node_turn(b, n.tail, e->motion.trans[i]));
     }
 }
@@ -489,7 +497,9 @@ static void planar_angle_row(struct ct_build *b, int edge)
     const struct pair n = ends(b, edge);
     const struct ct_wrench w = {zero3, b->plane[2]};
     const ct_ex3 v = ct_ex33_apply_t(x, &b->upright[n.tail], b->plane[0]);
-    const ct_ex diff = ct_ex_sub(x, planar_angle(b, n.head, v), planar_angle(b, n.tail, v));
+    // the gap of an angle is not wrapped: it says which way round
+    const ct_ex diff = ct_gap_number(
+        b, e, ct_ex_sub(x, planar_angle(b, n.head, v), planar_angle(b, n.tail, v)));
     // wrapped, as one whole turn is as good as none
     const ct_ex phi = ct_ex_fun2(x, CT_OP_ATAN2, ct_ex_fun(x, CT_OP_SIN, diff),
                                  ct_ex_fun(x, CT_OP_COS, diff));
@@ -499,14 +509,14 @@ static void planar_angle_row(struct ct_build *b, int edge)
             ct_ex3_dot(x, b->plane[2], al));
 }
 
-// Pair (s|t): s fixed in the tail's axes, t in the head's.  (4.4)
-static void pair_row(struct ct_build *b, int edge, int i)
+// Pair (s|t): s fixed in the tail's axes, t in the head's; s_local: s there.  (4.4)
+static void pair_row(struct ct_build *b, int edge, int i, ct_ex3 s_local)
 {
     struct ct_exs *x = b->x;
     const struct ct_edge_info *e = &b->edge[edge];
     const struct pair n = ends(b, edge);
     const int from = b->place[n.tail].frame, to = b->place[n.head].frame;
-    const ct_ex3 s = ct_node_turn(b, n.tail, e->motion.rot_from[i]);
+    const ct_ex3 s = ct_node_turn(b, n.tail, s_local);
     const ct_ex3 t = ct_node_turn(b, n.head, e->motion.rot_to[i]);
     const struct ct_wrench w = {zero3, ct_ex3_cross(x, t, s)};
     const ct_ex wanted = ct_ex3_dot(x, e->motion.rot_from[i], e->motion.rot_to[i]);
@@ -528,8 +538,12 @@ static void rotation_rows(struct ct_build *b, int edge)
 {
     const struct ct_edge_info *e = &b->edge[edge];
     if (!b->is_planar) {
+        ct_ex3 s[COUNT(e->motion.rot_from)];
         for (int i = 0; i < e->motion.nrot; i++)
-            pair_row(b, edge, i);
+            s[i] = e->motion.rot_from[i];
+        ct_gap_turn(b, e, b->wiring[edge].tail, b->wiring[edge].head, s, e->motion.nrot);
+        for (int i = 0; i < e->motion.nrot; i++)
+            pair_row(b, edge, i, s[i]);
         return;
     }
     for (int k = 0; k < e->ncoordinate; k++)

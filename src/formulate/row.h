@@ -44,6 +44,8 @@ void ct_row_couple(struct ct_build *b, const struct ct_instance *self, int coord
                    int coordinate_b, ct_ex ratio);
 /// A constant that takes the value of `at_start` in the assembled start and keeps it.
 ct_ex ct_row_offset(struct ct_build *b, const struct ct_instance *self, ct_ex at_start);
+/// The same under any name; joint -1: of none.
+ct_ex ct_row_keep(struct ct_build *b, const char *name, int joint, ct_ex at_start);
 /// Quaternion of R, followed continuously from its last value.
 void ct_quaternion_follow(struct ct_build *b, const char *name, const ct_ex33 *R, ct_ex out[4]);
 /// Index in b->coordinate of a name such as "a" or "a.q2"; -1 if it is not one.

@@ -43,6 +43,12 @@ bool ct_small_joint(const struct ct_build *b, int j)
     return is_named(b, b->model->joint[j].name, &at);
 }
 
+bool ct_small_beam(const struct ct_build *b, const char *name)
+{
+    struct ct_mark at;
+    return is_named(b, name, &at);
+}
+
 static bool collect_joint(struct ct_build *b, struct small *s, int j, struct ct_mark at)
 {
     if (b->edge_of_joint[j] < 0)

@@ -6,6 +6,8 @@
 
 /// Is joint j named under `small`?
 bool ct_small_joint(const struct ct_build *b, int j);
+/// Is the beam `name`?
+bool ct_small_beam(const struct ct_build *b, const char *name);
 /// Are there coordinates that are small?
 bool ct_small_is_wanted(const struct ct_build *b);
 /// M and Q to first order in the coordinates of all joints and beams that are small, and in their rates, about zero;

@@ -10,6 +10,10 @@ bool ct_topology_derive(struct ct_build *b, bool planar_allowed);
 /// Motion of an edge for the coordinates in m->coord.
 void ct_topology_motion(struct ct_build *b, const struct ct_edge_info *e, struct ct_motion *m);
 
+/// Where this is allowed and every joint keeps to one plane: b->is_planar, and b->plane, its axes e1, e2 and normal n in
+/// components of ground; else n is the third of ground. After the coordinates of joints.
+void ct_plane_detect(struct ct_build *b, bool allowed);
+
 /// Note what the equations leave out and why.
 void ct_topology_left_out(struct ct_build *b, const char *what, const char *why);
 

@@ -395,8 +395,32 @@ const bool *ct_validity_choose(struct ct_build *b)
     return linear;
 }
 
+static ct_ex squared_slope(struct ct_build *b, const struct ct_element *e, int end)
+{
+    struct ct_exs *x = b->x;
+    const ct_ex v = e->value[3 + 2 * end], w = e->value[7 + 2 * end];
+    return ct_ex_add(x, ct_ex_mul(x, v, v), ct_ex_mul(x, w, w));
+}
+
+static void watch_bending(struct ct_build *b, const struct ct_flexible *f)
+{
+    const int n = f->beam->nelement;
+    struct ct_bent_beam bend = {.beam = f->name,
+                                .mark = b->model->body[f->body].instance.mark,
+                                .square = CT_NEWN(b->arena, ct_ex, n + 1)};
+    for (int k = 0; k <= n; k++) {
+        const ct_ex square = squared_slope(b, &f->element[k ? k - 1 : 0], k > 0);
+        if (!ct_ex_is_zero(square))
+            bend.square[bend.n++] = square;
+    }
+    if (bend.n)
+        CT_PUSH(b->arena, b->eqs->bend, b->eqs->nbend, b->eqs->bend_cap, bend);
+}
+
 void ct_validity_monitor(struct ct_build *b)
 {
+    for (size_t i = 0; i < b->nflexible; i++)
+        watch_bending(b, &b->flexible[i]);
     for (size_t i = 0; i < b->nflexible; i++) {
         struct ct_validity v;
         if (b->flexible[i].formulation == CT_BEAM_LINEAR

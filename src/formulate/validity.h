@@ -22,7 +22,7 @@ bool ct_validity_derive(struct ct_build *b, const struct ct_flexible *f,
 /// or loads, does not.
 const bool *ct_validity_choose(struct ct_build *b);
 
-/// Indicators of all linear beams into b->eqs->validity.
+/// Indicators of all linear beams into b->eqs->validity, slopes of all beams into b->eqs->bend.
 void ct_validity_monitor(struct ct_build *b);
 
 #endif

@@ -36,6 +36,22 @@ bool ct_control_is_lost(double h, double t, double run)
     return h <= least_step * fmax(fabs(t), least_scale * run);
 }
 
+// Runs whose steps have stopped to grow are not begun in earnest if they would take so many times the steps allowed.
+static const double endless = 3, growing = 1.1;
+enum { WINDOWS = 1000 };
+
+bool ct_control_is_endless(struct ct_pace *p, long steps, long most, double t, double rest)
+{
+    const long window = most / WINDOWS;
+    if (window == 0 || steps % window != 0)
+        return false;
+    const double before = p->gain;
+    p->gain = t - p->t;
+    p->t = t;
+    return before > 0 && p->gain <= growing * before
+        && rest / p->gain * (double)window > endless * (double)most;
+}
+
 static double safety_of(const struct ct_method *m)
 {
     return m->is_implicit ? implicit_safety : safety;

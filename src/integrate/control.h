@@ -25,6 +25,14 @@ void ct_control_accept(struct ct_control *c, const struct ct_method *m, double h
 /// A step was refused, for its error if that is greater than 1.
 void ct_control_refuse(struct ct_control *c, const struct ct_method *m, double h, double error);
 
+/// How far a run gets with a thousandth of the steps it may make; all zero before the first.
+struct ct_pace {
+    double t, gain; // where the last thousandth ended, and its length
+};
+/// After so many of `most` steps t is reached, and `rest` is left: would the end take several times as many as are allowed?
+/// False while steps still grow.
+bool ct_control_is_endless(struct ct_pace *p, long steps, long most, double t, double rest);
+
 /// The Euler step that looks ahead, from the norms of y and y' against the tolerance.
 double ct_control_glance(double d0, double d1, double limit);
 /// A first step whose error should be near a hundredth of the tolerance; d1, d2: norms of y' and of its change

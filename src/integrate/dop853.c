@@ -133,33 +133,47 @@ static const double D[CORRECTIONS][ALL_STAGES] = {
      -39.177261675615439165231486172, -149.72683625798562581422125276},
 };
 
-// work: k (ny x 16), F (ny x 4), two vectors (ny)
+struct work {
+    struct ct_carry carry;
+    double *k;     // (ny x 16)
+    double *F;     // (ny x 4) of the interpolant
+    double *spare; // two vectors (ny)
+};
+
 static void *create(struct ct_arena *a, const struct ct_method *method,
                     const struct ct_problem *p)
 {
     (void)method;
-    return CT_NEWN(a, double, (ALL_STAGES + CORRECTIONS + 2) * (size_t)p->ny);
+    const size_t n = (size_t)p->ny;
+    struct work *w = CT_NEW(a, struct work);
+    *w = (struct work){.carry = ct_carry_create(a, p->ny),
+                       .k = CT_NEWN(a, double, ALL_STAGES *n),
+                       .F = CT_NEWN(a, double, CORRECTIONS *n),
+                       .spare = CT_NEWN(a, double, 2 * n)};
+    return w;
 }
 
-static double *corrections(double *work, int n)
+static void restart(void *work)
 {
-    return work + ALL_STAGES * n;
+    ct_carry_clear(&((struct work *)work)->carry);
 }
 
-static double *spare(double *work, int n) // room for two vectors
+static void accept(void *work)
 {
-    return work + (ALL_STAGES + CORRECTIONS) * n;
+    ct_carry_keep(&((struct work *)work)->carry);
 }
 
-// k_s for s from `first` to before `end`; the last stage point remains in spare().
+// k_s for s from `first` to before `end`, the end of the step being w->spare.
 static enum ct_eval stages(const struct ct_problem *p, double t, double h, const double *y,
-                           int first, int end, double *work, struct ct_integrate_stats *stats)
+                           int first, int end, struct work *w, struct ct_integrate_stats *stats)
 {
     const int n = p->ny;
-    double *k = work, *point = spare(work, n);
     for (int s = first; s < end; s++) {
-        ct_stepper_combine(point, y, h, A[s], k, s, n);
-        const enum ct_eval e = ct_stepper_rhs(p, t + C[s] * h, point, k + s * n, stats);
+        if (s == STAGES - 1)
+            ct_stepper_advance(w->spare, y, h, A[s], w->k, s, &w->carry);
+        else
+            ct_stepper_combine(w->spare, y, h, A[s], w->k, s, n);
+        const enum ct_eval e = ct_stepper_rhs(p, t + C[s] * h, w->spare, w->k + s * n, stats);
         if (e != CT_EVAL_OK)
             return e;
     }
@@ -168,14 +182,14 @@ static enum ct_eval stages(const struct ct_problem *p, double t, double h, const
 
 // The error of order 5, smaller by as much as that of order 3 is larger.
 static double estimate(const struct ct_problem *p, double t, double h, const double *y,
-                       const double *y1, const struct ct_tolerance *tolerance, double *work)
+                       const double *y1, const struct ct_tolerance *tolerance,
+                       const struct work *w)
 {
     const int n = p->ny;
-    const double *k = work;
-    double *e = spare(work, n), *y3 = e + n;
-    ct_stepper_combine(e, NULL, h, E5, k, STAGES - 1, n);
+    double *e = w->spare, *y3 = e + n;
+    ct_stepper_combine(e, NULL, h, E5, w->k, STAGES - 1, n);
     const double e5 = ct_stepper_norm(p, tolerance, y, y1, e);
-    ct_stepper_combine(y3, y, h, B3, k, STAGES - 1, n);
+    ct_stepper_combine(y3, y, h, B3, w->k, STAGES - 1, n);
     for (int i = 0; i < n; i++)
         y3[i] = y1[i] - y3[i];
     const double joint = ct_stepper_join(e5, ct_stepper_norm(p, tolerance, y, y1, y3));
@@ -192,14 +206,15 @@ static enum ct_eval step(const struct ct_problem *p, double t, double h, const d
 {
     const int n = p->ny;
     const size_t bytes = (size_t)n * sizeof *y;
-    memcpy(work, dy, bytes);
-    const enum ct_eval e = stages(p, t, h, y, 1, STAGES, work, stats);
+    struct work *w = work;
+    memcpy(w->k, dy, bytes);
+    const enum ct_eval e = stages(p, t, h, y, 1, STAGES, w, stats);
     if (e != CT_EVAL_OK)
         return e;
-    memcpy(y1, spare(work, n), bytes);
-    memcpy(dy1, (const double *)work + (STAGES - 1) * n, bytes);
+    memcpy(y1, w->spare, bytes);
+    memcpy(dy1, w->k + (STAGES - 1) * n, bytes);
     if (tolerance)
-        *err = estimate(p, t, h, y, y1, tolerance, work);
+        *err = estimate(p, t, h, y, y1, tolerance, w);
     return CT_EVAL_OK;
 }
 
@@ -208,10 +223,10 @@ static enum ct_eval prepare(const struct ct_problem *p, double t, double h, cons
 {
     (void)y1;
     const int n = p->ny;
-    const enum ct_eval e = stages(p, t, h, y, STAGES, ALL_STAGES, work, stats);
-    double *F = corrections(work, n);
+    struct work *w = work;
+    const enum ct_eval e = stages(p, t, h, y, STAGES, ALL_STAGES, w, stats);
     for (int j = 0; j < CORRECTIONS && e == CT_EVAL_OK; j++)
-        ct_stepper_combine(F + j * n, NULL, h, D[j], work, ALL_STAGES, n);
+        ct_stepper_combine(w->F + j * n, NULL, h, D[j], w->k, ALL_STAGES, n);
     return e;
 }
 
@@ -220,8 +235,9 @@ static void dense(const struct ct_problem *p, double h, double theta, const doub
 {
     const int n = p->ny;
     const double rest = 1 - theta, bubble = theta * theta * rest * rest;
-    const double *k = work, *F = corrections(work, n);
-    ct_stepper_hermite(out, theta, h, y, k, y1, k + (STAGES - 1) * n, n);
+    const struct work *w = work;
+    const double *F = w->F;
+    ct_stepper_hermite(out, theta, h, y, w->k, y1, w->k + (STAGES - 1) * n, n);
     for (int i = 0; i < n; i++) {
         const double inner = F[i + 2 * n] + theta * F[i + 3 * n];
         out[i] += bubble * (F[i] + theta * (F[i + n] + rest * inner));
@@ -247,6 +263,8 @@ const struct ct_method ct_method_dop853 = {
     .most_growth = 1.5,
     .quiet = {1. / 3, 3. / 5},
     .create = create,
+    .restart = restart,
+    .accept = accept,
     .step = step,
     .prepare = prepare,
     .dense = dense,

@@ -40,22 +40,36 @@ static const double D[STAGES] = {
     69997945. / 29380423,
 };
 
-// The workspace by parts: k (ny x 7), the other vectors (ny), is_prepared (1).
-struct parts {
-    double *k, *point, *slope, *a, *b, *is_prepared;
+struct work {
+    struct ct_carry carry;
+    double *k;                     // (ny x 7)
+    double *point, *slope, *a, *b; // (ny) each
+    bool is_prepared;
 };
 
-static struct parts divide(double *work, int n)
-{
-    double *rest = work + STAGES * n;
-    return (struct parts){work, rest, rest + n, rest + 2 * n, rest + 3 * n, rest + 4 * n};
-}
-
-static void *create(struct ct_arena *a, const struct ct_method *method,
+static void *create(struct ct_arena *arena, const struct ct_method *method,
                     const struct ct_problem *p)
 {
     (void)method;
-    return CT_NEWN(a, double, (STAGES + 4) * (size_t)p->ny + 1);
+    const size_t n = (size_t)p->ny;
+    struct work *w = CT_NEW(arena, struct work);
+    *w = (struct work){.carry = ct_carry_create(arena, p->ny),
+                       .k = CT_NEWN(arena, double, STAGES *n),
+                       .point = CT_NEWN(arena, double, n),
+                       .slope = CT_NEWN(arena, double, n),
+                       .a = CT_NEWN(arena, double, n),
+                       .b = CT_NEWN(arena, double, n)};
+    return w;
+}
+
+static void restart(void *work)
+{
+    ct_carry_clear(&((struct work *)work)->carry);
+}
+
+static void accept(void *work)
+{
+    ct_carry_keep(&((struct work *)work)->carry);
 }
 
 static enum ct_eval step(const struct ct_problem *p, double t, double h, const double *y,
@@ -64,12 +78,15 @@ static enum ct_eval step(const struct ct_problem *p, double t, double h, const d
 {
     const int n = p->ny;
     const size_t bytes = (size_t)n * sizeof *y;
-    const struct parts w = divide(work, n);
-    double *k = w.k, *point = w.point;
-    *w.is_prepared = false;
+    struct work *w = work;
+    double *k = w->k, *point = w->point;
+    w->is_prepared = false;
     memcpy(k, dy, bytes);
     for (int s = 1; s < STAGES; s++) {
-        ct_stepper_combine(point, y, h, A[s], k, s, n);
+        if (s == STAGES - 1)
+            ct_stepper_advance(point, y, h, A[s], k, s, &w->carry);
+        else
+            ct_stepper_combine(point, y, h, A[s], k, s, n);
         const enum ct_eval e = ct_stepper_rhs(p, t + C[s] * h, point, k + s * n, stats);
         if (e != CT_EVAL_OK)
             return e;
@@ -84,7 +101,7 @@ static enum ct_eval step(const struct ct_problem *p, double t, double h, const d
 }
 
 static void quartic(double *out, double h, double theta, const double *y, const double *y1,
-                    const struct parts *w, int n)
+                    const struct work *w, int n)
 {
     const double bubble = theta * theta * (1 - theta) * (1 - theta);
     ct_stepper_combine(w->slope, NULL, h * bubble, D, w->k, STAGES, n);
@@ -95,7 +112,7 @@ static void quartic(double *out, double h, double theta, const double *y, const 
 
 // out (n) = f at the point of the quartic at theta, minus the slope of the Hermite polynomial.
 static enum ct_eval miss(double *out, double theta, const struct ct_problem *p, double t,
-                         double h, const double *y, const double *y1, const struct parts *w,
+                         double h, const double *y, const double *y1, const struct work *w,
                          struct ct_integrate_stats *stats)
 {
     const int n = p->ny;
@@ -111,18 +128,18 @@ static enum ct_eval miss(double *out, double theta, const struct ct_problem *p, 
 static enum ct_eval prepare(const struct ct_problem *p, double t, double h, const double *y,
                             const double *y1, void *work, struct ct_integrate_stats *stats)
 {
-    const struct parts w = divide(work, p->ny);
-    enum ct_eval e = miss(w.b, 1. / 2, p, t, h, y, y1, &w, stats);
+    struct work *w = work;
+    enum ct_eval e = miss(w->b, 1. / 2, p, t, h, y, y1, w, stats);
     if (e == CT_EVAL_OK)
-        e = miss(w.a, 1. / 5, p, t, h, y, y1, &w, stats);
+        e = miss(w->a, 1. / 5, p, t, h, y, y1, w, stats);
     if (e != CT_EVAL_OK)
         return e;
     // slope of t^2 (1 - t)^2 (a + b t):  b / 16 at 1/2,  (24 a + 8 b) / 125 at 1/5
     for (int i = 0; i < p->ny; i++) {
-        w.b[i] *= 16;
-        w.a[i] = (125 * w.a[i] - 8 * w.b[i]) / 24;
+        w->b[i] *= 16;
+        w->a[i] = (125 * w->a[i] - 8 * w->b[i]) / 24;
     }
-    *w.is_prepared = true;
+    w->is_prepared = true;
     return CT_EVAL_OK;
 }
 
@@ -130,15 +147,15 @@ static void dense(const struct ct_problem *p, double h, double theta, const doub
                   const double *y1, void *work, double *out)
 {
     const int n = p->ny;
-    const struct parts w = divide(work, n);
+    const struct work *w = work;
     const double bubble = theta * theta * (1 - theta) * (1 - theta);
-    if (!*w.is_prepared) {
-        quartic(out, h, theta, y, y1, &w, n);
+    if (!w->is_prepared) {
+        quartic(out, h, theta, y, y1, w, n);
         return;
     }
-    ct_stepper_hermite(out, theta, h, y, w.k, y1, w.k + (STAGES - 1) * n, n);
+    ct_stepper_hermite(out, theta, h, y, w->k, y1, w->k + (STAGES - 1) * n, n);
     for (int i = 0; i < n; i++)
-        out[i] += h * bubble * (w.a[i] + theta * w.b[i]);
+        out[i] += h * bubble * (w->a[i] + theta * w->b[i]);
 }
 
 static const struct ct_tableau tableau
@@ -152,6 +169,8 @@ const struct ct_method ct_method_dopri5 = {
     .order = 5,
     .error_order = 4,
     .create = create,
+    .restart = restart,
+    .accept = accept,
     .step = step,
     .prepare = prepare,
     .has_rough_dense = true,

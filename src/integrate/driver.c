@@ -7,6 +7,7 @@
 // is tried again shorter; until `commit` nothing has changed. Step control is that of control.h.
 #include "integrate/control.h"
 #include "integrate/crossing.h"
+#include "integrate/repeat.h"
 #include "integrate/striding.h"
 #include "integrate/watch.h"
 
@@ -50,9 +51,12 @@ struct run {
     const struct ct_integrate_options *o;
     struct ct_integrate_stats *stats;
     struct ct_tolerance tolerance;
+    struct ct_repeat repeat;
+    double *y0; // where the run began
     struct ct_watch watch;
     double t; // time of y and dy
     struct ct_control control;
+    struct ct_pace pace;
     double *y, *dy;      // (ny) each, as all that follow
     double *y1, *dy1;    // end of the step as the method gives it
     double *end, *dend;  // the same, projected
@@ -116,7 +120,8 @@ static bool check_options(struct ct_ctx *ctx, const struct ct_integrate_options 
 static void allocate(struct run *r)
 {
     struct ct_arena *a = r->ctx->model;
-    double **const vectors[] = {&r->y, &r->dy, &r->y1, &r->dy1, &r->end, &r->dend, &r->point};
+    double **const vectors[]
+        = {&r->y0, &r->y, &r->dy, &r->y1, &r->dy1, &r->end, &r->dend, &r->point};
     for (size_t i = 0; i < COUNT(vectors); i++)
         *vectors[i] = CT_NEWN(a, double, r->p->ny);
     r->work = r->method->create(a, r->method, r->p);
@@ -540,6 +545,8 @@ static bool find_step(struct run *r, double stop, bool is_time, struct stride *s
         const double h = s->h;
         if (is_too_small(r, s))
             return step_too_small(r, h);
+        if (!is_crossing)
+            s->h = s->t1 - r->t; // as rounded, so that steps add up to the time
         enum ct_eval e = attempt(r, s);
         const double error = s->error;
         if (e == CT_EVAL_OK)
@@ -631,8 +638,17 @@ static bool give_samples_here(struct run *r)
 
 // --- the march -------------------------------------------------------------------------------
 
+static void count_turns(struct run *r, double t1)
+{
+    const struct ct_integrate_options *o = r->o;
+    if (ct_repeat_step(&r->repeat, t1, r->y0, r->y, r->end, r->p->nq, r->p->nu))
+        r->tolerance = ct_repeat_tolerance(&r->repeat, o->rtol, o->atol, o->least_rtol);
+}
+
 static void commit(struct run *r, const struct stride *s)
 {
+    if (r->o->least_rtol > 0 && r->o->step == 0)
+        count_turns(r, s->t1);
     double *y = r->y, *dy = r->dy;
     r->y = r->end;
     r->dy = r->dend;
@@ -691,6 +707,12 @@ static bool march(struct run *r)
                 r->t);
         if (!advance(r))
             return false;
+        if (ct_control_is_endless(&r->pace, r->stats->steps, most, r->t, r->o->t1 - r->t))
+            return ct_error(r->ctx, nowhere, CT_E_STEP_COUNT,
+                            "at t = %.3g after %ld steps, of %.2g s now: up to t = %.9g they "
+                            "would be more than the %ld that are allowed",
+                            r->t, r->stats->steps, r->pace.gain * 1000 / (double)most, r->o->t1,
+                            most);
         if (r->o->at_step && !r->o->at_step(r->p->user, r->t, r->y))
             return true;
     }
@@ -731,13 +753,16 @@ bool ct_integrate(struct ct_ctx *ctx, const struct ct_method *method,
         .stats = stats,
         .tolerance = {options->rtol, options->atol},
         .t = options->t0,
+        .repeat = ct_repeat_start(options->t0, options->t1),
         .control = ct_control_start(),
+        .pace = {.t = options->t0},
         .singular_in = INFINITY,
         .reach = INFINITY,
         .last_event = -INFINITY,
     };
     allocate(&r);
     memcpy(r.y, y, (size_t)p->ny * sizeof *y);
+    memcpy(r.y0, y, (size_t)p->ny * sizeof *y);
     const bool ok = start(&r) && march(&r);
     memcpy(y, r.y, (size_t)p->ny * sizeof *y);
     stats->last_time = r.t;

@@ -46,6 +46,7 @@ struct ct_iteration *ct_iteration_create(struct ct_arena *a, const struct ct_pro
     it->b = CT_NEWN(a, double, n + 1);
     it->pivot = CT_NEWN(a, int, n + 1);
     it->weight = CT_NEWN(a, double, 2 * nu + 1);
+    it->off = CT_NEWN(a, double, p->ny);
     if (is_complex) {
         it->w = CT_NEWN(a, double, nu + 1);
         it->Gc = CT_NEWN(a, double _Complex, n *n + 1);
@@ -285,6 +286,19 @@ double ct_iteration_norm(const struct ct_iteration *it, const double *d, const d
         }
     const int n = (u ? 2 : 1) * k * it->nu;
     return n ? sqrt(sum / n) : 0;
+}
+
+double ct_iteration_error(struct ct_iteration *it, const struct ct_problem *p,
+                          const struct ct_tolerance *tolerance, double t1, const double *y1,
+                          const double *d, const double *u, double states)
+{
+    const int nq = it->dae->nq;
+    double *e = it->off;
+    it->dae->retract(it->dae->user, y1, d, e);
+    for (int i = 0; i < nq; i++)
+        e[i] -= y1[i];
+    memcpy(e + nq, u, (size_t)it->nu * sizeof *u);
+    return ct_stepper_worse(p, tolerance, t1, y1, e, states);
 }
 
 void ct_iteration_start(struct ct_iteration *it)

@@ -39,6 +39,7 @@ struct ct_iteration {
     double *b; // (n)
     double _Complex *bc;
     double *weight; // what changes of places and speeds are measured against  (2 nu)
+    double *off;    // an error of the states  (ny)
     // the run of corrections
     int count;
     double kappa, rounding; // a correction below: converged; below: not to be bettered
@@ -80,6 +81,12 @@ void ct_iteration_push(const struct ct_iteration *it, double *x, double c, const
 /// Root mean square of k places and speeds (nu x k each) over their weights; u == NULL: of places alone.
 double ct_iteration_norm(const struct ct_iteration *it, const double *d, const double *u,
                          int k);
+
+/// The error of a step that ends at y1, time t1: that of the states, `states`, or what the errors d, u (nu) of places and
+/// speeds mean for outputs, if that is more.  (8.6)
+double ct_iteration_error(struct ct_iteration *it, const struct ct_problem *p,
+                          const struct ct_tolerance *tolerance, double t1, const double *y1,
+                          const double *d, const double *u, double states);
 
 /// Before the first correction.
 void ct_iteration_start(struct ct_iteration *it);

@@ -15,28 +15,43 @@ static const double C[STAGES] = {0, 1. / 2, 1. / 2, 1};
 static const double A[STAGES][STAGES] = {[1] = {1. / 2}, [2] = {0, 1. / 2}, [3] = {0, 0, 1}};
 static const double B[STAGES] = {1. / 6, 1. / 3, 1. / 3, 1. / 6};
 
-// The workspace by parts, each of length ny but k (ny x 4) and is_halved (1).
-struct parts {
-    double *k, *point, *dy, *dy1, *middle, *dmiddle, *is_halved;
+struct work {
+    struct ct_carry carry;                       // of fixed steps
+    double *k;                                   // (ny x 4)
+    double *point, *dy, *dy1, *middle, *dmiddle; // (ny) each
+    bool is_halved;
 };
-
-static struct parts divide(double *work, int n)
-{
-    return (struct parts){work,         work + 4 * n, work + 5 * n, work + 6 * n,
-                          work + 7 * n, work + 8 * n, work + 9 * n};
-}
 
 static void *create(struct ct_arena *a, const struct ct_method *method,
                     const struct ct_problem *p)
 {
     (void)method;
-    return CT_NEWN(a, double, 9 * (size_t)p->ny + 1);
+    const size_t n = (size_t)p->ny;
+    struct work *w = CT_NEW(a, struct work);
+    *w = (struct work){.carry = ct_carry_create(a, p->ny),
+                       .k = CT_NEWN(a, double, STAGES *n),
+                       .point = CT_NEWN(a, double, n),
+                       .dy = CT_NEWN(a, double, n),
+                       .dy1 = CT_NEWN(a, double, n),
+                       .middle = CT_NEWN(a, double, n),
+                       .dmiddle = CT_NEWN(a, double, n)};
+    return w;
 }
 
-// y1 (out) by one step of length h from (t, y) with derivative dy.
-static enum ct_eval advance(const struct ct_problem *p, double t, double h, const double *y,
-                            const double *dy, double *y1, const struct parts *w,
-                            struct ct_integrate_stats *stats)
+static void restart(void *work)
+{
+    ct_carry_clear(&((struct work *)work)->carry);
+}
+
+static void accept(void *work)
+{
+    ct_carry_keep(&((struct work *)work)->carry);
+}
+
+// w->k by one step of length h from (t, y) with derivative dy.
+static enum ct_eval stages(const struct ct_problem *p, double t, double h, const double *y,
+                           const double *dy, const struct work *w,
+                           struct ct_integrate_stats *stats)
 {
     const int n = p->ny;
     memcpy(w->k, dy, (size_t)n * sizeof *dy);
@@ -46,14 +61,24 @@ static enum ct_eval advance(const struct ct_problem *p, double t, double h, cons
         if (e != CT_EVAL_OK)
             return e;
     }
-    ct_stepper_combine(y1, y, h, B, w->k, STAGES, n);
     return CT_EVAL_OK;
+}
+
+// y1 (out): its end.
+static enum ct_eval advance(const struct ct_problem *p, double t, double h, const double *y,
+                            const double *dy, double *y1, const struct work *w,
+                            struct ct_integrate_stats *stats)
+{
+    const enum ct_eval e = stages(p, t, h, y, dy, w, stats);
+    if (e == CT_EVAL_OK)
+        ct_stepper_combine(y1, y, h, B, w->k, STAGES, p->ny);
+    return e;
 }
 
 // Two steps of h / 2 to y1; *err from the whole step.
 static enum ct_eval advance_halved(const struct ct_problem *p, double t, double h,
                                    const double *y, const struct ct_tolerance *tolerance,
-                                   double *y1, double *err, const struct parts *w,
+                                   double *y1, double *err, const struct work *w,
                                    struct ct_integrate_stats *stats)
 {
     double *whole = w->dy1; // free until the end of the step
@@ -76,29 +101,31 @@ static enum ct_eval step(const struct ct_problem *p, double t, double h, const d
                          const double *dy, const struct ct_tolerance *tolerance, double *y1,
                          double *dy1, double *err, void *work, struct ct_integrate_stats *stats)
 {
-    const struct parts w = divide(work, p->ny);
+    struct work *w = work;
     const size_t bytes = (size_t)p->ny * sizeof *y;
-    memcpy(w.dy, dy, bytes);
-    *w.is_halved = tolerance != NULL;
-    enum ct_eval e = tolerance ? advance_halved(p, t, h, y, tolerance, y1, err, &w, stats)
-                               : advance(p, t, h, y, dy, y1, &w, stats);
+    memcpy(w->dy, dy, bytes);
+    w->is_halved = tolerance != NULL;
+    enum ct_eval e = tolerance ? advance_halved(p, t, h, y, tolerance, y1, err, w, stats)
+                               : stages(p, t, h, y, dy, w, stats);
+    if (e == CT_EVAL_OK && !tolerance)
+        ct_stepper_advance(y1, y, h, B, w->k, STAGES, &w->carry);
     if (e == CT_EVAL_OK)
         e = ct_stepper_rhs(p, t + h, y1, dy1, stats);
     if (e == CT_EVAL_OK)
-        memcpy(w.dy1, dy1, bytes);
+        memcpy(w->dy1, dy1, bytes);
     return e;
 }
 
 static void dense(const struct ct_problem *p, double h, double theta, const double *y,
                   const double *y1, void *work, double *out)
 {
-    const struct parts w = divide(work, p->ny);
-    if (!*w.is_halved)
-        ct_stepper_hermite(out, theta, h, y, w.dy, y1, w.dy1, p->ny);
+    const struct work *w = work;
+    if (!w->is_halved)
+        ct_stepper_hermite(out, theta, h, y, w->dy, y1, w->dy1, p->ny);
     else if (theta < 0.5)
-        ct_stepper_hermite(out, 2 * theta, h / 2, y, w.dy, w.middle, w.dmiddle, p->ny);
+        ct_stepper_hermite(out, 2 * theta, h / 2, y, w->dy, w->middle, w->dmiddle, p->ny);
     else
-        ct_stepper_hermite(out, 2 * theta - 1, h / 2, w.middle, w.dmiddle, y1, w.dy1, p->ny);
+        ct_stepper_hermite(out, 2 * theta - 1, h / 2, w->middle, w->dmiddle, y1, w->dy1, p->ny);
 }
 
 const struct ct_method ct_method_rk4 = {
@@ -108,6 +135,8 @@ const struct ct_method ct_method_rk4 = {
     .order = 4,
     .error_order = 4,
     .create = create,
+    .restart = restart,
+    .accept = accept,
     .step = step,
     .dense = dense,
 };

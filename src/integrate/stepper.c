@@ -111,6 +111,34 @@ void ct_stepper_combine(double *restrict out, const double *y, double h, const d
     (n < LANES ? combine_few : combine_fours)(out, y, h, a, k, s, n);
 }
 
+struct ct_carry ct_carry_create(struct ct_arena *a, int n)
+{
+    return (struct ct_carry){CT_NEWN(a, double, n), CT_NEWN(a, double, n), n};
+}
+
+void ct_carry_clear(struct ct_carry *c)
+{
+    memset(c->now, 0, (size_t)c->n * sizeof *c->now);
+}
+
+void ct_carry_keep(struct ct_carry *c)
+{
+    double *now = c->now;
+    c->now = c->next;
+    c->next = now;
+}
+
+void ct_stepper_advance(double *restrict out, const double *y, double h, const double *a,
+                        const double *k, int s, struct ct_carry *c)
+{
+    ct_stepper_combine(out, NULL, h, a, k, s, c->n);
+    for (int i = 0; i < c->n; i++) {
+        const double way = out[i] + c->now[i];
+        out[i] = y[i] + way;
+        c->next[i] = way - (out[i] - y[i]);
+    }
+}
+
 static double larger(double a, double b)
 {
     return a > b ? a : b;
@@ -151,14 +179,19 @@ double ct_stepper_norm(const struct ct_problem *p, const struct ct_tolerance *to
     return n ? sqrt(sum / n) : 0;
 }
 
-double ct_stepper_error(const struct ct_problem *p, const struct ct_tolerance *tolerance,
-                        double t1, const double *y, const double *y1, const double *e)
+double ct_stepper_worse(const struct ct_problem *p, const struct ct_tolerance *tolerance,
+                        double t1, const double *y1, const double *e, double states)
 {
-    const double states = ct_stepper_norm(p, tolerance, y, y1, e);
     // a step that is refused anyway says nothing more
     if (!p->output_error || !(states <= 1))
         return states;
     return fmax(states, p->output_error(p->user, t1, y1, e, tolerance, states));
+}
+
+double ct_stepper_error(const struct ct_problem *p, const struct ct_tolerance *tolerance,
+                        double t1, const double *y, const double *y1, const double *e)
+{
+    return ct_stepper_worse(p, tolerance, t1, y1, e, ct_stepper_norm(p, tolerance, y, y1, e));
 }
 
 double ct_stepper_join(double e5, double e3)

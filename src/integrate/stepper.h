@@ -13,6 +13,22 @@ enum ct_eval ct_stepper_rhs(const struct ct_problem *p, double t, const double *
 void ct_stepper_combine(double *restrict out, const double *y, double h, const double *a,
                         const double *k, int s, int n);
 
+/// Compensated summation: what rounding has left of the steps so far, now (n) and after the step just taken, next (n).
+/// y + now is nearer to the sum of all steps than y, whose rounding errors would add up in long runs. Source: higham2002.
+struct ct_carry {
+    double *now, *next;
+    int n;
+};
+
+struct ct_carry ct_carry_create(struct ct_arena *a, int n);
+void ct_carry_clear(struct ct_carry *c);
+/// The step just taken was accepted.
+void ct_carry_keep(struct ct_carry *c);
+
+/// ct_stepper_combine for the end of a step from y: with c->now, leaving c->next.
+void ct_stepper_advance(double *restrict out, const double *y, double h, const double *a,
+                        const double *k, int s, struct ct_carry *c);
+
 /// g->size = the largest |y_i|, |y1_i| of each group. g may be NULL.
 void ct_stepper_group(const struct ct_groups *g, int ny, const double *y, const double *y1);
 
@@ -21,7 +37,12 @@ void ct_stepper_group(const struct ct_groups *g, int ny, const double *y, const 
 double ct_stepper_norm(const struct ct_problem *p, const struct ct_tolerance *tolerance,
                        const double *y, const double *y1, const double *e);
 
-/// The same of the step that ends at y1, time t1; or what it means for outputs, if that is more.
+/// `states`, the norm of the error e (ny) of a step that ends at y1, time t1; or what e means for outputs, if that is
+/// more.  (8.6)
+double ct_stepper_worse(const struct ct_problem *p, const struct ct_tolerance *tolerance,
+                        double t1, const double *y1, const double *e, double states);
+
+/// Both at once.
 double ct_stepper_error(const struct ct_problem *p, const struct ct_tolerance *tolerance,
                         double t1, const double *y, const double *y1, const double *e);
 

@@ -36,7 +36,7 @@ const char *ct_beam_dof_name(int j)
     return name[j];
 }
 
-static const char *formulation_name(enum ct_beam_formulation f)
+const char *ct_beam_formulation_name(enum ct_beam_formulation f)
 {
     static const char *const name[]
         = {"auto", "linear", "foreshortening", "force-only", "stretch-linear"};
@@ -50,15 +50,16 @@ const char *ct_beam_sentence(struct ct_arena *a, const struct ct_flexible *f)
     for (size_t i = 0; i < COUNT(families); i++)
         if (f->deformation & families[i].bit)
             list = ct_arena_printf(a, "%s%s%s", list, *list ? ", " : "", families[i].name);
-    return ct_arena_printf(
-        a, "%d element%s, %d elastic coordinate%s; %s%s; %s%s; frame %s%s", beam->nelement,
-        beam->nelement == 1 ? "" : "s", f->nelastic, f->nelastic == 1 ? "" : "s",
-        *list ? "deforms by " : "keeps its shape", list, formulation_name(f->formulation),
-        f->why                              ? ct_arena_printf(a, " (%s)", f->why)
-        : beam->formulation == CT_BEAM_AUTO ? " (auto)"
-                                            : "",
-        beam->is_chord ? "chord" : "clamped",
-        beam->theory == CT_BEAM_TIMOSHENKO ? "; timoshenko" : "");
+    return ct_arena_printf(a, "%d element%s, %d elastic coordinate%s; %s%s; %s%s; frame %s%s",
+                           beam->nelement, beam->nelement == 1 ? "" : "s", f->nelastic,
+                           f->nelastic == 1 ? "" : "s",
+                           *list ? "deforms by " : "keeps its shape", list,
+                           ct_beam_formulation_name(f->formulation),
+                           f->why ? ct_arena_printf(a, " (%s)", f->why)
+                           : beam->formulation == CT_BEAM_AUTO ? " (auto)"
+                                                               : "",
+                           beam->is_chord ? "chord" : "clamped",
+                           beam->theory == CT_BEAM_TIMOSHENKO ? "; timoshenko" : "");
 }
 
 // ---- the element -----------------------------------------------------------------------------------------

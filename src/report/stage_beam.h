@@ -27,6 +27,8 @@ const char *ct_beam_dof_name(int j);
 void ct_beam_element_derive(struct ct_build *b, const struct ct_flexible *f,
                             struct ct_beam_element *out);
 
+/// As in model files.
+const char *ct_beam_formulation_name(enum ct_beam_formulation f);
 /// "2 elements, 12 elastic coordinates; deforms by axial, bending-z; foreshortening (auto); frame clamped"
 const char *ct_beam_sentence(struct ct_arena *a, const struct ct_flexible *f);
 

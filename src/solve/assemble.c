@@ -31,6 +31,7 @@ struct assembly {
     struct ct_machine *m;
     const struct ct_equations *e;
     struct target *q, *u;
+    bool may_gape;   // a start that does not close will do
     bool *fixed_row; // rows without an offset of their own
     double *y, *A, *b, *row, *work, *speed0, *speeds;
     double *r, *shift; // residuals; of what must be met, its multipliers over hard^2
@@ -508,9 +509,12 @@ static bool report_positions(struct assembly *s)
     return ct_error(
         s->ctx, row_mark(s, row), CT_E_ASSEMBLY,
         "the mechanism cannot be assembled: '%s' stays open by %.3g; check lengths and "
-        "places%s",
+        "places%s%s",
         s->e->row[row].name, fabs(s->m->phi[row]),
-        any_given ? ", the given initial values" : " and give guesses in `initial`");
+        any_given ? ", the given initial values" : " and give guesses in `initial`",
+        s->e->build->nflexible
+            ? "; beams bend to close loops where they have `initial: equilibrium`"
+            : "");
 }
 
 static bool report_velocities(struct assembly *s)
@@ -632,7 +636,7 @@ static bool report_half_turn(struct assembly *s, int joint)
 }
 
 // Tries from places further and further away; the first one's failure is the one to report.
-static bool assemble_positions(struct assembly *s, double *residual)
+static bool assemble_positions(struct assembly *s, double *residual, bool *is_open)
 {
     for (int try = 0; try < MOST_STARTS; try++) {
         start_near_targets(s, try);
@@ -641,6 +645,9 @@ static bool assemble_positions(struct assembly *s, double *residual)
             return true;
     }
     start_near_targets(s, 0);
+    *is_open = s->may_gape;
+    if (s->may_gape)
+        return true;
     *residual = find_positions(s);
     return *residual < met ? report_half_turn(s, half_turned_joint(s)) : report_positions(s);
 }
@@ -660,7 +667,7 @@ static void take_targets(struct assembly *s)
 {
     start_near_targets(s, 0);
     for (size_t i = 0; i < s->e->ncoordinate; i++)
-        if (s->u[i].wanted)
+        if (s->u[i].wanted && s->e->coordinate[i].u >= 0)
             s->y[s->m->nq + (size_t)s->e->coordinate[i].u] = s->u[i].value;
 }
 
@@ -702,11 +709,13 @@ static bool find_start(struct assembly *s, struct ct_start *out)
     double left = 0;
     if (is_direct(s))
         take_targets(s);
-    else if (!assemble_positions(s, &out->residual))
+    else if (!assemble_positions(s, &out->residual, &out->is_open))
         return false;
+    else if (out->is_open)
+        take_targets(s);
     ct_machine_set(m, 0, s->y);
     ct_memory_start(m);
-    if (!is_direct(s))
+    if (!is_direct(s) && !out->is_open)
         left = find_velocities(s);
     ct_machine_set(m, 0, s->y);
     ct_program_run(&m->result, m->input);
@@ -754,19 +763,32 @@ bool ct_assembly_find(struct ct_assembly *s, struct ct_start *out)
     return find_start(&s->s, out);
 }
 
-bool ct_assemble(struct ct_ctx *ctx, struct ct_arena *a, const struct ct_model *model,
-                 const struct ct_equations *e, struct ct_start *out)
+static bool assemble(struct ct_ctx *ctx, struct ct_arena *a, const struct ct_model *model,
+                     const struct ct_equations *e, bool may_gape, struct ct_start *out)
 {
     *out = (struct ct_start){0};
     struct ct_arena *own
         = ct_arena_create_under(a); // what is made here is needed for the start alone
     struct ct_assembly *s = ct_assembly_create(ctx, own, model, e);
+    s->s.may_gape = may_gape;
     s->q = CT_NEWN(a, double, e->ncoordinate + 1);
     s->u = CT_NEWN(a, double, e->ncoordinate + 1);
     s->is_given = CT_NEWN(a, bool, e->ncoordinate + 1);
     const bool ok = ct_assembly_find(s, out);
     ct_arena_destroy(own);
     return ok;
+}
+
+bool ct_assemble(struct ct_ctx *ctx, struct ct_arena *a, const struct ct_model *model,
+                 const struct ct_equations *e, struct ct_start *out)
+{
+    return assemble(ctx, a, model, e, false, out);
+}
+
+bool ct_assemble_open(struct ct_ctx *ctx, struct ct_arena *a, const struct ct_model *model,
+                      const struct ct_equations *e, struct ct_start *out)
+{
+    return assemble(ctx, a, model, e, true, out);
 }
 
 void ct_start_apply(const struct ct_start *s, struct ct_machine *m, double *y)

@@ -13,6 +13,7 @@ struct ct_start {
     const bool *is_given; // of each: its place is given, not guessed or left open
     size_t n;
     double residual; // largest |phi| left
+    bool is_open;    // the loops do not close: places as they are wanted
     double *elastic; // elastic coordinates of all beams, beam by beam; NULL: undeformed
     size_t nelastic;
 };
@@ -21,6 +22,11 @@ struct ct_start {
 /// Errors: CT_E_ASSEMBLY when the loops do not close, CT_E_START when given values contradict.
 bool ct_assemble(struct ct_ctx *ctx, struct ct_arena *a, const struct ct_model *model,
                  const struct ct_equations *e, struct ct_start *out);
+
+/// The same, but a start whose loops do not close is handed out, open and at rest but for the speeds given: beams can be
+/// bent until they do.
+bool ct_assemble_open(struct ct_ctx *ctx, struct ct_arena *a, const struct ct_model *model,
+                      const struct ct_equations *e, struct ct_start *out);
 
 /// The same in two parts, for one start after another while the values of the model's parameters change. The
 /// arrays of `out` are the assembly's and good until the next start.

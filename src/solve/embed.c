@@ -317,6 +317,11 @@ static bool massless(struct ct_embed *s, size_t speed)
             "coordinate '%s' moves no mass: the first section of beam '%s' has no inertia; "
             "give the beam %s, or, if no moment acts on that section, 'frame: chord'",
             name, model->body[bare].instance.name, rotary_of(model->body[bare].beam));
+    if (u->beam > 0 && !(ct_model_number(model, model->body[u->beam].mass) > 0))
+        return ct_error(s->ctx, model->body[u->beam].instance.mark, CT_E_MASSLESS,
+                        "coordinate '%s' moves no mass: beam '%s' has none; give it a density, "
+                        "a mass_per_length, or 'deformation: []'",
+                        name, model->body[u->beam].instance.name);
     if (u->beam > 0)
         return ct_error(s->ctx, model->body[u->beam].instance.mark, CT_E_MASSLESS,
                         "coordinate '%s' moves no mass: give the beam %s, or consistent mass",

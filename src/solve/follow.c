@@ -12,6 +12,12 @@ static bool check_driven(struct ct_run *r)
     const struct ct_mark mark = u->joint >= 0 ? r->model->joint[u->joint].mark
                               : u->body >= 0  ? r->model->body[u->body].instance.mark
                                               : (struct ct_mark){.file = r->model->file};
+    if (u->beam > 0)
+        return ct_error(r->ctx, r->model->body[u->beam].instance.mark, CT_E_NOT_DRIVEN,
+                        "not all freedoms are driven: %d left, such as '%s' of the beam '%s'; "
+                        "'deformation: []' makes it rigid",
+                        (int)r->m->nu - r->s->rank, r->e->q[u->q].name,
+                        r->model->body[u->beam].instance.name);
     return ct_error(r->ctx, mark, CT_E_NOT_DRIVEN,
                     "not all freedoms are driven: %d left, such as '%s'; give each a 'motion'",
                     (int)r->m->nu - r->s->rank, u->q >= 0 ? r->e->q[u->q].name : u->name);

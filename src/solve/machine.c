@@ -260,6 +260,9 @@ static void compile_rest(struct ct_arena *a, struct ct_machine *m, const struct 
     struct list validity = {.a = a};
     for (size_t i = 0; i < e->nvalidity; i++)
         push(&validity, e->validity[i].eta);
+    for (size_t i = 0; i < e->nbend; i++)
+        for (size_t k = 0; k < e->bend[i].n; k++)
+            push(&validity, e->bend[i].square[k]);
     compile(a, m, in, validity.e, validity.n, &m->validity);
     compile(a, m, in, energies, 2, &m->energy);
     compile(a, m, in, &e->power, ct_ex_is_zero(e->power) ? 0 : 1, &m->power);
@@ -560,8 +563,7 @@ void ct_machine_chart_rate(const struct ct_machine *m, const double *d, const do
 
 // ---- memories ---------------------------------------------------------------------------------------
 
-// Unit quaternion of a rotation (column-major), the largest of the four numbers found first.
-static void quaternion_of(const double *R, double *p)
+void ct_quaternion_of(const double *R, double *p)
 {
     const double square[4] = {1 + R[0] + R[4] + R[8], 1 + R[0] - R[4] - R[8],
                               1 - R[0] + R[4] - R[8], 1 - R[0] - R[4] + R[8]};
@@ -597,7 +599,7 @@ void ct_memory_start(struct ct_machine *m)
             memory[i] = m->memory.out[i];
         } else {
             if (m->e->memory[i].place == 0)
-                quaternion_of(R, memory + i);
+                ct_quaternion_of(R, memory + i);
             R += 9;
         }
     }

@@ -40,7 +40,7 @@ struct ct_machine {
         constraint, // phi, v, J
         result,     // output columns
         power,      // d(work)/dt
-        validity,   // indicators of linear beams
+        validity,   // indicators of linear beams, then squared slopes of all beams
         energy,     // kinetic, potential
         root,       // g of each mode
         memory,     // next values
@@ -125,6 +125,8 @@ void ct_machine_normalise(const struct ct_machine *m, double *q);
 /// Memories take their values at the input as if from scratch: quaternions from their rotation (scalar part
 /// >= 0), angles near their present memory, offsets from now.
 void ct_memory_start(struct ct_machine *m);
+/// p [w x y z], w >= 0 (out): unit quaternion of a rotation R (3 x 3, column-major), the largest of the four numbers found first.
+void ct_quaternion_of(const double *R, double *p);
 /// Memories follow the motion; offsets stay. Right for angles and rotations that have turned less than half a turn.
 void ct_memory_follow(struct ct_machine *m);
 /// How fast angles and rotations that are followed turn at t, y [rad/s], the largest, from a difference over dt. 0

@@ -1,31 +1,11 @@
 // See settle.h.
 #include "solve/settle.h"
 #include "formulate/flexible.h"
-#include "formulate/residual.h"
 #include "numeric/dense.h"
+#include "solve/bend.h"
 
 #include <math.h>
 #include <string.h>
-
-static const double met = 1e-13;     // last correction against the largest coordinate
-static const double rounding = 1e-9; // corrections that no longer fall are rounding below this
-static const double nothing
-    = 1e-6; // [m or rad] coordinates smaller than this count as of this size
-enum { MOST_STEPS = 50, MOST_HALVINGS = 30 };
-
-struct settle {
-    struct ct_machine *m;
-    const struct ct_equations *e;
-    size_t n, nlam, nslope; // speeds along which places move; rows that count; derivatives
-    int *u, *place;         // those speeds; by speed: its place among them, or -1
-    int *row, *lam_place;   // kept rows; by row: its place among them, or -1
-    struct ct_slope *slope; // of the forces by places and multipliers
-    double *y, *lam;        // state; multipliers (nrow)
-    double *A, *step;       // factors of the derivative, (n + nlam) square; a motion (nu)
-    int *pivot;
-    double stiffness;         // unit of the multipliers
-    struct ct_program values; // forces (n), phi (nrow), slopes
-};
 
 bool ct_settle_wanted(const struct ct_model *model)
 {
@@ -46,38 +26,6 @@ bool *ct_settle_first(struct ct_arena *a, const struct ct_model *model)
 }
 
 // ---- what moves -----------------------------------------------------------------------------------------
-
-// Orthonormal vectors (n each), one after the other.
-struct basis {
-    size_t n, count;
-    double *v;
-};
-
-// Add the part of v that is new. False if there is none.
-static bool extend(struct basis *s, double *v)
-{
-    const double dependent = 1e-6; // of its length: far above rounding, far below what moves
-    double before = 0, after = 0;
-    for (size_t i = 0; i < s->n; i++)
-        before += v[i] * v[i];
-    for (size_t twice = 0; twice < 2; twice++)
-        for (size_t k = 0; k < s->count; k++) {
-            const double *w = s->v + s->n * k;
-            double along = 0;
-            for (size_t i = 0; i < s->n; i++)
-                along += w[i] * v[i];
-            for (size_t i = 0; i < s->n; i++)
-                v[i] -= along * w[i];
-        }
-    for (size_t i = 0; i < s->n; i++)
-        after += v[i] * v[i];
-    if (!(after > dependent * dependent * before) || s->count == s->n)
-        return false;
-    double *out = s->v + s->n * s->count++;
-    for (size_t i = 0; i < s->n; i++)
-        out[i] = v[i] / sqrt(after);
-    return true;
-}
 
 // Is the joint coordinate that moves at speed k given?
 static bool is_given(const struct ct_equations *e, const struct ct_start *start, size_t k)
@@ -101,184 +49,21 @@ static void find_still(struct ct_machine *m, struct ct_arena *a, const struct ct
         if (!e->u[k].beam)
             rigid[n++] = (int)k;
     }
-    struct basis s = {n, 0, CT_NEWN(a, double, n *n + 1)};
+    struct ct_basis s = {n, 0, CT_NEWN(a, double, n *n + 1)};
     double *v = CT_NEWN(a, double, n + 1);
     ct_machine_constraint(m);
     for (size_t i = 0; i < e->nrow; i++) {
         for (size_t k = 0; k < n; k++)
             v[k] = m->J[i + e->nrow * (size_t)rigid[k]];
-        extend(&s, v);
+        ct_basis_extend(&s, v);
     }
     for (int given = 1; given >= 0; given--)
         for (size_t k = 0; k < n; k++)
             if (is_given(e, start, (size_t)rigid[k]) == given) {
                 memset(v, 0, n * sizeof *v);
                 v[k] = 1;
-                still[rigid[k]] = extend(&s, v);
+                still[rigid[k]] = ct_basis_extend(&s, v);
             }
-}
-
-// Independent rows in the directions that move.
-static void choose_rows(struct settle *s, struct ct_arena *a)
-{
-    const double dependent = 1e-9; // as in embed.c
-    const size_t m = s->e->nrow, n = s->n;
-    double *A = CT_NEWN(a, double, m *n + 1), *tau = CT_NEWN(a, double, m + n);
-    double *work = CT_NEWN(a, double, ct_qr_pivot_work((int)n, (int)m));
-    for (size_t i = 0; i < m; i++)
-        for (size_t k = 0; k < n; k++)
-            A[k + n * i] = s->m->J[i + m * (size_t)s->u[k]];
-    s->nlam = m && n
-                ? (size_t)ct_qr_pivot(A, s->row, tau, (int)n, (int)m, (int)n, dependent, work)
-                : 0;
-    for (size_t i = 0; i < m; i++)
-        s->lam_place[i] = -1;
-    for (size_t i = 0; i < s->nlam; i++)
-        s->lam_place[s->row[i]] = (int)i;
-}
-
-// ---- equations ------------------------------------------------------------------------------------------
-
-// Forces Q + J' lam of what moves, all speeds zero, and their derivatives; phi.
-static void derive(struct settle *s, struct ct_arena *a)
-{
-    const struct ct_equations *e = s->e;
-    struct ct_exs *x = e->x;
-    ct_ex *f = CT_NEWN(a, ct_ex, s->n + 1);
-    ct_ex *from = CT_NEWN(a, ct_ex, e->nu + 1), *zero = CT_NEWN(a, ct_ex, e->nu + 1);
-    for (size_t k = 0; k < e->nu; k++)
-        from[k] = e->u[k].symbol;
-    for (size_t i = 0; i < s->n; i++)
-        f[i] = e->Q[s->u[i]];
-    for (size_t i = 0; i < e->nJ; i++) {
-        const int k = s->place[e->J[i].column];
-        if (k >= 0)
-            f[k] = ct_ex_add(x, f[k], ct_ex_mul(x, e->J[i].value, e->row[e->J[i].row].lam));
-    }
-    ct_ex_subst_list(x, f, s->n, from, zero, e->nu);
-    s->nslope = ct_slopes_derive(e->build, a, f, s->n, NULL, 0, &s->slope);
-    const size_t nout = s->n + e->nrow + s->nslope;
-    ct_ex *out = CT_NEWN(a, ct_ex, nout + 1);
-    for (size_t i = 0; i < s->n; i++)
-        out[i] = f[i];
-    for (size_t i = 0; i < e->nrow; i++)
-        out[s->n + i] = e->row[i].phi;
-    for (size_t i = 0; i < s->nslope; i++)
-        out[s->n + e->nrow + i] = s->slope[i].value;
-    ct_machine_compile(a, s->m, x, out, nout, &s->values);
-}
-
-static void evaluate(struct settle *s)
-{
-    ct_machine_set(s->m, 0, s->y);
-    memcpy(s->m->input + s->m->at_lam, s->lam, s->e->nrow * sizeof *s->lam);
-    ct_program_run(&s->values, s->m->input);
-}
-
-// A = [K  c J'; c J  0] with K = d(force)/d(place), c its size: multipliers are counted in units of c.
-static bool factor(struct settle *s)
-{
-    const size_t n = s->n, size = n + s->nlam, nu = s->e->nu;
-    const double *value = s->values.out + n + s->e->nrow;
-    memset(s->A, 0, size * size * sizeof *s->A);
-    s->stiffness = 0;
-    for (size_t i = 0; i < s->nslope; i++)
-        if (s->slope[i].direction < nu && s->place[s->slope[i].direction] >= 0) {
-            s->A[s->slope[i].row + size * (size_t)s->place[s->slope[i].direction]] = value[i];
-            s->stiffness = fmax(s->stiffness, fabs(value[i]));
-        }
-    s->stiffness = s->stiffness > 0 ? s->stiffness : 1;
-    for (size_t i = 0; i < s->nslope; i++) {
-        const size_t first = 3 * nu; // after places, speeds, accelerations
-        if (s->slope[i].direction < first)
-            continue;
-        const int lam = s->lam_place[s->slope[i].direction - first];
-        if (lam < 0)
-            continue;
-        const size_t k = n + (size_t)lam;
-        s->A[s->slope[i].row + size * k] = s->A[k + size * s->slope[i].row]
-            = s->stiffness * value[i];
-    }
-    return ct_lu(s->A, s->pivot, (int)size, (int)size);
-}
-
-// Newton correction of places and multipliers now, with the factors of an earlier derivative; the size of the places'.
-static double correction(struct settle *s, double *d)
-{
-    const size_t all = s->n + s->nlam;
-    double size = 0;
-    memcpy(d, s->values.out, s->n * sizeof *d);
-    for (size_t i = 0; i < s->nlam; i++)
-        d[s->n + i] = s->stiffness * s->values.out[s->n + (size_t)s->row[i]];
-    ct_lu_solve(d, s->A, s->pivot, (int)all, (int)all, 1, (int)all, false);
-    for (size_t i = 0; i < s->n; i++)
-        size = !(fabs(d[i]) <= size) ? fabs(d[i]) : size;
-    return size;
-}
-
-static void move(struct settle *s, const double *d, double factor)
-{
-    memset(s->step, 0, s->e->nu * sizeof *s->step);
-    for (size_t i = 0; i < s->n; i++)
-        s->step[s->u[i]] = -factor * d[i];
-    ct_machine_retract(s->m, s->y, s->step);
-    for (size_t i = 0; i < s->nlam; i++)
-        s->lam[s->row[i]] -= factor * s->stiffness * d[s->n + i];
-}
-
-static double largest(const struct settle *s)
-{
-    double size = 0;
-    for (size_t i = 0; i < s->n; i++)
-        if (s->e->u[s->u[i]].q >= 0)
-            size = fmax(size, fabs(s->y[s->e->u[s->u[i]].q]));
-    return fmax(size, nothing);
-}
-
-// Newton steps, halved until the next correction with the same derivative is smaller: that test does not care how rows
-// are scaled. Source: Deuflhard (2011), key deuflhard2011.
-static bool iterate(struct settle *s, struct ct_arena *a)
-{
-    const size_t all = s->n + s->nlam, nq = s->m->nq, nrow = s->e->nrow;
-    double *d = CT_NEWN(a, double, all + 1), *next = CT_NEWN(a, double, all + 1),
-           *kept = CT_NEWN(a, double, nq + nrow + 1);
-    evaluate(s);
-    for (int step = 0; step < MOST_STEPS; step++) {
-        if (!factor(s))
-            return false;
-        const double size = correction(s, d);
-        if (size <= met * largest(s))
-            return true;
-        memcpy(kept, s->y, nq * sizeof *kept);
-        memcpy(kept + nq, s->lam, nrow * sizeof *kept);
-        double part = 1, left = INFINITY;
-        for (int half = 0; half < MOST_HALVINGS && !(left < size); half++, part /= 2) {
-            memcpy(s->y, kept, nq * sizeof *kept);
-            memcpy(s->lam, kept + nq, nrow * sizeof *kept);
-            move(s, d, part);
-            evaluate(s);
-            left = correction(s, next);
-        }
-        if (!(left < size)) // only rounding is left, or there is nothing to find
-            return size <= rounding * largest(s);
-    }
-    return false;
-}
-
-static struct settle create(struct ct_arena *a, struct ct_machine *m)
-{
-    const size_t nu = m->nu, nrow = m->nrow, all = nu + nrow;
-    return (struct settle){.m = m,
-                           .e = m->e,
-                           .u = CT_NEWN(a, int, nu + 1),
-                           .place = CT_NEWN(a, int, nu + 1),
-                           .row = CT_NEWN(a, int, nrow + 1),
-                           .lam_place = CT_NEWN(a, int, nrow + 1),
-                           .y = CT_NEWN(a, double, m->nq + nu + 1),
-                           .lam = CT_NEWN(a, double, nrow + 1),
-                           .A = CT_NEWN(a, double, all *all + 1),
-                           .step = CT_NEWN(a, double, nu + 1),
-                           .pivot = CT_NEWN(a, int, all + 1)};
 }
 
 // ---- the start ------------------------------------------------------------------------------------------
@@ -315,7 +100,7 @@ static void find_speeds(struct ct_arena *a, const struct ct_model *model,
         start->u[i] = m->result.out[2 * i + 1];
 }
 
-static void take(const struct settle *s, struct ct_arena *a, struct ct_start *start)
+static void take(const struct ct_balance *s, struct ct_arena *a, struct ct_start *start)
 {
     const struct ct_build *b = s->e->build;
     size_t n = 0;
@@ -349,6 +134,21 @@ static const struct ct_body *find_settling(const struct ct_model *model,
     return first;
 }
 
+static bool report_open(struct ct_ctx *ctx, const struct ct_model *model, struct ct_balance *s)
+{
+    size_t row = 0;
+    ct_gaps_set(s, 0);
+    const double open = ct_gaps_left(s, &row);
+    const int joint = s->e->row[row].joint;
+    const struct ct_mark mark
+        = joint < 0 ? (struct ct_mark){.file = model->file} : model->joint[joint].mark;
+    return ct_error(
+        ctx, mark, CT_E_ASSEMBLY,
+        "the mechanism cannot be assembled: bending its beams leaves '%s' open by %.3g; "
+        "check lengths and places and give guesses in `initial`",
+        s->e->row[row].name, open);
+}
+
 bool ct_settle(struct ct_ctx *ctx, struct ct_arena *a, const struct ct_model *model,
                const struct ct_equations *e, const struct ct_equations *moving,
                struct ct_start *start)
@@ -357,7 +157,7 @@ bool ct_settle(struct ct_ctx *ctx, struct ct_arena *a, const struct ct_model *mo
     const struct ct_body *first = find_settling(model, e, settles, start);
     if (!first)
         return true;
-    struct settle s = create(a, ct_machine_create(a, model, e));
+    struct ct_balance s = ct_balance_create(a, ct_machine_create(a, model, e));
     ct_start_apply(start, s.m, s.y);
     memset(s.y + s.m->nq, 0, s.m->nu * sizeof *s.y);
     ct_machine_set(s.m, 0, s.y);
@@ -367,9 +167,13 @@ bool ct_settle(struct ct_ctx *ctx, struct ct_arena *a, const struct ct_model *mo
         if (!still[k])
             s.u[s.n++] = (int)k;
     }
-    choose_rows(&s, a);
-    derive(&s, a);
-    if (!iterate(&s, a))
+    ct_balance_derive(&s, a);
+    ct_gaps_keep(&s);
+    if (start->is_open && !ct_gaps_close(&s, a))
+        return report_open(ctx, model, &s);
+    ct_gaps_set(&s, 0);
+    ct_balance_choose_here(&s, a);
+    if (!ct_balance_iterate(&s, a))
         return ct_error(
             ctx, first->instance.mark, CT_E_SETTLE,
             "no equilibrium was found near the undeformed shape of beam '%s'; the loads "

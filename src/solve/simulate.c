@@ -302,12 +302,24 @@ static void keep_ledger(struct ct_run *r, const double *y)
         = fmax(r->report->velocity_constraint, ct_vector_largest(r->m->v, r->m->nrow));
 }
 
-// Indicators of linear beams, averaged over a period of the beam: what rings faster than it can follow does not count.
+void ct_slope_watch(struct ct_slope_report *report, const struct ct_machine *m, double t)
+{
+    const double *square = m->validity.out + m->e->nvalidity;
+    for (size_t i = 0; i < m->e->nbend; i++) {
+        for (size_t k = 0; k < m->e->bend[i].n; k++)
+            report[i].largest = fmax(report[i].largest, sqrt(*square++));
+        if (report[i].largest > CT_SLOPE_LIMIT && report[i].passed_at < 0)
+            report[i].passed_at = t;
+    }
+}
+
+// Slopes of beams, and indicators of linear ones, averaged over a period of the beam: what rings faster than it can follow does not count.
 static void watch_validity(struct ct_run *r, double t)
 {
-    if (!r->e->nvalidity)
+    if (!r->m->validity.nout)
         return;
     ct_program_run(&r->m->validity, r->m->input);
+    ct_slope_watch(r->report->bend, r->m, t);
     for (size_t i = 0; i < r->e->nvalidity; i++) {
         struct ct_validity_report *v = &r->report->validity[i];
         const double period = 6.283185307179586 / r->e->validity[i].omega;
@@ -515,6 +527,12 @@ static void explain_end(struct ct_run *r)
 {
     const size_t n = r->ctx->ndiagnostic;
     const enum ct_code code = n ? r->ctx->diagnostic[n - 1].code : 0;
+    if (code == CT_E_STEP_COUNT)
+        ct_note(
+            r->ctx, (struct ct_mark){0},
+            "steps follow vibrations that are excited: start beams with 'initial: "
+            "equilibrium', leave out or damp what is stiff, or raise 'absolute' above them; "
+            "what is not excited holds up explicit methods only");
     if (!r->m->nrow)
         return;
     if (code == CT_E_STEP_OPEN)
@@ -543,6 +561,9 @@ bool ct_run_simulate(struct ct_run *r, const struct ct_run_options *o,
     report->validity = CT_NEWN(r->arena, struct ct_validity_report, r->e->nvalidity + 1);
     for (size_t i = 0; i < r->e->nvalidity; i++)
         report->validity[i].left_at = -1;
+    report->bend = CT_NEWN(r->arena, struct ct_slope_report, r->e->nbend + 1);
+    for (size_t i = 0; i < r->e->nbend; i++)
+        report->bend[i].passed_at = -1;
     ct_singular_start(r->singular);
     if (r->fidelity)
         ct_fidelity_start(r->fidelity);
@@ -560,6 +581,8 @@ bool ct_run_simulate(struct ct_run *r, const struct ct_run_options *o,
         return false;
     struct ct_problem p = {.user = r,
                            .ny = (int)r->ny,
+                           .nq = (int)r->m->nq,
+                           .nu = (int)r->m->nu,
                            .dae = o->method->is_implicit ? ct_dae_create(r->arena, r->s) : NULL,
                            .watched = watched,
                            .groups = ct_run_groups(r),
@@ -580,6 +603,7 @@ bool ct_run_simulate(struct ct_run *r, const struct ct_run_options *o,
     const struct ct_integrate_options io = {.t1 = o->duration,
                                             .rtol = o->rtol,
                                             .atol = o->atol,
+                                            .least_rtol = o->least_rtol,
                                             .step = o->step,
                                             .sample = sample,
                                             .nsample = n,

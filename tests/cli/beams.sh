@@ -101,7 +101,7 @@ cotree: 1
 gravity: [0, -9.81, 0]
 bodies:
   crank: {type: beam, length: 0.15, density: 2770, E: 1e9, nu: 0.3, area: 8e-5, Iz: 5e-10, Iy: 5e-10, formulation: foreshortening, initial: equilibrium, points: {pin: length}}
-  rod: {type: beam, length: 0.3, elements: 2, density: 2770, E: 5e7, nu: 0.3, area: 8e-5, Iz: 5e-10, Iy: 5e-10, formulation: foreshortening, initial: equilibrium, points: {mid: length/2, pin: length}}
+  rod: {type: beam, length: 0.3, elements: 2, density: 2770, E: 5e8, nu: 0.3, area: 8e-5, Iz: 5e-10, Iy: 5e-10, formulation: foreshortening, initial: equilibrium, points: {mid: length/2, pin: length}}
   slider: {mass: 0.01, inertia: 1e-5}
 joints:
   main: {type: revolute, from: ground, to: crank, motion: 0.6}
@@ -170,6 +170,78 @@ sed 's/formulation/deformation: [axial, bending-y, bending-z, torsion], formulat
 difference some.csv all.csv | awk '{ print ($1 < 1e-11) ? "same" : $0 }'
 sed 's/nu: 0.3, //' oblique.yaml >unknown.yaml
 "$COTREE" check unknown.yaml | grep 'left out'
+echo '-- what was chosen, in the summaries of a run'
+cat >chosen.yaml <<'END'
+cotree: 1
+bodies:
+  slow: {type: beam, length: 1, density: 2700, E: 7e10, area: 4e-4, Iz: 2e-8}
+  fast: {type: beam, length: 1, density: 2700, E: 7e8, area: 4e-4, Iz: 2e-8}
+joints:
+  a: {type: revolute, from: ground, to: slow, motion: t^2/2}
+  b: {type: revolute, from: ground, to: fast, motion: 4*t^2}
+outputs: [a.effort]
+simulation: {duration: 1, samples: 3}
+END
+"$COTREE" simulate chosen.yaml --summary chosen.json 2>&1 | grep '^beam'
+grep -A 7 '"beams"' chosen.json
+echo '-- a foreshortened beam that is small keeps the stiffness by its motion: it is stretch-linear'
+cat >small.yaml <<'END'
+cotree: 1
+bodies:
+  beam: {type: beam, length: 10, elements: 2, density: 3000, E: 7e10, area: 4e-4, Iz: 2e-7, formulation: stretch-linear, points: {tip: length}}
+joints:
+  spin: {type: revolute, from: ground, to: beam, motion: t^2/4}
+outputs: [beam.tip.deflection, spin.effort]
+simulation: {duration: 1, samples: 5}
+END
+sed -e 's/stretch-linear/foreshortening/' -e 's/samples: 5/samples: 5, small: [beam]/' small.yaml >named.yaml
+"$COTREE" simulate small.yaml --quiet -o own.csv
+"$COTREE" simulate named.yaml --quiet -o named.csv
+difference own.csv named.csv | awk '{ print ($1 < 1e-12) ? "same" : $0 }'
+echo '-- what a beam cannot be'
+cat >odd.yaml <<'END'
+cotree: 1
+parameters: {I: 2e-9, n: 1, m: 0.5}
+gravity: [0, -1, -9.81]
+bodies:
+  rod: {type: beam, length: 1, elements: 2, mass_per_length: m, E: 7e8, nu: 0.3, area: 2e-4, Iy: I, Iz: "2e-9*x^(n - 1)*(1 - x/2)", points: {tip: length}}
+joints:
+  root: {type: weld, from: ground, to: rod}
+forces: {twist: {type: torque, on: rod.tip, value: [1e-3, 0, 0]}}
+outputs: [rod.tip.deflection.y]
+simulation: {duration: 1e-3, samples: 2}
+END
+for set in I=0 n=0 m=0; do
+  "$COTREE" simulate odd.yaml --quiet --set "$set" 2>&1 | sed -n 's/.*error: //p'
+done
+sed 's/nu: 0.3/nu: 0.3, J: 0/' odd.yaml >limp.yaml
+sed 's/Iz: [^,]*,/Iz: "log(x - 0.5)",/' odd.yaml >nan.yaml
+for model in limp nan; do
+  "$COTREE" simulate $model.yaml --quiet 2>&1 | sed -n 's/.*error: //p'
+done
+"$COTREE" inverse odd.yaml --quiet 2>&1 | sed -n 's/.*error: //p'
+echo '-- all its modes, or more, are the coordinates of its nodes'
+sed 's/nu: 0.3/nu: 0.3, modes: 99/' odd.yaml >all.yaml
+"$COTREE" check all.yaml | grep -o 'rod: 2 elements, [0-9]* elastic coordinates'
+"$COTREE" simulate odd.yaml --quiet -o nodes.csv
+"$COTREE" simulate all.yaml --quiet -o modes.csv
+difference nodes.csv modes.csv | awk '{ print ($1 < 1e-11) ? "same" : $0 }'
+echo '-- bent too far, in a run and at rest: the warning comes where slopes reach 0.3'
+cat >far.yaml <<'END'
+cotree: 1
+parameters: {F: 1}
+bodies:
+  rod: {type: beam, length: 1, density: 1000, E: 1e8, area: 1e-4, Iz: 1e-9, formulation: foreshortening, deformation: [bending-z], points: {tip: length}}
+joints:
+  root: {type: weld, from: ground, to: rod}
+forces: {push: {type: force, at: rod.tip, value: [0, F*0.1, 0]}}
+outputs: [rod.tip.slope.z]
+simulation: {duration: 1, samples: 11, tolerance: 1e-6}
+END
+for F in 0.59 0.61; do # at rest F*0.1/(2*0.1)
+  "$COTREE" equilibrium far.yaml --quiet --set F=$F 2>&1 | grep -c warning || :
+done
+"$COTREE" simulate far.yaml --quiet --set F=0.6 2>&1 | sed -n 's/.*warning: //p'
 echo '-- a first section without inertia that turns freely, whatever the axis does'
 cat >bare.yaml <<'BARE'
 cotree: 1

@@ -4,12 +4,16 @@
 m=$SYSTEMS/slider_crank/model.yaml
 sweep() { "$COTREE" sweep "$m" --quiet --until 0.2 --vary torque=0.1:0.5:3 --vary r='140 mm:160 mm:3' "$@"; }
 
-sweep -o a.csv --threads 1
+sweep -o a.csv --threads 1 --resume
 head -1 a.csv
 cut -d, -f1-3 a.csv | tail -4
 sweep -o b.csv --threads 2
 cmp a.csv b.csv && echo "the same bytes"
-sweep -o b.csv --backend tape
+ls b.csv*
+sweep -o b.csv --resume --threads 1 --lanes 1
+ls b.csv*
+sweep -o b.csv --backend tape # settings of the rows before go with them
+ls b.csv*
 difference a.csv b.csv | awk '{ print ($1 < 1e-8) ? "the same numbers" : $0 }'
 "$COTREE" sweep "$m" --until 0.2 --vary torque=0.1:0.5:3 --vary r=0.14:0.16:3 -o alone.csv --lanes 1 2>alone.log
 grep -o 'as asked' alone.log

@@ -45,3 +45,25 @@ outputs: [j.q, j.u, energy.total]
 simulation: {duration: 3}
 END
 check bouncing/model.yaml 2 k=1e3:1e5:3
+# tables: smooth ones in lanes, those with kinks one by one; beyond the end of a table no member goes on
+mkdir -p table
+awk 'BEGIN { print "t,angle"; for (i = 0; i <= 12; i++) printf "%.17g,%.17g\n", i/4, 0.3*sin(i/2) }' >table/angle.csv
+for kind in cubic linear; do
+  mkdir -p "table/$kind"
+  cat >"table/$kind/model.yaml" <<END
+cotree: 1
+gravity: [0, -9.81, 0]
+parameters: {l: 0.5, end: 2}
+bodies:
+  crank: {mass: 2, com: [0.1, 0, 0], inertia: 0.01, points: {tip: [0.2, 0, 0]}}
+  rod: {mass: 1, com: [l/2, 0, 0], inertia: 0.02}
+joints:
+  a: {type: revolute, from: ground, to: crank, motion: {table: ../angle.csv, column: angle, interpolate: $kind}}
+  b: {type: revolute, from: crank.tip, to: rod, initial: {q: 0.4}}
+outputs: [a.q, a.u, b.q, b.u, a.effort, energy.work]
+simulation: {duration: end}
+END
+  check "table/$kind/model.yaml" 2 l=0.3:0.6:6 --tolerance 1e-10
+done
+check_end() { "$COTREE" sweep "table/$1/model.yaml" --quiet --vary end=2.5:3.5:3 -o rows.csv && cut -d, -f1,2,9 rows.csv; }
+check_end cubic

@@ -1,6 +1,6 @@
 // Nothing is allocated between the first and the last step of a run, neither from the system nor from an arena.
 //
-// The linker sends malloc, calloc and realloc of the library to the functions below (-Wl,--wrap).
+// The linker sends malloc, calloc, realloc and ct_pages_create of the library to the functions below (-Wl,--wrap).
 #include "tests/property/system.h"
 
 // NOLINTBEGIN(bugprone-reserved-identifier): the linker names them
@@ -10,6 +10,8 @@ void *__real_realloc(void *p, size_t size);
 void *__wrap_malloc(size_t size);
 void *__wrap_calloc(size_t n, size_t size);
 void *__wrap_realloc(void *p, size_t size);
+void *__real_ct_pages_create(size_t size);
+void *__wrap_ct_pages_create(size_t size);
 
 static long nallocation;
 
@@ -29,6 +31,12 @@ void *__wrap_realloc(void *p, size_t size)
 {
     nallocation++;
     return __real_realloc(p, size);
+}
+
+void *__wrap_ct_pages_create(size_t size)
+{
+    nallocation++;
+    return __real_ct_pages_create(size);
 }
 // NOLINTEND(bugprone-reserved-identifier)
 

@@ -87,19 +87,19 @@ static void evaluate_by_one(struct check *c)
 
 typedef void (*evaluate_fn)(const double *in, double *out);
 
-static bool check_compiled(struct check *c, evaluate_fn evaluate)
+static bool check_compiled(struct check *c, evaluate_fn evaluate, size_t lanes)
 {
     bool ok = true;
-    for (size_t i = 0; i < NLANE; i++) {
-        take_lanes(c->in, c->input, c->v->m->ninput, i, 1);
-        take_lanes(c->expected, c->want, c->p->nout, i, 1);
+    for (size_t i = 0; i < NLANE; i += lanes) {
+        take_lanes(c->in, c->input, c->v->m->ninput, i, lanes);
+        take_lanes(c->expected, c->want, c->p->nout, i, lanes);
         evaluate(c->in, c->out);
-        ok &= same_bits(c->system, "C", c->out, c->expected, c->p->nout, 1);
+        ok &= same_bits(c->system, "C", c->out, c->expected, c->p->nout, lanes);
     }
     return ok;
 }
 
-static bool check_c(struct check *c)
+static bool check_c(struct check *c, unsigned lanes)
 {
     char folder[] = "/tmp/ct_backends_XXXXXX", command[256], path[64];
     assert_non_null(mkdtemp(folder));
@@ -108,7 +108,8 @@ static bool check_c(struct check *c)
     assert_non_null(f);
     if (ct_listing_has_angles(c->p->listing))
         fputs(own_sincos, f);
-    fputs(ct_c_listing(c->v->arena, c->p->listing, NULL), f);
+    const struct ct_c_options o = {.lanes = lanes};
+    fputs(ct_c_listing(c->v->arena, c->p->listing, &o), f);
     fclose(f);
     snprintf(command, sizeof command,
              "cc -std=c99 -Wall -Wextra -Wpedantic -Werror -O0 -ffp-contract=off -shared -fPIC "
@@ -123,7 +124,7 @@ static bool check_c(struct check *c)
         own_sincos_set(handle);
     evaluate_fn evaluate;
     memcpy(&evaluate, &symbol, sizeof symbol); // C has no cast from an object to a function
-    const bool ok = check_compiled(c, evaluate);
+    const bool ok = check_compiled(c, evaluate, lanes);
     dlclose(handle);
     unlink(path);
     snprintf(path, sizeof path, "%s/e.c", folder);
@@ -135,7 +136,7 @@ static bool check_c(struct check *c)
 // ---- all systems --------------------------------------------------------------------------------------
 
 static bool check_program(const char *system, struct variant *v, const struct ct_program *p,
-                          bool with_c)
+                          bool with_c, unsigned lanes_of_c)
 {
     struct ct_arena *a = v->arena;
     struct check c = {.system = system, .v = v, .p = p, .input = random_inputs(v)};
@@ -149,12 +150,15 @@ static bool check_program(const char *system, struct variant *v, const struct ct
     evaluate_by_one(&c);
     bool ok = check_lanes(&c, "tape x4", NULL, 4);
     ok &= check_lanes(&c, "tape x8", NULL, 8);
-    for (int lanes = 1; lanes <= 4; lanes += 3) {
-        const struct ct_native *native = ct_native_create(a, p->listing, lanes);
-        ok &= !native
-           || check_lanes(&c, lanes == 1 ? "native" : "native x4", native, (size_t)lanes);
+    static const struct {
+        const char *name;
+        int lanes;
+    } all[] = {{"native", 1}, {"native x4", 4}, {"native x8", 8}};
+    for (size_t i = 0; i < COUNT(all); i++) {
+        const struct ct_native *native = ct_native_create(a, p->listing, all[i].lanes);
+        ok &= !native || check_lanes(&c, all[i].name, native, (size_t)all[i].lanes);
     }
-    return (!with_c || check_c(&c)) && ok;
+    return (!with_c || check_c(&c, lanes_of_c)) && ok;
 }
 
 static void shipped_systems_have_the_same_bits(void **unused)
@@ -170,8 +174,11 @@ static void shipped_systems_have_the_same_bits(void **unused)
         for (size_t k = 0; k < COUNT(all); k++) {
             struct variant v;
             variant_open(&s, all[k], &v);
-            ok &= check_program(s.name, &v, &v.m->motion, has_compiler && k == 0);
-            ok &= check_program(s.name, &v, &v.m->constraint, has_compiler && k == 0);
+            static const unsigned lanes[]
+                = {1, 4, 8}; // of compiled C, in turn: compiling takes long
+            const bool with_c = has_compiler && k == 0;
+            ok &= check_program(s.name, &v, &v.m->motion, with_c, lanes[i % 3]);
+            ok &= check_program(s.name, &v, &v.m->constraint, with_c, lanes[(i + 1) % 3]);
             variant_close(&v);
         }
         system_close(&s);
@@ -204,11 +211,70 @@ static void choice_of_back_end_changes_no_bit(void **unused)
     system_close(&s);
 }
 
+// Long programs of open systems: native code fuses products with sums and so rounds less often than the tape.
+static bool check_fused(const char *system, struct variant *v, bool *has_fused)
+{
+    const struct ct_program *p = &v->m->solved;
+    const size_t nu = v->m->nu;
+    const struct ct_native *native = ct_native_create(v->arena, p->listing, 1);
+    if (!native)
+        return true;
+    const struct ct_tape *tape = ct_tape_create(v->arena, p->listing);
+    double *work = CT_NEWN(v->arena, double, ct_native_work(native) + ct_tape_work(tape) + 1),
+           *fused = CT_NEWN(v->arena, double, p->nout),
+           *plain = CT_NEWN(v->arena, double, p->nout), *input = random_inputs(v),
+           *one = CT_NEWN(v->arena, double, v->m->ninput);
+    for (size_t i = 0; i < NLANE; i++) {
+        double most = 0, off = 0;
+        take_lanes(one, input, v->m->ninput, i, 1);
+        ct_native_prepare(native, one, work);
+        ct_native_eval(native, one, fused, work);
+        ct_tape_prepare(tape, one, work);
+        ct_tape_eval(tape, one, plain, work);
+        for (size_t k = 0; k < nu; k++) {
+            most = fmax(most, fabs(plain[k]));
+            off = fmax(off, fabs(fused[k] - plain[k]));
+        }
+        *has_fused |= off > 0;
+        if (!(off <= 1e-13 * most)) {
+            print_error("%s: fused %.2g of the largest acceleration\n", system, off / most);
+            return false;
+        }
+    }
+    return true;
+}
+
+static void fused_operations_change_roundings_only(void **unused)
+{
+    static const struct ct_formulate_options solved
+        = {.tree = CT_TREE_AUTO, .with_outputs = true, .with_solution = true};
+    static const char *const open_system[]
+        = {"systems/puma560/model.yaml", "systems/chain40/model.yaml",
+           "systems/double_pendulum/model.yaml", "systems/cart_pole/model.yaml"};
+    bool ok = true, has_fused = false;
+    (void)unused;
+    chance_start();
+    for (size_t i = 0; i < COUNT(open_system); i++) {
+        struct system s;
+        struct variant v;
+        system_open_file(&s, open_system[i]);
+        variant_open(&s, &solved, &v);
+        assert_true(v.m->solved.nout > 0);
+        ok &= check_fused(s.name, &v, &has_fused);
+        variant_close(&v);
+        system_close(&s);
+    }
+    assert_true(ok);
+    assert_true(has_fused
+                || !ct_native_is_available(4)); // processors with AVX2 have fused operations
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(shipped_systems_have_the_same_bits),
         cmocka_unit_test(choice_of_back_end_changes_no_bit),
+        cmocka_unit_test(fused_operations_change_roundings_only),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

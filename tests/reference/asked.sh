@@ -1,7 +1,7 @@
 #!/bin/sh
-# asked.sh CASE: with `method: auto` and each tolerance T of the case's line in asked.txt, the outputs of CASE.yaml
-# are within 10 T of CASE.reference.csv, and the errors that --verify estimates are not less than a third of
-# the true ones, nor larger than 100 (T + 1e-9).
+# asked.sh CASE [METHOD]: with `method: auto` and each tolerance T of the case's line in asked.txt, or with METHOD and those of
+# the line METHOD:CASE in methods.txt, the outputs of CASE.yaml are within 10 T of CASE.reference.csv, and the errors that
+# --verify estimates are not less than a third of the true ones, nor larger than 100 (T + 1e-9).
 # COTREE is the program, COMPARE the comparison tool.
 set -eu
 folder=$(dirname "$0")
@@ -9,12 +9,16 @@ case=$1
 : "${COTREE:?is the program to test}" "${COMPARE:?is the comparison tool}"
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
+method=${2:-auto}
+line="^$case "
+list=asked.txt
+[ "$method" = auto ] || { line="^$method:$case " && list=methods.txt; }
 # shellcheck disable=SC2046
-set -- $(grep "^$case " "$folder/asked.txt")
+set -- $(grep "$line" "$folder/$list")
 shift
 failed=0
 for T in "$@"; do
-    "$COTREE" simulate "$folder/$case.yaml" -o "$work/result.csv" --quiet --method auto \
+    "$COTREE" simulate "$folder/$case.yaml" -o "$work/result.csv" --quiet --method "$method" \
         --tolerance "$T" --verify --summary "$work/summary.json"
     # lines NAME ABSOLUTE RELATIVE, from  "NAME": { "absolute": ..., "relative": ... }
     sed -n '/"outputs": {/,/^    }/p' "$work/summary.json" | tr -d ' ",' | awk -F: '

@@ -421,27 +421,35 @@ static const char *const implicit[]
 static void models_follow_their_references(void **unused)
 {
     (void)unused;
-    // errors as measured, times three; energy is kept at least as well
+    // Radau's steps are held to tol, so outputs that are as good as states err by what all steps add up to; others by ten
+    // times the T = tol^(2/3) that such steps are made for. Where below that an error falls is chance: with a tolerance 3 %
+    // larger or smaller that of R06_slender, of 50 steps, is another number of the same decade.
+    // Errors of order 2 as measured, times three; energy is kept at least as well.
     static const struct {
         const char *name;
-        double duration, radau, radau_error, alpha, alpha_error;
+        double duration, radau, alpha, alpha_error;
+        bool adds_up;
         size_t nsample;
     } cases[] = {
-        {"R14_k1e4", 2, 1e-9, 3e-5, 1e-8, 1.2e-3, 5},    // pendulum on a stiff spring
-        {"R01", 0.03, 1e-8, 4e-6, 1e-7, 5e-3, 4},        // Andrews' squeezing mechanism
-        {"R07_H", 1, 1e-8, 4e-7, 1e-8, 1.2e-4, 11},      // spatial slider-crank
-        {"R08a", 0.5, 1e-8, 4e-6, 1e-8, 8e-3, 6},        // heavy top: quaternion
-        {"R06_slender", 2, 1e-8, 2.4e-7, 1e-8, 2e-5, 3}, // Bricard: redundant rows
-        {"R12_pi", 3.14159265358979323846, 1e-8, 1e-5, 1e-7, 1e-2,
+        {"R14_k1e4", 2, 1e-9, 1e-8, 1.2e-3, false,
+         5}, // pendulum on a stiff spring: a small difference
+        {"R01", 0.03, 1e-8, 1e-7, 5e-3, false,
+         4}, // Andrews' squeezing mechanism: accelerations
+        {"R07_H", 1, 1e-8, 1e-8, 1.2e-4, true, 11},    // spatial slider-crank
+        {"R08a", 0.5, 1e-8, 1e-8, 8e-3, true, 6},      // heavy top: quaternion
+        {"R06_slender", 2, 1e-8, 1e-8, 2e-5, true, 3}, // Bricard: redundant rows
+        {"R12_pi", 3.14159265358979323846, 1e-8, 1e-7, 1e-2, true,
          2}, // forty links, a load that ends
     };
     for (size_t k = 0; k < COUNT(cases); k++)
         for (size_t i = 0; i < COUNT(implicit); i++) {
             struct ct_run_report report;
-            const double error
-                = run_case(cases[k].name, implicit[i], i ? cases[k].alpha : cases[k].radau, 0,
-                           cases[k].duration, cases[k].nsample, &report);
-            const double allowed = i ? cases[k].alpha_error : cases[k].radau_error;
+            const double tol = i ? cases[k].alpha : cases[k].radau;
+            const double error = run_case(cases[k].name, implicit[i], tol, 0, cases[k].duration,
+                                          cases[k].nsample, &report);
+            const double allowed = i                ? cases[k].alpha_error
+                                 : cases[k].adds_up ? (double)report.stats.steps * tol
+                                                    : 10 * pow(tol, 2. / 3);
             assert_true(error <= allowed && report.energy_drift <= allowed);
             assert_true(report.position_constraint <= 1e-9);
         }
@@ -497,9 +505,8 @@ static void orders_of_explicit_methods_hold_for_models(void **unused)
                                        cases[k].duration, 2, &report);
             const double order = log2(error[0] / error[1]);
             printf("%s %s: order %.2f\n", cases[k].name, method[i], order);
-            // some leading terms are small enough for the next ones to show, which are an order or two higher
-            const int want = ct_method_find(method[i])->order;
-            assert_true(order > want - 0.3 && order < want + 1.7);
+            // nearer to its order than to the one below; higher where the leading term is small and the next one shows
+            assert_true(order > ct_method_find(method[i])->order - 0.5);
         }
 }
 

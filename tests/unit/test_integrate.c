@@ -285,6 +285,31 @@ static void halving_a_fixed_step_shows_the_order(void **unused)
     }
 }
 
+static enum ct_eval even(void *user, double t, const double *y, double *dy)
+{
+    (void)user;
+    (void)t;
+    (void)y;
+    dy[0] = 1. / 3;
+    return CT_EVAL_OK;
+}
+
+// Summed without care, a hundred thousand steps leave an error of some hundred roundings or more.
+static void roundings_of_many_steps_do_not_add_up(void **unused)
+{
+    (void)unused;
+    static const char *const names[] = {"rk4", "dopri5", "dop853"};
+    for (size_t i = 0; i < COUNT(names); i++) {
+        struct record *r = begin();
+        double y[1] = {1};
+        check_fine(r,
+                   run(r, ct_method_find(names[i]), (struct ct_problem){.ny = 1, .rhs = even},
+                       (struct ct_integrate_options){.t1 = 1, .step = 1e-5}, y));
+        check_close(names[i], y[0], 4. / 3, 2 * DBL_EPSILON);
+        end(r);
+    }
+}
+
 // Largest error of one step, and of its interpolants without and with preparation.
 static void local_errors(const struct ct_method *m, double h, double *step, double *rough,
                          double *fine)
@@ -841,6 +866,78 @@ static void limits_and_senseless_options_are_errors(void **unused)
     end(r);
 }
 
+// An oscillator whose turns become ever slower: the phase is 100 log(1 + t).
+static enum ct_eval slowing(void *user, double t, const double *y, double *dy)
+{
+    (void)user;
+    dy[0] = 100 / (1 + t) * y[1];
+    dy[1] = -100 / (1 + t) * y[0];
+    return CT_EVAL_OK;
+}
+
+// Two thousandths of the steps allowed tell that there are too many; steps that grow may still arrive.
+static void endless_runs_end_early(void **unused)
+{
+    (void)unused;
+    const struct ct_method *method = ct_method_find("dopri5");
+    const struct ct_integrate_options o = {.t1 = 1e4, .atol = 1e-8, .max_steps = 1000000};
+    struct ct_integrate_options endless = o;
+    double y[NY] = {1, 0};
+    struct record *r = begin();
+    endless.t1 = 1e7;
+    check_error(r, run(r, method, (struct ct_problem){.ny = 2, .rhs = oscillator}, endless, y),
+                CT_E_STEP_COUNT);
+    assert_int_equal(r->stats.steps, 2000);
+    end(r);
+    r = begin();
+    double z[NY] = {1, 0};
+    check_fine(r, run(r, method, (struct ct_problem){.ny = 2, .rhs = slowing}, o, z));
+    assert_true(fabs(z[0] - cos(100 * log1p(1e4))) < 1e-3);
+    assert_true(r->stats.steps > 4000 && r->step[999] < 1e4 / 3000); // far too slow at first
+    end(r);
+}
+
+// A pendulum: its period from rest at 1 rad is 2 pi over the arithmetic-geometric mean of 1 and cos(1/2), here from 40 digits.
+static enum ct_eval swinging(void *user, double t, const double *y, double *dy)
+{
+    (void)user;
+    (void)t;
+    dy[0] = y[1];
+    dy[1] = -sin(y[0]);
+    return CT_EVAL_OK;
+}
+
+// Error after so many whole periods.
+static double error_of_swings(int count, double least_rtol, long *steps)
+{
+    static const double period = 6.69997566437045271;
+    struct record *r = begin();
+    double y[NY] = {1, 0};
+    check_fine(r, run(r, ct_method_find("dop853"),
+                      (struct ct_problem){.ny = 2, .nq = 1, .nu = 1, .rhs = swinging},
+                      (struct ct_integrate_options){
+                          .t1 = count * period, .atol = 1e-9, .least_rtol = least_rtol},
+                      y));
+    *steps = r->stats.steps;
+    end(r);
+    return hypot(y[0] - 1, y[1]);
+}
+
+// Errors grow with the square of the number of turns, unless steps know of it; with few turns nothing changes.
+static void many_turns_ask_for_better_steps(void **unused)
+{
+    (void)unused;
+    long steps, better_steps;
+    assert_true(error_of_swings(10, 0, &steps) == error_of_swings(10, 1e-14, &better_steps));
+    assert_true(steps == better_steps);
+    const double few = error_of_swings(10, 0, &steps), many = error_of_swings(300, 0, &steps);
+    const double better = error_of_swings(300, 1e-14, &better_steps);
+    printf("error after 10 swings %.1e, after 300 %.1e; with a share of the tolerance %.1e in "
+           "%ld steps instead of %ld\n",
+           few, many, better, better_steps, steps);
+    assert_true(many > 100 * few && better < many / 50 && better_steps < 3 * steps);
+}
+
 static void the_caller_may_stop_a_run(void **unused)
 {
     (void)unused;
@@ -1014,6 +1111,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(methods_are_found_by_name),
         cmocka_unit_test(halving_a_fixed_step_shows_the_order),
+        cmocka_unit_test(roundings_of_many_steps_do_not_add_up),
         cmocka_unit_test(interpolants_have_their_order),
         cmocka_unit_test(errors_follow_the_tolerance),
         cmocka_unit_test(samples_of_dopri5_are_as_good_as_steps),
@@ -1035,6 +1133,8 @@ int main(void)
         cmocka_unit_test(a_fatal_answer_stops_at_once),
         cmocka_unit_test(a_fixed_step_is_not_shortened),
         cmocka_unit_test(limits_and_senseless_options_are_errors),
+        cmocka_unit_test(endless_runs_end_early),
+        cmocka_unit_test(many_turns_ask_for_better_steps),
         cmocka_unit_test(the_caller_may_stop_a_run),
         cmocka_unit_test(a_quadrature_does_not_shorten_steps),
         cmocka_unit_test(a_group_is_measured_by_its_largest_member),

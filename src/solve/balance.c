@@ -1,0 +1,217 @@
+// See balance.h.
+#include "solve/balance.h"
+#include "formulate/residual.h"
+#include "numeric/dense.h"
+
+#include <math.h>
+#include <string.h>
+
+static const double met = 1e-13;     // last correction against the largest coordinate
+static const double rounding = 1e-9; // corrections that no longer fall are rounding below this
+static const double nothing
+    = 1e-6; // [m or rad] coordinates smaller than this count as of this size
+enum { MOST_STEPS = 50, MOST_HALVINGS = 30 };
+
+// ---- rows -----------------------------------------------------------------------------------------------
+
+bool ct_basis_extend(struct ct_basis *s, double *v)
+{
+    const double dependent = 1e-6; // of its length: far above rounding, far below what moves
+    double before = 0, after = 0;
+    for (size_t i = 0; i < s->n; i++)
+        before += v[i] * v[i];
+    for (size_t twice = 0; twice < 2; twice++)
+        for (size_t k = 0; k < s->count; k++) {
+            const double *w = s->v + s->n * k;
+            double along = 0;
+            for (size_t i = 0; i < s->n; i++)
+                along += w[i] * v[i];
+            for (size_t i = 0; i < s->n; i++)
+                v[i] -= along * w[i];
+        }
+    for (size_t i = 0; i < s->n; i++)
+        after += v[i] * v[i];
+    if (!(after > dependent * dependent * before) || s->count == s->n)
+        return false;
+    double *out = s->v + s->n * s->count++;
+    for (size_t i = 0; i < s->n; i++)
+        out[i] = v[i] / sqrt(after);
+    return true;
+}
+// Independent rows in the directions that move.
+static void choose_rows(struct ct_balance *s, struct ct_arena *a)
+{
+    const double dependent = 1e-9; // as in embed.c
+    const size_t m = s->e->nrow, n = s->n;
+    double *A = CT_NEWN(a, double, m *n + 1), *tau = CT_NEWN(a, double, m + n);
+    double *work = CT_NEWN(a, double, ct_qr_pivot_work((int)n, (int)m));
+    for (size_t i = 0; i < m; i++)
+        for (size_t k = 0; k < n; k++)
+            A[k + n * i] = s->m->J[i + m * (size_t)s->u[k]];
+    s->nlam = m && n
+                ? (size_t)ct_qr_pivot(A, s->row, tau, (int)n, (int)m, (int)n, dependent, work)
+                : 0;
+    for (size_t i = 0; i < m; i++)
+        s->lam_place[i] = -1;
+    for (size_t i = 0; i < s->nlam; i++)
+        s->lam_place[s->row[i]] = (int)i;
+}
+
+void ct_balance_choose_here(struct ct_balance *s, struct ct_arena *a)
+{
+    ct_machine_set(s->m, 0, s->y);
+    ct_machine_constraint(s->m);
+    choose_rows(s, a);
+    for (size_t i = 0; i < s->e->nrow; i++)
+        if (s->lam_place[i] < 0)
+            s->lam[i] = 0;
+}
+
+// ---- equations ------------------------------------------------------------------------------------------
+
+void ct_balance_derive(struct ct_balance *s, struct ct_arena *a)
+{
+    const struct ct_equations *e = s->e;
+    struct ct_exs *x = e->x;
+    ct_ex *f = CT_NEWN(a, ct_ex, s->n + 1);
+    ct_ex *from = CT_NEWN(a, ct_ex, e->nu + 1), *zero = CT_NEWN(a, ct_ex, e->nu + 1);
+    for (size_t k = 0; k < e->nu; k++)
+        from[k] = e->u[k].symbol;
+    for (size_t i = 0; i < s->n; i++)
+        f[i] = e->Q[s->u[i]];
+    for (size_t i = 0; i < e->nJ; i++) {
+        const int k = s->place[e->J[i].column];
+        if (k >= 0)
+            f[k] = ct_ex_add(x, f[k], ct_ex_mul(x, e->J[i].value, e->row[e->J[i].row].lam));
+    }
+    ct_ex_subst_list(x, f, s->n, from, zero, e->nu);
+    s->nslope = ct_slopes_derive(e->build, a, f, s->n, NULL, 0, &s->slope);
+    const size_t nout = s->n + e->nrow + s->nslope;
+    ct_ex *out = CT_NEWN(a, ct_ex, nout + 1);
+    for (size_t i = 0; i < s->n; i++)
+        out[i] = f[i];
+    for (size_t i = 0; i < e->nrow; i++)
+        out[s->n + i] = e->row[i].phi;
+    for (size_t i = 0; i < s->nslope; i++)
+        out[s->n + e->nrow + i] = s->slope[i].value;
+    ct_machine_compile(a, s->m, x, out, nout, &s->values);
+}
+
+void ct_balance_evaluate(struct ct_balance *s)
+{
+    ct_machine_set(s->m, 0, s->y);
+    memcpy(s->m->input + s->m->at_lam, s->lam, s->e->nrow * sizeof *s->lam);
+    ct_program_run(&s->values, s->m->input);
+}
+
+void ct_balance_fill(struct ct_balance *s)
+{
+    const size_t n = s->n, size = n + s->nlam, nu = s->e->nu;
+    const double *value = s->values.out + n + s->e->nrow;
+    memset(s->A, 0, size * size * sizeof *s->A);
+    s->stiffness = 0;
+    for (size_t i = 0; i < s->nslope; i++)
+        if (s->slope[i].direction < nu && s->place[s->slope[i].direction] >= 0) {
+            s->A[s->slope[i].row + size * (size_t)s->place[s->slope[i].direction]] = value[i];
+            s->stiffness = fmax(s->stiffness, fabs(value[i]));
+        }
+    s->stiffness = s->stiffness > 0 ? s->stiffness : 1;
+    for (size_t i = 0; i < s->nslope; i++) {
+        const size_t first = 3 * nu; // after places, speeds, accelerations
+        if (s->slope[i].direction < first)
+            continue;
+        const int lam = s->lam_place[s->slope[i].direction - first];
+        if (lam < 0)
+            continue;
+        const size_t k = n + (size_t)lam;
+        s->A[s->slope[i].row + size * k] = s->A[k + size * s->slope[i].row]
+            = s->stiffness * value[i];
+    }
+}
+
+static bool factor(struct ct_balance *s)
+{
+    const int size = (int)(s->n + s->nlam);
+    ct_balance_fill(s);
+    return ct_lu(s->A, s->pivot, size, size);
+}
+
+// Newton correction of places and multipliers now, with the factors of an earlier derivative; the size of the places'.
+static double correction(struct ct_balance *s, double *d)
+{
+    const size_t all = s->n + s->nlam;
+    double size = 0;
+    memcpy(d, s->values.out, s->n * sizeof *d);
+    for (size_t i = 0; i < s->nlam; i++)
+        d[s->n + i] = s->stiffness * s->values.out[s->n + (size_t)s->row[i]];
+    ct_lu_solve(d, s->A, s->pivot, (int)all, (int)all, 1, (int)all, false);
+    for (size_t i = 0; i < s->n; i++)
+        size = !(fabs(d[i]) <= size) ? fabs(d[i]) : size;
+    return size;
+}
+
+static void move(struct ct_balance *s, const double *d, double factor)
+{
+    memset(s->step, 0, s->e->nu * sizeof *s->step);
+    for (size_t i = 0; i < s->n; i++)
+        s->step[s->u[i]] = -factor * d[i];
+    ct_machine_retract(s->m, s->y, s->step);
+    for (size_t i = 0; i < s->nlam; i++)
+        s->lam[s->row[i]] -= factor * s->stiffness * d[s->n + i];
+}
+
+static double largest(const struct ct_balance *s)
+{
+    double size = 0;
+    for (size_t i = 0; i < s->n; i++)
+        if (s->e->u[s->u[i]].q >= 0)
+            size = fmax(size, fabs(s->y[s->e->u[s->u[i]].q]));
+    return fmax(size, nothing);
+}
+
+// Newton steps, halved until the next correction with the same derivative is smaller: that test does not care how rows
+// are scaled. Source: Deuflhard (2011), key deuflhard2011.
+bool ct_balance_iterate(struct ct_balance *s, struct ct_arena *a)
+{
+    const size_t all = s->n + s->nlam, nq = s->m->nq, nrow = s->e->nrow;
+    double *d = CT_NEWN(a, double, all + 1), *next = CT_NEWN(a, double, all + 1),
+           *kept = CT_NEWN(a, double, nq + nrow + 1);
+    ct_balance_evaluate(s);
+    for (int step = 0; step < MOST_STEPS; step++) {
+        if (!factor(s))
+            return false;
+        const double size = correction(s, d);
+        if (size <= met * largest(s))
+            return true;
+        memcpy(kept, s->y, nq * sizeof *kept);
+        memcpy(kept + nq, s->lam, nrow * sizeof *kept);
+        double part = 1, left = INFINITY;
+        for (int half = 0; half < MOST_HALVINGS && !(left < size); half++, part /= 2) {
+            memcpy(s->y, kept, nq * sizeof *kept);
+            memcpy(s->lam, kept + nq, nrow * sizeof *kept);
+            move(s, d, part);
+            ct_balance_evaluate(s);
+            left = correction(s, next);
+        }
+        if (!(left < size)) // only rounding is left, or there is nothing to find
+            return size <= rounding * largest(s);
+    }
+    return false;
+}
+
+struct ct_balance ct_balance_create(struct ct_arena *a, struct ct_machine *m)
+{
+    const size_t nu = m->nu, nrow = m->nrow, all = nu + nrow;
+    return (struct ct_balance){.m = m,
+                               .e = m->e,
+                               .u = CT_NEWN(a, int, nu + 1),
+                               .place = CT_NEWN(a, int, nu + 1),
+                               .row = CT_NEWN(a, int, nrow + 1),
+                               .lam_place = CT_NEWN(a, int, nrow + 1),
+                               .y = CT_NEWN(a, double, m->nq + nu + 1),
+                               .lam = CT_NEWN(a, double, nrow + 1),
+                               .A = CT_NEWN(a, double, all *all + 1),
+                               .step = CT_NEWN(a, double, nu + 1),
+                               .pivot = CT_NEWN(a, int, all + 1),
+                               .gap = CT_NEWN(a, double, 4 * m->e->ngap + 1)};
+}

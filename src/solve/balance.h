@@ -1,0 +1,44 @@
+// Places of equilibrium: the forces on what moves, with the multipliers of the rows that hold it.
+#ifndef CT_SOLVE_BALANCE_H
+#define CT_SOLVE_BALANCE_H
+
+#include "solve/machine.h"
+
+/// Orthonormal vectors (n each), one after the other.
+struct ct_basis {
+    size_t n, count;
+    double *v;
+};
+
+/// Add the part of v (n, overwritten) that is new. False if there is none.
+bool ct_basis_extend(struct ct_basis *s, double *v);
+
+struct ct_balance {
+    struct ct_machine *m;
+    const struct ct_equations *e;
+    size_t n, nlam, nslope; // speeds along which places move; rows that count; derivatives
+    int *u, *place;         // those speeds; by speed: its place among them, or -1
+    int *row, *lam_place;   // kept rows; by row: its place among them, or -1
+    struct ct_slope *slope; // of the forces by places and multipliers
+    double *y, *lam;        // state; multipliers (nrow)
+    double *A, *step;       // factors of the derivative, (n + nlam) square; a motion (nu)
+    int *pivot;
+    double stiffness; // unit of the multipliers
+    double *gap;      // by gap of the equations, 4 each: its value, or quaternion, at the start
+    struct ct_program values; // forces (n), phi (nrow), slopes
+};
+
+struct ct_balance ct_balance_create(struct ct_arena *a, struct ct_machine *m);
+/// Forces Q + J' lam of what moves, all speeds zero, and their derivatives; phi: as programs.
+void ct_balance_derive(struct ct_balance *s, struct ct_arena *a);
+/// Choose the rows that count, independent in the directions that move, where s->y is now; multipliers of the others
+/// become zero.
+void ct_balance_choose_here(struct ct_balance *s, struct ct_arena *a);
+/// Forces, phi and derivatives at s->y and s->lam.
+void ct_balance_evaluate(struct ct_balance *s);
+/// A = [K  c J'; c J  0] with K = d(force)/d(place), c = s->stiffness its size: multipliers are counted in units of c.
+void ct_balance_fill(struct ct_balance *s);
+/// Newton steps from s->y, halved until the next correction with the same derivative is smaller. False if they find nothing.
+bool ct_balance_iterate(struct ct_balance *s, struct ct_arena *a);
+
+#endif
