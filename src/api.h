@@ -106,7 +106,7 @@ bool ct_is_rounding(double scale, double deviation, double largest);
 double ct_clock(void);
 
 /// Warn of beams that bent too far for one frame.
-void ct_bend_warn(struct ct_ctx *ctx, const struct ct_equations *e,
-                  const struct ct_bend_report *report);
+void ct_slope_warn(struct ct_ctx *ctx, const struct ct_equations *e,
+                   const struct ct_slope_report *report);
 
 #endif

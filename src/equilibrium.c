@@ -76,15 +76,15 @@ static bool judge(struct ct_equilibrium *q)
 
 static void watch_bending(struct ct_equilibrium *q, struct ct_machine *m)
 {
-    struct ct_bend_report *report
-        = CT_NEWN(q->own.model, struct ct_bend_report, m->e->nbend + 1);
+    struct ct_slope_report *report
+        = CT_NEWN(q->own.model, struct ct_slope_report, m->e->nbend + 1);
     for (size_t i = 0; i < m->e->nbend; i++)
         report[i].passed_at = -1;
     if (m->e->nbend) {
         ct_program_run(&m->validity, m->input);
-        ct_bend_watch(report, m, 0);
+        ct_slope_watch(report, m, 0);
     }
-    ct_bend_warn(&q->own, m->e, report);
+    ct_slope_warn(&q->own, m->e, report);
 }
 
 static bool find(void *task)

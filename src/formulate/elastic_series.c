@@ -55,7 +55,7 @@ bool ct_inertia_has_series(struct ct_build *b, const struct ct_flexible *f)
     const bool is_drawn_further = beam->higher_order && f->axial == CT_AXIAL_CHAIN;
     return !(kinds & 1u << CT_SYM_LOCAL) && ct_flexible_mass_rule(beam) == CT_RULE_FULL
         && f->kinematics == f->axial && f->axial != CT_AXIAL_LINEAR && !is_drawn_further
-        && !ct_flexible_turns_inertia(b, f);
+        && !ct_flexible_turns_inertia(b, f) && !beam->has_quadratic_twist;
 }
 
 // ---- fields ---------------------------------------------------------------------------------------------

@@ -123,7 +123,7 @@ struct ct_validity {
 };
 
 /// How far a beam bends: squared slopes of its nodes against its frame.
-struct ct_bend {
+struct ct_bent_beam {
     const char *beam;
     struct ct_mark mark;
     ct_ex *square;
@@ -186,7 +186,7 @@ struct ct_equations {
     bool is_truncated; // to first order in coordinates that are small
     struct ct_validity *validity;
     size_t nvalidity, validity_cap;
-    struct ct_bend *bend;
+    struct ct_bent_beam *bend;
     size_t nbend, bend_cap;
     struct ct_left_out *left_out;
     size_t nleft_out, left_out_cap;

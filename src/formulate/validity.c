@@ -405,9 +405,9 @@ static ct_ex squared_slope(struct ct_build *b, const struct ct_element *e, int e
 static void watch_bending(struct ct_build *b, const struct ct_flexible *f)
 {
     const int n = f->beam->nelement;
-    struct ct_bend bend = {.beam = f->name,
-                           .mark = b->model->body[f->body].instance.mark,
-                           .square = CT_NEWN(b->arena, ct_ex, n + 1)};
+    struct ct_bent_beam bend = {.beam = f->name,
+                                .mark = b->model->body[f->body].instance.mark,
+                                .square = CT_NEWN(b->arena, ct_ex, n + 1)};
     for (int k = 0; k <= n; k++) {
         const ct_ex square = squared_slope(b, &f->element[k ? k - 1 : 0], k > 0);
         if (!ct_ex_is_zero(square))

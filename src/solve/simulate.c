@@ -96,7 +96,8 @@ static double residual(void *user, double t, const double *y)
     return ct_vector_largest(r->m->phi, r->m->nrow);
 }
 
-// Its rows times the vector that they are combined with to nothing.
+// Its rows times the vector that they are combined with to nothing. Where rows are redundant, those that are kept may come to
+// depend before all do: positions are then better crossed from further away.
 static double mismatch(void *user, double t, const double *y)
 {
     struct ct_run *r = user;
@@ -301,7 +302,7 @@ static void keep_ledger(struct ct_run *r, const double *y)
         = fmax(r->report->velocity_constraint, ct_vector_largest(r->m->v, r->m->nrow));
 }
 
-void ct_bend_watch(struct ct_bend_report *report, const struct ct_machine *m, double t)
+void ct_slope_watch(struct ct_slope_report *report, const struct ct_machine *m, double t)
 {
     const double *square = m->validity.out + m->e->nvalidity;
     for (size_t i = 0; i < m->e->nbend; i++) {
@@ -318,7 +319,7 @@ static void watch_validity(struct ct_run *r, double t)
     if (!r->m->validity.nout)
         return;
     ct_program_run(&r->m->validity, r->m->input);
-    ct_bend_watch(r->report->bend, r->m, t);
+    ct_slope_watch(r->report->bend, r->m, t);
     for (size_t i = 0; i < r->e->nvalidity; i++) {
         struct ct_validity_report *v = &r->report->validity[i];
         const double period = 6.283185307179586 / r->e->validity[i].omega;
@@ -560,7 +561,7 @@ bool ct_run_simulate(struct ct_run *r, const struct ct_run_options *o,
     report->validity = CT_NEWN(r->arena, struct ct_validity_report, r->e->nvalidity + 1);
     for (size_t i = 0; i < r->e->nvalidity; i++)
         report->validity[i].left_at = -1;
-    report->bend = CT_NEWN(r->arena, struct ct_bend_report, r->e->nbend + 1);
+    report->bend = CT_NEWN(r->arena, struct ct_slope_report, r->e->nbend + 1);
     for (size_t i = 0; i < r->e->nbend; i++)
         report->bend[i].passed_at = -1;
     ct_singular_start(r->singular);
@@ -580,6 +581,8 @@ bool ct_run_simulate(struct ct_run *r, const struct ct_run_options *o,
         return false;
     struct ct_problem p = {.user = r,
                            .ny = (int)r->ny,
+                           .nq = (int)r->m->nq,
+                           .nu = (int)r->m->nu,
                            .dae = o->method->is_implicit ? ct_dae_create(r->arena, r->s) : NULL,
                            .watched = watched,
                            .groups = ct_run_groups(r),
@@ -592,7 +595,7 @@ bool ct_run_simulate(struct ct_run *r, const struct ct_run_options *o,
                            .set_crossing = set_crossing,
                            .crossed = crossed,
                            .residual = residual,
-                           .mismatch = mismatch,
+                           .mismatch = (size_t)r->s->rank < r->m->nrow ? NULL : mismatch,
                            .nroot = r->nroot,
                            .root = ct_run_root,
                            .next_time_event = ct_run_next_event,
@@ -600,6 +603,7 @@ bool ct_run_simulate(struct ct_run *r, const struct ct_run_options *o,
     const struct ct_integrate_options io = {.t1 = o->duration,
                                             .rtol = o->rtol,
                                             .atol = o->atol,
+                                            .least_rtol = o->least_rtol,
                                             .step = o->step,
                                             .sample = sample,
                                             .nsample = n,

@@ -11,6 +11,8 @@ struct ct_singular;
 struct ct_run_options {
     const struct ct_method *method;
     double duration, rtol, atol, step;
+    double
+        least_rtol; // motions with many turns may be held to as little; 0: all are held to rtol
     /// Taken over where the run of an explicit method turns out stiff, with these tolerances; NULL: never.
     const struct ct_method *stiff_method;
     double stiff_rtol, stiff_atol;
@@ -23,13 +25,13 @@ struct ct_run_options {
     void *user;
 };
 
-struct ct_bend_report {
+struct ct_slope_report {
     double largest;   // slope of a node so far
     double passed_at; // when it passed CT_SLOPE_LIMIT; negative: never
 };
 
 /// Slopes at the time t, of what the validity program of the machine has just found.
-void ct_bend_watch(struct ct_bend_report *report, const struct ct_machine *m, double t);
+void ct_slope_watch(struct ct_slope_report *report, const struct ct_machine *m, double t);
 
 struct ct_run_report {
     const struct ct_method *method; // that came to the end
@@ -41,10 +43,10 @@ struct ct_run_report {
     struct ct_validity_report {
         double mean,
             largest; // of the indicator: over the last period of the beam, and its largest size so far
-        double left_at;          // when that passed the limit; negative: never
-    } * validity;                // by indicator of the equations
-    struct ct_bend_report *bend; // by ct_bend of the equations
-    double energy_drift;         // largest |total - total(0)| / scale of the energies
+        double left_at;           // when that passed the limit; negative: never
+    } * validity;                 // by indicator of the equations
+    struct ct_slope_report *bend; // by bent beam of the equations
+    double energy_drift;          // largest |total - total(0)| / scale of the energies
     double position_constraint, velocity_constraint; // largest residuals at samples
     int rank;
     long switches;
