@@ -6,7 +6,8 @@
 #     the square of the number of elements; what extrapolation leaves are EIy/EIz and GJ/EIz, 2.5e-5 together
 #   - at P and a side load W << P its tip twists by W/P (1/u - 1)
 #   - along its axis: Euler's load about the axis of the smaller stiffness
-#   - frequencies of bending about both axes and of twist; those of N linear elements in twist are known exactly
+#   - frequencies of bending about both axes and of twist; those of N linear elements in twist are known exactly,
+#     those of quadratic ones are off by (k h)^4/1440
 set -eu
 : "${COTREE:?is the program to test}"
 work=$(mktemp -d)
@@ -34,6 +35,8 @@ done >found
 model 8 '-1, 0, 0' >along.yaml
 "$COTREE" buckling along.yaml --load push --count 1 -q | awk -F, 'NR == 2 { print "euler", 8, $2 }' >>found
 "$COTREE" modes along.yaml --count 4 -q | awk -F, 'NR > 1 { print "mode" NR - 1, 8, $3 }' >>found
+sed 's/type: beam,/type: beam, twist: quadratic,/' along.yaml >quadratic.yaml
+"$COTREE" modes quadratic.yaml --count 4 -q | awk -F, 'NR > 1 { print "quadratic" NR - 1, 8, $3 }' >>found
 awk '
     function u(z, n, t, sum) {
         sum = t = 1
@@ -65,5 +68,6 @@ awk '
         check("bending 2", value["mode3", 8], 22.034491565 * w, 1e-3)
         c2 = GJ / (2700 * (1e-4 + 1e-9)); h = L / 8
         check("twist 1", value["mode2", 8], sqrt(6 * c2 / h^2 * (1 - cos(pi / 16)) / (2 + cos(pi / 16))), 1e-9)
-        exit failed || nchecked != 6
+        check("quadratic", value["quadratic2", 8], sqrt(c2) * pi / 4 * (1 + (pi / 16)^4 / 1440), 1e-8)
+        exit failed || nchecked != 7
     }' found || { cat found; exit 1; }
