@@ -101,7 +101,7 @@ title() {
 asked() {
     echo "| case | 1e-4 | 1e-6 | 1e-8 | 1e-10 | method |"
     echo "| --- | --- | --- | --- | --- | --- |"
-    for case in $(cut -d' ' -f1 "$reference/asked.txt") R17a_20s R17b R04_2000s R05_N2_20s R16_5s; do
+    for case in $(cut -d' ' -f1 "$reference/asked.txt") R17a_20s R17b R05_N2_20s R16_5s; do
         line="| $(title "$case") ($case)"
         methods=
         for T in 1e-4 1e-6 1e-8 1e-10; do

@@ -6,6 +6,7 @@
 
 #include "report/json.h"
 #include "report/progress.h"
+#include "solve/singular.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -218,6 +219,7 @@ bool ct_sim_resolve(struct ct_sim *sim, const struct ct_sim_options *o)
                  : o->until > 0   ? samples_until(m, o->until)
                                   : (size_t)m->samples,
         .rate_jumps = m->rate_jumps,
+        .least_rtol = sim->least_rtol,
     };
     if (!choose_method(sim, o->method))
         return false;
@@ -257,6 +259,43 @@ static bool needs_dynamics(const struct ct_equations *e)
     return !e->solution || e->nmode || e->x->ntable;
 }
 
+// Names of the joints of the rows that are marked, each once: "a, b".
+static const char *joints_of(const struct ct_sim *sim, const bool *row, int *first)
+{
+    const struct ct_equations *e = &sim->system->equations;
+    const char *names = "";
+    *first = -1;
+    for (size_t j = 0; j < sim->system->model.njoint; j++) {
+        bool is_there = false;
+        for (size_t i = 0; i < e->nrow; i++)
+            is_there |= row[i] && e->row[i].joint == (int)j;
+        if (!is_there)
+            continue;
+        names = ct_arena_printf(sim->own.model, "%s%s'%s'", names, *first < 0 ? "" : ", ",
+                                sim->system->model.joint[j].name);
+        *first = *first < 0 ? (int)j : *first;
+    }
+    return names;
+}
+
+// What is said of a start in a singular position holds for that position: freedoms, redundant rows.
+static void warn_of_singular_start(struct ct_sim *sim)
+{
+    bool *row = CT_NEWN(sim->own.model, bool, sim->system->equations.nrow + 1);
+    int first;
+    if (!ct_singular_is_start(sim->own.scratch, ct_run_embed(sim->run), 0,
+                              ct_run_state(sim->run), row))
+        return;
+    const char *names = joints_of(sim, row, &first);
+    if (first >= 0)
+        ct_warning(
+            &sim->own, sim->system->model.joint[first].mark, 0,
+            "the mechanism starts in a singular position: constraints of %s depend on others "
+            "there and not elsewhere; beside it there are fewer freedoms, and several "
+            "motions may begin in it",
+            names);
+}
+
 static bool prepare(struct ct_sim *sim, const struct ct_sim_options *o)
 {
     struct ct_system *s = sim->system;
@@ -277,6 +316,7 @@ static bool prepare(struct ct_sim *sim, const struct ct_sim_options *o)
     sim->open.result = CT_NEWN(sim->own.model, bool, s->equations.nresult + 1);
     sim->report.final = CT_NEWN(sim->own.model, double, s->equations.nresult + 1);
     sim->report.rank = ct_run_embed(sim->run)->rank;
+    warn_of_singular_start(sim);
     if (ct_run_results(sim->run, 0, ct_run_state(sim->run), sim->report.final) != CT_EVAL_OK)
         return ct_error(&sim->own, (struct ct_mark){.file = s->model.file}, CT_E_SINGULAR,
                         "the equations are singular at the start");

@@ -207,7 +207,8 @@ static void put_inputs(struct writer *w, const unsigned char *read)
 {
     for (size_t v = 0; v < w->l->nvalue; v++)
         if (read[v])
-            putf(w, "    const double %s = in[%u];\n", w->input[v], w->l->input[v]);
+            putf(w, "    const double %s = in[%u];\n", w->input[v],
+                 w->o.lanes * w->l->input[v]);
 }
 
 static uint32_t value_of(const struct writer *w, uint32_t k)
@@ -218,7 +219,7 @@ static uint32_t value_of(const struct writer *w, uint32_t k)
 static void put_outputs(struct writer *w, uint32_t v, const char *text)
 {
     for (uint32_t k = w->first_output[v]; k; k = w->next_output[k - 1])
-        putf(w, "    out[%u] = %s;\n", k - 1, text);
+        putf(w, "    out[%u] = %s;\n", w->o.lanes * (k - 1), text);
 }
 
 static void put_body(struct writer *w, const struct range *r, const unsigned char *read)
@@ -260,8 +261,19 @@ static void put_plain_outputs(struct writer *w)
     for (uint32_t v = 0; v < w->l->nvalue; v++)
         if (w->l->is_leaf[v])
             put_outputs(w, v,
-                        w->input[v] ? ct_arena_printf(w->arena, "in[%u]", w->l->input[v])
-                                    : operand_text(w, v, 0));
+                        w->input[v]
+                            ? ct_arena_printf(w->arena, "in[%u]", w->o.lanes * w->l->input[v])
+                            : operand_text(w, v, 0));
+}
+
+// One lane after the other.
+static void put_lanes(struct writer *w)
+{
+    const char *n = w->o.name;
+    putf(w, "\nvoid %s(const double *in, double *out);\n\n", n);
+    putf(w, "void %s(const double *in, double *out)\n{\n    int lane;\n", n);
+    putf(w, "    for (lane = 0; lane < %u; lane++)\n", w->o.lanes);
+    putf(w, "        %s_lane(in + lane, out + lane);\n}\n", n);
 }
 
 static void put_functions(struct writer *w)
@@ -280,9 +292,10 @@ static void put_functions(struct writer *w)
         call[part] = ct_arena_printf(w->arena, "    %s_%zu(%s);\n", w->o.name, part,
                                      arguments(w, &r, false));
     }
-    putf(w, "void %s(const double *in, double *out);\n\n", w->o.name);
-    putf(w, "void %s(const double *in, double *out)\n{\n", w->o.name);
-    put(w, "    (void)in;\n    (void)out;\n");
+    if (w->o.lanes == 1)
+        putf(w, "void %s(const double *in, double *out);\n\n", w->o.name);
+    putf(w, w->o.lanes == 1 ? "void %s" : "static void %s_lane", w->o.name);
+    put(w, "(const double *in, double *out)\n{\n    (void)in;\n    (void)out;\n");
     if (npart == 1)
         put_body(w, &r, read);
     if (npart > 1 && w->ncrossing)
@@ -291,6 +304,8 @@ static void put_functions(struct writer *w)
         put(w, call[part]);
     put_plain_outputs(w);
     put(w, "}\n");
+    if (w->o.lanes > 1)
+        put_lanes(w);
 }
 
 // ---- tables -----------------------------------------------------------------------------------
@@ -395,6 +410,7 @@ const char *ct_c_listing(struct ct_arena *a, const struct ct_listing *l,
         w.o = *options;
     w.o.name = w.o.name ? w.o.name : "evaluate";
     w.split = w.o.split ? w.o.split : 800;
+    w.o.lanes = w.o.lanes ? w.o.lanes : 1;
     number_statements(&w);
     name_inputs(&w);
     list_outputs(&w);

@@ -19,6 +19,7 @@ struct ct_c_options {
     const char *name;  // of the function; NULL: "evaluate". Helpers start with it
     const char *title; // for the comment at the top; NULL: none
     size_t split;      // statements in one function; 0: 800
+    unsigned lanes; // sets of inputs side by side, in[lanes * slot + lane], out likewise; 0: 1
     /// The text of a symbol behind its input, a C identifier; NULL: ct_c_name of its name. Inputs
     /// are called i<slot>_<text>, so texts need not differ.
     const char *(*symbol)(void *data, struct ct_arena *a, const struct ct_sym *s);

@@ -76,6 +76,22 @@ void ct_put_load(struct ct_bytes *c, int reg, struct ct_rm from)
     ct_put_arithmetic(c, 0x10, reg, 0, from); // vmovsd, vmovupd
 }
 
+void ct_put_broadcast(struct ct_bytes *c, int reg, struct ct_rm from)
+{
+    ct_put_vex(c, (struct ct_vex){1, 2, 0, 0x19}, true, reg, 0, from); // vbroadcastsd
+}
+
+void ct_put_gather(struct ct_bytes *c, int reg, int spare, const struct ct_rm from[4])
+{
+    const struct ct_vex low = {3, 1, 0, 0x10}, high = {1, 1, 0, 0x16}; // vmovsd, vmovhpd
+    ct_put_vex(c, low, false, reg, 0, from[0]);
+    ct_put_vex(c, high, false, reg, reg, from[1]);
+    ct_put_vex(c, low, false, spare, 0, from[2]);
+    ct_put_vex(c, high, false, spare, spare, from[3]);
+    ct_put_vex(c, (struct ct_vex){1, 3, 0, 0x18}, true, reg, reg, ct_in_register(spare));
+    ct_put(c, 1); // vinsertf128
+}
+
 void ct_put_store(struct ct_bytes *c, struct ct_rm to, int reg)
 {
     ct_put_arithmetic(c, 0x11, reg, 0, to);

@@ -86,6 +86,10 @@ void ct_put_arithmetic(struct ct_bytes *c, unsigned op, int reg, int vvvv, struc
 /// Bitwise operations exist on whole registers only, so a scalar operand must not be in memory.
 void ct_put_bitwise(struct ct_bytes *c, unsigned op, int reg, int vvvv, struct ct_rm rm);
 void ct_put_load(struct ct_bytes *c, int reg, struct ct_rm from);
+/// Four times the number there.
+void ct_put_broadcast(struct ct_bytes *c, int reg, struct ct_rm from);
+/// Four numbers from four places. spare: a register that is lost.
+void ct_put_gather(struct ct_bytes *c, int reg, int spare, const struct ct_rm from[4]);
 void ct_put_store(struct ct_bytes *c, struct ct_rm to, int reg);
 /// All ones where it holds, else zeros; rm is not in the pool.
 void ct_put_compare(struct ct_bytes *c, int reg, int vvvv, struct ct_rm rm, unsigned predicate);

@@ -324,6 +324,62 @@ static void put_list(struct text *t, const char *what, size_t n)
     put(t, "};\n");
 }
 
+// How the functions are called for a motion. State: q and u, which stand side by side in the input.
+static const char driver[]
+    = "enum { nstate_y = $_NQ + $_NU };\n\n"
+      "static void derive(const double *in, double *dy)\n"
+      "{\n"
+      "    static double out[$_NMOTION + 1], work[$_NWORK + 1];\n"
+      "    int i;\n"
+      "    @_motion(in, out);\n"
+      "    for (i = 0; i < $_NQ; i++)\n"
+      "        dy[i] = out[$_OUT_RATE + i];\n"
+      "    @_accelerations(in, dy + $_NQ, work);\n"
+      "}\n\n"
+      "/* The classical Runge-Kutta method: no control of errors, no projection onto "
+      "constraints,\n"
+      " * comparisons as at the start. */\n"
+      "static void step(double *in, double h)\n"
+      "{\n"
+      "    static const double part[] = {0, 0.5, 0.5, 1}, weight[] = {1, 2, 2, 1};\n"
+      "    static double y[nstate_y + 1], dy[nstate_y + 1], sum[nstate_y + 1];\n"
+      "    double *const state = in + $_Q, t = in[$_T];\n"
+      "    int i, k;\n"
+      "    for (i = 0; i < nstate_y; i++) {\n"
+      "        y[i] = state[i];\n"
+      "        dy[i] = sum[i] = 0;\n"
+      "    }\n"
+      "    for (k = 0; k < 4; k++) {\n"
+      "        in[$_T] = t + part[k] * h;\n"
+      "        for (i = 0; i < nstate_y; i++)\n"
+      "            state[i] = y[i] + part[k] * h * dy[i];\n"
+      "        derive(in, dy);\n"
+      "        for (i = 0; i < nstate_y; i++)\n"
+      "            sum[i] += weight[k] * h / 6 * dy[i];\n"
+      "    }\n"
+      "    in[$_T] = t + h;\n"
+      "    for (i = 0; i < nstate_y; i++)\n"
+      "        state[i] = y[i] + sum[i];\n"
+      "}\n\n"
+      "/* The time and q, eleven times. */\n"
+      "static int run(double duration, int nstep)\n"
+      "{\n"
+      "    static double in[$_NINPUT];\n"
+      "    int i, k;\n"
+      "    for (i = 0; i < $_NINPUT; i++)\n"
+      "        in[i] = @_start[i];\n"
+      "    for (k = 0; k <= 10 * nstep; k++) {\n"
+      "        if (k % nstep == 0) {\n"
+      "            printf(\"%.17g\", in[$_T]);\n"
+      "            for (i = 0; i < $_NQ; i++)\n"
+      "                printf(\",%.17g\", in[$_Q + i]);\n"
+      "            putchar('\\n');\n"
+      "        }\n"
+      "        step(in, duration / (10.0 * nstep));\n"
+      "    }\n"
+      "    return 0;\n"
+      "}\n\n";
+
 // Programs: the library's sines may differ in the last bit elsewhere; sums of n terms magnify that.
 // Accelerations are the result of a solve by another elimination.
 static const char test_functions[]
@@ -341,10 +397,13 @@ static const char test_functions[]
       "        }\n"
       "    return wrong;\n"
       "}\n\n"
-      "int main(void)\n"
+      "int main(int argc, char **argv)\n"
       "{\n"
       "    static double out[$_NMOTION + $_NCONSTRAINT + 1], a[$_NU + 1], work[$_NWORK + 1];\n"
+      "    const int nstep = argc > 2 ? atoi(argv[2]) : 100;\n"
       "    int k, wrong = 0;\n"
+      "    if (argc > 1)\n"
+      "        return run(atof(argv[1]), nstep > 0 ? nstep : 1);\n"
       "    for (k = 0; k < nstate; k++) {\n"
       "        @_motion(input[k], out);\n"
       "        wrong += compare(\"motion\", out, motion[k], $_NMOTION, 1e-12);\n"
@@ -361,10 +420,15 @@ const char *ct_export_test(struct ct_arena *a, const struct ct_export *x)
 {
     struct text t = {.arena = a, .name = x->name};
     putf(&t,
-         "/* %s: compares with recorded values.\n *\n"
-         " *     cc -std=c99 -O2 -o %s_test %s_test.c %s.c -lm && ./%s_test\n */\n",
-         comment_text(a, x->title), x->name, x->name, x->name, x->name);
-    putf(&t, "#include \"%s.h\"\n\n#include <math.h>\n#include <stdio.h>\n\n", x->name);
+         "/* %s: compares with recorded values; with a duration [s] and a tenth of the number "
+         "of\n"
+         " * steps, integrates from the start.\n *\n"
+         " *     cc -std=c99 -O2 -o %s_test %s_test.c %s.c -lm && ./%s_test\n"
+         " *     ./%s_test 1.5 100\n */\n",
+         comment_text(a, x->title), x->name, x->name, x->name, x->name, x->name);
+    putf(&t,
+         "#include \"%s.h\"\n\n#include <math.h>\n#include <stdio.h>\n#include <stdlib.h>\n\n",
+         x->name);
     for (size_t k = 0; k < x->nstate; k++) {
         put_recorded(&t, "input", x->ninput, k, x->state[k].input);
         put_recorded(&t, "motion", x->motion->nout, k, x->state[k].motion);
@@ -376,6 +440,12 @@ const char *ct_export_test(struct ct_arena *a, const struct ct_export *x)
     put_list(&t, "constraint", x->nstate);
     put_list(&t, "acceleration", x->nstate);
     putf(&t, "enum { nstate = %zu };\n\n", x->nstate);
+    if (x->e->nq)
+        put_named(&t, driver);
+    else // all is given by time
+        put(&t, "static int run(double duration, int nstep)\n{\n    (void)duration;\n    "
+                "(void)nstep;\n"
+                "    return 0;\n}\n\n");
     put_named(&t, test_functions);
     return finish(&t);
 }

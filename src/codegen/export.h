@@ -1,7 +1,8 @@
 // The equations of motion of a model as C source that stands alone.
 //
 //     NAME.h  NAME.c     motion and constraint programs, their layout, accelerations; C99 and libm
-//     NAME_test.c        a program that compares with values recorded here, and so shows how to call them
+//     NAME_test.c        a program that compares with values recorded here or integrates from the start, and so shows how
+//                        to call them
 //
 // What always holds: the same equations give the same text; no globals but constant tables; compiles
 // without warnings; functions are short enough for compilers (c.h).

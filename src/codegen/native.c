@@ -143,6 +143,7 @@ static struct ct_x86_calls list_calls(int lanes)
     LIST(CT_OP_ANGLE_SINCOS, angle)
     LIST(CT_OP_TABLE, table)
     c.sincos_many = (uintptr_t)sincos_many;
+    c.rows_together = ct_native_is_available(4);
     return c;
 }
 

@@ -74,9 +74,13 @@ struct repeat {
     struct stream stream[CT_ROLL_STREAMS];
     int nstream;
     int32_t before, behind; // rows for edges
-    uint32_t origin;        // place of row 0
-    uint32_t *offset;       // (period) in a row
-    uint32_t width, nresult;
+    bool *is_late; // (period) reads what another row has made, or what such an instruction has
+    uint32_t nlate;
+    bool is_side_by_side;
+    uint32_t origin;                  // place of row 0
+    uint32_t *offset;                 // (period) number of the result
+    uint32_t row_stride, slot_stride; // places between rows, between results
+    uint32_t nresult;
 };
 
 static const struct ct_instruction *instruction(const struct plan *p, uint32_t place)
@@ -404,6 +408,7 @@ static void clear(const struct plan *p, struct repeat *r)
         r->escapes = CT_NEWN(a, bool, r->period);
         r->edge_of = CT_NEWN(a, uint32_t, r->period);
         r->offset = CT_NEWN(a, uint32_t, r->period);
+        r->is_late = CT_NEWN(a, bool, r->period);
     }
     memset(r->edge_of, 0, r->period * sizeof *r->edge_of);
     r->nedge = r->ncolumn = 0;
@@ -475,12 +480,93 @@ static void mark_escapes(const struct plan *p)
     }
 }
 
-static uint32_t place_of(const struct repeat *r, uint32_t offset, int32_t row)
+// ---- rows side by side --------------------------------------------------------------------------
+
+static void mark_late(const struct plan *p, struct repeat *r)
 {
-    return (uint32_t)((int32_t)r->origin + row * (int32_t)r->width + (int32_t)offset);
+    for (uint32_t slot = 0; slot < r->period; slot++) {
+        for (uint32_t k = 0; k < instruction(p, r->first + slot)->narg; k++) {
+            const struct reach *from = &r->reach[3 * slot + k];
+            r->is_late[slot] |= (from->kind == ROW && r->is_late[from->at])
+                             || (from->kind == RESULTS && &p->repeat[from->other] == r);
+        }
+        r->nlate += r->is_late[slot];
+    }
 }
 
-static void place_rows(const struct plan *p, uint32_t *nwork)
+// Reads whose rows are not side by side.
+static uint32_t count_gathered(const struct plan *p, const struct repeat *r)
+{
+    uint32_t n = 0;
+    for (uint32_t slot = 0; slot < r->period; slot++)
+        for (uint32_t k = 0; k < instruction(p, r->first + slot)->narg && !r->is_late[slot];
+             k++) {
+            const struct reach *from = &r->reach[3 * slot + k];
+            n += (from->kind == INPUTS && from->step != 1)
+              || (from->kind == RESULTS
+                  && (!p->repeat[from->other].is_side_by_side || from->step != 1));
+        }
+    return n;
+}
+
+// What the late instructions of a row read of the others.
+static void hand_over(const struct plan *p, struct repeat *r)
+{
+    for (uint32_t slot = 0; slot < r->period; slot++)
+        for (uint32_t k = 0; k < instruction(p, r->first + slot)->narg && r->is_late[slot];
+             k++) {
+            const struct reach *from = &r->reach[3 * slot + k];
+            if (from->kind == ROW && !r->is_late[from->at])
+                r->escapes[from->at] = true;
+        }
+}
+
+// Bytes that rows leave behind.
+static size_t size_of_results(const struct plan *p)
+{
+    size_t n = 0;
+    for (size_t i = 0; i < p->nrepeat; i++) {
+        const struct repeat *r = &p->repeat[i];
+        size_t width = r->ncolumn;
+        for (uint32_t slot = 0; slot < r->period && !r->is_dropped; slot++)
+            width += r->escapes[slot];
+        n += r->is_dropped ? 0 : r->count * width * sizeof(double);
+    }
+    return n;
+}
+
+// Does it pay? Only as long as the nearest cache holds what rows leave behind: where further ones must bring it, one row at a
+// time is as fast (measured on beams). A read that gathers four numbers costs about five instructions, a result that the others read two.
+static void choose_lanes(struct plan *p, uint32_t lanes)
+{
+    enum { GATHER = 5, HAND_OVER = 2, NEAREST_CACHE = 32 * 1024 };
+    if (lanes == 1 || size_of_results(p) > NEAREST_CACHE)
+        return;
+    for (size_t i = 0; i < p->nrepeat; i++) {
+        struct repeat *r = &p->repeat[i];
+        if (r->is_dropped || r->count < lanes)
+            continue;
+        mark_late(p, r);
+        const uint32_t n = r->period - r->nlate;
+        const uint32_t more = GATHER * count_gathered(p, r) + HAND_OVER * r->nlate;
+        r->is_side_by_side = (lanes - 1) * n > more && n >= WINDOW;
+        if (r->is_side_by_side)
+            hand_over(p, r);
+    }
+}
+
+static uint32_t place_of(const struct repeat *r, uint32_t number, int32_t row)
+{
+    return (uint32_t)((int32_t)r->origin + row * (int32_t)r->row_stride
+                      + (int32_t)(number * r->slot_stride));
+}
+
+static uint32_t rounded_up(uint32_t n, uint32_t to)
+{
+    return (n + to - 1) / to * to;
+}
+
+static void place_rows(const struct plan *p, uint32_t *nwork, uint32_t lanes)
 {
     for (size_t i = 0; i < p->nrepeat; i++) {
         struct repeat *r = &p->repeat[i];
@@ -489,9 +575,16 @@ static void place_rows(const struct plan *p, uint32_t *nwork)
         for (uint32_t slot = 0; slot < r->period; slot++)
             if (r->escapes[slot])
                 r->offset[slot] = r->nresult++;
-        r->width = r->nresult + (uint32_t)r->ncolumn;
-        r->origin = *nwork + (uint32_t)r->before * r->width;
-        *nwork = r->origin + (r->count + (uint32_t)r->behind) * r->width;
+        const uint32_t width = r->nresult + (uint32_t)r->ncolumn,
+                       before = rounded_up((uint32_t)r->before, lanes);
+        uint32_t rows = before + rounded_up(r->count + (uint32_t)r->behind, lanes);
+        if (r->is_side_by_side && rows / lanes % 2 == 0)
+            rows += lanes; // an odd stride reaches all sets of a cache
+        r->row_stride = r->is_side_by_side ? 1 : width;
+        r->slot_stride = r->is_side_by_side ? rows : 1;
+        *nwork = rounded_up(*nwork, lanes);
+        r->origin = *nwork + before * r->row_stride;
+        *nwork += rows * width;
     }
 }
 
@@ -511,10 +604,10 @@ static struct ct_operand operand_of(const struct plan *p, const struct repeat *r
     case RESULTS:
         return (struct ct_operand){CT_REACH_WORK,
                                    place_of(other, other->offset[from->at], from->row),
-                                   from->step * (int32_t)other->width};
+                                   from->step * (int32_t)other->row_stride};
     default:
         return (struct ct_operand){CT_REACH_WORK, place_of(r, r->nresult + from->at, 0),
-                                   (int32_t)r->width};
+                                   (int32_t)r->row_stride};
     }
 }
 
@@ -548,6 +641,44 @@ static void add_edges(const struct plan *p, uint32_t asker, struct ct_loop *loop
     }
 }
 
+// The instructions of a row that are late, or those that are not.
+static void fill_loop(const struct plan *p, const struct repeat *r, bool late,
+                      struct ct_loop *loop)
+{
+    uint32_t *number = CT_NEWN(p->arena, uint32_t, r->period); // of the loop's own
+    loop->slot = CT_NEWN(p->arena, uint32_t, r->period);
+    loop->operand = CT_NEWN(p->arena, struct ct_operand, 3 * r->period);
+    loop->result = CT_NEWN(p->arena, uint32_t, r->period);
+    for (uint32_t slot = 0; slot < r->period; slot++) {
+        if (r->is_side_by_side && r->is_late[slot] != late)
+            continue;
+        const uint32_t i = number[slot] = loop->nslot++;
+        loop->slot[i] = slot;
+        loop->result[i] = r->escapes[slot] ? place_of(r, r->offset[slot], 0) : none;
+        for (uint32_t k = 0; k < instruction(p, r->first + slot)->narg; k++) {
+            const struct reach *from = &r->reach[3 * slot + k];
+            struct ct_operand *o = &loop->operand[3 * i + k];
+            *o = operand_of(p, r, from);
+            if (from->kind != ROW)
+                continue;
+            if (r->is_side_by_side && r->is_late[from->at] != late)
+                *o = (struct ct_operand){CT_REACH_WORK, place_of(r, r->offset[from->at], 0),
+                                         (int32_t)r->row_stride};
+            else
+                o->at = number[from->at];
+        }
+    }
+}
+
+static void keep_places(const struct plan *p, const struct repeat *r, struct ct_roll *out)
+{
+    for (uint32_t slot = 0; slot < r->period; slot++)
+        for (uint32_t row = 0; row < r->count && r->escapes[slot]; row++) {
+            const uint32_t v = instruction(p, r->first + row * r->period + slot)->res[0];
+            out->place[v] = place_of(r, r->offset[slot], (int32_t)row);
+        }
+}
+
 static void add_loop(const struct plan *p, uint32_t which, struct ct_roll *out)
 {
     const struct repeat *r = &p->repeat[which];
@@ -555,26 +686,23 @@ static void add_loop(const struct plan *p, uint32_t which, struct ct_roll *out)
     *loop = (struct ct_loop){.first = r->first,
                              .period = r->period,
                              .count = r->count,
-                             .operand = CT_NEWN(p->arena, struct ct_operand, 3 * r->period),
-                             .result = CT_NEWN(p->arena, uint32_t, r->period),
-                             .width = (int32_t)r->width};
-    for (uint32_t slot = 0; slot < r->period; slot++) {
-        for (uint32_t k = 0; k < instruction(p, r->first + slot)->narg; k++)
-            loop->operand[3 * slot + k] = operand_of(p, r, &r->reach[3 * slot + k]);
-        loop->result[slot] = r->escapes[slot] ? place_of(r, r->offset[slot], 0) : none;
-        for (uint32_t row = 0; row < r->count; row++) {
-            const uint32_t v = instruction(p, r->first + row * r->period + slot)->res[0];
-            if (r->escapes[slot])
-                out->place[v] = place_of(r, r->offset[slot], (int32_t)row);
-        }
-    }
+                             .width = (int32_t)r->row_stride,
+                             .is_side_by_side = r->is_side_by_side};
+    struct ct_loop late = *loop;
+    late.is_side_by_side = false;
+    fill_loop(p, r, false, loop);
+    keep_places(p, r, out);
     add_edges(p, which, loop);
     add_columns(p, r, loop, out);
+    if (!r->is_side_by_side || !r->nlate)
+        return;
+    fill_loop(p, r, true, &late);
+    out->loop[out->nloop++] = late;
 }
 
 struct ct_roll ct_roll_find(struct ct_arena *a, const struct ct_listing *l,
                             const uint32_t *order, uint32_t n, const bool is_alone[CT_NKIND],
-                            uint32_t nwork)
+                            uint32_t nwork, uint32_t lanes)
 {
     struct plan p = {.arena = a, .l = l, .order = order, .n = n};
     struct ct_roll out = {.place = CT_NEWN(a, uint32_t, l->nvalue + 1), .nwork = nwork};
@@ -595,8 +723,9 @@ struct ct_roll ct_roll_find(struct ct_arena *a, const struct ct_listing *l,
     while (!settle(&p))
         ;
     mark_escapes(&p);
-    place_rows(&p, &out.nwork);
-    out.loop = CT_NEWN(a, struct ct_loop, p.nrepeat + 1);
+    choose_lanes(&p, lanes);
+    place_rows(&p, &out.nwork, lanes);
+    out.loop = CT_NEWN(a, struct ct_loop, 2 * p.nrepeat + 1);
     for (uint32_t i = 0; i < p.nrepeat; i++)
         if (!p.repeat[i].is_dropped)
             add_loop(&p, i, &out);

@@ -4,6 +4,9 @@
 //     order     ... | body, row 0 | body, row 1 | ... | body, row count - 1 | ...
 //     work      results of a row that something beyond it reads, row after row, `width` places each
 //
+// Rows that do not read each other's results can be done side by side: a loop is split into one of those instructions, whose
+// results stand instruction after instruction, the rows of each side by side, and one of the others, as running sums.
+//
 // Operands of the body are results of the same row, values that are the same in all rows, or at
 //
 //     place + row * stride     of the inputs or of the work array.
@@ -23,7 +26,8 @@ enum ct_reach { CT_REACH_ROW, CT_REACH_FIXED, CT_REACH_INPUT, CT_REACH_WORK };
 
 struct ct_operand {
     enum ct_reach reach;
-    uint32_t at; // ROW: instruction of the body; FIXED: value; else the place at row 0
+    uint32_t
+        at; // ROW: number of the loop's own instruction; FIXED: value; else the place at row 0
     int32_t stride;
 };
 
@@ -33,15 +37,17 @@ struct ct_copy {
 
 struct ct_loop {
     uint32_t first, period, count; // places in the order: the first one, of a row; rows
-    struct ct_operand *operand;    // (3 x period)
-    uint32_t *result;     // (period) place at row 0, CT_VALUE_NONE: read in its row alone
+    bool is_side_by_side;          // rows may be done together
+    uint32_t nslot, *slot;         // instructions of a row that are its own, ascending
+    struct ct_operand *operand;    // (3 x nslot)
+    uint32_t *result;     // (nslot) place at row 0, CT_VALUE_NONE: read in its row alone
     int32_t width;        // stride of results
     struct ct_copy *copy; // before the loop
     size_t ncopy, copy_cap;
 };
 
 struct ct_roll {
-    struct ct_loop *loop; // ascending
+    struct ct_loop *loop; // ascending; two of one stretch follow each other
     size_t nloop;
     uint32_t *place;       // by value: where a result of a loop is kept; CT_VALUE_NONE: others
     struct ct_copy *table; // constants and parameters by row: copied once
@@ -50,9 +56,9 @@ struct ct_roll {
 };
 
 /// The loops of n instructions in the order of their execution. is_alone: by operator, not in loops. Places of the work
-/// array from nwork on are used. Cost: about n.
+/// array from nwork on are used. lanes: rows that can be done side by side; 1: none. Cost: about n.
 struct ct_roll ct_roll_find(struct ct_arena *a, const struct ct_listing *l,
                             const uint32_t *order, uint32_t n, const bool is_alone[CT_NKIND],
-                            uint32_t nwork);
+                            uint32_t nwork, uint32_t lanes);
 
 #endif

@@ -9,10 +9,19 @@ static const uint32_t none = CT_VALUE_NONE;
 
 // ---- where values are -------------------------------------------------------------------------
 
-enum { NREGISTER = 16 };
+enum { NREGISTER = 16, ROWS_TOGETHER = 4 };
 
 // Beyond WORK: what a stream of a loop points at.
 enum area { NOWHERE, INPUT, OUT, WORK, NAREA };
+
+// How four rows of a value stand in memory: side by side, one number for all, further apart.
+enum row_layout { FULL, ONE_FOR_ALL, APART };
+
+// What the streams of a loop point at.
+struct stream {
+    unsigned area;
+    int32_t stride;
+};
 
 struct home {
     unsigned area;
@@ -42,12 +51,18 @@ struct emitter {
     uint32_t *first_output, *next_output; // by value, by output: 1 + k of the next one
     uint32_t *free;                       // places of the work array to be used again
     uint32_t nfree, nwork, nfixed;
+    uint32_t place_size;         // bytes of a place
+    uint32_t width;              // places of a value that leaves its register
+    enum row_layout *layout;     // by value, in loops of rows side by side; else NULL
+    const struct stream *stream; // of the loop
+    uint32_t *
+        spread; // by value: the first of four places that hold a constant, or none; NULL: none has such
 };
 
 static struct ct_rm memory_of(const struct emitter *e, struct home h)
 {
     assert(h.area != NOWHERE);
-    return ct_in_memory(e->base[h.area], (int32_t)(h.place * 8u * (uint32_t)e->code.lanes));
+    return ct_in_memory(e->base[h.area], (int32_t)(h.place * e->place_size));
 }
 
 // Place in the order of the next read of v; none: never again.
@@ -65,7 +80,11 @@ static void need_home(struct emitter *e, uint32_t v)
 {
     if (e->home[v].area != NOWHERE)
         return;
-    e->home[v] = (struct home){WORK, e->nfree ? e->free[--e->nfree] : e->nwork++};
+    if (!e->nfree) {
+        e->free[e->nfree++] = e->nwork;
+        e->nwork += e->width;
+    }
+    e->home[v] = (struct home){WORK, e->free[--e->nfree]};
     if (e->reg[v] >= 0)
         ct_put_store(&e->code, memory_of(e, e->home[v]), e->reg[v]);
 }
@@ -122,6 +141,18 @@ static int take_register(struct emitter *e, uint32_t v)
     return r;
 }
 
+// Four rows that are not side by side.
+static void gather(struct emitter *e, int r, uint32_t v)
+{
+    const int32_t step = e->stream[e->home[v].area - NAREA].stride * (int32_t)e->place_size;
+    struct ct_rm m[4] = {memory_of(e, e->home[v])};
+    for (int i = 1; i < 4; i++) {
+        m[i] = m[0];
+        m[i].disp += i * step;
+    }
+    ct_put_gather(&e->code, r, take_register(e, none), m);
+}
+
 // v in a register, pinned.
 static int load(struct emitter *e, uint32_t v)
 {
@@ -130,14 +161,19 @@ static int load(struct emitter *e, uint32_t v)
         return e->reg[v];
     }
     const int r = take_register(e, v);
-    ct_put_load(&e->code, r, memory_of(e, e->home[v]));
+    if (!e->layout || e->layout[v] == FULL)
+        ct_put_load(&e->code, r, memory_of(e, e->home[v]));
+    else if (e->layout[v] == ONE_FOR_ALL)
+        ct_put_broadcast(&e->code, r, memory_of(e, e->home[v]));
+    else
+        gather(e, r, v);
     return r;
 }
 
 // v as a last operand: a register if it is in one or will be read again before some value that is.
 static struct ct_rm operand(struct emitter *e, uint32_t v)
 {
-    if (e->reg[v] < 0) {
+    if (e->reg[v] < 0 && (!e->layout || e->layout[v] == FULL)) {
         const uint32_t again = next_use(e, v);
         const int r = again == none ? -1 : best_register(e);
         if (r < 0 || (e->used >> r & 1 && e->until[r] <= again))
@@ -547,12 +583,6 @@ static void list_uses(struct emitter *e)
 
 // ---- loops ------------------------------------------------------------------------------------
 
-// What the streams of a loop point at.
-struct stream {
-    unsigned area;
-    int32_t stride;
-};
-
 static const int stream_register[CT_ROLL_STREAMS]
     = {CT_RCX, CT_R8, CT_R9, CT_R10, CT_R11, CT_R13, CT_R15};
 
@@ -585,6 +615,35 @@ static bool is_same_operand(const struct ct_operand *a, const struct ct_operand 
     return a->reach == b->reach && a->at == b->at && a->stride == b->stride;
 }
 
+// A constant or parameter four times side by side: copied once.
+static struct home spread(struct emitter *e, uint32_t value)
+{
+    if (e->spread[value] == none) {
+        e->spread[value] = e->nwork;
+        for (int i = 0; i < 4; i++) {
+            const struct ct_copy c = {value, e->nwork++};
+            CT_PUSH(e->arena, e->roll.table, e->roll.ntable, e->roll.table_cap, c);
+        }
+    }
+    return (struct home){WORK, e->spread[value]};
+}
+
+static void place_fixed(struct body *b, const struct emitter *outer, uint32_t v, uint32_t value)
+{
+    const bool is_constant = outer->l->rate[value] != CT_RATE_CALL;
+    b->e.home[v] = b->e.layout && is_constant ? spread(&b->e, value) : outer->home[value];
+    if (b->e.layout)
+        b->e.layout[v] = is_constant ? FULL : ONE_FOR_ALL;
+}
+
+static void place_stream(struct body *b, uint32_t v, const struct ct_operand *o)
+{
+    const unsigned area = o->reach == CT_REACH_INPUT ? INPUT : WORK;
+    b->e.home[v] = (struct home){stream_of(b, area, o->stride), o->at};
+    if (b->e.layout)
+        b->e.layout[v] = o->stride == 1 ? FULL : APART;
+}
+
 // The value that stands for an operand; operands at one place are one.
 static uint32_t value_of(struct body *b, const struct emitter *outer,
                          const struct ct_loop *loop, const struct ct_operand *o)
@@ -594,17 +653,15 @@ static uint32_t value_of(struct body *b, const struct emitter *outer,
     size_t h = (o->at * 31u + (uint32_t)o->stride) * 2654435761u + (unsigned)o->reach;
     for (;; h++) {
         uint32_t *slot = &b->slot[h & b->mask];
-        if (*slot && !is_same_operand(&b->operand[*slot - 1 - loop->period], o))
+        if (*slot && !is_same_operand(&b->operand[*slot - 1 - loop->nslot], o))
             continue;
         if (!*slot) {
             const uint32_t v = (uint32_t)b->l.nvalue++;
-            b->operand[v - loop->period] = *o;
-            b->e.home[v]
-                = o->reach == CT_REACH_FIXED
-                    ? outer->home[o->at]
-                    : (struct home){
-                        stream_of(b, o->reach == CT_REACH_INPUT ? INPUT : WORK, o->stride),
-                        o->at};
+            b->operand[v - loop->nslot] = *o;
+            if (o->reach == CT_REACH_FIXED)
+                place_fixed(b, outer, v, o->at);
+            else
+                place_stream(b, v, o);
             *slot = v + 1;
         }
         return *slot - 1;
@@ -614,20 +671,21 @@ static uint32_t value_of(struct body *b, const struct emitter *outer,
 static void list_body(struct body *b, const struct emitter *outer, const struct ct_loop *loop)
 {
     struct ct_arena *a = b->e.arena;
-    const size_t most = 4 * (size_t)loop->period;
+    const size_t most = 4 * (size_t)loop->nslot;
     bool *is_kept = CT_NEWN(a, bool, most);
     for (b->mask = 64; b->mask < 2 * most; b->mask *= 2)
         ;
     b->slot = CT_NEWN(a, uint32_t, b->mask);
     b->mask--;
     b->operand = CT_NEWN(a, struct ct_operand, most);
-    b->l.ins = CT_NEWN(a, struct ct_instruction, loop->period);
-    b->l.nvalue = loop->period;
+    b->l.ins = CT_NEWN(a, struct ct_instruction, loop->nslot);
+    b->l.nvalue = loop->nslot;
     b->e.home = CT_NEWN(a, struct home, most);
-    b->e.order = CT_NEWN(a, uint32_t, loop->period);
-    for (uint32_t i = 0; i < loop->period; i++) {
+    b->e.order = CT_NEWN(a, uint32_t, loop->nslot);
+    b->e.layout = loop->is_side_by_side ? CT_NEWN(a, enum row_layout, most) : NULL;
+    for (uint32_t i = 0; i < loop->nslot; i++) {
         struct ct_instruction *ins = &b->l.ins[b->l.nins++];
-        *ins = outer->l->ins[outer->order[loop->first + i]];
+        *ins = outer->l->ins[outer->order[loop->first + loop->slot[i]]];
         for (uint32_t k = 0; k < ins->narg; k++)
             ins->arg[k] = value_of(b, outer, loop, &loop->operand[3 * i + k]);
         ins->res[0] = b->e.order[i] = i;
@@ -635,27 +693,69 @@ static void list_body(struct body *b, const struct emitter *outer, const struct 
         if (is_kept[i])
             b->e.home[i] = (struct home){stream_of(b, WORK, loop->width), loop->result[i]};
     }
-    b->e.norder = loop->period;
+    b->e.norder = loop->nslot;
     b->e.is_kept = is_kept;
     b->e.reg = CT_NEWN(a, signed char, b->l.nvalue);
     memset(b->e.reg, -1, b->l.nvalue);
     b->e.first_output = CT_NEWN(a, uint32_t, b->l.nvalue);
-    b->e.free = CT_NEWN(a, uint32_t, b->l.nvalue);
+    b->e.free = CT_NEWN(a, uint32_t, b->l.nvalue + 1);
+    b->e.nfixed = b->e.nwork; // values of outside stay where they are
+    b->e.nfree = 0;
     list_uses(&b->e);
 }
 
-static void emit_body(struct body *b, const struct ct_loop *loop)
+// Streams move on by so many rows.
+static void move_streams(struct body *b, int32_t rows)
 {
-    struct ct_bytes *c = &b->e.code;
     for (unsigned i = 0; i < b->nstream; i++)
-        ct_put_move(c, stream_register[i], b->e.base[b->stream[i].area]);
-    ct_put_immediate(c, CT_RAX, loop->count);
+        ct_put_advance(&b->e.code, stream_register[i],
+                       rows * b->stream[i].stride * (int32_t)b->e.place_size);
+}
+
+// `rows` times, from where the streams are; then they are behind it.
+static void emit_rows(struct emitter *e, const struct ct_loop *loop, uint32_t times,
+                      bool starts, int32_t back)
+{
+    struct body b = {.e = *e};
+    const int32_t together = loop->is_side_by_side ? ROWS_TOGETHER : 1;
+    b.e.l = &b.l;
+    b.e.stream = b.stream;
+    b.e.width = (uint32_t)together;
+    list_body(&b, e, loop);
+    struct ct_bytes *c = &b.e.code;
+    for (unsigned i = 0; i < b.nstream && starts; i++)
+        ct_put_move(c, stream_register[i], b.e.base[b.stream[i].area]);
+    if (back)
+        move_streams(&b, -back);
+    ct_put_immediate(c, CT_RAX, times);
     const size_t start = c->n;
-    for (uint32_t at = 0; at < b->e.norder; at++)
-        emit_instruction(&b->e, at);
-    for (unsigned i = 0; i < b->nstream; i++)
-        ct_put_advance(c, stream_register[i], b->stream[i].stride * 8 * c->lanes);
-    ct_put_back(c, start);
+    if (together > 1)
+        c->lanes = together;
+    for (uint32_t at = 0; at < b.e.norder; at++)
+        emit_instruction(&b.e, at);
+    if (times > 1 || starts) {
+        move_streams(&b, together);
+        ct_put_back(c, start);
+    }
+    c->lanes = e->code.lanes;
+    e->code = *c;
+    e->nwork = b.e.nwork;
+    e->roll.table = b.e.roll.table;
+    e->roll.ntable = b.e.roll.ntable;
+    e->roll.table_cap = b.e.roll.table_cap;
+}
+
+// Rows four at a time; the last four may begin among those that are done, which gives the same once more.
+static void emit_side_by_side(struct emitter *e, const struct ct_loop *loop)
+{
+    const uint32_t times = loop->count / ROWS_TOGETHER, left = loop->count % ROWS_TOGETHER;
+    const int lanes = e->code.lanes;
+    emit_rows(e, loop, times, true, 0);
+    if (left)
+        emit_rows(e, loop, 1, false, (int32_t)(ROWS_TOGETHER - left));
+    e->code.lanes = ROWS_TOGETHER;
+    ct_put_vzeroupper(&e->code);
+    e->code.lanes = lanes;
 }
 
 // Reads within a loop are done; what nobody else reads gives up its place.
@@ -679,15 +779,21 @@ static void emit_loop(struct emitter *e, const struct ct_loop *loop)
         release(e, &loop->copy[i].value, 1);
     }
     forget_registers(e);
-    struct body b = {.e = *e};
-    b.e.l = &b.l;
-    b.e.nfixed = e->nwork; // values of outside stay where they are
-    b.e.nfree = 0;
-    list_body(&b, e, loop);
-    emit_body(&b, loop);
-    e->code = b.e.code;
-    e->nwork = b.e.nwork;
-    pass_loop(e, loop);
+    if (loop->is_side_by_side)
+        emit_side_by_side(e, loop);
+    else
+        emit_rows(e, loop, loop->count, true, 0);
+}
+
+// The loops of one stretch. Returns the one behind them.
+static const struct ct_loop *emit_loops(struct emitter *e, const struct ct_loop *loop,
+                                        const struct ct_loop *end)
+{
+    const struct ct_loop *first = loop;
+    for (; loop < end && loop->first == first->first; loop++)
+        emit_loop(e, loop);
+    pass_loop(e, first);
+    return loop;
 }
 
 // Loops keep code in the nearer caches, but results of their rows in memory, four times as many in four lanes:
@@ -704,7 +810,11 @@ static void roll_up(struct emitter *e)
         is_alone[op] = e->calls->by_op[op] != 0;
     if (e->norder < least_rolled(e->code.lanes))
         return;
-    e->roll = ct_roll_find(e->arena, e->l, e->order, (uint32_t)e->norder, is_alone, e->nfixed);
+    e->roll = ct_roll_find(e->arena, e->l, e->order, (uint32_t)e->norder, is_alone, e->nfixed,
+                           e->calls->rows_together && e->code.lanes == 1 ? ROWS_TOGETHER : 1);
+    e->spread = CT_NEWN(e->arena, uint32_t, e->l->nvalue);
+    for (size_t v = 0; v < e->l->nvalue; v++)
+        e->spread[v] = none;
     e->nfixed = e->nwork = e->roll.nwork;
 }
 
@@ -863,7 +973,9 @@ struct ct_x86_code ct_x86_emit(struct ct_arena *a, const struct ct_listing *l, i
                         .calls = calls,
                         .code = {.arena = a, .lanes = lanes},
                         .nfixed = (uint32_t)nhome,
-                        .nwork = (uint32_t)nhome};
+                        .nwork = (uint32_t)nhome,
+                        .place_size = 8 * (uint32_t)lanes,
+                        .width = 1};
     const bool any_call = order_instructions(&e);
     const size_t usual = 10; // bytes of an instruction, a load or store counted in
     e.code.cap = usual * e.norder + 512;
@@ -875,9 +987,8 @@ struct ct_x86_code ct_x86_emit(struct ct_arena *a, const struct ct_listing *l, i
     const struct ct_loop *loop = e.roll.loop, *end = loop + e.roll.nloop;
     for (uint32_t at = 0; at < e.norder; at++) {
         if (loop < end && at == loop->first) {
-            emit_loop(&e, loop);
             at += loop->period * loop->count - 1;
-            loop++;
+            loop = emit_loops(&e, loop, end);
             continue;
         }
         const bool angles = e.nangle && at == e.first_angle;

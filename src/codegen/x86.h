@@ -30,6 +30,7 @@
 struct ct_x86_calls {
     uintptr_t by_op[CT_NKIND];
     uintptr_t sincos_many;
+    bool rows_together; // AVX2: rows of loops may be done four at a time
 };
 
 struct ct_x86_code {

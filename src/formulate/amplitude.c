@@ -24,10 +24,10 @@ static void add(struct ct_exs *x, ct_ex *sum, ct_ex v)
 
 // ---- bending ------------------------------------------------------------------------------------------
 
-struct ct_bend ct_bend_of(struct ct_exs *x, enum ct_beam_theory theory, ct_ex h,
+struct ct_bent ct_bent_of(struct ct_exs *x, enum ct_beam_theory theory, ct_ex h,
                           const ct_ex *dof)
 {
-    struct ct_bend s = {0};
+    struct ct_bent s = {0};
     const ct_ex rise = ct_ex_sub(x, dof[2], dof[0]);
     const ct_ex turns = ct_ex_add(x, dof[1], dof[3]), bend = ct_ex_sub(x, dof[3], dof[1]);
     s.slope[0] = rise;
@@ -48,8 +48,8 @@ struct ct_bend ct_bend_of(struct ct_exs *x, enum ct_beam_theory theory, ct_ex h,
     return s;
 }
 
-void ct_bend_push(struct ct_exs *x, enum ct_beam_theory theory, ct_ex h,
-                  const struct ct_bend *force, ct_ex *dof)
+void ct_bent_push(struct ct_exs *x, enum ct_beam_theory theory, ct_ex h,
+                  const struct ct_bent *force, ct_ex *dof)
 {
     const ct_ex *p = force->place, *s = force->slope, *r = force->turn;
     ct_ex by_rise = ct_ex_add(x, s[0], half(x, p[1])), turns = half(x, r[0]), bend = r[1];
@@ -71,7 +71,7 @@ void ct_bend_push(struct ct_exs *x, enum ct_beam_theory theory, ct_ex h,
 // ---- foreshortening -----------------------------------------------------------------------------------
 
 // Over both planes s_i t_j, and s_j t_i too if these are others.
-static ct_ex products(struct ct_exs *x, const struct ct_bend s[2], const struct ct_bend t[2],
+static ct_ex products(struct ct_exs *x, const struct ct_bent s[2], const struct ct_bent t[2],
                       int i, int j)
 {
     ct_ex sum = CT_EX_ZERO;
@@ -83,15 +83,15 @@ static ct_ex products(struct ct_exs *x, const struct ct_bend s[2], const struct 
     return sum;
 }
 
-struct ct_draw ct_draw_by(struct ct_exs *x, const struct ct_bend s[2],
-                          const struct ct_bend t[2])
+struct ct_draw ct_draw_by(struct ct_exs *x, const struct ct_bent s[2],
+                          const struct ct_bent t[2])
 {
     return (struct ct_draw){products(x, s, t, 0, 0), products(x, s, t, 1, 1),
                             products(x, s, t, 2, 2), products(x, s, t, 0, 1),
                             products(x, s, t, 0, 2), products(x, s, t, 1, 2)};
 }
 
-struct ct_draw ct_draw_of(struct ct_exs *x, const struct ct_bend s[2])
+struct ct_draw ct_draw_of(struct ct_exs *x, const struct ct_bent s[2])
 {
     struct ct_draw d = ct_draw_by(x, s, s);
     d.s00 = half(x, d.s00);
@@ -100,8 +100,8 @@ struct ct_draw ct_draw_of(struct ct_exs *x, const struct ct_bend s[2])
     return d;
 }
 
-void ct_draw_push(struct ct_exs *x, const struct ct_bend *s, const struct ct_draw *force,
-                  struct ct_bend *out)
+void ct_draw_push(struct ct_exs *x, const struct ct_bent *s, const struct ct_draw *force,
+                  struct ct_bent *out)
 {
     const ct_ex by[CT_SLOPES][CT_SLOPES] = {{force->s00, force->s01, force->s02},
                                             {force->s01, force->s11, force->s12},

@@ -27,30 +27,30 @@
 enum { CT_SLOPES = 3, CT_PLACES = 4, CT_ALONG = 6 };
 
 /// One plane of bending: displacements, rates or accelerations, or forces that do work on them.
-struct ct_bend {
+struct ct_bent {
     ct_ex slope[CT_SLOPES], place[CT_PLACES];
     ct_ex turn
         [CT_SLOPES]; // of the section: turn_0 + turn_1 P_1/2 + turn_2 P_2/2; the slope in a cubic element
 };
 
 /// Of four dofs.
-struct ct_bend ct_bend_of(struct ct_exs *x, enum ct_beam_theory theory, ct_ex h,
+struct ct_bent ct_bent_of(struct ct_exs *x, enum ct_beam_theory theory, ct_ex h,
                           const ct_ex *dof);
 /// Forces on the four dofs of forces on the amplitudes: its transpose.
-void ct_bend_push(struct ct_exs *x, enum ct_beam_theory theory, ct_ex h,
-                  const struct ct_bend *force, ct_ex *dof);
+void ct_bent_push(struct ct_exs *x, enum ct_beam_theory theory, ct_ex h,
+                  const struct ct_bent *force, ct_ex *dof);
 
 /// Products over both planes.
 struct ct_draw {
     ct_ex s00, s11, s22, s01, s02, s12;
 };
 /// D of the slopes s; their rates for s' = t, and so second derivatives by t = s''.
-struct ct_draw ct_draw_of(struct ct_exs *x, const struct ct_bend s[2]);
-struct ct_draw ct_draw_by(struct ct_exs *x, const struct ct_bend s[2],
-                          const struct ct_bend t[2]);
+struct ct_draw ct_draw_of(struct ct_exs *x, const struct ct_bent s[2]);
+struct ct_draw ct_draw_by(struct ct_exs *x, const struct ct_bent s[2],
+                          const struct ct_bent t[2]);
 /// Forces on s of forces on D, added.
-void ct_draw_push(struct ct_exs *x, const struct ct_bend *s, const struct ct_draw *force,
-                  struct ct_bend *out);
+void ct_draw_push(struct ct_exs *x, const struct ct_bent *s, const struct ct_draw *force,
+                  struct ct_bent *out);
 
 /// S(1)
 ct_ex ct_draw_whole(struct ct_exs *x, ct_ex h, const struct ct_draw *d);

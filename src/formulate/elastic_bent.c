@@ -6,7 +6,7 @@
 #include "formulate/elastic.h"
 
 struct bent {
-    struct ct_bend value[2], rate[2];
+    struct ct_bent value[2], rate[2];
     ct_ex h, per; // per: 1/h
     ct_ex K[2];   // EI/h
 };
@@ -21,7 +21,7 @@ bool ct_stiffness_has_amplitudes(struct ct_build *b, const struct ct_flexible *f
         kinds |= ct_ex_kinds(b->x, section[i]);
     return !(kinds & 1u << CT_SYM_LOCAL) && beam->theory == CT_BEAM_EULER_BERNOULLI
         && f->formulation == CT_BEAM_FORESHORTENING && !beam->higher_order
-        && !beam->has_quadratic_twist // couple() has two twists
+        && !beam->has_quadratic_twist // couple() knows one twist of an element
         && ct_flexible_stiffness_rule(beam) == CT_RULE_FULL
         && ct_ex_is_zero(beam->damping_mass);
 }
@@ -38,8 +38,8 @@ static struct bent bent_of(struct ct_build *b, const struct ct_flexible *f, int 
         const ct_ex EI = ct_ex_mul(x, beam->E, plane ? beam->Iy : beam->Iz);
         if (!(f->deformation & (plane ? CT_BEAM_BENDING_Y : CT_BEAM_BENDING_Z)))
             continue;
-        s.value[plane] = ct_bend_of(x, beam->theory, s.h, self->value + first);
-        s.rate[plane] = ct_bend_of(x, beam->theory, s.h, self->rate + first);
+        s.value[plane] = ct_bent_of(x, beam->theory, s.h, self->value + first);
+        s.rate[plane] = ct_bent_of(x, beam->theory, s.h, self->rate + first);
         s.K[plane] = ct_ex_mul(x, s.per, EI);
     }
     return s;
@@ -82,7 +82,7 @@ static ct_ex stretch(struct ct_build *b, const struct ct_flexible *f, int e,
 
 // Of the axial force, which turns with the slopes, and of the bending moments.
 static void bend(struct ct_build *b, const struct ct_flexible *f, int plane, ct_ex N,
-                 const struct bent *s, struct ct_bend *force, struct ct_element_force *out)
+                 const struct bent *s, struct ct_bent *force, struct ct_element_force *out)
 {
     struct ct_exs *x = b->x;
     const ct_ex K[CT_SLOPES] = {{0}, s->K[plane], ct_ex_scale(x, 3, s->K[plane])};
@@ -105,7 +105,7 @@ static void bend(struct ct_build *b, const struct ct_flexible *f, int plane, ct_
 //
 //     c = (g_1 w_0 - g_0 w_1)/h + (g_2 w_1 - g_1 w_2)/2,   a = g_1 w_1 + 3 g_2 w_2,   m = g_1 w_2 + g_2 w_1
 static void couple(struct ct_build *b, const struct ct_flexible *f, int e, const struct bent *s,
-                   struct ct_bend force[2], struct ct_element_force *out)
+                   struct ct_bent force[2], struct ct_element_force *out)
 {
     struct ct_exs *x = b->x;
     const ct_ex *p = f->element[e].value + CT_PLACE_DOF;
@@ -157,7 +157,7 @@ struct ct_element_force ct_element_bent(struct ct_build *b, const struct ct_flex
 {
     struct ct_exs *x = b->x;
     struct ct_element_force out = {0};
-    struct ct_bend force[2] = {0};
+    struct ct_bent force[2] = {0};
     const unsigned bending = CT_BEAM_BENDING_Y | CT_BEAM_BENDING_Z;
     const struct bent s = bent_of(b, f, e);
     ct_ex N = CT_EX_ZERO;
@@ -173,6 +173,6 @@ struct ct_element_force ct_element_bent(struct ct_build *b, const struct ct_flex
     if ((f->deformation & bending) == bending && f->deformation & CT_BEAM_TORSION)
         couple(b, f, e, &s, force, &out);
     for (int plane = 0; plane < 2; plane++)
-        ct_bend_push(x, f->beam->theory, s.h, &force[plane], out.row + (plane ? 6 : 2));
+        ct_bent_push(x, f->beam->theory, s.h, &force[plane], out.row + (plane ? 6 : 2));
     return out;
 }

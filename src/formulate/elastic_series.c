@@ -9,7 +9,7 @@ static const ct_ex3 zero3 = {{{0}, {0}, {0}}};
 // Amplitudes of a motion relative to the base: of a displacement, of a rotation.
 struct ct_field {
     ct_ex3 place[CT_ALONG], turn[CT_SLOPES];
-    struct ct_bend bend[2];
+    struct ct_bent bend[2];
 };
 
 struct ct_series {
@@ -55,8 +55,7 @@ bool ct_inertia_has_series(struct ct_build *b, const struct ct_flexible *f)
     const bool is_drawn_further = beam->higher_order && f->axial == CT_AXIAL_CHAIN;
     return !(kinds & 1u << CT_SYM_LOCAL) && ct_flexible_mass_rule(beam) == CT_RULE_FULL
         && f->kinematics == f->axial && f->axial != CT_AXIAL_LINEAR && !is_drawn_further
-        && !ct_flexible_turns_inertia(b, f)
-        && !beam->has_quadratic_twist; // push() hands moments to two twists
+        && !ct_flexible_turns_inertia(b, f) && !beam->has_quadratic_twist;
 }
 
 // ---- fields ---------------------------------------------------------------------------------------------
@@ -74,7 +73,7 @@ static struct ct_field field_of(struct ct_build *b, const struct ct_flexible *f,
     const ct_ex h = f->element[e].span.length;
     struct ct_field s = {0};
     for (int plane = 0; plane < 2; plane++) {
-        s.bend[plane] = ct_bend_of(x, f->beam->theory, h, dof + (plane ? 6 : 2));
+        s.bend[plane] = ct_bent_of(x, f->beam->theory, h, dof + (plane ? 6 : 2));
         for (int k = 0; k < CT_PLACES; k++)
             s.place[k].e[1 + plane] = s.bend[plane].place[k];
     }
@@ -155,13 +154,13 @@ static void push_field(struct ct_build *b, const struct ct_flexible *f, int e,
         along[k] = place[k].e[0];
     const struct ct_draw by = ct_draw_along_push(x, h, along, is_chain(f));
     for (int plane = 0; plane < 2; plane++) {
-        struct ct_bend force = {0};
+        struct ct_bent force = {0};
         for (int k = 0; k < CT_PLACES; k++)
             force.place[k] = place[k].e[1 + plane];
         for (int k = 0; k < CT_SLOPES; k++)
             force.turn[k] = plane ? ct_ex_neg(x, turn[k].e[1]) : turn[k].e[2];
         ct_draw_push(x, &f->inertia->series[e].value.bend[plane], &by, &force);
-        ct_bend_push(x, f->beam->theory, h, &force, dof + (plane ? 6 : 2));
+        ct_bent_push(x, f->beam->theory, h, &force, dof + (plane ? 6 : 2));
     }
     const ct_ex mean = ct_ex_scale(x, 0.5, along[0]), rise = ct_ex_scale(x, 0.5, along[1]);
     dof[0] = ct_ex_sub(x, mean, rise);
@@ -405,9 +404,9 @@ static void draw_slopes(struct ct_build *b, const struct ct_flexible *f, int e,
                         const struct ct_draw *by, ct_ex dof[CT_DOF])
 {
     for (int plane = 0; plane < 2; plane++) {
-        struct ct_bend force = {0};
+        struct ct_bent force = {0};
         ct_draw_push(b->x, &f->inertia->series[e].value.bend[plane], by, &force);
-        ct_bend_push(b->x, f->beam->theory, f->element[e].span.length, &force,
+        ct_bent_push(b->x, f->beam->theory, f->element[e].span.length, &force,
                      dof + (plane ? 6 : 2));
     }
 }

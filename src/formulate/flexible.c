@@ -320,14 +320,14 @@ static void draw_by_slopes(struct ct_build *b, struct ct_flexible *f, int e, ct_
     struct ct_element *self = &f->element[e];
     const ct_ex h = self->span.length;
     const struct ct_draw by = ct_draw_whole_push(x, h, ct_ex_const(x, -1));
-    struct ct_bend value[2], speed[2];
+    struct ct_bent value[2], speed[2];
     for (int plane = 0; plane < 2; plane++) {
         const int first = plane ? 6 : 2;
-        struct ct_bend force = {0};
-        value[plane] = ct_bend_of(x, f->beam->theory, h, self->value + first);
-        speed[plane] = ct_bend_of(x, f->beam->theory, h, self->rate + first);
+        struct ct_bent force = {0};
+        value[plane] = ct_bent_of(x, f->beam->theory, h, self->value + first);
+        speed[plane] = ct_bent_of(x, f->beam->theory, h, self->rate + first);
         ct_draw_push(x, &value[plane], &by, &force);
-        ct_bend_push(x, f->beam->theory, h, &force, self->g + first);
+        ct_bent_push(x, f->beam->theory, h, &force, self->g + first);
     }
     const struct ct_draw drawn = ct_draw_of(x, value), first = ct_draw_by(x, value, speed),
                          second = ct_draw_by(x, speed, speed);

@@ -7,6 +7,7 @@
 // is tried again shorter; until `commit` nothing has changed. Step control is that of control.h.
 #include "integrate/control.h"
 #include "integrate/crossing.h"
+#include "integrate/repeat.h"
 #include "integrate/striding.h"
 #include "integrate/watch.h"
 
@@ -50,6 +51,8 @@ struct run {
     const struct ct_integrate_options *o;
     struct ct_integrate_stats *stats;
     struct ct_tolerance tolerance;
+    struct ct_repeat repeat;
+    double *y0; // where the run began
     struct ct_watch watch;
     double t; // time of y and dy
     struct ct_control control;
@@ -117,7 +120,8 @@ static bool check_options(struct ct_ctx *ctx, const struct ct_integrate_options 
 static void allocate(struct run *r)
 {
     struct ct_arena *a = r->ctx->model;
-    double **const vectors[] = {&r->y, &r->dy, &r->y1, &r->dy1, &r->end, &r->dend, &r->point};
+    double **const vectors[]
+        = {&r->y0, &r->y, &r->dy, &r->y1, &r->dy1, &r->end, &r->dend, &r->point};
     for (size_t i = 0; i < COUNT(vectors); i++)
         *vectors[i] = CT_NEWN(a, double, r->p->ny);
     r->work = r->method->create(a, r->method, r->p);
@@ -634,8 +638,17 @@ static bool give_samples_here(struct run *r)
 
 // --- the march -------------------------------------------------------------------------------
 
+static void count_turns(struct run *r, double t1)
+{
+    const struct ct_integrate_options *o = r->o;
+    if (ct_repeat_step(&r->repeat, t1, r->y0, r->y, r->end, r->p->nq, r->p->nu))
+        r->tolerance = ct_repeat_tolerance(&r->repeat, o->rtol, o->atol, o->least_rtol);
+}
+
 static void commit(struct run *r, const struct stride *s)
 {
+    if (r->o->least_rtol > 0 && r->o->step == 0)
+        count_turns(r, s->t1);
     double *y = r->y, *dy = r->dy;
     r->y = r->end;
     r->dy = r->dend;
@@ -740,6 +753,7 @@ bool ct_integrate(struct ct_ctx *ctx, const struct ct_method *method,
         .stats = stats,
         .tolerance = {options->rtol, options->atol},
         .t = options->t0,
+        .repeat = ct_repeat_start(options->t0, options->t1),
         .control = ct_control_start(),
         .pace = {.t = options->t0},
         .singular_in = INFINITY,
@@ -748,6 +762,7 @@ bool ct_integrate(struct ct_ctx *ctx, const struct ct_method *method,
     };
     allocate(&r);
     memcpy(r.y, y, (size_t)p->ny * sizeof *y);
+    memcpy(r.y0, y, (size_t)p->ny * sizeof *y);
     const bool ok = start(&r) && march(&r);
     memcpy(y, r.y, (size_t)p->ny * sizeof *y);
     stats->last_time = r.t;

@@ -63,7 +63,8 @@ struct ct_stepper_span;
 
 struct ct_problem {
     void *user;
-    int ny; // states
+    int ny;     // states
+    int nq, nu; // the first are coordinates, those behind them their speeds; 0: not known
     /// What implicit methods need beside the rest; NULL: none can be used.
     const struct ct_dae *dae;
     /// Per state: counts in error control (quadratures do not). NULL: all do.
@@ -131,6 +132,7 @@ struct ct_bridge {
 struct ct_integrate_options {
     double t0, t1;
     double rtol, atol;    // tolerance of the states; see ct_integrate
+    double least_rtol;    // > 0: motions that repeat themselves often get less, down to this
     double step;          // > 0: fixed step, see ct_integrate
     double first_step;    // 0: chosen
     long max_steps;       // 0: 100 million
@@ -215,6 +217,9 @@ const struct ct_method *ct_method_find(const char *name);
 /// rtol * max(|y_i|, ...) + atol in each watched state (weighted root mean square) and, with
 /// output_error, in outputs. The methods of order 2 among the implicit ones measure coordinates,
 /// quadratures and outputs, not speeds.
+///
+/// With least_rtol, nq and nu, a motion that repeats itself for more than some turns up to t1 is held to a
+/// smaller part of the tolerance, see repeat.h.
 ///
 /// Steps end exactly on time events and on t1. Samples between step ends are interpolated and
 /// projected. State events are located on the interpolant; the step is then taken again up to the

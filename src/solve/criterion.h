@@ -69,7 +69,8 @@ static inline bool ct_is_within(double ratio, double factor)
 static inline void ct_strength_range(const struct ct_strength *s, double *low, double *high)
 {
     const double most = s->is_alike ? ct_most_change_alike : ct_most_change;
-    *low = fmax(ct_form_weakest, s->at_sigma / most);
+    const double least = s->at_sigma / most;
+    *low = least > ct_form_weakest ? least : ct_form_weakest;
     *high = s->at_sigma * most;
 }
 

@@ -8,6 +8,7 @@
 #define CT_SOLVE_LANE_H
 
 #include "integrate/control.h"
+#include "integrate/repeat.h"
 #include "solve/fidelity.h"
 #include "solve/lanes.h"
 
@@ -56,6 +57,9 @@ struct ct_lane {
     struct ct_strength strength;   // of its form
     struct ct_fidelity_record outputs;
     int *row, *dependent, *independent; // as in embed.h
+    struct ct_repeat repeat;
+    struct ct_tolerance tolerance; // before repeats count
+    double least_rtol;
     long steps;
     bool is_watched; // for stiffness
     int nstiff, nother;
@@ -95,7 +99,7 @@ struct ct_lanes {
     vec rtol, atol;          // of the steps
     vec *input;
     // states (ny), stages (ny x stages)
-    vec *y, *dy, *y1, *dy1, *end, *dend, *point, *late, *k;
+    vec *start, *y, *dy, *y1, *dy1, *end, *dend, *point, *late, *k;
     double *one_y, *one_dy, *one_point, *one_end; // a single lane's states
     vec *at, *probed;                             // outputs that are controlled
     double *one_at, *one_probed, *one_off;        // of a single lane

@@ -397,8 +397,33 @@ static void foresee_singular(struct ct_lanes *s, vec t, const vec *y, set wanted
     }
 }
 
+// As in driver.c.
+static void count_turns(struct ct_lanes *s, set wanted)
+{
+    vec dq = {0}, q = {0}, du = {0}, u = {0};
+    for (int i = 0; i < s->nq; i++) {
+        dq += (s->end[i] - s->y[i]) * (s->end[i] - s->y[i]);
+        q += (s->end[i] - s->start[i]) * (s->end[i] - s->start[i]);
+    }
+    for (int i = s->nq; i < s->nq + s->nu; i++) {
+        du += (s->end[i] - s->y[i]) * (s->end[i] - s->y[i]);
+        u += s->end[i] * s->end[i];
+    }
+    for (int l = 0; l < W; l++) {
+        struct ct_lane *lane = &s->lane[l];
+        if (!ct_has_lane(wanted, l) || !(lane->least_rtol > 0)
+            || !ct_repeat_add(&lane->repeat, lane->end, dq[l], q[l], du[l], u[l]))
+            continue;
+        const struct ct_tolerance tolerance = ct_repeat_tolerance(
+            &lane->repeat, lane->tolerance.rtol, lane->tolerance.atol, lane->least_rtol);
+        s->rtol[l] = tolerance.rtol;
+        s->atol[l] = tolerance.atol;
+    }
+}
+
 static void commit(struct ct_lanes *s, set wanted)
 {
+    count_turns(s, wanted);
     for (int l = 0; l < W; l++)
         if (s->lane[l].state != CT_LANE_RUNNING)
             wanted &= ~(1u << l);

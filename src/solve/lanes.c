@@ -81,7 +81,7 @@ static void make_room(struct ct_arena *a, struct ct_lanes *s)
 {
     const size_t n = (size_t)s->nu, r = (size_t)s->nrow, ny = (size_t)s->ny;
     vec **const states[]
-        = {&s->y, &s->dy, &s->y1, &s->dy1, &s->end, &s->dend, &s->point, &s->late};
+        = {&s->start, &s->y, &s->dy, &s->y1, &s->dy1, &s->end, &s->dend, &s->point, &s->late};
     double **const one[] = {&s->one_y, &s->one_dy, &s->one_point, &s->one_end};
     for (size_t i = 0; i < COUNT(states); i++)
         *states[i] = CT_NEWN(a, vec, ny);
@@ -311,6 +311,9 @@ static void start_lane(struct ct_lane *lane, const struct ct_run_options *o)
     lane->control = ct_control_start();
     lane->control.is_starting = true;
     ct_fidelity_clear(&lane->outputs);
+    lane->repeat = ct_repeat_start(0, o->duration);
+    lane->tolerance = (struct ct_tolerance){o->rtol, o->atol};
+    lane->least_rtol = o->least_rtol;
     lane->pivot_last = INFINITY;
     lane->pivot_time = 0;
     lane->steps = 0;
@@ -326,6 +329,7 @@ static void fill(struct ct_lanes *s, int l, const double *y)
         if (i == l || !s->is_used) {
             ct_lane_put(s->input, i, s->m->input, s->m->ninput);
             ct_lane_put(s->y, i, y, (size_t)s->ny);
+            ct_lane_put(s->start, i, y, (size_t)s->ny);
             ct_lane_put(s->dy, i, s->one_dy, (size_t)s->ny);
             s->t[i] = 0;
         }

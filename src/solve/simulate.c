@@ -96,7 +96,8 @@ static double residual(void *user, double t, const double *y)
     return ct_vector_largest(r->m->phi, r->m->nrow);
 }
 
-// Its rows times the vector that they are combined with to nothing.
+// Its rows times the vector that they are combined with to nothing. Where rows are redundant, those that are kept may come to
+// depend before all do: positions are then better crossed from further away.
 static double mismatch(void *user, double t, const double *y)
 {
     struct ct_run *r = user;
@@ -580,6 +581,8 @@ bool ct_run_simulate(struct ct_run *r, const struct ct_run_options *o,
         return false;
     struct ct_problem p = {.user = r,
                            .ny = (int)r->ny,
+                           .nq = (int)r->m->nq,
+                           .nu = (int)r->m->nu,
                            .dae = o->method->is_implicit ? ct_dae_create(r->arena, r->s) : NULL,
                            .watched = watched,
                            .groups = ct_run_groups(r),
@@ -592,7 +595,7 @@ bool ct_run_simulate(struct ct_run *r, const struct ct_run_options *o,
                            .set_crossing = set_crossing,
                            .crossed = crossed,
                            .residual = residual,
-                           .mismatch = mismatch,
+                           .mismatch = (size_t)r->s->rank < r->m->nrow ? NULL : mismatch,
                            .nroot = r->nroot,
                            .root = ct_run_root,
                            .next_time_event = ct_run_next_event,
@@ -600,6 +603,7 @@ bool ct_run_simulate(struct ct_run *r, const struct ct_run_options *o,
     const struct ct_integrate_options io = {.t1 = o->duration,
                                             .rtol = o->rtol,
                                             .atol = o->atol,
+                                            .least_rtol = o->least_rtol,
                                             .step = o->step,
                                             .sample = sample,
                                             .nsample = n,

@@ -11,6 +11,8 @@ struct ct_singular;
 struct ct_run_options {
     const struct ct_method *method;
     double duration, rtol, atol, step;
+    double
+        least_rtol; // motions with many turns may be held to as little; 0: all are held to rtol
     /// Taken over where the run of an explicit method turns out stiff, with these tolerances; NULL: never.
     const struct ct_method *stiff_method;
     double stiff_rtol, stiff_atol;

@@ -104,8 +104,10 @@ static double largest(const double *v, size_t n)
 static double strength(const struct unrolled *f, const double *pivot)
 {
     double least = 1;
-    for (size_t i = 0; i < f->c->npivot; i++)
-        least = fmin(least, fabs(pivot[i]) * f->c->scale[i]);
+    for (size_t i = 0; i < f->c->npivot; i++) {
+        const double size = fabs(pivot[i]) * f->c->scale[i];
+        least = size < least ? size : least;
+    }
     return least;
 }
 

@@ -1,6 +1,7 @@
 #!/bin/sh
-# generate.sh [K [N]]: writes the right-angle frame, each leg cut into K beams of N elements, to standard output.
-LC_ALL=C exec awk -v K="${1:-2}" -v N="${2:-1}" '
+# generate.sh [K [N [TWIST]]]: writes the right-angle frame, each leg cut into K beams of N elements, to standard output.
+# TWIST: linear or quadratic.
+LC_ALL=C exec awk -v K="${1:-2}" -v N="${2:-1}" -v twist="${3:-linear}" '
 BEGIN {
   if (K !~ /^[1-9][0-9]*$/ || N !~ /^[1-9][0-9]*$/) {
     print "generate.sh: K and N are positive integers" > "/dev/stderr"
@@ -13,7 +14,7 @@ BEGIN {
   for (k = 1; k <= 2 * K; k++) {
     printf "  part%d:\n    type: beam\n    length: 0.24/%d\n    elements: %d\n    density: 2700\n    rotary_inertia: true\n", k, K, N
     printf "    E: E\n    nu: nu\n    area: height*thickness\n    Iz: height^3*thickness/12\n    Iy: height*thickness^3/12\n    J: height*thickness^3/3\n"
-    printf "    formulation: foreshortening\n    deformation: [axial, bending-z, bending-y, torsion]\n"
+    printf "    formulation: foreshortening\n    twist: %s\n    deformation: [axial, bending-z, bending-y, torsion]\n", twist
     printf "    points: {end: %s}\n", (k == K ? "{at: length, rotate: [[z, -pi/2]]}" : "length")
   }
   printf "\njoints:\n  clamp: {type: weld, from: ground, to: part1}\n"

@@ -63,3 +63,30 @@ simulation: {duration: 10, samples: 3}
 END
 "$COTREE" sweep turning.yaml --vary w=0:1000:5 -o sweep.csv --quiet
 tail -n +2 sweep.csv | awk -F, '{ printf "%s %.6f %s\n", $1, $3, $4 }'
+
+echo '-- starts in a singular position, all bars in line, and a shifted parallelogram'
+start() {
+  cat <<END
+cotree: 1
+bodies:
+  ground: {points: {far: [1, 0, 0]}}
+  crank: {mass: 1, inertia: 1/12, com: [0.5, 0, 0], points: {end: [1, 0, 0]}}
+  coupler: {mass: 1, inertia: 1/12, com: [0.5, 0, 0], points: {end: [1, 0, 0]}}
+  rocker: {mass: 1, inertia: 1/12, com: [0.5, 0, 0], points: {end: [1, 0, 0]}}
+joints:
+  A: {type: revolute, from: ground, to: crank, initial: {q: $1}}
+  B: {type: revolute, from: crank.end, to: coupler, initial: {q: -$1, guess: true}}
+  C: {type: revolute, from: coupler.end, to: rocker.end, initial: {q: $1, guess: true}}
+  D: {type: revolute, from: ground.far, to: rocker, initial: {q: $1, guess: true}}
+outputs: [A.q]
+simulation: {duration: 0.1, interval: 0.1}
+END
+}
+start 0 >in_line.yaml
+start 1 >shifted.yaml
+for options in '' '--keep-all' '--keep-all --tree absolute'; do
+  for model in in_line shifted; do
+    # shellcheck disable=SC2086
+    "$COTREE" check "$model.yaml" $options 2>&1 | grep -e '^freedoms' -e warning || echo "exit $?"
+  done
+done

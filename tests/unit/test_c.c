@@ -100,15 +100,38 @@ static bool has_compiler(void)
     return system("cc --version >/dev/null 2>&1") == 0;
 }
 
-static void compare(struct random *r, size_t n, size_t split)
+enum { NIN = 8, NOUT = 40, MOST_LANES = 8 };
+
+// Random inputs in all lanes; each lane against the tape.
+static void compare_round(struct random *r, const struct object *object, struct ct_tape *t,
+                          double *work, unsigned lanes)
+{
+    double in[MOST_LANES * NIN], got[MOST_LANES * NOUT], one[NIN], want[NOUT];
+    for (size_t k = 0; k < lanes * NIN; k++)
+        in[k] = random_double(r);
+    object->evaluate(in, got);
+    for (size_t lane = 0; lane < lanes; lane++) {
+        for (size_t k = 0; k < NIN; k++)
+            one[k] = in[lanes * k + lane];
+        ct_tape_prepare(t, one, work);
+        ct_tape_eval(t, one, want, work);
+        for (size_t k = 0; k < NOUT; k++) {
+            const double mine = got[lanes * k + lane];
+            if (memcmp(&mine, &want[k], sizeof mine) && !(mine != mine && want[k] != want[k]))
+                fail_msg("output %zu: C %.17g, tape %.17g", k, mine, want[k]);
+        }
+    }
+}
+
+static void compare(struct random *r, size_t n, size_t split, unsigned lanes)
 {
     struct ct_arena *a = ct_arena_create();
     struct ct_exs x;
     ct_exs_init(&x, a);
     x.table = tables;
     x.ntable = COUNT(tables);
-    ct_ex sym[8], *e = CT_NEWN(a, ct_ex, n + 8), out[40];
-    size_t slot[8];
+    ct_ex sym[NIN], *e = CT_NEWN(a, ct_ex, n + NIN), out[NOUT];
+    size_t slot[NIN];
     for (size_t k = 0; k < 8; k++) {
         sym[k] = e[k] = ct_ex_sym(&x, k % 2 ? CT_SYM_Q : CT_SYM_PARAM, "gamma", (uint32_t)k);
         slot[k] = 7 - k;
@@ -117,22 +140,13 @@ static void compare(struct random *r, size_t n, size_t split)
         e[k] = random_node(r, &x, e, k);
     for (size_t k = 0; k < 40; k++)
         out[k] = k < 30 ? e[n + 8 - 1 - random_below(r, n)] : e[random_below(r, 12)];
-    const struct ct_c_options o = {.split = split};
+    const struct ct_c_options o = {.split = split, .lanes = lanes};
     struct object object;
     object_open(&object, ct_c_function(a, &x, out, 40, sym, slot, 8, &o));
     struct ct_tape *t = ct_tape_compile(a, &x, out, 40, sym, slot, 8);
-    double *w = CT_NEWN(a, double, ct_tape_work(t)), in[8], got[40], want[40];
-    for (int round = 0; round < 20; round++) {
-        for (size_t k = 0; k < 8; k++)
-            in[k] = random_double(r);
-        ct_tape_prepare(t, in, w);
-        ct_tape_eval(t, in, want, w);
-        object.evaluate(in, got);
-        for (size_t k = 0; k < 40; k++)
-            if (memcmp(&got[k], &want[k], sizeof *got)
-                && !(got[k] != got[k] && want[k] != want[k]))
-                fail_msg("output %zu: C %.17g, tape %.17g", k, got[k], want[k]);
-    }
+    double *work = CT_NEWN(a, double, ct_tape_work(t));
+    for (int round = 0; round < 20; round++)
+        compare_round(r, &object, t, work, lanes);
     object_close(&object);
     ct_arena_destroy(a);
 }
@@ -143,10 +157,11 @@ static void compiled_function_has_the_bits_of_the_tape(void **unused)
     struct random r = random_start(__func__);
     if (!has_compiler())
         skip();
-    compare(&r, 40, 0);
-    compare(&r, 500, 0);
-    compare(&r, 500, 7); // many parts
-    compare(&r, 3000, 0);
+    compare(&r, 40, 0, 1);
+    compare(&r, 500, 0, 4);
+    compare(&r, 500, 7, 1); // many parts
+    compare(&r, 500, 100, 8);
+    compare(&r, 3000, 0, 1);
 }
 
 int main(void)

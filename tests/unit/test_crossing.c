@@ -21,7 +21,8 @@ struct record {
     struct ct_ctx ctx;
     struct ct_integrate_stats stats;
     double now; // last accepted time
-    bool is_passed_by;
+    bool is_passed_by, is_mismatched;
+    double nearest; // to the position, of all evaluations
     double worst, worst_bridged; // errors of steps and samples, and of derivatives by bridges
     int nbridge, nevent;
     double event, last;
@@ -29,8 +30,9 @@ struct record {
 
 static enum ct_eval rhs(void *user, double t, const double *y, double *dy)
 {
-    (void)user;
+    struct record *r = user;
     const double s = t - singular;
+    r->nearest = fmin(r->nearest, fabs(s));
     if (fabs(s) < closest)
         return CT_EVAL_RETRY;
     dy[0] = cos(t) + 1e-16 / (s * s) * sin(1e6 * t);
@@ -120,7 +122,10 @@ static bool run(struct record *r, const char *method, struct ct_problem p, doubl
     double y[NY] = {0, 1}, sample[MOST];
     for (int i = 0; i < MOST; i++)
         sample[i] = end * i / (MOST - 1);
-    *r = (struct record){.is_passed_by = r->is_passed_by, .ctx = {.model = ct_arena_create()}};
+    *r = (struct record){.is_passed_by = r->is_passed_by,
+                         .is_mismatched = r->is_mismatched,
+                         .nearest = INFINITY,
+                         .ctx = {.model = ct_arena_create()}};
     p.user = r;
     const bool ok
         = ct_integrate(&r->ctx, ct_method_find(method), &p,
@@ -208,6 +213,59 @@ static void a_position_that_is_passed_by_is_not_crossed(void **unused)
     assert_true(r.stats.steps > 50);
 }
 
+static enum ct_eval project(void *user, double t, double *y)
+{
+    (void)user, (void)t, (void)y;
+    return CT_EVAL_OK;
+}
+
+static void set_crossing(void *user, bool is_crossing)
+{
+    (void)user, (void)is_crossing;
+}
+
+static double mismatch(void *user, double t, const double *y)
+{
+    (void)t, (void)y;
+    return ((const struct record *)user)->is_mismatched ? 1e-3 : 0;
+}
+
+// A method that leaves a part of its steps without evaluations puts the position there, and needs fewer of them.
+static void long_steps_stride_across(void **unused)
+{
+    (void)unused;
+    struct ct_problem p = problem;
+    p.project = project;
+    p.set_crossing = set_crossing;
+    for (int k = 3; k <= 14; k++) {
+        const double tolerance = pow(10, -k), least = 0.15 * 0.25; // of the reach
+        struct record strides = {0}, crosses = {0};
+        p.mismatch = mismatch;
+        assert_true(run(&strides, "dop853", p, 3, tolerance));
+        p.mismatch = NULL;
+        assert_true(run(&crosses, "dop853", p, 3, tolerance));
+        check_below("error", strides.worst, 10 * tolerance + 1e-13);
+        check_below("error of the bridge", strides.worst_bridged, 1e3 * tolerance + 1e-11);
+        assert_true(strides.nbridge > 10);
+        check_below("least distance", least * (1 - 1e-9), strides.nearest);
+        assert_true(k > 9 || strides.stats.evaluations < crosses.stats.evaluations);
+    }
+}
+
+static void a_motion_that_is_not_smooth_is_not_stridden_across(void **unused)
+{
+    (void)unused;
+    struct ct_problem p = problem;
+    p.project = project;
+    p.set_crossing = set_crossing;
+    p.mismatch = mismatch;
+    struct record strides = {0}, refused = {.is_mismatched = true};
+    assert_true(run(&strides, "dop853", p, 3, 1e-6) && run(&refused, "dop853", p, 3, 1e-6));
+    assert_true(refused.stats.rejected_steps > strides.stats.rejected_steps);
+    assert_true(refused.stats.evaluations > strides.stats.evaluations + 20); // of a crossing
+    check_below("error", refused.worst, 1e-5);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -215,6 +273,8 @@ int main(void)
         cmocka_unit_test(a_run_may_end_on_the_position),
         cmocka_unit_test(an_event_beside_the_position_is_found),
         cmocka_unit_test(a_position_that_is_passed_by_is_not_crossed),
+        cmocka_unit_test(long_steps_stride_across),
+        cmocka_unit_test(a_motion_that_is_not_smooth_is_not_stridden_across),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

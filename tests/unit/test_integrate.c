@@ -897,6 +897,47 @@ static void endless_runs_end_early(void **unused)
     end(r);
 }
 
+// A pendulum: its period from rest at 1 rad is 2 pi over the arithmetic-geometric mean of 1 and cos(1/2), here from 40 digits.
+static enum ct_eval swinging(void *user, double t, const double *y, double *dy)
+{
+    (void)user;
+    (void)t;
+    dy[0] = y[1];
+    dy[1] = -sin(y[0]);
+    return CT_EVAL_OK;
+}
+
+// Error after so many whole periods.
+static double error_of_swings(int count, double least_rtol, long *steps)
+{
+    static const double period = 6.69997566437045271;
+    struct record *r = begin();
+    double y[NY] = {1, 0};
+    check_fine(r, run(r, ct_method_find("dop853"),
+                      (struct ct_problem){.ny = 2, .nq = 1, .nu = 1, .rhs = swinging},
+                      (struct ct_integrate_options){
+                          .t1 = count * period, .atol = 1e-9, .least_rtol = least_rtol},
+                      y));
+    *steps = r->stats.steps;
+    end(r);
+    return hypot(y[0] - 1, y[1]);
+}
+
+// Errors grow with the square of the number of turns, unless steps know of it; with few turns nothing changes.
+static void many_turns_ask_for_better_steps(void **unused)
+{
+    (void)unused;
+    long steps, better_steps;
+    assert_true(error_of_swings(10, 0, &steps) == error_of_swings(10, 1e-14, &better_steps));
+    assert_true(steps == better_steps);
+    const double few = error_of_swings(10, 0, &steps), many = error_of_swings(300, 0, &steps);
+    const double better = error_of_swings(300, 1e-14, &better_steps);
+    printf("error after 10 swings %.1e, after 300 %.1e; with a share of the tolerance %.1e in "
+           "%ld steps instead of %ld\n",
+           few, many, better, better_steps, steps);
+    assert_true(many > 100 * few && better < many / 50 && better_steps < 3 * steps);
+}
+
 static void the_caller_may_stop_a_run(void **unused)
 {
     (void)unused;
@@ -1093,6 +1134,7 @@ int main(void)
         cmocka_unit_test(a_fixed_step_is_not_shortened),
         cmocka_unit_test(limits_and_senseless_options_are_errors),
         cmocka_unit_test(endless_runs_end_early),
+        cmocka_unit_test(many_turns_ask_for_better_steps),
         cmocka_unit_test(the_caller_may_stop_a_run),
         cmocka_unit_test(a_quadrature_does_not_shorten_steps),
         cmocka_unit_test(a_group_is_measured_by_its_largest_member),

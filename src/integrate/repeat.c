@@ -1,0 +1,68 @@
+// See repeat.h.
+#include "integrate/repeat.h"
+
+#include <math.h>
+
+// Steps between looks. What the first ones err acts on all turns.
+enum { STEPS_BETWEEN = 16 };
+// What runs ask of their steps is found on those of up to so many turns.
+static const double usual_turns = 20;
+
+// For 2000 turns: with less, steps would err by their rounding.
+static const double least_share = 1e-4;
+
+struct ct_repeat ct_repeat_start(double t0, double t1)
+{
+    return (struct ct_repeat){.t0 = t0, .t1 = t1, .share = 1};
+}
+
+// A turn is there and back: twice as far as it gets for coordinates, which begin at its end, four times the largest
+// speed. What has not turned yet has not repeated anything.
+static double turns_so_far(const struct ct_repeat *r)
+{
+    if (!(r->way_q > r->far_q && r->way_u > r->far_u))
+        return 0;
+    return fmin((r->way_q / r->far_q - 1) / 2, (r->way_u / r->far_u - 1) / 4);
+}
+
+bool ct_repeat_add(struct ct_repeat *r, double t, double dq, double q, double du, double u)
+{
+    r->way_q += sqrt(dq);
+    r->way_u += sqrt(du);
+    r->far_q = fmax(r->far_q, sqrt(q));
+    r->far_u = fmax(r->far_u, sqrt(u));
+    if (++r->steps < STEPS_BETWEEN)
+        return false;
+    const double before = r->share;
+    const double turns = turns_so_far(r) * (r->t1 - r->t0) / (t - r->t0);
+    const double ratio = fmin(1, usual_turns / turns);
+    r->steps = 0;
+    r->share = fmax(ratio * ratio, least_share);
+    return r->share != before;
+}
+
+static double square_of_difference(const double *a, const double *b, int n)
+{
+    double sum = 0;
+    for (int i = 0; i < n; i++)
+        sum += (a[i] - b[i]) * (a[i] - b[i]);
+    return sum;
+}
+
+bool ct_repeat_step(struct ct_repeat *r, double t, const double *y0, const double *y,
+                    const double *y1, int nq, int nu)
+{
+    double u = 0;
+    for (int i = nq; i < nq + nu; i++)
+        u += y1[i] * y1[i];
+    return ct_repeat_add(r, t, square_of_difference(y1, y, nq),
+                         square_of_difference(y1, y0, nq),
+                         square_of_difference(y1 + nq, y + nq, nu), u);
+}
+
+struct ct_tolerance ct_repeat_tolerance(const struct ct_repeat *r, double rtol, double atol,
+                                        double least)
+{
+    const double share = fmin(fmax(r->share, least / rtol), 1);
+    return (struct ct_tolerance){share * rtol, share * atol};
+}

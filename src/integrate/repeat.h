@@ -1,0 +1,31 @@
+// How often a motion repeats itself until the end of a run, and how much better its steps have to be for that.
+//
+// The error of a step changes the energy and with it the pace of all turns that follow: over n turns the error of the
+// solution grows with n^2. Turns are counted by the ways of all coordinates and of all speeds, against how far they
+// get: the smaller number counts, so that neither small vibrations nor steady rotations are turns.
+#ifndef CT_INTEGRATE_REPEAT_H
+#define CT_INTEGRATE_REPEAT_H
+
+#include "integrate/problem.h"
+
+struct ct_repeat {
+    double t0, t1;       // of the run
+    double way_q, far_q; // of coordinates: the way so far, the largest distance from the start
+    double way_u, far_u; // of speeds: the sum of their changes, the largest
+    int steps;           // since the last look
+    double share;        // of the tolerance of a step
+};
+
+/// What is left of a tolerance at this share, where rtol is not to fall below `least`.
+struct ct_tolerance ct_repeat_tolerance(const struct ct_repeat *r, double rtol, double atol,
+                                        double least);
+/// Before the first step; share = 1.
+struct ct_repeat ct_repeat_start(double t0, double t1);
+/// A step has ended at t: squared lengths of its change of the coordinates, of their distance from the start, of its
+/// change of the speeds, of the speeds. True if share is another now.
+bool ct_repeat_add(struct ct_repeat *r, double t, double dq, double q, double du, double u);
+/// The same of a step from y to y1 in a run from y0, of nq coordinates and nu speeds.
+bool ct_repeat_step(struct ct_repeat *r, double t, const double *y0, const double *y,
+                    const double *y1, int nq, int nu);
+
+#endif
