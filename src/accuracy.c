@@ -1,7 +1,7 @@
 // Speed against error: methods x tolerances against a converged reference.
 //
 //     reference: tight runs of different methods that agree, or a file
-//     ladder of a method: loose -> tight, each setting run up to three times  -> a point each
+//     ladder of a method: loose -> tight, each setting run several times  -> a point each
 //
 // What always holds: settings run one after the other in this thread; a ladder ends when its method has used
 // up its share of the time; a setting that fails is a point without an error, not a failure of the whole.
@@ -25,7 +25,8 @@ static const double standard_error = 1e-6;
 // Six methods within about a minute; more where already the reference takes long.  [s]
 static const double share_of_method = 9, share_of_reference = 1, reference_limit = 20,
                     quad_limit = 10;
-static const int repeats = 3;
+enum { REPEATS = 3, MOST_REPEATS = 15 }; // the latter of short ones
+static const double short_times = 0.05;          // of one setting together  [s]
 // Runs that agree to this need no third one to judge.
 static const double good_agreement = 1e-8;
 // A reference should be better than the error that is asked about by this factor.
@@ -33,6 +34,8 @@ static const double reference_margin = 0.1;
 // Steps of fixed length: as many halvings, from the spacing of samples but at least so many in the run.
 static const int most_steps_of_ladder = 7;
 static const double least_fixed_steps = 100;
+// Errors that differ by this part of themselves are the same.
+static const double same_error = 0.01;
 // Times of samples in a file are matched to this part of the run.
 static const double same_time = 1e-9;
 
@@ -439,21 +442,22 @@ static double median(const double *v, int n)
     return fmax(fmin(v[0], v[1]), fmin(fmax(v[0], v[1]), v[2]));
 }
 
-// One setting, up to three times while the time lasts.
+// One setting, several times while the time lasts.
 static enum ending measure(struct ct_accuracy *a, const struct setting *s, double end)
 {
     struct ct_precision_point p, again;
-    double seconds[3];
+    double seconds[MOST_REPEATS], sum;
     int n = 1;
     const enum ending ending = run_once(a, s, end - ct_clock(), compare_row, &p);
     if (ending == REFUSED)
         return ending;
     if (ending == DONE)
         p.error = a->worst;
-    seconds[0] = p.seconds;
-    while (ending == DONE && n < repeats && ct_clock() + p.seconds < end
+    seconds[0] = sum = p.seconds;
+    while (ending == DONE && n < (sum < short_times ? MOST_REPEATS : REPEATS)
+           && ct_clock() + p.seconds < end
            && run_once(a, s, INFINITY, compare_row, &again) == DONE)
-        seconds[n++] = again.seconds;
+        sum += seconds[n++] = again.seconds;
     p.seconds = round(median(seconds, n) * 1e9) / 1e9; // what the clock resolves
     CT_PUSH(a->own.model, a->point, a->npoint, a->point_cap, p);
     return ending;
@@ -466,6 +470,20 @@ static void choose_powers(const struct ct_method *m, int *first, int *last)
     *last = !m->is_implicit ? 11 : m->order < 3 ? 7 : 9;
 }
 
+// Of the ladder that begins at point[start]: tighter tolerances do not change the error of a beam any more, it is that of its
+// elements or formulation.
+static bool shows_mesh(const struct ct_accuracy *a, size_t start)
+{
+    enum { SETTINGS = 3 };
+    if (!a->variant || a->npoint < start + SETTINGS)
+        return false;
+    const struct ct_precision_point *last = &a->point[a->npoint - 1];
+    bool is_same = true;
+    for (int i = 1; i < SETTINGS; i++)
+        is_same = is_same && fabs(last[-i].error - last->error) <= same_error * last->error;
+    return is_same;
+}
+
 static bool climb_tolerances(struct ct_accuracy *a, const struct ct_method *m, double end)
 {
     static const double power[]
@@ -476,7 +494,9 @@ static bool climb_tolerances(struct ct_accuracy *a, const struct ct_method *m, d
     enum ending ending = DONE;
     if (s.tolerance > 0)
         return measure(a, &s, end) != REFUSED;
-    for (int k = first; k <= last && (ending == DONE || ending == FAILED); k++) {
+    const size_t start = a->npoint;
+    for (int k = first;
+         k <= last && (ending == DONE || ending == FAILED) && !shows_mesh(a, start); k++) {
         s.tolerance = power[k];
         ending = measure(a, &s, end);
     }
@@ -733,13 +753,24 @@ static void print_left_out(const struct ct_accuracy *a, FILE *out)
         fputs(": not in the reference, or zero but for rounding\n", out);
 }
 
+// The cheapest of those with the least error; NULL if all failed.
+static const struct ct_precision_point *find_nearest(const struct ct_accuracy *a)
+{
+    const struct ct_precision_point *nearest = NULL;
+    double least = INFINITY;
+    for (size_t i = 0; i < a->npoint; i++)
+        least = fmin(least, a->point[i].error);
+    for (size_t i = 0; i < a->npoint; i++)
+        if (a->point[i].error <= (1 + same_error) * least
+            && (!nearest || a->point[i].seconds < nearest->seconds))
+            nearest = &a->point[i];
+    return nearest;
+}
+
 void ct_accuracy_print_summary(const struct ct_accuracy *a, FILE *out)
 {
     char wanted[CT_PRECISION_NUMBER_SIZE];
-    const struct ct_precision_point *nearest = NULL;
-    for (size_t i = 0; i < a->npoint; i++)
-        if (!isnan(a->point[i].error) && (!nearest || a->point[i].error < nearest->error))
-            nearest = &a->point[i];
+    const struct ct_precision_point *nearest = find_nearest(a);
     fprintf(out, "reference     %s", a->source);
     if (!isnan(a->uncertainty))
         fprintf(out, ": they differ by %.2g", a->uncertainty);

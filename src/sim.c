@@ -21,7 +21,6 @@ static const double order2_factor = 30;
 // Of Radau's steps the error of an estimate of order 3 is controlled, eased to tol^(2/3)/10: T/10 for this power of T.
 static const double radau_power = 1.5;
 static const double radau_share = 1e-2;  // for loose tolerances
-static const double radau_least = 1e-13; // below, rounding in its iterations shows
 // Closed loops lose digits where they pass near singular positions: with less than 1e-13 nothing is gained (R05_N10 meets its
 // reference to 2e-10, R13_d1 to 2e-11).
 static const double least_rtol = 2e-14, least_rtol_loops = 1e-13;
@@ -172,7 +171,7 @@ static void choose_automatically(struct ct_sim *sim)
     sim->method_why = o->step > 0 ? "automatic: a fixed step"
                     : high        ? "automatic: high order"
                                   : "automatic: a loose tolerance";
-    if (o->step == 0 && pow(sim->tolerance, radau_power) >= radau_least)
+    if (o->step == 0)
         o->stiff_method = ct_method_find("radau5");
 }
 

@@ -127,15 +127,24 @@ bool ct_stiffness_watch(struct ct_stiffness *s, double t, const double *y, doubl
     if (s->count % test_every != 0)
         return false;
     s->in_a_row = test(s, t, y) ? s->in_a_row + 1 : 0;
-    return s->in_a_row >= suspicious_tests && s->count >= s->next_trial
-        && end - t > steps_worth_it * s->step;
+    const bool is_due = s->in_a_row >= suspicious_tests && s->count >= s->next_trial;
+    const bool is_overtaken = s->step < s->rival * s->evaluations;
+    return (is_due || is_overtaken) && end - t > steps_worth_it * s->step;
 }
 
-void ct_stiffness_put_off(struct ct_stiffness *s)
+void ct_stiffness_put_off(struct ct_stiffness *s, double t)
 {
     s->next_trial = put_off_by * s->count;
-    s->window_evaluations = 0; // counts begin anew with the next steps
+    s->window_t = t; // counts begin anew with the next steps
+    s->window_evaluations = 0;
     s->in_a_row = 0;
+    s->rival = 0;
+}
+
+void ct_stiffness_measure_against(struct ct_stiffness *s, double pace,
+                                  const struct ct_cost *cost)
+{
+    s->rival = pace * cost->evaluation;
 }
 
 double ct_stiffness_pace(const struct ct_stiffness *s, const struct ct_cost *cost)
@@ -172,8 +181,9 @@ bool ct_trial_has_lost(struct ct_trial *r, double t, double pace)
     r->t = t;
     if (++r->nstep % test_every != 0)
         return false;
-    const double spent = work(r), gained = (t - r->t0) / (spent - r->spent0);
+    const double spent = work(r);
+    r->pace = (t - r->t0) / (spent - r->spent0);
     r->t0 = t;
     r->spent0 = spent;
-    return gained < pace;
+    return r->pace < pace;
 }

@@ -25,6 +25,7 @@ struct ct_stiffness {
     double fast, slow;  // of the last test [1/s]
     double step;        // mean step since the test before [s]
     double evaluations; // for a step, since then
+    double rival;       // time that the implicit method gained for an evaluation's work, 0: unknown [s]
 };
 
 /// What the parts of a run cost, in common units.
@@ -41,6 +42,7 @@ struct ct_trial {
     const struct ct_integrate_stats *stats; // of the trial, while it runs
     int nstep;
     double t0, t, spent0; // where counting began, where it is, the work before
+    double pace;          // of the last hundred steps, where a trial does not end
 };
 
 /// first, last: the range of y whose rates are accelerations.
@@ -51,8 +53,11 @@ struct ct_stiffness *ct_stiffness_create(struct ct_arena *a, const struct ct_pro
 /// After each accepted step to t, y; end: of the run. True if a trial is worth its work now: tests were suspicious and
 /// there are many steps to come.
 bool ct_stiffness_watch(struct ct_stiffness *s, double t, const double *y, double end);
-/// After a trial that was lost: not again before the number of steps has grown fourfold.
-void ct_stiffness_put_off(struct ct_stiffness *s);
+/// After a trial that was lost, at time t: not again before the number of steps has grown fourfold.
+void ct_stiffness_put_off(struct ct_stiffness *s, double t);
+/// When the implicit method has been left, which gained as much time for its work: a trial as soon as steps gain less.
+void ct_stiffness_measure_against(struct ct_stiffness *s, double pace,
+                                  const struct ct_cost *cost);
 
 /// Time gained for the work of an explicit run between its last two tests.
 double ct_stiffness_pace(const struct ct_stiffness *s, const struct ct_cost *cost);

@@ -119,16 +119,19 @@ static void reconsider(struct ct_run *r, struct ct_problem *p, struct ct_integra
 {
     io->rtol = r->o->stiff_rtol;
     io->atol = r->o->stiff_atol;
-    io->first_step = r->method->is_implicit ? 0 : io->t0 - r->t_before;
-    if (!r->method->is_implicit && go_implicit(r, p, io)) {
+    const bool was_implicit = r->method->is_implicit;
+    io->first_step = was_implicit ? 0 : io->t0 - r->t_before;
+    if (!was_implicit && go_implicit(r, p, io)) {
         io->first_step = 0;
     } else {
-        if (r->method->is_implicit)
+        if (was_implicit)
             r->report->returned_at = io->t0;
         r->method = r->o->method;
         io->rtol = r->o->rtol;
         io->atol = r->o->atol;
-        ct_stiffness_put_off(r->stiffness);
+        ct_stiffness_put_off(r->stiffness, io->t0);
+        if (was_implicit)
+            ct_stiffness_measure_against(r->stiffness, r->implicit.pace, &r->implicit.cost);
     }
     r->report->method = r->method;
 }
