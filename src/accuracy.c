@@ -26,7 +26,7 @@ static const double standard_error = 1e-6;
 static const double share_of_method = 9, share_of_reference = 1, reference_limit = 20,
                     quad_limit = 10;
 enum { REPEATS = 3, MOST_REPEATS = 15 }; // the latter of short ones
-static const double short_times = 0.05;          // of one setting together  [s]
+static const double short_times = 0.05;  // of one setting together  [s]
 // Runs that agree to this need no third one to judge.
 static const double good_agreement = 1e-8;
 // A reference should be better than the error that is asked about by this factor.

@@ -56,7 +56,9 @@ void ct_components_print(FILE *out)
 
 void ct_methods_print(FILE *out)
 {
-    fprintf(out, "%-24s %s\n", "auto", "dop853, or dopri5 for loose tolerances and fixed steps; radau5 where it turns stiff");
+    fprintf(
+        out, "%-24s %s\n", "auto",
+        "dop853, or dopri5 for loose tolerances and fixed steps; radau5 where it turns stiff");
     for (int i = 0; i < ct_nmethod; i++)
         fprintf(out, "%-24s %s (order %d, %s)\n", ct_methods[i]->name, ct_methods[i]->summary,
                 ct_methods[i]->order, ct_methods[i]->is_implicit ? "implicit" : "explicit");

@@ -20,7 +20,7 @@ static const double usual_share = 2e-3, share_of_high_order = 5e-3;
 static const double order2_factor = 30;
 // Of Radau's steps the error of an estimate of order 3 is controlled, eased to tol^(2/3)/10: T/10 for this power of T.
 static const double radau_power = 1.5;
-static const double radau_share = 1e-2;  // for loose tolerances
+static const double radau_share = 1e-2; // for loose tolerances
 // Closed loops lose digits where they pass near singular positions: with less than 1e-13 nothing is gained (R05_N10 meets its
 // reference to 2e-10, R13_d1 to 2e-11).
 static const double least_rtol = 2e-14, least_rtol_loops = 1e-13;
