@@ -1,6 +1,5 @@
 // See x86.h: the walk over the listing that decides in which register each value is.
-#include "codegen/x86.h"
-#include "codegen/encode.h"
+#include "codegen/emitter.h"
 
 #include <assert.h>
 #include <string.h>
@@ -9,87 +8,37 @@ static const uint32_t none = CT_VALUE_NONE;
 
 // ---- where values are -------------------------------------------------------------------------
 
-enum { NREGISTER = 16, ROWS_TOGETHER = 4 };
-
-// Beyond WORK: what a stream of a loop points at.
-enum area { NOWHERE, INPUT, OUT, WORK, NAREA };
-
-// How four rows of a value stand in memory: side by side, one number for all, further apart.
-enum row_layout { FULL, ONE_FOR_ALL, APART };
-
-// What the streams of a loop point at.
-struct stream {
-    unsigned area;
-    int32_t stride;
-};
-
-struct home {
-    unsigned area;
-    uint32_t place;
-};
-
-struct emitter {
-    struct ct_bytes code;
-    struct ct_arena *arena;
-    const struct ct_listing *l;
-    const struct ct_x86_calls *calls;
-    int base[NAREA + CT_ROLL_STREAMS]; // register that points at each area
-    struct ct_roll roll;
-    const bool *is_kept; // by value, in loops: it is stored at its home at once
-    uint32_t *order;     // of the body's instructions
-    size_t norder;
-    uint32_t first_angle, nangle; // in the order: sines and cosines that are one call
-
-    // reads of a value: places in the order, ascending; those before next[v] are done
-    uint32_t *start, *use, *next;
-    struct home *home;           // by value
-    signed char *reg;            // by value: its register or -1
-    uint32_t content[NREGISTER]; // by register: its value or none
-    uint32_t until[NREGISTER];   // by register: next read of its value, or none
-    unsigned used,
-        pinned; // registers with a value; those not to be given away by this instruction
-    uint32_t *first_output, *next_output; // by value, by output: 1 + k of the next one
-    uint32_t *free;                       // places of the work array to be used again
-    uint32_t nfree, nwork, nfixed;
-    uint32_t place_size;         // bytes of a place
-    uint32_t width;              // places of a value that leaves its register
-    enum row_layout *layout;     // by value, in loops of rows side by side; else NULL
-    const struct stream *stream; // of the loop
-    uint32_t *
-        spread; // by value: the first of four places that hold a constant, or none; NULL: none has such
-};
-
-static struct ct_rm memory_of(const struct emitter *e, struct home h)
+struct ct_rm ct_emitter_memory(const struct ct_emitter *e, struct ct_home h)
 {
-    assert(h.area != NOWHERE);
+    assert(h.area != CT_AREA_NONE);
     return ct_in_memory(e->base[h.area], (int32_t)(h.place * e->place_size));
 }
 
 // Place in the order of the next read of v; none: never again.
-static uint32_t next_use(const struct emitter *e, uint32_t v)
+static uint32_t next_use(const struct ct_emitter *e, uint32_t v)
 {
     return e->next[v] < e->start[v + 1] ? e->use[e->next[v]] : none;
 }
 
-static bool is_spilled(const struct emitter *e, uint32_t v)
+static bool is_spilled(const struct ct_emitter *e, uint32_t v)
 {
-    return e->home[v].area == WORK && e->home[v].place >= e->nfixed;
+    return e->home[v].area == CT_AREA_WORK && e->home[v].place >= e->nfixed;
 }
 
-static void need_home(struct emitter *e, uint32_t v)
+static void need_home(struct ct_emitter *e, uint32_t v)
 {
-    if (e->home[v].area != NOWHERE)
+    if (e->home[v].area != CT_AREA_NONE)
         return;
     if (!e->nfree) {
         e->free[e->nfree++] = e->nwork;
         e->nwork += e->width;
     }
-    e->home[v] = (struct home){WORK, e->free[--e->nfree]};
+    e->home[v] = (struct ct_home){CT_AREA_WORK, e->free[--e->nfree]};
     if (e->reg[v] >= 0)
-        ct_put_store(&e->code, memory_of(e, e->home[v]), e->reg[v]);
+        ct_put_store(&e->code, ct_emitter_memory(e, e->home[v]), e->reg[v]);
 }
 
-static void leave_register(struct emitter *e, uint32_t v)
+static void leave_register(struct ct_emitter *e, uint32_t v)
 {
     if (e->reg[v] >= 0) {
         e->content[e->reg[v]] = none;
@@ -99,7 +48,7 @@ static void leave_register(struct emitter *e, uint32_t v)
 }
 
 // Reads of v before a place in the order are done.
-static void pass_reads_before(struct emitter *e, uint32_t v, uint32_t at)
+void ct_emitter_pass(struct ct_emitter *e, uint32_t v, uint32_t at)
 {
     while (next_use(e, v) < at)
         e->next[v]++;
@@ -108,9 +57,9 @@ static void pass_reads_before(struct emitter *e, uint32_t v, uint32_t at)
 }
 
 // The register that is free, or else whose value is read last; -1 if all are pinned.
-static int best_register(const struct emitter *e)
+static int best_register(const struct ct_emitter *e)
 {
-    const unsigned unused = ~(e->used | e->pinned) & ((1u << NREGISTER) - 1);
+    const unsigned unused = ~(e->used | e->pinned) & ((1u << CT_NREGISTER) - 1);
     if (unused)
         return __builtin_ctz(unused);
     int best = -1;
@@ -123,7 +72,7 @@ static int best_register(const struct emitter *e)
 }
 
 // A register for v, pinned; v = none: for an intermediate result.
-static int take_register(struct emitter *e, uint32_t v)
+static int take_register(struct ct_emitter *e, uint32_t v)
 {
     const int r = best_register(e);
     assert(r >= 0);
@@ -142,10 +91,10 @@ static int take_register(struct emitter *e, uint32_t v)
 }
 
 // Four rows that are not side by side.
-static void gather(struct emitter *e, int r, uint32_t v)
+static void gather(struct ct_emitter *e, int r, uint32_t v)
 {
-    const int32_t step = e->stream[e->home[v].area - NAREA].stride * (int32_t)e->place_size;
-    struct ct_rm m[4] = {memory_of(e, e->home[v])};
+    const int32_t step = e->stream[e->home[v].area - CT_NAREA].stride * (int32_t)e->place_size;
+    struct ct_rm m[4] = {ct_emitter_memory(e, e->home[v])};
     for (int i = 1; i < 4; i++) {
         m[i] = m[0];
         m[i].disp += i * step;
@@ -154,36 +103,36 @@ static void gather(struct emitter *e, int r, uint32_t v)
 }
 
 // v in a register, pinned.
-static int load(struct emitter *e, uint32_t v)
+int ct_emitter_load(struct ct_emitter *e, uint32_t v)
 {
     if (e->reg[v] >= 0) {
         e->pinned |= 1u << e->reg[v];
         return e->reg[v];
     }
     const int r = take_register(e, v);
-    if (!e->layout || e->layout[v] == FULL)
-        ct_put_load(&e->code, r, memory_of(e, e->home[v]));
-    else if (e->layout[v] == ONE_FOR_ALL)
-        ct_put_broadcast(&e->code, r, memory_of(e, e->home[v]));
+    if (!e->layout || e->layout[v] == CT_ROWS_FULL)
+        ct_put_load(&e->code, r, ct_emitter_memory(e, e->home[v]));
+    else if (e->layout[v] == CT_ROWS_SAME)
+        ct_put_broadcast(&e->code, r, ct_emitter_memory(e, e->home[v]));
     else
         gather(e, r, v);
     return r;
 }
 
 // v as a last operand: a register if it is in one or will be read again before some value that is.
-static struct ct_rm operand(struct emitter *e, uint32_t v)
+static struct ct_rm operand(struct ct_emitter *e, uint32_t v)
 {
-    if (e->reg[v] < 0 && (!e->layout || e->layout[v] == FULL)) {
+    if (e->reg[v] < 0 && (!e->layout || e->layout[v] == CT_ROWS_FULL)) {
         const uint32_t again = next_use(e, v);
         const int r = again == none ? -1 : best_register(e);
         if (r < 0 || (e->used >> r & 1 && e->until[r] <= again))
-            return memory_of(e, e->home[v]);
+            return ct_emitter_memory(e, e->home[v]);
     }
-    return ct_in_register(load(e, v));
+    return ct_in_register(ct_emitter_load(e, v));
 }
 
 // Which of two exchangeable operands must be in a register: one that is, or the one read again first.
-static bool prefer_second(const struct emitter *e, uint32_t a, uint32_t b)
+static bool prefer_second(const struct ct_emitter *e, uint32_t a, uint32_t b)
 {
     const bool has_a = e->reg[a] >= 0, has_b = e->reg[b] >= 0;
     return has_a != has_b ? has_b : next_use(e, b) < next_use(e, a);
@@ -191,7 +140,7 @@ static bool prefer_second(const struct emitter *e, uint32_t a, uint32_t b)
 
 // ---- instructions -----------------------------------------------------------------------------
 
-static void release(struct emitter *e, const uint32_t *v, uint32_t n)
+void ct_emitter_release(struct ct_emitter *e, const uint32_t *v, uint32_t n)
 {
     for (uint32_t k = 0; k < n; k++)
         if (e->reg[v[k]] >= 0 && e->until[e->reg[v[k]]] == none)
@@ -199,41 +148,41 @@ static void release(struct emitter *e, const uint32_t *v, uint32_t n)
 }
 
 // Pins come off, and values of an instruction that are not read again leave.
-static void release_registers(struct emitter *e, const struct ct_instruction *i)
+static void release_registers(struct ct_emitter *e, const struct ct_instruction *i)
 {
     e->pinned = 0;
-    release(e, i->arg, i->narg);
-    release(e, i->res, i->nres);
+    ct_emitter_release(e, i->arg, i->narg);
+    ct_emitter_release(e, i->res, i->nres);
 }
 
 // The register of the result, which may be that of an operand: an operand read again is stored before
 // its register is given away, and instructions read before they write.
-static int result(struct emitter *e, const struct ct_instruction *i)
+static int result(struct ct_emitter *e, const struct ct_instruction *i)
 {
     release_registers(e, i);
     return take_register(e, i->res[0]);
 }
 
-static void emit_binary(struct emitter *e, const struct ct_instruction *i, unsigned op,
+static void emit_binary(struct ct_emitter *e, const struct ct_instruction *i, unsigned op,
                         bool commutes)
 {
     const bool swap = commutes && prefer_second(e, i->arg[0], i->arg[1]);
-    const int a = load(e, i->arg[swap]);
+    const int a = ct_emitter_load(e, i->arg[swap]);
     const struct ct_rm b = operand(e, i->arg[!swap]);
     ct_put_arithmetic(&e->code, op, result(e, i), a, b);
 }
 
-static void emit_sqrt(struct emitter *e, const struct ct_instruction *i)
+static void emit_sqrt(struct ct_emitter *e, const struct ct_instruction *i)
 {
-    const int a = load(e, i->arg[0]), d = result(e, i);
+    const int a = ct_emitter_load(e, i->arg[0]), d = result(e, i);
     ct_put_arithmetic(&e->code, 0x51, d, e->code.lanes == 1 ? a : 0, ct_in_register(a));
 }
 
 // Flip or clear the sign.
-static void emit_sign_bit(struct emitter *e, const struct ct_instruction *i, unsigned op,
+static void emit_sign_bit(struct ct_emitter *e, const struct ct_instruction *i, unsigned op,
                           enum ct_pattern c)
 {
-    const int a = load(e, i->arg[0]);
+    const int a = ct_emitter_load(e, i->arg[0]);
     ct_put_bitwise(&e->code, op, result(e, i), a, ct_in_pool(c));
 }
 
@@ -241,10 +190,10 @@ enum { AND = 0x54, XOR = 0x57 };
 enum { EQ_OQ = 0x00, NEQ_UQ = 0x04, LT_OQ = 0x11, LE_OQ = 0x12, GE_OQ = 0x1D, GT_OQ = 0x1E };
 
 // The mask of a comparison, all ones or all zeros, keeps 1 or nothing of the number one.
-static void emit_comparison(struct emitter *e, const struct ct_instruction *i,
+static void emit_comparison(struct ct_emitter *e, const struct ct_instruction *i,
                             unsigned predicate)
 {
-    const int a = load(e, i->arg[0]);
+    const int a = ct_emitter_load(e, i->arg[0]);
     const struct ct_rm b = operand(e, i->arg[1]);
     const int d = result(e, i);
     ct_put_compare(&e->code, d, a, b, predicate);
@@ -252,9 +201,9 @@ static void emit_comparison(struct emitter *e, const struct ct_instruction *i,
 }
 
 // (0 < a) - (a < 0) in ones
-static void emit_signum(struct emitter *e, const struct ct_instruction *i)
+static void emit_signum(struct ct_emitter *e, const struct ct_instruction *i)
 {
-    const int a = load(e, i->arg[0]), plus = take_register(e, none),
+    const int a = ct_emitter_load(e, i->arg[0]), plus = take_register(e, none),
               minus = take_register(e, none);
     ct_put_bitwise(&e->code, XOR, minus, minus, ct_in_register(minus));
     ct_put_compare(&e->code, plus, minus, ct_in_register(a), LT_OQ);
@@ -264,9 +213,10 @@ static void emit_signum(struct emitter *e, const struct ct_instruction *i)
     ct_put_arithmetic(&e->code, 0x5C, result(e, i), plus, ct_in_register(minus));
 }
 
-static void emit_if(struct emitter *e, const struct ct_instruction *i)
+static void emit_if(struct ct_emitter *e, const struct ct_instruction *i)
 {
-    const int yes = load(e, i->arg[1]), no = load(e, i->arg[2]), mask = take_register(e, none);
+    const int yes = ct_emitter_load(e, i->arg[1]), no = ct_emitter_load(e, i->arg[2]),
+              mask = take_register(e, none);
     const struct ct_rm condition = operand(e, i->arg[0]);
     ct_put_bitwise(&e->code, XOR, mask, mask, ct_in_register(mask));
     ct_put_compare(&e->code, mask, mask, condition, NEQ_UQ);
@@ -276,10 +226,10 @@ static void emit_if(struct emitter *e, const struct ct_instruction *i)
 // Three forms, by which operand the result overwrites. `op` is that of form 132.
 //
 //     132: d = d * rm + v      213: d = v * d + rm      231: d = v * rm + d
-static void emit_fused(struct emitter *e, const struct ct_instruction *i, unsigned op)
+static void emit_fused(struct ct_emitter *e, const struct ct_instruction *i, unsigned op)
 {
     const bool swap = prefer_second(e, i->arg[0], i->arg[1]);
-    const int a = load(e, i->arg[swap]), b = load(e, i->arg[!swap]);
+    const int a = ct_emitter_load(e, i->arg[swap]), b = ct_emitter_load(e, i->arg[!swap]);
     const struct ct_rm c = operand(e, i->arg[2]);
     const struct ct_vex form = {1, 2, 1, (unsigned char)(op + (e->code.lanes == 1))};
     const struct ct_vex f132 = form, f213 = {1, 2, 1, form.op + 0x10},
@@ -303,10 +253,10 @@ static void emit_fused(struct emitter *e, const struct ct_instruction *i, unsign
 }
 
 // All registers are lost in a call.
-static void emit_call(struct emitter *e, const struct ct_instruction *i)
+static void emit_call(struct ct_emitter *e, const struct ct_instruction *i)
 {
     struct ct_bytes *c = &e->code;
-    for (int r = 0; r < NREGISTER; r++) {
+    for (int r = 0; r < CT_NREGISTER; r++) {
         const uint32_t v = e->content[r];
         bool is_argument = false;
         for (uint32_t k = 0; v != none && k < i->narg; k++)
@@ -319,20 +269,20 @@ static void emit_call(struct emitter *e, const struct ct_instruction *i)
     for (uint32_t r = 0; r < i->nres; r++)
         need_home(e, i->res[r]);
     ct_put_vzeroupper(c);
-    ct_put_address(c, CT_RDI, memory_of(e, e->home[i->res[0]]));
-    ct_put_address(c, CT_RSI, memory_of(e, e->home[i->arg[0]]));
+    ct_put_address(c, CT_RDI, ct_emitter_memory(e, e->home[i->res[0]]));
+    ct_put_address(c, CT_RSI, ct_emitter_memory(e, e->home[i->arg[0]]));
     if (i->nres == 2) {
-        ct_put_address(c, CT_RDX, memory_of(e, e->home[i->res[1]]));
+        ct_put_address(c, CT_RDX, ct_emitter_memory(e, e->home[i->res[1]]));
     } else if (i->op == CT_OP_TABLE) {
         ct_put_immediate(c, CT_RDX, (uintptr_t)&e->l->table[i->table]);
         ct_put_immediate(c, CT_RCX, i->order);
     } else if (i->narg > 1) {
-        ct_put_address(c, CT_RDX, memory_of(e, e->home[i->arg[1]]));
+        ct_put_address(c, CT_RDX, ct_emitter_memory(e, e->home[i->arg[1]]));
     }
     ct_put_call(c, e->calls->by_op[i->op]);
 }
 
-static void emit_operation(struct emitter *e, const struct ct_instruction *i)
+static void emit_operation(struct ct_emitter *e, const struct ct_instruction *i)
 {
     switch (i->op) {
     case CT_OP_ADD:
@@ -399,42 +349,43 @@ static void emit_operation(struct emitter *e, const struct ct_instruction *i)
 }
 
 // Places in the work array of values that are dead now.
-static void give_up_places(struct emitter *e, const uint32_t *v, uint32_t n)
+void ct_emitter_give_up(struct ct_emitter *e, const uint32_t *v, uint32_t n)
 {
     for (uint32_t k = 0; k < n; k++)
         if (next_use(e, v[k]) == none && is_spilled(e, v[k])) {
             e->free[e->nfree++] = e->home[v[k]].place;
-            e->home[v[k]].area = NOWHERE;
+            e->home[v[k]].area = CT_AREA_NONE;
         }
 }
 
 // Results that are outputs are stored at once; the first such place is their home.
-static void claim_output(struct emitter *e, uint32_t v)
+static void claim_output(struct ct_emitter *e, uint32_t v)
 {
     if (e->first_output[v])
-        e->home[v] = (struct home){OUT, e->first_output[v] - 1};
+        e->home[v] = (struct ct_home){CT_AREA_OUT, e->first_output[v] - 1};
 }
 
-static void store_outputs(struct emitter *e, uint32_t v)
+static void store_outputs(struct ct_emitter *e, uint32_t v)
 {
     uint32_t k = e->first_output[v];
     if (k && e->reg[v] < 0) // a function has written it there
         k = e->next_output[k - 1];
     for (; k; k = e->next_output[k - 1])
-        ct_put_store(&e->code, memory_of(e, (struct home){OUT, k - 1}), load(e, v));
+        ct_put_store(&e->code, ct_emitter_memory(e, (struct ct_home){CT_AREA_OUT, k - 1}),
+                     ct_emitter_load(e, v));
 }
 
-static void keep_result(struct emitter *e, uint32_t v)
+static void keep_result(struct ct_emitter *e, uint32_t v)
 {
     if (e->is_kept && e->is_kept[v])
-        ct_put_store(&e->code, memory_of(e, e->home[v]), load(e, v));
+        ct_put_store(&e->code, ct_emitter_memory(e, e->home[v]), ct_emitter_load(e, v));
 }
 
-static void emit_instruction(struct emitter *e, uint32_t at)
+void ct_emitter_instruction(struct ct_emitter *e, uint32_t at)
 {
     const struct ct_instruction *i = &e->l->ins[e->order[at]];
     for (uint32_t k = 0; k < i->narg; k++) {
-        pass_reads_before(e, i->arg[k], at + 1);
+        ct_emitter_pass(e, i->arg[k], at + 1);
         if (e->reg[i->arg[k]] >= 0)
             e->pinned |= 1u << e->reg[i->arg[k]];
     }
@@ -446,26 +397,26 @@ static void emit_instruction(struct emitter *e, uint32_t at)
         keep_result(e, i->res[r]);
     }
     release_registers(e, i);
-    give_up_places(e, i->arg, i->narg);
-    give_up_places(e, i->res, i->nres);
+    ct_emitter_give_up(e, i->arg, i->narg);
+    ct_emitter_give_up(e, i->res, i->nres);
 }
 
 // ---- angles -----------------------------------------------------------------------------------
 
-static const struct ct_instruction *wave(const struct emitter *e, uint32_t k)
+static const struct ct_instruction *wave(const struct ct_emitter *e, uint32_t k)
 {
     return &e->l->ins[e->order[e->first_angle + k]];
 }
 
 // In the order of the places of their angles, so that inputs side by side can be read where they are.
-static void sort_waves(struct emitter *e)
+static void sort_waves(struct ct_emitter *e)
 {
     uint32_t *order = e->order + e->first_angle;
     for (uint32_t i = 1; i < e->nangle; i++) // few, and mostly in order
         for (uint32_t k = i; k > 0; k--) {
-            const struct home *a = &e->home[wave(e, k - 1)->arg[0]],
-                              *b = &e->home[wave(e, k)->arg[0]];
-            if (a->area != INPUT || b->area != INPUT || a->place <= b->place)
+            const struct ct_home *a = &e->home[wave(e, k - 1)->arg[0]],
+                                 *b = &e->home[wave(e, k)->arg[0]];
+            if (a->area != CT_AREA_INPUT || b->area != CT_AREA_INPUT || a->place <= b->place)
                 break;
             const uint32_t kept = order[k];
             order[k] = order[k - 1];
@@ -473,33 +424,34 @@ static void sort_waves(struct emitter *e)
         }
 }
 
-static bool are_side_by_side(const struct emitter *e)
+static bool are_side_by_side(const struct ct_emitter *e)
 {
     for (uint32_t k = 0; k < e->nangle; k++) {
-        const struct home *h = &e->home[wave(e, k)->arg[0]];
-        if (h->area != INPUT || h->place != e->home[wave(e, 0)->arg[0]].place + k)
+        const struct ct_home *h = &e->home[wave(e, k)->arg[0]];
+        if (h->area != CT_AREA_INPUT || h->place != e->home[wave(e, 0)->arg[0]].place + k)
             return false;
     }
     return true;
 }
 
 // The angles copied to places side by side.
-static struct home gather_angles(struct emitter *e)
+static struct ct_home gather_angles(struct ct_emitter *e)
 {
-    const struct home first = {WORK, e->nwork};
+    const struct ct_home first = {CT_AREA_WORK, e->nwork};
     e->nwork += e->nangle;
     for (uint32_t k = 0; k < e->nangle; k++) {
-        const int r = load(e, wave(e, k)->arg[0]);
-        ct_put_store(&e->code, memory_of(e, (struct home){WORK, first.place + k}), r);
-        pass_reads_before(e, wave(e, k)->arg[0], e->first_angle + e->nangle);
+        const int r = ct_emitter_load(e, wave(e, k)->arg[0]);
+        ct_put_store(&e->code,
+                     ct_emitter_memory(e, (struct ct_home){CT_AREA_WORK, first.place + k}), r);
+        ct_emitter_pass(e, wave(e, k)->arg[0], e->first_angle + e->nangle);
         release_registers(e, wave(e, k));
     }
     return first;
 }
 
-static void forget_registers(struct emitter *e)
+void ct_emitter_forget(struct ct_emitter *e)
 {
-    for (int r = 0; r < NREGISTER; r++) {
+    for (int r = 0; r < CT_NREGISTER; r++) {
         const uint32_t v = e->content[r];
         if (v != none && next_use(e, v) != none)
             need_home(e, v);
@@ -509,14 +461,14 @@ static void forget_registers(struct emitter *e)
 }
 
 // Sines and cosines where the call has put them; places that no value has become free.
-static void place_waves(struct emitter *e, uint32_t sines, uint32_t cosines)
+static void place_waves(struct ct_emitter *e, uint32_t sines, uint32_t cosines)
 {
     for (uint32_t k = 0; k < e->nangle; k++) {
         const struct ct_instruction *i = wave(e, k);
         const uint32_t at[2] = {sines + k, cosines + k};
         for (uint32_t r = 0; r < 2; r++) {
             if (i->nres == 2 || (i->op == CT_OP_ANGLE_COS) == (r == 1))
-                e->home[i->res[i->nres == 2 ? r : 0]] = (struct home){WORK, at[r]};
+                e->home[i->res[i->nres == 2 ? r : 0]] = (struct ct_home){CT_AREA_WORK, at[r]};
             else
                 e->free[e->nfree++] = at[r];
         }
@@ -525,31 +477,32 @@ static void place_waves(struct emitter *e, uint32_t sines, uint32_t cosines)
         const struct ct_instruction *i = wave(e, k);
         for (uint32_t r = 0; r < i->nres; r++)
             for (uint32_t o = e->first_output[i->res[r]]; o; o = e->next_output[o - 1])
-                ct_put_store(&e->code, memory_of(e, (struct home){OUT, o - 1}),
-                             load(e, i->res[r]));
+                ct_put_store(&e->code,
+                             ct_emitter_memory(e, (struct ct_home){CT_AREA_OUT, o - 1}),
+                             ct_emitter_load(e, i->res[r]));
         release_registers(e, i);
-        give_up_places(e, i->arg, 1);
-        give_up_places(e, i->res, i->nres);
+        ct_emitter_give_up(e, i->arg, 1);
+        ct_emitter_give_up(e, i->res, i->nres);
     }
 }
 
 // One call for all of them.
-static void emit_angles(struct emitter *e)
+static void emit_angles(struct ct_emitter *e)
 {
     struct ct_bytes *c = &e->code;
     sort_waves(e);
-    const struct home inputs = e->home[wave(e, 0)->arg[0]];
+    const struct ct_home inputs = e->home[wave(e, 0)->arg[0]];
     const bool copied = !are_side_by_side(e);
-    const struct home angles = copied ? gather_angles(e) : inputs;
+    const struct ct_home angles = copied ? gather_angles(e) : inputs;
     for (uint32_t k = 0; k < e->nangle; k++)
-        pass_reads_before(e, wave(e, k)->arg[0], e->first_angle + e->nangle);
+        ct_emitter_pass(e, wave(e, k)->arg[0], e->first_angle + e->nangle);
     const uint32_t sines = e->nwork, cosines = sines + e->nangle;
     e->nwork += 2 * e->nangle;
-    forget_registers(e);
+    ct_emitter_forget(e);
     ct_put_vzeroupper(c);
-    ct_put_address(c, CT_RDI, memory_of(e, (struct home){WORK, sines}));
-    ct_put_address(c, CT_RSI, memory_of(e, angles));
-    ct_put_address(c, CT_RDX, memory_of(e, (struct home){WORK, cosines}));
+    ct_put_address(c, CT_RDI, ct_emitter_memory(e, (struct ct_home){CT_AREA_WORK, sines}));
+    ct_put_address(c, CT_RSI, ct_emitter_memory(e, angles));
+    ct_put_address(c, CT_RDX, ct_emitter_memory(e, (struct ct_home){CT_AREA_WORK, cosines}));
     ct_put_immediate(c, CT_RCX, (uint64_t)e->nangle * (uint64_t)c->lanes);
     ct_put_call(c, e->calls->sincos_many);
     place_waves(e, sines, cosines);
@@ -557,7 +510,7 @@ static void emit_angles(struct emitter *e)
         e->free[e->nfree++] = angles.place + k;
 }
 
-static void list_uses(struct emitter *e)
+void ct_emitter_list_uses(struct ct_emitter *e)
 {
     const struct ct_listing *l = e->l;
     uint32_t nuse = 0;
@@ -581,221 +534,6 @@ static void list_uses(struct emitter *e)
         e->next[v] = e->start[v];
 }
 
-// ---- loops ------------------------------------------------------------------------------------
-
-static const int stream_register[CT_ROLL_STREAMS]
-    = {CT_RCX, CT_R8, CT_R9, CT_R10, CT_R11, CT_R13, CT_R15};
-
-// The body of a loop as a listing: values 0 ... period-1 are its results, further ones its operands from memory.
-struct body {
-    struct emitter e;
-    struct ct_listing l;
-    struct stream stream[CT_ROLL_STREAMS];
-    unsigned nstream;
-    uint32_t *slot; // 1 + value, by hash
-    size_t mask;
-    struct ct_operand *operand; // by value from period on
-};
-
-static unsigned stream_of(struct body *b, unsigned area, int32_t stride)
-{
-    unsigned i = 0;
-    while (i < b->nstream && (b->stream[i].area != area || b->stream[i].stride != stride))
-        i++;
-    assert(i < CT_ROLL_STREAMS);
-    if (i == b->nstream) {
-        b->stream[b->nstream++] = (struct stream){area, stride};
-        b->e.base[NAREA + i] = stream_register[i];
-    }
-    return NAREA + i;
-}
-
-static bool is_same_operand(const struct ct_operand *a, const struct ct_operand *b)
-{
-    return a->reach == b->reach && a->at == b->at && a->stride == b->stride;
-}
-
-// A constant or parameter four times side by side: copied once.
-static struct home spread(struct emitter *e, uint32_t value)
-{
-    if (e->spread[value] == none) {
-        e->spread[value] = e->nwork;
-        for (int i = 0; i < 4; i++) {
-            const struct ct_copy c = {value, e->nwork++};
-            CT_PUSH(e->arena, e->roll.table, e->roll.ntable, e->roll.table_cap, c);
-        }
-    }
-    return (struct home){WORK, e->spread[value]};
-}
-
-static void place_fixed(struct body *b, const struct emitter *outer, uint32_t v, uint32_t value)
-{
-    const bool is_constant = outer->l->rate[value] != CT_RATE_CALL;
-    b->e.home[v] = b->e.layout && is_constant ? spread(&b->e, value) : outer->home[value];
-    if (b->e.layout)
-        b->e.layout[v] = is_constant ? FULL : ONE_FOR_ALL;
-}
-
-static void place_stream(struct body *b, uint32_t v, const struct ct_operand *o)
-{
-    const unsigned area = o->reach == CT_REACH_INPUT ? INPUT : WORK;
-    b->e.home[v] = (struct home){stream_of(b, area, o->stride), o->at};
-    if (b->e.layout)
-        b->e.layout[v] = o->stride == 1 ? FULL : APART;
-}
-
-// The value that stands for an operand; operands at one place are one.
-static uint32_t value_of(struct body *b, const struct emitter *outer,
-                         const struct ct_loop *loop, const struct ct_operand *o)
-{
-    if (o->reach == CT_REACH_ROW)
-        return o->at;
-    size_t h = (o->at * 31u + (uint32_t)o->stride) * 2654435761u + (unsigned)o->reach;
-    for (;; h++) {
-        uint32_t *slot = &b->slot[h & b->mask];
-        if (*slot && !is_same_operand(&b->operand[*slot - 1 - loop->nslot], o))
-            continue;
-        if (!*slot) {
-            const uint32_t v = (uint32_t)b->l.nvalue++;
-            b->operand[v - loop->nslot] = *o;
-            if (o->reach == CT_REACH_FIXED)
-                place_fixed(b, outer, v, o->at);
-            else
-                place_stream(b, v, o);
-            *slot = v + 1;
-        }
-        return *slot - 1;
-    }
-}
-
-static void list_body(struct body *b, const struct emitter *outer, const struct ct_loop *loop)
-{
-    struct ct_arena *a = b->e.arena;
-    const size_t most = 4 * (size_t)loop->nslot;
-    bool *is_kept = CT_NEWN(a, bool, most);
-    for (b->mask = 64; b->mask < 2 * most; b->mask *= 2)
-        ;
-    b->slot = CT_NEWN(a, uint32_t, b->mask);
-    b->mask--;
-    b->operand = CT_NEWN(a, struct ct_operand, most);
-    b->l.ins = CT_NEWN(a, struct ct_instruction, loop->nslot);
-    b->l.nvalue = loop->nslot;
-    b->e.home = CT_NEWN(a, struct home, most);
-    b->e.order = CT_NEWN(a, uint32_t, loop->nslot);
-    b->e.layout = loop->is_side_by_side ? CT_NEWN(a, enum row_layout, most) : NULL;
-    for (uint32_t i = 0; i < loop->nslot; i++) {
-        struct ct_instruction *ins = &b->l.ins[b->l.nins++];
-        *ins = outer->l->ins[outer->order[loop->first + loop->slot[i]]];
-        for (uint32_t k = 0; k < ins->narg; k++)
-            ins->arg[k] = value_of(b, outer, loop, &loop->operand[3 * i + k]);
-        ins->res[0] = b->e.order[i] = i;
-        is_kept[i] = loop->result[i] != none;
-        if (is_kept[i])
-            b->e.home[i] = (struct home){stream_of(b, WORK, loop->width), loop->result[i]};
-    }
-    b->e.norder = loop->nslot;
-    b->e.is_kept = is_kept;
-    b->e.reg = CT_NEWN(a, signed char, b->l.nvalue);
-    memset(b->e.reg, -1, b->l.nvalue);
-    b->e.first_output = CT_NEWN(a, uint32_t, b->l.nvalue);
-    b->e.free = CT_NEWN(a, uint32_t, b->l.nvalue + 1);
-    b->e.nfixed = b->e.nwork; // values of outside stay where they are
-    b->e.nfree = 0;
-    list_uses(&b->e);
-}
-
-// Streams move on by so many rows.
-static void move_streams(struct body *b, int32_t rows)
-{
-    for (unsigned i = 0; i < b->nstream; i++)
-        ct_put_advance(&b->e.code, stream_register[i],
-                       rows * b->stream[i].stride * (int32_t)b->e.place_size);
-}
-
-// `rows` times, from where the streams are; then they are behind it.
-static void emit_rows(struct emitter *e, const struct ct_loop *loop, uint32_t times,
-                      bool starts, int32_t back)
-{
-    struct body b = {.e = *e};
-    const int32_t together = loop->is_side_by_side ? ROWS_TOGETHER : 1;
-    b.e.l = &b.l;
-    b.e.stream = b.stream;
-    b.e.width = (uint32_t)together;
-    list_body(&b, e, loop);
-    struct ct_bytes *c = &b.e.code;
-    for (unsigned i = 0; i < b.nstream && starts; i++)
-        ct_put_move(c, stream_register[i], b.e.base[b.stream[i].area]);
-    if (back)
-        move_streams(&b, -back);
-    ct_put_immediate(c, CT_RAX, times);
-    const size_t start = c->n;
-    if (together > 1)
-        c->lanes = together;
-    for (uint32_t at = 0; at < b.e.norder; at++)
-        emit_instruction(&b.e, at);
-    if (times > 1 || starts) {
-        move_streams(&b, together);
-        ct_put_back(c, start);
-    }
-    c->lanes = e->code.lanes;
-    e->code = *c;
-    e->nwork = b.e.nwork;
-    e->roll.table = b.e.roll.table;
-    e->roll.ntable = b.e.roll.ntable;
-    e->roll.table_cap = b.e.roll.table_cap;
-}
-
-// Rows four at a time; the last four may begin among those that are done, which gives the same once more.
-static void emit_side_by_side(struct emitter *e, const struct ct_loop *loop)
-{
-    const uint32_t times = loop->count / ROWS_TOGETHER, left = loop->count % ROWS_TOGETHER;
-    const int lanes = e->code.lanes;
-    emit_rows(e, loop, times, true, 0);
-    if (left)
-        emit_rows(e, loop, 1, false, (int32_t)(ROWS_TOGETHER - left));
-    e->code.lanes = ROWS_TOGETHER;
-    ct_put_vzeroupper(&e->code);
-    e->code.lanes = lanes;
-}
-
-// Reads within a loop are done; what nobody else reads gives up its place.
-static void pass_loop(struct emitter *e, const struct ct_loop *loop)
-{
-    const uint32_t end = loop->first + loop->period * loop->count;
-    for (uint32_t at = loop->first; at < end; at++) {
-        const struct ct_instruction *i = &e->l->ins[e->order[at]];
-        for (uint32_t k = 0; k < i->narg; k++)
-            pass_reads_before(e, i->arg[k], end);
-        give_up_places(e, i->arg, i->narg);
-    }
-}
-
-static void emit_loop(struct emitter *e, const struct ct_loop *loop)
-{
-    for (size_t i = 0; i < loop->ncopy; i++) {
-        const int r = load(e, loop->copy[i].value);
-        ct_put_store(&e->code, memory_of(e, (struct home){WORK, loop->copy[i].place}), r);
-        e->pinned = 0;
-        release(e, &loop->copy[i].value, 1);
-    }
-    forget_registers(e);
-    if (loop->is_side_by_side)
-        emit_side_by_side(e, loop);
-    else
-        emit_rows(e, loop, loop->count, true, 0);
-}
-
-// The loops of one stretch. Returns the one behind them.
-static const struct ct_loop *emit_loops(struct emitter *e, const struct ct_loop *loop,
-                                        const struct ct_loop *end)
-{
-    const struct ct_loop *first = loop;
-    for (; loop < end && loop->first == first->first; loop++)
-        emit_loop(e, loop);
-    pass_loop(e, first);
-    return loop;
-}
-
 // Loops keep code in the nearer caches, but results of their rows in memory, four times as many in four lanes:
 // instructions from which on they are faster, as measured on beams and chains.
 static uint32_t least_rolled(int lanes)
@@ -803,15 +541,16 @@ static uint32_t least_rolled(int lanes)
     return lanes == 1 ? 4000 : 100000;
 }
 
-static void roll_up(struct emitter *e)
+static void roll_up(struct ct_emitter *e)
 {
     bool is_alone[CT_NKIND];
     for (int op = 0; op < CT_NKIND; op++)
         is_alone[op] = e->calls->by_op[op] != 0;
     if (e->norder < least_rolled(e->code.lanes))
         return;
-    e->roll = ct_roll_find(e->arena, e->l, e->order, (uint32_t)e->norder, is_alone, e->nfixed,
-                           e->calls->rows_together && e->code.lanes == 1 ? ROWS_TOGETHER : 1);
+    e->roll
+        = ct_roll_find(e->arena, e->l, e->order, (uint32_t)e->norder, is_alone, e->nfixed,
+                       e->calls->rows_together && e->code.lanes == 1 ? CT_ROWS_TOGETHER : 1);
     e->spread = CT_NEWN(e->arena, uint32_t, e->l->nvalue);
     for (size_t v = 0; v < e->l->nvalue; v++)
         e->spread[v] = none;
@@ -820,7 +559,7 @@ static void roll_up(struct emitter *e)
 
 // ---- the whole --------------------------------------------------------------------------------
 
-static bool is_call(const struct emitter *e, const struct ct_instruction *i)
+static bool is_call(const struct ct_emitter *e, const struct ct_instruction *i)
 {
     return e->calls->by_op[i->op] != 0;
 }
@@ -834,7 +573,7 @@ static bool is_wave(const struct ct_instruction *i)
 enum turn { FOR_ANGLES, ANGLES, FOR_CALLS, REST, NTURN };
 
 // Angles are those that no call leads to.
-static void find_angles(const struct emitter *e, unsigned char *turn)
+static void find_angles(const struct ct_emitter *e, unsigned char *turn)
 {
     const struct ct_listing *l = e->l;
     unsigned char *behind = CT_NEWN(e->arena, unsigned char, l->nvalue); // a call, by value
@@ -850,7 +589,7 @@ static void find_angles(const struct emitter *e, unsigned char *turn)
 }
 
 // What calls need comes early; what angles need, earliest.
-static void mark_needed(const struct emitter *e, unsigned char *turn)
+static void mark_needed(const struct ct_emitter *e, unsigned char *turn)
 {
     const struct ct_listing *l = e->l;
     unsigned char *latest = CT_NEWN(e->arena, unsigned char, l->nvalue); // by value
@@ -869,7 +608,7 @@ static void mark_needed(const struct emitter *e, unsigned char *turn)
 }
 
 // By turn, else in the order of the listing.
-static bool order_instructions(struct emitter *e)
+static bool order_instructions(struct ct_emitter *e)
 {
     const struct ct_listing *l = e->l;
     unsigned char *turn = CT_NEWN(e->arena, unsigned char, l->nins + 1);
@@ -890,22 +629,22 @@ static bool order_instructions(struct emitter *e)
     return any;
 }
 
-static void place_values(struct emitter *e, const uint32_t *home)
+static void place_values(struct ct_emitter *e, const uint32_t *home)
 {
     const struct ct_listing *l = e->l;
-    e->home = CT_NEWN(e->arena, struct home, l->nvalue);
+    e->home = CT_NEWN(e->arena, struct ct_home, l->nvalue);
     e->reg = CT_NEWN(e->arena, signed char, l->nvalue);
     e->free = CT_NEWN(e->arena, uint32_t, 4 * l->nvalue); // those of angles, too
     for (size_t v = 0; v < l->nvalue; v++) {
         e->reg[v] = -1;
         if (l->rate[v] != CT_RATE_CALL)
-            e->home[v] = (struct home){WORK, home[v]};
+            e->home[v] = (struct ct_home){CT_AREA_WORK, home[v]};
         else if (l->is_leaf[v])
-            e->home[v] = (struct home){INPUT, l->input[v]};
+            e->home[v] = (struct ct_home){CT_AREA_INPUT, l->input[v]};
         else if (e->roll.nloop && e->roll.place[v] != none)
-            e->home[v] = (struct home){WORK, e->roll.place[v]};
+            e->home[v] = (struct ct_home){CT_AREA_WORK, e->roll.place[v]};
     }
-    for (int r = 0; r < NREGISTER; r++)
+    for (int r = 0; r < CT_NREGISTER; r++)
         e->content[r] = none;
     e->first_output = CT_NEWN(e->arena, uint32_t, l->nvalue);
     e->next_output = CT_NEWN(e->arena, uint32_t, l->nout);
@@ -917,7 +656,7 @@ static void place_values(struct emitter *e, const uint32_t *home)
 
 // The areas are pointed at by the arguments themselves, or by registers that calls leave alone. Three
 // pushes and the return address keep the stack aligned to 16, and so do two more.
-static void emit_entry(struct emitter *e, bool calls)
+static void emit_entry(struct ct_emitter *e, bool calls)
 {
     if (calls) {
         ct_put_push(&e->code, CT_RBX);
@@ -931,25 +670,25 @@ static void emit_entry(struct emitter *e, bool calls)
         ct_put_push(&e->code, CT_R13);
         ct_put_push(&e->code, CT_R15);
     }
-    e->base[INPUT] = calls ? CT_RBP : CT_RDI;
-    e->base[OUT] = calls ? CT_R14 : CT_RSI;
-    e->base[WORK] = calls ? CT_RBX : CT_RDX;
+    e->base[CT_AREA_INPUT] = calls ? CT_RBP : CT_RDI;
+    e->base[CT_AREA_OUT] = calls ? CT_R14 : CT_RSI;
+    e->base[CT_AREA_WORK] = calls ? CT_RBX : CT_RDX;
 }
 
 // Outputs that are not stored when they are computed: those of the prologue and of loops.
-static void copy_outputs(struct emitter *e)
+static void copy_outputs(struct ct_emitter *e)
 {
     for (uint32_t k = 0; k < e->l->nout; k++) {
         const uint32_t v = e->l->out[k];
         const bool is_rolled = e->roll.nloop && e->roll.place[v] != none;
         if (e->l->rate[v] == CT_RATE_CALL && !e->l->is_leaf[v] && !is_rolled)
             continue;
-        ct_put_load(&e->code, 0, memory_of(e, e->home[v]));
-        ct_put_store(&e->code, memory_of(e, (struct home){OUT, k}), 0);
+        ct_put_load(&e->code, 0, ct_emitter_memory(e, e->home[v]));
+        ct_put_store(&e->code, ct_emitter_memory(e, (struct ct_home){CT_AREA_OUT, k}), 0);
     }
 }
 
-static void emit_return(struct emitter *e, bool calls)
+static void emit_return(struct ct_emitter *e, bool calls)
 {
     ct_put_vzeroupper(&e->code);
     if (e->roll.nloop) {
@@ -968,19 +707,19 @@ struct ct_x86_code ct_x86_emit(struct ct_arena *a, const struct ct_listing *l, i
                                const uint32_t *home, size_t nhome,
                                const struct ct_x86_calls *calls)
 {
-    struct emitter e = {.arena = a,
-                        .l = l,
-                        .calls = calls,
-                        .code = {.arena = a, .lanes = lanes},
-                        .nfixed = (uint32_t)nhome,
-                        .nwork = (uint32_t)nhome,
-                        .place_size = 8 * (uint32_t)lanes,
-                        .width = 1};
+    struct ct_emitter e = {.arena = a,
+                           .l = l,
+                           .calls = calls,
+                           .code = {.arena = a, .lanes = lanes},
+                           .nfixed = (uint32_t)nhome,
+                           .nwork = (uint32_t)nhome,
+                           .place_size = 8 * (uint32_t)lanes,
+                           .width = 1};
     const bool any_call = order_instructions(&e);
     const size_t usual = 10; // bytes of an instruction, a load or store counted in
     e.code.cap = usual * e.norder + 512;
     e.code.byte = CT_NEWN(a, unsigned char, e.code.cap);
-    list_uses(&e);
+    ct_emitter_list_uses(&e);
     roll_up(&e);
     place_values(&e, home);
     emit_entry(&e, any_call);
@@ -988,14 +727,14 @@ struct ct_x86_code ct_x86_emit(struct ct_arena *a, const struct ct_listing *l, i
     for (uint32_t at = 0; at < e.norder; at++) {
         if (loop < end && at == loop->first) {
             at += loop->period * loop->count - 1;
-            loop = emit_loops(&e, loop, end);
+            loop = ct_emitter_loops(&e, loop, end);
             continue;
         }
         const bool angles = e.nangle && at == e.first_angle;
         if (angles)
             emit_angles(&e);
         else
-            emit_instruction(&e, at);
+            ct_emitter_instruction(&e, at);
         at += angles ? e.nangle - 1 : 0;
     }
     copy_outputs(&e);

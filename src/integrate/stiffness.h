@@ -25,8 +25,7 @@ struct ct_stiffness {
     double fast, slow;  // of the last test [1/s]
     double step;        // mean step since the test before [s]
     double evaluations; // for a step, since then
-    double
-        rival; // time that the implicit method gained for an evaluation's work, 0: unknown [s]
+    double rival;       // time for as much work as an evaluation, by the other method  [s]
 };
 
 /// What the parts of a run cost, in common units.

@@ -1,0 +1,226 @@
+// Loops of roll.h as code: the body is emitted as a program of its own, whose operands are at registers that move on.
+#include "codegen/emitter.h"
+
+#include <assert.h>
+#include <string.h>
+
+static const uint32_t none = CT_VALUE_NONE;
+
+static const int stream_register[CT_ROLL_STREAMS]
+    = {CT_RCX, CT_R8, CT_R9, CT_R10, CT_R11, CT_R13, CT_R15};
+
+// The body of a loop as a listing: values 0 ... period-1 are its results, further ones its operands from memory.
+struct body {
+    struct ct_emitter e;
+    struct ct_listing l;
+    struct ct_stream stream[CT_ROLL_STREAMS];
+    unsigned nstream;
+    uint32_t *slot; // 1 + value, by hash
+    size_t mask;
+    struct ct_operand *operand; // by value from period on
+};
+
+static unsigned stream_of(struct body *b, unsigned area, int32_t stride)
+{
+    unsigned i = 0;
+    while (i < b->nstream && (b->stream[i].area != area || b->stream[i].stride != stride))
+        i++;
+    assert(i < CT_ROLL_STREAMS);
+    if (i == b->nstream) {
+        b->stream[b->nstream++] = (struct ct_stream){area, stride};
+        b->e.base[CT_NAREA + i] = stream_register[i];
+    }
+    return CT_NAREA + i;
+}
+
+static bool is_same_operand(const struct ct_operand *a, const struct ct_operand *b)
+{
+    return a->reach == b->reach && a->at == b->at && a->stride == b->stride;
+}
+
+// A constant or parameter four times side by side: copied once.
+static struct ct_home spread(struct ct_emitter *e, uint32_t value)
+{
+    if (e->spread[value] == none) {
+        e->spread[value] = e->nwork;
+        for (int i = 0; i < 4; i++) {
+            const struct ct_copy c = {value, e->nwork++};
+            CT_PUSH(e->arena, e->roll.table, e->roll.ntable, e->roll.table_cap, c);
+        }
+    }
+    return (struct ct_home){CT_AREA_WORK, e->spread[value]};
+}
+
+static void place_fixed(struct body *b, const struct ct_emitter *outer, uint32_t v,
+                        uint32_t value)
+{
+    const bool is_constant = outer->l->rate[value] != CT_RATE_CALL;
+    b->e.home[v] = b->e.layout && is_constant ? spread(&b->e, value) : outer->home[value];
+    if (b->e.layout)
+        b->e.layout[v] = is_constant ? CT_ROWS_FULL : CT_ROWS_SAME;
+}
+
+static void place_stream(struct body *b, uint32_t v, const struct ct_operand *o)
+{
+    const unsigned area = o->reach == CT_REACH_INPUT ? CT_AREA_INPUT : CT_AREA_WORK;
+    b->e.home[v] = (struct ct_home){stream_of(b, area, o->stride), o->at};
+    if (b->e.layout)
+        b->e.layout[v] = o->stride == 1 ? CT_ROWS_FULL : CT_ROWS_APART;
+}
+
+// The value that stands for an operand; operands at one place are one.
+static uint32_t value_of(struct body *b, const struct ct_emitter *outer,
+                         const struct ct_loop *loop, const struct ct_operand *o)
+{
+    if (o->reach == CT_REACH_ROW)
+        return o->at;
+    size_t h = (o->at * 31u + (uint32_t)o->stride) * 2654435761u + (unsigned)o->reach;
+    for (;; h++) {
+        uint32_t *slot = &b->slot[h & b->mask];
+        if (*slot && !is_same_operand(&b->operand[*slot - 1 - loop->nslot], o))
+            continue;
+        if (!*slot) {
+            const uint32_t v = (uint32_t)b->l.nvalue++;
+            b->operand[v - loop->nslot] = *o;
+            if (o->reach == CT_REACH_FIXED)
+                place_fixed(b, outer, v, o->at);
+            else
+                place_stream(b, v, o);
+            *slot = v + 1;
+        }
+        return *slot - 1;
+    }
+}
+
+static void list_body(struct body *b, const struct ct_emitter *outer,
+                      const struct ct_loop *loop)
+{
+    struct ct_arena *a = b->e.arena;
+    const size_t most = 4 * (size_t)loop->nslot;
+    bool *is_kept = CT_NEWN(a, bool, most);
+    for (b->mask = 64; b->mask < 2 * most; b->mask *= 2)
+        ;
+    b->slot = CT_NEWN(a, uint32_t, b->mask);
+    b->mask--;
+    b->operand = CT_NEWN(a, struct ct_operand, most);
+    b->l.ins = CT_NEWN(a, struct ct_instruction, loop->nslot);
+    b->l.nvalue = loop->nslot;
+    b->e.home = CT_NEWN(a, struct ct_home, most);
+    b->e.order = CT_NEWN(a, uint32_t, loop->nslot);
+    b->e.layout = loop->is_side_by_side ? CT_NEWN(a, enum ct_row_layout, most) : NULL;
+    for (uint32_t i = 0; i < loop->nslot; i++) {
+        struct ct_instruction *ins = &b->l.ins[b->l.nins++];
+        *ins = outer->l->ins[outer->order[loop->first + loop->slot[i]]];
+        for (uint32_t k = 0; k < ins->narg; k++)
+            ins->arg[k] = value_of(b, outer, loop, &loop->operand[3 * i + k]);
+        ins->res[0] = b->e.order[i] = i;
+        is_kept[i] = loop->result[i] != none;
+        if (is_kept[i])
+            b->e.home[i]
+                = (struct ct_home){stream_of(b, CT_AREA_WORK, loop->width), loop->result[i]};
+    }
+    b->e.norder = loop->nslot;
+    b->e.is_kept = is_kept;
+    b->e.reg = CT_NEWN(a, signed char, b->l.nvalue);
+    memset(b->e.reg, -1, b->l.nvalue);
+    b->e.first_output = CT_NEWN(a, uint32_t, b->l.nvalue);
+    b->e.free = CT_NEWN(a, uint32_t, b->l.nvalue + 1);
+    b->e.nfixed = b->e.nwork; // values of outside stay where they are
+    b->e.nfree = 0;
+    ct_emitter_list_uses(&b->e);
+}
+
+// Streams move on by so many rows.
+static void move_streams(struct body *b, int32_t rows)
+{
+    for (unsigned i = 0; i < b->nstream; i++)
+        ct_put_advance(&b->e.code, stream_register[i],
+                       rows * b->stream[i].stride * (int32_t)b->e.place_size);
+}
+
+// `rows` times, from where the streams are; then they are behind it.
+static void emit_rows(struct ct_emitter *e, const struct ct_loop *loop, uint32_t times,
+                      bool starts, int32_t back)
+{
+    struct body b = {.e = *e};
+    const int32_t together = loop->is_side_by_side ? CT_ROWS_TOGETHER : 1;
+    b.e.l = &b.l;
+    b.e.stream = b.stream;
+    b.e.width = (uint32_t)together;
+    list_body(&b, e, loop);
+    struct ct_bytes *c = &b.e.code;
+    for (unsigned i = 0; i < b.nstream && starts; i++)
+        ct_put_move(c, stream_register[i], b.e.base[b.stream[i].area]);
+    if (back)
+        move_streams(&b, -back);
+    ct_put_immediate(c, CT_RAX, times);
+    const size_t start = c->n;
+    if (together > 1)
+        c->lanes = together;
+    for (uint32_t at = 0; at < b.e.norder; at++)
+        ct_emitter_instruction(&b.e, at);
+    if (times > 1 || starts) {
+        move_streams(&b, together);
+        ct_put_back(c, start);
+    }
+    c->lanes = e->code.lanes;
+    e->code = *c;
+    e->nwork = b.e.nwork;
+    e->roll.table = b.e.roll.table;
+    e->roll.ntable = b.e.roll.ntable;
+    e->roll.table_cap = b.e.roll.table_cap;
+}
+
+// Rows four at a time; the last four may begin among those that are done, which gives the same once more.
+static void emit_side_by_side(struct ct_emitter *e, const struct ct_loop *loop)
+{
+    const uint32_t times = loop->count / CT_ROWS_TOGETHER,
+                   left = loop->count % CT_ROWS_TOGETHER;
+    const int lanes = e->code.lanes;
+    emit_rows(e, loop, times, true, 0);
+    if (left)
+        emit_rows(e, loop, 1, false, (int32_t)(CT_ROWS_TOGETHER - left));
+    e->code.lanes = CT_ROWS_TOGETHER;
+    ct_put_vzeroupper(&e->code);
+    e->code.lanes = lanes;
+}
+
+// Reads within a loop are done; what nobody else reads gives up its place.
+static void pass_loop(struct ct_emitter *e, const struct ct_loop *loop)
+{
+    const uint32_t end = loop->first + loop->period * loop->count;
+    for (uint32_t at = loop->first; at < end; at++) {
+        const struct ct_instruction *i = &e->l->ins[e->order[at]];
+        for (uint32_t k = 0; k < i->narg; k++)
+            ct_emitter_pass(e, i->arg[k], end);
+        ct_emitter_give_up(e, i->arg, i->narg);
+    }
+}
+
+static void emit_loop(struct ct_emitter *e, const struct ct_loop *loop)
+{
+    for (size_t i = 0; i < loop->ncopy; i++) {
+        const int r = ct_emitter_load(e, loop->copy[i].value);
+        ct_put_store(&e->code,
+                     ct_emitter_memory(e, (struct ct_home){CT_AREA_WORK, loop->copy[i].place}),
+                     r);
+        e->pinned = 0;
+        ct_emitter_release(e, &loop->copy[i].value, 1);
+    }
+    ct_emitter_forget(e);
+    if (loop->is_side_by_side)
+        emit_side_by_side(e, loop);
+    else
+        emit_rows(e, loop, loop->count, true, 0);
+}
+
+// The loops of one stretch. Returns the one behind them.
+const struct ct_loop *ct_emitter_loops(struct ct_emitter *e, const struct ct_loop *loop,
+                                       const struct ct_loop *end)
+{
+    const struct ct_loop *first = loop;
+    for (; loop < end && loop->first == first->first; loop++)
+        emit_loop(e, loop);
+    pass_loop(e, first);
+    return loop;
+}
