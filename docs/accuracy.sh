@@ -175,13 +175,10 @@ reason() {
         ;;
     esac
     part=$(moves "$T")
-    if is_less "$1" "$part" 10 && ! is_less "$part" "$T" 10; then
-        echo " c"
-    elif is_less "$1" "$(moves 0)" 3; then
-        echo " b"
-    else
-        echo " **?**"
-    fi
+    why=
+    if is_less "$1" "$part" 10 && ! is_less "$part" "$T" 10; then why=" c"; fi
+    if is_less "$1" "$(moves 0)" 3; then why="$why b"; fi
+    echo "${why:- **?**}"
 }
 
 # row CASE: its line of the table
