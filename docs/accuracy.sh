@@ -2,6 +2,7 @@
 # accuracy.sh [SECTION...]: makes the tables of docs/accuracy.md between <!-- SECTION --> and <!-- /SECTION --> anew, all of them if
 # none is named, and the figures in docs/figures, from runs of the program. Each section goes to the page when it is
 # complete; one that fails leaves the page as it is. COTREE is the program.
+# shellcheck disable=SC2317 # sections are called by their names
 set -eu
 docs=$(cd "$(dirname "$0")" && pwd)
 root=$docs/..
@@ -238,7 +239,7 @@ section_hard() {
     echo "| case | T | error | estimated | energy drift | constraints | method | steps | evaluations | seconds |"
     echo "| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |"
     for case in R13_d1 R13_d0999 R05_N10 R05_N40 R08b R12 R14_k1e4 R14_k1e6 R15_M1e-3 R15_M1e-6 R17a_20s R17b; do
-        hard_row "$(title $case)" "$reference/$case.reference.csv" "$reference/$case.yaml" --tolerance 1e-6
+        hard_row "$(title "$case")" "$reference/$case.reference.csv" "$reference/$case.yaml" --tolerance 1e-6
     done
     while read -r case system options; do
         against=$reference/$case.reference.csv
@@ -255,8 +256,8 @@ section_lost() {
     echo "| T | error below 10 T up to |"
     echo "| --- | --- |"
     for T in 1e-4 1e-6 1e-8 1e-10; do
-        run "$root/systems/hard/driven_pendulum/model.yaml" --tolerance $T --verify
-        printf '| %s | %g s |\n' $T "$(value holds_until)"
+        run "$root/systems/hard/driven_pendulum/model.yaml" --tolerance "$T" --verify
+        printf '| %s | %g s |\n' "$T" "$(value holds_until)"
     done
 }
 
@@ -284,7 +285,7 @@ section_figures() {
     echo "| problem | error 1e-6 | error 1e-8 |"
     echo "| --- | --- | --- |"
     for case in R05_N1 R05_N2 R05_N10 R01 R06_brick R04 R08b R14_k1e6 R12; do
-        figure "accuracy_$case" "$(title $case)" "$reference/$case.reference.csv" "$reference/$case.yaml"
+        figure "accuracy_$case" "$(title "$case")" "$reference/$case.reference.csv" "$reference/$case.yaml"
     done
     figure accuracy_governor "$(title H_governor)" "$reference/H_governor.reference.csv" \
         "$root/systems/hard/flyball_governor/model.yaml"

@@ -535,8 +535,8 @@ static size_t size_of_results(const struct plan *p)
     return n;
 }
 
-// Does it pay? Only as long as the nearest cache holds what rows leave behind: where further ones must bring it, one row at a
-// time is as fast (measured on beams). A read that gathers four numbers costs about five instructions, a result that the others read two.
+// Does it pay? Only as long as the nearest cache holds what rows leave behind: on beams whose rows leave more, one row at a time was
+// measured as fast. A read that gathers four numbers costs about five instructions, a result that the others read two.
 static void choose_lanes(struct plan *p, uint32_t lanes)
 {
     enum { GATHER = 5, HAND_OVER = 2, NEAREST_CACHE = 32 * 1024 };

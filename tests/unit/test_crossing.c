@@ -22,7 +22,7 @@ struct record {
     struct ct_integrate_stats stats;
     double now; // last accepted time
     bool is_passed_by, is_mismatched;
-    double nearest; // to the position, of all evaluations
+    double nearest;              // to the position, of all evaluations
     double worst, worst_bridged; // errors of steps and samples, and of derivatives by bridges
     int nbridge, nevent;
     double event, last;
