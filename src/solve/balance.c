@@ -38,6 +38,7 @@ bool ct_basis_extend(struct ct_basis *s, double *v)
         out[i] = v[i] / sqrt(after);
     return true;
 }
+
 // Independent rows in the directions that move.
 static void choose_rows(struct ct_balance *s, struct ct_arena *a)
 {
