@@ -421,8 +421,8 @@ static void put_index(struct ct_derivation *d, const struct ct_flexible *f)
             continue;
         const int first = families[i].first, ndof = ndof_of(f->beam, i);
         static const char align[] = "rLLLLLL"; // places of the first table, dofs
-        const size_t ncolumn = (size_t)(1 + (is_first ? 2 : 0) + ndof);
-        ct_page_table(&d->page, ct_arena_printf(d->a, "%.*s", (int)ncolumn, align));
+        const int ncolumn = 1 + (is_first ? 2 : 0) + ndof;
+        ct_page_table(&d->page, ct_arena_printf(d->a, "%.*s", ncolumn, align));
         ct_page_cell(&d->page, "element");
         if (is_first) {
             ct_page_cell(&d->page, "from x");

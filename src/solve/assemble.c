@@ -707,11 +707,9 @@ static bool find_start(struct assembly *s, struct ct_start *out)
     struct ct_machine *m = s->m;
     const size_t nc = s->e->ncoordinate;
     double left = 0;
-    if (is_direct(s))
-        take_targets(s);
-    else if (!assemble_positions(s, &out->residual, &out->is_open))
+    if (!is_direct(s) && !assemble_positions(s, &out->residual, &out->is_open))
         return false;
-    else if (out->is_open)
+    if (is_direct(s) || out->is_open)
         take_targets(s);
     ct_machine_set(m, 0, s->y);
     ct_memory_start(m);

@@ -140,8 +140,9 @@ static bool report_open(struct ct_ctx *ctx, const struct ct_model *model, struct
     ct_gaps_set(s, 0);
     const double open = ct_gaps_left(s, &row);
     const int joint = s->e->row[row].joint;
-    const struct ct_mark mark
-        = joint < 0 ? (struct ct_mark){.file = model->file} : model->joint[joint].mark;
+    struct ct_mark mark = {.file = model->file};
+    if (joint >= 0)
+        mark = model->joint[joint].mark;
     return ct_error(
         ctx, mark, CT_E_ASSEMBLY,
         "the mechanism cannot be assembled: bending its beams leaves '%s' open by %.3g; "
