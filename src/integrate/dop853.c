@@ -153,16 +153,6 @@ static void *create(struct ct_arena *a, const struct ct_method *method,
     return w;
 }
 
-static void restart(void *work)
-{
-    ct_carry_clear(&((struct work *)work)->carry);
-}
-
-static void accept(void *work)
-{
-    ct_carry_keep(&((struct work *)work)->carry);
-}
-
 // k_s for s from `first` to before `end`, the end of the step being w->spare.
 static enum ct_eval stages(const struct ct_problem *p, double t, double h, const double *y,
                            int first, int end, struct work *w, struct ct_integrate_stats *stats)
@@ -263,8 +253,8 @@ const struct ct_method ct_method_dop853 = {
     .most_growth = 1.5,
     .quiet = {1. / 3, 3. / 5},
     .create = create,
-    .restart = restart,
-    .accept = accept,
+    .restart = ct_carry_restart,
+    .accept = ct_carry_accept,
     .step = step,
     .prepare = prepare,
     .dense = dense,

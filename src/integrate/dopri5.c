@@ -62,16 +62,6 @@ static void *create(struct ct_arena *arena, const struct ct_method *method,
     return w;
 }
 
-static void restart(void *work)
-{
-    ct_carry_clear(&((struct work *)work)->carry);
-}
-
-static void accept(void *work)
-{
-    ct_carry_keep(&((struct work *)work)->carry);
-}
-
 static enum ct_eval step(const struct ct_problem *p, double t, double h, const double *y,
                          const double *dy, const struct ct_tolerance *tolerance, double *y1,
                          double *dy1, double *err, void *work, struct ct_integrate_stats *stats)
@@ -169,8 +159,8 @@ const struct ct_method ct_method_dopri5 = {
     .order = 5,
     .error_order = 4,
     .create = create,
-    .restart = restart,
-    .accept = accept,
+    .restart = ct_carry_restart,
+    .accept = ct_carry_accept,
     .step = step,
     .prepare = prepare,
     .has_rough_dense = true,

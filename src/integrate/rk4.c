@@ -38,16 +38,6 @@ static void *create(struct ct_arena *a, const struct ct_method *method,
     return w;
 }
 
-static void restart(void *work)
-{
-    ct_carry_clear(&((struct work *)work)->carry);
-}
-
-static void accept(void *work)
-{
-    ct_carry_keep(&((struct work *)work)->carry);
-}
-
 // w->k by one step of length h from (t, y) with derivative dy.
 static enum ct_eval stages(const struct ct_problem *p, double t, double h, const double *y,
                            const double *dy, const struct work *w,
@@ -135,8 +125,8 @@ const struct ct_method ct_method_rk4 = {
     .order = 4,
     .error_order = 4,
     .create = create,
-    .restart = restart,
-    .accept = accept,
+    .restart = ct_carry_restart,
+    .accept = ct_carry_accept,
     .step = step,
     .dense = dense,
 };

@@ -116,13 +116,15 @@ struct ct_carry ct_carry_create(struct ct_arena *a, int n)
     return (struct ct_carry){CT_NEWN(a, double, n), CT_NEWN(a, double, n), n};
 }
 
-void ct_carry_clear(struct ct_carry *c)
+void ct_carry_restart(void *work)
 {
+    const struct ct_carry *c = work;
     memset(c->now, 0, (size_t)c->n * sizeof *c->now);
 }
 
-void ct_carry_keep(struct ct_carry *c)
+void ct_carry_accept(void *work)
 {
+    struct ct_carry *c = work;
     double *now = c->now;
     c->now = c->next;
     c->next = now;

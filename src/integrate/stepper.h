@@ -21,9 +21,9 @@ struct ct_carry {
 };
 
 struct ct_carry ct_carry_create(struct ct_arena *a, int n);
-void ct_carry_clear(struct ct_carry *c);
-/// The step just taken was accepted.
-void ct_carry_keep(struct ct_carry *c);
+/// ct_method.restart and .accept of methods whose workspace begins with a struct ct_carry.
+void ct_carry_restart(void *work);
+void ct_carry_accept(void *work);
 
 /// ct_stepper_combine for the end of a step from y: with c->now, leaving c->next.
 void ct_stepper_advance(double *restrict out, const double *y, double h, const double *a,
