@@ -189,6 +189,7 @@ static bool fill_lane(struct worker *w, int group, int lane)
             w->member[group][lane] = member;
             return true;
         } else {
+            forget_errors(&w->sim.own);
             run_own(w, member);
         }
     }

@@ -7,7 +7,7 @@
 
 static inline void set_input(struct ct_lanes *s, vec t, const vec *y)
 {
-    s->input[0] = t;
+    s->input[0] = choose(t < s->before, t, s->before);
     copy(s->input + s->m->at_q, y, s->nq + s->nu);
     s->input[s->m->at_work] = y[s->nq + s->nu];
 }

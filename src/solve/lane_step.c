@@ -1,7 +1,7 @@
 // A try in all lanes at once: see lanes.h. The steps are those of integrate/driver.c, the derivative and the
 // projection those of simulate.c and embed.c, so that a lane ends where a run alone ends, to rounding.
 #include "integrate/stepper.h"
-#include "solve/lane_form.h"
+#include "solve/lane_watch.h"
 
 #include <limits.h>
 #include <math.h>
@@ -279,11 +279,15 @@ static set project_end(struct ct_lanes *s, vec t, set wanted)
 static void plan(struct ct_lanes *s, int l)
 {
     struct ct_lane *lane = &s->lane[l];
-    const double rest = lane->t1 - s->t[l], wanted = fmin(lane->control.h, lane->t1);
-    const double h = ct_control_fit(rest, wanted);
+    if (lane->events.whole > 0) {
+        ct_lane_plan_again(s, l);
+        return;
+    }
+    const double stop = ct_lane_stop(lane), rest = stop - s->t[l];
+    const double h = ct_control_fit(rest, fmin(lane->control.h, lane->longest));
     const bool is_landing = h >= rest;
-    s->h[l] = h;
-    lane->end = is_landing ? lane->t1 : s->t[l] + h;
+    s->h[l] = lane->h = h;
+    lane->end = is_landing ? stop : s->t[l] + h;
     if ((!is_landing && ct_control_is_lost(h, s->t[l], lane->t1)) || lane->steps >= MOST_STEPS)
         ct_lane_give_up(s, l);
 }
@@ -293,10 +297,11 @@ static void adapt(struct ct_lanes *s, set tried, set wanted)
     for (int l = 0; l < W; l++) {
         struct ct_lane *lane = &s->lane[l];
         if (ct_has_lane(wanted, l)) {
-            ct_control_accept(&lane->control, s->method, s->h[l], lane->error);
+            ct_control_accept(&lane->control, s->method, lane->h, lane->error);
             ct_fidelity_keep(&lane->outputs);
         } else if (ct_has_lane(tried, l)) {
             ct_control_refuse(&lane->control, s->method, s->h[l], lane->error);
+            lane->events.whole = 0;
             s->count.rejected++;
         }
     }
@@ -429,6 +434,7 @@ static void commit(struct ct_lanes *s, set wanted)
             wanted &= ~(1u << l);
     put(s->y, s->end, s->ny, wanted);
     put(s->dy, s->dend, s->ny, wanted);
+    put(s->g0, s->g, s->nroot, wanted);
     for (int l = 0; l < W; l++) {
         struct ct_lane *lane = &s->lane[l];
         if (!ct_has_lane(wanted, l))
@@ -436,7 +442,8 @@ static void commit(struct ct_lanes *s, set wanted)
         s->t[l] = lane->end;
         lane->steps++;
         s->count.steps++;
-        if (lane->end >= lane->t1)
+        ct_lane_pass(s, l);
+        if (lane->end >= lane->t1 && lane->state == CT_LANE_RUNNING)
             lane->state = CT_LANE_ARRIVED;
     }
 }
@@ -462,7 +469,7 @@ __attribute__((target_clones("avx2", "default"), flatten))
 #endif
 void ct_lanes_step(struct ct_lanes *s)
 {
-    set tried = 0;
+    set tried = 0, again;
     vec end = s->t;
     s->whose = -1; // runs may have been started since
     for (int l = 0; l < W; l++) {
@@ -478,8 +485,9 @@ void ct_lanes_step(struct ct_lanes *s)
     estimate(s, wanted);
     wanted = accept(s, wanted);
     wanted = project_end(s, end, wanted);
+    wanted = watch_events(s, end, wanted, &again);
     follow(s, end, s->end, wanted);
-    adapt(s, tried, wanted);
+    adapt(s, tried & ~again, wanted);
     foresee_singular(s, end, s->end, wanted);
     watch_stiffness(s, wanted);
     commit(s, wanted);
