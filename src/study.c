@@ -115,10 +115,12 @@ static bool choose_way(struct ct_study *s, const struct ct_study_options *o)
     if (s->is_derived)
         s->alone_by = ct_arena_printf(s->own.model, "the equations depend on the value of '%s'",
                                       s->derived_by);
-    s->lanes = s->alone_by ? 1 : CT_LANES;
-    if (o->lanes != 0 && o->lanes != 1 && o->lanes != CT_LANES)
-        return ct_error(&s->own, none, CT_E_USAGE, "there are no %ld lanes; there are 1 and %d",
-                        o->lanes, CT_LANES);
+    s->lanes = s->alone_by ? 1 : o->lanes > CT_LANES ? CT_LANE_GROUPS * CT_LANES : CT_LANES;
+    if (o->lanes != 0 && o->lanes != 1 && o->lanes != CT_LANES
+        && o->lanes != CT_LANE_GROUPS * CT_LANES)
+        return ct_error(&s->own, none, CT_E_USAGE,
+                        "there are no %ld lanes; there are 1, %d and %d", o->lanes, CT_LANES,
+                        CT_LANE_GROUPS * CT_LANES);
     return true;
 }
 

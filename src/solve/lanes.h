@@ -17,7 +17,7 @@
 
 #include "solve/simulate.h"
 
-enum { CT_LANES = 4 };
+enum { CT_LANES = 4, CT_LANE_GROUPS = 2 }; // a worker has up to so many groups of lanes
 
 enum ct_lane_state { CT_LANE_IDLE, CT_LANE_RUNNING, CT_LANE_ARRIVED, CT_LANE_GIVEN_UP };
 
