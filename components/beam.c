@@ -32,7 +32,8 @@ static const struct ct_key keys[] = {
      "true: density*(Iy + Iz, Iy, Iz); or values per length about x, y, z, which may contain x "
      "(false)"},
     {"theory", CT_VALUE_WORD, 0, "euler-bernoulli|timoshenko", 1, 1, "theory of bending"},
-    {"shear_factor", CT_VALUE_SCALAR, 0, "", 1, 1, "multiplies G*area; timoshenko needs it"},
+    {"shear_factor", CT_VALUE_LIST, 0, "", 1, 2,
+     "multiplies G*area; timoshenko needs it; [ky, kz]: along y and along z"},
     {"geometric_stiffness", CT_VALUE_WORD, 0, "standard|higher-order", 1, 1,
      "work of the axial force"},
     {"integration", CT_VALUE_WORD, 0, "full|reduced|one-point", 1, 1,

@@ -45,7 +45,7 @@ struct ct_beam {
     ct_ex
         twist_inertia; // rho (Iy + Iz), of twist where torsion is present and has_rotary is false
     enum ct_beam_theory theory;
-    ct_ex shear_factor; // Timoshenko
+    ct_ex shear_factor[2]; // Timoshenko; along y, along z
     enum ct_beam_integration integration;
     bool is_lumped;
     bool higher_order; // geometric_stiffness: higher-order

@@ -110,12 +110,16 @@ static bool excludes(const struct work *w, const char *a, const char *b)
 static bool check_above(const struct work *w, const char *key, double least, bool strict)
 {
     const struct ct_value *v = get(w, key);
-    double number;
-    if (!v->given || v->is_wrong || !ct_read_number(w->r, v->e[0], &number) || number > least
-        || (!strict && number == least))
-        return true;
-    return ct_error(w->r->ctx, v->mark, CT_E_RANGE, "body '%s': '%s' is %g; it must be %s %g",
-                    w->self->name, key, number, strict ? "greater than" : "at least", least);
+    bool ok = true;
+    for (size_t i = 0; v->given && !v->is_wrong && i < v->n; i++) {
+        double number;
+        if (ct_read_number(w->r, v->e[i], &number) && !(number > least)
+            && (strict || number != least))
+            ok = ct_error(w->r->ctx, v->at[i], CT_E_RANGE,
+                          "body '%s': '%s' is %g; it must be %s %g", w->self->name, key, number,
+                          strict ? "greater than" : "at least", least);
+    }
+    return ok;
 }
 
 static bool check_density(const struct work *w)
@@ -443,7 +447,9 @@ static void fill_choices(const struct work *w)
     beam->deformation_mark = deformation->mark;
     beam->modes = (int)get(w, "modes")->count;
     beam->modes_mark = get(w, "modes")->mark;
-    beam->shear_factor = scalar(w, "shear_factor");
+    const struct ct_value *shear = get(w, "shear_factor");
+    for (size_t i = 0; i < 2 && shear->given; i++)
+        beam->shear_factor[i] = shear->e[i < shear->n ? i : 0];
     const struct ct_value *damping = get(w, "damping");
     beam->damping_mass = damping->given ? damping->e[0] : CT_EX_ZERO;
     beam->damping_stiffness = damping->given ? damping->e[1] : CT_EX_ZERO;

@@ -32,6 +32,14 @@ struct ct_profile ct_flexible_rotary(const struct ct_flexible *f, int axis)
     return g;
 }
 
+ct_ex ct_flexible_shear(struct ct_build *b, const struct ct_flexible *f, int plane)
+{
+    const struct ct_beam *beam = f->beam;
+    return beam->theory == CT_BEAM_TIMOSHENKO
+             ? ct_ex_mul(b->x, beam->shear_factor[plane], ct_ex_mul(b->x, beam->G, beam->area))
+             : CT_EX_ZERO;
+}
+
 // ---- stiffness and damping ----------------------------------------------------------------------------------
 
 // Constant matrices of an element for its four dofs of a plane.
@@ -50,6 +58,18 @@ ct_ex ct_flexible_integral(struct ct_build *b, const struct ct_flexible *f, int 
     return ct_shape_integral(b->x, &profile, &both, &f->element[e].span, rule);
 }
 
+// Slope of the axis less rotation of the section.
+static struct ct_shape shear_of(const struct ct_bending *s, int j)
+{
+    struct ct_shape shear = s->slope[j];
+    if (ct_shape_is_zero(&shear))
+        shear.power = s->rotation[j].power;
+    // both are of one power of the length, or one of them is zero
+    for (int i = 0; i < CT_SHAPE_SIZE; i++)
+        shear.c[i] -= s->rotation[j].c[i];
+    return shear;
+}
+
 static struct plane_matrices plane_matrices(struct ct_build *b, const struct ct_flexible *f,
                                             int e, int plane)
 {
@@ -58,21 +78,14 @@ static struct plane_matrices plane_matrices(struct ct_build *b, const struct ct_
     const enum ct_rule rule = ct_flexible_stiffness_rule(beam),
                        mass = ct_flexible_mass_rule(beam);
     const ct_ex second = plane ? beam->Iy : beam->Iz, EI = ct_ex_mul(x, beam->E, second);
-    const ct_ex GA = beam->theory == CT_BEAM_TIMOSHENKO
-                       ? ct_ex_mul(x, beam->shear_factor, ct_ex_mul(x, beam->G, beam->area))
-                       : CT_EX_ZERO;
+    const ct_ex GA = ct_flexible_shear(b, f, plane);
     const ct_ex radius = beam->higher_order ? ct_ex_div(x, second, beam->area) : CT_EX_ZERO;
     const ct_ex J = ct_flexible_rotary(f, plane ? 1 : 2).value;
     struct plane_matrices s = {0};
     struct ct_shape bend[4], shear[4];
     for (int j = 0; j < 4; j++) {
         bend[j] = ct_shape_slope(&f->shape.rotation[j]);
-        shear[j] = f->shape.slope[j];
-        if (ct_shape_is_zero(&shear[j]))
-            shear[j].power = f->shape.rotation[j].power;
-        // both are of one power of the length, or one of them is zero
-        for (int i = 0; i < CT_SHAPE_SIZE; i++)
-            shear[j].c[i] -= f->shape.rotation[j].c[i];
+        shear[j] = shear_of(&f->shape, j);
     }
     for (int j = 0; j < 4; j++)
         for (int k = 0; k < 4; k++) {
@@ -313,6 +326,28 @@ static void couple_point(struct ct_build *b, const struct ct_flexible *f, int e,
     out->energy = ct_ex_add(x, out->energy, ct_ex_mul(x, p.value, twist));
 }
 
+// Twist turns the axes of shear: (k_y - k_z) G area p gy gz.  (5.6b)
+static void couple_shear(struct ct_build *b, const struct ct_flexible *f, int e, ct_ex xi,
+                         ct_ex GA, struct ct_element_force *out)
+{
+    struct ct_exs *x = b->x;
+    const struct ct_element *self = &f->element[e];
+    const ct_ex h = self->span.length;
+    struct ct_shape shear[4];
+    for (int j = 0; j < 4; j++)
+        shear[j] = shear_of(&f->shape, j);
+    const struct angle p
+        = angle_at(b, f->twist, CT_TWIST_DOF, self->value + CT_PLACE_DOF, xi, h),
+        y = angle_at(b, shear, 4, self->value + 2, xi, h),
+        z = angle_at(b, shear, 4, self->value + 6, xi, h);
+    const ct_ex torque = ct_ex_mul(x, GA, ct_ex_mul(x, y.value, z.value)),
+                force = ct_ex_mul(x, GA, p.value);
+    push_angle(b, &p, CT_TWIST_DOF, torque, CT_EX_ZERO, out->row + CT_PLACE_DOF);
+    push_angle(b, &y, 4, ct_ex_mul(x, force, z.value), CT_EX_ZERO, out->row + 2);
+    push_angle(b, &z, 4, ct_ex_mul(x, force, y.value), CT_EX_ZERO, out->row + 6);
+    out->energy = ct_ex_add(x, out->energy, ct_ex_mul(x, p.value, torque));
+}
+
 static void couple_element(struct ct_build *b, const struct ct_flexible *f, int e,
                            struct ct_element_force *out)
 {
@@ -320,19 +355,24 @@ static void couple_element(struct ct_build *b, const struct ct_flexible *f, int 
     const struct ct_beam *beam = f->beam;
     const struct ct_profile torsion
         = {beam->x, ct_ex_mul(x, beam->G, beam->J)},
-        bending = {beam->x, ct_ex_mul(x, beam->E, ct_ex_sub(x, beam->Iy, beam->Iz))};
-    const bool varies
-        = (ct_ex_kinds(x, torsion.value) | ct_ex_kinds(x, bending.value)) & 1u << CT_SYM_LOCAL;
+        bending = {beam->x, ct_ex_mul(x, beam->E, ct_ex_sub(x, beam->Iy, beam->Iz))},
+        shear = {beam->x, ct_ex_sub(x, ct_flexible_shear(b, f, 0), ct_flexible_shear(b, f, 1))};
+    const bool varies = (ct_ex_kinds(x, torsion.value) | ct_ex_kinds(x, bending.value)
+                         | ct_ex_kinds(x, shear.value))
+                      & 1u << CT_SYM_LOCAL;
     const enum ct_rule rule = ct_flexible_stiffness_rule(beam);
     const int wanted = varies                    ? CT_MAX_GAUSS
                      : beam->has_quadratic_twist ? WITH_QUADRATIC_TWIST
                                                  : COUPLING_POINTS;
     double xi[CT_MAX_GAUSS];
-    ct_ex GJ[CT_MAX_GAUSS], EI[CT_MAX_GAUSS];
+    ct_ex GJ[CT_MAX_GAUSS], EI[CT_MAX_GAUSS], GA[CT_MAX_GAUSS];
     const int n = ct_shape_points(x, &torsion, &f->element[e].span, rule, wanted, xi, GJ);
     ct_shape_points(x, &bending, &f->element[e].span, rule, wanted, xi, EI);
+    ct_shape_points(x, &shear, &f->element[e].span, rule, wanted, xi, GA);
     for (int i = 0; i < n; i++)
         couple_point(b, f, e, ct_ex_const(x, xi[i]), GJ[i], EI[i], out);
+    for (int i = 0; i < n && !ct_ex_is_zero(shear.value); i++)
+        couple_shear(b, f, e, ct_ex_const(x, xi[i]), GA[i], out);
 }
 
 // ---- elements ---------------------------------------------------------------------------------------------------

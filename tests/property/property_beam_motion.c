@@ -84,7 +84,7 @@ static const char *const kinds[] = {
     "formulation: foreshortening\n    rotary_inertia: true\n    elements: [0.3, 0.8]",
     "formulation: linear\n    mass: lumped\n    rotary_inertia: [1e-4, 1e-4, 1e-4]\n    "
     "elements: 3",
-    "formulation: foreshortening\n    theory: timoshenko\n    shear_factor: 5/6\n    "
+    "formulation: foreshortening\n    theory: timoshenko\n    shear_factor: [5/6, 0.3]\n    "
     "integration: reduced\n    elements: 3\n    rotary_inertia: true",
     "formulation: linear\n    frame: chord\n    elements: 2",
     "formulation: foreshortening\n    frame: chord\n    twist: quadratic\n    rotary_inertia: "

@@ -115,7 +115,7 @@ static const char *const kinds[] = {
     "formulation: foreshortening\n    elements: 2\n    damping: {beta: 0.01}",
     "formulation: foreshortening\n    elements: [0.5, length]\n    frame: chord",
     "formulation: foreshortening\n    elements: 2\n    deformation: [bending-y, bending-z]",
-    ("formulation: foreshortening\n    theory: timoshenko\n    shear_factor: 5/6\n    "
+    ("formulation: foreshortening\n    theory: timoshenko\n    shear_factor: [5/6, 0.3]\n    "
      "elements: 3\n"
      "    rotary_inertia: true"),
     ("formulation: linear\n    elements: 3\n    mass: lumped\n"
