@@ -45,6 +45,9 @@ static const struct ct_key keys[] = {
     {"twist", CT_VALUE_WORD, 0, "linear|quadratic", 1, 1,
      "shape of the twist in an element; quadratic needs integration: full and mass: "
      "consistent"},
+    {"stretch", CT_VALUE_WORD, 0, "linear|quadratic", 1, 1,
+     "shape of the stretch in an element; quadratic needs integration: full and mass: "
+     "consistent"},
     {"frame", CT_VALUE_WORD, 0, "clamped|chord", 1, 1,
      "the body's frame follows the section at x = 0 or the line between the ends"},
     {"deformation", CT_VALUE_WORDS, 0, "axial|bending-y|bending-z|torsion", 0, 4,

@@ -50,8 +50,9 @@ struct ct_beam {
     bool is_lumped;
     bool higher_order; // geometric_stiffness: higher-order
     enum ct_beam_formulation formulation;
-    bool is_chord;            // frame: chord
-    bool has_quadratic_twist; // twist: quadratic
+    bool is_chord;              // frame: chord
+    bool has_quadratic_twist;   // twist: quadratic
+    bool has_quadratic_stretch; // stretch: quadratic
     unsigned
         known; // bits: deformations whose stiffness is given and not 0 (AXIAL: area, BENDING_Y: Iy, TORSION: G and J, ...)
     bool deformation_given;

@@ -120,8 +120,9 @@ static const char *const kinds[] = {
      "    rotary_inertia: true"),
     ("formulation: linear\n    elements: 3\n    mass: lumped\n"
      "    rotary_inertia: [0.02, 0.01, 0.01]"),
-    "formulation: linear\n    twist: quadratic\n    elements: 2",
-    ("formulation: foreshortening\n    twist: quadratic\n    elements: 2\n"
+    "formulation: linear\n    twist: quadratic\n    stretch: quadratic\n    elements: 2",
+    ("formulation: foreshortening\n    twist: quadratic\n    stretch: quadratic\n    elements: "
+     "2\n"
      "    rotary_inertia: [0.02, 0.01, 0.01]"),
 };
 
