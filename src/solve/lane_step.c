@@ -231,9 +231,12 @@ static void estimate(struct ct_lanes *s, set wanted)
         if (s->third.n)
             joint[l] = ct_stepper_join(size[l], e3[l]);
         lane->error = joint[l];
-        if (s->output.nout && ct_has_lane(wanted, l) && joint[l] <= 1
-            && ct_fidelity_is_due(&lane->outputs))
+        if (!s->output.nout || !ct_has_lane(wanted, l) || !(joint[l] <= 1))
+            continue;
+        if (ct_fidelity_is_due(&lane->outputs))
             due |= 1u << l;
+        else
+            lane->error = fmax(lane->error, ct_fidelity_foreseen(&lane->outputs, joint[l]));
     }
     if (!due)
         return;
