@@ -245,6 +245,8 @@ static double estimate_quadratures(struct state *s, const struct ct_problem *p,
                                    const double *dy1)
 {
     const int first = s->dae->nq + s->dae->nu;
+    if (s->dae->has_no_power)
+        return 0;
     const double ratio = s->is_fresh ? 0 : h / s->start.h;
     for (int i = first; i < p->ny; i++)
         s->error[i] = h / 12 * (dy1[i] - dy[i] - ratio * (dy[i] - s->start.rate[i]));

@@ -106,16 +106,17 @@ void ct_control_accept(struct ct_control *c, const struct ct_method *m, double h
     const bool has_own = m->most_growth > 0 && !c->is_starting;
     const double growth = has_own ? m->most_growth : most_growth;
     const double log_error = near_log2(error);
-    const double factor = pi_factor(c, m, log_error);
-    double next = h * ct_smaller(ct_larger(factor, most_shrink), growth);
-    if (next > m->steady[0] * h && next < m->steady[1] * h)
-        next = h;
-    if (c->was_refused)
-        next = ct_smaller(next, h); // not at once back to what has just failed
-    else if (h < c->h)
-        next = ct_larger(next, c->h); // the step was cut for a stop, not for its error
-    c->h = next;
+    const double factor = ct_smaller(ct_larger(pi_factor(c, m, log_error), most_shrink), growth);
     c->log_before = ct_larger(log_error, c->log_least);
+    if (factor > m->steady[0] && factor < m->steady[1]) {
+        // nothing is written where nothing changes: the next step need not wait for the error of this one
+        if (c->was_refused || h > c->h)
+            c->h = h;
+    } else if (c->was_refused) { // not at once back to what has just failed
+        c->h = ct_smaller(factor, 1) * h;
+    } else { // a step that is not c->h was cut for a stop, not for its error
+        c->h = h < c->h ? ct_larger(factor * h, c->h) : factor * h;
+    }
     c->was_refused = false;
 }
 

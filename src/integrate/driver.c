@@ -476,10 +476,10 @@ static enum ct_eval step_to_event(struct run *r, struct stride *s, double h)
 // If a root fires within the step, the step is made to end there.
 static enum ct_eval end_on_event(struct run *r, struct stride *s)
 {
-    const struct ct_stepper_span span = {s->method, r->p, r->t, s->h, r->y, r->y1, s->work};
     double theta;
     if (r->p->nroot == 0)
         return CT_EVAL_OK;
+    const struct ct_stepper_span span = {s->method, r->p, r->t, s->h, r->y, r->y1, s->work};
     enum ct_eval e = s->method->has_rough_dense ? CT_EVAL_OK : interpolate(r, s);
     if (e == CT_EVAL_OK)
         e = ct_watch_search(&r->watch, &span, r->end, &theta);

@@ -230,6 +230,11 @@ bool ct_iteration_factor(struct ct_iteration *it, double c, double e, double _Co
     }
     it->c = c;
     it->e = e;
+    if (n == 1) {
+        it->one = -1 / (e * it->G[0]);
+        if (s != 0)
+            it->onec = -1 / (s * s * it->Gc[0]);
+    }
     return true;
 }
 
@@ -238,6 +243,10 @@ void ct_iteration_solve(struct ct_iteration *it, double *d, double *eta, double 
 {
     const int nu = it->nu, m = it->m, n = it->n;
     double *b = m ? it->b : d;
+    if (n == 1) {
+        d[0] = it->one * r[0];
+        return;
+    }
     const double y = -1 / it->e;
     for (int i = 0; i < nu; i++)
         b[i] = y * r[i];
@@ -270,6 +279,12 @@ void ct_iteration_solve_complex(struct ct_iteration *it, double *d, double *eta,
     const int nu = it->nu, m = it->m, n = it->n;
     const double _Complex z = it->z, zz = product(z, z);
     double _Complex *b = it->bc;
+    if (n == 1) {
+        const double _Complex x = product(it->onec, CMPLX(r[0], r[1]));
+        d[0] = creal(x);
+        d[1] = cimag(x);
+        return;
+    }
     for (int i = 0; i < nu; i++)
         b[i] = product(-zz, CMPLX(r[i], r[i + nu]));
     for (int i = 0; i < m; i++) {

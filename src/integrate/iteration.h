@@ -36,6 +36,8 @@ struct ct_iteration {
     double c, e;            // of the factors; 0: none
     double *G;              // (n x n), and of the complex system
     double _Complex *Gc, z; // z: one over its c
+    double one; // of a single equation: what its residual is multiplied by, in both systems
+    double _Complex onec;
     int *pivot, *pivotc;
     double *w; // speeds of the derivatives (nu), for N; NULL: the method knows no N
     double *b; // (n)
