@@ -76,6 +76,8 @@ struct ct_sim {
 
 /// What the options and the model's `simulation` say about runs, into sim->run_options. Errors: E003.
 bool ct_sim_resolve(struct ct_sim *sim, const struct ct_sim_options *o);
+/// Why members of a study with these options go one by one, or NULL: side by side (solve/lanes.h).
+const char *ct_sim_refuses_lanes(const struct ct_sim *sim);
 /// A run that has no start yet (see ct_run_restart), in a ct_sim of zeros whose context is open.
 bool ct_sim_prepare(struct ct_sim *sim, struct ct_system *sys, const struct ct_sim_options *o);
 

@@ -228,6 +228,7 @@ static void write_work(struct ct_json *j, const struct ct_sim *sim)
     ct_json_text(j, "backend", ct_run_machine(sim->run)->backend);
     write_solver(j, sim);
     write_formulation(j, &sim->system->equations);
+    ct_json_text(j, "sweeps_alone_because", ct_sim_refuses_lanes(sim));
     ct_json_integer(j, "steps", r->stats.steps);
     ct_json_integer(j, "rejected_steps", r->stats.rejected_steps);
     ct_json_integer(j, "inaccurate_steps", r->stats.inaccurate_steps);

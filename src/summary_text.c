@@ -385,4 +385,6 @@ void ct_sim_print_check(const struct ct_sim *sim, FILE *out)
     print_derivatives(out, sim);
     fprintf(out, "evaluation   %ld operations, solving for accelerations included\n",
             ct_sim_operations(sim));
+    if (ct_sim_refuses_lanes(sim))
+        fprintf(out, "sweeps       one by one: %s\n", ct_sim_refuses_lanes(sim));
 }

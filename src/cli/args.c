@@ -90,7 +90,7 @@ static const struct option {
     {"threads", 0, "N", COUNT_OF, FIELD(threads), CLI_SWEEP, false,
      "at most so many; all cores"},
     {"lanes", 0, "N", COUNT_OF, FIELD(lanes), CLI_SWEEP, false,
-     "members side by side in a core: 4, or 1; 4 where it can be"},
+     "members side by side in a core: 1, 4 or 8; 4 where it can be"},
     {"verify", 0, NULL, FLAG, FIELD(verify), CLI_SIMULATE, false,
      "a second run; the difference tells the global error"},
     {"error", 0, "E", NUMBER, FIELD(error), CLI_ACCURACY, false,

@@ -37,3 +37,8 @@ for model in slider_crank chain40; do
 done
 "$COTREE" simulate "$SYSTEMS/slider_crank/model.yaml" --tree joints --until 0.01 --method hht 2>&1 | grep '^derivatives'
 "$COTREE" check "$SYSTEMS/slider_crank/model.yaml" | grep -c '^derivatives' || :
+echo '-- sweeps one by one'
+for method in auto dop853 radau5; do
+  echo "$method: $("$COTREE" check "$SYSTEMS/slider_crank/model.yaml" --method $method | grep '^sweeps')"
+done
+"$COTREE" check "$SYSTEMS/slider_crank/model.yaml" --step 0.001 | grep '^sweeps'
