@@ -158,9 +158,11 @@ static enum ct_eval accepted(void *user, double t, double *y, const double *dy)
     }
     if (r->fidelity)
         ct_fidelity_accept(r->fidelity);
-    ct_machine_set(r->m, ct_run_before(r, t), y);
+    const bool has_rows = r->method->is_implicit && r->m->nrow > 0;
+    if (r->e->nmemory || has_rows)
+        ct_machine_set(r->m, ct_run_before(r, t), y);
     ct_memory_follow(r->m);
-    if (r->method->is_implicit) { // its steps may pass without a projection
+    if (has_rows) { // its steps may pass without a projection
         ct_machine_constraint(r->m);
         ct_embed_renew(r->s);
     }
