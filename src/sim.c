@@ -314,9 +314,12 @@ static bool prepare(struct ct_sim *sim, const struct ct_sim_options *o)
         ct_formulate_dynamics(&s->equations);
     if (!ct_configuration_assemble(&sim->own, s, &sim->start))
         return false;
-    sim->run = ct_run_create(&sim->own, sim->own.model, &s->model, &s->equations, &sim->start);
+    sim->run = ct_run_prepare(&sim->own, sim->own.model, &s->model, &s->equations);
+    if (!ct_sim_choose_solver(sim, o->solver) || !ct_run_begin(sim->run, &sim->start)
+        || !ct_sim_has_solver(sim))
+        return false;
     sim->compile = ct_clock() - start;
-    if (!sim->run || !choose_backend(sim, o->backend))
+    if (!choose_backend(sim, o->backend))
         return false;
     sim->open.row = CT_NEWN(sim->own.model, bool, s->equations.nrow + 1);
     sim->open.result = CT_NEWN(sim->own.model, bool, s->equations.nresult + 1);

@@ -81,6 +81,7 @@ static void take_options(struct ct_study *s, const char *path,
     s->run = o->run;
     s->run.method = copy_text(a, o->run.method);
     s->run.backend = copy_text(a, o->run.backend);
+    s->run.solver = NULL; // lanes have forms of their own
 }
 
 static bool read_text(struct ct_study *s)

@@ -128,6 +128,8 @@ struct ct_sim_options {
     bool verify; /* after the run another one, and from both the global error of each output */
     const char *
         backend; /* what evaluates the equations: "auto", "native" or "tape"; same to rounding */
+    const char *solver; /* what finds the accelerations of closed loops: "auto", "unrolled",
+                           "one-system", "sparse" or "dense"; not of studies */
 };
 
 /** Where results go. All of it may be zero. */

@@ -264,9 +264,12 @@ static void estimate(struct ct_lanes *s, set wanted)
     for (int l = 0; l < W; l++) {
         struct ct_lane *lane = &s->lane[l];
         lane->error = joint[l];
-        if (s->output.nout && ct_has_lane(wanted, l) && joint[l] <= 1
-            && ct_fidelity_is_due(&lane->outputs))
+        if (!s->output.nout || !ct_has_lane(wanted, l) || !(joint[l] <= 1))
+            continue;
+        if (ct_fidelity_is_due(&lane->outputs))
             due |= 1u << l;
+        else
+            lane->error = fmax(lane->error, ct_fidelity_foreseen(&lane->outputs, joint[l]));
     }
     if (!due)
         return;

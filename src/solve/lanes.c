@@ -172,10 +172,10 @@ static struct ct_lane_form *make_form(struct ct_lanes *s, const struct ct_partit
     ct_machine_prepare(m);
     ct_machine_motion(m);
     struct ct_lane_form *f = CT_NEW(s->arena, struct ct_lane_form);
-    f->form = ct_form_create(s->arena, m, p, ct_embed_operations(s->embed), NULL);
+    f->form = ct_form_create(s->arena, m, p, ct_embed_operations(s->embed), NULL, NULL);
     if (f->form && f->form->kind == &ct_form_whole) { // lanes judge by B and its pivots
         ct_form_destroy(m, f->form);
-        f->form = ct_form_create(s->arena, m, p, 0, &ct_form_unrolled);
+        f->form = ct_form_create(s->arena, m, p, 0, &ct_form_unrolled, NULL);
     }
     memcpy(m->input, now, size);
     ct_machine_prepare(m);
