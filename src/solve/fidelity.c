@@ -1,6 +1,8 @@
 // See fidelity.h.
 #include "solve/fidelity.h"
 
+#include "integrate/stepper.h"
+
 #include <float.h>
 #include <math.h>
 #include <string.h>
