@@ -106,7 +106,8 @@ void ct_control_accept(struct ct_control *c, const struct ct_method *m, double h
     const bool has_own = m->most_growth > 0 && !c->is_starting;
     const double growth = has_own ? m->most_growth : most_growth;
     const double log_error = near_log2(error);
-    const double factor = ct_smaller(ct_larger(pi_factor(c, m, log_error), most_shrink), growth);
+    const double factor
+        = ct_smaller(ct_larger(pi_factor(c, m, log_error), most_shrink), growth);
     c->log_before = ct_larger(log_error, c->log_least);
     if (factor > m->steady[0] && factor < m->steady[1]) {
         // nothing is written where nothing changes: the next step need not wait for the error of this one
