@@ -18,15 +18,6 @@
 // What a crossing that failed shrinks its reach by aims at this part of what its error would allow.
 static const double safety = 0.9;
 
-// With events a run has at least this many steps, so that probes are never too far apart when
-// the motion between events is so simple (free fall) that steps could grow without limit.
-static const double event_steps = 50;
-
-// So many state events in a row, each within this part of max(|t|, run) after the one before,
-// are an infinite number: a bouncing ball comes here after its height has fallen by 1e-18.
-static const int pile_events = 100;
-static const double pile_time = 1e-9;
-
 // A step across a singular position that fails is tried again from nearer, after so many times not any more: then
 // the position is not singular but only nearly so.
 static const double nearer = 0.5;
@@ -38,9 +29,6 @@ static const double early = 1.3, on_time = 1.02;
 static const double beside = 0.5;
 // Beside a singular position f has fewer digits: crossings may err by this part of the largest state.
 static const double crossing_rounding = 5e-13;
-
-// Corrections to the time of an event, each worth three digits or more.
-static const int most_corrections = 3;
 
 static const struct ct_mark nowhere = {0};
 
@@ -72,8 +60,6 @@ struct run {
     int failed_crossings;         // of it
     bool is_open;                 // the last step met everything but the constraints
     size_t sample;                // the next one to give
-    double last_event;            // time of the last state event
-    int piled;                    // state events in a row without time going on
 };
 
 // A step as planned: to t1, which is t + h but for rounding, or the end of the run before that.
@@ -158,7 +144,7 @@ static bool take_bearings(struct run *r)
 static double step_limit(const struct run *r)
 {
     const double run = r->o->t1 - r->o->t0;
-    const double limit = r->p->nroot ? run / event_steps : run;
+    const double limit = r->p->nroot ? ct_watch_longest_step(run) : run;
     return r->p->longest_step ? ct_smaller(limit, r->p->longest_step(r->p->user)) : limit;
 }
 
@@ -457,7 +443,7 @@ static enum ct_eval step_to_event(struct run *r, struct stride *s, double h)
     const struct stride whole = *s;
     const double unresolved = ct_watch_resolution(r->t, whole.h);
     double dt = INFINITY;
-    for (int i = 0; i <= most_corrections && fabs(dt) > unresolved && h > 0; i++) {
+    for (int i = 0; i <= CT_WATCH_CORRECTIONS && fabs(dt) > unresolved && h > 0; i++) {
         const bool is_whole = whole.h - h <= unresolved;
         *s = whole;
         if (!is_whole) {
@@ -659,22 +645,14 @@ static void commit(struct run *r, const struct stride *s)
         r->method->accept(r->work);
 }
 
-static bool is_piling_up(struct run *r)
-{
-    const double scale = fmax(fabs(r->t), r->o->t1 - r->o->t0);
-    r->piled = r->t - r->last_event <= pile_time * scale ? r->piled + 1 : 0;
-    r->last_event = r->t;
-    return r->piled >= pile_events;
-}
-
 static bool handle_event(struct run *r, bool is_state, bool is_time)
 {
     const struct ct_problem *p = r->p;
     r->stats->events++;
     r->stop = -INFINITY;
-    if (is_state && is_piling_up(r))
+    if (is_state && ct_watch_piles_up(&r->watch, r->t, r->o->t1 - r->o->t0))
         return ct_error(r->ctx, nowhere, CT_E_EVENT_PILE,
-                        "%d events in a row at t = %.9g without time going on", pile_events,
+                        "%d events in a row at t = %.9g without time going on", CT_WATCH_PILE,
                         r->t);
     const enum ct_eval e
         = p->event ? p->event(p->user, r->t, r->y, r->watch.crossed, is_time) : CT_EVAL_OK;
@@ -758,7 +736,6 @@ bool ct_integrate(struct ct_ctx *ctx, const struct ct_method *method,
         .pace = {.t = options->t0},
         .singular_in = INFINITY,
         .reach = INFINITY,
-        .last_event = -INFINITY,
         .stop = -INFINITY,
     };
     allocate(&r);

@@ -190,7 +190,7 @@ static void find_needs(struct ct_run *r)
 }
 
 // To the start, assembled; rows and columns chosen there.
-static bool begin(struct ct_run *r, const struct ct_start *start)
+bool ct_run_begin(struct ct_run *r, const struct ct_start *start)
 {
     ct_start_apply(start, r->m, r->y);
     ct_machine_constraint(r->m);
@@ -236,7 +236,7 @@ struct ct_run *ct_run_create(struct ct_ctx *ctx, struct ct_arena *a,
                              const struct ct_start *start)
 {
     struct ct_run *r = ct_run_prepare(ctx, a, model, e);
-    return begin(r, start) ? r : NULL;
+    return ct_run_begin(r, start) ? r : NULL;
 }
 
 bool ct_run_restart(struct ct_run *r, const struct ct_start *start)
@@ -246,7 +246,7 @@ bool ct_run_restart(struct ct_run *r, const struct ct_start *start)
     r->pending = INFINITY;
     r->energy0 = r->energy_scale = 0;
     r->started = false;
-    return begin(r, start);
+    return ct_run_begin(r, start);
 }
 
 const struct ct_fidelity *ct_run_fidelity(const struct ct_run *r)
