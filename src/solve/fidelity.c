@@ -1,8 +1,6 @@
 // See fidelity.h.
 #include "solve/fidelity.h"
 
-#include "integrate/stepper.h"
-
 #include <float.h>
 #include <math.h>
 #include <string.h>
@@ -12,6 +10,7 @@ static const double harmless = 0.25;
 enum { STEPS_BETWEEN = 7 };
 // Where the ratio of the two is the same to this part at two looks in a row, it is taken for that of more and more steps.
 static const double steady = 0.1;
+enum { MOST_BETWEEN = 15 };
 // Rounding is measured again after so many looks, as long as it is this part of what would count.
 static const double unfelt = 0.01;
 enum { LOOKS_BETWEEN = 15 };
@@ -108,8 +107,14 @@ static void plan_looks(struct ct_fidelity_record *r, double error, double states
         r->between = STEPS_BETWEEN;
     else
         r->between = is_steady && ratio > 0 ? 2 * r->between + 1 : 0;
-    r->between = r->between < STEPS_BETWEEN ? r->between : STEPS_BETWEEN;
+    r->between = r->between < MOST_BETWEEN ? r->between : MOST_BETWEEN;
     r->skip = r->between;
+}
+
+// fmax without a call; b, if a is not a number.
+static inline double larger(double a, double b)
+{
+    return a > b ? a : b;
 }
 
 double ct_fidelity_judge(struct ct_fidelity_record *r, const double *at, const double *probed,
@@ -122,13 +127,13 @@ double ct_fidelity_judge(struct ct_fidelity_record *r, const double *at, const d
     for (size_t i = 0; i < r->n; i++) {
         const double rounding = fabs(probed[i] - at[i]) * (DBL_EPSILON / change);
         r->seen[i] = fabs(at[i]);
-        const double size = ct_larger(r->seen[i], r->largest[i]);
+        const double size = larger(r->seen[i], r->largest[i]);
         const double wanted = tolerance->rtol * size + tolerance->atol;
         is_felt |= !(unfelt * size >= least_size * rounding)
                 || !(unfelt * wanted >= most_precise * rounding);
         if (!(size >= least_size * rounding))
             continue;
-        const double part = (off[i] - at[i]) / ct_larger(most_precise * rounding, wanted);
+        const double part = (off[i] - at[i]) / larger(most_precise * rounding, wanted);
         sum += part * part;
         n++;
     }
@@ -142,7 +147,7 @@ double ct_fidelity_judge(struct ct_fidelity_record *r, const double *at, const d
 void ct_fidelity_keep(struct ct_fidelity_record *r)
 {
     for (size_t i = 0; i < r->n && r->has_seen; i++)
-        r->largest[i] = ct_larger(r->seen[i], r->largest[i]);
+        r->largest[i] = larger(r->seen[i], r->largest[i]);
     r->has_seen = false;
 }
 

@@ -136,6 +136,8 @@ double ct_run_longest_step(void *user)
 
 bool ct_run_is_followed(struct ct_run *r, double t, const double *y)
 {
+    if (!r->e->nmemory)
+        return true;
     const double now = turning(r, t, y);
     if ((t - r->t_turning) * fmax(now, r->turning) > most_turn)
         return false;
@@ -144,7 +146,7 @@ bool ct_run_is_followed(struct ct_run *r, double t, const double *y)
     return true;
 }
 
-static enum ct_eval accepted(void *user, double t, double *y, const double *dy)
+static enum ct_eval accepted(void *user, double t, const double *y, const double *dy)
 {
     struct ct_run *r = user;
     const double turning_before = r->turning, t_before = r->t_turning;
