@@ -11,7 +11,7 @@
 static const double harmless = 0.25;
 enum { STEPS_BETWEEN = 7 };
 // Where the ratio of the two is the same to this part at two looks in a row, it is taken for that of more and more steps.
-static const double steady = 0.1;
+static const double steady = 0.02;
 enum { MOST_BETWEEN = 15 };
 // Rounding is measured again after so many looks, as long as it is this part of what would count.
 static const double unfelt = 0.01;
