@@ -271,12 +271,32 @@ static int order_rows(struct ct_embed *s)
     return ct_qr_pivot(s->A, s->row, s->b, n, m, n, rank_tolerance, s->work);
 }
 
+// Columns count by what their speeds move, w (nu, out), where inertias are so different that a heavy dependent speed would
+// leave rounding of its forces, eps M_heavy, in the equations of light ones; else all alike. Elastic coordinates are always
+// light, and do not ask for it.
+static void weigh_columns(struct ct_embed *s, double *w)
+{
+    const double apart = 1e6; // leaves light ones ten digits
+    const size_t n = s->m->nu;
+    double least = INFINITY, most = 0;
+    for (size_t j = 0; j < n; j++) {
+        const double inertia = s->m->e->u[j].beam > 0 ? 0 : s->m->M[j + n * j];
+        least = inertia > 0 ? fmin(least, inertia) : least;
+        most = fmax(most, inertia);
+        w[j] = 1;
+    }
+    for (size_t j = 0; j < n && most > apart * least; j++)
+        w[j] = 1 / sqrt(fmax(s->m->M[j + n * j], least));
+}
+
 static void choose_columns(struct ct_embed *s)
 {
     const int n = (int)s->m->nu, r = s->rank;
+    ct_machine_motion(s->m);
+    weigh_columns(s, s->d);
     for (int i = 0; i < r; i++)
         for (int j = 0; j < n; j++)
-            s->A[i + r * j] = *J_at(s, s->row[i], j);
+            s->A[i + r * j] = s->d[j] * *J_at(s, s->row[i], j);
     ct_qr_pivot(s->A, s->column, s->b, r, n, r, 0, s->work);
     for (int j = 0; j < n; j++)
         *(j < r ? &s->dependent[j] : &s->independent[j - r]) = s->column[j];
