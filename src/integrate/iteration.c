@@ -7,8 +7,6 @@
 #include <math.h>
 #include <string.h>
 
-// Derivatives are kept while a correction is less than this part of the one before.
-static const double slow = 0.1;
 // Factors serve as long as the step is the same but for this: it costs no iteration.
 static const double same_step = 1e-3;
 // With a tolerance the iteration errs by a small part of it, smaller the tighter it is.
@@ -62,20 +60,36 @@ static inline double size_of(const struct ct_groups *g, int i, const double *y)
     return g && g->of[i] >= 0 ? g->size[g->of[i]] : fabs(y[i]);
 }
 
+static void weigh(struct ct_iteration *it, double rtol, double atol, const double *y)
+{
+    const struct ct_dae *dae = it->dae;
+    ct_stepper_group(it->groups, dae->nq + dae->nu, y, y);
+    for (int k = 0; k < it->nu; k++) {
+        const int i = dae->q_of[k];
+        it->share[k] = 1 / (rtol * (i < 0 ? 1 : size_of(it->groups, i, y)) + atol);
+        it->share[it->nu + k] = 1 / (rtol * size_of(it->groups, dae->nq + k, y) + atol);
+    }
+}
+
 bool ct_iteration_begin(struct ct_iteration *it, const struct ct_tolerance *tolerance,
                         const double *y)
 {
     const struct ct_dae *dae = it->dae;
     const struct ct_tolerance *tol = tolerance ? tolerance : &finest;
-    ct_stepper_group(it->groups, dae->nq + dae->nu, y, y);
-    for (int k = 0; k < it->nu; k++) {
-        const int i = dae->q_of[k];
-        it->share[k] = 1 / (tol->rtol * (i < 0 ? 1 : size_of(it->groups, i, y)) + tol->atol);
-        it->share[it->nu + k]
-            = 1 / (tol->rtol * size_of(it->groups, dae->nq + k, y) + tol->atol);
+    const double rtol = tol->rtol, atol = tol->atol, *u = y + dae->nq;
+    if (dae->is_plain && !it->groups)
+        for (int k = 0; k < it->nu; k++) {
+            it->share[k] = 1 / (rtol * fabs(y[k]) + atol);
+            it->share[it->nu + k] = 1 / (rtol * fabs(u[k]) + atol);
+        }
+    else
+        weigh(it, rtol, atol, y);
+    if (it->kappa_for != tol->rtol + tol->atol) {
+        it->kappa_for = tol->rtol + tol->atol;
+        it->kappa = tolerance ? ct_smaller(kappa_most, sqrt(it->kappa_for)) : kappa_finest;
+        it->kappa *= it->is_stabilised ? 1 : kappa_index3;
     }
-    it->kappa = tolerance ? ct_smaller(kappa_most, sqrt(tol->rtol + tol->atol)) : kappa_finest;
-    it->kappa *= it->is_stabilised ? 1 : kappa_index3;
+    it->is_finest = !tolerance;
     it->rounding = tolerance ? kappa_most : rounding_finest;
     it->most = tolerance ? MOST : MOST_FINEST;
     it->is_new = false;
@@ -174,11 +188,6 @@ static void assemble(struct ct_iteration *it)
     fill_turn(it, it->W, it->J, m, nu + m);
 }
 
-bool ct_iteration_is_old(const struct ct_iteration *it)
-{
-    return !it->has_tangent || it->rate > slow;
-}
-
 enum ct_eval ct_iteration_refresh(struct ct_iteration *it, double t, const double *q,
                                   const double *u, const double *a, const double *lam,
                                   struct ct_integrate_stats *stats)
@@ -207,7 +216,7 @@ static bool is_near(double a, double b)
 bool ct_iteration_factor(struct ct_iteration *it, double c, double e, double _Complex s,
                          struct ct_integrate_stats *stats)
 {
-    if (is_near(it->c, c) && is_near(it->e, e))
+    if ((it->c == c && it->e == e) || (is_near(it->c, c) && is_near(it->e, e)))
         return true;
     const int n = it->n, split = it->nu;
     const double x = c / e, y = 1 / e, z = 1 / c;
@@ -333,10 +342,11 @@ double ct_iteration_error(struct ct_iteration *it, const struct ct_problem *p,
 
 void ct_iteration_start(struct ct_iteration *it)
 {
+    const double tail = ct_larger(it->tail, DBL_EPSILON);
     it->count = 0;
     it->rate = 0;
-    const double tail = ct_larger(it->tail, DBL_EPSILON);
-    it->tail = sqrt(tail * sqrt(tail)); // the last step's, trusted less and less
+    // the last step's, trusted less and less; not where there is no tolerance that says how far off it may be
+    it->tail = it->is_finest ? 1 : sqrt(tail * sqrt(tail));
 }
 
 enum ct_verdict ct_iteration_judge(struct ct_iteration *it, double size)

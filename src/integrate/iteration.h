@@ -47,6 +47,8 @@ struct ct_iteration {
     // the run of corrections
     int count;
     double kappa, rounding; // a correction below: converged; below: not to be bettered
+    double kappa_for;       // the tolerance that it belongs to
+    bool is_finest;         // there is no tolerance
     double size, rate,
         tail; // of the last correction; over the one before; all that follow it, over it
     int most;
@@ -61,8 +63,12 @@ struct ct_iteration *ct_iteration_create(struct ct_arena *a, const struct ct_pro
 bool ct_iteration_begin(struct ct_iteration *it, const struct ct_tolerance *tolerance,
                         const double *y);
 
-/// Are the derivatives too old?
-bool ct_iteration_is_old(const struct ct_iteration *it);
+/// Are the derivatives too old? They are kept while a correction is less than a tenth of the one before.
+static inline bool ct_iteration_is_old(const struct ct_iteration *it)
+{
+    const double slow = 0.1;
+    return !it->has_tangent || it->rate > slow;
+}
 /// Derivatives at a point, where they are too old; after it come the factors.
 enum ct_eval ct_iteration_refresh(struct ct_iteration *it, double t, const double *q,
                                   const double *u, const double *a, const double *lam,
