@@ -1,6 +1,8 @@
 // See fidelity.h.
 #include "solve/fidelity.h"
 
+#include "integrate/stepper.h"
+
 #include <float.h>
 #include <math.h>
 #include <string.h>
@@ -111,12 +113,6 @@ static void plan_looks(struct ct_fidelity_record *r, double error, double states
     r->skip = r->between;
 }
 
-// fmax without a call; b, if a is not a number.
-static inline double larger(double a, double b)
-{
-    return a > b ? a : b;
-}
-
 double ct_fidelity_judge(struct ct_fidelity_record *r, const double *at, const double *probed,
                          const double *off, const struct ct_tolerance *tolerance, double states)
 {
@@ -127,13 +123,13 @@ double ct_fidelity_judge(struct ct_fidelity_record *r, const double *at, const d
     for (size_t i = 0; i < r->n; i++) {
         const double rounding = fabs(probed[i] - at[i]) * (DBL_EPSILON / change);
         r->seen[i] = fabs(at[i]);
-        const double size = larger(r->seen[i], r->largest[i]);
+        const double size = ct_larger(r->seen[i], r->largest[i]);
         const double wanted = tolerance->rtol * size + tolerance->atol;
         is_felt |= !(unfelt * size >= least_size * rounding)
                 || !(unfelt * wanted >= most_precise * rounding);
         if (!(size >= least_size * rounding))
             continue;
-        const double part = (off[i] - at[i]) / larger(most_precise * rounding, wanted);
+        const double part = (off[i] - at[i]) / ct_larger(most_precise * rounding, wanted);
         sum += part * part;
         n++;
     }
@@ -147,7 +143,7 @@ double ct_fidelity_judge(struct ct_fidelity_record *r, const double *at, const d
 void ct_fidelity_keep(struct ct_fidelity_record *r)
 {
     for (size_t i = 0; i < r->n && r->has_seen; i++)
-        r->largest[i] = larger(r->seen[i], r->largest[i]);
+        r->largest[i] = ct_larger(r->seen[i], r->largest[i]);
     r->has_seen = false;
 }
 

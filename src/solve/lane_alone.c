@@ -59,8 +59,8 @@ static void keep_measures(struct ct_lanes *s, int l)
 bool ct_lane_solve(struct ct_lanes *s, int l, double t, const vec *y, vec *dy)
 {
     ct_lane_become(s, l, t, y);
-    if (ct_embed_solve(s->embed) != CT_EVAL_OK
-        || !ct_stepper_finite(s->embed->a, s->nu) || !ct_stepper_finite(s->m->rate, s->nq))
+    if (ct_embed_solve(s->embed) != CT_EVAL_OK || !ct_stepper_finite(s->embed->a, s->nu)
+        || !ct_stepper_finite(s->m->rate, s->nq))
         return false;
     keep_measures(s, l);
     ct_lane_put(dy, l, s->m->rate, (size_t)s->nq);
