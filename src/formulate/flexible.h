@@ -169,6 +169,9 @@ struct ct_flexible_state ct_flexible_moving(struct ct_build *b, const struct ct_
 /// Force and torque about the base that the beam's inertia and weight need, with the symbols u'; ground axes.
 void ct_flexible_wrench(struct ct_build *b, const struct ct_flexible *f, ct_ex3 *force,
                         ct_ex3 *torque);
+/// By how much more than EI fully integrated elements of Timoshenko's theory resist bending, since they cannot bend without
+/// shear: the largest k GA h^2/(12 EI).
+double ct_flexible_locking(struct ct_build *b, const struct ct_flexible *f);
 /// [J]
 ct_ex ct_flexible_strain(struct ct_build *b, const struct ct_flexible *f);
 /// Power of the beams' own damping, negative.

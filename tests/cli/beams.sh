@@ -283,3 +283,18 @@ joints:
 simulation: {duration: 1e-3}
 E
 say simulate modes.yaml --quiet -o modes.csv
+echo '-- linear elements with shear: reduced integration has the indicator of cubic ones without, full integration locks'
+for keys in '' 'rotary_inertia: true, theory: timoshenko, shear_factor: 5/6, integration: reduced,' \
+  'rotary_inertia: true, theory: timoshenko, shear_factor: 5/6,'; do
+  cat >spin.yaml <<E
+cotree: 1
+bodies:
+  arm: {type: beam, length: 3, elements: 16, density: 2700, E: 7e10, nu: 0.3, area: 6e-4, Iz: 5e-9, $keys points: {tip: length}}
+  end: {mass: 0.3}
+joints:
+  hub: {type: revolute, from: ground, to: arm, motion: "0.1*t^2"}
+  tip: {type: weld, from: arm.tip, to: end}
+simulation: {duration: 10}
+E
+  "$COTREE" check spin.yaml | grep -A 1 '^beam' | grep -v '^left'
+done
