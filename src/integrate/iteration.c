@@ -19,6 +19,14 @@ static const struct ct_tolerance finest = {1e-12, 1e-12};
 static const double kappa_finest = 0.1, rounding_finest = 100;
 // The first corrections come from a guess and may grow; not so much, though.
 static const double hopeless = 100;
+// Places that change by less than this many roundings of the largest of them cannot be found better, however much their
+// speeds still change, which have the same over the step.
+static const double place_rounding = 8;
+// With a tolerance a speed need not be known better than what moves a place by so many roundings in the step: where forces
+// are very stiff, shorter steps would only show more of it.
+static const double moved_roundings = 4;
+// Corrections that are to go on after convergence do until they are this much smaller.
+static const double further = 1e-6;
 // In the index-3 form places alone are judged, and speeds follow them divided by the step.
 static const double kappa_index3 = 0.01;
 enum { MOST = 10, MOST_FINEST = 30 };
@@ -62,17 +70,23 @@ static double size_of(const struct ct_groups *g, int i, const double *y)
     return g && g->of[i] >= 0 ? g->size[g->of[i]] : fabs(y[i]);
 }
 
-bool ct_iteration_begin(struct ct_iteration *it, const struct ct_tolerance *tolerance,
+bool ct_iteration_begin(struct ct_iteration *it, const struct ct_tolerance *tolerance, double h,
                         const double *y)
 {
     const struct ct_dae *dae = it->dae;
     const struct ct_tolerance *tol = tolerance ? tolerance : &finest;
+    double largest = 0;
     ct_stepper_group(it->groups, dae->nq + dae->nu, y, y);
     for (int k = 0; k < it->nu; k++) {
         const int i = dae->q_of[k];
         it->weight[k] = tol->rtol * (i < 0 ? 1 : size_of(it->groups, i, y)) + tol->atol;
         it->weight[it->nu + k] = tol->rtol * size_of(it->groups, dae->nq + k, y) + tol->atol;
+        largest = fmax(largest, i < 0 ? 1 : fabs(y[i]));
     }
+    it->least = place_rounding * DBL_EPSILON * largest;
+    const double speed_rounding = tolerance ? moved_roundings * DBL_EPSILON * largest / h : 0;
+    for (int k = 0; k < it->nu; k++)
+        it->weight[it->nu + k] = fmax(it->weight[it->nu + k], speed_rounding);
     it->kappa = tolerance ? fmin(kappa_most, sqrt(tol->rtol + tol->atol)) : kappa_finest;
     it->kappa *= it->is_stabilised ? 1 : kappa_index3;
     it->rounding = tolerance ? kappa_most : rounding_finest;
@@ -308,13 +322,27 @@ void ct_iteration_start(struct ct_iteration *it)
     it->tail = pow(fmax(it->tail, DBL_EPSILON), 0.8); // the last step's, trusted less and less
 }
 
-enum ct_verdict ct_iteration_judge(struct ct_iteration *it, double size)
+void ct_iteration_go_on(struct ct_iteration *it)
+{
+    it->count = 1; // the last correction is known, its rate is not wanted
+    it->kappa *= further;
+}
+
+static bool is_within(const double *d, int n, double most)
+{
+    for (int i = 0; i < n; i++)
+        if (!(fabs(d[i]) <= most))
+            return false;
+    return true;
+}
+
+enum ct_verdict ct_iteration_judge(struct ct_iteration *it, double size, const double *d, int k)
 {
     if (!isfinite(size))
         return CT_DIVERGED;
     if (it->count++ > 0) {
         const double rate = size / it->size;
-        if (rate >= 1 && size <= it->rounding)
+        if (rate >= 1 && (size <= it->rounding || is_within(d, k * it->nu, it->least)))
             return CT_CONVERGED;
         it->rate = it->count > 2 ? sqrt(rate * it->rate) : rate; // two in turn are often uneven
         if (rate >= hopeless || (it->rate >= 1 && it->count > 3))

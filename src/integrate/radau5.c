@@ -23,6 +23,12 @@ enum { STAGES = 3 };
 // not see it, over 1e5 radians, less than ten times that tolerance is lost.  (8.7)
 static const double near_zero = 0.05;
 
+// Filtered again, the error of a vibration of h omega radians in a step is less by 1/(1 + (h omega/GAMMA)^2): with this part
+// left it turns five times and more in each.
+static const double unfollowed = 0.01;
+// With derivatives from the end of the step an estimate must be this much smaller, if the first is to be one of directions only.
+static const double turned = 0.03;
+
 #define SQRT3 1.7320508075688772935
 #define SQRT6 2.4494897427831780982
 #define CBRT3 1.4422495703074083823
@@ -77,6 +83,7 @@ struct state {
     double *d;                   // a motion, or change of speed  (nu)
     double *gain, *defect;       // of quadratures: over h; error over h / GAMMA  (ny)
     double *power, *power1;      // rates of all states at both ends  (ny)
+    double largest;              // acceleration at the end of steps so far
     double _Complex *Fc, *rc, *phic, *vc, *dc, *etac, *lamc;
 };
 
@@ -335,8 +342,8 @@ static enum ct_eval correct(struct state *s, double t, const double *y,
     add(s->now.u, s->change.u, STAGES * nu);
     add(s->now.lam, s->change.lam, STAGES * m);
     add(s->now.eta, s->change.eta, STAGES * m);
-    *verdict
-        = ct_iteration_judge(s->it, ct_iteration_norm(s->it, s->change.d, s->change.u, STAGES));
+    *verdict = ct_iteration_judge(
+        s->it, ct_iteration_norm(s->it, s->change.d, s->change.u, STAGES), s->change.d, STAGES);
     return CT_EVAL_OK;
 }
 
@@ -375,6 +382,18 @@ static enum ct_eval iterate(struct state *s, double t, double h, const double *y
             return e;
     } while (ct_iteration_can_renew(s->it));
     return CT_EVAL_RETRY;
+}
+
+// Further corrections after convergence, as far as they lead.
+static enum ct_eval iterate_on(struct state *s, double t, const double *y,
+                               struct ct_integrate_stats *stats)
+{
+    enum ct_verdict verdict = CT_GO_ON;
+    enum ct_eval e = CT_EVAL_OK;
+    ct_iteration_go_on(s->it);
+    while (e == CT_EVAL_OK && verdict == CT_GO_ON)
+        e = correct(s, t, y, &verdict, stats);
+    return e == CT_EVAL_OK && verdict == CT_DIVERGED ? CT_EVAL_RETRY : e;
 }
 
 // ---- a step -----------------------------------------------------------------------------------------
@@ -462,31 +481,126 @@ static struct ct_tolerance ease(const struct ct_tolerance *tolerance)
     return (struct ct_tolerance){factor * tolerance->rtol, factor * tolerance->atol};
 }
 
+// The error of places and speeds at the end of the step, once more, by derivatives from there. The first estimate knows
+// stiff forces as they are directed at the second stage: errors along what has turned since become forces.
+static enum ct_eval estimate_at_end(struct state *s, double t1, const double *y,
+                                    const double *dy, const double *y1, const double *dy1,
+                                    struct ct_integrate_stats *stats)
+{
+    struct ct_iteration *it = s->it;
+    const int nq = s->dae->nq;
+    const double c = GAMMA / s->now.h;
+    it->has_tangent = false;
+    const enum ct_eval e = ct_iteration_refresh(it, t1, y1, y1 + nq, dy1 + nq,
+                                                s->now.lam + (STAGES - 1) * it->m, stats);
+    if (e != CT_EVAL_OK)
+        return e;
+    if (!ct_iteration_factor(it, c, c * c, 0, stats))
+        return CT_EVAL_RETRY;
+    filter(s, y + nq, dy + nq);
+    return CT_EVAL_OK;
+}
+
+// The error filtered by the same factors again, which leaves of it what is not stiff.
+static void filter_again(struct state *s)
+{
+    const struct ct_iteration *it = s->it;
+    const int nu = it->nu, m = it->m;
+    const double c = it->c, *d = s->change.d, *u = s->change.u;
+    memset(s->r, 0, (size_t)nu * sizeof *s->r);
+    for (int k = 0; k < nu; k++) {
+        s->F[k] = u[k] - c * d[k];
+        for (int i = 0; i < nu; i++)
+            s->r[i] -= c * it->M[i + nu * k] * u[k];
+    }
+    memset(s->phi, 0, (size_t)m * sizeof *s->phi);
+    memset(s->v, 0, (size_t)m * sizeof *s->v);
+    solve_real(s);
+}
+
+// Are forces at the end of the step as they were in the iteration, to the tolerance? Where stiff ones turn within the step,
+// corrections that are small as motions leave large errors of forces, which outputs may consist of.
+static bool is_balanced(struct state *s, double rtol, const double *dy1)
+{
+    const int nq = s->dae->nq, nu = s->dae->nu, last = STAGES - 1;
+    double w[STAGES], off = 0, size = 0;
+    for (int j = 0; j < STAGES; j++)
+        w[j] = INVERSE[last][j] / s->now.h;
+    weigh(s->rate, w, s->now.u, nu);
+    for (int k = 0; k < nu; k++) {
+        off = fmax(off, fabs(dy1[nq + k] - s->rate[k]));
+        size = fmax(size, fabs(s->rate[k]));
+    }
+    if (!(off <= rtol * fmax(s->largest, size)))
+        return false;
+    s->largest = fmax(s->largest, size);
+    return true;
+}
+
+// y1 and dy1 from the stages, and the error of the states, where a tolerance is given.
+static enum ct_eval conclude(struct state *s, const struct ct_problem *p, double t, double h,
+                             const double *y, const double *dy,
+                             const struct ct_tolerance *eased, double *y1, double *dy1,
+                             double *err, struct ct_integrate_stats *stats)
+{
+    enum ct_eval e = eased ? estimate(s, p, t, y, dy, y1, dy1, err, stats) : CT_EVAL_OK;
+    if (e == CT_EVAL_OK)
+        e = finish(s, p, t, h, y, dy, y1, dy1, stats);
+    return e;
+}
+
+// That of outputs and quadratures, if it is more. Of what is much faster than steps can follow, an error of outputs does not
+// count: it is damped, and where outputs are forces of very stiff springs the rest is beyond the digits of places.
+static enum ct_eval look_at_outputs(struct state *s, const struct ct_problem *p, double t1,
+                                    const double *y, const double *dy,
+                                    const struct ct_tolerance *eased, double *y1, double *dy1,
+                                    double *err, struct ct_integrate_stats *stats)
+{
+    const struct ct_tolerance outputs = {eased->rtol, near_zero * eased->atol};
+    const struct stages *e = &s->change;
+    const double states = *err;
+    const int first = s->dae->nq + s->dae->nu;
+    *err = ct_iteration_error(s->it, p, &outputs, t1, y1, e->d, e->u, states);
+    if (states <= 1 && *err > 1) {
+        const enum ct_eval eval = estimate_at_end(s, t1, y, dy, y1, dy1, stats);
+        if (eval != CT_EVAL_OK)
+            return eval;
+        const double all = ct_iteration_error(s->it, p, &outputs, t1, y1, e->d, e->u, states);
+        filter_again(s);
+        const double slow = ct_iteration_error(s->it, p, &outputs, t1, y1, e->d, e->u, states);
+        const double better = slow < unfollowed * all ? slow : all;
+        *err = better < turned * *err ? better : *err;
+        s->it->c = s->it->e = 0; // the complex factors are not there
+    }
+    *err = fmax(*err, ct_stepper_largest(p, eased, first, y, y1, s->defect));
+    return CT_EVAL_OK;
+}
+
 static enum ct_eval step(const struct ct_problem *p, double t, double h, const double *y,
                          const double *dy, const struct ct_tolerance *tolerance, double *y1,
                          double *dy1, double *err, void *work, struct ct_integrate_stats *stats)
 {
     struct state *s = work;
     const struct ct_tolerance eased = tolerance ? ease(tolerance) : (struct ct_tolerance){0};
+    const struct ct_tolerance *tol = tolerance ? &eased : NULL;
     const size_t bytes = (size_t)p->ny * sizeof *y;
-    ct_iteration_begin(s->it, tolerance ? &eased : NULL, y);
+    ct_iteration_begin(s->it, tol, h, y);
     enum ct_eval e = s->dae->start(s->dae->user, t, y, s->u_dot, s->lam);
     if (e == CT_EVAL_OK)
         e = iterate(s, t, h, y, dy, stats);
-    if (e == CT_EVAL_OK && tolerance)
-        e = estimate(s, p, t, y, dy, y1, dy1, err, stats);
     if (e == CT_EVAL_OK)
-        e = finish(s, p, t, h, y, dy, y1, dy1, stats);
+        e = conclude(s, p, t, h, y, dy, tol, y1, dy1, err, stats);
+    if (e == CT_EVAL_OK && tol && p->output_error
+        && !is_balanced(s, sqrt(tolerance->rtol), dy1)) {
+        e = iterate_on(s, t, y, stats);
+        if (e == CT_EVAL_OK)
+            e = conclude(s, p, t, h, y, dy, tol, y1, dy1, err, stats);
+    }
+    if (e == CT_EVAL_OK && tol)
+        e = look_at_outputs(s, p, t + h, y, dy, tol, y1, dy1, err, stats);
     s->was_tried = true;
     if (e != CT_EVAL_OK)
         return e;
-    if (tolerance) {
-        const struct ct_tolerance outputs = {eased.rtol, near_zero * eased.atol};
-        *err
-            = ct_iteration_error(s->it, p, &outputs, t + h, y1, s->change.d, s->change.u, *err);
-        *err = fmax(*err,
-                    ct_stepper_largest(p, &eased, s->dae->nq + s->dae->nu, y, y1, s->defect));
-    }
     memcpy(s->power, dy, bytes);
     memcpy(s->power1, dy1, bytes);
     return CT_EVAL_OK;

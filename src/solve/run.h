@@ -44,6 +44,7 @@ struct ct_run {
     struct ct_trial *trial;          // under way
     struct ct_trial implicit;        // what the implicit method gains since it took over
     double explicit_pace;            // what was gained before
+    double spent;                    // by the last trial
     bool is_suspect;                 // steps ended to think of another method
     double t_before, last_event;     // times
     size_t ngiven;                   // samples
