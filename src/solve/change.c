@@ -62,6 +62,7 @@ static double try_implicit(struct ct_run *r, const struct ct_problem *p,
     struct ct_trial trial = {.cost = *cost, .stats = &r->stats};
     const size_t ndiagnostic = r->ctx->ndiagnostic, nerror = r->ctx->nerror;
     const double pending = r->pending, turning = r->turning, t_turning = r->t_turning;
+    const struct ct_singular singular = *r->singular; // none is near
     double *y = CT_NEWN(r->arena, double, r->ny), *input = CT_NEWN(r->arena, double, m->ninput);
     memcpy(y, r->y, r->ny * sizeof *y);
     memcpy(input, m->input, m->ninput * sizeof *input);
@@ -76,6 +77,8 @@ static double try_implicit(struct ct_run *r, const struct ct_problem *p,
     r->pending = pending;
     r->turning = turning;
     r->t_turning = t_turning;
+    *r->singular = singular;
+    ct_singular_set_crossing(r->singular, false);
     memcpy(m->input, input, m->ninput * sizeof *input);
     ct_machine_set(m, io->t0, r->y);
     ct_machine_constraint(m);
