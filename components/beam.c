@@ -32,7 +32,8 @@ static const struct ct_key keys[] = {
      "true: density*(Iy + Iz, Iy, Iz); or values per length about x, y, z, which may contain x "
      "(false)"},
     {"theory", CT_VALUE_WORD, 0, "euler-bernoulli|timoshenko", 1, 1, "theory of bending"},
-    {"shear_factor", CT_VALUE_SCALAR, 0, "", 1, 1, "multiplies G*area; timoshenko needs it"},
+    {"shear_factor", CT_VALUE_LIST, 0, "", 1, 2,
+     "multiplies G*area; timoshenko needs it; [ky, kz]: along y and along z"},
     {"geometric_stiffness", CT_VALUE_WORD, 0, "standard|higher-order", 1, 1,
      "work of the axial force"},
     {"integration", CT_VALUE_WORD, 0, "full|reduced|one-point", 1, 1,
@@ -43,6 +44,9 @@ static const struct ct_key keys[] = {
      1, "how bending shortens the axis"},
     {"twist", CT_VALUE_WORD, 0, "linear|quadratic", 1, 1,
      "shape of the twist in an element; quadratic needs integration: full and mass: "
+     "consistent"},
+    {"stretch", CT_VALUE_WORD, 0, "linear|quadratic", 1, 1,
+     "shape of the stretch in an element; quadratic needs integration: full and mass: "
      "consistent"},
     {"frame", CT_VALUE_WORD, 0, "clamped|chord", 1, 1,
      "the body's frame follows the section at x = 0 or the line between the ends"},

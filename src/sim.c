@@ -6,6 +6,7 @@
 
 #include "report/json.h"
 #include "report/progress.h"
+#include "solve/lanes.h"
 #include "solve/singular.h"
 
 #include <math.h>
@@ -229,6 +230,12 @@ bool ct_sim_resolve(struct ct_sim *sim, const struct ct_sim_options *o)
     return true;
 }
 
+const char *ct_sim_refuses_lanes(const struct ct_sim *sim)
+{
+    return sim->system->held_equations.build ? "beams start in equilibrium"
+                                             : ct_lanes_refusal(&sim->run_options);
+}
+
 // Machine code where it can be had, unless the tape is asked for.
 static bool choose_backend(struct ct_sim *sim, const char *name)
 {
@@ -308,9 +315,12 @@ static bool prepare(struct ct_sim *sim, const struct ct_sim_options *o)
         ct_formulate_dynamics(&s->equations);
     if (!ct_configuration_assemble(&sim->own, s, &sim->start))
         return false;
-    sim->run = ct_run_create(&sim->own, sim->own.model, &s->model, &s->equations, &sim->start);
+    sim->run = ct_run_prepare(&sim->own, sim->own.model, &s->model, &s->equations);
+    if (!ct_sim_choose_solver(sim, o->solver) || !ct_run_begin(sim->run, &sim->start)
+        || !ct_sim_has_solver(sim))
+        return false;
     sim->compile = ct_clock() - start;
-    if (!sim->run || !choose_backend(sim, o->backend))
+    if (!choose_backend(sim, o->backend))
         return false;
     sim->open.row = CT_NEWN(sim->own.model, bool, s->equations.nrow + 1);
     sim->open.result = CT_NEWN(sim->own.model, bool, s->equations.nresult + 1);
@@ -329,6 +339,8 @@ bool ct_sim_prepare(struct ct_sim *sim, struct ct_system *sys, const struct ct_s
     sim->system = sys;
     if (!ct_sim_resolve(sim, o))
         return false;
+    if (needs_dynamics(&sys->equations))
+        ct_formulate_dynamics(&sys->equations);
     sim->run = ct_run_prepare(&sim->own, sim->own.model, &sys->model, &sys->equations);
     return choose_backend(sim, o->backend);
 }

@@ -45,13 +45,14 @@ struct ct_beam {
     ct_ex
         twist_inertia; // rho (Iy + Iz), of twist where torsion is present and has_rotary is false
     enum ct_beam_theory theory;
-    ct_ex shear_factor; // Timoshenko
+    ct_ex shear_factor[2]; // Timoshenko; along y, along z
     enum ct_beam_integration integration;
     bool is_lumped;
     bool higher_order; // geometric_stiffness: higher-order
     enum ct_beam_formulation formulation;
-    bool is_chord;            // frame: chord
-    bool has_quadratic_twist; // twist: quadratic
+    bool is_chord;              // frame: chord
+    bool has_quadratic_twist;   // twist: quadratic
+    bool has_quadratic_stretch; // stretch: quadratic
     unsigned
         known; // bits: deformations whose stiffness is given and not 0 (AXIAL: area, BENDING_Y: Iy, TORSION: G and J, ...)
     bool deformation_given;

@@ -73,6 +73,8 @@ enum ct_rule ct_flexible_stiffness_rule(const struct ct_beam *beam);
 bool ct_flexible_turns_inertia(const struct ct_build *b, const struct ct_flexible *f);
 /// Inertia per length of the section about an axis.
 struct ct_profile ct_flexible_rotary(const struct ct_flexible *f, int axis);
+/// Shear stiffness k G area of Timoshenko's sections, plane 0 along y, 1 along z; 0 without shear.
+ct_ex ct_flexible_shear(struct ct_build *b, const struct ct_flexible *f, int plane);
 /// Integral of g p q over element e.
 ct_ex ct_flexible_integral(struct ct_build *b, const struct ct_flexible *f, int e, ct_ex g,
                            const struct ct_shape *p, const struct ct_shape *q,

@@ -133,6 +133,15 @@ static bool turns_section(const struct ct_build *b, int frame, const struct ct_f
     return !is_base || f->beam->is_chord;
 }
 
+// Is the section one to which all directions across the axis are alike?
+static bool is_even(const struct ct_build *b, const struct ct_beam *beam)
+{
+    const bool shears = beam->theory == CT_BEAM_TIMOSHENKO;
+    return ct_ex_is_zero(ct_ex_sub(b->x, beam->Iy, beam->Iz))
+        && !(shears
+             && !ct_ex_is_zero(ct_ex_sub(b->x, beam->shear_factor[0], beam->shear_factor[1])));
+}
+
 // Bending about both axes twists a beam by (5.6b), if it is stiffer about one of them; in an analysis the smallest motion
 // counts.
 static bool bending_twists(const struct ct_build *b, const struct ct_flexible *f)
@@ -140,9 +149,7 @@ static bool bending_twists(const struct ct_build *b, const struct ct_flexible *f
     const struct ct_beam *beam = f->beam;
     const unsigned both = CT_BEAM_BENDING_Y | CT_BEAM_BENDING_Z;
     return (f->deformation & beam->known & both) == both
-        && (b->frees_beams
-            || (f->formulation == CT_BEAM_FORESHORTENING
-                && !ct_ex_is_zero(ct_ex_sub(b->x, beam->Iy, beam->Iz))));
+        && (b->frees_beams || (f->formulation == CT_BEAM_FORESHORTENING && !is_even(b, beam)));
 }
 
 // Does the scene twist it by a joint, a torque or an arm off its axis beyond the base?

@@ -16,9 +16,10 @@ enum {
     RY = CT_FREEDOM_RY,
     RZ = CT_FREEDOM_RZ,
     RM = CT_FREEDOM_RM,
+    UM = CT_FREEDOM_UM,
     NKIND = CT_NODE_FREEDOM
 };
-static const char *const kind_name[NKIND] = {"u", "v", "w", "rx", "ry", "rz", "rm"};
+static const char *const kind_name[NKIND] = {"u", "v", "w", "rx", "ry", "rz", "rm", "um"};
 static const ct_ex3 zero3 = {{{0}, {0}, {0}}};
 
 // ---- freedoms ---------------------------------------------------------------------------------------
@@ -28,13 +29,15 @@ static unsigned family_of(int kind)
 {
     static const unsigned family[NKIND]
         = {CT_BEAM_AXIAL,     CT_BEAM_BENDING_Z, CT_BEAM_BENDING_Y, CT_BEAM_TORSION,
-           CT_BEAM_BENDING_Y, CT_BEAM_BENDING_Z, CT_BEAM_TORSION};
+           CT_BEAM_BENDING_Y, CT_BEAM_BENDING_Z, CT_BEAM_TORSION,   CT_BEAM_AXIAL};
     return family[kind];
 }
 
 static enum ct_elastic_kind sort_of(int kind)
 {
-    return kind == U ? CT_ELASTIC_ALONG : kind < RX ? CT_ELASTIC_ACROSS : CT_ELASTIC_TURN;
+    return kind == U || kind == UM ? CT_ELASTIC_ALONG
+         : kind < RX               ? CT_ELASTIC_ACROSS
+                                   : CT_ELASTIC_TURN;
 }
 
 static bool is_fixed(const struct ct_flexible *f, int node, int kind)
@@ -44,6 +47,8 @@ static bool is_fixed(const struct ct_flexible *f, int node, int kind)
         return true;
     if (kind == RM)
         return node == 0 || !f->beam->has_quadratic_twist;
+    if (kind == UM)
+        return node == 0 || !f->beam->has_quadratic_stretch;
     if (!f->beam->is_chord)
         return node == 0;
     // the chord's frame: origin at the start, x towards the end, not twisted at the start
@@ -55,7 +60,7 @@ static void number_dofs(struct ct_flexible *f)
 {
     static const int kinds[CT_DOF][2]
         = {{0, U},  {1, U}, {0, V},  {0, RZ}, {1, V},  {1, RZ}, {0, W},
-           {0, RY}, {1, W}, {1, RY}, {0, RX}, {1, RX}, {1, RM}};
+           {0, RY}, {1, W}, {1, RY}, {1, UM}, {0, RX}, {1, RX}, {1, RM}};
     for (int e = 0; e < f->beam->nelement; e++)
         for (int j = 0; j < CT_DOF; j++) {
             const int node = e + kinds[j][0], kind = kinds[j][1];
@@ -202,8 +207,7 @@ static void settle(struct ct_build *b, struct ct_flexible *f)
     f->freedom = CT_NEWN(b->arena, struct ct_freedom, NKIND * (beam->nelement + 1));
     f->element = CT_NEWN(b->arena, struct ct_element, beam->nelement);
     ct_shape_bending(beam->theory, &f->shape);
-    ct_shape_linear(f->linear);
-    ct_shape_twist(f->twist);
+    ct_shape_line(f->line);
     derive_shortening(f);
     number_dofs(f);
     for (int e = 0; e < beam->nelement; e++) {
@@ -454,6 +458,13 @@ ct_ex ct_element_field(struct ct_build *b, const struct ct_element *e,
     return sum;
 }
 
+static ct_ex stretch_field(struct ct_build *b, const struct ct_flexible *f,
+                           const struct ct_element *e, const ct_ex *of, ct_ex xi)
+{
+    return ct_ex_add(b->x, ct_element_field(b, e, f->line, of, 0, 2, xi),
+                     ct_element_field(b, e, &f->line[2], of, CT_MIDDLE_DOF, 1, xi));
+}
+
 // (M a)_j of the matrix of shapes that the axial displacement is quadratic in, with its sign.
 static ct_ex quadratic_slope(struct ct_build *b, const struct ct_flexible *f, int e, int plane,
                              int j, const ct_ex *of, enum ct_axial axial, ct_ex xi)
@@ -476,15 +487,15 @@ void ct_axial_field(struct ct_build *b, const struct ct_flexible *f, int e, ct_e
     struct ct_exs *x = b->x;
     const struct ct_element *self = &f->element[e];
     memset(a, 0, sizeof *a);
-    a->value = ct_element_field(b, self, f->linear, self->value, 0, 2, xi);
-    a->rate = ct_element_field(b, self, f->linear, self->rate, 0, 2, xi);
+    a->value = stretch_field(b, f, self, self->value, xi);
+    a->rate = stretch_field(b, f, self, self->rate, xi);
     if (axial == CT_AXIAL_CHAIN) {
         a->value = ct_ex_add(x, a->value, self->c);
         a->rate = ct_ex_add(x, a->rate, self->c_rate);
         a->bias = self->c_bias;
     }
-    for (int j = 0; j < 2; j++)
-        a->slope[j] = ct_shape_at(x, &f->linear[j], xi, self->span.length);
+    for (int i = 0; i < CT_LINE_DOF; i++)
+        a->slope[ct_stretch_dof(i)] = ct_shape_at(x, &f->line[i], xi, self->span.length);
     for (int plane = 0; plane < 2 && axial != CT_AXIAL_LINEAR; plane++)
         for (int j = 0; j < 4; j++) {
             const int dof = (plane ? 6 : 2) + j;
@@ -525,7 +536,7 @@ void ct_flexible_station(struct ct_build *b, const struct ct_flexible *f, ct_ex 
     s->place.e[1] = ct_element_field(b, self, f->shape.place, self->value, 2, 4, s->xi);
     s->place.e[2] = ct_element_field(b, self, f->shape.place, self->value, 6, 4, s->xi);
     s->angle[0]
-        = ct_element_field(b, self, f->twist, self->value, CT_PLACE_DOF, CT_TWIST_DOF, s->xi);
+        = ct_element_field(b, self, f->line, self->value, CT_PLACE_DOF, CT_LINE_DOF, s->xi);
     s->angle[1]
         = ct_ex_neg(x, ct_element_field(b, self, f->shape.rotation, self->value, 6, 4, s->xi));
     s->angle[2] = ct_element_field(b, self, f->shape.rotation, self->value, 2, 4, s->xi);
@@ -556,12 +567,12 @@ void ct_station_own_partials(struct ct_build *b, const struct ct_flexible *f,
         const int plane = j >= 6, i = plane ? j - 6 : j - 2;
         if (j < CT_PLACE_DOF)
             d.e[0] = a.slope[j];
-        if (j >= 2 && j < CT_PLACE_DOF) {
+        if (j >= 2 && j < CT_BENT_DOF) {
             const ct_ex r = ct_shape_at(x, &f->shape.rotation[i], s->xi, h);
             d.e[1 + plane] = ct_shape_at(x, &f->shape.place[i], s->xi, h);
             t.e[plane ? 1 : 2] = plane ? ct_ex_neg(x, r) : r;
         } else if (j >= CT_PLACE_DOF) {
-            t.e[0] = ct_shape_at(x, &f->twist[j - CT_PLACE_DOF], s->xi, h);
+            t.e[0] = ct_shape_at(x, &f->line[j - CT_PLACE_DOF], s->xi, h);
         }
         add_partial(b, f, s->element, j, d, slide);
         add_partial(b, f, s->element, j, t, turn);
@@ -573,7 +584,7 @@ void ct_station_partials(struct ct_build *b, const struct ct_flexible *f,
 {
     ct_station_own_partials(b, f, s, slide, turn);
     for (int e = 0; e < s->element && s->axial == CT_AXIAL_CHAIN; e++)
-        for (int j = 2; j < CT_PLACE_DOF; j++)
+        for (int j = 2; j < CT_BENT_DOF; j++)
             add_partial(b, f, e, j, (ct_ex3){{f->element[e].g[j], CT_EX_ZERO, CT_EX_ZERO}},
                         slide);
 }

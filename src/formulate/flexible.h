@@ -1,15 +1,16 @@
 // Flexible bodies: elastic coordinates of beams, places along them, their inertia and stiffness.  (formulation 1.2, 5.3)
 //
 //   elastic coordinate k   an unknown of the model: a nodal displacement or rotation, or the share of a mode
-//   freedom f              7 per node (u v w rx ry rz, and rm of the element before it): sum over k of part coef *
+//   freedom f              8 per node (u v w rx ry rz, and rm um of the element before it): sum over k of part coef *
 //                          coordinate; fixed ones are zero
-//   dof j                  13 of an element, each a freedom with a sign (the slope dw/dx is -ry):
-//                          0 1 axial | 2-5 along y: v, dv/dx, v, dv/dx | 6-9 along z the same | 10-12 twist
+//   dof j                  14 of an element, each a freedom with a sign (the slope dw/dx is -ry):
+//                          0 1 axial | 2-5 along y: v, dv/dx, v, dv/dx | 6-9 along z the same | 10 axial in the middle
+//                          | 11-13 twist
 //
 // Axes are those of the beam; `base` is the node of its body frame, at an anchor without offset.
 //
 // Axial displacement of the axis, c the foreshortening up to the element (formulation 1.7):
-//   LINEAR   (1 - xi) u_i + xi u_i+1
+//   LINEAR   (1 - xi) u_i + xi u_i+1; to this and to the others 4 xi (1 - xi) um is added
 //   LOCAL    the same of the axial places U = s + c of the nodes, + (a' D a + b' D b)/2,  D = xi E(1) - E(xi)
 //   CHAIN    the same of the stretch s, + c_i - (a' E a + b' E b)/2,  c_i+1 = c_i - (a' E(1) a + b' E(1) b)/2
 // LOCAL and CHAIN are one model in two sets of coordinates; in LOCAL ones an element sees its own nodes only.
@@ -24,8 +25,10 @@
 /// Slope of a section against the frame of its beam up to which displacements of second order in it will do (section 5.3).
 #define CT_SLOPE_LIMIT 0.3
 
-enum { CT_DOF = 13, CT_PLACE_DOF = 10, CT_TWIST_DOF = 3 };
-/// Kinds of freedoms of a node. CT_FREEDOM_RM: twist in the middle of the element before it beyond the mean of its ends.
+// Dofs below CT_PLACE_DOF move the axis, those of bending are 2 ... CT_BENT_DOF - 1; stretch and twist have CT_LINE_DOF each.
+enum { CT_DOF = 14, CT_BENT_DOF = 10, CT_MIDDLE_DOF = 10, CT_PLACE_DOF = 11, CT_LINE_DOF = 3 };
+/// Kinds of freedoms of a node. CT_FREEDOM_RM, UM: twist and stretch in the middle of the element before it beyond the mean
+/// of its ends.
 enum ct_freedom_kind {
     CT_FREEDOM_U,
     CT_FREEDOM_V,
@@ -34,6 +37,7 @@ enum ct_freedom_kind {
     CT_FREEDOM_RY,
     CT_FREEDOM_RZ,
     CT_FREEDOM_RM,
+    CT_FREEDOM_UM,
     CT_NODE_FREEDOM
 };
 enum ct_axial { CT_AXIAL_LINEAR, CT_AXIAL_LOCAL, CT_AXIAL_CHAIN };
@@ -90,7 +94,7 @@ struct ct_flexible {
     struct ct_freedom *freedom; // CT_NODE_FREEDOM (nelement + 1)
     struct ct_element *element;
     struct ct_bending shape;
-    struct ct_shape linear[2], twist[CT_TWIST_DOF];
+    struct ct_shape line[CT_LINE_DOF];              // stretch and twist
     struct ct_shape shortening[4][4], bubble[4][4]; // E(xi), D(xi)
     struct ct_shape curving[4][4]; // integral of the sections' rotation gradients, as E
     ct_ex strain;                  // [J], once the stiffness is derived
@@ -126,6 +130,11 @@ void ct_station_own_partials(struct ct_build *b, const struct ct_flexible *f,
                              const struct ct_station *s, ct_ex3 *slide, ct_ex3 *turn);
 /// CHAIN in coordinates of nodes: an element sees its own nodes and the foreshortening at its start, nothing else.
 bool ct_flexible_is_carried(const struct ct_flexible *f);
+/// Dof of the axial shape i of f->line.
+static inline int ct_stretch_dof(int i)
+{
+    return i < 2 ? i : CT_MIDDLE_DOF;
+}
 /// Parts of element e's dof j: *sign times those of the freedom; NULL if it is fixed.
 const struct ct_freedom *ct_dof_freedom(const struct ct_flexible *f, int e, int j, int *sign);
 /// sum over the dofs in [from, to) of the shape times the value (rate, ...) of each.

@@ -175,7 +175,7 @@ static void number_modal(struct reduction *r)
     bool *node = new_marks(r->b, r->f), *kept = new_marks(r->b, r->f);
     mark_nodes(r, node);
     for (int i = 0; i < NKIND * (r->f->beam->nelement + 1); i++)
-        kept[i] = node[i / NKIND] && i % NKIND != CT_FREEDOM_RM;
+        kept[i] = node[i / NKIND] && i % NKIND < CT_FREEDOM_RM;
     number_freedoms(r, kept);
 }
 

@@ -136,9 +136,7 @@ static void add_element(struct line *s, int e)
     const struct ct_beam *beam = s->f->beam;
     const double h = number(s, s->f->element[e].span.length);
     const ct_ex EI = ct_ex_mul(s->b->x, beam->E, s->plane ? beam->Iy : beam->Iz);
-    const bool shears = beam->theory == CT_BEAM_TIMOSHENKO;
-    const ct_ex GA
-        = ct_ex_mul(s->b->x, beam->shear_factor, ct_ex_mul(s->b->x, beam->G, beam->area));
+    const ct_ex GA = ct_flexible_shear(s->b, s->f, s->plane);
     for (int i = 0; i < POINTS; i++) {
         const double xi = s->xi[i], w = s->weight[i] * h;
         double place[4], slope[4], turn[4], bend[4], P[2];
@@ -149,8 +147,7 @@ static void add_element(struct line *s, int e)
             turn[j] = ct_shape_value(&s->f->shape.rotation[j], xi, h);
             bend[j] = ct_shape_value(&d, xi, h);
         }
-        const double stiffness = profile(s, EI, e, xi),
-                     shear = shears ? profile(s, GA, e, xi) : 0,
+        const double stiffness = profile(s, EI, e, xi), shear = profile(s, GA, e, xi),
                      m = profile(s, beam->mass_per_length, e, xi);
         mass_beyond(s, e, xi, P);
         for (int j = 0; j < 4; j++)

@@ -15,21 +15,27 @@ struct memory {
     double h;                // of the step that ends here
     double *a, *u_dot, *lam; // (nu), (nu), (rows)
     double *jerk;            // u'' amid that step  (nu)
-    double *rate;            // of all states at that step's start  (ny)
+    double *rate;            // at that step's start, of quadratures alone  (ny)
+};
+
+// What d(place) of a correction is worth in speeds, a, and accelerations, for steps of size h.
+struct factors {
+    double h, by_speed, by_a, by_u_dot;
 };
 
 struct state {
     const struct ct_dae *dae;
     const struct ct_alpha *c;
     struct ct_iteration *it;
+    struct factors f;
     bool is_fresh, has_jerk;  // nothing is known of the time before; but u'' is
     struct memory start, end; // of the step
     double *a0, *jerk;        // (nu): a at the start, for this step's size; u''
     double *d, *u, *q;        // the step's motion (nu), its end (nu, nq)
     double *dd, *du;          // corrections (nu)
     double *eta, *dlam, *r, *phi, *v;
-    double *rate, *rate1, *out; // for interpolation: d' at both ends; a motion (nu)
-    double *end_rate, *error;   // of all states: rates at the end, errors of quadratures  (ny)
+    double *rate1, *out;      // for interpolation: d' at the end; a motion (nu)
+    double *end_rate, *error; // rates at the end and errors, of quadratures alone  (ny)
 };
 
 void *ct_alpha_create(struct ct_arena *a, const struct ct_method *method,
@@ -40,9 +46,9 @@ void *ct_alpha_create(struct ct_arena *a, const struct ct_method *method,
     s->c = method->coefficients;
     s->it = ct_iteration_create(a, p, s->c->is_stabilised, false);
     double **const speeds[]
-        = {&s->start.a, &s->start.u_dot, &s->start.jerk, &s->end.a, &s->end.u_dot, &s->end.jerk,
-           &s->a0,      &s->jerk,        &s->d,          &s->u,     &s->dd,        &s->du,
-           &s->r,       &s->rate,        &s->rate1,      &s->out};
+        = {&s->start.a,  &s->start.u_dot, &s->start.jerk, &s->end.a, &s->end.u_dot,
+           &s->end.jerk, &s->a0,          &s->jerk,       &s->d,     &s->u,
+           &s->dd,       &s->du,          &s->r,          &s->rate1, &s->out};
     double **const rows[] = {&s->start.lam, &s->end.lam, &s->eta, &s->dlam, &s->phi, &s->v};
     for (size_t i = 0; i < COUNT(speeds); i++)
         *speeds[i] = CT_NEWN(a, double, p->dae->nu + 1);
@@ -70,6 +76,16 @@ void ct_alpha_accept(void *work)
     s->start = s->end;
     s->end = spare;
     s->is_fresh = false;
+}
+
+static void find_factors(struct state *s, double h)
+{
+    const struct ct_alpha *c = s->c;
+    if (s->f.h == h)
+        return;
+    const double by_a = 1 / (c->beta * h * h);
+    s->f = (struct factors){h, c->gamma / (c->beta * h), by_a,
+                            by_a * (1 - c->alpha_m) / (1 - c->alpha_f)};
 }
 
 // ---- the start of a step --------------------------------------------------------------------------
@@ -108,13 +124,12 @@ static enum ct_eval begin(struct state *s, const struct ct_problem *p, double t,
     if (e != CT_EVAL_OK)
         return e;
     if (s->is_fresh || c->starts_anew)
-        memcpy(s->start.u_dot, u_dot, (size_t)nu * sizeof *u_dot);
-    for (int k = 0; k < nu; k++) {
-        const double now = s->start.u_dot[k];
-        s->a0[k] = c->starts_anew ? now
-                 : s->is_fresh    ? now + (c->alpha_m - c->alpha_f) * h * s->jerk[k]
-                                  : now + h / s->start.h * (s->start.a[k] - now);
-    }
+        ct_stepper_copy(s->start.u_dot, u_dot, nu);
+    const double *now = s->start.u_dot, ratio = s->is_fresh ? 0 : h / s->start.h;
+    for (int k = 0; k < nu; k++)
+        s->a0[k] = c->starts_anew ? now[k]
+                 : s->is_fresh    ? now[k] + (c->alpha_m - c->alpha_f) * h * s->jerk[k]
+                                  : now[k] + ratio * (s->start.a[k] - now[k]);
     return CT_EVAL_OK;
 }
 
@@ -125,66 +140,67 @@ static void predict(struct state *s, double h, const double *y)
 {
     const struct ct_alpha *c = s->c;
     const struct ct_dae *dae = s->dae;
-    const double *u0 = y + dae->nq;
+    const double *u0 = y + dae->nq, share = 1 / (1 - c->alpha_m);
     for (int k = 0; k < dae->nu; k++) {
         const double u_dot = s->start.u_dot[k], a0 = s->a0[k];
-        const double a = (u_dot - c->alpha_m * a0) / (1 - c->alpha_m);
+        const double a = (u_dot - c->alpha_m * a0) * share;
         s->end.u_dot[k] = u_dot;
         s->end.a[k] = a;
         s->u[k] = u0[k] + h * ((1 - c->gamma) * a0 + c->gamma * a);
         s->d[k] = h * (u0[k] + h * ((0.5 - c->beta) * a0 + c->beta * a));
     }
-    memcpy(s->end.lam, s->start.lam, (size_t)s->it->m * sizeof *s->end.lam);
-    dae->retract(dae->user, y, s->d, s->q);
+    ct_stepper_copy(s->end.lam, s->start.lam, s->it->m);
+    ct_iteration_move(s->dae, y, s->d, s->q);
 }
 
-static enum ct_eval correct(struct state *s, double t1, double h, const double *y,
+static enum ct_eval correct(struct state *s, double t1, const double *y,
                             enum ct_verdict *verdict, struct ct_integrate_stats *stats)
 {
-    const struct ct_alpha *c = s->c;
     const struct ct_dae *dae = s->dae;
-    const double by_speed = c->gamma / (c->beta * h), by_a = 1 / (c->beta * h * h);
-    const double by_u_dot = by_a * (1 - c->alpha_m) / (1 - c->alpha_f);
+    const struct factors f = s->f;
+    const int m = s->it->m;
     stats->evaluations++;
     const enum ct_eval e = dae->residual(dae->user, t1, s->q, s->u, s->end.u_dot, s->end.lam,
                                          s->r, s->phi, s->v);
     if (e != CT_EVAL_OK)
         return e;
     ct_iteration_solve(s->it, s->dd, s->eta, s->dlam, s->r, s->phi, s->v);
-    memcpy(s->du, s->dd, (size_t)dae->nu * sizeof *s->du);
-    ct_iteration_push(s->it, s->du, -1, s->eta); // eta moves places alone
+    ct_stepper_copy(s->du, s->dd, dae->nu);
+    if (m)
+        ct_iteration_push(s->it, s->du, -1, s->eta); // eta moves places alone
     for (int k = 0; k < dae->nu; k++) {
+        const double du = s->du[k];
         s->d[k] += s->dd[k];
-        s->end.a[k] += by_a * s->du[k];
-        s->end.u_dot[k] += by_u_dot * s->du[k];
-        s->du[k] *= by_speed;
-        s->u[k] += s->du[k];
+        s->end.a[k] += f.by_a * du;
+        s->end.u_dot[k] += f.by_u_dot * du;
+        s->u[k] += f.by_speed * du;
+        s->du[k] = f.by_speed * du;
     }
-    for (int i = 0; i < s->it->m; i++)
+    for (int i = 0; i < m; i++)
         s->end.lam[i] += s->dlam[i];
-    dae->retract(dae->user, y, s->d, s->q);
+    ct_iteration_move(dae, y, s->d, s->q);
     // in the index-3 form speeds have rounding over h in them: places alone decide
-    const double *du = c->is_stabilised ? s->du : NULL;
-    *verdict = ct_iteration_judge(s->it, ct_iteration_norm(s->it, s->dd, du, 1), s->dd, 1);
+    const double *du = s->c->is_stabilised ? s->du : NULL;
+    const double size = ct_iteration_norm(s->it, s->dd, du, dae->nu, 1);
+    *verdict = ct_iteration_judge(s->it, size, s->dd, 1);
     return CT_EVAL_OK;
 }
 
 static enum ct_eval iterate(struct state *s, double t1, double h, const double *y,
                             struct ct_integrate_stats *stats)
 {
-    const struct ct_alpha *c = s->c;
-    const double by_speed = c->gamma / (c->beta * h);
-    const double by_u_dot = (1 - c->alpha_m) / ((1 - c->alpha_f) * c->beta * h * h);
+    find_factors(s, h);
     do {
         enum ct_verdict verdict = CT_GO_ON;
         predict(s, h, y);
         enum ct_eval e
             = ct_iteration_refresh(s->it, t1, s->q, s->u, s->end.u_dot, s->end.lam, stats);
-        if (e == CT_EVAL_OK && !ct_iteration_factor(s->it, by_speed, by_u_dot, 0, stats))
+        if (e == CT_EVAL_OK
+            && !ct_iteration_factor(s->it, s->f.by_speed, s->f.by_u_dot, 0, stats))
             e = CT_EVAL_RETRY;
         ct_iteration_start(s->it);
         while (e == CT_EVAL_OK && verdict == CT_GO_ON)
-            e = correct(s, t1, h, y, &verdict, stats);
+            e = correct(s, t1, y, &verdict, stats);
         if (e == CT_EVAL_FATAL || verdict == CT_CONVERGED)
             return e;
     } while (ct_iteration_can_renew(s->it));
@@ -209,16 +225,16 @@ static double estimate(struct state *s, const struct ct_problem *p,
                        const double *y1)
 {
     const struct ct_alpha *c = s->c;
-    const double places = h * h * (c->beta + 1. / 12 - c->gamma / 2);
+    const double places = h * h * (c->beta + 1. / 12 - c->gamma / 2), pace = 1 / h;
     const bool knows_speeds = c->is_stabilised && !s->is_fresh;
     const double slope = knows_speeds ? 2 / (h + s->start.h) : 0;
     const double speeds = h * h * h * slope * speed_factor(c);
     for (int k = 0; k < s->dae->nu; k++) {
         s->dd[k] = places * (s->end.a[k] - s->a0[k]);
-        s->end.jerk[k] = (s->end.a[k] - s->a0[k]) / h;
+        s->end.jerk[k] = pace * (s->end.a[k] - s->a0[k]);
         s->du[k] = speeds * (s->end.jerk[k] - s->start.jerk[k]);
     }
-    const double states = ct_iteration_norm(s->it, s->dd, NULL, 1);
+    const double states = ct_iteration_norm(s->it, s->dd, NULL, s->dae->nu, 1);
     return ct_iteration_error(s->it, p, tolerance, t1, y1, s->dd, s->du, states);
 }
 
@@ -230,6 +246,8 @@ static double estimate_quadratures(struct state *s, const struct ct_problem *p,
                                    const double *dy1)
 {
     const int first = s->dae->nq + s->dae->nu;
+    if (s->dae->has_no_power)
+        return 0;
     const double ratio = s->is_fresh ? 0 : h / s->start.h;
     for (int i = first; i < p->ny; i++)
         s->error[i] = h / 12 * (dy1[i] - dy[i] - ratio * (dy[i] - s->start.rate[i]));
@@ -242,9 +260,9 @@ static enum ct_eval finish(struct state *s, const struct ct_problem *p, double t
                            struct ct_integrate_stats *stats)
 {
     const int nq = s->dae->nq, nu = s->dae->nu;
-    memcpy(y1, y, (size_t)p->ny * sizeof *y);
-    memcpy(y1, s->q, (size_t)nq * sizeof *y);
-    memcpy(y1 + nq, s->u, (size_t)nu * sizeof *y);
+    ct_stepper_copy(y1, s->q, nq);
+    ct_stepper_copy(y1 + nq, s->u, nu);
+    ct_stepper_copy(y1 + nq + nu, y + nq + nu, p->ny - nq - nu);
     enum ct_eval e = CT_EVAL_OK;
     if (s->c->is_stabilised && p->project) // takes off what the iteration left
         e = p->project(p->user, t1, y1);
@@ -261,7 +279,7 @@ enum ct_eval ct_alpha_step(const struct ct_problem *p, double t, double h, const
                            struct ct_integrate_stats *stats)
 {
     struct state *s = work;
-    const size_t bytes = (size_t)p->ny * sizeof *y;
+    const int first = s->dae->nq + s->dae->nu; // of quadratures
     enum ct_eval e = begin(s, p, t, h, y, dy, tolerance, y1, dy1, stats);
     if (e == CT_EVAL_OK)
         e = iterate(s, t + h, h, y, stats);
@@ -270,13 +288,11 @@ enum ct_eval ct_alpha_step(const struct ct_problem *p, double t, double h, const
     if (e != CT_EVAL_OK)
         return e;
     if (tolerance)
-        *err = fmax(estimate(s, p, tolerance, t + h, h, y1),
-                    estimate_quadratures(s, p, tolerance, h, y, dy, y1, dy1));
+        *err = ct_larger(estimate(s, p, tolerance, t + h, h, y1),
+                         estimate_quadratures(s, p, tolerance, h, y, dy, y1, dy1));
     s->end.h = h;
-    s->dae->chart_rate(s->dae->user, s->d, s->u, s->rate1);
-    memcpy(s->rate, y + s->dae->nq, (size_t)s->dae->nu * sizeof *y);
-    memcpy(s->end.rate, dy, bytes);
-    memcpy(s->end_rate, dy1, bytes);
+    ct_stepper_copy(s->end.rate + first, dy + first, p->ny - first);
+    ct_stepper_copy(s->end_rate + first, dy1 + first, p->ny - first);
     return CT_EVAL_OK;
 }
 
@@ -286,8 +302,9 @@ void ct_alpha_dense(const struct ct_problem *p, double h, double theta, const do
 {
     struct state *s = work;
     const int nq = s->dae->nq, nu = s->dae->nu;
+    s->dae->chart_rate(s->dae->user, s->d, s->u, s->rate1);
     memset(s->dd, 0, (size_t)nu * sizeof *s->dd);
-    ct_stepper_hermite(s->out, theta, h, s->dd, s->rate, s->d, s->rate1, nu);
+    ct_stepper_hermite(s->out, theta, h, s->dd, y + nq, s->d, s->rate1, nu);
     s->dae->retract(s->dae->user, y, s->out, out);
     ct_stepper_hermite(out + nq, theta, h, y + nq, s->start.u_dot, y1 + nq, s->end.u_dot, nu);
     const int i = nq + nu;

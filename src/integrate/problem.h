@@ -45,6 +45,11 @@ struct ct_dae {
     enum ct_eval (*tangent)(void *user, double t, const double *q, const double *u,
                             const double *a, const double *lam, double *M, double *C, double *K,
                             double *J, double *D);
+
+    // what makes steps cheaper, where it is known
+    bool
+        is_plain; // coordinate k moves with speed k: q (+) d = q + d, and rates in the chart are speeds
+    bool has_no_power; // rates of quadratures are zero
 };
 
 /// States that are components of one thing, as those of a vector: all are measured by the largest of them.

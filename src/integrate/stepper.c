@@ -141,11 +141,6 @@ void ct_stepper_advance(double *restrict out, const double *y, double h, const d
     }
 }
 
-static double larger(double a, double b)
-{
-    return a > b ? a : b;
-}
-
 void ct_stepper_group(const struct ct_groups *g, int ny, const double *y, const double *y1)
 {
     if (!g)
@@ -161,7 +156,7 @@ void ct_stepper_group(const struct ct_groups *g, int ny, const double *y, const 
 // Of the state or, where they are known, its group.
 static double size_of(const struct ct_groups *g, int i, const double *y, const double *y1)
 {
-    return g && g->of[i] >= 0 ? g->size[g->of[i]] : larger(fabs(y[i]), fabs(y1[i]));
+    return g && g->of[i] >= 0 ? g->size[g->of[i]] : ct_larger(fabs(y[i]), fabs(y1[i]));
 }
 
 double ct_stepper_norm(const struct ct_problem *p, const struct ct_tolerance *tolerance,

@@ -99,7 +99,12 @@ static void make_form(struct ct_embed *s)
         memmove(s->form, s->form + 1, --s->nform * sizeof *s->form);
     }
     ct_machine_motion(s->m);
-    struct ct_form *f = ct_form_create(s->arena, s->m, &p, ct_embed_operations(s), s->kind);
+    struct ct_form_costs costs = {0};
+    struct ct_form *f = s->is_asked ? ct_form_ask(s->arena, s->m, &p, s->kind)
+                                    : ct_form_create(s->arena, s->m, &p, ct_embed_operations(s),
+                                                     s->kind, &costs);
+    if (s->nmade == 0 && !s->is_asked)
+        s->costs = costs;
     s->solves.reordered += s->nmade++ > 0;
     s->has_form = f != NULL;
     if (f) {
@@ -148,6 +153,14 @@ void ct_embed_stay_dense(struct ct_embed *s)
 {
     s->is_dear = true;
     s->has_form = false;
+}
+
+void ct_embed_use(struct ct_embed *s, const struct ct_form_kind *kind)
+{
+    s->kind = kind;
+    s->is_asked = kind != NULL;
+    if (!kind)
+        ct_embed_stay_dense(s);
 }
 
 static bool is_sound(const struct ct_embed *s)

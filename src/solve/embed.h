@@ -40,6 +40,8 @@ struct ct_embed {
     struct ct_form *form[CT_MOST_FORMS];
     size_t nform;
     const struct ct_form_kind *kind; // chosen for the first one
+    bool is_asked;                   // for
+    struct ct_form_costs costs;      // of what could be chosen for the first one
     long nmade;
     bool has_form;    // form[0] is for the rows and columns of now
     bool is_dear;     // matrices are cheaper
@@ -58,6 +60,8 @@ struct ct_embed {
 struct ct_embed *ct_embed_create(struct ct_arena *arena, struct ct_ctx *ctx,
                                  struct ct_machine *m);
 
+/// Forms of this kind only, whatever they cost; NULL: matrices only. Before rows and columns are chosen.
+void ct_embed_use(struct ct_embed *s, const struct ct_form_kind *kind);
 /// Matrices only: accelerations then depend on nothing that was done before.
 void ct_embed_stay_dense(struct ct_embed *s);
 /// Operations of one ct_embed_accelerate.

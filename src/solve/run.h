@@ -54,7 +54,7 @@ struct ct_run {
 /// The time to evaluate at for t.
 static inline double ct_run_before(const struct ct_run *r, double t)
 {
-    return ct_time_before(t, r->pending);
+    return t < r->pending ? t : ct_time_before(t, r->pending);
 }
 
 /// u' into the embedding's a and the machine's input, q' into its rate.

@@ -158,9 +158,11 @@ static enum ct_eval accepted(void *user, double t, double *y, const double *dy)
     }
     if (r->fidelity)
         ct_fidelity_accept(r->fidelity);
-    ct_machine_set(r->m, ct_run_before(r, t), y);
+    const bool has_rows = r->method->is_implicit && r->m->nrow > 0;
+    if (r->e->nmemory || has_rows)
+        ct_machine_set(r->m, ct_run_before(r, t), y);
     ct_memory_follow(r->m);
-    if (r->method->is_implicit) { // its steps may pass without a projection
+    if (has_rows) { // its steps may pass without a projection
         ct_machine_constraint(r->m);
         ct_embed_renew(r->s);
     }
@@ -186,7 +188,7 @@ static void find_needs(struct ct_run *r)
 }
 
 // To the start, assembled; rows and columns chosen there.
-static bool begin(struct ct_run *r, const struct ct_start *start)
+bool ct_run_begin(struct ct_run *r, const struct ct_start *start)
 {
     ct_start_apply(start, r->m, r->y);
     ct_machine_constraint(r->m);
@@ -232,7 +234,7 @@ struct ct_run *ct_run_create(struct ct_ctx *ctx, struct ct_arena *a,
                              const struct ct_start *start)
 {
     struct ct_run *r = ct_run_prepare(ctx, a, model, e);
-    return begin(r, start) ? r : NULL;
+    return ct_run_begin(r, start) ? r : NULL;
 }
 
 bool ct_run_restart(struct ct_run *r, const struct ct_start *start)
@@ -242,7 +244,7 @@ bool ct_run_restart(struct ct_run *r, const struct ct_start *start)
     r->pending = INFINITY;
     r->energy0 = r->energy_scale = 0;
     r->started = false;
-    return begin(r, start);
+    return ct_run_begin(r, start);
 }
 
 const struct ct_fidelity *ct_run_fidelity(const struct ct_run *r)
