@@ -44,7 +44,7 @@ struct ct_machine {
         energy,     // kinetic, potential
         root,       // g of each mode
         memory,     // next values
-        momentum,   // dT/du
+        momentum,   // dT/du, and the same of `kept` where there is any
         driver,     // value, rate of each driver
         wanted,     // of each row: not negative in the right assembly
         residual,   // r, phi, v; nothing if the equations have no residual, and so the next

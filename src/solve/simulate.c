@@ -222,7 +222,8 @@ struct ct_run *ct_run_prepare(struct ct_ctx *ctx, struct ct_arena *a,
     r->y = CT_NEWN(a, double, r->ny);
     r->dy = CT_NEWN(a, double, r->ny);
     r->stage = CT_NEWN(a, double, r->ny);
-    r->scratch = CT_NEWN(a, double, 2 * r->m->nu + 2 * e->ndriver + r->m->nrow + 1);
+    r->scratch = CT_NEWN(a, double, 3 * r->m->nu + 2 * e->ndriver + r->m->nrow + 1);
+    r->jump = ct_jump_create(a, r->m);
     r->value = CT_NEWN(a, double, e->nresult + 1);
     find_needs(r);
     r->fidelity = ct_fidelity_create(a, r->m);
