@@ -219,6 +219,7 @@ bool ct_sim_resolve(struct ct_sim *sim, const struct ct_sim_options *o)
                  : o->until > 0   ? samples_until(m, o->until)
                                   : (size_t)m->samples,
         .rate_jumps = m->rate_jumps,
+        .wanted = sim->tolerance,
         .least_rtol = sim->least_rtol,
     };
     if (!choose_method(sim, o->method))

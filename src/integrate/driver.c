@@ -42,7 +42,9 @@ struct run {
     struct ct_repeat repeat;
     double *y0; // where the run began
     struct ct_watch watch;
-    double t; // time of y and dy
+    double t;    // time of y and dy
+    double stop; // where steps must end next, a time event or not; before t: to be found
+    bool is_stop_time;
     struct ct_control control;
     struct ct_pace pace;
     double *y, *dy;      // (ny) each, as all that follow
@@ -111,7 +113,7 @@ static void allocate(struct run *r)
     for (size_t i = 0; i < COUNT(vectors); i++)
         *vectors[i] = CT_NEWN(a, double, r->p->ny);
     r->work = r->method->create(a, r->method, r->p);
-    if (r->p->singular_in && r->o->step == 0 && !r->method->is_implicit)
+    if (r->p->singular_in && r->o->step == 0)
         r->crossing_work = ct_crossing.create(a, &ct_crossing, r->p);
     if (r->crossing_work)
         r->striding = ct_striding_create(a, r->method, r->p);
@@ -341,13 +343,13 @@ static bool has_moved(struct run *r)
     return !(ct_stepper_norm(p, &r->tolerance, r->y, r->y1, r->point) <= unnoticed);
 }
 
-// end, dend (out) = y1, dy1 on the constraints.
-static enum ct_eval project_end(struct run *r, double t1)
+// end, dend (out) = y1, dy1 on the constraints, which implicit methods meet by themselves.
+static enum ct_eval project_end(struct run *r, const struct ct_method *method, double t1)
 {
     const struct ct_problem *p = r->p;
     ct_stepper_copy(r->end, r->y1, p->ny);
     ct_stepper_copy(r->dend, r->dy1, p->ny);
-    if (!p->project || r->method->is_implicit)
+    if (!p->project || method->is_implicit)
         return CT_EVAL_OK;
     const enum ct_eval e = p->project(p->user, t1, r->end);
     if (e != CT_EVAL_OK || !has_moved(r))
@@ -413,7 +415,7 @@ static enum ct_eval attempt(struct run *r, struct stride *s)
     if (error > 1)
         return CT_EVAL_RETRY;
     const bool is_cut = r->t + s->h > s->t1 && s->method == &ct_crossing;
-    e = is_cut ? cut(r, s) : project_end(r, s->t1);
+    e = is_cut ? cut(r, s) : project_end(r, s->method, s->t1);
     r->is_open = e == CT_EVAL_RETRY;
     return e;
 }
@@ -486,13 +488,7 @@ static enum ct_eval end_on_event(struct run *r, struct stride *s)
 static enum ct_eval tell_accepted(struct run *r, const struct stride *s)
 {
     const struct ct_problem *p = r->p;
-    if (!p->accepted)
-        return CT_EVAL_OK;
-    ct_stepper_copy(r->point, r->end, p->ny);
-    const enum ct_eval e = p->accepted(p->user, s->t1, r->end, r->dend);
-    if (e != CT_EVAL_OK || !differs(r->end, r->point, p->ny))
-        return e;
-    return ct_stepper_rhs(p, s->t1, r->end, r->dend, r->stats);
+    return p->accepted ? p->accepted(p->user, s->t1, r->end, r->dend) : CT_EVAL_OK;
 }
 
 // What follows an attempt whose error is small enough; h is the step as it was attempted.
@@ -645,7 +641,10 @@ static void commit(struct run *r, const struct stride *s)
     r->dend = dy;
     r->t = s->t1;
     r->stats->steps++;
-    if (r->method->accept)
+    // a crossing tells an implicit method nothing about the steps to come
+    if (s->method != r->method && r->method->is_implicit)
+        r->method->restart(r->work);
+    else if (r->method->accept)
         r->method->accept(r->work);
 }
 
@@ -653,6 +652,7 @@ static bool handle_event(struct run *r, bool is_state, bool is_time)
 {
     const struct ct_problem *p = r->p;
     r->stats->events++;
+    r->stop = -INFINITY;
     if (is_state && ct_watch_piles_up(&r->watch, r->t, r->o->t1 - r->o->t0))
         return ct_error(r->ctx, nowhere, CT_E_EVENT_PILE,
                         "%d events in a row at t = %.9g without time going on", CT_WATCH_PILE,
@@ -664,12 +664,12 @@ static bool handle_event(struct run *r, bool is_state, bool is_time)
 
 static bool advance(struct run *r)
 {
-    bool is_time;
     struct stride s;
-    const double stop = next_stop(r, &is_time);
-    if (!find_step(r, stop, is_time, &s))
+    if (r->t >= r->stop || r->o->step > 0)
+        r->stop = next_stop(r, &r->is_stop_time);
+    if (!find_step(r, r->stop, r->is_stop_time, &s))
         return false;
-    is_time = is_time && s.is_landing;
+    const bool is_time = r->is_stop_time && s.is_landing;
     const bool is_event = s.is_event || is_time;
     if (!give_samples_before(r, &s, s.t1 - event_margin(is_event, s.t1, s.h)))
         return false;
@@ -739,6 +739,7 @@ bool ct_integrate(struct ct_ctx *ctx, const struct ct_method *method,
         .pace = {.t = options->t0},
         .singular_in = INFINITY,
         .reach = INFINITY,
+        .stop = -INFINITY,
     };
     allocate(&r);
     memcpy(r.y, y, (size_t)p->ny * sizeof *y);

@@ -136,6 +136,8 @@ double ct_run_longest_step(void *user)
 
 bool ct_run_is_followed(struct ct_run *r, double t, const double *y)
 {
+    if (!r->e->nmemory)
+        return true;
     const double now = turning(r, t, y);
     if ((t - r->t_turning) * fmax(now, r->turning) > most_turn)
         return false;
@@ -144,14 +146,14 @@ bool ct_run_is_followed(struct ct_run *r, double t, const double *y)
     return true;
 }
 
-static enum ct_eval accepted(void *user, double t, double *y, const double *dy)
+static enum ct_eval accepted(void *user, double t, const double *y, const double *dy)
 {
     struct ct_run *r = user;
     const double turning_before = r->turning, t_before = r->t_turning;
     if (!ct_run_is_followed(r, t, y))
         return CT_EVAL_RETRY;
-    if (!r->method->is_implicit
-        && !ct_singular_foresee(r->singular, t, y, dy, r->pending, r->o->step == 0)) {
+    r->singular->keeps_rows = r->method->is_implicit && (size_t)r->s->rank < r->m->nrow;
+    if (!ct_singular_foresee(r->singular, t, y, dy, r->pending, r->o->step == 0)) {
         r->turning = turning_before;
         r->t_turning = t_before;
         return CT_EVAL_RETRY;
@@ -181,6 +183,10 @@ static void find_needs(struct ct_run *r)
     const struct ct_equations *e = r->e;
     r->has_power = !ct_ex_is_zero(e->power);
     r->needs_lam = uses(e, e->power, CT_SYM_LAM);
+    for (size_t i = 0; i < e->nresult; i++)
+        r->has_lam_results |= uses(e, e->result[i].value, CT_SYM_LAM);
+    for (size_t i = 0; i < e->nvalidity; i++)
+        r->has_lam_results |= uses(e, e->validity[i].eta, CT_SYM_LAM);
     r->root_of = CT_NEWN(r->arena, int, e->nmode + 1);
     for (size_t i = 0; i < e->nmode; i++)
         if (!e->mode[i].is_time)
@@ -222,7 +228,8 @@ struct ct_run *ct_run_prepare(struct ct_ctx *ctx, struct ct_arena *a,
     r->y = CT_NEWN(a, double, r->ny);
     r->dy = CT_NEWN(a, double, r->ny);
     r->stage = CT_NEWN(a, double, r->ny);
-    r->scratch = CT_NEWN(a, double, 2 * r->m->nu + 2 * e->ndriver + r->m->nrow + 1);
+    r->scratch = CT_NEWN(a, double, 3 * r->m->nu + 2 * e->ndriver + r->m->nrow + 1);
+    r->jump = ct_jump_create(a, r->m);
     r->value = CT_NEWN(a, double, e->nresult + 1);
     find_needs(r);
     r->fidelity = ct_fidelity_create(a, r->m);
@@ -277,7 +284,8 @@ enum ct_eval ct_run_results(struct ct_run *r, double t, const double *y, double 
     const enum ct_eval e = ct_run_accelerate(r, t, y);
     if (e != CT_EVAL_OK)
         return e;
-    ct_run_find_multipliers(r);
+    if (r->has_lam_results)
+        ct_run_find_multipliers(r);
     ct_program_run(&r->m->result, r->m->input);
     memcpy(out, r->m->result.out, r->e->nresult * sizeof *out);
     return CT_EVAL_OK;
@@ -478,7 +486,7 @@ static struct ct_mark mark_of_row(const struct ct_run *r, size_t row)
 }
 
 // Where steps ended as they became too short: beside a singular position?
-static void name_singular(struct ct_run *r)
+static void name_singular(struct ct_run *r, const char *advice)
 {
     enum { MOST_NAMES = 5 };
     bool *row = CT_NEWN(r->arena, bool, r->m->nrow + 1);
@@ -497,8 +505,8 @@ static void name_singular(struct ct_run *r)
     ct_note(
         r->ctx, mark_of_row(r, first < 0 ? 0 : (size_t)first),
         "the constraints come to depend on each other there (%s%s): the mechanism is at the "
-        "end of its reach or in a singular position",
-        names, n > MOST_NAMES ? ", ..." : "");
+        "end of its reach or in a singular position%s",
+        names, n > MOST_NAMES ? ", ..." : "", advice);
 }
 
 // Where steps ended as the constraints could not be met: the row that stays open farthest a little later.
@@ -540,7 +548,9 @@ static void explain_end(struct ct_run *r)
     if (code == CT_E_STEP_OPEN)
         name_open_row(r);
     else if (code == CT_E_STEP_SMALL || code == CT_E_STEP_SINGULAR)
-        name_singular(r);
+        name_singular(r, "");
+    else if (code == CT_E_STEP_REFUSED)
+        name_singular(r, ", which steps are not fitted to: leave out 'step'");
 }
 
 bool ct_run_simulate(struct ct_run *r, const struct ct_run_options *o,
