@@ -32,7 +32,8 @@ static const struct ct_key keys[] = {
      "true: density*(Iy + Iz, Iy, Iz); or values per length about x, y, z, which may contain x "
      "(false)"},
     {"theory", CT_VALUE_WORD, 0, "euler-bernoulli|timoshenko", 1, 1, "theory of bending"},
-    {"shear_factor", CT_VALUE_SCALAR, 0, "", 1, 1, "multiplies G*area; timoshenko needs it"},
+    {"shear_factor", CT_VALUE_LIST, 0, "", 1, 2,
+     "multiplies G*area; timoshenko needs it; [ky, kz]: along y and along z"},
     {"geometric_stiffness", CT_VALUE_WORD, 0, "standard|higher-order", 1, 1,
      "work of the axial force"},
     {"integration", CT_VALUE_WORD, 0, "full|reduced|one-point", 1, 1,
@@ -44,6 +45,9 @@ static const struct ct_key keys[] = {
     {"twist", CT_VALUE_WORD, 0, "linear|quadratic", 1, 1,
      "shape of the twist in an element; quadratic needs integration: full and mass: "
      "consistent"},
+    {"stretch", CT_VALUE_WORD, 0, "linear|quadratic", 1, 1,
+     "shape of the stretch in an element; quadratic needs integration: full and mass: "
+     "consistent"},
     {"frame", CT_VALUE_WORD, 0, "clamped|chord", 1, 1,
      "the body's frame follows the section at x = 0 or the line between the ends"},
     {"deformation", CT_VALUE_WORDS, 0, "axial|bending-y|bending-z|torsion", 0, 4,
@@ -52,8 +56,12 @@ static const struct ct_key keys[] = {
      "keep this many modes instead of the nodes' coordinates"},
     {"damping", CT_VALUE_RAYLEIGH, 0, NULL, 1, 1,
      "{alpha: a, beta: b}: a [1/s] times mass plus b [s] times stiffness (0)"},
-    {"initial", CT_VALUE_WORD, 0, "equilibrium", 1, 1,
-     "start in the static shape under the loads at t = 0 (undeformed)"},
+    {"shapes", CT_VALUE_SHAPES, CT_KEY_SECTION, NULL, 0, 0,
+     "{u: [...], v: [...], w: [...], rx: [...]}: expressions of x whose amplitudes are the "
+     "coordinates, instead of the nodes'"},
+    {"initial", CT_VALUE_FIELDS, CT_KEY_SECTION, NULL, 0, 0,
+     "equilibrium: the static shape under the loads at t = 0; or {u:, v:, w:, rx:, rates: "
+     "{...}}, expressions of x (undeformed)"},
     {"points", CT_VALUE_PLACES, CT_KEY_LENGTH, NULL, 0, 0,
      "frames fixed to sections: {NAME: x}, {NAME: [x, y, z]} or {NAME: {at: PLACE, rotate: "
      "[axis, angle]}}"},

@@ -5,30 +5,19 @@
 //
 // What always holds: settings run one after the other in this thread; a ladder ends when its method has used
 // up its share of the time; a setting that fails is a point without an error, not a failure of the whole.
-#include "api.h"
+#include "accuracy.h"
 
 #include "base/guard.h"
-#include "expr/unit.h"
-#include "io/sheet.h"
-#include "io/text.h"
-#include "report/precision.h"
-#include "report/progress.h"
-#include "solve/quad.h"
 
-#include <errno.h>
-#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 static const double standard_error = 1e-6;
 // Six methods within about a minute; more where already the reference takes long.  [s]
-static const double share_of_method = 9, share_of_reference = 1, reference_limit = 20,
-                    quad_limit = 10;
+static const double share_of_method = 9, share_of_reference = 1;
 enum { REPEATS = 3, MOST_REPEATS = 15 }; // the latter of short ones
 static const double short_times = 0.05;  // of one setting together  [s]
-// Runs that agree to this need no third one to judge.
-static const double good_agreement = 1e-8;
 // A reference should be better than the error that is asked about by this factor.
 static const double reference_margin = 0.1;
 // Steps of fixed length: as many halvings, from the spacing of samples but at least so many in the run.
@@ -36,54 +25,14 @@ static const int most_steps_of_ladder = 7;
 static const double least_fixed_steps = 100;
 // Errors that differ by this part of themselves are the same.
 static const double same_error = 0.01;
-// Times of samples in a file are matched to this part of the run.
-static const double same_time = 1e-9;
 
-enum { NREFERENCE = 4 };
+// ---- ladders ---------------------------------------------------------------------------------------------
 
-struct ct_accuracy {
-    struct ct_ctx own;
-    struct ct_ctx said; // what single runs say
-    struct ct_system *system;
-    const struct ct_accuracy_options *o; // while it works
-    const struct ct_accuracy_variant
-        *variant;       // of the system that runs; NULL: there is one only
-    struct ct_sim *sim; // the one that runs
-    struct ct_progress progress;
-    const char *name;
-    double wanted;
-    double duration;
-    size_t nsample, nresult, nrow; // nrow: rows of the run so far
-    double *store;                 // nsample x nresult: where the run goes; NULL: nowhere
-    double *reference;             // nsample x nresult; NaN: not known
-    double *scale;                 // (nresult) largest |reference|; 0: not compared
-    double *deviation;             // (nresult) to spare
-    double worst;                  // error of the run so far
-    const char *source;            // of the reference
-    double uncertainty;            // NaN: not known
-    double reference_seconds;
-    struct ct_precision_point *point;
-    size_t npoint, point_cap;
-    const struct ct_precision_point *best;
-};
-
-enum ending { DONE, FAILED, LATE, REFUSED }; // REFUSED: the options are wrong
-
-// How one run is made: a method with a tolerance or a step.
-struct setting {
-    const char *method;
-    double tolerance, step; // one of them
-    double rtol;            // > 0: tolerance of the steps, whatever simulate makes of one
-};
-
-// ---- one run -----------------------------------------------------------------------------------------
-
-static bool keep_row(void *user, double t, const double *value, size_t n)
+static double median(const double *v, int n)
 {
-    struct ct_accuracy *a = user;
-    (void)t;
-    memcpy(a->store + a->nrow++ * n, value, n * sizeof *value);
-    return true;
+    if (n < 3)
+        return n == 2 ? fmin(v[0], v[1]) : v[0];
+    return fmax(fmin(v[0], v[1]), fmin(fmax(v[0], v[1]), v[2]));
 }
 
 static bool compare_row(void *user, double t, const double *value, size_t n)
@@ -97,366 +46,21 @@ static bool compare_row(void *user, double t, const double *value, size_t n)
     return true;
 }
 
-static void end_run(struct ct_accuracy *a)
-{
-    const bool no_memory = a->said.no_memory;
-    ct_sim_destroy(a->sim);
-    a->sim = NULL;
-    if (no_memory)
-        ct_guard_raise();
-}
-
-// a->sim as s says, else NULL with what there is to say in a->said.
-static bool start_run(struct ct_accuracy *a, const struct setting *s)
-{
-    struct ct_sim_options o = a->o->run;
-    o.method = s->method;
-    o.tolerance = s->tolerance;
-    o.absolute = 0;
-    o.step = s->step;
-    a->said.ndiagnostic = a->said.nerror = 0;
-    a->sim = ct_sim_create(&a->said, a->system, &o);
-    if (!a->sim)
-        return false;
-    a->sim->run_options.step = s->step; // not the one of the model
-    if (s->rtol > 0) {
-        a->sim->run_options.rtol = s->rtol;
-        a->sim->run_options.atol = s->rtol / 100;
-    }
-    return true;
-}
-
-static enum ending run_once(struct ct_accuracy *a, const struct setting *s, double limit,
-                            bool (*row)(void *, double, const double *, size_t),
-                            struct ct_precision_point *p)
-{
-    *p = (struct ct_precision_point){.method = s->method,
-                                     .elements = a->variant ? a->variant->elements : 0,
-                                     .formulation = a->variant ? a->variant->formulation : NULL,
-                                     .tolerance = s->step > 0 ? s->step : s->tolerance,
-                                     .has_step = s->step > 0,
-                                     .error = NAN};
-    enum ending ending = FAILED;
-    if (start_run(a, s)) {
-        a->nrow = 0;
-        a->worst = 0;
-        a->sim->deadline = ct_clock() + limit;
-        const struct ct_sim_results results = {.row = row, .user = a};
-        if (ct_sim_run(&a->said, a->sim, &results))
-            ending = a->sim->is_late ? LATE : DONE;
-        p->seconds = a->sim->integrate;
-        p->steps = a->sim->report.stats.steps;
-        p->evaluations = a->sim->report.stats.evaluations;
-    } else if (ct_ctx_fault(&a->said) == CT_FAULT_OPTION) {
-        ending = REFUSED;
-    }
-    end_run(a);
-    return ending;
-}
-
-// ---- the reference: runs that agree --------------------------------------------------------------------
-
-struct candidate {
-    const char *method;
-    double rtol;
-    double *row; // nsample x nresult; NULL: did not come to its end
-};
-
-// Largest |y - x| / max |x| over the columns that are more than rounding; scale (nresult, out): max |x|,
-// 0 for those that are not.
-static double compare_runs(const struct ct_accuracy *a, const double *x, const double *y,
-                           double *scale)
-{
-    const size_t n = a->nresult;
-    double *deviation = a->deviation, largest = 0, worst = 0;
-    for (size_t i = 0; i < n; i++) {
-        scale[i] = deviation[i] = 0;
-        for (size_t k = 0; k < a->nsample; k++) {
-            if (isnan(x[k * n + i]))
-                continue;
-            scale[i] = fmax(scale[i], fabs(x[k * n + i]));
-            deviation[i] = fmax(deviation[i], fabs(y[k * n + i] - x[k * n + i]));
-        }
-        largest = fmax(largest, scale[i]);
-    }
-    for (size_t i = 0; i < n; i++) {
-        if (ct_is_rounding(scale[i], deviation[i], largest))
-            scale[i] = 0;
-        else
-            worst = fmax(worst, deviation[i] / scale[i]);
-    }
-    return worst;
-}
-
-static bool run_candidate(struct ct_accuracy *a, struct candidate *c)
-{
-    struct ct_precision_point p;
-    const struct setting s = {.method = c->method, .tolerance = 1, .rtol = c->rtol};
-    a->store = CT_NEWN(a->own.model, double, a->nsample * a->nresult + 1);
-    const enum ending ending = run_once(a, &s, reference_limit, keep_row, &p);
-    if (ending == DONE) {
-        c->row = a->store;
-        a->reference_seconds = fmax(a->reference_seconds, p.seconds);
-    } else {
-        ct_ctx_hand_over(&a->own, &a->said); // forgotten if another one does better
-    }
-    return ending != REFUSED;
-}
-
-// The pair of runs that are nearest to each other; the first of them is the reference.
-static void choose_pair(struct ct_accuracy *a, const struct candidate *c, int n)
-{
-    double *scale = CT_NEWN(a->own.model, double, a->nresult + 1);
-    for (int i = 0; i < n; i++)
-        for (int j = i + 1; j < n; j++) {
-            if (!c[i].row || !c[j].row)
-                continue;
-            const double distance = compare_runs(a, c[i].row, c[j].row, scale);
-            if (distance >= a->uncertainty)
-                continue;
-            a->uncertainty = distance;
-            a->reference = c[i].row;
-            memcpy(a->scale, scale, a->nresult * sizeof *scale);
-            const bool is_other = strcmp(c[i].method, c[j].method) != 0;
-            a->source
-                = ct_arena_printf(a->own.model, "%s, checked with %s", c[i].method,
-                                  is_other ? c[j].method : "itself at another tolerance alone");
-        }
-}
-
-// No two came to their end: one alone must do.
-static void choose_single(struct ct_accuracy *a, const struct candidate *c, int n)
-{
-    for (int i = 0; i < n && !a->reference; i++)
-        if (c[i].row) {
-            a->reference = c[i].row;
-            compare_runs(a, a->reference, a->reference, a->scale);
-            a->source = ct_arena_printf(
-                a->own.model, "%s alone: no other method came to its end", c[i].method);
-        }
-}
-
-// ---- the reference in quadruple precision --------------------------------------------------------------
-
-static bool is_in_time(void *user)
-{
-    const double *end = user;
-    return ct_clock() < *end;
-}
-
-// Two runs with different steps; the first is the reference if they agree better than runs in double precision do, and
-// with those as well as they among each other.
-static void run_quad(struct ct_accuracy *a)
-{
-    const double tolerance[2] = {1e-26, 1e-22};
-    const double as_runs_agree = 100; // times the distance of runs in double precision
-    const double double_rounding = 1e-15;
-    double *row[2], *scale = CT_NEWN(a->own.model, double, a->nresult + 1);
-    struct ct_sim_options o = a->o->run;
-    o.method = "dop853";
-    a->said.ndiagnostic = a->said.nerror = 0;
-    a->sim = ct_sim_create(&a->said, a->system, &o);
-    bool ok = a->sim && ct_quad_can_run(ct_run_machine(a->sim->run));
-    double end = ct_clock() + quad_limit;
-    for (int i = 0; i < 2 && ok; i++) {
-        row[i] = CT_NEWN(a->own.model, double, a->nsample * a->nresult + 1);
-        ok = ct_quad_run(a->own.model, ct_run_machine(a->sim->run), ct_run_state(a->sim->run),
-                         a->duration, a->nsample, tolerance[i], is_in_time, &end, row[i]);
-    }
-    end_run(a);
-    if (!ok)
-        return;
-    const double own = compare_runs(a, row[0], row[1], scale);
-    if (own > a->uncertainty)
-        return;
-    const double distance = compare_runs(a, row[0], a->reference, scale);
-    if (distance > as_runs_agree * (a->uncertainty + double_rounding))
-        return;
-    a->reference = row[0];
-    memcpy(a->scale, scale, a->nresult * sizeof *scale);
-    a->source = ct_arena_printf(a->own.model,
-                                "quadruple precision (from %s it differs by %.2g), checked "
-                                "with another tolerance",
-                                a->source, distance);
-    a->uncertainty = fmax(own, double_rounding);
-}
-
-static bool find_reference(struct ct_accuracy *a)
-{
-    // None is a setting of the table. Loops lose digits below 1e-13; the last
-    // one is for mechanisms that no second method gets through.
-    struct candidate open[NREFERENCE] = {{"dop853", 2e-14, NULL},
-                                         {"dopri5", 7e-14, NULL},
-                                         {"radau5", 5e-13, NULL},
-                                         {"dop853", 3e-13, NULL}};
-    struct candidate loops[NREFERENCE] = {{"dop853", 3e-13, NULL},
-                                          {"dopri5", 3e-13, NULL},
-                                          {"radau5", 5e-13, NULL},
-                                          {"dop853", 1.5e-12, NULL}};
-    struct candidate *c = a->system->equations.nrow ? loops : open;
-    a->uncertainty = INFINITY;
-    for (int i = 0; i < NREFERENCE; i++) {
-        if (i > 1 && a->uncertainty <= (i < NREFERENCE - 1 ? good_agreement : DBL_MAX))
-            continue;
-        if (!run_candidate(a, &c[i]))
-            return false;
-        choose_pair(a, c, i + 1);
-    }
-    if (!a->reference)
-        choose_single(a, c, NREFERENCE);
-    if (!a->reference)
-        return ct_error(
-            &a->own, (struct ct_mark){0}, CT_E_REFERENCE,
-            "no reference: neither %s, %s nor %s comes to its end at a tight "
-            "tolerance within %g s; give one with --reference, or an earlier --until",
-            c[0].method, c[1].method, c[2].method, reference_limit);
-    a->own.ndiagnostic = a->own.nerror = 0;
-    if (isinf(a->uncertainty))
-        a->uncertainty = NAN;
-    else
-        run_quad(a);
-    return true;
-}
-
-// ---- the reference: a file ------------------------------------------------------------------------------
-
-static bool read_sheet(struct ct_accuracy *a, const char *path, struct ct_sheet *sheet)
-{
-    const size_t max_bytes = (size_t)1 << 30;
-    char *text;
-    size_t n;
-    switch (ct_text_read(a->own.scratch, path, max_bytes, &text, &n)) {
-    case CT_TEXT_UNREADABLE:
-        return ct_error(&a->own, (struct ct_mark){0}, CT_E_TABLE,
-                        "cannot read the reference '%s': %s", path, strerror(errno));
-    case CT_TEXT_TOO_BIG:
-        return ct_error(&a->own, (struct ct_mark){0}, CT_E_TABLE,
-                        "the reference '%s' is larger than %zu MiB", path, max_bytes >> 20);
-    case CT_TEXT_OK:
-        break;
-    }
-    return ct_sheet_parse(&a->own, a->own.scratch, path, text, n, sheet);
-}
-
-static bool read_field(struct ct_accuracy *a, const struct ct_sheet *sheet, size_t k, double *v)
-{
-    const char *text = sheet->field[k];
-    const double sign = *text == '-' ? -1 : 1;
-    const char *digits = text + (*text == '-' || *text == '+');
-    const size_t n = ct_number_parse(digits, v);
-    *v *= sign;
-    return (n && !digits[n] && isfinite(*v))
-        || ct_error(&a->own, sheet->mark[k], CT_E_TABLE_DATA, "'%s' is not a finite number",
-                    text);
-}
-
-// The column of that name, or ncolumn.
-static size_t find_column(const struct ct_sheet *sheet, const char *name)
-{
-    size_t c = 0;
-    while (c < sheet->ncolumn && strcmp(sheet->field[c], name) != 0)
-        c++;
-    return c;
-}
-
-// of (nresult, out): where results stand in the file.
-static bool find_columns(struct ct_accuracy *a, const struct ct_sheet *sheet, size_t *time,
-                         size_t *of)
-{
-    size_t found = 0;
-    *time = sheet->nrow ? find_column(sheet, "t") : 0;
-    for (size_t i = 0; sheet->nrow && i < a->nresult; i++) {
-        of[i] = find_column(sheet, a->system->equations.result[i].name);
-        found += of[i] < sheet->ncolumn;
-    }
-    const struct ct_mark mark = {.file = sheet->file};
-    if (!sheet->nrow || *time == sheet->ncolumn)
-        return ct_error(&a->own, mark, CT_E_TABLE, "the reference has no column 't'");
-    if (!found)
-        return ct_error(&a->own, mark, CT_E_TABLE,
-                        "the reference has no column that the model has; it should have '%s'%s",
-                        a->nresult ? a->system->equations.result[0].name : "",
-                        a->nresult > 1 ? " or another output" : "");
-    return true;
-}
-
-// The sample at time t, or nsample.
-static size_t find_sample(const struct ct_accuracy *a, double t)
-{
-    if (a->nsample < 2 || !(a->duration > 0))
-        return fabs(t) <= same_time * a->duration ? 0 : a->nsample;
-    const double k = round(t / a->duration * (double)(a->nsample - 1));
-    if (!(k >= 0 && k < (double)a->nsample))
-        return a->nsample;
-    const double at = a->duration * k / (double)(a->nsample - 1);
-    return fabs(t - at) <= same_time * a->duration ? (size_t)k : a->nsample;
-}
-
-static bool fill_reference(struct ct_accuracy *a, const struct ct_sheet *sheet, size_t time,
-                           const size_t *of)
-{
-    const size_t n = a->nresult;
-    size_t matched = 0;
-    for (size_t r = 1; r < sheet->nrow; r++) {
-        double t;
-        if (!read_field(a, sheet, r * sheet->ncolumn + time, &t))
-            return false;
-        const size_t k = find_sample(a, t);
-        if (k == a->nsample)
-            continue;
-        matched++;
-        for (size_t i = 0; i < n; i++)
-            if (of[i] < sheet->ncolumn
-                && !read_field(a, sheet, r * sheet->ncolumn + of[i], &a->reference[k * n + i]))
-                return false;
-    }
-    a->source = ct_arena_printf(a->own.model, "%s, at %zu of %zu samples", sheet->file, matched,
-                                a->nsample);
-    return matched
-        || ct_error(&a->own, (struct ct_mark){.file = sheet->file}, CT_E_TABLE_DATA,
-                    "the reference has no row at the time of a sample");
-}
-
-static bool read_reference(struct ct_accuracy *a, const char *path)
-{
-    struct ct_sheet sheet = {0};
-    size_t time, *of = CT_NEWN(a->own.scratch, size_t, a->nresult + 1);
-    if (!read_sheet(a, path, &sheet) || !find_columns(a, &sheet, &time, of))
-        return false;
-    a->reference = CT_NEWN(a->own.model, double, a->nsample * a->nresult + 1);
-    for (size_t i = 0; i < a->nsample * a->nresult; i++)
-        a->reference[i] = NAN;
-    if (!fill_reference(a, &sheet, time, of))
-        return false;
-    compare_runs(a, a->reference, a->reference, a->scale);
-    a->uncertainty = NAN;
-    return true;
-}
-
-// ---- ladders ---------------------------------------------------------------------------------------------
-
-static double median(const double *v, int n)
-{
-    if (n < 3)
-        return n == 2 ? fmin(v[0], v[1]) : v[0];
-    return fmax(fmin(v[0], v[1]), fmin(fmax(v[0], v[1]), v[2]));
-}
-
 // One setting, several times while the time lasts.
-static enum ending measure(struct ct_accuracy *a, const struct setting *s, double end)
+static enum ct_ending measure(struct ct_accuracy *a, const struct ct_setting *s, double end)
 {
     struct ct_precision_point p, again;
     double seconds[MOST_REPEATS], sum;
     int n = 1;
-    const enum ending ending = run_once(a, s, end - ct_clock(), compare_row, &p);
-    if (ending == REFUSED)
+    const enum ct_ending ending = ct_accuracy_run(a, s, end - ct_clock(), compare_row, &p);
+    if (ending == CT_RUN_REFUSED)
         return ending;
-    if (ending == DONE)
+    if (ending == CT_RUN_DONE)
         p.error = a->worst;
     seconds[0] = sum = p.seconds;
-    while (ending == DONE && n < (sum < short_times ? MOST_REPEATS : REPEATS)
+    while (ending == CT_RUN_DONE && n < (sum < short_times ? MOST_REPEATS : REPEATS)
            && ct_clock() + p.seconds < end
-           && run_once(a, s, INFINITY, compare_row, &again) == DONE)
+           && ct_accuracy_run(a, s, INFINITY, compare_row, &again) == CT_RUN_DONE)
         sum += seconds[n++] = again.seconds;
     p.seconds = round(median(seconds, n) * 1e9) / 1e9; // what the clock resolves
     CT_PUSH(a->own.model, a->point, a->npoint, a->point_cap, p);
@@ -490,17 +94,18 @@ static bool climb_tolerances(struct ct_accuracy *a, const struct ct_method *m, d
         = {1, 1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11};
     int first, last;
     choose_powers(m, &first, &last);
-    struct setting s = {.method = m->name, .tolerance = a->o->run.tolerance};
-    enum ending ending = DONE;
+    struct ct_setting s = {.method = m->name, .tolerance = a->o->run.tolerance};
+    enum ct_ending ending = CT_RUN_DONE;
     if (s.tolerance > 0)
-        return measure(a, &s, end) != REFUSED;
+        return measure(a, &s, end) != CT_RUN_REFUSED;
     const size_t start = a->npoint;
-    for (int k = first;
-         k <= last && (ending == DONE || ending == FAILED) && !shows_mesh(a, start); k++) {
+    for (int k = first; k <= last && (ending == CT_RUN_DONE || ending == CT_RUN_FAILED)
+                        && !shows_mesh(a, start);
+         k++) {
         s.tolerance = power[k];
         ending = measure(a, &s, end);
     }
-    return ending != REFUSED;
+    return ending != CT_RUN_REFUSED;
 }
 
 // Ten digits of v: 1e-4, not 9.9999999999999991e-05.
@@ -515,16 +120,17 @@ static double readable(double v)
 static bool climb_steps(struct ct_accuracy *a, const struct ct_method *m, double end)
 {
     const double spacing = a->duration / fmax(1, (double)a->nsample - 1);
-    struct setting s = {.method = m->name, .step = a->o->run.step};
-    enum ending ending = DONE;
+    struct ct_setting s = {.method = m->name, .step = a->o->run.step};
+    enum ct_ending ending = CT_RUN_DONE;
     if (s.step > 0)
-        return measure(a, &s, end) != REFUSED;
+        return measure(a, &s, end) != CT_RUN_REFUSED;
     s.step = readable(fmin(spacing, a->duration / least_fixed_steps));
-    for (int k = 0; k < most_steps_of_ladder && (ending == DONE || ending == FAILED); k++) {
+    for (int k = 0;
+         k < most_steps_of_ladder && (ending == CT_RUN_DONE || ending == CT_RUN_FAILED); k++) {
         ending = measure(a, &s, end);
         s.step /= 2;
     }
-    return ending != REFUSED;
+    return ending != CT_RUN_REFUSED;
 }
 
 static bool climb(struct ct_accuracy *a, const struct ct_method *m)
@@ -592,7 +198,7 @@ static bool learn_sizes(struct ct_accuracy *a)
         a->nsample = a->sim->run_options.nsample;
     }
     a->said.no_memory = a->own.no_memory;
-    end_run(a);
+    ct_accuracy_end_run(a);
     if (ok && !m->has_duration && !(a->duration > 0))
         return ct_error(&a->own, m->mark, CT_E_KEY_MISSING,
                         "there is no end time: 'simulation' needs a 'duration'");
@@ -609,7 +215,8 @@ static bool study(struct ct_accuracy *a)
     int n;
     if (!choose_methods(a, a->o->run.method, method, &n) || !learn_sizes(a))
         return false;
-    if (a->o->reference ? !read_reference(a, a->o->reference) : !find_reference(a))
+    if (a->o->reference ? !ct_accuracy_read_reference(a, a->o->reference)
+                        : !ct_accuracy_find_reference(a))
         return false;
     const size_t nvariant = a->o->variant ? a->o->nvariant : 1;
     const double all = (double)nvariant * n;

@@ -52,8 +52,9 @@ struct ct_sim {
     struct ct_ctx own;
     struct ct_system *system;
     const char *method_why;
-    double tolerance;  // wanted of outputs
-    double least_rtol; // of steps: what double precision allows
+    const char *solver; // asked for; NULL: the one predicted to be cheapest
+    double tolerance;   // wanted of outputs
+    double least_rtol;  // of steps: what double precision allows
     struct ct_run_options run_options;
     struct ct_start start;
     struct ct_run *run;
@@ -75,8 +76,15 @@ struct ct_sim {
 
 /// What the options and the model's `simulation` say about runs, into sim->run_options. Errors: E003.
 bool ct_sim_resolve(struct ct_sim *sim, const struct ct_sim_options *o);
+/// Why members of a study with these options go one by one, or NULL: side by side (solve/lanes.h).
+const char *ct_sim_refuses_lanes(const struct ct_sim *sim);
 /// A run that has no start yet (see ct_run_restart), in a ct_sim of zeros whose context is open.
 bool ct_sim_prepare(struct ct_sim *sim, struct ct_system *sys, const struct ct_sim_options *o);
+
+/// Solve by what `name` says, before the run begins; NULL: by the cheapest. Errors: E003.
+bool ct_sim_choose_solver(struct ct_sim *sim, const char *name);
+/// Is it solved as was asked, where the run begins? Systems without loops are solved in one way only. Errors: E003.
+bool ct_sim_has_solver(struct ct_sim *sim);
 
 /// Run work(task) with a guard: without memory false, and E001 in ctx.
 bool ct_enter(struct ct_ctx *ctx, bool (*work)(void *task), void *task);

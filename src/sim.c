@@ -6,6 +6,7 @@
 
 #include "report/json.h"
 #include "report/progress.h"
+#include "solve/lanes.h"
 #include "solve/singular.h"
 
 #include <math.h>
@@ -228,6 +229,12 @@ bool ct_sim_resolve(struct ct_sim *sim, const struct ct_sim_options *o)
     return true;
 }
 
+const char *ct_sim_refuses_lanes(const struct ct_sim *sim)
+{
+    return sim->system->held_equations.build ? "beams start in equilibrium"
+                                             : ct_lanes_refusal(&sim->run_options);
+}
+
 // Machine code where it can be had, unless the tape is asked for.
 static bool choose_backend(struct ct_sim *sim, const char *name)
 {
@@ -307,9 +314,12 @@ static bool prepare(struct ct_sim *sim, const struct ct_sim_options *o)
         ct_formulate_dynamics(&s->equations);
     if (!ct_configuration_assemble(&sim->own, s, &sim->start))
         return false;
-    sim->run = ct_run_create(&sim->own, sim->own.model, &s->model, &s->equations, &sim->start);
+    sim->run = ct_run_prepare(&sim->own, sim->own.model, &s->model, &s->equations);
+    if (!ct_sim_choose_solver(sim, o->solver) || !ct_run_begin(sim->run, &sim->start)
+        || !ct_sim_has_solver(sim))
+        return false;
     sim->compile = ct_clock() - start;
-    if (!sim->run || !choose_backend(sim, o->backend))
+    if (!choose_backend(sim, o->backend))
         return false;
     sim->open.row = CT_NEWN(sim->own.model, bool, s->equations.nrow + 1);
     sim->open.result = CT_NEWN(sim->own.model, bool, s->equations.nresult + 1);
@@ -328,6 +338,8 @@ bool ct_sim_prepare(struct ct_sim *sim, struct ct_system *sys, const struct ct_s
     sim->system = sys;
     if (!ct_sim_resolve(sim, o))
         return false;
+    if (needs_dynamics(&sys->equations))
+        ct_formulate_dynamics(&sys->equations);
     sim->run = ct_run_prepare(&sim->own, sim->own.model, &sys->model, &sys->equations);
     return choose_backend(sim, o->backend);
 }
@@ -453,10 +465,24 @@ void ct_slope_warn(struct ct_ctx *ctx, const struct ct_equations *e,
     }
 }
 
+static void warn_of_starts(struct ct_sim *sim, const struct ct_build *b)
+{
+    const double worth_it = 0.01; // as the limit of the validity indicator
+    for (size_t i = 0; i < b->nflexible; i++) {
+        const struct ct_flexible *f = &b->flexible[i];
+        if (f->start_missed > worth_it)
+            ct_warning(&sim->own, f->beam->start[0].mark, 0,
+                       "beam '%s' starts with what its shapes have of this; they leave out "
+                       "%.3g %%",
+                       f->name, 100 * f->start_missed);
+    }
+}
+
 // Beams whose motion left what they are good for.
 static void warn_of_beams(struct ct_sim *sim)
 {
     const struct ct_equations *e = &sim->system->equations;
+    warn_of_starts(sim, e->build);
     ct_slope_warn(&sim->own, e, sim->report.bend);
     for (size_t i = 0; i < e->nvalidity; i++) {
         const struct ct_validity_report *v = &sim->report.validity[i];

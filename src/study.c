@@ -7,7 +7,7 @@
 // may depend on what varies; then its values go into the worker's own system, whose equations stay. Three ways:
 //
 //     in lanes    the usual one; see solve/lanes.h
-//     alone       where lanes cannot be: other methods, switches, tables, what a lane has given up
+//     alone       where lanes cannot be: other methods, what a lane has given up
 //     derived     a system for each member, where a value decides about the equations: in ct_exs.decided
 //
 // What always holds: what a row says depends on its member alone, not on threads, lanes or order; workers share
@@ -81,6 +81,7 @@ static void take_options(struct ct_study *s, const char *path,
     s->run = o->run;
     s->run.method = copy_text(a, o->run.method);
     s->run.backend = copy_text(a, o->run.backend);
+    s->run.solver = NULL; // lanes have forms of their own
 }
 
 static bool read_text(struct ct_study *s)
@@ -108,17 +109,16 @@ static bool choose_way(struct ct_study *s, const struct ct_study_options *o)
     s->method = probe->run_options.method->name;
     s->tolerance = probe->tolerance;
     s->backend = ct_run_machine(probe->run)->backend;
-    s->alone_by = o->lanes == 1 ? "as asked"
-                : s->system->held_equations.build
-                    ? "beams start in equilibrium"
-                    : ct_lanes_refusal(&s->system->equations, &probe->run_options);
+    s->alone_by = o->lanes == 1 ? "as asked" : ct_sim_refuses_lanes(probe);
     if (s->is_derived)
         s->alone_by = ct_arena_printf(s->own.model, "the equations depend on the value of '%s'",
                                       s->derived_by);
-    s->lanes = s->alone_by ? 1 : CT_LANES;
-    if (o->lanes != 0 && o->lanes != 1 && o->lanes != CT_LANES)
-        return ct_error(&s->own, none, CT_E_USAGE, "there are no %ld lanes; there are 1 and %d",
-                        o->lanes, CT_LANES);
+    s->lanes = s->alone_by ? 1 : o->lanes > CT_LANES ? CT_LANE_GROUPS * CT_LANES : CT_LANES;
+    if (o->lanes != 0 && o->lanes != 1 && o->lanes != CT_LANES
+        && o->lanes != CT_LANE_GROUPS * CT_LANES)
+        return ct_error(&s->own, none, CT_E_USAGE,
+                        "there are no %ld lanes; there are 1, %d and %d", o->lanes, CT_LANES,
+                        CT_LANE_GROUPS * CT_LANES);
     return true;
 }
 

@@ -205,6 +205,20 @@ static void write_singular(struct ct_json *j, const struct ct_sim *sim)
     ct_json_end(j);
 }
 
+static void write_solver(struct ct_json *j, const struct ct_sim *sim)
+{
+    const struct ct_form_costs *c = &ct_run_embed(sim->run)->costs;
+    ct_json_text(j, "solver", ct_sim_solver(sim));
+    ct_json_object(j, "solver_costs");
+    if (c->dense > 0) {
+        ct_json_number(j, "unrolled", c->unrolled);
+        ct_json_number(j, "one_system", c->whole);
+        ct_json_number(j, "sparse", c->sparse);
+        ct_json_number(j, "dense", c->dense);
+    }
+    ct_json_end(j);
+}
+
 static void write_work(struct ct_json *j, const struct ct_sim *sim)
 {
     const struct ct_run_report *r = &sim->report;
@@ -212,8 +226,9 @@ static void write_work(struct ct_json *j, const struct ct_sim *sim)
     ct_json_text(j, "method_why", sim->method_why);
     ct_json_number(j, "tolerance", sim->tolerance);
     ct_json_text(j, "backend", ct_run_machine(sim->run)->backend);
-    ct_json_text(j, "solver", ct_sim_solver(sim));
+    write_solver(j, sim);
     write_formulation(j, &sim->system->equations);
+    ct_json_text(j, "sweeps_alone_because", ct_sim_refuses_lanes(sim));
     ct_json_integer(j, "steps", r->stats.steps);
     ct_json_integer(j, "rejected_steps", r->stats.rejected_steps);
     ct_json_integer(j, "inaccurate_steps", r->stats.inaccurate_steps);

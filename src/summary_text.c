@@ -313,16 +313,27 @@ static void print_redundant(FILE *out, const struct ct_sim *sim)
     end_list(&l);
 }
 
-// The solver, chosen by what it is predicted to cost, and what dense matrices would.
+// The solver, asked for or chosen by what each is predicted to cost.
 static void print_solver(FILE *out, const struct ct_sim *sim)
 {
-    const struct ct_machine *m = ct_run_machine(sim->run);
-    const struct ct_tape_counts motion = m->motion.listing->counts;
-    const long matrices
-        = ct_tape_count_all(&motion) + (long)ct_embed_operations(ct_run_embed(sim->run));
+    const struct ct_embed *s = ct_run_embed(sim->run);
+    const struct ct_form_costs *c = &s->costs;
+    const double cost[] = {c->unrolled, c->whole, c->sparse, c->dense};
+    static const char *const name[] = {"unrolled", "as one system", "sparse", "dense"};
     fprintf(out, "solver       %s", ct_sim_solver(sim));
-    if (m->nrow && strcmp(ct_sim_solver(sim), "dense") != 0)
-        fprintf(out, "; with dense matrices an evaluation would be %ld operations", matrices);
+    if (sim->solver)
+        fputs(", as asked", out);
+    else if (c->dense > 0) {
+        fputs("; predicted costs in operations:", out);
+        for (size_t i = 0; i < COUNT(cost); i++) {
+            const char *separator = i ? "," : "";
+            if (isfinite(cost[i]))
+                fprintf(out, "%s %s %.0f", separator, name[i], cost[i]);
+            else
+                fprintf(out, "%s %s %s", separator, name[i],
+                        isnan(cost[i]) ? "not tried" : "given up");
+        }
+    }
     fputc('\n', out);
 }
 
@@ -331,6 +342,12 @@ static void print_beams(FILE *out, const struct ct_equations *e)
     for (size_t i = 0; i < e->build->nflexible; i++) {
         const struct ct_flexible *f = &e->build->flexible[i];
         fprintf(out, "beam         %s: %s\n", f->name, ct_beam_sentence(e->build->arena, f));
+        const double locking = ct_flexible_locking(e->build, f), worth_it = 0.1;
+        if (locking > worth_it)
+            fprintf(out,
+                    "             its elements lock: shear makes them %.3g times as stiff in "
+                    "bending as they are; take `integration: reduced` or more elements\n",
+                    1 + locking);
     }
 }
 
@@ -374,4 +391,6 @@ void ct_sim_print_check(const struct ct_sim *sim, FILE *out)
     print_derivatives(out, sim);
     fprintf(out, "evaluation   %ld operations, solving for accelerations included\n",
             ct_sim_operations(sim));
+    if (ct_sim_refuses_lanes(sim))
+        fprintf(out, "sweeps       one by one: %s\n", ct_sim_refuses_lanes(sim));
 }

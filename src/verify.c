@@ -152,7 +152,8 @@ static bool run_companion(const struct ct_sim *sim, struct ct_ctx *said,
            .step = c->step,
            .until = o->duration,
            .samples = (long)o->nsample,
-           .backend = strcmp(ct_run_machine(sim->run)->backend, "tape") == 0 ? "tape" : NULL};
+           .backend = strcmp(ct_run_machine(sim->run)->backend, "tape") == 0 ? "tape" : NULL,
+           .solver = sim->solver};
     comparison->nrow = 0;
     said->ndiagnostic = said->nerror = 0;
     memset(comparison->output, 0, sim->system->equations.nresult * sizeof *comparison->output);

@@ -17,8 +17,9 @@ struct worker {
     struct ct_ctx member_ctx; // what the reader says about a member
     struct ct_sim sim;        // its run is the companion of the lanes
     struct ct_assembly *assembly;
-    struct ct_lanes *lanes;
-    long member[CT_LANES];
+    struct ct_lanes *group[CT_LANE_GROUPS]; // of lanes: they step in turn
+    int ngroup;
+    long member[CT_LANE_GROUPS][CT_LANES];
     double *value; // results of a member  (nresult)
 };
 
@@ -175,7 +176,7 @@ static bool start_member(struct worker *w)
 }
 
 // Put the next member that lanes can take into one; false when there are no more.
-static bool fill_lane(struct worker *w, int lane)
+static bool fill_lane(struct worker *w, int group, int lane)
 {
     struct ct_study *s = w->s;
     for (long member; (member = take_member(s)) >= 0;) {
@@ -184,28 +185,58 @@ static bool fill_lane(struct worker *w, int lane)
         } else if (!start_member(w)) {
             ct_study_record(s, member, NULL, &w->sim.own);
             forget_errors(&w->sim.own);
-        } else if (ct_lanes_load(w->lanes, lane, &w->sim.run_options)) {
-            w->member[lane] = member;
+        } else if (ct_lanes_load(w->group[group], lane, &w->sim.run_options)) {
+            w->member[group][lane] = member;
             return true;
         } else {
+            forget_errors(&w->sim.own);
             run_own(w, member);
         }
     }
     return false;
 }
 
-static void empty_lane(struct worker *w, int lane)
+static void empty_lane(struct worker *w, int group, int lane)
 {
-    const long member = w->member[lane];
-    const bool has_arrived = ct_lanes_state(w->lanes, lane) == CT_LANE_ARRIVED;
-    if (has_arrived && ct_lanes_results(w->lanes, lane, w->value)) {
+    const long member = w->member[group][lane];
+    struct ct_lanes *lanes = w->group[group];
+    const bool has_arrived = ct_lanes_state(lanes, lane) == CT_LANE_ARRIVED;
+    if (has_arrived && ct_lanes_results(lanes, lane, w->value)) {
         ct_study_record(w->s, member, w->value, &w->sim.own);
     } else { // it is known to be readable
         forget_errors(&w->sim.own);
         if (set_member(w, member))
             run_own(w, member);
     }
-    ct_lanes_free(w->lanes, lane);
+    ct_lanes_free(lanes, lane);
+}
+
+static void create_groups(struct worker *w)
+{
+    struct ct_sim *sim = &w->sim;
+    w->ngroup = w->s->lanes / CT_LANES;
+    for (int g = 0; g < w->ngroup; g++)
+        w->group[g] = ct_lanes_create(sim->own.model, &w->system->equations, sim->run);
+    // at the file's own values, which the system still has: the same in each worker
+    if (start_member(w))
+        for (int g = 0; g < w->ngroup; g++)
+            ct_lanes_begin(w->group[g]);
+    forget_errors(&sim->own);
+}
+
+// A try in all lanes of a group. False: they are empty, and there are no more members.
+static bool step_group(struct worker *w, int group)
+{
+    bool is_running = false;
+    for (int l = 0; l < CT_LANES; l++) {
+        const enum ct_lane_state state = ct_lanes_state(w->group[group], l);
+        if (state != CT_LANE_RUNNING && state != CT_LANE_IDLE)
+            empty_lane(w, group, l);
+        is_running |= state == CT_LANE_RUNNING || fill_lane(w, group, l);
+    }
+    if (is_running)
+        ct_lanes_step(w->group[group]);
+    return is_running;
 }
 
 static void run_lanes(struct worker *w)
@@ -213,26 +244,17 @@ static void run_lanes(struct worker *w)
     struct ct_sim *sim = &w->sim;
     w->assembly = ct_assembly_create(&sim->own, sim->own.model, &w->system->model,
                                      &w->system->start_equations);
-    w->lanes = ct_lanes_create(sim->own.model, &w->system->equations, sim->run);
-    // at the file's own values, which the system still has: the same in each worker
-    if (start_member(w))
-        ct_lanes_begin(w->lanes);
-    forget_errors(&sim->own);
+    create_groups(w);
     w->value = CT_NEWN(sim->own.model, double, w->system->equations.nresult + 1);
-    for (;;) {
-        bool is_running = false;
-        for (int l = 0; l < CT_LANES; l++) {
-            const enum ct_lane_state state = ct_lanes_state(w->lanes, l);
-            if (state != CT_LANE_RUNNING && state != CT_LANE_IDLE)
-                empty_lane(w, l);
-            is_running |= state == CT_LANE_RUNNING || fill_lane(w, l);
-        }
-        if (!is_running)
-            break;
-        ct_lanes_step(w->lanes);
+    for (bool is_running = true; is_running;) {
+        is_running = false;
+        for (int g = 0; g < w->ngroup; g++)
+            is_running |= step_group(w, g);
     }
-    const struct ct_lanes_count count = ct_lanes_count(w->lanes);
-    count_steps(w->s, count.steps, count.rejected, 0);
+    for (int g = 0; g < w->ngroup; g++) {
+        const struct ct_lanes_count count = ct_lanes_count(w->group[g]);
+        count_steps(w->s, count.steps, count.rejected, 0);
+    }
 }
 
 // ---- workers ------------------------------------------------------------------------------------------

@@ -128,6 +128,8 @@ struct ct_sim_options {
     bool verify; /* after the run another one, and from both the global error of each output */
     const char *
         backend; /* what evaluates the equations: "auto", "native" or "tape"; same to rounding */
+    const char *solver; /* what finds the accelerations of closed loops: "auto", "unrolled",
+                           "one-system", "sparse" or "dense"; not of studies */
 };
 
 /** Where results go. All of it may be zero. */
@@ -191,6 +193,9 @@ CT_API void ct_sim_print_check(const struct ct_sim *sim, FILE *out);
  */
 CT_API bool ct_sim_export(struct ct_ctx *ctx, struct ct_sim *sim, const char *format,
                           const char *folder);
+/** The same, with M, Q, J, gam and phi, v for 4 or 8 inputs side by side, too; 1 or 0: without. */
+CT_API bool ct_sim_export_lanes(struct ct_ctx *ctx, struct ct_sim *sim, const char *format,
+                                const char *folder, long lanes);
 
 /* ---- speed against error ------------------------------------------------------------------------- */
 
@@ -249,7 +254,7 @@ struct ct_study_options {
     long sample;             /* > 0: so many random members instead of the grid */
     unsigned long long seed; /* of the random numbers: same seed, same members */
     long threads;            /* at most; 0: all cores. One without OpenMP. */
-    long lanes;              /* members side by side in a core: 4, or 1; 0: 4 where possible */
+    long lanes; /* members side by side in a core: 1, 4, or 8; 0: 4 where possible */
 };
 
 /** Where rows go. All of it may be zero. */

@@ -61,6 +61,9 @@ static const struct option {
      "number of samples, both ends included"},
     {"backend", 0, "CHOICE", TEXT, FIELD(backend), CLI_RUNS, true,
      "what evaluates the equations: auto, native or tape"},
+    {"solver", 0, "CHOICE", TEXT, FIELD(solver), CLI_SIMULATE | CLI_ACCURACY | CLI_CHECK, false,
+     "what finds the accelerations of closed loops: auto,\n"
+     "unrolled, one-system, sparse or dense"},
     {"summary", 0, "FILE.json", TEXT, FIELD(summary), CLI_MODELS, true,
      "what the system is and what the run did, for programs"},
     {"about", 0, "WHERE", TEXT, FIELD(about), CLI_ABOUT, false,
@@ -86,8 +89,8 @@ static const struct option {
      "go on with the rows in FILE.partial"},
     {"threads", 0, "N", COUNT_OF, FIELD(threads), CLI_SWEEP, false,
      "at most so many; all cores"},
-    {"lanes", 0, "N", COUNT_OF, FIELD(lanes), CLI_SWEEP, false,
-     "members side by side in a core: 4, or 1; 4 where it can be"},
+    {"lanes", 0, "N", COUNT_OF, FIELD(lanes), CLI_SWEEP | CLI_EXPORT, false,
+     "1, 4 or 8 side by side: members in a core, inputs of programs"},
     {"verify", 0, NULL, FLAG, FIELD(verify), CLI_SIMULATE, false,
      "a second run; the difference tells the global error"},
     {"error", 0, "E", NUMBER, FIELD(error), CLI_ACCURACY, false,
@@ -315,15 +318,23 @@ static bool parse_all(struct parser *p)
     return true;
 }
 
-static bool check_backend(const struct parser *p)
+static bool check_word(const struct parser *p, const char *option, const char *value,
+                       const char *const *words, size_t n, const char *all)
 {
-    static const char *const words[] = {"auto", "native", "tape"};
-    const char *backend = p->args->backend;
-    for (size_t i = 0; i < CLI_COUNT(words); i++)
-        if (!backend || strcmp(backend, words[i]) == 0)
+    for (size_t i = 0; i < n; i++)
+        if (!value || strcmp(value, words[i]) == 0)
             return true;
-    return cli_complain(p->command, "--backend is '%s'; there are auto, native, tape", backend),
-           false;
+    return cli_complain(p->command, "--%s is '%s'; there are %s", option, value, all), false;
+}
+
+static bool check_words(const struct parser *p)
+{
+    static const char *const backends[] = {"auto", "native", "tape"};
+    static const char *const solvers[] = {"auto", "unrolled", "one-system", "sparse", "dense"};
+    return check_word(p, "backend", p->args->backend, backends, CLI_COUNT(backends),
+                      "auto, native, tape")
+        && check_word(p, "solver", p->args->solver, solvers, CLI_COUNT(solvers),
+                      "auto, unrolled, one-system, sparse, dense");
 }
 
 bool cli_parse(int argc, char **argv, const struct cli_command **command, struct cli_args *args)
@@ -343,7 +354,7 @@ bool cli_parse(int argc, char **argv, const struct cli_command **command, struct
         return cli_complain(p.command, "'%s' needs a model: cotree %s MODEL.yaml",
                             p.command->name, p.command->name),
                false;
-    return check_backend(&p);
+    return check_words(&p);
 }
 
 void cli_args_finish(struct cli_args *args)

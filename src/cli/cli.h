@@ -17,8 +17,8 @@ enum { CLI_DONE = 0, CLI_FAILED = 1, CLI_USAGE = 2 };
 /// What the command line says; zero where it says nothing.
 struct cli_args {
     const char *model;
-    const char *output, *summary, *format, *show, *tree, *method, *backend, *reference, *plot,
-        *about, *inputs, *load, *curve, *elements, *formulations;
+    const char *output, *summary, *format, *show, *tree, *method, *backend, *solver, *reference,
+        *plot, *about, *inputs, *load, *curve, *elements, *formulations;
     struct cli_list { // what is given several times
         const char **text;
         size_t n;

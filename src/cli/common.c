@@ -44,7 +44,8 @@ struct ct_sim_options cli_sim_options(const struct cli_args *args)
                                    .until = args->until,
                                    .samples = args->samples,
                                    .verify = args->verify,
-                                   .backend = args->backend};
+                                   .backend = args->backend,
+                                   .solver = args->solver};
 }
 
 struct ct_sim *cli_sim(struct ct_ctx *ctx, struct ct_system *sys, const struct cli_args *args)

@@ -103,6 +103,10 @@ static struct ct_stretch best_repeat(const struct ct_stretches *p, uint32_t i,
          tries++) {
         const uint32_t period = c - i;
         uint32_t same = 0;
+        if (best.count && period % best.period == 0) { // saves less than that did
+            c = p->again[c];
+            continue;
+        }
         while (c + same < p->n && p->sign[i + same] == p->sign[c + same])
             same++;
         const uint32_t count = same / period + 1;
@@ -198,28 +202,32 @@ static bool use_stream(struct ct_stretch *r, int kind, uint32_t other, int32_t s
     return true;
 }
 
-static bool reach_in_row(const struct ct_stretches *p, const struct ct_stretch *r,
-                         uint32_t operand, struct ct_source *out)
+// Those of the row itself, or the same in all: the most. Row by row, as they lie in memory.
+static void reach_alike(const struct ct_stretches *p, const struct ct_stretch *r)
 {
-    const uint32_t at = p->at[ct_stretch_argument(p, r, 0, operand)];
-    if (at == none || at < r->first || at >= r->first + r->period)
-        return false;
+    for (uint32_t i = 0; i < 3 * r->period; i++)
+        r->reach[i] = (struct ct_source){.kind = CT_SOURCE_OPEN};
+    for (uint32_t slot = 0; slot < r->period; slot++)
+        for (uint32_t k = 0; k < ct_stretch_instruction(p, r->first + slot)->narg; k++) {
+            const uint32_t v = ct_stretch_argument(p, r, 0, 3 * slot + k), at = p->at[v];
+            struct ct_source *out = &r->reach[3 * slot + k];
+            if (at != none && at >= r->first && at < r->first + r->period)
+                *out = (struct ct_source){.kind = CT_SOURCE_ROW, .at = at - r->first};
+            else if (is_made_before(p, r, v))
+                *out = (struct ct_source){.kind = CT_SOURCE_FIXED, .at = v};
+        }
     for (uint32_t row = 1; row < r->count; row++)
-        if (p->at[ct_stretch_argument(p, r, row, operand)] != at + row * r->period)
-            return false;
-    *out = (struct ct_source){.kind = CT_SOURCE_ROW, .at = at - r->first};
-    return true;
-}
-
-static bool reach_fixed(const struct ct_stretches *p, const struct ct_stretch *r,
-                        uint32_t operand, struct ct_source *out)
-{
-    const uint32_t v = ct_stretch_argument(p, r, 0, operand);
-    for (uint32_t row = 1; row < r->count; row++)
-        if (ct_stretch_argument(p, r, row, operand) != v)
-            return false;
-    *out = (struct ct_source){.kind = CT_SOURCE_FIXED, .at = v};
-    return is_made_before(p, r, v);
+        for (uint32_t slot = 0; slot < r->period; slot++)
+            for (uint32_t k = 0; k < ct_stretch_instruction(p, r->first + slot)->narg; k++) {
+                struct ct_source *out = &r->reach[3 * slot + k];
+                if (out->kind == CT_SOURCE_OPEN)
+                    continue;
+                const uint32_t v = ct_stretch_argument(p, r, row, 3 * slot + k);
+                if (out->kind == CT_SOURCE_ROW
+                        ? p->at[v] != r->first + row * r->period + out->at
+                        : v != out->at)
+                    out->kind = CT_SOURCE_OPEN;
+            }
 }
 
 static uint32_t input_of(const struct ct_stretches *p, uint32_t v)
@@ -350,13 +358,22 @@ static bool reach_column(const struct ct_stretches *p, struct ct_stretch *r, uin
 
 // ---- which loops there are --------------------------------------------------------------------
 
-bool ct_stretch_is_constant(const struct ct_stretches *p, const struct ct_stretch *r,
-                            uint32_t operand)
+// Columns that hold something else than constants and parameters. Row by row, as operands lie in memory.
+static size_t count_copied(const struct ct_stretches *p, const struct ct_stretch *r)
 {
+    size_t n = 0;
+    for (size_t i = 0; i < r->ncolumn; i++)
+        r->column[i].is_copied = false;
     for (uint32_t row = 0; row < r->count; row++)
-        if (p->l->rate[ct_stretch_argument(p, r, row, operand)] == CT_RATE_CALL)
-            return false;
-    return true;
+        for (size_t i = 0; i < r->ncolumn; i++) {
+            struct ct_stretch_column *c = &r->column[i];
+            const uint32_t v = ct_stretch_argument(p, r, row, c->operand);
+            if (!c->is_copied && p->l->rate[v] == CT_RATE_CALL) {
+                c->is_copied = true;
+                n++;
+            }
+        }
+    return n;
 }
 
 // Is operand at a row what the middle row's is, so many rows further?
@@ -425,32 +442,35 @@ static uint32_t rows_left_out(const struct ct_stretch *r)
     return r->count - (r->keep_behind - r->keep_first);
 }
 
+// Is it worth while to leave rows out? A copy of an operand costs as much as two instructions, straight code about one more
+// than that of a loop.
+static bool copies_cost_more(const struct ct_stretches *p, struct ct_stretch *r)
+{
+    size_t nsaved = 0;
+    for (size_t i = 0; i < r->ncolumn; i++)
+        nsaved += r->column[i].is_copied && leave_ends(p, r, r->column[i].operand);
+    return 2 * nsaved * r->count > rows_left_out(r) * r->period;
+}
+
 static bool reach_operands(const struct ct_stretches *p, struct ct_stretch *r)
 {
+    bool all = true;
     r->keep_first = 0;
     r->keep_behind = r->count;
-    bool all = true;
-    size_t ncopied = 0, nleft = 0; // copied, of these those that rows left out save
+    reach_alike(p, r);
     for (uint32_t slot = 0; slot < r->period; slot++)
         for (uint32_t k = 0; k < ct_stretch_instruction(p, r->first + slot)->narg; k++) {
             const uint32_t operand = 3 * slot + k;
             struct ct_source *out = &r->reach[operand];
-            if (reach_in_row(p, r, operand, out) || reach_fixed(p, r, operand, out)
-                || reach_inputs(p, r, operand, out) || reach_results(p, r, operand, out))
+            if (out->kind != CT_SOURCE_OPEN || reach_inputs(p, r, operand, out)
+                || reach_results(p, r, operand, out) || reach_column(p, r, operand, out))
                 continue;
-            const size_t ncolumn = r->ncolumn;
-            const bool is_column = reach_column(p, r, operand, out);
-            if (is_column && ct_stretch_is_constant(p, r, operand))
-                continue;
-            const bool is_regular = leave_ends(p, r, operand);
-            if (!is_column && !is_regular)
+            if (!leave_ends(p, r, operand))
                 return false;
-            all &= is_column;
-            ncopied += r->ncolumn > ncolumn;
-            nleft += r->ncolumn > ncolumn && is_regular;
+            all = false;
         }
-    // a copy of an operand costs as much as two instructions, and straight code about one more than that of a loop
-    if (!all || 2 * nleft * r->count > rows_left_out(r) * r->period)
+    const size_t ncopied = count_copied(p, r);
+    if (!all || copies_cost_more(p, r))
         return false;
     r->keep_first = 0;
     r->keep_behind = r->count;

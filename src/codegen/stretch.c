@@ -262,7 +262,7 @@ static void add_columns(const struct ct_stretches *p, const struct ct_stretch *r
             const uint32_t operand = r->column[i].operand;
             const struct ct_copy c = {ct_stretch_argument(p, r, row, operand),
                                       place_of(r, r->nresult + i, (int32_t)row)};
-            if (ct_stretch_is_constant(p, r, operand))
+            if (!r->column[i].is_copied)
                 CT_PUSH(p->arena, out->table, out->ntable, out->table_cap, c);
             else
                 CT_PUSH(p->arena, loop->copy, loop->ncopy, loop->copy_cap, c);

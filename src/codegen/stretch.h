@@ -29,11 +29,13 @@ struct ct_stretch_edge {
 // A sequence of operands that is copied to places of its own.
 struct ct_stretch_column {
     uint32_t operand; // 3 slot + k that it is the sequence of
+    bool is_copied;   // in each evaluation
 };
 
 // How an operand is reached, before places are known.
 struct ct_source {
     enum {
+        CT_SOURCE_OPEN, // not known yet
         CT_SOURCE_ROW,
         CT_SOURCE_FIXED,
         CT_SOURCE_INPUTS,
@@ -68,8 +70,8 @@ struct ct_stretch {
     size_t ncolumn, column_cap;
     struct ct_stretch_stream stream[CT_ROLL_STREAMS];
     int nstream;
-    int32_t before, behind;                       // rows for edges
-    uint32_t keep_first, keep_behind, nirregular; // see reach_operands
+    int32_t before, behind;           // rows for edges
+    uint32_t keep_first, keep_behind; // see leave_ends
 
     // rows side by side, see choose_lanes
     bool is_side_by_side;
@@ -97,9 +99,6 @@ uint32_t ct_stretch_argument(const struct ct_stretches *p, const struct ct_stret
 /// The stretch that makes v, with its row and instruction; NULL if none does.
 struct ct_stretch *ct_stretch_of(const struct ct_stretches *p, uint32_t v, int32_t *row,
                                  uint32_t *slot);
-/// Is an operand a constant or a parameter in all rows?
-bool ct_stretch_is_constant(const struct ct_stretches *p, const struct ct_stretch *r,
-                            uint32_t operand);
 /// Places of all results that need some, and the loops.
 void ct_stretch_lay_out(struct ct_stretches *p, uint32_t lanes, struct ct_roll *out);
 

@@ -31,6 +31,22 @@ enum ct_beam_deformation {
     CT_BEAM_ALL = 15
 };
 
+/// A field along the axis: displacements u, v, w and twist. The first freedoms of a node have the same order.
+enum ct_beam_field {
+    CT_BEAM_FIELD_U,
+    CT_BEAM_FIELD_V,
+    CT_BEAM_FIELD_W,
+    CT_BEAM_FIELD_RX,
+    CT_BEAM_NFIELD
+};
+
+struct ct_beam_given {
+    enum ct_beam_field kind;
+    bool is_rate; // of `initial`
+    ct_ex value;  // contains x
+    struct ct_mark mark;
+};
+
 struct ct_beam {
     ct_ex x;      // the symbol of sections (LOCAL)
     ct_ex length; // [m]
@@ -45,20 +61,25 @@ struct ct_beam {
     ct_ex
         twist_inertia; // rho (Iy + Iz), of twist where torsion is present and has_rotary is false
     enum ct_beam_theory theory;
-    ct_ex shear_factor; // Timoshenko
+    ct_ex shear_factor[2]; // Timoshenko; along y, along z
     enum ct_beam_integration integration;
     bool is_lumped;
     bool higher_order; // geometric_stiffness: higher-order
     enum ct_beam_formulation formulation;
-    bool is_chord;            // frame: chord
-    bool has_quadratic_twist; // twist: quadratic
+    bool is_chord;              // frame: chord
+    bool has_quadratic_twist;   // twist: quadratic
+    bool has_quadratic_stretch; // stretch: quadratic
     unsigned
         known; // bits: deformations whose stiffness is given and not 0 (AXIAL: area, BENDING_Y: Iy, TORSION: G and J, ...)
     bool deformation_given;
     unsigned deformation;                  // bits; CT_BEAM_ALL unless given
     int modes;                             // 0: nodal coordinates
     ct_ex damping_mass, damping_stiffness; // Rayleigh: alpha [1/s], beta [s]
-    bool starts_in_equilibrium;            // `initial: equilibrium`
+    const struct ct_beam_given *shape;     // `shapes`, in place of nodal coordinates
+    int nshape;
+    bool starts_in_equilibrium;        // `initial: equilibrium`
+    const struct ct_beam_given *start; // `initial: {v: ...}`
+    int nstart;
     struct ct_mark formulation_mark, modes_mark, deformation_mark;
 };
 

@@ -60,6 +60,8 @@ bool ct_read_beam_value(struct ct_reader *r, const struct ct_node *node,
 {
     if (key->kind == CT_VALUE_ELEMENTS)
         return read_elements(r, node, key, v);
+    if (key->kind == CT_VALUE_SHAPES || key->kind == CT_VALUE_FIELDS)
+        return ct_read_fields(r, node, key, v);
     return key->kind == CT_VALUE_ROTARY ? read_rotary(r, node, key, v)
                                         : read_rayleigh(r, node, key, v);
 }
@@ -110,12 +112,16 @@ static bool excludes(const struct work *w, const char *a, const char *b)
 static bool check_above(const struct work *w, const char *key, double least, bool strict)
 {
     const struct ct_value *v = get(w, key);
-    double number;
-    if (!v->given || v->is_wrong || !ct_read_number(w->r, v->e[0], &number) || number > least
-        || (!strict && number == least))
-        return true;
-    return ct_error(w->r->ctx, v->mark, CT_E_RANGE, "body '%s': '%s' is %g; it must be %s %g",
-                    w->self->name, key, number, strict ? "greater than" : "at least", least);
+    bool ok = true;
+    for (size_t i = 0; v->given && !v->is_wrong && i < v->n; i++) {
+        double number;
+        if (ct_read_number(w->r, v->e[i], &number) && !(number > least)
+            && (strict || number != least))
+            ok = ct_error(w->r->ctx, v->at[i], CT_E_RANGE,
+                          "body '%s': '%s' is %g; it must be %s %g", w->self->name, key, number,
+                          strict ? "greater than" : "at least", least);
+    }
+    return ok;
 }
 
 static bool check_density(const struct work *w)
@@ -191,16 +197,16 @@ static bool check_theory(const struct work *w)
     return ok;
 }
 
-// A twist whose middle moves by itself has no stiffness at the middle and no mass at the ends.
-static bool check_twist(const struct work *w)
+// What moves in the middle of an element by itself has no stiffness there and no mass at the ends.
+static bool check_quadratic(const struct work *w, const char *key)
 {
     const char *rule = get(w, "mass")->count ? "mass" : "integration";
-    if (!get(w, "twist")->count || !get(w, rule)->count)
+    if (!get(w, key)->count || !get(w, rule)->count)
         return true;
-    return ct_error(w->r->ctx, get(w, "twist")->mark, CT_E_CONFLICT,
-                    "body '%s': 'twist: quadratic' needs 'integration: full' and 'mass: "
+    return ct_error(w->r->ctx, get(w, key)->mark, CT_E_CONFLICT,
+                    "body '%s': '%s: quadratic' needs 'integration: full' and 'mass: "
                     "consistent'; leave '%s' out",
-                    w->self->name, rule);
+                    w->self->name, key, rule);
 }
 
 // What `deformation` lists must have a stiffness; a beam that may do anything must bend at least.
@@ -436,14 +442,17 @@ static void fill_choices(const struct work *w)
     beam->higher_order = get(w, "geometric_stiffness")->count == 1;
     beam->is_chord = get(w, "frame")->count == 1;
     beam->has_quadratic_twist = get(w, "twist")->count == 1;
-    beam->starts_in_equilibrium = has(w, "initial");
+    beam->has_quadratic_stretch = get(w, "stretch")->count == 1;
+    beam->starts_in_equilibrium = get(w, "initial")->count == 1;
     const struct ct_value *deformation = get(w, "deformation");
     beam->deformation_given = deformation->given;
     beam->deformation = deformation->given ? (unsigned)deformation->count : CT_BEAM_ALL;
     beam->deformation_mark = deformation->mark;
     beam->modes = (int)get(w, "modes")->count;
     beam->modes_mark = get(w, "modes")->mark;
-    beam->shear_factor = scalar(w, "shear_factor");
+    const struct ct_value *shear = get(w, "shear_factor");
+    for (size_t i = 0; i < 2 && shear->given; i++)
+        beam->shear_factor[i] = shear->e[i < shear->n ? i : 0];
     const struct ct_value *damping = get(w, "damping");
     beam->damping_mass = damping->given ? damping->e[0] : CT_EX_ZERO;
     beam->damping_stiffness = damping->given ? damping->e[1] : CT_EX_ZERO;
@@ -458,7 +467,8 @@ static bool fill(struct work *w, struct ct_body *b, bool values_ok)
     beam->known = find_known(w);
     ok &= check_mass_keys(w);
     ok &= check_theory(w);
-    ok &= check_twist(w);
+    ok &= check_quadratic(w, "twist");
+    ok &= check_quadratic(w, "stretch");
     ok &= check_deformation(w, beam->known);
     double length;
     beam->length = scalar(w, "length");
@@ -477,6 +487,8 @@ static bool fill(struct work *w, struct ct_body *b, bool values_ok)
         return false;
     fill_choices(w);
     fill_material(w);
+    if (!ct_fill_fields(w->r, w->self, beam))
+        return false;
     b->mass = integrate_mass(w);
     b->beam = beam;
     return true;

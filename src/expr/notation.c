@@ -153,3 +153,25 @@ const char *ct_c_operation(struct ct_arena *a, enum ct_op op, const char *const 
     return ct_op_info[op].narg == 1 ? ct_arena_printf(a, "%s(%s)", name, arg[0])
                                     : ct_arena_printf(a, "%s(%s, %s)", name, arg[0], arg[1]);
 }
+
+size_t ct_latex_width(const char *s, size_t length)
+{
+    size_t n = 0;
+    for (size_t i = 0; i < length; i++) {
+        if (s[i] != '\\') {
+            n += !strchr("{}^_ ", s[i]);
+            continue;
+        }
+        size_t k = i + 1;
+        while (k < length && isalpha((unsigned char)s[k]))
+            k++;
+        const bool is_free = k - i == 1 || !strncmp(s + i, "\\left", 5)
+                          || !strncmp(s + i, "\\right", 6) || !strncmp(s + i, "\\mathrm", 7)
+                          || !strncmp(s + i, "\\frac", 5);
+        n += is_free                ? 0
+           : k - i > 3 && k - i < 5 ? 3
+                                    : 1; // \sin and \cos print as they are spelled
+        i = k > i + 1 ? k - 1 : i + 1;
+    }
+    return n;
+}

@@ -64,11 +64,11 @@ static bool is_trig(const struct ct_exnode *n)
 
 static void emit_argument(struct ct_printer *pr, ct_ex e);
 
-static void emit_factor(struct ct_printer *pr, const struct ct_factor *f, bool alone)
+static void emit_factor(struct ct_printer *pr, const struct ct_factor *f)
 {
     const struct ct_exnode *n = ct_ex_node(pr->x, f->e);
     if (f->exponent == 1) {
-        emit(pr, f->e, alone ? LEVEL_ANY : LEVEL_FACTOR);
+        emit(pr, f->e, LEVEL_FACTOR);
         return;
     }
     if (is_latex(pr) && is_trig(n) && !ct_printer_name(pr, f->e)) {
@@ -87,9 +87,9 @@ static void put_pi(struct ct_printer *pr, int exponent)
         put(pr, "^2");
 }
 
-// In LaTeX \frac groups, so a single factor needs no parentheses. pi: its exponent, 0 for none.
+// pi: its exponent, 0 for none.
 static void emit_factors(struct ct_printer *pr, double number, int pi,
-                         const struct ct_factors *f, bool grouped)
+                         const struct ct_factors *f)
 {
     const char *times = is_latex(pr) ? " \\, " : "*";
     const bool show = number != 1 || (f->n == 0 && pi < 1);
@@ -102,7 +102,56 @@ static void emit_factors(struct ct_printer *pr, double number, int pi,
     for (size_t k = 0; k < f->n; k++) {
         if (k > 0 || show || pi > 0)
             put(pr, k == 0 && is_latex(pr) ? " " : times);
-        emit_factor(pr, &f->at[k], grouped && f->n == 1 && !show && pi < 1);
+        emit_factor(pr, &f->at[k]);
+    }
+}
+
+static const char *take_factors(struct ct_printer *pr, double number, int pi,
+                                const struct ct_factors *f)
+{
+    const size_t start = pr->n;
+    emit_factors(pr, number, pi, f);
+    const char *s = ct_arena_strndup(pr->arena, pr->s + start, pr->n - start);
+    pr->n = start;
+    return s;
+}
+
+// Factors as they stand in a \frac, which groups: a single one needs no parentheses.
+static const char *without_group(struct ct_arena *a, const char *s, const struct ct_factors *f)
+{
+    static const char open[] = "\\left(", close[] = "\\right)";
+    const size_t n = strlen(s), first = sizeof open - 1, last = sizeof close - 1;
+    const bool is_group = f->n == 1 && f->at[0].exponent == 1 && n >= first + last
+                       && !strncmp(s, open, first) && !strcmp(s + n - last, close);
+    return is_group ? ct_arena_strndup(a, s + first, n - first - last) : s;
+}
+
+static bool is_wide(const char *s)
+{
+    return ct_latex_width(s, strlen(s)) > CT_LATEX_LINE;
+}
+
+// A fraction in LaTeX; one with a part wider than a line as a product, which can be broken: the number over what fits,
+// times the factors.
+static void emit_fraction(struct ct_printer *pr, const struct ct_term *t)
+{
+    static const struct ct_factors none;
+    const char *above = take_factors(pr, t->number, t->pi, &t->above),
+               *below = without_group(
+                   pr->arena, take_factors(pr, t->divisor, -t->pi, &t->below), &t->below);
+    const bool is_wide_below = is_wide(below);
+    if (!is_wide_below && !is_wide(above)) {
+        above = without_group(pr->arena, above, &t->above);
+        put(pr, ct_arena_printf(pr->arena, "\\frac{%s}{%s}", above, below));
+    } else if (is_wide_below) {
+        put(pr, ct_arena_printf(pr->arena, "%s%s\\left(%s\\right)^{-1}",
+                                strcmp(above, "1") ? above : "",
+                                strcmp(above, "1") ? " \\, " : "", below));
+    } else {
+        const bool has_number = t->number != 1 || t->pi > 0;
+        const char *number = take_factors(pr, t->number, t->pi, &none);
+        put(pr, ct_arena_printf(pr->arena, "\\frac{%s}{%s} \\, %s", number, below,
+                                above + (has_number ? strlen(number) + 1 : 0)));
     }
 }
 
@@ -110,17 +159,13 @@ static void emit_term(struct ct_printer *pr, const struct ct_term *t)
 {
     const size_t below = t->below.n + (t->divisor != 1) + (t->pi < 0);
     if (!below) {
-        emit_factors(pr, t->number, t->pi, &t->above, false);
+        emit_factors(pr, t->number, t->pi, &t->above);
     } else if (is_latex(pr)) {
-        put(pr, "\\frac{");
-        emit_factors(pr, t->number, t->pi, &t->above, true);
-        put(pr, "}{");
-        emit_factors(pr, t->divisor, -t->pi, &t->below, true);
-        put(pr, "}");
+        emit_fraction(pr, t);
     } else {
-        emit_factors(pr, t->number, t->pi, &t->above, false);
+        emit_factors(pr, t->number, t->pi, &t->above);
         put(pr, below > 1 ? "/(" : "/");
-        emit_factors(pr, t->divisor, -t->pi, &t->below, false);
+        emit_factors(pr, t->divisor, -t->pi, &t->below);
         put(pr, below > 1 ? ")" : "");
     }
 }

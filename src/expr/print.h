@@ -54,6 +54,11 @@ const char *ct_number_c(struct ct_arena *a, double v);
 const char *ct_latex_name(struct ct_arena *a, const char *name);
 /// A name with a backslash before what LaTeX takes for itself.
 const char *ct_latex_quoted(struct ct_arena *a, const char *name);
+/// Characters of LaTeX text (length) that take room on the page: a command counts as one, braces and sizes as none, a
+/// fraction as both its parts.
+size_t ct_latex_width(const char *s, size_t length);
+/// Such characters that fit into a line of a page; a fraction with a part that is wider is printed as a product.
+enum { CT_LATEX_LINE = 85 };
 /// A C identifier from a name: characters that are not allowed become _, a prime becomes d.
 /// Different names can become the same identifier: telling them apart is the caller's.
 const char *ct_c_name(struct ct_arena *a, const char *name);

@@ -218,7 +218,7 @@ static int carried_by(struct ct_articulated *w, const struct ct_articulated_beam
         place[n] = e->n + i - 1;
         weight[n++] = CT_EX_ONE;
     }
-    for (int j = 2; j < CT_PLACE_DOF; j++) {
+    for (int j = 2; j < CT_BENT_DOF; j++) {
         const int at = dof_place(e, i - 1, j, &sign);
         if (at < 0)
             continue;

@@ -79,7 +79,7 @@ ct_ex ct_beam_signal_strain(struct ct_build *b, int frame)
     const struct ct_element *e = &f->element[s.element];
     const ct_ex h = e->span.length;
     ct_ex stretch = ct_ex_sub(x, e->value[1], e->value[0]);
-    for (int dof = 2; dof < CT_PLACE_DOF && f->axial == CT_AXIAL_LOCAL; dof++) {
+    for (int dof = 2; dof < CT_BENT_DOF && f->axial == CT_AXIAL_LOCAL; dof++) {
         const int plane = dof >= 6, first = plane ? 6 : 2, j = dof - first;
         ct_ex Ea = CT_EX_ZERO;
         for (int k = 0; k < 4; k++)
@@ -88,7 +88,9 @@ ct_ex ct_beam_signal_strain(struct ct_build *b, int frame)
                                      e->value[first + k]));
         stretch = ct_ex_add(x, stretch, ct_ex_scale(x, 0.5, ct_ex_mul(x, Ea, e->value[dof])));
     }
-    return ct_ex_div(x, stretch, h);
+    const struct ct_shape rise = ct_shape_slope(&f->line[2]);
+    return ct_ex_add(x, ct_ex_div(x, stretch, h),
+                     ct_element_field(b, e, &rise, e->value, CT_MIDDLE_DOF, 1, s.xi));
 }
 
 // ---- the part beyond a section --------------------------------------------------------------------------
@@ -136,7 +138,7 @@ static ct_ex3 section_rate(struct ct_build *b, const struct ct_flexible *f,
                            const struct ct_element *e, const ct_ex *of, ct_ex xi)
 {
     const ct_ex in_z = ct_element_field(b, e, f->shape.rotation, of, 6, 4, xi);
-    return (ct_ex3){{ct_element_field(b, e, f->twist, of, CT_PLACE_DOF, CT_TWIST_DOF, xi),
+    return (ct_ex3){{ct_element_field(b, e, f->line, of, CT_PLACE_DOF, CT_LINE_DOF, xi),
                      ct_ex_neg(b->x, in_z),
                      ct_element_field(b, e, f->shape.rotation, of, 2, 4, xi)}};
 }
@@ -234,7 +236,7 @@ static void add_inertia(struct ct_build *b, struct cut *c)
     for (int e = 0; e < f->beam->nelement; e++) {
         if (e >= c->s.element)
             add_element(b, c, e, e == c->s.element ? c->s.xi : CT_EX_ZERO, chain);
-        for (int j = 2; j < CT_PLACE_DOF && f->kinematics == CT_AXIAL_CHAIN; j++)
+        for (int j = 2; j < CT_BENT_DOF && f->kinematics == CT_AXIAL_CHAIN; j++)
             chain = ct_ex_add(x, chain,
                               ct_ex_mul(x, f->element[e].g[j], f->element[e].acceleration[j]));
     }

@@ -101,7 +101,7 @@ ct_ex *ct_chain_accelerations(struct ct_build *b, const struct ct_flexible *f)
     ct_ex *c = CT_NEWN(b->arena, ct_ex, f->beam->nelement + 1);
     for (int e = 0; e < f->beam->nelement; e++) {
         c[e + 1] = c[e];
-        for (int j = 2; j < CT_PLACE_DOF; j++)
+        for (int j = 2; j < CT_BENT_DOF; j++)
             c[e + 1]
                 = ct_ex_add(b->x, c[e + 1],
                             ct_ex_mul(b->x, f->element[e].g[j], f->element[e].acceleration[j]));
@@ -271,7 +271,7 @@ static void mass_of_sums(struct ct_build *b, const struct ct_flexible *f,
                 ct_dof_push_pair(b, f, e, j, e, k, v, M);
             }
             for (int inner = 0; inner < e && chain; inner++)
-                for (int k = 2; k < CT_PLACE_DOF; k++) {
+                for (int k = 2; k < CT_BENT_DOF; k++) {
                     const ct_ex v = ct_ex_mul(x, f->element[inner].g[k], moved.e[0]);
                     ct_dof_push_pair(b, f, e, j, inner, k, v, M);
                     ct_dof_push_pair(b, f, inner, k, e, j, v, M);

@@ -22,7 +22,7 @@ bool ct_stiffness_has_amplitudes(struct ct_build *b, const struct ct_flexible *f
     return !(kinds & 1u << CT_SYM_LOCAL) && beam->theory == CT_BEAM_EULER_BERNOULLI
         && f->formulation == CT_BEAM_FORESHORTENING && !beam->higher_order
         && !beam->has_quadratic_twist // couple() knows one twist of an element
-        && ct_flexible_stiffness_rule(beam) == CT_RULE_FULL
+        && !beam->has_quadratic_stretch && ct_flexible_stiffness_rule(beam) == CT_RULE_FULL
         && ct_ex_is_zero(beam->damping_mass);
 }
 

@@ -24,25 +24,27 @@ struct ct_element_mass {
 
 static int direction(int dof)
 {
-    return dof < 2 ? 0 : dof < 6 ? 1 : 2;
+    return dof < 2 || dof == CT_MIDDLE_DOF ? 0 : dof < 6 ? 1 : 2;
 }
 
 // Axis a dof turns the section about, -1 for none.
 static int axis(int dof)
 {
-    return dof < 2 ? -1 : dof < 6 ? 2 : dof < CT_PLACE_DOF ? 1 : 0;
+    return dof < 2 || dof == CT_MIDDLE_DOF ? -1 : dof < 6 ? 2 : dof < CT_BENT_DOF ? 1 : 0;
 }
 
 static const struct ct_shape *place_shape(const struct ct_flexible *f, int dof)
 {
-    return dof < 2 ? &f->linear[dof] : &f->shape.place[(dof - 2) % 4];
+    if (dof == CT_MIDDLE_DOF)
+        return &f->line[2];
+    return dof < 2 ? &f->line[dof] : &f->shape.place[(dof - 2) % 4];
 }
 
 // Right-handed: a slope dw/dx turns about -y.
 static struct ct_shape turn_shape(const struct ct_flexible *f, int dof)
 {
     struct ct_shape s
-        = dof >= CT_PLACE_DOF ? f->twist[dof - CT_PLACE_DOF] : f->shape.rotation[(dof - 2) % 4];
+        = dof >= CT_PLACE_DOF ? f->line[dof - CT_PLACE_DOF] : f->shape.rotation[(dof - 2) % 4];
     for (int i = 0; i < CT_SHAPE_SIZE && axis(dof) == 1; i++)
         s.c[i] = -s.c[i];
     return s;
@@ -169,6 +171,8 @@ static ct_ex3 turned(struct ct_build *b, const struct ct_element_mass *s, const 
 {
     ct_ex3 sum = zero3;
     for (int j = 2; j < CT_DOF; j++) {
+        if (axis(j) < 0)
+            continue;
         ct_ex *a = &sum.e[axis(j)];
         *a = ct_ex_add(b->x, *a, ct_ex_mul(b->x, s->G[j], v[j]));
     }

@@ -17,8 +17,8 @@ struct ct_point {
     ct_ex3 r, rate, bias;        // place from the base; bias: second derivative with u' = 0
     ct_ex along[CT_PLACE_DOF];   // d r_x/d dof
     struct ct_axial_field axial; // the same of forces, where these alone foreshorten
-    ct_ex place[4], turn[4], twist[CT_TWIST_DOF]; // shapes there
-    ct_ex linear_value;                           // axial displacement, of r
+    ct_ex place[4], turn[4], line[CT_LINE_DOF]; // shapes there
+    ct_ex linear_value;                         // axial displacement, of r
 };
 
 // ---- points -----------------------------------------------------------------------------------------
@@ -26,8 +26,8 @@ struct ct_point {
 static ct_ex with_twist(struct ct_build *b, const struct ct_point *p, const ct_ex *of)
 {
     ct_ex sum = CT_EX_ZERO;
-    for (int i = 0; i < CT_TWIST_DOF; i++)
-        sum = ct_ex_add(b->x, sum, ct_ex_mul(b->x, p->twist[i], of[CT_PLACE_DOF + i]));
+    for (int i = 0; i < CT_LINE_DOF; i++)
+        sum = ct_ex_add(b->x, sum, ct_ex_mul(b->x, p->line[i], of[CT_PLACE_DOF + i]));
     return sum;
 }
 
@@ -60,8 +60,8 @@ static void place_point(struct ct_build *b, const struct ct_flexible *f, struct 
         p->place[i] = ct_shape_at(x, &f->shape.place[i], xi, h);
         p->turn[i] = ct_shape_at(x, &f->shape.rotation[i], xi, h);
     }
-    for (int i = 0; i < CT_TWIST_DOF; i++)
-        p->twist[i] = ct_shape_at(x, &f->twist[i], xi, h);
+    for (int i = 0; i < CT_LINE_DOF; i++)
+        p->line[i] = ct_shape_at(x, &f->line[i], xi, h);
     p->linear_value = a.value;
     const ct_ex rest = ct_ex_add(x, e->span.start, ct_ex_mul(x, xi, h));
     p->r = (ct_ex3){{ct_ex_add(x, rest, a.value), dot4(b, p->place, e->value + 2),
@@ -140,15 +140,15 @@ static void push_point(struct ct_build *b, const struct ct_point *p, const ct_ex
         if (j >= 2 && j < 6) {
             v = ct_ex_add(x, v, ct_ex_mul(x, p->place[j - 2], F.e[1]));
             v = ct_ex_add(x, v, ct_ex_mul(x, p->turn[j - 2], T.e[2]));
-        } else if (j >= 6) {
+        } else if (j >= 6 && j < CT_BENT_DOF) {
             v = ct_ex_add(x, v, ct_ex_mul(x, p->place[j - 6], F.e[2]));
             v = ct_ex_sub(x, v, ct_ex_mul(x, p->turn[j - 6], T.e[1]));
         }
         sum[j] = ct_ex_add(x, sum[j], v);
     }
-    for (int j = 0; j < CT_TWIST_DOF; j++)
+    for (int j = 0; j < CT_LINE_DOF; j++)
         sum[CT_PLACE_DOF + j]
-            = ct_ex_add(x, sum[CT_PLACE_DOF + j], ct_ex_mul(x, p->twist[j], T.e[0]));
+            = ct_ex_add(x, sum[CT_PLACE_DOF + j], ct_ex_mul(x, p->line[j], T.e[0]));
 }
 
 static void inertia_rows(struct ct_build *b, const struct ct_flexible *f,
@@ -176,7 +176,7 @@ static void inertia_rows(struct ct_build *b, const struct ct_flexible *f,
             axial = ct_ex_add(x, axial, F.e[0]);
             push_point(b, p, p->along, F, on_angles, sum);
         }
-        for (int j = 2; j < CT_PLACE_DOF && f->kinematics == CT_AXIAL_CHAIN; j++)
+        for (int j = 2; j < CT_BENT_DOF && f->kinematics == CT_AXIAL_CHAIN; j++)
             sum[j] = ct_ex_add(x, sum[j], ct_ex_mul(x, f->element[e].g[j], beyond));
         beyond = ct_ex_add(x, beyond, axial);
         for (int j = 0; j < CT_DOF; j++)
@@ -213,7 +213,7 @@ static void foreshortening_rows(struct ct_build *b, const struct ct_flexible *f,
             push_point(b, p, p->along, ct_ex3_neg(x, ct_ex3_scale(x, p->m, linear)), zero3,
                        sum);
         }
-        for (int j = 2; j < CT_PLACE_DOF; j++)
+        for (int j = 2; j < CT_BENT_DOF; j++)
             sum[j] = ct_ex_add(x, sum[j], ct_ex_mul(x, f->element[e].g[j], beyond));
         beyond = ct_ex_add(x, beyond, axial);
         for (int j = 0; j < CT_DOF; j++)
@@ -278,7 +278,7 @@ static ct_ex3 point_partial(const struct ct_point *p, int j)
         d.e[0] = p->along[j];
     if (j >= 2 && j < 6)
         d.e[1] = p->place[j - 2];
-    else if (j >= 6 && j < CT_PLACE_DOF)
+    else if (j >= 6 && j < CT_BENT_DOF)
         d.e[2] = p->place[j - 6];
     return d;
 }
@@ -287,10 +287,10 @@ static ct_ex3 point_turn(struct ct_build *b, const struct ct_point *p, int j)
 {
     const struct ct_section *s = &p->section;
     if (j >= CT_PLACE_DOF)
-        return ct_ex3_scale(b->x, p->twist[j - CT_PLACE_DOF], s->turn[0]);
-    if (j >= 6)
+        return ct_ex3_scale(b->x, p->line[j - CT_PLACE_DOF], s->turn[0]);
+    if (j >= 6 && j < CT_BENT_DOF)
         return ct_ex3_scale(b->x, ct_ex_neg(b->x, p->turn[j - 6]), s->turn[1]);
-    return j >= 2 ? ct_ex3_scale(b->x, p->turn[j - 2], s->turn[2]) : zero3;
+    return j >= 2 && j < 6 ? ct_ex3_scale(b->x, p->turn[j - 2], s->turn[2]) : zero3;
 }
 
 static void add_point_mass(struct ct_build *b, const struct ct_point *p,

@@ -55,7 +55,8 @@ bool ct_inertia_has_series(struct ct_build *b, const struct ct_flexible *f)
     const bool is_drawn_further = beam->higher_order && f->axial == CT_AXIAL_CHAIN;
     return !(kinds & 1u << CT_SYM_LOCAL) && ct_flexible_mass_rule(beam) == CT_RULE_FULL
         && f->kinematics == f->axial && f->axial != CT_AXIAL_LINEAR && !is_drawn_further
-        && !ct_flexible_turns_inertia(b, f) && !beam->has_quadratic_twist;
+        && !ct_flexible_turns_inertia(b, f) && !beam->has_quadratic_twist
+        && !beam->has_quadratic_stretch;
 }
 
 // ---- fields ---------------------------------------------------------------------------------------------
@@ -83,8 +84,9 @@ static struct ct_field field_of(struct ct_build *b, const struct ct_flexible *f,
         s.turn[k].e[1] = ct_ex_neg(x, s.bend[1].turn[k]);
         s.turn[k].e[2] = s.bend[0].turn[k];
     }
-    s.turn[0].e[0] = ct_ex_scale(x, 0.5, ct_ex_add(x, dof[10], dof[11]));
-    s.turn[1].e[0] = ct_ex_sub(x, dof[11], dof[10]);
+    s.turn[0].e[0]
+        = ct_ex_scale(x, 0.5, ct_ex_add(x, dof[CT_PLACE_DOF], dof[CT_PLACE_DOF + 1]));
+    s.turn[1].e[0] = ct_ex_sub(x, dof[CT_PLACE_DOF + 1], dof[CT_PLACE_DOF]);
     return s;
 }
 
@@ -166,8 +168,8 @@ static void push_field(struct ct_build *b, const struct ct_flexible *f, int e,
     dof[0] = ct_ex_sub(x, mean, rise);
     dof[1] = ct_ex_add(x, mean, rise);
     const ct_ex twist = ct_ex_scale(x, 0.5, turn[0].e[0]);
-    dof[10] = ct_ex_sub(x, twist, turn[1].e[0]);
-    dof[11] = ct_ex_add(x, twist, turn[1].e[0]);
+    dof[CT_PLACE_DOF] = ct_ex_sub(x, twist, turn[1].e[0]);
+    dof[CT_PLACE_DOF + 1] = ct_ex_add(x, twist, turn[1].e[0]);
 }
 
 // ---- sums over elements of one weight ---------------------------------------------------------------------
@@ -284,7 +286,7 @@ static void rows(struct ct_build *b, const struct ct_flexible *f, const struct c
                 turning[k].e[i] = ct_ex_mul(x, J, al);
             }
         push_field(b, f, e, force, turning, sum);
-        for (int j = 2; j < CT_PLACE_DOF && is_chain(f); j++)
+        for (int j = 2; j < CT_BENT_DOF && is_chain(f); j++)
             sum[j] = ct_ex_add(x, sum[j], ct_ex_mul(x, f->element[e].g[j], beyond));
         beyond = ct_ex_add(x, beyond, force[0].e[0]);
         for (int j = 0; j < CT_DOF; j++)
@@ -460,7 +462,7 @@ static void add_pair(struct ct_exs *x, struct ct_element_sums *s, int i, int j, 
 static void add_square(struct ct_exs *x, const ct_ex p[CT_DOF], const ct_ex cp[CT_DOF],
                        struct ct_element_sums *s)
 {
-    for (int i = 2; i < CT_PLACE_DOF; i++)
+    for (int i = 2; i < CT_BENT_DOF; i++)
         for (int j = 2; j <= i; j++)
             add_pair(x, s, i, j, ct_ex_mul(x, cp[i], p[j]));
 }
@@ -490,7 +492,7 @@ static void draw_mass(struct ct_build *b, const struct ct_flexible *f, int e,
                          by_rise = ct_draw_along_push(x, h, by[1], is_chain(f));
     draw_slopes(b, f, e, &by_mean, mean);
     draw_slopes(b, f, e, &by_rise, rise);
-    for (int j = 2; j < CT_PLACE_DOF; j++) {
+    for (int j = 2; j < CT_BENT_DOF; j++) {
         add_pair(x, s, 0, j, ct_ex_sub(x, mean[j], rise[j]));
         add_pair(x, s, 1, j, ct_ex_add(x, mean[j], rise[j]));
     }

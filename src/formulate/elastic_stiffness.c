@@ -1,6 +1,7 @@
 // Stiffness and damping of beams; see elastic.h.
 #include "formulate/elastic.h"
 
+#include <math.h>
 #include <string.h>
 
 enum ct_rule ct_flexible_mass_rule(const struct ct_beam *beam)
@@ -32,6 +33,38 @@ struct ct_profile ct_flexible_rotary(const struct ct_flexible *f, int axis)
     return g;
 }
 
+ct_ex ct_flexible_shear(struct ct_build *b, const struct ct_flexible *f, int plane)
+{
+    const struct ct_beam *beam = f->beam;
+    return beam->theory == CT_BEAM_TIMOSHENKO
+             ? ct_ex_mul(b->x, beam->shear_factor[plane], ct_ex_mul(b->x, beam->G, beam->area))
+             : CT_EX_ZERO;
+}
+
+// With slopes and rotations linear in an element, a curvature c bends it with EI c h and shears it with c (x - h/2), which one
+// point in the middle does not see: (EI + k GA h^2/12) c^2 h/2.
+double ct_flexible_locking(struct ct_build *b, const struct ct_flexible *f)
+{
+    const struct ct_beam *beam = f->beam;
+    double most = 0;
+    if (beam->theory != CT_BEAM_TIMOSHENKO || ct_flexible_stiffness_rule(beam) != CT_RULE_FULL)
+        return 0;
+    for (int plane = 0; plane < 2; plane++) {
+        const struct ct_profile GA
+            = {beam->x, ct_flexible_shear(b, f, plane)},
+            EI = {beam->x, ct_ex_mul(b->x, beam->E, plane ? beam->Iy : beam->Iz)};
+        const bool bends = f->deformation & (plane ? CT_BEAM_BENDING_Y : CT_BEAM_BENDING_Z);
+        for (int e = 0; e < beam->nelement && bends; e++) {
+            const struct ct_span *s = &f->element[e].span;
+            const double h = ct_ex_value(b->x, s->length, b->value),
+                         shear = ct_ex_value(b->x, ct_profile_at(b->x, &GA, s, 0.5), b->value),
+                         bend = ct_ex_value(b->x, ct_profile_at(b->x, &EI, s, 0.5), b->value);
+            most = fmax(most, shear * h * h / (12 * bend));
+        }
+    }
+    return most;
+}
+
 // ---- stiffness and damping ----------------------------------------------------------------------------------
 
 // Constant matrices of an element for its four dofs of a plane.
@@ -50,6 +83,18 @@ ct_ex ct_flexible_integral(struct ct_build *b, const struct ct_flexible *f, int 
     return ct_shape_integral(b->x, &profile, &both, &f->element[e].span, rule);
 }
 
+// Slope of the axis less rotation of the section.
+static struct ct_shape shear_of(const struct ct_bending *s, int j)
+{
+    struct ct_shape shear = s->slope[j];
+    if (ct_shape_is_zero(&shear))
+        shear.power = s->rotation[j].power;
+    // both are of one power of the length, or one of them is zero
+    for (int i = 0; i < CT_SHAPE_SIZE; i++)
+        shear.c[i] -= s->rotation[j].c[i];
+    return shear;
+}
+
 static struct plane_matrices plane_matrices(struct ct_build *b, const struct ct_flexible *f,
                                             int e, int plane)
 {
@@ -58,21 +103,14 @@ static struct plane_matrices plane_matrices(struct ct_build *b, const struct ct_
     const enum ct_rule rule = ct_flexible_stiffness_rule(beam),
                        mass = ct_flexible_mass_rule(beam);
     const ct_ex second = plane ? beam->Iy : beam->Iz, EI = ct_ex_mul(x, beam->E, second);
-    const ct_ex GA = beam->theory == CT_BEAM_TIMOSHENKO
-                       ? ct_ex_mul(x, beam->shear_factor, ct_ex_mul(x, beam->G, beam->area))
-                       : CT_EX_ZERO;
+    const ct_ex GA = ct_flexible_shear(b, f, plane);
     const ct_ex radius = beam->higher_order ? ct_ex_div(x, second, beam->area) : CT_EX_ZERO;
     const ct_ex J = ct_flexible_rotary(f, plane ? 1 : 2).value;
     struct plane_matrices s = {0};
     struct ct_shape bend[4], shear[4];
     for (int j = 0; j < 4; j++) {
         bend[j] = ct_shape_slope(&f->shape.rotation[j]);
-        shear[j] = f->shape.slope[j];
-        if (ct_shape_is_zero(&shear[j]))
-            shear[j].power = f->shape.rotation[j].power;
-        // both are of one power of the length, or one of them is zero
-        for (int i = 0; i < CT_SHAPE_SIZE; i++)
-            shear[j].c[i] -= f->shape.rotation[j].c[i];
+        shear[j] = shear_of(&f->shape, j);
     }
     for (int j = 0; j < 4; j++)
         for (int k = 0; k < 4; k++) {
@@ -94,33 +132,55 @@ static struct plane_matrices plane_matrices(struct ct_build *b, const struct ct_
     return s;
 }
 
-// n dofs with their shapes, which a constant k times the slopes holds, with m per length: stretch and twist.
-static void line_matrices(struct ct_build *b, const struct ct_flexible *f, int e, int first,
-                          const struct ct_shape *shape, int n, ct_ex k, ct_ex m,
-                          ct_ex K[CT_DOF][CT_DOF], ct_ex M[CT_DOF][CT_DOF])
+// Stretch and twist: k times the slopes holds them, m per length moves.
+struct line_matrices {
+    ct_ex K[CT_LINE_DOF][CT_LINE_DOF], M[CT_LINE_DOF][CT_LINE_DOF];
+};
+
+static struct line_matrices line_matrices(struct ct_build *b, const struct ct_flexible *f,
+                                          int e, ct_ex k, ct_ex m)
 {
-    for (int i = 0; i < n; i++)
-        for (int j = 0; j < n; j++) {
-            const struct ct_shape di = ct_shape_slope(&shape[i]),
-                                  dj = ct_shape_slope(&shape[j]);
-            K[first + i][first + j] = ct_flexible_integral(b, f, e, k, &di, &dj,
-                                                           ct_flexible_stiffness_rule(f->beam));
-            M[first + i][first + j] = ct_flexible_integral(b, f, e, m, &shape[i], &shape[j],
-                                                           ct_flexible_mass_rule(f->beam));
+    struct line_matrices s;
+    for (int i = 0; i < CT_LINE_DOF; i++)
+        for (int j = 0; j < CT_LINE_DOF; j++) {
+            const struct ct_shape di = ct_shape_slope(&f->line[i]),
+                                  dj = ct_shape_slope(&f->line[j]);
+            s.K[i][j] = ct_flexible_integral(b, f, e, k, &di, &dj,
+                                             ct_flexible_stiffness_rule(f->beam));
+            s.M[i][j] = ct_flexible_integral(b, f, e, m, &f->line[i], &f->line[j],
+                                             ct_flexible_mass_rule(f->beam));
         }
+    return s;
+}
+
+static struct line_matrices stretch_matrices(struct ct_build *b, const struct ct_flexible *f,
+                                             int e)
+{
+    return line_matrices(b, f, e, ct_ex_mul(b->x, f->beam->E, f->beam->area),
+                         f->beam->mass_per_length);
+}
+
+static struct line_matrices twist_matrices(struct ct_build *b, const struct ct_flexible *f,
+                                           int e)
+{
+    return line_matrices(b, f, e, ct_ex_mul(b->x, f->beam->G, f->beam->J),
+                         ct_flexible_rotary(f, 0).value);
 }
 
 void ct_element_matrices(struct ct_build *b, const struct ct_flexible *f, int e,
                          ct_ex K[CT_DOF][CT_DOF], ct_ex M[CT_DOF][CT_DOF])
 {
-    struct ct_exs *x = b->x;
-    const struct ct_beam *beam = f->beam;
     memset(K, 0, sizeof(ct_ex[CT_DOF][CT_DOF]));
     memset(M, 0, sizeof(ct_ex[CT_DOF][CT_DOF]));
-    line_matrices(b, f, e, 0, f->linear, 2, ct_ex_mul(x, beam->E, beam->area),
-                  beam->mass_per_length, K, M);
-    line_matrices(b, f, e, CT_PLACE_DOF, f->twist, CT_TWIST_DOF, ct_ex_mul(x, beam->G, beam->J),
-                  ct_flexible_rotary(f, 0).value, K, M);
+    const struct line_matrices u = stretch_matrices(b, f, e), p = twist_matrices(b, f, e);
+    for (int i = 0; i < CT_LINE_DOF; i++)
+        for (int j = 0; j < CT_LINE_DOF; j++) {
+            const int si = ct_stretch_dof(i), sj = ct_stretch_dof(j);
+            K[si][sj] = u.K[i][j];
+            M[si][sj] = u.M[i][j];
+            K[CT_PLACE_DOF + i][CT_PLACE_DOF + j] = p.K[i][j];
+            M[CT_PLACE_DOF + i][CT_PLACE_DOF + j] = p.M[i][j];
+        }
     for (int plane = 0; plane < 2; plane++) {
         const int first = plane ? 6 : 2;
         const struct plane_matrices s = plane_matrices(b, f, e, plane);
@@ -161,7 +221,7 @@ static void bend_element(struct ct_build *b, const struct ct_flexible *f, int e,
 // Stretch of the element: the difference of the nodes' s, in LOCAL coordinates by what they and the slopes say.
 struct stretch {
     ct_ex value, rate;
-    ct_ex slope[CT_PLACE_DOF];
+    ct_ex slope[CT_BENT_DOF];
 };
 
 static struct stretch stretch_of(struct ct_build *b, const struct ct_flexible *f, int e,
@@ -185,6 +245,7 @@ static struct stretch stretch_of(struct ct_build *b, const struct ct_flexible *f
     return s;
 }
 
+// Two amplitudes of the strain: s.value/h, constant, and that of the middle.
 static void stretch_element(struct ct_build *b, const struct ct_flexible *f, int e,
                             const struct plane_matrices plane[2], struct ct_element_force *out)
 {
@@ -192,24 +253,32 @@ static void stretch_element(struct ct_build *b, const struct ct_flexible *f, int
     const struct ct_beam *beam = f->beam;
     const struct ct_element *self = &f->element[e];
     const struct stretch s = stretch_of(b, f, e, plane);
-    const struct ct_shape dx = ct_shape_slope(&f->linear[1]);
-    const ct_ex k = ct_flexible_integral(b, f, e, ct_ex_mul(x, beam->E, beam->area), &dx, &dx,
-                                         ct_flexible_stiffness_rule(beam));
-    const ct_ex elastic = ct_ex_mul(x, k, s.value);
-    const ct_ex drag = ct_ex_mul(x, beam->damping_stiffness, ct_ex_mul(x, k, s.rate));
-    const ct_ex N = ct_ex_add(x, elastic, drag);
-    for (int j = 0; j < CT_PLACE_DOF; j++)
-        out->row[j] = ct_ex_add(x, out->row[j], ct_ex_mul(x, N, s.slope[j]));
-    out->energy
-        = ct_ex_add(x, out->energy, ct_ex_scale(x, 0.5, ct_ex_mul(x, elastic, s.value)));
-    out->drag = ct_ex_add(x, out->drag, ct_ex_mul(x, drag, s.rate));
-    for (int j = 0; j < 2 && !ct_ex_is_zero(beam->damping_mass); j++)
-        for (int i = 0; i < 2; i++) {
-            const ct_ex m = ct_flexible_integral(b, f, e, beam->mass_per_length, &f->linear[j],
-                                                 &f->linear[i], ct_flexible_mass_rule(beam));
-            const ct_ex v = ct_ex_mul(x, beam->damping_mass, ct_ex_mul(x, m, self->rate[i]));
-            out->row[j] = ct_ex_add(x, out->row[j], v);
-            out->drag = ct_ex_add(x, out->drag, ct_ex_mul(x, v, self->rate[j]));
+    const struct line_matrices line = stretch_matrices(b, f, e);
+    const ct_ex value[2] = {s.value, self->value[CT_MIDDLE_DOF]},
+                rate[2] = {s.rate, self->rate[CT_MIDDLE_DOF]};
+    ct_ex N[2];
+    for (int i = 0; i < 2; i++) {
+        const ct_ex *K = line.K[1 + i];
+        const ct_ex elastic
+            = ct_ex_add(x, ct_ex_mul(x, K[1], value[0]), ct_ex_mul(x, K[2], value[1]));
+        const ct_ex drag
+            = ct_ex_mul(x, beam->damping_stiffness,
+                        ct_ex_add(x, ct_ex_mul(x, K[1], rate[0]), ct_ex_mul(x, K[2], rate[1])));
+        N[i] = ct_ex_add(x, elastic, drag);
+        out->energy
+            = ct_ex_add(x, out->energy, ct_ex_scale(x, 0.5, ct_ex_mul(x, elastic, value[i])));
+        out->drag = ct_ex_add(x, out->drag, ct_ex_mul(x, drag, rate[i]));
+    }
+    for (int j = 0; j < CT_BENT_DOF; j++)
+        out->row[j] = ct_ex_add(x, out->row[j], ct_ex_mul(x, N[0], s.slope[j]));
+    out->row[CT_MIDDLE_DOF] = ct_ex_add(x, out->row[CT_MIDDLE_DOF], N[1]);
+    for (int j = 0; j < CT_LINE_DOF && !ct_ex_is_zero(beam->damping_mass); j++)
+        for (int i = 0; i < CT_LINE_DOF; i++) {
+            const int p = ct_stretch_dof(j), q = ct_stretch_dof(i);
+            const ct_ex v
+                = ct_ex_mul(x, beam->damping_mass, ct_ex_mul(x, line.M[j][i], self->rate[q]));
+            out->row[p] = ct_ex_add(x, out->row[p], v);
+            out->drag = ct_ex_add(x, out->drag, ct_ex_mul(x, v, self->rate[p]));
         }
 }
 
@@ -220,19 +289,13 @@ static void twist_element(struct ct_build *b, const struct ct_flexible *f, int e
     const struct ct_beam *beam = f->beam;
     const ct_ex *value = f->element[e].value + CT_PLACE_DOF;
     const ct_ex *rate = f->element[e].rate + CT_PLACE_DOF;
-    const ct_ex GJ = ct_ex_mul(x, beam->G, beam->J), J = ct_flexible_rotary(f, 0).value;
-    for (int j = 0; j < CT_TWIST_DOF; j++) {
-        const struct ct_shape dj = ct_shape_slope(&f->twist[j]);
+    const struct line_matrices line = twist_matrices(b, f, e);
+    for (int j = 0; j < CT_LINE_DOF; j++) {
         ct_ex elastic = CT_EX_ZERO, drag = CT_EX_ZERO;
-        for (int k = 0; k < CT_TWIST_DOF; k++) {
-            const struct ct_shape dk = ct_shape_slope(&f->twist[k]);
-            const ct_ex K
-                = ct_flexible_integral(b, f, e, GJ, &dj, &dk, ct_flexible_stiffness_rule(beam));
-            const ct_ex M = ct_flexible_integral(b, f, e, J, &f->twist[j], &f->twist[k],
-                                                 ct_flexible_mass_rule(beam));
-            const ct_ex C = ct_ex_add(x, ct_ex_mul(x, beam->damping_stiffness, K),
-                                      ct_ex_mul(x, beam->damping_mass, M));
-            elastic = ct_ex_add(x, elastic, ct_ex_mul(x, K, value[k]));
+        for (int k = 0; k < CT_LINE_DOF; k++) {
+            const ct_ex C = ct_ex_add(x, ct_ex_mul(x, beam->damping_stiffness, line.K[j][k]),
+                                      ct_ex_mul(x, beam->damping_mass, line.M[j][k]));
+            elastic = ct_ex_add(x, elastic, ct_ex_mul(x, line.K[j][k], value[k]));
             drag = ct_ex_add(x, drag, ct_ex_mul(x, C, rate[k]));
         }
         ct_ex *row = &out->row[CT_PLACE_DOF + j];
@@ -292,16 +355,15 @@ static void couple_point(struct ct_build *b, const struct ct_flexible *f, int e,
     struct ct_exs *x = b->x;
     const struct ct_element *self = &f->element[e];
     const ct_ex h = self->span.length, half = ct_ex_scale(x, 0.5, GJ);
-    const struct angle p
-        = angle_at(b, f->twist, CT_TWIST_DOF, self->value + CT_PLACE_DOF, xi, h),
-        g = angle_at(b, f->shape.rotation, 4, self->value + 2, xi, h),
-        w = angle_at(b, f->shape.rotation, 4, self->value + 6, xi, h); // -b
+    const struct angle p = angle_at(b, f->line, CT_LINE_DOF, self->value + CT_PLACE_DOF, xi, h),
+                       g = angle_at(b, f->shape.rotation, 4, self->value + 2, xi, h),
+                       w = angle_at(b, f->shape.rotation, 4, self->value + 6, xi, h); // -b
     // derivatives by p, g and w of GJ p' (g' w - w' g)/2 - EI p w' g'
     const ct_ex turn
         = ct_ex_sub(x, ct_ex_mul(x, g.slope, w.value), ct_ex_mul(x, w.slope, g.value));
     const ct_ex torque = ct_ex_mul(x, half, p.slope), bend = ct_ex_mul(x, EI, p.value);
     const ct_ex twist = ct_ex_neg(x, ct_ex_mul(x, EI, ct_ex_mul(x, w.slope, g.slope)));
-    push_angle(b, &p, CT_TWIST_DOF, twist, ct_ex_mul(x, half, turn), out->row + CT_PLACE_DOF);
+    push_angle(b, &p, CT_LINE_DOF, twist, ct_ex_mul(x, half, turn), out->row + CT_PLACE_DOF);
     push_angle(b, &g, 4, ct_ex_neg(x, ct_ex_mul(x, torque, w.slope)),
                ct_ex_sub(x, ct_ex_mul(x, torque, w.value), ct_ex_mul(x, bend, w.slope)),
                out->row + 2);
@@ -313,6 +375,27 @@ static void couple_point(struct ct_build *b, const struct ct_flexible *f, int e,
     out->energy = ct_ex_add(x, out->energy, ct_ex_mul(x, p.value, twist));
 }
 
+// Twist turns the axes of shear: (k_y - k_z) G area p gy gz.  (5.6b)
+static void couple_shear(struct ct_build *b, const struct ct_flexible *f, int e, ct_ex xi,
+                         ct_ex GA, struct ct_element_force *out)
+{
+    struct ct_exs *x = b->x;
+    const struct ct_element *self = &f->element[e];
+    const ct_ex h = self->span.length;
+    struct ct_shape shear[4];
+    for (int j = 0; j < 4; j++)
+        shear[j] = shear_of(&f->shape, j);
+    const struct angle p = angle_at(b, f->line, CT_LINE_DOF, self->value + CT_PLACE_DOF, xi, h),
+                       y = angle_at(b, shear, 4, self->value + 2, xi, h),
+                       z = angle_at(b, shear, 4, self->value + 6, xi, h);
+    const ct_ex torque = ct_ex_mul(x, GA, ct_ex_mul(x, y.value, z.value)),
+                force = ct_ex_mul(x, GA, p.value);
+    push_angle(b, &p, CT_LINE_DOF, torque, CT_EX_ZERO, out->row + CT_PLACE_DOF);
+    push_angle(b, &y, 4, ct_ex_mul(x, force, z.value), CT_EX_ZERO, out->row + 2);
+    push_angle(b, &z, 4, ct_ex_mul(x, force, y.value), CT_EX_ZERO, out->row + 6);
+    out->energy = ct_ex_add(x, out->energy, ct_ex_mul(x, p.value, torque));
+}
+
 static void couple_element(struct ct_build *b, const struct ct_flexible *f, int e,
                            struct ct_element_force *out)
 {
@@ -320,19 +403,24 @@ static void couple_element(struct ct_build *b, const struct ct_flexible *f, int 
     const struct ct_beam *beam = f->beam;
     const struct ct_profile torsion
         = {beam->x, ct_ex_mul(x, beam->G, beam->J)},
-        bending = {beam->x, ct_ex_mul(x, beam->E, ct_ex_sub(x, beam->Iy, beam->Iz))};
-    const bool varies
-        = (ct_ex_kinds(x, torsion.value) | ct_ex_kinds(x, bending.value)) & 1u << CT_SYM_LOCAL;
+        bending = {beam->x, ct_ex_mul(x, beam->E, ct_ex_sub(x, beam->Iy, beam->Iz))},
+        shear = {beam->x, ct_ex_sub(x, ct_flexible_shear(b, f, 0), ct_flexible_shear(b, f, 1))};
+    const bool varies = (ct_ex_kinds(x, torsion.value) | ct_ex_kinds(x, bending.value)
+                         | ct_ex_kinds(x, shear.value))
+                      & 1u << CT_SYM_LOCAL;
     const enum ct_rule rule = ct_flexible_stiffness_rule(beam);
     const int wanted = varies                    ? CT_MAX_GAUSS
                      : beam->has_quadratic_twist ? WITH_QUADRATIC_TWIST
                                                  : COUPLING_POINTS;
     double xi[CT_MAX_GAUSS];
-    ct_ex GJ[CT_MAX_GAUSS], EI[CT_MAX_GAUSS];
+    ct_ex GJ[CT_MAX_GAUSS], EI[CT_MAX_GAUSS], GA[CT_MAX_GAUSS];
     const int n = ct_shape_points(x, &torsion, &f->element[e].span, rule, wanted, xi, GJ);
     ct_shape_points(x, &bending, &f->element[e].span, rule, wanted, xi, EI);
+    ct_shape_points(x, &shear, &f->element[e].span, rule, wanted, xi, GA);
     for (int i = 0; i < n; i++)
         couple_point(b, f, e, ct_ex_const(x, xi[i]), GJ[i], EI[i], out);
+    for (int i = 0; i < n && !ct_ex_is_zero(shear.value); i++)
+        couple_shear(b, f, e, ct_ex_const(x, xi[i]), GA[i], out);
 }
 
 // ---- elements ---------------------------------------------------------------------------------------------------

@@ -336,30 +336,78 @@ static void derive_projections(struct elimination *s, struct ct_closed *c)
     ct_blocks_solve(&s->d, r, c->du);
 }
 
-// Operations of the better order, which may be wanted.
-static double predict(const struct elimination *s, struct ct_arena *scratch,
-                      enum ct_kkt_order *best)
+// By pattern, in the better of both orders; NULL: it is singular.
+static const struct ct_kkt *predict(const struct elimination *s, struct ct_arena *scratch,
+                                    enum ct_kkt_order *best)
 {
-    double least = INFINITY;
+    const struct ct_kkt *least = NULL;
     for (int order = 0; order < CT_KKT_NORDER; order++) {
+        const double most = least ? least->operations : INFINITY;
         const struct ct_kkt *k = ct_kkt_factor(scratch, NULL, s->M, s->e->nu, s->J, s->p->rank,
-                                               (enum ct_kkt_order)order, 0);
-        if (!k || k->operations >= least)
+                                               (enum ct_kkt_order)order, most);
+        if (!k)
             continue;
-        least = k->operations;
-        if (best)
-            *best = (enum ct_kkt_order)order;
+        least = k;
+        *best = (enum ct_kkt_order)order;
     }
     return least;
 }
 
-double ct_closed_predict(struct ct_arena *scratch, struct ct_exs *x,
-                         const struct ct_equations *e, const struct ct_partition *p,
-                         const double *M, const double *J)
+// Operations that the pivots of J_d take, among the nodes of x from `first` on.
+static double count_pivots(const struct elimination *s, struct ct_arena *scratch, size_t first)
 {
+    const struct ct_exs *x = s->x;
+    bool *is_used = CT_NEWN(scratch, bool, x->nnode + 1);
+    double n = 0;
+    for (size_t k = 0; k < s->d.nblock; k++)
+        is_used[s->d.block[k].pivot.id] = true;
+    for (size_t id = x->nnode; id-- > first;) {
+        const struct ct_exnode *e = &x->node[id];
+        if (!is_used[id])
+            continue;
+        const uint32_t child[] = {e->a, e->b, e->c};
+        const int narg = ct_op_info[e->op].narg;
+        for (int k = 0; k < narg; k++)
+            is_used[child[k]] = true;
+        n += narg > 0;
+    }
+    return n;
+}
+
+static void list_order(struct ct_pivot_order *found, const struct ct_kkt *k)
+{
+    for (size_t i = 0, n = 0; i < k->npivot; i++) {
+        const struct ct_kkt_pivot *v = &k->pivot[i];
+        // [a b; b 0]: the entries beside the diagonal are the pivots
+        const bool is_crossed = v->size == 2 && ct_ex_is_zero(v->P[2]);
+        for (int q = 0; q < v->size; q++, n++) {
+            found->row[n] = v->at[is_crossed ? 1 - q : q];
+            found->column[n] = v->at[q];
+        }
+    }
+}
+
+struct ct_pivot_order *ct_pivot_order_find(struct ct_arena *a, const struct ct_equations *e,
+                                           const struct ct_partition *p, const double *M,
+                                           const double *J)
+{
+    struct ct_arena *scratch = ct_arena_create_under(a);
+    struct ct_exs *x = ct_exs_clone(scratch, e->x);
     struct elimination s = create(scratch, x, e, p);
+    enum ct_kkt_order order = CT_KKT_DEGREE;
+    struct ct_pivot_order *found = NULL;
     read_matrices(&s, M, J);
-    return predict(&s, scratch, NULL);
+    const struct ct_kkt *k = predict(&s, scratch, &order);
+    if (k && ct_blocks_factor(&s.d, SIZE_MAX)) {
+        found = CT_NEW(a, struct ct_pivot_order);
+        found->row = CT_NEWN(a, int, k->n + 1);
+        found->column = CT_NEWN(a, int, k->n + 1);
+        found->way = order;
+        found->operations = k->operations + count_pivots(&s, scratch, e->x->nnode);
+        list_order(found, k);
+    }
+    ct_arena_destroy(scratch);
+    return found;
 }
 
 struct ct_closed *ct_closed_derive(struct ct_arena *a, struct ct_exs *x,
@@ -373,14 +421,18 @@ struct ct_closed *ct_closed_derive(struct ct_arena *a, struct ct_exs *x,
     if (!ct_blocks_factor(&s.d, most))
         return NULL;
     if (way == CT_CLOSED_WHOLE) {
-        enum ct_kkt_order order = CT_KKT_DEGREE;
-        predict(&s, a, &order);
-        s.whole = ct_kkt_factor(a, x, s.M, nu, s.J, m, order, most);
+        const struct ct_pivot_order *found
+            = p->pivots ? p->pivots : ct_pivot_order_find(a, e, p, M, J);
+        if (!found)
+            return NULL;
+        s.whole = ct_kkt_factor(a, x, s.M, nu, s.J, m, found->way, (double)most);
         if (!s.whole)
             return NULL;
     } else {
+        // refinement and projections make several times the nodes of the factors
+        const size_t enough = 20000, third = most_nodes / 3;
         derive_B(&s);
-        if (!reduce(&s, most))
+        if (!reduce(&s, third > enough ? x->nnode + third : most))
             return NULL;
     }
     struct ct_closed *c = CT_NEW(a, struct ct_closed);

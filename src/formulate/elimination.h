@@ -14,11 +14,21 @@
 #define CT_FORMULATE_ELIMINATION_H
 
 #include "formulate/equations.h"
+#include "formulate/kkt.h"
 
 /// What is eliminated: kept rows (rank), as many dependent columns, and the other columns (nfree).
 struct ct_partition {
     const int *row, *dependent, *independent;
     size_t rank, nfree;
+    const struct ct_pivot_order *pivots; // may be NULL: it is made where it is needed
+};
+
+/// How all equations would be eliminated as one system, (nu + rank) rows and columns in the order of its pivots, so that
+/// these are on the diagonal or next to it. NULL: it is singular.
+struct ct_pivot_order {
+    int *row, *column;
+    enum ct_kkt_order way;
+    double operations; // of the solution, the pivots of J_d included; M, Q, J, gam not
 };
 
 struct ct_closed {
@@ -44,10 +54,9 @@ struct ct_closed *ct_closed_derive(struct ct_arena *a, struct ct_exs *x,
                                    const struct ct_equations *e, const struct ct_partition *p,
                                    const double *M, const double *J, enum ct_closed_way way,
                                    size_t most_nodes);
-/// Operations that the solution as one system would take beside M, Q, J and gam, by the pattern; INFINITY if it is
-/// singular.
-double ct_closed_predict(struct ct_arena *scratch, struct ct_exs *x,
-                         const struct ct_equations *e, const struct ct_partition *p,
-                         const double *M, const double *J);
+/// By patterns and numbers at the state of the shadow; in a. NULL if the system is singular.
+struct ct_pivot_order *ct_pivot_order_find(struct ct_arena *a, const struct ct_equations *e,
+                                           const struct ct_partition *p, const double *M,
+                                           const double *J);
 
 #endif

@@ -1,15 +1,16 @@
 // Flexible bodies: elastic coordinates of beams, places along them, their inertia and stiffness.  (formulation 1.2, 5.3)
 //
 //   elastic coordinate k   an unknown of the model: a nodal displacement or rotation, or the share of a mode
-//   freedom f              7 per node (u v w rx ry rz, and rm of the element before it): sum over k of part coef *
+//   freedom f              8 per node (u v w rx ry rz, and rm um of the element before it): sum over k of part coef *
 //                          coordinate; fixed ones are zero
-//   dof j                  13 of an element, each a freedom with a sign (the slope dw/dx is -ry):
-//                          0 1 axial | 2-5 along y: v, dv/dx, v, dv/dx | 6-9 along z the same | 10-12 twist
+//   dof j                  14 of an element, each a freedom with a sign (the slope dw/dx is -ry):
+//                          0 1 axial | 2-5 along y: v, dv/dx, v, dv/dx | 6-9 along z the same | 10 axial in the middle
+//                          | 11-13 twist
 //
 // Axes are those of the beam; `base` is the node of its body frame, at an anchor without offset.
 //
 // Axial displacement of the axis, c the foreshortening up to the element (formulation 1.7):
-//   LINEAR   (1 - xi) u_i + xi u_i+1
+//   LINEAR   (1 - xi) u_i + xi u_i+1; to this and to the others 4 xi (1 - xi) um is added
 //   LOCAL    the same of the axial places U = s + c of the nodes, + (a' D a + b' D b)/2,  D = xi E(1) - E(xi)
 //   CHAIN    the same of the stretch s, + c_i - (a' E a + b' E b)/2,  c_i+1 = c_i - (a' E(1) a + b' E(1) b)/2
 // LOCAL and CHAIN are one model in two sets of coordinates; in LOCAL ones an element sees its own nodes only.
@@ -24,8 +25,10 @@
 /// Slope of a section against the frame of its beam up to which displacements of second order in it will do (section 5.3).
 #define CT_SLOPE_LIMIT 0.3
 
-enum { CT_DOF = 13, CT_PLACE_DOF = 10, CT_TWIST_DOF = 3 };
-/// Kinds of freedoms of a node. CT_FREEDOM_RM: twist in the middle of the element before it beyond the mean of its ends.
+// Dofs below CT_PLACE_DOF move the axis, those of bending are 2 ... CT_BENT_DOF - 1; stretch and twist have CT_LINE_DOF each.
+enum { CT_DOF = 14, CT_BENT_DOF = 10, CT_MIDDLE_DOF = 10, CT_PLACE_DOF = 11, CT_LINE_DOF = 3 };
+/// Kinds of freedoms of a node. CT_FREEDOM_RM, UM: twist and stretch in the middle of the element before it beyond the mean
+/// of its ends.
 enum ct_freedom_kind {
     CT_FREEDOM_U,
     CT_FREEDOM_V,
@@ -34,6 +37,7 @@ enum ct_freedom_kind {
     CT_FREEDOM_RY,
     CT_FREEDOM_RZ,
     CT_FREEDOM_RM,
+    CT_FREEDOM_UM,
     CT_NODE_FREEDOM
 };
 enum ct_axial { CT_AXIAL_LINEAR, CT_AXIAL_LOCAL, CT_AXIAL_CHAIN };
@@ -46,7 +50,9 @@ struct ct_part {
 struct ct_elastic {
     const char *name;
     int q, u;
+    int freedom; // that it is, or that its static shape is for; -1: share of a mode or a given shape
     ct_ex value, rate, acceleration;
+    ct_ex start, start_rate; // with `initial`, of parameters
 };
 
 struct ct_freedom {
@@ -90,9 +96,10 @@ struct ct_flexible {
     struct ct_freedom *freedom; // CT_NODE_FREEDOM (nelement + 1)
     struct ct_element *element;
     struct ct_bending shape;
-    struct ct_shape linear[2], twist[CT_TWIST_DOF];
+    struct ct_shape line[CT_LINE_DOF];              // stretch and twist
     struct ct_shape shortening[4][4], bubble[4][4]; // E(xi), D(xi)
     struct ct_shape curving[4][4]; // integral of the sections' rotation gradients, as E
+    double start_missed;           // share of the start that modes or given shapes leave out
     ct_ex strain;                  // [J], once the stiffness is derived
     struct ct_inertia *inertia;    // elastic.c
 };
@@ -111,7 +118,10 @@ void ct_flexible_create(struct ct_build *b);
 void ct_flexible_settle(struct ct_build *b);
 /// The beam of a body; NULL if it is none.
 struct ct_flexible *ct_flexible_of(const struct ct_build *b, int body);
-/// Unknowns of the elastic coordinates, after those of joints and bodies.
+/// Deformation (bit) that a kind of freedom belongs to.
+unsigned ct_freedom_family(int kind);
+bool ct_freedom_is_fixed(const struct ct_flexible *f, int node, int kind);
+/// Unknowns of the elastic coordinates (flexible_unknowns.c), after those of joints and bodies.
 void ct_flexible_unknowns(struct ct_build *b, struct ct_flexible *f);
 void ct_axial_field(struct ct_build *b, const struct ct_flexible *f, int e, ct_ex xi,
                     enum ct_axial axial, struct ct_axial_field *a);
@@ -126,6 +136,11 @@ void ct_station_own_partials(struct ct_build *b, const struct ct_flexible *f,
                              const struct ct_station *s, ct_ex3 *slide, ct_ex3 *turn);
 /// CHAIN in coordinates of nodes: an element sees its own nodes and the foreshortening at its start, nothing else.
 bool ct_flexible_is_carried(const struct ct_flexible *f);
+/// Dof of the axial shape i of f->line.
+static inline int ct_stretch_dof(int i)
+{
+    return i < 2 ? i : CT_MIDDLE_DOF;
+}
 /// Parts of element e's dof j: *sign times those of the freedom; NULL if it is fixed.
 const struct ct_freedom *ct_dof_freedom(const struct ct_flexible *f, int e, int j, int *sign);
 /// sum over the dofs in [from, to) of the shape times the value (rate, ...) of each.
@@ -154,6 +169,9 @@ struct ct_flexible_state ct_flexible_moving(struct ct_build *b, const struct ct_
 /// Force and torque about the base that the beam's inertia and weight need, with the symbols u'; ground axes.
 void ct_flexible_wrench(struct ct_build *b, const struct ct_flexible *f, ct_ex3 *force,
                         ct_ex3 *torque);
+/// By how much more than EI fully integrated elements of Timoshenko's theory resist bending, since they cannot bend without
+/// shear: the largest k GA h^2/(12 EI).
+double ct_flexible_locking(struct ct_build *b, const struct ct_flexible *f);
 /// [J]
 ct_ex ct_flexible_strain(struct ct_build *b, const struct ct_flexible *f);
 /// Power of the beams' own damping, negative.

@@ -8,6 +8,13 @@
 // behind it, most orders are sound whatever their multipliers; what is left of the equations is measured in the run.
 static const double threshold = 0.001;
 
+struct choice {
+    int size, at[2];
+    double cost; // products per row, or position
+    int level;
+    double strength;
+};
+
 struct work {
     struct ct_arena *a;
     struct ct_exs *x; // NULL: patterns and numbers only
@@ -15,17 +22,13 @@ struct work {
     const double *scale;       // by row
     struct ct_shadow_row *row; // both triangles of what is left; numbers scaled
     bool *is_done;
-    int *level;    // pivots that come before
-    int *position; // along the system, or NULL: by degree
-    int *near;     // neighbours of a pivot
+    int *level;          // pivots that come before
+    int *position;       // along the system, or NULL: by degree
+    int *near;           // neighbours of a pivot
+    struct choice *best; // by row, where it is not stale
+    bool *is_stale;
+    struct ct_shadow_row spare; // for the next row that is updated
     struct ct_kkt *k;
-};
-
-struct choice {
-    int size, at[2];
-    double cost; // products per row, or position
-    int level;
-    double strength;
 };
 
 // ---- the matrix -----------------------------------------------------------------------------------------
@@ -146,27 +149,46 @@ static void try_pair(const struct work *w, int i, int j, struct choice *best)
         *best = t;
 }
 
+// The best pivot that row i is part of, as the first one or alone.
+static struct choice best_of_row(const struct work *w, int i)
+{
+    struct choice best = {0};
+    const struct ct_shadow_row *l = &w->row[i];
+    const double d = fabs(number_at(l, i));
+    const struct choice one = {.size = 1,
+                               .at = {i, i},
+                               .cost = w->position ? w->position[i] : per_row((double)l->n - 1),
+                               .level = w->level[i],
+                               .strength = at_most_one(d / size_beside(l, i, i))};
+    if (d > 0 && is_better(&one, &best))
+        best = one;
+    for (size_t k = 0; k < l->n && !(one.strength >= threshold && d > 0); k++)
+        if (l->e[k].column != i)
+            try_pair(w, i, l->e[k].column, &best);
+    return best;
+}
+
 static struct choice choose(const struct work *w)
 {
     struct choice best = {0};
     for (int i = 0; i < (int)w->n; i++) {
-        const struct ct_shadow_row *l = &w->row[i];
         if (w->is_done[i])
             continue;
-        const double d = fabs(number_at(l, i));
-        const struct choice one
-            = {.size = 1,
-               .at = {i, i},
-               .cost = w->position ? w->position[i] : per_row((double)l->n - 1),
-               .level = w->level[i],
-               .strength = at_most_one(d / size_beside(l, i, i))};
-        if (d > 0 && is_better(&one, &best))
-            best = one;
-        for (size_t k = 0; k < l->n && !(one.strength >= threshold && d > 0); k++)
-            if (l->e[k].column != i)
-                try_pair(w, i, l->e[k].column, &best);
+        if (w->is_stale[i])
+            w->best[i] = best_of_row(w, i);
+        w->is_stale[i] = false;
+        if (w->best[i].size && is_better(&w->best[i], &best))
+            best = w->best[i];
     }
     return best;
+}
+
+// Row r and its level have changed: so have the pivots that it, or a neighbour together with it, would be.
+static void mark_stale(const struct work *w, int r)
+{
+    w->is_stale[r] = true;
+    for (size_t k = 0; k < w->row[r].n; k++)
+        w->is_stale[w->row[r].e[k].column] = true;
 }
 
 // ---- along the system -------------------------------------------------------------------------------------
@@ -311,7 +333,8 @@ static void update_row(struct work *w, const struct ct_kkt_pivot *p, size_t nnea
                        const ct_ex *f, const double *number)
 {
     const struct ct_shadow_row *old = &w->row[r];
-    struct ct_shadow_row sum = {0};
+    struct ct_shadow_row sum = w->spare;
+    sum.n = 0;
     size_t i = 0, k = 0;
     while (i < old->n || k < nnear) {
         const int c = i < old->n ? old->e[i].column : INT32_MAX,
@@ -334,6 +357,7 @@ static void update_row(struct work *w, const struct ct_kkt_pivot *p, size_t nnea
         if (!ct_ex_is_zero(e.value))
             ct_shadow_put(w->a, &sum, e.column, e.value, e.number);
     }
+    w->spare = *old;
     w->row[r] = sum;
 }
 
@@ -389,6 +413,8 @@ static void eliminate(struct work *w, const struct choice *c)
             w->level[t.row] = c->level + 1;
         w->k->operations += p->size == 1 ? 1 : 4;
     }
+    for (size_t i = 0; i < nnear; i++)
+        mark_stale(w, w->near[i]);
     for (int q = 0; q < p->size; q++) {
         w->is_done[p->at[q]] = true;
         // back to the size of the expression; a determinant has each row and column twice
@@ -402,7 +428,7 @@ static void eliminate(struct work *w, const struct choice *c)
 struct ct_kkt *ct_kkt_factor(struct ct_arena *a, struct ct_exs *x,
                              const struct ct_shadow_row *M, size_t nu,
                              const struct ct_shadow_row *J, size_t m, enum ct_kkt_order order,
-                             size_t most_nodes)
+                             double most)
 {
     const size_t n = nu + m;
     struct work w = {.a = a, .x = x, .n = n, .k = CT_NEW(a, struct ct_kkt)};
@@ -410,6 +436,9 @@ struct ct_kkt *ct_kkt_factor(struct ct_arena *a, struct ct_exs *x,
     w.is_done = CT_NEWN(a, bool, n + 1);
     w.level = CT_NEWN(a, int, n + 1);
     w.near = CT_NEWN(a, int, n + 1);
+    w.best = CT_NEWN(a, struct choice, n + 1);
+    w.is_stale = CT_NEWN(a, bool, n + 1);
+    memset(w.is_stale, true, n * sizeof *w.is_stale);
     w.k->n = n;
     w.k->pivot = CT_NEWN(a, struct ct_kkt_pivot, n + 1);
     read_matrix(&w, M, nu, J, m);
@@ -417,7 +446,7 @@ struct ct_kkt *ct_kkt_factor(struct ct_arena *a, struct ct_exs *x,
         w.position = place_along(&w);
     for (size_t done = 0; done < n;) {
         const struct choice c = choose(&w);
-        if (!c.size || (x && x->nnode > most_nodes))
+        if (!c.size || (x ? (double)x->nnode : w.k->operations) >= most)
             return NULL;
         eliminate(&w, &c);
         done += (size_t)c.size;

@@ -97,15 +97,10 @@ ct_ex ct_shape_at(struct ct_exs *x, const struct ct_shape *a, ct_ex xi, ct_ex le
 
 // ---- shapes ---------------------------------------------------------------------------------------
 
-void ct_shape_linear(struct ct_shape f[2])
+void ct_shape_line(struct ct_shape f[3])
 {
     f[0] = (struct ct_shape){.c = {1, -1}};
     f[1] = (struct ct_shape){.c = {0, 1}};
-}
-
-void ct_shape_twist(struct ct_shape f[3])
-{
-    ct_shape_linear(f);
     f[2] = (struct ct_shape){.c = {0, 4, -4}};
 }
 
@@ -115,8 +110,8 @@ void ct_shape_bending(enum ct_beam_theory theory, struct ct_bending *s)
                                       {.c = {0, 1, -2, 1}, .power = 1},
                                       {.c = {0, 0, 3, -2}},
                                       {.c = {0, 0, -1, 1}, .power = 1}};
-    struct ct_shape linear[2];
-    ct_shape_linear(linear);
+    struct ct_shape linear[3];
+    ct_shape_line(linear);
     for (int i = 0; i < 4; i++) {
         const bool turns = i % 2;
         if (theory == CT_BEAM_EULER_BERNOULLI) {

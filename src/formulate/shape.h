@@ -33,10 +33,8 @@ struct ct_bending {
 
 /// Cubic (Euler-Bernoulli: the section follows the axis) or linear (Timoshenko).
 void ct_shape_bending(enum ct_beam_theory theory, struct ct_bending *s);
-/// 1 - xi, xi
-void ct_shape_linear(struct ct_shape f[2]);
-/// 1 - xi, xi, 4 xi (1 - xi)
-void ct_shape_twist(struct ct_shape f[3]);
+/// Stretch and twist: 1 - xi, xi, 4 xi (1 - xi).
+void ct_shape_line(struct ct_shape f[3]);
 
 struct ct_shape ct_shape_mul(const struct ct_shape *a, const struct ct_shape *b);
 /// d/dx

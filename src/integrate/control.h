@@ -9,9 +9,10 @@
 
 struct ct_control {
     double h;          // size the next step should have
-    double log_before; // logarithm of the error of the last accepted step
-    bool was_refused;  // the step before this try was
-    bool is_starting;  // errors since the start, or an event, say that steps are much too short
+    double log_before; // log2 of the error of the last accepted step, at least log_least
+    double log_least;
+    bool was_refused; // the step before this try was
+    bool is_starting; // errors since the start, or an event, say that steps are much too short
 };
 
 /// Before the first step.
@@ -28,6 +29,7 @@ void ct_control_refuse(struct ct_control *c, const struct ct_method *m, double h
 /// How far a run gets with a thousandth of the steps it may make; all zero before the first.
 struct ct_pace {
     double t, gain; // where the last thousandth ended, and its length
+    long next;      // steps at its end
 };
 /// After so many of `most` steps t is reached, and `rest` is left: would the end take several times as many as are allowed?
 /// False while steps still grow.

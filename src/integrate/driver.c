@@ -18,15 +18,6 @@
 // What a crossing that failed shrinks its reach by aims at this part of what its error would allow.
 static const double safety = 0.9;
 
-// With events a run has at least this many steps, so that probes are never too far apart when
-// the motion between events is so simple (free fall) that steps could grow without limit.
-static const double event_steps = 50;
-
-// So many state events in a row, each within this part of max(|t|, run) after the one before,
-// are an infinite number: a bouncing ball comes here after its height has fallen by 1e-18.
-static const int pile_events = 100;
-static const double pile_time = 1e-9;
-
 // A step across a singular position that fails is tried again from nearer, after so many times not any more: then
 // the position is not singular but only nearly so.
 static const double nearer = 0.5;
@@ -38,9 +29,6 @@ static const double early = 1.3, on_time = 1.02;
 static const double beside = 0.5;
 // Beside a singular position f has fewer digits: crossings may err by this part of the largest state.
 static const double crossing_rounding = 5e-13;
-
-// Corrections to the time of an event, each worth three digits or more.
-static const int most_corrections = 3;
 
 static const struct ct_mark nowhere = {0};
 
@@ -54,7 +42,9 @@ struct run {
     struct ct_repeat repeat;
     double *y0; // where the run began
     struct ct_watch watch;
-    double t; // time of y and dy
+    double t;    // time of y and dy
+    double stop; // where steps must end next, a time event or not; before t: to be found
+    bool is_stop_time;
     struct ct_control control;
     struct ct_pace pace;
     double *y, *dy;      // (ny) each, as all that follow
@@ -70,8 +60,6 @@ struct run {
     int failed_crossings;         // of it
     bool is_open;                 // the last step met everything but the constraints
     size_t sample;                // the next one to give
-    double last_event;            // time of the last state event
-    int piled;                    // state events in a row without time going on
 };
 
 // A step as planned: to t1, which is t + h but for rounding, or the end of the run before that.
@@ -156,8 +144,8 @@ static bool take_bearings(struct run *r)
 static double step_limit(const struct run *r)
 {
     const double run = r->o->t1 - r->o->t0;
-    const double limit = r->p->nroot ? run / event_steps : run;
-    return r->p->longest_step ? fmin(limit, r->p->longest_step(r->p->user)) : limit;
+    const double limit = r->p->nroot ? ct_watch_longest_step(run) : run;
+    return r->p->longest_step ? ct_smaller(limit, r->p->longest_step(r->p->user)) : limit;
 }
 
 static double first_step(struct run *r, double limit)
@@ -215,15 +203,14 @@ static double fit_fixed(double rest, double step)
 
 // The step across a singular position, centred on it. Beyond the end of the run f is the same function, beyond a
 // time event it is not.
-static struct stride plan_crossing(const struct run *r, double stop, bool is_time)
+static void plan_crossing(const struct run *r, double stop, bool is_time, struct stride *s)
 {
     const double rest = stop - r->t, whole = 2 * r->singular_in;
-    const double h = is_time ? fmin(whole, rest) : whole;
-    return (struct stride){.method = &ct_crossing,
-                           .work = r->crossing_work,
-                           .h = h,
-                           .t1 = h < rest ? r->t + h : stop,
-                           .is_landing = h >= rest};
+    s->method = &ct_crossing;
+    s->work = r->crossing_work;
+    s->h = is_time ? fmin(whole, rest) : whole;
+    s->is_landing = s->h >= rest;
+    s->t1 = s->is_landing ? stop : r->t + s->h;
 }
 
 // Is a singular position ahead that is to be crossed?
@@ -249,33 +236,35 @@ static bool plan_striding(const struct run *r, double rest, double *wanted, doub
     return true;
 }
 
-static struct stride plan(const struct run *r, double stop, bool is_time)
+// s (out): member by member, because steps are short against the time that a copy of it waits for its parts.
+static void plan(const struct run *r, double stop, bool is_time, struct stride *s)
 {
     const double rest = stop - r->t;
-    double wanted = fmin(r->control.h, step_limit(r)), length;
-    const double reach = is_time ? fmin(r->reach, rest - r->singular_in) : r->reach;
+    double wanted = ct_smaller(r->control.h, step_limit(r)), length;
+    const double reach = is_time ? ct_smaller(r->reach, rest - r->singular_in) : r->reach;
     const bool is_strideable = plan_striding(r, rest, &wanted, &length);
-    if (length > 0)
-        return (struct stride){.method = r->method,
-                               .work = r->work,
-                               .h = length,
-                               .t1 = r->t + length,
-                               .is_striding = true};
+    s->method = r->method;
+    s->work = r->work;
+    s->is_striding = length > 0;
+    s->is_landing = s->is_event = s->is_interpolated = false;
+    s->error = 0;
+    if (s->is_striding) {
+        s->h = length;
+        s->t1 = r->t + length;
+        return;
+    }
     // the run may end before the position, but beside it
     if (!is_strideable && has_crossing(r) && reach > 0
         && r->singular_in - beside * reach < rest) {
-        if (r->singular_in <= (r->failed_crossings ? on_time : early) * reach)
-            return plan_crossing(r, stop, is_time);
+        if (r->singular_in <= (r->failed_crossings ? on_time : early) * reach) {
+            plan_crossing(r, stop, is_time, s);
+            return;
+        }
         wanted = ct_control_fit(r->singular_in - reach, wanted);
     }
-    const double h
-        = r->o->step > 0 ? fit_fixed(rest, r->o->step) : ct_control_fit(rest, wanted);
-    const bool is_landing = h >= rest;
-    return (struct stride){.method = r->method,
-                           .work = r->work,
-                           .h = h,
-                           .t1 = is_landing ? stop : r->t + h,
-                           .is_landing = is_landing};
+    s->h = r->o->step > 0 ? fit_fixed(rest, r->o->step) : ct_control_fit(rest, wanted);
+    s->is_landing = s->h >= rest;
+    s->t1 = s->is_landing ? stop : r->t + s->h;
 }
 
 static bool is_too_small(const struct run *r, const struct stride *s)
@@ -358,9 +347,8 @@ static bool has_moved(struct run *r)
 static enum ct_eval project_end(struct run *r, double t1)
 {
     const struct ct_problem *p = r->p;
-    const size_t bytes = (size_t)p->ny * sizeof *r->y;
-    memcpy(r->end, r->y1, bytes);
-    memcpy(r->dend, r->dy1, bytes);
+    ct_stepper_copy(r->end, r->y1, p->ny);
+    ct_stepper_copy(r->dend, r->dy1, p->ny);
     if (!p->project || r->method->is_implicit)
         return CT_EVAL_OK;
     const enum ct_eval e = p->project(p->user, t1, r->end);
@@ -383,29 +371,32 @@ static enum ct_eval cut(struct run *r, const struct stride *s)
 {
     const struct ct_problem *p = r->p;
     s->method->dense(p, s->h, (s->t1 - r->t) / s->h, r->y, r->y1, s->work, r->end);
-    memcpy(r->dend, r->dy1, (size_t)p->ny * sizeof *r->dy1);
+    ct_stepper_copy(r->dend, r->dy1, p->ny);
     if (is_in_gap(r, s, s->t1))
         return CT_EVAL_OK;
     const enum ct_eval e = p->project ? p->project(p->user, s->t1, r->end) : CT_EVAL_OK;
     return e == CT_EVAL_OK ? ct_stepper_rhs(p, s->t1, r->end, r->dend, r->stats) : e;
 }
 
-static struct ct_tolerance crossing_tolerance(const struct run *r)
+// tol (out): that of the run, of crossings with room for rounding. NULL: steps are fixed.
+static const struct ct_tolerance *tolerance_of(const struct run *r, const struct stride *s,
+                                               struct ct_tolerance *tol)
 {
     double largest = 0;
+    if (s->method != &ct_crossing)
+        return r->o->step > 0 ? NULL : &r->tolerance;
     for (int i = 0; i < r->p->ny; i++)
         largest = fmax(largest, fabs(r->y[i]));
-    return (struct ct_tolerance){r->tolerance.rtol,
+    *tol = (struct ct_tolerance){r->tolerance.rtol,
                                  fmax(r->tolerance.atol, crossing_rounding * largest)};
+    return tol;
 }
 
 // From y to end by the method and the projection. Refused with s->error > 1 when that is the reason.
 static enum ct_eval attempt(struct run *r, struct stride *s)
 {
-    const struct ct_tolerance for_crossing = crossing_tolerance(r);
-    const struct ct_tolerance *tolerance = s->method == &ct_crossing ? &for_crossing
-                                         : r->o->step > 0            ? NULL
-                                                                     : &r->tolerance;
+    struct ct_tolerance own;
+    const struct ct_tolerance *tolerance = tolerance_of(r, s, &own);
     double error = 0;
     s->error = 0;
     s->is_interpolated = false;
@@ -452,7 +443,7 @@ static enum ct_eval step_to_event(struct run *r, struct stride *s, double h)
     const struct stride whole = *s;
     const double unresolved = ct_watch_resolution(r->t, whole.h);
     double dt = INFINITY;
-    for (int i = 0; i <= most_corrections && fabs(dt) > unresolved && h > 0; i++) {
+    for (int i = 0; i <= CT_WATCH_CORRECTIONS && fabs(dt) > unresolved && h > 0; i++) {
         const bool is_whole = whole.h - h <= unresolved;
         *s = whole;
         if (!is_whole) {
@@ -473,10 +464,10 @@ static enum ct_eval step_to_event(struct run *r, struct stride *s, double h)
 // If a root fires within the step, the step is made to end there.
 static enum ct_eval end_on_event(struct run *r, struct stride *s)
 {
-    const struct ct_stepper_span span = {s->method, r->p, r->t, s->h, r->y, r->y1, s->work};
     double theta;
     if (r->p->nroot == 0)
         return CT_EVAL_OK;
+    const struct ct_stepper_span span = {s->method, r->p, r->t, s->h, r->y, r->y1, s->work};
     enum ct_eval e = s->method->has_rough_dense ? CT_EVAL_OK : interpolate(r, s);
     if (e == CT_EVAL_OK)
         e = ct_watch_search(&r->watch, &span, r->end, &theta);
@@ -497,13 +488,7 @@ static enum ct_eval end_on_event(struct run *r, struct stride *s)
 static enum ct_eval tell_accepted(struct run *r, const struct stride *s)
 {
     const struct ct_problem *p = r->p;
-    if (!p->accepted)
-        return CT_EVAL_OK;
-    memcpy(r->point, r->end, (size_t)p->ny * sizeof *r->end);
-    const enum ct_eval e = p->accepted(p->user, s->t1, r->end, r->dend);
-    if (e != CT_EVAL_OK || !differs(r->end, r->point, p->ny))
-        return e;
-    return ct_stepper_rhs(p, s->t1, r->end, r->dend, r->stats);
+    return p->accepted ? p->accepted(p->user, s->t1, r->end, r->dend) : CT_EVAL_OK;
 }
 
 // What follows an attempt whose error is small enough; h is the step as it was attempted.
@@ -540,7 +525,7 @@ static bool step_too_small(struct run *r, double h)
 static bool find_step(struct run *r, double stop, bool is_time, struct stride *s)
 {
     for (;;) {
-        *s = plan(r, stop, is_time);
+        plan(r, stop, is_time, s);
         const bool is_crossing = s->method == &ct_crossing || s->is_striding;
         const double h = s->h;
         if (is_too_small(r, s))
@@ -614,10 +599,10 @@ static bool give_projected_sample(struct run *r, double *y)
 // Samples before `end`, from the interpolant of the step; in the gap of a crossing also the one on its end.
 static bool give_samples_before(struct run *r, const struct stride *s, double end)
 {
-    const struct ct_stepper_span span = {s->method, r->p, r->t, s->h, r->y, r->y1, s->work};
-    for (; r->sample < r->o->nsample;) {
+    while (r->sample < r->o->nsample && r->o->sample[r->sample] <= s->t1) {
+        const struct ct_stepper_span span = {s->method, r->p, r->t, s->h, r->y, r->y1, s->work};
         const double t = r->o->sample[r->sample];
-        const bool is_singular = t <= s->t1 && !s->is_event && is_in_gap(r, s, t);
+        const bool is_singular = !s->is_event && is_in_gap(r, s, t);
         if (t >= end && !is_singular)
             break;
         ct_stepper_point(&span, (t - r->t) / s->h, r->point);
@@ -660,21 +645,14 @@ static void commit(struct run *r, const struct stride *s)
         r->method->accept(r->work);
 }
 
-static bool is_piling_up(struct run *r)
-{
-    const double scale = fmax(fabs(r->t), r->o->t1 - r->o->t0);
-    r->piled = r->t - r->last_event <= pile_time * scale ? r->piled + 1 : 0;
-    r->last_event = r->t;
-    return r->piled >= pile_events;
-}
-
 static bool handle_event(struct run *r, bool is_state, bool is_time)
 {
     const struct ct_problem *p = r->p;
     r->stats->events++;
-    if (is_state && is_piling_up(r))
+    r->stop = -INFINITY;
+    if (is_state && ct_watch_piles_up(&r->watch, r->t, r->o->t1 - r->o->t0))
         return ct_error(r->ctx, nowhere, CT_E_EVENT_PILE,
-                        "%d events in a row at t = %.9g without time going on", pile_events,
+                        "%d events in a row at t = %.9g without time going on", CT_WATCH_PILE,
                         r->t);
     const enum ct_eval e
         = p->event ? p->event(p->user, r->t, r->y, r->watch.crossed, is_time) : CT_EVAL_OK;
@@ -683,12 +661,12 @@ static bool handle_event(struct run *r, bool is_state, bool is_time)
 
 static bool advance(struct run *r)
 {
-    bool is_time;
     struct stride s;
-    const double stop = next_stop(r, &is_time);
-    if (!find_step(r, stop, is_time, &s))
+    if (r->t >= r->stop || r->o->step > 0)
+        r->stop = next_stop(r, &r->is_stop_time);
+    if (!find_step(r, r->stop, r->is_stop_time, &s))
         return false;
-    is_time = is_time && s.is_landing;
+    const bool is_time = r->is_stop_time && s.is_landing;
     const bool is_event = s.is_event || is_time;
     if (!give_samples_before(r, &s, s.t1 - event_margin(is_event, s.t1, s.h)))
         return false;
@@ -758,7 +736,7 @@ bool ct_integrate(struct ct_ctx *ctx, const struct ct_method *method,
         .pace = {.t = options->t0},
         .singular_in = INFINITY,
         .reach = INFINITY,
-        .last_event = -INFINITY,
+        .stop = -INFINITY,
     };
     allocate(&r);
     memcpy(r.y, y, (size_t)p->ny * sizeof *y);

@@ -7,8 +7,6 @@
 #include <math.h>
 #include <string.h>
 
-// Derivatives are kept while a correction is less than this part of the one before.
-static const double slow = 0.1;
 // Factors serve as long as the step is the same but for this: it costs no iteration.
 static const double same_step = 1e-3;
 // With a tolerance the iteration errs by a small part of it, smaller the tighter it is.
@@ -45,7 +43,7 @@ struct ct_iteration *ct_iteration_create(struct ct_arena *a, const struct ct_pro
         *large[i] = CT_NEWN(a, double, n *n + 1);
     it->b = CT_NEWN(a, double, n + 1);
     it->pivot = CT_NEWN(a, int, n + 1);
-    it->weight = CT_NEWN(a, double, 2 * nu + 1);
+    it->share = CT_NEWN(a, double, 2 * nu + 1);
     it->off = CT_NEWN(a, double, p->ny);
     if (is_complex) {
         it->w = CT_NEWN(a, double, nu + 1);
@@ -57,9 +55,20 @@ struct ct_iteration *ct_iteration_create(struct ct_arena *a, const struct ct_pro
 }
 
 // The size of a state, or of its group.
-static double size_of(const struct ct_groups *g, int i, const double *y)
+static inline double size_of(const struct ct_groups *g, int i, const double *y)
 {
     return g && g->of[i] >= 0 ? g->size[g->of[i]] : fabs(y[i]);
+}
+
+static void weigh(struct ct_iteration *it, double rtol, double atol, const double *y)
+{
+    const struct ct_dae *dae = it->dae;
+    ct_stepper_group(it->groups, dae->nq + dae->nu, y, y);
+    for (int k = 0; k < it->nu; k++) {
+        const int i = dae->q_of[k];
+        it->share[k] = 1 / (rtol * (i < 0 ? 1 : size_of(it->groups, i, y)) + atol);
+        it->share[it->nu + k] = 1 / (rtol * size_of(it->groups, dae->nq + k, y) + atol);
+    }
 }
 
 bool ct_iteration_begin(struct ct_iteration *it, const struct ct_tolerance *tolerance,
@@ -67,14 +76,20 @@ bool ct_iteration_begin(struct ct_iteration *it, const struct ct_tolerance *tole
 {
     const struct ct_dae *dae = it->dae;
     const struct ct_tolerance *tol = tolerance ? tolerance : &finest;
-    ct_stepper_group(it->groups, dae->nq + dae->nu, y, y);
-    for (int k = 0; k < it->nu; k++) {
-        const int i = dae->q_of[k];
-        it->weight[k] = tol->rtol * (i < 0 ? 1 : size_of(it->groups, i, y)) + tol->atol;
-        it->weight[it->nu + k] = tol->rtol * size_of(it->groups, dae->nq + k, y) + tol->atol;
+    const double rtol = tol->rtol, atol = tol->atol, *u = y + dae->nq;
+    if (dae->is_plain && !it->groups)
+        for (int k = 0; k < it->nu; k++) {
+            it->share[k] = 1 / (rtol * fabs(y[k]) + atol);
+            it->share[it->nu + k] = 1 / (rtol * fabs(u[k]) + atol);
+        }
+    else
+        weigh(it, rtol, atol, y);
+    if (it->kappa_for != tol->rtol + tol->atol) {
+        it->kappa_for = tol->rtol + tol->atol;
+        it->kappa = tolerance ? ct_smaller(kappa_most, sqrt(it->kappa_for)) : kappa_finest;
+        it->kappa *= it->is_stabilised ? 1 : kappa_index3;
     }
-    it->kappa = tolerance ? fmin(kappa_most, sqrt(tol->rtol + tol->atol)) : kappa_finest;
-    it->kappa *= it->is_stabilised ? 1 : kappa_index3;
+    it->is_finest = !tolerance;
     it->rounding = tolerance ? kappa_most : rounding_finest;
     it->most = tolerance ? MOST : MOST_FINEST;
     it->is_new = false;
@@ -112,15 +127,16 @@ static void fill_place(const struct ct_iteration *it, double *B, const double *A
         memcpy(B + it->n * k + first, A + rows * k, (size_t)rows * sizeof *A);
 }
 
-void ct_iteration_turn(const struct ct_iteration *it, double *x, const double *d)
+void ct_iteration_turn(const struct ct_iteration *it, double *x, double c, const double *d)
 {
+    c /= 2;
     for (int k = 0; k < it->nu; k++) {
         if (it->dae->q_of[k] >= 0)
             continue;
         const double *w = it->w + k, *th = d + k;
-        x[k] += (th[1] * w[2] - th[2] * w[1]) / 2;
-        x[k + 1] += (th[2] * w[0] - th[0] * w[2]) / 2;
-        x[k + 2] += (th[0] * w[1] - th[1] * w[0]) / 2;
+        x[k] += c * (th[1] * w[2] - th[2] * w[1]);
+        x[k + 1] += c * (th[2] * w[0] - th[0] * w[2]);
+        x[k + 2] += c * (th[0] * w[1] - th[1] * w[0]);
         k += 2;
     }
 }
@@ -176,7 +192,7 @@ enum ct_eval ct_iteration_refresh(struct ct_iteration *it, double t, const doubl
                                   const double *u, const double *a, const double *lam,
                                   struct ct_integrate_stats *stats)
 {
-    if (it->has_tangent && !(it->rate > slow))
+    if (!ct_iteration_is_old(it))
         return CT_EVAL_OK;
     const enum ct_eval e
         = it->dae->tangent(it->dae->user, t, q, u, a, lam, it->M, it->C, it->K, it->J, it->D);
@@ -200,7 +216,7 @@ static bool is_near(double a, double b)
 bool ct_iteration_factor(struct ct_iteration *it, double c, double e, double _Complex s,
                          struct ct_integrate_stats *stats)
 {
-    if (is_near(it->c, c) && is_near(it->e, e))
+    if ((it->c == c && it->e == e) || (is_near(it->c, c) && is_near(it->e, e)))
         return true;
     const int n = it->n, split = it->nu;
     const double x = c / e, y = 1 / e, z = 1 / c;
@@ -213,6 +229,7 @@ bool ct_iteration_factor(struct ct_iteration *it, double c, double e, double _Co
         return false;
     if (s != 0) {
         const double _Complex w = 1 / s, ww = w * w;
+        it->z = w;
         for (int j = 0; j < n; j++)
             for (int i = j * n, k = 0; k < n; i++, k++)
                 it->Gc[i] = it->S[i] + w * it->X[i] + (k < split ? ww : w) * it->W[i];
@@ -222,6 +239,11 @@ bool ct_iteration_factor(struct ct_iteration *it, double c, double e, double _Co
     }
     it->c = c;
     it->e = e;
+    if (n == 1) {
+        it->one = -1 / (e * it->G[0]);
+        if (s != 0)
+            it->onec = -1 / (s * s * it->Gc[0]);
+    }
     return true;
 }
 
@@ -229,64 +251,77 @@ void ct_iteration_solve(struct ct_iteration *it, double *d, double *eta, double 
                         const double *r, const double *phi, const double *v)
 {
     const int nu = it->nu, m = it->m, n = it->n;
-    double *b = it->b;
+    double *b = m ? it->b : d;
+    if (n == 1) {
+        d[0] = it->one * r[0];
+        return;
+    }
+    const double y = -1 / it->e;
     for (int i = 0; i < nu; i++)
-        b[i] = -r[i] / it->e;
+        b[i] = y * r[i];
+    if (m == 0) {
+        ct_lu_solve(d, it->G, it->pivot, n, n, 1, n, false);
+        return;
+    }
     for (int i = 0; i < m; i++)
         b[nu + i] = -phi[i];
     for (int i = 0; i < m && it->is_stabilised; i++)
         b[nu + m + i] = -v[i] / it->c;
     ct_lu_solve(b, it->G, it->pivot, n, n, 1, n, false);
-    memcpy(d, b, (size_t)nu * sizeof *b);
+    ct_stepper_copy(d, b, nu);
     for (int i = 0; i < m; i++) {
         eta[i] = it->is_stabilised ? b[nu + i] : 0;
         lam[i] = it->e * b[n - m + i];
     }
 }
 
-void ct_iteration_solve_complex(struct ct_iteration *it, double _Complex s, double _Complex *d,
-                                double _Complex *eta, double _Complex *lam,
-                                const double _Complex *r, const double _Complex *phi,
-                                const double _Complex *v)
+// x y without the care for infinite parts that makes it a call.
+static inline double _Complex product(double _Complex x, double _Complex y)
+{
+    return CMPLX(creal(x) * creal(y) - cimag(x) * cimag(y),
+                 creal(x) * cimag(y) + cimag(x) * creal(y));
+}
+
+void ct_iteration_solve_complex(struct ct_iteration *it, double *d, double *eta, double *lam,
+                                const double *r, const double *phi, const double *v)
 {
     const int nu = it->nu, m = it->m, n = it->n;
+    const double _Complex z = it->z, zz = product(z, z);
     double _Complex *b = it->bc;
+    if (n == 1) {
+        const double _Complex x = product(it->onec, CMPLX(r[0], r[1]));
+        d[0] = creal(x);
+        d[1] = cimag(x);
+        return;
+    }
     for (int i = 0; i < nu; i++)
-        b[i] = -r[i] / (s * s);
+        b[i] = product(-zz, CMPLX(r[i], r[i + nu]));
     for (int i = 0; i < m; i++) {
-        b[nu + i] = -phi[i];
-        b[nu + m + i] = -v[i] / s;
+        b[nu + i] = -CMPLX(phi[i], phi[i + m]);
+        b[nu + m + i] = product(-z, CMPLX(v[i], v[i + m]));
     }
     ct_lu_complex_solve(b, it->Gc, it->pivotc, n, n, 1, n);
-    memcpy(d, b, (size_t)nu * sizeof *b);
+    for (int i = 0; i < nu; i++) {
+        d[i] = creal(b[i]);
+        d[i + nu] = cimag(b[i]);
+    }
     for (int i = 0; i < m; i++) {
-        eta[i] = b[nu + i];
-        lam[i] = s * s * b[nu + m + i];
+        const double _Complex x = b[nu + m + i] / zz;
+        eta[i] = creal(b[nu + i]);
+        eta[i + m] = cimag(b[nu + i]);
+        lam[i] = creal(x);
+        lam[i + m] = cimag(x);
     }
 }
 
 void ct_iteration_push(const struct ct_iteration *it, double *x, double c, const double *eta)
 {
-    for (int k = 0; k < it->nu; k++)
+    for (int k = 0; k < it->nu && it->m; k++)
         for (int j = 0; j < it->m; j++)
             x[k] += c * it->J[j + it->m * k] * eta[j];
 }
 
 // ---- convergence ------------------------------------------------------------------------------------
-
-double ct_iteration_norm(const struct ct_iteration *it, const double *d, const double *u, int k)
-{
-    const double *wd = it->weight, *wu = it->weight + it->nu;
-    double sum = 0;
-    for (int s = 0, i = 0; s < k; s++)
-        for (int j = 0; j < it->nu; j++, i++) {
-            sum += (d[i] / wd[j]) * (d[i] / wd[j]);
-            if (u)
-                sum += (u[i] / wu[j]) * (u[i] / wu[j]);
-        }
-    const int n = (u ? 2 : 1) * k * it->nu;
-    return n ? sqrt(sum / n) : 0;
-}
 
 double ct_iteration_error(struct ct_iteration *it, const struct ct_problem *p,
                           const struct ct_tolerance *tolerance, double t1, const double *y1,
@@ -294,18 +329,24 @@ double ct_iteration_error(struct ct_iteration *it, const struct ct_problem *p,
 {
     const int nq = it->dae->nq;
     double *e = it->off;
-    it->dae->retract(it->dae->user, y1, d, e);
-    for (int i = 0; i < nq; i++)
-        e[i] -= y1[i];
-    memcpy(e + nq, u, (size_t)it->nu * sizeof *u);
+    if (it->dae->is_plain) {
+        ct_stepper_copy(e, d, nq);
+    } else {
+        it->dae->retract(it->dae->user, y1, d, e);
+        for (int i = 0; i < nq; i++)
+            e[i] -= y1[i];
+    }
+    ct_stepper_copy(e + nq, u, it->nu);
     return ct_stepper_worse(p, tolerance, t1, y1, e, states);
 }
 
 void ct_iteration_start(struct ct_iteration *it)
 {
+    const double tail = ct_larger(it->tail, DBL_EPSILON);
     it->count = 0;
     it->rate = 0;
-    it->tail = pow(fmax(it->tail, DBL_EPSILON), 0.8); // the last step's, trusted less and less
+    // the last step's, trusted less and less; not where there is no tolerance that says how far off it may be
+    it->tail = it->is_finest ? 1 : sqrt(tail * sqrt(tail));
 }
 
 enum ct_verdict ct_iteration_judge(struct ct_iteration *it, double size)

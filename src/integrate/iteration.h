@@ -20,6 +20,8 @@
 
 #include "integrate/stepper.h"
 
+#include <math.h>
+
 enum ct_verdict { CT_GO_ON, CT_CONVERGED, CT_DIVERGED };
 
 struct ct_iteration {
@@ -30,19 +32,23 @@ struct ct_iteration {
     long version;             // of the rows
     bool has_tangent, is_new; // `is_new`: evaluated in this step
     double *M, *C, *K, *J, *D;
-    double *S, *X, *W; // the matrix is S + x X + (y or z) W  (n x n)
-    double c, e;       // of the factors; 0: none
-    double *G;         // (n x n), and of the complex system
-    double _Complex *Gc;
+    double *S, *X, *W;      // the matrix is S + x X + (y or z) W  (n x n)
+    double c, e;            // of the factors; 0: none
+    double *G;              // (n x n), and of the complex system
+    double _Complex *Gc, z; // z: one over its c
+    double one; // of a single equation: what its residual is multiplied by, in both systems
+    double _Complex onec;
     int *pivot, *pivotc;
     double *w; // speeds of the derivatives (nu), for N; NULL: the method knows no N
     double *b; // (n)
     double _Complex *bc;
-    double *weight; // what changes of places and speeds are measured against  (2 nu)
-    double *off;    // an error of the states  (ny)
+    double *share; // one over what changes of places and speeds are measured against  (2 nu)
+    double *off;   // an error of the states  (ny)
     // the run of corrections
     int count;
     double kappa, rounding; // a correction below: converged; below: not to be bettered
+    double kappa_for;       // the tolerance that it belongs to
+    bool is_finest;         // there is no tolerance
     double size, rate,
         tail; // of the last correction; over the one before; all that follow it, over it
     int most;
@@ -57,6 +63,12 @@ struct ct_iteration *ct_iteration_create(struct ct_arena *a, const struct ct_pro
 bool ct_iteration_begin(struct ct_iteration *it, const struct ct_tolerance *tolerance,
                         const double *y);
 
+/// Are the derivatives too old? They are kept while a correction is less than a tenth of the one before.
+static inline bool ct_iteration_is_old(const struct ct_iteration *it)
+{
+    const double slow = 0.1;
+    return !it->has_tangent || it->rate > slow;
+}
 /// Derivatives at a point, where they are too old; after it come the factors.
 enum ct_eval ct_iteration_refresh(struct ct_iteration *it, double t, const double *q,
                                   const double *u, const double *a, const double *lam,
@@ -68,19 +80,45 @@ bool ct_iteration_factor(struct ct_iteration *it, double c, double e, double _Co
 /// d (nu, out), eta (m, out; zero in the index-3 form), lam (m, out) from r (nu), phi, v (m).
 void ct_iteration_solve(struct ct_iteration *it, double *d, double *eta, double *lam,
                         const double *r, const double *phi, const double *v);
-void ct_iteration_solve_complex(struct ct_iteration *it, double _Complex s, double _Complex *d,
-                                double _Complex *eta, double _Complex *lam,
-                                const double _Complex *r, const double _Complex *phi,
-                                const double _Complex *v);
+/// The same with the complex system: of each the imaginary parts stand behind the real ones.
+void ct_iteration_solve_complex(struct ct_iteration *it, double *d, double *eta, double *lam,
+                                const double *r, const double *phi, const double *v);
 
-/// x (nu) += N d, with `w`.
-void ct_iteration_turn(const struct ct_iteration *it, double *x, const double *d);
+/// q1 (nq, out) = q (+) d.
+static inline void ct_iteration_move(const struct ct_dae *dae, const double *q, const double *d,
+                                     double *q1)
+{
+    if (!dae->is_plain)
+        dae->retract(dae->user, q, d, q1);
+    for (int k = 0; k < dae->nu && dae->is_plain; k++)
+        q1[k] = q[k] + d[k];
+}
+
+/// x (nu) += c N d, with `w`.
+void ct_iteration_turn(const struct ct_iteration *it, double *x, double c, const double *d);
 /// x (nu) += c J' eta.
 void ct_iteration_push(const struct ct_iteration *it, double *x, double c, const double *eta);
 
-/// Root mean square of k places and speeds (nu x k each) over their weights; u == NULL: of places alone.
-double ct_iteration_norm(const struct ct_iteration *it, const double *d, const double *u,
-                         int k);
+static inline double ct_iteration_square(const double *x, const double *share, int n)
+{
+    double sum = 0;
+    for (int i = 0; i < n; i++)
+        sum += (x[i] * share[i]) * (x[i] * share[i]);
+    return sum;
+}
+
+/// Root mean square of k places and speeds (nu x k each) times their shares; u == NULL: of places alone. nu is that of the
+/// iteration, given so that a compiler may know it.
+static inline double ct_iteration_norm(const struct ct_iteration *it, const double *d,
+                                       const double *u, const int nu, int k)
+{
+    double sum = 0;
+    for (int s = 0; s < k; s++)
+        sum += ct_iteration_square(d + s * nu, it->share, nu);
+    for (int s = 0; s < k && u; s++)
+        sum += ct_iteration_square(u + s * nu, it->share + nu, nu);
+    return nu ? sqrt(sum / ((u ? 2 : 1) * k * nu)) : 0;
+}
 
 /// The error of a step that ends at y1, time t1: that of the states, `states`, or what the errors d, u (nu) of places and
 /// speeds mean for outputs, if that is more.  (8.6)

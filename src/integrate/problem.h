@@ -45,6 +45,11 @@ struct ct_dae {
     enum ct_eval (*tangent)(void *user, double t, const double *q, const double *u,
                             const double *a, const double *lam, double *M, double *C, double *K,
                             double *J, double *D);
+
+    // what makes steps cheaper, where it is known
+    bool
+        is_plain; // coordinate k moves with speed k: q (+) d = q + d, and rates in the chart are speeds
+    bool has_no_power; // rates of quadratures are zero
 };
 
 /// States that are components of one thing, as those of a vector: all are measured by the largest of them.
@@ -85,7 +90,7 @@ struct ct_problem {
 
     /// After a step was accepted and projected: update memories and choices that keep f the same
     /// function. May be NULL. Before it answers CT_EVAL_RETRY it must have changed nothing. dy belongs to y.
-    enum ct_eval (*accepted)(void *user, double t, double *y, const double *dy);
+    enum ct_eval (*accepted)(void *user, double t, const double *y, const double *dy);
 
     /// Longest step from the last accepted state, or from where the start or an event has put it. May be NULL.
     double (*longest_step)(void *user);

@@ -27,7 +27,13 @@ static const double near_zero = 0.05;
 #define SQRT6 2.4494897427831780982
 #define CBRT3 1.4422495703074083823
 
-static const double C[STAGES] = {(4 - SQRT6) / 10, (4 + SQRT6) / 10, 1};
+#define C1 ((4 - SQRT6) / 10)
+#define C2 ((4 + SQRT6) / 10)
+static const double C[STAGES] = {C1, C2, 1};
+// One over c_i times its differences to the other two: the scales of Lagrange's polynomials.
+static const double SCALE[STAGES]
+    = {1 / (C1 * (C1 - C2) * (C1 - 1)), 1 / (C2 * (C2 - C1) * (C2 - 1)),
+       1 / ((1 - C1) * (1 - C2))};
 
 static const double A[STAGES][STAGES]
     = {{(88 - 7 * SQRT6) / 360, (296 - 169 * SQRT6) / 1800, (-2 + 3 * SQRT6) / 225},
@@ -68,16 +74,20 @@ struct stages {
 struct state {
     const struct ct_dae *dae;
     struct ct_iteration *it;
-    bool is_fresh, was_tried;    // there is no step before
-    struct stages before, now;   // the last accepted step, this one
-    struct stages change;        // corrections, first in the basis of eigenvectors
+    bool is_fresh, was_tried;  // there is no step before
+    struct stages before, now; // the last accepted step, this one
+    struct stages change;      // corrections, first in the basis of eigenvectors
+    double h;                  // of the weights that follow
+    double slope[STAGES][STAGES], defect_of[STAGES]; // A^-1/h and E/h
+    double ratio; // of this step to the one before: of the weights that follow
+    double further[STAGES][STAGES]; // its polynomial at this one's stages, less its end
+    struct ct_tolerance wanted, eased;
     double *rate, *F, *r;        // u' (nu); residuals of d' and u'  (nu x 3)
     double *phi, *v;             // (rows x 3)
     double *q, *u, *u_dot, *lam; // of a stage; of the start  (lam)
     double *d;                   // a motion, or change of speed  (nu)
     double *gain, *defect;       // of quadratures: over h; error over h / GAMMA  (ny)
-    double *power, *power1;      // rates of all states at both ends  (ny)
-    double _Complex *Fc, *rc, *phic, *vc, *dc, *etac, *lamc;
+    double *power, *power1;      // their rates at both ends  (ny)
 };
 
 static void create_stages(struct ct_arena *a, struct stages *s, const struct ct_dae *dae)
@@ -102,8 +112,6 @@ static void *create(struct ct_arena *a, const struct ct_method *method,
     double **const stages_of_speeds[] = {&s->F, &s->r};
     double **const stages_of_rows[] = {&s->phi, &s->v};
     double **const speeds[] = {&s->rate, &s->u, &s->u_dot, &s->d};
-    double _Complex **const complex_speeds[] = {&s->Fc, &s->rc, &s->dc};
-    double _Complex **const complex_rows[] = {&s->phic, &s->vc, &s->etac, &s->lamc};
     for (size_t i = 0; i < COUNT(stages_of_speeds); i++)
         *stages_of_speeds[i] = CT_NEWN(a, double, STAGES *nu + 1);
     for (size_t i = 0; i < COUNT(stages_of_rows); i++)
@@ -111,10 +119,6 @@ static void *create(struct ct_arena *a, const struct ct_method *method,
     for (size_t i = 0; i < COUNT(speeds); i++)
         *speeds[i] = CT_NEWN(a, double, nu + 1);
     s->lam = CT_NEWN(a, double, m + 1);
-    for (size_t i = 0; i < COUNT(complex_speeds); i++)
-        *complex_speeds[i] = CT_NEWN(a, double _Complex, nu + 1);
-    for (size_t i = 0; i < COUNT(complex_rows); i++)
-        *complex_rows[i] = CT_NEWN(a, double _Complex, m + 1);
     s->q = CT_NEWN(a, double, p->dae->nq + 1);
     s->gain = CT_NEWN(a, double, p->ny);
     s->defect = CT_NEWN(a, double, p->ny);
@@ -145,19 +149,34 @@ static void accept(void *work)
 // w (out): weights of the stages at x of the step; at its start the value is zero.
 static void lagrange(double *w, double x)
 {
-    for (int i = 0; i < STAGES; i++) {
-        w[i] = x / C[i];
-        for (int j = 0; j < STAGES; j++)
-            if (j != i)
-                w[i] *= (x - C[j]) / (C[i] - C[j]);
-    }
+    const double a = x - C[0], b = x - C[1], c = x - C[2];
+    w[0] = x * b * c * SCALE[0];
+    w[1] = x * a * c * SCALE[1];
+    w[2] = x * a * b * SCALE[2];
 }
 
 // out (n) = weighted stages z (n x 3).
-static void weigh(double *out, const double *w, const double *z, int n)
+static inline void weigh(double *out, const double *w, const double *z, int n)
 {
     for (int k = 0; k < n; k++)
         out[k] = w[0] * z[k] + w[1] * z[k + n] + w[2] * z[k + 2 * n];
+}
+
+// Weights for a step of size h. Most steps are as long as the one before.
+static void find_weights(struct state *s, double h)
+{
+    const double ratio = s->is_fresh ? 0 : h / s->before.h;
+    for (int i = 0; i < STAGES && s->h != h; i++) {
+        for (int j = 0; j < STAGES; j++)
+            s->slope[i][j] = INVERSE[i][j] / h;
+        s->defect_of[i] = E[i] / h;
+    }
+    s->h = h;
+    for (int i = 0; i < STAGES && s->ratio != ratio; i++) {
+        lagrange(s->further[i], 1 + C[i] * ratio);
+        s->further[i][STAGES - 1] -= 1;
+    }
+    s->ratio = ratio;
 }
 
 // First values of the stages: the last step's polynomial continued, or a straight line.
@@ -166,33 +185,31 @@ static void predict(struct state *s, double h, const double *u0, const double *u
     const int nu = s->dae->nu, m = s->it->m;
     struct stages *now = &s->now;
     now->h = h;
-    memset(now->eta, 0, (size_t)(STAGES * m) * sizeof *now->eta);
     for (int i = 0; i < STAGES; i++) {
-        double *d = now->d + i * nu, *u = now->u + i * nu, *lam = now->lam + i * m;
+        double *d = now->d + i * nu, *u = now->u + i * nu;
         if (s->is_fresh) {
             for (int k = 0; k < nu; k++) {
                 d[k] = C[i] * h * u0[k];
                 u[k] = C[i] * h * u_dot0[k];
             }
         } else {
-            double w[STAGES];
-            const double x = 1 + C[i] * h / s->before.h;
-            lagrange(w, x);
-            w[STAGES - 1] -= 1; // less the step's end
-            weigh(d, w, s->before.d, nu);
-            weigh(u, w, s->before.u, nu);
+            weigh(d, s->further[i], s->before.d, nu);
+            weigh(u, s->further[i], s->before.u, nu);
         }
-        memcpy(lam, s->lam, (size_t)m * sizeof *lam);
+        for (int k = 0; k < m; k++) {
+            now->eta[k + i * m] = 0;
+            now->lam[k + i * m] = s->lam[k];
+        }
     }
 }
 
 // ---- the iteration ----------------------------------------------------------------------------------
 
 // Place and speed of stage i.
-static void place_stage(struct state *s, const double *y, int i)
+static inline void place_stage(struct state *s, const double *y, int i)
 {
     const int nq = s->dae->nq, nu = s->dae->nu;
-    s->dae->retract(s->dae->user, y, s->now.d + i * nu, s->q);
+    ct_iteration_move(s->dae, y, s->now.d + i * nu, s->q);
     for (int k = 0; k < nu; k++)
         s->u[k] = y[nq + k] + s->now.u[k + i * nu];
 }
@@ -204,19 +221,20 @@ static enum ct_eval find_residuals(struct state *s, double t, const double *y,
     const int nu = dae->nu, m = s->it->m;
     const struct stages *z = &s->now;
     for (int i = 0; i < STAGES; i++) {
-        double w[STAGES], *F = s->F + i * nu;
-        for (int j = 0; j < STAGES; j++)
-            w[j] = INVERSE[i][j] / z->h;
+        double *F = s->F + i * nu;
+        const double *rate = dae->is_plain ? s->u : s->rate;
         place_stage(s, y, i);
-        dae->chart_rate(dae->user, z->d + i * nu, s->u, s->rate);
-        weigh(F, w, z->d, nu);
+        if (!dae->is_plain)
+            dae->chart_rate(dae->user, z->d + i * nu, s->u, s->rate);
+        weigh(F, s->slope[i], z->d, nu);
         for (int k = 0; k < nu; k++)
-            F[k] -= s->rate[k];
-        ct_iteration_push(s->it, F, -1, z->eta + i * m);
-        weigh(s->rate, w, z->u, nu);
+            F[k] -= rate[k];
+        if (m)
+            ct_iteration_push(s->it, F, -1, z->eta + i * m);
+        weigh(s->u_dot, s->slope[i], z->u, nu);
         stats->evaluations++;
         const enum ct_eval e
-            = dae->residual(dae->user, t + C[i] * z->h, s->q, s->u, s->rate, z->lam + i * m,
+            = dae->residual(dae->user, t + C[i] * z->h, s->q, s->u, s->u_dot, z->lam + i * m,
                             s->r + i * nu, s->phi + i * m, s->v + i * m);
         if (e != CT_EVAL_OK)
             return e;
@@ -225,7 +243,7 @@ static enum ct_eval find_residuals(struct state *s, double t, const double *y,
 }
 
 // Stages z (n x 3) into the basis of eigenvectors by T^-1, and back by T.
-static void turn_basis(double *z, const double (*turn)[STAGES], int n)
+static inline void turn_basis(double *z, const double (*turn)[STAGES], int n)
 {
     for (int k = 0; k < n; k++) {
         const double x[STAGES] = {z[k], z[k + n], z[k + 2 * n]};
@@ -234,11 +252,11 @@ static void turn_basis(double *z, const double (*turn)[STAGES], int n)
     }
 }
 
-// With u eliminated, r += (c M + C) F and v += J F; then u changes by (c - N) d - J' c eta + F.
-static void solve_real(struct state *s)
+// The first column in the basis of eigenvectors. With u eliminated, r += (c M + C) F and v += J F; then u changes by
+// (c - N) d - J' c eta + F.
+static inline void solve_real(struct state *s, const int nu, const int m)
 {
     struct ct_iteration *it = s->it;
-    const int nu = it->nu, m = it->m;
     const double c = it->c, *F = s->F;
     double *d = s->change.d, *u = s->change.u, *eta = s->change.eta;
     for (int j = 0; j < nu; j++) {
@@ -248,70 +266,76 @@ static void solve_real(struct state *s)
             s->v[i] += it->J[i + m * j] * F[j];
     }
     ct_iteration_solve(it, d, eta, s->change.lam, s->r, s->phi, s->v);
+    for (int k = 0; k < nu; k++)
+        u[k] = c * d[k] + F[k];
+    if (!s->dae->is_plain)
+        ct_iteration_turn(it, u, -1, d);
     for (int i = 0; i < m; i++)
         eta[i] *= c;
-    memset(u, 0, (size_t)nu * sizeof *u);
-    ct_iteration_turn(it, u, d);
-    for (int k = 0; k < nu; k++)
-        u[k] = c * d[k] - u[k] + F[k];
-    ct_iteration_push(it, u, -1, eta);
+    if (m)
+        ct_iteration_push(it, u, -1, eta);
 }
 
-// The second and third stage as real and imaginary part, there and back.
-static void join(double _Complex *out, const double *z, int n)
-{
-    for (int k = 0; k < n; k++)
-        out[k] = z[k + n] + z[k + 2 * n] * I;
-}
-
-static void part(double *z, const double _Complex *w, int n)
-{
-    for (int k = 0; k < n; k++) {
-        z[k + n] = creal(w[k]);
-        z[k + 2 * n] = cimag(w[k]);
-    }
-}
-
-// The same as solve_real for the other two columns.
-static void solve_complex(struct state *s)
+// The same for the other two: real and imaginary part of one, c = a + i b.
+static inline void solve_complex(struct state *s, const int nu, const int m)
 {
     struct ct_iteration *it = s->it;
-    const int nu = it->nu, m = it->m;
-    const double _Complex c = (ALPHA + BETA * I) / s->now.h;
-    double _Complex *F = s->Fc;
-    join(F, s->F, nu);
-    join(s->rc, s->r, nu);
-    join(s->phic, s->phi, m);
-    join(s->vc, s->v, m);
+    const double a = ALPHA / s->h, b = BETA / s->h, *F = s->F + nu, *G = F + nu;
+    double *r = s->r + nu, *v = s->v + m, *d = s->change.d + nu, *u = s->change.u + nu,
+           *eta = s->change.eta + m;
     for (int j = 0; j < nu; j++) {
-        for (int k = 0; k < nu; k++)
-            s->rc[k] += (c * it->M[k + nu * j] + it->C[k + nu * j]) * F[j];
-        for (int i = 0; i < m; i++)
-            s->vc[i] += it->J[i + m * j] * F[j];
+        for (int k = 0; k < nu; k++) {
+            const double M = it->M[k + nu * j], aMC = a * M + it->C[k + nu * j];
+            r[k] += aMC * F[j] - b * M * G[j];
+            r[k + nu] += aMC * G[j] + b * M * F[j];
+        }
+        for (int i = 0; i < m; i++) {
+            v[i] += it->J[i + m * j] * F[j];
+            v[i + m] += it->J[i + m * j] * G[j];
+        }
     }
-    ct_iteration_solve_complex(it, c, s->dc, s->etac, s->lamc, s->rc, s->phic, s->vc);
-    for (int i = 0; i < m; i++)
-        s->etac[i] *= c;
-    for (int k = 0; k < nu; k++)
-        F[k] += c * s->dc[k];
-    for (int k = 0; k < nu; k++)
-        for (int i = 0; i < m; i++)
-            F[k] -= it->J[i + m * k] * s->etac[i];
-    part(s->change.d, s->dc, nu);
-    memset(s->change.u + nu, 0, (size_t)(2 * nu) * sizeof *s->change.u);
-    for (int i = 1; i < STAGES; i++)
-        ct_iteration_turn(it, s->change.u + i * nu, s->change.d + i * nu);
-    for (int k = 0; k < nu; k++)
-        F[k] -= s->change.u[k + nu] + s->change.u[k + 2 * nu] * I;
-    part(s->change.u, F, nu);
-    part(s->change.eta, s->etac, m);
-    part(s->change.lam, s->lamc, m);
+    ct_iteration_solve_complex(it, d, eta, s->change.lam + m, r, s->phi + m, v);
+    for (int k = 0; k < nu; k++) {
+        u[k] = a * d[k] - b * d[k + nu] + F[k];
+        u[k + nu] = a * d[k + nu] + b * d[k] + G[k];
+    }
+    for (int i = 0; i < m; i++) {
+        const double x = eta[i], y = eta[i + m];
+        eta[i] = a * x - b * y;
+        eta[i + m] = a * y + b * x;
+    }
+    for (int i = 0; i < STAGES - 1; i++) {
+        if (!s->dae->is_plain)
+            ct_iteration_turn(it, u + i * nu, -1, d + i * nu);
+        if (m)
+            ct_iteration_push(it, u + i * nu, -1, eta + i * m);
+    }
 }
 
-static void add(double *z, const double *change, int n)
+static inline void add(double *z, const double *change, int n)
 {
     for (int i = 0; i < n; i++)
         z[i] += change[i];
+}
+
+// From residuals to corrections, which are added to the stages; their size.
+static inline double change_stages(struct state *s, const int nu, const int m)
+{
+    turn_basis(s->F, T_INVERSE, nu);
+    turn_basis(s->r, T_INVERSE, nu);
+    turn_basis(s->phi, T_INVERSE, m);
+    turn_basis(s->v, T_INVERSE, m);
+    solve_real(s, nu, m);
+    solve_complex(s, nu, m);
+    turn_basis(s->change.d, T, nu);
+    turn_basis(s->change.u, T, nu);
+    turn_basis(s->change.lam, T, m);
+    turn_basis(s->change.eta, T, m);
+    add(s->now.d, s->change.d, STAGES * nu);
+    add(s->now.u, s->change.u, STAGES * nu);
+    add(s->now.lam, s->change.lam, STAGES * m);
+    add(s->now.eta, s->change.eta, STAGES * m);
+    return ct_iteration_norm(s->it, s->change.d, s->change.u, nu, STAGES);
 }
 
 static enum ct_eval correct(struct state *s, double t, const double *y,
@@ -321,22 +345,11 @@ static enum ct_eval correct(struct state *s, double t, const double *y,
     const enum ct_eval e = find_residuals(s, t, y, stats);
     if (e != CT_EVAL_OK)
         return e;
-    turn_basis(s->F, T_INVERSE, nu);
-    turn_basis(s->r, T_INVERSE, nu);
-    turn_basis(s->phi, T_INVERSE, m);
-    turn_basis(s->v, T_INVERSE, m);
-    solve_real(s);
-    solve_complex(s);
-    turn_basis(s->change.d, T, nu);
-    turn_basis(s->change.u, T, nu);
-    turn_basis(s->change.lam, T, m);
-    turn_basis(s->change.eta, T, m);
-    add(s->now.d, s->change.d, STAGES * nu);
-    add(s->now.u, s->change.u, STAGES * nu);
-    add(s->now.lam, s->change.lam, STAGES * m);
-    add(s->now.eta, s->change.eta, STAGES * m);
-    *verdict
-        = ct_iteration_judge(s->it, ct_iteration_norm(s->it, s->change.d, s->change.u, STAGES));
+    // one and two freedoms without loops have code of their own: matrices are numbers there
+    const double size = m || nu > 2 ? change_stages(s, nu, m)
+                      : nu == 1     ? change_stages(s, 1, 0)
+                                    : change_stages(s, 2, 0);
+    *verdict = ct_iteration_judge(s->it, size);
     return CT_EVAL_OK;
 }
 
@@ -346,14 +359,13 @@ static enum ct_eval refresh(struct state *s, double t, double h, const double *y
                             const double *dy, struct ct_integrate_stats *stats)
 {
     const int nq = s->dae->nq, middle = 1;
-    double w[STAGES];
+    if (!ct_iteration_is_old(s->it))
+        return CT_EVAL_OK;
     if (s->is_fresh)
         return ct_iteration_refresh(s->it, t, y, y + nq, dy + nq, s->lam, stats);
-    for (int j = 0; j < STAGES; j++)
-        w[j] = INVERSE[middle][j] / h;
     place_stage(s, y, middle);
-    weigh(s->rate, w, s->now.u, s->dae->nu);
-    return ct_iteration_refresh(s->it, t + C[middle] * h, s->q, s->u, s->rate, s->lam, stats);
+    weigh(s->u_dot, s->slope[middle], s->now.u, s->dae->nu);
+    return ct_iteration_refresh(s->it, t + C[middle] * h, s->q, s->u, s->u_dot, s->lam, stats);
 }
 
 static enum ct_eval iterate(struct state *s, double t, double h, const double *y,
@@ -361,6 +373,7 @@ static enum ct_eval iterate(struct state *s, double t, double h, const double *y
 {
     const int nq = s->dae->nq;
     const double c = GAMMA / h;
+    find_weights(s, h);
     do {
         enum ct_verdict verdict = CT_GO_ON;
         predict(s, h, y + nq, dy + nq);
@@ -380,27 +393,34 @@ static enum ct_eval iterate(struct state *s, double t, double h, const double *y
 // ---- a step -----------------------------------------------------------------------------------------
 
 // The filtered error of the embedded formula at the start y, whose rates are u and u_dot.
-static double filter(struct state *s, const double *u, const double *u_dot)
+static inline double filter_few(struct state *s, const double *u, const double *u_dot,
+                                const int nu, const int m)
 {
     struct ct_iteration *it = s->it;
-    const int nu = it->nu, m = it->m;
     const struct stages *z = &s->now;
-    const double w[STAGES] = {E[0] / z->h, E[1] / z->h, E[2] / z->h};
     double *F = s->F, *defect = s->rate;
-    weigh(F, w, z->d, nu);
-    weigh(defect, w, z->u, nu);
+    weigh(F, s->defect_of, z->d, nu);
+    weigh(defect, s->defect_of, z->u, nu);
     for (int k = 0; k < nu; k++) { // as residuals: the error is the correction they lead to
         F[k] = -(F[k] + u[k]);
         defect[k] = -(defect[k] + u_dot[k]);
+        s->r[k] = 0;
     }
-    memset(s->r, 0, (size_t)nu * sizeof *s->r);
     for (int j = 0; j < nu; j++)
         for (int k = 0; k < nu; k++)
             s->r[k] += it->M[k + nu * j] * defect[j];
-    memset(s->phi, 0, (size_t)m * sizeof *s->phi);
-    memset(s->v, 0, (size_t)m * sizeof *s->v);
-    solve_real(s);
-    return ct_iteration_norm(it, s->change.d, s->change.u, 1);
+    for (int i = 0; i < m; i++)
+        s->phi[i] = s->v[i] = 0;
+    solve_real(s, nu, m);
+    return ct_iteration_norm(it, s->change.d, s->change.u, nu, 1);
+}
+
+static double filter(struct state *s, const double *u, const double *u_dot)
+{
+    const int nu = s->it->nu, m = s->it->m;
+    return m || nu > 2 ? filter_few(s, u, u_dot, nu, m)
+         : nu == 1     ? filter_few(s, u, u_dot, 1, 0)
+                       : filter_few(s, u, u_dot, 2, 0);
 }
 
 // Error of the step. Where it is too large at first, on a first step or after a refusal, it is filtered once more, which
@@ -423,28 +443,38 @@ static enum ct_eval estimate(struct state *s, const struct ct_problem *p, double
     return e;
 }
 
-// y1 and dy1 from the last stage; quadratures and their errors from their rates at the stages.
+// Rates of quadratures at stage i, whose derivatives dy1 are.
+static void add_power(struct state *s, int ny, int i, const double *dy1)
+{
+    for (int k = s->dae->nq + s->dae->nu; k < ny; k++) {
+        s->gain[k] += A[STAGES - 1][i] * dy1[k];
+        s->defect[k] += (E[0] * A[0][i] + E[1] * A[1][i] + E[2] * A[2][i]) * dy1[k];
+    }
+}
+
+// y1 and dy1 from the last stage; quadratures and their errors from their rates at the stages, where there are any.
 static enum ct_eval finish(struct state *s, const struct ct_problem *p, double t, double h,
                            const double *y, const double *dy, double *y1, double *dy1,
                            struct ct_integrate_stats *stats)
 {
-    const int nq = s->dae->nq, nu = s->dae->nu, first = nq + nu;
+    const int nq = s->dae->nq, nu = s->dae->nu, first = nq + nu, last = STAGES - 1;
+    const bool has_power = first < p->ny && !s->dae->has_no_power;
     enum ct_eval e = CT_EVAL_OK;
-    memcpy(y1, y, (size_t)p->ny * sizeof *y);
-    memset(s->gain, 0, (size_t)p->ny * sizeof *s->gain);
-    memcpy(s->defect, dy, (size_t)p->ny * sizeof *s->defect);
-    for (int i = first < p->ny ? 0 : STAGES - 1; i < STAGES && e == CT_EVAL_OK; i++) {
+    for (int k = first; k < p->ny; k++) {
+        y1[k] = y[k];
+        s->gain[k] = 0;
+        s->defect[k] = dy[k];
+    }
+    for (int i = has_power ? 0 : last; i < STAGES && e == CT_EVAL_OK; i++) {
         place_stage(s, y, i);
-        memcpy(y1, s->q, (size_t)nq * sizeof *y);
-        memcpy(y1 + nq, s->u, (size_t)nu * sizeof *y);
-        if (i == STAGES - 1 && p->project) // takes off what the iteration left
+        ct_stepper_copy(y1, s->q, nq);
+        ct_stepper_copy(y1 + nq, s->u, nu);
+        if (i == last && p->project) // takes off what the iteration left
             e = p->project(p->user, t + h, y1);
         if (e == CT_EVAL_OK)
             e = ct_stepper_rhs(p, t + C[i] * h, y1, dy1, stats);
-        for (int k = first; k < p->ny && e == CT_EVAL_OK; k++) {
-            s->gain[k] += A[STAGES - 1][i] * dy1[k];
-            s->defect[k] += (E[0] * A[0][i] + E[1] * A[1][i] + E[2] * A[2][i]) * dy1[k];
-        }
+        if (e == CT_EVAL_OK)
+            add_power(s, p->ny, i, dy1);
     }
     for (int k = first; k < p->ny; k++) {
         y1[k] += h * s->gain[k];
@@ -462,15 +492,36 @@ static struct ct_tolerance ease(const struct ct_tolerance *tolerance)
     return (struct ct_tolerance){factor * tolerance->rtol, factor * tolerance->atol};
 }
 
+// The eased tolerance, found once as long as it is the same.
+static const struct ct_tolerance *eased(struct state *s, const struct ct_tolerance *tolerance)
+{
+    if (s->wanted.rtol != tolerance->rtol || s->wanted.atol != tolerance->atol)
+        s->eased = ease(tolerance);
+    s->wanted = *tolerance;
+    return &s->eased;
+}
+
+// Multipliers to begin with: those at the end of the step before, or of the start.
+static enum ct_eval find_multipliers(struct state *s, double t, const double *y, bool is_new)
+{
+    const int m = s->it->m;
+    if (m == 0)
+        return CT_EVAL_OK;
+    if (s->is_fresh || is_new)
+        return s->dae->start(s->dae->user, t, y, s->u_dot, s->lam);
+    ct_stepper_copy(s->lam, s->before.lam + (STAGES - 1) * m, m);
+    return CT_EVAL_OK;
+}
+
 static enum ct_eval step(const struct ct_problem *p, double t, double h, const double *y,
                          const double *dy, const struct ct_tolerance *tolerance, double *y1,
                          double *dy1, double *err, void *work, struct ct_integrate_stats *stats)
 {
     struct state *s = work;
-    const struct ct_tolerance eased = tolerance ? ease(tolerance) : (struct ct_tolerance){0};
-    const size_t bytes = (size_t)p->ny * sizeof *y;
-    ct_iteration_begin(s->it, tolerance ? &eased : NULL, y);
-    enum ct_eval e = s->dae->start(s->dae->user, t, y, s->u_dot, s->lam);
+    const struct ct_tolerance *tol = tolerance ? eased(s, tolerance) : NULL;
+    const int first = s->dae->nq + s->dae->nu; // of quadratures
+    const bool has_new_rows = ct_iteration_begin(s->it, tol, y);
+    enum ct_eval e = find_multipliers(s, t, y, has_new_rows);
     if (e == CT_EVAL_OK)
         e = iterate(s, t, h, y, dy, stats);
     if (e == CT_EVAL_OK && tolerance)
@@ -481,14 +532,13 @@ static enum ct_eval step(const struct ct_problem *p, double t, double h, const d
     if (e != CT_EVAL_OK)
         return e;
     if (tolerance) {
-        const struct ct_tolerance outputs = {eased.rtol, near_zero * eased.atol};
+        const struct ct_tolerance outputs = {tol->rtol, near_zero * tol->atol};
         *err
             = ct_iteration_error(s->it, p, &outputs, t + h, y1, s->change.d, s->change.u, *err);
-        *err = fmax(*err,
-                    ct_stepper_largest(p, &eased, s->dae->nq + s->dae->nu, y, y1, s->defect));
+        *err = ct_larger(*err, ct_stepper_largest(p, tol, first, y, y1, s->defect));
     }
-    memcpy(s->power, dy, bytes);
-    memcpy(s->power1, dy1, bytes);
+    ct_stepper_copy(s->power + first, dy + first, p->ny - first);
+    ct_stepper_copy(s->power1 + first, dy1 + first, p->ny - first);
     return CT_EVAL_OK;
 }
 

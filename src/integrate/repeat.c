@@ -20,17 +20,18 @@ struct ct_repeat ct_repeat_start(double t0, double t1)
 // speed. What has not turned yet has not repeated anything.
 static double turns_so_far(const struct ct_repeat *r)
 {
-    if (!(r->way_q > r->far_q && r->way_u > r->far_u))
+    const double far_q = sqrt(r->far_q), far_u = sqrt(r->far_u);
+    if (!(r->way_q > far_q && r->way_u > far_u))
         return 0;
-    return fmin((r->way_q / r->far_q - 1) / 2, (r->way_u / r->far_u - 1) / 4);
+    return fmin((r->way_q / far_q - 1) / 2, (r->way_u / far_u - 1) / 4);
 }
 
 bool ct_repeat_add(struct ct_repeat *r, double t, double dq, double q, double du, double u)
 {
     r->way_q += sqrt(dq);
     r->way_u += sqrt(du);
-    r->far_q = fmax(r->far_q, sqrt(q));
-    r->far_u = fmax(r->far_u, sqrt(u));
+    r->far_q = q > r->far_q ? q : r->far_q;
+    r->far_u = u > r->far_u ? u : r->far_u;
     if (++r->steps < STEPS_BETWEEN)
         return false;
     const double before = r->share;

@@ -9,9 +9,10 @@
 #include "integrate/problem.h"
 
 struct ct_repeat {
-    double t0, t1;       // of the run
-    double way_q, far_q; // of coordinates: the way so far, the largest distance from the start
-    double way_u, far_u; // of speeds: the sum of their changes, the largest
+    double t0, t1; // of the run
+    double way_q,
+        far_q; // of coordinates: the way so far, the square of the largest distance from the start
+    double way_u, far_u; // of speeds: the sum of their changes, the square of the largest
     int steps;           // since the last look
     double share;        // of the tolerance of a step
 };

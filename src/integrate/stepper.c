@@ -52,18 +52,22 @@ static void combine_few(double *restrict out, const double *y, double h, const d
 typedef double four
     __attribute__((vector_size(LANES * sizeof(double)), aligned(sizeof(double)), may_alias));
 
-// Inlined into callers, each with the registers that it may use.
+// Inlined into callers, each with the registers that it may use. Two fours at a time: sums need not wait for each other.
 __attribute__((always_inline)) static inline void
 by_fours(double *out, const double *y, double h, const double *a, const double *k, int s, int n)
 {
-    for (int i = 0; i < n; i += LANES) {
-        const int at = i + LANES <= n ? i : n - LANES;
-        const double *stage = k + at;
-        four sum = {0};
+    for (int i = 0; i < n; i += 2 * LANES) {
+        const int last = n - LANES, at = i < last ? i : last;
+        const int next = i + LANES < last ? i + LANES : last;
+        const double *stage = k;
+        four sum = {0}, more = {0};
         for (int j = 0; j < s; j++, stage += n)
-            if (a[j] != 0)
-                sum += a[j] * *(const four *)stage;
+            if (a[j] != 0) {
+                sum += a[j] * *(const four *)(stage + at);
+                more += a[j] * *(const four *)(stage + next);
+            }
         *(four *)(out + at) = y ? *(const four *)(y + at) + h * sum : h * sum;
+        *(four *)(out + next) = y ? *(const four *)(y + next) + h * more : h * more;
     }
 }
 
@@ -141,11 +145,6 @@ void ct_stepper_advance(double *restrict out, const double *y, double h, const d
     }
 }
 
-static double larger(double a, double b)
-{
-    return a > b ? a : b;
-}
-
 void ct_stepper_group(const struct ct_groups *g, int ny, const double *y, const double *y1)
 {
     if (!g)
@@ -161,7 +160,7 @@ void ct_stepper_group(const struct ct_groups *g, int ny, const double *y, const 
 // Of the state or, where they are known, its group.
 static double size_of(const struct ct_groups *g, int i, const double *y, const double *y1)
 {
-    return g && g->of[i] >= 0 ? g->size[g->of[i]] : larger(fabs(y[i]), fabs(y1[i]));
+    return g && g->of[i] >= 0 ? g->size[g->of[i]] : ct_larger(fabs(y[i]), fabs(y1[i]));
 }
 
 double ct_stepper_norm(const struct ct_problem *p, const struct ct_tolerance *tolerance,

@@ -4,6 +4,23 @@
 
 #include "integrate/problem.h"
 
+/// Without the calls that fmin and fmax are; where a is no number, b.
+static inline double ct_smaller(double a, double b)
+{
+    return a < b ? a : b;
+}
+static inline double ct_larger(double a, double b)
+{
+    return a > b ? a : b;
+}
+
+/// out (n) = v. States have few numbers: through volatile, else a compiler makes it a call that takes longer than the loop.
+static inline void ct_stepper_copy(double *out, const volatile double *v, int n)
+{
+    for (int i = 0; i < n; i++)
+        out[i] = v[i];
+}
+
 /// dy (ny, out) = f(t, y), counted. A derivative that is not finite asks for a smaller step.
 enum ct_eval ct_stepper_rhs(const struct ct_problem *p, double t, const double *y, double *dy,
                             struct ct_integrate_stats *stats);

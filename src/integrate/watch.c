@@ -23,9 +23,29 @@ static const double glance = 1e-7;
 // Near the start it is this many resolutions, for the same number of digits.
 static const double slope_spacing = 1e-3, slope_resolutions = 1e3, slope_most = 0.1;
 
+// With events a run has at least this many steps, so that probes are never too far apart when
+// the motion between events is so simple (free fall) that steps could grow without limit.
+static const double event_steps = 50;
+
+// State events in a row, each within this part of max(|t|, run) after the one before, pile up:
+// a bouncing ball comes here after its height has fallen by 1e-18.
+static const double pile_time = 1e-9;
+
 double ct_watch_resolution(double t, double h)
 {
     return resolution * fmax(fabs(t), h);
+}
+
+double ct_watch_longest_step(double run)
+{
+    return run / event_steps;
+}
+
+bool ct_watch_piles_up(struct ct_watch *w, double t, double run)
+{
+    w->piled = t - w->last_event <= pile_time * fmax(fabs(t), run) ? w->piled + 1 : 0;
+    w->last_event = t;
+    return w->piled >= CT_WATCH_PILE;
 }
 
 static int sign(double x)
@@ -61,6 +81,7 @@ void ct_watch_init(struct ct_watch *w, const struct ct_problem *p, struct ct_are
         .near = g + 4 * n,
         .slope = g + 5 * n,
         .point = CT_NEWN(a, double, p->ny),
+        .last_event = -INFINITY,
     };
 }
 

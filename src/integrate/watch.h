@@ -20,10 +20,21 @@ struct ct_watch {
     double *near;                // > 0: fired, and |g| has not been above this since (nroot)
     double *slope;               // dg/dt at the event  (nroot)
     double *point;               // (ny)
+    double last_event;           // time of the last state event
+    int piled;                   // state events in a row without time going on
 };
+
+/// Corrections to the time of an event, each worth three digits or more.
+enum { CT_WATCH_CORRECTIONS = 3 };
+/// State events in a row, each close to the one before, that are an infinite number.
+enum { CT_WATCH_PILE = 100 };
 
 /// Times closer than this to an event cannot be told from it.
 double ct_watch_resolution(double t, double h);
+/// With events, the longest step of a run of this length.
+double ct_watch_longest_step(double run);
+/// A state event at t is one of an infinite number.
+bool ct_watch_piles_up(struct ct_watch *w, double t, double run);
 
 void ct_watch_init(struct ct_watch *w, const struct ct_problem *p, struct ct_arena *a);
 

@@ -8,7 +8,7 @@
 //
 // Cholesky and LU of real matrices are plain loops: these go through them at every
 // stage, small matrices cost less than a call, the result is the same with every BLAS and
-// number of threads, and a NaN is refused, which not every dpotrf does.
+// number of threads, and a NaN is refused, which not every dpotrf does. So are LU of complex matrices of few rows.
 #include "numeric/dense.h"
 
 #include <math.h>
@@ -217,7 +217,12 @@ bool ct_lu(double *A, int *pivot, int n, int lda)
     return ok;
 }
 
-static void lu_solve(double *x, const double *LU, const int *pivot, int n, int lda)
+// Up to so many rows have code of their own, with all loops unrolled: an implicit step of a mechanism of one or two
+// freedoms is little else.
+enum { FEW = 4 };
+
+static inline void substitute(double *x, const double *LU, const int *pivot, const int n,
+                              int lda)
 {
     for (int k = 0; k < n; k++) {
         const double f = x[pivot[k]];
@@ -234,6 +239,26 @@ static void lu_solve(double *x, const double *LU, const int *pivot, int n, int l
         x[k] /= u[k];
         for (int i = 0; i < k; i++)
             x[i] -= u[i] * x[k];
+    }
+}
+
+static void lu_solve(double *x, const double *LU, const int *pivot, int n, int lda)
+{
+    switch (n) {
+    case 1:
+        x[0] /= LU[0];
+        return;
+    case 2:
+        substitute(x, LU, pivot, 2, lda);
+        return;
+    case 3:
+        substitute(x, LU, pivot, 3, lda);
+        return;
+    case FEW:
+        substitute(x, LU, pivot, FEW, lda);
+        return;
+    default:
+        substitute(x, LU, pivot, n, lda);
     }
 }
 
@@ -264,9 +289,98 @@ void ct_lu_solve(double *x, const double *LU, const int *pivot, int n, int lda, 
         (transpose ? lu_solve_transposed : lu_solve)(x, LU, pivot, n, lda);
 }
 
+// x - y z and x / y without the care for infinite parts that makes them calls.
+static inline double _Complex less_product(double _Complex x, double _Complex y,
+                                           double _Complex z)
+{
+    const double a = creal(y), b = cimag(y), c = creal(z), d = cimag(z);
+    return CMPLX(creal(x) - (a * c - b * d), cimag(x) - (a * d + b * c));
+}
+
+static inline double _Complex quotient(double _Complex x, double _Complex y)
+{
+    const double a = creal(x), b = cimag(x), c = creal(y), d = cimag(y);
+    const double inverse = 1 / (c * c + d * d);
+    return CMPLX((a * c + b * d) * inverse, (b * c - a * d) * inverse);
+}
+
+static inline double size_of(double _Complex x)
+{
+    return fabs(creal(x)) + fabs(cimag(x));
+}
+
+static inline void exchange(double _Complex *x, double _Complex *y)
+{
+    const double _Complex z = *x;
+    *x = *y;
+    *y = z;
+}
+
+// Of few rows, as ct_lu; pivots are counted from 1 as LAPACK does.
+static bool lu_complex_few(double _Complex *A, int *pivot, int n, int lda)
+{
+    bool ok = true;
+    for (int k = 0; k < n; k++) {
+        double _Complex *col = A + (size_t)lda * k;
+        int p = k;
+        for (int i = k + 1; i < n; i++)
+            p = size_of(col[i]) > size_of(col[p]) ? i : p;
+        pivot[k] = p + 1;
+        for (int j = 0; j < n && p != k; j++)
+            exchange(A + (size_t)lda * j + k, A + (size_t)lda * j + p);
+        ok = ok && size_of(col[k]) > 0 && isfinite(size_of(col[k]));
+        for (int i = k + 1; i < n; i++)
+            col[i] = quotient(col[i], col[k]);
+        for (int j = k + 1; j < n; j++) {
+            double _Complex *a = A + (size_t)lda * j;
+            for (int i = k + 1; i < n; i++)
+                a[i] = less_product(a[i], col[i], a[k]);
+        }
+    }
+    return ok;
+}
+
+static inline void substitute_complex(double _Complex *x, const double _Complex *LU,
+                                      const int *pivot, const int n, int lda)
+{
+    for (int k = 0; k < n; k++)
+        exchange(x + k, x + pivot[k] - 1);
+    for (int k = 0; k < n; k++) {
+        const double _Complex *l = LU + (size_t)lda * k;
+        for (int i = k + 1; i < n; i++)
+            x[i] = less_product(x[i], l[i], x[k]);
+    }
+    for (int k = n; k-- > 0;) {
+        const double _Complex *u = LU + (size_t)lda * k;
+        x[k] = quotient(x[k], u[k]);
+        for (int i = 0; i < k; i++)
+            x[i] = less_product(x[i], u[i], x[k]);
+    }
+}
+
+static void lu_complex_solve_few(double _Complex *x, const double _Complex *LU,
+                                 const int *pivot, int n, int lda)
+{
+    switch (n) {
+    case 1:
+        x[0] = quotient(x[0], LU[0]);
+        return;
+    case 2:
+        substitute_complex(x, LU, pivot, 2, lda);
+        return;
+    case 3:
+        substitute_complex(x, LU, pivot, 3, lda);
+        return;
+    default:
+        substitute_complex(x, LU, pivot, n, lda);
+    }
+}
+
 bool ct_lu_complex(double _Complex *A, int *pivot, int n, int lda)
 {
     int info;
+    if (n <= FEW)
+        return lu_complex_few(A, pivot, n, lda);
     lda = max_int(1, lda);
     zgetrf_(&n, &n, A, &lda, pivot, &info);
     return info == 0;
@@ -276,6 +390,11 @@ void ct_lu_complex_solve(double _Complex *x, const double _Complex *LU, const in
                          int lda, int nrhs, int ldx)
 {
     int info;
+    if (n <= FEW) {
+        for (int c = 0; c < nrhs; c++, x += ldx)
+            lu_complex_solve_few(x, LU, pivot, n, lda);
+        return;
+    }
     lda = max_int(1, lda);
     ldx = max_int(1, ldx);
     zgetrs_("N", &n, &nrhs, LU, &lda, pivot, x, &ldx, &info, 1);

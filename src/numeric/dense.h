@@ -5,8 +5,13 @@
 #ifndef CT_NUMERIC_DENSE_H
 #define CT_NUMERIC_DENSE_H
 
+#include <complex.h>
 #include <stdbool.h>
 #include <stddef.h>
+
+#ifndef CMPLX // C11's, which some compilers lack
+#define CMPLX(re, im) ((double)(re) + I * (double)(im))
+#endif
 
 /// Largest |v_i| of n; 0 where n is 0. What is no number is passed over.
 double ct_vector_largest(const double *v, size_t n);

@@ -17,6 +17,8 @@
 
 // A diagonal entry is taken as a pivot from this part of the largest in its column.
 static const double diagonal_preference = 0.1;
+// The same where the order was chosen for the numbers, too.
+static const double order_preference = 1e-3;
 // A backward error above this asks for refinement.
 static const double rough = 1e-14;
 
@@ -72,12 +74,10 @@ static void compress(struct ct_arena *a, struct ct_sparse *s, const int *row, co
         s->start[j + 1] += s->start[j];
 }
 
-struct ct_sparse *ct_sparse_create(struct ct_arena *a, int n, const int *row, const int *column,
-                                   size_t nentry, enum ct_sparse_order order)
+static struct ct_sparse *create(struct ct_arena *a, int n, const int *row, const int *column,
+                                size_t nentry)
 {
     struct ct_sparse *s = CT_NEW(a, struct ct_sparse);
-    if (n == 0)
-        return NULL;
     s->n = n;
     s->nentry = nentry;
     compress(a, s, row, column);
@@ -87,10 +87,32 @@ struct ct_sparse *ct_sparse_create(struct ct_arena *a, int n, const int *row, co
     s->scale = CT_NEWN(a, double, n);
     klu_defaults(&s->common);
     s->common.tol = diagonal_preference;
-    s->common.ordering = order == CT_SPARSE_ANY; // COLAMD, else AMD
     s->common.scale = 0; // pivots in the units of the rows: they are compared with each other
     ct_arena_at_end(a, release, s);
+    return s;
+}
+
+struct ct_sparse *ct_sparse_create(struct ct_arena *a, int n, const int *row, const int *column,
+                                   size_t nentry, enum ct_sparse_order order)
+{
+    if (n == 0)
+        return NULL;
+    struct ct_sparse *s = create(a, n, row, column, nentry);
+    s->common.ordering = order == CT_SPARSE_ANY; // COLAMD, else AMD
     s->symbolic = klu_analyze(n, s->start, s->row, &s->common);
+    return s->symbolic ? s : NULL;
+}
+
+struct ct_sparse *ct_sparse_create_along(struct ct_arena *a, int n, const int *row,
+                                         const int *column, size_t nentry, int *first_rows,
+                                         int *first_columns)
+{
+    if (n == 0)
+        return NULL;
+    struct ct_sparse *s = create(a, n, row, column, nentry);
+    s->common.btf = 0; // the order is for the whole
+    s->common.tol = order_preference;
+    s->symbolic = klu_analyze_given(n, s->start, s->row, first_rows, first_columns, &s->common);
     return s->symbolic ? s : NULL;
 }
 
@@ -218,6 +240,15 @@ struct ct_sparse *ct_sparse_create(struct ct_arena *a, int n, const int *row, co
                                    size_t nentry, enum ct_sparse_order order)
 {
     (void)a, (void)n, (void)row, (void)column, (void)nentry, (void)order;
+    return NULL;
+}
+
+struct ct_sparse *ct_sparse_create_along(struct ct_arena *a, int n, const int *row,
+                                         const int *column, size_t nentry, int *first_rows,
+                                         int *first_columns)
+{
+    (void)a, (void)n, (void)row, (void)column, (void)nentry, (void)first_rows,
+        (void)first_columns;
     return NULL;
 }
 

@@ -23,6 +23,10 @@ enum ct_sparse_order {
 /// What the library allocates goes with the arena. NULL where the library is not available or n is 0.
 struct ct_sparse *ct_sparse_create(struct ct_arena *a, int n, const int *row, const int *column,
                                    size_t nentry, enum ct_sparse_order order);
+/// The same with the rows and columns (n each) in this order, pivots next to the diagonal.
+struct ct_sparse *ct_sparse_create_along(struct ct_arena *a, int n, const int *row,
+                                         const int *column, size_t nentry, int *first_rows,
+                                         int *first_columns);
 /// Factor the matrix of these values, in the order of the pattern, with the pivots of before. The first time pivots
 /// are sought. False if it is singular.
 bool ct_sparse_factor(struct ct_sparse *s, const double *value);

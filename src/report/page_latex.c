@@ -1,6 +1,8 @@
 // Pages as LaTeX; see page.h.
 #include "report/page.h"
 
+#include "expr/print.h"
+
 #include <ctype.h>
 #include <string.h>
 
@@ -26,31 +28,8 @@ static void put_words(FILE *out, const char *s)
 
 // ---- equations --------------------------------------------------------------------------------
 
-// Characters that take room on the page: a command counts as one, braces and sizes as none.
-static size_t width_of(const char *s, size_t length)
-{
-    size_t n = 0;
-    for (size_t i = 0; i < length; i++) {
-        if (s[i] != '\\') {
-            n += !strchr("{}^_ ", s[i]);
-            continue;
-        }
-        size_t k = i + 1;
-        while (k < length && isalpha((unsigned char)s[k]))
-            k++;
-        const bool is_free = k - i == 1 || !strncmp(s + i, "\\left", 5)
-                          || !strncmp(s + i, "\\right", 6) || !strncmp(s + i, "\\mathrm", 7)
-                          || !strncmp(s + i, "\\frac", 5);
-        n += is_free                ? 0
-           : k - i > 3 && k - i < 5 ? 3
-                                    : 1; // \sin and \cos print as they are spelled
-        i = k > i + 1 ? k - 1 : i + 1;
-    }
-    return n;
-}
-
 // Widths of a line, and of what a further one is indented by.
-enum { LINE = 85, AFTER_BREAK = 8 };
+enum { LINE = CT_LATEX_LINE, AFTER_BREAK = 8 };
 
 // Length of a piece up to the next place where a line may end: before a sign, or a factor, at any depth of
 // parentheses but not within braces or cases.
@@ -95,10 +74,10 @@ static size_t put_wide_term(FILE *out, const char *s, size_t length, size_t colu
     int depth = 0;
     while (s < end) {
         size_t n = piece_of(s, false);
-        if (width_of(s, n) > LINE - AFTER_BREAK)
+        if (ct_latex_width(s, n) > LINE - AFTER_BREAK)
             n = piece_of(s, true);
         n = n < (size_t)(end - s) ? n : (size_t)(end - s);
-        const size_t width = width_of(s, n);
+        const size_t width = ct_latex_width(s, n);
         if (column + width > LINE && column > AFTER_BREAK) {
             end_line(out, depth, indent);
             column = AFTER_BREAK;
@@ -120,7 +99,7 @@ static size_t put_wide_term(FILE *out, const char *s, size_t length, size_t colu
 static void put_sum(FILE *out, const char *s, size_t column, const char *indent)
 {
     while (*s) {
-        const size_t n = ct_page_first_term(s), width = width_of(s, n);
+        const size_t n = ct_page_first_term(s), width = ct_latex_width(s, n);
         if (column + width > LINE && column > 20) {
             end_line(out, 0, indent);
             column = AFTER_BREAK;
@@ -137,8 +116,8 @@ static void put_sum(FILE *out, const char *s, size_t column, const char *indent)
 
 static void put_equation(FILE *out, const struct ct_page_equation *e, bool labelled)
 {
-    const size_t left = width_of(e->left, strlen(e->left));
-    const size_t right = e->right ? width_of(e->right, strlen(e->right)) : 0;
+    const size_t left = ct_latex_width(e->left, strlen(e->left));
+    const size_t right = e->right ? ct_latex_width(e->right, strlen(e->right)) : 0;
     const size_t label = e->label ? ct_text_width(e->label) : 0;
     fputs("    ", out);
     if (labelled) {
@@ -174,7 +153,7 @@ static void put_equations(FILE *out, const struct ct_page_block *b)
         return;
     for (size_t i = 0; i < b->nequation; i++)
         labelled |= b->equation[i].label || !b->equation[i].right
-                 || width_of(b->equation[i].left, strlen(b->equation[i].left)) > LINE / 2;
+                 || ct_latex_width(b->equation[i].left, strlen(b->equation[i].left)) > LINE / 2;
     fputs("\\begin{align*}\n", out);
     for (size_t i = 0; i < b->nequation; i++) {
         put_equation(out, &b->equation[i], labelled);

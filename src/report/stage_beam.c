@@ -15,24 +15,30 @@ static const struct {
     unsigned bit;
     const char *name;
     int first, n; // its dofs
-} families[] = {{CT_BEAM_AXIAL, "axial", 0, 2},
+} families[] = {{CT_BEAM_AXIAL, "axial", 0, CT_LINE_DOF},
                 {CT_BEAM_BENDING_Z, "bending-z", 2, 4},
                 {CT_BEAM_BENDING_Y, "bending-y", 6, 4},
-                {CT_BEAM_TORSION, "torsion", CT_PLACE_DOF, CT_TWIST_DOF}};
+                {CT_BEAM_TORSION, "torsion", CT_PLACE_DOF, CT_LINE_DOF}};
 
 // Dofs of family i that the beam's elements have.
 static int ndof_of(const struct ct_beam *beam, size_t i)
 {
-    const bool is_linear_twist
-        = families[i].bit == CT_BEAM_TORSION && !beam->has_quadratic_twist;
-    return families[i].n - is_linear_twist;
+    const bool is_linear = (families[i].bit == CT_BEAM_TORSION && !beam->has_quadratic_twist)
+                        || (families[i].bit == CT_BEAM_AXIAL && !beam->has_quadratic_stretch);
+    return families[i].n - is_linear;
+}
+
+// Its j-th one.
+static int dof_of(size_t i, int j)
+{
+    return families[i].bit == CT_BEAM_AXIAL ? ct_stretch_dof(j) : families[i].first + j;
 }
 
 const char *ct_beam_dof_name(int j)
 {
     static const char *const name[CT_DOF]
         = {"u1",    "u2", "v1",    "alpha1", "v2",   "alpha2", "w1",
-           "beta1", "w2", "beta2", "phi1",   "phi2", "phi3"};
+           "beta1", "w2", "beta2", "u3",     "phi1", "phi2",   "phi3"};
     return name[j];
 }
 
@@ -119,14 +125,16 @@ static void derive_energies(struct ct_build *b, struct ct_flexible *one,
 {
     const struct ct_span span = one->element[0].span;
     for (size_t i = 0; i < COUNT(families); i++) {
-        const int first = families[i].first, n = ndof_of(one->beam, i);
+        const int n = ndof_of(one->beam, i);
         struct ct_element own = {.span = span};
         if (!(one->deformation & families[i].bit))
             continue;
-        for (int j = first; j < first + n; j++)
-            own.value[j] = families[i].bit != CT_BEAM_AXIAL ? out->dof[j]
-                         : j == first                       ? CT_EX_ZERO
-                                                            : out->stretch;
+        for (int j = 0; j < n; j++)
+            own.value[dof_of(i, j)] = out->dof[dof_of(i, j)];
+        if (families[i].bit == CT_BEAM_AXIAL) {
+            own.value[0] = CT_EX_ZERO;
+            own.value[1] = out->stretch;
+        }
         one->element = &own;
         out->energy[i] = ct_flexible_strain(b, one);
     }
@@ -151,14 +159,17 @@ void ct_beam_element_derive(struct ct_build *b, const struct ct_flexible *f,
     one.axial = CT_AXIAL_CHAIN; // the stretch is that of the axial dofs
     e.span.length = out->h;
     for (size_t i = 0; i < COUNT(families); i++)
-        for (int j = families[i].first; j < families[i].first + ndof_of(&beam, i); j++)
+        for (int k = 0; k < ndof_of(&beam, i); k++) {
+            const int j = dof_of(i, k);
             if (f->deformation & families[i].bit)
                 e.value[j] = out->dof[j]
                     = ct_ex_sym(x, CT_SYM_LOCAL, ct_beam_dof_name(j), (uint32_t)j);
-    out->axial = field(out, f->linear, 0, 2);
+        }
+    out->axial
+        = ct_ex_add(x, field(out, f->line, 0, 2), field(out, &f->line[2], CT_MIDDLE_DOF, 1));
     out->v = field(out, f->shape.place, 2, 4);
     out->w = field(out, f->shape.place, 6, 4);
-    out->twist = field(out, f->twist, CT_PLACE_DOF, CT_TWIST_DOF);
+    out->twist = field(out, f->line, CT_PLACE_DOF, CT_LINE_DOF);
     out->is_constant = !varies(b, beam.area) && !varies(b, beam.Iy) && !varies(b, beam.Iz)
                     && !varies(b, beam.J);
     if (!out->is_constant)
@@ -393,11 +404,12 @@ static void put_element(struct ct_derivation *d, const struct ct_flexible *f)
     ct_page_heading(&d->page, ct_arena_printf(d->a, "element of %s", f->name));
     ct_page_sentence(
         &d->page,
-        "xi = 0 ... 1 along its length h; dofs at its ends 1 and 2: u, v, w, %s, twist phi%s",
+        "xi = 0 ... 1 along its length h; dofs at its ends 1 and 2: u, v, w, %s, twist phi%s%s",
         f->beam->theory == CT_BEAM_TIMOSHENKO
             ? "alpha and beta (rotations of the sections, as dv/dx and dw/dx)"
             : "alpha = dv/dx, beta = dw/dx",
-        f->beam->has_quadratic_twist ? ", phi3 in the middle beyond the mean of its ends" : "");
+        f->beam->has_quadratic_twist ? ", phi3 in the middle beyond the mean of its ends" : "",
+        f->beam->has_quadratic_stretch ? ", u3 in the middle beyond the mean of its ends" : "");
     ct_page_equations(&d->page);
     ct_page_equation(&d->page, NULL, "u", axial_text(d, f, ct_derivation_text(d, e.axial)),
                      NULL);

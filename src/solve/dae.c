@@ -34,7 +34,7 @@ static enum ct_eval start(void *user, double t, const double *y, double *a, doub
         if (e != CT_EVAL_OK)
             return e;
     }
-    memcpy(a, s->a, s->m->nu * sizeof *a);
+    ct_machine_copy(a, s->a, s->m->nu);
     ct_embed_kept_multipliers(s, lam);
     return CT_EVAL_OK;
 }
@@ -45,10 +45,11 @@ static void set_input(const struct ct_embed *s, double t, const double *q, const
     const struct ct_machine *m = s->m;
     double *input = m->input;
     input[0] = t;
-    memcpy(input + m->at_q, q, m->nq * sizeof *q);
-    memcpy(input + m->at_u, u, m->nu * sizeof *u);
-    memcpy(input + m->at_a, a, m->nu * sizeof *a);
-    memset(input + m->at_lam, 0, m->nrow * sizeof *lam);
+    ct_machine_copy(input + m->at_q, q, m->nq);
+    ct_machine_copy(input + m->at_u, u, m->nu);
+    ct_machine_copy(input + m->at_a, a, m->nu);
+    if (m->nrow)
+        memset(input + m->at_lam, 0, m->nrow * sizeof *lam);
     for (int i = 0; i < s->rank; i++)
         input[m->at_lam + (size_t)s->row[i]] = lam[i];
 }
@@ -65,7 +66,7 @@ static enum ct_eval residual(void *user, double t, const double *q, const double
     for (size_t i = 0; i < s->m->residual.nout; i++)
         if (!isfinite(out[i]))
             return CT_EVAL_RETRY;
-    memcpy(r, out, nu * sizeof *r);
+    ct_machine_copy(r, out, nu);
     for (int i = 0; i < s->rank; i++) {
         phi[i] = out[nu + (size_t)s->row[i]];
         v[i] = out[nu + nrow + (size_t)s->row[i]];
@@ -121,13 +122,18 @@ struct ct_dae *ct_dae_create(struct ct_arena *a, struct ct_embed *s)
     const struct ct_equations *e = s->m->e;
     struct ct_dae *dae = CT_NEW(a, struct ct_dae);
     int *q_of = CT_NEWN(a, int, e->nu + 1);
-    for (size_t k = 0; k < e->nu; k++)
+    bool is_plain = e->nq == e->nu;
+    for (size_t k = 0; k < e->nu; k++) {
         q_of[k] = e->u[k].q;
+        is_plain = is_plain && q_of[k] == (int)k;
+    }
     *dae = (struct ct_dae){.user = s,
                            .nq = (int)e->nq,
                            .nu = (int)e->nu,
                            .most_rows = (int)e->nrow,
                            .q_of = q_of,
+                           .is_plain = is_plain,
+                           .has_no_power = ct_ex_is_zero(e->power),
                            .rows = rows,
                            .retract = retract,
                            .chart_rate = chart_rate,

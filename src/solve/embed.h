@@ -40,6 +40,8 @@ struct ct_embed {
     struct ct_form *form[CT_MOST_FORMS];
     size_t nform;
     const struct ct_form_kind *kind; // chosen for the first one
+    bool is_asked;                   // for
+    struct ct_form_costs costs;      // of what could be chosen for the first one
     long nmade;
     bool has_form;    // form[0] is for the rows and columns of now
     bool is_dear;     // matrices are cheaper
@@ -47,6 +49,8 @@ struct ct_embed {
     bool is_crossing; // stages are projected that steps do not end on: choices stay
     bool is_rough;    // the last check wanted a refinement
     long nweak;       // checks in a row that found the form weak, or projections without one
+    int nunchecked; // projections until the next check, as long as the strength stays near that of the last one
+    double checked_at;
     struct ct_strength strength; // of the form
     struct ct_solves solves;
     double *a, *lam; // results: u' (nu), lam (nrow)
@@ -58,6 +62,8 @@ struct ct_embed {
 struct ct_embed *ct_embed_create(struct ct_arena *arena, struct ct_ctx *ctx,
                                  struct ct_machine *m);
 
+/// Forms of this kind only, whatever they cost; NULL: matrices only. Before rows and columns are chosen.
+void ct_embed_use(struct ct_embed *s, const struct ct_form_kind *kind);
 /// Matrices only: accelerations then depend on nothing that was done before.
 void ct_embed_stay_dense(struct ct_embed *s);
 /// Operations of one ct_embed_accelerate.

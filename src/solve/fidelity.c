@@ -1,6 +1,8 @@
 // See fidelity.h.
 #include "solve/fidelity.h"
 
+#include "integrate/stepper.h"
+
 #include <float.h>
 #include <math.h>
 #include <string.h>
@@ -8,6 +10,12 @@
 // Where outputs have at most this part of the error of states, that of so many further steps is not looked at.
 static const double harmless = 0.25;
 enum { STEPS_BETWEEN = 7 };
+// Where the ratio of the two is the same to this part at two looks in a row, it is taken for that of more and more steps.
+static const double steady = 0.02;
+enum { MOST_BETWEEN = 15 };
+// Rounding is measured again after so many looks, as long as it is this part of what would count.
+static const double unfelt = 0.01;
+enum { LOOKS_BETWEEN = 15 };
 // State errors below this say nothing about the ratio of the two: steps are still growing.
 static const double least_error = 0.02;
 // Rounding is felt by a change of the states by such a part of themselves, far above it so that it can be measured.
@@ -73,7 +81,8 @@ void ct_fidelity_clear(struct ct_fidelity_record *r)
 {
     if (r->n)
         memset(r->largest, 0, r->n * sizeof *r->largest);
-    r->skip = 0;
+    r->skip = r->between = r->unprobed = 0;
+    r->ratio = 0;
     r->has_seen = false;
 }
 
@@ -85,32 +94,56 @@ bool ct_fidelity_is_due(struct ct_fidelity_record *r)
     return false;
 }
 
+double ct_fidelity_foreseen(const struct ct_fidelity_record *r, double states)
+{
+    return r->ratio > harmless ? r->ratio * states : 0;
+}
+
+// After a look: how many steps the ratio of both errors is to hold for.
+static void plan_looks(struct ct_fidelity_record *r, double error, double states)
+{
+    const double before = r->ratio, ratio = states >= least_error ? error / states : 0;
+    const bool is_steady = fabs(ratio - before) <= steady * before;
+    r->ratio = ratio;
+    if (states >= least_error && ratio <= harmless)
+        r->between = STEPS_BETWEEN;
+    else
+        r->between = is_steady && ratio > 0 ? 2 * r->between + 1 : 0;
+    r->between = r->between < MOST_BETWEEN ? r->between : MOST_BETWEEN;
+    r->skip = r->between;
+}
+
 double ct_fidelity_judge(struct ct_fidelity_record *r, const double *at, const double *probed,
                          const double *off, const struct ct_tolerance *tolerance, double states)
 {
     double sum = 0;
     size_t n = 0;
+    bool is_felt = false;
     r->has_seen = true;
     for (size_t i = 0; i < r->n; i++) {
         const double rounding = fabs(probed[i] - at[i]) * (DBL_EPSILON / change);
         r->seen[i] = fabs(at[i]);
-        const double size = fmax(r->largest[i], r->seen[i]);
+        const double size = ct_larger(r->seen[i], r->largest[i]);
+        const double wanted = tolerance->rtol * size + tolerance->atol;
+        is_felt |= !(unfelt * size >= least_size * rounding)
+                || !(unfelt * wanted >= most_precise * rounding);
         if (!(size >= least_size * rounding))
             continue;
-        const double wanted = tolerance->rtol * size + tolerance->atol;
-        const double part = (off[i] - at[i]) / fmax(wanted, most_precise * rounding);
+        const double part = (off[i] - at[i]) / ct_larger(most_precise * rounding, wanted);
         sum += part * part;
         n++;
     }
     const double error = n && isfinite(sum) ? sqrt(sum / (double)n) : 0;
-    r->skip = states >= least_error && error <= harmless * states ? STEPS_BETWEEN : 0;
+    if (probed != at)
+        r->unprobed = is_felt ? 0 : LOOKS_BETWEEN;
+    plan_looks(r, error, states);
     return error;
 }
 
 void ct_fidelity_keep(struct ct_fidelity_record *r)
 {
     for (size_t i = 0; i < r->n && r->has_seen; i++)
-        r->largest[i] = fmax(r->largest[i], r->seen[i]);
+        r->largest[i] = ct_larger(r->seen[i], r->largest[i]);
     r->has_seen = false;
 }
 
@@ -129,20 +162,36 @@ static const double *evaluate(struct ct_fidelity *p, double t)
     return p->program.out;
 }
 
+// Leaves in p->probed what outputs are where states differ by little more than rounding.
+static void probe(struct ct_fidelity *p, double t, const double *y)
+{
+    for (size_t i = 0; i < p->ny; i++)
+        p->y[i] = y[i] + ct_fidelity_probe((int)i) * y[i];
+    memcpy(p->probed, evaluate(p, t), p->record.n * sizeof *p->probed);
+}
+
 double ct_fidelity_error(struct ct_fidelity *p, double t, const double *y, const double *e,
                          const struct ct_tolerance *tolerance, double states)
 {
-    const size_t bytes = p->record.n * sizeof *p->at;
-    if (!ct_fidelity_is_due(&p->record))
-        return 0;
-    memcpy(p->y, y, p->ny * sizeof *y);
-    memcpy(p->at, evaluate(p, t), bytes);
-    for (size_t i = 0; i < p->ny; i++)
-        p->y[i] = y[i] + ct_fidelity_probe((int)i) * y[i];
-    memcpy(p->probed, evaluate(p, t), bytes);
+    struct ct_fidelity_record *r = &p->record;
+    if (!ct_fidelity_is_due(r))
+        return ct_fidelity_foreseen(r, states);
+    ct_machine_copy(p->y, y, p->ny);
+    memcpy(p->at, evaluate(p, t), r->n * sizeof *p->at);
+    const bool is_probed = r->unprobed == 0;
+    if (is_probed)
+        probe(p, t, y);
+    else
+        r->unprobed--;
     for (size_t i = 0; i < p->ny; i++)
         p->y[i] = y[i] + e[i];
-    return ct_fidelity_judge(&p->record, p->at, p->probed, evaluate(p, t), tolerance, states);
+    const double *off = evaluate(p, t);
+    const double *probed = is_probed ? p->probed : p->at;
+    const double error = ct_fidelity_judge(r, p->at, probed, off, tolerance, states);
+    if (is_probed || error <= 1)
+        return error;
+    r->skip = r->unprobed = 0; // no step is refused for its rounding
+    return ct_fidelity_error(p, t, y, e, tolerance, states);
 }
 
 void ct_fidelity_accept(struct ct_fidelity *p)

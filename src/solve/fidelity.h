@@ -18,7 +18,8 @@ struct ct_fidelity *ct_fidelity_create(struct ct_arena *a, struct ct_machine *m)
 /// A new run begins: nothing is known of the sizes of outputs.
 void ct_fidelity_start(struct ct_fidelity *p);
 /// Root mean square over the outputs of their errors at y (ny) for errors e (ny), where 1 is the tolerance; `states` is the
-/// same of the states. As long as outputs are not nearly as bad as those, only every eighth step is looked at; else 0.
+/// same of the states. As long as outputs are not nearly as bad as those, or the ratio of both is steady, only every eighth or
+/// sixteenth step is looked at; else that ratio tells, or 0.
 double ct_fidelity_error(struct ct_fidelity *p, double t, const double *y, const double *e,
                          const struct ct_tolerance *tolerance, double states);
 /// The last step that was looked at is accepted.
@@ -34,15 +35,21 @@ struct ct_fidelity_record {
     size_t n;
     double *largest,
         *seen;     // (n) |g| over the steps that were accepted, at the last one looked at
-    int skip;      // steps that are not looked at
     bool has_seen; // since the last acceptance
+    int skip;      // steps that are not looked at
+    int between;   // of them, planned at the last look
+    int unprobed;  // looks at which rounding is not measured
+    double ratio;  // of the error of outputs to that of states at the last look; 0: not known
 };
 /// Of n outputs; all zero.
 struct ct_fidelity_record ct_fidelity_record(struct ct_arena *a, size_t n);
 void ct_fidelity_clear(struct ct_fidelity_record *r);
 /// Is this step looked at?
 bool ct_fidelity_is_due(struct ct_fidelity_record *r);
-/// The error from outputs (n each) at y, at y as ct_fidelity_probe changes it, and at y + e.
+/// If not: their error, as far as it is more than that of the states.
+double ct_fidelity_foreseen(const struct ct_fidelity_record *r, double states);
+/// The error from outputs (n each) at y, at y as ct_fidelity_probe changes it, and at y + e. probed == at: rounding is not
+/// looked at.
 double ct_fidelity_judge(struct ct_fidelity_record *r, const double *at, const double *probed,
                          const double *off, const struct ct_tolerance *tolerance,
                          double states);

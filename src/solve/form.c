@@ -9,8 +9,10 @@
 static const double call = 500;
 // Smaller systems are never cheaper as sparse matrices.
 enum { LEAST_SPARSE = 100 };
-// Beyond so many nodes code leaves the caches.
-static const double most_nodes = 400000;
+// Making programs takes a microsecond and half a kilobyte a node.
+static const double most_nodes = 2e6;
+// Where somebody wants them whatever they cost.
+static const double most_asked_nodes = 8e6;
 // Checks and projections take up to so many times the nodes of the solution.
 static const double programs = 4;
 // Solving all equations as one system must promise so much to be tried.
@@ -33,11 +35,6 @@ static int *sorted(struct ct_arena *a, const int *v, size_t n)
     return copy;
 }
 
-static double smaller(double a, double b)
-{
-    return a < b ? a : b;
-}
-
 // Of both, the cheaper one; the other is destroyed.
 static struct ct_form *cheaper(struct ct_machine *m, struct ct_form *a, struct ct_form *b)
 {
@@ -48,28 +45,93 @@ static struct ct_form *cheaper(struct ct_machine *m, struct ct_form *a, struct c
     return first ? a : b;
 }
 
+double ct_form_code_size(double operations)
+{
+    const double bytes = 11; // lattices and nets: 10 to 11.6
+    return bytes * operations;
+}
+
+// Code is read once in an evaluation. The second of the caches, which it shares with data, keeps all of a program up to
+// `near` and next to nothing of one beyond `far`; a byte from behind it takes as long as a third of an operation. Measured
+// on lattices and nets of 110 to 2000 unknowns, processors with 2 MiB of that cache: docs/performance.md.
+double ct_form_straight_cost(double operations, double bytes)
+{
+    const double near = 1 << 20, far = 3 << 20, per_byte = 0.33;
+    const double missed = fmin(1, fmax(0, (bytes - near) / (far - near)));
+    return operations + per_byte * missed * bytes;
+}
+
+// The most operations of straight-line code that cost no more.
+static double longest(double cost)
+{
+    double low = 0, high = cost; // low costs less, high as much or more
+    while (high - low > 1) {
+        const double middle = (low + high) / 2;
+        *(ct_form_straight_cost(middle, ct_form_code_size(middle)) < cost ? &low : &high)
+            = middle;
+    }
+    return high;
+}
+
+static double cost_of(const struct ct_form *f)
+{
+    return f ? f->cost : INFINITY;
+}
+
+// Nodes that programs may take, where what they compete with costs so much.
+static double allowed(double cost)
+{
+    return fmin(programs * longest(fmin(cost, most_nodes)), most_nodes);
+}
+
+// The cheapest but dense matrices; costs are filled.
+static struct ct_form *compare(struct ct_arena *a, struct ct_machine *m,
+                               const struct ct_partition *partition, struct ct_form_costs *c)
+{
+    struct ct_arena *own = ct_arena_create_under(a);
+    struct ct_partition p = *partition;
+    struct ct_form *f = NULL;
+    const bool is_small = m->nu + p.rank <= MOST_WHOLE;
+    if (p.nfree && is_small)
+        p.pivots = ct_pivot_order_find(own, m->e, &p, m->motion.out, m->Q + m->nu);
+    if (p.pivots) {
+        const double operations = ct_form_operations(&m->motion) + p.pivots->operations;
+        c->whole = ct_form_straight_cost(operations, ct_form_code_size(operations));
+    }
+    if (m->nu + p.rank >= LEAST_SPARSE) {
+        f = ct_form_sparse.create(a, m, &p, 0);
+        c->sparse = cost_of(f);
+    }
+    const double others = fmin(c->dense, fmin(c->sparse, c->whole));
+    struct ct_form *unrolled = ct_form_unrolled.create(a, m, &p, allowed(others));
+    c->unrolled = cost_of(unrolled);
+    f = cheaper(m, f, unrolled);
+    if (c->whole < worth * (f ? f->cost : c->dense))
+        f = cheaper(m, f, ct_form_whole.create(a, m, &p, allowed(c->whole)));
+    ct_arena_destroy(own);
+    return f;
+}
+
 struct ct_form *ct_form_create(struct ct_arena *a, struct ct_machine *m,
                                const struct ct_partition *p, double operations,
-                               const struct ct_form_kind *kind)
+                               const struct ct_form_kind *kind, struct ct_form_costs *costs)
 {
-    const double dense = ct_form_operations(&m->motion) + operations + call;
-    if (kind)
-        return kind->create(a, m, p, most_nodes);
-    struct ct_form *sparse = NULL;
-    if (m->nu + p->rank >= LEAST_SPARSE)
-        sparse = ct_form_sparse.create(a, m, p, 0);
-    const double predicted
-        = p->nfree && m->nu + p->rank <= MOST_WHOLE ? ct_form_predict_whole(a, m, p) : INFINITY;
-    const double most = smaller(predicted, sparse ? smaller(dense, sparse->cost) : dense);
-    struct ct_form *f = cheaper(
-        m, sparse, ct_form_unrolled.create(a, m, p, smaller(programs * most, most_nodes)));
-    if (predicted < worth * (f ? f->cost : dense))
-        f = cheaper(m, f,
-                    ct_form_whole.create(a, m, p, smaller(programs * predicted, most_nodes)));
-    if (!f || f->cost <= dense)
-        return f;
-    ct_form_destroy(m, f);
-    return NULL;
+    struct ct_form_costs c = {.unrolled = NAN, .whole = NAN, .sparse = NAN};
+    c.dense = ct_form_operations(&m->motion) + operations + call;
+    struct ct_form *f = kind ? kind->create(a, m, p, most_nodes) : compare(a, m, p, &c);
+    if (f && !kind && f->cost > c.dense) {
+        ct_form_destroy(m, f);
+        f = NULL;
+    }
+    if (costs)
+        *costs = c;
+    return f;
+}
+
+struct ct_form *ct_form_ask(struct ct_arena *a, struct ct_machine *m,
+                            const struct ct_partition *p, const struct ct_form_kind *kind)
+{
+    return kind->create(a, m, p, most_asked_nodes);
 }
 
 void ct_form_place(struct ct_form *f, const struct ct_partition *p)

@@ -42,12 +42,21 @@ struct ct_form_kind {
 
 extern const struct ct_form_kind ct_form_unrolled, ct_form_whole, ct_form_sparse;
 
+/// What solving is predicted to cost in each way, M, Q, J and gam included [operations of straight-line code]; NAN: it was
+/// not looked at, INFINITY: it is not possible, or `unrolled` was given up as longer than the others.
+struct ct_form_costs {
+    double unrolled, whole, sparse, dense;
+};
+
 /// The cheapest form of a partition by counts of operations, its order of pivots sought at the machine's input, after
 /// ct_machine_motion. NULL if the solve by dense matrices is cheaper: operations [multiplications or
-/// additions]. kind: of the form to make, whatever it costs; NULL: the cheapest. Owned by a until destroyed.
+/// additions]. kind: of the form to make, whatever it costs; NULL: the cheapest. costs (out) may be NULL. Owned by a until destroyed.
 struct ct_form *ct_form_create(struct ct_arena *a, struct ct_machine *m,
                                const struct ct_partition *p, double operations,
-                               const struct ct_form_kind *kind);
+                               const struct ct_form_kind *kind, struct ct_form_costs *costs);
+/// One of this kind however long its programs are, up to some millions of nodes.
+struct ct_form *ct_form_ask(struct ct_arena *a, struct ct_machine *m,
+                            const struct ct_partition *p, const struct ct_form_kind *kind);
 void ct_form_destroy(struct ct_machine *m, struct ct_form *f);
 bool ct_form_is_for(const struct ct_form *f, const struct ct_partition *p);
 
@@ -78,15 +87,15 @@ struct ct_form_code {
 };
 struct ct_form_code ct_form_code(const struct ct_form *f);
 
-/// Operations that `whole` is predicted to take, M, Q, J and gam included, after ct_machine_motion.
-double ct_form_predict_whole(struct ct_arena *a, const struct ct_machine *m,
-                             const struct ct_partition *p);
-
 // ---- for the kinds --------------------------------------------------------------------------------
 
 /// Fill row, dependent, rank.
 void ct_form_place(struct ct_form *f, const struct ct_partition *p);
 /// Operations of a program, one each.
 double ct_form_operations(const struct ct_program *p);
+/// Machine code of so many operations without loops [bytes].
+double ct_form_code_size(double operations);
+/// What so many operations of straight-line code take, in operations whose code is in the nearest caches.
+double ct_form_straight_cost(double operations, double bytes);
 
 #endif

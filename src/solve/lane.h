@@ -3,12 +3,14 @@
 //     lanes.c        members come and go
 //     lane_step.c    a try in all lanes: stages, error, projection, step control
 //     lane_form.h    of that, closed forms and the projection by them
+//     lane_event.c   events of one lane: where they are, what they change; lane_watch.h: is there one in any?
 //     lane_alone.c   one lane as a run alone: what is rare, by the run's own functions
 #ifndef CT_SOLVE_LANE_H
 #define CT_SOLVE_LANE_H
 
 #include "integrate/control.h"
 #include "integrate/repeat.h"
+#include "integrate/watch.h"
 #include "solve/fidelity.h"
 #include "solve/lanes.h"
 
@@ -45,13 +47,39 @@ struct ct_lane_sum {
     double a[CT_MOST_STAGES];
 };
 
+// A lane as the user of a problem: its root functions.
+struct ct_lane_user {
+    struct ct_lanes *s;
+    int lane;
+};
+
+// Events of one member. A step with a state event is taken again, to where the root function should vanish, until it does.
+struct ct_lane_events {
+    struct ct_run_options options;
+    struct ct_arena *arena; // of the member's times
+    double *time;           // of events by time alone  (ntime)
+    size_t ntime;
+    double pending; // the next of them; INFINITY
+    struct ct_problem problem;
+    struct ct_lane_user user;
+    struct ct_watch watch;
+    double *dy, *dend; // of the step that is searched  (ny)
+    double whole;      // its length; 0: none is searched
+    double whole_end, error;
+    double h;      // of the next try
+    int tries;     // of it
+    bool is_event; // a state event ends this try
+};
+
 // What belongs to one member and is not computed in lanes.
 struct ct_lane {
     enum ct_lane_state state;
     double t1; // end of the run
     struct ct_control control;
-    double end;   // time at the end of this try
-    double error; // of it
+    double h;       // of this try as step control has planned it
+    double end;     // time at the end of this try
+    double error;   // of it
+    double longest; // step
     double kappa_chosen, sigma_chosen;
     double pivot_last, pivot_time; // see foresee_singular
     struct ct_strength strength;   // of its form
@@ -61,6 +89,7 @@ struct ct_lane {
     struct ct_tolerance tolerance; // before repeats count
     double least_rtol;
     long steps;
+    struct ct_lane_events events;
     bool is_watched; // for stiffness
     int nstiff, nother;
 };
@@ -76,6 +105,7 @@ struct ct_lanes {
     int whose; // the lane whose parameters the run has for matrices; -1: not known
     struct ct_lane_program motion, power, memory; // motion: u', q' themselves if is_solved
     struct ct_lane_program output;                // those that are controlled
+    struct ct_lane_program root;                  // of all modes
     struct ct_lane lane[W];
     struct ct_lanes_count count;
     const struct ct_method *method;
@@ -96,10 +126,17 @@ struct ct_lanes {
     vec kappa, sigma;        // as in embed.h
     vec pivot_most;          // the largest sigma so far
     vec t, h;                // of this try
-    vec rtol, atol;          // of the steps
+    vec before; // the last time of evaluation before the next event by time; INFINITY
+    bool has_time_events;
+    int nroot;          // state modes
+    const int *root_of; // (nroot) their places among the modes
+    vec *side, *g0,
+        *g; // of them: see watch.h, at the start and, extrapolated a little, at the end of the step
+    set unsettled;  // lanes in which one rests on zero or has just fired
+    vec rtol, atol; // of the steps
     vec *input;
     // states (ny), stages (ny x stages)
-    vec *start, *y, *dy, *y1, *dy1, *end, *dend, *point, *late, *k;
+    vec *start, *y, *dy, *y1, *dy1, *end, *dend, *point, *late, *weight, *k;
     double *one_y, *one_dy, *one_point, *one_end; // a single lane's states
     vec *at, *probed;                             // outputs that are controlled
     double *one_at, *one_probed, *one_off;        // of a single lane
@@ -137,6 +174,32 @@ void ct_lane_take(double *out, const vec *v, int lane, size_t n);
 void ct_lane_put(vec *v, int lane, const double *in, size_t n);
 /// The lane takes the choice of rows and columns that the run has now, and the form for it. False if there is none.
 bool ct_lane_choose(struct ct_lanes *s, int lane);
+/// The next step of the lane, which the run has become at t, y, follows what turns.
+void ct_lane_limit_turn(struct ct_lanes *s, int lane, double t, const double *y);
+
+// ---- lane_event.c -----------------------------------------------------------------------------------
+
+/// Room for the events of all lanes.
+void ct_lane_make_events(struct ct_lanes *s);
+/// The run has been started with the member of this lane, which has these options: the sides it is on. False: the motion
+/// cannot begin.
+bool ct_lane_begin_events(struct ct_lanes *s, int lane, const struct ct_run_options *o);
+/// At t, y, where a member begins or an event has put it. False: roots cannot be evaluated.
+bool ct_lane_take_bearings(struct ct_lanes *s, int lane, double t, const double *y,
+                           const double *dy);
+/// Where steps must end next.
+double ct_lane_stop(const struct ct_lane *lane);
+/// A try of a step that has an event in it.
+void ct_lane_plan_again(struct ct_lanes *s, int lane);
+/// The try ends in s->end at lane->end. It may be accepted, then with an event at its end if events.is_event; it is refused;
+/// or it is taken again, to an event.
+enum ct_lane_found {
+    CT_LANE_GOES_ON,
+    CT_LANE_REFUSED,
+    CT_LANE_AGAIN
+} ct_lane_search(struct ct_lanes *s, int lane);
+/// The lane has come to t, y, which ends the try: what the event there changes, if there is one. It may be given up.
+void ct_lane_pass(struct ct_lanes *s, int lane);
 
 // ---- lane_alone.c -----------------------------------------------------------------------------------
 

@@ -1,5 +1,7 @@
 // One lane as a run alone, by the functions of embed.c: see lane.h.
 #include "solve/lane.h"
+#include "solve/run.h"
+#include "integrate/stepper.h"
 
 #include <math.h>
 #include <string.h>
@@ -14,8 +16,9 @@ static void take_choice(struct ct_lanes *s, int l, double t, const vec *y)
     const struct ct_lane *lane = &s->lane[l];
     struct ct_embed *embed = s->embed;
     const size_t rank = (size_t)s->rank, n = (size_t)s->nu;
+    s->run->pending = lane->events.pending;
     ct_lane_take(s->one_y, y, l, (size_t)s->ny);
-    ct_machine_set(s->m, t, s->one_y);
+    ct_machine_set(s->m, ct_run_before(s->run, t), s->one_y);
     embed->rank = s->rank;
     memcpy(embed->row, lane->row, (size_t)s->nrow * sizeof *embed->row);
     memcpy(embed->dependent, lane->dependent, rank * sizeof *embed->dependent);
@@ -56,7 +59,8 @@ static void keep_measures(struct ct_lanes *s, int l)
 bool ct_lane_solve(struct ct_lanes *s, int l, double t, const vec *y, vec *dy)
 {
     ct_lane_become(s, l, t, y);
-    if (ct_embed_solve(s->embed) != CT_EVAL_OK)
+    if (ct_embed_solve(s->embed) != CT_EVAL_OK || !ct_stepper_finite(s->embed->a, s->nu)
+        || !ct_stepper_finite(s->m->rate, s->nq))
         return false;
     keep_measures(s, l);
     ct_lane_put(dy, l, s->m->rate, (size_t)s->nq);
@@ -73,7 +77,7 @@ bool ct_lane_project(struct ct_lanes *s, int l, double t, vec *y)
 {
     const long switches = s->embed->switches;
     ct_lane_become(s, l, t, y);
-    if (ct_embed_project(s->embed, t, s->one_y) != CT_EVAL_OK)
+    if (ct_embed_project(s->embed, ct_run_before(s->run, t), s->one_y) != CT_EVAL_OK)
         return false;
     keep_measures(s, l);
     ct_lane_put(y, l, s->one_y, (size_t)s->ny);

@@ -7,7 +7,7 @@
 
 static inline void set_input(struct ct_lanes *s, vec t, const vec *y)
 {
-    s->input[0] = t;
+    s->input[0] = choose(t < s->before, t, s->before);
     copy(s->input + s->m->at_q, y, s->nq + s->nu);
     s->input[s->m->at_work] = y[s->nq + s->nu];
 }
@@ -43,7 +43,7 @@ static inline set solve_by_forms(struct ct_lanes *s, vec *dy, set wanted)
         ct_lane_run(&form->solved, s->input);
         const vec *a = form->solved.out, *rate = a + s->nu, *inertia = rate + s->nq,
                   *pivot = inertia + c->nfree, *power = pivot + c->npivot;
-        mask is_sound = mask_of(here);
+        mask is_sound = mask_of(here) & is_finite(a, s->nu + s->nq);
         for (size_t i = 0; i < c->nfree; i++)
             is_sound &= inertia[i] > 0;
         const set good = set_of(is_sound & weigh(s, c, pivot, here));

@@ -1,7 +1,7 @@
 // A try in all lanes at once: see lanes.h. The steps are those of integrate/driver.c, the derivative and the
 // projection those of simulate.c and embed.c, so that a lane ends where a run alone ends, to rounding.
 #include "integrate/stepper.h"
-#include "solve/lane_form.h"
+#include "solve/lane_watch.h"
 
 #include <limits.h>
 #include <math.h>
@@ -68,7 +68,7 @@ static set project(struct ct_lanes *s, vec t, vec *y, set wanted)
 
 // ---- the derivative, as in simulate.c -----------------------------------------------------------------
 
-// dy but for the power, which some forms know, at the input, (t, y): by forms where they are sound, else by matrices, one
+// dy, finite, but for the power, which some forms know, at the input, (t, y): by forms where they are sound, else by matrices, one
 // by one.
 static set solve(struct ct_lanes *s, vec t, const vec *y, vec *dy, set wanted)
 {
@@ -103,7 +103,7 @@ static void find_multipliers(struct ct_lanes *s, vec t, const vec *y, const vec 
             ct_lane_multipliers(s, l, t[l], y, dy);
 }
 
-// dy = f(t, y). Returns the lanes of `wanted` that have one.
+// dy = f(t, y). Returns the lanes of `wanted` that have one; without constraints it need not be finite.
 static set derive(struct ct_lanes *s, vec t, const vec *y, vec *dy, set wanted)
 {
     const int nu = s->nu, nq = s->nq;
@@ -125,41 +125,64 @@ static set derive(struct ct_lanes *s, vec t, const vec *y, vec *dy, set wanted)
         ct_lane_run(&s->power, s->input);
         dy[s->ny - 1] = s->power.out[0];
     }
-    return wanted & finite(dy, s->ny);
+    return wanted;
 }
 
 // ---- a try ------------------------------------------------------------------------------------------
 
-// out (ny) = y + h sum_j a_j k_j, y NULL: without. A few states at a time: coefficients and places are read once for them.
+// The same for `few` states from i on: known where this is called, so that their sums stay in registers.
+static inline void combine_few(const struct ct_lanes *s, vec *out, const vec *y,
+                               const struct ct_lane_sum *b, int i, int few)
+{
+    enum { MOST = 6 };
+    const vec *k = s->k + i, h = s->h;
+    vec sum[MOST] = {{0}};
+    for (int j = 0; j < b->n; j++)
+        for (int l = 0; l < few; l++)
+            sum[l] += b->a[j] * k[b->at[j] + (size_t)l];
+    for (int l = 0; l < few; l++)
+        out[i + l] = y ? y[i + l] + h * sum[l] : h * sum[l];
+}
+
+// out (ny) = y + h sum_j a_j k_j, y NULL: without. A few states at a time: coefficients and places are read once for
+// them, and their sums do not wait for each other.
 static void combine(const struct ct_lanes *s, vec *out, const vec *y,
                     const struct ct_lane_sum *b)
 {
-    enum { FEW = 3 };
-    const vec h = s->h;
     int i = 0;
-    for (; i + FEW <= s->ny; i += FEW) {
-        const vec *k = s->k + i;
-        vec sum[FEW] = {{0}};
-        for (int j = 0; j < b->n; j++)
-            for (int l = 0; l < FEW; l++)
-                sum[l] += b->a[j] * k[b->at[j] + (size_t)l];
-        for (int l = 0; l < FEW; l++)
-            out[i + l] = y ? y[i + l] + h * sum[l] : h * sum[l];
-    }
-    for (; i < s->ny; i++) {
-        vec sum = {0};
-        for (int j = 0; j < b->n; j++)
-            sum += b->a[j] * s->k[b->at[j] + (size_t)i];
-        out[i] = y ? y[i] + h * sum : h * sum;
+    for (; s->ny - i >= 9; i += 6)
+        combine_few(s, out, y, b, i, 6);
+    switch (s->ny - i) {
+    case 8:
+        combine_few(s, out, y, b, i, 4);
+        combine_few(s, out, y, b, i + 4, 4);
+        break;
+    case 7:
+        combine_few(s, out, y, b, i, 4);
+        combine_few(s, out, y, b, i + 4, 3);
+        break;
+    case 6:
+        combine_few(s, out, y, b, i, 6);
+        break;
+    case 5:
+        combine_few(s, out, y, b, i, 5);
+        break;
+    case 4:
+        combine_few(s, out, y, b, i, 4);
+        break;
+    case 3:
+        combine_few(s, out, y, b, i, 3);
+        break;
+    default:
+        for (; i < s->ny; i++)
+            combine_few(s, out, y, b, i, 1);
     }
 }
 
-// Root mean square of e against the tolerance, as ct_stepper_norm.
-static vec norm(const struct ct_lanes *s, const vec *e)
+// 1/(what the error of each state may be), as in ct_stepper_norm.
+static void find_weights(struct ct_lanes *s)
 {
-    const int n = s->has_power ? s->ny : s->ny - 1; // the work is as good as the states
     const struct ct_groups *g = s->groups;
-    vec sum = {0};
     for (int i = 0; g && i < g->n; i++)
         s->group_size[i] = (vec){0};
     for (int i = 0; g && i < s->ny; i++)
@@ -167,10 +190,20 @@ static vec norm(const struct ct_lanes *s, const vec *e)
             vec *size = &s->group_size[g->of[i]];
             *size = larger(larger(*size, s->y[i]), s->y1[i]);
         }
-    for (int i = 0; i < n; i++) {
+    for (int i = 0; i < s->ny; i++) {
         const vec size = g && g->of[i] >= 0 ? s->group_size[g->of[i]]
                                             : larger(magnitude(s->y[i]), s->y1[i]);
-        const vec part = e[i] / (s->rtol * size + s->atol);
+        s->weight[i] = 1 / (s->rtol * size + s->atol);
+    }
+}
+
+// Root mean square of e against the tolerance.
+static vec norm(const struct ct_lanes *s, const vec *e)
+{
+    const int n = s->has_power ? s->ny : s->ny - 1; // the work is as good as the states
+    vec sum = {0};
+    for (int i = 0; i < n; i++) {
+        const vec part = e[i] * s->weight[i];
         sum += part * part;
     }
     for (int l = 0; l < W; l++)
@@ -192,10 +225,15 @@ static void judge_outputs(struct ct_lanes *s, const vec *e, set lanes)
     const size_t n = s->output.nout;
     const vec t = s->t + s->h;
     vec *y = s->end;
+    set probing = 0, again = 0;
+    for (int l = 0; l < W; l++)
+        if (ct_has_lane(lanes, l) && s->lane[l].outputs.unprobed == 0)
+            probing |= 1u << l;
     copy(s->at, outputs(s, t, s->y1), (int)n);
-    for (int i = 0; i < s->ny; i++)
+    for (int i = 0; i < s->ny && probing; i++)
         y[i] = s->y1[i] + ct_fidelity_probe(i) * s->y1[i];
-    copy(s->probed, outputs(s, t, y), (int)n);
+    if (probing)
+        copy(s->probed, outputs(s, t, y), (int)n);
     for (int i = 0; i < s->ny; i++)
         y[i] = s->y1[i] + e[i];
     const vec *off = outputs(s, t, y);
@@ -204,36 +242,60 @@ static void judge_outputs(struct ct_lanes *s, const vec *e, set lanes)
         if (!ct_has_lane(lanes, l))
             continue;
         ct_lane_take(s->one_at, s->at, l, n);
-        ct_lane_take(s->one_probed, s->probed, l, n);
         ct_lane_take(s->one_off, off, l, n);
+        if (ct_has_lane(probing, l))
+            ct_lane_take(s->one_probed, s->probed, l, n);
+        else
+            lane->outputs.unprobed--;
+        const bool is_probed = ct_has_lane(probing, l);
         const struct ct_tolerance tolerance = {s->rtol[l], s->atol[l]};
-        lane->error
-            = fmax(lane->error, ct_fidelity_judge(&lane->outputs, s->one_at, s->one_probed,
-                                                  s->one_off, &tolerance, lane->error));
+        const double error = ct_fidelity_judge(&lane->outputs, s->one_at,
+                                               is_probed ? s->one_probed : s->one_at,
+                                               s->one_off, &tolerance, lane->error);
+        if (is_probed || error <= 1) {
+            lane->error = fmax(lane->error, error);
+        } else { // no step is refused for its rounding
+            lane->outputs.skip = lane->outputs.unprobed = 0;
+            again |= 1u << l;
+        }
     }
+    if (again)
+        judge_outputs(s, e, again);
+}
+
+// As ct_stepper_join.
+static vec join(vec e5, vec e3)
+{
+    const vec part = e3 / (10 * e5), square = 1 + part * part;
+    vec root;
+    for (int l = 0; l < W; l++)
+        root[l] = sqrt(square[l]);
+    return choose(e5 > 0, e5 / root, e5);
 }
 
 static void estimate(struct ct_lanes *s, set wanted)
 {
-    vec e3 = {0}, *e = s->point;
+    vec *e = s->point;
     set due = 0;
     combine(s, e, NULL, &s->error);
+    find_weights(s);
     const vec size = norm(s, e);
     vec joint = size;
     if (s->third.n) {
         combine(s, s->end, s->y, &s->third);
         for (int i = 0; i < s->ny; i++)
             s->end[i] = s->y1[i] - s->end[i];
-        e3 = norm(s, s->end);
+        joint = join(size, norm(s, s->end));
     }
     for (int l = 0; l < W; l++) {
         struct ct_lane *lane = &s->lane[l];
-        if (s->third.n)
-            joint[l] = ct_stepper_join(size[l], e3[l]);
         lane->error = joint[l];
-        if (s->output.nout && ct_has_lane(wanted, l) && joint[l] <= 1
-            && ct_fidelity_is_due(&lane->outputs))
+        if (!s->output.nout || !ct_has_lane(wanted, l) || !(joint[l] <= 1))
+            continue;
+        if (ct_fidelity_is_due(&lane->outputs))
             due |= 1u << l;
+        else
+            lane->error = fmax(lane->error, ct_fidelity_foreseen(&lane->outputs, joint[l]));
     }
     if (!due)
         return;
@@ -271,7 +333,7 @@ static set project_end(struct ct_lanes *s, vec t, set wanted)
         return wanted;
     }
     wanted = project(s, t, s->end, wanted);
-    return derive(s, t, s->end, s->dend, wanted);
+    return derive(s, t, s->end, s->dend, wanted) & finite(s->dend, s->ny);
 }
 
 // ---- step control, as in driver.c -------------------------------------------------------------------
@@ -279,11 +341,15 @@ static set project_end(struct ct_lanes *s, vec t, set wanted)
 static void plan(struct ct_lanes *s, int l)
 {
     struct ct_lane *lane = &s->lane[l];
-    const double rest = lane->t1 - s->t[l], wanted = fmin(lane->control.h, lane->t1);
-    const double h = ct_control_fit(rest, wanted);
+    if (lane->events.whole > 0) {
+        ct_lane_plan_again(s, l);
+        return;
+    }
+    const double stop = ct_lane_stop(lane), rest = stop - s->t[l];
+    const double h = ct_control_fit(rest, fmin(lane->control.h, lane->longest));
     const bool is_landing = h >= rest;
-    s->h[l] = h;
-    lane->end = is_landing ? lane->t1 : s->t[l] + h;
+    s->h[l] = lane->h = h;
+    lane->end = is_landing ? stop : s->t[l] + h;
     if ((!is_landing && ct_control_is_lost(h, s->t[l], lane->t1)) || lane->steps >= MOST_STEPS)
         ct_lane_give_up(s, l);
 }
@@ -293,10 +359,11 @@ static void adapt(struct ct_lanes *s, set tried, set wanted)
     for (int l = 0; l < W; l++) {
         struct ct_lane *lane = &s->lane[l];
         if (ct_has_lane(wanted, l)) {
-            ct_control_accept(&lane->control, s->method, s->h[l], lane->error);
+            ct_control_accept(&lane->control, s->method, lane->h, lane->error);
             ct_fidelity_keep(&lane->outputs);
         } else if (ct_has_lane(tried, l)) {
             ct_control_refuse(&lane->control, s->method, s->h[l], lane->error);
+            lane->events.whole = 0;
             s->count.rejected++;
         }
     }
@@ -337,7 +404,7 @@ static void give_up_fast(struct ct_lanes *s, const vec *memory, set wanted)
 {
     for (size_t i = 0; i < s->e->nmemory; i++) {
         const bool is_half = s->e->memory[i].kind == CT_MEMORY_QUATERNION;
-        for (int l = 0; l < W && s->e->memory[i].kind != CT_MEMORY_OFFSET; l++) {
+        for (int l = 0; l < W && ct_memory_is_followed(&s->e->memory[i]); l++) {
             const double turn = (is_half ? 2 : 1) * fabs(s->memory.out[i][l] - memory[i][l]);
             if (ct_has_lane(wanted, l) && turn > ct_lane_most_turn)
                 ct_lane_give_up(s, l);
@@ -356,7 +423,7 @@ static void follow(struct ct_lanes *s, vec t, const vec *y, set wanted)
     ct_lane_run(&s->memory, s->input);
     give_up_fast(s, memory, wanted);
     for (size_t i = 0; i < e->nmemory; i++) {
-        if (e->memory[i].kind != CT_MEMORY_OFFSET)
+        if (ct_memory_is_followed(&e->memory[i]))
             put(&memory[i], &s->memory.out[i], 1, wanted);
         if (e->memory[i].kind != CT_MEMORY_QUATERNION || e->memory[i].place != 3)
             continue;
@@ -429,6 +496,7 @@ static void commit(struct ct_lanes *s, set wanted)
             wanted &= ~(1u << l);
     put(s->y, s->end, s->ny, wanted);
     put(s->dy, s->dend, s->ny, wanted);
+    put(s->g0, s->g, s->nroot, wanted);
     for (int l = 0; l < W; l++) {
         struct ct_lane *lane = &s->lane[l];
         if (!ct_has_lane(wanted, l))
@@ -436,7 +504,8 @@ static void commit(struct ct_lanes *s, set wanted)
         s->t[l] = lane->end;
         lane->steps++;
         s->count.steps++;
-        if (lane->end >= lane->t1)
+        ct_lane_pass(s, l);
+        if (lane->end >= lane->t1 && lane->state == CT_LANE_RUNNING)
             lane->state = CT_LANE_ARRIVED;
     }
 }
@@ -462,7 +531,7 @@ __attribute__((target_clones("avx2", "default"), flatten))
 #endif
 void ct_lanes_step(struct ct_lanes *s)
 {
-    set tried = 0;
+    set tried = 0, again;
     vec end = s->t;
     s->whose = -1; // runs may have been started since
     for (int l = 0; l < W; l++) {
@@ -478,8 +547,9 @@ void ct_lanes_step(struct ct_lanes *s)
     estimate(s, wanted);
     wanted = accept(s, wanted);
     wanted = project_end(s, end, wanted);
+    wanted = watch_events(s, end, wanted, &again);
     follow(s, end, s->end, wanted);
-    adapt(s, tried, wanted);
+    adapt(s, tried & ~again, wanted);
     foresee_singular(s, end, s->end, wanted);
     watch_stiffness(s, wanted);
     commit(s, wanted);

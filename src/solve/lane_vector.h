@@ -57,13 +57,18 @@ static inline vec smaller(vec a, vec v)
     return choose(size < a, size, a);
 }
 
-// Lanes where all n numbers are finite: 0 * inf is NaN.
-static inline set finite(const vec *v, int n)
+// Where all n numbers are finite: 0 * inf is NaN.
+static inline mask is_finite(const vec *v, int n)
 {
     vec zero = {0};
     for (int i = 0; i < n; i++)
         zero += 0 * v[i];
-    return set_of(zero == 0);
+    return zero == 0;
+}
+
+static inline set finite(const vec *v, int n)
+{
+    return set_of(is_finite(v, n));
 }
 
 // to (n) = from in these lanes.

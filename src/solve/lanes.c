@@ -1,6 +1,7 @@
 // Members come and go: see lanes.h. What happens to them is in the other files of lane.h.
 #include "solve/lane.h"
 #include "integrate/stepper.h"
+#include "solve/mode.h"
 
 #include <math.h>
 #include <string.h>
@@ -48,23 +49,19 @@ static void prepare_all(struct ct_lanes *s)
     prepare(&s->power, s->input);
     prepare(&s->memory, s->input);
     prepare(&s->output, s->input);
+    prepare(&s->root, s->input);
     for (size_t i = 0; i < s->nform; i++)
         prepare_form(s->form[i], s->input);
 }
 
 // ---- creation ---------------------------------------------------------------------------------------
 
-const char *ct_lanes_refusal(const struct ct_equations *e, const struct ct_run_options *o)
+const char *ct_lanes_refusal(const struct ct_run_options *o)
 {
     if (!o->method->tableau)
         return "the method is not an explicit one with step control";
     if (o->step > 0)
         return "the step is fixed";
-    if (e->nmode)
-        return "the model has switches";
-    for (size_t i = 0; i < e->x->ntable; i++)
-        if (!e->x->table[i].m)
-            return "the model has tables with kinks";
     return NULL;
 }
 
@@ -80,8 +77,8 @@ static bool tables_reach(const struct ct_exs *x, double end)
 static void make_room(struct ct_arena *a, struct ct_lanes *s)
 {
     const size_t n = (size_t)s->nu, r = (size_t)s->nrow, ny = (size_t)s->ny;
-    vec **const states[]
-        = {&s->start, &s->y, &s->dy, &s->y1, &s->dy1, &s->end, &s->dend, &s->point, &s->late};
+    vec **const states[] = {&s->start, &s->y,    &s->dy,    &s->y1,   &s->dy1,
+                            &s->end,   &s->dend, &s->point, &s->late, &s->weight};
     double **const one[] = {&s->one_y, &s->one_dy, &s->one_point, &s->one_end};
     for (size_t i = 0; i < COUNT(states); i++)
         *states[i] = CT_NEWN(a, vec, ny);
@@ -131,7 +128,9 @@ struct ct_lanes *ct_lanes_create(struct ct_arena *a, const struct ct_equations *
     make_program(s, &s->memory, &m->memory);
     if (ct_run_fidelity(run))
         make_program(s, &s->output, ct_fidelity_program(ct_run_fidelity(run)));
+    make_program(s, &s->root, &m->root);
     make_room(a, s);
+    ct_lane_make_events(s);
     return s;
 }
 
@@ -173,10 +172,10 @@ static struct ct_lane_form *make_form(struct ct_lanes *s, const struct ct_partit
     ct_machine_prepare(m);
     ct_machine_motion(m);
     struct ct_lane_form *f = CT_NEW(s->arena, struct ct_lane_form);
-    f->form = ct_form_create(s->arena, m, p, ct_embed_operations(s->embed), NULL);
+    f->form = ct_form_create(s->arena, m, p, ct_embed_operations(s->embed), NULL, NULL);
     if (f->form && f->form->kind == &ct_form_whole) { // lanes judge by B and its pivots
         ct_form_destroy(m, f->form);
-        f->form = ct_form_create(s->arena, m, p, 0, &ct_form_unrolled);
+        f->form = ct_form_create(s->arena, m, p, 0, &ct_form_unrolled, NULL);
     }
     memcpy(m->input, now, size);
     ct_machine_prepare(m);
@@ -293,7 +292,8 @@ static bool first_step(struct ct_lanes *s, int l, const double *y)
     const struct ct_tolerance tolerance = {s->rtol[l], s->atol[l]};
     const double d0 = ct_stepper_norm(&p, &tolerance, y, y, y);
     const double d1 = ct_stepper_norm(&p, &tolerance, y, y, s->one_dy);
-    const double h = lane->control.h = ct_control_glance(d0, d1, lane->t1);
+    const double limit = fmin(lane->longest, ct_lane_stop(lane));
+    const double h = lane->control.h = ct_control_glance(d0, d1, limit);
     for (int i = 0; i < s->ny; i++)
         s->one_point[i] = y[i] + h * s->one_dy[i];
     if (ct_run_rhs(s->run, h, s->one_point, s->one_end) != CT_EVAL_OK)
@@ -301,8 +301,19 @@ static bool first_step(struct ct_lanes *s, int l, const double *y)
     for (int i = 0; i < s->ny; i++)
         s->one_point[i] = (s->one_end[i] - s->one_dy[i]) / h;
     const double d2 = ct_stepper_norm(&p, &tolerance, y, y, s->one_point);
-    lane->control.h = ct_control_first(s->method, h, d1, d2, lane->t1);
+    lane->control.h = ct_control_first(s->method, h, d1, d2, limit);
     return isfinite(lane->control.h);
+}
+
+void ct_lane_limit_turn(struct ct_lanes *s, int l, double t, const double *y)
+{
+    struct ct_lane *lane = &s->lane[l];
+    const double glance = 1e-6; // of the run, or [s]
+    const double turning = ct_memory_turning(s->m, ct_time_before(t, lane->events.pending), y,
+                                             glance * fmin(1, lane->t1));
+    ct_machine_set(s->m, t, y);
+    if (turning > 0)
+        lane->control.h = fmin(lane->control.h, ct_lane_most_turn / turning / 2);
 }
 
 static void start_lane(struct ct_lane *lane, const struct ct_run_options *o)
@@ -341,7 +352,7 @@ bool ct_lanes_load(struct ct_lanes *s, int l, const struct ct_run_options *o)
 {
     const double *y = ct_run_state(s->run);
     const int rank = s->embed->rank;
-    if (!(o->duration > 0) || ct_lanes_refusal(s->e, o) || !tables_reach(s->e->x, o->duration)
+    if (!(o->duration > 0) || ct_lanes_refusal(o) || !tables_reach(s->e->x, o->duration)
         || (s->is_used && (o->method != s->method || rank != s->rank))
         || (s->needs_lam && rank != s->nrow))
         return false;
@@ -353,18 +364,18 @@ bool ct_lanes_load(struct ct_lanes *s, int l, const struct ct_run_options *o)
     s->pivot_most[l] = 0;
     s->near &= ~(1u << l);
     start_lane(&s->lane[l], o);
-    const double glance = 1e-6; // of the run, or [s]
-    const double turning = ct_memory_turning(s->m, 0, y, glance * fmin(1, o->duration));
     ct_machine_set(s->m, 0, y);
-    if (!ct_lane_choose(s, l) || ct_run_rhs(s->run, 0, y, s->one_dy) != CT_EVAL_OK)
+    if (!ct_lane_begin_events(s, l, o) || !ct_lane_choose(s, l)
+        || ct_run_rhs(s->run, 0, y, s->one_dy) != CT_EVAL_OK)
         return false;
     s->sigma[l] = s->embed->sigma; // of y now
     compare_at_start(s, l);
     if (!first_step(s, l, y))
         return false;
-    if (turning > 0)
-        s->lane[l].control.h = fmin(s->lane[l].control.h, ct_lane_most_turn / turning / 2);
+    ct_lane_limit_turn(s, l, 0, y);
     fill(s, l, y);
+    if (!ct_lane_take_bearings(s, l, 0, y, s->one_dy))
+        return false;
     s->lane[l].state = CT_LANE_RUNNING;
     return true;
 }

@@ -7,7 +7,8 @@
 // of them at once, by generated programs in lanes and small solves whose innermost loop is over the lanes.
 // What the error or a projection refuses is tried again shorter while the others go on, so that no lane
 // waits for the worst; a lane that has arrived is given the next member. Choices that are rare and differ
-// (rows, columns, the start, the results) are made one by one, by the run that the lanes are made for.
+// (rows, columns, the start, the results) are made one by one, by the run that the lanes are made for. So are events: a lane
+// takes a step with one again until it ends there, while the others go on.
 //
 // What always holds: a member's numbers depend on nothing but the member, not on the lane, nor on what the
 // other lanes do. A member that meets what lanes do not do (a singular position, a step that becomes too
@@ -17,14 +18,14 @@
 
 #include "solve/simulate.h"
 
-enum { CT_LANES = 4 };
+enum { CT_LANES = 4, CT_LANE_GROUPS = 2 }; // a worker has up to so many groups of lanes
 
 enum ct_lane_state { CT_LANE_IDLE, CT_LANE_RUNNING, CT_LANE_ARRIVED, CT_LANE_GIVEN_UP };
 
 struct ct_lanes;
 
-/// Why runs of these equations with these options cannot be in lanes, or NULL when they can.
-const char *ct_lanes_refusal(const struct ct_equations *e, const struct ct_run_options *o);
+/// Why runs with these options cannot be in lanes, or NULL when they can.
+const char *ct_lanes_refusal(const struct ct_run_options *o);
 /// Programs compiled for lanes, by the back end that the run uses. All in a; run must live as long, and from now on
 /// solves by matrices, so that what it does for one member does not depend on the members before.
 struct ct_lanes *ct_lanes_create(struct ct_arena *a, const struct ct_equations *e,

@@ -149,15 +149,42 @@ static double close(struct ct_form *form, struct ct_machine *m)
 
 // ---- creation -----------------------------------------------------------------------------------------
 
-static struct ct_sparse *analyse_whole(struct network *f, struct ct_machine *m)
+// What a factor takes, and solving with it.
+static double cost_of(const struct ct_sparse *s)
+{
+    return per_operation * ct_sparse_operations(s) + per_factor * ct_sparse_fill(s);
+}
+
+// In the order that one system of expressions would be eliminated in; NULL: there is none.
+static struct ct_sparse *analyse_along(struct network *f, struct ct_machine *m,
+                                       const struct ct_partition *p, const int *row,
+                                       const int *column, size_t nentry)
+{
+    struct ct_arena *a = f->form.arena;
+    const struct ct_pivot_order *found
+        = p->pivots ? p->pivots : ct_pivot_order_find(a, m->e, p, m->motion.out, m->Q + m->nu);
+    return found ? ct_sparse_create_along(a, (int)(m->nu + p->rank), row, column, nentry,
+                                          found->row, found->column)
+                 : NULL;
+}
+
+// By the library's order or the one of expressions, whichever is cheaper; factored.
+static struct ct_sparse *analyse_whole(struct network *f, struct ct_machine *m,
+                                       const struct ct_partition *p)
 {
     const struct ct_equations *e = m->e;
     const size_t most = 2 * (e->nM + e->nJ) + 1;
     int *row = CT_NEWN(f->form.arena, int, most), *column = CT_NEWN(f->form.arena, int, most);
     f->value = CT_NEWN(f->form.arena, double, most);
     const size_t n = fill_whole(f, m, row, column, f->value);
-    return ct_sparse_create(f->form.arena, (int)(e->nu + f->form.rank), row, column, n,
-                            CT_SPARSE_DIAGONAL);
+    struct ct_sparse *s = ct_sparse_create(f->form.arena, (int)(e->nu + f->form.rank), row,
+                                           column, n, CT_SPARSE_DIAGONAL);
+    struct ct_sparse *along = s ? analyse_along(f, m, p, row, column, n) : NULL;
+    if (s && !ct_sparse_factor(s, f->value))
+        s = NULL;
+    if (along && !ct_sparse_factor(along, f->value))
+        along = NULL;
+    return s && along ? (cost_of(s) <= cost_of(along) ? s : along) : s ? s : along;
 }
 
 static struct ct_sparse *analyse_Jd(struct network *f, const struct ct_machine *m,
@@ -199,10 +226,9 @@ static struct ct_form *create(struct ct_arena *a, struct ct_machine *m,
     f->x = CT_NEWN(own, double, n + 1);
     f->dq = CT_NEWN(own, double, m->nu + 1);
     f->du = CT_NEWN(own, double, m->nu + 1);
-    f->whole = analyse_whole(f, m);
+    f->whole = analyse_whole(f, m, p);
     f->Jd = analyse_Jd(f, m, p);
-    if (!f->whole || !f->Jd || !ct_sparse_factor(f->whole, f->value)
-        || !factor_Jd(f, m->Q + m->nu)) {
+    if (!f->whole || !f->Jd || !factor_Jd(f, m->Q + m->nu)) {
         ct_arena_destroy(own);
         return NULL;
     }
@@ -211,9 +237,8 @@ static struct ct_form *create(struct ct_arena *a, struct ct_machine *m,
     f->form.operations = ct_form_operations(&m->motion);
     f->form.cost = f->form.operations + per_value * (double)(m->e->nM + 2 * m->e->nJ);
     for (size_t i = 0; i < COUNT(all); i++) {
-        const double flops = ct_sparse_operations(all[i]), fill = ct_sparse_fill(all[i]);
-        f->form.operations += flops + 2 * fill;
-        f->form.cost += per_operation * flops + per_factor * fill;
+        f->form.operations += ct_sparse_operations(all[i]) + 2 * ct_sparse_fill(all[i]);
+        f->form.cost += cost_of(all[i]);
     }
     f->form.a = f->x;
     f->form.lam = f->x + m->nu;

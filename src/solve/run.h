@@ -28,7 +28,8 @@ struct ct_run {
     size_t nevent;
     int *root_of; // state modes, in order
     int nroot;
-    bool needs_lam, has_power;
+    bool needs_lam, has_power;    // needs_lam: the power does
+    bool has_lam_results;         // outputs or indicators depend on multipliers
     struct ct_fidelity *fidelity; // of outputs; NULL: none is controlled
     const struct ct_run_options *o;
     struct ct_run_report *report;
@@ -53,7 +54,7 @@ struct ct_run {
 /// The time to evaluate at for t.
 static inline double ct_run_before(const struct ct_run *r, double t)
 {
-    return ct_time_before(t, r->pending);
+    return t < r->pending ? t : ct_time_before(t, r->pending);
 }
 
 /// u' into the embedding's a and the machine's input, q' into its rate.

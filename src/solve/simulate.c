@@ -136,6 +136,8 @@ double ct_run_longest_step(void *user)
 
 bool ct_run_is_followed(struct ct_run *r, double t, const double *y)
 {
+    if (!r->e->nmemory)
+        return true;
     const double now = turning(r, t, y);
     if ((t - r->t_turning) * fmax(now, r->turning) > most_turn)
         return false;
@@ -144,7 +146,7 @@ bool ct_run_is_followed(struct ct_run *r, double t, const double *y)
     return true;
 }
 
-static enum ct_eval accepted(void *user, double t, double *y, const double *dy)
+static enum ct_eval accepted(void *user, double t, const double *y, const double *dy)
 {
     struct ct_run *r = user;
     const double turning_before = r->turning, t_before = r->t_turning;
@@ -158,9 +160,11 @@ static enum ct_eval accepted(void *user, double t, double *y, const double *dy)
     }
     if (r->fidelity)
         ct_fidelity_accept(r->fidelity);
-    ct_machine_set(r->m, ct_run_before(r, t), y);
+    const bool has_rows = r->method->is_implicit && r->m->nrow > 0;
+    if (r->e->nmemory || has_rows)
+        ct_machine_set(r->m, ct_run_before(r, t), y);
     ct_memory_follow(r->m);
-    if (r->method->is_implicit) { // its steps may pass without a projection
+    if (has_rows) { // its steps may pass without a projection
         ct_machine_constraint(r->m);
         ct_embed_renew(r->s);
     }
@@ -179,6 +183,10 @@ static void find_needs(struct ct_run *r)
     const struct ct_equations *e = r->e;
     r->has_power = !ct_ex_is_zero(e->power);
     r->needs_lam = uses(e, e->power, CT_SYM_LAM);
+    for (size_t i = 0; i < e->nresult; i++)
+        r->has_lam_results |= uses(e, e->result[i].value, CT_SYM_LAM);
+    for (size_t i = 0; i < e->nvalidity; i++)
+        r->has_lam_results |= uses(e, e->validity[i].eta, CT_SYM_LAM);
     r->root_of = CT_NEWN(r->arena, int, e->nmode + 1);
     for (size_t i = 0; i < e->nmode; i++)
         if (!e->mode[i].is_time)
@@ -186,7 +194,7 @@ static void find_needs(struct ct_run *r)
 }
 
 // To the start, assembled; rows and columns chosen there.
-static bool begin(struct ct_run *r, const struct ct_start *start)
+bool ct_run_begin(struct ct_run *r, const struct ct_start *start)
 {
     ct_start_apply(start, r->m, r->y);
     ct_machine_constraint(r->m);
@@ -232,7 +240,7 @@ struct ct_run *ct_run_create(struct ct_ctx *ctx, struct ct_arena *a,
                              const struct ct_start *start)
 {
     struct ct_run *r = ct_run_prepare(ctx, a, model, e);
-    return begin(r, start) ? r : NULL;
+    return ct_run_begin(r, start) ? r : NULL;
 }
 
 bool ct_run_restart(struct ct_run *r, const struct ct_start *start)
@@ -242,7 +250,7 @@ bool ct_run_restart(struct ct_run *r, const struct ct_start *start)
     r->pending = INFINITY;
     r->energy0 = r->energy_scale = 0;
     r->started = false;
-    return begin(r, start);
+    return ct_run_begin(r, start);
 }
 
 const struct ct_fidelity *ct_run_fidelity(const struct ct_run *r)
@@ -275,7 +283,8 @@ enum ct_eval ct_run_results(struct ct_run *r, double t, const double *y, double 
     const enum ct_eval e = ct_run_accelerate(r, t, y);
     if (e != CT_EVAL_OK)
         return e;
-    ct_run_find_multipliers(r);
+    if (r->has_lam_results)
+        ct_run_find_multipliers(r);
     ct_program_run(&r->m->result, r->m->input);
     memcpy(out, r->m->result.out, r->e->nresult * sizeof *out);
     return CT_EVAL_OK;

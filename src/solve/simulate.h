@@ -61,9 +61,11 @@ struct ct_run_report {
 struct ct_run *ct_run_create(struct ct_ctx *ctx, struct ct_arena *a,
                              const struct ct_model *model, const struct ct_equations *e,
                              const struct ct_start *start);
-/// Machine and embedding only: it has to be started.
+/// Machine and embedding only: it has to be started, by begin, or by restart.
 struct ct_run *ct_run_prepare(struct ct_ctx *ctx, struct ct_arena *a,
                               const struct ct_model *model, const struct ct_equations *e);
+/// To the start; choices made and modes set. False with a diagnostic.
+bool ct_run_begin(struct ct_run *r, const struct ct_start *start);
 /// The run as new from another start, with the values that the model's parameters have now. False with a diagnostic.
 bool ct_run_restart(struct ct_run *r, const struct ct_start *start);
 struct ct_machine *ct_run_machine(struct ct_run *r);

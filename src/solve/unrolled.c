@@ -3,6 +3,7 @@
 //     solved    u', q'                                  at every evaluation
 //     checked   u', lam after a refinement, residuals   once a step
 //     closing   Phi, v and the corrections for them     in projections
+#include "codegen/native.h"
 #include "solve/form.h"
 
 #include <math.h>
@@ -165,6 +166,13 @@ static void destroy(struct ct_form *form, struct ct_machine *m)
         ct_machine_forget(m, all[i]);
 }
 
+// Bytes of machine code; where there is none, what it would be without loops.
+static double code_size(const struct unrolled *f)
+{
+    return f->solved.native ? (double)ct_native_code_size(f->solved.native)
+                            : ct_form_code_size(f->form.operations);
+}
+
 static struct ct_form *create(struct ct_arena *a, struct ct_machine *m,
                               const struct ct_partition *p, double most_nodes,
                               const struct ct_form_kind *kind)
@@ -187,7 +195,8 @@ static struct ct_form *create(struct ct_arena *a, struct ct_machine *m,
     compile_solved(f, m, x);
     compile_checked(f, m, x);
     compile_closing(f, m, x);
-    f->form.operations = f->form.cost = ct_form_operations(&f->solved);
+    f->form.operations = ct_form_operations(&f->solved);
+    f->form.cost = ct_form_straight_cost(f->form.operations, code_size(f));
     return &f->form;
 }
 
@@ -202,16 +211,6 @@ static struct ct_form *create_whole(struct ct_arena *a, struct ct_machine *m,
 {
     // where the rows determine all accelerations, they are found without M
     return p->nfree ? create(a, m, p, most_nodes, &ct_form_whole) : NULL;
-}
-
-double ct_form_predict_whole(struct ct_arena *a, const struct ct_machine *m,
-                             const struct ct_partition *p)
-{
-    struct ct_arena *own = ct_arena_create_under(a);
-    const double solution
-        = ct_closed_predict(own, m->e->x, m->e, p, m->motion.out, m->Q + m->nu);
-    ct_arena_destroy(own);
-    return ct_form_operations(&m->motion) + solution;
 }
 
 const struct ct_form_kind ct_form_unrolled = {.name = "unrolled",

@@ -1,7 +1,7 @@
 # What a system is. Costs change with the engine and are left out.
 . "$(dirname "$0")/lib.sh"
 plain() {
-  say "$@" | sed -e '/^motion/d' -e '/^constraints/d' -e '/^evaluation/d' -e 's/pairs.*/pairs/' -e 's/[0-9]* pairs/N pairs/' -e 's/be [0-9]* operations/be N operations/' \
+  say "$@" | sed -e '/^motion/d' -e '/^constraints/d' -e '/^evaluation/d' -e 's/pairs.*/pairs/' -e 's/[0-9]* pairs/N pairs/' -e '/^solver/s/ [0-9][0-9]*/ N/g' \
     -e '/^translation/d' -e '/^rotation/d' -e '/^branches/d'
 }
 plain check "$SYSTEMS/slider_crank/model.yaml"
@@ -37,3 +37,8 @@ for model in slider_crank chain40; do
 done
 "$COTREE" simulate "$SYSTEMS/slider_crank/model.yaml" --tree joints --until 0.01 --method hht 2>&1 | grep '^derivatives'
 "$COTREE" check "$SYSTEMS/slider_crank/model.yaml" | grep -c '^derivatives' || :
+echo '-- sweeps one by one'
+for method in auto dop853 radau5; do
+  echo "$method: $("$COTREE" check "$SYSTEMS/slider_crank/model.yaml" --method $method | grep '^sweeps')"
+done
+"$COTREE" check "$SYSTEMS/slider_crank/model.yaml" --step 0.001 | grep '^sweeps'

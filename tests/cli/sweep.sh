@@ -9,6 +9,11 @@ head -1 a.csv
 cut -d, -f1-3 a.csv | tail -4
 sweep -o b.csv --threads 2
 cmp a.csv b.csv && echo "the same bytes"
+for backend in native tape; do
+  sweep -o four.csv --backend $backend --lanes 4
+  sweep -o eight.csv --backend $backend --lanes 8 --threads 1 --summary eight.json
+  cmp four.csv eight.csv && echo "$backend, $(sed -n 's/^ *"lanes": \([0-9]*\),/\1/p' eight.json) lanes: the same bytes"
+done
 ls b.csv*
 sweep -o b.csv --resume --threads 1 --lanes 1
 ls b.csv*

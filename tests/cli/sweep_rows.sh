@@ -1,5 +1,5 @@
-# A row of a sweep is what `simulate --set` gives: closed and open systems, redundant rows, beams, switches, implicit
-# methods, trees, members that lock or cannot be assembled.
+# A row of a sweep is what `simulate --set` gives: closed and open systems, redundant rows, beams, switches and tables
+# in lanes, implicit methods, trees, members that lock or cannot be assembled.
 . "$(dirname "$0")/lib.sh"
 
 # check SYSTEM UNTIL VARY OPTION...: says how many members, how many failed, and every difference
@@ -15,10 +15,17 @@ check() {
     [ $status = 0 ] || continue
     same_row "$run" "${rest%,*}" >>differences
   done
-  lanes=$(awk '/"lanes"/ { print $2 + 0 }' rows.json)
-  echo "$(basename "$(dirname "$m")") $vary $*: $(awk '/"members"/ { print $2 + 0 }' rows.json) members," \
-    "$(awk '/"failed"/ { print $2 + 0 }' rows.json) failed, lanes $lanes"
+  echo "$(basename "$(dirname "$m")") $vary $*: $(number members) members," \
+    "$(number failed) failed, lanes $(number lanes), alone $(number alone)"
   cat differences
+}
+number() { awk -v name="\"$1\":" '$1 == name { print $2 + 0 }' rows.json; }
+
+# same_bytes MODEL UNTIL VARY: however many threads and lanes
+same_bytes() {
+  "$COTREE" sweep "$1" --quiet --until "$2" --vary "$3" -o one.csv --threads 1
+  "$COTREE" sweep "$1" --quiet --until "$2" --vary "$3" -o two.csv --threads 2 --lanes 8
+  cmp one.csv two.csv && echo "the same bytes"
 }
 
 check "$SYSTEMS/four_bar/model.yaml" 1.5 b=0.3:1.1:5
@@ -45,7 +52,25 @@ outputs: [j.q, j.u, energy.total]
 simulation: {duration: 3}
 END
 check bouncing/model.yaml 2 k=1e3:1e5:3
-# tables: smooth ones in lanes, those with kinks one by one; beyond the end of a table no member goes on
+same_bytes bouncing/model.yaml 2 k=1e3:1e5:9
+# a loop with a stop and dry friction, switched by time, too
+mkdir -p stopped
+sed 's/guide: {type: prismatic,/& effort: "-if(guide.u > 0, f, -f) - if(guide.q < 0.2, 4000*(guide.q - 0.2), 0) + if(t > 0.25, 20, 0)",/
+  s/^  torque: .*/&\n  f: 3/' "$SYSTEMS/slider_crank/model.yaml" >stopped/model.yaml
+check stopped/model.yaml 0.5 f=1:5:5
+same_bytes stopped/model.yaml 0.5 f=1:5:9
+# what is held by friction is no motion that f describes: alone, with the reason
+mkdir -p held
+cat >held/model.yaml <<'END'
+cotree: 1
+parameters: {f: 1}
+bodies: {block: {mass: 1}}
+joints: {j: {type: prismatic, from: ground, to: block, axis: x, initial: {u: 1}, effort: "if(j.u > 0, -f, f) + 0.5"}}
+outputs: [j.q, j.u]
+simulation: {duration: 3}
+END
+check held/model.yaml 3 f=0.2:2:4
+# tables, smooth ones and those with kinks; beyond the end of a table no member goes on
 mkdir -p table
 awk 'BEGIN { print "t,angle"; for (i = 0; i <= 12; i++) printf "%.17g,%.17g\n", i/4, 0.3*sin(i/2) }' >table/angle.csv
 for kind in cubic linear; do

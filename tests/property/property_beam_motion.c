@@ -84,10 +84,11 @@ static const char *const kinds[] = {
     "formulation: foreshortening\n    rotary_inertia: true\n    elements: [0.3, 0.8]",
     "formulation: linear\n    mass: lumped\n    rotary_inertia: [1e-4, 1e-4, 1e-4]\n    "
     "elements: 3",
-    "formulation: foreshortening\n    theory: timoshenko\n    shear_factor: 5/6\n    "
+    "formulation: foreshortening\n    theory: timoshenko\n    shear_factor: [5/6, 0.3]\n    "
     "integration: reduced\n    elements: 3\n    rotary_inertia: true",
     "formulation: linear\n    frame: chord\n    elements: 2",
-    "formulation: foreshortening\n    frame: chord\n    twist: quadratic\n    rotary_inertia: "
+    "formulation: foreshortening\n    frame: chord\n    twist: quadratic\n    stretch: "
+    "quadratic\n    rotary_inertia: "
     "true\n    "
     "elements: 2",
 };
@@ -364,6 +365,8 @@ static const struct {
     {"formulation: foreshortening, deformation: [bending-y, bending-z]", true},
     {"formulation: foreshortening, deformation: [bending-z, torsion, bending-y]", true},
     {"formulation: foreshortening, modes: 3", true, true},
+    {"formulation: foreshortening, stretch: quadratic, damping: {alpha: 0.1, beta: 0.01}",
+     true},
     {"formulation: stretch-linear", false},
 };
 

@@ -115,13 +115,14 @@ static const char *const kinds[] = {
     "formulation: foreshortening\n    elements: 2\n    damping: {beta: 0.01}",
     "formulation: foreshortening\n    elements: [0.5, length]\n    frame: chord",
     "formulation: foreshortening\n    elements: 2\n    deformation: [bending-y, bending-z]",
-    ("formulation: foreshortening\n    theory: timoshenko\n    shear_factor: 5/6\n    "
+    ("formulation: foreshortening\n    theory: timoshenko\n    shear_factor: [5/6, 0.3]\n    "
      "elements: 3\n"
      "    rotary_inertia: true"),
     ("formulation: linear\n    elements: 3\n    mass: lumped\n"
      "    rotary_inertia: [0.02, 0.01, 0.01]"),
-    "formulation: linear\n    twist: quadratic\n    elements: 2",
-    ("formulation: foreshortening\n    twist: quadratic\n    elements: 2\n"
+    "formulation: linear\n    twist: quadratic\n    stretch: quadratic\n    elements: 2",
+    ("formulation: foreshortening\n    twist: quadratic\n    stretch: quadratic\n    elements: "
+     "2\n"
      "    rotary_inertia: [0.02, 0.01, 0.01]"),
 };
 

@@ -15,7 +15,7 @@ static struct ct_form *form_of(struct variant *v, const struct ct_form_kind *kin
     const struct ct_partition p
         = {s->row, s->dependent, s->independent, (size_t)s->rank, v->m->nu - (size_t)s->rank};
     ct_machine_motion(v->m);
-    return ct_form_create(v->arena, v->m, &p, 0, kind);
+    return ct_form_create(v->arena, v->m, &p, 0, kind, NULL);
 }
 
 static double largest(const double *v, size_t n)

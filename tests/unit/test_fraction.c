@@ -121,12 +121,49 @@ static void fractions_are_printed_for_people_only(void **state)
     ct_arena_destroy(a);
 }
 
+// A part of a fraction that is wider than a line of a page is printed as a factor: lines break there, not in \frac.
+static void wide_fractions_are_products(void **state)
+{
+    (void)state;
+    struct ct_arena *a = ct_arena_create();
+    struct ct_exs x;
+    ct_exs_init(&x, a);
+    const ct_ex m = ct_ex_sym(&x, CT_SYM_PARAM, "m", 0);
+    ct_ex narrow = m, wide = m;
+    for (int i = 0; i < CT_LATEX_LINE; i++) {
+        const ct_ex k = ct_ex_sym(&x, CT_SYM_PARAM, ct_arena_printf(a, "k%d", i), 0);
+        wide = ct_ex_add(&x, wide, k);
+        narrow = i ? narrow : ct_ex_add(&x, narrow, k);
+    }
+    const struct {
+        ct_ex above, below;
+        const char *start, *end; // of the text
+    } of[] = {
+        {narrow, m, "\\frac{", "}{m}"},
+        {wide, m, "\\frac{1}{m} \\, \\left(", "\\right)"},
+        {ct_ex_scale(&x, 3, wide), m, "\\frac{3}{m} \\, \\left(", "\\right)"},
+        {ct_ex_mul(&x, m, wide), narrow, "\\frac{1}{m + k_{0}} \\, m \\, \\left(", "\\right)"},
+        {m, wide, "m \\, \\left(", "\\right)^{-1}"},
+        {CT_EX_ONE, wide, "\\left(", "\\right)^{-1}"},
+    };
+    const struct ct_print p = {.fractions = true, .style = CT_PRINT_LATEX};
+    for (size_t i = 0; i < COUNT(of); i++) {
+        const char *s = ct_ex_text(a, &x, ct_ex_div(&x, of[i].above, of[i].below), &p);
+        const size_t n = strlen(s), end = strlen(of[i].end);
+        assert_memory_equal(s, of[i].start, strlen(of[i].start));
+        assert_true(n >= end);
+        assert_string_equal(s + n - end, of[i].end);
+    }
+    ct_arena_destroy(a);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(fractions_have_the_bits_of_their_quotient),
         cmocka_unit_test(decimals_and_other_numbers_are_none),
         cmocka_unit_test(noise_of_rounding_is_not_shown),
+        cmocka_unit_test(wide_fractions_are_products),
         cmocka_unit_test(parts_of_pi_are_found_and_printed),
         cmocka_unit_test(fractions_are_printed_for_people_only),
     };

@@ -1,5 +1,6 @@
 // Integration against solutions in closed form: orders, tolerances, events, samples, refusals. The explicit methods,
 // which stand first in the table; test_implicit.c has the others.
+#include "integrate/control.h"
 #include "integrate/problem.h"
 #include "integrate/stepper.h"
 
@@ -756,7 +757,7 @@ static enum ct_eval shortsighted(void *user, double t, const double *y, double *
     return (enum ct_eval)r->mode;
 }
 
-static enum ct_eval look_ahead(void *user, double t, double *y, const double *dy)
+static enum ct_eval look_ahead(void *user, double t, const double *y, const double *dy)
 {
     (void)y, (void)dy;
     ((struct record *)user)->limit = t;
@@ -1106,9 +1107,35 @@ static void nothing_is_allocated_while_stepping(void **unused)
     }
 }
 
+// Powers of errors in step control have four digits, whatever the error and the order.
+static void next_steps_are_those_of_the_pi_controller(void **unused)
+{
+    const double safety = 0.8, least = 0.2, most = 5;
+    (void)unused;
+    for (int order = 2; order <= 8; order += 3) {
+        const struct ct_method method = {.error_order = order};
+        struct ct_control c = ct_control_start();
+        double before = 1e-4;
+        c.h = 0.1;
+        for (double error = 0.9; error > 1e-12; error *= 0.37) {
+            const double h = c.h, beta = 0.2 / (order + 1);
+            const double power = 1. / (order + 1) - 0.75 * beta;
+            const double factor = safety * pow(error, -power) * pow(before, beta);
+            const double wanted = h * fmin(fmax(factor, least), most);
+            ct_control_accept(&c, &method, h, error);
+            assert_true(fabs(c.h / wanted - 1) < 3e-4);
+            before = fmax(error, 1e-4);
+        }
+        c.h = 1;
+        ct_control_accept(&c, &method, c.h, 0);
+        assert_true(c.h == most);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(next_steps_are_those_of_the_pi_controller),
         cmocka_unit_test(methods_are_found_by_name),
         cmocka_unit_test(halving_a_fixed_step_shows_the_order),
         cmocka_unit_test(roundings_of_many_steps_do_not_add_up),

@@ -82,13 +82,14 @@ static void every_word_is_one_of_the_struct(void **state)
 {
     struct bench *s = *state;
     const struct ct_beam *b = read_plain(
-        s, "  nu: 0.25\n  Iy: 1e-7\n  theory: timoshenko\n  shear_factor: 5/6\n"
+        s, "  nu: 0.25\n  Iy: 1e-7\n  theory: timoshenko\n  shear_factor: [5/6, 1/2]\n"
            "  geometric_stiffness: higher-order\n  integration: one-point\n  mass: lumped\n"
            "  formulation: stretch-linear\n  frame: chord\n"
            "  deformation: [torsion, bending-y]\n  modes: 7\n"
            "  damping: {beta: 1e-3}\n  initial: equilibrium\n");
     check(number(s, b->G), 3.2e10);
-    check(number(s, b->shear_factor), 5.0 / 6);
+    check(number(s, b->shear_factor[0]), 5.0 / 6);
+    check(number(s, b->shear_factor[1]), 0.5);
     check(number(s, b->J), 3e-7);
     assert_int_equal(b->theory, CT_BEAM_TIMOSHENKO);
     assert_int_equal(b->integration, CT_BEAM_ONE_POINT);
