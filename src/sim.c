@@ -219,6 +219,7 @@ bool ct_sim_resolve(struct ct_sim *sim, const struct ct_sim_options *o)
                  : o->until > 0   ? samples_until(m, o->until)
                                   : (size_t)m->samples,
         .rate_jumps = m->rate_jumps,
+        .wanted = sim->tolerance,
         .least_rtol = sim->least_rtol,
     };
     if (!choose_method(sim, o->method))
@@ -465,10 +466,24 @@ void ct_slope_warn(struct ct_ctx *ctx, const struct ct_equations *e,
     }
 }
 
+static void warn_of_starts(struct ct_sim *sim, const struct ct_build *b)
+{
+    const double worth_it = 0.01; // as the limit of the validity indicator
+    for (size_t i = 0; i < b->nflexible; i++) {
+        const struct ct_flexible *f = &b->flexible[i];
+        if (f->start_missed > worth_it)
+            ct_warning(&sim->own, f->beam->start[0].mark, 0,
+                       "beam '%s' starts with what its shapes have of this; they leave out "
+                       "%.3g %%",
+                       f->name, 100 * f->start_missed);
+    }
+}
+
 // Beams whose motion left what they are good for.
 static void warn_of_beams(struct ct_sim *sim)
 {
     const struct ct_equations *e = &sim->system->equations;
+    warn_of_starts(sim, e->build);
     ct_slope_warn(&sim->own, e, sim->report.bend);
     for (size_t i = 0; i < e->nvalidity; i++) {
         const struct ct_validity_report *v = &sim->report.validity[i];

@@ -193,6 +193,9 @@ CT_API void ct_sim_print_check(const struct ct_sim *sim, FILE *out);
  */
 CT_API bool ct_sim_export(struct ct_ctx *ctx, struct ct_sim *sim, const char *format,
                           const char *folder);
+/** The same, with M, Q, J, gam and phi, v for 4 or 8 inputs side by side, too; 1 or 0: without. */
+CT_API bool ct_sim_export_lanes(struct ct_ctx *ctx, struct ct_sim *sim, const char *format,
+                                const char *folder, long lanes);
 
 /* ---- speed against error ------------------------------------------------------------------------- */
 

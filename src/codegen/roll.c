@@ -43,11 +43,12 @@ struct edge {
 // A sequence of operands that is copied to places of its own.
 struct column {
     uint32_t operand; // 3 slot + k that it is the sequence of
+    bool is_copied;   // in each evaluation
 };
 
 // How an operand is reached, before places are known.
 struct reach {
-    enum { ROW, FIXED, INPUTS, RESULTS, COLUMN } kind;
+    enum { OPEN, ROW, FIXED, INPUTS, RESULTS, COLUMN } kind; // OPEN: not known yet
     uint32_t
         at; // instruction of the body; value; input at row 0; instruction of the other body; column
     uint32_t other;    // RESULTS: repeat
@@ -167,6 +168,10 @@ static struct repeat best_repeat(const struct plan *p, uint32_t i)
          tries++) {
         const uint32_t period = c - i;
         uint32_t same = 0;
+        if (best.count && period % best.period == 0) { // saves less than that did
+            c = p->again[c];
+            continue;
+        }
         while (c + same < p->n && p->sign[i + same] == p->sign[c + same])
             same++;
         const uint32_t count = same / period + 1;
@@ -234,28 +239,30 @@ static bool use_stream(struct repeat *r, int kind, uint32_t other, int32_t step)
     return true;
 }
 
-static bool reach_in_row(const struct plan *p, const struct repeat *r, uint32_t operand,
-                         struct reach *out)
+// Those of the row itself, or the same in all: the most. Row by row, as they lie in memory.
+static void reach_alike(const struct plan *p, const struct repeat *r)
 {
-    const uint32_t at = p->at[argument(p, r, 0, operand)];
-    if (at == none || at < r->first || at >= r->first + r->period)
-        return false;
+    for (uint32_t i = 0; i < 3 * r->period; i++)
+        r->reach[i] = (struct reach){.kind = OPEN};
+    for (uint32_t slot = 0; slot < r->period; slot++)
+        for (uint32_t k = 0; k < instruction(p, r->first + slot)->narg; k++) {
+            const uint32_t v = argument(p, r, 0, 3 * slot + k), at = p->at[v];
+            if (at != none && at >= r->first && at < r->first + r->period)
+                r->reach[3 * slot + k] = (struct reach){.kind = ROW, .at = at - r->first};
+            else if (is_made_before(p, r, v))
+                r->reach[3 * slot + k] = (struct reach){.kind = FIXED, .at = v};
+        }
     for (uint32_t row = 1; row < r->count; row++)
-        if (p->at[argument(p, r, row, operand)] != at + row * r->period)
-            return false;
-    *out = (struct reach){.kind = ROW, .at = at - r->first};
-    return true;
-}
-
-static bool reach_fixed(const struct plan *p, const struct repeat *r, uint32_t operand,
-                        struct reach *out)
-{
-    const uint32_t v = argument(p, r, 0, operand);
-    for (uint32_t row = 1; row < r->count; row++)
-        if (argument(p, r, row, operand) != v)
-            return false;
-    *out = (struct reach){.kind = FIXED, .at = v};
-    return is_made_before(p, r, v);
+        for (uint32_t slot = 0; slot < r->period; slot++)
+            for (uint32_t k = 0; k < instruction(p, r->first + slot)->narg; k++) {
+                struct reach *out = &r->reach[3 * slot + k];
+                if (out->kind == OPEN)
+                    continue;
+                const uint32_t v = argument(p, r, row, 3 * slot + k);
+                if (out->kind == ROW ? p->at[v] != r->first + row * r->period + out->at
+                                     : v != out->at)
+                    out->kind = OPEN;
+            }
 }
 
 static uint32_t input_of(const struct plan *p, uint32_t v)
@@ -374,29 +381,37 @@ static bool reach_column(const struct plan *p, struct repeat *r, uint32_t operan
 
 // ---- which loops there are --------------------------------------------------------------------
 
-static bool is_constant(const struct plan *p, const struct repeat *r, uint32_t operand)
+// Columns that hold something else than constants and parameters. Row by row, as operands lie in memory.
+static size_t count_copied(const struct plan *p, const struct repeat *r)
 {
+    size_t n = 0;
+    for (size_t i = 0; i < r->ncolumn; i++)
+        r->column[i].is_copied = false;
     for (uint32_t row = 0; row < r->count; row++)
-        if (p->l->rate[argument(p, r, row, operand)] == CT_RATE_CALL)
-            return false;
-    return true;
+        for (size_t i = 0; i < r->ncolumn; i++) {
+            struct column *c = &r->column[i];
+            const uint32_t v = argument(p, r, row, c->operand);
+            if (!c->is_copied && p->l->rate[v] == CT_RATE_CALL) {
+                c->is_copied = true;
+                n++;
+            }
+        }
+    return n;
 }
 
 static bool reach_operands(const struct plan *p, struct repeat *r)
 {
+    reach_alike(p, r);
     for (uint32_t slot = 0; slot < r->period; slot++)
         for (uint32_t k = 0; k < instruction(p, r->first + slot)->narg; k++) {
             const uint32_t operand = 3 * slot + k;
             struct reach *out = &r->reach[operand];
-            if (!reach_in_row(p, r, operand, out) && !reach_fixed(p, r, operand, out)
-                && !reach_inputs(p, r, operand, out) && !reach_results(p, r, operand, out)
-                && !reach_column(p, r, operand, out))
+            if (out->kind == OPEN && !reach_inputs(p, r, operand, out)
+                && !reach_results(p, r, operand, out) && !reach_column(p, r, operand, out))
                 return false;
         }
     // a copy of an operand costs as much as two instructions
-    size_t ncopied = 0;
-    for (size_t i = 0; i < r->ncolumn; i++)
-        ncopied += !is_constant(p, r, r->column[i].operand);
+    const size_t ncopied = count_copied(p, r);
     return 8 * ncopied <= r->period && use_stream(r, RESULTS, (uint32_t)(r - p->repeat), 1);
 }
 
@@ -619,7 +634,7 @@ static void add_columns(const struct plan *p, const struct repeat *r, struct ct_
             const uint32_t operand = r->column[i].operand;
             const struct ct_copy c
                 = {argument(p, r, row, operand), place_of(r, r->nresult + i, (int32_t)row)};
-            if (is_constant(p, r, operand))
+            if (!r->column[i].is_copied)
                 CT_PUSH(p->arena, out->table, out->ntable, out->table_cap, c);
             else
                 CT_PUSH(p->arena, loop->copy, loop->ncopy, loop->copy_cap, c);

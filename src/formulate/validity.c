@@ -131,31 +131,47 @@ static void add(struct line *s, double *A, int e, int j, int k, double v)
     A[s->number[p] - s->number[q] + (s->band + 1) * s->number[q]] += opposed ? -v : v;
 }
 
-static void add_element(struct line *s, int e)
+// Bending and shear, at the points that the beam itself takes: one in the middle keeps linear shapes from locking.
+static void add_stiffness(struct line *s, int e)
 {
     const struct ct_beam *beam = s->f->beam;
     const double h = number(s, s->f->element[e].span.length);
     const ct_ex EI = ct_ex_mul(s->b->x, beam->E, s->plane ? beam->Iy : beam->Iz);
     const ct_ex GA = ct_flexible_shear(s->b, s->f, s->plane);
-    for (int i = 0; i < POINTS; i++) {
-        const double xi = s->xi[i], w = s->weight[i] * h;
-        double place[4], slope[4], turn[4], bend[4], P[2];
+    const bool in_middle = ct_flexible_stiffness_rule(beam) == CT_RULE_MIDDLE;
+    for (int i = 0; i < (in_middle ? 1 : POINTS); i++) {
+        const double xi = in_middle ? 0.5 : s->xi[i], w = (in_middle ? 1 : s->weight[i]) * h,
+                     stiffness = w * profile(s, EI, e, xi), shear = w * profile(s, GA, e, xi);
+        double bend[4], lean[4];
         for (int j = 0; j < 4; j++) {
             const struct ct_shape d = ct_shape_slope(&s->f->shape.rotation[j]);
+            bend[j] = ct_shape_value(&d, xi, h);
+            lean[j] = ct_shape_value(&s->f->shape.slope[j], xi, h)
+                    - ct_shape_value(&s->f->shape.rotation[j], xi, h);
+        }
+        for (int j = 0; j < 4; j++)
+            for (int k = 0; k < 4; k++)
+                add(s, s->K, e, j, k,
+                    stiffness * bend[j] * bend[k] + shear * lean[j] * lean[k]);
+    }
+}
+
+static void add_element(struct line *s, int e)
+{
+    const struct ct_beam *beam = s->f->beam;
+    const double h = number(s, s->f->element[e].span.length);
+    add_stiffness(s, e);
+    for (int i = 0; i < POINTS; i++) {
+        const double xi = s->xi[i], w = s->weight[i] * h,
+                     m = profile(s, beam->mass_per_length, e, xi);
+        double place[4], slope[4], P[2];
+        for (int j = 0; j < 4; j++) {
             place[j] = ct_shape_value(&s->f->shape.place[j], xi, h);
             slope[j] = ct_shape_value(&s->f->shape.slope[j], xi, h);
-            turn[j] = ct_shape_value(&s->f->shape.rotation[j], xi, h);
-            bend[j] = ct_shape_value(&d, xi, h);
         }
-        const double stiffness = profile(s, EI, e, xi), shear = profile(s, GA, e, xi),
-                     m = profile(s, beam->mass_per_length, e, xi);
         mass_beyond(s, e, xi, P);
         for (int j = 0; j < 4; j++)
             for (int k = 0; k < 4; k++) {
-                add(s, s->K, e, j, k,
-                    w
-                        * (stiffness * bend[j] * bend[k]
-                           + shear * (slope[j] - turn[j]) * (slope[k] - turn[k])));
                 add(s, s->M, e, j, k, w * m * place[j] * place[k]);
                 add(s, s->Kg[0], e, j, k, w * P[0] * slope[j] * slope[k]);
                 add(s, s->Kg[1], e, j, k, w * P[1] * slope[j] * slope[k]);

@@ -136,7 +136,7 @@ struct ct_lanes {
     vec rtol, atol; // of the steps
     vec *input;
     // states (ny), stages (ny x stages)
-    vec *start, *y, *dy, *y1, *dy1, *end, *dend, *point, *late, *k;
+    vec *start, *y, *dy, *y1, *dy1, *end, *dend, *point, *late, *weight, *k;
     double *one_y, *one_dy, *one_point, *one_end; // a single lane's states
     vec *at, *probed;                             // outputs that are controlled
     double *one_at, *one_probed, *one_off;        // of a single lane

@@ -77,8 +77,8 @@ static bool tables_reach(const struct ct_exs *x, double end)
 static void make_room(struct ct_arena *a, struct ct_lanes *s)
 {
     const size_t n = (size_t)s->nu, r = (size_t)s->nrow, ny = (size_t)s->ny;
-    vec **const states[]
-        = {&s->start, &s->y, &s->dy, &s->y1, &s->dy1, &s->end, &s->dend, &s->point, &s->late};
+    vec **const states[] = {&s->start, &s->y,    &s->dy,    &s->y1,   &s->dy1,
+                            &s->end,   &s->dend, &s->point, &s->late, &s->weight};
     double **const one[] = {&s->one_y, &s->one_dy, &s->one_point, &s->one_end};
     for (size_t i = 0; i < COUNT(states); i++)
         *states[i] = CT_NEWN(a, vec, ny);
