@@ -459,7 +459,8 @@ static bool report_missed(struct assembly *s, bool is_speed)
         return true;
     const struct ct_coordinate *c = s->e->coordinate;
     ct_error(s->ctx, initial_mark(s, worst, is_speed), CT_E_START,
-             "initial %s contradict each other: %s'%s' of joint '%s' is missed by %.3g",
+             "initial %s contradict each other: %s'%s' of joint '%s' is missed by %.3g; mark "
+             "what need not hold with 'guess: true'",
              is_speed ? "speeds" : "values", is_speed ? "the rate of " : "", c[worst].name,
              s->e->build->edge[c[worst].edge].self->name, most);
     for (size_t i = 0; i < s->e->ncoordinate; i++)
@@ -498,9 +499,10 @@ static struct ct_mark row_mark(const struct assembly *s, size_t row)
     return model->joint[joint].mark;
 }
 
-static bool report_positions(struct assembly *s)
+// closes: it does, with the given values as guesses.
+static bool report_positions(struct assembly *s, bool closes)
 {
-    if (!report_missed(s, false))
+    if (closes && !report_missed(s, false))
         return false;
     bool any_given = false;
     for (size_t i = 0; i < s->e->ncoordinate; i++)
@@ -511,7 +513,9 @@ static bool report_positions(struct assembly *s)
         "the mechanism cannot be assembled: '%s' stays open by %.3g; check lengths and "
         "places%s%s",
         s->e->row[row].name, fabs(s->m->phi[row]),
-        any_given ? ", the given initial values" : " and give guesses in `initial`",
+        closes      ? ", the given initial values"
+        : any_given ? " (with the given initial values as guesses, too)"
+                    : " and give guesses in `initial`",
         s->e->build->nflexible
             ? "; beams bend to close loops where they have `initial: equilibrium`"
             : "");
@@ -635,8 +639,8 @@ static bool report_half_turn(struct assembly *s, int joint)
         self->name);
 }
 
-// Tries from places further and further away; the first one's failure is the one to report.
-static bool assemble_positions(struct assembly *s, double *residual, bool *is_open)
+// Tries from places further and further away.
+static bool try_positions(struct assembly *s, double *residual)
 {
     for (int try = 0; try < MOST_STARTS; try++) {
         start_near_targets(s, try);
@@ -644,12 +648,39 @@ static bool assemble_positions(struct assembly *s, double *residual, bool *is_op
         if (*residual < met && half_turned_joint(s) < 0)
             return true;
     }
+    return false;
+}
+
+// Can the loops be closed if given values are guesses only?
+static bool closes_with_guesses(struct assembly *s)
+{
+    const size_t n = s->e->ncoordinate;
+    double residual;
+    bool *given = CT_NEWN(s->e->build->arena, bool, n + 1);
+    for (size_t i = 0; i < n; i++) {
+        given[i] = s->q[i].is_given;
+        s->q[i].is_given = false;
+    }
+    const bool closes = try_positions(s, &residual);
+    for (size_t i = 0; i < n; i++)
+        s->q[i].is_given = given[i];
+    return closes;
+}
+
+// The first try's failure is the one to report.
+static bool assemble_positions(struct assembly *s, double *residual, bool *is_open)
+{
+    if (try_positions(s, residual))
+        return true;
     start_near_targets(s, 0);
     *is_open = s->may_gape;
     if (s->may_gape)
         return true;
+    const bool closes = closes_with_guesses(s);
+    start_near_targets(s, 0);
     *residual = find_positions(s);
-    return *residual < met ? report_half_turn(s, half_turned_joint(s)) : report_positions(s);
+    return *residual < met ? report_half_turn(s, half_turned_joint(s))
+                           : report_positions(s, closes);
 }
 
 // Without rows, and with all that is given or wanted among the unknowns, the targets are the start.
