@@ -56,8 +56,12 @@ static const struct ct_key keys[] = {
      "keep this many modes instead of the nodes' coordinates"},
     {"damping", CT_VALUE_RAYLEIGH, 0, NULL, 1, 1,
      "{alpha: a, beta: b}: a [1/s] times mass plus b [s] times stiffness (0)"},
-    {"initial", CT_VALUE_WORD, 0, "equilibrium", 1, 1,
-     "start in the static shape under the loads at t = 0 (undeformed)"},
+    {"shapes", CT_VALUE_SHAPES, CT_KEY_SECTION, NULL, 0, 0,
+     "{u: [...], v: [...], w: [...], rx: [...]}: expressions of x whose amplitudes are the "
+     "coordinates, instead of the nodes'"},
+    {"initial", CT_VALUE_FIELDS, CT_KEY_SECTION, NULL, 0, 0,
+     "equilibrium: the static shape under the loads at t = 0; or {u:, v:, w:, rx:, rates: "
+     "{...}}, expressions of x (undeformed)"},
     {"points", CT_VALUE_PLACES, CT_KEY_LENGTH, NULL, 0, 0,
      "frames fixed to sections: {NAME: x}, {NAME: [x, y, z]} or {NAME: {at: PLACE, rotate: "
      "[axis, angle]}}"},

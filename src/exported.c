@@ -14,6 +14,7 @@ struct work {
     struct ct_ctx *ctx;
     struct ct_sim *sim;
     const char *folder;
+    unsigned lanes;
     struct ct_export x;
     struct ct_export_state state[3];
 };
@@ -146,7 +147,8 @@ static bool write_c(void *task)
                               .at_mode = m->at_mode,
                               .at_memory = m->at_memory,
                               .ninput = m->ninput,
-                              .state = w->state};
+                              .state = w->state,
+                              .lanes = w->lanes};
     find_solution(w);
     return make_folder(w) && record_states(w) && write_file(w, ".h", ct_export_header(a, &w->x))
         && write_file(w, ".c", ct_export_source(a, &w->x))
@@ -156,11 +158,20 @@ static bool write_c(void *task)
 bool ct_sim_export(struct ct_ctx *ctx, struct ct_sim *sim, const char *format,
                    const char *folder)
 {
-    struct work w = {.ctx = ctx, .sim = sim, .folder = folder};
+    return ct_sim_export_lanes(ctx, sim, format, folder, 1);
+}
+
+bool ct_sim_export_lanes(struct ct_ctx *ctx, struct ct_sim *sim, const char *format,
+                         const char *folder, long lanes)
+{
+    struct work w = {.ctx = ctx, .sim = sim, .folder = folder, .lanes = (unsigned)lanes};
     if (!sim)
         return false;
     if (format && strcmp(format, "c") != 0)
         return ct_error(ctx, (struct ct_mark){0}, CT_E_USAGE,
                         "there is no export format '%s'; there is c", format);
+    if (lanes != 0 && lanes != 1 && lanes != 4 && lanes != 8)
+        return ct_error(ctx, (struct ct_mark){0}, CT_E_USAGE,
+                        "there are no %ld lanes; there are 1, 4 and 8", lanes);
     return ct_enter(ctx, write_c, &w);
 }

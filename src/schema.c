@@ -205,6 +205,17 @@ static void write_key(struct ct_json *j, const struct ct_key *key)
     case CT_VALUE_RAYLEIGH:
         text(j, "$ref", "#/$defs/rayleigh");
         break;
+    case CT_VALUE_SHAPES:
+        text(j, "$ref", "#/$defs/shapes");
+        break;
+    case CT_VALUE_FIELDS:
+        ct_json_array(j, "anyOf");
+        ct_json_object(j, NULL);
+        text(j, "const", "equilibrium");
+        ct_json_end(j);
+        refer(j, NULL, "fields", NULL);
+        ct_json_end(j);
+        break;
     case CT_VALUE_PLACES:
         text(j, "$ref", "#/$defs/places");
         break;
@@ -401,8 +412,35 @@ static void write_points(struct ct_json *j, const char *name, const char *place)
     ct_json_end(j);
 }
 
+static void write_fields(struct ct_json *j, const char *name, const char *rates, bool is_list)
+{
+    static const char *const keys[] = {"u", "v", "w", "rx"};
+    closed_object(j, name);
+    ct_json_object(j, "properties");
+    for (size_t i = 0; i < COUNT(keys); i++) {
+        if (!is_list) {
+            refer(j, keys[i], "scalar", NULL);
+            continue;
+        }
+        ct_json_object(j, keys[i]);
+        ct_json_array(j, "anyOf");
+        refer(j, NULL, "scalar", NULL);
+        list_of(j, NULL, "scalar", 0, 0);
+        ct_json_end(j);
+        ct_json_end(j);
+    }
+    if (rates)
+        refer(j, "rates", rates, "speeds of the same");
+    ct_json_end(j);
+    ct_json_bool(j, "additionalProperties", false);
+    ct_json_end(j);
+}
+
 static void write_of_beams(struct ct_json *j)
 {
+    write_fields(j, "shapes", NULL, true);
+    write_fields(j, "rates", NULL, false);
+    write_fields(j, "fields", "rates", false);
     ct_json_object(j, "place");
     text(j, "description", "distance along a beam, or [x, y, z]");
     ct_json_array(j, "anyOf");

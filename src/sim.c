@@ -466,10 +466,24 @@ void ct_slope_warn(struct ct_ctx *ctx, const struct ct_equations *e,
     }
 }
 
+static void warn_of_starts(struct ct_sim *sim, const struct ct_build *b)
+{
+    const double worth_it = 0.01; // as the limit of the validity indicator
+    for (size_t i = 0; i < b->nflexible; i++) {
+        const struct ct_flexible *f = &b->flexible[i];
+        if (f->start_missed > worth_it)
+            ct_warning(&sim->own, f->beam->start[0].mark, 0,
+                       "beam '%s' starts with what its shapes have of this; they leave out "
+                       "%.3g %%",
+                       f->name, 100 * f->start_missed);
+    }
+}
+
 // Beams whose motion left what they are good for.
 static void warn_of_beams(struct ct_sim *sim)
 {
     const struct ct_equations *e = &sim->system->equations;
+    warn_of_starts(sim, e->build);
     ct_slope_warn(&sim->own, e, sim->report.bend);
     for (size_t i = 0; i < e->nvalidity; i++) {
         const struct ct_validity_report *v = &sim->report.validity[i];
@@ -527,6 +541,29 @@ static bool run_and_report(void *task)
     struct work *w = task;
     const bool ok = run(w->sim);
     ct_ctx_hand_over(w->ctx, &w->sim->own);
+    return ok;
+}
+
+static bool run_again(void *task)
+{
+    struct work *w = task;
+    struct ct_sim *sim = w->sim;
+    sim->has_run = sim->is_done = sim->is_late = false;
+    sim->write = 0;
+    sim->nstep = 0;
+    if (ct_run_restart(sim->run, &sim->start))
+        return run_and_report(task);
+    ct_ctx_hand_over(w->ctx, &sim->own);
+    return false;
+}
+
+bool ct_sim_run_again(struct ct_ctx *ctx, struct ct_sim *sim,
+                      const struct ct_sim_results *results)
+{
+    struct work w = {ctx, sim};
+    sim->results = results;
+    const bool ok = ct_enter(ctx, run_again, &w);
+    sim->results = NULL;
     return ok;
 }
 

@@ -342,6 +342,12 @@ static void print_beams(FILE *out, const struct ct_equations *e)
     for (size_t i = 0; i < e->build->nflexible; i++) {
         const struct ct_flexible *f = &e->build->flexible[i];
         fprintf(out, "beam         %s: %s\n", f->name, ct_beam_sentence(e->build->arena, f));
+        const double locking = ct_flexible_locking(e->build, f), worth_it = 0.1;
+        if (locking > worth_it)
+            fprintf(out,
+                    "             its elements lock: shear makes them %.3g times as stiff in "
+                    "bending as they are; take `integration: reduced` or more elements\n",
+                    1 + locking);
     }
 }
 

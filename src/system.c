@@ -151,6 +151,7 @@ static bool build(struct ct_system *s, const char *path, const struct ct_system_
                                                .frees_beams = o->for_analysis,
                                                .measure_all = true,
                                                .measured_for = &s->equations,
+                                               .like = &s->equations,
                                                .without_dynamics = true};
     struct ct_tree_report unused;
     if (!choose_tree(&s->own, o->tree, &motion) // which branches, if any are given

@@ -193,6 +193,9 @@ CT_API void ct_sim_print_check(const struct ct_sim *sim, FILE *out);
  */
 CT_API bool ct_sim_export(struct ct_ctx *ctx, struct ct_sim *sim, const char *format,
                           const char *folder);
+/** The same, with M, Q, J, gam and phi, v for 4 or 8 inputs side by side, too; 1 or 0: without. */
+CT_API bool ct_sim_export_lanes(struct ct_ctx *ctx, struct ct_sim *sim, const char *format,
+                                const char *folder, long lanes);
 
 /* ---- speed against error ------------------------------------------------------------------------- */
 
@@ -212,14 +215,15 @@ struct ct_accuracy_options {
     } * variant;
     size_t nvariant;
     const char *reference; /* CSV as simulate writes it; NULL: found by tight runs that agree */
-    FILE *progress;        /* a bar is shown there if it is a terminal */
+    int per_decade; /* tolerances in a power of ten, at most 10; 0: powers of ten, the others begin at 1e-2 */
+    FILE *progress; /* a bar is shown there if it is a terminal */
 };
 
 /**
  * Run a system with methods x tolerances and compare each run with a converged reference.
  *
  * The error of a run is the largest over outputs and samples of |difference to the reference| / largest
- * |reference output|. Runs are timed three times; methods get a share of about a minute each.
+ * |reference output|. Runs are timed three times in place, short ones up to 101 times; methods get a share of about a minute each.
  *
  * Errors   E003 for options; E134, E135 for the reference; E309 when none is found; those of runs
  * Owner    the caller, until ct_accuracy_destroy

@@ -11,7 +11,7 @@ static int run(struct ct_ctx *ctx, const struct cli_args *args)
         return cli_complain(&cli_export, "-o FOLDER says where the files go");
     struct ct_system *sys = cli_load(ctx, args);
     struct ct_sim *sim = cli_sim(ctx, sys, args);
-    bool ok = ct_sim_export(ctx, sim, args->format, args->output);
+    bool ok = ct_sim_export_lanes(ctx, sim, args->format, args->output, args->lanes);
     if (ok && args->summary)
         ok = ct_sim_write_summary(ctx, sim, args->summary);
     ct_sim_destroy(sim);

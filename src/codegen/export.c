@@ -100,6 +100,8 @@ static void put_layout(struct text *t, const struct ct_export *x)
     put_constant(t, "OUT_V", e->nrow, "");
     put_constant(t, "OUT_J2", 2 * e->nrow, "J again");
     put_constant(t, "NCONSTRAINT", x->constraint->nout, "");
+    if (x->lanes > 1)
+        put_constant(t, "LANES", x->lanes, "inputs side by side");
     put(t, "\n    /* doubles of work for accelerations */\n");
     const size_t n = e->nu + e->nrow, all = x->motion->nout + n * (n + 2);
     const size_t fixed = x->solved ? x->solved->nout : 0;
@@ -147,8 +149,13 @@ const char *ct_export_header(struct ct_arena *a, const struct ct_export *x)
             "void @_constraint(const double *in, double *out);\n"
             "/* u' [$_NU] at in; work [$_NWORK]. Redundant rows do no harm. Returns the rank\n"
             " * of the equations for u' and lam. */\n"
-            "int @_accelerations(const double *in, double *a, double *work);\n\n"
-            "#ifdef __cplusplus\n}\n#endif\n\n#endif\n");
+            "int @_accelerations(const double *in, double *a, double *work);\n\n");
+    if (x->lanes > 1)
+        put_named(&t, "/* The programs for $_LANES inputs side by side: entry i of lane l at "
+                      "$_LANES * i + l. */\n"
+                      "void @_motion_lanes(const double *in, double *out);\n"
+                      "void @_constraint_lanes(const double *in, double *out);\n\n");
+    put_named(&t, "#ifdef __cplusplus\n}\n#endif\n\n#endif\n");
     return finish(&t);
 }
 
@@ -260,10 +267,11 @@ static const char fixed[]
       "}\n\n";
 
 static void put_program(struct text *t, const struct ct_export *x, const char *name,
-                        const struct ct_listing *l)
+                        const struct ct_listing *l, unsigned lanes)
 {
-    const struct ct_c_options o
-        = {.name = ct_arena_printf(t->arena, "%s_%s", x->name, name), .title = name};
+    const struct ct_c_options o = {.name = ct_arena_printf(t->arena, "%s_%s", x->name, name),
+                                   .title = name,
+                                   .lanes = lanes};
     put(t, ct_c_listing(t->arena, l, &o));
     put(t, "\n");
 }
@@ -275,7 +283,7 @@ static void put_fixed(struct text *t, const struct ct_export *x)
                "    (void)in;\n    (void)a;\n    (void)out;\n    return 0;\n}\n\n");
         return;
     }
-    put_program(t, x, "solved", x->solved);
+    put_program(t, x, "solved", x->solved, 1);
     putf(t, "enum { nfree = %zu, npivot = %zu, rank_fixed = %zu };\n", x->nfree, x->npivot,
          x->e->nu + x->rank);
     put(t, "static const double scale[] = ");
@@ -290,8 +298,12 @@ const char *ct_export_source(struct ct_arena *a, const struct ct_export *x)
     const struct ct_equations *e = x->e;
     putf(&t, "/* %s: see %s.h. */\n#include \"%s.h\"\n\n", comment_text(a, x->title), x->name,
          x->name);
-    put_program(&t, x, "motion", x->motion);
-    put_program(&t, x, "constraint", x->constraint);
+    put_program(&t, x, "motion", x->motion, 1);
+    put_program(&t, x, "constraint", x->constraint, 1);
+    if (x->lanes > 1) {
+        put_program(&t, x, "motion_lanes", x->motion, x->lanes);
+        put_program(&t, x, "constraint_lanes", x->constraint, x->lanes);
+    }
     put_indices(&t, "M_row", e->M, e->nM, true);
     put_indices(&t, "M_column", e->M, e->nM, false);
     put_indices(&t, "J_row", e->J, e->nJ, true);
@@ -380,9 +392,42 @@ static const char driver[]
       "    return 0;\n"
       "}\n\n";
 
+// In lane l the state k + l, the first one again after the last.
+static const char test_lanes[]
+    = "static void take_lane(const double *all, int lane, int n, double *one)\n"
+      "{\n"
+      "    int i;\n"
+      "    for (i = 0; i < n; i++)\n"
+      "        one[i] = all[$_LANES * i + lane];\n"
+      "}\n\n"
+      "static int compare_lanes(void)\n"
+      "{\n"
+      "    enum { most = $_NMOTION + $_NCONSTRAINT + 1 };\n"
+      "    static double in[$_LANES * $_NINPUT], out[$_LANES * most], one[most];\n"
+      "    int i, k, l, wrong = 0;\n"
+      "    for (k = 0; k < nstate; k++) {\n"
+      "        for (i = 0; i < $_NINPUT; i++)\n"
+      "            for (l = 0; l < $_LANES; l++)\n"
+      "                in[$_LANES * i + l] = input[(k + l) % nstate][i];\n"
+      "        @_motion_lanes(in, out);\n"
+      "        for (l = 0; l < $_LANES; l++) {\n"
+      "            take_lane(out, l, $_NMOTION, one);\n"
+      "            wrong += compare(\"motion in a lane\", one, motion[(k + l) % nstate], "
+      "$_NMOTION, 1e-12);\n"
+      "        }\n"
+      "        @_constraint_lanes(in, out);\n"
+      "        for (l = 0; l < $_LANES; l++) {\n"
+      "            take_lane(out, l, $_NCONSTRAINT, one);\n"
+      "            wrong += compare(\"constraint in a lane\", one, constraint[(k + l) % "
+      "nstate], $_NCONSTRAINT, 1e-12);\n"
+      "        }\n"
+      "    }\n"
+      "    return wrong;\n"
+      "}\n\n";
+
 // Programs: the library's sines may differ in the last bit elsewhere; sums of n terms magnify that.
 // Accelerations are the result of a solve by another elimination.
-static const char test_functions[]
+static const char test_compare[]
     = "static int compare(const char *what, const double *got, const double *want, int n,\n"
       "                   double tolerance)\n"
       "{\n"
@@ -396,8 +441,10 @@ static const char test_functions[]
       "            wrong++;\n"
       "        }\n"
       "    return wrong;\n"
-      "}\n\n"
-      "int main(int argc, char **argv)\n"
+      "}\n\n";
+
+static const char test_main[]
+    = "int main(int argc, char **argv)\n"
       "{\n"
       "    static double out[$_NMOTION + $_NCONSTRAINT + 1], a[$_NU + 1], work[$_NWORK + 1];\n"
       "    const int nstep = argc > 2 ? atoi(argv[2]) : 100;\n"
@@ -411,10 +458,11 @@ static const char test_functions[]
       "        wrong += compare(\"constraint\", out, constraint[k], $_NCONSTRAINT, 1e-12);\n"
       "        @_accelerations(input[k], a, work);\n"
       "        wrong += compare(\"acceleration\", a, acceleration[k], $_NU, 1e-8);\n"
-      "    }\n"
-      "    printf(\"%d states, %d values wrong\\n\", nstate, wrong);\n"
-      "    return wrong != 0;\n"
-      "}\n";
+      "    }\n";
+
+static const char test_end[] = "    printf(\"%d states, %d values wrong\\n\", nstate, wrong);\n"
+                               "    return wrong != 0;\n"
+                               "}\n";
 
 const char *ct_export_test(struct ct_arena *a, const struct ct_export *x)
 {
@@ -446,6 +494,14 @@ const char *ct_export_test(struct ct_arena *a, const struct ct_export *x)
         put(&t, "static int run(double duration, int nstep)\n{\n    (void)duration;\n    "
                 "(void)nstep;\n"
                 "    return 0;\n}\n\n");
-    put_named(&t, test_functions);
+    put_named(&t, test_compare);
+    if (x->lanes > 1) {
+        put_named(&t, test_lanes);
+        put_named(&t, test_main);
+        put(&t, "    wrong += compare_lanes();\n");
+    } else {
+        put_named(&t, test_main);
+    }
+    put_named(&t, test_end);
     return finish(&t);
 }

@@ -33,6 +33,7 @@ struct ct_export {
     size_t at_q, at_u, at_mode, at_memory, ninput;
     const struct ct_export_state *state; // the first one is the start
     size_t nstate;
+    unsigned lanes; // > 1: both programs for so many inputs side by side, too
 };
 
 /// The texts of the files; they live in a.

@@ -31,6 +31,22 @@ enum ct_beam_deformation {
     CT_BEAM_ALL = 15
 };
 
+/// A field along the axis: displacements u, v, w and twist. The first freedoms of a node have the same order.
+enum ct_beam_field {
+    CT_BEAM_FIELD_U,
+    CT_BEAM_FIELD_V,
+    CT_BEAM_FIELD_W,
+    CT_BEAM_FIELD_RX,
+    CT_BEAM_NFIELD
+};
+
+struct ct_beam_given {
+    enum ct_beam_field kind;
+    bool is_rate; // of `initial`
+    ct_ex value;  // contains x
+    struct ct_mark mark;
+};
+
 struct ct_beam {
     ct_ex x;      // the symbol of sections (LOCAL)
     ct_ex length; // [m]
@@ -59,7 +75,11 @@ struct ct_beam {
     unsigned deformation;                  // bits; CT_BEAM_ALL unless given
     int modes;                             // 0: nodal coordinates
     ct_ex damping_mass, damping_stiffness; // Rayleigh: alpha [1/s], beta [s]
-    bool starts_in_equilibrium;            // `initial: equilibrium`
+    const struct ct_beam_given *shape;     // `shapes`, in place of nodal coordinates
+    int nshape;
+    bool starts_in_equilibrium;        // `initial: equilibrium`
+    const struct ct_beam_given *start; // `initial: {v: ...}`
+    int nstart;
     struct ct_mark formulation_mark, modes_mark, deformation_mark;
 };
 

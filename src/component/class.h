@@ -36,7 +36,9 @@ enum ct_value_kind {
     CT_VALUE_ELEMENTS, // a count, or a list of positions
     CT_VALUE_ROTARY,   // true, false or three expressions
     CT_VALUE_RAYLEIGH, // {alpha: a, beta: b}: two expressions
-    CT_VALUE_PLACES,   // points; a place may be one number, the distance along the axis
+    CT_VALUE_SHAPES,   // {u: [...], v: [...], ...}: expressions of x, each with its name
+    CT_VALUE_FIELDS, // `equilibrium` (count 1), or {u:, v:, w:, rx:, rates: {...}}: the same; names of rates end in '
+    CT_VALUE_PLACES, // points; a place may be one number, the distance along the axis
 };
 
 enum {
@@ -73,7 +75,7 @@ struct ct_value {
     struct ct_mark *at;      // mark of each
     bool *hole;              // COORDS: true where `~` stood
     int frame;               // FRAME: index into the model's frames; -1 when not given
-    const char *const *name; // NAMES, JOINTS: n texts
+    const char *const *name; // NAMES, JOINTS, SHAPES, FIELDS: n texts
     size_t nturn;
     struct ct_turn *turn; // TURNS
     long count; // COUNT, ELEMENTS: the number; WORD: place among the choices; WORDS: a bit

@@ -91,6 +91,10 @@ bool ct_read_count(struct ct_reader *r, const struct ct_node *node, const char *
 /// ELEMENTS, ROTARY and RAYLEIGH values.
 bool ct_read_beam_value(struct ct_reader *r, const struct ct_node *node,
                         const struct ct_key *key, struct ct_value *v);
+/// SHAPES and FIELDS (read_field.c), and what a beam has of them: checked against its frame.
+bool ct_read_fields(struct ct_reader *r, const struct ct_node *node, const struct ct_key *key,
+                    struct ct_value *v);
+bool ct_fill_fields(struct ct_reader *r, const struct ct_instance *self, struct ct_beam *beam);
 /// {table:, column:, interpolate:}
 bool ct_read_table(struct ct_reader *r, const struct ct_node *node, ct_ex *e);
 

@@ -60,6 +60,8 @@ bool ct_read_beam_value(struct ct_reader *r, const struct ct_node *node,
 {
     if (key->kind == CT_VALUE_ELEMENTS)
         return read_elements(r, node, key, v);
+    if (key->kind == CT_VALUE_SHAPES || key->kind == CT_VALUE_FIELDS)
+        return ct_read_fields(r, node, key, v);
     return key->kind == CT_VALUE_ROTARY ? read_rotary(r, node, key, v)
                                         : read_rayleigh(r, node, key, v);
 }
@@ -441,7 +443,7 @@ static void fill_choices(const struct work *w)
     beam->is_chord = get(w, "frame")->count == 1;
     beam->has_quadratic_twist = get(w, "twist")->count == 1;
     beam->has_quadratic_stretch = get(w, "stretch")->count == 1;
-    beam->starts_in_equilibrium = has(w, "initial");
+    beam->starts_in_equilibrium = get(w, "initial")->count == 1;
     const struct ct_value *deformation = get(w, "deformation");
     beam->deformation_given = deformation->given;
     beam->deformation = deformation->given ? (unsigned)deformation->count : CT_BEAM_ALL;
@@ -485,6 +487,8 @@ static bool fill(struct work *w, struct ct_body *b, bool values_ok)
         return false;
     fill_choices(w);
     fill_material(w);
+    if (!ct_fill_fields(w->r, w->self, beam))
+        return false;
     b->mass = integrate_mass(w);
     b->beam = beam;
     return true;

@@ -415,6 +415,8 @@ bool ct_read_value(struct ct_reader *r, const struct ct_node *node, const struct
     case CT_VALUE_ELEMENTS:
     case CT_VALUE_ROTARY:
     case CT_VALUE_RAYLEIGH:
+    case CT_VALUE_SHAPES:
+    case CT_VALUE_FIELDS:
         return ct_read_beam_value(r, node, key, v);
     case CT_VALUE_POINTS:  // read_body.c
     case CT_VALUE_PLACES:  // read_body.c

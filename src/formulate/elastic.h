@@ -119,6 +119,10 @@ bool ct_flexible_reduce(struct ct_build *b, struct ct_flexible *f, struct ct_sha
 /// Rotations of nodes without inertia and moment (flexible_massless.c). follows (6 per node, out): by freedom, fixed ones
 /// included. False if there are none.
 bool ct_flexible_follow(struct ct_build *b, const struct ct_flexible *f, bool *follows);
+/// Coordinates whose shapes come nearest to freedoms' values, by the mass between: (P' M P)^-1 P' M g, with numbers of the
+/// file for P and M; f->start_missed tells what they leave out. False: the shapes depend on each other, or move no mass.
+bool ct_flexible_fit(struct ct_build *b, struct ct_flexible *f, const ct_ex *by_freedom,
+                     ct_ex *out);
 /// The joint about whose axis nothing but the section at the beam's start turns, without inertia, where the other nodes stay:
 /// exactly where the axis is straight, nearly where foreshortening moves nodes of a bent one. -1: none.
 int ct_flexible_bare_joint(struct ct_build *b, const struct ct_flexible *f);

@@ -1,6 +1,7 @@
 // Stiffness and damping of beams; see elastic.h.
 #include "formulate/elastic.h"
 
+#include <math.h>
 #include <string.h>
 
 enum ct_rule ct_flexible_mass_rule(const struct ct_beam *beam)
@@ -38,6 +39,30 @@ ct_ex ct_flexible_shear(struct ct_build *b, const struct ct_flexible *f, int pla
     return beam->theory == CT_BEAM_TIMOSHENKO
              ? ct_ex_mul(b->x, beam->shear_factor[plane], ct_ex_mul(b->x, beam->G, beam->area))
              : CT_EX_ZERO;
+}
+
+// With slopes and rotations linear in an element, a curvature c bends it with EI c h and shears it with c (x - h/2), which one
+// point in the middle does not see: (EI + k GA h^2/12) c^2 h/2.
+double ct_flexible_locking(struct ct_build *b, const struct ct_flexible *f)
+{
+    const struct ct_beam *beam = f->beam;
+    double most = 0;
+    if (beam->theory != CT_BEAM_TIMOSHENKO || ct_flexible_stiffness_rule(beam) != CT_RULE_FULL)
+        return 0;
+    for (int plane = 0; plane < 2; plane++) {
+        const struct ct_profile GA
+            = {beam->x, ct_flexible_shear(b, f, plane)},
+            EI = {beam->x, ct_ex_mul(b->x, beam->E, plane ? beam->Iy : beam->Iz)};
+        const bool bends = f->deformation & (plane ? CT_BEAM_BENDING_Y : CT_BEAM_BENDING_Z);
+        for (int e = 0; e < beam->nelement && bends; e++) {
+            const struct ct_span *s = &f->element[e].span;
+            const double h = ct_ex_value(b->x, s->length, b->value),
+                         shear = ct_ex_value(b->x, ct_profile_at(b->x, &GA, s, 0.5), b->value),
+                         bend = ct_ex_value(b->x, ct_profile_at(b->x, &EI, s, 0.5), b->value);
+            most = fmax(most, shear * h * h / (12 * bend));
+        }
+    }
+    return most;
 }
 
 // ---- stiffness and damping ----------------------------------------------------------------------------------

@@ -65,11 +65,23 @@ struct ct_mode {
 /// A value kept from the last accepted step: update gives the next one.
 struct ct_memory {
     ct_ex symbol, update;
-    // ANGLE follows an angle; QUATERNION (four in a row) a rotation; OFFSET keeps its value at the start
-    enum ct_memory_kind { CT_MEMORY_ANGLE, CT_MEMORY_QUATERNION, CT_MEMORY_OFFSET } kind;
+    // ANGLE follows an angle; QUATERNION (four in a row) a rotation; OFFSET keeps its value at the start, and so does
+    // TURNS, the whole turns of an angle, found before the others
+    enum ct_memory_kind {
+        CT_MEMORY_ANGLE,
+        CT_MEMORY_QUATERNION,
+        CT_MEMORY_OFFSET,
+        CT_MEMORY_TURNS
+    } kind;
     ct_ex33 R;        // QUATERNION, first of four: the rotation itself
     int joint, place; // ANGLE: the coordinate, to start from a given value; joint -1: none
 };
+
+/// Does it change from step to step?
+static inline bool ct_memory_is_followed(const struct ct_memory *m)
+{
+    return m->kind == CT_MEMORY_ANGLE || m->kind == CT_MEMORY_QUATERNION;
+}
 
 struct ct_result {
     const char *name; // column

@@ -1,5 +1,6 @@
 // See excite.h.
 #include "formulate/excite.h"
+#include "formulate/field.h"
 
 #include <math.h>
 #include <string.h>
@@ -110,7 +111,7 @@ bool ct_excite_keeps_plane(struct ct_build *b, ct_ex33 *const *U)
         const unsigned within
             = CT_BEAM_AXIAL | (about_z ? CT_BEAM_BENDING_Z : CT_BEAM_BENDING_Y);
         const bool leaves = f->beam->deformation_given && f->beam->deformation & ~within;
-        if ((!about_z && !about_y) || leaves)
+        if ((!about_z && !about_y) || leaves || ct_fields_leave_plane(f->beam, about_z))
             return false;
         frees = frees || (!f->beam->deformation_given && (f->beam->known & both) == both);
         longest = fmax(longest, ct_ex_value(b->x, f->beam->length, b->value));
@@ -158,6 +159,9 @@ static bool is_twisted(const struct ct_build *b, const struct ct_flexible *f)
     const struct ct_model *m = b->model;
     if (f->beam->has_rotary && !ct_ex_is_zero(f->beam->rotary[0]))
         return true;
+    for (int i = 0; i < f->beam->nstart; i++)
+        if (f->beam->start[i].kind == CT_BEAM_FIELD_RX)
+            return true;
     for (size_t i = 0; i < m->nframe; i++)
         if (m->frame[i].body == f->body
             && (!ct_ex_is_zero(m->frame[i].at.e[1]) || !ct_ex_is_zero(m->frame[i].at.e[2])))

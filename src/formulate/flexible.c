@@ -1,7 +1,7 @@
 // See flexible.h.
-#include "formulate/amplitude.h"
 #include "formulate/elastic.h"
 #include "formulate/excite.h"
+#include "formulate/field.h"
 #include "formulate/small.h"
 #include "formulate/topology.h"
 
@@ -19,13 +19,11 @@ enum {
     UM = CT_FREEDOM_UM,
     NKIND = CT_NODE_FREEDOM
 };
-static const char *const kind_name[NKIND] = {"u", "v", "w", "rx", "ry", "rz", "rm", "um"};
 static const ct_ex3 zero3 = {{{0}, {0}, {0}}};
 
 // ---- freedoms ---------------------------------------------------------------------------------------
 
-// Deformation a kind of freedom belongs to.
-static unsigned family_of(int kind)
+unsigned ct_freedom_family(int kind)
 {
     static const unsigned family[NKIND]
         = {CT_BEAM_AXIAL,     CT_BEAM_BENDING_Z, CT_BEAM_BENDING_Y, CT_BEAM_TORSION,
@@ -33,17 +31,10 @@ static unsigned family_of(int kind)
     return family[kind];
 }
 
-static enum ct_elastic_kind sort_of(int kind)
-{
-    return kind == U || kind == UM ? CT_ELASTIC_ALONG
-         : kind < RX               ? CT_ELASTIC_ACROSS
-                                   : CT_ELASTIC_TURN;
-}
-
-static bool is_fixed(const struct ct_flexible *f, int node, int kind)
+bool ct_freedom_is_fixed(const struct ct_flexible *f, int node, int kind)
 {
     const bool is_end = node == f->beam->nelement;
-    if (!(f->deformation & family_of(kind)))
+    if (!(f->deformation & ct_freedom_family(kind)))
         return true;
     if (kind == RM)
         return node == 0 || !f->beam->has_quadratic_twist;
@@ -64,7 +55,8 @@ static void number_dofs(struct ct_flexible *f)
     for (int e = 0; e < f->beam->nelement; e++)
         for (int j = 0; j < CT_DOF; j++) {
             const int node = e + kinds[j][0], kind = kinds[j][1];
-            f->element[e].freedom[j] = is_fixed(f, node, kind) ? -1 : NKIND * node + kind;
+            f->element[e].freedom[j]
+                = ct_freedom_is_fixed(f, node, kind) ? -1 : NKIND * node + kind;
         }
 }
 
@@ -128,14 +120,14 @@ static unsigned in_plane(const struct ct_build *b, const struct ct_flexible *f)
     return CT_BEAM_AXIAL | (about_z ? CT_BEAM_BENDING_Z : CT_BEAM_BENDING_Y);
 }
 
-// Modes hold no room for the places of nodes that foreshortening moves; and it is the stretch that is small, not the places,
-// which are of second order in the slopes.
+// Modes and given shapes hold no room for the places of nodes that foreshortening moves; and it is the stretch that is small,
+// not the places, which are of second order in the slopes.
 static enum ct_axial axial_of(const struct ct_build *b, const struct ct_flexible *f)
 {
     if (f->formulation == CT_BEAM_LINEAR)
         return CT_AXIAL_LINEAR;
     return f->deformation & CT_BEAM_AXIAL && f->formulation == CT_BEAM_FORESHORTENING
-                && !f->beam->modes && !ct_small_beam(b, f->name)
+                && !f->beam->modes && !f->beam->nshape && !ct_small_beam(b, f->name)
              ? CT_AXIAL_LOCAL
              : CT_AXIAL_CHAIN;
 }
@@ -198,6 +190,8 @@ static void settle(struct ct_build *b, struct ct_flexible *f)
                                              "bending of %s out of the plane, and its torsion",
                                              f->name),
                              "gravity, loads, masses and arms lie in the plane");
+    if (beam->nshape)
+        f->deformation &= ct_fields_family(beam);
     need_stiffness(b, f);
     if (b->is_rigid)
         f->deformation = 0;
@@ -248,197 +242,9 @@ struct ct_flexible *ct_flexible_of(const struct ct_build *b, int body)
     return NULL;
 }
 
-// ---- unknowns -------------------------------------------------------------------------------------------
-
-static int new_unknown(struct ct_build *b, struct ct_flexible *f, const char *name,
-                       enum ct_elastic_kind kind)
-{
-    struct ct_equations *s = b->eqs;
-    struct ct_q q = {.name = name, .quaternion = -1};
-    struct ct_u u = {.name = ct_arena_printf(b->arena, "%s.u", name)};
-    u.joint = u.body = -1;
-    u.beam = f->body;
-    u.kind = kind;
-    u.q = (int)s->nq;
-    q.symbol = ct_ex_sym(b->x, CT_SYM_Q, name, (uint32_t)s->nq);
-    u.symbol = q.rate = ct_ex_sym(b->x, CT_SYM_U, u.name, (uint32_t)s->nu);
-    u.derivative
-        = ct_ex_sym(b->x, CT_SYM_A, ct_arena_printf(b->arena, "%s.a", name), (uint32_t)s->nu);
-    CT_PUSH(b->arena, s->q, s->nq, s->q_cap, q);
-    CT_PUSH(b->arena, s->u, s->nu, s->u_cap, u);
-    f->elastic[f->nelastic]
-        = (struct ct_elastic){name, u.q, (int)s->nu - 1, q.symbol, u.symbol, u.derivative};
-    return f->nelastic++;
-}
-
-static void dof_values(struct ct_build *b, struct ct_flexible *f)
-{
-    for (int e = 0; e < f->beam->nelement; e++) {
-        struct ct_element *self = &f->element[e];
-        for (int j = 0; j < CT_DOF; j++) {
-            int sign;
-            const struct ct_freedom *d = ct_dof_freedom(f, e, j, &sign);
-            if (!d)
-                continue;
-            self->value[j] = sign > 0 ? d->value : ct_ex_neg(b->x, d->value);
-            self->rate[j] = sign > 0 ? d->rate : ct_ex_neg(b->x, d->rate);
-            self->acceleration[j]
-                = sign > 0 ? d->acceleration : ct_ex_neg(b->x, d->acceleration);
-        }
-    }
-}
-
-// Foreshortening of one element by the integrals E of slope products and of the sections' rotation gradients.
-static void draw_by_matrices(struct ct_build *b, struct ct_flexible *f, int e, ct_ex *c,
-                             ct_ex *rate, ct_ex *bias)
-{
-    struct ct_exs *x = b->x;
-    struct ct_element *self = &f->element[e];
-    for (int plane = 0; plane < 2; plane++) {
-        const int first = plane ? 6 : 2;
-        for (int j = 0; j < 4; j++) {
-            ct_ex Ea = CT_EX_ZERO, Er = CT_EX_ZERO;
-            for (int k = 0; k < 4; k++) {
-                const ct_ex h = self->span.length;
-                const ct_ex E
-                    = ct_ex_add(x, ct_shape_at(x, &f->shortening[j][k], CT_EX_ONE, h),
-                                ct_ex_mul(x, self->radius[plane],
-                                          ct_shape_at(x, &f->curving[j][k], CT_EX_ONE, h)));
-                Ea = ct_ex_add(x, Ea, ct_ex_mul(x, E, self->value[first + k]));
-                Er = ct_ex_add(x, Er, ct_ex_mul(x, E, self->rate[first + k]));
-            }
-            self->g[first + j] = ct_ex_neg(x, Ea);
-            *c = ct_ex_sub(x, *c,
-                           ct_ex_scale(x, 0.5, ct_ex_mul(x, Ea, self->value[first + j])));
-            *rate = ct_ex_sub(x, *rate, ct_ex_mul(x, Ea, self->rate[first + j]));
-            *bias = ct_ex_sub(x, *bias, ct_ex_mul(x, Er, self->rate[first + j]));
-        }
-    }
-}
-
-// The same by amplitudes of the slopes.
-static void draw_by_slopes(struct ct_build *b, struct ct_flexible *f, int e, ct_ex *c,
-                           ct_ex *rate, ct_ex *bias)
-{
-    struct ct_exs *x = b->x;
-    struct ct_element *self = &f->element[e];
-    const ct_ex h = self->span.length;
-    const struct ct_draw by = ct_draw_whole_push(x, h, ct_ex_const(x, -1));
-    struct ct_bent value[2], speed[2];
-    for (int plane = 0; plane < 2; plane++) {
-        const int first = plane ? 6 : 2;
-        struct ct_bent force = {0};
-        value[plane] = ct_bent_of(x, f->beam->theory, h, self->value + first);
-        speed[plane] = ct_bent_of(x, f->beam->theory, h, self->rate + first);
-        ct_draw_push(x, &value[plane], &by, &force);
-        ct_bent_push(x, f->beam->theory, h, &force, self->g + first);
-    }
-    const struct ct_draw drawn = ct_draw_of(x, value), first = ct_draw_by(x, value, speed),
-                         second = ct_draw_by(x, speed, speed);
-    *c = ct_ex_sub(x, *c, ct_draw_whole(x, h, &drawn));
-    *rate = ct_ex_sub(x, *rate, ct_draw_whole(x, h, &first));
-    *bias = ct_ex_sub(x, *bias, ct_draw_whole(x, h, &second));
-}
-
-// Foreshortening of element after element: c and its derivatives by running sums.
-static void run_chain(struct ct_build *b, struct ct_flexible *f)
-{
-    for (int e = 0; e < f->beam->nelement; e++) {
-        struct ct_element *self = &f->element[e];
-        ct_ex c = self->c, rate = self->c_rate, bias = self->c_bias;
-        if (f->beam->higher_order)
-            draw_by_matrices(b, f, e, &c, &rate, &bias);
-        else
-            draw_by_slopes(b, f, e, &c, &rate, &bias);
-        if (e + 1 < f->beam->nelement) {
-            self[1].c = c;
-            self[1].c_rate = rate;
-            self[1].c_bias = bias;
-        }
-    }
-}
-
-// Freedom i as a sum of shapes.
-static void combine_shapes(struct ct_build *b, struct ct_flexible *f, const struct ct_shapes *s,
-                           int i)
-{
-    struct ct_exs *x = b->x;
-    struct ct_freedom *d = &f->freedom[s->freedom[i]];
-    d->part = CT_NEWN(b->arena, struct ct_part, s->nshape);
-    for (int k = 0; k < s->nshape; k++) {
-        const double v = s->shape[(size_t)i + (size_t)s->n * (size_t)k];
-        if (v == 0)
-            continue;
-        d->part[d->npart++] = (struct ct_part){k, ct_ex_const(x, v)};
-        d->value = ct_ex_add(x, d->value, ct_ex_scale(x, v, f->elastic[k].value));
-        d->rate = ct_ex_add(x, d->rate, ct_ex_scale(x, v, f->elastic[k].rate));
-        d->acceleration
-            = ct_ex_add(x, d->acceleration, ct_ex_scale(x, v, f->elastic[k].acceleration));
-    }
-}
-
-static void unknowns_of_shapes(struct ct_build *b, struct ct_flexible *f,
-                               const struct ct_shapes *s)
-{
-    for (int k = 0; k < s->nshape; k++) {
-        const int i = k < s->nstatic ? s->freedom[k] : 0;
-        new_unknown(b, f,
-                    k < s->nstatic
-                        ? ct_arena_printf(b->arena, "%s.%d.%s", f->name, i / NKIND,
-                                          kind_name[i % NKIND])
-                        : ct_arena_printf(b->arena, "%s.mode%d", f->name, k - s->nstatic + 1),
-                    k < s->nstatic ? sort_of(i % NKIND) : CT_ELASTIC_MODE);
-    }
-    for (int i = 0; i < s->n; i++)
-        combine_shapes(b, f, s, i);
-}
-
-static void nodal_unknowns(struct ct_build *b, struct ct_flexible *f)
-{
-    const int nnode = f->beam->nelement + 1;
-    for (int node = 0; node < nnode; node++)
-        for (int kind = 0; kind < NKIND; kind++) {
-            if (is_fixed(f, node, kind))
-                continue;
-            const int k = new_unknown(
-                b, f, ct_arena_printf(b->arena, "%s.%d.%s", f->name, node, kind_name[kind]),
-                sort_of(kind));
-            struct ct_freedom *d = &f->freedom[NKIND * node + kind];
-            d->value = f->elastic[k].value;
-            d->rate = f->elastic[k].rate;
-            d->acceleration = f->elastic[k].acceleration;
-            d->npart = 1;
-            d->part = CT_NEW(b->arena, struct ct_part);
-            *d->part = (struct ct_part){k, CT_EX_ONE};
-        }
-}
-
-void ct_flexible_unknowns(struct ct_build *b, struct ct_flexible *f)
-{
-    f->elastic = CT_NEWN(b->arena, struct ct_elastic, NKIND * (f->beam->nelement + 1));
-    struct ct_shapes s;
-    const int bare = ct_flexible_bare_joint(b, f);
-    if (bare >= 0) {
-        b->eqs->bare_beam = f->body;
-        b->eqs->bare_joint = bare;
-    }
-    if (f->beam->modes && f->deformation && !ct_flexible_keeps_all_modes(b, f)) {
-        if (ct_flexible_reduce(b, f, &s))
-            unknowns_of_shapes(b, f, &s);
-    } else if (ct_flexible_condense(b, f, &s)) {
-        unknowns_of_shapes(b, f, &s);
-        ct_topology_left_out(b, ct_arena_printf(b->arena, "rotations of %s's nodes", f->name),
-                             "without inertia and moment they follow the other coordinates");
-    } else
-        nodal_unknowns(b, f);
-    dof_values(b, f);
-    if (f->axial == CT_AXIAL_CHAIN)
-        run_chain(b, f);
-}
-
 bool ct_flexible_is_carried(const struct ct_flexible *f)
 {
-    bool is_nodal = !f->beam->modes;
+    bool is_nodal = !f->beam->modes && !f->beam->nshape;
     for (int i = 0; i < NKIND * (f->beam->nelement + 1); i++)
         is_nodal = is_nodal && f->freedom[i].npart <= 1;
     return is_nodal && f->kinematics == CT_AXIAL_CHAIN;

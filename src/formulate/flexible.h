@@ -50,7 +50,9 @@ struct ct_part {
 struct ct_elastic {
     const char *name;
     int q, u;
+    int freedom; // that it is, or that its static shape is for; -1: share of a mode or a given shape
     ct_ex value, rate, acceleration;
+    ct_ex start, start_rate; // with `initial`, of parameters
 };
 
 struct ct_freedom {
@@ -97,6 +99,7 @@ struct ct_flexible {
     struct ct_shape line[CT_LINE_DOF];              // stretch and twist
     struct ct_shape shortening[4][4], bubble[4][4]; // E(xi), D(xi)
     struct ct_shape curving[4][4]; // integral of the sections' rotation gradients, as E
+    double start_missed;           // share of the start that modes or given shapes leave out
     ct_ex strain;                  // [J], once the stiffness is derived
     struct ct_inertia *inertia;    // elastic.c
 };
@@ -115,7 +118,10 @@ void ct_flexible_create(struct ct_build *b);
 void ct_flexible_settle(struct ct_build *b);
 /// The beam of a body; NULL if it is none.
 struct ct_flexible *ct_flexible_of(const struct ct_build *b, int body);
-/// Unknowns of the elastic coordinates, after those of joints and bodies.
+/// Deformation (bit) that a kind of freedom belongs to.
+unsigned ct_freedom_family(int kind);
+bool ct_freedom_is_fixed(const struct ct_flexible *f, int node, int kind);
+/// Unknowns of the elastic coordinates (flexible_unknowns.c), after those of joints and bodies.
 void ct_flexible_unknowns(struct ct_build *b, struct ct_flexible *f);
 void ct_axial_field(struct ct_build *b, const struct ct_flexible *f, int e, ct_ex xi,
                     enum ct_axial axial, struct ct_axial_field *a);
@@ -163,6 +169,9 @@ struct ct_flexible_state ct_flexible_moving(struct ct_build *b, const struct ct_
 /// Force and torque about the base that the beam's inertia and weight need, with the symbols u'; ground axes.
 void ct_flexible_wrench(struct ct_build *b, const struct ct_flexible *f, ct_ex3 *force,
                         ct_ex3 *torque);
+/// By how much more than EI fully integrated elements of Timoshenko's theory resist bending, since they cannot bend without
+/// shear: the largest k GA h^2/(12 EI).
+double ct_flexible_locking(struct ct_build *b, const struct ct_flexible *f);
 /// [J]
 ct_ex ct_flexible_strain(struct ct_build *b, const struct ct_flexible *f);
 /// Power of the beams' own damping, negative.

@@ -156,7 +156,7 @@ int ct_flexible_bare_joint(struct ct_build *b, const struct ct_flexible *f)
                          | (f->deformation & CT_BEAM_BENDING_Z ? 4 : 0);
     unsigned about = 0;
     int only = -1;
-    if (!bends || f->beam->modes || f->beam->is_chord
+    if (!bends || f->beam->modes || f->beam->nshape || f->beam->is_chord
         || (!f->beam->is_lumped && f->beam->theory != CT_BEAM_TIMOSHENKO))
         return -1;
     for (size_t j = 0; j < m->njoint; j++) {

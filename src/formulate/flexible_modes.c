@@ -200,6 +200,74 @@ bool ct_flexible_reduce(struct ct_build *b, struct ct_flexible *f, struct ct_sha
     return true;
 }
 
+// v' M v of freedoms' values.
+static double weight_of(const struct reduction *r, const double *v)
+{
+    double sum = 0;
+    for (size_t j = 0; j < (size_t)r->n; j++)
+        for (size_t i = 0; i < (size_t)r->n && v[j] != 0; i++)
+            sum += v[i] * r->M[i + (size_t)r->n * j] * v[j];
+    return sum;
+}
+
+// Share of the wanted values g that P c leaves out.
+static double share_missed(const struct reduction *r, const double *P, const ct_ex *by_freedom,
+                           const ct_ex *c)
+{
+    const struct ct_build *b = r->b;
+    const size_t n = (size_t)r->n;
+    double *g = CT_NEWN(b->ctx->scratch, double, n + 1);
+    for (size_t i = 0; i < n; i++)
+        g[i] = ct_ex_value(b->x, by_freedom[r->freedom[i]], b->value);
+    const double all = weight_of(r, g);
+    for (int k = 0; k < r->f->nelastic; k++)
+        for (size_t i = 0; i < n; i++)
+            g[i] -= P[i + n * (size_t)k] * ct_ex_value(b->x, c[k], b->value);
+    return all > 0 ? sqrt(fmax(0, weight_of(r, g)) / all) : 0;
+}
+
+bool ct_flexible_fit(struct ct_build *b, struct ct_flexible *f, const ct_ex *by_freedom,
+                     ct_ex *out)
+{
+    struct reduction r = {.b = b, .f = f};
+    const int m = f->nelastic;
+    number_freedoms(&r, new_marks(b, f));
+    assemble(&r);
+    const size_t n = (size_t)r.n;
+    double *P = CT_NEWN(b->ctx->scratch, double, n *(size_t)m + 1),
+           *MP = CT_NEWN(b->ctx->scratch, double, n *(size_t)m + 1),
+           *A = CT_NEWN(b->ctx->scratch, double, (size_t)m *(size_t)m + 1),
+           *v = CT_NEWN(b->ctx->scratch, double, m + 1);
+    for (size_t i = 0; i < n; i++) {
+        const struct ct_freedom *d = &f->freedom[r.freedom[i]];
+        for (int p = 0; p < d->npart; p++)
+            P[i + n * (size_t)d->part[p].k] = ct_ex_value(b->x, d->part[p].coef, b->value);
+    }
+    for (size_t k = 0; k < (size_t)m; k++)
+        for (size_t j = 0; j < n; j++)
+            for (size_t i = 0; i < n && P[j + n * k] != 0; i++)
+                MP[i + n * k] += r.M[i + n * j] * P[j + n * k];
+    for (size_t k = 0; k < (size_t)m; k++)
+        for (size_t l = 0; l < (size_t)m; l++)
+            for (size_t i = 0; i < n; i++)
+                A[k + (size_t)m * l] += P[i + n * k] * MP[i + n * l];
+    if (!ct_cholesky(A, m, m))
+        return false;
+    for (int k = 0; k < m; k++)
+        out[k] = CT_EX_ZERO;
+    for (size_t i = 0; i < n; i++) {
+        if (ct_ex_is_zero(by_freedom[r.freedom[i]]))
+            continue;
+        for (int k = 0; k < m; k++)
+            v[k] = MP[i + n * (size_t)k];
+        ct_cholesky_solve(v, A, m, m, 1, m);
+        for (int k = 0; k < m; k++)
+            out[k] = ct_ex_add(b->x, out[k], ct_ex_scale(b->x, v[k], by_freedom[r.freedom[i]]));
+    }
+    f->start_missed = fmax(f->start_missed, share_missed(&r, P, by_freedom, out));
+    return true;
+}
+
 bool ct_flexible_condense(struct ct_build *b, struct ct_flexible *f, struct ct_shapes *out)
 {
     struct reduction r = {.b = b, .f = f};

@@ -24,6 +24,14 @@ static double *start_values(struct ct_arena *a, const struct ct_model *m)
     return v;
 }
 
+static bool starts_deformed(const struct ct_model *m)
+{
+    for (size_t i = 1; i < m->nbody; i++)
+        if (m->body[i].beam && m->body[i].beam->nstart)
+            return true;
+    return false;
+}
+
 // Graph, nodes and edges of the model; trees are still open.
 static struct ct_build *build_create(struct ct_ctx *ctx, struct ct_arena *a,
                                      const struct ct_model *m,
@@ -34,7 +42,7 @@ static struct ct_build *build_create(struct ct_ctx *ctx, struct ct_arena *a,
     *b = (struct ct_build){.ctx = ctx,
                            .arena = a,
                            .model = m,
-                           .is_rigid = o->measure_all && !o->deformed,
+                           .is_rigid = o->measure_all && !o->deformed && !starts_deformed(m),
                            .keep_all = o->keep_all,
                            .frees_beams
                            = o->frees_beams || (o->like && o->like->build->frees_beams),

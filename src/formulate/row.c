@@ -31,8 +31,10 @@ static ct_ex new_memory(struct ct_build *b, enum ct_memory_kind kind, const char
 {
     struct ct_equations *s = b->eqs;
     struct ct_memory m = {.kind = kind, .joint = joint, .place = place};
-    m.symbol = ct_ex_sym(b->x, CT_SYM_MEMORY, ct_arena_printf(b->arena, "%s.last", name),
-                         (uint32_t)s->nmemory);
+    m.symbol
+        = ct_ex_sym(b->x, CT_SYM_MEMORY,
+                    kind == CT_MEMORY_TURNS ? name : ct_arena_printf(b->arena, "%s.last", name),
+                    (uint32_t)s->nmemory);
     CT_PUSH(b->arena, s->memory, s->nmemory, s->memory_cap, m);
     return m.symbol;
 }
@@ -53,6 +55,53 @@ static ct_ex angle_from(struct ct_build *b, const char *name, int joint, int pla
     return angle;
 }
 
+// Angle about the normal of the plane, of a vector of the plane given in the node's axes, from the axes of its frame.
+static ct_ex angle_in_frame(struct ct_build *b, int node, ct_ex3 v)
+{
+    struct ct_exs *x = b->x;
+    const ct_ex3 e1 = b->plane[0], s = ct_ex33_apply(x, &b->place[node].S, v);
+    const ct_ex sine = ct_ex3_dot(x, b->plane[2], ct_ex3_cross(x, e1, s));
+    return ct_ex_fun2(x, CT_OP_ATAN2, sine, ct_ex3_dot(x, e1, s));
+}
+
+// Does a direction point along the normal of the plane, or against it?
+static bool is_upward(const struct ct_build *b, const ct_ex3 *direction)
+{
+    double sum = 0;
+    for (int i = 0; i < 3; i++)
+        sum += ct_ex_value(b->x, direction->e[i], b->value)
+             * ct_ex_value(b->x, b->plane[2].e[i], b->value);
+    return sum > 0;
+}
+
+// The same from ground.
+static ct_ex planar_angle(struct ct_build *b, int node, ct_ex3 v)
+{
+    struct ct_exs *x = b->x;
+    const struct ct_cluster *c = &b->cluster[b->place[node].frame];
+    const ct_ex own = angle_in_frame(b, node, v);
+    if (!c->has_angle)
+        return own;
+    return is_upward(b, &c->axis) ? ct_ex_add(x, own, c->angle) : ct_ex_sub(x, own, c->angle);
+}
+
+// In a plane angles add: the angle about a from V to W is the difference of two sums, and whole turns that stay. False where
+// V or W turns in its frame.
+static bool add_angles(struct ct_build *b, const struct ct_measure *m, struct pair p, ct_ex3 a,
+                       ct_ex *sum)
+{
+    struct ct_exs *x = b->x;
+    const unsigned known = 1u << CT_SYM_PARAM;
+    if (!b->is_planar
+        || (ct_ex_kinds(x, angle_in_frame(b, p.tail, m->v))
+            | ct_ex_kinds(x, angle_in_frame(b, p.head, m->w)))
+               & ~known)
+        return false;
+    const ct_ex V = planar_angle(b, p.tail, m->v), W = planar_angle(b, p.head, m->w);
+    *sum = is_upward(b, &a) ? ct_ex_sub(x, W, V) : ct_ex_sub(x, V, W);
+    return true;
+}
+
 static ct_ex measure_angle(struct ct_build *b, const struct ct_coordinate *c,
                            const struct ct_measure *m)
 {
@@ -65,8 +114,18 @@ static ct_ex measure_angle(struct ct_build *b, const struct ct_coordinate *c,
     const ct_ex cosine = ct_ex_sub(x, ct_ex3_dot(x, V, W), ct_ex_mul(x, along, along));
     const ct_ex sine = ct_ex3_dot(x, a, ct_ex3_cross(x, V, W));
     const struct ct_edge_info *e = &b->edge[c->edge];
-    return angle_from(b, c->name, e->kind == CT_EDGE_JOINT ? e->index : -1, c->place, sine,
-                      cosine);
+    const int joint = e->kind == CT_EDGE_JOINT ? e->index : -1;
+    const size_t r = b->eqs->nmemory;
+    const ct_ex followed = angle_from(b, c->name, joint, c->place, sine, cosine);
+    ct_ex sum;
+    if (!add_angles(b, m, p, a, &sum))
+        return followed;
+    const ct_ex turns = new_memory(
+        b, CT_MEMORY_TURNS, ct_arena_printf(b->arena, "%s.turns", c->name), joint, c->place);
+    const ct_ex angle = ct_ex_add(b->x, sum, turns);
+    b->eqs->memory[r + 1].update = ct_ex_sub(b->x, followed, sum);
+    b->eqs->memory[r].update = angle;
+    return angle;
 }
 
 void ct_quaternion_follow(struct ct_build *b, const char *name, const ct_ex33 *R, ct_ex out[4])
@@ -471,24 +530,6 @@ static void translation_rows(struct ct_build *b, int edge)
 }
 
 // ---- rotational rows of a joint ---------------------------------------------------------------------------
-
-// Angle about the normal of the plane, of a vector of the plane given in the node's axes.
-static ct_ex planar_angle(struct ct_build *b, int node, ct_ex3 v)
-{
-    struct ct_exs *x = b->x;
-    const struct ct_place *p = &b->place[node];
-    const struct ct_cluster *c = &b->cluster[p->frame];
-    const ct_ex3 e1 = b->plane[0], s = ct_ex33_apply(x, &p->S, v);
-    const ct_ex sine = ct_ex3_dot(x, b->plane[2], ct_ex3_cross(x, e1, s));
-    const ct_ex own = ct_ex_fun2(x, CT_OP_ATAN2, sine, ct_ex3_dot(x, e1, s));
-    if (!c->has_angle)
-        return own;
-    double sign = 0;
-    for (int i = 0; i < 3; i++)
-        sign += ct_ex_value(x, c->axis.e[i], b->value)
-              * ct_ex_value(x, b->plane[2].e[i], b->value);
-    return sign > 0 ? ct_ex_add(x, own, c->angle) : ct_ex_sub(x, own, c->angle);
-}
 
 static void planar_angle_row(struct ct_build *b, int edge)
 {

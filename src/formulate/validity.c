@@ -48,33 +48,54 @@ static double profile(const struct line *s, ct_ex g, int e, double xi)
     return number(s, g);
 }
 
-// Mass of a body that a weld holds to a point of the beam, and where; 0 for other joints.
-static double welded(const struct ct_build *b, const struct ct_flexible *f,
-                     const struct ct_instance *joint, double *x)
+// A frame of the beam beyond its base. The section at the start of one on its chord turns against the base.
+static bool is_beyond(const struct ct_build *b, const struct ct_flexible *f, int frame)
 {
-    *x = 0;
+    const int own = f->beam->is_chord ? -1 : b->model->body[f->body].frame;
+    return frame >= 0 && frame != own && b->model->frame[frame].body == f->body;
+}
+
+static bool is_weld(const struct ct_instance *joint)
+{
+    return joint->from >= 0 && !strcmp(joint->cls->name, "weld");
+}
+
+// By body: where along the beam it is held by welds, beyond the base, directly or by other bodies; NaN: it is not.
+static double *find_riders(const struct ct_build *b, const struct ct_flexible *f)
+{
     const struct ct_model *m = b->model;
-    if (joint->from < 0 || strcmp(joint->cls->name, "weld") != 0)
-        return 0;
-    const struct ct_frame *ends[2] = {&m->frame[joint->from], &m->frame[joint->to]};
-    for (int k = 0; k < 2; k++)
-        if (ends[k]->body == f->body && !m->body[ends[1 - k]->body].beam) {
-            *x = ct_ex_value(b->x, ends[k]->at.e[0], b->value);
-            return ct_ex_value(b->x, m->body[ends[1 - k]->body].mass, b->value);
+    double *place = CT_NEWN(b->ctx->scratch, double, m->nbody);
+    for (size_t i = 0; i < m->nbody; i++)
+        place[i] = NAN;
+    for (bool grew = true; grew;) {
+        grew = false;
+        for (size_t i = 0; i < 2 * m->njoint; i++) {
+            const struct ct_instance *j = &m->joint[i / 2];
+            const int at = i % 2 ? j->from : j->to, to = i % 2 ? j->to : j->from;
+            if (!is_weld(j))
+                continue;
+            const int body = m->frame[to].body;
+            const double x = is_beyond(b, f, at)
+                               ? ct_ex_value(b->x, m->frame[at].at.e[0], b->value)
+                               : place[m->frame[at].body];
+            if (isnan(x) || body == 0 || m->body[body].beam || !isnan(place[body]))
+                continue;
+            place[body] = x;
+            grew = true;
         }
-    return 0;
+    }
+    return place;
 }
 
 static void list_lumps(struct line *s)
 {
     const struct ct_model *m = s->b->model;
-    s->lump = CT_NEWN(s->b->ctx->scratch, struct lump, m->njoint + 1);
-    for (size_t j = 0; j < m->njoint; j++) {
-        struct lump at;
-        at.mass = welded(s->b, s->f, &m->joint[j], &at.x);
-        if (at.mass > 0)
-            s->lump[s->nlump++] = at;
-    }
+    const double *place = find_riders(s->b, s->f);
+    s->lump = CT_NEWN(s->b->ctx->scratch, struct lump, m->nbody);
+    for (size_t i = 1; i < m->nbody; i++)
+        if (!isnan(place[i]))
+            s->lump[s->nlump++] = (struct lump){
+                .x = place[i], .mass = ct_ex_value(s->b->x, m->body[i].mass, s->b->value)};
 }
 
 // P (2, out) = int m x and int m over element e from xi on.
@@ -131,31 +152,47 @@ static void add(struct line *s, double *A, int e, int j, int k, double v)
     A[s->number[p] - s->number[q] + (s->band + 1) * s->number[q]] += opposed ? -v : v;
 }
 
-static void add_element(struct line *s, int e)
+// Bending and shear, at the points that the beam itself takes: one in the middle keeps linear shapes from locking.
+static void add_stiffness(struct line *s, int e)
 {
     const struct ct_beam *beam = s->f->beam;
     const double h = number(s, s->f->element[e].span.length);
     const ct_ex EI = ct_ex_mul(s->b->x, beam->E, s->plane ? beam->Iy : beam->Iz);
     const ct_ex GA = ct_flexible_shear(s->b, s->f, s->plane);
-    for (int i = 0; i < POINTS; i++) {
-        const double xi = s->xi[i], w = s->weight[i] * h;
-        double place[4], slope[4], turn[4], bend[4], P[2];
+    const bool in_middle = ct_flexible_stiffness_rule(beam) == CT_RULE_MIDDLE;
+    for (int i = 0; i < (in_middle ? 1 : POINTS); i++) {
+        const double xi = in_middle ? 0.5 : s->xi[i], w = (in_middle ? 1 : s->weight[i]) * h,
+                     stiffness = w * profile(s, EI, e, xi), shear = w * profile(s, GA, e, xi);
+        double bend[4], lean[4];
         for (int j = 0; j < 4; j++) {
             const struct ct_shape d = ct_shape_slope(&s->f->shape.rotation[j]);
+            bend[j] = ct_shape_value(&d, xi, h);
+            lean[j] = ct_shape_value(&s->f->shape.slope[j], xi, h)
+                    - ct_shape_value(&s->f->shape.rotation[j], xi, h);
+        }
+        for (int j = 0; j < 4; j++)
+            for (int k = 0; k < 4; k++)
+                add(s, s->K, e, j, k,
+                    stiffness * bend[j] * bend[k] + shear * lean[j] * lean[k]);
+    }
+}
+
+static void add_element(struct line *s, int e)
+{
+    const struct ct_beam *beam = s->f->beam;
+    const double h = number(s, s->f->element[e].span.length);
+    add_stiffness(s, e);
+    for (int i = 0; i < POINTS; i++) {
+        const double xi = s->xi[i], w = s->weight[i] * h,
+                     m = profile(s, beam->mass_per_length, e, xi);
+        double place[4], slope[4], P[2];
+        for (int j = 0; j < 4; j++) {
             place[j] = ct_shape_value(&s->f->shape.place[j], xi, h);
             slope[j] = ct_shape_value(&s->f->shape.slope[j], xi, h);
-            turn[j] = ct_shape_value(&s->f->shape.rotation[j], xi, h);
-            bend[j] = ct_shape_value(&d, xi, h);
         }
-        const double stiffness = profile(s, EI, e, xi), shear = profile(s, GA, e, xi),
-                     m = profile(s, beam->mass_per_length, e, xi);
         mass_beyond(s, e, xi, P);
         for (int j = 0; j < 4; j++)
             for (int k = 0; k < 4; k++) {
-                add(s, s->K, e, j, k,
-                    w
-                        * (stiffness * bend[j] * bend[k]
-                           + shear * (slope[j] - turn[j]) * (slope[k] - turn[k])));
                 add(s, s->M, e, j, k, w * m * place[j] * place[k]);
                 add(s, s->Kg[0], e, j, k, w * P[0] * slope[j] * slope[k]);
                 add(s, s->Kg[1], e, j, k, w * P[1] * slope[j] * slope[k]);
@@ -303,25 +340,26 @@ bool ct_validity_derive(struct ct_build *b, const struct ct_flexible *f,
 
 // ---- choice -----------------------------------------------------------------------------------------------------
 
-// Does anything but a welded body hang on the beam beyond its base, or push it there?
+// Does anything but welded bodies hang on the beam beyond its base, or push it or them there?
 static bool carries(const struct ct_build *b, const struct ct_flexible *f)
 {
     const struct ct_model *m = b->model;
-    const int own = f->beam->is_chord ? -1 : m->body[f->body].frame;
-    for (size_t i = 0; i < m->njoint; i++) {
-        const struct ct_instance *j = &m->joint[i];
-        double x;
-        const bool touches = j->from >= 0
-                          && ((m->frame[j->from].body == f->body && j->from != own)
-                              || (m->frame[j->to].body == f->body && j->to != own));
-        if (touches && !(welded(b, f, j, &x) > 0))
-            return true;
-    }
-    for (size_t i = 0; i < m->nforce; i++) {
-        const struct ct_instance *j = &m->force[i];
-        if ((j->from >= 0 && m->frame[j->from].body == f->body && j->from != own)
-            || (m->frame[j->to].body == f->body && j->to != own))
-            return true;
+    const double *place = find_riders(b, f);
+    for (size_t i = 0; i < m->njoint + m->nforce; i++) {
+        const bool is_joint = i < m->njoint;
+        const struct ct_instance *j = is_joint ? &m->joint[i] : &m->force[i - m->njoint];
+        const int ends[2] = {j->from, j->to};
+        for (int k = 0; k < 2; k++) {
+            if (ends[k] < 0
+                || !(is_beyond(b, f, ends[k]) || !isnan(place[m->frame[ends[k]].body])))
+                continue;
+            const int other = ends[1 - k];
+            const bool holds_rider
+                = is_joint && is_weld(j)
+               && (is_beyond(b, f, other) || !isnan(place[m->frame[other].body]));
+            if (!holds_rider)
+                return true;
+        }
     }
     return false;
 }

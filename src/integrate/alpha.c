@@ -15,12 +15,15 @@ struct memory {
     double h;                // of the step that ends here
     double *a, *u_dot, *lam; // (nu), (nu), (rows)
     double *jerk;            // u'' amid that step  (nu)
-    double *rate;            // at that step's start, of quadratures alone  (ny)
+    double *slope,
+        *bend;    // divided differences of u': over that step; with the one before it  (nu)
+    double *rate; // at that step's start, of quadratures alone  (ny)
 };
 
-// What d(place) of a correction is worth in speeds, a, and accelerations, for steps of size h.
+// What d(place) of a correction is worth in speeds, a, and accelerations, for steps of size h behind one of size `before`.
 struct factors {
-    double h, by_speed, by_a, by_u_dot;
+    double h, before, by_speed, by_a, by_u_dot;
+    double pace, across; // 1/h, 1/(h + before)
 };
 
 struct state {
@@ -28,15 +31,25 @@ struct state {
     const struct ct_alpha *c;
     struct ct_iteration *it;
     struct factors f;
-    bool is_fresh, has_jerk;  // nothing is known of the time before; but u'' is
-    struct memory start, end; // of the step
-    double *a0, *jerk;        // (nu): a at the start, for this step's size; u''
-    double *d, *u, *q;        // the step's motion (nu), its end (nu, nq)
-    double *dd, *du;          // corrections (nu)
+    double share;                // 1/(1 - alpha_m)
+    double by_places, by_speeds; // (8.3) over h^2, (8.8) over h^3 u'''
+    bool is_fresh, has_jerk;     // nothing is known of the time before; but u'' is
+    struct memory start, end;    // of the step
+    double *a0, *jerk;           // (nu): a at the start, for this step's size; u''
+    double *d, *u, *q;           // the step's motion (nu), its end (nu, nq)
+    double *dd, *du;             // corrections (nu)
     double *eta, *dlam, *r, *phi, *v;
     double *rate1, *out;      // for interpolation: d' at the end; a motion (nu)
     double *end_rate, *error; // rates at the end and errors, of quadratures alone  (ny)
 };
+
+// The leading error of speeds is h^3 u''' times this.  (8.8)
+static double speed_factor(const struct ct_alpha *c)
+{
+    const double delta = c->alpha_m - c->alpha_f;
+    const double a = (1 - c->alpha_f - (1 - c->alpha_m) * (1 + 2 * delta) - delta * delta) / 2;
+    return 1. / 12 - delta * delta / 2 + a;
+}
 
 void *ct_alpha_create(struct ct_arena *a, const struct ct_method *method,
                       const struct ct_problem *p)
@@ -44,11 +57,15 @@ void *ct_alpha_create(struct ct_arena *a, const struct ct_method *method,
     struct state *s = CT_NEW(a, struct state);
     s->dae = p->dae;
     s->c = method->coefficients;
+    s->share = 1 / (1 - s->c->alpha_m);
+    s->by_places = s->c->beta + 1. / 12 - s->c->gamma / 2;
+    s->by_speeds = speed_factor(s->c);
     s->it = ct_iteration_create(a, p, s->c->is_stabilised, false);
     double **const speeds[]
-        = {&s->start.a,  &s->start.u_dot, &s->start.jerk, &s->end.a, &s->end.u_dot,
-           &s->end.jerk, &s->a0,          &s->jerk,       &s->d,     &s->u,
-           &s->dd,       &s->du,          &s->r,          &s->rate1, &s->out};
+        = {&s->start.slope, &s->start.bend, &s->end.slope, &s->end.bend,  &s->start.a,
+           &s->start.u_dot, &s->start.jerk, &s->end.a,     &s->end.u_dot, &s->end.jerk,
+           &s->a0,          &s->jerk,       &s->d,         &s->u,         &s->dd,
+           &s->du,          &s->r,          &s->rate1,     &s->out};
     double **const rows[] = {&s->start.lam, &s->end.lam, &s->eta, &s->dlam, &s->phi, &s->v};
     for (size_t i = 0; i < COUNT(speeds); i++)
         *speeds[i] = CT_NEWN(a, double, p->dae->nu + 1);
@@ -81,11 +98,17 @@ void ct_alpha_accept(void *work)
 static void find_factors(struct state *s, double h)
 {
     const struct ct_alpha *c = s->c;
-    if (s->f.h == h)
+    const double before = s->is_fresh ? INFINITY : s->start.h;
+    if (s->f.h == h && s->f.before == before)
         return;
     const double by_a = 1 / (c->beta * h * h);
-    s->f = (struct factors){h, c->gamma / (c->beta * h), by_a,
-                            by_a * (1 - c->alpha_m) / (1 - c->alpha_f)};
+    s->f = (struct factors){.h = h,
+                            .before = before,
+                            .by_speed = c->gamma / (c->beta * h),
+                            .by_a = by_a,
+                            .by_u_dot = by_a * (1 - c->alpha_m) / (1 - c->alpha_f),
+                            .pace = 1 / h,
+                            .across = 1 / (h + before)};
 }
 
 // ---- the start of a step --------------------------------------------------------------------------
@@ -135,22 +158,27 @@ static enum ct_eval begin(struct state *s, const struct ct_problem *p, double t,
 
 // ---- the iteration ----------------------------------------------------------------------------------
 
-// Where the step would end with the accelerations of its start.
+// Where the step would end with accelerations that go on as the polynomial through their last values, one to three. Those of
+// the index-3 form have too much rounding in them for that.
 static void predict(struct state *s, double h, const double *y)
 {
     const struct ct_alpha *c = s->c;
     const struct ct_dae *dae = s->dae;
-    const double *u0 = y + dae->nq, share = 1 / (1 - c->alpha_m);
+    const double *u0 = y + dae->nq, share = s->share;
+    const bool is_known = !s->is_fresh && c->is_stabilised && !c->starts_anew;
+    const double further = is_known ? h : 0, last = is_known ? h + s->start.h : 0;
     for (int k = 0; k < dae->nu; k++) {
         const double u_dot = s->start.u_dot[k], a0 = s->a0[k];
-        const double a = (u_dot - c->alpha_m * a0) * share;
-        s->end.u_dot[k] = u_dot;
+        const double then = u_dot + further * (s->start.slope[k] + last * s->start.bend[k]);
+        const double a
+            = ((1 - c->alpha_f) * then + c->alpha_f * u_dot - c->alpha_m * a0) * share;
+        s->end.u_dot[k] = then;
         s->end.a[k] = a;
         s->u[k] = u0[k] + h * ((1 - c->gamma) * a0 + c->gamma * a);
         s->d[k] = h * (u0[k] + h * ((0.5 - c->beta) * a0 + c->beta * a));
     }
     ct_stepper_copy(s->end.lam, s->start.lam, s->it->m);
-    ct_iteration_move(s->dae, y, s->d, s->q);
+    ct_iteration_move(dae, y, s->d, s->q);
 }
 
 static enum ct_eval correct(struct state *s, double t1, const double *y,
@@ -193,8 +221,9 @@ static enum ct_eval iterate(struct state *s, double t1, double h, const double *
     do {
         enum ct_verdict verdict = CT_GO_ON;
         predict(s, h, y);
-        enum ct_eval e
-            = ct_iteration_refresh(s->it, t1, s->q, s->u, s->end.u_dot, s->end.lam, stats);
+        enum ct_eval e = CT_EVAL_OK;
+        if (ct_iteration_is_old(s->it))
+            e = ct_iteration_refresh(s->it, t1, s->q, s->u, s->end.u_dot, s->end.lam, stats);
         if (e == CT_EVAL_OK
             && !ct_iteration_factor(s->it, s->f.by_speed, s->f.by_u_dot, 0, stats))
             e = CT_EVAL_RETRY;
@@ -209,14 +238,6 @@ static enum ct_eval iterate(struct state *s, double t1, double h, const double *
 
 // ---- a step -----------------------------------------------------------------------------------------
 
-// The leading error of speeds is h^3 u''' times this.  (8.8)
-static double speed_factor(const struct ct_alpha *c)
-{
-    const double delta = c->alpha_m - c->alpha_f;
-    const double a = (1 - c->alpha_f - (1 - c->alpha_m) * (1 + 2 * delta) - delta * delta) / 2;
-    return 1. / 12 - delta * delta / 2 + a;
-}
-
 // The leading errors: of places (8.3), and of speeds (8.8) with u''' from u'' amid this step and the one before, zero where
 // there is none and in the index-3 form, whose accelerations have rounding over h^2 in them. Those of speeds count in
 // outputs alone.
@@ -224,11 +245,10 @@ static double estimate(struct state *s, const struct ct_problem *p,
                        const struct ct_tolerance *tolerance, double t1, double h,
                        const double *y1)
 {
-    const struct ct_alpha *c = s->c;
-    const double places = h * h * (c->beta + 1. / 12 - c->gamma / 2), pace = 1 / h;
-    const bool knows_speeds = c->is_stabilised && !s->is_fresh;
-    const double slope = knows_speeds ? 2 / (h + s->start.h) : 0;
-    const double speeds = h * h * h * slope * speed_factor(c);
+    const double places = h * h * s->by_places, pace = s->f.pace;
+    const bool knows_speeds = s->c->is_stabilised && !s->is_fresh;
+    const double slope = knows_speeds ? 2 * s->f.across : 0;
+    const double speeds = h * h * h * slope * s->by_speeds;
     for (int k = 0; k < s->dae->nu; k++) {
         s->dd[k] = places * (s->end.a[k] - s->a0[k]);
         s->end.jerk[k] = pace * (s->end.a[k] - s->a0[k]);
@@ -268,9 +288,20 @@ static enum ct_eval finish(struct state *s, const struct ct_problem *p, double t
         e = p->project(p->user, t1, y1);
     if (e == CT_EVAL_OK)
         e = ct_stepper_rhs(p, t1, y1, dy1, stats);
-    for (int i = nq + nu; i < p->ny && e == CT_EVAL_OK; i++)
+    for (int i = nq + nu; i < p->ny && e == CT_EVAL_OK && !s->dae->has_no_power; i++)
         y1[i] = y[i] + h / 2 * (dy[i] + dy1[i]);
     return e;
+}
+
+// For the prediction of the next step.
+static void note_accelerations(struct state *s, double h)
+{
+    const double pace = s->f.pace, across = s->f.across; // zero behind no step
+    for (int k = 0; k < s->dae->nu; k++) {
+        s->end.slope[k] = pace * (s->end.u_dot[k] - s->start.u_dot[k]);
+        s->end.bend[k] = across * (s->end.slope[k] - s->start.slope[k]);
+    }
+    s->end.h = h;
 }
 
 enum ct_eval ct_alpha_step(const struct ct_problem *p, double t, double h, const double *y,
@@ -290,7 +321,9 @@ enum ct_eval ct_alpha_step(const struct ct_problem *p, double t, double h, const
     if (tolerance)
         *err = ct_larger(estimate(s, p, tolerance, t + h, h, y1),
                          estimate_quadratures(s, p, tolerance, h, y, dy, y1, dy1));
-    s->end.h = h;
+    note_accelerations(s, h);
+    if (s->dae->has_no_power)
+        return CT_EVAL_OK;
     ct_stepper_copy(s->end.rate + first, dy + first, p->ny - first);
     ct_stepper_copy(s->end_rate + first, dy1 + first, p->ny - first);
     return CT_EVAL_OK;

@@ -42,7 +42,9 @@ struct run {
     struct ct_repeat repeat;
     double *y0; // where the run began
     struct ct_watch watch;
-    double t; // time of y and dy
+    double t;    // time of y and dy
+    double stop; // where steps must end next, a time event or not; before t: to be found
+    bool is_stop_time;
     struct ct_control control;
     struct ct_pace pace;
     double *y, *dy;      // (ny) each, as all that follow
@@ -486,13 +488,7 @@ static enum ct_eval end_on_event(struct run *r, struct stride *s)
 static enum ct_eval tell_accepted(struct run *r, const struct stride *s)
 {
     const struct ct_problem *p = r->p;
-    if (!p->accepted)
-        return CT_EVAL_OK;
-    ct_stepper_copy(r->point, r->end, p->ny);
-    const enum ct_eval e = p->accepted(p->user, s->t1, r->end, r->dend);
-    if (e != CT_EVAL_OK || !differs(r->end, r->point, p->ny))
-        return e;
-    return ct_stepper_rhs(p, s->t1, r->end, r->dend, r->stats);
+    return p->accepted ? p->accepted(p->user, s->t1, r->end, r->dend) : CT_EVAL_OK;
 }
 
 // What follows an attempt whose error is small enough; h is the step as it was attempted.
@@ -656,6 +652,7 @@ static bool handle_event(struct run *r, bool is_state, bool is_time)
 {
     const struct ct_problem *p = r->p;
     r->stats->events++;
+    r->stop = -INFINITY;
     if (is_state && ct_watch_piles_up(&r->watch, r->t, r->o->t1 - r->o->t0))
         return ct_error(r->ctx, nowhere, CT_E_EVENT_PILE,
                         "%d events in a row at t = %.9g without time going on", CT_WATCH_PILE,
@@ -667,12 +664,12 @@ static bool handle_event(struct run *r, bool is_state, bool is_time)
 
 static bool advance(struct run *r)
 {
-    bool is_time;
     struct stride s;
-    const double stop = next_stop(r, &is_time);
-    if (!find_step(r, stop, is_time, &s))
+    if (r->t >= r->stop || r->o->step > 0)
+        r->stop = next_stop(r, &r->is_stop_time);
+    if (!find_step(r, r->stop, r->is_stop_time, &s))
         return false;
-    is_time = is_time && s.is_landing;
+    const bool is_time = r->is_stop_time && s.is_landing;
     const bool is_event = s.is_event || is_time;
     if (!give_samples_before(r, &s, s.t1 - event_margin(is_event, s.t1, s.h)))
         return false;
@@ -742,6 +739,7 @@ bool ct_integrate(struct ct_ctx *ctx, const struct ct_method *method,
         .pace = {.t = options->t0},
         .singular_in = INFINITY,
         .reach = INFINITY,
+        .stop = -INFINITY,
     };
     allocate(&r);
     memcpy(r.y, y, (size_t)p->ny * sizeof *y);

@@ -7,8 +7,6 @@
 #include <math.h>
 #include <string.h>
 
-// Derivatives are kept while a correction is less than this part of the one before.
-static const double slow = 0.1;
 // Factors serve as long as the step is the same but for this: it costs no iteration.
 static const double same_step = 1e-3;
 // With a tolerance the iteration errs by a small part of it, smaller the tighter it is.
@@ -41,6 +39,7 @@ struct ct_iteration *ct_iteration_create(struct ct_arena *a, const struct ct_pro
     it->groups = p->groups;
     it->is_stabilised = is_stabilised;
     it->nu = nu;
+    it->per_speed = nu ? 1.0 / nu : 0;
     it->version = -1;
     it->tail = 1;
     double **const square[] = {&it->M, &it->C, &it->K};
@@ -70,26 +69,60 @@ static inline double size_of(const struct ct_groups *g, int i, const double *y)
     return g && g->of[i] >= 0 ? g->size[g->of[i]] : fabs(y[i]);
 }
 
+// What places and speeds are measured against; speeds need not be known better than least_speed.
+static void weigh(struct ct_iteration *it, double rtol, double atol, double least_speed,
+                  const double *y)
+{
+    const struct ct_dae *dae = it->dae;
+    ct_stepper_group(it->groups, dae->nq + dae->nu, y, y);
+    for (int k = 0; k < it->nu; k++) {
+        const int i = dae->q_of[k];
+        const double size = size_of(it->groups, dae->nq + k, y);
+        it->share[k] = 1 / (rtol * (i < 0 ? 1 : size_of(it->groups, i, y)) + atol);
+        it->share[it->nu + k] = 1 / ct_larger(rtol * size + atol, least_speed);
+    }
+}
+
+// The same where coordinate k moves with speed k and each counts for itself.
+static inline void weigh_plain(struct ct_iteration *it, double rtol, double atol,
+                               double least_speed, const double *y)
+{
+    const double *u = y + it->dae->nq;
+    for (int k = 0; k < it->nu; k++) {
+        it->share[k] = 1 / (rtol * fabs(y[k]) + atol);
+        it->share[it->nu + k] = 1 / ct_larger(rtol * fabs(u[k]) + atol, least_speed);
+    }
+}
+
+static inline double largest_place(const struct ct_iteration *it, const double *y)
+{
+    const struct ct_dae *dae = it->dae;
+    double largest = 0;
+    for (int k = 0; k < it->nu; k++) {
+        const int i = dae->is_plain ? k : dae->q_of[k];
+        largest = ct_larger(largest, i < 0 ? 1 : fabs(y[i]));
+    }
+    return largest;
+}
+
 bool ct_iteration_begin(struct ct_iteration *it, const struct ct_tolerance *tolerance, double h,
                         const double *y)
 {
     const struct ct_dae *dae = it->dae;
     const struct ct_tolerance *tol = tolerance ? tolerance : &finest;
-    double largest = 0;
-    ct_stepper_group(it->groups, dae->nq + dae->nu, y, y);
-    for (int k = 0; k < it->nu; k++) {
-        const int i = dae->q_of[k];
-        it->share[k] = 1 / (tol->rtol * (i < 0 ? 1 : size_of(it->groups, i, y)) + tol->atol);
-        largest = ct_larger(largest, i < 0 ? 1 : fabs(y[i]));
+    const double rounding = DBL_EPSILON * largest_place(it, y);
+    const double least_speed = tolerance ? moved_roundings * rounding / h : 0;
+    it->least = place_rounding * rounding;
+    if (dae->is_plain && !it->groups)
+        weigh_plain(it, tol->rtol, tol->atol, least_speed, y);
+    else
+        weigh(it, tol->rtol, tol->atol, least_speed, y);
+    if (it->kappa_for != tol->rtol + tol->atol) {
+        it->kappa_for = tol->rtol + tol->atol;
+        it->kappa = tolerance ? ct_smaller(kappa_most, sqrt(it->kappa_for)) : kappa_finest;
+        it->kappa *= it->is_stabilised ? 1 : kappa_index3;
     }
-    it->least = place_rounding * DBL_EPSILON * largest;
-    const double least_speed = tolerance ? moved_roundings * DBL_EPSILON * largest / h : 0;
-    for (int k = 0; k < it->nu; k++) {
-        const double size = size_of(it->groups, dae->nq + k, y);
-        it->share[it->nu + k] = 1 / ct_larger(tol->rtol * size + tol->atol, least_speed);
-    }
-    it->kappa = tolerance ? ct_smaller(kappa_most, sqrt(tol->rtol + tol->atol)) : kappa_finest;
-    it->kappa *= it->is_stabilised ? 1 : kappa_index3;
+    it->is_finest = !tolerance;
     it->rounding = tolerance ? kappa_most : rounding_finest;
     it->most = tolerance ? MOST : MOST_FINEST;
     it->is_new = false;
@@ -188,11 +221,6 @@ static void assemble(struct ct_iteration *it)
     fill_turn(it, it->W, it->J, m, nu + m);
 }
 
-bool ct_iteration_is_old(const struct ct_iteration *it)
-{
-    return !it->has_tangent || it->rate > slow;
-}
-
 enum ct_eval ct_iteration_refresh(struct ct_iteration *it, double t, const double *q,
                                   const double *u, const double *a, const double *lam,
                                   struct ct_integrate_stats *stats)
@@ -221,7 +249,7 @@ static bool is_near(double a, double b)
 bool ct_iteration_factor(struct ct_iteration *it, double c, double e, double _Complex s,
                          struct ct_integrate_stats *stats)
 {
-    if (is_near(it->c, c) && is_near(it->e, e))
+    if ((it->c == c && it->e == e) || (is_near(it->c, c) && is_near(it->e, e)))
         return true;
     const int n = it->n, split = it->nu;
     const double x = c / e, y = 1 / e, z = 1 / c;
@@ -347,16 +375,18 @@ double ct_iteration_error(struct ct_iteration *it, const struct ct_problem *p,
 
 void ct_iteration_start(struct ct_iteration *it)
 {
+    const double tail = ct_larger(it->tail, DBL_EPSILON);
     it->count = 0;
     it->rate = 0;
-    const double tail = ct_larger(it->tail, DBL_EPSILON);
-    it->tail = sqrt(tail * sqrt(tail)); // the last step's, trusted less and less
+    // the last step's, trusted less and less; not where there is no tolerance that says how far off it may be
+    it->tail = it->is_finest ? 1 : sqrt(tail * sqrt(tail));
 }
 
 void ct_iteration_go_on(struct ct_iteration *it)
 {
     it->count = 1; // the last correction is known, its rate is not wanted
     it->kappa *= further;
+    it->kappa_for = NAN; // in this step only
 }
 
 static bool is_within(const double *d, int n, double most)

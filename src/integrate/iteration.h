@@ -42,11 +42,14 @@ struct ct_iteration {
     double *w; // speeds of the derivatives (nu), for N; NULL: the method knows no N
     double *b; // (n)
     double _Complex *bc;
-    double *share; // one over what changes of places and speeds are measured against  (2 nu)
-    double *off;   // an error of the states  (ny)
+    double per_speed; // 1/nu; 0: there are none
+    double *share;    // one over what changes of places and speeds are measured against  (2 nu)
+    double *off;      // an error of the states  (ny)
     // the run of corrections
     int count;
     double kappa, rounding; // a correction below: converged; below: not to be bettered
+    double kappa_for;       // the tolerance that it belongs to
+    bool is_finest;         // there is no tolerance
     double least;           // nor where places change by less  [m, rad]
     double size, rate,
         tail; // of the last correction; over the one before; all that follow it, over it
@@ -62,8 +65,12 @@ struct ct_iteration *ct_iteration_create(struct ct_arena *a, const struct ct_pro
 bool ct_iteration_begin(struct ct_iteration *it, const struct ct_tolerance *tolerance, double h,
                         const double *y);
 
-/// Are the derivatives too old?
-bool ct_iteration_is_old(const struct ct_iteration *it);
+/// Are the derivatives too old? They are kept while a correction is less than a tenth of the one before.
+static inline bool ct_iteration_is_old(const struct ct_iteration *it)
+{
+    const double slow = 0.1;
+    return !it->has_tangent || it->rate > slow;
+}
 /// Derivatives at a point, where they are too old; after it come the factors.
 enum ct_eval ct_iteration_refresh(struct ct_iteration *it, double t, const double *q,
                                   const double *u, const double *a, const double *lam,
@@ -112,7 +119,7 @@ static inline double ct_iteration_norm(const struct ct_iteration *it, const doub
         sum += ct_iteration_square(d + s * nu, it->share, nu);
     for (int s = 0; s < k && u; s++)
         sum += ct_iteration_square(u + s * nu, it->share + nu, nu);
-    return nu ? sqrt(sum / ((u ? 2 : 1) * k * nu)) : 0;
+    return sqrt(sum * (it->per_speed / ((u ? 2 : 1) * k)));
 }
 
 /// The error of a step that ends at y1, time t1: that of the states, `states`, or what the errors d, u (nu) of places and

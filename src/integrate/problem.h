@@ -90,7 +90,7 @@ struct ct_problem {
 
     /// After a step was accepted and projected: update memories and choices that keep f the same
     /// function. May be NULL. Before it answers CT_EVAL_RETRY it must have changed nothing. dy belongs to y.
-    enum ct_eval (*accepted)(void *user, double t, double *y, const double *dy);
+    enum ct_eval (*accepted)(void *user, double t, const double *y, const double *dy);
 
     /// Longest step from the last accepted state, or from where the start or an event has put it. May be NULL.
     double (*longest_step)(void *user);

@@ -4,14 +4,6 @@
 #include <math.h>
 #include <string.h>
 
-bool ct_stepper_finite(const double *x, int n)
-{
-    for (int i = 0; i < n; i++)
-        if (!isfinite(x[i]))
-            return false;
-    return true;
-}
-
 enum ct_eval ct_stepper_rhs(const struct ct_problem *p, double t, const double *y, double *dy,
                             struct ct_integrate_stats *stats)
 {
@@ -52,18 +44,22 @@ static void combine_few(double *restrict out, const double *y, double h, const d
 typedef double four
     __attribute__((vector_size(LANES * sizeof(double)), aligned(sizeof(double)), may_alias));
 
-// Inlined into callers, each with the registers that it may use.
+// Inlined into callers, each with the registers that it may use. Two fours at a time: sums need not wait for each other.
 __attribute__((always_inline)) static inline void
 by_fours(double *out, const double *y, double h, const double *a, const double *k, int s, int n)
 {
-    for (int i = 0; i < n; i += LANES) {
-        const int at = i + LANES <= n ? i : n - LANES;
-        const double *stage = k + at;
-        four sum = {0};
+    for (int i = 0; i < n; i += 2 * LANES) {
+        const int last = n - LANES, at = i < last ? i : last;
+        const int next = i + LANES < last ? i + LANES : last;
+        const double *stage = k;
+        four sum = {0}, more = {0};
         for (int j = 0; j < s; j++, stage += n)
-            if (a[j] != 0)
-                sum += a[j] * *(const four *)stage;
+            if (a[j] != 0) {
+                sum += a[j] * *(const four *)(stage + at);
+                more += a[j] * *(const four *)(stage + next);
+            }
         *(four *)(out + at) = y ? *(const four *)(y + at) + h * sum : h * sum;
+        *(four *)(out + next) = y ? *(const four *)(y + next) + h * more : h * more;
     }
 }
 
@@ -182,7 +178,7 @@ double ct_stepper_worse(const struct ct_problem *p, const struct ct_tolerance *t
     // a step that is refused anyway says nothing more
     if (!p->output_error || !(states <= 1))
         return states;
-    return fmax(states, p->output_error(p->user, t1, y1, e, tolerance, states));
+    return ct_larger(p->output_error(p->user, t1, y1, e, tolerance, states), states);
 }
 
 double ct_stepper_error(const struct ct_problem *p, const struct ct_tolerance *tolerance,

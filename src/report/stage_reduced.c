@@ -145,9 +145,9 @@ static void put_held(struct ct_derivation *d, const struct group g[NGROUP],
     for (size_t i = 0; i < e->nmemory; i++)
         if (shows(d, g, r, e->memory[i].symbol))
             ct_page_sentence(&d->page, "%s: %s", ct_ex_symbol(e->x, e->memory[i].symbol)->name,
-                             e->memory[i].kind == CT_MEMORY_OFFSET
-                                 ? "constant, from the assembled start"
-                                 : "value at the last step");
+                             ct_memory_is_followed(&e->memory[i])
+                                 ? "value at the last step"
+                                 : "constant, from the assembled start");
 }
 
 static const char *count(struct ct_derivation *d, size_t n, const char *one, const char *many)

@@ -31,8 +31,12 @@ struct assembly {
     struct ct_machine *m;
     const struct ct_equations *e;
     struct target *q, *u;
-    bool may_gape;   // a start that does not close will do
-    bool *fixed_row; // rows without an offset of their own
+    size_t
+        nelastic; // elastic coordinates of the beams, which are rigid unless some start deformed
+    const double *value; // of the model's parameters
+    double *unit;        // a row of 0 and 1, by speed
+    bool may_gape;       // a start that does not close will do
+    bool *fixed_row;     // rows without an offset of their own
     double *y, *A, *b, *row, *work, *speed0, *speeds;
     double *r, *shift; // residuals; of what must be met, its multipliers over hard^2
     double *kept_y, *kept_memory, *kept_A, *step;
@@ -224,6 +228,28 @@ static void add_row(struct assembly *s, const double *coef, size_t stride, doubl
     s->r[s->n++] = r;
 }
 
+// Elastic coordinate i of all beams, which starts with what the model says.
+static const struct ct_elastic *elastic_of(const struct assembly *s, size_t i)
+{
+    const struct ct_flexible *f = s->e->build->flexible;
+    for (; i >= (size_t)f->nelastic; f++)
+        i -= (size_t)f->nelastic;
+    return &f->elastic[i];
+}
+
+static void elastic_rows(struct assembly *s, bool of_speeds)
+{
+    const size_t nu = s->m->nu;
+    for (size_t i = 0; i < s->nelastic; i++) {
+        const struct ct_elastic *e = elastic_of(s, i);
+        const double now = of_speeds ? s->y[s->m->nq + (size_t)e->u] : s->y[e->q];
+        memset(s->unit, 0, nu * sizeof *s->unit);
+        s->unit[e->u] = 1;
+        add_row(s, s->unit, 1,
+                now - ct_ex_value(s->e->x, of_speeds ? e->start_rate : e->start, s->value));
+    }
+}
+
 // Rows of the positions at s->y: A d + r = 0.
 static void position_rows(struct assembly *s)
 {
@@ -241,6 +267,7 @@ static void position_rows(struct assembly *s)
     for (size_t i = 0; i < nc; i++)
         if (s->q[i].is_given && deviation(s, i, &r))
             add_row(s, s->speeds + i, nc, r);
+    elastic_rows(s, false);
     s->nhard = s->n;
     for (size_t i = 0; i < nc; i++)
         if (!s->q[i].is_given && s->q[i].wanted && deviation(s, i, &r))
@@ -261,6 +288,7 @@ static void velocity_rows(struct assembly *s)
     for (size_t i = 0; i < nc; i++)
         if (s->u[i].is_given)
             add_row(s, s->speeds + i, nc, m->result.out[2 * i + 1] - s->u[i].value);
+    elastic_rows(s, true);
     s->nhard = s->n;
     for (size_t i = 0; i < nc; i++)
         if (!s->u[i].is_given && s->u[i].wanted)
@@ -408,7 +436,7 @@ static double find_positions(struct assembly *s)
 static double find_velocities(struct assembly *s)
 {
     double *u = s->y + s->m->nq;
-    memset(s->shift, 0, (s->m->nrow + s->e->ncoordinate) * sizeof *s->shift);
+    memset(s->shift, 0, s->most * sizeof *s->shift);
     for (int i = 0; i < 5;
          i++) { // linear: the multipliers are learnt in three, two take off rounding
         velocity_rows(s);
@@ -599,6 +627,7 @@ static void start_near_targets(struct assembly *s, int try)
         if (c->q >= 0)
             s->y[c->q] = s->q[i].value;
     }
+    ct_start_beams(s->e, s->value, s->y, NULL);
     ct_machine_normalise(s->m, s->y);
     for (size_t k = 0; k < s->m->nu; k++)
         s->b[k] = 0.15 * try * chance(&state);
@@ -700,6 +729,7 @@ static void take_targets(struct assembly *s)
     for (size_t i = 0; i < s->e->ncoordinate; i++)
         if (s->u[i].wanted && s->e->coordinate[i].u >= 0)
             s->y[s->m->nq + (size_t)s->e->coordinate[i].u] = s->u[i].value;
+    ct_start_beams(s->e, s->value, NULL, s->y + s->m->nq);
 }
 
 static struct assembly assembly_create(struct ct_ctx *ctx, struct ct_arena *a,
@@ -708,6 +738,9 @@ static struct assembly assembly_create(struct ct_ctx *ctx, struct ct_arena *a,
 {
     struct assembly s = {.ctx = ctx, .e = e, .m = ct_machine_create(a, model, e)};
     const size_t nc = e->ncoordinate, nu = s.m->nu;
+    for (size_t i = 0; i < e->build->nflexible; i++)
+        s.nelastic += (size_t)e->build->flexible[i].nelastic;
+    s.value = model->value;
     s.q = CT_NEWN(a, struct target, nc + 1);
     s.u = CT_NEWN(a, struct target, nc + 1);
     s.y = CT_NEWN(a, double, s.m->nq + nu + 1);
@@ -717,7 +750,8 @@ static struct assembly assembly_create(struct ct_ctx *ctx, struct ct_arena *a,
     find_targets(&s, model);
     if (is_direct(&s))
         return s;
-    s.most = s.m->nrow + nc + nu + 1;
+    s.most = s.m->nrow + nc + s.nelastic + nu + 1;
+    s.unit = CT_NEWN(a, double, nu + 1);
     s.A = CT_NEWN(a, double, s.most *(nu + 1));
     s.kept_A = CT_NEWN(a, double, s.most *(nu + 1));
     s.step = CT_NEWN(a, double, nu + 1);
@@ -818,30 +852,4 @@ bool ct_assemble_open(struct ct_ctx *ctx, struct ct_arena *a, const struct ct_mo
                       const struct ct_equations *e, struct ct_start *out)
 {
     return assemble(ctx, a, model, e, true, out);
-}
-
-void ct_start_apply(const struct ct_start *s, struct ct_machine *m, double *y)
-{
-    const struct ct_equations *e = m->e;
-    double *memory = m->input + m->at_memory;
-    memset(y, 0, (m->nq + m->nu + 1) * sizeof *y);
-    for (size_t i = 0; i < s->n; i++) {
-        const struct ct_coordinate *c = &e->coordinate[i];
-        const struct ct_edge_info *edge = &e->build->edge[c->edge];
-        if (c->q >= 0)
-            y[c->q] = s->q[i];
-        if (c->u >= 0)
-            y[m->nq + (size_t)c->u] = s->u[i];
-        for (size_t k = 0; k < e->nmemory; k++)
-            if (e->memory[k].kind == CT_MEMORY_ANGLE && edge->kind == CT_EDGE_JOINT
-                && edge->index == e->memory[k].joint && c->place == e->memory[k].place)
-                memory[k] = s->q[i];
-    }
-    for (size_t i = 0, k = 0; s->elastic && i < e->build->nflexible; i++)
-        for (int j = 0; j < e->build->flexible[i].nelastic; j++)
-            y[e->build->flexible[i].elastic[j].q] = s->elastic[k++];
-    ct_machine_normalise(m, y);
-    ct_machine_set(m, 0, y);
-    ct_modes_start(m, 0, y, NULL);
-    ct_memory_start(m);
 }

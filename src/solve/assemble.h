@@ -36,6 +36,10 @@ struct ct_assembly *ct_assembly_create(struct ct_ctx *ctx, struct ct_arena *a,
                                        const struct ct_equations *e);
 bool ct_assembly_find(struct ct_assembly *s, struct ct_start *out);
 
+/// Elastic coordinates q and speeds u (NULL: not wanted) of the beams whose `initial` gives a shape, with the values of the
+/// model's parameters.
+void ct_start_beams(const struct ct_equations *e, const double *value, double *q, double *u);
+
 /// Put a start into the state y (q, u, work) of a machine; memories of angles start at the values.
 void ct_start_apply(const struct ct_start *s, struct ct_machine *m, double *y);
 

@@ -11,6 +11,10 @@
 static const double rank_tolerance = 1e-9;
 // So many weak checks in a row ask for another order.
 enum { MOST_WEAK = 3 };
+// As long as the strength of the pivots is within this factor of what it was when they left a tenth of what is allowed, or less,
+// they are checked after every fourth projection.
+static const double same_strength = 1.25, well_below = 0.1;
+enum { UNCHECKED = 3 };
 
 static size_t larger(size_t a, size_t b)
 {
@@ -124,7 +128,7 @@ static long patience(const struct ct_embed *s)
 
 static void forget_strength(struct ct_embed *s)
 {
-    s->nweak = 0;
+    s->nweak = s->nunchecked = 0;
     s->strength.at_sigma = 0;
     s->strength.is_alike = false;
 }
@@ -221,8 +225,14 @@ enum ct_eval ct_embed_solve(struct ct_embed *s)
 static void check_form(struct ct_embed *s)
 {
     struct ct_form *f = s->form[0];
+    if (s->nunchecked > 0 && ct_is_within(s->strength.now / s->checked_at, same_strength)) {
+        s->nunchecked--;
+        return;
+    }
     ct_form_check(f, s->m);
     s->is_rough = f->left > ct_left_plain;
+    s->nunchecked = f->left <= well_below * ct_left_plain ? UNCHECKED : 0;
+    s->checked_at = s->strength.now;
     if (s->strength.now > ct_form_weakest && f->left_better <= ct_left_most) {
         s->kappa = isnan(f->kappa) ? s->kappa : f->kappa;
         s->nweak = 0;
@@ -261,12 +271,32 @@ static int order_rows(struct ct_embed *s)
     return ct_qr_pivot(s->A, s->row, s->b, n, m, n, rank_tolerance, s->work);
 }
 
+// Columns count by what their speeds move, w (nu, out), where inertias are so different that a heavy dependent speed would
+// leave rounding of its forces, eps M_heavy, in the equations of light ones; else all alike. Elastic coordinates are always
+// light, and do not ask for it.
+static void weigh_columns(struct ct_embed *s, double *w)
+{
+    const double apart = 1e6; // leaves light ones ten digits
+    const size_t n = s->m->nu;
+    double least = INFINITY, most = 0;
+    for (size_t j = 0; j < n; j++) {
+        const double inertia = s->m->e->u[j].beam > 0 ? 0 : s->m->M[j + n * j];
+        least = inertia > 0 ? fmin(least, inertia) : least;
+        most = fmax(most, inertia);
+        w[j] = 1;
+    }
+    for (size_t j = 0; j < n && most > apart * least; j++)
+        w[j] = 1 / sqrt(fmax(s->m->M[j + n * j], least));
+}
+
 static void choose_columns(struct ct_embed *s)
 {
     const int n = (int)s->m->nu, r = s->rank;
+    ct_machine_motion(s->m);
+    weigh_columns(s, s->d);
     for (int i = 0; i < r; i++)
         for (int j = 0; j < n; j++)
-            s->A[i + r * j] = *J_at(s, s->row[i], j);
+            s->A[i + r * j] = s->d[j] * *J_at(s, s->row[i], j);
     ct_qr_pivot(s->A, s->column, s->b, r, n, r, 0, s->work);
     for (int j = 0; j < n; j++)
         *(j < r ? &s->dependent[j] : &s->independent[j - r]) = s->column[j];

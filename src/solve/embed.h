@@ -49,6 +49,8 @@ struct ct_embed {
     bool is_crossing; // stages are projected that steps do not end on: choices stay
     bool is_rough;    // the last check wanted a refinement
     long nweak;       // checks in a row that found the form weak, or projections without one
+    int nunchecked; // projections until the next check, as long as the strength stays near that of the last one
+    double checked_at;
     struct ct_strength strength; // of the form
     struct ct_solves solves;
     double *a, *lam; // results: u' (nu), lam (nrow)

@@ -11,7 +11,8 @@
 static const double harmless = 0.25;
 enum { STEPS_BETWEEN = 7 };
 // Where the ratio of the two is the same to this part at two looks in a row, it is taken for that of more and more steps.
-static const double steady = 0.1;
+static const double steady = 0.02;
+enum { MOST_BETWEEN = 15 };
 // Rounding is measured again after so many looks, as long as it is this part of what would count.
 static const double unfelt = 0.01;
 enum { LOOKS_BETWEEN = 15 };
@@ -108,7 +109,7 @@ static void plan_looks(struct ct_fidelity_record *r, double error, double states
         r->between = STEPS_BETWEEN;
     else
         r->between = is_steady && ratio > 0 ? 2 * r->between + 1 : 0;
-    r->between = r->between < STEPS_BETWEEN ? r->between : STEPS_BETWEEN;
+    r->between = r->between < MOST_BETWEEN ? r->between : MOST_BETWEEN;
     r->skip = r->between;
 }
 

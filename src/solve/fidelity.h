@@ -18,8 +18,8 @@ struct ct_fidelity *ct_fidelity_create(struct ct_arena *a, struct ct_machine *m)
 /// A new run begins: nothing is known of the sizes of outputs.
 void ct_fidelity_start(struct ct_fidelity *p);
 /// Root mean square over the outputs of their errors at y (ny) for errors e (ny), where 1 is the tolerance; `states` is the
-/// same of the states. As long as outputs are not nearly as bad as those, or the ratio of both is steady, only every eighth step
-/// is looked at; else that ratio tells, or 0.
+/// same of the states. As long as outputs are not nearly as bad as those, or the ratio of both is steady, only every eighth or
+/// sixteenth step is looked at; else that ratio tells, or 0.
 double ct_fidelity_error(struct ct_fidelity *p, double t, const double *y, const double *e,
                          const struct ct_tolerance *tolerance, double states);
 /// The last step that was looked at is accepted.

@@ -43,7 +43,7 @@ struct ct_lane_form {
 // The stages of a method without the zeros of its table: sum over i of a[i] k[at[i]].
 struct ct_lane_sum {
     int n;
-    size_t at[CT_MOST_STAGES]; // in the vectors of all stages
+    size_t at[CT_MOST_STAGES]; // in the vectors of all stages, as doubles
     double a[CT_MOST_STAGES];
 };
 
@@ -136,7 +136,7 @@ struct ct_lanes {
     vec rtol, atol; // of the steps
     vec *input;
     // states (ny), stages (ny x stages)
-    vec *start, *y, *dy, *y1, *dy1, *end, *dend, *point, *late, *k;
+    vec *start, *y, *dy, *y1, *dy1, *end, *dend, *point, *late, *weight, *k;
     double *one_y, *one_dy, *one_point, *one_end; // a single lane's states
     vec *at, *probed;                             // outputs that are controlled
     double *one_at, *one_probed, *one_off;        // of a single lane

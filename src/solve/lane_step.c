@@ -135,11 +135,12 @@ static inline void combine_few(const struct ct_lanes *s, vec *out, const vec *y,
                                const struct ct_lane_sum *b, int i, int few)
 {
     enum { MOST = 6 };
-    const vec *k = s->k + i, h = s->h;
+    const double *k = (const double *)(s->k + i);
+    const vec h = s->h;
     vec sum[MOST] = {{0}};
     for (int j = 0; j < b->n; j++)
         for (int l = 0; l < few; l++)
-            sum[l] += b->a[j] * k[b->at[j] + (size_t)l];
+            sum[l] += b->a[j] * *(const vec *)(k + b->at[j] + (size_t)(W * l));
     for (int l = 0; l < few; l++)
         out[i + l] = y ? y[i + l] + h * sum[l] : h * sum[l];
 }
@@ -179,12 +180,10 @@ static void combine(const struct ct_lanes *s, vec *out, const vec *y,
     }
 }
 
-// Root mean square of e against the tolerance, as ct_stepper_norm.
-static vec norm(const struct ct_lanes *s, const vec *e)
+// 1/(what the error of each state may be), as in ct_stepper_norm.
+static void find_weights(struct ct_lanes *s)
 {
-    const int n = s->has_power ? s->ny : s->ny - 1; // the work is as good as the states
     const struct ct_groups *g = s->groups;
-    vec sum = {0};
     for (int i = 0; g && i < g->n; i++)
         s->group_size[i] = (vec){0};
     for (int i = 0; g && i < s->ny; i++)
@@ -192,10 +191,20 @@ static vec norm(const struct ct_lanes *s, const vec *e)
             vec *size = &s->group_size[g->of[i]];
             *size = larger(larger(*size, s->y[i]), s->y1[i]);
         }
-    for (int i = 0; i < n; i++) {
+    for (int i = 0; i < s->ny; i++) {
         const vec size = g && g->of[i] >= 0 ? s->group_size[g->of[i]]
                                             : larger(magnitude(s->y[i]), s->y1[i]);
-        const vec part = e[i] / (s->rtol * size + s->atol);
+        s->weight[i] = 1 / (s->rtol * size + s->atol);
+    }
+}
+
+// Root mean square of e against the tolerance.
+static vec norm(const struct ct_lanes *s, const vec *e)
+{
+    const int n = s->has_power ? s->ny : s->ny - 1; // the work is as good as the states
+    vec sum = {0};
+    for (int i = 0; i < n; i++) {
+        const vec part = e[i] * s->weight[i];
         sum += part * part;
     }
     for (int l = 0; l < W; l++)
@@ -217,10 +226,15 @@ static void judge_outputs(struct ct_lanes *s, const vec *e, set lanes)
     const size_t n = s->output.nout;
     const vec t = s->t + s->h;
     vec *y = s->end;
+    set probing = 0, again = 0;
+    for (int l = 0; l < W; l++)
+        if (ct_has_lane(lanes, l) && s->lane[l].outputs.unprobed == 0)
+            probing |= 1u << l;
     copy(s->at, outputs(s, t, s->y1), (int)n);
-    for (int i = 0; i < s->ny; i++)
+    for (int i = 0; i < s->ny && probing; i++)
         y[i] = s->y1[i] + ct_fidelity_probe(i) * s->y1[i];
-    copy(s->probed, outputs(s, t, y), (int)n);
+    if (probing)
+        copy(s->probed, outputs(s, t, y), (int)n);
     for (int i = 0; i < s->ny; i++)
         y[i] = s->y1[i] + e[i];
     const vec *off = outputs(s, t, y);
@@ -229,13 +243,25 @@ static void judge_outputs(struct ct_lanes *s, const vec *e, set lanes)
         if (!ct_has_lane(lanes, l))
             continue;
         ct_lane_take(s->one_at, s->at, l, n);
-        ct_lane_take(s->one_probed, s->probed, l, n);
         ct_lane_take(s->one_off, off, l, n);
+        if (ct_has_lane(probing, l))
+            ct_lane_take(s->one_probed, s->probed, l, n);
+        else
+            lane->outputs.unprobed--;
+        const bool is_probed = ct_has_lane(probing, l);
         const struct ct_tolerance tolerance = {s->rtol[l], s->atol[l]};
-        lane->error
-            = fmax(lane->error, ct_fidelity_judge(&lane->outputs, s->one_at, s->one_probed,
-                                                  s->one_off, &tolerance, lane->error));
+        const double error = ct_fidelity_judge(&lane->outputs, s->one_at,
+                                               is_probed ? s->one_probed : s->one_at,
+                                               s->one_off, &tolerance, lane->error);
+        if (is_probed || error <= 1) {
+            lane->error = fmax(lane->error, error);
+        } else { // no step is refused for its rounding
+            lane->outputs.skip = lane->outputs.unprobed = 0;
+            again |= 1u << l;
+        }
     }
+    if (again)
+        judge_outputs(s, e, again);
 }
 
 // As ct_stepper_join.
@@ -253,6 +279,7 @@ static void estimate(struct ct_lanes *s, set wanted)
     vec *e = s->point;
     set due = 0;
     combine(s, e, NULL, &s->error);
+    find_weights(s);
     const vec size = norm(s, e);
     vec joint = size;
     if (s->third.n) {
@@ -378,7 +405,7 @@ static void give_up_fast(struct ct_lanes *s, const vec *memory, set wanted)
 {
     for (size_t i = 0; i < s->e->nmemory; i++) {
         const bool is_half = s->e->memory[i].kind == CT_MEMORY_QUATERNION;
-        for (int l = 0; l < W && s->e->memory[i].kind != CT_MEMORY_OFFSET; l++) {
+        for (int l = 0; l < W && ct_memory_is_followed(&s->e->memory[i]); l++) {
             const double turn = (is_half ? 2 : 1) * fabs(s->memory.out[i][l] - memory[i][l]);
             if (ct_has_lane(wanted, l) && turn > ct_lane_most_turn)
                 ct_lane_give_up(s, l);
@@ -397,7 +424,7 @@ static void follow(struct ct_lanes *s, vec t, const vec *y, set wanted)
     ct_lane_run(&s->memory, s->input);
     give_up_fast(s, memory, wanted);
     for (size_t i = 0; i < e->nmemory; i++) {
-        if (e->memory[i].kind != CT_MEMORY_OFFSET)
+        if (ct_memory_is_followed(&e->memory[i]))
             put(&memory[i], &s->memory.out[i], 1, wanted);
         if (e->memory[i].kind != CT_MEMORY_QUATERNION || e->memory[i].place != 3)
             continue;

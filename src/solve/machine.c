@@ -115,7 +115,8 @@ static void use(struct ct_arena *a, struct ct_program *p, struct ct_native *nati
     if (!native && !p->tape)
         p->tape = ct_tape_create(a, p->listing);
     p->native = native;
-    p->work = CT_NEWN(a, double, (native ? ct_native_work(native) : ct_tape_work(p->tape)) + 1);
+    const size_t n = native ? ct_native_work(native) : ct_tape_work(p->tape);
+    p->work = ct_arena_line(a, (n + 1) * sizeof *p->work);
 }
 
 // Native code where it is wanted and available; false if it is not available.
@@ -226,13 +227,18 @@ static void compile_rest(struct ct_arena *a, struct ct_machine *m, const struct 
 {
     const struct ct_equations *e = m->e;
     struct list result = {.a = a}, root = {.a = a}, memory = {.a = a}, momentum = {.a = a},
-                driver = {.a = a}, wanted = {.a = a};
+                driver = {.a = a}, wanted = {.a = a}, turns = {.a = a};
     for (size_t i = 0; i < e->nresult; i++)
         push(&result, e->result[i].value);
     for (size_t i = 0; i < e->nmode; i++)
         push(&root, e->mode[i].g);
     for (size_t i = 0; i < e->nmemory; i++)
-        push(&memory, e->memory[i].update);
+        if (e->memory[i].kind == CT_MEMORY_TURNS) {
+            push(&memory, e->memory[i].symbol);
+            push(&turns, e->memory[i].update);
+        } else {
+            push(&memory, e->memory[i].update);
+        }
     for (size_t i = 0; i < e->nmemory; i++) // rotations from which quaternions start
         for (int k = 0; k < 9 && e->memory[i].kind == CT_MEMORY_QUATERNION; k++)
             push(&memory, e->memory[i].R.e[k]);
@@ -258,6 +264,7 @@ static void compile_rest(struct ct_arena *a, struct ct_machine *m, const struct 
     compile(a, m, in, result.e, result.n, &m->result);
     compile(a, m, in, root.e, root.n, &m->root);
     compile(a, m, in, memory.e, memory.n, &m->memory);
+    compile(a, m, in, turns.e, turns.n, &m->turns);
     compile(a, m, in, momentum.e, momentum.n, &m->momentum);
     compile(a, m, in, driver.e, driver.n, &m->driver);
     compile(a, m, in, wanted.e, wanted.n, &m->wanted);
@@ -271,8 +278,8 @@ static void compile_rest(struct ct_arena *a, struct ct_machine *m, const struct 
     compile(a, m, in, energies, 2, &m->energy);
     compile(a, m, in, &e->power, ct_ex_is_zero(e->power) ? 0 : 1, &m->power);
     // seldom run: not worth native code
-    struct ct_program *const all[] = {&m->result, &m->root,   &m->momentum, &m->driver,
-                                      &m->wanted, &m->energy, &m->validity};
+    struct ct_program *const all[] = {&m->result, &m->root,   &m->turns,  &m->momentum,
+                                      &m->driver, &m->wanted, &m->energy, &m->validity};
     for (size_t i = 0; i < COUNT(all); i++)
         if (all[i]->nout)
             use(a, all[i], NULL);
@@ -376,14 +383,14 @@ void ct_machine_add_residual(struct ct_arena *a, struct ct_machine *m)
     ct_machine_use(a, m, m->asked);
 }
 
-enum { NPROGRAM = 14 };
+enum { NPROGRAM = 15 };
 
 static void list_programs(struct ct_machine *m, struct ct_program *list[NPROGRAM])
 {
     struct ct_program *const all[NPROGRAM]
         = {&m->solved, &m->motion,   &m->constraint, &m->result,   &m->power,
            &m->energy, &m->root,     &m->memory,     &m->momentum, &m->driver,
-           &m->wanted, &m->residual, &m->tangent,    &m->validity};
+           &m->wanted, &m->residual, &m->tangent,    &m->validity, &m->turns};
     memcpy(list, all, sizeof all);
 }
 
@@ -596,6 +603,11 @@ void ct_quaternion_of(const double *R, double *p)
 void ct_memory_start(struct ct_machine *m)
 {
     double *memory = m->input + m->at_memory;
+    if (m->turns.nout)
+        ct_program_run(&m->turns, m->input);
+    for (size_t i = 0, k = 0; i < m->e->nmemory; i++)
+        if (m->e->memory[i].kind == CT_MEMORY_TURNS)
+            memory[i] = m->turns.out[k++];
     ct_program_run(&m->memory, m->input);
     const double *R = m->memory.out + m->e->nmemory;
     for (size_t i = 0; i < m->e->nmemory; i++) {
@@ -616,7 +628,7 @@ void ct_memory_follow(struct ct_machine *m)
         return;
     ct_program_run(&m->memory, m->input);
     for (size_t i = 0; i < m->e->nmemory; i++) {
-        if (m->e->memory[i].kind != CT_MEMORY_OFFSET)
+        if (ct_memory_is_followed(&m->e->memory[i]))
             memory[i] = m->memory.out[i];
         if (m->e->memory[i].kind == CT_MEMORY_QUATERNION && m->e->memory[i].place == 3)
             normalise4(memory + i - 3);
@@ -626,7 +638,7 @@ void ct_memory_follow(struct ct_machine *m)
 static bool turns(const struct ct_machine *m)
 {
     for (size_t i = 0; i < m->e->nmemory; i++)
-        if (m->e->memory[i].kind != CT_MEMORY_OFFSET)
+        if (ct_memory_is_followed(&m->e->memory[i]))
             return true;
     return false;
 }
@@ -648,7 +660,7 @@ double ct_memory_turning(struct ct_machine *m, double t, const double *y, double
     ct_program_run(&m->memory, m->input);
     for (size_t i = 0; i < n; i++) {
         const bool is_half = m->e->memory[i].kind == CT_MEMORY_QUATERNION;
-        if (m->e->memory[i].kind != CT_MEMORY_OFFSET)
+        if (ct_memory_is_followed(&m->e->memory[i]))
             most = fmax(most, (is_half ? 2 : 1) * fabs(m->memory.out[i] - now[i]) / dt);
     }
     return most;

@@ -43,7 +43,8 @@ struct ct_machine {
         validity,   // indicators of linear beams, then squared slopes of all beams
         energy,     // kinetic, potential
         root,       // g of each mode
-        memory,     // next values
+        memory,     // next values; of whole turns their present ones
+        turns,      // of those: at a start, from the angles that are remembered
         momentum,   // dT/du, and the same of `kept` where there is any
         driver,     // value, rate of each driver
         wanted,     // of each row: not negative in the right assembly

@@ -133,7 +133,7 @@ static void follow(struct run *r, quad t)
     set(r, t, r->y);
     ct_quad_evaluate(&r->memory, r->input, r->out);
     for (size_t i = 0; i < m->e->nmemory; i++)
-        if (m->e->memory[i].kind != CT_MEMORY_OFFSET)
+        if (ct_memory_is_followed(&m->e->memory[i]))
             memory[i] = r->out[i];
 }
 
@@ -161,8 +161,8 @@ bool ct_quad_can_run(const struct ct_machine *m)
 {
     const struct ct_equations *e = m->e;
     for (size_t i = 0; i < e->nmemory; i++)
-        if (e->memory[i].kind
-            != CT_MEMORY_OFFSET) // steps turn too far to follow angles and signs
+        if (ct_memory_is_followed(
+                &e->memory[i])) // steps turn too far to follow angles and signs
             return false;
     return m->solved.nout && !e->nrow && !e->nmode && !e->x->ntable;
 }

@@ -29,7 +29,8 @@ struct ct_run {
     size_t nevent;
     int *root_of; // state modes, in order
     int nroot;
-    bool needs_lam, has_power;
+    bool needs_lam, has_power; // needs_lam: the power does
+    bool has_lam_results;      // outputs or indicators depend on multipliers
     struct ct_jump *jump;
     struct ct_fidelity *fidelity; // of outputs; NULL: none is controlled
     const struct ct_run_options *o;

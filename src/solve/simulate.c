@@ -136,6 +136,8 @@ double ct_run_longest_step(void *user)
 
 bool ct_run_is_followed(struct ct_run *r, double t, const double *y)
 {
+    if (!r->e->nmemory)
+        return true;
     const double now = turning(r, t, y);
     if ((t - r->t_turning) * fmax(now, r->turning) > most_turn)
         return false;
@@ -144,7 +146,7 @@ bool ct_run_is_followed(struct ct_run *r, double t, const double *y)
     return true;
 }
 
-static enum ct_eval accepted(void *user, double t, double *y, const double *dy)
+static enum ct_eval accepted(void *user, double t, const double *y, const double *dy)
 {
     struct ct_run *r = user;
     const double turning_before = r->turning, t_before = r->t_turning;
@@ -181,6 +183,10 @@ static void find_needs(struct ct_run *r)
     const struct ct_equations *e = r->e;
     r->has_power = !ct_ex_is_zero(e->power);
     r->needs_lam = uses(e, e->power, CT_SYM_LAM);
+    for (size_t i = 0; i < e->nresult; i++)
+        r->has_lam_results |= uses(e, e->result[i].value, CT_SYM_LAM);
+    for (size_t i = 0; i < e->nvalidity; i++)
+        r->has_lam_results |= uses(e, e->validity[i].eta, CT_SYM_LAM);
     r->root_of = CT_NEWN(r->arena, int, e->nmode + 1);
     for (size_t i = 0; i < e->nmode; i++)
         if (!e->mode[i].is_time)
@@ -278,7 +284,8 @@ enum ct_eval ct_run_results(struct ct_run *r, double t, const double *y, double 
     const enum ct_eval e = ct_run_accelerate(r, t, y);
     if (e != CT_EVAL_OK)
         return e;
-    ct_run_find_multipliers(r);
+    if (r->has_lam_results)
+        ct_run_find_multipliers(r);
     ct_program_run(&r->m->result, r->m->input);
     memcpy(out, r->m->result.out, r->e->nresult * sizeof *out);
     return CT_EVAL_OK;

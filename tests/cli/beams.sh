@@ -262,3 +262,55 @@ done
 echo '-- and with a disc on it'
 sed -e 's/FORM/foreshortening/' -e 's/JOINT/on: {type: weld, from: rod.root, to: disc}/' bare.yaml >disc.yaml
 "$COTREE" simulate disc.yaml --quiet -o disc.csv && echo moves
+echo '-- a shape that is a sum of others, a start that the beam does not deform for, one that modes do not have'
+cat >shapes.yaml <<'E'
+cotree: 1
+bodies:
+  a: {type: beam, length: 1, E: 7e10, mass_per_length: 1, Iz: 1e-9, shapes: {v: [x^2, x^3, 2*x^2 - x^3]}}
+  b: {type: beam, length: 1, E: 7e10, mass_per_length: 1, Iz: 1e-9, deformation: [bending-z], initial: {v: x^2, rx: x}}
+joints:
+  wa: {type: weld, from: ground, to: a}
+  wb: {type: weld, from: ground, to: b}
+simulation: {duration: 1}
+E
+say check shapes.yaml
+cat >modes.yaml <<'E'
+cotree: 1
+bodies:
+  a: {type: beam, length: 1, elements: 4, E: 7e10, mass_per_length: 1, Iz: 1e-9, deformation: [bending-z], modes: 1, initial: {v: 1e-3*x^2*(1 - x)^2}}
+joints:
+  w: {type: weld, from: ground, to: a}
+simulation: {duration: 1e-3}
+E
+say simulate modes.yaml --quiet -o modes.csv
+echo '-- linear elements with shear: reduced integration has the indicator of cubic ones without, full integration locks'
+for keys in '' 'rotary_inertia: true, theory: timoshenko, shear_factor: 5/6, integration: reduced,' \
+  'rotary_inertia: true, theory: timoshenko, shear_factor: 5/6,'; do
+  cat >spin.yaml <<E
+cotree: 1
+bodies:
+  arm: {type: beam, length: 3, elements: 16, density: 2700, E: 7e10, nu: 0.3, area: 6e-4, Iz: 5e-9, $keys points: {tip: length}}
+  end: {mass: 0.3}
+joints:
+  hub: {type: revolute, from: ground, to: arm, motion: "0.1*t^2"}
+  tip: {type: weld, from: arm.tip, to: end}
+simulation: {duration: 10}
+E
+  "$COTREE" check spin.yaml | grep -A 1 '^beam' | grep -v '^left'
+done
+echo '-- bodies welded to bodies on the beam count; a joint on one of them is more than the indicator knows'
+for keys in 'end, type: weld' 'link, type: weld' 'link, type: revolute'; do
+  cat >hang.yaml <<E
+cotree: 1
+bodies:
+  arm: {type: beam, length: 3, elements: 4, density: 2700, E: 7e10, nu: 0.3, area: 6e-4, Iz: 5e-9, points: {tip: length}}
+  link: {mass: 0.01}
+  end: {mass: 2.99, inertia: 0.1, com: [0.1, 0, 0]}
+joints:
+  hub: {type: revolute, from: ground, to: arm, motion: "0.02*t^2"}
+  a: {type: weld, from: arm.tip, to: ${keys%%,*}}
+  b: {from: link, to: end,${keys#*,}}
+simulation: {duration: 10}
+E
+  "$COTREE" check hang.yaml | grep '^beam'
+done

@@ -11,6 +11,19 @@ for system in pendulum tumbling_body stewart bricard chain40; do
     fi
   done
 done
+# four and eight inputs side by side
+for lanes in 4 8; do
+  for system in pendulum stewart; do
+    "$COTREE" export "$SYSTEMS/$system/model.yaml" --lanes $lanes -o lanes_$lanes
+    (cd lanes_$lanes && cc -std=c99 -Wall -Wextra -Wpedantic -Werror -O1 -o self_test $system*.c -lm && ./self_test)
+    grep -c '_lanes(const' lanes_$lanes/$system.h
+  done
+done
+# a wrong number in a lane is found
+sed '/^static void pendulum_motion_lanes_lane(/,/^}/s/out\[0\] = /out[0] = 1 + /' lanes_4/pendulum.c >wrong.c
+cmp -s wrong.c lanes_4/pendulum.c && echo "no number to change"
+cp wrong.c lanes_4/pendulum.c
+(cd lanes_4 && cc -std=c99 -O1 -o self_test pendulum*.c -lm && ./self_test) | sed -n '1s/:.*//p;$p'
 # the driver ends where the run does: 1000 steps of a method of order 4
 "$COTREE" simulate "$SYSTEMS/pendulum/model.yaml" --quiet --until 1 --samples 11 --tolerance 1e-12 -o run.csv
 pendulum/self_test 1 100 | cut -d, -f2 >driven
@@ -24,3 +37,4 @@ echo '-- what is missing'
 say export "$SYSTEMS/pendulum/model.yaml"
 say export "$SYSTEMS/pendulum/model.yaml" --format matlab -o p
 say export "$SYSTEMS/pendulum/model.yaml" -o no/such/folder
+say export "$SYSTEMS/pendulum/model.yaml" -o p --lanes 3

@@ -41,3 +41,28 @@ END
 "$COTREE" simulate forward.yaml -o forward.csv --quiet
 "$COTREE" simulate backward.yaml -o backward.csv --quiet
 difference forward.csv backward.csv | awk '{ print ($1 < 1e-8) ? "same numbers" : $0 }'
+
+# Angles of chords: in a plane they are sums of others and whole turns, in space they are followed.
+cat >turned.yaml <<'END2'
+cotree: 1
+parameters: {r: 0.15, l: 0.3, turns: -2}
+bodies:
+  crank: {mass: 0.35, inertia: 7e-4, com: [r/2, 0, 0], points: {pin: [r, 0, 0]}}
+  rod: {mass: 0.7, inertia: 5.5e-3, com: [l/2, 0, 0], points: {pin: [l, 0, 0]}}
+  slider: {mass: 0.5}
+joints:
+  main: {type: revolute, from: ground, to: crank, axis: [0, 0, -1], effort: 0.5, initial: {q: 20, u: 10}}
+  big_end: {type: revolute, from: crank.pin, to: rod, effort: "-0.05*big_end.q", initial: {q: 2*pi*turns - 2, guess: true}}
+  small_end: {type: revolute, from: rod.pin, to: slider, axis: [0, 0, -1], initial: {q: 0.35, guess: true}}
+  guide: {type: prismatic, from: ground, to: slider, axis: x, initial: {q: 0.4, guess: true}}
+outputs: [main.q, big_end.q, small_end.q, big_end.u, guide.q, energy.total]
+simulation: {duration: 3, interval: 0.01, tolerance: 1e-10, method: dop853}
+END2
+for turns in -2 0 3; do
+  for tree in joints absolute; do
+    "$COTREE" simulate turned.yaml --set turns=$turns --tree $tree -o plane.csv --quiet
+    "$COTREE" simulate turned.yaml --set turns=$turns --tree $tree -o space.csv --quiet --keep-all
+    difference plane.csv space.csv | awk -v what="turned by $turns, $tree" '{ print what ": " (($1 < 1e-8) ? "the same motion" : $0) }'
+  done
+  awk -F, 'NR == 2 { printf "big_end begins at %.3f\n", $3 }' plane.csv
+done

@@ -41,6 +41,14 @@ R03b) # elements; lengthwise ringing of many frequencies, each late by the squar
     mv "$work/6.yaml" "$work/coarse.yaml"
     mv "$work/12.yaml" "$work/fine.yaml"
     ;;
+R03b_shapes) # elements that carry the shapes
+    reference=R03b_shapes until=0.05 order=4
+    for n in 8 16; do
+        sed "s/elements: 40/elements: $n/" "$folder/R03b_shapes.yaml" >"$work/$n.yaml"
+    done
+    mv "$work/8.yaml" "$work/coarse.yaml"
+    mv "$work/16.yaml" "$work/fine.yaml"
+    ;;
 R10) # elements; to the folded position at 120 degrees
     reference=R10 until=40 order=2
     for n in 2 4; do

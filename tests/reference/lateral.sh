@@ -83,7 +83,7 @@ while read -r structure k load exact factors; do
             exit !(4 * off < less && 4 * less < size(rough - exact))
         }' || failed=1
 done <<'END'
-frame 2 1 1.08751793774621 1
+frame 4 1 1.08751793774621 1
 frame 2 -1 0.680427409356817 1
 cantilever 4 1000 2973.46370102942 [2.34e7/7.3e7,5.025e6/7.3e7]
 cantilever 4 1000 2974.29286513 5.025e6/7.3e7

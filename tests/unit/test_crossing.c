@@ -40,7 +40,7 @@ static enum ct_eval rhs(void *user, double t, const double *y, double *dy)
     return CT_EVAL_OK;
 }
 
-static enum ct_eval accepted(void *user, double t, double *y, const double *dy)
+static enum ct_eval accepted(void *user, double t, const double *y, const double *dy)
 {
     (void)y, (void)dy;
     ((struct record *)user)->now = t;

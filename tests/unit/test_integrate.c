@@ -757,7 +757,7 @@ static enum ct_eval shortsighted(void *user, double t, const double *y, double *
     return (enum ct_eval)r->mode;
 }
 
-static enum ct_eval look_ahead(void *user, double t, double *y, const double *dy)
+static enum ct_eval look_ahead(void *user, double t, const double *y, const double *dy)
 {
     (void)y, (void)dy;
     ((struct record *)user)->limit = t;

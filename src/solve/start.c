@@ -1,0 +1,46 @@
+// A start put into the state of a machine; see assemble.h.
+#include "solve/assemble.h"
+#include "formulate/flexible.h"
+#include "solve/mode.h"
+
+#include <string.h>
+
+void ct_start_beams(const struct ct_equations *e, const double *value, double *q, double *u)
+{
+    for (size_t i = 0; i < e->build->nflexible; i++) {
+        const struct ct_flexible *f = &e->build->flexible[i];
+        for (int j = 0; j < f->nelastic && f->beam->nstart; j++) {
+            if (q)
+                q[f->elastic[j].q] = ct_ex_value(e->x, f->elastic[j].start, value);
+            if (u)
+                u[f->elastic[j].u] = ct_ex_value(e->x, f->elastic[j].start_rate, value);
+        }
+    }
+}
+
+void ct_start_apply(const struct ct_start *s, struct ct_machine *m, double *y)
+{
+    const struct ct_equations *e = m->e;
+    double *memory = m->input + m->at_memory;
+    memset(y, 0, (m->nq + m->nu + 1) * sizeof *y);
+    for (size_t i = 0; i < s->n; i++) {
+        const struct ct_coordinate *c = &e->coordinate[i];
+        const struct ct_edge_info *edge = &e->build->edge[c->edge];
+        if (c->q >= 0)
+            y[c->q] = s->q[i];
+        if (c->u >= 0)
+            y[m->nq + (size_t)c->u] = s->u[i];
+        for (size_t k = 0; k < e->nmemory; k++)
+            if (e->memory[k].kind == CT_MEMORY_ANGLE && edge->kind == CT_EDGE_JOINT
+                && edge->index == e->memory[k].joint && c->place == e->memory[k].place)
+                memory[k] = s->q[i];
+    }
+    ct_start_beams(e, m->model->value, s->elastic ? NULL : y, y + m->nq);
+    for (size_t i = 0, k = 0; s->elastic && i < e->build->nflexible; i++)
+        for (int j = 0; j < e->build->flexible[i].nelastic; j++)
+            y[e->build->flexible[i].elastic[j].q] = s->elastic[k++];
+    ct_machine_normalise(m, y);
+    ct_machine_set(m, 0, y);
+    ct_modes_start(m, 0, y, NULL);
+    ct_memory_start(m);
+}
