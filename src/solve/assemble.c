@@ -389,8 +389,8 @@ static bool report_half_turn(struct ct_assembler *s, int joint)
         self->name);
 }
 
-// Tries from places further and further away; the first one's failure is the one to report.
-static bool assemble_positions(struct ct_assembler *s, double *residual, bool *is_open)
+// Tries from places further and further away.
+static bool try_positions(struct ct_assembler *s, double *residual)
 {
     for (int try = 0; try < MOST_STARTS; try++) {
         start_near_targets(s, try);
@@ -398,13 +398,39 @@ static bool assemble_positions(struct ct_assembler *s, double *residual, bool *i
         if (*residual < ct_assembly_met && half_turned_joint(s) < 0)
             return true;
     }
+    return false;
+}
+
+// Can the loops be closed if given values are guesses only?
+static bool closes_with_guesses(struct ct_assembler *s)
+{
+    const size_t n = s->e->ncoordinate;
+    double residual;
+    bool *given = CT_NEWN(s->e->build->arena, bool, n + 1);
+    for (size_t i = 0; i < n; i++) {
+        given[i] = s->q[i].is_given;
+        s->q[i].is_given = false;
+    }
+    const bool closes = try_positions(s, &residual);
+    for (size_t i = 0; i < n; i++)
+        s->q[i].is_given = given[i];
+    return closes;
+}
+
+// The first try's failure is the one to report.
+static bool assemble_positions(struct ct_assembler *s, double *residual, bool *is_open)
+{
+    if (try_positions(s, residual))
+        return true;
     start_near_targets(s, 0);
     *is_open = s->may_gape;
     if (s->may_gape)
         return true;
+    const bool closes = closes_with_guesses(s);
+    start_near_targets(s, 0);
     *residual = find_positions(s);
     return *residual < ct_assembly_met ? report_half_turn(s, half_turned_joint(s))
-                                       : ct_assembler_report_positions(s);
+                                       : ct_assembler_report_positions(s, closes);
 }
 
 // Without rows, and with all that is given or wanted among the unknowns, the targets are the start.

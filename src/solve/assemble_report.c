@@ -37,7 +37,8 @@ static bool report_missed(struct ct_assembler *s, bool is_speed)
         return true;
     const struct ct_coordinate *c = s->e->coordinate;
     ct_error(s->ctx, initial_mark(s, worst, is_speed), CT_E_START,
-             "initial %s contradict each other: %s'%s' of joint '%s' is missed by %.3g",
+             "initial %s contradict each other: %s'%s' of joint '%s' is missed by %.3g; mark "
+             "what need not hold with 'guess: true'",
              is_speed ? "speeds" : "values", is_speed ? "the rate of " : "", c[worst].name,
              s->e->build->edge[c[worst].edge].self->name, most);
     for (size_t i = 0; i < s->e->ncoordinate; i++)
@@ -77,9 +78,9 @@ static struct ct_mark row_mark(const struct ct_assembler *s, size_t row)
     return model->joint[joint].mark;
 }
 
-bool ct_assembler_report_positions(struct ct_assembler *s)
+bool ct_assembler_report_positions(struct ct_assembler *s, bool closes)
 {
-    if (!report_missed(s, false))
+    if (closes && !report_missed(s, false))
         return false;
     bool any_given = false;
     for (size_t i = 0; i < s->e->ncoordinate; i++)
@@ -90,7 +91,9 @@ bool ct_assembler_report_positions(struct ct_assembler *s)
         "the mechanism cannot be assembled: '%s' stays open by %.3g; check lengths and "
         "places%s%s",
         s->e->row[row].name, fabs(s->m->phi[row]),
-        any_given ? ", the given initial values" : " and give guesses in `initial`",
+        closes      ? ", the given initial values"
+        : any_given ? " (with the given initial values as guesses, too)"
+                    : " and give guesses in `initial`",
         s->e->build->nflexible
             ? "; beams bend to close loops where they have `initial: equilibrium`"
             : "");

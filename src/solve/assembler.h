@@ -50,9 +50,9 @@ void ct_assembler_find_targets(struct ct_assembler *s, const struct ct_model *mo
 /// Deviation of coordinate i from its target; for three of a quaternion's four numbers a rotation, for the fourth false.
 bool ct_assembler_deviation(const struct ct_assembler *s, size_t i, double *r);
 
-/// The given value that is missed most, or the row that stays open farthest. False.
-/// Errors: CT_E_START, CT_E_ASSEMBLY.
-bool ct_assembler_report_positions(struct ct_assembler *s);
+/// The given value that is missed most, or the row that stays open farthest. closes: loops do, with the given values as
+/// guesses. False. Errors: CT_E_START, CT_E_ASSEMBLY.
+bool ct_assembler_report_positions(struct ct_assembler *s, bool closes);
 bool ct_assembler_report_speeds(struct ct_assembler *s);
 /// Does each driven joint start on its motion? Errors: CT_E_START.
 bool ct_assembler_check_drivers(struct ct_assembler *s);
