@@ -544,6 +544,29 @@ static bool run_and_report(void *task)
     return ok;
 }
 
+static bool run_again(void *task)
+{
+    struct work *w = task;
+    struct ct_sim *sim = w->sim;
+    sim->has_run = sim->is_done = sim->is_late = false;
+    sim->write = 0;
+    sim->nstep = 0;
+    if (ct_run_restart(sim->run, &sim->start))
+        return run_and_report(task);
+    ct_ctx_hand_over(w->ctx, &sim->own);
+    return false;
+}
+
+bool ct_sim_run_again(struct ct_ctx *ctx, struct ct_sim *sim,
+                      const struct ct_sim_results *results)
+{
+    struct work w = {ctx, sim};
+    sim->results = results;
+    const bool ok = ct_enter(ctx, run_again, &w);
+    sim->results = NULL;
+    return ok;
+}
+
 bool ct_sim_follow(struct ct_ctx *ctx, struct ct_sim *sim, const struct ct_sim_results *results)
 {
     if (sim)

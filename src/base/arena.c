@@ -151,6 +151,13 @@ void *ct_arena_calloc(struct ct_arena *a, size_t n, size_t size)
     return ct_arena_alloc(a, n * size);
 }
 
+void *ct_arena_line(struct ct_arena *a, size_t size)
+{
+    enum { LINE = 64 };
+    char *p = ct_arena_calloc(a, size + LINE, 1);
+    return p + (LINE - (uintptr_t)p % LINE) % LINE;
+}
+
 char *ct_arena_strndup(struct ct_arena *a, const char *s, size_t n)
 {
     char *p = ct_arena_alloc(a, n + 1);

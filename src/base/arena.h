@@ -31,6 +31,9 @@ void ct_arena_at_end(struct ct_arena *a, void (*end)(void *data), void *data);
 void *ct_arena_alloc(struct ct_arena *a, size_t size);
 /// n elements of size bytes; an overflow of the product counts as out of memory.
 void *ct_arena_calloc(struct ct_arena *a, size_t n, size_t size);
+/// size bytes, zeroed, from the start of a line of the cache: what vectors of four numbers are read from that lie side by
+/// side, half of which would reach over two lines elsewhere.
+void *ct_arena_line(struct ct_arena *a, size_t size);
 char *ct_arena_strdup(struct ct_arena *a, const char *s);
 char *ct_arena_strndup(struct ct_arena *a, const char *s, size_t n);
 char *ct_arena_printf(struct ct_arena *a, const char *fmt, ...)

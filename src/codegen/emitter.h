@@ -18,6 +18,7 @@ enum ct_row_layout { CT_ROWS_FULL, CT_ROWS_SAME, CT_ROWS_APART };
 struct ct_stream {
     unsigned area;
     int32_t stride;
+    bool stays; // with each strip of rows where it was
 };
 
 struct ct_home {
@@ -36,6 +37,7 @@ struct ct_emitter {
     uint32_t *order;     // of the body's instructions
     size_t norder;
     uint32_t first_angle, nangle; // in the order: sines and cosines that are one call
+    uint32_t first_rest;          // in the order: behind calls and what leads to them
 
     // reads of a value: places in the order, ascending; those before next[v] are done
     uint32_t *start, *use, *next;

@@ -169,6 +169,35 @@ void ct_put_advance(struct ct_bytes *c, int reg, int32_t by)
     put_number(c, (uint64_t)by, 4);
 }
 
+void ct_put_scaled(struct ct_bytes *c, int to, int from, int by, int32_t stride)
+{
+    const unsigned upper = to >= 8;
+    ct_put(c, 0x49 | upper << 2); // imul to, by, stride
+    ct_put(c, 0x69);
+    ct_put(c, 0xC0 | (unsigned)(to & 7) << 3 | (unsigned)(by & 7));
+    put_number(c, (uint64_t)stride, 4);
+    ct_put(c, 0x48 | upper); // add to, from
+    ct_put(c, 0x01);
+    ct_put(c, 0xC0 | (unsigned)from << 3 | (unsigned)(to & 7));
+}
+
+void ct_put_zero(struct ct_bytes *c, int reg)
+{
+    ct_put(c, 0x45); // xor reg, reg
+    ct_put(c, 0x31);
+    ct_put(c, 0xC0 | (unsigned)(reg & 7) << 3 | (unsigned)(reg & 7));
+}
+
+void ct_put_back_below(struct ct_bytes *c, int reg, int32_t limit, size_t to)
+{
+    ct_put(c, 0x49); // cmp reg, limit
+    ct_put(c, 0x81);
+    ct_put(c, 0xF8 | (unsigned)(reg & 7));
+    put_number(c, (uint64_t)limit, 4);
+    put_number(c, 0x8C0F, 2); // jl
+    put_number(c, (uint64_t)to - (uint64_t)(c->n + 4), 4);
+}
+
 // Back to byte `to`, unless RAX, one less, is 0.
 void ct_put_back(struct ct_bytes *c, size_t to)
 {

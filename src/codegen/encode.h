@@ -24,6 +24,7 @@ enum {
     CT_R9,
     CT_R10,
     CT_R11,
+    CT_R12 = 12,
     CT_R13 = 13,
     CT_R14,
     CT_R15,
@@ -104,8 +105,14 @@ void ct_put_address(struct ct_bytes *c, int reg, struct ct_rm rm);
 void ct_put_immediate(struct ct_bytes *c, int reg, uint64_t v);
 void ct_put_call(struct ct_bytes *c, uintptr_t function);
 void ct_put_advance(struct ct_bytes *c, int reg, int32_t by);
+/// 64-bit to = from + stride * by, from among the lower eight, by among the upper ones
+void ct_put_scaled(struct ct_bytes *c, int to, int from, int by, int32_t stride);
+/// reg = 0, among the upper eight
+void ct_put_zero(struct ct_bytes *c, int reg);
 /// Back to byte `to`, unless RAX, one less, is 0.
 void ct_put_back(struct ct_bytes *c, size_t to);
+/// Back to byte `to` as long as reg, among the upper eight, is less than limit.
+void ct_put_back_below(struct ct_bytes *c, int reg, int32_t limit, size_t to);
 /// The constants that are used, and the displacements to them: behind all code.
 void ct_put_pool(struct ct_bytes *c);
 

@@ -22,12 +22,12 @@
 /// Strides that one loop can have.
 enum { CT_ROLL_STREAMS = 7 };
 
-enum ct_reach { CT_REACH_ROW, CT_REACH_FIXED, CT_REACH_INPUT, CT_REACH_WORK };
+enum ct_reach { CT_REACH_ROW, CT_REACH_FIXED, CT_REACH_INPUT, CT_REACH_WORK, CT_REACH_STRIP };
 
 struct ct_operand {
     enum ct_reach reach;
-    uint32_t
-        at; // ROW: number of the loop's own instruction; FIXED: value; else the place at row 0
+    // ROW: number of the loop's own instruction; FIXED: value; else the place at row 0, STRIP: of the strip
+    uint32_t at;
     int32_t stride;
 };
 
@@ -37,13 +37,15 @@ struct ct_copy {
 
 struct ct_loop {
     uint32_t first, period, count; // places in the order: the first one, of a row; rows
+    uint32_t strip;                // rows of a strip; 0: all
     bool is_side_by_side;          // rows may be done together
     uint32_t nslot, *slot;         // instructions of a row that are its own, ascending
     struct ct_operand *operand;    // (3 x nslot)
-    uint32_t *result;     // (nslot) place at row 0, CT_VALUE_NONE: read in its row alone
-    int32_t width;        // stride of results
-    struct ct_copy *copy; // before the loop
+    struct ct_operand *result;     // (nslot) where it is kept; CT_REACH_ROW: nowhere
+    struct ct_copy *copy;          // before the loop
     size_t ncopy, copy_cap;
+    // of the first loop of a stretch: places of the strip whose last nbefore rows stand before those of the next strip
+    uint32_t *carried, ncarried, nbefore;
 };
 
 struct ct_roll {
@@ -52,7 +54,9 @@ struct ct_roll {
     uint32_t *place;       // by value: where a result of a loop is kept; CT_VALUE_NONE: others
     struct ct_copy *table; // constants and parameters by row: copied once
     size_t ntable, table_cap;
-    uint32_t nwork; // places of the work array, up to here
+    uint32_t nwork;   // places of the work array, up to here
+    size_t nstraight; // instructions in no loop
+    size_t nresult;   // of rows that are kept in memory
 };
 
 /// The loops of n instructions in the order of their execution. is_alone: by operator, not in loops. Places of the work

@@ -1,5 +1,6 @@
 // See x86.h: the walk over the listing that decides in which register each value is.
 #include "codegen/emitter.h"
+#include "codegen/merge.h"
 
 #include <assert.h>
 #include <string.h>
@@ -548,9 +549,10 @@ static void roll_up(struct ct_emitter *e)
         is_alone[op] = e->calls->by_op[op] != 0;
     if (e->norder < least_rolled(e->code.lanes))
         return;
-    e->roll
-        = ct_roll_find(e->arena, e->l, e->order, (uint32_t)e->norder, is_alone, e->nfixed,
-                       e->calls->rows_together && e->code.lanes == 1 ? CT_ROWS_TOGETHER : 1);
+    e->roll = ct_merge_loops(
+        e->arena, e->l, e->order, (uint32_t)e->norder, e->first_rest, is_alone, e->nfixed,
+        e->calls->rows_together && e->code.lanes == 1 ? CT_ROWS_TOGETHER : 1);
+    ct_emitter_list_uses(e);
     e->spread = CT_NEWN(e->arena, uint32_t, e->l->nvalue);
     for (size_t v = 0; v < e->l->nvalue; v++)
         e->spread[v] = none;
@@ -619,6 +621,8 @@ static bool order_instructions(struct ct_emitter *e)
     for (int now = FOR_ANGLES; now < NTURN; now++) {
         if (now == ANGLES)
             e->first_angle = (uint32_t)e->norder;
+        if (now == REST)
+            e->first_rest = (uint32_t)e->norder;
         for (size_t i = l->nprologue; i < l->nins; i++)
             if (turn[i] == now)
                 e->order[e->norder++] = (uint32_t)i;
@@ -654,8 +658,11 @@ static void place_values(struct ct_emitter *e, const uint32_t *home)
     }
 }
 
+// Saved for loops; one of them twice, see below.
+static const int loop_register[] = {CT_R12, CT_R12, CT_R13, CT_R15};
+
 // The areas are pointed at by the arguments themselves, or by registers that calls leave alone. Three
-// pushes and the return address keep the stack aligned to 16, and so do two more.
+// pushes and the return address keep the stack aligned to 16, and so does an even number more.
 static void emit_entry(struct ct_emitter *e, bool calls)
 {
     if (calls) {
@@ -666,10 +673,8 @@ static void emit_entry(struct ct_emitter *e, bool calls)
         ct_put_move(&e->code, CT_R14, CT_RSI);
         ct_put_move(&e->code, CT_RBX, CT_RDX);
     }
-    if (e->roll.nloop) {
-        ct_put_push(&e->code, CT_R13);
-        ct_put_push(&e->code, CT_R15);
-    }
+    for (size_t i = 0; i < COUNT(loop_register) && e->roll.nloop; i++)
+        ct_put_push(&e->code, loop_register[i]);
     e->base[CT_AREA_INPUT] = calls ? CT_RBP : CT_RDI;
     e->base[CT_AREA_OUT] = calls ? CT_R14 : CT_RSI;
     e->base[CT_AREA_WORK] = calls ? CT_RBX : CT_RDX;
@@ -691,10 +696,8 @@ static void copy_outputs(struct ct_emitter *e)
 static void emit_return(struct ct_emitter *e, bool calls)
 {
     ct_put_vzeroupper(&e->code);
-    if (e->roll.nloop) {
-        ct_put_pop(&e->code, CT_R15);
-        ct_put_pop(&e->code, CT_R13);
-    }
+    for (size_t i = COUNT(loop_register); i-- > 0 && e->roll.nloop;)
+        ct_put_pop(&e->code, loop_register[i]);
     if (calls) {
         ct_put_pop(&e->code, CT_R14);
         ct_put_pop(&e->code, CT_RBP);

@@ -20,14 +20,18 @@ struct body {
     struct ct_operand *operand; // by value from period on
 };
 
-static unsigned stream_of(struct body *b, unsigned area, int32_t stride)
+static unsigned stream_of(struct body *b, const struct ct_operand *o)
 {
+    const unsigned area = o->reach == CT_REACH_INPUT ? CT_AREA_INPUT : CT_AREA_WORK;
+    const bool stays = o->reach == CT_REACH_STRIP;
     unsigned i = 0;
-    while (i < b->nstream && (b->stream[i].area != area || b->stream[i].stride != stride))
+    while (i < b->nstream
+           && (b->stream[i].area != area || b->stream[i].stride != o->stride
+               || b->stream[i].stays != stays))
         i++;
     assert(i < CT_ROLL_STREAMS);
     if (i == b->nstream) {
-        b->stream[b->nstream++] = (struct ct_stream){area, stride};
+        b->stream[b->nstream++] = (struct ct_stream){area, o->stride, stays};
         b->e.base[CT_NAREA + i] = stream_register[i];
     }
     return CT_NAREA + i;
@@ -62,8 +66,7 @@ static void place_fixed(struct body *b, const struct ct_emitter *outer, uint32_t
 
 static void place_stream(struct body *b, uint32_t v, const struct ct_operand *o)
 {
-    const unsigned area = o->reach == CT_REACH_INPUT ? CT_AREA_INPUT : CT_AREA_WORK;
-    b->e.home[v] = (struct ct_home){stream_of(b, area, o->stride), o->at};
+    b->e.home[v] = (struct ct_home){stream_of(b, o), o->at};
     if (b->e.layout)
         b->e.layout[v] = o->stride == 1 ? CT_ROWS_FULL : CT_ROWS_APART;
 }
@@ -114,10 +117,9 @@ static void list_body(struct body *b, const struct ct_emitter *outer,
         for (uint32_t k = 0; k < ins->narg; k++)
             ins->arg[k] = value_of(b, outer, loop, &loop->operand[3 * i + k]);
         ins->res[0] = b->e.order[i] = i;
-        is_kept[i] = loop->result[i] != none;
+        is_kept[i] = loop->result[i].reach != CT_REACH_ROW;
         if (is_kept[i])
-            b->e.home[i]
-                = (struct ct_home){stream_of(b, CT_AREA_WORK, loop->width), loop->result[i]};
+            place_stream(b, i, &loop->result[i]);
     }
     b->e.norder = loop->nslot;
     b->e.is_kept = is_kept;
@@ -138,7 +140,19 @@ static void move_streams(struct body *b, int32_t rows)
                        rows * b->stream[i].stride * (int32_t)b->e.place_size);
 }
 
-// `rows` times, from where the streams are; then they are behind it.
+// Streams to their first row, in a strip to that of the strip.
+static void start_streams(struct body *b, const struct ct_loop *loop)
+{
+    for (unsigned i = 0; i < b->nstream; i++) {
+        const int from = b->e.base[b->stream[i].area];
+        if (loop->strip && !b->stream[i].stays)
+            ct_put_scaled(&b->e.code, stream_register[i], from, CT_R12, b->stream[i].stride);
+        else
+            ct_put_move(&b->e.code, stream_register[i], from);
+    }
+}
+
+// `times` rows, or sets of them, from where the streams are; then they are behind it.
 static void emit_rows(struct ct_emitter *e, const struct ct_loop *loop, uint32_t times,
                       bool starts, int32_t back)
 {
@@ -149,8 +163,8 @@ static void emit_rows(struct ct_emitter *e, const struct ct_loop *loop, uint32_t
     b.e.width = (uint32_t)together;
     list_body(&b, e, loop);
     struct ct_bytes *c = &b.e.code;
-    for (unsigned i = 0; i < b.nstream && starts; i++)
-        ct_put_move(c, stream_register[i], b.e.base[b.stream[i].area]);
+    if (starts)
+        start_streams(&b, loop);
     if (back)
         move_streams(&b, -back);
     ct_put_immediate(c, CT_RAX, times);
@@ -172,10 +186,9 @@ static void emit_rows(struct ct_emitter *e, const struct ct_loop *loop, uint32_t
 }
 
 // Rows four at a time; the last four may begin among those that are done, which gives the same once more.
-static void emit_side_by_side(struct ct_emitter *e, const struct ct_loop *loop)
+static void emit_side_by_side(struct ct_emitter *e, const struct ct_loop *loop, uint32_t rows)
 {
-    const uint32_t times = loop->count / CT_ROWS_TOGETHER,
-                   left = loop->count % CT_ROWS_TOGETHER;
+    const uint32_t times = rows / CT_ROWS_TOGETHER, left = rows % CT_ROWS_TOGETHER;
     const int lanes = e->code.lanes;
     emit_rows(e, loop, times, true, 0);
     if (left)
@@ -197,7 +210,50 @@ static void pass_loop(struct ct_emitter *e, const struct ct_loop *loop)
     }
 }
 
-static void emit_loop(struct ct_emitter *e, const struct ct_loop *loop)
+static void emit_part(struct ct_emitter *e, const struct ct_loop *loop, uint32_t rows)
+{
+    if (loop->is_side_by_side)
+        emit_side_by_side(e, loop, rows);
+    else
+        emit_rows(e, loop, rows, true, 0);
+}
+
+// The last rows of a strip before the first of the next one, a whole set at a time.
+static void carry_over(struct ct_emitter *e, const struct ct_loop *loop)
+{
+    const int lanes = e->code.lanes;
+    e->code.lanes = CT_ROWS_TOGETHER;
+    for (uint32_t i = 0; i < loop->ncarried; i++)
+        for (uint32_t back = CT_ROWS_TOGETHER; back < loop->nbefore + CT_ROWS_TOGETHER;
+             back += CT_ROWS_TOGETHER) {
+            const struct ct_home to = {CT_AREA_WORK, loop->carried[i] - back},
+                                 from = {CT_AREA_WORK, to.place + loop->strip};
+            const int r = (int)(i % CT_NREGISTER);
+            ct_put_load(&e->code, r, ct_emitter_memory(e, from));
+            ct_put_store(&e->code, ct_emitter_memory(e, to), r);
+        }
+    ct_put_vzeroupper(&e->code);
+    e->code.lanes = lanes;
+}
+
+// All parts of a strip before the next strip. R12: bytes of one result by row, up to the strip.
+static void emit_strips(struct ct_emitter *e, const struct ct_loop *loop,
+                        const struct ct_loop *end)
+{
+    const uint32_t rest = loop->count % loop->strip, times = loop->count / loop->strip;
+    const int32_t step = (int32_t)(loop->strip * e->place_size);
+    ct_put_zero(&e->code, CT_R12);
+    const size_t start = e->code.n;
+    for (const struct ct_loop *part = loop; part < end; part++)
+        emit_part(e, part, part->strip);
+    carry_over(e, loop);
+    ct_put_advance(&e->code, CT_R12, step);
+    ct_put_back_below(&e->code, CT_R12, (int32_t)times * step, start);
+    for (const struct ct_loop *part = loop; part < end && rest; part++)
+        emit_part(e, part, rest);
+}
+
+static void emit_copies(struct ct_emitter *e, const struct ct_loop *loop)
 {
     for (size_t i = 0; i < loop->ncopy; i++) {
         const int r = ct_emitter_load(e, loop->copy[i].value);
@@ -208,10 +264,6 @@ static void emit_loop(struct ct_emitter *e, const struct ct_loop *loop)
         ct_emitter_release(e, &loop->copy[i].value, 1);
     }
     ct_emitter_forget(e);
-    if (loop->is_side_by_side)
-        emit_side_by_side(e, loop);
-    else
-        emit_rows(e, loop, loop->count, true, 0);
 }
 
 // The loops of one stretch. Returns the one behind them.
@@ -219,8 +271,14 @@ const struct ct_loop *ct_emitter_loops(struct ct_emitter *e, const struct ct_loo
                                        const struct ct_loop *end)
 {
     const struct ct_loop *first = loop;
-    for (; loop < end && loop->first == first->first; loop++)
-        emit_loop(e, loop);
+    while (loop < end && loop->first == first->first)
+        loop++;
+    emit_copies(e, first);
+    if (first->strip)
+        emit_strips(e, first, loop);
+    else
+        for (const struct ct_loop *part = first; part < loop; part++)
+            emit_part(e, part, part->count);
     pass_loop(e, first);
     return loop;
 }

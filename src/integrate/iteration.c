@@ -39,6 +39,7 @@ struct ct_iteration *ct_iteration_create(struct ct_arena *a, const struct ct_pro
     it->groups = p->groups;
     it->is_stabilised = is_stabilised;
     it->nu = nu;
+    it->per_speed = nu ? 1.0 / nu : 0;
     it->version = -1;
     it->tail = 1;
     double **const square[] = {&it->M, &it->C, &it->K};

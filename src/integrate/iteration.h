@@ -42,8 +42,9 @@ struct ct_iteration {
     double *w; // speeds of the derivatives (nu), for N; NULL: the method knows no N
     double *b; // (n)
     double _Complex *bc;
-    double *share; // one over what changes of places and speeds are measured against  (2 nu)
-    double *off;   // an error of the states  (ny)
+    double per_speed; // 1/nu; 0: there are none
+    double *share;    // one over what changes of places and speeds are measured against  (2 nu)
+    double *off;      // an error of the states  (ny)
     // the run of corrections
     int count;
     double kappa, rounding; // a correction below: converged; below: not to be bettered
@@ -118,7 +119,7 @@ static inline double ct_iteration_norm(const struct ct_iteration *it, const doub
         sum += ct_iteration_square(d + s * nu, it->share, nu);
     for (int s = 0; s < k && u; s++)
         sum += ct_iteration_square(u + s * nu, it->share + nu, nu);
-    return nu ? sqrt(sum / ((u ? 2 : 1) * k * nu)) : 0;
+    return sqrt(sum * (it->per_speed / ((u ? 2 : 1) * k)));
 }
 
 /// The error of a step that ends at y1, time t1: that of the states, `states`, or what the errors d, u (nu) of places and

@@ -25,7 +25,7 @@ static void make_program(struct ct_lanes *s, struct ct_lane_program *p,
     p->native = is_native(s) ? ct_native_create(a, l, W) : NULL;
     const size_t n = p->native ? ct_native_work(p->native) : W * ct_tape_work(p->tape);
     p->out = CT_NEWN(a, vec, p->nout);
-    p->work = CT_NEWN(a, double, n + 1);
+    p->work = ct_arena_line(a, (n + 1) * sizeof *p->work);
 }
 
 static void prepare(struct ct_lane_program *p, const vec *input)
@@ -266,7 +266,7 @@ static struct ct_lane_sum sum_of(const struct ct_lanes *s, const double *a, int 
     struct ct_lane_sum sum = {0};
     for (int i = 0; i < n; i++)
         if (a[i] != 0) {
-            sum.at[sum.n] = (size_t)i * (size_t)s->ny;
+            sum.at[sum.n] = W * (size_t)i * (size_t)s->ny;
             sum.a[sum.n++] = a[i];
         }
     return sum;

@@ -115,7 +115,8 @@ static void use(struct ct_arena *a, struct ct_program *p, struct ct_native *nati
     if (!native && !p->tape)
         p->tape = ct_tape_create(a, p->listing);
     p->native = native;
-    p->work = CT_NEWN(a, double, (native ? ct_native_work(native) : ct_tape_work(p->tape)) + 1);
+    const size_t n = native ? ct_native_work(native) : ct_tape_work(p->tape);
+    p->work = ct_arena_line(a, (n + 1) * sizeof *p->work);
 }
 
 // Native code where it is wanted and available; false if it is not available.

@@ -105,8 +105,10 @@ void ct_tangent_lanes_use(struct ct_arena *a, struct ct_tangent_lanes *t, bool n
     if (!t->native && !t->tape)
         t->tape = ct_tape_create(a, t->l);
     const size_t most = t->native ? ct_native_work(t->native) : LANES * ct_tape_work(t->tape);
-    if (most >= t->nwork)
-        t->work = CT_NEWN(a, double, t->nwork = most + 1);
+    if (most >= t->nwork) {
+        t->nwork = most + 1;
+        t->work = ct_arena_line(a, t->nwork * sizeof *t->work);
+    }
     ct_tangent_lanes_prepare(t, input);
 }
 

@@ -1,0 +1,386 @@
+// See stretch.h.
+#include "codegen/stretch.h"
+
+static const uint32_t none = CT_VALUE_NONE;
+
+#include <string.h>
+
+// ---- what leaves its row ------------------------------------------------------------------------
+
+// Does row `row` of `reader` take the operand from where all rows take it?
+static bool is_taken_in_turn(const struct ct_stretches *p, const struct ct_stretch *reader,
+                             uint32_t operand, int32_t row, const struct ct_stretch *r,
+                             uint32_t slot, int32_t its)
+{
+    const struct ct_source *from = &reader->reach[operand];
+    return from->kind == CT_SOURCE_RESULTS && &p->stretch[from->other] == r && from->at == slot
+        && from->row + row * from->step == its;
+}
+
+static void mark_read(struct ct_stretch *r, uint32_t slot, int32_t row)
+{
+    r->escapes[slot] = true;
+    if ((uint32_t)row < r->least_row[slot])
+        r->least_row[slot] = (uint32_t)row;
+}
+
+static void mark_escapes(const struct ct_stretches *p)
+{
+    int32_t row;
+    uint32_t slot;
+    for (size_t i = 0; i < p->nstretch; i++)
+        for (uint32_t k = 0; k < p->stretch[i].period && !p->stretch[i].is_dropped; k++)
+            p->stretch[i].least_row[k] = UINT32_MAX;
+    for (uint32_t i = 0; i < p->n; i++) {
+        const uint32_t which = p->of_place[i];
+        const struct ct_stretch *reader = which == none ? NULL : &p->stretch[which];
+        const uint32_t at = reader ? i - reader->first : 0;
+        for (uint32_t k = 0; k < ct_stretch_instruction(p, i)->narg; k++) {
+            struct ct_stretch *r = ct_stretch_of(p, ct_stretch_operand(p, i, k), &row, &slot);
+            if (!r)
+                continue;
+            if (r == reader)
+                r->escapes[slot] |= at / r->period != (uint32_t)row;
+            else if (reader
+                     && is_taken_in_turn(p, reader, 3 * (at % reader->period) + k,
+                                         (int32_t)(at / reader->period), r, slot, row))
+                r->escapes[slot] = r->escapes_far[slot] = true;
+            else
+                mark_read(r, slot, row);
+        }
+    }
+    for (size_t k = 0; k < p->l->nout; k++) {
+        struct ct_stretch *r = ct_stretch_of(p, p->l->out[k], &row, &slot);
+        if (r)
+            mark_read(r, slot, row);
+    }
+}
+
+// ---- rows side by side --------------------------------------------------------------------------
+
+enum { MOST_PARTS = 6 }; // done side by side
+
+static bool reads_itself(const struct ct_stretches *p, const struct ct_stretch *r,
+                         const struct ct_source *from)
+{
+    return from->kind == CT_SOURCE_RESULTS && &p->stretch[from->other] == r;
+}
+
+static unsigned char part_of(const struct ct_stretches *p, const struct ct_stretch *r,
+                             uint32_t slot)
+{
+    unsigned char part = 0;
+    for (uint32_t k = 0; k < ct_stretch_instruction(p, r->first + slot)->narg; k++) {
+        const struct ct_source *from = &r->reach[3 * slot + k];
+        unsigned char its = 0;
+        if (from->kind == CT_SOURCE_ROW)
+            its = r->part[from->at];
+        else if (reads_itself(p, r, from))
+            its = from->step == 1 && r->part[from->at] < MOST_PARTS ? r->part[from->at] + 1
+                                                                    : MOST_PARTS;
+        part = its > part ? its : part;
+    }
+    return part;
+}
+
+// What reads results of rows before goes into the next part. What so reads itself, as running sums do, rises until it
+// is among the late ones, and takes along what depends on it. Cost: instructions of a row times MOST_PARTS at most.
+static void part_rows(const struct ct_stretches *p, struct ct_stretch *r)
+{
+    for (bool changes = true; changes;) {
+        changes = false;
+        for (uint32_t slot = 0; slot < r->period; slot++) {
+            const unsigned char part = part_of(p, r, slot);
+            changes |= part != r->part[slot];
+            r->part[slot] = part;
+        }
+    }
+    uint32_t last = 0;
+    for (uint32_t slot = 0; slot < r->period; slot++) {
+        r->nlate += r->part[slot] == MOST_PARTS;
+        if (r->part[slot] < MOST_PARTS && r->part[slot] > last)
+            last = r->part[slot];
+    }
+    r->npart = last + 2;
+    for (uint32_t slot = 0; slot < r->period; slot++)
+        if (r->part[slot] == MOST_PARTS)
+            r->part[slot] = (unsigned char)(last + 1);
+}
+
+static bool is_late(const struct ct_stretch *r, uint32_t slot)
+{
+    return r->part[slot] + 1u == r->npart;
+}
+
+// Reads whose rows are not side by side.
+static uint32_t count_gathered(const struct ct_stretches *p, const struct ct_stretch *r)
+{
+    uint32_t n = 0;
+    for (uint32_t slot = 0; slot < r->period; slot++)
+        for (uint32_t k = 0;
+             k < ct_stretch_instruction(p, r->first + slot)->narg && !is_late(r, slot); k++) {
+            const struct ct_source *from = &r->reach[3 * slot + k];
+            n += (from->kind == CT_SOURCE_INPUTS && from->step != 1)
+              || (from->kind == CT_SOURCE_RESULTS && !reads_itself(p, r, from)
+                  && (!p->stretch[from->other].is_side_by_side || from->step != 1));
+        }
+    return n;
+}
+
+// What parts of a row read of each other.
+static uint32_t hand_over(const struct ct_stretches *p, struct ct_stretch *r)
+{
+    uint32_t n = 0;
+    for (uint32_t slot = 0; slot < r->period; slot++)
+        for (uint32_t k = 0; k < ct_stretch_instruction(p, r->first + slot)->narg; k++) {
+            const struct ct_source *from = &r->reach[3 * slot + k];
+            if (from->kind == CT_SOURCE_ROW && r->part[from->at] != r->part[slot]) {
+                n += !r->escapes[from->at];
+                r->escapes[from->at] = true;
+            }
+        }
+    return n;
+}
+
+// Rows of a strip: the last one has as many, or at least as many as are done together.
+static uint32_t strip_of(uint32_t count, uint32_t lanes)
+{
+    static const uint32_t wanted[] = {16, 12, 20, 8};
+    for (size_t i = 0; i < COUNT(wanted) && count > 2 * wanted[0]; i++)
+        if (count % wanted[i] == 0 || count % wanted[i] >= lanes)
+            return wanted[i];
+    return 0;
+}
+
+// Does it pay? A read that gathers four numbers costs about five instructions, a result of a late row that the others read
+// two.
+static void choose_lanes(struct ct_stretches *p, uint32_t lanes)
+{
+    enum { GATHER = 5, HAND_OVER = 2, LEAST = 16 };
+    for (size_t i = 0; i < p->nstretch && lanes > 1; i++) {
+        struct ct_stretch *r = &p->stretch[i];
+        if (r->is_dropped || r->count < lanes)
+            continue;
+        part_rows(p, r);
+        const uint32_t n = r->period - r->nlate;
+        const uint32_t more = GATHER * count_gathered(p, r) + HAND_OVER * r->nlate;
+        r->is_side_by_side = (lanes - 1) * n > more && n >= LEAST;
+        if (!r->is_side_by_side)
+            continue;
+        hand_over(p, r);
+        r->strip = r->nstream < CT_ROLL_STREAMS ? strip_of(r->count, lanes) : 0;
+    }
+}
+
+// ---- places -------------------------------------------------------------------------------------
+
+static uint32_t place_of(const struct ct_stretch *r, uint32_t number, int32_t row)
+{
+    return (uint32_t)((int32_t)r->origin + row * (int32_t)r->row_stride
+                      + (int32_t)(number * r->slot_stride));
+}
+
+static uint32_t place_of_slot(const struct ct_stretch *r, uint32_t slot, int32_t row)
+{
+    if (r->is_local[slot])
+        return (uint32_t)((int32_t)(r->local_origin + r->offset[slot] * r->local_stride) + row);
+    return place_of(r, r->offset[slot], row);
+}
+
+static uint32_t rounded_up(uint32_t n, uint32_t to)
+{
+    return (n + to - 1) / to * to;
+}
+
+// An odd number of sets of lanes, so that places of different results fall into all sets of a cache.
+static uint32_t odd_rows(uint32_t rows, uint32_t lanes)
+{
+    return rows / lanes % 2 == 0 ? rows + lanes : rows;
+}
+
+// Its first row: from there on results stay.
+static uint32_t last_strip(const struct ct_stretch *r)
+{
+    return (r->count - 1) / r->strip * r->strip;
+}
+
+static void place_rows(struct ct_stretch *r, uint32_t *nwork, uint32_t lanes)
+{
+    for (uint32_t slot = 0; slot < r->period; slot++) {
+        r->is_local[slot] = r->strip && r->escapes[slot] && !r->escapes_far[slot]
+                         && r->least_row[slot] >= last_strip(r);
+        if (r->escapes[slot])
+            r->offset[slot] = r->is_local[slot] ? r->nlocal++ : r->nresult++;
+    }
+    const uint32_t width = r->nresult + (uint32_t)r->ncolumn,
+                   before = rounded_up((uint32_t)r->before, lanes);
+    uint32_t rows = before + rounded_up(r->count + (uint32_t)r->behind, lanes);
+    if (r->is_side_by_side)
+        rows = odd_rows(rows, lanes);
+    r->row_stride = r->is_side_by_side ? 1 : width;
+    r->slot_stride = r->is_side_by_side ? rows : 1;
+    *nwork = rounded_up(*nwork, lanes);
+    r->origin = *nwork + before * r->row_stride;
+    *nwork += rows * width;
+    r->local_stride = odd_rows(before + r->strip, lanes);
+    r->local_origin = *nwork + before;
+    *nwork += r->nlocal * r->local_stride;
+}
+
+// ---- the loops ----------------------------------------------------------------------------------
+
+static struct ct_operand result_of(const struct ct_stretch *r, uint32_t slot, int32_t row,
+                                   int32_t step)
+{
+    return (struct ct_operand){r->is_local[slot] ? CT_REACH_STRIP : CT_REACH_WORK,
+                               place_of_slot(r, slot, row), step * (int32_t)r->row_stride};
+}
+
+static struct ct_operand operand_of(const struct ct_stretches *p, const struct ct_stretch *r,
+                                    const struct ct_source *from)
+{
+    switch (from->kind) {
+    case CT_SOURCE_ROW:
+        return (struct ct_operand){.reach = CT_REACH_ROW, .at = from->at};
+    case CT_SOURCE_FIXED:
+        return (struct ct_operand){.reach = CT_REACH_FIXED, .at = from->at};
+    case CT_SOURCE_INPUTS:
+        return (struct ct_operand){CT_REACH_INPUT, from->at, from->step};
+    case CT_SOURCE_RESULTS:
+        return result_of(&p->stretch[from->other], from->at, from->row, from->step);
+    default:
+        return (struct ct_operand){CT_REACH_WORK, place_of(r, r->nresult + from->at, 0),
+                                   (int32_t)r->row_stride};
+    }
+}
+
+static void add_columns(const struct ct_stretches *p, const struct ct_stretch *r,
+                        struct ct_loop *loop, struct ct_roll *out)
+{
+    for (uint32_t i = 0; i < r->ncolumn; i++)
+        for (uint32_t row = 0; row < r->count; row++) {
+            const uint32_t operand = r->column[i].operand;
+            const struct ct_copy c = {ct_stretch_argument(p, r, row, operand),
+                                      place_of(r, r->nresult + i, (int32_t)row)};
+            if (!r->column[i].is_copied)
+                CT_PUSH(p->arena, out->table, out->ntable, out->table_cap, c);
+            else
+                CT_PUSH(p->arena, loop->copy, loop->ncopy, loop->copy_cap, c);
+        }
+}
+
+// Edges of all stretches that this one asks for.
+static void add_edges(const struct ct_stretches *p, uint32_t asker, struct ct_loop *loop)
+{
+    for (uint32_t i = 0; i <= asker; i++) {
+        const struct ct_stretch *r = &p->stretch[i];
+        for (uint32_t slot = 0; slot < r->period && !r->is_dropped && r->nedge; slot++)
+            for (uint32_t k = r->edge_of[slot]; k; k = r->edge[k - 1].next) {
+                const struct ct_stretch_edge *e = &r->edge[k - 1];
+                const struct ct_copy c = {e->value, place_of_slot(r, slot, e->row)};
+                if (e->asker == asker)
+                    CT_PUSH(p->arena, loop->copy, loop->ncopy, loop->copy_cap, c);
+            }
+    }
+}
+
+// The instructions of one part of a row, or all.
+static void fill_loop(const struct ct_stretches *p, const struct ct_stretch *r, uint32_t part,
+                      struct ct_loop *loop)
+{
+    uint32_t *number = CT_NEWN(p->arena, uint32_t, r->period); // of the loop's own
+    loop->slot = CT_NEWN(p->arena, uint32_t, r->period);
+    loop->operand = CT_NEWN(p->arena, struct ct_operand, 3 * r->period);
+    loop->result = CT_NEWN(p->arena, struct ct_operand, r->period);
+    for (uint32_t slot = 0; slot < r->period; slot++) {
+        if (r->is_side_by_side && r->part[slot] != part)
+            continue;
+        const uint32_t i = number[slot] = loop->nslot++;
+        loop->slot[i] = slot;
+        loop->result[i] = r->escapes[slot] ? result_of(r, slot, 0, 1)
+                                           : (struct ct_operand){.reach = CT_REACH_ROW};
+        for (uint32_t k = 0; k < ct_stretch_instruction(p, r->first + slot)->narg; k++) {
+            const struct ct_source *from = &r->reach[3 * slot + k];
+            struct ct_operand *o = &loop->operand[3 * i + k];
+            *o = operand_of(p, r, from);
+            if (from->kind != CT_SOURCE_ROW)
+                continue;
+            if (r->is_side_by_side && r->part[from->at] != part)
+                *o = result_of(r, from->at, 0, 1);
+            else
+                o->at = number[from->at];
+        }
+    }
+}
+
+// Results of the last rows of a strip that the next one reads.
+static void add_carried(const struct ct_stretches *p, const struct ct_stretch *r,
+                        struct ct_loop *loop)
+{
+    bool *is_carried = CT_NEWN(p->arena, bool, r->period);
+    for (uint32_t slot = 0; slot < r->period && r->strip; slot++)
+        for (uint32_t k = 0; k < ct_stretch_instruction(p, r->first + slot)->narg; k++) {
+            const struct ct_source *from = &r->reach[3 * slot + k];
+            if (reads_itself(p, r, from))
+                is_carried[from->at] = r->is_local[from->at];
+        }
+    loop->ncarried = 0;
+    loop->carried = CT_NEWN(p->arena, uint32_t, r->period);
+    for (uint32_t slot = 0; slot < r->period; slot++)
+        if (is_carried[slot])
+            loop->carried[loop->ncarried++] = place_of_slot(r, slot, 0);
+    loop->nbefore = (uint32_t)r->before;
+}
+
+static void keep_places(const struct ct_stretches *p, const struct ct_stretch *r,
+                        struct ct_roll *out)
+{
+    for (uint32_t slot = 0; slot < r->period; slot++) {
+        const uint32_t from = r->is_local[slot] ? last_strip(r) : 0;
+        for (uint32_t row = from; row < r->count && r->escapes[slot]; row++) {
+            const uint32_t at = r->first + row * r->period + slot;
+            out->place[ct_stretch_instruction(p, at)->res[0]]
+                = place_of_slot(r, slot, (int32_t)(row - from));
+        }
+    }
+}
+
+static void add_loops(const struct ct_stretches *p, uint32_t which, struct ct_roll *out)
+{
+    const struct ct_stretch *r = &p->stretch[which];
+    const uint32_t npart = r->is_side_by_side ? r->npart : 1;
+    const uint32_t first = (uint32_t)out->nloop;
+    for (uint32_t part = 0; part < npart; part++) {
+        struct ct_loop *loop = &out->loop[out->nloop];
+        *loop = (struct ct_loop){.first = r->first,
+                                 .period = r->period,
+                                 .count = r->count,
+                                 .strip = r->strip,
+                                 .is_side_by_side = r->is_side_by_side && part + 1 < npart};
+        fill_loop(p, r, part, loop);
+        out->nloop += loop->nslot > 0;
+    }
+    struct ct_loop *loop = &out->loop[first];
+    keep_places(p, r, out);
+    add_edges(p, which, loop);
+    add_columns(p, r, loop, out);
+    add_carried(p, r, loop);
+}
+
+void ct_stretch_lay_out(struct ct_stretches *p, uint32_t lanes, struct ct_roll *out)
+{
+    mark_escapes(p);
+    choose_lanes(p, lanes);
+    for (size_t i = 0; i < p->nstretch; i++)
+        if (!p->stretch[i].is_dropped)
+            place_rows(&p->stretch[i], &out->nwork, lanes);
+    out->nstraight = p->n;
+    out->loop = CT_NEWN(p->arena, struct ct_loop, (MOST_PARTS + 1) * p->nstretch + 1);
+    for (uint32_t i = 0; i < p->nstretch; i++)
+        if (!p->stretch[i].is_dropped) {
+            const struct ct_stretch *r = &p->stretch[i];
+            out->nstraight -= r->period * r->count;
+            out->nresult += (r->nresult + r->nlocal) * r->count;
+            add_loops(p, i, out);
+        }
+}

@@ -1,0 +1,105 @@
+// Stretches of a program that repeat, between the files that find them (roll.c) and that say where their results are (stretch.c).
+#ifndef CT_CODEGEN_STRETCH_H
+#define CT_CODEGEN_STRETCH_H
+
+#include "codegen/roll.h"
+
+struct ct_stretches {
+    struct ct_arena *arena;
+    const struct ct_listing *l;
+    const uint32_t *order;
+    uint32_t n;
+    uint32_t *at;     // by value: the place in the order that makes it, or none
+    uint64_t *sign;   // by place: what must repeat
+    uint32_t *again;  // by place: the next one whose window has the same hash, or none
+    bool *is_swapped; // by place, see ct_stretch_argument
+    struct ct_stretch *stretch;
+    size_t nstretch, stretch_cap;
+    uint32_t *of_place; // the stretch of a place, or none
+};
+
+// A result of a repeat that is put where the row before its first or behind its last one would be.
+struct ct_stretch_edge {
+    int32_t row;
+    uint32_t value;
+    uint32_t next;  // 1 + index of the next one of the instruction
+    uint32_t asker; // the repeat that needs it first
+};
+
+// A sequence of operands that is copied to places of its own.
+struct ct_stretch_column {
+    uint32_t operand; // 3 slot + k that it is the sequence of
+    bool is_copied;   // in each evaluation
+};
+
+// How an operand is reached, before places are known.
+struct ct_source {
+    enum {
+        CT_SOURCE_OPEN, // not known yet
+        CT_SOURCE_ROW,
+        CT_SOURCE_FIXED,
+        CT_SOURCE_INPUTS,
+        CT_SOURCE_RESULTS,
+        CT_SOURCE_COLUMN
+    } kind;
+    uint32_t
+        at; // instruction of the body; value; input at row 0; instruction of the other body; column
+    uint32_t other; // CT_SOURCE_RESULTS: repeat
+    int32_t row,
+        step; // CT_SOURCE_RESULTS: its row at row 0, rows per row; CT_SOURCE_INPUTS: step is the stride
+};
+
+struct ct_stretch_stream {
+    int kind;
+    uint32_t other;
+    int32_t step;
+};
+
+struct ct_stretch {
+    uint32_t first, period, count;
+    uint32_t ncut, whole_first, whole_count; // before it was cut
+    bool is_dropped;
+    struct ct_source *reach; // (3 x period)
+    bool *escapes;           // (period) read beyond its row, or by another part of it
+    bool *escapes_far;       // (period) read by another stretch, row by row
+    uint32_t *least_row;     // (period) the first one that others read
+    uint32_t *edge_of;       // (period) 1 + the first edge
+    struct ct_stretch_edge *edge;
+    size_t nedge, edge_cap;
+    struct ct_stretch_column *column;
+    size_t ncolumn, column_cap;
+    struct ct_stretch_stream stream[CT_ROLL_STREAMS];
+    int nstream;
+    int32_t before, behind;           // rows for edges
+    uint32_t keep_first, keep_behind; // see leave_ends
+
+    // rows side by side, see choose_lanes
+    bool is_side_by_side;
+    unsigned char *part; // (period) the loop that it is in; npart - 1: one row at a time
+    uint32_t npart, nlate;
+
+    // places
+    uint32_t origin;                  // place of row 0
+    uint32_t *offset;                 // (period) number of the result
+    uint32_t row_stride, slot_stride; // places between rows, between results
+    uint32_t nresult;
+    uint32_t strip; // rows, 0: all
+    bool *is_local; // (period) the strip alone has places for it
+    uint32_t local_origin, local_stride, nlocal;
+};
+
+const struct ct_instruction *ct_stretch_instruction(const struct ct_stretches *p,
+                                                    uint32_t place);
+/// Operand k of what is at a place. The first two of sums and products are taken in an order of their own: the store sorts
+/// them by age, so that a constant that something else has made before comes first in one row and second in another.
+uint32_t ct_stretch_operand(const struct ct_stretches *p, uint32_t place, uint32_t k);
+/// Operand 3 slot + k of a row.
+uint32_t ct_stretch_argument(const struct ct_stretches *p, const struct ct_stretch *r,
+                             uint32_t row, uint32_t operand);
+/// The stretch that makes v, with its row and instruction; NULL if none does.
+struct ct_stretch *ct_stretch_of(const struct ct_stretches *p, uint32_t v, int32_t *row,
+                                 uint32_t *slot);
+/// Places of all results that need some, and the loops.
+void ct_stretch_lay_out(struct ct_stretches *p, uint32_t lanes, struct ct_roll *out);
+
+#endif
