@@ -82,6 +82,7 @@ title() {
     R14_k1e4) echo "spring pendulum, 1e4 N/m, 10 s" ;;
     R14_k1e6) echo "spring pendulum, 1e6 N/m, 10 s" ;;
     R15_M1e-3) echo "light cart, 1 g, 10 s" ;;
+    H_light_cart) echo "light cart, 1 mg, absolute coordinates, 10 s" ;;
     R15_M1e-6) echo "light cart, 1 mg, 10 s" ;;
     R16) echo "six-axis arm, 2 s" ;;
     R04_2000s) echo "pendulum, 2000 s" ;;

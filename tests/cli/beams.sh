@@ -314,3 +314,15 @@ simulation: {duration: 10}
 E
   "$COTREE" check hang.yaml | grep '^beam'
 done
+echo '-- what coordinates are'
+for keys in 'stretch: quadratic, twist: quadratic' 'modes: 1' 'shapes: {v: x^2, u: [x]}'; do
+  cat >names.yaml <<E
+cotree: 1
+bodies:
+  rod: {type: beam, length: 1, elements: 2, E: 7e10, nu: 0.3, area: 1, mass_per_length: 1, Iz: 1e-9, Iy: 1e-9,
+    deformation: [bending-z, axial, torsion], $keys}
+joints:
+  w: {type: weld, from: ground, to: rod}
+E
+  "$COTREE" equations names.yaml | grep -E '^  rod\.(2\.|[a-z]*1 ).* of '
+done
