@@ -82,6 +82,7 @@ title() {
     R14_k1e4) echo "spring pendulum, 1e4 N/m, 10 s" ;;
     R14_k1e6) echo "spring pendulum, 1e6 N/m, 10 s" ;;
     R15_M1e-3) echo "light cart, 1 g, 10 s" ;;
+    H_light_cart) echo "light cart, 1 mg, absolute coordinates, 10 s" ;;
     R15_M1e-6) echo "light cart, 1 mg, 10 s" ;;
     R16) echo "six-axis arm, 2 s" ;;
     R04_2000s) echo "pendulum, 2000 s" ;;
@@ -266,13 +267,17 @@ section_lost() {
 
 # ---- work and precision ------------------------------------------------------------------------------------
 
-# cheapest TABLE ERROR: the cheapest setting that meets it, or "none"
+# cheapest TABLE ERROR [error]: the cheapest setting that meets it, or "none"; with its error in a column of its own
 cheapest() {
-    awk -F, -v wanted="$2" '
-        NR > 1 && $5 != "" && $5 <= wanted && (best == "" || $6 < best) { best = $6; what = $1 ", " $2; steps = $7; f = $8 }
+    awk -F, -v wanted="$2" -v has_error="${3:+1}" '
+        NR > 1 && $5 != "" && $5 <= wanted && (best == "" || $6 < best) {
+            best = $6; what = $1 ", " $2; error = $5; steps = $7; f = $8
+        }
         END {
-            if (best == "") print "none"
-            else printf "%.3g ms (%s: %d steps, %d evaluations)\n", 1e3 * best, what, steps, f
+            if (best == "") printf "none"
+            else printf "%.3g ms (%s: %d steps, %d evaluations)", 1e3 * best, what, steps, f
+            if (has_error) printf " | %s", best == "" ? "" : sprintf("%.1e", error)
+            print ""
         }' "$1"
 }
 
@@ -294,20 +299,38 @@ section_figures() {
         "$root/systems/hard/flyball_governor/model.yaml"
 }
 
-# Beside what other engines need, and a twentieth of that.
+# columns FILE.csv NAME...: t and the columns of these names, without quotes
+columns() {
+    table=$1
+    shift
+    awk -F, -v names="t $*" '
+        NR == 1 { n = split(names, name, " "); for (i = 1; i <= NF; i++) of[$i] = i }
+        { for (i = 1; i <= n; i++) printf "%s%s", (i > 1 ? "," : ""), $(of[name[i]]); print "" }' "$table"
+}
+
+# Beside what other engines need, and a twentieth of that: the error of the output point at the end of the run (of Andrews'
+# mechanism of the seven angles).
 section_aims() {
-    echo "| problem | error | ours | engine | its time | a twentieth |"
-    echo "| --- | --- | --- | --- | --- | --- |"
+    echo "| problem | error | ours | error at the end | engine | its time | a twentieth |"
+    echo "| --- | --- | --- | --- | --- | --- | --- |"
     before=
     while IFS=, read -r case wanted its engine; do
         what=$(title "$case")
         set --
         [ "$case" != R05_N40 ] || { set -- --until 10; what="forty four-bars, 10 s"; }
-        [ "$case" = "$before" ] ||
-            "$COTREE" accuracy "$reference/$case.yaml" --reference "$reference/$case.reference.csv" --samples 2 \
-                --method dopri5,dop853 -o "$work/aim.csv" --quiet "$@"
+        case $case in
+        R05*) point="B0_x B0_y" ;;
+        R01) point="beta theta gamma phi delta omega epsilon" ;;
+        *) point="P_x P_y P_z" ;;
+        esac
+        if [ "$case" != "$before" ]; then
+            # shellcheck disable=SC2086 # a list of names
+            columns "$reference/$case.reference.csv" $point >"$work/point.csv"
+            "$COTREE" accuracy "$reference/$case.yaml" --reference "$work/point.csv" --samples 2 \
+                --method dopri5,dop853,rk4,radau5 --per-decade 5 -o "$work/aim.csv" --quiet "$@"
+        fi
         before=$case
-        awk -v t="$its" -v line="| $what | $wanted | $(cheapest "$work/aim.csv" "$wanted") | $engine" '
+        awk -v t="$its" -v line="| $what | $wanted | $(cheapest "$work/aim.csv" "$wanted" error) | $engine" '
             BEGIN { printf "%s | %s ms | %g ms |\n", line, t, sprintf("%.2g", t / 20) }'
     done <<'END'
 R05_N1,1e-6,5.0,RBDL with fixed steps of Runge-Kutta 4

@@ -16,8 +16,9 @@
 static const double standard_error = 1e-6;
 // Six methods within about a minute; more where already the reference takes long.  [s]
 static const double share_of_method = 9, share_of_reference = 1;
-enum { REPEATS = 3, MOST_REPEATS = 15 }; // the latter of short ones
-static const double short_times = 0.05;  // of one setting together  [s]
+enum { REPEATS = 3, MOST_REPEATS = 101 }; // the latter of short ones
+static const double short_times = 0.05;   // of one setting together  [s]
+enum { MOST_PER_DECADE = 10 };            // tolerances have two digits
 // A reference should be better than the error that is asked about by this factor.
 static const double reference_margin = 0.1;
 // Steps of fixed length: as many halvings, from the spacing of samples but at least so many in the run.
@@ -28,11 +29,17 @@ static const double same_error = 0.01;
 
 // ---- ladders ---------------------------------------------------------------------------------------------
 
-static double median(const double *v, int n)
+static int compare_doubles(const void *a, const void *b)
 {
-    if (n < 3)
-        return n == 2 ? fmin(v[0], v[1]) : v[0];
-    return fmax(fmin(v[0], v[1]), fmin(fmax(v[0], v[1]), v[2]));
+    const double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+// Of n > 0 numbers, which are sorted; of an even number the lower one of both.
+static double median(double *v, int n)
+{
+    qsort(v, (size_t)n, sizeof *v, compare_doubles);
+    return v[(n - 1) / 2];
 }
 
 static bool compare_row(void *user, double t, const double *value, size_t n)
@@ -46,22 +53,22 @@ static bool compare_row(void *user, double t, const double *value, size_t n)
     return true;
 }
 
-// One setting, several times while the time lasts.
+// One setting, several times in place while the time lasts.
 static enum ct_ending measure(struct ct_accuracy *a, const struct ct_setting *s, double end)
 {
-    struct ct_precision_point p, again;
+    struct ct_precision_point p;
     double seconds[MOST_REPEATS], sum;
     int n = 1;
-    const enum ct_ending ending = ct_accuracy_run(a, s, end - ct_clock(), compare_row, &p);
-    if (ending == CT_RUN_REFUSED)
-        return ending;
+    const enum ct_ending ending = ct_accuracy_start(a, s, end - ct_clock(), compare_row, &p);
     if (ending == CT_RUN_DONE)
         p.error = a->worst;
     seconds[0] = sum = p.seconds;
     while (ending == CT_RUN_DONE && n < (sum < short_times ? MOST_REPEATS : REPEATS)
-           && ct_clock() + p.seconds < end
-           && ct_accuracy_run(a, s, INFINITY, compare_row, &again) == CT_RUN_DONE)
-        sum += seconds[n++] = again.seconds;
+           && ct_clock() + p.seconds < end && ct_accuracy_repeat(a, compare_row, &seconds[n]))
+        sum += seconds[n++];
+    ct_accuracy_end_run(a);
+    if (ending == CT_RUN_REFUSED)
+        return ending;
     p.seconds = round(median(seconds, n) * 1e9) / 1e9; // what the clock resolves
     CT_PUSH(a->own.model, a->point, a->npoint, a->point_cap, p);
     return ending;
@@ -88,21 +95,30 @@ static bool shows_mesh(const struct ct_accuracy *a, size_t start)
     return is_same;
 }
 
+// Two digits of 10^power: 2.2e-05, and 1e-05, not 1.0000000000000001e-05.
+static double tolerance_at(double power)
+{
+    char text[CT_PRECISION_NUMBER_SIZE];
+    snprintf(text, sizeof text, "%.1e", pow(10, power));
+    return strtod(text, NULL);
+}
+
 static bool climb_tolerances(struct ct_accuracy *a, const struct ct_method *m, double end)
 {
-    static const double power[]
-        = {1, 1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11};
+    const int loosest_of_fine = 2, n = a->o->per_decade > 0 ? a->o->per_decade : 1;
     int first, last;
     choose_powers(m, &first, &last);
+    if (a->o->per_decade > 0)
+        first = loosest_of_fine;
     struct ct_setting s = {.method = m->name, .tolerance = a->o->run.tolerance};
     enum ct_ending ending = CT_RUN_DONE;
     if (s.tolerance > 0)
         return measure(a, &s, end) != CT_RUN_REFUSED;
     const size_t start = a->npoint;
-    for (int k = first; k <= last && (ending == CT_RUN_DONE || ending == CT_RUN_FAILED)
-                        && !shows_mesh(a, start);
+    for (int k = first * n; k <= last * n && (ending == CT_RUN_DONE || ending == CT_RUN_FAILED)
+                            && !shows_mesh(a, start);
          k++) {
-        s.tolerance = power[k];
+        s.tolerance = tolerance_at(-(double)k / n);
         ending = measure(a, &s, end);
     }
     return ending != CT_RUN_REFUSED;
@@ -245,6 +261,19 @@ static bool study(struct ct_accuracy *a)
     return true;
 }
 
+static bool has_sense(struct ct_accuracy *a)
+{
+    const int n = a->o->per_decade;
+    if (!(a->wanted > 0 && isfinite(a->wanted)))
+        return ct_error(&a->own, (struct ct_mark){0}, CT_E_USAGE,
+                        "the wanted error is %g; it must be greater than 0", a->wanted);
+    if (n < 0 || n > MOST_PER_DECADE)
+        return ct_error(&a->own, (struct ct_mark){0}, CT_E_USAGE,
+                        "%d tolerances in a power of ten; at most %d can be tried", n,
+                        MOST_PER_DECADE);
+    return true;
+}
+
 struct create {
     struct ct_ctx *ctx;
     struct ct_accuracy *a;
@@ -260,11 +289,7 @@ static bool create(void *task)
         ct_progress_init(&a->progress, a->o->progress, "accuracy");
         ct_progress_update(&a->progress, 0);
     }
-    const bool ok
-        = (a->wanted > 0 && isfinite(a->wanted))
-            ? study(a)
-            : ct_error(&a->own, (struct ct_mark){0}, CT_E_USAGE,
-                       "the wanted error is %g; it must be greater than 0", a->wanted);
+    const bool ok = has_sense(a) && study(a);
     ct_progress_finish(&a->progress);
     ct_ctx_hand_over(c->ctx, &a->own);
     return ok;

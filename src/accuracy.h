@@ -57,7 +57,17 @@ bool ct_accuracy_start_run(struct ct_accuracy *a, const struct ct_setting *s);
 // Destroys a->sim.
 void ct_accuracy_end_run(struct ct_accuracy *a);
 
-// One run of at most `limit` seconds, each sample given to row; *p (out): what it cost, without an error.
+// One run of at most `limit` seconds, each sample given to row; *p (out): what it cost, without an error. a->sim stays.
+enum ct_ending ct_accuracy_start(struct ct_accuracy *a, const struct ct_setting *s,
+                                 double limit,
+                                 bool (*row)(void *, double, const double *, size_t),
+                                 struct ct_precision_point *p);
+
+// The same run again in place; *seconds (out). False if it fails.
+bool ct_accuracy_repeat(struct ct_accuracy *a,
+                        bool (*row)(void *, double, const double *, size_t), double *seconds);
+
+// The first with nothing left of it.
 enum ct_ending ct_accuracy_run(struct ct_accuracy *a, const struct ct_setting *s, double limit,
                                bool (*row)(void *, double, const double *, size_t),
                                struct ct_precision_point *p);

@@ -237,8 +237,9 @@ static size_t find_sample(const struct ct_accuracy *a, double t)
     return fabs(t - at) <= same_time * a->duration ? (size_t)k : a->nsample;
 }
 
+// largest (nresult, in and out): of each column, at the times of samples or not.
 static bool fill_reference(struct ct_accuracy *a, const struct ct_sheet *sheet, size_t time,
-                           const size_t *of)
+                           const size_t *of, double *largest)
 {
     const size_t n = a->nresult;
     size_t matched = 0;
@@ -247,13 +248,17 @@ static bool fill_reference(struct ct_accuracy *a, const struct ct_sheet *sheet, 
         if (!read_field(a, sheet, r * sheet->ncolumn + time, &t))
             return false;
         const size_t k = find_sample(a, t);
-        if (k == a->nsample)
-            continue;
-        matched++;
-        for (size_t i = 0; i < n; i++)
-            if (of[i] < sheet->ncolumn
-                && !read_field(a, sheet, r * sheet->ncolumn + of[i], &a->reference[k * n + i]))
+        matched += k < a->nsample;
+        for (size_t i = 0; i < n; i++) {
+            double v;
+            if (of[i] >= sheet->ncolumn)
+                continue;
+            if (!read_field(a, sheet, r * sheet->ncolumn + of[i], &v))
                 return false;
+            largest[i] = fmax(largest[i], fabs(v));
+            if (k < a->nsample)
+                a->reference[k * n + i] = v;
+        }
     }
     a->source = ct_arena_printf(a->own.model, "%s, at %zu of %zu samples", sheet->file, matched,
                                 a->nsample);
@@ -271,9 +276,12 @@ bool ct_accuracy_read_reference(struct ct_accuracy *a, const char *path)
     a->reference = CT_NEWN(a->own.model, double, a->nsample * a->nresult + 1);
     for (size_t i = 0; i < a->nsample * a->nresult; i++)
         a->reference[i] = NAN;
-    if (!fill_reference(a, &sheet, time, of))
+    double *largest = CT_NEWN(a->own.scratch, double, a->nresult + 1);
+    if (!fill_reference(a, &sheet, time, of, largest))
         return false;
     ct_accuracy_compare(a, a->reference, a->reference, a->scale);
+    for (size_t i = 0; i < a->nresult; i++) // columns that are rounding stay left out
+        a->scale[i] = a->scale[i] > 0 ? fmax(a->scale[i], largest[i]) : 0;
     a->uncertainty = NAN;
     return true;
 }

@@ -33,9 +33,10 @@ bool ct_accuracy_start_run(struct ct_accuracy *a, const struct ct_setting *s)
     return true;
 }
 
-enum ct_ending ct_accuracy_run(struct ct_accuracy *a, const struct ct_setting *s, double limit,
-                               bool (*row)(void *, double, const double *, size_t),
-                               struct ct_precision_point *p)
+enum ct_ending ct_accuracy_start(struct ct_accuracy *a, const struct ct_setting *s,
+                                 double limit,
+                                 bool (*row)(void *, double, const double *, size_t),
+                                 struct ct_precision_point *p)
 {
     *p = (struct ct_precision_point){.method = s->method,
                                      .elements = a->variant ? a->variant->elements : 0,
@@ -43,20 +44,36 @@ enum ct_ending ct_accuracy_run(struct ct_accuracy *a, const struct ct_setting *s
                                      .tolerance = s->step > 0 ? s->step : s->tolerance,
                                      .has_step = s->step > 0,
                                      .error = NAN};
-    enum ct_ending ending = CT_RUN_FAILED;
-    if (ct_accuracy_start_run(a, s)) {
-        a->nrow = 0;
-        a->worst = 0;
-        a->sim->deadline = ct_clock() + limit;
-        const struct ct_sim_results results = {.row = row, .user = a};
-        if (ct_sim_run(&a->said, a->sim, &results))
-            ending = a->sim->is_late ? CT_RUN_LATE : CT_RUN_DONE;
-        p->seconds = a->sim->integrate;
-        p->steps = a->sim->report.stats.steps;
-        p->evaluations = a->sim->report.stats.evaluations;
-    } else if (ct_ctx_fault(&a->said) == CT_FAULT_OPTION) {
-        ending = CT_RUN_REFUSED;
-    }
+    if (!ct_accuracy_start_run(a, s))
+        return ct_ctx_fault(&a->said) == CT_FAULT_OPTION ? CT_RUN_REFUSED : CT_RUN_FAILED;
+    a->nrow = 0;
+    a->worst = 0;
+    a->sim->deadline = ct_clock() + limit;
+    const struct ct_sim_results results = {.row = row, .user = a};
+    const bool ok = ct_sim_run(&a->said, a->sim, &results);
+    p->seconds = a->sim->integrate;
+    p->steps = a->sim->report.stats.steps;
+    p->evaluations = a->sim->report.stats.evaluations;
+    return !ok ? CT_RUN_FAILED : a->sim->is_late ? CT_RUN_LATE : CT_RUN_DONE;
+}
+
+bool ct_accuracy_repeat(struct ct_accuracy *a,
+                        bool (*row)(void *, double, const double *, size_t), double *seconds)
+{
+    const struct ct_sim_results results = {.row = row, .user = a};
+    a->nrow = 0;
+    a->sim->deadline = 0;
+    if (!ct_sim_run_again(&a->said, a->sim, &results))
+        return false;
+    *seconds = a->sim->integrate;
+    return true;
+}
+
+enum ct_ending ct_accuracy_run(struct ct_accuracy *a, const struct ct_setting *s, double limit,
+                               bool (*row)(void *, double, const double *, size_t),
+                               struct ct_precision_point *p)
+{
+    const enum ct_ending ending = ct_accuracy_start(a, s, limit, row, p);
     ct_accuracy_end_run(a);
     return ending;
 }

@@ -86,6 +86,11 @@ bool ct_sim_choose_solver(struct ct_sim *sim, const char *name);
 /// Is it solved as was asked, where the run begins? Systems without loops are solved in one way only. Errors: E003.
 bool ct_sim_has_solver(struct ct_sim *sim);
 
+/// After a run that was made: the same again from its start, nothing made anew; for timing. Not of one that is verified or
+/// followed.
+bool ct_sim_run_again(struct ct_ctx *ctx, struct ct_sim *sim,
+                      const struct ct_sim_results *results);
+
 /// Run work(task) with a guard: without memory false, and E001 in ctx.
 bool ct_enter(struct ct_ctx *ctx, bool (*work)(void *task), void *task);
 /// Two arenas for a context that a system or a run owns. Raises the guard.

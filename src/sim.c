@@ -219,6 +219,7 @@ bool ct_sim_resolve(struct ct_sim *sim, const struct ct_sim_options *o)
                  : o->until > 0   ? samples_until(m, o->until)
                                   : (size_t)m->samples,
         .rate_jumps = m->rate_jumps,
+        .wanted = sim->tolerance,
         .least_rtol = sim->least_rtol,
     };
     if (!choose_method(sim, o->method))
@@ -540,6 +541,29 @@ static bool run_and_report(void *task)
     struct work *w = task;
     const bool ok = run(w->sim);
     ct_ctx_hand_over(w->ctx, &w->sim->own);
+    return ok;
+}
+
+static bool run_again(void *task)
+{
+    struct work *w = task;
+    struct ct_sim *sim = w->sim;
+    sim->has_run = sim->is_done = sim->is_late = false;
+    sim->write = 0;
+    sim->nstep = 0;
+    if (ct_run_restart(sim->run, &sim->start))
+        return run_and_report(task);
+    ct_ctx_hand_over(w->ctx, &sim->own);
+    return false;
+}
+
+bool ct_sim_run_again(struct ct_ctx *ctx, struct ct_sim *sim,
+                      const struct ct_sim_results *results)
+{
+    struct work w = {ctx, sim};
+    sim->results = results;
+    const bool ok = ct_enter(ctx, run_again, &w);
+    sim->results = NULL;
     return ok;
 }
 

@@ -114,21 +114,6 @@ static bool formulate(struct ct_system *s, const struct ct_formulate_options *f,
     return ok;
 }
 
-// With `rate_jumps: continuous` the speeds that are kept are those of joints, relative to their frames: the unknowns of
-// trees through joints.
-static void keep_joint_speeds(struct ct_system *s, struct ct_formulate_options *motion)
-{
-    if (s->model.simulation.rate_jumps != CT_RATE_CONTINUOUS)
-        return;
-    if (motion->tree == CT_TREE_AUTO)
-        motion->tree = CT_TREE_JOINTS;
-    else if (motion->tree != CT_TREE_JOINTS)
-        ct_warning(
-            &s->own, s->model.simulation.mark, 0,
-            "'rate_jumps: continuous' keeps the unknown speeds of the trees that were asked "
-            "for, not those of the joints");
-}
-
 // Equations for beams that start in equilibrium.
 static bool formulate_settled(struct ct_system *s, const struct ct_system_options *o)
 {
@@ -172,7 +157,6 @@ static bool build(struct ct_system *s, const char *path, const struct ct_system_
     if (!choose_tree(&s->own, o->tree, &motion) // which branches, if any are given
         || !read_model(s, path, o))             // text -> component instances
         return false;
-    keep_joint_speeds(s, &motion);
     return formulate(s, &motion, &s->equations, &s->tree) // graph, trees, equations of motion
         && formulate(s, &start, &s->start_equations, &unused) // equations for assembling
         && (!ct_settle_wanted(&s->model) || formulate_settled(s, o)); // and for static shapes

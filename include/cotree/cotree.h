@@ -215,14 +215,15 @@ struct ct_accuracy_options {
     } * variant;
     size_t nvariant;
     const char *reference; /* CSV as simulate writes it; NULL: found by tight runs that agree */
-    FILE *progress;        /* a bar is shown there if it is a terminal */
+    int per_decade; /* tolerances in a power of ten, at most 10; 0: powers of ten, the others begin at 1e-2 */
+    FILE *progress; /* a bar is shown there if it is a terminal */
 };
 
 /**
  * Run a system with methods x tolerances and compare each run with a converged reference.
  *
  * The error of a run is the largest over outputs and samples of |difference to the reference| / largest
- * |reference output|. Runs are timed three times; methods get a share of about a minute each.
+ * |reference output|. Runs are timed three times in place, short ones up to 101 times; methods get a share of about a minute each.
  *
  * Errors   E003 for options; E134, E135 for the reference; E309 when none is found; those of runs
  * Owner    the caller, until ct_accuracy_destroy

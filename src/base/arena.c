@@ -112,18 +112,27 @@ struct ct_arena *ct_arena_create_under(struct ct_arena *owner)
     return a;
 }
 
+// Bytes before the next piece of this size. Longer ones start on a line of the caches: numbers of four lanes would lie across two
+// lines every other time, which takes a tenth more of a program in lanes.
+static size_t gap(const struct chunk *c, size_t size)
+{
+    const size_t line = 64, least = 256;
+    return size < least ? 0 : -((uintptr_t)c->data + c->used) & (line - 1);
+}
+
 void *ct_arena_alloc(struct ct_arena *a, size_t size)
 {
     if (size > SIZE_MAX / 2)
         ct_guard_raise();
     size = (size + 15) & ~(size_t)15;
     struct chunk *c = a->head;
-    if (!c || c->size - c->used < size) {
+    if (!c || c->size - c->used < size + gap(c, size)) {
+        const size_t most_gap = 64;
         size_t want = c ? 2 * (sizeof *c + c->size) : first_chunk;
         if (want > largest_chunk)
             want = largest_chunk;
-        if (want < size + sizeof *c)
-            want = size + sizeof *c;
+        if (want < size + most_gap + sizeof *c)
+            want = size + most_gap + sizeof *c;
         c = chunk_create(want);
         if (!c)
             ct_guard_raise();
@@ -131,6 +140,7 @@ void *ct_arena_alloc(struct ct_arena *a, size_t size)
         a->head = c;
     }
     a->total += size;
+    c->used += gap(c, size);
     return chunk_take(c, size);
 }
 

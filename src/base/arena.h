@@ -27,7 +27,7 @@ struct ct_arena *ct_arena_create_under(struct ct_arena *owner);
 /// library or the system allocates.
 void ct_arena_at_end(struct ct_arena *a, void (*end)(void *data), void *data);
 
-/// size bytes, zeroed. Cost: O(size).
+/// size bytes, zeroed, at a multiple of 16; longer ones at one of 64. Cost: O(size).
 void *ct_arena_alloc(struct ct_arena *a, size_t size);
 /// n elements of size bytes; an overflow of the product counts as out of memory.
 void *ct_arena_calloc(struct ct_arena *a, size_t n, size_t size);

@@ -97,6 +97,7 @@ static bool study(struct ct_ctx *ctx, const struct cli_args *args, struct beams 
         = load(ctx, args, 2 * b->most, b->n[1] ? b->entry[1][b->n[1] - 1] : NULL);
     const struct ct_accuracy_options options = {.run = cli_sim_options(args),
                                                 .error = args->error,
+                                                .per_decade = (int)args->per_decade,
                                                 .variant = varies ? b->variant : NULL,
                                                 .nvariant = b->nvariant,
                                                 .reference = args->reference,

@@ -24,7 +24,7 @@ struct cli_args {
         size_t n;
     } set, vary;
     double tolerance, step, until, error;
-    long samples, count, sample, threads, lanes;
+    long samples, count, sample, threads, lanes, per_decade;
     unsigned long long seed;
     bool hold_drivers, keep_all, resume, verify, quiet, help, version;
 };

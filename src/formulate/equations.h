@@ -191,7 +191,9 @@ struct ct_equations {
     ct_ex power; // d(work)/dt, in terms of u' and lam where drivers push; 0 when nothing works
     ct_ex kinetic, potential, strain; // strain: of beams
     ct_ex total;                      // energy less the work put in: constant
-    struct ct_residual *residual;     // NULL if not asked for
+    ct_ex
+        kept; // of `rate_jumps: continuous`: what a jump leaves as it is, as half a sum of squares of speeds; else 0
+    struct ct_residual *residual; // NULL if not asked for
     bool is_planar;
     int bare_beam,
         bare_joint; // body whose first section has no inertia, the joint it turns on; 0: none

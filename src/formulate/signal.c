@@ -567,6 +567,28 @@ static ct_ex beam_energies(struct ct_build *b, const struct ct_flexible *f)
     return s.twice_kinetic;
 }
 
+// Speeds of all joints, relative to their frames, and of beams in theirs: the same for any tree.
+static ct_ex kept_speeds(struct ct_build *b)
+{
+    // what beams keep does not depend on how many elements they have: where joints can close a loop, they do
+    const double share_of_beams = 1e6;
+    struct ct_exs *x = b->x;
+    const struct ct_equations *e = b->eqs;
+    ct_ex joints = CT_EX_ZERO, beams = CT_EX_ZERO;
+    for (size_t i = 0; i < b->model->njoint; i++) {
+        const struct ct_instance *self = &b->model->joint[i];
+        for (int k = 0; k < self->nfree && self->from >= 0 && b->edge_of_joint[i] >= 0; k++) {
+            const int first = b->edge[b->edge_of_joint[i]].first_coordinate;
+            const ct_ex u = ct_coordinate_speed(b, first + k);
+            joints = ct_ex_add(x, joints, ct_ex_mul(x, u, u));
+        }
+    }
+    for (size_t i = 0; i < e->nu; i++)
+        if (e->u[i].beam)
+            beams = ct_ex_add(x, beams, ct_ex_mul(x, e->u[i].symbol, e->u[i].symbol));
+    return ct_ex_scale(x, 0.5, ct_ex_add(x, joints, ct_ex_scale(x, share_of_beams, beams)));
+}
+
 void ct_energies_derive(struct ct_build *b)
 {
     struct ct_exs *x = b->x;
@@ -590,6 +612,8 @@ void ct_energies_derive(struct ct_build *b)
         e->potential = ct_ex_sub(x, e->potential, weight);
     }
     e->kinetic = ct_ex_scale(x, 0.5, kinetic);
+    e->kept
+        = b->model->simulation.rate_jumps == CT_RATE_CONTINUOUS ? kept_speeds(b) : CT_EX_ZERO;
     for (size_t i = 0; i < b->ncoordinate; i++) {
         const struct ct_coordinate *c = &b->coordinate[i];
         if (c->driver < 0)

@@ -48,33 +48,54 @@ static double profile(const struct line *s, ct_ex g, int e, double xi)
     return number(s, g);
 }
 
-// Mass of a body that a weld holds to a point of the beam, and where; 0 for other joints.
-static double welded(const struct ct_build *b, const struct ct_flexible *f,
-                     const struct ct_instance *joint, double *x)
+// A frame of the beam beyond its base. The section at the start of one on its chord turns against the base.
+static bool is_beyond(const struct ct_build *b, const struct ct_flexible *f, int frame)
 {
-    *x = 0;
+    const int own = f->beam->is_chord ? -1 : b->model->body[f->body].frame;
+    return frame >= 0 && frame != own && b->model->frame[frame].body == f->body;
+}
+
+static bool is_weld(const struct ct_instance *joint)
+{
+    return joint->from >= 0 && !strcmp(joint->cls->name, "weld");
+}
+
+// By body: where along the beam it is held by welds, beyond the base, directly or by other bodies; NaN: it is not.
+static double *find_riders(const struct ct_build *b, const struct ct_flexible *f)
+{
     const struct ct_model *m = b->model;
-    if (joint->from < 0 || strcmp(joint->cls->name, "weld") != 0)
-        return 0;
-    const struct ct_frame *ends[2] = {&m->frame[joint->from], &m->frame[joint->to]};
-    for (int k = 0; k < 2; k++)
-        if (ends[k]->body == f->body && !m->body[ends[1 - k]->body].beam) {
-            *x = ct_ex_value(b->x, ends[k]->at.e[0], b->value);
-            return ct_ex_value(b->x, m->body[ends[1 - k]->body].mass, b->value);
+    double *place = CT_NEWN(b->ctx->scratch, double, m->nbody);
+    for (size_t i = 0; i < m->nbody; i++)
+        place[i] = NAN;
+    for (bool grew = true; grew;) {
+        grew = false;
+        for (size_t i = 0; i < 2 * m->njoint; i++) {
+            const struct ct_instance *j = &m->joint[i / 2];
+            const int at = i % 2 ? j->from : j->to, to = i % 2 ? j->to : j->from;
+            if (!is_weld(j))
+                continue;
+            const int body = m->frame[to].body;
+            const double x = is_beyond(b, f, at)
+                               ? ct_ex_value(b->x, m->frame[at].at.e[0], b->value)
+                               : place[m->frame[at].body];
+            if (isnan(x) || body == 0 || m->body[body].beam || !isnan(place[body]))
+                continue;
+            place[body] = x;
+            grew = true;
         }
-    return 0;
+    }
+    return place;
 }
 
 static void list_lumps(struct line *s)
 {
     const struct ct_model *m = s->b->model;
-    s->lump = CT_NEWN(s->b->ctx->scratch, struct lump, m->njoint + 1);
-    for (size_t j = 0; j < m->njoint; j++) {
-        struct lump at;
-        at.mass = welded(s->b, s->f, &m->joint[j], &at.x);
-        if (at.mass > 0)
-            s->lump[s->nlump++] = at;
-    }
+    const double *place = find_riders(s->b, s->f);
+    s->lump = CT_NEWN(s->b->ctx->scratch, struct lump, m->nbody);
+    for (size_t i = 1; i < m->nbody; i++)
+        if (!isnan(place[i]))
+            s->lump[s->nlump++] = (struct lump){
+                .x = place[i], .mass = ct_ex_value(s->b->x, m->body[i].mass, s->b->value)};
 }
 
 // P (2, out) = int m x and int m over element e from xi on.
@@ -319,25 +340,26 @@ bool ct_validity_derive(struct ct_build *b, const struct ct_flexible *f,
 
 // ---- choice -----------------------------------------------------------------------------------------------------
 
-// Does anything but a welded body hang on the beam beyond its base, or push it there?
+// Does anything but welded bodies hang on the beam beyond its base, or push it or them there?
 static bool carries(const struct ct_build *b, const struct ct_flexible *f)
 {
     const struct ct_model *m = b->model;
-    const int own = f->beam->is_chord ? -1 : m->body[f->body].frame;
-    for (size_t i = 0; i < m->njoint; i++) {
-        const struct ct_instance *j = &m->joint[i];
-        double x;
-        const bool touches = j->from >= 0
-                          && ((m->frame[j->from].body == f->body && j->from != own)
-                              || (m->frame[j->to].body == f->body && j->to != own));
-        if (touches && !(welded(b, f, j, &x) > 0))
-            return true;
-    }
-    for (size_t i = 0; i < m->nforce; i++) {
-        const struct ct_instance *j = &m->force[i];
-        if ((j->from >= 0 && m->frame[j->from].body == f->body && j->from != own)
-            || (m->frame[j->to].body == f->body && j->to != own))
-            return true;
+    const double *place = find_riders(b, f);
+    for (size_t i = 0; i < m->njoint + m->nforce; i++) {
+        const bool is_joint = i < m->njoint;
+        const struct ct_instance *j = is_joint ? &m->joint[i] : &m->force[i - m->njoint];
+        const int ends[2] = {j->from, j->to};
+        for (int k = 0; k < 2; k++) {
+            if (ends[k] < 0
+                || !(is_beyond(b, f, ends[k]) || !isnan(place[m->frame[ends[k]].body])))
+                continue;
+            const int other = ends[1 - k];
+            const bool holds_rider
+                = is_joint && is_weld(j)
+               && (is_beyond(b, f, other) || !isnan(place[m->frame[other].body]));
+            if (!holds_rider)
+                return true;
+        }
     }
     return false;
 }

@@ -141,7 +141,7 @@ static enum ct_eval begin(struct state *s, const struct ct_problem *p, double t,
     enum ct_eval e = CT_EVAL_OK;
     if (s->is_fresh && !c->starts_anew && !s->has_jerk)
         e = find_jerk(s, p, t, h, y, dy, y1, dy1, stats);
-    const bool has_new_rows = ct_iteration_begin(s->it, tolerance, y);
+    const bool has_new_rows = ct_iteration_begin(s->it, tolerance, h, y);
     if (e == CT_EVAL_OK && (s->is_fresh || has_new_rows))
         e = s->dae->start(s->dae->user, t, y, s->du, s->start.lam);
     if (e != CT_EVAL_OK)
@@ -209,7 +209,8 @@ static enum ct_eval correct(struct state *s, double t1, const double *y,
     ct_iteration_move(dae, y, s->d, s->q);
     // in the index-3 form speeds have rounding over h in them: places alone decide
     const double *du = s->c->is_stabilised ? s->du : NULL;
-    *verdict = ct_iteration_judge(s->it, ct_iteration_norm(s->it, s->dd, du, dae->nu, 1));
+    const double size = ct_iteration_norm(s->it, s->dd, du, dae->nu, 1);
+    *verdict = ct_iteration_judge(s->it, size, s->dd, 1);
     return CT_EVAL_OK;
 }
 

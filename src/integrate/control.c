@@ -92,32 +92,41 @@ static double safety_of(const struct ct_method *m)
     return m->is_implicit ? implicit_safety : safety;
 }
 
-// What the error says about the next step, h times this, without limits: 1 / (error^alpha error_before^-beta).
-static double pi_factor(const struct ct_control *c, const struct ct_method *m, double log_error)
+// What a method says of its steps, as logarithms.
+static void learn(struct ct_control *c, const struct ct_method *m)
 {
     const double power = 1.0 / (m->error_order + 1);
-    const double beta = 0.2 * power, alpha = power - 0.75 * beta;
-    return safety_of(m) * near_exp2(beta * c->log_before - alpha * log_error);
+    c->method = m;
+    c->beta = 0.2 * power;
+    c->alpha = power - 0.75 * c->beta;
+    c->log_safety = log2(safety_of(m));
+    for (int i = 0; i < 2; i++)
+        c->log_steady[i] = m->steady[i] > 0 ? log2(m->steady[i]) : -INFINITY;
 }
 
 void ct_control_accept(struct ct_control *c, const struct ct_method *m, double h, double error)
 {
+    if (c->method != m)
+        learn(c, m);
     c->is_starting = c->is_starting && error < remembered_error;
-    const bool has_own = m->most_growth > 0 && !c->is_starting;
-    const double growth = has_own ? m->most_growth : most_growth;
     const double log_error = near_log2(error);
-    const double factor
-        = ct_smaller(ct_larger(pi_factor(c, m, log_error), most_shrink), growth);
+    // safety error_before^beta / error^alpha: what the error says about the next step, in parts of this one, without limits
+    const double power = c->log_safety + c->beta * c->log_before - c->alpha * log_error;
     c->log_before = ct_larger(log_error, c->log_least);
-    if (factor > m->steady[0] && factor < m->steady[1]) {
+    if (power > c->log_steady[0] && power < c->log_steady[1]) {
         // nothing is written where nothing changes: the next step need not wait for the error of this one
         if (c->was_refused || h > c->h)
             c->h = h;
-    } else if (c->was_refused) { // not at once back to what has just failed
-        c->h = ct_smaller(factor, 1) * h;
-    } else { // a step that is not c->h was cut for a stop, not for its error
-        c->h = h < c->h ? ct_larger(factor * h, c->h) : factor * h;
+        c->was_refused = false;
+        return;
     }
+    const bool has_own = m->most_growth > 0 && !c->is_starting;
+    const double growth = has_own ? m->most_growth : most_growth;
+    const double factor = ct_smaller(ct_larger(near_exp2(power), most_shrink), growth);
+    if (c->was_refused) // not at once back to what has just failed
+        c->h = ct_smaller(factor, 1) * h;
+    else // a step that is not c->h was cut for a stop, not for its error
+        c->h = h < c->h ? ct_larger(factor * h, c->h) : factor * h;
     c->was_refused = false;
 }
 

@@ -11,7 +11,11 @@ struct ct_control {
     double h;          // size the next step should have
     double log_before; // log2 of the error of the last accepted step, at least log_least
     double log_least;
-    bool was_refused; // the step before this try was
+    // of the method that the last step was made with, found when it is another one
+    const struct ct_method *method;
+    double alpha, beta;               // powers of the errors of this step and the one before
+    double log_safety, log_steady[2]; // log2
+    bool was_refused;                 // the step before this try was
     bool is_starting; // errors since the start, or an event, say that steps are much too short
 };
 

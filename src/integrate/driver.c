@@ -113,7 +113,7 @@ static void allocate(struct run *r)
     for (size_t i = 0; i < COUNT(vectors); i++)
         *vectors[i] = CT_NEWN(a, double, r->p->ny);
     r->work = r->method->create(a, r->method, r->p);
-    if (r->p->singular_in && r->o->step == 0 && !r->method->is_implicit)
+    if (r->p->singular_in && r->o->step == 0)
         r->crossing_work = ct_crossing.create(a, &ct_crossing, r->p);
     if (r->crossing_work)
         r->striding = ct_striding_create(a, r->method, r->p);
@@ -343,13 +343,13 @@ static bool has_moved(struct run *r)
     return !(ct_stepper_norm(p, &r->tolerance, r->y, r->y1, r->point) <= unnoticed);
 }
 
-// end, dend (out) = y1, dy1 on the constraints.
-static enum ct_eval project_end(struct run *r, double t1)
+// end, dend (out) = y1, dy1 on the constraints, which implicit methods meet by themselves.
+static enum ct_eval project_end(struct run *r, const struct ct_method *method, double t1)
 {
     const struct ct_problem *p = r->p;
     ct_stepper_copy(r->end, r->y1, p->ny);
     ct_stepper_copy(r->dend, r->dy1, p->ny);
-    if (!p->project || r->method->is_implicit)
+    if (!p->project || method->is_implicit)
         return CT_EVAL_OK;
     const enum ct_eval e = p->project(p->user, t1, r->end);
     if (e != CT_EVAL_OK || !has_moved(r))
@@ -415,7 +415,7 @@ static enum ct_eval attempt(struct run *r, struct stride *s)
     if (error > 1)
         return CT_EVAL_RETRY;
     const bool is_cut = r->t + s->h > s->t1 && s->method == &ct_crossing;
-    e = is_cut ? cut(r, s) : project_end(r, s->t1);
+    e = is_cut ? cut(r, s) : project_end(r, s->method, s->t1);
     r->is_open = e == CT_EVAL_RETRY;
     return e;
 }
@@ -641,7 +641,10 @@ static void commit(struct run *r, const struct stride *s)
     r->dend = dy;
     r->t = s->t1;
     r->stats->steps++;
-    if (r->method->accept)
+    // a crossing tells an implicit method nothing about the steps to come
+    if (s->method != r->method && r->method->is_implicit)
+        r->method->restart(r->work);
+    else if (r->method->accept)
         r->method->accept(r->work);
 }
 

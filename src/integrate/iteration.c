@@ -17,6 +17,14 @@ static const struct ct_tolerance finest = {1e-12, 1e-12};
 static const double kappa_finest = 0.1, rounding_finest = 100;
 // The first corrections come from a guess and may grow; not so much, though.
 static const double hopeless = 100;
+// Places that change by less than this many roundings of the largest of them cannot be found better, however much their
+// speeds still change, which have the same over the step.
+static const double place_rounding = 8;
+// With a tolerance a speed need not be known better than what moves a place by so many roundings in the step: where forces
+// are very stiff, shorter steps would only show more of it.
+static const double moved_roundings = 4;
+// Corrections that are to go on after convergence do until they are this much smaller.
+static const double further = 1e-6;
 // In the index-3 form places alone are judged, and speeds follow them divided by the step.
 static const double kappa_index3 = 0.01;
 enum { MOST = 10, MOST_FINEST = 30 };
@@ -31,6 +39,7 @@ struct ct_iteration *ct_iteration_create(struct ct_arena *a, const struct ct_pro
     it->groups = p->groups;
     it->is_stabilised = is_stabilised;
     it->nu = nu;
+    it->per_speed = nu ? 1.0 / nu : 0;
     it->version = -1;
     it->tail = 1;
     double **const square[] = {&it->M, &it->C, &it->K};
@@ -60,30 +69,54 @@ static inline double size_of(const struct ct_groups *g, int i, const double *y)
     return g && g->of[i] >= 0 ? g->size[g->of[i]] : fabs(y[i]);
 }
 
-static void weigh(struct ct_iteration *it, double rtol, double atol, const double *y)
+// What places and speeds are measured against; speeds need not be known better than least_speed.
+static void weigh(struct ct_iteration *it, double rtol, double atol, double least_speed,
+                  const double *y)
 {
     const struct ct_dae *dae = it->dae;
     ct_stepper_group(it->groups, dae->nq + dae->nu, y, y);
     for (int k = 0; k < it->nu; k++) {
         const int i = dae->q_of[k];
+        const double size = size_of(it->groups, dae->nq + k, y);
         it->share[k] = 1 / (rtol * (i < 0 ? 1 : size_of(it->groups, i, y)) + atol);
-        it->share[it->nu + k] = 1 / (rtol * size_of(it->groups, dae->nq + k, y) + atol);
+        it->share[it->nu + k] = 1 / ct_larger(rtol * size + atol, least_speed);
     }
 }
 
-bool ct_iteration_begin(struct ct_iteration *it, const struct ct_tolerance *tolerance,
+// The same where coordinate k moves with speed k and each counts for itself.
+static inline void weigh_plain(struct ct_iteration *it, double rtol, double atol,
+                               double least_speed, const double *y)
+{
+    const double *u = y + it->dae->nq;
+    for (int k = 0; k < it->nu; k++) {
+        it->share[k] = 1 / (rtol * fabs(y[k]) + atol);
+        it->share[it->nu + k] = 1 / ct_larger(rtol * fabs(u[k]) + atol, least_speed);
+    }
+}
+
+static inline double largest_place(const struct ct_iteration *it, const double *y)
+{
+    const struct ct_dae *dae = it->dae;
+    double largest = 0;
+    for (int k = 0; k < it->nu; k++) {
+        const int i = dae->is_plain ? k : dae->q_of[k];
+        largest = ct_larger(largest, i < 0 ? 1 : fabs(y[i]));
+    }
+    return largest;
+}
+
+bool ct_iteration_begin(struct ct_iteration *it, const struct ct_tolerance *tolerance, double h,
                         const double *y)
 {
     const struct ct_dae *dae = it->dae;
     const struct ct_tolerance *tol = tolerance ? tolerance : &finest;
-    const double rtol = tol->rtol, atol = tol->atol, *u = y + dae->nq;
+    const double rounding = DBL_EPSILON * largest_place(it, y);
+    const double least_speed = tolerance ? moved_roundings * rounding / h : 0;
+    it->least = place_rounding * rounding;
     if (dae->is_plain && !it->groups)
-        for (int k = 0; k < it->nu; k++) {
-            it->share[k] = 1 / (rtol * fabs(y[k]) + atol);
-            it->share[it->nu + k] = 1 / (rtol * fabs(u[k]) + atol);
-        }
+        weigh_plain(it, tol->rtol, tol->atol, least_speed, y);
     else
-        weigh(it, rtol, atol, y);
+        weigh(it, tol->rtol, tol->atol, least_speed, y);
     if (it->kappa_for != tol->rtol + tol->atol) {
         it->kappa_for = tol->rtol + tol->atol;
         it->kappa = tolerance ? ct_smaller(kappa_most, sqrt(it->kappa_for)) : kappa_finest;
@@ -349,13 +382,28 @@ void ct_iteration_start(struct ct_iteration *it)
     it->tail = it->is_finest ? 1 : sqrt(tail * sqrt(tail));
 }
 
-enum ct_verdict ct_iteration_judge(struct ct_iteration *it, double size)
+void ct_iteration_go_on(struct ct_iteration *it)
+{
+    it->count = 1; // the last correction is known, its rate is not wanted
+    it->kappa *= further;
+    it->kappa_for = NAN; // in this step only
+}
+
+static bool is_within(const double *d, int n, double most)
+{
+    for (int i = 0; i < n; i++)
+        if (!(fabs(d[i]) <= most))
+            return false;
+    return true;
+}
+
+enum ct_verdict ct_iteration_judge(struct ct_iteration *it, double size, const double *d, int k)
 {
     if (!isfinite(size))
         return CT_DIVERGED;
     if (it->count++ > 0) {
         const double rate = size / it->size;
-        if (rate >= 1 && size <= it->rounding)
+        if (rate >= 1 && (size <= it->rounding || is_within(d, k * it->nu, it->least)))
             return CT_CONVERGED;
         it->rate = it->count > 2 ? sqrt(rate * it->rate) : rate; // two in turn are often uneven
         if (rate >= hopeless || (it->rate >= 1 && it->count > 3))

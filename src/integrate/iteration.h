@@ -42,13 +42,15 @@ struct ct_iteration {
     double *w; // speeds of the derivatives (nu), for N; NULL: the method knows no N
     double *b; // (n)
     double _Complex *bc;
-    double *share; // one over what changes of places and speeds are measured against  (2 nu)
-    double *off;   // an error of the states  (ny)
+    double per_speed; // 1/nu; 0: there are none
+    double *share;    // one over what changes of places and speeds are measured against  (2 nu)
+    double *off;      // an error of the states  (ny)
     // the run of corrections
     int count;
     double kappa, rounding; // a correction below: converged; below: not to be bettered
     double kappa_for;       // the tolerance that it belongs to
     bool is_finest;         // there is no tolerance
+    double least;           // nor where places change by less  [m, rad]
     double size, rate,
         tail; // of the last correction; over the one before; all that follow it, over it
     int most;
@@ -58,9 +60,9 @@ struct ct_iteration {
 struct ct_iteration *ct_iteration_create(struct ct_arena *a, const struct ct_problem *p,
                                          bool is_stabilised, bool is_complex);
 
-/// At the begin of a step: which rows count, what is small. True if the rows are others than before, so that
+/// At the begin of a step h: which rows count, what is small. True if the rows are others than before, so that
 /// multipliers must be found anew. tolerance == NULL: as small as rounding allows.
-bool ct_iteration_begin(struct ct_iteration *it, const struct ct_tolerance *tolerance,
+bool ct_iteration_begin(struct ct_iteration *it, const struct ct_tolerance *tolerance, double h,
                         const double *y);
 
 /// Are the derivatives too old? They are kept while a correction is less than a tenth of the one before.
@@ -117,7 +119,7 @@ static inline double ct_iteration_norm(const struct ct_iteration *it, const doub
         sum += ct_iteration_square(d + s * nu, it->share, nu);
     for (int s = 0; s < k && u; s++)
         sum += ct_iteration_square(u + s * nu, it->share + nu, nu);
-    return nu ? sqrt(sum / ((u ? 2 : 1) * k * nu)) : 0;
+    return sqrt(sum * (it->per_speed / ((u ? 2 : 1) * k)));
 }
 
 /// The error of a step that ends at y1, time t1: that of the states, `states`, or what the errors d, u (nu) of places and
@@ -128,8 +130,11 @@ double ct_iteration_error(struct ct_iteration *it, const struct ct_problem *p,
 
 /// Before the first correction.
 void ct_iteration_start(struct ct_iteration *it);
-/// After a correction of this size.
-enum ct_verdict ct_iteration_judge(struct ct_iteration *it, double size);
+/// Once converged: corrections are to go on until they are much smaller, or of the size of rounding.
+void ct_iteration_go_on(struct ct_iteration *it);
+/// After a correction of this size, which moved places by d (nu x k).
+enum ct_verdict ct_iteration_judge(struct ct_iteration *it, double size, const double *d,
+                                   int k);
 /// After divergence: true if newer derivatives may help.
 bool ct_iteration_can_renew(struct ct_iteration *it);
 

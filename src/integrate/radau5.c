@@ -23,6 +23,12 @@ enum { STAGES = 3 };
 // not see it, over 1e5 radians, less than ten times that tolerance is lost.  (8.7)
 static const double near_zero = 0.05;
 
+// Filtered again, the error of a vibration of h omega radians in a step is less by 1/(1 + (h omega/GAMMA)^2): with this part
+// left it turns five times and more in each.
+static const double unfollowed = 0.01;
+// With derivatives from the end of the step an estimate must be this much smaller, if the first is to be one of directions only.
+static const double turned = 0.03;
+
 #define SQRT3 1.7320508075688772935
 #define SQRT6 2.4494897427831780982
 #define CBRT3 1.4422495703074083823
@@ -88,6 +94,7 @@ struct state {
     double *d;                   // a motion, or change of speed  (nu)
     double *gain, *defect;       // of quadratures: over h; error over h / GAMMA  (ny)
     double *power, *power1;      // their rates at both ends  (ny)
+    double largest;              // acceleration at the end of steps so far
 };
 
 static void create_stages(struct ct_arena *a, struct stages *s, const struct ct_dae *dae)
@@ -349,7 +356,7 @@ static enum ct_eval correct(struct state *s, double t, const double *y,
     const double size = m || nu > 2 ? change_stages(s, nu, m)
                       : nu == 1     ? change_stages(s, 1, 0)
                                     : change_stages(s, 2, 0);
-    *verdict = ct_iteration_judge(s->it, size);
+    *verdict = ct_iteration_judge(s->it, size, s->change.d, STAGES);
     return CT_EVAL_OK;
 }
 
@@ -388,6 +395,18 @@ static enum ct_eval iterate(struct state *s, double t, double h, const double *y
             return e;
     } while (ct_iteration_can_renew(s->it));
     return CT_EVAL_RETRY;
+}
+
+// Further corrections after convergence, as far as they lead.
+static enum ct_eval iterate_on(struct state *s, double t, const double *y,
+                               struct ct_integrate_stats *stats)
+{
+    enum ct_verdict verdict = CT_GO_ON;
+    enum ct_eval e = CT_EVAL_OK;
+    ct_iteration_go_on(s->it);
+    while (e == CT_EVAL_OK && verdict == CT_GO_ON)
+        e = correct(s, t, y, &verdict, stats);
+    return e == CT_EVAL_OK && verdict == CT_DIVERGED ? CT_EVAL_RETRY : e;
 }
 
 // ---- a step -----------------------------------------------------------------------------------------
@@ -513,6 +532,100 @@ static enum ct_eval find_multipliers(struct state *s, double t, const double *y,
     return CT_EVAL_OK;
 }
 
+// The error of places and speeds at the end of the step, once more, by derivatives from there. The first estimate knows
+// stiff forces as they are directed at the second stage: errors along what has turned since become forces.
+static enum ct_eval estimate_at_end(struct state *s, double t1, const double *y,
+                                    const double *dy, const double *y1, const double *dy1,
+                                    struct ct_integrate_stats *stats)
+{
+    struct ct_iteration *it = s->it;
+    const int nq = s->dae->nq;
+    const double c = GAMMA / s->now.h;
+    it->has_tangent = false;
+    const enum ct_eval e = ct_iteration_refresh(it, t1, y1, y1 + nq, dy1 + nq,
+                                                s->now.lam + (STAGES - 1) * it->m, stats);
+    if (e != CT_EVAL_OK)
+        return e;
+    if (!ct_iteration_factor(it, c, c * c, 0, stats))
+        return CT_EVAL_RETRY;
+    filter(s, y + nq, dy + nq);
+    return CT_EVAL_OK;
+}
+
+// The error filtered by the same factors again, which leaves of it what is not stiff.
+static void filter_again(struct state *s)
+{
+    const struct ct_iteration *it = s->it;
+    const int nu = it->nu, m = it->m;
+    const double c = it->c, *d = s->change.d, *u = s->change.u;
+    for (int k = 0; k < nu; k++) {
+        s->F[k] = u[k] - c * d[k];
+        s->r[k] = 0;
+    }
+    for (int j = 0; j < nu; j++)
+        for (int k = 0; k < nu; k++)
+            s->r[k] -= c * it->M[k + nu * j] * u[j];
+    for (int i = 0; i < m; i++)
+        s->phi[i] = s->v[i] = 0;
+    solve_real(s, nu, m);
+}
+
+// Are forces at the end of the step as they were in the iteration, to the tolerance? Where stiff ones turn within the step,
+// corrections that are small as motions leave large errors of forces, which outputs may consist of.
+static bool is_balanced(struct state *s, double rtol, const double *dy1)
+{
+    const int nq = s->dae->nq, nu = s->dae->nu, last = STAGES - 1;
+    double off = 0, size = 0;
+    weigh(s->rate, s->slope[last], s->now.u, nu);
+    for (int k = 0; k < nu; k++) {
+        off = ct_larger(off, fabs(dy1[nq + k] - s->rate[k]));
+        size = ct_larger(size, fabs(s->rate[k]));
+    }
+    if (!(off <= rtol * ct_larger(s->largest, size)))
+        return false;
+    s->largest = ct_larger(s->largest, size);
+    return true;
+}
+
+// y1 and dy1 from the stages, and the error of the states, where a tolerance is given.
+static enum ct_eval conclude(struct state *s, const struct ct_problem *p, double t, double h,
+                             const double *y, const double *dy,
+                             const struct ct_tolerance *eased, double *y1, double *dy1,
+                             double *err, struct ct_integrate_stats *stats)
+{
+    enum ct_eval e = eased ? estimate(s, p, t, y, dy, y1, dy1, err, stats) : CT_EVAL_OK;
+    if (e == CT_EVAL_OK)
+        e = finish(s, p, t, h, y, dy, y1, dy1, stats);
+    return e;
+}
+
+// That of outputs and quadratures, if it is more. Of what is much faster than steps can follow, an error of outputs does not
+// count: it is damped, and where outputs are forces of very stiff springs the rest is beyond the digits of places.
+static enum ct_eval look_at_outputs(struct state *s, const struct ct_problem *p, double t1,
+                                    const double *y, const double *dy,
+                                    const struct ct_tolerance *eased, double *y1, double *dy1,
+                                    double *err, struct ct_integrate_stats *stats)
+{
+    const struct ct_tolerance outputs = {eased->rtol, near_zero * eased->atol};
+    const struct stages *e = &s->change;
+    const double states = *err;
+    const int first = s->dae->nq + s->dae->nu;
+    *err = ct_iteration_error(s->it, p, &outputs, t1, y1, e->d, e->u, states);
+    if (states <= 1 && *err > 1) {
+        const enum ct_eval eval = estimate_at_end(s, t1, y, dy, y1, dy1, stats);
+        if (eval != CT_EVAL_OK)
+            return eval;
+        const double all = ct_iteration_error(s->it, p, &outputs, t1, y1, e->d, e->u, states);
+        filter_again(s);
+        const double slow = ct_iteration_error(s->it, p, &outputs, t1, y1, e->d, e->u, states);
+        const double better = slow < unfollowed * all ? slow : all;
+        *err = better < turned * *err ? better : *err;
+        s->it->c = s->it->e = 0; // the complex factors are not there
+    }
+    *err = ct_larger(*err, ct_stepper_largest(p, eased, first, y, y1, s->defect));
+    return CT_EVAL_OK;
+}
+
 static enum ct_eval step(const struct ct_problem *p, double t, double h, const double *y,
                          const double *dy, const struct ct_tolerance *tolerance, double *y1,
                          double *dy1, double *err, void *work, struct ct_integrate_stats *stats)
@@ -520,23 +633,23 @@ static enum ct_eval step(const struct ct_problem *p, double t, double h, const d
     struct state *s = work;
     const struct ct_tolerance *tol = tolerance ? eased(s, tolerance) : NULL;
     const int first = s->dae->nq + s->dae->nu; // of quadratures
-    const bool has_new_rows = ct_iteration_begin(s->it, tol, y);
+    const bool has_new_rows = ct_iteration_begin(s->it, tol, h, y);
     enum ct_eval e = find_multipliers(s, t, y, has_new_rows);
     if (e == CT_EVAL_OK)
         e = iterate(s, t, h, y, dy, stats);
-    if (e == CT_EVAL_OK && tolerance)
-        e = estimate(s, p, t, y, dy, y1, dy1, err, stats);
     if (e == CT_EVAL_OK)
-        e = finish(s, p, t, h, y, dy, y1, dy1, stats);
+        e = conclude(s, p, t, h, y, dy, tol, y1, dy1, err, stats);
+    if (e == CT_EVAL_OK && tol && p->output_error
+        && !is_balanced(s, sqrt(tolerance->rtol), dy1)) {
+        e = iterate_on(s, t, y, stats);
+        if (e == CT_EVAL_OK)
+            e = conclude(s, p, t, h, y, dy, tol, y1, dy1, err, stats);
+    }
+    if (e == CT_EVAL_OK && tol)
+        e = look_at_outputs(s, p, t + h, y, dy, tol, y1, dy1, err, stats);
     s->was_tried = true;
     if (e != CT_EVAL_OK)
         return e;
-    if (tolerance) {
-        const struct ct_tolerance outputs = {tol->rtol, near_zero * tol->atol};
-        *err
-            = ct_iteration_error(s->it, p, &outputs, t + h, y1, s->change.d, s->change.u, *err);
-        *err = ct_larger(*err, ct_stepper_largest(p, tol, first, y, y1, s->defect));
-    }
     ct_stepper_copy(s->power + first, dy + first, p->ny - first);
     ct_stepper_copy(s->power1 + first, dy1 + first, p->ny - first);
     return CT_EVAL_OK;

@@ -4,14 +4,6 @@
 #include <math.h>
 #include <string.h>
 
-bool ct_stepper_finite(const double *x, int n)
-{
-    for (int i = 0; i < n; i++)
-        if (!isfinite(x[i]))
-            return false;
-    return true;
-}
-
 enum ct_eval ct_stepper_rhs(const struct ct_problem *p, double t, const double *y, double *dy,
                             struct ct_integrate_stats *stats)
 {
@@ -186,7 +178,7 @@ double ct_stepper_worse(const struct ct_problem *p, const struct ct_tolerance *t
     // a step that is refused anyway says nothing more
     if (!p->output_error || !(states <= 1))
         return states;
-    return fmax(states, p->output_error(p->user, t1, y1, e, tolerance, states));
+    return ct_larger(p->output_error(p->user, t1, y1, e, tolerance, states), states);
 }
 
 double ct_stepper_error(const struct ct_problem *p, const struct ct_tolerance *tolerance,

@@ -21,6 +21,15 @@ static inline void ct_stepper_copy(double *out, const volatile double *v, int n)
         out[i] = v[i];
 }
 
+/// True if all n entries are finite: zero times what is not is no number.
+static inline bool ct_stepper_finite(const double *x, int n)
+{
+    double sum = 0;
+    for (int i = 0; i < n; i++)
+        sum += 0 * x[i];
+    return sum == 0;
+}
+
 /// dy (ny, out) = f(t, y), counted. A derivative that is not finite asks for a smaller step.
 enum ct_eval ct_stepper_rhs(const struct ct_problem *p, double t, const double *y, double *dy,
                             struct ct_integrate_stats *stats);
@@ -87,8 +96,5 @@ struct ct_stepper_span {
 
 /// out (ny) = state at t + theta h.
 void ct_stepper_point(const struct ct_stepper_span *s, double theta, double *out);
-
-/// True if all n entries are finite.
-bool ct_stepper_finite(const double *x, int n);
 
 #endif

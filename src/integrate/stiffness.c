@@ -18,9 +18,14 @@ static const double suspicious_step = 0.5;
 static const double unfollowed_step = 3;
 // Motions that go on at the rate of the fastest have to be followed, whatever the method.
 static const double least_separation = 10;
+// A motion that changes by no more in a step needs no such steps: (1e-3)^5 is rounding already. Where the rounding of places
+// alone changes forces by more than the tolerance, it is that which holds them up, far from the limit of stability.
+static const double idle_step = 1e-3;
 // Fewer steps to come are not worth a trial, nor the preparation of an implicit method.
 static const double steps_worth_it = 1000;
-static const int put_off_by = 4; // the number of steps, until the next trial
+// Until the next trial the number of steps doubles, and their work is this many times that of the trial.
+static const long put_off_by = 2;
+static const double put_off_work = 10;
 
 // The first steps of a trial bring the step to its size, the others count.
 static const int warming_steps = 6, counted_steps = 12;
@@ -28,11 +33,12 @@ static const int warming_steps = 6, counted_steps = 12;
 // ---- suspicion ---------------------------------------------------------------------------------------
 
 struct ct_stiffness *ct_stiffness_create(struct ct_arena *a, const struct ct_problem *p,
-                                         const struct ct_integrate_stats *stats, int first,
-                                         int last)
+                                         const struct ct_integrate_stats *stats, double rtol,
+                                         int first, int last)
 {
     struct ct_stiffness *s = CT_NEW(a, struct ct_stiffness);
-    *s = (struct ct_stiffness){.p = p, .stats = stats, .first = first, .last = last};
+    *s = (struct ct_stiffness){
+        .p = p, .stats = stats, .rtol = rtol, .first = first, .last = last};
     double **const vectors[] = {&s->v, &s->w, &s->f, &s->f0, &s->point, &s->y0};
     for (size_t i = 0; i < COUNT(vectors); i++)
         *vectors[i] = CT_NEWN(a, double, p->ny);
@@ -101,6 +107,15 @@ static double find_slow(const struct ct_stiffness *s, double h)
     return size > 0 ? sqrt(change) / (h * size) : 0;
 }
 
+// Stiff forces answer a rounding of places by eps fast^2 times as much acceleration.
+static bool is_rounding_felt(const struct ct_stiffness *s, const double *y)
+{
+    double place = 0;
+    for (int i = 0; i < s->first; i++)
+        place = fmax(place, fabs(y[i]));
+    return DBL_EPSILON * s->fast * s->fast * place > s->rtol * length(s->f, s->first, s->last);
+}
+
 static bool test(struct ct_stiffness *s, double t, const double *y)
 {
     const double steps = (double)(s->count - s->window_steps);
@@ -113,8 +128,9 @@ static bool test(struct ct_stiffness *s, double t, const double *y)
         return false;
     s->slow = find_slow(s, t - s->t0);
     const double reach = s->step * s->fast;
-    return reach > unfollowed_step
-        || (reach > suspicious_step && s->fast > least_separation * s->slow);
+    const bool is_held_up
+        = reach > suspicious_step || (s->step * s->slow < idle_step && is_rounding_felt(s, y));
+    return reach > unfollowed_step || (is_held_up && s->fast > least_separation * s->slow);
 }
 
 bool ct_stiffness_watch(struct ct_stiffness *s, double t, const double *y, double end)
@@ -132,9 +148,13 @@ bool ct_stiffness_watch(struct ct_stiffness *s, double t, const double *y, doubl
     return (is_due || is_overtaken) && end - t > steps_worth_it * s->step;
 }
 
-void ct_stiffness_put_off(struct ct_stiffness *s, double t)
+void ct_stiffness_put_off(struct ct_stiffness *s, double t, double spent,
+                          const struct ct_cost *cost)
 {
-    s->next_trial = put_off_by * s->count;
+    const double steps = spent / fmax(1, s->evaluations * cost->evaluation);
+    s->next_trial = s->count + (long)fmin(1e9, put_off_work * steps);
+    if (s->next_trial < put_off_by * s->count)
+        s->next_trial = put_off_by * s->count;
     s->window_t = t; // counts begin anew with the next steps
     s->window_evaluations = 0;
     s->in_a_row = 0;
@@ -161,6 +181,11 @@ static double work(const struct ct_trial *r)
          + (double)r->stats->factorizations * r->cost.factorization;
 }
 
+double ct_trial_work(const struct ct_trial *r)
+{
+    return work(r);
+}
+
 bool ct_trial_step(struct ct_trial *r, double t)
 {
     r->t = t;
@@ -181,9 +206,6 @@ bool ct_trial_has_lost(struct ct_trial *r, double t, double pace)
     r->t = t;
     if (++r->nstep % test_every != 0)
         return false;
-    const double spent = work(r);
-    r->pace = (t - r->t0) / (spent - r->spent0);
-    r->t0 = t;
-    r->spent0 = spent;
+    r->pace = (t - r->t0) / work(r);
     return r->pace < pace;
 }

@@ -2,7 +2,8 @@
 //
 //     fast    |J^2 v|^(1/2), J = df/dy, v the result of the last test: the power method, one round each test
 //     slow    |change of the accelerations| / (h |accelerations|) over one step
-//     stiff   step * fast is near the limit of stability though fast is much more than slow
+//     stiff   step * fast is near the limit of stability though fast is much more than slow, or
+//             step * slow is next to nothing and roundings of places, times fast^2, are felt in the accelerations
 //
 // What always holds: a test costs four evaluations and is made every hundred steps; it changes nothing in the problem.
 // Suspicion is no proof: a trial finds out whether an implicit method is faster.
@@ -13,6 +14,7 @@
 
 struct ct_stiffness {
     const struct ct_problem *p;
+    double rtol;                         // of outputs
     int first, last;                     // of y: the accelerations in f
     double *v, *w, *f, *f0, *point, *y0; // (ny)
     double t0;                           // time of y0
@@ -42,19 +44,21 @@ struct ct_trial {
     const struct ct_integrate_stats *stats; // of the trial, while it runs
     int nstep;
     double t0, t, spent0; // where counting began, where it is, the work before
-    double pace;          // of the last hundred steps, where a trial does not end
+    double pace;          // of all steps, where a trial does not end
 };
 
-/// first, last: the range of y whose rates are accelerations.
+/// rtol: what is asked of outputs; first, last: the range of y whose rates are accelerations, behind coordinates.
 struct ct_stiffness *ct_stiffness_create(struct ct_arena *a, const struct ct_problem *p,
-                                         const struct ct_integrate_stats *stats, int first,
-                                         int last);
+                                         const struct ct_integrate_stats *stats, double rtol,
+                                         int first, int last);
 
 /// After each accepted step to t, y; end: of the run. True if a trial is worth its work now: tests were suspicious and
 /// there are many steps to come.
 bool ct_stiffness_watch(struct ct_stiffness *s, double t, const double *y, double end);
-/// After a trial that was lost, at time t: not again before the number of steps has grown fourfold.
-void ct_stiffness_put_off(struct ct_stiffness *s, double t);
+/// After a trial that was lost, at time t for the work `spent`: not again before the number of steps has doubled, nor
+/// before steps have cost many times as much.
+void ct_stiffness_put_off(struct ct_stiffness *s, double t, double spent,
+                          const struct ct_cost *cost);
 /// When the implicit method has been left, which gained as much time for its work: a trial as soon as steps gain less.
 void ct_stiffness_measure_against(struct ct_stiffness *s, double pace,
                                   const struct ct_cost *cost);
@@ -64,10 +68,13 @@ double ct_stiffness_pace(const struct ct_stiffness *s, const struct ct_cost *cos
 
 /// After each step of a trial; false: it has come far enough.
 bool ct_trial_step(struct ct_trial *r, double t);
+/// All it has cost.
+double ct_trial_work(const struct ct_trial *r);
 /// Time gained for the work of the steps that counted, 0 if there were none.
 double ct_trial_pace(const struct ct_trial *r);
-/// After each step of a run that went over to the implicit method, begun as a trial that does not end: true if
-/// it now gains less than `pace`.
+/// After each step of a run that went over to the implicit method, begun as a trial that does not end: true if all of it has
+/// gained less than `pace`. A hard stretch, as where an iteration fails for a while, does not outweigh what was gained before,
+/// and no more is spent than the other method would have.
 bool ct_trial_has_lost(struct ct_trial *r, double t, double pace);
 
 #endif

@@ -89,7 +89,7 @@ static const char *meaning_of(struct ct_derivation *d, const struct ct_coordinat
                                ct_derivation_axis(d, m->along));
 }
 
-// "rod.2.rx": of node 2 of beam rod.
+// "rod.2.rx": of node 2 of beam rod; "rod.2.rm": in its element 2; "rod.v1", "rod.mode1": of the whole beam.
 static const char *elastic_meaning(struct ct_derivation *d, const char *name, int body,
                                    const char **unit)
 {
@@ -99,6 +99,13 @@ static const char *elastic_meaning(struct ct_derivation *d, const char *name, in
     const struct ct_flexible *f = ct_flexible_of(d->e->build, body);
     const bool stretches = *kind == 'u' && f->kinematics == CT_AXIAL_CHAIN;
     *unit = turns ? "rad" : "m";
+    if (kind == node)
+        return ct_arena_printf(d->a, "amplitude of %s%s of %s", f->beam->nshape ? "shape " : "",
+                               node, beam);
+    if (kind[1] == 'm')
+        return ct_arena_printf(
+            d->a, "%s in the middle of element %.*s of %s, beyond the mean of its ends",
+            turns ? "twist" : "stretch", (int)strcspn(node, "."), node, beam);
     if (stretches)
         return ct_arena_printf(d->a, "stretch of %s up to node %.*s", beam,
                                (int)strcspn(node, "."), node);

@@ -3,7 +3,7 @@
 // First the loops are closed and the given values met: Newton steps, damped as Levenberg and Marquardt do, so that
 // rows which depend on each other in the solution do not throw it off. Then Gauss-Newton steps along these
 // constraints take all other coordinates to their guesses, each followed by closing again.
-#include "solve/assemble.h"
+#include "solve/assembler.h"
 #include "formulate/flexible.h"
 #include "numeric/dense.h"
 #include "solve/embed.h"
@@ -14,159 +14,20 @@
 #include <string.h>
 
 static const double hard = 1e4;         // weight of what must be met against what is wanted
-static const double met = 1e-9;         // left over of what must be met [m or rad]
 static const double longest_step = 0.5; // [m or rad], against jumping to another assembly
 static const double small_step = 1e-12; // has arrived [m or rad]
 enum { MOST_ITERATIONS = 200, MOST_HALVINGS = 12, MOST_STARTS = 24 };
 
-// What a coordinate shall be: by place in eqs->coordinate.
-struct target {
-    bool is_given, wanted; // must be met; is wanted with weight 1
-    double value;
-    bool in_quaternion;
-};
-
-struct assembly {
-    struct ct_ctx *ctx;
-    struct ct_machine *m;
-    const struct ct_equations *e;
-    struct target *q, *u;
-    size_t
-        nelastic; // elastic coordinates of the beams, which are rigid unless some start deformed
-    const double *value; // of the model's parameters
-    double *unit;        // a row of 0 and 1, by speed
-    bool may_gape;       // a start that does not close will do
-    bool *fixed_row;     // rows without an offset of their own
-    double *y, *A, *b, *row, *work, *speed0, *speeds;
-    double *r, *shift; // residuals; of what must be met, its multipliers over hard^2
-    double *kept_y, *kept_memory, *kept_A, *step;
-    int *iwork;
-    size_t most;     // rows of A
-    size_t nhard, n; // rows now: what must be met comes first
-};
-
-// ---- targets --------------------------------------------------------------------------------------------
-
-static const struct ct_value *initial_value(const struct ct_edge_info *e, bool is_speed)
-{
-    return is_speed ? &e->self->initial.u : &e->self->initial.q;
-}
-
-// Quaternion of successive turns given beside q.
-static void initial_turns(const struct ct_model *model, const struct ct_value *v, double p[4])
-{
-    p[0] = 1;
-    p[1] = p[2] = p[3] = 0;
-    for (size_t i = 0; i < v->nturn; i++) {
-        const double angle = ct_model_number(model, v->turn[i].angle), c = cos(angle / 2);
-        double n[3], w[4] = {p[0], p[1], p[2], p[3]};
-        for (int k = 0; k < 3; k++)
-            n[k] = sin(angle / 2) * ct_model_number(model, v->turn[i].axis.e[k]);
-        p[0] = w[0] * c - w[1] * n[0] - w[2] * n[1] - w[3] * n[2];
-        p[1] = w[1] * c + w[0] * n[0] + w[2] * n[2] - w[3] * n[1];
-        p[2] = w[2] * c + w[0] * n[1] + w[3] * n[0] - w[1] * n[2];
-        p[3] = w[3] * c + w[0] * n[2] + w[1] * n[1] - w[2] * n[0];
-    }
-}
-
-// Where a joint's value for a coordinate stands in `initial: {q: ...}`: with `rotate` the list may leave
-// the quaternion out.
-static bool initial_number(const struct ct_model *model, const struct ct_value *v, int place,
-                           double *out)
-{
-    if (!v->given || (size_t)place >= v->n || (v->hole && v->hole[place]))
-        return false;
-    *out = ct_model_number(model, v->e[place]);
-    return true;
-}
-
-static void joint_target(struct assembly *s, size_t i, const struct ct_model *model)
-{
-    const struct ct_coordinate *c = &s->e->coordinate[i];
-    const struct ct_edge_info *e = &s->e->build->edge[c->edge];
-    const struct ct_initial *initial = &e->self->initial;
-    const int k = e->trial.quaternion;
-    struct target *q = &s->q[i], *u = &s->u[i];
-    q->in_quaternion = k >= 0 && c->place >= k;
-    q->value = q->in_quaternion && c->place == k;
-    bool given = initial_number(model, &initial->q, c->place, &q->value);
-    if (q->in_quaternion && initial->rotate.given) {
-        double p[4];
-        initial_turns(model, &initial->rotate, p);
-        q->value = p[c->place - k];
-        given = true;
-    }
-    q->wanted = true;
-    q->is_given = given && !initial->guess;
-    u->wanted = c->place < e->self->nfree;
-    u->is_given = initial_number(model, &initial->u, c->place, &u->value) && !initial->guess
-               && u->wanted;
-    if (c->is_driven) // the motion itself holds the value
-        q->wanted = q->is_given = u->wanted = u->is_given = false;
-    if (!c->in_translation && !c->in_rotation)
-        q->wanted = q->is_given = u->wanted = u->is_given = false;
-}
-
-// A body that hangs on no joint starts with its frame at the origin: its centre of mass at com.
-static void body_target(struct assembly *s, size_t i, const struct ct_model *model)
-{
-    const struct ct_coordinate *c = &s->e->coordinate[i];
-    const struct ct_build *b = s->e->build;
-    const struct ct_edge_info *e = &b->edge[c->edge];
-    const int k = e->trial.quaternion;
-    struct target *q = &s->q[i], *u = &s->u[i];
-    if (c->q < 0)
-        return; // held by joints
-    q->in_quaternion = k >= 0 && c->place >= k;
-    q->wanted = true;
-    u->wanted = c->u >= 0;
-    const int lengths = b->is_planar ? 2 : 3;
-    if (q->in_quaternion)
-        q->value = c->place == k;
-    else if (c->place < lengths)
-        for (int j = 0; j < 3; j++)
-            q->value
-                += ct_model_number(model, model->body[e->index].com.e[j])
-                 * ct_model_number(model, b->is_planar ? b->plane[c->place].e[j]
-                                                       : (ct_ex){(uint32_t)(j == c->place)});
-}
-
-// Quaternions need not be given with length one.
-static void normalise_target(struct target *q)
-{
-    double norm = 0;
-    for (int i = 0; i < 4; i++)
-        norm += q[i].value * q[i].value;
-    for (int i = 0; i < 4 && norm > 0; i++)
-        q[i].value /= sqrt(norm);
-}
-
-static void find_targets(struct assembly *s, const struct ct_model *model)
-{
-    for (size_t i = 0; i < s->e->ncoordinate; i++) {
-        const struct ct_edge_info *e = &s->e->build->edge[s->e->coordinate[i].edge];
-        if (e->kind == CT_EDGE_JOINT)
-            joint_target(s, i, model);
-        else if (e->kind == CT_EDGE_BODY)
-            body_target(s, i, model);
-    }
-    for (size_t i = 0; i < s->e->ncoordinate; i++) {
-        const struct ct_coordinate *c = &s->e->coordinate[i];
-        if (s->q[i].in_quaternion && c->place == s->e->build->edge[c->edge].trial.quaternion)
-            normalise_target(&s->q[i]);
-    }
-}
-
 // ---- residuals --------------------------------------------------------------------------------------------
 
-static double measured(const struct assembly *s, size_t i)
+static double measured(const struct ct_assembler *s, size_t i)
 {
     return s->m->result.out[2 * i];
 }
 
 // Rotation vector from the target quaternion to the present one, component k: along it the rate of half its square
 // is its product with the angular velocity, exactly.
-static double quaternion_error(const struct assembly *s, size_t first, int k)
+static double quaternion_error(const struct ct_assembler *s, size_t first, int k)
 {
     double t[4], p[4], v[3], norm = 0;
     for (size_t i = 0; i < 4; i++) {
@@ -184,8 +45,7 @@ static double quaternion_error(const struct assembly *s, size_t first, int k)
     return w < 0 ? -factor * v[k] : factor * v[k];
 }
 
-// Deviation of a coordinate from its target; for three of a quaternion's four numbers a rotation.
-static bool deviation(const struct assembly *s, size_t i, double *r)
+bool ct_assembler_deviation(const struct ct_assembler *s, size_t i, double *r)
 {
     if (!s->q[i].in_quaternion) {
         *r = measured(s, i) - s->q[i].value;
@@ -200,7 +60,7 @@ static bool deviation(const struct assembly *s, size_t i, double *r)
 }
 
 // Coefficients of the measured speed of coordinate i: by unit speeds, as it is linear in them.
-static void speed_rows(struct assembly *s, double *rows)
+static void speed_rows(struct ct_assembler *s, double *rows)
 {
     struct ct_machine *m = s->m;
     double *u = m->input + m->at_u;
@@ -221,7 +81,7 @@ static void speed_rows(struct assembly *s, double *rows)
     ct_program_run(&m->result, m->input);
 }
 
-static void add_row(struct assembly *s, const double *coef, size_t stride, double r)
+static void add_row(struct ct_assembler *s, const double *coef, size_t stride, double r)
 {
     for (size_t k = 0; k < s->m->nu; k++)
         s->A[s->n + s->most * k] = coef[stride * k];
@@ -229,7 +89,7 @@ static void add_row(struct assembly *s, const double *coef, size_t stride, doubl
 }
 
 // Elastic coordinate i of all beams, which starts with what the model says.
-static const struct ct_elastic *elastic_of(const struct assembly *s, size_t i)
+static const struct ct_elastic *elastic_of(const struct ct_assembler *s, size_t i)
 {
     const struct ct_flexible *f = s->e->build->flexible;
     for (; i >= (size_t)f->nelastic; f++)
@@ -237,7 +97,7 @@ static const struct ct_elastic *elastic_of(const struct assembly *s, size_t i)
     return &f->elastic[i];
 }
 
-static void elastic_rows(struct assembly *s, bool of_speeds)
+static void elastic_rows(struct ct_assembler *s, bool of_speeds)
 {
     const size_t nu = s->m->nu;
     for (size_t i = 0; i < s->nelastic; i++) {
@@ -251,7 +111,7 @@ static void elastic_rows(struct assembly *s, bool of_speeds)
 }
 
 // Rows of the positions at s->y: A d + r = 0.
-static void position_rows(struct assembly *s)
+static void position_rows(struct ct_assembler *s)
 {
     struct ct_machine *m = s->m;
     const size_t nc = s->e->ncoordinate;
@@ -265,17 +125,17 @@ static void position_rows(struct assembly *s)
         if (s->fixed_row[i])
             add_row(s, m->J + i, m->nrow, m->phi[i]);
     for (size_t i = 0; i < nc; i++)
-        if (s->q[i].is_given && deviation(s, i, &r))
+        if (s->q[i].is_given && ct_assembler_deviation(s, i, &r))
             add_row(s, s->speeds + i, nc, r);
     elastic_rows(s, false);
     s->nhard = s->n;
     for (size_t i = 0; i < nc; i++)
-        if (!s->q[i].is_given && s->q[i].wanted && deviation(s, i, &r))
+        if (!s->q[i].is_given && s->q[i].wanted && ct_assembler_deviation(s, i, &r))
             add_row(s, s->speeds + i, nc, r);
 }
 
 // The same for the speeds.
-static void velocity_rows(struct assembly *s)
+static void velocity_rows(struct ct_assembler *s)
 {
     struct ct_machine *m = s->m;
     const size_t nc = s->e->ncoordinate;
@@ -296,7 +156,7 @@ static void velocity_rows(struct assembly *s)
 }
 
 // Largest residual of what must be met; sum of squares of what is wanted.
-static double violation(const struct assembly *s)
+static double violation(const struct ct_assembler *s)
 {
     double worst = 0;
     for (size_t i = 0; i < s->nhard; i++)
@@ -304,7 +164,7 @@ static double violation(const struct assembly *s)
     return worst;
 }
 
-static double distance(const struct assembly *s)
+static double distance(const struct ct_assembler *s)
 {
     double sum = 0;
     for (size_t i = s->nhard; i < s->n; i++)
@@ -324,7 +184,7 @@ static double limit_step(double *d, size_t n)
     return largest;
 }
 
-static void solve_rows(struct assembly *s, size_t n)
+static void solve_rows(struct ct_assembler *s, size_t n)
 {
     const size_t nu = s->m->nu;
     if (n && nu)
@@ -334,7 +194,7 @@ static void solve_rows(struct assembly *s, size_t n)
 }
 
 // Step into s->b towards what must be met: |A d + r|^2 + damping^2 |d|^2 becomes least.
-static void closing_step(struct assembly *s, double damping)
+static void closing_step(struct ct_assembler *s, double damping)
 {
     const size_t nu = s->m->nu;
     size_t n = s->nhard;
@@ -350,7 +210,7 @@ static void closing_step(struct assembly *s, double damping)
 
 // Step into s->b that leaves the constraints alone and takes what is wanted nearest to its residuals' zero. The
 // weight of the constraints is finite; their multipliers, learnt from step to step, make up for that.
-static void wishing_step(struct assembly *s)
+static void wishing_step(struct ct_assembler *s)
 {
     const size_t nu = s->m->nu;
     double *row = s->kept_A;
@@ -370,7 +230,7 @@ static void wishing_step(struct assembly *s)
 }
 
 // Close the loops from s->y; returns what is left.
-static double close_loops(struct assembly *s)
+static double close_loops(struct ct_assembler *s)
 {
     // a step divides by the damping at worst, so that it must stay above roundings
     const double least_damping = 1e-8, closed = 1e-15;
@@ -388,7 +248,7 @@ static double close_loops(struct assembly *s)
     }
 }
 
-static void keep_place(struct assembly *s, bool back)
+static void keep_place(struct ct_assembler *s, bool back)
 {
     double *memory = s->m->input + s->m->at_memory;
     const size_t ny = s->m->nq + s->m->nu, nm = s->e->nmemory;
@@ -397,7 +257,7 @@ static void keep_place(struct assembly *s, bool back)
 }
 
 // The step in s->b or a part of it, if that comes nearer to the guesses.
-static bool take_step(struct assembly *s, double *nearest)
+static bool take_step(struct ct_assembler *s, double *nearest)
 {
     const size_t nu = s->m->nu;
     double *d = s->step, part = 1;
@@ -408,7 +268,7 @@ static bool take_step(struct assembly *s, double *nearest)
         for (size_t k = 0; k < nu; k++)
             s->b[k] = part * d[k];
         ct_machine_retract(s->m, s->y, s->b);
-        if (close_loops(s) < met && distance(s) <= *nearest * (1 + rounding)) {
+        if (close_loops(s) < ct_assembly_met && distance(s) <= *nearest * (1 + rounding)) {
             *nearest = distance(s);
             return true;
         }
@@ -417,10 +277,10 @@ static bool take_step(struct assembly *s, double *nearest)
     return false;
 }
 
-static double find_positions(struct assembly *s)
+static double find_positions(struct ct_assembler *s)
 {
     double worst = close_loops(s);
-    if (!(worst < met))
+    if (!(worst < ct_assembly_met))
         return worst;
     memset(s->shift, 0, s->nhard * sizeof *s->shift);
     double nearest = distance(s);
@@ -433,7 +293,7 @@ static double find_positions(struct assembly *s)
     return close_loops(s);
 }
 
-static double find_velocities(struct assembly *s)
+static double find_velocities(struct ct_assembler *s)
 {
     double *u = s->y + s->m->nq;
     memset(s->shift, 0, s->most * sizeof *s->shift);
@@ -451,145 +311,10 @@ static double find_velocities(struct assembly *s)
     return violation(s);
 }
 
-// ---- what went wrong -------------------------------------------------------------------------------------------
-
-// By how much the start misses what `initial` gives a coordinate; 0 where it gives nothing.
-static double missed(const struct assembly *s, size_t i, bool is_speed)
-{
-    double r = 0;
-    if (is_speed && s->u[i].is_given)
-        r = s->m->result.out[2 * i + 1] - s->u[i].value;
-    else if (!is_speed && s->q[i].is_given && !deviation(s, i, &r))
-        r = 0;
-    return isnan(r) ? INFINITY : fabs(r);
-}
-
-static struct ct_mark initial_mark(const struct assembly *s, size_t i, bool is_speed)
-{
-    const struct ct_edge_info *e = &s->e->build->edge[s->e->coordinate[i].edge];
-    const struct ct_value *turns = &e->self->initial.rotate;
-    const bool is_turn = !is_speed && s->q[i].in_quaternion && turns->given;
-    return is_turn ? turns->mark : initial_value(e, is_speed)->mark;
-}
-
-// The given value that is missed most, with the others that are missed as notes; true if none is.
-static bool report_missed(struct assembly *s, bool is_speed)
-{
-    enum { MOST_NOTES = 4 };
-    const double slight
-        = 1e-3; // against the worst: what iterations that found no end leave of the rest
-    size_t worst = 0, nmissed = 0;
-    for (size_t i = 1; i < s->e->ncoordinate; i++)
-        if (missed(s, i, is_speed) > missed(s, worst, is_speed))
-            worst = i;
-    const double most = s->e->ncoordinate ? missed(s, worst, is_speed) : 0;
-    if (!(most > met))
-        return true;
-    const struct ct_coordinate *c = s->e->coordinate;
-    ct_error(s->ctx, initial_mark(s, worst, is_speed), CT_E_START,
-             "initial %s contradict each other: %s'%s' of joint '%s' is missed by %.3g",
-             is_speed ? "speeds" : "values", is_speed ? "the rate of " : "", c[worst].name,
-             s->e->build->edge[c[worst].edge].self->name, most);
-    for (size_t i = 0; i < s->e->ncoordinate; i++)
-        nmissed += i != worst && missed(s, i, is_speed) > fmax(met, slight * most);
-    for (size_t i = 0, n = 0; i < s->e->ncoordinate && n < MOST_NOTES; i++) {
-        if (i == worst || !(missed(s, i, is_speed) > fmax(met, slight * most)))
-            continue;
-        const bool is_last = ++n == MOST_NOTES && nmissed > MOST_NOTES;
-        ct_note(s->ctx, initial_mark(s, i, is_speed), "and %s'%s' of joint '%s', by %.3g%s",
-                is_speed ? "the rate of " : "", c[i].name,
-                s->e->build->edge[c[i].edge].self->name, missed(s, i, is_speed),
-                is_last
-                    ? ct_arena_printf(s->e->build->arena, "; %zu more", nmissed - MOST_NOTES)
-                    : "");
-    }
-    return false;
-}
-
-// The row of the constraints that `residual` misses most, of those that count.
-static size_t worst_row(const struct assembly *s, const double *residual, const bool *counts)
-{
-    size_t worst = 0;
-    for (size_t i = 1; i < s->m->nrow; i++)
-        if ((!counts || counts[i])
-            && (fabs(residual[i]) > fabs(residual[worst]) || (counts && !counts[worst])))
-            worst = i;
-    return worst;
-}
-
-static struct ct_mark row_mark(const struct assembly *s, size_t row)
-{
-    const int joint = s->e->row[row].joint;
-    const struct ct_model *model = s->e->build->model;
-    if (joint < 0)
-        return (struct ct_mark){.file = model->file};
-    return model->joint[joint].mark;
-}
-
-static bool report_positions(struct assembly *s)
-{
-    if (!report_missed(s, false))
-        return false;
-    bool any_given = false;
-    for (size_t i = 0; i < s->e->ncoordinate; i++)
-        any_given |= s->q[i].is_given;
-    const size_t row = worst_row(s, s->m->phi, s->fixed_row);
-    return ct_error(
-        s->ctx, row_mark(s, row), CT_E_ASSEMBLY,
-        "the mechanism cannot be assembled: '%s' stays open by %.3g; check lengths and "
-        "places%s%s",
-        s->e->row[row].name, fabs(s->m->phi[row]),
-        any_given ? ", the given initial values" : " and give guesses in `initial`",
-        s->e->build->nflexible
-            ? "; beams bend to close loops where they have `initial: equilibrium`"
-            : "");
-}
-
-static bool report_velocities(struct assembly *s)
-{
-    if (!report_missed(s, true))
-        return false;
-    const size_t row = worst_row(s, s->m->v, NULL);
-    const int joint = s->e->row[row].joint;
-    return ct_error(
-        s->ctx, row_mark(s, row), CT_E_START,
-        "the drivers ask for speeds that the mechanism cannot have: '%s'%s%s%s is missed "
-        "by %.3g; check the rates of the motions",
-        s->e->row[row].name, joint < 0 ? "" : " of joint '",
-        joint < 0 ? "" : s->e->build->model->joint[joint].name, joint < 0 ? "" : "'",
-        fabs(s->m->v[row]));
-}
-
-// A driven joint starts on its motion.
-static bool check_drivers(struct assembly *s)
-{
-    const struct ct_build *b = s->e->build;
-    bool ok = true;
-    for (size_t i = 0; i < s->e->ncoordinate; i++) {
-        const struct ct_coordinate *c = &s->e->coordinate[i];
-        const struct ct_edge_info *e = &b->edge[c->edge];
-        if (!c->is_driven || e->self->initial.guess)
-            continue;
-        for (int k = 0; k < 2; k++) {
-            const struct ct_value *v = initial_value(e, k);
-            double given;
-            if (!initial_number(b->model, v, c->place, &given))
-                continue;
-            const double real = s->m->result.out[2 * i + (size_t)k];
-            if (fabs(given - real) > met * fmax(1, fabs(real)))
-                ok = ct_error(
-                    s->ctx, v->mark, CT_E_START,
-                    "joint '%s' starts on its motion with %s = %.17g, but initial says %.17g",
-                    e->self->name, k ? "u" : "q", real, given);
-        }
-    }
-    return ok;
-}
-
 // ---- the stage ---------------------------------------------------------------------------------------------------
 
 // Rows whose constant comes from the start (gears, rods of the initial length) hold at any place.
-static void find_fixed_rows(struct assembly *s, struct ct_arena *a)
+static void find_fixed_rows(struct ct_assembler *s, struct ct_arena *a)
 {
     struct ct_exs *x = s->e->x;
     s->fixed_row = CT_NEWN(a, bool, s->m->nrow + 1);
@@ -613,7 +338,7 @@ static double chance(uint64_t *state)
 }
 
 // From the targets, from the second try on moved a little, then more.
-static void start_near_targets(struct assembly *s, int try)
+static void start_near_targets(struct ct_assembler *s, int try)
 {
     double *memory = s->m->input + s->m->at_memory;
     uint64_t state = (uint64_t)try;
@@ -643,7 +368,7 @@ static void start_near_targets(struct assembly *s, int try)
 }
 
 // The joint of the first row that holds half a turn away from where it should; -1 if none does.
-static int half_turned_joint(struct assembly *s)
+static int half_turned_joint(struct ct_assembler *s)
 {
     struct ct_machine *m = s->m;
     ct_machine_set(m, 0, s->y);
@@ -654,7 +379,7 @@ static int half_turned_joint(struct assembly *s)
     return -1;
 }
 
-static bool report_half_turn(struct assembly *s, int joint)
+static bool report_half_turn(struct ct_assembler *s, int joint)
 {
     const struct ct_instance *self = &s->e->build->model->joint[joint];
     return ct_error(
@@ -664,25 +389,52 @@ static bool report_half_turn(struct assembly *s, int joint)
         self->name);
 }
 
-// Tries from places further and further away; the first one's failure is the one to report.
-static bool assemble_positions(struct assembly *s, double *residual, bool *is_open)
+// Tries from places further and further away.
+static bool try_positions(struct ct_assembler *s, double *residual)
 {
     for (int try = 0; try < MOST_STARTS; try++) {
         start_near_targets(s, try);
         *residual = find_positions(s);
-        if (*residual < met && half_turned_joint(s) < 0)
+        if (*residual < ct_assembly_met && half_turned_joint(s) < 0)
             return true;
     }
+    return false;
+}
+
+// Can the loops be closed if given values are guesses only?
+static bool closes_with_guesses(struct ct_assembler *s)
+{
+    const size_t n = s->e->ncoordinate;
+    double residual;
+    bool *given = CT_NEWN(s->e->build->arena, bool, n + 1);
+    for (size_t i = 0; i < n; i++) {
+        given[i] = s->q[i].is_given;
+        s->q[i].is_given = false;
+    }
+    const bool closes = try_positions(s, &residual);
+    for (size_t i = 0; i < n; i++)
+        s->q[i].is_given = given[i];
+    return closes;
+}
+
+// The first try's failure is the one to report.
+static bool assemble_positions(struct ct_assembler *s, double *residual, bool *is_open)
+{
+    if (try_positions(s, residual))
+        return true;
     start_near_targets(s, 0);
     *is_open = s->may_gape;
     if (s->may_gape)
         return true;
+    const bool closes = closes_with_guesses(s);
+    start_near_targets(s, 0);
     *residual = find_positions(s);
-    return *residual < met ? report_half_turn(s, half_turned_joint(s)) : report_positions(s);
+    return *residual < ct_assembly_met ? report_half_turn(s, half_turned_joint(s))
+                                       : ct_assembler_report_positions(s, closes);
 }
 
 // Without rows, and with all that is given or wanted among the unknowns, the targets are the start.
-static bool is_direct(const struct assembly *s)
+static bool is_direct(const struct ct_assembler *s)
 {
     for (size_t i = 0; i < s->e->ncoordinate; i++) {
         const struct ct_coordinate *c = &s->e->coordinate[i];
@@ -692,7 +444,7 @@ static bool is_direct(const struct assembly *s)
     return s->m->nrow == 0;
 }
 
-static void take_targets(struct assembly *s)
+static void take_targets(struct ct_assembler *s)
 {
     start_near_targets(s, 0);
     for (size_t i = 0; i < s->e->ncoordinate; i++)
@@ -701,22 +453,22 @@ static void take_targets(struct assembly *s)
     ct_start_beams(s->e, s->value, NULL, s->y + s->m->nq);
 }
 
-static struct assembly assembly_create(struct ct_ctx *ctx, struct ct_arena *a,
-                                       const struct ct_model *model,
-                                       const struct ct_equations *e)
+static struct ct_assembler assembly_create(struct ct_ctx *ctx, struct ct_arena *a,
+                                           const struct ct_model *model,
+                                           const struct ct_equations *e)
 {
-    struct assembly s = {.ctx = ctx, .e = e, .m = ct_machine_create(a, model, e)};
+    struct ct_assembler s = {.ctx = ctx, .e = e, .m = ct_machine_create(a, model, e)};
     const size_t nc = e->ncoordinate, nu = s.m->nu;
     for (size_t i = 0; i < e->build->nflexible; i++)
         s.nelastic += (size_t)e->build->flexible[i].nelastic;
     s.value = model->value;
-    s.q = CT_NEWN(a, struct target, nc + 1);
-    s.u = CT_NEWN(a, struct target, nc + 1);
+    s.q = CT_NEWN(a, struct ct_target, nc + 1);
+    s.u = CT_NEWN(a, struct ct_target, nc + 1);
     s.y = CT_NEWN(a, double, s.m->nq + nu + 1);
     s.kept_y = CT_NEWN(a, double, s.m->nq + nu + 1);
     s.kept_memory = CT_NEWN(a, double, e->nmemory + 1);
     s.b = CT_NEWN(a, double, s.m->nrow + nc + 2 * nu + 1);
-    find_targets(&s, model);
+    ct_assembler_find_targets(&s, model);
     if (is_direct(&s))
         return s;
     s.most = s.m->nrow + nc + s.nelastic + nu + 1;
@@ -736,7 +488,7 @@ static struct assembly assembly_create(struct ct_ctx *ctx, struct ct_arena *a,
 }
 
 // From start values of the model to those of all coordinates.
-static bool find_start(struct assembly *s, struct ct_start *out)
+static bool find_start(struct ct_assembler *s, struct ct_start *out)
 {
     struct ct_machine *m = s->m;
     const size_t nc = s->e->ncoordinate;
@@ -751,9 +503,10 @@ static bool find_start(struct assembly *s, struct ct_start *out)
         left = find_velocities(s);
     ct_machine_set(m, 0, s->y);
     ct_program_run(&m->result, m->input);
-    if (!(left < met * 1e3)) // speeds may be large; a contradiction is of their order
-        return report_velocities(s);
-    if (!check_drivers(s))
+    if (!(left
+          < ct_assembly_met * 1e3)) // speeds may be large; a contradiction is of their order
+        return ct_assembler_report_speeds(s);
+    if (!ct_assembler_check_drivers(s))
         return false;
     for (size_t i = 0; i < nc; i++) {
         out->q[i] = m->result.out[2 * i];
@@ -763,7 +516,7 @@ static bool find_start(struct assembly *s, struct ct_start *out)
 }
 
 struct ct_assembly {
-    struct assembly s;
+    struct ct_assembler s;
     const struct ct_model *model;
     double *q, *u;
     bool *is_given;
@@ -789,7 +542,7 @@ bool ct_assembly_find(struct ct_assembly *s, struct ct_start *out)
     memset(s->s.q, 0, n * sizeof *s->s.q);
     memset(s->s.u, 0, n * sizeof *s->s.u);
     ct_machine_reset(s->s.m);
-    find_targets(&s->s, s->model);
+    ct_assembler_find_targets(&s->s, s->model);
     for (size_t i = 0; i < n; i++)
         s->is_given[i] = s->s.q[i].is_given;
     return find_start(&s->s, out);

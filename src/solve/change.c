@@ -62,6 +62,7 @@ static double try_implicit(struct ct_run *r, const struct ct_problem *p,
     struct ct_trial trial = {.cost = *cost, .stats = &r->stats};
     const size_t ndiagnostic = r->ctx->ndiagnostic, nerror = r->ctx->nerror;
     const double pending = r->pending, turning = r->turning, t_turning = r->t_turning;
+    const struct ct_singular singular = *r->singular; // none is near
     double *y = CT_NEWN(r->arena, double, r->ny), *input = CT_NEWN(r->arena, double, m->ninput);
     memcpy(y, r->y, r->ny * sizeof *y);
     memcpy(input, m->input, m->ninput * sizeof *input);
@@ -76,10 +77,13 @@ static double try_implicit(struct ct_run *r, const struct ct_problem *p,
     r->pending = pending;
     r->turning = turning;
     r->t_turning = t_turning;
+    *r->singular = singular;
+    ct_singular_set_crossing(r->singular, false);
     memcpy(m->input, input, m->ninput * sizeof *input);
     ct_machine_set(m, io->t0, r->y);
     ct_machine_constraint(m);
     ct_embed_renew(r->s);
+    r->spent = ct_trial_work(&trial);
     return ct_trial_pace(&trial);
 }
 
@@ -96,7 +100,7 @@ static bool go_implicit(struct ct_run *r, struct ct_problem *p,
     }
     r->method = r->o->stiff_method; // what follows a step depends on it
     r->s->nearness = 1;
-    const struct ct_cost cost = find_cost(r);
+    const struct ct_cost cost = r->implicit.cost = find_cost(r);
     r->explicit_pace = ct_stiffness_pace(r->stiffness, &cost);
     const double gain = try_implicit(r, p, io, &cost) / r->explicit_pace;
     if (gain < least_gain) {
@@ -129,7 +133,8 @@ static void reconsider(struct ct_run *r, struct ct_problem *p, struct ct_integra
         r->method = r->o->method;
         io->rtol = r->o->rtol;
         io->atol = r->o->atol;
-        ct_stiffness_put_off(r->stiffness, io->t0);
+        ct_stiffness_put_off(r->stiffness, io->t0, was_implicit ? 0 : r->spent,
+                             &r->implicit.cost);
         if (was_implicit)
             ct_stiffness_measure_against(r->stiffness, r->implicit.pace, &r->implicit.cost);
     }
@@ -153,7 +158,7 @@ bool ct_run_march(struct ct_run *r, struct ct_problem *p, struct ct_integrate_op
 {
     const double *sample = io.sample;
     if (r->o->stiff_method && io.step == 0)
-        r->stiffness = ct_stiffness_create(r->arena, p, &r->stats, (int)r->m->nq,
+        r->stiffness = ct_stiffness_create(r->arena, p, &r->stats, r->o->wanted, (int)r->m->nq,
                                            (int)(r->m->nq + r->m->nu));
     for (;;) {
         r->is_suspect = false;

@@ -503,10 +503,9 @@ bool ct_embed_choose(struct ct_embed *s)
 // ---- accelerations --------------------------------------------------------------------------------------
 
 // S (free x free) = B' M B with the unit columns of the independent speeds.
-static void reduce_mass(struct ct_embed *s)
+static void reduce_mass(struct ct_embed *s, const double *M)
 {
     const int n = (int)s->m->nu, r = s->rank, f = n - r;
-    const double *M = s->m->M;
     for (int j = 0; j < f; j++) // MB = M [B; 1], n x f
         for (int i = 0; i < n; i++) {
             double sum = M[i + n * s->independent[j]];
@@ -549,10 +548,10 @@ static void expand(const struct ct_embed *s, double *x, const double *z, const d
 }
 
 // x (nu) = [B; 1] (B' M B)^-1 B' r + [c; 0] by the numbers of now.
-static enum ct_eval reduce_and_expand(struct ct_embed *s, double *x)
+static enum ct_eval reduce_and_expand(struct ct_embed *s, const double *M, double *x)
 {
     const int f = (int)s->m->nu - s->rank;
-    reduce_mass(s);
+    reduce_mass(s, M);
     reduce_force(s, s->b, s->r);
     if (f && !ct_cholesky(s->S, f, f))
         return CT_EVAL_RETRY;
@@ -576,7 +575,7 @@ enum ct_eval ct_embed_accelerate(struct ct_embed *s)
         for (int k = 0; k < r; k++)
             s->r[i] -= s->m->M[i + n * s->dependent[k]] * s->c[k];
     }
-    return reduce_and_expand(s, s->a);
+    return reduce_and_expand(s, s->m->M, s->a);
 }
 
 // Multipliers of all rows by the form of now, where they are unique.
@@ -646,30 +645,27 @@ void ct_embed_uniqueness(struct ct_embed *s)
     }
 }
 
-enum ct_eval ct_embed_impulse(struct ct_embed *s, const double *p, double *u)
+enum ct_eval ct_embed_land(struct ct_embed *s, const double *W, const double *w, double *u)
 {
-    // with u+ = [B; 1] z + [c; 0]: B' M B z = B' (M u- + p - M c)
+    // with u+ = [B; 1] z + [c; 0]: B' W B z = B' (w - W c)
     const int n = (int)s->m->nu, r = s->rank;
-    ct_machine_motion(s->m);
     ct_machine_constraint(s->m);
     if (r && !factor(s))
         return CT_EVAL_RETRY;
-    for (int k = 0; k < r; k++) { // J_d c = -Phi_t = -(v - J u)
+    for (int k = 0; k < r; k++) { // J_d c = -Phi_t = -(v - J u), u as the machine has it
         double driven = s->m->v[s->row[k]];
         for (int j = 0; j < n; j++)
-            driven -= *J_at(s, s->row[k], j) * u[j];
+            driven -= *J_at(s, s->row[k], j) * s->m->input[s->m->at_u + j];
         s->c[k] = -driven;
     }
     if (r)
         ct_lu_solve(s->c, s->Jd, s->pivot, r, r, 1, r, false);
     for (int i = 0; i < n; i++) {
-        s->r[i] = p[i];
-        for (int j = 0; j < n; j++)
-            s->r[i] += s->m->M[i + n * j] * u[j];
+        s->r[i] = w[i];
         for (int k = 0; k < r; k++)
-            s->r[i] -= s->m->M[i + n * s->dependent[k]] * s->c[k];
+            s->r[i] -= W[i + n * s->dependent[k]] * s->c[k];
     }
-    return reduce_and_expand(s, u);
+    return reduce_and_expand(s, W, u);
 }
 
 // ---- projection -------------------------------------------------------------------------------------------

@@ -102,7 +102,7 @@ void ct_embed_uniqueness(struct ct_embed *s);
 /// z (nrow, out) = the unit vector of `row` less its part in the range of J: a vector of null(J'), so that
 /// lam + z holds as well as lam. Zero (to rounding) where the multiplier is unique.
 void ct_embed_null_vector(struct ct_embed *s, int row, double *z);
-/// Speeds after a jump: M (u+ - u-) = p + J' Lam, J u+ + Phi_t = 0.  (8.5)
-enum ct_eval ct_embed_impulse(struct ct_embed *s, const double *p, double *u);
+/// Speeds after a jump: u (nu, out) of W u = w + J' Lam, J u + Phi_t = 0 where the machine is. W (nu x nu)  (8.5)
+enum ct_eval ct_embed_land(struct ct_embed *s, const double *W, const double *w, double *u);
 
 #endif

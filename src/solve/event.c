@@ -111,15 +111,7 @@ static enum ct_eval apply_jump(struct ct_run *r, double t, double *y, const doub
         worst = fmax(worst, fabs(m->v[i]));
     if (worst <= ct_run_jump_tolerance)
         return CT_EVAL_OK;
-    // p = momentum before - momentum after, both with the old unknown speeds; these are kept where p = 0, but for the
-    // impulses that close loops
-    const double *after = m->momentum.out;
-    const bool is_kept = r->o && r->o->rate_jumps == CT_RATE_CONTINUOUS;
-    double *p = r->scratch, *u = y + m->nq;
-    ct_program_run(&m->momentum, m->input);
-    for (size_t i = 0; i < m->nu; i++)
-        p[i] = is_kept ? 0 : momentum[i] - after[i];
-    return ct_embed_impulse(r->s, p, u);
+    return ct_jump_land(r, momentum, y + m->nq);
 }
 
 // With the modes set: a force that on both sides of its switch leads back to it (dry friction at rest) has no

@@ -43,7 +43,7 @@ struct ct_lane_form {
 // The stages of a method without the zeros of its table: sum over i of a[i] k[at[i]].
 struct ct_lane_sum {
     int n;
-    size_t at[CT_MOST_STAGES]; // in the vectors of all stages
+    size_t at[CT_MOST_STAGES]; // in the vectors of all stages, as doubles
     double a[CT_MOST_STAGES];
 };
 

@@ -135,11 +135,12 @@ static inline void combine_few(const struct ct_lanes *s, vec *out, const vec *y,
                                const struct ct_lane_sum *b, int i, int few)
 {
     enum { MOST = 6 };
-    const vec *k = s->k + i, h = s->h;
+    const double *k = (const double *)(s->k + i);
+    const vec h = s->h;
     vec sum[MOST] = {{0}};
     for (int j = 0; j < b->n; j++)
         for (int l = 0; l < few; l++)
-            sum[l] += b->a[j] * k[b->at[j] + (size_t)l];
+            sum[l] += b->a[j] * *(const vec *)(k + b->at[j] + (size_t)(W * l));
     for (int l = 0; l < few; l++)
         out[i + l] = y ? y[i + l] + h * sum[l] : h * sum[l];
 }

@@ -266,7 +266,7 @@ static struct ct_lane_sum sum_of(const struct ct_lanes *s, const double *a, int 
     struct ct_lane_sum sum = {0};
     for (int i = 0; i < n; i++)
         if (a[i] != 0) {
-            sum.at[sum.n] = (size_t)i * (size_t)s->ny;
+            sum.at[sum.n] = W * (size_t)i * (size_t)s->ny;
             sum.a[sum.n++] = a[i];
         }
     return sum;

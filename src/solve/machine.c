@@ -246,9 +246,13 @@ static void compile_rest(struct ct_arena *a, struct ct_machine *m, const struct 
         ct_ex *u = CT_NEWN(a, ct_ex, e->nu + 1);
         for (size_t i = 0; i < e->nu; i++)
             u[i] = e->u[i].symbol;
-        momentum.e = CT_NEWN(a, ct_ex, e->nu + 1);
+        momentum.e = CT_NEWN(a, ct_ex, 2 * e->nu + 1);
         ct_ex_gradient(e->x, a, e->kinetic, u, e->nu, momentum.e);
         momentum.n = e->nu;
+        if (!ct_ex_is_zero(e->kept)) {
+            ct_ex_gradient(e->x, a, e->kept, u, e->nu, momentum.e + e->nu);
+            momentum.n += e->nu;
+        }
     }
     for (size_t i = 0; i < e->ndriver; i++) {
         push(&driver, e->driver[i].value);

@@ -45,7 +45,7 @@ struct ct_machine {
         root,       // g of each mode
         memory,     // next values; of whole turns their present ones
         turns,      // of those: at a start, from the angles that are remembered
-        momentum,   // dT/du
+        momentum,   // dT/du, and the same of `kept` where there is any
         driver,     // value, rate of each driver
         wanted,     // of each row: not negative in the right assembly
         residual,   // r, phi, v; nothing if the equations have no residual, and so the next

@@ -1,7 +1,8 @@
 // A run from inside: what its parts share. For simulate.c and the files beside it that it is made of.
 //
 //     simulate.c  evaluation, creation, samples      singular.c  singular positions
-//     event.c     events, jumps, impulses            follow.c    motions driven all through
+//     event.c     events, jumps of driven rates      follow.c    motions driven all through
+//     jump.c      speeds after those
 //     change.c    the choice of the method, when the motion turns stiff
 #ifndef CT_SOLVE_RUN_H
 #define CT_SOLVE_RUN_H
@@ -28,8 +29,9 @@ struct ct_run {
     size_t nevent;
     int *root_of; // state modes, in order
     int nroot;
-    bool needs_lam, has_power;    // needs_lam: the power does
-    bool has_lam_results;         // outputs or indicators depend on multipliers
+    bool needs_lam, has_power; // needs_lam: the power does
+    bool has_lam_results;      // outputs or indicators depend on multipliers
+    struct ct_jump *jump;
     struct ct_fidelity *fidelity; // of outputs; NULL: none is controlled
     const struct ct_run_options *o;
     struct ct_run_report *report;
@@ -45,6 +47,7 @@ struct ct_run {
     struct ct_trial *trial;          // under way
     struct ct_trial implicit;        // what the implicit method gains since it took over
     double explicit_pace;            // what was gained before
+    double spent;                    // by the last trial
     bool is_suspect;                 // steps ended to think of another method
     double t_before, last_event;     // times
     size_t ngiven;                   // samples
@@ -75,6 +78,10 @@ bool ct_run_is_followed(struct ct_run *r, double t, const double *y);
 bool ct_run_at_sample(void *user, double t, const double *y);
 bool ct_run_at_step(void *user, double t, const double *y);
 double ct_run_sample_time(const struct ct_run_options *o, size_t i);
+
+struct ct_jump *ct_jump_create(struct ct_arena *a, const struct ct_machine *m);
+/// Speeds u (nu, in and out) after driven rates have jumped to those the machine has now; before: its `momentum` program then.
+enum ct_eval ct_jump_land(struct ct_run *r, const double *before, double *u);
 
 // Events of ct_problem, user being the run.
 double ct_run_next_event(void *user, double t);

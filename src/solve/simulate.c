@@ -152,8 +152,8 @@ static enum ct_eval accepted(void *user, double t, const double *y, const double
     const double turning_before = r->turning, t_before = r->t_turning;
     if (!ct_run_is_followed(r, t, y))
         return CT_EVAL_RETRY;
-    if (!r->method->is_implicit
-        && !ct_singular_foresee(r->singular, t, y, dy, r->pending, r->o->step == 0)) {
+    r->singular->keeps_rows = r->method->is_implicit && (size_t)r->s->rank < r->m->nrow;
+    if (!ct_singular_foresee(r->singular, t, y, dy, r->pending, r->o->step == 0)) {
         r->turning = turning_before;
         r->t_turning = t_before;
         return CT_EVAL_RETRY;
@@ -228,7 +228,8 @@ struct ct_run *ct_run_prepare(struct ct_ctx *ctx, struct ct_arena *a,
     r->y = CT_NEWN(a, double, r->ny);
     r->dy = CT_NEWN(a, double, r->ny);
     r->stage = CT_NEWN(a, double, r->ny);
-    r->scratch = CT_NEWN(a, double, 2 * r->m->nu + 2 * e->ndriver + r->m->nrow + 1);
+    r->scratch = CT_NEWN(a, double, 3 * r->m->nu + 2 * e->ndriver + r->m->nrow + 1);
+    r->jump = ct_jump_create(a, r->m);
     r->value = CT_NEWN(a, double, e->nresult + 1);
     find_needs(r);
     r->fidelity = ct_fidelity_create(a, r->m);
@@ -485,7 +486,7 @@ static struct ct_mark mark_of_row(const struct ct_run *r, size_t row)
 }
 
 // Where steps ended as they became too short: beside a singular position?
-static void name_singular(struct ct_run *r)
+static void name_singular(struct ct_run *r, const char *advice)
 {
     enum { MOST_NAMES = 5 };
     bool *row = CT_NEWN(r->arena, bool, r->m->nrow + 1);
@@ -504,8 +505,8 @@ static void name_singular(struct ct_run *r)
     ct_note(
         r->ctx, mark_of_row(r, first < 0 ? 0 : (size_t)first),
         "the constraints come to depend on each other there (%s%s): the mechanism is at the "
-        "end of its reach or in a singular position",
-        names, n > MOST_NAMES ? ", ..." : "");
+        "end of its reach or in a singular position%s",
+        names, n > MOST_NAMES ? ", ..." : "", advice);
 }
 
 // Where steps ended as the constraints could not be met: the row that stays open farthest a little later.
@@ -547,7 +548,9 @@ static void explain_end(struct ct_run *r)
     if (code == CT_E_STEP_OPEN)
         name_open_row(r);
     else if (code == CT_E_STEP_SMALL || code == CT_E_STEP_SINGULAR)
-        name_singular(r);
+        name_singular(r, "");
+    else if (code == CT_E_STEP_REFUSED)
+        name_singular(r, ", which steps are not fitted to: leave out 'step'");
 }
 
 bool ct_run_simulate(struct ct_run *r, const struct ct_run_options *o,

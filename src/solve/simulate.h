@@ -15,6 +15,7 @@ struct ct_run_options {
         least_rtol; // motions with many turns may be held to as little; 0: all are held to rtol
     /// Taken over where the run of an explicit method turns out stiff, with these tolerances; NULL: never.
     const struct ct_method *stiff_method;
+    double wanted; // of outputs, relative: for the choice of the method
     double stiff_rtol, stiff_atol;
     void (*want_residual)(void *user); // it will be needed: the equations must get it
     size_t nsample;

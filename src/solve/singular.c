@@ -64,7 +64,7 @@ static double pivot_after(struct ct_singular *w, const struct sight *a, double s
 
 // A position counts as singular ahead when the smallest pivot has fallen to the first part of its largest value so far
 // and goes on falling; where it has fallen to the second part pivots are sought at every evaluation, at the third f is
-// better not computed.
+// better not computed; at the second already where steps keep their rows and could have kept others.
 static const double foreseen_pivot = 0.8, near_pivot = 0.5, singular_pivot = 0.25;
 
 // The smallest pivot falls about linearly towards a singular position. Time to where it will vanish, by secants along
@@ -120,7 +120,7 @@ bool ct_singular_foresee(struct ct_singular *w, double t, const double *y, const
     if (is_far || part > foreseen_pivot)
         return true;
     w->in = time_to_singular(w, &ahead, now, dt);
-    w->reach = w->in * fmin(1, singular_pivot / part);
+    w->reach = w->in * fmin(1, (w->keeps_rows ? near_pivot : singular_pivot) / part);
     return true;
 }
 

@@ -23,6 +23,7 @@ struct ct_singular {
     double in;            // time to the position ahead; INFINITY: there is none
     double reach;         // time before it in which f is better not computed
     double most, part, t; // the largest pivot so far, the last one against it, and its time
+    bool keeps_rows;      // a step does, and there are more than it needs
     long switches;        // of the embedding, there
     long npassed;
     struct ct_singular_position *passed; // the first of them (CT_MOST_SINGULAR)

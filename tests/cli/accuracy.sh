@@ -29,6 +29,11 @@ echo '-- one method, its steps; the same in JSON'
 cut -d, -f1,2,7,8 one.csv
 "$COTREE" accuracy "$m" --until 2 --samples 101 --method rk4 --step 0.01 -o one.json --quiet
 sed -n -e '/"tolerance"/p' -e '/"steps"/p' one.json
+echo '-- a finer ladder, of two digits each'
+"$COTREE" accuracy "$m" --until 1 --samples 2 --method dop853 --per-decade 3 -o fine.csv --quiet
+cut -d, -f2 fine.csv | sed -n '2,6p;$p'
+say accuracy "$m" --per-decade 11
+rm fine.csv
 echo '-- a reference from a file'
 "$COTREE" simulate "$m" --until 2 --samples 101 --tolerance 1e-11 --quiet -o reference.csv
 "$COTREE" accuracy "$m" --until 2 --samples 101 --method dop853 --tolerance 1e-9 --reference reference.csv 2>summary |
@@ -37,6 +42,11 @@ sed -n '/^reference/p' summary
 cut -d, -f1,2 reference.csv >some.csv
 "$COTREE" accuracy "$m" --until 2 --samples 101 --method dop853 --tolerance 1e-9 --reference some.csv 2>&1 >/dev/null |
   sed '/^cheapest/d'
+echo '-- errors against the largest value of the reference, also where there are no samples'
+awk -F, 'NR < 3 || NR == 102 { print; next } { print $1 ",1000" }' some.csv >large.csv
+"$COTREE" accuracy "$m" --until 2 --samples 2 --method dop853 --tolerance 1e-2 --reference large.csv --quiet |
+  awk -F, 'NR == 2 { print ($5 < 1e-7 ? "small" : $5) }'
+rm large.csv
 echo '-- and such as do not fit'
 sed '1s/pivot\.q/elbow.q/' some.csv >wrong.csv
 say accuracy "$m" --reference wrong.csv

@@ -298,3 +298,31 @@ simulation: {duration: 10}
 E
   "$COTREE" check spin.yaml | grep -A 1 '^beam' | grep -v '^left'
 done
+echo '-- bodies welded to bodies on the beam count; a joint on one of them is more than the indicator knows'
+for keys in 'end, type: weld' 'link, type: weld' 'link, type: revolute'; do
+  cat >hang.yaml <<E
+cotree: 1
+bodies:
+  arm: {type: beam, length: 3, elements: 4, density: 2700, E: 7e10, nu: 0.3, area: 6e-4, Iz: 5e-9, points: {tip: length}}
+  link: {mass: 0.01}
+  end: {mass: 2.99, inertia: 0.1, com: [0.1, 0, 0]}
+joints:
+  hub: {type: revolute, from: ground, to: arm, motion: "0.02*t^2"}
+  a: {type: weld, from: arm.tip, to: ${keys%%,*}}
+  b: {from: link, to: end,${keys#*,}}
+simulation: {duration: 10}
+E
+  "$COTREE" check hang.yaml | grep '^beam'
+done
+echo '-- what coordinates are'
+for keys in 'stretch: quadratic, twist: quadratic' 'modes: 1' 'shapes: {v: x^2, u: [x]}'; do
+  cat >names.yaml <<E
+cotree: 1
+bodies:
+  rod: {type: beam, length: 1, elements: 2, E: 7e10, nu: 0.3, area: 1, mass_per_length: 1, Iz: 1e-9, Iy: 1e-9,
+    deformation: [bending-z, axial, torsion], $keys}
+joints:
+  w: {type: weld, from: ground, to: rod}
+E
+  "$COTREE" equations names.yaml | grep -E '^  rod\.(2\.|[a-z]*1 ).* of '
+done

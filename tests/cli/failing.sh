@@ -40,3 +40,23 @@ echo '-- speeds that contradict each other: one freedom, seven values; that of `
 say check speeds.yaml
 sed 's/, initial: {u: \([12]\)}/, motion: \1*t/; s/, initial: {u: [3-9]}//' speeds.yaml >motions.yaml
 say check motions.yaml
+echo '-- bars too short to close, whatever the initial value; long enough, but not with both values'
+bars() {
+    cat <<END
+cotree: 1
+bodies:
+  ground: {points: {far: [1.3, 0, 0]}}
+  p: {mass: 1, points: {end: [0.5, 0, 0]}}
+  q: {mass: 1, points: {end: [$1, 0, 0]}}
+  r: {mass: 1, points: {end: [$2, 0, 0]}}
+joints:
+  A: {type: revolute, from: ground, to: p, initial: {q: 0.4}}
+  B: {type: revolute, from: p.end, to: q}
+  D: {type: revolute, from: ground.far, to: r$3}
+  C: {type: revolute, from: q.end, to: r.end}
+END
+}
+bars 0.2 0.3 '' >short.yaml
+say check short.yaml
+bars 1.2 0.9 ', initial: {q: 0.2}' >both.yaml
+say check both.yaml

@@ -24,6 +24,12 @@ for options in "" --keep-all "--tree joints" "--tree absolute"; do
     grep -o '"rank_loss": .*' s.json | sort | uniq -c | tr -s ' '
     sed -n 's/.*"time": //p' s.json | tr -d , | awk '{ printf "%s%.4f", (NR > 1 ? " " : ""), $1 } END { print "" }'
 done
+echo '-- implicit methods, and a fixed step'
+for method in radau5 generalized-alpha generalized-alpha-index3 newmark hht; do
+    "$COTREE" simulate parallelogram.yaml --summary s.json --tolerance 1e-4 --method "$method" --quiet
+    printf '%s %s\n' "$method" "$(sed -n 's/.*"singular_positions_passed": //p' s.json)"
+done
+"$COTREE" simulate parallelogram.yaml --method radau5 --step 0.002 --quiet -o fixed.csv 2>&1 | sed 's/t = [0-9.]*/t = T/'
 echo '-- members of a sweep'
 cat >isosceles.yaml <<'END'
 cotree: 1

@@ -1,18 +1,37 @@
 #!/bin/sh
-# stiff.sh CASE: at the tightest tolerance `method: auto` finds that CASE.yaml is stiff, and does not fall back to many small steps: it
-# makes at most twice as many as radau5.
-# COTREE is the program.
+# stiff.sh CASE: `method: auto` finds that the model of the line CASE in stiff.txt is stiff, and does not fall back to many small
+# steps: at each of the tolerances it makes at most twice as many as radau5, and errs by at most 10 T where a reference is named.
+# COTREE is the program, COMPARE the comparison tool.
 set -eu
 folder=$(dirname "$0")
 case=$1
-: "${COTREE:?is the program to test}"
+: "${COTREE:?is the program to test}" "${COMPARE:?is the comparison tool}"
+line=$(grep "^$case " "$folder/stiff.txt") || { echo "stiff.sh: $case is not in stiff.txt" >&2; exit 2; }
+# shellcheck disable=SC2086
+set -- $line
+model=$2
+reference=$3
+tolerances=$(echo "$4" | tr , ' ')
+shift 4
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
-steps() {
-    "$COTREE" simulate "$folder/$case.yaml" -o "$work/result.csv" --quiet --tolerance 1e-10 --method "$1" --summary "$work/summary.json"
+steps() { # METHOD TOLERANCE OPTION...
+    method=$1
+    T=$2
+    shift 2
+    "$COTREE" simulate "$folder/$model" -o "$work/$method.csv" --quiet --tolerance "$T" --method "$method" --summary "$work/summary.json" "$@"
     sed -n 's/^ *"steps": \([0-9]*\),$/\1/p' "$work/summary.json"
 }
-implicit=$(steps radau5)
-chosen=$(steps auto)
-echo "$case: $chosen steps, radau5 $implicit"
-[ "$chosen" -le $((2 * implicit)) ]
+failed=0
+for tolerance in $tolerances; do
+    implicit=$(steps radau5 "$tolerance" "$@")
+    chosen=$(steps auto "$tolerance" "$@")
+    echo "$case at $tolerance: $chosen steps, radau5 $implicit"
+    [ "$chosen" -le $((2 * implicit)) ] || failed=1
+    [ "$reference" = - ] && continue
+    awk -v T="$tolerance" 'BEGIN { print 10 * T }' >"$work/asked"
+    for method in auto radau5; do
+        "$COMPARE" "$work/$method.csv" "$folder/$reference.reference.csv" "$work/asked" || failed=1
+    done
+done
+exit "$failed"

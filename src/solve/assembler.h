@@ -1,0 +1,60 @@
+// Assembly from inside: what its files share.
+//
+//     assemble.c           iterations, from the targets to a start
+//     assemble_targets.c   what `initial` asks of coordinates
+//     assemble_report.c    what went wrong
+#ifndef CT_SOLVE_ASSEMBLER_H
+#define CT_SOLVE_ASSEMBLER_H
+
+#include "solve/assemble.h"
+
+#include "formulate/build.h"
+
+/// Left over of what must be met [m or rad].
+static const double ct_assembly_met = 1e-9;
+
+// What a coordinate shall be: by place in eqs->coordinate.
+struct ct_target {
+    bool is_given, wanted; // must be met; is wanted with weight 1
+    double value;
+    bool in_quaternion;
+};
+
+struct ct_assembler {
+    struct ct_ctx *ctx;
+    struct ct_machine *m;
+    const struct ct_equations *e;
+    struct ct_target *q, *u;
+    size_t
+        nelastic; // elastic coordinates of the beams, which are rigid unless some start deformed
+    const double *value; // of the model's parameters
+    double *unit;        // a row of 0 and 1, by speed
+    bool may_gape;       // a start that does not close will do
+    bool *fixed_row;     // rows without an offset of their own
+    double *y, *A, *b, *row, *work, *speed0, *speeds;
+    double *r, *shift; // residuals; of what must be met, its multipliers over hard^2
+    double *kept_y, *kept_memory, *kept_A, *step;
+    int *iwork;
+    size_t most;     // rows of A
+    size_t nhard, n; // rows now: what must be met comes first
+};
+
+/// What a joint's `initial` says of its values or rates.
+const struct ct_value *ct_initial_value(const struct ct_edge_info *e, bool is_speed);
+/// Where a joint's value for a coordinate stands there: with `rotate` the list may leave the quaternion out. False: nowhere.
+bool ct_initial_number(const struct ct_model *model, const struct ct_value *v, int place,
+                       double *out);
+/// Fills s->q and s->u, which are zeros.
+void ct_assembler_find_targets(struct ct_assembler *s, const struct ct_model *model);
+
+/// Deviation of coordinate i from its target; for three of a quaternion's four numbers a rotation, for the fourth false.
+bool ct_assembler_deviation(const struct ct_assembler *s, size_t i, double *r);
+
+/// The given value that is missed most, or the row that stays open farthest. closes: loops do, with the given values as
+/// guesses. False. Errors: CT_E_START, CT_E_ASSEMBLY.
+bool ct_assembler_report_positions(struct ct_assembler *s, bool closes);
+bool ct_assembler_report_speeds(struct ct_assembler *s);
+/// Does each driven joint start on its motion? Errors: CT_E_START.
+bool ct_assembler_check_drivers(struct ct_assembler *s);
+
+#endif

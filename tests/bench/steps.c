@@ -1,0 +1,121 @@
+// What a step of each method costs beside its evaluations of a one-degree-of-freedom model: a Markdown table.
+//
+//     steps [--quick]
+//
+// The model is systems/pendulum, two samples, tolerance 1e-6. Evaluations are those of the accelerations and, for
+// implicit methods, of the residual and of its derivatives: what `evaluations` and Jacobians of the summary count. Each of
+// them is taken to cost what one of the accelerations does on which the next one waits. Times are processor time, the least
+// of several runs, which take turns so that a busy machine slows all of them.
+#include "api.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+enum { ROUNDS = 7, CALLS = 100000 };
+
+static const double assumed
+    = 50e-9; // of an evaluation: what the steps are to be compared with  [s]
+
+struct subject {
+    const char *method;
+    double step, until;
+    double seconds; // of the fastest run
+    struct ct_integrate_stats stats;
+};
+
+static double now(void)
+{
+    struct timespec t;
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+static void give_up(const struct ct_ctx *ctx)
+{
+    ct_ctx_print(ctx, stderr);
+    exit(1);
+}
+
+static struct ct_sim *prepare(struct ct_ctx *ctx, struct ct_system *system,
+                              const struct subject *s)
+{
+    const struct ct_sim_options options = {.method = s->method,
+                                           .tolerance = 1e-6,
+                                           .step = s->step,
+                                           .samples = 2,
+                                           .until = s->until};
+    struct ct_sim *sim = ct_sim_create(ctx, system, &options);
+    if (!sim)
+        give_up(ctx);
+    return sim;
+}
+
+static void run(struct ct_ctx *ctx, struct ct_system *system, struct subject *s)
+{
+    struct ct_sim *sim = prepare(ctx, system, s);
+    const double start = now();
+    if (!ct_sim_run(ctx, sim, NULL))
+        give_up(ctx);
+    s->seconds = fmin(s->seconds, now() - start);
+    s->stats = sim->report.stats;
+    ct_sim_destroy(sim);
+}
+
+// Of an evaluation that begins with what the one before has found.
+static double evaluation(struct ct_ctx *ctx, struct ct_system *system, const struct subject *s)
+{
+    struct ct_sim *sim = prepare(ctx, system, s);
+    const double *y0 = ct_run_state(sim->run);
+    double y[3] = {y0[0], y0[1], y0[2]}, dy[3];
+    const double start = now();
+    for (int i = 0; i < CALLS; i++) {
+        if (ct_run_rhs(sim->run, 0, y, dy) != CT_EVAL_OK)
+            give_up(ctx);
+        y[0] += 1e-12 * dy[1];
+    }
+    const double spent = now() - start;
+    ct_sim_destroy(sim);
+    return spent / CALLS;
+}
+
+int main(int argc, char **argv)
+{
+    struct subject all[] = {{"rk4", 0.01, 100, INFINITY, {0}},
+                            {"dopri5", 0, 100, INFINITY, {0}},
+                            {"dop853", 0, 200, INFINITY, {0}},
+                            {"generalized-alpha", 0, 2, INFINITY, {0}},
+                            {"radau5", 0, 50, INFINITY, {0}}};
+    const int rounds = argc > 1 && strcmp(argv[1], "--quick") == 0 ? 1 : ROUNDS;
+    const char *root = getenv("CT_SOURCE_DIR");
+    char path[512];
+    snprintf(path, sizeof path, "%s/systems/pendulum/model.yaml", root ? root : ".");
+    struct ct_ctx *ctx = ct_ctx_create();
+    struct ct_system *system = ct_system_load(ctx, path, NULL);
+    if (!system)
+        give_up(ctx);
+    double one = INFINITY;
+    for (int i = 0; i < rounds; i++) {
+        one = fmin(one, evaluation(ctx, system, &all[0]));
+        for (size_t k = 0; k < COUNT(all); k++)
+            run(ctx, system, &all[k]);
+    }
+    printf("an evaluation: %.1f ns\n\n", 1e9 * one);
+    printf(
+        "| method | a step | evaluations of it | beside them | at %g ns each they would be |\n"
+        "| --- | --- | --- | --- | --- |\n",
+        1e9 * assumed);
+    for (size_t k = 0; k < COUNT(all); k++) {
+        const struct ct_integrate_stats *s = &all[k].stats;
+        const double n = (double)(s->evaluations + s->jacobians) / (double)s->steps;
+        const double step = all[k].seconds / (double)s->steps;
+        printf("| %s%s | %.0f ns | %.2g | %.0f ns | %.0f ns |\n", all[k].method,
+               all[k].step > 0 ? ", fixed steps" : "", 1e9 * step, n, 1e9 * (step - n * one),
+               1e9 * n * assumed);
+    }
+    ct_system_destroy(system);
+    ct_ctx_destroy(ctx);
+    return 0;
+}
