@@ -87,11 +87,10 @@ static const char *const kinds[] = {
     "formulation: foreshortening\n    theory: timoshenko\n    shear_factor: [5/6, 0.3]\n    "
     "integration: reduced\n    elements: 3\n    rotary_inertia: true",
     "formulation: linear\n    frame: chord\n    elements: 2",
-    "formulation: foreshortening\n    elements: 2\n    initial: {v: 0.1*x^2, rates: {v: "
-    "0.3*x^2, "
-    "u: 0.01*x}}",
-    "formulation: foreshortening\n    elements: 2\n    shapes: {v: [x^2, x^3], w: [x^2], rx: "
-    "x}",
+    "formulation: foreshortening\n    elements: 2\n    "
+    "initial: {v: 0.1*x^2, rates: {v: 0.3*x^2, u: 0.01*x}}",
+    "formulation: foreshortening\n    elements: 2\n    "
+    "shapes: {v: [x^2, x^3], w: [x^2, x^3], u: x, rx: [x, x^2]}",
     "formulation: foreshortening\n    frame: chord\n    twist: quadratic\n    stretch: "
     "quadratic\n    rotary_inertia: "
     "true\n    "
