@@ -138,10 +138,12 @@ struct ct_roll ct_merge_loops(struct ct_arena *a, const struct ct_listing *l, ui
     const struct ct_roll found = ct_roll_find(a, l, order, n, is_alone, nwork, lanes);
     if (found.nloop < 2)
         return found;
-    uint32_t *other = merged_order(a, l, order, n, nfixed, &found);
+    struct ct_arena *scratch = ct_arena_create_under(a);
+    uint32_t *other = merged_order(scratch, l, order, n, nfixed, &found);
     const struct ct_roll merged = ct_roll_find(a, l, other, n, is_alone, nwork, lanes);
-    if (cost_of(&merged) >= cost_of(&found))
-        return found;
-    memcpy(order, other, n * sizeof *order);
-    return merged;
+    const bool is_better = cost_of(&merged) < cost_of(&found);
+    if (is_better)
+        memcpy(order, other, n * sizeof *order);
+    ct_arena_destroy(scratch);
+    return is_better ? merged : found;
 }

@@ -76,7 +76,7 @@ static void link_windows(struct ct_stretches *p)
     size_t size = 64;
     while (size < 2 * (size_t)p->n)
         size *= 2;
-    uint32_t *last = CT_NEWN(p->arena, uint32_t, size); // 1 + place, by hash
+    uint32_t *last = CT_NEWN(p->scratch, uint32_t, size); // 1 + place, by hash
     // h = sum of sign[i + k] base^k over the window, moved on by one place
     const uint64_t base = UINT64_C(0x9E3779B97F4A7C15);
     uint64_t h = 0, leaving = 1;
@@ -126,7 +126,9 @@ static struct ct_stretch best_repeat(const struct ct_stretches *p, uint32_t i,
 static void turn_rows(const struct ct_stretches *p, struct ct_stretch *r, uint32_t same)
 {
     const uint32_t n = r->period, begin = r->first + (r->count / 2 - 1) * n;
-    uint32_t *last = CT_NEWN(p->arena, uint32_t, n), *across = CT_NEWN(p->arena, uint32_t, n);
+    uint32_t *last = CT_NEWN(p->scratch, uint32_t, n);
+    int32_t *across
+        = CT_NEWN(p->scratch, int32_t, 2 * n + 1); // by place: more than at the one before
     for (uint32_t place = begin; place < begin + 2 * n; place++)
         for (uint32_t k = 0; k < ct_stretch_instruction(p, place)->narg; k++) {
             const uint32_t from = p->at[ct_stretch_operand(p, place, k)];
@@ -134,11 +136,15 @@ static void turn_rows(const struct ct_stretches *p, struct ct_stretch *r, uint32
                 last[from - begin] = place - begin;
         }
     for (uint32_t from = 0; from < n; from++)
-        for (uint32_t i = from + 1; i <= last[from] && i <= from + n; i++)
-            across[i % n]++;
+        if (last[from]) {
+            across[from + 1]++;
+            across[last[from] + 1]--;
+        }
+    for (uint32_t i = 1; i < 2 * n; i++)
+        across[i] += across[i - 1];
     uint32_t best = 0;
     for (uint32_t i = 1; i < n && i <= same; i++)
-        if (across[i] < across[best])
+        if (across[i] + across[i + n] < across[best] + across[best + n])
             best = i;
     r->first += best;
     r->count = (same - best) / n + 1;
@@ -480,16 +486,15 @@ static bool reach_operands(const struct ct_stretches *p, struct ct_stretch *r)
 
 static void clear(const struct ct_stretches *p, struct ct_stretch *r)
 {
-    struct ct_arena *a = p->arena;
     if (!r->reach) {
-        r->reach = CT_NEWN(a, struct ct_source, 3 * (size_t)r->period);
-        r->escapes = CT_NEWN(a, bool, r->period);
-        r->edge_of = CT_NEWN(a, uint32_t, r->period);
-        r->offset = CT_NEWN(a, uint32_t, r->period);
-        r->escapes_far = CT_NEWN(a, bool, r->period);
-        r->least_row = CT_NEWN(a, uint32_t, r->period);
-        r->part = CT_NEWN(a, unsigned char, r->period);
-        r->is_local = CT_NEWN(a, bool, r->period);
+        r->reach = CT_NEWN(p->scratch, struct ct_source, 3 * (size_t)r->period);
+        r->escapes = CT_NEWN(p->scratch, bool, r->period);
+        r->edge_of = CT_NEWN(p->scratch, uint32_t, r->period);
+        r->offset = CT_NEWN(p->scratch, uint32_t, r->period);
+        r->escapes_far = CT_NEWN(p->scratch, bool, r->period);
+        r->least_row = CT_NEWN(p->scratch, uint32_t, r->period);
+        r->part = CT_NEWN(p->scratch, unsigned char, r->period);
+        r->is_local = CT_NEWN(p->scratch, bool, r->period);
     }
     memset(r->edge_of, 0, r->period * sizeof *r->edge_of);
     r->nedge = r->ncolumn = 0;
@@ -553,11 +558,12 @@ struct ct_roll ct_roll_find(struct ct_arena *a, const struct ct_listing *l,
 {
     struct ct_stretches p = {.arena = a, .l = l, .order = order, .n = n};
     struct ct_roll out = {.place = CT_NEWN(a, uint32_t, l->nvalue + 1), .nwork = nwork};
-    p.at = CT_NEWN(a, uint32_t, l->nvalue + 1);
-    p.sign = CT_NEWN(a, uint64_t, n + 1);
-    p.again = CT_NEWN(a, uint32_t, n + 1);
-    p.of_place = CT_NEWN(a, uint32_t, n + 1);
-    p.is_swapped = CT_NEWN(a, bool, n + 1);
+    struct ct_arena *scratch = p.scratch = ct_arena_create_under(a);
+    p.at = CT_NEWN(scratch, uint32_t, l->nvalue + 1);
+    p.sign = CT_NEWN(scratch, uint64_t, n + 1);
+    p.again = CT_NEWN(scratch, uint32_t, n + 1);
+    p.of_place = CT_NEWN(scratch, uint32_t, n + 1);
+    p.is_swapped = CT_NEWN(scratch, bool, n + 1);
     for (size_t v = 0; v < l->nvalue; v++)
         p.at[v] = out.place[v] = none;
     for (uint32_t i = 0; i < n; i++)
@@ -570,5 +576,6 @@ struct ct_roll ct_roll_find(struct ct_arena *a, const struct ct_listing *l,
     while (!settle(&p))
         ;
     ct_stretch_lay_out(&p, lanes, &out);
+    ct_arena_destroy(scratch);
     return out;
 }

@@ -5,7 +5,7 @@
 #include "codegen/roll.h"
 
 struct ct_stretches {
-    struct ct_arena *arena;
+    struct ct_arena *arena, *scratch; // scratch: until the loops are made
     const struct ct_listing *l;
     const uint32_t *order;
     uint32_t n;

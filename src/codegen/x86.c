@@ -552,7 +552,6 @@ static void roll_up(struct ct_emitter *e)
     e->roll = ct_merge_loops(
         e->arena, e->l, e->order, (uint32_t)e->norder, e->first_rest, is_alone, e->nfixed,
         e->calls->rows_together && e->code.lanes == 1 ? CT_ROWS_TOGETHER : 1);
-    ct_emitter_list_uses(e);
     e->spread = CT_NEWN(e->arena, uint32_t, e->l->nvalue);
     for (size_t v = 0; v < e->l->nvalue; v++)
         e->spread[v] = none;
@@ -638,7 +637,7 @@ static void place_values(struct ct_emitter *e, const uint32_t *home)
     const struct ct_listing *l = e->l;
     e->home = CT_NEWN(e->arena, struct ct_home, l->nvalue);
     e->reg = CT_NEWN(e->arena, signed char, l->nvalue);
-    e->free = CT_NEWN(e->arena, uint32_t, 4 * l->nvalue); // those of angles, too
+    e->free = CT_NEWN(e->arena, uint32_t, l->nvalue + 3 * (size_t)e->nangle + 1);
     for (size_t v = 0; v < l->nvalue; v++) {
         e->reg[v] = -1;
         if (l->rate[v] != CT_RATE_CALL)
@@ -722,8 +721,8 @@ struct ct_x86_code ct_x86_emit(struct ct_arena *a, const struct ct_listing *l, i
     const size_t usual = 10; // bytes of an instruction, a load or store counted in
     e.code.cap = usual * e.norder + 512;
     e.code.byte = CT_NEWN(a, unsigned char, e.code.cap);
-    ct_emitter_list_uses(&e);
     roll_up(&e);
+    ct_emitter_list_uses(&e);
     place_values(&e, home);
     emit_entry(&e, any_call);
     const struct ct_loop *loop = e.roll.loop, *end = loop + e.roll.nloop;

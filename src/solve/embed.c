@@ -45,11 +45,11 @@ struct ct_embed *ct_embed_create(struct ct_arena *arena, struct ct_ctx *ctx,
     s->is_unique = CT_NEWN(arena, bool, r + 1);
     s->a = CT_NEWN(arena, double, n + 1);
     s->lam = CT_NEWN(arena, double, r + 1);
-    s->Jd = CT_NEWN(arena, double, kk *kk);
-    s->B = CT_NEWN(arena, double, kk *kk);
+    s->Jd = CT_NEWN(arena, double, r *r + 1);
+    s->B = CT_NEWN(arena, double, r *kk + 1);
     s->S = CT_NEWN(arena, double, kk *kk);
     s->MB = CT_NEWN(arena, double, kk *kk);
-    s->A = CT_NEWN(arena, double, kk *kk);
+    s->A = CT_NEWN(arena, double, r *kk + 1);
     s->q = CT_NEWN(arena, double, m->nq + 1);
     s->c = CT_NEWN(arena, double, k);
     s->r = CT_NEWN(arena, double, k);

@@ -1,6 +1,6 @@
 // Speed of generated programs and of generating them: a table of measured times beside their goals.
 //
-//     bench [--quick | --sweep [MEMBERS]]
+//     bench [--quick | --beams | --sweep [MEMBERS]]
 //
 // Models are read from YAML and go through the normal stages. A time is the median of 11 samples of
 // the thread's processor time, each of many calls, and of three such medians the least; what a ratio compares is measured
@@ -1194,6 +1194,27 @@ static void beams(const char *what, const struct beam *kind, bool quick)
     }
 }
 
+// The time per element at 100 elements over that at 5, both measured alternately.
+static void beam_growth(const char *what, const struct beam *kind)
+{
+    static const int n[] = {5, 100};
+    struct subject s[COUNT(n)];
+    call_fn f[COUNT(n)];
+    void *data[COUNT(n)];
+    double t[COUNT(n)] = {0};
+    char text[128];
+    for (size_t i = 0; i < COUNT(n); i++) {
+        open_subject(&s[i], beam(kind, n[i]));
+        f[i] = accelerate;
+        data[i] = &s[i];
+    }
+    measure(f, data, COUNT(n), t);
+    snprintf(text, sizeof text, "%s: u' per element, %d / %d elements", what, n[1], n[0]);
+    ratio(text, t[1] / n[1] / (t[0] / n[0]), 1.2);
+    for (size_t i = 0; i < COUNT(n); i++)
+        close_subject(&s[i]);
+}
+
 // Forces of inertia, stiffness and weight for given accelerations: what the feasibility study calls inertia forces, here
 // with the stiffness and all of the base's motion.
 static void beam_forces(const char *what, const struct beam *kind)
@@ -1227,6 +1248,11 @@ static void all_beams(bool quick)
                {"beams welded end to end in space", {"foreshortening", true, true}}};
     for (size_t i = 0; i < COUNT(all); i++)
         beams(all[i].what, &all[i].kind, quick);
+    title("", "time per element of the accelerations, solution included, at 100 elements over "
+              "that at 5");
+    for (size_t i = 0; i < COUNT(all) && !quick; i++)
+        if (!all[i].kind.is_chain)
+            beam_growth(all[i].what, &all[i].kind);
     title("", "forces of inertia, stiffness and weight");
     beam_forces("foreshortened beam in space, 10 elements: forces", &all[1].kind);
     beam_forces("linear beam in space, 10 elements: forces", &all[3].kind);
@@ -1300,6 +1326,11 @@ int main(int argc, char **argv)
     head("", "one core, warm");
     if (argc > 1 && strcmp(argv[1], "--sweep") == 0) {
         sweep(argc > 2 ? atoi(argv[2]) : 10000);
+        return 0;
+    }
+    if (argc > 1 && strcmp(argv[1], "--beams") == 0) {
+        all_beams(false);
+        show_goals();
         return 0;
     }
     open_chains(quick);
