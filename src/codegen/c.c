@@ -1,7 +1,7 @@
 // Printing a listing as a C function; see c.h.
 //
-// The results of the instructions are the statements, in the order of the listing. Statement k belongs
-// to part k / split. A value that a later part reads is stored in w[] by its own part; one part alone
+// The results of the instructions are the statements, in the order of the listing; short ones that one statement reads
+// stand within it. Statement k belongs to part k / split. A value that a later part reads is stored in w[] by its own part; one part alone
 // needs no w[].
 #include "codegen/c.h"
 
@@ -29,6 +29,9 @@ struct writer {
     } * list;
     uint32_t *crossing; // by value: place in w[], none if only its own part reads it
     uint32_t ncrossing;
+    uint32_t *nread, *nread_here; // by value: operands that it is, and of its own part
+    const char **
+        within; // by value: its text, where it stands in the one statement that reads it; else NULL
     const char **input; // by value of a symbol: i<slot>_<name>
     uint32_t *first_output,
         *next_output; // by value, by output: 1 + k of the next one, 0 at the end
@@ -88,6 +91,9 @@ static void number_statements(struct writer *w)
     w->statement = CT_NEWN(w->arena, uint32_t, l->nvalue);
     w->crossing = CT_NEWN(w->arena, uint32_t, l->nvalue);
     w->list = CT_NEWN(w->arena, struct statement, l->nvalue);
+    w->nread = CT_NEWN(w->arena, uint32_t, l->nvalue);
+    w->nread_here = CT_NEWN(w->arena, uint32_t, l->nvalue);
+    w->within = CT_NEWN(w->arena, const char *, l->nvalue);
     for (size_t v = 0; v < l->nvalue; v++)
         w->statement[v] = w->crossing[v] = none;
     for (const struct ct_instruction *i = l->ins; i < l->ins + l->nins; i++)
@@ -98,6 +104,8 @@ static void number_statements(struct writer *w)
     for (uint32_t k = 0; k < w->nstatement; k++)
         for (uint32_t j = 0; j < w->list[k].ins->narg; j++) {
             const uint32_t v = w->list[k].ins->arg[j];
+            w->nread[v]++;
+            w->nread_here[v] += is_statement(w, v) && part_of(w, v) == k / w->split;
             if (is_statement(w, v) && part_of(w, v) != k / w->split && w->crossing[v] == none)
                 w->crossing[v] = w->ncrossing++;
         }
@@ -137,6 +145,8 @@ static const char *operand_text(const struct writer *w, uint32_t v, size_t part)
         return ct_number_c(w->arena, number);
     if (!is_statement(w, v))
         return w->input[v];
+    if (w->within[v])
+        return w->within[v];
     return part_of(w, v) == part ? ct_arena_printf(w->arena, "t%u", w->statement[v])
                                  : ct_arena_printf(w->arena, "w[%u]", w->crossing[v]);
 }
@@ -170,16 +180,43 @@ static const char *operation_text(const struct writer *w, const struct statement
     }
 }
 
+static uint32_t value_of(const struct writer *w, uint32_t k)
+{
+    return w->list[k].ins->res[w->list[k].result];
+}
+
+static bool has_label(const struct writer *w, uint32_t v)
+{
+    const uint32_t id = w->l->node[v];
+    return id < w->l->x->label_cap && w->l->x->label[id];
+}
+
+// Short sums and products that one statement of the part reads, once: written there, in parentheses.
+static bool stands_within(const struct writer *w, uint32_t v, const char *text)
+{
+    enum { LONGEST = 40 };
+    return w->nread[v] == 1 && w->crossing[v] == none && !w->first_output[v] && !has_label(w, v)
+        && strlen(text) <= LONGEST;
+}
+
 static void put_statement(struct writer *w, uint32_t k)
 {
     const size_t part = k / w->split;
-    const uint32_t v = w->list[k].ins->res[w->list[k].result], id = w->l->node[v];
-    const struct ct_exs *x = w->l->x;
-    putf(w, "    const double t%u = %s;", k, operation_text(w, &w->list[k], part));
-    if (id < x->label_cap && x->label[id])
-        putf(w, " /* %s */", comment_text(w->arena, x->label[id]));
+    const uint32_t v = value_of(w, k);
+    const char *text = operation_text(w, &w->list[k], part);
+    if (stands_within(w, v, text)) {
+        w->within[v] = ct_arena_printf(w->arena, "(%s)", text);
+        return;
+    }
+    const bool has_name = w->crossing[v] == none || w->nread_here[v] || w->first_output[v];
+    if (has_name)
+        putf(w, "    const double t%u = %s;", k, text);
+    else
+        putf(w, "    w[%u] = %s;", w->crossing[v], text);
+    if (has_label(w, v))
+        putf(w, " /* %s */", comment_text(w->arena, w->l->x->label[w->l->node[v]]));
     put(w, "\n");
-    if (w->crossing[v] != none)
+    if (has_name && w->crossing[v] != none)
         putf(w, "    w[%u] = t%u;\n", w->crossing[v], k);
 }
 
@@ -209,11 +246,6 @@ static void put_inputs(struct writer *w, const unsigned char *read)
         if (read[v])
             putf(w, "    const double %s = in[%u];\n", w->input[v],
                  w->o.lanes * w->l->input[v]);
-}
-
-static uint32_t value_of(const struct writer *w, uint32_t k)
-{
-    return w->list[k].ins->res[w->list[k].result];
 }
 
 static void put_outputs(struct writer *w, uint32_t v, const char *text)

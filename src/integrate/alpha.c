@@ -160,14 +160,14 @@ static enum ct_eval begin(struct state *s, const struct ct_problem *p, double t,
 
 // Where the step would end with accelerations that go on as the polynomial through their last values, one to three. Those of
 // the index-3 form have too much rounding in them for that.
-static void predict(struct state *s, double h, const double *y)
+static inline void predict_few(struct state *s, double h, const double *y, const int nu)
 {
     const struct ct_alpha *c = s->c;
     const struct ct_dae *dae = s->dae;
     const double *u0 = y + dae->nq, share = s->share;
     const bool is_known = !s->is_fresh && c->is_stabilised && !c->starts_anew;
     const double further = is_known ? h : 0, last = is_known ? h + s->start.h : 0;
-    for (int k = 0; k < dae->nu; k++) {
+    for (int k = 0; k < nu; k++) {
         const double u_dot = s->start.u_dot[k], a0 = s->a0[k];
         const double then = u_dot + further * (s->start.slope[k] + last * s->start.bend[k]);
         const double a
@@ -181,11 +181,35 @@ static void predict(struct state *s, double h, const double *y)
     ct_iteration_move(dae, y, s->d, s->q);
 }
 
+// One freedom has code of its own: loops that may be of any length take longer to begin than to do its work.
+static void predict(struct state *s, double h, const double *y)
+{
+    if (s->dae->nu == 1)
+        predict_few(s, h, y, 1);
+    else
+        predict_few(s, h, y, s->dae->nu);
+}
+
+// Adds the correction that moves places by s->dd and, but for J' eta, by s->du, which becomes that of speeds. Its size.
+static inline double add_correction(struct state *s, const int nu)
+{
+    const struct factors f = s->f;
+    for (int k = 0; k < nu; k++) {
+        const double du = s->du[k];
+        s->d[k] += s->dd[k];
+        s->end.a[k] += f.by_a * du;
+        s->end.u_dot[k] += f.by_u_dot * du;
+        s->u[k] += f.by_speed * du;
+        s->du[k] = f.by_speed * du;
+    }
+    // in the index-3 form speeds have rounding over h in them: places alone decide
+    return ct_iteration_norm(s->it, s->dd, s->c->is_stabilised ? s->du : NULL, nu, 1);
+}
+
 static enum ct_eval correct(struct state *s, double t1, const double *y,
                             enum ct_verdict *verdict, struct ct_integrate_stats *stats)
 {
     const struct ct_dae *dae = s->dae;
-    const struct factors f = s->f;
     const int m = s->it->m;
     stats->evaluations++;
     const enum ct_eval e = dae->residual(dae->user, t1, s->q, s->u, s->end.u_dot, s->end.lam,
@@ -196,20 +220,10 @@ static enum ct_eval correct(struct state *s, double t1, const double *y,
     ct_stepper_copy(s->du, s->dd, dae->nu);
     if (m)
         ct_iteration_push(s->it, s->du, -1, s->eta); // eta moves places alone
-    for (int k = 0; k < dae->nu; k++) {
-        const double du = s->du[k];
-        s->d[k] += s->dd[k];
-        s->end.a[k] += f.by_a * du;
-        s->end.u_dot[k] += f.by_u_dot * du;
-        s->u[k] += f.by_speed * du;
-        s->du[k] = f.by_speed * du;
-    }
+    const double size = dae->nu == 1 ? add_correction(s, 1) : add_correction(s, dae->nu);
     for (int i = 0; i < m; i++)
         s->end.lam[i] += s->dlam[i];
     ct_iteration_move(dae, y, s->d, s->q);
-    // in the index-3 form speeds have rounding over h in them: places alone decide
-    const double *du = s->c->is_stabilised ? s->du : NULL;
-    const double size = ct_iteration_norm(s->it, s->dd, du, dae->nu, 1);
     *verdict = ct_iteration_judge(s->it, size, s->dd, 1);
     return CT_EVAL_OK;
 }

@@ -6,7 +6,6 @@
 #include "integrate/stepper.h"
 
 #include <math.h>
-#include <string.h>
 
 // The cubic through both ends of the step finds a root less well than the method's own interpolant.
 enum { MOST_TRIES = CT_WATCH_CORRECTIONS + 1 };
@@ -115,7 +114,8 @@ bool ct_lane_begin_events(struct ct_lanes *s, int l, const struct ct_run_options
     r->pending = ct_run_next_event(r, 0);
     await(s, l);
     lane->longest = s->nroot ? ct_watch_longest_step(o->duration) : o->duration;
-    memset(v->watch.near, 0, (size_t)s->nroot * sizeof *v->watch.near);
+    for (int i = 0; i < s->nroot; i++)
+        v->watch.near[i] = 0;
     v->watch.last_event = -INFINITY;
     v->watch.piled = 0;
     if (!s->e->nmode)

@@ -808,7 +808,7 @@ static void run_solved(void *data)
 }
 
 // Speeds by chance. Of a straight chain at rest accelerations fall from ball to ball until they are smaller than normal numbers,
-// on which this kind of processor takes a hundred times as long; no motion stays there.
+// which take much longer (500 balls: 45.8 instead of 34.7 us); no motion stays there.
 static void set_in_motion(struct subject *s)
 {
     struct ct_machine *m = s->machine;

@@ -1,0 +1,27 @@
+# A mass pushed by the numbers of a cubic table, against the same with each piece as its polynomial, integrated by hand:
+# `auto` is within ten tolerances.
+awk 'BEGIN { print "t,f"; for (i = 0; i <= 100; i++) printf "%.17g,%.6f\n", i/10, sin(0.3*i) + 0.5*cos(0.73*i) + (int(i/13) % 2 ? 1 : -1) }' >force.csv
+cat >mass.yaml <<'END'
+cotree: 1
+bodies: {b: {mass: 20}}
+joints:
+  x: {type: prismatic, from: ground, to: b, effort: {table: force.csv, column: f, interpolate: cubic}}
+outputs: [x.q, x.u]
+simulation: {duration: 10, samples: 11}
+END
+for T in 1e-6 1e-8 1e-10; do
+    "$COTREE" simulate mass.yaml --tolerance $T --quiet -o mass.csv --summary s.json
+    # natural spline with second derivatives m by elimination; over a piece, u and q are integrals of cubics
+    awk -F, -v T=$T 'FNR == NR { if (FNR > 1) f[FNR - 2] = $2; next }
+        FNR == 1 { n = 100; h = 0.1
+            for (i = 1; i < n; i++) { d[i] = 4 - (i > 1 ? 1/d[i-1] : 0)
+                r[i] = 6*(f[i+1] - 2*f[i] + f[i-1])/(h*h) - (i > 1 ? r[i-1]/d[i-1] : 0) }
+            m[n] = 0; for (i = n - 1; i > 0; i--) m[i] = (r[i] - m[i+1])/d[i]; m[0] = 0
+            for (i = 0; i < n; i++) {
+                q[i+1] = q[i] + u[i]*h + h*h*(f[i]/3 + f[i+1]/6 - h*h*(8*m[i] + 7*m[i+1])/360)/20
+                u[i+1] = u[i] + h*((f[i] + f[i+1])/2 - h*h*(m[i] + m[i+1])/24)/20 }
+            for (i = 0; i <= n; i += 10) { if (q[i]^2 > Q) Q = q[i]^2; if (u[i]^2 > U) U = u[i]^2 } next }
+        { k = 10*(FNR - 2); a = ($2 - q[k])^2/Q; b = ($3 - u[k])^2/U; if (a > E) E = a; if (b > E) E = b }
+        END { print T, (sqrt(E) < 10*T ? "within ten tolerances" : "off by " sqrt(E)) }' force.csv mass.csv
+    sed -n 's/.*"method": //p' s.json
+done
