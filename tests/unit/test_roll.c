@@ -12,7 +12,7 @@
 #include <cmocka.h>
 
 enum { MOST_ROWS = 130, MOST_SWEEPS = 6, MOST_STEPS = 60, MOST_KEPT = 4, PER_ROW = 3 };
-enum { NIN = PER_ROW * MOST_ROWS + 2 };
+enum { NIN = PER_ROW * MOST_ROWS + 2, NGUARD = 16 };
 
 // ---- programs -----------------------------------------------------------------------------------
 
@@ -163,7 +163,10 @@ static void assert_same_bits(const struct program *p, struct random *r)
     const struct ct_tape *tape = ct_tape_create(p->arena, p->listing);
     const struct ct_native *native = ct_native_create(p->arena, p->listing, 1);
     double *work = CT_NEWN(p->arena, double, ct_tape_work(tape) + 1),
-           *mine = CT_NEWN(p->arena, double, ct_native_work(native) + 1);
+           *mine = CT_NEWN(p->arena, double, ct_native_work(native) + NGUARD);
+    double *const behind = mine + ct_native_work(native);
+    for (size_t i = 0; i < NGUARD; i++)
+        behind[i] = 1e9 + (double)i;
     for (size_t i = 0; i < NIN; i++)
         input[i] = random_double(r);
     ct_tape_prepare(tape, input, work);
@@ -179,6 +182,8 @@ static void assert_same_bits(const struct program *p, struct random *r)
                 fail_msg("%zu rows, %zu sweeps, output %zu: %.17g, wanted %.17g", p->nrow,
                          p->nsweep, k, got[k], want[k]);
     }
+    for (size_t i = 0; i < NGUARD; i++) // nothing is written behind the work array
+        assert_true(behind[i] == 1e9 + (double)i);
 }
 
 static void random_sweeps_have_the_bits_of_the_tape(void **unused)
