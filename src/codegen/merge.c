@@ -131,12 +131,19 @@ static double cost_of(const struct ct_roll *r)
     return (double)r->nstraight + 1.5 * (double)r->nresult;
 }
 
+// Where the nearest cache holds what rows leave, loops for themselves are as good.
+static bool is_worth_a_try(const struct ct_roll *r)
+{
+    const size_t nearest_cache = 32 << 10;
+    return r->nloop > 1 && r->nresult * sizeof(double) > nearest_cache;
+}
+
 struct ct_roll ct_merge_loops(struct ct_arena *a, const struct ct_listing *l, uint32_t *order,
                               uint32_t n, uint32_t nfixed, const bool is_alone[CT_NKIND],
                               uint32_t nwork, uint32_t lanes)
 {
     const struct ct_roll found = ct_roll_find(a, l, order, n, is_alone, nwork, lanes);
-    if (found.nloop < 2)
+    if (!is_worth_a_try(&found))
         return found;
     struct ct_arena *scratch = ct_arena_create_under(a);
     uint32_t *other = merged_order(scratch, l, order, n, nfixed, &found);

@@ -10,7 +10,8 @@
 #include "codegen/roll.h"
 
 /// The loops of n instructions, merged or not, whichever leaves fewer results and straight code; order is changed
-/// accordingly, but for its first nfixed ones. Other arguments as those of ct_roll_find. Cost: twice its.
+/// accordingly, but for its first nfixed ones. Other arguments as those of ct_roll_find. Cost: its, or twice where
+/// results are more than the nearest cache holds; with fewer nothing is merged.
 struct ct_roll ct_merge_loops(struct ct_arena *a, const struct ct_listing *l, uint32_t *order,
                               uint32_t n, uint32_t nfixed, const bool is_alone[CT_NKIND],
                               uint32_t nwork, uint32_t lanes);

@@ -91,7 +91,8 @@ static double try_implicit(struct ct_run *r, const struct ct_problem *p,
 static bool go_implicit(struct ct_run *r, struct ct_problem *p,
                         const struct ct_integrate_options *io)
 {
-    const double least_gain = 2; // what is counted is not quite what is spent, and its errors are larger
+    const double least_gain
+        = 2; // what is counted is not quite what is spent, and its errors are larger
     struct ct_run_report *report = r->report;
     if (!p->dae) {
         r->o->want_residual(r->o->user);
