@@ -19,7 +19,7 @@ static enum ct_eval root(void *user, double t, const double *y, double *g)
     struct ct_lanes *s = of->s;
     const int l = of->lane;
     s->input[0][l] = ct_time_before(t, s->lane[l].events.pending);
-    ct_lane_put(s->input + s->m->at_q, l, y, (size_t)(s->nq + s->nu));
+    ct_lane_put(s->input + s->m->at_q, l, y, (size_t)s->nq + (size_t)s->nu);
     s->input[s->m->at_work][l] = y[s->ny - 1];
     ct_lane_run(&s->root, s->input);
     for (int i = 0; i < s->nroot; i++)

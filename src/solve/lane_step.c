@@ -268,7 +268,7 @@ static void judge_outputs(struct ct_lanes *s, const vec *e, set lanes)
 static vec join(vec e5, vec e3)
 {
     const vec part = e3 / (10 * e5), square = 1 + part * part;
-    vec root;
+    vec root = {0};
     for (int l = 0; l < W; l++)
         root[l] = sqrt(square[l]);
     return choose(e5 > 0, e5 / root, e5);

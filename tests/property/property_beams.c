@@ -112,8 +112,8 @@ static const char hanging[]
 static const char *const kinds[] = {
     "formulation: linear\n    elements: 1",
     "formulation: linear\n    elements: 2\n    rotary_inertia: true",
-    "formulation: foreshortening\n    elements: 2\n    shapes: {v: [x^2, x^3], w: x^2, rx: x, "
-    "u: [x]}",
+    ("formulation: foreshortening\n    elements: 2\n    shapes: {v: [x^2, x^3], w: x^2, rx: x, "
+     "u: [x]}"),
     "formulation: linear\n    elements: 2\n    shapes: {v: [x^2, x^3], w: x^2, rx: x}",
     "formulation: foreshortening\n    elements: 2\n    damping: {beta: 0.01}",
     "formulation: foreshortening\n    elements: [0.5, length]\n    frame: chord",

@@ -331,8 +331,8 @@ static const char *const beam_text[] = {
     "formulation: foreshortening, modes: 2, elements: 3",
     "formulation: foreshortening, elements: 3, rotary_inertia: true",
     "formulation: linear, mass: lumped, rotary_inertia: [1e-3, 2e-3, 2e-3], elements: 2",
-    "formulation: foreshortening, elements: 2, twist: quadratic, stretch: quadratic, "
-    "rotary_inertia: true",
+    ("formulation: foreshortening, elements: 2, twist: quadratic, stretch: quadratic, "
+     "rotary_inertia: true"),
 };
 static const char *const spatial_joint[] = {"weld",
                                             "spherical",

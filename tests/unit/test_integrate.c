@@ -1117,7 +1117,8 @@ static void next_steps_are_those_of_the_pi_controller(void **unused)
         struct ct_control c = ct_control_start();
         double before = 1e-4;
         c.h = 0.1;
-        for (double error = 0.9; error > 1e-12; error *= 0.37) {
+        double error = 0.9;
+        for (int i = 0; i < 28; i++, error *= 0.37) { // down to 1e-12
             const double h = c.h, beta = 0.2 / (order + 1);
             const double power = 1. / (order + 1) - 0.75 * beta;
             const double factor = safety * pow(error, -power) * pow(before, beta);
