@@ -163,63 +163,10 @@ WIDE static bool four_by_four(const double *a, double *s, double *c, size_t n)
     return has;
 }
 
-// ---- eight numbers at once ----------------------------------------------------------------------------
-
-enum { EIGHT = 2 * LANES };
-typedef double eight __attribute__((vector_size(64)));
-typedef uint64_t eight_integers __attribute__((vector_size(64)));
-
-#define EIGHT_NUMBERS(name, v) static const eight k8_##name = {v, v, v, v, v, v, v, v};
-EACH_CONSTANT(EIGHT_NUMBERS)
-
-#define WIDEST __attribute__((target("avx512f,avx512dq,avx2,fma")))
-#define V eight
-#define I eight_integers
-#define BITS(v) ((eight_integers)(v))
-#define NUMBER(b) ((eight)(b))
-#define K(name) k8_##name
-#define LOST(a, b, p) _mm512_fmsub_pd(a, b, p)
-#define REST(a, n, q) _mm512_fnmadd_pd(n, q, a)
-#define KERNEL kernel_8
-#define TARGET WIDEST
-#include "expr/sincos_kernel.def"
-
-// n a multiple of EIGHT.
-WIDEST static bool eight_by_eight(const double *a, double *s, double *c, size_t n)
-{
-    const eight most = {largest, largest, largest, largest, largest, largest, largest, largest};
-    bool has = false;
-    for (size_t i = 0; i < n; i += EIGHT) {
-        const eight low = _mm512_castpd256_pd512(gather(a + i, LANES));
-        const eight angle = _mm512_insertf64x4(low, gather(a + i + LANES, LANES), 1);
-        eight sine, cosine;
-        kernel_8(angle, &sine, &cosine);
-        _mm512_storeu_pd(s + i, sine);
-        _mm512_storeu_pd(c + i, cosine);
-        has |= _mm512_cmp_pd_mask(_mm512_abs_pd(angle), most, _CMP_NLE_UQ) != 0;
-    }
-    return has;
-}
-
-static bool side_by_side(const double *a, double *s, double *c, size_t n)
-{
-    bool has = false;
-    if (n >= EIGHT && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq")
-        && __builtin_cpu_supports("fma")) {
-        const size_t most = n - n % EIGHT;
-        has = eight_by_eight(a, s, c, most);
-        a += most;
-        s += most;
-        c += most;
-        n -= most;
-    }
-    return (n && four_by_four(a, s, c, n)) || has;
-}
-
 void ct_sincos_many(const double *a, double *s, double *c, size_t n)
 {
     const bool is_wide = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
-    if (!is_wide || side_by_side(a, s, c, n)) // angles beyond the range are done again
+    if (!is_wide || four_by_four(a, s, c, n)) // angles beyond the range are done again
         one_by_one(a, s, c, n);
 }
 
