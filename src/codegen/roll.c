@@ -121,9 +121,16 @@ static struct ct_stretch best_repeat(const struct ct_stretches *p, uint32_t i,
     return best;
 }
 
+// Rows fewer than before, side by side: are they nearly as many sets of lanes?
+static bool keeps_sets(uint32_t rows, uint32_t before, uint32_t lanes)
+{
+    return 8 * (rows / lanes) >= 7 * (before / lanes);
+}
+
 // Where rows begin is chosen so that the fewest results are read across that place. same: places that repeat what is a
 // row before them. Cost: two rows.
-static void turn_rows(const struct ct_stretches *p, struct ct_stretch *r, uint32_t same)
+static void turn_rows(const struct ct_stretches *p, struct ct_stretch *r, uint32_t same,
+                      uint32_t lanes)
 {
     const uint32_t n = r->period, begin = r->first + (r->count / 2 - 1) * n;
     uint32_t *last = CT_NEWN(p->scratch, uint32_t, n);
@@ -144,13 +151,14 @@ static void turn_rows(const struct ct_stretches *p, struct ct_stretch *r, uint32
         across[i] += across[i - 1];
     uint32_t best = 0;
     for (uint32_t i = 1; i < n && i <= same; i++)
-        if (across[i] + across[i + n] < across[best] + across[best + n])
+        if (across[i] + across[i + n] < across[best] + across[best + n]
+            && keeps_sets((same - i) / n + 1, r->count, lanes))
             best = i;
     r->first += best;
     r->count = (same - best) / n + 1;
 }
 
-static void find_repeats(struct ct_stretches *p)
+static void find_repeats(struct ct_stretches *p, uint32_t lanes)
 {
     for (uint32_t i = 0; i < p->n; i++)
         p->of_place[i] = none;
@@ -162,7 +170,7 @@ static void find_repeats(struct ct_stretches *p)
             continue;
         }
         if ((same - r.period) / r.period + 1 >= LEAST_ROWS)
-            turn_rows(p, &r, same);
+            turn_rows(p, &r, same, lanes);
         for (uint32_t k = 0; k < r.period * r.count; k++)
             p->of_place[r.first + k] = (uint32_t)p->nstretch;
         i = r.first + r.period * r.count;
@@ -572,7 +580,7 @@ struct ct_roll ct_roll_find(struct ct_arena *a, const struct ct_listing *l,
     order_operands(&p);
     sign_places(&p, is_alone);
     link_windows(&p);
-    find_repeats(&p);
+    find_repeats(&p, lanes);
     while (!settle(&p))
         ;
     ct_stretch_lay_out(&p, lanes, &out);
