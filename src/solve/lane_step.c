@@ -337,7 +337,7 @@ static set project_end(struct ct_lanes *s, vec t, set wanted)
     return derive(s, t, s->end, s->dend, wanted) & finite(s->dend, s->ny);
 }
 
-// ---- step control, as in driver.c -------------------------------------------------------------------
+// ---- step control, as in driver_plan.c --------------------------------------------------------------
 
 static void plan(struct ct_lanes *s, int l)
 {
