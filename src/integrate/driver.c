@@ -47,14 +47,15 @@ struct run {
     bool is_stop_time;
     struct ct_control control;
     struct ct_pace pace;
-    double *y, *dy;      // (ny) each, as all that follow
-    double *y1, *dy1;    // end of the step as the method gives it
-    double *end, *dend;  // the same, projected
-    double *point;       // a state to spare
-    void *work;          // the method's own
-    void *crossing_work; // of ct_crossing; NULL: there are no singular positions to cross
-    double singular_in;  // time to the next one, from t
-    double reach;        // crossing it is to begin this long before
+    double *y, *dy;     // (ny) each, as all that follow
+    double *y1, *dy1;   // end of the step as the method gives it
+    double *end, *dend; // the same, projected: y1, dy1 themselves where that changes nothing
+    double *moved, *dmoved; // where end, dend are others
+    double *point;          // a state to spare
+    void *work;             // the method's own
+    void *crossing_work;    // of ct_crossing; NULL: there are no singular positions to cross
+    double singular_in;     // time to the next one, from t
+    double reach;           // crossing it is to begin this long before
     struct ct_striding *striding; // NULL: no crossings by steps of the method itself
     bool has_failed_stride;       // across the next position
     int failed_crossings;         // of it
@@ -109,7 +110,7 @@ static void allocate(struct run *r)
 {
     struct ct_arena *a = r->ctx->model;
     double **const vectors[]
-        = {&r->y0, &r->y, &r->dy, &r->y1, &r->dy1, &r->end, &r->dend, &r->point};
+        = {&r->y0, &r->y, &r->dy, &r->y1, &r->dy1, &r->moved, &r->dmoved, &r->point};
     for (size_t i = 0; i < COUNT(vectors); i++)
         *vectors[i] = CT_NEWN(a, double, r->p->ny);
     r->work = r->method->create(a, r->method, r->p);
@@ -347,10 +348,14 @@ static bool has_moved(struct run *r)
 static enum ct_eval project_end(struct run *r, const struct ct_method *method, double t1)
 {
     const struct ct_problem *p = r->p;
-    ct_stepper_copy(r->end, r->y1, p->ny);
-    ct_stepper_copy(r->dend, r->dy1, p->ny);
+    r->end = r->y1;
+    r->dend = r->dy1;
     if (!p->project || method->is_implicit)
         return CT_EVAL_OK;
+    r->end = r->moved;
+    r->dend = r->dmoved;
+    ct_stepper_copy(r->end, r->y1, p->ny);
+    ct_stepper_copy(r->dend, r->dy1, p->ny);
     const enum ct_eval e = p->project(p->user, t1, r->end);
     if (e != CT_EVAL_OK || !has_moved(r))
         return e;
@@ -370,6 +375,8 @@ static bool is_in_gap(const struct run *r, const struct stride *s, double t)
 static enum ct_eval cut(struct run *r, const struct stride *s)
 {
     const struct ct_problem *p = r->p;
+    r->end = r->moved;
+    r->dend = r->dmoved;
     s->method->dense(p, s->h, (s->t1 - r->t) / s->h, r->y, r->y1, s->work, r->end);
     ct_stepper_copy(r->dend, r->dy1, p->ny);
     if (is_in_gap(r, s, s->t1))
@@ -393,7 +400,7 @@ static const struct ct_tolerance *tolerance_of(const struct run *r, const struct
 }
 
 // From y to end by the method and the projection. Refused with s->error > 1 when that is the reason.
-static enum ct_eval attempt(struct run *r, struct stride *s)
+static inline enum ct_eval attempt(struct run *r, struct stride *s)
 {
     struct ct_tolerance own;
     const struct ct_tolerance *tolerance = tolerance_of(r, s, &own);
@@ -495,7 +502,7 @@ static enum ct_eval tell_accepted(struct run *r, const struct stride *s)
 static enum ct_eval finish_step(struct run *r, struct stride *s, double h)
 {
     enum ct_eval e = end_on_event(r, s);
-    if (e == CT_EVAL_OK)
+    if (e == CT_EVAL_OK && r->p->nroot)
         e = ct_watch_accept(&r->watch, s->t1, h, r->end, s->is_event);
     if (e == CT_EVAL_OK)
         e = interpolate_for_samples(r, s);
@@ -637,8 +644,8 @@ static void commit(struct run *r, const struct stride *s)
     double *y = r->y, *dy = r->dy;
     r->y = r->end;
     r->dy = r->dend;
-    r->end = y;
-    r->dend = dy;
+    *(r->end == r->y1 ? &r->y1 : &r->moved) = y;
+    *(r->dend == r->dy1 ? &r->dy1 : &r->dmoved) = dy;
     r->t = s->t1;
     r->stats->steps++;
     // a crossing tells an implicit method nothing about the steps to come
@@ -688,7 +695,8 @@ static bool march(struct run *r)
                 r->t);
         if (!advance(r))
             return false;
-        if (ct_control_is_endless(&r->pace, r->stats->steps, most, r->t, r->o->t1 - r->t))
+        if (r->stats->steps >= r->pace.next
+            && ct_control_is_endless(&r->pace, r->stats->steps, most, r->t, r->o->t1 - r->t))
             return ct_error(r->ctx, nowhere, CT_E_STEP_COUNT,
                             "at t = %.3g after %ld steps, of %.2g s now: up to t = %.9g they "
                             "would be more than the %ld that are allowed",
