@@ -135,9 +135,9 @@ void ct_put_pop(struct ct_bytes *c, int reg)
 // 64-bit to = from, from among the lower eight
 void ct_put_move(struct ct_bytes *c, int to, int from)
 {
-    ct_put(c, to >= 8 ? 0x49 : 0x48);
+    ct_put(c, 0x48 | (to >= 8) | (from >= 8) << 2);
     ct_put(c, 0x89);
-    ct_put(c, 0xC0 | (unsigned)from << 3 | (unsigned)(to & 7));
+    ct_put(c, 0xC0 | (unsigned)(from & 7) << 3 | (unsigned)(to & 7));
 }
 
 void ct_put_address(struct ct_bytes *c, int reg, struct ct_rm rm)

@@ -99,7 +99,7 @@ void ct_put_blend(struct ct_bytes *c, int reg, int no, int yes, int mask);
 void ct_put_vzeroupper(struct ct_bytes *c);
 void ct_put_push(struct ct_bytes *c, int reg);
 void ct_put_pop(struct ct_bytes *c, int reg);
-/// 64-bit to = from, from among the lower eight
+/// 64-bit to = from
 void ct_put_move(struct ct_bytes *c, int to, int from);
 void ct_put_address(struct ct_bytes *c, int reg, struct ct_rm rm);
 void ct_put_immediate(struct ct_bytes *c, int reg, uint64_t v);
