@@ -131,29 +131,36 @@ static unsigned latency(unsigned op)
 }
 
 // Instructions that could be done while others wait for their operands. Two a cycle are done; how far a processor looks beyond
-// one that waits is what its scheduler holds (60 to 97 entries).
+// one that waits is what its scheduler holds (60 to 97 entries), and what was made before more instructions than there are
+// registers comes from memory.
 static double count_waiting(struct ct_arena *a, const struct ct_listing *l,
                             const uint32_t *order, uint32_t n)
 {
-    enum { AHEAD = 64, A_CYCLE = 2 };
-    uint32_t *ready = CT_NEWN(a, uint32_t, l->nvalue + 1); // by value, in halves of a cycle
-    uint32_t *done = CT_NEWN(a, uint32_t, n + 1);          // by place, with all before it
+    enum { AHEAD = 96, A_CYCLE = 2, NREGISTER = 16, LOAD = 5 };
+    struct made {
+        uint32_t at, ready; // place; in halves of a cycle, 0: leaves
+    } *made = CT_NEWN(a, struct made, l->nvalue + 1);
+    uint32_t *done = CT_NEWN(a, uint32_t, n + 1); // by place, with all before it
     for (uint32_t i = 0; i < n; i++) {
         const struct ct_instruction *ins = &l->ins[order[i]];
         uint32_t t = i < AHEAD ? 0 : done[i - AHEAD];
-        for (uint32_t k = 0; k < ins->narg; k++)
-            t = ready[ins->arg[k]] > t ? ready[ins->arg[k]] : t;
+        for (uint32_t k = 0; k < ins->narg; k++) {
+            const struct made *m = &made[ins->arg[k]];
+            const uint32_t its
+                = m->ready + (m->ready && i - m->at > NREGISTER ? A_CYCLE * LOAD : 0);
+            t = its > t ? its : t;
+        }
         t += A_CYCLE * latency(ins->op);
         for (uint32_t k = 0; k < ins->nres; k++)
-            ready[ins->res[k]] = t;
+            made[ins->res[k]] = (struct made){i, t};
         done[i] = i && done[i - 1] >= t ? done[i - 1] + 1 : t;
     }
     return n ? (double)done[n - 1] - (double)n : 0;
 }
 
 // In instructions. Straight code is fetched once and for nothing else; a result of a row is stored and read again. The weight
-// was chosen on the beams of tests/bench, of 10 to 100 elements (25 of 29 cases, one lane). With what waits, in 39 of 46 programs
-// of beams and chains, for one lane and four, the faster one is taken; another one costs 2 % on average.
+// was chosen on the beams of tests/bench, of 10 to 100 elements (25 of 29 cases, one lane). With what waits, the faster one is taken in 38 of 46
+// programs of beams and chains, for one lane and four; the times of those chosen are 2 % longer on average than of the faster ones.
 static double cost_of(const struct ct_roll *r, double waiting)
 {
     return (double)r->nstraight + 1.5 * (double)r->nresult + waiting;

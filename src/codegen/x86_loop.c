@@ -160,6 +160,25 @@ static void start_streams(struct body *b, const struct ct_loop *loop)
     }
 }
 
+// In lanes the results of a row are several lines of memory, which the row before has fetched.
+static void fetch_next_row(struct body *b)
+{
+    enum { LINE = 64 };
+    for (unsigned k = 0; k < b->nstream && b->e.code.lanes > 1; k++) {
+        int32_t first = INT32_MAX, last = INT32_MIN;
+        for (size_t v = 0; v < b->l.nins; v++)
+            if (b->e.is_kept[v] && b->e.home[v].area == CT_NAREA + k) {
+                const int32_t at = ct_emitter_memory(&b->e, b->e.home[v]).disp;
+                first = at < first ? at : first;
+                last = at > last ? at : last;
+            }
+        const int32_t step
+            = b->stream[k].stride * (int32_t)ct_emitter_place_size(&b->e, CT_NAREA + k);
+        for (int32_t at = first; at <= last; at += LINE)
+            ct_put_fetch(&b->e.code, ct_in_memory(stream_register[k], at + step));
+    }
+}
+
 // `times` rows, or sets of them, from where the streams are; then they are behind it.
 static void emit_rows(struct ct_emitter *e, const struct ct_loop *loop, uint32_t times,
                       bool starts, int32_t back)
@@ -177,6 +196,7 @@ static void emit_rows(struct ct_emitter *e, const struct ct_loop *loop, uint32_t
         move_streams(&b, -back);
     ct_put_immediate(c, CT_RAX, times);
     const size_t start = c->n;
+    fetch_next_row(&b);
     if (together > 1)
         c->lanes = together;
     for (uint32_t at = 0; at < b.e.norder; at++)
