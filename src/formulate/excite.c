@@ -192,7 +192,7 @@ const char *ct_excite_no_twist(const struct ct_build *b, const struct ct_flexibl
         return "nothing beyond its base can twist it";
     if (!(f->beam->known & CT_BEAM_TORSION))
         return "only bending about both axes twists it, and G or nu, or J, is not given";
-    return ct_ex_is_zero(f->beam->twist_inertia)
+    return ct_ex_is_zero(f->beam->twist_inertia) && !b->frees_beams
              ? "only bending about both axes twists it, and its sections have no inertia"
              : NULL;
 }
