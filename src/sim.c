@@ -6,6 +6,7 @@
 
 #include "report/json.h"
 #include "report/progress.h"
+#include "solve/criterion.h"
 #include "solve/lanes.h"
 #include "solve/singular.h"
 
@@ -22,9 +23,10 @@ static const double order2_factor = 30;
 // Of Radau's steps the error of an estimate of order 3 is controlled, eased to tol^(2/3)/10: T/10 for this power of T.
 static const double radau_power = 1.5;
 static const double radau_share = 1e-2; // for loose tolerances
-// Closed loops lose digits where they pass near singular positions: with less than 1e-13 nothing is gained (R05_N10 meets its
-// reference to 2e-10, R13_d1 to 2e-11).
-static const double least_rtol = 2e-14, least_rtol_loops = 1e-13;
+// About a hundred roundings. With loops it is ct_position_tolerance, as well as projections close them: from steps that are
+// held to less, down to 1e-14, outputs come out no better past singular positions, and a few times better, below 1e-12,
+// where there are none.
+static const double least_rtol = 2e-14;
 // Above this tolerance high order does not pay for its twelve evaluations: over the reference cases both explicit methods
 // then cost the same.
 static const double high_order_up_to = 1e-2;
@@ -220,7 +222,7 @@ bool ct_sim_resolve(struct ct_sim *sim, const struct ct_sim_options *o)
     const double absolute = o->absolute > 0  ? o->absolute
                           : o->tolerance > 0 ? o->tolerance / 100
                                              : m->atol;
-    sim->least_rtol = sim->system->equations.nrow ? least_rtol_loops : least_rtol;
+    sim->least_rtol = sim->system->equations.nrow ? ct_position_tolerance : least_rtol;
     sim->is_verified = o->verify;
     struct ct_run_options *run = &sim->run_options;
     *run = (struct ct_run_options){

@@ -122,6 +122,8 @@ void ct_machine_chart_rate(const struct ct_machine *m, const double *d, const do
                            double *rate);
 /// Normalise the quaternions of q.
 void ct_machine_normalise(const struct ct_machine *m, double *q);
+/// p (4) / |p|; zeros stay.
+void ct_quaternion_normalise(double *p);
 
 /// Memories take their values at the input as if from scratch: quaternions from their rotation (scalar part
 /// >= 0), angles near their present memory, offsets from now.
