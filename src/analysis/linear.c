@@ -9,7 +9,7 @@
 #include <math.h>
 #include <string.h>
 
-// A row counts as dependent when what is left of it is this small against the largest, as in embed.c.
+// A row counts as dependent when what is left of it is this small against the largest, as in embedding.h.
 static const double rank_tolerance = 1e-9;
 static const double closed
     = 1e-13; // rows of positions: a few roundings of coordinates of order one
