@@ -1,5 +1,5 @@
 // See roll.h. Loops are sought as repeats in the sequence of operators, together with how far back near operands are;
-// a loop whose operands cannot be reached is left as it was, and all are settled again without it.
+// a loop whose operands cannot be reached is cut or left as it was.
 #include "codegen/stretch.h"
 
 #include <string.h>
@@ -286,16 +286,22 @@ static bool is_edge_free(const struct ct_stretch *other, uint32_t slot, int32_t 
     return true;
 }
 
+// For an edge at a row.
+static void make_room(struct ct_stretch *r, int32_t row)
+{
+    if (-row > r->before)
+        r->before = -row;
+    if (row - (int32_t)r->count + 1 > r->behind)
+        r->behind = row - (int32_t)r->count + 1;
+}
+
 static void add_edge(const struct ct_stretches *p, const struct ct_stretch *r,
                      struct ct_stretch *other, uint32_t slot, int32_t row, uint32_t v)
 {
     const struct ct_stretch_edge e = {row, v, other->edge_of[slot], (uint32_t)(r - p->stretch)};
     CT_PUSH(p->arena, other->edge, other->nedge, other->edge_cap, e);
     other->edge_of[slot] = (uint32_t)other->nedge;
-    if (-row > other->before)
-        other->before = -row;
-    if (row - (int32_t)other->count + 1 > other->behind)
-        other->behind = row - (int32_t)other->count + 1;
+    make_room(other, row);
 }
 
 // Results of one instruction of a repeat, a row further every time; at the ends perhaps of what takes its place there.
@@ -544,20 +550,43 @@ static void cut(struct ct_stretches *p, struct ct_stretch *r)
     set_places(p, r, (uint32_t)(r - p->stretch));
 }
 
-// False if a repeat had to be cut: others may rely on it.
-static bool settle(struct ct_stretches *p)
+// Edges of a repeat but for those that `asker` has put there last.
+static void remove_edges(struct ct_stretch *r, uint32_t asker)
 {
-    for (size_t i = 0; i < p->nstretch; i++)
-        if (!p->stretch[i].is_dropped)
-            clear(p, &p->stretch[i]);
+    size_t n = r->nedge;
+    while (n && r->edge[n - 1].asker == asker)
+        n--;
+    if (n == r->nedge)
+        return;
+    for (uint32_t slot = 0; slot < r->period; slot++)
+        while (r->edge_of[slot] > n)
+            r->edge_of[slot] = r->edge[r->edge_of[slot] - 1].next;
+    r->nedge = n;
+    r->before = r->behind = 0;
+    for (size_t i = 0; i < n; i++)
+        make_room(r, r->edge[i].row);
+}
+
+static void withdraw_edges(struct ct_stretches *p, const struct ct_stretch *r)
+{
+    for (int i = 0; i < r->nstream; i++)
+        if (r->stream[i].kind == CT_SOURCE_RESULTS)
+            remove_edges(&p->stretch[r->stream[i].other], (uint32_t)(r - p->stretch));
+}
+
+// Operands are made before they are read, so that a repeat relies on itself and those before it alone: when it is cut, these
+// stay as they are, but for the edges that it has put there.
+static void settle(struct ct_stretches *p)
+{
     for (size_t i = 0; i < p->nstretch; i++) {
         struct ct_stretch *r = &p->stretch[i];
-        if (r->is_dropped || reach_operands(p, r))
-            continue;
-        cut(p, r);
-        return false;
+        clear(p, r);
+        while (!r->is_dropped && !reach_operands(p, r)) {
+            withdraw_edges(p, r);
+            cut(p, r);
+            clear(p, r);
+        }
     }
-    return true;
 }
 
 struct ct_roll ct_roll_find(struct ct_arena *a, const struct ct_listing *l,
@@ -581,8 +610,7 @@ struct ct_roll ct_roll_find(struct ct_arena *a, const struct ct_listing *l,
     sign_places(&p, is_alone);
     link_windows(&p);
     find_repeats(&p, lanes);
-    while (!settle(&p))
-        ;
+    settle(&p);
     ct_stretch_lay_out(&p, lanes, &out);
     ct_arena_destroy(scratch);
     return out;
