@@ -1,29 +1,23 @@
 // See trees.h: which edges are branches by rule, and which come first.
 #include "formulate/trees.h"
 
+#include "base/sort.h"
 #include "formulate/small.h"
+#include "graph/reach.h"
 
 #include <string.h>
 
 // Distance of each node from ground over edges that can be branches: in edges, or in rotational freedoms.
 static int *node_depths(struct ct_build *b, bool by_rotation)
 {
-    int *depth = CT_NEWN(b->arena, int, b->nnode);
-    for (size_t i = 1; i < b->nnode; i++)
-        depth[i] = (int)b->nnode * CT_MAX_COORD;
-    for (bool again = true; again;) {
-        again = false;
-        for (size_t e = 0; e < b->nedge; e++) {
-            if (b->edge[e].kind == CT_EDGE_BODY || b->edge[e].never_branch)
-                continue;
-            const int length = by_rotation ? b->edge[e].weight_r : 1;
-            int *t = &depth[b->wiring[e].tail], *h = &depth[b->wiring[e].head];
-            if (*t + length < *h || *h + length < *t) {
-                *(*t < *h ? h : t) = (*t < *h ? *t : *h) + length;
-                again = true;
-            }
-        }
+    int *depth = CT_NEWN(b->arena, int, b->nnode), *length = CT_NEWN(b->arena, int, b->nedge);
+    bool *usable = CT_NEWN(b->arena, bool, b->nedge);
+    for (size_t e = 0; e < b->nedge; e++) {
+        usable[e] = b->edge[e].kind != CT_EDGE_BODY && !b->edge[e].never_branch;
+        length[e] = by_rotation ? b->edge[e].weight_r : 1;
     }
+    ct_graph_distances(b->arena, &b->graph, usable, length, (int)b->nnode * CT_MAX_COORD,
+                       depth);
     return depth;
 }
 
@@ -54,17 +48,27 @@ static int tie_rank(const struct ct_build *b, size_t i, const int *depth, const 
     return 2 + (depth[tail] < depth[head] ? depth[tail] : depth[head]);
 }
 
+static int order_names(const void *build, const void *left, const void *right)
+{
+    const struct ct_build *b = build;
+    const int *i = left, *k = right;
+    return strcmp(b->edge[*i].name, b->edge[*k].name);
+}
+
 // Equal ranks in the order of names: the trees of assembly, and with them the assembly found where there
 // are several, do not depend on the order of the file.
 static void rank_by_name(const struct ct_build *b, int *rank)
 {
-    const size_t n = b->nedge;
-    int *place = CT_NEWN(b->arena, int, n);
-    for (size_t i = 0; i < n; i++)
-        for (size_t k = 0; k < n; k++)
-            place[i] += strcmp(b->edge[k].name, b->edge[i].name) < 0;
-    for (size_t i = 0; i < n; i++)
-        rank[i] = (int)n * (rank[i] + 1) + place[i];
+    const int n = (int)b->nedge;
+    int *sorted = CT_NEWN(b->arena, int, n + 1), place = 0;
+    for (int i = 0; i < n; i++)
+        sorted[i] = i;
+    ct_sort(b->arena, sorted, b->nedge, sizeof *sorted, order_names, b);
+    for (int k = 0; k < n; k++) { // place: how many names come before
+        if (k && order_names(b, &sorted[k - 1], &sorted[k]) != 0)
+            place = k;
+        rank[sorted[k]] = n * (rank[sorted[k]] + 1) + place;
+    }
 }
 
 struct ct_pair_rules ct_pair_rules_make(struct ct_build *b,

@@ -50,7 +50,7 @@ static void allocate(struct ct_driver *r)
 {
     struct ct_arena *a = r->ctx->model;
     double **const vectors[]
-        = {&r->y0, &r->y, &r->dy, &r->y1, &r->dy1, &r->end, &r->dend, &r->point};
+        = {&r->y0, &r->y, &r->dy, &r->y1, &r->dy1, &r->moved, &r->dmoved, &r->point};
     for (size_t i = 0; i < COUNT(vectors); i++)
         *vectors[i] = CT_NEWN(a, double, r->p->ny);
     r->work = r->method->create(a, r->method, r->p);
@@ -124,10 +124,14 @@ static bool has_moved(struct ct_driver *r)
 static enum ct_eval project_end(struct ct_driver *r, const struct ct_method *method, double t1)
 {
     const struct ct_problem *p = r->p;
-    ct_stepper_copy(r->end, r->y1, p->ny);
-    ct_stepper_copy(r->dend, r->dy1, p->ny);
+    r->end = r->y1;
+    r->dend = r->dy1;
     if (!p->project || method->is_implicit)
         return CT_EVAL_OK;
+    r->end = r->moved;
+    r->dend = r->dmoved;
+    ct_stepper_copy(r->end, r->y1, p->ny);
+    ct_stepper_copy(r->dend, r->dy1, p->ny);
     const enum ct_eval e = p->project(p->user, t1, r->end);
     if (e != CT_EVAL_OK || !has_moved(r))
         return e;
@@ -139,6 +143,8 @@ static enum ct_eval project_end(struct ct_driver *r, const struct ct_method *met
 static enum ct_eval cut(struct ct_driver *r, const struct ct_stride *s)
 {
     const struct ct_problem *p = r->p;
+    r->end = r->moved;
+    r->dend = r->dmoved;
     s->method->dense(p, s->h, (s->t1 - r->t) / s->h, r->y, r->y1, s->work, r->end);
     ct_stepper_copy(r->dend, r->dy1, p->ny);
     if (ct_driver_is_in_gap(r, s, s->t1))
@@ -162,7 +168,7 @@ tolerance_of(const struct ct_driver *r, const struct ct_stride *s, struct ct_tol
 }
 
 // From y to end by the method and the projection. Refused with s->error > 1 when that is the reason.
-static enum ct_eval attempt(struct ct_driver *r, struct ct_stride *s)
+static inline enum ct_eval attempt(struct ct_driver *r, struct ct_stride *s)
 {
     struct ct_tolerance own;
     const struct ct_tolerance *tolerance = tolerance_of(r, s, &own);
@@ -264,7 +270,7 @@ static enum ct_eval tell_accepted(struct ct_driver *r, const struct ct_stride *s
 static enum ct_eval finish_step(struct ct_driver *r, struct ct_stride *s, double h)
 {
     enum ct_eval e = end_on_event(r, s);
-    if (e == CT_EVAL_OK)
+    if (e == CT_EVAL_OK && r->p->nroot)
         e = ct_watch_accept(&r->watch, s->t1, h, r->end, s->is_event);
     if (e == CT_EVAL_OK)
         e = interpolate_for_samples(r, s);
@@ -341,8 +347,8 @@ static void commit(struct ct_driver *r, const struct ct_stride *s)
     double *y = r->y, *dy = r->dy;
     r->y = r->end;
     r->dy = r->dend;
-    r->end = y;
-    r->dend = dy;
+    *(r->end == r->y1 ? &r->y1 : &r->moved) = y;
+    *(r->dend == r->dy1 ? &r->dy1 : &r->dmoved) = dy;
     r->t = s->t1;
     r->stats->steps++;
     // a crossing tells an implicit method nothing about the steps to come
@@ -394,7 +400,8 @@ static bool march(struct ct_driver *r)
                 r->t);
         if (!advance(r))
             return false;
-        if (ct_control_is_endless(&r->pace, r->stats->steps, most, r->t, r->o->t1 - r->t))
+        if (r->stats->steps >= r->pace.next
+            && ct_control_is_endless(&r->pace, r->stats->steps, most, r->t, r->o->t1 - r->t))
             return ct_error(r->ctx, nowhere, CT_E_STEP_COUNT,
                             "at t = %.3g after %ld steps, of %.2g s now: up to t = %.9g they "
                             "would be more than the %ld that are allowed",

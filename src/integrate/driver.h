@@ -27,14 +27,15 @@ struct ct_driver {
     bool is_stop_time;
     struct ct_control control;
     struct ct_pace pace;
-    double *y, *dy;      // (ny) each, as all that follow
-    double *y1, *dy1;    // end of the step as the method gives it
-    double *end, *dend;  // the same, projected
-    double *point;       // a state to spare
-    void *work;          // the method's own
-    void *crossing_work; // of ct_crossing; NULL: there are no singular positions to cross
-    double singular_in;  // time to the next one, from t
-    double reach;        // crossing it is to begin this long before
+    double *y, *dy;     // (ny) each, as all that follow
+    double *y1, *dy1;   // end of the step as the method gives it
+    double *end, *dend; // the same, projected: y1, dy1 themselves where that changes nothing
+    double *moved, *dmoved; // where end, dend are others
+    double *point;          // a state to spare
+    void *work;             // the method's own
+    void *crossing_work;    // of ct_crossing; NULL: there are no singular positions to cross
+    double singular_in;     // time to the next one, from t
+    double reach;           // crossing it is to begin this long before
     struct ct_striding *striding; // NULL: no crossings by steps of the method itself
     bool has_failed_stride;       // across the next position
     int failed_crossings;         // of it

@@ -172,15 +172,6 @@ double ct_stepper_norm(const struct ct_problem *p, const struct ct_tolerance *to
     return n ? sqrt(sum / n) : 0;
 }
 
-double ct_stepper_worse(const struct ct_problem *p, const struct ct_tolerance *tolerance,
-                        double t1, const double *y1, const double *e, double states)
-{
-    // a step that is refused anyway says nothing more
-    if (!p->output_error || !(states <= 1))
-        return states;
-    return ct_larger(p->output_error(p->user, t1, y1, e, tolerance, states), states);
-}
-
 double ct_stepper_error(const struct ct_problem *p, const struct ct_tolerance *tolerance,
                         double t1, const double *y, const double *y1, const double *e)
 {

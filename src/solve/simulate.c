@@ -150,6 +150,11 @@ static enum ct_eval accepted(void *user, double t, const double *y, const double
 {
     struct ct_run *r = user;
     const double turning_before = r->turning, t_before = r->t_turning;
+    if (!r->m->nrow && !r->e->nmemory) { // most often
+        if (r->fidelity)
+            ct_fidelity_accept(r->fidelity);
+        return CT_EVAL_OK;
+    }
     if (!ct_run_is_followed(r, t, y))
         return CT_EVAL_RETRY;
     r->singular->keeps_rows = r->method->is_implicit && (size_t)r->s->rank < r->m->nrow;
@@ -602,8 +607,8 @@ bool ct_run_simulate(struct ct_run *r, const struct ct_run_options *o,
                            .rhs = rhs,
                            .project = has_constraints(r) ? project : NULL,
                            .accepted = accepted,
-                           .longest_step = ct_run_longest_step,
-                           .singular_in = singular_in,
+                           .longest_step = r->e->nmemory ? ct_run_longest_step : NULL,
+                           .singular_in = r->m->nrow ? singular_in : NULL,
                            .set_crossing = set_crossing,
                            .crossed = crossed,
                            .residual = residual,
@@ -612,16 +617,17 @@ bool ct_run_simulate(struct ct_run *r, const struct ct_run_options *o,
                            .root = ct_run_root,
                            .next_time_event = ct_run_next_event,
                            .event = ct_run_event};
-    const struct ct_integrate_options io = {.t1 = o->duration,
-                                            .rtol = o->rtol,
-                                            .atol = o->atol,
-                                            .least_rtol = o->least_rtol,
-                                            .step = o->step,
-                                            .sample = sample,
-                                            .nsample = n,
-                                            .at_sample = ct_run_at_sample,
-                                            .at_singular_sample = at_singular_sample,
-                                            .at_step = ct_run_at_step};
+    const struct ct_integrate_options io
+        = {.t1 = o->duration,
+           .rtol = o->rtol,
+           .atol = o->atol,
+           .least_rtol = o->least_rtol,
+           .step = o->step,
+           .sample = sample,
+           .nsample = n,
+           .at_sample = ct_run_at_sample,
+           .at_singular_sample = at_singular_sample,
+           .at_step = o->progress || o->stiff_method ? ct_run_at_step : NULL};
     const bool ok = ct_run_march(r, &p, io);
     if (!ok)
         explain_end(r);
