@@ -139,7 +139,7 @@ static void turn_rows(const struct ct_stretches *p, struct ct_stretch *r, uint32
     r->count = (same - best) / n + 1;
 }
 
-void ct_stretches_find(struct ct_stretches *p, const bool is_alone[CT_NKIND], uint32_t lanes)
+void ct_stretches_find(struct ct_stretches *p, const bool is_alone[CT_NKIND], uint32_t rows)
 {
     order_operands(p);
     sign_places(p, is_alone);
@@ -154,7 +154,7 @@ void ct_stretches_find(struct ct_stretches *p, const bool is_alone[CT_NKIND], ui
             continue;
         }
         if ((same - r.period) / r.period + 1 >= CT_LEAST_ROWS)
-            turn_rows(p, &r, same, lanes);
+            turn_rows(p, &r, same, rows);
         for (uint32_t k = 0; k < r.period * r.count; k++)
             p->of_place[r.first + k] = (uint32_t)p->nstretch;
         i = r.first + r.period * r.count;

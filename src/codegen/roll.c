@@ -340,7 +340,8 @@ static void clear(const struct ct_stretches *p, struct ct_stretch *r)
         r->escapes_far = CT_NEWN(p->scratch, bool, r->period);
         r->least_row = CT_NEWN(p->scratch, uint32_t, r->period);
         r->part = CT_NEWN(p->scratch, unsigned char, r->period);
-        r->is_local = CT_NEWN(p->scratch, bool, r->period);
+        r->keep = CT_NEWN(p->scratch, enum ct_keep, r->period);
+        r->out_stride = CT_NEWN(p->scratch, int32_t, r->period);
     }
     memset(r->edge_of, 0, r->period * sizeof *r->edge_of);
     r->nedge = r->ncolumn = 0;
@@ -424,7 +425,7 @@ static void settle(struct ct_stretches *p)
 
 struct ct_roll ct_roll_find(struct ct_arena *a, const struct ct_listing *l,
                             const uint32_t *order, uint32_t n, const bool is_alone[CT_NKIND],
-                            uint32_t nwork, uint32_t lanes)
+                            uint32_t nwork, uint32_t rows, uint32_t lanes)
 {
     struct ct_stretches p = {.arena = a, .l = l, .order = order, .n = n};
     struct ct_roll out = {.place = CT_NEWN(a, uint32_t, l->nvalue + 1), .nwork = nwork};
@@ -439,9 +440,9 @@ struct ct_roll ct_roll_find(struct ct_arena *a, const struct ct_listing *l,
     for (uint32_t i = 0; i < n; i++)
         for (uint32_t k = 0; k < ct_stretch_instruction(&p, i)->nres; k++)
             p.at[ct_stretch_instruction(&p, i)->res[k]] = i;
-    ct_stretches_find(&p, is_alone, lanes);
+    ct_stretches_find(&p, is_alone, rows);
     settle(&p);
-    ct_stretch_lay_out(&p, lanes, &out);
+    ct_stretch_lay_out(&p, rows, lanes, &out);
     ct_arena_destroy(scratch);
     return out;
 }

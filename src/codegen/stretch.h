@@ -17,6 +17,7 @@ struct ct_stretches {
     struct ct_stretch *stretch;
     size_t nstretch, stretch_cap;
     uint32_t *of_place; // the stretch of a place, or none
+    uint32_t *output;   // by value: 1 + the first output that it is, or 0
 };
 
 // A result of a repeat that is put where the row before its first or behind its last one would be.
@@ -31,6 +32,8 @@ struct ct_stretch_edge {
 struct ct_stretch_column {
     uint32_t operand; // 3 slot + k that it is the sequence of
     bool is_copied;   // in each evaluation
+    bool is_number;   // constants: one double for all lanes
+    uint32_t at;      // among those of its kind
 };
 
 // How an operand is reached, before places are known.
@@ -49,6 +52,10 @@ struct ct_source {
     int32_t row,
         step; // CT_SOURCE_RESULTS: its row at row 0, rows per row; CT_SOURCE_INPUTS: step is the stride
 };
+
+// Where a result that leaves its row is kept: row by row; one strip of rows; one place for all rows, as the next row is
+// done with it before it has its own; in the output that it is, out_stride from row to row.
+enum ct_keep { CT_KEEP_ROWS, CT_KEEP_STRIP, CT_KEEP_PLACE, CT_KEEP_OUT };
 
 struct ct_stretch_stream {
     int kind;
@@ -81,12 +88,16 @@ struct ct_stretch {
 
     // places
     uint32_t origin;                  // place of row 0
-    uint32_t *offset;                 // (period) number of the result
+    enum ct_keep *keep;               // (period)
+    uint32_t *offset;                 // (period) number of the result, or output of row 0
+    int32_t *out_stride;              // (period)
     uint32_t row_stride, slot_stride; // places between rows, between results
     uint32_t nresult;
     uint32_t strip; // rows, 0: all
-    bool *is_local; // (period) the strip alone has places for it
     uint32_t local_origin, local_stride, nlocal;
+    uint32_t passed_origin, npassed;
+    uint32_t number_origin,
+        nnumber; // columns of constants, one double for all lanes: the first one of row 0; of a row
 };
 
 static inline const struct ct_instruction *ct_stretch_instruction(const struct ct_stretches *p,
@@ -111,9 +122,10 @@ struct ct_stretch *ct_stretch_of(const struct ct_stretches *p, uint32_t v, int32
                                  uint32_t *slot);
 enum { CT_LEAST_ROWS = 4 };
 
-/// All of them, ascending. is_alone, lanes: those of ct_roll_find.
-void ct_stretches_find(struct ct_stretches *p, const bool is_alone[CT_NKIND], uint32_t lanes);
-/// Places of all results that need some, and the loops.
-void ct_stretch_lay_out(struct ct_stretches *p, uint32_t lanes, struct ct_roll *out);
+/// All of them, ascending. is_alone, rows: those of ct_roll_find.
+void ct_stretches_find(struct ct_stretches *p, const bool is_alone[CT_NKIND], uint32_t rows);
+/// Places of all results that need some, and the loops. Arguments as those of ct_roll_find.
+void ct_stretch_lay_out(struct ct_stretches *p, uint32_t rows, uint32_t lanes,
+                        struct ct_roll *out);
 
 #endif

@@ -41,14 +41,15 @@ struct ct_machine {
         result,     // output columns
         power,      // d(work)/dt
         validity,   // indicators of linear beams, then squared slopes of all beams
-        energy,     // kinetic, potential
-        root,       // g of each mode
-        memory,     // next values; of whole turns their present ones
-        turns,      // of those: at a start, from the angles that are remembered
-        momentum,   // dT/du, and the same of `kept` where there is any
-        driver,     // value, rate of each driver
-        wanted,     // of each row: not negative in the right assembly
-        residual,   // r, phi, v; nothing if the equations have no residual, and so the next
+        carried, // of linear beams whose error is foretold: how the base moves (9), x, x' by plane
+        energy,   // kinetic, potential
+        root,     // g of each mode
+        memory,   // next values; of whole turns their present ones
+        turns,    // of those: at a start, from the angles that are remembered
+        momentum, // dT/du, and the same of `kept` where there is any
+        driver,   // value, rate of each driver
+        wanted,   // of each row: not negative in the right assembly
+        residual, // r, phi, v; nothing if the equations have no residual, and so the next
         tangent; // dr/dq, dr/du, dr/du', dv/dq, J: the entries; J alone where the rest is found along directions
     struct ct_tangent_lanes *lanes; // those, or NULL
     double *
