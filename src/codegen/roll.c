@@ -12,25 +12,6 @@ enum {
 
 // ---- how operands are reached -----------------------------------------------------------------
 
-uint32_t ct_stretch_argument(const struct ct_stretches *p, const struct ct_stretch *r,
-                             uint32_t row, uint32_t operand)
-{
-    return ct_stretch_operand(p, r->first + row * r->period + operand / 3, operand % 3);
-}
-
-// The repeat that makes v, with its row and instruction; NULL if none does.
-struct ct_stretch *ct_stretch_of(const struct ct_stretches *p, uint32_t v, int32_t *row,
-                                 uint32_t *slot)
-{
-    const uint32_t at = p->at[v];
-    if (at == none || p->of_place[at] == none)
-        return NULL;
-    struct ct_stretch *r = &p->stretch[p->of_place[at]];
-    *row = (int32_t)((at - r->first) / r->period);
-    *slot = (at - r->first) % r->period;
-    return r;
-}
-
 static bool is_made_before(const struct ct_stretches *p, const struct ct_stretch *r, uint32_t v)
 {
     return p->at[v] == none || p->at[v] < r->first;

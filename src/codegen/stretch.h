@@ -115,11 +115,26 @@ static inline uint32_t ct_stretch_operand(const struct ct_stretches *p, uint32_t
 }
 
 /// Operand 3 slot + k of a row.
-uint32_t ct_stretch_argument(const struct ct_stretches *p, const struct ct_stretch *r,
-                             uint32_t row, uint32_t operand);
+static inline uint32_t ct_stretch_argument(const struct ct_stretches *p,
+                                           const struct ct_stretch *r, uint32_t row,
+                                           uint32_t operand)
+{
+    return ct_stretch_operand(p, r->first + row * r->period + operand / 3, operand % 3);
+}
+
 /// The stretch that makes v, with its row and instruction; NULL if none does.
-struct ct_stretch *ct_stretch_of(const struct ct_stretches *p, uint32_t v, int32_t *row,
-                                 uint32_t *slot);
+static inline struct ct_stretch *ct_stretch_of(const struct ct_stretches *p, uint32_t v,
+                                               int32_t *row, uint32_t *slot)
+{
+    const uint32_t at = p->at[v];
+    if (at == CT_VALUE_NONE || p->of_place[at] == CT_VALUE_NONE)
+        return NULL;
+    struct ct_stretch *r = &p->stretch[p->of_place[at]];
+    *row = (int32_t)((at - r->first) / r->period);
+    *slot = (at - r->first) % r->period;
+    return r;
+}
+
 enum { CT_LEAST_ROWS = 4 };
 
 /// All of them, ascending. is_alone, rows: those of ct_roll_find.
