@@ -70,6 +70,14 @@ double ct_vector_largest(const double *v, size_t n)
     return max;
 }
 
+double ct_vector_size(const double *v, size_t n)
+{
+    double max = 0;
+    for (size_t i = 0; i < n; i++)
+        max = fabs(v[i]) > max || isnan(v[i]) ? fabs(v[i]) : max;
+    return max;
+}
+
 double ct_vector_dot(const double *x, const double *y, size_t n)
 {
     double sum = 0;
