@@ -461,56 +461,6 @@ static bool integrate(struct ct_sim *sim)
     return ok;
 }
 
-void ct_slope_warn(struct ct_ctx *ctx, const struct ct_equations *e,
-                   const struct ct_slope_report *report)
-{
-    for (size_t i = 0; i < e->nbend; i++) {
-        if (report[i].passed_at < 0)
-            continue;
-        const char *since
-            = report[i].passed_at > 0
-                ? ct_arena_printf(ctx->scratch, ", more than %g from t = %.6g s on",
-                                  CT_SLOPE_LIMIT, report[i].passed_at)
-                : "";
-        ct_warning(ctx, e->bend[i].mark, 0,
-                   "sections of beam '%s' turn by up to %.3g rad against its frame%s: one "
-                   "frame is good for %g; cut the beam into several that are welded end to end",
-                   e->bend[i].beam, report[i].largest, since, CT_SLOPE_LIMIT);
-    }
-}
-
-static void warn_of_starts(struct ct_sim *sim, const struct ct_build *b)
-{
-    const double worth_it = 0.01; // as the limit of the validity indicator
-    for (size_t i = 0; i < b->nflexible; i++) {
-        const struct ct_flexible *f = &b->flexible[i];
-        if (f->start_missed > worth_it)
-            ct_warning(&sim->own, f->beam->start[0].mark, 0,
-                       "beam '%s' starts with what its shapes have of this; they leave out "
-                       "%.3g %%",
-                       f->name, 100 * f->start_missed);
-    }
-}
-
-// Beams whose motion left what they are good for.
-static void warn_of_beams(struct ct_sim *sim)
-{
-    const struct ct_equations *e = &sim->system->equations;
-    warn_of_starts(sim, e->build);
-    ct_slope_warn(&sim->own, e, sim->report.bend);
-    for (size_t i = 0; i < e->nvalidity; i++) {
-        const struct ct_validity_report *v = &sim->report.validity[i];
-        if (v->left_at < 0)
-            continue;
-        ct_warning(
-            &sim->own, e->validity[i].mark, 0,
-            "beam '%s' is linear and left its range: the validity indicator passes %.3g at "
-            "t = %.6g s and reaches %.3g; errors are of that relative size, and "
-            "`formulation: foreshortening` has none of them",
-            e->validity[i].beam, CT_VALIDITY_LIMIT, v->left_at, v->largest);
-    }
-}
-
 // A run that a callback stopped has no diagnostic: it is done, too.
 static bool run(struct ct_sim *sim)
 {
@@ -537,7 +487,7 @@ static bool run(struct ct_sim *sim)
         ok = close_file(sim, ok);
     sim->write += ct_clock() - start;
     if (ok)
-        warn_of_beams(sim);
+        ct_sim_warn_of_beams(sim);
     if (ok && sim->kept)
         ct_sim_verify(sim);
     sim->is_done = ok;

@@ -193,18 +193,26 @@ static void compile_rest(struct ct_arena *a, struct ct_machine *m, const struct 
     compile(a, m, in, momentum.e, momentum.n, &m->momentum);
     compile(a, m, in, driver.e, driver.n, &m->driver);
     compile(a, m, in, wanted.e, wanted.n, &m->wanted);
-    struct list validity = {.a = a};
-    for (size_t i = 0; i < e->nvalidity; i++)
-        push(&validity, e->validity[i].eta);
+    struct list validity = {.a = a}, carried = {.a = a};
+    for (size_t i = 0; i < e->nvalidity; i++) {
+        const struct ct_validity *v = &e->validity[i];
+        push(&validity, v->eta);
+        for (int k = 0; k < 9 && v->foretells; k++)
+            push(&carried, v->carried[k / 3].e[k % 3]);
+        for (int k = 0; k < 2 * v->nplane && v->foretells; k++)
+            push(&carried, v->plane[k / 2].state[k % 2]);
+    }
     for (size_t i = 0; i < e->nbend; i++)
         for (size_t k = 0; k < e->bend[i].n; k++)
             push(&validity, e->bend[i].square[k]);
     compile(a, m, in, validity.e, validity.n, &m->validity);
+    compile(a, m, in, carried.e, carried.n, &m->carried);
     compile(a, m, in, energies, 2, &m->energy);
     compile(a, m, in, &e->power, ct_ex_is_zero(e->power) ? 0 : 1, &m->power);
     // seldom run: not worth native code
-    struct ct_program *const all[] = {&m->result, &m->root,   &m->turns,  &m->momentum,
-                                      &m->driver, &m->wanted, &m->energy, &m->validity};
+    struct ct_program *const all[]
+        = {&m->result, &m->root,   &m->turns,    &m->momentum, &m->driver,
+           &m->wanted, &m->energy, &m->validity, &m->carried};
     for (size_t i = 0; i < COUNT(all); i++)
         if (all[i]->nout)
             ct_program_use(a, all[i], NULL);
@@ -259,14 +267,27 @@ void ct_programs_compile(struct ct_arena *a, struct ct_machine *m)
     compile_residual(a, m, &in);
 }
 
-void ct_machine_compile(struct ct_arena *a, struct ct_machine *m, const struct ct_exs *x,
-                        const ct_ex *out, size_t n, struct ct_program *p)
+static void compile_apart(struct ct_arena *a, struct ct_machine *m, const struct ct_exs *x,
+                          const ct_ex *out, size_t n, enum ct_fuse fuse, struct ct_program *p)
 {
     const struct inputs in = list_inputs(a, m, x);
     *p = (struct ct_program){.next = m->apart};
-    compile_from(a, x, &in, out, n, CT_FUSE_NO, p);
+    compile_from(a, x, &in, out, n, fuse, p);
     ct_program_choose(a, m, p);
     m->apart = p;
+}
+
+void ct_machine_compile(struct ct_arena *a, struct ct_machine *m, const struct ct_exs *x,
+                        const ct_ex *out, size_t n, struct ct_program *p)
+{
+    compile_apart(a, m, x, out, n, CT_FUSE_NO, p);
+}
+
+void ct_machine_compile_solution(struct ct_arena *a, struct ct_machine *m,
+                                 const struct ct_exs *x, const ct_ex *out, size_t n,
+                                 struct ct_program *p)
+{
+    compile_apart(a, m, x, out, n, CT_FUSE_NATIVE, p);
 }
 
 void ct_machine_forget(struct ct_machine *m, const struct ct_program *p)
