@@ -40,6 +40,11 @@ simulation: {duration: 1}
 outputs: [root.q]
 END
 say simulate lumped.yaml
+for n in 1 3; do
+  sed -e "s/elements: 3, /elements: $n, frame: chord, points: {tip: length}, /" -e '/^joints/i\  bob: {mass: 1}' \
+    -e '/^simulation/i\  tip: {type: weld, from: rod.tip, to: bob}' lumped.yaml >bob.yaml
+  say simulate bob.yaml
+done
 echo '-- rotations without mass that follow: the step response is that of the modes'
 for keys in 'mass: lumped' 'theory: timoshenko, G: 2.6e7, shear_factor: 0.85'; do
   cat >step.yaml <<END
