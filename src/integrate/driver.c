@@ -99,22 +99,16 @@ static double first_step(struct ct_driver *r, double limit)
 
 // --- one step --------------------------------------------------------------------------------
 
-static bool differs(const double *a, const double *b, int n)
-{
-    for (int i = 0; i < n; i++)
-        if (a[i] != b[i])
-            return true;
-    return false;
-}
-
 // Has the projection moved y1 so far that its derivative must be found again? That of the step errs by h df/dy times
-// the way, so less than `unnoticed` of the tolerance is lost in the error of the step.
+// the way, so less than `unnoticed` of the tolerance is lost in the error of the step. Steps of fixed length keep it: it
+// is the first of their stages alone, and what it errs is of an order more than the error of the step, from which the way comes.
+// Over seven closed mechanisms and tops errors stay as they are with and without to a few percent, where steps resolve the motion.
 static bool has_moved(struct ct_driver *r)
 {
     const double unnoticed = 0.01;
     const struct ct_problem *p = r->p;
     if (r->o->step > 0)
-        return differs(r->end, r->y1, p->ny);
+        return false;
     for (int i = 0; i < p->ny; i++)
         r->point[i] = r->end[i] - r->y1[i];
     return !(ct_stepper_norm(p, &r->tolerance, r->y, r->y1, r->point) <= unnoticed);

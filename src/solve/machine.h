@@ -83,6 +83,10 @@ bool ct_machine_use(struct ct_arena *a, struct ct_machine *m, enum ct_backend ba
 /// as the others do, with `use` and `prepare`, until it is forgotten; a and x must live as long.
 void ct_machine_compile(struct ct_arena *a, struct ct_machine *m, const struct ct_exs *x,
                         const ct_ex *out, size_t n, struct ct_program *p);
+/// The same of a solution in closed form: native code fuses its products and sums.
+void ct_machine_compile_solution(struct ct_arena *a, struct ct_machine *m,
+                                 const struct ct_exs *x, const ct_ex *out, size_t n,
+                                 struct ct_program *p);
 void ct_machine_forget(struct ct_machine *m, const struct ct_program *p);
 
 /// The input by symbol of x (nsym), for ct_ex_value and ct_ex_jacobian_at; NaN for those that are no inputs.

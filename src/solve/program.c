@@ -267,14 +267,27 @@ void ct_programs_compile(struct ct_arena *a, struct ct_machine *m)
     compile_residual(a, m, &in);
 }
 
-void ct_machine_compile(struct ct_arena *a, struct ct_machine *m, const struct ct_exs *x,
-                        const ct_ex *out, size_t n, struct ct_program *p)
+static void compile_apart(struct ct_arena *a, struct ct_machine *m, const struct ct_exs *x,
+                          const ct_ex *out, size_t n, enum ct_fuse fuse, struct ct_program *p)
 {
     const struct inputs in = list_inputs(a, m, x);
     *p = (struct ct_program){.next = m->apart};
-    compile_from(a, x, &in, out, n, CT_FUSE_NO, p);
+    compile_from(a, x, &in, out, n, fuse, p);
     ct_program_choose(a, m, p);
     m->apart = p;
+}
+
+void ct_machine_compile(struct ct_arena *a, struct ct_machine *m, const struct ct_exs *x,
+                        const ct_ex *out, size_t n, struct ct_program *p)
+{
+    compile_apart(a, m, x, out, n, CT_FUSE_NO, p);
+}
+
+void ct_machine_compile_solution(struct ct_arena *a, struct ct_machine *m,
+                                 const struct ct_exs *x, const ct_ex *out, size_t n,
+                                 struct ct_program *p)
+{
+    compile_apart(a, m, x, out, n, CT_FUSE_NATIVE, p);
 }
 
 void ct_machine_forget(struct ct_machine *m, const struct ct_program *p)

@@ -15,10 +15,12 @@ enum ct_eval ct_run_accelerate(struct ct_run *r, double t, const double *y)
     const enum ct_eval e = ct_embed_solve(r->s);
     if (e != CT_EVAL_OK)
         return e;
-    for (size_t i = 0; i < r->m->nu; i++)
-        if (!isfinite(r->s->a[i]))
+    double *a = r->m->input + r->m->at_a;
+    for (size_t i = 0; i < r->m->nu; i++) {
+        a[i] = r->s->a[i];
+        if (!isfinite(a[i]))
             return CT_EVAL_RETRY;
-    ct_machine_copy(r->m->input + r->m->at_a, r->s->a, r->m->nu);
+    }
     return CT_EVAL_OK;
 }
 

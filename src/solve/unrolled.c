@@ -55,7 +55,7 @@ static void compile_solved(struct unrolled *f, struct ct_machine *m, const struc
     f->has_power = has_power(m->e);
     if (f->has_power)
         push(&l, &m->e->power, 1);
-    ct_machine_compile(f->form.arena, m, x, l.e, l.n, &f->solved);
+    ct_machine_compile_solution(f->form.arena, m, x, l.e, l.n, &f->solved);
 }
 
 static void compile_checked(struct unrolled *f, struct ct_machine *m, const struct ct_exs *x)
@@ -114,10 +114,11 @@ static double solve(struct ct_form *form, struct ct_machine *m, double *a)
     for (size_t i = 0; i < f->c->nfree; i++)
         if (!(inertia[i] > 0))
             return 0;
-    for (size_t i = 0; i < m->nu; i++)
-        if (!isfinite(out[i]))
+    for (size_t i = 0; i < m->nu; i++) {
+        a[i] = out[i];
+        if (!isfinite(a[i]))
             return 0;
-    ct_machine_copy(a, out, m->nu);
+    }
     ct_machine_copy(m->rate, out + m->nu, m->nq);
     return strength(f, inertia + f->c->nfree);
 }
