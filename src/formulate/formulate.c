@@ -166,11 +166,11 @@ bool ct_formulate(struct ct_ctx *ctx, struct ct_arena *a, const struct ct_model 
     const size_t before = ctx->nerror;
     struct ct_build *b = ct_build_create(ctx, a, m, options, NULL);
     *report = (struct ct_tree_report){0};
-    if (ctx->nerror > before || !ct_trees_choose(b, options, report)
-        || !ct_build_derive(b, !options->without_dynamics)
+    if (ctx->nerror > before || !ct_trees_choose(&b, options, report)
+        || !(b->is_derived || ct_build_derive(b, !options->without_dynamics))
         || !choose_beams(ctx, a, m, options, &b))
         return false;
-    if (!options->without_dynamics)
+    if (!options->without_dynamics && !b->is_derived)
         derive_dynamics(b, options);
     if (ctx->nerror > before)
         return false;

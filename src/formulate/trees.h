@@ -9,8 +9,8 @@
 #include "formulate/build.h"
 #include "formulate/formulate.h"
 
-/// b->T and b->R. Errors: CT_E_TREE.
-bool ct_trees_choose(struct ct_build *b, const struct ct_formulate_options *o,
+/// (*b)->T and (*b)->R; *b is another one, is_derived, where its equations were made on the way. Errors: CT_E_TREE.
+bool ct_trees_choose(struct ct_build **b, const struct ct_formulate_options *o,
                      struct ct_tree_report *report);
 
 /// By edge.
