@@ -120,7 +120,8 @@ void ct_arena_merge(struct ct_arena *into, struct ct_arena *from)
     if (from->under)
         from->under->data = NULL;
     into->total += from->total;
-    struct chunk **last = &from->head; // before the chunks of `into` but its newest, which has room
+    struct chunk **last
+        = &from->head; // before the chunks of `into` but its newest, which has room
     while (*last)
         last = &(*last)->next;
     struct chunk **second = into->head ? &into->head->next : &into->head;

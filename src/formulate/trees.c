@@ -11,13 +11,15 @@
 
 struct search {
     struct ct_ctx *ctx;
+    const struct ct_build *open; // the stage's, whose trees are sought
     const struct ct_model *model;
     const struct ct_formulate_options *options;
     struct ct_arena *owner; // of trial generations
     bool stays_open;        // there is a pair without rows, and none with rows is wanted
     struct ct_tree T, R;    // of least weight
     double cost;            // theirs; 0: not counted yet
-    struct ct_build *first; // theirs, which may be chosen: the equations are then made once; or NULL
+    struct ct_build
+        *first; // theirs, which may be chosen: the equations are then made once; or NULL
 };
 
 // The exact count of a generation; INFINITY where it fails or is not wanted.
@@ -46,7 +48,9 @@ static double pair_cost(void *data, const struct ct_tree *T, const struct ct_tre
     struct ct_arena *scratch = ct_arena_create_under(s->owner);
     struct ct_ctx quiet
         = {.model = scratch, .scratch = scratch}; // errors are reported by the chosen pair
-    struct ct_build *b = ct_build_create(&quiet, scratch, s->model, s->options, NULL);
+    struct ct_build *b = s->open->nflexible
+                           ? ct_build_create(&quiet, scratch, s->model, s->options, NULL)
+                           : ct_build_clone(&quiet, scratch, s->open);
     const double cost = derive_and_count(s, b, T, R);
     ct_arena_destroy(scratch);
     return cost;
@@ -333,7 +337,7 @@ bool ct_trees_choose(struct ct_build **build, const struct ct_formulate_options 
     } else if (o->tree == CT_TREE_AUTO && !o->measure_all) {
         int nrow, nu;
         count_weights(b, &p, &nrow, &nu);
-        struct search s = {b->ctx, b->model, o, b->arena, .stays_open = nrow == 0};
+        struct search s = {b->ctx, b, b->model, o, b->arena, .stays_open = nrow == 0};
         improve(b, &s, &r, &p, report);
         count_from_ground(b, &s, &p, report);
         take_first(&s, build, &p);
