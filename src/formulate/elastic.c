@@ -356,7 +356,12 @@ void ct_flexible_columns(struct ct_build *b, const struct ct_flexible *f,
                          struct ct_columns *out, ct_ex *M)
 {
     const struct ct_inertia_form *form = f->inertia->form;
-    form->mass ? form->mass(b, f, out, M) : mass_of_sums(b, f, out, M);
+    if (form->mass)
+        form->mass(b, f, out, M);
+    else if (f->beam->modes || f->beam->nshape)
+        ct_flexible_modal_mass(b, f, out, M);
+    else
+        mass_of_sums(b, f, out, M);
 }
 
 void ct_flexible_mass(struct ct_build *b, ct_ex *M)

@@ -90,6 +90,9 @@ ct_ex33 ct_base_turning(struct ct_build *b, const struct ct_base *m);
 /// Entries between elastic coordinates, added to M; columns of the base's motion.
 void ct_flexible_columns(struct ct_build *b, const struct ct_flexible *f,
                          struct ct_columns *out, ct_ex *M);
+/// The same of forms with sums, where coordinates are shapes of the whole beam.
+void ct_flexible_modal_mass(struct ct_build *b, const struct ct_flexible *f,
+                            struct ct_columns *out, ct_ex *M);
 /// Second derivatives of the foreshortening at the start of each element of a CHAIN with the symbols u', less the bias.
 ct_ex *ct_chain_accelerations(struct ct_build *b, const struct ct_flexible *f);
 /// 2 w x v
