@@ -29,9 +29,14 @@ static void find_shares(struct ct_build *b, const struct ct_flexible *f, int e, 
     }
 }
 
-// C' M C onto the lower triangle, C' M first.
+static bool is_fixed(const struct ct_exs *x, ct_ex e)
+{
+    return !(ct_ex_kinds(x, e) & ~(1u << CT_SYM_PARAM));
+}
+
+// C' M C onto the lower triangle, M C first: of what stays the same all along, or of what does not.
 static void add_element(struct ct_build *b, const struct ct_flexible *f, const ct_ex *C,
-                        const struct ct_element_sums *s, ct_ex *M)
+                        const struct ct_element_sums *s, bool fixed, ct_ex *M)
 {
     struct ct_exs *x = b->x;
     const int n = f->nelastic;
@@ -39,10 +44,31 @@ static void add_element(struct ct_build *b, const struct ct_flexible *f, const c
         ct_ex MC[CT_DOF] = {{0}};
         for (int j = 0; j < CT_DOF; j++)
             for (int l = 0; l < CT_DOF; l++)
-                MC[j] = ct_ex_add(x, MC[j], ct_ex_mul(x, s->M[j][l], C[l * n + k]));
+                if (is_fixed(x, s->M[j][l]) == fixed)
+                    MC[j] = ct_ex_add(x, MC[j], ct_ex_mul(x, s->M[j][l], C[l * n + k]));
         for (int i = k; i < n; i++)
             for (int j = 0; j < CT_DOF; j++)
                 M[i + n * k] = ct_ex_add(x, M[i + n * k], ct_ex_mul(x, C[j * n + i], MC[j]));
+    }
+}
+
+// What the sums keep as squares. p: n
+static void add_squares(struct ct_build *b, const struct ct_flexible *f, const ct_ex *C,
+                        const struct ct_element_sums *s, ct_ex *p, ct_ex *M)
+{
+    struct ct_exs *x = b->x;
+    const int n = f->nelastic;
+    for (int q = 0; q < s->nsquare; q++) {
+        for (int k = 0; k < n; k++) {
+            p[k] = CT_EX_ZERO;
+            for (int j = 2; j < CT_BENT_DOF; j++)
+                p[k] = ct_ex_add(x, p[k], ct_ex_mul(x, C[j * n + k], s->square[q][j]));
+        }
+        for (int k = 0; k < n; k++) {
+            const ct_ex heavy = ct_ex_mul(x, s->weight[q], p[k]);
+            for (int i = k; i < n; i++)
+                M[i + n * k] = ct_ex_add(x, M[i + n * k], ct_ex_mul(x, heavy, p[i]));
+        }
     }
 }
 
@@ -95,11 +121,14 @@ void ct_flexible_modal_mass(struct ct_build *b, const struct ct_flexible *f,
     struct reduced r = {CT_NEWN(b->arena, ct_ex, CT_DOF * n), CT_NEWN(b->arena, ct_ex, n),
                         CT_NEWN(b->arena, ct_ex, n), CT_NEWN(b->arena, ct_ex3, n),
                         CT_NEWN(b->arena, ct_ex3, n)};
-    ct_ex *own = CT_NEWN(b->arena, ct_ex, n * n), m = CT_EX_ZERO;
+    ct_ex *own = CT_NEWN(b->arena, ct_ex, n * n), *fixed = CT_NEWN(b->arena, ct_ex, n * n),
+          *p = CT_NEWN(b->arena, ct_ex, n), m = CT_EX_ZERO;
     ct_ex3 moment = {{CT_EX_ZERO, CT_EX_ZERO, CT_EX_ZERO}};
     for (int e = f->beam->nelement; e-- > 0;) {
         reduce(b, f, e, &s[e], &r);
-        add_element(b, f, r.C, &s[e], own);
+        add_element(b, f, r.C, &s[e], true, fixed);
+        add_element(b, f, r.C, &s[e], false, own);
+        add_squares(b, f, r.C, &s[e], p, own);
         add_beyond(b, f, &r, m, moment, own);
         for (int k = 0; k < n; k++) {
             out->moved[k] = ct_ex3_add(x, out->moved[k], r.moved[k]);
@@ -110,8 +139,8 @@ void ct_flexible_modal_mass(struct ct_build *b, const struct ct_flexible *f,
     }
     for (int k = 0; k < n; k++)
         for (int i = k; i < n; i++) {
-            const int p = f->elastic[i].u, q = f->elastic[k].u;
-            ct_ex *entry = &M[(size_t)(p > q ? p : q) + b->eqs->nu * (size_t)(p > q ? q : p)];
-            *entry = ct_ex_add(x, *entry, own[i + n * k]);
+            const int u = f->elastic[i].u, v = f->elastic[k].u;
+            ct_ex *entry = &M[(size_t)(u > v ? u : v) + b->eqs->nu * (size_t)(u > v ? v : u)];
+            *entry = ct_ex_add(x, *entry, ct_ex_add(x, fixed[i + n * k], own[i + n * k]));
         }
 }
