@@ -23,6 +23,13 @@ static const double place_rounding = 8;
 static const double moved_roundings = 4;
 // Corrections that are to go on after convergence do until they are this much smaller.
 static const double further = 1e-6;
+// Rates of convergence do not rise from that to above 1: corrections that have come to this part of the first one and shrink no
+// more are rounding, which shorter steps have, too. Up to this part of the tolerance it is borne.
+static const double settled = 1e-3, bearable = 0.3;
+// After convergence corrections that are not halved have come to rounding.
+static const double halved = 0.5;
+// Vibrations so many times as fast as the motion are not part of it.
+static const double much_faster = 10;
 // In the index-3 form places alone are judged, and speeds follow them divided by the step.
 static const double kappa_index3 = 0.01;
 enum { MOST = 10, MOST_FINEST = 30 };
@@ -57,6 +64,8 @@ struct ct_iteration *ct_iteration_create(struct ct_arena *a, const struct ct_pro
         it->Gc = CT_NEWN(a, double _Complex, n *n + 1);
         it->bc = CT_NEWN(a, double _Complex, n + 1);
         it->pivotc = CT_NEWN(a, int, n + 1);
+        it->H = CT_NEWN(a, double, n *n + 1);
+        it->pivot_slow = CT_NEWN(a, int, n + 1);
     }
     return it;
 }
@@ -242,18 +251,25 @@ enum ct_eval ct_iteration_refresh(struct ct_iteration *it, double t, const doubl
         memcpy(it->w, u, (size_t)it->nu * sizeof *u);
     assemble(it);
     it->is_new = true;
-    it->rate = it->c = it->e = 0;
+    it->rate = it->c = it->e = it->slow = 0;
     return CT_EVAL_OK;
+}
+
+// A (n x n, out) for c and e.
+static void fill(const struct ct_iteration *it, double *A, double c, double e)
+{
+    const int n = it->n;
+    const double x = c / e, y = 1 / e, z = 1 / c;
+    for (int j = 0; j < n; j++)
+        for (int i = j * n, k = 0; k < n; i++, k++)
+            A[i] = it->S[i] + x * it->X[i] + (k < it->nu ? y : z) * it->W[i];
 }
 
 bool ct_iteration_factor_anew(struct ct_iteration *it, double c, double e, double _Complex s,
                               struct ct_integrate_stats *stats)
 {
     const int n = it->n, split = it->nu;
-    const double x = c / e, y = 1 / e, z = 1 / c;
-    for (int j = 0; j < n; j++)
-        for (int i = j * n, k = 0; k < n; i++, k++)
-            it->G[i] = it->S[i] + x * it->X[i] + (k < split ? y : z) * it->W[i];
+    fill(it, it->G, c, e);
     it->c = it->e = 0;
     stats->factorizations++;
     if (!ct_lu(it->G, it->pivot, n, n))
@@ -367,10 +383,54 @@ double ct_iteration_error(struct ct_iteration *it, const struct ct_problem *p,
     return ct_stepper_worse(p, tolerance, t1, y1, e, states);
 }
 
+// How fast the motion is for its way: the largest |u|/|q|, without coordinates that are small as the tolerance sees them, and
+// of those that have gone further than a unit as after that.  [1/s]
+static double pace_of(const struct ct_iteration *it, double small, const double *y)
+{
+    const double *u = y + it->dae->nq;
+    double pace = 0;
+    for (int k = 0; k < it->nu; k++) {
+        const int i = it->dae->q_of[k];
+        const double way = i < 0 ? 1 : ct_smaller(fabs(y[i]), 1);
+        pace = ct_larger(pace, (fabs(u[k]) + small) / (way + small));
+    }
+    return pace;
+}
+
+// Factors that tell what is slower than c; those of up to twice or half of it will do.
+static bool factor_slow(struct ct_iteration *it, double c)
+{
+    if (it->slow > c / 2 && it->slow < 2 * c)
+        return true;
+    fill(it, it->H, c, c * c);
+    it->slow = ct_lu(it->H, it->pivot_slow, it->n, it->n) ? c : 0;
+    return it->slow > 0;
+}
+
+double ct_iteration_slow_norm(struct ct_iteration *it, const struct ct_tolerance *tolerance,
+                              const double *y, const bool *asked, const double *d,
+                              const double *u)
+{
+    const int nu = it->nu, n = it->n;
+    double *b = it->b, *slow = it->off;
+    const double small = tolerance->atol / tolerance->rtol;
+    if (!isfinite(small) || !factor_slow(it, much_faster * pace_of(it, small, y)))
+        return INFINITY;
+    memset(b, 0, (size_t)n * sizeof *b);
+    for (int j = 0; j < nu; j++)
+        for (int k = 0; k < nu; k++)
+            b[k] += it->M[k + nu * j] * u[j];
+    ct_lu_solve(b, it->H, it->pivot_slow, n, n, 1, n, false);
+    for (int k = 0; k < nu; k++)
+        slow[k] = asked[k] ? u[k] : b[k];
+    return ct_iteration_norm(it, d, slow, nu, 1);
+}
+
 void ct_iteration_start(struct ct_iteration *it)
 {
     const double tail = ct_larger(it->tail, DBL_EPSILON);
     it->count = 0;
+    it->is_further = false;
     it->rate = 0;
     // the last step's, trusted less and less; not where there is no tolerance that says how far off it may be
     it->tail = it->is_finest ? 1 : sqrt(tail * sqrt(tail));
@@ -379,6 +439,7 @@ void ct_iteration_start(struct ct_iteration *it)
 void ct_iteration_go_on(struct ct_iteration *it)
 {
     it->count = 1; // the last correction is known, its rate is not wanted
+    it->is_further = true;
     it->kappa *= further;
     it->kappa_for = NAN; // in this step only
 }
@@ -391,18 +452,29 @@ static bool is_within(const double *d, int n, double most)
     return true;
 }
 
+// Does a correction of this size, at this rate to the one before, show only rounding?
+static bool is_rounding(const struct ct_iteration *it, double rate, double size)
+{
+    if (it->is_further && rate >= halved && size <= 1)
+        return true;
+    const bool is_settled = size <= settled * it->first && size <= bearable && !it->is_finest;
+    return rate >= 1 && (size <= it->rounding || is_settled);
+}
+
 enum ct_verdict ct_iteration_judge(struct ct_iteration *it, double size, const double *d, int k)
 {
     if (!isfinite(size))
         return CT_DIVERGED;
     if (it->count++ > 0) {
         const double rate = size / it->size;
-        if (rate >= 1 && (size <= it->rounding || is_within(d, k * it->nu, it->least)))
+        if (is_rounding(it, rate, size) || (rate >= 1 && is_within(d, k * it->nu, it->least)))
             return CT_CONVERGED;
         it->rate = it->count > 2 ? sqrt(rate * it->rate) : rate; // two in turn are often uneven
         if (rate >= hopeless || (it->rate >= 1 && it->count > 3))
             return CT_DIVERGED;
         it->tail = it->rate < 1 ? it->rate / (1 - it->rate) : INFINITY;
+    } else {
+        it->first = size;
     }
     it->size = size;
     if (size == 0 || it->tail * size <= it->kappa)

@@ -39,6 +39,8 @@ struct ct_iteration {
     double one; // of a single equation: what its residual is multiplied by, in both systems
     double _Complex onec;
     int *pivot, *pivotc;
+    double *H, slow; // of the matrix for c = `slow` alone, to tell slow speeds; 0: not factored
+    int *pivot_slow;
     double *w; // speeds of the derivatives (nu), for N; NULL: the method knows no N
     double *b; // (n)
     double _Complex *bc;
@@ -50,7 +52,9 @@ struct ct_iteration {
     double kappa, rounding; // a correction below: converged; below: not to be bettered
     double kappa_for;       // the tolerance that it belongs to
     bool is_finest;         // there is no tolerance
+    bool is_further;        // corrections go on after convergence
     double least;           // nor where places change by less  [m, rad]
+    double first;           // size of the first correction
     double size, rate,
         tail; // of the last correction; over the one before; all that follow it, over it
     int most;
@@ -140,6 +144,12 @@ static inline double ct_iteration_norm(const struct ct_iteration *it, const doub
         sum += ct_iteration_square(u + s * nu, it->share + nu, nu);
     return sqrt(sum * (it->per_speed / ((u ? 2 : 1) * k)));
 }
+
+/// The norm of errors d, u (nu) of places and speeds at y of which, but for the speeds that are asked for, only what is slow
+/// counts of speeds, (8.10). INFINITY where that cannot be told. `off` is overwritten.
+double ct_iteration_slow_norm(struct ct_iteration *it, const struct ct_tolerance *tolerance,
+                              const double *y, const bool *asked, const double *d,
+                              const double *u);
 
 /// The error of a step that ends at y1, time t1: that of the states, `states`, or what the errors d, u (nu) of places and
 /// speeds mean for outputs, if that is more.  (8.6)

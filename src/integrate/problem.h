@@ -74,6 +74,8 @@ struct ct_problem {
     const struct ct_dae *dae;
     /// Per state: counts in error control (quadratures do not). NULL: all do.
     const bool *watched;
+    /// Per speed (nu): is wanted of the run itself, and not only what it leads to in places and outputs. NULL: all are.
+    const bool *asked_speeds;
     /// NULL: every state is measured by itself.
     const struct ct_groups *groups;
 

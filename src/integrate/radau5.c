@@ -11,27 +11,14 @@
 // The error of a step is that of an embedded formula of order 3 with the start as a further stage, filtered by the real
 // system; eta and lam take no part. Interpolated is the collocation polynomial.
 // Source: Hairer and Wanner (1996), IV.8 and VII.4, key hairer1996; formulation 8.4.
-#include "integrate/iteration.h"
+#include "integrate/radau.h"
 
 #include <complex.h>
 #include <math.h>
 #include <string.h>
 
-enum { STAGES = 3 };
-
-// Outputs near zero are held to this part of the absolute tolerance: of a vibration that is damped because the estimate does
-// not see it, over 1e5 radians, less than ten times that tolerance is lost.  (8.7)
-static const double near_zero = 0.05;
-
-// Filtered again, the error of a vibration of h omega radians in a step is less by 1/(1 + (h omega/GAMMA)^2): with this part
-// left it turns five times and more in each.
-static const double unfollowed = 0.01;
-// With derivatives from the end of the step an estimate must be this much smaller, if the first is to be one of directions only.
-static const double turned = 0.03;
-
 #define SQRT3 1.7320508075688772935
 #define SQRT6 2.4494897427831780982
-#define CBRT3 1.4422495703074083823
 
 #define C1 ((4 - SQRT6) / 10)
 #define C2 ((4 + SQRT6) / 10)
@@ -53,7 +40,6 @@ static const double INVERSE[STAGES][STAGES]
        {-1 + 8 * SQRT6 / 3, -1 - 8 * SQRT6 / 3, 5}};
 
 // Its eigenvalues, the roots of x^3 - 9 x^2 + 36 x - 60: GAMMA and ALPHA +- i BETA.
-static const double GAMMA = 3 - CBRT3 + CBRT3 * CBRT3;
 static const double ALPHA = 3 + (CBRT3 - CBRT3 * CBRT3) / 2;
 static const double BETA = SQRT3 / 2 * (CBRT3 + CBRT3 * CBRT3);
 
@@ -70,34 +56,8 @@ static const double T_INVERSE[STAGES][STAGES]
 // Weights of the stages in the error.
 static const double E[STAGES] = {-(13 + 7 * SQRT6) / 3, (-13 + 7 * SQRT6) / 3, -1. / 3};
 
-// Stages of a step, or their corrections, one stage behind the other.
-struct stages {
-    double h;
-    double *d, *u;     // motion and change of speed since the start  (nu x 3)
-    double *lam, *eta; // (rows x 3)
-};
-
-struct state {
-    const struct ct_dae *dae;
-    struct ct_iteration *it;
-    bool is_fresh, was_tried;  // there is no step before
-    struct stages before, now; // the last accepted step, this one
-    struct stages change;      // corrections, first in the basis of eigenvectors
-    double h;                  // of the weights that follow
-    double slope[STAGES][STAGES], defect_of[STAGES]; // A^-1/h and E/h
-    double ratio; // of this step to the one before: of the weights that follow
-    double further[STAGES][STAGES]; // its polynomial at this one's stages, less its end
-    struct ct_tolerance wanted, eased;
-    double *rate, *F, *r;        // u' (nu); residuals of d' and u'  (nu x 3)
-    double *phi, *v;             // (rows x 3)
-    double *q, *u, *u_dot, *lam; // of a stage; of the start  (lam)
-    double *d;                   // a motion, or change of speed  (nu)
-    double *gain, *defect;       // of quadratures: over h; error over h / GAMMA  (ny)
-    double *power, *power1;      // their rates at both ends  (ny)
-    double largest;              // acceleration at the end of steps so far
-};
-
-static void create_stages(struct ct_arena *a, struct stages *s, const struct ct_dae *dae)
+static void create_stages(struct ct_arena *a, struct ct_radau_stages *s,
+                          const struct ct_dae *dae)
 {
     s->d = CT_NEWN(a, double, STAGES * dae->nu + 1);
     s->u = CT_NEWN(a, double, STAGES * dae->nu + 1);
@@ -108,7 +68,7 @@ static void create_stages(struct ct_arena *a, struct stages *s, const struct ct_
 static void *create(struct ct_arena *a, const struct ct_method *method,
                     const struct ct_problem *p)
 {
-    struct state *s = CT_NEW(a, struct state);
+    struct ct_radau *s = CT_NEW(a, struct ct_radau);
     const int nu = p->dae->nu, m = p->dae->most_rows;
     (void)method;
     s->dae = p->dae;
@@ -137,15 +97,15 @@ static void *create(struct ct_arena *a, const struct ct_method *method,
 
 static void restart(void *work)
 {
-    struct state *s = work;
+    struct ct_radau *s = work;
     s->is_fresh = true;
     s->was_tried = false;
 }
 
 static void accept(void *work)
 {
-    struct state *s = work;
-    const struct stages spare = s->before;
+    struct ct_radau *s = work;
+    const struct ct_radau_stages spare = s->before;
     s->before = s->now;
     s->now = spare;
     s->is_fresh = s->was_tried = false;
@@ -162,15 +122,8 @@ static void lagrange(double *w, double x)
     w[2] = x * a * b * SCALE[2];
 }
 
-// out (n) = weighted stages z (n x 3).
-static inline void weigh(double *out, const double *w, const double *z, int n)
-{
-    for (int k = 0; k < n; k++)
-        out[k] = w[0] * z[k] + w[1] * z[k + n] + w[2] * z[k + 2 * n];
-}
-
 // Weights for a step of size h. Most steps are as long as the one before.
-static void find_weights(struct state *s, double h)
+static void find_weights(struct ct_radau *s, double h)
 {
     const double ratio = s->is_fresh ? 0 : h / s->before.h;
     for (int i = 0; i < STAGES && s->h != h; i++) {
@@ -187,10 +140,10 @@ static void find_weights(struct state *s, double h)
 }
 
 // First values of the stages: the last step's polynomial continued, or a straight line.
-static void predict(struct state *s, double h, const double *u0, const double *u_dot0)
+static void predict(struct ct_radau *s, double h, const double *u0, const double *u_dot0)
 {
     const int nu = s->dae->nu, m = s->it->m;
-    struct stages *now = &s->now;
+    struct ct_radau_stages *now = &s->now;
     now->h = h;
     for (int i = 0; i < STAGES; i++) {
         double *d = now->d + i * nu, *u = now->u + i * nu;
@@ -200,8 +153,8 @@ static void predict(struct state *s, double h, const double *u0, const double *u
                 u[k] = C[i] * h * u_dot0[k];
             }
         } else {
-            weigh(d, s->further[i], s->before.d, nu);
-            weigh(u, s->further[i], s->before.u, nu);
+            ct_radau_weigh(d, s->further[i], s->before.d, nu);
+            ct_radau_weigh(u, s->further[i], s->before.u, nu);
         }
         for (int k = 0; k < m; k++) {
             now->eta[k + i * m] = 0;
@@ -213,7 +166,7 @@ static void predict(struct state *s, double h, const double *u0, const double *u
 // ---- the iteration ----------------------------------------------------------------------------------
 
 // Place and speed of stage i.
-static inline void place_stage(struct state *s, const double *y, int i)
+static inline void place_stage(struct ct_radau *s, const double *y, int i)
 {
     const int nq = s->dae->nq, nu = s->dae->nu;
     ct_iteration_move(s->dae, y, s->now.d + i * nu, s->q);
@@ -221,24 +174,24 @@ static inline void place_stage(struct state *s, const double *y, int i)
         s->u[k] = y[nq + k] + s->now.u[k + i * nu];
 }
 
-static enum ct_eval find_residuals(struct state *s, double t, const double *y,
+static enum ct_eval find_residuals(struct ct_radau *s, double t, const double *y,
                                    struct ct_integrate_stats *stats)
 {
     const struct ct_dae *dae = s->dae;
     const int nu = dae->nu, m = s->it->m;
-    const struct stages *z = &s->now;
+    const struct ct_radau_stages *z = &s->now;
     for (int i = 0; i < STAGES; i++) {
         double *F = s->F + i * nu;
         const double *rate = dae->is_plain ? s->u : s->rate;
         place_stage(s, y, i);
         if (!dae->is_plain)
             dae->chart_rate(dae->user, z->d + i * nu, s->u, s->rate);
-        weigh(F, s->slope[i], z->d, nu);
+        ct_radau_weigh(F, s->slope[i], z->d, nu);
         for (int k = 0; k < nu; k++)
             F[k] -= rate[k];
         if (m)
             ct_iteration_push(s->it, F, -1, z->eta + i * m);
-        weigh(s->u_dot, s->slope[i], z->u, nu);
+        ct_radau_weigh(s->u_dot, s->slope[i], z->u, nu);
         stats->evaluations++;
         const enum ct_eval e
             = dae->residual(dae->user, t + C[i] * z->h, s->q, s->u, s->u_dot, z->lam + i * m,
@@ -259,32 +212,8 @@ static inline void turn_basis(double *z, const double (*turn)[STAGES], int n)
     }
 }
 
-// The first column in the basis of eigenvectors. With u eliminated, r += (c M + C) F and v += J F; then u changes by
-// (c - N) d - J' c eta + F.
-static inline void solve_real(struct state *s, const int nu, const int m)
-{
-    struct ct_iteration *it = s->it;
-    const double c = it->c, *F = s->F;
-    double *d = s->change.d, *u = s->change.u, *eta = s->change.eta;
-    for (int j = 0; j < nu; j++) {
-        for (int k = 0; k < nu; k++)
-            s->r[k] += (c * it->M[k + nu * j] + it->C[k + nu * j]) * F[j];
-        for (int i = 0; i < m; i++)
-            s->v[i] += it->J[i + m * j] * F[j];
-    }
-    ct_iteration_solve(it, d, eta, s->change.lam, s->r, s->phi, s->v);
-    for (int k = 0; k < nu; k++)
-        u[k] = c * d[k] + F[k];
-    if (!s->dae->is_plain)
-        ct_iteration_turn(it, u, -1, d);
-    for (int i = 0; i < m; i++)
-        eta[i] *= c;
-    if (m)
-        ct_iteration_push(it, u, -1, eta);
-}
-
 // The same for the other two: real and imaginary part of one, c = a + i b.
-static inline void solve_complex(struct state *s, const int nu, const int m)
+static inline void solve_complex(struct ct_radau *s, const int nu, const int m)
 {
     struct ct_iteration *it = s->it;
     const double a = ALPHA / s->h, b = BETA / s->h, *F = s->F + nu, *G = F + nu;
@@ -326,13 +255,13 @@ static inline void add(double *z, const double *change, int n)
 }
 
 // From residuals to corrections, which are added to the stages; their size.
-static inline double change_stages(struct state *s, const int nu, const int m)
+static inline double change_stages(struct ct_radau *s, const int nu, const int m)
 {
     turn_basis(s->F, T_INVERSE, nu);
     turn_basis(s->r, T_INVERSE, nu);
     turn_basis(s->phi, T_INVERSE, m);
     turn_basis(s->v, T_INVERSE, m);
-    solve_real(s, nu, m);
+    ct_radau_solve(s, nu, m);
     solve_complex(s, nu, m);
     turn_basis(s->change.d, T, nu);
     turn_basis(s->change.u, T, nu);
@@ -345,7 +274,7 @@ static inline double change_stages(struct state *s, const int nu, const int m)
     return ct_iteration_norm(s->it, s->change.d, s->change.u, nu, STAGES);
 }
 
-static enum ct_eval correct(struct state *s, double t, const double *y,
+static enum ct_eval correct(struct ct_radau *s, double t, const double *y,
                             enum ct_verdict *verdict, struct ct_integrate_stats *stats)
 {
     const int nu = s->it->nu, m = s->it->m;
@@ -362,7 +291,7 @@ static enum ct_eval correct(struct state *s, double t, const double *y,
 
 // Derivatives, where they are too old: at the second stage as predicted, nearer to all stages than the start is; on a first
 // step, whose prediction is a straight line, at the start.
-static enum ct_eval refresh(struct state *s, double t, double h, const double *y,
+static enum ct_eval refresh(struct ct_radau *s, double t, double h, const double *y,
                             const double *dy, struct ct_integrate_stats *stats)
 {
     const int nq = s->dae->nq, middle = 1;
@@ -371,11 +300,11 @@ static enum ct_eval refresh(struct state *s, double t, double h, const double *y
     if (s->is_fresh)
         return ct_iteration_refresh(s->it, t, y, y + nq, dy + nq, s->lam, stats);
     place_stage(s, y, middle);
-    weigh(s->u_dot, s->slope[middle], s->now.u, s->dae->nu);
+    ct_radau_weigh(s->u_dot, s->slope[middle], s->now.u, s->dae->nu);
     return ct_iteration_refresh(s->it, t + C[middle] * h, s->q, s->u, s->u_dot, s->lam, stats);
 }
 
-static enum ct_eval iterate(struct state *s, double t, double h, const double *y,
+static enum ct_eval iterate(struct ct_radau *s, double t, double h, const double *y,
                             const double *dy, struct ct_integrate_stats *stats)
 {
     const int nq = s->dae->nq;
@@ -398,7 +327,7 @@ static enum ct_eval iterate(struct state *s, double t, double h, const double *y
 }
 
 // Further corrections after convergence, as far as they lead.
-static enum ct_eval iterate_on(struct state *s, double t, const double *y,
+static enum ct_eval iterate_on(struct ct_radau *s, double t, const double *y,
                                struct ct_integrate_stats *stats)
 {
     enum ct_verdict verdict = CT_GO_ON;
@@ -411,59 +340,8 @@ static enum ct_eval iterate_on(struct state *s, double t, const double *y,
 
 // ---- a step -----------------------------------------------------------------------------------------
 
-// The filtered error of the embedded formula at the start y, whose rates are u and u_dot.
-static inline double filter_few(struct state *s, const double *u, const double *u_dot,
-                                const int nu, const int m)
-{
-    struct ct_iteration *it = s->it;
-    const struct stages *z = &s->now;
-    double *F = s->F, *defect = s->rate;
-    weigh(F, s->defect_of, z->d, nu);
-    weigh(defect, s->defect_of, z->u, nu);
-    for (int k = 0; k < nu; k++) { // as residuals: the error is the correction they lead to
-        F[k] = -(F[k] + u[k]);
-        defect[k] = -(defect[k] + u_dot[k]);
-        s->r[k] = 0;
-    }
-    for (int j = 0; j < nu; j++)
-        for (int k = 0; k < nu; k++)
-            s->r[k] += it->M[k + nu * j] * defect[j];
-    for (int i = 0; i < m; i++)
-        s->phi[i] = s->v[i] = 0;
-    solve_real(s, nu, m);
-    return ct_iteration_norm(it, s->change.d, s->change.u, nu, 1);
-}
-
-static double filter(struct state *s, const double *u, const double *u_dot)
-{
-    const int nu = s->it->nu, m = s->it->m;
-    return m || nu > 2 ? filter_few(s, u, u_dot, nu, m)
-         : nu == 1     ? filter_few(s, u, u_dot, 1, 0)
-                       : filter_few(s, u, u_dot, 2, 0);
-}
-
-// Error of the step. Where it is too large at first, on a first step or after a refusal, it is filtered once more, which
-// takes off what stiff components that start off their slow motion add to it.
-static enum ct_eval estimate(struct state *s, const struct ct_problem *p, double t,
-                             const double *y, const double *dy, double *y1, double *dy1,
-                             double *err, struct ct_integrate_stats *stats)
-{
-    const int nq = s->dae->nq, nu = s->dae->nu;
-    *err = filter(s, y + nq, dy + nq);
-    if (*err < 1 || !(s->is_fresh || s->was_tried))
-        return CT_EVAL_OK;
-    memcpy(y1, y, (size_t)p->ny * sizeof *y);
-    s->dae->retract(s->dae->user, y, s->change.d, y1);
-    for (int k = 0; k < nu; k++)
-        y1[nq + k] += s->change.u[k];
-    const enum ct_eval e = ct_stepper_rhs(p, t, y1, dy1, stats);
-    if (e == CT_EVAL_OK)
-        *err = filter(s, y1 + nq, dy1 + nq);
-    return e;
-}
-
 // Rates of quadratures at stage i, whose derivatives dy1 are.
-static void add_power(struct state *s, int ny, int i, const double *dy1)
+static void add_power(struct ct_radau *s, int ny, int i, const double *dy1)
 {
     for (int k = s->dae->nq + s->dae->nu; k < ny; k++) {
         s->gain[k] += A[STAGES - 1][i] * dy1[k];
@@ -472,7 +350,7 @@ static void add_power(struct state *s, int ny, int i, const double *dy1)
 }
 
 // y1 and dy1 from the last stage; quadratures and their errors from their rates at the stages, where there are any.
-static enum ct_eval finish(struct state *s, const struct ct_problem *p, double t, double h,
+static enum ct_eval finish(struct ct_radau *s, const struct ct_problem *p, double t, double h,
                            const double *y, const double *dy, double *y1, double *dy1,
                            struct ct_integrate_stats *stats)
 {
@@ -502,26 +380,8 @@ static enum ct_eval finish(struct state *s, const struct ct_problem *p, double t
     return e;
 }
 
-// The error estimate is that of order 3, but the step is better: a tolerance tol of the step is one of 0.1 tol^(2/3)
-// of the estimate, as in the program of the source.
-static struct ct_tolerance ease(const struct ct_tolerance *tolerance)
-{
-    const double tol = tolerance->rtol > 0 ? tolerance->rtol : tolerance->atol;
-    const double factor = fmax(1, 0.1 / cbrt(tol));
-    return (struct ct_tolerance){factor * tolerance->rtol, factor * tolerance->atol};
-}
-
-// The eased tolerance, found once as long as it is the same.
-static const struct ct_tolerance *eased(struct state *s, const struct ct_tolerance *tolerance)
-{
-    if (s->wanted.rtol != tolerance->rtol || s->wanted.atol != tolerance->atol)
-        s->eased = ease(tolerance);
-    s->wanted = *tolerance;
-    return &s->eased;
-}
-
 // Multipliers to begin with: those at the end of the step before, or of the start.
-static enum ct_eval find_multipliers(struct state *s, double t, const double *y, bool is_new)
+static enum ct_eval find_multipliers(struct ct_radau *s, double t, const double *y, bool is_new)
 {
     const int m = s->it->m;
     if (m == 0)
@@ -532,106 +392,25 @@ static enum ct_eval find_multipliers(struct state *s, double t, const double *y,
     return CT_EVAL_OK;
 }
 
-// The error of places and speeds at the end of the step, once more, by derivatives from there. The first estimate knows
-// stiff forces as they are directed at the second stage: errors along what has turned since become forces.
-static enum ct_eval estimate_at_end(struct state *s, double t1, const double *y,
-                                    const double *dy, const double *y1, const double *dy1,
-                                    struct ct_integrate_stats *stats)
-{
-    struct ct_iteration *it = s->it;
-    const int nq = s->dae->nq;
-    const double c = GAMMA / s->now.h;
-    it->has_tangent = false;
-    const enum ct_eval e = ct_iteration_refresh(it, t1, y1, y1 + nq, dy1 + nq,
-                                                s->now.lam + (STAGES - 1) * it->m, stats);
-    if (e != CT_EVAL_OK)
-        return e;
-    if (!ct_iteration_factor(it, c, c * c, 0, stats))
-        return CT_EVAL_RETRY;
-    filter(s, y + nq, dy + nq);
-    return CT_EVAL_OK;
-}
-
-// The error filtered by the same factors again, which leaves of it what is not stiff.
-static void filter_again(struct state *s)
-{
-    const struct ct_iteration *it = s->it;
-    const int nu = it->nu, m = it->m;
-    const double c = it->c, *d = s->change.d, *u = s->change.u;
-    for (int k = 0; k < nu; k++) {
-        s->F[k] = u[k] - c * d[k];
-        s->r[k] = 0;
-    }
-    for (int j = 0; j < nu; j++)
-        for (int k = 0; k < nu; k++)
-            s->r[k] -= c * it->M[k + nu * j] * u[j];
-    for (int i = 0; i < m; i++)
-        s->phi[i] = s->v[i] = 0;
-    solve_real(s, nu, m);
-}
-
-// Are forces at the end of the step as they were in the iteration, to the tolerance? Where stiff ones turn within the step,
-// corrections that are small as motions leave large errors of forces, which outputs may consist of.
-static bool is_balanced(struct state *s, double rtol, const double *dy1)
-{
-    const int nq = s->dae->nq, nu = s->dae->nu, last = STAGES - 1;
-    double off = 0, size = 0;
-    weigh(s->rate, s->slope[last], s->now.u, nu);
-    for (int k = 0; k < nu; k++) {
-        off = ct_larger(off, fabs(dy1[nq + k] - s->rate[k]));
-        size = ct_larger(size, fabs(s->rate[k]));
-    }
-    if (!(off <= rtol * ct_larger(s->largest, size)))
-        return false;
-    s->largest = ct_larger(s->largest, size);
-    return true;
-}
-
 // y1 and dy1 from the stages, and the error of the states, where a tolerance is given.
-static enum ct_eval conclude(struct state *s, const struct ct_problem *p, double t, double h,
+static enum ct_eval conclude(struct ct_radau *s, const struct ct_problem *p, double t, double h,
                              const double *y, const double *dy,
                              const struct ct_tolerance *eased, double *y1, double *dy1,
                              double *err, struct ct_integrate_stats *stats)
 {
-    enum ct_eval e = eased ? estimate(s, p, t, y, dy, y1, dy1, err, stats) : CT_EVAL_OK;
+    enum ct_eval e
+        = eased ? ct_radau_estimate(s, p, eased, t, y, dy, y1, dy1, err, stats) : CT_EVAL_OK;
     if (e == CT_EVAL_OK)
         e = finish(s, p, t, h, y, dy, y1, dy1, stats);
     return e;
-}
-
-// That of outputs and quadratures, if it is more. Of what is much faster than steps can follow, an error of outputs does not
-// count: it is damped, and where outputs are forces of very stiff springs the rest is beyond the digits of places.
-static enum ct_eval look_at_outputs(struct state *s, const struct ct_problem *p, double t1,
-                                    const double *y, const double *dy,
-                                    const struct ct_tolerance *eased, double *y1, double *dy1,
-                                    double *err, struct ct_integrate_stats *stats)
-{
-    const struct ct_tolerance outputs = {eased->rtol, near_zero * eased->atol};
-    const struct stages *e = &s->change;
-    const double states = *err;
-    const int first = s->dae->nq + s->dae->nu;
-    *err = ct_iteration_error(s->it, p, &outputs, t1, y1, e->d, e->u, states);
-    if (states <= 1 && *err > 1) {
-        const enum ct_eval eval = estimate_at_end(s, t1, y, dy, y1, dy1, stats);
-        if (eval != CT_EVAL_OK)
-            return eval;
-        const double all = ct_iteration_error(s->it, p, &outputs, t1, y1, e->d, e->u, states);
-        filter_again(s);
-        const double slow = ct_iteration_error(s->it, p, &outputs, t1, y1, e->d, e->u, states);
-        const double better = slow < unfollowed * all ? slow : all;
-        *err = better < turned * *err ? better : *err;
-        s->it->c = s->it->e = 0; // the complex factors are not there
-    }
-    *err = ct_larger(*err, ct_stepper_largest(p, eased, first, y, y1, s->defect));
-    return CT_EVAL_OK;
 }
 
 static enum ct_eval step(const struct ct_problem *p, double t, double h, const double *y,
                          const double *dy, const struct ct_tolerance *tolerance, double *y1,
                          double *dy1, double *err, void *work, struct ct_integrate_stats *stats)
 {
-    struct state *s = work;
-    const struct ct_tolerance *tol = tolerance ? eased(s, tolerance) : NULL;
+    struct ct_radau *s = work;
+    const struct ct_tolerance *tol = tolerance ? ct_radau_ease(s, tolerance) : NULL;
     const int first = s->dae->nq + s->dae->nu; // of quadratures
     const bool has_new_rows = ct_iteration_begin(s->it, tol, h, y);
     enum ct_eval e = find_multipliers(s, t, y, has_new_rows);
@@ -640,13 +419,13 @@ static enum ct_eval step(const struct ct_problem *p, double t, double h, const d
     if (e == CT_EVAL_OK)
         e = conclude(s, p, t, h, y, dy, tol, y1, dy1, err, stats);
     if (e == CT_EVAL_OK && tol && p->output_error
-        && !is_balanced(s, sqrt(tolerance->rtol), dy1)) {
+        && !ct_radau_is_balanced(s, sqrt(tolerance->rtol), dy1)) {
         e = iterate_on(s, t, y, stats);
         if (e == CT_EVAL_OK)
             e = conclude(s, p, t, h, y, dy, tol, y1, dy1, err, stats);
     }
     if (e == CT_EVAL_OK && tol)
-        e = look_at_outputs(s, p, t + h, y, dy, tol, y1, dy1, err, stats);
+        e = ct_radau_look_at_outputs(s, p, t + h, y, dy, tol, y1, dy1, err, stats);
     s->was_tried = true;
     if (e != CT_EVAL_OK)
         return e;
@@ -659,13 +438,13 @@ static enum ct_eval step(const struct ct_problem *p, double t, double h, const d
 static void dense(const struct ct_problem *p, double h, double theta, const double *y,
                   const double *y1, void *work, double *out)
 {
-    struct state *s = work;
+    struct ct_radau *s = work;
     const int nq = s->dae->nq, nu = s->dae->nu;
     double w[STAGES];
     lagrange(w, theta);
-    weigh(s->d, w, s->now.d, nu);
+    ct_radau_weigh(s->d, w, s->now.d, nu);
     s->dae->retract(s->dae->user, y, s->d, out);
-    weigh(s->d, w, s->now.u, nu);
+    ct_radau_weigh(s->d, w, s->now.u, nu);
     for (int k = 0; k < nu; k++)
         out[nq + k] = y[nq + k] + s->d[k];
     const int i = nq + nu;

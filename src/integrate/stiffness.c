@@ -18,6 +18,9 @@ static const double suspicious_step = 0.5;
 static const double unfollowed_step = 3;
 // Motions that go on at the rate of the fastest have to be followed, whatever the method.
 static const double least_separation = 10;
+// Nor if they are vibrations that no output asks the rates of, (8.10): steps of explicit methods, of some 1/fast, are worth a
+// trial where so many of them are made while places change by themselves.
+static const double far_off = 1000;
 // A motion that changes by no more in a step needs no such steps: (1e-3)^5 is rounding already. Where the rounding of places
 // alone changes forces by more than the tolerance, it is that which holds them up, far from the limit of stability.
 static const double idle_step = 1e-3;
@@ -116,6 +119,17 @@ static bool is_rounding_felt(const struct ct_stiffness *s, const double *y)
     return DBL_EPSILON * s->fast * s->fast * place > s->rtol * length(s->f, s->first, s->last);
 }
 
+// The rate at which places change by themselves, of those that have gone further than a unit by a unit.
+static double find_pace(const struct ct_stiffness *s, const double *y)
+{
+    double place = 0, speed = 0;
+    for (int i = 0; i < s->first; i++)
+        place = fmax(place, fabs(y[i]));
+    for (int i = s->first; i < s->last; i++)
+        speed = fmax(speed, fabs(y[i]));
+    return speed / fmin(place, 1);
+}
+
 static bool test(struct ct_stiffness *s, double t, const double *y)
 {
     const double steps = (double)(s->count - s->window_steps);
@@ -128,9 +142,11 @@ static bool test(struct ct_stiffness *s, double t, const double *y)
         return false;
     s->slow = find_slow(s, t - s->t0);
     const double reach = s->step * s->fast;
-    const bool is_held_up
-        = reach > suspicious_step || (s->step * s->slow < idle_step && is_rounding_felt(s, y));
-    return reach > unfollowed_step || (is_held_up && s->fast > least_separation * s->slow);
+    s->is_far = s->p->asked_speeds && s->fast > far_off * find_pace(s, y);
+    const bool is_idle = s->is_far || s->step * s->slow < idle_step;
+    const bool is_held_up = reach > suspicious_step || (is_idle && is_rounding_felt(s, y));
+    const bool is_apart = s->is_far || s->fast > least_separation * s->slow;
+    return reach > unfollowed_step || (is_held_up && is_apart);
 }
 
 bool ct_stiffness_watch(struct ct_stiffness *s, double t, const double *y, double end)

@@ -19,8 +19,10 @@ struct ct_stiffness {
     double *v, *w, *f, *f0, *point, *y0; // (ny)
     double t0;                           // time of y0
     long count, next_trial;              // steps; when suspicion is next listened to
-    int in_a_row;                        // tests that were suspicious
-    double window_t;                     // where the last test was
+    bool
+        is_far; // vibrations of that rate need not be followed for their speeds, at the last test
+    int in_a_row;    // tests that were suspicious
+    double window_t; // where the last test was
     long window_steps;
     const struct ct_integrate_stats *stats; // of the run, live
     long window_evaluations;

@@ -44,6 +44,22 @@ static bool is_controlled(const struct ct_equations *e, ct_ex v)
         && v.id != e->total.id;
 }
 
+const bool *ct_fidelity_asked_speeds(struct ct_arena *a, const struct ct_equations *e)
+{
+    const struct ct_exs *x = e->x;
+    const unsigned known
+        = 1u << CT_SYM_TIME | 1u << CT_SYM_PARAM | 1u << CT_SYM_Q | 1u << CT_SYM_U;
+    bool *asked = CT_NEWN(a, bool, e->nu + 1);
+    for (size_t i = 0; i < e->nresult; i++) {
+        const ct_ex v = e->result[i].value;
+        if (v.id == e->total.id || ct_ex_kinds(x, v) & ~known)
+            return NULL;
+        for (size_t k = 0; k < e->nu; k++)
+            asked[k] |= v.id == e->u[k].symbol.id;
+    }
+    return asked;
+}
+
 struct ct_fidelity *ct_fidelity_create(struct ct_arena *a, struct ct_machine *m)
 {
     const struct ct_equations *e = m->e;

@@ -1,6 +1,7 @@
 #!/bin/sh
 # stiff.sh CASE: `method: auto` finds that the model of the line CASE in stiff.txt is stiff, and does not fall back to many small
 # steps: at each of the tolerances it makes at most twice as many as radau5, and errs by at most 10 T where a reference is named.
+# most=N: no more than N, where vibrations are excited that need not be followed.
 # COTREE is the program, COMPARE the comparison tool.
 set -eu
 folder=$(dirname "$0")
@@ -13,6 +14,8 @@ model=$2
 reference=$3
 tolerances=$(echo "$4" | tr , ' ')
 shift 4
+most=
+case ${1-} in most=*) most=${1#most=} && shift ;; esac
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 steps() { # METHOD TOLERANCE OPTION...
@@ -27,7 +30,7 @@ for tolerance in $tolerances; do
     implicit=$(steps radau5 "$tolerance" "$@")
     chosen=$(steps auto "$tolerance" "$@")
     echo "$case at $tolerance: $chosen steps, radau5 $implicit"
-    [ "$chosen" -le $((2 * implicit)) ] || failed=1
+    [ "$chosen" -le "${most:-$((2 * implicit))}" ] || failed=1
     [ "$reference" = - ] && continue
     awk -v T="$tolerance" 'BEGIN { print 10 * T }' >"$work/asked"
     for method in auto radau5; do

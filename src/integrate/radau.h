@@ -1,0 +1,92 @@
+// A step of Radau IIA from inside, for radau5.c and radau_error.c: its stages, and the real one of its linear systems.
+#ifndef CT_INTEGRATE_RADAU_H
+#define CT_INTEGRATE_RADAU_H
+
+#include "integrate/iteration.h"
+
+enum { STAGES = 3 };
+
+#define CBRT3 1.4422495703074083823
+/// The real eigenvalue of the inverse of the Runge-Kutta matrix.
+#define GAMMA (3 - CBRT3 + CBRT3 * CBRT3)
+
+/// Stages of a step, or their corrections, one stage behind the other.
+struct ct_radau_stages {
+    double h;
+    double *d, *u;     // motion and change of speed since the start  (nu x 3)
+    double *lam, *eta; // (rows x 3)
+};
+
+struct ct_radau {
+    const struct ct_dae *dae;
+    struct ct_iteration *it;
+    bool is_fresh, was_tried;           // there is no step before
+    struct ct_radau_stages before, now; // the last accepted step, this one
+    struct ct_radau_stages change;      // corrections, first in the basis of eigenvectors
+    double h;                           // of the weights that follow
+    double slope[STAGES][STAGES], defect_of[STAGES]; // A^-1/h and E/h
+    double ratio; // of this step to the one before: of the weights that follow
+    double further[STAGES][STAGES]; // its polynomial at this one's stages, less its end
+    struct ct_tolerance wanted, eased;
+    double *rate, *F, *r;        // u' (nu); residuals of d' and u'  (nu x 3)
+    double *phi, *v;             // (rows x 3)
+    double *q, *u, *u_dot, *lam; // of a stage; of the start  (lam)
+    double *d;                   // a motion, or change of speed  (nu)
+    double *gain, *defect;       // of quadratures: over h; error over h / GAMMA  (ny)
+    double *power, *power1;      // their rates at both ends  (ny)
+    double largest;              // acceleration at the end of steps so far
+    // speeds in the error, see radau_error.c
+    bool is_eased; // they were counted by what is slow of them at the last look
+    int unlooked;  // steps until the next one
+};
+
+/// out (n) = weighted stages z (n x 3).
+static inline void ct_radau_weigh(double *out, const double *w, const double *z, int n)
+{
+    for (int k = 0; k < n; k++)
+        out[k] = w[0] * z[k] + w[1] * z[k + n] + w[2] * z[k + 2 * n];
+}
+
+/// The first column in the basis of eigenvectors. With u eliminated, r += (c M + C) F and v += J F; then u changes by
+/// (c - N) d - J' c eta + F.
+static inline void ct_radau_solve(struct ct_radau *s, const int nu, const int m)
+{
+    struct ct_iteration *it = s->it;
+    const double c = it->c, *F = s->F;
+    double *d = s->change.d, *u = s->change.u, *eta = s->change.eta;
+    for (int j = 0; j < nu; j++) {
+        for (int k = 0; k < nu; k++)
+            s->r[k] += (c * it->M[k + nu * j] + it->C[k + nu * j]) * F[j];
+        for (int i = 0; i < m; i++)
+            s->v[i] += it->J[i + m * j] * F[j];
+    }
+    ct_iteration_solve(it, d, eta, s->change.lam, s->r, s->phi, s->v);
+    for (int k = 0; k < nu; k++)
+        u[k] = c * d[k] + F[k];
+    if (!s->dae->is_plain)
+        ct_iteration_turn(it, u, -1, d);
+    for (int i = 0; i < m; i++)
+        eta[i] *= c;
+    if (m)
+        ct_iteration_push(it, u, -1, eta);
+}
+
+/// The error of the step in the states, into *err and s->change, tol eased.
+enum ct_eval ct_radau_estimate(struct ct_radau *s, const struct ct_problem *p,
+                               const struct ct_tolerance *tol, double t, const double *y,
+                               const double *dy, double *y1, double *dy1, double *err,
+                               struct ct_integrate_stats *stats);
+/// That of outputs and quadratures, if it is more. Of what is much faster than steps can follow, an error of outputs does not
+/// count: it is damped, and where outputs are forces of very stiff springs the rest is beyond the digits of places.
+enum ct_eval ct_radau_look_at_outputs(struct ct_radau *s, const struct ct_problem *p, double t1,
+                                      const double *y, const double *dy,
+                                      const struct ct_tolerance *eased, double *y1, double *dy1,
+                                      double *err, struct ct_integrate_stats *stats);
+/// The tolerance of the estimate for one of the step, found once as long as it is the same.
+const struct ct_tolerance *ct_radau_ease(struct ct_radau *s,
+                                         const struct ct_tolerance *tolerance);
+/// Are forces at the end of the step as they were in the iteration, to the tolerance? Where stiff ones turn within the step,
+/// corrections that are small as motions leave large errors of forces, which outputs may consist of.
+bool ct_radau_is_balanced(struct ct_radau *s, double rtol, const double *dy1);
+
+#endif

@@ -1,0 +1,194 @@
+// The error of a step of Radau IIA: of the states, of the outputs.  (8.4)
+//
+// That of the states is the one of an embedded formula of order 3, filtered by the real system of the iteration. An error of
+// speeds is one of the motion, which goes on in them, or one of vibrations, which leaves places by that error over their
+// frequency, and so is in the error of places, too. Where no output is made of speeds, those of vibrations much faster than
+// the motion need not count again: undamped, they would have to be followed for their rates alone.
+//
+//     counted   s = (c^2 M + c C + K)^-1 c^2 M e_u,   c = 10 max (|u| + a)/(min(|q|, 1) + a)          (8.10)
+//
+// with the places e_d. Of a vibration of omega it leaves c^2/(c^2 + omega^2).
+// Source: Hairer and Wanner (1996), IV.8, key hairer1996; formulation 8.4.
+#include "integrate/radau.h"
+
+#include <math.h>
+#include <string.h>
+
+// Outputs near zero are held to this part of the absolute tolerance: of a vibration that is damped because the estimate does
+// not see it, over 1e5 radians, less than ten times that tolerance is lost.  (8.7)
+static const double near_zero = 0.05;
+
+// Filtered again, the error of a vibration of h omega radians in a step is less by 1/(1 + (h omega/GAMMA)^2): with this part
+// left it turns five times and more in each.
+static const double unfollowed = 0.01;
+// With derivatives from the end of the step an estimate must be this much smaller, if the first is to be one of directions only.
+static const double turned = 0.03;
+
+// Speeds are eased where less than this part of the error is left then; looked at every so many steps where they were not, and
+// where they are too large.
+static const double worth_it = 0.5;
+enum { STEPS_BETWEEN = 15 };
+
+// The filtered error of the embedded formula at the start y, whose rates are u and u_dot.
+static inline double filter_few(struct ct_radau *s, const double *u, const double *u_dot,
+                                const int nu, const int m)
+{
+    struct ct_iteration *it = s->it;
+    const struct ct_radau_stages *z = &s->now;
+    double *F = s->F, *defect = s->rate;
+    ct_radau_weigh(F, s->defect_of, z->d, nu);
+    ct_radau_weigh(defect, s->defect_of, z->u, nu);
+    for (int k = 0; k < nu; k++) { // as residuals: the error is the correction they lead to
+        F[k] = -(F[k] + u[k]);
+        defect[k] = -(defect[k] + u_dot[k]);
+        s->r[k] = 0;
+    }
+    for (int j = 0; j < nu; j++)
+        for (int k = 0; k < nu; k++)
+            s->r[k] += it->M[k + nu * j] * defect[j];
+    for (int i = 0; i < m; i++)
+        s->phi[i] = s->v[i] = 0;
+    ct_radau_solve(s, nu, m);
+    return ct_iteration_norm(it, s->change.d, s->change.u, nu, 1);
+}
+
+static double filter(struct ct_radau *s, const double *u, const double *u_dot)
+{
+    const int nu = s->it->nu, m = s->it->m;
+    return m || nu > 2 ? filter_few(s, u, u_dot, nu, m)
+         : nu == 1     ? filter_few(s, u, u_dot, 1, 0)
+                       : filter_few(s, u, u_dot, 2, 0);
+}
+
+// Less of the error where it is one of speeds that vibrate.
+static void ease_speeds(struct ct_radau *s, const struct ct_problem *p,
+                        const struct ct_tolerance *tol, const double *y, double *err)
+{
+    if (!p->asked_speeds || (*err <= 1 && !s->is_eased && s->unlooked-- > 0))
+        return;
+    const double slow
+        = ct_iteration_slow_norm(s->it, tol, y, p->asked_speeds, s->change.d, s->change.u);
+    s->is_eased = slow < worth_it * *err;
+    s->unlooked = STEPS_BETWEEN;
+    *err = ct_smaller(*err, slow);
+}
+
+// Error of the step. Where it is too large at first, on a first step or after a refusal, it is filtered once more, which
+// takes off what stiff components that start off their slow motion add to it.
+enum ct_eval ct_radau_estimate(struct ct_radau *s, const struct ct_problem *p,
+                               const struct ct_tolerance *tol, double t, const double *y,
+                               const double *dy, double *y1, double *dy1, double *err,
+                               struct ct_integrate_stats *stats)
+{
+    const int nq = s->dae->nq, nu = s->dae->nu;
+    *err = filter(s, y + nq, dy + nq);
+    ease_speeds(s, p, tol, y, err);
+    if (*err < 1 || !(s->is_fresh || s->was_tried))
+        return CT_EVAL_OK;
+    memcpy(y1, y, (size_t)p->ny * sizeof *y);
+    s->dae->retract(s->dae->user, y, s->change.d, y1);
+    for (int k = 0; k < nu; k++)
+        y1[nq + k] += s->change.u[k];
+    const enum ct_eval e = ct_stepper_rhs(p, t, y1, dy1, stats);
+    if (e != CT_EVAL_OK)
+        return e;
+    *err = filter(s, y1 + nq, dy1 + nq);
+    ease_speeds(s, p, tol, y, err);
+    return CT_EVAL_OK;
+}
+
+// The error estimate is that of order 3, but the step is better: a tolerance tol of the step is one of 0.1 tol^(2/3)
+// of the estimate, as in the program of the source.
+static struct ct_tolerance ease(const struct ct_tolerance *tolerance)
+{
+    const double tol = tolerance->rtol > 0 ? tolerance->rtol : tolerance->atol;
+    const double factor = fmax(1, 0.1 / cbrt(tol));
+    return (struct ct_tolerance){factor * tolerance->rtol, factor * tolerance->atol};
+}
+
+const struct ct_tolerance *ct_radau_ease(struct ct_radau *s,
+                                         const struct ct_tolerance *tolerance)
+{
+    if (s->wanted.rtol != tolerance->rtol || s->wanted.atol != tolerance->atol)
+        s->eased = ease(tolerance);
+    s->wanted = *tolerance;
+    return &s->eased;
+}
+
+// The error of places and speeds at the end of the step, once more, by derivatives from there. The first estimate knows
+// stiff forces as they are directed at the second stage: errors along what has turned since become forces.
+static enum ct_eval estimate_at_end(struct ct_radau *s, double t1, const double *y,
+                                    const double *dy, const double *y1, const double *dy1,
+                                    struct ct_integrate_stats *stats)
+{
+    struct ct_iteration *it = s->it;
+    const int nq = s->dae->nq;
+    const double c = GAMMA / s->now.h;
+    it->has_tangent = false;
+    const enum ct_eval e = ct_iteration_refresh(it, t1, y1, y1 + nq, dy1 + nq,
+                                                s->now.lam + (STAGES - 1) * it->m, stats);
+    if (e != CT_EVAL_OK)
+        return e;
+    if (!ct_iteration_factor(it, c, c * c, 0, stats))
+        return CT_EVAL_RETRY;
+    filter(s, y + nq, dy + nq);
+    return CT_EVAL_OK;
+}
+
+// The error filtered by the same factors again, which leaves of it what is not stiff.
+static void filter_again(struct ct_radau *s)
+{
+    const struct ct_iteration *it = s->it;
+    const int nu = it->nu, m = it->m;
+    const double c = it->c, *d = s->change.d, *u = s->change.u;
+    for (int k = 0; k < nu; k++) {
+        s->F[k] = u[k] - c * d[k];
+        s->r[k] = 0;
+    }
+    for (int j = 0; j < nu; j++)
+        for (int k = 0; k < nu; k++)
+            s->r[k] -= c * it->M[k + nu * j] * u[j];
+    for (int i = 0; i < m; i++)
+        s->phi[i] = s->v[i] = 0;
+    ct_radau_solve(s, nu, m);
+}
+
+bool ct_radau_is_balanced(struct ct_radau *s, double rtol, const double *dy1)
+{
+    const int nq = s->dae->nq, nu = s->dae->nu, last = STAGES - 1;
+    double off = 0, size = 0;
+    ct_radau_weigh(s->rate, s->slope[last], s->now.u, nu);
+    for (int k = 0; k < nu; k++) {
+        off = ct_larger(off, fabs(dy1[nq + k] - s->rate[k]));
+        size = ct_larger(size, fabs(s->rate[k]));
+    }
+    if (!(off <= rtol * ct_larger(s->largest, size)))
+        return false;
+    s->largest = ct_larger(s->largest, size);
+    return true;
+}
+
+enum ct_eval ct_radau_look_at_outputs(struct ct_radau *s, const struct ct_problem *p, double t1,
+                                      const double *y, const double *dy,
+                                      const struct ct_tolerance *eased, double *y1, double *dy1,
+                                      double *err, struct ct_integrate_stats *stats)
+{
+    const struct ct_tolerance outputs = {eased->rtol, near_zero * eased->atol};
+    const struct ct_radau_stages *e = &s->change;
+    const double states = *err;
+    const int first = s->dae->nq + s->dae->nu;
+    *err = ct_iteration_error(s->it, p, &outputs, t1, y1, e->d, e->u, states);
+    if (states <= 1 && *err > 1) {
+        const enum ct_eval eval = estimate_at_end(s, t1, y, dy, y1, dy1, stats);
+        if (eval != CT_EVAL_OK)
+            return eval;
+        const double all = ct_iteration_error(s->it, p, &outputs, t1, y1, e->d, e->u, states);
+        filter_again(s);
+        const double slow = ct_iteration_error(s->it, p, &outputs, t1, y1, e->d, e->u, states);
+        const double better = slow < unfollowed * all ? slow : all;
+        *err = better < turned * *err ? better : *err;
+        s->it->c = s->it->e = 0; // the complex factors are not there
+    }
+    *err = ct_larger(*err, ct_stepper_largest(p, eased, first, y, y1, s->defect));
+    return CT_EVAL_OK;
+}
