@@ -3,7 +3,7 @@
 // A page that is touched before it is there interrupts the program, which takes longer than to fill it. So the pages
 // ahead of what is in use are asked for in one call, and blocks of some megabytes have large pages where the system
 // has such. Some blocks that are given back are kept for the next who asks, in this thread or another: their pages are
-// there, and to fill them with zeros takes a tenth of the time that the system takes for new ones.
+// there, and to fill them with zeros takes a fifth of the time that the system takes for new ones.
 #ifndef CT_BASE_PAGES_H
 #define CT_BASE_PAGES_H
 
