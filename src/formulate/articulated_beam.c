@@ -117,8 +117,7 @@ static void add_beam(struct ct_articulated *w, int i, struct ct_articulated_beam
     const struct ct_base motion = {.w = ct_ex33_apply_t(x, A, w->s->member[i].w)};
     ct_ex3 F, T;
     I->form->wrench(b, f, &motion, CT_BIAS, &F, &T);
-    I->form->rows(b, f, &motion, CT_BIAS, w->row);
-    ct_stiffness_rows(b, f, w->row);
+    ct_flexible_rows(b, f, &motion, CT_BIAS, w->row);
     if (e->is_carried)
         add_elements(w, k, e, A, &c);
     else

@@ -139,17 +139,30 @@ void ct_flexible_lump(struct ct_build *b)
 
 // ---- handing over to elastic coordinates ----------------------------------------------------------
 
-// Generalised force on a dof, handed to the elastic coordinates it stands for.
 void ct_dof_push(struct ct_build *b, const struct ct_flexible *f, int e, int j, ct_ex value,
-                 ct_ex *row)
+                 ct_ex *by_freedom)
 {
     int sign;
-    const struct ct_freedom *d = ct_dof_freedom(f, e, j, &sign);
-    for (int p = 0; d && p < d->npart; p++) {
-        const ct_ex v = ct_ex_mul(b->x, d->part[p].coef, value);
-        ct_ex *r = &row[f->elastic[d->part[p].k].u];
-        *r = sign > 0 ? ct_ex_add(b->x, *r, v) : ct_ex_sub(b->x, *r, v);
-    }
+    if (!ct_dof_freedom(f, e, j, &sign))
+        return;
+    ct_ex *sum = &by_freedom[f->element[e].freedom[j]];
+    *sum = sign > 0 ? ct_ex_add(b->x, *sum, value) : ct_ex_sub(b->x, *sum, value);
+}
+
+void ct_flexible_rows(struct ct_build *b, const struct ct_flexible *f, const struct ct_base *m,
+                      enum ct_level level, ct_ex *row)
+{
+    const int n = CT_NODE_FREEDOM * (f->beam->nelement + 1);
+    ct_ex *force = CT_NEWN(b->ctx->scratch, ct_ex, n);
+    f->inertia->form->rows(b, f, m, level, force);
+    ct_stiffness_rows(b, f, force);
+    if (f->follow)
+        ct_follow_forces(b, f, force);
+    for (int i = 0; i < n; i++)
+        for (int p = 0; p < f->freedom[i].npart; p++) {
+            ct_ex *r = &row[f->elastic[f->freedom[i].part[p].k].u];
+            *r = ct_ex_add(b->x, *r, ct_ex_mul(b->x, f->freedom[i].part[p].coef, force[i]));
+        }
 }
 
 void ct_dof_push_pair(struct ct_build *b, const struct ct_flexible *f, int e, int j, int g,
@@ -200,8 +213,7 @@ void ct_flexible_sweep(struct ct_build *b, enum ct_level level, const ct_ex3 *ap
         f->inertia->form->wrench(b, f, &m, level, &F, &T);
         rest[p->anchor] = ct_ex3_add(x, rest[p->anchor], out_of(b, f, F));
         torque[p->frame] = ct_ex3_add(x, torque[p->frame], out_of(b, f, T));
-        f->inertia->form->rows(b, f, &m, level, row);
-        ct_stiffness_rows(b, f, row);
+        ct_flexible_rows(b, f, &m, level, row);
     }
 }
 
@@ -364,13 +376,20 @@ static void base_columns(struct ct_build *b, const struct ct_flexible *f,
         }
 }
 
+// Do slopes that follow, and so all coordinates, draw the axis of every element in?
+static bool draws_by_shapes(const struct ct_flexible *f)
+{
+    return f->follow && f->kinematics == CT_AXIAL_CHAIN
+        && (f->beam->theory == CT_BEAM_EULER_BERNOULLI || f->beam->higher_order);
+}
+
 void ct_flexible_columns(struct ct_build *b, const struct ct_flexible *f,
                          struct ct_columns *out, ct_ex *M)
 {
     const struct ct_inertia_form *form = f->inertia->form;
     if (form->mass)
         form->mass(b, f, out, M);
-    else if (f->beam->modes || f->beam->nshape)
+    else if (f->beam->modes || f->beam->nshape || draws_by_shapes(f))
         ct_flexible_modal_mass(b, f, out, M);
     else
         mass_of_sums(b, f, out, M);

@@ -25,9 +25,9 @@ struct ct_relative {
 struct ct_inertia_form {
     /// Mass, first moment, inertia about the base into f->inertia, and what the others need.
     void (*derive)(struct ct_build *b, struct ct_flexible *f);
-    /// Rows of the elastic coordinates under inertia and weight, added to row (by speed).
+    /// Generalised forces of inertia and weight, added to those on the freedoms.
     void (*rows)(struct ct_build *b, const struct ct_flexible *f, const struct ct_base *m,
-                 enum ct_level level, ct_ex *row);
+                 enum ct_level level, ct_ex *by_freedom);
     /// Force and torque of the motion relative to the base: m (2 w x r' + r''), and of the sections' rotation.
     void (*wrench)(struct ct_build *b, const struct ct_flexible *f, const struct ct_base *m,
                    enum ct_level level, ct_ex3 *force, ct_ex3 *torque);
@@ -103,9 +103,12 @@ ct_ex *ct_chain_accelerations(struct ct_build *b, const struct ct_flexible *f);
 /// 2 w x v
 ct_ex3 ct_twice_cross(struct ct_build *b, ct_ex3 w, ct_ex3 v);
 
-/// Generalised force on a dof, handed to the elastic coordinates it stands for.
+/// Generalised force on a dof, added to that on its freedom.
 void ct_dof_push(struct ct_build *b, const struct ct_flexible *f, int e, int j, ct_ex value,
-                 ct_ex *row);
+                 ct_ex *by_freedom);
+/// Inertia, weight, stiffness and damping of the beam, added to the rows (by speed) of its elastic coordinates.
+void ct_flexible_rows(struct ct_build *b, const struct ct_flexible *f, const struct ct_base *m,
+                      enum ct_level level, ct_ex *row);
 /// Entry of the mass matrix between dof j of element e and dof k of element g; the transposed pair is pushed by itself.
 void ct_dof_push_pair(struct ct_build *b, const struct ct_flexible *f, int e, int j, int g,
                       int k, ct_ex value, ct_ex *M);
@@ -136,8 +139,23 @@ bool ct_flexible_fit(struct ct_build *b, struct ct_flexible *f, const ct_ex *by_
 /// The joint about whose axis nothing but the section at the beam's start turns, without inertia, where the other nodes stay:
 /// exactly where the axis is straight, nearly where foreshortening moves nodes of a bent one. -1: none.
 int ct_flexible_bare_joint(struct ct_build *b, const struct ct_flexible *f);
-/// Shapes of the freedoms that do not follow, each with the others of them held and those that follow in equilibrium. False
-/// if all are coordinates, or the stiffness of those that follow is not positive.
+/// Numbers of freedoms that follow (flexible_follow.c).
+struct ct_follow_numbers {
+    int nfreedom, n, nkept; // 8 per node; not fixed; of these those that do not follow, first
+    const int *freedom;     // by number
+    const double *K, *L;    // n x n; Cholesky factor of the block of those that follow
+    bool
+        is_balanced; // nothing but linear elements acts on them, now and whatever parameters are
+};
+struct ct_follow *ct_follow_create(struct ct_build *b, const struct ct_follow_numbers *c);
+/// Values, rates and accelerations of the freedoms that follow.
+void ct_follow_values(struct ct_build *b, struct ct_flexible *f);
+/// Forces on them, handed to the others (force: by freedom; out: zero where one follows).
+void ct_follow_forces(struct ct_build *b, const struct ct_flexible *f, ct_ex *force);
+/// Do stiffness and damping leave no force on a freedom, since it follows?
+bool ct_freedom_is_balanced(const struct ct_flexible *f, int freedom);
+/// Shapes of the freedoms that do not follow, each with the others of them held and those that follow in equilibrium, and
+/// f->follow. False if all are coordinates, or the stiffness of those that follow is not positive.
 bool ct_flexible_condense(struct ct_build *b, struct ct_flexible *f, struct ct_shapes *out);
 /// What the stiffness of one element adds: rows of its dofs, strain energy, twice the power its damping takes.
 struct ct_element_force {
@@ -147,7 +165,7 @@ struct ct_element_force {
 /// By amplitudes (elastic_bent.c): foreshortened cubic elements of constant sections.
 bool ct_stiffness_has_amplitudes(struct ct_build *b, const struct ct_flexible *f);
 struct ct_element_force ct_element_bent(struct ct_build *b, const struct ct_flexible *f, int e);
-/// Rows of the beam's own stiffness and damping.
-void ct_stiffness_rows(struct ct_build *b, const struct ct_flexible *f, ct_ex *row);
+/// The beam's own stiffness and damping, added to the forces on the freedoms.
+void ct_stiffness_rows(struct ct_build *b, const struct ct_flexible *f, ct_ex *by_freedom);
 
 #endif

@@ -254,7 +254,7 @@ static void combine(struct ct_build *b, const struct ct_element *e, const struct
 }
 
 static void rows(struct ct_build *b, const struct ct_flexible *f, const struct ct_base *m,
-                 enum ct_level level, ct_ex *row)
+                 enum ct_level level, ct_ex *by_freedom)
 {
     struct ct_exs *x = b->x;
     const ct_ex33 Om = ct_base_turning(b, m);
@@ -276,7 +276,7 @@ static void rows(struct ct_build *b, const struct ct_flexible *f, const struct c
                 sum = ct_ex_add(x, sum, ct_ex_mul(x, s->G[j], m->al.e[axis(j)]));
             if (level == CT_FULL)
                 sum = ct_ex_add(x, sum, row_times(b, s->R[j], e->acceleration, CT_DOF));
-            ct_dof_push(b, f, i, j, sum, row);
+            ct_dof_push(b, f, i, j, sum, by_freedom);
         }
     }
 }

@@ -152,7 +152,7 @@ static void push_point(struct ct_build *b, const struct ct_point *p, const ct_ex
 }
 
 static void inertia_rows(struct ct_build *b, const struct ct_flexible *f,
-                         const struct ct_base *m, enum ct_level level, ct_ex *row)
+                         const struct ct_base *m, enum ct_level level, ct_ex *by_freedom)
 {
     struct ct_exs *x = b->x;
     const struct ct_inertia *I = f->inertia;
@@ -180,14 +180,14 @@ static void inertia_rows(struct ct_build *b, const struct ct_flexible *f,
             sum[j] = ct_ex_add(x, sum[j], ct_ex_mul(x, f->element[e].g[j], beyond));
         beyond = ct_ex_add(x, beyond, axial);
         for (int j = 0; j < CT_DOF; j++)
-            ct_dof_push(b, f, e, j, sum[j], row);
+            ct_dof_push(b, f, e, j, sum[j], by_freedom);
     }
 }
 
 // What foreshortening adds where it is left out of the kinematics: rows of the velocity-quadratic force of the
 // foreshortened beam less those of the linear one, which inertia_rows has.
 static void foreshortening_rows(struct ct_build *b, const struct ct_flexible *f,
-                                const struct ct_base *m, ct_ex *row)
+                                const struct ct_base *m, ct_ex *by_freedom)
 {
     struct ct_exs *x = b->x;
     const struct ct_inertia *I = f->inertia;
@@ -217,16 +217,16 @@ static void foreshortening_rows(struct ct_build *b, const struct ct_flexible *f,
             sum[j] = ct_ex_add(x, sum[j], ct_ex_mul(x, f->element[e].g[j], beyond));
         beyond = ct_ex_add(x, beyond, axial);
         for (int j = 0; j < CT_DOF; j++)
-            ct_dof_push(b, f, e, j, sum[j], row);
+            ct_dof_push(b, f, e, j, sum[j], by_freedom);
     }
 }
 
 static void rows(struct ct_build *b, const struct ct_flexible *f, const struct ct_base *m,
-                 enum ct_level level, ct_ex *row)
+                 enum ct_level level, ct_ex *by_freedom)
 {
-    inertia_rows(b, f, m, level, row);
+    inertia_rows(b, f, m, level, by_freedom);
     if (f->kinematics != f->axial)
-        foreshortening_rows(b, f, m, row);
+        foreshortening_rows(b, f, m, by_freedom);
 }
 
 static void moving(struct ct_build *b, const struct ct_flexible *f, struct ct_relative *out)

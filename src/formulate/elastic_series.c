@@ -257,7 +257,7 @@ static ct_ex *chain_accelerations(struct ct_build *b, const struct ct_flexible *
 }
 
 static void rows(struct ct_build *b, const struct ct_flexible *f, const struct ct_base *m,
-                 enum ct_level level, ct_ex *row)
+                 enum ct_level level, ct_ex *by_freedom)
 {
     struct ct_exs *x = b->x;
     const ct_ex33 Om = ct_base_turning(b, m);
@@ -290,7 +290,7 @@ static void rows(struct ct_build *b, const struct ct_flexible *f, const struct c
             sum[j] = ct_ex_add(x, sum[j], ct_ex_mul(x, f->element[e].g[j], beyond));
         beyond = ct_ex_add(x, beyond, force[0].e[0]);
         for (int j = 0; j < CT_DOF; j++)
-            ct_dof_push(b, f, e, j, sum[j], row);
+            ct_dof_push(b, f, e, j, sum[j], by_freedom);
     }
 }
 

@@ -447,12 +447,16 @@ static struct ct_element_force element_force(struct ct_build *b, const struct ct
     return out;
 }
 
-void ct_stiffness_rows(struct ct_build *b, const struct ct_flexible *f, ct_ex *row)
+void ct_stiffness_rows(struct ct_build *b, const struct ct_flexible *f, ct_ex *by_freedom)
 {
+    const bool is_linear = f->axial != CT_AXIAL_LOCAL && !couples(f);
     for (int e = 0; e < f->beam->nelement; e++) {
         const struct ct_element_force s = element_force(b, f, e);
-        for (int j = 0; j < CT_DOF; j++)
-            ct_dof_push(b, f, e, j, s.row[j], row);
+        for (int j = 0; j < CT_DOF; j++) {
+            const int i = f->element[e].freedom[j];
+            if (i >= 0 && !(is_linear && ct_freedom_is_balanced(f, i)))
+                ct_dof_push(b, f, e, j, s.row[j], by_freedom);
+        }
     }
 }
 

@@ -99,6 +99,7 @@ struct ct_flexible {
     struct ct_shape line[CT_LINE_DOF];              // stretch and twist
     struct ct_shape shortening[4][4], bubble[4][4]; // E(xi), D(xi)
     struct ct_shape curving[4][4]; // integral of the sections' rotation gradients, as E
+    struct ct_follow *follow;      // NULL: no rotation follows (elastic.h)
     double start_missed;           // share of the start that modes or given shapes leave out
     ct_ex strain;                  // [J], once the stiffness is derived
     struct ct_inertia *inertia;    // elastic.c

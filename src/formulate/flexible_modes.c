@@ -22,6 +22,7 @@ struct reduction {
     int *freedom;  // by number: those with a static shape come first
     int *number;   // by freedom; -1: fixed
     double *K, *M; // n x n
+    double *L;     // factor of K between the freedoms without a static shape
     int nshape;
     double *shape; // n x nshape
 };
@@ -120,8 +121,8 @@ static double *inner(const struct reduction *r, const double *A)
 static bool static_shapes(struct reduction *r)
 {
     const int m = r->n - r->nkept;
-    double *L = inner(r, r->K);
-    if (m && !ct_cholesky(L, m, m))
+    r->L = inner(r, r->K);
+    if (m && !ct_cholesky(r->L, m, m))
         return false;
     for (int c = 0; c < r->nkept; c++) {
         double *v = r->shape + (size_t)r->n * (size_t)r->nshape++;
@@ -129,7 +130,7 @@ static bool static_shapes(struct reduction *r)
         for (int i = 0; i < m; i++)
             v[r->nkept + i] = -r->K[r->nkept + i + (size_t)r->n * (size_t)c];
         if (m)
-            ct_cholesky_solve(v + r->nkept, L, m, m, 1, m);
+            ct_cholesky_solve(v + r->nkept, r->L, m, m, 1, m);
     }
     return true;
 }
@@ -283,6 +284,22 @@ bool ct_flexible_fit(struct ct_build *b, struct ct_flexible *f, const ct_ex *by_
     return true;
 }
 
+// Are the numbers of those without a static shape what the elements always have, and move these no mass?
+static bool is_balanced(const struct reduction *r)
+{
+    ct_ex K[CT_DOF][CT_DOF], M[CT_DOF][CT_DOF];
+    for (int e = 0; e < r->f->beam->nelement; e++) {
+        ct_element_matrices(r->b, r->f, e, K, M);
+        for (int j = 0; j < CT_DOF; j++) {
+            const int i = r->f->element[e].freedom[j];
+            for (int k = 0; k < CT_DOF && i >= 0 && r->number[i] >= r->nkept; k++)
+                if (!ct_ex_is_const(r->b->x, K[j][k], NULL) || !ct_ex_is_zero(M[j][k]))
+                    return false;
+        }
+    }
+    return true;
+}
+
 bool ct_flexible_condense(struct ct_build *b, struct ct_flexible *f, struct ct_shapes *out)
 {
     struct reduction r = {.b = b, .f = f};
@@ -298,6 +315,14 @@ bool ct_flexible_condense(struct ct_build *b, struct ct_flexible *f, struct ct_s
     r.shape = CT_NEWN(b->arena, double, (size_t)r.n *(size_t)(r.nkept + 1) + 1);
     if (!static_shapes(&r))
         return false;
+    f->follow = ct_follow_create(
+        b, &(struct ct_follow_numbers){.nfreedom = NKIND * (f->beam->nelement + 1),
+                                       .n = r.n,
+                                       .nkept = r.nkept,
+                                       .freedom = r.freedom,
+                                       .K = r.K,
+                                       .L = r.L,
+                                       .is_balanced = is_balanced(&r)});
     hand_over(&r, out);
     return true;
 }

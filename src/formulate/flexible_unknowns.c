@@ -130,28 +130,38 @@ static void run_chain(struct ct_build *b, struct ct_flexible *f)
     }
 }
 
+static void list_part(struct ct_freedom *d, int k, ct_ex coef)
+{
+    if (!ct_ex_is_zero(coef))
+        d->part[d->npart++] = (struct ct_part){k, coef};
+}
+
 // The freedom has the part coef of coordinate k.
 static void add_part(struct ct_build *b, struct ct_flexible *f, struct ct_freedom *d, int k,
                      ct_ex coef)
 {
     struct ct_exs *x = b->x;
     const struct ct_elastic *e = &f->elastic[k];
-    if (ct_ex_is_zero(coef))
-        return;
-    d->part[d->npart++] = (struct ct_part){k, coef};
+    list_part(d, k, coef);
     d->value = ct_ex_add(x, d->value, ct_ex_mul(x, coef, e->value));
     d->rate = ct_ex_add(x, d->rate, ct_ex_mul(x, coef, e->rate));
     d->acceleration = ct_ex_add(x, d->acceleration, ct_ex_mul(x, coef, e->acceleration));
 }
 
-// Freedom i as a sum of shapes.
+// Freedom i as a sum of shapes; the value of one that follows comes from its neighbours.
 static void combine_shapes(struct ct_build *b, struct ct_flexible *f, const struct ct_shapes *s,
                            int i)
 {
     struct ct_freedom *d = &f->freedom[s->freedom[i]];
     d->part = CT_NEWN(b->arena, struct ct_part, s->nshape);
-    for (int k = 0; k < s->nshape; k++)
-        add_part(b, f, d, k, ct_ex_const(b->x, s->shape[(size_t)i + (size_t)s->n * (size_t)k]));
+    const bool follows = f->follow && i >= s->nstatic;
+    for (int k = 0; k < s->nshape; k++) {
+        const ct_ex coef = ct_ex_const(b->x, s->shape[(size_t)i + (size_t)s->n * (size_t)k]);
+        if (follows)
+            list_part(d, k, coef);
+        else
+            add_part(b, f, d, k, coef);
+    }
 }
 
 static void unknowns_of_shapes(struct ct_build *b, struct ct_flexible *f,
@@ -169,6 +179,8 @@ static void unknowns_of_shapes(struct ct_build *b, struct ct_flexible *f,
     }
     for (int i = 0; i < s->n; i++)
         combine_shapes(b, f, s, i);
+    if (f->follow)
+        ct_follow_values(b, f);
 }
 
 static void nodal_unknowns(struct ct_build *b, struct ct_flexible *f)

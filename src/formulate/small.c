@@ -1,6 +1,7 @@
 // See small.h.
 #include "formulate/small.h"
 #include "formulate/flexible.h"
+#include "formulate/open.h"
 
 #include <string.h>
 
@@ -9,6 +10,7 @@ struct small {
     ct_ex *symbol, *zero;
     size_t n, seed_cap, symbol_cap;
     bool *is_small; // by speed
+    bool follows;   // rotations of small beams follow (elastic.h)
 };
 
 static void add(struct ct_build *b, struct small *s, ct_ex symbol)
@@ -83,31 +85,91 @@ static bool collect(struct ct_build *b, struct small *s)
     for (size_t i = 0; i < b->nflexible; i++) {
         const struct ct_flexible *f = &b->flexible[i];
         if (f->formulation == CT_BEAM_STRETCH_LINEAR || is_named(b, f->name, &at))
-            for (int k = 0; k < f->nelastic; k++)
+            for (int k = 0; k < f->nelastic; k++) {
                 add_unknown(b, s, f->elastic[k].q, f->elastic[k].u);
+                s->follows |= f->follow != NULL;
+            }
     }
     s->zero = CT_NEWN(b->ctx->scratch, ct_ex, s->n + 1);
     return ok;
 }
 
-// f (n) = f(0) + sum of df/dx(0) x, x the small symbols.
+// f (n) and its derivatives by the seeds of all small symbols, where these are zero. *slope lives in scratch.
+static size_t expand(struct ct_build *b, const struct small *s, const ct_ex *f, size_t n,
+                     const struct ct_seed *seed, ct_ex *at_zero, struct ct_slope **slope)
+{
+    struct ct_arena *scratch = b->ctx->scratch;
+    const size_t nslope = ct_ex_jacobian(b->x, scratch, scratch, f, n, seed, s->n, slope);
+    ct_ex *all = CT_NEWN(scratch, ct_ex, n + nslope + 1);
+    memcpy(all, f, n * sizeof *all);
+    for (size_t i = 0; i < nslope; i++)
+        all[n + i] = (*slope)[i].value;
+    ct_ex_subst_list(b->x, all, n + nslope, s->symbol, s->zero, s->n);
+    memcpy(at_zero, all, n * sizeof *all);
+    for (size_t i = 0; i < nslope; i++)
+        (*slope)[i].value = all[n + i];
+    return nslope;
+}
+
+// f(0) + sum of df/dx(0) x, x the small symbols, by the entries of that matrix.
+static void cut_by_matrix(struct ct_build *b, const struct small *s, const ct_ex *f, size_t n,
+                          ct_ex *out)
+{
+    struct ct_slope *slope;
+    const size_t nslope = expand(b, s, f, n, s->seed, out, &slope);
+    for (size_t i = 0; i < nslope; i++)
+        out[slope[i].row]
+            = ct_ex_add(b->x, out[slope[i].row],
+                        ct_ex_mul(b->x, slope[i].value, s->symbol[slope[i].direction]));
+}
+
+// The same by the derivative along one direction, x: what runs from node to node still does.
+static void cut_by_direction(struct ct_build *b, const struct small *s, const ct_ex *f,
+                             size_t n, ct_ex *out)
+{
+    struct ct_seed *seed = CT_NEWN(b->ctx->scratch, struct ct_seed, s->n + 1);
+    ct_ex *along = CT_NEWN(b->ctx->scratch, ct_ex, s->n + 1);
+    struct ct_slope *slope;
+    for (size_t i = 0; i < s->n; i++) {
+        along[i] = ct_ex_sym(b->x, CT_SYM_SEED, "along", (uint32_t)i);
+        seed[i] = (struct ct_seed){s->symbol[i], 0, along[i]};
+    }
+    const size_t nslope = expand(b, s, f, n, seed, out, &slope);
+    for (size_t i = 0; i < nslope; i++)
+        out[slope[i].row] = ct_ex_add(b->x, out[slope[i].row], slope[i].value);
+    ct_ex_subst_list(b->x, out, n, along, s->symbol, s->n);
+}
+
+static double cost_of(struct ct_build *b, const ct_ex *f, size_t n)
+{
+    const struct ct_tape_counts c = ct_ex_count(b->ctx->scratch, b->x, f, n);
+    return ct_counted_cost(&c);
+}
+
+// Could sums over the entries of the matrix cost less than f (n), which is of first order? An entry takes two operations.
+static bool may_be_sparse(struct ct_build *b, const struct small *s, const ct_ex *f, size_t n)
+{
+    struct ct_arena *scratch = b->ctx->scratch;
+    struct ct_slope *entry;
+    double unused;
+    const size_t nentry = ct_ex_pattern(b->x, scratch, scratch, f, n, s->seed, s->n,
+                                        (uint32_t)s->n, &entry, &unused);
+    return 2 * (double)nentry < cost_of(b, f, n) + (double)n;
+}
+
+// f (n) to first order. Where rotations follow, the matrix is full; the cheaper of both ways is taken.
 static void truncate(struct ct_build *b, const struct small *s, ct_ex *f, size_t n)
 {
-    struct ct_exs *x = b->x;
-    struct ct_slope *slope;
-    const size_t nslope
-        = ct_ex_jacobian(x, b->ctx->scratch, b->ctx->scratch, f, n, s->seed, s->n, &slope);
-    ct_ex *all = CT_NEWN(b->ctx->scratch, ct_ex, n + nslope + 1);
-    for (size_t i = 0; i < n; i++)
-        all[i] = f[i];
-    for (size_t i = 0; i < nslope; i++)
-        all[n + i] = slope[i].value;
-    ct_ex_subst_list(x, all, n + nslope, s->symbol, s->zero, s->n);
-    for (size_t i = 0; i < n; i++)
-        f[i] = all[i];
-    for (size_t i = 0; i < nslope; i++)
-        f[slope[i].row] = ct_ex_add(x, f[slope[i].row],
-                                    ct_ex_mul(x, all[n + i], s->symbol[slope[i].direction]));
+    ct_ex *matrix = CT_NEWN(b->ctx->scratch, ct_ex, n + 1),
+          *direction = s->follows ? CT_NEWN(b->ctx->scratch, ct_ex, n + 1) : NULL;
+    if (direction)
+        cut_by_direction(b, s, f, n, direction);
+    const bool wants_matrix = !direction || may_be_sparse(b, s, direction, n);
+    if (wants_matrix)
+        cut_by_matrix(b, s, f, n, matrix);
+    const bool is_matrix
+        = wants_matrix && (!direction || cost_of(b, matrix, n) <= cost_of(b, direction, n));
+    memcpy(f, is_matrix ? matrix : direction, n * sizeof *f);
 }
 
 static void truncate_masses(struct ct_build *b, const struct small *s)

@@ -103,6 +103,35 @@ for n in 4 8; do
   "$COTREE" simulate consistent.yaml --quiet --set n=$n -o consistent.csv
   difference consistent.csv lumped$n.csv
 done | awk 'NR == 1 { first = $1 } END { print (first / $1 > 3.5 && first / $1 < 4.5 && first < 0.1) ? "order 2" : first " " $1 }'
+echo '-- and move as shapes found otherwise do: as many modes as masses are all motions that there are'
+cat >follow.yaml <<'END'
+cotree: 1
+parameters: {n: 6, e: 7e9}
+bodies:
+  rod: {type: beam, length: 1, elements: n, density: 2700, E: e, area: 1e-4*(1 - 0.4*x), Iz: 1e-9*(1 - 0.5*x), KEYS, formulation: FORM, deformation: [bending-z], damping: {alpha: 0.2, beta: 1e-3}, points: {tip: length}}
+joints:
+  root: {type: revolute, from: ground, to: rod, motion: 10*t^2}
+simulation: {duration: 0.2, interval: 0.04, tolerance: 1e-10}
+outputs: [rod.tip.deflection.y, rod.tip.slope.z, root.torque.z]
+END
+for keys in 'mass: lumped' 'theory: timoshenko, G: 2.6e9, shear_factor: 0.85'; do
+  for form in linear stretch-linear foreshortening; do
+    sed "s/KEYS/$keys/; s/FORM/$form/" follow.yaml >nodes.yaml
+    sed "s/KEYS/$keys, modes: 6/; s/FORM/$form/" follow.yaml >modes.yaml
+    "$COTREE" simulate nodes.yaml --quiet -o nodes.csv 2>/dev/null
+    "$COTREE" simulate modes.yaml --quiet -o modes.csv 2>/dev/null
+    difference modes.csv nodes.csv | awk '{ print ($1 < 1e-9) ? "same" : $0 }'
+  done
+done
+echo '-- at a cost in proportion to the nodes, what is left of stretch-linear included'
+for keys in 'mass: lumped' 'theory: timoshenko, G: 2.6e9, shear_factor: 0.85'; do
+  for form in linear stretch-linear foreshortening; do
+    sed "s/KEYS/$keys/; s/FORM/$form/; s/deformation: [^,]*, //; s/E: e/E: 7e9/; s/\*([^)]*)//g" follow.yaml >cost.yaml
+    for n in 16 32 48; do
+      "$COTREE" check cost.yaml --set n=$n | sed -n 's/^evaluation *\([0-9]*\) .*/\1/p'
+    done | awk '{ n[NR] = $1 } END { r = (n[3] - n[2])/(n[2] - n[1]); print (NR == 3 && r > 0.9 && r < 1.1) ? "yes" : r }'
+  done
+done
 echo '-- one that a torque acts on'
 cat >torque.yaml <<'END'
 cotree: 1

@@ -1,0 +1,145 @@
+// Rotations that follow the other freedoms of their beam, at a cost in proportion to its nodes; see elastic.h.
+//
+// They are in equilibrium, K_rr r + K_rt t = 0. Nodes see their neighbours only: K_rr = L D L' has a narrow band, its inverse
+// has none. With numbers A = D^-1 L D, G = -D^-1 K_rt,
+//
+//     A y = G t,  L' r = y        from the first to the last, and back
+//
+// and forces s on the rotations are, on t, the transposed of this:  L p = s,  A' w = p,  G' w.
+#include "formulate/elastic.h"
+
+struct entry {
+    int at; // number of one that follows, or a freedom
+    double by;
+};
+
+// Of one that follows: its row of G by freedoms, of A and of L below the diagonal.
+struct follower {
+    int freedom, nheld, nbefore;
+    struct entry *held, *forth, *back;
+};
+
+struct ct_follow {
+    int n;
+    bool is_balanced, *follows; // follows: by freedom
+    struct follower *row;
+};
+
+// ---- creation ------------------------------------------------------------------------------------------
+
+static void fill_row(struct ct_follow *out, const struct ct_follow_numbers *c, int k,
+                     struct follower *row)
+{
+    const size_t n = (size_t)c->n, m = (size_t)(c->n - c->nkept);
+    const double pivot = c->L[(size_t)k + m * (size_t)k];
+    row->freedom = c->freedom[c->nkept + k];
+    out->follows[row->freedom] = true;
+    for (int i = 0; i < c->nkept; i++) {
+        const double v = c->K[(size_t)(c->nkept + k) + n * (size_t)i];
+        if (v != 0)
+            row->held[row->nheld++] = (struct entry){c->freedom[i], -v / (pivot * pivot)};
+    }
+    for (int j = 0; j < k; j++) {
+        const double v = c->L[(size_t)k + m * (size_t)j],
+                     before = c->L[(size_t)j + m * (size_t)j];
+        if (v == 0)
+            continue;
+        row->forth[row->nbefore] = (struct entry){j, v * before / (pivot * pivot)};
+        row->back[row->nbefore++] = (struct entry){j, v / before};
+    }
+}
+
+static int count(const double *a, int n, size_t stride)
+{
+    int some = 0;
+    for (int i = 0; i < n; i++)
+        some += a[stride * (size_t)i] != 0;
+    return some;
+}
+
+struct ct_follow *ct_follow_create(struct ct_build *b, const struct ct_follow_numbers *c)
+{
+    const int m = c->n - c->nkept;
+    struct ct_follow *out = CT_NEW(b->arena, struct ct_follow);
+    *out = (struct ct_follow){.n = m, .is_balanced = c->is_balanced};
+    out->follows = CT_NEWN(b->arena, bool, c->nfreedom);
+    out->row = CT_NEWN(b->arena, struct follower, m);
+    for (int k = 0; k < m; k++) {
+        struct follower *row = &out->row[k];
+        const int nheld = count(c->K + c->nkept + k, c->nkept, (size_t)c->n),
+                  nbefore = count(c->L + k, k, (size_t)m);
+        row->held = CT_NEWN(b->arena, struct entry, nheld + 1);
+        row->forth = CT_NEWN(b->arena, struct entry, nbefore + 1);
+        row->back = CT_NEWN(b->arena, struct entry, nbefore + 1);
+        fill_row(out, c, k, row);
+    }
+    return out;
+}
+
+bool ct_freedom_is_balanced(const struct ct_flexible *f, int freedom)
+{
+    return f->follow && f->follow->is_balanced && f->follow->follows[freedom];
+}
+
+// ---- places, forces ----------------------------------------------------------------------------------
+
+static void add(struct ct_exs *x, ct_ex *sum, double by, ct_ex v)
+{
+    *sum = ct_ex_add(x, *sum, ct_ex_scale(x, by, v));
+}
+
+// What the followers do while the freedoms, or their rates, are v (by freedom; in: zero where one follows).
+static void follow(struct ct_exs *x, const struct ct_follow *s, ct_ex *v)
+{
+    for (int k = 0; k < s->n; k++) {
+        const struct follower *row = &s->row[k];
+        for (int i = 0; i < row->nheld; i++)
+            add(x, &v[row->freedom], row->held[i].by, v[row->held[i].at]);
+        for (int i = 0; i < row->nbefore; i++)
+            add(x, &v[row->freedom], -row->forth[i].by, v[s->row[row->forth[i].at].freedom]);
+    }
+    for (int k = s->n; k-- > 0;) {
+        const struct follower *row = &s->row[k];
+        for (int i = 0; i < row->nbefore; i++)
+            add(x, &v[s->row[row->back[i].at].freedom], -row->back[i].by, v[row->freedom]);
+    }
+}
+
+void ct_follow_values(struct ct_build *b, struct ct_flexible *f)
+{
+    const int n = CT_NODE_FREEDOM * (f->beam->nelement + 1);
+    ct_ex *v = CT_NEWN(b->ctx->scratch, ct_ex, n);
+    for (int level = 0; level < 3; level++) {
+        for (int i = 0; i < n; i++) {
+            const struct ct_freedom *d = &f->freedom[i];
+            v[i] = level == 0 ? d->value : level == 1 ? d->rate : d->acceleration;
+        }
+        follow(b->x, f->follow, v);
+        for (int k = 0; k < f->follow->n; k++) {
+            const int i = f->follow->row[k].freedom;
+            struct ct_freedom *d = &f->freedom[i];
+            *(level == 0 ? &d->value : level == 1 ? &d->rate : &d->acceleration) = v[i];
+        }
+    }
+}
+
+void ct_follow_forces(struct ct_build *b, const struct ct_flexible *f, ct_ex *force)
+{
+    struct ct_exs *x = b->x;
+    const struct ct_follow *s = f->follow;
+    for (int k = 0; k < s->n; k++) {
+        const struct follower *row = &s->row[k];
+        for (int i = 0; i < row->nbefore; i++)
+            add(x, &force[row->freedom], -row->back[i].by,
+                force[s->row[row->back[i].at].freedom]);
+    }
+    for (int k = s->n; k-- > 0;) {
+        const struct follower *row = &s->row[k];
+        const ct_ex w = force[row->freedom];
+        for (int i = 0; i < row->nbefore; i++)
+            add(x, &force[s->row[row->forth[i].at].freedom], -row->forth[i].by, w);
+        for (int i = 0; i < row->nheld; i++)
+            add(x, &force[row->held[i].at], row->held[i].by, w);
+        force[row->freedom] = CT_EX_ZERO;
+    }
+}
