@@ -318,16 +318,20 @@ section_aims() {
         what=$(title "$case")
         set --
         [ "$case" != R05_N40 ] || { set -- --until 10; what="forty four-bars, 10 s"; }
+        step=0.4 # a 25th of the run
         case $case in
         R05*) point="B0_x B0_y" ;;
-        R01) point="beta theta gamma phi delta omega epsilon" ;;
+        R01) step=0.0012 point="beta theta gamma phi delta omega epsilon" ;;
         *) point="P_x P_y P_z" ;;
         esac
         if [ "$case" != "$before" ]; then
             # shellcheck disable=SC2086 # a list of names
             columns "$reference/$case.reference.csv" $point >"$work/point.csv"
             "$COTREE" accuracy "$reference/$case.yaml" --reference "$work/point.csv" --samples 2 \
-                --method dopri5,dop853,rk4,radau5 --per-decade 5 -o "$work/aim.csv" --quiet "$@"
+                --method dopri5,dop853,radau5 --per-decade 5 -o "$work/aim.csv" --quiet "$@"
+            "$COTREE" accuracy "$reference/$case.yaml" --reference "$work/point.csv" --samples 2 \
+                --method rk4,dopri5,dop853 --step "$step" --per-decade 10 -o "$work/fixed.csv" --quiet "$@"
+            sed -e 1d -e 's/,/ with fixed steps,/' "$work/fixed.csv" >>"$work/aim.csv"
         fi
         before=$case
         awk -v t="$its" -v line="| $what | $wanted | $(cheapest "$work/aim.csv" "$wanted" error) | $engine" '

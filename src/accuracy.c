@@ -24,6 +24,8 @@ static const double reference_margin = 0.1;
 // Steps of fixed length: as many halvings, from the spacing of samples but at least so many in the run.
 static const int most_steps_of_ladder = 7;
 static const double least_fixed_steps = 100;
+// Or, from a step that is asked for, so many powers of ten.
+enum { DECADES_OF_STEPS = 2 };
 // Errors that differ by this part of themselves are the same.
 static const double same_error = 0.01;
 
@@ -132,19 +134,22 @@ static double readable(double v)
     return strtod(text, NULL);
 }
 
-// Steps end on samples, so longer ones than their spacing make no difference.
+// Halved again and again, from the spacing of samples on: steps end on them, so longer ones make no difference. From a step
+// that is asked for: that one alone, or as many as are asked for in a power of ten.
 static bool climb_steps(struct ct_accuracy *a, const struct ct_method *m, double end)
 {
     const double spacing = a->duration / fmax(1, (double)a->nsample - 1);
-    struct ct_setting s = {.method = m->name, .step = a->o->run.step};
+    const double asked = a->o->run.step, per_decade = a->o->per_decade;
+    const double first
+        = asked > 0 ? asked : readable(fmin(spacing, a->duration / least_fixed_steps));
+    const double ratio = asked > 0 && per_decade > 0 ? pow(10, -1 / per_decade) : 0.5;
+    const int n = asked <= 0 ? most_steps_of_ladder : DECADES_OF_STEPS * (int)per_decade + 1;
+    struct ct_setting s = {.method = m->name};
     enum ct_ending ending = CT_RUN_DONE;
-    if (s.step > 0)
-        return measure(a, &s, end) != CT_RUN_REFUSED;
-    s.step = readable(fmin(spacing, a->duration / least_fixed_steps));
-    for (int k = 0;
-         k < most_steps_of_ladder && (ending == CT_RUN_DONE || ending == CT_RUN_FAILED); k++) {
+    for (int k = 0; k < n && (ending == CT_RUN_DONE || ending == CT_RUN_FAILED); k++) {
+        const double step = first * pow(ratio, k);
+        s.step = ratio == 0.5 ? step : readable(step);
         ending = measure(a, &s, end);
-        s.step /= 2;
     }
     return ending != CT_RUN_REFUSED;
 }
@@ -153,7 +158,8 @@ static bool climb(struct ct_accuracy *a, const struct ct_method *m)
 {
     const double end
         = ct_clock() + fmax(share_of_method, share_of_reference * a->reference_seconds);
-    const bool is_fixed = strcmp(m->name, "rk4") == 0;
+    const bool is_asked = a->o->run.step > 0 && !(a->o->run.tolerance > 0);
+    const bool is_fixed = is_asked || strcmp(m->name, "rk4") == 0;
     return (is_fixed ? climb_steps : climb_tolerances)(a, m, end)
         || (ct_ctx_hand_over(&a->own, &a->said), false);
 }

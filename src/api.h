@@ -121,5 +121,7 @@ double ct_clock(void);
 /// Warn of beams that bent too far for one frame.
 void ct_slope_warn(struct ct_ctx *ctx, const struct ct_equations *e,
                    const struct ct_slope_report *report);
+/// Beams whose motion left what their models hold for.
+void ct_sim_warn_of_beams(struct ct_sim *sim);
 
 #endif

@@ -6,6 +6,7 @@
 
 #include "report/json.h"
 #include "report/progress.h"
+#include "solve/criterion.h"
 #include "solve/lanes.h"
 #include "solve/singular.h"
 
@@ -22,9 +23,10 @@ static const double order2_factor = 30;
 // Of Radau's steps the error of an estimate of order 3 is controlled, eased to tol^(2/3)/10: T/10 for this power of T.
 static const double radau_power = 1.5;
 static const double radau_share = 1e-2; // for loose tolerances
-// Closed loops lose digits where they pass near singular positions: with less than 1e-13 nothing is gained (R05_N10 meets its
-// reference to 2e-10, R13_d1 to 2e-11).
-static const double least_rtol = 2e-14, least_rtol_loops = 1e-13;
+// About a hundred roundings. With loops it is ct_position_tolerance, as well as projections close them: from steps that are
+// held to less, down to 1e-14, outputs come out no better past singular positions, and a few times better, below 1e-12,
+// where there are none.
+static const double least_rtol = 2e-14;
 // Above this tolerance high order does not pay for its twelve evaluations: over the reference cases both explicit methods
 // then cost the same.
 static const double high_order_up_to = 1e-2;
@@ -220,7 +222,7 @@ bool ct_sim_resolve(struct ct_sim *sim, const struct ct_sim_options *o)
     const double absolute = o->absolute > 0  ? o->absolute
                           : o->tolerance > 0 ? o->tolerance / 100
                                              : m->atol;
-    sim->least_rtol = sim->system->equations.nrow ? least_rtol_loops : least_rtol;
+    sim->least_rtol = sim->system->equations.nrow ? ct_position_tolerance : least_rtol;
     sim->is_verified = o->verify;
     struct ct_run_options *run = &sim->run_options;
     *run = (struct ct_run_options){
@@ -478,56 +480,6 @@ static bool integrate(struct ct_sim *sim)
     return ok;
 }
 
-void ct_slope_warn(struct ct_ctx *ctx, const struct ct_equations *e,
-                   const struct ct_slope_report *report)
-{
-    for (size_t i = 0; i < e->nbend; i++) {
-        if (report[i].passed_at < 0)
-            continue;
-        const char *since
-            = report[i].passed_at > 0
-                ? ct_arena_printf(ctx->scratch, ", more than %g from t = %.6g s on",
-                                  CT_SLOPE_LIMIT, report[i].passed_at)
-                : "";
-        ct_warning(ctx, e->bend[i].mark, 0,
-                   "sections of beam '%s' turn by up to %.3g rad against its frame%s: one "
-                   "frame is good for %g; cut the beam into several that are welded end to end",
-                   e->bend[i].beam, report[i].largest, since, CT_SLOPE_LIMIT);
-    }
-}
-
-static void warn_of_starts(struct ct_sim *sim, const struct ct_build *b)
-{
-    const double worth_it = 0.01; // as the limit of the validity indicator
-    for (size_t i = 0; i < b->nflexible; i++) {
-        const struct ct_flexible *f = &b->flexible[i];
-        if (f->start_missed > worth_it)
-            ct_warning(&sim->own, f->beam->start[0].mark, 0,
-                       "beam '%s' starts with what its shapes have of this; they leave out "
-                       "%.3g %%",
-                       f->name, 100 * f->start_missed);
-    }
-}
-
-// Beams whose motion left what they are good for.
-static void warn_of_beams(struct ct_sim *sim)
-{
-    const struct ct_equations *e = &sim->system->equations;
-    warn_of_starts(sim, e->build);
-    ct_slope_warn(&sim->own, e, sim->report.bend);
-    for (size_t i = 0; i < e->nvalidity; i++) {
-        const struct ct_validity_report *v = &sim->report.validity[i];
-        if (v->left_at < 0)
-            continue;
-        ct_warning(
-            &sim->own, e->validity[i].mark, 0,
-            "beam '%s' is linear and left its range: the validity indicator passes %.3g at "
-            "t = %.6g s and reaches %.3g; errors are of that relative size, and "
-            "`formulation: foreshortening` has none of them",
-            e->validity[i].beam, CT_VALIDITY_LIMIT, v->left_at, v->largest);
-    }
-}
-
 // A run that a callback stopped has no diagnostic: it is done, too.
 static bool run(struct ct_sim *sim)
 {
@@ -554,7 +506,7 @@ static bool run(struct ct_sim *sim)
         ok = close_file(sim, ok);
     sim->write += ct_clock() - start;
     if (ok)
-        warn_of_beams(sim);
+        ct_sim_warn_of_beams(sim);
     if (ok && sim->kept)
         ct_sim_verify(sim);
     sim->is_done = ok;

@@ -215,7 +215,7 @@ struct ct_accuracy_options {
     } * variant;
     size_t nvariant;
     const char *reference; /* CSV as simulate writes it; NULL: found by tight runs that agree */
-    int per_decade; /* tolerances in a power of ten, at most 10; 0: powers of ten, the others begin at 1e-2 */
+    int per_decade; /* tolerances, or steps from run.step on, in a power of ten, at most 10; 0: powers of ten, the other tolerances begin at 1e-2 */
     FILE *progress; /* a bar is shown there if it is a terminal */
 };
 

@@ -57,8 +57,9 @@ static void symmetrise(double *A, int n)
 struct basis {
     int n, k, n0;
     double *V, *w2, *N;
-    double *S;    // n0 x k: along N what massless coordinates do while V moves
-    bool is_held; // they have places to follow to
+    double *S;     // n0 x k: along N what massless coordinates do while V moves
+    double *error; // n: of the entries of N
+    bool is_held;  // they have places to follow to
 };
 
 // Mass-normalised directions and massless ones of Mr.
@@ -81,27 +82,73 @@ static void split_by_mass(struct ct_arena *a, const double *Mr, int n, struct ba
         for (int i = 0; i < n; i++)
             out[i] = scale[i] * M[i + n * k] / (moves ? sqrt(value[k]) : 1);
     }
+    s->error = scale;
+    for (int i = 0; i < n && s->k; i++)
+        s->error[i]
+            *= rounding * n * value[n - 1] / value[s->n0]; // a vector's, by the gap to others
 }
 
-// The massless directions follow without inertia: K_nn s = -K_nv. False if nothing holds them.
+// How far N' K B (n0 x m, B: n x m) may be from its value by roundings and by the errors of N, and of B where it has
+// the same.
+static void bound_errors(double *bound, const struct basis *s, const double *K, const double *B,
+                         int m, bool is_same)
+{
+    const int n = s->n, n0 = s->n0;
+    memset(bound, 0, (size_t)n0 * (size_t)m * sizeof *bound);
+    for (int j = 0; j < m; j++)
+        for (int p = 0; p < n; p++) {
+            double exact = 0, off = 0;
+            for (int q = 0; q < n; q++) {
+                exact += fabs(K[p + n * q] * B[q + n * j]);
+                off += is_same ? fabs(K[p + n * q]) * s->error[q] : 0;
+            }
+            for (int i = 0; i < n0; i++)
+                bound[i + n0 * j] += fabs(s->N[p + n * i]) * (rounding * n * exact + off)
+                                   + s->error[p] * (exact + off);
+        }
+}
+
+// K_nn = Q diag(held) Q', N becomes N Q; held 0 where nothing holds a direction, beyond roundings. False if the
+// eigenvalues cannot be found.
+static bool turn_massless(struct ct_arena *a, const double *K, struct basis *s, double *held)
+{
+    const int n = s->n, n0 = s->n0;
+    double *Q = CT_NEWN(a, double, n0 *n0 + 1), *KN = CT_NEWN(a, double, n *n0 + 1),
+           *N = CT_NEWN(a, double, n *n0 + 1), *bound = CT_NEWN(a, double, n0 *n0 + 1),
+           *work = CT_NEWN(a, double, ct_symmetric_eigenvalues_work(n0));
+    congruence(Q, s->N, K, KN, n, n0);
+    symmetrise(Q, n0);
+    if (!ct_symmetric_eigen(held, Q, n0, n0, work))
+        return false;
+    ct_matrix_multiply(N, s->N, Q, n, n0, n0);
+    s->N = N;
+    bound_errors(bound, s, K, N, n0, true);
+    for (int i = 0; i < n0; i++)
+        if (fabs(held[i]) <= bound[i + n0 * i])
+            held[i] = 0;
+    return true;
+}
+
+// The massless directions follow without inertia, K_nn s = -K_nv; those that nothing holds stay at rest. False if one of
+// these is pulled at nevertheless: then it has no place to follow to.
 static bool condense(struct ct_arena *a, const double *K, struct basis *s)
 {
     const int n = s->n, k = s->k, n0 = s->n0;
-    double *KV = CT_NEWN(a, double, n *n + 1), *Knn = CT_NEWN(a, double, n0 *n0 + 1);
-    int *pivot = CT_NEWN(a, int, n0 + 1);
+    double *KV = CT_NEWN(a, double, n *n + 1), *held = CT_NEWN(a, double, n0 + 1),
+           *bound = CT_NEWN(a, double, n0 *k + 1);
     s->S = CT_NEWN(a, double, n0 *k + 1);
-    congruence(Knn, s->N, K, KV, n, n0);
-    const double size = ct_vector_largest(Knn, (size_t)n0 * (size_t)n0);
+    if (!turn_massless(a, K, s, held))
+        return false;
     ct_matrix_multiply(KV, K, s->V, n, n, k);
     ct_matrix_multiply_transposed(s->S, s->N, KV, n0, n, k);
-    for (int i = 0; i < n0 * k; i++)
-        s->S[i] = -s->S[i];
-    if (!ct_lu(Knn, pivot, n0, n0))
-        return false;
-    for (int i = 0; i < n0; i++)
-        if (!(fabs(Knn[i + n0 * i]) > rounding * size))
-            return false;
-    ct_lu_solve(s->S, Knn, pivot, n0, n0, k, n0, false);
+    bound_errors(bound, s, K, s->V, k, false);
+    for (int j = 0; j < k; j++)
+        for (int i = 0; i < n0; i++) {
+            double *x = &s->S[i + n0 * j];
+            if (held[i] == 0 && fabs(*x) > bound[i + n0 * j])
+                return false;
+            *x = held[i] == 0 ? 0 : -*x / held[i];
+        }
     for (int j = 0; j < k; j++)
         for (int i = 0; i < n0; i++)
             for (int p = 0; p < n; p++)

@@ -9,7 +9,7 @@
 #include <math.h>
 #include <string.h>
 
-// A row counts as dependent when what is left of it is this small against the largest, as in embed.c.
+// A row counts as dependent when what is left of it is this small against the largest, as in embedding.h.
 static const double rank_tolerance = 1e-9;
 static const double closed
     = 1e-13; // rows of positions: a few roundings of coordinates of order one
@@ -70,14 +70,6 @@ static bool is_finite(const double *v, size_t n)
     return true;
 }
 
-static double largest(const double *v, size_t n)
-{
-    double max = 0;
-    for (size_t i = 0; i < n; i++)
-        max = fabs(v[i]) > max || isnan(v[i]) ? fabs(v[i]) : max;
-    return max;
-}
-
 // ---- the state ------------------------------------------------------------------------------------------
 
 // d (nu, out): the shortest vector with J d = -r; J is that of the machine.
@@ -112,7 +104,7 @@ bool ct_linear_close(struct ct_linear *l)
         return true;
     for (int i = 0; i < MOST_NEWTON; i++) {
         ct_machine_constraint(m);
-        const double left = largest(m->phi, m->nrow);
+        const double left = ct_vector_size(m->phi, m->nrow);
         if (!isfinite(left) || (left >= before / 2 && before > 1e-9))
             return false;
         if (left <= closed || left >= before / 2)
@@ -122,9 +114,9 @@ bool ct_linear_close(struct ct_linear *l)
         ct_machine_retract(m, l->y, l->r);
         enter(l);
     }
-    if (!(largest(m->phi, m->nrow) < 1e-9)) // [m] or [rad]: not closed at all
+    if (!(ct_vector_size(m->phi, m->nrow) < 1e-9)) // [m] or [rad]: not closed at all
         return false;
-    if (largest(m->v, m->nrow) == 0)
+    if (ct_vector_size(m->v, m->nrow) == 0)
         return true;
     shortest(l, l->r, m->v);
     for (int k = 0; k < l->nu; k++)
@@ -325,7 +317,7 @@ static void reduce(struct ct_linear *l)
         memcpy(l->Mr, l->M, ff * sizeof *l->Mr);
         memcpy(l->Cr, l->C, ff * sizeof *l->Cr);
         memcpy(l->Kr, l->K, ff * sizeof *l->Kr);
-        l->is_moving = largest(l->G, ff) > 0;
+        l->is_moving = ct_vector_size(l->G, ff) > 0;
         return;
     }
     double *const all[] = {l->Mr, l->Cr, l->Kr};
@@ -340,7 +332,8 @@ static void reduce(struct ct_linear *l)
     for (size_t i = 0; i < nf; i++)
         l->X2[i] += l->A[i];
     add_reduced(l, l->Kr, l->M, l->X2);
-    l->is_moving = largest(l->X, nf) > 0 || largest(l->X2, nf) > 0 || largest(l->G, ff) > 0;
+    l->is_moving = ct_vector_size(l->X, nf) > 0 || ct_vector_size(l->X2, nf) > 0
+                || ct_vector_size(l->G, ff) > 0;
 }
 
 // ---- balance ------------------------------------------------------------------------------------------------
@@ -401,7 +394,7 @@ static bool finish(struct ct_linear *l)
              l->lam); // lam is zero: what multipliers must bear, and what is left
     multipliers(l, l->r);
     ct_linear_project(l, l->force, l->r);
-    l->acceleration = largest(l->a, (size_t)l->nu);
+    l->acceleration = ct_vector_size(l->a, (size_t)l->nu);
     if (!slopes(l))
         return false;
     reduce(l);

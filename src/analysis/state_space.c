@@ -7,6 +7,7 @@
 #include "analysis/state_space.h"
 #include "numeric/dense.h"
 
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
@@ -26,6 +27,7 @@ struct split {
     int f, k, n0, n1, n2; // f = k + n0, n0 = n1 + n2
     int *heavy, *light;   // k and n0 coordinates
     bool is_mixed;        // massless directions are not coordinates
+    double *error;        // f: of the entries of N
     double *N;            // f x n0: N1, then N2
     double *T;            // f x (k + n1): unit vectors of the heavy ones, N1
 };
@@ -55,6 +57,9 @@ static void find_massless(struct split *s)
     for (int j = 0; j < s->n0; j++)
         for (int i = 0; i < f; i++)
             s->N[i + f * j] = scale[i] * M[i + f * j];
+    s->error = scale;
+    for (int i = 0; i < f && s->n0 < f; i++) // a vector's, by the gap to the others
+        s->error[i] *= fmax(massless, DBL_EPSILON * f * value[f - 1] / value[s->n0]);
 }
 
 // The massless directions by coordinates of their own: rows of N at these become unit rows.
@@ -83,11 +88,15 @@ static void choose_light(struct split *s)
     for (int j = 0; j < n0; j++)
         for (int i = 0; i < f; i++)
             A[j + n0 * i] = s->N[i + f * j];
-    if (n0 && ct_lu(P, pivot, n0, n0))
+    double own = 1; // what a direction has at its coordinate, at least
+    if (n0 && ct_lu(P, pivot, n0, n0)) {
         ct_lu_solve(A, P, pivot, n0, n0, f, n0, true);
+        for (int i = 0; i < n0; i++)
+            own = fmin(own, fabs(P[i + n0 * i]));
+    }
     for (int j = 0; j < n0; j++)
         for (int i = 0; i < f; i++) {
-            const bool is_zero = fabs(A[j + n0 * i]) < massless;
+            const bool is_zero = fabs(A[j + n0 * i]) < s->error[i] / own;
             s->N[i + f * j] = is_zero ? 0 : A[j + n0 * i];
             s->is_mixed |= !is_zero && !taken[i];
         }

@@ -96,7 +96,7 @@ static const struct option {
     {"error", 0, "E", NUMBER, FIELD(error), CLI_ACCURACY, false,
      "the error that the cheapest setting must meet; 1e-6"},
     {"per-decade", 0, "N", COUNT_OF, FIELD(per_decade), CLI_ACCURACY, false,
-     "N tolerances a power of ten, from 1e-2 on"},
+     "N tolerances a power of ten, from 1e-2 on, or steps"},
     {"elements", 0, "LIST", TEXT, FIELD(elements), CLI_ACCURACY, false,
      "numbers of elements of the beams, as in 1,2,5"},
     {"formulations", 0, "LIST", TEXT, FIELD(formulations), CLI_ACCURACY, false,

@@ -12,13 +12,15 @@ enum { CT_NREGISTER = 16, CT_ROWS_TOGETHER = 4 };
 enum ct_area { CT_AREA_NONE, CT_AREA_INPUT, CT_AREA_OUT, CT_AREA_WORK, CT_NAREA };
 
 // How four rows of a value stand in memory: side by side, one number for all, further apart.
+// SAME in four lanes too, for constants.
 enum ct_row_layout { CT_ROWS_FULL, CT_ROWS_SAME, CT_ROWS_APART };
 
 // What the streams of a loop point at.
 struct ct_stream {
     unsigned area;
     int32_t stride;
-    bool stays; // with each strip of rows where it was
+    bool stays;     // with each strip of rows where it was
+    bool is_number; // places are of one double, for all lanes
 };
 
 struct ct_home {
@@ -52,13 +54,15 @@ struct ct_emitter {
     uint32_t nfree, nwork, nfixed;
     uint32_t place_size;            // bytes of a place
     uint32_t width;                 // places of a value that leaves its register
-    enum ct_row_layout *layout;     // by value, in loops of rows side by side; else NULL
+    enum ct_row_layout *layout;     // by value, in loops; else NULL
     const struct ct_stream *stream; // of the loop
     uint32_t *spread; // by value: the first of four places that hold a constant, or none
 };
 
 // ---- x86.c ------------------------------------------------------------------------------------
 
+/// Bytes of a place of an area or stream.
+uint32_t ct_emitter_place_size(const struct ct_emitter *e, unsigned area);
 struct ct_rm ct_emitter_memory(const struct ct_emitter *e, struct ct_home h);
 /// v in a register, pinned.
 int ct_emitter_load(struct ct_emitter *e, uint32_t v);

@@ -71,6 +71,15 @@ void ct_put_bitwise(struct ct_bytes *c, unsigned op, int reg, int vvvv, struct c
     ct_put_vex(c, (struct ct_vex){1, 1, 0, (unsigned char)op}, c->lanes > 1, reg, vvvv, rm);
 }
 
+void ct_put_fetch(struct ct_bytes *c, struct ct_rm line)
+{
+    if (line.base >= 8)
+        ct_put(c, 0x41);
+    ct_put(c, 0x0F); // prefetchw
+    ct_put(c, 0x0D);
+    put_operand(c, 1, line);
+}
+
 void ct_put_load(struct ct_bytes *c, int reg, struct ct_rm from)
 {
     ct_put_arithmetic(c, 0x10, reg, 0, from); // vmovsd, vmovupd
@@ -135,9 +144,9 @@ void ct_put_pop(struct ct_bytes *c, int reg)
 // 64-bit to = from, from among the lower eight
 void ct_put_move(struct ct_bytes *c, int to, int from)
 {
-    ct_put(c, to >= 8 ? 0x49 : 0x48);
+    ct_put(c, 0x48 | (to >= 8) | (from >= 8) << 2);
     ct_put(c, 0x89);
-    ct_put(c, 0xC0 | (unsigned)from << 3 | (unsigned)(to & 7));
+    ct_put(c, 0xC0 | (unsigned)(from & 7) << 3 | (unsigned)(to & 7));
 }
 
 void ct_put_address(struct ct_bytes *c, int reg, struct ct_rm rm)

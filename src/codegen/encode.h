@@ -86,6 +86,8 @@ void ct_put_vex(struct ct_bytes *c, struct ct_vex i, bool wide, int reg, int vvv
 void ct_put_arithmetic(struct ct_bytes *c, unsigned op, int reg, int vvvv, struct ct_rm rm);
 /// Bitwise operations exist on whole registers only, so a scalar operand must not be in memory.
 void ct_put_bitwise(struct ct_bytes *c, unsigned op, int reg, int vvvv, struct ct_rm rm);
+/// Have a line of memory in the nearest cache, to be written.
+void ct_put_fetch(struct ct_bytes *c, struct ct_rm line);
 void ct_put_load(struct ct_bytes *c, int reg, struct ct_rm from);
 /// Four times the number there.
 void ct_put_broadcast(struct ct_bytes *c, int reg, struct ct_rm from);
@@ -99,7 +101,7 @@ void ct_put_blend(struct ct_bytes *c, int reg, int no, int yes, int mask);
 void ct_put_vzeroupper(struct ct_bytes *c);
 void ct_put_push(struct ct_bytes *c, int reg);
 void ct_put_pop(struct ct_bytes *c, int reg);
-/// 64-bit to = from, from among the lower eight
+/// 64-bit to = from
 void ct_put_move(struct ct_bytes *c, int to, int from);
 void ct_put_address(struct ct_bytes *c, int reg, struct ct_rm rm);
 void ct_put_immediate(struct ct_bytes *c, int reg, uint64_t v);

@@ -14,6 +14,6 @@
 /// results are more than the nearest cache holds; with fewer nothing is merged.
 struct ct_roll ct_merge_loops(struct ct_arena *a, const struct ct_listing *l, uint32_t *order,
                               uint32_t n, uint32_t nfixed, const bool is_alone[CT_NKIND],
-                              uint32_t nwork, uint32_t lanes);
+                              uint32_t nwork, uint32_t rows, uint32_t lanes);
 
 #endif

@@ -231,9 +231,11 @@ void ct_native_prepare(const struct ct_native *f, const double *input, double *w
             take_leaf(f, v, input, work);
     for (size_t i = 0; i < f->l->nprologue; i++)
         run_instruction(f, &f->l->ins[i], work);
-    for (size_t i = 0; i < f->ntable; i++)
-        memcpy(work + f->lanes * f->table[i].place,
-               work + f->lanes * f->place[f->table[i].value], f->lanes * sizeof *work);
+    for (size_t i = 0; i < f->ntable; i++) {
+        const struct ct_copy *c = &f->table[i];
+        const size_t n = c->is_number ? 1 : f->lanes;
+        memcpy(work + n * c->place, work + f->lanes * f->place[c->value], n * sizeof *work);
+    }
 }
 
 // ---- entries ----------------------------------------------------------------------------------

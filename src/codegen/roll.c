@@ -1,5 +1,4 @@
-// See roll.h. Loops are sought as repeats in the sequence of operators, together with how far back near operands are;
-// a loop whose operands cannot be reached is left as it was, and all are settled again without it.
+// See roll.h. A repeat becomes a loop where its operands can be reached; else it is cut, or left as it was.
 #include "codegen/stretch.h"
 
 #include <string.h>
@@ -7,197 +6,11 @@
 static const uint32_t none = CT_VALUE_NONE;
 
 enum {
-    WINDOW = 16, // instructions that must repeat to be looked at
-    NEAR = 64,   // operands so close belong to what repeats
-    MOST_PERIOD = 8192,
-    MOST_TRIES = 64,
-    LEAST_ROWS = 4,
-    LEAST_SAVED = 48, // instructions
-    MOST_CUTS = 3,    // see cut
-    MOST_LEFT = 8,    // rows at an end, see leave_ends
+    MOST_CUTS = 3, // see cut
+    MOST_LEFT = 8, // rows at an end, see leave_ends
 };
 
-// ---- repeats ----------------------------------------------------------------------------------
-
-const struct ct_instruction *ct_stretch_instruction(const struct ct_stretches *p,
-                                                    uint32_t place)
-{
-    return &p->l->ins[p->order[place]];
-}
-
-uint32_t ct_stretch_operand(const struct ct_stretches *p, uint32_t place, uint32_t k)
-{
-    return ct_stretch_instruction(p, place)->arg[k < 2 && p->is_swapped[place] ? 1 - k : k];
-}
-
-static bool is_commutative(unsigned op)
-{
-    return op == CT_OP_ADD || op == CT_OP_MUL || op == CT_OP_FMA || op == CT_OP_FMS
-        || op == CT_OP_FNMA;
-}
-
-// Constants and parameters, inputs, results.
-static uint32_t age(const struct ct_stretches *p, uint32_t v)
-{
-    return p->at[v] != none ? p->at[v] + 2 : p->l->rate[v] == CT_RATE_CALL;
-}
-
-static void order_operands(struct ct_stretches *p)
-{
-    for (uint32_t i = 0; i < p->n; i++) {
-        const struct ct_instruction *ins = ct_stretch_instruction(p, i);
-        p->is_swapped[i] = is_commutative(ins->op) && age(p, ins->arg[0]) < age(p, ins->arg[1]);
-    }
-}
-
-static uint64_t mix(uint64_t h, uint64_t v)
-{
-    h = (h ^ v) * UINT64_C(0x9E3779B97F4A7C15);
-    return h ^ h >> 29;
-}
-
-static void sign_places(struct ct_stretches *p, const bool is_alone[CT_NKIND])
-{
-    for (uint32_t i = 0; i < p->n; i++) {
-        const struct ct_instruction *ins = ct_stretch_instruction(p, i);
-        uint64_t h = mix(ins->op, ins->nres);
-        if (is_alone[ins->op] || ins->nres != 1)
-            h = mix(h, (uint64_t)i + CT_NKIND);
-        for (uint32_t k = 0; k < ins->narg; k++) {
-            const uint32_t from = p->at[ct_stretch_operand(p, i, k)];
-            h = mix(h, from != none && i - from < NEAR ? i - from : 0);
-        }
-        p->sign[i] = h;
-    }
-}
-
-static void link_windows(struct ct_stretches *p)
-{
-    size_t size = 64;
-    while (size < 2 * (size_t)p->n)
-        size *= 2;
-    uint32_t *last = CT_NEWN(p->scratch, uint32_t, size); // 1 + place, by hash
-    // h = sum of sign[i + k] base^k over the window, moved on by one place
-    const uint64_t base = UINT64_C(0x9E3779B97F4A7C15);
-    uint64_t h = 0, leaving = 1;
-    for (int k = 0; k < WINDOW; k++)
-        leaving *= base;
-    for (uint32_t i = p->n; i-- > 0;) {
-        h = p->sign[i] + base * h - (i + WINDOW < p->n ? leaving * p->sign[i + WINDOW] : 0);
-        p->again[i] = none;
-        if (i + WINDOW > p->n)
-            continue;
-        uint32_t *slot = &last[mix(0, h) & (size - 1)];
-        p->again[i] = *slot ? *slot - 1 : none;
-        *slot = i + 1;
-    }
-}
-
-// The repeat that starts at i and saves most.
-static struct ct_stretch best_repeat(const struct ct_stretches *p, uint32_t i,
-                                     uint32_t *longest)
-{
-    struct ct_stretch best = {.first = i};
-    uint32_t saved = LEAST_SAVED - 1, c = p->again[i];
-    for (int tries = 0; tries < MOST_TRIES && c > i && c != none && c - i <= MOST_PERIOD;
-         tries++) {
-        const uint32_t period = c - i;
-        uint32_t same = 0;
-        if (best.count && period % best.period == 0) { // saves less than that did
-            c = p->again[c];
-            continue;
-        }
-        while (c + same < p->n && p->sign[i + same] == p->sign[c + same])
-            same++;
-        const uint32_t count = same / period + 1;
-        if (count >= LEAST_ROWS && (count - 1) * period > saved) {
-            saved = (count - 1) * period;
-            best.period = period;
-            best.count = count;
-            *longest = same;
-        }
-        c = p->again[c];
-    }
-    return best;
-}
-
-// Rows fewer than before, side by side: are they nearly as many sets of lanes?
-static bool keeps_sets(uint32_t rows, uint32_t before, uint32_t lanes)
-{
-    return 8 * (rows / lanes) >= 7 * (before / lanes);
-}
-
-// Where rows begin is chosen so that the fewest results are read across that place. same: places that repeat what is a
-// row before them. Cost: two rows.
-static void turn_rows(const struct ct_stretches *p, struct ct_stretch *r, uint32_t same,
-                      uint32_t lanes)
-{
-    const uint32_t n = r->period, begin = r->first + (r->count / 2 - 1) * n;
-    uint32_t *last = CT_NEWN(p->scratch, uint32_t, n);
-    int32_t *across
-        = CT_NEWN(p->scratch, int32_t, 2 * n + 1); // by place: more than at the one before
-    for (uint32_t place = begin; place < begin + 2 * n; place++)
-        for (uint32_t k = 0; k < ct_stretch_instruction(p, place)->narg; k++) {
-            const uint32_t from = p->at[ct_stretch_operand(p, place, k)];
-            if (from != none && from >= begin && from < begin + n)
-                last[from - begin] = place - begin;
-        }
-    for (uint32_t from = 0; from < n; from++)
-        if (last[from]) {
-            across[from + 1]++;
-            across[last[from] + 1]--;
-        }
-    for (uint32_t i = 1; i < 2 * n; i++)
-        across[i] += across[i - 1];
-    uint32_t best = 0;
-    for (uint32_t i = 1; i < n && i <= same; i++)
-        if (across[i] + across[i + n] < across[best] + across[best + n]
-            && keeps_sets((same - i) / n + 1, r->count, lanes))
-            best = i;
-    r->first += best;
-    r->count = (same - best) / n + 1;
-}
-
-static void find_repeats(struct ct_stretches *p, uint32_t lanes)
-{
-    for (uint32_t i = 0; i < p->n; i++)
-        p->of_place[i] = none;
-    for (uint32_t i = 0; i < p->n;) {
-        uint32_t same = 0;
-        struct ct_stretch r = best_repeat(p, i, &same);
-        if (!r.count) {
-            i++;
-            continue;
-        }
-        if ((same - r.period) / r.period + 1 >= LEAST_ROWS)
-            turn_rows(p, &r, same, lanes);
-        for (uint32_t k = 0; k < r.period * r.count; k++)
-            p->of_place[r.first + k] = (uint32_t)p->nstretch;
-        i = r.first + r.period * r.count;
-        CT_PUSH(p->arena, p->stretch, p->nstretch, p->stretch_cap, r);
-    }
-}
-
 // ---- how operands are reached -----------------------------------------------------------------
-
-uint32_t ct_stretch_argument(const struct ct_stretches *p, const struct ct_stretch *r,
-                             uint32_t row, uint32_t operand)
-{
-    return ct_stretch_operand(p, r->first + row * r->period + operand / 3, operand % 3);
-}
-
-// The repeat that makes v, with its row and instruction; NULL if none does.
-struct ct_stretch *ct_stretch_of(const struct ct_stretches *p, uint32_t v, int32_t *row,
-                                 uint32_t *slot)
-{
-    const uint32_t at = p->at[v];
-    if (at == none || p->of_place[at] == none)
-        return NULL;
-    struct ct_stretch *r = &p->stretch[p->of_place[at]];
-    *row = (int32_t)((at - r->first) / r->period);
-    *slot = (at - r->first) % r->period;
-    return r;
-}
 
 static bool is_made_before(const struct ct_stretches *p, const struct ct_stretch *r, uint32_t v)
 {
@@ -286,16 +99,22 @@ static bool is_edge_free(const struct ct_stretch *other, uint32_t slot, int32_t 
     return true;
 }
 
+// For an edge at a row.
+static void make_room(struct ct_stretch *r, int32_t row)
+{
+    if (-row > r->before)
+        r->before = -row;
+    if (row - (int32_t)r->count + 1 > r->behind)
+        r->behind = row - (int32_t)r->count + 1;
+}
+
 static void add_edge(const struct ct_stretches *p, const struct ct_stretch *r,
                      struct ct_stretch *other, uint32_t slot, int32_t row, uint32_t v)
 {
     const struct ct_stretch_edge e = {row, v, other->edge_of[slot], (uint32_t)(r - p->stretch)};
     CT_PUSH(p->arena, other->edge, other->nedge, other->edge_cap, e);
     other->edge_of[slot] = (uint32_t)other->nedge;
-    if (-row > other->before)
-        other->before = -row;
-    if (row - (int32_t)other->count + 1 > other->behind)
-        other->behind = row - (int32_t)other->count + 1;
+    make_room(other, row);
 }
 
 // Results of one instruction of a repeat, a row further every time; at the ends perhaps of what takes its place there.
@@ -502,7 +321,8 @@ static void clear(const struct ct_stretches *p, struct ct_stretch *r)
         r->escapes_far = CT_NEWN(p->scratch, bool, r->period);
         r->least_row = CT_NEWN(p->scratch, uint32_t, r->period);
         r->part = CT_NEWN(p->scratch, unsigned char, r->period);
-        r->is_local = CT_NEWN(p->scratch, bool, r->period);
+        r->keep = CT_NEWN(p->scratch, enum ct_keep, r->period);
+        r->out_stride = CT_NEWN(p->scratch, int32_t, r->period);
     }
     memset(r->edge_of, 0, r->period * sizeof *r->edge_of);
     r->nedge = r->ncolumn = 0;
@@ -525,7 +345,7 @@ static void cut(struct ct_stretches *p, struct ct_stretch *r)
     } without[MOST_CUTS] = {{1, 1}, {0, 1}, {1, 2}};
     set_places(p, r, none);
     const uint32_t left = rows_left_out(r);
-    if (r->ncut == 0 && left && r->count >= left + LEAST_ROWS) {
+    if (r->ncut == 0 && left && r->count >= left + CT_LEAST_ROWS) {
         r->first += r->keep_first * r->period;
         r->count -= left;
         set_places(p, r, (uint32_t)(r - p->stretch));
@@ -535,7 +355,8 @@ static void cut(struct ct_stretches *p, struct ct_stretch *r)
         r->whole_first = r->first;
         r->whole_count = r->count;
     }
-    r->is_dropped = r->ncut == MOST_CUTS || r->whole_count < without[r->ncut].less + LEAST_ROWS;
+    r->is_dropped
+        = r->ncut == MOST_CUTS || r->whole_count < without[r->ncut].less + CT_LEAST_ROWS;
     if (r->is_dropped)
         return;
     r->first = r->whole_first + without[r->ncut].first * r->period;
@@ -544,25 +365,48 @@ static void cut(struct ct_stretches *p, struct ct_stretch *r)
     set_places(p, r, (uint32_t)(r - p->stretch));
 }
 
-// False if a repeat had to be cut: others may rely on it.
-static bool settle(struct ct_stretches *p)
+// Edges of a repeat but for those that `asker` has put there last.
+static void remove_edges(struct ct_stretch *r, uint32_t asker)
 {
-    for (size_t i = 0; i < p->nstretch; i++)
-        if (!p->stretch[i].is_dropped)
-            clear(p, &p->stretch[i]);
+    size_t n = r->nedge;
+    while (n && r->edge[n - 1].asker == asker)
+        n--;
+    if (n == r->nedge)
+        return;
+    for (uint32_t slot = 0; slot < r->period; slot++)
+        while (r->edge_of[slot] > n)
+            r->edge_of[slot] = r->edge[r->edge_of[slot] - 1].next;
+    r->nedge = n;
+    r->before = r->behind = 0;
+    for (size_t i = 0; i < n; i++)
+        make_room(r, r->edge[i].row);
+}
+
+static void withdraw_edges(struct ct_stretches *p, const struct ct_stretch *r)
+{
+    for (int i = 0; i < r->nstream; i++)
+        if (r->stream[i].kind == CT_SOURCE_RESULTS)
+            remove_edges(&p->stretch[r->stream[i].other], (uint32_t)(r - p->stretch));
+}
+
+// Operands are made before they are read, so that a repeat relies on itself and those before it alone: when it is cut, these
+// stay as they are, but for the edges that it has put there.
+static void settle(struct ct_stretches *p)
+{
     for (size_t i = 0; i < p->nstretch; i++) {
         struct ct_stretch *r = &p->stretch[i];
-        if (r->is_dropped || reach_operands(p, r))
-            continue;
-        cut(p, r);
-        return false;
+        clear(p, r);
+        while (!r->is_dropped && !reach_operands(p, r)) {
+            withdraw_edges(p, r);
+            cut(p, r);
+            clear(p, r);
+        }
     }
-    return true;
 }
 
 struct ct_roll ct_roll_find(struct ct_arena *a, const struct ct_listing *l,
                             const uint32_t *order, uint32_t n, const bool is_alone[CT_NKIND],
-                            uint32_t nwork, uint32_t lanes)
+                            uint32_t nwork, uint32_t rows, uint32_t lanes)
 {
     struct ct_stretches p = {.arena = a, .l = l, .order = order, .n = n};
     struct ct_roll out = {.place = CT_NEWN(a, uint32_t, l->nvalue + 1), .nwork = nwork};
@@ -577,13 +421,9 @@ struct ct_roll ct_roll_find(struct ct_arena *a, const struct ct_listing *l,
     for (uint32_t i = 0; i < n; i++)
         for (uint32_t k = 0; k < ct_stretch_instruction(&p, i)->nres; k++)
             p.at[ct_stretch_instruction(&p, i)->res[k]] = i;
-    order_operands(&p);
-    sign_places(&p, is_alone);
-    link_windows(&p);
-    find_repeats(&p, lanes);
-    while (!settle(&p))
-        ;
-    ct_stretch_lay_out(&p, lanes, &out);
+    ct_stretches_find(&p, is_alone, rows);
+    settle(&p);
+    ct_stretch_lay_out(&p, rows, lanes, &out);
     ct_arena_destroy(scratch);
     return out;
 }

@@ -22,18 +22,33 @@
 /// Strides that one loop can have.
 enum { CT_ROLL_STREAMS = 7 };
 
-enum ct_reach { CT_REACH_ROW, CT_REACH_FIXED, CT_REACH_INPUT, CT_REACH_WORK, CT_REACH_STRIP };
+enum ct_reach {
+    CT_REACH_ROW,
+    CT_REACH_FIXED,
+    CT_REACH_INPUT,
+    CT_REACH_WORK,
+    CT_REACH_STRIP,
+    CT_REACH_PLACE,
+    CT_REACH_NUMBER,
+    CT_REACH_OUT
+};
 
 struct ct_operand {
     enum ct_reach reach;
-    // ROW: number of the loop's own instruction; FIXED: value; else the place at row 0, STRIP: of the strip
+    // ROW: number of the loop's own instruction; FIXED: value; PLACE: of the work array, for all rows; NUMBER: one double
+    // for all lanes, counted in doubles of the work array; OUT: output; else the place at row 0, STRIP: of the strip
     uint32_t at;
     int32_t stride;
 };
 
+/// CT_REACH_NUMBER: place is that of a double
 struct ct_copy {
     uint32_t value, place; // of the work array
+    bool is_number;
 };
+
+/// Not a place of the work array: the first output that the value is.
+#define CT_ROLL_OUT (CT_VALUE_NONE - 1)
 
 struct ct_loop {
     uint32_t first, period, count; // places in the order: the first one, of a row; rows
@@ -51,7 +66,8 @@ struct ct_loop {
 struct ct_roll {
     struct ct_loop *loop; // ascending; two of one stretch follow each other
     size_t nloop;
-    uint32_t *place;       // by value: where a result of a loop is kept; CT_VALUE_NONE: others
+    uint32_t *
+        place; // by value: where a result of a loop is kept, CT_ROLL_OUT; CT_VALUE_NONE: others
     struct ct_copy *table; // constants and parameters by row: copied once
     size_t ntable, table_cap;
     uint32_t nwork;   // places of the work array, up to here
@@ -60,9 +76,9 @@ struct ct_roll {
 };
 
 /// The loops of n instructions in the order of their execution. is_alone: by operator, not in loops. Places of the work
-/// array from nwork on are used. lanes: rows that can be done side by side; 1: none. Cost: about n.
+/// array from nwork on are used, each of `lanes` numbers. rows: that can be done side by side; 1: none. Cost: about n.
 struct ct_roll ct_roll_find(struct ct_arena *a, const struct ct_listing *l,
                             const uint32_t *order, uint32_t n, const bool is_alone[CT_NKIND],
-                            uint32_t nwork, uint32_t lanes);
+                            uint32_t nwork, uint32_t rows, uint32_t lanes);
 
 #endif

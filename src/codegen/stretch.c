@@ -182,9 +182,16 @@ static uint32_t place_of(const struct ct_stretch *r, uint32_t number, int32_t ro
 
 static uint32_t place_of_slot(const struct ct_stretch *r, uint32_t slot, int32_t row)
 {
-    if (r->is_local[slot])
+    switch (r->keep[slot]) {
+    case CT_KEEP_STRIP:
         return (uint32_t)((int32_t)(r->local_origin + r->offset[slot] * r->local_stride) + row);
-    return place_of(r, r->offset[slot], row);
+    case CT_KEEP_PLACE:
+        return r->passed_origin + r->offset[slot];
+    case CT_KEEP_OUT:
+        return CT_ROLL_OUT;
+    default:
+        return place_of(r, r->offset[slot], row);
+    }
 }
 
 static uint32_t rounded_up(uint32_t n, uint32_t to)
@@ -204,27 +211,133 @@ static uint32_t last_strip(const struct ct_stretch *r)
     return (r->count - 1) / r->strip * r->strip;
 }
 
-static void place_rows(struct ct_stretch *r, uint32_t *nwork, uint32_t lanes)
+// What nobody reads but the next row, before it has its own, and others after the last one.
+static void find_passed(const struct ct_stretches *p, struct ct_stretch *r)
 {
-    for (uint32_t slot = 0; slot < r->period; slot++) {
-        r->is_local[slot] = r->strip && r->escapes[slot] && !r->escapes_far[slot]
-                         && r->least_row[slot] >= last_strip(r);
-        if (r->escapes[slot])
-            r->offset[slot] = r->is_local[slot] ? r->nlocal++ : r->nresult++;
+    for (uint32_t slot = 0; slot < r->period; slot++)
+        if (r->escapes[slot] && !r->escapes_far[slot] && r->least_row[slot] >= r->count - 1)
+            r->keep[slot] = CT_KEEP_PLACE;
+    for (uint32_t slot = 0; slot < r->period; slot++)
+        for (uint32_t k = 0; k < ct_stretch_instruction(p, r->first + slot)->narg; k++) {
+            const struct ct_source *from = &r->reach[3 * slot + k];
+            if (reads_itself(p, r, from) && r->keep[from->at] == CT_KEEP_PLACE
+                && (from->step != 1 || from->row != -1 || from->at < slot))
+                r->keep[from->at] = CT_KEEP_ROWS;
+        }
+}
+
+static uint32_t output_of(const struct ct_stretches *p, const struct ct_stretch *r,
+                          uint32_t slot, uint32_t row)
+{
+    const uint32_t at = r->first + row * r->period + slot;
+    return p->output[ct_stretch_instruction(p, at)->res[0]] - 1;
+}
+
+static bool is_output_by_row(const struct ct_stretches *p, const struct ct_stretch *r,
+                             uint32_t slot)
+{
+    const uint32_t first = output_of(p, r, slot, 0), step = output_of(p, r, slot, 1) - first;
+    for (uint32_t row = 0; row < r->count; row++) {
+        const uint32_t k = output_of(p, r, slot, row);
+        if (k == none || k != first + row * step)
+            return false;
     }
-    const uint32_t width = r->nresult + (uint32_t)r->ncolumn,
-                   before = rounded_up((uint32_t)r->before, lanes);
-    uint32_t rows = before + rounded_up(r->count + (uint32_t)r->behind, lanes);
+    return true;
+}
+
+// Results that are outputs row by row and that no row reads. nstream: of the loop, so far.
+static void find_outputs(const struct ct_stretches *p, struct ct_stretch *r, int nstream)
+{
+    int32_t stride[CT_ROLL_STREAMS];
+    int n = 0;
+    bool *is_read = CT_NEWN(p->scratch, bool, r->period);
+    for (uint32_t i = 0; i < 3 * r->period; i++)
+        if (i % 3 < ct_stretch_instruction(p, r->first + i / 3)->narg
+            && reads_itself(p, r, &r->reach[i]))
+            is_read[r->reach[i].at] = true;
+    for (uint32_t slot = 0; slot < r->period; slot++) {
+        if (!r->escapes[slot] || r->escapes_far[slot] || is_read[slot]
+            || !is_output_by_row(p, r, slot))
+            continue;
+        r->offset[slot] = output_of(p, r, slot, 0);
+        r->out_stride[slot] = (int32_t)(output_of(p, r, slot, 1) - r->offset[slot]);
+        int i = 0;
+        while (i < n && stride[i] != r->out_stride[slot])
+            i++;
+        if (i == n && nstream + n == CT_ROLL_STREAMS)
+            continue;
+        if (i == n)
+            stride[n++] = r->out_stride[slot];
+        r->keep[slot] = CT_KEEP_OUT;
+    }
+}
+
+static void find_strips(struct ct_stretch *r)
+{
+    for (uint32_t slot = 0; slot < r->period && r->strip; slot++)
+        if (r->escapes[slot] && !r->escapes_far[slot] && r->least_row[slot] >= last_strip(r))
+            r->keep[slot] = CT_KEEP_STRIP;
+}
+
+static bool is_constant(const struct ct_stretches *p, const struct ct_stretch *r,
+                        uint32_t operand)
+{
+    for (uint32_t row = 0; row < r->count; row++)
+        if (p->l->rate[ct_stretch_argument(p, r, row, operand)] != CT_RATE_NEVER)
+            return false;
+    return true;
+}
+
+// Constants by row are the same in all lanes. Returns the number of columns that are not.
+static uint32_t number_columns(const struct ct_stretches *p, struct ct_stretch *r,
+                               uint32_t lanes)
+{
+    uint32_t n = 0;
+    for (size_t i = 0; i < r->ncolumn; i++) {
+        struct ct_stretch_column *c = &r->column[i];
+        c->is_number
+            = lanes > 1 && r->nstream < CT_ROLL_STREAMS && is_constant(p, r, c->operand);
+        c->at = c->is_number ? r->nnumber++ : n++;
+    }
+    return n;
+}
+
+static void choose_keep(const struct ct_stretches *p, struct ct_stretch *r)
+{
+    if (r->is_side_by_side) {
+        find_strips(r);
+    } else {
+        find_passed(p, r);
+        find_outputs(p, r, r->nstream + (r->nnumber > 0));
+    }
+    uint32_t *const number[] = {&r->nresult, &r->nlocal, &r->npassed};
+    for (uint32_t slot = 0; slot < r->period; slot++)
+        if (r->escapes[slot] && r->keep[slot] != CT_KEEP_OUT)
+            r->offset[slot] = (*number[r->keep[slot]])++;
+}
+
+static void place_rows(const struct ct_stretches *p, struct ct_stretch *r, uint32_t *nwork,
+                       uint32_t together, uint32_t lanes)
+{
+    const uint32_t ncolumn = number_columns(p, r, lanes);
+    choose_keep(p, r);
+    const uint32_t width = r->nresult + ncolumn,
+                   before = rounded_up((uint32_t)r->before, together);
+    uint32_t rows = before + rounded_up(r->count + (uint32_t)r->behind, together);
     if (r->is_side_by_side)
-        rows = odd_rows(rows, lanes);
+        rows = odd_rows(rows, together);
     r->row_stride = r->is_side_by_side ? 1 : width;
     r->slot_stride = r->is_side_by_side ? rows : 1;
-    *nwork = rounded_up(*nwork, lanes);
+    *nwork = rounded_up(*nwork, together);
     r->origin = *nwork + before * r->row_stride;
     *nwork += rows * width;
-    r->local_stride = odd_rows(before + r->strip, lanes);
+    r->local_stride = odd_rows(before + r->strip, together);
     r->local_origin = *nwork + before;
     *nwork += r->nlocal * r->local_stride;
+    r->passed_origin = *nwork;
+    *nwork += r->npassed;
+    r->number_origin = *nwork * lanes;
+    *nwork += rounded_up(r->count * r->nnumber, lanes) / lanes;
 }
 
 // ---- the loops ----------------------------------------------------------------------------------
@@ -232,8 +345,22 @@ static void place_rows(struct ct_stretch *r, uint32_t *nwork, uint32_t lanes)
 static struct ct_operand result_of(const struct ct_stretch *r, uint32_t slot, int32_t row,
                                    int32_t step)
 {
-    return (struct ct_operand){r->is_local[slot] ? CT_REACH_STRIP : CT_REACH_WORK,
-                               place_of_slot(r, slot, row), step * (int32_t)r->row_stride};
+    static const enum ct_reach reach[] = {[CT_KEEP_ROWS] = CT_REACH_WORK,
+                                          [CT_KEEP_STRIP] = CT_REACH_STRIP,
+                                          [CT_KEEP_PLACE] = CT_REACH_PLACE};
+    if (r->keep[slot] == CT_KEEP_OUT)
+        return (struct ct_operand){CT_REACH_OUT, r->offset[slot], r->out_stride[slot]};
+    return (struct ct_operand){reach[r->keep[slot]], place_of_slot(r, slot, row),
+                               step * (int32_t)r->row_stride};
+}
+
+static struct ct_operand column_of(const struct ct_stretch *r, uint32_t column)
+{
+    const uint32_t at = r->column[column].at;
+    if (r->column[column].is_number)
+        return (struct ct_operand){CT_REACH_NUMBER, r->number_origin + at, (int32_t)r->nnumber};
+    return (struct ct_operand){CT_REACH_WORK, place_of(r, r->nresult + at, 0),
+                               (int32_t)r->row_stride};
 }
 
 static struct ct_operand operand_of(const struct ct_stretches *p, const struct ct_stretch *r,
@@ -249,8 +376,7 @@ static struct ct_operand operand_of(const struct ct_stretches *p, const struct c
     case CT_SOURCE_RESULTS:
         return result_of(&p->stretch[from->other], from->at, from->row, from->step);
     default:
-        return (struct ct_operand){CT_REACH_WORK, place_of(r, r->nresult + from->at, 0),
-                                   (int32_t)r->row_stride};
+        return column_of(r, from->at);
     }
 }
 
@@ -259,9 +385,9 @@ static void add_columns(const struct ct_stretches *p, const struct ct_stretch *r
 {
     for (uint32_t i = 0; i < r->ncolumn; i++)
         for (uint32_t row = 0; row < r->count; row++) {
-            const uint32_t operand = r->column[i].operand;
-            const struct ct_copy c = {ct_stretch_argument(p, r, row, operand),
-                                      place_of(r, r->nresult + i, (int32_t)row)};
+            const struct ct_operand o = column_of(r, i);
+            const struct ct_copy c = {ct_stretch_argument(p, r, row, r->column[i].operand),
+                                      o.at + row * (uint32_t)o.stride, r->column[i].is_number};
             if (!r->column[i].is_copied)
                 CT_PUSH(p->arena, out->table, out->ntable, out->table_cap, c);
             else
@@ -322,7 +448,7 @@ static void add_carried(const struct ct_stretches *p, const struct ct_stretch *r
         for (uint32_t k = 0; k < ct_stretch_instruction(p, r->first + slot)->narg; k++) {
             const struct ct_source *from = &r->reach[3 * slot + k];
             if (reads_itself(p, r, from))
-                is_carried[from->at] = r->is_local[from->at];
+                is_carried[from->at] = r->keep[from->at] == CT_KEEP_STRIP;
         }
     loop->ncarried = 0;
     loop->carried = CT_NEWN(p->arena, uint32_t, r->period);
@@ -336,7 +462,9 @@ static void keep_places(const struct ct_stretches *p, const struct ct_stretch *r
                         struct ct_roll *out)
 {
     for (uint32_t slot = 0; slot < r->period; slot++) {
-        const uint32_t from = r->is_local[slot] ? last_strip(r) : 0;
+        const uint32_t from = r->keep[slot] == CT_KEEP_STRIP ? last_strip(r)
+                            : r->keep[slot] == CT_KEEP_PLACE ? r->count - 1
+                                                             : 0;
         for (uint32_t row = from; row < r->count && r->escapes[slot]; row++) {
             const uint32_t at = r->first + row * r->period + slot;
             out->place[ct_stretch_instruction(p, at)->res[0]]
@@ -367,20 +495,24 @@ static void add_loops(const struct ct_stretches *p, uint32_t which, struct ct_ro
     add_carried(p, r, loop);
 }
 
-void ct_stretch_lay_out(struct ct_stretches *p, uint32_t lanes, struct ct_roll *out)
+void ct_stretch_lay_out(struct ct_stretches *p, uint32_t rows, uint32_t lanes,
+                        struct ct_roll *out)
 {
+    p->output = CT_NEWN(p->scratch, uint32_t, p->l->nvalue + 1);
+    for (size_t k = p->l->nout; k-- > 0;)
+        p->output[p->l->out[k]] = (uint32_t)k + 1;
     mark_escapes(p);
-    choose_lanes(p, lanes);
+    choose_lanes(p, rows);
     for (size_t i = 0; i < p->nstretch; i++)
         if (!p->stretch[i].is_dropped)
-            place_rows(&p->stretch[i], &out->nwork, lanes);
+            place_rows(p, &p->stretch[i], &out->nwork, rows, lanes);
     out->nstraight = p->n;
     out->loop = CT_NEWN(p->arena, struct ct_loop, (MOST_PARTS + 1) * p->nstretch + 1);
     for (uint32_t i = 0; i < p->nstretch; i++)
         if (!p->stretch[i].is_dropped) {
             const struct ct_stretch *r = &p->stretch[i];
             out->nstraight -= r->period * r->count;
-            out->nresult += (r->nresult + r->nlocal) * r->count;
+            out->nresult += (r->nresult + r->nlocal + r->npassed) * r->count;
             add_loops(p, i, out);
         }
 }

@@ -1,4 +1,5 @@
-// Stretches of a program that repeat, between the files that find them (roll.c) and that say where their results are (stretch.c).
+// Stretches of a program that repeat, between the files that find them (repeats.c), that say how their
+// operands are reached (roll.c) and where their results are (stretch.c).
 #ifndef CT_CODEGEN_STRETCH_H
 #define CT_CODEGEN_STRETCH_H
 
@@ -16,6 +17,7 @@ struct ct_stretches {
     struct ct_stretch *stretch;
     size_t nstretch, stretch_cap;
     uint32_t *of_place; // the stretch of a place, or none
+    uint32_t *output;   // by value: 1 + the first output that it is, or 0
 };
 
 // A result of a repeat that is put where the row before its first or behind its last one would be.
@@ -30,6 +32,8 @@ struct ct_stretch_edge {
 struct ct_stretch_column {
     uint32_t operand; // 3 slot + k that it is the sequence of
     bool is_copied;   // in each evaluation
+    bool is_number;   // constants: one double for all lanes
+    uint32_t at;      // among those of its kind
 };
 
 // How an operand is reached, before places are known.
@@ -48,6 +52,10 @@ struct ct_source {
     int32_t row,
         step; // CT_SOURCE_RESULTS: its row at row 0, rows per row; CT_SOURCE_INPUTS: step is the stride
 };
+
+// Where a result that leaves its row is kept: row by row; one strip of rows; one place for all rows, as the next row is
+// done with it before it has its own; in the output that it is, out_stride from row to row.
+enum ct_keep { CT_KEEP_ROWS, CT_KEEP_STRIP, CT_KEEP_PLACE, CT_KEEP_OUT };
 
 struct ct_stretch_stream {
     int kind;
@@ -80,26 +88,59 @@ struct ct_stretch {
 
     // places
     uint32_t origin;                  // place of row 0
-    uint32_t *offset;                 // (period) number of the result
+    enum ct_keep *keep;               // (period)
+    uint32_t *offset;                 // (period) number of the result, or output of row 0
+    int32_t *out_stride;              // (period)
     uint32_t row_stride, slot_stride; // places between rows, between results
     uint32_t nresult;
     uint32_t strip; // rows, 0: all
-    bool *is_local; // (period) the strip alone has places for it
     uint32_t local_origin, local_stride, nlocal;
+    uint32_t passed_origin, npassed;
+    uint32_t number_origin,
+        nnumber; // columns of constants, one double for all lanes: the first one of row 0; of a row
 };
 
-const struct ct_instruction *ct_stretch_instruction(const struct ct_stretches *p,
-                                                    uint32_t place);
+static inline const struct ct_instruction *ct_stretch_instruction(const struct ct_stretches *p,
+                                                                  uint32_t place)
+{
+    return &p->l->ins[p->order[place]];
+}
+
 /// Operand k of what is at a place. The first two of sums and products are taken in an order of their own: the store sorts
 /// them by age, so that a constant that something else has made before comes first in one row and second in another.
-uint32_t ct_stretch_operand(const struct ct_stretches *p, uint32_t place, uint32_t k);
+static inline uint32_t ct_stretch_operand(const struct ct_stretches *p, uint32_t place,
+                                          uint32_t k)
+{
+    return ct_stretch_instruction(p, place)->arg[k < 2 && p->is_swapped[place] ? 1 - k : k];
+}
+
 /// Operand 3 slot + k of a row.
-uint32_t ct_stretch_argument(const struct ct_stretches *p, const struct ct_stretch *r,
-                             uint32_t row, uint32_t operand);
+static inline uint32_t ct_stretch_argument(const struct ct_stretches *p,
+                                           const struct ct_stretch *r, uint32_t row,
+                                           uint32_t operand)
+{
+    return ct_stretch_operand(p, r->first + row * r->period + operand / 3, operand % 3);
+}
+
 /// The stretch that makes v, with its row and instruction; NULL if none does.
-struct ct_stretch *ct_stretch_of(const struct ct_stretches *p, uint32_t v, int32_t *row,
-                                 uint32_t *slot);
-/// Places of all results that need some, and the loops.
-void ct_stretch_lay_out(struct ct_stretches *p, uint32_t lanes, struct ct_roll *out);
+static inline struct ct_stretch *ct_stretch_of(const struct ct_stretches *p, uint32_t v,
+                                               int32_t *row, uint32_t *slot)
+{
+    const uint32_t at = p->at[v];
+    if (at == CT_VALUE_NONE || p->of_place[at] == CT_VALUE_NONE)
+        return NULL;
+    struct ct_stretch *r = &p->stretch[p->of_place[at]];
+    *row = (int32_t)((at - r->first) / r->period);
+    *slot = (at - r->first) % r->period;
+    return r;
+}
+
+enum { CT_LEAST_ROWS = 4 };
+
+/// All of them, ascending. is_alone, rows: those of ct_roll_find.
+void ct_stretches_find(struct ct_stretches *p, const bool is_alone[CT_NKIND], uint32_t rows);
+/// Places of all results that need some, and the loops. Arguments as those of ct_roll_find.
+void ct_stretch_lay_out(struct ct_stretches *p, uint32_t rows, uint32_t lanes,
+                        struct ct_roll *out);
 
 #endif

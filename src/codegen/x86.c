@@ -9,10 +9,16 @@ static const uint32_t none = CT_VALUE_NONE;
 
 // ---- where values are -------------------------------------------------------------------------
 
+uint32_t ct_emitter_place_size(const struct ct_emitter *e, unsigned area)
+{
+    return area >= CT_NAREA && e->stream[area - CT_NAREA].is_number ? sizeof(double)
+                                                                    : e->place_size;
+}
+
 struct ct_rm ct_emitter_memory(const struct ct_emitter *e, struct ct_home h)
 {
     assert(h.area != CT_AREA_NONE);
-    return ct_in_memory(e->base[h.area], (int32_t)(h.place * e->place_size));
+    return ct_in_memory(e->base[h.area], (int32_t)(h.place * ct_emitter_place_size(e, h.area)));
 }
 
 // Place in the order of the next read of v; none: never again.
@@ -535,23 +541,21 @@ void ct_emitter_list_uses(struct ct_emitter *e)
         e->next[v] = e->start[v];
 }
 
-// Loops keep code in the nearer caches, but results of their rows in memory, four times as many in four lanes:
-// instructions from which on they are faster, as measured on beams and chains.
-static uint32_t least_rolled(int lanes)
-{
-    return lanes == 1 ? 4000 : 100000;
-}
+// Instructions from which on loops are sought: straight code of more is not held by the nearest cache of code, 32 KiB, and
+// fetching it takes longer than what it does.
+enum { LEAST_ROLLED = 4000 };
 
 static void roll_up(struct ct_emitter *e)
 {
     bool is_alone[CT_NKIND];
     for (int op = 0; op < CT_NKIND; op++)
         is_alone[op] = e->calls->by_op[op] != 0;
-    if (e->norder < least_rolled(e->code.lanes))
+    if (e->norder < LEAST_ROLLED)
         return;
     e->roll = ct_merge_loops(
         e->arena, e->l, e->order, (uint32_t)e->norder, e->first_rest, is_alone, e->nfixed,
-        e->calls->rows_together && e->code.lanes == 1 ? CT_ROWS_TOGETHER : 1);
+        e->calls->rows_together && e->code.lanes == 1 ? CT_ROWS_TOGETHER : 1,
+        (uint32_t)e->code.lanes);
     e->spread = CT_NEWN(e->arena, uint32_t, e->l->nvalue);
     for (size_t v = 0; v < e->l->nvalue; v++)
         e->spread[v] = none;
@@ -644,7 +648,7 @@ static void place_values(struct ct_emitter *e, const uint32_t *home)
             e->home[v] = (struct ct_home){CT_AREA_WORK, home[v]};
         else if (l->is_leaf[v])
             e->home[v] = (struct ct_home){CT_AREA_INPUT, l->input[v]};
-        else if (e->roll.nloop && e->roll.place[v] != none)
+        else if (e->roll.nloop && e->roll.place[v] < CT_ROLL_OUT)
             e->home[v] = (struct ct_home){CT_AREA_WORK, e->roll.place[v]};
     }
     for (int r = 0; r < CT_NREGISTER; r++)
@@ -652,8 +656,11 @@ static void place_values(struct ct_emitter *e, const uint32_t *home)
     e->first_output = CT_NEWN(e->arena, uint32_t, l->nvalue);
     e->next_output = CT_NEWN(e->arena, uint32_t, l->nout);
     for (size_t k = l->nout; k-- > 0;) {
-        e->next_output[k] = e->first_output[l->out[k]];
-        e->first_output[l->out[k]] = (uint32_t)k + 1;
+        const uint32_t v = l->out[k];
+        e->next_output[k] = e->first_output[v];
+        e->first_output[v] = (uint32_t)k + 1;
+        if (e->roll.nloop && e->roll.place[v] == CT_ROLL_OUT)
+            e->home[v] = (struct ct_home){CT_AREA_OUT, (uint32_t)k};
     }
 }
 
@@ -685,7 +692,8 @@ static void copy_outputs(struct ct_emitter *e)
     for (uint32_t k = 0; k < e->l->nout; k++) {
         const uint32_t v = e->l->out[k];
         const bool is_rolled = e->roll.nloop && e->roll.place[v] != none;
-        if (e->l->rate[v] == CT_RATE_CALL && !e->l->is_leaf[v] && !is_rolled)
+        if (e->l->rate[v] == CT_RATE_CALL && !e->l->is_leaf[v]
+            && (!is_rolled || (e->home[v].area == CT_AREA_OUT && e->home[v].place == k)))
             continue;
         ct_put_load(&e->code, 0, ct_emitter_memory(e, e->home[v]));
         ct_put_store(&e->code, ct_emitter_memory(e, (struct ct_home){CT_AREA_OUT, k}), 0);

@@ -15,23 +15,27 @@ struct body {
     struct ct_listing l;
     struct ct_stream stream[CT_ROLL_STREAMS];
     unsigned nstream;
-    uint32_t *slot; // 1 + value, by hash
+    int32_t together; // rows
+    uint32_t *slot;   // 1 + value, by hash
     size_t mask;
     struct ct_operand *operand; // by value from period on
 };
 
 static unsigned stream_of(struct body *b, const struct ct_operand *o)
 {
-    const unsigned area = o->reach == CT_REACH_INPUT ? CT_AREA_INPUT : CT_AREA_WORK;
-    const bool stays = o->reach == CT_REACH_STRIP;
+    const unsigned area = o->reach == CT_REACH_INPUT ? CT_AREA_INPUT
+                        : o->reach == CT_REACH_OUT   ? CT_AREA_OUT
+                                                     : CT_AREA_WORK;
+    const struct ct_stream s
+        = {area, o->stride, o->reach == CT_REACH_STRIP, o->reach == CT_REACH_NUMBER};
     unsigned i = 0;
     while (i < b->nstream
-           && (b->stream[i].area != area || b->stream[i].stride != o->stride
-               || b->stream[i].stays != stays))
+           && (b->stream[i].area != s.area || b->stream[i].stride != s.stride
+               || b->stream[i].stays != s.stays || b->stream[i].is_number != s.is_number))
         i++;
     assert(i < CT_ROLL_STREAMS);
     if (i == b->nstream) {
-        b->stream[b->nstream++] = (struct ct_stream){area, o->stride, stays};
+        b->stream[b->nstream++] = s;
         b->e.base[CT_NAREA + i] = stream_register[i];
     }
     return CT_NAREA + i;
@@ -59,15 +63,18 @@ static void place_fixed(struct body *b, const struct ct_emitter *outer, uint32_t
                         uint32_t value)
 {
     const bool is_constant = outer->l->rate[value] != CT_RATE_CALL;
-    b->e.home[v] = b->e.layout && is_constant ? spread(&b->e, value) : outer->home[value];
-    if (b->e.layout)
+    b->e.home[v] = b->together > 1 && is_constant ? spread(&b->e, value) : outer->home[value];
+    if (b->together > 1)
         b->e.layout[v] = is_constant ? CT_ROWS_FULL : CT_ROWS_SAME;
 }
 
 static void place_stream(struct body *b, uint32_t v, const struct ct_operand *o)
 {
-    b->e.home[v] = (struct ct_home){stream_of(b, o), o->at};
-    if (b->e.layout)
+    b->e.home[v] = (struct ct_home){
+        o->reach == CT_REACH_PLACE ? (unsigned)CT_AREA_WORK : stream_of(b, o), o->at};
+    if (o->reach == CT_REACH_NUMBER)
+        b->e.layout[v] = CT_ROWS_SAME;
+    else if (b->together > 1)
         b->e.layout[v] = o->stride == 1 ? CT_ROWS_FULL : CT_ROWS_APART;
 }
 
@@ -110,7 +117,7 @@ static void list_body(struct body *b, const struct ct_emitter *outer,
     b->l.nvalue = loop->nslot;
     b->e.home = CT_NEWN(a, struct ct_home, most);
     b->e.order = CT_NEWN(a, uint32_t, loop->nslot);
-    b->e.layout = loop->is_side_by_side ? CT_NEWN(a, enum ct_row_layout, most) : NULL;
+    b->e.layout = CT_NEWN(a, enum ct_row_layout, most); // CT_ROWS_FULL
     for (uint32_t i = 0; i < loop->nslot; i++) {
         struct ct_instruction *ins = &b->l.ins[b->l.nins++];
         *ins = outer->l->ins[outer->order[loop->first + loop->slot[i]]];
@@ -137,7 +144,8 @@ static void move_streams(struct body *b, int32_t rows)
 {
     for (unsigned i = 0; i < b->nstream; i++)
         ct_put_advance(&b->e.code, stream_register[i],
-                       rows * b->stream[i].stride * (int32_t)b->e.place_size);
+                       rows * b->stream[i].stride
+                           * (int32_t)ct_emitter_place_size(&b->e, CT_NAREA + i));
 }
 
 // Streams to their first row, in a strip to that of the strip.
@@ -152,12 +160,31 @@ static void start_streams(struct body *b, const struct ct_loop *loop)
     }
 }
 
+// In lanes the results of a row are several lines of memory, which the row before has fetched.
+static void fetch_next_row(struct body *b)
+{
+    enum { LINE = 64 };
+    for (unsigned k = 0; k < b->nstream && b->e.code.lanes > 1; k++) {
+        int32_t first = INT32_MAX, last = INT32_MIN;
+        for (size_t v = 0; v < b->l.nins; v++)
+            if (b->e.is_kept[v] && b->e.home[v].area == CT_NAREA + k) {
+                const int32_t at = ct_emitter_memory(&b->e, b->e.home[v]).disp;
+                first = at < first ? at : first;
+                last = at > last ? at : last;
+            }
+        const int32_t step
+            = b->stream[k].stride * (int32_t)ct_emitter_place_size(&b->e, CT_NAREA + k);
+        for (int32_t at = first; at <= last; at += LINE)
+            ct_put_fetch(&b->e.code, ct_in_memory(stream_register[k], at + step));
+    }
+}
+
 // `times` rows, or sets of them, from where the streams are; then they are behind it.
 static void emit_rows(struct ct_emitter *e, const struct ct_loop *loop, uint32_t times,
                       bool starts, int32_t back)
 {
-    struct body b = {.e = *e};
     const int32_t together = loop->is_side_by_side ? CT_ROWS_TOGETHER : 1;
+    struct body b = {.e = *e, .together = together};
     b.e.l = &b.l;
     b.e.stream = b.stream;
     b.e.width = (uint32_t)together;
@@ -169,6 +196,7 @@ static void emit_rows(struct ct_emitter *e, const struct ct_loop *loop, uint32_t
         move_streams(&b, -back);
     ct_put_immediate(c, CT_RAX, times);
     const size_t start = c->n;
+    fetch_next_row(&b);
     if (together > 1)
         c->lanes = together;
     for (uint32_t at = 0; at < b.e.norder; at++)

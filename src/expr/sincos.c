@@ -70,25 +70,35 @@ static inline double lost(double a, double b, double p)
 #define NUMBER(b) number_of(b)
 #define K(name) k1_##name
 #define LOST(a, b, p) lost(a, b, p)
+#define MADD(a, b, c) ((a) * (b) + (c))
 #define REST(a, n, q) ((a) - (n) * (q))
 #define KERNEL kernel_1
 #define TARGET
 #include "expr/sincos_kernel.def"
 
-void ct_sincos(double a, double *s, double *c)
+typedef void (*kernel_fn)(double a, double *s, double *c);
+static kernel_fn choose_kernel(void);
+
+static inline void one_angle(kernel_fn kernel, double a, double *s, double *c)
 {
     if (fabs(a) <= largest) {
-        kernel_1(a, s, c);
+        kernel(a, s, c);
         return;
     }
     *s = sin(a);
     *c = cos(a);
 }
 
+void ct_sincos(double a, double *s, double *c)
+{
+    one_angle(choose_kernel(), a, s, c);
+}
+
 static void one_by_one(const double *a, double *s, double *c, size_t n)
 {
+    const kernel_fn kernel = choose_kernel();
     for (size_t i = 0; i < n; i++)
-        ct_sincos(a[i], &s[i], &c[i]);
+        one_angle(kernel, a[i], &s[i], &c[i]);
 }
 
 #if defined(__x86_64__) && defined(__GNUC__)
@@ -102,18 +112,41 @@ typedef uint64_t four_integers __attribute__((vector_size(32)));
 #define FOUR_NUMBERS(name, value) static const four k4_##name = {value, value, value, value};
 EACH_CONSTANT(FOUR_NUMBERS)
 
+#define WIDE __attribute__((target("avx2,fma")))
+
+#define V double
+#define I uint64_t
+#define BITS(v) bits_of(v)
+#define NUMBER(b) number_of(b)
+#define K(name) k1_##name
+#define LOST(a, b, p) __builtin_fma(a, b, -(p))
+#define MADD(a, b, c) __builtin_fma(a, b, c)
+#define REST(a, n, q) __builtin_fma(-(n), q, a)
+#define KERNEL kernel_1_fused
+#define TARGET WIDE
+#include "expr/sincos_kernel.def"
+
+static bool is_wide(void)
+{
+    return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
+}
+
+static kernel_fn choose_kernel(void)
+{
+    return is_wide() ? kernel_1_fused : kernel_1;
+}
+
 #define V four
 #define I four_integers
 #define BITS(v) ((four_integers)(v))
 #define NUMBER(b) ((four)(b))
 #define K(name) k4_##name
 #define LOST(a, b, p) _mm256_fmsub_pd(a, b, p)
+#define MADD(a, b, c) _mm256_fmadd_pd(a, b, c)
 #define REST(a, n, q) _mm256_fnmadd_pd(n, q, a)
 #define KERNEL kernel_4
-#define TARGET __attribute__((target("avx2,fma")))
+#define TARGET WIDE
 #include "expr/sincos_kernel.def"
-
-#define WIDE __attribute__((target("avx2,fma")))
 
 WIDE static inline bool has_large(four angle)
 {
@@ -165,12 +198,16 @@ WIDE static bool four_by_four(const double *a, double *s, double *c, size_t n)
 
 void ct_sincos_many(const double *a, double *s, double *c, size_t n)
 {
-    const bool is_wide = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
-    if (!is_wide || four_by_four(a, s, c, n)) // angles beyond the range are done again
+    if (!is_wide() || four_by_four(a, s, c, n)) // angles beyond the range are done again
         one_by_one(a, s, c, n);
 }
 
 #else
+
+static kernel_fn choose_kernel(void)
+{
+    return kernel_1;
+}
 
 void ct_sincos_many(const double *a, double *s, double *c, size_t n)
 {

@@ -91,7 +91,7 @@ struct ct_cluster {
     ct_ex omega;     // planar: w = omega * normal
     ct_ex3 w, al[2]; // angular velocity, acceleration: [0] with u' = 0, [1] with symbols u'
     bool has_al[2];
-    ct_ex33 L; // augmented inertia, local (masses.c)
+    ct_ex33 L; // augmented inertia, local (lumping.c)
 };
 
 /// Sliding of a link along p (local) at the speed of an unknown or a driver.

@@ -71,6 +71,13 @@ struct ct_base ct_flexible_base(struct ct_build *b, const struct ct_flexible *f,
     return base_motion(b, f, level, ct_ex3_sub(b->x, a, b->model->gravity));
 }
 
+void ct_flexible_carried(struct ct_build *b, const struct ct_flexible *f, ct_ex3 out[3])
+{
+    out[0] = base_motion(b, f, CT_FULL, zero3).w;
+    out[1] = into(b, f, ct_node_velocity(b, f->base));
+    out[2] = into(b, f, b->model->gravity);
+}
+
 // al~ + w~ w~
 ct_ex33 ct_base_turning(struct ct_build *b, const struct ct_base *m)
 {

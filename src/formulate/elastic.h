@@ -83,6 +83,8 @@ ct_ex ct_flexible_integral(struct ct_build *b, const struct ct_flexible *f, int 
 /// How the base moves.
 struct ct_base ct_flexible_base(struct ct_build *b, const struct ct_flexible *f,
                                 enum ct_level level);
+/// Angular velocity, velocity and weight per mass of the base, in axes of the beam.
+void ct_flexible_carried(struct ct_build *b, const struct ct_flexible *f, ct_ex3 out[3]);
 /// al~ + w~ w~
 ct_ex33 ct_base_turning(struct ct_build *b, const struct ct_base *m);
 /// Entries between elastic coordinates, added to M; columns of the base's motion.

@@ -11,6 +11,7 @@
 #define CT_FORMULATE_EQUATIONS_H
 
 #include "component/model.h"
+#include "formulate/swing.h"
 #include "graph/graph.h"
 
 /// A stored coordinate.
@@ -132,6 +133,18 @@ struct ct_validity {
     struct ct_mark mark;
     ct_ex eta;
     double omega; // first bending frequency of the beam in its frame [rad/s]
+    // What foretells the error of a linear beam  (swing.h)
+    bool
+        foretells; // its base moves as time tells, nothing but bodies welded to it hangs on it or loads it
+    bool settles;      // it starts in equilibrium
+    ct_ex3 carried[3]; // w, v, weight per mass of the base, axes of the beam
+    int nplane;
+    struct ct_bending_plane {
+        bool is_z; // bends along z
+        struct ct_swing swing;
+        ct_ex state[2];  // x, x'
+        double start[2]; // with `initial: {v: ...}`
+    } plane[CT_BENDING_PLANES];
 };
 
 /// How far a beam bends: squared slopes of its nodes against its frame.

@@ -143,14 +143,19 @@ static bool is_even(const struct ct_build *b, const struct ct_beam *beam)
              && !ct_ex_is_zero(ct_ex_sub(b->x, beam->shear_factor[0], beam->shear_factor[1])));
 }
 
+static bool bends_about_both(const struct ct_flexible *f)
+{
+    const unsigned both = CT_BEAM_BENDING_Y | CT_BEAM_BENDING_Z;
+    return (f->deformation & f->beam->known & both) == both;
+}
+
 // Bending about both axes twists a beam by (5.6b), if it is stiffer about one of them; in an analysis the smallest motion
 // counts.
 static bool bending_twists(const struct ct_build *b, const struct ct_flexible *f)
 {
-    const struct ct_beam *beam = f->beam;
-    const unsigned both = CT_BEAM_BENDING_Y | CT_BEAM_BENDING_Z;
-    return (f->deformation & beam->known & both) == both
-        && (b->frees_beams || (f->formulation == CT_BEAM_FORESHORTENING && !is_even(b, beam)));
+    return bends_about_both(f)
+        && (b->frees_beams
+            || (f->formulation == CT_BEAM_FORESHORTENING && !is_even(b, f->beam)));
 }
 
 // Does the scene twist it by a joint, a torque or an arm off its axis beyond the base?
@@ -188,11 +193,15 @@ const char *ct_excite_no_twist(const struct ct_build *b, const struct ct_flexibl
 {
     if (is_twisted(b, f))
         return NULL;
-    if (!bending_twists(b, f))
+    if (!bending_twists(b, f)) {
+        if (bends_about_both(f) && f->formulation == CT_BEAM_FORESHORTENING)
+            return "only bending about both axes twists it, and sections that are alike in all "
+                   "directions follow without a torque";
         return "nothing beyond its base can twist it";
+    }
     if (!(f->beam->known & CT_BEAM_TORSION))
         return "only bending about both axes twists it, and G or nu, or J, is not given";
-    return ct_ex_is_zero(f->beam->twist_inertia)
+    return ct_ex_is_zero(f->beam->twist_inertia) && !b->frees_beams
              ? "only bending about both axes twists it, and its sections have no inertia"
              : NULL;
 }

@@ -185,6 +185,8 @@ bool ct_flexible_follow(struct ct_build *b, const struct ct_flexible *f, bool *f
     const bool turns_apart = f->beam->is_lumped || f->beam->theory == CT_BEAM_TIMOSHENKO;
     bool any = false, marked = false;
     memset(follows, 0, (size_t)(NKIND * nnode) * sizeof *follows);
+    if (b->frees_beams && f->formulation != CT_BEAM_LINEAR)
+        return false; // analyses do without masses, and then loads count that are not seen here
     for (int axis = 0; axis < NAXIS && f->deformation; axis++) {
         const bool is_massless
             = ct_ex_is_zero(ct_flexible_rotary(f, axis).value) && (axis == 0 || turns_apart);

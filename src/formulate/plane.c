@@ -3,6 +3,7 @@
 
 #include "formulate/excite.h"
 #include "formulate/flexible.h"
+#include "graph/reach.h"
 
 #include <math.h>
 
@@ -67,29 +68,40 @@ static bool holds_axes(const struct ct_edge_info *e)
     return e->kind != CT_EDGE_BODY && e->kind != CT_EDGE_FORCE && !e->never_branch;
 }
 
+// Edges that hold axes, in the order in which they take them from known nodes to others; turning: only those with rotation.
+static int *spread_axes(struct ct_build *b, bool turning, bool *known, int *n)
+{
+    const struct ct_graph g = {(int)b->nnode, (int)b->nedge, b->wiring};
+    bool *usable = CT_NEWN(b->arena, bool, b->nedge + 1);
+    for (size_t i = 0; i < b->nedge; i++)
+        usable[i] = holds_axes(&b->edge[i]) && (!turning || b->edge[i].has_rotation);
+    int *order = CT_NEWN(b->arena, int, b->nnode);
+    *n = ct_graph_spread(b->arena, &g, usable, known, order);
+    return order;
+}
+
 // Where joints stand still, the axes of every node are a constant rotation away from ground's; turns about the
 // normal change nothing in how they see it. Nodes that no joint holds stay at NULL.
 static ct_ex33 **upright_axes(struct ct_build *b)
 {
     ct_ex33 **U = CT_NEWN(b->arena, ct_ex33 *, b->nnode);
+    bool *known = CT_NEWN(b->arena, bool, b->nnode);
     for (size_t i = 0; i < b->nnode; i++)
         if (i == 0 || b->node[i].is_particle) { // axes of particles stay those of ground
             U[i] = CT_NEW(b->arena, ct_ex33);
             *U[i] = ct_ex33_identity();
+            known[i] = true;
         }
-    for (bool grew = true; grew;) {
-        grew = false;
-        for (size_t i = 0; i < b->nedge; i++) {
-            const struct ct_edge_info *e = &b->edge[i];
-            const int tail = b->wiring[i].tail, head = b->wiring[i].head;
-            if (!holds_axes(e) || !e->has_rotation || !U[tail] == !U[head])
-                continue;
-            const int from = U[tail] ? tail : head, to = U[tail] ? head : tail;
-            const ct_ex33 S = from == tail ? e->S : ct_ex33_transpose(&e->S);
-            U[to] = CT_NEW(b->arena, ct_ex33);
-            *U[to] = ct_ex33_mul(b->x, U[from], &S);
-            grew = true;
-        }
+    int n;
+    const int *order = spread_axes(b, true, known, &n);
+    for (int k = 0; k < n; k++) {
+        const struct ct_edge_info *e = &b->edge[order[k]];
+        const struct ct_edge ends = b->wiring[order[k]];
+        const int from = U[ends.tail] ? ends.tail : ends.head,
+                  to = from == ends.tail ? ends.head : ends.tail;
+        const ct_ex33 S = from == ends.tail ? e->S : ct_ex33_transpose(&e->S);
+        U[to] = CT_NEW(b->arena, ct_ex33);
+        *U[to] = ct_ex33_mul(b->x, U[from], &S);
     }
     return U;
 }
@@ -125,22 +137,20 @@ static double longest_arm(const struct ct_build *b)
 // Places of the nodes along the normal, where joints keep to the plane.
 static void find_layers(struct ct_build *b, ct_ex33 *const *U)
 {
-    bool *known = CT_NEWN(b->arena, bool, b->nnode);
+    bool *known = CT_NEWN(b->arena, bool, b->nnode),
+         *placed = CT_NEWN(b->arena, bool, b->nnode);
     b->layer = CT_NEWN(b->arena, ct_ex, b->nnode);
-    known[0] = true;
-    for (bool grew = true; grew;) {
-        grew = false;
-        for (size_t i = 0; i < b->nedge; i++) {
-            const int tail = b->wiring[i].tail, head = b->wiring[i].head;
-            if (!holds_axes(&b->edge[i]) || known[tail] == known[head])
-                continue;
-            const ct_ex up = reach_out(b, (int)i, U[tail]);
-            if (known[tail])
-                b->layer[head] = ct_ex_add(b->x, b->layer[tail], up);
-            else
-                b->layer[tail] = ct_ex_sub(b->x, b->layer[head], up);
-            known[tail] = known[head] = grew = true;
-        }
+    known[0] = placed[0] = true;
+    int n;
+    const int *order = spread_axes(b, false, known, &n);
+    for (int k = 0; k < n; k++) {
+        const int tail = b->wiring[order[k]].tail, head = b->wiring[order[k]].head;
+        const ct_ex up = reach_out(b, order[k], U[tail]);
+        if (placed[tail])
+            b->layer[head] = ct_ex_add(b->x, b->layer[tail], up);
+        else
+            b->layer[tail] = ct_ex_sub(b->x, b->layer[head], up);
+        placed[tail] = placed[head] = true;
     }
 }
 

@@ -6,7 +6,7 @@
 //     Kg1 = int P1 s s' dx, P1(x) = int_x^L m x dx,   Kg2 the same with P2(x) = int_x^L m dx,   s: slopes of the shapes
 //
 // with the acceleration a_x of the base less gravity along the beam. eta is the ratio of motion-induced to elastic
-// stiffness, and with it the relative error of a linear beam that follows its loads.
+// stiffness, and with it the relative error of a linear beam at rest under its loads. What comes of it in a motion is in swing.h.
 #ifndef CT_FORMULATE_VALIDITY_H
 #define CT_FORMULATE_VALIDITY_H
 
@@ -17,7 +17,10 @@
 bool ct_validity_derive(struct ct_build *b, const struct ct_flexible *f,
                         struct ct_validity *out);
 
-/// Beams that leave the choice to the program: does each stay below the limit all along? By body, in b->arena; reasons into
+/// What foretells its error, at the start with x, x' of its planes.
+void ct_validity_begin(const struct ct_validity *v, const double *start, struct ct_swings *s);
+
+/// Beams that leave the choice to the program: does each stay below the limit all along, and its error, too? By body, in b->arena; reasons into
 /// the beams. NULL if there is no such beam. A beam whose motion the drivers do not prescribe, or that carries joints
 /// or loads, does not.
 const bool *ct_validity_choose(struct ct_build *b);

@@ -6,6 +6,7 @@
 #include "graph/graph.h"
 
 #include "graph/pieces.h"
+#include "graph/reach.h"
 
 #include <assert.h>
 #include <stdlib.h>
@@ -63,32 +64,6 @@ bool ct_tree_kruskal(struct ct_arena *a, const struct ct_graph *g, const int *we
     return ct_tree_from_branches(a, g, is_branch, t);
 }
 
-// Branches at each node: those of v are at[first[v]] .. at[first[v + 1] - 1], ascending.
-struct star {
-    int *first, *at;
-};
-
-static struct star list_branches(struct ct_arena *a, const struct ct_graph *g,
-                                 const bool *is_branch)
-{
-    struct star s = {CT_NEWN(a, int, g->nnode + 2), CT_NEWN(a, int, 2 * (size_t)g->nedge)};
-    // counted two places ahead and summed: first[v + 1] is where v's list starts; filling moves
-    // it to where the list ends, and that is the start of the list of v + 1
-    for (int e = 0; e < g->nedge; e++)
-        if (is_branch[e]) {
-            s.first[g->edge[e].tail + 2]++;
-            s.first[g->edge[e].head + 2]++;
-        }
-    for (int v = 0; v < g->nnode; v++)
-        s.first[v + 2] += s.first[v + 1];
-    for (int e = 0; e < g->nedge; e++)
-        if (is_branch[e]) {
-            s.at[s.first[g->edge[e].tail + 1]++] = e;
-            s.at[s.first[g->edge[e].head + 1]++] = e;
-        }
-    return s;
-}
-
 /// Hang node v onto its parent by branch e.
 static void attach(const struct ct_graph *g, struct ct_tree *t, int v, int parent, int e)
 {
@@ -100,7 +75,7 @@ static void attach(const struct ct_graph *g, struct ct_tree *t, int v, int paren
 
 /// Breadth first from ground along the branches; t->order is the queue. Returns how many nodes
 /// it reaches.
-static int walk_from_ground(const struct ct_graph *g, struct star s, struct ct_tree *t)
+static int walk_from_ground(const struct ct_graph *g, struct ct_ends s, struct ct_tree *t)
 {
     for (int v = 0; v < g->nnode; v++)
         t->parent[v] = t->parent_edge[v] = -1;
@@ -153,7 +128,7 @@ bool ct_tree_from_branches(struct ct_arena *a, const struct ct_graph *g, const b
         .branch = CT_NEWN(a, int, nbranch),
         .chord = CT_NEWN(a, int, e - nbranch),
     };
-    if (walk_from_ground(g, list_branches(a, g, is_branch), &new) < v)
+    if (walk_from_ground(g, ct_ends_list(a, g, is_branch), &new) < v)
         return false; // v - 1 branches that miss a node contain a circuit
     list_edges(g, &new, is_branch);
     *t = new;

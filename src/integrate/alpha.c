@@ -37,7 +37,7 @@ struct state {
     struct memory start, end;    // of the step
     double *a0, *jerk;           // (nu): a at the start, for this step's size; u''
     double *d, *u, *q;           // the step's motion (nu), its end (nu, nq)
-    double *dd, *du;             // corrections (nu)
+    double *dd, *du; // corrections (nu), one behind the other, zeros behind them (ny)
     double *eta, *dlam, *r, *phi, *v;
     double *rate1, *out;      // for interpolation: d' at the end; a motion (nu)
     double *end_rate, *error; // rates at the end and errors, of quadratures alone  (ny)
@@ -64,14 +64,16 @@ void *ct_alpha_create(struct ct_arena *a, const struct ct_method *method,
     double **const speeds[]
         = {&s->start.slope, &s->start.bend, &s->end.slope, &s->end.bend,  &s->start.a,
            &s->start.u_dot, &s->start.jerk, &s->end.a,     &s->end.u_dot, &s->end.jerk,
-           &s->a0,          &s->jerk,       &s->d,         &s->u,         &s->dd,
-           &s->du,          &s->r,          &s->rate1,     &s->out};
+           &s->a0,          &s->jerk,       &s->d,         &s->u,         &s->r,
+           &s->rate1,       &s->out};
     double **const rows[] = {&s->start.lam, &s->end.lam, &s->eta, &s->dlam, &s->phi, &s->v};
     for (size_t i = 0; i < COUNT(speeds); i++)
         *speeds[i] = CT_NEWN(a, double, p->dae->nu + 1);
     for (size_t i = 0; i < COUNT(rows); i++)
         *rows[i] = CT_NEWN(a, double, p->dae->most_rows + 1);
     s->q = CT_NEWN(a, double, p->dae->nq + 1);
+    s->dd = CT_NEWN(a, double, p->ny + p->dae->nu);
+    s->du = s->dd + p->dae->nu;
     double **const states[] = {&s->start.rate, &s->end.rate, &s->end_rate, &s->error};
     for (size_t i = 0; i < COUNT(states); i++)
         *states[i] = CT_NEWN(a, double, p->ny);
@@ -252,6 +254,23 @@ static enum ct_eval iterate(struct state *s, double t1, double h, const double *
 
 // ---- a step -----------------------------------------------------------------------------------------
 
+// s->dd and s->du become the errors of places and speeds; the norm of the first.
+static inline double find_errors(struct state *s, double h, const int nu)
+{
+    const double places = h * h * s->by_places, pace = s->f.pace;
+    const bool knows_speeds = s->c->is_stabilised && !s->is_fresh;
+    const double slope = knows_speeds ? 2 * s->f.across : 0;
+    const double speeds = h * h * h * slope * s->by_speeds;
+    for (int k = 0; k < nu; k++) {
+        const double change = s->end.a[k] - s->a0[k];
+        const double jerk = pace * change;
+        s->dd[k] = places * change;
+        s->du[k] = speeds * (jerk - s->start.jerk[k]);
+        s->end.jerk[k] = jerk;
+    }
+    return ct_iteration_norm(s->it, s->dd, NULL, nu, 1);
+}
+
 // The leading errors: of places (8.3), and of speeds (8.8) with u''' from u'' amid this step and the one before, zero where
 // there is none and in the index-3 form, whose accelerations have rounding over h^2 in them. Those of speeds count in
 // outputs alone.
@@ -259,16 +278,10 @@ static double estimate(struct state *s, const struct ct_problem *p,
                        const struct ct_tolerance *tolerance, double t1, double h,
                        const double *y1)
 {
-    const double places = h * h * s->by_places, pace = s->f.pace;
-    const bool knows_speeds = s->c->is_stabilised && !s->is_fresh;
-    const double slope = knows_speeds ? 2 * s->f.across : 0;
-    const double speeds = h * h * h * slope * s->by_speeds;
-    for (int k = 0; k < s->dae->nu; k++) {
-        s->dd[k] = places * (s->end.a[k] - s->a0[k]);
-        s->end.jerk[k] = pace * (s->end.a[k] - s->a0[k]);
-        s->du[k] = speeds * (s->end.jerk[k] - s->start.jerk[k]);
-    }
-    const double states = ct_iteration_norm(s->it, s->dd, NULL, s->dae->nu, 1);
+    const double states
+        = s->dae->nu == 1 ? find_errors(s, h, 1) : find_errors(s, h, s->dae->nu);
+    if (s->dae->is_plain) // then s->dd is the error of the whole state
+        return ct_stepper_worse(p, tolerance, t1, y1, s->dd, states);
     return ct_iteration_error(s->it, p, tolerance, t1, y1, s->dd, s->du, states);
 }
 
@@ -302,18 +315,21 @@ static enum ct_eval finish(struct state *s, const struct ct_problem *p, double t
         e = p->project(p->user, t1, y1);
     if (e == CT_EVAL_OK)
         e = ct_stepper_rhs(p, t1, y1, dy1, stats);
-    for (int i = nq + nu; i < p->ny && e == CT_EVAL_OK && !s->dae->has_no_power; i++)
+    if (s->dae->has_no_power)
+        return e;
+    for (int i = nq + nu; i < p->ny && e == CT_EVAL_OK; i++)
         y1[i] = y[i] + h / 2 * (dy[i] + dy1[i]);
     return e;
 }
 
 // For the prediction of the next step.
-static void note_accelerations(struct state *s, double h)
+static inline void note_accelerations(struct state *s, double h, const int nu)
 {
     const double pace = s->f.pace, across = s->f.across; // zero behind no step
-    for (int k = 0; k < s->dae->nu; k++) {
-        s->end.slope[k] = pace * (s->end.u_dot[k] - s->start.u_dot[k]);
-        s->end.bend[k] = across * (s->end.slope[k] - s->start.slope[k]);
+    for (int k = 0; k < nu; k++) {
+        const double slope = pace * (s->end.u_dot[k] - s->start.u_dot[k]);
+        s->end.slope[k] = slope;
+        s->end.bend[k] = across * (slope - s->start.slope[k]);
     }
     s->end.h = h;
 }
@@ -335,7 +351,10 @@ enum ct_eval ct_alpha_step(const struct ct_problem *p, double t, double h, const
     if (tolerance)
         *err = ct_larger(estimate(s, p, tolerance, t + h, h, y1),
                          estimate_quadratures(s, p, tolerance, h, y, dy, y1, dy1));
-    note_accelerations(s, h);
+    if (s->dae->nu == 1)
+        note_accelerations(s, h, 1);
+    else
+        note_accelerations(s, h, s->dae->nu);
     if (s->dae->has_no_power)
         return CT_EVAL_OK;
     ct_stepper_copy(s->end.rate + first, dy + first, p->ny - first);

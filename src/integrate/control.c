@@ -14,13 +14,8 @@ static const double most_shrink = 0.2; // an error estimate is not trusted furth
 static const double most_growth
     = 5; // nor this, nor what a method says once it has found its pace
 static const double remembered_error
-    = 1e-4;                        // least error the controller remembers: smaller ones
-                                   // are luck and would make it shrink the next step
-static const double stretch = 1.1; // a step may be this much longer to end on a stop: no crumbs
-
-// A step must change t by more than its rounding: 16 * eps leaves room for the stage times. Near
-// t = 0 the scale is a millionth of the run, below which no motion of interest begins.
-static const double least_step = 16 * DBL_EPSILON, least_scale = 1e-6;
+    = 1e-4; // least error the controller remembers: smaller ones
+            // are luck and would make it shrink the next step
 
 // Steps that are a ten-thousandth longer or shorter are as good, so powers need four digits: the exponent of a number and a
 // polynomial of its mantissa, a tenth of the time of log and exp.
@@ -53,18 +48,6 @@ struct ct_control ct_control_start(void)
 {
     const double least = near_log2(remembered_error);
     return (struct ct_control){.log_before = least, .log_least = least};
-}
-
-double ct_control_fit(double rest, double wanted)
-{
-    if (rest <= stretch * wanted)
-        return rest;
-    return rest < 2 * wanted ? rest / 2 : wanted;
-}
-
-bool ct_control_is_lost(double h, double t, double run)
-{
-    return h <= least_step * ct_larger(fabs(t), least_scale * run);
 }
 
 // Runs whose steps have stopped to grow are not begun in earnest if they would take so many times the steps allowed.

@@ -7,6 +7,9 @@
 
 #include "integrate/problem.h"
 
+#include <float.h>
+#include <math.h>
+
 struct ct_control {
     double h;          // size the next step should have
     double log_before; // log2 of the error of the last accepted step, at least log_least
@@ -22,9 +25,21 @@ struct ct_control {
 /// Before the first step.
 struct ct_control ct_control_start(void);
 /// The step wanted, adapted to the rest of the way to a stop so that neither it nor the one after it is a crumb.
-double ct_control_fit(double rest, double wanted);
+static inline double ct_control_fit(double rest, double wanted)
+{
+    const double stretch = 1.1; // a step may be this much longer to end on a stop: no crumbs
+    if (rest <= stretch * wanted)
+        return rest;
+    return rest < 2 * wanted ? rest / 2 : wanted;
+}
 /// Is h, which does not end on a stop, too small to move t by more than rounding? run: the whole time.
-bool ct_control_is_lost(double h, double t, double run);
+static inline bool ct_control_is_lost(double h, double t, double run)
+{
+    // 16 * eps leaves room for the stage times; near t = 0 the scale is a millionth of the run, below which no motion of
+    // interest begins
+    const double least_step = 16 * DBL_EPSILON, least_scale = 1e-6, scale = least_scale * run;
+    return h <= least_step * (fabs(t) > scale ? fabs(t) : scale);
+}
 /// A step of size h was accepted, its error 1 at the tolerance.
 void ct_control_accept(struct ct_control *c, const struct ct_method *m, double h, double error);
 /// A step was refused, for its error if that is greater than 1.
@@ -33,7 +48,7 @@ void ct_control_refuse(struct ct_control *c, const struct ct_method *m, double h
 /// How far a run gets with a thousandth of the steps it may make; all zero before the first.
 struct ct_pace {
     double t, gain;       // where the last thousandth ended, and its length
-    long next;            // steps at its end
+    long next;            // steps at its end: before, there is nothing to ask
     double step, to_come; // then: mean step, steps up to the end; 0 while steps still grow
 };
 /// After so many of `most` steps t is reached, and `rest` is left: would the end take several times as many as are allowed?

@@ -5,75 +5,15 @@
 //
 // A step that the method, the projection or a root function refuses, or whose error is too large,
 // is tried again shorter; until `commit` nothing has changed. Step control is that of control.h.
-#include "integrate/control.h"
-#include "integrate/crossing.h"
-#include "integrate/repeat.h"
-#include "integrate/striding.h"
-#include "integrate/watch.h"
+#include "integrate/driver.h"
 
-#include <assert.h>
 #include <math.h>
 #include <string.h>
 
-// What a crossing that failed shrinks its reach by aims at this part of what its error would allow.
-static const double safety = 0.9;
-
-// A step across a singular position that fails is tried again from nearer, after so many times not any more: then
-// the position is not singular but only nearly so.
-static const double nearer = 0.5;
-static const int most_crossings = 6;
-// This much further away than where it should begin, a crossing may begin at once; after one that failed only where
-// a step to there has ended.
-static const double early = 1.3, on_time = 1.02;
-// The end of a run is reached by a crossing, too, when it is this part of its reach before the position.
-static const double beside = 0.5;
 // Beside a singular position f has fewer digits: crossings may err by this part of the largest state.
 static const double crossing_rounding = 5e-13;
 
 static const struct ct_mark nowhere = {0};
-
-struct run {
-    struct ct_ctx *ctx;
-    const struct ct_method *method;
-    const struct ct_problem *p;
-    const struct ct_integrate_options *o;
-    struct ct_integrate_stats *stats;
-    struct ct_tolerance tolerance;
-    struct ct_repeat repeat;
-    double *y0; // where the run began
-    struct ct_watch watch;
-    double t;    // time of y and dy
-    double stop; // where steps must end next, a time event or not; before t: to be found
-    bool is_stop_time;
-    struct ct_control control;
-    struct ct_pace pace;
-    bool is_told;        // that it takes long
-    double *y, *dy;      // (ny) each, as all that follow
-    double *y1, *dy1;    // end of the step as the method gives it
-    double *end, *dend;  // the same, projected
-    double *point;       // a state to spare
-    void *work;          // the method's own
-    void *crossing_work; // of ct_crossing; NULL: there are no singular positions to cross
-    double singular_in;  // time to the next one, from t
-    double reach;        // crossing it is to begin this long before
-    struct ct_striding *striding; // NULL: no crossings by steps of the method itself
-    bool has_failed_stride;       // across the next position
-    int failed_crossings;         // of it
-    bool is_open;                 // the last step met everything but the constraints
-    size_t sample;                // the next one to give
-};
-
-// A step as planned: to t1, which is t + h but for rounding, or the end of the run before that.
-struct stride {
-    const struct ct_method *method;
-    void *work; // the method's
-    double h, t1;
-    bool is_landing;      // t1 is the stop it was planned for
-    bool is_event;        // a state event ends it
-    bool is_interpolated; // the method is ready to interpolate it
-    bool is_striding;     // across a singular position
-    double error;
-};
 
 // --- before the first step ------------------------------------------------------------------
 
@@ -106,11 +46,11 @@ static bool check_options(struct ct_ctx *ctx, const struct ct_integrate_options 
     return true;
 }
 
-static void allocate(struct run *r)
+static void allocate(struct ct_driver *r)
 {
     struct ct_arena *a = r->ctx->model;
     double **const vectors[]
-        = {&r->y0, &r->y, &r->dy, &r->y1, &r->dy1, &r->end, &r->dend, &r->point};
+        = {&r->y0, &r->y, &r->dy, &r->y1, &r->dy1, &r->moved, &r->dmoved, &r->point};
     for (size_t i = 0; i < COUNT(vectors); i++)
         *vectors[i] = CT_NEWN(a, double, r->p->ny);
     r->work = r->method->create(a, r->method, r->p);
@@ -121,7 +61,7 @@ static void allocate(struct run *r)
     ct_watch_init(&r->watch, r->p, a);
 }
 
-static bool state_refused(struct run *r, enum ct_eval e)
+static bool state_refused(struct ct_driver *r, enum ct_eval e)
 {
     if (e == CT_EVAL_FATAL)
         return false; // diagnosed where it happened
@@ -130,7 +70,7 @@ static bool state_refused(struct run *r, enum ct_eval e)
 }
 
 // The derivative, and on which side the roots are, at a state that was not stepped to.
-static bool take_bearings(struct run *r)
+static bool take_bearings(struct ct_driver *r)
 {
     if (r->method->restart)
         r->method->restart(r->work);
@@ -141,15 +81,7 @@ static bool take_bearings(struct run *r)
     return e == CT_EVAL_OK || state_refused(r, e);
 }
 
-// Largest step allowed.
-static double step_limit(const struct run *r)
-{
-    const double run = r->o->t1 - r->o->t0;
-    const double limit = r->p->nroot ? ct_watch_longest_step(run) : run;
-    return r->p->longest_step ? ct_smaller(limit, r->p->longest_step(r->p->user)) : limit;
-}
-
-static double first_step(struct run *r, double limit)
+static double first_step(struct ct_driver *r, double limit)
 {
     const struct ct_problem *p = r->p;
     const double d0 = ct_stepper_norm(p, &r->tolerance, r->y, r->y, r->y);
@@ -165,193 +97,35 @@ static double first_step(struct run *r, double limit)
     return ct_control_first(r->method, h, d1, d2, limit);
 }
 
-// --- how far ---------------------------------------------------------------------------------
-
-// Samples this close before an event count as on it: times of samples are rounded, too.
-static double event_margin(bool is_event, double t, double h)
-{
-    return is_event ? ct_watch_resolution(t, h) : 0;
-}
-
-// Where steps must end next; *is_time tells that a time event is there.
-static double next_stop(const struct run *r, bool *is_time)
-{
-    double stop = r->o->t1;
-    *is_time = false;
-    if (r->p->next_time_event) {
-        const double event = r->p->next_time_event(r->p->user, r->t);
-        assert(!(event <= r->t));
-        if (event <= stop) {
-            stop = event;
-            *is_time = true;
-        }
-    }
-    const bool is_on_sample = r->o->step > 0 && r->sample < r->o->nsample;
-    if (is_on_sample && r->o->sample[r->sample] < stop - event_margin(*is_time, stop, 0)) {
-        stop = r->o->sample[r->sample];
-        *is_time = false;
-    }
-    return stop;
-}
-
-// The fewest even steps up to the stop that are not longer than the one asked for.
-static double fit_fixed(double rest, double step)
-{
-    // a stop that is a whole number of steps away but for its rounding must not cost one more
-    const double rounding = 1e-9;
-    return rest / fmax(1, ceil(rest / step - rounding));
-}
-
-// The step across a singular position, centred on it. Beyond the end of the run f is the same function, beyond a
-// time event it is not.
-static void plan_crossing(const struct run *r, double stop, bool is_time, struct stride *s)
-{
-    const double rest = stop - r->t, whole = 2 * r->singular_in;
-    s->method = &ct_crossing;
-    s->work = r->crossing_work;
-    s->h = is_time ? fmin(whole, rest) : whole;
-    s->is_landing = s->h >= rest;
-    s->t1 = s->is_landing ? stop : r->t + s->h;
-}
-
-// Is a singular position ahead that is to be crossed?
-static bool has_crossing(const struct run *r)
-{
-    return r->singular_in < INFINITY && r->failed_crossings < most_crossings;
-}
-
-// The length of the step that strides across the next singular position from here, or 0; *wanted becomes that of a step to
-// where it may begin. False if it is to be crossed otherwise.
-static bool plan_striding(const struct run *r, double rest, double *wanted, double *length)
-{
-    *length = 0;
-    if (!r->striding || r->has_failed_stride || !has_crossing(r) || !(r->reach < INFINITY))
-        return false;
-    const double step = ct_striding_approach(r->striding, r->singular_in, r->reach, *wanted);
-    if (!(ct_striding_length(r->striding, r->singular_in) < rest) || isinf(step))
-        return false;
-    if (step == 0)
-        *length = ct_striding_length(r->striding, r->singular_in);
-    else
-        *wanted = step;
-    return true;
-}
-
-// s (out): member by member, because steps are short against the time that a copy of it waits for its parts.
-static void plan(const struct run *r, double stop, bool is_time, struct stride *s)
-{
-    const double rest = stop - r->t;
-    double wanted = ct_smaller(r->control.h, step_limit(r)), length;
-    const double reach = is_time ? ct_smaller(r->reach, rest - r->singular_in) : r->reach;
-    const bool is_strideable = plan_striding(r, rest, &wanted, &length);
-    s->method = r->method;
-    s->work = r->work;
-    s->is_striding = length > 0;
-    s->is_landing = s->is_event = s->is_interpolated = false;
-    s->error = 0;
-    if (s->is_striding) {
-        s->h = length;
-        s->t1 = r->t + length;
-        return;
-    }
-    // the run may end before the position, but beside it
-    if (!is_strideable && has_crossing(r) && reach > 0
-        && r->singular_in - beside * reach < rest) {
-        if (r->singular_in <= (r->failed_crossings ? on_time : early) * reach) {
-            plan_crossing(r, stop, is_time, s);
-            return;
-        }
-        wanted = ct_control_fit(r->singular_in - reach, wanted);
-    }
-    s->h = r->o->step > 0 ? fit_fixed(rest, r->o->step) : ct_control_fit(rest, wanted);
-    s->is_landing = s->h >= rest;
-    s->t1 = s->is_landing ? stop : r->t + s->h;
-}
-
-static bool is_too_small(const struct run *r, const struct stride *s)
-{
-    return !s->is_landing && ct_control_is_lost(s->h, r->t, r->o->t1 - r->o->t0);
-}
-
-static void adapt_after_refusal(struct run *r, double h, double error)
-{
-    r->stats->rejected_steps++;
-    r->stats->inaccurate_steps += error > 1;
-    ct_control_refuse(&r->control, r->method, h, error);
-}
-
-// Time to the next singular position, and where to begin to cross it.
-static void look_ahead(struct run *r)
-{
-    if (!r->crossing_work)
-        return;
-    double reach;
-    const double before = r->singular_in;
-    r->singular_in = r->p->singular_in(r->p->user, &reach);
-    if (!(r->singular_in < INFINITY) || r->singular_in > 2 * before) { // none, or another one
-        r->reach = INFINITY;
-        r->failed_crossings = 0;
-        r->has_failed_stride = false;
-    }
-    if (r->singular_in < INFINITY)
-        r->reach = fmin(r->reach, reach);
-}
-
-static void adapt_after_crossing(struct run *r, const struct stride *s)
-{
-    const struct ct_stepper_span span = {s->method, r->p, r->t, s->h, r->y, r->y1, s->work};
-    if (r->p->crossed)
-        r->p->crossed(r->p->user, &span, s->t1);
-    r->singular_in = r->reach = INFINITY;
-    r->failed_crossings = 0;
-    r->has_failed_stride = false;
-    r->control.was_refused = false;
-}
-
-static void adapt_after_failed_crossing(struct run *r, const struct stride *s, double error)
-{
-    const double power = -1.0 / (ct_crossing.error_order + 1);
-    r->stats->rejected_steps++;
-    r->stats->inaccurate_steps += error > 1;
-    if (s->is_striding) {
-        r->has_failed_stride = true;
-        return;
-    }
-    r->reach = r->singular_in * (error > 1 ? fmax(nearer, safety * pow(error, power)) : nearer);
-    r->failed_crossings = isinf(error) ? most_crossings : r->failed_crossings + 1;
-}
-
 // --- one step --------------------------------------------------------------------------------
 
-static bool differs(const double *a, const double *b, int n)
-{
-    for (int i = 0; i < n; i++)
-        if (a[i] != b[i])
-            return true;
-    return false;
-}
-
 // Has the projection moved y1 so far that its derivative must be found again? That of the step errs by h df/dy times
-// the way, so less than `unnoticed` of the tolerance is lost in the error of the step.
-static bool has_moved(struct run *r)
+// the way, so less than `unnoticed` of the tolerance is lost in the error of the step. Steps of fixed length keep it: it
+// is the first of their stages alone, and what it errs is of an order more than the error of the step, from which the way comes.
+// Over seven closed mechanisms and tops errors stay as they are with and without to a few percent, where steps resolve the motion.
+static bool has_moved(struct ct_driver *r)
 {
     const double unnoticed = 0.01;
     const struct ct_problem *p = r->p;
     if (r->o->step > 0)
-        return differs(r->end, r->y1, p->ny);
+        return false;
     for (int i = 0; i < p->ny; i++)
         r->point[i] = r->end[i] - r->y1[i];
     return !(ct_stepper_norm(p, &r->tolerance, r->y, r->y1, r->point) <= unnoticed);
 }
 
 // end, dend (out) = y1, dy1 on the constraints, which implicit methods meet by themselves.
-static enum ct_eval project_end(struct run *r, const struct ct_method *method, double t1)
+static enum ct_eval project_end(struct ct_driver *r, const struct ct_method *method, double t1)
 {
     const struct ct_problem *p = r->p;
-    ct_stepper_copy(r->end, r->y1, p->ny);
-    ct_stepper_copy(r->dend, r->dy1, p->ny);
+    r->end = r->y1;
+    r->dend = r->dy1;
     if (!p->project || method->is_implicit)
         return CT_EVAL_OK;
+    r->end = r->moved;
+    r->dend = r->dmoved;
+    ct_stepper_copy(r->end, r->y1, p->ny);
+    ct_stepper_copy(r->dend, r->dy1, p->ny);
     const enum ct_eval e = p->project(p->user, t1, r->end);
     if (e != CT_EVAL_OK || !has_moved(r))
         return e;
@@ -359,29 +133,23 @@ static enum ct_eval project_end(struct run *r, const struct ct_method *method, d
                                             : CT_EVAL_RETRY;
 }
 
-static bool is_in_gap(const struct run *r, const struct stride *s, double t)
-{
-    const double theta = (t - r->t) / s->h;
-    double from, to;
-    return s->is_striding ? ct_striding_is_gap(r->striding, theta, &from, &to)
-                          : s->method == &ct_crossing && ct_crossing_is_gap(theta);
-}
-
 // end, dend (out) = the crossing at t1, within it.
-static enum ct_eval cut(struct run *r, const struct stride *s)
+static enum ct_eval cut(struct ct_driver *r, const struct ct_stride *s)
 {
     const struct ct_problem *p = r->p;
+    r->end = r->moved;
+    r->dend = r->dmoved;
     s->method->dense(p, s->h, (s->t1 - r->t) / s->h, r->y, r->y1, s->work, r->end);
     ct_stepper_copy(r->dend, r->dy1, p->ny);
-    if (is_in_gap(r, s, s->t1))
+    if (ct_driver_is_in_gap(r, s, s->t1))
         return CT_EVAL_OK;
     const enum ct_eval e = p->project ? p->project(p->user, s->t1, r->end) : CT_EVAL_OK;
     return e == CT_EVAL_OK ? ct_stepper_rhs(p, s->t1, r->end, r->dend, r->stats) : e;
 }
 
 // tol (out): that of the run, of crossings with room for rounding. NULL: steps are fixed.
-static const struct ct_tolerance *tolerance_of(const struct run *r, const struct stride *s,
-                                               struct ct_tolerance *tol)
+static const struct ct_tolerance *
+tolerance_of(const struct ct_driver *r, const struct ct_stride *s, struct ct_tolerance *tol)
 {
     double largest = 0;
     if (s->method != &ct_crossing)
@@ -394,7 +162,7 @@ static const struct ct_tolerance *tolerance_of(const struct run *r, const struct
 }
 
 // From y to end by the method and the projection. Refused with s->error > 1 when that is the reason.
-static enum ct_eval attempt(struct run *r, struct stride *s)
+static inline enum ct_eval attempt(struct ct_driver *r, struct ct_stride *s)
 {
     struct ct_tolerance own;
     const struct ct_tolerance *tolerance = tolerance_of(r, s, &own);
@@ -422,7 +190,7 @@ static enum ct_eval attempt(struct run *r, struct stride *s)
 }
 
 // Make the method ready to interpolate, once.
-static enum ct_eval interpolate(struct run *r, struct stride *s)
+static enum ct_eval interpolate(struct ct_driver *r, struct ct_stride *s)
 {
     if (s->is_interpolated || !s->method->prepare)
         return CT_EVAL_OK;
@@ -430,7 +198,7 @@ static enum ct_eval interpolate(struct run *r, struct stride *s)
     return s->method->prepare(r->p, r->t, s->h, r->y, r->y1, s->work, r->stats);
 }
 
-static enum ct_eval interpolate_for_samples(struct run *r, struct stride *s)
+static enum ct_eval interpolate_for_samples(struct ct_driver *r, struct ct_stride *s)
 {
     const bool has_sample = r->sample < r->o->nsample && r->o->sample[r->sample] < s->t1;
     return has_sample ? interpolate(r, s) : CT_EVAL_OK;
@@ -439,9 +207,9 @@ static enum ct_eval interpolate_for_samples(struct run *r, struct stride *s)
 // Step again, to the event that the interpolant shows at t + h; then correct h for the difference
 // between the interpolant and the step until the root that fires is zero to the resolution.
 // Corrected up to where the whole step ended, the step is the whole step, for the sake of its stop.
-static enum ct_eval step_to_event(struct run *r, struct stride *s, double h)
+static enum ct_eval step_to_event(struct ct_driver *r, struct ct_stride *s, double h)
 {
-    const struct stride whole = *s;
+    const struct ct_stride whole = *s;
     const double unresolved = ct_watch_resolution(r->t, whole.h);
     double dt = INFINITY;
     for (int i = 0; i <= CT_WATCH_CORRECTIONS && fabs(dt) > unresolved && h > 0; i++) {
@@ -463,7 +231,7 @@ static enum ct_eval step_to_event(struct run *r, struct stride *s, double h)
 }
 
 // If a root fires within the step, the step is made to end there.
-static enum ct_eval end_on_event(struct run *r, struct stride *s)
+static enum ct_eval end_on_event(struct ct_driver *r, struct ct_stride *s)
 {
     double theta;
     if (r->p->nroot == 0)
@@ -486,24 +254,24 @@ static enum ct_eval end_on_event(struct run *r, struct stride *s)
 }
 
 // The caller's memories and choices move on to the end of the step.
-static enum ct_eval tell_accepted(struct run *r, const struct stride *s)
+static enum ct_eval tell_accepted(struct ct_driver *r, const struct ct_stride *s)
 {
     const struct ct_problem *p = r->p;
     return p->accepted ? p->accepted(p->user, s->t1, r->end, r->dend) : CT_EVAL_OK;
 }
 
 // What follows an attempt whose error is small enough; h is the step as it was attempted.
-static enum ct_eval finish_step(struct run *r, struct stride *s, double h)
+static enum ct_eval finish_step(struct ct_driver *r, struct ct_stride *s, double h)
 {
     enum ct_eval e = end_on_event(r, s);
-    if (e == CT_EVAL_OK)
+    if (e == CT_EVAL_OK && r->p->nroot)
         e = ct_watch_accept(&r->watch, s->t1, h, r->end, s->is_event);
     if (e == CT_EVAL_OK)
         e = interpolate_for_samples(r, s);
     return e == CT_EVAL_OK ? tell_accepted(r, s) : e;
 }
 
-static bool step_too_small(struct run *r, double h)
+static bool step_too_small(struct ct_driver *r, double h)
 {
     if (r->failed_crossings)
         return ct_error(
@@ -523,13 +291,13 @@ static bool step_too_small(struct run *r, double h)
 }
 
 // One step that everybody accepts: from y to end.
-static bool find_step(struct run *r, double stop, bool is_time, struct stride *s)
+static bool find_step(struct ct_driver *r, double stop, bool is_time, struct ct_stride *s)
 {
     for (;;) {
-        plan(r, stop, is_time, s);
+        ct_driver_plan(r, stop, is_time, s);
         const bool is_crossing = s->method == &ct_crossing || s->is_striding;
         const double h = s->h;
-        if (is_too_small(r, s))
+        if (ct_driver_is_too_small(r, s))
             return step_too_small(r, h);
         if (!is_crossing)
             s->h = s->t1 - r->t; // as rounded, so that steps add up to the time
@@ -541,105 +309,40 @@ static bool find_step(struct run *r, double stop, bool is_time, struct stride *s
             return false;
         if (e == CT_EVAL_OK) {
             if (is_crossing)
-                adapt_after_crossing(r, s);
+                ct_driver_adapt_after_crossing(r, s);
             else if (r->o->step == 0)
                 ct_control_accept(&r->control, r->method, h, error);
-            look_ahead(r);
+            ct_driver_look_ahead(r);
             return true;
         }
         if (r->o->step > 0)
             return ct_error(r->ctx, nowhere, CT_E_STEP_REFUSED,
                             "at t = %.9g a step of fixed size %.3g is too large", r->t, h);
         if (is_crossing)
-            adapt_after_failed_crossing(r, s, error);
+            ct_driver_adapt_after_failed_crossing(r, s, error);
         else
-            adapt_after_refusal(r, h, error);
+            ct_driver_adapt_after_refusal(r, h, error);
     }
-}
-
-// --- samples ---------------------------------------------------------------------------------
-
-static bool give_sample(struct run *r, const double *y)
-{
-    const double t = r->o->sample[r->sample++];
-    return r->o->at_sample(r->p->user, t, y);
-}
-
-static struct ct_bridge bridge(const struct run *r, const struct stride *s, double theta)
-{
-    const struct ct_stepper_span span = {s->method, r->p, r->t, s->h, r->y, r->y1, s->work};
-    double from, to;
-    if (!s->is_striding)
-        return ct_crossing_bridge(s->work, r->t, s->h, theta);
-    ct_striding_is_gap(r->striding, theta, &from, &to);
-    return ct_crossing_bridge_over(r->crossing_work, &span, from, to, theta);
-}
-
-// A sample in the gap of a crossing is as good as the interpolant: projected it would be worse.
-static bool give_singular_sample(struct run *r, const struct stride *s, const double *y)
-{
-    const double t = r->o->sample[r->sample];
-    if (!r->o->at_singular_sample)
-        return give_sample(r, y);
-    const struct ct_bridge b = bridge(r, s, (t - r->t) / s->h);
-    r->sample++;
-    return r->o->at_singular_sample(r->p->user, t, y, &b);
-}
-
-static bool give_projected_sample(struct run *r, double *y)
-{
-    const struct ct_problem *p = r->p;
-    const double t = r->o->sample[r->sample];
-    const enum ct_eval e = p->project ? p->project(p->user, t, y) : CT_EVAL_OK;
-    if (e == CT_EVAL_RETRY)
-        return ct_error(r->ctx, nowhere, CT_E_SAMPLE_REFUSED,
-                        "the constraints cannot be met at t = %.9g", t);
-    return e == CT_EVAL_OK && give_sample(r, y);
-}
-
-// Samples before `end`, from the interpolant of the step; in the gap of a crossing also the one on its end.
-static bool give_samples_before(struct run *r, const struct stride *s, double end)
-{
-    while (r->sample < r->o->nsample && r->o->sample[r->sample] <= s->t1) {
-        const struct ct_stepper_span span = {s->method, r->p, r->t, s->h, r->y, r->y1, s->work};
-        const double t = r->o->sample[r->sample];
-        const bool is_singular = !s->is_event && is_in_gap(r, s, t);
-        if (t >= end && !is_singular)
-            break;
-        ct_stepper_point(&span, (t - r->t) / s->h, r->point);
-        if (is_singular ? !give_singular_sample(r, s, r->point)
-                        : !give_projected_sample(r, r->point))
-            return false;
-    }
-    return true;
-}
-
-static bool give_samples_here(struct run *r)
-{
-    while (r->sample < r->o->nsample && r->o->sample[r->sample] <= r->t)
-        if (!give_sample(r, r->y))
-            return false;
-    return true;
 }
 
 // --- the march -------------------------------------------------------------------------------
 
-static void count_turns(struct run *r, double t1)
+static void count_turns(struct ct_driver *r, double t1)
 {
     const struct ct_integrate_options *o = r->o;
     if (ct_repeat_step(&r->repeat, t1, r->y0, r->y, r->end, r->p->nq, r->p->nu))
         r->tolerance = ct_repeat_tolerance(&r->repeat, o->rtol, o->atol, o->least_rtol);
 }
 
-static void commit(struct run *r, const struct stride *s)
+static void commit(struct ct_driver *r, const struct ct_stride *s)
 {
     if (r->o->least_rtol > 0 && r->o->step == 0)
         count_turns(r, s->t1);
     double *y = r->y, *dy = r->dy;
     r->y = r->end;
     r->dy = r->dend;
-    r->end = y;
-    r->dend = dy;
+    *(r->end == r->y1 ? &r->y1 : &r->moved) = y;
+    *(r->dend == r->dy1 ? &r->dy1 : &r->dmoved) = dy;
     r->t = s->t1;
     r->stats->steps++;
     // a crossing tells an implicit method nothing about the steps to come
@@ -649,7 +352,7 @@ static void commit(struct run *r, const struct stride *s)
         r->method->accept(r->work);
 }
 
-static bool handle_event(struct run *r, bool is_state, bool is_time)
+static bool handle_event(struct ct_driver *r, bool is_state, bool is_time)
 {
     const struct ct_problem *p = r->p;
     r->stats->events++;
@@ -663,22 +366,24 @@ static bool handle_event(struct run *r, bool is_state, bool is_time)
     return e == CT_EVAL_OK ? take_bearings(r) : state_refused(r, e);
 }
 
-static bool advance(struct run *r)
+static bool advance(struct ct_driver *r)
 {
-    struct stride s;
+    struct ct_stride s;
     if (r->t >= r->stop || r->o->step > 0)
-        r->stop = next_stop(r, &r->is_stop_time);
+        r->stop = ct_driver_next_stop(r, &r->is_stop_time);
     if (!find_step(r, r->stop, r->is_stop_time, &s))
         return false;
     const bool is_time = r->is_stop_time && s.is_landing;
     const bool is_event = s.is_event || is_time;
-    if (!give_samples_before(r, &s, s.t1 - event_margin(is_event, s.t1, s.h)))
+    if (!ct_driver_give_samples_before(r, &s,
+                                       s.t1 - ct_driver_event_margin(is_event, s.t1, s.h)))
         return false;
     commit(r, &s);
-    return (!is_event || handle_event(r, s.is_event, is_time)) && give_samples_here(r);
+    return (!is_event || handle_event(r, s.is_event, is_time))
+        && ct_driver_give_samples_here(r);
 }
 
-static void tell_foreseen(struct run *r)
+static void tell_foreseen(struct ct_driver *r)
 {
     if (!r->o->foresee || r->is_told || !(r->pace.to_come > r->o->many_steps))
         return;
@@ -686,7 +391,7 @@ static void tell_foreseen(struct run *r)
     r->o->foresee(r->p->user, r->t, r->y, r->pace.step, r->pace.to_come);
 }
 
-static bool march(struct run *r)
+static bool march(struct ct_driver *r)
 {
     const long most = r->o->max_steps ? r->o->max_steps : 100000000;
     while (r->t < r->o->t1) {
@@ -697,7 +402,8 @@ static bool march(struct run *r)
                 r->t);
         if (!advance(r))
             return false;
-        if (ct_control_is_endless(&r->pace, r->stats->steps, most, r->t, r->o->t1 - r->t))
+        if (r->stats->steps >= r->pace.next
+            && ct_control_is_endless(&r->pace, r->stats->steps, most, r->t, r->o->t1 - r->t))
             return ct_error(r->ctx, nowhere, CT_E_STEP_COUNT,
                             "at t = %.3g after %ld steps, of %.2g s now: up to t = %.9g they "
                             "would be more than the %ld that are allowed",
@@ -709,11 +415,12 @@ static bool march(struct run *r)
     return true;
 }
 
-static bool start(struct run *r)
+static bool start(struct ct_driver *r)
 {
     if (r->o->t0 < r->o->t1) { // else there is nothing to step
         bool is_time;
-        const double limit = fmin(step_limit(r), next_stop(r, &is_time) - r->t);
+        const double limit
+            = fmin(ct_driver_step_limit(r), ct_driver_next_stop(r, &is_time) - r->t);
         r->control.h = limit; // a scale for the bearings
         if (!take_bearings(r))
             return false;
@@ -721,7 +428,7 @@ static bool start(struct run *r)
                      : r->o->first_step > 0 ? r->o->first_step
                                             : first_step(r, limit);
     }
-    return give_samples_here(r);
+    return ct_driver_give_samples_here(r);
 }
 
 bool ct_integrate(struct ct_ctx *ctx, const struct ct_method *method,
@@ -735,7 +442,7 @@ bool ct_integrate(struct ct_ctx *ctx, const struct ct_method *method,
         return ct_error(ctx, nowhere, CT_E_INTEGRATE_OPTION,
                         "the method '%s' is implicit: it needs the residual of the equations",
                         method->name);
-    struct run r = {
+    struct ct_driver r = {
         .ctx = ctx,
         .method = method,
         .p = p,

@@ -7,8 +7,6 @@
 #include <math.h>
 #include <string.h>
 
-// Factors serve as long as the step is the same but for this: it costs no iteration.
-static const double same_step = 1e-3;
 // With a tolerance the iteration errs by a small part of it, smaller the tighter it is.
 static const double kappa_most = 0.03;
 // Without one, corrections are followed down to rounding of well-scaled equations, and accepted at a
@@ -92,14 +90,14 @@ static void weigh(struct ct_iteration *it, double rtol, double atol, double leas
     }
 }
 
-// The same where coordinate k moves with speed k and each counts for itself.
+// The same where coordinate k moves with speed k and each counts for itself; nu is that of the iteration.
 static inline void weigh_plain(struct ct_iteration *it, double rtol, double atol,
-                               double least_speed, const double *y)
+                               double least_speed, const double *y, const int nu)
 {
-    const double *u = y + it->dae->nq;
-    for (int k = 0; k < it->nu; k++) {
+    const double *u = y + nu;
+    for (int k = 0; k < nu; k++) {
         it->share[k] = 1 / (rtol * fabs(y[k]) + atol);
-        it->share[it->nu + k] = 1 / ct_larger(rtol * fabs(u[k]) + atol, least_speed);
+        it->share[nu + k] = 1 / ct_larger(rtol * fabs(u[k]) + atol, least_speed);
     }
 }
 
@@ -107,6 +105,8 @@ static inline double largest_place(const struct ct_iteration *it, const double *
 {
     const struct ct_dae *dae = it->dae;
     double largest = 0;
+    if (dae->is_plain && it->nu == 1)
+        return fabs(y[0]);
     for (int k = 0; k < it->nu; k++) {
         const int i = dae->is_plain ? k : dae->q_of[k];
         largest = ct_larger(largest, i < 0 ? 1 : fabs(y[i]));
@@ -122,8 +122,11 @@ bool ct_iteration_begin(struct ct_iteration *it, const struct ct_tolerance *tole
     const double rounding = DBL_EPSILON * largest_place(it, y);
     const double least_speed = tolerance ? moved_roundings * rounding / h : 0;
     it->least = place_rounding * rounding;
-    if (dae->is_plain && !it->groups)
-        weigh_plain(it, tol->rtol, tol->atol, least_speed, y);
+    const bool is_plain = dae->is_plain && !it->groups;
+    if (is_plain && it->nu == 1)
+        weigh_plain(it, tol->rtol, tol->atol, least_speed, y, 1);
+    else if (is_plain)
+        weigh_plain(it, tol->rtol, tol->atol, least_speed, y, it->nu);
     else
         weigh(it, tol->rtol, tol->atol, least_speed, y);
     if (it->kappa_for != tol->rtol + tol->atol) {
@@ -135,6 +138,8 @@ bool ct_iteration_begin(struct ct_iteration *it, const struct ct_tolerance *tole
     it->rounding = tolerance ? kappa_most : rounding_finest;
     it->most = tolerance ? MOST : MOST_FINEST;
     it->is_new = false;
+    if (dae->most_rows == 0 && it->version >= 0) // there are none that could change
+        return false;
     const long before = it->version;
     it->m = dae->rows(dae->user, &it->version);
     it->n = it->nu + (it->is_stabilised ? 2 : 1) * it->m;
@@ -250,11 +255,6 @@ enum ct_eval ct_iteration_refresh(struct ct_iteration *it, double t, const doubl
     return CT_EVAL_OK;
 }
 
-static bool is_near(double a, double b)
-{
-    return fabs(a - b) <= same_step * fabs(b);
-}
-
 // A (n x n, out) for c and e.
 static void fill(const struct ct_iteration *it, double *A, double c, double e)
 {
@@ -265,11 +265,9 @@ static void fill(const struct ct_iteration *it, double *A, double c, double e)
             A[i] = it->S[i] + x * it->X[i] + (k < it->nu ? y : z) * it->W[i];
 }
 
-bool ct_iteration_factor(struct ct_iteration *it, double c, double e, double _Complex s,
-                         struct ct_integrate_stats *stats)
+bool ct_iteration_factor_anew(struct ct_iteration *it, double c, double e, double _Complex s,
+                              struct ct_integrate_stats *stats)
 {
-    if ((it->c == c && it->e == e) || (is_near(it->c, c) && is_near(it->e, e)))
-        return true;
     const int n = it->n, split = it->nu;
     fill(it, it->G, c, e);
     it->c = it->e = 0;
@@ -296,15 +294,11 @@ bool ct_iteration_factor(struct ct_iteration *it, double c, double e, double _Co
     return true;
 }
 
-void ct_iteration_solve(struct ct_iteration *it, double *d, double *eta, double *lam,
-                        const double *r, const double *phi, const double *v)
+void ct_iteration_solve_system(struct ct_iteration *it, double *d, double *eta, double *lam,
+                               const double *r, const double *phi, const double *v)
 {
     const int nu = it->nu, m = it->m, n = it->n;
     double *b = m ? it->b : d;
-    if (n == 1) {
-        d[0] = it->one * r[0];
-        return;
-    }
     const double y = -1 / it->e;
     for (int i = 0; i < nu; i++)
         b[i] = y * r[i];

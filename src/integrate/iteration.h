@@ -80,12 +80,29 @@ enum ct_eval ct_iteration_refresh(struct ct_iteration *it, double t, const doubl
                                   const double *u, const double *a, const double *lam,
                                   struct ct_integrate_stats *stats);
 /// Factors for c and e, unless they are there; false if singular. s: c of the complex system, e = s^2, or 0.
-bool ct_iteration_factor(struct ct_iteration *it, double c, double e, double _Complex s,
-                         struct ct_integrate_stats *stats);
+bool ct_iteration_factor_anew(struct ct_iteration *it, double c, double e, double _Complex s,
+                              struct ct_integrate_stats *stats);
+static inline bool ct_iteration_factor(struct ct_iteration *it, double c, double e,
+                                       double _Complex s, struct ct_integrate_stats *stats)
+{
+    const double same_step = 1e-3; // factors serve for these, too: it costs no iteration
+    const bool are_near
+        = fabs(it->c - c) <= same_step * fabs(c) && fabs(it->e - e) <= same_step * fabs(e);
+    return are_near || ct_iteration_factor_anew(it, c, e, s, stats);
+}
 
 /// d (nu, out), eta (m, out; zero in the index-3 form), lam (m, out) from r (nu), phi, v (m).
-void ct_iteration_solve(struct ct_iteration *it, double *d, double *eta, double *lam,
-                        const double *r, const double *phi, const double *v);
+void ct_iteration_solve_system(struct ct_iteration *it, double *d, double *eta, double *lam,
+                               const double *r, const double *phi, const double *v);
+static inline void ct_iteration_solve(struct ct_iteration *it, double *d, double *eta,
+                                      double *lam, const double *r, const double *phi,
+                                      const double *v)
+{
+    if (it->n == 1)
+        d[0] = it->one * r[0];
+    else
+        ct_iteration_solve_system(it, d, eta, lam, r, phi, v);
+}
 /// The same with the complex system: of each the imaginary parts stand behind the real ones.
 void ct_iteration_solve_complex(struct ct_iteration *it, double *d, double *eta, double *lam,
                                 const double *r, const double *phi, const double *v);
@@ -94,9 +111,11 @@ void ct_iteration_solve_complex(struct ct_iteration *it, double *d, double *eta,
 static inline void ct_iteration_move(const struct ct_dae *dae, const double *q, const double *d,
                                      double *q1)
 {
-    if (!dae->is_plain)
+    if (!dae->is_plain) {
         dae->retract(dae->user, q, d, q1);
-    for (int k = 0; k < dae->nu && dae->is_plain; k++)
+        return;
+    }
+    for (int k = 0; k < dae->nu; k++)
         q1[k] = q[k] + d[k];
 }
 

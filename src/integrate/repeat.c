@@ -42,23 +42,21 @@ bool ct_repeat_add(struct ct_repeat *r, double t, double dq, double q, double du
     return r->share != before;
 }
 
-static double square_of_difference(const double *a, const double *b, int n)
-{
-    double sum = 0;
-    for (int i = 0; i < n; i++)
-        sum += (a[i] - b[i]) * (a[i] - b[i]);
-    return sum;
-}
-
 bool ct_repeat_step(struct ct_repeat *r, double t, const double *y0, const double *y,
                     const double *y1, int nq, int nu)
 {
-    double u = 0;
-    for (int i = nq; i < nq + nu; i++)
+    double dq = 0, q = 0, du = 0, u = 0;
+    for (int i = 0; i < nq; i++) {
+        const double step = y1[i] - y[i], away = y1[i] - y0[i];
+        dq += step * step;
+        q += away * away;
+    }
+    for (int i = nq; i < nq + nu; i++) {
+        const double step = y1[i] - y[i];
+        du += step * step;
         u += y1[i] * y1[i];
-    return ct_repeat_add(r, t, square_of_difference(y1, y, nq),
-                         square_of_difference(y1, y0, nq),
-                         square_of_difference(y1 + nq, y + nq, nu), u);
+    }
+    return ct_repeat_add(r, t, dq, q, du, u);
 }
 
 struct ct_tolerance ct_repeat_tolerance(const struct ct_repeat *r, double rtol, double atol,

@@ -12,8 +12,9 @@ enum ct_eval ct_stepper_rhs(const struct ct_problem *p, double t, const double *
     return e == CT_EVAL_OK && !ct_stepper_finite(dy, p->ny) ? CT_EVAL_RETRY : e;
 }
 
-// Four entries at a time: their sums stay in registers, whatever the number of stages. The last four may overlap those
-// before, which are then found twice. Fewer than four are summed side by side, each number of them by code of its own.
+// Four entries at a time, up to four times four side by side: their sums stay in registers, whatever the number of stages. The
+// last four may overlap those before, which are then found twice. Fewer than four are summed side by side, each number of them
+// by code of its own.
 enum { LANES = 4 };
 
 static inline void by_ones(double *restrict out, const double *y, double h, const double *a,
@@ -44,23 +45,41 @@ static void combine_few(double *restrict out, const double *y, double h, const d
 typedef double four
     __attribute__((vector_size(LANES * sizeof(double)), aligned(sizeof(double)), may_alias));
 
-// Inlined into callers, each with the registers that it may use. Two fours at a time: sums need not wait for each other.
+enum { MOST_FOURS = 4 };
+
+// Entries from i on, in so many fours; inlined into callers, each with the registers that it may use.
+__attribute__((always_inline)) static inline void some_fours(double *out, const double *y,
+                                                             double h, const double *a,
+                                                             const double *k, int s, int n,
+                                                             int i, const int fours)
+{
+    const int last = i + LANES * (fours - 1) < n - LANES ? i + LANES * (fours - 1) : n - LANES;
+    const double *stage = k + i, *behind = k + last;
+    four sum[MOST_FOURS] = {{0}};
+    for (int j = 0; j < s; j++, stage += n, behind += n)
+        if (a[j] != 0) {
+            for (int v = 0; v + 1 < fours; v++)
+                sum[v] += a[j] * *(const four *)(stage + LANES * v);
+            sum[fours - 1] += a[j] * *(const four *)behind;
+        }
+    for (int v = 0; v < fours; v++) {
+        const int at = v + 1 < fours ? i + LANES * v : last;
+        *(four *)(out + at) = y ? *(const four *)(y + at) + h * sum[v] : h * sum[v];
+    }
+}
+
 __attribute__((always_inline)) static inline void
 by_fours(double *out, const double *y, double h, const double *a, const double *k, int s, int n)
 {
-    for (int i = 0; i < n; i += 2 * LANES) {
-        const int last = n - LANES, at = i < last ? i : last;
-        const int next = i + LANES < last ? i + LANES : last;
-        const double *stage = k;
-        four sum = {0}, more = {0};
-        for (int j = 0; j < s; j++, stage += n)
-            if (a[j] != 0) {
-                sum += a[j] * *(const four *)(stage + at);
-                more += a[j] * *(const four *)(stage + next);
-            }
-        *(four *)(out + at) = y ? *(const four *)(y + at) + h * sum : h * sum;
-        *(four *)(out + next) = y ? *(const four *)(y + next) + h * more : h * more;
-    }
+    int i = 0;
+    for (; n - i > (MOST_FOURS - 1) * LANES; i += MOST_FOURS * LANES)
+        some_fours(out, y, h, a, k, s, n, i, MOST_FOURS);
+    if (n - i > 2 * LANES)
+        some_fours(out, y, h, a, k, s, n, i, 3);
+    else if (n - i > LANES)
+        some_fours(out, y, h, a, k, s, n, i, 2);
+    else if (n - i > 0)
+        some_fours(out, y, h, a, k, s, n, n - LANES, 1);
 }
 
 static void combine_narrow(double *out, const double *y, double h, const double *a,
@@ -170,15 +189,6 @@ double ct_stepper_norm(const struct ct_problem *p, const struct ct_tolerance *to
         n++;
     }
     return n ? sqrt(sum / n) : 0;
-}
-
-double ct_stepper_worse(const struct ct_problem *p, const struct ct_tolerance *tolerance,
-                        double t1, const double *y1, const double *e, double states)
-{
-    // a step that is refused anyway says nothing more
-    if (!p->output_error || !(states <= 1))
-        return states;
-    return ct_larger(p->output_error(p->user, t1, y1, e, tolerance, states), states);
 }
 
 double ct_stepper_error(const struct ct_problem *p, const struct ct_tolerance *tolerance,

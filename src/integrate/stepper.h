@@ -65,8 +65,15 @@ double ct_stepper_norm(const struct ct_problem *p, const struct ct_tolerance *to
 
 /// `states`, the norm of the error e (ny) of a step that ends at y1, time t1; or what e means for outputs, if that is
 /// more.  (8.6)
-double ct_stepper_worse(const struct ct_problem *p, const struct ct_tolerance *tolerance,
-                        double t1, const double *y1, const double *e, double states);
+static inline double ct_stepper_worse(const struct ct_problem *p,
+                                      const struct ct_tolerance *tolerance, double t1,
+                                      const double *y1, const double *e, double states)
+{
+    // a step that is refused anyway says nothing more
+    if (!p->output_error || !(states <= 1))
+        return states;
+    return ct_larger(p->output_error(p->user, t1, y1, e, tolerance, states), states);
+}
 
 /// Both at once.
 double ct_stepper_error(const struct ct_problem *p, const struct ct_tolerance *tolerance,

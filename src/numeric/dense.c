@@ -70,6 +70,14 @@ double ct_vector_largest(const double *v, size_t n)
     return max;
 }
 
+double ct_vector_size(const double *v, size_t n)
+{
+    double max = 0;
+    for (size_t i = 0; i < n; i++)
+        max = fabs(v[i]) > max || isnan(v[i]) ? fabs(v[i]) : max;
+    return max;
+}
+
 double ct_vector_dot(const double *x, const double *y, size_t n)
 {
     double sum = 0;
@@ -502,6 +510,17 @@ size_t ct_symmetric_eigenvalues_work(int n)
     return (size_t)max_int(1, 3 * n - 1);
 }
 
+// y (n) -= c x. A few numbers are read one by one: for them a vector takes longer to begin than to do its work.
+static inline void subtract(double *restrict y, double c, const double *restrict x, int n)
+{
+    enum { MOST_ALONE = 12 };
+    const volatile double *one_by_one = x;
+    for (int i = 0; i < n && n <= MOST_ALONE; i++)
+        y[i] -= c * one_by_one[i];
+    for (int i = 0; i < n && n > MOST_ALONE; i++)
+        y[i] -= c * x[i];
+}
+
 int ct_symmetric_count_below(double *A, int n, int lda, double x)
 {
     const double certain
@@ -513,13 +532,12 @@ int ct_symmetric_count_below(double *A, int n, int lda, double x)
         largest = fmax(largest, fabs(A[k + lda * k]));
     }
     for (int k = 0; k < n; k++) {
-        const double pivot = A[k + lda * k];
+        const double *column = A + lda * k, pivot = column[k];
         if (!(fabs(pivot) > certain * largest))
             return -1;
         count += pivot < 0;
         for (int j = k + 1; j < n; j++)
-            for (int i = j; i < n; i++)
-                A[i + lda * j] -= A[j + lda * k] / pivot * A[i + lda * k];
+            subtract(A + lda * j + j, column[j] / pivot, column + j, n - j);
     }
     return count;
 }

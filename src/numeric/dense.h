@@ -15,6 +15,8 @@
 
 /// Largest |v_i| of n; 0 where n is 0. What is no number is passed over.
 double ct_vector_largest(const double *v, size_t n);
+/// The same; what is no number is the largest.
+double ct_vector_size(const double *v, size_t n);
 /// x . y of n numbers
 double ct_vector_dot(const double *x, const double *y, size_t n);
 

@@ -42,7 +42,7 @@ bool ct_basis_extend(struct ct_basis *s, double *v)
 // Independent rows in the directions that move.
 static void choose_rows(struct ct_balance *s, struct ct_arena *a)
 {
-    const double dependent = 1e-9; // as in embed.c
+    const double dependent = 1e-9; // as in embedding.h
     const size_t m = s->e->nrow, n = s->n;
     double *A = CT_NEWN(a, double, m *n + 1), *tau = CT_NEWN(a, double, m + n);
     double *work = CT_NEWN(a, double, ct_qr_pivot_work((int)n, (int)m));

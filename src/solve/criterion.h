@@ -1,4 +1,4 @@
-// When an embedding is good enough: what runs alone (embed.c) and runs side by side (lanes.c) judge alike.
+// When an embedding is good enough: what runs alone (embedding.h) and runs side by side (lanes.c) judge alike.
 //
 //     kappa   largest |J_d^-1 J_i|       sigma   smallest pivot of J_d against its largest: falls when kept rows depend
 #ifndef CT_SOLVE_CRITERION_H

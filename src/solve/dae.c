@@ -39,8 +39,8 @@ static enum ct_eval start(void *user, double t, const double *y, double *a, doub
     return CT_EVAL_OK;
 }
 
-static void set_input(const struct ct_embed *s, double t, const double *q, const double *u,
-                      const double *a, const double *lam)
+static inline void set_input(const struct ct_embed *s, double t, const double *q,
+                             const double *u, const double *a, const double *lam)
 {
     const struct ct_machine *m = s->m;
     double *input = m->input;

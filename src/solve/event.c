@@ -144,6 +144,7 @@ enum ct_eval ct_run_event(void *user, double t, double *y, const signed char *cr
     (void)is_time;
     r->last_event = t;
     double *before = r->scratch + m->nu, *momentum = before + 2 * r->e->ndriver;
+    ct_run_watch_base(r, t, y, CT_WATCH_EVENT);
     ct_machine_set(m, ct_run_before(r, t), y);
     ct_program_run(&m->driver, m->input);
     memcpy(before, m->driver.out, m->driver.nout * sizeof *before);
@@ -167,6 +168,7 @@ enum ct_eval ct_run_event(void *user, double t, double *y, const signed char *cr
     if (e != CT_EVAL_OK)
         return e;
     y[r->ny - 1] += ct_run_kinetic_energy(r, t, y) - kinetic;
+    ct_run_watch_jump(r, t, y);
     ct_run_note_turning(r, t, y);
     return ct_run_refuse_stuck(r, t, y);
 }

@@ -162,7 +162,9 @@ double ct_fidelity_judge(struct ct_fidelity_record *r, const double *at, const d
 
 void ct_fidelity_keep(struct ct_fidelity_record *r)
 {
-    for (size_t i = 0; i < r->n && r->has_seen; i++)
+    if (!r->has_seen)
+        return;
+    for (size_t i = 0; i < r->n; i++)
         r->largest[i] = ct_larger(r->seen[i], r->largest[i]);
     r->has_seen = false;
 }
@@ -190,12 +192,10 @@ static void probe(struct ct_fidelity *p, double t, const double *y)
     memcpy(p->probed, evaluate(p, t), p->record.n * sizeof *p->probed);
 }
 
-double ct_fidelity_error(struct ct_fidelity *p, double t, const double *y, const double *e,
-                         const struct ct_tolerance *tolerance, double states)
+static double look(struct ct_fidelity *p, double t, const double *y, const double *e,
+                   const struct ct_tolerance *tolerance, double states)
 {
     struct ct_fidelity_record *r = &p->record;
-    if (!ct_fidelity_is_due(r))
-        return ct_fidelity_foreseen(r, states);
     ct_machine_copy(p->y, y, p->ny);
     memcpy(p->at, evaluate(p, t), r->n * sizeof *p->at);
     const bool is_probed = r->unprobed == 0;
@@ -211,7 +211,15 @@ double ct_fidelity_error(struct ct_fidelity *p, double t, const double *y, const
     if (is_probed || error <= 1)
         return error;
     r->skip = r->unprobed = 0; // no step is refused for its rounding
-    return ct_fidelity_error(p, t, y, e, tolerance, states);
+    return look(p, t, y, e, tolerance, states);
+}
+
+double ct_fidelity_error(struct ct_fidelity *p, double t, const double *y, const double *e,
+                         const struct ct_tolerance *tolerance, double states)
+{
+    if (!ct_fidelity_is_due(&p->record))
+        return ct_fidelity_foreseen(&p->record, states);
+    return look(p, t, y, e, tolerance, states);
 }
 
 void ct_fidelity_accept(struct ct_fidelity *p)

@@ -1,4 +1,4 @@
-// One lane as a run alone, by the functions of embed.c: see lane.h.
+// One lane as a run alone, by the functions of embed.h: see lane.h.
 #include "solve/lane.h"
 #include "solve/run.h"
 #include "integrate/stepper.h"

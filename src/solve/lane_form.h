@@ -1,4 +1,4 @@
-// Closed forms in lanes: accelerations, projections, and whether the forms are still good; see embed.c for the
+// Closed forms in lanes: accelerations, projections, and whether the forms are still good; see embed_form.c for the
 // same of a run alone. Included by lane_step.c.
 #ifndef CT_SOLVE_LANE_FORM_H
 #define CT_SOLVE_LANE_FORM_H

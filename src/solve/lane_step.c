@@ -1,5 +1,5 @@
 // A try in all lanes at once: see lanes.h. The steps are those of integrate/driver.c, the derivative and the
-// projection those of simulate.c and embed.c, so that a lane ends where a run alone ends, to rounding.
+// projection those of simulate.c and embed_project.c, so that a lane ends where a run alone ends, to rounding.
 #include "integrate/stepper.h"
 #include "solve/lane_watch.h"
 
@@ -14,7 +14,7 @@ static const double stiff_step = 3.25;
 enum { MOST_STIFF = 15, FEW_OTHERS = 6 };
 enum { MOST_STEPS = 100000000 };
 
-// ---- projection, as in embed.c ----------------------------------------------------------------------
+// ---- projection, as in embed_project.c ----------------------------------------------------------------
 
 static void normalise(struct ct_lanes *s, vec *y, set lanes)
 {
@@ -337,7 +337,7 @@ static set project_end(struct ct_lanes *s, vec t, set wanted)
     return derive(s, t, s->end, s->dend, wanted) & finite(s->dend, s->ny);
 }
 
-// ---- step control, as in driver.c -------------------------------------------------------------------
+// ---- step control, as in driver_plan.c --------------------------------------------------------------
 
 static void plan(struct ct_lanes *s, int l)
 {

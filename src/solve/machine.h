@@ -41,14 +41,15 @@ struct ct_machine {
         result,     // output columns
         power,      // d(work)/dt
         validity,   // indicators of linear beams, then squared slopes of all beams
-        energy,     // kinetic, potential
-        root,       // g of each mode
-        memory,     // next values; of whole turns their present ones
-        turns,      // of those: at a start, from the angles that are remembered
-        momentum,   // dT/du, and the same of `kept` where there is any
-        driver,     // value, rate of each driver
-        wanted,     // of each row: not negative in the right assembly
-        residual,   // r, phi, v; nothing if the equations have no residual, and so the next
+        carried, // of linear beams whose error is foretold: how the base moves (9), x, x' by plane
+        energy,   // kinetic, potential
+        root,     // g of each mode
+        memory,   // next values; of whole turns their present ones
+        turns,    // of those: at a start, from the angles that are remembered
+        momentum, // dT/du, and the same of `kept` where there is any
+        driver,   // value, rate of each driver
+        wanted,   // of each row: not negative in the right assembly
+        residual, // r, phi, v; nothing if the equations have no residual, and so the next
         tangent; // dr/dq, dr/du, dr/du', dv/dq, J: the entries; J alone where the rest is found along directions
     struct ct_tangent_lanes *lanes; // those, or NULL
     double *
@@ -82,6 +83,10 @@ bool ct_machine_use(struct ct_arena *a, struct ct_machine *m, enum ct_backend ba
 /// as the others do, with `use` and `prepare`, until it is forgotten; a and x must live as long.
 void ct_machine_compile(struct ct_arena *a, struct ct_machine *m, const struct ct_exs *x,
                         const ct_ex *out, size_t n, struct ct_program *p);
+/// The same of a solution in closed form: native code fuses its products and sums.
+void ct_machine_compile_solution(struct ct_arena *a, struct ct_machine *m,
+                                 const struct ct_exs *x, const ct_ex *out, size_t n,
+                                 struct ct_program *p);
 void ct_machine_forget(struct ct_machine *m, const struct ct_program *p);
 
 /// The input by symbol of x (nsym), for ct_ex_value and ct_ex_jacobian_at; NaN for those that are no inputs.
@@ -122,6 +127,8 @@ void ct_machine_chart_rate(const struct ct_machine *m, const double *d, const do
                            double *rate);
 /// Normalise the quaternions of q.
 void ct_machine_normalise(const struct ct_machine *m, double *q);
+/// p (4) / |p|; zeros stay.
+void ct_quaternion_normalise(double *p);
 
 /// Memories take their values at the input as if from scratch: quaternions from their rotation (scalar part
 /// >= 0), angles near their present memory, offsets from now.

@@ -5,6 +5,7 @@
 //     jump.c      speeds after those
 //     change.c    the choice of the method, when the motion turns stiff
 //     length.c    what is said of runs that take long
+//     beam_watch.c  beams that leave what their models hold for
 #ifndef CT_SOLVE_RUN_H
 #define CT_SOLVE_RUN_H
 
@@ -80,6 +81,15 @@ bool ct_run_is_followed(struct ct_run *r, double t, const double *y);
 /// A sample, results and ledger; false to stop, with a diagnostic if that is an error. user is the run.
 bool ct_run_at_sample(void *user, double t, const double *y);
 bool ct_run_at_step(void *user, double t, const double *y);
+
+/// Beams, into the report: of the results just found; from the start of a run on.
+void ct_run_watch_sample(struct ct_run *r, double t);
+void ct_run_watch_start(struct ct_run *r, double t, const double *y);
+/// How their bases move at t, y: at the start; after a step, which may be passed over; before an event and after an impulse
+/// there; after a jump that beams do not feel.
+enum ct_watch_when { CT_WATCH_START, CT_WATCH_STEP, CT_WATCH_EVENT, CT_WATCH_KEPT };
+void ct_run_watch_base(struct ct_run *r, double t, const double *y, enum ct_watch_when how);
+void ct_run_watch_jump(struct ct_run *r, double t, const double *y);
 double ct_run_sample_time(const struct ct_run_options *o, size_t i);
 
 struct ct_jump *ct_jump_create(struct ct_arena *a, const struct ct_machine *m);

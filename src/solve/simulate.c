@@ -15,10 +15,12 @@ enum ct_eval ct_run_accelerate(struct ct_run *r, double t, const double *y)
     const enum ct_eval e = ct_embed_solve(r->s);
     if (e != CT_EVAL_OK)
         return e;
-    for (size_t i = 0; i < r->m->nu; i++)
-        if (!isfinite(r->s->a[i]))
+    double *a = r->m->input + r->m->at_a;
+    for (size_t i = 0; i < r->m->nu; i++) {
+        a[i] = r->s->a[i];
+        if (!isfinite(a[i]))
             return CT_EVAL_RETRY;
-    ct_machine_copy(r->m->input + r->m->at_a, r->s->a, r->m->nu);
+    }
     return CT_EVAL_OK;
 }
 
@@ -150,6 +152,11 @@ static enum ct_eval accepted(void *user, double t, const double *y, const double
 {
     struct ct_run *r = user;
     const double turning_before = r->turning, t_before = r->t_turning;
+    if (!r->m->nrow && !r->e->nmemory) { // most often
+        if (r->fidelity)
+            ct_fidelity_accept(r->fidelity);
+        return CT_EVAL_OK;
+    }
     if (!ct_run_is_followed(r, t, y))
         return CT_EVAL_RETRY;
     r->singular->keeps_rows = r->method->is_implicit && (size_t)r->s->rank < r->m->nrow;
@@ -312,36 +319,6 @@ static void keep_ledger(struct ct_run *r, const double *y)
         = fmax(r->report->velocity_constraint, ct_vector_largest(r->m->v, r->m->nrow));
 }
 
-void ct_slope_watch(struct ct_slope_report *report, const struct ct_machine *m, double t)
-{
-    const double *square = m->validity.out + m->e->nvalidity;
-    for (size_t i = 0; i < m->e->nbend; i++) {
-        for (size_t k = 0; k < m->e->bend[i].n; k++)
-            report[i].largest = fmax(report[i].largest, sqrt(*square++));
-        if (report[i].largest > CT_SLOPE_LIMIT && report[i].passed_at < 0)
-            report[i].passed_at = t;
-    }
-}
-
-// Slopes of beams, and indicators of linear ones, averaged over a period of the beam: what rings faster than it can follow does not count.
-static void watch_validity(struct ct_run *r, double t)
-{
-    if (!r->m->validity.nout)
-        return;
-    ct_program_run(&r->m->validity, r->m->input);
-    ct_slope_watch(r->report->bend, r->m, t);
-    for (size_t i = 0; i < r->e->nvalidity; i++) {
-        struct ct_validity_report *v = &r->report->validity[i];
-        const double period = 6.283185307179586 / r->e->validity[i].omega;
-        const double share = r->ngiven ? -expm1(-(t - r->t_sample) / period) : 1;
-        v->mean += share * (r->m->validity.out[i] - v->mean);
-        v->largest = fmax(v->largest, fabs(v->mean));
-        if (v->largest > CT_VALIDITY_LIMIT && v->left_at < 0)
-            v->left_at = t;
-    }
-    r->t_sample = t;
-}
-
 static bool give_row(struct ct_run *r, double t, const double *y)
 {
     for (size_t i = 0; i < r->e->nresult; i++)
@@ -350,7 +327,7 @@ static bool give_row(struct ct_run *r, double t, const double *y)
                             "the output '%s' has no finite value at t = %.9g",
                             r->e->result[i].name, t);
     keep_ledger(r, y);
-    watch_validity(r, t);
+    ct_run_watch_sample(r, t);
     r->ngiven++;
     memcpy(r->report->final, r->value, r->e->nresult * sizeof *r->value);
     return !r->o->row || r->o->row(r->o->user, t, r->value, r->e->nresult);
@@ -398,6 +375,7 @@ static bool at_singular_sample(void *user, double t, const double *y, const stru
 bool ct_run_at_step(void *user, double t, const double *y)
 {
     struct ct_run *r = user;
+    ct_run_watch_base(r, t, y, CT_WATCH_STEP);
     if (r->o->progress && !r->o->progress(r->o->user, t, r->o->duration))
         return false;
     r->is_suspect = r->stiffness && ct_run_is_suspect(r, t, y);
@@ -549,6 +527,12 @@ static void explain_end(struct ct_run *r)
         name_singular(r, ", which steps are not fitted to: leave out 'step'");
 }
 
+// Anything that wants to see each step?
+static bool looks_at_steps(const struct ct_run *r)
+{
+    return r->o->progress || r->o->stiff_method || r->m->carried.nout;
+}
+
 bool ct_run_simulate(struct ct_run *r, const struct ct_run_options *o,
                      struct ct_run_report *report)
 {
@@ -566,12 +550,6 @@ bool ct_run_simulate(struct ct_run *r, const struct ct_run_options *o,
     *report
         = (struct ct_run_report){.method = o->method, .changed_at = NAN, .returned_at = NAN};
     report->final = CT_NEWN(r->arena, double, r->e->nresult + 1);
-    report->validity = CT_NEWN(r->arena, struct ct_validity_report, r->e->nvalidity + 1);
-    for (size_t i = 0; i < r->e->nvalidity; i++)
-        report->validity[i].left_at = -1;
-    report->bend = CT_NEWN(r->arena, struct ct_slope_report, r->e->nbend + 1);
-    for (size_t i = 0; i < r->e->nbend; i++)
-        report->bend[i].passed_at = -1;
     ct_singular_start(r->singular);
     if (r->fidelity)
         ct_fidelity_start(r->fidelity);
@@ -585,6 +563,7 @@ bool ct_run_simulate(struct ct_run *r, const struct ct_run_options *o,
     if (!ct_run_tables_reach(r, 0))
         return false;
     ct_modes_start(r->m, 0, r->y, r->dy);
+    ct_run_watch_start(r, 0, r->y);
     ct_run_note_turning(r, 0, r->y);
     if (ct_run_refuse_stuck(r, 0, r->y) == CT_EVAL_FATAL)
         return false;
@@ -601,8 +580,8 @@ bool ct_run_simulate(struct ct_run *r, const struct ct_run_options *o,
            .rhs = rhs,
            .project = has_constraints(r) ? project : NULL,
            .accepted = accepted,
-           .longest_step = ct_run_longest_step,
-           .singular_in = singular_in,
+           .longest_step = r->e->nmemory ? ct_run_longest_step : NULL,
+           .singular_in = r->m->nrow ? singular_in : NULL,
            .set_crossing = set_crossing,
            .crossed = crossed,
            .residual = residual,
@@ -611,18 +590,19 @@ bool ct_run_simulate(struct ct_run *r, const struct ct_run_options *o,
            .root = ct_run_root,
            .next_time_event = ct_run_next_event,
            .event = ct_run_event};
-    const struct ct_integrate_options io = {.t1 = o->duration,
-                                            .rtol = o->rtol,
-                                            .atol = o->atol,
-                                            .least_rtol = o->least_rtol,
-                                            .step = o->step,
-                                            .sample = sample,
-                                            .nsample = n,
-                                            .at_sample = ct_run_at_sample,
-                                            .at_singular_sample = at_singular_sample,
-                                            .foresee = ct_run_foresee,
-                                            .many_steps = ct_run_many_steps,
-                                            .at_step = ct_run_at_step};
+    const struct ct_integrate_options io
+        = {.t1 = o->duration,
+           .rtol = o->rtol,
+           .atol = o->atol,
+           .least_rtol = o->least_rtol,
+           .step = o->step,
+           .sample = sample,
+           .nsample = n,
+           .at_sample = ct_run_at_sample,
+           .at_singular_sample = at_singular_sample,
+           .foresee = ct_run_foresee,
+           .many_steps = ct_run_many_steps,
+           .at_step = looks_at_steps(r) ? ct_run_at_step : NULL};
     const bool ok = ct_run_march(r, &p, io);
     if (!ok)
         explain_end(r);

@@ -56,7 +56,9 @@ struct ct_run_report {
     struct ct_validity_report {
         double mean,
             largest; // of the indicator: over the last period of the beam, and its largest size so far
-        double left_at;           // when that passed the limit; negative: never
+        double left_at;   // when that passed the limit; negative: never
+        double off_since; // from when on the error foretold is beyond it; negative: it is not
+        struct ct_swings swings;  // that foretell it
     } * validity;                 // by indicator of the equations
     struct ct_slope_report *bend; // by bent beam of the equations
     double energy_drift;          // largest |total - total(0)| / scale of the energies

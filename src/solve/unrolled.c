@@ -4,6 +4,7 @@
 //     checked   u', lam after a refinement, residuals   once a step
 //     closing   Phi, v and the corrections for them     in projections
 #include "codegen/native.h"
+#include "numeric/dense.h"
 #include "solve/form.h"
 
 #include <math.h>
@@ -54,7 +55,7 @@ static void compile_solved(struct unrolled *f, struct ct_machine *m, const struc
     f->has_power = has_power(m->e);
     if (f->has_power)
         push(&l, &m->e->power, 1);
-    ct_machine_compile(f->form.arena, m, x, l.e, l.n, &f->solved);
+    ct_machine_compile_solution(f->form.arena, m, x, l.e, l.n, &f->solved);
 }
 
 static void compile_checked(struct unrolled *f, struct ct_machine *m, const struct ct_exs *x)
@@ -92,14 +93,6 @@ static void compile_closing(struct unrolled *f, struct ct_machine *m, const stru
     f->form.du = f->form.dq + m->nu;
 }
 
-static double largest(const double *v, size_t n)
-{
-    double max = 0;
-    for (size_t i = 0; i < n; i++)
-        max = fabs(v[i]) > max || isnan(v[i]) ? fabs(v[i]) : max;
-    return max;
-}
-
 // ---- evaluation -----------------------------------------------------------------------------------------
 
 static double strength(const struct unrolled *f, const double *pivot)
@@ -121,10 +114,11 @@ static double solve(struct ct_form *form, struct ct_machine *m, double *a)
     for (size_t i = 0; i < f->c->nfree; i++)
         if (!(inertia[i] > 0))
             return 0;
-    for (size_t i = 0; i < m->nu; i++)
-        if (!isfinite(out[i]))
+    for (size_t i = 0; i < m->nu; i++) {
+        a[i] = out[i];
+        if (!isfinite(a[i]))
             return 0;
-    ct_machine_copy(a, out, m->nu);
+    }
     ct_machine_copy(m->rate, out + m->nu, m->nq);
     return strength(f, inertia + f->c->nfree);
 }
@@ -132,10 +126,10 @@ static double solve(struct ct_form *form, struct ct_machine *m, double *a)
 // r (nu + rank) against the largest terms of its equations. NaN counts as infinite.
 static double relative(const struct unrolled *f, const double *r, size_t nu, const double *Q)
 {
-    const double *gam = Q + nu, a = largest(f->form.a, nu);
-    const double forces = fmax(largest(Q, nu), f->M_size * a);
-    const double rates = fmax(largest(gam, f->c->rank), f->J_size * a);
-    const double r0 = largest(r, nu), r1 = largest(r + nu, f->c->rank);
+    const double *gam = Q + nu, a = ct_vector_size(f->form.a, nu);
+    const double forces = fmax(ct_vector_size(Q, nu), f->M_size * a);
+    const double rates = fmax(ct_vector_size(gam, f->c->rank), f->J_size * a);
+    const double r0 = ct_vector_size(r, nu), r1 = ct_vector_size(r + nu, f->c->rank);
     const double left = fmax(r0 > 0 ? r0 / forces : 0, r1 > 0 ? r1 / rates : 0);
     return isfinite(r0) && isfinite(r1) ? left : INFINITY;
 }
@@ -148,7 +142,7 @@ static void check(struct ct_form *form, struct ct_machine *m)
     ct_program_run(&f->checked, m->input);
     form->left = relative(f, r, m->nu, Q);
     form->left_better = relative(f, better, m->nu, Q);
-    form->kappa = form->kind == &ct_form_whole ? NAN : largest(Q + n, f->c->nB);
+    form->kappa = form->kind == &ct_form_whole ? NAN : ct_vector_size(Q + n, f->c->nB);
 }
 
 static double close(struct ct_form *form, struct ct_machine *m)
@@ -183,8 +177,8 @@ static struct ct_form *create(struct ct_arena *a, struct ct_machine *m,
     const double *J = m->Q + m->nu;
     f->form = (struct ct_form){.kind = kind, .arena = own};
     ct_form_place(&f->form, p);
-    f->M_size = largest(m->motion.out, m->e->nM);
-    f->J_size = largest(J, m->e->nJ);
+    f->M_size = ct_vector_size(m->motion.out, m->e->nM);
+    f->J_size = ct_vector_size(J, m->e->nJ);
     f->c = ct_closed_derive(own, x, m->e, p, m->motion.out, J,
                             kind == &ct_form_whole ? CT_CLOSED_WHOLE : CT_CLOSED_EMBEDDING,
                             (size_t)most_nodes);

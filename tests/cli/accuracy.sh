@@ -32,6 +32,12 @@ sed -n -e '/"tolerance"/p' -e '/"steps"/p' one.json
 echo '-- a finer ladder, of two digits each'
 "$COTREE" accuracy "$m" --until 1 --samples 2 --method dop853 --per-decade 3 -o fine.csv --quiet
 cut -d, -f2 fine.csv | sed -n '2,6p;$p'
+echo '-- and of fixed steps, of any method: errors fall with the order'
+"$COTREE" accuracy "$m" --until 1 --samples 2 --method dopri5,rk4 --step 0.1 --per-decade 2 -o fine.csv --quiet
+cut -d, -f1,2,7 fine.csv
+awk -F, 'NR > 2 && $1 == method && !($5 < 0.02 * error || $5 < 1e-13) { print "falls too little:", $0 } { method = $1; error = $5 }' fine.csv
+echo '-- of closed loops, too, with no more evaluations than they have stages'
+"$COTREE" accuracy "$SYSTEMS/four_bar/model.yaml" --until 1 --samples 2 --method rk4,dop853 --step 0.01 --quiet | cut -d, -f1,7,8
 say accuracy "$m" --per-decade 11
 rm fine.csv
 echo '-- a reference from a file'

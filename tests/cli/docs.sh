@@ -23,7 +23,7 @@ done
 
 # blocks of the tutorial: YAML goes to files, commands to a script
 awk '
-  /^```yaml/ { split("pendulum four_bar column", names, " "); file = names[++nyaml] ".yaml"; next }
+  /^```yaml/ { split("pendulum four_bar column profile", names, " "); file = names[++nyaml] ".yaml"; next }
   /^```sh/ { file = "commands"; next }
   /^```/ { if (file == "") file = "printed"; else file = ""; next }
   file != "" && file != "printed" { print > file }

@@ -19,6 +19,7 @@
 
 struct table {
     size_t columns, rows;
+    char *text;    /* of the file, which the names stand in */
     char **name;   /* columns */
     double *value; /* rows x columns */
 };
@@ -48,17 +49,20 @@ static char *slurp(const char *path)
 {
     FILE *f = fopen(path, "rb");
     size_t size = 0, room = 1 << 16, got;
-    char *text = must(malloc(room));
+    char *text;
 
     if (!f)
         fail("%s: %s", path, strerror(errno));
+    text = must(malloc(room));
     while ((got = fread(text + size, 1, room - size - 1, f)) > 0) {
         size += got;
         if (size + 1 == room)
             text = must(realloc(text, room *= 2));
     }
-    if (ferror(f))
+    if (ferror(f)) {
+        free(text);
         fail("%s: cannot be read", path);
+    }
     fclose(f);
     text[size] = 0;
     return text;
@@ -86,44 +90,43 @@ static char *field(char **at, bool *last)
     return from;
 }
 
-static struct table read_table(const char *path)
+static void read_table(const char *path, struct table *t)
 {
-    struct table t = {0};
-    char *at = slurp(path);
+    char *at = t->text = slurp(path);
     size_t room = 0;
     bool last;
 
     do {
-        t.name = must(realloc(t.name, (t.columns + 1) * sizeof *t.name));
-        t.name[t.columns++] = field(&at, &last);
+        t->name = must(realloc(t->name, (t->columns + 1) * sizeof *t->name));
+        t->name[t->columns++] = field(&at, &last);
     } while (!last);
-    if (strcmp(t.name[0], "t") != 0)
-        fail("%s: the first column is '%s', not t", path, t.name[0]);
-    for (; *at; t.rows++) {
+    if (strcmp(t->name[0], "t") != 0)
+        fail("%s: the first column is '%s', not t", path, t->name[0]);
+    for (; *at; t->rows++) {
         size_t c = 0;
 
-        if ((t.rows + 1) * t.columns > room) {
-            room = 2 * (t.rows + 1) * t.columns;
-            t.value = must(realloc(t.value, room * sizeof *t.value));
+        if ((t->rows + 1) * t->columns > room) {
+            room = 2 * (t->rows + 1) * t->columns;
+            t->value = must(realloc(t->value, room * sizeof *t->value));
         }
         do {
             char *cell = field(&at, &last), *end;
 
-            if (c == t.columns)
-                fail("%s: row %zu has more than %zu columns", path, t.rows + 1, t.columns);
-            t.value[t.rows * t.columns + c++] = strtod(cell, &end);
+            if (c == t->columns)
+                fail("%s: row %zu has more than %zu columns", path, t->rows + 1, t->columns);
+            t->value[t->rows * t->columns + c++] = strtod(cell, &end);
             if (end == cell || *end)
-                fail("%s: row %zu: '%s' is no number", path, t.rows + 1, cell);
+                fail("%s: row %zu: '%s' is no number", path, t->rows + 1, cell);
         } while (!last);
-        if (c != t.columns)
-            fail("%s: row %zu has %zu columns, the header %zu", path, t.rows + 1, c, t.columns);
+        if (c != t->columns)
+            fail("%s: row %zu has %zu columns, the header %zu", path, t->rows + 1, c,
+                 t->columns);
     }
-    return t;
 }
 
 static void free_table(struct table *t)
 {
-    free(t->name[0]); /* the text of the file */
+    free(t->text);
     free(t->name);
     free(t->value);
 }
@@ -144,10 +147,11 @@ static bool find_row(const struct table *t, double time, size_t *row)
     return false;
 }
 
-/* the tolerance of a column, and its typical size unless the file does not name one */
-static double tolerance_of(const char *path, const char *column, double *size)
+/* the tolerance of a column, and its typical size unless the file, of this text, does not name one */
+static double tolerance_of(const char *path, const char *text, const char *column, double *size)
 {
-    char *text = slurp(path), *line = text, *end;
+    const char *line = text;
+    char *end;
     double tolerance = strtod(line, &end);
     size_t length = strlen(column);
 
@@ -165,13 +169,12 @@ static double tolerance_of(const char *path, const char *column, double *size)
             *size = strtod(end, NULL);
         break;
     }
-    free(text);
     return tolerance;
 }
 
 /* true if the column is within its tolerance at all times */
 static bool compare_column(const struct table *result, const struct table *reference,
-                           size_t column, const char *tolerance_file)
+                           size_t column, const char *tolerance_file, const char *tolerances)
 {
     const char *name = reference->name[column];
     double size = 0, worst = 0, worst_time = 0, tolerance;
@@ -186,7 +189,7 @@ static bool compare_column(const struct table *result, const struct table *refer
         size = fmax(size, fabs(reference->value[r * reference->columns + column]));
     if (size == 0)
         size = 1;
-    tolerance = tolerance_of(tolerance_file, name, &size);
+    tolerance = tolerance_of(tolerance_file, tolerances, name, &size);
     for (r = 0; r < reference->rows; r++) {
         double time = reference->value[r * reference->columns];
         double want = reference->value[r * reference->columns + column], got, error;
@@ -214,20 +217,24 @@ static bool compare_column(const struct table *result, const struct table *refer
 
 int main(int argc, char **argv)
 {
-    struct table result, reference;
+    /* static: what fail leaves behind can still be reached, so that it is no leak */
+    static struct table result, reference;
+    static char *tolerances;
     bool ok = true;
     size_t c;
 
     if (argc != 4)
         fail("usage: compare RESULT.csv REFERENCE.csv TOLERANCE-FILE");
-    result = read_table(argv[1]);
-    reference = read_table(argv[2]);
+    read_table(argv[1], &result);
+    read_table(argv[2], &reference);
     if (reference.rows == 0 || reference.columns < 2)
         fail("%s: nothing to compare with", argv[2]);
+    tolerances = slurp(argv[3]);
     for (c = 1; c < reference.columns; c++)
-        if (!compare_column(&result, &reference, c, argv[3]))
+        if (!compare_column(&result, &reference, c, argv[3], tolerances))
             ok = false;
     free_table(&result);
     free_table(&reference);
+    free(tolerances);
     return ok ? 0 : 1;
 }

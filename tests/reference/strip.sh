@@ -5,6 +5,7 @@
 #     u = 1 - z/(3 4) + z^2/(3 4 7 8) - ..., z = x^2 (Timoshenko and Gere, Theory of Elastic Stability, 6.3). Errors fall with
 #     the square of the number of elements; what extrapolation leaves are EIy/EIz and GJ/EIz, 2.5e-5 together
 #   - at P and a side load W << P its tip twists by W/P (1/u - 1)
+#   - the same with lumped masses, which leave twist and rotations without inertia
 #   - along its axis: Euler's load about the axis of the smaller stiffness
 #   - frequencies of bending about both axes and of twist; those of N linear elements in twist are known exactly,
 #     those of quadratic ones are off by (k h)^4/1440
@@ -32,6 +33,8 @@ for n in 8 16; do
     model $n '0, 60, 5e-4' >side.yaml
     "$COTREE" equilibrium side.yaml -q | awk -F, -v n=$n 'NR == 2 { print "twist", n, $2 }'
 done >found
+model 16 '0, 1, 0' | sed 's/type: beam,/type: beam, mass: lumped,/' >lumped.yaml
+"$COTREE" buckling lumped.yaml --load push --count 1 -q | awk -F, 'NR == 2 { print "lumped", 16, $2 }' >>found
 model 8 '-1, 0, 0' >along.yaml
 "$COTREE" buckling along.yaml --load push --count 1 -q | awk -F, 'NR == 2 { print "euler", 8, $2 }' >>found
 "$COTREE" modes along.yaml --count 4 -q | awk -F, 'NR > 1 { print "mode" NR - 1, 8, $3 }' >>found
@@ -60,6 +63,7 @@ awk '
         printf "8 and 16 elements: off by %.2e, %.2e\n", coarse, fine
         if (!(coarse > 3.8 * fine && coarse < 4.2 * fine)) failed = 1
         check("load across", (4 * value["prandtl", 16] - value["prandtl", 8]) / 3, load, 1e-4)
+        check("whatever its masses", value["lumped", 16], value["prandtl", 16], 1e-10)
         twist = 5e-4 / 60 * (1 / u(60^2 * L^4 / (EIy * GJ)) - 1)
         check("twist", -(4 * value["twist", 16] - value["twist", 8]) / 3, twist, 1e-4)
         check("load along", value["euler", 8], pi^2 * EIy / (4 * L^2), 1e-5)
@@ -69,5 +73,5 @@ awk '
         c2 = GJ / (2700 * (1e-4 + 1e-9)); h = L / 8
         check("twist 1", value["mode2", 8], sqrt(6 * c2 / h^2 * (1 - cos(pi / 16)) / (2 + cos(pi / 16))), 1e-9)
         check("quadratic", value["quadratic2", 8], sqrt(c2) * pi / 4 * (1 + (pi / 16)^4 / 1440), 1e-8)
-        exit failed || nchecked != 7
+        exit failed || nchecked != 8
     }' found || { cat found; exit 1; }

@@ -141,6 +141,28 @@ static void a_massless_coordinate_with_a_damper_creeps(void **state)
                 {(m * k + root) / (2 * m * c), 1});
 }
 
+// One cubic element, free in space: w^2 = 720 and 8400 EI/(m L^4). Its turn about its own axis moves no mass and nothing
+// holds it: it is no motion, and takes no part in the others.
+static void what_neither_mass_nor_force_sees_is_no_motion(void **state)
+{
+    (void)state;
+#define FREE_BEAM(more)                                                                        \
+    "cotree: 1\n"                                                                              \
+    "bodies: {b: {type: beam, length: 1, E: 1, area: 1, Iz: 1, mass_per_length: 1,\n"          \
+    "    formulation: linear, deformation: [bending-z]" more "}}\n"
+    CHECK_MODES(FREE_BEAM(""), NULL, {0, 0}, {0, 0}, {0, 0}, {0, 0}, {0, 0}, {sqrt(720), 0},
+                {sqrt(8400), 0});
+    CHECK_MODES(FREE_BEAM(", frame: chord"), NULL, {0, 0}, {0, 0}, {0, 0}, {0, 0}, {0, 0},
+                {sqrt(720), 0}, {sqrt(8400), 0});
+    struct ct_ctx *ctx = ct_ctx_create();
+    struct ct_system *sys
+        = load_with(ctx, FREE_BEAM(", elements: 16, damping: {beta: 1e-5}"), NULL);
+    assert_null(ct_modes_create(ctx, sys, &(struct ct_modes_options){.count = 50}));
+    assert_int_equal(ct_ctx_fault(ctx), CT_FAULT_MODEL);
+    ct_system_destroy(sys);
+    ct_ctx_destroy(ctx);
+}
+
 static void a_pendulum_on_a_turning_shaft(void **state)
 {
     (void)state;
@@ -746,6 +768,7 @@ int main(void)
         cmocka_unit_test(an_upright_pendulum_grows_and_decays),
         cmocka_unit_test(a_massless_coordinate_follows_its_springs),
         cmocka_unit_test(a_massless_coordinate_with_a_damper_creeps),
+        cmocka_unit_test(what_neither_mass_nor_force_sees_is_no_motion),
         cmocka_unit_test(a_pendulum_on_a_turning_shaft),
         cmocka_unit_test(a_sleeping_top_seen_from_the_top),
         cmocka_unit_test(a_motion_is_linearised_at_a_time),

@@ -1,6 +1,7 @@
 // Linear graphs: trees, cutsets, circuits, counting and enumerating; formulation sections
 // 3.1-3.4.
 #include "graph/graph.h"
+#include "graph/reach.h"
 
 #include "random_graph.h"
 
@@ -402,6 +403,79 @@ static struct ct_graph complete(int n)
     return (struct ct_graph){n, nedge, edge};
 }
 
+// ---- reaching --------------------------------------------------------------------------------
+
+static bool *random_choice(int n)
+{
+    bool *chosen = CT_NEWN(arena, bool, n + 1);
+    for (int i = 0; i < n; i++)
+        chosen[i] = draw(4) > 0;
+    return chosen;
+}
+
+/// What ct_graph_spread is to give, sweep by sweep.
+static int sweep_edges(const struct ct_graph *g, const bool *usable, bool *is_known, int *order)
+{
+    int n = 0;
+    for (bool grew = true; grew;) {
+        grew = false;
+        for (int e = 0; e < g->nedge; e++) {
+            bool *tail = &is_known[g->edge[e].tail], *head = &is_known[g->edge[e].head];
+            if (!usable[e] || *tail == *head)
+                continue;
+            *tail = *head = grew = true;
+            order[n++] = e;
+        }
+    }
+    return n;
+}
+
+static void edges_spread_in_the_order_of_sweeps(void **state)
+{
+    (void)state;
+    start_random();
+    for (int trial = 0; trial < 300; trial++) {
+        const struct ct_graph g = random_graph(20, 12);
+        const bool *usable = random_choice(g.nedge);
+        bool *want_known = CT_NEWN(arena, bool, g.nnode),
+             *known = CT_NEWN(arena, bool, g.nnode);
+        int *want = CT_NEWN(arena, int, g.nnode), *got = CT_NEWN(arena, int, g.nnode);
+        want_known[0] = known[0] = true;
+        for (int k = draw(3); k > 0; k--) {
+            const int v = draw(g.nnode);
+            want_known[v] = known[v] = true;
+        }
+        const int n = sweep_edges(&g, usable, want_known, want);
+        assert_int_equal(ct_graph_spread(arena, &g, usable, known, got), n);
+        assert_memory_equal(got, want, (size_t)n * sizeof *got);
+        assert_memory_equal(known, want_known, (size_t)g.nnode);
+    }
+}
+
+static void distances_are_those_of_all_ways(void **state)
+{
+    (void)state;
+    start_random();
+    for (int trial = 0; trial < 300; trial++) {
+        const struct ct_graph g = random_graph(20, 12);
+        const bool *usable = random_choice(g.nedge);
+        const int *length = random_weights(g.nedge, 4), far = 1000;
+        int *want = CT_NEWN(arena, int, g.nnode), *got = CT_NEWN(arena, int, g.nnode);
+        for (int v = 1; v < g.nnode; v++)
+            want[v] = far;
+        for (int k = 0; k < g.nnode; k++) // ways of one more edge each time
+            for (int e = 0; e < g.nedge; e++) {
+                int *t = &want[g.edge[e].tail], *h = &want[g.edge[e].head];
+                if (usable[e] && *t + length[e] < *h)
+                    *h = *t + length[e];
+                if (usable[e] && *h + length[e] < *t)
+                    *t = *h + length[e];
+            }
+        ct_graph_distances(arena, &g, usable, length, far, got);
+        assert_memory_equal(got, want, (size_t)g.nnode * sizeof *got);
+    }
+}
+
 static void count_of_a_complete_graph_is_cayleys(void **state)
 {
     (void)state;
@@ -442,6 +516,8 @@ int main(void)
         TEST(rank_of_the_incidence_matrix_is_nodes_less_pieces),
         TEST(kruskal_and_the_count_agree_with_enumeration),
         TEST(forced_and_banned_edges_are_respected),
+        TEST(edges_spread_in_the_order_of_sweeps),
+        TEST(distances_are_those_of_all_ways),
         TEST(count_of_a_complete_graph_is_cayleys),
         TEST(enumeration_stops_when_told),
     };

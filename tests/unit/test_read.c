@@ -320,10 +320,12 @@ static void without_memory_nothing_leaks(void **state)
     assert_non_null(f);
     fputs("cotree: 1\n"
           "parameters: {a: b, b: 2}\n"
-          "bodies: {x: {mass: a, points: {p: [1, a, 0]}}}\n"
           "joints: {j: {type: revolute, from: ground, to: x.p, effort: j.u}}\n"
-          "outputs: [j.q, {name: n, value: 2*j.u}, k.q]\n",
+          "outputs: [j.q, {name: n, value: 2*j.u}, k.q]\n"
+          "bodies:\n  x: {mass: a, points: {p: [1, a, 0]}}\n",
           f);
+    for (int i = 0; i < 200; i++) // so that memory is asked for several times
+        fprintf(f, "  x%d: {mass: a, points: {p: [1, a, 0]}}\n", i);
     fclose(f);
     long n = 1;
     while (!read_with_failure(path, n))

@@ -157,30 +157,32 @@ static void finish(struct program *p)
 
 // ---- tests --------------------------------------------------------------------------------------
 
-static void assert_same_bits(const struct program *p, struct random *r)
+static void assert_same_bits(const struct program *p, size_t lanes, struct random *r)
 {
-    static double input[NIN], want[MOST_SWEEPS * MOST_ROWS], got[MOST_SWEEPS * MOST_ROWS];
+    enum { MOST_LANES = 4 };
+    static double input[MOST_LANES * NIN], want[MOST_LANES * MOST_SWEEPS * MOST_ROWS],
+        got[COUNT(want)];
     const struct ct_tape *tape = ct_tape_create(p->arena, p->listing);
-    const struct ct_native *native = ct_native_create(p->arena, p->listing, 1);
-    double *work = CT_NEWN(p->arena, double, ct_tape_work(tape) + 1),
+    const struct ct_native *native = ct_native_create(p->arena, p->listing, (int)lanes);
+    double *work = CT_NEWN(p->arena, double, lanes *ct_tape_work(tape) + 1),
            *mine = CT_NEWN(p->arena, double, ct_native_work(native) + NGUARD);
     double *const behind = mine + ct_native_work(native);
     for (size_t i = 0; i < NGUARD; i++)
         behind[i] = 1e9 + (double)i;
-    for (size_t i = 0; i < NIN; i++)
+    for (size_t i = 0; i < lanes * NIN; i++)
         input[i] = random_double(r);
-    ct_tape_prepare(tape, input, work);
+    ct_tape_prepare_lanes(tape, (int)lanes, input, work);
     ct_native_prepare(native, input, mine);
     for (int again = 0; again < 2; again++) { // nothing is left behind
-        for (size_t i = 0; i + 1 < NIN; i++)
+        for (size_t i = 0; i < lanes * (NIN - 1); i++)
             input[i] = random_double(r) / 4;
-        ct_tape_eval(tape, input, want, work);
+        ct_tape_eval_lanes(tape, (int)lanes, input, want, work);
         ct_native_eval(native, input, got, mine);
-        for (size_t k = 0; k < p->nout; k++)
+        for (size_t k = 0; k < lanes * p->nout; k++)
             if (memcmp(&want[k], &got[k], sizeof *want)
                 && (want[k] == want[k] || got[k] == got[k]))
-                fail_msg("%zu rows, %zu sweeps, output %zu: %.17g, wanted %.17g", p->nrow,
-                         p->nsweep, k, got[k], want[k]);
+                fail_msg("%zu lanes, %zu rows, %zu sweeps, output %zu: %.17g, wanted %.17g",
+                         lanes, p->nrow, p->nsweep, k / lanes, got[k], want[k]);
     }
     for (size_t i = 0; i < NGUARD; i++) // nothing is written behind the work array
         assert_true(behind[i] == 1e9 + (double)i);
@@ -199,13 +201,14 @@ static void random_sweeps_have_the_bits_of_the_tape(void **unused)
         for (size_t k = 0; k < p->nsweep; k++)
             draw_sweep(&r, p, k);
         finish(p);
-        assert_same_bits(p, &r);
+        for (size_t lanes = 1; lanes <= 4 && ct_native_is_available((int)lanes); lanes += 3)
+            assert_same_bits(p, lanes, &r);
         ct_arena_destroy(p->arena);
     }
     free(p);
 }
 
-// So many steps from a first operand; nothing repeats within a row.
+// So many steps from a first operand, each behind the last one; nothing repeats within a row.
 static void set_steps(struct sweep *s, size_t nstep, struct operand first)
 {
     s->nstep = nstep;
@@ -217,7 +220,22 @@ static void set_steps(struct sweep *s, size_t nstep, struct operand first)
             .b = {.kind = i % 8 ? STEP : INPUT, .at = i % 8 ? i / 2 : i % PER_ROW}};
 }
 
-static struct ct_roll loops_of(const struct program *p, uint32_t lanes)
+// A tree of steps, which wait little for each other, over twice as many operands.
+static void set_tree(struct sweep *s, size_t nleaf, struct operand first)
+{
+    set_steps(s, 2 * nleaf - 1, first);
+    s->nkept = MOST_KEPT;
+    for (size_t i = 0; i < nleaf; i++) {
+        s->step[i].a = (struct operand){first.kind, .at = i % MOST_KEPT};
+        s->step[i].b = (struct operand){.kind = INPUT, .at = i % PER_ROW};
+    }
+    for (size_t i = nleaf; i < s->nstep; i++) {
+        s->step[i].a = (struct operand){.kind = STEP, .at = 2 * (i - nleaf)};
+        s->step[i].b = (struct operand){.kind = STEP, .at = 2 * (i - nleaf) + 1};
+    }
+}
+
+static struct ct_roll loops_of(const struct program *p, uint32_t rows, uint32_t lanes)
 {
     const struct ct_listing *l = p->listing;
     const uint32_t n = (uint32_t)(l->nins - l->nprologue);
@@ -226,7 +244,7 @@ static struct ct_roll loops_of(const struct program *p, uint32_t lanes)
     const bool is_alone[CT_NKIND] = {false};
     for (uint32_t i = 0; i < n; i++)
         order[i] = (uint32_t)l->nprologue + i;
-    const struct ct_roll r = ct_merge_loops(p->arena, l, order, n, 0, is_alone, 0, lanes);
+    const struct ct_roll r = ct_merge_loops(p->arena, l, order, n, 0, is_alone, 0, rows, lanes);
     for (size_t v = 0; v < l->nvalue; v++)
         is_done[v] = l->is_leaf[v] || l->rate[v] != CT_RATE_CALL;
     for (uint32_t i = 0; i < n; i++) { // each once, behind its operands
@@ -246,13 +264,10 @@ static void loops_over_the_same_rows_become_one(void **unused)
     (void)unused;
     struct program *p = malloc(sizeof *p);
     start(p, 1100, 2);
-    set_steps(&p->sweep[0], 24, (struct operand){.kind = SAME});
-    set_steps(&p->sweep[1], 24, (struct operand){.kind = RESULT});
-    p->sweep[0].nkept = MOST_KEPT;
-    for (size_t k = 0; k < MOST_KEPT; k++)
-        p->sweep[1].step[k + 1].b = (struct operand){.kind = RESULT, .at = k};
+    set_tree(&p->sweep[0], 8, (struct operand){.kind = SAME});
+    set_tree(&p->sweep[1], 8, (struct operand){.kind = RESULT});
     finish(p);
-    const struct ct_roll r = loops_of(p, 1);
+    const struct ct_roll r = loops_of(p, 1, 1);
     assert_int_equal(r.nloop, 1);
     assert_true(r.loop[0].count
                 > 1090); // steps of both in one row: hardly anything else is left
@@ -263,7 +278,7 @@ static void loops_over_the_same_rows_become_one(void **unused)
     set_steps(&p->sweep[0], 24, (struct operand){.kind = SAME});
     set_steps(&p->sweep[1], 24, (struct operand){.kind = MIRRORED});
     finish(p);
-    assert_int_equal(loops_of(p, 1).nloop, 2);
+    assert_int_equal(loops_of(p, 1, 1).nloop, 2);
     ct_arena_destroy(p->arena);
     free(p);
 }
@@ -277,7 +292,7 @@ static void many_rows_are_done_in_strips(void **unused)
     set_steps(&p->sweep[0], 40, (struct operand){.kind = SAME});
     p->sweep[0].step[39].b = (struct operand){.kind = OWN};
     finish(p);
-    const struct ct_roll r = loops_of(p, 4);
+    const struct ct_roll r = loops_of(p, 4, 1);
     assert_int_equal(r.nloop, 2);
     assert_true(r.loop[0].is_side_by_side && !r.loop[1].is_side_by_side);
     assert_int_equal(r.loop[0].nslot + r.loop[1].nslot, r.loop[0].period);
@@ -290,12 +305,49 @@ static void many_rows_are_done_in_strips(void **unused)
     free(p);
 }
 
+static uint32_t count_results(const struct ct_loop *loop, enum ct_reach reach)
+{
+    uint32_t n = 0;
+    for (uint32_t i = 0; i < loop->nslot; i++)
+        n += loop->result[i].reach == reach;
+    return n;
+}
+
+// In lanes: what the next row alone reads has one place, what it reads too late for that one a row; outputs are stored where
+// they belong; constants by row are one double for all lanes.
+static void rows_leave_little_in_memory(void **unused)
+{
+    (void)unused;
+    struct program *p = malloc(sizeof *p);
+    start(p, 100, 1);
+    set_steps(&p->sweep[0], 40, (struct operand){.kind = SAME});
+    p->sweep[0].nkept = 3;
+    p->sweep[0].step[1].b = (struct operand){.kind = OWN, .at = 1};
+    p->sweep[0].step[38].b = (struct operand){.kind = OWN, .at = 0};
+    p->sweep[0].step[9].b = (struct operand){.kind = CONSTANT, .at = 1};
+    finish(p);
+    const struct ct_roll r = loops_of(p, 1, 4);
+    assert_int_equal(r.nloop, 1);
+    assert_int_equal(count_results(&r.loop[0], CT_REACH_PLACE), 1);
+    assert_int_equal(count_results(&r.loop[0], CT_REACH_WORK), 1);
+    assert_int_equal(count_results(&r.loop[0], CT_REACH_OUT), 1);
+    uint32_t nnumber = 0;
+    for (uint32_t i = 0; i < 3 * r.loop[0].nslot; i++)
+        nnumber += r.loop[0].operand[i].reach == CT_REACH_NUMBER;
+    assert_true(nnumber > 0);
+    for (size_t i = 0; i < r.ntable; i++)
+        assert_true(r.table[i].is_number);
+    ct_arena_destroy(p->arena);
+    free(p);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(random_sweeps_have_the_bits_of_the_tape),
         cmocka_unit_test(loops_over_the_same_rows_become_one),
         cmocka_unit_test(many_rows_are_done_in_strips),
+        cmocka_unit_test(rows_leave_little_in_memory),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,0 +1,362 @@
+// See bending_plane.h.
+#include "formulate/bending_plane.h"
+#include "expr/quadrature.h"
+#include "formulate/elastic.h"
+#include "formulate/field.h"
+#include "formulate/riders.h"
+#include "numeric/dense.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { POINTS = 8, MOST_ITERATIONS = 200 };
+static const double arrived = 1e-12; // relative change of the first frequency
+
+// ---- numbers along the beam -----------------------------------------------------------------------------
+
+struct lump { // a body that a weld holds to a point of the beam
+    double mass, x;
+};
+
+struct line {
+    struct ct_build *b;
+    const struct ct_flexible *f;
+    int plane; // 0: along y, 1: along z
+    int n,
+        band; // freedoms of this plane; the most by which the numbers of two that meet differ
+    int *number;        // by freedom, -1: fixed or of another kind
+    double *K, *M;      // lower triangles, A(i, j) at i - j + (band + 1) j
+    double *Kg[2];      // with P1, P2
+    double *carried[2]; // int shape m dx, int shape m x dx
+    double *
+        beyond; // by element and one more: int m x and int m from its start to the end of the beam  (2 x)
+    double *value; // of symbols
+    struct lump *lump;
+    size_t nlump;
+    double xi[POINTS], weight[POINTS];
+};
+
+static double number(const struct line *s, ct_ex e)
+{
+    return ct_ex_value(s->b->x, e, s->value);
+}
+
+static double profile(const struct line *s, ct_ex g, int e, double xi)
+{
+    const struct ct_span *span = &s->f->element[e].span;
+    const ct_ex x = s->f->beam->x;
+    if (ct_ex_kinds(s->b->x, g) & 1u << CT_SYM_LOCAL)
+        s->value[ct_ex_node(s->b->x, x)->a]
+            = number(s, span->start) + xi * number(s, span->length);
+    return number(s, g);
+}
+
+static void list_lumps(struct line *s)
+{
+    const struct ct_model *m = s->b->model;
+    const double *place = ct_riders_find(s->b, s->f);
+    s->lump = CT_NEWN(s->b->ctx->scratch, struct lump, m->nbody);
+    for (size_t i = 1; i < m->nbody; i++)
+        if (!isnan(place[i]))
+            s->lump[s->nlump++] = (struct lump){
+                .x = place[i], .mass = ct_ex_value(s->b->x, m->body[i].mass, s->b->value)};
+}
+
+// P (2, out) = int m x and int m over element e from xi on.
+static void mass_within(const struct line *s, int e, double xi, double P[2])
+{
+    const double start = number(s, s->f->element[e].span.start),
+                 h = number(s, s->f->element[e].span.length);
+    P[0] = P[1] = 0;
+    for (int k = 0; k < POINTS; k++) {
+        const double at = xi + (1 - xi) * s->xi[k];
+        const double dm
+            = s->weight[k] * (1 - xi) * h * profile(s, s->f->beam->mass_per_length, e, at);
+        P[0] += dm * (start + at * h);
+        P[1] += dm;
+    }
+}
+
+static void sum_masses(struct line *s)
+{
+    const int n = s->f->beam->nelement;
+    s->beyond = CT_NEWN(s->b->ctx->scratch, double, 2 * (n + 1));
+    for (int e = n; e-- > 0;) {
+        double P[2];
+        mass_within(s, e, 0, P);
+        for (int i = 0; i < 2; i++)
+            s->beyond[2 * e + i] = s->beyond[2 * e + 2 + i] + P[i];
+    }
+}
+
+// int_x^L of m x and of m from a place xi of element e, welded masses included.
+static void mass_beyond(const struct line *s, int e, double xi, double P[2])
+{
+    const double here
+        = number(s, s->f->element[e].span.start) + xi * number(s, s->f->element[e].span.length);
+    mass_within(s, e, xi, P);
+    for (int i = 0; i < 2; i++)
+        P[i] += s->beyond[2 * e + 2 + i];
+    for (size_t j = 0; j < s->nlump; j++)
+        if (s->lump[j].x > here) {
+            P[0] += s->lump[j].mass * s->lump[j].x;
+            P[1] += s->lump[j].mass;
+        }
+}
+
+// ---- matrices of a plane -----------------------------------------------------------------------------------
+
+static void add(struct line *s, double *A, int e, int j, int k, double v)
+{
+    const int first = s->plane ? 6 : 2;
+    const int p = s->f->element[e].freedom[first + j], q = s->f->element[e].freedom[first + k];
+    if (p < 0 || q < 0 || s->number[p] < s->number[q])
+        return;
+    const bool opposed = s->plane && (j % 2) != (k % 2); // dw/dx = -ry
+    A[s->number[p] - s->number[q] + (s->band + 1) * s->number[q]] += opposed ? -v : v;
+}
+
+// A mass at x in element e, where shapes have these values, moves with the base.
+static void carry(struct line *s, int e, double mass, double x, const double place[4])
+{
+    for (int j = 0; j < 4; j++) {
+        const int p = s->f->element[e].freedom[(s->plane ? 6 : 2) + j];
+        if (p < 0)
+            continue;
+        const double share = (s->plane && j % 2 ? -mass : mass) * place[j]; // dw/dx = -ry
+        s->carried[0][s->number[p]] += share;
+        s->carried[1][s->number[p]] += share * x;
+    }
+}
+
+// Bending and shear, at the points that the beam itself takes: one in the middle keeps linear shapes from locking.
+static void add_stiffness(struct line *s, int e)
+{
+    const struct ct_beam *beam = s->f->beam;
+    const double h = number(s, s->f->element[e].span.length);
+    const ct_ex EI = ct_ex_mul(s->b->x, beam->E, s->plane ? beam->Iy : beam->Iz);
+    const ct_ex GA = ct_flexible_shear(s->b, s->f, s->plane);
+    const bool in_middle = ct_flexible_stiffness_rule(beam) == CT_RULE_MIDDLE;
+    for (int i = 0; i < (in_middle ? 1 : POINTS); i++) {
+        const double xi = in_middle ? 0.5 : s->xi[i], w = (in_middle ? 1 : s->weight[i]) * h,
+                     stiffness = w * profile(s, EI, e, xi), shear = w * profile(s, GA, e, xi);
+        double bend[4], lean[4];
+        for (int j = 0; j < 4; j++) {
+            const struct ct_shape d = ct_shape_slope(&s->f->shape.rotation[j]);
+            bend[j] = ct_shape_value(&d, xi, h);
+            lean[j] = ct_shape_value(&s->f->shape.slope[j], xi, h)
+                    - ct_shape_value(&s->f->shape.rotation[j], xi, h);
+        }
+        for (int j = 0; j < 4; j++)
+            for (int k = 0; k < 4; k++)
+                add(s, s->K, e, j, k,
+                    stiffness * bend[j] * bend[k] + shear * lean[j] * lean[k]);
+    }
+}
+
+static void add_element(struct line *s, int e)
+{
+    const struct ct_beam *beam = s->f->beam;
+    const double h = number(s, s->f->element[e].span.length);
+    add_stiffness(s, e);
+    for (int i = 0; i < POINTS; i++) {
+        const double xi = s->xi[i], w = s->weight[i] * h,
+                     m = profile(s, beam->mass_per_length, e, xi);
+        double place[4], slope[4], P[2];
+        for (int j = 0; j < 4; j++) {
+            place[j] = ct_shape_value(&s->f->shape.place[j], xi, h);
+            slope[j] = ct_shape_value(&s->f->shape.slope[j], xi, h);
+        }
+        mass_beyond(s, e, xi, P);
+        carry(s, e, w * m, number(s, s->f->element[e].span.start) + xi * h, place);
+        for (int j = 0; j < 4; j++)
+            for (int k = 0; k < 4; k++) {
+                add(s, s->M, e, j, k, w * m * place[j] * place[k]);
+                add(s, s->Kg[0], e, j, k, w * P[0] * slope[j] * slope[k]);
+                add(s, s->Kg[1], e, j, k, w * P[1] * slope[j] * slope[k]);
+            }
+    }
+}
+
+// Welded masses move with the shape at their point.
+static void add_lumps(struct line *s)
+{
+    int e = 0;
+    for (size_t i = 0; i < s->nlump; i++) {
+        const double x = s->lump[i].x;
+        for (e = 0; e + 1 < s->f->beam->nelement && x > number(s, s->f->beam->end[e]);)
+            e++;
+        const double h = number(s, s->f->element[e].span.length),
+                     xi = (x - number(s, s->f->element[e].span.start)) / h;
+        double place[4];
+        for (int j = 0; j < 4; j++)
+            place[j] = ct_shape_value(&s->f->shape.place[j], xi, h);
+        carry(s, e, s->lump[i].mass, x, place);
+        for (int j = 0; j < 4; j++)
+            for (int k = 0; k < 4; k++)
+                add(s, s->M, e, j, k, s->lump[i].mass * place[j] * place[k]);
+    }
+}
+
+static void number_freedoms(struct line *s)
+{
+    const int nfreedom = CT_NODE_FREEDOM * (s->f->beam->nelement + 1), first = s->plane ? 6 : 2;
+    s->number = CT_NEWN(s->b->ctx->scratch, int, nfreedom);
+    for (int i = 0; i < nfreedom; i++)
+        s->number[i] = -1;
+    for (int e = 0; e < s->f->beam->nelement; e++)
+        for (int j = 0; j < 4; j++) {
+            const int i = s->f->element[e].freedom[first + j];
+            if (i >= 0 && s->number[i] < 0)
+                s->number[i] = s->n++;
+        }
+    for (int e = 0; e < s->f->beam->nelement; e++)
+        for (int j = 0; j < 16; j++) {
+            const int p = s->f->element[e].freedom[first + j % 4],
+                      q = s->f->element[e].freedom[first + j / 4];
+            if (p >= 0 && q >= 0 && s->number[p] - s->number[q] > s->band)
+                s->band = s->number[p] - s->number[q];
+        }
+}
+
+// ---- first bending shape --------------------------------------------------------------------------------------
+
+// y (n, out) = A v, and v' A v
+static double apply(const struct line *s, double *y, const double *A, const double *v)
+{
+    double sum = 0;
+    memset(y, 0, (size_t)s->n * sizeof *y);
+    for (int j = 0; j < s->n; j++)
+        for (int i = j; i < s->n && i <= j + s->band; i++) {
+            const double a = A[i - j + (s->band + 1) * j];
+            y[i] += a * v[j];
+            y[j] += i > j ? a * v[i] : 0;
+        }
+    for (int i = 0; i < s->n; i++)
+        sum += v[i] * y[i];
+    return sum;
+}
+
+// Inverse iteration: K v = M v; returns omega^2, 0 if it does not settle. y: n
+static double first_shape(struct line *s, double *v, double *y)
+{
+    const int n = s->n, size = (s->band + 1) * n;
+    double *L = CT_NEWN(s->b->ctx->scratch, double, size), last = 0;
+    memcpy(L, s->K, (size_t)size * sizeof *L);
+    if (!ct_band_cholesky(L, n, s->band))
+        return 0;
+    for (int i = 0; i < n; i++)
+        v[i] = 1;
+    for (int k = 0; k < MOST_ITERATIONS; k++) {
+        apply(s, y, s->M, v);
+        memcpy(v, y, (size_t)n * sizeof *v);
+        ct_band_cholesky_solve(v, L, n, s->band);
+        const double moved = sqrt(apply(s, y, s->M, v));
+        if (!(moved > 0))
+            return 0;
+        for (int i = 0; i < n; i++)
+            v[i] /= moved;
+        const double omega2 = apply(s, y, s->K, v);
+        if (fabs(omega2 - last) <= arrived * omega2)
+            return omega2;
+        last = omega2;
+    }
+    return 0;
+}
+
+// Matrices of the plane; false where it does not bend.
+static bool build_plane(struct line *s)
+{
+    struct ct_build *b = s->b;
+    struct ct_arena *a = b->ctx->scratch;
+    ct_gauss(POINTS, s->xi, s->weight);
+    number_freedoms(s);
+    if (!s->n)
+        return false;
+    double **const matrix[] = {&s->K, &s->M, &s->Kg[0], &s->Kg[1]};
+    for (size_t i = 0; i < COUNT(matrix); i++)
+        *matrix[i] = CT_NEWN(a, double, (s->band + 1) * s->n);
+    for (int i = 0; i < 2; i++)
+        s->carried[i] = CT_NEWN(a, double, s->n);
+    s->value = CT_NEWN(a, double, b->model->x->nsym + 1);
+    memcpy(s->value, b->value, b->model->x->nsym * sizeof *s->value);
+    list_lumps(s);
+    sum_masses(s);
+    for (int e = 0; e < s->f->beam->nelement; e++)
+        add_element(s, e);
+    add_lumps(s);
+    return true;
+}
+
+// Freedom i of the plane, two at each node, in its elements' numbering.
+static int place_of(int i, int plane, int *element)
+{
+    *element = i < 2 ? 0 : i / 2 - 1;
+    return (plane ? 6 : 2) + (i < 2 ? i : 2 + i % 2);
+}
+
+// x and x' of the state: phi' M on what the beam does. y: M phi
+static void project(struct ct_build *b, const struct line *s, const double *y, ct_ex state[2])
+{
+    struct ct_exs *x = b->x;
+    for (int i = 0; i < 2 * (s->f->beam->nelement + 1); i++) {
+        int e;
+        const int j = place_of(i, s->plane, &e), p = s->f->element[e].freedom[j];
+        if (p < 0)
+            continue;
+        const double share = y[s->number[p]];
+        state[0] = ct_ex_add(x, state[0], ct_ex_scale(x, share, s->f->element[e].value[j]));
+        state[1] = ct_ex_add(x, state[1], ct_ex_scale(x, share, s->f->element[e].rate[j]));
+    }
+}
+
+// x and x' of the start that the model gives.
+static void project_start(struct ct_build *b, const struct line *s, const double *y,
+                          double start[2])
+{
+    const struct ct_beam *beam = s->f->beam;
+    for (int k = 0; k < beam->nstart; k++)
+        for (int i = 0; i < 2 * (beam->nelement + 1); i++) {
+            int e;
+            const int j = place_of(i, s->plane, &e), p = s->f->element[e].freedom[j];
+            if (p >= 0)
+                start[beam->start[k].is_rate]
+                    += y[s->number[p]]
+                     * number(s, ct_field_freedom(b, s->f, beam->start[k].kind,
+                                                  beam->start[k].value, p / CT_NODE_FREEDOM,
+                                                  p % CT_NODE_FREEDOM));
+        }
+}
+
+static double dot(const double *x, const double *y, int n)
+{
+    double sum = 0;
+    for (int i = 0; i < n; i++)
+        sum += x[i] * y[i];
+    return sum;
+}
+
+bool ct_bending_plane_find(struct ct_build *b, const struct ct_flexible *f, int plane,
+                           struct ct_bending_plane *out)
+{
+    struct line s = {.b = b, .f = f, .plane = plane};
+    if (!build_plane(&s))
+        return false;
+    double *const v = CT_NEWN(b->ctx->scratch, double, s.n), *const y = CT_NEWN(b->ctx->scratch,
+                                                                                double, s.n);
+    const double omega2 = first_shape(&s, v, y), elastic = apply(&s, y, s.K, v);
+    if (!(omega2 > 0))
+        return false;
+    *out = (struct ct_bending_plane){
+        .is_z = plane,
+        .swing = {.omega2 = omega2,
+                  .damping = number(&s, f->beam->damping_mass)
+                           + number(&s, f->beam->damping_stiffness) * omega2,
+                  .turning = apply(&s, y, s.Kg[0], v) / elastic,
+                  .axial = apply(&s, y, s.Kg[1], v) / elastic,
+                  .mass = {dot(s.carried[0], v, s.n), dot(s.carried[1], v, s.n)}}};
+    apply(&s, y, s.M, v);
+    project(b, &s, y, out->state);
+    project_start(b, &s, y, out->start);
+    return true;
+}

@@ -1,0 +1,111 @@
+// See trees.h: which edges are branches by rule, and which come first.
+#include "formulate/trees.h"
+
+#include "base/sort.h"
+#include "formulate/small.h"
+#include "graph/reach.h"
+
+#include <string.h>
+
+// Distance of each node from ground over edges that can be branches: in edges, or in rotational freedoms.
+static int *node_depths(struct ct_build *b, bool by_rotation)
+{
+    int *depth = CT_NEWN(b->arena, int, b->nnode), *length = CT_NEWN(b->arena, int, b->nedge);
+    bool *usable = CT_NEWN(b->arena, bool, b->nedge);
+    for (size_t e = 0; e < b->nedge; e++) {
+        usable[e] = b->edge[e].kind != CT_EDGE_BODY && !b->edge[e].never_branch;
+        length[e] = by_rotation ? b->edge[e].weight_r : 1;
+    }
+    ct_graph_distances(b->arena, &b->graph, usable, length, (int)b->nnode * CT_MAX_COORD,
+                       depth);
+    return depth;
+}
+
+// A coordinate that carries an effort, a spring or a driver is best a branch of its own.
+static bool is_active(const struct ct_instance *joint)
+{
+    static const char *const keys[] = {"stiffness", "damping", "effort", "motion"};
+    for (size_t i = 0; i < COUNT(keys) && joint->cls->motion; i++)
+        if (ct_instance_value(joint, keys[i])->given)
+            return true;
+    return false;
+}
+
+// Order among equal weights. In a plane the angle of a body weighs as much as that of a joint and gives
+// shorter expressions; a passive joint on a body that turns yields to it.  (2.3)
+static int tie_rank(const struct ct_build *b, size_t i, const int *depth, const int *turned,
+                    enum ct_tree_choice choice)
+{
+    const struct ct_edge_info *e = &b->edge[i];
+    const int tail = b->wiring[i].tail, head = b->wiring[i].head, last = 2 * (int)b->nedge;
+    if (e->kind == CT_EDGE_ARM)
+        return -1;
+    if (e->kind == CT_EDGE_BODY)
+        return b->is_planar && choice == CT_TREE_AUTO ? 1 : last;
+    const bool is_first_turn = turned[tail] == 0 || turned[head] == 0;
+    if (is_first_turn || (e->kind == CT_EDGE_JOINT && is_active(e->self)))
+        return 0;
+    return 2 + (depth[tail] < depth[head] ? depth[tail] : depth[head]);
+}
+
+static int order_names(const void *build, const void *left, const void *right)
+{
+    const struct ct_build *b = build;
+    const int *i = left, *k = right;
+    return strcmp(b->edge[*i].name, b->edge[*k].name);
+}
+
+// Equal ranks in the order of names: the trees of assembly, and with them the assembly found where there
+// are several, do not depend on the order of the file.
+static void rank_by_name(const struct ct_build *b, int *rank)
+{
+    const int n = (int)b->nedge;
+    int *sorted = CT_NEWN(b->arena, int, n + 1), place = 0;
+    for (int i = 0; i < n; i++)
+        sorted[i] = i;
+    ct_sort(b->arena, sorted, b->nedge, sizeof *sorted, order_names, b);
+    for (int k = 0; k < n; k++) { // place: how many names come before
+        if (k && order_names(b, &sorted[k - 1], &sorted[k]) != 0)
+            place = k;
+        rank[sorted[k]] = n * (rank[sorted[k]] + 1) + place;
+    }
+}
+
+struct ct_pair_rules ct_pair_rules_make(struct ct_build *b,
+                                        const struct ct_formulate_options *o)
+{
+    const enum ct_tree_choice choice = o->tree;
+    const size_t n = b->nedge;
+    struct ct_pair_rules r = {.weight_t = CT_NEWN(b->arena, int, n),
+                              .weight_r = CT_NEWN(b->arena, int, n),
+                              .rank = CT_NEWN(b->arena, int, n),
+                              .forced_t = CT_NEWN(b->arena, bool, n),
+                              .forced_r = CT_NEWN(b->arena, bool, n),
+                              .banned_t = CT_NEWN(b->arena, bool, n),
+                              .banned_r = CT_NEWN(b->arena, bool, n),
+                              .tied = CT_NEWN(b->arena, bool, n)};
+    const int *depth = node_depths(b, false), *turned = node_depths(b, true);
+    for (size_t i = 0; i < n; i++) {
+        const struct ct_edge_info *e = &b->edge[i];
+        const bool is_body = e->kind == CT_EDGE_BODY;
+        const bool is_particle = is_body && b->model->body[e->index].is_particle;
+        const bool dear = choice == CT_TREE_ABSOLUTE ? !is_body : is_body;
+        const int extra = choice != CT_TREE_AUTO && dear && !e->must_be_branch ? 100 : 0;
+        r.weight_t[i] = e->weight_t + extra;
+        r.weight_r[i] = e->weight_r + extra;
+        if (o->first && e->kind == CT_EDGE_JOINT && o->first[e->index])
+            r.weight_t[i] = r.weight_r[i] = -1;
+        r.rank[i] = tie_rank(b, i, depth, turned, choice);
+        const bool is_small = e->kind == CT_EDGE_JOINT && ct_small_joint(b, e->index);
+        r.forced_t[i] = e->must_be_branch || is_small;
+        r.forced_r[i] = e->must_be_branch || is_particle || (is_small && e->has_rotation);
+        r.banned_t[i] = e->never_branch;
+        r.banned_r[i] = e->never_branch || !e->has_rotation;
+        r.tied[i] = e->must_be_branch;
+        if (is_particle)
+            r.weight_r[i] = 0;
+    }
+    if (choice == CT_TREE_JOINTS)
+        rank_by_name(b, r.rank);
+    return r;
+}

@@ -1,0 +1,82 @@
+// ct_integrate from inside: what its files share.
+//
+//     driver.c           steps and events
+//     driver_plan.c      how long the next step is to be
+//     driver_samples.c   samples on the way
+#ifndef CT_INTEGRATE_DRIVER_H
+#define CT_INTEGRATE_DRIVER_H
+
+#include "integrate/control.h"
+#include "integrate/crossing.h"
+#include "integrate/repeat.h"
+#include "integrate/striding.h"
+#include "integrate/watch.h"
+
+struct ct_driver {
+    struct ct_ctx *ctx;
+    const struct ct_method *method;
+    const struct ct_problem *p;
+    const struct ct_integrate_options *o;
+    struct ct_integrate_stats *stats;
+    struct ct_tolerance tolerance;
+    struct ct_repeat repeat;
+    double *y0; // where the run began
+    struct ct_watch watch;
+    double t;    // time of y and dy
+    double stop; // where steps must end next, a time event or not; before t: to be found
+    bool is_stop_time;
+    struct ct_control control;
+    struct ct_pace pace;
+    bool is_told;       // that it takes long
+    double *y, *dy;     // (ny) each, as all that follow
+    double *y1, *dy1;   // end of the step as the method gives it
+    double *end, *dend; // the same, projected: y1, dy1 themselves where that changes nothing
+    double *moved, *dmoved; // where end, dend are others
+    double *point;          // a state to spare
+    void *work;             // the method's own
+    void *crossing_work;    // of ct_crossing; NULL: there are no singular positions to cross
+    double singular_in;     // time to the next one, from t
+    double reach;           // crossing it is to begin this long before
+    struct ct_striding *striding; // NULL: no crossings by steps of the method itself
+    bool has_failed_stride;       // across the next position
+    int failed_crossings;         // of it
+    bool is_open;                 // the last step met everything but the constraints
+    size_t sample;                // the next one to give
+};
+
+// A step as planned: to t1, which is t + h but for rounding, or the end of the run before that.
+struct ct_stride {
+    const struct ct_method *method;
+    void *work; // the method's
+    double h, t1;
+    bool is_landing;      // t1 is the stop it was planned for
+    bool is_event;        // a state event ends it
+    bool is_interpolated; // the method is ready to interpolate it
+    bool is_striding;     // across a singular position
+    double error;
+};
+
+/// Largest step allowed.
+double ct_driver_step_limit(const struct ct_driver *r);
+/// Samples this close before an event count as on it: times of samples are rounded, too.
+double ct_driver_event_margin(bool is_event, double t, double h);
+/// Where steps must end next; *is_time tells that a time event is there.
+double ct_driver_next_stop(const struct ct_driver *r, bool *is_time);
+/// s (out): the next step, towards the stop.
+void ct_driver_plan(const struct ct_driver *r, double stop, bool is_time, struct ct_stride *s);
+bool ct_driver_is_too_small(const struct ct_driver *r, const struct ct_stride *s);
+/// Time to the next singular position, and where to begin to cross it.
+void ct_driver_look_ahead(struct ct_driver *r);
+void ct_driver_adapt_after_refusal(struct ct_driver *r, double h, double error);
+void ct_driver_adapt_after_crossing(struct ct_driver *r, const struct ct_stride *s);
+void ct_driver_adapt_after_failed_crossing(struct ct_driver *r, const struct ct_stride *s,
+                                           double error);
+
+/// Is t in the gap of a crossing, where only its interpolant tells the state?
+bool ct_driver_is_in_gap(const struct ct_driver *r, const struct ct_stride *s, double t);
+/// Samples before `end`, from the interpolant of the step; in the gap of a crossing also the one on its end.
+bool ct_driver_give_samples_before(struct ct_driver *r, const struct ct_stride *s, double end);
+/// Those due at the state of now.
+bool ct_driver_give_samples_here(struct ct_driver *r);
+
+#endif

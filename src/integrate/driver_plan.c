@@ -1,0 +1,179 @@
+// See driver.h: how long the next step is to be.
+#include "integrate/driver.h"
+
+#include <assert.h>
+#include <math.h>
+
+// What a crossing that failed shrinks its reach by aims at this part of what its error would allow.
+static const double safety = 0.9;
+
+// A step across a singular position that fails is tried again from nearer, after so many times not any more: then
+// the position is not singular but only nearly so.
+static const double nearer = 0.5;
+static const int most_crossings = 6;
+// This much further away than where it should begin, a crossing may begin at once; after one that failed only where
+// a step to there has ended.
+static const double early = 1.3, on_time = 1.02;
+// The end of a run is reached by a crossing, too, when it is this part of its reach before the position.
+static const double beside = 0.5;
+double ct_driver_step_limit(const struct ct_driver *r)
+{
+    const double run = r->o->t1 - r->o->t0;
+    const double limit = r->p->nroot ? ct_watch_longest_step(run) : run;
+    return r->p->longest_step ? ct_smaller(limit, r->p->longest_step(r->p->user)) : limit;
+}
+
+double ct_driver_event_margin(bool is_event, double t, double h)
+{
+    return is_event ? ct_watch_resolution(t, h) : 0;
+}
+
+double ct_driver_next_stop(const struct ct_driver *r, bool *is_time)
+{
+    double stop = r->o->t1;
+    *is_time = false;
+    if (r->p->next_time_event) {
+        const double event = r->p->next_time_event(r->p->user, r->t);
+        assert(!(event <= r->t));
+        if (event <= stop) {
+            stop = event;
+            *is_time = true;
+        }
+    }
+    const bool is_on_sample = r->o->step > 0 && r->sample < r->o->nsample;
+    if (is_on_sample
+        && r->o->sample[r->sample] < stop - ct_driver_event_margin(*is_time, stop, 0)) {
+        stop = r->o->sample[r->sample];
+        *is_time = false;
+    }
+    return stop;
+}
+
+// The fewest even steps up to the stop that are not longer than the one asked for.
+static double fit_fixed(double rest, double step)
+{
+    // a stop that is a whole number of steps away but for its rounding must not cost one more
+    const double rounding = 1e-9;
+    return rest / fmax(1, ceil(rest / step - rounding));
+}
+
+// The step across a singular position, centred on it. Beyond the end of the run f is the same function, beyond a
+// time event it is not.
+static void plan_crossing(const struct ct_driver *r, double stop, bool is_time,
+                          struct ct_stride *s)
+{
+    const double rest = stop - r->t, whole = 2 * r->singular_in;
+    s->method = &ct_crossing;
+    s->work = r->crossing_work;
+    s->h = is_time ? fmin(whole, rest) : whole;
+    s->is_landing = s->h >= rest;
+    s->t1 = s->is_landing ? stop : r->t + s->h;
+}
+
+// Is a singular position ahead that is to be crossed?
+static bool has_crossing(const struct ct_driver *r)
+{
+    return r->singular_in < INFINITY && r->failed_crossings < most_crossings;
+}
+
+// The length of the step that strides across the next singular position from here, or 0; *wanted becomes that of a step to
+// where it may begin. False if it is to be crossed otherwise.
+static bool plan_striding(const struct ct_driver *r, double rest, double *wanted,
+                          double *length)
+{
+    *length = 0;
+    if (!r->striding || r->has_failed_stride || !has_crossing(r) || !(r->reach < INFINITY))
+        return false;
+    const double step = ct_striding_approach(r->striding, r->singular_in, r->reach, *wanted);
+    if (!(ct_striding_length(r->striding, r->singular_in) < rest) || isinf(step))
+        return false;
+    if (step == 0)
+        *length = ct_striding_length(r->striding, r->singular_in);
+    else
+        *wanted = step;
+    return true;
+}
+
+// s (out): member by member, because steps are short against the time that a copy of it waits for its parts.
+void ct_driver_plan(const struct ct_driver *r, double stop, bool is_time, struct ct_stride *s)
+{
+    const double rest = stop - r->t;
+    double wanted = ct_smaller(r->control.h, ct_driver_step_limit(r)), length;
+    const double reach = is_time ? ct_smaller(r->reach, rest - r->singular_in) : r->reach;
+    const bool is_strideable = plan_striding(r, rest, &wanted, &length);
+    s->method = r->method;
+    s->work = r->work;
+    s->is_striding = length > 0;
+    s->is_landing = s->is_event = s->is_interpolated = false;
+    s->error = 0;
+    if (s->is_striding) {
+        s->h = length;
+        s->t1 = r->t + length;
+        return;
+    }
+    // the run may end before the position, but beside it
+    if (!is_strideable && has_crossing(r) && reach > 0
+        && r->singular_in - beside * reach < rest) {
+        if (r->singular_in <= (r->failed_crossings ? on_time : early) * reach) {
+            plan_crossing(r, stop, is_time, s);
+            return;
+        }
+        wanted = ct_control_fit(r->singular_in - reach, wanted);
+    }
+    s->h = r->o->step > 0 ? fit_fixed(rest, r->o->step) : ct_control_fit(rest, wanted);
+    s->is_landing = s->h >= rest;
+    s->t1 = s->is_landing ? stop : r->t + s->h;
+}
+
+bool ct_driver_is_too_small(const struct ct_driver *r, const struct ct_stride *s)
+{
+    return !s->is_landing && ct_control_is_lost(s->h, r->t, r->o->t1 - r->o->t0);
+}
+
+void ct_driver_adapt_after_refusal(struct ct_driver *r, double h, double error)
+{
+    r->stats->rejected_steps++;
+    r->stats->inaccurate_steps += error > 1;
+    ct_control_refuse(&r->control, r->method, h, error);
+}
+
+void ct_driver_look_ahead(struct ct_driver *r)
+{
+    if (!r->crossing_work)
+        return;
+    double reach;
+    const double before = r->singular_in;
+    r->singular_in = r->p->singular_in(r->p->user, &reach);
+    if (!(r->singular_in < INFINITY) || r->singular_in > 2 * before) { // none, or another one
+        r->reach = INFINITY;
+        r->failed_crossings = 0;
+        r->has_failed_stride = false;
+    }
+    if (r->singular_in < INFINITY)
+        r->reach = fmin(r->reach, reach);
+}
+
+void ct_driver_adapt_after_crossing(struct ct_driver *r, const struct ct_stride *s)
+{
+    const struct ct_stepper_span span = {s->method, r->p, r->t, s->h, r->y, r->y1, s->work};
+    if (r->p->crossed)
+        r->p->crossed(r->p->user, &span, s->t1);
+    r->singular_in = r->reach = INFINITY;
+    r->failed_crossings = 0;
+    r->has_failed_stride = false;
+    r->control.was_refused = false;
+}
+
+void ct_driver_adapt_after_failed_crossing(struct ct_driver *r, const struct ct_stride *s,
+                                           double error)
+{
+    const double power = -1.0 / (ct_crossing.error_order + 1);
+    r->stats->rejected_steps++;
+    r->stats->inaccurate_steps += error > 1;
+    if (s->is_striding) {
+        r->has_failed_stride = true;
+        return;
+    }
+    r->reach = r->singular_in * (error > 1 ? fmax(nearer, safety * pow(error, power)) : nearer);
+    r->failed_crossings = isinf(error) ? most_crossings : r->failed_crossings + 1;
+}

@@ -1,0 +1,100 @@
+// Beams watched during a run: slopes, indicators of linear ones, and the error that these will have. See run.h.
+//
+// Indicators and slopes are looked at with each sample; what foretells the error follows the base from step to step.
+#include "formulate/validity.h"
+#include "solve/run.h"
+
+static const double two_pi = 6.283185307179586;
+static const double glance = 1.0 / 32; // of a period: what is less apart is passed over
+
+void ct_slope_watch(struct ct_slope_report *report, const struct ct_machine *m, double t)
+{
+    const double *square = m->validity.out + m->e->nvalidity;
+    for (size_t i = 0; i < m->e->nbend; i++) {
+        for (size_t k = 0; k < m->e->bend[i].n; k++)
+            report[i].largest = fmax(report[i].largest, sqrt(*square++));
+        if (report[i].largest > CT_SLOPE_LIMIT && report[i].passed_at < 0)
+            report[i].passed_at = t;
+    }
+}
+
+// Averaged over a period of the beam: what rings faster than it can follow does not count.
+static void watch_indicator(const struct ct_run *r, size_t i, double t)
+{
+    struct ct_validity_report *v = &r->report->validity[i];
+    const double period = two_pi / r->e->validity[i].omega;
+    const double share = r->ngiven ? -expm1(-(t - r->t_sample) / period) : 1;
+    v->mean += share * (r->m->validity.out[i] - v->mean);
+    v->largest = fmax(v->largest, fabs(v->mean));
+    if (v->largest > CT_VALIDITY_LIMIT && v->left_at < 0)
+        v->left_at = t;
+}
+
+void ct_run_watch_sample(struct ct_run *r, double t)
+{
+    if (!r->m->validity.nout)
+        return;
+    ct_program_run(&r->m->validity, r->m->input);
+    ct_slope_watch(r->report->bend, r->m, t);
+    for (size_t i = 0; i < r->e->nvalidity; i++)
+        watch_indicator(r, i, t);
+    r->t_sample = t;
+}
+
+// ---- the error foretold -------------------------------------------------------------------------------------
+
+void ct_run_watch_start(struct ct_run *r, double t, const double *y)
+{
+    struct ct_run_report *report = r->report;
+    const struct ct_equations *e = r->e;
+    report->validity = CT_NEWN(r->arena, struct ct_validity_report, e->nvalidity + 1);
+    report->bend = CT_NEWN(r->arena, struct ct_slope_report, e->nbend + 1);
+    for (size_t i = 0; i < e->nbend; i++)
+        report->bend[i].passed_at = -1;
+    for (size_t i = 0; i < e->nvalidity; i++)
+        report->validity[i].left_at = report->validity[i].off_since = -1;
+    ct_run_watch_base(r, t, y, CT_WATCH_START);
+}
+
+// out (9 + 4) of the program `carried`: the base's motion, then x, x' by plane.
+static void follow(const struct ct_validity *v, struct ct_validity_report *report, double t,
+                   const double *out, enum ct_watch_when how)
+{
+    struct ct_swings *s = &report->swings;
+    if (how == CT_WATCH_KEPT) {
+        ct_swings_regrip(s, out);
+        return;
+    }
+    if (how == CT_WATCH_STEP && t - s->t < glance * two_pi / v->omega)
+        return;
+    if (how == CT_WATCH_START)
+        ct_validity_begin(v, out + 9, s);
+    ct_swings_follow(s, t, out);
+    if (how == CT_WATCH_START && v->settles)
+        ct_swings_settle(s);
+    const bool is_off = ct_swings_error(s) > CT_VALIDITY_LIMIT;
+    if (!is_off)
+        report->off_since = -1;
+    else if (report->off_since < 0)
+        report->off_since = t;
+}
+
+void ct_run_watch_base(struct ct_run *r, double t, const double *y, enum ct_watch_when how)
+{
+    if (!r->m->carried.nout)
+        return;
+    ct_machine_set(r->m, ct_run_before(r, t), y);
+    ct_program_run(&r->m->carried, r->m->input);
+    const double *out = r->m->carried.out;
+    for (size_t i = 0; i < r->e->nvalidity; i++)
+        if (r->e->validity[i].foretells) {
+            follow(&r->e->validity[i], &r->report->validity[i], t, out, how);
+            out += 9 + 2 * r->e->validity[i].nplane;
+        }
+}
+
+void ct_run_watch_jump(struct ct_run *r, double t, const double *y)
+{
+    ct_run_watch_base(r, t, y,
+                      r->o->rate_jumps == CT_RATE_CONTINUOUS ? CT_WATCH_KEPT : CT_WATCH_EVENT);
+}

@@ -1,0 +1,214 @@
+// See embedding.h: rows and columns.
+#include "solve/embedding.h"
+
+#include "numeric/dense.h"
+
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+// Rows of J, the best first, into s->row; the number of independent ones.
+static int order_rows(struct ct_embed *s)
+{
+    const int n = (int)s->m->nu, m = (int)s->m->nrow;
+    for (int i = 0; i < m; i++) // A = J', n x m
+        for (int j = 0; j < n; j++)
+            s->A[j + n * i] = *ct_embed_J(s, i, j);
+    return ct_qr_pivot(s->A, s->row, s->b, n, m, n, ct_embed_rank_tolerance, s->work);
+}
+
+// Columns count by what their speeds move, w (nu, out), where inertias are so different that a heavy dependent speed would
+// leave rounding of its forces, eps M_heavy, in the equations of light ones; else all alike. Elastic coordinates are always
+// light, and do not ask for it.
+static void weigh_columns(struct ct_embed *s, double *w)
+{
+    const double apart = 1e6; // leaves light ones ten digits
+    const size_t n = s->m->nu;
+    double least = INFINITY, most = 0;
+    for (size_t j = 0; j < n; j++) {
+        const double inertia = s->m->e->u[j].beam > 0 ? 0 : s->m->M[j + n * j];
+        least = inertia > 0 ? fmin(least, inertia) : least;
+        most = fmax(most, inertia);
+        w[j] = 1;
+    }
+    for (size_t j = 0; j < n && most > apart * least; j++)
+        w[j] = 1 / sqrt(fmax(s->m->M[j + n * j], least));
+}
+
+static void choose_columns(struct ct_embed *s)
+{
+    const int n = (int)s->m->nu, r = s->rank;
+    ct_machine_motion(s->m);
+    weigh_columns(s, s->d);
+    for (int i = 0; i < r; i++)
+        for (int j = 0; j < n; j++)
+            s->A[i + r * j] = s->d[j] * *ct_embed_J(s, s->row[i], j);
+    ct_qr_pivot(s->A, s->column, s->b, r, n, r, 0, s->work);
+    for (int j = 0; j < n; j++)
+        *(j < r ? &s->dependent[j] : &s->independent[j - r]) = s->column[j];
+}
+
+// The speed with the smallest diagonal entry of M.
+static size_t lightest(const struct ct_embed *s)
+{
+    const size_t n = s->m->nu;
+    size_t least = 0;
+    for (size_t i = 1; i < n; i++)
+        if (s->m->M[i + n * i] < s->m->M[least + n * least])
+            least = i;
+    return least;
+}
+
+// What gives sections an inertia.
+static const char *rotary_of(const struct ct_beam *beam)
+{
+    return beam->is_lumped ? "values of 'rotary_inertia', which lumped mass has not by itself"
+                           : "a 'rotary_inertia'";
+}
+
+static bool massless(struct ct_embed *s, size_t speed)
+{
+    const struct ct_u *u = &s->m->e->u[speed];
+    const struct ct_model *model = s->m->model;
+    const char *name = u->q >= 0 ? s->m->e->q[u->q].name : u->name;
+    const int bare = s->m->e->bare_beam;
+    if (bare)
+        return ct_error(
+            s->ctx, model->body[bare].instance.mark, CT_E_MASSLESS,
+            "coordinate '%s' moves no mass: the first section of beam '%s' has no inertia; "
+            "give the beam %s, or, if no moment acts on that section, 'frame: chord'",
+            name, model->body[bare].instance.name, rotary_of(model->body[bare].beam));
+    if (u->beam > 0 && !(ct_model_number(model, model->body[u->beam].mass) > 0))
+        return ct_error(s->ctx, model->body[u->beam].instance.mark, CT_E_MASSLESS,
+                        "coordinate '%s' moves no mass: beam '%s' has none; give it a density, "
+                        "a mass_per_length, or 'deformation: []'",
+                        name, model->body[u->beam].instance.name);
+    if (u->beam > 0)
+        return ct_error(s->ctx, model->body[u->beam].instance.mark, CT_E_MASSLESS,
+                        "coordinate '%s' moves no mass: give the beam %s, or consistent mass",
+                        name, rotary_of(model->body[u->beam].beam));
+    const struct ct_mark mark
+        = u->joint >= 0 ? model->joint[u->joint].mark : model->body[u->body].instance.mark;
+    return ct_error(s->ctx, mark, CT_E_MASSLESS,
+                    "coordinate '%s' moves no mass: give a mass or an inertia to what it moves",
+                    name);
+}
+
+// The speed of the joint that turns a beam's first section where that has no inertia: an axis that bends leaves it next to
+// none, with which no step is right.
+static size_t bare_speed(const struct ct_embed *s)
+{
+    const struct ct_equations *e = s->m->e;
+    for (size_t k = 0; k < e->nu; k++)
+        if (e->u[k].joint == e->bare_joint)
+            return k;
+    return lightest(s);
+}
+
+// The pivots of a solution in closed form must be positive. Behind one that is not, others are no numbers.
+static bool has_inertia(struct ct_embed *s)
+{
+    const size_t n = s->m->nu;
+    const double *pivot = s->m->solved.out + n + s->m->nq;
+    size_t least = 0;
+    ct_program_run(&s->m->solved, s->m->input);
+    for (size_t i = 1; i < n; i++)
+        if (isnan(pivot[least]) || fabs(pivot[i]) < fabs(pivot[least]))
+            least = i;
+    for (size_t i = 0; i < n; i++)
+        if (!(pivot[i] > 0))
+            return massless(s, pivot[least] > 0 ? i : least);
+    return true;
+}
+
+// Time in which a coordinate has moved by `way` along the motion of now, the first one; 0 at rest.
+static double time_ahead(const struct ct_embed *s, double way)
+{
+    const double u = ct_vector_size(s->m->input + s->m->at_u, s->m->nu),
+                 a = ct_vector_size(s->a, s->m->nu);
+    return u > 0 || a > 0 ? 2 * way / (u + sqrt(u * u + 2 * way * a)) : 0;
+}
+
+// Rows and columns chosen by what they are ahead on the motion, with u' as found last; the machine's input stays.
+static void choose_there(struct ct_embed *s)
+{
+    const double way
+        = 0.3; // [rad or m]: far enough to tell them apart, near enough to be known
+    struct ct_machine *m = s->m;
+    double *q = m->input + m->at_q;
+    const double *u = m->input + m->at_u, h = time_ahead(s, way);
+    for (size_t k = 0; k < m->nu; k++)
+        s->r[k] = h * (u[k] + h / 2 * s->a[k]);
+    memcpy(s->q, q, m->nq * sizeof *q);
+    ct_machine_retract(m, q, s->r);
+    ct_machine_constraint(m);
+    order_rows(s);
+    choose_columns(s);
+    memcpy(q, s->q, m->nq * sizeof *q);
+    ct_machine_constraint(m);
+}
+
+static bool choose_here(struct ct_embed *s)
+{
+    s->rank = order_rows(s);
+    choose_columns(s);
+    return ct_embed_factor(s);
+}
+
+// In a symmetric position, where many motions begin, several choices are equally good, and only further on some of them
+// fail. Where the choice ahead is nearly as good here it is taken: another one costs more than many steps.
+static bool choose_ahead(struct ct_embed *s)
+{
+    const double nearly = 0.5;
+    if (!choose_here(s) || ct_embed_is_large(s) || s->rank == (int)s->m->nu
+        || s->m->e->solution)
+        return true;
+    const double sigma = s->sigma, kappa = s->kappa;
+    ct_machine_motion(s->m);
+    if (ct_embed_accelerate(s) != CT_EVAL_OK)
+        return false;
+    choose_there(s);
+    return (ct_embed_factor(s) && s->sigma >= nearly * sigma && nearly * s->kappa <= kappa)
+        || choose_here(s);
+}
+
+// After ct_embed_accelerate: the first independent speed whose pivot of B' M B is rounding of what it is left of; -1: none.
+static int rounded_pivot(const struct ct_embed *s)
+{
+    const int n = (int)s->m->nu, r = s->rank, f = n - r;
+    for (int i = 0; i < f; i++) {
+        double gross = fabs(s->MB[s->independent[i] + n * i]);
+        for (int k = 0; k < r; k++)
+            gross += fabs(s->B[k + r * i] * s->MB[s->dependent[k] + n * i]);
+        const double pivot = s->S[i + f * i] * s->S[i + f * i];
+        if (pivot <= 16 * DBL_EPSILON * gross)
+            return s->independent[i];
+    }
+    return -1;
+}
+
+bool ct_embed_choose(struct ct_embed *s)
+{
+    s->switches++;
+    s->rank = 0;
+    for (int j = 0; j < (int)s->m->nu; j++)
+        s->independent[j] = j;
+    if (!s->m->nrow)
+        ct_embed_factor(s);
+    else if (!choose_ahead(s))
+        return massless(s, lightest(s));
+    s->kappa_chosen = s->kappa;
+    s->sigma_chosen = s->sigma;
+    if (s->m->e->bare_beam)
+        return massless(s, bare_speed(s));
+    if (s->m->e->solution)
+        return has_inertia(s);
+    ct_machine_motion(s->m);
+    if (ct_embed_accelerate(s) != CT_EVAL_OK)
+        return massless(s, lightest(s));
+    const int rounded = rounded_pivot(s);
+    if (rounded >= 0)
+        return massless(s, (size_t)rounded);
+    ct_embed_take_form(s);
+    return true;
+}

@@ -1,0 +1,168 @@
+// See embedding.h: projection.
+#include "solve/embedding.h"
+
+#include "numeric/dense.h"
+
+#include <math.h>
+#include <string.h>
+
+// d (nu) = -J+ r: least norm, all rows.
+static void least_norm_step(struct ct_embed *s, const double *r, double *d)
+{
+    const int n = (int)s->m->nu, m = (int)s->m->nrow, ld = n > m ? n : m;
+    memcpy(s->A, s->m->J, (size_t)(n * m) * sizeof *s->A);
+    memset(s->d, 0, (size_t)ld * sizeof *s->d);
+    for (int i = 0; i < m; i++)
+        s->d[i] = -r[i];
+    ct_lstsq(s->d, s->A, m, n, m, ct_embed_rank_tolerance, s->iwork, s->work);
+    memcpy(d, s->d, (size_t)n * sizeof *d);
+}
+
+// d (nu) = correction of the dependent part alone, J_d as factored last.
+static void partitioned_step(struct ct_embed *s, const double *r, double *d)
+{
+    const int k = s->rank;
+    memset(d, 0, s->m->nu * sizeof *d);
+    for (int i = 0; i < k; i++)
+        s->c[i] = -r[s->row[i]];
+    ct_lu_solve(s->c, s->Jd, s->pivot, k, k, 1, k, false);
+    for (int i = 0; i < k; i++)
+        d[s->dependent[i]] = s->c[i];
+}
+
+// False if J_d is too close to singular for partitioned steps.
+static bool is_partitioned(struct ct_embed *s)
+{
+    return ct_embed_factor(s) && s->kappa <= ct_kappa_largest;
+}
+
+// r (nrow) += J d.
+static void add_change(const struct ct_embed *s, double *r, const double *d)
+{
+    for (size_t j = 0; j < s->m->nu; j++)
+        for (size_t i = 0; i < s->m->nrow && d[j] != 0; i++)
+            r[i] += s->m->J[i + s->m->nrow * j] * d[j];
+}
+
+// Is another choice of rows or columns due?
+static bool has_worn(const struct ct_embed *s)
+{
+    if (!s->rank)
+        return false;
+    return ct_has_worn(s->kappa, s->kappa_chosen, s->sigma, s->sigma_chosen,
+                       s->rank < (int)s->m->nrow);
+}
+
+// With a single row sigma is 1 everywhere.
+static double nearness(const struct ct_embed *s)
+{
+    return fmin(s->sigma, s->nearness);
+}
+
+static enum ct_eval project_by_matrices(struct ct_embed *s, double t, double *y)
+{
+    struct ct_machine *m = s->m;
+    double before = INFINITY;
+    for (int i = 0;; i++) {
+        ct_machine_set(m, t, y);
+        ct_machine_constraint(m);
+        const double size = ct_vector_size(m->phi, m->nrow);
+        if (ct_is_closed(nearness(s), size, before))
+            break;
+        if (ct_is_stray(i, size, before))
+            return CT_EVAL_RETRY;
+        before = size;
+        (is_partitioned(s) ? partitioned_step : least_norm_step)(s, m->phi, s->r);
+        ct_machine_retract(m, y, s->r);
+    }
+    const bool is_regular = is_partitioned(s);
+    for (int i = 0; i < 2; i++) { // v is linear in u; the second step takes off rounding
+        (is_regular ? partitioned_step : least_norm_step)(s, m->v, s->r);
+        for (size_t k = 0; k < m->nu; k++)
+            y[m->nq + k] += s->r[k];
+        add_change(s, m->v, s->r);
+    }
+    ct_machine_set(m, t, y);
+    return CT_EVAL_OK;
+}
+
+static void change_speeds(const struct ct_machine *m, double *y, const double *du)
+{
+    for (size_t k = 0; k < m->nu; k++)
+        y[m->nq + k] += du[k];
+}
+
+static bool close_form(struct ct_embed *s, double t, const double *y)
+{
+    ct_machine_set(s->m, t, y);
+    s->strength.now = ct_form_close(s->form[0], s->m);
+    if (!ct_embed_is_sound(s))
+        return false;
+    ct_embed_follow_sigma(s);
+    return true;
+}
+
+// The same by the form of now; *is_done is false where its pivots are not sound.
+static enum ct_eval project_by_form(struct ct_embed *s, double t, double *y, bool *is_done)
+{
+    struct ct_machine *m = s->m;
+    const struct ct_form *f = s->form[0];
+    double before = INFINITY;
+    *is_done = false;
+    if (s->kappa > ct_kappa_largest)
+        return CT_EVAL_OK;
+    for (int i = 0; close_form(s, t, y); i++) {
+        const double size = ct_vector_size(f->phi, m->nrow);
+        if (!ct_is_closed(nearness(s), size, before)) {
+            if (ct_is_stray(i, size, before))
+                return CT_EVAL_RETRY;
+            before = size;
+            ct_machine_retract(m, y, f->dq);
+            continue;
+        }
+        const bool is_rough = ct_vector_size(f->du, m->nu) > ct_small_change;
+        change_speeds(m, y, f->du);
+        *is_done = !is_rough || close_form(s, t, y);
+        if (is_rough)
+            change_speeds(m, y, f->du);
+        ct_machine_set(m, t, y);
+        return CT_EVAL_OK;
+    }
+    return CT_EVAL_OK;
+}
+
+enum ct_eval ct_embed_project(struct ct_embed *s, double t, double *y)
+{
+    bool is_done = false;
+    ct_machine_normalise(s->m, y);
+    if (!s->m->nrow)
+        return CT_EVAL_OK;
+    enum ct_eval e = ct_embed_is_form_due(s) ? project_by_form(s, t, y, &is_done) : CT_EVAL_OK;
+    if (e == CT_EVAL_OK && !is_done) {
+        e = project_by_matrices(s, t, y);
+        if (s->has_form) { // sigma has just been found
+            s->strength.now = ct_form_close(s->form[0], s->m);
+            ct_strength_compare(&s->strength, s->sigma);
+        }
+    }
+    if (e != CT_EVAL_OK || s->is_crossing)
+        return e;
+    ct_embed_tend_form(s);
+    if (has_worn(s)) {
+        ct_machine_constraint(s->m); // forms leave J as it was
+        ct_embed_choose(s);
+    }
+    return CT_EVAL_OK;
+}
+
+void ct_embed_renew(struct ct_embed *s)
+{
+    if (ct_embed_is_form_due(s)) {
+        s->strength.now = ct_form_close(s->form[0], s->m);
+        ct_embed_tend_form(s);
+    }
+    if (!s->rank || !has_worn(s))
+        return;
+    ct_machine_constraint(s->m); // forms leave J as it was
+    ct_embed_choose(s);
+}

@@ -1,0 +1,40 @@
+// Embedding from inside: what its files share.
+//
+//     embed.c           accelerations, multipliers and speeds after jumps, by dense matrices
+//     embed_choose.c    independent rows and dependent columns
+//     embed_form.c      the same in closed form, where that is sound
+//     embed_project.c   onto the constraints
+//     embed_pivot.c     how near J is to losing rank
+#ifndef CT_SOLVE_EMBEDDING_H
+#define CT_SOLVE_EMBEDDING_H
+
+#include "solve/embed.h"
+
+// A row counts as dependent when what is left of it is this small against the largest: the
+// constraints of a closed mechanism are known to about 1e-12 after projection.
+static const double ct_embed_rank_tolerance = 1e-9;
+
+static inline double *ct_embed_J(const struct ct_embed *s, int row, int column)
+{
+    return &s->m->J[(size_t)row + s->m->nrow * (size_t)column];
+}
+
+/// LU of J_d and B = -J_d^-1 J_i (rank x free); false if J_d is singular.
+bool ct_embed_factor(struct ct_embed *s);
+/// Dense factors of larger systems cost more than a step does.
+bool ct_embed_is_large(const struct ct_embed *s);
+
+/// The form for the rows and columns of now: one from before, or a new one.
+void ct_embed_take_form(struct ct_embed *s);
+/// Can the form of now be tried? Beside singular positions only where it tells how near they are.
+bool ct_embed_is_form_due(const struct ct_embed *s);
+/// Were its pivots sound where it was used last?
+bool ct_embed_is_sound(const struct ct_embed *s);
+/// sigma from their strength, where that stands for it.
+void ct_embed_follow_sigma(struct ct_embed *s);
+/// Multipliers of all rows by the form of now, where they are unique.
+bool ct_embed_form_multipliers(struct ct_embed *s);
+/// After a projection, at the machine's input: checks the form of now, or makes one that is due.
+void ct_embed_tend_form(struct ct_embed *s);
+
+#endif
