@@ -61,15 +61,24 @@ static double filter(struct ct_radau *s, const double *u, const double *u_dot)
                        : filter_few(s, u, u_dot, 2, 0);
 }
 
+// The motion feels the energy of vibrations, the square of their speeds: against that of the largest speeds so far.
+static void find_ample(struct ct_radau *s, const double *u)
+{
+    const double small = s->wanted.atol / s->wanted.rtol, root = sqrt(s->wanted.rtol);
+    for (int k = 0; k < s->dae->nu; k++) {
+        s->swiftest[k] = ct_larger(s->swiftest[k], fabs(u[k]));
+        s->ample[k] = root * (s->swiftest[k] + small);
+    }
+}
+
 // Less of the error where it is one of speeds that vibrate.
 static void ease_speeds(struct ct_radau *s, const struct ct_problem *p,
                         const struct ct_tolerance *tol, const double *y, double *err)
 {
     if (!p->asked_speeds || (*err <= 1 && !s->is_eased && s->unlooked-- > 0))
         return;
-    // the motion feels the energy of vibrations, the square of their speeds
-    const double part = ct_smaller(1, tol->rtol / sqrt(s->wanted.rtol));
-    const double slow = ct_iteration_slow_norm(s->it, tol, y, p->asked_speeds, part,
+    find_ample(s, y + s->dae->nq);
+    const double slow = ct_iteration_slow_norm(s->it, tol, y, p->asked_speeds, s->ample,
                                                s->change.d, s->change.u);
     s->is_eased = slow < worth_it * *err;
     s->unlooked = STEPS_BETWEEN;
