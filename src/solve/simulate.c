@@ -558,7 +558,7 @@ bool ct_run_simulate(struct ct_run *r, const struct ct_run_options *o,
     r->last_event = -INFINITY;
     r->is_told = false;
     r->report = report;
-    r->nevent = ct_time_events(r->arena, r->m, 0, o->duration, &r->event);
+    r->nevent = ct_time_events(r->arena, r->m, o->method->order, 0, o->duration, &r->event);
     r->pending = ct_run_next_event(r, 0);
     if (!ct_run_tables_reach(r, 0))
         return false;
