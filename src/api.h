@@ -65,7 +65,7 @@ struct ct_sim {
     size_t nkept;
     struct ct_estimate estimate; // what it said
     const struct ct_sim_results *results;
-    struct ct_result_file *file; // sim.c
+    struct ct_result_file *file; // result_file.c; NULL: none is written
     struct ct_progress *progress;
     long nstep;      // accepted so far, for deadlines
     double deadline; // on ct_clock, when the run is given up; 0: none
@@ -90,6 +90,14 @@ bool ct_sim_has_solver(struct ct_sim *sim);
 /// followed.
 bool ct_sim_run_again(struct ct_ctx *ctx, struct ct_sim *sim,
                       const struct ct_sim_results *results);
+
+/// Results as a file, sim->file, in sim->own: rows as CSV, columns as JSON where the path ends so, "-": the standard output.
+bool ct_sim_open_results(struct ct_sim *sim, const char *path);
+bool ct_sim_write_row(struct ct_sim *sim, double t, const double *value);
+/// ok: the run succeeded; else what there is stays in the partial file, and false.
+bool ct_sim_close_results(struct ct_sim *sim, bool ok);
+/// Without a word: what there is stays in the partial file.
+void ct_sim_abandon_results(struct ct_sim *sim);
 
 /// Run work(task) with a guard: without memory false, and E001 in ctx.
 bool ct_enter(struct ct_ctx *ctx, bool (*work)(void *task), void *task);

@@ -4,7 +4,6 @@
 
 #include "formulate/flexible.h"
 
-#include "report/json.h"
 #include "report/progress.h"
 #include "solve/criterion.h"
 #include "solve/lanes.h"
@@ -31,84 +30,6 @@ static const double least_rtol = 2e-14;
 // then cost the same.
 static const double high_order_up_to = 1e-2;
 static const long steps_between_looks = 32; // at the clock, for runs with a deadline
-
-// ---- results as a file --------------------------------------------------------------------------------
-
-struct ct_result_file {
-    bool is_json;
-    struct ct_csv csv;
-    struct ct_outfile json;
-    double *value; // JSON is written by columns: rows are kept until the end
-    size_t nvalue, value_cap, ncolumn;
-    const char **column; // "t" first
-};
-
-static bool has_suffix(const char *path, const char *suffix)
-{
-    const size_t n = strlen(path), k = strlen(suffix);
-    return n >= k && strcmp(path + n - k, suffix) == 0;
-}
-
-static bool open_file(struct ct_sim *sim, const char *path)
-{
-    const struct ct_equations *e = &sim->system->equations;
-    struct ct_result_file *f = sim->file = CT_NEW(sim->own.model, struct ct_result_file);
-    f->ncolumn = e->nresult + 1;
-    f->column = CT_NEWN(sim->own.model, const char *, f->ncolumn);
-    f->column[0] = "t";
-    for (size_t i = 0; i < e->nresult; i++)
-        f->column[i + 1] = e->result[i].name;
-    f->is_json = has_suffix(path, ".json");
-    if (f->is_json)
-        return ct_outfile_open(&sim->own, &f->json, path);
-    return ct_csv_open(&sim->own, &f->csv, strcmp(path, "-") == 0 ? NULL : path, f->column,
-                       f->ncolumn);
-}
-
-static bool write_row(struct ct_sim *sim, double t, const double *value)
-{
-    struct ct_result_file *f = sim->file;
-    if (!f->is_json) {
-        ct_csv_number(&f->csv, t);
-        for (size_t i = 0; i + 1 < f->ncolumn; i++)
-            ct_csv_number(&f->csv, value[i]);
-        return ct_csv_end_row(&sim->own, &f->csv);
-    }
-    CT_PUSH(sim->own.model, f->value, f->nvalue, f->value_cap, t);
-    for (size_t i = 0; i + 1 < f->ncolumn; i++)
-        CT_PUSH(sim->own.model, f->value, f->nvalue, f->value_cap, value[i]);
-    return true;
-}
-
-static void write_columns(struct ct_sim *sim)
-{
-    const struct ct_result_file *f = sim->file;
-    const size_t n = f->nvalue / f->ncolumn;
-    double *one = CT_NEWN(sim->own.model, double, n + 1);
-    struct ct_json j;
-    ct_json_init(&j, f->json.stream);
-    ct_json_object(&j, NULL);
-    for (size_t c = 0; c < f->ncolumn; c++) {
-        for (size_t i = 0; i < n; i++)
-            one[i] = f->value[i * f->ncolumn + c];
-        ct_json_numbers(&j, f->column[c], one, n);
-    }
-    ct_json_end(&j);
-}
-
-// ok: the run succeeded; else what there is stays in the partial file.
-static bool close_file(struct ct_sim *sim, bool ok)
-{
-    struct ct_result_file *f = sim->file;
-    if (f->is_json)
-        write_columns(sim);
-    if (ok)
-        return f->is_json ? ct_outfile_close(&sim->own, &f->json)
-                          : ct_csv_close(&sim->own, &f->csv);
-    ct_csv_abandon(&f->csv);
-    ct_outfile_abandon(&f->json);
-    return false;
-}
 
 // ---- options -------------------------------------------------------------------------------------------
 
@@ -396,7 +317,7 @@ static bool at_row(void *user, double t, const double *value, size_t n)
     sim->time = t;
     if (sim->kept)
         memcpy(sim->kept + sim->nkept++ * n, value, n * sizeof *value);
-    bool go_on = !sim->file || write_row(sim, t, value);
+    bool go_on = !sim->file || ct_sim_write_row(sim, t, value);
     if (go_on && sim->results->row)
         go_on = sim->results->row(sim->results->user, t, value, n);
     sim->write += ct_clock() - start;
@@ -492,7 +413,7 @@ static bool run(struct ct_sim *sim)
     if (sim->results->path && !sim->system->equations.nresult)
         ct_warning(&sim->own, (struct ct_mark){.file = sim->system->model.file}, 0,
                    "the model lists no 'outputs': only t is written");
-    if (sim->results->path && !open_file(sim, sim->results->path))
+    if (sim->results->path && !ct_sim_open_results(sim, sim->results->path))
         return false;
     sim->has_run = true;
     if (sim->is_verified)
@@ -503,7 +424,7 @@ static bool run(struct ct_sim *sim)
     if (ok)
         ct_run_find_open(sim->run, sim->time, sim->report.y, sim->open.row, sim->open.result);
     if (sim->file)
-        ok = close_file(sim, ok);
+        ok = ct_sim_close_results(sim, ok);
     sim->write += ct_clock() - start;
     if (ok)
         ct_sim_warn_of_beams(sim);
@@ -564,10 +485,8 @@ bool ct_sim_run(struct ct_ctx *ctx, struct ct_sim *sim, const struct ct_sim_resu
         return false;
     sim->results = results ? results : &nowhere;
     const bool ok = ct_enter(ctx, run_and_report, &w);
-    if (!ok && sim->file) { // without memory the file is still open
-        ct_csv_abandon(&sim->file->csv);
-        ct_outfile_abandon(&sim->file->json);
-    }
+    if (!ok && sim->file) // without memory the file is still open
+        ct_sim_abandon_results(sim);
     sim->results = NULL;
     return ok;
 }

@@ -2,6 +2,7 @@
 #include "analysis/linear.h"
 #include "analysis/point.h"
 #include "numeric/dense.h"
+#include "solve/criterion.h"
 #include "solve/mode.h"
 
 #include "formulate/formulate.h"
@@ -9,8 +10,6 @@
 #include <math.h>
 #include <string.h>
 
-// A row counts as dependent when what is left of it is this small against the largest, as in embedding.h.
-static const double rank_tolerance = 1e-9;
 static const double closed
     = 1e-13; // rows of positions: a few roundings of coordinates of order one
 enum { MOST_NEWTON = 30 };
@@ -83,7 +82,7 @@ static void shortest(struct ct_linear *l, double *d, const double *r)
     memset(l->d, 0, larger(n, m) * sizeof *l->d);
     for (size_t i = 0; i < m; i++)
         l->d[i] = -r[i];
-    ct_lstsq(l->d, l->A, l->nrow, l->nu, l->nrow, rank_tolerance, l->iwork, l->work);
+    ct_lstsq(l->d, l->A, l->nrow, l->nu, l->nrow, ct_rank_tolerance, l->iwork, l->work);
     memcpy(d, l->d, n * sizeof *d);
 }
 
@@ -194,7 +193,7 @@ static void choose(struct ct_linear *l, const double *J)
     for (int i = 0; i < m; i++) // A = J'
         for (int j = 0; j < n; j++)
             l->A[j + n * i] = J[i + m * j];
-    l->rank = m && n ? ct_qr_pivot(l->A, l->row, l->d, n, m, n, rank_tolerance, l->work) : 0;
+    l->rank = m && n ? ct_qr_pivot(l->A, l->row, l->d, n, m, n, ct_rank_tolerance, l->work) : 0;
     const int r = l->rank;
     for (int i = 0; i < r; i++)
         for (int j = 0; j < n; j++)
@@ -357,7 +356,7 @@ static void multipliers(struct ct_linear *l, const double *r)
                 l->A[j + n * i] = l->m->J[i + m * j];
         memset(l->d, 0, larger((size_t)n, (size_t)m) * sizeof *l->d);
         memcpy(l->d, r, (size_t)n * sizeof *r);
-        ct_lstsq(l->d, l->A, n, m, n, rank_tolerance, l->iwork, l->work);
+        ct_lstsq(l->d, l->A, n, m, n, ct_rank_tolerance, l->iwork, l->work);
         memcpy(l->lam, l->d, (size_t)m * sizeof *l->lam);
     }
     for (int j = 0; j < n; j++) {

@@ -115,6 +115,26 @@ struct ct_arena *ct_arena_create_under(struct ct_arena *owner)
     return a;
 }
 
+void ct_arena_merge(struct ct_arena *into, struct ct_arena *from)
+{
+    if (from->under)
+        from->under->data = NULL;
+    into->total += from->total;
+    struct chunk **last
+        = &from->head; // before the chunks of `into` but its newest, which has room
+    while (*last)
+        last = &(*last)->next;
+    struct chunk **second = into->head ? &into->head->next : &into->head;
+    *last = *second;
+    *second = from->head;
+    struct ending **first = &from->ending;
+    while (*first)
+        first = &(*first)->next;
+    *first = into->ending;
+    into->ending = from->ending;
+    free(from);
+}
+
 // Bytes before the next piece of this size. Longer ones start on a line of the caches: numbers of four lanes would lie across two
 // lines every other time, which takes a tenth more of a program in lanes.
 static size_t gap(const struct chunk *c, size_t size)

@@ -23,6 +23,9 @@ void ct_arena_destroy(struct ct_arena *a);
 /// An arena for a while, destroyed with its owner at the latest: nothing leaks when memory runs out.
 struct ct_arena *ct_arena_create_under(struct ct_arena *owner);
 
+/// All that is in `from` lives as long as `into` from now on; `from` itself is gone. Cost: the chunks of `from`.
+void ct_arena_merge(struct ct_arena *into, struct ct_arena *from);
+
 /// Call end(data) when the arena is destroyed, before its memory goes; the latest first. For what a
 /// library or the system allocates.
 void ct_arena_at_end(struct ct_arena *a, void (*end)(void *data), void *data);

@@ -9,7 +9,7 @@
 
 #include "codegen/roll.h"
 
-/// The loops of n instructions, merged or not, whichever leaves fewer results and straight code; order is changed
+/// The loops of n instructions, merged or not, whichever leaves fewer results, straight code and time to wait; order is changed
 /// accordingly, but for its first nfixed ones. Other arguments as those of ct_roll_find. Cost: its, or twice where
 /// results are more than the nearest cache holds; with fewer nothing is merged.
 struct ct_roll ct_merge_loops(struct ct_arena *a, const struct ct_listing *l, uint32_t *order,

@@ -78,8 +78,9 @@ static void add_elements(struct ct_articulated *w, struct ct_articulated_body *k
 {
     struct ct_build *b = w->b;
     struct ct_exs *x = b->x;
-    const struct ct_element_sums *s = e->f->inertia->form->sums(b, e->f);
+    struct ct_element_sums *s = e->f->inertia->form->sums(b, e->f);
     for (int i = 0; i < e->f->beam->nelement; i++) {
+        ct_element_close(x, &s[i]);
         const int carried = e->n + i;
         for (int j = 0; j < CT_DOF; j++) {
             int sign;

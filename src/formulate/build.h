@@ -156,6 +156,8 @@ struct ct_build {
     const double *value; // of all symbols at the start, by symbol index (parameters and t = 0)
     struct ct_equations *eqs;
 
+    bool is_derived; // by T and R, with the dynamics, when they were chosen
+
     // planar mechanisms: common normal and a basis of the plane (ground components)
     bool is_planar;
     const bool *is_linear; // by body: beams left to the program that are; NULL: not known yet

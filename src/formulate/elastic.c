@@ -252,6 +252,17 @@ struct ct_flexible_state ct_flexible_moving(struct ct_build *b, const struct ct_
 
 // ---- mass matrix ------------------------------------------------------------------------------------------------
 
+// c p times p: of bending dofs alone.
+void ct_element_close(struct ct_exs *x, struct ct_element_sums *s)
+{
+    for (int k = 0; k < s->nsquare; k++)
+        for (int i = 2; i < CT_BENT_DOF; i++)
+            for (int j = 2; j <= i; j++)
+                s->M[i][j] = s->M[j][i]
+                    = ct_ex_add(x, s->M[i][j], ct_ex_mul(x, s->heavy[k][i], s->square[k][j]));
+    s->nsquare = 0;
+}
+
 // Elements from the tip inwards: with a CHAIN what lies beyond moves along with an element's bending.
 static void mass_of_sums(struct ct_build *b, const struct ct_flexible *f,
                          struct ct_columns *out, ct_ex *M)
@@ -259,11 +270,12 @@ static void mass_of_sums(struct ct_build *b, const struct ct_flexible *f,
     struct ct_exs *x = b->x;
     const bool chain = f->kinematics == CT_AXIAL_CHAIN;
     const int n = f->beam->nelement;
-    const struct ct_element_sums *s = f->inertia->form->sums(b, f);
+    struct ct_element_sums *s = f->inertia->form->sums(b, f);
     ct_ex m = CT_EX_ZERO;
     ct_ex3 moment = zero3;
     for (int e = n; e-- > 0;) {
         const struct ct_element *self = &f->element[e];
+        ct_element_close(x, &s[e]);
         for (int j = 0; j < CT_DOF; j++) {
             const ct_ex g = chain && j < CT_PLACE_DOF ? self->g[j] : CT_EX_ZERO;
             const ct_ex3 along = {{ct_ex_mul(x, g, m), CT_EX_ZERO, CT_EX_ZERO}};
@@ -356,7 +368,12 @@ void ct_flexible_columns(struct ct_build *b, const struct ct_flexible *f,
                          struct ct_columns *out, ct_ex *M)
 {
     const struct ct_inertia_form *form = f->inertia->form;
-    form->mass ? form->mass(b, f, out, M) : mass_of_sums(b, f, out, M);
+    if (form->mass)
+        form->mass(b, f, out, M);
+    else if (f->beam->modes || f->beam->nshape)
+        ct_flexible_modal_mass(b, f, out, M);
+    else
+        mass_of_sums(b, f, out, M);
 }
 
 void ct_flexible_mass(struct ct_build *b, ct_ex *M)

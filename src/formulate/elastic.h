@@ -2,6 +2,7 @@
 #ifndef CT_FORMULATE_ELASTIC_H
 #define CT_FORMULATE_ELASTIC_H
 
+#include "formulate/amplitude.h"
 #include "formulate/flexible.h"
 
 /// How the base moves, in axes of the beam.
@@ -56,7 +57,11 @@ struct ct_element_sums {
         swept[CT_DOF]; // int mu dr, int mu r x dr (and of the sections' rotation)
     ct_ex m;
     ct_ex3 moment;
+    int nsquare; // M has sum c p p' besides, p by dof: c in weight, p in square, c p in heavy
+    ct_ex weight[CT_ALONG], square[CT_ALONG][CT_DOF], heavy[CT_ALONG][CT_DOF];
 };
+/// These into M.
+void ct_element_close(struct ct_exs *x, struct ct_element_sums *s);
 /// Sums over points of the elements: any kinematics.
 extern const struct ct_inertia_form ct_inertia_points;
 /// Amplitudes of polynomials (elastic_series.c), exact: foreshortening with the same mass all along the beam.
@@ -90,6 +95,9 @@ ct_ex33 ct_base_turning(struct ct_build *b, const struct ct_base *m);
 /// Entries between elastic coordinates, added to M; columns of the base's motion.
 void ct_flexible_columns(struct ct_build *b, const struct ct_flexible *f,
                          struct ct_columns *out, ct_ex *M);
+/// The same of forms with sums, where coordinates are shapes of the whole beam.
+void ct_flexible_modal_mass(struct ct_build *b, const struct ct_flexible *f,
+                            struct ct_columns *out, ct_ex *M);
 /// Second derivatives of the foreshortening at the start of each element of a CHAIN with the symbols u', less the bias.
 ct_ex *ct_chain_accelerations(struct ct_build *b, const struct ct_flexible *f);
 /// 2 w x v

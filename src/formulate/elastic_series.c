@@ -458,15 +458,6 @@ static void add_pair(struct ct_exs *x, struct ct_element_sums *s, int i, int j, 
         s->M[j][i] = s->M[i][j];
 }
 
-// c p p' of derivatives by the bending dofs; cp: c p, so that a constant stays in the sums.
-static void add_square(struct ct_exs *x, const ct_ex p[CT_DOF], const ct_ex cp[CT_DOF],
-                       struct ct_element_sums *s)
-{
-    for (int i = 2; i < CT_BENT_DOF; i++)
-        for (int j = 2; j <= i; j++)
-            add_pair(x, s, i, j, ct_ex_mul(x, cp[i], p[j]));
-}
-
 // What bending draws along the axis: its own mass, and that with the axial dofs.
 static void draw_mass(struct ct_build *b, const struct ct_flexible *f, int e,
                       struct ct_element_sums *s)
@@ -475,14 +466,13 @@ static void draw_mass(struct ct_build *b, const struct ct_flexible *f, int e,
     const ct_ex h = f->element[e].span.length, mass = mass_of(b, f, e);
     struct ct_draw square[CT_ALONG];
     ct_ex weights[CT_ALONG];
-    const int n = is_chain(f) ? own_squares(x, h, mass, square, weights)
-                              : bubble_squares(x, h, mass, square, weights);
-    for (int i = 0; i < n; i++) {
-        ct_ex p[CT_DOF] = {{0}}, cp[CT_DOF] = {{0}};
+    s->nsquare = is_chain(f) ? own_squares(x, h, mass, square, weights)
+                             : bubble_squares(x, h, mass, square, weights);
+    for (int i = 0; i < s->nsquare; i++) {
         const struct ct_draw heavy = scaled_draw(x, weights[i], square[i]);
-        draw_slopes(b, f, e, &square[i], p);
-        draw_slopes(b, f, e, &heavy, cp);
-        add_square(x, p, cp, s);
+        draw_slopes(b, f, e, &square[i], s->square[i]);
+        draw_slopes(b, f, e, &heavy, s->heavy[i]);
+        s->weight[i] = weights[i];
     }
     // u_0 = (U_i + U_i+1)/2 + ..., u_1 = (U_i+1 - U_i)/2 + ...
     ct_ex mean[CT_DOF] = {{0}}, rise[CT_DOF] = {{0}};

@@ -134,10 +134,12 @@ static unsigned turns_freely(const struct node_moments *w, size_t j, const struc
     const struct ct_edge_info *e = &b->edge[b->edge_of_joint[j]];
     if (e->weight_r == (b->is_planar ? 1 : NAXIS))
         return b->is_planar ? about_normal(w) : ALL;
-    if (e->weight_r != 1 || e->trial.nturn != 1)
-        return 0;
-    const int axis = axis_along(b, at, e->trial.turn[0].axis);
-    return axis < 0 ? 0 : 1u << axis;
+    unsigned about = 0; // two of a universal joint, as the frames coincide
+    for (int i = 0; i < e->trial.nturn && e->weight_r == e->trial.nturn; i++) {
+        const int axis = axis_along(b, at, e->trial.turn[i].axis);
+        about |= axis < 0 ? 0 : 1u << axis;
+    }
+    return about;
 }
 
 // Does the frame move with the section at the start?

@@ -134,6 +134,20 @@ static bool static_shapes(struct reduction *r)
     return true;
 }
 
+// The axis is straight and its sections lie along their principal axes: stretch, twist and both bendings have nothing to do with one another, and
+// what a shape has of another one is rounding of its largest component, 1.
+static void drop_rounding(const struct reduction *r, double *v)
+{
+    const double rounding = 1e-12; // n eps of the eigenvectors, n up to some thousand
+    unsigned moves = 0;
+    for (int i = 0; i < r->n; i++)
+        if (fabs(v[i]) > rounding)
+            moves |= ct_freedom_family(r->freedom[i] % NKIND);
+    for (int i = 0; i < r->n; i++)
+        if (!(moves & ct_freedom_family(r->freedom[i] % NKIND)))
+            v[i] = 0;
+}
+
 // K v = w^2 M v with the others held, solved as M v = (1/w^2) K v: M may be singular. Scaled to a largest component of 1.
 static bool modes(struct reduction *r, int wanted)
 {
@@ -150,6 +164,7 @@ static bool modes(struct reduction *r, int wanted)
             most = fabs(v[i]) > fabs(most) ? v[i] : most;
         for (int i = 0; i < m; i++)
             out[r->nkept + i] = v[i] / most;
+        drop_rounding(r, out);
     }
     return true;
 }

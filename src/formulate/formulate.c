@@ -10,6 +10,8 @@
 #include "formulate/trees.h"
 #include "formulate/validity.h"
 
+#include <string.h>
+
 // ---- one pair of trees ---------------------------------------------------------------------------
 
 static double *start_values(struct ct_arena *a, const struct ct_model *m)
@@ -50,6 +52,30 @@ struct ct_build *ct_build_create(struct ct_ctx *ctx, struct ct_arena *a,
     b->x->ndecided = m->x->nsym;
     b->x->decided = CT_NEWN(a, unsigned char, m->x->nsym + 1);
     ct_topology_derive(b, !o->keep_all);
+    return b;
+}
+
+static void *copy(struct ct_arena *a, const void *from, size_t n, size_t cap, size_t size)
+{
+    void *to = ct_arena_calloc(a, cap, size);
+    if (n)
+        memcpy(to, from, n * size);
+    return to;
+}
+
+struct ct_build *ct_build_clone(struct ct_ctx *ctx, struct ct_arena *a,
+                                const struct ct_build *from)
+{
+    struct ct_build *b = copy(a, from, 1, 1, sizeof *b);
+    b->ctx = ctx;
+    b->arena = a;
+    b->eqs = copy(a, from->eqs, 1, 1, sizeof *b->eqs);
+    b->x = b->eqs->x = ct_exs_clone(a, from->x);
+    const size_t ndecided = b->x->ndecided;
+    b->x->decided = copy(a, from->x->decided, ndecided, ndecided + 1, 1);
+    b->edge = copy(a, from->edge, b->nedge, b->edge_cap, sizeof *b->edge);
+    b->coordinate
+        = copy(a, from->coordinate, b->ncoordinate, b->coordinate_cap, sizeof *b->coordinate);
     return b;
 }
 
@@ -166,11 +192,11 @@ bool ct_formulate(struct ct_ctx *ctx, struct ct_arena *a, const struct ct_model 
     const size_t before = ctx->nerror;
     struct ct_build *b = ct_build_create(ctx, a, m, options, NULL);
     *report = (struct ct_tree_report){0};
-    if (ctx->nerror > before || !ct_trees_choose(b, options, report)
-        || !ct_build_derive(b, !options->without_dynamics)
+    if (ctx->nerror > before || !ct_trees_choose(&b, options, report)
+        || !(b->is_derived || ct_build_derive(b, !options->without_dynamics))
         || !choose_beams(ctx, a, m, options, &b))
         return false;
-    if (!options->without_dynamics)
+    if (!options->without_dynamics && !b->is_derived)
         derive_dynamics(b, options);
     if (ctx->nerror > before)
         return false;

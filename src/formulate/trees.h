@@ -9,8 +9,8 @@
 #include "formulate/build.h"
 #include "formulate/formulate.h"
 
-/// b->T and b->R. Errors: CT_E_TREE.
-bool ct_trees_choose(struct ct_build *b, const struct ct_formulate_options *o,
+/// (*b)->T and (*b)->R; *b is another one, is_derived, where its equations were made on the way. Errors: CT_E_TREE.
+bool ct_trees_choose(struct ct_build **b, const struct ct_formulate_options *o,
                      struct ct_tree_report *report);
 
 /// By edge.
@@ -31,6 +31,10 @@ double ct_equations_cost(struct ct_arena *scratch, const struct ct_equations *e)
 struct ct_build *ct_build_create(struct ct_ctx *ctx, struct ct_arena *a,
                                  const struct ct_model *m, const struct ct_formulate_options *o,
                                  const bool *is_linear);
+/// A copy of a build without beams whose trees are open, to derive trial equations: what these write is its own, the rest
+/// stays that of `from`. Names of expressions are left behind.
+struct ct_build *ct_build_clone(struct ct_ctx *ctx, struct ct_arena *a,
+                                const struct ct_build *from);
 /// What comes before M and Q: Phi, J, gam and, unless only places and speeds are wanted, the loads.
 bool ct_build_derive(struct ct_build *b, bool with_dynamics);
 

@@ -510,17 +510,6 @@ size_t ct_symmetric_eigenvalues_work(int n)
     return (size_t)max_int(1, 3 * n - 1);
 }
 
-// y (n) -= c x. A few numbers are read one by one: for them a vector takes longer to begin than to do its work.
-static inline void subtract(double *restrict y, double c, const double *restrict x, int n)
-{
-    enum { MOST_ALONE = 12 };
-    const volatile double *one_by_one = x;
-    for (int i = 0; i < n && n <= MOST_ALONE; i++)
-        y[i] -= c * one_by_one[i];
-    for (int i = 0; i < n && n > MOST_ALONE; i++)
-        y[i] -= c * x[i];
-}
-
 int ct_symmetric_count_below(double *A, int n, int lda, double x)
 {
     const double certain
@@ -537,7 +526,7 @@ int ct_symmetric_count_below(double *A, int n, int lda, double x)
             return -1;
         count += pivot < 0;
         for (int j = k + 1; j < n; j++)
-            subtract(A + lda * j + j, column[j] / pivot, column + j, n - j);
+            ct_vector_add(A + lda * j + j, -(column[j] / pivot), column + j, (size_t)(n - j));
     }
     return count;
 }

@@ -2,6 +2,7 @@
 #include "solve/balance.h"
 #include "formulate/residual.h"
 #include "numeric/dense.h"
+#include "solve/criterion.h"
 
 #include <math.h>
 #include <string.h>
@@ -42,16 +43,15 @@ bool ct_basis_extend(struct ct_basis *s, double *v)
 // Independent rows in the directions that move.
 static void choose_rows(struct ct_balance *s, struct ct_arena *a)
 {
-    const double dependent = 1e-9; // as in embedding.h
     const size_t m = s->e->nrow, n = s->n;
     double *A = CT_NEWN(a, double, m *n + 1), *tau = CT_NEWN(a, double, m + n);
     double *work = CT_NEWN(a, double, ct_qr_pivot_work((int)n, (int)m));
     for (size_t i = 0; i < m; i++)
         for (size_t k = 0; k < n; k++)
             A[k + n * i] = s->m->J[i + m * (size_t)s->u[k]];
-    s->nlam = m && n
-                ? (size_t)ct_qr_pivot(A, s->row, tau, (int)n, (int)m, (int)n, dependent, work)
-                : 0;
+    s->nlam = m && n ? (size_t)ct_qr_pivot(A, s->row, tau, (int)n, (int)m, (int)n,
+                                           ct_rank_tolerance, work)
+                     : 0;
     for (size_t i = 0; i < m; i++)
         s->lam_place[i] = -1;
     for (size_t i = 0; i < s->nlam; i++)

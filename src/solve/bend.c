@@ -2,6 +2,7 @@
 #include "solve/bend.h"
 #include "formulate/gap.h"
 #include "numeric/dense.h"
+#include "solve/criterion.h"
 
 #include <math.h>
 #include <string.h>
@@ -95,7 +96,6 @@ static void row_directions(struct ct_balance *s, struct ct_arena *a, struct loca
 // Multipliers that leave the least force: J' lam = -Q.
 static void find_multipliers(struct ct_balance *s, struct ct_arena *a, const struct local *l)
 {
-    const double dependent = 1e-9;
     const size_t n = s->n, m = s->nlam;
     double *A = CT_NEWN(a, double, m *n + 1), *b = CT_NEWN(a, double, n + m + 1);
     int *iwork = CT_NEWN(a, int, m + 1);
@@ -108,7 +108,7 @@ static void find_multipliers(struct ct_balance *s, struct ct_arena *a, const str
             A[k + n * i] = l->J[i + m * k];
     }
     if (m && n)
-        ct_lstsq(b, A, (int)n, (int)m, (int)n, dependent, iwork, work);
+        ct_lstsq(b, A, (int)n, (int)m, (int)n, ct_rank_tolerance, iwork, work);
     for (size_t i = 0; i < m; i++)
         s->lam[s->row[i]] = b[i];
 }
@@ -173,7 +173,7 @@ static void limit(double *d, size_t n, double most)
 static void close_rows(struct ct_balance *s, struct ct_arena *a)
 {
     enum { MOST_CLOSINGS = 20 };
-    const double closed = 1e-10, longest = 0.2, dependent = 1e-9;
+    const double closed = 1e-10, longest = 0.2;
     const size_t n = s->n;
     for (int i = 0; i < MOST_CLOSINGS; i++) {
         struct local l = {0};
@@ -188,7 +188,7 @@ static void close_rows(struct ct_balance *s, struct ct_arena *a)
         double *work = CT_NEWN(a, double, ct_lstsq_work((int)m, (int)n + 1));
         for (size_t r = 0; r < m; r++)
             b[r] = -s->values.out[n + (size_t)s->row[r]];
-        ct_lstsq(b, l.J, (int)m, (int)n, (int)m, dependent, iwork, work);
+        ct_lstsq(b, l.J, (int)m, (int)n, (int)m, ct_rank_tolerance, iwork, work);
         limit(b, n, longest);
         step_by(s, b, 1);
     }

@@ -14,7 +14,7 @@ static int order_rows(struct ct_embed *s)
     for (int i = 0; i < m; i++) // A = J', n x m
         for (int j = 0; j < n; j++)
             s->A[j + n * i] = *ct_embed_J(s, i, j);
-    return ct_qr_pivot(s->A, s->row, s->b, n, m, n, ct_embed_rank_tolerance, s->work);
+    return ct_qr_pivot(s->A, s->row, s->b, n, m, n, ct_rank_tolerance, s->work);
 }
 
 // Columns count by what their speeds move, w (nu, out), where inertias are so different that a heavy dependent speed would
@@ -105,6 +105,37 @@ static size_t bare_speed(const struct ct_embed *s)
     return lightest(s);
 }
 
+// Pivots that are left of the entries of M are below this of them where they are rounding.
+static const double rounding_pivot = 16 * DBL_EPSILON;
+
+// Speed k, or the coordinate of a beam that moves the same as it: sections without inertia are what it lacks.
+static size_t elastic_beside(const struct ct_embed *s, size_t k)
+{
+    const size_t n = s->m->nu;
+    const double *M = s->m->M;
+    ct_machine_motion(s->m);
+    for (size_t i = 0; i < n && !s->m->e->u[k].beam; i++) {
+        const double both = M[i + n * k] * M[i + n * k], each = M[i + n * i] * M[k + n * k];
+        if (s->m->e->u[i].beam > 0 && each > 0 && both > (1 - 1e-12) * each)
+            return i;
+    }
+    return k;
+}
+
+// The first speed whose pivot of M is rounding; -1: none. Articulated bodies may keep digits that M loses: there it
+// counts where a beam's coordinate moves the same.
+static int rounded_closed_pivot(const struct ct_embed *s, const double *pivot)
+{
+    const size_t n = s->m->nu;
+    const bool is_exact = s->m->e->formulation == CT_FORMULATION_ARTICULATED;
+    ct_machine_motion(s->m);
+    for (size_t i = 0; i < n; i++)
+        if (pivot[i] <= rounding_pivot * s->m->M[i + n * i]
+            && !(is_exact && elastic_beside(s, i) == i))
+            return (int)i;
+    return -1;
+}
+
 // The pivots of a solution in closed form must be positive. Behind one that is not, others are no numbers.
 static bool has_inertia(struct ct_embed *s)
 {
@@ -117,8 +148,9 @@ static bool has_inertia(struct ct_embed *s)
             least = i;
     for (size_t i = 0; i < n; i++)
         if (!(pivot[i] > 0))
-            return massless(s, pivot[least] > 0 ? i : least);
-    return true;
+            return massless(s, elastic_beside(s, pivot[least] > 0 ? i : least));
+    const int rounded = rounded_closed_pivot(s, pivot);
+    return rounded < 0 || massless(s, elastic_beside(s, (size_t)rounded));
 }
 
 // Time in which a coordinate has moved by `way` along the motion of now, the first one; 0 at rest.
@@ -181,7 +213,7 @@ static int rounded_pivot(const struct ct_embed *s)
         for (int k = 0; k < r; k++)
             gross += fabs(s->B[k + r * i] * s->MB[s->dependent[k] + n * i]);
         const double pivot = s->S[i + f * i] * s->S[i + f * i];
-        if (pivot <= 16 * DBL_EPSILON * gross)
+        if (pivot <= rounding_pivot * gross)
             return s->independent[i];
     }
     return -1;

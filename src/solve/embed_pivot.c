@@ -34,8 +34,8 @@ static void square(const struct ct_embed *s, double *A)
     memset(A, 0, m * m * sizeof *A);
     for (size_t k = 0; k < n; k++, J += m)
         for (size_t j = 0; j < m; j++)
-            for (size_t i = j; i < m && J[j] != 0; i++)
-                A[i + m * j] += J[i] * J[j];
+            if (J[j] != 0)
+                ct_vector_add(A + m * j + j, J[j], J + j, m - j);
 }
 
 static double smallest_singular_value(struct ct_embed *s)

@@ -10,10 +10,6 @@
 
 #include "solve/embed.h"
 
-// A row counts as dependent when what is left of it is this small against the largest: the
-// constraints of a closed mechanism are known to about 1e-12 after projection.
-static const double ct_embed_rank_tolerance = 1e-9;
-
 static inline double *ct_embed_J(const struct ct_embed *s, int row, int column)
 {
     return &s->m->J[(size_t)row + s->m->nrow * (size_t)column];

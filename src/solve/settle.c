@@ -2,6 +2,7 @@
 #include "solve/settle.h"
 #include "formulate/flexible.h"
 #include "numeric/dense.h"
+#include "solve/criterion.h"
 #include "solve/bend.h"
 
 #include <math.h>
@@ -74,7 +75,6 @@ static void find_speeds(struct ct_arena *a, const struct ct_model *model,
 {
     struct ct_machine *m = ct_machine_create(a, model, e);
     const size_t nrow = e->nrow, nu = e->nu;
-    const double dependent = 1e-9;
     double *y = CT_NEWN(a, double, m->nq + nu + 1), *A = CT_NEWN(a, double, nrow *nu + 1),
            *b = CT_NEWN(a, double, nrow + nu + 1);
     int *iwork = CT_NEWN(a, int, nu + 1), *free = CT_NEWN(a, int, nu + 1);
@@ -91,7 +91,7 @@ static void find_speeds(struct ct_arena *a, const struct ct_model *model,
     for (size_t i = 0; i < nrow; i++)
         b[i] = -m->v[i];
     if (n)
-        ct_lstsq(b, A, (int)nrow, n, (int)nrow, dependent, iwork, work);
+        ct_lstsq(b, A, (int)nrow, n, (int)nrow, ct_rank_tolerance, iwork, work);
     for (int k = 0; k < n; k++)
         y[m->nq + (size_t)free[k]] += b[k];
     ct_machine_set(m, 0, y);

@@ -515,7 +515,15 @@ static void explain_end(struct ct_run *r)
 {
     const size_t n = r->ctx->ndiagnostic;
     const enum ct_code code = n ? r->ctx->diagnostic[n - 1].code : 0;
-    if (code == CT_E_STEP_COUNT)
+    const bool is_stuck
+        = code == CT_E_STEP_COUNT || code == CT_E_STEP_SMALL || code == CT_E_STEP_SINGULAR;
+    if (is_stuck && r->e->is_truncated)
+        ct_note(
+            r->ctx, (struct ct_mark){0},
+            "the equations are cut to first order, by 'stretch-linear' or 'small'; where what "
+            "carries the small coordinates is free to move, their masses can vanish as these "
+            "grow: 'foreshortening' has all terms");
+    else if (code == CT_E_STEP_COUNT)
         ct_run_explain_count(r);
     if (!r->m->nrow)
         return;

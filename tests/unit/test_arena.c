@@ -105,6 +105,43 @@ static void a_pushed_array_keeps_its_elements(void **state)
         assert_int_equal(v[i], 3 * i);
 }
 
+static void count(void *n)
+{
+    ++*(int *)n;
+}
+
+// What a merged arena holds stays, and what is to be done at its end is done once, at the end of the other.
+static void merged_arenas_end_together(void **state)
+{
+    static const size_t size[] = {0, 100, 10000}; // of what is in the one, and in the other
+    for (size_t i = 0; i < COUNT(size); i++)
+        for (size_t k = 0; k < COUNT(size); k++) {
+            int n = 0;
+            struct ct_arena *into = ct_arena_create(), *from = ct_arena_create_under(into);
+            char *a = ct_arena_alloc(into, size[i] + 1), *b = ct_arena_alloc(from, size[k] + 1);
+            if (size[i])
+                ct_arena_at_end(into, count, &n);
+            if (size[k])
+                ct_arena_at_end(from, count, &n);
+            struct ct_arena *under = ct_arena_create_under(from);
+            char *c = ct_arena_strdup(under, "deep");
+            memset(a, 1, size[i] + 1);
+            memset(b, 2, size[k] + 1);
+            const size_t used = ct_arena_used(into) + ct_arena_used(from);
+            ct_arena_merge(into, from);
+            assert_int_equal(ct_arena_used(into), used);
+            memset(ct_arena_alloc(into, 5000), 3, 5000);
+            assert_true(a[size[i]] == 1 && b[0] == 2 && b[size[k]] == 2);
+            assert_string_equal(c, "deep");
+            ct_arena_destroy(into);
+            assert_int_equal(n, (size[i] > 0) + (size[k] > 0));
+        }
+    struct ct_arena *empty = ct_arena_create();
+    ct_arena_merge(*state, empty);
+    ct_arena_merge(empty = ct_arena_create(), ct_arena_create());
+    ct_arena_destroy(empty);
+}
+
 static void destroying_nothing_is_allowed(void **state)
 {
     (void)state;
@@ -224,6 +261,7 @@ int main(void)
         CASE(many_megabytes_are_zeroed_and_stay),
         CASE(strings_are_copied_whole),
         CASE(a_pushed_array_keeps_its_elements),
+        CASE(merged_arenas_end_together),
         CASE(destroying_nothing_is_allowed),
         CASE(the_nth_refusal_reaches_the_guard),
         CASE(after_a_refusal_the_arena_is_usable),
