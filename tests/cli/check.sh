@@ -52,6 +52,21 @@ echo '-- beams with nothing left out'
 for model in "$SYSTEMS"/spin_up_stiff/model.yaml "$SYSTEMS"/tapered_cantilever/model.yaml "$SYSTEMS"/slider_crank_flexible/model.yaml; do
   "$COTREE" check "$model" --keep-all | grep '^beam'
 done
+echo '-- what lumped mass does not have'
+for mass in lumped consistent; do
+  for inertia in false true '[1e-3, 5e-4, 5e-4]'; do
+    cat >rotary.yaml <<END
+cotree: 1
+bodies:
+  bar: {type: beam, length: 1, elements: 2, E: 7e10, area: 1e-4, Iz: 1e-9, density: 2700, mass: $mass, rotary_inertia: $inertia, points: {tip: length}}
+joints:
+  root: {type: weld, from: ground, to: bar}
+forces:
+  pull: {type: force, at: bar.tip, value: [0, 1, 0]}
+END
+    echo "$mass, $inertia: $("$COTREE" check rotary.yaml | grep 'left out.*rotary')"
+  done
+done
 echo '-- derivatives for implicit methods'
 for model in slider_crank chain40; do
   "$COTREE" check "$SYSTEMS/$model/model.yaml" --tree joints --method radau5 | grep '^derivatives'
