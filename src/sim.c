@@ -335,6 +335,24 @@ static bool at_progress(void *user, double t, double end)
     return !sim->is_late;
 }
 
+static void foresee(void *user, const struct ct_foresight *f)
+{
+    struct ct_sim *sim = user;
+    if (!sim->progress)
+        return;
+    ct_progress_finish(sim->progress);
+    FILE *out = sim->progress->out;
+    fprintf(out, "t = %.3g s: steps of %.2g s; some %.1g more are to come", f->t, f->step,
+            f->to_come);
+    if (f->fastest)
+        fprintf(out, "; the fastest motion that is possible, of %.2g 1/s, is one of '%s'",
+                f->rate, f->fastest);
+    if (f->demanding)
+        fprintf(out, "; every vibration is followed for the output '%s'", f->demanding);
+    fputc('\n', out);
+    fflush(out);
+}
+
 static void want_residual(void *user)
 {
     struct ct_sim *sim = user;
@@ -369,6 +387,7 @@ static bool integrate(struct ct_sim *sim)
     }
     if (sim->results->progress || sim->deadline > 0)
         o->progress = at_progress;
+    o->foresee = foresee;
     o->row = at_row;
     o->want_residual = want_residual;
     o->user = sim;

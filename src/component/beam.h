@@ -57,6 +57,7 @@ struct ct_beam {
     ct_ex area, Iy, Iz, J; // [m^2], [m^4]; may contain x
     ct_ex mass_per_length; // [kg/m]; may contain x
     bool has_rotary;       // `rotary_inertia` is neither absent nor false
+    bool misses_rotary;    // `rotary_inertia: true`, which lumped mass does not have
     ct_ex rotary[3];       // inertia per length about x, y, z [kg m]; may contain x
     ct_ex
         twist_inertia; // rho (Iy + Iz), of twist where torsion is present and has_rotary is false

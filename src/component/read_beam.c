@@ -423,6 +423,7 @@ static void fill_material(const struct work *w)
 
     const struct ct_value *rotary = get(w, "rotary_inertia");
     const ct_ex of_section[] = {polar, beam->Iy, beam->Iz};
+    beam->misses_rotary = rotary->count == 1 && beam->is_lumped;
     beam->has_rotary = rotary->count == 3 || (rotary->count == 1 && !beam->is_lumped);
     for (int i = 0; i < 3; i++)
         beam->rotary[i] = !beam->has_rotary  ? CT_EX_ZERO

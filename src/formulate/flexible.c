@@ -190,6 +190,9 @@ static void settle(struct ct_build *b, struct ct_flexible *f)
                                              "bending of %s out of the plane, and its torsion",
                                              f->name),
                              "gravity, loads, masses and arms lie in the plane");
+    if (beam->misses_rotary)
+        ct_topology_left_out(b, ct_arena_printf(b->arena, "rotary inertia of %s", f->name),
+                             "lumped mass has none unless 'rotary_inertia' gives values");
     if (beam->nshape)
         f->deformation &= ct_fields_family(beam);
     need_stiffness(b, f);

@@ -152,7 +152,7 @@ static ct_ex3 cut_torque(struct ct_build *b, int node)
     return sum;
 }
 
-// ---- the joint ---------------------------------------------------------------------------------------------
+// ---- branches ----------------------------------------------------------------------------------------
 
 static int outboard_node(const struct ct_build *b, const struct ct_tree *t, int edge)
 {
@@ -160,7 +160,7 @@ static int outboard_node(const struct ct_build *b, const struct ct_tree *t, int 
     return t->parent_edge[head] == edge ? head : b->wiring[edge].tail;
 }
 
-void ct_reaction_of_edge(struct ct_build *b, int edge, ct_ex3 *force, ct_ex3 *torque)
+static void sum_over_trees(struct ct_build *b, int edge, ct_ex3 *force, ct_ex3 *torque)
 {
     *force = *torque = zero3;
     if (b->T.is_branch[edge]) {
@@ -176,6 +176,133 @@ void ct_reaction_of_edge(struct ct_build *b, int edge, ct_ex3 *force, ct_ex3 *to
             *torque = ct_ex3_neg(b->x, *torque);
     }
 }
+
+// ---- planar mechanisms -------------------------------------------------------------------------------------
+
+// Does component i of a force lie in the plane, or that of a torque along its normal?
+static bool is_of_plane(const struct ct_build *b, int node, bool is_force, int i)
+{
+    const double rounding = 1e-12; // of components of unit vectors
+    const ct_ex3 n = ct_ex33_apply_t(b->x, &b->upright[node], b->plane[2]);
+    const double along = fabs(ct_ex_value(b->x, n.e[i], b->value));
+    return is_force ? along < rounding : along > 1 - rounding;
+}
+
+// Nodes that branch e cuts off from ground.
+static void mark_outboard(const struct ct_tree *t, int edge, bool *outboard)
+{
+    for (int i = 1; i < t->nnode; i++) { // parents come first
+        const int node = t->order[i];
+        outboard[node] = t->parent_edge[node] == edge || outboard[t->parent[node]];
+    }
+}
+
+static bool is_chord(const struct ct_build *b, int edge)
+{
+    return !b->T.is_branch[edge] || (b->edge[edge].has_rotation && !b->R.is_branch[edge]);
+}
+
+static bool is_link(const struct ct_build *b, size_t edge)
+{
+    const enum ct_edge_kind kind = b->edge[edge].kind;
+    return kind != CT_EDGE_BODY && kind != CT_EDGE_FORCE && !b->edge[edge].never_branch;
+}
+
+// Nodes that hang on the head of an edge once it is cut; NULL if its tail is among them: it closes a loop.
+static const bool *hanging_on(const struct ct_build *b, int edge)
+{
+    bool *hangs = CT_NEWN(b->arena, bool, b->nnode), grows = true;
+    hangs[b->wiring[edge].head] = true;
+    while (grows) {
+        grows = false;
+        for (size_t e = 0; e < b->nedge; e++) {
+            const int tail = b->wiring[e].tail, head = b->wiring[e].head;
+            if ((int)e == edge || !is_link(b, e) || hangs[tail] == hangs[head])
+                continue;
+            hangs[tail] = hangs[head] = grows = true;
+        }
+    }
+    return hangs[b->wiring[edge].tail] ? NULL : hangs;
+}
+
+// Do the trees cut off, below branch e of both, all that hangs on it? Chords out of the cut may carry part of it.
+static bool is_cut_by_trees(const struct ct_build *b, int edge)
+{
+    if (is_chord(b, edge))
+        return false;
+    bool *cut[2];
+    for (int k = 0; k < 2; k++) {
+        const struct ct_tree *t = k ? &b->R : &b->T;
+        cut[k] = CT_NEWN(b->arena, bool, b->nnode);
+        if (t->is_branch[edge])
+            mark_outboard(t, edge, cut[k]);
+    }
+    for (size_t e = 0; e < b->nedge; e++) {
+        const int tail = b->wiring[e].tail, head = b->wiring[e].head;
+        const bool is_open
+            = b->edge[e].kind != CT_EDGE_ARM && is_link(b, e) && is_chord(b, (int)e);
+        // a chord within the cut keeps what it transmits to itself, if both trees cut off both its ends
+        if (is_open && (cut[0][tail] || cut[1][tail] || cut[0][head] || cut[1][head])
+            && !(cut[0][tail] && cut[1][tail] && cut[0][head] && cut[1][head]))
+            return false;
+    }
+    return true;
+}
+
+// What an edge that closes no loop transmits, by the equilibrium of all that hangs on it, in no tree's order:
+// about the origin of its head P, sum f and sum (r - P) x f + t, f and t what a node needs.
+static void sum_over_side(struct ct_build *b, int edge, const bool *hangs, ct_ex3 *force,
+                          ct_ex3 *torque)
+{
+    const int head = b->wiring[edge].head;
+    const bool is_inboard = hangs[0]; // ground hangs on the head: take the other side
+    *force = *torque = zero3;
+    for (int node = 1; node < (int)b->nnode; node++) {
+        if (hangs[node] == is_inboard)
+            continue;
+        const ct_ex3 f = own_force(b, node);
+        add(b, force, f);
+        add(b, torque, own_torque(b, node));
+        if (!ct_ex3_is_zero(f) && node != head)
+            add(b, torque, ct_ex3_cross(b->x, ct_path_position(b, head, node), f));
+    }
+    if (is_inboard) {
+        *force = ct_ex3_neg(b->x, *force);
+        *torque = ct_ex3_neg(b->x, *torque);
+    }
+}
+
+static ct_ex3 part_along(struct ct_build *b, ct_ex3 v, ct_ex3 n)
+{
+    return ct_ex3_scale(b->x, ct_ex3_dot(b->x, v, n), n);
+}
+
+// Rows of chords lie in the plane: what leaves it comes from the sums over one side.
+static void complete(struct ct_build *b, int edge, ct_ex3 *force, ct_ex3 *torque)
+{
+    const bool *hangs = hanging_on(b, edge);
+    ct_ex3 f, t;
+    if (!hangs)
+        return;
+    sum_over_side(b, edge, hangs, &f, &t);
+    const ct_ex3 n = b->plane[2];
+    take(b, force, part_along(b, *force, n));
+    add(b, force, part_along(b, f, n));
+    *torque = part_along(b, *torque, n);
+    if (b->edge[edge].has_rotation) {
+        add(b, torque, t);
+        take(b, torque, part_along(b, t, n));
+    }
+}
+
+void ct_reaction_of_edge(struct ct_build *b, int edge, ct_ex3 *force, ct_ex3 *torque)
+{
+    sum_over_trees(b, edge, force, torque);
+    if (b->is_planar && !is_cut_by_trees(b, edge))
+        complete(b, edge, force, torque);
+}
+
+// ---- the joint ---------------------------------------------------------------------------------------------
 
 void ct_reaction_derive(struct ct_build *b, int joint, ct_ex3 *force, ct_ex3 *torque)
 {
@@ -200,26 +327,6 @@ void ct_reaction_derive(struct ct_build *b, int joint, ct_ex3 *force, ct_ex3 *to
     }
 }
 
-// ---- planar mechanisms -------------------------------------------------------------------------------------
-
-// Does component i of a force lie in the plane, or that of a torque along its normal?
-static bool is_of_plane(const struct ct_build *b, int node, bool is_force, int i)
-{
-    const double rounding = 1e-12; // of components of unit vectors
-    const ct_ex3 n = ct_ex33_apply_t(b->x, &b->upright[node], b->plane[2]);
-    const double along = fabs(ct_ex_value(b->x, n.e[i], b->value));
-    return is_force ? along < rounding : along > 1 - rounding;
-}
-
-// Nodes that branch e cuts off from ground.
-static void mark_outboard(const struct ct_tree *t, int edge, bool *outboard)
-{
-    for (int i = 1; i < t->nnode; i++) { // parents come first
-        const int node = t->order[i];
-        outboard[node] = t->parent_edge[node] == edge || outboard[t->parent[node]];
-    }
-}
-
 bool ct_reaction_is_known(const struct ct_build *b, int joint, bool is_force, int i)
 {
     const int edge = b->edge_of_joint[joint];
@@ -229,27 +336,6 @@ bool ct_reaction_is_known(const struct ct_build *b, int joint, bool is_force, in
 
 bool ct_reaction_of_edge_is_known(const struct ct_build *b, int edge, bool is_force, int i)
 {
-    if (!b->is_planar || is_of_plane(b, b->wiring[edge].tail, is_force, i))
-        return true;
-    if (!b->T.is_branch[edge] || (b->edge[edge].has_rotation && !b->R.is_branch[edge]))
-        return false;
-    bool *cut[2];
-    for (int k = 0; k < 2; k++) {
-        const struct ct_tree *t = k ? &b->R : &b->T;
-        cut[k] = CT_NEWN(b->arena, bool, b->nnode);
-        if (t->is_branch[edge])
-            mark_outboard(t, edge, cut[k]);
-    }
-    for (size_t e = 0; e < b->nedge; e++) {
-        const enum ct_edge_kind kind = b->edge[e].kind;
-        const int tail = b->wiring[e].tail, head = b->wiring[e].head;
-        const bool is_open
-            = (kind == CT_EDGE_JOINT || kind == CT_EDGE_CLOSURE) && !b->edge[e].never_branch
-           && (!b->T.is_branch[e] || (b->edge[e].has_rotation && !b->R.is_branch[e]));
-        // a chord within the cut keeps what it transmits to itself, if both trees cut off both its ends
-        if (is_open && (cut[0][tail] || cut[1][tail] || cut[0][head] || cut[1][head])
-            && !(cut[0][tail] && cut[1][tail] && cut[0][head] && cut[1][head]))
-            return false;
-    }
-    return true;
+    return !b->is_planar || is_of_plane(b, b->wiring[edge].tail, is_force, i)
+        || is_cut_by_trees(b, edge) || hanging_on(b, edge);
 }

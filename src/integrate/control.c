@@ -66,8 +66,10 @@ bool ct_control_is_endless(struct ct_pace *p, long steps, long most, double t, d
     const double before = p->gain;
     p->gain = t - p->t;
     p->t = t;
-    return before > 0 && p->gain <= growing * before
-        && rest / p->gain * (double)window > endless * (double)most;
+    const bool has_grown = !(before > 0 && p->gain <= growing * before);
+    p->step = p->gain / (double)window;
+    p->to_come = has_grown ? 0 : rest / p->step;
+    return p->to_come > endless * (double)most;
 }
 
 static double safety_of(const struct ct_method *m)

@@ -47,8 +47,9 @@ void ct_control_refuse(struct ct_control *c, const struct ct_method *m, double h
 
 /// How far a run gets with a thousandth of the steps it may make; all zero before the first.
 struct ct_pace {
-    double t, gain; // where the last thousandth ended, and its length
-    long next;      // steps at its end: before, there is nothing to ask
+    double t, gain;       // where the last thousandth ended, and its length
+    long next;            // steps at its end: before, there is nothing to ask
+    double step, to_come; // then: mean step, steps up to the end; 0 while steps still grow
 };
 /// After so many of `most` steps t is reached, and `rest` is left: would the end take several times as many as are allowed?
 /// False while steps still grow.

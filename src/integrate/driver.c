@@ -383,6 +383,14 @@ static bool advance(struct ct_driver *r)
         && ct_driver_give_samples_here(r);
 }
 
+static void tell_foreseen(struct ct_driver *r)
+{
+    if (!r->o->foresee || r->is_told || !(r->pace.to_come > r->o->many_steps))
+        return;
+    r->is_told = true;
+    r->o->foresee(r->p->user, r->t, r->y, r->pace.step, r->pace.to_come);
+}
+
 static bool march(struct ct_driver *r)
 {
     const long most = r->o->max_steps ? r->o->max_steps : 100000000;
@@ -399,8 +407,8 @@ static bool march(struct ct_driver *r)
             return ct_error(r->ctx, nowhere, CT_E_STEP_COUNT,
                             "at t = %.3g after %ld steps, of %.2g s now: up to t = %.9g they "
                             "would be more than the %ld that are allowed",
-                            r->t, r->stats->steps, r->pace.gain * 1000 / (double)most, r->o->t1,
-                            most);
+                            r->t, r->stats->steps, r->pace.step, r->o->t1, most);
+        tell_foreseen(r);
         if (r->o->at_step && !r->o->at_step(r->p->user, r->t, r->y))
             return true;
     }

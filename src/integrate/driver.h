@@ -27,6 +27,7 @@ struct ct_driver {
     bool is_stop_time;
     struct ct_control control;
     struct ct_pace pace;
+    bool is_told;       // that it takes long
     double *y, *dy;     // (ny) each, as all that follow
     double *y1, *dy1;   // end of the step as the method gives it
     double *end, *dend; // the same, projected: y1, dy1 themselves where that changes nothing

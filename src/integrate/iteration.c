@@ -408,8 +408,8 @@ static bool factor_slow(struct ct_iteration *it, double c)
 }
 
 double ct_iteration_slow_norm(struct ct_iteration *it, const struct ct_tolerance *tolerance,
-                              const double *y, const bool *asked, const double *d,
-                              const double *u)
+                              const double *y, const bool *asked, const double *ample,
+                              const double *d, const double *u)
 {
     const int nu = it->nu, n = it->n;
     double *b = it->b, *slow = it->off;
@@ -422,7 +422,7 @@ double ct_iteration_slow_norm(struct ct_iteration *it, const struct ct_tolerance
             b[k] += it->M[k + nu * j] * u[j];
     ct_lu_solve(b, it->H, it->pivot_slow, n, n, 1, n, false);
     for (int k = 0; k < nu; k++)
-        slow[k] = asked[k] ? u[k] : b[k];
+        slow[k] = asked[k] ? u[k] : hypot(b[k], (u[k] - b[k]) / (ample[k] * it->share[nu + k]));
     return ct_iteration_norm(it, d, slow, nu, 1);
 }
 

@@ -146,10 +146,10 @@ static inline double ct_iteration_norm(const struct ct_iteration *it, const doub
 }
 
 /// The norm of errors d, u (nu) of places and speeds at y of which, but for the speeds that are asked for, only what is slow
-/// counts of speeds, (8.10). INFINITY where that cannot be told. `off` is overwritten.
+/// counts of speeds, (8.10), and of the rest its part of `ample` (nu). INFINITY where that cannot be told. `off` is overwritten.
 double ct_iteration_slow_norm(struct ct_iteration *it, const struct ct_tolerance *tolerance,
-                              const double *y, const bool *asked, const double *d,
-                              const double *u);
+                              const double *y, const bool *asked, const double *ample,
+                              const double *d, const double *u);
 
 /// The error of a step that ends at y1, time t1: that of the states, `states`, or what the errors d, u (nu) of places and
 /// speeds mean for outputs, if that is more.  (8.6)

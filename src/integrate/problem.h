@@ -151,6 +151,9 @@ struct ct_integrate_options {
     /// The same for samples in singular positions or close to them. NULL: at_sample.
     bool (*at_singular_sample)(void *user, double t, const double *y,
                                const struct ct_bridge *b);
+    /// Called once if the end is foreseen to be more than so many steps away, with their present size. May be NULL.
+    void (*foresee)(void *user, double t, const double *y, double step, double to_come);
+    double many_steps;
     /// Called after each accepted step for progress; may be NULL. Return false to stop quietly.
     bool (*at_step)(void *user, double t, const double *y);
 };

@@ -36,8 +36,10 @@ struct ct_radau {
     double *power, *power1;      // their rates at both ends  (ny)
     double largest;              // acceleration at the end of steps so far
     // speeds in the error, see radau_error.c
-    bool is_eased; // they were counted by what is slow of them at the last look
-    int unlooked;  // steps until the next one
+    bool is_eased;    // they were counted by what is slow of them at the last look
+    int unlooked;     // steps until the next one
+    double *swiftest; // largest |u| at looks so far  (nu)
+    double *ample;    // what vibrations are measured against  (nu)
 };
 
 /// out (n) = weighted stages z (n x 3).

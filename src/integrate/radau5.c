@@ -78,7 +78,7 @@ static void *create(struct ct_arena *a, const struct ct_method *method,
     create_stages(a, &s->change, p->dae);
     double **const stages_of_speeds[] = {&s->F, &s->r};
     double **const stages_of_rows[] = {&s->phi, &s->v};
-    double **const speeds[] = {&s->rate, &s->u, &s->u_dot, &s->d};
+    double **const speeds[] = {&s->rate, &s->u, &s->u_dot, &s->d, &s->swiftest, &s->ample};
     for (size_t i = 0; i < COUNT(stages_of_speeds); i++)
         *stages_of_speeds[i] = CT_NEWN(a, double, STAGES *nu + 1);
     for (size_t i = 0; i < COUNT(stages_of_rows); i++)

@@ -7,7 +7,8 @@
 //
 //     counted   s = (c^2 M + c C + K)^-1 c^2 M e_u,   c = 10 max (|u| + a)/(min(|q|, 1) + a)          (8.10)
 //
-// with the places e_d. Of a vibration of omega it leaves c^2/(c^2 + omega^2).
+// with the places e_d. Of a vibration of omega it leaves c^2/(c^2 + omega^2). The motion feels the energy of the rest, so that is
+// held to the root of the tolerance.
 // Source: Hairer and Wanner (1996), IV.8, key hairer1996; formulation 8.4.
 #include "integrate/radau.h"
 
@@ -60,14 +61,25 @@ static double filter(struct ct_radau *s, const double *u, const double *u_dot)
                        : filter_few(s, u, u_dot, 2, 0);
 }
 
+// The motion feels the energy of vibrations, the square of their speeds: against that of the largest speeds so far.
+static void find_ample(struct ct_radau *s, const double *u)
+{
+    const double small = s->wanted.atol / s->wanted.rtol, root = sqrt(s->wanted.rtol);
+    for (int k = 0; k < s->dae->nu; k++) {
+        s->swiftest[k] = ct_larger(s->swiftest[k], fabs(u[k]));
+        s->ample[k] = root * (s->swiftest[k] + small);
+    }
+}
+
 // Less of the error where it is one of speeds that vibrate.
 static void ease_speeds(struct ct_radau *s, const struct ct_problem *p,
                         const struct ct_tolerance *tol, const double *y, double *err)
 {
     if (!p->asked_speeds || (*err <= 1 && !s->is_eased && s->unlooked-- > 0))
         return;
-    const double slow
-        = ct_iteration_slow_norm(s->it, tol, y, p->asked_speeds, s->change.d, s->change.u);
+    find_ample(s, y + s->dae->nq);
+    const double slow = ct_iteration_slow_norm(s->it, tol, y, p->asked_speeds, s->ample,
+                                               s->change.d, s->change.u);
     s->is_eased = slow < worth_it * *err;
     s->unlooked = STEPS_BETWEEN;
     *err = ct_smaller(*err, slow);

@@ -101,6 +101,18 @@ static bool find_fast(struct ct_stiffness *s, double t, const double *y)
     return isfinite(s->fast);
 }
 
+int ct_stiffness_fastest(struct ct_stiffness *s, double t, const double *y)
+{
+    int most = s->first;
+    s->fast = 0;
+    if (s->first == s->last || !find_fast(s, t, y))
+        return -1;
+    for (int i = s->first; i < s->last; i++)
+        if (fabs(s->v[i]) > fabs(s->v[most]))
+            most = i;
+    return most;
+}
+
 static double find_slow(const struct ct_stiffness *s, double h)
 {
     double change = 0;

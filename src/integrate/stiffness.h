@@ -54,6 +54,8 @@ struct ct_stiffness *ct_stiffness_create(struct ct_arena *a, const struct ct_pro
                                          const struct ct_integrate_stats *stats, double rtol,
                                          int first, int last);
 
+/// The speed, first to last - 1, that moves most in the fastest motion at t, y; its rate is `fast` then. -1: cannot be told.
+int ct_stiffness_fastest(struct ct_stiffness *s, double t, const double *y);
 /// After each accepted step to t, y; end: of the run. True if a trial is worth its work now: tests were suspicious and
 /// there are many steps to come.
 bool ct_stiffness_watch(struct ct_stiffness *s, double t, const double *y, double end);

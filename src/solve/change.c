@@ -159,6 +159,7 @@ static void add_stats(struct ct_integrate_stats *sum, const struct ct_integrate_
 bool ct_run_march(struct ct_run *r, struct ct_problem *p, struct ct_integrate_options io)
 {
     const double *sample = io.sample;
+    r->problem = p;
     if (r->o->stiff_method && io.step == 0)
         r->stiffness = ct_stiffness_create(r->arena, p, &r->stats, r->o->wanted, (int)r->m->nq,
                                            (int)(r->m->nq + r->m->nu));

@@ -44,18 +44,22 @@ static bool is_controlled(const struct ct_equations *e, ct_ex v)
         && v.id != e->total.id;
 }
 
-const bool *ct_fidelity_asked_speeds(struct ct_arena *a, const struct ct_equations *e)
+bool ct_fidelity_is_demanding(const struct ct_equations *e, size_t i)
 {
-    const struct ct_exs *x = e->x;
+    const ct_ex v = e->result[i].value;
     const unsigned known
         = 1u << CT_SYM_TIME | 1u << CT_SYM_PARAM | 1u << CT_SYM_Q | 1u << CT_SYM_U;
+    return v.id == e->total.id || ct_ex_kinds(e->x, v) & ~known;
+}
+
+const bool *ct_fidelity_asked_speeds(struct ct_arena *a, const struct ct_equations *e)
+{
     bool *asked = CT_NEWN(a, bool, e->nu + 1);
     for (size_t i = 0; i < e->nresult; i++) {
-        const ct_ex v = e->result[i].value;
-        if (v.id == e->total.id || ct_ex_kinds(x, v) & ~known)
+        if (ct_fidelity_is_demanding(e, i))
             return NULL;
         for (size_t k = 0; k < e->nu; k++)
-            asked[k] |= v.id == e->u[k].symbol.id;
+            asked[k] |= e->result[i].value.id == e->u[k].symbol.id;
     }
     return asked;
 }

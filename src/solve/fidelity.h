@@ -15,8 +15,10 @@ struct ct_fidelity;
 
 /// NULL if there is no output to control. Everything lives in a, the machine's arena.
 struct ct_fidelity *ct_fidelity_create(struct ct_arena *a, struct ct_machine *m);
-/// Per speed (nu, arena a): is it an output? NULL, for all, where outputs are made of more than time and states: accelerations and
-/// reactions feel every vibration; and where the total energy is one, which is a check of all that moves.
+/// Is output i made of more than time and states, or the total energy?
+bool ct_fidelity_is_demanding(const struct ct_equations *e, size_t i);
+/// Per speed (nu, arena a): is it an output? NULL, for all, where one is demanding: accelerations and reactions feel every
+/// vibration, and the total energy is a check of all that moves.
 const bool *ct_fidelity_asked_speeds(struct ct_arena *a, const struct ct_equations *e);
 /// A new run begins: nothing is known of the sizes of outputs.
 void ct_fidelity_start(struct ct_fidelity *p);

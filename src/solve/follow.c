@@ -145,7 +145,7 @@ bool ct_run_follow(struct ct_run *r, const struct ct_run_options *o,
     r->o = o;
     r->report = report;
     r->next = CT_NEWN(r->arena, double, r->ny);
-    r->nevent = ct_time_events(r->arena, r->m, 0, o->duration, &r->event);
+    r->nevent = ct_time_events(r->arena, r->m, 0, 0, o->duration, &r->event);
     r->pending = ct_run_next_event(r, 0);
     if (!ct_run_tables_reach(r, 0))
         return false;

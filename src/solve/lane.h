@@ -126,8 +126,7 @@ struct ct_lanes {
     vec kappa, sigma;        // as in embed.h
     vec pivot_most;          // the largest sigma so far
     vec t, h;                // of this try
-    vec before; // the last time of evaluation before the next event by time; INFINITY
-    bool has_time_events;
+    vec before;         // the last time of evaluation before the next event by time; INFINITY
     int nroot;          // state modes
     const int *root_of; // (nroot) their places among the modes
     vec *side, *g0,

@@ -57,15 +57,11 @@ static void share(struct ct_lanes *s, int l)
 void ct_lane_make_events(struct ct_lanes *s)
 {
     struct ct_arena *a = s->arena;
-    const struct ct_exs *x = s->e->x;
     s->nroot = s->run->nroot;
     s->root_of = s->run->root_of;
     s->side = CT_NEWN(a, vec, s->nroot + 1);
     s->g0 = CT_NEWN(a, vec, s->nroot + 1);
     s->g = CT_NEWN(a, vec, s->nroot + 1);
-    s->has_time_events = (size_t)s->nroot < s->e->nmode;
-    for (size_t i = 0; i < x->ntable; i++)
-        s->has_time_events |= !x->table[i].m;
     for (int l = 0; l < W; l++) {
         struct ct_lane_events *v = &s->lane[l].events;
         s->before[l] = v->pending = INFINITY;
@@ -97,7 +93,17 @@ static void find_times(struct ct_lanes *s, struct ct_lane_events *v)
 {
     ct_arena_destroy(v->arena);
     v->arena = ct_arena_create_under(s->arena);
-    v->ntime = ct_time_events(v->arena, s->m, 0, v->options.duration, &v->time);
+    v->ntime
+        = ct_time_events(v->arena, s->m, s->method->order, 0, v->options.duration, &v->time);
+}
+
+static bool has_time_events(const struct ct_lanes *s)
+{
+    const struct ct_exs *x = s->e->x;
+    bool has = (size_t)s->nroot < s->e->nmode;
+    for (size_t i = 0; i < x->ntable; i++)
+        has |= ct_table_has_kinks(&x->table[i], s->method->order);
+    return has;
 }
 
 bool ct_lane_begin_events(struct ct_lanes *s, int l, const struct ct_run_options *o)
@@ -108,7 +114,7 @@ bool ct_lane_begin_events(struct ct_lanes *s, int l, const struct ct_run_options
     v->options = *o;
     v->whole = 0;
     v->is_event = false;
-    if (s->has_time_events)
+    if (has_time_events(s))
         find_times(s, v);
     lend(s, v);
     r->pending = ct_run_next_event(r, 0);

@@ -129,7 +129,14 @@ static int ascending(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-size_t ct_time_events(struct ct_arena *a, struct ct_machine *m, double t0, double t1,
+bool ct_table_has_kinks(const struct ct_table *table, int order)
+{
+    const int unfelt
+        = 5; // methods of this order see the error of a jump of the third derivative
+    return !table->m || order > unfelt;
+}
+
+size_t ct_time_events(struct ct_arena *a, struct ct_machine *m, int order, double t0, double t1,
                       double **time)
 {
     struct times list = {.a = a};
@@ -140,7 +147,7 @@ size_t ct_time_events(struct ct_arena *a, struct ct_machine *m, double t0, doubl
     for (size_t k = 0; k < x->ntable; k++)
         for (size_t i = 0; i < x->table[k].n; i++) {
             const double at = x->table[k].x[i];
-            const bool is_kink = !x->table[k].m && at <= t1;
+            const bool is_kink = ct_table_has_kinks(&x->table[k], order) && at <= t1;
             const bool is_end = i + 1 == x->table[k].n && at < t1;
             if (at > t0 && (is_kink || is_end))
                 CT_PUSH(a, list.t, list.n, list.cap, at);

@@ -12,9 +12,12 @@ void ct_modes_start(struct ct_machine *m, double t, const double *y, const doubl
 /// wrong: forces on both sides lead back. Its index, or -1.
 int ct_modes_find_stuck(struct ct_machine *m, double t, const double *y, const double *dy);
 
-/// All times in (t0, t1] at which something changes by time alone: modes of time, knots of linear tables. Ascending;
-/// the list lives in a. Changes closer than (t1 - t0)/4096 to each other may be missed in pairs.
-size_t ct_time_events(struct ct_arena *a, struct ct_machine *m, double t0, double t1,
+/// Are the knots of a table kinks for methods of this order? Those of linear tables are, and of cubic ones, whose third derivative
+/// jumps, for high orders.
+bool ct_table_has_kinks(const struct ct_table *table, int order);
+/// All times in (t0, t1] at which something changes by time alone: modes of time, knots of tables that are kinks for methods of
+/// this order. Ascending; the list lives in a. Changes closer than (t1 - t0)/4096 to each other may be missed in pairs.
+size_t ct_time_events(struct ct_arena *a, struct ct_machine *m, int order, double t0, double t1,
                       double **time);
 
 /// t, but before an event that is pending what holds before it counts, also at its very instant: the knots of linear

@@ -4,6 +4,7 @@
 //     event.c     events, jumps of driven rates      follow.c    motions driven all through
 //     jump.c      speeds after those
 //     change.c    the choice of the method, when the motion turns stiff
+//     length.c    what is said of runs that take long
 //     beam_watch.c  beams that leave what their models hold for
 #ifndef CT_SOLVE_RUN_H
 #define CT_SOLVE_RUN_H
@@ -42,17 +43,19 @@ struct ct_run {
     double turning, t_turning; // how fast followed angles turn [rad/s], and when that was
     bool started;
     // the choice of the method
-    const struct ct_method *method;  // that steps now
-    struct ct_integrate_stats stats; // of it
-    struct ct_stiffness *stiffness;  // watched for; NULL: not
-    struct ct_trial *trial;          // under way
-    struct ct_trial implicit;        // what the implicit method gains since it took over
-    double explicit_pace;            // what was gained before
-    double spent;                    // by the last trial
-    bool is_suspect;                 // steps ended to think of another method
-    double t_before, last_event;     // times
-    size_t ngiven;                   // samples
-    double t_sample;                 // the last one
+    const struct ct_method *method;   // that steps now
+    struct ct_integrate_stats stats;  // of it
+    struct ct_stiffness *stiffness;   // watched for; NULL: not
+    const struct ct_problem *problem; // that is integrated
+    bool is_told;                     // that it takes long
+    struct ct_trial *trial;           // under way
+    struct ct_trial implicit;         // what the implicit method gains since it took over
+    double explicit_pace;             // what was gained before
+    double spent;                     // by the last trial
+    bool is_suspect;                  // steps ended to think of another method
+    double t_before, last_event;      // times
+    size_t ngiven;                    // samples
+    double t_sample;                  // the last one
 };
 
 /// The time to evaluate at for t.
@@ -111,6 +114,11 @@ bool ct_run_report_jump(struct ct_run *r, const char *name, struct ct_mark mark,
 /// At the last ct_machine_constraint. False with CT_E_DRIVER_JUMP.
 bool ct_run_chords_are_closed(struct ct_run *r, double t);
 
+/// For ct_integrate: tells that the end is many steps away, once.
+void ct_run_foresee(void *user, double t, const double *y, double step, double to_come);
+extern const double ct_run_many_steps;
+/// Notes on what holds a run up that would take more steps than are allowed.
+void ct_run_explain_count(struct ct_run *r);
 /// From start to end, with another method from where that pays.
 bool ct_run_march(struct ct_run *r, struct ct_problem *p, struct ct_integrate_options io);
 /// Is another method worth a thought after this step?

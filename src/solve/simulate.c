@@ -524,11 +524,7 @@ static void explain_end(struct ct_run *r)
             "carries the small coordinates is free to move, their masses can vanish as these "
             "grow: 'foreshortening' has all terms");
     else if (code == CT_E_STEP_COUNT)
-        ct_note(
-            r->ctx, (struct ct_mark){0},
-            "steps follow vibrations that are excited: start beams with 'initial: "
-            "equilibrium', leave out or damp what is stiff, or raise 'absolute' above them; "
-            "what is not excited holds up explicit methods only");
+        ct_run_explain_count(r);
     if (!r->m->nrow)
         return;
     if (code == CT_E_STEP_OPEN)
@@ -568,8 +564,9 @@ bool ct_run_simulate(struct ct_run *r, const struct ct_run_options *o,
     r->o = o;
     r->method = o->method;
     r->last_event = -INFINITY;
+    r->is_told = false;
     r->report = report;
-    r->nevent = ct_time_events(r->arena, r->m, 0, o->duration, &r->event);
+    r->nevent = ct_time_events(r->arena, r->m, o->method->order, 0, o->duration, &r->event);
     r->pending = ct_run_next_event(r, 0);
     if (!ct_run_tables_reach(r, 0))
         return false;
@@ -611,6 +608,8 @@ bool ct_run_simulate(struct ct_run *r, const struct ct_run_options *o,
            .nsample = n,
            .at_sample = ct_run_at_sample,
            .at_singular_sample = at_singular_sample,
+           .foresee = ct_run_foresee,
+           .many_steps = ct_run_many_steps,
            .at_step = looks_at_steps(r) ? ct_run_at_step : NULL};
     const bool ok = ct_run_march(r, &p, io);
     if (!ok)

@@ -8,6 +8,16 @@
 
 struct ct_singular;
 
+/// How a long run goes on, as it looks at t.
+struct ct_foresight {
+    double t, step, to_come; // step: of now [s]; to_come: so many
+    const char
+        *fastest; // the coordinate of the fastest motion possible; NULL: it cannot be told
+    double rate;  // of that motion [1/s]
+    const char
+        *demanding; // an output that all vibrations are followed for; NULL: there is none
+};
+
 struct ct_run_options {
     const struct ct_method *method;
     double duration, rtol, atol, step;
@@ -23,6 +33,8 @@ struct ct_run_options {
     /// One row of results per sample; return false to stop.
     bool (*row)(void *user, double t, const double *value, size_t n);
     bool (*progress)(void *user, double t, double end);
+    /// Called once when a million steps and more are to come. May be NULL.
+    void (*foresee)(void *user, const struct ct_foresight *f);
     void *user;
 };
 

@@ -12,6 +12,27 @@ sed 's/^outputs:/outputs:\n  - top_pin.force.x\n  - top_pin.force.z\n  - crank_p
 plain check four_bar.yaml --keep-all --tree joints
 plain simulate four_bar.yaml --keep-all --tree joints --until 0.1 | grep undetermined
 "$COTREE" check four_bar.yaml --keep-all --tree joints --summary - | sed -n '/"undetermined"/,/]/p'
+echo '-- in a plane a loop leaves forces across it open, what hangs on the loop has them determined, in any tree'
+cat >tail.yaml <<'END'
+cotree: 1
+gravity: [0, -9.81, 0.7]
+bodies:
+  ground: {points: {far: [1.8, -0.5, 0]}}
+  crank: {mass: 2, inertia: [0.1, 0.15, 0.2], points: {end: [1, 0, 0.2]}}
+  rod: {mass: 1, inertia: [0.1, 0.15, 0.2], points: {near: [-0.5, 0, 0.2], far: [0.5, 0.1, 0.2], low: [0, -0.2, 0.1]}}
+  rocker: {mass: 0.5, inertia: [0.02, 0.02, 0.03], points: {end: [-1, 0, 0.2]}}
+  tail: {mass: 0.5, inertia: [0.02, 0.02, 0.03], points: {end: [0, 0.5, 0]}}
+joints:
+  root: {type: revolute, from: ground, to: crank, initial: {q: 0.4}}
+  near: {type: revolute, from: crank.end, to: rod.near}
+  far: {type: revolute, from: rod.far, to: rocker.end}
+  foot: {type: revolute, from: rocker, to: ground.far}
+  hang: {type: revolute, from: rod.low, to: tail.end}
+outputs: [root.force.z, near.force.z, hang.force.z, hang.torque.x]
+END
+for tree in auto joints absolute; do
+  "$COTREE" check tail.yaml --tree $tree | grep undetermined
+done
 echo '-- signals that joints and forces do not have'
 cat >signals.yaml <<'END'
 cotree: 1
@@ -30,6 +51,21 @@ say check signals.yaml
 echo '-- beams with nothing left out'
 for model in "$SYSTEMS"/spin_up_stiff/model.yaml "$SYSTEMS"/tapered_cantilever/model.yaml "$SYSTEMS"/slider_crank_flexible/model.yaml; do
   "$COTREE" check "$model" --keep-all | grep '^beam'
+done
+echo '-- what lumped mass does not have'
+for mass in lumped consistent; do
+  for inertia in false true '[1e-3, 5e-4, 5e-4]'; do
+    cat >rotary.yaml <<END
+cotree: 1
+bodies:
+  bar: {type: beam, length: 1, elements: 2, E: 7e10, area: 1e-4, Iz: 1e-9, density: 2700, mass: $mass, rotary_inertia: $inertia, points: {tip: length}}
+joints:
+  root: {type: weld, from: ground, to: bar}
+forces:
+  pull: {type: force, at: bar.tip, value: [0, 1, 0]}
+END
+    echo "$mass, $inertia: $("$COTREE" check rotary.yaml | grep 'left out.*rotary')"
+  done
 done
 echo '-- derivatives for implicit methods'
 for model in slider_crank chain40; do

@@ -60,3 +60,15 @@ bars 0.2 0.3 '' >short.yaml
 say check short.yaml
 bars 1.2 0.9 ', initial: {q: 0.2}' >both.yaml
 say check both.yaml
+echo '-- more steps than allowed: what moves fastest, and which output wants it followed'
+cat >ringing.yaml <<'END'
+cotree: 1
+bodies: {bob: {type: particle, mass: 1}}
+joints: {place: {type: free, from: ground, to: bob, initial: {q: [1, 0, 0], u: [0.01, 1, 0]}}}
+forces: {spring: {type: spring, from: ground, to: bob, stiffness: 1e14, length: 1}}
+outputs: [place.q1, energy.total]
+simulation: {duration: 10, samples: 2, tolerance: 1e-8}
+END
+say simulate ringing.yaml | sed 's/at t = .* now/at t = T after N steps, of H now/'
+sed -i 's/, energy.total//; s/0.01, 1, 0/1e-6, 1, 0/' ringing.yaml
+say simulate ringing.yaml --quiet --until 1

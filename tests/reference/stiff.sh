@@ -1,7 +1,7 @@
 #!/bin/sh
 # stiff.sh CASE: `method: auto` finds that the model of the line CASE in stiff.txt is stiff, and does not fall back to many small
 # steps: at each of the tolerances it makes at most twice as many as radau5, and errs by at most 10 T where a reference is named.
-# most=N: no more than N, where vibrations are excited that need not be followed.
+# most=N: no more than N, less than one for ten radians of the vibrations that are excited and need not be followed.
 # COTREE is the program, COMPARE the comparison tool.
 set -eu
 folder=$(dirname "$0")
