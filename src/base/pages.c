@@ -2,7 +2,6 @@
 #define _DEFAULT_SOURCE // MAP_ANONYMOUS; NOLINT(bugprone-reserved-identifier): the C library names it
 #include "base/pages.h"
 
-#include <stdatomic.h>
 #include <stdint.h>
 #include <stdlib.h>
 
@@ -48,7 +47,7 @@ static void *map(size_t size)
 // Blocks given back, by their size: 32 KiB, 64 KiB ... 4 MiB, 11 MiB at most. A place is emptied and filled in one step, so
 // threads need not wait for each other.
 enum { LEAST_KEPT = 15, NSIZE = 8, NEACH = 4 };
-static _Atomic(void *) kept[NSIZE][NEACH];
+static void *kept[NSIZE][NEACH];
 
 // What a kept block says of itself.
 struct note {
@@ -56,7 +55,7 @@ struct note {
 };
 
 // The places for blocks of a size, and how many there are: 0 where such are not kept.
-static int places(size_t size, _Atomic(void *) **place)
+static int places(size_t size, void ***place)
 {
     const size_t most_of_several = (size_t)1 << 19;
     for (int k = 0; k < NSIZE; k++)
@@ -69,10 +68,10 @@ static int places(size_t size, _Atomic(void *) **place)
 
 void *ct_pages_create(size_t size, size_t *ready, bool *is_zero)
 {
-    _Atomic(void *) *place = NULL;
+    void **place = NULL;
     const int n = places(size, &place);
     for (int i = 0; i < n; i++) {
-        void *p = atomic_exchange(&place[i], NULL);
+        void *p = __atomic_exchange_n(&place[i], NULL, __ATOMIC_ACQUIRE);
         if (p) {
             const struct note *note = p;
             *ready = note->ready;
@@ -87,12 +86,13 @@ void *ct_pages_create(size_t size, size_t *ready, bool *is_zero)
 
 void ct_pages_destroy(void *block, size_t size, size_t ready)
 {
-    _Atomic(void *) *place = NULL;
+    void **place = NULL;
     const int n = places(size, &place);
     *(struct note *)block = (struct note){ready};
     for (int i = 0; i < n; i++) {
         void *none = NULL;
-        if (atomic_compare_exchange_strong(&place[i], &none, block))
+        if (__atomic_compare_exchange_n(&place[i], &none, block, false, __ATOMIC_RELEASE,
+                                        __ATOMIC_RELAXED))
             return;
     }
     munmap(block, round_up(size, page));

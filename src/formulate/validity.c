@@ -135,7 +135,7 @@ static bool swing_on(struct ahead *p, double t)
 static bool look_ahead(struct ct_build *b, const struct ct_validity *v, struct prospect *out)
 {
     struct ahead p = {.b = b};
-    double start[2 * CT_BENDING_PLANES];
+    double start[2 * CT_BENDING_PLANES] = {0};
     for (int i = 0; i < 2 * v->nplane; i++)
         start[i] = v->plane[i / 2].start[i % 2];
     const double end = b->model->simulation.duration, turns = end * v->omega / two_pi;

@@ -48,12 +48,12 @@ static void choose_columns(struct ct_embed *s)
         *(j < r ? &s->dependent[j] : &s->independent[j - r]) = s->column[j];
 }
 
-// The speed with the smallest diagonal entry of M.
+// The speed with the smallest diagonal entry of M; the first one where nothing has asked for M.
 static size_t lightest(const struct ct_embed *s)
 {
     const size_t n = s->m->nu;
     size_t least = 0;
-    for (size_t i = 1; i < n; i++)
+    for (size_t i = 1; i < n && s->m->e->has_dynamics; i++)
         if (s->m->M[i + n * i] < s->m->M[least + n * least])
             least = i;
     return least;
@@ -113,6 +113,8 @@ static size_t elastic_beside(const struct ct_embed *s, size_t k)
 {
     const size_t n = s->m->nu;
     const double *M = s->m->M;
+    if (!s->m->e->has_dynamics)
+        return k;
     ct_machine_motion(s->m);
     for (size_t i = 0; i < n && !s->m->e->u[k].beam; i++) {
         const double both = M[i + n * k] * M[i + n * k], each = M[i + n * i] * M[k + n * k];
@@ -156,6 +158,8 @@ static int rounded_closed_pivot(struct ct_embed *s, const double *pivot)
 {
     const size_t n = s->m->nu;
     const bool is_exact = s->m->e->formulation == CT_FORMULATION_ARTICULATED;
+    if (!s->m->e->has_dynamics) // articulated bodies without M
+        return -1;
     ct_machine_motion(s->m);
     for (size_t i = 0; i < n; i++)
         if (pivot[i] <= rounding_pivot * s->m->M[i + n * i]
