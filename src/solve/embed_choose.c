@@ -124,9 +124,37 @@ static size_t elastic_beside(const struct ct_embed *s, size_t k)
     return k;
 }
 
+// Do coordinates of beams, together, move the same as speed k of a joint or body? What of M_kk they leave is then
+// rounding.
+static bool is_elastic_motion(struct ct_embed *s, size_t k)
+{
+    const size_t n = s->m->nu;
+    const double *M = s->m->M;
+    const struct ct_u *u = s->m->e->u;
+    int ne = 0;
+    if (u[k].beam > 0)
+        return false;
+    for (size_t i = 0; i < n; i++)
+        if (u[i].beam > 0)
+            s->iwork[ne++] = (int)i;
+    for (int j = 0; j < ne; j++) {
+        const size_t row = (size_t)s->iwork[j];
+        for (int i = j; i < ne; i++)
+            s->S[i + ne * j] = M[(size_t)s->iwork[i] + n * row];
+        s->b[j] = s->r[j] = M[row > k ? row + n * k : k + n * row];
+    }
+    if (!ne || !ct_cholesky(s->S, ne, ne))
+        return false;
+    ct_cholesky_solve(s->r, s->S, ne, ne, 1, ne);
+    double left = M[k + n * k];
+    for (int i = 0; i < ne; i++)
+        left -= s->b[i] * s->r[i];
+    return left <= rounding_pivot * M[k + n * k];
+}
+
 // The first speed whose pivot of M is rounding; -1: none. Articulated bodies may keep digits that M loses: there it
-// counts where a beam's coordinate moves the same.
-static int rounded_closed_pivot(const struct ct_embed *s, const double *pivot)
+// counts where coordinates of beams move the same.
+static int rounded_closed_pivot(struct ct_embed *s, const double *pivot)
 {
     const size_t n = s->m->nu;
     const bool is_exact = s->m->e->formulation == CT_FORMULATION_ARTICULATED;
@@ -135,7 +163,7 @@ static int rounded_closed_pivot(const struct ct_embed *s, const double *pivot)
     ct_machine_motion(s->m);
     for (size_t i = 0; i < n; i++)
         if (pivot[i] <= rounding_pivot * s->m->M[i + n * i]
-            && !(is_exact && elastic_beside(s, i) == i))
+            && !(is_exact && elastic_beside(s, i) == i && !is_elastic_motion(s, i)))
             return (int)i;
     return -1;
 }

@@ -392,3 +392,18 @@ joints:
 E
   "$COTREE" equations names.yaml | grep -E '^  rod\.(2\.|[a-z]*1 ).* of '
 done
+echo '-- a free beam has no inertia about its axis, nor when it is bent: its nodes can undo the turn'
+for formulation in linear foreshortening; do
+  for more in '' 'rotary_inertia: true, '; do
+    cat >turning.yaml <<END
+cotree: 1
+bodies:
+  rod: {type: beam, length: 1.6, elements: 2, E: 7e10, area: 1e-4, Iy: 1e-9, Iz: 1e-9, density: 2700, ${more}formulation: $formulation, initial: {v: "0.05*x^2", w: "0.03*x^2"}}
+joints:
+  base: {type: free, from: ground, to: rod, initial: {u: [0, 0, 0, 0.7, 0, 0]}}
+outputs: [base.q4]
+simulation: {duration: 1e-3, samples: 2}
+END
+    "$COTREE" simulate turning.yaml --quiet -o turning.csv 2>&1 | grep -o 'coordinate.*' || echo "$formulation, ${more}runs"
+  done
+done
