@@ -81,7 +81,7 @@ static void follow(const struct ct_validity *v, struct ct_validity_report *repor
 
 void ct_run_watch_base(struct ct_run *r, double t, const double *y, enum ct_watch_when how)
 {
-    if (!r->m->carried.nout)
+    if (!r->m->carried.nout || r->trial) // a trial meets events of a motion that starts again
         return;
     ct_machine_set(r->m, ct_run_before(r, t), y);
     ct_program_run(&r->m->carried, r->m->input);

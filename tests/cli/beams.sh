@@ -407,3 +407,9 @@ END
     "$COTREE" simulate turning.yaml --quiet -o turning.csv 2>&1 | grep -o 'coordinate.*' || echo "$formulation, ${more}runs"
   done
 done
+echo '-- a trial of another method that meets an event leaves no trace in the error foretold'
+for method in auto radau5; do
+  "$COTREE" simulate "$(dirname "$0")/../reference/B05_static_linear_N2.yaml" --quiet --tolerance 1e-4 --method $method \
+    --samples 3 -o trial.csv --summary trial.json 2>>trial.txt
+  sed -n 's/.*"error": \([0-9.e-]*\),*$/\1/p' trial.json
+done | awk '{ e[++n] = $1 } END { print (n == 2 && (e[1]/e[2] - 1)^2 < 1e-4 ? "same error" : e[1] " " e[2]) }'
