@@ -64,6 +64,24 @@ const bool *ct_fidelity_asked_speeds(struct ct_arena *a, const struct ct_equatio
     return asked;
 }
 
+bool ct_fidelity_amplifies(struct ct_fidelity *p)
+{
+    const double most = 1e4, step = 1e-6,
+                 golden = 0.618033988749895; // all steps differ, so that none cancel
+    struct ct_machine *m = p->m;
+    double *q = m->input + m->at_q, worst = 0;
+    ct_program_run(&p->program, m->input);
+    memcpy(p->at, p->program.out, p->record.n * sizeof *p->at);
+    memcpy(p->y, q, m->nq * sizeof *q);
+    for (size_t i = 0; i < m->nq; i++)
+        q[i] += step * (1 + fmod(golden * (double)i, 1));
+    ct_program_run(&p->program, m->input);
+    for (size_t i = 0; i < p->record.n; i++)
+        worst = fmax(worst, fabs(p->program.out[i] - p->at[i]));
+    memcpy(q, p->y, m->nq * sizeof *q);
+    return !(worst <= most * step);
+}
+
 struct ct_fidelity *ct_fidelity_create(struct ct_arena *a, struct ct_machine *m)
 {
     const struct ct_equations *e = m->e;

@@ -17,6 +17,9 @@ struct ct_fidelity;
 struct ct_fidelity *ct_fidelity_create(struct ct_arena *a, struct ct_machine *m);
 /// Is output i made of more than time and states, or the total energy?
 bool ct_fidelity_is_demanding(const struct ct_equations *e, size_t i);
+/// Does an output change by more than 10 000 per metre or radian of the places, as forces of stiff springs do, but no lengths? What is held to
+/// T/100 in places is then not held to T in it. At the machine's input, which stays.
+bool ct_fidelity_amplifies(struct ct_fidelity *p);
 /// Per speed (nu, arena a): is it an output? NULL, for all, where one is demanding: accelerations and reactions feel every
 /// vibration, and the total energy is a check of all that moves.
 const bool *ct_fidelity_asked_speeds(struct ct_arena *a, const struct ct_equations *e);

@@ -541,6 +541,15 @@ static bool looks_at_steps(const struct ct_run *r)
     return r->o->progress || r->o->stiff_method || r->m->carried.nout;
 }
 
+// Speeds that are followed for themselves; NULL: all.
+static const bool *find_asked_speeds(struct ct_run *r)
+{
+    ct_machine_set(r->m, 0, r->y);
+    if (r->nroot || (r->fidelity && ct_fidelity_amplifies(r->fidelity)))
+        return NULL;
+    return ct_fidelity_asked_speeds(r->arena, r->e);
+}
+
 bool ct_run_simulate(struct ct_run *r, const struct ct_run_options *o,
                      struct ct_run_report *report)
 {
@@ -575,29 +584,28 @@ bool ct_run_simulate(struct ct_run *r, const struct ct_run_options *o,
     ct_run_note_turning(r, 0, r->y);
     if (ct_run_refuse_stuck(r, 0, r->y) == CT_EVAL_FATAL)
         return false;
-    struct ct_problem p
-        = {.user = r,
-           .ny = (int)r->ny,
-           .nq = (int)r->m->nq,
-           .nu = (int)r->m->nu,
-           .dae = o->method->is_implicit ? ct_dae_create(r->arena, r->s) : NULL,
-           .watched = watched,
-           .asked_speeds = r->nroot ? NULL : ct_fidelity_asked_speeds(r->arena, r->e),
-           .groups = ct_run_groups(r),
-           .output_error = r->fidelity ? output_error : NULL,
-           .rhs = rhs,
-           .project = has_constraints(r) ? project : NULL,
-           .accepted = accepted,
-           .longest_step = r->e->nmemory ? ct_run_longest_step : NULL,
-           .singular_in = r->m->nrow ? singular_in : NULL,
-           .set_crossing = set_crossing,
-           .crossed = crossed,
-           .residual = residual,
-           .mismatch = (size_t)r->s->rank < r->m->nrow ? NULL : mismatch,
-           .nroot = r->nroot,
-           .root = ct_run_root,
-           .next_time_event = ct_run_next_event,
-           .event = ct_run_event};
+    struct ct_problem p = {.user = r,
+                           .ny = (int)r->ny,
+                           .nq = (int)r->m->nq,
+                           .nu = (int)r->m->nu,
+                           .dae = o->method->is_implicit ? ct_dae_create(r->arena, r->s) : NULL,
+                           .watched = watched,
+                           .asked_speeds = find_asked_speeds(r),
+                           .groups = ct_run_groups(r),
+                           .output_error = r->fidelity ? output_error : NULL,
+                           .rhs = rhs,
+                           .project = has_constraints(r) ? project : NULL,
+                           .accepted = accepted,
+                           .longest_step = r->e->nmemory ? ct_run_longest_step : NULL,
+                           .singular_in = r->m->nrow ? singular_in : NULL,
+                           .set_crossing = set_crossing,
+                           .crossed = crossed,
+                           .residual = residual,
+                           .mismatch = (size_t)r->s->rank < r->m->nrow ? NULL : mismatch,
+                           .nroot = r->nroot,
+                           .root = ct_run_root,
+                           .next_time_event = ct_run_next_event,
+                           .event = ct_run_event};
     const struct ct_integrate_options io
         = {.t1 = o->duration,
            .rtol = o->rtol,
