@@ -28,3 +28,10 @@ for name in places elongation; do
     NR > 1 { d = $2 - $3 - 1 - 0.1 * cos(sqrt(4.5) * $1); if (d < 0) d = -d; if (d > worst) worst = d }
     END { print name ": " (worst <= 1e-6 ? "within" : "not within") " ten tolerances" }' $name.csv
 done
+echo '-- the force of a very stiff spring: vibrations are followed, though places need not feel them'
+sed '/^outputs:/,$d' "$SYSTEMS/stiff_spring_pendulum/model.yaml" >force.yaml
+echo 'outputs: [bob.position.y, spring.force]
+simulation: {duration: 2, samples: 201, tolerance: 1e-6}' >>force.yaml
+"$COTREE" simulate force.yaml --quiet --set k=1e10 -o force.csv
+# a rigid pendulum's: three times the weight along the string
+awk -F, 'NR > 1 { e = ($3 / 29.43 + $2)^2; if (e > worst) worst = e } END { print (NR == 202 && worst < 0.1^2 ? "the string pulls" : sqrt(worst)) }' force.csv
