@@ -14,8 +14,7 @@ struct chunk {
     struct chunk *next;
     size_t size, used; // bytes of payload
     size_t ready;      // of pages: bytes from the chunk's start that are there
-    bool is_pages;     // from pages.h, else from malloc
-    bool is_zero;      // what is not used yet is
+    bool is_pages;     // from pages.h, and what is not used yet is zero; else from malloc
     _Alignas(16) unsigned char data[];
 };
 
@@ -34,30 +33,26 @@ struct ct_arena {
 
 // With what precedes the payload.
 static const size_t first_chunk = 1 << 12, largest_chunk = 1 << 22;
-// Chunks from here on, all but the first, come from pages.h.
-static const size_t least_pages = 1 << 15;
+// Smaller chunks come from memory that has been used, and most of it in one piece: zeros are written as it is given out.
+static const size_t least_pages = 1 << 18;
 
 // size: of all.
 static struct chunk *chunk_create(size_t size)
 {
     if (ct_guard_must_fail())
         return NULL;
-    size_t ready = 0;
-    bool is_zero = false;
     const bool is_pages = size >= least_pages;
-    struct chunk *c = is_pages ? ct_pages_create(size, &ready, &is_zero) : malloc(size);
-    if (c && is_pages && ready < sizeof *c)
-        ready = ct_pages_extend(c, size, ready, sizeof *c);
+    struct chunk *c = is_pages ? ct_pages_create(size) : malloc(size);
+    const size_t ready = c && is_pages ? ct_pages_extend(c, size, 0, sizeof *c) : 0;
     if (c)
-        *c = (struct chunk){
-            .size = size - sizeof *c, .ready = ready, .is_pages = is_pages, .is_zero = is_zero};
+        *c = (struct chunk){.size = size - sizeof *c, .ready = ready, .is_pages = is_pages};
     return c;
 }
 
 static void chunk_destroy(struct chunk *c)
 {
     if (c->is_pages)
-        ct_pages_destroy(c, sizeof *c + c->size, c->ready);
+        ct_pages_destroy(c, sizeof *c + c->size);
     else
         free(c);
 }
@@ -66,9 +61,11 @@ static void *chunk_take(struct chunk *c, size_t size)
 {
     void *p = c->data + c->used;
     c->used += size;
-    if (c->is_pages && sizeof *c + c->used > c->ready)
+    if (!c->is_pages)
+        return memset(p, 0, size);
+    if (sizeof *c + c->used > c->ready)
         c->ready = ct_pages_extend(c, sizeof *c + c->size, c->ready, sizeof *c + c->used);
-    return c->is_zero ? p : memset(p, 0, size);
+    return p;
 }
 
 struct ct_arena *ct_arena_create(void)
@@ -143,21 +140,6 @@ static size_t gap(const struct chunk *c, size_t size)
     return size < least ? 0 : -((uintptr_t)c->data + c->used) & (line - 1);
 }
 
-// Of the chunk after c (NULL: the first) with room for a piece: twice the last, so that there are few; powers of two, as
-// such are used again (pages.h).
-static size_t chunk_size(const struct chunk *c, size_t piece)
-{
-    const size_t most_gap = 64, least = piece + most_gap + sizeof *c;
-    size_t size = c ? 2 * (sizeof *c + c->size) : first_chunk;
-    if (c && size < least_pages)
-        size = least_pages;
-    while (size < least && size < largest_chunk)
-        size *= 2;
-    if (size > largest_chunk)
-        size = largest_chunk;
-    return size < least ? least : size;
-}
-
 void *ct_arena_alloc(struct ct_arena *a, size_t size)
 {
     if (size > SIZE_MAX / 2)
@@ -165,7 +147,13 @@ void *ct_arena_alloc(struct ct_arena *a, size_t size)
     size = (size + 15) & ~(size_t)15;
     struct chunk *c = a->head;
     if (!c || c->size - c->used < size + gap(c, size)) {
-        c = chunk_create(chunk_size(c, size));
+        const size_t most_gap = 64;
+        size_t want = c ? 2 * (sizeof *c + c->size) : first_chunk;
+        if (want > largest_chunk)
+            want = largest_chunk;
+        if (want < size + most_gap + sizeof *c)
+            want = size + most_gap + sizeof *c;
+        c = chunk_create(want);
         if (!c)
             ct_guard_raise();
         c->next = a->head;

@@ -1,6 +1,6 @@
 // Memory that is freed all at once.
 //
-//     arena:  [ chunk 4 KiB ] -> [ chunk 32 KiB ] -> [ chunk 64 KiB ] ...
+//     arena:  [ chunk 4 KiB ] -> [ chunk 8 KiB ] -> [ chunk 16 KiB ] ...
 //                                      ^ next free byte
 //
 // What always holds: memory is zeroed, aligned to 16 bytes, and stays where it is until the arena

@@ -33,7 +33,7 @@ static void *map_aligned(size_t size, size_t alignment)
     return p + before;
 }
 
-static void *map(size_t size)
+void *ct_pages_create(size_t size)
 {
     const size_t whole = round_up(size, page);
     void *p = map_aligned(whole, whole < large_page ? page : large_page);
@@ -44,57 +44,8 @@ static void *map(size_t size)
     return p;
 }
 
-// Blocks given back, by their size: 32 KiB, 64 KiB ... 4 MiB, 11 MiB at most. A place is emptied and filled in one step, so
-// threads need not wait for each other.
-enum { LEAST_KEPT = 15, NSIZE = 8, NEACH = 4 };
-static void *kept[NSIZE][NEACH];
-
-// What a kept block says of itself.
-struct note {
-    size_t ready;
-};
-
-// The places for blocks of a size, and how many there are: 0 where such are not kept.
-static int places(size_t size, void ***place)
+void ct_pages_destroy(void *block, size_t size)
 {
-    const size_t most_of_several = (size_t)1 << 19;
-    for (int k = 0; k < NSIZE; k++)
-        if (size == (size_t)1 << (LEAST_KEPT + k)) {
-            *place = kept[k];
-            return size <= most_of_several ? NEACH : 1;
-        }
-    return 0;
-}
-
-void *ct_pages_create(size_t size, size_t *ready, bool *is_zero)
-{
-    void **place = NULL;
-    const int n = places(size, &place);
-    for (int i = 0; i < n; i++) {
-        void *p = __atomic_exchange_n(&place[i], NULL, __ATOMIC_ACQUIRE);
-        if (p) {
-            const struct note *note = p;
-            *ready = note->ready;
-            *is_zero = false;
-            return p;
-        }
-    }
-    *ready = 0;
-    *is_zero = true;
-    return map(size);
-}
-
-void ct_pages_destroy(void *block, size_t size, size_t ready)
-{
-    void **place = NULL;
-    const int n = places(size, &place);
-    *(struct note *)block = (struct note){ready};
-    for (int i = 0; i < n; i++) {
-        void *none = NULL;
-        if (__atomic_compare_exchange_n(&place[i], &none, block, false, __ATOMIC_RELEASE,
-                                        __ATOMIC_RELAXED))
-            return;
-    }
     munmap(block, round_up(size, page));
 }
 
@@ -114,17 +65,14 @@ size_t ct_pages_extend(void *block, size_t size, size_t ready, size_t used)
 
 #else
 
-void *ct_pages_create(size_t size, size_t *ready, bool *is_zero)
+void *ct_pages_create(size_t size)
 {
-    *ready = size;
-    *is_zero = true;
     return calloc(1, size);
 }
 
-void ct_pages_destroy(void *block, size_t size, size_t ready)
+void ct_pages_destroy(void *block, size_t size)
 {
     (void)size;
-    (void)ready;
     free(block);
 }
 

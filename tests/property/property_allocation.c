@@ -10,8 +10,8 @@ void *__real_realloc(void *p, size_t size);
 void *__wrap_malloc(size_t size);
 void *__wrap_calloc(size_t n, size_t size);
 void *__wrap_realloc(void *p, size_t size);
-void *__real_ct_pages_create(size_t size, size_t *ready, bool *is_zero);
-void *__wrap_ct_pages_create(size_t size, size_t *ready, bool *is_zero);
+void *__real_ct_pages_create(size_t size);
+void *__wrap_ct_pages_create(size_t size);
 
 static long nallocation;
 
@@ -33,10 +33,10 @@ void *__wrap_realloc(void *p, size_t size)
     return __real_realloc(p, size);
 }
 
-void *__wrap_ct_pages_create(size_t size, size_t *ready, bool *is_zero)
+void *__wrap_ct_pages_create(size_t size)
 {
     nallocation++;
-    return __real_ct_pages_create(size, ready, is_zero);
+    return __real_ct_pages_create(size);
 }
 // NOLINTEND(bugprone-reserved-identifier)
 
