@@ -64,6 +64,11 @@ mkdir src/new
 touch src/new/file.c
 fails_with 'folder new is not in' layers
 rm -r src/new
+printf 'high low\nlow\nsrc  *\ncli  cotree\n' >turned.txt
+turned() {
+  sh "$tests/style/layers.sh" turned.txt .
+}
+fails_with 'turned.txt: low comes after a folder that may include it' turned
 
 # ---- keys
 keys() {
