@@ -117,10 +117,8 @@ static void print_open(FILE *out, const struct ct_sim *sim)
     print_names(out, "undetermined", sim->open.row, e->nrow, row_name, e);
     print_open_outputs(out, "note: redundant constraints do not determine the outputs ", sim,
                        false);
-    print_open_outputs(out,
-                       "note: joints in planar loops share what acts out of the plane in many "
-                       "ways; undetermined outputs: ",
-                       sim, true);
+    print_open_outputs(
+        out, "note: planar loops do not determine the outputs out of their plane ", sim, true);
 }
 
 // The outputs with their errors, so many to a line as fit.
