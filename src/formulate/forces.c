@@ -382,6 +382,16 @@ ct_ex ct_joint_passive(struct ct_build *b, int coordinate)
     return own_effort(b, &b->edge[c->edge], c->place).total;
 }
 
+ct_ex ct_driver_effort(struct ct_build *b, int coordinate)
+{
+    struct ct_exs *x = b->x;
+    const struct ct_coordinate *c = &b->coordinate[coordinate];
+    if (c->motion_row)
+        return b->eqs->row[c->motion_row - 1].lam;
+    const ct_ex row = ct_sweep_driver(b, c->driver);
+    return ct_ex_sub(x, row, ct_joint_passive(b, coordinate));
+}
+
 static void joint_effort(struct ct_build *b, const struct ct_edge_info *e, int k)
 {
     const struct ct_coordinate *c = &b->coordinate[e->first_coordinate + k];
