@@ -322,6 +322,13 @@ static bool at_row(void *user, double t, const double *value, size_t n)
     return go_on;
 }
 
+// Past the deadline; or an eighth of the time is gone, and at the pace so far four times as much would not be enough.
+static bool is_hopeless(const struct ct_sim *sim, double t, double end)
+{
+    const double now = ct_clock(), all = sim->deadline - sim->begun, gone = now - sim->begun;
+    return now > sim->deadline || (gone > all / 8 && t / end < gone / all / 4);
+}
+
 static bool at_progress(void *user, double t, double end)
 {
     struct ct_sim *sim = user;
@@ -329,7 +336,7 @@ static bool at_progress(void *user, double t, double end)
         ct_progress_update(sim->progress, end > 0 ? t / end : 1);
     // a look at the clock costs as much as a step of a small system
     if (sim->deadline > 0 && sim->nstep++ % steps_between_looks == 0)
-        sim->is_late = ct_clock() > sim->deadline;
+        sim->is_late = is_hopeless(sim, t, end);
     return !sim->is_late;
 }
 
@@ -389,7 +396,7 @@ static bool integrate(struct ct_sim *sim)
     o->row = at_row;
     o->want_residual = want_residual;
     o->user = sim;
-    const double start = ct_clock();
+    const double start = sim->begun = ct_clock();
     const bool ok = sim->is_followed ? ct_run_follow(sim->run, o, &sim->report)
                                      : ct_run_simulate(sim->run, o, &sim->report);
     sim->integrate = ct_clock() - start - sim->write;

@@ -59,6 +59,7 @@ struct ct_sim {
     struct ct_result_file *file; // result_file.c; NULL: none is written
     struct ct_progress *progress;
     long nstep;      // accepted so far, for deadlines
+    double begun;    // on ct_clock, when steps begin
     double deadline; // on ct_clock, when the run is given up; 0: none
     bool has_run, is_done, is_late, is_followed;
     double time;                                      // of the last sample
