@@ -98,13 +98,27 @@ static const char *result_name(const struct ct_equations *e, size_t i)
     return e->result[i].name;
 }
 
-// Redundant constraints leave some forces open: which.
+static void print_open_outputs(FILE *out, const char *title, const struct ct_sim *sim,
+                               bool across_plane)
+{
+    const struct ct_equations *e = &sim->system->equations;
+    struct list l = {out, title, 0};
+    for (size_t i = 0; i < e->nresult; i++)
+        if (sim->open.result[i] && e->result[i].undetermined == across_plane)
+            add(&l, e->result[i].name);
+    end_list(&l);
+}
+
+// Which forces are open: redundant constraints share what they carry in many ways, and a planar model has no equations
+// across its plane.
 static void print_open(FILE *out, const struct ct_sim *sim)
 {
     const struct ct_equations *e = &sim->system->equations;
     print_names(out, "undetermined", sim->open.row, e->nrow, row_name, e);
-    print_names(out, "note: redundant constraints do not determine the outputs ",
-                sim->open.result, e->nresult, result_name, e);
+    print_open_outputs(out, "note: redundant constraints do not determine the outputs ", sim,
+                       false);
+    print_open_outputs(
+        out, "note: planar loops do not determine the outputs out of their plane ", sim, true);
 }
 
 // The outputs with their errors, so many to a line as fit.

@@ -94,6 +94,24 @@ passes headers "$@"
 echo 'size_t g(void);' >include/bad.h
 fails_with 'include/bad.h does not compile alone' headers "$@"
 
+# ---- global variables
+globals() {
+  sh "$tests/style/globals.sh" nm object.o
+}
+object_of() {
+  echo "$1" >object.c
+  shift
+  "$@" -fPIC -c object.c -o object.o
+}
+object_of 'static const char *const name[] = {"a"}; const char *f(int i) { return name[i]; }' "$@"
+passes globals
+object_of 'int f(void) { static int n; return n++; }' "$@"
+fails_with 'n.' globals
+object_of 'int n = 1; int f(void) { return n++; }' "$@"
+fails_with ' n' globals
+object_of 'static _Thread_local int n; int f(void) { return n++; }' "$@"
+fails_with ' n' globals
+
 # ---- cases
 mkdir cases
 case_of() {
