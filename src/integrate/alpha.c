@@ -16,8 +16,9 @@ struct memory {
     double *a, *u_dot, *lam; // (nu), (nu), (rows)
     double *jerk;            // u'' amid that step  (nu)
     double *slope,
-        *bend;    // divided differences of u': over that step; with the one before it  (nu)
-    double *rate; // at that step's start, of quadratures alone  (ny)
+        *bend; // divided differences of u': over that step; with the one before it  (nu)
+    double *a_noise, *jerk_noise; // of a and `jerk`, where there are rows  (nu)
+    double *rate;                 // at that step's start, of quadratures alone  (ny)
 };
 
 // What d(place) of a correction is worth in speeds, a, and accelerations, for steps of size h behind one of size `before`.
@@ -37,6 +38,7 @@ struct state {
     struct memory start, end;    // of the step
     double *a0, *jerk;           // (nu): a at the start, for this step's size; u''
     double *d, *u, *q;           // the step's motion (nu), its end (nu, nq)
+    double *noise;               // what corrections leave of speeds  (nu)
     double *dd, *du; // corrections (nu), one behind the other, zeros behind them (ny)
     double *eta, *dlam, *r, *phi, *v;
     double *rate1, *out;      // for interpolation: d' at the end; a motion (nu)
@@ -61,11 +63,28 @@ void *ct_alpha_create(struct ct_arena *a, const struct ct_method *method,
     s->by_places = s->c->beta + 1. / 12 - s->c->gamma / 2;
     s->by_speeds = speed_factor(s->c);
     s->it = ct_iteration_create(a, p, s->c->is_stabilised, false);
-    double **const speeds[]
-        = {&s->start.slope, &s->start.bend, &s->end.slope, &s->end.bend,  &s->start.a,
-           &s->start.u_dot, &s->start.jerk, &s->end.a,     &s->end.u_dot, &s->end.jerk,
-           &s->a0,          &s->jerk,       &s->d,         &s->u,         &s->r,
-           &s->rate1,       &s->out};
+    double **const speeds[] = {&s->start.slope,
+                               &s->start.bend,
+                               &s->end.slope,
+                               &s->end.bend,
+                               &s->start.a,
+                               &s->start.u_dot,
+                               &s->start.jerk,
+                               &s->end.a,
+                               &s->end.u_dot,
+                               &s->end.jerk,
+                               &s->a0,
+                               &s->jerk,
+                               &s->d,
+                               &s->u,
+                               &s->r,
+                               &s->rate1,
+                               &s->out,
+                               &s->noise,
+                               &s->start.a_noise,
+                               &s->start.jerk_noise,
+                               &s->end.a_noise,
+                               &s->end.jerk_noise};
     double **const rows[] = {&s->start.lam, &s->end.lam, &s->eta, &s->dlam, &s->phi, &s->v};
     for (size_t i = 0; i < COUNT(speeds); i++)
         *speeds[i] = CT_NEWN(a, double, p->dae->nu + 1);
@@ -86,6 +105,7 @@ void ct_alpha_restart(void *work)
     struct state *s = work;
     s->is_fresh = true;
     s->has_jerk = false;
+    ct_iteration_forget(s->it);
 }
 
 void ct_alpha_accept(void *work)
@@ -225,9 +245,19 @@ static enum ct_eval correct(struct state *s, double t1, const double *y,
     const double size = dae->nu == 1 ? add_correction(s, 1) : add_correction(s, dae->nu);
     for (int i = 0; i < m; i++)
         s->end.lam[i] += s->dlam[i];
+    if (m)
+        ct_iteration_note_multipliers(s->it, s->end.lam, s->dlam, m);
     ct_iteration_move(dae, y, s->d, s->q);
-    *verdict = ct_iteration_judge(s->it, size, s->dd, 1);
+    *verdict = ct_iteration_judge(s->it, size, s->dd, s->c->is_stabilised ? s->du : NULL, 1);
     return CT_EVAL_OK;
+}
+
+// What the last correction leaves of speeds: where it has come to rounding, as much as it was.
+static void note_noise(struct state *s)
+{
+    const double left = fmin(1, s->it->tail);
+    for (int k = 0; k < s->it->nu && s->it->m; k++)
+        s->noise[k] = left * fabs(s->du[k]);
 }
 
 static enum ct_eval iterate(struct state *s, double t1, double h, const double *y,
@@ -246,6 +276,8 @@ static enum ct_eval iterate(struct state *s, double t1, double h, const double *
         ct_iteration_start(s->it);
         while (e == CT_EVAL_OK && verdict == CT_GO_ON)
             e = correct(s, t1, y, &verdict, stats);
+        if (e == CT_EVAL_OK && verdict == CT_CONVERGED)
+            note_noise(s);
         if (e == CT_EVAL_FATAL || verdict == CT_CONVERGED)
             return e;
     } while (ct_iteration_can_renew(s->it));
@@ -271,6 +303,24 @@ static inline double find_errors(struct state *s, double h, const int nu)
     return ct_iteration_norm(s->it, s->dd, NULL, nu, 1);
 }
 
+// Beside singular positions speeds that meet the constraints have rounding over the square of the distance, u' that over h
+// and (8.8) again as much as speeds themselves, however short the step is, more after a shorter one: it is no error of the step.
+static void take_off_noise(struct state *s, double h)
+{
+    const double gamma = s->c->gamma, back = (1 - gamma) / gamma;
+    const double ratio = s->is_fresh ? 0 : h / s->start.h;
+    const double speeds = s->is_fresh ? 0 : h * h * h * 2 * s->f.across * fabs(s->by_speeds);
+    for (int k = 0; k < s->dae->nu; k++) {
+        const double a0 = ratio * s->start.a_noise[k],
+                     a1 = s->noise[k] / (gamma * h) + back * a0;
+        s->end.a_noise[k] = a1;
+        s->end.jerk_noise[k] = s->f.pace * (a0 + a1);
+        const double noise
+            = speeds * (s->end.jerk_noise[k] + (s->is_fresh ? 0 : s->start.jerk_noise[k]));
+        s->du[k] = copysign(fmax(0, fabs(s->du[k]) - noise), s->du[k]);
+    }
+}
+
 // The leading errors: of places (8.3), and of speeds (8.8) with u''' from u'' amid this step and the one before, zero where
 // there is none and in the index-3 form, whose accelerations have rounding over h^2 in them. Those of speeds count in
 // outputs alone.
@@ -280,6 +330,8 @@ static double estimate(struct state *s, const struct ct_problem *p,
 {
     const double states
         = s->dae->nu == 1 ? find_errors(s, h, 1) : find_errors(s, h, s->dae->nu);
+    if (s->it->m && s->c->is_stabilised)
+        take_off_noise(s, h);
     if (s->dae->is_plain) // then s->dd is the error of the whole state
         return ct_stepper_worse(p, tolerance, t1, y1, s->dd, states);
     return ct_iteration_error(s->it, p, tolerance, t1, y1, s->dd, s->du, states);

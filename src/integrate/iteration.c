@@ -114,6 +114,14 @@ static inline double largest_place(const struct ct_iteration *it, const double *
     return largest;
 }
 
+static double largest_of(const double *x, int n)
+{
+    double largest = 0;
+    for (int i = 0; i < n; i++)
+        largest = ct_larger(largest, fabs(x[i]));
+    return largest;
+}
+
 bool ct_iteration_begin(struct ct_iteration *it, const struct ct_tolerance *tolerance, double h,
                         const double *y)
 {
@@ -143,6 +151,8 @@ bool ct_iteration_begin(struct ct_iteration *it, const struct ct_tolerance *tole
     const long before = it->version;
     it->m = dae->rows(dae->user, &it->version);
     it->n = it->nu + (it->is_stabilised ? 2 : 1) * it->m;
+    it->unfelt_place = rounding / 2;
+    it->unfelt_speed = DBL_EPSILON / 2 * largest_of(y + dae->nq, it->nu);
     if (it->version == before)
         return false;
     it->has_tangent = false;
@@ -244,6 +254,7 @@ enum ct_eval ct_iteration_refresh(struct ct_iteration *it, double t, const doubl
     const enum ct_eval e
         = it->dae->tangent(it->dae->user, t, q, u, a, lam, it->M, it->C, it->K, it->J, it->D);
     it->has_tangent = e == CT_EVAL_OK;
+    it->is_worn = false;
     if (e != CT_EVAL_OK)
         return e;
     stats->jacobians++;
@@ -461,13 +472,25 @@ static bool is_rounding(const struct ct_iteration *it, double rate, double size)
     return rate >= 1 && (size <= it->rounding || is_settled);
 }
 
-enum ct_verdict ct_iteration_judge(struct ct_iteration *it, double size, const double *d, int k)
+// Half a rounding of the largest place moves no place as large, and what is left of the constraints comes back in others,
+// halved perhaps from one correction to the next: neither more of them nor shorter steps make it less.
+static bool is_unfelt(const struct ct_iteration *it, double size, const double *d,
+                      const double *u, int n)
+{
+    return it->m && u && !it->is_finest && !it->is_further && size <= it->rounding
+        && is_within(d, n, it->unfelt_place) && is_within(u, n, it->unfelt_speed);
+}
+
+enum ct_verdict ct_iteration_judge(struct ct_iteration *it, double size, const double *d,
+                                   const double *u, int k)
 {
     if (!isfinite(size))
         return CT_DIVERGED;
     if (it->count++ > 0) {
         const double rate = size / it->size;
-        if (is_rounding(it, rate, size) || (rate >= 1 && is_within(d, k * it->nu, it->least)))
+        const int n = k * it->nu;
+        if (is_rounding(it, rate, size) || (rate >= 1 && is_within(d, n, it->least))
+            || is_unfelt(it, size, d, u, n))
             return CT_CONVERGED;
         it->rate = it->count > 2 ? sqrt(rate * it->rate) : rate; // two in turn are often uneven
         if (rate >= hopeless || (it->rate >= 1 && it->count > 3))

@@ -31,6 +31,7 @@ struct ct_iteration {
     int nu, m, n;             // speeds, rows, equations
     long version;             // of the rows
     bool has_tangent, is_new; // `is_new`: evaluated in this step
+    bool is_worn;             // multipliers ask for other derivatives
     double *M, *C, *K, *J, *D;
     double *S, *X, *W;      // the matrix is S + x X + (y or z) W  (n x n)
     double c, e;            // of the factors; 0: none
@@ -54,7 +55,8 @@ struct ct_iteration {
     bool is_finest;         // there is no tolerance
     bool is_further;        // corrections go on after convergence
     double least;           // nor where places change by less  [m, rad]
-    double first;           // size of the first correction
+    double unfelt_place, unfelt_speed; // half a rounding of the largest of each, with rows
+    double first;                      // size of the first correction
     double size, rate,
         tail; // of the last correction; over the one before; all that follow it, over it
     int most;
@@ -73,7 +75,24 @@ bool ct_iteration_begin(struct ct_iteration *it, const struct ct_tolerance *tole
 static inline bool ct_iteration_is_old(const struct ct_iteration *it)
 {
     const double slow = 0.1;
-    return !it->has_tangent || it->rate > slow;
+    return !it->has_tangent || it->is_worn || it->rate > slow;
+}
+/// They are of another place: behind an event or a singular position.
+static inline void ct_iteration_forget(struct ct_iteration *it)
+{
+    it->has_tangent = false;
+}
+/// Multipliers lam (n) have been corrected by dlam. Where rows change along themselves, as beside a singular position, old
+/// derivatives still give motions that are right, but each step multiplies the error of lam by 1 - J/J_old.
+static inline void ct_iteration_note_multipliers(struct ct_iteration *it, const double *lam,
+                                                 const double *dlam, int n)
+{
+    double size = 0, change = 0;
+    for (int i = 0; i < n; i++) {
+        size = ct_larger(size, fabs(lam[i]));
+        change = ct_larger(change, fabs(dlam[i]));
+    }
+    it->is_worn = change > size / 2;
 }
 /// Derivatives at a point, where they are too old; after it come the factors.
 enum ct_eval ct_iteration_refresh(struct ct_iteration *it, double t, const double *q,
@@ -161,9 +180,9 @@ double ct_iteration_error(struct ct_iteration *it, const struct ct_problem *p,
 void ct_iteration_start(struct ct_iteration *it);
 /// Once converged: corrections are to go on until they are much smaller, or of the size of rounding.
 void ct_iteration_go_on(struct ct_iteration *it);
-/// After a correction of this size, which moved places by d (nu x k).
+/// After a correction of this size, which moved places by d (nu x k) and speeds by u (nu x k; NULL: not looked at).
 enum ct_verdict ct_iteration_judge(struct ct_iteration *it, double size, const double *d,
-                                   int k);
+                                   const double *u, int k);
 /// After divergence: true if newer derivatives may help.
 bool ct_iteration_can_renew(struct ct_iteration *it);
 

@@ -100,6 +100,7 @@ static void restart(void *work)
     struct ct_radau *s = work;
     s->is_fresh = true;
     s->was_tried = false;
+    ct_iteration_forget(s->it);
 }
 
 static void accept(void *work)
@@ -271,6 +272,8 @@ static inline double change_stages(struct ct_radau *s, const int nu, const int m
     add(s->now.u, s->change.u, STAGES * nu);
     add(s->now.lam, s->change.lam, STAGES * m);
     add(s->now.eta, s->change.eta, STAGES * m);
+    if (m)
+        ct_iteration_note_multipliers(s->it, s->now.lam, s->change.lam, STAGES * m);
     return ct_iteration_norm(s->it, s->change.d, s->change.u, nu, STAGES);
 }
 
@@ -285,7 +288,7 @@ static enum ct_eval correct(struct ct_radau *s, double t, const double *y,
     const double size = m || nu > 2 ? change_stages(s, nu, m)
                       : nu == 1     ? change_stages(s, 1, 0)
                                     : change_stages(s, 2, 0);
-    *verdict = ct_iteration_judge(s->it, size, s->change.d, STAGES);
+    *verdict = ct_iteration_judge(s->it, size, s->change.d, s->change.u, STAGES);
     return CT_EVAL_OK;
 }
 
