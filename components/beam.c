@@ -29,8 +29,8 @@ static const struct ct_key keys[] = {
     {"J", CT_VALUE_SCALAR, CT_KEY_SECTION, "m^4", 1, 1,
      "torsion constant; may contain x (Iy + Iz)"},
     {"rotary_inertia", CT_VALUE_ROTARY, CT_KEY_SECTION, "kg*m", 3, 3,
-     "true: density*(Iy + Iz, Iy, Iz); or values per length about x, y, z, which may contain x "
-     "(false)"},
+     "of sections, per length: values about x, y, z, which may contain x; or true: "
+     "density*(Iy + Iz, Iy, Iz), none with lumped mass (false)"},
     {"theory", CT_VALUE_WORD, 0, "euler-bernoulli|timoshenko", 1, 1, "theory of bending"},
     {"shear_factor", CT_VALUE_LIST, 0, "", 1, 2,
      "multiplies G*area; timoshenko needs it; [ky, kz]: along y and along z"},

@@ -1,9 +1,10 @@
 // The pipeline: model file -> equations of motion, stage by stage.
-#include "api.h"
+#include "system.h"
 
 #include "graph/print.h"
 #include "io/yaml.h"
 #include "report/equations.h"
+#include "solve/settle.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -192,6 +193,15 @@ void ct_system_destroy(struct ct_system *sys)
     if (sys)
         ct_own_finish(&sys->own);
     free(sys);
+}
+
+bool ct_system_assemble(struct ct_ctx *own, struct ct_system *sys, struct ct_start *start)
+{
+    if (!sys->held_equations.build)
+        return ct_assemble(own, own->model, &sys->model, &sys->start_equations, start);
+    return ct_assemble_open(own, own->model, &sys->model, &sys->start_equations, start)
+        && ct_settle(own, own->model, &sys->model, &sys->held_equations, &sys->moving_equations,
+                     start);
 }
 
 // ---- what it is ---------------------------------------------------------------------------------------

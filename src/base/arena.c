@@ -13,8 +13,9 @@
 struct chunk {
     struct chunk *next;
     size_t size, used; // bytes of payload
+    size_t clean;      // of the payload: bytes from here on have not been used, and are zero
     size_t ready;      // of pages: bytes from the chunk's start that are there
-    bool is_pages;     // from pages.h, and what is not used yet is zero; else from malloc
+    bool is_pages;     // from pages.h; else from malloc
     _Alignas(16) unsigned char data[];
 };
 
@@ -26,6 +27,7 @@ struct ending {
 
 struct ct_arena {
     struct chunk *head;
+    struct chunk *spare;   // cleared, in the order in which they came
     struct ending *ending; // in a chunk
     struct ending *under;  // of the owner, for this arena; may be NULL
     size_t total;
@@ -45,7 +47,10 @@ static struct chunk *chunk_create(size_t size)
     struct chunk *c = is_pages ? ct_pages_create(size) : malloc(size);
     const size_t ready = c && is_pages ? ct_pages_extend(c, size, 0, sizeof *c) : 0;
     if (c)
-        *c = (struct chunk){.size = size - sizeof *c, .ready = ready, .is_pages = is_pages};
+        *c = (struct chunk){.size = size - sizeof *c,
+                            .clean = is_pages ? 0 : size - sizeof *c,
+                            .ready = ready,
+                            .is_pages = is_pages};
     return c;
 }
 
@@ -60,12 +65,20 @@ static void chunk_destroy(struct chunk *c)
 static void *chunk_take(struct chunk *c, size_t size)
 {
     void *p = c->data + c->used;
+    if (c->used < c->clean)
+        memset(p, 0, c->clean - c->used < size ? c->clean - c->used : size);
     c->used += size;
-    if (!c->is_pages)
-        return memset(p, 0, size);
-    if (sizeof *c + c->used > c->ready)
+    if (c->is_pages && sizeof *c + c->used > c->ready)
         c->ready = ct_pages_extend(c, sizeof *c + c->size, c->ready, sizeof *c + c->used);
     return p;
+}
+
+static void chunks_destroy(struct chunk *c)
+{
+    for (struct chunk *next; c; c = next) {
+        next = c->next;
+        chunk_destroy(c);
+    }
 }
 
 struct ct_arena *ct_arena_create(void)
@@ -74,19 +87,40 @@ struct ct_arena *ct_arena_create(void)
     return a;
 }
 
+static void run_endings(const struct ct_arena *a)
+{
+    for (struct ending *e = a->ending; e; e = e->next)
+        e->end(e->data);
+}
+
 void ct_arena_destroy(struct ct_arena *a)
 {
     if (!a)
         return;
     if (a->under)
         a->under->data = NULL;
-    for (struct ending *e = a->ending; e; e = e->next)
-        e->end(e->data);
+    run_endings(a);
+    chunks_destroy(a->head);
+    chunks_destroy(a->spare);
+    free(a);
+}
+
+void ct_arena_clear(struct ct_arena *a)
+{
+    run_endings(a);
+    a->ending = NULL;
+    a->total = 0;
+    struct chunk *spare = a->spare;
     for (struct chunk *c = a->head, *next; c; c = next) {
         next = c->next;
-        chunk_destroy(c);
+        if (c->clean < c->used)
+            c->clean = c->used;
+        c->used = 0;
+        c->next = spare;
+        spare = c;
     }
-    free(a);
+    a->head = NULL;
+    a->spare = spare;
 }
 
 void ct_arena_at_end(struct ct_arena *a, void (*end)(void *data), void *data)
@@ -124,6 +158,7 @@ void ct_arena_merge(struct ct_arena *into, struct ct_arena *from)
     struct chunk **second = into->head ? &into->head->next : &into->head;
     *last = *second;
     *second = from->head;
+    chunks_destroy(from->spare);
     struct ending **first = &from->ending;
     while (*first)
         first = &(*first)->next;
@@ -140,25 +175,44 @@ static size_t gap(const struct chunk *c, size_t size)
     return size < least ? 0 : -((uintptr_t)c->data + c->used) & (line - 1);
 }
 
+static bool has_room(const struct chunk *c, size_t size)
+{
+    return c && c->size - c->used >= size + gap(c, size);
+}
+
+// A chunk for this size becomes the newest: the next spare one with room, else a new one, twice as long as the last.
+static struct chunk *next_chunk(struct ct_arena *a, size_t size)
+{
+    const size_t most_gap = 64;
+    struct chunk *c = a->head;
+    size_t want = c ? 2 * (sizeof *c + c->size) : first_chunk;
+    if (want > largest_chunk)
+        want = largest_chunk;
+    if (want < size + most_gap + sizeof *c)
+        want = size + most_gap + sizeof *c;
+    struct chunk **spare = &a->spare;
+    while (*spare && !has_room(*spare, size))
+        spare = &(*spare)->next;
+    c = *spare;
+    if (c)
+        *spare = c->next;
+    else
+        c = chunk_create(want);
+    if (!c)
+        ct_guard_raise();
+    c->next = a->head;
+    a->head = c;
+    return c;
+}
+
 void *ct_arena_alloc(struct ct_arena *a, size_t size)
 {
     if (size > SIZE_MAX / 2)
         ct_guard_raise();
     size = (size + 15) & ~(size_t)15;
     struct chunk *c = a->head;
-    if (!c || c->size - c->used < size + gap(c, size)) {
-        const size_t most_gap = 64;
-        size_t want = c ? 2 * (sizeof *c + c->size) : first_chunk;
-        if (want > largest_chunk)
-            want = largest_chunk;
-        if (want < size + most_gap + sizeof *c)
-            want = size + most_gap + sizeof *c;
-        c = chunk_create(want);
-        if (!c)
-            ct_guard_raise();
-        c->next = a->head;
-        a->head = c;
-    }
+    if (!has_room(c, size))
+        c = next_chunk(a, size);
     a->total += size;
     c->used += gap(c, size);
     return chunk_take(c, size);

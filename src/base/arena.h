@@ -23,6 +23,10 @@ void ct_arena_destroy(struct ct_arena *a);
 /// An arena for a while, destroyed with its owner at the latest: nothing leaks when memory runs out.
 struct ct_arena *ct_arena_create_under(struct ct_arena *owner);
 
+/// Empty again, with its chunks for what is to come: the same requests get the same addresses, and ask the system for
+/// nothing. Endings run, arenas under it go. Cost: the chunks; zeros are written as memory is given out again.
+void ct_arena_clear(struct ct_arena *a);
+
 /// All that is in `from` lives as long as `into` from now on; `from` itself is gone. Cost: the chunks of `from`.
 void ct_arena_merge(struct ct_arena *into, struct ct_arena *from);
 

@@ -111,7 +111,7 @@ static bool study(struct ct_ctx *ctx, const struct cli_args *args, struct beams 
 
 static int run(struct ct_ctx *ctx, const struct cli_args *args)
 {
-    static struct beams b;
+    struct beams b = {0};
     int status = CLI_USAGE;
     if (read_lists(&b, args))
         status = study(ctx, args, &b) ? CLI_DONE : CLI_FAILED;

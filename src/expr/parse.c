@@ -1,6 +1,8 @@
 // Recursive descent over one line of text; the grammar is in parse.h.
 #include "expr/parse.h"
 
+#include "expr/character.h"
+#include "expr/quantity.h"
 #include "expr/unit.h"
 
 #include <math.h>
@@ -41,24 +43,9 @@ struct parser {
     bool names_ok; // false after an unknown name: parsing goes on to find more
 };
 
-static bool is_letter(char c)
-{
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
-}
-
-static bool is_digit(char c)
-{
-    return c >= '0' && c <= '9';
-}
-
-static bool is_blank(char c)
-{
-    return c == ' ' || c == '\t' || c == '\n' || c == '\r';
-}
-
 static void skip_blanks(struct parser *s)
 {
-    while (is_blank(*s->p))
+    while (ct_is_blank(*s->p))
         s->p++;
 }
 
@@ -115,10 +102,10 @@ static bool parse_unary(struct parser *s, ct_ex *e);
 // An identifier at p, copied; NULL if there is none.
 static const char *scan_name(struct parser *s)
 {
-    if (!is_letter(*s->p))
+    if (!ct_is_letter(*s->p))
         return NULL;
     const char *start = s->p;
-    while (is_letter(*s->p) || is_digit(*s->p))
+    while (ct_is_letter(*s->p) || ct_is_digit(*s->p))
         s->p++;
     return ct_arena_strndup(s->ctx->scratch, start, (size_t)(s->p - start));
 }
@@ -131,10 +118,10 @@ static int find_function(const char *name)
     return -1;
 }
 
-static bool is_known(const struct parser *s, const char *name)
+bool ct_scope_knows(const struct ct_scope *s, const char *name)
 {
-    for (size_t i = 0; i < s->scope->nknown; i++)
-        if (strcmp(s->scope->known[i], name) == 0)
+    for (size_t i = 0; i < s->nknown; i++)
+        if (strcmp(s->known[i], name) == 0)
             return true;
     return false;
 }
@@ -189,9 +176,9 @@ static bool scan_parts(struct parser *s, const char *start, const char **dotted)
 {
     while (*s->p == '.') {
         s->p++;
-        if (!is_letter(*s->p) && !is_digit(*s->p))
+        if (!ct_is_letter(*s->p) && !ct_is_digit(*s->p))
             return unexpected(s, "a name after the point");
-        while (is_letter(*s->p) || is_digit(*s->p))
+        while (ct_is_letter(*s->p) || ct_is_digit(*s->p))
             s->p++;
     }
     *dotted = ct_arena_strndup(s->ctx->scratch, start, (size_t)(s->p - start));
@@ -204,7 +191,7 @@ static bool scan_in(struct parser *s, const char **in, const char **at)
     *in = NULL;
     const char *back = s->p;
     skip_blanks(s);
-    if (strncmp(s->p, "in", 2) != 0 || is_letter(s->p[2]) || is_digit(s->p[2])) {
+    if (strncmp(s->p, "in", 2) != 0 || ct_is_letter(s->p[2]) || ct_is_digit(s->p[2])) {
         s->p = back;
         return true;
     }
@@ -249,7 +236,7 @@ static ct_ex apply(struct ct_exs *x, int f, const ct_ex *arg, int n)
 
 static bool report_unknown_function(struct parser *s, const char *name, const char *start)
 {
-    if (strcmp(name, "t") == 0 || strcmp(name, "pi") == 0 || is_known(s, name))
+    if (strcmp(name, "t") == 0 || strcmp(name, "pi") == 0 || ct_scope_knows(s->scope, name))
         return ct_error(s->ctx, mark_at(s, start), CT_E_FUNCTION,
                         "'%s' is not a function; a product is written %s*(...)", name, name);
     const char *names[COUNT(functions)];
@@ -307,11 +294,11 @@ static bool parse_number(struct parser *s, ct_ex *e)
     *e = ct_ex_const(s->scope->x, value);
     const char *after = s->p;
     skip_blanks(s);
-    if (is_letter(*s->p))
+    if (ct_is_letter(*s->p))
         return ct_error(s->ctx, mark_at(s, after), CT_E_SYNTAX,
                         "an operator is missing after the number; a number with a unit stands "
                         "alone, in an expression numbers are SI");
-    if (is_digit(*s->p) || *s->p == '.' || *s->p == '(')
+    if (ct_is_digit(*s->p) || *s->p == '.' || *s->p == '(')
         return ct_error(s->ctx, mark_at(s, s->p), CT_E_SYNTAX,
                         "an operator is missing after the number");
     return true;
@@ -331,7 +318,7 @@ static bool parse_primary(struct parser *s, ct_ex *e)
         s->p++;
         return true;
     }
-    if (is_digit(*s->p) || (*s->p == '.' && is_digit(s->p[1])))
+    if (ct_is_digit(*s->p) || (*s->p == '.' && ct_is_digit(s->p[1])))
         return parse_number(s, e);
     const char *name = scan_name(s);
     if (!name)
@@ -450,91 +437,6 @@ static bool parse_comparison(struct parser *s, ct_ex *e)
 
 // ---- a whole text -----------------------------------------------------------------------------------
 
-// [sign] number blanks unit: the parts; false if the text is something else
-static bool split_quantity(const char *text, double *value, const char **unit)
-{
-    const char *p = text;
-    while (is_blank(*p))
-        p++;
-    const double sign = *p == '-' ? -1 : 1;
-    p += *p == '-' || *p == '+';
-    while (is_blank(*p))
-        p++;
-    const size_t n = ct_number_parse(p, value);
-    *value *= sign;
-    p += n;
-    const bool has_gap = is_blank(*p);
-    while (is_blank(*p))
-        p++;
-    *unit = p;
-    // two-byte letters: a unit such as a micrometre, unknown but a unit
-    return n && (is_letter(*p) || (*p & 0x80) || (has_gap && p[0] == '1' && p[1] == '/'));
-}
-
-static bool report_unit(struct parser *s, enum ct_unit_result result, const char *unit,
-                        size_t at)
-{
-    const struct ct_mark mark = s->text.mark;
-    const char *bad = unit + at;
-    int n = 0;
-    while (is_letter(bad[n]) || (n && is_digit(bad[n])) || (bad[n] & 0x80))
-        n++;
-    char *name = ct_arena_strndup(s->ctx->scratch, bad, (size_t)n);
-    if (result == CT_UNIT_EXPONENT)
-        return ct_error(s->ctx, mark, CT_E_UNIT,
-                        "'%s': the exponent of a unit is one digit with an optional sign",
-                        s->text.text);
-    if (result == CT_UNIT_SYNTAX)
-        return ct_error(
-            s->ctx, mark, CT_E_UNIT,
-            "'%s': a number with a unit stands alone, in an expression numbers are SI",
-            s->text.text);
-    if (name[0] == '_')
-        return ct_error(s->ctx, mark, CT_E_NUMBER, "'%s': digits cannot be grouped with '_'",
-                        s->text.text);
-    if (is_known(s, name) || find_function(name) >= 0)
-        return ct_error(s->ctx, mark, CT_E_SYNTAX, "'%s': an operator is missing before '%s'",
-                        s->text.text, name);
-    const char *near = ct_unit_nearest(name);
-    if (near)
-        return ct_error(s->ctx, mark, CT_E_UNIT, "unknown unit '%s'; did you mean '%s'?", name,
-                        near);
-    return ct_error(s->ctx, mark, CT_E_UNIT, "unknown unit '%s'", name);
-}
-
-static bool check_dimension(struct parser *s, const struct ct_unit *u, const char *unit)
-{
-    if (!s->scope->unit)
-        return true;
-    struct ct_unit wanted;
-    size_t at;
-    ct_unit_parse(s->scope->unit, strlen(s->scope->unit), &wanted, &at);
-    if (ct_unit_same(u, &wanted))
-        return true;
-    if (!s->scope->unit[0])
-        return ct_error(s->ctx, s->text.mark, CT_E_DIMENSION,
-                        "'%s' is in %s, but a number without a unit is wanted here",
-                        s->text.text, unit);
-    return ct_error(s->ctx, s->text.mark, CT_E_DIMENSION,
-                    "'%s' is in %s, but a quantity in %s is wanted here", s->text.text, unit,
-                    s->scope->unit);
-}
-
-static bool parse_quantity(struct parser *s, double value, const char *unit, ct_ex *e)
-{
-    struct ct_unit u;
-    size_t at;
-    const enum ct_unit_result result = ct_unit_parse(unit, strlen(unit), &u, &at);
-    if (result != CT_UNIT_OK)
-        return report_unit(s, result, unit, at);
-    value *= u.si;
-    if (!isfinite(value))
-        return ct_error(s->ctx, s->text.mark, CT_E_NUMBER, "'%s': the number is too large",
-                        s->text.text);
-    *e = ct_ex_const(s->scope->x, value);
-    return check_dimension(s, &u, unit);
-}
-
 // YAML's own words for what is not a number
 static bool is_infinite_word(const char *text)
 {
@@ -544,13 +446,6 @@ static bool is_infinite_word(const char *text)
         if (strcmp(text, word[i]) == 0)
             return true;
     return false;
-}
-
-const char *ct_parse_unit(const char *text)
-{
-    double value;
-    const char *unit;
-    return split_quantity(text, &value, &unit) ? unit : NULL;
 }
 
 bool ct_parse(struct ct_ctx *ctx, const struct ct_scope *scope, struct ct_text text, ct_ex *e)
@@ -566,9 +461,9 @@ bool ct_parse(struct ct_ctx *ctx, const struct ct_scope *scope, struct ct_text t
                         text.text);
     double value;
     const char *unit;
-    if (split_quantity(text.text, &value, &unit))
-        return parse_quantity(&s, value, unit, e);
-    if (is_digit(*text.text) && !*unit && isfinite(value)) { // as most texts are
+    if (ct_quantity_split(text.text, &value, &unit))
+        return ct_quantity_read(ctx, scope, text, value, unit, e);
+    if (ct_is_digit(*text.text) && !*unit && isfinite(value)) { // as most texts are
         *e = ct_ex_const(scope->x, value);
         return true;
     }
@@ -583,31 +478,31 @@ bool ct_parse(struct ct_ctx *ctx, const struct ct_scope *scope, struct ct_text t
 static size_t scan_dotted(const char *p)
 {
     size_t n = 0;
-    if (!is_letter(p[0]))
+    if (!ct_is_letter(p[0]))
         return 0;
-    while (is_letter(p[n]) || is_digit(p[n]) || p[n] == '.')
+    while (ct_is_letter(p[n]) || ct_is_digit(p[n]) || p[n] == '.')
         n++;
     return n;
 }
 
 bool ct_parse_is_signal(struct ct_arena *a, const char *text, const char **normal)
 {
-    while (is_blank(*text))
+    while (ct_is_blank(*text))
         text++;
     size_t n = scan_dotted(text);
     if (!n || !memchr(text, '.', n))
         return false;
     const char *p = text + n, *in = NULL;
     size_t nin = 0;
-    while (is_blank(*p))
+    while (ct_is_blank(*p))
         p++;
-    if (strncmp(p, "in", 2) == 0 && is_blank(p[2])) {
+    if (strncmp(p, "in", 2) == 0 && ct_is_blank(p[2])) {
         in = p + 2;
-        while (is_blank(*in))
+        while (ct_is_blank(*in))
             in++;
         nin = scan_dotted(in);
         p = in + nin;
-        while (is_blank(*p))
+        while (ct_is_blank(*p))
             p++;
     }
     if (*p || (in && !nin))
@@ -619,11 +514,16 @@ bool ct_parse_is_signal(struct ct_arena *a, const char *text, const char **norma
 
 bool ct_is_identifier(const char *name)
 {
-    if (!is_letter(*name))
+    if (!ct_is_letter(*name))
         return false;
-    while (is_letter(*name) || is_digit(*name))
+    while (ct_is_letter(*name) || ct_is_digit(*name))
         name++;
     return !*name;
+}
+
+bool ct_is_function(const char *name)
+{
+    return find_function(name) >= 0;
 }
 
 bool ct_is_reserved(const char *name)

@@ -62,6 +62,8 @@ bool ct_vector_signal(const char *name, const char *property, ct_ex3 v, ct_ex *o
 ct_ex ct_load_power(struct ct_build *b, int tail, int head, ct_ex3 force, ct_ex3 torque);
 /// Spring, damper and applied effort of a joint along a coordinate.
 ct_ex ct_joint_passive(struct ct_build *b, int coordinate);
+/// Effort of a driven coordinate: what its driver gives beyond that; of a gear's its multiplier.
+ct_ex ct_driver_effort(struct ct_build *b, int coordinate);
 /// An expression of the model with its signals replaced and its comparisons held.
 ct_ex ct_build_value(struct ct_build *b, ct_ex e);
 /// Efforts, springs and dampers of joints; forces.

@@ -25,28 +25,14 @@ static bool plain_rates(struct ct_build *b, const struct ct_place *p, enum ct_le
                         struct ct_base *out)
 {
     struct ct_exs *x = b->x;
-    const struct ct_cluster *c = &b->cluster[p->frame];
-    ct_ex3 w = zero3, al = zero3;
+    ct_ex3 w, al;
     if (b->is_planar) {
         out->w = ct_ex33_apply_t(x, &p->S, ct_cluster_velocity(b, p->frame));
         out->al = ct_ex33_apply_t(x, &p->S, ct_cluster_acceleration(b, p->frame, level));
         return true;
     }
-    if (p->frame && c->parent)
+    if (!ct_cluster_own_rates(b, p->frame, level, &w, &al))
         return false;
-    for (int i = 0; i < c->nspin; i++) {
-        const struct ct_spin *s = &b->spin[c->first_spin + i];
-        ct_ex rate = s->bias;
-        if (ct_ex3_is_zero(s->local))
-            return false;
-        for (int k = 0; level == CT_FULL && k < s->nterm; k++)
-            if (s->term[k].speed >= 0)
-                rate = ct_ex_add(
-                    x, rate,
-                    ct_ex_mul(x, s->term[k].coef, b->eqs->u[s->term[k].speed].derivative));
-        w = ct_ex3_add(x, w, ct_ex3_scale(x, s->rate, s->local));
-        al = ct_ex3_add(x, al, ct_ex3_scale(x, rate, s->local));
-    }
     out->w = ct_ex33_apply_t(x, &p->S, w);
     out->al = ct_ex33_apply_t(x, &p->S, al);
     return true;

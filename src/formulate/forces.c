@@ -154,25 +154,12 @@ static bool local_inertia_torque(struct work *w, int c, ct_ex3 *torque)
 {
     struct ct_build *b = w->b;
     struct ct_exs *x = b->x;
-    const struct ct_cluster *self = &b->cluster[c];
-    ct_ex3 omega = {{{0}, {0}, {0}}}, al = omega;
-    if (b->is_planar || self->parent != 0)
+    const ct_ex33 *L = &b->cluster[c].L;
+    ct_ex3 omega, al;
+    if (b->is_planar || !ct_cluster_own_rates(b, c, w->level, &omega, &al))
         return false;
-    for (int i = 0; i < self->nspin; i++) {
-        const struct ct_spin *s = &b->spin[self->first_spin + i];
-        ct_ex rate = s->bias;
-        if (ct_ex3_is_zero(s->local))
-            return false;
-        for (int k = 0; w->level == CT_FULL && k < s->nterm; k++)
-            if (s->term[k].speed >= 0)
-                rate = ct_ex_add(
-                    x, rate,
-                    ct_ex_mul(x, s->term[k].coef, b->eqs->u[s->term[k].speed].derivative));
-        omega = ct_ex3_add(x, omega, ct_ex3_scale(x, s->rate, s->local));
-        al = ct_ex3_add(x, al, ct_ex3_scale(x, rate, s->local));
-    }
-    *torque = ct_ex3_add(x, ct_ex33_apply(x, &self->L, al),
-                         ct_ex3_cross(x, omega, ct_ex33_apply(x, &self->L, omega)));
+    *torque = ct_ex3_add(x, ct_ex33_apply(x, L, al),
+                         ct_ex3_cross(x, omega, ct_ex33_apply(x, L, omega)));
     return true;
 }
 
@@ -393,6 +380,16 @@ ct_ex ct_joint_passive(struct ct_build *b, int coordinate)
 {
     const struct ct_coordinate *c = &b->coordinate[coordinate];
     return own_effort(b, &b->edge[c->edge], c->place).total;
+}
+
+ct_ex ct_driver_effort(struct ct_build *b, int coordinate)
+{
+    struct ct_exs *x = b->x;
+    const struct ct_coordinate *c = &b->coordinate[coordinate];
+    if (c->motion_row)
+        return b->eqs->row[c->motion_row - 1].lam;
+    const ct_ex row = ct_sweep_driver(b, c->driver);
+    return ct_ex_sub(x, row, ct_joint_passive(b, coordinate));
 }
 
 static void joint_effort(struct ct_build *b, const struct ct_edge_info *e, int k)

@@ -6,6 +6,7 @@
 #include "formulate/row.h"
 #include "formulate/signal.h"
 #include "formulate/small.h"
+#include "formulate/system_sum.h"
 #include "formulate/topology.h"
 #include "formulate/trees.h"
 #include "formulate/validity.h"

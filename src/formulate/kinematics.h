@@ -27,6 +27,8 @@ ct_ex ct_edge_partial(struct ct_build *b, const struct ct_edge_info *e, ct_ex tr
 
 ct_ex3 ct_cluster_velocity(const struct ct_build *b, int c);              // w [rad/s]
 ct_ex3 ct_cluster_acceleration(struct ct_build *b, int c, enum ct_level); // al [rad/s^2]
+/// The same in the cluster's own axes. False where it does not turn against ground, or about axes that are not fixed in it.
+bool ct_cluster_own_rates(struct ct_build *b, int c, enum ct_level, ct_ex3 *w, ct_ex3 *al);
 /// w and al of cluster `to` less those of `from`, along the path of the rotational tree.
 ct_ex3 ct_cluster_path_velocity(struct ct_build *b, int from, int to);
 ct_ex3 ct_cluster_path_acceleration(struct ct_build *b, int from, int to, enum ct_level level);

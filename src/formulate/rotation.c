@@ -432,6 +432,35 @@ ct_ex3 ct_cluster_velocity(const struct ct_build *b, int c)
     return b->cluster[c].w;
 }
 
+// bias + coef u': the derivative of a turn's rate.
+static ct_ex spin_acceleration(struct ct_build *b, const struct ct_spin *s, enum ct_level level)
+{
+    ct_ex rate = s->bias;
+    for (int k = 0; level == CT_FULL && k < s->nterm; k++)
+        if (s->term[k].speed >= 0)
+            rate = ct_ex_add(
+                b->x, rate,
+                ct_ex_mul(b->x, s->term[k].coef, b->eqs->u[s->term[k].speed].derivative));
+    return rate;
+}
+
+bool ct_cluster_own_rates(struct ct_build *b, int c, enum ct_level level, ct_ex3 *w, ct_ex3 *al)
+{
+    const struct ct_cluster *self = &b->cluster[c];
+    *w = *al = (ct_ex3){{{0}, {0}, {0}}};
+    if (c && self->parent != 0)
+        return false;
+    for (int i = 0; i < self->nspin; i++) {
+        const struct ct_spin *s = &b->spin[self->first_spin + i];
+        if (ct_ex3_is_zero(s->local))
+            return false;
+        const ct_ex rate = spin_acceleration(b, s, level);
+        *w = ct_ex3_add(b->x, *w, ct_ex3_scale(b->x, s->rate, s->local));
+        *al = ct_ex3_add(b->x, *al, ct_ex3_scale(b->x, rate, s->local));
+    }
+    return true;
+}
+
 // al - al_p = sum s (bias + coef u') + w_p x w_rel: the axis of a turn is fixed in both frames, those
 // of a quaternion in one of them; the formula is the same.  (4.1), (1.8)
 static ct_ex3 relative_acceleration(struct ct_build *b, int c, enum ct_level level)
@@ -441,12 +470,7 @@ static ct_ex3 relative_acceleration(struct ct_build *b, int c, enum ct_level lev
     ct_ex3 w = {{{0}, {0}, {0}}}, al = w;
     for (int i = 0; i < self->nspin; i++) {
         const struct ct_spin *s = &b->spin[self->first_spin + i];
-        ct_ex rate = s->bias;
-        for (int k = 0; level == CT_FULL && k < s->nterm; k++)
-            if (s->term[k].speed >= 0)
-                rate = ct_ex_add(
-                    x, rate,
-                    ct_ex_mul(x, s->term[k].coef, b->eqs->u[s->term[k].speed].derivative));
+        const ct_ex rate = spin_acceleration(b, s, level);
         al = ct_ex3_add(x, al, ct_ex3_scale(x, rate, s->axis));
         w = ct_ex3_add(x, w, ct_ex3_scale(x, s->rate, s->axis));
     }

@@ -9,8 +9,6 @@
 bool ct_outputs_derive(struct ct_build *b);
 /// Further columns, those left out that are there already.
 bool ct_outputs_add(struct ct_build *b, enum ct_more_outputs more);
-/// Kinetic energy, potential of gravity and power of drivers, added to b->eqs.
-void ct_energies_derive(struct ct_build *b);
 /// Components a name without one stands for (".x", ".y", ".z"); NULL-terminated, or NULL for a scalar signal.
 const char *const *ct_signal_components(struct ct_build *b, const char *name);
 /// One scalar signal; false with a diagnostic at mark if it does not exist.

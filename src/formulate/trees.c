@@ -14,7 +14,8 @@ struct search {
     const struct ct_build *open; // the stage's, whose trees are sought
     const struct ct_model *model;
     const struct ct_formulate_options *options;
-    struct ct_arena *owner; // of trial generations
+    struct ct_arena *owner; // of generations
+    struct ct_arena *trial; // of one at a time, cleared for the next
     bool stays_open;        // there is a pair without rows, and none with rows is wanted
     struct ct_tree T, R;    // of least weight
     double cost;            // theirs; 0: not counted yet
@@ -45,15 +46,13 @@ static double pair_cost(void *data, const struct ct_tree *T, const struct ct_tre
     const struct search *s = data;
     if (s->cost > 0 && is_same(&s->T, T->is_branch) && is_same(&s->R, R->is_branch))
         return s->cost;
-    struct ct_arena *scratch = ct_arena_create_under(s->owner);
+    ct_arena_clear(s->trial);
     struct ct_ctx quiet
-        = {.model = scratch, .scratch = scratch}; // errors are reported by the chosen pair
+        = {.model = s->trial, .scratch = s->trial}; // errors are reported by the chosen pair
     struct ct_build *b = s->open->nflexible
-                           ? ct_build_create(&quiet, scratch, s->model, s->options, NULL)
-                           : ct_build_clone(&quiet, scratch, s->open);
-    const double cost = derive_and_count(s, b, T, R);
-    ct_arena_destroy(scratch);
-    return cost;
+                           ? ct_build_create(&quiet, s->trial, s->model, s->options, NULL)
+                           : ct_build_clone(&quiet, s->trial, s->open);
+    return derive_and_count(s, b, T, R);
 }
 
 // The equations of a trial are those of the stage where all of these have rows and no beams: beams are chosen in between,
@@ -337,9 +336,16 @@ bool ct_trees_choose(struct ct_build **build, const struct ct_formulate_options 
     } else if (o->tree == CT_TREE_AUTO && !o->measure_all) {
         int nrow, nu;
         count_weights(b, &p, &nrow, &nu);
-        struct search s = {b->ctx, b, b->model, o, b->arena, .stays_open = nrow == 0};
+        struct search s = {b->ctx,
+                           b,
+                           b->model,
+                           o,
+                           b->arena,
+                           .trial = ct_arena_create_under(b->arena),
+                           .stays_open = nrow == 0};
         improve(b, &s, &r, &p, report);
         count_from_ground(b, &s, &p, report);
+        ct_arena_destroy(s.trial);
         take_first(&s, build, &p);
         b = *build;
     }

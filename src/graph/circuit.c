@@ -36,7 +36,7 @@ int ct_tree_circuit(const struct ct_graph *g, const struct ct_tree *t, int e, in
     return n;
 }
 
-/// Entries in each column of B_f, counted into start[e + 1] and summed to column starts.
+/// Entries in each column of B_f, counted into start[e + 1].
 static void count_columns(const struct ct_graph *g, const struct ct_tree *t, int *branch,
                           signed char *sign, int *start)
 {
@@ -46,8 +46,6 @@ static void count_columns(const struct ct_graph *g, const struct ct_tree *t, int
         for (int i = 0; i < n; i++)
             start[branch[i] + 1]++;
     }
-    for (int e = 0; e < g->nedge; e++)
-        start[e + 1] += start[e];
 }
 
 void ct_circuits_derive(struct ct_arena *a, const struct ct_graph *g, const struct ct_tree *t,
@@ -57,12 +55,7 @@ void ct_circuits_derive(struct ct_arena *a, const struct ct_graph *g, const stru
     signed char *sign = CT_NEWN(a, signed char, t->nbranch);
     count_columns(g, t, branch, sign, start);
 
-    const int nentry = start[g->nedge];
-    *Bf = (struct ct_incidence){t->nchord, g->nedge, start, CT_NEWN(a, int, nentry),
-                                CT_NEWN(a, signed char, nentry)};
-    int *next = CT_NEWN(a, int, g->nedge); // next free place of each column
-    for (int e = 0; e < g->nedge; e++)
-        next[e] = start[e];
+    int *next = ct_incidence_create(a, t->nchord, g->nedge, start, Bf);
     for (int k = 0; k < t->nchord; k++) { // ascending, so the rows of a column come out sorted
         const int c = t->chord[k], n = ct_tree_circuit(g, t, c, branch, sign);
         Bf->row[next[c]] = k;

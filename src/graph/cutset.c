@@ -3,8 +3,7 @@
 // in its direction.
 #include "graph/graph.h"
 
-/// Starts of the columns of A_f: a chord has as many entries as its row of B_t, a branch has
-/// one.
+/// Entries in each column of A_f, counted into start[e + 1]: a chord has as many as its row of B_t, a branch has one.
 static void count_columns(const struct ct_tree *t, const struct ct_incidence *Bf, int *start)
 {
     for (int i = 0; i < t->nbranch; i++) {
@@ -13,8 +12,6 @@ static void count_columns(const struct ct_tree *t, const struct ct_incidence *Bf
         for (int k = Bf->start[e]; k < Bf->start[e + 1]; k++)
             start[t->chord[Bf->row[k]] + 1]++;
     }
-    for (int e = 0; e < t->nedge; e++)
-        start[e + 1] += start[e];
 }
 
 void ct_cutsets_derive(struct ct_arena *a, const struct ct_graph *g, const struct ct_tree *t,
@@ -25,12 +22,7 @@ void ct_cutsets_derive(struct ct_arena *a, const struct ct_graph *g, const struc
     int *start = CT_NEWN(a, int, g->nedge + 1);
     count_columns(t, &Bf, start);
 
-    const int nentry = start[g->nedge];
-    *Af = (struct ct_incidence){t->nbranch, g->nedge, start, CT_NEWN(a, int, nentry),
-                                CT_NEWN(a, signed char, nentry)};
-    int *next = CT_NEWN(a, int, g->nedge); // next free place of each column
-    for (int e = 0; e < g->nedge; e++)
-        next[e] = start[e];
+    int *next = ct_incidence_create(a, t->nbranch, g->nedge, start, Af);
     for (int i = 0; i < t->nbranch; i++) { // ascending, so the rows of a column come out sorted
         const int e = t->branch[i];
         Af->row[next[e]] = i;

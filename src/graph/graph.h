@@ -87,6 +87,10 @@ void ct_circuits_derive(struct ct_arena *a, const struct ct_graph *g, const stru
 void ct_cutsets_derive(struct ct_arena *a, const struct ct_graph *g, const struct ct_tree *t,
                        struct ct_incidence *Af);
 
+/// S without its entries; start (ncol + 1): how many column j has in start[j + 1], summed to starts. Returns the next
+/// free place of each column.
+int *ct_incidence_create(struct ct_arena *a, int nrow, int ncol, int *start,
+                         struct ct_incidence *S);
 /// The transpose: compressed columns of S' are compressed rows of S, so that its equations can
 /// be read one by one. Cost O(rows + columns + entries).
 void ct_incidence_transpose(struct ct_arena *a, const struct ct_incidence *S,

@@ -1,6 +1,19 @@
 // Compressed columns of -1, +1; see graph.h.
 #include "graph/graph.h"
 
+int *ct_incidence_create(struct ct_arena *a, int nrow, int ncol, int *start,
+                         struct ct_incidence *S)
+{
+    int *next = CT_NEWN(a, int, ncol);
+    for (int j = 0; j < ncol; j++) {
+        next[j] = start[j];
+        start[j + 1] += start[j];
+    }
+    *S = (struct ct_incidence){nrow, ncol, start, CT_NEWN(a, int, start[ncol]),
+                               CT_NEWN(a, signed char, start[ncol])};
+    return next;
+}
+
 void ct_incidence_transpose(struct ct_arena *a, const struct ct_incidence *S,
                             struct ct_incidence *St)
 {

@@ -62,7 +62,7 @@ static size_t lightest(const struct ct_embed *s)
 // What gives sections an inertia.
 static const char *rotary_of(const struct ct_beam *beam)
 {
-    return beam->is_lumped ? "values of 'rotary_inertia', which lumped mass has not by itself"
+    return beam->is_lumped ? "values of 'rotary_inertia', as lumped mass gives sections none"
                            : "a 'rotary_inertia'";
 }
 

@@ -5,6 +5,7 @@
 //     jump.c      speeds after those
 //     change.c    the choice of the method, when the motion turns stiff
 //     length.c    what is said of runs that take long
+//     ending.c    and of those that end before their time
 //     beam_watch.c  beams that leave what their models hold for
 #ifndef CT_SOLVE_RUN_H
 #define CT_SOLVE_RUN_H
@@ -119,6 +120,8 @@ void ct_run_foresee(void *user, double t, const double *y, double step, double t
 extern const double ct_run_many_steps;
 /// Notes on what holds a run up that would take more steps than are allowed.
 void ct_run_explain_count(struct ct_run *r);
+/// Notes on why steps have ended, after its error.
+void ct_run_explain_end(struct ct_run *r);
 /// From start to end, with another method from where that pays.
 bool ct_run_march(struct ct_run *r, struct ct_problem *p, struct ct_integrate_options io);
 /// Is another method worth a thought after this step?

@@ -5,7 +5,7 @@
 // One line for each model and solver: unknowns (speeds and kept rows), predicted operations, machine code of one
 // evaluation, seconds from the equations to programs that run, and the time of an evaluation: of eleven samples of processor
 // time, taken alternately over the solvers, the least. The solver that `cotree check` chooses is marked.
-#include "api.h"
+#include "sim/sim.h"
 #include "codegen/native.h"
 #include "solve/form.h"
 

@@ -7,7 +7,7 @@
 // them is taken to cost what one of the accelerations does on which the next one waits; the time of one of the residual is
 // printed beside it. Times are processor time, the least of several runs, which take turns so that a busy machine slows all of
 // them.
-#include "api.h"
+#include "sim/sim.h"
 #include "solve/dae.h"
 
 #include <math.h>

@@ -33,6 +33,9 @@ END
 for tree in auto joints absolute; do
   "$COTREE" check tail.yaml --tree $tree | grep undetermined
 done
+echo '-- why: redundant rows, or a planar loop'
+"$COTREE" simulate four_bar.yaml --keep-all --tree joints --until 0.1 2>&1 | grep '^note'
+"$COTREE" simulate tail.yaml --until 0.01 2>&1 | grep -E 'redundant|^note'
 echo '-- signals that joints and forces do not have'
 cat >signals.yaml <<'END'
 cotree: 1

@@ -72,7 +72,11 @@ find $folders -name '*.[ch]' | LC_ALL=C sort | awk -v layers="$layers" '
         continue
       }
       known[word[1]] = 1
-      for (i = 2; i <= n; i++) allowed[word[1], word[i]] = 1
+      if (word[1] in named) {
+        print layers ": " word[1] " comes after a folder that may include it"
+        bad = 1
+      }
+      for (i = 2; i <= n; i++) allowed[word[1], word[i]] = named[word[i]] = 1
     }
     close(layers)
   }

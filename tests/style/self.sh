@@ -64,6 +64,11 @@ mkdir src/new
 touch src/new/file.c
 fails_with 'folder new is not in' layers
 rm -r src/new
+printf 'high low\nlow\nsrc  *\ncli  cotree\n' >turned.txt
+turned() {
+  sh "$tests/style/layers.sh" turned.txt .
+}
+fails_with 'turned.txt: low comes after a folder that may include it' turned
 
 # ---- keys
 keys() {
@@ -88,6 +93,24 @@ echo 'int f(int x);' >include/good.h
 passes headers "$@"
 echo 'size_t g(void);' >include/bad.h
 fails_with 'include/bad.h does not compile alone' headers "$@"
+
+# ---- global variables
+globals() {
+  sh "$tests/style/globals.sh" nm object.o
+}
+object_of() {
+  echo "$1" >object.c
+  shift
+  "$@" -fPIC -c object.c -o object.o
+}
+object_of 'static const char *const name[] = {"a"}; const char *f(int i) { return name[i]; }' "$@"
+passes globals
+object_of 'int f(void) { static int n; return n++; }' "$@"
+fails_with 'n.' globals
+object_of 'int n = 1; int f(void) { return n++; }' "$@"
+fails_with ' n' globals
+object_of 'static _Thread_local int n; int f(void) { return n++; }' "$@"
+fails_with ' n' globals
 
 # ---- cases
 mkdir cases

@@ -142,6 +142,64 @@ static void merged_arenas_end_together(void **state)
     ct_arena_destroy(empty);
 }
 
+enum { NREQUEST = 40 };
+
+// Many small ones and some that take chunks of pages. Each is zero when it comes and is not when the next is asked for.
+static void request(struct ct_arena *a, size_t more, unsigned char **p)
+{
+    for (size_t i = 0; i < NREQUEST; i++) {
+        const size_t size = (i % 10 == 9 ? (size_t)300000 : 700 * i) + more;
+        p[i] = ct_arena_alloc(a, size);
+        for (size_t k = 0; k < size; k++)
+            assert_int_equal(p[i][k], 0);
+        memset(p[i], 0xff, size);
+    }
+}
+
+static void a_cleared_arena_gives_zeros_at_the_same_places(void **state)
+{
+    struct ct_arena *a = *state;
+    unsigned char *first[NREQUEST], *again[NREQUEST];
+    request(a, 0, first);
+    const size_t used = ct_arena_used(a);
+    for (int round = 0; round < 3; round++) {
+        ct_arena_clear(a);
+        assert_int_equal(ct_arena_used(a), 0);
+        ct_guard_fail_after(1); // the system is not asked
+        request(a, 0, again);
+        ct_guard_fail_after(0);
+        assert_memory_equal(again, first, sizeof first);
+        assert_int_equal(ct_arena_used(a), used);
+    }
+}
+
+static void a_cleared_arena_gives_zeros_to_other_requests(void **state)
+{
+    static const size_t more[] = {0, 5000, 16, 100000, 48, 0};
+    unsigned char *p[NREQUEST];
+    for (size_t i = 0; i < COUNT(more); i++) {
+        request(*state, more[i], p);
+        ct_arena_clear(*state);
+    }
+}
+
+static void clearing_ends_what_is_in_it_once(void **state)
+{
+    struct ct_arena *a = *state;
+    int n = 0;
+    ct_arena_clear(a); // nothing is in it
+    ct_arena_at_end(a, count, &n);
+    ct_arena_at_end(ct_arena_create_under(a), count, &n);
+    ct_arena_clear(a);
+    assert_int_equal(n, 2);
+    ct_arena_clear(a);
+    assert_int_equal(n, 2);
+    struct ct_arena *from = ct_arena_create_under(a);
+    request(from, 0, (unsigned char *[NREQUEST]){0});
+    ct_arena_clear(from);
+    ct_arena_merge(a, from); // with chunks to spare
+}
+
 static void destroying_nothing_is_allowed(void **state)
 {
     (void)state;
@@ -262,6 +320,9 @@ int main(void)
         CASE(strings_are_copied_whole),
         CASE(a_pushed_array_keeps_its_elements),
         CASE(merged_arenas_end_together),
+        CASE(a_cleared_arena_gives_zeros_at_the_same_places),
+        CASE(a_cleared_arena_gives_zeros_to_other_requests),
+        CASE(clearing_ends_what_is_in_it_once),
         CASE(destroying_nothing_is_allowed),
         CASE(the_nth_refusal_reaches_the_guard),
         CASE(after_a_refusal_the_arena_is_usable),

@@ -1,5 +1,5 @@
 // Parameter studies: members of grids and samples, and what the command line may say.
-#include "plan.h"
+#include "study/plan.h"
 
 #include <math.h>
 #include <setjmp.h>

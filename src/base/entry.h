@@ -1,0 +1,32 @@
+// What public entry points share: a guard, contexts that objects own, diagnostics handed over, suggestions.
+//
+// What always holds: an object that an entry point makes owns a context, so that its memory is its alone; what it says
+// is handed over to the caller's context, as copies, before the entry point returns.
+#ifndef CT_BASE_ENTRY_H
+#define CT_BASE_ENTRY_H
+
+#include "base/ctx.h"
+
+/// Run work(task) with a guard: without memory false, and E001 in ctx.
+bool ct_enter(struct ct_ctx *ctx, bool (*work)(void *task), void *task);
+/// Two arenas for a context that a system or a run owns. Raises the guard.
+void ct_own_init(struct ct_ctx *own);
+void ct_own_finish(struct ct_ctx *own);
+/// A new stage starts: nothing in the scratch arena is needed any more.
+void ct_own_next_stage(struct ct_ctx *own);
+/// Zeros for an object that owns a context; NULL, and E001 in ctx, where there is no memory. Freed with free.
+void *ct_own_alloc(struct ct_ctx *ctx, size_t size);
+/// Open the context of a new object, run work(task) with a guard, and hand over what it says: true if all went well.
+bool ct_own_enter(struct ct_ctx *ctx, struct ct_ctx *own, bool (*work)(void *task), void *task);
+/// Diagnostics of `from` go to `to`, as copies.
+void ct_ctx_hand_over(struct ct_ctx *to, struct ct_ctx *from);
+/// "; did you mean 'x'?" for the nearest of n names, else ""; in arena a.
+const char *ct_suggest(struct ct_arena *a, const char *name, const char *const *names,
+                       size_t n);
+/// The same; else "; there are x, y, z".
+const char *ct_suggest_or_list(struct ct_arena *a, const char *name, const char *const *names,
+                               size_t n);
+/// Monotonic time [s].
+double ct_clock(void);
+
+#endif

@@ -1,0 +1,520 @@
+// Runs: options resolved, the start assembled, the motion integrated and written.
+#include "sim/sim.h"
+
+#include "formulate/flexible.h"
+#include "report/progress.h"
+#include "solve/criterion.h"
+#include "solve/lanes.h"
+#include "solve/singular.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+// The error of a solution is larger than that of its steps, so steps are held to less than what is wanted, as far as
+// double precision has that many digits. Over the reference cases outputs err by up to 3000 times the tolerance of the
+// steps with dopri5 and past singular positions, by up to 1300 times with dop853 where there are no loops.
+static const double usual_share = 2e-3, share_of_high_order = 5e-3;
+// Steps of order p err by h^(p+1) and the solution by h^p: T = c tol^(p/(p+1)). For order 2, c is 10 to 50 in most cases.
+static const double order2_factor = 30;
+// Of Radau's steps the error of an estimate of order 3 is controlled, eased to tol^(2/3)/10: T/10 for this power of T.
+static const double radau_power = 1.5;
+static const double radau_share = 1e-2; // for loose tolerances
+// About a hundred roundings. With loops it is ct_position_tolerance, as well as projections close them: from steps that are
+// held to less, down to 1e-14, outputs come out no better past singular positions, and a few times better, below 1e-12,
+// where there are none.
+static const double least_rtol = 2e-14;
+// Above this tolerance high order does not pay for its twelve evaluations: over the reference cases both explicit methods
+// then cost the same.
+static const double high_order_up_to = 1e-2;
+static const long steps_between_looks = 32; // at the clock, for runs with a deadline
+
+// ---- options -------------------------------------------------------------------------------------------
+
+static bool wrong_option(struct ct_sim *sim, const char *name, double value)
+{
+    return ct_error(&sim->own, (struct ct_mark){0}, CT_E_USAGE,
+                    "%s is %g; it must be greater than 0", name, value);
+}
+
+static bool check_numbers(struct ct_sim *sim, const struct ct_sim_options *o)
+{
+    const struct {
+        const char *name;
+        double value;
+    } numbers[] = {{"the tolerance", o->tolerance},
+                   {"the absolute tolerance", o->absolute},
+                   {"the step", o->step},
+                   {"the end time", o->until},
+                   {"the number of samples", (double)o->samples}};
+    bool ok = true;
+    for (size_t i = 0; i < COUNT(numbers); i++)
+        if (!(numbers[i].value >= 0 && isfinite(numbers[i].value)))
+            ok = wrong_option(sim, numbers[i].name, numbers[i].value);
+    return ok;
+}
+
+static bool no_method(struct ct_sim *sim, const char *name, bool is_option)
+{
+    const char **names = CT_NEWN(sim->own.model, const char *, ct_nmethod + 1);
+    names[0] = "auto";
+    for (int i = 0; i < ct_nmethod; i++)
+        names[i + 1] = ct_methods[i]->name;
+    const struct ct_mark none = {0};
+    return ct_error(&sim->own, is_option ? none : sim->system->model.simulation.method_mark,
+                    is_option ? CT_E_USAGE : CT_E_WORD, "this version has no method '%s'%s",
+                    name,
+                    ct_suggest_or_list(sim->own.model, name, names, (size_t)ct_nmethod + 1));
+}
+
+// What steps are held to so that outputs err by about `tolerance`.
+static double tolerance_of_steps(const struct ct_sim *sim, const struct ct_method *m)
+{
+    const double t = sim->tolerance;
+    if (m->is_implicit)
+        return m->order < 3 ? pow(t / order2_factor, 1.5)
+                            : fmin(radau_share * t, pow(t, radau_power));
+    const bool is_open = sim->system->equations.nrow == 0;
+    return t * (m->order > 5 && is_open ? share_of_high_order : usual_share);
+}
+
+static void set_tolerances(const struct ct_sim *sim, const struct ct_method *m, double absolute,
+                           double *rtol, double *atol)
+{
+    *rtol = fmax(tolerance_of_steps(sim, m), sim->least_rtol);
+    *atol = absolute / sim->tolerance * *rtol;
+}
+
+// Third derivatives of cubic tables jump at their points, which a step of order 8 passes with errors that it does not see.
+static bool has_cubic_table(const struct ct_exs *x)
+{
+    for (size_t k = 0; k < x->ntable; k++)
+        if (x->table[k].m)
+            return true;
+    return false;
+}
+
+static void choose_automatically(struct ct_sim *sim)
+{
+    struct ct_run_options *o = &sim->run_options;
+    const bool is_tight = o->step == 0 && sim->tolerance <= high_order_up_to;
+    const bool high = is_tight && !has_cubic_table(sim->system->equations.x);
+    o->method = ct_method_find(high ? "dop853" : "dopri5");
+    sim->method_why = o->step > 0 ? "automatic: a fixed step"
+                    : high        ? "automatic: high order"
+                    : is_tight ? "automatic: cubic tables are smooth only between their points"
+                               : "automatic: a loose tolerance";
+    if (o->step == 0)
+        o->stiff_method = ct_method_find("radau5");
+}
+
+static bool choose_method(struct ct_sim *sim, const char *option)
+{
+    const char *name = option ? option : sim->system->model.simulation.method;
+    struct ct_run_options *o = &sim->run_options;
+    sim->method_why = option ? "as asked" : "as the model says";
+    o->method = ct_method_find(name);
+    if (!o->method && strcmp(name, "auto") != 0)
+        return no_method(sim, name, option != NULL);
+    if (!o->method)
+        choose_automatically(sim);
+    return true;
+}
+
+// The spacing of the model's samples is kept, as near as both ends allow.
+static size_t samples_until(const struct ct_simulation *m, double until)
+{
+    double spacing = m->interval;
+    if (spacing == 0 && m->has_duration && m->samples > 1)
+        spacing = m->duration / (double)(m->samples - 1);
+    if (!(spacing > 0))
+        return m->samples > 1 ? (size_t)m->samples : 2;
+    return (size_t)ceil(until / spacing * (1 - 1e-12)) + 1; // 10/0.01 may round upwards
+}
+
+bool ct_sim_resolve(struct ct_sim *sim, const struct ct_sim_options *o)
+{
+    const struct ct_simulation *m = &sim->system->model.simulation;
+    if (!check_numbers(sim, o))
+        return false;
+    sim->tolerance = o->tolerance > 0 ? o->tolerance : m->rtol;
+    const double absolute = o->absolute > 0  ? o->absolute
+                          : o->tolerance > 0 ? o->tolerance / 100
+                                             : m->atol;
+    sim->least_rtol = sim->system->equations.nrow ? ct_position_tolerance : least_rtol;
+    sim->is_verified = o->verify;
+    struct ct_run_options *run = &sim->run_options;
+    *run = (struct ct_run_options){
+        .duration = o->until > 0 ? o->until : m->duration,
+        .step = o->step > 0 ? o->step : m->step,
+        .nsample = o->samples > 0 ? (size_t)o->samples
+                 : o->until > 0   ? samples_until(m, o->until)
+                                  : (size_t)m->samples,
+        .rate_jumps = m->rate_jumps,
+        .wanted = sim->tolerance,
+        .least_rtol = sim->least_rtol,
+    };
+    if (!choose_method(sim, o->method))
+        return false;
+    set_tolerances(sim, run->method, absolute, &run->rtol, &run->atol);
+    if (run->stiff_method)
+        set_tolerances(sim, run->stiff_method, absolute, &run->stiff_rtol, &run->stiff_atol);
+    return true;
+}
+
+const char *ct_sim_refuses_lanes(const struct ct_sim *sim)
+{
+    return sim->system->held_equations.build ? "beams start in equilibrium"
+                                             : ct_lanes_refusal(&sim->run_options);
+}
+
+// Machine code where it can be had, unless the tape is asked for.
+static bool choose_backend(struct ct_sim *sim, const char *name)
+{
+    static const char *const words[] = {"auto", "tape", "native"};
+    static const enum ct_backend backends[]
+        = {CT_BACKEND_BEST, CT_BACKEND_TAPE, CT_BACKEND_NATIVE};
+    for (size_t i = 0; i < COUNT(words); i++) {
+        if (name && strcmp(name, words[i]) != 0)
+            continue;
+        return ct_machine_use(sim->own.model, ct_run_machine(sim->run), backends[i])
+            || ct_error(&sim->own, (struct ct_mark){0}, CT_E_USAGE,
+                        "native code is not available on this computer; there is tape");
+    }
+    return ct_error(&sim->own, (struct ct_mark){0}, CT_E_USAGE,
+                    "there is no back end '%s'; there are auto, native, tape", name);
+}
+
+// ---- the start ---------------------------------------------------------------------------------------
+
+struct create {
+    struct ct_sim *sim;
+    const struct ct_sim_options *options;
+};
+
+// Impulses at events need the mass matrix.
+static bool needs_dynamics(const struct ct_equations *e)
+{
+    return !e->solution || e->nmode || e->x->ntable;
+}
+
+// Names of the joints of the rows that are marked, each once: "a, b".
+static const char *joints_of(const struct ct_sim *sim, const bool *row, int *first)
+{
+    const struct ct_equations *e = &sim->system->equations;
+    const char *names = "";
+    *first = -1;
+    for (size_t j = 0; j < sim->system->model.njoint; j++) {
+        bool is_there = false;
+        for (size_t i = 0; i < e->nrow; i++)
+            is_there |= row[i] && e->row[i].joint == (int)j;
+        if (!is_there)
+            continue;
+        names = ct_arena_printf(sim->own.model, "%s%s'%s'", names, *first < 0 ? "" : ", ",
+                                sim->system->model.joint[j].name);
+        *first = *first < 0 ? (int)j : *first;
+    }
+    return names;
+}
+
+// What is said of a start in a singular position holds for that position: freedoms, redundant rows.
+static void warn_of_singular_start(struct ct_sim *sim)
+{
+    bool *row = CT_NEWN(sim->own.model, bool, sim->system->equations.nrow + 1);
+    int first;
+    if (!ct_singular_is_start(sim->own.scratch, ct_run_embed(sim->run), 0,
+                              ct_run_state(sim->run), row))
+        return;
+    const char *names = joints_of(sim, row, &first);
+    if (first >= 0)
+        ct_warning(
+            &sim->own, sim->system->model.joint[first].mark, 0,
+            "the mechanism starts in a singular position: constraints of %s depend on others "
+            "there and not elsewhere; beside it there are fewer freedoms, and several "
+            "motions may begin in it",
+            names);
+}
+
+static bool prepare(struct ct_sim *sim, const struct ct_sim_options *o)
+{
+    struct ct_system *s = sim->system;
+    if (!ct_sim_resolve(sim, o))
+        return false;
+    const double start = ct_clock();
+    if (sim->run_options.method->is_implicit) // made once, when the first run asks for it
+        ct_formulate_residual(&s->equations);
+    if (needs_dynamics(&s->equations))
+        ct_formulate_dynamics(&s->equations);
+    if (!ct_system_assemble(&sim->own, s, &sim->start))
+        return false;
+    sim->run = ct_run_prepare(&sim->own, sim->own.model, &s->model, &s->equations);
+    if (!ct_sim_choose_solver(sim, o->solver) || !ct_run_begin(sim->run, &sim->start)
+        || !ct_sim_has_solver(sim))
+        return false;
+    sim->compile = ct_clock() - start;
+    if (!choose_backend(sim, o->backend))
+        return false;
+    sim->open.row = CT_NEWN(sim->own.model, bool, s->equations.nrow + 1);
+    sim->open.result = CT_NEWN(sim->own.model, bool, s->equations.nresult + 1);
+    sim->report.final = CT_NEWN(sim->own.model, double, s->equations.nresult + 1);
+    sim->report.rank = ct_run_embed(sim->run)->rank;
+    warn_of_singular_start(sim);
+    if (ct_run_results(sim->run, 0, ct_run_state(sim->run), sim->report.final) != CT_EVAL_OK)
+        return ct_error(&sim->own, (struct ct_mark){.file = s->model.file}, CT_E_SINGULAR,
+                        "the equations are singular at the start");
+    ct_run_find_open(sim->run, 0, ct_run_state(sim->run), sim->open.row, sim->open.result);
+    return true;
+}
+
+bool ct_sim_prepare(struct ct_sim *sim, struct ct_system *sys, const struct ct_sim_options *o)
+{
+    sim->system = sys;
+    if (!ct_sim_resolve(sim, o))
+        return false;
+    if (needs_dynamics(&sys->equations))
+        ct_formulate_dynamics(&sys->equations);
+    sim->run = ct_run_prepare(&sim->own, sim->own.model, &sys->model, &sys->equations);
+    return choose_backend(sim, o->backend);
+}
+
+static bool create(void *task)
+{
+    const struct create *c = task;
+    return prepare(c->sim, c->options);
+}
+
+struct ct_sim *ct_sim_create(struct ct_ctx *ctx, struct ct_system *sys,
+                             const struct ct_sim_options *options)
+{
+    static const struct ct_sim_options standard;
+    if (!sys)
+        return NULL;
+    struct create c = {ct_own_alloc(ctx, sizeof *c.sim), options ? options : &standard};
+    if (!c.sim)
+        return NULL;
+    c.sim->system = sys;
+    if (ct_own_enter(ctx, &c.sim->own, create, &c))
+        return c.sim;
+    ct_sim_destroy(c.sim);
+    return NULL;
+}
+
+void ct_sim_destroy(struct ct_sim *sim)
+{
+    if (sim)
+        ct_own_finish(&sim->own);
+    free(sim);
+}
+
+// ---- the run -------------------------------------------------------------------------------------------
+
+static bool at_row(void *user, double t, const double *value, size_t n)
+{
+    struct ct_sim *sim = user;
+    const double start = ct_clock();
+    sim->time = t;
+    if (sim->kept)
+        memcpy(sim->kept + sim->nkept++ * n, value, n * sizeof *value);
+    bool go_on = !sim->file || ct_sim_write_row(sim, t, value);
+    if (go_on && sim->results->row)
+        go_on = sim->results->row(sim->results->user, t, value, n);
+    sim->write += ct_clock() - start;
+    return go_on;
+}
+
+// Past the deadline; or an eighth of the time is gone, and at the pace so far four times as much would not be enough.
+static bool is_hopeless(const struct ct_sim *sim, double t, double end)
+{
+    const double now = ct_clock(), all = sim->deadline - sim->begun, gone = now - sim->begun;
+    return now > sim->deadline || (gone > all / 8 && t / end < gone / all / 4);
+}
+
+static bool at_progress(void *user, double t, double end)
+{
+    struct ct_sim *sim = user;
+    if (sim->progress)
+        ct_progress_update(sim->progress, end > 0 ? t / end : 1);
+    // a look at the clock costs as much as a step of a small system
+    if (sim->deadline > 0 && sim->nstep++ % steps_between_looks == 0)
+        sim->is_late = is_hopeless(sim, t, end);
+    return !sim->is_late;
+}
+
+static void foresee(void *user, const struct ct_foresight *f)
+{
+    struct ct_sim *sim = user;
+    if (!sim->progress)
+        return;
+    ct_progress_finish(sim->progress);
+    FILE *out = sim->progress->out;
+    fprintf(out, "t = %.3g s: steps of %.2g s; some %.1g more are to come", f->t, f->step,
+            f->to_come);
+    if (f->fastest)
+        fprintf(out, "; the fastest motion that is possible, of %.2g 1/s, is one of '%s'",
+                f->rate, f->fastest);
+    if (f->demanding)
+        fprintf(out, "; every vibration is followed for the output '%s'", f->demanding);
+    fputc('\n', out);
+    fflush(out);
+}
+
+static void want_residual(void *user)
+{
+    struct ct_sim *sim = user;
+    ct_formulate_residual(&sim->system->equations);
+}
+
+// Why the method is what it is: known when the run is over.
+static void explain_change(struct ct_sim *sim)
+{
+    const struct ct_run_report *r = &sim->report;
+    if (isnan(r->changed_at))
+        return;
+    const char *until = isnan(r->returned_at)
+                          ? ""
+                          : ct_arena_printf(sim->own.model, " to t = %.3g s", r->returned_at);
+    sim->method_why = ct_arena_printf(sim->own.model,
+                                      "automatic, but %s from t = %.3g s%s: stiff, motions of "
+                                      "%.2g 1/s are possible where there "
+                                      "are %.2g 1/s; %.2g times as far for the work",
+                                      sim->run_options.stiff_method->name, r->changed_at, until,
+                                      r->fast, r->slow, r->gain);
+}
+
+static bool integrate(struct ct_sim *sim)
+{
+    struct ct_run_options *o = &sim->run_options;
+    struct ct_progress progress = {0};
+    if (sim->results->progress) {
+        ct_progress_init(&progress, sim->results->progress,
+                         sim->is_followed ? "follow" : "simulate");
+        sim->progress = &progress;
+    }
+    if (sim->results->progress || sim->deadline > 0)
+        o->progress = at_progress;
+    o->foresee = foresee;
+    o->row = at_row;
+    o->want_residual = want_residual;
+    o->user = sim;
+    const double start = sim->begun = ct_clock();
+    const bool ok = sim->is_followed ? ct_run_follow(sim->run, o, &sim->report)
+                                     : ct_run_simulate(sim->run, o, &sim->report);
+    sim->integrate = ct_clock() - start - sim->write;
+    ct_progress_finish(&progress);
+    sim->progress = NULL;
+    explain_change(sim);
+    return ok;
+}
+
+// A run that a callback stopped has no diagnostic: it is done, too.
+static bool run(struct ct_sim *sim)
+{
+    const struct ct_simulation *m = &sim->system->model.simulation;
+    if (sim->has_run)
+        return ct_error(&sim->own, (struct ct_mark){0}, CT_E_USAGE, "the run is over already");
+    if (!m->has_duration && !(sim->run_options.duration > 0))
+        return ct_error(&sim->own, m->mark, CT_E_KEY_MISSING,
+                        "there is no end time: 'simulation' needs a 'duration'");
+    if (sim->results->path && !sim->system->equations.nresult)
+        ct_warning(&sim->own, (struct ct_mark){.file = sim->system->model.file}, 0,
+                   "the model lists no 'outputs': only t is written");
+    if (sim->results->path && !ct_sim_open_results(sim, sim->results->path))
+        return false;
+    sim->has_run = true;
+    if (sim->is_verified)
+        sim->kept = CT_NEWN(sim->own.model, double,
+                            sim->run_options.nsample * sim->system->equations.nresult + 1);
+    bool ok = integrate(sim) || sim->own.nerror == 0;
+    const double start = ct_clock();
+    if (ok)
+        ct_run_find_open(sim->run, sim->time, sim->report.y, sim->open.row, sim->open.result);
+    if (sim->file)
+        ok = ct_sim_close_results(sim, ok);
+    sim->write += ct_clock() - start;
+    if (ok)
+        ct_sim_warn_of_beams(sim);
+    if (ok && sim->kept)
+        ct_sim_verify(sim);
+    sim->is_done = ok;
+    return ok;
+}
+
+struct work {
+    struct ct_ctx *ctx;
+    struct ct_sim *sim;
+};
+
+static bool run_and_report(void *task)
+{
+    struct work *w = task;
+    const bool ok = run(w->sim);
+    ct_ctx_hand_over(w->ctx, &w->sim->own);
+    return ok;
+}
+
+static bool run_again(void *task)
+{
+    struct work *w = task;
+    struct ct_sim *sim = w->sim;
+    sim->has_run = sim->is_done = sim->is_late = false;
+    sim->write = 0;
+    sim->nstep = 0;
+    if (ct_run_restart(sim->run, &sim->start))
+        return run_and_report(task);
+    ct_ctx_hand_over(w->ctx, &sim->own);
+    return false;
+}
+
+bool ct_sim_run_again(struct ct_ctx *ctx, struct ct_sim *sim,
+                      const struct ct_sim_results *results)
+{
+    struct work w = {ctx, sim};
+    sim->results = results;
+    const bool ok = ct_enter(ctx, run_again, &w);
+    sim->results = NULL;
+    return ok;
+}
+
+bool ct_sim_follow(struct ct_ctx *ctx, struct ct_sim *sim, const struct ct_sim_results *results)
+{
+    if (sim)
+        sim->is_followed = true;
+    return ct_sim_run(ctx, sim, results);
+}
+
+bool ct_sim_run(struct ct_ctx *ctx, struct ct_sim *sim, const struct ct_sim_results *results)
+{
+    static const struct ct_sim_results nowhere;
+    struct work w = {ctx, sim};
+    if (!sim)
+        return false;
+    sim->results = results ? results : &nowhere;
+    const bool ok = ct_enter(ctx, run_and_report, &w);
+    if (!ok && sim->file) // without memory the file is still open
+        ct_sim_abandon_results(sim);
+    sim->results = NULL;
+    return ok;
+}
+
+double ct_sim_time(const struct ct_sim *sim)
+{
+    return sim->time;
+}
+
+double ct_sim_value(const struct ct_sim *sim, const char *column)
+{
+    const struct ct_equations *e = &sim->system->equations;
+    for (size_t i = 0; i < e->nresult; i++)
+        if (strcmp(e->result[i].name, column) == 0)
+            return sim->report.final[i];
+    return NAN;
+}
+
+double ct_sim_error(const struct ct_sim *sim, const char *column)
+{
+    const struct ct_equations *e = &sim->system->equations;
+    for (size_t i = 0; i < e->nresult && sim->estimate.output; i++)
+        if (strcmp(e->result[i].name, column) == 0)
+            return sim->estimate.output[i].relative;
+    return NAN;
+}

@@ -1,0 +1,75 @@
+// What a run has to say about its beams.
+#include "sim/sim.h"
+#include "formulate/flexible.h"
+
+#include <math.h>
+
+void ct_slope_warn(struct ct_ctx *ctx, const struct ct_equations *e,
+                   const struct ct_slope_report *report)
+{
+    for (size_t i = 0; i < e->nbend; i++) {
+        if (report[i].passed_at < 0)
+            continue;
+        const char *since
+            = report[i].passed_at > 0
+                ? ct_arena_printf(ctx->scratch, ", more than %g from t = %.6g s on",
+                                  CT_SLOPE_LIMIT, report[i].passed_at)
+                : "";
+        ct_warning(ctx, e->bend[i].mark, 0,
+                   "sections of beam '%s' turn by up to %.3g rad against its frame%s: one "
+                   "frame is good for %g; cut the beam into several that are welded end to end",
+                   e->bend[i].beam, report[i].largest, since, CT_SLOPE_LIMIT);
+    }
+}
+
+static void warn_of_starts(struct ct_sim *sim, const struct ct_build *b)
+{
+    const double worth_it = 0.01; // as the limit of the validity indicator
+    for (size_t i = 0; i < b->nflexible; i++) {
+        const struct ct_flexible *f = &b->flexible[i];
+        if (f->start_missed > worth_it)
+            ct_warning(&sim->own, f->beam->start[0].mark, 0,
+                       "beam '%s' starts with what its shapes have of this; they leave out "
+                       "%.3g %%",
+                       f->name, 100 * f->start_missed);
+    }
+}
+
+// What the indicator found, and what it foretells, of a linear beam.
+static void warn_of_linear(struct ct_sim *sim, const struct ct_validity *beam,
+                           const struct ct_validity_report *v)
+{
+    struct ct_arena *a = sim->own.scratch;
+    const double error = ct_swings_error(&v->swings);
+    const char *size
+        = isnan(error) ? "errors are of that relative size, and grow where it rings"
+        : error > CT_FORETOLD_MOST
+            ? "its error is beyond 1, as large as the deflections or larger"
+            : ct_arena_printf(a, "its error is about %.2g of the largest deflection", error);
+    const char *how
+        = v->left_at >= 0
+            ? ct_arena_printf(
+                a, "the validity indicator passes %.3g at t = %.6g s and reaches %.3g",
+                CT_VALIDITY_LIMIT, v->left_at, v->largest)
+            : ct_arena_printf(
+                a,
+                "the validity indicator reaches %.3g only, but from t = %.6g s on "
+                "what it causes has grown beyond %.3g",
+                v->largest, v->off_since, CT_VALIDITY_LIMIT);
+    ct_warning(&sim->own, beam->mark, 0,
+               "beam '%s' is linear and left its range: %s; %s; "
+               "`formulation: foreshortening` has none of this",
+               beam->beam, how, size);
+}
+
+void ct_sim_warn_of_beams(struct ct_sim *sim)
+{
+    const struct ct_equations *e = &sim->system->equations;
+    warn_of_starts(sim, e->build);
+    ct_slope_warn(&sim->own, e, sim->report.bend);
+    for (size_t i = 0; i < e->nvalidity; i++) {
+        const struct ct_validity_report *v = &sim->report.validity[i];
+        if (v->left_at >= 0 || v->off_since >= 0)
+            warn_of_linear(sim, &e->validity[i], v);
+    }
+}

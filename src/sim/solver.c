@@ -1,0 +1,54 @@
+// What finds the accelerations of closed loops, as asked for.
+#include "sim/summary.h"
+
+#include "solve/form.h"
+
+#include <string.h>
+
+static const struct {
+    const char *name;
+    const struct ct_form_kind *kind; // NULL: dense matrices, or the cheapest
+} solvers[] = {{"auto", NULL},
+               {"unrolled", &ct_form_unrolled},
+               {"one-system", &ct_form_whole},
+               {"sparse", &ct_form_sparse},
+               {"dense", NULL}};
+
+bool ct_sim_choose_solver(struct ct_sim *sim, const char *name)
+{
+    size_t i = 0;
+    while (name && i < COUNT(solvers) && strcmp(name, solvers[i].name) != 0)
+        i++;
+    if (i == COUNT(solvers))
+        return ct_error(&sim->own, (struct ct_mark){0}, CT_E_USAGE,
+                        "there is no solver '%s'; there are auto, unrolled, one-system, "
+                        "sparse, dense",
+                        name);
+    if (i == 0)
+        return true;
+    sim->solver = solvers[i].name;
+    ct_embed_use(ct_run_embed(sim->run), solvers[i].kind);
+    return true;
+}
+
+bool ct_sim_has_solver(struct ct_sim *sim)
+{
+    const struct ct_embed *s = ct_run_embed(sim->run);
+    if (!sim->solver)
+        return true;
+    if (!s->m->nrow)
+        return strcmp(sim->solver, ct_sim_solver(sim)) == 0
+            || ct_error(&sim->own, (struct ct_mark){.file = sim->system->model.file},
+                        CT_E_USAGE,
+                        "there are no closed loops to solve by '%s'; the accelerations of this "
+                        "system are found by '%s'",
+                        sim->solver, ct_sim_solver(sim));
+    for (size_t i = 0; i < COUNT(solvers); i++)
+        if (strcmp(solvers[i].name, sim->solver) == 0 && (!solvers[i].kind || s->has_form))
+            return true;
+    return ct_error(&sim->own, (struct ct_mark){.file = sim->system->model.file}, CT_E_USAGE,
+                    "the accelerations cannot be found by '%s' here: the program would be too "
+                    "long, nothing is free to move, or cotree was built without KLU; leave "
+                    "'--solver' out",
+                    sim->solver);
+}

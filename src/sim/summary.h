@@ -1,0 +1,37 @@
+// What the summary of a run and that of a system say, in figures and names: of one run or of none.
+//     summary.c        the figures
+//     summary_file.c   for programs (--summary)
+//     summary_text.c   for people
+#ifndef CT_SUMMARY_H
+#define CT_SUMMARY_H
+
+#include "sim/sim.h"
+
+/// Operations of all kinds.
+long ct_tape_count_all(const struct ct_tape_counts *c);
+
+/// Operations of one evaluation of the accelerations, the solution included.
+long ct_sim_operations(const struct ct_sim *sim);
+
+/// What finds the accelerations.
+const char *ct_sim_solver(const struct ct_sim *sim);
+
+/// Speeds less rank, and rows less rank.
+long ct_sim_freedoms(const struct ct_sim *sim);
+long ct_sim_redundant(const struct ct_sim *sim);
+
+bool ct_is_arm(const struct ct_equations *e, int edge);
+
+/// Is row i the first of its joint among those that depend (row) there? Rows of no joint count for themselves.
+bool ct_is_first_of_joint(const struct ct_equations *e, const bool *row, size_t i);
+
+/// The joint of a row, else the row.
+const char *ct_row_owner(const struct ct_sim *sim, size_t row);
+
+/// How accelerations are formulated: the key for programs, the name for people. By enum ct_formulation.
+struct ct_formulation_name {
+    const char *key, *name;
+};
+extern const struct ct_formulation_name ct_formulation_names[CT_NFORMULATION];
+
+#endif

@@ -1,0 +1,422 @@
+// The rows of a study: in order, in a file that appears when all are there, and taken over from one that was cut off.
+#include "study/study.h"
+
+#include "io/text.h"
+#include "report/json.h"
+#include "report/number.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+static const struct ct_mark none = {0};
+static const double seconds_between_flushes = 0.5; // what an interruption may cost at most
+
+// ---- rows ---------------------------------------------------------------------------------------------
+
+static const char **column_names(struct ct_study *s, size_t *n)
+{
+    const struct ct_equations *e = &s->system->equations;
+    const char **name = CT_NEWN(s->own.model, const char *, s->plan.naxis + e->nresult + 2);
+    *n = 0;
+    name[(*n)++] = "run";
+    for (size_t i = 0; i < s->plan.naxis; i++)
+        name[(*n)++] = s->plan.axis[i].name;
+    for (size_t i = 0; i < e->nresult; i++)
+        name[(*n)++] = e->result[i].name;
+    name[(*n)++] = "status";
+    return name;
+}
+
+static bool write_row(struct ct_study *s, long member, const double *value)
+{
+    struct ct_csv *w = &s->sink.csv;
+    const size_t n = s->system->equations.nresult;
+    ct_csv_number(w, (double)(member + 1));
+    for (size_t i = 0; i < s->plan.naxis; i++)
+        ct_csv_number(w, ct_plan_value(&s->plan, member, i));
+    for (size_t i = 0; i < n; i++)
+        if (value)
+            ct_csv_number(w, value[i]);
+        else
+            ct_csv_text(w, "");
+    ct_csv_number(w, value ? 0 : 1);
+    if (!ct_csv_end_row(&s->own, w))
+        return false;
+    const double now = ct_clock();
+    if (now - s->sink.flushed < seconds_between_flushes)
+        return true;
+    s->sink.flushed = now;
+    return ct_outfile_flush(&s->own, &w->file);
+}
+
+static bool give_row(struct ct_study *s, long member, const struct ct_study_row *row)
+{
+    const struct ct_study_results *r = s->results;
+    if (!r->row)
+        return true;
+    for (size_t i = 0; i < s->plan.naxis; i++)
+        s->varied[i] = ct_plan_value(&s->plan, member, i);
+    return r->row(r->user, member + 1, s->varied, row->value, row->message);
+}
+
+// Rows that are complete from the first on go out; the rest waits for them.
+void ct_study_write_rows(struct ct_study *s)
+{
+    for (; s->written < s->plan.nmember && !s->is_stopped; s->written++) {
+        struct ct_study_row *row = &s->row[s->written];
+        if (row->state == CT_ROW_PENDING)
+            return;
+        if (row->state == CT_ROW_RESUMED || row->state == CT_ROW_RESUMED_FAILED)
+            continue;
+        const bool is_csv = s->sink.is_open && !s->sink.is_json;
+        if (is_csv && !write_row(s, s->written, row->value))
+            s->is_stopped = s->sink.has_failed = true;
+        else if (!give_row(s, s->written, row))
+            s->is_stopped = true;
+        if (!s->sink.is_json) {
+            free(row->value);
+            row->value = NULL;
+        }
+    }
+}
+
+// FILE:LINE:COLUMN: TEXT [CODE] of the first error, on the heap.
+static char *message_of(const struct ct_ctx *ctx, int *code)
+{
+    for (size_t i = 0; i < ctx->ndiagnostic; i++) {
+        const struct ct_diagnostic *d = &ctx->diagnostic[i];
+        if (d->severity != CT_SEVERITY_ERROR)
+            continue;
+        const size_t n = strlen(d->text) + (d->mark.file ? strlen(d->mark.file) : 0) + 64;
+        char *text = malloc(n);
+        *code = (int)d->code;
+        if (text && d->mark.file)
+            snprintf(text, n, "%s:%d:%d: %s [E%03d]", d->mark.file, d->mark.line + 1,
+                     d->mark.column + 1, d->text, *code);
+        else if (text)
+            snprintf(text, n, "%s [E%03d]", d->text, *code);
+        return text;
+    }
+    *code = CT_E_MEMORY;
+    return strdup("out of memory");
+}
+
+static double *copy_values(const double *value, size_t n)
+{
+    double *copy = malloc((n + 1) * sizeof *copy);
+    if (copy)
+        memcpy(copy, value, n * sizeof *copy);
+    return copy;
+}
+
+// A member is over; value NULL: it failed with the errors in ctx.
+void ct_study_record(struct ct_study *s, long member, const double *value,
+                     const struct ct_ctx *ctx)
+{
+    struct ct_study_row row = {.state = value ? CT_ROW_DONE : CT_ROW_FAILED};
+    if (value)
+        row.value = copy_values(value, s->system->equations.nresult);
+    else
+        row.message = message_of(ctx, &row.code);
+#ifdef _OPENMP
+#pragma omp critical(ct_study_rows)
+#endif
+    {
+        s->no_memory |= value ? !row.value : !row.message;
+        if (value && !row.value)
+            row.state = CT_ROW_PENDING;
+        s->row[member] = row;
+        s->ndone++;
+        s->nfailed += !value;
+        ct_study_write_rows(s);
+        ct_progress_update(&s->progress, (double)s->ndone / (double)s->plan.nmember);
+    }
+}
+
+// ---- the file -----------------------------------------------------------------------------------------
+
+static bool has_suffix(const char *path, const char *suffix)
+{
+    const size_t n = strlen(path), k = strlen(suffix);
+    return n >= k && strcmp(path + n - k, suffix) == 0;
+}
+
+// What the file begins with, on the heap.
+static char *header_text(struct ct_study *s)
+{
+    char *text = NULL;
+    size_t size, n;
+    const char **name = column_names(s, &n);
+    struct ct_csv w = {.ncolumn = n};
+    w.file.stream = open_memstream(&text, &size);
+    if (!w.file.stream)
+        return NULL;
+    for (size_t i = 0; i < n; i++)
+        ct_csv_text(&w, name[i]);
+    fputc('\n', w.file.stream);
+    return fclose(w.file.stream) == 0 ? text : NULL;
+}
+
+// Is this the row of the member, and how did that end? -1: it is not.
+static int read_status(const struct ct_study *s, long member, const char *line)
+{
+    char text[CT_NUMBER_SIZE];
+    size_t n = strlen(ct_number_format(text, (double)(member + 1)));
+    if (strncmp(line, text, n) != 0)
+        return -1;
+    line += n;
+    for (size_t i = 0; i < s->plan.naxis; i++) {
+        ct_number_format(text, ct_plan_value(&s->plan, member, i));
+        n = strlen(text);
+        if (*line++ != ',' || strncmp(line, text, n) != 0)
+            return -1;
+        line += n;
+    }
+    size_t fields = 0;
+    for (const char *p = line; *p; p++)
+        fields += *p == ',';
+    const char *last = strrchr(line, ',');
+    const bool is_row = *line == ',' && fields == s->system->equations.nresult + 1
+                     && (strcmp(last, ",0\n") == 0 || strcmp(last, ",1\n") == 0);
+    return is_row ? last[1] == '1' : -1;
+}
+
+static bool not_resumable(struct ct_study *s, const char *path, const char *why)
+{
+    return ct_error(&s->own, none, CT_E_USAGE,
+                    "cannot resume from '%s': %s; without --resume the sweep starts anew", path,
+                    why);
+}
+
+// Take over whole rows of a file; *kept (out): bytes of them.
+static bool read_rows(struct ct_study *s, FILE *in, const char *path, long *kept)
+{
+    char *line = NULL, *header = header_text(s);
+    size_t size = 0;
+    ssize_t n = getline(&line, &size, in);
+    bool ok = true;
+    *kept = 0;
+    if (n > 0 && line[n - 1] == '\n') {
+        ok = (header && strcmp(line, header) == 0)
+          || not_resumable(s, path, "its columns are others");
+        *kept = n;
+    }
+    for (long i = 0; ok && *kept && (n = getline(&line, &size, in)) > 0; i++) {
+        if (line[n - 1] != '\n')
+            break; // cut off in the middle
+        const int status = i < s->plan.nmember ? read_status(s, i, line) : -1;
+        ok = status >= 0
+          || not_resumable(
+                 s, path,
+                 ct_arena_printf(s->own.model, "row %ld is not one of this sweep", i + 1));
+        if (!ok)
+            break;
+        s->row[i].state = status ? CT_ROW_RESUMED_FAILED : CT_ROW_RESUMED;
+        s->ndone++;
+        s->nresumed++;
+        s->nfailed += status;
+        *kept += n;
+    }
+    free(line);
+    free(header);
+    return ok;
+}
+
+// ---- settings beside the rows ---------------------------------------------------------------------------
+
+//     FILE.partial, FILE.partial.settings  -- complete -->  FILE
+//                                          with `resume`:   FILE, then FILE.settings
+//
+// Who goes on with sweeps wants complete ones to be known as such; for all others the rows are all there is. Whatever
+// happens in between, rows never stand beside settings of others.
+
+static const char *settings_path(struct ct_study *s, const char *rows)
+{
+    return ct_arena_printf(s->own.model, "%s.settings", rows);
+}
+
+// Before the first row is.
+static bool write_settings(struct ct_study *s)
+{
+    const struct ct_outfile *rows = &s->sink.csv.file;
+    struct ct_outfile o;
+    if (!rows->partial) // no file of its own
+        return true;
+    if (!ct_outfile_open(&s->own, &o, settings_path(s, rows->partial)))
+        return false;
+    fputs(ct_study_settings(s), o.stream);
+    return ct_outfile_close(&s->own, &o);
+}
+
+// Those of rows that have stood there before.
+static bool remove_old_settings(struct ct_study *s)
+{
+    const struct ct_outfile *rows = &s->sink.csv.file;
+    if (!rows->partial)
+        return true;
+    const char *old = settings_path(s, rows->path);
+    return remove(old) == 0 || errno == ENOENT
+        || ct_error(&s->own, none, CT_E_FILE, "cannot remove '%s': %s", old, strerror(errno));
+}
+
+static bool move_settings(struct ct_study *s)
+{
+    const struct ct_outfile *rows = &s->sink.csv.file;
+    if (!rows->partial)
+        return true;
+    const char *from = settings_path(s, rows->partial), *to = settings_path(s, rows->path);
+    if (!s->results->resume)
+        return remove(from) == 0
+            || ct_error(&s->own, none, CT_E_FILE, "cannot remove '%s': %s", from,
+                        strerror(errno));
+    return rename(from, to) == 0
+        || ct_error(&s->own, none, CT_E_FILE, "cannot write '%s': %s", to, strerror(errno));
+}
+
+// The rows appear under their name.
+static bool finish_rows(struct ct_study *s)
+{
+    return remove_old_settings(s) && ct_csv_close(&s->own, &s->sink.csv) && move_settings(s);
+}
+
+// How the rows were made differs so from what is asked for now; NULL: it does not.
+static const char *find_difference(struct ct_study *s, const char *rows)
+{
+    enum { MOST_TEXT = 1 << 20 };
+    char *text;
+    size_t n;
+    const char *path = settings_path(s, rows);
+    if (ct_text_read(s->own.model, path, MOST_TEXT, &text, &n) != CT_TEXT_OK)
+        return ct_arena_printf(s->own.model, "there is no '%s' that says how it was made",
+                               path);
+    return ct_study_compare_settings(s->own.model, ct_arena_strndup(s->own.model, text, n),
+                                     ct_study_settings(s));
+}
+
+// ---- going on -------------------------------------------------------------------------------------------
+
+// Go on at the end of the rows that a partial file has; if there is none, *found is false.
+static bool resume(struct ct_study *s, const char *path, bool *found)
+{
+    struct ct_outfile *o = &s->sink.csv.file;
+    struct stat rows;
+    const char *partial = ct_arena_printf(s->own.model, "%s.partial", path);
+    size_t n;
+    long kept;
+    *found = stat(partial, &rows) == 0 && S_ISREG(rows.st_mode) && rows.st_size > 0;
+    if (!*found)
+        return true;
+    const char *difference = find_difference(s, partial);
+    if (difference)
+        return not_resumable(s, partial, difference);
+    FILE *stream = fopen(partial, "r+");
+    if (!stream)
+        return not_resumable(s, partial, "it cannot be opened");
+    column_names(s, &n);
+    s->sink.csv = (struct ct_csv){.ncolumn = n};
+    *o = (struct ct_outfile){stream, ct_arena_strdup(s->own.model, path), partial};
+    if (!read_rows(s, stream, partial, &kept))
+        return false;
+    if (kept == 0) { // not even the header is there
+        fclose(stream);
+        o->stream = NULL;
+        *found = false;
+        return true;
+    }
+    return (fseek(stream, kept, SEEK_SET) == 0 && ftruncate(fileno(stream), kept) == 0)
+        || not_resumable(s, partial, "it cannot be written");
+}
+
+// A file that is complete is what an interrupted sweep would have become.
+static bool is_complete(struct ct_study *s, const char *path)
+{
+    struct stat rows;
+    long kept;
+    FILE *in = stat(path, &rows) == 0 && S_ISREG(rows.st_mode) ? fopen(path, "r") : NULL;
+    if (!in)
+        return false;
+    const size_t before = s->own.ndiagnostic, errors = s->own.nerror;
+    const bool ok = !find_difference(s, path) && read_rows(s, in, path, &kept)
+                 && s->nresumed == s->plan.nmember;
+    fclose(in);
+    s->own.ndiagnostic = before;
+    s->own.nerror = errors;
+    if (ok)
+        return true;
+    for (long i = 0; i < s->plan.nmember; i++)
+        s->row[i].state = CT_ROW_PENDING;
+    s->ndone = s->nresumed = s->nfailed = 0;
+    return false;
+}
+
+static bool begin_file(struct ct_study *s, const char *path)
+{
+    size_t n;
+    const char **name = column_names(s, &n);
+    s->sink.is_open
+        = ct_csv_open(&s->own, &s->sink.csv, strcmp(path, "-") == 0 ? NULL : path, name, n);
+    return s->sink.is_open && write_settings(s);
+}
+
+bool ct_study_open(struct ct_study *s)
+{
+    const struct ct_study_results *r = s->results;
+    const char *path = r->path;
+    s->sink.is_json = has_suffix(path, ".json");
+    if (r->resume && (s->sink.is_json || strcmp(path, "-") == 0))
+        return ct_error(&s->own, none, CT_E_USAGE,
+                        "only a sweep into a CSV file can be resumed");
+    if (s->sink.is_json) {
+        s->sink.is_open = ct_outfile_open(&s->own, &s->sink.json, path);
+        return s->sink.is_open;
+    }
+    if (r->resume && is_complete(s, path))
+        return true;
+    if (r->resume && !resume(s, path, &s->sink.is_open))
+        return false;
+    return s->sink.is_open || begin_file(s, path);
+}
+
+// ---- the end --------------------------------------------------------------------------------------------
+
+// An object of columns; null where a member failed.
+static void write_columns(struct ct_study *s)
+{
+    const long n = s->plan.nmember;
+    size_t ncolumn;
+    const char **name = column_names(s, &ncolumn);
+    struct ct_json j;
+    ct_json_init(&j, s->sink.json.stream);
+    ct_json_object(&j, NULL);
+    double *column = CT_NEWN(s->own.scratch, double, n);
+    for (size_t c = 0; c < ncolumn; c++) {
+        for (long i = 0; i < n; i++) {
+            const double *value = s->row[i].value;
+            column[i] = c == 0             ? (double)(i + 1)
+                      : c <= s->plan.naxis ? ct_plan_value(&s->plan, i, c - 1)
+                      : c + 1 == ncolumn   ? s->row[i].state == CT_ROW_FAILED
+                      : value              ? value[c - 1 - s->plan.naxis]
+                                           : NAN;
+        }
+        ct_json_numbers(&j, name[c], column, (size_t)n);
+    }
+    ct_json_end(&j);
+}
+
+bool ct_study_close(struct ct_study *s, bool ok)
+{
+    struct ct_result_sink *k = &s->sink;
+    if (!k->is_open)
+        return ok;
+    if (ok && k->is_json)
+        write_columns(s);
+    if (ok)
+        ok = k->is_json ? ct_outfile_close(&s->own, &k->json) : finish_rows(s);
+    ct_csv_abandon(&k->csv);
+    ct_outfile_abandon(&k->json);
+    return ok;
+}

@@ -1,0 +1,188 @@
+// What the rows of a study depend on besides what varies in them: a text of one line for each setting.
+//
+//     model      8f3a5c0e91d2b764, 1840 bytes
+//     tolerance  1e-08
+//
+// Files that are read stand as a checksum: FNV-1a of 64 bits (Fowler, Noll and Vo), enough to see that somebody has
+// changed them. Threads, lanes and the back end are left out: they change roundings at most.
+#include "study/study.h"
+
+#include "io/text.h"
+
+#include <inttypes.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { MOST_TEXT = 64 << 20, WIDTH = 12 };
+
+static const uint64_t offset_basis = 0xcbf29ce484222325, prime = 0x100000001b3;
+
+static uint64_t checksum(uint64_t sum, const void *data, size_t n)
+{
+    const unsigned char *byte = data;
+    for (size_t i = 0; i < n; i++)
+        sum = (sum ^ byte[i]) * prime;
+    return sum;
+}
+
+// ---- the text ---------------------------------------------------------------------------------------
+
+struct settings {
+    struct ct_arena *a;
+    const char *text;
+};
+
+// A line `name  value`; nothing where the format gives nothing.
+static void add(struct settings *w, const char *name, const char *fmt, ...)
+    __attribute__((format(printf, 3, 4)));
+
+static void add(struct settings *w, const char *name, const char *fmt, ...)
+{
+    va_list ap;
+    va_start(ap, fmt);
+    const char *value = ct_arena_vprintf(w->a, fmt, ap);
+    va_end(ap);
+    if (*value)
+        w->text = ct_arena_printf(w->a, "%s%-*s %s\n", w->text, WIDTH, name, value);
+}
+
+// With the fewest digits that are this number and no other.
+static const char *shortest(struct ct_arena *a, double value)
+{
+    const char *text = "";
+    for (int digits = 1; digits <= 17; digits++) {
+        text = ct_arena_printf(a, "%.*g", digits, value);
+        if (strtod(text, NULL) == value)
+            break;
+    }
+    return text;
+}
+
+static void add_number(struct settings *w, const char *name, double value)
+{
+    if (value != 0) // given
+        add(w, name, "%s", shortest(w->a, value));
+}
+
+static void add_tables(struct settings *w, const struct ct_exs *x)
+{
+    uint64_t sum = offset_basis;
+    for (size_t i = 0; i < x->ntable; i++) {
+        const struct ct_table *t = &x->table[i];
+        sum = checksum(sum, t->x, t->n * sizeof *t->x);
+        sum = checksum(sum, t->y, t->n * sizeof *t->y);
+    }
+    if (x->ntable)
+        add(w, "tables", "%016" PRIx64, sum);
+}
+
+// The name of a choice of trees, or what the file of one has.
+static void add_tree(struct settings *w, const char *tree)
+{
+    char *text;
+    size_t n;
+    if (!tree)
+        return;
+    if (ct_text_read(w->a, tree, MOST_TEXT, &text, &n) == CT_TEXT_OK)
+        add(w, "tree", "%016" PRIx64 ", %zu bytes", checksum(offset_basis, text, n), n);
+    else
+        add(w, "tree", "%s", tree);
+}
+
+static void add_system(struct settings *w, const struct ct_system_options *o)
+{
+    for (size_t i = 0; i < o->nset; i++)
+        add(w, "set", "%s", o->set[i]);
+    add_tree(w, o->tree);
+    add(w, "keep all", "%s", o->keep_all ? "yes" : "");
+    add_number(w, "elements", (double)o->beam_elements);
+    add(w, "beams", "%s", o->beam_formulation ? o->beam_formulation : "");
+}
+
+static void add_run(struct settings *w, const struct ct_sim_options *o)
+{
+    add(w, "method", "%s", o->method ? o->method : "");
+    add_number(w, "tolerance", o->tolerance);
+    add_number(w, "absolute", o->absolute);
+    add_number(w, "step", o->step);
+    add_number(w, "until", o->until);
+    add_number(w, "samples", (double)o->samples);
+}
+
+static void add_plan(struct settings *w, const struct ct_plan *p)
+{
+    for (size_t i = 0; i < p->naxis; i++) {
+        const struct ct_axis *axis = &p->axis[i];
+        const char *kind = axis->kind == CT_AXIS_NORMAL ? "normal:" : "";
+        const char *count = p->is_sampled ? "" : ct_arena_printf(w->a, ":%ld", axis->n);
+        add(w, "vary", "%s=%s%s:%s%s", axis->name, kind, shortest(w->a, axis->from),
+            shortest(w->a, axis->to), count);
+    }
+    if (p->is_sampled)
+        add(w, "sample", "%ld, seed %" PRIu64, p->nmember, p->seed);
+}
+
+const char *ct_study_settings(struct ct_study *s)
+{
+    struct settings w = {s->own.model, ""};
+    add(&w, "program", "cotree %s", ct_version());
+    add(&w, "model", "%016" PRIx64 ", %zu bytes", checksum(offset_basis, s->text, s->ntext),
+        s->ntext);
+    add_tables(&w, s->system->model.x);
+    add_system(&w, &s->system_options);
+    add_run(&w, &s->run);
+    add_plan(&w, &s->plan);
+    return w.text;
+}
+
+// ---- comparison -------------------------------------------------------------------------------------
+
+// The line at *text without its end; *text becomes the next one.
+static const char *take_line(struct ct_arena *a, const char **text)
+{
+    const char *line = *text;
+    const size_t n = strcspn(line, "\n");
+    *text = line + n + (line[n] == '\n');
+    return ct_arena_strndup(a, line, n);
+}
+
+// Names are cut at the blanks behind them.
+static const char *name_of(struct ct_arena *a, const char *line)
+{
+    size_t n = strlen(line) < WIDTH ? strlen(line) : WIDTH;
+    while (n && line[n - 1] == ' ')
+        n--;
+    return ct_arena_strndup(a, line, n);
+}
+
+static const char *value_of(const char *line)
+{
+    return strlen(line) > WIDTH ? line + WIDTH + 1 : "";
+}
+
+const char *ct_study_compare_settings(struct ct_arena *a, const char *before, const char *now)
+{
+    while (*before || *now) {
+        const char *rest = before;
+        const char *old = take_line(a, &before), *new = take_line(a, &now);
+        if (strcmp(old, new) == 0)
+            continue;
+        const char *old_name = name_of(a, old), *new_name = name_of(a, new);
+        if (strcmp(old_name, new_name) == 0) {
+            const bool is_file
+                = strcmp(new_name, "model") == 0 || strcmp(new_name, "tables") == 0;
+            return is_file ? ct_arena_printf(a, "the %s has changed since", new_name)
+                           : ct_arena_printf(a, "'%s' was %s and is %s now", new_name,
+                                             value_of(old), value_of(new));
+        }
+        // a line that only one of them has
+        const char *name = ct_arena_printf(a, "\n%-*s ", WIDTH, new_name);
+        return *new && !strstr(rest, name)
+                 ? ct_arena_printf(a, "'%s' is %s now and was not given", new_name,
+                                   value_of(new))
+                 : ct_arena_printf(a, "'%s' was %s and is not given now", old_name,
+                                   value_of(old));
+    }
+    return NULL;
+}

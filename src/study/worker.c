@@ -1,0 +1,319 @@
+// Members of a study: each thread is a worker with a system of its own. See study.h.
+#include "study/study.h"
+
+#include "report/number.h"
+#include "solve/lanes.h"
+
+#ifdef _OPENMP
+#include <omp.h>
+#endif
+
+#include <string.h>
+
+// One thread's own.
+struct worker {
+    struct ct_study *s;
+    struct ct_system *system;
+    struct ct_ctx member_ctx; // what the reader says about a member
+    struct ct_sim sim;        // its run is the companion of the lanes
+    struct ct_assembly *assembly;
+    struct ct_lanes *group[CT_LANE_GROUPS]; // of lanes: they step in turn
+    int ngroup;
+    long member[CT_LANE_GROUPS][CT_LANES];
+    double *value; // results of a member  (nresult)
+};
+
+// ---- what workers share -------------------------------------------------------------------------------
+
+// The next member, or -1 when there is none.
+static long take_member(struct ct_study *s)
+{
+    long member = -1;
+#ifdef _OPENMP
+#pragma omp critical(ct_study_rows)
+#endif
+    {
+        while (s->next < s->plan.nmember && s->row[s->next].state != CT_ROW_PENDING)
+            s->next++;
+        if (s->next < s->plan.nmember && !s->is_stopped && !s->no_memory)
+            member = s->next++;
+    }
+    return member;
+}
+
+static void count_steps(struct ct_study *s, long steps, long rejected, long alone)
+{
+#ifdef _OPENMP
+#pragma omp critical(ct_study_rows)
+#endif
+    {
+        s->steps += steps;
+        s->rejected += rejected;
+        s->nalone += alone;
+    }
+}
+
+static void lose_memory(struct ct_study *s)
+{
+#ifdef _OPENMP
+#pragma omp critical(ct_study_rows)
+#endif
+    s->no_memory = true;
+}
+
+// ---- a member -----------------------------------------------------------------------------------------
+
+// The texts NAME=VALUE of a member behind those of the command line; member -1: what the file says.
+static const char **member_set(const struct ct_study *s, struct ct_arena *a, long member,
+                               size_t *n)
+{
+    const struct ct_system_options *o = &s->system_options;
+    const char **set = CT_NEWN(a, const char *, o->nset + s->plan.naxis + 1);
+    *n = 0;
+    for (size_t i = 0; i < o->nset; i++)
+        set[(*n)++] = o->set[i];
+    for (size_t i = 0; i < s->plan.naxis; i++) {
+        char text[CT_NUMBER_SIZE];
+        const double value = member < 0 ? s->base[i] : ct_plan_value(&s->plan, member, i);
+        set[(*n)++]
+            = ct_arena_printf(a, "%s=%s", s->plan.axis[i].name, ct_number_format(text, value));
+    }
+    return set;
+}
+
+// The worker's system takes the values of the member as read by the reader, `simulation` included.
+static void take_values(struct ct_model *to, const struct ct_model *from)
+{
+    const struct ct_simulation *m = &from->simulation;
+    for (size_t i = 0; i < to->nparameter; i++)
+        to->parameter[i].value = from->parameter[i].value;
+    memcpy(to->value, from->value, (to->nparameter + 1) * sizeof *to->value); // t is the first
+    to->simulation.duration = m->duration;
+    to->simulation.samples = m->samples;
+    to->simulation.interval = m->interval;
+    to->simulation.rtol = m->rtol;
+    to->simulation.atol = m->atol;
+    to->simulation.step = m->step;
+}
+
+static bool set_member(struct worker *w, long member)
+{
+    struct ct_study *s = w->s;
+    struct ct_ctx *ctx = &w->member_ctx;
+    ct_own_finish(ctx);
+    *ctx = (struct ct_ctx){0};
+    ct_own_init(ctx);
+    size_t n;
+    const char **text = member_set(s, ctx->model, member, &n);
+    struct ct_set *set = CT_NEWN(ctx->model, struct ct_set, n + 1);
+    for (size_t i = 0; i < n; i++)
+        set[i].text = text[i];
+    struct ct_model model;
+    if (!ct_model_resolve(ctx, s->path, s->root, set, n, &model))
+        return false;
+    take_values(&w->system->model, &model);
+    return true;
+}
+
+// As `simulate` does it, without samples on the way where steps do not end on them.
+static void run_alone(struct ct_study *s, long member, struct ct_ctx *ctx,
+                      struct ct_system *system)
+{
+    struct ct_sim_options o = s->run;
+    if (system && !(o.step > 0) && !(system->model.simulation.step > 0))
+        o.samples = 2;
+    struct ct_sim *sim = ct_sim_create(ctx, system, &o);
+    if (!sim) {
+        ct_study_record(s, member, NULL, ctx);
+        return;
+    }
+    const bool ok = ct_sim_run(ctx, sim, NULL);
+    ct_study_record(s, member, ok ? sim->report.final : NULL, ctx);
+    count_steps(s, sim->report.stats.steps, sim->report.stats.rejected_steps, 1);
+    ct_sim_destroy(sim);
+}
+
+// The worker's system has the values of the member.
+static void run_own(struct worker *w, long member)
+{
+    struct ct_ctx *ctx = ct_ctx_create();
+    if (!ctx) {
+        lose_memory(w->s);
+        return;
+    }
+    run_alone(w->s, member, ctx, w->system);
+    ct_ctx_destroy(ctx);
+}
+
+static void run_derived(struct worker *w, long member)
+{
+    struct ct_study *s = w->s;
+    struct ct_ctx *ctx = ct_ctx_create();
+    if (!ctx) {
+        lose_memory(s);
+        return;
+    }
+    struct ct_system_options o = s->system_options;
+    o.set = member_set(s, ctx->model, member, &o.nset);
+    struct ct_system *system = ct_system_load(ctx, s->path, &o);
+    run_alone(s, member, ctx, system);
+    ct_system_destroy(system);
+    ct_ctx_destroy(ctx);
+}
+
+// ---- members in lanes ---------------------------------------------------------------------------------
+
+static void forget_errors(struct ct_ctx *ctx)
+{
+    ctx->ndiagnostic = ctx->nerror = 0;
+}
+
+static bool start_member(struct worker *w)
+{
+    struct ct_start start;
+    return ct_assembly_find(w->assembly, &start) && ct_run_restart(w->sim.run, &start)
+        && ct_sim_resolve(&w->sim, &w->s->run);
+}
+
+// Put the next member that lanes can take into one; false when there are no more.
+static bool fill_lane(struct worker *w, int group, int lane)
+{
+    struct ct_study *s = w->s;
+    for (long member; (member = take_member(s)) >= 0;) {
+        if (!set_member(w, member)) {
+            ct_study_record(s, member, NULL, &w->member_ctx);
+        } else if (!start_member(w)) {
+            ct_study_record(s, member, NULL, &w->sim.own);
+            forget_errors(&w->sim.own);
+        } else if (ct_lanes_load(w->group[group], lane, &w->sim.run_options)) {
+            w->member[group][lane] = member;
+            return true;
+        } else {
+            forget_errors(&w->sim.own);
+            run_own(w, member);
+        }
+    }
+    return false;
+}
+
+static void empty_lane(struct worker *w, int group, int lane)
+{
+    const long member = w->member[group][lane];
+    struct ct_lanes *lanes = w->group[group];
+    const bool has_arrived = ct_lanes_state(lanes, lane) == CT_LANE_ARRIVED;
+    if (has_arrived && ct_lanes_results(lanes, lane, w->value)) {
+        ct_study_record(w->s, member, w->value, &w->sim.own);
+    } else { // it is known to be readable
+        forget_errors(&w->sim.own);
+        if (set_member(w, member))
+            run_own(w, member);
+    }
+    ct_lanes_free(lanes, lane);
+}
+
+static void create_groups(struct worker *w)
+{
+    struct ct_sim *sim = &w->sim;
+    w->ngroup = w->s->lanes / CT_LANES;
+    for (int g = 0; g < w->ngroup; g++)
+        w->group[g] = ct_lanes_create(sim->own.model, &w->system->equations, sim->run);
+    // at the file's own values, which the system still has: the same in each worker
+    if (start_member(w))
+        for (int g = 0; g < w->ngroup; g++)
+            ct_lanes_begin(w->group[g]);
+    forget_errors(&sim->own);
+}
+
+// A try in all lanes of a group. False: they are empty, and there are no more members.
+static bool step_group(struct worker *w, int group)
+{
+    bool is_running = false;
+    for (int l = 0; l < CT_LANES; l++) {
+        const enum ct_lane_state state = ct_lanes_state(w->group[group], l);
+        if (state != CT_LANE_RUNNING && state != CT_LANE_IDLE)
+            empty_lane(w, group, l);
+        is_running |= state == CT_LANE_RUNNING || fill_lane(w, group, l);
+    }
+    if (is_running)
+        ct_lanes_step(w->group[group]);
+    return is_running;
+}
+
+static void run_lanes(struct worker *w)
+{
+    struct ct_sim *sim = &w->sim;
+    w->assembly = ct_assembly_create(&sim->own, sim->own.model, &w->system->model,
+                                     &w->system->start_equations);
+    create_groups(w);
+    w->value = CT_NEWN(sim->own.model, double, w->system->equations.nresult + 1);
+    for (bool is_running = true; is_running;) {
+        is_running = false;
+        for (int g = 0; g < w->ngroup; g++)
+            is_running |= step_group(w, g);
+    }
+    for (int g = 0; g < w->ngroup; g++) {
+        const struct ct_lanes_count count = ct_lanes_count(w->group[g]);
+        count_steps(w->s, count.steps, count.rejected, 0);
+    }
+}
+
+// ---- workers ------------------------------------------------------------------------------------------
+
+// With what varies as numbers, so that all members order their parameters alike.
+struct ct_system *ct_study_load_system(struct ct_ctx *ctx, const struct ct_study *s)
+{
+    struct ct_system_options o = s->system_options;
+    o.set = member_set(s, ctx->model, -1, &o.nset);
+    return ct_system_load(ctx, s->path, &o);
+}
+
+static bool work(void *task)
+{
+    struct worker *w = task;
+    struct ct_study *s = w->s;
+    if (s->is_derived) {
+        for (long member; (member = take_member(s)) >= 0;)
+            run_derived(w, member);
+        return true;
+    }
+    ct_own_init(&w->member_ctx);
+    ct_own_init(&w->sim.own);
+    if (!w->system) // text and options are those of the first, which could be loaded
+        w->system = ct_study_load_system(&w->sim.own, s);
+    if (!w->system || !ct_sim_prepare(&w->sim, w->system, &s->run))
+        return false;
+    if (!s->alone_by) {
+        run_lanes(w);
+        return true;
+    }
+    for (long member; (member = take_member(s)) >= 0;)
+        if (set_member(w, member))
+            run_own(w, member);
+        else
+            ct_study_record(s, member, NULL, &w->member_ctx);
+    return true;
+}
+
+// A worker that cannot start leaves its members to the others; the first one's system is there already.
+static void run_worker(struct ct_study *s, int thread)
+{
+    struct worker w = {.s = s, .system = thread == 0 ? s->system : NULL};
+    struct ct_ctx *ctx = ct_ctx_create();
+    if (!ctx || (!ct_enter(ctx, work, &w) && (thread == 0 || ctx->no_memory)))
+        lose_memory(s);
+    ct_ctx_destroy(ctx);
+    ct_own_finish(&w.sim.own);
+    ct_own_finish(&w.member_ctx);
+    if (thread > 0)
+        ct_system_destroy(w.system);
+}
+
+void ct_study_run_members(struct ct_study *s)
+{
+#ifdef _OPENMP
+#pragma omp parallel num_threads(s->threads)
+    run_worker(s, omp_get_thread_num());
+#else
+    run_worker(s, 0);
+#endif
+}

@@ -1,0 +1,27 @@
+// A loaded model with its equations.
+#ifndef CT_SYSTEM_H
+#define CT_SYSTEM_H
+
+#include "base/entry.h"
+#include "formulate/formulate.h"
+#include "solve/assemble.h"
+
+#include <cotree/cotree.h>
+
+/// A model and its equations; constant once loaded. Everything lives in own.model.
+struct ct_system {
+    struct ct_ctx own;
+    struct ct_model model;
+    struct ct_equations equations;
+    struct ct_tree_report tree;
+    struct ct_equations start_equations; // on trees through joints, for assembling
+    // where beams start in equilibrium, on trees through joints: with drivers that stand still, and, in closed loops,
+    // with drivers that move
+    struct ct_equations held_equations, moving_equations;
+    double read, generate; // seconds
+};
+
+/// The assembled start, with beams settled that ask for it. Errors: those of ct_assemble and ct_settle.
+bool ct_system_assemble(struct ct_ctx *own, struct ct_system *sys, struct ct_start *start);
+
+#endif
