@@ -65,6 +65,7 @@ struct ct_iteration *ct_iteration_create(struct ct_arena *a, const struct ct_pro
         it->bc = CT_NEWN(a, double _Complex, n + 1);
         it->pivotc = CT_NEWN(a, int, n + 1);
         it->H = CT_NEWN(a, double, n *n + 1);
+        it->is_slow = CT_NEWN(a, bool, nu + 1);
         it->pivot_slow = CT_NEWN(a, int, n + 1);
     }
     return it;
@@ -408,6 +409,27 @@ static double pace_of(const struct ct_iteration *it, double small, const double 
     return pace;
 }
 
+// b (n) = the slow part of u, in its first nu entries.
+static void pass_slow(struct ct_iteration *it, const double *u)
+{
+    const int nu = it->nu, n = it->n;
+    double *b = it->b;
+    memset(b, 0, (size_t)n * sizeof *b);
+    for (int j = 0; j < nu; j++)
+        for (int k = 0; k < nu; k++)
+            b[k] += it->M[k + nu * j] * u[j];
+    ct_lu_solve(b, it->H, it->pivot_slow, n, n, 1, n, false);
+}
+
+// How much of speed k is slow.
+static double remains(struct ct_iteration *it, int k)
+{
+    memset(it->off, 0, (size_t)it->nu * sizeof *it->off);
+    it->off[k] = 1;
+    pass_slow(it, it->off);
+    return it->b[k];
+}
+
 // Factors that tell what is slower than c; those of up to twice or half of it will do.
 static bool factor_slow(struct ct_iteration *it, double c)
 {
@@ -415,25 +437,39 @@ static bool factor_slow(struct ct_iteration *it, double c)
         return true;
     fill(it, it->H, c, c * c);
     it->slow = ct_lu(it->H, it->pivot_slow, it->n, it->n) ? c : 0;
+    for (int k = 0; k < it->nu && it->slow > 0; k++)
+        it->is_slow[k] = remains(it, k) > 0.5;
     return it->slow > 0;
+}
+
+// What the slow motion does not feel of speeds: as much as is ample of the largest slow one, in a mass as light as the
+// lightest slow one.
+static double unfelt_energy(const struct ct_iteration *it, const double *ample)
+{
+    double light = INFINITY, most = 0;
+    for (int k = 0; k < it->nu; k++)
+        if (it->is_slow[k]) {
+            light = fmin(light, it->M[k + it->nu * k]);
+            most = fmax(most, ample[k]);
+        }
+    return isfinite(light) ? sqrt(light) * most : 0;
 }
 
 double ct_iteration_slow_norm(struct ct_iteration *it, const struct ct_tolerance *tolerance,
                               const double *y, const bool *asked, const double *ample,
                               const double *d, const double *u)
 {
-    const int nu = it->nu, n = it->n;
+    const int nu = it->nu;
     double *b = it->b, *slow = it->off;
     const double small = tolerance->atol / tolerance->rtol;
     if (!isfinite(small) || !factor_slow(it, much_faster * pace_of(it, small, y)))
         return INFINITY;
-    memset(b, 0, (size_t)n * sizeof *b);
-    for (int j = 0; j < nu; j++)
-        for (int k = 0; k < nu; k++)
-            b[k] += it->M[k + nu * j] * u[j];
-    ct_lu_solve(b, it->H, it->pivot_slow, n, n, 1, n, false);
-    for (int k = 0; k < nu; k++)
-        slow[k] = asked[k] ? u[k] : hypot(b[k], (u[k] - b[k]) / (ample[k] * it->share[nu + k]));
+    const double unfelt = unfelt_energy(it, ample);
+    pass_slow(it, u);
+    for (int k = 0; k < nu; k++) {
+        const double borne = fmax(ample[k], unfelt / sqrt(it->M[k + nu * k]));
+        slow[k] = asked[k] ? u[k] : hypot(b[k], (u[k] - b[k]) / (borne * it->share[nu + k]));
+    }
     return ct_iteration_norm(it, d, slow, nu, 1);
 }
 

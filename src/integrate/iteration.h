@@ -42,8 +42,9 @@ struct ct_iteration {
     int *pivot, *pivotc;
     double *H, slow; // of the matrix for c = `slow` alone, to tell slow speeds; 0: not factored
     int *pivot_slow;
-    double *w; // speeds of the derivatives (nu), for N; NULL: the method knows no N
-    double *b; // (n)
+    bool *is_slow; // which speeds are slow by themselves, then  (nu)
+    double *w;     // speeds of the derivatives (nu), for N; NULL: the method knows no N
+    double *b;     // (n)
     double _Complex *bc;
     double per_speed; // 1/nu; 0: there are none
     double *share;    // one over what changes of places and speeds are measured against  (2 nu)

@@ -44,6 +44,7 @@ struct ct_cost {
 struct ct_trial {
     struct ct_cost cost;
     const struct ct_integrate_stats *stats; // of the trial, while it runs
+    bool has_to_damp; // vibrations that the other method has kept, before steps get long
     int nstep;
     double t0, t, spent0; // where counting began, where it is, the work before
     double pace;          // of all steps, where a trial does not end
