@@ -167,24 +167,46 @@ static void add_stiffness(struct line *s, int e)
     }
 }
 
-static void add_element(struct line *s, int e)
+// Mass and rotary inertia at the points where the beam itself takes them.
+static void add_mass(struct line *s, int e)
 {
     const struct ct_beam *beam = s->f->beam;
+    const struct ct_span *span = &s->f->element[e].span;
+    const struct ct_profile mass = {beam->x, beam->mass_per_length},
+                            rotary = ct_flexible_rotary(s->f, s->plane ? 1 : 2);
+    const enum ct_rule rule = ct_flexible_mass_rule(beam);
+    const double h = number(s, span->length);
+    double xi[CT_MAX_GAUSS];
+    ct_ex m_of[CT_MAX_GAUSS], J_of[CT_MAX_GAUSS];
+    const int n = ct_shape_points(s->b->x, &mass, span, rule, POINTS, xi, m_of);
+    ct_shape_points(s->b->x, &rotary, span, rule, POINTS, xi, J_of);
+    for (int i = 0; i < n; i++) {
+        const double m = number(s, m_of[i]), J = number(s, J_of[i]);
+        double place[4], turn[4];
+        for (int j = 0; j < 4; j++) {
+            place[j] = ct_shape_value(&s->f->shape.place[j], xi[i], h);
+            turn[j] = ct_shape_value(&s->f->shape.rotation[j], xi[i], h);
+        }
+        carry(s, e, m, number(s, span->start) + xi[i] * h, place);
+        for (int j = 0; j < 4; j++)
+            for (int k = 0; k < 4; k++)
+                add(s, s->M, e, j, k, m * place[j] * place[k] + J * turn[j] * turn[k]);
+    }
+}
+
+static void add_element(struct line *s, int e)
+{
     const double h = number(s, s->f->element[e].span.length);
     add_stiffness(s, e);
+    add_mass(s, e);
     for (int i = 0; i < POINTS; i++) {
-        const double xi = s->xi[i], w = s->weight[i] * h,
-                     m = profile(s, beam->mass_per_length, e, xi);
-        double place[4], slope[4], P[2];
-        for (int j = 0; j < 4; j++) {
-            place[j] = ct_shape_value(&s->f->shape.place[j], xi, h);
+        const double xi = s->xi[i], w = s->weight[i] * h;
+        double slope[4], P[2];
+        for (int j = 0; j < 4; j++)
             slope[j] = ct_shape_value(&s->f->shape.slope[j], xi, h);
-        }
         mass_beyond(s, e, xi, P);
-        carry(s, e, w * m, number(s, s->f->element[e].span.start) + xi * h, place);
         for (int j = 0; j < 4; j++)
             for (int k = 0; k < 4; k++) {
-                add(s, s->M, e, j, k, w * m * place[j] * place[k]);
                 add(s, s->Kg[0], e, j, k, w * P[0] * slope[j] * slope[k]);
                 add(s, s->Kg[1], e, j, k, w * P[1] * slope[j] * slope[k]);
             }
