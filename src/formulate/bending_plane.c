@@ -432,6 +432,27 @@ static void find_amplitudes(const struct line *s, const double *v, struct ct_swi
     }
 }
 
+// phi sqrt(m) at the points of the elements and at welded masses: products of two shapes add up to integrals.
+static void sample(const struct line *s, const double *v, struct ct_bending_shape *out)
+{
+    const struct ct_beam *beam = s->f->beam;
+    const int n = beam->nelement * POINTS;
+    double *const moved = CT_NEWN(s->b->arena, double, (size_t)n + s->nlump + 1);
+    for (int i = 0; i < n; i++) {
+        const int e = i / POINTS, k = i % POINTS;
+        const double m = s->weight[k] * number(s, s->f->element[e].span.length)
+                       * profile(s, beam->mass_per_length, e, s->xi[k]);
+        moved[i] = sqrt(m) * along(s, e, s->xi[k], s->f->shape.place, v);
+    }
+    for (size_t i = 0; i < s->nlump; i++) {
+        double xi;
+        const int e = element_at(s, s->lump[i].x, &xi);
+        moved[n + (int)i] = sqrt(s->lump[i].mass) * along(s, e, xi, s->f->shape.place, v);
+    }
+    out->moved = moved;
+    out->nmoved = n + (int)s->nlump;
+}
+
 static void fill_shape(struct line *s, const struct found *all, int k, double omega2,
                        struct ct_bending_shape *out)
 {
@@ -453,8 +474,17 @@ static void fill_shape(struct line *s, const struct found *all, int k, double om
         out->swing.place[i] = along(s, e, xi, s->f->shape.place, v);
     }
     find_amplitudes(s, v, &out->swing);
+    sample(s, v, out);
     project(s->b, s, all->Mv[k], out->state);
     project_start(s->b, s, all->Mv[k], out->start);
+}
+
+void ct_bending_planes_join(struct ct_bending_shape *shape, int n)
+{
+    for (int i = 0; i < n; i++)
+        for (int j = 0; j < n; j++)
+            if (shape[i].swing.is_z != shape[j].swing.is_z)
+                shape[i].swing.with[j] = dot(shape[i].moved, shape[j].moved, shape[i].nmoved);
 }
 
 int ct_bending_plane_find(struct ct_build *b, const struct ct_flexible *f, int plane,

@@ -9,5 +9,7 @@
 /// its first shape cannot be found.
 int ct_bending_plane_find(struct ct_build *b, const struct ct_flexible *f, int plane,
                           struct ct_bending_shape *out);
+/// What the n shapes of both planes of a beam do to each other: `with`.
+void ct_bending_planes_join(struct ct_bending_shape *shape, int n);
 
 #endif

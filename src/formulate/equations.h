@@ -144,6 +144,9 @@ struct ct_validity {
         struct ct_swing swing;
         ct_ex state[2];  // x, x'
         double start[2]; // with `initial: {v: ...}`
+        const double
+            *moved; // phi at places along the beam, times roots of the masses there  (nmoved)
+        int nmoved;
     } shape[CT_BENDING_SHAPES];
 };
 

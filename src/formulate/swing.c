@@ -116,13 +116,45 @@ static void note(struct ct_swings *s)
     }
 }
 
-static void move_shape(struct ct_swings *s, int i, double h, const double to[9])
+// w_x, w_x' and w_y w_z over a step of h, by which planes meet; of no time: w_x' stands for the jump of w_x.
+struct turn {
+    double rate, change, across;
+};
+
+static struct turn turn_of(const double from[9], const double to[9], double h)
+{
+    const double jump = to[0] - from[0];
+    return h > 0 ? (struct turn){0.5 * (from[0] + to[0]), jump / h,
+                                 0.5 * (from[1] * from[2] + to[1] * to[2])}
+                 : (struct turn){.change = jump};
+}
+
+// What the other plane, at `beside`, does to shape i.
+static double join(const struct ct_swings *s, int i, const struct turn *w,
+                   const double beside[][2])
+{
+    const struct ct_swing *shape = &s->shape[i];
+    const double sign = shape->is_z ? -1 : 1;
+    double F = 0;
+    for (int j = 0; j < s->n; j++)
+        F += shape->with[j]
+           * (sign * (2 * w->rate * beside[j][1] + w->change * beside[j][0])
+              - w->across * beside[j][0]);
+    return F;
+}
+
+// beside: all shapes of each model
+static void move_shape(struct ct_swings *s, int i, double h, const double to[9],
+                       const struct turn *w, double beside[][CT_BENDING_SHAPES][2])
 {
     const struct ct_swing *shape = &s->shape[i];
     const double given = push(shape, s->base) - push(shape, to);
+    double joined[CT_SWING_MODELS];
+    for (int m = 0; m < CT_SWING_MODELS; m++)
+        joined[m] = join(s, i, w, (const double(*)[2])beside[m]);
     if (h <= 0) {
         for (int m = 0; m < CT_SWING_MODELS; m++)
-            s->x[m][i][1] += given;
+            s->x[m][i][1] += given + joined[m];
         return;
     }
     const double F = given / h + 0.5 * (steady_force(shape, s->base) + steady_force(shape, to)),
@@ -130,16 +162,38 @@ static void move_shape(struct ct_swings *s, int i, double h, const double to[9])
                    - 0.5 * (softening(shape->is_z, s->base) + softening(shape->is_z, to)),
                  more = 0.5 * (stiffening(shape, s->base) + stiffening(shape, to))
                       - shape->omega2 * shape->axial * (to[3] - s->base[3]) / h;
-    swing_far(s->x[CT_SWING_LINEAR][i], h, W, shape->damping, F, 0, 0);
-    swing_far(s->x[CT_SWING_FORESHORTENED][i], h, W + more, shape->damping, F, shape->drawn, 0);
-    swing_far(s->x[CT_SWING_TRUE][i], h, W + more, shape->damping, F, shape->drawn,
-              shape->curved);
+    for (int m = 0; m < CT_SWING_MODELS; m++)
+        swing_far(s->x[m][i], h, m == CT_SWING_LINEAR ? W : W + more, shape->damping,
+                  F + joined[m], m == CT_SWING_LINEAR ? 0 : shape->drawn,
+                  m == CT_SWING_TRUE ? shape->curved : 0);
+}
+
+// Where planes meet, once with the other plane as it is, then with its mean over the step.
+static void move_shapes(struct ct_swings *s, double h, const double to[9])
+{
+    const struct turn w = turn_of(s->base, to, h);
+    const bool meet = w.rate != 0 || w.change != 0 || w.across != 0;
+    double beside[CT_SWING_MODELS][CT_BENDING_SHAPES][2],
+        start[CT_SWING_MODELS][CT_BENDING_SHAPES][2];
+    memcpy(start, s->x, sizeof start);
+    memcpy(beside, s->x, sizeof beside);
+    for (int pass = meet && h > 0 ? 0 : 1; pass < 2; pass++) {
+        for (int i = 0; i < s->n; i++)
+            move_shape(s, i, h, to, &w, beside);
+        if (pass)
+            continue;
+        for (int m = 0; m < CT_SWING_MODELS; m++)
+            for (int i = 0; i < 2 * s->n; i++)
+                beside[m][i / 2][i % 2]
+                    = 0.5 * (start[m][i / 2][i % 2] + s->x[m][i / 2][i % 2]);
+        memcpy(s->x, start, sizeof start);
+    }
 }
 
 void ct_swings_follow(struct ct_swings *s, double t, const double base[9])
 {
-    for (int i = 0; i < s->n && s->has_begun; i++)
-        move_shape(s, i, t - s->t, base);
+    if (s->has_begun)
+        move_shapes(s, t - s->t, base);
     s->has_begun = true;
     s->t = t;
     memcpy(s->base, base, sizeof s->base);

@@ -16,7 +16,12 @@
 // to the largest deflection of that. Between two instants W and F are constant, their means; F comes from velocities, so that no
 // push on the base is missed, however short; oscillators are then solved exactly, with amplitudes as they are in the middle of a
 // sixteenth of a period, so that differences keep their digits however small they are.
-// Left out: higher shapes, and what shapes and planes do to one another. A base that is not driven would swing along: shapes
+// A base that turns about the beam's axis or about one between its planes moves the deflections of one plane into the other, as
+// Coriolis', Euler's and the centrifugal acceleration say, with C = int phi_y phi_z m dx for each pair of shapes:
+//
+//     F_y += C (2 w_x z' + (w_x' - w_y w_z) z),    F_z -= C (2 w_x y' + (w_x' + w_y w_z) y)
+//
+// Left out: higher shapes, what shapes of a plane do to one another, and planes where they swing far. A base that is not driven would swing along: shapes
 // are others then.
 #ifndef CT_FORMULATE_SWING_H
 #define CT_FORMULATE_SWING_H
@@ -27,22 +32,23 @@
 #define CT_FORETOLD_MOST 1.0
 
 enum {
-    CT_SWING_PLACES = 4
-}; // quarters of the beam, the end last, where deflections are looked at
+    CT_PLANE_SHAPES = 3,
+    CT_BENDING_SHAPES = 2 * CT_PLANE_SHAPES,
+    CT_SWING_PLACES = 4 // quarters of the beam, the end last, where deflections are looked at
+};
 
 /// A bending shape phi of unit mass.
 struct ct_swing {
-    bool is_z;                     // it moves along z
-    double omega2, damping;        // [1/s^2], [1/s]
-    double turning, axial;         // eta per w^2, and per acceleration along x  [s^2], [s^2/m]
-    double mass[2];                // int phi m dx, int phi m x dx
-    double drawn, curved;          // b, g
-    double place[CT_SWING_PLACES]; // phi there
+    bool is_z;                      // it moves along z
+    double omega2, damping;         // [1/s^2], [1/s]
+    double turning, axial;          // eta per w^2, and per acceleration along x  [s^2], [s^2/m]
+    double mass[2];                 // int phi m dx, int phi m x dx
+    double drawn, curved;           // b, g
+    double place[CT_SWING_PLACES];  // phi there
+    double with[CT_BENDING_SHAPES]; // C with the shapes of the other plane, by number
 };
 
 enum ct_swing_model { CT_SWING_LINEAR, CT_SWING_FORESHORTENED, CT_SWING_TRUE, CT_SWING_MODELS };
-
-enum { CT_PLANE_SHAPES = 3, CT_BENDING_SHAPES = 2 * CT_PLANE_SHAPES };
 
 struct ct_swings {
     int n;

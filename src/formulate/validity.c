@@ -33,6 +33,7 @@ bool ct_validity_derive(struct ct_build *b, const struct ct_flexible *f,
     out->nshape = ny + ct_bending_plane_find(b, f, 1, out->shape + ny);
     if (!out->nshape)
         return false;
+    ct_bending_planes_join(out->shape, out->nshape);
     const struct ct_swing *first = &out->shape[0].swing, *other = &out->shape[ny].swing;
     if (out->nshape > ny && other->turning > first->turning)
         first = other;

@@ -65,6 +65,48 @@ static void damping_is_in_both(void **unused)
     CHECK_CLOSE(ct_swings_error(&s, CT_SWING_LINEAR), 0, 0, 1e-300);
 }
 
+// About the axis at the rate w: in axes that stand still y + i z swings as it would at rest, here it turns back by w t. The
+// second pass makes it of second order.
+static void about_its_axis_planes_meet(void **unused)
+{
+    (void)unused;
+    const double w = 0.7, end = 5, base[NBASE] = {[W] = w};
+    double error[2];
+    for (int k = 0; k < 2; k++) {
+        struct ct_swings s = one_plane(0);
+        s.n = 2;
+        s.shape[1] = s.shape[0];
+        s.shape[1].is_z = true;
+        s.shape[0].with[1] = s.shape[1].with[0] = 1;
+        s.x[CT_SWING_LINEAR][0][0] = 0.01;
+        s.x[CT_SWING_LINEAR][1][1] = -w * 0.01; // at rest in those axes
+        follow_until(&s, end, k ? 2000 : 1000, base);
+        const double *y = s.x[CT_SWING_LINEAR][0], *z = s.x[CT_SWING_LINEAR][1];
+        const double swung = 0.01 * cos(2 * end);
+        error[k] = hypot(y[0] - swung * cos(w * end), z[0] + swung * sin(w * end));
+    }
+    assert_true(error[1] < 1e-7);
+    CHECK_CLOSE(error[0] / error[1], 4, 0.02, 0);
+}
+
+// Turned about its axis in no time, a deflection along z has a speed along y, and the other way round.
+static void a_jump_about_its_axis_turns_speeds(void **unused)
+{
+    (void)unused;
+    const double rest[NBASE] = {0}, base[NBASE] = {[W] = 0.2};
+    struct ct_swings s = one_plane(0);
+    s.n = 2;
+    s.shape[1] = s.shape[0];
+    s.shape[1].is_z = true;
+    s.shape[0].with[1] = s.shape[1].with[0] = 0.5;
+    s.x[CT_SWING_LINEAR][0][0] = 0.03;
+    s.x[CT_SWING_LINEAR][1][0] = 0.04;
+    ct_swings_follow(&s, 0, rest);
+    ct_swings_follow(&s, 0, base);
+    CHECK_CLOSE(s.x[CT_SWING_LINEAR][0][1], 0.5 * 0.2 * 0.04, 1e-14, 0);
+    CHECK_CLOSE(s.x[CT_SWING_LINEAR][1][1], -0.5 * 0.2 * 0.03, 1e-14, 0);
+}
+
 // A push in no time gives the momentum 2.5 w; a new grip gives none.
 static void a_jump_of_the_rate_is_a_push(void **unused)
 {
@@ -104,6 +146,8 @@ int main(void)
         cmocka_unit_test(let_go_it_swings_at_two_frequencies),
         cmocka_unit_test(beyond_its_frequency_it_grows),
         cmocka_unit_test(damping_is_in_both),
+        cmocka_unit_test(about_its_axis_planes_meet),
+        cmocka_unit_test(a_jump_about_its_axis_turns_speeds),
         cmocka_unit_test(a_jump_of_the_rate_is_a_push),
         cmocka_unit_test(it_settles_under_its_weight),
     };
