@@ -118,7 +118,7 @@ static int find_function(const char *name)
     return -1;
 }
 
-bool ct_scope_knows(const struct ct_scope *s, const char *name)
+static bool is_known(const struct ct_scope *s, const char *name)
 {
     for (size_t i = 0; i < s->nknown; i++)
         if (strcmp(s->known[i], name) == 0)
@@ -236,7 +236,7 @@ static ct_ex apply(struct ct_exs *x, int f, const ct_ex *arg, int n)
 
 static bool report_unknown_function(struct parser *s, const char *name, const char *start)
 {
-    if (strcmp(name, "t") == 0 || strcmp(name, "pi") == 0 || ct_scope_knows(s->scope, name))
+    if (strcmp(name, "t") == 0 || strcmp(name, "pi") == 0 || is_known(s->scope, name))
         return ct_error(s->ctx, mark_at(s, start), CT_E_FUNCTION,
                         "'%s' is not a function; a product is written %s*(...)", name, name);
     const char *names[COUNT(functions)];
@@ -448,6 +448,32 @@ static bool is_infinite_word(const char *text)
     return false;
 }
 
+static bool is_name(const void *scope, const char *word)
+{
+    return is_known(scope, word) || find_function(word) >= 0;
+}
+
+static bool parse_quantity(struct parser *s, double value, const char *unit, ct_ex *e)
+{
+    const struct ct_quantity q = {.text = s->text.text,
+                                  .unit = unit,
+                                  .mark = s->text.mark,
+                                  .wanted = s->scope->unit,
+                                  .is_name = is_name,
+                                  .user = s->scope};
+    if (!ct_quantity_read(s->ctx, &q, &value))
+        return false;
+    *e = ct_ex_const(s->scope->x, value);
+    return true;
+}
+
+const char *ct_parse_unit(const char *text)
+{
+    double value;
+    const char *unit;
+    return ct_quantity_split(text, &value, &unit) ? unit : NULL;
+}
+
 bool ct_parse(struct ct_ctx *ctx, const struct ct_scope *scope, struct ct_text text, ct_ex *e)
 {
     struct parser s
@@ -462,7 +488,7 @@ bool ct_parse(struct ct_ctx *ctx, const struct ct_scope *scope, struct ct_text t
     double value;
     const char *unit;
     if (ct_quantity_split(text.text, &value, &unit))
-        return ct_quantity_read(ctx, scope, text, value, unit, e);
+        return parse_quantity(&s, value, unit, e);
     if (ct_is_digit(*text.text) && !*unit && isfinite(value)) { // as most texts are
         *e = ct_ex_const(scope->x, value);
         return true;
@@ -519,11 +545,6 @@ bool ct_is_identifier(const char *name)
     while (ct_is_letter(*name) || ct_is_digit(*name))
         name++;
     return !*name;
-}
-
-bool ct_is_function(const char *name)
-{
-    return find_function(name) >= 0;
 }
 
 bool ct_is_reserved(const char *name)

@@ -55,9 +55,6 @@ struct ct_scope {
 /// Errors: E113 to E120.
 bool ct_parse(struct ct_ctx *ctx, const struct ct_scope *scope, struct ct_text text, ct_ex *e);
 
-/// Is it one of the plain names?
-bool ct_scope_knows(const struct ct_scope *s, const char *name);
-
 /// The unit of a text that is one quantity, a number with a unit; NULL if it is not.
 const char *ct_parse_unit(const char *text);
 
@@ -66,7 +63,6 @@ bool ct_parse_is_signal(struct ct_arena *a, const char *text, const char **norma
 
 /// Letters, digits and _, not starting with a digit.
 bool ct_is_identifier(const char *name);
-bool ct_is_function(const char *name);
 /// A word the grammar has taken: t, pi, in, function names.
 bool ct_is_reserved(const char *name);
 

@@ -7,12 +7,6 @@
 #include <math.h>
 #include <string.h>
 
-struct reader {
-    struct ct_ctx *ctx;
-    const struct ct_scope *scope;
-    struct ct_text text;
-};
-
 // [sign] number blanks unit
 bool ct_quantity_split(const char *text, double *value, const char **unit)
 {
@@ -34,75 +28,68 @@ bool ct_quantity_split(const char *text, double *value, const char **unit)
     return n && (ct_is_letter(*p) || (*p & 0x80) || (has_gap && p[0] == '1' && p[1] == '/'));
 }
 
-static bool report_unit(const struct reader *s, enum ct_unit_result result, const char *unit,
-                        size_t at)
+// The word that starts there, as far as a unit would reach.
+static const char *word_at(struct ct_arena *a, const char *p)
 {
-    const struct ct_mark mark = s->text.mark;
-    const char *bad = unit + at;
-    int n = 0;
-    while (ct_is_letter(bad[n]) || (n && ct_is_digit(bad[n])) || (bad[n] & 0x80))
+    size_t n = 0;
+    while (ct_is_letter(p[n]) || (n && ct_is_digit(p[n])) || (p[n] & 0x80))
         n++;
-    char *name = ct_arena_strndup(s->ctx->scratch, bad, (size_t)n);
-    if (result == CT_UNIT_EXPONENT)
-        return ct_error(s->ctx, mark, CT_E_UNIT,
-                        "'%s': the exponent of a unit is one digit with an optional sign",
-                        s->text.text);
-    if (result == CT_UNIT_SYNTAX)
-        return ct_error(
-            s->ctx, mark, CT_E_UNIT,
-            "'%s': a number with a unit stands alone, in an expression numbers are SI",
-            s->text.text);
-    if (name[0] == '_')
-        return ct_error(s->ctx, mark, CT_E_NUMBER, "'%s': digits cannot be grouped with '_'",
-                        s->text.text);
-    if (ct_scope_knows(s->scope, name) || ct_is_function(name))
-        return ct_error(s->ctx, mark, CT_E_SYNTAX, "'%s': an operator is missing before '%s'",
-                        s->text.text, name);
-    const char *near = ct_unit_nearest(name);
-    if (near)
-        return ct_error(s->ctx, mark, CT_E_UNIT, "unknown unit '%s'; did you mean '%s'?", name,
-                        near);
-    return ct_error(s->ctx, mark, CT_E_UNIT, "unknown unit '%s'", name);
+    return ct_arena_strndup(a, p, n);
 }
 
-static bool check_dimension(const struct reader *s, const struct ct_unit *u, const char *unit)
+static bool report_unit(struct ct_ctx *ctx, const struct ct_quantity *q,
+                        enum ct_unit_result result, size_t at)
 {
-    if (!s->scope->unit)
+    if (result == CT_UNIT_EXPONENT)
+        return ct_error(ctx, q->mark, CT_E_UNIT,
+                        "'%s': the exponent of a unit is one digit with an optional sign",
+                        q->text);
+    if (result == CT_UNIT_SYNTAX)
+        return ct_error(
+            ctx, q->mark, CT_E_UNIT,
+            "'%s': a number with a unit stands alone, in an expression numbers are SI",
+            q->text);
+    const char *name = word_at(ctx->scratch, q->unit + at), *near = ct_unit_nearest(name);
+    if (name[0] == '_')
+        return ct_error(ctx, q->mark, CT_E_NUMBER, "'%s': digits cannot be grouped with '_'",
+                        q->text);
+    if (q->is_name(q->user, name))
+        return ct_error(ctx, q->mark, CT_E_SYNTAX, "'%s': an operator is missing before '%s'",
+                        q->text, name);
+    if (near)
+        return ct_error(ctx, q->mark, CT_E_UNIT, "unknown unit '%s'; did you mean '%s'?", name,
+                        near);
+    return ct_error(ctx, q->mark, CT_E_UNIT, "unknown unit '%s'", name);
+}
+
+static bool check_dimension(struct ct_ctx *ctx, const struct ct_quantity *q,
+                            const struct ct_unit *u)
+{
+    if (!q->wanted)
         return true;
     struct ct_unit wanted;
     size_t at;
-    ct_unit_parse(s->scope->unit, strlen(s->scope->unit), &wanted, &at);
+    ct_unit_parse(q->wanted, strlen(q->wanted), &wanted, &at);
     if (ct_unit_same(u, &wanted))
         return true;
-    if (!s->scope->unit[0])
-        return ct_error(s->ctx, s->text.mark, CT_E_DIMENSION,
-                        "'%s' is in %s, but a number without a unit is wanted here",
-                        s->text.text, unit);
-    return ct_error(s->ctx, s->text.mark, CT_E_DIMENSION,
-                    "'%s' is in %s, but a quantity in %s is wanted here", s->text.text, unit,
-                    s->scope->unit);
+    if (!q->wanted[0])
+        return ct_error(ctx, q->mark, CT_E_DIMENSION,
+                        "'%s' is in %s, but a number without a unit is wanted here", q->text,
+                        q->unit);
+    return ct_error(ctx, q->mark, CT_E_DIMENSION,
+                    "'%s' is in %s, but a quantity in %s is wanted here", q->text, q->unit,
+                    q->wanted);
 }
 
-bool ct_quantity_read(struct ct_ctx *ctx, const struct ct_scope *scope, struct ct_text text,
-                      double value, const char *unit, ct_ex *e)
+bool ct_quantity_read(struct ct_ctx *ctx, const struct ct_quantity *q, double *value)
 {
-    const struct reader s = {ctx, scope, text};
     struct ct_unit u;
     size_t at;
-    const enum ct_unit_result result = ct_unit_parse(unit, strlen(unit), &u, &at);
+    const enum ct_unit_result result = ct_unit_parse(q->unit, strlen(q->unit), &u, &at);
     if (result != CT_UNIT_OK)
-        return report_unit(&s, result, unit, at);
-    value *= u.si;
-    if (!isfinite(value))
-        return ct_error(ctx, text.mark, CT_E_NUMBER, "'%s': the number is too large",
-                        text.text);
-    *e = ct_ex_const(scope->x, value);
-    return check_dimension(&s, &u, unit);
-}
-
-const char *ct_parse_unit(const char *text)
-{
-    double value;
-    const char *unit;
-    return ct_quantity_split(text, &value, &unit) ? unit : NULL;
+        return report_unit(ctx, q, result, at);
+    *value *= u.si;
+    if (!isfinite(*value))
+        return ct_error(ctx, q->mark, CT_E_NUMBER, "'%s': the number is too large", q->text);
+    return check_dimension(ctx, q, &u);
 }

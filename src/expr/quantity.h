@@ -2,13 +2,22 @@
 #ifndef CT_EXPR_QUANTITY_H
 #define CT_EXPR_QUANTITY_H
 
-#include "expr/parse.h"
+#include "base/ctx.h"
 
-/// The number and the unit, which may turn out to be none; false if the text is something else. *unit is then where its
-/// number ends.
+/// A whole text with its unit, and where it stands.
+struct ct_quantity {
+    const char *text, *unit;
+    struct ct_mark mark;
+    const char *wanted; // a unit of the dimension that is wanted; NULL: any
+    /// Does an expression know this word? Then an operator is missing before it.
+    bool (*is_name)(const void *user, const char *word);
+    const void *user;
+};
+
+/// The number and the unit, which may turn out to be none; false if the text is something else, *unit then being where
+/// its number ends.
 bool ct_quantity_split(const char *text, double *value, const char **unit);
-/// In SI units, of the dimension that is wanted. Errors: those of ct_parse.
-bool ct_quantity_read(struct ct_ctx *ctx, const struct ct_scope *scope, struct ct_text text,
-                      double value, const char *unit, ct_ex *e);
+/// value (in and out): the number, in SI units. Errors: E114, E118 to E120.
+bool ct_quantity_read(struct ct_ctx *ctx, const struct ct_quantity *q, double *value);
 
 #endif

@@ -50,7 +50,8 @@ void ct_articulated_beam_start(struct ct_articulated *w, size_t i)
     const struct ct_flexible *f = e->f = &b->flexible[i];
     e->n = f->nelastic;
     e->is_carried = ct_flexible_is_carried(f);
-    e->nall = e->n + (e->is_carried ? f->beam->nelement : 0);
+    e->nfollow = e->is_carried ? ct_follow_count(f) : 0;
+    e->nall = e->n + (e->is_carried ? f->beam->nelement : 0) + 2 * e->nfollow;
     const size_t n = (size_t)e->nall;
     e->number = CT_NEWN(b->arena, int, b->eqs->nu + 1);
     for (size_t k = 0; k < b->eqs->nu; k++)
@@ -65,11 +66,48 @@ void ct_articulated_beam_start(struct ct_articulated *w, size_t i)
     e->is_done = CT_NEWN(b->arena, bool, n + 1);
 }
 
-// The coordinate of dof j of element i and its sign; -1: it is fixed.
+// The place of number k of those that follow; that of its multiplier.
+static int follower(const struct ct_articulated_beam *e, int k)
+{
+    return e->n + e->f->beam->nelement + k;
+}
+
+static int multiplier(const struct ct_articulated_beam *e, int k)
+{
+    return follower(e, k) + e->nfollow;
+}
+
+// Is a place the foreshortening at the start of an element?
+static bool is_start(const struct ct_articulated_beam *e, int place)
+{
+    return e->is_carried && place >= e->n && place < follower(e, 0);
+}
+
+static int freedom_place(const struct ct_articulated_beam *e, int freedom)
+{
+    const struct ct_freedom *d = &e->f->freedom[freedom];
+    const int k = ct_follow_number(e->f, freedom);
+    return k >= 0 ? follower(e, k) : d->npart ? d->part[0].k : -1;
+}
+
+// The place of dof j of element i and its sign; -1: it is fixed.
 static int dof_place(const struct ct_articulated_beam *e, int i, int j, int *sign)
 {
     const struct ct_freedom *d = ct_dof_freedom(e->f, i, j, sign);
-    return d && d->npart ? d->part[0].k : -1;
+    return d ? freedom_place(e, (int)(d - e->f->freedom)) : -1;
+}
+
+// Freedoms that follow satisfy their sums, which multipliers hold them to.
+static void add_laws(struct ct_exs *x, struct ct_articulated_beam *e)
+{
+    for (int k = 0; k < e->nfollow; k++) {
+        int n;
+        const struct ct_follow_term *law = ct_follow_law(e->f, k, &n);
+        *entry_of(e, multiplier(e, k), follower(e, k)) = CT_EX_ONE;
+        for (int i = 0; i < n; i++)
+            *entry_of(e, multiplier(e, k), freedom_place(e, law[i].freedom))
+                = ct_ex_const(x, law[i].by);
+    }
 }
 
 // Mass of the elements by their own dofs and c.
@@ -85,10 +123,18 @@ static void add_elements(struct ct_articulated *w, struct ct_articulated_body *k
         for (int j = 0; j < CT_DOF; j++) {
             int sign;
             const int at = dof_place(e, i, j, &sign);
-            ct_dof_push_column(b, e->f, i, j, s[i].moved[j], s[i].swept[j], c);
-            for (int l = 0; l < CT_DOF; l++)
-                ct_dof_push_pair(b, e->f, i, j, i, l, s[i].M[j][l], w->M);
-            if (at >= 0 && i > 0)
+            if (at < 0)
+                continue;
+            const ct_ex one = ct_ex_const(x, sign);
+            c->moved[at] = ct_ex3_add(x, c->moved[at], ct_ex3_scale(x, one, s[i].moved[j]));
+            c->swept[at] = ct_ex3_add(x, c->swept[at], ct_ex3_scale(x, one, s[i].swept[j]));
+            for (int l = 0; l < CT_DOF; l++) {
+                int other;
+                const int to = dof_place(e, i, l, &other);
+                if (to >= 0 && to <= at) // the transposed pair comes, too
+                    add_to(x, entry_of(e, at, to), ct_ex_scale(x, sign * other, s[i].M[j][l]));
+            }
+            if (i > 0)
                 add_to(x, entry_of(e, carried, at), ct_ex_scale(x, sign, s[i].moved[j].e[0]));
         }
         if (i == 0)
@@ -112,24 +158,27 @@ static void add_beam(struct ct_articulated *w, int i, struct ct_articulated_beam
     const struct ct_inertia *I = f->inertia;
     struct ct_articulated_body *k = &w->body[i];
     const size_t nu = b->eqs->nu;
-    struct ct_columns c = {CT_NEWN(b->ctx->scratch, ct_ex3, e->n + 1),
-                           CT_NEWN(b->ctx->scratch, ct_ex3, e->n + 1)};
+    struct ct_columns c = {CT_NEWN(b->ctx->scratch, ct_ex3, e->nall + 1),
+                           CT_NEWN(b->ctx->scratch, ct_ex3, e->nall + 1)};
     const struct ct_base motion = {.w = ct_ex33_apply_t(x, A, w->s->member[i].w)};
     ct_ex3 F, T;
     I->form->wrench(b, f, &motion, CT_BIAS, &F, &T);
     ct_flexible_rows(b, f, &motion, CT_BIAS, w->row);
-    if (e->is_carried)
+    if (e->is_carried) {
         add_elements(w, k, e, A, &c);
-    else
+        add_laws(x, e);
+    } else
         ct_flexible_columns(b, f, &c, w->M);
     k->n = ct_ex3_add(x, k->n, ct_ex33_apply(x, A, T));
     k->f = ct_ex3_add(x, k->f, ct_ex33_apply(x, A, F));
-    for (int j = 0; j < e->n; j++) {
-        const size_t u = (size_t)f->elastic[j].u;
+    for (int j = 0; j < e->nall; j++) {
         const ct_ex3 swept = ct_ex33_apply(x, A, c.swept[j]),
                      moved = ct_ex33_apply(x, A, c.moved[j]);
         for (int r = 0; r < CT_SIX; r++)
             k->C[j].e[r] = ct_ex_add(x, k->C[j].e[r], r < 3 ? swept.e[r] : moved.e[r - 3]);
+    }
+    for (int j = 0; j < e->n; j++) {
+        const size_t u = (size_t)f->elastic[j].u;
         e->row[j] = ct_ex_add(x, e->row[j], w->row[u]);
         for (int l = 0; l <= j; l++) {
             const size_t v = (size_t)f->elastic[l].u;
@@ -171,6 +220,20 @@ static void add_screws(struct ct_articulated *w, int i, struct ct_articulated_be
     }
 }
 
+// What is left of the body: I - G C', and its forces.
+static void reduce_body(struct ct_exs *x, struct ct_articulated_body *k, const struct ct_six *G,
+                        const struct ct_six *C, ct_ex rest)
+{
+    for (int r = 0; r < CT_SIX; r++) {
+        for (int c = 0; c <= r; c++)
+            ct_articulated_set(
+                k, r, c,
+                ct_ex_sub(x, ct_articulated_entry(k, r, c), ct_ex_mul(x, G->e[r], C->e[c])));
+        *ct_articulated_force(k, r)
+            = ct_ex_add(x, *ct_articulated_force(k, r), ct_ex_mul(x, C->e[r], rest));
+    }
+}
+
 // What is left of the member's matrix when e'' number j is free to be what it likes.
 static void free_coordinate(struct ct_articulated *w, struct ct_articulated_body *k,
                             struct ct_articulated_beam *e, int j)
@@ -199,14 +262,56 @@ static void free_coordinate(struct ct_articulated *w, struct ct_articulated_body
         e->row[l] = ct_ex_sub(x, e->row[l], ct_ex_mul(x, a, rest));
         *at = a;
     }
-    for (int r = 0; r < CT_SIX; r++) {
-        for (int c = 0; c <= r; c++)
-            ct_articulated_set(k, r, c,
-                               ct_ex_sub(x, ct_articulated_entry(k, r, c),
-                                         ct_ex_mul(x, e->G[j].e[r], k->C[j].e[c])));
-        *ct_articulated_force(k, r)
-            = ct_ex_add(x, *ct_articulated_force(k, r), ct_ex_mul(x, k->C[j].e[r], e->row[j]));
+    reduce_body(x, k, &e->G[j], &k->C[j], e->row[j]);
+}
+
+// One that follows and its multiplier, [h p; p q]: h q <= 0 < p^2, as h is an inertia and q of multipliers the reverse.
+static void free_follower(struct ct_articulated *w, struct ct_articulated_body *k,
+                          struct ct_articulated_beam *e, int number)
+{
+    struct ct_exs *x = w->b->x;
+    const int at[2] = {follower(e, number), multiplier(e, number)};
+    const ct_ex h = *entry_of(e, at[0], at[0]), p = *entry_of(e, at[0], at[1]),
+                q = *entry_of(e, at[1], at[1]),
+                g
+                = ct_ex_div(x, CT_EX_ONE, ct_ex_sub(x, ct_ex_mul(x, h, q), ct_ex_mul(x, p, p)));
+    const ct_ex minus = ct_ex_neg(x, ct_ex_mul(x, p, g));
+    const ct_ex inverse[2][2] = {{ct_ex_mul(x, q, g), minus}, {minus, ct_ex_mul(x, h, g)}};
+    const ct_ex rest[2] = {e->row[at[0]], e->row[at[1]]};
+    for (int i = 0; i < 2; i++) {
+        e->is_done[at[i]] = true;
+        e->order[e->nstep++] = at[i];
+        e->row[at[i]] = ct_ex_add(x, ct_ex_mul(x, inverse[i][0], rest[0]),
+                                  ct_ex_mul(x, inverse[i][1], rest[1]));
+        for (int r = 0; r < CT_SIX; r++)
+            e->G[at[i]].e[r] = ct_ex_add(x, ct_ex_mul(x, inverse[i][0], k->C[at[0]].e[r]),
+                                         ct_ex_mul(x, inverse[i][1], k->C[at[1]].e[r]));
     }
+    *entry_of(e, at[0], at[1]) = CT_EX_ZERO; // known together on the way back
+    for (int l = e->nall; l-- > 0;) {
+        if (e->is_done[l])
+            continue;
+        ct_ex *const to[2] = {entry_of(e, at[0], l), entry_of(e, at[1], l)};
+        if (ct_ex_is_zero(*to[0]) && ct_ex_is_zero(*to[1]))
+            continue;
+        ct_ex a[2];
+        for (int i = 0; i < 2; i++)
+            a[i] = ct_ex_add(x, ct_ex_mul(x, inverse[i][0], *to[0]),
+                             ct_ex_mul(x, inverse[i][1], *to[1]));
+        for (int i = 0; i < 2; i++) {
+            for (int j = 0; j <= l; j++)
+                if (!e->is_done[j])
+                    *entry_of(e, l, j) = ct_ex_sub(x, *entry_of(e, l, j),
+                                                   ct_ex_mul(x, a[i], *entry_of(e, at[i], j)));
+            for (int r = 0; r < CT_SIX; r++)
+                k->C[l].e[r] = ct_ex_sub(x, k->C[l].e[r], ct_ex_mul(x, a[i], k->C[at[i]].e[r]));
+            e->row[l] = ct_ex_sub(x, e->row[l], ct_ex_mul(x, a[i], rest[i]));
+        }
+        *to[0] = a[0];
+        *to[1] = a[1];
+    }
+    for (int i = 0; i < 2; i++)
+        reduce_body(x, k, &e->G[at[i]], &k->C[at[i]], e->row[at[i]]);
 }
 
 // c of element i as a sum: places and weights (CT_PLACE_DOF + 1 of each). Returns their number.
@@ -255,6 +360,16 @@ static void put_in(struct ct_articulated *w, struct ct_articulated_body *k,
     }
 }
 
+static void free_followers(struct ct_articulated *w, struct ct_articulated_body *k,
+                           struct ct_articulated_beam *e, int node)
+{
+    for (int j = FREEDOMS; j-- > 0;) {
+        const int number = ct_follow_number(e->f, FREEDOMS * node + j);
+        if (number >= 0)
+            free_follower(w, k, e, number);
+    }
+}
+
 static void eliminate_beam(struct ct_articulated *w, int i, struct ct_articulated_beam *e)
 {
     struct ct_exs *x = w->b->x;
@@ -267,16 +382,20 @@ static void eliminate_beam(struct ct_articulated *w, int i, struct ct_articulate
         e->is_done[e->n] = true; // c of the first element is zero
     int next = e->n;
     for (int node = e->f->beam->nelement; node > 0 && e->is_carried; node--) {
-        const struct ct_freedom *d = &e->f->freedom[FREEDOMS * node];
         int first = next; // coordinates are numbered node by node
-        for (int j = 0; j < FREEDOMS; j++)
-            if (d[j].npart && d[j].part[0].k < first)
-                first = d[j].part[0].k;
+        for (int j = 0; j < FREEDOMS; j++) {
+            const int at = freedom_place(e, FREEDOMS * node + j);
+            if (at >= 0 && at < first)
+                first = at;
+        }
+        free_followers(w, k, e, node);
         while (next > first)
             free_coordinate(w, k, e, --next);
         if (node > 1)
             put_in(w, k, e, node - 1);
     }
+    if (e->is_carried)
+        free_followers(w, k, e, 0);
     while (next > 0)
         free_coordinate(w, k, e, --next);
 }
@@ -307,12 +426,13 @@ static void find_accelerations(struct ct_articulated *w, const struct ct_articul
     memset(e->is_done, 0, (size_t)e->nall * sizeof *e->is_done);
     for (int step = e->nstep; step-- > 0;) {
         const int j = e->order[step];
-        if (j < e->n) {
+        if (!is_start(e, j)) {
             e->a[j] = ct_ex_sub(x, e->row[j], product(x, e->G[j].e, A));
             for (int l = 0; l < e->nall; l++)
                 if (e->is_done[l])
                     e->a[j] = ct_ex_sub(x, e->a[j], ct_ex_mul(x, *entry_of(e, j, l), e->a[l]));
-            out[e->f->elastic[j].u] = e->a[j];
+            if (j < e->n)
+                out[e->f->elastic[j].u] = e->a[j];
         } else {
             int place[CT_PLACE_DOF + 1];
             ct_ex weight[CT_PLACE_DOF + 1];

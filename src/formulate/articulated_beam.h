@@ -33,10 +33,11 @@ struct ct_articulated_body {
     struct ct_six *C;              // of a beam's member, by elastic coordinate
 };
 
-/// Elastic coordinates of a beam (n), in a CHAIN also c of its elements: n + element.
+/// Elastic coordinates of a beam (n), in a CHAIN also c of its elements, n + element, then its freedoms that follow, and as many
+/// multipliers of the sums that they satisfy (elastic.h).
 struct ct_articulated_beam {
     const struct ct_flexible *f;
-    int n, nall;
+    int n, nall, nfollow;
     bool is_carried;   // there are c
     int *number;       // by speed: its place, or -1
     ct_ex *M;          // nall x nall, lower triangle; eliminated: entries over the pivot

@@ -10,7 +10,9 @@
 #include <string.h>
 
 enum { POINTS = 8, MOST_ITERATIONS = 200 };
-static const double arrived = 1e-12; // relative change of the first frequency
+static const double arrived = 1e-12; // relative change of a frequency
+static const double farthest
+    = 2500; // omega^2 over that of the first: what is faster follows at once
 
 // ---- numbers along the beam -----------------------------------------------------------------------------
 
@@ -104,6 +106,17 @@ static void mass_beyond(const struct line *s, int e, double xi, double P[2])
         }
 }
 
+// Element and xi of a place x.
+static int element_at(const struct line *s, double x, double *xi)
+{
+    int e = 0;
+    while (e + 1 < s->f->beam->nelement && x > number(s, s->f->beam->end[e]))
+        e++;
+    *xi = (x - number(s, s->f->element[e].span.start))
+        / number(s, s->f->element[e].span.length);
+    return e;
+}
+
 // ---- matrices of a plane -----------------------------------------------------------------------------------
 
 static void add(struct line *s, double *A, int e, int j, int k, double v)
@@ -154,24 +167,46 @@ static void add_stiffness(struct line *s, int e)
     }
 }
 
-static void add_element(struct line *s, int e)
+// Mass and rotary inertia at the points where the beam itself takes them.
+static void add_mass(struct line *s, int e)
 {
     const struct ct_beam *beam = s->f->beam;
+    const struct ct_span *span = &s->f->element[e].span;
+    const struct ct_profile mass = {beam->x, beam->mass_per_length},
+                            rotary = ct_flexible_rotary(s->f, s->plane ? 1 : 2);
+    const enum ct_rule rule = ct_flexible_mass_rule(beam);
+    const double h = number(s, span->length);
+    double xi[CT_MAX_GAUSS];
+    ct_ex m_of[CT_MAX_GAUSS], J_of[CT_MAX_GAUSS];
+    const int n = ct_shape_points(s->b->x, &mass, span, rule, POINTS, xi, m_of);
+    ct_shape_points(s->b->x, &rotary, span, rule, POINTS, xi, J_of);
+    for (int i = 0; i < n; i++) {
+        const double m = number(s, m_of[i]), J = number(s, J_of[i]);
+        double place[4], turn[4];
+        for (int j = 0; j < 4; j++) {
+            place[j] = ct_shape_value(&s->f->shape.place[j], xi[i], h);
+            turn[j] = ct_shape_value(&s->f->shape.rotation[j], xi[i], h);
+        }
+        carry(s, e, m, number(s, span->start) + xi[i] * h, place);
+        for (int j = 0; j < 4; j++)
+            for (int k = 0; k < 4; k++)
+                add(s, s->M, e, j, k, m * place[j] * place[k] + J * turn[j] * turn[k]);
+    }
+}
+
+static void add_element(struct line *s, int e)
+{
     const double h = number(s, s->f->element[e].span.length);
     add_stiffness(s, e);
+    add_mass(s, e);
     for (int i = 0; i < POINTS; i++) {
-        const double xi = s->xi[i], w = s->weight[i] * h,
-                     m = profile(s, beam->mass_per_length, e, xi);
-        double place[4], slope[4], P[2];
-        for (int j = 0; j < 4; j++) {
-            place[j] = ct_shape_value(&s->f->shape.place[j], xi, h);
+        const double xi = s->xi[i], w = s->weight[i] * h;
+        double slope[4], P[2];
+        for (int j = 0; j < 4; j++)
             slope[j] = ct_shape_value(&s->f->shape.slope[j], xi, h);
-        }
         mass_beyond(s, e, xi, P);
-        carry(s, e, w * m, number(s, s->f->element[e].span.start) + xi * h, place);
         for (int j = 0; j < 4; j++)
             for (int k = 0; k < 4; k++) {
-                add(s, s->M, e, j, k, w * m * place[j] * place[k]);
                 add(s, s->Kg[0], e, j, k, w * P[0] * slope[j] * slope[k]);
                 add(s, s->Kg[1], e, j, k, w * P[1] * slope[j] * slope[k]);
             }
@@ -181,17 +216,13 @@ static void add_element(struct line *s, int e)
 // Welded masses move with the shape at their point.
 static void add_lumps(struct line *s)
 {
-    int e = 0;
     for (size_t i = 0; i < s->nlump; i++) {
-        const double x = s->lump[i].x;
-        for (e = 0; e + 1 < s->f->beam->nelement && x > number(s, s->f->beam->end[e]);)
-            e++;
-        const double h = number(s, s->f->element[e].span.length),
-                     xi = (x - number(s, s->f->element[e].span.start)) / h;
-        double place[4];
+        double xi, place[4];
+        const int e = element_at(s, s->lump[i].x, &xi);
+        const double h = number(s, s->f->element[e].span.length);
         for (int j = 0; j < 4; j++)
             place[j] = ct_shape_value(&s->f->shape.place[j], xi, h);
-        carry(s, e, s->lump[i].mass, x, place);
+        carry(s, e, s->lump[i].mass, s->lump[i].x, place);
         for (int j = 0; j < 4; j++)
             for (int k = 0; k < 4; k++)
                 add(s, s->M, e, j, k, s->lump[i].mass * place[j] * place[k]);
@@ -219,7 +250,7 @@ static void number_freedoms(struct line *s)
         }
 }
 
-// ---- first bending shape --------------------------------------------------------------------------------------
+// ---- bending shapes -------------------------------------------------------------------------------------------
 
 // y (n, out) = A v, and v' A v
 static double apply(const struct line *s, double *y, const double *A, const double *v)
@@ -237,28 +268,47 @@ static double apply(const struct line *s, double *y, const double *A, const doub
     return sum;
 }
 
-// Inverse iteration: K v = M v; returns omega^2, 0 if it does not settle. y: n
-static double first_shape(struct line *s, double *v, double *y)
+static double dot(const double *x, const double *y, int n)
 {
-    const int n = s->n, size = (s->band + 1) * n;
-    double *L = CT_NEWN(s->b->ctx->scratch, double, size), last = 0;
-    memcpy(L, s->K, (size_t)size * sizeof *L);
-    if (!ct_band_cholesky(L, n, s->band))
-        return 0;
+    double sum = 0;
     for (int i = 0; i < n; i++)
-        v[i] = 1;
+        sum += x[i] * y[i];
+    return sum;
+}
+
+// The shapes found so far: v and M v, n numbers each.
+struct found {
+    int n;
+    double *v[CT_PLANE_SHAPES], *Mv[CT_PLANE_SHAPES];
+};
+
+// Inverse iteration, K v = M v, across the shapes found before; the next one becomes v[n], not counted. Returns omega^2, 0 if it does not settle.
+// L: the factor of K
+static double next_shape(const struct line *s, const double *L, struct found *all)
+{
+    const int n = s->n;
+    double *const v = all->v[all->n], *const y = all->Mv[all->n], last = 0;
+    for (int i = 0; i < n; i++)
+        v[i] = all->n == 0 || i % 2 == 0 ? 1 : -i;
     for (int k = 0; k < MOST_ITERATIONS; k++) {
         apply(s, y, s->M, v);
         memcpy(v, y, (size_t)n * sizeof *v);
         ct_band_cholesky_solve(v, L, n, s->band);
+        for (int j = 0; j < all->n; j++) {
+            const double share = dot(v, all->Mv[j], n);
+            for (int i = 0; i < n; i++)
+                v[i] -= share * all->v[j][i];
+        }
         const double moved = sqrt(apply(s, y, s->M, v));
         if (!(moved > 0))
             return 0;
         for (int i = 0; i < n; i++)
             v[i] /= moved;
         const double omega2 = apply(s, y, s->K, v);
-        if (fabs(omega2 - last) <= arrived * omega2)
+        if (fabs(omega2 - last) <= arrived * omega2) {
+            apply(s, y, s->M, v);
             return omega2;
+        }
         last = omega2;
     }
     return 0;
@@ -328,35 +378,135 @@ static void project_start(struct ct_build *b, const struct line *s, const double
         }
 }
 
-static double dot(const double *x, const double *y, int n)
+// The sum of the shapes of an element by v at xi.
+static double along(const struct line *s, int e, double xi, const struct ct_shape shape[4],
+                    const double *v)
 {
+    const double h = number(s, s->f->element[e].span.length);
     double sum = 0;
-    for (int i = 0; i < n; i++)
-        sum += x[i] * y[i];
+    for (int j = 0; j < 4; j++) {
+        const int p = s->f->element[e].freedom[(s->plane ? 6 : 2) + j];
+        const double part = p < 0 ? 0 : v[s->number[p]] * ct_shape_value(&shape[j], xi, h);
+        sum += s->plane && j % 2 ? -part : part; // dw/dx = -ry
+    }
     return sum;
 }
 
-bool ct_bending_plane_find(struct ct_build *b, const struct ct_flexible *f, int plane,
-                           struct ct_bending_plane *out)
+// int of the squared slope over element e up to xi
+static double drawn_in(const struct line *s, int e, double xi, const double *v)
+{
+    const double h = number(s, s->f->element[e].span.length);
+    double sum = 0;
+    for (int k = 0; k < POINTS; k++) {
+        const double slope = along(s, e, xi * s->xi[k], s->f->shape.slope, v);
+        sum += s->weight[k] * xi * h * slope * slope;
+    }
+    return sum;
+}
+
+// What far swings do: the mass that is drawn along the beam, and the curvature. See swing.h.
+static void find_amplitudes(const struct line *s, const double *v, struct ct_swing *out)
+{
+    const struct ct_beam *beam = s->f->beam;
+    const ct_ex EI = ct_ex_mul(s->b->x, beam->E, s->plane ? beam->Iy : beam->Iz);
+    double *const before = CT_NEWN(s->b->ctx->scratch, double, beam->nelement + 1);
+    struct ct_shape turn[4];
+    for (int j = 0; j < 4; j++)
+        turn[j] = ct_shape_slope(&s->f->shape.rotation[j]);
+    for (int e = 0; e < beam->nelement; e++) {
+        const double h = number(s, s->f->element[e].span.length);
+        before[e + 1] = before[e] + drawn_in(s, e, 1, v);
+        for (int i = 0; i < POINTS; i++) {
+            const double S = before[e] + drawn_in(s, e, s->xi[i], v), w = s->weight[i] * h,
+                         bend = along(s, e, s->xi[i], turn, v)
+                              * along(s, e, s->xi[i], s->f->shape.slope, v);
+            out->drawn += w * profile(s, beam->mass_per_length, e, s->xi[i]) * S * S;
+            out->curved += w * profile(s, EI, e, s->xi[i]) * bend * bend;
+        }
+    }
+    for (size_t i = 0; i < s->nlump; i++) {
+        double xi;
+        const int e = element_at(s, s->lump[i].x, &xi);
+        const double S = before[e] + drawn_in(s, e, xi, v);
+        out->drawn += s->lump[i].mass * S * S;
+    }
+}
+
+// phi sqrt(m) at the points of the elements and at welded masses: products of two shapes add up to integrals.
+static void sample(const struct line *s, const double *v, struct ct_bending_shape *out)
+{
+    const struct ct_beam *beam = s->f->beam;
+    const int n = beam->nelement * POINTS;
+    double *const moved = CT_NEWN(s->b->arena, double, (size_t)n + s->nlump + 1);
+    for (int i = 0; i < n; i++) {
+        const int e = i / POINTS, k = i % POINTS;
+        const double m = s->weight[k] * number(s, s->f->element[e].span.length)
+                       * profile(s, beam->mass_per_length, e, s->xi[k]);
+        moved[i] = sqrt(m) * along(s, e, s->xi[k], s->f->shape.place, v);
+    }
+    for (size_t i = 0; i < s->nlump; i++) {
+        double xi;
+        const int e = element_at(s, s->lump[i].x, &xi);
+        moved[n + (int)i] = sqrt(s->lump[i].mass) * along(s, e, xi, s->f->shape.place, v);
+    }
+    out->moved = moved;
+    out->nmoved = n + (int)s->nlump;
+}
+
+static void fill_shape(struct line *s, const struct found *all, int k, double omega2,
+                       struct ct_bending_shape *out)
+{
+    const struct ct_beam *beam = s->f->beam;
+    const double *v = all->v[k], length = number(s, beam->end[beam->nelement - 1]);
+    double *const y = CT_NEWN(s->b->ctx->scratch, double, s->n);
+    const double elastic = apply(s, y, s->K, v);
+    *out = (struct ct_bending_shape){
+        .swing = {.is_z = s->plane,
+                  .omega2 = omega2,
+                  .damping
+                  = number(s, beam->damping_mass) + number(s, beam->damping_stiffness) * omega2,
+                  .turning = apply(s, y, s->Kg[0], v) / elastic,
+                  .axial = apply(s, y, s->Kg[1], v) / elastic,
+                  .mass = {dot(s->carried[0], v, s->n), dot(s->carried[1], v, s->n)}}};
+    for (int i = 0; i < CT_SWING_PLACES; i++) {
+        double xi;
+        const int e = element_at(s, length * (i + 1) / CT_SWING_PLACES, &xi);
+        out->swing.place[i] = along(s, e, xi, s->f->shape.place, v);
+    }
+    find_amplitudes(s, v, &out->swing);
+    sample(s, v, out);
+    project(s->b, s, all->Mv[k], out->state);
+    project_start(s->b, s, all->Mv[k], out->start);
+}
+
+void ct_bending_planes_join(struct ct_bending_shape *shape, int n)
+{
+    for (int i = 0; i < n; i++)
+        for (int j = 0; j < n; j++)
+            if (shape[i].swing.is_z != shape[j].swing.is_z)
+                shape[i].swing.with[j] = dot(shape[i].moved, shape[j].moved, shape[i].nmoved);
+}
+
+int ct_bending_plane_find(struct ct_build *b, const struct ct_flexible *f, int plane,
+                          struct ct_bending_shape *out)
 {
     struct line s = {.b = b, .f = f, .plane = plane};
+    struct found all = {0};
     if (!build_plane(&s))
-        return false;
-    double *const v = CT_NEWN(b->ctx->scratch, double, s.n), *const y = CT_NEWN(b->ctx->scratch,
-                                                                                double, s.n);
-    const double omega2 = first_shape(&s, v, y), elastic = apply(&s, y, s.K, v);
-    if (!(omega2 > 0))
-        return false;
-    *out = (struct ct_bending_plane){
-        .is_z = plane,
-        .swing = {.omega2 = omega2,
-                  .damping = number(&s, f->beam->damping_mass)
-                           + number(&s, f->beam->damping_stiffness) * omega2,
-                  .turning = apply(&s, y, s.Kg[0], v) / elastic,
-                  .axial = apply(&s, y, s.Kg[1], v) / elastic,
-                  .mass = {dot(s.carried[0], v, s.n), dot(s.carried[1], v, s.n)}}};
-    apply(&s, y, s.M, v);
-    project(b, &s, y, out->state);
-    project_start(b, &s, y, out->start);
-    return true;
+        return 0;
+    const int size = (s.band + 1) * s.n;
+    double *const L = CT_NEWN(b->ctx->scratch, double, size);
+    memcpy(L, s.K, (size_t)size * sizeof *L);
+    if (!ct_band_cholesky(L, s.n, s.band))
+        return 0;
+    while (all.n < CT_PLANE_SHAPES && all.n < s.n) {
+        all.v[all.n] = CT_NEWN(b->ctx->scratch, double, s.n);
+        all.Mv[all.n] = CT_NEWN(b->ctx->scratch, double, s.n);
+        const double omega2 = next_shape(&s, L, &all);
+        if (!(omega2 > 0) || (all.n && omega2 > farthest * out[0].swing.omega2))
+            break;
+        fill_shape(&s, &all, all.n, omega2, &out[all.n]);
+        all.n++;
+    }
+    return all.n;
 }

@@ -147,6 +147,15 @@ struct ct_follow_numbers {
     bool
         is_balanced; // nothing but linear elements acts on them, now and whatever parameters are
 };
+/// One that follows satisfies r + sum by v = 0, v of other freedoms, whether these follow or not.
+struct ct_follow_term {
+    int freedom;
+    double by;
+};
+/// How many follow; the number of one, -1: it does not; the sum of number k.
+int ct_follow_count(const struct ct_flexible *f);
+int ct_follow_number(const struct ct_flexible *f, int freedom);
+const struct ct_follow_term *ct_follow_law(const struct ct_flexible *f, int k, int *n);
 struct ct_follow *ct_follow_create(struct ct_build *b, const struct ct_follow_numbers *c);
 /// Values, rates and accelerations of the freedoms that follow.
 void ct_follow_values(struct ct_build *b, struct ct_flexible *f);

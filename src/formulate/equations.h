@@ -138,13 +138,16 @@ struct ct_validity {
         foretells; // its base moves as time tells, nothing but bodies welded to it hangs on it or loads it
     bool settles;      // it starts in equilibrium
     ct_ex3 carried[3]; // w, v, weight per mass of the base, axes of the beam
-    int nplane;
-    struct ct_bending_plane {
-        bool is_z; // bends along z
+    ct_ex end[2];      // deflection of its end along y and z
+    int nshape;
+    struct ct_bending_shape {
         struct ct_swing swing;
         ct_ex state[2];  // x, x'
         double start[2]; // with `initial: {v: ...}`
-    } plane[CT_BENDING_PLANES];
+        const double
+            *moved; // phi at places along the beam, times roots of the masses there  (nmoved)
+        int nmoved;
+    } shape[CT_BENDING_SHAPES];
 };
 
 /// How far a beam bends: squared slopes of its nodes against its frame.

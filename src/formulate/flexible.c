@@ -249,7 +249,7 @@ bool ct_flexible_is_carried(const struct ct_flexible *f)
 {
     bool is_nodal = !f->beam->modes && !f->beam->nshape;
     for (int i = 0; i < NKIND * (f->beam->nelement + 1); i++)
-        is_nodal = is_nodal && f->freedom[i].npart <= 1;
+        is_nodal = is_nodal && (f->freedom[i].npart <= 1 || ct_follow_number(f, i) >= 0);
     return is_nodal && f->kinematics == CT_AXIAL_CHAIN;
 }
 
@@ -351,11 +351,18 @@ void ct_flexible_station(struct ct_build *b, const struct ct_flexible *f, ct_ex 
     s->angle[2] = ct_element_field(b, self, f->shape.rotation, self->value, 2, 4, s->xi);
 }
 
+// apart: freedoms that follow behind the coordinates, not as sums of these.
 static void add_partial(struct ct_build *b, const struct ct_flexible *f, int e, int j,
-                        ct_ex3 value, ct_ex3 *by_coordinate)
+                        ct_ex3 value, ct_ex3 *by_coordinate, bool apart)
 {
     int sign;
     const struct ct_freedom *d = ct_dof_freedom(f, e, j, &sign);
+    const int follower = d && apart ? ct_follow_number(f, (int)(d - f->freedom)) : -1;
+    if (follower >= 0) {
+        ct_ex3 *sum = &by_coordinate[f->nelastic + follower];
+        *sum = ct_ex3_add(b->x, *sum, ct_ex3_scale(b->x, ct_ex_const(b->x, sign), value));
+        return;
+    }
     for (int p = 0; d && p < d->npart; p++) {
         const ct_ex c = sign > 0 ? d->part[p].coef : ct_ex_neg(b->x, d->part[p].coef);
         ct_ex3 *sum = &by_coordinate[d->part[p].k];
@@ -363,8 +370,9 @@ static void add_partial(struct ct_build *b, const struct ct_flexible *f, int e, 
     }
 }
 
-void ct_station_own_partials(struct ct_build *b, const struct ct_flexible *f,
-                             const struct ct_station *s, ct_ex3 *slide, ct_ex3 *turn)
+// What the dofs of the station's element do.
+static void own_partials(struct ct_build *b, const struct ct_flexible *f,
+                         const struct ct_station *s, ct_ex3 *slide, ct_ex3 *turn, bool apart)
 {
     struct ct_exs *x = b->x;
     const struct ct_element *self = &f->element[s->element];
@@ -383,17 +391,23 @@ void ct_station_own_partials(struct ct_build *b, const struct ct_flexible *f,
         } else if (j >= CT_PLACE_DOF) {
             t.e[0] = ct_shape_at(x, &f->line[j - CT_PLACE_DOF], s->xi, h);
         }
-        add_partial(b, f, s->element, j, d, slide);
-        add_partial(b, f, s->element, j, t, turn);
+        add_partial(b, f, s->element, j, d, slide, apart);
+        add_partial(b, f, s->element, j, t, turn, apart);
     }
+}
+
+void ct_station_own_partials(struct ct_build *b, const struct ct_flexible *f,
+                             const struct ct_station *s, ct_ex3 *slide, ct_ex3 *turn)
+{
+    own_partials(b, f, s, slide, turn, true);
 }
 
 void ct_station_partials(struct ct_build *b, const struct ct_flexible *f,
                          const struct ct_station *s, ct_ex3 *slide, ct_ex3 *turn)
 {
-    ct_station_own_partials(b, f, s, slide, turn);
+    own_partials(b, f, s, slide, turn, false);
     for (int e = 0; e < s->element && s->axial == CT_AXIAL_CHAIN; e++)
         for (int j = 2; j < CT_BENT_DOF; j++)
             add_partial(b, f, e, j, (ct_ex3){{f->element[e].g[j], CT_EX_ZERO, CT_EX_ZERO}},
-                        slide);
+                        slide, false);
 }

@@ -132,7 +132,7 @@ void ct_flexible_station(struct ct_build *b, const struct ct_flexible *f, ct_ex 
 /// Slides (m = 0 ... nelastic-1, beam axes) and turns of a station by elastic coordinate.
 void ct_station_partials(struct ct_build *b, const struct ct_flexible *f,
                          const struct ct_station *s, ct_ex3 *slide, ct_ex3 *turn);
-/// The same without what the elements before its own do in a CHAIN.
+/// The same without what the elements before its own do in a CHAIN; freedoms that follow behind the coordinates, nelastic + number.
 void ct_station_own_partials(struct ct_build *b, const struct ct_flexible *f,
                              const struct ct_station *s, ct_ex3 *slide, ct_ex3 *turn);
 /// CHAIN in coordinates of nodes: an element sees its own nodes and the foreshortening at its start, nothing else.

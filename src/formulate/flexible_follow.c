@@ -15,13 +15,15 @@ struct entry {
 
 // Of one that follows: its row of G by freedoms, of A and of L below the diagonal.
 struct follower {
-    int freedom, nheld, nbefore;
+    int freedom, nheld, nbefore, nlaw;
     struct entry *held, *forth, *back;
+    struct ct_follow_term *law; // its row of K over the diagonal, without that
 };
 
 struct ct_follow {
     int n;
-    bool is_balanced, *follows; // follows: by freedom
+    bool is_balanced;
+    int *number; // by freedom: its row, or -1
     struct follower *row;
 };
 
@@ -33,7 +35,13 @@ static void fill_row(struct ct_follow *out, const struct ct_follow_numbers *c, i
     const size_t n = (size_t)c->n, m = (size_t)(c->n - c->nkept);
     const double pivot = c->L[(size_t)k + m * (size_t)k];
     row->freedom = c->freedom[c->nkept + k];
-    out->follows[row->freedom] = true;
+    out->number[row->freedom] = k;
+    const double own = c->K[(size_t)(c->nkept + k) * (n + 1)];
+    for (int i = 0; i < c->n; i++) {
+        const double v = c->K[(size_t)(c->nkept + k) + n * (size_t)i];
+        if (v != 0 && i != c->nkept + k)
+            row->law[row->nlaw++] = (struct ct_follow_term){c->freedom[i], v / own};
+    }
     for (int i = 0; i < c->nkept; i++) {
         const double v = c->K[(size_t)(c->nkept + k) + n * (size_t)i];
         if (v != 0)
@@ -62,12 +70,16 @@ struct ct_follow *ct_follow_create(struct ct_build *b, const struct ct_follow_nu
     const int m = c->n - c->nkept;
     struct ct_follow *out = CT_NEW(b->arena, struct ct_follow);
     *out = (struct ct_follow){.n = m, .is_balanced = c->is_balanced};
-    out->follows = CT_NEWN(b->arena, bool, c->nfreedom);
+    out->number = CT_NEWN(b->arena, int, c->nfreedom);
+    for (int i = 0; i < c->nfreedom; i++)
+        out->number[i] = -1;
     out->row = CT_NEWN(b->arena, struct follower, m);
     for (int k = 0; k < m; k++) {
         struct follower *row = &out->row[k];
         const int nheld = count(c->K + c->nkept + k, c->nkept, (size_t)c->n),
                   nbefore = count(c->L + k, k, (size_t)m);
+        row->law = CT_NEWN(b->arena, struct ct_follow_term,
+                           count(c->K + c->nkept + k, c->n, (size_t)c->n) + 1);
         row->held = CT_NEWN(b->arena, struct entry, nheld + 1);
         row->forth = CT_NEWN(b->arena, struct entry, nbefore + 1);
         row->back = CT_NEWN(b->arena, struct entry, nbefore + 1);
@@ -78,7 +90,23 @@ struct ct_follow *ct_follow_create(struct ct_build *b, const struct ct_follow_nu
 
 bool ct_freedom_is_balanced(const struct ct_flexible *f, int freedom)
 {
-    return f->follow && f->follow->is_balanced && f->follow->follows[freedom];
+    return f->follow && f->follow->is_balanced && f->follow->number[freedom] >= 0;
+}
+
+int ct_follow_count(const struct ct_flexible *f)
+{
+    return f->follow ? f->follow->n : 0;
+}
+
+int ct_follow_number(const struct ct_flexible *f, int freedom)
+{
+    return f->follow ? f->follow->number[freedom] : -1;
+}
+
+const struct ct_follow_term *ct_follow_law(const struct ct_flexible *f, int k, int *n)
+{
+    *n = f->follow->row[k].nlaw;
+    return f->follow->row[k].law;
 }
 
 // ---- places, forces ----------------------------------------------------------------------------------

@@ -331,14 +331,21 @@ static int slide_section(struct ct_member_work *w, int from, ct_ex3 r,
     m->drift_bias = ct_build_rate3(b, m->drift);
     const ct_ex3 *slide = e->slide;
     if (ct_flexible_is_carried(f)) {
-        ct_ex3 *own = CT_NEWN(b->arena, ct_ex3, f->nelastic + 1),
-               *unused = CT_NEWN(b->arena, ct_ex3, f->nelastic + 1);
+        const int n = f->nelastic + ct_follow_count(f);
+        ct_ex3 *own = CT_NEWN(b->arena, ct_ex3, n + 1),
+               *unused = CT_NEWN(b->arena, ct_ex3, n + 1);
         ct_station_own_partials(b, f, e->station, own, unused);
         slide = own;
         const ct_ex3 along = {{A->e[0], A->e[1], A->e[2]}};
         if (e->station->element)
             screw_of(b, m, -e->station->element)->slide
                 = sign > 0 ? along : ct_ex3_neg(b->x, along);
+        for (int k = 0; k < ct_follow_count(f); k++) {
+            const ct_ex3 p = ct_ex33_apply(b->x, A, own[f->nelastic + k]);
+            if (!ct_ex3_is_zero(p))
+                screw_of(b, m, -f->beam->nelement - k)->slide
+                    = sign > 0 ? p : ct_ex3_neg(b->x, p);
+        }
     }
     for (int k = 0; k < f->nelastic; k++) {
         const ct_ex3 p = ct_ex33_apply(b->x, A, slide[k]);

@@ -20,7 +20,7 @@
 
 /// Motion per unit of a speed, at the member's origin, in its axes.
 struct ct_screw {
-    int speed; // < 0: of the foreshortening at the start of element -speed (flexible.h: CHAIN)
+    int speed; // < 0: of the foreshortening at the start of element -speed (flexible.h: CHAIN), or, from -nelement on, of a freedom that follows
     ct_ex3 turn, slide;
     int axis; // 0..2: a turn about this coordinate axis alone, 3..5: a slide along one; else -1
 };

@@ -1,17 +1,28 @@
-// What a linear beam will be wrong by: its first bending shapes as oscillators, with and without the axial force.
+// What a linear beam will be wrong by: its first bending shapes as oscillators, with and without what it leaves out.
 //
-// With x(t) phi in each plane of bending, phi of unit mass, on a base that moves with w and v in axes of the beam,
+// With x(t) phi for each of the first shapes in each plane of bending, phi of unit mass, on a base that moves with w and v in
+// axes of the beam,
 //
 //     x'' + c x' + W x = F,    c = alpha + beta omega^2    (Rayleigh damping)
 //     W = omega^2 - (w.w - w_n^2)                    linear; n: across x and the plane's direction
-//     W = omega^2 - (w.w - w_n^2) + omega^2 eta      with the axial force, eta of validity.h
-//     F = - int phi (a + al x + w x (w x .)) m dx    the same for both: inertia and weight
+//     F = - int phi (a + al x + w x (w x .)) m dx    the same for all: inertia and weight
 //
-// The error of the linear beam is the difference of the two, relative to the largest deflection with the axial force.
-// Between two instants W and F are constant, their means; F comes from velocities, so that no push on the base is missed,
-// however short; the oscillators are then solved exactly, so that the difference keeps its digits however small it is.
-// Left out: higher shapes, and what the planes do to one another when the beam turns about its axis. A base that is not driven
-// would swing along: shapes are others then.
+// The axial force adds omega^2 eta to W, eta of validity.h. A beam that swings far is moreover slowed down by masses that move
+// along it, S = x^2/2 int phi'^2, and stiffened by its curvature, which is v''^2 (1 + v'^2) if the axis does not stretch:
+//
+//     (1 + b x^2) x'' + c x' + W x + b x x'^2 + 2 g x^3 = F,    b = int (int_0^x phi'^2)^2 m dx,    g = int EI phi''^2 phi'^2
+//
+// One foreshortened beam in one frame has b but not g. The error of the linear beam is the difference to that with both, relative
+// to the largest deflection of that. Between two instants W and F are constant, their means; F comes from velocities, so that no
+// push on the base is missed, however short; oscillators are then solved exactly, with amplitudes as they are in the middle of a
+// sixteenth of a period, so that differences keep their digits however small they are.
+// A base that turns about the beam's axis or about one between its planes moves the deflections of one plane into the other, as
+// Coriolis', Euler's and the centrifugal acceleration say, with C = int phi_y phi_z m dx for each pair of shapes:
+//
+//     F_y += C (2 w_x z' + (w_x' - w_y w_z) z),    F_z -= C (2 w_x y' + (w_x' + w_y w_z) y)
+//
+// Left out: higher shapes, what shapes of a plane do to one another, and planes where they swing far. A base that is not driven would swing along: shapes
+// are others then.
 #ifndef CT_FORMULATE_SWING_H
 #define CT_FORMULATE_SWING_H
 
@@ -20,24 +31,35 @@
 /// Beyond it the linear beam is wrong altogether, and no figure is given.
 #define CT_FORETOLD_MOST 1.0
 
-/// The first bending shape phi of one plane, of unit mass.
-struct ct_swing {
-    double omega2, damping; // [1/s^2], [1/s]
-    double turning, axial;  // eta per w^2, and per acceleration along x  [s^2], [s^2/m]
-    double mass[2];         // int phi m dx, int phi m x dx
+enum {
+    CT_PLANE_SHAPES = 3,
+    CT_BENDING_SHAPES = 2 * CT_PLANE_SHAPES,
+    CT_SWING_PLACES = 4 // quarters of the beam, the end last, where deflections are looked at
 };
 
-enum { CT_BENDING_PLANES = 2 };
+/// A bending shape phi of unit mass.
+struct ct_swing {
+    bool is_z;                      // it moves along z
+    double omega2, damping;         // [1/s^2], [1/s]
+    double turning, axial;          // eta per w^2, and per acceleration along x  [s^2], [s^2/m]
+    double mass[2];                 // int phi m dx, int phi m x dx
+    double drawn, curved;           // b, g
+    double place[CT_SWING_PLACES];  // phi there
+    double with[CT_BENDING_SHAPES]; // C with the shapes of the other plane, by number
+};
+
+enum ct_swing_model { CT_SWING_LINEAR, CT_SWING_FORESHORTENED, CT_SWING_TRUE, CT_SWING_MODELS };
 
 struct ct_swings {
     int n;
-    struct ct_swing shape[CT_BENDING_PLANES];
-    bool is_z[CT_BENDING_PLANES];                                         // it moves along z
-    double linear[CT_BENDING_PLANES][2], stiffened[CT_BENDING_PLANES][2]; // x, x'
+    struct ct_swing shape[CT_BENDING_SHAPES];
+    double x[CT_SWING_MODELS][CT_BENDING_SHAPES][2]; // x, x'
     bool has_begun;
     double t;
-    double base[9];           // angular velocity, velocity, weight per mass; axes of the beam
-    double error, deflection; // largest so far
+    double base[9]; // angular velocity, velocity, weight per mass; axes of the beam
+    double error[CT_SWING_MODELS], deflection; // largest so far
+    double bent,
+        missed; // of the end, by the linear beam itself; by more or less than the shapes say
 };
 
 /// Move on to the time t, where the base moves like that. A step of no time is a jump of its velocities.
@@ -46,7 +68,9 @@ void ct_swings_follow(struct ct_swings *s, double t, const double base[9]);
 void ct_swings_regrip(struct ct_swings *s, const double base[9]);
 /// Set every x to rest in the static deflection under F as it is at the first instant.
 void ct_swings_settle(struct ct_swings *s);
-/// Largest error over largest deflection; NAN if nothing deflects.
-double ct_swings_error(const struct ct_swings *s);
+/// The end of the linear beam itself is here now, along y and z.
+void ct_swings_compare(struct ct_swings *s, const double end[2]);
+/// Largest error of a model over the largest deflection; NAN if nothing deflects, or the linear beam did what these shapes do not.
+double ct_swings_error(const struct ct_swings *s, enum ct_swing_model model);
 
 #endif

@@ -8,7 +8,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { FEWEST_INSTANTS = 400, MOST_INSTANTS = 4000, PER_PERIOD = 32 };
+enum { FEWEST_INSTANTS = 400, MOST_INSTANTS = 8000 };
 static const double two_pi = 6.283185307179586;
 
 // eta of a plane
@@ -29,18 +29,22 @@ bool ct_validity_derive(struct ct_build *b, const struct ct_flexible *f,
                         struct ct_validity *out)
 {
     *out = (struct ct_validity){.beam = f->name, .settles = f->beam->starts_in_equilibrium};
-    for (int plane = 0; plane < 2; plane++)
-        out->nplane += ct_bending_plane_find(b, f, plane, &out->plane[out->nplane]);
-    if (!out->nplane)
+    const int ny = ct_bending_plane_find(b, f, 0, out->shape);
+    out->nshape = ny + ct_bending_plane_find(b, f, 1, out->shape + ny);
+    if (!out->nshape)
         return false;
-    const struct ct_swing *first = &out->plane[0].swing, *other = &out->plane[1].swing;
-    if (out->nplane > 1 && other->turning > first->turning)
+    ct_bending_planes_join(out->shape, out->nshape);
+    const struct ct_swing *first = &out->shape[0].swing, *other = &out->shape[ny].swing;
+    if (out->nshape > ny && other->turning > first->turning)
         first = other;
     const struct ct_base m = ct_flexible_base(b, f, CT_FULL);
     out->omega = sqrt(first->omega2);
     out->mark = f->beam->formulation_mark.line ? f->beam->formulation_mark
                                                : b->model->body[f->body].instance.mark;
     out->eta = indicator(b->x, &m, first);
+    const struct ct_element *last = &f->element[f->beam->nelement - 1];
+    out->end[0] = last->value[4];
+    out->end[1] = last->value[8];
     ct_flexible_carried(b, f, out->carried);
     out->foretells = is_of_time(b->x, out->eta) && !ct_riders_are_loaded(b, f);
     for (int i = 0; i < 9; i++)
@@ -50,13 +54,21 @@ bool ct_validity_derive(struct ct_build *b, const struct ct_flexible *f,
 
 void ct_validity_begin(const struct ct_validity *v, const double *start, struct ct_swings *s)
 {
-    *s = (struct ct_swings){.n = v->foretells ? v->nplane : 0};
+    *s = (struct ct_swings){.n = v->foretells ? v->nshape : 0};
     for (int i = 0; i < s->n; i++) {
-        s->shape[i] = v->plane[i].swing;
-        s->is_z[i] = v->plane[i].is_z;
-        for (int k = 0; k < 2; k++)
-            s->linear[i][k] = s->stiffened[i][k] = start[2 * i + k];
+        s->shape[i] = v->shape[i].swing;
+        for (int m = 0; m < CT_SWING_MODELS; m++)
+            memcpy(s->x[m][i], start + 2 * i, sizeof s->x[m][i]);
     }
+}
+
+double ct_validity_glance(const struct ct_validity *v)
+{
+    const double of_first = 1.0 / 32, of_each = 1.0 / 8;
+    double shortest = of_first * two_pi / v->omega;
+    for (int i = 0; i < v->nshape; i++)
+        shortest = fmin(shortest, of_each * two_pi / sqrt(v->shape[i].swing.omega2));
+    return shortest;
 }
 
 // ---- choice -----------------------------------------------------------------------------------------------------
@@ -75,7 +87,8 @@ static bool set_modes(struct ct_build *b, double *value)
 }
 
 struct prospect {
-    double eta, error; // largest |indicator|; error of a linear beam, NAN: nothing deflects
+    double eta;                    // largest |indicator|
+    double error[CT_SWING_MODELS]; // of linear and foreshortened beams, NAN: nothing deflects
 };
 
 enum { ETA, BASE, NOUT = BASE + 9 };
@@ -135,11 +148,11 @@ static bool swing_on(struct ahead *p, double t)
 static bool look_ahead(struct ct_build *b, const struct ct_validity *v, struct prospect *out)
 {
     struct ahead p = {.b = b};
-    double start[2 * CT_BENDING_PLANES] = {0};
-    for (int i = 0; i < 2 * v->nplane; i++)
-        start[i] = v->plane[i / 2].start[i % 2];
-    const double end = b->model->simulation.duration, turns = end * v->omega / two_pi;
-    const int n = (int)fmin(fmax(FEWEST_INSTANTS, turns * PER_PERIOD), MOST_INSTANTS);
+    double start[2 * CT_BENDING_SHAPES] = {0};
+    for (int i = 0; i < 2 * v->nshape; i++)
+        start[i] = v->shape[i / 2].start[i % 2];
+    const double end = b->model->simulation.duration;
+    const int n = (int)fmin(fmax(FEWEST_INSTANTS, end / ct_validity_glance(v)), MOST_INSTANTS);
     prepare(&p, v);
     ct_validity_begin(v, start, &p.swings);
     *out = (struct prospect){0};
@@ -151,17 +164,37 @@ static bool look_ahead(struct ct_build *b, const struct ct_validity *v, struct p
         if (i == 0 && v->settles)
             ct_swings_settle(&p.swings);
     }
-    out->error = ct_swings_error(&p.swings);
+    for (int m = 0; m < CT_SWING_TRUE; m++)
+        out->error[m] = ct_swings_error(&p.swings, m);
     return !isnan(out->eta);
+}
+
+static const char *figure(struct ct_arena *a, double error)
+{
+    return error > CT_FORETOLD_MOST ? "beyond 1" : ct_arena_printf(a, "%.3g", error);
 }
 
 static const char *foretold(struct ct_build *b, const struct prospect *p)
 {
-    if (isnan(p->error))
+    const double linear = p->error[CT_SWING_LINEAR], other = p->error[CT_SWING_FORESHORTENED];
+    if (isnan(linear))
         return "";
-    if (p->error > CT_FORETOLD_MOST)
-        return "; a linear beam's error: beyond 1";
-    return ct_arena_printf(b->arena, "; a linear beam's error: %.3g", p->error);
+    const char *one_frame
+        = other > CT_VALIDITY_LIMIT ? ct_arena_printf(
+              b->arena, "; a foreshortened one's in one frame: %s", figure(b->arena, other))
+                                    : "";
+    return ct_arena_printf(b->arena, "; a linear beam's error: %s%s", figure(b->arena, linear),
+                           one_frame);
+}
+
+// Near enough to the truth, or nearer than a foreshortened beam would be.
+static bool is_better_linear(const struct prospect *p)
+{
+    const double linear = p->error[CT_SWING_LINEAR];
+    const bool is_near = !(linear > CT_VALIDITY_LIMIT),
+               is_nearer
+               = linear <= CT_FORETOLD_MOST && linear < p->error[CT_SWING_FORESHORTENED];
+    return p->eta <= CT_VALIDITY_LIMIT && (is_near || is_nearer);
 }
 
 static bool stays_linear(struct ct_build *b, struct ct_flexible *f)
@@ -182,7 +215,7 @@ static bool stays_linear(struct ct_build *b, struct ct_flexible *f)
     }
     f->why = ct_arena_printf(b->arena, "automatic: validity indicator %.3g, limit %.3g%s",
                              p.eta, CT_VALIDITY_LIMIT, foretold(b, &p));
-    return p.eta <= CT_VALIDITY_LIMIT && !(p.error > CT_VALIDITY_LIMIT);
+    return is_better_linear(&p);
 }
 
 const bool *ct_validity_choose(struct ct_build *b)

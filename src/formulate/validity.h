@@ -17,8 +17,11 @@
 bool ct_validity_derive(struct ct_build *b, const struct ct_flexible *f,
                         struct ct_validity *out);
 
-/// What foretells its error, at the start with x, x' of its planes.
+/// What foretells its error, at the start with x, x' of its shapes.
 void ct_validity_begin(const struct ct_validity *v, const double *start, struct ct_swings *s);
+
+/// Looks at the base that are nearer in time are passed over: 1/32 of a period of the first shape, 1/8 of those of others.
+double ct_validity_glance(const struct ct_validity *v);
 
 /// Beams that leave the choice to the program: does each stay below the limit all along, and its error, too? By body, in b->arena; reasons into
 /// the beams. NULL if there is no such beam. A beam whose motion the drivers do not prescribe, or that carries joints

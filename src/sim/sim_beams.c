@@ -40,9 +40,13 @@ static void warn_of_linear(struct ct_sim *sim, const struct ct_validity *beam,
                            const struct ct_validity_report *v)
 {
     struct ct_arena *a = sim->own.scratch;
-    const double error = ct_swings_error(&v->swings);
+    const double error = ct_swings_error(&v->swings, CT_SWING_LINEAR),
+                 other = ct_swings_error(&v->swings, CT_SWING_FORESHORTENED);
     const char *size
-        = isnan(error) ? "errors are of that relative size, and grow where it rings"
+        = isnan(error) && v->swings.n
+            ? "its error is not foretold: it bends in more shapes than are followed"
+        : isnan(error)
+            ? "its error is not foretold: more than a given motion of its base drives it"
         : error > CT_FORETOLD_MOST
             ? "its error is beyond 1, as large as the deflections or larger"
             : ct_arena_printf(a, "its error is about %.2g of the largest deflection", error);
@@ -56,10 +60,13 @@ static void warn_of_linear(struct ct_sim *sim, const struct ct_validity *beam,
                 "the validity indicator reaches %.3g only, but from t = %.6g s on "
                 "what it causes has grown beyond %.3g",
                 v->largest, v->off_since, CT_VALIDITY_LIMIT);
-    ct_warning(&sim->own, beam->mark, 0,
-               "beam '%s' is linear and left its range: %s; %s; "
-               "`formulation: foreshortening` has none of this",
-               beam->beam, how, size);
+    const char *cure
+        = 3 * other > error
+            ? "it bends too far for one frame: cut it into several foreshortened ones that are "
+              "welded end to end"
+            : "`formulation: foreshortening` has none of this";
+    ct_warning(&sim->own, beam->mark, 0, "beam '%s' is linear and left its range: %s; %s; %s",
+               beam->beam, how, size, cure);
 }
 
 void ct_sim_warn_of_beams(struct ct_sim *sim)

@@ -169,10 +169,12 @@ static void write_validity(struct ct_json *j, const struct ct_sim *sim)
         ct_json_number(j, "limit", CT_VALIDITY_LIMIT);
         if (v->left_at >= 0)
             ct_json_number(j, "left_at", v->left_at);
-        const double error = ct_swings_error(&v->swings);
+        const double error = ct_swings_error(&v->swings, CT_SWING_LINEAR);
         if (error > CT_FORETOLD_MOST)
             ct_json_text(j, "error", "beyond 1");
-        else if (!isnan(error))
+        else if (isnan(error))
+            ct_json_text(j, "error", "not foretold");
+        else
             ct_json_number(j, "error", error);
         if (v->off_since >= 0)
             ct_json_number(j, "off_since", v->off_since);

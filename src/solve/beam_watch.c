@@ -5,7 +5,6 @@
 #include "solve/run.h"
 
 static const double two_pi = 6.283185307179586;
-static const double glance = 1.0 / 32; // of a period: what is less apart is passed over
 
 void ct_slope_watch(struct ct_slope_report *report, const struct ct_machine *m, double t)
 {
@@ -56,7 +55,7 @@ void ct_run_watch_start(struct ct_run *r, double t, const double *y)
     ct_run_watch_base(r, t, y, CT_WATCH_START);
 }
 
-// out (9 + 4) of the program `carried`: the base's motion, then x, x' by plane.
+// out of the program `carried`: the base's motion (9), then x, x' by shape, then its end (2).
 static void follow(const struct ct_validity *v, struct ct_validity_report *report, double t,
                    const double *out, enum ct_watch_when how)
 {
@@ -65,14 +64,15 @@ static void follow(const struct ct_validity *v, struct ct_validity_report *repor
         ct_swings_regrip(s, out);
         return;
     }
-    if (how == CT_WATCH_STEP && t - s->t < glance * two_pi / v->omega)
+    if (how == CT_WATCH_STEP && t - s->t < ct_validity_glance(v))
         return;
     if (how == CT_WATCH_START)
         ct_validity_begin(v, out + 9, s);
     ct_swings_follow(s, t, out);
     if (how == CT_WATCH_START && v->settles)
         ct_swings_settle(s);
-    const bool is_off = ct_swings_error(s) > CT_VALIDITY_LIMIT;
+    ct_swings_compare(s, out + 9 + 2 * v->nshape);
+    const bool is_off = ct_swings_error(s, CT_SWING_LINEAR) > CT_VALIDITY_LIMIT;
     if (!is_off)
         report->off_since = -1;
     else if (report->off_since < 0)
@@ -89,7 +89,7 @@ void ct_run_watch_base(struct ct_run *r, double t, const double *y, enum ct_watc
     for (size_t i = 0; i < r->e->nvalidity; i++)
         if (r->e->validity[i].foretells) {
             follow(&r->e->validity[i], &r->report->validity[i], t, out, how);
-            out += 9 + 2 * r->e->validity[i].nplane;
+            out += 11 + 2 * r->e->validity[i].nshape;
         }
 }
 

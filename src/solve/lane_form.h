@@ -15,8 +15,8 @@ static inline void set_input(struct ct_lanes *s, vec t, const vec *y)
 // ---- accelerations ----------------------------------------------------------------------------------
 
 // Strengths from pivots in the lanes `here`; where the form is sound there.
-static inline mask weigh(struct ct_lanes *s, const struct ct_form_code *c, const vec *pivot,
-                         set here)
+static inline mask judge_pivots(struct ct_lanes *s, const struct ct_form_code *c,
+                                const vec *pivot, set here)
 {
     vec least = all_lanes(1);
     for (size_t i = 0; i < c->npivot; i++)
@@ -46,7 +46,7 @@ static inline set solve_by_forms(struct ct_lanes *s, vec *dy, set wanted)
         mask is_sound = mask_of(here) & is_finite(a, s->nu + s->nq);
         for (size_t i = 0; i < c->nfree; i++)
             is_sound &= inertia[i] > 0;
-        const set good = set_of(is_sound & weigh(s, c, pivot, here));
+        const set good = set_of(is_sound & judge_pivots(s, c, pivot, here));
         if (good == wanted
             || !done) { // of other lanes nobody takes anything, or they come later
             copy(dy, rate, s->nq);
@@ -117,7 +117,7 @@ static inline set close_form(struct ct_lanes *s, struct ct_lane_form *f, vec t, 
 {
     set_input(s, t, y);
     ct_lane_run(&f->closing, s->input);
-    return set_of(weigh(s, &f->code, f->closing.out + 2 * (s->nrow + s->nu), here));
+    return set_of(judge_pivots(s, &f->code, f->closing.out + 2 * (s->nrow + s->nu), here));
 }
 
 // y (+) dq in these lanes.

@@ -5,7 +5,7 @@
 #include "solve/lane_form.h"
 
 // The point of the step at theta: the cubic of ct_stepper_hermite.
-static inline void interpolate(struct ct_lanes *s, double theta)
+static inline void interpolate_lanes(struct ct_lanes *s, double theta)
 {
     const double rest = 1 - theta;
     for (int i = 0; i < s->ny; i++) {
@@ -28,7 +28,7 @@ static inline set suspects(struct ct_lanes *s, vec end, set *wanted)
     copy(s->g, s->g0, s->nroot);
     for (int k = 1; k <= PROBES; k++) {
         if (k < PROBES) {
-            interpolate(s, (double)k / PROBES);
+            interpolate_lanes(s, (double)k / PROBES);
             set_input(s, s->t + (double)k / PROBES * s->h, s->point);
         } else {
             set_input(s, end, s->end);

@@ -199,8 +199,10 @@ static void compile_rest(struct ct_arena *a, struct ct_machine *m, const struct 
         push(&validity, v->eta);
         for (int k = 0; k < 9 && v->foretells; k++)
             push(&carried, v->carried[k / 3].e[k % 3]);
-        for (int k = 0; k < 2 * v->nplane && v->foretells; k++)
-            push(&carried, v->plane[k / 2].state[k % 2]);
+        for (int k = 0; k < 2 * v->nshape && v->foretells; k++)
+            push(&carried, v->shape[k / 2].state[k % 2]);
+        for (int k = 0; k < 2 && v->foretells; k++)
+            push(&carried, v->end[k]);
     }
     for (size_t i = 0; i < e->nbend; i++)
         for (size_t k = 0; k < e->bend[i].n; k++)

@@ -413,3 +413,30 @@ for method in auto radau5; do
     --samples 3 -o trial.csv --summary trial.json 2>>trial.txt
   sed -n 's/.*"error": \([0-9.e-]*\),*$/\1/p' trial.json
 done | awk '{ e[++n] = $1 } END { print (n == 2 && (e[1]/e[2] - 1)^2 < 1e-4 ? "same error" : e[1] " " e[2]) }'
+echo '-- rotations that follow where the axis does not stretch: work in proportion to the elements, the motion that other trees give'
+cat >stiff.yaml <<'END'
+cotree: 1
+parameters: {n: 12}
+bodies:
+  hub: {mass: 1, inertia: [1, 2, 3]}
+  arm: {type: beam, length: 4, elements: n, density: 2700, E: 7e9, nu: 0.3, area: 6e-4, Iz: 8e-8, Iy: 5e-8, mass: lumped,
+    formulation: foreshortening, deformation: [bending-y, bending-z], points: {mid: length/2, tip: length}}
+  bob: {mass: 0.5, com: [0.3, 0.1, 0], inertia: [0.01, 0.02, 0.02]}
+joints:
+  axle: {type: revolute, axis: [0.1, 0.2, 1], from: ground, to: hub, initial: {u: 0.5}}
+  clamp: {type: weld, from: hub, to: arm}
+  ball: {type: spherical, from: arm.PLACE, to: bob}
+gravity: [0, -9.81, 0]
+outputs: [axle.u, arm.tip.deflection.y, arm.tip.deflection.z, bob.position.x, ball.force.x]
+simulation: {duration: 0.3, samples: 4, tolerance: 1e-9}
+END
+for place in mid tip; do
+  sed "s/PLACE/$place/" stiff.yaml >follow.yaml
+  for n in 20 40; do
+    "$COTREE" check follow.yaml --set n=$n | sed -n 's/^evaluation *\([0-9]*\) operations.*/\1/p'
+  done | awk '{ work[NR] = $1 } END { print NR == 2 && work[2] < 2.2 * work[1] ? "in proportion" : work[1] " " work[2] }'
+  "$COTREE" simulate follow.yaml --quiet -o follow.csv
+  "$COTREE" simulate follow.yaml --quiet --tree absolute -o absolute.csv --summary absolute.json
+  grep -c '"constraints": 0' absolute.json
+  difference follow.csv absolute.csv | awk '{ print ($1 < 1e-6) ? "same motion" : $0 }'
+done

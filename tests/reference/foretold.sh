@@ -50,7 +50,7 @@ while IFS='|' read -r name keys bob place angle end kind; do
             "$COTREE" simulate $formulation.yaml -o $formulation.csv --summary $formulation.json --quiet 2>/dev/null
     done
     said=$(awk -F': ' '/"validity"/ { inside = 1 } inside && /"error"/ { gsub(/[",]/, "", $2); print $2; exit }' linear.json)
-    before=$("$COTREE" check auto.yaml | sed -n "s/.*linear beam's error: \([^)]*\)).*/\1/p")
+    before=$("$COTREE" check auto.yaml | sed -n "/linear beam's error/ { s/.*linear beam's error: \([^;)]*\).*/\1/p; q; }")
     paste -d, linear.csv foreshortening.csv |
         awk -F, -v name="$name" -v said="$said" -v before="$before" -v kind="$kind" '
             function near(a, b) { return a < 3 * b && b < 3 * a }
