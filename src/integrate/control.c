@@ -134,3 +134,12 @@ double ct_control_first(const struct ct_method *m, double h, double d1, double d
         = d <= 1e-15 ? fmax(1e-6, 1e-3 * h) : pow(0.01 / d, 1.0 / (m->error_order + 1));
     return fmin(fmin(100 * h, by_error), limit);
 }
+
+double ct_control_first_at_rate(const struct ct_method *m, double rate, double rtol)
+{
+    const double part = 0.01;
+    double term = part * rtol;
+    for (int i = 2; i <= m->error_order + 1; i++)
+        term *= i;
+    return pow(term, 1.0 / (m->error_order + 1)) / rate;
+}

@@ -61,5 +61,8 @@ double ct_control_glance(double d0, double d1, double limit);
 /// over the Euler step h, divided by h.
 double ct_control_first(const struct ct_method *m, double h, double d1, double d2,
                         double limit);
+/// The same of a motion that is known to go on at `rate` [1/s]: the first term of its series that the error sees, of order n,
+/// (rate h)^n/n!, is a hundredth of what is asked.
+double ct_control_first_at_rate(const struct ct_method *m, double rate, double rtol);
 
 #endif

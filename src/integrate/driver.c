@@ -81,6 +81,40 @@ static bool take_bearings(struct ct_driver *r)
     return e == CT_EVAL_OK || state_refused(r, e);
 }
 
+// Largest change of accelerations since the start, over the largest of them; INFINITY where there are none.
+static double changed_by(const struct ct_driver *r)
+{
+    const double *a = r->dy + r->p->nq, *a1 = r->dy1 + r->p->nq;
+    double size = 0, change = 0;
+    for (int i = 0; i < r->p->nu; i++) {
+        size = fmax(size, fabs(a[i]));
+        change = fmax(change, fabs(a1[i] - a[i]));
+    }
+    return size > 0 ? change / size : INFINITY;
+}
+
+// The rate at which accelerations begin to change, looked for from h on, along the parabola that r->point is the second
+// derivative of: from rest their change grows with the square of time. 0 where it is not found.
+static double find_rate(struct ct_driver *r, double h, double limit)
+{
+    enum { LOOKS = 5 };
+    const double least = 0.02, most = 0.5, further = 100, wanted = 0.05;
+    const struct ct_problem *p = r->p;
+    double change = changed_by(r);
+    for (int look = 0; look < LOOKS && change < least && h < limit; look++) {
+        const double by_change = change > 0 ? sqrt(wanted / change) : further;
+        h = fmin(h * fmin(by_change, further), limit);
+        for (int i = 0; i < p->ny; i++)
+            r->y1[i] = r->y[i] + h * (r->dy[i] + h / 2 * r->point[i]);
+        if (ct_stepper_rhs(p, r->t + h, r->y1, r->dy1, r->stats) != CT_EVAL_OK)
+            return 0;
+        for (int i = 0; i < p->ny; i++)
+            r->point[i] = (r->dy1[i] - r->dy[i]) / h;
+        change = changed_by(r);
+    }
+    return change >= least && change <= most ? sqrt(2 * change) / h : 0;
+}
+
 static double first_step(struct ct_driver *r, double limit)
 {
     const struct ct_problem *p = r->p;
@@ -94,7 +128,10 @@ static double first_step(struct ct_driver *r, double limit)
     for (int i = 0; i < p->ny; i++)
         r->point[i] = (r->dy1[i] - r->dy[i]) / h;
     const double d2 = ct_stepper_norm(p, &r->tolerance, r->y, r->y, r->point);
-    return ct_control_first(r->method, h, d1, d2, limit);
+    const double first = ct_control_first(r->method, h, d1, d2, limit);
+    const double rate = r->method->is_implicit ? 0 : find_rate(r, h, limit);
+    return rate > 0 ? fmin(ct_control_first_at_rate(r->method, rate, r->tolerance.rtol), limit)
+                    : first;
 }
 
 // --- one step --------------------------------------------------------------------------------

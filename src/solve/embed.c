@@ -33,6 +33,7 @@ struct ct_embed *ct_embed_create(struct ct_arena *arena, struct ct_ctx *ctx,
     s->MB = CT_NEWN(arena, double, kk *kk);
     s->A = CT_NEWN(arena, double, r *kk + 1);
     s->q = CT_NEWN(arena, double, m->nq + 1);
+    s->before = CT_NEWN(arena, double, m->nq + m->nu + 1);
     s->c = CT_NEWN(arena, double, k);
     s->r = CT_NEWN(arena, double, k);
     s->b = CT_NEWN(arena, double, k);

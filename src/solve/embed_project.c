@@ -131,12 +131,10 @@ static enum ct_eval project_by_form(struct ct_embed *s, double t, double *y, boo
     return CT_EVAL_OK;
 }
 
-enum ct_eval ct_embed_project(struct ct_embed *s, double t, double *y)
+// By the rows and columns of now.
+static enum ct_eval project(struct ct_embed *s, double t, double *y)
 {
     bool is_done = false;
-    ct_machine_normalise(s->m, y);
-    if (!s->m->nrow)
-        return CT_EVAL_OK;
     enum ct_eval e = ct_embed_is_form_due(s) ? project_by_form(s, t, y, &is_done) : CT_EVAL_OK;
     if (e == CT_EVAL_OK && !is_done) {
         e = project_by_matrices(s, t, y);
@@ -145,14 +143,27 @@ enum ct_eval ct_embed_project(struct ct_embed *s, double t, double *y)
             ct_strength_compare(&s->strength, s->sigma);
         }
     }
+    return e;
+}
+
+enum ct_eval ct_embed_project(struct ct_embed *s, double t, double *y)
+{
+    const size_t ny = s->m->nq + s->m->nu;
+    ct_machine_normalise(s->m, y);
+    if (!s->m->nrow)
+        return CT_EVAL_OK;
+    ct_machine_copy(s->before, y, ny);
+    const enum ct_eval e = project(s, t, y);
     if (e != CT_EVAL_OK || s->is_crossing)
         return e;
     ct_embed_tend_form(s);
-    if (has_worn(s)) {
-        ct_machine_constraint(s->m); // forms leave J as it was
-        ct_embed_choose(s);
-    }
-    return CT_EVAL_OK;
+    if (!has_worn(s))
+        return CT_EVAL_OK;
+    // what columns that have worn since the last projection were moved by is what was to be closed times kappa, or more
+    ct_machine_constraint(s->m); // forms leave J as it was
+    ct_embed_choose(s);
+    ct_machine_copy(y, s->before, ny);
+    return project(s, t, y);
 }
 
 void ct_embed_renew(struct ct_embed *s)
