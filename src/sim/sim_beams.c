@@ -53,7 +53,8 @@ static void warn_of_linear(struct ct_sim *sim, const struct ct_validity *beam,
     const char *how
         = v->left_at >= 0
             ? ct_arena_printf(
-                a, "the validity indicator passes %.3g at t = %.6g s and reaches %.3g",
+                a, "the validity indicator passes %.3g at t = %.6g s, its mean over a period of the "
+                "beam reaches %.3g",
                 CT_VALIDITY_LIMIT, v->left_at, v->largest)
             : ct_arena_printf(
                 a,

@@ -17,16 +17,21 @@ void ct_slope_watch(struct ct_slope_report *report, const struct ct_machine *m, 
     }
 }
 
-// Averaged over a period of the beam: what rings faster than it can follow does not count.
+// Averaged over a period of the beam: what rings faster than it can follow does not count. The mean comes late by that
+// period; the beam has left from where on the indicator itself is beyond the limit.
 static void watch_indicator(const struct ct_run *r, size_t i, double t)
 {
     struct ct_validity_report *v = &r->report->validity[i];
-    const double period = two_pi / r->e->validity[i].omega;
+    const double now = r->m->validity.out[i], period = two_pi / r->e->validity[i].omega;
     const double share = r->ngiven ? -expm1(-(t - r->t_sample) / period) : 1;
-    v->mean += share * (r->m->validity.out[i] - v->mean);
+    v->mean += share * (now - v->mean);
     v->largest = fmax(v->largest, fabs(v->mean));
+    if (fabs(now) <= CT_VALIDITY_LIMIT)
+        v->beyond_since = -1;
+    else if (v->beyond_since < 0)
+        v->beyond_since = t;
     if (v->largest > CT_VALIDITY_LIMIT && v->left_at < 0)
-        v->left_at = t;
+        v->left_at = v->beyond_since < 0 ? t : v->beyond_since;
 }
 
 void ct_run_watch_sample(struct ct_run *r, double t)
@@ -50,8 +55,10 @@ void ct_run_watch_start(struct ct_run *r, double t, const double *y)
     report->bend = CT_NEWN(r->arena, struct ct_slope_report, e->nbend + 1);
     for (size_t i = 0; i < e->nbend; i++)
         report->bend[i].passed_at = -1;
-    for (size_t i = 0; i < e->nvalidity; i++)
-        report->validity[i].left_at = report->validity[i].off_since = -1;
+    for (size_t i = 0; i < e->nvalidity; i++) {
+        struct ct_validity_report *v = &report->validity[i];
+        v->beyond_since = v->left_at = v->off_since = -1;
+    }
     ct_run_watch_base(r, t, y, CT_WATCH_START);
 }
 
