@@ -2,6 +2,7 @@
 #include "formulate/trees.h"
 
 #include "base/sort.h"
+#include "formulate/elastic.h"
 #include "formulate/small.h"
 #include "graph/reach.h"
 
@@ -31,6 +32,22 @@ static bool is_active(const struct ct_instance *joint)
     return false;
 }
 
+// Is an end of the edge on a beam whose sections may follow the other nodes for want of inertia? What is counted through
+// such a section moves with all of them, and fills the mass matrix. The start of a clamped beam does not follow.
+static bool turns_follower(const struct ct_build *b, size_t i)
+{
+    const int end[2] = {b->wiring[i].tail, b->wiring[i].head};
+    for (int k = 0; k < 2; k++) {
+        const struct ct_flexible *f = ct_flexible_of(b, b->node[end[k]].body);
+        if (f && (f->beam->is_chord || end[k] != f->base)
+            && (f->beam->is_lumped || f->beam->theory == CT_BEAM_TIMOSHENKO)
+            && (ct_ex_is_zero(ct_flexible_rotary(f, 1).value)
+                || ct_ex_is_zero(ct_flexible_rotary(f, 2).value)))
+            return true;
+    }
+    return false;
+}
+
 // Order among equal weights. In a plane the angle of a body weighs as much as that of a joint and gives
 // shorter expressions; a passive joint on a body that turns yields to it.  (2.3)
 static int tie_rank(const struct ct_build *b, size_t i, const int *depth, const int *turned,
@@ -43,7 +60,8 @@ static int tie_rank(const struct ct_build *b, size_t i, const int *depth, const 
     if (e->kind == CT_EDGE_BODY)
         return b->is_planar && choice == CT_TREE_AUTO ? 1 : last;
     const bool is_first_turn = turned[tail] == 0 || turned[head] == 0;
-    if (is_first_turn || (e->kind == CT_EDGE_JOINT && is_active(e->self)))
+    if ((is_first_turn && !(b->is_planar && turns_follower(b, i)))
+        || (e->kind == CT_EDGE_JOINT && is_active(e->self)))
         return 0;
     return 2 + (depth[tail] < depth[head] ? depth[tail] : depth[head]);
 }

@@ -50,17 +50,17 @@ static void warn_of_linear(struct ct_sim *sim, const struct ct_validity *beam,
         : error > CT_FORETOLD_MOST
             ? "its error is beyond 1, as large as the deflections or larger"
             : ct_arena_printf(a, "its error is about %.2g of the largest deflection", error);
-    const char *how
-        = v->left_at >= 0
-            ? ct_arena_printf(
-                a, "the validity indicator passes %.3g at t = %.6g s, its mean over a period of the "
-                "beam reaches %.3g",
-                CT_VALIDITY_LIMIT, v->left_at, v->largest)
-            : ct_arena_printf(
-                a,
-                "the validity indicator reaches %.3g only, but from t = %.6g s on "
-                "what it causes has grown beyond %.3g",
-                v->largest, v->off_since, CT_VALIDITY_LIMIT);
+    const char *how = v->left_at >= 0
+                        ? ct_arena_printf(a,
+                                          "the validity indicator passes %.3g at t = %.6g s, "
+                                          "its mean over a period of the "
+                                          "beam reaches %.3g",
+                                          CT_VALIDITY_LIMIT, v->left_at, v->largest)
+                        : ct_arena_printf(
+                            a,
+                            "the validity indicator reaches %.3g only, but from t = %.6g s on "
+                            "what it causes has grown beyond %.3g",
+                            v->largest, v->off_since, CT_VALIDITY_LIMIT);
     const char *cure
         = 3 * other > error
             ? "it bends too far for one frame: cut it into several foreshortened ones that are "

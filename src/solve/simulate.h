@@ -56,8 +56,9 @@ struct ct_run_report {
     struct ct_validity_report {
         double mean,
             largest; // of the indicator: over the last period of the beam, and its largest size so far
-        double beyond_since; // from when on the indicator itself is beyond the limit; negative: it is not
-        double left_at;      // the same when the mean passed the limit, too; negative: it never did
+        double
+            beyond_since; // from when on the indicator itself is beyond the limit; negative: it is not
+        double left_at; // the same when the mean passed the limit, too; negative: it never did
         double off_since; // from when on the error foretold is beyond it; negative: it is not
         struct ct_swings swings;  // that foretell it
     } * validity;                 // by indicator of the equations
