@@ -12,7 +12,7 @@ static const double kappa_most = 0.03;
 // Without one, corrections are followed down to rounding of well-scaled equations, and accepted at a
 // hundred times that where they stop to shrink.
 static const struct ct_tolerance finest = {1e-12, 1e-12};
-static const double kappa_finest = 0.1, rounding_finest = 100;
+static const double kappa_finest = 0.01, rounding_finest = 100;
 // The first corrections come from a guess and may grow; not so much, though.
 static const double hopeless = 100;
 // Places that change by less than this many roundings of the largest of them cannot be found better, however much their
@@ -499,13 +499,20 @@ static bool is_within(const double *d, int n, double most)
     return true;
 }
 
+// Followed down to rounding, a second correction as large as the first says nothing yet: of angles of several turns in loops
+// the third has been seen to be a thousandth of it.
+static bool is_too_early(const struct ct_iteration *it)
+{
+    return it->is_finest && it->count == 2;
+}
+
 // Does a correction of this size, at this rate to the one before, show only rounding?
 static bool is_rounding(const struct ct_iteration *it, double rate, double size)
 {
     if (it->is_further && rate >= halved && size <= 1)
         return true;
     const bool is_settled = size <= settled * it->first && size <= bearable && !it->is_finest;
-    return rate >= 1 && (size <= it->rounding || is_settled);
+    return rate >= 1 && !is_too_early(it) && (size <= it->rounding || is_settled);
 }
 
 // Half a rounding of the largest place moves no place as large, and what is left of the constraints comes back in others,
@@ -525,7 +532,8 @@ enum ct_verdict ct_iteration_judge(struct ct_iteration *it, double size, const d
     if (it->count++ > 0) {
         const double rate = size / it->size;
         const int n = k * it->nu;
-        if (is_rounding(it, rate, size) || (rate >= 1 && is_within(d, n, it->least))
+        if (is_rounding(it, rate, size)
+            || (rate >= 1 && !is_too_early(it) && is_within(d, n, it->least))
             || is_unfelt(it, size, d, u, n))
             return CT_CONVERGED;
         it->rate = it->count > 2 ? sqrt(rate * it->rate) : rate; // two in turn are often uneven
