@@ -1,27 +1,35 @@
 // See swing.h.
 #include "formulate/swing.h"
 
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
-// int_0^h of C and S, and their values: C = exp(-c h/2) cos(r h), S = exp(-c h/2) sin(r h)/r, r^2 = W - c^2/4, of any sign.
+// C = exp(-c h/2) cos(r h), S = exp(-c h/2) sin(r h)/r, r^2 = W - c^2/4, of any sign.
 static void kernel(double h, double W, double c, double *C, double *S)
 {
-    const double r2 = W - 0.25 * c * c, r = sqrt(fabs(r2)), decay = exp(-0.5 * c * h);
+    const double r2 = W - 0.25 * c * c, r = sqrt(fabs(r2)),
+                 decay = c != 0 ? exp(-0.5 * c * h) : 1;
     *C = decay * (r2 > 0 ? cos(r * h) : cosh(r * h));
     *S = decay * (r * h < 1e-8 ? h : (r2 > 0 ? sin(r * h) : sinh(r * h)) / r);
+}
+
+// int_0^h S, which C and S at h give; (1 - C - c S/2)/W cancels where the step is short.
+static double kernel_sum(double h, double W, double c, double C, double S)
+{
+    double C_half, S_half;
+    if (fabs(W) * h * h > 1e-4)
+        return (1 - C - 0.5 * c * S) / W;
+    kernel(0.5 * h, W, c, &C_half, &S_half);
+    return h / 6 * (4 * S_half + S);
 }
 
 // x'' + c x' + W x = F over h, exactly. x: x, x'
 static void swing(double x[2], double h, double W, double c, double F)
 {
-    double C, S, C_half, S_half;
+    double C, S;
     kernel(h, W, c, &C, &S);
-    kernel(0.5 * h, W, c, &C_half, &S_half);
-    // int_0^h S: (1 - C - c S/2)/W, which cancels where the step is short
-    const double sum
-        = fabs(W) * h * h > 1e-4 ? (1 - C - 0.5 * c * S) / W : h / 6 * (4 * S_half + S);
-    const double place = x[0], rate = x[1];
+    const double place = x[0], rate = x[1], sum = kernel_sum(h, W, c, C, S);
     x[0] = (C + 0.5 * c * S) * place + S * rate + sum * F;
     x[1] = -W * S * place + (C - 0.5 * c * S) * rate + S * F;
 }
@@ -33,19 +41,25 @@ static double square(double x)
     return fmin(x * x, most);
 }
 
-// (1 + b x^2) x'' + c x' + W x + b x x'^2 + 2 g x^3 = F over h, in pieces whose amplitudes are those of their middles.
+// (1 + b x^2) x'' + c x' + W x + b x x'^2 + 2 g x^3 = F over h, in pieces whose amplitudes are those of their middles, where
+// it is to second order. Where h is more than one piece and amplitudes do little, with what they do on the mean of a period.
 static void swing_far(double x[2], double h, double W, double c, double F, double b, double g)
 {
     enum { PIECES = 16, MOST_PIECES = 64 }; // of a period; at most
     const double two_pi = 6.283185307179586;
     const int n = 1 + (int)fmin(MOST_PIECES - 1, h * sqrt(fabs(W)) * PIECES / two_pi);
+    const double small = 1e-3, half = 0.5 * h / n,
+                 amplitude2 = square(x[0]) + square(x[1]) / fmax(W, DBL_MIN);
+    if (n > 1 && W > 0 && (b + 2 * g / W) * amplitude2 < small) {
+        swing(x, h, W + (1.5 * g - 0.5 * b * W) * amplitude2, c, F);
+        return;
+    }
     for (int i = 0; i < n; i++) {
-        double middle[2] = {x[0], x[1]};
-        for (int pass = 0; pass < 2; pass++) {
-            const double q2 = square(middle[0]), slow = 1 / (1 + b * q2);
-            const double stiff = slow * (W + b * square(middle[1]) + 2 * g * q2);
-            swing(pass ? x : middle, (pass ? h : 0.5 * h) / n, stiff, slow * c, slow * F);
-        }
+        const double q2 = square(x[0]), rising = F - c * x[1] - (W + 2 * g * q2) * x[0],
+                     a = (rising - b * x[0] * square(x[1])) / (1 + b * q2),
+                     rate = x[1] + half * a, m2 = square(x[0] + half * (x[1] + 0.5 * half * a)),
+                     slow = 1 / (1 + b * m2);
+        swing(x, 2 * half, slow * (W + b * square(rate) + 2 * g * m2), slow * c, slow * F);
     }
 }
 

@@ -8,7 +8,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { FEWEST_INSTANTS = 400, MOST_INSTANTS = 8000 };
+enum { FEWEST_INSTANTS = 400, MOST_INSTANTS = 8000, OTHER_INSTANTS = 5003 };
 static const double two_pi = 6.283185307179586;
 
 // eta of a plane
@@ -144,15 +144,15 @@ static bool swing_on(struct ahead *p, double t)
     return true;
 }
 
-// From 0 to the end of the run; false where modes are not known.
-static bool look_ahead(struct ct_build *b, const struct ct_validity *v, struct prospect *out)
+// From 0 to the end of the run, in n steps; false where modes are not known.
+static bool swing_through(struct ct_build *b, const struct ct_validity *v, int n,
+                          struct prospect *out)
 {
     struct ahead p = {.b = b};
     double start[2 * CT_BENDING_SHAPES] = {0};
     for (int i = 0; i < 2 * v->nshape; i++)
         start[i] = v->shape[i / 2].start[i % 2];
     const double end = b->model->simulation.duration;
-    const int n = (int)fmin(fmax(FEWEST_INSTANTS, end / ct_validity_glance(v)), MOST_INSTANTS);
     prepare(&p, v);
     ct_validity_begin(v, start, &p.swings);
     *out = (struct prospect){0};
@@ -167,6 +167,30 @@ static bool look_ahead(struct ct_build *b, const struct ct_validity *v, struct p
     for (int m = 0; m < CT_SWING_TRUE; m++)
         out->error[m] = ct_swings_error(&p.swings, m);
     return !isnan(out->eta);
+}
+
+static bool is_alike(double a, double b)
+{
+    const double factor = 1.5;
+    return (isnan(a) && isnan(b)) || (a <= factor * b && b <= factor * a)
+        || (a > CT_FORETOLD_MOST && b > CT_FORETOLD_MOST);
+}
+
+// What is ahead; NULL, or why it is not known. Where a run is too long to look at all that may move the beam, two
+// looks that fall on other instants must see the same.
+static const char *look_ahead(struct ct_build *b, const struct ct_validity *v,
+                              struct prospect *out)
+{
+    const double wanted = b->model->simulation.duration / ct_validity_glance(v);
+    struct prospect other;
+    if (!v->foretells
+        || !swing_through(b, v, (int)fmin(fmax(FEWEST_INSTANTS, wanted), MOST_INSTANTS), out))
+        return "automatic: its motion is not known beforehand";
+    if (wanted <= MOST_INSTANTS
+        || (swing_through(b, v, OTHER_INSTANTS, &other)
+            && is_alike(out->error[CT_SWING_LINEAR], other.error[CT_SWING_LINEAR])))
+        return NULL;
+    return "automatic: its motion is too quick for so long a run to be looked at beforehand";
 }
 
 static const char *figure(struct ct_arena *a, double error)
@@ -209,10 +233,9 @@ static bool stays_linear(struct ct_build *b, struct ct_flexible *f)
         f->why = "automatic: it does not bend";
         return true;
     }
-    if (!v.foretells || !look_ahead(b, &v, &p)) {
-        f->why = "automatic: its motion is not known beforehand";
+    f->why = look_ahead(b, &v, &p);
+    if (f->why)
         return false;
-    }
     f->why = ct_arena_printf(b->arena, "automatic: validity indicator %.3g, limit %.3g%s",
                              p.eta, CT_VALIDITY_LIMIT, foretold(b, &p));
     return is_better_linear(&p);

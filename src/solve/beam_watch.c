@@ -55,23 +55,21 @@ void ct_run_watch_start(struct ct_run *r, double t, const double *y)
     ct_run_watch_base(r, t, y, CT_WATCH_START);
 }
 
-// out of the program `carried`: the base's motion (9), then x, x' by shape, then its end (2).
+// out (11) of the program `carried`: the base's motion, the beam's end. start: x, x' by shape.
 static void follow(const struct ct_validity *v, struct ct_validity_report *report, double t,
-                   const double *out, enum ct_watch_when how)
+                   const double *out, const double *start, enum ct_watch_when how)
 {
     struct ct_swings *s = &report->swings;
     if (how == CT_WATCH_KEPT) {
         ct_swings_regrip(s, out);
         return;
     }
-    if (how == CT_WATCH_STEP && t - s->t < ct_validity_glance(v))
-        return;
     if (how == CT_WATCH_START)
-        ct_validity_begin(v, out + 9, s);
+        ct_validity_begin(v, start, s);
     ct_swings_follow(s, t, out);
     if (how == CT_WATCH_START && v->settles)
         ct_swings_settle(s);
-    ct_swings_compare(s, out + 9 + 2 * v->nshape);
+    ct_swings_compare(s, out + 9);
     const bool is_off = ct_swings_error(s, CT_SWING_LINEAR) > CT_VALIDITY_LIMIT;
     if (!is_off)
         report->off_since = -1;
@@ -79,18 +77,37 @@ static void follow(const struct ct_validity *v, struct ct_validity_report *repor
         report->off_since = t;
 }
 
+// Is beam i looked at now?
+static bool is_due(const struct ct_run *r, size_t i, double t, enum ct_watch_when how)
+{
+    const struct ct_validity *v = &r->e->validity[i];
+    return v->foretells
+        && (how != CT_WATCH_STEP
+            || t - r->report->validity[i].swings.t >= ct_validity_glance(v));
+}
+
 void ct_run_watch_base(struct ct_run *r, double t, const double *y, enum ct_watch_when how)
 {
+    bool any = false;
     if (!r->m->carried.nout || r->trial) // a trial meets events of a motion that starts again
+        return;
+    for (size_t i = 0; i < r->e->nvalidity; i++)
+        any |= is_due(r, i, t, how);
+    if (!any)
         return;
     ct_machine_set(r->m, ct_run_before(r, t), y);
     ct_program_run(&r->m->carried, r->m->input);
-    const double *out = r->m->carried.out;
-    for (size_t i = 0; i < r->e->nvalidity; i++)
+    if (how == CT_WATCH_START)
+        ct_program_run(&r->m->poised, r->m->input);
+    const double *out = r->m->carried.out, *start = r->m->poised.out;
+    for (size_t i = 0; i < r->e->nvalidity; i++) {
+        if (is_due(r, i, t, how))
+            follow(&r->e->validity[i], &r->report->validity[i], t, out, start, how);
         if (r->e->validity[i].foretells) {
-            follow(&r->e->validity[i], &r->report->validity[i], t, out, how);
-            out += 11 + 2 * r->e->validity[i].nshape;
+            out += 11;
+            start += 2 * r->e->validity[i].nshape;
         }
+    }
 }
 
 void ct_run_watch_jump(struct ct_run *r, double t, const double *y)

@@ -41,7 +41,8 @@ struct ct_machine {
         result,     // output columns
         power,      // d(work)/dt
         validity,   // indicators of linear beams, then squared slopes of all beams
-        carried, // of linear beams whose error is foretold: how the base moves (9), x, x' by shape, its end (2)
+        carried, // of linear beams whose error is foretold: how the base moves (9), the beam's end (2)
+        poised,   // of the same: x, x' by shape
         energy,   // kinetic, potential
         root,     // g of each mode
         memory,   // next values; of whole turns their present ones

@@ -193,14 +193,14 @@ static void compile_rest(struct ct_arena *a, struct ct_machine *m, const struct 
     compile(a, m, in, momentum.e, momentum.n, &m->momentum);
     compile(a, m, in, driver.e, driver.n, &m->driver);
     compile(a, m, in, wanted.e, wanted.n, &m->wanted);
-    struct list validity = {.a = a}, carried = {.a = a};
+    struct list validity = {.a = a}, carried = {.a = a}, poised = {.a = a};
     for (size_t i = 0; i < e->nvalidity; i++) {
         const struct ct_validity *v = &e->validity[i];
         push(&validity, v->eta);
         for (int k = 0; k < 9 && v->foretells; k++)
             push(&carried, v->carried[k / 3].e[k % 3]);
         for (int k = 0; k < 2 * v->nshape && v->foretells; k++)
-            push(&carried, v->shape[k / 2].state[k % 2]);
+            push(&poised, v->shape[k / 2].state[k % 2]);
         for (int k = 0; k < 2 && v->foretells; k++)
             push(&carried, v->end[k]);
     }
@@ -209,12 +209,13 @@ static void compile_rest(struct ct_arena *a, struct ct_machine *m, const struct 
             push(&validity, e->bend[i].square[k]);
     compile(a, m, in, validity.e, validity.n, &m->validity);
     compile(a, m, in, carried.e, carried.n, &m->carried);
+    compile(a, m, in, poised.e, poised.n, &m->poised);
     compile(a, m, in, energies, 2, &m->energy);
     compile(a, m, in, &e->power, ct_ex_is_zero(e->power) ? 0 : 1, &m->power);
     // seldom run: not worth native code
     struct ct_program *const all[]
         = {&m->result, &m->root,   &m->turns,    &m->momentum, &m->driver,
-           &m->wanted, &m->energy, &m->validity, &m->carried};
+           &m->wanted, &m->energy, &m->validity, &m->carried,  &m->poised};
     for (size_t i = 0; i < COUNT(all); i++)
         if (all[i]->nout)
             ct_program_use(a, all[i], NULL);

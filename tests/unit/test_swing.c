@@ -146,6 +146,8 @@ int main(void)
         cmocka_unit_test(let_go_it_swings_at_two_frequencies),
         cmocka_unit_test(beyond_its_frequency_it_grows),
         cmocka_unit_test(damping_is_in_both),
+        cmocka_unit_test(about_its_axis_planes_meet),
+        cmocka_unit_test(a_jump_about_its_axis_turns_speeds),
         cmocka_unit_test(a_jump_of_the_rate_is_a_push),
         cmocka_unit_test(it_settles_under_its_weight),
     };
