@@ -23,9 +23,6 @@ static const double place_rounding = 8;
 static const double moved_roundings = 4;
 // Corrections that are to go on after convergence do until they are this much smaller.
 static const double further = 1e-6;
-// Rates of convergence do not rise from that to above 1: corrections that have come to this part of the first one and shrink no
-// more are rounding, which shorter steps have, too. Up to this part of the tolerance it is borne.
-static const double settled = 1e-3, bearable = 0.3;
 // After convergence corrections that are not halved have come to rounding.
 static const double halved = 0.5;
 // Vibrations so many times as fast as the motion are not part of it.
@@ -378,9 +375,9 @@ void ct_iteration_push(const struct ct_iteration *it, double *x, double c, const
 
 // ---- convergence ------------------------------------------------------------------------------------
 
-double ct_iteration_error(struct ct_iteration *it, const struct ct_problem *p,
-                          const struct ct_tolerance *tolerance, double t1, const double *y1,
-                          const double *d, const double *u, double states)
+// Errors of motions and speeds as those of states, in it->off.
+static const double *states_of(struct ct_iteration *it, const double *y1, const double *d,
+                               const double *u)
 {
     const int nq = it->dae->nq;
     double *e = it->off;
@@ -392,7 +389,21 @@ double ct_iteration_error(struct ct_iteration *it, const struct ct_problem *p,
             e[i] -= y1[i];
     }
     ct_stepper_copy(e + nq, u, it->nu);
-    return ct_stepper_worse(p, tolerance, t1, y1, e, states);
+    return e;
+}
+
+double ct_iteration_error(struct ct_iteration *it, const struct ct_problem *p,
+                          const struct ct_tolerance *tolerance, double t1, const double *y1,
+                          const double *d, const double *u, double states)
+{
+    return ct_stepper_worse(p, tolerance, t1, y1, states_of(it, y1, d, u), states);
+}
+
+double ct_iteration_amplified(struct ct_iteration *it, const struct ct_problem *p,
+                              const struct ct_tolerance *tolerance, double t1, const double *y1,
+                              const double *d, const double *u)
+{
+    return p->amplified_error(p->user, t1, y1, states_of(it, y1, d, u), tolerance);
 }
 
 // How fast the motion is for its way: the largest |u|/|q|, without coordinates that are small as the tolerance sees them, and
@@ -511,8 +522,7 @@ static bool is_rounding(const struct ct_iteration *it, double rate, double size)
 {
     if (it->is_further && rate >= halved && size <= 1)
         return true;
-    const bool is_settled = size <= settled * it->first && size <= bearable && !it->is_finest;
-    return rate >= 1 && !is_too_early(it) && (size <= it->rounding || is_settled);
+    return rate >= 1 && !is_too_early(it) && size <= it->rounding;
 }
 
 // Half a rounding of the largest place moves no place as large, and what is left of the constraints comes back in others,
@@ -540,8 +550,6 @@ enum ct_verdict ct_iteration_judge(struct ct_iteration *it, double size, const d
         if (rate >= hopeless || (it->rate >= 1 && it->count > 3))
             return CT_DIVERGED;
         it->tail = it->rate < 1 ? it->rate / (1 - it->rate) : INFINITY;
-    } else {
-        it->first = size;
     }
     it->size = size;
     if (size == 0 || it->tail * size <= it->kappa)
