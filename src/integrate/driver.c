@@ -235,10 +235,27 @@ static enum ct_eval interpolate(struct ct_driver *r, struct ct_stride *s)
     return s->method->prepare(r->p, r->t, s->h, r->y, r->y1, s->work, r->stats);
 }
 
+// Are outputs that amplify as good in the next sample as at the end of the step? If not, steps end on samples from here on.
+static enum ct_eval look_at_sample(struct ct_driver *r, struct ct_stride *s)
+{
+    const struct ct_stepper_span span = {s->method, r->p, r->t, s->h, r->y, r->y1, s->work};
+    const double theta = (r->o->sample[r->sample] - r->t) / s->h;
+    double error = 0;
+    if (!s->method->dense_error || !r->p->amplified_error || r->o->step > 0 || s->is_striding)
+        return CT_EVAL_OK;
+    ct_stepper_point(&span, theta, r->point);
+    const enum ct_eval e
+        = s->method->dense_error(r->p, r->t, s->h, theta, r->point, s->work, &error, r->stats);
+    s->is_off_between = e == CT_EVAL_OK && error > 1;
+    return s->is_off_between ? CT_EVAL_RETRY : e;
+}
+
 static enum ct_eval interpolate_for_samples(struct ct_driver *r, struct ct_stride *s)
 {
-    const bool has_sample = r->sample < r->o->nsample && r->o->sample[r->sample] < s->t1;
-    return has_sample ? interpolate(r, s) : CT_EVAL_OK;
+    if (!(r->sample < r->o->nsample && r->o->sample[r->sample] < s->t1))
+        return CT_EVAL_OK;
+    const enum ct_eval e = interpolate(r, s);
+    return e == CT_EVAL_OK ? look_at_sample(r, s) : e;
 }
 
 // Step again, to the event that the interpolant shows at t + h; then correct h for the difference
@@ -301,10 +318,10 @@ static enum ct_eval tell_accepted(struct ct_driver *r, const struct ct_stride *s
 static enum ct_eval finish_step(struct ct_driver *r, struct ct_stride *s, double h)
 {
     enum ct_eval e = end_on_event(r, s);
-    if (e == CT_EVAL_OK && r->p->nroot)
-        e = ct_watch_accept(&r->watch, s->t1, h, r->end, s->is_event);
     if (e == CT_EVAL_OK)
         e = interpolate_for_samples(r, s);
+    if (e == CT_EVAL_OK && r->p->nroot)
+        e = ct_watch_accept(&r->watch, s->t1, h, r->end, s->is_event);
     return e == CT_EVAL_OK ? tell_accepted(r, s) : e;
 }
 
@@ -344,6 +361,13 @@ static bool find_step(struct ct_driver *r, double stop, bool is_time, struct ct_
             e = finish_step(r, s, h);
         if (e == CT_EVAL_FATAL)
             return false;
+        if (s->is_off_between) {
+            r->lands = true;
+            r->stats->rejected_steps++;
+            r->stop = stop = ct_driver_next_stop(r, &is_time);
+            r->is_stop_time = is_time;
+            continue;
+        }
         if (e == CT_EVAL_OK) {
             if (is_crossing)
                 ct_driver_adapt_after_crossing(r, s);
@@ -406,7 +430,7 @@ static bool handle_event(struct ct_driver *r, bool is_state, bool is_time)
 static bool advance(struct ct_driver *r)
 {
     struct ct_stride s;
-    if (r->t >= r->stop || r->o->step > 0)
+    if (r->t >= r->stop || r->o->step > 0 || r->lands)
         r->stop = ct_driver_next_stop(r, &r->is_stop_time);
     if (!find_step(r, r->stop, r->is_stop_time, &s))
         return false;

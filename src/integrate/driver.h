@@ -42,6 +42,7 @@ struct ct_driver {
     int failed_crossings;         // of it
     bool is_open;                 // the last step met everything but the constraints
     size_t sample;                // the next one to give
+    bool lands;                   // steps end on samples: between them outputs err too much
 };
 
 // A step as planned: to t1, which is t + h but for rounding, or the end of the run before that.
@@ -53,6 +54,7 @@ struct ct_stride {
     bool is_event;        // a state event ends it
     bool is_interpolated; // the method is ready to interpolate it
     bool is_striding;     // across a singular position
+    bool is_off_between;  // outputs err too much in a sample before its end
     double error;
 };
 

@@ -40,7 +40,7 @@ double ct_driver_next_stop(const struct ct_driver *r, bool *is_time)
             *is_time = true;
         }
     }
-    const bool is_on_sample = r->o->step > 0 && r->sample < r->o->nsample;
+    const bool is_on_sample = (r->o->step > 0 || r->lands) && r->sample < r->o->nsample;
     if (is_on_sample
         && r->o->sample[r->sample] < stop - ct_driver_event_margin(*is_time, stop, 0)) {
         stop = r->o->sample[r->sample];
@@ -104,7 +104,7 @@ void ct_driver_plan(const struct ct_driver *r, double stop, bool is_time, struct
     s->method = r->method;
     s->work = r->work;
     s->is_striding = length > 0;
-    s->is_landing = s->is_event = s->is_interpolated = false;
+    s->is_landing = s->is_event = s->is_interpolated = s->is_off_between = false;
     s->error = 0;
     if (s->is_striding) {
         s->h = length;

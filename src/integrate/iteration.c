@@ -12,7 +12,7 @@ static const double kappa_most = 0.03;
 // Without one, corrections are followed down to rounding of well-scaled equations, and accepted at a
 // hundred times that where they stop to shrink.
 static const struct ct_tolerance finest = {1e-12, 1e-12};
-static const double kappa_finest = 0.1, rounding_finest = 100;
+static const double kappa_finest = 0.01, rounding_finest = 100;
 // The first corrections come from a guess and may grow; not so much, though.
 static const double hopeless = 100;
 // Places that change by less than this many roundings of the largest of them cannot be found better, however much their
@@ -23,9 +23,6 @@ static const double place_rounding = 8;
 static const double moved_roundings = 4;
 // Corrections that are to go on after convergence do until they are this much smaller.
 static const double further = 1e-6;
-// Rates of convergence do not rise from that to above 1: corrections that have come to this part of the first one and shrink no
-// more are rounding, which shorter steps have, too. Up to this part of the tolerance it is borne.
-static const double settled = 1e-3, bearable = 0.3;
 // After convergence corrections that are not halved have come to rounding.
 static const double halved = 0.5;
 // Vibrations so many times as fast as the motion are not part of it.
@@ -378,9 +375,9 @@ void ct_iteration_push(const struct ct_iteration *it, double *x, double c, const
 
 // ---- convergence ------------------------------------------------------------------------------------
 
-double ct_iteration_error(struct ct_iteration *it, const struct ct_problem *p,
-                          const struct ct_tolerance *tolerance, double t1, const double *y1,
-                          const double *d, const double *u, double states)
+// Errors of motions and speeds as those of states, in it->off.
+static const double *states_of(struct ct_iteration *it, const double *y1, const double *d,
+                               const double *u)
 {
     const int nq = it->dae->nq;
     double *e = it->off;
@@ -392,7 +389,21 @@ double ct_iteration_error(struct ct_iteration *it, const struct ct_problem *p,
             e[i] -= y1[i];
     }
     ct_stepper_copy(e + nq, u, it->nu);
-    return ct_stepper_worse(p, tolerance, t1, y1, e, states);
+    return e;
+}
+
+double ct_iteration_error(struct ct_iteration *it, const struct ct_problem *p,
+                          const struct ct_tolerance *tolerance, double t1, const double *y1,
+                          const double *d, const double *u, double states)
+{
+    return ct_stepper_worse(p, tolerance, t1, y1, states_of(it, y1, d, u), states);
+}
+
+double ct_iteration_amplified(struct ct_iteration *it, const struct ct_problem *p,
+                              const struct ct_tolerance *tolerance, double t1, const double *y1,
+                              const double *d, const double *u)
+{
+    return p->amplified_error(p->user, t1, y1, states_of(it, y1, d, u), tolerance);
 }
 
 // How fast the motion is for its way: the largest |u|/|q|, without coordinates that are small as the tolerance sees them, and
@@ -499,13 +510,19 @@ static bool is_within(const double *d, int n, double most)
     return true;
 }
 
+// Followed down to rounding, a second correction as large as the first says nothing yet: of angles of several turns in loops
+// the third has been seen to be a thousandth of it.
+static bool is_too_early(const struct ct_iteration *it)
+{
+    return it->is_finest && it->count == 2;
+}
+
 // Does a correction of this size, at this rate to the one before, show only rounding?
 static bool is_rounding(const struct ct_iteration *it, double rate, double size)
 {
     if (it->is_further && rate >= halved && size <= 1)
         return true;
-    const bool is_settled = size <= settled * it->first && size <= bearable && !it->is_finest;
-    return rate >= 1 && (size <= it->rounding || is_settled);
+    return rate >= 1 && !is_too_early(it) && size <= it->rounding;
 }
 
 // Half a rounding of the largest place moves no place as large, and what is left of the constraints comes back in others,
@@ -525,15 +542,14 @@ enum ct_verdict ct_iteration_judge(struct ct_iteration *it, double size, const d
     if (it->count++ > 0) {
         const double rate = size / it->size;
         const int n = k * it->nu;
-        if (is_rounding(it, rate, size) || (rate >= 1 && is_within(d, n, it->least))
+        if (is_rounding(it, rate, size)
+            || (rate >= 1 && !is_too_early(it) && is_within(d, n, it->least))
             || is_unfelt(it, size, d, u, n))
             return CT_CONVERGED;
         it->rate = it->count > 2 ? sqrt(rate * it->rate) : rate; // two in turn are often uneven
         if (rate >= hopeless || (it->rate >= 1 && it->count > 3))
             return CT_DIVERGED;
         it->tail = it->rate < 1 ? it->rate / (1 - it->rate) : INFINITY;
-    } else {
-        it->first = size;
     }
     it->size = size;
     if (size == 0 || it->tail * size <= it->kappa)

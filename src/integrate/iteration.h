@@ -57,7 +57,6 @@ struct ct_iteration {
     bool is_further;        // corrections go on after convergence
     double least;           // nor where places change by less  [m, rad]
     double unfelt_place, unfelt_speed; // half a rounding of the largest of each, with rows
-    double first;                      // size of the first correction
     double size, rate,
         tail; // of the last correction; over the one before; all that follow it, over it
     int most;
@@ -176,6 +175,11 @@ double ct_iteration_slow_norm(struct ct_iteration *it, const struct ct_tolerance
 double ct_iteration_error(struct ct_iteration *it, const struct ct_problem *p,
                           const struct ct_tolerance *tolerance, double t1, const double *y1,
                           const double *d, const double *u, double states);
+
+/// What they mean for outputs that amplify, where 1 is the tolerance.  (8.11)
+double ct_iteration_amplified(struct ct_iteration *it, const struct ct_problem *p,
+                              const struct ct_tolerance *tolerance, double t1, const double *y1,
+                              const double *d, const double *u);
 
 /// Before the first correction.
 void ct_iteration_start(struct ct_iteration *it);

@@ -83,6 +83,10 @@ struct ct_problem {
     /// tolerance; `states` is the norm of e. 0 where that is enough. NULL: it always is.
     double (*output_error)(void *user, double t, const double *y, const double *e,
                            const struct ct_tolerance *tolerance, double states);
+    /// The same of the outputs that amplify errors of states, which output_error leaves to this where it is not NULL; 0 where
+    /// there are none.  (8.11)
+    double (*amplified_error)(void *user, double t, const double *y, const double *e,
+                              const struct ct_tolerance *tolerance);
 
     /// dy (ny, out) = f(t, y).
     enum ct_eval (*rhs)(void *user, double t, const double *y, double *dy);
@@ -216,6 +220,11 @@ struct ct_method {
     /// `step`.
     void (*dense)(const struct ct_problem *p, double h, double theta, const double *y,
                   const double *y1, void *work, double *out);
+    /// *err (out): what the outputs that amplify err by in that point, where 1 is the tolerance; y is overwritten. NULL: no more
+    /// than at the end of the step.
+    enum ct_eval (*dense_error)(const struct ct_problem *p, double t, double h, double theta,
+                                double *y, void *work, double *err,
+                                struct ct_integrate_stats *stats);
 };
 
 extern const struct ct_method *const ct_methods[];

@@ -34,7 +34,6 @@ struct ct_radau {
     double *d;                   // a motion, or change of speed  (nu)
     double *gain, *defect;       // of quadratures: over h; error over h / GAMMA  (ny)
     double *power, *power1;      // their rates at both ends  (ny)
-    double largest;              // acceleration at the end of steps so far
     // speeds in the error, see radau_error.c
     bool is_eased;    // they were counted by what is slow of them at the last look
     int unlooked;     // steps until the next one
@@ -78,17 +77,21 @@ enum ct_eval ct_radau_estimate(struct ct_radau *s, const struct ct_problem *p,
                                const struct ct_tolerance *tol, double t, const double *y,
                                const double *dy, double *y1, double *dy1, double *err,
                                struct ct_integrate_stats *stats);
-/// That of outputs and quadratures, if it is more. Of what is much faster than steps can follow, an error of outputs does not
-/// count: it is damped, and where outputs are forces of very stiff springs the rest is beyond the digits of places.
-enum ct_eval ct_radau_look_at_outputs(struct ct_radau *s, const struct ct_problem *p, double t1,
-                                      const double *y, const double *dy,
-                                      const struct ct_tolerance *eased, double *y1, double *dy1,
-                                      double *err, struct ct_integrate_stats *stats);
+/// That of outputs and quadratures, where it is more than err, the one of the states.
+double ct_radau_error_of_outputs(struct ct_radau *s, const struct ct_problem *p, double t1,
+                                 const double *y, const struct ct_tolerance *eased,
+                                 const double *y1, double err);
 /// The tolerance of the estimate for one of the step, found once as long as it is the same.
 const struct ct_tolerance *ct_radau_ease(struct ct_radau *s,
                                          const struct ct_tolerance *tolerance);
-/// Are forces at the end of the step as they were in the iteration, to the tolerance? Where stiff ones turn within the step,
-/// corrections that are small as motions leave large errors of forces, which outputs may consist of.
-bool ct_radau_is_balanced(struct ct_radau *s, double rtol, const double *dy1);
+/// Has the iteration come so far that outputs that amplify, at the end of the step y1, dy1, have what the tolerance asks?
+/// Corrections that are small as motions leave large errors of stiff forces.
+double ct_radau_imbalance(struct ct_radau *s, const struct ct_problem *p,
+                          const struct ct_tolerance *eased, double t1, const double *y1,
+                          const double *dy1);
+/// ct_method.dense_error; slope: weights of the stages in the rates there.
+enum ct_eval ct_radau_dense_error(struct ct_radau *s, const struct ct_problem *p, double t,
+                                  const double *slope, double *y, double *err,
+                                  struct ct_integrate_stats *stats);
 
 #endif

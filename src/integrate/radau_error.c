@@ -9,6 +9,9 @@
 //
 // with the places e_d. Of a vibration of omega it leaves c^2/(c^2 + omega^2). The motion feels the energy of the rest, so that is
 // held to the root of the tolerance.
+//
+// Outputs that amplify errors of states, as forces of stiff springs do, (8.11), have errors of their own: at the end of the step, of
+// what the iteration has left, and between steps.
 // Source: Hairer and Wanner (1996), IV.8, key hairer1996; formulation 8.4.
 #include "integrate/radau.h"
 
@@ -19,11 +22,9 @@
 // not see it, over 1e5 radians, less than ten times that tolerance is lost.  (8.7)
 static const double near_zero = 0.05;
 
-// Filtered again, the error of a vibration of h omega radians in a step is less by 1/(1 + (h omega/GAMMA)^2): with this part
-// left it turns five times and more in each.
-static const double unfollowed = 0.01;
-// With derivatives from the end of the step an estimate must be this much smaller, if the first is to be one of directions only.
-static const double turned = 0.03;
+// Outputs that amplify see what the step before has left of speeds, not what this one leaves: its error counts for at least so much,
+// (0.9/1.5)^4, so that steps grow by no more than half.
+static const double growing = 0.13;
 
 // Speeds are eased where less than this part of the error is left then; looked at every so many steps where they were not, and
 // where they are too large.
@@ -127,80 +128,76 @@ const struct ct_tolerance *ct_radau_ease(struct ct_radau *s,
     return &s->eased;
 }
 
-// The error of places and speeds at the end of the step, once more, by derivatives from there. The first estimate knows
-// stiff forces as they are directed at the second stage: errors along what has turned since become forces.
-static enum ct_eval estimate_at_end(struct ct_radau *s, double t1, const double *y,
-                                    const double *dy, const double *y1, const double *dy1,
-                                    struct ct_integrate_stats *stats)
-{
-    struct ct_iteration *it = s->it;
-    const int nq = s->dae->nq;
-    const double c = GAMMA / s->now.h;
-    it->has_tangent = false;
-    const enum ct_eval e = ct_iteration_refresh(it, t1, y1, y1 + nq, dy1 + nq,
-                                                s->now.lam + (STAGES - 1) * it->m, stats);
-    if (e != CT_EVAL_OK)
-        return e;
-    if (!ct_iteration_factor(it, c, c * c, 0, stats))
-        return CT_EVAL_RETRY;
-    filter(s, y + nq, dy + nq);
-    return CT_EVAL_OK;
-}
-
-// The error filtered by the same factors again, which leaves of it what is not stiff.
-static void filter_again(struct ct_radau *s)
+// What a defect of accelerations, off (nu), is as an error of places and speeds, which goes behind those of the step: what the
+// stiff forces that balance it are changed by.
+static struct ct_radau_stages answer(struct ct_radau *s, const double *off)
 {
     const struct ct_iteration *it = s->it;
+    const struct ct_radau_stages estimate = s->change;
     const int nu = it->nu, m = it->m;
-    const double c = it->c, *d = s->change.d, *u = s->change.u;
-    for (int k = 0; k < nu; k++) {
-        s->F[k] = u[k] - c * d[k];
-        s->r[k] = 0;
-    }
+    s->change.d += nu;
+    s->change.u += nu;
+    s->change.lam += m;
+    s->change.eta += m;
+    memset(s->F, 0, (size_t)nu * sizeof *s->F);
+    memset(s->r, 0, (size_t)nu * sizeof *s->r);
     for (int j = 0; j < nu; j++)
         for (int k = 0; k < nu; k++)
-            s->r[k] -= c * it->M[k + nu * j] * u[j];
+            s->r[k] += it->M[k + nu * j] * off[j];
     for (int i = 0; i < m; i++)
         s->phi[i] = s->v[i] = 0;
     ct_radau_solve(s, nu, m);
+    const struct ct_radau_stages found = s->change;
+    s->change = estimate;
+    return found;
 }
 
-bool ct_radau_is_balanced(struct ct_radau *s, double rtol, const double *dy1)
+double ct_radau_imbalance(struct ct_radau *s, const struct ct_problem *p,
+                          const struct ct_tolerance *eased, double t1, const double *y1,
+                          const double *dy1)
 {
     const int nq = s->dae->nq, nu = s->dae->nu, last = STAGES - 1;
-    double off = 0, size = 0;
+    if (!p->amplified_error)
+        return 0;
     ct_radau_weigh(s->rate, s->slope[last], s->now.u, nu);
-    for (int k = 0; k < nu; k++) {
-        off = ct_larger(off, fabs(dy1[nq + k] - s->rate[k]));
-        size = ct_larger(size, fabs(s->rate[k]));
-    }
-    if (!(off <= rtol * ct_larger(s->largest, size)))
-        return false;
-    s->largest = ct_larger(s->largest, size);
-    return true;
+    for (int k = 0; k < nu; k++)
+        s->rate[k] -= dy1[nq + k];
+    const struct ct_radau_stages off = answer(s, s->rate);
+    return ct_iteration_amplified(s->it, p, eased, t1, y1, off.d, off.u);
 }
 
-enum ct_eval ct_radau_look_at_outputs(struct ct_radau *s, const struct ct_problem *p, double t1,
-                                      const double *y, const double *dy,
-                                      const struct ct_tolerance *eased, double *y1, double *dy1,
-                                      double *err, struct ct_integrate_stats *stats)
+enum ct_eval ct_radau_dense_error(struct ct_radau *s, const struct ct_problem *p, double t,
+                                  const double *slope, double *y, double *err,
+                                  struct ct_integrate_stats *stats)
+{
+    const int nq = s->dae->nq, nu = s->dae->nu;
+    double *dy = s->defect;
+    const enum ct_eval e = ct_stepper_rhs(p, t, y, dy, stats);
+    if (e != CT_EVAL_OK)
+        return e;
+    ct_radau_weigh(s->rate, slope, s->now.u, nu);
+    for (int k = 0; k < nu; k++)
+        s->rate[k] -= dy[nq + k];
+    const struct ct_radau_stages off = answer(s, s->rate);
+    *err = ct_iteration_amplified(s->it, p, &s->eased, t, y, off.d, off.u);
+    return CT_EVAL_OK;
+}
+
+double ct_radau_error_of_outputs(struct ct_radau *s, const struct ct_problem *p, double t1,
+                                 const double *y, const struct ct_tolerance *eased,
+                                 const double *y1, double err)
 {
     const struct ct_tolerance outputs = {eased->rtol, near_zero * eased->atol};
     const struct ct_radau_stages *e = &s->change;
-    const double states = *err;
     const int first = s->dae->nq + s->dae->nu;
-    *err = ct_iteration_error(s->it, p, &outputs, t1, y1, e->d, e->u, states);
-    if (states <= 1 && *err > 1) {
-        const enum ct_eval eval = estimate_at_end(s, t1, y, dy, y1, dy1, stats);
-        if (eval != CT_EVAL_OK)
-            return eval;
-        const double all = ct_iteration_error(s->it, p, &outputs, t1, y1, e->d, e->u, states);
-        filter_again(s);
-        const double slow = ct_iteration_error(s->it, p, &outputs, t1, y1, e->d, e->u, states);
-        const double better = slow < unfollowed * all ? slow : all;
-        *err = better < turned * *err ? better : *err;
-        s->it->c = s->it->e = 0; // the complex factors are not there
-    }
-    *err = ct_larger(*err, ct_stepper_largest(p, eased, first, y, y1, s->defect));
-    return CT_EVAL_OK;
+    err = ct_iteration_error(s->it, p, &outputs, t1, y1, e->d, e->u, err);
+    err = ct_larger(err, ct_stepper_largest(p, eased, first, y, y1, s->defect));
+    if (!(err <= 1) || !p->amplified_error)
+        return err;
+    const double amplified = ct_iteration_amplified(s->it, p, &outputs, t1, y1, e->d, e->u);
+    if (!(amplified > 0))
+        return err;
+    // what is left of speeds is a force that is the larger the shorter the step is, gone in the next one
+    const double part = s->is_fresh ? 1 : ct_smaller(1, s->now.h / s->before.h);
+    return ct_larger(err, ct_larger(part * amplified, growing));
 }

@@ -144,6 +144,17 @@ static double find_pace(const struct ct_stiffness *s, const double *y)
     return speed / fmin(place, 1);
 }
 
+// The same from rest, by accelerations s->f.
+static double find_departure(const struct ct_stiffness *s, const double *y)
+{
+    double place = 0, change = 0;
+    for (int i = 0; i < s->first; i++)
+        place = fmax(place, fabs(y[i]));
+    for (int i = s->first; i < s->last; i++)
+        change = fmax(change, fabs(s->f[i]));
+    return sqrt(change / fmin(place, 1));
+}
+
 static bool test(struct ct_stiffness *s, double t, const double *y)
 {
     const double steps = (double)(s->count - s->window_steps);
@@ -176,6 +187,17 @@ bool ct_stiffness_watch(struct ct_stiffness *s, double t, const double *y, doubl
     const bool is_due = s->in_a_row >= suspicious_tests && s->count >= s->next_trial;
     const bool is_overtaken = s->step < s->rival * s->evaluations;
     return (is_due || is_overtaken) && end - t > steps_worth_it * s->step;
+}
+
+bool ct_stiffness_expect(struct ct_stiffness *s, double t, const double *y, double end,
+                         const struct ct_method *method, double rtol)
+{
+    if (s->first == s->last || !find_fast(s, t, y))
+        return false;
+    const bool is_far = s->fast > far_off * fmax(find_pace(s, y), find_departure(s, y));
+    s->step = unfollowed_step * pow(rtol, 1. / method->order) / s->fast;
+    s->evaluations = method->tableau->stages - 1;
+    return is_far && end - t > steps_worth_it * s->step;
 }
 
 void ct_stiffness_put_off(struct ct_stiffness *s, double t, double spent,

@@ -60,6 +60,10 @@ int ct_stiffness_fastest(struct ct_stiffness *s, double t, const double *y);
 /// After each accepted step to t, y; end: of the run. True if a trial is worth its work now: tests were suspicious and
 /// there are many steps to come.
 bool ct_stiffness_watch(struct ct_stiffness *s, double t, const double *y, double end);
+/// Before the first step from t, y of an explicit method: would it make many steps because of vibrations that are far from the
+/// motion, if it follows them to rtol? Their pace is that of ct_stiffness_pace then.
+bool ct_stiffness_expect(struct ct_stiffness *s, double t, const double *y, double end,
+                         const struct ct_method *method, double rtol);
 /// After a trial that was lost, at time t for the work `spent`: not again before the number of steps has doubled, nor
 /// before steps have cost many times as much.
 void ct_stiffness_put_off(struct ct_stiffness *s, double t, double spent,

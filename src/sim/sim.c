@@ -373,6 +373,14 @@ static void explain_change(struct ct_sim *sim)
     const char *until = isnan(r->returned_at)
                           ? ""
                           : ct_arena_printf(sim->own.model, " to t = %.3g s", r->returned_at);
+    if (isnan(r->gain)) {
+        sim->method_why = ct_arena_printf(sim->own.model,
+                                          "automatic, but %s from the start%s: outputs feel "
+                                          "errors of motions of %.2g 1/s that "
+                                          "are possible",
+                                          sim->run_options.stiff_method->name, until, r->fast);
+        return;
+    }
     sim->method_why = ct_arena_printf(sim->own.model,
                                       "automatic, but %s from t = %.3g s%s: stiff, motions of "
                                       "%.2g 1/s are possible where there "

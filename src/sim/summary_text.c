@@ -256,6 +256,11 @@ void ct_sim_print_summary(const struct ct_sim *sim, FILE *out)
         print_method(out, sim);
     fprintf(out, "error        energy drift %.2g, constraints %.2g, their rates %.2g\n",
             r->energy_drift, r->position_constraint, r->velocity_constraint);
+    if (!sim->is_followed && r->blunt >= 0)
+        fprintf(out,
+                "rounding     one of coordinates is %.1e of the largest %s: steps cannot be "
+                "held to less\n",
+                r->rounding, sim->system->equations.result[r->blunt].name);
     print_singular(out, sim);
     print_estimate(out, sim);
     fprintf(out,

@@ -88,14 +88,9 @@ static double try_implicit(struct ct_run *r, const struct ct_problem *p,
     return ct_trial_pace(&trial);
 }
 
-// Over to the implicit method if it gets farther for its work. True: it does.
-static bool go_implicit(struct ct_run *r, struct ct_problem *p,
-                        const struct ct_integrate_options *io)
+// What the implicit method needs, and the pace of the explicit one to compare it with.
+static void prepare_implicit(struct ct_run *r, struct ct_problem *p)
 {
-    // What is counted is not quite what is spent, and its errors are larger; more so where vibrations are no longer followed: a
-    // slider-crank of flexible rods gained no time from 2.8 times as far, and erred by the tolerance in place of a thousandth.
-    const double least_gain = r->stiffness->is_far ? 5 : 2;
-    struct ct_run_report *report = r->report;
     if (!p->dae) {
         r->o->want_residual(r->o->user);
         ct_machine_add_residual(r->arena, r->m);
@@ -103,14 +98,18 @@ static bool go_implicit(struct ct_run *r, struct ct_problem *p,
     }
     r->method = r->o->stiff_method; // what follows a step depends on it
     r->s->nearness = 1;
-    const struct ct_cost cost = r->implicit.cost = find_cost(r);
-    r->explicit_pace = ct_stiffness_pace(r->stiffness, &cost);
-    const double gain = try_implicit(r, p, io, &cost) / r->explicit_pace;
-    if (gain < least_gain) {
-        r->method = r->o->method;
-        return false;
-    }
-    r->implicit = (struct ct_trial){.cost = cost, .stats = &r->stats, .t0 = io->t0};
+    r->implicit.cost = find_cost(r);
+    r->explicit_pace = ct_stiffness_pace(r->stiffness, &r->implicit.cost);
+}
+
+// It goes on from here. gain: NAN where there was no trial.
+static void take_implicit(struct ct_run *r, struct ct_integrate_options *io, double gain)
+{
+    struct ct_run_report *report = r->report;
+    io->first_step = 0;
+    io->rtol = r->o->stiff_rtol;
+    io->atol = r->o->stiff_atol;
+    r->implicit = (struct ct_trial){.cost = r->implicit.cost, .stats = &r->stats, .t0 = io->t0};
     if (isnan(report->changed_at)) {
         report->changed_at = io->t0;
         report->fast = r->stiffness->fast;
@@ -118,6 +117,22 @@ static bool go_implicit(struct ct_run *r, struct ct_problem *p,
         report->gain = gain;
     }
     report->returned_at = NAN;
+    report->method = r->method;
+}
+
+// Over to the implicit method if it gets farther for its work. True: it does.
+static bool go_implicit(struct ct_run *r, struct ct_problem *p, struct ct_integrate_options *io)
+{
+    // What is counted is not quite what is spent, and its errors are larger; more so where vibrations are no longer followed: a
+    // slider-crank of flexible rods gained no time from 2.8 times as far, and erred by the tolerance in place of a thousandth.
+    const double least_gain = r->stiffness->is_far ? 5 : 2;
+    prepare_implicit(r, p);
+    const double gain = try_implicit(r, p, io, &r->implicit.cost) / r->explicit_pace;
+    if (gain < least_gain) {
+        r->method = r->o->method;
+        return false;
+    }
+    take_implicit(r, io, gain);
     return true;
 }
 
@@ -128,9 +143,7 @@ static void reconsider(struct ct_run *r, struct ct_problem *p, struct ct_integra
     io->atol = r->o->stiff_atol;
     const bool was_implicit = r->method->is_implicit;
     io->first_step = was_implicit ? 0 : io->t0 - r->t_before;
-    if (!was_implicit && go_implicit(r, p, io)) {
-        io->first_step = 0;
-    } else {
+    if (was_implicit || !go_implicit(r, p, io)) {
         if (was_implicit)
             r->report->returned_at = io->t0;
         r->method = r->o->method;
@@ -156,6 +169,45 @@ static void add_stats(struct ct_integrate_stats *sum, const struct ct_integrate_
     sum->last_time = s->last_time;
 }
 
+// Outputs that amplify errors of states feel what an explicit method leaves of vibrations, whose errors go on undamped, long
+// before its steps are suspicious: a method that damps them begins, where there are none yet, and goes on as long as it is not
+// slower than the other would have to be.
+static bool begins_implicit(struct ct_run *r, const struct ct_run_options *o,
+                            struct ct_stiffness *stiffness)
+{
+    const struct ct_tolerance tolerance = {o->rtol, o->atol};
+    const double *y = ct_run_state(r);
+    if (!r->fidelity || !o->method->tableau)
+        return false;
+    const double before = ct_run_before(r, 0);
+    const bool is_due
+        = ct_amplifier_any(ct_fidelity_amplifier(r->fidelity), before, y, &tolerance)
+       && ct_stiffness_expect(stiffness, 0, y, o->duration, o->method, o->rtol);
+    ct_machine_set(r->m, before, y);
+    ct_machine_constraint(r->m);
+    ct_embed_renew(r->s);
+    return is_due;
+}
+
+static enum ct_eval rhs(void *user, double t, const double *y, double *dy)
+{
+    return ct_run_rhs(user, t, y, dy);
+}
+
+bool ct_run_begins_implicit(struct ct_run *r, const struct ct_run_options *o)
+{
+    const int nq = (int)r->m->nq, last = nq + (int)r->m->nu;
+    if (!o->stiff_method || o->step > 0)
+        return false;
+    if (!r->ahead) {
+        struct ct_problem *p = CT_NEW(r->arena, struct ct_problem);
+        *p = (struct ct_problem){.user = r, .ny = (int)r->ny, .rhs = rhs};
+        r->ahead = ct_stiffness_create(r->arena, p, &r->stats, o->wanted, nq, last);
+    }
+    r->ahead->fast = 0; // nothing is left of other runs
+    return begins_implicit(r, o, r->ahead);
+}
+
 // From start to end, with another method from where that pays.
 bool ct_run_march(struct ct_run *r, struct ct_problem *p, struct ct_integrate_options io)
 {
@@ -164,6 +216,10 @@ bool ct_run_march(struct ct_run *r, struct ct_problem *p, struct ct_integrate_op
     if (r->o->stiff_method && io.step == 0)
         r->stiffness = ct_stiffness_create(r->arena, p, &r->stats, r->o->wanted, (int)r->m->nq,
                                            (int)(r->m->nq + r->m->nu));
+    if (r->stiffness && begins_implicit(r, r->o, r->stiffness)) {
+        prepare_implicit(r, p);
+        take_implicit(r, &io, NAN);
+    }
     for (;;) {
         r->is_suspect = false;
         const bool ok = ct_integrate(r->ctx, r->method, p, &io, r->y, &r->stats);

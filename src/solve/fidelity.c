@@ -26,6 +26,8 @@ static const double least_size = 1e6, most_precise = 16;
 struct ct_fidelity {
     struct ct_machine *m;
     struct ct_program program;
+    struct ct_amplifier *amplifier;
+    int *result; // (n) of the equations
     size_t ny;
     struct ct_fidelity_record record;
     double *at, *probed; // (n) g there
@@ -64,42 +66,40 @@ const bool *ct_fidelity_asked_speeds(struct ct_arena *a, const struct ct_equatio
     return asked;
 }
 
-bool ct_fidelity_amplifies(struct ct_fidelity *p)
-{
-    const double most = 1e4, step = 1e-6,
-                 golden = 0.618033988749895; // all steps differ, so that none cancel
-    struct ct_machine *m = p->m;
-    double *q = m->input + m->at_q, worst = 0;
-    ct_program_run(&p->program, m->input);
-    memcpy(p->at, p->program.out, p->record.n * sizeof *p->at);
-    memcpy(p->y, q, m->nq * sizeof *q);
-    for (size_t i = 0; i < m->nq; i++)
-        q[i] += step * (1 + fmod(golden * (double)i, 1));
-    ct_program_run(&p->program, m->input);
-    for (size_t i = 0; i < p->record.n; i++)
-        worst = fmax(worst, fabs(p->program.out[i] - p->at[i]));
-    memcpy(q, p->y, m->nq * sizeof *q);
-    return !(worst <= most * step);
-}
-
 struct ct_fidelity *ct_fidelity_create(struct ct_arena *a, struct ct_machine *m)
 {
     const struct ct_equations *e = m->e;
     ct_ex *g = CT_NEWN(a, ct_ex, e->nresult + 1);
+    int *result = CT_NEWN(a, int, e->nresult + 1);
     size_t n = 0;
     for (size_t i = 0; i < e->nresult; i++)
-        if (is_controlled(e, e->result[i].value))
+        if (is_controlled(e, e->result[i].value)) {
+            result[n] = (int)i;
             g[n++] = e->result[i].value;
+        }
     if (!n)
         return NULL;
     struct ct_fidelity *p = CT_NEW(a, struct ct_fidelity);
-    *p = (struct ct_fidelity){.m = m, .ny = m->nq + m->nu + 1};
+    *p = (struct ct_fidelity){.m = m, .ny = m->nq + m->nu + 1, .result = result};
     ct_machine_compile(a, m, e->x, g, n, &p->program);
     p->record = ct_fidelity_record(a, n);
     p->at = CT_NEWN(a, double, n);
     p->probed = CT_NEWN(a, double, n);
     p->y = CT_NEWN(a, double, p->ny);
+    p->amplifier = ct_amplifier_create(a, m, &p->program, n);
     return p;
+}
+
+struct ct_amplifier *ct_fidelity_amplifier(struct ct_fidelity *p)
+{
+    return p->amplifier;
+}
+
+int ct_fidelity_blunt(struct ct_fidelity *p, double t, const double *y, double wanted,
+                      double *part)
+{
+    const int i = ct_amplifier_blunt(p->amplifier, t, y, p->record.largest, wanted, part);
+    return i < 0 ? -1 : p->result[i];
 }
 
 const struct ct_program *ct_fidelity_program(const struct ct_fidelity *p)
@@ -165,7 +165,7 @@ double ct_fidelity_judge(struct ct_fidelity_record *r, const double *at, const d
         const double wanted = tolerance->rtol * size + tolerance->atol;
         is_felt |= !(unfelt * size >= least_size * rounding)
                 || !(unfelt * wanted >= most_precise * rounding);
-        if (!(size >= least_size * rounding))
+        if (!(size >= least_size * rounding) || (r->apart && ct_amplifier_has(r->apart, i)))
             continue;
         const double part = (off[i] - at[i]) / ct_larger(most_precise * rounding, wanted);
         sum += part * part;
@@ -192,6 +192,7 @@ void ct_fidelity_keep(struct ct_fidelity_record *r)
 void ct_fidelity_start(struct ct_fidelity *p)
 {
     ct_fidelity_clear(&p->record);
+    ct_amplifier_start(p->amplifier);
 }
 
 // g at p->y.
@@ -233,8 +234,9 @@ static double look(struct ct_fidelity *p, double t, const double *y, const doubl
 }
 
 double ct_fidelity_error(struct ct_fidelity *p, double t, const double *y, const double *e,
-                         const struct ct_tolerance *tolerance, double states)
+                         const struct ct_tolerance *tolerance, double states, bool is_implicit)
 {
+    p->record.apart = is_implicit ? p->amplifier : NULL;
     if (!ct_fidelity_is_due(&p->record))
         return ct_fidelity_foreseen(&p->record, states);
     return look(p, t, y, e, tolerance, states);

@@ -9,6 +9,7 @@
 #define CT_SOLVE_FIDELITY_H
 
 #include "integrate/problem.h"
+#include "solve/amplifier.h"
 #include "solve/machine.h"
 
 struct ct_fidelity;
@@ -17,9 +18,6 @@ struct ct_fidelity;
 struct ct_fidelity *ct_fidelity_create(struct ct_arena *a, struct ct_machine *m);
 /// Is output i made of more than time and states, or the total energy?
 bool ct_fidelity_is_demanding(const struct ct_equations *e, size_t i);
-/// Does an output change by more than 10 000 per metre or radian of the places, as forces of stiff springs do, but no lengths? What is held to
-/// T/100 in places is then not held to T in it. At the machine's input, which stays.
-bool ct_fidelity_amplifies(struct ct_fidelity *p);
 /// Per speed (nu, arena a): is it an output? NULL, for all, where one is demanding: accelerations and reactions feel every
 /// vibration, and the total energy is a check of all that moves.
 const bool *ct_fidelity_asked_speeds(struct ct_arena *a, const struct ct_equations *e);
@@ -27,11 +25,20 @@ const bool *ct_fidelity_asked_speeds(struct ct_arena *a, const struct ct_equatio
 void ct_fidelity_start(struct ct_fidelity *p);
 /// Root mean square over the outputs of their errors at y (ny) for errors e (ny), where 1 is the tolerance; `states` is the
 /// same of the states. As long as outputs are not nearly as bad as those, or the ratio of both is steady, only every eighth or
-/// sixteenth step is looked at; else that ratio tells, or 0.
+/// sixteenth step is looked at; else that ratio tells, or 0. Where the method is implicit those that amplify are left to
+/// ct_amplifier_error.
 double ct_fidelity_error(struct ct_fidelity *p, double t, const double *y, const double *e,
-                         const struct ct_tolerance *tolerance, double states);
+                         const struct ct_tolerance *tolerance, double states, bool is_implicit);
 /// The last step that was looked at is accepted.
 void ct_fidelity_accept(struct ct_fidelity *p);
+
+/// Those among the outputs that amplify.
+struct ct_amplifier *ct_fidelity_amplifier(struct ct_fidelity *p);
+
+/// The result, of those that are controlled, with the fewest digits: one rounding of states is *part (out) of its largest value so
+/// far; -1 where steps can be held to `wanted` of all.
+int ct_fidelity_blunt(struct ct_fidelity *p, double t, const double *y, double wanted,
+                      double *part);
 
 // ---- for runs side by side, which evaluate outputs themselves --------------------------------------
 
@@ -47,7 +54,8 @@ struct ct_fidelity_record {
     int skip;      // steps that are not looked at
     int between;   // of them, planned at the last look
     int unprobed;  // looks at which rounding is not measured
-    double ratio;  // of the error of outputs to that of states at the last look; 0: not known
+    const struct ct_amplifier *apart; // those that amplify do not count; NULL: all do
+    double ratio; // of the error of outputs to that of states at the last look; 0: not known
 };
 /// Of n outputs; all zero.
 struct ct_fidelity_record ct_fidelity_record(struct ct_arena *a, size_t n);

@@ -356,6 +356,8 @@ bool ct_lanes_load(struct ct_lanes *s, int l, const struct ct_run_options *o)
         || (s->is_used && (o->method != s->method || rank != s->rank))
         || (s->needs_lam && rank != s->nrow))
         return false;
+    if (ct_run_begins_implicit(s->run, o))
+        return false;
     s->rank = rank;
     if (o->method != s->method)
         take_method(s, o->method);

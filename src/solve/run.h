@@ -47,6 +47,7 @@ struct ct_run {
     const struct ct_method *method;   // that steps now
     struct ct_integrate_stats stats;  // of it
     struct ct_stiffness *stiffness;   // watched for; NULL: not
+    struct ct_stiffness *ahead;       // of starts, for ct_run_begins_implicit
     const struct ct_problem *problem; // that is integrated
     bool is_told;                     // that it takes long
     struct ct_trial *trial;           // under way

@@ -87,7 +87,18 @@ static double output_error(void *user, double t, const double *y, const double *
                            const struct ct_tolerance *tolerance, double states)
 {
     struct ct_run *r = user;
-    return ct_fidelity_error(r->fidelity, ct_run_before(r, t), y, e, tolerance, states);
+    return ct_fidelity_error(r->fidelity, ct_run_before(r, t), y, e, tolerance, states,
+                             r->method->is_implicit);
+}
+
+static double amplified_error(void *user, double t, const double *y, const double *e,
+                              const struct ct_tolerance *tolerance)
+{
+    struct ct_run *r = user;
+    if (!r->method->is_implicit)
+        return 0;
+    return ct_amplifier_error(ct_fidelity_amplifier(r->fidelity), ct_run_before(r, t), y, e,
+                              tolerance);
 }
 
 static double residual(void *user, double t, const double *y)
@@ -464,10 +475,13 @@ static bool looks_at_steps(const struct ct_run *r)
 static const bool *find_asked_speeds(struct ct_run *r)
 {
     ct_machine_set(r->m, 0, r->y);
-    if (r->nroot || (r->fidelity && ct_fidelity_amplifies(r->fidelity)))
+    if (r->nroot)
         return NULL;
     return ct_fidelity_asked_speeds(r->arena, r->e);
 }
+
+// Steps of the implicit method are held to this part of what is wanted.
+static const double held_to = 0.1;
 
 bool ct_run_simulate(struct ct_run *r, const struct ct_run_options *o,
                      struct ct_run_report *report)
@@ -483,8 +497,8 @@ bool ct_run_simulate(struct ct_run *r, const struct ct_run_options *o,
         sample[i] = ct_run_sample_time(o, i);
     for (size_t i = 0; i < r->ny; i++)
         watched[i] = i + 1 < r->ny || r->has_power; // the work is as good as the states
-    *report
-        = (struct ct_run_report){.method = o->method, .changed_at = NAN, .returned_at = NAN};
+    *report = (struct ct_run_report){
+        .method = o->method, .changed_at = NAN, .returned_at = NAN, .blunt = -1};
     report->final = CT_NEWN(r->arena, double, r->e->nresult + 1);
     ct_singular_start(r->singular);
     if (r->fidelity)
@@ -512,6 +526,7 @@ bool ct_run_simulate(struct ct_run *r, const struct ct_run_options *o,
                            .asked_speeds = find_asked_speeds(r),
                            .groups = ct_run_groups(r),
                            .output_error = r->fidelity ? output_error : NULL,
+                           .amplified_error = r->fidelity ? amplified_error : NULL,
                            .rhs = rhs,
                            .project = has_constraints(r) ? project : NULL,
                            .accepted = accepted,
@@ -547,6 +562,10 @@ bool ct_run_simulate(struct ct_run *r, const struct ct_run_options *o,
     report->factorizations = r->s->factorizations + report->stats.factorizations;
     report->singular = r->singular;
     report->y = r->y;
+    if (r->fidelity)
+        report->blunt
+            = ct_fidelity_blunt(r->fidelity, ct_run_before(r, report->stats.last_time), r->y,
+                                held_to * o->wanted, &report->rounding);
     if (r->energy_scale > 0)
         report->energy_drift /= r->energy_scale;
     return ok;

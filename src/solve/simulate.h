@@ -49,7 +49,7 @@ void ct_slope_watch(struct ct_slope_report *report, const struct ct_machine *m, 
 struct ct_run_report {
     const struct ct_method *method; // that came to the end
     /// Where the implicit method first took over as the motion was stiff: rates of the fastest motion possible and of
-    /// the one there was [1/s], and how many times as far it got for the same work. changed_at is NaN if it
+    /// the one there was [1/s], and how many times as far it got for the same work (NaN: it began). changed_at is NaN if it
     /// did not, returned_at if it was not last left as not faster any more.
     double changed_at, fast, slow, gain, returned_at;
     struct ct_integrate_stats stats;
@@ -65,6 +65,8 @@ struct ct_run_report {
     struct ct_slope_report *bend; // by bent beam of the equations
     double energy_drift;          // largest |total - total(0)| / scale of the energies
     double position_constraint, velocity_constraint; // largest residuals at samples
+    int blunt;       // result with fewer digits than the tolerance asks for; -1: none
+    double rounding; // what one rounding of states is of its largest value
     int rank;
     long switches;
     long factorizations;
@@ -93,6 +95,8 @@ const double *ct_run_state(const struct ct_run *r);
 const struct ct_groups *ct_run_groups(struct ct_run *r);
 /// The control of outputs; NULL: none is controlled.
 const struct ct_fidelity *ct_run_fidelity(const struct ct_run *r);
+/// Does a run with these options, from the state at the start, begin with the implicit method because of its outputs?
+bool ct_run_begins_implicit(struct ct_run *r, const struct ct_run_options *o);
 /// dy (out) = f(t, y), for y as ct_run_state has it.
 enum ct_eval ct_run_rhs(struct ct_run *r, double t, const double *y, double *dy);
 /// Accelerations, multipliers and results at t, y; out has nresult entries.

@@ -1,0 +1,43 @@
+#!/bin/sh
+# spring_force.sh CASE: with `method: auto` and the tolerances T and parameters of the line CASE in spring_force.txt the outputs of
+# spring_force.yaml err by less than 10 T of their largest values, the force of the spring, 3 m g, at samples every 0.01 s. In
+# it remain the vibration that the spring has from the start, m g/k of that, which a method may damp, and the rounding of
+# coordinates, for which four of k eps l are granted; where that is more than steps are held to, the summary must say so. Fixed
+# steps of 1e-4 s, 20 000 of them, have the force to 2e-7 or its rounding: those of step control must not be more.
+# COTREE is the program, COMPARE the comparison tool.
+set -eu
+folder=$(dirname "$0")
+case=$1
+: "${COTREE:?is the program to test}" "${COMPARE:?is the comparison tool}"
+line=$(grep "^$case " "$folder/spring_force.txt") || { echo "spring_force.sh: $case is not in spring_force.txt" >&2; exit 2; }
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+# shellcheck disable=SC2086
+set -- $line
+tolerances=$(echo "$2" | tr , ' ')
+shift 2
+k=${1#k=}
+for parameter in "$@"; do
+    echo "--set"
+    echo "$parameter"
+done >"$work/set"
+number() { sed -n "s/^ *\"$1\": \([^,]*\),*\$/\1/p" "$work/summary.json"; }
+failed=0
+for T in $tolerances; do
+    # shellcheck disable=SC2046
+    "$COTREE" simulate "$folder/spring_force.yaml" -o "$work/result.csv" --quiet --tolerance "$T" --summary "$work/summary.json" \
+        $(cat "$work/set")
+    awk -v T="$T" -v k="$k" 'BEGIN { print 10 * T; print "force", 10 * T + 9.81/k + 4 * k * 2.22e-16/29.43 }' >"$work/asked"
+    echo "$case at $T: $(number steps) steps, rounding $(number rounding)"
+    "$COMPARE" "$work/result.csv" "$folder/spring_force_$case.reference.csv" "$work/asked" || failed=1
+    awk -v T="$T" -v k="$k" -v steps="$(number steps)" -v told="$(number rounding)" '
+        BEGIN {
+            one = k * 2.22e-16/29.43
+            if (2 * one > 0.2 * T && !(told > one/3 && told < 3 * one)) bad = "rounding is not told"
+            if (2 * one < 0.05 * T && told != "null") bad = "rounding is told where it is nothing"
+            if (steps > 20000) bad = "too many steps"
+            if (bad) print bad
+            exit bad != ""
+        }' || failed=1
+done
+exit "$failed"
