@@ -48,8 +48,18 @@ static bool turns_follower(const struct ct_build *b, size_t i)
     return false;
 }
 
+// Is the farther end of the edge a section of a beam that its frame is not fixed to? A beam that is entered there has the form
+// of articulated bodies (6.9b) only if what it hangs on turns it: an angle from ground is that of its frame.
+static bool enters_section(const struct ct_build *b, size_t i, const int *depth)
+{
+    const int tail = b->wiring[i].tail, head = b->wiring[i].head,
+              end = depth[head] > depth[tail] ? head : tail;
+    const struct ct_flexible *f = ct_flexible_of(b, b->node[end].body);
+    return f && end != f->base;
+}
+
 // Order among equal weights. In a plane the angle of a body weighs as much as that of a joint and gives
-// shorter expressions; a passive joint on a body that turns yields to it.  (2.3)
+// shorter expressions; a passive joint on a body that turns yields to it, but for beams entered at a section.  (2.3)
 static int tie_rank(const struct ct_build *b, size_t i, const int *depth, const int *turned,
                     enum ct_tree_choice choice)
 {
@@ -59,8 +69,8 @@ static int tie_rank(const struct ct_build *b, size_t i, const int *depth, const 
         return -1;
     if (e->kind == CT_EDGE_BODY)
         return b->is_planar && choice == CT_TREE_AUTO ? 1 : last;
-    const bool is_first_turn = turned[tail] == 0 || turned[head] == 0;
-    if ((is_first_turn && !(b->is_planar && turns_follower(b, i)))
+    const bool is_first = turned[tail] == 0 || turned[head] == 0 || enters_section(b, i, depth);
+    if ((is_first && !(b->is_planar && turns_follower(b, i)))
         || (e->kind == CT_EDGE_JOINT && is_active(e->self)))
         return 0;
     return 2 + (depth[tail] < depth[head] ? depth[tail] : depth[head]);

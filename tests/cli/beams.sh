@@ -474,3 +474,26 @@ done | awk '{ work[NR] = $1 } END { print NR == 2 && work[2] < 2.2 * work[1] ? "
 "$COTREE" simulate hinge.yaml --quiet -o turned.csv
 "$COTREE" simulate hinge.yaml --quiet --tree joints -o joints.csv
 difference turned.csv joints.csv | awk '{ print ($1 < 1e-6) ? "same motion" : $0 }'
+echo '-- a beam on its chord is entered at a section: the hinge there turns it, and work is in proportion to the elements'
+cat >chain.yaml <<'END'
+cotree: 1
+parameters: {n: 20}
+bodies:
+  hub: {mass: 1, inertia: 0.01, points: {rim: [0.1, 0, 0]}}
+  rod: {type: beam, length: 1.5, elements: n, density: 2700, E: 7e10, area: 2e-4, Iz: 1e-9, formulation: foreshortening, deformation: [bending-z],
+    frame: chord, points: {tip: length}}
+  link: {mass: 0.5, inertia: 0.01, com: [0.2, 0, 0]}
+joints:
+  pin: {type: revolute, from: ground, to: hub, initial: {u: 1}}
+  near: {type: revolute, from: hub.rim, to: rod}
+  far: {type: revolute, from: rod.tip, to: link}
+gravity: [0, -9.81, 0]
+outputs: [link.position.y]
+simulation: {duration: 0.1, samples: 3, tolerance: 1e-9}
+END
+for n in 20 40; do
+  "$COTREE" check chain.yaml --set n=$n | sed -n 's/^evaluation *\([0-9]*\) operations.*/\1/p'
+done | awk '{ work[NR] = $1 } END { print NR == 2 && work[2] < 2.2 * work[1] ? "in proportion" : work[1] " " work[2] }'
+"$COTREE" simulate chain.yaml --set n=4 --quiet -o turned.csv
+"$COTREE" simulate chain.yaml --set n=4 --quiet --tree absolute -o absolute.csv
+difference turned.csv absolute.csv | awk '{ print ($1 < 1e-6) ? "same motion" : $0 }'
