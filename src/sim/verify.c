@@ -114,6 +114,10 @@ static void judge(const struct ct_sim *sim, const struct comparison *c, double m
 {
     const size_t n = sim->system->equations.nresult;
     const double wanted = held_tolerances * sim->tolerance;
+    const struct ct_equations *q = &sim->system->equations;
+    for (size_t i = 0; i < n; i++) // the total energy is a sum that may cancel
+        if (q->result[i].value.id == q->total.id)
+            c->output[i].scale = fmax(c->output[i].scale, sim->report.energy_scale);
     find_relative(c->output, n);
     for (size_t i = 0; i < n; i++) {
         struct ct_output_error *o = &c->output[i];

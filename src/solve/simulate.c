@@ -566,6 +566,7 @@ bool ct_run_simulate(struct ct_run *r, const struct ct_run_options *o,
         report->blunt
             = ct_fidelity_blunt(r->fidelity, ct_run_before(r, report->stats.last_time), r->y,
                                 held_to * o->wanted, &report->rounding);
+    report->energy_scale = r->energy_scale;
     if (r->energy_scale > 0)
         report->energy_drift /= r->energy_scale;
     return ok;

@@ -60,10 +60,11 @@ struct ct_run_report {
             beyond_since; // from when on the indicator itself is beyond the limit; negative: it is not
         double left_at; // the same when the mean passed the limit, too; negative: it never did
         double off_since; // from when on the error foretold is beyond it; negative: it is not
-        struct ct_swings swings;  // that foretell it
-    } * validity;                 // by indicator of the equations
-    struct ct_slope_report *bend; // by bent beam of the equations
-    double energy_drift;          // largest |total - total(0)| / scale of the energies
+        struct ct_swings swings;                     // that foretell it
+    } * validity;                                    // by indicator of the equations
+    struct ct_slope_report *bend;                    // by bent beam of the equations
+    double energy_scale;                             // the largest energy
+    double energy_drift;                             // largest |total - total(0)| over it
     double position_constraint, velocity_constraint; // largest residuals at samples
     int blunt;       // result with fewer digits than the tolerance asks for; -1: none
     double rounding; // what one rounding of states is of its largest value
