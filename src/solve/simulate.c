@@ -216,6 +216,7 @@ bool ct_run_begin(struct ct_run *r, const struct ct_start *start)
 {
     ct_start_apply(start, r->m, r->y);
     ct_machine_constraint(r->m);
+    r->s->sigma_best = 0;
     if (!ct_embed_choose(r->s))
         return false;
     // measured on other trees, the loops close to rounding; the rest is taken off here
