@@ -101,8 +101,11 @@ struct ct_flexible {
     struct ct_shape curving[4][4]; // integral of the sections' rotation gradients, as E
     struct ct_follow *follow;      // NULL: no rotation follows (elastic.h)
     double start_missed;           // share of the start that modes or given shapes leave out
-    ct_ex strain;                  // [J], once the stiffness is derived
-    struct ct_inertia *inertia;    // elastic.c
+    double cut; // frequency of modes of which some are kept and some not [rad/s]; else 0
+    int uncut
+        [2]; // then: the nearest numbers of modes, below and above, that keep all or none of these
+    ct_ex strain;               // [J], once the stiffness is derived
+    struct ct_inertia *inertia; // elastic.c
 };
 
 /// Axial displacement of the axis at one place of an element.
