@@ -510,6 +510,8 @@ for kept in 1 2 3 4; do
 done
 echo '-- so is one whose sections follow, between a ball and a hinge, with a body in between'
 cat >ball.yaml <<'END'
+cotree: 1
+bodies:
   hub: {mass: 1, inertia: [0.01, 0.02, 0.03], points: {rim: [0.1, 0, 0]}}
   rod: {type: beam, length: 1.5, elements: 8, mass: lumped, density: 2700, E: 7e9, area: 2e-4, Iy: 2e-9, Iz: 1e-9, formulation: foreshortening,
     deformation: [bending-y, bending-z], frame: chord, points: {half: length/2, tip: length}}
