@@ -138,6 +138,8 @@ void ct_station_partials(struct ct_build *b, const struct ct_flexible *f,
 /// The same without what the elements before its own do in a CHAIN; freedoms that follow behind the coordinates, nelastic + number.
 void ct_station_own_partials(struct ct_build *b, const struct ct_flexible *f,
                              const struct ct_station *s, ct_ex3 *slide, ct_ex3 *turn);
+/// Each coordinate is that of one node; what follows is a sum of them.
+bool ct_flexible_is_nodal(const struct ct_flexible *f);
 /// CHAIN in coordinates of nodes: an element sees its own nodes and the foreshortening at its start, nothing else.
 bool ct_flexible_is_carried(const struct ct_flexible *f);
 /// Dof of the axial shape i of f->line.

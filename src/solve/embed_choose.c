@@ -263,6 +263,7 @@ bool ct_embed_choose(struct ct_embed *s)
         return massless(s, lightest(s));
     s->kappa_chosen = s->kappa;
     s->sigma_chosen = s->sigma;
+    s->sigma_best = fmax(s->sigma_best, s->sigma);
     if (s->m->e->bare_beam)
         return massless(s, bare_speed(s));
     if (s->m->e->solution)

@@ -229,6 +229,7 @@ bool ct_lane_choose(struct ct_lanes *s, int l)
     memcpy(lane->independent, embed->independent, (n - rank) * sizeof *embed->independent);
     lane->kappa_chosen = embed->kappa_chosen;
     lane->sigma_chosen = embed->sigma_chosen;
+    lane->sigma_best = embed->sigma_best;
     lane->strength = (struct ct_strength){0};
     s->kappa[l] = embed->kappa;
     s->sigma[l] = embed->sigma;
@@ -322,8 +323,8 @@ static void start_lane(struct ct_lane *lane, const struct ct_run_options *o)
     lane->control = ct_control_start();
     lane->control.is_starting = true;
     ct_fidelity_clear(&lane->outputs);
-    lane->repeat = ct_repeat_start(0, o->duration);
     lane->tolerance = (struct ct_tolerance){o->rtol, o->atol};
+    lane->repeat = ct_repeat_start(0, o->duration, &lane->tolerance);
     lane->least_rtol = o->least_rtol;
     lane->pivot_last = INFINITY;
     lane->pivot_time = 0;
