@@ -503,15 +503,16 @@ bool ct_integrate(struct ct_ctx *ctx, const struct ct_method *method,
         return ct_error(ctx, nowhere, CT_E_INTEGRATE_OPTION,
                         "the method '%s' is implicit: it needs the residual of the equations",
                         method->name);
+    const struct ct_tolerance tolerance = {options->rtol, options->atol};
     struct ct_driver r = {
         .ctx = ctx,
         .method = method,
         .p = p,
         .o = options,
         .stats = stats,
-        .tolerance = {options->rtol, options->atol},
+        .tolerance = tolerance,
         .t = options->t0,
-        .repeat = ct_repeat_start(options->t0, options->t1),
+        .repeat = ct_repeat_start(options->t0, options->t1, &tolerance),
         .control = ct_control_start(),
         .pace = {.t = options->t0},
         .singular_in = INFINITY,

@@ -11,16 +11,17 @@ static const double usual_turns = 20;
 // For 2000 turns: with less, steps would err by their rounding.
 static const double least_share = 1e-4;
 
-struct ct_repeat ct_repeat_start(double t0, double t1)
+struct ct_repeat ct_repeat_start(double t0, double t1, const struct ct_tolerance *tolerance)
 {
-    return (struct ct_repeat){.t0 = t0, .t1 = t1, .share = 1};
+    const double small = tolerance->rtol > 0 ? tolerance->atol / tolerance->rtol : INFINITY;
+    return (struct ct_repeat){.t0 = t0, .t1 = t1, .small = small, .share = 1};
 }
 
 // A turn is there and back: twice as far as it gets for coordinates, which begin at its end, four times the largest
 // speed. What has not turned yet has not repeated anything.
 static double turns_so_far(const struct ct_repeat *r)
 {
-    const double far_q = sqrt(r->far_q), far_u = sqrt(r->far_u);
+    const double far_q = fmax(sqrt(r->far_q), r->small), far_u = fmax(sqrt(r->far_u), r->small);
     if (!(r->way_q > far_q && r->way_u > far_u))
         return 0;
     return fmin((r->way_q / far_q - 1) / 2, (r->way_u / far_u - 1) / 4);

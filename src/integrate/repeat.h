@@ -2,7 +2,8 @@
 //
 // The error of a step changes the energy and with it the pace of all turns that follow: over n turns the error of the
 // solution grows with n^2. Turns are counted by the ways of all coordinates and of all speeds, against how far they
-// get: the smaller number counts, so that neither small vibrations nor steady rotations are turns.
+// get, and not less than what the tolerance sees as small: the smaller number counts, so that neither vibrations that are
+// small, whether beside the motion or beside a unit, nor steady rotations are turns.
 #ifndef CT_INTEGRATE_REPEAT_H
 #define CT_INTEGRATE_REPEAT_H
 
@@ -10,6 +11,7 @@
 
 struct ct_repeat {
     double t0, t1; // of the run
+    double small;  // distances and speeds below it are measured against the absolute tolerance
     double way_q,
         far_q; // of coordinates: the way so far, the square of the largest distance from the start
     double way_u, far_u; // of speeds: the sum of their changes, the square of the largest
@@ -20,8 +22,8 @@ struct ct_repeat {
 /// What is left of a tolerance at this share, where rtol is not to fall below `least`.
 struct ct_tolerance ct_repeat_tolerance(const struct ct_repeat *r, double rtol, double atol,
                                         double least);
-/// Before the first step; share = 1.
-struct ct_repeat ct_repeat_start(double t0, double t1);
+/// Before the first step, of steps to this tolerance; share = 1.
+struct ct_repeat ct_repeat_start(double t0, double t1, const struct ct_tolerance *tolerance);
 /// A step has ended at t: squared lengths of its change of the coordinates, of their distance from the start, of its
 /// change of the speeds, of the speeds. True if share is another now.
 bool ct_repeat_add(struct ct_repeat *r, double t, double dq, double q, double du, double u);

@@ -32,6 +32,8 @@ enum { CT_MOST_NEWTON = 25 };
 static const double ct_most_change = 1.5;
 // Where strength and sigma have fallen alike, up to so much, strength stands for sigma for longer.
 static const double ct_alike = 1.02, ct_most_change_alike = 4;
+// Pivots count as those of before while their strength is within this factor of what it was.
+static const double ct_same_strength = 1.25;
 // What may be left of the equations against their terms: beyond the first a refinement is made, beyond
 // the second the form is not used.
 static const double ct_left_plain = 1e-13, ct_left_most = 1e-11;

@@ -323,8 +323,8 @@ static void start_lane(struct ct_lane *lane, const struct ct_run_options *o)
     lane->control = ct_control_start();
     lane->control.is_starting = true;
     ct_fidelity_clear(&lane->outputs);
-    lane->repeat = ct_repeat_start(0, o->duration);
     lane->tolerance = (struct ct_tolerance){o->rtol, o->atol};
+    lane->repeat = ct_repeat_start(0, o->duration, &lane->tolerance);
     lane->least_rtol = o->least_rtol;
     lane->pivot_last = INFINITY;
     lane->pivot_time = 0;

@@ -171,7 +171,7 @@ static enum ct_eval accepted(void *user, double t, const double *y, const double
     if (!ct_run_is_followed(r, t, y))
         return CT_EVAL_RETRY;
     r->singular->keeps_rows = r->method->is_implicit && (size_t)r->s->rank < r->m->nrow;
-    if (!ct_singular_foresee(r->singular, t, y, dy, r->pending, r->o->step == 0)) {
+    if (!ct_singular_foresee(r->singular, t, y, dy, r->pending, r->o->step > 0)) {
         r->turning = turning_before;
         r->t_turning = t_before;
         return CT_EVAL_RETRY;
