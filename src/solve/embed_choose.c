@@ -66,6 +66,19 @@ static const char *rotary_of(const struct ct_beam *beam)
                            : "a 'rotary_inertia'";
 }
 
+// The beam at the head of a joint, at its tail, or of an absolute coordinate, whose sections have no inertia: they can be what a joint
+// turns. NULL: none.
+static const struct ct_body *bare_beam_at(const struct ct_model *m, const struct ct_u *u)
+{
+    const struct ct_instance *joint = u->joint < 0 ? NULL : &m->joint[u->joint];
+    const struct ct_body *at[] = {&m->body[joint ? m->frame[joint->to].body : u->body],
+                                  &m->body[joint ? m->frame[joint->from].body : u->body]};
+    for (int i = 0; i < 2; i++)
+        if (at[i]->beam && !at[i]->beam->has_rotary)
+            return at[i];
+    return NULL;
+}
+
 static bool massless(struct ct_embed *s, size_t speed)
 {
     const struct ct_u *u = &s->m->e->u[speed];
@@ -89,6 +102,12 @@ static bool massless(struct ct_embed *s, size_t speed)
                         name, rotary_of(model->body[u->beam].beam));
     const struct ct_mark mark
         = u->joint >= 0 ? model->joint[u->joint].mark : model->body[u->body].instance.mark;
+    const struct ct_body *beam = bare_beam_at(model, u);
+    if (beam)
+        return ct_error(s->ctx, mark, CT_E_MASSLESS,
+                        "coordinate '%s' moves no mass: give beam '%s' %s, or a mass or an "
+                        "inertia to what else it moves",
+                        name, beam->instance.name, rotary_of(beam->beam));
     return ct_error(s->ctx, mark, CT_E_MASSLESS,
                     "coordinate '%s' moves no mass: give a mass or an inertia to what it moves",
                     name);
