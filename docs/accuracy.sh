@@ -374,6 +374,22 @@ section_elements() {
     done
 }
 
+# What the source's figures are put beside: five elements with all terms, 30 s.
+section_source() {
+    echo "| method | steps | set up [s] | run [s] | error at 2, 4, 20 s |"
+    echo "| --- | --- | --- | --- | --- |"
+    while read -r method option; do
+        # shellcheck disable=SC2086 # words
+        run "$reference/B01_N5.yaml" --until 30 --samples 4001 --method "$method" $option
+        printf '| %s | %s | %s | %s | %s |\n' "$(value method)" "$(value steps)" \
+            "$(printf '%s %s %s\n' "$(value read)" "$(value generate)" "$(value compile)" | awk '{ printf "%.2g", $1 + $2 + $3 }')" \
+            "$(value integrate | awk '{ printf "%.2g", $1 }')" "$(error_against "$reference/B01_N5.reference.csv")"
+    done <<'END'
+generalized-alpha --step 0.0075
+auto --tolerance 1e-8
+END
+}
+
 # Errors of the frame: against the exact beam.
 section_frames() {
     echo "| frames | elements of each | clamped: largest lag [m] | error | seconds | on the chord: lag [m] | error |"
@@ -470,7 +486,7 @@ section_machine() {
 
 # ---- the page ------------------------------------------------------------------------------------------------
 
-sections="machine asked asked_beams hard lost elements frames spatial shear figures aims"
+sections="machine asked asked_beams hard lost elements source frames spatial shear figures aims"
 
 # insert SECTION: what $work/section.md has takes the place of the section in the page
 insert() {

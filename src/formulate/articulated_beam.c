@@ -43,6 +43,21 @@ static void add_to(struct ct_exs *x, ct_ex *sum, ct_ex v)
     *sum = ct_ex_add(x, *sum, v);
 }
 
+// Does a freedom that follows stand for itself? In a CHAIN elements see it; else where it turns a section that members hang on.
+static bool has_followers(const struct ct_articulated *w, size_t i)
+{
+    const struct ct_flexible *f = &w->b->flexible[i];
+    if (ct_flexible_is_carried(f))
+        return true;
+    for (size_t k = 1; k < w->s->n; k++) {
+        const struct ct_member *m = &w->s->member[k];
+        for (int j = 0; j < m->nfree && m->beam == (int)i + 1; j++)
+            if (m->screw[j].speed < -f->beam->nelement + 1)
+                return true;
+    }
+    return false;
+}
+
 void ct_articulated_beam_start(struct ct_articulated *w, size_t i)
 {
     struct ct_build *b = w->b;
@@ -50,8 +65,8 @@ void ct_articulated_beam_start(struct ct_articulated *w, size_t i)
     const struct ct_flexible *f = e->f = &b->flexible[i];
     e->n = f->nelastic;
     e->is_carried = ct_flexible_is_carried(f);
-    e->nfollow = e->is_carried ? ct_follow_count(f) : 0;
-    e->nall = e->n + (e->is_carried ? f->beam->nelement : 0) + 2 * e->nfollow;
+    e->nfollow = has_followers(w, i) ? ct_follow_count(f) : 0;
+    e->nall = e->n + (e->is_carried || e->nfollow ? f->beam->nelement : 0) + 2 * e->nfollow;
     const size_t n = (size_t)e->nall;
     e->number = CT_NEWN(b->arena, int, b->eqs->nu + 1);
     for (size_t k = 0; k < b->eqs->nu; k++)
@@ -95,19 +110,6 @@ static int dof_place(const struct ct_articulated_beam *e, int i, int j, int *sig
 {
     const struct ct_freedom *d = ct_dof_freedom(e->f, i, j, sign);
     return d ? freedom_place(e, (int)(d - e->f->freedom)) : -1;
-}
-
-// Freedoms that follow satisfy their sums, which multipliers hold them to.
-static void add_laws(struct ct_exs *x, struct ct_articulated_beam *e)
-{
-    for (int k = 0; k < e->nfollow; k++) {
-        int n;
-        const struct ct_follow_term *law = ct_follow_law(e->f, k, &n);
-        *entry_of(e, multiplier(e, k), follower(e, k)) = CT_EX_ONE;
-        for (int i = 0; i < n; i++)
-            *entry_of(e, multiplier(e, k), freedom_place(e, law[i].freedom))
-                = ct_ex_const(x, law[i].by);
-    }
 }
 
 // Mass of the elements by their own dofs and c.
@@ -166,7 +168,6 @@ static void add_beam(struct ct_articulated *w, int i, struct ct_articulated_beam
     ct_flexible_rows(b, f, &motion, CT_BIAS, w->row);
     if (e->is_carried) {
         add_elements(w, k, e, A, &c);
-        add_laws(x, e);
     } else
         ct_flexible_columns(b, f, &c, w->M);
     k->n = ct_ex3_add(x, k->n, ct_ex33_apply(x, A, T));
@@ -370,6 +371,33 @@ static void free_followers(struct ct_articulated *w, struct ct_articulated_body 
     }
 }
 
+// Freedoms that follow satisfy their sums, which multipliers hold them to.
+static void add_laws(struct ct_exs *x, struct ct_articulated_beam *e)
+{
+    for (int k = 0; k < e->nfollow; k++) {
+        int n;
+        const struct ct_follow_term *law = ct_follow_law(e->f, k, &n);
+        *entry_of(e, multiplier(e, k), follower(e, k)) = CT_EX_ONE;
+        for (int i = 0; i < n; i++)
+            *entry_of(e, multiplier(e, k), freedom_place(e, law[i].freedom))
+                = ct_ex_const(x, law[i].by);
+    }
+}
+
+// Does anything act on freedoms that follow? Nothing does where sections are turned only for what hangs on hinges or balls.
+static bool feels_followers(struct ct_articulated_beam *e, const struct ct_six *C)
+{
+    for (int k = 0; k < e->nfollow; k++) {
+        const int at = follower(e, k);
+        if (e->is_carried || !ct_ex_is_zero(e->row[at]) || !is_zero(C[at].e))
+            return true;
+        for (int l = 0; l < e->nall; l++)
+            if (!ct_ex_is_zero(*entry_of(e, at, l)))
+                return true;
+    }
+    return false;
+}
+
 static void eliminate_beam(struct ct_articulated *w, int i, struct ct_articulated_beam *e)
 {
     struct ct_exs *x = w->b->x;
@@ -380,21 +408,25 @@ static void eliminate_beam(struct ct_articulated *w, int i, struct ct_articulate
         e->row[j] = ct_ex_neg(x, e->row[j]);
     if (e->is_carried)
         e->is_done[e->n] = true; // c of the first element is zero
+    e->follows = feels_followers(e, k->C);
+    if (e->follows)
+        add_laws(x, e);
     int next = e->n;
-    for (int node = e->f->beam->nelement; node > 0 && e->is_carried; node--) {
+    for (int node = e->f->beam->nelement; node > 0 && (e->is_carried || e->follows); node--) {
         int first = next; // coordinates are numbered node by node
         for (int j = 0; j < FREEDOMS; j++) {
             const int at = freedom_place(e, FREEDOMS * node + j);
             if (at >= 0 && at < first)
                 first = at;
         }
-        free_followers(w, k, e, node);
+        if (e->follows)
+            free_followers(w, k, e, node);
         while (next > first)
             free_coordinate(w, k, e, --next);
-        if (node > 1)
+        if (node > 1 && e->is_carried)
             put_in(w, k, e, node - 1);
     }
-    if (e->is_carried)
+    if (e->follows)
         free_followers(w, k, e, 0);
     while (next > 0)
         free_coordinate(w, k, e, --next);
@@ -413,6 +445,15 @@ void ct_articulated_beam_sum(struct ct_articulated *w, int i)
     add_screws(w, i, e);
     if (i == at->root)
         eliminate_beam(w, i, e);
+}
+
+static ct_ex sum_of_parts(struct ct_exs *x, const struct ct_articulated_beam *e,
+                          const struct ct_freedom *d)
+{
+    ct_ex sum = CT_EX_ZERO;
+    for (int p = 0; p < d->npart; p++)
+        sum = ct_ex_add(x, sum, ct_ex_mul(x, d->part[p].coef, e->a[d->part[p].k]));
+    return sum;
 }
 
 // e'' of all coordinates; A of the root without its own motion by them.
@@ -442,6 +483,9 @@ static void find_accelerations(struct ct_articulated *w, const struct ct_articul
         }
         e->is_done[j] = true;
     }
+    for (int i = 0; i < CT_NODE_FREEDOM * (e->f->beam->nelement + 1) && !e->follows; i++)
+        if (ct_follow_number(e->f, i) >= 0 && e->nfollow)
+            e->a[freedom_place(e, i)] = sum_of_parts(x, e, &e->f->freedom[i]);
 }
 
 void ct_articulated_beam_hand(struct ct_articulated *w, int i)

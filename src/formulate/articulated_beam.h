@@ -38,7 +38,9 @@ struct ct_articulated_body {
 struct ct_articulated_beam {
     const struct ct_flexible *f;
     int n, nall, nfollow;
-    bool is_carried;   // there are c
+    bool is_carried; // there are c
+    bool
+        follows; // what follows is eliminated with its multipliers; else it is known afterwards, as a sum
     int *number;       // by speed: its place, or -1
     ct_ex *M;          // nall x nall, lower triangle; eliminated: entries over the pivot
     ct_ex *row;        // then what is left of the effort, over the pivot

@@ -127,7 +127,7 @@ struct ct_shapes {
 };
 /// Does `modes: n` ask for as many as there are, or more? The nodes' own coordinates then do the same for less.
 bool ct_flexible_keeps_all_modes(struct ct_build *b, struct ct_flexible *f);
-/// Shapes of `modes: n` (flexible_modes.c).  Errors: CT_E_BEAM.
+/// Shapes of `modes: n` (flexible_modes.c); f->cut tells if others of the same frequency are left out.  Errors: CT_E_BEAM.
 bool ct_flexible_reduce(struct ct_build *b, struct ct_flexible *f, struct ct_shapes *out);
 /// Rotations of nodes without inertia and moment (flexible_massless.c). follows (6 per node, out): by freedom, fixed ones
 /// included. False if there are none.

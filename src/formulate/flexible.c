@@ -245,12 +245,17 @@ struct ct_flexible *ct_flexible_of(const struct ct_build *b, int body)
     return NULL;
 }
 
-bool ct_flexible_is_carried(const struct ct_flexible *f)
+bool ct_flexible_is_nodal(const struct ct_flexible *f)
 {
     bool is_nodal = !f->beam->modes && !f->beam->nshape;
     for (int i = 0; i < NKIND * (f->beam->nelement + 1); i++)
         is_nodal = is_nodal && (f->freedom[i].npart <= 1 || ct_follow_number(f, i) >= 0);
-    return is_nodal && f->kinematics == CT_AXIAL_CHAIN;
+    return is_nodal;
+}
+
+bool ct_flexible_is_carried(const struct ct_flexible *f)
+{
+    return f->kinematics == CT_AXIAL_CHAIN && ct_flexible_is_nodal(f);
 }
 
 // ---- stations -----------------------------------------------------------------------------------------------

@@ -101,8 +101,11 @@ struct ct_flexible {
     struct ct_shape curving[4][4]; // integral of the sections' rotation gradients, as E
     struct ct_follow *follow;      // NULL: no rotation follows (elastic.h)
     double start_missed;           // share of the start that modes or given shapes leave out
-    ct_ex strain;                  // [J], once the stiffness is derived
-    struct ct_inertia *inertia;    // elastic.c
+    double cut; // frequency of modes of which some are kept and some not [rad/s]; else 0
+    int uncut
+        [2]; // then: the nearest numbers of modes, below and above, that keep all or none of these
+    ct_ex strain;               // [J], once the stiffness is derived
+    struct ct_inertia *inertia; // elastic.c
 };
 
 /// Axial displacement of the axis at one place of an element.
@@ -135,6 +138,8 @@ void ct_station_partials(struct ct_build *b, const struct ct_flexible *f,
 /// The same without what the elements before its own do in a CHAIN; freedoms that follow behind the coordinates, nelastic + number.
 void ct_station_own_partials(struct ct_build *b, const struct ct_flexible *f,
                              const struct ct_station *s, ct_ex3 *slide, ct_ex3 *turn);
+/// Each coordinate is that of one node; what follows is a sum of them.
+bool ct_flexible_is_nodal(const struct ct_flexible *f);
 /// CHAIN in coordinates of nodes: an element sees its own nodes and the foreshortening at its start, nothing else.
 bool ct_flexible_is_carried(const struct ct_flexible *f);
 /// Dof of the axial shape i of f->line.

@@ -10,6 +10,7 @@
 #include "formulate/elastic.h"
 #include "numeric/dense.h"
 
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
@@ -149,6 +150,23 @@ static void drop_rounding(const struct reduction *r, double *v)
             v[i] = 0;
 }
 
+// Are modes of one frequency parted? The first `wanted` of w (m, ascending, 1/omega^2) from its end are kept. Equal is what rounding of
+// the eigenvalues cannot tell apart: m eps of the largest, a hundred times for the steps of the solution.
+static void find_cut(const struct reduction *r, const double *w, int m, int wanted)
+{
+    const double rounding = 100 * m * DBL_EPSILON * w[m - 1], at = w[m - wanted];
+    int below = wanted, above = wanted;
+    while (below > 0 && w[m - below] - at <= rounding)
+        below--;
+    while (above < m && at - w[m - 1 - above] <= rounding)
+        above++;
+    if (above == wanted || at <= rounding)
+        return;
+    r->f->cut = 1 / sqrt(at);
+    r->f->uncut[0] = below;
+    r->f->uncut[1] = above;
+}
+
 // K v = w^2 M v with the others held, solved as M v = (1/w^2) K v: M may be singular. Scaled to a largest component of 1.
 static bool modes(struct reduction *r, int wanted)
 {
@@ -167,6 +185,8 @@ static bool modes(struct reduction *r, int wanted)
             out[r->nkept + i] = v[i] / most;
         drop_rounding(r, out);
     }
+    if (wanted > 0 && wanted < m)
+        find_cut(r, w, m, wanted);
     return true;
 }
 

@@ -186,6 +186,20 @@ static bool choose_beams(struct ct_ctx *ctx, struct ct_arena *a, const struct ct
     return ct_build_derive(*b, !o->without_dynamics);
 }
 
+static void warn_of_cuts(struct ct_ctx *ctx, const struct ct_build *b)
+{
+    for (size_t i = 0; i < b->nflexible; i++) {
+        const struct ct_flexible *f = &b->flexible[i];
+        if (f->cut > 0)
+            ct_warning(ctx, f->beam->modes_mark, 0,
+                       "beam '%s' has several modes of %.6g rad/s, and `modes` keeps only some "
+                       "of them, which ones is chance; take %s%d",
+                       f->name, f->cut,
+                       f->uncut[0] ? ct_arena_printf(ctx->scratch, "%d or ", f->uncut[0]) : "",
+                       f->uncut[1]);
+    }
+}
+
 bool ct_formulate(struct ct_ctx *ctx, struct ct_arena *a, const struct ct_model *m,
                   const struct ct_formulate_options *options, struct ct_equations *out,
                   struct ct_tree_report *report)
@@ -218,6 +232,8 @@ bool ct_formulate(struct ct_ctx *ctx, struct ct_arena *a, const struct ct_model 
     b->eqs->build = b;
     b->eqs->how = report->how;
     *out = *b->eqs;
+    if (!options->like)
+        warn_of_cuts(ctx, b);
     return true;
 }
 

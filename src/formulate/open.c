@@ -189,6 +189,13 @@ static struct trial try_articulated(struct ct_build *b, const struct ct_members 
 // The mass matrix is what people look at, and its pivots lose least: another form must be cheaper by this.
 static const double worth = 0.9;
 
+double ct_open_cost(struct ct_build *b, double by_matrix)
+{
+    const struct ct_members *s = b->eqs->nrow ? NULL : ct_members_derive(b);
+    const double articulated = s ? try_articulated(b, s).cost : INFINITY;
+    return articulated < worth * by_matrix ? articulated : by_matrix;
+}
+
 static enum ct_formulation cheapest(const struct trial *t, enum ct_formulation wanted)
 {
     enum ct_formulation best = CT_FORMULATION_CUTSETS;

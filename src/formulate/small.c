@@ -216,3 +216,10 @@ bool ct_small_derive(struct ct_build *b)
     truncate(b, &s, b->eqs->Q, b->eqs->nu);
     return true;
 }
+
+void ct_small_momenta(struct ct_build *b, ct_ex *p)
+{
+    struct small s = {0};
+    if (collect(b, &s) && s.n)
+        truncate(b, &s, p, b->eqs->nu);
+}

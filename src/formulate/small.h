@@ -16,5 +16,8 @@ bool ct_small_is_wanted(const struct ct_build *b);
 /// row of the other coordinate that is one term more than first order. After M and Q, before the solution.
 /// Errors: E204 for a coordinate that is no branch.
 bool ct_small_derive(struct ct_build *b);
+/// The momenta p (nu) to first order in the same coordinates and rates: what a jump of driven rates changes, as the forces
+/// of such rates do where they change fast. After ct_small_derive().
+void ct_small_momenta(struct ct_build *b, ct_ex *p);
 
 #endif

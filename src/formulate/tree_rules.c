@@ -3,6 +3,7 @@
 
 #include "base/sort.h"
 #include "formulate/elastic.h"
+#include "formulate/member.h"
 #include "formulate/small.h"
 #include "graph/reach.h"
 
@@ -48,8 +49,38 @@ static bool turns_follower(const struct ct_build *b, size_t i)
     return false;
 }
 
+// Does no edge that can be a branch close a loop, and is no joint a constraint alone?
+static bool is_without_loops(const struct ct_build *b)
+{
+    int *weight = CT_NEWN(b->ctx->scratch, int, b->nedge + 1),
+        *piece = CT_NEWN(b->ctx->scratch, int, b->nnode + 1), npiece = 1;
+    size_t nusable = 0;
+    struct ct_tree unused;
+    for (size_t e = 0; e < b->nedge; e++) {
+        const enum ct_edge_kind kind = b->edge[e].kind;
+        if (b->edge[e].never_branch && kind != CT_EDGE_FORCE)
+            return false;
+        const bool usable = kind != CT_EDGE_BODY && kind != CT_EDGE_FORCE;
+        weight[e] = usable ? 0 : -1;
+        nusable += usable;
+    }
+    ct_tree_kruskal(b->arena, &b->graph, weight, NULL, &unused, piece);
+    for (size_t i = 0; i < b->nnode; i++)
+        npiece = piece[i] >= npiece ? piece[i] + 1 : npiece;
+    return nusable + (size_t)npiece == b->nnode;
+}
+
+// Is a beam in an open system that fills the mass matrix by itself (CHAIN), where all beams can be articulated bodies (6.9b)?
+static bool fills_matrix(const struct ct_build *b)
+{
+    bool any = false;
+    for (size_t i = 0; i < b->nflexible; i++)
+        any = any || b->flexible[i].kinematics == CT_AXIAL_CHAIN;
+    return any && ct_members_take_beams(b) && is_without_loops(b);
+}
+
 // Is the farther end of the edge a section of a beam that its frame is not fixed to? A beam that is entered there has the form
-// of articulated bodies (6.9b) only if what it hangs on turns it: an angle from ground is that of its frame.
+// of articulated bodies only if what it hangs on turns it: an angle from ground is that of its frame.
 static bool enters_section(const struct ct_build *b, size_t i, const int *depth)
 {
     const int tail = b->wiring[i].tail, head = b->wiring[i].head,
@@ -59,9 +90,10 @@ static bool enters_section(const struct ct_build *b, size_t i, const int *depth)
 }
 
 // Order among equal weights. In a plane the angle of a body weighs as much as that of a joint and gives
-// shorter expressions; a passive joint on a body that turns yields to it, but for beams entered at a section.  (2.3)
+// shorter expressions; a passive joint on a body that turns yields to it, but for beams entered at a section: where sections
+// follow, if only articulated bodies do without a full mass matrix.  (2.3)
 static int tie_rank(const struct ct_build *b, size_t i, const int *depth, const int *turned,
-                    enum ct_tree_choice choice)
+                    enum ct_tree_choice choice, bool fills)
 {
     const struct ct_edge_info *e = &b->edge[i];
     const int tail = b->wiring[i].tail, head = b->wiring[i].head, last = 2 * (int)b->nedge;
@@ -69,8 +101,9 @@ static int tie_rank(const struct ct_build *b, size_t i, const int *depth, const 
         return -1;
     if (e->kind == CT_EDGE_BODY)
         return b->is_planar && choice == CT_TREE_AUTO ? 1 : last;
-    const bool is_first = turned[tail] == 0 || turned[head] == 0 || enters_section(b, i, depth);
-    if ((is_first && !(b->is_planar && turns_follower(b, i)))
+    const bool enters = enters_section(b, i, depth),
+               is_first = turned[tail] == 0 || turned[head] == 0 || enters;
+    if ((is_first && !(b->is_planar && turns_follower(b, i) && !(enters && fills)))
         || (e->kind == CT_EDGE_JOINT && is_active(e->self)))
         return 0;
     return 2 + (depth[tail] < depth[head] ? depth[tail] : depth[head]);
@@ -113,6 +146,7 @@ struct ct_pair_rules ct_pair_rules_make(struct ct_build *b,
                               .banned_r = CT_NEWN(b->arena, bool, n),
                               .tied = CT_NEWN(b->arena, bool, n)};
     const int *depth = node_depths(b, false), *turned = node_depths(b, true);
+    const bool fills = fills_matrix(b);
     for (size_t i = 0; i < n; i++) {
         const struct ct_edge_info *e = &b->edge[i];
         const bool is_body = e->kind == CT_EDGE_BODY;
@@ -123,7 +157,7 @@ struct ct_pair_rules ct_pair_rules_make(struct ct_build *b,
         r.weight_r[i] = e->weight_r + extra;
         if (o->first && e->kind == CT_EDGE_JOINT && o->first[e->index])
             r.weight_t[i] = r.weight_r[i] = -1;
-        r.rank[i] = tie_rank(b, i, depth, turned, choice);
+        r.rank[i] = tie_rank(b, i, depth, turned, choice, fills);
         const bool is_small = e->kind == CT_EDGE_JOINT && ct_small_joint(b, e->index);
         r.forced_t[i] = e->must_be_branch || is_small;
         r.forced_r[i] = e->must_be_branch || is_particle || (is_small && e->has_rotation);

@@ -23,6 +23,15 @@ struct search {
         *first; // theirs, which may be chosen: the equations are then made once; or NULL
 };
 
+// Has it a beam that fills the mass matrix by itself? Articulated bodies do without (6.9).
+static bool has_chain(const struct ct_build *b)
+{
+    for (size_t i = 0; i < b->nflexible; i++)
+        if (b->flexible[i].kinematics == CT_AXIAL_CHAIN)
+            return true;
+    return false;
+}
+
 // The exact count of a generation; INFINITY where it fails or is not wanted.
 static double derive_and_count(const struct search *s, struct ct_build *b,
                                const struct ct_tree *T, const struct ct_tree *R)
@@ -32,7 +41,8 @@ static double derive_and_count(const struct search *s, struct ct_build *b,
     if (!ct_build_derive(b, true) || (s->stays_open && b->eqs->nrow))
         return INFINITY;
     ct_dynamics_derive(b);
-    return ct_equations_cost(b->ctx->scratch, b->eqs);
+    const double cost = ct_equations_cost(b->ctx->scratch, b->eqs);
+    return has_chain(b) ? ct_open_cost(b, cost) : cost;
 }
 
 static bool is_same(const struct ct_tree *t, const bool *is_branch)

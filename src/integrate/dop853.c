@@ -12,8 +12,6 @@
 // 85 up to order 7 (interpolant) to the 28 digits that are published.
 #include "integrate/stepper.h"
 
-#include <string.h>
-
 enum { STAGES = 13, ALL_STAGES = 16, CORRECTIONS = 4 };
 
 static const double C[ALL_STAGES] = {
@@ -197,14 +195,13 @@ static enum ct_eval step(const struct ct_problem *p, double t, double h, const d
                          double *dy1, double *err, void *work, struct ct_integrate_stats *stats)
 {
     const int n = p->ny;
-    const size_t bytes = (size_t)n * sizeof *y;
     struct work *w = work;
-    memcpy(w->k, dy, bytes);
+    ct_stepper_copy(w->k, dy, n);
     const enum ct_eval e = stages(p, t, h, y, 1, STAGES, w, stats);
     if (e != CT_EVAL_OK)
         return e;
-    memcpy(y1, w->spare, bytes);
-    memcpy(dy1, w->k + (STAGES - 1) * n, bytes);
+    ct_stepper_copy(y1, w->spare, n);
+    ct_stepper_copy(dy1, w->k + (STAGES - 1) * n, n);
     if (tolerance)
         *err = estimate(p, t, h, y, y1, tolerance, w);
     return CT_EVAL_OK;

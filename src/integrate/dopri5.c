@@ -14,8 +14,6 @@
 // Norsett and Thomsen (1986), key enright1986.
 #include "integrate/stepper.h"
 
-#include <string.h>
-
 enum { STAGES = 7 };
 
 static const double C[STAGES] = {0, 1. / 5, 3. / 10, 4. / 5, 8. / 9, 1, 1};
@@ -67,11 +65,10 @@ static enum ct_eval step(const struct ct_problem *p, double t, double h, const d
                          double *dy1, double *err, void *work, struct ct_integrate_stats *stats)
 {
     const int n = p->ny;
-    const size_t bytes = (size_t)n * sizeof *y;
     struct work *w = work;
     double *k = w->k, *point = w->point;
     w->is_prepared = false;
-    memcpy(k, dy, bytes);
+    ct_stepper_copy(k, dy, n);
     for (int s = 1; s < STAGES; s++) {
         if (s == STAGES - 1)
             ct_stepper_advance(point, y, h, A[s], k, s, &w->carry);
@@ -81,8 +78,8 @@ static enum ct_eval step(const struct ct_problem *p, double t, double h, const d
         if (e != CT_EVAL_OK)
             return e;
     }
-    memcpy(y1, point, bytes); // the last stage point
-    memcpy(dy1, k + (STAGES - 1) * n, bytes);
+    ct_stepper_copy(y1, point, n); // the last stage point
+    ct_stepper_copy(dy1, k + (STAGES - 1) * n, n);
     if (tolerance) {
         ct_stepper_combine(point, NULL, h, E, k, STAGES, n);
         ct_stepper_take_noise(p, h, point);

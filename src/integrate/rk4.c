@@ -7,8 +7,6 @@
 // Source: Kutta (1901); Hairer, Norsett and Wanner (1993), II.1 and II.4, key hairer1993.
 #include "integrate/stepper.h"
 
-#include <string.h>
-
 enum { STAGES = 4 };
 
 static const double C[STAGES] = {0, 1. / 2, 1. / 2, 1};
@@ -44,7 +42,7 @@ static enum ct_eval stages(const struct ct_problem *p, double t, double h, const
                            struct ct_integrate_stats *stats)
 {
     const int n = p->ny;
-    memcpy(w->k, dy, (size_t)n * sizeof *dy);
+    ct_stepper_copy(w->k, dy, n);
     for (int s = 1; s < STAGES; s++) {
         ct_stepper_combine(w->point, y, h, A[s], w->k, s, n);
         const enum ct_eval e = ct_stepper_rhs(p, t + C[s] * h, w->point, w->k + s * n, stats);
@@ -92,8 +90,7 @@ static enum ct_eval step(const struct ct_problem *p, double t, double h, const d
                          double *dy1, double *err, void *work, struct ct_integrate_stats *stats)
 {
     struct work *w = work;
-    const size_t bytes = (size_t)p->ny * sizeof *y;
-    memcpy(w->dy, dy, bytes);
+    ct_stepper_copy(w->dy, dy, p->ny);
     w->is_halved = tolerance != NULL;
     enum ct_eval e = tolerance ? advance_halved(p, t, h, y, tolerance, y1, err, w, stats)
                                : stages(p, t, h, y, dy, w, stats);
@@ -102,7 +99,7 @@ static enum ct_eval step(const struct ct_problem *p, double t, double h, const d
     if (e == CT_EVAL_OK)
         e = ct_stepper_rhs(p, t + h, y1, dy1, stats);
     if (e == CT_EVAL_OK)
-        memcpy(w->dy1, dy1, bytes);
+        ct_stepper_copy(w->dy1, dy1, p->ny);
     return e;
 }
 

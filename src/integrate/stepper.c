@@ -20,13 +20,22 @@ enum { LANES = 4 };
 static inline void by_ones(double *restrict out, const double *y, double h, const double *a,
                            const double *k, int s, const int n)
 {
-    double sum[LANES] = {0};
-    for (int j = 0; j < s; j++, k += n)
-        if (a[j] != 0) // tables have many zeros
-            for (int i = 0; i < n; i++)
-                sum[i] += a[j] * k[i];
-    for (int i = 0; i < n; i++)
-        out[i] = (y ? y[i] : 0) + h * sum[i];
+    const volatile double *stage = k;
+    double first = 0, second = 0, third = 0; // no array: that would be kept in memory
+    for (int j = 0; j < s; j++, stage += n) {
+        if (a[j] == 0) // tables have many zeros
+            continue;
+        first += a[j] * stage[0];
+        if (n > 1)
+            second += a[j] * stage[1];
+        if (n > 2)
+            third += a[j] * stage[2];
+    }
+    out[0] = (y ? y[0] : 0) + h * first;
+    if (n > 1)
+        out[1] = (y ? y[1] : 0) + h * second;
+    if (n > 2)
+        out[2] = (y ? y[2] : 0) + h * third;
 }
 
 static void combine_few(double *restrict out, const double *y, double h, const double *a,
@@ -47,6 +56,13 @@ typedef double four
 
 enum { MOST_FOURS = 4 };
 
+// sum += a (k_0 ... k_3), read one by one
+__attribute__((always_inline)) static inline void add_newest(four *sum, double a,
+                                                             const volatile double *k)
+{
+    *sum += a * (four){k[0], k[1], k[2], k[3]};
+}
+
 // Entries from i on, in so many fours; inlined into callers, each with the registers that it may use.
 __attribute__((always_inline)) static inline void some_fours(double *out, const double *y,
                                                              double h, const double *a,
@@ -56,12 +72,15 @@ __attribute__((always_inline)) static inline void some_fours(double *out, const 
     const int last = i + LANES * (fours - 1) < n - LANES ? i + LANES * (fours - 1) : n - LANES;
     const double *stage = k + i, *behind = k + last;
     four sum[MOST_FOURS] = {{0}};
-    for (int j = 0; j < s; j++, stage += n, behind += n)
+    for (int j = 0; j + 1 < s; j++, stage += n, behind += n)
         if (a[j] != 0) {
             for (int v = 0; v + 1 < fours; v++)
                 sum[v] += a[j] * *(const four *)(stage + LANES * v);
             sum[fours - 1] += a[j] * *(const four *)behind;
         }
+    for (int v = 0; v + 1 < fours; v++)
+        add_newest(&sum[v], a[s - 1], stage + LANES * v);
+    add_newest(&sum[fours - 1], a[s - 1], behind);
     for (int v = 0; v < fours; v++) {
         const int at = v + 1 < fours ? i + LANES * v : last;
         *(four *)(out + at) = y ? *(const four *)(y + at) + h * sum[v] : h * sum[v];

@@ -22,7 +22,7 @@ static inline void ct_stepper_copy(double *out, const volatile double *v, int n)
 }
 
 /// True if all n entries are finite: zero times what is not is no number.
-static inline bool ct_stepper_finite(const double *x, int n)
+static inline bool ct_stepper_finite(const volatile double *x, int n)
 {
     double sum = 0;
     for (int i = 0; i < n; i++)

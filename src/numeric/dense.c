@@ -12,6 +12,7 @@
 #include "numeric/dense.h"
 
 #include <math.h>
+#include <stdint.h>
 #include <string.h>
 
 // Fortran passes the length of each character argument behind the others.
@@ -72,10 +73,17 @@ double ct_vector_largest(const double *v, size_t n)
 
 double ct_vector_size(const double *v, size_t n)
 {
-    double max = 0;
-    for (size_t i = 0; i < n; i++)
-        max = fabs(v[i]) > max || isnan(v[i]) ? fabs(v[i]) : max;
-    return max;
+    // without their sign, numbers are in the order of their bits; what is no number comes last
+    uint64_t max = 0;
+    for (size_t i = 0; i < n; i++) {
+        uint64_t bits;
+        memcpy(&bits, &v[i], sizeof bits);
+        bits &= UINT64_MAX >> 1;
+        max = bits > max ? bits : max;
+    }
+    double size;
+    memcpy(&size, &max, sizeof size);
+    return size;
 }
 
 double ct_vector_dot(const double *x, const double *y, size_t n)
@@ -517,16 +525,17 @@ int ct_symmetric_count_below(double *A, int n, int lda, double x)
     double largest = 0;
     int count = 0;
     for (int k = 0; k < n; k++) {
-        A[k + lda * k] -= x;
-        largest = fmax(largest, fabs(A[k + lda * k]));
+        const double size = fabs(A[k + lda * k] -= x);
+        largest = size > largest ? size : largest;
     }
     for (int k = 0; k < n; k++) {
-        const double *column = A + lda * k, pivot = column[k];
+        const double *column = A + lda * k;
+        const double pivot = column[k], inverse = 1 / pivot;
         if (!(fabs(pivot) > certain * largest))
             return -1;
         count += pivot < 0;
         for (int j = k + 1; j < n; j++)
-            ct_vector_add(A + lda * j + j, -(column[j] / pivot), column + j, (size_t)(n - j));
+            ct_vector_add(A + lda * j + j, -(column[j] * inverse), column + j, (size_t)(n - j));
     }
     return count;
 }

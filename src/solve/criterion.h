@@ -17,6 +17,9 @@ static const double ct_kappa_largest = 1e3;
 // Where rows are redundant others can do for those that are kept, so they are exchanged before they become nearly dependent:
 // beside that stages, which lie off the rows that are left out, see another field.
 static const double ct_redundant_fall = 2.5;
+// Beside a singular position all choices are poor, this one may stay so behind it: there another one is due with each such change
+// of sigma.
+static const double ct_poor_change = 1.25;
 // Projections stop here: a few roundings of coordinates of order one.
 static const double ct_position_tolerance = 1e-13;
 // v is linear in u: one correction is enough but for its own rounding, which counts from here on [rad/s, m/s].
@@ -29,17 +32,26 @@ enum { CT_MOST_NEWTON = 25 };
 static const double ct_most_change = 1.5;
 // Where strength and sigma have fallen alike, up to so much, strength stands for sigma for longer.
 static const double ct_alike = 1.02, ct_most_change_alike = 4;
+// Pivots count as those of before while their strength is within this factor of what it was.
+static const double ct_same_strength = 1.25;
 // What may be left of the equations against their terms: beyond the first a refinement is made, beyond
 // the second the form is not used.
 static const double ct_left_plain = 1e-13, ct_left_most = 1e-11;
 
+static inline bool ct_is_within(double ratio, double factor)
+{
+    return ratio < factor && ratio > 1 / factor;
+}
+
 /// Is another choice of rows or columns due? is_redundant: there are rows that are not kept.
 static inline bool ct_has_worn(double kappa, double kappa_chosen, double sigma,
-                               double sigma_chosen, bool is_redundant)
+                               double sigma_chosen, double sigma_best, bool is_redundant)
 {
     const double fall = is_redundant ? ct_redundant_fall : ct_kappa_growth;
+    const bool is_poor = is_redundant && sigma * fall < sigma_best;
     return kappa > ct_kappa_growth * kappa_chosen + 1 || kappa > ct_kappa_largest
-        || sigma * fall < sigma_chosen;
+        || sigma * fall < sigma_chosen
+        || (is_poor && !ct_is_within(sigma / sigma_chosen, ct_poor_change));
 }
 
 /// What is near enough in a projection: a few roundings, divided twice by the smallest pivot beside a singular
@@ -62,11 +74,6 @@ struct ct_strength {
     double now, at_sigma, sigma_found;
     bool is_alike; // strength and sigma have changed alike
 };
-
-static inline bool ct_is_within(double ratio, double factor)
-{
-    return ratio < factor && ratio > 1 / factor;
-}
 
 /// The form is sound while its strength is between the two.
 static inline void ct_strength_range(const struct ct_strength *s, double *low, double *high)

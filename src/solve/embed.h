@@ -30,8 +30,9 @@ struct ct_embed {
     int *independent;           // nu - rank columns
     double kappa, kappa_chosen; // largest |J_d^-1 J_i|, now and when chosen
     double sigma,
-        sigma_chosen; // smallest pivot of J_d against its largest: falls when kept rows depend
-    double largest;   // pivot of J_d
+        sigma_chosen;  // smallest pivot of J_d against its largest: falls when kept rows depend
+    double sigma_best; // largest sigma_chosen of the run
+    double largest;    // pivot of J_d
     double
         nearness; // how near J is to losing rank at the last accepted state, 1 at its farthest and where nobody looks
     bool *is_unique; // per row: its multiplier is determined

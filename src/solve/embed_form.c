@@ -6,9 +6,9 @@
 
 // So many weak checks in a row ask for another order.
 enum { MOST_WEAK = 3 };
-// As long as the strength of the pivots is within this factor of what it was when they left a tenth of what is allowed, or less,
-// they are checked after every fourth projection.
-static const double same_strength = 1.25, well_below = 0.1;
+// As long as the strength of the pivots is that of when they left such a part of what is allowed, or less, they are checked
+// after every fourth projection.
+static const double well_below = 0.1;
 enum { UNCHECKED = 3 };
 
 static struct ct_partition partition(const struct ct_embed *s)
@@ -167,7 +167,7 @@ enum ct_eval ct_embed_solve(struct ct_embed *s)
 static void check_form(struct ct_embed *s)
 {
     struct ct_form *f = s->form[0];
-    if (s->nunchecked > 0 && ct_is_within(s->strength.now / s->checked_at, same_strength)) {
+    if (s->nunchecked > 0 && ct_is_within(s->strength.now / s->checked_at, ct_same_strength)) {
         s->nunchecked--;
         return;
     }

@@ -49,7 +49,7 @@ static bool has_worn(const struct ct_embed *s)
 {
     if (!s->rank)
         return false;
-    return ct_has_worn(s->kappa, s->kappa_chosen, s->sigma, s->sigma_chosen,
+    return ct_has_worn(s->kappa, s->kappa_chosen, s->sigma, s->sigma_chosen, s->sigma_best,
                        s->rank < (int)s->m->nrow);
 }
 

@@ -19,6 +19,8 @@ struct ct_form {
     size_t rank;
     double operations; // of one solution, M, Q, J and gam included
     double cost; // the same weighed by what an operation takes, in those of straight-line code
+    double
+        weakest; // of its pivots, at the last solution or close: what strength is, also above 1
     // results of check
     const double *a, *lam; // u' (nu), multipliers of the kept rows (rank)
     double left,

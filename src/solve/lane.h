@@ -80,7 +80,7 @@ struct ct_lane {
     double end;     // time at the end of this try
     double error;   // of it
     double longest; // step
-    double kappa_chosen, sigma_chosen;
+    double kappa_chosen, sigma_chosen, sigma_best;
     double pivot_last, pivot_time; // see foresee_singular
     struct ct_strength strength;   // of its form
     struct ct_fidelity_record outputs;

@@ -27,6 +27,7 @@ static void take_choice(struct ct_lanes *s, int l, double t, const vec *y)
     embed->sigma = s->sigma[l];
     embed->kappa_chosen = lane->kappa_chosen;
     embed->sigma_chosen = lane->sigma_chosen;
+    embed->sigma_best = lane->sigma_best;
 }
 
 void ct_lane_become_whole(struct ct_lanes *s, int l, double t, const vec *y)

@@ -44,7 +44,7 @@ static void renew(struct ct_lanes *s, vec t, const vec *y, set lanes)
     for (int l = 0; l < W && s->rank; l++)
         if (ct_has_lane(lanes, l)
             && ct_has_worn(s->kappa[l], s->lane[l].kappa_chosen, s->sigma[l],
-                           s->lane[l].sigma_chosen, s->rank < s->nrow))
+                           s->lane[l].sigma_chosen, s->lane[l].sigma_best, s->rank < s->nrow))
             ct_lane_renew(s, l, t[l], y);
 }
 

@@ -229,6 +229,7 @@ bool ct_lane_choose(struct ct_lanes *s, int l)
     memcpy(lane->independent, embed->independent, (n - rank) * sizeof *embed->independent);
     lane->kappa_chosen = embed->kappa_chosen;
     lane->sigma_chosen = embed->sigma_chosen;
+    lane->sigma_best = embed->sigma_best;
     lane->strength = (struct ct_strength){0};
     s->kappa[l] = embed->kappa;
     s->sigma[l] = embed->sigma;

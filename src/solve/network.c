@@ -69,9 +69,9 @@ static bool factor_Jd(struct network *f, const double *J)
 }
 
 // Against where the pivots were chosen: the entries around them have all sizes.
-static double strength(const struct network *f)
+static double strength(struct network *f)
 {
-    return ct_sparse_pivot(f->Jd) / f->pivot;
+    return f->form.weakest = ct_sparse_pivot(f->Jd) / f->pivot;
 }
 
 // ---- evaluation ---------------------------------------------------------------------------------------

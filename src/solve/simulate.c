@@ -171,7 +171,7 @@ static enum ct_eval accepted(void *user, double t, const double *y, const double
     if (!ct_run_is_followed(r, t, y))
         return CT_EVAL_RETRY;
     r->singular->keeps_rows = r->method->is_implicit && (size_t)r->s->rank < r->m->nrow;
-    if (!ct_singular_foresee(r->singular, t, y, dy, r->pending, r->o->step == 0)) {
+    if (!ct_singular_foresee(r->singular, t, y, dy, r->pending, r->o->step > 0)) {
         r->turning = turning_before;
         r->t_turning = t_before;
         return CT_EVAL_RETRY;
@@ -216,6 +216,7 @@ bool ct_run_begin(struct ct_run *r, const struct ct_start *start)
 {
     ct_start_apply(start, r->m, r->y);
     ct_machine_constraint(r->m);
+    r->s->sigma_best = 0;
     if (!ct_embed_choose(r->s))
         return false;
     // measured on other trees, the loops close to rounding; the rest is taken off here

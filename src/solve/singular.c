@@ -92,12 +92,22 @@ static double time_to_singular(struct ct_singular *w, const struct sight *a, dou
     return s - pivot / slope;
 }
 
+// Fixed steps cross nothing, and are told only whether pivots are to be sought at every evaluation. Where J loses rank its kept
+// rows do, and a pivot of the form vanishes: while the weakest is what it was at the last look, there is no need of another.
+static bool is_told_by_form(const struct ct_singular *w)
+{
+    const struct ct_embed *s = w->s;
+    return s->has_form && s->switches == w->switches && s->nmade == w->nmade
+        && w->part > foreseen_pivot
+        && ct_is_within(s->form[0]->weakest / w->weakest, ct_same_strength);
+}
+
 bool ct_singular_foresee(struct ct_singular *w, double t, const double *y, const double *dy,
-                         double pending, bool may_repeat)
+                         double pending, bool is_fixed)
 {
     const struct sight ahead = {t, pending, y, dy};
     const double dt = t - w->t;
-    if (!ct_embed_has_pivot(w->s) || !(dt > 0))
+    if (!ct_embed_has_pivot(w->s) || !(dt > 0) || (is_fixed && is_told_by_form(w)))
         return true;
     look_at(w, ct_time_before(t, pending), y);
     const bool is_far = w->most > 0
@@ -108,16 +118,18 @@ bool ct_singular_foresee(struct ct_singular *w, double t, const double *y, const
     // after another choice of rows and columns the pivot is not to be compared with the last one
     const bool is_comparable = w->s->switches == w->switches;
     const bool was_unforeseen = is_comparable && isinf(w->in) && w->part > near_pivot;
-    if (may_repeat && part < near_pivot && was_unforeseen)
+    if (!is_fixed && part < near_pivot && was_unforeseen)
         return false;
     w->t = t;
     w->part = part;
     w->switches = w->s->switches;
+    w->nmade = w->s->nmade;
+    w->weakest = w->s->has_form ? w->s->form[0]->weakest : 0;
     w->most = fmax(w->most, now);
     w->in = INFINITY;
     w->s->is_delicate = part < near_pivot;
     w->s->nearness = part;
-    if (is_far || part > foreseen_pivot)
+    if (is_far || part > foreseen_pivot || is_fixed)
         return true;
     w->in = time_to_singular(w, &ahead, now, dt);
     w->reach = w->in * fmin(1, (w->keeps_rows ? near_pivot : singular_pivot) / part);

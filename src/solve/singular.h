@@ -24,7 +24,8 @@ struct ct_singular {
     double reach;         // time before it in which f is better not computed
     double most, part, t; // the largest pivot so far, the last one against it, and its time
     bool keeps_rows;      // a step does, and there are more than it needs
-    long switches;        // of the embedding, there
+    long switches, nmade; // of the embedding, there
+    double weakest;       // pivot of its form there
     long npassed;
     struct ct_singular_position *passed; // the first of them (CT_MOST_SINGULAR)
     double *y, *d, *x;                   // (ny), (nu), (nrow)
@@ -36,14 +37,15 @@ struct ct_singular *ct_singular_create(struct ct_arena *arena, struct ct_machine
 void ct_singular_start(struct ct_singular *w);
 
 /// What is ahead of an accepted state, up to the event that is pending. False if the step to it has come beside a singular
-/// position, or past it, before that was foreseen, and may be taken again.
+/// position, or past it, before that was foreseen, and may be taken again: not with fixed steps, which are told only whether
+/// they are beside one.
 bool ct_singular_foresee(struct ct_singular *w, double t, const double *y, const double *dy,
-                         double pending, bool may_repeat);
+                         double pending, bool is_fixed);
 /// Is y beside a singular position, foreseen or not? row (nrow, out): those that depend there; none of a large system.
 bool ct_singular_is_beside(struct ct_singular *w, double t, const double *y, bool *row);
-/// Does J have less rank at y, where the embedding has chosen, than where the mechanism can go from there? row (nrow, out):
-/// those that depend on others at y alone. Not looked for without redundant rows, nor in large systems. The machine is left
-/// with its constraints at y.
+/// Does J have less rank at y, where the embedding has chosen, or as near to y as loops are closed, than where the mechanism can
+/// go from there? row (nrow, out): those that depend on others at y alone. Not looked for in large systems. The machine is
+/// left with its constraints at y.
 bool ct_singular_is_start(struct ct_arena *scratch, const struct ct_embed *s, double t,
                           const double *y, bool *row);
 /// What is evaluated from now on belongs to a crossing, or does not.

@@ -95,14 +95,15 @@ static void compile_closing(struct unrolled *f, struct ct_machine *m, const stru
 
 // ---- evaluation -----------------------------------------------------------------------------------------
 
-static double strength(const struct unrolled *f, const double *pivot)
+static double strength(struct unrolled *f, const double *pivot)
 {
-    double least = 1;
+    double least = INFINITY;
     for (size_t i = 0; i < f->c->npivot; i++) {
         const double size = fabs(pivot[i]) * f->c->scale[i];
         least = size < least ? size : least;
     }
-    return least;
+    f->form.weakest = least;
+    return least < 1 ? least : 1;
 }
 
 static double solve(struct ct_form *form, struct ct_machine *m, double *a)

@@ -56,3 +56,25 @@ echo '-- loop, each joint cut in turn'
 for tree in auto joints absolute y.yaml z.yaml w.yaml v.yaml; do last loop.yaml --tree "$tree"; done
 echo '-- floating'
 for tree in auto joints absolute; do last floating.yaml --tree "$tree"; done
+# Coordinates that are small: the jump is that of their equations of first order, the limit of a fast change of the rate. At rest
+# in s, theta, of (L + s) long links behind one of length d whose rate jumps by W, s' jumps by -d theta W and theta' by
+# -((L^2 + 2 L s) + d (L + s)) W/L^2. All terms would give -d sin(theta) W and -(1 + d cos(theta)/(L + s)) W.
+cat >small.yaml <<'EOF'
+cotree: 1
+bodies:
+  link: {points: {end: [0.6, 0, 0]}}
+  particle: {mass: 1.5}
+joints:
+  hub: {type: revolute, from: ground, to: link, motion: "if(t < 1, 0, 3*(t - 1))"}
+  arm:
+    type: custom
+    from: link.end
+    to: particle
+    coordinates: [s, theta]
+    translate: ["(2 + s)*cos(theta)", "(2 + s)*sin(theta)", 0]
+    initial: {q: [0.1, 0.2]}
+outputs: [arm.u1, arm.u2]
+simulation: {small: [arm], duration: 1, samples: 3}
+EOF
+echo '-- small coordinates: -0.36 -4.245'
+last small.yaml

@@ -90,9 +90,58 @@ END
 }
 start 0 >in_line.yaml
 start 1 >shifted.yaml
+# the same with bars of 1, 2 and 1.5 m, folded back onto a base of 1.5 m: in line but for the last digit of pi
+cat >folded.yaml <<'END'
+cotree: 1
+bodies:
+  ground: {points: {far: [1.5, 0, 0]}}
+  crank: {mass: 1, inertia: 1/12, com: [0.5, 0, 0], points: {end: [1, 0, 0]}}
+  coupler: {mass: 1, inertia: 1/12, com: [0.5, 0, 0], points: {end: [2, 0, 0]}}
+  rocker: {mass: 1, inertia: 1/12, com: [0.5, 0, 0], points: {end: [1.5, 0, 0]}}
+joints:
+  A: {type: revolute, from: ground, to: crank, initial: {q: 0, u: 0}}
+  B: {type: revolute, from: crank.end, to: coupler, initial: {q: 0, guess: true}}
+  C: {type: revolute, from: coupler.end, to: rocker, initial: {q: pi, guess: true}}
+  D: {type: revolute, from: rocker.end, to: ground.far}
+outputs: [A.q]
+simulation: {duration: 0.1, interval: 0.1}
+END
 for options in '' '--keep-all' '--keep-all --tree absolute'; do
-  for model in in_line shifted; do
+  for model in in_line shifted folded; do
     # shellcheck disable=SC2086
     "$COTREE" check "$model.yaml" $options 2>&1 | grep -e '^freedoms' -e warning || echo "exit $?"
   done
+done
+
+# Which rows are kept is chosen beside a singular position, where all choices are poor: behind it the poor one must not stay.
+# Kept, the rows of the platform lose their rank when the cranks hang down, and the energy is lost to 8e-8 at tolerances of 1e-9.
+echo '-- a platform on five cranks: the energy within 10 T, whatever the tolerance'
+cat >platform.yaml <<'END'
+cotree: 1
+gravity: [0, -9.81, 0]
+bodies:
+  ground: {points: {b: [0.4, 0, 0], c: [1, 0, 0], d: [1.3, 0, 0], e: [2, 0, 0]}}
+  A: {mass: 0.3, inertia: 0.01, com: [0.25, 0, 0], points: {end: [0.5, 0, 0]}}
+  B: {mass: 0.4, inertia: 0.01, com: [0.25, 0, 0], points: {end: [0.5, 0, 0]}}
+  C: {mass: 0.5, inertia: 0.01, com: [0.25, 0, 0], points: {end: [0.5, 0, 0]}}
+  D: {mass: 0.6, inertia: 0.01, com: [0.25, 0, 0], points: {end: [0.5, 0, 0]}}
+  E: {mass: 0.7, inertia: 0.01, com: [0.25, 0, 0], points: {end: [0.5, 0, 0]}}
+  table: {mass: 3, inertia: 0.8, com: [0.9, 0.2, 0], points: {b: [0.4, 0, 0], c: [1, 0, 0], d: [1.3, 0, 0], e: [2, 0, 0]}}
+joints:
+  a: {type: revolute, from: ground, to: A, initial: {q: 1.2, u: -2}}
+  aa: {type: revolute, from: A.end, to: table, initial: {q: -1.2, u: 2, guess: true}}
+  b: {type: revolute, from: ground.b, to: B, initial: {q: 1.2, u: -2, guess: true}}
+  bb: {type: revolute, from: B.end, to: table.b, initial: {q: -1.2, u: 2, guess: true}}
+  c: {type: revolute, from: ground.c, to: C, initial: {q: 1.2, u: -2, guess: true}}
+  cc: {type: revolute, from: C.end, to: table.c, initial: {q: -1.2, u: 2, guess: true}}
+  d: {type: revolute, from: ground.d, to: D, initial: {q: 1.2, u: -2, guess: true}}
+  dd: {type: revolute, from: D.end, to: table.d, initial: {q: -1.2, u: 2, guess: true}}
+  e: {type: revolute, from: ground.e, to: E, initial: {q: 1.2, u: -2, guess: true}}
+  ee: {type: revolute, from: E.end, to: table.e, initial: {q: -1.2, u: 2, guess: true}}
+outputs: [A.end.position.x, A.end.position.y, table.velocity.x, table.velocity.y, a.u, e.u, energy.total]
+simulation: {duration: 3, samples: 101}
+END
+for T in $(awk 'BEGIN { for (i = 24; i <= 60; i++) print 10^(-i/6) }'); do
+  "$COTREE" simulate platform.yaml --quiet --tolerance $T --summary s.json
+  sed -n 's/.*"energy_drift": \([^,]*\),.*/\1/p' s.json | awk -v T=$T '!($1 < 10 * T) { print T ": the energy drifts by " $1 }'
 done

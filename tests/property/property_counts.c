@@ -2,6 +2,7 @@
 // additions of M (lower), Q, J and gam, functions, entries of M. Lengths, masses and inertias are parameters.
 #include "expr/tape.h"
 #include "formulate/composite.h"
+#include "formulate/trees.h"
 #include "tests/property/system.h"
 
 struct row {
@@ -280,16 +281,19 @@ static const char *chain_text(struct ct_arena *a, int n)
                    joints);
 }
 
-static long operations_of_chain(struct ct_arena *a, int n)
+// Of the accelerations of a model that has the form of articulated bodies; has_no_matrix: M, which would have n^2 entries, must
+// not even be tried.
+static long operations_of(const char *name, const char *text, enum ct_tree_choice tree,
+                          bool has_no_matrix)
 {
     struct system s;
     struct ct_equations e;
     struct ct_tree_report report;
-    const struct ct_formulate_options o = {.tree = CT_TREE_AUTO, .with_solution = true};
-    system_open_text(&s, "chain", chain_text(a, n));
+    const struct ct_formulate_options o = {.tree = tree, .with_solution = true};
+    system_open_text(&s, name, text);
     assert_true(ct_formulate(&s.ctx, s.ctx.model, &s.model, &o, &e, &report));
     assert_int_equal(e.formulation, CT_FORMULATION_ARTICULATED);
-    assert_false(e.has_dynamics); // a mass matrix would have n^2 entries
+    assert_false(has_no_matrix && e.has_dynamics);
     const struct ct_tape_counts c = ct_ex_count(s.ctx.scratch, e.x, e.solution, e.nu);
     system_close(&s);
     return c.multiplications + c.additions + c.divisions;
@@ -299,13 +303,101 @@ static void cost_of_a_long_chain_is_linear(void **state)
 {
     (void)state;
     struct ct_arena *a = ct_arena_create();
-    const long n20 = operations_of_chain(a, 20), n40 = operations_of_chain(a, 40),
-               n80 = operations_of_chain(a, 80);
+    const long n20 = operations_of("chain", chain_text(a, 20), CT_TREE_AUTO, true),
+               n40 = operations_of("chain", chain_text(a, 40), CT_TREE_AUTO, true),
+               n80 = operations_of("chain", chain_text(a, 80), CT_TREE_AUTO, true);
     print_message("20: %ld, 40: %ld, 80: %ld\n", n20, n40, n80);
     assert_int_equal(n80 - n40, 2 * (n40 - n20));
     // of a recursion with every vector and matrix full; the feasibility study has 540 a link
     assert_in_range((n80 - n40) / 40, 1, 540);
     ct_arena_destroy(a);
+}
+
+// ---- sections that follow ----------------------------------------------------------------------------------
+
+// A hub, a lumped beam of n elements and a link behind it; near and far: types of the joints.
+struct rod {
+    const char *name, *deformation, *more, *near, *far;
+    bool is_planar;
+};
+
+static const char *rod_text(struct ct_arena *a, const struct rod *r, int n)
+{
+    return text_of(a,
+                   "cotree: 1\ngravity: %s\nbodies:\n"
+                   "  hub: {mass: 1, inertia: [0.01, 0.02, 0.03], points: {rim: [0.1, 0, 0]}}\n"
+                   "  rod: {type: beam, length: 1.5, elements: %d, mass: lumped, formulation: "
+                   "foreshortening, deformation: [%s],\n"
+                   "    density: 2700, E: 7e10, area: 2e-4, Iy: 2e-9, Iz: 1e-9, %s points: "
+                   "{tip: length, third: length/3}}\n"
+                   "  link: {mass: 0.5, inertia: [0.01, 0.012, 0.014], com: [0.2, 0.01, 0]}\n"
+                   "joints:\n"
+                   "  pin: {type: revolute, axis: z, from: ground, to: hub}\n"
+                   "  near: {type: %s, from: hub.rim, to: rod}\n"
+                   "  far: {type: %s, to: link}\n",
+                   r->is_planar ? "[0, -9.81, 0]" : "[0, 0, -9.81]", n, r->deformation, r->more,
+                   r->near, r->far);
+}
+
+// Each element adds the same; those at the ends and the order of terms make up for a percent.
+static void cost_of_rods_whose_sections_follow_is_linear(void **state)
+{
+    (void)state;
+    static const struct rod rods[] = {
+        {"chord", "bending-z", "frame: chord,", "revolute", "revolute, from: rod.tip", true},
+        {"hinge between", "bending-z", "frame: chord,", "revolute", "revolute, from: rod.third",
+         true},
+        {"chord on a ball", "bending-y, bending-z", "frame: chord,", "spherical",
+         "revolute, axis: y, from: rod.tip", false},
+        {"chord on a ball that stretches", "bending-y, bending-z, axial", "frame: chord,",
+         "spherical", "revolute, axis: y, from: rod.tip", false},
+        {"hinge at the tip", "bending-y, bending-z", "", "weld",
+         "revolute, axis: y, from: rod.tip", false},
+    };
+    struct ct_arena *a = ct_arena_create();
+    for (size_t i = 0; i < 2 * COUNT(rods); i++) {
+        const struct rod *r = &rods[i / 2];
+        const enum ct_tree_choice tree = i % 2 ? CT_TREE_JOINTS : CT_TREE_AUTO;
+        long of[3];
+        for (int k = 0; k < 3; k++)
+            of[k] = operations_of(r->name, rod_text(a, r, 10 << k), tree, false);
+        print_message("%s: 10: %ld, 20: %ld, 40: %ld\n", r->name, of[0], of[1], of[2]);
+        assert_true((double)(of[2] - of[1]) < 2.02 * (double)(of[1] - of[0]));
+    }
+    ct_arena_destroy(a);
+}
+
+static double cost_of_crank(struct system *s, enum ct_tree_choice tree)
+{
+    struct variant v;
+    const struct ct_formulate_options o = {.tree = tree};
+    variant_open(s, &o, &v);
+    const double cost = ct_equations_cost(v.arena, &v.e);
+    variant_close(&v);
+    return cost;
+}
+
+// In a loop nothing is gained by angles through such sections: the mass matrix is needed, and counted from ground less of it moves.
+static void rods_in_loops_keep_their_angles(void **state)
+{
+    (void)state;
+    struct system s;
+    system_open_text(
+        &s, "crank",
+        "cotree: 1\ngravity: [0, -9.81, 0]\nbodies:\n"
+        "  crank: {mass: 1, inertia: 0.01, points: {tip: [0.15, 0, 0]}}\n"
+        "  rod: {type: beam, length: 0.5, elements: 20, mass: lumped, formulation: "
+        "foreshortening,\n"
+        "    density: 2700, E: 7e10, area: 2e-4, Iz: 1e-9, deformation: "
+        "[bending-z], frame: chord, points: {tip: length}}\n"
+        "  slider: {mass: 0.5, inertia: 0.01}\n"
+        "joints:\n"
+        "  pin: {type: revolute, from: ground, to: crank, initial: {q: 0.3}}\n"
+        "  near: {type: revolute, from: crank.tip, to: rod}\n"
+        "  far: {type: revolute, from: rod.tip, to: slider}\n"
+        "  guide: {type: prismatic, axis: x, from: ground, to: slider}\n");
+    assert_true(cost_of_crank(&s, CT_TREE_AUTO) <= cost_of_crank(&s, CT_TREE_ABSOLUTE));
+    system_close(&s);
 }
 
 // ---- choices ------------------------------------------------------------------------------------------------
@@ -347,6 +439,8 @@ int main(void)
         cmocka_unit_test(stewart_platform_needs_no_more_than_the_table_says),
         cmocka_unit_test(six_axis_arm_needs_no_more_than_its_goals),
         cmocka_unit_test(cost_of_a_long_chain_is_linear),
+        cmocka_unit_test(cost_of_rods_whose_sections_follow_is_linear),
+        cmocka_unit_test(rods_in_loops_keep_their_angles),
         cmocka_unit_test(chosen_trees_give_few_coordinates),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

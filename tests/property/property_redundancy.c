@@ -153,6 +153,61 @@ static void four_bars_in_a_row_pass_singular_positions(void **state)
         expect_run(file[i], &by_choice, "dopri5", 10, 1e-8);
 }
 
+struct lookout {
+    struct ct_run *run;
+    double most;
+    int nbeside, nfar;
+    bool ok;
+};
+
+// Each sample is the end of a step.
+static bool compare_with_pivot(void *user, double t, const double *value, size_t n)
+{
+    (void)value;
+    (void)n;
+    struct lookout *l = user;
+    struct ct_embed *s = ct_run_embed(l->run);
+    ct_machine_constraint(ct_run_machine(l->run));
+    const double pivot = ct_embed_pivot(s);
+    l->most = fmax(l->most, pivot);
+    const bool is_beside = pivot<0.3 * l->most, is_far = pivot> 0.7 * l->most;
+    l->nbeside += is_beside;
+    l->nfar += is_far && t > 0;
+    l->ok &= !(is_beside && !s->is_delicate) && !(is_far && s->is_delicate);
+    return true;
+}
+
+// Fixed steps look at J only where the pivots of the form have changed, and seek pivots at every evaluation all the same where the
+// mechanism is beside a singular position, with redundant rows or without.
+static void fixed_steps_know_of_singular_positions(void **state)
+{
+    (void)state;
+    for (int is_spatial = 0; is_spatial < 2; is_spatial++) {
+        struct system s;
+        struct variant v;
+        struct ct_run_report report;
+        system_open_file(&s, "tests/reference/R13_d0999.yaml");
+        if (is_spatial)
+            system_keep_all(&s);
+        system_no_outputs(&s);
+        variant_open(&s, is_spatial ? &by_joints_spatial : &by_choice, &v);
+        struct lookout l = {.run = open_run(&s, &v), .ok = true};
+        const struct ct_run_options run = {.method = ct_method_find("rk4"),
+                                           .duration = 4,
+                                           .step = 1e-3,
+                                           .nsample = 401,
+                                           .row = compare_with_pivot,
+                                           .user = &l};
+        assert_true(ct_run_simulate(l.run, &run, &report));
+        print_message("%d samples beside a singular position, %d far from it\n", l.nbeside,
+                      l.nfar);
+        assert_true(l.ok && l.nbeside > 0 && l.nfar > 0);
+        assert_int_equal(ct_run_embed(l.run)->rank < (int)v.e.nrow, is_spatial);
+        variant_close(&v);
+        system_close(&s);
+    }
+}
+
 // ---- linear graphs ----------------------------------------------------------------------------------------------
 
 // A_f B_f' = 0 exactly, and through times across sums to zero for any nodal potentials and chord throughs.
@@ -230,6 +285,7 @@ int main(void)
         cmocka_unit_test(multipliers_have_the_least_norm),
         cmocka_unit_test(bricard_mechanism_stays_on_its_manifold),
         cmocka_unit_test(four_bars_in_a_row_pass_singular_positions),
+        cmocka_unit_test(fixed_steps_know_of_singular_positions),
         cmocka_unit_test(cutsets_and_circuits_of_real_systems_are_orthogonal),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

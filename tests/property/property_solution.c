@@ -382,6 +382,82 @@ static char *beams_text(struct ct_arena *a, int n, int first, bool is_planar)
                    is_planar ? "0" : "-9.81", bodies, joints, n);
 }
 
+// Beams whose sections have no inertia about the axes of bending and follow the other nodes, but where moments act on them.
+static const struct {
+    bool stretches;
+    const char *text;
+} massless[] = {
+    {false, "elements: 2, formulation: foreshortening"},
+    {true, "elements: 2, formulation: linear"},
+    {true, "elements: 4, formulation: foreshortening"},
+    {false, "elements: 2, formulation: foreshortening, theory: timoshenko, shear_factor: 0.8"},
+    {false, "elements: 4, formulation: linear"},
+    {false, "elements: 4, formulation: foreshortening, damping: {alpha: 0.1, beta: 0.01}"},
+};
+static const char *const spatial_hinge[]
+    = {"revolute, axis: y", "spherical", "revolute, axis: z"};
+
+// As beams_text. Beams are clamped to rigid bodies, or hang on hinges or balls on their chords: else their ends move no mass.
+static char *followers_text(struct ct_arena *a, int n, int first, bool is_planar)
+{
+    const char *bodies = "", *joints = "";
+    for (int i = 1; i <= n; i++) {
+        const int parent = i - 1 - chance_of(i < 3 ? 1 : 2), kind = first + i;
+        const bool is_beam = i % 3 != 1, backwards = chance_of(3) == 0,
+                   on_beam = parent % 3 != 1,
+                   is_clamped = is_beam && !(parent && on_beam) && chance_of(2);
+        const char *own
+            = is_clamped || chance_of(3) ? text_of(a, "b%d", i) : text_of(a, "b%d.e", i);
+        const char *other = parent ? text_of(a, "b%d.%s", parent, i % 2 ? "p" : "e") : "ground";
+        const char *hinge = is_planar          ? "revolute"
+                          : is_beam && on_beam ? "spherical"
+                                               : spatial_hinge[kind % 3];
+        if (is_beam)
+            bodies = text_of(
+                a,
+                "%s  b%d: {type: beam, length: 1, %s, deformation: [%s%s], mass: lumped,%s\n"
+                "    rotary_inertia: [1e-2, 0, 0], mass_per_length: %.3g, E: 3e4, nu: 0.3, "
+                "area: "
+                "1e-2, Iy: 2e-4, Iz: 1e-4, points: {p: 0.5, e: 1}}\n",
+                bodies, i, massless[kind % (int)COUNT(massless)].text,
+                is_planar ? "bending-z" : "bending-y, bending-z",
+                massless[kind % (int)COUNT(massless)].stretches ? ", axial" : "",
+                is_clamped ? "" : " frame: chord,", 1.5 + chance());
+        else
+            bodies = text_of(a,
+                             "%s  b%d: {mass: 1.2, com: [0.1, 0.2, 0], inertia: [0.2, 0.25, "
+                             "0.3], points: {e: [0.5, 0, 0], p: [0.3, 0.4, 0]}}\n",
+                             bodies, i);
+        joints = text_of(a, "%s  j%d: {type: %s, from: %s, to: %s}\n", joints, i,
+                         is_clamped ? "weld" : hinge, backwards ? own : other,
+                         backwards ? other : own);
+    }
+    return text_of(a,
+                   "cotree: 1\ngravity: [1, -2, %s]\nbodies:\n%sjoints:\n%sforces:\n"
+                   "  s: {type: spring, from: ground, to: b%d.e, stiffness: 30, length: 0.4}\n"
+                   "  f: {type: force, at: b2.p, value: [1, \"2*t\", 0]}\n",
+                   is_planar ? "0" : "-9.81", bodies, joints, n);
+}
+
+// Turns of sections by what follows, where a system has the form of articulated bodies.
+static size_t count_turned(struct system *s)
+{
+    const struct ct_formulate_options o = {.tree = CT_TREE_JOINTS,
+                                           .with_solution = true,
+                                           .formulation = CT_FORMULATION_ARTICULATED};
+    struct variant v;
+    size_t n = 0;
+    variant_open(s, &o, &v);
+    const struct ct_members *all = ct_members_derive(v.e.build);
+    for (size_t i = 1; all && i < all->n; i++) {
+        const struct ct_member *m = &all->member[i];
+        for (int k = 0; m->beam && k < m->nfree; k++)
+            n += m->screw[k].speed < 0 && !ct_ex3_is_zero(m->screw[k].turn);
+    }
+    variant_close(&v);
+    return n;
+}
+
 static void forms_agree_on_trees_of_beams(void **state)
 {
     (void)state;
@@ -410,6 +486,38 @@ static void forms_agree_on_trees_of_beams(void **state)
     assert_true(tally.tried[CT_FORMULATION_ARTICULATED] >= 28);
 }
 
+// Sections that follow turn what hangs on them, and beams on their chords themselves.
+static void forms_agree_where_sections_follow(void **state)
+{
+    (void)state;
+    struct tally tally = {0};
+    size_t nplanar = 0, nturned = 0;
+    bool ok = true;
+    chance_start();
+    for (int i = 0; i < 24; i++) {
+        struct system s;
+        struct ct_arena *a = ct_arena_create();
+        system_open_text(&s, text_of(a, "sections %d", i),
+                         followers_text(a, 3 + i % 3, i / 2, i % 2));
+        system_no_outputs(&s);
+        nplanar += s.assembly.is_planar;
+        nturned += count_turned(&s);
+        ok &= all_trees_agree(&s, &tally);
+        system_close(&s);
+        ct_arena_destroy(a);
+    }
+    print_message(
+        "%zu open, %zu models planar: %zu articulated, %zu turns by what follows; %zu "
+        "of %zu states singular\n",
+        tally.systems, nplanar, tally.tried[CT_FORMULATION_ARTICULATED], nturned,
+        tally.singular, tally.states);
+    assert_true(ok);
+    assert_true(nplanar >= 6);
+    assert_true(10 * tally.singular < tally.states);
+    assert_true(nturned >= 24);
+    assert_true(tally.tried[CT_FORMULATION_ARTICULATED] >= 36);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -417,6 +525,7 @@ int main(void)
         cmocka_unit_test(forms_agree_on_small_mechanisms),
         cmocka_unit_test(forms_agree_on_trees_of_mixed_joints),
         cmocka_unit_test(forms_agree_on_trees_of_beams),
+        cmocka_unit_test(forms_agree_where_sections_follow),
         cmocka_unit_test(back_ends_agree_to_rounding),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
