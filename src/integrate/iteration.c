@@ -10,7 +10,7 @@
 // With a tolerance the iteration errs by a small part of it, smaller the tighter it is.
 static const double kappa_most = 0.03;
 // Without one, corrections are followed until less than half a rounding of states is left, 1e-16 of them, and accepted at
-// 1e-10 where they stop to shrink. What is left in each step, and is the same in most, adds up over the steps.
+// 1e-10 where they stop to shrink or have been many. What is left in each step, and is the same in most, adds up over the steps.
 static const struct ct_tolerance finest = {1e-12, 1e-12};
 static const double kappa_finest = 1e-4, rounding_finest = 100;
 // The first corrections come from a guess and may grow; not so much, though.
@@ -483,7 +483,9 @@ enum ct_verdict ct_iteration_judge(struct ct_iteration *it, double size, const d
     it->size = size;
     if (size <= it->kappa || (it->tail * size <= it->kappa && !is_too_early(it)))
         return CT_CONVERGED;
-    return it->count < it->most ? CT_GO_ON : CT_DIVERGED;
+    if (it->count < it->most)
+        return CT_GO_ON;
+    return it->is_finest && size <= it->rounding ? CT_CONVERGED : CT_DIVERGED;
 }
 
 bool ct_iteration_can_renew(struct ct_iteration *it)
