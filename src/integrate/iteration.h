@@ -57,8 +57,8 @@ struct ct_iteration {
     bool is_further;        // corrections go on after convergence
     double least;           // nor where places change by less  [m, rad]
     double unfelt_place, unfelt_speed; // half a rounding of the largest of each, with rows
-    double size, rate,
-        tail; // of the last correction; over the one before; all that follow it, over it
+    double size, rate, slowest,
+        tail; // of the last correction; over the one before; largest of such; all that follow it, over it
     int most;
 };
 

@@ -21,7 +21,7 @@ static inline void ct_stepper_copy(double *out, const volatile double *v, int n)
         out[i] = v[i];
 }
 
-/// True if all n entries are finite: zero times what is not is no number.
+/// True if all n entries are finite: zero times what is not is no number. Read one by one, as they have just been stored.
 static inline bool ct_stepper_finite(const volatile double *x, int n)
 {
     double sum = 0;
