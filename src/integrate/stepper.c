@@ -211,6 +211,14 @@ double ct_stepper_norm(const struct ct_problem *p, const struct ct_tolerance *to
     return n ? sqrt(sum / n) : 0;
 }
 
+void ct_stepper_take_noise(const struct ct_problem *p, double h, double *e)
+{
+    const double evaluations
+        = 4; // weights of the stages in errors have sums of squares of 1 to 16
+    for (int i = 0; i < p->ny && p->noise; i++)
+        e[i] = copysign(fmax(0, fabs(e[i]) - evaluations * h * p->noise[i]), e[i]);
+}
+
 double ct_stepper_error(const struct ct_problem *p, const struct ct_tolerance *tolerance,
                         double t1, const double *y, const double *y1, const double *e)
 {

@@ -63,6 +63,9 @@ void ct_stepper_group(const struct ct_groups *g, int ny, const double *y, const 
 double ct_stepper_norm(const struct ct_problem *p, const struct ct_tolerance *tolerance,
                        const double *y, const double *y1, const double *e);
 
+/// e (ny) less what rounding of f, where that is felt, may have in it in a step h.
+void ct_stepper_take_noise(const struct ct_problem *p, double h, double *e);
+
 /// `states`, the norm of the error e (ny) of a step that ends at y1, time t1; or what e means for outputs, if that is
 /// more.  (8.6)
 static inline double ct_stepper_worse(const struct ct_problem *p,
