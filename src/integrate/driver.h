@@ -34,6 +34,9 @@ struct ct_driver {
     double *moved, *dmoved; // where end, dend are others
     double *point;          // a state to spare
     void *work;             // the method's own
+    void *aside;            // the same for steps to samples; NULL: its interpolant always holds
+    double *daside;         // (ny)
+    double fastest;         // rate of the fastest motion that steps have seen of late
     void *crossing_work;    // of ct_crossing; NULL: there are no singular positions to cross
     double singular_in;     // time to the next one, from t
     double reach;           // crossing it is to begin this long before
@@ -55,6 +58,7 @@ struct ct_stride {
     bool is_interpolated; // the method is ready to interpolate it
     bool is_striding;     // across a singular position
     bool is_off_between;  // outputs err too much in a sample before its end
+    bool is_damping;      // a motion that it does not follow: samples have steps of their own
     double error;
 };
 
