@@ -107,6 +107,7 @@ struct ct_anchor {
     int parent, cluster;
     int enter, leave; // preorder interval: holds those of the anchors outboard
     ct_ex3 local;
+    ct_ex3 fixed, slid; // its parts where it moves: the constant one, and what it slides by
     int nslide;
     struct ct_slide *slide;
     ct_ex3 drift,

@@ -532,3 +532,27 @@ EOF
 for kept in 1 2 3 4; do
   echo "$kept: $("$COTREE" check square.yaml --set kept=$kept 2>&1 | sed -n 's/.* warning: //p')"
 done
+echo '-- a straight rod that a joint turns about its axis has no inertia there; what is said helps'
+cat >spin.yaml <<'EOF'
+cotree: 1
+bodies:
+  rod: {type: beam, length: 1, density: 2700, E: 7e10, nu: 0.3, area: 1e-4, Iy: 1e-9, Iz: 1e-9, rotary_inertia: false, formulation: linear}
+joints: {root: {type: universal, axes: [x, z], from: ground, to: rod}}
+outputs: [root.q1]
+simulation: {duration: 0.01, samples: 2}
+EOF
+for tree in auto absolute; do
+  "$COTREE" simulate spin.yaml --quiet --tree $tree 2>&1 | sed -n 's/.*error: //p'
+done
+sed 's/rotary_inertia: false/rotary_inertia: true/' spin.yaml >turning.yaml
+"$COTREE" simulate turning.yaml --quiet -o turning.csv && tail -n 1 turning.csv
+cat >sheared.yaml <<'EOF'
+cotree: 1
+bodies:
+  rod: {type: beam, length: 1, density: 2700, E: 7e10, nu: 0.3, area: 1e-4, Iz: 1e-9, theory: timoshenko, shear_factor: 1, integration: reduced, formulation: linear, points: {tip: length}}
+joints: {root: {type: weld, from: ground, to: rod}}
+forces: {twist: {type: torque, on: rod.tip, value: [0, 0, 1]}}
+outputs: [rod.tip.deflection.y]
+simulation: {duration: 0.01, samples: 2}
+EOF
+"$COTREE" simulate sheared.yaml --quiet 2>&1 | sed -n 's/.*error: //p'
