@@ -161,6 +161,8 @@ struct ct_build {
 
     // planar mechanisms: common normal and a basis of the plane (ground components)
     bool is_planar;
+    bool keeps_plane;      // is_planar, or would be if something were left out
+    ct_ex3 normal;         // to that plane
     const bool *is_linear; // by body: beams left to the program that are; NULL: not known yet
     const struct ct_equations *like; // whose beams are formulated alike; NULL: none
     bool keep_all;                   // leave nothing out

@@ -556,3 +556,23 @@ outputs: [rod.tip.deflection.y]
 simulation: {duration: 0.01, samples: 2}
 EOF
 "$COTREE" simulate sheared.yaml --quiet 2>&1 | sed -n 's/.*error: //p'
+echo '-- modes that --keep-all keeps out of the plane take none from those in it'
+cat >plane.yaml <<'EOF'
+cotree: 1
+gravity: [0, -9.81, 0]
+bodies:
+  rod: {type: beam, length: 1, elements: 5, density: 1500, E: 3e9, nu: 0.3, area: 2e-4, Iy: 3e-9, Iz: 4e-9, rotary_inertia: true, modes: 2, formulation: foreshortening, points: {tip: length}}
+  bob: {mass: 0.1, inertia: 1e-4}
+joints:
+  hub: {type: revolute, from: ground, to: rod, initial: {u: 1}}
+  hold: {type: revolute, from: rod.tip, to: bob, stiffness: 1, initial: {q: 0.2}}
+outputs: [rod.tip.position.x, rod.tip.position.y, hold.q]
+simulation: {duration: 0.5, samples: 11, tolerance: 1e-9}
+EOF
+for keep in '' --keep-all; do
+  # shellcheck disable=SC2086 # an option or none
+  "$COTREE" check plane.yaml $keep | sed -n 's/^beam *//p'
+  # shellcheck disable=SC2086
+  "$COTREE" simulate plane.yaml $keep --quiet -o plane$keep.csv
+done
+difference plane.csv plane--keep-all.csv | awk '{ print ($1 < 1e-8) ? "same motion" : $0 }'
