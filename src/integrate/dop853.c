@@ -233,6 +233,17 @@ static void dense(const struct ct_problem *p, double h, double theta, const doub
     }
 }
 
+// Stages 11 and 12 are both at the end of the step.
+static double swiftness(const struct ct_problem *p, double h, const double *y, const double *y1,
+                        void *work)
+{
+    enum { LAST = STAGES - 1, BEFORE = LAST - 1 };
+    const int n = p->ny;
+    struct work *w = work;
+    ct_stepper_combine(w->spare, y, h, A[BEFORE], w->k, BEFORE, n);
+    return ct_stepper_swiftness(p, h, y1, w->k + LAST * n, w->spare, w->k + BEFORE * n);
+}
+
 static const struct ct_tableau tableau = {.stages = STAGES,
                                           .stride = ALL_STAGES,
                                           .C = C,
@@ -255,6 +266,9 @@ const struct ct_method ct_method_dop853 = {
     .restart = ct_carry_restart,
     .accept = ct_carry_accept,
     .step = step,
+    .followed
+    = 2.5, // stable up to about 6; where accuracy holds steps up, at 1e-4, they come to 2.4 (cart pole, four-bars)
+    .swiftness = swiftness,
     .prepare = prepare,
     .dense = dense,
 };

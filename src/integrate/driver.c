@@ -54,6 +54,10 @@ static void allocate(struct ct_driver *r)
     for (size_t i = 0; i < COUNT(vectors); i++)
         *vectors[i] = CT_NEWN(a, double, r->p->ny);
     r->work = r->method->create(a, r->method, r->p);
+    if (r->method->swiftness && r->o->step == 0) {
+        r->aside = r->method->create(a, r->method, r->p);
+        r->daside = CT_NEWN(a, double, r->p->ny);
+    }
     if (r->p->singular_in && r->o->step == 0)
         r->crossing_work = ct_crossing.create(a, &ct_crossing, r->p);
     if (r->crossing_work)
@@ -250,9 +254,38 @@ static enum ct_eval look_at_sample(struct ct_driver *r, struct ct_stride *s)
     return s->is_off_between ? CT_EVAL_RETRY : e;
 }
 
+// Part of themselves by which accelerations have changed in the step.
+static double change_over_step(const struct ct_driver *r)
+{
+    const double *a = r->dy + r->p->nq, *a1 = r->dy1 + r->p->nq;
+    double size = 0, change = 0;
+    for (int i = 0; i < r->p->nu; i++) {
+        size = ct_larger(size, ct_larger(fabs(a[i]), fabs(a1[i])));
+        change = ct_larger(change, fabs(a1[i] - a[i]));
+    }
+    return size > 0 ? change / size : 0;
+}
+
+// Is there a motion that the step does not follow, much faster than the one there is? Not each step shows it, so that it is
+// remembered.
+static bool is_damping(struct ct_driver *r, const struct ct_stride *s)
+{
+    const double kept = 0.95; // from look to look
+    const double much_faster = 3;
+    if (!r->aside || s->work != r->work || s->is_striding)
+        return false;
+    const double seen = r->method->swiftness(r->p, s->h, r->y, r->y1, s->work) / s->h;
+    r->fastest = ct_larger(seen, kept * r->fastest);
+    const double fast = r->fastest * s->h;
+    return fast > r->method->followed && fast > much_faster * change_over_step(r);
+}
+
 static enum ct_eval interpolate_for_samples(struct ct_driver *r, struct ct_stride *s)
 {
     if (!(r->sample < r->o->nsample && r->o->sample[r->sample] < s->t1))
+        return CT_EVAL_OK;
+    s->is_damping = is_damping(r, s);
+    if (s->is_damping)
         return CT_EVAL_OK;
     const enum ct_eval e = interpolate(r, s);
     return e == CT_EVAL_OK ? look_at_sample(r, s) : e;
@@ -406,7 +439,7 @@ static void commit(struct ct_driver *r, const struct ct_stride *s)
     *(r->dend == r->dy1 ? &r->dy1 : &r->dmoved) = dy;
     r->t = s->t1;
     r->stats->steps++;
-    ct_driver_note_step(r);
+    ct_driver_note_step(r, s->h, s->error);
     // a crossing tells an implicit method nothing about the steps to come
     if (s->method != r->method && r->method->is_implicit)
         r->method->restart(r->work);

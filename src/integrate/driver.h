@@ -13,6 +13,11 @@
 #include "integrate/striding.h"
 #include "integrate/watch.h"
 
+// A step h that erred too much, and the longest one tried from the same place; 0: there was none.
+struct ct_refusal {
+    double longest, h, error;
+};
+
 struct ct_driver {
     struct ct_ctx *ctx;
     const struct ct_method *method;
@@ -35,6 +40,9 @@ struct ct_driver {
     double *moved, *dmoved; // where end, dend are others
     double *point;          // a state to spare
     void *work;             // the method's own
+    void *aside;            // the same for steps to samples; NULL: its interpolant always holds
+    double *daside;         // (ny)
+    double fastest;         // rate of the fastest motion that steps have seen of late
     void *crossing_work;    // of ct_crossing; NULL: there are no singular positions to cross
     double singular_in;     // time to the next one, from t
     double reach;           // crossing it is to begin this long before
@@ -45,7 +53,8 @@ struct ct_driver {
     size_t sample;                // the next one to give
     bool lands;                   // steps end on samples: between them outputs err too much
     double *noise;                // of f, of problem.noise once that has been felt  (ny)
-    int unmeasured;               // steps since it was measured
+    int noisy_steps;              // until it is measured anew
+    struct ct_refusal refusal;    // of the step before this try
     struct ct_problem problem;    // the caller's, with what is found here
 };
 
@@ -59,6 +68,7 @@ struct ct_stride {
     bool is_interpolated; // the method is ready to interpolate it
     bool is_striding;     // across a singular position
     bool is_off_between;  // outputs err too much in a sample before its end
+    bool is_damping;      // a motion that it does not follow: samples have steps of their own
     double error;
 };
 
@@ -80,8 +90,10 @@ void ct_driver_adapt_after_failed_crossing(struct ct_driver *r, const struct ct_
 
 /// Is t in the gap of a crossing, where only its interpolant tells the state?
 bool ct_driver_is_in_gap(const struct ct_driver *r, const struct ct_stride *s, double t);
-/// A step was accepted; r->y, r->dy are its end.
-void ct_driver_note_step(struct ct_driver *r);
+/// A step h was refused for this error: is it rounding of f, which is taken off errors from now on?
+bool ct_driver_is_rounding(struct ct_driver *r, double h, double error);
+/// A step h was accepted; the same question.
+void ct_driver_note_step(struct ct_driver *r, double h, double error);
 
 /// Samples before `end`, from the interpolant of the step; in the gap of a crossing also the one on its end.
 bool ct_driver_give_samples_before(struct ct_driver *r, const struct ct_stride *s, double end);

@@ -1,8 +1,9 @@
 // See driver.h: rounding in f.
 //
 // Stiff forces answer a rounding of places by accelerations: eps omega^2 |q|, where a step errs by h times as much, however short
-// it is. Control that takes this for an error of its order shortens steps a hundredfold in vain. So f is asked now and then what it
-// makes of a change of places far above rounding.
+// it is. Control that takes this for an error of its order shortens steps a hundredfold in vain. Rounding shows where a step that
+// was refused and then shortened errs by more than any truncation would: then f is asked what it makes of a change of places far
+// above rounding, and that is no error as long as steps are as short.
 #include "integrate/driver.h"
 
 #include <float.h>
@@ -10,30 +11,58 @@
 
 // Places are changed by this part of the largest of them, and what f changes by is taken for that of a rounding.
 static const double change = 0x1p-40;
-// The first look is after so many steps, before anybody asks whether the method is held up; then they cost a thousandth of an
-// evaluation a step.
-enum { FIRST_STEPS = 100, STEPS_BETWEEN = 1000 };
+// Errors of truncation fall faster than with this power of the step, those of rounding with the first one: as long as a step is
+// shorter than 1 over the fastest frequency. Longer ones are held by stability and their errors have no order.
+static const double between = 3;
+// After so many steps it is measured anew: a thousandth of an evaluation a step.
+enum { STEPS_BETWEEN = 1000 };
 
-static void measure(struct ct_driver *r)
+static void measure(struct ct_driver *r, double h)
 {
     const struct ct_problem *p = r->p;
     const double golden = 0.618033988749895;
-    double largest = 0;
-    r->unmeasured = 0;
+    r->problem.noise = NULL;
+    double largest = 0, most = 0;
     for (int i = 0; i < p->nq; i++)
         largest = fmax(largest, fabs(r->y[i]));
     for (int i = 0; i < p->ny; i++) // all by different parts, so that nothing cancels
         r->point[i] = r->y[i] + (i < p->nq ? change * (1 + fmod(golden * i, 1)) * largest : 0);
     if (!(largest > 0) || ct_stepper_rhs(p, r->t, r->point, r->noise, r->stats) != CT_EVAL_OK)
         return;
-    for (int i = 0; i < p->ny; i++)
-        r->noise[i] = i < p->nq ? 0 : fabs(r->noise[i] - r->dy[i]) * (DBL_EPSILON / change);
+    for (int i = 0; i < p->ny; i++) {
+        const bool is_speed = i >= p->nq && i < p->nq + p->nu;
+        const double answer = is_speed ? fabs(r->noise[i] - r->dy[i]) : 0;
+        most = fmax(most, answer);
+        r->noise[i] = answer * (DBL_EPSILON / change);
+    }
+    if (h * h * most > change * largest)
+        return;
     r->problem.noise = r->noise;
+    r->noisy_steps = STEPS_BETWEEN;
 }
 
-void ct_driver_note_step(struct ct_driver *r)
+// A step of this length and error, after one that was refused at the same place.
+static bool shows_rounding(const struct ct_driver *r, double h, double error)
 {
-    const int wanted = r->problem.noise ? STEPS_BETWEEN : FIRST_STEPS;
-    if (!r->method->is_implicit && r->o->step == 0 && ++r->unmeasured >= wanted)
-        measure(r);
+    const struct ct_refusal *last = &r->refusal;
+    return !r->method->is_implicit && !r->problem.noise && last->error > 1 && h < last->h
+        && error > last->error * pow(h / last->h, between);
+}
+
+bool ct_driver_is_rounding(struct ct_driver *r, double h, double error)
+{
+    const bool shows = shows_rounding(r, h, error);
+    r->refusal.longest = fmax(h, r->refusal.longest);
+    r->refusal.h = h;
+    r->refusal.error = error;
+    if (shows)
+        measure(r, h);
+    return shows && r->problem.noise;
+}
+
+void ct_driver_note_step(struct ct_driver *r, double h, double error)
+{
+    if ((r->problem.noise && --r->noisy_steps == 0) || shows_rounding(r, h, error))
+        measure(r, h);
+    r->refusal = (struct ct_refusal){0};
 }

@@ -135,6 +135,8 @@ void ct_driver_adapt_after_refusal(struct ct_driver *r, double h, double error)
     r->stats->rejected_steps++;
     r->stats->inaccurate_steps += error > 1;
     ct_control_refuse(&r->control, r->method, h, error);
+    if (ct_driver_is_rounding(r, h, error))
+        r->control.h = r->refusal.longest;
 }
 
 void ct_driver_look_ahead(struct ct_driver *r)

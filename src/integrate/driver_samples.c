@@ -51,15 +51,33 @@ static bool give_projected_sample(struct ct_driver *r, double *y)
     return e == CT_EVAL_OK && give_sample(r, y);
 }
 
+// y (ny, out) at t, inside of the step: from the interpolant, where that holds, else by a step from the start of this one.
+static bool find_state(struct ct_driver *r, const struct ct_stride *s, double t, double *y)
+{
+    const struct ct_stepper_span span = {s->method, r->p, r->t, s->h, r->y, r->y1, s->work};
+    double error;
+    if (!s->is_damping) {
+        ct_stepper_point(&span, (t - r->t) / s->h, y);
+        return true;
+    }
+    const enum ct_eval e = s->method->step(r->p, r->t, t - r->t, r->y, r->dy, NULL, y,
+                                           r->daside, &error, r->aside, r->stats);
+    if (e == CT_EVAL_OK && ct_stepper_finite(y, r->p->ny))
+        return true;
+    return e != CT_EVAL_FATAL
+        && ct_error(r->ctx, nowhere, CT_E_STATE_REFUSED,
+                    "the equations of motion cannot be evaluated at t = %.9g", t);
+}
+
 bool ct_driver_give_samples_before(struct ct_driver *r, const struct ct_stride *s, double end)
 {
     while (r->sample < r->o->nsample && r->o->sample[r->sample] <= s->t1) {
-        const struct ct_stepper_span span = {s->method, r->p, r->t, s->h, r->y, r->y1, s->work};
         const double t = r->o->sample[r->sample];
         const bool is_singular = !s->is_event && ct_driver_is_in_gap(r, s, t);
         if (t >= end && !is_singular)
             break;
-        ct_stepper_point(&span, (t - r->t) / s->h, r->point);
+        if (!find_state(r, s, t, r->point))
+            return false;
         if (is_singular ? !give_singular_sample(r, s, r->point)
                         : !give_projected_sample(r, r->point))
             return false;

@@ -215,6 +215,11 @@ struct ct_method {
                          const double *dy, const struct ct_tolerance *tolerance, double *y1,
                          double *dy1, double *err, void *work,
                          struct ct_integrate_stats *stats);
+    /// h times the rate of the fastest motion that the last two stages of a step have seen, at one time. Beyond `followed` the step
+    /// does not follow that motion but damps it, and `dense` does not hold inside the step. NULL: it does.
+    double followed;
+    double (*swiftness)(const struct ct_problem *p, double h, const double *y, const double *y1,
+                        void *work);
     /// Called once for a step before its first `dense`: extra stages. May be NULL. With
     /// has_rough_dense, `dense` works without it, too, well enough to find roots.
     bool has_rough_dense;

@@ -1,6 +1,7 @@
 // See stepper.h.
 #include "integrate/stepper.h"
 
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
@@ -250,6 +251,20 @@ void ct_stepper_hermite(double *restrict out, double theta, double h, const doub
         const double rise = y1[i] - y[i], bend = h * dy[i] - rise;
         out[i] = y[i] + theta * (rise + rest * (bend + theta * (rise - h * dy1[i] - bend)));
     }
+}
+
+double ct_stepper_swiftness(const struct ct_problem *p, double h, const double *y1,
+                            const double *dy1, const double *point, const double *dpoint)
+{
+    const double roundings = 16 * DBL_EPSILON; // less tells nothing
+    double size = 0, way = 0, change = 0;
+    for (int i = 0; i < (p->nu ? p->nq + p->nu : p->ny); i++) {
+        const double d = y1[i] - point[i], f = dy1[i] - dpoint[i];
+        size += y1[i] * y1[i];
+        way += d * d;
+        change += f * f;
+    }
+    return way > roundings * roundings * size ? h * sqrt(change / way) : 0;
 }
 
 void ct_stepper_point(const struct ct_stepper_span *s, double theta, double *out)

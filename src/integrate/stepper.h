@@ -55,6 +55,10 @@ void ct_carry_accept(void *work);
 void ct_stepper_advance(double *restrict out, const double *y, double h, const double *a,
                         const double *k, int s, struct ct_carry *c);
 
+/// ct_method.swiftness, from what lies between two points at the end of a step, y1 and point, and between f there.
+double ct_stepper_swiftness(const struct ct_problem *p, double h, const double *y1,
+                            const double *dy1, const double *point, const double *dpoint);
+
 /// g->size = the largest |y_i|, |y1_i| of each group. g may be NULL.
 void ct_stepper_group(const struct ct_groups *g, int ny, const double *y, const double *y1);
 

@@ -69,6 +69,6 @@ forces: {spring: {type: spring, from: ground, to: bob, stiffness: 1e14, length: 
 outputs: [place.q1, energy.total]
 simulation: {duration: 10, samples: 2, tolerance: 1e-8}
 END
-say simulate ringing.yaml | sed 's/at t = .* now/at t = T after N steps, of H now/'
+say simulate ringing.yaml --quiet | sed 's/at t = .* now/at t = T after N steps, of H now/'
 sed -i 's/, energy.total//; s/0.01, 1, 0/1e-6, 1, 0/' ringing.yaml
 say simulate ringing.yaml --quiet --until 1
