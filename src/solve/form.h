@@ -93,6 +93,8 @@ struct ct_form_code ct_form_code(const struct ct_form *f);
 
 /// Fill row, dependent, rank.
 void ct_form_place(struct ct_form *f, const struct ct_partition *p);
+/// Values by symbol at the machine's input, for partitions; NULL where no beam is carried.
+const double *ct_form_values(struct ct_arena *a, const struct ct_machine *m);
 /// Operations of a program, one each.
 double ct_form_operations(const struct ct_program *p);
 /// Machine code of so many operations without loops [bytes].
