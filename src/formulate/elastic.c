@@ -143,7 +143,7 @@ void ct_flexible_rows(struct ct_build *b, const struct ct_flexible *f, const str
     f->inertia->form->rows(b, f, m, level, force);
     ct_stiffness_rows(b, f, force);
     if (f->follow)
-        ct_follow_forces(b, f, force);
+        ct_follow_forces(b->x, f->follow, force);
     for (int i = 0; i < n; i++)
         for (int p = 0; p < f->freedom[i].npart; p++) {
             ct_ex *r = &row[f->elastic[f->freedom[i].part[p].k].u];

@@ -77,21 +77,20 @@ static void list_values(const struct ct_entry *e, size_t n, ct_ex *out)
         out[i] = e[i].value;
 }
 
-// The rows of carried.h, with the sums behind J_c.
+// The rows of carried.h, L behind J_c.
 static struct matrices read_carried(struct elimination *s)
 {
     const struct ct_carried *c = s->e->carried;
-    const size_t n = c->nM + c->nJ + c->nsum, nu = s->e->nu;
+    const size_t n = c->nM + c->nJ + c->nL, nu = s->e->nu;
     struct matrices k = {.n = c->n, .m = s->p->rank + c->n - nu, .threshold = tight};
     ct_ex *v = CT_NEWN(s->a, ct_ex, n + 1);
-    double *number = CT_NEWN(s->a, double, n + 1), *of_J = number + c->nM,
-           *of_sum = of_J + c->nJ;
+    double *number = CT_NEWN(s->a, double, n + 1), *of_J = number + c->nM, *of_L = of_J + c->nJ;
+    struct ct_arena *scratch = ct_arena_create_under(s->a);
     k.M = CT_NEWN(s->a, struct ct_shadow_row, k.n + 1);
     k.J = CT_NEWN(s->a, struct ct_shadow_row, k.m + 1);
     list_values(c->M, c->nM, v);
     list_values(c->J, c->nJ, v + c->nM);
-    list_values(c->sum, c->nsum, v + c->nM + c->nJ);
-    struct ct_arena *scratch = ct_arena_create_under(s->a);
+    list_values(c->L, c->nL, v + c->nM + c->nJ);
     ct_ex_values(s->x, scratch, v, n, s->p->value, number);
     ct_arena_destroy(scratch);
     for (size_t i = 0; i < c->nM; i++)
@@ -100,12 +99,9 @@ static struct matrices read_carried(struct elimination *s)
         if (s->place[c->J[i].row])
             ct_shadow_put(s->a, &k.J[s->place[c->J[i].row] - 1], c->J[i].column, c->J[i].value,
                           of_J[i]);
-    struct ct_shadow_row *sum = k.J + s->p->rank;
-    for (size_t i = 0; i < c->nsum; i++)
-        ct_shadow_put(s->a, &sum[(size_t)c->sum[i].row - nu], c->sum[i].column,
-                      ct_ex_neg(s->x, c->sum[i].value), -of_sum[i]);
-    for (size_t i = nu; i < c->n; i++)
-        ct_shadow_put(s->a, &sum[i - nu], (int)i, CT_EX_ONE, 1);
+    for (size_t i = 0; i < c->nL; i++)
+        ct_shadow_put(s->a, &k.J[s->p->rank + (size_t)c->L[i].row - nu], c->L[i].column,
+                      c->L[i].value, of_L[i]);
     ct_shadow_sort(k.M, k.n);
     ct_shadow_sort(k.J, k.m);
     return k;
@@ -313,9 +309,9 @@ static void apply_mass(struct elimination *s, const ct_ex *a, ct_ex *r)
     const struct ct_carried *c = s->e->carried;
     ct_ex *y = CT_NEWN(s->a, ct_ex, c->n + 1), *f = CT_NEWN(s->a, ct_ex, c->n + 1);
     memcpy(y, a, nu * sizeof *y);
-    ct_carried_extend(s->x, c, y);
+    ct_carried_extend(s->x, s->a, c, y);
     apply(s, s->system.M, c->n, y, f);
-    ct_carried_fold(s->x, c, f);
+    ct_carried_fold(s->x, s->a, c, f);
     memcpy(r, f, nu * sizeof *r);
 }
 
@@ -434,16 +430,18 @@ static const struct ct_kkt *predict(const struct matrices *k, struct ct_arena *s
     return least;
 }
 
-// Operations that entries take.
+// Operations that entries and Q take: they share some.
 static double count_entries(struct elimination *s, const struct ct_entry *A, size_t nA,
                             const struct ct_entry *B, size_t nB, const struct ct_entry *C,
                             size_t nC)
 {
-    ct_ex *v = CT_NEWN(s->a, ct_ex, nA + nB + nC + 1);
-    list_values(A, nA, v);
-    list_values(B, nB, v + nA);
-    list_values(C, nC, v + nA + nB);
-    const size_t n = ct_ex_walk(s->x, v, nA + nB + nC);
+    const size_t nu = s->e->nu;
+    ct_ex *v = CT_NEWN(s->a, ct_ex, nu + nA + nB + nC + 1);
+    memcpy(v, s->e->Q, nu * sizeof *v);
+    list_values(A, nA, v + nu);
+    list_values(B, nB, v + nu + nA);
+    list_values(C, nC, v + nu + nA + nB);
+    const size_t n = ct_ex_walk(s->x, v, nu + nA + nB + nC);
     double count = 0;
     for (size_t i = 0; i < n; i++)
         count += ct_op_info[s->x->node[s->x->stack[i]].op].narg > 0;
@@ -458,7 +456,7 @@ static void try_carried(struct elimination *s, struct ct_arena *scratch,
     const struct ct_equations *e = s->e;
     if (!c || !s->p->value)
         return;
-    const double more = count_entries(s, c->M, c->nM, c->J, c->nJ, c->sum, c->nsum)
+    const double more = count_entries(s, c->M, c->nM, c->J, c->nJ, c->L, c->nL)
                       - count_entries(s, e->M, e->nM, e->J, e->nJ, NULL, 0);
     enum ct_kkt_order order;
     s->system = read_carried(s);

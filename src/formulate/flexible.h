@@ -101,7 +101,9 @@ struct ct_flexible {
     struct ct_shape shortening[4][4], bubble[4][4]; // E(xi), D(xi)
     struct ct_shape curving[4][4]; // integral of the sections' rotation gradients, as E
     struct ct_follow *follow;      // NULL: no rotation follows (elastic.h)
-    double start_missed;           // share of the start that modes or given shapes leave out
+    const struct ct_follow
+        *followed; // where those that follow are coordinates: as if they were not (carried.h)
+    double start_missed; // share of the start that modes or given shapes leave out
     double cut; // frequency of modes of which some are kept and some not [rad/s]; else 0
     int uncut
         [2]; // then: the nearest numbers of modes, below and above, that keep all or none of these

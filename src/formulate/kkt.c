@@ -30,6 +30,22 @@ struct work {
 
 // ---- the matrix -----------------------------------------------------------------------------------------
 
+// Unknowns without inertia (d[i] = 0): the largest entries of their columns are as those of the rows that these are in.
+static void scale_massless(const struct ct_shadow_row *J, size_t m, size_t nu, double *d)
+{
+    double *row = d + nu;
+    for (size_t i = 0; i < m; i++)
+        for (size_t k = 0; k < J[i].n; k++) {
+            const struct ct_shadow_entry *e = &J[i].e[k];
+            double *to = &d[e->column];
+            if (*to <= 0) // negative while it is the largest entry
+                *to = fmin(*to, -fabs(e->number) * row[i]);
+        }
+    for (size_t i = 0; i < nu; i++)
+        if (d[i] <= 0)
+            d[i] = d[i] < 0 ? -1 / d[i] : 1;
+}
+
 // 1 over the size of unknowns: unit diagonal of M, rows of J of size one.
 static double *find_scales(struct ct_arena *a, const struct ct_shadow_row *M, size_t nu,
                            const struct ct_shadow_row *J, size_t m)
@@ -37,7 +53,7 @@ static double *find_scales(struct ct_arena *a, const struct ct_shadow_row *M, si
     double *d = CT_NEWN(a, double, nu + m + 1);
     for (size_t i = 0; i < nu; i++) {
         const struct ct_shadow_entry *e = ct_shadow_find(&M[i], (int)i);
-        d[i] = e && e->number > 0 ? 1 / sqrt(e->number) : 1;
+        d[i] = e && e->number > 0 ? 1 / sqrt(e->number) : 0;
     }
     for (size_t i = 0; i < m; i++) {
         double most = 0;
@@ -45,6 +61,7 @@ static double *find_scales(struct ct_arena *a, const struct ct_shadow_row *M, si
             most = fmax(most, fabs(J[i].e[k].number) * d[J[i].e[k].column]);
         d[nu + i] = most > 0 ? 1 / most : 1;
     }
+    scale_massless(J, m, nu, d);
     return d;
 }
 
