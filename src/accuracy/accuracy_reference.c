@@ -164,8 +164,6 @@ bool ct_accuracy_find_reference(struct ct_accuracy *a)
     for (int i = 0; i < NREFERENCE; i++) {
         if (i > 1 && a->uncertainty <= (i < NREFERENCE - 1 ? good_agreement : DBL_MAX))
             continue;
-        if (i == 1 && isinf(c[0].seconds)) // its order is lower, so that it takes longer still
-            continue;
         if (i == NREFERENCE - 1 && !c[0].row) // stiff
             c[i] = (struct candidate){.method = "radau5", .rtol = 1e-11};
         if (!run_candidate(a, &c[i]))

@@ -7,7 +7,6 @@
 #include "configuration/variant.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 enum { STANDARD_COUNT = 10, LEVELS = 21 };
@@ -90,17 +89,13 @@ struct ct_buckling *ct_buckling_create(struct ct_ctx *ctx, struct ct_system *sys
     s->load = options ? options->load : NULL;
     s->count = options && options->count > 0 ? (size_t)options->count : STANDARD_COUNT;
     s->at.hold_drivers = options && options->hold_drivers;
-    if (ct_own_enter(ctx, &s->own, find, s))
-        return s;
-    ct_buckling_destroy(s);
-    return NULL;
+    return ct_analysis_find(ctx, s, &s->own, &s->at, find);
 }
 
 void ct_buckling_destroy(struct ct_buckling *s)
 {
     if (s)
-        ct_own_finish(&s->own);
-    free(s);
+        ct_analysis_free(s, &s->own, &s->at);
 }
 
 size_t ct_buckling_count(const struct ct_buckling *s)

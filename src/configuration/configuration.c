@@ -233,10 +233,20 @@ bool ct_configuration_find_full(struct ct_ctx *own, struct ct_system *sys,
     return ct_configuration_find(own, sys, o, c);
 }
 
-void ct_configuration_finish(struct ct_configuration *c)
+void ct_analysis_free(void *analysis, struct ct_ctx *own, struct ct_configuration *at)
 {
-    ct_sim_destroy(c->sim);
-    c->sim = NULL;
+    ct_sim_destroy(at->sim);
+    ct_own_finish(own);
+    free(analysis);
+}
+
+void *ct_analysis_find(struct ct_ctx *ctx, void *analysis, struct ct_ctx *own,
+                       struct ct_configuration *at, bool (*find)(void *task))
+{
+    if (ct_own_enter(ctx, own, find, analysis))
+        return analysis;
+    ct_analysis_free(analysis, own, at);
+    return NULL;
 }
 
 void ct_configuration_print(const struct ct_configuration *c, FILE *out)

@@ -38,7 +38,11 @@ struct ct_linear *ct_configuration_start(struct ct_ctx *own, struct ct_system *s
 /// ct_configuration_find with full matrices, after a find that was large. Warns that this takes long. Errors: CT_E_FULL for what would take hours.
 bool ct_configuration_find_full(struct ct_ctx *own, struct ct_system *sys,
                                 const struct ct_sim_options *o, struct ct_configuration *c);
-void ct_configuration_finish(struct ct_configuration *c);
+/// An analysis (from ct_own_alloc, with a context of its own and a configuration in it): find(analysis) with a guard. Returns it, or
+/// NULL where that fails: then it is freed, and ctx has the errors.
+void *ct_analysis_find(struct ct_ctx *ctx, void *analysis, struct ct_ctx *own,
+                       struct ct_configuration *at, bool (*find)(void *task));
+void ct_analysis_free(void *analysis, struct ct_ctx *own, struct ct_configuration *at);
 /// A line for people: where, and how near to equilibrium.
 void ct_configuration_print(const struct ct_configuration *c, FILE *out);
 

@@ -5,7 +5,6 @@
 #include "report/columns.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 struct ct_equilibrium {
@@ -124,17 +123,13 @@ struct ct_equilibrium *ct_equilibrium_create(struct ct_ctx *ctx, struct ct_syste
         return NULL;
     q->system = sys;
     q->at.hold_drivers = options && options->hold_drivers;
-    if (ct_own_enter(ctx, &q->own, find, q))
-        return q;
-    ct_equilibrium_destroy(q);
-    return NULL;
+    return ct_analysis_find(ctx, q, &q->own, &q->at, find);
 }
 
 void ct_equilibrium_destroy(struct ct_equilibrium *q)
 {
     if (q)
-        ct_own_finish(&q->own);
-    free(q);
+        ct_analysis_free(q, &q->own, &q->at);
 }
 
 // ---- what it says ---------------------------------------------------------------------------------------

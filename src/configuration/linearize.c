@@ -10,7 +10,6 @@
 #include "configuration/variant.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 struct ct_linearization {
@@ -296,30 +295,21 @@ struct ct_linearization *ct_linearize(struct ct_ctx *ctx, struct ct_system *sys,
                                       const struct ct_linearize_options *options)
 {
     static const struct ct_linearize_options standard;
-    if (!sys)
-        return NULL;
     const struct ct_linearize_options *o = options ? options : &standard;
-    struct ct_linearization *s = ct_own_alloc(ctx, sizeof *s);
+    struct ct_linearization *s = sys ? ct_own_alloc(ctx, sizeof *s) : NULL;
     if (!s)
         return NULL;
-    s->system = sys;
-    s->run = o->run;
-    s->inputs = o->inputs;
-    s->at.about = o->about;
-    s->at.hold_drivers = o->hold_drivers;
-    if (ct_own_enter(ctx, &s->own, find, s))
-        return s;
-    ct_linearization_destroy(s);
-    return NULL;
+    *s = (struct ct_linearization){.system = sys,
+                                   .run = o->run,
+                                   .inputs = o->inputs,
+                                   .at = {.about = o->about, .hold_drivers = o->hold_drivers}};
+    return ct_analysis_find(ctx, s, &s->own, &s->at, find);
 }
 
 void ct_linearization_destroy(struct ct_linearization *s)
 {
-    if (s) {
-        ct_configuration_finish(&s->at);
-        ct_own_finish(&s->own);
-    }
-    free(s);
+    if (s)
+        ct_analysis_free(s, &s->own, &s->at);
 }
 
 // ---- questions --------------------------------------------------------------------------------------------------

@@ -10,7 +10,6 @@
 #include "report/outfile.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 enum { STANDARD_COUNT = 10, MOST_PANELS = 12 };
@@ -66,30 +65,21 @@ struct ct_modes *ct_modes_create(struct ct_ctx *ctx, struct ct_system *sys,
                                  const struct ct_modes_options *options)
 {
     static const struct ct_modes_options standard;
-    if (!sys)
-        return NULL;
     const struct ct_modes_options *o = options ? options : &standard;
-    struct ct_modes *s = ct_own_alloc(ctx, sizeof *s);
+    struct ct_modes *s = sys ? ct_own_alloc(ctx, sizeof *s) : NULL;
     if (!s)
         return NULL;
-    s->system = sys;
-    s->run = o->run;
-    s->count = o->count;
-    s->at.about = o->about;
-    s->at.hold_drivers = o->hold_drivers;
-    if (ct_own_enter(ctx, &s->own, find, s))
-        return s;
-    ct_modes_destroy(s);
-    return NULL;
+    *s = (struct ct_modes){.system = sys,
+                           .run = o->run,
+                           .count = o->count,
+                           .at = {.about = o->about, .hold_drivers = o->hold_drivers}};
+    return ct_analysis_find(ctx, s, &s->own, &s->at, find);
 }
 
 void ct_modes_destroy(struct ct_modes *s)
 {
-    if (s) {
-        ct_configuration_finish(&s->at);
-        ct_own_finish(&s->own);
-    }
-    free(s);
+    if (s)
+        ct_analysis_free(s, &s->own, &s->at);
 }
 
 // ---- questions ------------------------------------------------------------------------------------------

@@ -109,6 +109,7 @@ struct ct_anchor {
     int parent, cluster;
     int enter, leave; // preorder interval: holds those of the anchors outboard
     ct_ex3 local;
+    ct_ex3 fixed, slid; // its parts where it moves: the constant one, and what it slides by
     int nslide;
     struct ct_slide *slide;
     ct_ex3 drift,
@@ -162,6 +163,8 @@ struct ct_build {
 
     // planar mechanisms: common normal and a basis of the plane (ground components)
     bool is_planar;
+    bool keeps_plane;      // is_planar, or would be if something were left out
+    ct_ex3 normal;         // to that plane
     const bool *is_linear; // by body: beams left to the program that are; NULL: not known yet
     const struct ct_equations *like; // whose beams are formulated alike; NULL: none
     bool keep_all;                   // leave nothing out

@@ -110,12 +110,12 @@ static void derive_radii(struct ct_build *b, struct ct_flexible *f, struct ct_el
     }
 }
 
-// What may deform in a planar mechanism: bending about the normal; a beam's y or z axis points along it.
+// What deforms where the scene keeps to a plane: bending about the normal; a beam's y or z axis points along it.
 static unsigned in_plane(const struct ct_build *b, const struct ct_flexible *f)
 {
-    if (!b->is_planar)
+    if (!b->keeps_plane)
         return CT_BEAM_ALL;
-    const ct_ex3 n = ct_ex33_apply_t(b->x, &b->upright[f->base], b->plane[2]);
+    const ct_ex3 n = ct_ex33_apply_t(b->x, &b->upright[f->base], b->normal);
     const bool about_z = fabs(ct_ex_value(b->x, n.e[2], b->value)) > 0.5;
     return CT_BEAM_AXIAL | (about_z ? CT_BEAM_BENDING_Z : CT_BEAM_BENDING_Y);
 }
@@ -175,7 +175,8 @@ static void settle(struct ct_build *b, struct ct_flexible *f)
     f->formulation = beam->formulation;
     if (beam->formulation == CT_BEAM_AUTO)
         choose_formulation(b, f);
-    f->deformation = beam->deformation & in_plane(b, f);
+    f->excited = in_plane(b, f);
+    f->deformation = beam->deformation & (b->is_planar ? f->excited : CT_BEAM_ALL);
     // nor has it an inertia of its own then, so there is no coordinate to keep
     const char *untwisted = f->deformation & CT_BEAM_TORSION && !beam->deformation_given
                               ? ct_excite_no_twist(b, f)

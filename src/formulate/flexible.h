@@ -86,6 +86,7 @@ struct ct_flexible {
     const char *name;
     int body, base;
     unsigned deformation;
+    unsigned excited;    // what the scene can excite of it, if more is kept
     enum ct_axial axial; // of forces
     enum ct_axial
         kinematics; // of places and of the mass matrix: the same, but LINEAR where only forces foreshorten

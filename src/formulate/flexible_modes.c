@@ -108,21 +108,32 @@ static void assemble(struct reduction *r)
 
 // ---- shapes -------------------------------------------------------------------------------------------------
 
-// The block of the freedoms without a static shape.
-static double *inner(const struct reduction *r, const double *A)
+// Freedoms of these families without a static shape, by number (out). Returns how many.
+static int inner_freedoms(const struct reduction *r, unsigned families, int *out)
 {
-    const size_t m = (size_t)(r->n - r->nkept), n = (size_t)r->n, first = (size_t)r->nkept;
-    double *out = CT_NEWN(r->b->ctx->scratch, double, m *m + 1);
-    for (size_t j = 0; j < m; j++)
-        memcpy(out + m * j, A + first + n * (first + j), m * sizeof *out);
+    int m = 0;
+    for (int i = r->nkept; i < r->n; i++)
+        if (ct_freedom_family(r->freedom[i] % NKIND) & families)
+            out[m++] = i;
+    return m;
+}
+
+// Rows and columns `at` (m) of A.
+static double *block(const struct reduction *r, const double *A, const int *at, int m)
+{
+    double *out = CT_NEWN(r->b->ctx->scratch, double, (size_t)m *(size_t)m + 1);
+    for (int j = 0; j < m; j++)
+        for (int i = 0; i < m; i++)
+            out[i + (size_t)m * (size_t)j] = A[at[i] + (size_t)r->n * (size_t)at[j]];
     return out;
 }
 
 // Psi = [1; -K_ii^-1 K_ic]
 static bool static_shapes(struct reduction *r)
 {
-    const int m = r->n - r->nkept;
-    r->L = inner(r, r->K);
+    int *at = CT_NEWN(r->b->ctx->scratch, int, r->n + 1);
+    const int m = inner_freedoms(r, CT_BEAM_ALL, at);
+    r->L = block(r, r->K, at, m);
     if (m && !ct_cholesky(r->L, m, m))
         return false;
     for (int c = 0; c < r->nkept; c++) {
@@ -167,13 +178,16 @@ static void find_cut(const struct reduction *r, const double *w, int m, int want
     r->f->uncut[1] = above;
 }
 
-// K v = w^2 M v with the others held, solved as M v = (1/w^2) K v: M may be singular. Scaled to a largest component of 1.
-static bool modes(struct reduction *r, int wanted)
+// Of these families: K v = w^2 M v with the others held, solved as M v = (1/w^2) K v: M may be singular. Scaled to a largest
+// component of 1.
+static bool modes(struct reduction *r, unsigned families, int wanted)
 {
-    const int m = r->n - r->nkept;
-    double *A = inner(r, r->M), *B = inner(r, r->K),
-           *w = CT_NEWN(r->b->ctx->scratch, double, m + 1);
-    double *work = CT_NEWN(r->b->ctx->scratch, double, ct_pencil_eigen_work(m));
+    struct ct_arena *scratch = r->b->ctx->scratch;
+    int *at = CT_NEWN(scratch, int, r->n + 1);
+    const int m = inner_freedoms(r, families, at);
+    double *A = block(r, r->M, at, m), *B = block(r, r->K, at, m),
+           *w = CT_NEWN(scratch, double, m + 1);
+    double *work = CT_NEWN(scratch, double, ct_pencil_eigen_work(m));
     if (m && !ct_pencil_eigen(w, A, B, m, m, work))
         return false;
     for (int k = 0; k < wanted && k < m; k++) {
@@ -182,7 +196,7 @@ static bool modes(struct reduction *r, int wanted)
         for (int i = 0; i < m; i++)
             most = fabs(v[i]) > fabs(most) ? v[i] : most;
         for (int i = 0; i < m; i++)
-            out[r->nkept + i] = v[i] / most;
+            out[at[i]] = v[i] / most;
         drop_rounding(r, out);
     }
     if (wanted > 0 && wanted < m)
@@ -219,7 +233,8 @@ bool ct_flexible_keeps_all_modes(struct ct_build *b, struct ct_flexible *f)
 {
     struct reduction r = {.b = b, .f = f};
     number_modal(&r);
-    return f->beam->modes >= r.n - r.nkept;
+    return f->beam->modes
+        >= inner_freedoms(&r, f->excited, CT_NEWN(b->ctx->scratch, int, r.n + 1));
 }
 
 bool ct_flexible_reduce(struct ct_build *b, struct ct_flexible *f, struct ct_shapes *out)
@@ -228,7 +243,9 @@ bool ct_flexible_reduce(struct ct_build *b, struct ct_flexible *f, struct ct_sha
     number_modal(&r);
     assemble(&r);
     r.shape = CT_NEWN(b->arena, double, (size_t)r.n *(size_t)(r.n + 1) + 1);
-    if (!static_shapes(&r) || !modes(&r, f->beam->modes))
+    // what the scene cannot excite, if it is kept, takes no mode from the others
+    if (!static_shapes(&r) || !modes(&r, f->excited, f->beam->modes)
+        || !modes(&r, ~f->excited, f->beam->modes))
         return ct_error(b->ctx, f->beam->modes_mark, CT_E_BEAM,
                         "beam '%s': its modes cannot be found; is every stiffness positive?",
                         f->name);

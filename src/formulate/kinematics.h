@@ -71,6 +71,10 @@ ct_ex3 ct_anchor_acceleration(struct ct_build *b, int a, enum ct_level level);
 ct_ex3 ct_path_position(struct ct_build *b, int tail, int head);
 ct_ex3 ct_path_velocity(struct ct_build *b, int tail, int head);
 ct_ex3 ct_path_acceleration(struct ct_build *b, int tail, int head, enum ct_level level);
+/// Place and velocity of node `head` as seen from node `tail`, in its axes. What turns with the tail is summed in those axes, so that
+/// what slides beside the tail has no rounding of the tail's own place in it.
+ct_ex3 ct_path_position_seen(struct ct_build *b, int tail, int head);
+ct_ex3 ct_path_velocity_seen(struct ct_build *b, int tail, int head);
 
 /// marked (ncluster, out): clusters whose spins may change the path from tail to head or the axes at its ends.
 void ct_path_mark(struct ct_build *b, int tail, int head, bool *marked);

@@ -234,7 +234,9 @@ void ct_plane_detect(struct ct_build *b, bool allowed)
     const double axes[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
     for (int i = 0; i < 3; i++)
         b->plane[i] = ct_ex3_const(b->x, axes + 3 * i);
-    if (!allowed || !find_normal(b)) {
+    b->keeps_plane = find_normal(b);
+    b->normal = b->plane[2];
+    if (!allowed || !b->keeps_plane) {
         b->plane[2] = ct_ex3_const(b->x, axes + 6);
         return;
     }

@@ -78,15 +78,14 @@ static void place_sliding(struct ct_build *b, const struct ct_edge_info *e,
                           ct_ex3 vector, struct ct_place *self)
 {
     const int cluster = tail->frame;
-    ct_ex3 local = vector;
-    int parent = p->anchor;
-    if (p->cluster == cluster)
-        local = ct_ex3_add(b->x, p->local, vector);
-    else
-        parent = anchor_at(b, p);
-    const int i = add_anchor(b, parent, cluster, local);
+    const bool goes_on = p->cluster == cluster;
+    const ct_ex3 fixed = goes_on ? p->local : zero3;
+    const int parent = goes_on ? p->anchor : anchor_at(b, p);
+    const int i = add_anchor(b, parent, cluster, ct_ex3_add(b->x, fixed, vector));
     struct ct_anchor *a = &b->anchor[i];
     a->moves = true;
+    a->fixed = fixed;
+    a->slid = vector;
     if (e->flexible)
         slide_section(b, e, tail, sign, a);
     else
@@ -403,6 +402,54 @@ ct_ex3 ct_path_acceleration(struct ct_build *b, int tail, int head, enum ct_leve
     for (size_t i = 0; i < p.n; i++)
         sum = accumulate(b, sum, p.piece[i].sign, piece_acceleration(b, &p.piece[i], level));
     return sum;
+}
+
+// Does the piece turn with node t? What it slides by is added to *slid then, what is fixed of it to *fixed: arms on both sides cancel
+// there before anything is rounded.
+static bool add_own(struct ct_build *b, const struct ct_place *t, const struct ct_piece *p,
+                    ct_ex3 *fixed, ct_ex3 *slid)
+{
+    const struct ct_anchor *a = p->anchor >= 0 ? &b->anchor[p->anchor] : NULL;
+    if (p->cluster != t->frame)
+        return false;
+    const bool moves = a && a->moves;
+    *fixed = accumulate(b, *fixed, p->sign, moves ? a->fixed : p->local);
+    if (moves)
+        *slid = accumulate(b, *slid, p->sign, a->slid);
+    return true;
+}
+
+ct_ex3 ct_path_position_seen(struct ct_build *b, int tail, int head)
+{
+    const struct path p = find_path(b, tail, head);
+    const struct ct_place *t = &b->place[tail];
+    const ct_ex33 to_axes = ct_ex33_transpose(&t->S);
+    ct_ex3 sum = zero3, fixed = zero3, slid = zero3;
+    for (size_t i = 0; i < p.n; i++)
+        if (!add_own(b, t, &p.piece[i], &fixed, &slid))
+            sum = accumulate(b, sum, p.piece[i].sign, piece_vector(b, &p.piece[i]));
+    const ct_ex3 own = ct_ex33_apply(b->x, &to_axes, ct_ex3_add(b->x, fixed, slid));
+    return ct_ex3_is_zero(sum) ? own : ct_ex3_add(b->x, own, ct_node_unturn(b, tail, sum));
+}
+
+ct_ex3 ct_path_velocity_seen(struct ct_build *b, int tail, int head)
+{
+    const struct path p = find_path(b, tail, head);
+    const struct ct_place *t = &b->place[tail];
+    const ct_ex33 to_axes = ct_ex33_transpose(&t->S);
+    ct_ex3 sum = zero3, carried = zero3, own = zero3;
+    for (size_t i = 0; i < p.n; i++) {
+        const struct ct_piece *piece = &p.piece[i];
+        if (piece->cluster != t->frame) {
+            sum = accumulate(b, sum, piece->sign, piece_velocity(b, piece));
+            carried = accumulate(b, carried, piece->sign, piece_vector(b, piece));
+        } else if (piece->anchor >= 0 && b->anchor[piece->anchor].moves) {
+            own = accumulate(b, own, piece->sign, b->anchor[piece->anchor].drift);
+        }
+    }
+    sum = ct_ex3_sub(b->x, sum, ct_cluster_swing(b, t->frame, carried));
+    own = ct_ex33_apply(b->x, &to_axes, own);
+    return ct_ex3_is_zero(sum) ? own : ct_ex3_add(b->x, own, ct_node_unturn(b, tail, sum));
 }
 
 // local x v for a vector v of the spin's own cluster, in its axes; worth it where a component vanishes.

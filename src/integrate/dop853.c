@@ -176,10 +176,12 @@ static double estimate(const struct ct_problem *p, double t, double h, const dou
     const int n = p->ny;
     double *e = w->spare, *y3 = e + n;
     ct_stepper_combine(e, NULL, h, E5, w->k, STAGES - 1, n);
+    ct_stepper_take_noise(p, h, e);
     const double e5 = ct_stepper_norm(p, tolerance, y, y1, e);
     ct_stepper_combine(y3, y, h, B3, w->k, STAGES - 1, n);
     for (int i = 0; i < n; i++)
         y3[i] = y1[i] - y3[i];
+    ct_stepper_take_noise(p, h, y3);
     const double joint = ct_stepper_join(e5, ct_stepper_norm(p, tolerance, y, y1, y3));
     if (e5 == 0 || !p->output_error)
         return joint;

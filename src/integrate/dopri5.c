@@ -82,6 +82,7 @@ static enum ct_eval step(const struct ct_problem *p, double t, double h, const d
     ct_stepper_copy(dy1, k + (STAGES - 1) * n, n);
     if (tolerance) {
         ct_stepper_combine(point, NULL, h, E, k, STAGES, n);
+        ct_stepper_take_noise(p, h, point);
         *err = ct_stepper_error(p, tolerance, t + h, y, y1, point);
     }
     return CT_EVAL_OK;

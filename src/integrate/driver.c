@@ -50,7 +50,7 @@ static void allocate(struct ct_driver *r)
 {
     struct ct_arena *a = r->ctx->model;
     double **const vectors[]
-        = {&r->y0, &r->y, &r->dy, &r->y1, &r->dy1, &r->moved, &r->dmoved, &r->point};
+        = {&r->y0, &r->y, &r->dy, &r->y1, &r->dy1, &r->moved, &r->dmoved, &r->point, &r->noise};
     for (size_t i = 0; i < COUNT(vectors); i++)
         *vectors[i] = CT_NEWN(a, double, r->p->ny);
     r->work = r->method->create(a, r->method, r->p);
@@ -406,6 +406,7 @@ static void commit(struct ct_driver *r, const struct ct_stride *s)
     *(r->dend == r->dy1 ? &r->dy1 : &r->dmoved) = dy;
     r->t = s->t1;
     r->stats->steps++;
+    ct_driver_note_step(r);
     // a crossing tells an implicit method nothing about the steps to come
     if (s->method != r->method && r->method->is_implicit)
         r->method->restart(r->work);
@@ -519,6 +520,8 @@ bool ct_integrate(struct ct_ctx *ctx, const struct ct_method *method,
         .reach = INFINITY,
         .stop = -INFINITY,
     };
+    r.problem = *p;
+    r.p = &r.problem;
     allocate(&r);
     memcpy(r.y, y, (size_t)p->ny * sizeof *y);
     memcpy(r.y0, y, (size_t)p->ny * sizeof *y);

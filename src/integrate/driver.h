@@ -3,6 +3,7 @@
 //     driver.c           steps and events
 //     driver_plan.c      how long the next step is to be
 //     driver_samples.c   samples on the way
+//     driver_noise.c     what rounding makes of f
 #ifndef CT_INTEGRATE_DRIVER_H
 #define CT_INTEGRATE_DRIVER_H
 
@@ -43,6 +44,9 @@ struct ct_driver {
     bool is_open;                 // the last step met everything but the constraints
     size_t sample;                // the next one to give
     bool lands;                   // steps end on samples: between them outputs err too much
+    double *noise;                // of f, of problem.noise once that has been felt  (ny)
+    int unmeasured;               // steps since it was measured
+    struct ct_problem problem;    // the caller's, with what is found here
 };
 
 // A step as planned: to t1, which is t + h but for rounding, or the end of the run before that.
@@ -76,6 +80,9 @@ void ct_driver_adapt_after_failed_crossing(struct ct_driver *r, const struct ct_
 
 /// Is t in the gap of a crossing, where only its interpolant tells the state?
 bool ct_driver_is_in_gap(const struct ct_driver *r, const struct ct_stride *s, double t);
+/// A step was accepted; r->y, r->dy are its end.
+void ct_driver_note_step(struct ct_driver *r);
+
 /// Samples before `end`, from the interpolant of the step; in the gap of a crossing also the one on its end.
 bool ct_driver_give_samples_before(struct ct_driver *r, const struct ct_stride *s, double end);
 /// Those due at the state of now.

@@ -9,10 +9,10 @@
 
 // With a tolerance the iteration errs by a small part of it, smaller the tighter it is.
 static const double kappa_most = 0.03;
-// Without one, corrections are followed down to rounding of well-scaled equations, and accepted at a
-// hundred times that where they stop to shrink.
+// Without one, corrections are followed until less than half a rounding of states is left, 1e-16 of them, and accepted at
+// 1e-10 where they stop to shrink or have been many. What is left in each step, and is the same in most, adds up over the steps.
 static const struct ct_tolerance finest = {1e-12, 1e-12};
-static const double kappa_finest = 0.01, rounding_finest = 100;
+static const double kappa_finest = 1e-4, rounding_finest = 100;
 // The first corrections come from a guess and may grow; not so much, though.
 static const double hopeless = 100;
 // Places that change by less than this many roundings of the largest of them cannot be found better, however much their
@@ -25,8 +25,6 @@ static const double moved_roundings = 4;
 static const double further = 1e-6;
 // After convergence corrections that are not halved have come to rounding.
 static const double halved = 0.5;
-// Vibrations so many times as fast as the motion are not part of it.
-static const double much_faster = 10;
 // In the index-3 form places alone are judged, and speeds follow them divided by the step.
 static const double kappa_index3 = 0.01;
 enum { MOST = 10, MOST_FINEST = 30 };
@@ -264,8 +262,7 @@ enum ct_eval ct_iteration_refresh(struct ct_iteration *it, double t, const doubl
     return CT_EVAL_OK;
 }
 
-// A (n x n, out) for c and e.
-static void fill(const struct ct_iteration *it, double *A, double c, double e)
+void ct_iteration_fill(const struct ct_iteration *it, double *A, double c, double e)
 {
     const int n = it->n;
     const double x = c / e, y = 1 / e, z = 1 / c;
@@ -278,7 +275,7 @@ bool ct_iteration_factor_anew(struct ct_iteration *it, double c, double e, doubl
                               struct ct_integrate_stats *stats)
 {
     const int n = it->n, split = it->nu;
-    fill(it, it->G, c, e);
+    ct_iteration_fill(it, it->G, c, e);
     it->c = it->e = 0;
     stats->factorizations++;
     if (!ct_lu(it->G, it->pivot, n, n))
@@ -406,84 +403,6 @@ double ct_iteration_amplified(struct ct_iteration *it, const struct ct_problem *
     return p->amplified_error(p->user, t1, y1, states_of(it, y1, d, u), tolerance);
 }
 
-// How fast the motion is for its way: the largest |u|/|q|, without coordinates that are small as the tolerance sees them, and
-// of those that have gone further than a unit as after that.  [1/s]
-static double pace_of(const struct ct_iteration *it, double small, const double *y)
-{
-    const double *u = y + it->dae->nq;
-    double pace = 0;
-    for (int k = 0; k < it->nu; k++) {
-        const int i = it->dae->q_of[k];
-        const double way = i < 0 ? 1 : ct_smaller(fabs(y[i]), 1);
-        pace = ct_larger(pace, (fabs(u[k]) + small) / (way + small));
-    }
-    return pace;
-}
-
-// b (n) = the slow part of u, in its first nu entries.
-static void pass_slow(struct ct_iteration *it, const double *u)
-{
-    const int nu = it->nu, n = it->n;
-    double *b = it->b;
-    memset(b, 0, (size_t)n * sizeof *b);
-    for (int j = 0; j < nu; j++)
-        for (int k = 0; k < nu; k++)
-            b[k] += it->M[k + nu * j] * u[j];
-    ct_lu_solve(b, it->H, it->pivot_slow, n, n, 1, n, false);
-}
-
-// How much of speed k is slow.
-static double remains(struct ct_iteration *it, int k)
-{
-    memset(it->off, 0, (size_t)it->nu * sizeof *it->off);
-    it->off[k] = 1;
-    pass_slow(it, it->off);
-    return it->b[k];
-}
-
-// Factors that tell what is slower than c; those of up to twice or half of it will do.
-static bool factor_slow(struct ct_iteration *it, double c)
-{
-    if (it->slow > c / 2 && it->slow < 2 * c)
-        return true;
-    fill(it, it->H, c, c * c);
-    it->slow = ct_lu(it->H, it->pivot_slow, it->n, it->n) ? c : 0;
-    for (int k = 0; k < it->nu && it->slow > 0; k++)
-        it->is_slow[k] = remains(it, k) > 0.5;
-    return it->slow > 0;
-}
-
-// What the slow motion does not feel of speeds: as much as is ample of the largest slow one, in a mass as light as the
-// lightest slow one.
-static double unfelt_energy(const struct ct_iteration *it, const double *ample)
-{
-    double light = INFINITY, most = 0;
-    for (int k = 0; k < it->nu; k++)
-        if (it->is_slow[k]) {
-            light = fmin(light, it->M[k + it->nu * k]);
-            most = fmax(most, ample[k]);
-        }
-    return isfinite(light) ? sqrt(light) * most : 0;
-}
-
-double ct_iteration_slow_norm(struct ct_iteration *it, const struct ct_tolerance *tolerance,
-                              const double *y, const bool *asked, const double *ample,
-                              const double *d, const double *u)
-{
-    const int nu = it->nu;
-    double *b = it->b, *slow = it->off;
-    const double small = tolerance->atol / tolerance->rtol;
-    if (!isfinite(small) || !factor_slow(it, much_faster * pace_of(it, small, y)))
-        return INFINITY;
-    const double unfelt = unfelt_energy(it, ample);
-    pass_slow(it, u);
-    for (int k = 0; k < nu; k++) {
-        const double borne = fmax(ample[k], unfelt / sqrt(it->M[k + nu * k]));
-        slow[k] = asked[k] ? u[k] : hypot(b[k], (u[k] - b[k]) / (borne * it->share[nu + k]));
-    }
-    return ct_iteration_norm(it, d, slow, nu, 1);
-}
-
 void ct_iteration_start(struct ct_iteration *it)
 {
     const double tail = ct_larger(it->tail, DBL_EPSILON);
@@ -510,11 +429,22 @@ static bool is_within(const double *d, int n, double most)
     return true;
 }
 
-// Followed down to rounding, a second correction as large as the first says nothing yet: of angles of several turns in loops
-// the third has been seen to be a thousandth of it.
+// Followed down to rounding, the second correction against the first says nothing yet, which is an error of the prediction
+// and in places above all: of angles of several turns in loops the second is as large and the third a thousandth of it, of a tumbling body,
+// with old derivatives, the second is a thousandth and the third, of speeds, a tenth of that.
 static bool is_too_early(const struct ct_iteration *it)
 {
     return it->is_finest && it->count == 2;
+}
+
+// A correction is `rate` times the one before. Two in turn are often uneven, so their mean says whether they converge. Followed
+// down to rounding the slowest one says what is left, but for the first, which says nothing.
+static void take_rate(struct ct_iteration *it, double rate)
+{
+    it->slowest = it->count > 3 ? ct_larger(rate, it->slowest) : rate;
+    it->rate = it->count > 2 ? sqrt(rate * it->rate) : rate;
+    const double counts = it->is_finest ? it->slowest : it->rate;
+    it->tail = counts < 1 ? counts / (1 - counts) : INFINITY;
 }
 
 // Does a correction of this size, at this rate to the one before, show only rounding?
@@ -546,15 +476,16 @@ enum ct_verdict ct_iteration_judge(struct ct_iteration *it, double size, const d
             || (rate >= 1 && !is_too_early(it) && is_within(d, n, it->least))
             || is_unfelt(it, size, d, u, n))
             return CT_CONVERGED;
-        it->rate = it->count > 2 ? sqrt(rate * it->rate) : rate; // two in turn are often uneven
+        take_rate(it, rate);
         if (rate >= hopeless || (it->rate >= 1 && it->count > 3))
             return CT_DIVERGED;
-        it->tail = it->rate < 1 ? it->rate / (1 - it->rate) : INFINITY;
     }
     it->size = size;
-    if (size == 0 || it->tail * size <= it->kappa)
+    if (size <= it->kappa || (it->tail * size <= it->kappa && !is_too_early(it)))
         return CT_CONVERGED;
-    return it->count < it->most ? CT_GO_ON : CT_DIVERGED;
+    if (it->count < it->most)
+        return CT_GO_ON;
+    return it->is_finest && size <= it->rounding ? CT_CONVERGED : CT_DIVERGED;
 }
 
 bool ct_iteration_can_renew(struct ct_iteration *it)

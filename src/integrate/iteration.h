@@ -42,6 +42,7 @@ struct ct_iteration {
     int *pivot, *pivotc;
     double *H, slow; // of the matrix for c = `slow` alone, to tell slow speeds; 0: not factored
     int *pivot_slow;
+    double energy; // twice the largest kinetic energy at looks so far
     bool *is_slow; // which speeds are slow by themselves, then  (nu)
     double *w;     // speeds of the derivatives (nu), for N; NULL: the method knows no N
     double *b;     // (n)
@@ -57,8 +58,8 @@ struct ct_iteration {
     bool is_further;        // corrections go on after convergence
     double least;           // nor where places change by less  [m, rad]
     double unfelt_place, unfelt_speed; // half a rounding of the largest of each, with rows
-    double size, rate,
-        tail; // of the last correction; over the one before; all that follow it, over it
+    double size, rate, slowest,
+        tail; // of the last correction; over the one before; largest of such; all that follow it, over it
     int most;
 };
 
@@ -109,6 +110,9 @@ static inline bool ct_iteration_factor(struct ct_iteration *it, double c, double
         = fabs(it->c - c) <= same_step * fabs(c) && fabs(it->e - e) <= same_step * fabs(e);
     return are_near || ct_iteration_factor_anew(it, c, e, s, stats);
 }
+
+/// A (n x n, out): the matrix for c and e.
+void ct_iteration_fill(const struct ct_iteration *it, double *A, double c, double e);
 
 /// d (nu, out), eta (m, out; zero in the index-3 form), lam (m, out) from r (nu), phi, v (m).
 void ct_iteration_solve_system(struct ct_iteration *it, double *d, double *eta, double *lam,
@@ -169,6 +173,13 @@ static inline double ct_iteration_norm(const struct ct_iteration *it, const doub
 double ct_iteration_slow_norm(struct ct_iteration *it, const struct ct_tolerance *tolerance,
                               const double *y, const bool *asked, const double *ample,
                               const double *d, const double *u);
+
+/// The energy that a step h of Radau, c = gamma/h of its real system, takes from undamped vibrations, whose error is d, u (nu), and
+/// the one that they have, `present` (out): over the largest kinetic energy at looks so far, of which that of speeds `small` is
+/// nothing. After ct_iteration_slow_norm; `off` is overwritten.  (8.13)
+double ct_iteration_lost(struct ct_iteration *it, double gamma, double h, double small,
+                         const double *speeds, const double *d, const double *u,
+                         double *present);
 
 /// The error of a step that ends at y1, time t1: that of the states, `states`, or what the errors d, u (nu) of places and
 /// speeds mean for outputs, if that is more.  (8.6)

@@ -76,6 +76,10 @@ struct ct_problem {
     const bool *watched;
     /// Per speed (nu): is wanted of the run itself, and not only what it leads to in places and outputs. NULL: all are.
     const bool *asked_speeds;
+    double accuracy,
+        duration; // wanted of the outputs, relative, over the whole run; its length. 0: not known
+    /// Rounding of f, per state (ny), where it is felt in the errors of steps. NULL: it is not.
+    const double *noise;
     /// NULL: every state is measured by itself.
     const struct ct_groups *groups;
 

@@ -26,6 +26,9 @@ static const double near_zero = 0.05;
 // (0.9/1.5)^4, so that steps grow by no more than half.
 static const double growing = 0.13;
 
+// What is promised of outputs, in parts of what is wanted: vibrations of less energy may be lost altogether.
+static const double promised = 10;
+
 // Speeds are eased where less than this part of the error is left then; looked at every so many steps where they were not, and
 // where they are too large.
 static const double worth_it = 0.5;
@@ -63,27 +66,43 @@ static double filter(struct ct_radau *s, const double *u, const double *u_dot)
 }
 
 // The motion feels the energy of vibrations, the square of their speeds: against that of the largest speeds so far.
-static void find_ample(struct ct_radau *s, const double *u)
+static void find_ample(struct ct_radau *s, const struct ct_problem *p, const double *u)
 {
-    const double small = s->wanted.atol / s->wanted.rtol, root = sqrt(s->wanted.rtol);
+    const double small = s->wanted.atol / s->wanted.rtol;
+    const double root = sqrt(p->accuracy > 0 ? p->accuracy : s->wanted.rtol);
     for (int k = 0; k < s->dae->nu; k++) {
         s->swiftest[k] = ct_larger(s->swiftest[k], fabs(u[k]));
         s->ample[k] = root * (s->swiftest[k] + small);
     }
 }
 
+// What the step takes from vibrations, as an error of order 3: 1 where as much in every step would be felt at the end of the run. A rate
+// of h^5.
+static double find_loss(struct ct_radau *s, const struct ct_problem *p, const double *u)
+{
+    const double order = 4. / 5;
+    const double small = s->wanted.atol / s->wanted.rtol, felt = promised * p->accuracy;
+    double present;
+    const double lost = ct_iteration_lost(s->it, GAMMA, s->now.h, small, u, s->change.d,
+                                          s->change.u, &present);
+    return present > felt ? pow(lost / p->accuracy * p->duration / s->now.h, order) : 0;
+}
+
 // Less of the error where it is one of speeds that vibrate.
 static void ease_speeds(struct ct_radau *s, const struct ct_problem *p,
-                        const struct ct_tolerance *tol, const double *y, double *err)
+                        const struct ct_tolerance *tol, const double *y, double *err,
+                        double *loss)
 {
     if (!p->asked_speeds || (*err <= 1 && !s->is_eased && s->unlooked-- > 0))
         return;
-    find_ample(s, y + s->dae->nq);
+    find_ample(s, p, y + s->dae->nq);
     const double slow = ct_iteration_slow_norm(s->it, tol, y, p->asked_speeds, s->ample,
                                                s->change.d, s->change.u);
     s->is_eased = slow < worth_it * *err;
     s->unlooked = STEPS_BETWEEN;
     *err = ct_smaller(*err, slow);
+    if (loss && isfinite(slow) && p->accuracy > 0)
+        *loss = find_loss(s, p, y + s->dae->nq);
 }
 
 // Error of the step. Where it is too large at first, on a first step or after a refusal, it is filtered once more, which
@@ -94,10 +113,13 @@ enum ct_eval ct_radau_estimate(struct ct_radau *s, const struct ct_problem *p,
                                struct ct_integrate_stats *stats)
 {
     const int nq = s->dae->nq, nu = s->dae->nu;
+    double loss = 0;
     *err = filter(s, y + nq, dy + nq);
-    ease_speeds(s, p, tol, y, err);
-    if (*err < 1 || !(s->is_fresh || s->was_tried))
+    ease_speeds(s, p, tol, y, err, &loss);
+    if (*err < 1 || loss > 1 || !(s->is_fresh || s->was_tried)) {
+        *err = ct_larger(*err, loss);
         return CT_EVAL_OK;
+    }
     memcpy(y1, y, (size_t)p->ny * sizeof *y);
     s->dae->retract(s->dae->user, y, s->change.d, y1);
     for (int k = 0; k < nu; k++)
@@ -106,7 +128,7 @@ enum ct_eval ct_radau_estimate(struct ct_radau *s, const struct ct_problem *p,
     if (e != CT_EVAL_OK)
         return e;
     *err = filter(s, y1 + nq, dy1 + nq);
-    ease_speeds(s, p, tol, y, err);
+    ease_speeds(s, p, tol, y, err, NULL);
     return CT_EVAL_OK;
 }
 

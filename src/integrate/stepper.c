@@ -14,7 +14,8 @@ enum ct_eval ct_stepper_rhs(const struct ct_problem *p, double t, const double *
 
 // Four entries at a time, up to four times four side by side: their sums stay in registers, whatever the number of stages. The
 // last four may overlap those before, which are then found twice. Fewer than four are summed side by side, each number of them
-// by code of its own.
+// by code of its own. The newest stage has just been stored number by number and is read so (volatile): a wider read would wait
+// until these stores are done.
 enum { LANES = 4 };
 
 static inline void by_ones(double *restrict out, const double *y, double h, const double *a,
@@ -56,7 +57,7 @@ typedef double four
 
 enum { MOST_FOURS = 4 };
 
-// sum += a (k_0 ... k_3), read one by one
+// sum += a (k_0 ... k_3) of the newest stage
 __attribute__((always_inline)) static inline void add_newest(four *sum, double a,
                                                              const volatile double *k)
 {
@@ -208,6 +209,14 @@ double ct_stepper_norm(const struct ct_problem *p, const struct ct_tolerance *to
         n++;
     }
     return n ? sqrt(sum / n) : 0;
+}
+
+void ct_stepper_take_noise(const struct ct_problem *p, double h, double *e)
+{
+    const double evaluations
+        = 4; // weights of the stages in errors have sums of squares of 1 to 16
+    for (int i = 0; i < p->ny && p->noise; i++)
+        e[i] = copysign(fmax(0, fabs(e[i]) - evaluations * h * p->noise[i]), e[i]);
 }
 
 double ct_stepper_error(const struct ct_problem *p, const struct ct_tolerance *tolerance,

@@ -21,7 +21,7 @@ static inline void ct_stepper_copy(double *out, const volatile double *v, int n)
         out[i] = v[i];
 }
 
-/// True if all n entries are finite: zero times what is not is no number.
+/// True if all n entries are finite: zero times what is not is no number. Read one by one, as they have just been stored.
 static inline bool ct_stepper_finite(const volatile double *x, int n)
 {
     double sum = 0;
@@ -62,6 +62,9 @@ void ct_stepper_group(const struct ct_groups *g, int ny, const double *y, const 
 /// are none. e (ny).
 double ct_stepper_norm(const struct ct_problem *p, const struct ct_tolerance *tolerance,
                        const double *y, const double *y1, const double *e);
+
+/// e (ny) less what rounding of f, where that is felt, may have in it in a step h.
+void ct_stepper_take_noise(const struct ct_problem *p, double h, double *e);
 
 /// `states`, the norm of the error e (ny) of a step that ends at y1, time t1; or what e means for outputs, if that is
 /// more.  (8.6)

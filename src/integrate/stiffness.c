@@ -200,6 +200,32 @@ bool ct_stiffness_expect(struct ct_stiffness *s, double t, const double *y, doub
     return is_far && end - t > steps_worth_it * s->step;
 }
 
+// What a step leaves of the term of order p + 1 in exp(z): b' A^p 1 - 1/(p + 1)!, b the last row of A.
+static double error_constant(const struct ct_method *m)
+{
+    const struct ct_tableau *b = m->tableau;
+    double x[CT_MOST_STAGES], next[CT_MOST_STAGES], wanted = 1;
+    for (int i = 0; i < b->stages; i++)
+        x[i] = 1;
+    for (int power = 0; power <= m->order; power++) {
+        for (int i = 0; i < b->stages; i++) {
+            next[i] = 0;
+            for (int j = 0; j < i; j++)
+                next[i] += b->A[i * b->stride + j] * x[j];
+        }
+        memcpy(x, next, sizeof x);
+        wanted /= power + 1;
+    }
+    return fabs(x[b->stages - 1] - wanted);
+}
+
+double ct_stiffness_followed_step(const struct ct_method *method, double fast, double time,
+                                  double rtol)
+{
+    const double each = rtol / (fast * time * error_constant(method));
+    return pow(each, 1. / method->order) / fast;
+}
+
 void ct_stiffness_put_off(struct ct_stiffness *s, double t, double spent,
                           const struct ct_cost *cost)
 {

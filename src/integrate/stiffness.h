@@ -64,6 +64,10 @@ bool ct_stiffness_watch(struct ct_stiffness *s, double t, const double *y, doubl
 /// motion, if it follows them to rtol? Their pace is that of ct_stiffness_pace then.
 bool ct_stiffness_expect(struct ct_stiffness *s, double t, const double *y, double end,
                          const struct ct_method *method, double rtol);
+/// The longest step with which an explicit method follows a vibration of `fast` for a time so that its phase and size err by rtol
+/// at the end, when the errors of all steps have added up.  (8.14)
+double ct_stiffness_followed_step(const struct ct_method *method, double fast, double time,
+                                  double rtol);
 /// After a trial that was lost, at time t for the work `spent`: not again before the number of steps has doubled, nor
 /// before steps have cost many times as much.
 void ct_stiffness_put_off(struct ct_stiffness *s, double t, double spent,

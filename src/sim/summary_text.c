@@ -242,6 +242,22 @@ static void print_choices(FILE *out, const struct ct_equations *e)
     }
 }
 
+// Of each step that follows a vibration a rounding stays in it, of either sign: n of them add up to the root of n.
+static void print_rounding(FILE *out, const struct ct_sim *sim)
+{
+    const struct ct_run_report *r = &sim->report;
+    if (sim->is_followed || r->blunt < 0)
+        return;
+    fprintf(out,
+            "rounding     one of coordinates is %.1e of the largest %s: steps cannot be held "
+            "to less",
+            r->rounding, sim->system->equations.result[r->blunt].name);
+    if (r->followed)
+        fprintf(out, ", and those of %ld steps that follow its vibrations are some %.1e",
+                r->followed, r->rounding * sqrt((double)r->followed));
+    fputc('\n', out);
+}
+
 void ct_sim_print_summary(const struct ct_sim *sim, FILE *out)
 {
     const struct ct_run_report *r = &sim->report;
@@ -256,11 +272,7 @@ void ct_sim_print_summary(const struct ct_sim *sim, FILE *out)
         print_method(out, sim);
     fprintf(out, "error        energy drift %.2g, constraints %.2g, their rates %.2g\n",
             r->energy_drift, r->position_constraint, r->velocity_constraint);
-    if (!sim->is_followed && r->blunt >= 0)
-        fprintf(out,
-                "rounding     one of coordinates is %.1e of the largest %s: steps cannot be "
-                "held to less\n",
-                r->rounding, sim->system->equations.result[r->blunt].name);
+    print_rounding(out, sim);
     print_singular(out, sim);
     print_estimate(out, sim);
     fprintf(out,

@@ -4,6 +4,7 @@
 
 #include "solve/dae.h"
 
+#include <math.h>
 #include <string.h>
 
 // After an event, and next to a singular position, steps had better go on.
@@ -208,6 +209,17 @@ bool ct_run_begins_implicit(struct ct_run *r, const struct ct_run_options *o)
     return begins_implicit(r, o, r->ahead);
 }
 
+// Outputs that amplify feel the phase of vibrations that an explicit method follows.
+static double followed_step(void *user)
+{
+    const struct ct_run *r = user;
+    const double longest = r->e->nmemory ? ct_run_longest_step(user) : INFINITY;
+    const double fast = r->method->is_implicit ? 0 : r->stiffness->fast;
+    return fast > 0 ? fmin(longest, ct_stiffness_followed_step(r->method, fast, r->o->duration,
+                                                               r->o->wanted))
+                    : longest;
+}
+
 // From start to end, with another method from where that pays.
 bool ct_run_march(struct ct_run *r, struct ct_problem *p, struct ct_integrate_options io)
 {
@@ -219,11 +231,14 @@ bool ct_run_march(struct ct_run *r, struct ct_problem *p, struct ct_integrate_op
     if (r->stiffness && begins_implicit(r, r->o, r->stiffness)) {
         prepare_implicit(r, p);
         take_implicit(r, &io, NAN);
+        p->longest_step = followed_step;
     }
     for (;;) {
         r->is_suspect = false;
         const bool ok = ct_integrate(r->ctx, r->method, p, &io, r->y, &r->stats);
         add_stats(&r->report->stats, &r->stats);
+        if (p->longest_step == followed_step && !r->method->is_implicit)
+            r->report->followed += r->stats.steps;
         if (!ok || !r->is_suspect)
             return ok;
         io.t0 = r->stats.last_time;

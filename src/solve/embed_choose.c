@@ -66,6 +66,15 @@ static const char *rotary_of(const struct ct_beam *beam)
                            : "a 'rotary_inertia'";
 }
 
+// What a joint or an absolute coordinate moves, if that is a beam whose sections have no inertia; else NULL.
+static const struct ct_body *bare_beam_of(const struct ct_model *m, const struct ct_u *u)
+{
+    const struct ct_instance *joint = u->joint < 0 ? NULL : &m->joint[u->joint];
+    const int head = joint ? m->frame[joint->to].body : u->body;
+    const struct ct_body *moved = &m->body[head ? head : m->frame[joint->from].body];
+    return moved->beam && !moved->beam->has_rotary ? moved : NULL;
+}
+
 static bool massless(struct ct_embed *s, size_t speed)
 {
     const struct ct_u *u = &s->m->e->u[speed];
@@ -85,10 +94,19 @@ static bool massless(struct ct_embed *s, size_t speed)
                         name, model->body[u->beam].instance.name);
     if (u->beam > 0)
         return ct_error(s->ctx, model->body[u->beam].instance.mark, CT_E_MASSLESS,
-                        "coordinate '%s' moves no mass: give the beam %s, or consistent mass",
-                        name, rotary_of(model->body[u->beam].beam));
+                        "coordinate '%s' moves no mass: give the beam %s%s", name,
+                        rotary_of(model->body[u->beam].beam),
+                        model->body[u->beam].beam->theory == CT_BEAM_EULER_BERNOULLI
+                            ? ", or consistent mass"
+                            : "");
     const struct ct_mark mark
         = u->joint >= 0 ? model->joint[u->joint].mark : model->body[u->body].instance.mark;
+    const struct ct_body *beam = bare_beam_of(model, u);
+    if (beam)
+        return ct_error(s->ctx, mark, CT_E_MASSLESS,
+                        "coordinate '%s' moves no mass: give beam '%s' %s, or a mass or an "
+                        "inertia to what else it moves",
+                        name, beam->instance.name, rotary_of(beam->beam));
     return ct_error(s->ctx, mark, CT_E_MASSLESS,
                     "coordinate '%s' moves no mass: give a mass or an inertia to what it moves",
                     name);

@@ -69,8 +69,8 @@ void ct_run_explain_end(struct ct_run *r)
         ct_note(
             r->ctx, (struct ct_mark){0},
             "the equations are cut to first order, by 'stretch-linear' or 'small'; where what "
-            "carries the small coordinates is free to move, their masses can vanish as these "
-            "grow: 'foreshortening' has all terms");
+            "carries the small coordinates, or is hinged to them, is free to move, masses can "
+            "vanish as these grow: 'foreshortening' has all terms");
     else if (code == CT_E_STEP_COUNT)
         ct_run_explain_count(r);
     if (!r->m->nrow)

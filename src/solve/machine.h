@@ -95,7 +95,15 @@ void ct_machine_values(const struct ct_machine *m, const struct ct_exs *x, doubl
 /// out (n) = v, read one by one: numbers that have just been written so would make a wider read wait for them.
 static inline void ct_machine_copy(double *out, const volatile double *v, size_t n)
 {
-    for (size_t i = 0; i < n; i++)
+    size_t i = 0;
+    for (; i + 4 <= n; i += 4) {
+        const double one = v[i], two = v[i + 1], three = v[i + 2], four = v[i + 3];
+        out[i] = one;
+        out[i + 1] = two;
+        out[i + 2] = three;
+        out[i + 3] = four;
+    }
+    for (; i < n; i++)
         out[i] = v[i];
 }
 

@@ -68,6 +68,8 @@ struct ct_run_report {
     double position_constraint, velocity_constraint; // largest residuals at samples
     int blunt;       // result with fewer digits than the tolerance asks for; -1: none
     double rounding; // what one rounding of states is of its largest value
+    long
+        followed; // steps of an explicit method that follow vibrations which outputs amplify; roundings add up over them
     int rank;
     long switches;
     long factorizations;

@@ -97,7 +97,7 @@ static double time_to_singular(struct ct_singular *w, const struct sight *a, dou
 static bool is_told_by_form(const struct ct_singular *w)
 {
     const struct ct_embed *s = w->s;
-    return s->has_form && s->switches == w->switches && s->nmade == w->nmade
+    return s->has_form && s->nweak == 0 && s->switches == w->switches && s->nmade == w->nmade
         && w->part > foreseen_pivot
         && ct_is_within(s->form[0]->weakest / w->weakest, ct_same_strength);
 }

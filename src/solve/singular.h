@@ -43,9 +43,9 @@ bool ct_singular_foresee(struct ct_singular *w, double t, const double *y, const
                          double pending, bool is_fixed);
 /// Is y beside a singular position, foreseen or not? row (nrow, out): those that depend there; none of a large system.
 bool ct_singular_is_beside(struct ct_singular *w, double t, const double *y, bool *row);
-/// Does J have less rank at y, where the embedding has chosen, than where the mechanism can go from there? row (nrow, out):
-/// those that depend on others at y alone. Not looked for without redundant rows, nor in large systems. The machine is left
-/// with its constraints at y.
+/// Does J have less rank at y, where the embedding has chosen, or as near to y as loops are closed, than where the mechanism can
+/// go from there? row (nrow, out): those that depend on others at y alone. Not looked for in large systems. The machine is
+/// left with its constraints at y.
 bool ct_singular_is_start(struct ct_arena *scratch, const struct ct_embed *s, double t,
                           const double *y, bool *row);
 /// What is evaluated from now on belongs to a crossing, or does not.

@@ -9,6 +9,9 @@
 #include <math.h>
 #include <string.h>
 
+// Loops that close to 1e-13 meet a singular position to about the root of that: what is less of J is left out.
+static const double unmet = 1e-6;
+
 struct probe {
     struct ct_machine *m;
     double t, *y, *x, *d, *A, *work; // (ny), (nu), (larger of nu and nrow), (nrow x nu)
@@ -21,15 +24,15 @@ static double *workspace(struct ct_arena *a, int n, int m)
     return CT_NEWN(a, double, least > pivots ? least : pivots);
 }
 
-// p->d = -J+ r; beside a singular position what is less than `tolerance` of J is left out.
-static void least_step(struct probe *p, const double *r, double tolerance)
+// p->d = -J+ r.
+static void least_step(struct probe *p, const double *r)
 {
     const int n = (int)p->m->nu, m = (int)p->m->nrow;
     memcpy(p->A, p->m->J, (size_t)(n * m) * sizeof *p->A);
     memset(p->d, 0, (size_t)(n > m ? n : m) * sizeof *p->d);
     for (int i = 0; i < m; i++)
         p->d[i] = -r[i];
-    ct_lstsq(p->d, p->A, m, n, m, tolerance, p->iwork, p->work);
+    ct_lstsq(p->d, p->A, m, n, m, unmet, p->iwork, p->work);
 }
 
 static void evaluate(struct probe *p)
@@ -49,7 +52,7 @@ static void move(struct probe *p, struct ct_arena *scratch, double way)
         for (size_t i = 0; i < m; i++)
             r[i] += p->m->J[i + m * k] * p->x[k];
     }
-    least_step(p, r, 1e-6);
+    least_step(p, r);
     for (size_t k = 0; k < n; k++)
         p->x[k] += p->d[k];
     const double size = ct_vector_largest(p->x, n);
@@ -67,7 +70,7 @@ static bool close(struct probe *p, double way)
         evaluate(p);
         if (ct_vector_largest(p->m->phi, p->m->nrow) < closed)
             return true;
-        least_step(p, p->m->phi, 1e-6);
+        least_step(p, p->m->phi);
         if (!(ct_vector_largest(p->d, p->m->nu) < way))
             return false;
         ct_machine_retract(p->m, p->y, p->d);
@@ -75,15 +78,15 @@ static bool close(struct probe *p, double way)
     return false;
 }
 
-// Rows of J by independence into p->row; how many are independent, by singular values that are not small against `way`.
-static int rank_there(struct probe *p, double way)
+// Rows of J by independence into p->row; how many are independent, what is left of others being less than this part of the
+// largest.
+static int find_rank(struct probe *p, double part)
 {
     const int n = (int)p->m->nu, m = (int)p->m->nrow;
-    const double part = 1e-3; // of J's change along the way, which is about as large as the way
     for (int i = 0; i < m; i++)
         for (int j = 0; j < n; j++)
             p->A[j + n * i] = p->m->J[i + m * j];
-    return ct_qr_pivot(p->A, p->row, p->x, n, m, n, part * way, p->work);
+    return ct_qr_pivot(p->A, p->row, p->x, n, m, n, part, p->work);
 }
 
 bool ct_singular_is_start(struct ct_arena *scratch, const struct ct_embed *s, double t,
@@ -91,10 +94,11 @@ bool ct_singular_is_start(struct ct_arena *scratch, const struct ct_embed *s, do
 {
     enum { LARGE = 200 }; // where factors cost more than steps
     const double ways[] = {0.1, 0.02};
+    const double part = 1e-3; // of J's change along the way, which is about as large as the way
     struct ct_machine *m = s->m;
     const size_t ny = m->nq + m->nu + 1, most = m->nu > m->nrow ? m->nu : m->nrow;
     int there = 0;
-    if (s->rank == (int)m->nrow || s->rank >= LARGE)
+    if (!m->nrow || s->rank >= LARGE)
         return false;
     struct probe p = {.m = m, .t = t};
     p.y = CT_NEWN(scratch, double, ny);
@@ -104,18 +108,21 @@ bool ct_singular_is_start(struct ct_arena *scratch, const struct ct_embed *s, do
     p.iwork = CT_NEWN(scratch, int, m->nu + 1);
     p.row = CT_NEWN(scratch, int, m->nrow + 1);
     p.work = workspace(scratch, (int)m->nu, (int)m->nrow);
-    for (size_t i = 0; i < COUNT(ways) && there <= s->rank; i++) {
+    memcpy(p.y, y, ny * sizeof *p.y);
+    evaluate(&p);
+    const int here = find_rank(&p, unmet);
+    for (size_t i = 0; i < COUNT(ways) && here < (int)m->nrow && there <= here; i++) {
         memcpy(p.y, y, ny * sizeof *p.y);
         move(&p, scratch, ways[i]);
         if (close(&p, ways[i]))
-            there = rank_there(&p, ways[i]);
+            there = find_rank(&p, part * ways[i]);
     }
     memset(row, 0, m->nrow * sizeof *row);
-    for (int i = 0; i < there && there > s->rank; i++)
+    for (int i = 0; i < there && there > here; i++)
         row[p.row[i]] = true;
-    for (int i = 0; i < s->rank; i++)
+    for (int i = 0; i < here; i++)
         row[s->row[i]] = false;
     memcpy(p.y, y, ny * sizeof *p.y);
     evaluate(&p);
-    return there > s->rank;
+    return there > here;
 }

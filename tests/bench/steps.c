@@ -1,8 +1,8 @@
-// What a step of each method costs beside its evaluations of a one-degree-of-freedom model: a Markdown table.
+// What a step of each method costs beside its evaluations of a model of one degree of freedom: Markdown tables.
 //
 //     steps [--quick]
 //
-// The model is systems/pendulum, two samples, tolerance 1e-6. Evaluations are those of the accelerations and, for
+// The models are systems/pendulum, and systems/four_bar with a loop, two samples, tolerance 1e-6. Evaluations are those of the accelerations and, for
 // implicit methods, of the residual and of its derivatives: what `evaluations` and Jacobians of the summary count. Each of
 // them is taken to cost what one of the accelerations does on which the next one waits; the time of one of the residual is
 // printed beside it. Times are processor time, the least of several runs, which take turns so that a busy machine slows all of
@@ -16,7 +16,7 @@
 #include <string.h>
 #include <time.h>
 
-enum { ROUNDS = 7, CALLS = 100000, MOST_METHODS = 16 };
+enum { ROUNDS = 7, CALLS = 20000, MOST_METHODS = 16, MOST_STATES = 16 };
 
 static const double assumed
     = 50e-9; // of an evaluation: what the steps are to be compared with  [s]
@@ -70,13 +70,15 @@ static void run(struct ct_ctx *ctx, struct ct_system *system, struct subject *s)
 static double evaluation(struct ct_ctx *ctx, struct ct_system *system, const struct subject *s)
 {
     struct ct_sim *sim = prepare(ctx, system, s);
-    const double *y0 = ct_run_state(sim->run);
-    double y[3] = {y0[0], y0[1], y0[2]}, dy[3];
+    const struct ct_machine *m = ct_run_machine(sim->run);
+    const size_t n = m->nq + m->nu + 1;
+    double y[MOST_STATES], dy[MOST_STATES];
+    memcpy(y, ct_run_state(sim->run), n * sizeof *y);
     const double start = now();
     for (int i = 0; i < CALLS; i++) {
         if (ct_run_rhs(sim->run, 0, y, dy) != CT_EVAL_OK)
             give_up(ctx);
-        y[0] += 1e-12 * dy[1];
+        y[0] += 1e-16 * dy[n - 2];
     }
     const double spent = now() - start;
     ct_sim_destroy(sim);
@@ -88,13 +90,16 @@ static double residual(struct ct_ctx *ctx, struct ct_system *system, const struc
 {
     struct ct_sim *sim = prepare(ctx, system, s);
     const struct ct_dae *dae = ct_dae_create(sim->own.model, ct_run_embed(sim->run));
-    const double *y0 = ct_run_state(sim->run), u = y0[1], a = 0;
-    double q = y0[0], r = 0, none = 0;
+    const struct ct_machine *m = ct_run_machine(sim->run);
+    const double none[MOST_STATES] = {0};
+    double y[MOST_STATES], r[MOST_STATES] = {0}, left[2][MOST_STATES] = {{0}};
+    memcpy(y, ct_run_state(sim->run), (m->nq + m->nu) * sizeof *y);
     const double start = now();
     for (int i = 0; i < CALLS; i++) {
-        if (dae->residual(dae->user, 0, &q, &u, &a, &none, &r, &none, &none) != CT_EVAL_OK)
+        if (dae->residual(dae->user, 0, y, y + m->nq, none, none, r, left[0], left[1])
+            != CT_EVAL_OK)
             give_up(ctx);
-        q += 1e-12 * r;
+        y[0] += 1e-16 * r[0];
     }
     const double spent = now() - start;
     ct_sim_destroy(sim);
@@ -108,7 +113,7 @@ static int list_subjects(struct subject *all)
     for (int is_fixed = 0; is_fixed < 2; is_fixed++)
         for (int i = 0; i < ct_nmethod; i++) {
             const struct ct_method *m = ct_methods[i];
-            const double until = is_fixed || m->order > 2 ? 100 : 2;
+            const double until = is_fixed || m->order > 2 ? 20 : 1;
             all[n++] = (struct subject){.method = m->name,
                                         .step = is_fixed ? 0.01 : 0,
                                         .until = until,
@@ -122,18 +127,16 @@ static void print_row(const struct subject *s, double one)
     const double n
         = (double)(s->stats.evaluations + s->stats.jacobians) / (double)s->stats.steps;
     const double step = s->seconds / (double)s->stats.steps;
-    printf("| %s%s | %.0f ns | %.2g | %.0f ns | %.0f ns |\n", s->method,
-           s->step > 0 ? ", fixed steps" : "", 1e9 * step, n, 1e9 * (step - n * one),
-           1e9 * n * assumed);
+    printf("| %s%s | %.0f ns | %.2g | %.0f ns | %.0f ns | %.0f ns |\n", s->method,
+           s->step > 0 ? ", fixed steps" : "", 1e9 * step, n, 1e9 * n * one,
+           1e9 * (step - n * one), 1e9 * n * assumed);
 }
 
-int main(int argc, char **argv)
+static void print_table(struct ct_ctx *ctx, const char *name, int rounds)
 {
-    const int rounds = argc > 1 && strcmp(argv[1], "--quick") == 0 ? 1 : ROUNDS;
     const char *root = getenv("CT_SOURCE_DIR");
     char path[512];
-    snprintf(path, sizeof path, "%s/systems/pendulum/model.yaml", root ? root : ".");
-    struct ct_ctx *ctx = ct_ctx_create();
+    snprintf(path, sizeof path, "%s/systems/%s/model.yaml", root ? root : ".", name);
     struct ct_system *system = ct_system_load(ctx, path, NULL);
     if (!system)
         give_up(ctx);
@@ -148,14 +151,24 @@ int main(int argc, char **argv)
         for (int k = 0; k < n; k++)
             run(ctx, system, &all[k]);
     }
-    printf("an evaluation: %.1f ns, of the residual: %.1f ns\n\n", 1e9 * one, 1e9 * other);
+    printf("%s: an evaluation %.1f ns, of the residual %.1f ns\n\n", name, 1e9 * one,
+           1e9 * other);
     printf(
-        "| method | a step | evaluations of it | beside them | at %g ns each they would be |\n"
-        "| --- | --- | --- | --- | --- |\n",
+        "| method | a step | evaluations of it | they take | beside them | at %g ns each they "
+        "would be |\n| --- | --- | --- | --- | --- | --- |\n",
         1e9 * assumed);
     for (int k = 0; k < n; k++)
         print_row(&all[k], one);
+    printf("\n");
     ct_system_destroy(system);
+}
+
+int main(int argc, char **argv)
+{
+    const int rounds = argc > 1 && strcmp(argv[1], "--quick") == 0 ? 1 : ROUNDS;
+    struct ct_ctx *ctx = ct_ctx_create();
+    print_table(ctx, "pendulum", rounds);
+    print_table(ctx, "four_bar", rounds);
     ct_ctx_destroy(ctx);
     return 0;
 }

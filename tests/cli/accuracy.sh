@@ -97,3 +97,7 @@ simulation: {duration: 5000, samples: 11}
 END
 "$COTREE" accuracy stiff.yaml --method radau5 --tolerance 1e-5 2>summary >table
 sed -n 's/^reference *\(.*\): they differ by [0-9.e-]*$/\1/p' summary
+echo '-- where dop853 does not, another method checks: radau5 loses a vibration of 9e-8 of this force at any tolerance'
+"$COTREE" accuracy "$SYSTEMS/stiff_spring_pendulum/model.yaml" --set k=1e8 --until 1 --method radau5 --tolerance 1e-5 2>summary >table
+grep -q '^reference .* itself' summary && cat summary
+sed -n 's/^reference .*: they differ by \([0-9.e-]*\)$/\1/p' summary | awk '{ print ($1 > 6e-8 && $1 < 3e-7 ? "and so they differ" : $1) }'

@@ -497,17 +497,6 @@ done | awk '{ work[NR] = $1 } END { print NR == 2 && work[2] < 2.2 * work[1] ? "
 "$COTREE" simulate chain.yaml --set n=4 --quiet -o turned.csv
 "$COTREE" simulate chain.yaml --set n=4 --quiet --tree absolute -o absolute.csv
 difference turned.csv absolute.csv | awk '{ print ($1 < 1e-6) ? "same motion" : $0 }'
-echo '-- modes of one frequency of which some are kept and some not, by name: sqrt(EI/(mu L^4)) = 3.16228 rad/s times 3.516 and 22.03'
-cat >square.yaml <<'EOF'
-cotree: 1
-parameters: {kept: 1}
-bodies:
-  rod: {type: beam, length: 1, elements: 6, density: 1000, E: 1e8, area: 1e-3, Iy: 1e-7, Iz: 1e-7, modes: kept, formulation: linear, deformation: [bending-y, bending-z]}
-joints: {root: {type: weld, from: ground, to: rod}}
-EOF
-for kept in 1 2 3 4; do
-  echo "$kept: $("$COTREE" check square.yaml --set kept=$kept 2>&1 | sed -n 's/.* warning: //p')"
-done
 echo '-- so is one whose sections follow, between a ball and a hinge, with a body in between'
 cat >ball.yaml <<'END'
 cotree: 1
@@ -532,3 +521,58 @@ END
 difference ball.csv absolute.csv | awk '{ print ($1 < 1e-9) ? "same motion" : $0 }'
 awk -F, 'NR == 2 { start = $NF } NR > 2 { worst = ($NF - start) ^ 2 > worst ? ($NF - start) ^ 2 : worst }
   END { print (worst < 1e-18 * start ^ 2) ? "energy kept" : worst }' ball.csv
+echo '-- modes of one frequency of which some are kept and some not, by name: sqrt(EI/(mu L^4)) = 3.16228 rad/s times 3.516 and 22.03'
+cat >square.yaml <<'EOF'
+cotree: 1
+parameters: {kept: 1}
+bodies:
+  rod: {type: beam, length: 1, elements: 6, density: 1000, E: 1e8, area: 1e-3, Iy: 1e-7, Iz: 1e-7, modes: kept, formulation: linear, deformation: [bending-y, bending-z]}
+joints: {root: {type: weld, from: ground, to: rod}}
+EOF
+for kept in 1 2 3 4; do
+  echo "$kept: $("$COTREE" check square.yaml --set kept=$kept 2>&1 | sed -n 's/.* warning: //p')"
+done
+echo '-- a straight rod that a joint turns about its axis has no inertia there; what is said helps'
+cat >spin.yaml <<'EOF'
+cotree: 1
+bodies:
+  rod: {type: beam, length: 1, density: 2700, E: 7e10, nu: 0.3, area: 1e-4, Iy: 1e-9, Iz: 1e-9, rotary_inertia: false, formulation: linear}
+joints: {root: {type: universal, axes: [x, z], from: ground, to: rod}}
+outputs: [root.q1]
+simulation: {duration: 0.01, samples: 2}
+EOF
+for tree in auto absolute; do
+  "$COTREE" simulate spin.yaml --quiet --tree $tree 2>&1 | sed -n 's/.*error: //p'
+done
+sed 's/rotary_inertia: false/rotary_inertia: true/' spin.yaml >turning.yaml
+"$COTREE" simulate turning.yaml --quiet -o turning.csv && tail -n 1 turning.csv
+cat >sheared.yaml <<'EOF'
+cotree: 1
+bodies:
+  rod: {type: beam, length: 1, density: 2700, E: 7e10, nu: 0.3, area: 1e-4, Iz: 1e-9, theory: timoshenko, shear_factor: 1, integration: reduced, formulation: linear, points: {tip: length}}
+joints: {root: {type: weld, from: ground, to: rod}}
+forces: {twist: {type: torque, on: rod.tip, value: [0, 0, 1]}}
+outputs: [rod.tip.deflection.y]
+simulation: {duration: 0.01, samples: 2}
+EOF
+"$COTREE" simulate sheared.yaml --quiet 2>&1 | sed -n 's/.*error: //p'
+echo '-- modes that --keep-all keeps out of the plane take none from those in it'
+cat >plane.yaml <<'EOF'
+cotree: 1
+gravity: [0, -9.81, 0]
+bodies:
+  rod: {type: beam, length: 1, elements: 5, density: 1500, E: 3e9, nu: 0.3, area: 2e-4, Iy: 3e-9, Iz: 4e-9, rotary_inertia: true, modes: 2, formulation: foreshortening, points: {tip: length}}
+  bob: {mass: 0.1, inertia: 1e-4}
+joints:
+  hub: {type: revolute, from: ground, to: rod, initial: {u: 1}}
+  hold: {type: revolute, from: rod.tip, to: bob, stiffness: 1, initial: {q: 0.2}}
+outputs: [rod.tip.position.x, rod.tip.position.y, hold.q]
+simulation: {duration: 0.5, samples: 11, tolerance: 1e-9}
+EOF
+for keep in '' --keep-all; do
+  # shellcheck disable=SC2086 # an option or none
+  "$COTREE" check plane.yaml $keep | sed -n 's/^beam *//p'
+  # shellcheck disable=SC2086
+  "$COTREE" simulate plane.yaml $keep --quiet -o plane$keep.csv
+done
+difference plane.csv plane--keep-all.csv | awk '{ print ($1 < 1e-8) ? "same motion" : $0 }'

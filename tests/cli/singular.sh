@@ -90,8 +90,24 @@ END
 }
 start 0 >in_line.yaml
 start 1 >shifted.yaml
+# the same with bars of 1, 2 and 1.5 m, folded back onto a base of 1.5 m: in line but for the last digit of pi
+cat >folded.yaml <<'END'
+cotree: 1
+bodies:
+  ground: {points: {far: [1.5, 0, 0]}}
+  crank: {mass: 1, inertia: 1/12, com: [0.5, 0, 0], points: {end: [1, 0, 0]}}
+  coupler: {mass: 1, inertia: 1/12, com: [0.5, 0, 0], points: {end: [2, 0, 0]}}
+  rocker: {mass: 1, inertia: 1/12, com: [0.5, 0, 0], points: {end: [1.5, 0, 0]}}
+joints:
+  A: {type: revolute, from: ground, to: crank, initial: {q: 0, u: 0}}
+  B: {type: revolute, from: crank.end, to: coupler, initial: {q: 0, guess: true}}
+  C: {type: revolute, from: coupler.end, to: rocker, initial: {q: pi, guess: true}}
+  D: {type: revolute, from: rocker.end, to: ground.far}
+outputs: [A.q]
+simulation: {duration: 0.1, interval: 0.1}
+END
 for options in '' '--keep-all' '--keep-all --tree absolute'; do
-  for model in in_line shifted; do
+  for model in in_line shifted folded; do
     # shellcheck disable=SC2086
     "$COTREE" check "$model.yaml" $options 2>&1 | grep -e '^freedoms' -e warning || echo "exit $?"
   done

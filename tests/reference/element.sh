@@ -7,35 +7,23 @@
 #
 # As in the figures, turning about the axis has no inertia: a massless hub gives it some, its energy is taken off.
 set -eu
+folder=$(cd "$(dirname "$0")" && pwd)
+. "$folder/element_beam.sh"
 : "${COTREE:?is the program to test}"
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 cd "$work"
-model() { # FORMULATION SPEEDS U V W
+model() { # FORMULATION SPEEDS [U V W of the rates]
+    echo "cotree: 1"
+    echo "bodies:"
+    echo "  hub: {mass: 0, inertia: [1, 1, 1]}"
+    beam "$1"
+    base=$2
+    shift 2
+    start "$@"
     cat <<END
-cotree: 1
-bodies:
-  hub: {mass: 0, inertia: [1, 1, 1]}
-  beam:
-    type: beam
-    length: 1.6
-    elements: 2
-    E: 72e9
-    G: 27e9
-    area: 7.853e-5
-    Iy: 4.909e-10
-    Iz: 4.909e-10
-    density: 2700
-    formulation: $1
-    deformation: [axial, bending-y, bending-z]
-    points: {tip: length}
-    initial:
-      u: 0.0009375*x + 0.000390625*x^2
-      v: 0.10625*x^2 - 0.05078125*x^3 + 0.0244140625*x^4 - 0.006103515625*x^5
-      w: -0.07421875*x^2 + 0.0126953125*x^3 + 0.003662109375*x^4 - 0.00152587890625*x^5
-      rates: {u: "$3", v: "$4", w: "$5"}
 joints:
-  free: {type: free, from: ground, to: hub, initial: {u: [$2]}}
+  free: {type: free, from: ground, to: hub, initial: {u: [$base]}}
   root: {type: weld, from: hub, to: beam}
 outputs:
   - {name: kinetic, value: energy.kinetic - (free.u4^2 + free.u5^2 + free.u6^2)/2}
@@ -65,9 +53,7 @@ check() { # KINETIC STRAIN X VX VY VZ; the second state: KINETIC alone
 }
 state() { # FORMULATION
     formulation=$1
-    model "$1" "0.6052300197988205, -0.5156611069017545, 0.6146464398035482, 0.7, -1.1, 2.3" \
-        "0.003125*x + 0.00078125*x^2" "0.1484375*x^2 + 1.083984375*x^3 - 1.11083984375*x^4 + 0.3204345703125*x^5" \
-        "-0.5625*x^2 + 0.78125*x^3 - 0.78125*x^4 + 0.244140625*x^5" >model.yaml
+    model "$1" "$(speeds)" >model.yaml
 }
 pushed() { # FORMULATION
     formulation="$1, second state"

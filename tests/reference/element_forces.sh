@@ -5,29 +5,14 @@
 # must act on the hub and both nodes, if the accelerations are to be the given ones.
 set -eu
 folder=$(cd "$(dirname "$0")" && pwd)
+. "$folder/element_beam.sh"
 : "${COTREE:?is the program to test}"
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 cd "$work"
-beam() { # FORMULATION
-    cat <<END
-cotree: 1
-gravity: [-gx, -gy, -gz]
-bodies:
-  beam:
-    type: beam
-    length: 1.6
-    elements: 2
-    E: 72e9
-    G: 27e9
-    area: 7.853e-5
-    Iy: 4.909e-10
-    Iz: 4.909e-10
-    density: 2700
-    formulation: $1
-    deformation: [axial, bending-y, bending-z]
-    points: {mid: length/2, tip: length}
-END
+scene() { # FORMULATION
+    printf 'cotree: 1\ngravity: [-gx, -gy, -gz]\nbodies:\n'
+    beam "$1"
 }
 free() { # gravity along -y of ground
     cat <<END
@@ -41,18 +26,11 @@ END
 # The state of element.sh and the loads, ground in place of the base's axes: these are turned by 0.3 about x, -0.5 about y and 0.8
 # about z, as gravity shows. Turning about the axis has no inertia: a massless hub gives it some.
 pushed() {
+    start
     cat <<END
-    initial:
-      u: 0.0009375*x + 0.000390625*x^2
-      v: 0.10625*x^2 - 0.05078125*x^3 + 0.0244140625*x^4 - 0.006103515625*x^5
-      w: -0.07421875*x^2 + 0.0126953125*x^3 + 0.003662109375*x^4 - 0.00152587890625*x^5
-      rates:
-        u: 0.003125*x + 0.00078125*x^2
-        v: 0.1484375*x^2 + 1.083984375*x^3 - 1.11083984375*x^4 + 0.3204345703125*x^5
-        w: -0.5625*x^2 + 0.78125*x^3 - 0.78125*x^4 + 0.244140625*x^5
   hub: {mass: 0, inertia: [1, 1, 1]}
 joints:
-  free: {type: free, from: ground, to: hub, initial: {u: [0.6052300197988205, -0.5156611069017545, 0.6146464398035482, 0.7, -1.1, 2.3]}}
+  free: {type: free, from: ground, to: hub, initial: {u: [$(speeds)]}}
   root: {type: weld, from: hub, to: beam}
 parameters:
   gx: 9.81*(cos(0.3)*sin(0.8) + sin(0.3)*sin(-0.5)*cos(0.8))
@@ -73,13 +51,13 @@ simulation: {duration: 1e-15, samples: 2, method: rk4, step: 1e-15}
 END
 }
 check() { # FORMULATION X Y Z
-    { beam "$1" && free; } >loaded.yaml
+    { scene "$1" && free; } >loaded.yaml
     cp loaded.yaml light.yaml
     "$COTREE" equations loaded.yaml -q --format c -o loaded.c
     "$COTREE" equations light.yaml -q --set gy=0 --format c -o light.c
     "${CC:-cc}" -std=c99 -O1 -o element_forces "$folder/element_forces.c" loaded.c light.c -lm
     ./element_forces "$1" >loads || failed=1
-    { beam "$1" && pushed; } >pushed.yaml
+    { scene "$1" && pushed; } >pushed.yaml
     # shellcheck disable=SC2046 # each option is a word
     "$COTREE" simulate pushed.yaml -q $(cat loads) -o - | awk -F, -v want="$2 $3 $4" -v name="$1" '
         NR == 2 {

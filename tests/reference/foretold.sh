@@ -5,6 +5,7 @@
 # the same before the run. COTREE is the program.
 set -eu
 folder=$(cd "$(dirname "$0")" && pwd)
+. "$folder/said.sh"
 : "${COTREE:?is the program to test}"
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
@@ -49,8 +50,8 @@ while IFS='|' read -r name keys bob place angle end kind; do
         [ $formulation = auto ] ||
             "$COTREE" simulate $formulation.yaml -o $formulation.csv --summary $formulation.json --quiet 2>/dev/null
     done
-    said=$(awk -F': ' '/"validity"/ { inside = 1 } inside && /"error"/ { gsub(/[",]/, "", $2); print $2; exit }' linear.json)
-    before=$("$COTREE" check auto.yaml | sed -n "/linear beam's error/ { s/.*linear beam's error: \([^;)]*\).*/\1/p; q; }")
+    said=$(after_run linear.json)
+    before=$(before_run auto.yaml)
     paste -d, linear.csv foreshortening.csv |
         awk -F, -v name="$name" -v said="$said" -v before="$before" -v kind="$kind" '
             function near(a, b) { return a < 3 * b && b < 3 * a }

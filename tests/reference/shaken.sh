@@ -6,6 +6,7 @@
 set -eu
 : "${COTREE:?is the program to test}"
 folder=$(cd "$(dirname "$0")" && pwd)
+. "$folder/said.sh"
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 cd "$work"
@@ -35,14 +36,14 @@ failed=0
 run() {
     model linear 1 "$3" "$2" >linear.yaml
     "$COTREE" simulate linear.yaml -o linear.csv --summary linear.json --quiet 2>/dev/null
-    said=$(awk -F': ' '/"validity"/ { inside = 1 } inside && /"error"/ { gsub(/[",]/, "", $2); print $2; exit }' linear.json)
+    said=$(after_run linear.json)
 }
 figure() {
     run "$@"
     model foreshortening 8 "$3" "$2" >welded.yaml
     "$COTREE" simulate welded.yaml -o welded.csv --quiet 2>/dev/null
     model auto 1 "$3" "$2" >auto.yaml
-    before=$("$COTREE" check auto.yaml | sed -n "/linear beam's error/ { s/.*linear beam's error: \([^;)]*\).*/\1/p; q; }")
+    before=$(before_run auto.yaml)
     paste -d, linear.csv welded.csv | awk -F, -v name="$1" -v said="$said" -v before="$before" '
         function near(a) { return a < 3 * worst && worst < 3 * a }
         NR > 1 {
@@ -75,7 +76,7 @@ for formulation in linear foreshortening; do
     sed "s/formulation: linear/formulation: $formulation/; s/interval: 0.05/samples: 601/; s/tolerance: .*/tolerance: 1e-7/" "$model" >steered.yaml
     "$COTREE" simulate steered.yaml -o $formulation.csv --summary $formulation.json --quiet 2>/dev/null
 done
-paste -d, linear.csv foreshortening.csv | awk -F, -v said="$(awk -F': ' '/"validity"/ { inside = 1 } inside && /"error"/ { gsub(/[",]/, "", $2); print $2; exit }' linear.json)" '
+paste -d, linear.csv foreshortening.csv | awk -F, -v said="$(after_run linear.json)" '
     NR > 1 {
         e = sqrt(($3 - $7)^2 + ($4 - $8)^2); if (e > worst) worst = e
         q = sqrt($7^2 + $8^2); if (q > peak) peak = q
