@@ -138,6 +138,13 @@ struct ct_form *ct_form_create(struct ct_arena *a, struct ct_machine *m,
     return f;
 }
 
+struct ct_form *ct_form_create_within(struct ct_arena *a, struct ct_machine *m,
+                                      const struct ct_partition *p,
+                                      const struct ct_form_kind *kind, double cost)
+{
+    return kind->create(a, m, p, allowed(cost));
+}
+
 struct ct_form *ct_form_ask(struct ct_arena *a, struct ct_machine *m,
                             const struct ct_partition *p, const struct ct_form_kind *kind)
 {

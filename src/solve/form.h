@@ -56,6 +56,10 @@ struct ct_form_costs {
 struct ct_form *ct_form_create(struct ct_arena *a, struct ct_machine *m,
                                const struct ct_partition *p, double operations,
                                const struct ct_form_kind *kind, struct ct_form_costs *costs);
+/// One of this kind if it costs no more than so much, or little more: it is given up while it is made.
+struct ct_form *ct_form_create_within(struct ct_arena *a, struct ct_machine *m,
+                                      const struct ct_partition *p,
+                                      const struct ct_form_kind *kind, double cost);
 /// One of this kind however long its programs are, up to some millions of nodes.
 struct ct_form *ct_form_ask(struct ct_arena *a, struct ct_machine *m,
                             const struct ct_partition *p, const struct ct_form_kind *kind);
