@@ -63,6 +63,34 @@ double ct_table_value(const struct ct_table *t, uint32_t order, double at)
     }
 }
 
+// From the values of its arguments, by node.
+static double value_from(const struct ct_exs *x, uint32_t id, const double *value,
+                         const double *number)
+{
+    const struct ct_exnode *n = &x->node[id];
+    const uint32_t arg[3] = {n->a, n->b, n->c};
+    double v[3] = {0};
+    if (ct_ex_is_const(x, (ct_ex){id}, v))
+        return v[0];
+    if (n->op == CT_OP_SYM)
+        return value[n->a];
+    for (int i = 0; i < ct_op_info[n->op].narg; i++)
+        v[i] = number[arg[i]];
+    return n->op == CT_OP_TABLE ? ct_table_value(&x->table[n->b], n->c, v[0])
+                                : ct_op_apply((enum ct_op)n->op, v[0], v[1], v[2]);
+}
+
+void ct_ex_values(struct ct_exs *x, struct ct_arena *scratch, const ct_ex *a, size_t n,
+                  const double *value, double *out)
+{
+    double *number = CT_NEWN(scratch, double, x->nnode + 1);
+    const size_t nwalk = ct_ex_walk(x, a, n);
+    for (size_t i = 0; i < nwalk; i++)
+        number[x->stack[i]] = value_from(x, x->stack[i], value, number);
+    for (size_t i = 0; i < n; i++)
+        out[i] = number[a[i].id];
+}
+
 double ct_ex_value(const struct ct_exs *x, ct_ex a, const double *value)
 {
     const struct ct_exnode *n = &x->node[a.id];

@@ -227,6 +227,9 @@ ct_ex ct_ex_import(struct ct_exs *x, const struct ct_exs *from, ct_ex a, ct_ex_l
                    void *data);
 /// Value with value[k] for symbol k (index into x->sym). Slow; for checks, defaults and tests.
 double ct_ex_value(const struct ct_exs *x, ct_ex a, const double *value);
+/// out (n) = the values of many that share nodes, each node once.
+void ct_ex_values(struct ct_exs *x, struct ct_arena *scratch, const ct_ex *a, size_t n,
+                  const double *value, double *out);
 /// One operator on numbers: what every evaluator must agree with.
 double ct_op_apply(enum ct_op op, double a, double b, double c);
 /// Its derivative by the i-th argument, where its value is v; of all but CT_OP_TABLE.

@@ -73,6 +73,8 @@ struct ct_spin {
     ct_ex3 axis; // unit vector
     int nterm;   // rate = sum of terms (+ what depends on time alone)
     struct ct_term *term;
+    int section, turn,
+        sign; // of a beam: edge number plus one, which of its turns and on which side; else 0
     ct_ex3 local;     // the axis in axes of the cluster; zero where it is not fixed there
     ct_ex rate, bias; // [rad/s], and [rad/s^2] with all u' = 0
 };

@@ -143,7 +143,7 @@ void ct_flexible_rows(struct ct_build *b, const struct ct_flexible *f, const str
     f->inertia->form->rows(b, f, m, level, force);
     ct_stiffness_rows(b, f, force);
     if (f->follow)
-        ct_follow_forces(b, f, force);
+        ct_follow_forces(b->x, f->follow, force);
     for (int i = 0; i < n; i++)
         for (int p = 0; p < f->freedom[i].npart; p++) {
             ct_ex *r = &row[f->elastic[f->freedom[i].part[p].k].u];
@@ -261,12 +261,35 @@ void ct_element_close(struct ct_exs *x, struct ct_element_sums *s)
     s->nsquare = 0;
 }
 
-// Elements from the tip inwards: with a CHAIN what lies beyond moves along with an element's bending.
+// All of element e moves along with its start, the elastic coordinate k.
+static void mass_of_start(struct ct_build *b, const struct ct_flexible *f,
+                          const struct ct_element_sums *s, int e, struct ct_columns *out,
+                          ct_ex *M)
+{
+    struct ct_exs *x = b->x;
+    const int k = ct_flexible_start(f, e);
+    const struct ct_term own = {f->elastic[k].u, -1, CT_EX_ONE};
+    out->moved[k] = (ct_ex3){{s->m, CT_EX_ZERO, CT_EX_ZERO}};
+    out->swept[k] = (ct_ex3){{CT_EX_ZERO, s->moment.e[2], ct_ex_neg(x, s->moment.e[1])}};
+    ct_ex *self = &M[(size_t)own.speed * (b->eqs->nu + 1)];
+    *self = ct_ex_add(x, *self, s->m);
+    for (int j = 0; j < CT_DOF; j++) {
+        int sign;
+        const struct ct_freedom *d = ct_dof_freedom(f, e, j, &sign);
+        for (int p = 0; d && p < d->npart; p++) {
+            const struct ct_term dof = {f->elastic[d->part[p].k].u, -1, d->part[p].coef};
+            ct_mass_spread(b, M, &own, 1, &dof, 1, ct_ex_scale(x, sign, s->moved[j].e[0]));
+        }
+    }
+}
+
+// Elements from the tip inwards: with a CHAIN what lies beyond moves along with an element's bending, but for starts that
+// are coordinates.
 static void mass_of_sums(struct ct_build *b, const struct ct_flexible *f,
                          struct ct_columns *out, ct_ex *M)
 {
     struct ct_exs *x = b->x;
-    const bool chain = f->kinematics == CT_AXIAL_CHAIN;
+    const bool chain = f->kinematics == CT_AXIAL_CHAIN && !f->nstart;
     const int n = f->beam->nelement;
     struct ct_element_sums *s = f->inertia->form->sums(b, f);
     ct_ex m = CT_EX_ZERO;
@@ -294,6 +317,8 @@ static void mass_of_sums(struct ct_build *b, const struct ct_flexible *f,
                     ct_dof_push_pair(b, f, inner, k, e, j, v, M);
                 }
         }
+        if (f->nstart && e > 0)
+            mass_of_start(b, f, &s[e], e, out, M);
         m = ct_ex_add(x, m, s[e].m);
         moment = ct_ex3_add(x, moment, s[e].moment);
     }

@@ -159,8 +159,10 @@ const struct ct_follow_term *ct_follow_law(const struct ct_flexible *f, int k, i
 struct ct_follow *ct_follow_create(struct ct_build *b, const struct ct_follow_numbers *c);
 /// Values, rates and accelerations of the freedoms that follow.
 void ct_follow_values(struct ct_build *b, struct ct_flexible *f);
+/// What they do while the freedoms, or their rates, are v (by freedom; in: zero where one follows).
+void ct_follow_extend(struct ct_exs *x, const struct ct_follow *s, ct_ex *v);
 /// Forces on them, handed to the others (force: by freedom; out: zero where one follows).
-void ct_follow_forces(struct ct_build *b, const struct ct_flexible *f, ct_ex *force);
+void ct_follow_forces(struct ct_exs *x, const struct ct_follow *s, ct_ex *force);
 /// Do stiffness and damping leave no force on a freedom, since it follows?
 bool ct_freedom_is_balanced(const struct ct_flexible *f, int freedom);
 /// Shapes of the freedoms that do not follow, each with the others of them held and those that follow in equilibrium, and

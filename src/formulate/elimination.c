@@ -2,11 +2,25 @@
 #include "formulate/elimination.h"
 
 #include "formulate/blocks.h"
+#include "formulate/carried.h"
 #include "formulate/kkt.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+
+// A system of equations: rows of M (n) and J (m).
+struct matrices {
+    struct ct_shadow_row *M, *J;
+    size_t n, m;
+    double threshold; // of pivots
+};
+
+// With a positive definite M, and J M^-1 J' negative definite behind it, most orders are sound whatever their multipliers;
+// what is left of the equations is measured in the run.
+static const double loose = 0.001;
+// Sums of large forces along beams are neither: multipliers are held as small as those of J_d.
+static const double tight = 0.1;
 
 struct elimination {
     struct ct_arena *a;
@@ -14,9 +28,12 @@ struct elimination {
     const struct ct_equations *e;
     const struct ct_partition *p;
     int *row;                    // kept rows, ascending
+    int *place;                  // by row: 1 + its number among these; 0
     struct ct_shadow_row *J, *M; // (rank), as given; (nu), both triangles
     struct ct_blocks d;          // J_d
     struct ct_kkt *whole;        // all equations as one system, or NULL: embedding
+    struct matrices system;      // that whole is of
+    bool is_carried;             // that is of carried.h
     ct_ex *B;                    // (nu x nfree), unit rows in the independent places
     ct_ex *S;      // (nfree x nfree) L' D L of B' M B, lower triangle: D, and L beside it
     size_t *order; // (nfree) of the pivots of S, the first one last
@@ -29,26 +46,65 @@ static int ascending(const void *a, const void *b)
     return *(const int *)a - *(const int *)b;
 }
 
+static void put_both(struct elimination *s, struct ct_shadow_row *M, const struct ct_entry *e,
+                     double number)
+{
+    ct_shadow_put(s->a, &M[e->row], e->column, e->value, number);
+    if (e->row != e->column)
+        ct_shadow_put(s->a, &M[e->column], e->row, e->value, number);
+}
+
 static void read_matrices(struct elimination *s, const double *M, const double *J)
 {
     const struct ct_equations *e = s->e;
-    int *place = CT_NEWN(s->a, int, e->nrow + 1); // 1 + place of a kept row
-    for (size_t i = 0; i < s->p->rank; i++)
-        place[s->row[i]] = (int)i + 1;
+    const int *place = s->place;
     for (size_t i = 0; i < e->nJ; i++)
         if (place[e->J[i].row]) {
             const int r = place[e->J[i].row] - 1;
             ct_shadow_put(s->a, &s->J[r], e->J[i].column, e->J[i].value, J[i]);
             ct_shadow_put(s->a, &s->d.left[r], e->J[i].column, e->J[i].value, J[i]);
         }
-    for (size_t i = 0; i < e->nM; i++) {
-        ct_shadow_put(s->a, &s->M[e->M[i].row], e->M[i].column, e->M[i].value, M[i]);
-        if (e->M[i].row != e->M[i].column)
-            ct_shadow_put(s->a, &s->M[e->M[i].column], e->M[i].row, e->M[i].value, M[i]);
-    }
+    for (size_t i = 0; i < e->nM; i++)
+        put_both(s, s->M, &e->M[i], M[i]);
     ct_shadow_sort(s->J, s->p->rank);
     ct_shadow_sort(s->d.left, s->p->rank);
     ct_shadow_sort(s->M, e->nu);
+}
+
+static void list_values(const struct ct_entry *e, size_t n, ct_ex *out)
+{
+    for (size_t i = 0; i < n; i++)
+        out[i] = e[i].value;
+}
+
+// The rows of carried.h, L behind J_c.
+static struct matrices read_carried(struct elimination *s)
+{
+    const struct ct_carried *c = s->e->carried;
+    const size_t n = c->nM + c->nJ + c->nL, nu = s->e->nu;
+    struct matrices k = {.n = c->n, .m = s->p->rank + c->n - nu, .threshold = tight};
+    ct_ex *v = CT_NEWN(s->a, ct_ex, n + 1);
+    double *number = CT_NEWN(s->a, double, n + 1), *of_J = number + c->nM, *of_L = of_J + c->nJ;
+    struct ct_arena *scratch = ct_arena_create_under(s->a);
+    k.M = CT_NEWN(s->a, struct ct_shadow_row, k.n + 1);
+    k.J = CT_NEWN(s->a, struct ct_shadow_row, k.m + 1);
+    list_values(c->M, c->nM, v);
+    list_values(c->J, c->nJ, v + c->nM);
+    list_values(c->L, c->nL, v + c->nM + c->nJ);
+    ct_ex_values(s->x, scratch, v, n, s->p->value, number);
+    ct_arena_destroy(scratch);
+    for (size_t i = 0; i < c->nM; i++)
+        put_both(s, k.M, &c->M[i], number[i]);
+    for (size_t i = 0; i < c->nJ; i++)
+        if (s->place[c->J[i].row])
+            ct_shadow_put(s->a, &k.J[s->place[c->J[i].row] - 1], c->J[i].column, c->J[i].value,
+                          of_J[i]);
+    for (size_t i = 0; i < c->nL; i++)
+        ct_shadow_put(s->a, &k.J[s->p->rank + (size_t)c->L[i].row - nu], c->L[i].column,
+                      c->L[i].value, of_L[i]);
+    ct_shadow_sort(k.M, k.n);
+    ct_shadow_sort(k.J, k.m);
+    return k;
 }
 
 // ---- reduced equations ------------------------------------------------------------------------------------------
@@ -201,15 +257,16 @@ static void solve_reduced(struct elimination *s, ct_ex *z)
 static void solve_whole(struct elimination *s, const ct_ex *Q, const ct_ex *g, ct_ex *a,
                         ct_ex *lam)
 {
-    const size_t nu = s->e->nu, m = s->p->rank;
-    ct_ex *b = CT_NEWN(s->a, ct_ex, nu + m + 1), *y = CT_NEWN(s->a, ct_ex, nu + m + 1);
+    const size_t nu = s->e->nu, m = s->p->rank, n = s->whole->n;
+    const size_t first = s->is_carried ? s->e->carried->n : nu; // multiplier
+    ct_ex *b = CT_NEWN(s->a, ct_ex, n + 1), *y = CT_NEWN(s->a, ct_ex, n + 1);
     memcpy(b, Q, nu * sizeof *b);
     if (m)
-        memcpy(b + nu, g, m * sizeof *b);
+        memcpy(b + first, g, m * sizeof *b);
     ct_kkt_solve(s->whole, s->x, b, y);
     memcpy(a, y, nu * sizeof *a);
     for (size_t i = 0; i < m; i++)
-        lam[i] = ct_ex_neg(s->x, y[nu + i]);
+        lam[i] = ct_ex_neg(s->x, y[first + i]);
 }
 
 // a (nu, out), lam (rank, out): M a - J' lam = Q (nu), J a = g (rank; lost).
@@ -241,11 +298,28 @@ static void solve(struct elimination *s, const ct_ex *Q, ct_ex *g, ct_ex *a, ct_
     ct_blocks_solve_transposed(&s->d, w, lam);
 }
 
+// r (nu, out) = M a; by M_c where M would be more.
+static void apply_mass(struct elimination *s, const ct_ex *a, ct_ex *r)
+{
+    const size_t nu = s->e->nu;
+    if (!s->is_carried) {
+        apply(s, s->M, nu, a, r);
+        return;
+    }
+    const struct ct_carried *c = s->e->carried;
+    ct_ex *y = CT_NEWN(s->a, ct_ex, c->n + 1), *f = CT_NEWN(s->a, ct_ex, c->n + 1);
+    memcpy(y, a, nu * sizeof *y);
+    ct_carried_extend(s->x, s->a, c, y);
+    apply(s, s->system.M, c->n, y, f);
+    ct_carried_fold(s->x, s->a, c, f);
+    memcpy(r, f, nu * sizeof *r);
+}
+
 // r (nu + rank, out) = M a - Q - J' lam, J a + gam.
 static void residual(struct elimination *s, const ct_ex *a, const ct_ex *lam, ct_ex *r)
 {
     const size_t nu = s->e->nu, m = s->p->rank;
-    apply(s, s->M, nu, a, r);
+    apply_mass(s, a, r);
     for (size_t i = 0; i < nu; i++)
         r[i] = ct_ex_sub(s->x, r[i], s->e->Q[i]);
     for (size_t i = 0; i < m; i++)
@@ -268,6 +342,9 @@ static struct elimination create(struct ct_arena *a, struct ct_exs *x,
     s.row = CT_NEWN(a, int, m + 1);
     memcpy(s.row, p->row, m * sizeof *s.row);
     qsort(s.row, m, sizeof *s.row, ascending);
+    s.place = CT_NEWN(a, int, e->nrow + 1);
+    for (size_t i = 0; i < m; i++)
+        s.place[s.row[i]] = (int)i + 1;
     s.J = CT_NEWN(a, struct ct_shadow_row, m + 1);
     s.M = CT_NEWN(a, struct ct_shadow_row, e->nu + 1);
     s.d = ct_blocks_create(a, x, m, e->nu);
@@ -336,21 +413,59 @@ static void derive_projections(struct elimination *s, struct ct_closed *c)
     ct_blocks_solve(&s->d, r, c->du);
 }
 
-// By pattern, in the better of both orders; NULL: it is singular.
-static const struct ct_kkt *predict(const struct elimination *s, struct ct_arena *scratch,
-                                    enum ct_kkt_order *best)
+// By pattern, in the better of both orders, if it takes less than `most`; else NULL, or if it is singular.
+static const struct ct_kkt *predict(const struct matrices *k, struct ct_arena *scratch,
+                                    double most, enum ct_kkt_order *best)
 {
     const struct ct_kkt *least = NULL;
     for (int order = 0; order < CT_KKT_NORDER; order++) {
-        const double most = least ? least->operations : INFINITY;
-        const struct ct_kkt *k = ct_kkt_factor(scratch, NULL, s->M, s->e->nu, s->J, s->p->rank,
-                                               (enum ct_kkt_order)order, most);
-        if (!k)
+        const struct ct_kkt *found
+            = ct_kkt_factor(scratch, NULL, k->M, k->n, k->J, k->m, (enum ct_kkt_order)order,
+                            k->threshold, least ? least->operations : most);
+        if (!found)
             continue;
-        least = k;
+        least = found;
         *best = (enum ct_kkt_order)order;
     }
     return least;
+}
+
+// Operations that entries and Q take: they share some.
+static double count_entries(struct elimination *s, const struct ct_entry *A, size_t nA,
+                            const struct ct_entry *B, size_t nB, const struct ct_entry *C,
+                            size_t nC)
+{
+    const size_t nu = s->e->nu;
+    ct_ex *v = CT_NEWN(s->a, ct_ex, nu + nA + nB + nC + 1);
+    memcpy(v, s->e->Q, nu * sizeof *v);
+    list_values(A, nA, v + nu);
+    list_values(B, nB, v + nu + nA);
+    list_values(C, nC, v + nu + nA + nB);
+    const size_t n = ct_ex_walk(s->x, v, nu + nA + nB + nC);
+    double count = 0;
+    for (size_t i = 0; i < n; i++)
+        count += ct_op_info[s->x->node[s->x->stack[i]].op].narg > 0;
+    return count;
+}
+
+// With the starts of elements as unknowns, if that is shorter.
+static void try_carried(struct elimination *s, struct ct_arena *scratch,
+                        struct ct_pivot_order *found)
+{
+    const struct ct_carried *c = s->e->carried;
+    const struct ct_equations *e = s->e;
+    if (!c || !s->p->value)
+        return;
+    const double more = count_entries(s, c->M, c->nM, c->J, c->nJ, c->L, c->nL)
+                      - count_entries(s, e->M, e->nM, e->J, e->nJ, NULL, 0);
+    enum ct_kkt_order order;
+    s->system = read_carried(s);
+    const struct ct_kkt *k = predict(&s->system, scratch, found->operations - more, &order);
+    if (!k)
+        return;
+    found->is_carried = true;
+    found->way = order;
+    found->operations = k->operations + more;
 }
 
 // Operations that the pivots of J_d take, among the nodes of x from `first` on.
@@ -397,14 +512,17 @@ struct ct_pivot_order *ct_pivot_order_find(struct ct_arena *a, const struct ct_e
     enum ct_kkt_order order = CT_KKT_DEGREE;
     struct ct_pivot_order *found = NULL;
     read_matrices(&s, M, J);
-    const struct ct_kkt *k = predict(&s, scratch, &order);
+    const struct matrices plain = {s.M, s.J, e->nu, p->rank, loose};
+    const struct ct_kkt *k = predict(&plain, scratch, INFINITY, &order);
     if (k && ct_blocks_factor(&s.d, SIZE_MAX)) {
         found = CT_NEW(a, struct ct_pivot_order);
         found->row = CT_NEWN(a, int, k->n + 1);
         found->column = CT_NEWN(a, int, k->n + 1);
         found->way = order;
-        found->operations = k->operations + count_pivots(&s, scratch, e->x->nnode);
+        found->operations = k->operations;
         list_order(found, k);
+        try_carried(&s, scratch, found);
+        found->operations += count_pivots(&s, scratch, e->x->nnode);
     }
     ct_arena_destroy(scratch);
     return found;
@@ -425,7 +543,10 @@ struct ct_closed *ct_closed_derive(struct ct_arena *a, struct ct_exs *x,
             = p->pivots ? p->pivots : ct_pivot_order_find(a, e, p, M, J);
         if (!found)
             return NULL;
-        s.whole = ct_kkt_factor(a, x, s.M, nu, s.J, m, found->way, (double)most);
+        s.is_carried = found->is_carried;
+        s.system = s.is_carried ? read_carried(&s) : (struct matrices){s.M, s.J, nu, m, loose};
+        s.whole = ct_kkt_factor(a, x, s.system.M, s.system.n, s.system.J, s.system.m,
+                                found->way, s.system.threshold, (double)most);
         if (!s.whole)
             return NULL;
     } else {

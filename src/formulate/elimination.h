@@ -21,14 +21,18 @@ struct ct_partition {
     const int *row, *dependent, *independent;
     size_t rank, nfree;
     const struct ct_pivot_order *pivots; // may be NULL: it is made where it is needed
+    const double *value; // by symbol, at the state of the shadow; NULL: beams are not carried
 };
 
 /// How all equations would be eliminated as one system, (nu + rank) rows and columns in the order of its pivots, so that
 /// these are on the diagonal or next to it. NULL: it is singular.
 struct ct_pivot_order {
     int *row, *column;
+    bool
+        is_carried; // with the starts of elements as unknowns (carried.h): way and operations are of that
     enum ct_kkt_order way;
-    double operations; // of the solution, the pivots of J_d included; M, Q, J, gam not
+    // of the solution, the pivots of J_d included; M, Q, J, gam not, but for what M_c and J_c take more or less than M and J
+    double operations;
 };
 
 struct ct_closed {
@@ -45,7 +49,8 @@ struct ct_closed {
     ct_ex *dq, *du; // -J_d^-1 Phi, -J_d^-1 v (nu, zero in the independent places)
 };
 
-/// Accelerations by embedding, as above, or from [M J'; J 0] as one system (kkt.h). Projections take J_d in both.
+/// Accelerations by embedding, as above, or from [M J'; J 0] as one system (kkt.h), where it is shorter that of carried.h.
+/// Projections take J_d in both.
 enum ct_closed_way { CT_CLOSED_EMBEDDING, CT_CLOSED_WHOLE };
 
 /// Derive into x, a copy of e->x, with at most so many new nodes. M (nM), J (nJ): values of e->M, e->J at the state of

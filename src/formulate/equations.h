@@ -185,9 +185,11 @@ struct ct_equations {
     enum ct_formulation formulation; // of the solution; AUTO where no choice was made
     // operations by formulation, the solution included; INFINITY: it does not apply or cannot win
     double formulation_cost[CT_NFORMULATION];
-    bool has_dynamics;  // M and Q are derived; else ct_formulate_dynamics does it
-    bool is_analysed;   // to be linearised, not to be integrated: a few evaluations
-    ct_ex *Q;           // nu
+    bool has_dynamics; // M and Q are derived; else ct_formulate_dynamics does it
+    bool is_analysed;  // to be linearised, not to be integrated: a few evaluations
+    ct_ex *Q;          // nu
+    const struct ct_carried
+        *carried;       // of closed systems, with the solution (carried.h); or NULL
     struct ct_entry *J; // row by row
     size_t nJ, J_cap;
     struct ct_row *row;

@@ -94,6 +94,7 @@ struct ct_flexible {
     const char *why; // this formulation; NULL: as asked for
     struct ct_elastic *elastic;
     int nelastic;
+    int nstart; // of these, the last: foreshortening at the starts of elements (carried.h)
     struct ct_freedom *freedom; // CT_NODE_FREEDOM (nelement + 1)
     struct ct_element *element;
     struct ct_bending shape;
@@ -101,7 +102,9 @@ struct ct_flexible {
     struct ct_shape shortening[4][4], bubble[4][4]; // E(xi), D(xi)
     struct ct_shape curving[4][4]; // integral of the sections' rotation gradients, as E
     struct ct_follow *follow;      // NULL: no rotation follows (elastic.h)
-    double start_missed;           // share of the start that modes or given shapes leave out
+    const struct ct_follow
+        *followed; // where those that follow are coordinates: as if they were not (carried.h)
+    double start_missed; // share of the start that modes or given shapes leave out
     double cut; // frequency of modes of which some are kept and some not [rad/s]; else 0
     int uncut
         [2]; // then: the nearest numbers of modes, below and above, that keep all or none of these
@@ -143,6 +146,11 @@ void ct_station_own_partials(struct ct_build *b, const struct ct_flexible *f,
 bool ct_flexible_is_nodal(const struct ct_flexible *f);
 /// CHAIN in coordinates of nodes: an element sees its own nodes and the foreshortening at its start, nothing else.
 bool ct_flexible_is_carried(const struct ct_flexible *f);
+/// The elastic coordinate that is the foreshortening at the start of an element, 1 ... nstart.
+static inline int ct_flexible_start(const struct ct_flexible *f, int element)
+{
+    return f->nelastic - f->nstart + element - 1;
+}
 /// Dof of the axial shape i of f->line.
 static inline int ct_stretch_dof(int i)
 {

@@ -116,8 +116,7 @@ static void add(struct ct_exs *x, ct_ex *sum, double by, ct_ex v)
     *sum = ct_ex_add(x, *sum, ct_ex_scale(x, by, v));
 }
 
-// What the followers do while the freedoms, or their rates, are v (by freedom; in: zero where one follows).
-static void follow(struct ct_exs *x, const struct ct_follow *s, ct_ex *v)
+void ct_follow_extend(struct ct_exs *x, const struct ct_follow *s, ct_ex *v)
 {
     for (int k = 0; k < s->n; k++) {
         const struct follower *row = &s->row[k];
@@ -142,7 +141,7 @@ void ct_follow_values(struct ct_build *b, struct ct_flexible *f)
             const struct ct_freedom *d = &f->freedom[i];
             v[i] = level == 0 ? d->value : level == 1 ? d->rate : d->acceleration;
         }
-        follow(b->x, f->follow, v);
+        ct_follow_extend(b->x, f->follow, v);
         for (int k = 0; k < f->follow->n; k++) {
             const int i = f->follow->row[k].freedom;
             struct ct_freedom *d = &f->freedom[i];
@@ -151,10 +150,8 @@ void ct_follow_values(struct ct_build *b, struct ct_flexible *f)
     }
 }
 
-void ct_follow_forces(struct ct_build *b, const struct ct_flexible *f, ct_ex *force)
+void ct_follow_forces(struct ct_exs *x, const struct ct_follow *s, ct_ex *force)
 {
-    struct ct_exs *x = b->x;
-    const struct ct_follow *s = f->follow;
     for (int k = 0; k < s->n; k++) {
         const struct follower *row = &s->row[k];
         for (int i = 0; i < row->nbefore; i++)

@@ -1,5 +1,6 @@
 // The stage that turns a model into equations.
 #include "formulate/formulate.h"
+#include "formulate/carried.h"
 #include "formulate/dynamics.h"
 #include "formulate/open.h"
 #include "formulate/residual.h"
@@ -159,6 +160,8 @@ static void derive_dynamics(struct ct_build *b, const struct ct_formulate_option
         return;
     }
     ct_dynamics_derive(b);
+    if (o->with_solution && b->eqs->nrow)
+        b->eqs->carried = ct_carried_derive(b);
 }
 
 // Beams that leave their formulation to the program: what is known of their motion decides, and those that stay linear

@@ -14,6 +14,9 @@ enum ct_level { CT_BIAS, CT_FULL };
 bool ct_unknowns_choose(struct ct_build *b);
 void ct_rotation_derive(struct ct_build *b);
 void ct_translation_derive(struct ct_build *b);
+/// Slides and turns of the sections of beams anew, for other elastic coordinates at the same places.
+void ct_translation_slide_sections(struct ct_build *b);
+void ct_rotation_turn_sections(struct ct_build *b);
 
 /// d/dt of an expression of coordinates and time: coordinates change at their speeds; speeds are held.
 ct_ex ct_build_rate(struct ct_build *b, ct_ex e);

@@ -4,10 +4,6 @@
 #include <math.h>
 #include <string.h>
 
-// Multipliers of a pivot that is sound are at most 1 over this. With a positive definite M, and J M^-1 J' negative definite
-// behind it, most orders are sound whatever their multipliers; what is left of the equations is measured in the run.
-static const double threshold = 0.001;
-
 struct choice {
     int size, at[2];
     double cost; // products per row, or position
@@ -20,6 +16,7 @@ struct work {
     struct ct_exs *x; // NULL: patterns and numbers only
     size_t n;
     const double *scale;       // by row
+    double threshold;          // multipliers of a pivot that is sound are at most 1 over this
     struct ct_shadow_row *row; // both triangles of what is left; numbers scaled
     bool *is_done;
     int *level;          // pivots that come before
@@ -33,6 +30,22 @@ struct work {
 
 // ---- the matrix -----------------------------------------------------------------------------------------
 
+// Unknowns without inertia (d[i] = 0): the largest entries of their columns are as those of the rows that these are in.
+static void scale_massless(const struct ct_shadow_row *J, size_t m, size_t nu, double *d)
+{
+    double *row = d + nu;
+    for (size_t i = 0; i < m; i++)
+        for (size_t k = 0; k < J[i].n; k++) {
+            const struct ct_shadow_entry *e = &J[i].e[k];
+            double *to = &d[e->column];
+            if (*to <= 0) // negative while it is the largest entry
+                *to = fmin(*to, -fabs(e->number) * row[i]);
+        }
+    for (size_t i = 0; i < nu; i++)
+        if (d[i] <= 0)
+            d[i] = d[i] < 0 ? -1 / d[i] : 1;
+}
+
 // 1 over the size of unknowns: unit diagonal of M, rows of J of size one.
 static double *find_scales(struct ct_arena *a, const struct ct_shadow_row *M, size_t nu,
                            const struct ct_shadow_row *J, size_t m)
@@ -40,7 +53,7 @@ static double *find_scales(struct ct_arena *a, const struct ct_shadow_row *M, si
     double *d = CT_NEWN(a, double, nu + m + 1);
     for (size_t i = 0; i < nu; i++) {
         const struct ct_shadow_entry *e = ct_shadow_find(&M[i], (int)i);
-        d[i] = e && e->number > 0 ? 1 / sqrt(e->number) : 1;
+        d[i] = e && e->number > 0 ? 1 / sqrt(e->number) : 0;
     }
     for (size_t i = 0; i < m; i++) {
         double most = 0;
@@ -48,6 +61,7 @@ static double *find_scales(struct ct_arena *a, const struct ct_shadow_row *M, si
             most = fmax(most, fabs(J[i].e[k].number) * d[J[i].e[k].column]);
         d[nu + i] = most > 0 ? 1 / most : 1;
     }
+    scale_massless(J, m, nu, d);
     return d;
 }
 
@@ -107,11 +121,11 @@ static double per_row(double degree)
     return degree * (degree + 4);
 }
 
-static bool is_better(const struct choice *a, const struct choice *b)
+static bool is_better(const struct work *w, const struct choice *a, const struct choice *b)
 {
-    if (!(a->strength >= threshold))
-        return b->strength < threshold && a->strength > b->strength;
-    if (!b->size || b->strength < threshold)
+    if (!(a->strength >= w->threshold))
+        return b->strength < w->threshold && a->strength > b->strength;
+    if (!b->size || b->strength < w->threshold)
         return true;
     if (a->cost < b->cost || a->cost > b->cost)
         return a->cost < b->cost;
@@ -145,7 +159,7 @@ static void try_pair(const struct work *w, int i, int j, struct choice *best)
     // the nearest partner of the first row
     t.cost = w->position ? w->position[i] + w->position[j] / (1. + (double)w->n)
                          : per_row(united_degree(l, k, i, j));
-    if (det > 0 && is_better(&t, best))
+    if (det > 0 && is_better(w, &t, best))
         *best = t;
 }
 
@@ -160,9 +174,9 @@ static struct choice best_of_row(const struct work *w, int i)
                                .cost = w->position ? w->position[i] : per_row((double)l->n - 1),
                                .level = w->level[i],
                                .strength = at_most_one(d / size_beside(l, i, i))};
-    if (d > 0 && is_better(&one, &best))
+    if (d > 0 && is_better(w, &one, &best))
         best = one;
-    for (size_t k = 0; k < l->n && !(one.strength >= threshold && d > 0); k++)
+    for (size_t k = 0; k < l->n && !(one.strength >= w->threshold && d > 0); k++)
         if (l->e[k].column != i)
             try_pair(w, i, l->e[k].column, &best);
     return best;
@@ -177,7 +191,7 @@ static struct choice choose(const struct work *w)
         if (w->is_stale[i])
             w->best[i] = best_of_row(w, i);
         w->is_stale[i] = false;
-        if (w->best[i].size && is_better(&w->best[i], &best))
+        if (w->best[i].size && is_better(w, &w->best[i], &best))
             best = w->best[i];
     }
     return best;
@@ -428,10 +442,11 @@ static void eliminate(struct work *w, const struct choice *c)
 struct ct_kkt *ct_kkt_factor(struct ct_arena *a, struct ct_exs *x,
                              const struct ct_shadow_row *M, size_t nu,
                              const struct ct_shadow_row *J, size_t m, enum ct_kkt_order order,
-                             double most)
+                             double threshold, double most)
 {
     const size_t n = nu + m;
-    struct work w = {.a = a, .x = x, .n = n, .k = CT_NEW(a, struct ct_kkt)};
+    struct work w
+        = {.a = a, .x = x, .n = n, .threshold = threshold, .k = CT_NEW(a, struct ct_kkt)};
     w.row = CT_NEWN(a, struct ct_shadow_row, n + 1);
     w.is_done = CT_NEWN(a, bool, n + 1);
     w.level = CT_NEWN(a, int, n + 1);

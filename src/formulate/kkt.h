@@ -41,11 +41,12 @@ struct ct_kkt_factor { // of L: row -= f * pivot's rows
 enum ct_kkt_order { CT_KKT_DEGREE, CT_KKT_ALONG, CT_KKT_NORDER };
 
 /// Factor for M (nu rows, both triangles) and J (m rows). x NULL: only the pattern and the shadow, for the operations.
+/// Multipliers of pivots are at most 1 over the threshold, where that is possible.
 /// NULL if it is singular at the state of the shadow or takes as many nodes of x (operations, if NULL) as `most`, or more.
 struct ct_kkt *ct_kkt_factor(struct ct_arena *a, struct ct_exs *x,
                              const struct ct_shadow_row *M, size_t nu,
                              const struct ct_shadow_row *J, size_t m, enum ct_kkt_order order,
-                             double most);
+                             double threshold, double most);
 /// y (n, out) for the right side b (n; lost).
 void ct_kkt_solve(const struct ct_kkt *k, struct ct_exs *x, ct_ex *b, ct_ex *y);
 

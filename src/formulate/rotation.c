@@ -233,6 +233,16 @@ static void section_terms(struct ct_build *b, const struct ct_edge_info *e, int 
                  ct_ex_scale(b->x, turn[i].share, e->turn[k].e[turn[i].axis]));
 }
 
+void ct_rotation_turn_sections(struct ct_build *b)
+{
+    for (size_t i = 0; i < b->nspin; i++) {
+        struct ct_spin *s = &b->spin[i];
+        s->nterm = s->section ? 0 : s->nterm;
+        if (s->section)
+            section_terms(b, &b->edge[s->section - 1], s->turn, s->sign, s);
+    }
+}
+
 // Spin of the i-th turn of branch e, whose axis is fixed in the parent; the coefficients of its rate
 // are sign * d angle / d q_k.
 static void add_spin(struct ct_build *b, int cluster, const struct ct_edge_info *e, int i,
@@ -242,6 +252,9 @@ static void add_spin(struct ct_build *b, int cluster, const struct ct_edge_info 
     struct ct_spin s
         = {.cluster = cluster, .axis = ct_cluster_turn(b, b->cluster[cluster].base, local)};
     if (e->flexible) {
+        s.section = (int)(e - b->edge) + 1;
+        s.turn = i;
+        s.sign = sign;
         section_terms(b, e, i, sign, &s);
     } else {
         s.term = CT_NEWN(b->arena, struct ct_term, e->ncoordinate + 1);

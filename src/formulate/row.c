@@ -110,6 +110,18 @@ static void add_row(struct ct_build *b, int joint, const char *name, struct ct_e
     CT_PUSH(b->arena, b->pull, b->npull, b->pull_cap, p);
 }
 
+const ct_ex *ct_row_coefficients(struct ct_build *b, int row)
+{
+    struct ct_linear l = linear_zero(b);
+    for (size_t i = 0; i < b->npull; i++) {
+        const struct ct_pull *p = &b->pull[i];
+        const struct ct_wrench w = {p->force, p->torque};
+        if (p->row == row)
+            wrench_terms(b, (struct ct_ends){p->tail, p->head}, &w, p->carried, &l);
+    }
+    return l.coef;
+}
+
 static int joint_index(const struct ct_build *b, const struct ct_instance *self)
 {
     return (int)(self - b->model->joint);

@@ -21,6 +21,9 @@ struct ct_linear {
 /// Rows of all joints that are chords, of rods, gears and driven chords.
 bool ct_rows_derive(struct ct_build *b);
 
+/// Coefficients of the speeds (nu) in what the row's multiplier does as wrench pairs; until the next row.
+const ct_ex *ct_row_coefficients(struct ct_build *b, int row);
+
 /// One scalar row along a wrench; used by classes (distance).
 void ct_row_add(struct ct_build *b, const struct ct_instance *self, const char *what, int tail,
                 int head, const struct ct_wrench *w, bool carried, ct_ex phi, ct_ex gam);

@@ -56,6 +56,22 @@ static void add_slide(struct ct_build *b, struct ct_anchor *a, int speed, int dr
         a->slide[a->nslide++] = (struct ct_slide){speed, driver, along, extra};
 }
 
+// The elastic coordinates' slides of a section whose beam has the axes of `tail`.
+static void slide_section(struct ct_build *b, const struct ct_edge_info *e,
+                          const struct ct_place *tail, int sign, struct ct_anchor *a)
+{
+    const struct ct_flexible *f = e->flexible;
+    a->slide = CT_NEWN(b->arena, struct ct_slide, f->nelastic + 1);
+    a->nslide = 0;
+    for (int k = 0; k < f->nelastic; k++) {
+        const ct_ex3 along = ct_ex33_apply(b->x, &tail->S, e->slide[k]);
+        ct_ex3 extra = zero3;
+        if (e->foreshortened)
+            extra = ct_ex3_sub(b->x, ct_ex33_apply(b->x, &tail->S, e->foreshortened[k]), along);
+        add_slide(b, a, f->elastic[k].u, -1, sign, along, extra);
+    }
+}
+
 // Node beyond a branch that slides: an anchor of its own.
 static void place_sliding(struct ct_build *b, const struct ct_edge_info *e,
                           const struct ct_place *p, const struct ct_place *tail, int sign,
@@ -67,18 +83,13 @@ static void place_sliding(struct ct_build *b, const struct ct_edge_info *e,
     const int parent = goes_on ? p->anchor : anchor_at(b, p);
     const int i = add_anchor(b, parent, cluster, ct_ex3_add(b->x, fixed, vector));
     struct ct_anchor *a = &b->anchor[i];
-    const struct ct_flexible *f = e->flexible;
     a->moves = true;
     a->fixed = fixed;
     a->slid = vector;
-    a->slide = CT_NEWN(b->arena, struct ct_slide, (f ? f->nelastic : e->ncoordinate) + 1);
-    for (int k = 0; f && k < f->nelastic; k++) {
-        const ct_ex3 along = ct_ex33_apply(b->x, &tail->S, e->slide[k]);
-        ct_ex3 extra = zero3;
-        if (e->foreshortened)
-            extra = ct_ex3_sub(b->x, ct_ex33_apply(b->x, &tail->S, e->foreshortened[k]), along);
-        add_slide(b, a, f->elastic[k].u, -1, sign, along, extra);
-    }
+    if (e->flexible)
+        slide_section(b, e, tail, sign, a);
+    else
+        a->slide = CT_NEWN(b->arena, struct ct_slide, e->ncoordinate + 1);
     for (int k = 0; k < e->ncoordinate; k++) {
         const struct ct_coordinate *c = &b->coordinate[e->first_coordinate + k];
         ct_ex3 p_tail;
@@ -93,18 +104,40 @@ static void place_sliding(struct ct_build *b, const struct ct_edge_info *e,
     self->local = zero3;
 }
 
+// The place whose axes the branch to a node has.
+static const struct ct_place *tail_of(const struct ct_build *b, int node)
+{
+    return &b->place[b->T.sign[node] > 0 ? b->T.parent[node] : node];
+}
+
+// Along the branch to a node, in axes of its cluster.
+static ct_ex3 branch_vector(struct ct_build *b, int node)
+{
+    const struct ct_edge_info *e = &b->edge[b->T.parent_edge[node]];
+    const ct_ex3 d = e->kind == CT_EDGE_ARM ? e->at : e->motion.d,
+                 vector = ct_ex33_apply(b->x, &tail_of(b, node)->S, d);
+    return b->T.sign[node] < 0 ? ct_ex3_neg(b->x, vector) : vector;
+}
+
+void ct_translation_slide_sections(struct ct_build *b)
+{
+    for (int node = 1; node < (int)b->nnode; node++) {
+        const struct ct_edge_info *e = &b->edge[b->T.parent_edge[node]];
+        if (e->flexible && is_moving(b, branch_vector(b, node)))
+            slide_section(b, e, tail_of(b, node), b->T.sign[node],
+                          &b->anchor[b->place[node].anchor]);
+    }
+}
+
 // (4.1): r_c = r_p + sign R_tail d, d in axes of the branch's tail.
 static void place_node(struct ct_build *b, int node)
 {
     const int parent = b->T.parent[node], sign = b->T.sign[node];
     const struct ct_edge_info *e = &b->edge[b->T.parent_edge[node]];
-    const struct ct_place *tail = &b->place[sign > 0 ? parent : node];
+    const struct ct_place *tail = tail_of(b, node);
     const struct ct_place p = b->place[parent];
     struct ct_place *self = &b->place[node];
-    const ct_ex3 d = e->kind == CT_EDGE_ARM ? e->at : e->motion.d;
-    ct_ex3 vector = ct_ex33_apply(b->x, &tail->S, d);
-    if (sign < 0)
-        vector = ct_ex3_neg(b->x, vector);
+    const ct_ex3 vector = branch_vector(b, node);
     self->anchor = p.anchor;
     self->cluster = p.cluster;
     self->local = p.local;

@@ -84,6 +84,15 @@ static double allowed(double cost)
     return fmin(programs * longest(fmin(cost, most_nodes)), most_nodes);
 }
 
+const double *ct_form_values(struct ct_arena *a, const struct ct_machine *m)
+{
+    if (!m->e->carried)
+        return NULL;
+    double *value = CT_NEWN(a, double, m->e->x->nsym + 1);
+    ct_machine_values(m, m->e->x, value);
+    return value;
+}
+
 // The cheapest but dense matrices; costs are filled.
 static struct ct_form *compare(struct ct_arena *a, struct ct_machine *m,
                                const struct ct_partition *partition, struct ct_form_costs *c)
@@ -92,6 +101,7 @@ static struct ct_form *compare(struct ct_arena *a, struct ct_machine *m,
     struct ct_partition p = *partition;
     struct ct_form *f = NULL;
     const bool is_small = m->nu + p.rank <= MOST_WHOLE;
+    p.value = ct_form_values(own, m);
     if (p.nfree && is_small)
         p.pivots = ct_pivot_order_find(own, m->e, &p, m->motion.out, m->Q + m->nu);
     if (p.pivots) {
@@ -126,6 +136,13 @@ struct ct_form *ct_form_create(struct ct_arena *a, struct ct_machine *m,
     if (costs)
         *costs = c;
     return f;
+}
+
+struct ct_form *ct_form_create_within(struct ct_arena *a, struct ct_machine *m,
+                                      const struct ct_partition *p,
+                                      const struct ct_form_kind *kind, double cost)
+{
+    return kind->create(a, m, p, allowed(cost));
 }
 
 struct ct_form *ct_form_ask(struct ct_arena *a, struct ct_machine *m,

@@ -56,6 +56,10 @@ struct ct_form_costs {
 struct ct_form *ct_form_create(struct ct_arena *a, struct ct_machine *m,
                                const struct ct_partition *p, double operations,
                                const struct ct_form_kind *kind, struct ct_form_costs *costs);
+/// One of this kind if it costs no more than so much, or little more: it is given up while it is made.
+struct ct_form *ct_form_create_within(struct ct_arena *a, struct ct_machine *m,
+                                      const struct ct_partition *p,
+                                      const struct ct_form_kind *kind, double cost);
 /// One of this kind however long its programs are, up to some millions of nodes.
 struct ct_form *ct_form_ask(struct ct_arena *a, struct ct_machine *m,
                             const struct ct_partition *p, const struct ct_form_kind *kind);
@@ -93,6 +97,8 @@ struct ct_form_code ct_form_code(const struct ct_form *f);
 
 /// Fill row, dependent, rank.
 void ct_form_place(struct ct_form *f, const struct ct_partition *p);
+/// Values by symbol at the machine's input, for partitions; NULL where no beam is carried.
+const double *ct_form_values(struct ct_arena *a, const struct ct_machine *m);
 /// Operations of a program, one each.
 double ct_form_operations(const struct ct_program *p);
 /// Machine code of so many operations without loops [bytes].

@@ -174,8 +174,9 @@ static struct ct_lane_form *make_form(struct ct_lanes *s, const struct ct_partit
     struct ct_lane_form *f = CT_NEW(s->arena, struct ct_lane_form);
     f->form = ct_form_create(s->arena, m, p, ct_embed_operations(s->embed), NULL, NULL);
     if (f->form && f->form->kind == &ct_form_whole) { // lanes judge by B and its pivots
+        const double cost = f->form->cost;
         ct_form_destroy(m, f->form);
-        f->form = ct_form_create(s->arena, m, p, 0, &ct_form_unrolled, NULL);
+        f->form = ct_form_create_within(s->arena, m, p, &ct_form_unrolled, CT_LANES * cost);
     }
     memcpy(m->input, now, size);
     ct_machine_prepare(m);

@@ -176,11 +176,14 @@ static struct ct_form *create(struct ct_arena *a, struct ct_machine *m,
     struct unrolled *f = CT_NEW(own, struct unrolled);
     struct ct_exs *x = ct_exs_clone(own, m->e->x);
     const double *J = m->Q + m->nu;
+    struct ct_partition valued = *p;
+    if (!valued.value)
+        valued.value = ct_form_values(own, m);
     f->form = (struct ct_form){.kind = kind, .arena = own};
     ct_form_place(&f->form, p);
     f->M_size = ct_vector_size(m->motion.out, m->e->nM);
     f->J_size = ct_vector_size(J, m->e->nJ);
-    f->c = ct_closed_derive(own, x, m->e, p, m->motion.out, J,
+    f->c = ct_closed_derive(own, x, m->e, &valued, m->motion.out, J,
                             kind == &ct_form_whole ? CT_CLOSED_WHOLE : CT_CLOSED_EMBEDDING,
                             (size_t)most_nodes);
     if (!f->c) {

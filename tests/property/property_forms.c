@@ -18,24 +18,6 @@ static struct ct_form *form_of(struct variant *v, const struct ct_form_kind *kin
     return ct_form_create(v->arena, v->m, &p, 0, kind, NULL);
 }
 
-static double largest(const double *v, size_t n)
-{
-    double max = 0;
-    for (size_t i = 0; i < n; i++)
-        max = fmax(max, fabs(v[i]));
-    return max;
-}
-
-static bool same(const char *name, const char *what, const double *got, const double *want,
-                 size_t n, double tol)
-{
-    const double scale = fmax(largest(want, n), DBL_MIN);
-    bool ok = true;
-    for (size_t i = 0; i < n; i++)
-        ok &= agree(name, what, got[i], want[i], scale, tol);
-    return ok;
-}
-
 // u' and lam against the dense solution; beside a singular position that is no reference.
 static bool same_accelerations(const struct system *s, struct variant *v, struct ct_form *f,
                                size_t *n)
@@ -75,8 +57,9 @@ static bool same_corrections(const struct system *s, struct variant *v, struct c
             q += m->J[row + m->nrow * j] * f->dq[j];
             u += m->J[row + m->nrow * j] * f->du[j];
         }
-        ok &= agree(s->name, "Phi + J dq", q, 0, fmax(1e-3, largest(m->phi, m->nrow)), 1e-11);
-        ok &= agree(s->name, "v + J du", u, 0, fmax(1e-3, largest(m->v, m->nrow)), 1e-11);
+        ok &= agree(s->name, "Phi + J dq", q, 0, fmax(1e-3, largest_of(m->phi, m->nrow)),
+                    1e-11);
+        ok &= agree(s->name, "v + J du", u, 0, fmax(1e-3, largest_of(m->v, m->nrow)), 1e-11);
     }
     for (size_t j = 0; j < m->nu - f->rank; j++)
         ok &= agree(s->name, "independent", f->dq[v->s->independent[j]], 0, 1, 0);

@@ -1,5 +1,7 @@
 // See system.h.
 #include "tests/property/system.h"
+
+#include <float.h>
 #include "tests/property/mechanism.h"
 
 #include <stdarg.h>
@@ -67,6 +69,24 @@ bool agree(const char *system, const char *what, double got, double want, double
     print_error("%s: %s: got %.17g, wanted %.17g, difference %.3g of %.3g\n", system, what, got,
                 want, got - want, scale);
     return false;
+}
+
+double largest_of(const double *v, size_t n)
+{
+    double max = 0;
+    for (size_t i = 0; i < n; i++)
+        max = fmax(max, fabs(v[i]));
+    return max;
+}
+
+bool same(const char *name, const char *what, const double *got, const double *want, size_t n,
+          double tol)
+{
+    const double scale = fmax(largest_of(want, n), DBL_MIN);
+    bool ok = true;
+    for (size_t i = 0; i < n; i++)
+        ok &= agree(name, what, got[i], want[i], scale, tol);
+    return ok;
 }
 
 char *text_of(struct ct_arena *a, const char *fmt, ...)

@@ -110,6 +110,10 @@ int chance_of(int n);    // 0 .. n - 1
 /// |got - want| <= tol * scale; prints what and both values and counts a failure.
 bool agree(const char *system, const char *what, double got, double want, double scale,
            double tol);
+double largest_of(const double *v, size_t n);
+/// The same of n numbers, against the largest of `want`.
+bool same(const char *system, const char *what, const double *got, const double *want, size_t n,
+          double tol);
 
 char *text_of(struct ct_arena *a, const char *fmt, ...) __attribute__((format(printf, 2, 3)));
 
