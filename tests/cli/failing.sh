@@ -65,7 +65,7 @@ cat >ringing.yaml <<'END'
 cotree: 1
 bodies: {bob: {type: particle, mass: 1}}
 joints: {place: {type: free, from: ground, to: bob, initial: {q: [1, 0, 0], u: [0.01, 1, 0]}}}
-forces: {spring: {type: spring, from: ground, to: bob, stiffness: 1e14, length: 1}}
+forces: {spring: {type: spring, from: ground, to: bob, stiffness: 1e15, length: 1}}
 outputs: [place.q1, energy.total]
 simulation: {duration: 10, samples: 2, tolerance: 1e-8}
 END
