@@ -14,18 +14,36 @@ static const double change = 0x1p-40;
 // Errors of truncation fall faster than with this power of the step, those of rounding with the first one: as long as a step is
 // shorter than 1 over the fastest frequency. Longer ones are held by stability and their errors have no order.
 static const double between = 3;
+// Places are changed by different parts, so that nothing cancels.
+static const double golden = 0.618033988749895;
 // After so many steps it is measured anew: a thousandth of an evaluation a step.
 enum { STEPS_BETWEEN = 1000 };
+
+// What is damped forgets errors of steps, whatever makes them, but for the last ones: there they count. A vibration of omega answers a
+// change of speeds by omega times one of places with 2 zeta of the answer to that. du: the change of speeds.
+static void leave_out_damped(struct ct_driver *r, double du)
+{
+    const struct ct_problem *p = r->p;
+    const double damped = 0.02; // zeta of 0.01: half is left after 11 periods
+    for (int i = 0; i < p->ny; i++) {
+        const bool is_speed = i >= p->nq && i < p->nq + p->nu;
+        r->point[i] = r->y[i] + (is_speed ? du * (1 + fmod(golden * i, 1)) : 0);
+    }
+    if (ct_stepper_rhs(p, r->t, r->point, r->dmoved, r->stats) != CT_EVAL_OK)
+        return;
+    for (int i = p->nq; i < p->nq + p->nu; i++)
+        if (fabs(r->dmoved[i] - r->dy[i]) > damped * r->noise[i])
+            r->noise[i] = 0;
+}
 
 static void measure(struct ct_driver *r, double h)
 {
     const struct ct_problem *p = r->p;
-    const double golden = 0.618033988749895;
     r->problem.noise = NULL;
     double largest = 0, most = 0;
     for (int i = 0; i < p->nq; i++)
         largest = fmax(largest, fabs(r->y[i]));
-    for (int i = 0; i < p->ny; i++) // all by different parts, so that nothing cancels
+    for (int i = 0; i < p->ny; i++)
         r->point[i] = r->y[i] + (i < p->nq ? change * (1 + fmod(golden * i, 1)) * largest : 0);
     if (!(largest > 0) || ct_stepper_rhs(p, r->t, r->point, r->noise, r->stats) != CT_EVAL_OK)
         return;
@@ -33,10 +51,14 @@ static void measure(struct ct_driver *r, double h)
         const bool is_speed = i >= p->nq && i < p->nq + p->nu;
         const double answer = is_speed ? fabs(r->noise[i] - r->dy[i]) : 0;
         most = fmax(most, answer);
-        r->noise[i] = answer * (DBL_EPSILON / change);
+        r->noise[i] = answer;
     }
-    if (h * h * most > change * largest)
+    r->problem.noisy_step = sqrt(change * largest / most);
+    if (h > r->problem.noisy_step)
         return;
+    leave_out_damped(r, change * largest / r->problem.noisy_step);
+    for (int i = p->nq; i < p->nq + p->nu; i++)
+        r->noise[i] *= DBL_EPSILON / change;
     r->problem.noise = r->noise;
     r->noisy_steps = STEPS_BETWEEN;
 }

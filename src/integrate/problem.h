@@ -78,8 +78,9 @@ struct ct_problem {
     const bool *asked_speeds;
     double accuracy,
         duration; // wanted of the outputs, relative, over the whole run; its length. 0: not known
-    /// Rounding of f, per state (ny), where it is felt in the errors of steps. NULL: it is not.
+    /// Rounding of f, per state (ny), where it is felt in the errors of steps as long as `noisy_step` or shorter. NULL: it is not.
     const double *noise;
+    double noisy_step;
     /// NULL: every state is measured by itself.
     const struct ct_groups *groups;
 

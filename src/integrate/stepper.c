@@ -216,7 +216,7 @@ void ct_stepper_take_noise(const struct ct_problem *p, double h, double *e)
 {
     const double evaluations
         = 4; // weights of the stages in errors have sums of squares of 1 to 16
-    for (int i = 0; i < p->ny && p->noise; i++)
+    for (int i = 0; i < p->ny && p->noise && h <= p->noisy_step; i++)
         e[i] = copysign(fmax(0, fabs(e[i]) - evaluations * h * p->noise[i]), e[i]);
 }
 
