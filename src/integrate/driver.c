@@ -56,7 +56,8 @@ static void allocate(struct ct_driver *r)
     r->work = r->method->create(a, r->method, r->p);
     if (r->method->swiftness && r->o->step == 0) {
         r->aside = r->method->create(a, r->method, r->p);
-        r->daside = CT_NEWN(a, double, r->p->ny);
+        r->beside = CT_NEWN(a, double, r->p->ny);
+        r->dbeside = CT_NEWN(a, double, r->p->ny);
     }
     if (r->p->singular_in && r->o->step == 0)
         r->crossing_work = ct_crossing.create(a, &ct_crossing, r->p);
@@ -280,15 +281,42 @@ static bool is_damping(struct ct_driver *r, const struct ct_stride *s)
     return fast > r->method->followed && fast > much_faster * change_over_step(r);
 }
 
+// Does the interpolant err in the next sample, by so much of what steps may? A step from the start of this one to there tells. Each
+// time it does not, more steps to come are not asked; where it does, some are taken to err as well.
+static bool interpolant_errs(struct ct_driver *r, const struct ct_stride *s)
+{
+    enum { MOST_TRUSTED = 63, DISTRUSTED = 30 };
+    const double much = 0.01;
+    const struct ct_stepper_span span = {s->method, r->p, r->t, s->h, r->y, r->y1, s->work};
+    const double h = r->o->sample[r->sample] - r->t;
+    double unused;
+    if (r->unasked > 0) {
+        r->unasked--;
+        return r->has_erred;
+    }
+    r->has_erred = true;
+    if (s->method->step(r->p, r->t, h, r->y, r->dy, NULL, r->beside, r->dbeside, &unused,
+                        r->aside, r->stats)
+        == CT_EVAL_OK) {
+        ct_stepper_point(&span, h / s->h, r->point);
+        for (int i = 0; i < r->p->ny; i++)
+            r->point[i] -= r->beside[i];
+        r->has_erred = !(ct_stepper_norm(r->p, &r->tolerance, r->y, r->y1, r->point) <= much);
+    }
+    r->trusted = r->has_erred ? 0 : r->trusted < MOST_TRUSTED ? 2 * r->trusted + 1 : r->trusted;
+    r->unasked = r->has_erred ? DISTRUSTED : r->trusted;
+    return r->has_erred;
+}
+
 static enum ct_eval interpolate_for_samples(struct ct_driver *r, struct ct_stride *s)
 {
     if (!(r->sample < r->o->nsample && r->o->sample[r->sample] < s->t1))
         return CT_EVAL_OK;
-    s->is_damping = is_damping(r, s);
-    if (s->is_damping)
-        return CT_EVAL_OK;
     const enum ct_eval e = interpolate(r, s);
-    return e == CT_EVAL_OK ? look_at_sample(r, s) : e;
+    if (e != CT_EVAL_OK)
+        return e;
+    s->is_damping = is_damping(r, s) && interpolant_errs(r, s);
+    return s->is_damping ? CT_EVAL_OK : look_at_sample(r, s);
 }
 
 // Step again, to the event that the interpolant shows at t + h; then correct h for the difference

@@ -41,11 +41,14 @@ struct ct_driver {
     double *point;          // a state to spare
     void *work;             // the method's own
     void *aside;            // the same for steps to samples; NULL: its interpolant always holds
-    double *daside;         // (ny)
-    double fastest;         // rate of the fastest motion that steps have seen of late
-    void *crossing_work;    // of ct_crossing; NULL: there are no singular positions to cross
-    double singular_in;     // time to the next one, from t
-    double reach;           // crossing it is to begin this long before
+    double *beside, *dbeside; // their ends  (ny)
+    int unasked; // interpolants to come that are taken as the last one compared with such a step
+    bool has_erred;      // it did
+    int trusted;         // so many are not compared after one that held
+    double fastest;      // rate of the fastest motion that steps have seen of late
+    void *crossing_work; // of ct_crossing; NULL: there are no singular positions to cross
+    double singular_in;  // time to the next one, from t
+    double reach;        // crossing it is to begin this long before
     struct ct_striding *striding; // NULL: no crossings by steps of the method itself
     bool has_failed_stride;       // across the next position
     int failed_crossings;         // of it

@@ -61,7 +61,7 @@ static bool find_state(struct ct_driver *r, const struct ct_stride *s, double t,
         return true;
     }
     const enum ct_eval e = s->method->step(r->p, r->t, t - r->t, r->y, r->dy, NULL, y,
-                                           r->daside, &error, r->aside, r->stats);
+                                           r->dbeside, &error, r->aside, r->stats);
     if (e == CT_EVAL_OK && ct_stepper_finite(y, r->p->ny))
         return true;
     return e != CT_EVAL_FATAL
