@@ -214,7 +214,7 @@ rows() {
 }
 
 section_asked() {
-    rows R turns isosceles
+    rows R turns isosceles damped_chain
 }
 
 section_asked_beams() {
