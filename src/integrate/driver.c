@@ -255,59 +255,6 @@ static enum ct_eval look_at_sample(struct ct_driver *r, struct ct_stride *s)
     return s->is_off_between ? CT_EVAL_RETRY : e;
 }
 
-// Part of themselves by which accelerations have changed in the step.
-static double change_over_step(const struct ct_driver *r)
-{
-    const double *a = r->dy + r->p->nq, *a1 = r->dy1 + r->p->nq;
-    double size = 0, change = 0;
-    for (int i = 0; i < r->p->nu; i++) {
-        size = ct_larger(size, ct_larger(fabs(a[i]), fabs(a1[i])));
-        change = ct_larger(change, fabs(a1[i] - a[i]));
-    }
-    return size > 0 ? change / size : 0;
-}
-
-// Is there a motion that the step does not follow, much faster than the one there is? Not each step shows it, so that it is
-// remembered.
-static bool is_damping(struct ct_driver *r, const struct ct_stride *s)
-{
-    const double kept = 0.95; // from look to look
-    const double much_faster = 3;
-    if (!r->aside || s->work != r->work || s->is_striding)
-        return false;
-    const double seen = r->method->swiftness(r->p, s->h, r->y, r->y1, s->work) / s->h;
-    r->fastest = ct_larger(seen, kept * r->fastest);
-    const double fast = r->fastest * s->h;
-    return fast > r->method->followed && fast > much_faster * change_over_step(r);
-}
-
-// Does the interpolant err in the next sample, by so much of what steps may? A step from the start of this one to there tells. Each
-// time it does not, more steps to come are not asked; where it does, some are taken to err as well.
-static bool interpolant_errs(struct ct_driver *r, const struct ct_stride *s)
-{
-    enum { MOST_TRUSTED = 63, DISTRUSTED = 30 };
-    const double much = 0.01;
-    const struct ct_stepper_span span = {s->method, r->p, r->t, s->h, r->y, r->y1, s->work};
-    const double h = r->o->sample[r->sample] - r->t;
-    double unused;
-    if (r->unasked > 0) {
-        r->unasked--;
-        return r->has_erred;
-    }
-    r->has_erred = true;
-    if (s->method->step(r->p, r->t, h, r->y, r->dy, NULL, r->beside, r->dbeside, &unused,
-                        r->aside, r->stats)
-        == CT_EVAL_OK) {
-        ct_stepper_point(&span, h / s->h, r->point);
-        for (int i = 0; i < r->p->ny; i++)
-            r->point[i] -= r->beside[i];
-        r->has_erred = !(ct_stepper_norm(r->p, &r->tolerance, r->y, r->y1, r->point) <= much);
-    }
-    r->trusted = r->has_erred ? 0 : r->trusted < MOST_TRUSTED ? 2 * r->trusted + 1 : r->trusted;
-    r->unasked = r->has_erred ? DISTRUSTED : r->trusted;
-    return r->has_erred;
-}
-
 static enum ct_eval interpolate_for_samples(struct ct_driver *r, struct ct_stride *s)
 {
     if (!(r->sample < r->o->nsample && r->o->sample[r->sample] < s->t1))
@@ -315,7 +262,7 @@ static enum ct_eval interpolate_for_samples(struct ct_driver *r, struct ct_strid
     const enum ct_eval e = interpolate(r, s);
     if (e != CT_EVAL_OK)
         return e;
-    s->is_damping = is_damping(r, s) && interpolant_errs(r, s);
+    s->is_damping = ct_driver_is_damping(r, s);
     return s->is_damping ? CT_EVAL_OK : look_at_sample(r, s);
 }
 

@@ -98,6 +98,8 @@ bool ct_driver_is_rounding(struct ct_driver *r, double h, double error);
 /// A step h was accepted; the same question.
 void ct_driver_note_step(struct ct_driver *r, double h, double error);
 
+/// Does the step, ready to be interpolated, damp a motion that it does not follow, so that its interpolant does not hold?
+bool ct_driver_is_damping(struct ct_driver *r, const struct ct_stride *s);
 /// Samples before `end`, from the interpolant of the step; in the gap of a crossing also the one on its end.
 bool ct_driver_give_samples_before(struct ct_driver *r, const struct ct_stride *s, double end);
 /// Those due at the state of now.

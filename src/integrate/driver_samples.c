@@ -51,6 +51,64 @@ static bool give_projected_sample(struct ct_driver *r, double *y)
     return e == CT_EVAL_OK && give_sample(r, y);
 }
 
+// Part of themselves by which accelerations have changed in the step.
+static double change_over_step(const struct ct_driver *r)
+{
+    const double *a = r->dy + r->p->nq, *a1 = r->dy1 + r->p->nq;
+    double size = 0, change = 0;
+    for (int i = 0; i < r->p->nu; i++) {
+        size = ct_larger(size, ct_larger(fabs(a[i]), fabs(a1[i])));
+        change = ct_larger(change, fabs(a1[i] - a[i]));
+    }
+    return size > 0 ? change / size : 0;
+}
+
+// Is there a motion that the step does not follow, much faster than the one there is? Not each step shows it, so that it is
+// remembered.
+static bool is_unfollowed(struct ct_driver *r, const struct ct_stride *s)
+{
+    const double kept = 0.95; // from look to look
+    const double much_faster = 3;
+    if (!r->aside || s->work != r->work || s->is_striding)
+        return false;
+    const double seen = r->method->swiftness(r->p, s->h, r->y, r->y1, s->work) / s->h;
+    r->fastest = ct_larger(seen, kept * r->fastest);
+    const double fast = r->fastest * s->h;
+    return fast > r->method->followed && fast > much_faster * change_over_step(r);
+}
+
+// Does the interpolant err in the next sample, by so much of what steps may? A step from the start of this one to there tells. Each
+// time it does not, more steps to come are not asked; where it does, some are taken to err as well.
+static bool interpolant_errs(struct ct_driver *r, const struct ct_stride *s)
+{
+    enum { MOST_TRUSTED = 63, DISTRUSTED = 30 };
+    const double much = 0.01;
+    const struct ct_stepper_span span = {s->method, r->p, r->t, s->h, r->y, r->y1, s->work};
+    const double h = r->o->sample[r->sample] - r->t;
+    double unused;
+    if (r->unasked > 0) {
+        r->unasked--;
+        return r->has_erred;
+    }
+    r->has_erred = true;
+    if (s->method->step(r->p, r->t, h, r->y, r->dy, NULL, r->beside, r->dbeside, &unused,
+                        r->aside, r->stats)
+        == CT_EVAL_OK) {
+        ct_stepper_point(&span, h / s->h, r->point);
+        for (int i = 0; i < r->p->ny; i++)
+            r->point[i] -= r->beside[i];
+        r->has_erred = !(ct_stepper_norm(r->p, &r->tolerance, r->y, r->y1, r->point) <= much);
+    }
+    r->trusted = r->has_erred ? 0 : r->trusted < MOST_TRUSTED ? 2 * r->trusted + 1 : r->trusted;
+    r->unasked = r->has_erred ? DISTRUSTED : r->trusted;
+    return r->has_erred;
+}
+
+bool ct_driver_is_damping(struct ct_driver *r, const struct ct_stride *s)
+{
+    return is_unfollowed(r, s) && interpolant_errs(r, s);
+}
+
 // y (ny, out) at t, inside of the step: from the interpolant, where that holds, else by a step from the start of this one.
 static bool find_state(struct ct_driver *r, const struct ct_stride *s, double t, double *y)
 {
