@@ -33,6 +33,7 @@ struct ct_run {
     int *root_of; // state modes, in order
     int nroot;
     bool needs_lam, has_power; // needs_lam: the power does
+    bool has_turns;            // angles or rotations found from their last values
     bool has_lam_results;      // outputs or indicators depend on multipliers
     struct ct_jump *jump;
     struct ct_fidelity *fidelity; // of outputs; NULL: none is controlled
