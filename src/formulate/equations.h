@@ -203,6 +203,9 @@ struct ct_equations {
     size_t nrow, row_cap;
     struct ct_mode *mode;
     size_t nmode, mode_cap;
+    ct_ex
+        *clock; // functions of t alone that loads and drivers have, each as large as it can be
+    size_t nclock, clock_cap;
     struct ct_memory *memory;
     size_t nmemory, memory_cap;
     struct ct_gap *gap; // of rows (gap.h)

@@ -11,6 +11,7 @@
 #define CT_SOLVE_RUN_H
 
 #include "integrate/stiffness.h"
+#include "solve/clock.h"
 #include "solve/fidelity.h"
 #include "solve/mode.h"
 #include "solve/simulate.h"
@@ -41,6 +42,7 @@ struct ct_run {
     struct ct_run_report *report;
     double energy0, energy_scale;
     struct ct_singular *singular;
+    struct ct_clock clock;
     double pending;            // time of the event ahead; INFINITY if there is none
     double turning, t_turning; // how fast followed angles turn [rad/s], and when that was
     bool started;

@@ -488,6 +488,12 @@ static void find_asked(struct ct_run *r, struct ct_problem *p)
 // Steps of the implicit method are held to this part of what is wanted.
 static const double held_to = 0.1;
 
+static double seen_step(void *user, double t, double h)
+{
+    const struct ct_run *r = user;
+    return ct_clock_fit(&r->clock, r->method, t, h, r->o->rtol);
+}
+
 bool ct_run_simulate(struct ct_run *r, const struct ct_run_options *o,
                      struct ct_run_report *report)
 {
@@ -515,6 +521,8 @@ bool ct_run_simulate(struct ct_run *r, const struct ct_run_options *o,
     r->report = report;
     r->nevent = ct_time_events(r->arena, r->m, o->method->order, 0, o->duration, &r->event);
     r->pending = ct_run_next_event(r, 0);
+    if (o->step == 0)
+        ct_clock_look(r->arena, r->m, o->duration, &r->clock);
     if (!ct_run_tables_reach(r, 0))
         return false;
     ct_modes_start(r->m, 0, r->y, r->dy);
@@ -538,6 +546,7 @@ bool ct_run_simulate(struct ct_run *r, const struct ct_run_options *o,
                            .project = has_constraints(r) ? project : NULL,
                            .accepted = accepted,
                            .longest_step = r->has_turns ? ct_run_longest_step : NULL,
+                           .seen_step = r->e->nclock ? seen_step : NULL,
                            .singular_in = r->m->nrow ? singular_in : NULL,
                            .set_crossing = set_crossing,
                            .crossed = crossed,
