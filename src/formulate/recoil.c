@@ -34,6 +34,7 @@ struct ct_recoil {
 struct ct_recoil_run {
     const struct ct_recoil *p;
     double *value, *work, *out, *q, *u; // q, u: of each model, one after the other
+    double *rate, *du;                  // q', u' of their last steps
     double largest;                     // |eta|
     double quick; // how much faster than clamped shapes they may be with a base that yields
     bool is_lost;
@@ -200,6 +201,8 @@ struct ct_recoil_run *ct_recoil_run_create(struct ct_arena *a, const struct ct_r
     r->out = CT_NEWN(a, double, p->nout);
     r->q = CT_NEWN(a, double, CT_SWING_MODELS * p->nq + 1);
     r->u = CT_NEWN(a, double, CT_SWING_MODELS * p->nu + 1);
+    r->rate = CT_NEWN(a, double, CT_SWING_MODELS * p->nq + 1);
+    r->du = CT_NEWN(a, double, CT_SWING_MODELS * p->nu + 1);
     return r;
 }
 
@@ -337,36 +340,65 @@ static bool accelerate(struct ct_recoil_run *r, const struct ct_swings *s, int m
     return true;
 }
 
+// What the last pass changed of a step of h, against what that changes.
+static double unsettled(const struct ct_recoil *p, int n, const struct middle *m,
+                        const struct middle *before, const double *u, double h)
+{
+    double change = 0, size = 0;
+    for (int i = 0; i < p->nu; i++) {
+        change = fmax(change, h * fabs(m->du[i] - before->du[i]));
+        size = fmax(size, fmax(fabs(u[i]), h * fabs(m->du[i])));
+    }
+    const double of_base = size > 0 ? change / size : 0;
+    change = size = 0;
+    for (int i = 0; i < n; i++) {
+        change = fmax(change, h * fabs(m->dv[i] - before->dv[i]));
+        size = fmax(size, fmax(fabs(m->x[i][1]), h * fabs(m->dv[i])));
+    }
+    return fmax(of_base, size > 0 ? change / size : 0);
+}
+
 // One step of a model from t on; false where forces of the middle do not settle.
 static bool step(struct ct_recoil_run *r, struct ct_swings *s, int model, double t, double h)
 {
-    const double settled = 1e-3; // of what a step changes
+    const double settled = 1e-5,
+                 allowed = 1e-3; // far below the errors asked for; a tenth of their limit
     const struct ct_recoil *p = r->p;
-    double *q = r->q + model * p->nq, *u = r->u + model * p->nu, q_mid[2 * MOST];
+    double *q = r->q + model * p->nq, *u = r->u + model * p->nu, q_mid[2 * MOST],
+           left = INFINITY;
     double(*x)[2] = s->x[model];
     struct middle m = {{0}};
-    double before[MOST], change = 0, size = 0;
-    memcpy(q_mid, q, (size_t)p->nq * sizeof *q);
-    memcpy(m.u, u, (size_t)p->nu * sizeof *u);
-    memcpy(m.x, x, sizeof m.x);
-    for (int pass = 0; pass < PASSES; pass++) {
+    double *rate = r->rate + model * p->nq, *du = r->du + model * p->nu;
+    for (int i = 0; i < p->nq; i++)
+        q_mid[i] = q[i] + 0.5 * h * rate[i];
+    for (int i = 0; i < p->nu; i++) {
+        m.du[i] = du[i];
+        m.u[i] = u[i] + 0.5 * h * du[i];
+    }
+    for (int i = 0; i < s->n; i++) {
+        m.x[i][0] = x[i][0] + 0.5 * h * x[i][1];
+        m.x[i][1] = x[i][1];
+    }
+    for (int pass = 0; pass < PASSES && !(left <= settled); pass++) {
         const struct scene now = look(r, t + 0.5 * h, q_mid, m.u);
-        memcpy(before, m.du, sizeof before);
+        const struct middle before = m;
         if (!accelerate(r, s, model, h, &now, (const double(*)[2])x, &m))
             return false;
-        for (int i = 0; i < p->nq; i++)
-            q_mid[i] = q[i] + 0.5 * h * now.rate[i];
+        for (int i = 0; i < p->nq; i++) {
+            rate[i] = now.rate[i];
+            q_mid[i] = q[i] + 0.5 * h * rate[i];
+        }
         for (int i = 0; i < p->nu; i++)
             m.u[i] = u[i] + 0.5 * h * m.du[i];
         for (int i = 0; i < s->n; i++) {
             m.x[i][1] = x[i][1] + 0.5 * h * m.dv[i];
             m.x[i][0] = x[i][0] + 0.5 * h * m.x[i][1];
         }
+        left = unsettled(p, s->n, &m, &before, u, h);
     }
     for (int i = 0; i < p->nu; i++) {
-        change = fmax(change, h * fabs(m.du[i] - before[i]));
-        size = fmax(size, fmax(fabs(u[i]), h * fabs(m.du[i])));
-        u[i] += h * m.du[i];
+        du[i] = m.du[i];
+        u[i] += h * du[i];
     }
     for (int i = 0; i < p->nq; i++)
         q[i] = 2 * q_mid[i] - q[i];
@@ -374,7 +406,7 @@ static bool step(struct ct_recoil_run *r, struct ct_swings *s, int model, double
         x[i][0] += h * m.x[i][1];
         x[i][1] += h * m.dv[i];
     }
-    return change <= settled * size;
+    return left <= allowed;
 }
 
 // How much of the shapes' masses the base gives back where it yields to them: sum of p' B M^-1 B' p, next to 1 for a light one.
@@ -411,6 +443,8 @@ void ct_recoil_begin(struct ct_recoil_run *r, struct ct_swings *s)
     }
     const struct scene now = look(r, 0, r->q, r->u);
     memcpy(s->base, now.base, sizeof s->base);
+    memset(r->rate, 0, (size_t)(CT_SWING_MODELS * p->nq) * sizeof *r->rate);
+    memset(r->du, 0, (size_t)(CT_SWING_MODELS * p->nu) * sizeof *r->du);
     r->largest = 0;
     r->is_lost = false;
     r->quick = 1 / sqrt(1 - fmin(most, yield(r, s, &now)));
@@ -419,9 +453,20 @@ void ct_recoil_begin(struct ct_recoil_run *r, struct ct_swings *s)
     ct_swings_note(s);
 }
 
+// Shorter steps are not worth their while: what is too fast for them is carried along.
+static double finest(const struct ct_swings *s)
+{
+    const double per_period = 256, two_pi = 6.283185307179586;
+    double slowest = INFINITY;
+    for (int i = 0; i < s->n; i++)
+        slowest = fmin(slowest, s->shape[i].omega2);
+    return two_pi / sqrt(slowest) / per_period;
+}
+
 void ct_recoil_follow(struct ct_recoil_run *r, struct ct_swings *s, double t, double glance)
 {
-    const double from = s->t, asked = ceil((t - from) / glance * r->quick * (1 - 1e-9)),
+    const double from = s->t,
+                 asked = ceil((t - from) / fmax(glance / r->quick, finest(s)) * (1 - 1e-9)),
                  n = fmin(asked, MOST_STEPS);
     for (double i = 0; i < n && !r->is_lost; i++) {
         for (int m = 0; m < CT_SWING_MODELS; m++)
