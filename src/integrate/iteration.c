@@ -54,6 +54,7 @@ struct ct_iteration *ct_iteration_create(struct ct_arena *a, const struct ct_pro
     it->pivot = CT_NEWN(a, int, n + 1);
     it->share = CT_NEWN(a, double, 2 * nu + 1);
     it->off = CT_NEWN(a, double, p->ny);
+    it->fast = CT_NEWN(a, double, 2 * nu + 1);
     if (is_complex) {
         it->w = CT_NEWN(a, double, nu + 1);
         it->Gc = CT_NEWN(a, double _Complex, n *n + 1);
@@ -372,9 +373,8 @@ void ct_iteration_push(const struct ct_iteration *it, double *x, double c, const
 
 // ---- convergence ------------------------------------------------------------------------------------
 
-// Errors of motions and speeds as those of states, in it->off.
-static const double *states_of(struct ct_iteration *it, const double *y1, const double *d,
-                               const double *u)
+const double *ct_iteration_states(struct ct_iteration *it, const double *y1, const double *d,
+                                  const double *u)
 {
     const int nq = it->dae->nq;
     double *e = it->off;
@@ -393,14 +393,14 @@ double ct_iteration_error(struct ct_iteration *it, const struct ct_problem *p,
                           const struct ct_tolerance *tolerance, double t1, const double *y1,
                           const double *d, const double *u, double states)
 {
-    return ct_stepper_worse(p, tolerance, t1, y1, states_of(it, y1, d, u), states);
+    return ct_stepper_worse(p, tolerance, t1, y1, ct_iteration_states(it, y1, d, u), states);
 }
 
 double ct_iteration_amplified(struct ct_iteration *it, const struct ct_problem *p,
                               const struct ct_tolerance *tolerance, double t1, const double *y1,
                               const double *d, const double *u)
 {
-    return p->amplified_error(p->user, t1, y1, states_of(it, y1, d, u), tolerance);
+    return p->amplified_error(p->user, t1, y1, ct_iteration_states(it, y1, d, u), tolerance);
 }
 
 void ct_iteration_start(struct ct_iteration *it)

@@ -91,6 +91,12 @@ static double output_error(void *user, double t, const double *y, const double *
                              r->method->is_implicit);
 }
 
+static double felt(void *user, double t, const double *y, const double *e)
+{
+    struct ct_run *r = user;
+    return ct_fidelity_felt(r->fidelity, ct_run_before(r, t), y, e);
+}
+
 static double amplified_error(void *user, double t, const double *y, const double *e,
                               const struct ct_tolerance *tolerance)
 {
@@ -472,13 +478,12 @@ static bool looks_at_steps(const struct ct_run *r)
     return r->o->progress || r->o->stiff_method || r->m->carried.nout;
 }
 
-// Speeds that are followed for themselves; NULL: all.
-static const bool *find_asked_speeds(struct ct_run *r)
+// Speeds and places that are followed for themselves; where nothing is told all are.
+static void find_asked(struct ct_run *r, struct ct_problem *p)
 {
     ct_machine_set(r->m, 0, r->y);
-    if (r->nroot)
-        return NULL;
-    return ct_fidelity_asked_speeds(r->arena, r->e);
+    if (!r->nroot)
+        ct_fidelity_find_asked(r->arena, r->e, &p->asked_speeds, &p->asked_places);
 }
 
 // Steps of the implicit method are held to this part of what is wanted.
@@ -524,11 +529,11 @@ bool ct_run_simulate(struct ct_run *r, const struct ct_run_options *o,
                            .nu = (int)r->m->nu,
                            .dae = o->method->is_implicit ? ct_dae_create(r->arena, r->s) : NULL,
                            .watched = watched,
-                           .asked_speeds = find_asked_speeds(r),
                            .accuracy = o->wanted,
                            .duration = o->duration,
                            .groups = ct_run_groups(r),
                            .output_error = r->fidelity ? output_error : NULL,
+                           .felt = r->fidelity ? felt : NULL,
                            .amplified_error = r->fidelity ? amplified_error : NULL,
                            .rhs = rhs,
                            .project = has_constraints(r) ? project : NULL,
@@ -543,6 +548,7 @@ bool ct_run_simulate(struct ct_run *r, const struct ct_run_options *o,
                            .root = ct_run_root,
                            .next_time_event = ct_run_next_event,
                            .event = ct_run_event};
+    find_asked(r, &p);
     const struct ct_integrate_options io
         = {.t1 = o->duration,
            .rtol = o->rtol,
