@@ -134,6 +134,8 @@ enum ct_more_outputs {
     CT_MORE_EFFORTS // efforts of motions, forces and torques of all joints
 };
 
+struct ct_recoil;
+
 /// Validity indicator of a linear beam.
 struct ct_validity {
     const char *beam;
@@ -142,8 +144,10 @@ struct ct_validity {
     double omega; // first bending frequency of the beam in its frame [rad/s]
     // What foretells the error of a linear beam  (swing.h)
     bool
-        foretells; // its base moves as time tells, nothing but bodies welded to it hangs on it or loads it
-    bool settles;      // it starts in equilibrium
+        foretells; // its base moves as time tells or can be foreseen, nothing but bodies welded to it hangs on it or loads it
+    const struct ct_recoil
+        *recoil;  // its base is not driven, but moves as can be foreseen (recoil.h); else NULL
+    bool settles; // it starts in equilibrium
     ct_ex3 carried[3]; // w, v, weight per mass of the base, axes of the beam
     ct_ex end[2];      // deflection of its end along y and z
     int nshape;
@@ -203,6 +207,9 @@ struct ct_equations {
     size_t nrow, row_cap;
     struct ct_mode *mode;
     size_t nmode, mode_cap;
+    ct_ex
+        *clock; // functions of t alone that loads and drivers have, each as large as it can be
+    size_t nclock, clock_cap;
     struct ct_memory *memory;
     size_t nmemory, memory_cap;
     struct ct_gap *gap; // of rows (gap.h)

@@ -347,7 +347,9 @@ static void plan(struct ct_lanes *s, int l)
         return;
     }
     const double stop = ct_lane_stop(lane), rest = stop - s->t[l];
-    const double h = ct_control_fit(rest, fmin(lane->control.h, lane->longest));
+    const double longest = fmin(fmin(lane->control.h, lane->longest), rest);
+    const double h = ct_control_fit(rest, ct_clock_fit(&lane->events.clock, s->method, s->t[l],
+                                                       longest, lane->tolerance.rtol));
     const bool is_landing = h >= rest;
     s->h[l] = lane->h = h;
     lane->end = is_landing ? stop : s->t[l] + h;

@@ -45,6 +45,7 @@ struct ct_machine {
         poised,   // of the same: x, x' by shape
         energy,   // kinetic, potential
         root,     // g of each mode
+        clock,    // functions of time alone
         memory,   // next values; of whole turns their present ones
         turns,    // of those: at a start, from the angles that are remembered
         momentum, // dT/du, and the same of `kept` where there is any

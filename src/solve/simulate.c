@@ -255,6 +255,7 @@ struct ct_run *ct_run_prepare(struct ct_ctx *ctx, struct ct_arena *a,
     r->scratch = CT_NEWN(a, double, 3 * r->m->nu + 2 * e->ndriver + r->m->nrow + 1);
     r->jump = ct_jump_create(a, r->m);
     r->value = CT_NEWN(a, double, e->nresult + 1);
+    r->largest = CT_NEWN(a, double, e->nresult + 1);
     find_needs(r);
     r->fidelity = ct_fidelity_create(a, r->m);
     return r;
@@ -343,6 +344,8 @@ static bool give_row(struct ct_run *r, double t, const double *y)
             return ct_error(r->ctx, (struct ct_mark){.file = r->model->file}, CT_E_SINGULAR,
                             "the output '%s' has no finite value at t = %.9g",
                             r->e->result[i].name, t);
+    for (size_t i = 0; i < r->e->nresult; i++)
+        r->largest[i] = fmax(r->largest[i], fabs(r->value[i]));
     keep_ledger(r, y);
     ct_run_watch_sample(r, t);
     r->ngiven++;
@@ -488,6 +491,12 @@ static void find_asked(struct ct_run *r, struct ct_problem *p)
 // Steps of the implicit method are held to this part of what is wanted.
 static const double held_to = 0.1;
 
+static double seen_step(void *user, double t, double h)
+{
+    const struct ct_run *r = user;
+    return ct_clock_fit(&r->clock, r->method, t, h, r->o->rtol);
+}
+
 bool ct_run_simulate(struct ct_run *r, const struct ct_run_options *o,
                      struct ct_run_report *report)
 {
@@ -505,6 +514,7 @@ bool ct_run_simulate(struct ct_run *r, const struct ct_run_options *o,
     *report = (struct ct_run_report){
         .method = o->method, .changed_at = NAN, .returned_at = NAN, .blunt = -1};
     report->final = CT_NEWN(r->arena, double, r->e->nresult + 1);
+    memset(r->largest, 0, r->e->nresult * sizeof *r->largest);
     ct_singular_start(r->singular);
     if (r->fidelity)
         ct_fidelity_start(r->fidelity);
@@ -515,6 +525,8 @@ bool ct_run_simulate(struct ct_run *r, const struct ct_run_options *o,
     r->report = report;
     r->nevent = ct_time_events(r->arena, r->m, o->method->order, 0, o->duration, &r->event);
     r->pending = ct_run_next_event(r, 0);
+    if (o->step == 0)
+        ct_clock_look(r->arena, r->m, o->duration, &r->clock);
     if (!ct_run_tables_reach(r, 0))
         return false;
     ct_modes_start(r->m, 0, r->y, r->dy);
@@ -538,6 +550,7 @@ bool ct_run_simulate(struct ct_run *r, const struct ct_run_options *o,
                            .project = has_constraints(r) ? project : NULL,
                            .accepted = accepted,
                            .longest_step = r->has_turns ? ct_run_longest_step : NULL,
+                           .seen_step = r->e->nclock ? seen_step : NULL,
                            .singular_in = r->m->nrow ? singular_in : NULL,
                            .set_crossing = set_crossing,
                            .crossed = crossed,
@@ -572,10 +585,8 @@ bool ct_run_simulate(struct ct_run *r, const struct ct_run_options *o,
     report->factorizations = r->s->factorizations + report->stats.factorizations;
     report->singular = r->singular;
     report->y = r->y;
-    if (r->fidelity)
-        report->blunt
-            = ct_fidelity_blunt(r->fidelity, ct_run_before(r, report->stats.last_time), r->y,
-                                held_to * o->wanted, &report->rounding);
+    if (ok)
+        report->blunt = ct_run_find_blunt(r, held_to * o->wanted, &report->rounding);
     report->energy_scale = r->energy_scale;
     if (r->energy_scale > 0)
         report->energy_drift /= r->energy_scale;
