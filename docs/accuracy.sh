@@ -224,7 +224,7 @@ rows() {
 }
 
 section_asked() {
-    rows R turns isosceles damped_chain
+    rows R turns isosceles damped_chain pulse
 }
 
 section_asked_beams() {

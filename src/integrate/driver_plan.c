@@ -120,6 +120,8 @@ void ct_driver_plan(const struct ct_driver *r, double stop, bool is_time, struct
         }
         wanted = ct_control_fit(r->singular_in - reach, wanted);
     }
+    if (r->p->seen_step && r->o->step == 0)
+        wanted = r->p->seen_step(r->p->user, r->t, ct_smaller(wanted, rest));
     s->h = r->o->step > 0 ? fit_fixed(rest, r->o->step) : ct_control_fit(rest, wanted);
     s->is_landing = s->h >= rest;
     s->t1 = s->is_landing ? stop : r->t + s->h;

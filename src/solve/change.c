@@ -15,7 +15,7 @@ static const double noticed = 0.01;
 static double followed_step(void *user)
 {
     const struct ct_run *r = user;
-    const double longest = r->e->nmemory ? ct_run_longest_step(user) : INFINITY;
+    const double longest = r->has_turns ? ct_run_longest_step(user) : INFINITY;
     const double fast = r->method->is_implicit ? 0 : r->stiffness->fast;
     return fast > 0 && r->felt > noticed
              ? fmin(longest, ct_stiffness_followed_step(r->method, fast, r->o->duration,

@@ -12,6 +12,7 @@
 #define CT_SOLVE_RUN_H
 
 #include "integrate/stiffness.h"
+#include "solve/clock.h"
 #include "solve/fidelity.h"
 #include "solve/mode.h"
 #include "solve/simulate.h"
@@ -35,6 +36,7 @@ struct ct_run {
     int *root_of; // state modes, in order
     int nroot;
     bool needs_lam, has_power; // needs_lam: the power does
+    bool has_turns;            // angles or rotations found from their last values
     bool has_lam_results;      // outputs or indicators depend on multipliers
     struct ct_jump *jump;
     struct ct_fidelity *fidelity; // of outputs; NULL: none is controlled
@@ -42,6 +44,7 @@ struct ct_run {
     struct ct_run_report *report;
     double energy0, energy_scale;
     struct ct_singular *singular;
+    struct ct_clock clock;
     double pending;            // time of the event ahead; INFINITY if there is none
     double turning, t_turning; // how fast followed angles turn [rad/s], and when that was
     bool started;
