@@ -37,17 +37,17 @@ struct ct_build *ct_build_create(struct ct_ctx *ctx, struct ct_arena *a,
                                  const bool *is_linear)
 {
     struct ct_build *b = CT_NEW(a, struct ct_build);
-    *b = (struct ct_build){.ctx = ctx,
-                           .arena = a,
-                           .model = m,
-                           .is_rigid = o->measure_all && !o->deformed && !starts_deformed(m),
-                           .keep_all = o->keep_all,
-                           .frees_beams
-                           = o->frees_beams || (o->like && o->like->build->frees_beams),
-                           .is_held = o->held,
-                           .has_gaps = o->gaps,
-                           .like = o->like,
-                           .is_linear = is_linear};
+    *b = (struct ct_build){
+        .ctx = ctx,
+        .arena = a,
+        .model = m,
+        .is_rigid = o->rigid || (o->measure_all && !o->deformed && !starts_deformed(m)),
+        .keep_all = o->keep_all,
+        .frees_beams = o->frees_beams || (o->like && o->like->build->frees_beams),
+        .is_held = o->held,
+        .has_gaps = o->gaps,
+        .like = o->like,
+        .is_linear = is_linear};
     b->eqs = CT_NEW(a, struct ct_equations);
     b->x = b->eqs->x = ct_exs_clone(a, m->x);
     b->value = start_values(a, m);

@@ -213,7 +213,7 @@ bool ct_run_begins_implicit(struct ct_run *r, const struct ct_run_options *o)
 static double followed_step(void *user)
 {
     const struct ct_run *r = user;
-    const double longest = r->e->nmemory ? ct_run_longest_step(user) : INFINITY;
+    const double longest = r->has_turns ? ct_run_longest_step(user) : INFINITY;
     const double fast = r->method->is_implicit ? 0 : r->stiffness->fast;
     return fast > 0 ? fmin(longest, ct_stiffness_followed_step(r->method, fast, r->o->duration,
                                                                r->o->wanted))

@@ -6,6 +6,7 @@
 //     change.c    the choice of the method, when the motion turns stiff
 //     length.c    what is said of runs that take long
 //     ending.c    and of those that end before their time
+//     blunt.c     outputs that have few digits
 //     beam_watch.c  beams that leave what their models hold for
 #ifndef CT_SOLVE_RUN_H
 #define CT_SOLVE_RUN_H
@@ -28,12 +29,14 @@ struct ct_run {
     struct ct_embed *s;
     size_t ny;
     double *y, *dy, *stage, *scratch, *value, *next;
-    double *sign;  // of each state mode's root function at the last event
-    double *event; // times
+    double *largest; // of each result, over the samples
+    double *sign;    // of each state mode's root function at the last event
+    double *event;   // times
     size_t nevent;
     int *root_of; // state modes, in order
     int nroot;
     bool needs_lam, has_power; // needs_lam: the power does
+    bool has_turns;            // angles or rotations found from their last values
     bool has_lam_results;      // outputs or indicators depend on multipliers
     struct ct_jump *jump;
     struct ct_fidelity *fidelity; // of outputs; NULL: none is controlled
@@ -123,6 +126,9 @@ void ct_run_foresee(void *user, double t, const double *y, double step, double t
 extern const double ct_run_many_steps;
 /// Notes on what holds a run up that would take more steps than are allowed.
 void ct_run_explain_count(struct ct_run *r);
+/// At the end of a run, which may change `value`: the result with the fewest digits, one rounding of states is *part (out) of its
+/// largest value at samples; -1 where steps can be held to `wanted` of all.
+int ct_run_find_blunt(struct ct_run *r, double wanted, double *part);
 /// Notes on why steps have ended, after its error.
 void ct_run_explain_end(struct ct_run *r);
 /// From start to end, with another method from where that pays.
