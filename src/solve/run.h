@@ -60,9 +60,12 @@ struct ct_run {
     double explicit_pace;             // what was gained before
     double spent;                     // by the last trial
     bool is_suspect;                  // steps ended to think of another method
-    double t_before, last_event;      // times
-    size_t ngiven;                    // samples
-    double t_sample;                  // the last one
+    bool is_to_follow;                // or to hold them to the phase of vibrations
+    bool amplifies;                   // outputs do, at the start
+    double felt; // part of an output that vibrations make which an explicit method follows
+    double t_before, last_event; // times
+    size_t ngiven;               // samples
+    double t_sample;             // the last one
 };
 
 /// The time to evaluate at for t.
