@@ -163,6 +163,8 @@ void ct_follow_values(struct ct_build *b, struct ct_flexible *f);
 void ct_follow_extend(struct ct_exs *x, const struct ct_follow *s, ct_ex *v);
 /// Forces on them, handed to the others (force: by freedom; out: zero where one follows).
 void ct_follow_forces(struct ct_exs *x, const struct ct_follow *s, ct_ex *force);
+/// Products that this takes.
+size_t ct_follow_products(const struct ct_follow *s);
 /// Do stiffness and damping leave no force on a freedom, since it follows?
 bool ct_freedom_is_balanced(const struct ct_flexible *f, int freedom);
 /// Shapes of the freedoms that do not follow, each with the others of them held and those that follow in equilibrium, and

@@ -408,12 +408,55 @@ void ct_station_own_partials(struct ct_build *b, const struct ct_flexible *f,
     own_partials(b, f, s, slide, turn, true);
 }
 
+// Are slides of sections less work by forces that what follows hands on? These are summed for each section anew; sums freedom
+// by freedom go on from one section to the next.
+static bool is_handed(const struct ct_build *b, const struct ct_flexible *f)
+{
+    size_t nsection = 0, nproduct = 0;
+    for (size_t i = 0; i < b->nedge; i++)
+        nsection += b->edge[i].flexible == f;
+    for (int e = 0; f->follow && e < f->beam->nelement; e++)
+        for (int j = 2; j < CT_BENT_DOF; j++) {
+            int sign;
+            const struct ct_freedom *d = ct_dof_freedom(f, e, j, &sign);
+            if (d && ct_follow_number(f, (int)(d - f->freedom)) >= 0
+                && !ct_ex_is_zero(f->element[e].g[j]))
+                nproduct += (size_t)d->npart;
+        }
+    return f->follow && (nsection + 1) * ct_follow_products(f->follow) < nproduct;
+}
+
+// What the elements before do along the axis.
+static void chain_partials(struct ct_build *b, const struct ct_flexible *f, int element,
+                           ct_ex3 *slide)
+{
+    for (int e = 0; e < element; e++)
+        for (int j = 2; j < CT_BENT_DOF; j++)
+            add_partial(b, f, e, j, (ct_ex3){{f->element[e].g[j], CT_EX_ZERO, CT_EX_ZERO}},
+                        slide, false);
+}
+
+// The same as forces on freedoms, those that follow handed on from node to node.
+static void handed_partials(struct ct_build *b, const struct ct_flexible *f, int element,
+                            ct_ex3 *slide)
+{
+    const int n = NKIND * (f->beam->nelement + 1);
+    ct_ex *force = CT_NEWN(b->ctx->scratch, ct_ex, n);
+    for (int e = 0; e < element; e++)
+        for (int j = 2; j < CT_BENT_DOF; j++)
+            ct_dof_push(b, f, e, j, f->element[e].g[j], force);
+    ct_follow_forces(b->x, f->follow, force);
+    for (int i = 0; i < n; i++)
+        for (int p = 0; p < f->freedom[i].npart && !ct_ex_is_zero(force[i]); p++) {
+            ct_ex *sum = &slide[f->freedom[i].part[p].k].e[0];
+            *sum = ct_ex_add_product(b->x, *sum, f->freedom[i].part[p].coef, force[i]);
+        }
+}
+
 void ct_station_partials(struct ct_build *b, const struct ct_flexible *f,
                          const struct ct_station *s, ct_ex3 *slide, ct_ex3 *turn)
 {
     own_partials(b, f, s, slide, turn, false);
-    for (int e = 0; e < s->element && s->axial == CT_AXIAL_CHAIN; e++)
-        for (int j = 2; j < CT_BENT_DOF; j++)
-            add_partial(b, f, e, j, (ct_ex3){{f->element[e].g[j], CT_EX_ZERO, CT_EX_ZERO}},
-                        slide, false);
+    if (s->axial == CT_AXIAL_CHAIN)
+        (is_handed(b, f) ? handed_partials : chain_partials)(b, f, s->element, slide);
 }

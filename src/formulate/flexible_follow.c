@@ -168,3 +168,11 @@ void ct_follow_forces(struct ct_exs *x, const struct ct_follow *s, ct_ex *force)
         force[row->freedom] = CT_EX_ZERO;
     }
 }
+
+size_t ct_follow_products(const struct ct_follow *s)
+{
+    size_t n = 0;
+    for (int k = 0; k < s->n; k++)
+        n += (size_t)(2 * s->row[k].nbefore + s->row[k].nheld);
+    return n;
+}

@@ -33,10 +33,14 @@ struct ct_iteration {
     bool has_tangent, is_new; // `is_new`: evaluated in this step
     bool is_worn;             // multipliers ask for other derivatives
     double *M, *C, *K, *J, *D;
-    double *S, *X, *W;      // the matrix is S + x X + (y or z) W  (n x n)
-    double c, e;            // of the factors; 0: none
-    double *G;              // (n x n), and of the complex system
-    double _Complex *Gc, z; // z: one over its c
+    double *S, *X, *W; // the matrix is S + x X + (y or z) W  (n x n)
+    double c, e;       // of the factors; 0: none
+    double by_r, by_v; // -1/e, -1/c
+    int rows;  // between columns of what follows: inverses of few rows, else n and factors
+    double *G; // (rows x n)
+    double
+        *Gi; // the inverse of the complex system: real parts, imaginary ones (rows x n, twice)
+    double _Complex *Gc, z; // or its factors (n x n); z: one over its c
     double one; // of a single equation: what its residual is multiplied by, in both systems
     double _Complex onec;
     int *pivot, *pivotc;
@@ -46,7 +50,7 @@ struct ct_iteration {
     double heavy;  // the largest mass, at the last of them
     bool *is_slow; // which speeds are slow by themselves, then  (nu)
     double *w;     // speeds of the derivatives (nu), for N; NULL: the method knows no N
-    double *b;     // (n)
+    double *b, *x; // (n, of complex parts 2 n), (rows, 2 rows)
     double _Complex *bc;
     double per_speed; // 1/nu; 0: there are none
     double *share;    // one over what changes of places and speeds are measured against  (2 nu)
@@ -113,8 +117,8 @@ static inline bool ct_iteration_factor(struct ct_iteration *it, double c, double
     return are_near || ct_iteration_factor_anew(it, c, e, s, stats);
 }
 
-/// A (n x n, out): the matrix for c and e.
-void ct_iteration_fill(const struct ct_iteration *it, double *A, double c, double e);
+/// A (n x n, columns lda apart, out): the matrix for c and e.
+void ct_iteration_fill(const struct ct_iteration *it, double *A, int lda, double c, double e);
 
 /// d (nu, out), eta (m, out; zero in the index-3 form), lam (m, out) from r (nu), phi, v (m).
 void ct_iteration_solve_system(struct ct_iteration *it, double *d, double *eta, double *lam,
@@ -146,8 +150,19 @@ static inline void ct_iteration_move(const struct ct_dae *dae, const double *q, 
 
 /// x (nu) += c N d, with `w`.
 void ct_iteration_turn(const struct ct_iteration *it, double *x, double c, const double *d);
-/// x (nu) += c J' eta.
-void ct_iteration_push(const struct ct_iteration *it, double *x, double c, const double *eta);
+/// out (nu) = x + c J' eta (m); out may be x. nu and m are those of the iteration, given so that a compiler may know them.
+static inline void ct_iteration_push(const struct ct_iteration *it, double *out,
+                                     const double *x, double c, const double *eta, const int nu,
+                                     const int m)
+{
+    const double *J = it->J;
+    for (int k = 0; k < nu; k++, J += m) {
+        double sum = 0;
+        for (int j = 0; j < m; j++)
+            sum += J[j] * eta[j];
+        out[k] = x[k] + c * sum;
+    }
+}
 
 static inline double ct_iteration_square(const double *x, const double *share, int n)
 {

@@ -108,6 +108,8 @@ struct ct_problem {
 
     /// Longest step from the last accepted state, or from where the start or an event has put it. May be NULL.
     double (*longest_step)(void *user);
+    /// The longest step from t, of at most h, that does not pass over what f does by time alone. May be NULL.
+    double (*seen_step)(void *user, double t, double h);
     /// Time from the last accepted state to the next singular position as far as it can be foreseen,
     /// else INFINITY. There f has a limit along the motion that cannot be computed: methods with step control
     /// cross it in one step without evaluating close to it, see crossing.h. *reach (out): the time before

@@ -49,7 +49,7 @@ static bool factor_slow(struct ct_iteration *it, double c)
 {
     if (it->slow > c / 2 && it->slow < 2 * c)
         return true;
-    ct_iteration_fill(it, it->H, c, c * c);
+    ct_iteration_fill(it, it->H, it->n, c, c * c);
     it->slow = ct_lu(it->H, it->pivot_slow, it->n, it->n) ? c : 0;
     for (int k = 0; k < it->nu && it->slow > 0; k++)
         it->is_slow[k] = remains(it, k) > 0.5;

@@ -98,6 +98,30 @@ char *text_of(struct ct_arena *a, const char *fmt, ...)
     return text;
 }
 
+char *coupler_text(struct ct_arena *a, int n, const char *keys, const char *bodies,
+                   const char *joints)
+{
+    return text_of(
+        a,
+        "cotree: 1\ngravity: [0, 0, -9.81]\nbodies:\n  ground: {points: {foot: [0.4, 0.15, "
+        "0]}}\n"
+        "  crank: {mass: 0.3, inertia: [1e-4, 3e-4, 3e-4], com: [0.05, 0, 0], points: {pin: "
+        "[0.1, 0, 0.02]}}\n"
+        "  rocker: {mass: 0.5, inertia: [4e-4, 4e-3, 4e-3], com: [0, 0, 0.15], points: {pin: "
+        "[0, 0, 0.25]}}\n"
+        "  rod: {type: beam, length: 0.42, elements: %d, density: 2700, E: 7e10, nu: 0.346, "
+        "area: 1e-4, J: 2e-9, Iy: 1e-9, Iz: 2e-9, formulation: foreshortening, "
+        "deformation: [bending-y, bending-z], points: {mid: 0.14, tip: length}, %s}\n%s"
+        "joints:\n"
+        "  main: {type: revolute, from: ground, to: crank, axis: z, initial: {q: 0.5, u: 10}}\n"
+        "  swing: {type: revolute, from: ground.foot, to: rocker, axis: y, initial: {q: 0.2, "
+        "guess: true}}\n"
+        "  big_end: {type: spherical, from: crank.pin, to: rod, initial: {rotate: [[z, 0.2], "
+        "[y, -0.5]], guess: true}}\n"
+        "  small_end: {type: spherical, from: rod.tip, to: rocker.pin}\n%s",
+        n, keys, bodies, joints);
+}
+
 // ---- systems ------------------------------------------------------------------------------------------------
 
 static void start(struct system *s, const char *name)

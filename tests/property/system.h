@@ -116,5 +116,9 @@ bool same(const char *system, const char *what, const double *got, const double 
           double tol);
 
 char *text_of(struct ct_arena *a, const char *fmt, ...) __attribute__((format(printf, 2, 3)));
+/// A four-bar in space, two cranks about axes at right angles: its coupler, the beam `rod` of n elements that bends in both planes, hangs
+/// on two balls. keys: more of the beam; bodies, joints: more lines.
+char *coupler_text(struct ct_arena *a, int n, const char *keys, const char *bodies,
+                   const char *joints);
 
 #endif
