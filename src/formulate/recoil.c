@@ -22,6 +22,7 @@ enum {
 
 struct ct_recoil {
     int nq, nu, nshape, nmode, nentry;
+    bool is_free;               // its base moves by more than time
     const struct ct_tape *tape; // M, Q, q', base, V' with u' = 0, B (6 x nu), g of the modes
     int nout;
     int row[MOST * (MOST + 1) / 2], column[MOST * (MOST + 1) / 2]; // of M
@@ -170,7 +171,11 @@ const struct ct_recoil *ct_recoil_create(struct ct_build *b, const struct ct_fle
         push(&o, e->Q[i]);
     for (size_t i = 0; i < e->nq; i++)
         push(&o, e->q[i].rate);
+    const int base = o.n;
     push_base(r, ct_flexible_of(r, f->body), &o);
+    for (int k = 0; k < BASE; k++)
+        p->is_free
+            |= (ct_ex_kinds(r->x, o.e[base + k]) & (1u << CT_SYM_Q | 1u << CT_SYM_U)) != 0;
     p->nmode = (int)e->nmode;
     for (size_t i = 0; i < e->nmode; i++)
         push(&o, e->mode[i].g);
@@ -190,6 +195,11 @@ const struct ct_recoil *ct_recoil_create(struct ct_build *b, const struct ct_fle
         p->mode_op[i] = e->mode[i].op;
     }
     return p;
+}
+
+bool ct_recoil_is_free(const struct ct_recoil *p)
+{
+    return p->is_free;
 }
 
 struct ct_recoil_run *ct_recoil_run_create(struct ct_arena *a, const struct ct_recoil *p)

@@ -23,6 +23,8 @@ struct ct_recoil_run;
 /// NULL where it does not apply: loops, more speeds, drivers whose rates can jump, or events by the state.
 const struct ct_recoil *ct_recoil_create(struct ct_build *b, const struct ct_flexible *f,
                                          const struct ct_validity *v);
+/// Does the base move by more than time, as trees through joints see it?
+bool ct_recoil_is_free(const struct ct_recoil *p);
 struct ct_recoil_run *ct_recoil_run_create(struct ct_arena *a, const struct ct_recoil *p);
 /// Set base and shapes to their start, x, x' of s as given.
 void ct_recoil_begin(struct ct_recoil_run *r, struct ct_swings *s);

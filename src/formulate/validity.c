@@ -247,7 +247,8 @@ static bool is_better_linear(const struct prospect *p)
     return p->eta <= CT_VALIDITY_LIMIT && (is_near || is_nearer);
 }
 
-static bool stays_linear(struct ct_build *b, struct ct_flexible *f)
+// *is_driven becomes false where other trees may show that time alone moves the base.
+static bool stays_linear(struct ct_build *b, struct ct_flexible *f, bool *is_driven)
 {
     struct ct_validity v;
     struct prospect p;
@@ -259,6 +260,7 @@ static bool stays_linear(struct ct_build *b, struct ct_flexible *f)
         f->why = "automatic: it does not bend";
         return true;
     }
+    *is_driven &= v.foretells && (!v.recoil || ct_recoil_is_free(v.recoil));
     f->why = look_ahead(b, &v, &p);
     if (f->why)
         return false;
@@ -270,16 +272,17 @@ static bool stays_linear(struct ct_build *b, struct ct_flexible *f)
     return !v.recoil && is_better_linear(&p);
 }
 
-const bool *ct_validity_choose(struct ct_build *b)
+const bool *ct_validity_choose(struct ct_build *b, bool *is_driven)
 {
     bool *linear = NULL;
+    *is_driven = true;
     for (size_t i = 0; i < b->nflexible; i++) {
         struct ct_flexible *f = &b->flexible[i];
         if (f->beam->formulation != CT_BEAM_AUTO || !f->nelastic)
             continue;
         if (!linear)
             linear = CT_NEWN(b->arena, bool, b->model->nbody);
-        linear[f->body] = stays_linear(b, f);
+        linear[f->body] = stays_linear(b, f, is_driven);
     }
     return linear;
 }

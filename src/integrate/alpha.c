@@ -254,9 +254,11 @@ static enum ct_eval correct(struct state *s, double t1, const double *y,
     if (e != CT_EVAL_OK)
         return e;
     ct_iteration_solve(s->it, s->dd, s->eta, s->dlam, s->r, s->phi, s->v);
-    ct_stepper_copy(s->du, s->dd, dae->nu);
     if (m)
-        ct_iteration_push(s->it, s->du, -1, s->eta); // eta moves places alone
+        ct_iteration_push(s->it, s->du, s->dd, -1, s->eta, dae->nu,
+                          m); // eta moves places alone
+    else
+        ct_stepper_copy(s->du, s->dd, dae->nu);
     const double size = add_corrections(s);
     for (int i = 0; i < m; i++)
         s->end.lam[i] += s->dlam[i];

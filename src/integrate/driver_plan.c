@@ -52,8 +52,8 @@ double ct_driver_next_stop(const struct ct_driver *r, bool *is_time)
 // The fewest even steps up to the stop that are not longer than the one asked for.
 static double fit_fixed(double rest, double step)
 {
-    // a stop that is a whole number of steps away but for its rounding must not cost one more
-    const double rounding = 1e-9;
+    // a stop that is a whole number of steps away but for rounding, that of t in each step before added up, must not cost one more
+    const double rounding = 1e-6;
     return rest / fmax(1, ceil(rest / step - rounding));
 }
 

@@ -433,17 +433,6 @@ void ct_iteration_solve_complex(struct ct_iteration *it, double *d, double *eta,
     }
 }
 
-void ct_iteration_push(const struct ct_iteration *it, double *x, double c, const double *eta)
-{
-    const double *J = it->J;
-    for (int k = 0; k < it->nu; k++, J += it->m) {
-        double sum = 0;
-        for (int j = 0; j < it->m; j++)
-            sum += J[j] * eta[j];
-        x[k] += c * sum;
-    }
-}
-
 // ---- convergence ------------------------------------------------------------------------------------
 
 const double *ct_iteration_states(struct ct_iteration *it, const double *y1, const double *d,

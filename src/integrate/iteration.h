@@ -150,8 +150,19 @@ static inline void ct_iteration_move(const struct ct_dae *dae, const double *q, 
 
 /// x (nu) += c N d, with `w`.
 void ct_iteration_turn(const struct ct_iteration *it, double *x, double c, const double *d);
-/// x (nu) += c J' eta.
-void ct_iteration_push(const struct ct_iteration *it, double *x, double c, const double *eta);
+/// out (nu) = x + c J' eta (m); out may be x. nu and m are those of the iteration, given so that a compiler may know them.
+static inline void ct_iteration_push(const struct ct_iteration *it, double *out,
+                                     const double *x, double c, const double *eta, const int nu,
+                                     const int m)
+{
+    const double *J = it->J;
+    for (int k = 0; k < nu; k++, J += m) {
+        double sum = 0;
+        for (int j = 0; j < m; j++)
+            sum += J[j] * eta[j];
+        out[k] = x[k] + c * sum;
+    }
+}
 
 static inline double ct_iteration_square(const double *x, const double *share, int n)
 {

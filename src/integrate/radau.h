@@ -69,7 +69,7 @@ static inline void ct_radau_solve(struct ct_radau *s, const int nu, const int m)
     for (int i = 0; i < m; i++)
         eta[i] *= c;
     if (m)
-        ct_iteration_push(it, u, -1, eta);
+        ct_iteration_push(it, u, u, -1, eta, nu, m);
 }
 
 /// The error of the step in the states, into *err and s->change, tol eased.

@@ -191,7 +191,7 @@ static enum ct_eval find_residuals(struct ct_radau *s, double t, const double *y
         for (int k = 0; k < nu; k++)
             F[k] -= rate[k];
         if (m)
-            ct_iteration_push(s->it, F, -1, z->eta + i * m);
+            ct_iteration_push(s->it, F, F, -1, z->eta + i * m, nu, m);
         ct_radau_weigh(s->u_dot, s->slope[i], z->u, nu);
         stats->evaluations++;
         const enum ct_eval e
@@ -243,7 +243,7 @@ static inline void solve_complex(struct ct_radau *s, const int nu, const int m)
         if (!s->dae->is_plain)
             ct_iteration_turn(it, u + i * nu, -1, d + i * nu);
         if (m)
-            ct_iteration_push(it, u + i * nu, -1, eta + i * m);
+            ct_iteration_push(it, u + i * nu, u + i * nu, -1, eta + i * m, nu, m);
     }
 }
 

@@ -110,16 +110,17 @@ static bool is_one_enough(const struct ct_embed *s, const double *y)
 {
     const struct ct_machine *m = s->m;
     const struct ct_form *f = s->form[0];
-    return f->shift && s->rank == (int)m->nrow && s->nearness >= ct_small_pivot
-        && ct_is_rest_lost(nearness(s), sum_of_sizes(f->dq, m->nu),
-                           sum_of_sizes(f->du, m->nu) + sum_of_sizes(f->shift, m->nu),
+    if (!f->shift || s->rank < (int)m->nrow || s->nearness < ct_small_pivot)
+        return false;
+    const double near = nearness(s), dq = sum_of_sizes(f->dq, m->nu);
+    return ct_is_rest_lost(near, dq, 0, 0) // most often it is the places that are too far
+        && ct_is_rest_lost(near, dq, sum_of_sizes(f->du, m->nu) + sum_of_sizes(f->shift, m->nu),
                            ct_vector_size(y + m->nq, m->nu));
 }
 
 static void add_speeds(const struct ct_embed *s, double *y, const double *du)
 {
-    for (size_t k = 0; k < s->m->nu; k++)
-        y[s->m->nq + k] += du[k];
+    ct_vector_add(y + s->m->nq, 1, du, s->m->nu);
 }
 
 // Places and, where it is known what they are there, speeds.
