@@ -76,11 +76,13 @@ static enum ct_ending measure(struct ct_accuracy *a, const struct ct_setting *s,
     return ending;
 }
 
-// Powers of ten from loose to tight.
-static void choose_powers(const struct ct_method *m, int *first, int *last)
+// Powers of ten from loose to tight. The one that is chosen automatically begins explicit.
+static void choose_powers(const char *name, int *first, int *last)
 {
-    *first = m->is_implicit && m->order < 3 ? 2 : 4;
-    *last = !m->is_implicit ? 11 : m->order < 3 ? 7 : 9;
+    const struct ct_method *m = ct_method_find(name);
+    const bool is_implicit = m && m->is_implicit, is_low = is_implicit && m->order < 3;
+    *first = is_low ? 2 : 4;
+    *last = !is_implicit ? 11 : is_low ? 7 : 9;
 }
 
 // Of the ladder that begins at point[start]: tighter tolerances do not change the error of a beam any more, it is that of its
@@ -105,14 +107,14 @@ static double tolerance_at(double power)
     return strtod(text, NULL);
 }
 
-static bool climb_tolerances(struct ct_accuracy *a, const struct ct_method *m, double end)
+static bool climb_tolerances(struct ct_accuracy *a, const char *name, double end)
 {
     const int loosest_of_fine = 2, n = a->o->per_decade > 0 ? a->o->per_decade : 1;
     int first, last;
-    choose_powers(m, &first, &last);
+    choose_powers(name, &first, &last);
     if (a->o->per_decade > 0)
         first = loosest_of_fine;
-    struct ct_setting s = {.method = m->name, .tolerance = a->o->run.tolerance};
+    struct ct_setting s = {.method = name, .tolerance = a->o->run.tolerance};
     enum ct_ending ending = CT_RUN_DONE;
     if (s.tolerance > 0)
         return measure(a, &s, end) != CT_RUN_REFUSED;
@@ -136,7 +138,7 @@ static double readable(double v)
 
 // Halved again and again, from the spacing of samples on: steps end on them, so longer ones make no difference. From a step
 // that is asked for: that one alone, or as many as are asked for in a power of ten.
-static bool climb_steps(struct ct_accuracy *a, const struct ct_method *m, double end)
+static bool climb_steps(struct ct_accuracy *a, const char *name, double end)
 {
     const double spacing = a->duration / fmax(1, (double)a->nsample - 1);
     const double asked = a->o->run.step, per_decade = a->o->per_decade;
@@ -144,7 +146,7 @@ static bool climb_steps(struct ct_accuracy *a, const struct ct_method *m, double
         = asked > 0 ? asked : readable(fmin(spacing, a->duration / least_fixed_steps));
     const double ratio = asked > 0 && per_decade > 0 ? pow(10, -1 / per_decade) : 0.5;
     const int n = asked <= 0 ? most_steps_of_ladder : DECADES_OF_STEPS * (int)per_decade + 1;
-    struct ct_setting s = {.method = m->name};
+    struct ct_setting s = {.method = name};
     enum ct_ending ending = CT_RUN_DONE;
     for (int k = 0; k < n && (ending == CT_RUN_DONE || ending == CT_RUN_FAILED); k++) {
         const double step = first * pow(ratio, k);
@@ -154,44 +156,46 @@ static bool climb_steps(struct ct_accuracy *a, const struct ct_method *m, double
     return ending != CT_RUN_REFUSED;
 }
 
-static bool climb(struct ct_accuracy *a, const struct ct_method *m)
+static bool climb(struct ct_accuracy *a, const char *name)
 {
     const double end
         = ct_clock() + fmax(share_of_method, share_of_reference * a->reference_seconds);
     const bool is_asked = a->o->run.step > 0 && !(a->o->run.tolerance > 0);
-    const bool is_fixed = is_asked || strcmp(m->name, "rk4") == 0;
-    return (is_fixed ? climb_steps : climb_tolerances)(a, m, end)
+    const bool is_fixed = is_asked || strcmp(name, "rk4") == 0;
+    return (is_fixed ? climb_steps : climb_tolerances)(a, name, end)
         || (ct_ctx_hand_over(&a->own, &a->said), false);
 }
 
-// method (ct_nmethod, out): those asked for, once each, in the order of the table of methods.
-static bool choose_methods(struct ct_accuracy *a, const char *text,
-                           const struct ct_method **method, int *n)
+// method (ct_nmethod + 1, out): those asked for, once each, in the order of the table of methods, the automatic choice first. It
+// counts as one where it is listed with others.
+static bool choose_methods(struct ct_accuracy *a, const char *text, const char **method, int *n)
 {
-    static const char usual[] = "dopri5,dop853,rk4,radau5,generalized-alpha";
-    if (!text || strcmp(text, "auto") == 0)
+    static const char usual[] = "dopri5,dop853,rk4,radau5,generalized-alpha", chosen[] = "auto";
+    if (!text || strcmp(text, chosen) == 0)
         text = usual;
-    const char **names = CT_NEWN(a->own.scratch, const char *, ct_nmethod + 1);
-    bool *is_wanted = CT_NEWN(a->own.scratch, bool, ct_nmethod + 1), ok = true;
-    for (int i = 0; i < ct_nmethod; i++)
-        names[i] = ct_methods[i]->name;
+    const int nname = ct_nmethod + 1;
+    const char **names = CT_NEWN(a->own.scratch, const char *, nname);
+    bool *is_wanted = CT_NEWN(a->own.scratch, bool, nname + 1), ok = true;
+    names[0] = chosen;
+    for (int i = 1; i < nname; i++)
+        names[i] = ct_methods[i - 1]->name;
     for (const char *next; text; text = next) {
         const size_t length = strcspn(text, ",");
         next = text[length] ? text + length + 1 : NULL;
         const char *name = ct_arena_strndup(a->own.scratch, text, length);
         int i = 0;
-        while (i < ct_nmethod && strcmp(names[i], name) != 0)
+        while (i < nname && strcmp(names[i], name) != 0)
             i++;
-        if (i == ct_nmethod)
+        if (i == nname)
             ok = ct_error(&a->own, (struct ct_mark){0}, CT_E_USAGE,
                           "this version has no method '%s'%s", name,
-                          ct_suggest_or_list(a->own.scratch, name, names, (size_t)ct_nmethod));
+                          ct_suggest_or_list(a->own.scratch, name, names, (size_t)nname));
         is_wanted[i] = true;
     }
     *n = 0;
-    for (int i = 0; i < ct_nmethod; i++)
+    for (int i = 0; i < nname; i++)
         if (is_wanted[i])
-            method[(*n)++] = ct_methods[i];
+            method[(*n)++] = names[i];
     return ok;
 }
 
@@ -232,8 +236,7 @@ static bool learn_sizes(struct ct_accuracy *a)
 
 static bool study(struct ct_accuracy *a)
 {
-    const struct ct_method **method
-        = CT_NEWN(a->own.model, const struct ct_method *, ct_nmethod);
+    const char **method = CT_NEWN(a->own.model, const char *, ct_nmethod + 1);
     int n;
     if (!choose_methods(a, a->o->run.method, method, &n) || !learn_sizes(a))
         return false;

@@ -134,7 +134,7 @@ const struct cli_command cli_accuracy = {
       "cheapest\n"
       "that meets --error. Without --reference tight runs of two methods must agree.\n"
       "\n"
-      "--method is a list here, as in dopri5,dop853. --tolerance and --step, where they are\n"
+      "--method is a list here, as in auto,dopri5. --tolerance and --step, where they are\n"
       "given, are the only ones tried. Takes up to a minute, longer for large systems.\n"
       "\n"
       "--elements and --formulations try beams other than the file's. The reference has twice "

@@ -185,8 +185,14 @@ static bool check_mass_keys(const struct work *w)
 static bool check_theory(const struct work *w)
 {
     bool ok = excludes(w, "G", "nu");
-    if (get(w, "theory")->count != CT_BEAM_TIMOSHENKO)
+    if (get(w, "theory")->count != CT_BEAM_TIMOSHENKO) {
+        if (has(w, "shear_factor"))
+            ct_warning(w->r->ctx, get(w, "shear_factor")->mark, 0,
+                       "body '%s': 'shear_factor' changes nothing, as beams of Euler and "
+                       "Bernoulli do not shear; leave it out, or give 'theory: timoshenko'",
+                       w->self->name);
         return ok;
+    }
     const char *why = "Timoshenko's theory has the shear stiffness shear_factor*G*area";
     if (!has(w, "shear_factor"))
         ok = needs(w, "'shear_factor'", why);

@@ -172,9 +172,11 @@ struct ct_build {
     bool is_freed;    // for that alone the mechanism is not planar
     bool is_held;     // drivers stand still: time does not go on
     bool has_gaps;    // loops need not be closed (gap.h)
-    bool is_rigid;    // beams keep their shape: for assembly, where they are not deformed yet
-    ct_ex3 plane[3];  // e1, e2, n
-    ct_ex *layer;     // by node: its place along n [m]
+    struct ct_build *rigid; // the scene with rigid beams, once asked for (recoil.h)
+    bool has_no_rigid;      // that is of no use
+    bool is_rigid;   // beams keep their shape: for assembly, where they are not deformed yet
+    ct_ex3 plane[3]; // e1, e2, n
+    ct_ex *layer;    // by node: its place along n [m]
     ct_ex33 *
         upright; // by node: its axes -> ground's, joints at rest; none where both see the normal alike
 

@@ -112,6 +112,7 @@ static ct_ex measure_angle(struct ct_build *b, const struct ct_coordinate *c,
     const ct_ex angle = ct_ex_add(b->x, sum, turns);
     b->eqs->memory[r + 1].update = ct_ex_sub(b->x, followed, sum);
     b->eqs->memory[r].update = angle;
+    b->eqs->memory[r].is_sum = true;
     return angle;
 }
 

@@ -3,6 +3,7 @@
 
 #include "formulate/blocks.h"
 #include "formulate/carried.h"
+#include "formulate/correction.h"
 #include "formulate/kkt.h"
 
 #include <limits.h>
@@ -403,18 +404,6 @@ static void derive_accelerations(struct elimination *s, struct ct_closed *c)
     residual(s, c->better_a, c->better_lam, c->better_residual);
 }
 
-static void derive_projections(struct elimination *s, struct ct_closed *c)
-{
-    const size_t m = s->p->rank;
-    ct_ex *r = CT_NEWN(s->a, ct_ex, m + 1);
-    for (size_t i = 0; i < m; i++)
-        r[i] = ct_ex_neg(s->x, s->e->row[s->row[i]].phi);
-    ct_blocks_solve(&s->d, r, c->dq);
-    for (size_t i = 0; i < m; i++)
-        r[i] = ct_ex_neg(s->x, s->e->row[s->row[i]].v);
-    ct_blocks_solve(&s->d, r, c->du);
-}
-
 // By pattern, in the best of the orders, if it takes less than `most`; else NULL, or if it is singular.
 static const struct ct_kkt *predict(const struct ct_kkt_system *k, struct ct_arena *scratch,
                                     double most, enum ct_kkt_order *best)
@@ -561,7 +550,7 @@ struct ct_closed *ct_closed_derive(struct ct_arena *a, struct ct_exs *x,
     }
     struct ct_closed *c = CT_NEW(a, struct ct_closed);
     *c = (struct ct_closed){.rank = m, .nfree = p->nfree, .row = s.row};
-    ct_ex **const speeds[] = {&c->a, &c->better_a, &c->dq, &c->du};
+    ct_ex **const speeds[] = {&c->a, &c->better_a, &c->dq, &c->du, &c->shift};
     for (size_t i = 0; i < COUNT(speeds); i++)
         *speeds[i] = CT_NEWN(a, ct_ex, nu + 1);
     c->lam = CT_NEWN(a, ct_ex, m + 1);
@@ -569,7 +558,7 @@ struct ct_closed *ct_closed_derive(struct ct_arena *a, struct ct_exs *x,
     c->residual = CT_NEWN(a, ct_ex, nu + m + 1);
     c->better_residual = CT_NEWN(a, ct_ex, nu + m + 1);
     derive_accelerations(&s, c);
-    derive_projections(&s, c);
+    ct_correction_derive(a, x, e, s.row, &s.d, c->dq, c->du, c->shift);
     list_pivots(&s, c);
     return x->nnode > most ? NULL : c;
 }

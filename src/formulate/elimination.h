@@ -46,7 +46,7 @@ struct ct_closed {
     ct_ex *a, *lam;  // u' (nu), multipliers (rank)
     ct_ex *residual; // M u' - Q - J' lam, J u' + gam  (nu + rank)
     ct_ex *better_a, *better_lam, *better_residual; // after one step of refinement
-    ct_ex *dq, *du; // -J_d^-1 Phi, -J_d^-1 v (nu, zero in the independent places)
+    ct_ex *dq, *du, *shift; // d, e, f of (6.3b) (nu, zero in the independent places)
 };
 
 /// Accelerations by embedding, as above, or from [M J'; J 0] as one system (kkt.h), where it is shorter that of carried.h.

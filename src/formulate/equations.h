@@ -76,12 +76,19 @@ struct ct_memory {
     } kind;
     ct_ex33 R;        // QUATERNION, first of four: the rotation itself
     int joint, place; // ANGLE: the coordinate, to start from a given value; joint -1: none
+    bool is_sum;      // ANGLE: a sum of angles and whole turns, found without its last value
 };
 
 /// Does it change from step to step?
 static inline bool ct_memory_is_followed(const struct ct_memory *m)
 {
     return m->kind == CT_MEMORY_ANGLE || m->kind == CT_MEMORY_QUATERNION;
+}
+
+/// Is it found from its last value, so that it must not turn far in a step?
+static inline bool ct_memory_limits_steps(const struct ct_memory *m)
+{
+    return ct_memory_is_followed(m) && !m->is_sum;
 }
 
 struct ct_result {
@@ -127,6 +134,8 @@ enum ct_more_outputs {
     CT_MORE_EFFORTS // efforts of motions, forces and torques of all joints
 };
 
+struct ct_recoil;
+
 /// Validity indicator of a linear beam.
 struct ct_validity {
     const char *beam;
@@ -135,8 +144,10 @@ struct ct_validity {
     double omega; // first bending frequency of the beam in its frame [rad/s]
     // What foretells the error of a linear beam  (swing.h)
     bool
-        foretells; // its base moves as time tells, nothing but bodies welded to it hangs on it or loads it
-    bool settles;      // it starts in equilibrium
+        foretells; // its base moves as time tells or can be foreseen, nothing but bodies welded to it hangs on it or loads it
+    const struct ct_recoil
+        *recoil;  // its base is not driven, but moves as can be foreseen (recoil.h); else NULL
+    bool settles; // it starts in equilibrium
     ct_ex3 carried[3]; // w, v, weight per mass of the base, axes of the beam
     ct_ex end[2];      // deflection of its end along y and z
     int nshape;
@@ -196,6 +207,9 @@ struct ct_equations {
     size_t nrow, row_cap;
     struct ct_mode *mode;
     size_t nmode, mode_cap;
+    ct_ex
+        *clock; // functions of t alone that loads and drivers have, each as large as it can be
+    size_t nclock, clock_cap;
     struct ct_memory *memory;
     size_t nmemory, memory_cap;
     struct ct_gap *gap; // of rows (gap.h)

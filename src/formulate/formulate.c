@@ -37,17 +37,17 @@ struct ct_build *ct_build_create(struct ct_ctx *ctx, struct ct_arena *a,
                                  const bool *is_linear)
 {
     struct ct_build *b = CT_NEW(a, struct ct_build);
-    *b = (struct ct_build){.ctx = ctx,
-                           .arena = a,
-                           .model = m,
-                           .is_rigid = o->measure_all && !o->deformed && !starts_deformed(m),
-                           .keep_all = o->keep_all,
-                           .frees_beams
-                           = o->frees_beams || (o->like && o->like->build->frees_beams),
-                           .is_held = o->held,
-                           .has_gaps = o->gaps,
-                           .like = o->like,
-                           .is_linear = is_linear};
+    *b = (struct ct_build){
+        .ctx = ctx,
+        .arena = a,
+        .model = m,
+        .is_rigid = o->rigid || (o->measure_all && !o->deformed && !starts_deformed(m)),
+        .keep_all = o->keep_all,
+        .frees_beams = o->frees_beams || (o->like && o->like->build->frees_beams),
+        .is_held = o->held,
+        .has_gaps = o->gaps,
+        .like = o->like,
+        .is_linear = is_linear};
     b->eqs = CT_NEW(a, struct ct_equations);
     b->x = b->eqs->x = ct_exs_clone(a, m->x);
     b->value = start_values(a, m);
@@ -164,13 +164,38 @@ static void derive_dynamics(struct ct_build *b, const struct ct_formulate_option
         b->eqs->carried = ct_carried_derive(b);
 }
 
+// The choice must not depend on the trees: where these do not show what drives a beam, trees through joints are asked.
+static const bool *choose_linear(struct ct_ctx *ctx, struct ct_arena *a,
+                                 const struct ct_model *m, const struct ct_formulate_options *o,
+                                 struct ct_build *b)
+{
+    bool is_driven;
+    const bool *linear = ct_validity_choose(b, &is_driven);
+    if (!linear || is_driven || o->tree == CT_TREE_JOINTS)
+        return linear;
+    struct ct_formulate_options through = *o;
+    struct ct_tree_report unused = {0};
+    through.tree = CT_TREE_JOINTS;
+    struct ct_build *other = ct_build_create(ctx, a, m, &through, NULL);
+    if (!ct_trees_choose(&other, &through, &unused)
+        || !(other->is_derived || ct_build_derive(other, false)))
+        return NULL;
+    linear = ct_validity_choose(other, &is_driven);
+    for (size_t i = 0; i < b->nflexible; i++)
+        b->flexible[i].why = other->flexible[i].why;
+    return linear;
+}
+
 // Beams that leave their formulation to the program: what is known of their motion decides, and those that stay linear
 // make a new build on the same trees.
 static bool choose_beams(struct ct_ctx *ctx, struct ct_arena *a, const struct ct_model *m,
                          const struct ct_formulate_options *o, struct ct_build **b)
 {
     struct ct_build *old = *b;
-    const bool *linear = o->like || o->measure_all ? NULL : ct_validity_choose(old);
+    const size_t before = ctx->nerror;
+    const bool *linear = o->like || o->measure_all ? NULL : choose_linear(ctx, a, m, o, old);
+    if (ctx->nerror > before)
+        return false;
     bool any = false;
     for (size_t i = 0; linear && i < m->nbody; i++)
         any = any || linear[i];

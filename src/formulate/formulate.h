@@ -29,6 +29,7 @@ struct ct_formulate_options {
     // with measure_all: equations of motion that will start from the results. Coordinates of bodies that are not
     // among their unknowns are then left 0; NULL: all are measured
     const struct ct_equations *measured_for;
+    bool rigid;    // beams keep their shape
     bool deformed; // with measure_all: beams are not rigid there
     const bool
         *first; // by joint: of those a tree through joints has all it can have; NULL: none

@@ -46,21 +46,53 @@ static ct_ex hold_node(struct ct_build *b, enum ct_op op, ct_ex e, ct_ex p, ct_e
     }
 }
 
-ct_ex ct_mode_hold(struct ct_build *b, ct_ex e)
+static bool is_clock(const struct ct_build *b, ct_ex e)
+{
+    const unsigned kinds = ct_ex_kinds(b->x, e), time = 1u << CT_SYM_TIME;
+    return !b->in_outputs && !ct_ex_symbol(b->x, e) && kinds & time
+        && !(kinds & ~(time | 1u << CT_SYM_PARAM));
+}
+
+static void note_clock(struct ct_build *b, ct_ex e)
+{
+    struct ct_equations *s = b->eqs;
+    for (size_t i = 0; i < s->nclock; i++)
+        if (ct_ex_same(s->clock[i], e))
+            return;
+    CT_PUSH(b->arena, s->clock, s->nclock, s->clock_cap, e);
+}
+
+// is_within: e is part of a function of time alone.
+static ct_ex hold(struct ct_build *b, ct_ex e, bool is_within)
 {
     struct ct_exs *x = b->x;
     const struct ct_exnode n = *ct_ex_node(x, e);
     const int narg = ct_op_info[n.op].narg;
     if (narg == 0 || !changes_in_time(b, e))
         return e;
+    const bool is_first = !is_within && is_clock(b, e);
+    is_within |= is_first;
     // expressions of a model are small trees, so plain recursion serves
-    const ct_ex p = ct_mode_hold(b, (ct_ex){n.a});
-    if (n.op == CT_OP_TABLE)
-        return ct_ex_table(x, n.b, n.c, p);
-    const ct_ex q = narg > 1 ? ct_mode_hold(b, (ct_ex){n.b}) : CT_EX_ZERO;
-    if (n.op == CT_OP_IF)
-        return ct_ex_if(x, p, q, ct_mode_hold(b, (ct_ex){n.c}));
-    const ct_ex rebuilt
-        = narg == 1 ? ct_ex_fun(x, (enum ct_op)n.op, p) : ct_ex_fun2(x, (enum ct_op)n.op, p, q);
-    return hold_node(b, (enum ct_op)n.op, rebuilt, p, q);
+    const ct_ex p = hold(b, (ct_ex){n.a}, is_within);
+    ct_ex held;
+    if (n.op == CT_OP_TABLE) {
+        held = ct_ex_table(x, n.b, n.c, p);
+    } else {
+        const ct_ex q = narg > 1 ? hold(b, (ct_ex){n.b}, is_within) : CT_EX_ZERO;
+        if (n.op == CT_OP_IF)
+            held = ct_ex_if(x, p, q, hold(b, (ct_ex){n.c}, is_within));
+        else
+            held = hold_node(b, (enum ct_op)n.op,
+                             narg == 1 ? ct_ex_fun(x, (enum ct_op)n.op, p)
+                                       : ct_ex_fun2(x, (enum ct_op)n.op, p, q),
+                             p, q);
+    }
+    if (is_first)
+        note_clock(b, held);
+    return held;
+}
+
+ct_ex ct_mode_hold(struct ct_build *b, ct_ex e)
+{
+    return hold(b, e, false);
 }

@@ -5,7 +5,8 @@
 #include "formulate/build.h"
 
 /// e with every comparison, abs, sign, min and max whose arguments change in time replaced by a form
-/// that is smooth between events; the events are added to b->eqs->mode.
+/// that is smooth between events; the events are added to b->eqs->mode, and what
+/// depends on time alone, unless b->in_outputs, to b->eqs->clock.
 ct_ex ct_mode_hold(struct ct_build *b, ct_ex e);
 
 #endif

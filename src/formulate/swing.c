@@ -63,8 +63,7 @@ static void swing_far(double x[2], double h, double W, double c, double F, doubl
     }
 }
 
-// What drives x, in terms that do not jump with velocities: F less the push of the base's momentum.
-static double steady_force(const struct ct_swing *s, const double b[9])
+double ct_swing_steady_force(const struct ct_swing *s, const double b[9])
 {
     const bool is_z = s->is_z;
     const double *w = b, *v = b + 3;
@@ -73,22 +72,19 @@ static double steady_force(const struct ct_swing *s, const double b[9])
     return s->mass[0] * (weight - turned) - s->mass[1] * swept;
 }
 
-// The momentum that the base gives the shape.
-static double push(const struct ct_swing *s, const double b[9])
+double ct_swing_push(const struct ct_swing *s, const double V[6])
 {
-    return s->is_z ? s->mass[0] * b[5] - s->mass[1] * b[1]
-                   : s->mass[0] * b[4] + s->mass[1] * b[2];
+    return s->is_z ? s->mass[0] * V[5] - s->mass[1] * V[1]
+                   : s->mass[0] * V[4] + s->mass[1] * V[2];
 }
 
-// w^2 about axes across the displacement.
-static double softening(bool is_z, const double b[9])
+double ct_swing_softening(bool is_z, const double b[9])
 {
     const double w = b[is_z ? 1 : 2];
     return b[0] * b[0] + w * w;
 }
 
-// omega^2 eta, without the part of v_x'.
-static double stiffening(const struct ct_swing *s, const double b[9])
+double ct_swing_stiffening(const struct ct_swing *s, const double b[9])
 {
     const double *w = b, *v = b + 3;
     const double pull = w[1] * v[2] - w[2] * v[1] - b[6];
@@ -102,7 +98,7 @@ static void add_deflection(double off[2], const struct ct_swings *s, int model, 
         off[s->shape[i].is_z] += s->shape[i].place[place] * s->x[model][i][0];
 }
 
-static void note(struct ct_swings *s)
+void ct_swings_note(struct ct_swings *s)
 {
     for (int k = 0; k < CT_SWING_PLACES; k++) {
         double truth[2] = {0};
@@ -116,22 +112,17 @@ static void note(struct ct_swings *s)
     }
 }
 
-// w_x, w_x' and w_y w_z over a step of h, by which planes meet; of no time: w_x' stands for the jump of w_x.
-struct turn {
-    double rate, change, across;
-};
-
-static struct turn turn_of(const double from[9], const double to[9], double h)
+// Over a step of h; of no time: w_x' stands for the jump of w_x.
+static struct ct_swing_turn turn_of(const double from[9], const double to[9], double h)
 {
     const double jump = to[0] - from[0];
-    return h > 0 ? (struct turn){0.5 * (from[0] + to[0]), jump / h,
-                                 0.5 * (from[1] * from[2] + to[1] * to[2])}
-                 : (struct turn){.change = jump};
+    return h > 0 ? (struct ct_swing_turn){0.5 * (from[0] + to[0]), jump / h,
+                                          0.5 * (from[1] * from[2] + to[1] * to[2])}
+                 : (struct ct_swing_turn){.change = jump};
 }
 
-// What the other plane, at `beside`, does to shape i.
-static double join(const struct ct_swings *s, int i, const struct turn *w,
-                   const double beside[][2])
+double ct_swing_join(const struct ct_swings *s, int i, const struct ct_swing_turn *w,
+                     const double beside[][2])
 {
     const struct ct_swing *shape = &s->shape[i];
     const double sign = shape->is_z ? -1 : 1;
@@ -145,23 +136,27 @@ static double join(const struct ct_swings *s, int i, const struct turn *w,
 
 // beside: all shapes of each model
 static void move_shape(struct ct_swings *s, int i, double h, const double to[9],
-                       const struct turn *w, double beside[][CT_BENDING_SHAPES][2])
+                       const struct ct_swing_turn *w, double beside[][CT_BENDING_SHAPES][2])
 {
     const struct ct_swing *shape = &s->shape[i];
-    const double given = push(shape, s->base) - push(shape, to);
+    const double given = ct_swing_push(shape, s->base) - ct_swing_push(shape, to);
     double joined[CT_SWING_MODELS];
     for (int m = 0; m < CT_SWING_MODELS; m++)
-        joined[m] = join(s, i, w, (const double(*)[2])beside[m]);
+        joined[m] = ct_swing_join(s, i, w, (const double(*)[2])beside[m]);
     if (h <= 0) {
         for (int m = 0; m < CT_SWING_MODELS; m++)
             s->x[m][i][1] += given + joined[m];
         return;
     }
-    const double F = given / h + 0.5 * (steady_force(shape, s->base) + steady_force(shape, to)),
-                 W = shape->omega2
-                   - 0.5 * (softening(shape->is_z, s->base) + softening(shape->is_z, to)),
-                 more = 0.5 * (stiffening(shape, s->base) + stiffening(shape, to))
-                      - shape->omega2 * shape->axial * (to[3] - s->base[3]) / h;
+    const double F
+        = given / h
+        + 0.5 * (ct_swing_steady_force(shape, s->base) + ct_swing_steady_force(shape, to)),
+        W = shape->omega2
+          - 0.5
+                * (ct_swing_softening(shape->is_z, s->base)
+                   + ct_swing_softening(shape->is_z, to)),
+        more = 0.5 * (ct_swing_stiffening(shape, s->base) + ct_swing_stiffening(shape, to))
+             - shape->omega2 * shape->axial * (to[3] - s->base[3]) / h;
     for (int m = 0; m < CT_SWING_MODELS; m++)
         swing_far(s->x[m][i], h, m == CT_SWING_LINEAR ? W : W + more, shape->damping,
                   F + joined[m], m == CT_SWING_LINEAR ? 0 : shape->drawn,
@@ -171,7 +166,7 @@ static void move_shape(struct ct_swings *s, int i, double h, const double to[9],
 // Where planes meet, once with the other plane as it is, then with its mean over the step.
 static void move_shapes(struct ct_swings *s, double h, const double to[9])
 {
-    const struct turn w = turn_of(s->base, to, h);
+    const struct ct_swing_turn w = turn_of(s->base, to, h);
     const bool meet = w.rate != 0 || w.change != 0 || w.across != 0;
     double beside[CT_SWING_MODELS][CT_BENDING_SHAPES][2],
         start[CT_SWING_MODELS][CT_BENDING_SHAPES][2];
@@ -197,7 +192,7 @@ void ct_swings_follow(struct ct_swings *s, double t, const double base[9])
     s->has_begun = true;
     s->t = t;
     memcpy(s->base, base, sizeof s->base);
-    note(s);
+    ct_swings_note(s);
 }
 
 void ct_swings_regrip(struct ct_swings *s, const double base[9])
@@ -219,16 +214,16 @@ void ct_swings_settle(struct ct_swings *s)
 {
     for (int i = 0; i < s->n; i++) {
         const struct ct_swing *shape = &s->shape[i];
-        const double F = steady_force(shape, s->base),
-                     W = shape->omega2 - softening(shape->is_z, s->base),
-                     more = stiffening(shape, s->base);
+        const double F = ct_swing_steady_force(shape, s->base),
+                     W = shape->omega2 - ct_swing_softening(shape->is_z, s->base),
+                     more = ct_swing_stiffening(shape, s->base);
         s->x[CT_SWING_LINEAR][i][0] = F / W;
         s->x[CT_SWING_FORESHORTENED][i][0] = F / (W + more);
         s->x[CT_SWING_TRUE][i][0] = rest(W + more, shape->curved, F);
         for (int m = 0; m < CT_SWING_MODELS; m++)
             s->x[m][i][1] = 0;
     }
-    note(s);
+    ct_swings_note(s);
 }
 
 void ct_swings_compare(struct ct_swings *s, const double end[2])
@@ -241,8 +236,8 @@ void ct_swings_compare(struct ct_swings *s, const double end[2])
 
 double ct_swings_error(const struct ct_swings *s, enum ct_swing_model model)
 {
-    const double tolerated = 0.05; // nothing is known of the error of that part
-    return s->deflection > 0 && s->missed <= tolerated * s->bent
-             ? s->error[model] / s->deflection
-             : NAN;
+    const double tolerated
+        = 0.05; // nothing is known of the error of that part, which is no more than itself
+    const bool is_followed = s->missed <= fmax(tolerated * s->bent, s->error[CT_SWING_LINEAR]);
+    return s->deflection > 0 && is_followed ? s->error[model] / s->deflection : NAN;
 }

@@ -21,8 +21,8 @@
 //
 //     F_y += C (2 w_x z' + (w_x' - w_y w_z) z),    F_z -= C (2 w_x y' + (w_x' + w_y w_z) y)
 //
-// Left out: higher shapes, what shapes of a plane do to one another, and planes where they swing far. A base that is not driven would swing along: shapes
-// are others then.
+// Left out: higher shapes, what shapes of a plane do to one another, and planes where they swing far. A base that is not driven
+// swings along: recoil.h.
 #ifndef CT_FORMULATE_SWING_H
 #define CT_FORMULATE_SWING_H
 
@@ -62,6 +62,25 @@ struct ct_swings {
         missed; // of the end, by the linear beam itself; by more or less than the shapes say
 };
 
+/// w_x, w_x' and w_y w_z, by which planes meet.
+struct ct_swing_turn {
+    double rate, change, across;
+};
+
+/// What drives x, in terms that do not jump with velocities: F less the push of the base's momentum.
+double ct_swing_steady_force(const struct ct_swing *s, const double base[9]);
+/// The momentum that the base gives the shape; V: angular velocity, velocity.
+double ct_swing_push(const struct ct_swing *s, const double V[6]);
+/// w^2 about axes across the displacement.
+double ct_swing_softening(bool is_z, const double base[9]);
+/// omega^2 eta, without the part of v_x'.
+double ct_swing_stiffening(const struct ct_swing *s, const double base[9]);
+/// What the other plane, at `beside`, does to shape i.
+double ct_swing_join(const struct ct_swings *s, int i, const struct ct_swing_turn *w,
+                     const double beside[][2]);
+/// Keep what is largest, of errors and deflections.
+void ct_swings_note(struct ct_swings *s);
+
 /// Move on to the time t, where the base moves like that. A step of no time is a jump of its velocities.
 void ct_swings_follow(struct ct_swings *s, double t, const double base[9]);
 /// The base moves like that from now on, without a push on the beam.
@@ -70,7 +89,8 @@ void ct_swings_regrip(struct ct_swings *s, const double base[9]);
 void ct_swings_settle(struct ct_swings *s);
 /// The end of the linear beam itself is here now, along y and z.
 void ct_swings_compare(struct ct_swings *s, const double end[2]);
-/// Largest error of a model over the largest deflection; NAN if nothing deflects, or the linear beam did what these shapes do not.
+/// Largest error of a model over the largest deflection; NAN if nothing deflects, or the linear beam did what these shapes do not, and more of that
+/// than its error.
 double ct_swings_error(const struct ct_swings *s, enum ct_swing_model model);
 
 #endif

@@ -3,6 +3,7 @@
 #include "expr/tape.h"
 #include "formulate/bending_plane.h"
 #include "formulate/elastic.h"
+#include "formulate/recoil.h"
 #include "formulate/riders.h"
 
 #include <math.h>
@@ -46,9 +47,13 @@ bool ct_validity_derive(struct ct_build *b, const struct ct_flexible *f,
     out->end[0] = last->value[4];
     out->end[1] = last->value[8];
     ct_flexible_carried(b, f, out->carried);
-    out->foretells = is_of_time(b->x, out->eta) && !ct_riders_are_loaded(b, f);
+    const bool is_loaded = ct_riders_are_loaded(b, f);
+    out->foretells = is_of_time(b->x, out->eta) && !is_loaded;
     for (int i = 0; i < 9; i++)
         out->foretells = out->foretells && is_of_time(b->x, out->carried[i / 3].e[i % 3]);
+    if (!out->foretells && !is_loaded)
+        out->recoil = ct_recoil_create(b, f, out);
+    out->foretells |= out->recoil != NULL;
     return true;
 }
 
@@ -144,6 +149,25 @@ static bool swing_on(struct ahead *p, double t)
     return true;
 }
 
+// The same where the base recoils.
+static bool recoil_through(struct ct_build *b, const struct ct_validity *v, const double *start,
+                           int n, struct prospect *out)
+{
+    struct ct_swings s;
+    struct ct_recoil_run *r = ct_recoil_run_create(b->ctx->scratch, v->recoil);
+    const double end = b->model->simulation.duration;
+    ct_validity_begin(v, start, &s);
+    ct_recoil_begin(r, &s);
+    if (v->settles)
+        ct_swings_settle(&s);
+    for (int i = 1; i <= n; i++)
+        ct_recoil_follow(r, &s, end * i / n, end / n);
+    out->eta = ct_recoil_indicator(r);
+    for (int m = 0; m < CT_SWING_TRUE; m++)
+        out->error[m] = ct_swings_error(&s, m);
+    return !isnan(out->eta) && !isnan(s.deflection);
+}
+
 // From 0 to the end of the run, in n steps; false where modes are not known.
 static bool swing_through(struct ct_build *b, const struct ct_validity *v, int n,
                           struct prospect *out)
@@ -152,6 +176,8 @@ static bool swing_through(struct ct_build *b, const struct ct_validity *v, int n
     double start[2 * CT_BENDING_SHAPES] = {0};
     for (int i = 0; i < 2 * v->nshape; i++)
         start[i] = v->shape[i / 2].start[i % 2];
+    if (v->recoil)
+        return recoil_through(b, v, start, n, out);
     const double end = b->model->simulation.duration;
     prepare(&p, v);
     ct_validity_begin(v, start, &p.swings);
@@ -221,7 +247,8 @@ static bool is_better_linear(const struct prospect *p)
     return p->eta <= CT_VALIDITY_LIMIT && (is_near || is_nearer);
 }
 
-static bool stays_linear(struct ct_build *b, struct ct_flexible *f)
+// *is_driven becomes false where other trees may show that time alone moves the base.
+static bool stays_linear(struct ct_build *b, struct ct_flexible *f, bool *is_driven)
 {
     struct ct_validity v;
     struct prospect p;
@@ -233,24 +260,29 @@ static bool stays_linear(struct ct_build *b, struct ct_flexible *f)
         f->why = "automatic: it does not bend";
         return true;
     }
+    *is_driven &= v.foretells && (!v.recoil || ct_recoil_is_free(v.recoil));
     f->why = look_ahead(b, &v, &p);
     if (f->why)
         return false;
     f->why = ct_arena_printf(b->arena, "automatic: validity indicator %.3g, limit %.3g%s",
                              p.eta, CT_VALIDITY_LIMIT, foretold(b, &p));
-    return is_better_linear(&p);
+    if (v.recoil)
+        f->why = ct_arena_printf(b->arena, "automatic: its base is not driven; %s",
+                                 f->why + strlen("automatic: "));
+    return !v.recoil && is_better_linear(&p);
 }
 
-const bool *ct_validity_choose(struct ct_build *b)
+const bool *ct_validity_choose(struct ct_build *b, bool *is_driven)
 {
     bool *linear = NULL;
+    *is_driven = true;
     for (size_t i = 0; i < b->nflexible; i++) {
         struct ct_flexible *f = &b->flexible[i];
         if (f->beam->formulation != CT_BEAM_AUTO || !f->nelastic)
             continue;
         if (!linear)
             linear = CT_NEWN(b->arena, bool, b->model->nbody);
-        linear[f->body] = stays_linear(b, f);
+        linear[f->body] = stays_linear(b, f, is_driven);
     }
     return linear;
 }

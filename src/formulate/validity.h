@@ -25,8 +25,9 @@ double ct_validity_glance(const struct ct_validity *v);
 
 /// Beams that leave the choice to the program: does each stay below the limit all along, and its error, too? By body, in b->arena; reasons into
 /// the beams. NULL if there is no such beam. A beam whose motion the drivers do not prescribe, or that carries joints
-/// or loads, does not.
-const bool *ct_validity_choose(struct ct_build *b);
+/// or loads, does not. *is_driven: other trees would not
+/// show more of them to move as time alone tells.
+const bool *ct_validity_choose(struct ct_build *b, bool *is_driven);
 
 /// Indicators of all linear beams into b->eqs->validity, slopes of all beams into b->eqs->bend.
 void ct_validity_monitor(struct ct_build *b);

@@ -228,6 +228,21 @@ static inline double add_correction(struct state *s, const int nu)
     return ct_iteration_norm(s->it, s->dd, s->c->is_stabilised ? s->du : NULL, nu, 1);
 }
 
+// Few freedoms, or few more in loops, have code of their own.
+static double add_corrections(struct state *s)
+{
+    switch (s->dae->nu) {
+    case 1:
+        return add_correction(s, 1);
+    case 2:
+        return add_correction(s, 2);
+    case 3:
+        return add_correction(s, 3);
+    default:
+        return add_correction(s, s->dae->nu);
+    }
+}
+
 static enum ct_eval correct(struct state *s, double t1, const double *y,
                             enum ct_verdict *verdict, struct ct_integrate_stats *stats)
 {
@@ -239,10 +254,12 @@ static enum ct_eval correct(struct state *s, double t1, const double *y,
     if (e != CT_EVAL_OK)
         return e;
     ct_iteration_solve(s->it, s->dd, s->eta, s->dlam, s->r, s->phi, s->v);
-    ct_stepper_copy(s->du, s->dd, dae->nu);
     if (m)
-        ct_iteration_push(s->it, s->du, -1, s->eta); // eta moves places alone
-    const double size = dae->nu == 1 ? add_correction(s, 1) : add_correction(s, dae->nu);
+        ct_iteration_push(s->it, s->du, s->dd, -1, s->eta, dae->nu,
+                          m); // eta moves places alone
+    else
+        ct_stepper_copy(s->du, s->dd, dae->nu);
+    const double size = add_corrections(s);
     for (int i = 0; i < m; i++)
         s->end.lam[i] += s->dlam[i];
     if (m)

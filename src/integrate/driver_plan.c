@@ -52,8 +52,8 @@ double ct_driver_next_stop(const struct ct_driver *r, bool *is_time)
 // The fewest even steps up to the stop that are not longer than the one asked for.
 static double fit_fixed(double rest, double step)
 {
-    // a stop that is a whole number of steps away but for its rounding must not cost one more
-    const double rounding = 1e-9;
+    // a stop that is a whole number of steps away but for rounding, that of t in each step before added up, must not cost one more
+    const double rounding = 1e-6;
     return rest / fmax(1, ceil(rest / step - rounding));
 }
 
@@ -120,6 +120,8 @@ void ct_driver_plan(const struct ct_driver *r, double stop, bool is_time, struct
         }
         wanted = ct_control_fit(r->singular_in - reach, wanted);
     }
+    if (r->p->seen_step && r->o->step == 0)
+        wanted = r->p->seen_step(r->p->user, r->t, ct_smaller(wanted, rest));
     s->h = r->o->step > 0 ? fit_fixed(rest, r->o->step) : ct_control_fit(rest, wanted);
     s->is_landing = s->h >= rest;
     s->t1 = s->is_landing ? stop : r->t + s->h;

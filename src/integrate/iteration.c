@@ -2,6 +2,7 @@
 #include "integrate/iteration.h"
 #include "integrate/stepper.h"
 #include "numeric/dense.h"
+#include "numeric/inverse.h"
 
 #include <float.h>
 #include <math.h>
@@ -47,15 +48,19 @@ struct ct_iteration *ct_iteration_create(struct ct_arena *a, const struct ct_pro
         *square[i] = CT_NEWN(a, double, nu *nu + 1);
     it->J = CT_NEWN(a, double, m *nu + 1);
     it->D = CT_NEWN(a, double, m *nu + 1);
-    double **const large[] = {&it->S, &it->X, &it->W, &it->G};
+    double **const large[] = {&it->S, &it->X, &it->W};
     for (size_t i = 0; i < COUNT(large); i++)
         *large[i] = CT_NEWN(a, double, n *n + 1);
-    it->b = CT_NEWN(a, double, n + 1);
+    it->G = CT_NEWN(a, double, n *(n + 3) + 1);
+    it->b = CT_NEWN(a, double, 2 * n + 1);
+    it->x = CT_NEWN(a, double, 2 * (n + 3));
     it->pivot = CT_NEWN(a, int, n + 1);
     it->share = CT_NEWN(a, double, 2 * nu + 1);
     it->off = CT_NEWN(a, double, p->ny);
+    it->fast = CT_NEWN(a, double, 2 * nu + 1);
     if (is_complex) {
         it->w = CT_NEWN(a, double, nu + 1);
+        it->Gi = CT_NEWN(a, double, 2 * CT_MOST_INVERTED * CT_MOST_INVERTED);
         it->Gc = CT_NEWN(a, double _Complex, n *n + 1);
         it->bc = CT_NEWN(a, double _Complex, n + 1);
         it->pivotc = CT_NEWN(a, int, n + 1);
@@ -147,6 +152,7 @@ bool ct_iteration_begin(struct ct_iteration *it, const struct ct_tolerance *tole
     const long before = it->version;
     it->m = dae->rows(dae->user, &it->version);
     it->n = it->nu + (it->is_stabilised ? 2 : 1) * it->m;
+    it->rows = it->n <= CT_MOST_INVERTED ? ct_inverse_rows(it->n) : it->n;
     it->unfelt_place = rounding / 2;
     it->unfelt_speed = DBL_EPSILON / 2 * largest_of(y + dae->nq, it->nu);
     if (it->version == before)
@@ -262,65 +268,104 @@ enum ct_eval ct_iteration_refresh(struct ct_iteration *it, double t, const doubl
     return CT_EVAL_OK;
 }
 
-void ct_iteration_fill(const struct ct_iteration *it, double *A, double c, double e)
+void ct_iteration_fill(const struct ct_iteration *it, double *A, int lda, double c, double e)
 {
     const int n = it->n;
     const double x = c / e, y = 1 / e, z = 1 / c;
+    for (int j = 0; j < n; j++) {
+        const double *S = it->S + j * n, *X = it->X + j * n, *W = it->W + j * n;
+        double *column = A + j * lda;
+        for (int k = 0; k < n; k++)
+            column[k] = S[k] + x * X[k] + (k < it->nu ? y : z) * W[k];
+        for (int k = n; k < lda; k++)
+            column[k] = 0;
+    }
+}
+
+// A right-hand side of few equations is a product with the inverse: steps of a small mechanism are little else.
+static bool has_inverse(const struct ct_iteration *it)
+{
+    return it->n <= CT_MOST_INVERTED;
+}
+
+// The complex system with one over its c, w.
+static bool factor_complex(struct ct_iteration *it, double _Complex w)
+{
+    const int n = it->n, nu = it->nu;
+    const double _Complex ww = w * w;
+    double *re = it->Gi, *im = re + it->rows * n;
+    it->z = w;
     for (int j = 0; j < n; j++)
-        for (int i = j * n, k = 0; k < n; i++, k++)
-            A[i] = it->S[i] + x * it->X[i] + (k < it->nu ? y : z) * it->W[i];
+        for (int k = 0; k < (has_inverse(it) ? it->rows : n); k++) {
+            const int i = k + j * n, at = k + j * it->rows;
+            const double _Complex a
+                = k < n ? it->S[i] + w * it->X[i] + (k < nu ? ww : w) * it->W[i] : 0;
+            if (has_inverse(it)) {
+                re[at] = creal(a);
+                im[at] = cimag(a);
+            } else {
+                it->Gc[i] = a;
+            }
+        }
+    return has_inverse(it) ? ct_inverse_complex(it->Gi, it->pivotc, n)
+                           : ct_lu_complex(it->Gc, it->pivotc, n, n);
 }
 
 bool ct_iteration_factor_anew(struct ct_iteration *it, double c, double e, double _Complex s,
                               struct ct_integrate_stats *stats)
 {
-    const int n = it->n, split = it->nu;
-    ct_iteration_fill(it, it->G, c, e);
+    const int n = it->n;
+    ct_iteration_fill(it, it->G, it->rows, c, e);
     it->c = it->e = 0;
     stats->factorizations++;
-    if (!ct_lu(it->G, it->pivot, n, n))
+    if (!(has_inverse(it) ? ct_inverse(it->G, it->pivot, n) : ct_lu(it->G, it->pivot, n, n)))
         return false;
     if (s != 0) {
-        const double _Complex w = 1 / s, ww = w * w;
-        it->z = w;
-        for (int j = 0; j < n; j++)
-            for (int i = j * n, k = 0; k < n; i++, k++)
-                it->Gc[i] = it->S[i] + w * it->X[i] + (k < split ? ww : w) * it->W[i];
         stats->factorizations++;
-        if (!ct_lu_complex(it->Gc, it->pivotc, n, n))
+        if (!factor_complex(it, 1 / s))
             return false;
     }
     it->c = c;
     it->e = e;
+    it->by_r = -1 / e;
+    it->by_v = -1 / c;
     if (n == 1) {
-        it->one = -1 / (e * it->G[0]);
+        it->one = -it->G[0] / e;
         if (s != 0)
-            it->onec = -1 / (s * s * it->Gc[0]);
+            it->onec = -CMPLX(it->Gi[0], it->Gi[it->rows]) / (s * s);
     }
     return true;
+}
+
+// The solution for it->b.
+static const double *solve_real(struct ct_iteration *it)
+{
+    const int n = it->n;
+    if (has_inverse(it)) {
+        ct_inverse_apply(it->x, it->G, it->b, n);
+        return it->x;
+    }
+    ct_lu_solve(it->b, it->G, it->pivot, n, n, 1, n, false);
+    return it->b;
 }
 
 void ct_iteration_solve_system(struct ct_iteration *it, double *d, double *eta, double *lam,
                                const double *r, const double *phi, const double *v)
 {
     const int nu = it->nu, m = it->m, n = it->n;
-    double *b = m ? it->b : d;
-    const double y = -1 / it->e;
+    double *b = it->b;
+    const double y = it->by_r, z = it->by_v;
     for (int i = 0; i < nu; i++)
         b[i] = y * r[i];
-    if (m == 0) {
-        ct_lu_solve(d, it->G, it->pivot, n, n, 1, n, false);
-        return;
-    }
     for (int i = 0; i < m; i++)
         b[nu + i] = -phi[i];
     for (int i = 0; i < m && it->is_stabilised; i++)
-        b[nu + m + i] = -v[i] / it->c;
-    ct_lu_solve(b, it->G, it->pivot, n, n, 1, n, false);
-    ct_stepper_copy(d, b, nu);
+        b[nu + m + i] = z * v[i];
+    const double *x = solve_real(it);
+    ct_stepper_copy(d, x, nu);
     for (int i = 0; i < m; i++) {
-        eta[i] = it->is_stabilised ? b[nu + i] : 0;
-        lam[i] = it->e * b[n - m + i];
+        eta[i] = it->is_stabilised ? x[nu + i] : 0;
+        lam[i] = it->e * x[n - m + i];
     }
 }
 
@@ -331,50 +376,67 @@ static inline double _Complex product(double _Complex x, double _Complex y)
                  creal(x) * cimag(y) + cimag(x) * creal(y));
 }
 
+// The solution for it->b, real parts (n) before imaginary ones: those are returned, these stand *to_imaginary behind.
+static const double *solve_complex(struct ct_iteration *it, int *to_imaginary)
+{
+    const int n = it->n;
+    double *b = it->b;
+    if (has_inverse(it)) {
+        ct_inverse_apply_complex(it->x, it->Gi, b, n);
+        *to_imaginary = it->rows;
+        return it->x;
+    }
+    for (int i = 0; i < n; i++)
+        it->bc[i] = CMPLX(b[i], b[i + n]);
+    ct_lu_complex_solve(it->bc, it->Gc, it->pivotc, n, n, 1, n);
+    for (int i = 0; i < n; i++) {
+        b[i] = creal(it->bc[i]);
+        b[i + n] = cimag(it->bc[i]);
+    }
+    *to_imaginary = n;
+    return b;
+}
+
 void ct_iteration_solve_complex(struct ct_iteration *it, double *d, double *eta, double *lam,
                                 const double *r, const double *phi, const double *v)
 {
     const int nu = it->nu, m = it->m, n = it->n;
-    const double _Complex z = it->z, zz = product(z, z);
-    double _Complex *b = it->bc;
+    const double _Complex z = it->z, zz = product(z, z), ee = CMPLX(1, 0) / zz;
+    const double a = -creal(z), b = -cimag(z), aa = -creal(zz), bb = -cimag(zz);
+    double *re = it->b, *im = re + n;
+    int to_imaginary;
     if (n == 1) {
         const double _Complex x = product(it->onec, CMPLX(r[0], r[1]));
         d[0] = creal(x);
         d[1] = cimag(x);
         return;
     }
-    for (int i = 0; i < nu; i++)
-        b[i] = product(-zz, CMPLX(r[i], r[i + nu]));
-    for (int i = 0; i < m; i++) {
-        b[nu + i] = -CMPLX(phi[i], phi[i + m]);
-        b[nu + m + i] = product(-z, CMPLX(v[i], v[i + m]));
-    }
-    ct_lu_complex_solve(b, it->Gc, it->pivotc, n, n, 1, n);
     for (int i = 0; i < nu; i++) {
-        d[i] = creal(b[i]);
-        d[i + nu] = cimag(b[i]);
+        re[i] = aa * r[i] - bb * r[i + nu];
+        im[i] = aa * r[i + nu] + bb * r[i];
     }
     for (int i = 0; i < m; i++) {
-        const double _Complex x = b[nu + m + i] / zz;
-        eta[i] = creal(b[nu + i]);
-        eta[i + m] = cimag(b[nu + i]);
-        lam[i] = creal(x);
-        lam[i + m] = cimag(x);
+        re[nu + i] = -phi[i];
+        im[nu + i] = -phi[i + m];
+        re[nu + m + i] = a * v[i] - b * v[i + m];
+        im[nu + m + i] = a * v[i + m] + b * v[i];
     }
-}
-
-void ct_iteration_push(const struct ct_iteration *it, double *x, double c, const double *eta)
-{
-    for (int k = 0; k < it->nu && it->m; k++)
-        for (int j = 0; j < it->m; j++)
-            x[k] += c * it->J[j + it->m * k] * eta[j];
+    const double *x = solve_complex(it, &to_imaginary), *y = x + to_imaginary;
+    ct_stepper_copy(d, x, nu);
+    ct_stepper_copy(d + nu, y, nu);
+    for (int i = 0; i < m; i++) {
+        const double _Complex l = product(ee, CMPLX(x[nu + m + i], y[nu + m + i]));
+        eta[i] = x[nu + i];
+        eta[i + m] = y[nu + i];
+        lam[i] = creal(l);
+        lam[i + m] = cimag(l);
+    }
 }
 
 // ---- convergence ------------------------------------------------------------------------------------
 
-// Errors of motions and speeds as those of states, in it->off.
-static const double *states_of(struct ct_iteration *it, const double *y1, const double *d,
-                               const double *u)
+const double *ct_iteration_states(struct ct_iteration *it, const double *y1, const double *d,
+                                  const double *u)
 {
     const int nq = it->dae->nq;
     double *e = it->off;
@@ -393,14 +455,14 @@ double ct_iteration_error(struct ct_iteration *it, const struct ct_problem *p,
                           const struct ct_tolerance *tolerance, double t1, const double *y1,
                           const double *d, const double *u, double states)
 {
-    return ct_stepper_worse(p, tolerance, t1, y1, states_of(it, y1, d, u), states);
+    return ct_stepper_worse(p, tolerance, t1, y1, ct_iteration_states(it, y1, d, u), states);
 }
 
 double ct_iteration_amplified(struct ct_iteration *it, const struct ct_problem *p,
                               const struct ct_tolerance *tolerance, double t1, const double *y1,
                               const double *d, const double *u)
 {
-    return p->amplified_error(p->user, t1, y1, states_of(it, y1, d, u), tolerance);
+    return p->amplified_error(p->user, t1, y1, ct_iteration_states(it, y1, d, u), tolerance);
 }
 
 void ct_iteration_start(struct ct_iteration *it)

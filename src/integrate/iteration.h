@@ -33,23 +33,29 @@ struct ct_iteration {
     bool has_tangent, is_new; // `is_new`: evaluated in this step
     bool is_worn;             // multipliers ask for other derivatives
     double *M, *C, *K, *J, *D;
-    double *S, *X, *W;      // the matrix is S + x X + (y or z) W  (n x n)
-    double c, e;            // of the factors; 0: none
-    double *G;              // (n x n), and of the complex system
-    double _Complex *Gc, z; // z: one over its c
+    double *S, *X, *W; // the matrix is S + x X + (y or z) W  (n x n)
+    double c, e;       // of the factors; 0: none
+    double by_r, by_v; // -1/e, -1/c
+    int rows;  // between columns of what follows: inverses of few rows, else n and factors
+    double *G; // (rows x n)
+    double
+        *Gi; // the inverse of the complex system: real parts, imaginary ones (rows x n, twice)
+    double _Complex *Gc, z; // or its factors (n x n); z: one over its c
     double one; // of a single equation: what its residual is multiplied by, in both systems
     double _Complex onec;
     int *pivot, *pivotc;
     double *H, slow; // of the matrix for c = `slow` alone, to tell slow speeds; 0: not factored
     int *pivot_slow;
-    double energy; // twice the largest kinetic energy at looks so far
+    double energy; // twice the largest kinetic energy at looks so far, or that is to come
+    double heavy;  // the largest mass, at the last of them
     bool *is_slow; // which speeds are slow by themselves, then  (nu)
     double *w;     // speeds of the derivatives (nu), for N; NULL: the method knows no N
-    double *b;     // (n)
+    double *b, *x; // (n, of complex parts 2 n), (rows, 2 rows)
     double _Complex *bc;
     double per_speed; // 1/nu; 0: there are none
     double *share;    // one over what changes of places and speeds are measured against  (2 nu)
     double *off;      // an error of the states  (ny)
+    double *fast;     // one of places and speeds as vibrations count  (2 nu)
     // the run of corrections
     int count;
     double kappa, rounding; // a correction below: converged; below: not to be bettered
@@ -111,8 +117,8 @@ static inline bool ct_iteration_factor(struct ct_iteration *it, double c, double
     return are_near || ct_iteration_factor_anew(it, c, e, s, stats);
 }
 
-/// A (n x n, out): the matrix for c and e.
-void ct_iteration_fill(const struct ct_iteration *it, double *A, double c, double e);
+/// A (n x n, columns lda apart, out): the matrix for c and e.
+void ct_iteration_fill(const struct ct_iteration *it, double *A, int lda, double c, double e);
 
 /// d (nu, out), eta (m, out; zero in the index-3 form), lam (m, out) from r (nu), phi, v (m).
 void ct_iteration_solve_system(struct ct_iteration *it, double *d, double *eta, double *lam,
@@ -144,8 +150,19 @@ static inline void ct_iteration_move(const struct ct_dae *dae, const double *q, 
 
 /// x (nu) += c N d, with `w`.
 void ct_iteration_turn(const struct ct_iteration *it, double *x, double c, const double *d);
-/// x (nu) += c J' eta.
-void ct_iteration_push(const struct ct_iteration *it, double *x, double c, const double *eta);
+/// out (nu) = x + c J' eta (m); out may be x. nu and m are those of the iteration, given so that a compiler may know them.
+static inline void ct_iteration_push(const struct ct_iteration *it, double *out,
+                                     const double *x, double c, const double *eta, const int nu,
+                                     const int m)
+{
+    const double *J = it->J;
+    for (int k = 0; k < nu; k++, J += m) {
+        double sum = 0;
+        for (int j = 0; j < m; j++)
+            sum += J[j] * eta[j];
+        out[k] = x[k] + c * sum;
+    }
+}
 
 static inline double ct_iteration_square(const double *x, const double *share, int n)
 {
@@ -168,19 +185,37 @@ static inline double ct_iteration_norm(const struct ct_iteration *it, const doub
     return sqrt(sum * (it->per_speed / ((u ? 2 : 1) * k)));
 }
 
-/// The norm of errors d, u (nu) of places and speeds at y of which, but for the speeds that are asked for, only what is slow
-/// counts of speeds, (8.10), and of the rest its part of `ample` (nu). INFINITY where that cannot be told. `off` is overwritten.
-double ct_iteration_slow_norm(struct ct_iteration *it, const struct ct_tolerance *tolerance,
-                              const double *y, const bool *asked, const double *ample,
-                              const double *d, const double *u);
+/// The norm of errors d, u (nu) of places and speeds at y of which, but for those that p asks for, only what is slow counts of
+/// speeds, (8.10), and of the rest its part of `ample` (nu); *slow (out): the same with only what is slow of places. INFINITY where
+/// that cannot be told. `off` is overwritten.
+double ct_iteration_slow_norm(struct ct_iteration *it, const struct ct_problem *p,
+                              const struct ct_tolerance *tolerance, const double *y,
+                              const double *ample, const double *d, const double *u,
+                              double *slow);
 
-/// The energy that a step h of Radau, c = gamma/h of its real system, takes from undamped vibrations, whose error is d, u (nu), and
-/// the one that they have, `present` (out): over the largest kinetic energy at looks so far, of which that of speeds `small` is
-/// nothing. After ct_iteration_slow_norm; `off` is overwritten.  (8.13)
-double ct_iteration_lost(struct ct_iteration *it, double gamma, double h, double small,
-                         const double *speeds, const double *d, const double *u,
-                         double *present);
+/// `energy` is no less than that of these speeds, of which `small` is nothing. After ct_iteration_slow_norm, as the three below.
+void ct_iteration_note_energy(struct ct_iteration *it, double small, const double *speeds);
+/// Nor than that which the slow part of these accelerations gives on the way `small`, or in so much time if that is less: a motion
+/// that begins at rest has its energy to come. `off` is overwritten.
+void ct_iteration_foresee_energy(struct ct_iteration *it, double small, double time,
+                                 const double *accelerations);
 
+/// Undamped vibrations in a step.
+struct ct_vibration {
+    double lost, present; // twice the energy that the step takes, and that there is
+    double times;         // what they are of their error
+};
+/// In a step h of Radau, c = gamma/h of its real system, whose error is d, u (nu). `off` is overwritten.  (8.13)
+struct ct_vibration ct_iteration_vibration(struct ct_iteration *it, double gamma, double h,
+                                           const double *d, const double *u);
+/// What outputs at y would change by without them, over their largest values so far, those of errors d, u (nu). `off` is overwritten.
+double ct_iteration_felt(struct ct_iteration *it, const struct ct_problem *p,
+                         const struct ct_vibration *v, double t, const double *y,
+                         const double *d, const double *u);
+
+/// Errors d, u (nu) of places and speeds at y1 as one of the states (ny), in `off`.
+const double *ct_iteration_states(struct ct_iteration *it, const double *y1, const double *d,
+                                  const double *u);
 /// The error of a step that ends at y1, time t1: that of the states, `states`, or what the errors d, u (nu) of places and
 /// speeds mean for outputs, if that is more.  (8.6)
 double ct_iteration_error(struct ct_iteration *it, const struct ct_problem *p,

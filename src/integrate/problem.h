@@ -74,8 +74,9 @@ struct ct_problem {
     const struct ct_dae *dae;
     /// Per state: counts in error control (quadratures do not). NULL: all do.
     const bool *watched;
-    /// Per speed (nu): is wanted of the run itself, and not only what it leads to in places and outputs. NULL: all are.
-    const bool *asked_speeds;
+    /// Per speed (nu), and per coordinate that moves with it: is wanted of the run itself, and not only what it leads to in outputs.
+    /// NULL, both: all are.
+    const bool *asked_speeds, *asked_places;
     double accuracy,
         duration; // wanted of the outputs, relative, over the whole run; its length. 0: not known
     /// Rounding of f, per state (ny), where it is felt in the errors of steps as long as `noisy_step` or shorter. NULL: it is not.
@@ -88,6 +89,8 @@ struct ct_problem {
     /// tolerance; `states` is the norm of e. 0 where that is enough. NULL: it always is.
     double (*output_error)(void *user, double t, const double *y, const double *e,
                            const struct ct_tolerance *tolerance, double states);
+    /// The most that an output changes by for a change e (ny) of y, over its largest value so far. NULL: there is none but states.
+    double (*felt)(void *user, double t, const double *y, const double *e);
     /// The same of the outputs that amplify errors of states, which output_error leaves to this where it is not NULL; 0 where
     /// there are none.  (8.11)
     double (*amplified_error)(void *user, double t, const double *y, const double *e,
@@ -105,6 +108,8 @@ struct ct_problem {
 
     /// Longest step from the last accepted state, or from where the start or an event has put it. May be NULL.
     double (*longest_step)(void *user);
+    /// The longest step from t, of at most h, that does not pass over what f does by time alone. May be NULL.
+    double (*seen_step)(void *user, double t, double h);
     /// Time from the last accepted state to the next singular position as far as it can be foreseen,
     /// else INFINITY. There f has a limit along the motion that cannot be computed: methods with step control
     /// cross it in one step without evaluating close to it, see crossing.h. *reach (out): the time before

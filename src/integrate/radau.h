@@ -3,6 +3,7 @@
 #define CT_INTEGRATE_RADAU_H
 
 #include "integrate/iteration.h"
+#include "numeric/dense.h"
 
 enum { STAGES = 3 };
 
@@ -56,10 +57,9 @@ static inline void ct_radau_solve(struct ct_radau *s, const int nu, const int m)
     const double c = it->c, *F = s->F;
     double *d = s->change.d, *u = s->change.u, *eta = s->change.eta;
     for (int j = 0; j < nu; j++) {
-        for (int k = 0; k < nu; k++)
-            s->r[k] += (c * it->M[k + nu * j] + it->C[k + nu * j]) * F[j];
-        for (int i = 0; i < m; i++)
-            s->v[i] += it->J[i + m * j] * F[j];
+        ct_vector_add(s->r, c * F[j], it->M + nu * j, (size_t)nu);
+        ct_vector_add(s->r, F[j], it->C + nu * j, (size_t)nu);
+        ct_vector_add(s->v, F[j], it->J + m * j, (size_t)m);
     }
     ct_iteration_solve(it, d, eta, s->change.lam, s->r, s->phi, s->v);
     for (int k = 0; k < nu; k++)
@@ -69,7 +69,7 @@ static inline void ct_radau_solve(struct ct_radau *s, const int nu, const int m)
     for (int i = 0; i < m; i++)
         eta[i] *= c;
     if (m)
-        ct_iteration_push(it, u, -1, eta);
+        ct_iteration_push(it, u, u, -1, eta, nu, m);
 }
 
 /// The error of the step in the states, into *err and s->change, tol eased.

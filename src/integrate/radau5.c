@@ -191,7 +191,7 @@ static enum ct_eval find_residuals(struct ct_radau *s, double t, const double *y
         for (int k = 0; k < nu; k++)
             F[k] -= rate[k];
         if (m)
-            ct_iteration_push(s->it, F, -1, z->eta + i * m);
+            ct_iteration_push(s->it, F, F, -1, z->eta + i * m, nu, m);
         ct_radau_weigh(s->u_dot, s->slope[i], z->u, nu);
         stats->evaluations++;
         const enum ct_eval e
@@ -221,15 +221,13 @@ static inline void solve_complex(struct ct_radau *s, const int nu, const int m)
     double *r = s->r + nu, *v = s->v + m, *d = s->change.d + nu, *u = s->change.u + nu,
            *eta = s->change.eta + m;
     for (int j = 0; j < nu; j++) {
-        for (int k = 0; k < nu; k++) {
-            const double M = it->M[k + nu * j], aMC = a * M + it->C[k + nu * j];
-            r[k] += aMC * F[j] - b * M * G[j];
-            r[k + nu] += aMC * G[j] + b * M * F[j];
-        }
-        for (int i = 0; i < m; i++) {
-            v[i] += it->J[i + m * j] * F[j];
-            v[i + m] += it->J[i + m * j] * G[j];
-        }
+        const double *M = it->M + nu * j, *damping = it->C + nu * j, *J = it->J + m * j;
+        ct_vector_add(r, a * F[j] - b * G[j], M, (size_t)nu);
+        ct_vector_add(r, F[j], damping, (size_t)nu);
+        ct_vector_add(r + nu, a * G[j] + b * F[j], M, (size_t)nu);
+        ct_vector_add(r + nu, G[j], damping, (size_t)nu);
+        ct_vector_add(v, F[j], J, (size_t)m);
+        ct_vector_add(v + m, G[j], J, (size_t)m);
     }
     ct_iteration_solve_complex(it, d, eta, s->change.lam + m, r, s->phi + m, v);
     for (int k = 0; k < nu; k++) {
@@ -245,7 +243,7 @@ static inline void solve_complex(struct ct_radau *s, const int nu, const int m)
         if (!s->dae->is_plain)
             ct_iteration_turn(it, u + i * nu, -1, d + i * nu);
         if (m)
-            ct_iteration_push(it, u + i * nu, -1, eta + i * m);
+            ct_iteration_push(it, u + i * nu, u + i * nu, -1, eta + i * m, nu, m);
     }
 }
 
@@ -284,10 +282,12 @@ static enum ct_eval correct(struct ct_radau *s, double t, const double *y,
     const enum ct_eval e = find_residuals(s, t, y, stats);
     if (e != CT_EVAL_OK)
         return e;
-    // one and two freedoms without loops have code of their own: matrices are numbers there
-    const double size = m || nu > 2 ? change_stages(s, nu, m)
-                      : nu == 1     ? change_stages(s, 1, 0)
-                                    : change_stages(s, 2, 0);
+    // one and two freedoms without loops have code of their own: matrices are numbers there; and so has a planar loop of three
+    // coordinates
+    const double size = nu == 3 && m == 2 ? change_stages(s, 3, 2)
+                      : m || nu > 2       ? change_stages(s, nu, m)
+                      : nu == 1           ? change_stages(s, 1, 0)
+                                          : change_stages(s, 2, 0);
     *verdict = ct_iteration_judge(s->it, size, s->change.d, s->change.u, STAGES);
     return CT_EVAL_OK;
 }

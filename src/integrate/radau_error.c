@@ -8,7 +8,7 @@
 //     counted   s = (c^2 M + c C + K)^-1 c^2 M e_u,   c = 10 max (|u| + a)/(min(|q|, 1) + a)          (8.10)
 //
 // with the places e_d. Of a vibration of omega it leaves c^2/(c^2 + omega^2). The motion feels the energy of the rest, so that is
-// held to the root of the tolerance.
+// held to the root of the tolerance. Where outputs would not feel it if all of the vibration were lost, the same is done with places.
 //
 // Outputs that amplify errors of states, as forces of stiff springs do, (8.11), have errors of their own: at the end of the step, of
 // what the iteration has left, and between steps.
@@ -28,6 +28,8 @@ static const double growing = 0.13;
 
 // What is promised of outputs, in parts of what is wanted: vibrations of less energy may be lost altogether.
 static const double promised = 10;
+// Nor are they missed where all of them is this part of it in places, (8.10): the other half is for all other errors.
+static const double unfelt = 0.5;
 
 // Speeds are eased where less than this part of the error is left then; looked at every so many steps where they were not, and
 // where they are too large.
@@ -78,31 +80,43 @@ static void find_ample(struct ct_radau *s, const struct ct_problem *p, const dou
 
 // What the step takes from vibrations, as an error of order 3: 1 where as much in every step would be felt at the end of the run. A rate
 // of h^5.
-static double find_loss(struct ct_radau *s, const struct ct_problem *p, const double *u)
+static double find_loss(struct ct_radau *s, const struct ct_problem *p,
+                        const struct ct_vibration *v, const double *u, const double *u_dot)
 {
+    struct ct_iteration *it = s->it;
     const double order = 4. / 5;
     const double small = s->wanted.atol / s->wanted.rtol, felt = promised * p->accuracy;
-    double present;
-    const double lost = ct_iteration_lost(s->it, GAMMA, s->now.h, small, u, s->change.d,
-                                          s->change.u, &present);
-    return present > felt ? pow(lost / p->accuracy * p->duration / s->now.h, order) : 0;
+    ct_iteration_note_energy(it, small, u);
+    if (v->present > felt * it->energy)
+        ct_iteration_foresee_energy(it, small, p->duration, u_dot);
+    const double pace = v->lost / s->now.h * p->duration;
+    return v->present > felt * it->energy ? pow(pace / (p->accuracy * it->energy), order) : 0;
 }
 
-// Less of the error where it is one of speeds that vibrate.
-static void ease_speeds(struct ct_radau *s, const struct ct_problem *p,
-                        const struct ct_tolerance *tol, const double *y, double *err,
-                        double *loss)
+// Less of the error where it is one of vibrations: of speeds, and of places where outputs would not feel it if there were none.
+static void ease(struct ct_radau *s, const struct ct_problem *p, const struct ct_tolerance *tol,
+                 double t, const double *y, const double *dy, double *err, double *loss)
 {
+    const int nq = s->dae->nq;
+    const double *d = s->change.d, *u = s->change.u;
     if (!p->asked_speeds || (*err <= 1 && !s->is_eased && s->unlooked-- > 0))
         return;
-    find_ample(s, p, y + s->dae->nq);
-    const double slow = ct_iteration_slow_norm(s->it, tol, y, p->asked_speeds, s->ample,
-                                               s->change.d, s->change.u);
-    s->is_eased = slow < worth_it * *err;
+    find_ample(s, p, y + nq);
+    double slow, eased = ct_iteration_slow_norm(s->it, p, tol, y, s->ample, d, u, &slow);
+    if (isfinite(eased) && p->accuracy > 0) {
+        const struct ct_vibration v = ct_iteration_vibration(s->it, GAMMA, s->now.h, d, u);
+        if (loss)
+            *loss = find_loss(s, p, &v, y + nq, dy + nq);
+        if (slow < worth_it * eased
+            && ct_iteration_felt(s->it, p, &v, t, y, d, u) < unfelt * promised * p->accuracy)
+            eased = slow;
+    }
+    s->is_eased = eased < worth_it * *err;
     s->unlooked = STEPS_BETWEEN;
-    *err = ct_smaller(*err, slow);
-    if (loss && isfinite(slow) && p->accuracy > 0)
-        *loss = find_loss(s, p, y + s->dae->nq);
+    if (s->is_eased && eased > 1 && !s->it->is_new)
+        ct_iteration_forget(
+            s->it); // modes turn with the motion: those of before take vibrations for slow
+    *err = ct_smaller(*err, eased);
 }
 
 // Error of the step. Where it is too large at first, on a first step or after a refusal, it is filtered once more, which
@@ -115,7 +129,7 @@ enum ct_eval ct_radau_estimate(struct ct_radau *s, const struct ct_problem *p,
     const int nq = s->dae->nq, nu = s->dae->nu;
     double loss = 0;
     *err = filter(s, y + nq, dy + nq);
-    ease_speeds(s, p, tol, y, err, &loss);
+    ease(s, p, tol, t, y, dy, err, &loss);
     if (*err < 1 || loss > 1 || !(s->is_fresh || s->was_tried)) {
         *err = ct_larger(*err, loss);
         return CT_EVAL_OK;
@@ -128,13 +142,13 @@ enum ct_eval ct_radau_estimate(struct ct_radau *s, const struct ct_problem *p,
     if (e != CT_EVAL_OK)
         return e;
     *err = filter(s, y1 + nq, dy1 + nq);
-    ease_speeds(s, p, tol, y, err, NULL);
+    ease(s, p, tol, t, y, dy, err, NULL);
     return CT_EVAL_OK;
 }
 
 // The error estimate is that of order 3, but the step is better: a tolerance tol of the step is one of 0.1 tol^(2/3)
 // of the estimate, as in the program of the source.
-static struct ct_tolerance ease(const struct ct_tolerance *tolerance)
+static struct ct_tolerance loosen(const struct ct_tolerance *tolerance)
 {
     const double tol = tolerance->rtol > 0 ? tolerance->rtol : tolerance->atol;
     const double factor = fmax(1, 0.1 / cbrt(tol));
@@ -145,7 +159,7 @@ const struct ct_tolerance *ct_radau_ease(struct ct_radau *s,
                                          const struct ct_tolerance *tolerance)
 {
     if (s->wanted.rtol != tolerance->rtol || s->wanted.atol != tolerance->atol)
-        s->eased = ease(tolerance);
+        s->eased = loosen(tolerance);
     s->wanted = *tolerance;
     return &s->eased;
 }

@@ -44,7 +44,7 @@ struct ct_stiffness *ct_stiffness_create(struct ct_arena *a, const struct ct_pro
     struct ct_stiffness *s = CT_NEW(a, struct ct_stiffness);
     *s = (struct ct_stiffness){
         .p = p, .stats = stats, .rtol = rtol, .first = first, .last = last};
-    double **const vectors[] = {&s->v, &s->w, &s->f, &s->f0, &s->point, &s->y0};
+    double **const vectors[] = {&s->v, &s->w, &s->f, &s->f0, &s->point, &s->y0, &s->quarter};
     for (size_t i = 0; i < COUNT(vectors); i++)
         *vectors[i] = CT_NEWN(a, double, p->ny);
     for (int i = first; i < last; i++) // a change of speeds in which none is singled out
@@ -168,6 +168,8 @@ static bool test(struct ct_stiffness *s, double t, const double *y)
     s->slow = find_slow(s, t - s->t0);
     const double reach = s->step * s->fast;
     s->is_far = s->p->asked_speeds && s->fast > far_off * find_pace(s, y);
+    s->is_followed = s->fast > far_off * fmax(find_pace(s, y), find_departure(s, y))
+                  && reach < unfollowed_step;
     const bool is_idle = s->is_far || s->step * s->slow < idle_step;
     const bool is_held_up = reach > suspicious_step || (is_idle && is_rounding_felt(s, y));
     const bool is_apart = s->is_far || s->fast > least_separation * s->slow;
@@ -187,6 +189,42 @@ bool ct_stiffness_watch(struct ct_stiffness *s, double t, const double *y, doubl
     const bool is_due = s->in_a_row >= suspicious_tests && s->count >= s->next_trial;
     const bool is_overtaken = s->step < s->rival * s->evaluations;
     return (is_due || is_overtaken) && end - t > steps_worth_it * s->step;
+}
+
+bool ct_stiffness_has_tested(const struct ct_stiffness *s)
+{
+    return s->count % test_every == 0;
+}
+
+// x (ny) <- J x/fast at y, where f is s->f.
+static bool turn_on(struct ct_stiffness *s, double t, const double *y, double *x)
+{
+    const double size = length(x, 0, s->last);
+    if (!(size > 0))
+        return false;
+    for (int i = 0; i < s->p->ny; i++)
+        x[i] = i < s->last ? x[i] / size : 0;
+    if (!apply_jacobian(s, t, y, x, s->w))
+        return false;
+    for (int i = 0; i < s->p->ny; i++)
+        x[i] = s->w[i] * (size / s->fast);
+    return true;
+}
+
+bool ct_stiffness_find_vibration(struct ct_stiffness *s, double t, const double *y,
+                                 const double **e, const double **later)
+{
+    if (!s->is_followed)
+        return false;
+    double *x = s->f0;
+    for (int i = 0; i < s->p->ny; i++)
+        x[i] = s->f[i] / s->fast;
+    if (!turn_on(s, t, y, x) || !turn_on(s, t, y, x))
+        return false;
+    memcpy(s->quarter, x, (size_t)s->p->ny * sizeof *x);
+    *e = s->quarter;
+    *later = x;
+    return turn_on(s, t, y, x);
 }
 
 bool ct_stiffness_expect(struct ct_stiffness *s, double t, const double *y, double end,

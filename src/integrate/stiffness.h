@@ -14,13 +14,15 @@
 
 struct ct_stiffness {
     const struct ct_problem *p;
-    double rtol;                         // of outputs
-    int first, last;                     // of y: the accelerations in f
-    double *v, *w, *f, *f0, *point, *y0; // (ny)
-    double t0;                           // time of y0
-    long count, next_trial;              // steps; when suspicion is next listened to
+    double rtol;                                   // of outputs
+    int first, last;                               // of y: the accelerations in f
+    double *v, *w, *f, *f0, *point, *y0, *quarter; // (ny)
+    double t0;                                     // time of y0
+    long count, next_trial;                        // steps; when suspicion is next listened to
     bool
         is_far; // vibrations of that rate need not be followed for their speeds, at the last test
+    bool
+        is_followed; // vibrations of that rate are far from the motion and followed by steps, at the last test
     int in_a_row;    // tests that were suspicious
     double window_t; // where the last test was
     long window_steps;
@@ -64,6 +66,12 @@ bool ct_stiffness_watch(struct ct_stiffness *s, double t, const double *y, doubl
 /// motion, if it follows them to rtol? Their pace is that of ct_stiffness_pace then.
 bool ct_stiffness_expect(struct ct_stiffness *s, double t, const double *y, double end,
                          const struct ct_method *method, double rtol);
+/// Was the step that ct_stiffness_watch saw last one with a test?
+bool ct_stiffness_has_tested(const struct ct_stiffness *s);
+/// After a test, where such vibrations are followed: what is vibration of y (ny), and what it is a quarter of a period later. From f,
+/// of which J^2/fast^2 leaves only what is as fast. Three evaluations.
+bool ct_stiffness_find_vibration(struct ct_stiffness *s, double t, const double *y,
+                                 const double **e, const double **later);
 /// The longest step with which an explicit method follows a vibration of `fast` for a time so that its phase and size err by rtol
 /// at the end, when the errors of all steps have added up.  (8.14)
 double ct_stiffness_followed_step(const struct ct_method *method, double fast, double time,

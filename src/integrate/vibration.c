@@ -49,7 +49,7 @@ static bool factor_slow(struct ct_iteration *it, double c)
 {
     if (it->slow > c / 2 && it->slow < 2 * c)
         return true;
-    ct_iteration_fill(it, it->H, c, c * c);
+    ct_iteration_fill(it, it->H, it->n, c, c * c);
     it->slow = ct_lu(it->H, it->pivot_slow, it->n, it->n) ? c : 0;
     for (int k = 0; k < it->nu && it->slow > 0; k++)
         it->is_slow[k] = remains(it, k) > 0.5;
@@ -90,39 +90,79 @@ static void measure_fast(struct ct_iteration *it, const double *x, double *mass,
     *stiffness = form_of(it->K, it->off, it->nu);
 }
 
-double ct_iteration_lost(struct ct_iteration *it, double gamma, double h, double small,
-                         const double *speeds, const double *d, const double *u,
-                         double *present)
+void ct_iteration_note_energy(struct ct_iteration *it, double small, const double *speeds)
 {
-    double heavy = 0, mu, ku, md, kd;
+    it->heavy = 0;
     for (int k = 0; k < it->nu; k++)
-        heavy = ct_larger(heavy, it->M[k + it->nu * k]);
-    it->energy = ct_larger(it->energy, form_of(it->M, speeds, it->nu) + heavy * small * small);
+        it->heavy = ct_larger(it->heavy, it->M[k + it->nu * k]);
+    it->energy
+        = ct_larger(it->energy, form_of(it->M, speeds, it->nu) + it->heavy * small * small);
+}
+
+void ct_iteration_foresee_energy(struct ct_iteration *it, double small, double time,
+                                 const double *accelerations)
+{
+    pass_slow(it, accelerations);
+    memcpy(it->off, it->b, (size_t)it->nu * sizeof *it->off);
+    const double force = form_of(it->M, it->off, it->nu); // squared, over a mass
+    const double on_the_way = 2 * small * sqrt(it->heavy * force),
+                 at_the_end = force * time * time;
+    it->energy = ct_larger(it->energy, ct_smaller(on_the_way, at_the_end));
+}
+
+struct ct_vibration ct_iteration_vibration(struct ct_iteration *it, double gamma, double h,
+                                           const double *d, const double *u)
+{
+    double mu, ku, md, kd;
     measure_fast(it, u, &mu, &ku);
     measure_fast(it, d, &md, &kd);
     const double z2 = (h * h * ku + kd) / (mu + md / (h * h)); // Rayleigh's quotient of both
-    *present = 0;
     if (!(z2 > 0))
-        return 0;
-    const double lost = (mu + z2 / (h * h) * md) * (1 + gamma * gamma / z2) / it->energy;
-    *present = lost * (1 + 3600 * (1 + z2 * (0.06 + 0.0025 * z2)) / (z2 * z2 * z2));
-    return lost;
+        return (struct ct_vibration){0};
+    const double filtered = 1 + gamma * gamma / z2;
+    const double lost = (mu + z2 / (h * h) * md) * filtered;
+    const double times = 1 + 3600 * (1 + z2 * (0.06 + 0.0025 * z2)) / (z2 * z2 * z2);
+    return (struct ct_vibration){lost, lost * times, sqrt(filtered * times)};
 }
 
-double ct_iteration_slow_norm(struct ct_iteration *it, const struct ct_tolerance *tolerance,
-                              const double *y, const bool *asked, const double *ample,
-                              const double *d, const double *u)
+double ct_iteration_felt(struct ct_iteration *it, const struct ct_problem *p,
+                         const struct ct_vibration *v, double t, const double *y,
+                         const double *d, const double *u)
 {
     const int nu = it->nu;
-    double *b = it->b, *slow = it->off;
+    double *places = it->fast, *speeds = it->fast + nu;
+    if (!p->felt)
+        return 0;
+    pass_slow(it, d);
+    for (int k = 0; k < nu; k++)
+        places[k] = v->times * (d[k] - it->b[k]);
+    pass_slow(it, u);
+    for (int k = 0; k < nu; k++)
+        speeds[k] = v->times * (u[k] - it->b[k]);
+    return p->felt(p->user, t, y, ct_iteration_states(it, y, places, speeds));
+}
+
+double ct_iteration_slow_norm(struct ct_iteration *it, const struct ct_problem *p,
+                              const struct ct_tolerance *tolerance, const double *y,
+                              const double *ample, const double *d, const double *u,
+                              double *slow)
+{
+    const int nu = it->nu;
+    double *b = it->b, *places = it->fast, *speeds = it->fast + nu;
     const double small = tolerance->atol / tolerance->rtol;
+    *slow = INFINITY;
     if (!isfinite(small) || !factor_slow(it, much_faster * pace_of(it, small, y)))
         return INFINITY;
     const double unfelt = unfelt_energy(it, ample);
+    pass_slow(it, d);
+    for (int k = 0; k < nu; k++)
+        places[k] = p->asked_places[k] ? d[k] : b[k];
     pass_slow(it, u);
     for (int k = 0; k < nu; k++) {
         const double borne = fmax(ample[k], unfelt / sqrt(it->M[k + nu * k]));
-        slow[k] = asked[k] ? u[k] : hypot(b[k], (u[k] - b[k]) / (borne * it->share[nu + k]));
+        const double fast = (u[k] - b[k]) / (borne * it->share[nu + k]);
+        speeds[k] = p->asked_speeds[k] ? u[k] : hypot(b[k], fast);
     }
-    return ct_iteration_norm(it, d, slow, nu, 1);
+    *slow = ct_iteration_norm(it, places, speeds, nu, 1);
+    return ct_iteration_norm(it, d, speeds, nu, 1);
 }

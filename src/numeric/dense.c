@@ -94,6 +94,12 @@ double ct_vector_dot(const double *x, const double *y, size_t n)
     return sum;
 }
 
+void ct_vector_add_many(double *restrict y, double c, const double *restrict x, size_t n)
+{
+    for (size_t i = 0; i < n; i++)
+        y[i] += c * x[i];
+}
+
 void ct_matrix_multiply(double *restrict C, const double *restrict A, const double *restrict B,
                         int n, int m, int k)
 {

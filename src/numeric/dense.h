@@ -20,16 +20,20 @@ double ct_vector_size(const double *v, size_t n);
 /// x . y of n numbers
 double ct_vector_dot(const double *x, const double *y, size_t n);
 
+/// y (n) += c x, n being large.
+void ct_vector_add_many(double *restrict y, double c, const double *restrict x, size_t n);
 /// y (n) += c x. A few numbers are read one by one: for them a vector takes longer to begin than to do its work.
 static inline void ct_vector_add(double *restrict y, double c, const double *restrict x,
                                  size_t n)
 {
     enum { MOST_ALONE = 12 };
     const volatile double *one_by_one = x;
-    for (size_t i = 0; i < n && n <= MOST_ALONE; i++)
+    if (n > MOST_ALONE) {
+        ct_vector_add_many(y, c, x, n);
+        return;
+    }
+    for (size_t i = 0; i < n; i++)
         y[i] += c * one_by_one[i];
-    for (size_t i = 0; i < n && n > MOST_ALONE; i++)
-        y[i] += c * x[i];
 }
 
 /// C (n x k) = A (n x m) B (m x k), stored without gaps.

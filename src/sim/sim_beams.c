@@ -45,8 +45,9 @@ static void warn_of_linear(struct ct_sim *sim, const struct ct_validity *beam,
     const char *size
         = isnan(error) && v->swings.n
             ? "its error is not foretold: it bends in more shapes than are followed"
-        : isnan(error)
-            ? "its error is not foretold: more than a given motion of its base drives it"
+        : isnan(error) ? "its error is not foretold: joints, loads or loops drive it beside "
+                         "its base, or jumps and "
+                         "events of the state drive that"
         : error > CT_FORETOLD_MOST
             ? "its error is beyond 1, as large as the deflections or larger"
             : ct_arena_printf(a, "its error is about %.2g of the largest deflection", error);

@@ -86,7 +86,7 @@ void ct_balance_derive(struct ct_balance *s, struct ct_arena *a)
             f[k] = ct_ex_add(x, f[k], ct_ex_mul(x, e->J[i].value, e->row[e->J[i].row].lam));
     }
     ct_ex_subst_list(x, f, s->n, from, zero, e->nu);
-    s->nslope = ct_slopes_derive(e->build, a, f, s->n, NULL, 0, &s->slope);
+    s->nslope = ct_slopes_derive(e->build, a, f, s->n, &s->m->model->time, 1, &s->slope);
     const size_t nout = s->n + e->nrow + s->nslope;
     ct_ex *out = CT_NEWN(a, ct_ex, nout + 1);
     for (size_t i = 0; i < s->n; i++)
@@ -105,6 +105,12 @@ void ct_balance_evaluate(struct ct_balance *s)
     ct_program_run(&s->values, s->m->input);
 }
 
+// The direction of slopes by time: after places, speeds, accelerations and multipliers.
+static size_t time_of(const struct ct_balance *s)
+{
+    return 3 * s->e->nu + s->e->nrow;
+}
+
 void ct_balance_fill(struct ct_balance *s)
 {
     const size_t n = s->n, size = n + s->nlam, nu = s->e->nu;
@@ -119,7 +125,7 @@ void ct_balance_fill(struct ct_balance *s)
     s->stiffness = s->stiffness > 0 ? s->stiffness : 1;
     for (size_t i = 0; i < s->nslope; i++) {
         const size_t first = 3 * nu; // after places, speeds, accelerations
-        if (s->slope[i].direction < first)
+        if (s->slope[i].direction < first || s->slope[i].direction == time_of(s))
             continue;
         const int lam = s->lam_place[s->slope[i].direction - first];
         if (lam < 0)
@@ -215,4 +221,27 @@ struct ct_balance ct_balance_create(struct ct_arena *a, struct ct_machine *m)
                                .step = CT_NEWN(a, double, nu + 1),
                                .pivot = CT_NEWN(a, int, all + 1),
                                .gap = CT_NEWN(a, double, 4 * m->e->ngap + 1)};
+}
+
+bool ct_balance_follow(struct ct_balance *s, struct ct_arena *a, const double *v, double *u)
+{
+    const size_t n = s->n, all = n + s->nlam, nu = s->e->nu;
+    const double *value = s->values.out + n + s->e->nrow;
+    double *b = CT_NEWN(a, double, all + 1);
+    ct_balance_evaluate(s);
+    for (size_t i = 0; i < s->nslope; i++) {
+        const struct ct_slope *d = &s->slope[i];
+        if (d->direction == time_of(s))
+            b[d->row] += value[i];
+        else if (d->direction < nu && s->place[d->direction] < 0)
+            b[d->row] += value[i] * u[d->direction];
+    }
+    if (!factor(s))
+        return false;
+    for (size_t i = 0; i < s->nlam; i++)
+        b[n + i] = s->stiffness * v[s->row[i]];
+    ct_lu_solve(b, s->A, s->pivot, (int)all, (int)all, 1, (int)all, false);
+    for (size_t i = 0; i < n; i++)
+        u[s->u[i]] = -b[i];
+    return true;
 }

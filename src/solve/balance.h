@@ -40,5 +40,12 @@ void ct_balance_evaluate(struct ct_balance *s);
 void ct_balance_fill(struct ct_balance *s);
 /// Newton steps from s->y, halved until the next correction with the same derivative is smaller. False if they find nothing.
 bool ct_balance_iterate(struct ct_balance *s, struct ct_arena *a);
+/// At an equilibrium: the rates at which it moves with time, K u + J' lam' = -df/dt - K_s u_s and J u = -v.
+///
+/// v       in      (nrow) rates of the rows while only what stays moves
+/// u       in/out  (nu) in: speeds u_s of what stays; out: of what moves, too
+///
+/// False where the equilibrium is not determined.
+bool ct_balance_follow(struct ct_balance *s, struct ct_arena *a, const double *v, double *u);
 
 #endif

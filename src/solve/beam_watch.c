@@ -1,6 +1,7 @@
 // Beams watched during a run: slopes, indicators of linear ones, and the error that these will have. See run.h.
 //
 // Indicators and slopes are looked at with each sample; what foretells the error follows the base from step to step.
+#include "formulate/recoil.h"
 #include "formulate/validity.h"
 #include "solve/run.h"
 
@@ -58,6 +59,8 @@ void ct_run_watch_start(struct ct_run *r, double t, const double *y)
     for (size_t i = 0; i < e->nvalidity; i++) {
         struct ct_validity_report *v = &report->validity[i];
         v->beyond_since = v->left_at = v->off_since = -1;
+        if (e->validity[i].recoil)
+            v->recoil = ct_recoil_run_create(r->arena, e->validity[i].recoil);
     }
     ct_run_watch_base(r, t, y, CT_WATCH_START);
 }
@@ -67,13 +70,18 @@ static void follow(const struct ct_validity *v, struct ct_validity_report *repor
                    const double *out, const double *start, enum ct_watch_when how)
 {
     struct ct_swings *s = &report->swings;
-    if (how == CT_WATCH_KEPT) {
+    if (how == CT_WATCH_KEPT && !v->recoil) {
         ct_swings_regrip(s, out);
         return;
     }
     if (how == CT_WATCH_START)
         ct_validity_begin(v, start, s);
-    ct_swings_follow(s, t, out);
+    if (v->recoil && how == CT_WATCH_START)
+        ct_recoil_begin(report->recoil, s);
+    else if (v->recoil)
+        ct_recoil_follow(report->recoil, s, t, ct_validity_glance(v));
+    else
+        ct_swings_follow(s, t, out);
     if (how == CT_WATCH_START && v->settles)
         ct_swings_settle(s);
     ct_swings_compare(s, out + 9);

@@ -6,6 +6,7 @@
 
 #include "solve/form.h"
 
+#include <float.h>
 #include <math.h>
 
 // A row counts as dependent when what is left of it is this small against the largest: the
@@ -61,6 +62,15 @@ static inline bool ct_is_closed(double sigma, double size, double before)
     const double wanted = sigma < ct_small_pivot ? ct_position_tolerance * sigma * sigma
                                                  : ct_position_tolerance;
     return size <= wanted || (size < 1e-10 && size > before / 4);
+}
+
+/// After corrections (6.3b) of places and speeds, dq and du the sums of their sizes, u the largest speed: is what they leave, terms
+/// of second order, below a rounding of what rows are sums of? Derivatives of a row along motions of bodies are bounded by the
+/// same lengths in all orders. Beside a singular position what is left is divided by sigma twice.
+static inline bool ct_is_rest_lost(double sigma, double dq, double du, double u)
+{
+    const double least = DBL_EPSILON * (sigma < ct_small_pivot ? sigma * sigma : 1);
+    return dq * dq <= least && dq * du <= least * (u > 1 ? u : 1);
 }
 
 /// Newton's iteration number i (from 0) leads nowhere.

@@ -1,6 +1,8 @@
 // See dae.h.
 #include "solve/dae.h"
 
+#include "integrate/stepper.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -48,7 +50,7 @@ static inline void set_input(const struct ct_embed *s, double t, const double *q
     ct_machine_copy(input + m->at_q, q, m->nq);
     ct_machine_copy(input + m->at_u, u, m->nu);
     ct_machine_copy(input + m->at_a, a, m->nu);
-    if (m->nrow)
+    if ((size_t)s->rank < m->nrow)
         memset(input + m->at_lam, 0, m->nrow * sizeof *lam);
     for (int i = 0; i < s->rank; i++)
         input[m->at_lam + (size_t)s->row[i]] = lam[i];
@@ -63,9 +65,8 @@ static enum ct_eval residual(void *user, double t, const double *q, const double
     const size_t nu = s->m->nu, nrow = s->m->nrow;
     set_input(s, t, q, u, a, lam);
     ct_program_run(&s->m->residual, s->m->input);
-    for (size_t i = 0; i < s->m->residual.nout; i++)
-        if (!isfinite(out[i]))
-            return CT_EVAL_RETRY;
+    if (!ct_stepper_finite(out, (int)s->m->residual.nout))
+        return CT_EVAL_RETRY;
     ct_machine_copy(r, out, nu);
     for (int i = 0; i < s->rank; i++) {
         phi[i] = out[nu + (size_t)s->row[i]];

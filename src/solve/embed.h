@@ -49,6 +49,7 @@ struct ct_embed {
     bool is_delicate; // near a singular position: pivots are sought at every evaluation
     bool is_crossing; // stages are projected that steps do not end on: choices stay
     bool is_rough;    // the last check wanted a refinement
+    bool is_renewed;  // a projection has looked after them since a step ended last
     long nweak;       // checks in a row that found the form weak, or projections without one
     int nunchecked; // projections until the next check, as long as the strength stays near that of the last one
     double checked_at;
@@ -82,6 +83,9 @@ void ct_embed_multipliers(struct ct_embed *s);
 void ct_embed_kept_multipliers(struct ct_embed *s, double *lam);
 /// Choose anew if J_d, as last factored, has worn. For runs that do not project; J is that of the machine's input.
 void ct_embed_renew(struct ct_embed *s);
+/// The same at the end of a step to y at t, where accelerations have just been found. Where a projection ended it there is nothing
+/// to do.
+void ct_embed_renew_after_step(struct ct_embed *s, double t, const double *y);
 /// Move q, u in y onto the constraints, independent coordinates held where J_d allows.  (6.6)
 enum ct_eval ct_embed_project(struct ct_embed *s, double t, double *y);
 /// Is there a measure of how near J is to losing rank? Not of large systems with redundant rows, where it would cost more

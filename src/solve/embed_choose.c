@@ -59,20 +59,32 @@ static size_t lightest(const struct ct_embed *s)
     return least;
 }
 
-// What gives sections an inertia.
+// What gives all motions of a beam's sections an inertia.
 static const char *rotary_of(const struct ct_beam *beam)
 {
+    if (beam->integration == CT_BEAM_ONE_POINT
+        && (beam->has_rotary || beam->theory == CT_BEAM_EULER_BERNOULLI))
+        return "'integration: reduced', as the mass at one point of an element leaves some of "
+               "its motions none";
     return beam->is_lumped ? "values of 'rotary_inertia', as lumped mass gives sections none"
                            : "a 'rotary_inertia'";
 }
 
-// What a joint or an absolute coordinate moves, if that is a beam whose sections have no inertia; else NULL.
+// Body i, if that is a beam not all of whose sections' motions have inertia; else NULL.
+static const struct ct_body *bare_beam(const struct ct_model *m, size_t i)
+{
+    const struct ct_beam *beam = m->body[i].beam;
+    const bool is_bare = beam && (!beam->has_rotary || beam->integration == CT_BEAM_ONE_POINT);
+    return is_bare ? &m->body[i] : NULL;
+}
+
+// The beam of that kind that a coordinate moves; else NULL.
 static const struct ct_body *bare_beam_of(const struct ct_model *m, const struct ct_u *u)
 {
     const struct ct_instance *joint = u->joint < 0 ? NULL : &m->joint[u->joint];
     const int head = joint ? m->frame[joint->to].body : u->body;
-    const struct ct_body *moved = &m->body[head ? head : m->frame[joint->from].body];
-    return moved->beam && !moved->beam->has_rotary ? moved : NULL;
+    const int beam = u->beam > 0 ? u->beam : head ? head : m->frame[joint->from].body;
+    return bare_beam(m, (size_t)beam);
 }
 
 static bool massless(struct ct_embed *s, size_t speed)
@@ -92,16 +104,20 @@ static bool massless(struct ct_embed *s, size_t speed)
                         "coordinate '%s' moves no mass: beam '%s' has none; give it a density, "
                         "a mass_per_length, or 'deformation: []'",
                         name, model->body[u->beam].instance.name);
-    if (u->beam > 0)
+    const struct ct_body *beam = bare_beam_of(model, u);
+    if (u->beam > 0 && beam)
         return ct_error(s->ctx, model->body[u->beam].instance.mark, CT_E_MASSLESS,
                         "coordinate '%s' moves no mass: give the beam %s%s", name,
                         rotary_of(model->body[u->beam].beam),
                         model->body[u->beam].beam->theory == CT_BEAM_EULER_BERNOULLI
+                                && model->body[u->beam].beam->is_lumped
                             ? ", or consistent mass"
                             : "");
-    const struct ct_mark mark
-        = u->joint >= 0 ? model->joint[u->joint].mark : model->body[u->body].instance.mark;
-    const struct ct_body *beam = bare_beam_of(model, u);
+    const struct ct_mark mark = u->joint >= 0
+                                  ? model->joint[u->joint].mark
+                                  : model->body[u->beam > 0 ? u->beam : u->body].instance.mark;
+    for (size_t i = 1; i < model->nbody && u->beam > 0 && !beam; i++)
+        beam = bare_beam(model, i);
     if (beam)
         return ct_error(s->ctx, mark, CT_E_MASSLESS,
                         "coordinate '%s' moves no mass: give beam '%s' %s, or a mass or an "
@@ -125,6 +141,8 @@ static size_t bare_speed(const struct ct_embed *s)
 
 // Pivots that are left of the entries of M are below this of them where they are rounding.
 static const double rounding_pivot = 16 * DBL_EPSILON;
+// Above this of them no rounding of others hides them.
+static const double hidden_pivot = 1e-8;
 
 // Speed k, or the coordinate of a beam that moves the same as it: sections without inertia are what it lacks.
 static size_t elastic_beside(const struct ct_embed *s, size_t k)
@@ -170,6 +188,83 @@ static bool is_elastic_motion(struct ct_embed *s, size_t k)
     return left <= rounding_pivot * M[k + n * k];
 }
 
+// ---- what elimination leaves of a motion that moves no mass ----------------------------------------------------
+
+// motion (nu, in/out) += |x| times that of independent speed j and those that depend on it, without signs.
+static void add_motion(const struct ct_embed *s, int j, double x, double *motion)
+{
+    motion[s->independent[j]] += fabs(x);
+    for (int k = 0; k < s->rank; k++)
+        motion[s->dependent[k]] += fabs(s->B[k + s->rank * j] * x);
+}
+
+// The motion (nu, out) with one unit of independent speed i whose inertia is pivot i of the factor L of B' M B (f x f), speeds
+// behind i at rest: L' x = L_ii e_i. x (f, out)
+static void find_pivot_motion(const struct ct_embed *s, int f, int i, double *x, double *motion)
+{
+    x[i] = 1;
+    for (int j = i - 1; j >= 0; j--) {
+        x[j] = 0;
+        for (int k = j + 1; k <= i; k++)
+            x[j] -= s->S[k + f * j] * x[k] / s->S[j + f * j];
+    }
+    memset(motion, 0, s->m->nu * sizeof *motion);
+    for (int j = 0; j <= i; j++)
+        add_motion(s, j, x[j], motion);
+}
+
+// |z|' |M| |z| over all speeds, or without coordinates of beams
+static double gross_inertia(const struct ct_embed *s, const double *z, bool with_beams)
+{
+    const size_t n = s->m->nu;
+    const struct ct_u *u = s->m->e->u;
+    double sum = 0;
+    for (size_t j = 0; j < n; j++)
+        for (size_t i = j; i < n && z[j] > 0; i++)
+            if (with_beams || !(u[i].beam > 0 || u[j].beam > 0))
+                sum += (i > j ? 2 : 1) * z[i] * z[j] * fabs(s->m->M[i + n * j]);
+    return sum;
+}
+
+// The speed of the motion z (nu) to be named: k, or the one of a beam that lacks inertia which moves most of it.
+static int lacking_speed(const struct ct_embed *s, const double *z, int k)
+{
+    const size_t n = s->m->nu;
+    const struct ct_u *u = s->m->e->u;
+    double most = hidden_pivot * gross_inertia(s, z, true);
+    int named = k;
+    for (size_t i = 0; i < n && !bare_beam_of(s->m->model, &u[k]); i++) {
+        const double moved = z[i] * z[i] * s->m->M[i + n * i];
+        if (bare_beam_of(s->m->model, &u[i]) && moved > most) {
+            most = moved;
+            named = (int)i;
+        }
+    }
+    return named;
+}
+
+// The first independent speed whose pivot of B' M B is rounding of the inertias that its motion cancels; -1: none. s->S: the
+// factor, up to a pivot that is not positive. Of beams: theirs must be half of these inertias at least.
+static int rounded_pivot(struct ct_embed *s, int f, bool of_beams)
+{
+    double *const x = s->work, *const motion = x + f;
+    for (int i = 0; i < f; i++) {
+        const double root = s->S[i + f * i], pivot = root > 0 ? root * root : 0;
+        memset(motion, 0, s->m->nu * sizeof *motion);
+        add_motion(s, i, 1, motion);
+        if (pivot > hidden_pivot * gross_inertia(s, motion, true))
+            continue;
+        find_pivot_motion(s, f, i, x, motion);
+        const double rigid = gross_inertia(s, motion, false),
+                     gross = gross_inertia(s, motion, true);
+        if (pivot <= rounding_pivot * gross && !(of_beams && 2 * rigid > gross))
+            return lacking_speed(s, motion, s->independent[i]);
+        if (!(root > 0))
+            break;
+    }
+    return -1;
+}
+
 // The first speed whose pivot of M is rounding; -1: none. Articulated bodies may keep digits that M loses: there it
 // counts where coordinates of beams move the same.
 static int rounded_closed_pivot(struct ct_embed *s, const double *pivot)
@@ -179,11 +274,21 @@ static int rounded_closed_pivot(struct ct_embed *s, const double *pivot)
     if (!s->m->e->has_dynamics) // articulated bodies without M
         return -1;
     ct_machine_motion(s->m);
-    for (size_t i = 0; i < n; i++)
+    bool is_doubtful = false;
+    for (size_t i = 0; i < n; i++) {
+        is_doubtful |= pivot[i] <= hidden_pivot * s->m->M[i + n * i];
         if (pivot[i] <= rounding_pivot * s->m->M[i + n * i]
             && !(is_exact && elastic_beside(s, i) == i && !is_elastic_motion(s, i)))
             return (int)i;
-    return -1;
+    }
+    if (!is_doubtful)
+        return -1;
+    const int f = (int)n;
+    for (int j = 0; j < f; j++)
+        for (int i = j; i < f; i++)
+            s->S[i + f * j] = s->m->M[i + f * j];
+    ct_cholesky(s->S, f, f); // as far as it goes
+    return rounded_pivot(s, f, is_exact);
 }
 
 // The pivots of a solution in closed form must be positive. Behind one that is not, others are no numbers.
@@ -254,21 +359,6 @@ static bool choose_ahead(struct ct_embed *s)
         || choose_here(s);
 }
 
-// After ct_embed_accelerate: the first independent speed whose pivot of B' M B is rounding of what it is left of; -1: none.
-static int rounded_pivot(const struct ct_embed *s)
-{
-    const int n = (int)s->m->nu, r = s->rank, f = n - r;
-    for (int i = 0; i < f; i++) {
-        double gross = fabs(s->MB[s->independent[i] + n * i]);
-        for (int k = 0; k < r; k++)
-            gross += fabs(s->B[k + r * i] * s->MB[s->dependent[k] + n * i]);
-        const double pivot = s->S[i + f * i] * s->S[i + f * i];
-        if (pivot <= rounding_pivot * gross)
-            return s->independent[i];
-    }
-    return -1;
-}
-
 bool ct_embed_choose(struct ct_embed *s)
 {
     s->switches++;
@@ -287,11 +377,10 @@ bool ct_embed_choose(struct ct_embed *s)
     if (s->m->e->solution)
         return has_inertia(s);
     ct_machine_motion(s->m);
-    if (ct_embed_accelerate(s) != CT_EVAL_OK)
-        return massless(s, lightest(s));
-    const int rounded = rounded_pivot(s);
-    if (rounded >= 0)
-        return massless(s, (size_t)rounded);
+    const bool is_regular = ct_embed_accelerate(s) == CT_EVAL_OK;
+    const int rounded = rounded_pivot(s, (int)s->m->nu - s->rank, false);
+    if (rounded >= 0 || !is_regular)
+        return massless(s, rounded >= 0 ? (size_t)rounded : lightest(s));
     ct_embed_take_form(s);
     return true;
 }

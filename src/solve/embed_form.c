@@ -7,9 +7,9 @@
 // So many weak checks in a row ask for another order.
 enum { MOST_WEAK = 3 };
 // As long as the strength of the pivots is that of when they left such a part of what is allowed, or less, they are checked
-// after every fourth projection.
+// after every eighth projection.
 static const double well_below = 0.1;
-enum { UNCHECKED = 3 };
+enum { UNCHECKED = 7 };
 
 static struct ct_partition partition(const struct ct_embed *s)
 {

@@ -86,12 +86,6 @@ static enum ct_eval project_by_matrices(struct ct_embed *s, double t, double *y)
     return CT_EVAL_OK;
 }
 
-static void change_speeds(const struct ct_machine *m, double *y, const double *du)
-{
-    for (size_t k = 0; k < m->nu; k++)
-        y[m->nq + k] += du[k];
-}
-
 static bool close_form(struct ct_embed *s, double t, const double *y)
 {
     ct_machine_set(s->m, t, y);
@@ -100,6 +94,56 @@ static bool close_form(struct ct_embed *s, double t, const double *y)
         return false;
     ct_embed_follow_sigma(s);
     return true;
+}
+
+static double sum_of_sizes(const double *d, size_t n)
+{
+    double sum = 0;
+    for (size_t k = 0; k < n; k++)
+        sum += fabs(d[k]);
+    return sum;
+}
+
+// Are both corrections at once as good as one after the other, with an evaluation between them? Not of redundant rows, whose
+// rest is to be seen, nor beside a singular position, where roundings of places are felt by speeds.
+static bool is_one_enough(const struct ct_embed *s, const double *y)
+{
+    const struct ct_machine *m = s->m;
+    const struct ct_form *f = s->form[0];
+    if (!f->shift || s->rank < (int)m->nrow || s->nearness < ct_small_pivot)
+        return false;
+    const double near = nearness(s), dq = sum_of_sizes(f->dq, m->nu);
+    return ct_is_rest_lost(near, dq, 0, 0) // most often it is the places that are too far
+        && ct_is_rest_lost(near, dq, sum_of_sizes(f->du, m->nu) + sum_of_sizes(f->shift, m->nu),
+                           ct_vector_size(y + m->nq, m->nu));
+}
+
+static void add_speeds(const struct ct_embed *s, double *y, const double *du)
+{
+    ct_vector_add(y + s->m->nq, 1, du, s->m->nu);
+}
+
+// Places and, where it is known what they are there, speeds.
+static void correct_both(const struct ct_embed *s, double *y)
+{
+    const struct ct_form *f = s->form[0];
+    ct_machine_retract(s->m, y, f->dq);
+    if (!f->shift)
+        return;
+    add_speeds(s, y, f->du);
+    add_speeds(s, y, f->shift);
+}
+
+// Places are closed: speeds, once more where the rounding of a correction counts. False if pivots are not sound there.
+static bool correct_speeds(struct ct_embed *s, double t, double *y)
+{
+    const double *du = s->form[0]->du;
+    const bool is_rough = ct_vector_size(du, s->m->nu) > ct_small_change;
+    add_speeds(s, y, du);
+    const bool is_sound = !is_rough || close_form(s, t, y);
+    if (is_rough)
+        add_speeds(s, y, du);
+    return is_sound;
 }
 
 // The same by the form of now; *is_done is false where its pivots are not sound.
@@ -113,20 +157,17 @@ static enum ct_eval project_by_form(struct ct_embed *s, double t, double *y, boo
         return CT_EVAL_OK;
     for (int i = 0; close_form(s, t, y); i++) {
         const double size = ct_vector_size(f->phi, m->nrow);
-        if (!ct_is_closed(nearness(s), size, before)) {
-            if (ct_is_stray(i, size, before))
-                return CT_EVAL_RETRY;
-            before = size;
-            ct_machine_retract(m, y, f->dq);
-            continue;
+        const bool is_closed = ct_is_closed(nearness(s), size, before);
+        if (!is_closed && ct_is_stray(i, size, before))
+            return CT_EVAL_RETRY;
+        *is_done = is_closed ? correct_speeds(s, t, y) : is_one_enough(s, y);
+        if (!is_closed)
+            correct_both(s, y);
+        if (is_closed || *is_done) {
+            ct_machine_set(m, t, y);
+            return CT_EVAL_OK;
         }
-        const bool is_rough = ct_vector_size(f->du, m->nu) > ct_small_change;
-        change_speeds(m, y, f->du);
-        *is_done = !is_rough || close_form(s, t, y);
-        if (is_rough)
-            change_speeds(m, y, f->du);
-        ct_machine_set(m, t, y);
-        return CT_EVAL_OK;
+        before = size;
     }
     return CT_EVAL_OK;
 }
@@ -157,6 +198,7 @@ enum ct_eval ct_embed_project(struct ct_embed *s, double t, double *y)
     if (e != CT_EVAL_OK || s->is_crossing)
         return e;
     ct_embed_tend_form(s);
+    s->is_renewed = true;
     if (!has_worn(s))
         return CT_EVAL_OK;
     // what columns that have worn since the last projection were moved by is what was to be closed times kappa, or more
@@ -166,14 +208,32 @@ enum ct_eval ct_embed_project(struct ct_embed *s, double t, double *y)
     return project(s, t, y);
 }
 
-void ct_embed_renew(struct ct_embed *s)
+static void choose_if_worn(struct ct_embed *s)
 {
-    if (ct_embed_is_form_due(s)) {
-        s->strength.now = ct_form_close(s->form[0], s->m);
-        ct_embed_tend_form(s);
-    }
     if (!s->rank || !has_worn(s))
         return;
     ct_machine_constraint(s->m); // forms leave J as it was
     ct_embed_choose(s);
+}
+
+void ct_embed_renew(struct ct_embed *s)
+{
+    s->is_renewed = false;
+    if (ct_embed_is_form_due(s)) {
+        s->strength.now = ct_form_close(s->form[0], s->m);
+        ct_embed_tend_form(s);
+    }
+    choose_if_worn(s);
+}
+
+void ct_embed_renew_after_step(struct ct_embed *s, double t, const double *y)
+{
+    const bool is_renewed = s->is_renewed;
+    s->is_renewed = false;
+    if (is_renewed)
+        return;
+    ct_machine_set(s->m, t, y);
+    if (ct_embed_is_form_due(s))
+        ct_embed_tend_form(s);
+    choose_if_worn(s);
 }

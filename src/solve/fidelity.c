@@ -54,16 +54,24 @@ bool ct_fidelity_is_demanding(const struct ct_equations *e, size_t i)
     return v.id == e->total.id || ct_ex_kinds(e->x, v) & ~known;
 }
 
-const bool *ct_fidelity_asked_speeds(struct ct_arena *a, const struct ct_equations *e)
+bool ct_fidelity_find_asked(struct ct_arena *a, const struct ct_equations *e,
+                            const bool **speeds, const bool **places)
 {
-    bool *asked = CT_NEWN(a, bool, e->nu + 1);
+    bool *u = CT_NEWN(a, bool, e->nu + 1), *q = CT_NEWN(a, bool, e->nu + 1);
+    for (size_t k = 0; k < e->nu; k++) // a rotation has no coordinate of its own
+        q[k] = e->u[k].q < 0;
     for (size_t i = 0; i < e->nresult; i++) {
+        const unsigned id = e->result[i].value.id;
         if (ct_fidelity_is_demanding(e, i))
-            return NULL;
-        for (size_t k = 0; k < e->nu; k++)
-            asked[k] |= e->result[i].value.id == e->u[k].symbol.id;
+            return false;
+        for (size_t k = 0; k < e->nu; k++) {
+            u[k] |= id == e->u[k].symbol.id;
+            q[k] |= e->u[k].q >= 0 && id == e->q[e->u[k].q].symbol.id;
+        }
     }
-    return asked;
+    *speeds = u;
+    *places = q;
+    return true;
 }
 
 struct ct_fidelity *ct_fidelity_create(struct ct_arena *a, struct ct_machine *m)
@@ -240,6 +248,22 @@ double ct_fidelity_error(struct ct_fidelity *p, double t, const double *y, const
     if (!ct_fidelity_is_due(&p->record))
         return ct_fidelity_foreseen(&p->record, states);
     return look(p, t, y, e, tolerance, states);
+}
+
+double ct_fidelity_felt(struct ct_fidelity *p, double t, const double *y, const double *e)
+{
+    double most = 0;
+    ct_machine_copy(p->y, y, p->ny);
+    memcpy(p->at, evaluate(p, t), p->record.n * sizeof *p->at);
+    for (size_t i = 0; i < p->ny; i++)
+        p->y[i] = y[i] + e[i];
+    const double *off = evaluate(p, t);
+    for (size_t i = 0; i < p->record.n; i++) {
+        const double way = fabs(off[i] - p->at[i]);
+        if (way > 0)
+            most = ct_larger(most, way / ct_larger(fabs(p->at[i]), p->record.largest[i]));
+    }
+    return most;
 }
 
 void ct_fidelity_accept(struct ct_fidelity *p)

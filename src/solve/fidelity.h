@@ -18,9 +18,10 @@ struct ct_fidelity;
 struct ct_fidelity *ct_fidelity_create(struct ct_arena *a, struct ct_machine *m);
 /// Is output i made of more than time and states, or the total energy?
 bool ct_fidelity_is_demanding(const struct ct_equations *e, size_t i);
-/// Per speed (nu, arena a): is it an output? NULL, for all, where one is demanding: accelerations and reactions feel every
-/// vibration, and the total energy is a check of all that moves.
-const bool *ct_fidelity_asked_speeds(struct ct_arena *a, const struct ct_equations *e);
+/// Per speed (nu, arena a): is it an output, and is the coordinate that moves with it? False, all count, where an output is
+/// demanding: accelerations and reactions feel every vibration, and the total energy is a check of all that moves.
+bool ct_fidelity_find_asked(struct ct_arena *a, const struct ct_equations *e,
+                            const bool **speeds, const bool **places);
 /// A new run begins: nothing is known of the sizes of outputs.
 void ct_fidelity_start(struct ct_fidelity *p);
 /// Root mean square over the outputs of their errors at y (ny) for errors e (ny), where 1 is the tolerance; `states` is the
@@ -29,6 +30,8 @@ void ct_fidelity_start(struct ct_fidelity *p);
 /// ct_amplifier_error.
 double ct_fidelity_error(struct ct_fidelity *p, double t, const double *y, const double *e,
                          const struct ct_tolerance *tolerance, double states, bool is_implicit);
+/// The most that an output, of those that are controlled, changes by for a change e (ny) of y (ny), over its largest value so far.
+double ct_fidelity_felt(struct ct_fidelity *p, double t, const double *y, const double *e);
 /// The last step that was looked at is accepted.
 void ct_fidelity_accept(struct ct_fidelity *p);
 

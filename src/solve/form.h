@@ -21,6 +21,7 @@ struct ct_form {
     double cost; // the same weighed by what an operation takes, in those of straight-line code
     double
         weakest; // of its pivots, at the last solution or close: what strength is, also above 1
+    double volume; // their product, |det J_d| but for a factor; NAN: not found
     // results of check
     const double *a, *lam; // u' (nu), multipliers of the kept rows (rank)
     double left,
@@ -28,7 +29,8 @@ struct ct_form {
     double kappa;    // largest entry of B; NAN: not found
     // results of close
     const double *phi, *v, *dq,
-        *du; // (nrow), (nrow); corrections of the dependent places (nu), else 0
+        *du;             // (nrow), (nrow); corrections of the dependent places (nu), else 0
+    const double *shift; // to be added to du where dq leads, (6.3b); NULL: not found
 };
 
 struct ct_form_kind {
@@ -81,7 +83,7 @@ extern const double ct_form_weakest;
 ///     solved    u', q', pivots of B' M B (nfree, positive), of J_d (npivot), whose sizes times scale are strengths; the
 ///               power if it depends on neither u' nor multipliers
 ///     checked   refined u' (nu) and lam (rank), residuals before and after (nu + rank each), Q, gam (rank), B (nB)
-///     closing   Phi, v (nrow each), corrections dq, du (nu each), pivots of J_d
+///     closing   Phi, v (nrow each), corrections dq, du, shift (nu each), pivots of J_d
 struct ct_form_code {
     const struct ct_listing *listing; // NULL: a form of another kind
     size_t nfree, npivot;

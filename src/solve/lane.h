@@ -11,6 +11,7 @@
 #include "integrate/control.h"
 #include "integrate/repeat.h"
 #include "integrate/watch.h"
+#include "solve/clock.h"
 #include "solve/fidelity.h"
 #include "solve/lanes.h"
 
@@ -60,6 +61,7 @@ struct ct_lane_events {
     double *time;           // of events by time alone  (ntime)
     size_t ntime;
     double pending; // the next of them; INFINITY
+    struct ct_clock clock;
     struct ct_problem problem;
     struct ct_lane_user user;
     struct ct_watch watch;

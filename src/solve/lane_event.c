@@ -116,6 +116,7 @@ bool ct_lane_begin_events(struct ct_lanes *s, int l, const struct ct_run_options
     v->is_event = false;
     if (has_time_events(s))
         find_times(s, v);
+    ct_clock_look(s->arena, s->m, o->duration, &v->clock);
     lend(s, v);
     r->pending = ct_run_next_event(r, 0);
     await(s, l);

@@ -347,7 +347,9 @@ static void plan(struct ct_lanes *s, int l)
         return;
     }
     const double stop = ct_lane_stop(lane), rest = stop - s->t[l];
-    const double h = ct_control_fit(rest, fmin(lane->control.h, lane->longest));
+    const double longest = fmin(fmin(lane->control.h, lane->longest), rest);
+    const double h = ct_control_fit(rest, ct_clock_fit(&lane->events.clock, s->method, s->t[l],
+                                                       longest, lane->tolerance.rtol));
     const bool is_landing = h >= rest;
     s->h[l] = lane->h = h;
     lane->end = is_landing ? stop : s->t[l] + h;
@@ -405,7 +407,7 @@ static void give_up_fast(struct ct_lanes *s, const vec *memory, set wanted)
 {
     for (size_t i = 0; i < s->e->nmemory; i++) {
         const bool is_half = s->e->memory[i].kind == CT_MEMORY_QUATERNION;
-        for (int l = 0; l < W && ct_memory_is_followed(&s->e->memory[i]); l++) {
+        for (int l = 0; l < W && ct_memory_limits_steps(&s->e->memory[i]); l++) {
             const double turn = (is_half ? 2 : 1) * fabs(s->memory.out[i][l] - memory[i][l]);
             if (ct_has_lane(wanted, l) && turn > ct_lane_most_turn)
                 ct_lane_give_up(s, l);

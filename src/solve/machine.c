@@ -107,14 +107,14 @@ struct ct_machine *ct_machine_create(struct ct_arena *a, const struct ct_model *
     return m;
 }
 
-enum { NPROGRAM = 17 };
+enum { NPROGRAM = 18 };
 
 static void list_programs(struct ct_machine *m, struct ct_program *list[NPROGRAM])
 {
     struct ct_program *const all[NPROGRAM]
         = {&m->solved,  &m->motion,   &m->constraint, &m->result,  &m->power,  &m->energy,
            &m->root,    &m->memory,   &m->momentum,   &m->driver,  &m->wanted, &m->residual,
-           &m->tangent, &m->validity, &m->turns,      &m->carried, &m->poised};
+           &m->tangent, &m->validity, &m->turns,      &m->carried, &m->poised, &m->clock};
     memcpy(list, all, sizeof all);
 }
 

@@ -45,6 +45,7 @@ struct ct_machine {
         poised,   // of the same: x, x' by shape
         energy,   // kinetic, potential
         root,     // g of each mode
+        clock,    // functions of time alone
         memory,   // next values; of whole turns their present ones
         turns,    // of those: at a start, from the angles that are remembered
         momentum, // dT/du, and the same of `kept` where there is any
@@ -146,8 +147,9 @@ void ct_memory_start(struct ct_machine *m);
 void ct_quaternion_of(const double *R, double *p);
 /// Memories follow the motion; offsets stay. Right for angles and rotations that have turned less than half a turn.
 void ct_memory_follow(struct ct_machine *m);
-/// How fast angles and rotations that are followed turn at t, y [rad/s], the largest, from a difference over dt. 0
-/// where none is followed.
+/// Are there angles or rotations that are found from their last values?
+bool ct_memory_limits(const struct ct_equations *e);
+/// How fast those turn at t, y [rad/s], the largest, from a difference over dt. 0 where there are none.
 double ct_memory_turning(struct ct_machine *m, double t, const double *y, double dt);
 
 #endif

@@ -65,10 +65,10 @@ void ct_memory_follow(struct ct_machine *m)
     }
 }
 
-static bool turns(const struct ct_machine *m)
+bool ct_memory_limits(const struct ct_equations *e)
 {
-    for (size_t i = 0; i < m->e->nmemory; i++)
-        if (ct_memory_is_followed(&m->e->memory[i]))
+    for (size_t i = 0; i < e->nmemory; i++)
+        if (ct_memory_limits_steps(&e->memory[i]))
             return true;
     return false;
 }
@@ -77,7 +77,7 @@ double ct_memory_turning(struct ct_machine *m, double t, const double *y, double
 {
     const size_t n = m->e->nmemory;
     double most = 0, *now = m->turned;
-    if (!turns(m))
+    if (!ct_memory_limits(m->e))
         return 0;
     memcpy(m->ahead, y, (m->nq + m->nu) * sizeof *y);
     ct_machine_set(m, t, m->ahead);
@@ -90,7 +90,7 @@ double ct_memory_turning(struct ct_machine *m, double t, const double *y, double
     ct_program_run(&m->memory, m->input);
     for (size_t i = 0; i < n; i++) {
         const bool is_half = m->e->memory[i].kind == CT_MEMORY_QUATERNION;
-        if (ct_memory_is_followed(&m->e->memory[i]))
+        if (ct_memory_limits_steps(&m->e->memory[i]))
             most = fmax(most, (is_half ? 2 : 1) * fabs(m->memory.out[i] - now[i]) / dt);
     }
     return most;

@@ -72,8 +72,7 @@ struct times {
     size_t n, cap;
 };
 
-// Outcome of mode i at time t, the modes inside its g settled for that time.
-static bool outcome(struct ct_machine *m, size_t i, double t, double *g)
+void ct_modes_of_time(struct ct_machine *m, double t)
 {
     m->input[0] = t;
     for (size_t level = 0; level < MOST_LEVELS; level++) {
@@ -82,6 +81,12 @@ static bool outcome(struct ct_machine *m, size_t i, double t, double *g)
             if (m->e->mode[k].is_time)
                 m->input[m->at_mode + k] = side_of(m->e->mode[k].op, m->root.out[k]);
     }
+}
+
+// Outcome of mode i at time t, the modes inside its g settled for that time.
+static bool outcome(struct ct_machine *m, size_t i, double t, double *g)
+{
+    ct_modes_of_time(m, t);
     *g = m->root.out[i];
     return side_of(m->e->mode[i].op, *g) != 0;
 }

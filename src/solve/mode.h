@@ -8,6 +8,9 @@
 /// (nq + nu; NULL: time alone moves).
 void ct_modes_start(struct ct_machine *m, double t, const double *y, const double *dy);
 
+/// t into the input, and the modes of time as they are then.
+void ct_modes_of_time(struct ct_machine *m, double t);
+
 /// A state mode whose root function is zero here and that the motion along dy leaves to the side where the mode is
 /// wrong: forces on both sides lead back. Its index, or -1.
 int ct_modes_find_stuck(struct ct_machine *m, double t, const double *y, const double *dy);

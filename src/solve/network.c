@@ -244,6 +244,7 @@ static struct ct_form *create(struct ct_arena *a, struct ct_machine *m,
     f->form.lam = f->x + m->nu;
     f->form.phi = m->phi;
     f->form.v = m->v;
+    f->form.volume = NAN;
     f->form.dq = f->dq;
     f->form.du = f->du;
     return &f->form;

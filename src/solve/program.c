@@ -191,6 +191,7 @@ static void compile_rest(struct ct_arena *a, struct ct_machine *m, const struct 
     const ct_ex energies[] = {e->kinetic, ct_ex_add(e->x, e->potential, e->strain)};
     compile(a, m, in, result.e, result.n, &m->result);
     compile(a, m, in, root.e, root.n, &m->root);
+    compile(a, m, in, e->clock, e->nclock, &m->clock);
     compile(a, m, in, memory.e, memory.n, &m->memory);
     compile(a, m, in, turns.e, turns.n, &m->turns);
     compile(a, m, in, momentum.e, momentum.n, &m->momentum);
@@ -217,8 +218,8 @@ static void compile_rest(struct ct_arena *a, struct ct_machine *m, const struct 
     compile(a, m, in, &e->power, ct_ex_is_zero(e->power) ? 0 : 1, &m->power);
     // seldom run: not worth native code
     struct ct_program *const all[]
-        = {&m->result, &m->root,   &m->turns,    &m->momentum, &m->driver,
-           &m->wanted, &m->energy, &m->validity, &m->carried,  &m->poised};
+        = {&m->result, &m->root,     &m->turns,   &m->momentum, &m->driver, &m->wanted,
+           &m->energy, &m->validity, &m->carried, &m->poised,   &m->clock};
     for (size_t i = 0; i < COUNT(all); i++)
         if (all[i]->nout)
             ct_program_use(a, all[i], NULL);

@@ -6,11 +6,13 @@
 //     change.c    the choice of the method, when the motion turns stiff
 //     length.c    what is said of runs that take long
 //     ending.c    and of those that end before their time
+//     blunt.c     outputs that have few digits
 //     beam_watch.c  beams that leave what their models hold for
 #ifndef CT_SOLVE_RUN_H
 #define CT_SOLVE_RUN_H
 
 #include "integrate/stiffness.h"
+#include "solve/clock.h"
 #include "solve/fidelity.h"
 #include "solve/mode.h"
 #include "solve/simulate.h"
@@ -27,12 +29,14 @@ struct ct_run {
     struct ct_embed *s;
     size_t ny;
     double *y, *dy, *stage, *scratch, *value, *next;
-    double *sign;  // of each state mode's root function at the last event
-    double *event; // times
+    double *largest; // of each result, over the samples
+    double *sign;    // of each state mode's root function at the last event
+    double *event;   // times
     size_t nevent;
     int *root_of; // state modes, in order
     int nroot;
     bool needs_lam, has_power; // needs_lam: the power does
+    bool has_turns;            // angles or rotations found from their last values
     bool has_lam_results;      // outputs or indicators depend on multipliers
     struct ct_jump *jump;
     struct ct_fidelity *fidelity; // of outputs; NULL: none is controlled
@@ -40,6 +44,7 @@ struct ct_run {
     struct ct_run_report *report;
     double energy0, energy_scale;
     struct ct_singular *singular;
+    struct ct_clock clock;
     double pending;            // time of the event ahead; INFINITY if there is none
     double turning, t_turning; // how fast followed angles turn [rad/s], and when that was
     bool started;
@@ -55,9 +60,12 @@ struct ct_run {
     double explicit_pace;             // what was gained before
     double spent;                     // by the last trial
     bool is_suspect;                  // steps ended to think of another method
-    double t_before, last_event;      // times
-    size_t ngiven;                    // samples
-    double t_sample;                  // the last one
+    bool is_to_follow;                // or to hold them to the phase of vibrations
+    bool amplifies;                   // outputs do, at the start
+    double felt; // part of an output that vibrations make which an explicit method follows
+    double t_before, last_event; // times
+    size_t ngiven;               // samples
+    double t_sample;             // the last one
 };
 
 /// The time to evaluate at for t.
@@ -121,6 +129,9 @@ void ct_run_foresee(void *user, double t, const double *y, double step, double t
 extern const double ct_run_many_steps;
 /// Notes on what holds a run up that would take more steps than are allowed.
 void ct_run_explain_count(struct ct_run *r);
+/// At the end of a run, which may change `value`: the result with the fewest digits, one rounding of states is *part (out) of its
+/// largest value at samples; -1 where steps can be held to `wanted` of all.
+int ct_run_find_blunt(struct ct_run *r, double wanted, double *part);
 /// Notes on why steps have ended, after its error.
 void ct_run_explain_end(struct ct_run *r);
 /// From start to end, with another method from where that pays.

@@ -69,21 +69,22 @@ static void find_still(struct ct_machine *m, struct ct_arena *a, const struct ct
 
 // ---- the start ------------------------------------------------------------------------------------------
 
-// Speeds at the place found: those of what stays as before, beams at rest in their frames, the others as the loops ask.
-static void find_speeds(struct ct_arena *a, const struct ct_model *model,
-                        const struct ct_equations *e, const bool *still, struct ct_start *start)
+// Speeds y (nu, in/out) of joints and bodies that do not stay: as the loops ask, nearest to those of now; beams at rest in their
+// frames. False if some loop asks for more.
+static bool move_joints(struct ct_arena *a, struct ct_machine *m, const bool *still, double *y)
 {
-    struct ct_machine *m = ct_machine_create(a, model, e);
-    const size_t nrow = e->nrow, nu = e->nu;
-    double *y = CT_NEWN(a, double, m->nq + nu + 1), *A = CT_NEWN(a, double, nrow *nu + 1),
-           *b = CT_NEWN(a, double, nrow + nu + 1);
+    const double rest
+        = 1e-9; // of what loops ask for, far above rounding: less is not left to beams
+    const size_t nrow = m->nrow, nu = m->nu;
+    double *A = CT_NEWN(a, double, nrow *nu + 1), *b = CT_NEWN(a, double, nrow + nu + 1);
     int *iwork = CT_NEWN(a, int, nu + 1), *free = CT_NEWN(a, int, nu + 1);
     double *work = CT_NEWN(a, double, ct_lstsq_work((int)nrow, (int)nu + 1));
     int n = 0;
-    ct_start_apply(start, m, y);
+    ct_machine_set(m, 0, y);
     ct_machine_constraint(m);
+    const double asked = ct_vector_largest(m->v, nrow);
     for (size_t k = 0; k < nu; k++) {
-        if (still[k] || e->u[k].beam)
+        if (still[k] || m->e->u[k].beam)
             continue;
         memcpy(A + nrow * (size_t)n, m->J + nrow * k, nrow * sizeof *A);
         free[n++] = (int)k;
@@ -94,6 +95,42 @@ static void find_speeds(struct ct_arena *a, const struct ct_model *model,
         ct_lstsq(b, A, (int)nrow, n, (int)nrow, ct_rank_tolerance, iwork, work);
     for (int k = 0; k < n; k++)
         y[m->nq + (size_t)free[k]] += b[k];
+    ct_machine_set(m, 0, y);
+    ct_machine_constraint(m);
+    return ct_vector_largest(m->v, nrow) <= rest * asked;
+}
+
+// The same where beams must bend: everything moves with the equilibrium s.
+static bool move_all(struct ct_arena *a, struct ct_balance *s, struct ct_machine *m,
+                     const bool *still, double *y)
+{
+    double *u = y + m->nq;
+    for (size_t k = 0; k < m->nu; k++)
+        u[k] = still[k] ? u[k] : 0;
+    ct_machine_set(m, 0, y);
+    ct_machine_constraint(m);
+    return ct_balance_follow(s, a, m->v, u);
+}
+
+// Speeds at the place found.
+static void find_speeds(struct ct_arena *a, const struct ct_model *model, struct ct_balance *s,
+                        const struct ct_equations *e, const bool *still, struct ct_start *start)
+{
+    struct ct_machine *m = ct_machine_create(a, model, e);
+    const size_t ny = m->nq + m->nu + 1;
+    double *y = CT_NEWN(a, double, ny), *first = CT_NEWN(a, double, ny);
+    ct_start_apply(start, m, y);
+    memcpy(first, y, ny * sizeof *y);
+    if (!move_joints(a, m, still, y) && e->nrow == s->e->nrow && e->nu == s->e->nu
+        && move_all(a, s, m, still, first)) {
+        memcpy(y, first, ny * sizeof *y);
+        start->elastic_rate = CT_NEWN(a, double, start->nelastic + 1);
+        size_t n = 0;
+        for (size_t i = 0; i < e->build->nflexible; i++)
+            for (int j = 0; j < e->build->flexible[i].nelastic; j++)
+                start->elastic_rate[n++]
+                    = y[m->nq + (size_t)e->build->flexible[i].elastic[j].u];
+    }
     ct_machine_set(m, 0, y);
     ct_program_run(&m->result, m->input);
     for (size_t i = 0; i < start->n; i++)
@@ -182,6 +219,6 @@ bool ct_settle(struct ct_ctx *ctx, struct ct_arena *a, const struct ct_model *mo
             first->instance.name);
     take(&s, a, start);
     if (e->nrow)
-        find_speeds(a, model, moving, still, start);
+        find_speeds(a, model, &s, moving, still, start);
     return true;
 }

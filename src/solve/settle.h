@@ -17,7 +17,7 @@ bool *ct_settle_first(struct ct_arena *a, const struct ct_model *model);
 ///
 /// e       in      for held drivers (formulate.h: `held`), all joints measured, on trees through joints with those given first
 /// moving  in      the same on the same trees, drivers not held: for speeds; used in closed loops alone
-/// start   in/out  elastic; in closed loops q and u of all coordinates, too
+/// start   in/out  elastic; in closed loops q and u of all coordinates, too, and elastic_rate where these move by bending alone
 ///
 /// Newton's method with the exact derivative.
 /// Errors: CT_E_SETTLE when no equilibrium is found.

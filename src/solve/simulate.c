@@ -91,6 +91,12 @@ static double output_error(void *user, double t, const double *y, const double *
                              r->method->is_implicit);
 }
 
+static double felt(void *user, double t, const double *y, const double *e)
+{
+    struct ct_run *r = user;
+    return ct_fidelity_felt(r->fidelity, ct_run_before(r, t), y, e);
+}
+
 static double amplified_error(void *user, double t, const double *y, const double *e,
                               const struct ct_tolerance *tolerance)
 {
@@ -149,7 +155,7 @@ double ct_run_longest_step(void *user)
 
 bool ct_run_is_followed(struct ct_run *r, double t, const double *y)
 {
-    if (!r->e->nmemory)
+    if (!r->has_turns)
         return true;
     const double now = turning(r, t, y);
     if ((t - r->t_turning) * fmax(now, r->turning) > most_turn)
@@ -163,7 +169,7 @@ static enum ct_eval accepted(void *user, double t, const double *y, const double
 {
     struct ct_run *r = user;
     const double turning_before = r->turning, t_before = r->t_turning;
-    if (!r->m->nrow && !r->e->nmemory) { // most often
+    if (!r->m->nrow && !r->has_turns) { // most often
         if (r->fidelity)
             ct_fidelity_accept(r->fidelity);
         return CT_EVAL_OK;
@@ -178,14 +184,12 @@ static enum ct_eval accepted(void *user, double t, const double *y, const double
     }
     if (r->fidelity)
         ct_fidelity_accept(r->fidelity);
-    const bool has_rows = r->method->is_implicit && r->m->nrow > 0;
-    if (r->e->nmemory || has_rows)
+    if (r->has_turns) { // sums of angles are found when they are asked for
         ct_machine_set(r->m, ct_run_before(r, t), y);
-    ct_memory_follow(r->m);
-    if (has_rows) { // its steps may pass without a projection
-        ct_machine_constraint(r->m);
-        ct_embed_renew(r->s);
+        ct_memory_follow(r->m);
     }
+    if (r->method->is_implicit && r->m->nrow) // its steps may pass without a projection
+        ct_embed_renew_after_step(r->s, ct_run_before(r, t), y);
     return CT_EVAL_OK;
 }
 
@@ -200,6 +204,7 @@ static void find_needs(struct ct_run *r)
 {
     const struct ct_equations *e = r->e;
     r->has_power = !ct_ex_is_zero(e->power);
+    r->has_turns = ct_memory_limits(e);
     r->needs_lam = uses(e, e->power, CT_SYM_LAM);
     for (size_t i = 0; i < e->nresult; i++)
         r->has_lam_results |= uses(e, e->result[i].value, CT_SYM_LAM);
@@ -250,6 +255,7 @@ struct ct_run *ct_run_prepare(struct ct_ctx *ctx, struct ct_arena *a,
     r->scratch = CT_NEWN(a, double, 3 * r->m->nu + 2 * e->ndriver + r->m->nrow + 1);
     r->jump = ct_jump_create(a, r->m);
     r->value = CT_NEWN(a, double, e->nresult + 1);
+    r->largest = CT_NEWN(a, double, e->nresult + 1);
     find_needs(r);
     r->fidelity = ct_fidelity_create(a, r->m);
     return r;
@@ -338,6 +344,8 @@ static bool give_row(struct ct_run *r, double t, const double *y)
             return ct_error(r->ctx, (struct ct_mark){.file = r->model->file}, CT_E_SINGULAR,
                             "the output '%s' has no finite value at t = %.9g",
                             r->e->result[i].name, t);
+    for (size_t i = 0; i < r->e->nresult; i++)
+        r->largest[i] = fmax(r->largest[i], fabs(r->value[i]));
     keep_ledger(r, y);
     ct_run_watch_sample(r, t);
     r->ngiven++;
@@ -472,17 +480,22 @@ static bool looks_at_steps(const struct ct_run *r)
     return r->o->progress || r->o->stiff_method || r->m->carried.nout;
 }
 
-// Speeds that are followed for themselves; NULL: all.
-static const bool *find_asked_speeds(struct ct_run *r)
+// Speeds and places that are followed for themselves; where nothing is told all are.
+static void find_asked(struct ct_run *r, struct ct_problem *p)
 {
     ct_machine_set(r->m, 0, r->y);
-    if (r->nroot)
-        return NULL;
-    return ct_fidelity_asked_speeds(r->arena, r->e);
+    if (!r->nroot)
+        ct_fidelity_find_asked(r->arena, r->e, &p->asked_speeds, &p->asked_places);
 }
 
 // Steps of the implicit method are held to this part of what is wanted.
 static const double held_to = 0.1;
+
+static double seen_step(void *user, double t, double h)
+{
+    const struct ct_run *r = user;
+    return ct_clock_fit(&r->clock, r->method, t, h, r->o->rtol);
+}
 
 bool ct_run_simulate(struct ct_run *r, const struct ct_run_options *o,
                      struct ct_run_report *report)
@@ -501,6 +514,7 @@ bool ct_run_simulate(struct ct_run *r, const struct ct_run_options *o,
     *report = (struct ct_run_report){
         .method = o->method, .changed_at = NAN, .returned_at = NAN, .blunt = -1};
     report->final = CT_NEWN(r->arena, double, r->e->nresult + 1);
+    memset(r->largest, 0, r->e->nresult * sizeof *r->largest);
     ct_singular_start(r->singular);
     if (r->fidelity)
         ct_fidelity_start(r->fidelity);
@@ -511,6 +525,8 @@ bool ct_run_simulate(struct ct_run *r, const struct ct_run_options *o,
     r->report = report;
     r->nevent = ct_time_events(r->arena, r->m, o->method->order, 0, o->duration, &r->event);
     r->pending = ct_run_next_event(r, 0);
+    if (o->step == 0)
+        ct_clock_look(r->arena, r->m, o->duration, &r->clock);
     if (!ct_run_tables_reach(r, 0))
         return false;
     ct_modes_start(r->m, 0, r->y, r->dy);
@@ -524,16 +540,17 @@ bool ct_run_simulate(struct ct_run *r, const struct ct_run_options *o,
                            .nu = (int)r->m->nu,
                            .dae = o->method->is_implicit ? ct_dae_create(r->arena, r->s) : NULL,
                            .watched = watched,
-                           .asked_speeds = find_asked_speeds(r),
                            .accuracy = o->wanted,
                            .duration = o->duration,
                            .groups = ct_run_groups(r),
                            .output_error = r->fidelity ? output_error : NULL,
+                           .felt = r->fidelity ? felt : NULL,
                            .amplified_error = r->fidelity ? amplified_error : NULL,
                            .rhs = rhs,
                            .project = has_constraints(r) ? project : NULL,
                            .accepted = accepted,
-                           .longest_step = r->e->nmemory ? ct_run_longest_step : NULL,
+                           .longest_step = r->has_turns ? ct_run_longest_step : NULL,
+                           .seen_step = r->e->nclock ? seen_step : NULL,
                            .singular_in = r->m->nrow ? singular_in : NULL,
                            .set_crossing = set_crossing,
                            .crossed = crossed,
@@ -543,6 +560,7 @@ bool ct_run_simulate(struct ct_run *r, const struct ct_run_options *o,
                            .root = ct_run_root,
                            .next_time_event = ct_run_next_event,
                            .event = ct_run_event};
+    find_asked(r, &p);
     const struct ct_integrate_options io
         = {.t1 = o->duration,
            .rtol = o->rtol,
@@ -557,6 +575,8 @@ bool ct_run_simulate(struct ct_run *r, const struct ct_run_options *o,
            .many_steps = ct_run_many_steps,
            .at_step = looks_at_steps(r) ? ct_run_at_step : NULL};
     const bool ok = ct_run_march(r, &p, io);
+    ct_machine_set(r->m, ct_run_before(r, report->stats.last_time), r->y);
+    ct_memory_follow(r->m);
     if (!ok)
         ct_run_explain_end(r);
     report->rank = r->s->rank;
@@ -565,10 +585,8 @@ bool ct_run_simulate(struct ct_run *r, const struct ct_run_options *o,
     report->factorizations = r->s->factorizations + report->stats.factorizations;
     report->singular = r->singular;
     report->y = r->y;
-    if (r->fidelity)
-        report->blunt
-            = ct_fidelity_blunt(r->fidelity, ct_run_before(r, report->stats.last_time), r->y,
-                                held_to * o->wanted, &report->rounding);
+    if (ok)
+        report->blunt = ct_run_find_blunt(r, held_to * o->wanted, &report->rounding);
     report->energy_scale = r->energy_scale;
     if (r->energy_scale > 0)
         report->energy_drift /= r->energy_scale;

@@ -61,6 +61,7 @@ struct ct_run_report {
         double left_at; // the same when the mean passed the limit, too; negative: it never did
         double off_since; // from when on the error foretold is beyond it; negative: it is not
         struct ct_swings swings;                     // that foretell it
+        struct ct_recoil_run *recoil;                // the base of theirs that is not driven
     } * validity;                                    // by indicator of the equations
     struct ct_slope_report *bend;                    // by bent beam of the equations
     double energy_scale;                             // the largest energy

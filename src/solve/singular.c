@@ -25,6 +25,7 @@ struct ct_singular *ct_singular_create(struct ct_arena *arena, struct ct_machine
 void ct_singular_start(struct ct_singular *w)
 {
     w->in = INFINITY;
+    w->was_told = false;
     w->reach = w->most = w->part = w->t = 0;
     w->switches = -1;
     w->npassed = 0;
@@ -92,14 +93,22 @@ static double time_to_singular(struct ct_singular *w, const struct sight *a, dou
     return s - pivot / slope;
 }
 
-// Fixed steps cross nothing, and are told only whether pivots are to be sought at every evaluation. Where J loses rank its kept
-// rows do, and a pivot of the form vanishes: while the weakest is what it was at the last look, there is no need of another.
-static bool is_told_by_form(const struct ct_singular *w)
+// Where J loses rank its kept rows do, and a pivot of the form vanishes: while its pivots are what they were at the last look,
+// there is no need of another. Fixed steps cross nothing, and are told only whether pivots are to be sought at every evaluation.
+// With step control it is their product, too, that must hardly have changed, and no position may be near by what was seen then:
+// so little is neither lost of the largest pivot nor of the first sight of a position.
+static bool is_told_by_form(const struct ct_singular *w, double dt, bool is_fixed)
 {
+    const double hardly = 1.05, steps_away = 8;
     const struct ct_embed *s = w->s;
-    return s->has_form && s->nweak == 0 && s->switches == w->switches && s->nmade == w->nmade
-        && w->part > foreseen_pivot
-        && ct_is_within(s->form[0]->weakest / w->weakest, ct_same_strength);
+    if (!s->has_form || s->nweak || s->switches != w->switches || s->nmade != w->nmade)
+        return false;
+    const struct ct_form *f = s->form[0];
+    if (w->part > foreseen_pivot && is_fixed)
+        return ct_is_within(f->weakest / w->weakest, ct_same_strength);
+    const bool is_away = is_fixed || w->part > foreseen_pivot || w->in > steps_away * dt;
+    return w->part > near_pivot && is_away && ct_is_within(f->weakest / w->weakest, hardly)
+        && ct_is_within(f->volume / w->volume, hardly);
 }
 
 bool ct_singular_foresee(struct ct_singular *w, double t, const double *y, const double *dy,
@@ -107,8 +116,13 @@ bool ct_singular_foresee(struct ct_singular *w, double t, const double *y, const
 {
     const struct sight ahead = {t, pending, y, dy};
     const double dt = t - w->t;
-    if (!ct_embed_has_pivot(w->s) || !(dt > 0) || (is_fixed && is_told_by_form(w)))
+    if (!ct_embed_has_pivot(w->s) || !(dt > 0))
         return true;
+    if (is_told_by_form(w, dt, is_fixed)) {
+        w->t = t;
+        w->was_told = true;
+        return true;
+    }
     look_at(w, ct_time_before(t, pending), y);
     const bool is_far = w->most > 0
                      && ct_embed_pivot_is_between(w->s, foreseen_pivot * w->most,
@@ -118,13 +132,15 @@ bool ct_singular_foresee(struct ct_singular *w, double t, const double *y, const
     // after another choice of rows and columns the pivot is not to be compared with the last one
     const bool is_comparable = w->s->switches == w->switches;
     const bool was_unforeseen = is_comparable && isinf(w->in) && w->part > near_pivot;
-    if (!is_fixed && part < near_pivot && was_unforeseen)
+    if (!is_fixed && part < (w->was_told ? singular_pivot : near_pivot) && was_unforeseen)
         return false;
     w->t = t;
+    w->was_told = false;
     w->part = part;
     w->switches = w->s->switches;
     w->nmade = w->s->nmade;
     w->weakest = w->s->has_form ? w->s->form[0]->weakest : 0;
+    w->volume = w->s->has_form ? w->s->form[0]->volume : NAN;
     w->most = fmax(w->most, now);
     w->in = INFINITY;
     w->s->is_delicate = part < near_pivot;

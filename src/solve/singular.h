@@ -20,12 +20,13 @@ struct ct_singular_position {
 struct ct_singular {
     struct ct_machine *m;
     struct ct_embed *s;
-    double in;            // time to the position ahead; INFINITY: there is none
-    double reach;         // time before it in which f is better not computed
-    double most, part, t; // the largest pivot so far, the last one against it, and its time
-    bool keeps_rows;      // a step does, and there are more than it needs
-    long switches, nmade; // of the embedding, there
-    double weakest;       // pivot of its form there
+    double in;              // time to the position ahead; INFINITY: there is none
+    double reach;           // time before it in which f is better not computed
+    double most, part, t;   // the largest pivot so far, the last one against it, and its time
+    bool keeps_rows;        // a step does, and there are more than it needs
+    bool was_told;          // the form has told of the last state that nothing has changed
+    long switches, nmade;   // of the embedding, there
+    double weakest, volume; // of its form there
     long npassed;
     struct ct_singular_position *passed; // the first of them (CT_MOST_SINGULAR)
     double *y, *d, *x;                   // (ny), (nu), (nrow)

@@ -37,8 +37,12 @@ void ct_start_apply(const struct ct_start *s, struct ct_machine *m, double *y)
     }
     ct_start_beams(e, m->model->value, s->elastic ? NULL : y, y + m->nq);
     for (size_t i = 0, k = 0; s->elastic && i < e->build->nflexible; i++)
-        for (int j = 0; j < e->build->flexible[i].nelastic; j++)
-            y[e->build->flexible[i].elastic[j].q] = s->elastic[k++];
+        for (int j = 0; j < e->build->flexible[i].nelastic; j++, k++) {
+            const struct ct_elastic *c = &e->build->flexible[i].elastic[j];
+            y[c->q] = s->elastic[k];
+            if (s->elastic_rate)
+                y[m->nq + (size_t)c->u] = s->elastic_rate[k];
+        }
     ct_machine_normalise(m, y);
     ct_machine_set(m, 0, y);
     ct_modes_start(m, 0, y, NULL);

@@ -85,24 +85,28 @@ static void compile_closing(struct unrolled *f, struct ct_machine *m, const stru
         push(&l, &m->e->row[i].v, 1);
     push(&l, c->dq, m->nu);
     push(&l, c->du, m->nu);
+    push(&l, c->shift, m->nu);
     push(&l, c->pivot, c->npivot);
     ct_machine_compile(f->form.arena, m, x, l.e, l.n, &f->closing);
     f->form.phi = f->closing.out;
     f->form.v = f->form.phi + m->nrow;
     f->form.dq = f->form.v + m->nrow;
     f->form.du = f->form.dq + m->nu;
+    f->form.shift = f->form.du + m->nu;
 }
 
 // ---- evaluation -----------------------------------------------------------------------------------------
 
 static double strength(struct unrolled *f, const double *pivot)
 {
-    double least = INFINITY;
+    double least = INFINITY, volume = 1;
     for (size_t i = 0; i < f->c->npivot; i++) {
         const double size = fabs(pivot[i]) * f->c->scale[i];
         least = size < least ? size : least;
+        volume *= size;
     }
     f->form.weakest = least;
+    f->form.volume = volume;
     return least < 1 ? least : 1;
 }
 
@@ -150,7 +154,7 @@ static double close(struct ct_form *form, struct ct_machine *m)
 {
     struct unrolled *f = unrolled_of(form);
     ct_program_run(&f->closing, m->input);
-    return strength(f, form->du + m->nu);
+    return strength(f, form->shift + m->nu);
 }
 
 static void destroy(struct ct_form *form, struct ct_machine *m)

@@ -32,6 +32,12 @@ sed -n -e '/"tolerance"/p' -e '/"steps"/p' one.json
 echo '-- a finer ladder, of two digits each'
 "$COTREE" accuracy "$m" --until 1 --samples 2 --method dop853 --per-decade 3 -o fine.csv --quiet
 cut -d, -f2 fine.csv | sed -n '2,6p;$p'
+echo '-- the automatic choice beside others'
+"$COTREE" accuracy "$SYSTEMS/stiff_spring_pendulum/model.yaml" --until 0.2 --samples 3 --method radau5,auto --tolerance 1e-4 -o auto.csv --quiet
+cut -d, -f1,2 auto.csv
+"$COTREE" simulate "$SYSTEMS/stiff_spring_pendulum/model.yaml" --until 0.2 --samples 3 --tolerance 1e-4 -o run.csv --summary run.json --quiet
+awk -F, 'NR == FNR { if ($1 ~ /"steps"/) { split($1, v, ": "); steps = v[2] + 0 } next } $1 == "auto" { print $7 == steps ? "the steps of simulate" : $7 " steps, " steps " of simulate" }' run.json auto.csv
+rm auto.csv run.csv run.json
 echo '-- and of fixed steps, of any method: errors fall with the order'
 "$COTREE" accuracy "$m" --until 1 --samples 2 --method dopri5,rk4 --step 0.1 --per-decade 2 -o fine.csv --quiet
 cut -d, -f1,2,7 fine.csv

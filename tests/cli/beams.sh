@@ -5,8 +5,8 @@ printf 'translation: [beam, mass]\nrotation: [beam]\n' >absolute.yaml
 "$COTREE" check "$m" | grep -E '^(coordinates|tree|translation|rotation|beam|left)'
 "$COTREE" check "$m" --tree absolute.yaml | grep -E '^(coordinates|tree|branches)'
 grep -v 'energy.total' "$m" >motion.yaml # which is zero
-"$COTREE" simulate motion.yaml --quiet --until 0.2 --tolerance 1e-10 -o joints.csv
-"$COTREE" simulate motion.yaml --quiet --until 0.2 --tolerance 1e-10 --tree absolute.yaml -o absolute.csv
+"$COTREE" simulate motion.yaml --quiet --until 0.2 --tolerance 1e-10 -o joints.csv 2>>warnings.txt
+"$COTREE" simulate motion.yaml --quiet --until 0.2 --tolerance 1e-10 --tree absolute.yaml -o absolute.csv 2>>warnings.txt
 difference joints.csv absolute.csv | awk '{ print ($1 < 1e-7) ? "same motion" : $0 }'
 "$COTREE" graph "$m" --format dot | grep -c 'flexible arm.*color="#009E73"'
 echo '-- columns of signals; the shear at the tip is what holds the particle'
@@ -22,7 +22,7 @@ outputs:
   - beam.tip.force
   - {name: balance, value: beam.tip.force.z + tip.force.z}
 END
-"$COTREE" simulate signals.yaml --quiet --until 0.2 --samples 3 -o signals.csv
+"$COTREE" simulate signals.yaml --quiet --until 0.2 --samples 3 -o signals.csv 2>>warnings.txt
 head -n 1 signals.csv
 awk -F, 'NR > 1 { worst = $NF * $NF > worst ? $NF * $NF : worst } END { print (worst < 1e-20) ? "balanced" : worst }' signals.csv
 echo '-- signals that are not there'

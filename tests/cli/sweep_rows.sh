@@ -53,6 +53,19 @@ simulation: {duration: 3}
 END
 check bouncing/model.yaml 2 k=1e3:1e5:3
 same_bytes bouncing/model.yaml 2 k=1e3:1e5:9
+# at rest until a short push
+mkdir -p struck
+cat >struck/model.yaml <<'END'
+cotree: 1
+parameters: {at: 8}
+gravity: [0, -9.81, 0]
+bodies: {bar: {mass: 1, inertia: 0.02, com: [0, -0.3, 0]}}
+joints:
+  j: {type: revolute, from: ground, to: bar, damping: 0.1, effort: "9*exp(-((t - at)/0.03)^2)"}
+outputs: [j.q, j.u]
+simulation: {duration: 10}
+END
+check struck/model.yaml 10 at=3:9:4
 # a loop with a stop and dry friction, switched by time, too
 mkdir -p stopped
 sed 's/guide: {type: prismatic,/& effort: "-if(guide.u > 0, f, -f) - if(guide.q < 0.2, 4000*(guide.q - 0.2), 0) + if(t > 0.25, 20, 0)",/

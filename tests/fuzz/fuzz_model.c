@@ -17,7 +17,7 @@ static void check_diagnostics(const struct ct_ctx *ctx, size_t size)
 {
     for (size_t i = 0; i < ctx->ndiagnostic; i++) {
         const struct ct_diagnostic *d = &ctx->diagnostic[i];
-        require(d->text && (d->severity == CT_SEVERITY_NOTE) == (d->code == 0));
+        require(d->text && (d->severity != CT_SEVERITY_ERROR || d->code != 0));
         require(d->code != CT_E_INTERNAL);
         require(d->mark.file && d->mark.line >= 0 && d->mark.column >= 0);
         require((size_t)d->mark.line <= size && (size_t)d->mark.column <= size);

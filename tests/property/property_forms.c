@@ -192,6 +192,65 @@ static void forms_are_not_used_where_they_are_weak(void **state)
     assert_true(pivoted > 10);
 }
 
+// What rows leave after a projection of y (ny, in and out), over what rounding would leave.
+static double left_after_projection(struct variant *v, double *y)
+{
+    struct ct_machine *m = v->m;
+    const double u = fmax(1, largest_of(y + m->nq, m->nu));
+    if (ct_embed_project(v->s, 0, y) != CT_EVAL_OK)
+        return INFINITY;
+    ct_machine_set(m, 0, y);
+    ct_machine_constraint(m);
+    return fmax(largest_of(m->phi, m->nrow), largest_of(m->v, m->nrow) / u) / 1e-12;
+}
+
+// From any distance: near ones are corrected with one evaluation, from far ones the terms of second order would be seen.
+static bool projections_end_on_rows_of(struct system *s, const struct ct_formulate_options *o,
+                                       size_t *n)
+{
+    struct variant v;
+    struct ct_start place;
+    bool ok = true;
+    variant_open(s, o, &v);
+    variant_set(&v, &s->start, 0);
+    ct_machine_constraint(v.m);
+    assert_true(ct_embed_choose(v.s));
+    double *y = CT_NEWN(v.arena, double, v.m->nq + v.m->nu + 1);
+    for (double far = 1e-2; far > 1e-13 && v.s->has_form && v.m->nu < 40; far /= 10) {
+        if (!system_random_state(s, 0, 0.2, &place))
+            continue;
+        variant_set(&v, &place, 0);
+        disturb(&v, far);
+        memcpy(y, v.m->input + v.m->at_q, (v.m->nq + v.m->nu) * sizeof *y);
+        const double left = left_after_projection(&v, y);
+        if (v.s->sigma < 1e-2 || v.s->kappa > 100) // nearly singular: rounding counts more
+            continue;
+        ok &= agree(s->name, "what rows leave", left, 0, 1, 1);
+        ++*n;
+    }
+    variant_close(&v);
+    return ok;
+}
+
+static void projections_end_on_rows(void **state)
+{
+    (void)state;
+    bool ok = true;
+    size_t n = 0;
+    chance_start();
+    for (size_t i = 0; i < nshipped; i++) {
+        struct system s;
+        system_open_file(&s, shipped[i]);
+        system_no_outputs(&s);
+        ok &= projections_end_on_rows_of(&s, &by_joints, &n);
+        ok &= projections_end_on_rows_of(&s, &by_bodies, &n);
+        system_close(&s);
+    }
+    print_message("%zu projections\n", n);
+    assert_true(ok);
+    assert_true(n > 200);
+}
+
 static struct ct_solves run_for(const char *file, const struct ct_formulate_options *o,
                                 double duration)
 {
@@ -412,6 +471,7 @@ int main(void)
                                        cmocka_unit_test(one_system_solves_the_equations),
                                        cmocka_unit_test(sparse_forms_solve_the_equations),
                                        cmocka_unit_test(forms_are_not_used_where_they_are_weak),
+                                       cmocka_unit_test(projections_end_on_rows),
                                        cmocka_unit_test(runs_refine_and_make_other_forms),
                                        cmocka_unit_test(the_cheapest_form_is_chosen),
                                        cmocka_unit_test(cost_grows_with_the_number_of_loops),

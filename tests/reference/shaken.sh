@@ -67,7 +67,7 @@ figure turning 16 'motion: "if(t < 4, t^2/16, 0.5*t - 1) + 0.004*sin(4.05*t)"'
 figure second 8 'motion: "0.0012*sin(25.634*t)"'
 figure third 4 'motion: "0.0001*sin(71.7*t)"'
 none fourth 4 'motion: "0.00005*sin(140.6*t)"'
-none pushed 10 'effort: "if(t < 4, 20*sin(pi*t/4)^2, 0)"'
+figure pushed 10 'effort: "if(t < 4, 20*sin(pi*t/4)^2, 0)"'
 
 # Two rotations, the second about an axis that the first turns: the planes meet. One foreshortened beam is within 0.002 of
 # welded ones here.

@@ -1,5 +1,6 @@
 // Dense kernels against their definitions: residuals, orthogonality, ranks.
 #include "numeric/dense.h"
+#include "numeric/inverse.h"
 
 #include <complex.h>
 #include <float.h>
@@ -181,6 +182,76 @@ static void complex_lu_solves(void **unused)
     assert_false(ct_lu_complex(singular, pivot, 2, 2));
 }
 
+// A (LDA x n, imaginary parts behind, too) as inverses take it.
+static void widen(double *X, const double *A, int n)
+{
+    const int rows = ct_inverse_rows(n);
+    memset(X, 0, (size_t)(rows * n) * sizeof *X);
+    for (int j = 0; j < n; j++)
+        memcpy(X + rows * j, A + LDA * j, (size_t)n * sizeof *A);
+}
+
+static void inverses_solve(void **unused)
+{
+    (void)unused;
+    enum { N = CT_MOST_INVERTED };
+    for (int n = 1; n <= MOST && n <= N; n++) {
+        double A[LDA * MOST], X[N * N], want[MOST], b[MOST], x[N];
+        int pivot[MOST];
+        fill(A, n, n);
+        A[0] = 0; // needs an exchange of rows
+        for (int j = 0; j < n; j++)
+            A[n - 1 - j + LDA * j] += 3; // well conditioned
+        widen(X, A, n);
+        assert_true(ct_inverse(X, pivot, n));
+        for (int i = 0; i < n; i++)
+            want[i] = uniform();
+        multiply(b, A, want, n, n, LDA);
+        ct_inverse_apply(x, X, b, n);
+        for (int i = 0; i < ct_inverse_rows(n); i++)
+            check_close("x", x[i], i < n ? want[i] : 0, close_enough);
+    }
+    double singular[8] = {1, 2, 0, 0, 2, 4}, no_number[4] = {NAN};
+    int pivot[2];
+    assert_false(ct_inverse(singular, pivot, 2));
+    assert_false(ct_inverse(no_number, pivot, 1));
+}
+
+static void complex_inverses_solve(void **unused)
+{
+    (void)unused;
+    enum { N = CT_MOST_INVERTED };
+    for (int n = 1; n <= MOST && n <= N; n++) {
+        const int rows = ct_inverse_rows(n);
+        double A[LDA * MOST], B[LDA * MOST], X[2 * N * N], b[2 * MOST] = {0}, x[2 * N];
+        double _Complex want[MOST];
+        int pivot[MOST];
+        fill(A, n, n);
+        fill(B, n, n);
+        for (int j = 0; j < n; j++)
+            A[n - 1 - j + LDA * j] += 3; // well conditioned
+        for (int j = 0; j < n; j++) {
+            want[j] = uniform() + uniform() * I;
+            for (int i = 0; i < n; i++) {
+                const double _Complex part = (A[i + LDA * j] + B[i + LDA * j] * I) * want[j];
+                b[i] += creal(part);
+                b[i + n] += cimag(part);
+            }
+        }
+        widen(X, A, n);
+        widen(X + rows * n, B, n);
+        assert_true(ct_inverse_complex(X, pivot, n));
+        ct_inverse_apply_complex(x, X, b, n);
+        for (int i = 0; i < n; i++) {
+            check_close("real part", x[i], creal(want[i]), close_enough);
+            check_close("imaginary part", x[i + rows], cimag(want[i]), close_enough);
+        }
+    }
+    double singular[16] = {1, 0, 0, 0, 0, -1, 0, 0, 0, 1, 0, 0, 1, 0}; // [1 i; i -1]
+    int pivot[2];
+    assert_false(ct_inverse_complex(singular, pivot, 2));
+}
+
 static void pivoted_qr_finds_rank_and_columns(void **unused)
 {
     (void)unused;
@@ -304,6 +375,8 @@ int main(void)
         cmocka_unit_test(cholesky_refuses_indefinite_and_nonfinite),
         cmocka_unit_test(lu_solves_both_ways),
         cmocka_unit_test(complex_lu_solves),
+        cmocka_unit_test(inverses_solve),
+        cmocka_unit_test(complex_inverses_solve),
         cmocka_unit_test(pivoted_qr_finds_rank_and_columns),
         cmocka_unit_test(least_squares_is_shortest_for_every_shape_and_rank),
         cmocka_unit_test(empty_least_squares_gives_zero),

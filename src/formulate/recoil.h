@@ -1,0 +1,37 @@
+// A beam on a base that is not driven: the base, as a rigid body in the scene, and the beam's first shapes move each other.
+//
+// With q, u of the scene whose beams are rigid, M and Q of it, the base's velocity V = B u + V_t in axes of the beam and the
+// shapes of swing.h, to first order in their amplitudes x,
+//
+//     M u' + G x'' = Q - B' r(x, x'),        G = B' p, p: momentum of the base's six motions in a shape
+//     (1 + b x^2) x'' + c x' + W x + b x x'^2 + 2 g x^3 + G' u' = F    for the linear, the foreshortened and the true beam
+//
+// r: what inertia and weight of the deflection do to the base, but for x''. Each beam has its own base here: what it leaves out
+// changes the motion of that, too. By the implicit midpoint rule, with the same steps for all three, so that their differences
+// are those of the beams.
+#ifndef CT_FORMULATE_RECOIL_H
+#define CT_FORMULATE_RECOIL_H
+
+#include "formulate/flexible.h"
+
+enum { CT_RECOIL_MOST = 12 }; // speeds of the scene, beams rigid
+
+struct ct_recoil;
+/// State of a run.
+struct ct_recoil_run;
+
+/// NULL where it does not apply: loops, more speeds, drivers whose rates can jump, or events by the state.
+const struct ct_recoil *ct_recoil_create(struct ct_build *b, const struct ct_flexible *f,
+                                         const struct ct_validity *v);
+/// Does the base move by more than time, as trees through joints see it?
+bool ct_recoil_is_free(const struct ct_recoil *p);
+struct ct_recoil_run *ct_recoil_run_create(struct ct_arena *a, const struct ct_recoil *p);
+/// Set base and shapes to their start, x, x' of s as given.
+void ct_recoil_begin(struct ct_recoil_run *r, struct ct_swings *s);
+/// Move on to the time t in steps of `glance`, shorter ones where the base yields, but not more than 100 of them. Errors are NAN
+/// from where the base is too stiff for such steps.
+void ct_recoil_follow(struct ct_recoil_run *r, struct ct_swings *s, double t, double glance);
+/// Largest |eta| of the first shapes so far.
+double ct_recoil_indicator(const struct ct_recoil_run *r);
+
+#endif

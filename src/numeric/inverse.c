@@ -1,0 +1,193 @@
+// See inverse.h. Columns are handled by pairs of rows.
+#include "numeric/inverse.h"
+
+#include <math.h>
+
+enum { FEW = 4, PAIR = 2 };
+
+#if defined(__GNUC__)
+
+typedef double pair
+    __attribute__((vector_size(PAIR * sizeof(double)), aligned(sizeof(double)), may_alias));
+
+static inline pair take(const double *x)
+{
+    return *(const pair *)x;
+}
+
+static inline void put(double *x, pair y)
+{
+    *(pair *)x = y;
+}
+
+static inline pair add_product(pair sum, pair x, double c)
+{
+    return sum + x * c;
+}
+
+#else
+
+typedef struct {
+    double part[PAIR];
+} pair;
+
+static inline pair take(const double *x)
+{
+    return (pair){{x[0], x[1]}};
+}
+
+static inline void put(double *x, pair y)
+{
+    x[0] = y.part[0];
+    x[1] = y.part[1];
+}
+
+static inline pair add_product(pair sum, pair x, double c)
+{
+    return (pair){{sum.part[0] + x.part[0] * c, sum.part[1] + x.part[1] * c}};
+}
+
+#endif
+
+// y + i z -= (c + i d) (r + i s)
+static inline void take_complex(double *y, double *z, double c, double d, const double *r,
+                                const double *s, int rows)
+{
+    for (int i = 0; i < rows; i += PAIR) {
+        const pair re = take(r + i), im = take(s + i);
+        put(y + i, add_product(add_product(take(y + i), re, -c), im, d));
+        put(z + i, add_product(add_product(take(z + i), im, -c), re, -d));
+    }
+}
+
+static inline void exchange(double *x, double *y)
+{
+    const double z = *x;
+    *x = *y;
+    *y = z;
+}
+
+static inline void exchange_rows(double *A, int i, int j, int n, int rows)
+{
+    for (int c = 0; c < n && i != j; c++)
+        exchange(A + i + rows * c, A + j + rows * c);
+}
+
+// The columns of A^-1 P, in the order of those of A^-1.
+static inline void restore_columns(double *A, const int *pivot, int n, int rows)
+{
+    for (int k = n; k-- > 0;)
+        for (int i = 0; i < rows && pivot[k] != k; i++)
+            exchange(A + i + rows * k, A + i + rows * pivot[k]);
+}
+
+// column (rows, out) = that of A, where a unit column comes.
+static inline void take_out(double *column, double *own, int k, int rows, double one)
+{
+    for (int i = 0; i < rows; i++) {
+        column[i] = own[i];
+        own[i] = 0;
+    }
+    own[k] = one;
+}
+
+// For each number of rows code of its own, whose inner loops are known to be so long.
+static inline bool invert(double *restrict A, int *pivot, int n, const int rows)
+{
+    double column[CT_MOST_INVERTED];
+    bool ok = true;
+    for (int k = 0; k < n; k++) {
+        double *own = A + rows * k;
+        int p = k;
+        for (int i = k + 1; i < n; i++)
+            p = fabs(own[i]) > fabs(own[p]) ? i : p;
+        pivot[k] = p;
+        exchange_rows(A, k, p, n, rows);
+        ok = ok && fabs(own[k]) > 0 && isfinite(own[k]); // so written, NaN is refused too
+        const double inverse = 1 / own[k];
+        take_out(column, own, k, rows, 1);
+        for (int j = 0; j < n; j++) {
+            double *a = A + rows * j;
+            const double f = a[k] * inverse;
+            for (int i = 0; i < rows; i++)
+                a[i] -= f * column[i];
+            a[k] = f;
+        }
+    }
+    restore_columns(A, pivot, n, rows);
+    return ok;
+}
+
+bool ct_inverse(double *A, int *pivot, int n)
+{
+    return n <= FEW     ? invert(A, pivot, n, FEW)
+         : n <= 2 * FEW ? invert(A, pivot, n, 2 * FEW)
+                        : invert(A, pivot, n, CT_MOST_INVERTED);
+}
+
+void ct_inverse_apply(double *restrict x, const double *restrict inverse,
+                      const double *restrict b, int n)
+{
+    const int rows = ct_inverse_rows(n);
+    for (int i = 0; i < rows; i += FEW) {
+        const double *X = inverse + i;
+        pair first = {0}, second = {0};
+        for (int j = 0; j < n; j++, X += rows) {
+            first = add_product(first, take(X), b[j]);
+            second = add_product(second, take(X + PAIR), b[j]);
+        }
+        put(x + i, first);
+        put(x + i + PAIR, second);
+    }
+}
+
+bool ct_inverse_complex(double *A, int *pivot, int n)
+{
+    const int rows = ct_inverse_rows(n);
+    double *B = A + rows * n; // imaginary parts
+    double real[CT_MOST_INVERTED], imaginary[CT_MOST_INVERTED];
+    bool ok = true;
+    for (int k = 0; k < n; k++) {
+        double *re = A + rows * k, *im = B + rows * k;
+        int p = k;
+        for (int i = k + 1; i < n; i++)
+            p = fabs(re[i]) + fabs(im[i]) > fabs(re[p]) + fabs(im[p]) ? i : p;
+        pivot[k] = p;
+        exchange_rows(A, k, p, n, rows);
+        exchange_rows(B, k, p, n, rows);
+        const double square = re[k] * re[k] + im[k] * im[k];
+        ok = ok && square > 0 && isfinite(square);
+        const double c = re[k] / square, d = -im[k] / square;
+        take_out(real, re, k, rows, 1);
+        take_out(imaginary, im, k, rows, 0);
+        for (int j = 0; j < n; j++) {
+            double *a = A + rows * j, *b = B + rows * j;
+            const double f = a[k] * c - b[k] * d, g = a[k] * d + b[k] * c;
+            take_complex(a, b, f, g, real, imaginary, rows);
+            a[k] = f;
+            b[k] = g;
+        }
+    }
+    restore_columns(A, pivot, n, rows);
+    restore_columns(B, pivot, n, rows);
+    return ok;
+}
+
+void ct_inverse_apply_complex(double *restrict x, const double *restrict inverse,
+                              const double *restrict b, int n)
+{
+    const int rows = ct_inverse_rows(n);
+    for (int i = 0; i < rows; i += PAIR) {
+        const double *X = inverse + i, *Y = X + rows * n;
+        pair re = {0}, im = {0}, re_of_im = {0}, im_of_im = {0};
+        for (int j = 0; j < n; j++, X += rows, Y += rows) {
+            const pair real = take(X), imaginary = take(Y);
+            re = add_product(re, real, b[j]);
+            im = add_product(im, real, b[n + j]);
+            re_of_im = add_product(re_of_im, imaginary, b[n + j]);
+            im_of_im = add_product(im_of_im, imaginary, b[j]);
+        }
+        put(x + i, add_product(re, re_of_im, -1));
+        put(x + i + rows, add_product(im, im_of_im, 1));
+    }
+}

@@ -1,0 +1,28 @@
+// What loads and drivers do by time alone, looked at before a run: steps must not pass over it unseen.
+#ifndef CT_SOLVE_CLOCK_H
+#define CT_SOLVE_CLOCK_H
+
+#include "integrate/problem.h"
+#include "solve/machine.h"
+
+enum { CT_CLOCK_PIECES = 1024 };
+
+/// Functions of time at even times from 0 on. None: zero.
+struct ct_clock {
+    size_t n;
+    double piece;  // of time between values [s]
+    double *value; // (CT_CLOCK_PIECES + 1 by function)
+    double *range; // of each function's values (n)
+};
+
+/// Those of the equations up to the end of a run, with the parameters that the machine's input has. c is zero, or of this machine
+/// from before, whose memory in a is used again.
+void ct_clock_look(struct ct_arena *a, struct ct_machine *m, double end, struct ct_clock *c);
+
+/// The longest of h, h/2, h/4 ... such that of no function the largest change within a step from t is more than twice the largest
+/// at times where the method evaluates, and more than the part `unfelt` of its range. Changes that come and go within
+/// end/CT_CLOCK_PIECES may be missed, and steps of up to four such pieces are not looked at.
+double ct_clock_fit(const struct ct_clock *c, const struct ct_method *method, double t,
+                    double h, double unfelt);
+
+#endif

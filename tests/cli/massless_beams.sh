@@ -1,0 +1,56 @@
+# Motions of beams that move no mass are found on all trees, through sums of inertias that cancel, and what helps is said.
+
+say() {
+  for tree in auto joints absolute; do
+    "$COTREE" simulate "$1" --tree $tree --quiet -o out.csv 2>&1 | sed -n 's/.*error: //p'
+  done
+}
+
+echo '-- the mass at one point of an element leaves some of its motions none, rotary inertia or not'
+for rotary in '[1e-4, 1e-4, 1e-4]' false; do
+  cat >point.yaml <<END
+cotree: 1
+gravity: [0, -9.81, 0]
+bodies:
+  rod: {type: beam, length: 1, theory: timoshenko, E: 2e9, nu: 0.3, shear_factor: 5/6, integration: one-point, area: 4e-4, Iz: 2e-8, density: 2000, rotary_inertia: $rotary, formulation: foreshortening, deformation: [axial, bending-z], points: {mid: 0.5*length, off: [0.3, 0.1, 0]}}
+  bob: {mass: 0.5, inertia: 0.01, com: [0.2, 0, 0]}
+joints:
+  pin: {type: revolute, from: ground, to: rod.mid}
+  hinge: {type: revolute, from: rod.off, to: bob}
+outputs: [pin.q]
+simulation: {duration: 0.05, samples: 3}
+END
+  say point.yaml
+done
+echo '-- a hinge on modes of a rod whose sections have no inertia'
+cat >modes.yaml <<END
+cotree: 1
+gravity: [0, -9.81, 0]
+bodies:
+  beam: {type: beam, length: 1, elements: 3, E: 2e9, area: 4e-4, Iz: 2e-8, density: 2000, formulation: stretch-linear, points: {tip: length}}
+  rod: {type: beam, length: 1, elements: 2, theory: timoshenko, E: 2e9, nu: 0.3, shear_factor: 5/6, area: 4e-4, Iz: 2e-8, density: 2000, mass: lumped, modes: 3}
+joints:
+  wall: {type: weld, from: ground, to: beam}
+  hinge: {type: revolute, from: beam.tip, to: rod}
+outputs: [hinge.q]
+simulation: {duration: 0.05, samples: 3}
+END
+say modes.yaml
+echo '-- a loop: the beam that lacks the inertia is named, not the one that has it'
+cat >loop.yaml <<END
+cotree: 1
+gravity: [0, -9.81, 0]
+bodies:
+  ground: {points: {e: [1.5, -0.3, 0]}}
+  bare: {type: beam, length: 1, theory: timoshenko, E: 2e9, nu: 0.3, shear_factor: 5/6, integration: reduced, area: 4e-4, Iz: 2e-8, density: 2000, formulation: force-only, modes: 3, deformation: [axial, bending-z], points: {tip: length}}
+  rod: {type: beam, length: 1, E: 2e9, area: 4e-4, Iz: 2e-8, density: 2000, rotary_inertia: [1e-4, 1e-4, 1e-4], formulation: linear, points: {tip: length}}
+  bar: {mass: 0.5, inertia: 0.01, points: {p: [0.5, 0, 0]}}
+joints:
+  j1: {type: revolute, from: ground, to: bare, initial: {q: 0.6}}
+  j2: {type: revolute, from: bare.tip, to: rod, initial: {q: -0.8, guess: true}}
+  j3: {type: revolute, from: rod.tip, to: bar, initial: {q: -0.5, guess: true}}
+  j4: {type: revolute, from: ground.e, to: bar.p, initial: {guess: true}}
+outputs: [j1.q]
+simulation: {duration: 0.05, samples: 3}
+END
+say loop.yaml
