@@ -558,7 +558,8 @@ struct ct_closed *ct_closed_derive(struct ct_arena *a, struct ct_exs *x,
     c->residual = CT_NEWN(a, ct_ex, nu + m + 1);
     c->better_residual = CT_NEWN(a, ct_ex, nu + m + 1);
     derive_accelerations(&s, c);
-    ct_correction_derive(a, x, e, s.row, &s.d, c->dq, c->du, c->shift);
+    c->nshift = m < e->nrow ? 0 : nu;
+    ct_correction_derive(a, x, e, s.row, &s.d, c->dq, c->du, c->nshift ? c->shift : NULL);
     list_pivots(&s, c);
     return x->nnode > most ? NULL : c;
 }
