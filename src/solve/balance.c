@@ -178,12 +178,9 @@ static double largest(const struct ct_balance *s)
 
 // Newton steps, halved until the next correction with the same derivative is smaller: that test does not care how rows
 // are scaled. Source: Deuflhard (2011), key deuflhard2011.
-bool ct_balance_iterate(struct ct_balance *s, struct ct_arena *a)
+static bool iterate_damped(struct ct_balance *s, double *kept, double *d, double *next)
 {
-    const size_t all = s->n + s->nlam, nq = s->m->nq, nrow = s->e->nrow;
-    double *d = CT_NEWN(a, double, all + 1), *next = CT_NEWN(a, double, all + 1),
-           *kept = CT_NEWN(a, double, nq + nrow + 1);
-    ct_balance_evaluate(s);
+    const size_t nq = s->m->nq, nrow = s->e->nrow;
     for (int step = 0; step < MOST_STEPS; step++) {
         if (!factor(s))
             return false;
@@ -204,6 +201,44 @@ bool ct_balance_iterate(struct ct_balance *s, struct ct_arena *a)
             return size <= rounding * largest(s);
     }
     return false;
+}
+
+// Full steps, each smaller than the one before from the second on.
+static bool iterate_full(struct ct_balance *s, double *d)
+{
+    double before = INFINITY;
+    for (int step = 0; step < MOST_STEPS; step++) {
+        if (!factor(s))
+            return false;
+        const double size = correction(s, d);
+        if (size <= met * largest(s))
+            return true;
+        if (!(size < before))
+            return before <= rounding * largest(s);
+        before = size;
+        move(s, d, 1);
+        ct_balance_evaluate(s);
+    }
+    return false;
+}
+
+// A slender beam that bends is stretched so hard by it that the old derivative finds each step too far, whereas the new one
+// draws its axis in with the next step: full steps are tried where damped ones find nothing.
+bool ct_balance_iterate(struct ct_balance *s, struct ct_arena *a)
+{
+    const size_t all = s->n + s->nlam, nq = s->m->nq, nrow = s->e->nrow;
+    double *d = CT_NEWN(a, double, all + 1), *next = CT_NEWN(a, double, all + 1),
+           *kept = CT_NEWN(a, double, nq + nrow + 1),
+           *start = CT_NEWN(a, double, nq + nrow + 1);
+    memcpy(start, s->y, nq * sizeof *start);
+    memcpy(start + nq, s->lam, nrow * sizeof *start);
+    ct_balance_evaluate(s);
+    if (iterate_damped(s, kept, d, next))
+        return true;
+    memcpy(s->y, start, nq * sizeof *start);
+    memcpy(s->lam, start + nq, nrow * sizeof *start);
+    ct_balance_evaluate(s);
+    return iterate_full(s, d);
 }
 
 struct ct_balance ct_balance_create(struct ct_arena *a, struct ct_machine *m)
