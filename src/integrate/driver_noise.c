@@ -16,24 +16,24 @@ static const double change = 0x1p-40;
 static const double between = 3;
 // Places are changed by different parts, so that nothing cancels.
 static const double golden = 0.618033988749895;
-// After so many steps it is measured anew: a thousandth of an evaluation a step.
+// After so many steps it is measured anew: as many thousandths of an evaluation a step as there are speeds.
 enum { STEPS_BETWEEN = 1000 };
 
 // What is damped forgets errors of steps, whatever makes them, but for the last ones: there they count. A vibration of omega answers a
-// change of speeds by omega times one of places with 2 zeta of the answer to that. du: the change of speeds.
+// change of speeds by omega times one of places with 2 zeta of the answer to that. Each speed is changed alone: what turns answers with the
+// others, undamped. du: the change.
 static void leave_out_damped(struct ct_driver *r, double du)
 {
     const struct ct_problem *p = r->p;
     const double damped = 0.02; // zeta of 0.01: half is left after 11 periods
-    for (int i = 0; i < p->ny; i++) {
-        const bool is_speed = i >= p->nq && i < p->nq + p->nu;
-        r->point[i] = r->y[i] + (is_speed ? du * (1 + fmod(golden * i, 1)) : 0);
-    }
-    if (ct_stepper_rhs(p, r->t, r->point, r->dmoved, r->stats) != CT_EVAL_OK)
-        return;
-    for (int i = p->nq; i < p->nq + p->nu; i++)
-        if (fabs(r->dmoved[i] - r->dy[i]) > damped * r->noise[i])
+    ct_stepper_copy(r->point, r->y, p->ny);
+    for (int i = p->nq; i < p->nq + p->nu; i++) {
+        r->point[i] += du;
+        const enum ct_eval e = ct_stepper_rhs(p, r->t, r->point, r->dmoved, r->stats);
+        r->point[i] = r->y[i];
+        if (e == CT_EVAL_OK && r->dy[i] - r->dmoved[i] > damped * r->noise[i])
             r->noise[i] = 0;
+    }
 }
 
 static void measure(struct ct_driver *r, double h)
