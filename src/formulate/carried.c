@@ -8,6 +8,7 @@
 #include "formulate/row.h"
 #include "formulate/small.h"
 
+#include <limits.h>
 #include <string.h>
 
 static const ct_ex3 along = {{{1}, {0}, {0}}};
@@ -195,6 +196,22 @@ static void list_law(const struct ct_build *b, const struct ct_flexible *f,
                   ct_ex_const(b->x, law[i].by));
 }
 
+static void list_places(const struct ct_build *w, struct ct_carried *c)
+{
+    c->place = CT_NEWN(w->arena, int, c->n + 1);
+    for (size_t i = 0; i < c->n; i++)
+        c->place[i] = INT_MAX;
+    for (size_t i = 0; i < w->nflexible; i++) {
+        const struct ct_flexible *f = &w->flexible[i];
+        const int nnode = f->beam->nelement + 1;
+        for (int k = 0; k < CT_NODE_FREEDOM * nnode && f->nstart; k++)
+            if (f->freedom[k].npart)
+                c->place[unknown_of(f, &f->freedom[k])] = nnode - k / CT_NODE_FREEDOM;
+        for (int e = 1; e <= f->nstart; e++)
+            c->place[f->elastic[ct_flexible_start(f, e)].u] = nnode - e;
+    }
+}
+
 struct ct_carried *ct_carried_derive(struct ct_build *b)
 {
     struct ct_build *w = ct_small_is_wanted(b) ? NULL : carry(b);
@@ -206,6 +223,7 @@ struct ct_carried *ct_carried_derive(struct ct_build *b)
     c->M = w->eqs->M;
     c->nM = w->eqs->nM;
     take_rows(b, w, c);
+    list_places(w, c);
     for (size_t i = 0; i < w->nflexible; i++) {
         const struct ct_flexible *f = &b->flexible[i], *with = &w->flexible[i];
         for (int k = 0; with->nstart && k < ct_follow_count(f); k++)

@@ -23,6 +23,7 @@ struct ct_carried {
     struct ct_entry *M, *J; // lower triangle (n); rows of the equations, columns below n
     struct ct_entry *L;     // rows nu ... n - 1, columns below n
     struct ct_entry *sum;   // of starts: y_row = sum of value y_column, from the first start on
+    int *place;             // (n) nodes from the end of the beam; behind all where it is none's
     size_t nM, nJ, nL, nsum;
     size_t M_cap, J_cap, L_cap, sum_cap;
     const struct ct_build *build; // whose beams have all these coordinates

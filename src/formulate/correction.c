@@ -36,6 +36,8 @@ void ct_correction_derive(struct ct_arena *a, struct ct_exs *x, const struct ct_
     for (size_t i = 0; i < m; i++)
         r[i] = ct_ex_neg(x, e->row[row[i]].v);
     ct_blocks_solve(J_d, r, du);
+    if (!shift)
+        return;
     lost_rates(a, x, e, row, m, dq, r);
     ct_blocks_solve(J_d, r, shift);
 }

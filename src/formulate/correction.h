@@ -10,7 +10,7 @@
 #include "formulate/equations.h"
 
 /// dq, du, shift (nu, out: d, e and f in the dependent places) for the kept rows (J_d->rank, numbers in row), as expressions of a
-/// store that is a copy of e->x. Lives in a. Cost: a few times the nodes of v.
+/// store that is a copy of e->x. shift may be NULL: not wanted. Lives in a. Cost: a few times the nodes of v.
 void ct_correction_derive(struct ct_arena *a, struct ct_exs *x, const struct ct_equations *e,
                           const int *row, struct ct_blocks *J_d, ct_ex *dq, ct_ex *du,
                           ct_ex *shift);

@@ -6,22 +6,19 @@
 #include "formulate/correction.h"
 #include "formulate/kkt.h"
 
+#include <limits.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-// A system of equations: rows of M (n) and J (m).
-struct matrices {
-    struct ct_shadow_row *M, *J;
-    size_t n, m;
-    double threshold; // of pivots
-};
 
 // With a positive definite M, and J M^-1 J' negative definite behind it, most orders are sound whatever their multipliers;
 // what is left of the equations is measured in the run.
 static const double loose = 0.001;
 // Sums of large forces along beams are neither: multipliers are held as small as those of J_d.
 static const double tight = 0.1;
+
+// What is another order among equals worth: patterns do not tell programs of the same length apart.
+static const double worth = 0.9;
 
 struct elimination {
     struct ct_arena *a;
@@ -33,7 +30,7 @@ struct elimination {
     struct ct_shadow_row *J, *M; // (rank), as given; (nu), both triangles
     struct ct_blocks d;          // J_d
     struct ct_kkt *whole;        // all equations as one system, or NULL: embedding
-    struct matrices system;      // that whole is of
+    struct ct_kkt_system system; // that whole is of
     bool is_carried;             // that is of carried.h
     ct_ex *B;                    // (nu x nfree), unit rows in the independent places
     ct_ex *S;      // (nfree x nfree) L' D L of B' M B, lower triangle: D, and L beside it
@@ -79,11 +76,12 @@ static void list_values(const struct ct_entry *e, size_t n, ct_ex *out)
 }
 
 // The rows of carried.h, L behind J_c.
-static struct matrices read_carried(struct elimination *s)
+static struct ct_kkt_system read_carried(struct elimination *s)
 {
     const struct ct_carried *c = s->e->carried;
     const size_t n = c->nM + c->nJ + c->nL, nu = s->e->nu;
-    struct matrices k = {.n = c->n, .m = s->p->rank + c->n - nu, .threshold = tight};
+    struct ct_kkt_system k = {.n = c->n, .m = s->p->rank + c->n - nu, .threshold = tight};
+    int *place = CT_NEWN(s->a, int, k.n + k.m + 1);
     ct_ex *v = CT_NEWN(s->a, ct_ex, n + 1);
     double *number = CT_NEWN(s->a, double, n + 1), *of_J = number + c->nM, *of_L = of_J + c->nJ;
     struct ct_arena *scratch = ct_arena_create_under(s->a);
@@ -105,6 +103,10 @@ static struct matrices read_carried(struct elimination *s)
                       c->L[i].value, of_L[i]);
     ct_shadow_sort(k.M, k.n);
     ct_shadow_sort(k.J, k.m);
+    memcpy(place, c->place, c->n * sizeof *place);
+    for (size_t i = 0; i < k.m; i++) // a law stands with what it is for
+        place[c->n + i] = i < s->p->rank ? INT_MAX : place[nu + i - s->p->rank];
+    k.place = place;
     return k;
 }
 
@@ -402,15 +404,16 @@ static void derive_accelerations(struct elimination *s, struct ct_closed *c)
     residual(s, c->better_a, c->better_lam, c->better_residual);
 }
 
-// By pattern, in the better of both orders, if it takes less than `most`; else NULL, or if it is singular.
-static const struct ct_kkt *predict(const struct matrices *k, struct ct_arena *scratch,
+// By pattern, in the best of the orders, if it takes less than `most`; else NULL, or if it is singular.
+static const struct ct_kkt *predict(const struct ct_kkt_system *k, struct ct_arena *scratch,
                                     double most, enum ct_kkt_order *best)
 {
     const struct ct_kkt *least = NULL;
     for (int order = 0; order < CT_KKT_NORDER; order++) {
+        const double below = least ? least->operations : most;
         const struct ct_kkt *found
-            = ct_kkt_factor(scratch, NULL, k->M, k->n, k->J, k->m, (enum ct_kkt_order)order,
-                            k->threshold, least ? least->operations : most);
+            = ct_kkt_factor(scratch, NULL, k, (enum ct_kkt_order)order,
+                            order == CT_KKT_PLACES ? worth * below : below);
         if (!found)
             continue;
         least = found;
@@ -501,7 +504,7 @@ struct ct_pivot_order *ct_pivot_order_find(struct ct_arena *a, const struct ct_e
     enum ct_kkt_order order = CT_KKT_DEGREE;
     struct ct_pivot_order *found = NULL;
     read_matrices(&s, M, J);
-    const struct matrices plain = {s.M, s.J, e->nu, p->rank, loose};
+    const struct ct_kkt_system plain = {s.M, s.J, e->nu, p->rank, loose, NULL};
     const struct ct_kkt *k = predict(&plain, scratch, INFINITY, &order);
     if (k && ct_blocks_factor(&s.d, SIZE_MAX)) {
         found = CT_NEW(a, struct ct_pivot_order);
@@ -533,9 +536,9 @@ struct ct_closed *ct_closed_derive(struct ct_arena *a, struct ct_exs *x,
         if (!found)
             return NULL;
         s.is_carried = found->is_carried;
-        s.system = s.is_carried ? read_carried(&s) : (struct matrices){s.M, s.J, nu, m, loose};
-        s.whole = ct_kkt_factor(a, x, s.system.M, s.system.n, s.system.J, s.system.m,
-                                found->way, s.system.threshold, (double)most);
+        s.system = s.is_carried ? read_carried(&s)
+                                : (struct ct_kkt_system){s.M, s.J, nu, m, loose, NULL};
+        s.whole = ct_kkt_factor(a, x, &s.system, found->way, (double)most);
         if (!s.whole)
             return NULL;
     } else {
@@ -555,7 +558,8 @@ struct ct_closed *ct_closed_derive(struct ct_arena *a, struct ct_exs *x,
     c->residual = CT_NEWN(a, ct_ex, nu + m + 1);
     c->better_residual = CT_NEWN(a, ct_ex, nu + m + 1);
     derive_accelerations(&s, c);
-    ct_correction_derive(a, x, e, s.row, &s.d, c->dq, c->du, c->shift);
+    c->nshift = m < e->nrow ? 0 : nu;
+    ct_correction_derive(a, x, e, s.row, &s.d, c->dq, c->du, c->nshift ? c->shift : NULL);
     list_pivots(&s, c);
     return x->nnode > most ? NULL : c;
 }

@@ -47,6 +47,7 @@ struct ct_closed {
     ct_ex *residual; // M u' - Q - J' lam, J u' + gam  (nu + rank)
     ct_ex *better_a, *better_lam, *better_residual; // after one step of refinement
     ct_ex *dq, *du, *shift; // d, e, f of (6.3b) (nu, zero in the independent places)
+    size_t nshift;          // nu; 0: there are redundant rows, and f is not found
 };
 
 /// Accelerations by embedding, as above, or from [M J'; J 0] as one system (kkt.h), where it is shorter that of carried.h.

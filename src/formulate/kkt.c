@@ -7,7 +7,7 @@
 struct choice {
     int size, at[2];
     double cost; // products per row, or position
-    int level;
+    int tie;
     double strength;
 };
 
@@ -16,6 +16,7 @@ struct work {
     struct ct_exs *x; // NULL: patterns and numbers only
     size_t n;
     const double *scale;       // by row
+    const int *place;          // that decides among equals; NULL: what few others come before
     double threshold;          // multipliers of a pivot that is sound are at most 1 over this
     struct ct_shadow_row *row; // both triangles of what is left; numbers scaled
     bool *is_done;
@@ -129,7 +130,12 @@ static bool is_better(const struct work *w, const struct choice *a, const struct
         return true;
     if (a->cost < b->cost || a->cost > b->cost)
         return a->cost < b->cost;
-    return a->level < b->level;
+    return a->tie < b->tie;
+}
+
+static int later(const int *of, int i, int j)
+{
+    return of[i] > of[j] ? of[i] : of[j];
 }
 
 // Columns of two rows without i and j.
@@ -155,7 +161,7 @@ static void try_pair(const struct work *w, int i, int j, struct choice *best)
                  mj = size_beside(k, i, j);
     const double growth = fmax(fabs(c) * mi + fabs(b) * mj, fabs(b) * mi + fabs(a) * mj);
     struct choice t = {.size = 2, .at = {i, j}, .strength = at_most_one(det / growth)};
-    t.level = w->level[i] > w->level[j] ? w->level[i] : w->level[j];
+    t.tie = later(w->place ? w->place : w->level, i, j);
     // the nearest partner of the first row
     t.cost = w->position ? w->position[i] + w->position[j] / (1. + (double)w->n)
                          : per_row(united_degree(l, k, i, j));
@@ -172,7 +178,7 @@ static struct choice best_of_row(const struct work *w, int i)
     const struct choice one = {.size = 1,
                                .at = {i, i},
                                .cost = w->position ? w->position[i] : per_row((double)l->n - 1),
-                               .level = w->level[i],
+                               .tie = (w->place ? w->place : w->level)[i],
                                .strength = at_most_one(d / size_beside(l, i, i))};
     if (d > 0 && is_better(w, &one, &best))
         best = one;
@@ -411,6 +417,7 @@ static void eliminate(struct work *w, const struct choice *c)
     const size_t nnear = list_near(w, p);
     take_pivot(w, p, P, nnear);
     const double det = p->number;
+    const int level = later(w->level, c->at[0], c->at[1]);
     if (is_simple(p))
         p->number = P[1];
     for (size_t i = 0; i < nnear; i++) {
@@ -423,8 +430,8 @@ static void eliminate(struct work *w, const struct choice *c)
         divide_numbers(P, det, p->size, rn, number);
         CT_PUSH(w->a, p->factor, p->nfactor, p->factor_cap, t);
         update_row(w, p, nnear, t.row, t.f, number);
-        if (w->level[t.row] <= c->level)
-            w->level[t.row] = c->level + 1;
+        if (w->level[t.row] <= level)
+            w->level[t.row] = level + 1;
         w->k->operations += p->size == 1 ? 1 : 4;
     }
     for (size_t i = 0; i < nnear; i++)
@@ -440,13 +447,14 @@ static void eliminate(struct work *w, const struct choice *c)
 }
 
 struct ct_kkt *ct_kkt_factor(struct ct_arena *a, struct ct_exs *x,
-                             const struct ct_shadow_row *M, size_t nu,
-                             const struct ct_shadow_row *J, size_t m, enum ct_kkt_order order,
-                             double threshold, double most)
+                             const struct ct_kkt_system *system, enum ct_kkt_order order,
+                             double most)
 {
-    const size_t n = nu + m;
-    struct work w
-        = {.a = a, .x = x, .n = n, .threshold = threshold, .k = CT_NEW(a, struct ct_kkt)};
+    const size_t n = system->n + system->m;
+    struct work w = {
+        .a = a, .x = x, .n = n, .threshold = system->threshold, .k = CT_NEW(a, struct ct_kkt)};
+    if (order == CT_KKT_PLACES && !system->place)
+        return NULL;
     w.row = CT_NEWN(a, struct ct_shadow_row, n + 1);
     w.is_done = CT_NEWN(a, bool, n + 1);
     w.level = CT_NEWN(a, int, n + 1);
@@ -456,7 +464,8 @@ struct ct_kkt *ct_kkt_factor(struct ct_arena *a, struct ct_exs *x,
     memset(w.is_stale, true, n * sizeof *w.is_stale);
     w.k->n = n;
     w.k->pivot = CT_NEWN(a, struct ct_kkt_pivot, n + 1);
-    read_matrix(&w, M, nu, J, m);
+    read_matrix(&w, system->M, system->n, system->J, system->m);
+    w.place = order == CT_KKT_PLACES ? system->place : NULL;
     if (order == CT_KKT_ALONG)
         w.position = place_along(&w);
     for (size_t done = 0; done < n;) {

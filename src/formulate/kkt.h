@@ -37,16 +37,24 @@ struct ct_kkt_factor { // of L: row -= f * pivot's rows
     ct_ex f[2];
 };
 
-/// By least degree, or along the system: better for long chains, where least degree leaves a dense rest.
-enum ct_kkt_order { CT_KKT_DEGREE, CT_KKT_ALONG, CT_KKT_NORDER };
+/// By least degree, or along the system: better for long chains, where least degree leaves a dense rest; by least degree and
+/// among equals in the order of places: in long beams, where least degree joins nodes from all over.
+enum ct_kkt_order { CT_KKT_DEGREE, CT_KKT_ALONG, CT_KKT_PLACES, CT_KKT_NORDER };
 
-/// Factor for M (nu rows, both triangles) and J (m rows). x NULL: only the pattern and the shadow, for the operations.
-/// Multipliers of pivots are at most 1 over the threshold, where that is possible.
-/// NULL if it is singular at the state of the shadow or takes as many nodes of x (operations, if NULL) as `most`, or more.
+/// Rows of M (n, both triangles) and J (m).
+struct ct_kkt_system {
+    struct ct_shadow_row *M, *J;
+    size_t n, m;
+    double threshold; // multipliers of pivots are at most 1 over it, where that is possible
+    const int *place; // along beams (n + m); NULL: there are none
+};
+
+/// Factor. x NULL: only the pattern and the shadow, for the operations.
+/// NULL if it is singular at the state of the shadow or takes as many nodes of x (operations, if NULL) as `most`, or more,
+/// or has no places for an order by them.
 struct ct_kkt *ct_kkt_factor(struct ct_arena *a, struct ct_exs *x,
-                             const struct ct_shadow_row *M, size_t nu,
-                             const struct ct_shadow_row *J, size_t m, enum ct_kkt_order order,
-                             double threshold, double most);
+                             const struct ct_kkt_system *system, enum ct_kkt_order order,
+                             double most);
 /// y (n, out) for the right side b (n; lost).
 void ct_kkt_solve(const struct ct_kkt *k, struct ct_exs *x, ct_ex *b, ct_ex *y);
 

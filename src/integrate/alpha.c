@@ -229,7 +229,7 @@ static inline double add_correction(struct state *s, const int nu)
 }
 
 // Few freedoms, or few more in loops, have code of their own.
-static double add_corrections(struct state *s)
+static inline double add_corrections(struct state *s)
 {
     switch (s->dae->nu) {
     case 1:

@@ -282,6 +282,7 @@ bool ct_run_march(struct ct_run *r, struct ct_problem *p, struct ct_integrate_op
         io.sample = sample + r->ngiven;
         io.nsample = r->o->nsample - r->ngiven;
         if (r->is_to_follow) {
+            r->is_to_follow = false;
             p->longest_step = followed_step;
             io.first_step = io.t0 - r->t_before;
         } else {

@@ -110,7 +110,7 @@ static bool is_one_enough(const struct ct_embed *s, const double *y)
 {
     const struct ct_machine *m = s->m;
     const struct ct_form *f = s->form[0];
-    if (!f->shift || s->rank < (int)m->nrow || s->nearness < ct_small_pivot)
+    if (!f->shift || s->nearness < ct_small_pivot)
         return false;
     const double near = nearness(s), dq = sum_of_sizes(f->dq, m->nu);
     return ct_is_rest_lost(near, dq, 0, 0) // most often it is the places that are too far

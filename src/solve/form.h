@@ -29,8 +29,9 @@ struct ct_form {
     double kappa;    // largest entry of B; NAN: not found
     // results of close
     const double *phi, *v, *dq,
-        *du;             // (nrow), (nrow); corrections of the dependent places (nu), else 0
-    const double *shift; // to be added to du where dq leads, (6.3b); NULL: not found
+        *du; // (nrow), (nrow); corrections of the dependent places (nu), else 0
+    const double *
+        shift; // to be added to du where dq leads, (6.3b); NULL: not found, as where rows are redundant
 };
 
 struct ct_form_kind {
@@ -83,13 +84,13 @@ extern const double ct_form_weakest;
 ///     solved    u', q', pivots of B' M B (nfree, positive), of J_d (npivot), whose sizes times scale are strengths; the
 ///               power if it depends on neither u' nor multipliers
 ///     checked   refined u' (nu) and lam (rank), residuals before and after (nu + rank each), Q, gam (rank), B (nB)
-///     closing   Phi, v (nrow each), corrections dq, du, shift (nu each), pivots of J_d
+///     closing   Phi, v (nrow each), corrections dq, du (nu each), shift (nshift), pivots of J_d
 struct ct_form_code {
     const struct ct_listing *listing; // NULL: a form of another kind
     size_t nfree, npivot;
     const double *scale;
     const struct ct_program *solved, *checked, *closing;
-    size_t nB;
+    size_t nB, nshift;
     double M_size, J_size; // largest entries where the form was made
     bool has_power;        // behind the pivots of `solved`
 };

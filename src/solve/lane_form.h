@@ -117,7 +117,8 @@ static inline set close_form(struct ct_lanes *s, struct ct_lane_form *f, vec t, 
 {
     set_input(s, t, y);
     ct_lane_run(&f->closing, s->input);
-    return set_of(judge_pivots(s, &f->code, f->closing.out + 2 * s->nrow + 3 * s->nu, here));
+    const vec *pivot = f->closing.out + 2 * (s->nrow + s->nu) + f->code.nshift;
+    return set_of(judge_pivots(s, &f->code, pivot, here));
 }
 
 // y (+) dq in these lanes.

@@ -85,14 +85,14 @@ static void compile_closing(struct unrolled *f, struct ct_machine *m, const stru
         push(&l, &m->e->row[i].v, 1);
     push(&l, c->dq, m->nu);
     push(&l, c->du, m->nu);
-    push(&l, c->shift, m->nu);
+    push(&l, c->shift, c->nshift);
     push(&l, c->pivot, c->npivot);
     ct_machine_compile(f->form.arena, m, x, l.e, l.n, &f->closing);
     f->form.phi = f->closing.out;
     f->form.v = f->form.phi + m->nrow;
     f->form.dq = f->form.v + m->nrow;
     f->form.du = f->form.dq + m->nu;
-    f->form.shift = f->form.du + m->nu;
+    f->form.shift = c->nshift ? f->form.du + m->nu : NULL;
 }
 
 // ---- evaluation -----------------------------------------------------------------------------------------
@@ -154,7 +154,7 @@ static double close(struct ct_form *form, struct ct_machine *m)
 {
     struct unrolled *f = unrolled_of(form);
     ct_program_run(&f->closing, m->input);
-    return strength(f, form->shift + m->nu);
+    return strength(f, form->du + m->nu + f->c->nshift);
 }
 
 static void destroy(struct ct_form *form, struct ct_machine *m)
@@ -236,5 +236,5 @@ struct ct_form_code ct_form_code(const struct ct_form *form)
     const struct unrolled *f = (const struct unrolled *)form;
     return (struct ct_form_code){f->solved.listing, f->c->nfree, f->c->npivot, f->c->scale,
                                  &f->solved,        &f->checked, &f->closing,  f->c->nB,
-                                 f->M_size,         f->J_size,   f->has_power};
+                                 f->c->nshift,      f->M_size,   f->J_size,    f->has_power};
 }

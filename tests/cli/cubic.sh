@@ -26,3 +26,23 @@ for run in "auto 1e-6" "auto 1e-8" "auto 1e-10" "dop853 1e-6" "dop853 1e-8" "dop
         END { print T, (sqrt(E) < 10*T ? "within ten tolerances" : "off by " sqrt(E)) }' force.csv mass.csv
     sed -n 's/.*"method": //p' s.json
 done
+# A cart that a table holds for twenty seconds and then moves to and fro within half a second, against short fixed steps.
+awk 'BEGIN { print "t,x"; for (i = 0; i <= 2500; i++) printf "%.2f,%.12f\n", i/100, 0.01*exp(-((i/100 - 20.37)/0.1)^2) }' >move.csv
+cat >cart.yaml <<'END'
+cotree: 1
+gravity: [0, -9.81, 0]
+bodies:
+  cart: {mass: 1, inertia: 1}
+  bar: {mass: 0.7, inertia: 0.02, com: [0, -0.2, 0]}
+joints:
+  j1: {type: prismatic, from: ground, to: cart, motion: {table: move.csv, column: x, interpolate: cubic}}
+  j2: {type: revolute, from: cart, to: bar}
+outputs: [j2.q]
+simulation: {duration: 24, samples: 25}
+END
+"$COTREE" simulate cart.yaml --method dop853 --step 0.002 --quiet -o fixed.csv
+for T in 1e-4 1e-8; do
+    "$COTREE" simulate cart.yaml --tolerance $T --quiet -o cart.csv
+    paste -d, fixed.csv cart.csv | awk -F, -v T=$T 'NR > 1 { d = ($2 - $4)^2; if (d > E) E = d; if ($2^2 > Q) Q = $2^2 }
+        END { print "moved, " T, (sqrt(E/Q) < 10*T ? "within ten tolerances" : "off by " sqrt(E/Q)) }'
+done

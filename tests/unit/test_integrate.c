@@ -1,6 +1,7 @@
 // Integration against solutions in closed form: orders, tolerances, samples, projection. The explicit methods,
 // which stand first in the table; test_implicit.c has the others, test_events.c events, test_refusals.c what cannot go on.
 #include "integrate/control.h"
+#include "integrate/stiffness.h"
 #include "integrate/stepper.h"
 #include "tests/unit/integration.h"
 
@@ -403,6 +404,60 @@ static void next_steps_are_those_of_the_pi_controller(void **unused)
     }
 }
 
+// --- vibrations --------------------------------------------------------------------------------------------
+
+static const double omega = 7;
+
+static enum ct_eval vibration(void *user, double t, const double *y, double *dy)
+{
+    (void)user;
+    (void)t;
+    dy[0] = y[1];
+    dy[1] = -omega * omega * y[0];
+    return CT_EVAL_OK;
+}
+
+// (8.12): the term of the error's order of exp(i omega h) is a hundredth of what is asked. The rate is that of the vibration to
+// (omega h)^2/24 at a change of accelerations by 5 %.
+static void the_first_step_from_rest_is_that_of_the_motion_to_come(void **unused)
+{
+    (void)unused;
+    static const char *const names[] = {"dopri5", "dop853"};
+    for (size_t i = 0; i < COUNT(names); i++)
+        for (double T = 1e-4; T > 1e-11; T /= 100) {
+            const struct ct_method *m = ct_method_find(names[i]);
+            const int n = m->error_order + 1;
+            struct record *r = begin();
+            double y[NY] = {1, 0};
+            check_fine(
+                r, run(r, m, (struct ct_problem){.ny = 2, .nq = 1, .nu = 1, .rhs = vibration},
+                       (struct ct_integrate_options){.t1 = 1, .rtol = T, .atol = T / 100}, y));
+            const double wanted = pow(T / 100 * tgamma(n + 1), 1. / n) / omega;
+            check_close("first step, over that of (8.12)", r->step[0] / wanted, 1, 0.01);
+            end(r);
+        }
+}
+
+// (8.14): the errors of all steps of that length come to T at the end, each in the same direction of phase.
+static void followed_steps_err_by_the_tolerance_at_the_end(void **unused)
+{
+    (void)unused;
+    const double time = 100;
+    for (double T = 1e-4; T > 1e-9; T /= 100) {
+        const struct ct_method *m = ct_method_find("dop853");
+        const double steps = ceil(time / ct_stiffness_followed_step(m, omega, time, T));
+        double y[NY] = {1, 0};
+        struct record *r = begin();
+        r->stop_after = 0;
+        check_fine(r,
+                   run(r, m, (struct ct_problem){.ny = 2, .nq = 1, .nu = 1, .rhs = vibration},
+                       (struct ct_integrate_options){.t1 = time, .step = time / steps}, y));
+        const double error = hypot(y[0] - cos(omega * time), y[1] / omega + sin(omega * time));
+        check_close("error at the end, over T", error / T, 1, 0.3);
+        end(r);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -420,6 +475,8 @@ int main(void)
         cmocka_unit_test(a_group_is_measured_by_its_largest_member),
         cmocka_unit_test(projection_keeps_steps_and_samples_on_the_circle),
         cmocka_unit_test(nothing_is_allocated_while_stepping),
+        cmocka_unit_test(the_first_step_from_rest_is_that_of_the_motion_to_come),
+        cmocka_unit_test(followed_steps_err_by_the_tolerance_at_the_end),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
