@@ -176,23 +176,33 @@ static double largest(const struct ct_balance *s)
     return fmax(size, nothing);
 }
 
+// kept (nq + nrow, out): the state.
+static void keep(const struct ct_balance *s, double *kept)
+{
+    memcpy(kept, s->y, s->m->nq * sizeof *kept);
+    memcpy(kept + s->m->nq, s->lam, s->e->nrow * sizeof *kept);
+}
+
+static void take_back(struct ct_balance *s, const double *kept)
+{
+    memcpy(s->y, kept, s->m->nq * sizeof *kept);
+    memcpy(s->lam, kept + s->m->nq, s->e->nrow * sizeof *kept);
+}
+
 // Newton steps, halved until the next correction with the same derivative is smaller: that test does not care how rows
 // are scaled. Source: Deuflhard (2011), key deuflhard2011.
 static bool iterate_damped(struct ct_balance *s, double *kept, double *d, double *next)
 {
-    const size_t nq = s->m->nq, nrow = s->e->nrow;
     for (int step = 0; step < MOST_STEPS; step++) {
         if (!factor(s))
             return false;
         const double size = correction(s, d);
         if (size <= met * largest(s))
             return true;
-        memcpy(kept, s->y, nq * sizeof *kept);
-        memcpy(kept + nq, s->lam, nrow * sizeof *kept);
+        keep(s, kept);
         double part = 1, left = INFINITY;
         for (int half = 0; half < MOST_HALVINGS && !(left < size); half++, part /= 2) {
-            memcpy(s->y, kept, nq * sizeof *kept);
-            memcpy(s->lam, kept + nq, nrow * sizeof *kept);
+            take_back(s, kept);
             move(s, d, part);
             ct_balance_evaluate(s);
             left = correction(s, next);
@@ -226,17 +236,14 @@ static bool iterate_full(struct ct_balance *s, double *d)
 // draws its axis in with the next step: full steps are tried where damped ones find nothing.
 bool ct_balance_iterate(struct ct_balance *s, struct ct_arena *a)
 {
-    const size_t all = s->n + s->nlam, nq = s->m->nq, nrow = s->e->nrow;
+    const size_t all = s->n + s->nlam, state = s->m->nq + s->e->nrow;
     double *d = CT_NEWN(a, double, all + 1), *next = CT_NEWN(a, double, all + 1),
-           *kept = CT_NEWN(a, double, nq + nrow + 1),
-           *start = CT_NEWN(a, double, nq + nrow + 1);
-    memcpy(start, s->y, nq * sizeof *start);
-    memcpy(start + nq, s->lam, nrow * sizeof *start);
+           *kept = CT_NEWN(a, double, state + 1), *start = CT_NEWN(a, double, state + 1);
+    keep(s, start);
     ct_balance_evaluate(s);
     if (iterate_damped(s, kept, d, next))
         return true;
-    memcpy(s->y, start, nq * sizeof *start);
-    memcpy(s->lam, start + nq, nrow * sizeof *start);
+    take_back(s, start);
     ct_balance_evaluate(s);
     return iterate_full(s, d);
 }

@@ -45,27 +45,7 @@ while IFS='|' read -r name keys bob place angle end kind; do
     tilt=${place#*,} tilt=${tilt%%,*}
     # shellcheck disable=SC2086 # words of a motion
     set -f && angle=$(motion $angle) && set +f
-    for formulation in linear foreshortening auto; do
-        model $formulation >$formulation.yaml
-        [ $formulation = auto ] ||
-            "$COTREE" simulate $formulation.yaml -o $formulation.csv --summary $formulation.json --quiet 2>/dev/null
-    done
-    said=$(after_run linear.json)
-    before=$(before_run auto.yaml)
-    paste -d, linear.csv foreshortening.csv |
-        awk -F, -v name="$name" -v said="$said" -v before="$before" -v kind="$kind" '
-            function near(a, b) { return a < 3 * b && b < 3 * a }
-            function fits(word) { return kind == "beyond" ? word == "beyond 1" && worst > 1 / 3 : near(word, worst) }
-            NR > 1 {
-                e = sqrt(($2 - $5)^2 + ($3 - $6)^2); if (e > worst) worst = e
-                q = sqrt($5^2 + $6^2); if (q > peak) peak = q
-            }
-            END {
-                if (!peak || NR != 402) { print name ": no deflections"; exit 1 }
-                worst /= peak
-                printf "%s: error %.4g, said %s, before the run %s\n", name, worst, said, before
-                exit !(fits(said) && fits(before))
-            }' || failed=1
+    foretold "$name" "$kind" || failed=1
     n=$((n + 1))
 done <"$folder/foretold.txt"
 [ $n -eq 18 ] || failed=1
