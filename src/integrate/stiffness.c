@@ -219,8 +219,9 @@ bool ct_stiffness_find_vibration(struct ct_stiffness *s, double t, const double 
     double *x = s->f0;
     for (int i = 0; i < s->p->ny; i++)
         x[i] = s->f[i] / s->fast;
-    if (!turn_on(s, t, y, x) || !turn_on(s, t, y, x))
-        return false;
+    for (int quarter = 0; quarter < 2; quarter++)
+        if (!turn_on(s, t, y, x))
+            return false;
     memcpy(s->quarter, x, (size_t)s->p->ny * sizeof *x);
     *e = s->quarter;
     *later = x;

@@ -424,7 +424,8 @@ static void the_first_step_from_rest_is_that_of_the_motion_to_come(void **unused
     (void)unused;
     static const char *const names[] = {"dopri5", "dop853"};
     for (size_t i = 0; i < COUNT(names); i++)
-        for (double T = 1e-4; T > 1e-11; T /= 100) {
+        for (int power = -4; power >= -10; power -= 2) {
+            const double T = pow(10, power);
             const struct ct_method *m = ct_method_find(names[i]);
             const int n = m->error_order + 1;
             struct record *r = begin();
@@ -443,7 +444,8 @@ static void followed_steps_err_by_the_tolerance_at_the_end(void **unused)
 {
     (void)unused;
     const double time = 100;
-    for (double T = 1e-4; T > 1e-9; T /= 100) {
+    for (int power = -4; power >= -8; power -= 2) {
+        const double T = pow(10, power);
         const struct ct_method *m = ct_method_find("dop853");
         const double steps = ceil(time / ct_stiffness_followed_step(m, omega, time, T));
         double y[NY] = {1, 0};
