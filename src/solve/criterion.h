@@ -65,8 +65,9 @@ static inline bool ct_is_closed(double sigma, double size, double before)
 }
 
 /// After corrections (6.3b) of places and speeds, dq and du the sums of their sizes, u the largest speed: is what they leave, terms
-/// of second order, below a rounding of what rows are sums of? Derivatives of a row along motions of bodies are bounded by the
-/// same lengths in all orders. Beside a singular position what is left is divided by sigma twice.
+/// of second order, below a rounding of what rows are sums of? Derivatives of rows of joints along motions of bodies are bounded
+/// by the same lengths in all orders; what other rows bend along the motion is a part of du. Beside a singular position what is
+/// left is divided by sigma twice.
 static inline bool ct_is_rest_lost(double sigma, double dq, double du, double u)
 {
     const double least = DBL_EPSILON * (sigma < ct_small_pivot ? sigma * sigma : 1);
