@@ -298,19 +298,35 @@ static void put_prologue_first(struct lister *s)
 // From so many on, all at once take less time than each by itself.
 static const size_t several_angles = 3;
 
-static void name_angles(struct ct_listing *l, size_t several)
+// Back ends read all arguments of several angles before they write results: the sine of a sine is left as it is.
+static bool *find_separate_angles(struct ct_arena *a, const struct ct_listing *l, size_t *n)
+{
+    bool *is_wave = CT_NEWN(a, bool, l->nvalue + 1); // by value: a sine or a cosine
+    bool *is_separate = CT_NEWN(a, bool, l->nins + 1);
+    for (size_t i = l->nprologue; i < l->nins; i++) {
+        const struct ct_instruction *ins = &l->ins[i];
+        if (ins->op != CT_OP_SIN && ins->op != CT_OP_COS && ins->op != CT_OP_SINCOS
+            && (ins->op < CT_OP_ANGLE_SIN || ins->op > CT_OP_ANGLE_SINCOS))
+            continue;
+        is_separate[i] = !is_wave[ins->arg[0]];
+        *n += is_separate[i];
+        for (uint32_t k = 0; k < ins->nres; k++)
+            is_wave[ins->res[k]] = true;
+    }
+    return is_separate;
+}
+
+static void name_angles(struct ct_arena *a, struct ct_listing *l, size_t several)
 {
     size_t n = 0;
-    for (size_t i = l->nprologue; i < l->nins; i++) {
-        const uint32_t op = l->ins[i].op;
-        n += op == CT_OP_SIN || op == CT_OP_COS || op == CT_OP_SINCOS;
-    }
+    const bool *is_separate = find_separate_angles(a, l, &n);
     for (size_t i = l->nprologue; i < l->nins && n >= several; i++) {
         unsigned char *op = &l->ins[i].op;
-        *op = *op == CT_OP_SIN    ? CT_OP_ANGLE_SIN
-            : *op == CT_OP_COS    ? CT_OP_ANGLE_COS
-            : *op == CT_OP_SINCOS ? CT_OP_ANGLE_SINCOS
-                                  : *op;
+        if (is_separate[i])
+            *op = *op == CT_OP_SIN    ? CT_OP_ANGLE_SIN
+                : *op == CT_OP_COS    ? CT_OP_ANGLE_COS
+                : *op == CT_OP_SINCOS ? CT_OP_ANGLE_SINCOS
+                                      : *op;
     }
 }
 
@@ -320,7 +336,7 @@ const struct ct_listing *ct_listing_for_lanes(struct ct_arena *a, const struct c
     *copy = *l;
     copy->ins = CT_NEWN(a, struct ct_instruction, l->nins + 1);
     memcpy(copy->ins, l->ins, l->nins * sizeof *l->ins);
-    name_angles(copy, 1);
+    name_angles(a, copy, 1);
     return copy;
 }
 
@@ -350,7 +366,7 @@ const struct ct_listing *ct_listing_create(struct ct_arena *a, const struct ct_e
     if (fuse == CT_FUSE_YES)
         fuse_products(&s);
     put_prologue_first(&s);
-    name_angles(l, several_angles);
+    name_angles(a, l, several_angles);
     for (size_t i = l->nprologue; i < l->nins; i++)
         count_op(&l->counts, l->ins[i].op);
     // the points of a table stay where they are, the list of tables may move

@@ -2,6 +2,7 @@
 #include "expr/sincos.h"
 #include "expr/tape.h"
 #include "random_ex.h"
+#include "tests/check.h"
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -163,6 +164,35 @@ static void small_graphs_have_the_bits_of_ct_ex_value(void **unused)
     }
 }
 
+// Several angles are taken at once, but not one that is a sine itself.
+static void sines_of_sines_beside_other_angles_are_right(void **unused)
+{
+    (void)unused;
+    struct random r = random_start(__func__);
+    struct fixture f;
+    start(&f, &r);
+    ct_ex out[10]; // sine and cosine of three symbols, of a sine, and of a sine of a sine
+    for (size_t k = 0; k < 10; k++) {
+        const ct_ex angle = k < 6 ? f.sym[k / 2 * 2 + 1] : k < 8 ? out[0] : out[6];
+        out[k] = ct_ex_fun(&f.x, k % 2 ? CT_OP_COS : CT_OP_SIN, angle);
+    }
+    const struct ct_listing *l
+        = ct_listing_create(f.arena, &f.x, out, 10, f.sym, f.slot, 8, CT_FUSE_NO);
+    struct ct_tape *t[] = {ct_tape_create(f.arena, l),
+                           ct_tape_create(f.arena, ct_listing_for_lanes(f.arena, l))};
+    for (size_t i = 0; i < COUNT(t); i++) {
+        double *w = CT_NEWN(f.arena, double, ct_tape_work(t[i])), got[10];
+        ct_tape_prepare(t[i], f.input, w);
+        for (int call = 0; call < 2; call++) { // slots hold values of the call before
+            f.input[f.slot[1]] = f.value[1] = random_double(&r);
+            ct_tape_eval(t[i], f.input, got, w);
+            for (size_t k = 0; k < 10; k++)
+                CHECK_CLOSE(got[k], ct_ex_value(&f.x, out[k], f.value), 1e-15, 1e-15);
+        }
+    }
+    finish(&f);
+}
+
 static void outputs_may_be_inputs_constants_and_repeated(void **unused)
 {
     (void)unused;
@@ -311,6 +341,7 @@ int main(int argc, char **argv)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(random_graphs_have_the_bits_of_the_operators),
         cmocka_unit_test(small_graphs_have_the_bits_of_ct_ex_value),
+        cmocka_unit_test(sines_of_sines_beside_other_angles_are_right),
         cmocka_unit_test(outputs_may_be_inputs_constants_and_repeated),
         cmocka_unit_test(no_outputs_need_nothing),
         cmocka_unit_test(unused_inputs_and_dead_nodes_take_no_room),
