@@ -54,3 +54,40 @@ outputs: [j1.q]
 simulation: {duration: 0.05, samples: 3}
 END
 say loop.yaml
+echo '-- a lumped rod between a ball and a universal joint, and between two balls: the key of the beam, on all trees'
+cat >between.yaml <<END
+cotree: 1
+gravity: [0, 0, -9.81]
+bodies:
+  crank: {mass: 1, inertia: [0.1, 0.1, 0.1], points: {e: [0.3, 0, 0]}}
+  rod:
+    type: beam
+    length: 1.2
+    elements: 2
+    E: 7e10
+    nu: 0.3
+    area: 1e-4
+    Iy: 8e-10
+    Iz: 8e-10
+    density: 2700
+    mass: lumped
+    frame: chord
+    formulation: linear
+    deformation: [axial, bending-y, bending-z]
+    points: {tip: length}
+  slider: {mass: 1, inertia: [0.1, 0.1, 0.1]}
+joints:
+  m: {type: revolute, axis: z, from: ground, to: crank, initial: {q: 0.7, u: 2}}
+  ball: {type: spherical, from: crank.e, to: rod, initial: {guess: true}}
+  end: {type: universal, axes: [y, z], from: slider, to: rod.tip, initial: {guess: true}}
+  s: {type: prismatic, axis: x, from: ground, to: slider, initial: {q: 1.4, guess: true}}
+outputs: [s.q]
+simulation: {duration: 0.01, samples: 2}
+END
+sed 's/universal, axes: \[y, z\]/spherical/' between.yaml >balls.yaml
+sed 's/elements: 2/elements: 1/' between.yaml >one.yaml
+for model in between balls one; do
+  for tree in auto joints absolute; do
+    "$COTREE" simulate $model.yaml --tree $tree --quiet -o out.csv 2>&1 | grep 'error: '
+  done
+done
