@@ -343,6 +343,46 @@ static int rounded_closed_pivot(struct ct_embed *s, const double *pivot)
     return rounded_pivot(s, f, is_exact);
 }
 
+// The beam of an elastic coordinate whose mass is at one point of each element; else NULL.
+static const struct ct_body *pointed_beam(const struct ct_embed *s, size_t k)
+{
+    const struct ct_u *u = &s->m->e->u[k];
+    const struct ct_body *body = u->beam > 0 ? &s->m->model->body[u->beam] : NULL;
+    return body && body->beam->integration == CT_BEAM_ONE_POINT ? body : NULL;
+}
+
+// What one point of an element leaves no mass may have a little with `modes`: such motions are much faster than all others. Once.
+static void warn_of_points(struct ct_embed *s)
+{
+    const size_t n = s->m->nu;
+    const struct ct_body *found = NULL;
+    double part
+        = 1e-6; // of the coordinate's own inertia: a thousand times as fast as that would let it be
+    for (size_t k = 0; k < n; k++)
+        found = found ? found : pointed_beam(s, k);
+    if (!found || s->switches != 1 || !s->m->e->has_dynamics)
+        return;
+    bool *follows = CT_NEWN(s->arena, bool, n + 1);
+    double *left = CT_NEWN(s->arena, double, n + 1);
+    for (size_t k = 0; k < n; k++)
+        follows[k] = !pointed_beam(s, k);
+    ct_machine_motion(s->m);
+    found = NULL;
+    if (!ct_embed_inertias(s, follows, left))
+        return;
+    for (size_t k = 0; k < n; k++)
+        if (left[k] <= part * s->m->M[k + n * k]) {
+            part = left[k] / s->m->M[k + n * k];
+            found = pointed_beam(s, k);
+        }
+    if (found)
+        ct_warning(s->ctx, mark_of_lack(found), 0,
+                   "the mass at one point of an element leaves a motion of beam '%s' next to "
+                   "none of its "
+                   "inertia: it is much faster than all others; take 'integration: reduced'",
+                   found->instance.name);
+}
+
 // The pivots of a solution in closed form must be positive. Behind one that is not, others are no numbers.
 static bool has_inertia(struct ct_embed *s)
 {
@@ -357,6 +397,8 @@ static bool has_inertia(struct ct_embed *s)
         if (!(pivot[i] > 0))
             return massless(s, elastic_beside(s, pivot[least] > 0 ? i : least));
     const int rounded = rounded_closed_pivot(s, pivot);
+    if (rounded < 0)
+        warn_of_points(s);
     return rounded < 0 || massless(s, elastic_beside(s, (size_t)rounded));
 }
 
@@ -433,6 +475,7 @@ bool ct_embed_choose(struct ct_embed *s)
     const int rounded = rounded_pivot(s, (int)s->m->nu - s->rank, false);
     if (rounded >= 0 || !is_regular)
         return massless(s, rounded >= 0 ? (size_t)rounded : lightest(s));
+    warn_of_points(s);
     ct_embed_take_form(s);
     return true;
 }
