@@ -229,7 +229,7 @@ struct ct_equations {
     bool is_planar;
     int bare_beam,
         bare_joint; // body whose first section has no inertia, the joint it turns on; 0: none
-    bool is_truncated; // to first order in coordinates that are small
+    const bool *is_small; // by speed: M and Q are cut to first order in these; NULL: not cut
     struct ct_validity *validity;
     size_t nvalidity, validity_cap;
     struct ct_bent_beam *bend;

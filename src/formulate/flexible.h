@@ -105,6 +105,7 @@ struct ct_flexible {
     const struct ct_follow
         *followed; // where those that follow are coordinates: as if they were not (carried.h)
     double start_missed; // share of the start that modes or given shapes leave out
+    int most_modes;      // of `modes`: how many there are
     double cut; // frequency of modes of which some are kept and some not [rad/s]; else 0
     int uncut
         [2]; // then: the nearest numbers of modes, below and above, that keep all or none of these

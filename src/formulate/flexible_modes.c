@@ -233,8 +233,8 @@ bool ct_flexible_keeps_all_modes(struct ct_build *b, struct ct_flexible *f)
 {
     struct reduction r = {.b = b, .f = f};
     number_modal(&r);
-    return f->beam->modes
-        >= inner_freedoms(&r, f->excited, CT_NEWN(b->ctx->scratch, int, r.n + 1));
+    f->most_modes = inner_freedoms(&r, f->excited, CT_NEWN(b->ctx->scratch, int, r.n + 1));
+    return f->beam->modes >= f->most_modes;
 }
 
 bool ct_flexible_reduce(struct ct_build *b, struct ct_flexible *f, struct ct_shapes *out)

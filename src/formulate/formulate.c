@@ -214,6 +214,7 @@ static bool choose_beams(struct ct_ctx *ctx, struct ct_arena *a, const struct ct
     return ct_build_derive(*b, !o->without_dynamics);
 }
 
+// `modes` that keep some of several alike, or more than there are.
 static void warn_of_cuts(struct ct_ctx *ctx, const struct ct_build *b)
 {
     for (size_t i = 0; i < b->nflexible; i++) {
@@ -225,6 +226,11 @@ static void warn_of_cuts(struct ct_ctx *ctx, const struct ct_build *b)
                        f->name, f->cut,
                        f->uncut[0] ? ct_arena_printf(ctx->scratch, "%d or ", f->uncut[0]) : "",
                        f->uncut[1]);
+        if (f->most_modes < f->beam->modes && f->deformation)
+            ct_warning(ctx, f->beam->modes_mark, 0,
+                       "beam '%s' has %d mode%s beside what its points do: all its coordinates "
+                       "are kept, as without `modes`",
+                       f->name, f->most_modes, f->most_modes == 1 ? "" : "s");
     }
 }
 

@@ -295,7 +295,7 @@ void ct_residual_rows(struct ct_build *b)
         return;
     e->residual = CT_NEW(b->arena, struct ct_residual);
     e->residual->r = CT_NEWN(b->arena, ct_ex, e->nu + 1);
-    if (e->is_truncated)
+    if (e->is_small)
         assemble_rows(b, e->residual->r);
     else
         derive_rows(b, e->residual->r);

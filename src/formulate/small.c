@@ -78,7 +78,7 @@ static bool collect(struct ct_build *b, struct small *s)
 {
     struct ct_mark at;
     bool ok = true;
-    s->is_small = CT_NEWN(b->ctx->scratch, bool, b->eqs->nu + 1);
+    s->is_small = CT_NEWN(b->arena, bool, b->eqs->nu + 1);
     for (size_t j = 0; j < b->model->njoint; j++)
         if (is_named(b, b->model->joint[j].name, &at))
             ok &= collect_joint(b, s, (int)j, at);
@@ -211,7 +211,7 @@ bool ct_small_derive(struct ct_build *b)
         return false;
     if (!s.n)
         return true;
-    b->eqs->is_truncated = true;
+    b->eqs->is_small = s.is_small;
     truncate_masses(b, &s);
     truncate(b, &s, b->eqs->Q, b->eqs->nu);
     return true;

@@ -337,11 +337,23 @@ static double chance(uint64_t *state)
     return (double)(*state >> 11) / 4503599627370496.0 - 1;
 }
 
+// A small motion into s->b, larger from try to try: of joints, then of bodies, so that their numbers do not depend on how many
+// freedoms beams keep, which stay as they start.
+static void draw_motion(struct ct_assembler *s, int try)
+{
+    uint64_t state = (uint64_t)try;
+    const struct ct_u *u = s->e->u;
+    memset(s->b, 0, s->m->nu * sizeof *s->b);
+    for (int of_bodies = 0; of_bodies < 2; of_bodies++)
+        for (size_t k = 0; k < s->m->nu; k++)
+            if (!u[k].beam && (u[k].joint < 0) == of_bodies)
+                s->b[k] = 0.15 * try * chance(&state);
+}
+
 // From the targets, from the second try on moved a little, then more.
 static void start_near_targets(struct ct_assembler *s, int try)
 {
     double *memory = s->m->input + s->m->at_memory;
-    uint64_t state = (uint64_t)try;
     memset(s->y, 0, (s->m->nq + s->m->nu + 1) * sizeof *s->y);
     for (size_t i = 0; i < s->e->ncoordinate; i++) {
         const struct ct_coordinate *c = &s->e->coordinate[i];
@@ -350,8 +362,7 @@ static void start_near_targets(struct ct_assembler *s, int try)
     }
     ct_start_beams(s->e, s->value, s->y, NULL);
     ct_machine_normalise(s->m, s->y);
-    for (size_t k = 0; k < s->m->nu; k++)
-        s->b[k] = 0.15 * try * chance(&state);
+    draw_motion(s, try);
     ct_machine_retract(s->m, s->y, s->b);
     for (size_t i = 0; i < s->e->nmemory; i++)
         for (size_t k = 0; k < s->e->ncoordinate && s->e->memory[i].kind == CT_MEMORY_ANGLE;

@@ -75,8 +75,7 @@ bool ct_embed_factor(struct ct_embed *s)
     return isfinite(s->kappa);
 }
 
-// S (free x free) = B' M B with the unit columns of the independent speeds.
-static void reduce_mass(struct ct_embed *s, const double *M)
+void ct_embed_reduce_mass(struct ct_embed *s, const double *M)
 {
     const int n = (int)s->m->nu, r = s->rank, f = n - r;
     for (int j = 0; j < f; j++) // MB = M [B; 1], n x f
@@ -124,7 +123,7 @@ static void expand(const struct ct_embed *s, double *x, const double *z, const d
 static enum ct_eval reduce_and_expand(struct ct_embed *s, const double *M, double *x)
 {
     const int f = (int)s->m->nu - s->rank;
-    reduce_mass(s, M);
+    ct_embed_reduce_mass(s, M);
     reduce_force(s, s->b, s->r);
     if (f && !ct_cholesky(s->S, f, f))
         return CT_EVAL_RETRY;

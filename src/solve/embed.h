@@ -77,6 +77,10 @@ bool ct_embed_choose(struct ct_embed *s);
 enum ct_eval ct_embed_solve(struct ct_embed *s);
 /// u' into s->a from M, Q, J, gam of the last ct_machine_motion.
 enum ct_eval ct_embed_accelerate(struct ct_embed *s);
+/// left (nu, out): the inertia against each independent speed that `follows` (nu) does not name, while those that it names are
+/// free to follow, at the last ct_machine_motion: pivots of B' M B where the latter are eliminated first, as far as they are
+/// positive, and the first that is not. NaN for other speeds. False if J_d is singular.
+bool ct_embed_inertias(struct ct_embed *s, const bool *follows, double *left);
 /// Multipliers of least norm into s->lam at the machine's input; s->a holds its u'.  (6.5)
 void ct_embed_multipliers(struct ct_embed *s);
 /// Multipliers lam (rank, out) of the kept rows alone, after ct_embed_accelerate: J_d' lam = (M u' - Q)_d.

@@ -78,13 +78,28 @@ static const struct ct_body *bare_beam(const struct ct_model *m, size_t i)
     return is_bare ? &m->body[i] : NULL;
 }
 
-// The beam of that kind that a coordinate moves; else NULL.
+// The beam of that kind that a coordinate moves, of a joint one of the two at its ends; else NULL.
 static const struct ct_body *bare_beam_of(const struct ct_model *m, const struct ct_u *u)
 {
-    const struct ct_instance *joint = u->joint < 0 ? NULL : &m->joint[u->joint];
-    const int head = joint ? m->frame[joint->to].body : u->body;
-    const int beam = u->beam > 0 ? u->beam : head ? head : m->frame[joint->from].body;
-    return bare_beam(m, (size_t)beam);
+    if (u->beam > 0 || u->joint < 0)
+        return bare_beam(m, (size_t)(u->beam > 0 ? u->beam : u->body));
+    const struct ct_instance *joint = &m->joint[u->joint];
+    const struct ct_body *head = bare_beam(m, (size_t)m->frame[joint->to].body);
+    return head ? head : bare_beam(m, (size_t)m->frame[joint->from].body);
+}
+
+// The key that leaves sections of a beam without inertia; the beam itself where none is given.
+static struct ct_mark mark_of_lack(const struct ct_body *body)
+{
+    const char *const key[]
+        = {body->beam->integration == CT_BEAM_ONE_POINT ? "integration" : "rotary_inertia",
+           "mass"};
+    for (size_t i = 0; i < 2; i++) {
+        const struct ct_value *v = ct_instance_value(&body->instance, key[i]);
+        if (v->given)
+            return v->mark;
+    }
+    return body->instance.mark;
 }
 
 static bool massless(struct ct_embed *s, size_t speed)
@@ -95,7 +110,7 @@ static bool massless(struct ct_embed *s, size_t speed)
     const int bare = s->m->e->bare_beam;
     if (bare)
         return ct_error(
-            s->ctx, model->body[bare].instance.mark, CT_E_MASSLESS,
+            s->ctx, mark_of_lack(&model->body[bare]), CT_E_MASSLESS,
             "coordinate '%s' moves no mass: the first section of beam '%s' has no inertia; "
             "give the beam %s, or, if no moment acts on that section, 'frame: chord'",
             name, model->body[bare].instance.name, rotary_of(model->body[bare].beam));
@@ -106,7 +121,7 @@ static bool massless(struct ct_embed *s, size_t speed)
                         name, model->body[u->beam].instance.name);
     const struct ct_body *beam = bare_beam_of(model, u);
     if (u->beam > 0 && beam)
-        return ct_error(s->ctx, model->body[u->beam].instance.mark, CT_E_MASSLESS,
+        return ct_error(s->ctx, mark_of_lack(beam), CT_E_MASSLESS,
                         "coordinate '%s' moves no mass: give the beam %s%s", name,
                         rotary_of(model->body[u->beam].beam),
                         model->body[u->beam].beam->theory == CT_BEAM_EULER_BERNOULLI
@@ -119,7 +134,7 @@ static bool massless(struct ct_embed *s, size_t speed)
     for (size_t i = 1; i < model->nbody && u->beam > 0 && !beam; i++)
         beam = bare_beam(model, i);
     if (beam)
-        return ct_error(s->ctx, mark, CT_E_MASSLESS,
+        return ct_error(s->ctx, mark_of_lack(beam), CT_E_MASSLESS,
                         "coordinate '%s' moves no mass: give beam '%s' %s, or a mass or an "
                         "inertia to what else it moves",
                         name, beam->instance.name, rotary_of(beam->beam));
@@ -226,6 +241,23 @@ static double gross_inertia(const struct ct_embed *s, const double *z, bool with
     return sum;
 }
 
+// In the motion z (nu), none of which moves mass: the rotation of a section without inertia that turns most; k where there is none
+// or k is one.
+static int turned_speed(const struct ct_embed *s, const double *z, int k)
+{
+    const size_t n = s->m->nu;
+    const struct ct_u *u = s->m->e->u;
+    double most = 0;
+    int named = k;
+    for (size_t i = 0; i < n && !bare_beam_of(s->m->model, &u[k]); i++)
+        if (u[i].beam > 0 && bare_beam_of(s->m->model, &u[i]) && !(s->m->M[i + n * i] > 0)
+            && z[i] > most) {
+            most = z[i];
+            named = (int)i;
+        }
+    return named;
+}
+
 // The speed of the motion z (nu) to be named: k, or the one of a beam that lacks inertia which moves most of it.
 static int lacking_speed(const struct ct_embed *s, const double *z, int k)
 {
@@ -240,7 +272,20 @@ static int lacking_speed(const struct ct_embed *s, const double *z, int k)
             named = (int)i;
         }
     }
-    return named;
+    return named != k ? named : turned_speed(s, z, k);
+}
+
+// The largest inertia about an axis of the free rotation that speed k belongs to; 0 if it belongs to none. Axes are known to
+// rounding, so that a rod without inertia about its own has what these leave of the others.
+static double turned_inertia(const struct ct_embed *s, size_t k)
+{
+    const size_t n = s->m->nu;
+    const struct ct_u *u = s->m->e->u;
+    double most = 0;
+    for (size_t i = 0; i < n && u[k].q < 0; i++)
+        if (u[i].q < 0 && u[i].joint == u[k].joint && u[i].body == u[k].body)
+            most = fmax(most, s->m->M[i + n * i]);
+    return most;
 }
 
 // The first independent speed whose pivot of B' M B is rounding of the inertias that its motion cancels; -1: none. s->S: the
@@ -252,11 +297,15 @@ static int rounded_pivot(struct ct_embed *s, int f, bool of_beams)
         const double root = s->S[i + f * i], pivot = root > 0 ? root * root : 0;
         memset(motion, 0, s->m->nu * sizeof *motion);
         add_motion(s, i, 1, motion);
-        if (pivot > hidden_pivot * gross_inertia(s, motion, true))
+        const double turned = turned_inertia(s, (size_t)s->independent[i]);
+        if (pivot > hidden_pivot * fmax(gross_inertia(s, motion, true), turned))
             continue;
         find_pivot_motion(s, f, i, x, motion);
         const double rigid = gross_inertia(s, motion, false),
                      gross = gross_inertia(s, motion, true);
+        if (pivot <= rounding_pivot * turned
+            && bare_beam_of(s->m->model, &s->m->e->u[s->independent[i]]))
+            return s->independent[i];
         if (pivot <= rounding_pivot * gross && !(of_beams && 2 * rigid > gross))
             return lacking_speed(s, motion, s->independent[i]);
         if (!(root > 0))
@@ -276,6 +325,9 @@ static int rounded_closed_pivot(struct ct_embed *s, const double *pivot)
     ct_machine_motion(s->m);
     bool is_doubtful = false;
     for (size_t i = 0; i < n; i++) {
+        if (bare_beam_of(s->m->model, &s->m->e->u[i])
+            && pivot[i] <= rounding_pivot * turned_inertia(s, i))
+            return (int)i;
         is_doubtful |= pivot[i] <= hidden_pivot * s->m->M[i + n * i];
         if (pivot[i] <= rounding_pivot * s->m->M[i + n * i]
             && !(is_exact && elastic_beside(s, i) == i && !is_elastic_motion(s, i)))
@@ -289,6 +341,46 @@ static int rounded_closed_pivot(struct ct_embed *s, const double *pivot)
             s->S[i + f * j] = s->m->M[i + f * j];
     ct_cholesky(s->S, f, f); // as far as it goes
     return rounded_pivot(s, f, is_exact);
+}
+
+// The beam of an elastic coordinate whose mass is at one point of each element; else NULL.
+static const struct ct_body *pointed_beam(const struct ct_embed *s, size_t k)
+{
+    const struct ct_u *u = &s->m->e->u[k];
+    const struct ct_body *body = u->beam > 0 ? &s->m->model->body[u->beam] : NULL;
+    return body && body->beam->integration == CT_BEAM_ONE_POINT ? body : NULL;
+}
+
+// What one point of an element leaves no mass may have a little with `modes`: such motions are much faster than all others. Once.
+static void warn_of_points(struct ct_embed *s)
+{
+    const size_t n = s->m->nu;
+    const struct ct_body *found = NULL;
+    double part
+        = 1e-6; // of the coordinate's own inertia: a thousand times as fast as that would let it be
+    for (size_t k = 0; k < n; k++)
+        found = found ? found : pointed_beam(s, k);
+    if (!found || s->switches != 1 || !s->m->e->has_dynamics)
+        return;
+    bool *follows = CT_NEWN(s->arena, bool, n + 1);
+    double *left = CT_NEWN(s->arena, double, n + 1);
+    for (size_t k = 0; k < n; k++)
+        follows[k] = !pointed_beam(s, k);
+    ct_machine_motion(s->m);
+    found = NULL;
+    if (!ct_embed_inertias(s, follows, left))
+        return;
+    for (size_t k = 0; k < n; k++)
+        if (left[k] <= part * s->m->M[k + n * k]) {
+            part = left[k] / s->m->M[k + n * k];
+            found = pointed_beam(s, k);
+        }
+    if (found)
+        ct_warning(s->ctx, mark_of_lack(found), 0,
+                   "the mass at one point of an element leaves a motion of beam '%s' next to "
+                   "none of its "
+                   "inertia: it is much faster than all others; take 'integration: reduced'",
+                   found->instance.name);
 }
 
 // The pivots of a solution in closed form must be positive. Behind one that is not, others are no numbers.
@@ -305,6 +397,8 @@ static bool has_inertia(struct ct_embed *s)
         if (!(pivot[i] > 0))
             return massless(s, elastic_beside(s, pivot[least] > 0 ? i : least));
     const int rounded = rounded_closed_pivot(s, pivot);
+    if (rounded < 0)
+        warn_of_points(s);
     return rounded < 0 || massless(s, elastic_beside(s, (size_t)rounded));
 }
 
@@ -367,7 +461,7 @@ bool ct_embed_choose(struct ct_embed *s)
         s->independent[j] = j;
     if (!s->m->nrow)
         ct_embed_factor(s);
-    else if (!choose_ahead(s))
+    else if (!choose_ahead(s) && !choose_here(s))
         return massless(s, lightest(s));
     s->kappa_chosen = s->kappa;
     s->sigma_chosen = s->sigma;
@@ -381,6 +475,7 @@ bool ct_embed_choose(struct ct_embed *s)
     const int rounded = rounded_pivot(s, (int)s->m->nu - s->rank, false);
     if (rounded >= 0 || !is_regular)
         return massless(s, rounded >= 0 ? (size_t)rounded : lightest(s));
+    warn_of_points(s);
     ct_embed_take_form(s);
     return true;
 }

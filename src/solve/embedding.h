@@ -5,6 +5,7 @@
 //     embed_form.c      the same in closed form, where that is sound
 //     embed_project.c   onto the constraints
 //     embed_pivot.c     how near J is to losing rank
+//     embed_inertia.c   what inertia some speeds have where others are free to follow
 #ifndef CT_SOLVE_EMBEDDING_H
 #define CT_SOLVE_EMBEDDING_H
 
@@ -17,6 +18,8 @@ static inline double *ct_embed_J(const struct ct_embed *s, int row, int column)
 
 /// LU of J_d and B = -J_d^-1 J_i (rank x free); false if J_d is singular.
 bool ct_embed_factor(struct ct_embed *s);
+/// S (free x free) = B' M B with the unit columns of the independent speeds, its lower triangle.
+void ct_embed_reduce_mass(struct ct_embed *s, const double *M);
 /// Dense factors of larger systems cost more than a step does.
 bool ct_embed_is_large(const struct ct_embed *s);
 

@@ -59,19 +59,71 @@ static void name_open_row(struct ct_run *r)
             r->e->row[worst].name, fabs(r->m->phi[worst]), t);
 }
 
+// left (nu, out): what inertia carries the small coordinates at the machine's input.
+static bool find_left(struct ct_run *r, double *left)
+{
+    ct_machine_constraint(r->m);
+    ct_machine_motion(r->m);
+    return ct_embed_inertias(r->s, r->e->is_small, left);
+}
+
+// The speed that carries small coordinates whose inertia has shrunk most against what it is with these at zero; *part (out) of it is
+// left. -1: none has lost much.
+static int lost_speed(struct ct_run *r, double *part)
+{
+    const size_t nu = r->m->nu;
+    double *now = CT_NEWN(r->arena, double, nu + 1),
+           *straight = CT_NEWN(r->arena, double, nu + 1);
+    int lost = -1;
+    *part = 0.1; // more is no reason to stop: steps shorten with its root
+    ct_machine_set(r->m, r->stats.last_time, r->y);
+    if (!find_left(r, now))
+        return -1;
+    for (size_t k = 0; k < nu; k++)
+        if (r->e->is_small[k] && r->e->u[k].q >= 0)
+            r->m->input[r->m->at_q + (size_t)r->e->u[k].q] = 0;
+    if (!find_left(r, straight))
+        return -1;
+    for (size_t k = 0; k < nu; k++)
+        if (straight[k] > 0 && now[k] < *part * straight[k]) {
+            *part = now[k] / straight[k];
+            lost = (int)k;
+        }
+    return lost;
+}
+
+// Equations that are cut to first order have lost an inertia, which leaves no step: whose, and what to do.
+static bool name_lost(struct ct_run *r)
+{
+    double part;
+    const int lost = lost_speed(r, &part);
+    if (lost < 0)
+        return false;
+    const struct ct_u *u = &r->e->u[lost];
+    const struct ct_mark mark
+        = u->joint >= 0 ? r->model->joint[u->joint].mark
+        : u->beam > 0 || u->body > 0
+            ? r->model->body[u->beam > 0 ? u->beam : u->body].instance.mark
+            : (struct ct_mark){0};
+    ct_note(
+        r->ctx, mark,
+        "at t = %.9g the inertia that '%s' moves, with what it carries free to follow, is %.2g "
+        "of what it is "
+        "undeformed: equations that are cut to first order, by 'stretch-linear' or 'small', "
+        "lose masses as deflections grow; 'foreshortening', or no 'small', has all terms",
+        r->stats.last_time, u->q >= 0 ? r->e->q[u->q].name : u->name, part);
+    return true;
+}
+
 void ct_run_explain_end(struct ct_run *r)
 {
     const size_t n = r->ctx->ndiagnostic;
     const enum ct_code code = n ? r->ctx->diagnostic[n - 1].code : 0;
     const bool is_stuck
         = code == CT_E_STEP_COUNT || code == CT_E_STEP_SMALL || code == CT_E_STEP_SINGULAR;
-    if (is_stuck && r->e->is_truncated)
-        ct_note(
-            r->ctx, (struct ct_mark){0},
-            "the equations are cut to first order, by 'stretch-linear' or 'small'; where what "
-            "carries the small coordinates, or is hinged to them, is free to move, masses can "
-            "vanish as these grow: 'foreshortening' has all terms");
-    else if (code == CT_E_STEP_COUNT)
+    if (is_stuck && r->e->is_small && name_lost(r))
+        return;
+    if (code == CT_E_STEP_COUNT)
         ct_run_explain_count(r);
     if (!r->m->nrow)
         return;

@@ -175,7 +175,7 @@ static void compile_rest(struct ct_arena *a, struct ct_machine *m, const struct 
         momentum.e = CT_NEWN(a, ct_ex, 2 * e->nu + 1);
         ct_ex_gradient(e->x, a, e->kinetic, u, e->nu, momentum.e);
         momentum.n = e->nu;
-        if (e->is_truncated)
+        if (e->is_small)
             ct_small_momenta(e->build, momentum.e);
         if (!ct_ex_is_zero(e->kept)) {
             ct_ex_gradient(e->x, a, e->kept, u, e->nu, momentum.e + e->nu);

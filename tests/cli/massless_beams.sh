@@ -54,3 +54,61 @@ outputs: [j1.q]
 simulation: {duration: 0.05, samples: 3}
 END
 say loop.yaml
+echo '-- a lumped rod between a ball and a universal joint, and between two balls: the key of the beam, on all trees'
+cat >between.yaml <<END
+cotree: 1
+gravity: [0, 0, -9.81]
+bodies:
+  crank: {mass: 1, inertia: [0.1, 0.1, 0.1], points: {e: [0.3, 0, 0]}}
+  rod:
+    type: beam
+    length: 1.2
+    elements: 2
+    E: 7e10
+    nu: 0.3
+    area: 1e-4
+    Iy: 8e-10
+    Iz: 8e-10
+    density: 2700
+    mass: lumped
+    frame: chord
+    formulation: linear
+    deformation: [axial, bending-y, bending-z]
+    points: {tip: length}
+  slider: {mass: 1, inertia: [0.1, 0.1, 0.1]}
+joints:
+  m: {type: revolute, axis: z, from: ground, to: crank, initial: {q: 0.7, u: 2}}
+  ball: {type: spherical, from: crank.e, to: rod, initial: {guess: true}}
+  end: {type: universal, axes: [y, z], from: slider, to: rod.tip, initial: {guess: true}}
+  s: {type: prismatic, axis: x, from: ground, to: slider, initial: {q: 1.4, guess: true}}
+outputs: [s.q]
+simulation: {duration: 0.01, samples: 2}
+END
+sed 's/universal, axes: \[y, z\]/spherical/' between.yaml >balls.yaml
+sed 's/elements: 2/elements: 1/' between.yaml >one.yaml
+for model in between balls one; do
+  for tree in auto joints absolute; do
+    "$COTREE" simulate $model.yaml --tree $tree --quiet -o out.csv 2>&1 | grep 'error: '
+  done
+done
+echo '-- modes that leave such a motion a little mass: it is told, and steps are long with what is advised'
+cat >points.yaml <<END
+cotree: 1
+gravity: [0, -9.81, 0]
+bodies:
+  rod: {type: beam, length: 1.095, elements: 2, theory: timoshenko, shear_factor: 0.85, integration: RULE, modes: 1, E: 7e10, nu: 0.3, density: 7800, area: 1.277e-4, Iy: 1.3e-9, Iz: 1.3e-9, rotary_inertia: true, formulation: linear, frame: chord, points: {p: length/2}}
+  bob: {mass: 0.5, inertia: 0.01, com: [0.2, 0, 0]}
+joints:
+  pin: {type: revolute, from: ground, to: rod, initial: {q: 0.31}}
+  hinge: {type: revolute, from: rod.p, to: bob, initial: {q: -0.9}}
+outputs: [pin.q]
+simulation: {duration: 1e-5, samples: 2}
+END
+for rule in one-point reduced; do
+  sed "s/RULE/$rule/" points.yaml >rule.yaml
+  for tree in joints absolute; do
+    "$COTREE" simulate rule.yaml --method dop853 --tree $tree --summary rule.json -o rule.csv 2>&1 |
+      sed -n 's/.*\(warning: the mass at\)/\1/p; s/.*: error: /error: /p'
+    sed -n 's/^.*"steps": \([0-9]*\).*/\1/p' rule.json | awk '{ print ($1 > 40) ? "many steps" : "few steps" }'
+  done
+done
