@@ -178,6 +178,9 @@ static void find_cut(const struct reduction *r, const double *w, int m, int want
     r->f->uncut[1] = above;
 }
 
+// Entries of a shape that symmetry makes as large as each other: the first one is the largest, not which one rounding says.
+static const double alike = 1e-6;
+
 // Of these families: K v = w^2 M v with the others held, solved as M v = (1/w^2) K v: M may be singular. Scaled to a largest
 // component of 1.
 static bool modes(struct reduction *r, unsigned families, int wanted)
@@ -194,7 +197,7 @@ static bool modes(struct reduction *r, unsigned families, int wanted)
         const double *v = A + (size_t)m * (size_t)(m - 1 - k);
         double most = 0, *out = r->shape + (size_t)r->n * (size_t)r->nshape++;
         for (int i = 0; i < m; i++)
-            most = fabs(v[i]) > fabs(most) ? v[i] : most;
+            most = fabs(v[i]) > (1 + alike) * fabs(most) ? v[i] : most;
         for (int i = 0; i < m; i++)
             out[at[i]] = v[i] / most;
         drop_rounding(r, out);
