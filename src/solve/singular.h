@@ -45,7 +45,7 @@ bool ct_singular_foresee(struct ct_singular *w, double t, const double *y, const
 /// Is y beside a singular position, foreseen or not? row (nrow, out): those that depend there; none of a large system.
 bool ct_singular_is_beside(struct ct_singular *w, double t, const double *y, bool *row);
 /// Does J have less rank at y, where the embedding has chosen, or as near to y as loops are closed, than where the mechanism can
-/// go from there? row (nrow, out): those that depend on others at y alone. Not looked for in large systems. The machine is
+/// go from there? row (nrow, out): those that take part in what depends at y alone. Not looked for in large systems. The machine is
 /// left with its constraints at y.
 bool ct_singular_is_start(struct ct_arena *scratch, const struct ct_embed *s, double t,
                           const double *y, bool *row);

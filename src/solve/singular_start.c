@@ -12,10 +12,15 @@
 // Loops that close to 1e-13 meet a singular position to about the root of that: what is less of J is left out.
 static const double unmet = 1e-6;
 
+// Rows take part in what is lost where they have this part of the most that one has. Which of them a choice of pivots leaves out is
+// a matter of rounding where they are alike; what is always lost turns by as much as the way there.
+static const double part_taken = 0.3;
+
 struct probe {
     struct ct_machine *m;
     double t, *y, *x, *d, *A, *work; // (ny), (nu), (larger of nu and nrow), (nrow x nu)
-    int *iwork, *row;                // (nu); (nrow) rows by independence
+    int *iwork;                      // (larger of nu and nrow)
+    double *eigen_work;
 };
 
 static double *workspace(struct ct_arena *a, int n, int m)
@@ -78,51 +83,117 @@ static bool close(struct probe *p, double way)
     return false;
 }
 
-// Rows of J by independence into p->row; how many are independent, what is left of others being less than this part of the
-// largest.
+// p->A (nu x nrow) = J'.
+static void take_rows(struct probe *p)
+{
+    const size_t n = p->m->nu, m = p->m->nrow;
+    for (size_t i = 0; i < m; i++)
+        for (size_t j = 0; j < n; j++)
+            p->A[j + n * i] = p->m->J[i + m * j];
+}
+
+// The rank of J, what is left of other rows being less than this part of the largest.
 static int find_rank(struct probe *p, double part)
 {
     const int n = (int)p->m->nu, m = (int)p->m->nrow;
-    for (int i = 0; i < m; i++)
-        for (int j = 0; j < n; j++)
-            p->A[j + n * i] = p->m->J[i + m * j];
-    return ct_qr_pivot(p->A, p->row, p->x, n, m, n, part, p->work);
+    take_rows(p);
+    return ct_qr_pivot(p->A, p->iwork, p->x, n, m, n, part, p->work);
+}
+
+// N (nrow x nrow, out): its first nrow - rank columns are what rows can be combined to that says nothing, J' N = 0.
+static bool find_combinations(struct probe *p, double *N)
+{
+    const int n = (int)p->m->nu, m = (int)p->m->nrow;
+    take_rows(p);
+    ct_matrix_multiply_transposed(N, p->A, p->A, m, n, m);
+    return ct_symmetric_eigen(p->x, N, m, m, p->eigen_work);
+}
+
+// size (nrow, out): of rows, as speeds. Beside a singular position: there they may be zero.
+static void size_rows(const struct probe *p, double *size)
+{
+    const size_t m = p->m->nrow, n = p->m->nu;
+    for (size_t i = 0; i < m; i++) {
+        size[i] = 0;
+        for (size_t k = 0; k < n; k++)
+            size[i] += p->m->J[i + m * k] * p->m->J[i + m * k];
+        size[i] = sqrt(size[i]);
+    }
+}
+
+// size (nrow): times how much of each row is in combinations `here` that are none `there`. The former are overwritten.
+static void weigh_rows(const struct probe *p, double *size, double *here, int nhere,
+                       const double *there, int nthere)
+{
+    const size_t m = p->m->nrow;
+    for (double *w = here; w < here + (size_t)nhere * m; w += m)
+        for (const double *v = there; v < there + (size_t)nthere * m; v += m)
+            ct_vector_add(w, -ct_vector_dot(w, v, m), v, m);
+    for (size_t i = 0; i < m; i++) {
+        double part = 0;
+        for (size_t j = 0; j < (size_t)nhere; j++)
+            part += here[i + m * j] * here[i + m * j];
+        size[i] *= sqrt(part);
+    }
+}
+
+static struct probe make_probe(struct ct_arena *scratch, struct ct_machine *m, double t,
+                               const double *y)
+{
+    const size_t ny = m->nq + m->nu + 1, most = m->nu > m->nrow ? m->nu : m->nrow;
+    struct probe p = {.m = m, .t = t};
+    p.y = CT_NEWN(scratch, double, ny);
+    p.x = CT_NEWN(scratch, double, most + 1);
+    p.d = CT_NEWN(scratch, double, most + 1);
+    p.A = CT_NEWN(scratch, double, m->nu * m->nrow + 1);
+    p.iwork = CT_NEWN(scratch, int, most + 1);
+    p.work = workspace(scratch, (int)m->nu, (int)m->nrow);
+    p.eigen_work = CT_NEWN(scratch, double, ct_symmetric_eigenvalues_work((int)m->nrow));
+    memcpy(p.y, y, ny * sizeof *p.y);
+    evaluate(&p);
+    return p;
+}
+
+// Rank of J beside y, with the largest way along which it is more than `here`; where it is not, `here` or less.
+static int find_rank_beside(struct probe *p, struct ct_arena *scratch, const double *y,
+                            int here)
+{
+    const double ways[] = {0.1, 0.02};
+    const double part = 1e-3; // of J's change along the way, which is about as large as the way
+    const size_t ny = p->m->nq + p->m->nu + 1;
+    int there = 0;
+    for (size_t i = 0; i < COUNT(ways) && here < (int)p->m->nrow && there <= here; i++) {
+        memcpy(p->y, y, ny * sizeof *p->y);
+        move(p, scratch, ways[i]);
+        if (close(p, ways[i]))
+            there = find_rank(p, part * ways[i]);
+    }
+    return there;
 }
 
 bool ct_singular_is_start(struct ct_arena *scratch, const struct ct_embed *s, double t,
                           const double *y, bool *row)
 {
     enum { LARGE = 200 }; // where factors cost more than steps
-    const double ways[] = {0.1, 0.02};
-    const double part = 1e-3; // of J's change along the way, which is about as large as the way
     struct ct_machine *m = s->m;
-    const size_t ny = m->nq + m->nu + 1, most = m->nu > m->nrow ? m->nu : m->nrow;
-    int there = 0;
     if (!m->nrow || s->rank >= LARGE)
         return false;
-    struct probe p = {.m = m, .t = t};
-    p.y = CT_NEWN(scratch, double, ny);
-    p.x = CT_NEWN(scratch, double, most + 1);
-    p.d = CT_NEWN(scratch, double, most + 1);
-    p.A = CT_NEWN(scratch, double, m->nu * m->nrow + 1);
-    p.iwork = CT_NEWN(scratch, int, m->nu + 1);
-    p.row = CT_NEWN(scratch, int, m->nrow + 1);
-    p.work = workspace(scratch, (int)m->nu, (int)m->nrow);
-    memcpy(p.y, y, ny * sizeof *p.y);
+    struct probe p = make_probe(scratch, m, t, y);
+    const int n = (int)m->nrow, here = find_rank(&p, unmet);
+    const int there = find_rank_beside(&p, scratch, y, here);
+    double *size = CT_NEWN(scratch, double, m->nrow);
+    double *lost = CT_NEWN(scratch, double, m->nrow * m->nrow),
+           *always = CT_NEWN(scratch, double, m->nrow * m->nrow);
+    bool is_singular = there > here && find_combinations(&p, always);
+    size_rows(&p, size);
+    memcpy(p.y, y, (m->nq + m->nu + 1) * sizeof *p.y);
     evaluate(&p);
-    const int here = find_rank(&p, unmet);
-    for (size_t i = 0; i < COUNT(ways) && here < (int)m->nrow && there <= here; i++) {
-        memcpy(p.y, y, ny * sizeof *p.y);
-        move(&p, scratch, ways[i]);
-        if (close(&p, ways[i]))
-            there = find_rank(&p, part * ways[i]);
-    }
-    memset(row, 0, m->nrow * sizeof *row);
-    for (int i = 0; i < there && there > here; i++)
-        row[p.row[i]] = true;
-    for (int i = 0; i < here; i++)
-        row[s->row[i]] = false;
-    memcpy(p.y, y, ny * sizeof *p.y);
-    evaluate(&p);
-    return there > here;
+    is_singular = is_singular && find_combinations(&p, lost);
+    if (!is_singular)
+        return false;
+    weigh_rows(&p, size, lost, n - here, always, n - there);
+    const double most = ct_vector_largest(size, m->nrow);
+    for (size_t i = 0; i < m->nrow; i++)
+        row[i] = size[i] > part_taken * most;
+    return true;
 }
