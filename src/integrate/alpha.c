@@ -17,6 +17,7 @@ struct memory {
     double *jerk;            // u'' amid that step  (nu)
     double *slope,
         *bend; // divided differences of u': over that step; with the one before it  (nu)
+    double *lam_slope, *lam_bend; // the same of lam  (rows)
     double *a_noise, *jerk_noise; // of a and `jerk`, where there are rows  (nu)
     double *rate;                 // at that step's start, of quadratures alone  (ny)
 };
@@ -85,7 +86,16 @@ void *ct_alpha_create(struct ct_arena *a, const struct ct_method *method,
                                &s->start.jerk_noise,
                                &s->end.a_noise,
                                &s->end.jerk_noise};
-    double **const rows[] = {&s->start.lam, &s->end.lam, &s->eta, &s->dlam, &s->phi, &s->v};
+    double **const rows[] = {&s->start.lam,
+                             &s->end.lam,
+                             &s->start.lam_slope,
+                             &s->end.lam_slope,
+                             &s->start.lam_bend,
+                             &s->end.lam_bend,
+                             &s->eta,
+                             &s->dlam,
+                             &s->phi,
+                             &s->v};
     for (size_t i = 0; i < COUNT(speeds); i++)
         *speeds[i] = CT_NEWN(a, double, p->dae->nu + 1);
     for (size_t i = 0; i < COUNT(rows); i++)
@@ -151,6 +161,14 @@ static enum ct_eval find_jerk(struct state *s, const struct ct_problem *p, doubl
     return e;
 }
 
+// Of rows that were not followed before.
+static enum ct_eval start_multipliers(struct state *s, double t, const double *y)
+{
+    for (int i = 0; i < s->it->m; i++)
+        s->start.lam_slope[i] = s->start.lam_bend[i] = 0;
+    return s->dae->start(s->dae->user, t, y, s->du, s->start.lam);
+}
+
 // a0 at the size of this step, and multipliers of the rows as they now are.
 static enum ct_eval begin(struct state *s, const struct ct_problem *p, double t, double h,
                           const double *y, const double *dy,
@@ -165,7 +183,7 @@ static enum ct_eval begin(struct state *s, const struct ct_problem *p, double t,
         e = find_jerk(s, p, t, h, y, dy, y1, dy1, stats);
     const bool has_new_rows = ct_iteration_begin(s->it, tolerance, h, y);
     if (e == CT_EVAL_OK && (s->is_fresh || has_new_rows))
-        e = s->dae->start(s->dae->user, t, y, s->du, s->start.lam);
+        e = start_multipliers(s, t, y);
     if (e != CT_EVAL_OK)
         return e;
     if (s->is_fresh || c->starts_anew)
@@ -180,14 +198,14 @@ static enum ct_eval begin(struct state *s, const struct ct_problem *p, double t,
 
 // ---- the iteration ----------------------------------------------------------------------------------
 
-// Where the step would end with accelerations that go on as the polynomial through their last values, one to three. Those of
+// Where the step would end with accelerations, and multipliers, that go on as the polynomial through their last values, one to three. Those of
 // the index-3 form have too much rounding in them for that.
 static inline void predict_few(struct state *s, double h, const double *y, const int nu)
 {
     const struct ct_alpha *c = s->c;
     const struct ct_dae *dae = s->dae;
     const double *u0 = y + dae->nq, share = s->share;
-    const bool is_known = !s->is_fresh && c->is_stabilised && !c->starts_anew;
+    const bool is_known = !s->is_fresh && c->is_stabilised;
     const double further = is_known ? h : 0, last = is_known ? h + s->start.h : 0;
     for (int k = 0; k < nu; k++) {
         const double u_dot = s->start.u_dot[k], a0 = s->a0[k];
@@ -199,7 +217,9 @@ static inline void predict_few(struct state *s, double h, const double *y, const
         s->u[k] = u0[k] + h * ((1 - c->gamma) * a0 + c->gamma * a);
         s->d[k] = h * (u0[k] + h * ((0.5 - c->beta) * a0 + c->beta * a));
     }
-    ct_stepper_copy(s->end.lam, s->start.lam, s->it->m);
+    for (int i = 0; i < s->it->m; i++)
+        s->end.lam[i]
+            = s->start.lam[i] + further * (s->start.lam_slope[i] + last * s->start.lam_bend[i]);
     ct_iteration_move(dae, y, s->d, s->q);
 }
 
@@ -399,6 +419,11 @@ static inline void note_accelerations(struct state *s, double h, const int nu)
         const double slope = pace * (s->end.u_dot[k] - s->start.u_dot[k]);
         s->end.slope[k] = slope;
         s->end.bend[k] = across * (slope - s->start.slope[k]);
+    }
+    for (int i = 0; i < s->it->m; i++) {
+        const double slope = pace * (s->end.lam[i] - s->start.lam[i]);
+        s->end.lam_slope[i] = slope;
+        s->end.lam_bend[i] = across * (slope - s->start.lam_slope[i]);
     }
     s->end.h = h;
 }

@@ -27,7 +27,9 @@ struct ct_radau {
     double h;                           // of the weights that follow
     double slope[STAGES][STAGES], defect_of[STAGES]; // A^-1/h and E/h
     double ratio; // of this step to the one before: of the weights that follow
-    double further[STAGES][STAGES]; // its polynomial at this one's stages, less its end
+    double further[STAGES][STAGES];     // its polynomial at this one's stages, less its end
+    double further_lam[STAGES][STAGES]; // that of its multipliers
+    bool knows_multipliers;             // of the step before, of the same rows
     struct ct_tolerance wanted, eased;
     double *rate, *F, *r;        // u' (nu); residuals of d' and u'  (nu x 3)
     double *phi, *v;             // (rows x 3)

@@ -123,6 +123,15 @@ static void lagrange(double *w, double x)
     w[2] = x * a * b * SCALE[2];
 }
 
+// The same of multipliers, of which nothing is known at the start: the parabola through the stages.
+static void lagrange_inner(double *w, double x)
+{
+    const double a = x - C[0], b = x - C[1], c = x - C[2];
+    w[0] = b * c * SCALE[0] * C[0];
+    w[1] = a * c * SCALE[1] * C[1];
+    w[2] = a * b * SCALE[2] * C[2];
+}
+
 // Weights for a step of size h. Most steps are as long as the one before.
 static void find_weights(struct ct_radau *s, double h)
 {
@@ -136,6 +145,7 @@ static void find_weights(struct ct_radau *s, double h)
     for (int i = 0; i < STAGES && s->ratio != ratio; i++) {
         lagrange(s->further[i], 1 + C[i] * ratio);
         s->further[i][STAGES - 1] -= 1;
+        lagrange_inner(s->further_lam[i], 1 + C[i] * ratio);
     }
     s->ratio = ratio;
 }
@@ -157,10 +167,12 @@ static void predict(struct ct_radau *s, double h, const double *u0, const double
             ct_radau_weigh(d, s->further[i], s->before.d, nu);
             ct_radau_weigh(u, s->further[i], s->before.u, nu);
         }
-        for (int k = 0; k < m; k++) {
+        for (int k = 0; k < m; k++)
             now->eta[k + i * m] = 0;
-            now->lam[k + i * m] = s->lam[k];
-        }
+        if (s->knows_multipliers)
+            ct_radau_weigh(now->lam + i * m, s->further_lam[i], s->before.lam, m);
+        else
+            ct_stepper_copy(now->lam + i * m, s->lam, m);
     }
 }
 
@@ -389,7 +401,8 @@ static enum ct_eval find_multipliers(struct ct_radau *s, double t, const double 
     const int m = s->it->m;
     if (m == 0)
         return CT_EVAL_OK;
-    if (s->is_fresh || is_new)
+    s->knows_multipliers = !s->is_fresh && !is_new;
+    if (!s->knows_multipliers)
         return s->dae->start(s->dae->user, t, y, s->u_dot, s->lam);
     ct_stepper_copy(s->lam, s->before.lam + (STAGES - 1) * m, m);
     return CT_EVAL_OK;
