@@ -24,8 +24,9 @@ struct memory {
 
 // What d(place) of a correction is worth in speeds, a, and accelerations, for steps of size h behind one of size `before`.
 struct factors {
-    double h, before, by_speed, by_a, by_u_dot;
-    double pace, across; // 1/h, 1/(h + before)
+    double h, before, by_speed, by_u_dot;
+    double a_by_speed, u_dot_by_speed; // of a correction of speeds
+    double pace, across;               // 1/h, 1/(h + before)
 };
 
 struct state {
@@ -41,7 +42,9 @@ struct state {
     double *d, *u, *q;           // the step's motion (nu), its end (nu, nq)
     double *noise;               // what corrections leave of speeds  (nu)
     double *dd, *du; // corrections (nu), one behind the other, zeros behind them (ny)
-    double *eta, *dlam, *r, *phi, *v;
+    double *eta, *dlam;
+    double *r, *phi, *v;      // behind each other
+    double *x;                // what answers them, of few unknowns
     double *rate1, *out;      // for interpolation: d' at the end; a motion (nu)
     double *end_rate, *error; // rates at the end and errors, of quadratures alone  (ny)
 };
@@ -78,7 +81,6 @@ void *ct_alpha_create(struct ct_arena *a, const struct ct_method *method,
                                &s->jerk,
                                &s->d,
                                &s->u,
-                               &s->r,
                                &s->rate1,
                                &s->out,
                                &s->noise,
@@ -93,14 +95,14 @@ void *ct_alpha_create(struct ct_arena *a, const struct ct_method *method,
                              &s->start.lam_bend,
                              &s->end.lam_bend,
                              &s->eta,
-                             &s->dlam,
-                             &s->phi,
-                             &s->v};
+                             &s->dlam};
     for (size_t i = 0; i < COUNT(speeds); i++)
         *speeds[i] = CT_NEWN(a, double, p->dae->nu + 1);
     for (size_t i = 0; i < COUNT(rows); i++)
         *rows[i] = CT_NEWN(a, double, p->dae->most_rows + 1);
     s->q = CT_NEWN(a, double, p->dae->nq + 1);
+    s->r = CT_NEWN(a, double, p->dae->nu + 2 * p->dae->most_rows + 1);
+    s->x = CT_NEWN(a, double, ct_response_padded(2 * p->dae->nu + p->dae->most_rows));
     s->dd = CT_NEWN(a, double, p->ny + p->dae->nu);
     s->du = s->dd + p->dae->nu;
     double **const states[] = {&s->start.rate, &s->end.rate, &s->end_rate, &s->error};
@@ -133,12 +135,14 @@ static void find_factors(struct state *s, double h)
     const double before = s->is_fresh ? INFINITY : s->start.h;
     if (s->f.h == h && s->f.before == before)
         return;
-    const double by_a = 1 / (c->beta * h * h);
+    const double by_a = 1 / (c->beta * h * h), by_speed = c->gamma / (c->beta * h);
+    const double by_u_dot = by_a * (1 - c->alpha_m) / (1 - c->alpha_f);
     s->f = (struct factors){.h = h,
                             .before = before,
-                            .by_speed = c->gamma / (c->beta * h),
-                            .by_a = by_a,
-                            .by_u_dot = by_a * (1 - c->alpha_m) / (1 - c->alpha_f),
+                            .by_speed = by_speed,
+                            .by_u_dot = by_u_dot,
+                            .a_by_speed = by_a / by_speed,
+                            .u_dot_by_speed = by_u_dot / by_speed,
                             .pace = 1 / h,
                             .across = 1 / (h + before)};
 }
@@ -182,6 +186,8 @@ static enum ct_eval begin(struct state *s, const struct ct_problem *p, double t,
     if (s->is_fresh && !c->starts_anew && !s->has_jerk)
         e = find_jerk(s, p, t, h, y, dy, y1, dy1, stats);
     const bool has_new_rows = ct_iteration_begin(s->it, tolerance, h, y);
+    s->phi = s->r + nu;
+    s->v = s->phi + s->it->m;
     if (e == CT_EVAL_OK && (s->is_fresh || has_new_rows))
         e = start_multipliers(s, t, y);
     if (e != CT_EVAL_OK)
@@ -232,17 +238,16 @@ static void predict(struct state *s, double h, const double *y)
         predict_few(s, h, y, s->dae->nu);
 }
 
-// Adds the correction that moves places by s->dd and, but for J' eta, by s->du, which becomes that of speeds. Its size.
+// Adds the correction of places s->dd and of speeds s->du. Its size.
 static inline double add_correction(struct state *s, const int nu)
 {
     const struct factors f = s->f;
     for (int k = 0; k < nu; k++) {
         const double du = s->du[k];
         s->d[k] += s->dd[k];
-        s->end.a[k] += f.by_a * du;
-        s->end.u_dot[k] += f.by_u_dot * du;
-        s->u[k] += f.by_speed * du;
-        s->du[k] = f.by_speed * du;
+        s->u[k] += du;
+        s->end.a[k] += f.a_by_speed * du;
+        s->end.u_dot[k] += f.u_dot_by_speed * du;
     }
     // in the index-3 form speeds have rounding over h in them: places alone decide
     return ct_iteration_norm(s->it, s->dd, s->c->is_stabilised ? s->du : NULL, nu, 1);
@@ -263,6 +268,27 @@ static inline double add_corrections(struct state *s)
     }
 }
 
+// s->dd and s->du, those of places and of speeds, and s->dlam.
+static inline void solve(struct state *s)
+{
+    struct ct_iteration *it = s->it;
+    const struct ct_response *a = it->response;
+    const int nu = it->nu, m = it->m;
+    if (it->is_few) {
+        ct_product(s->x, a->real, s->r, a->rows, a->in);
+        ct_stepper_copy(s->dd, s->x, nu);
+        ct_stepper_copy(s->du, s->x + nu, nu);
+        ct_stepper_copy(s->dlam, s->x + 2 * nu, m);
+        return;
+    }
+    ct_iteration_solve(it, s->dd, s->eta, s->dlam, s->r, s->phi, s->v);
+    ct_stepper_copy(s->du, s->dd, nu);
+    if (m)
+        ct_iteration_push(it, s->du, s->dd, -1, s->eta, nu, m); // eta moves places alone
+    for (int k = 0; k < nu; k++)
+        s->du[k] *= s->f.by_speed;
+}
+
 static enum ct_eval correct(struct state *s, double t1, const double *y,
                             enum ct_verdict *verdict, struct ct_integrate_stats *stats)
 {
@@ -273,19 +299,15 @@ static enum ct_eval correct(struct state *s, double t1, const double *y,
                                          s->r, s->phi, s->v);
     if (e != CT_EVAL_OK)
         return e;
-    ct_iteration_solve(s->it, s->dd, s->eta, s->dlam, s->r, s->phi, s->v);
-    if (m)
-        ct_iteration_push(s->it, s->du, s->dd, -1, s->eta, dae->nu,
-                          m); // eta moves places alone
-    else
-        ct_stepper_copy(s->du, s->dd, dae->nu);
+    solve(s);
     const double size = add_corrections(s);
     for (int i = 0; i < m; i++)
         s->end.lam[i] += s->dlam[i];
     if (m)
         ct_iteration_note_multipliers(s->it, s->end.lam, s->dlam, m);
     ct_iteration_move(dae, y, s->d, s->q);
-    *verdict = ct_iteration_judge(s->it, size, s->dd, s->c->is_stabilised ? s->du : NULL, 1);
+    *verdict = ct_iteration_judge(s->it, size, s->dd, s->c->is_stabilised ? s->du : NULL, 1,
+                                  dae->nu);
     return CT_EVAL_OK;
 }
 
