@@ -1,32 +1,37 @@
 // See response.h.
 #include "integrate/response.h"
 
+#include <math.h>
 #include <string.h>
+
+enum { MOST = CT_MOST_INVERTED };
 
 struct ct_response *ct_response_create(struct ct_arena *a, int nu, int most_rows,
                                        bool is_complex)
 {
-    enum { MOST = CT_MOST_INVERTED };
     struct ct_response *s = CT_NEW(a, struct ct_response);
     const int in = nu + 2 * most_rows < MOST ? nu + 2 * most_rows : MOST;
     const int size = ct_response_padded(2 * nu + most_rows) * in;
     s->nu = nu;
-    double **const square[] = {&s->MQ, &s->CQ, &s->MD, &s->KD, &s->Q, &s->PD};
+    double **const square[] = {&s->T, &s->M, &s->C, &s->K, &s->MD, &s->PD};
     for (size_t i = 0; i < COUNT(square); i++)
         *square[i] = CT_NEWN(a, double, nu *nu);
-    double **const wide[] = {&s->MP, &s->CP, &s->P, &s->J};
-    for (size_t i = 0; i < COUNT(wide); i++)
-        *wide[i] = CT_NEWN(a, double, nu *most_rows + 1);
+    s->D = CT_NEWN(a, double, most_rows *nu + 1);
     s->real = CT_NEWN(a, double, size);
     if (is_complex) {
         s->re = CT_NEWN(a, double, size);
         s->im = CT_NEWN(a, double, size);
     }
-    s->A = CT_NEWN(a, double, 2 * MOST * MOST);
-    s->E = CT_NEWN(a, double, 2 * nu * most_rows + 1);
-    s->square = CT_NEWN(a, double, MOST *MOST);
-    s->pivot = CT_NEWN(a, int, MOST);
     return s;
+}
+
+void ct_response_set_rows(struct ct_response *s, int m)
+{
+    s->m = m;
+    s->free = s->nu - m;
+    s->in = s->nu + 2 * m;
+    s->out = 2 * s->nu + m;
+    s->rows = ct_response_padded(s->out);
 }
 
 // ---- of derivatives -------------------------------------------------------------------------------
@@ -44,125 +49,174 @@ static inline void multiply(double *restrict A, const double *restrict B,
         }
 }
 
-// P = J' (J J')^-1.
-static bool find_inverse_of_rows(struct ct_response *s, const double *J)
+// A (n x k, out) = B' C, B (l x n), C (l x k).
+static inline void multiply_transposed(double *restrict A, const double *restrict B,
+                                       const double *restrict C, int n, int l, int k)
 {
-    const int nu = s->nu, m = s->m, rows = ct_inverse_rows(m);
-    double *A = s->square;
-    memset(A, 0, (size_t)(rows * m) * sizeof *A);
-    for (int k = 0; k < nu; k++)
-        for (int j = 0; j < m; j++)
-            for (int i = 0; i < m; i++)
-                A[i + rows * j] += J[i + m * k] * J[j + m * k];
-    if (!ct_inverse(A, s->pivot, m))
-        return false;
-    for (int i = 0; i < m; i++)
-        for (int k = 0; k < nu; k++) {
+    for (int j = 0; j < k; j++)
+        for (int i = 0; i < n; i++) {
             double sum = 0;
-            for (int j = 0; j < m; j++)
-                sum += J[j + m * k] * A[j + rows * i];
-            s->P[k + nu * i] = sum;
+            for (int p = 0; p < l; p++)
+                sum += B[p + l * i] * C[p + l * j];
+            A[i + n * j] = sum;
         }
-    return true;
 }
 
-void ct_response_set_rows(struct ct_response *s, int m)
+// A (n) less 2 v v' A / v' v for columns of A (n x k), of which the part behind `first` counts.
+static inline void reflect(double *A, const double *v, double scale, int first, int n, int k)
 {
-    s->m = m;
-    s->in = s->nu + 2 * m;
-    s->out = 2 * s->nu + m;
-    s->rows = ct_response_padded(s->out);
+    for (int j = 0; j < k; j++, A += n) {
+        double sum = 0;
+        for (int i = first; i < n; i++)
+            sum += v[i] * A[i];
+        for (int i = first; i < n; i++)
+            A[i] -= scale * sum * v[i];
+    }
+}
+
+// T = [Z P] from J' = Q R by Householder's reflections: Z is the rest of Q, and P = Q_1 R'^-1.
+static bool find_basis(struct ct_response *s, const double *J)
+{
+    const int nu = s->nu, m = s->m, free = s->free;
+    double A[MOST * MOST], scale[MOST], R[MOST]; // J', below the diagonal its reflections
+    for (int i = 0; i < m; i++)
+        for (int k = 0; k < nu; k++)
+            A[k + nu * i] = J[i + m * k];
+    for (int i = 0; i < m; i++) {
+        double *v = A + nu * i, square = 0;
+        for (int k = i; k < nu; k++)
+            square += v[k] * v[k];
+        const double norm = copysign(sqrt(square), v[i]);
+        if (!(square > 0) || !isfinite(square))
+            return false;
+        R[i] = -norm;
+        scale[i] = 1 / (square + norm * v[i]);
+        v[i] += norm;
+        reflect(v + nu, v, scale[i], i, nu, m - i - 1);
+    }
+    memset(s->T, 0, (size_t)(nu * nu) * sizeof *s->T);
+    for (int k = 0; k < nu; k++) // the columns of Q_2, then those of Q_1
+        s->T[(k < free ? m + k : k - free) + nu * k] = 1;
+    for (int i = m; i-- > 0;)
+        reflect(s->T, A + nu * i, scale[i], i, nu, nu);
+    double *P = s->T + nu * free; // P R' = Q_1, from the last column on
+    for (int i = m; i-- > 0;)
+        for (int k = 0; k < nu; k++) {
+            double sum = P[k + nu * i];
+            for (int j = i + 1; j < m; j++)
+                sum -= P[k + nu * j] * A[i + nu * j];
+            P[k + nu * i] = sum / R[i];
+        }
+    return true;
 }
 
 void ct_response_assemble(struct ct_response *s, const double *M, const double *C,
                           const double *K, const double *J, const double *D)
 {
     const int nu = s->nu, m = s->m;
-    s->is_regular = find_inverse_of_rows(s, J);
-    memcpy(s->J, J, (size_t)(nu * m) * sizeof *J);
-    multiply(s->PD, s->P, D, nu, m, nu);
-    multiply(s->Q, s->P, J, nu, m, nu);
-    for (int k = 0; k < nu * nu; k++)
-        s->Q[k] = (k % (nu + 1) == 0 ? 1 : 0) - s->Q[k];
-    multiply(s->MQ, M, s->Q, nu, nu, nu);
-    multiply(s->CQ, C, s->Q, nu, nu, nu);
-    multiply(s->MD, M, s->PD, nu, nu, nu);
-    multiply(s->KD, C, s->PD, nu, nu, nu);
-    for (int k = 0; k < nu * nu; k++) {
-        s->MD[k] = -s->MD[k];
-        s->KD[k] = K[k] - s->KD[k];
+    double X[MOST * MOST];
+    s->is_regular = find_basis(s, J);
+    if (!s->is_regular)
+        return;
+    const double *const from[] = {M, C, K};
+    double *const to[] = {s->M, s->C, s->K};
+    for (size_t i = 0; i < COUNT(from); i++) {
+        multiply(X, from[i], s->T, nu, nu, nu);
+        multiply_transposed(to[i], s->T, X, nu, nu, nu);
     }
-    multiply(s->MP, M, s->P, nu, nu, m);
-    multiply(s->CP, C, s->P, nu, nu, m);
+    const int of_P = nu * s->free;
+    multiply(s->D, D, s->T, m, nu, nu);
+    multiply(s->MD, s->M + of_P, s->D, nu, m, nu);
+    multiply(s->PD, s->T + of_P, s->D, nu, m, nu);
+    multiply(X, s->C + of_P, s->D, nu, m, nu);
+    for (int k = 0; k < nu * nu; k++)
+        s->K[k] -= X[k];
 }
 
 // ---- of c and e -----------------------------------------------------------------------------------
 
-// The rows of (8.2b) that do not depend on c and e, n = nu + m, columns `rows` apart.
-static void fill_border(const struct ct_response *s, double *A, int rows)
+// T' B T (nu x nu) into G, T' F (nu x m) into F.
+static inline void fill(const struct ct_response *s, double *G, double *F, double x, double y,
+                        double z, const int nu)
 {
-    const int nu = s->nu, m = s->m;
-    for (int k = 0; k < nu; k++)
-        for (int i = 0; i < m; i++) {
-            A[nu + i + rows * k] = s->J[i + m * k];
-            A[k + rows * (nu + i)] = -s->J[i + m * k];
-        }
+    const int across = nu * s->free;
+    for (int k = 0; k < nu * nu; k++)
+        G[k] = y * s->K[k] - z * s->MD[k];
+    for (int k = 0; k < across; k++)
+        G[k] += s->M[k] + x * s->C[k];
+    for (int k = across; k < nu * nu; k++)
+        F[k - across] = z * s->M[k] + y * s->C[k];
 }
 
-// Column j (n) of the solution of (8.2b): of r, phi and v in turn.
-static inline void solve_column(double *restrict x, const struct ct_response *s, int j,
-                                double y, const int nu, const int n)
+// R (free x free, rows apart, out) = (Z' B Z)^-1.
+static inline bool invert(double *R, const double *G, int free, int nu)
 {
-    const int rows = ct_inverse_rows(n);
-    const double *X = s->A + rows * j, *push = s->E + nu * (j - n);
-    const double scale = j < nu ? -y : -1;
-    for (int k = 0; k < n && j < n; k++)
-        x[k] = scale * X[k];
-    for (int k = 0; k < n && j >= n; k++) {
-        double sum = 0;
-        for (int l = 0; l < nu; l++)
-            sum += s->A[k + rows * l] * push[l];
-        x[k] = sum;
+    int pivot[MOST];
+    const int rows = ct_inverse_rows(free);
+    if (free == 1) {
+        R[0] = 1 / G[0];
+        return isfinite(R[0]);
     }
+    memset(R, 0, (size_t)(rows * free) * sizeof *R);
+    for (int j = 0; j < free; j++)
+        for (int k = 0; k < free; k++)
+            R[k + rows * j] = G[k + nu * j];
+    return ct_inverse(R, pivot, free);
 }
 
-// d, the change of speeds and lam from it.
-static inline void spread_column(const struct ct_response *s, int j, const double *restrict x,
-                                 double c, double e, const int nu, const int n)
+struct coefficients {
+    double c, e, y;
+};
+
+// Column j of the product: what r, phi, v give in turn.
+static inline void find_column(const struct ct_response *s, int j, struct coefficients f,
+                               const double *G, const double *F, const double *R, const int nu,
+                               const int m)
 {
-    double *d = s->real + s->rows * j, *u = d + nu, *lam = u + nu;
-    const double *P = s->P + nu * (j - n);
+    const int free = nu - m, n = nu + m, i = j < nu ? 0 : (j - nu) % m,
+              rows = ct_inverse_rows(free);
+    const double *T = s->T, *P = T + nu * (free + i), *push = F + nu * i;
+    const double *g = G + nu * (free + i), *PDP = s->PD + nu * (free + i);
+    double w[MOST], *d = s->real + s->rows * j, *u = d + nu, *lam = u + nu;
+    for (int k = 0; k < free; k++) {
+        w[k] = 0;
+        for (int l = 0; l < free; l++)
+            w[k] += R[k + rows * l] * (j < nu ? -f.y * T[j + nu * l] : j < n ? g[l] : push[l]);
+    }
     for (int k = 0; k < nu; k++) {
-        double sum = j < n ? 0 : -P[k];
-        for (int l = 0; l < nu; l++)
-            sum += (c * s->Q[k + nu * l] - s->PD[k + nu * l]) * x[l];
-        d[k] = x[k];
-        u[k] = sum;
+        double moved = j >= nu && j < n ? -P[k] : 0;
+        double gained = j < nu ? 0 : j < n ? PDP[k] : -P[k];
+        for (int l = 0; l < free; l++) {
+            moved += T[k + nu * l] * w[l];
+            gained += (f.c * T[k + nu * l] - s->PD[k + nu * l]) * w[l];
+        }
+        d[k] = moved;
+        u[k] = gained;
     }
-    for (int i = nu; i < n; i++)
-        lam[i - nu] = e * x[i];
-    for (int i = s->out; i < s->rows; i++)
-        d[i] = 0;
+    for (int k = 0; k < m; k++) {
+        double sum = j < nu ? f.y * T[j + nu * (free + k)]
+                   : j < n  ? -g[free + k]
+                            : -push[free + k];
+        for (int l = 0; l < free; l++)
+            sum += G[free + k + nu * l] * w[l];
+        lam[k] = f.e * sum;
+    }
+    for (int k = s->out; k < s->rows; k++)
+        d[k] = 0;
 }
 
 bool ct_response_find(struct ct_response *s, double c, double e)
 {
-    const int nu = s->nu, m = s->m, n = nu + m, rows = ct_inverse_rows(n);
-    const double x = c / e, y = 1 / e, z = 1 / c;
-    double *A = s->A, column[CT_MOST_INVERTED];
-    memset(A, 0, (size_t)(rows * n) * sizeof *A);
-    for (int j = 0; j < nu; j++)
-        for (int k = 0, i = nu * j; k < nu; k++, i++)
-            A[k + rows * j] = s->MQ[i] + x * s->CQ[i] + y * s->KD[i] + z * s->MD[i];
-    fill_border(s, A, rows);
-    if (!s->is_regular || !ct_inverse(A, s->pivot, n))
+    const int nu = s->nu, m = s->m;
+    const struct coefficients f = {c, e, 1 / e};
+    double G[MOST * MOST], F[MOST * MOST], R[MOST * MOST];
+    if (!s->is_regular)
         return false;
-    for (int i = 0; i < nu * m; i++)
-        s->E[i] = z * s->MP[i] + y * s->CP[i];
-    for (int j = 0; j < s->in; j++) {
-        solve_column(column, s, j, y, nu, n);
-        spread_column(s, j, column, c, e, nu, n);
-    }
+    fill(s, G, F, c / e, 1 / e, 1 / c, nu);
+    if (!invert(R, G, s->free, nu))
+        return false;
+    for (int j = 0; j < s->in; j++)
+        find_column(s, j, f, G, F, R, nu, m);
     return true;
 }
 
@@ -175,78 +229,103 @@ static inline double _Complex product(double _Complex x, double _Complex y)
                  creal(x) * cimag(y) + cimag(x) * creal(y));
 }
 
-static inline void solve_column_complex(double _Complex *restrict x,
-                                        const struct ct_response *s, int j, double _Complex y,
-                                        const int nu, const int n)
+static inline void fill_complex(const struct ct_response *s, double _Complex *G,
+                                double _Complex *F, double _Complex y, double _Complex z,
+                                const int nu)
 {
-    const int rows = ct_inverse_rows(n), apart = rows * n;
-    const double *X = s->A + rows * j, *push = s->E + nu * (j - n);
-    const double _Complex scale = j < nu ? -y : -1;
-    for (int k = 0; k < n && j < n; k++)
-        x[k] = product(scale, CMPLX(X[k], X[k + apart]));
-    for (int k = 0; k < n && j >= n; k++) {
-        const double *re = s->A + k, *im = re + apart;
-        double real = 0, imaginary = 0;
-        for (int l = 0; l < nu; l++, re += rows, im += rows) {
-            const double a = push[l], b = push[l + nu * s->m];
-            real += *re * a - *im * b;
-            imaginary += *re * b + *im * a;
-        }
-        x[k] = CMPLX(real, imaginary);
-    }
+    const int across = nu * s->free;
+    for (int k = 0; k < nu * nu; k++)
+        G[k] = y * s->K[k] - z * s->MD[k];
+    for (int k = 0; k < across; k++)
+        G[k] += s->M[k] + z * s->C[k];
+    for (int k = across; k < nu * nu; k++)
+        F[k - across] = z * s->M[k] + y * s->C[k];
 }
 
-static inline void spread_column_complex(const struct ct_response *s, int j,
-                                         const double _Complex *restrict x, double _Complex c,
-                                         double _Complex e, const int nu, const int n)
+static inline bool invert_complex(double _Complex *R, const double _Complex *G, int free,
+                                  int nu)
 {
-    double *re = s->re + s->rows * j, *im = s->im + s->rows * j;
-    const double *P = s->P + nu * (j - n);
-    for (int k = 0; k < nu; k++) {
-        double real = j < n ? 0 : -P[k], imaginary = 0;
-        for (int l = 0; l < nu; l++) {
-            const double a = creal(c) * s->Q[k + nu * l] - s->PD[k + nu * l],
-                         b = cimag(c) * s->Q[k + nu * l];
-            real += a * creal(x[l]) - b * cimag(x[l]);
-            imaginary += a * cimag(x[l]) + b * creal(x[l]);
+    double A[2 * MOST * MOST];
+    int pivot[MOST];
+    const int rows = ct_inverse_rows(free), apart = rows * free;
+    if (free == 1) {
+        const double a = creal(G[0]), b = cimag(G[0]), square = a * a + b * b;
+        R[0] = CMPLX(a / square, -b / square);
+        return square > 0 && isfinite(square);
+    }
+    memset(A, 0, (size_t)(2 * apart) * sizeof *A);
+    for (int j = 0; j < free; j++)
+        for (int k = 0; k < free; k++) {
+            A[k + rows * j] = creal(G[k + nu * j]);
+            A[k + rows * j + apart] = cimag(G[k + nu * j]);
         }
-        re[k] = creal(x[k]);
-        im[k] = cimag(x[k]);
-        re[nu + k] = real;
-        im[nu + k] = imaginary;
+    const bool ok = ct_inverse_complex(A, pivot, free);
+    for (int k = 0; k < apart; k++)
+        R[k] = CMPLX(A[k], A[k + apart]);
+    return ok;
+}
+
+struct complex_coefficients {
+    double _Complex c, e, y;
+};
+
+static inline void find_column_complex(const struct ct_response *s, int j,
+                                       struct complex_coefficients f, const double _Complex *G,
+                                       const double _Complex *F, const double _Complex *R,
+                                       const int nu, const int m)
+{
+    const int free = nu - m, n = nu + m, i = j < nu ? 0 : (j - nu) % m,
+              rows = ct_inverse_rows(free);
+    const double *T = s->T, *P = T + nu * (free + i), *PDP = s->PD + nu * (free + i);
+    const double _Complex *g = G + nu * (free + i), *push = F + nu * i;
+    double _Complex w[MOST];
+    double *re = s->re + s->rows * j, *im = s->im + s->rows * j;
+    for (int k = 0; k < free; k++) {
+        w[k] = 0;
+        for (int l = 0; l < free; l++)
+            w[k] += product(R[k + rows * l], j < nu  ? -f.y * T[j + nu * l]
+                                             : j < n ? g[l]
+                                                     : push[l]);
     }
-    for (int i = nu; i < n; i++) {
-        const double _Complex lam = product(e, x[i]);
-        re[nu + i] = creal(lam);
-        im[nu + i] = cimag(lam);
+    for (int k = 0; k < nu; k++) {
+        double _Complex moved = j >= nu && j < n ? -P[k] : 0;
+        double _Complex gained = j < nu ? 0 : j < n ? PDP[k] : -P[k];
+        for (int l = 0; l < free; l++) {
+            moved += T[k + nu * l] * w[l];
+            gained += product(f.c * T[k + nu * l] - s->PD[k + nu * l], w[l]);
+        }
+        re[k] = creal(moved);
+        im[k] = cimag(moved);
+        re[nu + k] = creal(gained);
+        im[nu + k] = cimag(gained);
     }
-    for (int i = s->out; i < s->rows; i++)
-        re[i] = im[i] = 0;
+    for (int k = 0; k < m; k++) {
+        double _Complex sum = j < nu ? f.y * T[j + nu * (free + k)]
+                            : j < n  ? -g[free + k]
+                                     : -push[free + k];
+        for (int l = 0; l < free; l++)
+            sum += product(G[free + k + nu * l], w[l]);
+        const double _Complex lam = product(f.e, sum);
+        re[2 * nu + k] = creal(lam);
+        im[2 * nu + k] = cimag(lam);
+    }
+    for (int k = s->out; k < s->rows; k++)
+        re[k] = im[k] = 0;
 }
 
 bool ct_response_find_complex(struct ct_response *s, double _Complex c)
 {
-    const int nu = s->nu, m = s->m, n = nu + m, rows = ct_inverse_rows(n), apart = rows * n;
-    const double _Complex z = 1 / c, y = product(z, z), e = product(c, c);
-    double *A = s->A;
-    double _Complex column[CT_MOST_INVERTED];
-    memset(A, 0, (size_t)(2 * apart) * sizeof *A);
-    for (int j = 0; j < nu; j++)
-        for (int k = 0, i = nu * j; k < nu; k++, i++) {
-            const double by_z = s->CQ[i] + s->MD[i];
-            A[k + rows * j] = s->MQ[i] + creal(z) * by_z + creal(y) * s->KD[i];
-            A[k + rows * j + apart] = cimag(z) * by_z + cimag(y) * s->KD[i];
-        }
-    fill_border(s, A, rows);
-    if (!s->is_regular || !ct_inverse_complex(A, s->pivot, n))
+    const int nu = s->nu, m = s->m;
+    const double square = creal(c) * creal(c) + cimag(c) * cimag(c);
+    const double _Complex z = conj(c) / square, y = product(z, z);
+    const struct complex_coefficients f = {c, product(c, c), y};
+    double _Complex G[MOST * MOST], F[MOST * MOST], R[MOST * MOST];
+    if (!s->is_regular)
         return false;
-    for (int i = 0; i < nu * m; i++) {
-        s->E[i] = creal(z) * s->MP[i] + creal(y) * s->CP[i];
-        s->E[i + nu * m] = cimag(z) * s->MP[i] + cimag(y) * s->CP[i];
-    }
-    for (int j = 0; j < s->in; j++) {
-        solve_column_complex(column, s, j, y, nu, n);
-        spread_column_complex(s, j, column, c, e, nu, n);
-    }
+    fill_complex(s, G, F, y, z, nu);
+    if (!invert_complex(R, G, s->free, nu))
+        return false;
+    for (int j = 0; j < s->in; j++)
+        find_column_complex(s, j, f, G, F, R, nu, m);
     return true;
 }
