@@ -306,8 +306,7 @@ static enum ct_eval correct(struct state *s, double t1, const double *y,
     if (m)
         ct_iteration_note_multipliers(s->it, s->end.lam, s->dlam, m);
     ct_iteration_move(dae, y, s->d, s->q);
-    *verdict = ct_iteration_judge(s->it, size, s->dd, s->c->is_stabilised ? s->du : NULL, 1,
-                                  dae->nu);
+    *verdict = ct_iteration_judge(s->it, size, s->dd, s->c->is_stabilised ? s->du : NULL, 1);
     return CT_EVAL_OK;
 }
 

@@ -56,7 +56,7 @@ struct ct_iteration *ct_iteration_create(struct ct_arena *a, const struct ct_pro
     it->x = CT_NEWN(a, double, 2 * (n + 3));
     it->pivot = CT_NEWN(a, int, n + 1);
     it->share = CT_NEWN(a, double, ct_response_padded(2 * nu + m));
-    if (is_stabilised && dae->is_plain && m && nu + 2 <= CT_MOST_INVERTED)
+    if (is_stabilised && dae->abreast && nu + 2 <= CT_MOST_INVERTED)
         it->response = ct_response_create(a, nu, m, is_complex);
     it->off = CT_NEWN(a, double, p->ny);
     it->fast = CT_NEWN(a, double, 2 * nu + 1);
@@ -505,13 +505,11 @@ void ct_iteration_go_on(struct ct_iteration *it)
     it->kappa_for = NAN; // in this step only
 }
 
-// All entries of d (n x k), columns `apart`.
-static bool is_within(const double *d, int n, int k, int apart, double most)
+static bool is_within(const double *d, int n, double most)
 {
-    for (int j = 0; j < k; j++, d += apart)
-        for (int i = 0; i < n; i++)
-            if (!(fabs(d[i]) <= most))
-                return false;
+    for (int i = 0; i < n; i++)
+        if (!(fabs(d[i]) <= most))
+            return false;
     return true;
 }
 
@@ -544,23 +542,23 @@ static bool is_rounding(const struct ct_iteration *it, double rate, double size)
 // Half a rounding of the largest place moves no place as large, and what is left of the constraints comes back in others,
 // halved perhaps from one correction to the next: neither more of them nor shorter steps make it less.
 static bool is_unfelt(const struct ct_iteration *it, double size, const double *d,
-                      const double *u, int k, int apart)
+                      const double *u, int n)
 {
     return it->m && u && !it->is_finest && !it->is_further && size <= it->rounding
-        && is_within(d, it->nu, k, apart, it->unfelt_place)
-        && is_within(u, it->nu, k, apart, it->unfelt_speed);
+        && is_within(d, n, it->unfelt_place) && is_within(u, n, it->unfelt_speed);
 }
 
 enum ct_verdict ct_iteration_judge(struct ct_iteration *it, double size, const double *d,
-                                   const double *u, int k, int apart)
+                                   const double *u, int k)
 {
     if (!isfinite(size))
         return CT_DIVERGED;
     if (it->count++ > 0) {
         const double rate = size / it->size;
+        const int n = k * it->nu;
         if (is_rounding(it, rate, size)
-            || (rate >= 1 && !is_too_early(it) && is_within(d, it->nu, k, apart, it->least))
-            || is_unfelt(it, size, d, u, k, apart))
+            || (rate >= 1 && !is_too_early(it) && is_within(d, n, it->least))
+            || is_unfelt(it, size, d, u, n))
             return CT_CONVERGED;
         take_rate(it, rate);
         if (rate >= hopeless || (it->rate >= 1 && it->count > 3))

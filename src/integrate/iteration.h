@@ -237,10 +237,9 @@ double ct_iteration_amplified(struct ct_iteration *it, const struct ct_problem *
 void ct_iteration_start(struct ct_iteration *it);
 /// Once converged: corrections are to go on until they are much smaller, or of the size of rounding.
 void ct_iteration_go_on(struct ct_iteration *it);
-/// After a correction of this size, which moved places by d (nu x k) and speeds by u (nu x k; NULL: not looked at), columns
-/// `apart`.
+/// After a correction of this size, which moved places by d (nu x k) and speeds by u (nu x k; NULL: not looked at).
 enum ct_verdict ct_iteration_judge(struct ct_iteration *it, double size, const double *d,
-                                   const double *u, int k, int apart);
+                                   const double *u, int k);
 /// After divergence: true if newer derivatives may help.
 bool ct_iteration_can_renew(struct ct_iteration *it);
 

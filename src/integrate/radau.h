@@ -11,6 +11,32 @@ enum { STAGES = 3 };
 /// The real eigenvalue of the inverse of the Runge-Kutta matrix.
 #define GAMMA (3 - CBRT3 + CBRT3 * CBRT3)
 
+#define SQRT3 1.7320508075688772935
+#define SQRT6 2.4494897427831780982
+
+#define C1 ((4 - SQRT6) / 10)
+#define C2 ((4 + SQRT6) / 10)
+/// Where stages are, in parts of the step.
+static const double C[STAGES] = {C1, C2, 1};
+static const double A[STAGES][STAGES]
+    = {{(88 - 7 * SQRT6) / 360, (296 - 169 * SQRT6) / 1800, (-2 + 3 * SQRT6) / 225},
+       {(296 + 169 * SQRT6) / 1800, (88 + 7 * SQRT6) / 360, (-2 - 3 * SQRT6) / 225},
+       {(16 - SQRT6) / 36, (16 + SQRT6) / 36, 1. / 9}};
+
+// The eigenvalues of A^-1, the roots of x^3 - 9 x^2 + 36 x - 60: GAMMA and ALPHA +- i BETA.
+static const double ALPHA = 3 + (CBRT3 - CBRT3 * CBRT3) / 2;
+static const double BETA = SQRT3 / 2 * (CBRT3 + CBRT3 * CBRT3);
+
+/// A^-1 = T diag(GAMMA, [ALPHA -BETA; BETA ALPHA]) T^-1, as in the program of the source.
+static const double T[STAGES][STAGES]
+    = {{9.1232394870892942792e-02, -0.14125529502095420843, -3.0029194105147424492e-02},
+       {0.24171793270710701896, 0.20412935229379993199, 0.38294211275726193779},
+       {0.96604818261509293619, 1, 0}};
+static const double T_INVERSE[STAGES][STAGES]
+    = {{4.3255798900631553510, 0.33919925181580986954, 0.54177053993587487119},
+       {-4.1787185915519047273, -0.32768282076106238708, 0.47662355450055045196},
+       {-0.50287263494578687595, 2.5719269498556054292, -0.59603920482822492497}};
+
 /// Stages of a step, or their corrections, one stage behind the other.
 struct ct_radau_stages {
     double h;
@@ -37,8 +63,8 @@ struct ct_radau {
     double *d;                   // a motion, or change of speed  (nu)
     double *gain, *defect;       // of quadratures: over h; error over h / GAMMA  (ny)
     double *power, *power1;      // their rates at both ends  (ny)
-    double *z, *x,
-        *b; // of few unknowns: stages d, u, lam, their corrections, residuals r, phi, v  (rows of the response x 3)
+    double *b, *x;               // of few unknowns: r, phi, v, and what answers them
+    struct ct_radau_few *few;
     // speeds in the error, see radau_error.c
     bool is_eased;    // they were counted by what is slow of them at the last look
     int unlooked;     // steps until the next one
@@ -121,5 +147,18 @@ double ct_radau_imbalance(struct ct_radau *s, const struct ct_problem *p,
 enum ct_eval ct_radau_dense_error(struct ct_radau *s, const struct ct_problem *p, double t,
                                   const double *slope, double *y, double *err,
                                   struct ct_integrate_stats *stats);
+
+// ---- of few unknowns, see radau_few.c ----------------------------------------------------------------
+
+struct ct_radau_few *ct_radau_few_create(struct ct_arena *a, int nu, int most_rows);
+/// First values of the stages, as for others.
+void ct_radau_few_predict(struct ct_radau *s, double h, const double *u0, const double *u_dot0);
+/// One correction.
+enum ct_eval ct_radau_few_correct(struct ct_radau *s, double t, const double *y,
+                                  enum ct_verdict *verdict, struct ct_integrate_stats *stats);
+/// The stages into s->now.
+void ct_radau_few_keep(struct ct_radau *s);
+/// That, at the end of an iteration.
+void ct_radau_few_finish(struct ct_radau *s);
 
 #endif

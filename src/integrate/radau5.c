@@ -12,47 +12,21 @@
 // system; eta and lam take no part. Interpolated is the collocation polynomial.
 // Source: Hairer and Wanner (1996), IV.8 and VII.4, key hairer1996; formulation 8.4.
 #include "integrate/radau.h"
-#include "numeric/pair.h"
 
 #include <complex.h>
 #include <math.h>
 #include <string.h>
 
-#define SQRT3 1.7320508075688772935
-#define SQRT6 2.4494897427831780982
-
-#define C1 ((4 - SQRT6) / 10)
-#define C2 ((4 + SQRT6) / 10)
-static const double C[STAGES] = {C1, C2, 1};
 // One over c_i times its differences to the other two: the scales of Lagrange's polynomials.
 static const double SCALE[STAGES]
     = {1 / (C1 * (C1 - C2) * (C1 - 1)), 1 / (C2 * (C2 - C1) * (C2 - 1)),
        1 / ((1 - C1) * (1 - C2))};
-
-static const double A[STAGES][STAGES]
-    = {{(88 - 7 * SQRT6) / 360, (296 - 169 * SQRT6) / 1800, (-2 + 3 * SQRT6) / 225},
-       {(296 + 169 * SQRT6) / 1800, (88 + 7 * SQRT6) / 360, (-2 - 3 * SQRT6) / 225},
-       {(16 - SQRT6) / 36, (16 + SQRT6) / 36, 1. / 9}};
 
 // A^-1
 static const double INVERSE[STAGES][STAGES]
     = {{2 + SQRT6 / 2, -6. / 5 + 29 * SQRT6 / 30, 2. / 5 - 4 * SQRT6 / 15},
        {-6. / 5 - 29 * SQRT6 / 30, 2 - SQRT6 / 2, 2. / 5 + 4 * SQRT6 / 15},
        {-1 + 8 * SQRT6 / 3, -1 - 8 * SQRT6 / 3, 5}};
-
-// Its eigenvalues, the roots of x^3 - 9 x^2 + 36 x - 60: GAMMA and ALPHA +- i BETA.
-static const double ALPHA = 3 + (CBRT3 - CBRT3 * CBRT3) / 2;
-static const double BETA = SQRT3 / 2 * (CBRT3 + CBRT3 * CBRT3);
-
-// INVERSE = T diag(GAMMA, [ALPHA -BETA; BETA ALPHA]) T^-1, as in the program of the source.
-static const double T[STAGES][STAGES]
-    = {{9.1232394870892942792e-02, -0.14125529502095420843, -3.0029194105147424492e-02},
-       {0.24171793270710701896, 0.20412935229379993199, 0.38294211275726193779},
-       {0.96604818261509293619, 1, 0}};
-static const double T_INVERSE[STAGES][STAGES]
-    = {{4.3255798900631553510, 0.33919925181580986954, 0.54177053993587487119},
-       {-4.1787185915519047273, -0.32768282076106238708, 0.47662355450055045196},
-       {-0.50287263494578687595, 2.5719269498556054292, -0.59603920482822492497}};
 
 // Weights of the stages in the error.
 static const double E[STAGES] = {-(13 + 7 * SQRT6) / 3, (-13 + 7 * SQRT6) / 3, -1. / 3};
@@ -86,9 +60,10 @@ static void *create(struct ct_arena *a, const struct ct_method *method,
         *stages_of_rows[i] = CT_NEWN(a, double, STAGES *m + 1);
     for (size_t i = 0; i < COUNT(speeds); i++)
         *speeds[i] = CT_NEWN(a, double, nu + 1);
-    double **const stages_of_all[] = {&s->z, &s->x, &s->b};
-    for (size_t i = 0; i < COUNT(stages_of_all); i++)
-        *stages_of_all[i] = CT_NEWN(a, double, STAGES *ct_response_padded(2 * (nu + m)));
+    s->b = CT_NEWN(a, double, nu + 2 * m + 1);
+    s->x = CT_NEWN(a, double, ct_response_padded(2 * nu + m));
+    if (s->it->response)
+        s->few = ct_radau_few_create(a, nu, m);
     s->lam = CT_NEWN(a, double, m + 1);
     s->q = CT_NEWN(a, double, p->dae->nq + 1);
     s->gain = CT_NEWN(a, double, p->ny);
@@ -304,133 +279,8 @@ static enum ct_eval correct(struct ct_radau *s, double t, const double *y,
                       : m || nu > 2       ? change_stages(s, nu, m)
                       : nu == 1           ? change_stages(s, 1, 0)
                                           : change_stages(s, 2, 0);
-    *verdict = ct_iteration_judge(s->it, size, s->change.d, s->change.u, STAGES, nu);
+    *verdict = ct_iteration_judge(s->it, size, s->change.d, s->change.u, STAGES);
     return CT_EVAL_OK;
-}
-
-// ---- the same for few unknowns ----------------------------------------------------------------------
-
-// In plain coordinates d' = u + J' eta is linear: stages that meet it, eta zero, go on to, and neither it nor eta is
-// looked at again. Their motion is the collocated sum of speeds, which are predicted as above.
-static void predict_few(struct ct_radau *s, double h, const double *u0, const double *u_dot0)
-{
-    const int nu = s->it->nu, m = s->it->m, rows = s->it->response->rows;
-    s->now.h = h;
-    for (int i = 0; i < STAGES; i++) {
-        double *u = s->z + i * rows + nu, *lam = u + nu;
-        if (s->is_fresh)
-            for (int k = 0; k < nu; k++)
-                u[k] = C[i] * h * u_dot0[k];
-        else
-            ct_radau_weigh(u, s->further[i], s->before.u, nu);
-        if (s->knows_multipliers)
-            ct_radau_weigh(lam, s->further_lam[i], s->before.lam, m);
-        else
-            ct_stepper_copy(lam, s->lam, m);
-    }
-    const double *u = s->z + nu;
-    for (int i = 0; i < STAGES; i++)
-        for (int k = 0; k < nu; k++)
-            s->z[k + i * rows] = h
-                               * (C[i] * u0[k] + A[i][0] * u[k] + A[i][1] * u[k + rows]
-                                  + A[i][2] * u[k + 2 * rows]);
-}
-
-static inline enum ct_eval find_few_residuals(struct ct_radau *s, double t, const double *y,
-                                              struct ct_integrate_stats *stats, const int nu,
-                                              const int rows)
-{
-    const struct ct_dae *dae = s->dae;
-    const int m = s->it->m;
-    for (int i = 0; i < STAGES; i++) {
-        const double *d = s->z + i * rows, *u = d + nu, *all = s->z + nu, *w = s->slope[i];
-        double *b = s->b + i * rows;
-        for (int k = 0; k < nu; k++) {
-            s->q[k] = y[k] + d[k];
-            s->u[k] = y[nu + k] + u[k];
-            s->u_dot[k] = w[0] * all[k] + w[1] * all[k + rows] + w[2] * all[k + 2 * rows];
-        }
-        stats->evaluations++;
-        const enum ct_eval e = dae->residual(dae->user, t + C[i] * s->now.h, s->q, s->u,
-                                             s->u_dot, u + nu, b, b + nu, b + nu + m);
-        if (e != CT_EVAL_OK)
-            return e;
-    }
-    return CT_EVAL_OK;
-}
-
-// z (rows x 3) by `turn`, a pair of rows.
-static inline void turn_pair(ct_pair *out, const double *z, const double (*turn)[STAGES],
-                             int rows)
-{
-    const ct_pair a = ct_pair_take(z), b = ct_pair_take(z + rows),
-                  c = ct_pair_take(z + 2 * rows), zero = {0};
-    for (int i = 0; i < STAGES; i++)
-        out[i] = ct_pair_add(ct_pair_add(ct_pair_add(zero, a, turn[i][0]), b, turn[i][1]), c,
-                             turn[i][2]);
-}
-
-// From residuals to corrections, which are added to the stages; their size.
-static inline double change_few_stages(struct ct_radau *s, const int rows)
-{
-    const struct ct_response *a = s->it->response;
-    double *x = s->x, *b = s->b, *z = s->z;
-    ct_pair turned[STAGES], sum = {0};
-    for (int k = 0; k < a->in; k += CT_PAIR) {
-        turn_pair(turned, b + k, T_INVERSE, rows);
-        for (int i = 0; i < STAGES; i++)
-            ct_pair_put(b + k + i * rows, turned[i]);
-    }
-    ct_product(x, a->real, b, rows, a->in);
-    ct_product_complex(x + rows, x + 2 * rows, a->re, a->im, b + rows, b + 2 * rows, rows,
-                       a->in);
-    for (int k = 0; k < rows; k += CT_PAIR) {
-        const ct_pair share = ct_pair_take(s->it->share + k);
-        turn_pair(turned, x + k, T, rows);
-        for (int i = 0; i < STAGES; i++) {
-            double *to = z + k + i * rows;
-            ct_pair_put(to, ct_pair_add(ct_pair_take(to), turned[i], 1));
-            ct_pair_put(x + k + i * rows, turned[i]);
-            sum = ct_pair_add_square(sum, turned[i], share);
-        }
-    }
-    return sqrt(ct_pair_sum(sum) * (s->it->per_speed / (2 * STAGES)));
-}
-
-static enum ct_eval correct_few(struct ct_radau *s, double t, const double *y,
-                                enum ct_verdict *verdict, struct ct_integrate_stats *stats)
-{
-    // planar loops of three coordinates have code of their own: its loops are known to be so long
-    const int nu = s->it->nu, rows = s->it->response->rows;
-    const bool is_least = nu == 3 && rows == 8;
-    const enum ct_eval e = is_least ? find_few_residuals(s, t, y, stats, 3, 8)
-                                    : find_few_residuals(s, t, y, stats, nu, rows);
-    if (e != CT_EVAL_OK)
-        return e;
-    const double size = is_least ? change_few_stages(s, 8) : change_few_stages(s, rows);
-    *verdict = ct_iteration_judge(s->it, size, s->x, s->x + nu, STAGES, rows);
-    return CT_EVAL_OK;
-}
-
-// Stages to where they are looked for outside of the iteration.
-static void keep_few(struct ct_radau *s)
-{
-    const int nu = s->it->nu, m = s->it->m, rows = s->it->response->rows;
-    for (int i = 0; i < STAGES; i++) {
-        const double *z = s->z + i * rows;
-        ct_stepper_copy(s->now.d + i * nu, z, nu);
-        ct_stepper_copy(s->now.u + i * nu, z + nu, nu);
-        ct_stepper_copy(s->now.lam + i * m, z + 2 * nu, m);
-    }
-}
-
-static void note_few_multipliers(struct ct_radau *s)
-{
-    const int m = s->it->m, rows = s->it->response->rows;
-    const double *dlam = s->x + 2 * s->it->nu;
-    for (int i = 0; i < STAGES; i++)
-        ct_stepper_copy(s->change.lam + i * m, dlam + i * rows, m);
-    ct_iteration_note_multipliers(s->it, s->now.lam, s->change.lam, STAGES * m);
 }
 
 // Derivatives, where they are too old: at the second stage as predicted, nearer to all stages than the start is; on a first
@@ -444,7 +294,7 @@ static enum ct_eval refresh(struct ct_radau *s, double t, double h, const double
     if (s->is_fresh)
         return ct_iteration_refresh(s->it, t, y, y + nq, dy + nq, s->lam, stats);
     if (s->it->is_few)
-        keep_few(s);
+        ct_radau_few_keep(s);
     place_stage(s, y, middle);
     ct_radau_weigh(s->u_dot, s->slope[middle], s->now.u, s->dae->nu);
     return ct_iteration_refresh(s->it, t + C[middle] * h, s->q, s->u, s->u_dot, s->lam, stats);
@@ -456,11 +306,9 @@ static enum ct_eval correct_until(struct ct_radau *s, double t, const double *y,
 {
     const bool is_few = s->it->is_few;
     while (e == CT_EVAL_OK && *verdict == CT_GO_ON)
-        e = (is_few ? correct_few : correct)(s, t, y, verdict, stats);
-    if (is_few && e == CT_EVAL_OK) {
-        keep_few(s);
-        note_few_multipliers(s);
-    }
+        e = (is_few ? ct_radau_few_correct : correct)(s, t, y, verdict, stats);
+    if (is_few && e == CT_EVAL_OK)
+        ct_radau_few_finish(s);
     return e;
 }
 
@@ -472,7 +320,7 @@ static enum ct_eval iterate(struct ct_radau *s, double t, double h, const double
     find_weights(s, h);
     do {
         enum ct_verdict verdict = CT_GO_ON;
-        (s->it->is_few ? predict_few : predict)(s, h, y + nq, dy + nq);
+        (s->it->is_few ? ct_radau_few_predict : predict)(s, h, y + nq, dy + nq);
         enum ct_eval e = refresh(s, t, h, y, dy, stats);
         if (e == CT_EVAL_OK
             && !ct_iteration_factor(s->it, c, c * c, (ALPHA + BETA * I) / h, stats))

@@ -1,6 +1,8 @@
 // See response.h.
 #include "integrate/response.h"
 
+#include "numeric/four.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -19,8 +21,8 @@ struct ct_response *ct_response_create(struct ct_arena *a, int nu, int most_rows
     s->D = CT_NEWN(a, double, most_rows *nu + 1);
     s->real = CT_NEWN(a, double, size);
     if (is_complex) {
-        s->re = CT_NEWN(a, double, size);
-        s->im = CT_NEWN(a, double, size);
+        s->straight = ct_arena_line(a, (size_t)(CT_FOUR * size) * sizeof(double));
+        s->crossed = ct_arena_line(a, (size_t)(CT_FOUR * size) * sizeof(double));
     }
     return s;
 }
@@ -269,6 +271,19 @@ struct complex_coefficients {
     double _Complex c, e, y;
 };
 
+// Number k of a column into fours.
+static inline void put(double *straight, double *crossed, const double *real, int k,
+                       double _Complex x)
+{
+    double *a = straight + CT_FOUR * k, *b = crossed + CT_FOUR * k;
+    a[0] = real[k];
+    a[1] = a[2] = creal(x);
+    a[3] = 0;
+    b[0] = b[3] = 0;
+    b[1] = -cimag(x);
+    b[2] = cimag(x);
+}
+
 static inline void find_column_complex(const struct ct_response *s, int j,
                                        struct complex_coefficients f, const double _Complex *G,
                                        const double _Complex *F, const double _Complex *R,
@@ -279,7 +294,8 @@ static inline void find_column_complex(const struct ct_response *s, int j,
     const double *T = s->T, *P = T + nu * (free + i), *PDP = s->PD + nu * (free + i);
     const double _Complex *g = G + nu * (free + i), *push = F + nu * i;
     double _Complex w[MOST];
-    double *re = s->re + s->rows * j, *im = s->im + s->rows * j;
+    const double *real = s->real + s->rows * j;
+    double *re = s->straight + CT_FOUR * s->rows * j, *im = s->crossed + CT_FOUR * s->rows * j;
     for (int k = 0; k < free; k++) {
         w[k] = 0;
         for (int l = 0; l < free; l++)
@@ -294,10 +310,8 @@ static inline void find_column_complex(const struct ct_response *s, int j,
             moved += T[k + nu * l] * w[l];
             gained += product(f.c * T[k + nu * l] - s->PD[k + nu * l], w[l]);
         }
-        re[k] = creal(moved);
-        im[k] = cimag(moved);
-        re[nu + k] = creal(gained);
-        im[nu + k] = cimag(gained);
+        put(re, im, real, k, moved);
+        put(re, im, real, nu + k, gained);
     }
     for (int k = 0; k < m; k++) {
         double _Complex sum = j < nu ? f.y * T[j + nu * (free + k)]
@@ -305,12 +319,10 @@ static inline void find_column_complex(const struct ct_response *s, int j,
                                      : -push[free + k];
         for (int l = 0; l < free; l++)
             sum += product(G[free + k + nu * l], w[l]);
-        const double _Complex lam = product(f.e, sum);
-        re[2 * nu + k] = creal(lam);
-        im[2 * nu + k] = cimag(lam);
+        put(re, im, real, 2 * nu + k, product(f.e, sum));
     }
     for (int k = s->out; k < s->rows; k++)
-        re[k] = im[k] = 0;
+        put(re, im, real, k, 0);
 }
 
 bool ct_response_find_complex(struct ct_response *s, double _Complex c)

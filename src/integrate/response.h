@@ -36,8 +36,10 @@ struct ct_response {
     double *T;           // (nu x nu)
     double *M, *C, *K;   // T' M T, T' C T, T' K T less the part of D in C, (nu x nu)
     double *D, *MD, *PD; // D T (m x nu); T' M P D T, P D T (nu x nu)
-    // of c and e: the real product (rows x in), the complex one, real and imaginary parts
-    double *real, *re, *im;
+    // of c and e: the real product (rows x in), and that with the complex one in fours  (4 x rows x in)
+    double *real;
+    double *straight; // of the real one, real parts twice, zero
+    double *crossed;  // zero, minus the imaginary part, that, zero
 };
 
 /// Room for nu speeds and up to most_rows rows with at most CT_MOST_INVERTED equations (8.2).
@@ -52,7 +54,7 @@ void ct_response_assemble(struct ct_response *s, const double *M, const double *
 
 /// The real product for c and e; false if it cannot be made.
 bool ct_response_find(struct ct_response *s, double c, double e);
-/// The complex one for c, e = c^2.
+/// The complex one for c, e = c^2, after the real one, with which it is put into fours.
 bool ct_response_find_complex(struct ct_response *s, double _Complex c);
 
 #endif
