@@ -139,9 +139,9 @@ void ct_response_assemble(struct ct_response *s, const double *M, const double *
 
 // T' B T (nu x nu) into G, T' F (nu x m) into F.
 static inline void fill(const struct ct_response *s, double *G, double *F, double x, double y,
-                        double z, const int nu)
+                        double z, const int nu, const int free)
 {
-    const int across = nu * s->free;
+    const int across = nu * free;
     for (int k = 0; k < nu * nu; k++)
         G[k] = y * s->K[k] - z * s->MD[k];
     for (int k = 0; k < across; k++)
@@ -207,19 +207,27 @@ static inline void find_column(const struct ct_response *s, int j, struct coeffi
         d[k] = 0;
 }
 
-bool ct_response_find(struct ct_response *s, double c, double e)
+static inline bool find(const struct ct_response *s, double c, double e, const int nu,
+                        const int m)
 {
-    const int nu = s->nu, m = s->m;
     const struct coefficients f = {c, e, 1 / e};
     double G[MOST * MOST], F[MOST * MOST], R[MOST * MOST];
     if (!s->is_regular)
         return false;
-    fill(s, G, F, c / e, 1 / e, 1 / c, nu);
-    if (!invert(R, G, s->free, nu))
+    fill(s, G, F, c / e, 1 / e, 1 / c, nu, nu - m);
+    if (!invert(R, G, nu - m, nu))
         return false;
-    for (int j = 0; j < s->in; j++)
+    for (int j = 0; j < nu; j++)
+        find_column(s, j, f, G, F, R, nu, m);
+    for (int j = nu; j < nu + 2 * m; j++)
         find_column(s, j, f, G, F, R, nu, m);
     return true;
+}
+
+// Planar loops of three coordinates have code of their own: its loops are known to be so long.
+bool ct_response_find(struct ct_response *s, double c, double e)
+{
+    return s->nu == 3 && s->m == 2 ? find(s, c, e, 3, 2) : find(s, c, e, s->nu, s->m);
 }
 
 // ---- the same of complex numbers --------------------------------------------------------------------
@@ -233,9 +241,9 @@ static inline double _Complex product(double _Complex x, double _Complex y)
 
 static inline void fill_complex(const struct ct_response *s, double _Complex *G,
                                 double _Complex *F, double _Complex y, double _Complex z,
-                                const int nu)
+                                const int nu, const int free)
 {
-    const int across = nu * s->free;
+    const int across = nu * free;
     for (int k = 0; k < nu * nu; k++)
         G[k] = y * s->K[k] - z * s->MD[k];
     for (int k = 0; k < across; k++)
@@ -325,19 +333,26 @@ static inline void find_column_complex(const struct ct_response *s, int j,
         put(re, im, real, k, 0);
 }
 
-bool ct_response_find_complex(struct ct_response *s, double _Complex c)
+static inline bool find_complex(const struct ct_response *s, double _Complex c, const int nu,
+                                const int m)
 {
-    const int nu = s->nu, m = s->m;
     const double square = creal(c) * creal(c) + cimag(c) * cimag(c);
     const double _Complex z = conj(c) / square, y = product(z, z);
     const struct complex_coefficients f = {c, product(c, c), y};
     double _Complex G[MOST * MOST], F[MOST * MOST], R[MOST * MOST];
     if (!s->is_regular)
         return false;
-    fill_complex(s, G, F, y, z, nu);
-    if (!invert_complex(R, G, s->free, nu))
+    fill_complex(s, G, F, y, z, nu, nu - m);
+    if (!invert_complex(R, G, nu - m, nu))
         return false;
-    for (int j = 0; j < s->in; j++)
+    for (int j = 0; j < nu; j++)
+        find_column_complex(s, j, f, G, F, R, nu, m);
+    for (int j = nu; j < nu + 2 * m; j++)
         find_column_complex(s, j, f, G, F, R, nu, m);
     return true;
+}
+
+bool ct_response_find_complex(struct ct_response *s, double _Complex c)
+{
+    return s->nu == 3 && s->m == 2 ? find_complex(s, c, 3, 2) : find_complex(s, c, s->nu, s->m);
 }
