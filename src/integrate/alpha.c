@@ -26,7 +26,13 @@ struct memory {
 struct factors {
     double h, before, by_speed, by_u_dot;
     double a_by_speed, u_dot_by_speed; // of a correction of speeds
-    double pace, across;               // 1/h, 1/(h + before)
+    double pace, across, ratio;        // 1/h, 1/(h + before), h/before
+    double pace_of_a, back;            // 1/(gamma h), (1 - gamma)/gamma
+};
+
+// A correction: of places, of speeds, of multipliers.
+struct correction {
+    const double *d, *u, *lam;
 };
 
 struct state {
@@ -43,8 +49,9 @@ struct state {
     double *noise;               // what corrections leave of speeds  (nu)
     double *dd, *du; // corrections (nu), one behind the other, zeros behind them (ny)
     double *eta, *dlam;
-    double *r, *phi, *v;      // behind each other
-    double *x;                // what answers them, of few unknowns
+    double *r, *phi, *v; // behind each other
+    double *x;           // what answers them, of few unknowns
+    struct correction last;
     double *rate1, *out;      // for interpolation: d' at the end; a motion (nu)
     double *end_rate, *error; // rates at the end and errors, of quadratures alone  (ny)
 };
@@ -144,7 +151,10 @@ static void find_factors(struct state *s, double h)
                             .a_by_speed = by_a / by_speed,
                             .u_dot_by_speed = by_u_dot / by_speed,
                             .pace = 1 / h,
-                            .across = 1 / (h + before)};
+                            .across = 1 / (h + before),
+                            .ratio = h / before,
+                            .pace_of_a = 1 / (c->gamma * h),
+                            .back = (1 - c->gamma) / c->gamma};
 }
 
 // ---- the start of a step --------------------------------------------------------------------------
@@ -229,93 +239,87 @@ static inline void predict_few(struct state *s, double h, const double *y, const
     ct_iteration_move(dae, y, s->d, s->q);
 }
 
-// One freedom has code of its own: loops that may be of any length take longer to begin than to do its work.
+// One freedom, and planar loops of three coordinates, have code of their own: loops that may be of any length take longer to begin than to do its work.
 static void predict(struct state *s, double h, const double *y)
 {
     if (s->dae->nu == 1)
         predict_few(s, h, y, 1);
+    else if (s->dae->nu == 3)
+        predict_few(s, h, y, 3);
     else
         predict_few(s, h, y, s->dae->nu);
 }
 
-// Adds the correction of places s->dd and of speeds s->du. Its size.
-static inline double add_correction(struct state *s, const int nu)
+// s->last: what answers the residuals.
+static inline void solve(struct state *s, const int nu, const int m)
+{
+    struct ct_iteration *it = s->it;
+    const struct ct_response *a = it->response;
+    if (it->is_few) {
+        ct_product(s->x, a->real, s->r, a->rows, a->in);
+        s->last = (struct correction){s->x, s->x + nu, s->x + 2 * nu};
+        return;
+    }
+    ct_iteration_solve(it, s->dd, s->eta, s->dlam, s->r, s->phi, s->v);
+    for (int k = 0; k < nu; k++)
+        s->du[k] = s->f.by_speed * s->dd[k];
+    if (m)
+        ct_iteration_push(it, s->du, s->du, -s->f.by_speed, s->eta, nu,
+                          m); // eta moves places alone
+    s->last = (struct correction){s->dd, s->du, s->dlam};
+}
+
+// Adds it. Its size.
+static inline double add_correction(struct state *s, const int nu, const int m)
 {
     const struct factors f = s->f;
+    solve(s, nu, m);
+    const struct correction c = s->last;
     for (int k = 0; k < nu; k++) {
-        const double du = s->du[k];
-        s->d[k] += s->dd[k];
+        const double du = c.u[k];
+        s->d[k] += c.d[k];
         s->u[k] += du;
         s->end.a[k] += f.a_by_speed * du;
         s->end.u_dot[k] += f.u_dot_by_speed * du;
     }
+    for (int i = 0; i < m; i++)
+        s->end.lam[i] += c.lam[i];
     // in the index-3 form speeds have rounding over h in them: places alone decide
-    return ct_iteration_norm(s->it, s->dd, s->c->is_stabilised ? s->du : NULL, nu, 1);
+    return ct_iteration_norm(s->it, c.d, s->c->is_stabilised ? c.u : NULL, nu, 1);
 }
 
-// Few freedoms, or few more in loops, have code of their own.
-static inline double add_corrections(struct state *s)
+// Few freedoms, and planar loops of three coordinates, have code of their own: its loops are known to be so long.
+static double add_corrections(struct state *s)
 {
-    switch (s->dae->nu) {
-    case 1:
-        return add_correction(s, 1);
-    case 2:
-        return add_correction(s, 2);
-    case 3:
-        return add_correction(s, 3);
-    default:
-        return add_correction(s, s->dae->nu);
-    }
-}
-
-// s->dd and s->du, those of places and of speeds, and s->dlam.
-static inline void solve(struct state *s)
-{
-    struct ct_iteration *it = s->it;
-    const struct ct_response *a = it->response;
-    const int nu = it->nu, m = it->m;
-    if (it->is_few) {
-        ct_product(s->x, a->real, s->r, a->rows, a->in);
-        ct_stepper_copy(s->dd, s->x, nu);
-        ct_stepper_copy(s->du, s->x + nu, nu);
-        ct_stepper_copy(s->dlam, s->x + 2 * nu, m);
-        return;
-    }
-    ct_iteration_solve(it, s->dd, s->eta, s->dlam, s->r, s->phi, s->v);
-    ct_stepper_copy(s->du, s->dd, nu);
-    if (m)
-        ct_iteration_push(it, s->du, s->dd, -1, s->eta, nu, m); // eta moves places alone
-    for (int k = 0; k < nu; k++)
-        s->du[k] *= s->f.by_speed;
+    const int nu = s->it->nu, m = s->it->m;
+    return m == 2 && nu == 3 ? add_correction(s, 3, 2)
+         : m || nu > 2       ? add_correction(s, nu, m)
+         : nu == 1           ? add_correction(s, 1, 0)
+                             : add_correction(s, 2, 0);
 }
 
 static enum ct_eval correct(struct state *s, double t1, const double *y,
                             enum ct_verdict *verdict, struct ct_integrate_stats *stats)
 {
     const struct ct_dae *dae = s->dae;
-    const int m = s->it->m;
     stats->evaluations++;
     const enum ct_eval e = dae->residual(dae->user, t1, s->q, s->u, s->end.u_dot, s->end.lam,
                                          s->r, s->phi, s->v);
     if (e != CT_EVAL_OK)
         return e;
-    solve(s);
     const double size = add_corrections(s);
-    for (int i = 0; i < m; i++)
-        s->end.lam[i] += s->dlam[i];
-    if (m)
-        ct_iteration_note_multipliers(s->it, s->end.lam, s->dlam, m);
     ct_iteration_move(dae, y, s->d, s->q);
-    *verdict = ct_iteration_judge(s->it, size, s->dd, s->c->is_stabilised ? s->du : NULL, 1);
+    *verdict
+        = ct_iteration_judge(s->it, size, s->last.d, s->c->is_stabilised ? s->last.u : NULL, 1);
     return CT_EVAL_OK;
 }
 
 // What the last correction leaves of speeds: where it has come to rounding, as much as it was.
 static void note_noise(struct state *s)
 {
-    const double left = fmin(1, s->it->tail);
+    const double left = ct_smaller(s->it->tail, 1);
     for (int k = 0; k < s->it->nu && s->it->m; k++)
-        s->noise[k] = left * fabs(s->du[k]);
+        s->noise[k] = left * fabs(s->last.u[k]);
 }
 
 static enum ct_eval iterate(struct state *s, double t1, double h, const double *y,
@@ -334,6 +338,8 @@ static enum ct_eval iterate(struct state *s, double t1, double h, const double *
         ct_iteration_start(s->it);
         while (e == CT_EVAL_OK && verdict == CT_GO_ON)
             e = correct(s, t1, y, &verdict, stats);
+        if (e == CT_EVAL_OK && s->it->m)
+            ct_iteration_note_multipliers(s->it, s->end.lam, s->last.lam, s->it->m);
         if (e == CT_EVAL_OK && verdict == CT_CONVERGED)
             note_noise(s);
         if (e == CT_EVAL_FATAL || verdict == CT_CONVERGED)
@@ -365,17 +371,16 @@ static inline double find_errors(struct state *s, double h, const int nu)
 // and (8.8) again as much as speeds themselves, however short the step is, more after a shorter one: it is no error of the step.
 static void take_off_noise(struct state *s, double h)
 {
-    const double gamma = s->c->gamma, back = (1 - gamma) / gamma;
-    const double ratio = s->is_fresh ? 0 : h / s->start.h;
+    const double back = s->f.back, pace = s->f.pace_of_a;
+    const double ratio = s->f.ratio;
     const double speeds = s->is_fresh ? 0 : h * h * h * 2 * s->f.across * fabs(s->by_speeds);
     for (int k = 0; k < s->dae->nu; k++) {
-        const double a0 = ratio * s->start.a_noise[k],
-                     a1 = s->noise[k] / (gamma * h) + back * a0;
+        const double a0 = ratio * s->start.a_noise[k], a1 = s->noise[k] * pace + back * a0;
         s->end.a_noise[k] = a1;
         s->end.jerk_noise[k] = s->f.pace * (a0 + a1);
         const double noise
             = speeds * (s->end.jerk_noise[k] + (s->is_fresh ? 0 : s->start.jerk_noise[k]));
-        s->du[k] = copysign(fmax(0, fabs(s->du[k]) - noise), s->du[k]);
+        s->du[k] = copysign(ct_larger(0, fabs(s->du[k]) - noise), s->du[k]);
     }
 }
 
@@ -386,8 +391,9 @@ static double estimate(struct state *s, const struct ct_problem *p,
                        const struct ct_tolerance *tolerance, double t1, double h,
                        const double *y1)
 {
-    const double states
-        = s->dae->nu == 1 ? find_errors(s, h, 1) : find_errors(s, h, s->dae->nu);
+    const double states = s->dae->nu == 1 ? find_errors(s, h, 1)
+                        : s->dae->nu == 3 ? find_errors(s, h, 3)
+                                          : find_errors(s, h, s->dae->nu);
     if (s->it->m && s->c->is_stabilised)
         take_off_noise(s, h);
     if (s->dae->is_plain) // then s->dd is the error of the whole state
@@ -468,6 +474,8 @@ enum ct_eval ct_alpha_step(const struct ct_problem *p, double t, double h, const
                          estimate_quadratures(s, p, tolerance, h, y, dy, y1, dy1));
     if (s->dae->nu == 1)
         note_accelerations(s, h, 1);
+    else if (s->dae->nu == 3)
+        note_accelerations(s, h, 3);
     else
         note_accelerations(s, h, s->dae->nu);
     if (s->dae->has_no_power)
