@@ -136,6 +136,8 @@ bool ct_iteration_begin(struct ct_iteration *it, const struct ct_tolerance *tole
     const bool is_plain = dae->is_plain && !it->groups;
     if (is_plain && it->nu == 1)
         weigh_plain(it, tol->rtol, tol->atol, least_speed, y, 1);
+    else if (is_plain && it->nu == 3)
+        weigh_plain(it, tol->rtol, tol->atol, least_speed, y, 3);
     else if (is_plain)
         weigh_plain(it, tol->rtol, tol->atol, least_speed, y, it->nu);
     else

@@ -83,19 +83,26 @@ bool ct_inverse(double *A, int *pivot, int n)
                         : invert(A, pivot, n, CT_MOST_INVERTED);
 }
 
+// So many rows, a multiple of two, at once.
+static inline void add_columns(double *restrict x, const double *restrict A,
+                               const double *restrict b, const int some, int rows, int n)
+{
+    ct_pair sum[FEW] = {{0}};
+    for (int j = 0; j < n; j++, A += rows)
+        for (int i = 0; i < some / PAIR; i++)
+            sum[i] = ct_pair_add(sum[i], ct_pair_take(A + PAIR * i), b[j]);
+    for (int i = 0; i < some / PAIR; i++)
+        ct_pair_put(x + PAIR * i, sum[i]);
+}
+
 void ct_product(double *restrict x, const double *restrict A, const double *restrict b,
                 int rows, int n)
 {
-    for (int i = 0; i < rows; i += FEW) {
-        const double *X = A + i;
-        ct_pair first = {0}, second = {0};
-        for (int j = 0; j < n; j++, X += rows) {
-            first = ct_pair_add(first, ct_pair_take(X), b[j]);
-            second = ct_pair_add(second, ct_pair_take(X + PAIR), b[j]);
-        }
-        ct_pair_put(x + i, first);
-        ct_pair_put(x + i + PAIR, second);
-    }
+    int i = 0;
+    for (; i + 2 * FEW <= rows; i += 2 * FEW)
+        add_columns(x + i, A + i, b, 2 * FEW, rows, n);
+    if (i < rows)
+        add_columns(x + i, A + i, b, FEW, rows, n);
 }
 
 void ct_inverse_apply(double *restrict x, const double *restrict inverse,

@@ -43,15 +43,28 @@ static enum ct_eval start(void *user, double t, const double *y, double *a, doub
     return CT_EVAL_OK;
 }
 
+// Three coordinates, those of a planar loop, by code of its own: it takes no longer than to find out how many there are.
+static inline void copy_few(double *out, const volatile double *v, size_t n)
+{
+    if (n != 3) {
+        ct_machine_copy(out, v, n);
+        return;
+    }
+    const double first = v[0], second = v[1], third = v[2];
+    out[0] = first;
+    out[1] = second;
+    out[2] = third;
+}
+
 static inline void set_input(const struct ct_embed *s, double t, const double *q,
                              const double *u, const double *a, const double *lam)
 {
     const struct ct_machine *m = s->m;
     double *input = m->input;
     input[0] = t;
-    ct_machine_copy(input + m->at_q, q, m->nq);
-    ct_machine_copy(input + m->at_u, u, m->nu);
-    ct_machine_copy(input + m->at_a, a, m->nu);
+    copy_few(input + m->at_q, q, m->nq);
+    copy_few(input + m->at_u, u, m->nu);
+    copy_few(input + m->at_a, a, m->nu);
     if ((size_t)s->rank < m->nrow)
         memset(input + m->at_lam, 0, m->nrow * sizeof *lam);
     for (int i = 0; i < s->rank; i++)
@@ -69,7 +82,7 @@ static enum ct_eval residual(void *user, double t, const double *q, const double
     ct_program_run(&s->m->residual, s->m->input);
     if (!ct_stepper_finite(out, (int)s->m->residual.nout))
         return CT_EVAL_RETRY;
-    ct_machine_copy(r, out, nu);
+    copy_few(r, out, nu);
     for (int i = 0; i < s->rank; i++) {
         phi[i] = out[nu + (size_t)s->row[i]];
         v[i] = out[nu + nrow + (size_t)s->row[i]];
