@@ -28,6 +28,9 @@ struct factors {
     double a_by_speed, u_dot_by_speed; // of a correction of speeds
     double pace, across, ratio;        // 1/h, 1/(h + before), h/before
     double pace_of_a, back;            // 1/(gamma h), (1 - gamma)/gamma
+    double a_then, a_now,
+        a_before;                // (8.1): a of u' at the end and at the start, and less of a0
+    double u_a0, u_a, d_a0, d_a; // speeds and places of a0 and a
 };
 
 // A correction: of places, of speeds, of multipliers.
@@ -154,7 +157,14 @@ static void find_factors(struct state *s, double h)
                             .across = 1 / (h + before),
                             .ratio = h / before,
                             .pace_of_a = 1 / (c->gamma * h),
-                            .back = (1 - c->gamma) / c->gamma};
+                            .back = (1 - c->gamma) / c->gamma,
+                            .a_then = (1 - c->alpha_f) * s->share,
+                            .a_now = c->alpha_f * s->share,
+                            .a_before = c->alpha_m * s->share,
+                            .u_a0 = h * (1 - c->gamma),
+                            .u_a = h * c->gamma,
+                            .d_a0 = h * h * (0.5 - c->beta),
+                            .d_a = h * h * c->beta};
 }
 
 // ---- the start of a step --------------------------------------------------------------------------
@@ -204,11 +214,15 @@ static enum ct_eval begin(struct state *s, const struct ct_problem *p, double t,
         return e;
     if (s->is_fresh || c->starts_anew)
         ct_stepper_copy(s->start.u_dot, u_dot, nu);
-    const double *now = s->start.u_dot, ratio = s->is_fresh ? 0 : h / s->start.h;
-    for (int k = 0; k < nu; k++)
-        s->a0[k] = c->starts_anew ? now[k]
-                 : s->is_fresh    ? now[k] + (c->alpha_m - c->alpha_f) * h * s->jerk[k]
-                                  : now[k] + ratio * (s->start.a[k] - now[k]);
+    find_factors(s, h);
+    const double *now = s->start.u_dot, *a = s->start.a, ratio = s->f.ratio;
+    if (!s->is_fresh && !c->starts_anew)
+        for (int k = 0; k < nu; k++)
+            s->a0[k] = now[k] + ratio * (a[k] - now[k]);
+    else
+        for (int k = 0; k < nu; k++)
+            s->a0[k]
+                = now[k] + (c->starts_anew ? 0 : (c->alpha_m - c->alpha_f) * h * s->jerk[k]);
     return CT_EVAL_OK;
 }
 
@@ -218,20 +232,19 @@ static enum ct_eval begin(struct state *s, const struct ct_problem *p, double t,
 // the index-3 form have too much rounding in them for that.
 static inline void predict_few(struct state *s, double h, const double *y, const int nu)
 {
-    const struct ct_alpha *c = s->c;
     const struct ct_dae *dae = s->dae;
-    const double *u0 = y + dae->nq, share = s->share;
-    const bool is_known = !s->is_fresh && c->is_stabilised;
+    const struct factors f = s->f;
+    const double *u0 = y + dae->nq;
+    const bool is_known = !s->is_fresh && s->c->is_stabilised;
     const double further = is_known ? h : 0, last = is_known ? h + s->start.h : 0;
     for (int k = 0; k < nu; k++) {
         const double u_dot = s->start.u_dot[k], a0 = s->a0[k];
         const double then = u_dot + further * (s->start.slope[k] + last * s->start.bend[k]);
-        const double a
-            = ((1 - c->alpha_f) * then + c->alpha_f * u_dot - c->alpha_m * a0) * share;
+        const double a = f.a_then * then + f.a_now * u_dot - f.a_before * a0;
         s->end.u_dot[k] = then;
         s->end.a[k] = a;
-        s->u[k] = u0[k] + h * ((1 - c->gamma) * a0 + c->gamma * a);
-        s->d[k] = h * (u0[k] + h * ((0.5 - c->beta) * a0 + c->beta * a));
+        s->u[k] = u0[k] + (f.u_a0 * a0 + f.u_a * a);
+        s->d[k] = h * u0[k] + (f.d_a0 * a0 + f.d_a * a);
     }
     for (int i = 0; i < s->it->m; i++)
         s->end.lam[i]
@@ -325,7 +338,6 @@ static void note_noise(struct state *s)
 static enum ct_eval iterate(struct state *s, double t1, double h, const double *y,
                             struct ct_integrate_stats *stats)
 {
-    find_factors(s, h);
     do {
         enum ct_verdict verdict = CT_GO_ON;
         predict(s, h, y);
