@@ -23,8 +23,9 @@ struct ct_radau_few {
 struct ct_radau_few *ct_radau_few_create(struct ct_arena *a, int nu, int most_rows)
 {
     struct ct_radau_few *f = CT_NEW(a, struct ct_radau_few);
-    const size_t four = CT_FOUR * sizeof(double), in = (size_t)(nu + 2 * most_rows);
-    const size_t out = (size_t)ct_response_padded(2 * nu + most_rows);
+    const size_t four = CT_FOUR * sizeof(double), in = (size_t)nu + 2 * (size_t)most_rows;
+    const int padded = ct_response_padded(2 * nu + most_rows);
+    const size_t out = (size_t)padded;
     f->z = ct_arena_line(a, four * out);
     f->x = ct_arena_line(a, four * out);
     f->b = ct_arena_line(a, four * in);

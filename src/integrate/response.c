@@ -1,6 +1,7 @@
 // See response.h.
 #include "integrate/response.h"
 
+#include "numeric/dense.h"
 #include "numeric/four.h"
 
 #include <math.h>
@@ -20,7 +21,13 @@ struct ct_response *ct_response_create(struct ct_arena *a, int nu, int most_rows
         *square[i] = CT_NEWN(a, double, nu *nu);
     s->D = CT_NEWN(a, double, most_rows *nu + 1);
     s->real = CT_NEWN(a, double, size);
+    s->G = CT_NEWN(a, double, nu *nu);
+    s->F = CT_NEWN(a, double, nu *most_rows + 1);
+    s->R = CT_NEWN(a, double, MOST *MOST);
     if (is_complex) {
+        s->Gc = CT_NEWN(a, double _Complex, nu *nu);
+        s->Fc = CT_NEWN(a, double _Complex, nu *most_rows + 1);
+        s->Rc = CT_NEWN(a, double _Complex, MOST *MOST);
         s->straight = ct_arena_line(a, (size_t)(CT_FOUR * size) * sizeof(double));
         s->crossed = ct_arena_line(a, (size_t)(CT_FOUR * size) * sizeof(double));
     }
@@ -142,10 +149,10 @@ static inline void fill(const struct ct_response *s, double *G, double *F, doubl
                         double z, const int nu, const int free)
 {
     const int across = nu * free;
-    for (int k = 0; k < nu * nu; k++)
-        G[k] = y * s->K[k] - z * s->MD[k];
     for (int k = 0; k < across; k++)
-        G[k] += s->M[k] + x * s->C[k];
+        G[k] = s->M[k] + x * s->C[k] + (y * s->K[k] - z * s->MD[k]);
+    for (int k = across; k < nu * nu; k++)
+        G[k] = y * s->K[k] - z * s->MD[k];
     for (int k = across; k < nu * nu; k++)
         F[k - across] = z * s->M[k] + y * s->C[k];
 }
@@ -211,7 +218,7 @@ static inline bool find(const struct ct_response *s, double c, double e, const i
                         const int m)
 {
     const struct coefficients f = {c, e, 1 / e};
-    double G[MOST * MOST], F[MOST * MOST], R[MOST * MOST];
+    double *G = s->G, *F = s->F, *R = s->R;
     if (!s->is_regular)
         return false;
     fill(s, G, F, c / e, 1 / e, 1 / c, nu, nu - m);
@@ -244,10 +251,10 @@ static inline void fill_complex(const struct ct_response *s, double _Complex *G,
                                 const int nu, const int free)
 {
     const int across = nu * free;
-    for (int k = 0; k < nu * nu; k++)
-        G[k] = y * s->K[k] - z * s->MD[k];
     for (int k = 0; k < across; k++)
-        G[k] += s->M[k] + z * s->C[k];
+        G[k] = s->M[k] + z * s->C[k] + (y * s->K[k] - z * s->MD[k]);
+    for (int k = across; k < nu * nu; k++)
+        G[k] = y * s->K[k] - z * s->MD[k];
     for (int k = across; k < nu * nu; k++)
         F[k - across] = z * s->M[k] + y * s->C[k];
 }
@@ -339,7 +346,7 @@ static inline bool find_complex(const struct ct_response *s, double _Complex c, 
     const double square = creal(c) * creal(c) + cimag(c) * cimag(c);
     const double _Complex z = conj(c) / square, y = product(z, z);
     const struct complex_coefficients f = {c, product(c, c), y};
-    double _Complex G[MOST * MOST], F[MOST * MOST], R[MOST * MOST];
+    double _Complex *G = s->Gc, *F = s->Fc, *R = s->Rc;
     if (!s->is_regular)
         return false;
     fill_complex(s, G, F, y, z, nu, nu - m);

@@ -40,6 +40,9 @@ struct ct_response {
     double *real;
     double *straight; // of the real one, real parts twice, zero
     double *crossed;  // zero, minus the imaginary part, that, zero
+    // workspace: T' B T (nu x nu), T' F (nu x m), (Z' B Z)^-1
+    double *G, *F, *R;
+    double _Complex *Gc, *Fc, *Rc;
 };
 
 /// Room for nu speeds and up to most_rows rows with at most CT_MOST_INVERTED equations (8.2).
