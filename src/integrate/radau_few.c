@@ -289,7 +289,7 @@ enum ct_eval ct_radau_few_correct(struct ct_radau *s, double t, const double *y,
 {
     const struct ct_dae *dae = s->dae;
     const double *x = s->few->x;
-    double size;
+    double size = INFINITY;
     (is_wide() ? place_wide : place_narrow)(s, t, y);
     dae->abreast->evaluate(dae->user);
     stats->evaluations += STAGES;
