@@ -17,14 +17,25 @@ struct memory {
     double *jerk;            // u'' amid that step  (nu)
     double *slope,
         *bend; // divided differences of u': over that step; with the one before it  (nu)
+    double *lam_slope, *lam_bend; // the same of lam  (rows)
     double *a_noise, *jerk_noise; // of a and `jerk`, where there are rows  (nu)
     double *rate;                 // at that step's start, of quadratures alone  (ny)
 };
 
 // What d(place) of a correction is worth in speeds, a, and accelerations, for steps of size h behind one of size `before`.
 struct factors {
-    double h, before, by_speed, by_a, by_u_dot;
-    double pace, across; // 1/h, 1/(h + before)
+    double h, before, by_speed, by_u_dot;
+    double a_by_speed, u_dot_by_speed; // of a correction of speeds
+    double pace, across, ratio;        // 1/h, 1/(h + before), h/before
+    double pace_of_a, back;            // 1/(gamma h), (1 - gamma)/gamma
+    double a_then, a_now,
+        a_before;                // (8.1): a of u' at the end and at the start, and less of a0
+    double u_a0, u_a, d_a0, d_a; // speeds and places of a0 and a
+};
+
+// A correction: of places, of speeds, of multipliers.
+struct correction {
+    const double *d, *u, *lam;
 };
 
 struct state {
@@ -40,7 +51,10 @@ struct state {
     double *d, *u, *q;           // the step's motion (nu), its end (nu, nq)
     double *noise;               // what corrections leave of speeds  (nu)
     double *dd, *du; // corrections (nu), one behind the other, zeros behind them (ny)
-    double *eta, *dlam, *r, *phi, *v;
+    double *eta, *dlam;
+    double *r, *phi, *v; // behind each other
+    double *x;           // what answers them, of few unknowns
+    struct correction last;
     double *rate1, *out;      // for interpolation: d' at the end; a motion (nu)
     double *end_rate, *error; // rates at the end and errors, of quadratures alone  (ny)
 };
@@ -77,7 +91,6 @@ void *ct_alpha_create(struct ct_arena *a, const struct ct_method *method,
                                &s->jerk,
                                &s->d,
                                &s->u,
-                               &s->r,
                                &s->rate1,
                                &s->out,
                                &s->noise,
@@ -85,12 +98,21 @@ void *ct_alpha_create(struct ct_arena *a, const struct ct_method *method,
                                &s->start.jerk_noise,
                                &s->end.a_noise,
                                &s->end.jerk_noise};
-    double **const rows[] = {&s->start.lam, &s->end.lam, &s->eta, &s->dlam, &s->phi, &s->v};
+    double **const rows[] = {&s->start.lam,
+                             &s->end.lam,
+                             &s->start.lam_slope,
+                             &s->end.lam_slope,
+                             &s->start.lam_bend,
+                             &s->end.lam_bend,
+                             &s->eta,
+                             &s->dlam};
     for (size_t i = 0; i < COUNT(speeds); i++)
         *speeds[i] = CT_NEWN(a, double, p->dae->nu + 1);
     for (size_t i = 0; i < COUNT(rows); i++)
         *rows[i] = CT_NEWN(a, double, p->dae->most_rows + 1);
     s->q = CT_NEWN(a, double, p->dae->nq + 1);
+    s->r = CT_NEWN(a, double, p->dae->nu + 2 * p->dae->most_rows + 1);
+    s->x = CT_NEWN(a, double, ct_response_padded(2 * p->dae->nu + p->dae->most_rows));
     s->dd = CT_NEWN(a, double, p->ny + p->dae->nu);
     s->du = s->dd + p->dae->nu;
     double **const states[] = {&s->start.rate, &s->end.rate, &s->end_rate, &s->error};
@@ -123,14 +145,26 @@ static void find_factors(struct state *s, double h)
     const double before = s->is_fresh ? INFINITY : s->start.h;
     if (s->f.h == h && s->f.before == before)
         return;
-    const double by_a = 1 / (c->beta * h * h);
+    const double by_a = 1 / (c->beta * h * h), by_speed = c->gamma / (c->beta * h);
+    const double by_u_dot = by_a * (1 - c->alpha_m) / (1 - c->alpha_f);
     s->f = (struct factors){.h = h,
                             .before = before,
-                            .by_speed = c->gamma / (c->beta * h),
-                            .by_a = by_a,
-                            .by_u_dot = by_a * (1 - c->alpha_m) / (1 - c->alpha_f),
+                            .by_speed = by_speed,
+                            .by_u_dot = by_u_dot,
+                            .a_by_speed = by_a / by_speed,
+                            .u_dot_by_speed = by_u_dot / by_speed,
                             .pace = 1 / h,
-                            .across = 1 / (h + before)};
+                            .across = 1 / (h + before),
+                            .ratio = h / before,
+                            .pace_of_a = 1 / (c->gamma * h),
+                            .back = (1 - c->gamma) / c->gamma,
+                            .a_then = (1 - c->alpha_f) * s->share,
+                            .a_now = c->alpha_f * s->share,
+                            .a_before = c->alpha_m * s->share,
+                            .u_a0 = h * (1 - c->gamma),
+                            .u_a = h * c->gamma,
+                            .d_a0 = h * h * (0.5 - c->beta),
+                            .d_a = h * h * c->beta};
 }
 
 // ---- the start of a step --------------------------------------------------------------------------
@@ -151,6 +185,14 @@ static enum ct_eval find_jerk(struct state *s, const struct ct_problem *p, doubl
     return e;
 }
 
+// Of rows that were not followed before.
+static enum ct_eval start_multipliers(struct state *s, double t, const double *y)
+{
+    for (int i = 0; i < s->it->m; i++)
+        s->start.lam_slope[i] = s->start.lam_bend[i] = 0;
+    return s->dae->start(s->dae->user, t, y, s->du, s->start.lam);
+}
+
 // a0 at the size of this step, and multipliers of the rows as they now are.
 static enum ct_eval begin(struct state *s, const struct ct_problem *p, double t, double h,
                           const double *y, const double *dy,
@@ -164,123 +206,138 @@ static enum ct_eval begin(struct state *s, const struct ct_problem *p, double t,
     if (s->is_fresh && !c->starts_anew && !s->has_jerk)
         e = find_jerk(s, p, t, h, y, dy, y1, dy1, stats);
     const bool has_new_rows = ct_iteration_begin(s->it, tolerance, h, y);
+    s->phi = s->r + nu;
+    s->v = s->phi + s->it->m;
     if (e == CT_EVAL_OK && (s->is_fresh || has_new_rows))
-        e = s->dae->start(s->dae->user, t, y, s->du, s->start.lam);
+        e = start_multipliers(s, t, y);
     if (e != CT_EVAL_OK)
         return e;
     if (s->is_fresh || c->starts_anew)
         ct_stepper_copy(s->start.u_dot, u_dot, nu);
-    const double *now = s->start.u_dot, ratio = s->is_fresh ? 0 : h / s->start.h;
-    for (int k = 0; k < nu; k++)
-        s->a0[k] = c->starts_anew ? now[k]
-                 : s->is_fresh    ? now[k] + (c->alpha_m - c->alpha_f) * h * s->jerk[k]
-                                  : now[k] + ratio * (s->start.a[k] - now[k]);
+    find_factors(s, h);
+    const double *now = s->start.u_dot, *a = s->start.a, ratio = s->f.ratio;
+    if (!s->is_fresh && !c->starts_anew)
+        for (int k = 0; k < nu; k++)
+            s->a0[k] = now[k] + ratio * (a[k] - now[k]);
+    else
+        for (int k = 0; k < nu; k++)
+            s->a0[k]
+                = now[k] + (c->starts_anew ? 0 : (c->alpha_m - c->alpha_f) * h * s->jerk[k]);
     return CT_EVAL_OK;
 }
 
 // ---- the iteration ----------------------------------------------------------------------------------
 
-// Where the step would end with accelerations that go on as the polynomial through their last values, one to three. Those of
+// Where the step would end with accelerations, and multipliers, that go on as the polynomial through their last values, one to three. Those of
 // the index-3 form have too much rounding in them for that.
 static inline void predict_few(struct state *s, double h, const double *y, const int nu)
 {
-    const struct ct_alpha *c = s->c;
     const struct ct_dae *dae = s->dae;
-    const double *u0 = y + dae->nq, share = s->share;
-    const bool is_known = !s->is_fresh && c->is_stabilised && !c->starts_anew;
+    const struct factors f = s->f;
+    const double *u0 = y + dae->nq;
+    const bool is_known = !s->is_fresh && s->c->is_stabilised;
     const double further = is_known ? h : 0, last = is_known ? h + s->start.h : 0;
     for (int k = 0; k < nu; k++) {
         const double u_dot = s->start.u_dot[k], a0 = s->a0[k];
         const double then = u_dot + further * (s->start.slope[k] + last * s->start.bend[k]);
-        const double a
-            = ((1 - c->alpha_f) * then + c->alpha_f * u_dot - c->alpha_m * a0) * share;
+        const double a = f.a_then * then + f.a_now * u_dot - f.a_before * a0;
         s->end.u_dot[k] = then;
         s->end.a[k] = a;
-        s->u[k] = u0[k] + h * ((1 - c->gamma) * a0 + c->gamma * a);
-        s->d[k] = h * (u0[k] + h * ((0.5 - c->beta) * a0 + c->beta * a));
+        s->u[k] = u0[k] + (f.u_a0 * a0 + f.u_a * a);
+        s->d[k] = h * u0[k] + (f.d_a0 * a0 + f.d_a * a);
     }
-    ct_stepper_copy(s->end.lam, s->start.lam, s->it->m);
+    for (int i = 0; i < s->it->m; i++)
+        s->end.lam[i]
+            = s->start.lam[i] + further * (s->start.lam_slope[i] + last * s->start.lam_bend[i]);
     ct_iteration_move(dae, y, s->d, s->q);
 }
 
-// One freedom has code of its own: loops that may be of any length take longer to begin than to do its work.
+// One freedom, and planar loops of three coordinates, have code of their own: loops that may be of any length take longer to begin than to do its work.
 static void predict(struct state *s, double h, const double *y)
 {
     if (s->dae->nu == 1)
         predict_few(s, h, y, 1);
+    else if (s->dae->nu == 3)
+        predict_few(s, h, y, 3);
     else
         predict_few(s, h, y, s->dae->nu);
 }
 
-// Adds the correction that moves places by s->dd and, but for J' eta, by s->du, which becomes that of speeds. Its size.
-static inline double add_correction(struct state *s, const int nu)
+// s->last: what answers the residuals.
+static inline void solve(struct state *s, const int nu, const int m)
 {
-    const struct factors f = s->f;
-    for (int k = 0; k < nu; k++) {
-        const double du = s->du[k];
-        s->d[k] += s->dd[k];
-        s->end.a[k] += f.by_a * du;
-        s->end.u_dot[k] += f.by_u_dot * du;
-        s->u[k] += f.by_speed * du;
-        s->du[k] = f.by_speed * du;
+    struct ct_iteration *it = s->it;
+    const struct ct_response *a = it->response;
+    if (it->is_few) {
+        ct_product(s->x, a->real, s->r, a->rows, a->in);
+        s->last = (struct correction){s->x, s->x + nu, s->x + 2 * nu};
+        return;
     }
-    // in the index-3 form speeds have rounding over h in them: places alone decide
-    return ct_iteration_norm(s->it, s->dd, s->c->is_stabilised ? s->du : NULL, nu, 1);
+    ct_iteration_solve(it, s->dd, s->eta, s->dlam, s->r, s->phi, s->v);
+    for (int k = 0; k < nu; k++)
+        s->du[k] = s->f.by_speed * s->dd[k];
+    if (m)
+        ct_iteration_push(it, s->du, s->du, -s->f.by_speed, s->eta, nu,
+                          m); // eta moves places alone
+    s->last = (struct correction){s->dd, s->du, s->dlam};
 }
 
-// Few freedoms, or few more in loops, have code of their own.
-static inline double add_corrections(struct state *s)
+// Adds it. Its size.
+static inline double add_correction(struct state *s, const int nu, const int m)
 {
-    switch (s->dae->nu) {
-    case 1:
-        return add_correction(s, 1);
-    case 2:
-        return add_correction(s, 2);
-    case 3:
-        return add_correction(s, 3);
-    default:
-        return add_correction(s, s->dae->nu);
+    const struct factors f = s->f;
+    solve(s, nu, m);
+    const struct correction c = s->last;
+    for (int k = 0; k < nu; k++) {
+        const double du = c.u[k];
+        s->d[k] += c.d[k];
+        s->u[k] += du;
+        s->end.a[k] += f.a_by_speed * du;
+        s->end.u_dot[k] += f.u_dot_by_speed * du;
     }
+    for (int i = 0; i < m; i++)
+        s->end.lam[i] += c.lam[i];
+    // in the index-3 form speeds have rounding over h in them: places alone decide
+    return ct_iteration_norm(s->it, c.d, s->c->is_stabilised ? c.u : NULL, nu, 1);
+}
+
+// Few freedoms, and planar loops of three coordinates, have code of their own: its loops are known to be so long.
+static double add_corrections(struct state *s)
+{
+    const int nu = s->it->nu, m = s->it->m;
+    return m == 2 && nu == 3 ? add_correction(s, 3, 2)
+         : m || nu > 2       ? add_correction(s, nu, m)
+         : nu == 1           ? add_correction(s, 1, 0)
+                             : add_correction(s, 2, 0);
 }
 
 static enum ct_eval correct(struct state *s, double t1, const double *y,
                             enum ct_verdict *verdict, struct ct_integrate_stats *stats)
 {
     const struct ct_dae *dae = s->dae;
-    const int m = s->it->m;
     stats->evaluations++;
     const enum ct_eval e = dae->residual(dae->user, t1, s->q, s->u, s->end.u_dot, s->end.lam,
                                          s->r, s->phi, s->v);
     if (e != CT_EVAL_OK)
         return e;
-    ct_iteration_solve(s->it, s->dd, s->eta, s->dlam, s->r, s->phi, s->v);
-    if (m)
-        ct_iteration_push(s->it, s->du, s->dd, -1, s->eta, dae->nu,
-                          m); // eta moves places alone
-    else
-        ct_stepper_copy(s->du, s->dd, dae->nu);
     const double size = add_corrections(s);
-    for (int i = 0; i < m; i++)
-        s->end.lam[i] += s->dlam[i];
-    if (m)
-        ct_iteration_note_multipliers(s->it, s->end.lam, s->dlam, m);
     ct_iteration_move(dae, y, s->d, s->q);
-    *verdict = ct_iteration_judge(s->it, size, s->dd, s->c->is_stabilised ? s->du : NULL, 1);
+    *verdict
+        = ct_iteration_judge(s->it, size, s->last.d, s->c->is_stabilised ? s->last.u : NULL, 1);
     return CT_EVAL_OK;
 }
 
 // What the last correction leaves of speeds: where it has come to rounding, as much as it was.
 static void note_noise(struct state *s)
 {
-    const double left = fmin(1, s->it->tail);
+    const double left = ct_smaller(s->it->tail, 1);
     for (int k = 0; k < s->it->nu && s->it->m; k++)
-        s->noise[k] = left * fabs(s->du[k]);
+        s->noise[k] = left * fabs(s->last.u[k]);
 }
 
 static enum ct_eval iterate(struct state *s, double t1, double h, const double *y,
                             struct ct_integrate_stats *stats)
 {
-    find_factors(s, h);
     do {
         enum ct_verdict verdict = CT_GO_ON;
         predict(s, h, y);
@@ -293,6 +350,8 @@ static enum ct_eval iterate(struct state *s, double t1, double h, const double *
         ct_iteration_start(s->it);
         while (e == CT_EVAL_OK && verdict == CT_GO_ON)
             e = correct(s, t1, y, &verdict, stats);
+        if (e == CT_EVAL_OK && s->it->m)
+            ct_iteration_note_multipliers(s->it, s->end.lam, s->last.lam, s->it->m);
         if (e == CT_EVAL_OK && verdict == CT_CONVERGED)
             note_noise(s);
         if (e == CT_EVAL_FATAL || verdict == CT_CONVERGED)
@@ -324,17 +383,16 @@ static inline double find_errors(struct state *s, double h, const int nu)
 // and (8.8) again as much as speeds themselves, however short the step is, more after a shorter one: it is no error of the step.
 static void take_off_noise(struct state *s, double h)
 {
-    const double gamma = s->c->gamma, back = (1 - gamma) / gamma;
-    const double ratio = s->is_fresh ? 0 : h / s->start.h;
+    const double back = s->f.back, pace = s->f.pace_of_a;
+    const double ratio = s->f.ratio;
     const double speeds = s->is_fresh ? 0 : h * h * h * 2 * s->f.across * fabs(s->by_speeds);
     for (int k = 0; k < s->dae->nu; k++) {
-        const double a0 = ratio * s->start.a_noise[k],
-                     a1 = s->noise[k] / (gamma * h) + back * a0;
+        const double a0 = ratio * s->start.a_noise[k], a1 = s->noise[k] * pace + back * a0;
         s->end.a_noise[k] = a1;
         s->end.jerk_noise[k] = s->f.pace * (a0 + a1);
         const double noise
             = speeds * (s->end.jerk_noise[k] + (s->is_fresh ? 0 : s->start.jerk_noise[k]));
-        s->du[k] = copysign(fmax(0, fabs(s->du[k]) - noise), s->du[k]);
+        s->du[k] = copysign(ct_larger(0, fabs(s->du[k]) - noise), s->du[k]);
     }
 }
 
@@ -345,8 +403,9 @@ static double estimate(struct state *s, const struct ct_problem *p,
                        const struct ct_tolerance *tolerance, double t1, double h,
                        const double *y1)
 {
-    const double states
-        = s->dae->nu == 1 ? find_errors(s, h, 1) : find_errors(s, h, s->dae->nu);
+    const double states = s->dae->nu == 1 ? find_errors(s, h, 1)
+                        : s->dae->nu == 3 ? find_errors(s, h, 3)
+                                          : find_errors(s, h, s->dae->nu);
     if (s->it->m && s->c->is_stabilised)
         take_off_noise(s, h);
     if (s->dae->is_plain) // then s->dd is the error of the whole state
@@ -400,6 +459,11 @@ static inline void note_accelerations(struct state *s, double h, const int nu)
         s->end.slope[k] = slope;
         s->end.bend[k] = across * (slope - s->start.slope[k]);
     }
+    for (int i = 0; i < s->it->m; i++) {
+        const double slope = pace * (s->end.lam[i] - s->start.lam[i]);
+        s->end.lam_slope[i] = slope;
+        s->end.lam_bend[i] = across * (slope - s->start.lam_slope[i]);
+    }
     s->end.h = h;
 }
 
@@ -422,6 +486,8 @@ enum ct_eval ct_alpha_step(const struct ct_problem *p, double t, double h, const
                          estimate_quadratures(s, p, tolerance, h, y, dy, y1, dy1));
     if (s->dae->nu == 1)
         note_accelerations(s, h, 1);
+    else if (s->dae->nu == 3)
+        note_accelerations(s, h, 3);
     else
         note_accelerations(s, h, s->dae->nu);
     if (s->dae->has_no_power)

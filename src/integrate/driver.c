@@ -156,6 +156,12 @@ static bool has_moved(struct ct_driver *r)
     return !(ct_stepper_norm(p, &r->tolerance, r->y, r->y1, r->point) <= unnoticed);
 }
 
+// Steps of fixed length end on samples: where there are no roots to find none of them is interpolated.
+static bool is_never_interpolated(const struct ct_driver *r)
+{
+    return r->o->step > 0 && r->p->nroot == 0;
+}
+
 // end, dend (out) = y1, dy1 on the constraints, which implicit methods meet by themselves.
 static enum ct_eval project_end(struct ct_driver *r, const struct ct_method *method, double t1)
 {
@@ -164,6 +170,8 @@ static enum ct_eval project_end(struct ct_driver *r, const struct ct_method *met
     r->dend = r->dy1;
     if (!p->project || method->is_implicit)
         return CT_EVAL_OK;
+    if (is_never_interpolated(r))
+        return p->project(p->user, t1, r->end);
     r->end = r->moved;
     r->dend = r->dmoved;
     ct_stepper_copy(r->end, r->y1, p->ny);

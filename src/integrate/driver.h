@@ -31,6 +31,9 @@ struct ct_driver {
     double t;    // time of y and dy
     double stop; // where steps must end next, a time event or not; before t: to be found
     bool is_stop_time;
+    struct ct_even { // steps of fixed length up to a stop, from the next one's start on
+        double stop, next, left;
+    } even;
     struct ct_control control;
     struct ct_pace pace;
     bool is_told;       // that it takes long
@@ -82,7 +85,7 @@ double ct_driver_event_margin(bool is_event, double t, double h);
 /// Where steps must end next; *is_time tells that a time event is there.
 double ct_driver_next_stop(const struct ct_driver *r, bool *is_time);
 /// s (out): the next step, towards the stop.
-void ct_driver_plan(const struct ct_driver *r, double stop, bool is_time, struct ct_stride *s);
+void ct_driver_plan(struct ct_driver *r, double stop, bool is_time, struct ct_stride *s);
 bool ct_driver_is_too_small(const struct ct_driver *r, const struct ct_stride *s);
 /// Time to the next singular position, and where to begin to cross it.
 void ct_driver_look_ahead(struct ct_driver *r);

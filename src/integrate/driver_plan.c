@@ -49,12 +49,22 @@ double ct_driver_next_stop(const struct ct_driver *r, bool *is_time)
     return stop;
 }
 
-// The fewest even steps up to the stop that are not longer than the one asked for.
-static double fit_fixed(double rest, double step)
+// The fewest even steps up to the stop that are not longer than the one asked for: those that were left at the last step, less
+// one, where that ended as planned.
+static double fit_fixed(struct ct_driver *r, double stop)
 {
     // a stop that is a whole number of steps away but for rounding, that of t in each step before added up, must not cost one more
-    const double rounding = 1e-6;
-    return rest / fmax(1, ceil(rest / step - rounding));
+    const double rounding = 1e-6, rest = stop - r->t;
+    struct ct_even *e = &r->even;
+    if (e->stop == stop && e->next == r->t && e->left > 1) {
+        e->left--;
+    } else {
+        e->left = ct_larger(ceil(rest / r->o->step - rounding), 1);
+        e->stop = stop;
+    }
+    const double h = rest / e->left;
+    e->next = r->t + h;
+    return h;
 }
 
 // The step across a singular position, centred on it. Beyond the end of the run f is the same function, beyond a
@@ -95,7 +105,7 @@ static bool plan_striding(const struct ct_driver *r, double rest, double *wanted
 }
 
 // s (out): member by member, because steps are short against the time that a copy of it waits for its parts.
-void ct_driver_plan(const struct ct_driver *r, double stop, bool is_time, struct ct_stride *s)
+void ct_driver_plan(struct ct_driver *r, double stop, bool is_time, struct ct_stride *s)
 {
     const double rest = stop - r->t;
     double wanted = ct_smaller(r->control.h, ct_driver_step_limit(r)), length;
@@ -122,7 +132,7 @@ void ct_driver_plan(const struct ct_driver *r, double stop, bool is_time, struct
     }
     if (r->p->seen_step && r->o->step == 0)
         wanted = r->p->seen_step(r->p->user, r->t, ct_smaller(wanted, rest));
-    s->h = r->o->step > 0 ? fit_fixed(rest, r->o->step) : ct_control_fit(rest, wanted);
+    s->h = r->o->step > 0 ? fit_fixed(r, stop) : ct_control_fit(rest, wanted);
     s->is_landing = s->h >= rest;
     s->t1 = s->is_landing ? stop : r->t + s->h;
 }

@@ -55,7 +55,9 @@ struct ct_iteration *ct_iteration_create(struct ct_arena *a, const struct ct_pro
     it->b = CT_NEWN(a, double, 2 * n + 1);
     it->x = CT_NEWN(a, double, 2 * (n + 3));
     it->pivot = CT_NEWN(a, int, n + 1);
-    it->share = CT_NEWN(a, double, 2 * nu + 1);
+    it->share = CT_NEWN(a, double, ct_response_padded(2 * nu + m));
+    if (is_stabilised && dae->abreast && nu + 2 <= CT_MOST_INVERTED)
+        it->response = ct_response_create(a, nu, m, is_complex);
     it->off = CT_NEWN(a, double, p->ny);
     it->fast = CT_NEWN(a, double, 2 * nu + 1);
     if (is_complex) {
@@ -134,6 +136,8 @@ bool ct_iteration_begin(struct ct_iteration *it, const struct ct_tolerance *tole
     const bool is_plain = dae->is_plain && !it->groups;
     if (is_plain && it->nu == 1)
         weigh_plain(it, tol->rtol, tol->atol, least_speed, y, 1);
+    else if (is_plain && it->nu == 3)
+        weigh_plain(it, tol->rtol, tol->atol, least_speed, y, 3);
     else if (is_plain)
         weigh_plain(it, tol->rtol, tol->atol, least_speed, y, it->nu);
     else
@@ -153,6 +157,9 @@ bool ct_iteration_begin(struct ct_iteration *it, const struct ct_tolerance *tole
     it->m = dae->rows(dae->user, &it->version);
     it->n = it->nu + (it->is_stabilised ? 2 : 1) * it->m;
     it->rows = it->n <= CT_MOST_INVERTED ? ct_inverse_rows(it->n) : it->n;
+    it->is_few = it->response && it->m && it->n <= CT_MOST_INVERTED;
+    if (it->is_few)
+        ct_response_set_rows(it->response, it->m);
     it->unfelt_place = rounding / 2;
     it->unfelt_speed = DBL_EPSILON / 2 * largest_of(y + dae->nq, it->nu);
     if (it->version == before)
@@ -222,6 +229,7 @@ static void fill_turn(const struct ct_iteration *it, double *B, const double *A,
 static void assemble(struct ct_iteration *it)
 {
     const int nu = it->nu, m = it->m, n = it->n;
+    it->is_assembled = true;
     const size_t bytes = (size_t)n * (size_t)n * sizeof(double);
     memset(it->S, 0, bytes);
     memset(it->X, 0, bytes);
@@ -262,16 +270,22 @@ enum ct_eval ct_iteration_refresh(struct ct_iteration *it, double t, const doubl
     stats->jacobians++;
     if (it->w)
         memcpy(it->w, u, (size_t)it->nu * sizeof *u);
-    assemble(it);
+    it->is_assembled = false;
+    if (it->is_few)
+        ct_response_assemble(it->response, it->M, it->C, it->K, it->J, it->D);
+    else
+        assemble(it);
     it->is_new = true;
     it->rate = it->c = it->e = it->slow = 0;
     return CT_EVAL_OK;
 }
 
-void ct_iteration_fill(const struct ct_iteration *it, double *A, int lda, double c, double e)
+void ct_iteration_fill(struct ct_iteration *it, double *A, int lda, double c, double e)
 {
     const int n = it->n;
     const double x = c / e, y = 1 / e, z = 1 / c;
+    if (!it->is_assembled)
+        assemble(it);
     for (int j = 0; j < n; j++) {
         const double *S = it->S + j * n, *X = it->X + j * n, *W = it->W + j * n;
         double *column = A + j * lda;
@@ -311,18 +325,28 @@ static bool factor_complex(struct ct_iteration *it, double _Complex w)
                            : ct_lu_complex(it->Gc, it->pivotc, n, n);
 }
 
+// The real system.
+static bool factor_real(struct ct_iteration *it, double c, double e)
+{
+    const int n = it->n;
+    if (it->is_few)
+        return ct_response_find(it->response, c, e);
+    ct_iteration_fill(it, it->G, it->rows, c, e);
+    return has_inverse(it) ? ct_inverse(it->G, it->pivot, n) : ct_lu(it->G, it->pivot, n, n);
+}
+
 bool ct_iteration_factor_anew(struct ct_iteration *it, double c, double e, double _Complex s,
                               struct ct_integrate_stats *stats)
 {
     const int n = it->n;
-    ct_iteration_fill(it, it->G, it->rows, c, e);
     it->c = it->e = 0;
     stats->factorizations++;
-    if (!(has_inverse(it) ? ct_inverse(it->G, it->pivot, n) : ct_lu(it->G, it->pivot, n, n)))
+    if (!factor_real(it, c, e))
         return false;
     if (s != 0) {
         stats->factorizations++;
-        if (!factor_complex(it, 1 / s))
+        if (!(it->is_few ? ct_response_find_complex(it->response, s)
+                         : factor_complex(it, 1 / s)))
             return false;
     }
     it->c = c;

@@ -18,6 +18,7 @@
 #ifndef CT_INTEGRATE_ITERATION_H
 #define CT_INTEGRATE_ITERATION_H
 
+#include "integrate/response.h"
 #include "integrate/stepper.h"
 
 #include <math.h>
@@ -32,6 +33,10 @@ struct ct_iteration {
     long version;             // of the rows
     bool has_tangent, is_new; // `is_new`: evaluated in this step
     bool is_worn;             // multipliers ask for other derivatives
+    struct ct_response
+        *response; // of few equations in plain coordinates, where there are rows; NULL: never
+    bool is_few;   // so they are now
+    bool is_assembled; // S, X, W are those of the derivatives
     double *M, *C, *K, *J, *D;
     double *S, *X, *W; // the matrix is S + x X + (y or z) W  (n x n)
     double c, e;       // of the factors; 0: none
@@ -53,9 +58,10 @@ struct ct_iteration {
     double *b, *x; // (n, of complex parts 2 n), (rows, 2 rows)
     double _Complex *bc;
     double per_speed; // 1/nu; 0: there are none
-    double *share;    // one over what changes of places and speeds are measured against  (2 nu)
-    double *off;      // an error of the states  (ny)
-    double *fast;     // one of places and speeds as vibrations count  (2 nu)
+    double *
+        share; // one over what changes of places and speeds are measured against, zeros behind  (2 nu, as padded)
+    double *off;  // an error of the states  (ny)
+    double *fast; // one of places and speeds as vibrations count  (2 nu)
     // the run of corrections
     int count;
     double kappa, rounding; // a correction below: converged; below: not to be bettered
@@ -118,7 +124,7 @@ static inline bool ct_iteration_factor(struct ct_iteration *it, double c, double
 }
 
 /// A (n x n, columns lda apart, out): the matrix for c and e.
-void ct_iteration_fill(const struct ct_iteration *it, double *A, int lda, double c, double e);
+void ct_iteration_fill(struct ct_iteration *it, double *A, int lda, double c, double e);
 
 /// d (nu, out), eta (m, out; zero in the index-3 form), lam (m, out) from r (nu), phi, v (m).
 void ct_iteration_solve_system(struct ct_iteration *it, double *d, double *eta, double *lam,

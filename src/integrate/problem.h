@@ -15,6 +15,14 @@ enum ct_eval {
     CT_EVAL_FATAL, // diagnosed
 };
 
+/// The residual at four points at once: numbers of one kind stand in fours, one for each point.
+struct ct_dae_abreast {
+    double *t, *q, *u, *a, *lam; // to be set: (4), (4 x nq), (4 x nu) twice, (4 x most_rows)
+    const double *r, *phi, *v;   // (4 x nu), (4 x most_rows) twice
+    const int *row; // the one of most_rows of each row that counts; lam of others is to be zero
+    void (*evaluate)(void *user);
+};
+
 /// The same problem as implicit methods solve it: second order, with constraints.  (formulation 0.4, 8)
 ///
 ///     r(t, q, u, u', lam) = M u' - Q - J' lam = 0,   Phi(q, t) = 0,   v(q, u, t) = J u + Phi_t = 0
@@ -47,6 +55,7 @@ struct ct_dae {
                             double *J, double *D);
 
     // what makes steps cheaper, where it is known
+    const struct ct_dae_abreast *abreast; // NULL: there is none
     bool
         is_plain; // coordinate k moves with speed k: q (+) d = q + d, and rates in the chart are speeds
     bool has_no_power; // rates of quadratures are zero

@@ -11,6 +11,32 @@ enum { STAGES = 3 };
 /// The real eigenvalue of the inverse of the Runge-Kutta matrix.
 #define GAMMA (3 - CBRT3 + CBRT3 * CBRT3)
 
+#define SQRT3 1.7320508075688772935
+#define SQRT6 2.4494897427831780982
+
+#define C1 ((4 - SQRT6) / 10)
+#define C2 ((4 + SQRT6) / 10)
+/// Where stages are, in parts of the step.
+static const double C[STAGES] = {C1, C2, 1};
+static const double A[STAGES][STAGES]
+    = {{(88 - 7 * SQRT6) / 360, (296 - 169 * SQRT6) / 1800, (-2 + 3 * SQRT6) / 225},
+       {(296 + 169 * SQRT6) / 1800, (88 + 7 * SQRT6) / 360, (-2 - 3 * SQRT6) / 225},
+       {(16 - SQRT6) / 36, (16 + SQRT6) / 36, 1. / 9}};
+
+// The eigenvalues of A^-1, the roots of x^3 - 9 x^2 + 36 x - 60: GAMMA and ALPHA +- i BETA.
+static const double ALPHA = 3 + (CBRT3 - CBRT3 * CBRT3) / 2;
+static const double BETA = SQRT3 / 2 * (CBRT3 + CBRT3 * CBRT3);
+
+/// A^-1 = T diag(GAMMA, [ALPHA -BETA; BETA ALPHA]) T^-1, as in the program of the source.
+static const double T[STAGES][STAGES]
+    = {{9.1232394870892942792e-02, -0.14125529502095420843, -3.0029194105147424492e-02},
+       {0.24171793270710701896, 0.20412935229379993199, 0.38294211275726193779},
+       {0.96604818261509293619, 1, 0}};
+static const double T_INVERSE[STAGES][STAGES]
+    = {{4.3255798900631553510, 0.33919925181580986954, 0.54177053993587487119},
+       {-4.1787185915519047273, -0.32768282076106238708, 0.47662355450055045196},
+       {-0.50287263494578687595, 2.5719269498556054292, -0.59603920482822492497}};
+
 /// Stages of a step, or their corrections, one stage behind the other.
 struct ct_radau_stages {
     double h;
@@ -27,7 +53,9 @@ struct ct_radau {
     double h;                           // of the weights that follow
     double slope[STAGES][STAGES], defect_of[STAGES]; // A^-1/h and E/h
     double ratio; // of this step to the one before: of the weights that follow
-    double further[STAGES][STAGES]; // its polynomial at this one's stages, less its end
+    double further[STAGES][STAGES];     // its polynomial at this one's stages, less its end
+    double further_lam[STAGES][STAGES]; // that of its multipliers
+    bool knows_multipliers;             // of the step before, of the same rows
     struct ct_tolerance wanted, eased;
     double *rate, *F, *r;        // u' (nu); residuals of d' and u'  (nu x 3)
     double *phi, *v;             // (rows x 3)
@@ -35,6 +63,8 @@ struct ct_radau {
     double *d;                   // a motion, or change of speed  (nu)
     double *gain, *defect;       // of quadratures: over h; error over h / GAMMA  (ny)
     double *power, *power1;      // their rates at both ends  (ny)
+    double *b, *x;               // of few unknowns: r, phi, v, and what answers them
+    struct ct_radau_few *few;
     // speeds in the error, see radau_error.c
     bool is_eased;    // they were counted by what is slow of them at the last look
     int unlooked;     // steps until the next one
@@ -49,11 +79,35 @@ static inline void ct_radau_weigh(double *out, const double *w, const double *z,
         out[k] = w[0] * z[k] + w[1] * z[k + n] + w[2] * z[k + 2 * n];
 }
 
+/// The same for few unknowns: one product, F taken in and added.
+static inline void ct_radau_answer(struct ct_radau *s, const int nu, const int m)
+{
+    struct ct_iteration *it = s->it;
+    const struct ct_response *a = it->response;
+    double *b = s->b, *v = b + nu + m;
+    ct_stepper_copy(b, s->r, nu);
+    ct_stepper_copy(b + nu, s->phi, m);
+    ct_stepper_copy(v, s->v, m);
+    for (int j = 0; j < nu; j++) {
+        ct_vector_add(b, it->c * s->F[j], it->M + nu * j, (size_t)nu);
+        ct_vector_add(b, s->F[j], it->C + nu * j, (size_t)nu);
+        ct_vector_add(v, s->F[j], it->J + m * j, (size_t)m);
+    }
+    ct_product(s->x, a->real, b, a->rows, a->in);
+    ct_stepper_copy(s->change.d, s->x, nu);
+    for (int k = 0; k < nu; k++)
+        s->change.u[k] = s->x[nu + k] + s->F[k];
+}
+
 /// The first column in the basis of eigenvectors. With u eliminated, r += (c M + C) F and v += J F; then u changes by
 /// (c - N) d - J' c eta + F.
 static inline void ct_radau_solve(struct ct_radau *s, const int nu, const int m)
 {
     struct ct_iteration *it = s->it;
+    if (it->is_few) {
+        ct_radau_answer(s, nu, m);
+        return;
+    }
     const double c = it->c, *F = s->F;
     double *d = s->change.d, *u = s->change.u, *eta = s->change.eta;
     for (int j = 0; j < nu; j++) {
@@ -93,5 +147,18 @@ double ct_radau_imbalance(struct ct_radau *s, const struct ct_problem *p,
 enum ct_eval ct_radau_dense_error(struct ct_radau *s, const struct ct_problem *p, double t,
                                   const double *slope, double *y, double *err,
                                   struct ct_integrate_stats *stats);
+
+// ---- of few unknowns, see radau_few.c ----------------------------------------------------------------
+
+struct ct_radau_few *ct_radau_few_create(struct ct_arena *a, int nu, int most_rows);
+/// First values of the stages, as for others.
+void ct_radau_few_predict(struct ct_radau *s, double h, const double *u0, const double *u_dot0);
+/// One correction.
+enum ct_eval ct_radau_few_correct(struct ct_radau *s, double t, const double *y,
+                                  enum ct_verdict *verdict, struct ct_integrate_stats *stats);
+/// The stages into s->now.
+void ct_radau_few_keep(struct ct_radau *s);
+/// That, at the end of an iteration.
+void ct_radau_few_finish(struct ct_radau *s);
 
 #endif

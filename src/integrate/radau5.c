@@ -17,41 +17,16 @@
 #include <math.h>
 #include <string.h>
 
-#define SQRT3 1.7320508075688772935
-#define SQRT6 2.4494897427831780982
-
-#define C1 ((4 - SQRT6) / 10)
-#define C2 ((4 + SQRT6) / 10)
-static const double C[STAGES] = {C1, C2, 1};
 // One over c_i times its differences to the other two: the scales of Lagrange's polynomials.
 static const double SCALE[STAGES]
     = {1 / (C1 * (C1 - C2) * (C1 - 1)), 1 / (C2 * (C2 - C1) * (C2 - 1)),
        1 / ((1 - C1) * (1 - C2))};
-
-static const double A[STAGES][STAGES]
-    = {{(88 - 7 * SQRT6) / 360, (296 - 169 * SQRT6) / 1800, (-2 + 3 * SQRT6) / 225},
-       {(296 + 169 * SQRT6) / 1800, (88 + 7 * SQRT6) / 360, (-2 - 3 * SQRT6) / 225},
-       {(16 - SQRT6) / 36, (16 + SQRT6) / 36, 1. / 9}};
 
 // A^-1
 static const double INVERSE[STAGES][STAGES]
     = {{2 + SQRT6 / 2, -6. / 5 + 29 * SQRT6 / 30, 2. / 5 - 4 * SQRT6 / 15},
        {-6. / 5 - 29 * SQRT6 / 30, 2 - SQRT6 / 2, 2. / 5 + 4 * SQRT6 / 15},
        {-1 + 8 * SQRT6 / 3, -1 - 8 * SQRT6 / 3, 5}};
-
-// Its eigenvalues, the roots of x^3 - 9 x^2 + 36 x - 60: GAMMA and ALPHA +- i BETA.
-static const double ALPHA = 3 + (CBRT3 - CBRT3 * CBRT3) / 2;
-static const double BETA = SQRT3 / 2 * (CBRT3 + CBRT3 * CBRT3);
-
-// INVERSE = T diag(GAMMA, [ALPHA -BETA; BETA ALPHA]) T^-1, as in the program of the source.
-static const double T[STAGES][STAGES]
-    = {{9.1232394870892942792e-02, -0.14125529502095420843, -3.0029194105147424492e-02},
-       {0.24171793270710701896, 0.20412935229379993199, 0.38294211275726193779},
-       {0.96604818261509293619, 1, 0}};
-static const double T_INVERSE[STAGES][STAGES]
-    = {{4.3255798900631553510, 0.33919925181580986954, 0.54177053993587487119},
-       {-4.1787185915519047273, -0.32768282076106238708, 0.47662355450055045196},
-       {-0.50287263494578687595, 2.5719269498556054292, -0.59603920482822492497}};
 
 // Weights of the stages in the error.
 static const double E[STAGES] = {-(13 + 7 * SQRT6) / 3, (-13 + 7 * SQRT6) / 3, -1. / 3};
@@ -85,6 +60,10 @@ static void *create(struct ct_arena *a, const struct ct_method *method,
         *stages_of_rows[i] = CT_NEWN(a, double, STAGES *m + 1);
     for (size_t i = 0; i < COUNT(speeds); i++)
         *speeds[i] = CT_NEWN(a, double, nu + 1);
+    s->b = CT_NEWN(a, double, nu + 2 * m + 1);
+    s->x = CT_NEWN(a, double, ct_response_padded(2 * nu + m));
+    if (s->it->response)
+        s->few = ct_radau_few_create(a, nu, m);
     s->lam = CT_NEWN(a, double, m + 1);
     s->q = CT_NEWN(a, double, p->dae->nq + 1);
     s->gain = CT_NEWN(a, double, p->ny);
@@ -123,6 +102,15 @@ static void lagrange(double *w, double x)
     w[2] = x * a * b * SCALE[2];
 }
 
+// The same of multipliers, of which nothing is known at the start: the parabola through the stages.
+static void lagrange_inner(double *w, double x)
+{
+    const double a = x - C[0], b = x - C[1], c = x - C[2];
+    w[0] = b * c * SCALE[0] * C[0];
+    w[1] = a * c * SCALE[1] * C[1];
+    w[2] = a * b * SCALE[2] * C[2];
+}
+
 // Weights for a step of size h. Most steps are as long as the one before.
 static void find_weights(struct ct_radau *s, double h)
 {
@@ -136,6 +124,7 @@ static void find_weights(struct ct_radau *s, double h)
     for (int i = 0; i < STAGES && s->ratio != ratio; i++) {
         lagrange(s->further[i], 1 + C[i] * ratio);
         s->further[i][STAGES - 1] -= 1;
+        lagrange_inner(s->further_lam[i], 1 + C[i] * ratio);
     }
     s->ratio = ratio;
 }
@@ -157,10 +146,12 @@ static void predict(struct ct_radau *s, double h, const double *u0, const double
             ct_radau_weigh(d, s->further[i], s->before.d, nu);
             ct_radau_weigh(u, s->further[i], s->before.u, nu);
         }
-        for (int k = 0; k < m; k++) {
+        for (int k = 0; k < m; k++)
             now->eta[k + i * m] = 0;
-            now->lam[k + i * m] = s->lam[k];
-        }
+        if (s->knows_multipliers)
+            ct_radau_weigh(now->lam + i * m, s->further_lam[i], s->before.lam, m);
+        else
+            ct_stepper_copy(now->lam + i * m, s->lam, m);
     }
 }
 
@@ -302,9 +293,23 @@ static enum ct_eval refresh(struct ct_radau *s, double t, double h, const double
         return CT_EVAL_OK;
     if (s->is_fresh)
         return ct_iteration_refresh(s->it, t, y, y + nq, dy + nq, s->lam, stats);
+    if (s->it->is_few)
+        ct_radau_few_keep(s);
     place_stage(s, y, middle);
     ct_radau_weigh(s->u_dot, s->slope[middle], s->now.u, s->dae->nu);
     return ct_iteration_refresh(s->it, t + C[middle] * h, s->q, s->u, s->u_dot, s->lam, stats);
+}
+
+// Corrections from e on, until the verdict is another.
+static enum ct_eval correct_until(struct ct_radau *s, double t, const double *y, enum ct_eval e,
+                                  enum ct_verdict *verdict, struct ct_integrate_stats *stats)
+{
+    const bool is_few = s->it->is_few;
+    while (e == CT_EVAL_OK && *verdict == CT_GO_ON)
+        e = (is_few ? ct_radau_few_correct : correct)(s, t, y, verdict, stats);
+    if (is_few && e == CT_EVAL_OK)
+        ct_radau_few_finish(s);
+    return e;
 }
 
 static enum ct_eval iterate(struct ct_radau *s, double t, double h, const double *y,
@@ -315,14 +320,13 @@ static enum ct_eval iterate(struct ct_radau *s, double t, double h, const double
     find_weights(s, h);
     do {
         enum ct_verdict verdict = CT_GO_ON;
-        predict(s, h, y + nq, dy + nq);
+        (s->it->is_few ? ct_radau_few_predict : predict)(s, h, y + nq, dy + nq);
         enum ct_eval e = refresh(s, t, h, y, dy, stats);
         if (e == CT_EVAL_OK
             && !ct_iteration_factor(s->it, c, c * c, (ALPHA + BETA * I) / h, stats))
             e = CT_EVAL_RETRY;
         ct_iteration_start(s->it);
-        while (e == CT_EVAL_OK && verdict == CT_GO_ON)
-            e = correct(s, t, y, &verdict, stats);
+        e = correct_until(s, t, y, e, &verdict, stats);
         if (e == CT_EVAL_FATAL || verdict == CT_CONVERGED)
             return e;
     } while (ct_iteration_can_renew(s->it));
@@ -336,8 +340,7 @@ static enum ct_eval iterate_on(struct ct_radau *s, double t, const double *y,
     enum ct_verdict verdict = CT_GO_ON;
     enum ct_eval e = CT_EVAL_OK;
     ct_iteration_go_on(s->it);
-    while (e == CT_EVAL_OK && verdict == CT_GO_ON)
-        e = correct(s, t, y, &verdict, stats);
+    e = correct_until(s, t, y, e, &verdict, stats);
     return e == CT_EVAL_OK && verdict == CT_DIVERGED ? CT_EVAL_RETRY : e;
 }
 
@@ -389,7 +392,8 @@ static enum ct_eval find_multipliers(struct ct_radau *s, double t, const double 
     const int m = s->it->m;
     if (m == 0)
         return CT_EVAL_OK;
-    if (s->is_fresh || is_new)
+    s->knows_multipliers = !s->is_fresh && !is_new;
+    if (!s->knows_multipliers)
         return s->dae->start(s->dae->user, t, y, s->u_dot, s->lam);
     ct_stepper_copy(s->lam, s->before.lam + (STAGES - 1) * m, m);
     return CT_EVAL_OK;

@@ -21,13 +21,18 @@ static inline void ct_stepper_copy(double *out, const volatile double *v, int n)
         out[i] = v[i];
 }
 
-/// True if all n entries are finite: zero times what is not is no number. Read one by one, as they have just been stored.
+/// True if all n entries are finite: zero times what is not is no number. Read one by one, as they have just been stored. Where
+/// their sum is finite they all are, which most often is enough.
 static inline bool ct_stepper_finite(const volatile double *x, int n)
 {
-    double sum = 0;
+    double sum = 0, zero = 0;
     for (int i = 0; i < n; i++)
-        sum += 0 * x[i];
-    return sum == 0;
+        sum += x[i];
+    if (sum - sum == 0)
+        return true;
+    for (int i = 0; i < n; i++)
+        zero += 0 * x[i];
+    return zero == 0;
 }
 
 /// dy (ny, out) = f(t, y), counted. A derivative that is not finite asks for a smaller step.

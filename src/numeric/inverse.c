@@ -1,62 +1,20 @@
 // See inverse.h. Columns are handled by pairs of rows.
 #include "numeric/inverse.h"
 
+#include "numeric/pair.h"
+
 #include <math.h>
 
-enum { FEW = 4, PAIR = 2 };
-
-#if defined(__GNUC__)
-
-typedef double pair
-    __attribute__((vector_size(PAIR * sizeof(double)), aligned(sizeof(double)), may_alias));
-
-static inline pair take(const double *x)
-{
-    return *(const pair *)x;
-}
-
-static inline void put(double *x, pair y)
-{
-    *(pair *)x = y;
-}
-
-static inline pair add_product(pair sum, pair x, double c)
-{
-    return sum + x * c;
-}
-
-#else
-
-typedef struct {
-    double part[PAIR];
-} pair;
-
-static inline pair take(const double *x)
-{
-    return (pair){{x[0], x[1]}};
-}
-
-static inline void put(double *x, pair y)
-{
-    x[0] = y.part[0];
-    x[1] = y.part[1];
-}
-
-static inline pair add_product(pair sum, pair x, double c)
-{
-    return (pair){{sum.part[0] + x.part[0] * c, sum.part[1] + x.part[1] * c}};
-}
-
-#endif
+enum { FEW = 4, PAIR = CT_PAIR };
 
 // y + i z -= (c + i d) (r + i s)
 static inline void take_complex(double *y, double *z, double c, double d, const double *r,
                                 const double *s, int rows)
 {
     for (int i = 0; i < rows; i += PAIR) {
-        const pair re = take(r + i), im = take(s + i);
-        put(y + i, add_product(add_product(take(y + i), re, -c), im, d));
-        put(z + i, add_product(add_product(take(z + i), im, -c), re, -d));
+        const ct_pair re = ct_pair_take(r + i), im = ct_pair_take(s + i);
+        ct_pair_put(y + i, ct_pair_add(ct_pair_add(ct_pair_take(y + i), re, -c), im, d));
+        ct_pair_put(z + i, ct_pair_add(ct_pair_add(ct_pair_take(z + i), im, -c), re, -d));
     }
 }
 
@@ -125,20 +83,32 @@ bool ct_inverse(double *A, int *pivot, int n)
                         : invert(A, pivot, n, CT_MOST_INVERTED);
 }
 
+// So many rows, a multiple of two, at once.
+static inline void add_columns(double *restrict x, const double *restrict A,
+                               const double *restrict b, const int some, int rows, int n)
+{
+    ct_pair sum[FEW] = {{0}};
+    for (int j = 0; j < n; j++, A += rows)
+        for (int i = 0; i < some / PAIR; i++)
+            sum[i] = ct_pair_add(sum[i], ct_pair_take(A + PAIR * i), b[j]);
+    for (int i = 0; i < some / PAIR; i++)
+        ct_pair_put(x + PAIR * i, sum[i]);
+}
+
+void ct_product(double *restrict x, const double *restrict A, const double *restrict b,
+                int rows, int n)
+{
+    int i = 0;
+    for (; i + 2 * FEW <= rows; i += 2 * FEW)
+        add_columns(x + i, A + i, b, 2 * FEW, rows, n);
+    if (i < rows)
+        add_columns(x + i, A + i, b, FEW, rows, n);
+}
+
 void ct_inverse_apply(double *restrict x, const double *restrict inverse,
                       const double *restrict b, int n)
 {
-    const int rows = ct_inverse_rows(n);
-    for (int i = 0; i < rows; i += FEW) {
-        const double *X = inverse + i;
-        pair first = {0}, second = {0};
-        for (int j = 0; j < n; j++, X += rows) {
-            first = add_product(first, take(X), b[j]);
-            second = add_product(second, take(X + PAIR), b[j]);
-        }
-        put(x + i, first);
-        put(x + i + PAIR, second);
-    }
+    ct_product(x, inverse, b, ct_inverse_rows(n), n);
 }
 
 bool ct_inverse_complex(double *A, int *pivot, int n)
@@ -173,21 +143,28 @@ bool ct_inverse_complex(double *A, int *pivot, int n)
     return ok;
 }
 
+void ct_product_complex(double *restrict x, double *restrict y, const double *restrict re,
+                        const double *restrict im, const double *restrict a,
+                        const double *restrict b, int rows, int n)
+{
+    for (int i = 0; i < rows; i += PAIR) {
+        const double *X = re + i, *Y = im + i;
+        ct_pair real = {0}, imaginary = {0}, less = {0}, more = {0};
+        for (int j = 0; j < n; j++, X += rows, Y += rows) {
+            const ct_pair p = ct_pair_take(X), q = ct_pair_take(Y);
+            real = ct_pair_add(real, p, a[j]);
+            imaginary = ct_pair_add(imaginary, p, b[j]);
+            less = ct_pair_add(less, q, b[j]);
+            more = ct_pair_add(more, q, a[j]);
+        }
+        ct_pair_put(x + i, ct_pair_add(real, less, -1));
+        ct_pair_put(y + i, ct_pair_add(imaginary, more, 1));
+    }
+}
+
 void ct_inverse_apply_complex(double *restrict x, const double *restrict inverse,
                               const double *restrict b, int n)
 {
     const int rows = ct_inverse_rows(n);
-    for (int i = 0; i < rows; i += PAIR) {
-        const double *X = inverse + i, *Y = X + rows * n;
-        pair re = {0}, im = {0}, re_of_im = {0}, im_of_im = {0};
-        for (int j = 0; j < n; j++, X += rows, Y += rows) {
-            const pair real = take(X), imaginary = take(Y);
-            re = add_product(re, real, b[j]);
-            im = add_product(im, real, b[n + j]);
-            re_of_im = add_product(re_of_im, imaginary, b[n + j]);
-            im_of_im = add_product(im_of_im, imaginary, b[j]);
-        }
-        put(x + i, add_product(re, re_of_im, -1));
-        put(x + i + rows, add_product(im, im_of_im, 1));
-    }
+    ct_product_complex(x, x + rows, inverse, inverse + rows * n, b, b + n, rows, n);
 }

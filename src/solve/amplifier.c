@@ -59,16 +59,22 @@ static const double *evaluate(struct ct_amplifier *p, double t)
     return p->program->out;
 }
 
+// 1 to 2, in no simple relation.
+static double part(size_t i)
+{
+    const double x = 0.618033988749895 * (double)i;
+    return 1 + (x - (double)(size_t)x);
+}
+
 // Which outputs amplify at y? All states are changed by different parts of themselves, so that nothing cancels.
 static bool find(struct ct_amplifier *p, double t, const double *y,
                  const struct ct_tolerance *tolerance)
 {
-    const double golden = 0.618033988749895;
     bool any = false;
     ct_machine_copy(p->y, y, p->ny);
     memcpy(p->at, evaluate(p, t), p->n * sizeof *p->at);
     for (size_t i = 0; i < p->ny; i++)
-        p->y[i] += change * (1 + fmod(golden * (double)i, 1)) * y[i];
+        p->y[i] += change * part(i) * y[i];
     const double *off = evaluate(p, t);
     for (size_t i = 0; i < p->n; i++) {
         p->way[i] = fabs(off[i] - p->at[i]) / change;

@@ -2,6 +2,8 @@
 #include "solve/dae.h"
 
 #include "integrate/stepper.h"
+#include "numeric/inverse.h"
+#include "solve/abreast.h"
 
 #include <math.h>
 #include <string.h>
@@ -41,15 +43,28 @@ static enum ct_eval start(void *user, double t, const double *y, double *a, doub
     return CT_EVAL_OK;
 }
 
+// Three coordinates, those of a planar loop, by code of its own: it takes no longer than to find out how many there are.
+static inline void copy_few(double *out, const volatile double *v, size_t n)
+{
+    if (n != 3) {
+        ct_machine_copy(out, v, n);
+        return;
+    }
+    const double first = v[0], second = v[1], third = v[2];
+    out[0] = first;
+    out[1] = second;
+    out[2] = third;
+}
+
 static inline void set_input(const struct ct_embed *s, double t, const double *q,
                              const double *u, const double *a, const double *lam)
 {
     const struct ct_machine *m = s->m;
     double *input = m->input;
     input[0] = t;
-    ct_machine_copy(input + m->at_q, q, m->nq);
-    ct_machine_copy(input + m->at_u, u, m->nu);
-    ct_machine_copy(input + m->at_a, a, m->nu);
+    copy_few(input + m->at_q, q, m->nq);
+    copy_few(input + m->at_u, u, m->nu);
+    copy_few(input + m->at_a, a, m->nu);
     if ((size_t)s->rank < m->nrow)
         memset(input + m->at_lam, 0, m->nrow * sizeof *lam);
     for (int i = 0; i < s->rank; i++)
@@ -67,12 +82,21 @@ static enum ct_eval residual(void *user, double t, const double *q, const double
     ct_program_run(&s->m->residual, s->m->input);
     if (!ct_stepper_finite(out, (int)s->m->residual.nout))
         return CT_EVAL_RETRY;
-    ct_machine_copy(r, out, nu);
+    copy_few(r, out, nu);
     for (int i = 0; i < s->rank; i++) {
         phi[i] = out[nu + (size_t)s->row[i]];
         v[i] = out[nu + nrow + (size_t)s->row[i]];
     }
     return CT_EVAL_OK;
+}
+
+// The same abreast.
+static void evaluate(void *user)
+{
+    const struct ct_embed *s = user;
+    const struct ct_machine *m = s->m;
+    ct_abreast_spread(m->abreast, m->input, m->at_mode);
+    ct_abreast_run(m->abreast);
 }
 
 // A (n x nu, out) from its entries; place[row] is the row's place in A, or -1. Returns what follows the values.
@@ -118,6 +142,31 @@ static enum ct_eval tangent(void *user, double t, const double *q, const double 
     return CT_EVAL_OK;
 }
 
+// Where corrections are single products, evaluations of their own take most of the time.
+static const struct ct_dae_abreast *abreast(struct ct_arena *a, struct ct_embed *s)
+{
+    struct ct_machine *m = s->m;
+    if (!m->nrow || !m->residual.nout || m->nu + 2 * (size_t)s->rank > CT_MOST_INVERTED)
+        return NULL;
+    if (!m->abreast) {
+        m->abreast = ct_abreast_create(a, m->residual.listing, m->ninput);
+        ct_abreast_use(a, m->abreast, m->asked != CT_BACKEND_TAPE, m->input);
+    }
+    double *in = m->abreast->input, *out = m->abreast->out;
+    struct ct_dae_abreast *x = CT_NEW(a, struct ct_dae_abreast);
+    *x = (struct ct_dae_abreast){.t = in,
+                                 .q = in + CT_ABREAST * m->at_q,
+                                 .u = in + CT_ABREAST * m->at_u,
+                                 .a = in + CT_ABREAST * m->at_a,
+                                 .lam = in + CT_ABREAST * m->at_lam,
+                                 .r = out,
+                                 .phi = out + CT_ABREAST * m->nu,
+                                 .v = out + CT_ABREAST * (m->nu + m->nrow),
+                                 .row = s->row,
+                                 .evaluate = evaluate};
+    return x;
+}
+
 struct ct_dae *ct_dae_create(struct ct_arena *a, struct ct_embed *s)
 {
     const struct ct_equations *e = s->m->e;
@@ -133,6 +182,7 @@ struct ct_dae *ct_dae_create(struct ct_arena *a, struct ct_embed *s)
                            .nu = (int)e->nu,
                            .most_rows = (int)e->nrow,
                            .q_of = q_of,
+                           .abreast = is_plain ? abreast(a, s) : NULL,
                            .is_plain = is_plain,
                            .has_no_power = ct_ex_is_zero(e->power),
                            .rows = rows,

@@ -1,6 +1,7 @@
 // See embedding.h: projection.
 #include "solve/embedding.h"
 
+#include "integrate/stepper.h"
 #include "numeric/dense.h"
 
 #include <math.h>
@@ -56,7 +57,7 @@ static bool has_worn(const struct ct_embed *s)
 // With a single row sigma is 1 everywhere.
 static double nearness(const struct ct_embed *s)
 {
-    return fmin(s->sigma, s->nearness);
+    return ct_smaller(s->sigma, s->nearness);
 }
 
 static enum ct_eval project_by_matrices(struct ct_embed *s, double t, double *y)
