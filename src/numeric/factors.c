@@ -1,0 +1,216 @@
+// See factors.h.
+#include "numeric/factors.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+// ---- the pattern ------------------------------------------------------------------------------------
+
+struct cell {
+    int column, row, entry;
+};
+
+static int by_place(const void *a, const void *b)
+{
+    const struct cell *p = a, *q = b;
+    return p->column != q->column ? p->column - q->column : p->row - q->row;
+}
+
+struct ct_pattern *ct_pattern_create(struct ct_arena *a, int n, const int *row,
+                                     const int *column, int nentry, int *place)
+{
+    struct ct_pattern *p = CT_NEW(a, struct ct_pattern);
+    struct cell *cell = CT_NEWN(a, struct cell, nentry + 1);
+    p->n = n;
+    p->start = CT_NEWN(a, int, n + 1);
+    p->row = CT_NEWN(a, int, nentry + 1);
+    for (int k = 0; k < nentry; k++)
+        cell[k] = (struct cell){column[k], row[k], k};
+    qsort(cell, (size_t)nentry, sizeof *cell, by_place);
+    for (int k = 0; k < nentry; k++) {
+        if (k == 0 || by_place(&cell[k - 1], &cell[k]) != 0) {
+            p->row[p->nz++] = cell[k].row;
+            p->start[cell[k].column + 1]++;
+        }
+        place[cell[k].entry] = p->nz - 1;
+    }
+    for (int j = 0; j < n; j++)
+        p->start[j + 1] += p->start[j];
+    return p;
+}
+
+#if CT_HAS_KLU
+#if __has_include(<suitesparse/klu.h>)
+#include <suitesparse/klu.h>
+#else
+#include <klu.h>
+#endif
+
+// A diagonal entry is taken as a pivot from this part of the largest in its column, rows scaled by their largest: the
+// library's own. The matrices are nearly symmetric, whose factors are sound with pivots on the diagonal.
+static const double diagonal_preference = 1e-3;
+// Where entries of a column grow by more than this, factors with the pivots of before have lost half of the digits: corrections
+// of an iteration need no more, and those of the next time would lose more.
+static const double least_growth = 1e-8;
+
+// ---- orders -----------------------------------------------------------------------------------------
+
+struct ct_pattern_order {
+    klu_common common;
+    klu_symbolic *symbolic;
+};
+
+static void release_order(void *order)
+{
+    struct ct_pattern_order *o = order;
+    klu_free_symbolic(&o->symbolic, &o->common);
+}
+
+enum { AMD, COLAMD, ORDERS }; // as the library numbers them
+
+// What factoring a matrix of these values takes in this order; false if it is singular.
+static bool try_order(struct ct_pattern *p, struct ct_pattern_order *o, int order,
+                      double *value, double *operations, double *fill)
+{
+    klu_defaults(&o->common);
+    o->common.ordering = order;
+    o->common.tol = diagonal_preference;
+    o->symbolic = klu_analyze(p->n, p->start, p->row, &o->common);
+    if (!o->symbolic)
+        return false;
+    klu_numeric *numeric = klu_factor(p->start, p->row, value, o->symbolic, &o->common);
+    const bool ok = numeric && o->common.status == KLU_OK;
+    if (ok) {
+        klu_flops(o->symbolic, numeric, &o->common);
+        *operations = o->common.flops;
+        *fill = numeric->lnz + numeric->unz + numeric->nzoff;
+    }
+    klu_free_numeric(&numeric, &o->common);
+    if (!ok)
+        klu_free_symbolic(&o->symbolic, &o->common);
+    return ok;
+}
+
+bool ct_pattern_find_order(struct ct_arena *a, struct ct_pattern *p, double *value)
+{
+    for (int order = AMD; order < ORDERS; order++) {
+        struct ct_pattern_order *o = CT_NEW(a, struct ct_pattern_order);
+        double operations, fill;
+        if (!try_order(p, o, order, value, &operations, &fill))
+            continue;
+        ct_arena_at_end(a, release_order, o);
+        if (p->order && operations >= p->operations)
+            continue;
+        p->order = o;
+        p->operations = operations;
+        p->fill = fill;
+    }
+    return p->order != NULL;
+}
+
+// ---- factors ----------------------------------------------------------------------------------------
+
+struct ct_factors {
+    const struct ct_pattern *p;
+    klu_symbolic *symbolic;
+    klu_common common;
+    klu_numeric *numeric;
+    bool is_complex;
+    long sought;
+};
+
+static void forget(void *factors)
+{
+    struct ct_factors *f = factors;
+    if (f->is_complex)
+        klu_z_free_numeric(&f->numeric, &f->common);
+    else
+        klu_free_numeric(&f->numeric, &f->common);
+}
+
+struct ct_factors *ct_factors_create(struct ct_arena *a, const struct ct_pattern *p,
+                                     bool is_complex)
+{
+    struct ct_factors *f = CT_NEW(a, struct ct_factors);
+    *f = (struct ct_factors){.p = p,
+                             .symbolic = p->order->symbolic,
+                             .common = p->order->common,
+                             .is_complex = is_complex};
+    ct_arena_at_end(a, forget, f);
+    return f;
+}
+
+// With the pivots of before; false if these are not sound.
+static bool make_again(struct ct_factors *f, double *value)
+{
+    const struct ct_pattern *p = f->p;
+    klu_common *c = &f->common;
+    const bool ok
+        = f->is_complex
+            ? klu_z_refactor(p->start, p->row, value, f->symbolic, f->numeric, c)
+                  && klu_z_rgrowth(p->start, p->row, value, f->symbolic, f->numeric, c)
+            : klu_refactor(p->start, p->row, value, f->symbolic, f->numeric, c)
+                  && klu_rgrowth(p->start, p->row, value, f->symbolic, f->numeric, c);
+    return ok && c->status == KLU_OK && c->rgrowth > least_growth;
+}
+
+bool ct_factors_make(struct ct_factors *f, double *value)
+{
+    const struct ct_pattern *p = f->p;
+    if (f->numeric && make_again(f, value))
+        return true;
+    forget(f);
+    f->sought++;
+    f->numeric = f->is_complex ? klu_z_factor(p->start, p->row, value, f->symbolic, &f->common)
+                               : klu_factor(p->start, p->row, value, f->symbolic, &f->common);
+    return f->numeric && f->common.status == KLU_OK;
+}
+
+void ct_factors_solve(struct ct_factors *f, double *x)
+{
+    if (f->is_complex)
+        klu_z_solve(f->symbolic, f->numeric, f->p->n, 1, x, &f->common);
+    else
+        klu_solve(f->symbolic, f->numeric, f->p->n, 1, x, &f->common);
+}
+
+long ct_factors_sought(const struct ct_factors *f)
+{
+    return f->sought;
+}
+
+#else
+
+bool ct_pattern_find_order(struct ct_arena *a, struct ct_pattern *p, double *value)
+{
+    (void)a, (void)p, (void)value;
+    return false;
+}
+
+// Nothing below is called without an order.
+
+struct ct_factors *ct_factors_create(struct ct_arena *a, const struct ct_pattern *p,
+                                     bool is_complex)
+{
+    (void)a, (void)p, (void)is_complex;
+    return NULL;
+}
+
+bool ct_factors_make(struct ct_factors *f, double *value)
+{
+    (void)f, (void)value;
+    return false;
+}
+
+void ct_factors_solve(struct ct_factors *f, double *x)
+{
+    (void)f, (void)x;
+}
+
+long ct_factors_sought(const struct ct_factors *f)
+{
+    (void)f;
+    return 0;
+}
+
+#endif
