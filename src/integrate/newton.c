@@ -6,6 +6,7 @@
 #include "numeric/inverse.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 // An operation of sparse factors, and of a sum over a list, takes so many of full ones: measured with beams of 4 to 40 elements
@@ -234,8 +235,58 @@ static void invent(const struct ct_newton_plan *p, double *v)
                 v[heavy[k]->first + i] += much;
 }
 
+// Coordinates and rows that touch them as nodes of a graph.
+static struct ct_pattern *find_graph(const struct ct_newton_plan *p, struct ct_arena *scratch)
+{
+    const struct list *const lists[] = {&p->M, &p->C, &p->K, &p->J, &p->J};
+    const int nnode = p->nu + p->most_rows;
+    struct places s = {.a = scratch};
+    for (size_t k = 0; k < COUNT(lists); k++)
+        for (int i = 0; i < lists[k]->n; i++) {
+            const int row = lists[k]->row[i] + (k < 3 ? 0 : p->nu),
+                      column = lists[k]->column[i];
+            add_place(&s, S, k < 4 ? row : column, k < 4 ? column : row);
+        }
+    for (int i = 0; i < nnode; i++)
+        add_place(&s, S, i, i);
+    int *place = CT_NEWN(scratch, int, s.n);
+    return ct_pattern_create(scratch, nnode, s.row, s.column, (int)s.n, place);
+}
+
+// first (n, out): coordinates in an order of little fill, and behind the last one that a row touches its multipliers, where elimination
+// has left a pivot on their diagonal: J H^-1 J' of what H there is of accelerations.
+static bool find_first(const struct ct_newton_plan *p, struct ct_arena *scratch, int *first)
+{
+    const int nu = p->nu, most_rows = p->most_rows;
+    int *node = CT_NEWN(scratch, int, nu + most_rows),
+        *last = CT_NEWN(scratch, int, most_rows + 1);
+    int *rank = CT_NEWN(scratch, int, nu + most_rows), n = 0, at = 0;
+    if (!ct_pattern_minimum_degree(find_graph(p, scratch), node))
+        return false;
+    for (int i = 0; i < nu + most_rows; i++)
+        rank[node[i]] = node[i] < nu ? at++ : 0;
+    for (int i = 0; i < p->J.n; i++)
+        if (last[p->J.row[i]] < rank[p->J.column[i]])
+            last[p->J.row[i]] = rank[p->J.column[i]];
+    const struct list rows = {.row = NULL, .column = last, .n = most_rows};
+    const struct by_column after = sort_by_column(scratch, &rows, nu);
+    for (int i = 0; i < nu + most_rows; i++) {
+        if (node[i] >= nu)
+            continue;
+        first[n++] = node[i];
+        for (int k = after.start[rank[node[i]]]; k < after.start[rank[node[i]] + 1]; k++)
+            for (int j = nu + after.entry[k]; j < p->n; j += most_rows)
+                first[n++] = j;
+    }
+    return true;
+}
+
 static bool find_order(struct ct_newton_plan *p, struct ct_arena *a, struct ct_arena *scratch)
 {
+    int *first = CT_NEWN(scratch, int, p->n);
+    if (!find_first(p, scratch, first))
+        return false;
+
     double *v = CT_NEWN(scratch, double, p->nvalue + 1);
     double *w = CT_NEWN(scratch, double, p->nu + 1);
     double *A = CT_NEWN(scratch, double, PARTS * p->pattern->nz + 1);
@@ -244,7 +295,7 @@ static bool find_order(struct ct_newton_plan *p, struct ct_arena *a, struct ct_a
         w[k] = 1;
     assemble(p, A, v, w);
     form(p, A, A, 1, 1);
-    return ct_pattern_find_order(a, p->pattern, A);
+    return ct_pattern_find_order(a, p->pattern, A, first);
 }
 
 // ---- is it worth it? ------------------------------------------------------------------------------------
@@ -318,6 +369,16 @@ static struct ct_newton_plan *make(struct ct_arena *a, struct ct_arena *scratch,
         p->place[i] = add_place(&s, S, p->nu + i, p->nu + i);
     settle_targets(p, a, &s);
     const double full = (double)p->n * p->n, most = 0.5;
+    {
+        bool o = find_order(p, a, scratch);
+        struct ct_newton_work q = sparse_work(p), f = full_work(p->n);
+        fprintf(stderr,
+                "plan n %d nz %d terms %zu %zu %zu ok %d ops %g fill %g | assembly %g %g "
+                "factor %g %g solve %g %g\n",
+                p->n, p->pattern->nz, p->ncopy, p->nproduct, p->nturn, o,
+                p->pattern->operations, p->pattern->fill, q.assembly, f.assembly,
+                q.factorization, f.factorization, q.solution, f.solution);
+    }
     if ((!anyway && p->pattern->nz > most * full) || !find_order(p, a, scratch)
         || (!anyway && work_of_step(sparse_work(p)) > work_of_step(full_work(p->n))))
         return NULL;
@@ -492,6 +553,16 @@ void ct_newton_solve_slow(struct ct_newton *s, double *b)
     solve(s, s->slow, b);
 }
 
+void ct_newton_slow_parts(struct ct_newton *s, double *part)
+{
+    const struct list *M = &s->p->M;
+    const double *v = s->v + M->first;
+    ct_factors_inverse(s->slow, s->G); // whose numbers are no longer needed
+    memset(part, 0, (size_t)s->p->nu * sizeof *part);
+    for (int i = 0; i < M->n; i++) // copies of M come first
+        part[M->column[i]] += s->G[s->p->copy[i].target] * v[i];
+}
+
 void ct_newton_solve_complex(struct ct_newton *s, double *b, int n)
 {
     spread(s, s->b, b, 2);
@@ -503,13 +574,18 @@ void ct_newton_solve_complex(struct ct_newton *s, double *b, int n)
 
 // ---- products -------------------------------------------------------------------------------------------
 
-// y += c A x
+// y += c A x. Entries stand row by row.
 static void add_product(const struct list *A, const double *value, double *y, double c,
                         const double *x)
 {
     const double *v = value + A->first;
-    for (int i = 0; i < A->n; i++)
-        y[A->row[i]] += c * v[i] * x[A->column[i]];
+    for (int i = 0; i < A->n;) {
+        const int row = A->row[i];
+        double sum = 0;
+        for (; i < A->n && A->row[i] == row; i++)
+            sum += v[i] * x[A->column[i]];
+        y[row] += c * sum;
+    }
 }
 
 void ct_newton_add_mass(const struct ct_newton *s, double *y, double c, const double *x)

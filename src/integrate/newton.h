@@ -51,6 +51,8 @@ bool ct_newton_factor_slow(struct ct_newton *s, double c);
 void ct_newton_solve(struct ct_newton *s, double *b);
 void ct_newton_solve_complex(struct ct_newton *s, double *b, int n);
 void ct_newton_solve_slow(struct ct_newton *s, double *b);
+/// part (nu, out): how much of each speed is left where ct_newton_solve_slow has answered M times that speed alone.
+void ct_newton_slow_parts(struct ct_newton *s, double *part);
 
 /// y (nu) += c A x (nu)
 void ct_newton_add_mass(const struct ct_newton *s, double *y, double c, const double *x);

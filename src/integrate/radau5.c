@@ -237,9 +237,10 @@ static inline void solve_complex(struct ct_radau *s, const int nu, const int m)
     const double a = ALPHA / s->h, b = BETA / s->h, *F = s->F + nu, *G = F + nu;
     double *r = s->r + nu, *v = s->v + m, *d = s->change.d + nu, *u = s->change.u + nu,
            *eta = s->change.eta + m;
-    if (nu > CT_MOST_INVERTED && it->sparse)
+    const bool is_sparse = nu > CT_MOST_INVERTED && it->sparse;
+    if (is_sparse)
         reduce_sparse(s, a, b);
-    for (int j = 0; j < nu && !it->sparse; j++) {
+    for (int j = 0; j < nu && !is_sparse; j++) {
         const double *M = it->M + nu * j, *damping = it->C + nu * j, *J = it->J + m * j;
         ct_vector_add(r, a * F[j] - b * G[j], M, (size_t)nu);
         ct_vector_add(r, F[j], damping, (size_t)nu);

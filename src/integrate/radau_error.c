@@ -50,9 +50,10 @@ static inline double filter_few(struct ct_radau *s, const double *u, const doubl
         defect[k] = -(defect[k] + u_dot[k]);
         s->r[k] = 0;
     }
-    if (nu > CT_MOST_INVERTED && it->sparse)
+    const bool is_sparse = nu > CT_MOST_INVERTED && it->sparse;
+    if (is_sparse)
         ct_newton_add_mass(it->sparse, s->r, 1, defect);
-    for (int j = 0; j < nu && !it->sparse; j++)
+    for (int j = 0; j < nu && !is_sparse; j++)
         for (int k = 0; k < nu; k++)
             s->r[k] += it->M[k + nu * j] * defect[j];
     for (int i = 0; i < m; i++)

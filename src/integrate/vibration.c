@@ -61,6 +61,15 @@ static void find_masses(struct ct_iteration *it)
         it->mass[k] = it->M[k + it->nu * k];
 }
 
+static void find_slow_speeds(struct ct_iteration *it)
+{
+    const double half = 0.5;
+    if (it->sparse)
+        ct_newton_slow_parts(it->sparse, it->off);
+    for (int k = 0; k < it->nu; k++)
+        it->is_slow[k] = (it->sparse ? it->off[k] : remains(it, k)) > half;
+}
+
 // Factors that tell what is slower than c; those of up to twice or half of it will do.
 static bool factor_slow(struct ct_iteration *it, double c)
 {
@@ -68,8 +77,8 @@ static bool factor_slow(struct ct_iteration *it, double c)
         return true;
     it->slow = has_factors(it, c) ? c : 0;
     find_masses(it);
-    for (int k = 0; k < it->nu && it->slow > 0; k++)
-        it->is_slow[k] = remains(it, k) > 0.5;
+    if (it->slow > 0)
+        find_slow_speeds(it);
     return it->slow > 0;
 }
 

@@ -1,6 +1,8 @@
 // See factors.h.
 #include "numeric/factors.h"
 
+#include "numeric/selected.h"
+
 #include <math.h>
 #include <stdlib.h>
 
@@ -66,16 +68,33 @@ static void release_order(void *order)
     klu_free_symbolic(&o->symbolic, &o->common);
 }
 
-enum { AMD, COLAMD, ORDERS }; // as the library numbers them
+enum { AMD, COLAMD, GIVEN, ORDERS }; // as the library numbers them
+
+bool ct_pattern_minimum_degree(const struct ct_pattern *graph, int *first)
+{
+    klu_common common;
+    klu_defaults(&common);
+    common.ordering = AMD;
+    common.btf = 0;
+    klu_symbolic *s = klu_analyze(graph->n, graph->start, graph->row, &common);
+    for (int i = 0; s && i < graph->n; i++)
+        first[i] = s->Q[i];
+    const bool ok = s != NULL;
+    klu_free_symbolic(&s, &common);
+    return ok;
+}
 
 // What factoring a matrix of these values takes in this order; false if it is singular.
 static bool try_order(struct ct_pattern *p, struct ct_pattern_order *o, int order,
-                      double *value, double *operations, double *fill)
+                      double *value, int *first, double *operations, double *fill)
 {
     klu_defaults(&o->common);
     o->common.ordering = order;
+    o->common.btf = 0; // equations of motion hang together
     o->common.tol = diagonal_preference;
-    o->symbolic = klu_analyze(p->n, p->start, p->row, &o->common);
+    o->symbolic = order == GIVEN
+                    ? klu_analyze_given(p->n, p->start, p->row, first, first, &o->common)
+                    : klu_analyze(p->n, p->start, p->row, &o->common);
     if (!o->symbolic)
         return false;
     klu_numeric *numeric = klu_factor(p->start, p->row, value, o->symbolic, &o->common);
@@ -91,12 +110,12 @@ static bool try_order(struct ct_pattern *p, struct ct_pattern_order *o, int orde
     return ok;
 }
 
-bool ct_pattern_find_order(struct ct_arena *a, struct ct_pattern *p, double *value)
+bool ct_pattern_find_order(struct ct_arena *a, struct ct_pattern *p, double *value, int *first)
 {
     for (int order = AMD; order < ORDERS; order++) {
         struct ct_pattern_order *o = CT_NEW(a, struct ct_pattern_order);
         double operations, fill;
-        if (!try_order(p, o, order, value, &operations, &fill))
+        if (!try_order(p, o, order, value, first, &operations, &fill))
             continue;
         ct_arena_at_end(a, release_order, o);
         if (p->order && operations >= p->operations)
@@ -117,6 +136,15 @@ struct ct_factors {
     klu_numeric *numeric;
     bool is_complex;
     long sought;
+    // for entries of the inverse
+    long extracted; // pivots were sought so often then
+    struct ct_arena *arena;
+    struct ct_triangles t;
+    struct ct_selected *selected;
+    double *scale;     // of rows, by pivot  (n)
+    int *row, *column; // of pivots  (n)
+    int *place;        // of what belongs to each entry  (nz)
+    int *scale_of;     // its pivot  (nz)
 };
 
 static void forget(void *factors)
@@ -137,6 +165,8 @@ struct ct_factors *ct_factors_create(struct ct_arena *a, const struct ct_pattern
                              .common = p->order->common,
                              .is_complex = is_complex};
     ct_arena_at_end(a, forget, f);
+    if (!is_complex)
+        f->arena = ct_arena_create_under(a);
     return f;
 }
 
@@ -174,6 +204,67 @@ void ct_factors_solve(struct ct_factors *f, double *x)
         klu_solve(f->symbolic, f->numeric, f->p->n, 1, x, &f->common);
 }
 
+// Room for the factors outside of the library, and the places of what is wanted of the inverse.
+static void prepare_inverse(struct ct_factors *f)
+{
+    const struct ct_pattern *p = f->p;
+    struct ct_arena *a = f->arena;
+    const int n = p->n;
+    ct_arena_clear(a);
+    f->t = (struct ct_triangles){n,
+                                 CT_NEWN(a, int, n + 1),
+                                 CT_NEWN(a, int, f->numeric->lnz + 1),
+                                 CT_NEWN(a, int, n + 1),
+                                 CT_NEWN(a, int, f->numeric->unz + 1),
+                                 CT_NEWN(a, double, f->numeric->lnz + 1),
+                                 CT_NEWN(a, double, f->numeric->unz + 1)};
+    f->scale = CT_NEWN(a, double, n + 1);
+    f->row = CT_NEWN(a, int, n + 1);
+    f->column = CT_NEWN(a, int, n + 1);
+    klu_sort(f->symbolic, f->numeric, &f->common);
+}
+
+static void extract(struct ct_factors *f)
+{
+    const struct ct_triangles *t = &f->t;
+    klu_extract(f->numeric, f->symbolic, t->L_start, t->L_row, t->L, t->U_start, t->U_row, t->U,
+                NULL, NULL, NULL, f->row, f->column, f->scale, NULL, &f->common);
+}
+
+// Entry (row, column) of the matrix belongs to (pivot of its column, pivot of its row) of the factors' inverse.
+static void find_places(struct ct_factors *f)
+{
+    const struct ct_pattern *p = f->p;
+    struct ct_arena *a = f->arena;
+    int *pivot_of_row = CT_NEWN(a, int, p->n + 1), *pivot_of_column = CT_NEWN(a, int, p->n + 1);
+    for (int i = 0; i < p->n; i++) {
+        pivot_of_row[f->row[i]] = i;
+        pivot_of_column[f->column[i]] = i;
+    }
+    f->selected = ct_selected_create(a, &f->t);
+    f->place = CT_NEWN(a, int, p->nz + 1);
+    f->scale_of = CT_NEWN(a, int, p->nz + 1);
+    for (int j = 0; j < p->n; j++)
+        for (int k = p->start[j]; k < p->start[j + 1]; k++) {
+            f->scale_of[k] = pivot_of_row[p->row[k]];
+            f->place[k] = ct_selected_place(f->selected, pivot_of_column[j], f->scale_of[k]);
+        }
+}
+
+void ct_factors_inverse(struct ct_factors *f, double *z)
+{
+    const bool is_new = f->extracted != f->sought;
+    if (is_new)
+        prepare_inverse(f);
+    extract(f);
+    if (is_new)
+        find_places(f);
+    f->extracted = f->sought;
+    const double *Z = ct_selected_find(f->selected);
+    for (int k = 0; k < f->p->nz; k++)
+        z[k] = Z[f->place[k]] / f->scale[f->scale_of[k]];
+}
+
 long ct_factors_sought(const struct ct_factors *f)
 {
     return f->sought;
@@ -181,9 +272,15 @@ long ct_factors_sought(const struct ct_factors *f)
 
 #else
 
-bool ct_pattern_find_order(struct ct_arena *a, struct ct_pattern *p, double *value)
+bool ct_pattern_find_order(struct ct_arena *a, struct ct_pattern *p, double *value, int *first)
 {
-    (void)a, (void)p, (void)value;
+    (void)a, (void)p, (void)value, (void)first;
+    return false;
+}
+
+bool ct_pattern_minimum_degree(const struct ct_pattern *graph, int *first)
+{
+    (void)graph, (void)first;
     return false;
 }
 
@@ -205,6 +302,11 @@ bool ct_factors_make(struct ct_factors *f, double *value)
 void ct_factors_solve(struct ct_factors *f, double *x)
 {
     (void)f, (void)x;
+}
+
+void ct_factors_inverse(struct ct_factors *f, double *z)
+{
+    (void)f, (void)z;
 }
 
 long ct_factors_sought(const struct ct_factors *f)

@@ -24,8 +24,12 @@ struct ct_pattern {
 /// n x n, from nentry places (row[k], column[k]), of which some may be the same; place[k] (out): that of each among the nz.
 struct ct_pattern *ct_pattern_create(struct ct_arena *a, int n, const int *row,
                                      const int *column, int nentry, int *place);
-/// The cheaper of two orders for matrices like this one (nz). False if it is singular, or where the library is not available.
-bool ct_pattern_find_order(struct ct_arena *a, struct ct_pattern *p, double *value);
+/// first (n, out): the nodes of a graph (its edges a pattern) in an order by which elimination adds few edges. False where the
+/// library is not available.
+bool ct_pattern_minimum_degree(const struct ct_pattern *graph, int *first);
+/// The cheapest of three orders for matrices like this one (nz): two of the library, and pivots on the diagonal in the order `first`
+/// (n). False if it is singular, or where the library is not available.
+bool ct_pattern_find_order(struct ct_arena *a, struct ct_pattern *p, double *value, int *first);
 
 struct ct_factors;
 
@@ -37,6 +41,9 @@ struct ct_factors *ct_factors_create(struct ct_arena *a, const struct ct_pattern
 bool ct_factors_make(struct ct_factors *f, double *value);
 /// x (n numbers or pairs, in: right-hand side, out: solution).
 void ct_factors_solve(struct ct_factors *f, double *x);
+/// z (nz, out): for each entry (i, j) of the pattern the entry (j, i) of the inverse, of real factors. Allocates where pivots were
+/// sought anew since the last time.
+void ct_factors_inverse(struct ct_factors *f, double *z);
 /// How often pivots were sought.
 long ct_factors_sought(const struct ct_factors *f);
 
