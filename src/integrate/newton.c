@@ -6,7 +6,6 @@
 #include "numeric/inverse.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
 // An operation of sparse factors, and of a sum over a list, takes so many of full ones: measured with beams of 4 to 40 elements
@@ -295,7 +294,7 @@ static bool find_order(struct ct_newton_plan *p, struct ct_arena *a, struct ct_a
         w[k] = 1;
     assemble(p, A, v, w);
     form(p, A, A, 1, 1);
-    return ct_pattern_find_order(a, p->pattern, A, first);
+    return ct_pattern_order(a, p->pattern, A, first);
 }
 
 // ---- is it worth it? ------------------------------------------------------------------------------------
@@ -369,16 +368,6 @@ static struct ct_newton_plan *make(struct ct_arena *a, struct ct_arena *scratch,
         p->place[i] = add_place(&s, S, p->nu + i, p->nu + i);
     settle_targets(p, a, &s);
     const double full = (double)p->n * p->n, most = 0.5;
-    {
-        bool o = find_order(p, a, scratch);
-        struct ct_newton_work q = sparse_work(p), f = full_work(p->n);
-        fprintf(stderr,
-                "plan n %d nz %d terms %zu %zu %zu ok %d ops %g fill %g | assembly %g %g "
-                "factor %g %g solve %g %g\n",
-                p->n, p->pattern->nz, p->ncopy, p->nproduct, p->nturn, o,
-                p->pattern->operations, p->pattern->fill, q.assembly, f.assembly,
-                q.factorization, f.factorization, q.solution, f.solution);
-    }
     if ((!anyway && p->pattern->nz > most * full) || !find_order(p, a, scratch)
         || (!anyway && work_of_step(sparse_work(p)) > work_of_step(full_work(p->n))))
         return NULL;

@@ -48,12 +48,11 @@ struct ct_pattern *ct_pattern_create(struct ct_arena *a, int n, const int *row,
 #include <klu.h>
 #endif
 
-// A diagonal entry is taken as a pivot from this part of the largest in its column, rows scaled by their largest: the
-// library's own. The matrices are nearly symmetric, whose factors are sound with pivots on the diagonal.
-static const double diagonal_preference = 1e-3;
-// Where entries of a column grow by more than this, factors with the pivots of before have lost half of the digits: corrections
-// of an iteration need no more, and those of the next time would lose more.
-static const double least_growth = 1e-8;
+// A diagonal entry is taken as a pivot from this part of the largest in its column, rows scaled by their largest.
+static const double diagonal_preference = 0.1;
+// Pivots are sound while entries of columns grow by no more than so many times what they did when the pivots were sought: as much is
+// lost of the digits.
+static const double most_growth = 1e3;
 
 // ---- orders -----------------------------------------------------------------------------------------
 
@@ -68,13 +67,10 @@ static void release_order(void *order)
     klu_free_symbolic(&o->symbolic, &o->common);
 }
 
-enum { AMD, COLAMD, GIVEN, ORDERS }; // as the library numbers them
-
 bool ct_pattern_minimum_degree(const struct ct_pattern *graph, int *first)
 {
     klu_common common;
-    klu_defaults(&common);
-    common.ordering = AMD;
+    klu_defaults(&common); // the order of least degree among them
     common.btf = 0;
     klu_symbolic *s = klu_analyze(graph->n, graph->start, graph->row, &common);
     for (int i = 0; s && i < graph->n; i++)
@@ -84,47 +80,27 @@ bool ct_pattern_minimum_degree(const struct ct_pattern *graph, int *first)
     return ok;
 }
 
-// What factoring a matrix of these values takes in this order; false if it is singular.
-static bool try_order(struct ct_pattern *p, struct ct_pattern_order *o, int order,
-                      double *value, int *first, double *operations, double *fill)
+bool ct_pattern_order(struct ct_arena *a, struct ct_pattern *p, double *value, int *first)
 {
+    struct ct_pattern_order *o = CT_NEW(a, struct ct_pattern_order);
+    ct_arena_at_end(a, release_order, o);
     klu_defaults(&o->common);
-    o->common.ordering = order;
     o->common.btf = 0; // equations of motion hang together
     o->common.tol = diagonal_preference;
-    o->symbolic = order == GIVEN
-                    ? klu_analyze_given(p->n, p->start, p->row, first, first, &o->common)
-                    : klu_analyze(p->n, p->start, p->row, &o->common);
+    o->symbolic = klu_analyze_given(p->n, p->start, p->row, first, first, &o->common);
     if (!o->symbolic)
         return false;
     klu_numeric *numeric = klu_factor(p->start, p->row, value, o->symbolic, &o->common);
-    const bool ok = numeric && o->common.status == KLU_OK;
-    if (ok) {
-        klu_flops(o->symbolic, numeric, &o->common);
-        *operations = o->common.flops;
-        *fill = numeric->lnz + numeric->unz + numeric->nzoff;
+    if (!numeric || o->common.status != KLU_OK) {
+        klu_free_numeric(&numeric, &o->common);
+        return false;
     }
+    klu_flops(o->symbolic, numeric, &o->common);
+    p->operations = o->common.flops;
+    p->fill = numeric->lnz + numeric->unz;
+    p->order = o;
     klu_free_numeric(&numeric, &o->common);
-    if (!ok)
-        klu_free_symbolic(&o->symbolic, &o->common);
-    return ok;
-}
-
-bool ct_pattern_find_order(struct ct_arena *a, struct ct_pattern *p, double *value, int *first)
-{
-    for (int order = AMD; order < ORDERS; order++) {
-        struct ct_pattern_order *o = CT_NEW(a, struct ct_pattern_order);
-        double operations, fill;
-        if (!try_order(p, o, order, value, first, &operations, &fill))
-            continue;
-        ct_arena_at_end(a, release_order, o);
-        if (p->order && operations >= p->operations)
-            continue;
-        p->order = o;
-        p->operations = operations;
-        p->fill = fill;
-    }
-    return p->order != NULL;
+    return true;
 }
 
 // ---- factors ----------------------------------------------------------------------------------------
@@ -136,6 +112,7 @@ struct ct_factors {
     klu_numeric *numeric;
     bool is_complex;
     long sought;
+    double growth; // one over it, when pivots were sought
     // for entries of the inverse
     long extracted; // pivots were sought so often then
     struct ct_arena *arena;
@@ -170,18 +147,26 @@ struct ct_factors *ct_factors_create(struct ct_arena *a, const struct ct_pattern
     return f;
 }
 
+// One over the growth of the largest entries of columns; 0 where it cannot be found.
+static double inverse_growth(struct ct_factors *f, double *value)
+{
+    const struct ct_pattern *p = f->p;
+    klu_common *c = &f->common;
+    const bool ok = f->is_complex
+                      ? klu_z_rgrowth(p->start, p->row, value, f->symbolic, f->numeric, c)
+                      : klu_rgrowth(p->start, p->row, value, f->symbolic, f->numeric, c);
+    return ok ? c->rgrowth : 0;
+}
+
 // With the pivots of before; false if these are not sound.
 static bool make_again(struct ct_factors *f, double *value)
 {
     const struct ct_pattern *p = f->p;
     klu_common *c = &f->common;
-    const bool ok
-        = f->is_complex
-            ? klu_z_refactor(p->start, p->row, value, f->symbolic, f->numeric, c)
-                  && klu_z_rgrowth(p->start, p->row, value, f->symbolic, f->numeric, c)
-            : klu_refactor(p->start, p->row, value, f->symbolic, f->numeric, c)
-                  && klu_rgrowth(p->start, p->row, value, f->symbolic, f->numeric, c);
-    return ok && c->status == KLU_OK && c->rgrowth > least_growth;
+    const bool ok = f->is_complex
+                      ? klu_z_refactor(p->start, p->row, value, f->symbolic, f->numeric, c)
+                      : klu_refactor(p->start, p->row, value, f->symbolic, f->numeric, c);
+    return ok && c->status == KLU_OK && inverse_growth(f, value) * most_growth >= f->growth;
 }
 
 bool ct_factors_make(struct ct_factors *f, double *value)
@@ -193,7 +178,10 @@ bool ct_factors_make(struct ct_factors *f, double *value)
     f->sought++;
     f->numeric = f->is_complex ? klu_z_factor(p->start, p->row, value, f->symbolic, &f->common)
                                : klu_factor(p->start, p->row, value, f->symbolic, &f->common);
-    return f->numeric && f->common.status == KLU_OK;
+    if (!f->numeric || f->common.status != KLU_OK)
+        return false;
+    f->growth = inverse_growth(f, value);
+    return true;
 }
 
 void ct_factors_solve(struct ct_factors *f, double *x)
@@ -272,7 +260,7 @@ long ct_factors_sought(const struct ct_factors *f)
 
 #else
 
-bool ct_pattern_find_order(struct ct_arena *a, struct ct_pattern *p, double *value, int *first)
+bool ct_pattern_order(struct ct_arena *a, struct ct_pattern *p, double *value, int *first)
 {
     (void)a, (void)p, (void)value, (void)first;
     return false;

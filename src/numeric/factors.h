@@ -27,9 +27,9 @@ struct ct_pattern *ct_pattern_create(struct ct_arena *a, int n, const int *row,
 /// first (n, out): the nodes of a graph (its edges a pattern) in an order by which elimination adds few edges. False where the
 /// library is not available.
 bool ct_pattern_minimum_degree(const struct ct_pattern *graph, int *first);
-/// The cheapest of three orders for matrices like this one (nz): two of the library, and pivots on the diagonal in the order `first`
-/// (n). False if it is singular, or where the library is not available.
-bool ct_pattern_find_order(struct ct_arena *a, struct ct_pattern *p, double *value, int *first);
+/// Rows and columns in the order `first` (n), pivots on or next to the diagonal; what factors of a matrix like this one (nz) take. False if
+/// it is singular, or where the library is not available.
+bool ct_pattern_order(struct ct_arena *a, struct ct_pattern *p, double *value, int *first);
 
 struct ct_factors;
 
