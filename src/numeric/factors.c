@@ -1,6 +1,7 @@
 // See factors.h.
 #include "numeric/factors.h"
 
+#include "numeric/klu_include.h"
 #include "numeric/selected.h"
 
 #include <math.h>
@@ -42,11 +43,6 @@ struct ct_pattern *ct_pattern_create(struct ct_arena *a, int n, const int *row,
 }
 
 #if CT_HAS_KLU
-#if __has_include(<suitesparse/klu.h>)
-#include <suitesparse/klu.h>
-#else
-#include <klu.h>
-#endif
 
 // A diagonal entry is taken as a pivot from this part of the largest in its column, rows scaled by their largest.
 static const double diagonal_preference = 0.1;
