@@ -632,19 +632,3 @@ void ct_newton_masses(const struct ct_newton *s, double *mass)
         if (M->row[i] == M->column[i])
             mass[M->row[i]] += s->v[M->first + i];
 }
-
-double ct_newton_plan_entries(const struct ct_newton_plan *p)
-{
-    return p->pattern->nz;
-}
-
-double ct_newton_plan_fill(const struct ct_newton_plan *p)
-{
-    return p->pattern->fill;
-}
-
-long ct_newton_sought(const struct ct_newton *s)
-{
-    return ct_factors_sought(s->real)
-         + (s->pair ? ct_factors_sought(s->pair) + ct_factors_sought(s->slow) : 0);
-}

@@ -29,10 +29,6 @@ struct ct_newton_plan *ct_newton_plan_create(struct ct_arena *a, const struct ct
 /// The same whether it pays or not, where the library is available.
 struct ct_newton_plan *ct_newton_plan_anyway(struct ct_arena *a, const struct ct_dae *dae,
                                              bool is_stabilised);
-/// Entries of the matrix and of its real factors, as foreseen; products that entries are sums of.
-double ct_newton_plan_entries(const struct ct_newton_plan *plan);
-double ct_newton_plan_fill(const struct ct_newton_plan *plan);
-
 /// plan: NULL gives NULL.
 struct ct_newton *ct_newton_create(struct ct_arena *a, const struct ct_dae *dae,
                                    const struct ct_newton_plan *plan, bool is_complex);
@@ -65,8 +61,5 @@ double ct_newton_mass_form(const struct ct_newton *s, const double *x);
 double ct_newton_stiffness_form(const struct ct_newton *s, const double *x);
 /// The diagonal of M (nu, out).
 void ct_newton_masses(const struct ct_newton *s, double *mass);
-
-/// How often pivots were sought, of all factors.
-long ct_newton_sought(const struct ct_newton *s);
 
 #endif
