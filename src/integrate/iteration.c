@@ -30,6 +30,32 @@ static const double halved = 0.5;
 static const double kappa_index3 = 0.01;
 enum { MOST = 10, MOST_FINEST = 30 };
 
+// For full matrices of m rows, n equations.
+static void make_room(struct ct_arena *a, struct ct_iteration *it, int m, int n,
+                      bool is_complex)
+{
+    const int nu = it->nu;
+    double **const square[] = {&it->M, &it->C, &it->K};
+    for (size_t i = 0; i < COUNT(square); i++)
+        *square[i] = CT_NEWN(a, double, nu *nu + 1);
+    it->J = CT_NEWN(a, double, m *nu + 1);
+    it->D = CT_NEWN(a, double, m *nu + 1);
+    double **const large[] = {&it->S, &it->X, &it->W};
+    for (size_t i = 0; i < COUNT(large); i++)
+        *large[i] = CT_NEWN(a, double, n *n + 1);
+    it->G = CT_NEWN(a, double, n *(n + 3) + 1);
+    it->x = CT_NEWN(a, double, 2 * (n + 3));
+    it->pivot = CT_NEWN(a, int, n + 1);
+    if (is_complex) {
+        it->Gi = CT_NEWN(a, double, 2 * CT_MOST_INVERTED * CT_MOST_INVERTED);
+        it->Gc = CT_NEWN(a, double _Complex, n *n + 1);
+        it->bc = CT_NEWN(a, double _Complex, n + 1);
+        it->pivotc = CT_NEWN(a, int, n + 1);
+        it->H = CT_NEWN(a, double, n *n + 1);
+        it->pivot_slow = CT_NEWN(a, int, n + 1);
+    }
+}
+
 struct ct_iteration *ct_iteration_create(struct ct_arena *a, const struct ct_problem *p,
                                          bool is_stabilised, bool is_complex)
 {
@@ -43,18 +69,10 @@ struct ct_iteration *ct_iteration_create(struct ct_arena *a, const struct ct_pro
     it->per_speed = nu ? 1.0 / nu : 0;
     it->version = -1;
     it->tail = 1;
-    double **const square[] = {&it->M, &it->C, &it->K};
-    for (size_t i = 0; i < COUNT(square); i++)
-        *square[i] = CT_NEWN(a, double, nu *nu + 1);
-    it->J = CT_NEWN(a, double, m *nu + 1);
-    it->D = CT_NEWN(a, double, m *nu + 1);
-    double **const large[] = {&it->S, &it->X, &it->W};
-    for (size_t i = 0; i < COUNT(large); i++)
-        *large[i] = CT_NEWN(a, double, n *n + 1);
-    it->G = CT_NEWN(a, double, n *(n + 3) + 1);
+    it->sparse = ct_newton_create(a, dae, dae->plan[is_stabilised], is_complex);
+    if (!it->sparse)
+        make_room(a, it, m, n, is_complex);
     it->b = CT_NEWN(a, double, 2 * n + 1);
-    it->x = CT_NEWN(a, double, 2 * (n + 3));
-    it->pivot = CT_NEWN(a, int, n + 1);
     it->share = CT_NEWN(a, double, ct_response_padded(2 * nu + m));
     if (is_stabilised && dae->abreast && nu + 2 <= CT_MOST_INVERTED)
         it->response = ct_response_create(a, nu, m, is_complex);
@@ -62,13 +80,8 @@ struct ct_iteration *ct_iteration_create(struct ct_arena *a, const struct ct_pro
     it->fast = CT_NEWN(a, double, 2 * nu + 1);
     if (is_complex) {
         it->w = CT_NEWN(a, double, nu + 1);
-        it->Gi = CT_NEWN(a, double, 2 * CT_MOST_INVERTED * CT_MOST_INVERTED);
-        it->Gc = CT_NEWN(a, double _Complex, n *n + 1);
-        it->bc = CT_NEWN(a, double _Complex, n + 1);
-        it->pivotc = CT_NEWN(a, int, n + 1);
-        it->H = CT_NEWN(a, double, n *n + 1);
         it->is_slow = CT_NEWN(a, bool, nu + 1);
-        it->pivot_slow = CT_NEWN(a, int, n + 1);
+        it->mass = CT_NEWN(a, double, nu + 1);
     }
     return it;
 }
@@ -165,6 +178,8 @@ bool ct_iteration_begin(struct ct_iteration *it, const struct ct_tolerance *tole
     if (it->version == before)
         return false;
     it->has_tangent = false;
+    if (it->sparse)
+        ct_newton_keep(it->sparse, dae->kept_rows(dae->user), it->m);
     return true;
 }
 
@@ -255,26 +270,38 @@ static void assemble(struct ct_iteration *it)
     fill_turn(it, it->W, it->J, m, nu + m);
 }
 
+// The derivatives at a point, and what matrices are made of.
+static enum ct_eval evaluate(struct ct_iteration *it, double t, const double *q,
+                             const double *u, const double *a, const double *lam)
+{
+    const enum ct_eval e = it->sparse
+                             ? ct_newton_evaluate(it->sparse, t, q, u, a, lam, it->w ? u : NULL)
+                             : it->dae->tangent(it->dae->user, t, q, u, a, lam, it->M, it->C,
+                                                it->K, it->J, it->D);
+    if (e != CT_EVAL_OK)
+        return e;
+    if (it->w)
+        memcpy(it->w, u, (size_t)it->nu * sizeof *u);
+    it->is_assembled = false;
+    if (it->is_few)
+        ct_response_assemble(it->response, it->M, it->C, it->K, it->J, it->D);
+    else if (!it->sparse)
+        assemble(it);
+    return CT_EVAL_OK;
+}
+
 enum ct_eval ct_iteration_refresh(struct ct_iteration *it, double t, const double *q,
                                   const double *u, const double *a, const double *lam,
                                   struct ct_integrate_stats *stats)
 {
     if (!ct_iteration_is_old(it))
         return CT_EVAL_OK;
-    const enum ct_eval e
-        = it->dae->tangent(it->dae->user, t, q, u, a, lam, it->M, it->C, it->K, it->J, it->D);
+    const enum ct_eval e = evaluate(it, t, q, u, a, lam);
     it->has_tangent = e == CT_EVAL_OK;
     it->is_worn = false;
     if (e != CT_EVAL_OK)
         return e;
     stats->jacobians++;
-    if (it->w)
-        memcpy(it->w, u, (size_t)it->nu * sizeof *u);
-    it->is_assembled = false;
-    if (it->is_few)
-        ct_response_assemble(it->response, it->M, it->C, it->K, it->J, it->D);
-    else
-        assemble(it);
     it->is_new = true;
     it->rate = it->c = it->e = it->slow = 0;
     return CT_EVAL_OK;
@@ -309,6 +336,8 @@ static bool factor_complex(struct ct_iteration *it, double _Complex w)
     const double _Complex ww = w * w;
     double *re = it->Gi, *im = re + it->rows * n;
     it->z = w;
+    if (it->sparse)
+        return ct_newton_factor_complex(it->sparse, w);
     for (int j = 0; j < n; j++)
         for (int k = 0; k < (has_inverse(it) ? it->rows : n); k++) {
             const int i = k + j * n, at = k + j * it->rows;
@@ -331,6 +360,8 @@ static bool factor_real(struct ct_iteration *it, double c, double e)
     const int n = it->n;
     if (it->is_few)
         return ct_response_find(it->response, c, e);
+    if (it->sparse)
+        return ct_newton_factor(it->sparse, c, e);
     ct_iteration_fill(it, it->G, it->rows, c, e);
     return has_inverse(it) ? ct_inverse(it->G, it->pivot, n) : ct_lu(it->G, it->pivot, n, n);
 }
@@ -365,6 +396,10 @@ bool ct_iteration_factor_anew(struct ct_iteration *it, double c, double e, doubl
 static const double *solve_real(struct ct_iteration *it)
 {
     const int n = it->n;
+    if (it->sparse) {
+        ct_newton_solve(it->sparse, it->b);
+        return it->b;
+    }
     if (has_inverse(it)) {
         ct_inverse_apply(it->x, it->G, it->b, n);
         return it->x;
@@ -405,6 +440,11 @@ static const double *solve_complex(struct ct_iteration *it, int *to_imaginary)
 {
     const int n = it->n;
     double *b = it->b;
+    if (it->sparse) {
+        ct_newton_solve_complex(it->sparse, b, n);
+        *to_imaginary = n;
+        return b;
+    }
     if (has_inverse(it)) {
         ct_inverse_apply_complex(it->x, it->Gi, b, n);
         *to_imaginary = it->rows;
@@ -455,6 +495,29 @@ void ct_iteration_solve_complex(struct ct_iteration *it, double *d, double *eta,
         lam[i] = creal(l);
         lam[i + m] = cimag(l);
     }
+}
+
+// ---- products ---------------------------------------------------------------------------------------
+
+void ct_iteration_push_sparse(const struct ct_iteration *it, double *out, const double *x,
+                              double c, const double *eta)
+{
+    if (out != x)
+        ct_stepper_copy(out, x, it->nu);
+    ct_newton_add_push(it->sparse, out, c, eta);
+}
+
+void ct_iteration_weigh_mass(const struct ct_iteration *it, double *r, const double *x)
+{
+    const int nu = it->nu;
+    memset(r, 0, (size_t)nu * sizeof *r);
+    if (it->sparse) {
+        ct_newton_add_mass(it->sparse, r, 1, x);
+        return;
+    }
+    for (int j = 0; j < nu; j++)
+        for (int k = 0; k < nu; k++)
+            r[k] += it->M[k + nu * j] * x[j];
 }
 
 // ---- convergence ------------------------------------------------------------------------------------

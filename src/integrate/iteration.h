@@ -18,8 +18,10 @@
 #ifndef CT_INTEGRATE_ITERATION_H
 #define CT_INTEGRATE_ITERATION_H
 
+#include "integrate/newton.h"
 #include "integrate/response.h"
 #include "integrate/stepper.h"
+#include "numeric/inverse.h"
 
 #include <math.h>
 
@@ -37,6 +39,8 @@ struct ct_iteration {
         *response; // of few equations in plain coordinates, where there are rows; NULL: never
     bool is_few;   // so they are now
     bool is_assembled; // S, X, W are those of the derivatives
+    struct ct_newton *
+        sparse; // all these matrices and factors as lists of entries; NULL: full ones, as follows
     double *M, *C, *K, *J, *D;
     double *S, *X, *W; // the matrix is S + x X + (y or z) W  (n x n)
     double c, e;       // of the factors; 0: none
@@ -54,6 +58,7 @@ struct ct_iteration {
     double energy; // twice the largest kinetic energy at looks so far, or that is to come
     double heavy;  // the largest mass, at the last of them
     bool *is_slow; // which speeds are slow by themselves, then  (nu)
+    double *mass;  // the diagonal of M  (nu)
     double *w;     // speeds of the derivatives (nu), for N; NULL: the method knows no N
     double *b, *x; // (n, of complex parts 2 n), (rows, 2 rows)
     double _Complex *bc;
@@ -123,7 +128,7 @@ static inline bool ct_iteration_factor(struct ct_iteration *it, double c, double
     return are_near || ct_iteration_factor_anew(it, c, e, s, stats);
 }
 
-/// A (n x n, columns lda apart, out): the matrix for c and e.
+/// A (n x n, columns lda apart, out): the matrix for c and e, where it is full.
 void ct_iteration_fill(struct ct_iteration *it, double *A, int lda, double c, double e);
 
 /// d (nu, out), eta (m, out; zero in the index-3 form), lam (m, out) from r (nu), phi, v (m).
@@ -156,12 +161,20 @@ static inline void ct_iteration_move(const struct ct_dae *dae, const double *q, 
 
 /// x (nu) += c N d, with `w`.
 void ct_iteration_turn(const struct ct_iteration *it, double *x, double c, const double *d);
+void ct_iteration_push_sparse(const struct ct_iteration *it, double *out, const double *x,
+                              double c, const double *eta);
+/// r (nu) = M x.
+void ct_iteration_weigh_mass(const struct ct_iteration *it, double *r, const double *x);
 /// out (nu) = x + c J' eta (m); out may be x. nu and m are those of the iteration, given so that a compiler may know them.
 static inline void ct_iteration_push(const struct ct_iteration *it, double *out,
                                      const double *x, double c, const double *eta, const int nu,
                                      const int m)
 {
     const double *J = it->J;
+    if (nu > CT_MOST_INVERTED && it->sparse) {
+        ct_iteration_push_sparse(it, out, x, c, eta);
+        return;
+    }
     for (int k = 0; k < nu; k++, J += m) {
         double sum = 0;
         for (int j = 0; j < m; j++)

@@ -23,6 +23,12 @@ struct ct_dae_abreast {
     void (*evaluate)(void *user);
 };
 
+/// Where K, C, M (nu x nu), D and J (most_rows x nu) have entries, each place at most once: lists one behind the other.
+struct ct_slopes {
+    int nK, nC, nM, nD, nJ;
+    const int *row, *column;
+};
+
 /// The same problem as implicit methods solve it: second order, with constraints.  (formulation 0.4, 8)
 ///
 ///     r(t, q, u, u', lam) = M u' - Q - J' lam = 0,   Phi(q, t) = 0,   v(q, u, t) = J u + Phi_t = 0
@@ -53,6 +59,15 @@ struct ct_dae {
     enum ct_eval (*tangent)(void *user, double t, const double *q, const double *u,
                             const double *a, const double *lam, double *M, double *C, double *K,
                             double *J, double *D);
+
+    /// The same derivatives as lists of entries; NULL: they are not known as such.
+    const struct ct_slopes *slopes;
+    /// *value (out): those of K, C, M, D, J, one list behind the other, until the next call.
+    enum ct_eval (*evaluate_slopes)(void *user, double t, const double *q, const double *u,
+                                    const double *a, const double *lam, const double **value);
+    /// The rows that count now, of most_rows, in the order of lam.
+    const int *(*kept_rows)(void *user);
+    const struct ct_newton_plan *plan[2]; // stabilised: 1; NULL: full matrices serve as well
 
     // what makes steps cheaper, where it is known
     const struct ct_dae_abreast *abreast; // NULL: there is none

@@ -110,7 +110,13 @@ static inline void ct_radau_solve(struct ct_radau *s, const int nu, const int m)
     }
     const double c = it->c, *F = s->F;
     double *d = s->change.d, *u = s->change.u, *eta = s->change.eta;
-    for (int j = 0; j < nu; j++) {
+    const bool is_sparse = nu > CT_MOST_INVERTED && it->sparse;
+    if (is_sparse) {
+        ct_newton_add_mass(it->sparse, s->r, c, F);
+        ct_newton_add_damping(it->sparse, s->r, 1, F);
+        ct_newton_add_rows(it->sparse, s->v, 1, F);
+    }
+    for (int j = 0; j < nu && !is_sparse; j++) {
         ct_vector_add(s->r, c * F[j], it->M + nu * j, (size_t)nu);
         ct_vector_add(s->r, F[j], it->C + nu * j, (size_t)nu);
         ct_vector_add(s->v, F[j], it->J + m * j, (size_t)m);

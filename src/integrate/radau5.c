@@ -204,6 +204,23 @@ static inline void turn_basis(double *z, const double (*turn)[STAGES], int n)
     }
 }
 
+// What solve_complex takes off residuals, with matrices as lists.
+static void reduce_sparse(struct ct_radau *s, double a, double b)
+{
+    const struct ct_newton *matrix = s->it->sparse;
+    const int nu = s->it->nu, m = s->it->m;
+    const double *F = s->F + nu, *G = F + nu;
+    double *r = s->r + nu, *v = s->v + m;
+    ct_newton_add_mass(matrix, r, a, F);
+    ct_newton_add_mass(matrix, r, -b, G);
+    ct_newton_add_damping(matrix, r, 1, F);
+    ct_newton_add_mass(matrix, r + nu, a, G);
+    ct_newton_add_mass(matrix, r + nu, b, F);
+    ct_newton_add_damping(matrix, r + nu, 1, G);
+    ct_newton_add_rows(matrix, v, 1, F);
+    ct_newton_add_rows(matrix, v + m, 1, G);
+}
+
 // The same for the other two: real and imaginary part of one, c = a + i b.
 static inline void solve_complex(struct ct_radau *s, const int nu, const int m)
 {
@@ -211,7 +228,10 @@ static inline void solve_complex(struct ct_radau *s, const int nu, const int m)
     const double a = ALPHA / s->h, b = BETA / s->h, *F = s->F + nu, *G = F + nu;
     double *r = s->r + nu, *v = s->v + m, *d = s->change.d + nu, *u = s->change.u + nu,
            *eta = s->change.eta + m;
-    for (int j = 0; j < nu; j++) {
+    const bool is_sparse = nu > CT_MOST_INVERTED && it->sparse;
+    if (is_sparse)
+        reduce_sparse(s, a, b);
+    for (int j = 0; j < nu && !is_sparse; j++) {
         const double *M = it->M + nu * j, *damping = it->C + nu * j, *J = it->J + m * j;
         ct_vector_add(r, a * F[j] - b * G[j], M, (size_t)nu);
         ct_vector_add(r, F[j], damping, (size_t)nu);

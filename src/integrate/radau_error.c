@@ -50,7 +50,10 @@ static inline double filter_few(struct ct_radau *s, const double *u, const doubl
         defect[k] = -(defect[k] + u_dot[k]);
         s->r[k] = 0;
     }
-    for (int j = 0; j < nu; j++)
+    const bool is_sparse = nu > CT_MOST_INVERTED && it->sparse;
+    if (is_sparse)
+        ct_newton_add_mass(it->sparse, s->r, 1, defect);
+    for (int j = 0; j < nu && !is_sparse; j++)
         for (int k = 0; k < nu; k++)
             s->r[k] += it->M[k + nu * j] * defect[j];
     for (int i = 0; i < m; i++)
@@ -176,10 +179,7 @@ static struct ct_radau_stages answer(struct ct_radau *s, const double *off)
     s->change.lam += m;
     s->change.eta += m;
     memset(s->F, 0, (size_t)nu * sizeof *s->F);
-    memset(s->r, 0, (size_t)nu * sizeof *s->r);
-    for (int j = 0; j < nu; j++)
-        for (int k = 0; k < nu; k++)
-            s->r[k] += it->M[k + nu * j] * off[j];
+    ct_iteration_weigh_mass(it, s->r, off);
     for (int i = 0; i < m; i++)
         s->phi[i] = s->v[i] = 0;
     ct_radau_solve(s, nu, m);

@@ -28,11 +28,12 @@ static void pass_slow(struct ct_iteration *it, const double *u)
 {
     const int nu = it->nu, n = it->n;
     double *b = it->b;
-    memset(b, 0, (size_t)n * sizeof *b);
-    for (int j = 0; j < nu; j++)
-        for (int k = 0; k < nu; k++)
-            b[k] += it->M[k + nu * j] * u[j];
-    ct_lu_solve(b, it->H, it->pivot_slow, n, n, 1, n, false);
+    memset(b + nu, 0, (size_t)(n - nu) * sizeof *b);
+    ct_iteration_weigh_mass(it, b, u);
+    if (it->sparse)
+        ct_newton_solve_slow(it->sparse, b);
+    else
+        ct_lu_solve(b, it->H, it->pivot_slow, n, n, 1, n, false);
 }
 
 // How much of speed k is slow.
@@ -44,15 +45,40 @@ static double remains(struct ct_iteration *it, int k)
     return it->b[k];
 }
 
+static bool has_factors(struct ct_iteration *it, double c)
+{
+    if (it->sparse)
+        return ct_newton_factor_slow(it->sparse, c);
+    ct_iteration_fill(it, it->H, it->n, c, c * c);
+    return ct_lu(it->H, it->pivot_slow, it->n, it->n);
+}
+
+static void find_masses(struct ct_iteration *it)
+{
+    if (it->sparse)
+        ct_newton_masses(it->sparse, it->mass);
+    for (int k = 0; k < it->nu && !it->sparse; k++)
+        it->mass[k] = it->M[k + it->nu * k];
+}
+
+static void find_slow_speeds(struct ct_iteration *it)
+{
+    const double half = 0.5;
+    if (it->sparse)
+        ct_newton_slow_parts(it->sparse, it->off);
+    for (int k = 0; k < it->nu; k++)
+        it->is_slow[k] = (it->sparse ? it->off[k] : remains(it, k)) > half;
+}
+
 // Factors that tell what is slower than c; those of up to twice or half of it will do.
 static bool factor_slow(struct ct_iteration *it, double c)
 {
     if (it->slow > c / 2 && it->slow < 2 * c)
         return true;
-    ct_iteration_fill(it, it->H, it->n, c, c * c);
-    it->slow = ct_lu(it->H, it->pivot_slow, it->n, it->n) ? c : 0;
-    for (int k = 0; k < it->nu && it->slow > 0; k++)
-        it->is_slow[k] = remains(it, k) > 0.5;
+    it->slow = has_factors(it, c) ? c : 0;
+    find_masses(it);
+    if (it->slow > 0)
+        find_slow_speeds(it);
     return it->slow > 0;
 }
 
@@ -63,7 +89,7 @@ static double unfelt_energy(const struct ct_iteration *it, const double *ample)
     double light = INFINITY, most = 0;
     for (int k = 0; k < it->nu; k++)
         if (it->is_slow[k]) {
-            light = fmin(light, it->M[k + it->nu * k]);
+            light = fmin(light, it->mass[k]);
             most = fmax(most, ample[k]);
         }
     return isfinite(light) ? sqrt(light) * most : 0;
@@ -79,6 +105,11 @@ static double form_of(const double *A, const double *x, int nu)
     return sum;
 }
 
+static double mass_form(const struct ct_iteration *it, const double *x)
+{
+    return it->sparse ? ct_newton_mass_form(it->sparse, x) : form_of(it->M, x, it->nu);
+}
+
 // x' M x, and with K, of what is fast of x.
 static void measure_fast(struct ct_iteration *it, const double *x, double *mass,
                          double *stiffness)
@@ -86,17 +117,17 @@ static void measure_fast(struct ct_iteration *it, const double *x, double *mass,
     pass_slow(it, x);
     for (int k = 0; k < it->nu; k++)
         it->off[k] = x[k] - it->b[k];
-    *mass = form_of(it->M, it->off, it->nu);
-    *stiffness = form_of(it->K, it->off, it->nu);
+    *mass = mass_form(it, it->off);
+    *stiffness = it->sparse ? ct_newton_stiffness_form(it->sparse, it->off)
+                            : form_of(it->K, it->off, it->nu);
 }
 
 void ct_iteration_note_energy(struct ct_iteration *it, double small, const double *speeds)
 {
     it->heavy = 0;
     for (int k = 0; k < it->nu; k++)
-        it->heavy = ct_larger(it->heavy, it->M[k + it->nu * k]);
-    it->energy
-        = ct_larger(it->energy, form_of(it->M, speeds, it->nu) + it->heavy * small * small);
+        it->heavy = ct_larger(it->heavy, it->mass[k]);
+    it->energy = ct_larger(it->energy, mass_form(it, speeds) + it->heavy * small * small);
 }
 
 void ct_iteration_foresee_energy(struct ct_iteration *it, double small, double time,
@@ -104,7 +135,7 @@ void ct_iteration_foresee_energy(struct ct_iteration *it, double small, double t
 {
     pass_slow(it, accelerations);
     memcpy(it->off, it->b, (size_t)it->nu * sizeof *it->off);
-    const double force = form_of(it->M, it->off, it->nu); // squared, over a mass
+    const double force = mass_form(it, it->off); // squared, over a mass
     const double on_the_way = 2 * small * sqrt(it->heavy * force),
                  at_the_end = force * time * time;
     it->energy = ct_larger(it->energy, ct_smaller(on_the_way, at_the_end));
@@ -159,7 +190,7 @@ double ct_iteration_slow_norm(struct ct_iteration *it, const struct ct_problem *
         places[k] = p->asked_places[k] ? d[k] : b[k];
     pass_slow(it, u);
     for (int k = 0; k < nu; k++) {
-        const double borne = fmax(ample[k], unfelt / sqrt(it->M[k + nu * k]));
+        const double borne = fmax(ample[k], unfelt / sqrt(it->mass[k]));
         const double fast = (u[k] - b[k]) / (borne * it->share[nu + k]);
         speeds[k] = p->asked_speeds[k] ? u[k] : hypot(b[k], fast);
     }

@@ -2,14 +2,9 @@
 #include "numeric/sparse.h"
 
 #include "numeric/dense.h"
+#include "numeric/klu_include.h"
 
 #if CT_HAS_KLU
-#if __has_include(<suitesparse/klu.h>)
-#include <suitesparse/klu.h>
-#else
-#include <klu.h>
-#endif
-
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>

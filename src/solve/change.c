@@ -2,6 +2,7 @@
 // the one that gets farther for its work goes on.  (8.1)
 #include "solve/run.h"
 
+#include "integrate/newton.h"
 #include "solve/dae.h"
 
 #include <math.h>
@@ -89,14 +90,17 @@ static struct ct_cost find_cost(const struct ct_run *r)
 {
     const struct ct_machine *m = r->m;
     const double explicit_overhead = 150, implicit_overhead = 400;
-    const double n = (double)m->nu + 2. * r->s->rank;
-    const double lu = 2. / 3 * n * n * n, solve = 2 * n * n, complex_also = 5;
+    const struct ct_newton_work w
+        = ct_newton_work(r->problem->dae->plan[1], (int)m->nu + 2 * r->s->rank);
+    const double complex_also = 5;
     return (struct ct_cost){
         .evaluation = operations_of_accelerations(r) + explicit_overhead,
         // three residuals make a correction
-        .residual = operations(&m->residual) + complex_also * solve / 3 + implicit_overhead,
-        .tangent = ct_machine_tangent_operations(m) + 4 * n * n + implicit_overhead,
-        .factorization = complex_also * lu / 2 + implicit_overhead, // one of the two
+        .residual
+        = operations(&m->residual) + complex_also * w.solution / 3 + implicit_overhead,
+        .tangent = ct_machine_tangent_operations(m) + w.assembly + implicit_overhead,
+        .factorization
+        = complex_also * w.factorization / 2 + implicit_overhead, // one of the two
     };
 }
 

@@ -1,6 +1,7 @@
 // See dae.h.
 #include "solve/dae.h"
 
+#include "integrate/newton.h"
 #include "integrate/stepper.h"
 #include "numeric/inverse.h"
 #include "solve/abreast.h"
@@ -112,6 +113,19 @@ static const double *scatter(double *A, int n, size_t nu, const struct ct_slope 
     return value + ns;
 }
 
+static enum ct_eval evaluate_slopes(void *user, double t, const double *q, const double *u,
+                                    const double *a, const double *lam, const double **value)
+{
+    struct ct_embed *s = user;
+    set_input(s, t, q, u, a, lam);
+    ct_machine_tangent(s->m);
+    *value = s->m->slopes;
+    for (size_t i = 0; i < s->m->nslope; i++)
+        if (!isfinite(s->m->slopes[i]))
+            return CT_EVAL_RETRY;
+    return CT_EVAL_OK;
+}
+
 static enum ct_eval tangent(void *user, double t, const double *q, const double *u,
                             const double *a, const double *lam, double *M, double *C, double *K,
                             double *J, double *D)
@@ -119,18 +133,16 @@ static enum ct_eval tangent(void *user, double t, const double *q, const double 
     struct ct_embed *s = user;
     const struct ct_equations *e = s->m->e;
     const struct ct_residual *f = e->residual;
-    const double *value = s->m->slopes;
+    const double *value;
     const int nu = (int)e->nu;
+    const enum ct_eval result = evaluate_slopes(user, t, q, u, a, lam, &value);
+    if (result != CT_EVAL_OK)
+        return result;
     int *place = s->iwork;
     for (size_t i = 0; i < e->nrow; i++)
         place[i] = -1;
     for (int i = 0; i < s->rank; i++)
         place[s->row[i]] = i;
-    set_input(s, t, q, u, a, lam);
-    ct_machine_tangent(s->m);
-    for (size_t i = 0; i < s->m->nslope; i++)
-        if (!isfinite(value[i]))
-            return CT_EVAL_RETRY;
     value = scatter(K, nu, e->nu, f->dq, f->ndq, value, NULL);
     value = scatter(C, nu, e->nu, f->du, f->ndu, value, NULL);
     value = scatter(M, nu, e->nu, f->da, f->nda, value, NULL);
@@ -167,6 +179,41 @@ static const struct ct_dae_abreast *abreast(struct ct_arena *a, struct ct_embed 
     return x;
 }
 
+static const int *kept_rows(void *user)
+{
+    const struct ct_embed *s = user;
+    return s->row;
+}
+
+static int list_slopes(int *row, int *column, const struct ct_slope *s, size_t n)
+{
+    for (size_t i = 0; i < n; i++) {
+        row[i] = (int)s[i].row;
+        column[i] = (int)s[i].direction;
+    }
+    return (int)n;
+}
+
+static const struct ct_slopes *find_slopes(struct ct_arena *a, const struct ct_equations *e)
+{
+    const struct ct_residual *f = e->residual;
+    const size_t n = f->ndq + f->ndu + f->nda + f->ndv + e->nJ;
+    struct ct_slopes *s = CT_NEW(a, struct ct_slopes);
+    int *row = CT_NEWN(a, int, n + 1), *column = CT_NEWN(a, int, n + 1), i = 0;
+    i += s->nK = list_slopes(row + i, column + i, f->dq, f->ndq);
+    i += s->nC = list_slopes(row + i, column + i, f->du, f->ndu);
+    i += s->nM = list_slopes(row + i, column + i, f->da, f->nda);
+    i += s->nD = list_slopes(row + i, column + i, f->dv, f->ndv);
+    s->nJ = (int)e->nJ;
+    for (size_t k = 0; k < e->nJ; k++, i++) {
+        row[i] = e->J[k].row;
+        column[i] = e->J[k].column;
+    }
+    s->row = row;
+    s->column = column;
+    return s;
+}
+
 struct ct_dae *ct_dae_create(struct ct_arena *a, struct ct_embed *s)
 {
     const struct ct_equations *e = s->m->e;
@@ -190,6 +237,11 @@ struct ct_dae *ct_dae_create(struct ct_arena *a, struct ct_embed *s)
                            .chart_rate = chart_rate,
                            .start = start,
                            .residual = residual,
-                           .tangent = tangent};
+                           .tangent = tangent,
+                           .slopes = find_slopes(a, e),
+                           .evaluate_slopes = evaluate_slopes,
+                           .kept_rows = kept_rows};
+    dae->plan[1] = ct_newton_plan_create(a, dae, true);
+    dae->plan[0] = dae->most_rows ? ct_newton_plan_create(a, dae, false) : dae->plan[1];
     return dae;
 }

@@ -1,0 +1,302 @@
+// See factors.h.
+#include "numeric/factors.h"
+
+#include "numeric/klu_include.h"
+#include "numeric/selected.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+// ---- the pattern ------------------------------------------------------------------------------------
+
+struct cell {
+    int column, row, entry;
+};
+
+static int by_place(const void *a, const void *b)
+{
+    const struct cell *p = a, *q = b;
+    return p->column != q->column ? p->column - q->column : p->row - q->row;
+}
+
+struct ct_pattern *ct_pattern_create(struct ct_arena *a, int n, const int *row,
+                                     const int *column, int nentry, int *place)
+{
+    struct ct_pattern *p = CT_NEW(a, struct ct_pattern);
+    struct cell *cell = CT_NEWN(a, struct cell, nentry + 1);
+    p->n = n;
+    p->start = CT_NEWN(a, int, n + 1);
+    p->row = CT_NEWN(a, int, nentry + 1);
+    for (int k = 0; k < nentry; k++)
+        cell[k] = (struct cell){column[k], row[k], k};
+    qsort(cell, (size_t)nentry, sizeof *cell, by_place);
+    for (int k = 0; k < nentry; k++) {
+        if (k == 0 || by_place(&cell[k - 1], &cell[k]) != 0) {
+            p->row[p->nz++] = cell[k].row;
+            p->start[cell[k].column + 1]++;
+        }
+        place[cell[k].entry] = p->nz - 1;
+    }
+    for (int j = 0; j < n; j++)
+        p->start[j + 1] += p->start[j];
+    return p;
+}
+
+#if CT_HAS_KLU
+
+// A diagonal entry is taken as a pivot from this part of the largest in its column, rows scaled by their largest.
+static const double diagonal_preference = 0.1;
+// Pivots are sound while entries of columns grow by no more than so many times what they did when the pivots were sought: as much is
+// lost of the digits.
+static const double most_growth = 1e3;
+
+// ---- orders -----------------------------------------------------------------------------------------
+
+struct ct_pattern_order {
+    klu_common common;
+    klu_symbolic *symbolic;
+};
+
+static void release_order(void *order)
+{
+    struct ct_pattern_order *o = order;
+    klu_free_symbolic(&o->symbolic, &o->common);
+}
+
+bool ct_pattern_minimum_degree(const struct ct_pattern *graph, int *first)
+{
+    klu_common common;
+    klu_defaults(&common); // the order of least degree among them
+    common.btf = 0;
+    klu_symbolic *s = klu_analyze(graph->n, graph->start, graph->row, &common);
+    for (int i = 0; s && i < graph->n; i++)
+        first[i] = s->Q[i];
+    const bool ok = s != NULL;
+    klu_free_symbolic(&s, &common);
+    return ok;
+}
+
+bool ct_pattern_order(struct ct_arena *a, struct ct_pattern *p, double *value, int *first)
+{
+    struct ct_pattern_order *o = CT_NEW(a, struct ct_pattern_order);
+    ct_arena_at_end(a, release_order, o);
+    klu_defaults(&o->common);
+    o->common.btf = 0; // equations of motion hang together
+    o->common.tol = diagonal_preference;
+    o->symbolic = klu_analyze_given(p->n, p->start, p->row, first, first, &o->common);
+    if (!o->symbolic)
+        return false;
+    klu_numeric *numeric = klu_factor(p->start, p->row, value, o->symbolic, &o->common);
+    if (!numeric || o->common.status != KLU_OK) {
+        klu_free_numeric(&numeric, &o->common);
+        return false;
+    }
+    klu_flops(o->symbolic, numeric, &o->common);
+    p->operations = o->common.flops;
+    p->fill = numeric->lnz + numeric->unz;
+    p->order = o;
+    klu_free_numeric(&numeric, &o->common);
+    return true;
+}
+
+// ---- factors ----------------------------------------------------------------------------------------
+
+struct ct_factors {
+    const struct ct_pattern *p;
+    klu_symbolic *symbolic;
+    klu_common common;
+    klu_numeric *numeric;
+    bool is_complex;
+    long sought;
+    double growth; // one over it, when pivots were sought
+    // for entries of the inverse
+    long extracted; // pivots were sought so often then
+    struct ct_arena *arena;
+    struct ct_triangles t;
+    struct ct_selected *selected;
+    double *scale;     // of rows, by pivot  (n)
+    int *row, *column; // of pivots  (n)
+    int *place;        // of what belongs to each entry  (nz)
+    int *scale_of;     // its pivot  (nz)
+};
+
+static void forget(void *factors)
+{
+    struct ct_factors *f = factors;
+    if (f->is_complex)
+        klu_z_free_numeric(&f->numeric, &f->common);
+    else
+        klu_free_numeric(&f->numeric, &f->common);
+}
+
+struct ct_factors *ct_factors_create(struct ct_arena *a, const struct ct_pattern *p,
+                                     bool is_complex)
+{
+    struct ct_factors *f = CT_NEW(a, struct ct_factors);
+    *f = (struct ct_factors){.p = p,
+                             .symbolic = p->order->symbolic,
+                             .common = p->order->common,
+                             .is_complex = is_complex};
+    ct_arena_at_end(a, forget, f);
+    if (!is_complex)
+        f->arena = ct_arena_create_under(a);
+    return f;
+}
+
+// One over the growth of the largest entries of columns; 0 where it cannot be found.
+static double inverse_growth(struct ct_factors *f, double *value)
+{
+    const struct ct_pattern *p = f->p;
+    klu_common *c = &f->common;
+    const bool ok = f->is_complex
+                      ? klu_z_rgrowth(p->start, p->row, value, f->symbolic, f->numeric, c)
+                      : klu_rgrowth(p->start, p->row, value, f->symbolic, f->numeric, c);
+    return ok ? c->rgrowth : 0;
+}
+
+// With the pivots of before; false if these are not sound.
+static bool make_again(struct ct_factors *f, double *value)
+{
+    const struct ct_pattern *p = f->p;
+    klu_common *c = &f->common;
+    const bool ok = f->is_complex
+                      ? klu_z_refactor(p->start, p->row, value, f->symbolic, f->numeric, c)
+                      : klu_refactor(p->start, p->row, value, f->symbolic, f->numeric, c);
+    return ok && c->status == KLU_OK && inverse_growth(f, value) * most_growth >= f->growth;
+}
+
+bool ct_factors_make(struct ct_factors *f, double *value)
+{
+    const struct ct_pattern *p = f->p;
+    if (f->numeric && make_again(f, value))
+        return true;
+    forget(f);
+    f->sought++;
+    f->numeric = f->is_complex ? klu_z_factor(p->start, p->row, value, f->symbolic, &f->common)
+                               : klu_factor(p->start, p->row, value, f->symbolic, &f->common);
+    if (!f->numeric || f->common.status != KLU_OK)
+        return false;
+    f->growth = inverse_growth(f, value);
+    return true;
+}
+
+void ct_factors_solve(struct ct_factors *f, double *x)
+{
+    if (f->is_complex)
+        klu_z_solve(f->symbolic, f->numeric, f->p->n, 1, x, &f->common);
+    else
+        klu_solve(f->symbolic, f->numeric, f->p->n, 1, x, &f->common);
+}
+
+// Room for the factors outside of the library, and the places of what is wanted of the inverse.
+static void prepare_inverse(struct ct_factors *f)
+{
+    const struct ct_pattern *p = f->p;
+    struct ct_arena *a = f->arena;
+    const int n = p->n;
+    ct_arena_clear(a);
+    f->t = (struct ct_triangles){n,
+                                 CT_NEWN(a, int, n + 1),
+                                 CT_NEWN(a, int, f->numeric->lnz + 1),
+                                 CT_NEWN(a, int, n + 1),
+                                 CT_NEWN(a, int, f->numeric->unz + 1),
+                                 CT_NEWN(a, double, f->numeric->lnz + 1),
+                                 CT_NEWN(a, double, f->numeric->unz + 1)};
+    f->scale = CT_NEWN(a, double, n + 1);
+    f->row = CT_NEWN(a, int, n + 1);
+    f->column = CT_NEWN(a, int, n + 1);
+    klu_sort(f->symbolic, f->numeric, &f->common);
+}
+
+static void extract(struct ct_factors *f)
+{
+    const struct ct_triangles *t = &f->t;
+    klu_extract(f->numeric, f->symbolic, t->L_start, t->L_row, t->L, t->U_start, t->U_row, t->U,
+                NULL, NULL, NULL, f->row, f->column, f->scale, NULL, &f->common);
+}
+
+// Entry (row, column) of the matrix belongs to (pivot of its column, pivot of its row) of the factors' inverse.
+static void find_places(struct ct_factors *f)
+{
+    const struct ct_pattern *p = f->p;
+    struct ct_arena *a = f->arena;
+    int *pivot_of_row = CT_NEWN(a, int, p->n + 1), *pivot_of_column = CT_NEWN(a, int, p->n + 1);
+    for (int i = 0; i < p->n; i++) {
+        pivot_of_row[f->row[i]] = i;
+        pivot_of_column[f->column[i]] = i;
+    }
+    f->selected = ct_selected_create(a, &f->t);
+    f->place = CT_NEWN(a, int, p->nz + 1);
+    f->scale_of = CT_NEWN(a, int, p->nz + 1);
+    for (int j = 0; j < p->n; j++)
+        for (int k = p->start[j]; k < p->start[j + 1]; k++) {
+            f->scale_of[k] = pivot_of_row[p->row[k]];
+            f->place[k] = ct_selected_place(f->selected, pivot_of_column[j], f->scale_of[k]);
+        }
+}
+
+void ct_factors_inverse(struct ct_factors *f, double *z)
+{
+    const bool is_new = f->extracted != f->sought;
+    if (is_new)
+        prepare_inverse(f);
+    extract(f);
+    if (is_new)
+        find_places(f);
+    f->extracted = f->sought;
+    const double *Z = ct_selected_find(f->selected);
+    for (int k = 0; k < f->p->nz; k++)
+        z[k] = Z[f->place[k]] / f->scale[f->scale_of[k]];
+}
+
+long ct_factors_sought(const struct ct_factors *f)
+{
+    return f->sought;
+}
+
+#else
+
+bool ct_pattern_order(struct ct_arena *a, struct ct_pattern *p, double *value, int *first)
+{
+    (void)a, (void)p, (void)value, (void)first;
+    return false;
+}
+
+bool ct_pattern_minimum_degree(const struct ct_pattern *graph, int *first)
+{
+    (void)graph, (void)first;
+    return false;
+}
+
+// Nothing below is called without an order.
+
+struct ct_factors *ct_factors_create(struct ct_arena *a, const struct ct_pattern *p,
+                                     bool is_complex)
+{
+    (void)a, (void)p, (void)is_complex;
+    return NULL;
+}
+
+bool ct_factors_make(struct ct_factors *f, double *value)
+{
+    (void)f, (void)value;
+    return false;
+}
+
+void ct_factors_solve(struct ct_factors *f, double *x)
+{
+    (void)f, (void)x;
+}
+
+void ct_factors_inverse(struct ct_factors *f, double *z)
+{
+    (void)f, (void)z;
+}
+
+long ct_factors_sought(const struct ct_factors *f)
+{
+    (void)f;
+    return 0;
+}
+
+#endif

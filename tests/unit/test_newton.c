@@ -1,0 +1,411 @@
+// The matrix of the iteration, (8.2), as a list of entries against the full one, and what it costs.
+#include "tests/check.h"
+
+#include "formulate/formulate.h"
+#include "integrate/iteration.h"
+#include "numeric/dense.h"
+#include "numeric/factors.h"
+#include "solve/dae.h"
+#include "solve/simulate.h"
+
+#include <float.h>
+#include <stdlib.h>
+#include <string.h>
+
+#if CT_HAS_KLU
+
+static const char *const slider_crank = "../systems/slider_crank_flexible/model.yaml";
+static const char *const spin_up = "../systems/spin_up_beam/model.yaml";
+static const char *const free_beam = "unit/models/free_beam.yaml";
+
+// A model read, formulated and started.
+struct job {
+    struct ct_ctx ctx;
+    struct ct_model model;
+    struct ct_equations e;
+    struct ct_run *run;
+    struct ct_dae dae;
+};
+
+// elements: of all beams; 0: the model's own.
+static void open_job(struct job *j, const char *name, enum ct_tree_choice tree, int elements)
+{
+    const struct ct_formulate_options o
+        = {.tree = tree, .with_energy = true, .with_outputs = true, .with_residual = true};
+    const struct ct_formulate_options measuring = {.tree = CT_TREE_JOINTS, .measure_all = true};
+    struct ct_equations measured;
+    struct ct_tree_report report;
+    struct ct_start start;
+    *j = (struct job){.ctx = {.model = ct_arena_create(), .scratch = ct_arena_create()}};
+    const char *path = ct_arena_printf(j->ctx.model, "%s/%s", getenv("CT_TEST_DIR"), name);
+    const struct ct_set set[] = {{ct_arena_printf(j->ctx.model, "n=%d", elements)},
+                                 {ct_arena_printf(j->ctx.model, "m=%d", elements)}};
+    const size_t nset = elements == 0 ? 0 : name == slider_crank ? 2 : 1;
+    const bool ok
+        = ct_model_read(&j->ctx, path, set, nset, &j->model)
+       && ct_formulate(&j->ctx, j->ctx.model, &j->model, &o, &j->e, &report)
+       && ct_formulate(&j->ctx, j->ctx.model, &j->model, &measuring, &measured, &report)
+       && ct_assemble(&j->ctx, j->ctx.model, &j->model, &measured, &start)
+       && (j->run = ct_run_create(&j->ctx, j->ctx.model, &j->model, &j->e, &start));
+    ct_ctx_print(&j->ctx, stdout);
+    assert_true(ok);
+    j->dae = *ct_dae_create(j->ctx.model, ct_run_embed(j->run));
+}
+
+static void close_job(struct job *j)
+{
+    ct_arena_destroy(j->ctx.model);
+    ct_arena_destroy(j->ctx.scratch);
+}
+
+static uint64_t seed = 1;
+
+// Between -1 and 1; multiplicative congruential.
+static double random_number(void)
+{
+    seed = seed * 6364136223846793005u + 1442695040888963407u;
+    return (double)(int64_t)(seed >> 11) / (double)(1ll << 52) - 1;
+}
+
+static void randomise(double *x, int n)
+{
+    for (int i = 0; i < n; i++)
+        x[i] = random_number();
+}
+
+// ---- sparse against full ------------------------------------------------------------------------------
+
+// Both ways to solve the same systems: [0] full, [1] sparse.
+struct pair {
+    struct ct_dae dae[2];
+    struct ct_problem problem[2];
+    struct ct_iteration *it[2];
+    double *y, *q, *u, *a, *lam;
+};
+
+static void create_pair(struct job *j, struct pair *p, bool is_stabilised)
+{
+    struct ct_arena *a = j->ctx.model;
+    const int nu = j->dae.nu, nq = j->dae.nq;
+    const bool *asked = CT_NEWN(a, bool, nu + 1); // none
+    *p = (struct pair){.y = CT_NEWN(a, double, nq + nu + 1)};
+    for (int k = 0; k < 2; k++) {
+        p->dae[k] = j->dae;
+        p->dae[k].plan[is_stabilised]
+            = k ? ct_newton_plan_anyway(a, &j->dae, is_stabilised) : NULL;
+        assert_true(k == 0 || p->dae[k].plan[is_stabilised]);
+        p->problem[k] = (struct ct_problem){
+            .ny = nq + nu, .dae = &p->dae[k], .asked_speeds = asked, .asked_places = asked};
+        p->it[k] = ct_iteration_create(a, &p->problem[k], is_stabilised, is_stabilised);
+    }
+    memcpy(p->y, ct_run_state(j->run), (size_t)nq * sizeof *p->y);
+    double *d = CT_NEWN(a, double, nu + 1);
+    randomise(d, nu);
+    for (int k = 0; k < nu; k++)
+        d[k] *= 1e-3;
+    p->q = CT_NEWN(a, double, nq + 1);
+    p->u = CT_NEWN(a, double, nu + 1);
+    p->a = CT_NEWN(a, double, nu + 1);
+    p->lam = CT_NEWN(a, double, j->dae.most_rows + 1);
+    j->dae.retract(j->dae.user, p->y, d, p->q);
+    randomise(p->u, nu);
+    randomise(p->a, nu);
+    randomise(p->lam, j->dae.most_rows);
+    memcpy(p->y + nq, p->u, (size_t)nu * sizeof *p->u);
+}
+
+enum { MOST = 2000 };
+
+// |b - A x| / (|b| + |A| |x|) of the worst row, for the matrix for 1/w and right-hand side as full matrices have them.
+static double backward_error(const struct ct_iteration *it, double _Complex w,
+                             const double _Complex *x, const double _Complex *b)
+{
+    const int n = it->n, nu = it->nu;
+    double worst = 0;
+    for (int i = 0; i < n; i++) {
+        double _Complex left = b[i];
+        double size = cabs(b[i]);
+        for (int j = 0; j < n; j++) {
+            const double _Complex a = it->S[i + n * j] + w * it->X[i + n * j]
+                                    + (i < nu ? w * w : w) * it->W[i + n * j];
+            left -= a * x[j];
+            size += cabs(a * x[j]);
+        }
+        worst = fmax(worst, cabs(left) / (size + 1e-300));
+    }
+    return worst;
+}
+
+// The larger of both errors, full and sparse, of solutions for one right-hand side, c = s.
+static void compare_solutions(struct pair *p, double _Complex s, double error[2])
+{
+    static double r[MOST], phi[MOST], v[MOST], d[MOST], eta[MOST], lam[MOST];
+    static double _Complex x[MOST], b[MOST];
+    const int nu = p->it[0]->nu, m = p->it[0]->m, n = p->it[0]->n;
+    const bool is_complex = cimag(s) > 0;
+    const int parts = is_complex ? 2 : 1, rows = is_complex ? m : 0;
+    memset(v, 0, sizeof v);
+    randomise(r, parts * nu);
+    randomise(phi, parts * m);
+    if (p->it[0]->is_stabilised)
+        randomise(v, parts * m);
+    for (int k = 0; k < 2; k++) {
+        struct ct_iteration *it = p->it[k];
+        if (is_complex)
+            ct_iteration_solve_complex(it, d, eta, lam, r, phi, v);
+        else
+            ct_iteration_solve(it, d, eta, lam, r, phi, v);
+        for (int i = 0; i < nu; i++) {
+            x[i] = CMPLX(d[i], is_complex ? d[i + nu] : 0);
+            b[i] = -CMPLX(r[i], is_complex ? r[i + nu] : 0) / (s * s);
+        }
+        for (int i = 0; i < m; i++) {
+            x[nu + i] = CMPLX(eta[i], is_complex ? eta[i + rows] : 0);
+            x[n - m + i] = CMPLX(lam[i], is_complex ? lam[i + rows] : 0) / (s * s);
+            b[n - m + i] = -CMPLX(v[i], is_complex ? v[i + rows] : 0) / s;
+            b[nu + i] = -CMPLX(phi[i], is_complex ? phi[i + rows] : 0);
+        }
+        error[k] = fmax(error[k], backward_error(p->it[0], 1 / s, x, b));
+    }
+}
+
+// (8.10), (8.13): what is slow of errors, and the energy of the rest.
+static double compare_vibrations(struct pair *p)
+{
+    const int nu = p->it[0]->nu;
+    static double d[MOST], u[MOST], ample[MOST];
+    double found[2][6];
+    const struct ct_tolerance tolerance = {1e-6, 1e-6};
+    randomise(d, nu);
+    randomise(u, nu);
+    for (int k = 0; k < nu; k++)
+        ample[k] = 1;
+    for (int k = 0; k < 2; k++) {
+        double *x = found[k];
+        x[0] = ct_iteration_slow_norm(p->it[k], &p->problem[k], &tolerance, p->y, ample, d, u,
+                                      &x[1]);
+        assert_true(isfinite(x[0]));
+        ct_iteration_note_energy(p->it[k], 1e-3, u);
+        x[2] = p->it[k]->energy;
+        const struct ct_vibration w = ct_iteration_vibration(p->it[k], 3.6, 1e-3, d, u);
+        x[3] = w.present;
+        x[4] = w.lost;
+        ct_iteration_foresee_energy(p->it[k], 1e-3, 1, u);
+        x[5] = p->it[k]->energy;
+    }
+    double worst = 0;
+    for (int i = 0; i < 6; i++)
+        worst = fmax(worst, fabs(found[0][i] - found[1][i]) / (fabs(found[0][i]) + 1e-300));
+    for (int k = 0; k < nu; k++)
+        assert_int_equal(p->it[0]->is_slow[k], p->it[1]->is_slow[k]);
+    return worst;
+}
+
+static const double real_pace = 4;
+static const double _Complex complex_pace = CMPLX(2.7, 3);
+
+// At the same point, with derivatives anew.
+static void renew(struct pair *p, double h)
+{
+    struct ct_integrate_stats stats = {0};
+    for (int k = 0; k < 2; k++) {
+        struct ct_iteration *it = p->it[k];
+        ct_iteration_begin(it, NULL, h, p->y);
+        ct_iteration_forget(it);
+        assert_int_equal(ct_iteration_refresh(it, 0, p->q, p->u, p->a, p->lam, &stats),
+                         CT_EVAL_OK);
+        const double c = real_pace / h;
+        assert_true(ct_iteration_factor_anew(it, c, c * c,
+                                             it->is_stabilised ? complex_pace / h : 0, &stats));
+    }
+    assert_int_equal(p->it[0]->m, p->it[1]->m);
+}
+
+static void compare_at(const char *name, struct pair *p, double h)
+{
+    double error[2] = {0};
+    renew(p, h);
+    const bool is_stabilised = p->it[0]->is_stabilised;
+    compare_solutions(p, real_pace / h, error);
+    if (is_stabilised)
+        compare_solutions(p, complex_pace / h, error);
+    const double vibrations = is_stabilised ? compare_vibrations(p) : 0;
+    printf("%s, h = %g: %d speeds, %d rows; full %.0e, sparse %.0e, vibrations %.0e\n", name, h,
+           p->it[0]->nu, p->it[0]->m, error[0], error[1], vibrations);
+    // pivots are a thousandth of their columns at least, and lose as much again before others are sought
+    assert_true(error[1] <= 1e6 * DBL_EPSILON);
+    assert_true(vibrations <= 1e-6); // differences of what is slow and of all
+}
+
+// Rows drop out and come back, as they do where others have become the independent ones.
+static void change_rows(struct job *j, struct pair *p, const char *name)
+{
+    struct ct_embed *s = ct_run_embed(j->run);
+    if (s->rank < 2)
+        return;
+    const int rank = s->rank, first = s->row[0];
+    s->row[0] = s->row[rank - 1];
+    s->rank = rank - 1;
+    s->switches++;
+    compare_at(name, p, 1e-3);
+    s->row[0] = first;
+    s->rank = rank;
+    s->switches++;
+    compare_at(name, p, 1e-3);
+}
+
+static void compare(const char *name, enum ct_tree_choice tree, int elements)
+{
+    static const double steps[] = {1e-5, 1e-3, 1e-1};
+    for (int is_stabilised = 0; is_stabilised < 2; is_stabilised++) {
+        struct job j;
+        struct pair p;
+        open_job(&j, name, tree, elements);
+        create_pair(&j, &p, is_stabilised);
+        for (size_t i = 0; i < COUNT(steps); i++)
+            compare_at(name, &p, steps[i]);
+        change_rows(&j, &p, name);
+        close_job(&j);
+    }
+}
+
+static void sparse_matrices_have_the_solutions_of_full_ones(void **unused)
+{
+    (void)unused;
+    compare(spin_up, CT_TREE_JOINTS, 8);
+    compare(free_beam, CT_TREE_JOINTS, 6);
+    compare(slider_crank, CT_TREE_JOINTS, 6);
+    compare("../systems/flexible_four_bar/model.yaml", CT_TREE_AUTO, 0);
+    compare("../systems/stewart/model.yaml", CT_TREE_ABSOLUTE, 0);
+    compare("../systems/bricard/model.yaml", CT_TREE_ABSOLUTE, 0); // with a redundant row
+    compare("../systems/chain40/model.yaml", CT_TREE_JOINTS, 0);
+    compare("../systems/chain40/model.yaml", CT_TREE_ABSOLUTE, 0);
+}
+
+// ---- pivots -------------------------------------------------------------------------------------------
+
+// A pivot that was sound is next to nothing in the next matrix: its factors are no longer used.
+static void unsound_pivots_are_sought_anew(void **unused)
+{
+    (void)unused;
+    struct ct_arena *a = ct_arena_create();
+    const int row[] = {0, 1, 0, 1}, column[] = {0, 0, 1, 1};
+    int place[4], first[] = {0, 1};
+    double sound[] = {2, 1, 1, 2}, unsound[] = {1e-14, 1, 1, 1}, x[] = {1, 2};
+    struct ct_pattern *p = ct_pattern_create(a, 2, row, column, 4, place);
+    assert_true(ct_pattern_order(a, p, sound, first));
+    struct ct_factors *f = ct_factors_create(a, p, false);
+    assert_true(ct_factors_make(f, sound));
+    sound[0] = 3;
+    assert_true(ct_factors_make(f, sound));
+    assert_int_equal(ct_factors_sought(f), 1);
+    assert_true(ct_factors_make(f, unsound));
+    assert_int_equal(ct_factors_sought(f), 2);
+    ct_factors_solve(f, x); // x + y = 2, 1e-14 x + y = 1
+    assert_true(fabs(x[0] - 1) < 1e-13 && fabs(x[1] - 1) < 1e-13);
+    ct_arena_destroy(a);
+}
+
+// A band matrix with a border: each entry against a solution for a column of the identity.
+static void entries_of_the_inverse_are_those_of_solutions(void **unused)
+{
+    (void)unused;
+    enum { N = 30, MOST_ENTRIES = 9 * N };
+    struct ct_arena *a = ct_arena_create();
+    int row[MOST_ENTRIES], column[MOST_ENTRIES], place[MOST_ENTRIES], first[N], n = 0;
+    double value[MOST_ENTRIES] = {0}, z[MOST_ENTRIES], x[N];
+    for (int i = 0; i < N; i++) {
+        first[i] = N - 1 - i;
+        for (int j = 0; j < N; j++)
+            if (abs(i - j) <= 2 || i == 7 || j == 7) {
+                row[n] = i;
+                column[n++] = j;
+            }
+    }
+    struct ct_pattern *p = ct_pattern_create(a, N, row, column, n, place);
+    struct ct_factors *f = NULL;
+    for (int trial = 0; trial < 3; trial++) {
+        for (int k = 0; k < n; k++)
+            value[place[k]] = random_number() * exp(3 * random_number());
+        if (!f) {
+            assert_true(ct_pattern_order(a, p, value, first));
+            f = ct_factors_create(a, p, false);
+        }
+        assert_true(ct_factors_make(f, value));
+        ct_factors_inverse(f, z);
+        for (int i = 0; i < N; i++) {
+            memset(x, 0, sizeof x);
+            x[i] = 1;
+            ct_factors_solve(f, x); // column i of the inverse
+            const double size = ct_vector_largest(x, N);
+            for (int k = 0; k < n; k++)
+                if (row[k] == i)
+                    assert_true(fabs(z[place[k]] - x[column[k]]) <= 1e-10 * size);
+        }
+    }
+    ct_arena_destroy(a);
+}
+
+// ---- what it costs ------------------------------------------------------------------------------------
+
+// Of a step: derivatives, factors and solutions.
+static double work_of_step(const char *name, int elements)
+{
+    struct job j;
+    open_job(&j, name, CT_TREE_JOINTS, elements);
+    const struct ct_dae *dae = &j.dae;
+    const int n = dae->nu + 2 * dae->most_rows, solutions = 8;
+    const struct ct_newton_work w = ct_newton_work(dae->plan[1], n);
+    printf("%s, %d elements: n %d, %s, assembly %.3g, factorization %.3g, solution %.3g\n",
+           name, elements, n, dae->plan[1] ? "sparse" : "full", w.assembly, w.factorization,
+           w.solution);
+    close_job(&j);
+    return w.assembly + w.factorization + solutions * w.solution;
+}
+
+static void steps_of_beams_cost_in_proportion_to_their_elements(void **unused)
+{
+    (void)unused;
+    static const char *const names[] = {spin_up, free_beam, slider_crank};
+    for (size_t i = 0; i < COUNT(names); i++) {
+        const double few = work_of_step(names[i], 20), many = work_of_step(names[i], 80);
+        printf("%.2f times the work of 20 elements\n", many / few);
+        assert_true(many < 1.1 * 4 * few);
+    }
+}
+
+static void small_systems_keep_full_matrices(void **unused)
+{
+    (void)unused;
+    static const char *const names[]
+        = {"../systems/four_bar/model.yaml", "../systems/puma560/model.yaml",
+           "../systems/chain40/model.yaml"};
+    for (size_t i = 0; i < COUNT(names); i++) {
+        struct job j;
+        open_job(&j, names[i], CT_TREE_JOINTS, 0);
+        assert_null(j.dae.plan[0]);
+        assert_null(j.dae.plan[1]);
+        close_job(&j);
+    }
+}
+
+int main(void)
+{
+    static const struct CMUnitTest tests[] = {
+        cmocka_unit_test(sparse_matrices_have_the_solutions_of_full_ones),
+        cmocka_unit_test(unsound_pivots_are_sought_anew),
+        cmocka_unit_test(entries_of_the_inverse_are_those_of_solutions),
+        cmocka_unit_test(steps_of_beams_cost_in_proportion_to_their_elements),
+        cmocka_unit_test(small_systems_keep_full_matrices),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
+
+#else
+
+int main(void)
+{
+    return 77; // skipped
+}
+
+#endif
