@@ -114,7 +114,8 @@ void ct_driver_plan(struct ct_driver *r, double stop, bool is_time, struct ct_st
     s->method = r->method;
     s->work = r->work;
     s->is_striding = length > 0;
-    s->is_landing = s->is_event = s->is_interpolated = s->is_off_between = false;
+    s->is_landing = s->is_event = s->is_interpolated = false;
+    s->is_off_between = s->is_damping = false;
     s->error = 0;
     if (s->is_striding) {
         s->h = length;

@@ -26,6 +26,11 @@ static const double moved_roundings = 4;
 static const double further = 1e-6;
 // After convergence corrections that are not halved have come to rounding.
 static const double halved = 0.5;
+// Those before have come near enough when each was less than this part of the last, as it is with derivatives that are kept.
+static const double shrinking = 0.1;
+// So much of what is seen of roundings may come together in a correction: stages add up three times as much, and no two looks are
+// alike. They are seen where places are so few of theirs away.
+static const double together = 8, few = 16;
 // In the index-3 form places alone are judged, and speeds follow them divided by the step.
 static const double kappa_index3 = 0.01;
 enum { MOST = 10, MOST_FINEST = 30 };
@@ -78,6 +83,14 @@ struct ct_iteration *ct_iteration_create(struct ct_arena *a, const struct ct_pro
         it->response = ct_response_create(a, nu, m, is_complex);
     it->off = CT_NEWN(a, double, p->ny);
     it->fast = CT_NEWN(a, double, 2 * nu + 1);
+    it->noise = CT_NEWN(a, double, 2 * nu + 1);
+    it->probe = (struct ct_probe){
+        .q = CT_NEWN(a, double, dae->nq + 1),
+        .d = CT_NEWN(a, double, nu + 1),
+        .r = CT_NEWN(a, double, nu + 1),
+        .rows = CT_NEWN(a, double, 2 * m + 1),
+        .zero = CT_NEWN(a, double, nu + m + 1),
+    };
     if (is_complex) {
         it->w = CT_NEWN(a, double, nu + 1);
         it->is_slow = CT_NEWN(a, bool, nu + 1);
@@ -146,6 +159,7 @@ bool ct_iteration_begin(struct ct_iteration *it, const struct ct_tolerance *tole
     const double rounding = DBL_EPSILON * largest_place(it, y);
     const double least_speed = tolerance ? moved_roundings * rounding / h : 0;
     it->least = place_rounding * rounding;
+    it->y = y;
     const bool is_plain = dae->is_plain && !it->groups;
     if (is_plain && it->nu == 1)
         weigh_plain(it, tol->rtol, tol->atol, least_speed, y, 1);
@@ -299,6 +313,7 @@ enum ct_eval ct_iteration_refresh(struct ct_iteration *it, double t, const doubl
     const enum ct_eval e = evaluate(it, t, q, u, a, lam);
     it->has_tangent = e == CT_EVAL_OK;
     it->is_worn = false;
+    it->t = t;
     if (e != CT_EVAL_OK)
         return e;
     stats->jacobians++;
@@ -371,6 +386,7 @@ bool ct_iteration_factor_anew(struct ct_iteration *it, double c, double e, doubl
 {
     const int n = it->n;
     it->c = it->e = 0;
+    it->has_noise = false;
     stats->factorizations++;
     if (!factor_real(it, c, e))
         return false;
@@ -570,6 +586,73 @@ void ct_iteration_go_on(struct ct_iteration *it)
     it->kappa_for = NAN; // in this step only
 }
 
+// Between 1 and 2 or -2 and -1 by chance, another for each k: a pattern would miss some motions.
+static double toss(unsigned k)
+{
+    const double odd = 0x1p-24;
+    k = (k + 1) * 2654435769u; // 2^32 over the golden ratio
+    k = (k ^ k >> 15) * 2246822519u;
+    k = (k ^ k >> 13) * 3266489917u;
+    return (k & 1 ? 1 : -1) * (1 + odd * (k >> 8));
+}
+
+// Forces at q and speeds of the step's start into r (nu); no accelerations, no multipliers.
+static bool find_forces(struct ct_iteration *it, const double *q, double *r)
+{
+    const struct ct_probe *p = &it->probe;
+    const double *u = it->y + it->dae->nq;
+    return it->dae->residual(it->dae->user, it->t, q, u, p->zero, p->zero, r, p->rows,
+                             p->rows + it->m)
+        == CT_EVAL_OK;
+}
+
+// b (nu) = the rounding of forces, and what that of places makes of them: by how much those a few roundings of places away, d, are not
+// what K says.
+static bool round_forces(struct ct_iteration *it, double *b)
+{
+    const int nu = it->nu;
+    const struct ct_dae *dae = it->dae;
+    const struct ct_probe *p = &it->probe;
+    for (int k = 0; k < nu; k++) {
+        const double place = dae->q_of[k] < 0 ? 1 : it->y[dae->q_of[k]];
+        p->d[k] = toss((unsigned)k) * few * DBL_EPSILON * place;
+    }
+    ct_iteration_move(dae, it->y, p->d, p->q);
+    if (!find_forces(it, it->y, b) || !find_forces(it, p->q, p->r))
+        return false;
+    for (int k = 0; k < nu; k++)
+        b[k] -= p->r[k];
+    if (it->sparse)
+        ct_newton_add_stiffness(it->sparse, b, 1, p->d);
+    for (int j = 0; j < nu && !it->sparse; j++)
+        ct_vector_add(b, p->d[j], it->K + nu * j, (size_t)nu);
+    return true;
+}
+
+const double *ct_iteration_noise(struct ct_iteration *it)
+{
+    const int nu = it->nu;
+    double *b = it->b, *d = it->noise, *u = d + nu;
+    if (it->has_noise)
+        return d;
+    it->has_noise = true;
+    memset(d, 0, 2 * (size_t)nu * sizeof *d);
+    memset(b, 0, (size_t)it->n * sizeof *b);
+    if (!round_forces(it, b))
+        return d;
+    if (it->is_few) { // places and speeds, one behind the other
+        ct_product(it->x, it->response->real, b, it->response->rows, it->response->in);
+        ct_stepper_copy(d, it->x, 2 * nu);
+        return d;
+    }
+    for (int k = 0; k < nu; k++)
+        b[k] *= it->by_r;
+    ct_stepper_copy(d, solve_real(it), nu);
+    for (int k = 0; k < nu; k++)
+        u[k] = it->c * d[k];
+    return d;
+}
+
 static bool is_within(const double *d, int n, double most)
 {
     for (int i = 0; i < n; i++)
@@ -604,6 +687,19 @@ static bool is_rounding(const struct ct_iteration *it, double rate, double size)
     return rate >= 1 && !is_too_early(it) && size <= it->rounding;
 }
 
+// Nor does one that a rounding of the forces may be the reason of, where corrections shrink no more: stiff forces of places that
+// are large beside their own motion, as of a beam of many elements, are known no better, and in shorter steps hardly so.
+static bool is_noise(struct ct_iteration *it, double rate, double size, bool has_speeds)
+{
+    const bool has_stalled
+        = rate >= 1 || (rate >= halved && it->count > 2 && it->rate < shrinking);
+    if (!has_stalled || it->is_finest)
+        return false;
+    const double *noise = ct_iteration_noise(it);
+    const double *u = has_speeds ? noise + it->nu : NULL;
+    return size <= together * ct_iteration_norm(it, noise, u, it->nu, 1);
+}
+
 // Half a rounding of the largest place moves no place as large, and what is left of the constraints comes back in others,
 // halved perhaps from one correction to the next: neither more of them nor shorter steps make it less.
 static bool is_unfelt(const struct ct_iteration *it, double size, const double *d,
@@ -623,7 +719,7 @@ enum ct_verdict ct_iteration_judge(struct ct_iteration *it, double size, const d
         const int n = k * it->nu;
         if (is_rounding(it, rate, size)
             || (rate >= 1 && !is_too_early(it) && is_within(d, n, it->least))
-            || is_unfelt(it, size, d, u, n))
+            || is_unfelt(it, size, d, u, n) || is_noise(it, rate, size, u != NULL))
             return CT_CONVERGED;
         take_rate(it, rate);
         if (rate >= hopeless || (it->rate >= 1 && it->count > 3))

@@ -27,6 +27,13 @@
 
 enum ct_verdict { CT_GO_ON, CT_CONVERGED, CT_DIVERGED };
 
+/// Where rounding of forces is looked at.
+struct ct_probe {
+    double *q, *d;    // a place beside that of the step, its distance  (nq), (nu)
+    double *r, *rows; // residuals there  (nu), (rows x 2)
+    double *zero;     // accelerations and multipliers  (larger of nu and rows)
+};
+
 struct ct_iteration {
     const struct ct_dae *dae;
     const struct ct_groups *groups; // of the states
@@ -65,8 +72,13 @@ struct ct_iteration {
     double per_speed; // 1/nu; 0: there are none
     double *
         share; // one over what changes of places and speeds are measured against, zeros behind  (2 nu, as padded)
-    double *off;  // an error of the states  (ny)
-    double *fast; // one of places and speeds as vibrations count  (2 nu)
+    double *off;     // an error of the states  (ny)
+    double *fast;    // one of places and speeds as vibrations count  (2 nu)
+    const double *y; // the start of the step
+    double t;        // of the derivatives
+    double *noise;   // what a rounding of forces is worth in places and speeds, (8.17)  (2 nu)
+    bool has_noise;  // with the factors there are
+    struct ct_probe probe;
     // the run of corrections
     int count;
     double kappa, rounding; // a correction below: converged; below: not to be bettered
@@ -245,6 +257,10 @@ double ct_iteration_error(struct ct_iteration *it, const struct ct_problem *p,
 double ct_iteration_amplified(struct ct_iteration *it, const struct ct_problem *p,
                               const struct ct_tolerance *tolerance, double t1, const double *y1,
                               const double *d, const double *u);
+
+/// Places and speeds (2 nu) that the rounding of forces leads to, with the factors of the real system; two residuals, for which
+/// `b` is overwritten, but zeros where they cannot be found. Corrections cannot be told from it.  (8.17)
+const double *ct_iteration_noise(struct ct_iteration *it);
 
 /// Before the first correction.
 void ct_iteration_start(struct ct_iteration *it);

@@ -587,6 +587,11 @@ void ct_newton_add_damping(const struct ct_newton *s, double *y, double c, const
     add_product(&s->p->C, s->v, y, c, x);
 }
 
+void ct_newton_add_stiffness(const struct ct_newton *s, double *y, double c, const double *x)
+{
+    add_product(&s->p->K, s->v, y, c, x);
+}
+
 void ct_newton_add_rows(const struct ct_newton *s, double *y, double c, const double *x)
 {
     const struct list *J = &s->p->J;

@@ -53,6 +53,7 @@ void ct_newton_slow_parts(struct ct_newton *s, double *part);
 /// y (nu) += c A x (nu)
 void ct_newton_add_mass(const struct ct_newton *s, double *y, double c, const double *x);
 void ct_newton_add_damping(const struct ct_newton *s, double *y, double c, const double *x);
+void ct_newton_add_stiffness(const struct ct_newton *s, double *y, double c, const double *x);
 /// y (m) += c J x; y (nu) += c J' x (m)
 void ct_newton_add_rows(const struct ct_newton *s, double *y, double c, const double *x);
 void ct_newton_add_push(const struct ct_newton *s, double *y, double c, const double *x);

@@ -321,6 +321,9 @@ bool ct_trial_step(struct ct_trial *r, double t)
 
 double ct_trial_pace(const struct ct_trial *r)
 {
+    if (r->nstep <= warming(r)
+        && r->t >= r->end) // the rest of the run is less than the trial: all of it counts
+        return (r->t - r->start) / work(r);
     return r->nstep > warming(r) ? (r->t - r->t0) / (work(r) - r->spent0) : 0;
 }
 

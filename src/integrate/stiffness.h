@@ -48,6 +48,7 @@ struct ct_trial {
     const struct ct_integrate_stats *stats; // of the trial, while it runs
     bool has_to_damp; // vibrations that the other method has kept, before steps get long
     int nstep;
+    double start, end;    // from where on, and the end of the run
     double t0, t, spent0; // where counting began, where it is, the work before
     double pace;          // of all steps, where a trial does not end
 };

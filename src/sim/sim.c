@@ -226,13 +226,15 @@ static void warn_of_singular_start(struct ct_sim *sim)
                               ct_run_state(sim->run), row))
         return;
     const char *names = joints_of(sim, row, &first);
-    if (first >= 0)
-        ct_warning(
-            &sim->own, sim->system->model.joint[first].mark, 0,
-            "the mechanism starts in a singular position: constraints of %s depend on others "
-            "there and not elsewhere; beside it there are fewer freedoms, and several "
-            "motions may begin in it",
-            names);
+    if (first < 0)
+        return;
+    ct_run_note_singular_start(sim->run, names);
+    ct_warning(
+        &sim->own, sim->system->model.joint[first].mark, 0,
+        "the mechanism starts in a singular position: constraints of %s depend on others "
+        "there and not elsewhere; beside it there are fewer freedoms, and several "
+        "motions may begin in it",
+        names);
 }
 
 static bool prepare(struct ct_sim *sim, const struct ct_sim_options *o)

@@ -110,8 +110,11 @@ static double try_implicit(struct ct_run *r, const struct ct_problem *p,
 {
     struct ct_machine *m = r->m;
     struct ct_integrate_options trial_io = *io;
-    struct ct_trial trial
-        = {.cost = *cost, .stats = &r->stats, .has_to_damp = r->stiffness->is_far};
+    struct ct_trial trial = {.cost = *cost,
+                             .stats = &r->stats,
+                             .start = io->t0,
+                             .end = io->t1,
+                             .has_to_damp = r->stiffness->is_far};
     const size_t ndiagnostic = r->ctx->ndiagnostic, nerror = r->ctx->nerror;
     const double pending = r->pending, turning = r->turning, t_turning = r->t_turning;
     const struct ct_singular singular = *r->singular; // none is near

@@ -54,10 +54,11 @@ static bool has_worn(const struct ct_embed *s)
                        s->rank < (int)s->m->nrow);
 }
 
-// With a single row sigma is 1 everywhere.
+// With a single row sigma is 1 everywhere. On a crossing what is left is divided twice by a pivot that is smaller than where it
+// began, and lengths may be small: nothing is near enough but rounding.
 static double nearness(const struct ct_embed *s)
 {
-    return ct_smaller(s->sigma, s->nearness);
+    return s->is_crossing ? 0 : ct_smaller(s->sigma, s->nearness);
 }
 
 static enum ct_eval project_by_matrices(struct ct_embed *s, double t, double *y)

@@ -1,6 +1,8 @@
 // What is said of runs that end before their time: which constraints, and where.
 #include "solve/run.h"
 
+#include "numeric/dense.h"
+
 #include <string.h>
 
 // Of the first row that is marked.
@@ -115,6 +117,26 @@ static bool name_lost(struct ct_run *r)
     return true;
 }
 
+void ct_run_note_singular_start(struct ct_run *r, const char *joints)
+{
+    r->singular_joints = joints;
+}
+
+// Where the run began there are fewer independent rows than on each of the motions that go on from there, and none is taken.
+static void name_singular_start(struct ct_run *r)
+{
+    const double near
+        = 0.1; // [rad or m], as far as ct_singular_is_start looks: what ends it later is something else
+    const double way = r->stats.last_time * ct_vector_size(r->y + r->m->nq, r->m->nu);
+    if (r->singular_joints && way < near)
+        ct_note(
+            r->ctx, (struct ct_mark){0},
+            "the run began in a singular position, where constraints of %s do not count and "
+            "several motions go on: start a little beside it, a joint off by 1e-3, on the "
+            "one that is meant",
+            r->singular_joints);
+}
+
 void ct_run_explain_end(struct ct_run *r)
 {
     const size_t n = r->ctx->ndiagnostic;
@@ -133,4 +155,6 @@ void ct_run_explain_end(struct ct_run *r)
         name_singular(r, "");
     else if (code == CT_E_STEP_REFUSED)
         name_singular(r, ", which steps are not fitted to: leave out 'step'");
+    if (is_stuck || code == CT_E_STEP_OPEN)
+        name_singular_start(r);
 }

@@ -62,6 +62,8 @@ struct ct_run {
     bool is_suspect;                  // steps ended to think of another method
     bool is_to_follow;                // or to hold them to the phase of vibrations
     bool amplifies;                   // outputs do, at the start
+    const char
+        *singular_joints; // whose constraints depend at the start and not elsewhere; NULL: none
     double felt; // part of an output that vibrations make which an explicit method follows
     double t_before, last_event; // times
     size_t ngiven;               // samples

@@ -271,6 +271,7 @@ struct ct_run *ct_run_create(struct ct_ctx *ctx, struct ct_arena *a,
 
 bool ct_run_restart(struct ct_run *r, const struct ct_start *start)
 {
+    r->singular_joints = NULL;
     ct_machine_reset(r->m);
     r->s->kappa = r->s->sigma = 0;
     r->pending = INFINITY;

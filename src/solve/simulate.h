@@ -93,6 +93,8 @@ bool ct_run_begin(struct ct_run *r, const struct ct_start *start);
 bool ct_run_restart(struct ct_run *r, const struct ct_start *start);
 struct ct_machine *ct_run_machine(struct ct_run *r);
 struct ct_embed *ct_run_embed(struct ct_run *r);
+/// The start is in a singular position: constraints of these joints, quoted names that stay, depend on others there alone.
+void ct_run_note_singular_start(struct ct_run *r, const char *joints);
 /// State at the start: q, u, work.
 const double *ct_run_state(const struct ct_run *r);
 /// Which states are measured together for the error of steps; NULL: none. In the run's arena, anew at each call.

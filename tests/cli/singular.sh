@@ -113,6 +113,13 @@ for options in '' '--keep-all' '--keep-all --tree absolute'; do
   done
 done
 
+echo '-- moving in line at the start: what the run says and, a little beside, whether it goes on parallel'
+start 0 | sed 's/{q: 0}/{q: 0, u: 3}/' >moving.yaml
+"$COTREE" simulate moving.yaml --quiet -o moving.csv 2>&1 | grep -o -e 'E3[0-9]*' -e 'note: the run began in a singular position'
+start 1e-3 | sed 's/{q: 1e-3}/{q: 1e-3, u: 3}/;s/^outputs: .*/outputs: [A.q, D.q]/' >beside.yaml
+"$COTREE" simulate beside.yaml --quiet -o beside.csv
+tail -n 1 beside.csv | awk -F, '{ d = $2 - $3; print (d*d < 1e-16 && $2 > 0.2 ? "parallel" : d) }'
+
 # Which rows are kept is chosen beside a singular position, where all choices are poor: behind it the poor one must not stay.
 # Kept, the rows of the platform lose their rank when the cranks hang down, and the energy is lost to 8e-8 at tolerances of 1e-9.
 echo '-- a platform on five cranks: the energy within 10 T, whatever the tolerance'
