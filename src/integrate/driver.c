@@ -50,7 +50,8 @@ static void allocate(struct ct_driver *r)
 {
     struct ct_arena *a = r->ctx->model;
     double **const vectors[]
-        = {&r->y0, &r->y, &r->dy, &r->y1, &r->dy1, &r->moved, &r->dmoved, &r->point, &r->noise};
+        = {&r->y0,     &r->y,     &r->dy,    &r->y1,    &r->dy1,  &r->moved,
+           &r->dmoved, &r->point, &r->noise, &r->rough, &r->other};
     for (size_t i = 0; i < COUNT(vectors); i++)
         *vectors[i] = CT_NEWN(a, double, r->p->ny);
     r->work = r->method->create(a, r->method, r->p);

@@ -59,6 +59,8 @@ struct ct_driver {
     size_t sample;                // the next one to give
     bool lands;                   // steps end on samples: between them outputs err too much
     double *noise;                // of f, of problem.noise once that has been felt  (ny)
+    double *rough;                // of f: what its arithmetic leaves by itself  (ny)
+    double *other;                // a derivative to spare  (ny)
     int noisy_steps;              // until it is measured anew
     struct ct_refusal refusal;    // of the step before this try
     struct ct_problem problem;    // the caller's, with what is found here

@@ -8,6 +8,7 @@
 
 #include <float.h>
 #include <math.h>
+#include <string.h>
 
 // Places are changed by this part of the largest of them, and what f changes by is taken for that of a rounding.
 static const double change = 0x1p-40;
@@ -36,6 +37,32 @@ static void leave_out_damped(struct ct_driver *r, double du)
     }
 }
 
+// Places by `part` of the largest, each by a share of its own in [1, 2): by another one with each k.
+static enum ct_eval move_places(struct ct_driver *r, double part, int k, double *dy)
+{
+    const struct ct_problem *p = r->p;
+    for (int i = 0; i < p->ny; i++)
+        r->point[i] = r->y[i] + (i < p->nq ? part * (1 + fmod(golden * (i + k), 1)) : 0);
+    return ct_stepper_rhs(p, r->t, r->point, dy, r->stats);
+}
+
+// What the arithmetic of f leaves by itself, as where a mass matrix is next to singular: with places changed to both sides what is
+// linear in them cancels. The largest of a few looks, as one may be zero by chance.
+static void find_roughness(struct ct_driver *r, double part)
+{
+    enum { LOOKS = 3 };
+    const struct ct_problem *p = r->p;
+    memset(r->rough, 0, (size_t)p->ny * sizeof *r->rough);
+    for (int k = 0; k < LOOKS; k++) {
+        if (move_places(r, part, k, r->dmoved) != CT_EVAL_OK
+            || move_places(r, -part, k, r->other) != CT_EVAL_OK)
+            return;
+        for (int i = p->nq; i < p->nq + p->nu; i++)
+            r->rough[i] = fmax(r->rough[i],
+                               fabs(r->dmoved[i] - r->dy[i] + (r->other[i] - r->dy[i])) / 2);
+    }
+}
+
 static void measure(struct ct_driver *r, double h)
 {
     const struct ct_problem *p = r->p;
@@ -43,9 +70,7 @@ static void measure(struct ct_driver *r, double h)
     double largest = 0, most = 0;
     for (int i = 0; i < p->nq; i++)
         largest = fmax(largest, fabs(r->y[i]));
-    for (int i = 0; i < p->ny; i++)
-        r->point[i] = r->y[i] + (i < p->nq ? change * (1 + fmod(golden * i, 1)) * largest : 0);
-    if (!(largest > 0) || ct_stepper_rhs(p, r->t, r->point, r->noise, r->stats) != CT_EVAL_OK)
+    if (!(largest > 0) || move_places(r, change * largest, 0, r->noise) != CT_EVAL_OK)
         return;
     for (int i = 0; i < p->ny; i++) {
         const bool is_speed = i >= p->nq && i < p->nq + p->nu;
@@ -57,8 +82,10 @@ static void measure(struct ct_driver *r, double h)
     if (h > r->problem.noisy_step)
         return;
     leave_out_damped(r, change * largest / r->problem.noisy_step);
+    find_roughness(r, change * largest);
     for (int i = p->nq; i < p->nq + p->nu; i++)
-        r->noise[i] *= DBL_EPSILON / change;
+        r->noise[i]
+            = r->noise[i] > 0 ? fmax(r->noise[i] * DBL_EPSILON / change, r->rough[i]) : 0;
     r->problem.noise = r->noise;
     r->noisy_steps = STEPS_BETWEEN;
 }

@@ -16,6 +16,7 @@
 static const double hard = 1e4;         // weight of what must be met against what is wanted
 static const double longest_step = 0.5; // [m or rad], against jumping to another assembly
 static const double small_step = 1e-12; // has arrived [m or rad]
+static const double speeds_met = 1e-6;  // may be large; a contradiction is of their order
 enum { MOST_ITERATIONS = 200, MOST_HALVINGS = 12, MOST_STARTS = 24 };
 
 // ---- residuals --------------------------------------------------------------------------------------------
@@ -412,20 +413,23 @@ static bool try_positions(struct ct_assembler *s, double *residual)
     return false;
 }
 
-// Can the loops be closed if given values are guesses only?
-static bool closes_with_guesses(struct ct_assembler *s)
+// Find positions, or speeds, with what is given as the only guesses; true if the rest is met. What given values then miss is
+// what contradicts: a compromise that leaves loops open as well misses them by less.
+static bool is_met_with_guesses(struct ct_assembler *s, bool of_speeds)
 {
     const size_t n = s->e->ncoordinate;
+    struct ct_target *target = of_speeds ? s->u : s->q;
     double residual;
-    bool *given = CT_NEWN(s->e->build->arena, bool, n + 1);
+    struct ct_target *kept = CT_NEWN(s->e->build->arena, struct ct_target, n + 1);
+    memcpy(kept, target, n * sizeof *kept);
     for (size_t i = 0; i < n; i++) {
-        given[i] = s->q[i].is_given;
-        s->q[i].is_given = false;
+        target[i].wanted = target[i].is_given;
+        target[i].is_given = false;
     }
-    const bool closes = try_positions(s, &residual);
-    for (size_t i = 0; i < n; i++)
-        s->q[i].is_given = given[i];
-    return closes;
+    const bool is_met
+        = of_speeds ? find_velocities(s) < speeds_met : try_positions(s, &residual);
+    memcpy(target, kept, n * sizeof *kept);
+    return is_met;
 }
 
 // The first try's failure is the one to report.
@@ -437,11 +441,25 @@ static bool assemble_positions(struct ct_assembler *s, double *residual, bool *i
     *is_open = s->may_gape;
     if (s->may_gape)
         return true;
-    const bool closes = closes_with_guesses(s);
-    start_near_targets(s, 0);
     *residual = find_positions(s);
-    return *residual < ct_assembly_met ? report_half_turn(s, half_turned_joint(s))
-                                       : ct_assembler_report_positions(s, closes);
+    if (*residual < ct_assembly_met)
+        return report_half_turn(s, half_turned_joint(s));
+    const bool closes = is_met_with_guesses(s, false);
+    if (!closes) {
+        start_near_targets(s, 0);
+        find_positions(s);
+    }
+    return ct_assembler_report_positions(s, closes);
+}
+
+// From speeds that cannot be met.
+static bool report_speeds(struct ct_assembler *s)
+{
+    if (!is_met_with_guesses(s, true))
+        find_velocities(s);
+    ct_machine_set(s->m, 0, s->y);
+    ct_program_run(&s->m->result, s->m->input);
+    return ct_assembler_report_speeds(s);
 }
 
 // Without rows, and with all that is given or wanted among the unknowns, the targets are the start.
@@ -514,9 +532,8 @@ static bool find_start(struct ct_assembler *s, struct ct_start *out)
         left = find_velocities(s);
     ct_machine_set(m, 0, s->y);
     ct_program_run(&m->result, m->input);
-    if (!(left
-          < ct_assembly_met * 1e3)) // speeds may be large; a contradiction is of their order
-        return ct_assembler_report_speeds(s);
+    if (!(left < speeds_met))
+        return report_speeds(s);
     if (!ct_assembler_check_drivers(s))
         return false;
     for (size_t i = 0; i < nc; i++) {

@@ -72,3 +72,18 @@ END
 say simulate ringing.yaml --quiet | sed 's/at t = .* now/at t = T after N steps, of H now/'
 sed -i 's/, energy.total//; s/0.01, 1, 0/1e-6, 1, 0/' ringing.yaml
 say simulate ringing.yaml --quiet --until 1
+echo '-- cranks of a parallelogram at 0.9 and 1.5 rad: each misses 1.2 by 0.3'
+cat >parallelogram.yaml <<'END'
+cotree: 1
+bodies:
+  ground: {points: {far: [0.5, 0, 0]}}
+  a: {mass: 1, inertia: 1, points: {end: [0.3, 0, 0]}}
+  b: {mass: 1, inertia: 1, points: {end: [0.3, 0, 0]}}
+  bar: {mass: 1, inertia: 1, points: {end: [0.5, 0, 0]}}
+joints:
+  A: {type: revolute, from: ground, to: a, initial: {q: 0.9}}
+  B: {type: revolute, from: ground.far, to: b, initial: {q: 1.5}}
+  C: {type: revolute, from: a.end, to: bar}
+  D: {type: revolute, from: bar.end, to: b.end}
+END
+say check parallelogram.yaml
