@@ -224,7 +224,7 @@ rows() {
 }
 
 section_asked() {
-    rows R turns isosceles damped_chain pulse
+    rows R turns isosceles damped_chain chain_ends pulse stretched
 }
 
 section_asked_beams() {

@@ -250,6 +250,8 @@ struct ct_method {
     double followed;
     double (*swiftness)(const struct ct_problem *p, double h, const double *y, const double *y1,
                         void *work);
+    /// Up to so much of it a step makes nothing that is damped, or turns, larger; beyond, the estimate does not see what does. 0: it does.
+    double stable;
     /// Called once for a step before its first `dense`: extra stages. May be NULL. With
     /// has_rough_dense, `dense` works without it, too, well enough to find roots.
     bool has_rough_dense;

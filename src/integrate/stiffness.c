@@ -155,8 +155,23 @@ static double find_departure(const struct ct_stiffness *s, const double *y)
     return sqrt(change / fmin(place, 1));
 }
 
+// Has the rate of the fastest motion been about the same for some tests? Beside singular positions it is large for a moment, and
+// nothing turns.
+static bool lasts(const struct ct_stiffness *s)
+{
+    return s->alike >= suspicious_tests;
+}
+
+static void compare_rates(struct ct_stiffness *s, double before)
+{
+    const double about = 2;
+    const bool is_same = s->fast < about * before && before < about * s->fast;
+    s->alike = is_same ? s->alike + 1 : 1;
+}
+
 static bool test(struct ct_stiffness *s, double t, const double *y)
 {
+    const double fast_before = s->fast;
     const double steps = (double)(s->count - s->window_steps);
     s->step = (t - s->window_t) / steps;
     s->evaluations = (double)(s->stats->evaluations - s->window_evaluations) / steps;
@@ -168,8 +183,9 @@ static bool test(struct ct_stiffness *s, double t, const double *y)
     s->slow = find_slow(s, t - s->t0);
     const double reach = s->step * s->fast;
     s->is_far = s->p->asked_speeds && s->fast > far_off * find_pace(s, y);
-    s->is_followed = s->fast > far_off * fmax(find_pace(s, y), find_departure(s, y))
-                  && reach < unfollowed_step;
+    compare_rates(s, fast_before);
+    s->is_followed = reach < unfollowed_step && lasts(s);
+    s->is_unstable = reach >= unfollowed_step && lasts(s);
     const bool is_idle = s->is_far || s->step * s->slow < idle_step;
     const bool is_held_up = reach > suspicious_step || (is_idle && is_rounding_felt(s, y));
     const bool is_apart = s->is_far || s->fast > least_separation * s->slow;
@@ -189,6 +205,16 @@ bool ct_stiffness_watch(struct ct_stiffness *s, double t, const double *y, doubl
     const bool is_due = s->in_a_row >= suspicious_tests && s->count >= s->next_trial;
     const bool is_overtaken = s->step < s->rival * s->evaluations;
     return (is_due || is_overtaken) && end - t > steps_worth_it * s->step;
+}
+
+bool ct_stiffness_is_unstable(const struct ct_stiffness *s)
+{
+    return s->is_unstable;
+}
+
+double ct_stiffness_stable_step(const struct ct_stiffness *s, const struct ct_method *m)
+{
+    return m->stable > 0 && lasts(s) ? m->stable / s->fast : INFINITY;
 }
 
 bool ct_stiffness_has_tested(const struct ct_stiffness *s)
@@ -211,15 +237,35 @@ static bool turn_on(struct ct_stiffness *s, double t, const double *y, double *x
     return true;
 }
 
-bool ct_stiffness_find_vibration(struct ct_stiffness *s, double t, const double *y,
+// y'' (ny, out) = J f + df/dt. What follows a driver is carried along with the fastest motion at rest: its rate is a part of f, and J f alone
+// takes that for a vibration.
+static bool find_second_derivative(struct ct_stiffness *s, double t, const double *y,
+                                   double *out)
+{
+    const double dt
+        = 1e-3 / s->fast; // far above rounding, far below a period; back, where tables are
+    if (s->p->rhs(s->p->user, t - dt, y, out) != CT_EVAL_OK)
+        return false;
+    double *along = s->quarter;
+    memcpy(along, s->f, (size_t)s->p->ny * sizeof *along);
+    if (!turn_on(s, t, y, along))
+        return false;
+    for (int i = 0; i < s->p->ny; i++)
+        out[i] = i < s->last ? along[i] * s->fast + (s->f[i] - out[i]) / dt : 0;
+    return true;
+}
+
+bool ct_stiffness_find_vibration(struct ct_stiffness *s, double t, const double *y, int order,
                                  const double **e, const double **later)
 {
     if (!s->is_followed)
         return false;
     double *x = s->f0;
+    if (!find_second_derivative(s, t, y, x))
+        return false;
     for (int i = 0; i < s->p->ny; i++)
-        x[i] = s->f[i] / s->fast;
-    for (int quarter = 0; quarter < 2; quarter++)
+        x[i] /= s->fast * s->fast;
+    for (int quarter = 1; quarter < order; quarter++)
         if (!turn_on(s, t, y, x))
             return false;
     memcpy(s->quarter, x, (size_t)s->p->ny * sizeof *x);

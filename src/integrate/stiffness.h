@@ -22,8 +22,11 @@ struct ct_stiffness {
     bool
         is_far; // vibrations of that rate need not be followed for their speeds, at the last test
     bool
-        is_followed; // vibrations of that rate are far from the motion and followed by steps, at the last test
+        is_followed; // steps follow vibrations of that rate, which has lasted, at the last test
     int in_a_row;    // tests that were suspicious
+    bool
+        is_unstable; // steps are held up by stability, at the last test, and that rate has lasted
+    int alike;       // tests with about the rate of the one before
     double window_t; // where the last test was
     long window_steps;
     const struct ct_integrate_stats *stats; // of the run, live
@@ -69,10 +72,14 @@ bool ct_stiffness_expect(struct ct_stiffness *s, double t, const double *y, doub
                          const struct ct_method *method, double rtol);
 /// Was the step that ct_stiffness_watch saw last one with a test?
 bool ct_stiffness_has_tested(const struct ct_stiffness *s);
-/// After a test, where such vibrations are followed: what is vibration of y (ny), and what it is a quarter of a period later. From f,
-/// of which J^2/fast^2 leaves only what is as fast. Three evaluations.
-bool ct_stiffness_find_vibration(struct ct_stiffness *s, double t, const double *y,
+/// After a test, where such vibrations are followed: what is vibration of y (ny), and what it is a quarter of a period later. From y'',
+/// by J^(p-1)/fast^(p+1), p the order of the method: what is slower counts by as much less as it errs less. p + 1 evaluations.
+bool ct_stiffness_find_vibration(struct ct_stiffness *s, double t, const double *y, int order,
                                  const double **e, const double **later);
+/// Are steps, at the last test, held by the stability of the method alone, with a rate that lasts?
+bool ct_stiffness_is_unstable(const struct ct_stiffness *s);
+/// The longest step that does not make errors in the fastest motion larger; INFINITY where its rate does not last.
+double ct_stiffness_stable_step(const struct ct_stiffness *s, const struct ct_method *m);
 /// The longest step with which an explicit method follows a vibration of `fast` for a time so that its phase and size err by rtol
 /// at the end, when the errors of all steps have added up.  (8.14)
 double ct_stiffness_followed_step(const struct ct_method *method, double fast, double time,

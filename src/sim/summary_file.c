@@ -273,8 +273,7 @@ static void write_work(struct ct_json *j, const struct ct_sim *sim)
     ct_json_number(j, "velocity_constraint", r->velocity_constraint);
     const bool is_blunt = !sim->is_followed && r->blunt >= 0;
     ct_json_number(j, "rounding", is_blunt ? r->rounding : NAN);
-    ct_json_number(j, "rounding_sum",
-                   is_blunt && r->followed ? r->rounding * sqrt((double)r->followed) : NAN);
+    ct_json_number(j, "rounding_sum", is_blunt ? r->rounding_sum : NAN);
     ct_json_text(j, "rounding_of",
                  is_blunt ? sim->system->equations.result[r->blunt].name : NULL);
     write_estimate(j, sim);

@@ -242,7 +242,6 @@ static void print_choices(FILE *out, const struct ct_equations *e)
     }
 }
 
-// Of each step that follows a vibration a rounding stays in it, of either sign: n of them add up to the root of n.
 static void print_rounding(FILE *out, const struct ct_sim *sim)
 {
     const struct ct_run_report *r = &sim->report;
@@ -252,9 +251,9 @@ static void print_rounding(FILE *out, const struct ct_sim *sim)
             "rounding     one of coordinates is %.1e of the largest %s: steps cannot be held "
             "to less",
             r->rounding, sim->system->equations.result[r->blunt].name);
-    if (r->followed)
-        fprintf(out, ", and those of %ld steps that follow its vibrations are some %.1e",
-                r->followed, r->rounding * sqrt((double)r->followed));
+    if (!isnan(r->rounding_sum))
+        fprintf(out, ", and those of %ld steps add up to some %.1e", r->followed,
+                r->rounding_sum);
     fputc('\n', out);
 }
 

@@ -25,7 +25,7 @@ static const double tolerance_margin = 1.5;
 static const double held_tolerances = 10;
 
 struct companion {
-    const struct ct_method *method;
+    const char *method;
     double rtol, step, margin;
 };
 
@@ -37,20 +37,23 @@ bool ct_is_rounding(double scale, double deviation, double largest)
     return scale <= (deviation < 0.5 * scale ? with_digits : without_digits) * largest;
 }
 
+// Where the method was chosen while the run went on, the second one chooses anew: only so do its steps follow what the tolerance
+// asks for besides their own errors.
 static struct companion choose(const struct ct_sim *sim)
 {
     const struct ct_run_options *o = &sim->run_options;
     const struct ct_method *m = sim->report.method;
     if (o->step > 0) {
         const double gain = ldexp(1, m->order);
-        return (struct companion){m, o->rtol, o->step / 2, gain / (gain - 1)};
+        return (struct companion){m->name, o->rtol, o->step / 2, gain / (gain - 1)};
     }
     const double rtol = fmax(o->rtol * tightening, sim->least_rtol);
     if (m->is_implicit && m->order < 3)
-        return (struct companion){ct_method_find("radau5"), rtol, 0, tolerance_margin};
+        return (struct companion){"radau5", rtol, 0, tolerance_margin};
+    const char *name = o->stiff_method ? "auto" : m->name;
     if (o->rtol >= least_gain * rtol)
-        return (struct companion){m, rtol, 0, tolerance_margin};
-    return (struct companion){m, o->rtol * least_gain, 0, tolerance_margin};
+        return (struct companion){name, rtol, 0, tolerance_margin};
+    return (struct companion){name, o->rtol * least_gain, 0, tolerance_margin};
 }
 
 // ---- comparing -----------------------------------------------------------------------------------------
@@ -141,18 +144,21 @@ static void judge(const struct ct_sim *sim, const struct comparison *c, double m
 static const char *describe(struct ct_arena *a, const struct companion *c)
 {
     if (c->step > 0)
-        return ct_arena_printf(a, "%s with steps of %.3g s", c->method->name, c->step);
-    return ct_arena_printf(a, "%s with steps held to %.2g", c->method->name, c->rtol);
+        return ct_arena_printf(a, "%s with steps of %.3g s", c->method, c->step);
+    return ct_arena_printf(a, "%s with steps held to %.2g", c->method, c->rtol);
 }
 
-// False: the run failed, and why is in `said`.
-static bool run_companion(const struct ct_sim *sim, struct ct_ctx *said,
-                          const struct companion *c, struct comparison *comparison)
+// False: the run failed, and why is in `said`. c->method (out) is that which it ended with.
+static bool run_companion(const struct ct_sim *sim, struct ct_ctx *said, struct companion *c,
+                          struct comparison *comparison)
 {
     const struct ct_run_options *o = &sim->run_options;
+    const double tighter = c->rtol / o->rtol;
     const struct ct_sim_options options
-        = {.method = c->method->name,
-           .tolerance = sim->tolerance,
+        = {.method = c->method,
+           // what (8.14), 8.1 and the other method of `auto` go by
+           .tolerance = sim->tolerance * tighter,
+           .absolute = o->atol / o->rtol * sim->tolerance * tighter,
            .step = c->step,
            .until = o->duration,
            .samples = (long)o->nsample,
@@ -166,9 +172,16 @@ static bool run_companion(const struct ct_sim *sim, struct ct_ctx *said,
     if (ok) {
         second->run_options.step = c->step; // not the one of the model
         second->run_options.rtol = c->rtol;
-        second->run_options.atol = o->atol * c->rtol / o->rtol;
+        second->run_options.atol = o->atol * tighter;
+        if (tighter
+            > 1) { // also where both tolerances of the other method are what double precision leaves
+            second->run_options.stiff_rtol = o->stiff_rtol * tighter;
+            second->run_options.stiff_atol = o->stiff_atol * tighter;
+        }
         ok = ct_sim_run(said, second,
                         &(struct ct_sim_results){.row = compare_row, .user = comparison});
+        if (second->report.method)
+            c->method = second->report.method->name;
         ok = ok && comparison->nrow == sim->nkept;
     }
     ct_sim_destroy(second);
@@ -199,18 +212,20 @@ void ct_sim_verify(struct ct_sim *sim)
                                     .difference = CT_NEWN(a, double, sim->nkept *n + 1),
                                     .time = CT_NEWN(a, double, sim->nkept + 1),
                                     .output = CT_NEWN(a, struct ct_output_error, n + 1)};
-    *e = (struct ct_estimate){.which = n, .worst = NAN, .how = describe(a, &c)};
+    const char *const method = c.method;
+    *e = (struct ct_estimate){.which = n, .worst = NAN};
     bool ok = run_companion(sim, &said, &c, &comparison);
     if (!ok && c.step == 0) { // a little looser, what did not pass a singular position may pass
         c.rtol *= second_try;
-        e->how = describe(a, &c);
+        c.method = method;
         ok = run_companion(sim, &said, &c, &comparison);
     }
     if (ok && c.step == 0 && c.rtol < sim->run_options.rtol && is_same(&comparison)) {
         c.rtol = sim->run_options.rtol * least_gain;
-        e->how = describe(a, &c);
+        c.method = method;
         ok = run_companion(sim, &said, &c, &comparison);
     }
+    e->how = describe(a, &c);
     if (ok) {
         e->worst = 0;
         e->output = comparison.output;

@@ -3,8 +3,10 @@
 #include "solve/run.h"
 
 #include "integrate/newton.h"
+#include "numeric/dense.h"
 #include "solve/dae.h"
 
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
@@ -12,27 +14,39 @@
 // whose errors come to 50 T of it at the end of 2e5 radians leave half of T in outputs.
 static const double noticed = 0.01;
 
-// Outputs that feel the phase of vibrations which an explicit method follows.
+// Outputs that feel the phase of vibrations which an explicit method follows: steps whose errors come to T at the end.  (8.14)
+static double wanted_step(const struct ct_run *r)
+{
+    const double fast = r->method->is_implicit ? 0 : r->stiffness->fast;
+    return fast > 0 && r->felt > noticed ? ct_stiffness_followed_step(
+               r->method, fast, r->o->duration, r->o->wanted / r->felt)
+                                         : INFINITY;
+}
+
 static double followed_step(void *user)
 {
     const struct ct_run *r = user;
-    const double longest = r->has_turns ? ct_run_longest_step(user) : INFINITY;
-    const double fast = r->method->is_implicit ? 0 : r->stiffness->fast;
-    return fast > 0 && r->felt > noticed
-             ? fmin(longest, ct_stiffness_followed_step(r->method, fast, r->o->duration,
-                                                        r->o->wanted / r->felt))
-             : longest;
+    const double stable
+        = r->method->is_implicit ? INFINITY : ct_stiffness_stable_step(r->stiffness, r->method);
+    return fmin(r->has_turns ? ct_run_longest_step(user) : INFINITY,
+                fmin(stable, wanted_step(r)));
 }
 
-// What outputs change by for a change e (ny) of y, in parts of them.
+// What outputs change by for a change e (ny) of y, in parts of them. Those that are hardly more than rounding do not count.
 static double change_of_outputs(struct ct_run *r, double t, const double *y, const double *e)
 {
+    const double counts = 1e6; // roundings, as of other outputs
+    const double place = DBL_EPSILON * ct_vector_largest(y, r->m->nq),
+                 speed = r->stiffness->fast * place;
     double most = r->fidelity ? ct_fidelity_felt(r->fidelity, t, y, e) : 0;
     for (size_t i = 0; i < r->e->nresult; i++)
         for (size_t k = 0; k + 1 < r->ny; k++) {
-            const ct_ex state = k < r->m->nq ? r->e->q[k].symbol : r->e->u[k - r->m->nq].symbol;
-            if (r->e->result[i].value.id == state.id && e[k] != 0)
-                most = fmax(most, fabs(e[k]) / fmax(fabs(y[k]), r->largest[i]));
+            const bool is_place = k < r->m->nq;
+            const ct_ex state = is_place ? r->e->q[k].symbol : r->e->u[k - r->m->nq].symbol;
+            const double size = fmax(fabs(y[k]), r->largest[i]);
+            if (r->e->result[i].value.id == state.id && e[k] != 0
+                && size >= counts * (is_place ? place : speed))
+                most = fmax(most, fabs(e[k]) / size);
         }
     return most;
 }
@@ -41,7 +55,7 @@ static double change_of_outputs(struct ct_run *r, double t, const double *y, con
 static double find_felt(struct ct_run *r, double t, const double *y)
 {
     const double before = ct_run_before(r, t), *e, *later;
-    if (!ct_stiffness_find_vibration(r->stiffness, t, y, &e, &later))
+    if (!ct_stiffness_find_vibration(r->stiffness, t, y, r->method->order, &e, &later))
         return 0;
     const double felt
         = hypot(change_of_outputs(r, before, y, e), change_of_outputs(r, before, y, later));
@@ -54,12 +68,16 @@ bool ct_run_is_suspect(struct ct_run *r, double t, const double *y)
 {
     const bool may_stop = t > r->last_event && !(r->singular->in < INFINITY);
     struct ct_stiffness *s = r->stiffness;
-    if (r->method->is_implicit)
-        return ct_trial_has_lost(&r->implicit, t, r->explicit_pace) && may_stop;
+    if (r->method->is_implicit) {
+        const bool has_lost = ct_trial_has_lost(&r->implicit, t, r->explicit_pace);
+        return (has_lost || r->has_jumped) && may_stop;
+    }
     const bool is_suspect = ct_stiffness_watch(s, t, y, r->o->duration);
     if (ct_stiffness_has_tested(s) && !r->amplifies)
         r->felt = find_felt(r, t, y);
-    r->is_to_follow = r->felt > noticed && r->problem->longest_step != followed_step;
+    // before the trial that a test asks for, steps are those it is to be compared with
+    r->is_to_follow = (s->step > wanted_step(r) || (ct_stiffness_is_unstable(s) && !is_suspect))
+                   && r->problem->longest_step != followed_step;
     return (is_suspect || r->is_to_follow) && may_stop;
 }
 
@@ -174,7 +192,8 @@ static void take_implicit(struct ct_run *r, struct ct_integrate_options *io, dou
     report->method = r->method;
 }
 
-// Over to the implicit method if it gets farther for its work. True: it does.
+// Over to the implicit method if it gets farther for its work. True: it does. That says nothing of the motion behind a jump of speeds,
+// which excites vibrations: there the explicit method goes on.
 static bool go_implicit(struct ct_run *r, struct ct_problem *p, struct ct_integrate_options *io)
 {
     // What is counted is not quite what is spent, and its errors are larger; more so where vibrations are no longer followed: a
@@ -205,9 +224,10 @@ static void reconsider(struct ct_run *r, struct ct_problem *p, struct ct_integra
         io->atol = r->o->atol;
         ct_stiffness_put_off(r->stiffness, io->t0, was_implicit ? 0 : r->spent,
                              &r->implicit.cost);
-        if (was_implicit)
+        if (was_implicit && !r->has_jumped)
             ct_stiffness_measure_against(r->stiffness, r->implicit.pace, &r->implicit.cost);
     }
+    r->has_jumped = false;
     r->report->method = r->method;
 }
 
@@ -281,7 +301,7 @@ bool ct_run_march(struct ct_run *r, struct ct_problem *p, struct ct_integrate_op
         r->is_suspect = false;
         const bool ok = ct_integrate(r->ctx, r->method, p, &io, r->y, &r->stats);
         add_stats(&r->report->stats, &r->stats);
-        if (p->longest_step == followed_step && !r->method->is_implicit)
+        if (!r->method->is_implicit)
             r->report->followed += r->stats.steps;
         if (!ok || !r->is_suspect)
             return ok;
@@ -292,6 +312,7 @@ bool ct_run_march(struct ct_run *r, struct ct_problem *p, struct ct_integrate_op
             r->is_to_follow = false;
             p->longest_step = followed_step;
             io.first_step = io.t0 - r->t_before;
+            r->stiffness->window_evaluations = 0; // counts begin anew with the next steps
         } else {
             reconsider(r, p, &io);
             add_stats(&r->report->stats, &r->stats);

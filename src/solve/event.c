@@ -111,6 +111,7 @@ static enum ct_eval apply_jump(struct ct_run *r, double t, double *y, const doub
         worst = fmax(worst, fabs(m->v[i]));
     if (worst <= ct_run_jump_tolerance)
         return CT_EVAL_OK;
+    r->has_jumped = true;
     return ct_jump_land(r, momentum, y + m->nq);
 }
 

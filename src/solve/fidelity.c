@@ -159,6 +159,12 @@ static void plan_looks(struct ct_fidelity_record *r, double error, double states
     r->skip = r->between;
 }
 
+// One of an output, from what ct_fidelity_probe changes it by.
+static double rounding_of(double at, double probed)
+{
+    return fabs(probed - at) * (DBL_EPSILON / change);
+}
+
 double ct_fidelity_judge(struct ct_fidelity_record *r, const double *at, const double *probed,
                          const double *off, const struct ct_tolerance *tolerance, double states)
 {
@@ -167,7 +173,7 @@ double ct_fidelity_judge(struct ct_fidelity_record *r, const double *at, const d
     bool is_felt = false;
     r->has_seen = true;
     for (size_t i = 0; i < r->n; i++) {
-        const double rounding = fabs(probed[i] - at[i]) * (DBL_EPSILON / change);
+        const double rounding = rounding_of(at[i], probed[i]);
         r->seen[i] = fabs(at[i]);
         const double size = ct_larger(r->seen[i], r->largest[i]);
         const double wanted = tolerance->rtol * size + tolerance->atol;
@@ -255,13 +261,15 @@ double ct_fidelity_felt(struct ct_fidelity *p, double t, const double *y, const 
     double most = 0;
     ct_machine_copy(p->y, y, p->ny);
     memcpy(p->at, evaluate(p, t), p->record.n * sizeof *p->at);
+    probe(p, t, y);
     for (size_t i = 0; i < p->ny; i++)
         p->y[i] = y[i] + e[i];
     const double *off = evaluate(p, t);
     for (size_t i = 0; i < p->record.n; i++) {
-        const double way = fabs(off[i] - p->at[i]);
-        if (way > 0)
-            most = ct_larger(most, way / ct_larger(fabs(p->at[i]), p->record.largest[i]));
+        const double way = fabs(off[i] - p->at[i]),
+                     size = ct_larger(fabs(p->at[i]), p->record.largest[i]);
+        if (way > 0 && size >= least_size * rounding_of(p->at[i], p->probed[i]))
+            most = ct_larger(most, way / size);
     }
     return most;
 }

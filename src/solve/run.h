@@ -64,6 +64,7 @@ struct ct_run {
     bool amplifies;                   // outputs do, at the start
     const char
         *singular_joints; // whose constraints depend at the start and not elsewhere; NULL: none
+    bool has_jumped;      // speeds have, since the method was chosen
     double felt; // part of an output that vibrations make which an explicit method follows
     double t_before, last_event; // times
     size_t ngiven;               // samples
@@ -131,9 +132,15 @@ void ct_run_foresee(void *user, double t, const double *y, double step, double t
 extern const double ct_run_many_steps;
 /// Notes on what holds a run up that would take more steps than are allowed.
 void ct_run_explain_count(struct ct_run *r);
-/// At the end of a run, which may change `value`: the result with the fewest digits, one rounding of states is *part (out) of its
-/// largest value at samples; -1 where steps can be held to `wanted` of all.
-int ct_run_find_blunt(struct ct_run *r, double wanted, double *part);
+/// A result with few digits.
+struct ct_blunt {
+    int output; // -1: there is none
+    double one,
+        sum; // what one rounding of states is of its largest value, and those of all steps; NAN: they do not add up
+};
+/// At the end of a run, which may change `value`: the result with the fewest digits, if one rounding is more than half of `held`, what steps are
+/// held to, or those of all steps more than `wanted`, of its largest value at samples.
+struct ct_blunt ct_run_find_blunt(struct ct_run *r, double held, double wanted);
 /// Notes on why steps have ended, after its error.
 void ct_run_explain_end(struct ct_run *r);
 /// From start to end, with another method from where that pays.

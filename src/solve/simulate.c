@@ -522,7 +522,7 @@ bool ct_run_simulate(struct ct_run *r, const struct ct_run_options *o,
     r->o = o;
     r->method = o->method;
     r->last_event = -INFINITY;
-    r->is_told = false;
+    r->is_told = r->has_jumped = false;
     r->report = report;
     r->nevent = ct_time_events(r->arena, r->m, o->method->order, 0, o->duration, &r->event);
     r->pending = ct_run_next_event(r, 0);
@@ -586,8 +586,12 @@ bool ct_run_simulate(struct ct_run *r, const struct ct_run_options *o,
     report->factorizations = r->s->factorizations + report->stats.factorizations;
     report->singular = r->singular;
     report->y = r->y;
-    if (ok)
-        report->blunt = ct_run_find_blunt(r, held_to * o->wanted, &report->rounding);
+    if (ok) {
+        const struct ct_blunt b = ct_run_find_blunt(r, held_to * o->wanted, o->wanted);
+        report->blunt = b.output;
+        report->rounding = b.one;
+        report->rounding_sum = b.sum;
+    }
     report->energy_scale = r->energy_scale;
     if (r->energy_scale > 0)
         report->energy_drift /= r->energy_scale;

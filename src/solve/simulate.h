@@ -67,10 +67,10 @@ struct ct_run_report {
     double energy_scale;                             // the largest energy
     double energy_drift;                             // largest |total - total(0)| over it
     double position_constraint, velocity_constraint; // largest residuals at samples
-    int blunt;       // result with fewer digits than the tolerance asks for; -1: none
-    double rounding; // what one rounding of states is of its largest value
-    long
-        followed; // steps of an explicit method that follow vibrations which outputs amplify; roundings add up over them
+    int blunt; // result with fewer digits than the tolerance asks for; -1: none
+    double rounding,
+        rounding_sum; // of its largest value: one rounding of states, and those of all steps that remain; NAN: they do not add up
+    long followed;    // steps of explicit methods
     int rank;
     long switches;
     long factorizations;
