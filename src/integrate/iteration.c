@@ -1,4 +1,4 @@
-// See iteration.h. The rules of convergence are those of Hairer and Wanner (1996), IV.8, key hairer1996.
+// See iteration.h.
 #include "integrate/iteration.h"
 #include "integrate/stepper.h"
 #include "numeric/dense.h"
@@ -14,23 +14,12 @@ static const double kappa_most = 0.03;
 // 1e-10 where they stop to shrink or have been many. What is left in each step, and is the same in most, adds up over the steps.
 static const struct ct_tolerance finest = {1e-12, 1e-12};
 static const double kappa_finest = 1e-4, rounding_finest = 100;
-// The first corrections come from a guess and may grow; not so much, though.
-static const double hopeless = 100;
 // Places that change by less than this many roundings of the largest of them cannot be found better, however much their
 // speeds still change, which have the same over the step.
 static const double place_rounding = 8;
 // With a tolerance a speed need not be known better than what moves a place by so many roundings in the step: where forces
 // are very stiff, shorter steps would only show more of it.
 static const double moved_roundings = 4;
-// Corrections that are to go on after convergence do until they are this much smaller.
-static const double further = 1e-6;
-// After convergence corrections that are not halved have come to rounding.
-static const double halved = 0.5;
-// Those before have come near enough when each was less than this part of the last, as it is with derivatives that are kept.
-static const double shrinking = 0.1;
-// So much of what is seen of roundings may come together in a correction: stages add up three times as much, and no two looks are
-// alike. They are seen where places are so few of theirs away.
-static const double together = 8, few = 16;
 // In the index-3 form places alone are judged, and speeds follow them divided by the step.
 static const double kappa_index3 = 0.01;
 enum { MOST = 10, MOST_FINEST = 30 };
@@ -536,7 +525,7 @@ void ct_iteration_weigh_mass(const struct ct_iteration *it, double *r, const dou
             r[k] += it->M[k + nu * j] * x[j];
 }
 
-// ---- convergence ------------------------------------------------------------------------------------
+// ---- errors -----------------------------------------------------------------------------------------
 
 const double *ct_iteration_states(struct ct_iteration *it, const double *y1, const double *d,
                                   const double *u)
@@ -566,176 +555,4 @@ double ct_iteration_amplified(struct ct_iteration *it, const struct ct_problem *
                               const double *d, const double *u)
 {
     return p->amplified_error(p->user, t1, y1, ct_iteration_states(it, y1, d, u), tolerance);
-}
-
-void ct_iteration_start(struct ct_iteration *it)
-{
-    const double tail = ct_larger(it->tail, DBL_EPSILON);
-    it->count = 0;
-    it->is_further = false;
-    it->rate = 0;
-    // the last step's, trusted less and less; not where there is no tolerance that says how far off it may be
-    it->tail = it->is_finest ? 1 : sqrt(tail * sqrt(tail));
-}
-
-void ct_iteration_go_on(struct ct_iteration *it)
-{
-    it->count = 1; // the last correction is known, its rate is not wanted
-    it->is_further = true;
-    it->kappa *= further;
-    it->kappa_for = NAN; // in this step only
-}
-
-// Between 1 and 2 or -2 and -1 by chance, another for each k: a pattern would miss some motions.
-static double toss(unsigned k)
-{
-    const double odd = 0x1p-24;
-    k = (k + 1) * 2654435769u; // 2^32 over the golden ratio
-    k = (k ^ k >> 15) * 2246822519u;
-    k = (k ^ k >> 13) * 3266489917u;
-    return (k & 1 ? 1 : -1) * (1 + odd * (k >> 8));
-}
-
-// Forces at q and speeds of the step's start into r (nu); no accelerations, no multipliers.
-static bool find_forces(struct ct_iteration *it, const double *q, double *r)
-{
-    const struct ct_probe *p = &it->probe;
-    const double *u = it->y + it->dae->nq;
-    return it->dae->residual(it->dae->user, it->t, q, u, p->zero, p->zero, r, p->rows,
-                             p->rows + it->m)
-        == CT_EVAL_OK;
-}
-
-// b (nu) = the rounding of forces, and what that of places makes of them: by how much those a few roundings of places away, d, are not
-// what K says.
-static bool round_forces(struct ct_iteration *it, double *b)
-{
-    const int nu = it->nu;
-    const struct ct_dae *dae = it->dae;
-    const struct ct_probe *p = &it->probe;
-    for (int k = 0; k < nu; k++) {
-        const double place = dae->q_of[k] < 0 ? 1 : it->y[dae->q_of[k]];
-        p->d[k] = toss((unsigned)k) * few * DBL_EPSILON * place;
-    }
-    ct_iteration_move(dae, it->y, p->d, p->q);
-    if (!find_forces(it, it->y, b) || !find_forces(it, p->q, p->r))
-        return false;
-    for (int k = 0; k < nu; k++)
-        b[k] -= p->r[k];
-    if (it->sparse)
-        ct_newton_add_stiffness(it->sparse, b, 1, p->d);
-    for (int j = 0; j < nu && !it->sparse; j++)
-        ct_vector_add(b, p->d[j], it->K + nu * j, (size_t)nu);
-    return true;
-}
-
-const double *ct_iteration_noise(struct ct_iteration *it)
-{
-    const int nu = it->nu;
-    double *b = it->b, *d = it->noise, *u = d + nu;
-    if (it->has_noise)
-        return d;
-    it->has_noise = true;
-    memset(d, 0, 2 * (size_t)nu * sizeof *d);
-    memset(b, 0, (size_t)it->n * sizeof *b);
-    if (!round_forces(it, b))
-        return d;
-    if (it->is_few) { // places and speeds, one behind the other
-        ct_product(it->x, it->response->real, b, it->response->rows, it->response->in);
-        ct_stepper_copy(d, it->x, 2 * nu);
-        return d;
-    }
-    for (int k = 0; k < nu; k++)
-        b[k] *= it->by_r;
-    ct_stepper_copy(d, solve_real(it), nu);
-    for (int k = 0; k < nu; k++)
-        u[k] = it->c * d[k];
-    return d;
-}
-
-static bool is_within(const double *d, int n, double most)
-{
-    for (int i = 0; i < n; i++)
-        if (!(fabs(d[i]) <= most))
-            return false;
-    return true;
-}
-
-// Followed down to rounding, the second correction against the first says nothing yet, which is an error of the prediction
-// and in places above all: of angles of several turns in loops the second is as large and the third a thousandth of it, of a tumbling body,
-// with old derivatives, the second is a thousandth and the third, of speeds, a tenth of that.
-static bool is_too_early(const struct ct_iteration *it)
-{
-    return it->is_finest && it->count == 2;
-}
-
-// A correction is `rate` times the one before. Two in turn are often uneven, so their mean says whether they converge. Followed
-// down to rounding the slowest one says what is left, but for the first, which says nothing.
-static void take_rate(struct ct_iteration *it, double rate)
-{
-    it->slowest = it->count > 3 ? ct_larger(rate, it->slowest) : rate;
-    it->rate = it->count > 2 ? sqrt(rate * it->rate) : rate;
-    const double counts = it->is_finest ? it->slowest : it->rate;
-    it->tail = counts < 1 ? counts / (1 - counts) : INFINITY;
-}
-
-// Does a correction of this size, at this rate to the one before, show only rounding?
-static bool is_rounding(const struct ct_iteration *it, double rate, double size)
-{
-    if (it->is_further && rate >= halved && size <= 1)
-        return true;
-    return rate >= 1 && !is_too_early(it) && size <= it->rounding;
-}
-
-// Nor does one that a rounding of the forces may be the reason of, where corrections shrink no more: stiff forces of places that
-// are large beside their own motion, as of a beam of many elements, are known no better, and in shorter steps hardly so.
-static bool is_noise(struct ct_iteration *it, double rate, double size, bool has_speeds)
-{
-    const bool has_stalled
-        = rate >= 1 || (rate >= halved && it->count > 2 && it->rate < shrinking);
-    if (!has_stalled || it->is_finest)
-        return false;
-    const double *noise = ct_iteration_noise(it);
-    const double *u = has_speeds ? noise + it->nu : NULL;
-    return size <= together * ct_iteration_norm(it, noise, u, it->nu, 1);
-}
-
-// Half a rounding of the largest place moves no place as large, and what is left of the constraints comes back in others,
-// halved perhaps from one correction to the next: neither more of them nor shorter steps make it less.
-static bool is_unfelt(const struct ct_iteration *it, double size, const double *d,
-                      const double *u, int n)
-{
-    return it->m && u && !it->is_finest && !it->is_further && size <= it->rounding
-        && is_within(d, n, it->unfelt_place) && is_within(u, n, it->unfelt_speed);
-}
-
-enum ct_verdict ct_iteration_judge(struct ct_iteration *it, double size, const double *d,
-                                   const double *u, int k)
-{
-    if (!isfinite(size))
-        return CT_DIVERGED;
-    if (it->count++ > 0) {
-        const double rate = size / it->size;
-        const int n = k * it->nu;
-        if (is_rounding(it, rate, size)
-            || (rate >= 1 && !is_too_early(it) && is_within(d, n, it->least))
-            || is_unfelt(it, size, d, u, n) || is_noise(it, rate, size, u != NULL))
-            return CT_CONVERGED;
-        take_rate(it, rate);
-        if (rate >= hopeless || (it->rate >= 1 && it->count > 3))
-            return CT_DIVERGED;
-    }
-    it->size = size;
-    if (size <= it->kappa || (it->tail * size <= it->kappa && !is_too_early(it)))
-        return CT_CONVERGED;
-    if (it->count < it->most)
-        return CT_GO_ON;
-    return it->is_finest && size <= it->rounding ? CT_CONVERGED : CT_DIVERGED;
-}
-
-bool ct_iteration_can_renew(struct ct_iteration *it)
-{
-    it->tail = 1;
-    it->has_tangent = false;
-    return !it->is_new;
 }

@@ -258,9 +258,11 @@ double ct_iteration_amplified(struct ct_iteration *it, const struct ct_problem *
                               const struct ct_tolerance *tolerance, double t1, const double *y1,
                               const double *d, const double *u);
 
-/// Places and speeds (2 nu) that the rounding of forces leads to, with the factors of the real system; two residuals, for which
-/// `b` is overwritten, but zeros where they cannot be found. Corrections cannot be told from it.  (8.17)
+/// Places and speeds (2 nu) that the rounding of forces leads to, with the factors of the real system; two residuals, `b` is
+/// overwritten; zeros where they cannot be found. Corrections cannot be told from it.  (8.17)
 const double *ct_iteration_noise(struct ct_iteration *it);
+
+// ---- convergence, see convergence.c -------------------------------------------------------------------
 
 /// Before the first correction.
 void ct_iteration_start(struct ct_iteration *it);

@@ -1,0 +1,49 @@
+// What the plan of newton.h consists of: shared by the two files that know.
+#ifndef CT_INTEGRATE_NEWTON_PLAN_H
+#define CT_INTEGRATE_NEWTON_PLAN_H
+
+#include "integrate/newton.h"
+#include "numeric/factors.h"
+
+// The matrix is S + x X + (y or z) W; numbers of the three stand one behind the other.
+enum { CT_NEWTON_PARTS = 3 };
+
+// Entries are sums of terms +-v[a], -v[a] v[b] and +-v[a] w[b]/2, for the list of values v.
+struct ct_newton_copy {
+    int target, a;
+    double sign;
+};
+struct ct_newton_product {
+    int target, a, b;
+};
+struct ct_newton_turn {
+    int target, a, speed;
+    double half;
+};
+
+struct ct_newton_list {
+    const int *row, *column;
+    int first, n; // among the values
+};
+
+struct ct_newton_plan {
+    const struct ct_slopes *slopes;
+    struct ct_newton_list K, C, M, D, J;
+    int nu, most_rows, n, nvalue;
+    bool is_stabilised;
+    struct ct_pattern *pattern;
+    int *place;                  // of the ones of rows that do not count, for eta and for lam
+    struct ct_newton_copy *copy; // those of M first
+    struct ct_newton_product *product;
+    struct ct_newton_turn *turn;
+    size_t ncopy, nproduct, nturn, copy_cap, product_cap, turn_cap;
+};
+
+/// A (3 nz, out) = S, X, W from the lists v and the speeds w of rotations (or NULL).
+void ct_newton_plan_assemble(const struct ct_newton_plan *p, double *A, const double *v,
+                             const double *w);
+/// G (nz, out): the matrix for c and e.
+void ct_newton_plan_form(const struct ct_newton_plan *p, double *G, const double *A, double c,
+                         double e);
+
+#endif
