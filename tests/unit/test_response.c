@@ -55,7 +55,7 @@ static void write_out(double _Complex *A, const struct problem *p, double _Compl
                       double _Complex e)
 {
     const int nu = p->nu, m = p->m, n = nu + 2 * m;
-    double _Complex B[MOST * MOST];
+    double _Complex B[MOST * MOST] = {0};
     memset(A, 0, (size_t)(n * n) * sizeof *A);
     for (int i = 0; i < nu * nu; i++) {
         B[i] = p->M[i] + c / e * p->C[i];

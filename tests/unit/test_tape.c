@@ -171,7 +171,7 @@ static void sines_of_sines_beside_other_angles_are_right(void **unused)
     struct random r = random_start(__func__);
     struct fixture f;
     start(&f, &r);
-    ct_ex out[10]; // sine and cosine of three symbols, of a sine, and of a sine of a sine
+    ct_ex out[10] = {0}; // sine and cosine of three symbols, of a sine, and of a sine of a sine
     for (size_t k = 0; k < 10; k++) {
         const ct_ex angle = k < 6 ? f.sym[k / 2 * 2 + 1] : k < 8 ? out[0] : out[6];
         out[k] = ct_ex_fun(&f.x, k % 2 ? CT_OP_COS : CT_OP_SIN, angle);
