@@ -84,9 +84,9 @@ static inline void reflect(double *A, const double *v, double scale, int first, 
 }
 
 // T = [Z P] from J' = Q R by Householder's reflections: Z is the rest of Q, and P = Q_1 R'^-1.
-static bool find_basis(struct ct_response *s, const double *J)
+static inline bool find_basis(struct ct_response *s, const double *J, const int nu, const int m)
 {
-    const int nu = s->nu, m = s->m, free = s->free;
+    const int free = nu - m;
     double A[MOST * MOST], scale[MOST], R[MOST]; // J', below the diagonal its reflections
     for (int i = 0; i < m; i++)
         for (int k = 0; k < nu; k++)
@@ -119,12 +119,12 @@ static bool find_basis(struct ct_response *s, const double *J)
     return true;
 }
 
-void ct_response_assemble(struct ct_response *s, const double *M, const double *C,
-                          const double *K, const double *J, const double *D)
+static inline void assemble(struct ct_response *s, const double *M, const double *C,
+                            const double *K, const double *J, const double *D, const int nu,
+                            const int m)
 {
-    const int nu = s->nu, m = s->m;
     double X[MOST * MOST];
-    s->is_regular = find_basis(s, J);
+    s->is_regular = find_basis(s, J, nu, m);
     if (!s->is_regular)
         return;
     const double *const from[] = {M, C, K};
@@ -133,13 +133,23 @@ void ct_response_assemble(struct ct_response *s, const double *M, const double *
         multiply(X, from[i], s->T, nu, nu, nu);
         multiply_transposed(to[i], s->T, X, nu, nu, nu);
     }
-    const int of_P = nu * s->free;
+    const int of_P = nu * (nu - m);
     multiply(s->D, D, s->T, m, nu, nu);
     multiply(s->MD, s->M + of_P, s->D, nu, m, nu);
     multiply(s->PD, s->T + of_P, s->D, nu, m, nu);
     multiply(X, s->C + of_P, s->D, nu, m, nu);
     for (int k = 0; k < nu * nu; k++)
         s->K[k] -= X[k];
+}
+
+// Planar loops of three coordinates have code of their own: its loops are known to be so long.
+void ct_response_assemble(struct ct_response *s, const double *M, const double *C,
+                          const double *K, const double *J, const double *D)
+{
+    if (s->nu == 3 && s->m == 2)
+        assemble(s, M, C, K, J, D, 3, 2);
+    else
+        assemble(s, M, C, K, J, D, s->nu, s->m);
 }
 
 // ---- of c and e -----------------------------------------------------------------------------------
@@ -231,7 +241,6 @@ static inline bool find(const struct ct_response *s, double c, double e, const i
     return true;
 }
 
-// Planar loops of three coordinates have code of their own: its loops are known to be so long.
 bool ct_response_find(struct ct_response *s, double c, double e)
 {
     return s->nu == 3 && s->m == 2 ? find(s, c, e, 3, 2) : find(s, c, e, s->nu, s->m);
