@@ -141,8 +141,7 @@ static void note_sizes(struct ct_radau *s, const double *y)
     }
 }
 
-// What outputs would miss without the vibrations of this rate and faster, all of which are `times` of their errors, in parts of what they
-// may miss.
+// What outputs would miss of vibrations of about this rate that are `times` their errors, in parts of what they may miss.
 static double missing(struct ct_radau *s, const struct ct_problem *p, double t, const double *y,
                       double rate, double times)
 {
@@ -158,13 +157,14 @@ static double missing(struct ct_radau *s, const struct ct_problem *p, double t, 
          / (may * p->accuracy);
 }
 
-// What steps like this one take from vibrations up to the end of the run, as an error of order 3: steps take h^5 of it in a time. It is
-// no more than all there is, which does not grow with the step: then steps may grow sooner.  (8.21), (8.22)
+// What steps like this one take from vibrations up to the end of the run, as an error of order 3: a rate of h^5. It is no more than
+// all there is, which does not grow with the step: so that holds steps up less before it counts.  (8.21), (8.22)
 static double find_missed(struct ct_radau *s, const struct ct_problem *p, double t,
                           const double *y)
 {
     const double h = s->now.h, steps = ct_larger(p->duration / h, 1), half = 0.5;
-    const double order = 4. / 5, harmless = 1e-3; // of which steps may grow eightfold
+    const double order = 4. / 5,
+                 harmless = 1e-3; // an error of 1.8e-4: steps may grow eightfold
     const double z = pow(at_rate * of_vibration / steps, 1. / 6), z4 = z * z * z * z;
     const double half4 = half * half * half * half;
     const double all = missing(s, p, t, y, half * z / h, of_error / (half4 * z4));
