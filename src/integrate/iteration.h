@@ -62,6 +62,7 @@ struct ct_iteration {
     int *pivot, *pivotc;
     double *H, slow; // of the matrix for c = `slow` alone, to tell slow speeds; 0: not factored
     int *pivot_slow;
+    bool is_lent;  // these factors are of another c, that of a band
     double energy; // twice the largest kinetic energy at looks so far, or that is to come
     double heavy;  // the largest mass, at the last of them
     bool *is_slow; // which speeds are slow by themselves, then  (nu)
@@ -243,6 +244,25 @@ struct ct_vibration ct_iteration_vibration(struct ct_iteration *it, double gamma
 double ct_iteration_felt(struct ct_iteration *it, const struct ct_problem *p,
                          const struct ct_vibration *v, double t, const double *y,
                          const double *d, const double *u);
+
+/// Vibrations of about one rate.
+struct ct_band {
+    double rate;                       // [1/s]
+    double times;                      // what they are of their error
+    double small;                      // places and speeds that are nothing
+    double least;                      // outputs that are smaller count as so large
+    const double *furthest, *swiftest; // largest places and speeds so far  (nu)
+    const double *ahead;               // those expected  (2 nu)
+};
+/// ahead (2 nu, out): how far places and speeds go up to the end of the run with the accelerations a (nu) at y, as far as forces let
+/// them, and not further than a unit; outputs are expected to be as large. `off` is overwritten.  (8.22)
+void ct_iteration_expect(struct ct_iteration *it, const struct ct_problem *p, double t,
+                         const double *y, const double *a, double *ahead);
+/// What errors d, u (nu) at y, as far as they are vibrations of this band, leave in outputs over their largest values so far, whatever the
+/// vibrations' phase. `off` is overwritten.  (8.21)
+double ct_iteration_felt_in_band(struct ct_iteration *it, const struct ct_problem *p,
+                                 const struct ct_band *b, double t, const double *y,
+                                 const double *d, const double *u);
 
 /// Errors d, u (nu) of places and speeds at y1 as one of the states (ny), in `off`.
 const double *ct_iteration_states(struct ct_iteration *it, const double *y1, const double *d,

@@ -113,8 +113,11 @@ struct ct_problem {
     /// tolerance; `states` is the norm of e. 0 where that is enough. NULL: it always is.
     double (*output_error)(void *user, double t, const double *y, const double *e,
                            const struct ct_tolerance *tolerance, double states);
-    /// The most that an output changes by for a change e (ny) of y, over its largest value so far. NULL: there is none but states.
-    double (*felt)(void *user, double t, const double *y, const double *e);
+    /// The most that an output changes by for a change e (ny) of y, over its largest value so far. With least > 0 over that if it is
+    /// more, or over what is expected, and without outputs that amplify errors of states. NULL: there is none but states.
+    double (*felt)(void *user, double t, const double *y, const double *e, double least);
+    /// Outputs are expected to become as large as so many `times` what they change by for a change way (ny) of y. NULL as above.
+    void (*expect)(void *user, double t, const double *y, const double *way, double times);
     /// The same of the outputs that amplify errors of states, which output_error leaves to this where it is not NULL; 0 where
     /// there are none.  (8.11)
     double (*amplified_error)(void *user, double t, const double *y, const double *e,

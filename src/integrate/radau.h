@@ -69,7 +69,14 @@ struct ct_radau {
     bool is_eased;    // they were counted by what is slow of them at the last look
     int unlooked;     // steps until the next one
     double *swiftest; // largest |u| at looks so far  (nu)
-    double *ample;    // what vibrations are measured against  (nu)
+    double *furthest; // largest place that moves with each  (nu)
+    double *ahead;    // places and speeds that are expected  (2 nu)
+    struct {
+        double h,
+            error; // a step, and what such ones take of vibrations, as an error of order 3; 0: not looked at
+        int left;  // steps until the next look
+    } missed;      // by outputs
+    double *ample; // what vibrations are measured against  (nu)
 };
 
 /// out (n) = weighted stages z (n x 3).

@@ -53,13 +53,15 @@ static void *create(struct ct_arena *a, const struct ct_method *method,
     create_stages(a, &s->change, p->dae);
     double **const stages_of_speeds[] = {&s->F, &s->r};
     double **const stages_of_rows[] = {&s->phi, &s->v};
-    double **const speeds[] = {&s->rate, &s->u, &s->u_dot, &s->d, &s->swiftest, &s->ample};
+    double **const speeds[]
+        = {&s->rate, &s->u, &s->u_dot, &s->d, &s->swiftest, &s->ample, &s->furthest};
     for (size_t i = 0; i < COUNT(stages_of_speeds); i++)
         *stages_of_speeds[i] = CT_NEWN(a, double, STAGES *nu + 1);
     for (size_t i = 0; i < COUNT(stages_of_rows); i++)
         *stages_of_rows[i] = CT_NEWN(a, double, STAGES *m + 1);
     for (size_t i = 0; i < COUNT(speeds); i++)
         *speeds[i] = CT_NEWN(a, double, nu + 1);
+    s->ahead = CT_NEWN(a, double, 2 * nu + 1);
     s->b = CT_NEWN(a, double, nu + 2 * m + 1);
     s->x = CT_NEWN(a, double, ct_response_padded(2 * nu + m));
     if (s->it->response)
@@ -79,6 +81,7 @@ static void restart(void *work)
     struct ct_radau *s = work;
     s->is_fresh = true;
     s->was_tried = false;
+    s->missed.h = 0;
     ct_iteration_forget(s->it);
 }
 

@@ -10,6 +10,9 @@
 // with the places e_d. Of a vibration of omega it leaves c^2/(c^2 + omega^2). The motion feels the energy of the rest, so that is
 // held to the root of the tolerance. Where outputs would not feel it if all of the vibration were lost, the same is done with places.
 //
+// What outputs do feel of vibrations adds up over all steps, which no error of a single one tells: what steps like this one take of
+// them up to the end is an error as well.  (8.21), (8.22)
+//
 // Outputs that amplify errors of states, as forces of stiff springs do, (8.11), have errors of their own: at the end of the step, of
 // what the iteration has left, and between steps.
 // Source: Hairer and Wanner (1996), IV.8, key hairer1996; formulation 8.4.
@@ -30,6 +33,11 @@ static const double growing = 0.13;
 static const double promised = 10;
 // Nor are they missed where all of them is this part of it in places, (8.10): the other half is for all other errors.
 static const double unfelt = 0.5;
+
+// Of a vibration of z = omega h, a step takes z^6/7200, and the filtered error is z^4/(60 gamma).  (8.21)
+static const double of_vibration = 7200, of_error = 60 * GAMMA;
+// One over (1 - S) S^2 at its own rate: there all of the vibration is what is taken.
+static const double at_rate = 8;
 
 // Speeds are eased where less than this part of the error is left then; looked at every so many steps where they were not, and
 // where they are too large.
@@ -122,6 +130,72 @@ static void ease(struct ct_radau *s, const struct ct_problem *p, const struct ct
     *err = ct_smaller(*err, eased);
 }
 
+// The largest places and speeds so far.
+static void note_sizes(struct ct_radau *s, const double *y)
+{
+    const int nq = s->dae->nq, *q_of = s->dae->q_of;
+    for (int k = 0; k < s->dae->nu; k++) {
+        s->swiftest[k] = ct_larger(s->swiftest[k], fabs(y[nq + k]));
+        if (q_of[k] >= 0)
+            s->furthest[k] = ct_larger(s->furthest[k], fabs(y[q_of[k]]));
+    }
+}
+
+// What outputs would miss of vibrations of about this rate that are `times` their errors, in parts of what they may miss.
+static double missing(struct ct_radau *s, const struct ct_problem *p, double t, const double *y,
+                      double rate, double times)
+{
+    const double small = s->wanted.atol / s->wanted.rtol, may = unfelt * promised;
+    const struct ct_band band = {.rate = rate,
+                                 .times = times,
+                                 .small = small,
+                                 .least = near_zero / may * small,
+                                 .furthest = s->furthest,
+                                 .swiftest = s->swiftest,
+                                 .ahead = s->ahead};
+    return ct_iteration_felt_in_band(s->it, p, &band, t, y, s->change.d, s->change.u)
+         / (may * p->accuracy);
+}
+
+// What steps like this one take from vibrations up to the end of the run, as an error of order 3: a rate of h^5. It is no more than
+// all there is, which does not grow with the step: so that holds steps up less before it counts.  (8.21), (8.22)
+static double find_missed(struct ct_radau *s, const struct ct_problem *p, double t,
+                          const double *y)
+{
+    const double h = s->now.h, steps = ct_larger(p->duration / h, 1), half = 0.5;
+    const double order = 4. / 5,
+                 harmless = 1e-3; // an error of 1.8e-4: steps may grow eightfold
+    const double z = pow(at_rate * of_vibration / steps, 1. / 6), z4 = z * z * z * z;
+    const double half4 = half * half * half * half;
+    const double all = missing(s, p, t, y, half * z / h, of_error / (half4 * z4));
+    if (!(all > harmless))
+        return 0;
+    const double lost = missing(s, p, t, y, z / h, at_rate * of_error / z4);
+    const double error = ct_smaller(pow(lost, order), pow(all, 1 / order));
+    return isfinite(error) ? error : 0;
+}
+
+// It is looked at where steps have become longer, and every so many steps, and follows their length in between.
+static double miss(struct ct_radau *s, const struct ct_problem *p, double t, const double *y,
+                   const double *dy)
+{
+    const double h = s->now.h;
+    if (!p->asked_speeds || !(p->accuracy > 0) || !(p->duration > 0))
+        return 0;
+    if (h <= s->missed.h && s->missed.left-- > 0) {
+        const double part = h / s->missed.h;
+        return s->missed.error * part * part * part * part;
+    }
+    note_sizes(s, y);
+    ct_iteration_expect(s->it, p, t, y, dy + s->dae->nq, s->ahead);
+    s->missed.h = h;
+    s->missed.error = find_missed(s, p, t, y);
+    s->missed.left = STEPS_BETWEEN;
+    if (s->missed.error > 1 && !s->it->is_new)
+        ct_iteration_forget(s->it); // as in `ease`
+    return s->missed.error;
+}
+
 // Error of the step. Where it is too large at first, on a first step or after a refusal, it is filtered once more, which
 // takes off what stiff components that start off their slow motion add to it.
 enum ct_eval ct_radau_estimate(struct ct_radau *s, const struct ct_problem *p,
@@ -133,6 +207,7 @@ enum ct_eval ct_radau_estimate(struct ct_radau *s, const struct ct_problem *p,
     double loss = 0;
     *err = filter(s, y + nq, dy + nq);
     ease(s, p, tol, t, y, dy, err, &loss);
+    loss = ct_larger(loss, miss(s, p, t, y, dy));
     if (*err < 1 || loss > 1 || !(s->is_fresh || s->was_tried)) {
         *err = ct_larger(*err, loss);
         return CT_EVAL_OK;

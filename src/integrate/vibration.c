@@ -1,5 +1,5 @@
 // What errors of implicit methods mean where they are vibrations much faster than the motion: which part of a speed is slow, and what
-// energy a step of Radau takes from the rest. See iteration.h; (8.10), (8.13).
+// energy a step of Radau takes from the rest, and what outputs miss of it then. See iteration.h; (8.10), (8.13), (8.21).
 #include "integrate/iteration.h"
 #include "numeric/dense.h"
 
@@ -73,9 +73,12 @@ static void find_slow_speeds(struct ct_iteration *it)
 // Factors that tell what is slower than c; those of up to twice or half of it will do.
 static bool factor_slow(struct ct_iteration *it, double c)
 {
-    if (it->slow > c / 2 && it->slow < 2 * c)
-        return true;
+    if (it->slow > c / 2 && it->slow < 2 * c) {
+        it->is_lent = it->is_lent && !has_factors(it, it->slow);
+        return !it->is_lent;
+    }
     it->slow = has_factors(it, c) ? c : 0;
+    it->is_lent = false;
     find_masses(it);
     if (it->slow > 0)
         find_slow_speeds(it);
@@ -170,7 +173,7 @@ double ct_iteration_felt(struct ct_iteration *it, const struct ct_problem *p,
     pass_slow(it, u);
     for (int k = 0; k < nu; k++)
         speeds[k] = v->times * (u[k] - it->b[k]);
-    return p->felt(p->user, t, y, ct_iteration_states(it, y, places, speeds));
+    return p->felt(p->user, t, y, ct_iteration_states(it, y, places, speeds), 0);
 }
 
 double ct_iteration_slow_norm(struct ct_iteration *it, const struct ct_problem *p,
@@ -196,4 +199,105 @@ double ct_iteration_slow_norm(struct ct_iteration *it, const struct ct_problem *
     }
     *slow = ct_iteration_norm(it, places, speeds, nu, 1);
     return ct_iteration_norm(it, d, speeds, nu, 1);
+}
+
+// out (nu) = x less what is slow of it; they may be one.
+static void keep_fast(struct ct_iteration *it, double *out, const double *x)
+{
+    pass_slow(it, x);
+    for (int k = 0; k < it->nu; k++)
+        out[k] = x[k] - it->b[k];
+}
+
+// x (nu) <- times (1 - S) S^2 x, S what pass_slow leaves.
+static void pass_band(struct ct_iteration *it, double *x, double times)
+{
+    for (int i = 0; i < 2; i++) {
+        pass_slow(it, x);
+        memcpy(x, it->b, (size_t)it->nu * sizeof *x);
+    }
+    keep_fast(it, x, x);
+    for (int k = 0; k < it->nu; k++)
+        x[k] *= times;
+}
+
+// A part of a way small enough for outputs to change in proportion, and far above their rounding.
+static const double sample = 0x1p-14;
+
+void ct_iteration_expect(struct ct_iteration *it, const struct ct_problem *p, double t,
+                         const double *y, const double *a, double *ahead)
+{
+    const int nu = it->nu;
+    const double time = p->duration, *u = y + it->dae->nq;
+    double *part = it->fast, far = 1;
+    memset(ahead, 0, 2 * (size_t)nu * sizeof *ahead);
+    it->is_lent = true;
+    if (has_factors(it, 1 / time)) {
+        for (int k = 0; k < nu; k++)
+            part[k] = time * (u[k] + time * a[k]);
+        pass_slow(it, part);
+        memcpy(ahead, it->b, (size_t)nu * sizeof *ahead);
+        pass_slow(it, a);
+        for (int k = 0; k < nu; k++) {
+            ahead[nu + k] = time * it->b[k];
+            far = ct_larger(far, fabs(ahead[k]));
+        }
+    }
+    for (int k = 0; k < 2 * nu; k++) {
+        ahead[k] = isfinite(ahead[k] / far) ? ahead[k] / far : 0;
+        part[k] = sample * ahead[k];
+    }
+    if (p->expect)
+        p->expect(p->user, t, y, ct_iteration_states(it, y, part, part + nu), 1 / sample);
+}
+
+// What changes of places and speeds (nu) are of states that are outputs, over the largest of them so far or expected.
+static double felt_by_states(const struct ct_iteration *it, const struct ct_problem *p,
+                             const struct ct_band *b, const double *places,
+                             const double *speeds)
+{
+    const int nu = it->nu;
+    double most = 0;
+    for (int k = 0; k < nu; k++) {
+        const double place = ct_larger(b->furthest[k], fabs(b->ahead[k])),
+                     speed = ct_larger(b->swiftest[k], fabs(b->ahead[nu + k]));
+        if (it->dae->q_of[k] >= 0 && p->asked_places[k] && places[k] != 0)
+            most = ct_larger(most, fabs(places[k]) / ct_larger(place, b->least));
+        if (p->asked_speeds[k] && speeds[k] != 0)
+            most = ct_larger(most, fabs(speeds[k]) / ct_larger(speed, b->least));
+    }
+    return most;
+}
+
+// The vibration places, speeds (nu) a quarter of a period later.
+static void turn_quarter(double *places, double *speeds, double rate, int nu)
+{
+    for (int k = 0; k < nu; k++) {
+        const double place = places[k];
+        places[k] = speeds[k] / rate;
+        speeds[k] = -rate * place;
+    }
+}
+
+double ct_iteration_felt_in_band(struct ct_iteration *it, const struct ct_problem *p,
+                                 const struct ct_band *b, double t, const double *y,
+                                 const double *d, const double *u)
+{
+    double *places = it->fast, *speeds = it->fast + it->nu, felt[2];
+    if (!isfinite(b->small) || !factor_slow(it, much_faster * pace_of(it, b->small, y)))
+        return 0;
+    keep_fast(it, places, d);
+    keep_fast(it, speeds, u);
+    it->is_lent = true;
+    if (!has_factors(it, b->rate))
+        return 0;
+    pass_band(it, places, b->times);
+    pass_band(it, speeds, b->times);
+    for (int quarter = 0; quarter < 2; quarter++) {
+        const double *e = ct_iteration_states(it, y, places, speeds);
+        felt[quarter] = ct_larger(felt_by_states(it, p, b, places, speeds),
+                                  p->felt ? p->felt(p->user, t, y, e, b->least) : 0);
+        turn_quarter(places, speeds, b->rate, it->nu);
+    }
+    return hypot(felt[0], felt[1]);
 }

@@ -38,7 +38,7 @@ static double change_of_outputs(struct ct_run *r, double t, const double *y, con
     const double counts = 1e6; // roundings, as of other outputs
     const double place = DBL_EPSILON * ct_vector_largest(y, r->m->nq),
                  speed = r->stiffness->fast * place;
-    double most = r->fidelity ? ct_fidelity_felt(r->fidelity, t, y, e) : 0;
+    double most = r->fidelity ? ct_fidelity_felt(r->fidelity, t, y, e, 0) : 0;
     for (size_t i = 0; i < r->e->nresult; i++)
         for (size_t k = 0; k + 1 < r->ny; k++) {
             const bool is_place = k < r->m->nq;

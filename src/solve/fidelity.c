@@ -31,6 +31,7 @@ struct ct_fidelity {
     size_t ny;
     struct ct_fidelity_record record;
     double *at, *probed; // (n) g there
+    double *expected;    // (n) as large they are expected to become
     double *y;           // (ny) to spare
 };
 
@@ -93,6 +94,7 @@ struct ct_fidelity *ct_fidelity_create(struct ct_arena *a, struct ct_machine *m)
     p->record = ct_fidelity_record(a, n);
     p->at = CT_NEWN(a, double, n);
     p->probed = CT_NEWN(a, double, n);
+    p->expected = CT_NEWN(a, double, n);
     p->y = CT_NEWN(a, double, p->ny);
     p->amplifier = ct_amplifier_create(a, m, &p->program, n);
     return p;
@@ -256,7 +258,8 @@ double ct_fidelity_error(struct ct_fidelity *p, double t, const double *y, const
     return look(p, t, y, e, tolerance, states);
 }
 
-double ct_fidelity_felt(struct ct_fidelity *p, double t, const double *y, const double *e)
+double ct_fidelity_felt(struct ct_fidelity *p, double t, const double *y, const double *e,
+                        double least)
 {
     double most = 0;
     ct_machine_copy(p->y, y, p->ny);
@@ -267,11 +270,26 @@ double ct_fidelity_felt(struct ct_fidelity *p, double t, const double *y, const 
     const double *off = evaluate(p, t);
     for (size_t i = 0; i < p->record.n; i++) {
         const double way = fabs(off[i] - p->at[i]),
-                     size = ct_larger(fabs(p->at[i]), p->record.largest[i]);
+                     size = ct_larger(fabs(p->at[i]), p->record.largest[i]),
+                     to_come = least > 0 ? ct_larger(p->expected[i], least) : 0;
+        if (least > 0 && ct_amplifier_has(p->amplifier, i))
+            continue;
         if (way > 0 && size >= least_size * rounding_of(p->at[i], p->probed[i]))
-            most = ct_larger(most, way / size);
+            most = ct_larger(most, way / ct_larger(size, to_come));
     }
     return most;
+}
+
+void ct_fidelity_expect(struct ct_fidelity *p, double t, const double *y, const double *way,
+                        double times)
+{
+    ct_machine_copy(p->y, y, p->ny);
+    memcpy(p->at, evaluate(p, t), p->record.n * sizeof *p->at);
+    for (size_t i = 0; i < p->ny; i++)
+        p->y[i] = y[i] + way[i];
+    const double *off = evaluate(p, t);
+    for (size_t i = 0; i < p->record.n; i++)
+        p->expected[i] = times * fabs(off[i] - p->at[i]);
 }
 
 void ct_fidelity_accept(struct ct_fidelity *p)

@@ -30,8 +30,13 @@ void ct_fidelity_start(struct ct_fidelity *p);
 /// ct_amplifier_error.
 double ct_fidelity_error(struct ct_fidelity *p, double t, const double *y, const double *e,
                          const struct ct_tolerance *tolerance, double states, bool is_implicit);
-/// The most that an output, of those that are controlled, changes by for a change e (ny) of y (ny), over its largest value so far.
-double ct_fidelity_felt(struct ct_fidelity *p, double t, const double *y, const double *e);
+/// The most that an output, of those that are controlled, changes by for a change e (ny) of y (ny), over its largest value so far. With
+/// least > 0 over that if it is more, or over what is expected, and of those that do not amplify errors of states.
+double ct_fidelity_felt(struct ct_fidelity *p, double t, const double *y, const double *e,
+                        double least);
+/// Outputs are expected to become as large as so many `times` what they change by for a change way (ny) of y, until told otherwise.
+void ct_fidelity_expect(struct ct_fidelity *p, double t, const double *y, const double *way,
+                        double times);
 /// The last step that was looked at is accepted.
 void ct_fidelity_accept(struct ct_fidelity *p);
 

@@ -91,10 +91,16 @@ static double output_error(void *user, double t, const double *y, const double *
                              r->method->is_implicit);
 }
 
-static double felt(void *user, double t, const double *y, const double *e)
+static double felt(void *user, double t, const double *y, const double *e, double least)
 {
     struct ct_run *r = user;
-    return ct_fidelity_felt(r->fidelity, ct_run_before(r, t), y, e);
+    return ct_fidelity_felt(r->fidelity, ct_run_before(r, t), y, e, least);
+}
+
+static void expect(void *user, double t, const double *y, const double *way, double times)
+{
+    struct ct_run *r = user;
+    ct_fidelity_expect(r->fidelity, ct_run_before(r, t), y, way, times);
 }
 
 static double amplified_error(void *user, double t, const double *y, const double *e,
@@ -546,6 +552,7 @@ bool ct_run_simulate(struct ct_run *r, const struct ct_run_options *o,
                            .groups = ct_run_groups(r),
                            .output_error = r->fidelity ? output_error : NULL,
                            .felt = r->fidelity ? felt : NULL,
+                           .expect = r->fidelity ? expect : NULL,
                            .amplified_error = r->fidelity ? amplified_error : NULL,
                            .rhs = rhs,
                            .project = has_constraints(r) ? project : NULL,
