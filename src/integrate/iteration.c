@@ -119,24 +119,29 @@ static inline void weigh_plain(struct ct_iteration *it, double rtol, double atol
     }
 }
 
-static inline double largest_place(const struct ct_iteration *it, const double *y)
-{
-    const struct ct_dae *dae = it->dae;
-    double largest = 0;
-    if (dae->is_plain && it->nu == 1)
-        return fabs(y[0]);
-    for (int k = 0; k < it->nu; k++) {
-        const int i = dae->is_plain ? k : dae->q_of[k];
-        largest = ct_larger(largest, i < 0 ? 1 : fabs(y[i]));
-    }
-    return largest;
-}
-
-static double largest_of(const double *x, int n)
+static inline double largest_of(const double *x, const int n)
 {
     double largest = 0;
     for (int i = 0; i < n; i++)
         largest = ct_larger(largest, fabs(x[i]));
+    return largest;
+}
+
+static inline double largest_of_some(const double *x, int n)
+{
+    return n == 1 ? fabs(x[0]) : n == 3 ? largest_of(x, 3) : largest_of(x, n);
+}
+
+static double largest_place(const struct ct_iteration *it, const double *y)
+{
+    const struct ct_dae *dae = it->dae;
+    double largest = 0;
+    if (dae->is_plain)
+        return largest_of_some(y, it->nu);
+    for (int k = 0; k < it->nu; k++) {
+        const int i = dae->q_of[k];
+        largest = ct_larger(largest, i < 0 ? 1 : fabs(y[i]));
+    }
     return largest;
 }
 
@@ -177,7 +182,7 @@ bool ct_iteration_begin(struct ct_iteration *it, const struct ct_tolerance *tole
     if (it->is_few)
         ct_response_set_rows(it->response, it->m);
     it->unfelt_place = rounding / 2;
-    it->unfelt_speed = DBL_EPSILON / 2 * largest_of(y + dae->nq, it->nu);
+    it->unfelt_speed = DBL_EPSILON / 2 * largest_of_some(y + dae->nq, it->nu);
     if (it->version == before)
         return false;
     it->has_tangent = false;
