@@ -14,12 +14,6 @@ static const double kappa_most = 0.03;
 // 1e-10 where they stop to shrink or have been many. What is left in each step, and is the same in most, adds up over the steps.
 static const struct ct_tolerance finest = {1e-12, 1e-12};
 static const double kappa_finest = 1e-4, rounding_finest = 100;
-// Places that change by less than this many roundings of the largest of them cannot be found better, however much their
-// speeds still change, which have the same over the step.
-static const double place_rounding = 8;
-// With a tolerance a speed need not be known better than what moves a place by so many roundings in the step: where forces
-// are very stiff, shorter steps would only show more of it.
-static const double moved_roundings = 4;
 // In the index-3 form places alone are judged, and speeds follow them divided by the step.
 static const double kappa_index3 = 0.01;
 enum { MOST = 10, MOST_FINEST = 30 };
@@ -151,8 +145,8 @@ bool ct_iteration_begin(struct ct_iteration *it, const struct ct_tolerance *tole
     const struct ct_dae *dae = it->dae;
     const struct ct_tolerance *tol = tolerance ? tolerance : &finest;
     const double rounding = DBL_EPSILON * largest_place(it, y);
-    const double least_speed = tolerance ? moved_roundings * rounding / h : 0;
-    it->least = place_rounding * rounding;
+    it->least = ct_place_rounding * rounding;
+    const double least_speed = tolerance ? it->least / h : 0;
     it->y = y;
     const bool is_plain = dae->is_plain && !it->groups;
     if (is_plain && it->nu == 1)
