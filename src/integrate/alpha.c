@@ -339,9 +339,10 @@ static enum ct_eval correct_apart(struct state *s, double t1, const double *y, d
                                          s->r, s->phi, s->v);
     if (e != CT_EVAL_OK)
         return e;
-    *size = m || nu > 2 ? solve_and_add(s, nu, m)
-          : nu == 1     ? solve_and_add(s, 1, 0)
-                        : solve_and_add(s, 2, 0);
+    *size = m == 2 && nu == 3 ? solve_and_add(s, 3, 2)
+          : m || nu > 2       ? solve_and_add(s, nu, m)
+          : nu == 1           ? solve_and_add(s, 1, 0)
+                              : solve_and_add(s, 2, 0);
     ct_iteration_move(dae, y, s->d, s->q);
     return CT_EVAL_OK;
 }
