@@ -43,13 +43,13 @@ struct state {
     const struct ct_alpha *c;
     struct ct_iteration *it;
     struct factors f;
-    double share;                // 1/(1 - alpha_m)
-    double by_places, by_speeds; // (8.3) over h^2, (8.8) over h^3 u'''
-    bool is_fresh, has_jerk;     // nothing is known of the time before; but u'' is
-    struct memory start, end;    // of the step
-    double *a0, *jerk;           // (nu): a at the start, for this step's size; u''
-    double *d, *u, *q;           // the step's motion (nu), its end (nu, nq)
-    double *noise;               // what corrections leave of speeds  (nu)
+    double share;                          // 1/(1 - alpha_m)
+    double by_places, by_speeds;           // (8.3) over h^2, (8.8) over h^3 u'''
+    bool is_fresh, has_jerk;               // nothing is known of the time before; but u'' is
+    struct memory memory[2], *start, *end; // of the step
+    double *a0, *jerk;                     // (nu): a at the start, for this step's size; u''
+    double *d, *u, *q;                     // the step's motion (nu), its end (nu, nq)
+    double *noise;                         // what corrections leave of speeds  (nu)
     double *dd, *du; // corrections (nu), one behind the other, zeros behind them (ny)
     double *eta, *dlam;
     double *r, *phi, *v; // behind each other
@@ -72,21 +72,23 @@ void *ct_alpha_create(struct ct_arena *a, const struct ct_method *method,
 {
     struct state *s = CT_NEW(a, struct state);
     s->dae = p->dae;
+    s->start = &s->memory[0];
+    s->end = &s->memory[1];
     s->c = method->coefficients;
     s->share = 1 / (1 - s->c->alpha_m);
     s->by_places = s->c->beta + 1. / 12 - s->c->gamma / 2;
     s->by_speeds = speed_factor(s->c);
     s->it = ct_iteration_create(a, p, s->c->is_stabilised, false);
-    double **const speeds[] = {&s->start.slope,
-                               &s->start.bend,
-                               &s->end.slope,
-                               &s->end.bend,
-                               &s->start.a,
-                               &s->start.u_dot,
-                               &s->start.jerk,
-                               &s->end.a,
-                               &s->end.u_dot,
-                               &s->end.jerk,
+    double **const speeds[] = {&s->start->slope,
+                               &s->start->bend,
+                               &s->end->slope,
+                               &s->end->bend,
+                               &s->start->a,
+                               &s->start->u_dot,
+                               &s->start->jerk,
+                               &s->end->a,
+                               &s->end->u_dot,
+                               &s->end->jerk,
                                &s->a0,
                                &s->jerk,
                                &s->d,
@@ -94,16 +96,16 @@ void *ct_alpha_create(struct ct_arena *a, const struct ct_method *method,
                                &s->rate1,
                                &s->out,
                                &s->noise,
-                               &s->start.a_noise,
-                               &s->start.jerk_noise,
-                               &s->end.a_noise,
-                               &s->end.jerk_noise};
-    double **const rows[] = {&s->start.lam,
-                             &s->end.lam,
-                             &s->start.lam_slope,
-                             &s->end.lam_slope,
-                             &s->start.lam_bend,
-                             &s->end.lam_bend,
+                               &s->start->a_noise,
+                               &s->start->jerk_noise,
+                               &s->end->a_noise,
+                               &s->end->jerk_noise};
+    double **const rows[] = {&s->start->lam,
+                             &s->end->lam,
+                             &s->start->lam_slope,
+                             &s->end->lam_slope,
+                             &s->start->lam_bend,
+                             &s->end->lam_bend,
                              &s->eta,
                              &s->dlam};
     for (size_t i = 0; i < COUNT(speeds); i++)
@@ -115,7 +117,7 @@ void *ct_alpha_create(struct ct_arena *a, const struct ct_method *method,
     s->x = CT_NEWN(a, double, ct_response_padded(2 * p->dae->nu + p->dae->most_rows));
     s->dd = CT_NEWN(a, double, p->ny + p->dae->nu);
     s->du = s->dd + p->dae->nu;
-    double **const states[] = {&s->start.rate, &s->end.rate, &s->end_rate, &s->error};
+    double **const states[] = {&s->start->rate, &s->end->rate, &s->end_rate, &s->error};
     for (size_t i = 0; i < COUNT(states); i++)
         *states[i] = CT_NEWN(a, double, p->ny);
     s->is_fresh = true;
@@ -133,7 +135,7 @@ void ct_alpha_restart(void *work)
 void ct_alpha_accept(void *work)
 {
     struct state *s = work;
-    const struct memory spare = s->start;
+    struct memory *spare = s->start;
     s->start = s->end;
     s->end = spare;
     s->is_fresh = false;
@@ -142,7 +144,7 @@ void ct_alpha_accept(void *work)
 static void find_factors(struct state *s, double h)
 {
     const struct ct_alpha *c = s->c;
-    const double before = s->is_fresh ? INFINITY : s->start.h;
+    const double before = s->is_fresh ? INFINITY : s->start->h;
     if (s->f.h == h && s->f.before == before)
         return;
     const double by_a = 1 / (c->beta * h * h), by_speed = c->gamma / (c->beta * h);
@@ -189,8 +191,8 @@ static enum ct_eval find_jerk(struct state *s, const struct ct_problem *p, doubl
 static enum ct_eval start_multipliers(struct state *s, double t, const double *y)
 {
     for (int i = 0; i < s->it->m; i++)
-        s->start.lam_slope[i] = s->start.lam_bend[i] = 0;
-    return s->dae->start(s->dae->user, t, y, s->du, s->start.lam);
+        s->start->lam_slope[i] = s->start->lam_bend[i] = 0;
+    return s->dae->start(s->dae->user, t, y, s->du, s->start->lam);
 }
 
 // a0 at the size of this step, and multipliers of the rows as they now are.
@@ -213,9 +215,9 @@ static enum ct_eval begin(struct state *s, const struct ct_problem *p, double t,
     if (e != CT_EVAL_OK)
         return e;
     if (s->is_fresh || c->starts_anew)
-        ct_stepper_copy(s->start.u_dot, u_dot, nu);
+        ct_stepper_copy(s->start->u_dot, u_dot, nu);
     find_factors(s, h);
-    const double *now = s->start.u_dot, *a = s->start.a, ratio = s->f.ratio;
+    const double *now = s->start->u_dot, *a = s->start->a, ratio = s->f.ratio;
     if (!s->is_fresh && !c->starts_anew)
         for (int k = 0; k < nu; k++)
             s->a0[k] = now[k] + ratio * (a[k] - now[k]);
@@ -236,19 +238,19 @@ static inline void predict_few(struct state *s, double h, const double *y, const
     const struct factors f = s->f;
     const double *u0 = y + dae->nq;
     const bool is_known = !s->is_fresh && s->c->is_stabilised;
-    const double further = is_known ? h : 0, last = is_known ? h + s->start.h : 0;
+    const double further = is_known ? h : 0, last = is_known ? h + s->start->h : 0;
     for (int k = 0; k < nu; k++) {
-        const double u_dot = s->start.u_dot[k], a0 = s->a0[k];
-        const double then = u_dot + further * (s->start.slope[k] + last * s->start.bend[k]);
+        const double u_dot = s->start->u_dot[k], a0 = s->a0[k];
+        const double then = u_dot + further * (s->start->slope[k] + last * s->start->bend[k]);
         const double a = f.a_then * then + f.a_now * u_dot - f.a_before * a0;
-        s->end.u_dot[k] = then;
-        s->end.a[k] = a;
+        s->end->u_dot[k] = then;
+        s->end->a[k] = a;
         s->u[k] = u0[k] + (f.u_a0 * a0 + f.u_a * a);
         s->d[k] = h * u0[k] + (f.d_a0 * a0 + f.d_a * a);
     }
     for (int i = 0; i < s->it->m; i++)
-        s->end.lam[i]
-            = s->start.lam[i] + further * (s->start.lam_slope[i] + last * s->start.lam_bend[i]);
+        s->end->lam[i] = s->start->lam[i]
+                       + further * (s->start->lam_slope[i] + last * s->start->lam_bend[i]);
     ct_iteration_move(dae, y, s->d, s->q);
 }
 
@@ -263,16 +265,18 @@ static void predict(struct state *s, double h, const double *y)
         predict_few(s, h, y, s->dae->nu);
 }
 
-// s->last: what answers the residuals.
+// s->last: what answers the residuals b.
+static inline void answer(struct state *s, const double *b, const int nu)
+{
+    const struct ct_response *a = s->it->response;
+    ct_product(s->x, a->real, b, a->rows, a->in);
+    s->last = (struct correction){s->x, s->x + nu, s->x + 2 * nu};
+}
+
+// The same of more unknowns.
 static inline void solve(struct state *s, const int nu, const int m)
 {
     struct ct_iteration *it = s->it;
-    const struct ct_response *a = it->response;
-    if (it->is_few) {
-        ct_product(s->x, a->real, s->r, a->rows, a->in);
-        s->last = (struct correction){s->x, s->x + nu, s->x + 2 * nu};
-        return;
-    }
     ct_iteration_solve(it, s->dd, s->eta, s->dlam, s->r, s->phi, s->v);
     for (int k = 0; k < nu; k++)
         s->du[k] = s->f.by_speed * s->dd[k];
@@ -286,45 +290,80 @@ static inline void solve(struct state *s, const int nu, const int m)
 static inline double add_correction(struct state *s, const int nu, const int m)
 {
     const struct factors f = s->f;
-    solve(s, nu, m);
     const struct correction c = s->last;
     for (int k = 0; k < nu; k++) {
         const double du = c.u[k];
         s->d[k] += c.d[k];
         s->u[k] += du;
-        s->end.a[k] += f.a_by_speed * du;
-        s->end.u_dot[k] += f.u_dot_by_speed * du;
+        s->end->a[k] += f.a_by_speed * du;
+        s->end->u_dot[k] += f.u_dot_by_speed * du;
     }
     for (int i = 0; i < m; i++)
-        s->end.lam[i] += c.lam[i];
+        s->end->lam[i] += c.lam[i];
     // in the index-3 form speeds have rounding over h in them: places alone decide
     return ct_iteration_norm(s->it, c.d, s->c->is_stabilised ? c.u : NULL, nu, 1);
 }
 
-// Few freedoms, and planar loops of three coordinates, have code of their own: its loops are known to be so long.
-static double add_corrections(struct state *s)
+// Residuals of few unknowns are evaluated where they stand, and answered by one product. A number that is not finite among them makes
+// none of the answers finite.
+static inline double correct_in_place(struct state *s, double t1, const double *y, const int nu,
+                                      const int m)
 {
-    const int nu = s->it->nu, m = s->it->m;
-    return m == 2 && nu == 3 ? add_correction(s, 3, 2)
-         : m || nu > 2       ? add_correction(s, nu, m)
-         : nu == 1           ? add_correction(s, 1, 0)
-                             : add_correction(s, 2, 0);
+    const struct ct_dae_place *at = s->dae->place;
+    *at->t = t1;
+    for (int k = 0; k < nu; k++) {
+        at->q[k] = y[k] + s->d[k];
+        at->u[k] = s->u[k];
+        at->a[k] = s->end->u_dot[k];
+    }
+    for (int i = 0; i < s->dae->most_rows && m < s->dae->most_rows; i++)
+        at->lam[i] = 0;
+    for (int i = 0; i < m; i++)
+        at->lam[at->row[i]] = s->end->lam[i];
+    answer(s, at->evaluate(s->dae->user), nu);
+    return add_correction(s, nu, m);
 }
 
-static enum ct_eval correct(struct state *s, double t1, const double *y,
-                            enum ct_verdict *verdict, struct ct_integrate_stats *stats)
+static inline double solve_and_add(struct state *s, const int nu, const int m)
+{
+    solve(s, nu, m);
+    return add_correction(s, nu, m);
+}
+
+// *size (out): that of the correction.
+static enum ct_eval correct_apart(struct state *s, double t1, const double *y, double *size)
 {
     const struct ct_dae *dae = s->dae;
-    stats->evaluations++;
-    const enum ct_eval e = dae->residual(dae->user, t1, s->q, s->u, s->end.u_dot, s->end.lam,
+    const int nu = s->it->nu, m = s->it->m;
+    const enum ct_eval e = dae->residual(dae->user, t1, s->q, s->u, s->end->u_dot, s->end->lam,
                                          s->r, s->phi, s->v);
     if (e != CT_EVAL_OK)
         return e;
-    const double size = add_corrections(s);
+    *size = m == 2 && nu == 3 ? solve_and_add(s, 3, 2)
+          : m || nu > 2       ? solve_and_add(s, nu, m)
+          : nu == 1           ? solve_and_add(s, 1, 0)
+                              : solve_and_add(s, 2, 0);
     ct_iteration_move(dae, y, s->d, s->q);
-    *verdict
-        = ct_iteration_judge(s->it, size, s->last.d, s->c->is_stabilised ? s->last.u : NULL, 1);
     return CT_EVAL_OK;
+}
+
+// Few freedoms, and planar loops of three coordinates, have code of their own: its loops are known to be so long.
+static enum ct_eval correct(struct state *s, double t1, const double *y,
+                            enum ct_verdict *verdict, struct ct_integrate_stats *stats)
+{
+    const int nu = s->it->nu, m = s->it->m;
+    double size = 0;
+    enum ct_eval e = CT_EVAL_OK;
+    stats->evaluations++;
+    if (!s->it->is_few)
+        e = correct_apart(s, t1, y, &size);
+    else
+        size = nu == 3 && m == 2 ? correct_in_place(s, t1, y, 3, 2)
+                                 : correct_in_place(s, t1, y, nu, m);
+    if (e == CT_EVAL_OK)
+        *verdict = ct_iteration_judge(s->it, size, s->last.d,
+                                      s->c->is_stabilised ? s->last.u : NULL, 1);
+    return e;
 }
 
 // What the last correction leaves of speeds: where it has come to rounding, as much as it was.
@@ -343,7 +382,7 @@ static enum ct_eval iterate(struct state *s, double t1, double h, const double *
         predict(s, h, y);
         enum ct_eval e = CT_EVAL_OK;
         if (ct_iteration_is_old(s->it))
-            e = ct_iteration_refresh(s->it, t1, s->q, s->u, s->end.u_dot, s->end.lam, stats);
+            e = ct_iteration_refresh(s->it, t1, s->q, s->u, s->end->u_dot, s->end->lam, stats);
         if (e == CT_EVAL_OK
             && !ct_iteration_factor(s->it, s->f.by_speed, s->f.by_u_dot, 0, stats))
             e = CT_EVAL_RETRY;
@@ -351,7 +390,7 @@ static enum ct_eval iterate(struct state *s, double t1, double h, const double *
         while (e == CT_EVAL_OK && verdict == CT_GO_ON)
             e = correct(s, t1, y, &verdict, stats);
         if (e == CT_EVAL_OK && s->it->m)
-            ct_iteration_note_multipliers(s->it, s->end.lam, s->last.lam, s->it->m);
+            ct_iteration_note_multipliers(s->it, s->end->lam, s->last.lam, s->it->m);
         if (e == CT_EVAL_OK && verdict == CT_CONVERGED)
             note_noise(s);
         if (e == CT_EVAL_FATAL || verdict == CT_CONVERGED)
@@ -362,6 +401,23 @@ static enum ct_eval iterate(struct state *s, double t1, double h, const double *
 
 // ---- a step -----------------------------------------------------------------------------------------
 
+// Beside singular positions speeds that meet the constraints have rounding over the square of the distance, u' that over h
+// and (8.8) again as much as speeds themselves, however short the step is, more after a shorter one: it is no error of the step.
+static inline void take_off_noise(struct state *s, double h, const int nu)
+{
+    const double back = s->f.back, pace = s->f.pace_of_a;
+    const double ratio = s->f.ratio;
+    const double speeds = s->is_fresh ? 0 : h * h * h * 2 * s->f.across * fabs(s->by_speeds);
+    for (int k = 0; k < nu; k++) {
+        const double a0 = ratio * s->start->a_noise[k], a1 = s->noise[k] * pace + back * a0;
+        s->end->a_noise[k] = a1;
+        s->end->jerk_noise[k] = s->f.pace * (a0 + a1);
+        const double noise
+            = speeds * (s->end->jerk_noise[k] + (s->is_fresh ? 0 : s->start->jerk_noise[k]));
+        s->du[k] = copysign(ct_larger(0, fabs(s->du[k]) - noise), s->du[k]);
+    }
+}
+
 // s->dd and s->du become the errors of places and speeds; the norm of the first.
 static inline double find_errors(struct state *s, double h, const int nu)
 {
@@ -370,30 +426,15 @@ static inline double find_errors(struct state *s, double h, const int nu)
     const double slope = knows_speeds ? 2 * s->f.across : 0;
     const double speeds = h * h * h * slope * s->by_speeds;
     for (int k = 0; k < nu; k++) {
-        const double change = s->end.a[k] - s->a0[k];
+        const double change = s->end->a[k] - s->a0[k];
         const double jerk = pace * change;
         s->dd[k] = places * change;
-        s->du[k] = speeds * (jerk - s->start.jerk[k]);
-        s->end.jerk[k] = jerk;
+        s->du[k] = speeds * (jerk - s->start->jerk[k]);
+        s->end->jerk[k] = jerk;
     }
+    if (s->it->m && s->c->is_stabilised)
+        take_off_noise(s, h, nu);
     return ct_iteration_norm(s->it, s->dd, NULL, nu, 1);
-}
-
-// Beside singular positions speeds that meet the constraints have rounding over the square of the distance, u' that over h
-// and (8.8) again as much as speeds themselves, however short the step is, more after a shorter one: it is no error of the step.
-static void take_off_noise(struct state *s, double h)
-{
-    const double back = s->f.back, pace = s->f.pace_of_a;
-    const double ratio = s->f.ratio;
-    const double speeds = s->is_fresh ? 0 : h * h * h * 2 * s->f.across * fabs(s->by_speeds);
-    for (int k = 0; k < s->dae->nu; k++) {
-        const double a0 = ratio * s->start.a_noise[k], a1 = s->noise[k] * pace + back * a0;
-        s->end.a_noise[k] = a1;
-        s->end.jerk_noise[k] = s->f.pace * (a0 + a1);
-        const double noise
-            = speeds * (s->end.jerk_noise[k] + (s->is_fresh ? 0 : s->start.jerk_noise[k]));
-        s->du[k] = copysign(ct_larger(0, fabs(s->du[k]) - noise), s->du[k]);
-    }
 }
 
 // The leading errors: of places (8.3), and of speeds (8.8) with u''' from u'' amid this step and the one before, zero where
@@ -406,8 +447,6 @@ static double estimate(struct state *s, const struct ct_problem *p,
     const double states = s->dae->nu == 1 ? find_errors(s, h, 1)
                         : s->dae->nu == 3 ? find_errors(s, h, 3)
                                           : find_errors(s, h, s->dae->nu);
-    if (s->it->m && s->c->is_stabilised)
-        take_off_noise(s, h);
     if (s->dae->is_plain) // then s->dd is the error of the whole state
         return ct_stepper_worse(p, tolerance, t1, y1, s->dd, states);
     return ct_iteration_error(s->it, p, tolerance, t1, y1, s->dd, s->du, states);
@@ -423,9 +462,9 @@ static double estimate_quadratures(struct state *s, const struct ct_problem *p,
     const int first = s->dae->nq + s->dae->nu;
     if (s->dae->has_no_power)
         return 0;
-    const double ratio = s->is_fresh ? 0 : h / s->start.h;
+    const double ratio = s->is_fresh ? 0 : h / s->start->h;
     for (int i = first; i < p->ny; i++)
-        s->error[i] = h / 12 * (dy1[i] - dy[i] - ratio * (dy[i] - s->start.rate[i]));
+        s->error[i] = h / 12 * (dy1[i] - dy[i] - ratio * (dy[i] - s->start->rate[i]));
     return ct_stepper_largest(p, tolerance, first, y, y1, s->error);
 }
 
@@ -435,7 +474,10 @@ static enum ct_eval finish(struct state *s, const struct ct_problem *p, double t
                            struct ct_integrate_stats *stats)
 {
     const int nq = s->dae->nq, nu = s->dae->nu;
-    ct_stepper_copy(y1, s->q, nq);
+    if (s->it->is_few)
+        ct_iteration_move(s->dae, y, s->d, y1);
+    else
+        ct_stepper_copy(y1, s->q, nq);
     ct_stepper_copy(y1 + nq, s->u, nu);
     ct_stepper_copy(y1 + nq + nu, y + nq + nu, p->ny - nq - nu);
     enum ct_eval e = CT_EVAL_OK;
@@ -455,16 +497,16 @@ static inline void note_accelerations(struct state *s, double h, const int nu)
 {
     const double pace = s->f.pace, across = s->f.across; // zero behind no step
     for (int k = 0; k < nu; k++) {
-        const double slope = pace * (s->end.u_dot[k] - s->start.u_dot[k]);
-        s->end.slope[k] = slope;
-        s->end.bend[k] = across * (slope - s->start.slope[k]);
+        const double slope = pace * (s->end->u_dot[k] - s->start->u_dot[k]);
+        s->end->slope[k] = slope;
+        s->end->bend[k] = across * (slope - s->start->slope[k]);
     }
     for (int i = 0; i < s->it->m; i++) {
-        const double slope = pace * (s->end.lam[i] - s->start.lam[i]);
-        s->end.lam_slope[i] = slope;
-        s->end.lam_bend[i] = across * (slope - s->start.lam_slope[i]);
+        const double slope = pace * (s->end->lam[i] - s->start->lam[i]);
+        s->end->lam_slope[i] = slope;
+        s->end->lam_bend[i] = across * (slope - s->start->lam_slope[i]);
     }
-    s->end.h = h;
+    s->end->h = h;
 }
 
 enum ct_eval ct_alpha_step(const struct ct_problem *p, double t, double h, const double *y,
@@ -492,7 +534,7 @@ enum ct_eval ct_alpha_step(const struct ct_problem *p, double t, double h, const
         note_accelerations(s, h, s->dae->nu);
     if (s->dae->has_no_power)
         return CT_EVAL_OK;
-    ct_stepper_copy(s->end.rate + first, dy + first, p->ny - first);
+    ct_stepper_copy(s->end->rate + first, dy + first, p->ny - first);
     ct_stepper_copy(s->end_rate + first, dy1 + first, p->ny - first);
     return CT_EVAL_OK;
 }
@@ -507,8 +549,8 @@ void ct_alpha_dense(const struct ct_problem *p, double h, double theta, const do
     memset(s->dd, 0, (size_t)nu * sizeof *s->dd);
     ct_stepper_hermite(s->out, theta, h, s->dd, y + nq, s->d, s->rate1, nu);
     s->dae->retract(s->dae->user, y, s->out, out);
-    ct_stepper_hermite(out + nq, theta, h, y + nq, s->start.u_dot, y1 + nq, s->end.u_dot, nu);
+    ct_stepper_hermite(out + nq, theta, h, y + nq, s->start->u_dot, y1 + nq, s->end->u_dot, nu);
     const int i = nq + nu;
-    ct_stepper_hermite(out + i, theta, h, y + i, s->end.rate + i, y1 + i, s->end_rate + i,
+    ct_stepper_hermite(out + i, theta, h, y + i, s->end->rate + i, y1 + i, s->end_rate + i,
                        p->ny - i);
 }

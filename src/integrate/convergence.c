@@ -12,11 +12,9 @@ static const double hopeless = 100;
 static const double further = 1e-6;
 // After convergence corrections that are not halved have come to rounding.
 static const double halved = 0.5;
-// Those before have come near enough when each was less than this part of the last, as it is with derivatives that are kept.
-static const double shrinking = 0.1;
 // So much of what is seen of roundings may come together in a correction: stages add up three times as much, and no two looks are
-// alike. They are seen where places are so few of theirs away.
-static const double together = 8, few = 16;
+// alike.
+static const double together = 8;
 
 void ct_iteration_start(struct ct_iteration *it)
 {
@@ -56,8 +54,8 @@ static bool find_forces(struct ct_iteration *it, const double *q, double *r)
         == CT_EVAL_OK;
 }
 
-// p->r (nu) = the rounding of forces, and what that of places makes of them: by how much those a few roundings of places away, d, are not
-// what K says. here (nu) is overwritten.
+// p->r (nu) = the rounding of forces, and what that of places makes of them: by how much those at places that cannot be told from these,
+// d away, are not what K says. here (nu) is overwritten.
 static bool round_forces(struct ct_iteration *it, double *here)
 {
     const int nu = it->nu;
@@ -65,7 +63,7 @@ static bool round_forces(struct ct_iteration *it, double *here)
     const struct ct_probe *p = &it->probe;
     for (int k = 0; k < nu; k++) {
         const double place = dae->q_of[k] < 0 ? 1 : it->y[dae->q_of[k]];
-        p->d[k] = toss((unsigned)k) * few * DBL_EPSILON * place;
+        p->d[k] = toss((unsigned)k) * ct_place_rounding * DBL_EPSILON * place;
     }
     ct_iteration_move(dae, it->y, p->d, p->q);
     if (!find_forces(it, it->y, here) || !find_forces(it, p->q, p->r))
@@ -141,7 +139,7 @@ static bool is_rounding(const struct ct_iteration *it, double rate, double size)
 static bool is_noise(struct ct_iteration *it, double rate, double size, bool has_speeds)
 {
     const bool has_stalled
-        = rate >= 1 || (rate >= halved && it->count > 2 && it->rate < shrinking);
+        = rate >= 1 || (rate >= halved && it->count > 2 && !ct_iteration_is_slow(it->rate));
     if (!has_stalled || it->is_finest)
         return false;
     const double *noise = ct_iteration_noise(it);

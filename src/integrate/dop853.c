@@ -268,8 +268,8 @@ const struct ct_method ct_method_dop853 = {
     .step = step,
     .followed
     = 2.5, // stable up to about 6; where accuracy holds steps up, at 1e-4, they come to 2.4 (cart pole, four-bars)
-    // |R(z)| <= 1 for |z| <= 4.8 left of the imaginary axis; at z = -7 it is 13, and there the embedded formula of order 5 has a zero: a
-    // 2e5th of the error is seen
+    // left of the imaginary axis |R(z)| <= 1 for |z| <= 5.95; but at z = -4.95 the estimate is largest, and falls to zero at -5.65: control
+    // would go on to -6.4, where errors grow
     .stable = 4.8,
     .swiftness = swiftness,
     .prepare = prepare,

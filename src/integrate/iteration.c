@@ -14,12 +14,6 @@ static const double kappa_most = 0.03;
 // 1e-10 where they stop to shrink or have been many. What is left in each step, and is the same in most, adds up over the steps.
 static const struct ct_tolerance finest = {1e-12, 1e-12};
 static const double kappa_finest = 1e-4, rounding_finest = 100;
-// Places that change by less than this many roundings of the largest of them cannot be found better, however much their
-// speeds still change, which have the same over the step.
-static const double place_rounding = 8;
-// With a tolerance a speed need not be known better than what moves a place by so many roundings in the step: where forces
-// are very stiff, shorter steps would only show more of it.
-static const double moved_roundings = 4;
 // In the index-3 form places alone are judged, and speeds follow them divided by the step.
 static const double kappa_index3 = 0.01;
 enum { MOST = 10, MOST_FINEST = 30 };
@@ -119,24 +113,29 @@ static inline void weigh_plain(struct ct_iteration *it, double rtol, double atol
     }
 }
 
-static inline double largest_place(const struct ct_iteration *it, const double *y)
-{
-    const struct ct_dae *dae = it->dae;
-    double largest = 0;
-    if (dae->is_plain && it->nu == 1)
-        return fabs(y[0]);
-    for (int k = 0; k < it->nu; k++) {
-        const int i = dae->is_plain ? k : dae->q_of[k];
-        largest = ct_larger(largest, i < 0 ? 1 : fabs(y[i]));
-    }
-    return largest;
-}
-
-static double largest_of(const double *x, int n)
+static inline double largest_of(const double *x, const int n)
 {
     double largest = 0;
     for (int i = 0; i < n; i++)
         largest = ct_larger(largest, fabs(x[i]));
+    return largest;
+}
+
+static inline double largest_of_some(const double *x, int n)
+{
+    return n == 1 ? fabs(x[0]) : n == 3 ? largest_of(x, 3) : largest_of(x, n);
+}
+
+static double largest_place(const struct ct_iteration *it, const double *y)
+{
+    const struct ct_dae *dae = it->dae;
+    double largest = 0;
+    if (dae->is_plain)
+        return largest_of_some(y, it->nu);
+    for (int k = 0; k < it->nu; k++) {
+        const int i = dae->q_of[k];
+        largest = ct_larger(largest, i < 0 ? 1 : fabs(y[i]));
+    }
     return largest;
 }
 
@@ -146,8 +145,8 @@ bool ct_iteration_begin(struct ct_iteration *it, const struct ct_tolerance *tole
     const struct ct_dae *dae = it->dae;
     const struct ct_tolerance *tol = tolerance ? tolerance : &finest;
     const double rounding = DBL_EPSILON * largest_place(it, y);
-    const double least_speed = tolerance ? moved_roundings * rounding / h : 0;
-    it->least = place_rounding * rounding;
+    it->least = ct_place_rounding * rounding;
+    const double least_speed = tolerance ? it->least / h : 0;
     it->y = y;
     const bool is_plain = dae->is_plain && !it->groups;
     if (is_plain && it->nu == 1)
@@ -177,7 +176,7 @@ bool ct_iteration_begin(struct ct_iteration *it, const struct ct_tolerance *tole
     if (it->is_few)
         ct_response_set_rows(it->response, it->m);
     it->unfelt_place = rounding / 2;
-    it->unfelt_speed = DBL_EPSILON / 2 * largest_of(y + dae->nq, it->nu);
+    it->unfelt_speed = DBL_EPSILON / 2 * largest_of_some(y + dae->nq, it->nu);
     if (it->version == before)
         return false;
     it->has_tangent = false;

@@ -102,11 +102,19 @@ struct ct_iteration *ct_iteration_create(struct ct_arena *a, const struct ct_pro
 bool ct_iteration_begin(struct ct_iteration *it, const struct ct_tolerance *tolerance, double h,
                         const double *y);
 
-/// Are the derivatives too old? They are kept while a correction is less than a tenth of the one before.
+/// Places that change by less than this many roundings of the largest of them cannot be found better, nor, with a tolerance, speeds
+/// that move them by less in the step: where forces are very stiff, shorter steps would only show more of it.
+static const double ct_place_rounding = 8;
+
+/// Each correction that much of the one before: newer derivatives would be nearer to the end.
+static inline bool ct_iteration_is_slow(double rate)
+{
+    return rate > 0.1;
+}
+/// Are the derivatives too old? They are kept while corrections are not slow.
 static inline bool ct_iteration_is_old(const struct ct_iteration *it)
 {
-    const double slow = 0.1;
-    return !it->has_tangent || it->is_worn || it->rate > slow;
+    return !it->has_tangent || it->is_worn || ct_iteration_is_slow(it->rate);
 }
 /// They are of another place: behind an event or a singular position.
 static inline void ct_iteration_forget(struct ct_iteration *it)

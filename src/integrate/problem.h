@@ -23,6 +23,15 @@ struct ct_dae_abreast {
     void (*evaluate)(void *user);
 };
 
+/// The residual in plain coordinates where its numbers stand, so that none are copied.
+struct ct_dae_place {
+    double *t, *q, *u, *a,
+        *lam;       // to be set before each evaluation: (1), (nq), (nu) twice, (most_rows)
+    const int *row; // the one of most_rows of each row that counts; lam of others is to be zero
+    /// r (nu), phi, v (rows), one behind the other, whatever they are; until anything else is evaluated.
+    const double *(*evaluate)(void *user);
+};
+
 /// Where K, C, M (nu x nu), D and J (most_rows x nu) have entries, each place at most once: lists one behind the other.
 struct ct_slopes {
     int nK, nC, nM, nD, nJ;
@@ -71,6 +80,7 @@ struct ct_dae {
 
     // what makes steps cheaper, where it is known
     const struct ct_dae_abreast *abreast; // NULL: there is none
+    const struct ct_dae_place *place;     // NULL where `abreast` is
     bool
         is_plain; // coordinate k moves with speed k: q (+) d = q + d, and rates in the chart are speeds
     bool has_no_power; // rates of quadratures are zero

@@ -12,7 +12,6 @@
 #include "numeric/dense.h"
 
 #include <math.h>
-#include <stdint.h>
 #include <string.h>
 
 // Fortran passes the length of each character argument behind the others.
@@ -71,19 +70,9 @@ double ct_vector_largest(const double *v, size_t n)
     return max;
 }
 
-double ct_vector_size(const double *v, size_t n)
+double ct_vector_size_of_many(const double *v, size_t n)
 {
-    // without their sign, numbers are in the order of their bits; what is no number comes last
-    uint64_t max = 0;
-    for (size_t i = 0; i < n; i++) {
-        uint64_t bits;
-        memcpy(&bits, &v[i], sizeof bits);
-        bits &= UINT64_MAX >> 1;
-        max = bits > max ? bits : max;
-    }
-    double size;
-    memcpy(&size, &max, sizeof size);
-    return size;
+    return ct_vector_size_of_few(v, n);
 }
 
 double ct_vector_dot(const double *x, const double *y, size_t n)

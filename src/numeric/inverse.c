@@ -1,6 +1,7 @@
 // See inverse.h. Columns are handled by pairs of rows.
 #include "numeric/inverse.h"
 
+#include "numeric/four.h"
 #include "numeric/pair.h"
 
 #include <math.h>
@@ -95,10 +96,48 @@ static inline void add_columns(double *restrict x, const double *restrict A,
         ct_pair_put(x + PAIR * i, sum[i]);
 }
 
+// Eight rows and seven columns, which planar loops of three coordinates multiply in each correction.
+CT_FOUR_INLINE void add_seven(double *x, const double *A, const double *b)
+{
+    ct_four first, second;
+    ct_four_fill(&first, 0);
+    ct_four_fill(&second, 0);
+    for (int j = 0; j < 7; j++, A += 2 * FEW) {
+        ct_four_add_times(&first, b[j], A);
+        ct_four_add_times(&second, b[j], A + FEW);
+    }
+    ct_four_put(x, &first);
+    ct_four_put(x + FEW, &second);
+}
+
+static void add_seven_narrow(double *x, const double *A, const double *b)
+{
+    add_seven(x, A, b);
+}
+
+#if defined(__x86_64__) && defined(__GNUC__)
+__attribute__((target("avx2"))) static void add_seven_wide(double *x, const double *A,
+                                                           const double *b)
+{
+    add_seven(x, A, b);
+}
+
+static void multiply_seven(double *x, const double *A, const double *b)
+{
+    (__builtin_cpu_supports("avx2") ? add_seven_wide : add_seven_narrow)(x, A, b);
+}
+#else
+#define multiply_seven add_seven_narrow
+#endif
+
 void ct_product(double *restrict x, const double *restrict A, const double *restrict b,
                 int rows, int n)
 {
     int i = 0;
+    if (rows == 2 * FEW && n == 7) {
+        multiply_seven(x, A, b);
+        return;
+    }
     for (; i + 2 * FEW <= rows; i += 2 * FEW)
         add_columns(x + i, A + i, b, 2 * FEW, rows, n);
     if (i < rows)

@@ -35,7 +35,6 @@ static double followed_step(void *user)
 // What outputs change by for a change e (ny) of y, in parts of them. Those that are hardly more than rounding do not count.
 static double change_of_outputs(struct ct_run *r, double t, const double *y, const double *e)
 {
-    const double counts = 1e6; // roundings, as of other outputs
     const double place = DBL_EPSILON * ct_vector_largest(y, r->m->nq),
                  speed = r->stiffness->fast * place;
     double most = r->fidelity ? ct_fidelity_felt(r->fidelity, t, y, e, 0) : 0;
@@ -45,7 +44,7 @@ static double change_of_outputs(struct ct_run *r, double t, const double *y, con
             const ct_ex state = is_place ? r->e->q[k].symbol : r->e->u[k - r->m->nq].symbol;
             const double size = fmax(fabs(y[k]), r->largest[i]);
             if (r->e->result[i].value.id == state.id && e[k] != 0
-                && size >= counts * (is_place ? place : speed))
+                && size >= ct_fidelity_least_size * (is_place ? place : speed))
                 most = fmax(most, fabs(e[k]) / size);
         }
     return most;

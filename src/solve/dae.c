@@ -91,6 +91,28 @@ static enum ct_eval residual(void *user, double t, const double *q, const double
     return CT_EVAL_OK;
 }
 
+// The same in place. Where all rows count in their order, all that it leaves is what is asked for.
+static const double *evaluate_in_place(void *user)
+{
+    const struct ct_embed *s = user;
+    const struct ct_machine *m = s->m;
+    const double *out = m->residual.out;
+    const size_t nu = m->nu, nrow = m->nrow, rank = (size_t)s->rank;
+    size_t in_order = 0;
+    ct_program_run(&s->m->residual, m->input);
+    while (in_order < rank && (size_t)s->row[in_order] == in_order)
+        in_order++;
+    if (in_order == nrow)
+        return out;
+    double *kept = s->residual;
+    ct_machine_copy(kept, out, nu);
+    for (size_t i = 0; i < rank; i++) {
+        kept[nu + i] = out[nu + (size_t)s->row[i]];
+        kept[nu + rank + i] = out[nu + nrow + (size_t)s->row[i]];
+    }
+    return kept;
+}
+
 // The same abreast.
 static void evaluate(void *user)
 {
@@ -155,11 +177,31 @@ static enum ct_eval tangent(void *user, double t, const double *q, const double 
 }
 
 // Where corrections are single products, evaluations of their own take most of the time.
+static bool is_few(const struct ct_embed *s)
+{
+    const struct ct_machine *m = s->m;
+    return m->nrow && m->residual.nout && m->nu + 2 * (size_t)s->rank <= CT_MOST_INVERTED;
+}
+
+static const struct ct_dae_place *place(struct ct_arena *a, struct ct_embed *s)
+{
+    const struct ct_machine *m = s->m;
+    double *in = m->input;
+    struct ct_dae_place *x = CT_NEW(a, struct ct_dae_place);
+    s->residual = CT_NEWN(a, double, m->nu + 2 * m->nrow);
+    *x = (struct ct_dae_place){.t = in,
+                               .q = in + m->at_q,
+                               .u = in + m->at_u,
+                               .a = in + m->at_a,
+                               .lam = in + m->at_lam,
+                               .row = s->row,
+                               .evaluate = evaluate_in_place};
+    return x;
+}
+
 static const struct ct_dae_abreast *abreast(struct ct_arena *a, struct ct_embed *s)
 {
     struct ct_machine *m = s->m;
-    if (!m->nrow || !m->residual.nout || m->nu + 2 * (size_t)s->rank > CT_MOST_INVERTED)
-        return NULL;
     if (!m->abreast) {
         m->abreast = ct_abreast_create(a, m->residual.listing, m->ninput);
         ct_abreast_use(a, m->abreast, m->asked != CT_BACKEND_TAPE, m->input);
@@ -229,7 +271,8 @@ struct ct_dae *ct_dae_create(struct ct_arena *a, struct ct_embed *s)
                            .nu = (int)e->nu,
                            .most_rows = (int)e->nrow,
                            .q_of = q_of,
-                           .abreast = is_plain ? abreast(a, s) : NULL,
+                           .abreast = is_plain && is_few(s) ? abreast(a, s) : NULL,
+                           .place = is_plain && is_few(s) ? place(a, s) : NULL,
                            .is_plain = is_plain,
                            .has_no_power = ct_ex_is_zero(e->power),
                            .rows = rows,

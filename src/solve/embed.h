@@ -57,7 +57,7 @@ struct ct_embed {
     struct ct_solves solves;
     double *a, *lam; // results: u' (nu), lam (nrow)
     // workspace
-    double *Jd, *B, *c, *r, *S, *MB, *A, *b, *work, *d, *q, *before;
+    double *Jd, *B, *c, *r, *S, *MB, *A, *b, *work, *d, *q, *before, *residual;
     int *pivot, *iwork, *column;
 };
 

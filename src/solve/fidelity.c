@@ -13,15 +13,15 @@ enum { STEPS_BETWEEN = 7 };
 // Where the ratio of the two is the same to this part at two looks in a row, it is taken for that of more and more steps.
 static const double steady = 0.02;
 enum { MOST_BETWEEN = 15 };
-// Rounding is measured again after so many looks, as long as it is this part of what would count.
-static const double unfelt = 0.01;
+// Rounding is measured again after so many looks where it counts for nothing, and at once where an error would refuse a step.
 enum { LOOKS_BETWEEN = 15 };
 // State errors below this say nothing about the ratio of the two: steps are still growing.
 static const double least_error = 0.02;
 // Rounding is felt by a change of the states by such a part of themselves, far above it so that it can be measured.
 static const double change = 0x1p-40;
-// An output counts from so many roundings on, and need not be better than so many.
-static const double least_size = 1e6, most_precise = 16;
+// An output counts from so many roundings on, with six digits and more, and need not be better than so many.
+const double ct_fidelity_least_size = 1e6;
+static const double most_precise = 16;
 
 struct ct_fidelity {
     struct ct_machine *m;
@@ -179,9 +179,10 @@ double ct_fidelity_judge(struct ct_fidelity_record *r, const double *at, const d
         r->seen[i] = fabs(at[i]);
         const double size = ct_larger(r->seen[i], r->largest[i]);
         const double wanted = tolerance->rtol * size + tolerance->atol;
-        is_felt |= !(unfelt * size >= least_size * rounding)
-                || !(unfelt * wanted >= most_precise * rounding);
-        if (!(size >= least_size * rounding) || (r->apart && ct_amplifier_has(r->apart, i)))
+        is_felt |= !(size >= ct_fidelity_least_size * rounding)
+                || !(wanted >= most_precise * rounding);
+        if (!(size >= ct_fidelity_least_size * rounding)
+            || (r->apart && ct_amplifier_has(r->apart, i)))
             continue;
         const double part = (off[i] - at[i]) / ct_larger(most_precise * rounding, wanted);
         sum += part * part;
@@ -274,7 +275,7 @@ double ct_fidelity_felt(struct ct_fidelity *p, double t, const double *y, const 
                      to_come = least > 0 ? ct_larger(p->expected[i], least) : 0;
         if (least > 0 && ct_amplifier_has(p->amplifier, i))
             continue;
-        if (way > 0 && size >= least_size * rounding_of(p->at[i], p->probed[i]))
+        if (way > 0 && size >= ct_fidelity_least_size * rounding_of(p->at[i], p->probed[i]))
             most = ct_larger(most, way / ct_larger(size, to_come));
     }
     return most;

@@ -14,6 +14,9 @@
 
 struct ct_fidelity;
 
+/// Outputs of fewer roundings than these do not count.
+extern const double ct_fidelity_least_size;
+
 /// NULL if there is no output to control. Everything lives in a, the machine's arena.
 struct ct_fidelity *ct_fidelity_create(struct ct_arena *a, struct ct_machine *m);
 /// Is output i made of more than time and states, or the total energy?

@@ -1,7 +1,9 @@
 // Implicit methods on small problems written out: orders, tolerances, constraints, events, stiffness.
 #include "tests/check.h"
+#include "integrate/iteration.h"
 #include "integrate/problem.h"
 
+#include <float.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -16,7 +18,9 @@ struct model {
     // accelerations and multipliers
     void (*solve)(double t, const double *q, const double *u, double *a, double *lam);
     double q[MOST_NU], u[MOST_NU];
-    bool is_abreast; // residuals of some points are evaluated at once, too
+    bool
+        is_abreast; // residuals of some points are evaluated at once, too, and where they stand
+    long undefined; // the number of the evaluation in place that is no number
 };
 
 // ---- the problems ---------------------------------------------------------------------------------
@@ -115,10 +119,15 @@ struct abreast { // numbers of some points side by side
     double r[POINTS * MOST_NU], phi[POINTS * MOST_M], v[POINTS * MOST_M];
 };
 
+struct place { // numbers of one point, and its residuals
+    double t, q[MOST_NU], u[MOST_NU], a[MOST_NU], lam[MOST_M], r[MOST_NU + 2 * MOST_M];
+};
+
 struct user {
     const struct model *model;
     struct abreast abreast;
-    long nabreast; // evaluations of it
+    struct place place;
+    long nabreast, nplace; // evaluations of them
     struct ct_ctx ctx;
     struct ct_integrate_stats stats;
     size_t used;    // of the arena after the first step
@@ -206,6 +215,17 @@ static void evaluate_abreast(void *user)
     }
 }
 
+static const double *evaluate_in_place(void *user)
+{
+    struct user *s = user;
+    struct place *w = &s->place;
+    double *phi = w->r + s->model->nu;
+    residual(user, w->t, w->q, w->u, w->a, w->lam, w->r, phi, phi + s->model->m);
+    if (++s->nplace == s->model->undefined)
+        w->r[0] = NAN;
+    return w->r;
+}
+
 // By central differences: as good as an iteration needs.
 static enum ct_eval tangent(void *user, double t, const double *q, const double *u,
                             const double *a, const double *lam, double *M, double *C, double *K,
@@ -267,9 +287,12 @@ static bool run(struct user *s, const struct model *m, const char *method, struc
     struct abreast *w = &s->abreast;
     const struct ct_dae_abreast abreast
         = {w->t, w->q, w->u, w->a, w->lam, w->r, w->phi, w->v, row, evaluate_abreast};
+    struct place *x = &s->place;
+    const struct ct_dae_place place = {&x->t, x->q, x->u, x->a, x->lam, row, evaluate_in_place};
     if (m->is_abreast) {
         dae.is_plain = true;
         dae.abreast = &abreast;
+        dae.place = &place;
     }
     *s = (struct user){.model = m, .ctx.model = ct_arena_create()};
     p.user = s;
@@ -368,7 +391,9 @@ static void check_orders_of_multipliers(const struct model *m)
                             (struct ct_integrate_options){.t1 = t1, .step = t1 / (nstep << k)},
                             y));
             assert_true(s.last == t1);
+            const bool is_index3 = strcmp(implicit[i], "generalized-alpha-index3") == 0;
             assert_true((s.nabreast > 0) == (is_radau && m->is_abreast));
+            assert_true((s.nplace > 0) == (!is_radau && !is_index3 && m->is_abreast));
             error[k] = fabs(s.lam[0] - lam);
         }
         const double order = log2(error[0] / error[1]), want = is_radau ? 3 : 2;
@@ -400,6 +425,23 @@ static void corrections_begin_with_multipliers_as_they_go_on(void **unused)
         const double each = (double)s.stats.evaluations / (double)s.stats.steps;
         printf("%s: %ld steps, %.2f evaluations each\n", list[i].method, s.stats.steps, each);
         assert_true(each < list[i].most);
+    }
+}
+
+// A residual that is no number asks for newer derivatives or a smaller step, and leaves no trace.
+static void residuals_that_are_no_numbers_are_tried_again(void **unused)
+{
+    (void)unused;
+    struct model broken = rodded_abreast;
+    const struct ct_integrate_options o = {.t1 = 2, .atol = 1e-6};
+    double want[MOST_NY], y[MOST_NY];
+    struct user s;
+    assert_true(run(&s, &rodded_abreast, "hht", plain, o, want));
+    for (broken.undefined = 40; broken.undefined < 48; broken.undefined++) {
+        assert_true(run(&s, &broken, "hht", plain, o, y));
+        assert_true(s.nplace > broken.undefined);
+        for (int i = 0; i < 4; i++)
+            CHECK_CLOSE(y[i], want[i], 0, 5e-6); // of an error of 4e-4
     }
 }
 
@@ -525,12 +567,89 @@ static void implicit_methods_want_a_residual(void **unused)
     ct_arena_destroy(s.ctx.model);
 }
 
+// ---- rounding of forces -----------------------------------------------------------------------------------
+
+// A spring whose force is off by a grain in all places but one, and how far from there it is looked at.
+static const double stiffness = 1e4, grain = 1e-6;
+static double farthest;
+
+static enum ct_eval find_grainy(void *user, double t, const double *q, const double *u,
+                                const double *a, const double *lam, double *r, double *phi,
+                                double *v)
+{
+    (void)user, (void)t, (void)u, (void)lam, (void)phi, (void)v;
+    farthest = fmax(farthest, fabs(q[0] - 1));
+    r[0] = a[0] + stiffness * q[0] + (q[0] != 1 ? grain : 0);
+    return CT_EVAL_OK;
+}
+
+static enum ct_eval derive_grainy(void *user, double t, const double *q, const double *u,
+                                  const double *a, const double *lam, double *M, double *C,
+                                  double *K, double *J, double *D)
+{
+    (void)user, (void)t, (void)q, (void)u, (void)a, (void)lam, (void)J, (void)D;
+    M[0] = 1;
+    C[0] = 0;
+    K[0] = stiffness;
+    return CT_EVAL_OK;
+}
+
+static int no_rows(void *user, long *version)
+{
+    (void)user;
+    *version = 1;
+    return 0;
+}
+
+// What a correction that has stalled comes to, of that size.
+static enum ct_verdict judge_stalled(struct ct_iteration *it, double size)
+{
+    const double far[] = {1, 1};
+    ct_iteration_start(it);
+    ct_iteration_judge(it, size, far, far, 1);
+    return ct_iteration_judge(it, size, far, far, 1);
+}
+
+// (8.17): stages may add up three times what is seen of a rounding, and looks differ by two. What is 25 times as much is none. Forces
+// are looked at where places cannot be told apart, from 8 roundings on.
+static void stalled_corrections_are_compared_with_rounding_of_forces(void **unused)
+{
+    (void)unused;
+    static const int q_of[] = {0};
+    const struct ct_dae dae = {.nq = 1,
+                               .nu = 1,
+                               .q_of = q_of,
+                               .rows = no_rows,
+                               .residual = find_grainy,
+                               .tangent = derive_grainy,
+                               .is_plain = true};
+    const struct ct_problem p = {.ny = 2, .dae = &dae};
+    const struct ct_tolerance tight = {1e-12, 1e-12};
+    const double y[] = {1, 1}, zero[] = {0}, h = 1e-2;
+    struct ct_integrate_stats stats = {0};
+    struct ct_arena *a = ct_arena_create();
+    struct ct_iteration *it = ct_iteration_create(a, &p, true, false);
+    ct_iteration_begin(it, &tight, h, y);
+    assert_int_equal(ct_iteration_refresh(it, 0, y, y + 1, zero, zero, &stats), CT_EVAL_OK);
+    assert_true(ct_iteration_factor(it, 2 / h, 4 / (h * h), 0, &stats));
+    farthest = 0;
+    const double *noise = ct_iteration_noise(it);
+    const double seen = ct_iteration_norm(it, noise, noise + 1, 1, 1);
+    printf("seen %.3g of the tolerance, %.3g roundings away\n", seen, farthest / DBL_EPSILON);
+    assert_true(seen > 1 && farthest >= 4 * DBL_EPSILON && farthest <= 32 * DBL_EPSILON);
+    assert_int_equal(judge_stalled(it, 6 * seen), CT_CONVERGED);
+    assert_int_not_equal(judge_stalled(it, 25 * seen), CT_CONVERGED);
+    ct_arena_destroy(a);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(orders_are_those_of_the_theory),
         cmocka_unit_test(orders_of_multipliers_are_those_of_the_theory),
         cmocka_unit_test(corrections_begin_with_multipliers_as_they_go_on),
+        cmocka_unit_test(residuals_that_are_no_numbers_are_tried_again),
+        cmocka_unit_test(stalled_corrections_are_compared_with_rounding_of_forces),
         cmocka_unit_test(index3_meets_speeds_to_second_order),
         cmocka_unit_test(errors_follow_the_tolerance),
         cmocka_unit_test(steps_restart_after_an_impact),

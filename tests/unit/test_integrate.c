@@ -417,6 +417,15 @@ static enum ct_eval vibration(void *user, double t, const double *y, double *dy)
     return CT_EVAL_OK;
 }
 
+static enum ct_eval swing(void *user, double t, const double *y, double *dy)
+{
+    (void)user;
+    (void)t;
+    dy[0] = y[1];
+    dy[1] = -sin(y[0]);
+    return CT_EVAL_OK;
+}
+
 // (8.12): the term of the error's order of exp(i omega h) is a hundredth of what is asked. The rate is that of the vibration to
 // (omega h)^2/24 at a change of accelerations by 5 %.
 static void the_first_step_from_rest_is_that_of_the_motion_to_come(void **unused)
@@ -437,6 +446,146 @@ static void the_first_step_from_rest_is_that_of_the_motion_to_come(void **unused
             check_close("first step, over that of (8.12)", r->step[0] / wanted, 1, 0.01);
             end(r);
         }
+}
+
+// ---- where stability holds steps up -----------------------------------------------------------------------
+
+static double damping, turning;
+
+static enum ct_eval spiral(void *user, double t, const double *y, double *dy)
+{
+    (void)user;
+    (void)t;
+    dy[0] = -damping * y[0] - turning * y[1];
+    dy[1] = turning * y[0] - damping * y[1];
+    return CT_EVAL_OK;
+}
+
+// What a step of length 1 leaves of one, exp(i phase) being where its rate points to; *error (out): its estimate.
+static double left_of_one(const struct ct_method *m, void *work, double rate, double phase,
+                          double *error)
+{
+    const struct ct_problem p = {.ny = 2, .rhs = spiral};
+    const struct ct_tolerance absolute = {0, 1};
+    struct ct_integrate_stats stats = {0};
+    double y[2] = {1, 0}, dy[2], y1[2], dy1[2];
+    damping = -rate * cos(phase);
+    turning = rate * sin(phase);
+    spiral(NULL, 0, y, dy);
+    m->step(&p, 0, 1, y, dy, &absolute, y1, dy1, error, work, &stats);
+    return hypot(y1[0], y1[1]);
+}
+
+// Up to `stable` nothing left of the imaginary axis becomes larger, and of what is damped a longer step has the larger estimate: not
+// far beyond, that falls to nothing while what is left of an error grows.
+static void stable_steps_make_nothing_larger(void **unused)
+{
+    (void)unused;
+    const double pi = acos(-1);
+    for (int i = 0; i < ct_nmethod; i++) {
+        const struct ct_method *m = ct_methods[i];
+        struct ct_arena *a = ct_arena_create();
+        double error, most = 0, peak = 0;
+        if (m->stable > 0) {
+            void *work = m->create(a, m, &(struct ct_problem){.ny = 2, .rhs = spiral});
+            for (int k = 1; k <= 40; k++)
+                for (int j = 0; j <= 40; j++)
+                    most = fmax(most, left_of_one(m, work, m->stable * k / 40,
+                                                  pi / 2 * (1 + j / 40.), &error));
+            check_below("what a stable step leaves", most, 1);
+            for (most = 0; left_of_one(m, work, peak + 0.01, pi, &error), error > most;
+                 peak += 0.01)
+                most = error;
+            printf("%s: the estimate is largest at %.2f\n", m->name, peak);
+            check_close("stable", m->stable / peak, 0.95, 0.05);
+        }
+        ct_arena_destroy(a);
+    }
+}
+
+// ---- the rate of the fastest motion --------------------------------------------------------------------------
+
+static double growth;
+
+// A vibration whose rate grows by that factor from test to test.
+static enum ct_eval quickening(void *user, double t, const double *y, double *dy)
+{
+    (void)user;
+    const double rate = omega * pow(growth, t);
+    dy[0] = y[1];
+    dy[1] = -rate * rate * y[0];
+    return CT_EVAL_OK;
+}
+
+// It is known where three tests in a row find it the same within a factor of two.
+static void rates_that_change_by_more_than_twice_do_not_last(void **unused)
+{
+    (void)unused;
+    enum { STEPS = 100, TESTS = 4 };
+    const struct ct_problem p = {.ny = 2, .nq = 1, .nu = 1, .rhs = quickening};
+    const double y[] = {1, 0};
+    static const double growths[] = {1, 1.7, 2.4, 8};
+    for (size_t i = 0; i < COUNT(growths); i++) {
+        struct ct_arena *a = ct_arena_create();
+        struct ct_integrate_stats stats = {0};
+        struct ct_stiffness *s = ct_stiffness_create(a, &p, &stats, 1e-6, 1, 2);
+        growth = growths[i];
+        for (int k = 1; k <= STEPS * TESTS; k++)
+            ct_stiffness_watch(s, (double)k / STEPS, y, 1e9);
+        check_close("fast", s->fast / (omega * pow(growth, TESTS)), 1, 0.01);
+        assert_true(isfinite(ct_stiffness_stable_step(s, ct_method_find("dop853")))
+                    == (growth < 2));
+        ct_arena_destroy(a);
+    }
+}
+
+// ---- samples between steps ----------------------------------------------------------------------------------
+
+// What it takes to see that the interpolant holds is next to nothing.
+static void samples_of_what_steps_follow_cost_no_steps_of_their_own(void **unused)
+{
+    (void)unused;
+    enum { SAMPLES = 1000 };
+    static double time[SAMPLES];
+    const struct ct_problem p = {.ny = 2, .nq = 1, .nu = 1, .rhs = swing};
+    const double to_interpolate = 3;
+    long evaluations[2], steps = 0;
+    for (int i = 0; i < SAMPLES; i++)
+        time[i] = 0.1 * (i + 1);
+    for (int k = 0; k < 2; k++) {
+        struct record *r = begin();
+        double y[NY] = {2, 0};
+        check_fine(r, run(r, ct_method_find("dop853"), p,
+                          (struct ct_integrate_options){.t1 = time[SAMPLES - 1],
+                                                        .atol = 1e-6,
+                                                        .sample = time,
+                                                        .nsample = k ? SAMPLES : 0},
+                          y));
+        evaluations[k] = r->stats.evaluations;
+        steps = r->stats.steps;
+        end(r);
+    }
+    printf("%ld steps, %ld and %ld evaluations\n", steps, evaluations[0], evaluations[1]);
+    check_below("evaluations for samples, of each step",
+                (double)(evaluations[1] - evaluations[0]) / (double)steps,
+                1.05 * to_interpolate);
+}
+
+// Of a motion that is none, too: accelerations have changed by so little where the rate is found that it is the one at the start.
+static void the_rate_from_rest_is_that_of_the_start(void **unused)
+{
+    (void)unused;
+    const struct ct_method *m = ct_method_find("dop853");
+    const double T = 1e-6, from = 1.2;
+    const int n = m->error_order + 1;
+    struct record *r = begin();
+    double y[NY] = {from, 0};
+    check_fine(r, run(r, m, (struct ct_problem){.ny = 2, .nq = 1, .nu = 1, .rhs = swing},
+                      (struct ct_integrate_options){.t1 = 10, .rtol = T, .atol = T / 100}, y));
+    const double wanted = pow(T / 100 * tgamma(n + 1), 1. / n) / sqrt(cos(from));
+    printf("first step %.4f of that of the pendulum\n", r->step[0] / wanted);
+    check_close("first step, over that of (8.12)", r->step[0] / wanted, 1, 0.12);
+    end(r);
 }
 
 // (8.14): the errors of all steps of that length come to T at the end, each in the same direction of phase.
@@ -464,6 +613,10 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(next_steps_are_those_of_the_pi_controller),
+        cmocka_unit_test(stable_steps_make_nothing_larger),
+        cmocka_unit_test(the_rate_from_rest_is_that_of_the_start),
+        cmocka_unit_test(rates_that_change_by_more_than_twice_do_not_last),
+        cmocka_unit_test(samples_of_what_steps_follow_cost_no_steps_of_their_own),
         cmocka_unit_test(methods_are_found_by_name),
         cmocka_unit_test(halving_a_fixed_step_shows_the_order),
         cmocka_unit_test(roundings_of_many_steps_do_not_add_up),

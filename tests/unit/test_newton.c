@@ -322,6 +322,27 @@ static void unsound_pivots_are_sought_anew(void **unused)
     ct_arena_destroy(a);
 }
 
+// Pivots are kept as long as entries grow by a few hundred times what they did, and not where they grow by some thousand.
+static void pivots_are_kept_while_three_digits_are_lost(void **unused)
+{
+    (void)unused;
+    struct ct_arena *a = ct_arena_create();
+    const int row[] = {0, 1, 0, 1}, column[] = {0, 0, 1, 1};
+    int place[4], first[] = {0, 1};
+    double value[] = {1, 1, 1, 2};
+    struct ct_pattern *p = ct_pattern_create(a, 2, row, column, 4, place);
+    assert_true(ct_pattern_order(a, p, value, first));
+    struct ct_factors *f = ct_factors_create(a, p, false);
+    assert_true(ct_factors_make(f, value));
+    value[0] = 1. / 300;
+    assert_true(ct_factors_make(f, value));
+    assert_int_equal(ct_factors_sought(f), 1);
+    value[0] = 1. / 3000;
+    assert_true(ct_factors_make(f, value));
+    assert_int_equal(ct_factors_sought(f), 2);
+    ct_arena_destroy(a);
+}
+
 // A band matrix with a border: each entry against a solution for a column of the identity.
 static void entries_of_the_inverse_are_those_of_solutions(void **unused)
 {
@@ -403,6 +424,14 @@ static void small_systems_keep_full_matrices(void **unused)
         assert_null(j.dae.plan[1]);
         close_job(&j);
     }
+    struct job few, many; // where both take as long lies between, (8.16)
+    open_job(&few, spin_up, CT_TREE_JOINTS, 2);
+    open_job(&many, spin_up, CT_TREE_JOINTS, 20);
+    printf("%d and %d speeds\n", few.dae.nu, many.dae.nu);
+    assert_null(few.dae.plan[1]);
+    assert_non_null(many.dae.plan[1]);
+    close_job(&few);
+    close_job(&many);
 }
 
 int main(void)
@@ -410,6 +439,7 @@ int main(void)
     static const struct CMUnitTest tests[] = {
         cmocka_unit_test(sparse_matrices_have_the_solutions_of_full_ones),
         cmocka_unit_test(unsound_pivots_are_sought_anew),
+        cmocka_unit_test(pivots_are_kept_while_three_digits_are_lost),
         cmocka_unit_test(entries_of_the_inverse_are_those_of_solutions),
         cmocka_unit_test(steps_of_beams_cost_in_proportion_to_their_elements),
         cmocka_unit_test(small_systems_keep_full_matrices),
