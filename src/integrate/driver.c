@@ -498,6 +498,7 @@ static bool start(struct ct_driver *r)
 {
     if (r->o->t0 < r->o->t1) { // else there is nothing to step
         bool is_time;
+        ct_driver_look_ahead(r);
         const double limit
             = fmin(ct_driver_step_limit(r), ct_driver_next_stop(r, &is_time) - r->t);
         r->control.h = limit; // a scale for the bearings

@@ -152,6 +152,16 @@ bool ct_singular_foresee(struct ct_singular *w, double t, const double *y, const
     return true;
 }
 
+void ct_singular_expect(struct ct_singular *w, double t, const double *y, double in)
+{
+    const double now = pivot_at(w, t, y);
+    w->t = t;
+    w->part = w->s->nearness = w->keeps_rows ? near_pivot : singular_pivot;
+    w->most = now / w->part;
+    w->switches = w->s->switches;
+    w->in = w->reach = in;
+}
+
 // The stages of a crossing keep away from the position and are put onto the constraints: an order of pivots that holds
 // where it begins holds for all of them.
 void ct_singular_set_crossing(struct ct_singular *w, bool is_crossing)
@@ -243,6 +253,6 @@ void ct_singular_pass(struct ct_singular *w, const struct ct_stepper_span *span,
     if (w->npassed++ >= CT_MOST_SINGULAR)
         return;
     struct ct_singular_position *at = &w->passed[w->npassed - 1];
-    at->t = t;
+    at->t = fmax(t, 0); // a run that starts in one begins before it
     find_dependence(w, &p, theta, at);
 }

@@ -42,6 +42,8 @@ void ct_singular_start(struct ct_singular *w);
 /// they are beside one.
 bool ct_singular_foresee(struct ct_singular *w, double t, const double *y, const double *dy,
                          double pending, bool is_fixed);
+/// At y, where the time is t, it is known of a position so much ahead: the first step from there is to cross it.
+void ct_singular_expect(struct ct_singular *w, double t, const double *y, double in);
 /// Is y beside a singular position, foreseen or not? row (nrow, out): those that depend there; none of a large system.
 bool ct_singular_is_beside(struct ct_singular *w, double t, const double *y, bool *row);
 /// Does J have less rank at y, where the embedding has chosen, or as near to y as loops are closed, than where the mechanism can
@@ -49,6 +51,9 @@ bool ct_singular_is_beside(struct ct_singular *w, double t, const double *y, boo
 /// left with its constraints at y.
 bool ct_singular_is_start(struct ct_arena *scratch, const struct ct_embed *s, double t,
                           const double *y, bool *row);
+/// At y in a singular position: what (8.23) is missed by, of the squares of the speeds that it is made of. freedoms (out): there.
+double ct_singular_misfit(struct ct_arena *scratch, const struct ct_embed *s, double t,
+                          const double *y, int *freedoms);
 /// What is evaluated from now on belongs to a crossing, or does not.
 void ct_singular_set_crossing(struct ct_singular *w, bool is_crossing);
 /// A crossing has been made and goes on to t1: find the position on it and keep it.
