@@ -167,10 +167,12 @@ enum ct_eval ct_embed_solve(struct ct_embed *s)
 static void check_form(struct ct_embed *s)
 {
     struct ct_form *f = s->form[0];
-    if (s->nunchecked > 0 && ct_is_within(s->strength.now / s->checked_at, ct_same_strength)) {
+    if (s->nunchecked > 0 && ct_is_within(s->strength.now / s->checked_at, ct_same_strength)
+        && s->answer <= ct_answer_growth * s->answer_checked) {
         s->nunchecked--;
         return;
     }
+    s->answer_checked = s->answer > 0 ? s->answer : s->answer_checked;
     ct_form_check(f, s->m);
     s->is_rough = f->left > ct_left_plain;
     s->nunchecked = f->left <= well_below * ct_left_plain ? UNCHECKED : 0;
