@@ -23,6 +23,7 @@ struct ct_singular {
     double in;              // time to the position ahead; INFINITY: there is none
     double reach;           // time before it in which f is better not computed
     double most, part, t;   // the largest pivot so far, the last one against it, and its time
+    double dt;              // the step before
     bool keeps_rows;        // a step does, and there are more than it needs
     bool was_told;          // the form has told of the last state that nothing has changed
     long switches, nmade;   // of the embedding, there
@@ -42,6 +43,9 @@ void ct_singular_start(struct ct_singular *w);
 /// they are beside one.
 bool ct_singular_foresee(struct ct_singular *w, double t, const double *y, const double *dy,
                          double pending, bool is_fixed);
+/// Speeds have jumped at y, the last accepted place: next to a position, that comes sooner or later, or not at all.
+void ct_singular_turn(struct ct_singular *w, double t, const double *y, const double *dy,
+                      double pending);
 /// At y, where the time is t, it is known of a position so much ahead: the first step from there is to cross it.
 void ct_singular_expect(struct ct_singular *w, double t, const double *y, double in);
 /// Is y beside a singular position, foreseen or not? row (nrow, out): those that depend there; none of a large system.
