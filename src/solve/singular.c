@@ -170,10 +170,9 @@ void ct_singular_turn(struct ct_singular *w, double t, const double *y, const do
 
 void ct_singular_expect(struct ct_singular *w, double t, const double *y, double in)
 {
-    const double now = pivot_at(w, t, y);
+    w->most = pivot_at(w, t, y); // what is farther off is not known
     w->t = t;
-    w->part = w->s->nearness = w->keeps_rows ? near_pivot : singular_pivot;
-    w->most = now / w->part;
+    w->part = w->s->nearness = 1;
     w->switches = w->s->switches;
     w->in = w->reach = in;
 }

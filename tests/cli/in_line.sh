@@ -64,6 +64,9 @@ four_bar 1 2 1 2 8 -8 >parallel.yaml
 four_bar 1 2 1 2 8 -24 >anti.yaml
 compare parallel 1 7.6377428287872402134 1.2145575477106361952 0.97671134872100164043 2.2145575477106361952 0.97671134872100164043
 compare anti 1 13.853080359614827347 0.80517278270848261111 0.10874924323082492245 1.3300648039588992373 -0.74241958022763104455
+# bars of one length, and no weight: the crank turns evenly, in long steps, through in-line positions
+four_bar 1 1 1 1 8 -8 | sed '/^gravity/d' >even.yaml
+compare even 2 16 -0.4576594803233847 -0.2879033166650653 0.0423405196766153 -0.2879033166650653
 # bars of 1, 2, 1.5 m on a base of 1.5 m: from w1 + 2 w2 = 1.5 w3, w1^2 + 2 w2^2 = 1.5 w3^2 the rates are w3/w1 = -2 +- sqrt(8)
 four_bar 1 2 1.5 1.5 8 '8*((1.5*(sqrt(8)-2)-1)/2-1)' >one.yaml
 four_bar 1 2 1.5 1.5 8 '8*((1.5*(-sqrt(8)-2)-1)/2-1)' >other.yaml
