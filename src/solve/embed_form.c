@@ -163,12 +163,14 @@ enum ct_eval ct_embed_solve(struct ct_embed *s)
     return e;
 }
 
-// After a projection, at the machine's input: are the pivots still in a good order?
+// After a projection, at the machine's input: are the pivots still in a good order? Beside a singular position, where answers grow
+// whatever is chosen, choices had better stay.
 static void check_form(struct ct_embed *s)
 {
     struct ct_form *f = s->form[0];
     if (s->nunchecked > 0 && ct_is_within(s->strength.now / s->checked_at, ct_same_strength)
-        && s->answer <= ct_answer_growth * s->answer_checked) {
+        && (s->answer <= ct_answer_growth * s->answer_checked
+            || s->nearness < ct_small_pivot)) {
         s->nunchecked--;
         return;
     }
