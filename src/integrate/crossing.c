@@ -36,7 +36,8 @@ struct work {
     double A[STAGES][STAGES];         // integrals of the Lagrange polynomials up to c_j
     double left[SIDE][STAGES];        // the same for the polynomial through the left side alone
     double first[STAGES][STAGES];     // and through all stages before j
-    double e[STAGES];                 // the same without two inner stages, less the last of A
+    double centred[STAGES][STAGES];   // A from the middle of the step on
+    double e[STAGES];                 // A's last without two inner stages, less it
     double t[STAGES], weight[STAGES]; // of the bridge
     double *k, *stage;                // (ny x STAGES) each
     double *point, *end;              // (ny) each
@@ -116,8 +117,13 @@ static void find_weights(struct work *w)
     }
     find_norms(w->norm, w->c, all);
     find_norms(norm, w->c, left);
-    for (int j = 0; j < STAGES; j++)
+    double middle[STAGES];
+    integrate_lagrange(middle, w->c, all, w->norm, 0.5);
+    for (int j = 0; j < STAGES; j++) {
         integrate_lagrange(w->A[j], w->c, all, w->norm, w->c[j]);
+        for (int i = 0; i < STAGES; i++)
+            w->centred[j][i] = w->A[j][i] - middle[i];
+    }
     for (int j = 0; j < SIDE; j++)
         integrate_lagrange(w->left[j], w->c, left, norm, w->c[j]);
     for (int j = 0; j < STAGES; j++) {
@@ -203,15 +209,16 @@ static enum ct_eval guess(const struct task *s)
     return e;
 }
 
-static enum ct_eval sweep(const struct task *s)
+// Stages from `first` on, with weights A.
+static enum ct_eval sweep(const struct task *s, const double (*A)[STAGES], int first)
 {
     const double fine = fmin(settled, settled_fine / s->tolerance->rtol);
     double before = INFINITY;
     for (int i = 0; i < MOST_SWEEPS; i++) {
         double moved = 0;
         enum ct_eval e = CT_EVAL_OK;
-        for (int j = 1; j < STAGES && e == CT_EVAL_OK; j++)
-            e = put_stage(s, j, s->w->A[j], &moved);
+        for (int j = first; j < STAGES && e == CT_EVAL_OK; j++)
+            e = put_stage(s, j, A[j], &moved);
         if (e != CT_EVAL_OK)
             return e;
         if (moved <= fine || (moved <= rounding && moved > slow * before))
@@ -259,7 +266,7 @@ static enum ct_eval step(const struct ct_problem *p, double t, double h, const d
         p->set_crossing(p->user, true);
     enum ct_eval e = guess(&s);
     if (e == CT_EVAL_OK)
-        e = sweep(&s);
+        e = sweep(&s, (const double(*)[STAGES])w->A, 1);
     if (p->set_crossing)
         p->set_crossing(p->user, false);
     if (e != CT_EVAL_OK)
@@ -271,6 +278,34 @@ static enum ct_eval step(const struct ct_problem *p, double t, double h, const d
     *err = left > ct_crossing_held + held_tolerance * tolerance->rtol
              ? INFINITY
              : fmax(estimate(&s, y1), left / ct_crossing_held);
+    return CT_EVAL_OK;
+}
+
+// Sweeps begin with stages along the tangent, which the first of them puts onto the constraints.
+enum ct_eval ct_crossing_lead_in(const struct ct_problem *p, double t, double h,
+                                 const double *y, const double *dy,
+                                 const struct ct_tolerance *tolerance, double *before,
+                                 double *err, void *work, struct ct_integrate_stats *stats)
+{
+    struct work *w = work;
+    const int n = p->ny;
+    const size_t bytes = (size_t)n * sizeof *y;
+    const struct task s = {p, t - h / 2, h, y, tolerance, w, stats};
+    if (!w->has_weights)
+        find_weights(w);
+    for (int j = 0; j < STAGES; j++) {
+        memcpy(w->k + j * n, dy, bytes);
+        memcpy(w->stage + j * n, y, bytes);
+    }
+    if (p->set_crossing)
+        p->set_crossing(p->user, true);
+    const enum ct_eval e = sweep(&s, (const double(*)[STAGES])w->centred, 0);
+    if (p->set_crossing)
+        p->set_crossing(p->user, false);
+    if (e != CT_EVAL_OK)
+        return e;
+    memcpy(before, w->stage, bytes);
+    *err = estimate(&s, before);
     return CT_EVAL_OK;
 }
 

@@ -23,4 +23,12 @@ struct ct_bridge ct_crossing_bridge(void *work, double t, double h, double theta
 struct ct_bridge ct_crossing_bridge_over(void *work, const struct ct_stepper_span *span,
                                          double from, double to, double theta);
 
+/// The state before (ny, out) at t - h/2 of the motion that is at y in a singular position at t, where dy is its derivative but for
+/// accelerations, which are not known: by the step that is centred there, from its middle. *err (out): what the step errs by, as of
+/// others; the tolerance of the step is its own, next to rounding. Its rest in the constraints is the caller's to look at. (8.23)
+enum ct_eval ct_crossing_lead_in(const struct ct_problem *p, double t, double h,
+                                 const double *y, const double *dy,
+                                 const struct ct_tolerance *tolerance, double *before,
+                                 double *err, void *work, struct ct_integrate_stats *stats);
+
 #endif

@@ -12,6 +12,9 @@
 
 // Beside a singular position f has fewer digits: crossings may err by this part of the largest state.
 static const double crossing_rounding = 5e-13;
+// More where an event has left the motion nearer to the position than crossings begin, with the square of how much nearer, up to this part
+// of what is wanted: from still nearer by there would be less.
+static const double unfelt = 0.1;
 
 static const struct ct_mark nowhere = {0};
 
@@ -207,8 +210,10 @@ tolerance_of(const struct ct_driver *r, const struct ct_stride *s, struct ct_tol
         return r->o->step > 0 ? NULL : &r->tolerance;
     for (int i = 0; i < r->p->ny; i++)
         largest = fmax(largest, fabs(r->y[i]));
-    *tol = (struct ct_tolerance){r->tolerance.rtol,
-                                 fmax(r->tolerance.atol, crossing_rounding * largest)};
+    const double nearer = fmax(1, r->far / r->singular_in),
+                 noise = fmin(crossing_rounding * nearer * nearer,
+                              fmax(crossing_rounding, unfelt * r->p->accuracy));
+    *tol = (struct ct_tolerance){r->tolerance.rtol, fmax(r->tolerance.atol, noise * largest)};
     return tol;
 }
 
@@ -442,7 +447,13 @@ static bool handle_event(struct ct_driver *r, bool is_state, bool is_time)
                         r->t);
     const enum ct_eval e
         = p->event ? p->event(p->user, r->t, r->y, r->watch.crossed, is_time) : CT_EVAL_OK;
-    return e == CT_EVAL_OK ? take_bearings(r) : state_refused(r, e);
+    if (e != CT_EVAL_OK)
+        return state_refused(r, e);
+    r->reach = INFINITY; // of the position ahead everything may have changed
+    r->failed_crossings = 0;
+    r->has_failed_stride = false;
+    ct_driver_look_ahead(r);
+    return take_bearings(r);
 }
 
 static bool advance(struct ct_driver *r)
@@ -498,6 +509,7 @@ static bool start(struct ct_driver *r)
 {
     if (r->o->t0 < r->o->t1) { // else there is nothing to step
         bool is_time;
+        ct_driver_look_ahead(r);
         const double limit
             = fmin(ct_driver_step_limit(r), ct_driver_next_stop(r, &is_time) - r->t);
         r->control.h = limit; // a scale for the bearings

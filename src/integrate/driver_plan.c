@@ -164,8 +164,11 @@ void ct_driver_look_ahead(struct ct_driver *r)
         r->failed_crossings = 0;
         r->has_failed_stride = false;
     }
-    if (r->singular_in < INFINITY)
-        r->reach = fmin(r->reach, reach);
+    if (!(r->singular_in < INFINITY))
+        return;
+    if (!(r->reach < INFINITY))
+        r->far = reach > r->singular_in ? reach : 0;
+    r->reach = fmin(fmin(r->reach, reach), r->singular_in);
 }
 
 void ct_driver_adapt_after_crossing(struct ct_driver *r, const struct ct_stride *s)

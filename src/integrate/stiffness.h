@@ -27,6 +27,7 @@ struct ct_stiffness {
     bool
         is_unstable; // steps are held up by stability, at the last test, and that rate has lasted
     int alike;       // tests with about the rate of the one before
+    long look_at;    // step after which the rate is looked at again between tests; 0: none
     double window_t; // where the last test was
     long window_steps;
     const struct ct_integrate_stats *stats; // of the run, live

@@ -223,7 +223,7 @@ static void warn_of_singular_start(struct ct_sim *sim)
     bool *row = CT_NEWN(sim->own.model, bool, sim->system->equations.nrow + 1);
     int first;
     if (!ct_singular_is_start(sim->own.scratch, ct_run_embed(sim->run), 0,
-                              ct_run_state(sim->run), row))
+                              ct_run_assembled(sim->run), row))
         return;
     const char *names = joints_of(sim, row, &first);
     if (first < 0)
@@ -469,8 +469,11 @@ static bool run_again(void *task)
     sim->has_run = sim->is_done = sim->is_late = false;
     sim->write = 0;
     sim->nstep = 0;
-    if (ct_run_restart(sim->run, &sim->start))
+    const char *singular_joints = ct_run_singular_joints(sim->run);
+    if (ct_run_restart(sim->run, &sim->start)) {
+        ct_run_note_singular_start(sim->run, singular_joints);
         return run_and_report(task);
+    }
     ct_ctx_hand_over(w->ctx, &sim->own);
     return false;
 }

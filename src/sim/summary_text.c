@@ -247,6 +247,13 @@ static void print_rounding(FILE *out, const struct ct_sim *sim)
     const struct ct_run_report *r = &sim->report;
     if (sim->is_followed || r->blunt < 0)
         return;
+    if (isnan(r->rounding)) {
+        fprintf(out,
+                "rounding     inertias that are left of larger ones which cancel lose digits: "
+                "it comes to some %.1e of the largest %s\n",
+                r->rounding_sum, sim->system->equations.result[r->blunt].name);
+        return;
+    }
     fprintf(out,
             "rounding     one of coordinates is %.1e of the largest %s: steps cannot be held "
             "to less",

@@ -9,6 +9,9 @@
 // explicit method add up where nothing damps them,
 //
 //     (omega/max omega) root(min(n, n/(f'(u) (t1 - t0))))  times a rounding                           (8.18)
+//
+// An inertia that is left of others which cancel, as that of a light section in free flight, has lost as many digits as they are larger, the
+// same ones all along. What it moves gets out of step: its speed errs by half of that part of its accelerations times the time.
 #include "solve/run.h"
 
 #include <float.h>
@@ -158,6 +161,90 @@ static void add_up(struct ct_run *r, double t, struct noise *e, const double *at
         b->sum = felt[b->output];
 }
 
+// out (nu, nq, nu; out): u', q' and the inertias that u' is found with in closed form, with places changed by `side` times many roundings.
+static void solve_beside(struct ct_run *r, double t, int side, size_t look, double *out)
+{
+    const struct ct_machine *m = r->m;
+    memcpy(r->stage, r->y, r->ny * sizeof *r->y);
+    for (size_t i = 0; i < m->nq; i++)
+        r->stage[i] += side * roundings * DBL_EPSILON / 2 * part_of(i + look) * fabs(r->y[i]);
+    ct_machine_set(r->m, t, r->stage);
+    ct_program_run(&r->m->solved, m->input);
+    memcpy(out, m->solved.out, (2 * m->nu + m->nq) * sizeof *out);
+}
+
+struct digits {
+    double *part; // (nu) rounding of each of these inertias, as a part of it
+    double *
+        noise; // (nu) of u' where that of `worst` was largest: what a rounding of its inertia does to all speeds
+    size_t worst; // the speed whose acceleration errs most
+};
+
+// With places changed to both sides what is linear in them cancels: the rest is as large as root 6 roundings.
+static void find_lost_digits(struct ct_run *r, double t, struct digits *g)
+{
+    enum { LOOKS = 8 };
+    const size_t nu = r->m->nu, n = 2 * nu + r->m->nq, pivots = nu + r->m->nq;
+    double *here = CT_NEWN(r->arena, double, n), *ahead = CT_NEWN(r->arena, double, n *LOOKS),
+           *behind = CT_NEWN(r->arena, double, n);
+    solve_beside(r, t, 0, 0, here);
+    for (size_t look = 0; look < LOOKS; look++) {
+        double *sum = ahead + look * n;
+        solve_beside(r, t, 1, look, sum);
+        solve_beside(r, t, -1, look, behind);
+        for (size_t i = 0; i < n; i++)
+            sum[i] += behind[i] - 2 * here[i];
+        for (size_t k = 0; k < nu; k++)
+            g->part[k]
+                = hypot(g->part[k], sum[pivots + k] / here[pivots + k] / sqrt(6 * LOOKS));
+    }
+    for (size_t k = 0; k < nu; k++)
+        if (g->part[k] * fabs(here[k]) > g->part[g->worst] * fabs(here[g->worst]))
+            g->worst = k;
+    g->noise = ahead;
+    for (size_t look = 1; look < LOOKS; look++)
+        if (fabs(ahead[look * n + g->worst]) > fabs(g->noise[g->worst]))
+            g->noise = ahead + look * n;
+}
+
+// For how long speed k remembers, of t. f (nu) at r->y is in r->scratch.
+static double remembered(struct ct_run *r, double t, size_t k)
+{
+    const size_t nq = r->m->nq;
+    const double change = roundings * DBL_EPSILON * fabs(r->y[nq + k]);
+    memcpy(r->stage, r->y, r->ny * sizeof *r->y);
+    r->stage[nq + k] += change;
+    if (!(change > 0) || ct_run_rhs(r, t, r->stage, r->dy) != CT_EVAL_OK)
+        return t;
+    return t / fmax(1, (r->scratch[k] - r->dy[nq + k]) / change * t);
+}
+
+// Does what such an inertia moves get so far out of step that an output errs by more than is wanted?
+static void find_out_of_step(struct ct_run *r, double t, const double *at, double wanted,
+                             struct ct_blunt *b)
+{
+    const double few = 100 * DBL_EPSILON; // digits that any sum loses
+    const size_t nu = r->m->nu;
+    struct digits g = {.part = CT_NEWN(r->arena, double, nu + 1)};
+    double *u = CT_NEWN(r->arena, double, nu + 1),
+           *felt = CT_NEWN(r->arena, double, r->e->nresult + 1), most = wanted;
+    if (!r->e->solution || ct_run_rhs(r, t, r->y, r->dy) != CT_EVAL_OK)
+        return;
+    memcpy(r->scratch, r->dy + r->m->nq, nu * sizeof *r->scratch);
+    find_lost_digits(r, t, &g);
+    const size_t k = g.worst;
+    if (!(g.part[k] > few && g.part[k] < 1) || g.noise[k] == 0)
+        return;
+    const double error = g.part[k] * fabs(r->scratch[k]) * remembered(r, t, k) / 2;
+    for (size_t i = 0; i < nu; i++)
+        u[i] = roundings * error * g.noise[i] / g.noise[k];
+    if (!feel(r, t, NULL, u, at, felt))
+        return;
+    b->output = find_worst(r, felt, &most);
+    b->one = NAN;
+    b->sum = b->output < 0 ? NAN : most;
+}
+
 struct ct_blunt ct_run_find_blunt(struct ct_run *r, double held, double wanted)
 {
     const double time = r->report->stats.last_time, t = ct_run_before(r, time);
@@ -175,5 +262,7 @@ struct ct_blunt ct_run_find_blunt(struct ct_run *r, double held, double wanted)
     b.output = slow >= 0 ? slow : b.output;
     if (r->report->followed > 0)
         add_up(r, t, &e, at, wanted, &b);
+    if (b.output < 0)
+        find_out_of_step(r, t, at, wanted, &b);
     return b;
 }

@@ -252,10 +252,10 @@ static bool begins_implicit(struct ct_run *r, const struct ct_run_options *o,
     const double *y = ct_run_state(r);
     if (!r->fidelity || !o->method->tableau)
         return false;
-    const double before = ct_run_before(r, 0);
+    const double before = ct_run_before(r, r->t0);
     const bool is_due
         = ct_amplifier_any(ct_fidelity_amplifier(r->fidelity), before, y, &tolerance)
-       && ct_stiffness_expect(stiffness, 0, y, o->duration, o->method, o->rtol);
+       && ct_stiffness_expect(stiffness, r->t0, y, o->duration, o->method, o->rtol);
     ct_machine_set(r->m, before, y);
     ct_machine_constraint(r->m);
     ct_embed_renew(r->s);

@@ -73,6 +73,9 @@ static bool passes_over(const double *value, double from, double to, size_t nsee
 double ct_clock_fit(const struct ct_clock *c, const struct ct_method *method, double t,
                     double h, double unfelt)
 {
+    t = fmax(
+        t,
+        0); // a start in a singular position is led in to from before: nothing is known of that
     const size_t nseen = method->order > 2 ? COUNT(seen_at) : 1;
     for (size_t i = 0; i < c->n; i++) {
         const double *value = c->value + i * (CT_CLOCK_PIECES + 1);

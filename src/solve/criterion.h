@@ -35,6 +35,9 @@ static const double ct_most_change = 1.5;
 static const double ct_alike = 1.02, ct_most_change_alike = 4;
 // Pivots count as those of before while their strength is within this factor of what it was.
 static const double ct_same_strength = 1.25;
+// And while projections move coordinates by no more, for what they close, than so many times as much as at the last check: kappa can rise
+// from 1 to 50 within the eight steps between two checks, as J_d comes to where it is singular, while no pivot of the form does.
+static const double ct_answer_growth = 3;
 // What may be left of the equations against their terms: beyond the first a refinement is made, beyond
 // the second the form is not used.
 static const double ct_left_plain = 1e-13, ct_left_most = 1e-11;

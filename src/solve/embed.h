@@ -52,7 +52,9 @@ struct ct_embed {
     bool is_renewed;  // a projection has looked after them since a step ended last
     long nweak;       // checks in a row that found the form weak, or projections without one
     int nunchecked; // projections until the next check, as long as the strength stays near that of the last one
-    double checked_at;
+    double checked_at, answer_checked; // strength and answer at the last check
+    double
+        answer; // the largest correction of a coordinate in the last projection for what was open most; 0: nothing was
     struct ct_strength strength; // of the form
     struct ct_solves solves;
     double *a, *lam; // results: u' (nu), lam (nrow)

@@ -163,14 +163,18 @@ enum ct_eval ct_embed_solve(struct ct_embed *s)
     return e;
 }
 
-// After a projection, at the machine's input: are the pivots still in a good order?
+// After a projection, at the machine's input: are the pivots still in a good order? Beside a singular position, where answers grow
+// whatever is chosen, choices had better stay.
 static void check_form(struct ct_embed *s)
 {
     struct ct_form *f = s->form[0];
-    if (s->nunchecked > 0 && ct_is_within(s->strength.now / s->checked_at, ct_same_strength)) {
+    if (s->nunchecked > 0 && ct_is_within(s->strength.now / s->checked_at, ct_same_strength)
+        && (s->answer <= ct_answer_growth * s->answer_checked
+            || s->nearness < ct_small_pivot)) {
         s->nunchecked--;
         return;
     }
+    s->answer_checked = s->answer > 0 ? s->answer : s->answer_checked;
     ct_form_check(f, s->m);
     s->is_rough = f->left > ct_left_plain;
     s->nunchecked = f->left <= well_below * ct_left_plain ? UNCHECKED : 0;

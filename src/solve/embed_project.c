@@ -162,6 +162,8 @@ static enum ct_eval project_by_form(struct ct_embed *s, double t, double *y, boo
         const bool is_closed = ct_is_closed(nearness(s), size, before);
         if (!is_closed && ct_is_stray(i, size, before))
             return CT_EVAL_RETRY;
+        if (i == 0)
+            s->answer = is_closed ? 0 : ct_vector_size(f->dq, m->nu) / size;
         *is_done = is_closed ? correct_speeds(s, t, y) : is_one_enough(s, y);
         if (!is_closed)
             correct_both(s, y);

@@ -122,6 +122,11 @@ void ct_run_note_singular_start(struct ct_run *r, const char *joints)
     r->singular_joints = joints;
 }
 
+const char *ct_run_singular_joints(const struct ct_run *r)
+{
+    return r->singular_joints;
+}
+
 // Where the run began there are fewer independent rows than on each of the motions that go on from there, and none is taken.
 static void name_singular_start(struct ct_run *r)
 {

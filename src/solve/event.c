@@ -137,6 +137,17 @@ enum ct_eval ct_run_refuse_stuck(struct ct_run *r, double t, const double *y)
     return CT_EVAL_FATAL;
 }
 
+// Where the next singular position is for speeds that have jumped.
+static enum ct_eval look_ahead(struct ct_run *r, double t, const double *y)
+{
+    const enum ct_eval e = ct_run_rhs(r, t, y, r->dy);
+    if (e != CT_EVAL_OK)
+        return e;
+    ct_singular_turn(r->singular, t, y, r->dy, r->pending);
+    ct_machine_set(r->m, t, y);
+    return CT_EVAL_OK;
+}
+
 enum ct_eval ct_run_event(void *user, double t, double *y, const signed char *crossed,
                           bool is_time)
 {
@@ -171,5 +182,8 @@ enum ct_eval ct_run_event(void *user, double t, double *y, const signed char *cr
     y[r->ny - 1] += ct_run_kinetic_energy(r, t, y) - kinetic;
     ct_run_watch_jump(r, t, y);
     ct_run_note_turning(r, t, y);
-    return ct_run_refuse_stuck(r, t, y);
+    e = ct_run_refuse_stuck(r, t, y);
+    if (e == CT_EVAL_OK && m->nrow && r->o->step == 0)
+        e = look_ahead(r, t, y);
+    return e;
 }

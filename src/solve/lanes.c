@@ -1,6 +1,7 @@
 // Members come and go: see lanes.h. What happens to them is in the other files of lane.h.
 #include "solve/lane.h"
 #include "integrate/stepper.h"
+#include "numeric/dense.h"
 #include "solve/mode.h"
 
 #include <math.h>
@@ -350,6 +351,20 @@ static void fill(struct ct_lanes *s, int l, const double *y)
     prepare_all(s);
 }
 
+// Has the projection of the start changed its speeds? Rows that see them by rounding alone belong to a singular position, which is
+// left alone.
+static bool is_singular_start(const struct ct_lanes *s)
+{
+    const double changed = 1e-6;
+    const size_t nq = (size_t)s->ny - s->m->nu - 1;
+    const double *u = ct_run_assembled(s->run) + nq, *now = ct_run_state(s->run) + nq;
+    const double largest = ct_vector_largest(u, s->m->nu);
+    for (size_t k = 0; k < s->m->nu; k++)
+        if (fabs(now[k] - u[k]) > changed * largest)
+            return true;
+    return false;
+}
+
 bool ct_lanes_load(struct ct_lanes *s, int l, const struct ct_run_options *o)
 {
     const double *y = ct_run_state(s->run);
@@ -358,7 +373,7 @@ bool ct_lanes_load(struct ct_lanes *s, int l, const struct ct_run_options *o)
         || (s->is_used && (o->method != s->method || rank != s->rank))
         || (s->needs_lam && rank != s->nrow))
         return false;
-    if (ct_run_begins_implicit(s->run, o))
+    if (is_singular_start(s) || ct_run_begins_implicit(s->run, o))
         return false;
     s->rank = rank;
     if (o->method != s->method)

@@ -4,6 +4,7 @@
 //     event.c     events, jumps of driven rates      follow.c    motions driven all through
 //     jump.c      speeds after those
 //     change.c    the choice of the method, when the motion turns stiff
+//     lead_in.c   starts in singular positions
 //     length.c    what is said of runs that take long
 //     ending.c    and of those that end before their time
 //     blunt.c     outputs that have few digits
@@ -28,6 +29,7 @@ struct ct_run {
     struct ct_machine *m;
     struct ct_embed *s;
     size_t ny;
+    double *assembled; // state at the start  (ny)
     double *y, *dy, *stage, *scratch, *value, *next;
     double *largest; // of each result, over the samples
     double *sign;    // of each state mode's root function at the last event
@@ -47,6 +49,7 @@ struct ct_run {
     struct ct_clock clock;
     double pending;            // time of the event ahead; INFINITY if there is none
     double turning, t_turning; // how fast followed angles turn [rad/s], and when that was
+    double t0; // where steps begin: before 0 if the start is in a singular position
     bool started;
     // the choice of the method
     const struct ct_method *method;   // that steps now
@@ -126,6 +129,10 @@ bool ct_run_report_jump(struct ct_run *r, const char *name, struct ct_mark mark,
                         double t);
 /// At the last ct_machine_constraint. False with CT_E_DRIVER_JUMP.
 bool ct_run_chords_are_closed(struct ct_run *r, double t);
+
+/// From a start in a singular position, with speeds that tell which motion is meant, to a little before it: y, t0. False with
+/// CT_E_STEP_OPEN where speeds belong to none; else nothing changes.
+bool ct_run_lead_in(struct ct_run *r, const struct ct_problem *p);
 
 /// For ct_integrate: tells that the end is many steps away, once.
 void ct_run_foresee(void *user, double t, const double *y, double step, double to_come);

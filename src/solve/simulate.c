@@ -226,6 +226,8 @@ static void find_needs(struct ct_run *r)
 bool ct_run_begin(struct ct_run *r, const struct ct_start *start)
 {
     ct_start_apply(start, r->m, r->y);
+    memcpy(r->assembled, r->y, r->ny * sizeof *r->y);
+    r->t0 = 0;
     ct_machine_constraint(r->m);
     r->s->sigma_best = 0;
     if (!ct_embed_choose(r->s))
@@ -257,6 +259,7 @@ struct ct_run *ct_run_prepare(struct ct_ctx *ctx, struct ct_arena *a,
     r->ny = r->m->nq + r->m->nu + 1;
     r->y = CT_NEWN(a, double, r->ny);
     r->dy = CT_NEWN(a, double, r->ny);
+    r->assembled = CT_NEWN(a, double, r->ny);
     r->stage = CT_NEWN(a, double, r->ny);
     r->scratch = CT_NEWN(a, double, 3 * r->m->nu + 2 * e->ndriver + r->m->nrow + 1);
     r->jump = ct_jump_create(a, r->m);
@@ -289,6 +292,11 @@ bool ct_run_restart(struct ct_run *r, const struct ct_start *start)
 const struct ct_fidelity *ct_run_fidelity(const struct ct_run *r)
 {
     return r->fidelity;
+}
+
+const double *ct_run_assembled(const struct ct_run *r)
+{
+    return r->assembled;
 }
 
 enum ct_eval ct_run_rhs(struct ct_run *r, double t, const double *y, double *dy)
@@ -504,6 +512,18 @@ static double seen_step(void *user, double t, double h)
     return ct_clock_fit(&r->clock, r->method, t, h, r->o->rtol);
 }
 
+static bool lead_in(struct ct_run *r)
+{
+    const struct ct_problem p = {.user = r,
+                                 .ny = (int)r->ny,
+                                 .nq = (int)r->m->nq,
+                                 .nu = (int)r->m->nu,
+                                 .rhs = rhs,
+                                 .project = project,
+                                 .set_crossing = set_crossing};
+    return ct_run_lead_in(r, &p);
+}
+
 bool ct_run_simulate(struct ct_run *r, const struct ct_run_options *o,
                      struct ct_run_report *report)
 {
@@ -541,6 +561,8 @@ bool ct_run_simulate(struct ct_run *r, const struct ct_run_options *o,
     ct_run_note_turning(r, 0, r->y);
     if (ct_run_refuse_stuck(r, 0, r->y) == CT_EVAL_FATAL)
         return false;
+    if (!lead_in(r))
+        return false;
     struct ct_problem p = {.user = r,
                            .ny = (int)r->ny,
                            .nq = (int)r->m->nq,
@@ -570,7 +592,8 @@ bool ct_run_simulate(struct ct_run *r, const struct ct_run_options *o,
                            .event = ct_run_event};
     find_asked(r, &p);
     const struct ct_integrate_options io
-        = {.t1 = o->duration,
+        = {.t0 = r->t0,
+           .t1 = o->duration,
            .rtol = o->rtol,
            .atol = o->atol,
            .least_rtol = o->least_rtol,

@@ -95,8 +95,11 @@ struct ct_machine *ct_run_machine(struct ct_run *r);
 struct ct_embed *ct_run_embed(struct ct_run *r);
 /// The start is in a singular position: constraints of these joints, quoted names that stay, depend on others there alone.
 void ct_run_note_singular_start(struct ct_run *r, const char *joints);
+const char *ct_run_singular_joints(const struct ct_run *r);
 /// State at the start: q, u, work.
 const double *ct_run_state(const struct ct_run *r);
+/// The same as it was assembled, before rows took off what they see of it: in a singular position they see it by rounding alone.
+const double *ct_run_assembled(const struct ct_run *r);
 /// Which states are measured together for the error of steps; NULL: none. In the run's arena, anew at each call.
 const struct ct_groups *ct_run_groups(struct ct_run *r);
 /// The control of outputs; NULL: none is controlled.

@@ -26,7 +26,7 @@ void ct_singular_start(struct ct_singular *w)
 {
     w->in = INFINITY;
     w->was_told = false;
-    w->reach = w->most = w->part = w->t = 0;
+    w->reach = w->most = w->part = w->t = w->dt = 0;
     w->switches = -1;
     w->npassed = 0;
     w->s->nearness = 1;
@@ -93,6 +93,14 @@ static double time_to_singular(struct ct_singular *w, const struct sight *a, dou
     return s - pivot / slope;
 }
 
+// The position ahead, where the pivot of now has begun to fall.
+static void find_next(struct ct_singular *w, const struct sight *ahead, double now)
+{
+    const double part = now / fmax(w->most, now);
+    w->in = time_to_singular(w, ahead, now, w->dt);
+    w->reach = w->in * (w->keeps_rows ? near_pivot : singular_pivot) / part;
+}
+
 // Where J loses rank its kept rows do, and a pivot of the form vanishes: while its pivots are what they were at the last look,
 // there is no need of another. Fixed steps cross nothing, and are told only whether pivots are to be sought at every evaluation.
 // With step control it is their product, too, that must hardly have changed, and no position may be near by what was seen then:
@@ -145,11 +153,28 @@ bool ct_singular_foresee(struct ct_singular *w, double t, const double *y, const
     w->in = INFINITY;
     w->s->is_delicate = part < near_pivot;
     w->s->nearness = part;
-    if (is_far || part > foreseen_pivot || is_fixed)
-        return true;
-    w->in = time_to_singular(w, &ahead, now, dt);
-    w->reach = w->in * fmin(1, (w->keeps_rows ? near_pivot : singular_pivot) / part);
+    w->dt = dt;
+    if (!(is_far || part > foreseen_pivot || is_fixed))
+        find_next(w, &ahead, now);
     return true;
+}
+
+void ct_singular_turn(struct ct_singular *w, double t, const double *y, const double *dy,
+                      double pending)
+{
+    const struct sight ahead = {t, pending, y, dy};
+    if (!(w->most > 0) || w->part > foreseen_pivot || !(w->dt > 0))
+        return;
+    find_next(w, &ahead, pivot_at(w, ct_time_before(t, pending), y));
+}
+
+void ct_singular_expect(struct ct_singular *w, double t, const double *y, double in)
+{
+    w->most = pivot_at(w, t, y); // what is farther off is not known
+    w->t = t;
+    w->part = w->s->nearness = 1;
+    w->switches = w->s->switches;
+    w->in = w->reach = in;
 }
 
 // The stages of a crossing keep away from the position and are put onto the constraints: an order of pivots that holds
@@ -243,6 +268,6 @@ void ct_singular_pass(struct ct_singular *w, const struct ct_stepper_span *span,
     if (w->npassed++ >= CT_MOST_SINGULAR)
         return;
     struct ct_singular_position *at = &w->passed[w->npassed - 1];
-    at->t = t;
+    at->t = fmax(t, 0); // a run that starts in one begins before it
     find_dependence(w, &p, theta, at);
 }

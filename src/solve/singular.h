@@ -23,6 +23,7 @@ struct ct_singular {
     double in;              // time to the position ahead; INFINITY: there is none
     double reach;           // time before it in which f is better not computed
     double most, part, t;   // the largest pivot so far, the last one against it, and its time
+    double dt;              // the step before
     bool keeps_rows;        // a step does, and there are more than it needs
     bool was_told;          // the form has told of the last state that nothing has changed
     long switches, nmade;   // of the embedding, there
@@ -42,6 +43,11 @@ void ct_singular_start(struct ct_singular *w);
 /// they are beside one.
 bool ct_singular_foresee(struct ct_singular *w, double t, const double *y, const double *dy,
                          double pending, bool is_fixed);
+/// Speeds have jumped at y, the last accepted place: next to a position, that comes sooner or later, or not at all.
+void ct_singular_turn(struct ct_singular *w, double t, const double *y, const double *dy,
+                      double pending);
+/// At y, where the time is t, it is known of a position so much ahead: the first step from there is to cross it.
+void ct_singular_expect(struct ct_singular *w, double t, const double *y, double in);
 /// Is y beside a singular position, foreseen or not? row (nrow, out): those that depend there; none of a large system.
 bool ct_singular_is_beside(struct ct_singular *w, double t, const double *y, bool *row);
 /// Does J have less rank at y, where the embedding has chosen, or as near to y as loops are closed, than where the mechanism can
@@ -49,6 +55,9 @@ bool ct_singular_is_beside(struct ct_singular *w, double t, const double *y, boo
 /// left with its constraints at y.
 bool ct_singular_is_start(struct ct_arena *scratch, const struct ct_embed *s, double t,
                           const double *y, bool *row);
+/// At y in a singular position: what (8.23) is missed by, of the squares of the speeds that it is made of. freedoms (out): there.
+double ct_singular_misfit(struct ct_arena *scratch, const struct ct_embed *s, double t,
+                          const double *y, int *freedoms);
 /// What is evaluated from now on belongs to a crossing, or does not.
 void ct_singular_set_crossing(struct ct_singular *w, bool is_crossing);
 /// A crossing has been made and goes on to t1: find the position on it and keep it.

@@ -21,6 +21,7 @@ struct probe {
     double t, *y, *x, *d, *A, *work; // (ny), (nu), (larger of nu and nrow), (nrow x nu)
     int *iwork;                      // (larger of nu and nrow)
     double *eigen_work;
+    double largest;
 };
 
 static double *workspace(struct ct_arena *a, int n, int m)
@@ -92,12 +93,17 @@ static void take_rows(struct probe *p)
             p->A[j + n * i] = p->m->J[i + m * j];
 }
 
-// The rank of J, what is left of other rows being less than this part of the largest.
-static int find_rank(struct probe *p, double part)
+// The rank of J, what is left of other rows being less than `least`; p->largest: the largest row.
+static int find_rank(struct probe *p, double least)
 {
-    const int n = (int)p->m->nu, m = (int)p->m->nrow;
+    const int n = (int)p->m->nu, m = (int)p->m->nrow, most = n < m ? n : m;
+    int rank = 0;
     take_rows(p);
-    return ct_qr_pivot(p->A, p->iwork, p->x, n, m, n, part, p->work);
+    ct_qr_pivot(p->A, p->iwork, p->x, n, m, n, 0, p->work);
+    while (rank < most && fabs(p->A[rank + n * rank]) > least)
+        rank++;
+    p->largest = fabs(p->A[0]);
+    return rank;
 }
 
 // N (nrow x nrow, out): its first nrow - rank columns are what rows can be combined to that says nothing, J' N = 0.
@@ -154,6 +160,23 @@ static struct probe make_probe(struct ct_arena *scratch, struct ct_machine *m, d
     return p;
 }
 
+// Rank of J at y. Where all rows vanish, as the one of a slider-crank with equal links in its dead centre does, there is nothing to
+// measure them by but what they are beside it: p->largest.
+static int find_rank_here(struct probe *p, struct ct_arena *scratch, const double *y)
+{
+    const double way = 0.1;
+    const size_t ny = p->m->nq + p->m->nu + 1;
+    move(p, scratch, way);
+    evaluate(p);
+    find_rank(p, 0);
+    const double beside = p->largest;
+    memcpy(p->y, y, ny * sizeof *y);
+    evaluate(p);
+    const int rank = find_rank(p, unmet * beside);
+    p->largest = beside;
+    return rank;
+}
+
 // Rank of J beside y, with the largest way along which it is more than `here`; where it is not, `here` or less.
 static int find_rank_beside(struct probe *p, struct ct_arena *scratch, const double *y,
                             int here)
@@ -161,12 +184,13 @@ static int find_rank_beside(struct probe *p, struct ct_arena *scratch, const dou
     const double ways[] = {0.1, 0.02};
     const double part = 1e-3; // of J's change along the way, which is about as large as the way
     const size_t ny = p->m->nq + p->m->nu + 1;
+    const double largest = p->largest;
     int there = 0;
     for (size_t i = 0; i < COUNT(ways) && here < (int)p->m->nrow && there <= here; i++) {
         memcpy(p->y, y, ny * sizeof *p->y);
         move(p, scratch, ways[i]);
         if (close(p, ways[i]))
-            there = find_rank(p, part * ways[i]);
+            there = find_rank(p, part * ways[i] * largest);
     }
     return there;
 }
@@ -179,7 +203,7 @@ bool ct_singular_is_start(struct ct_arena *scratch, const struct ct_embed *s, do
     if (!m->nrow || s->rank >= LARGE)
         return false;
     struct probe p = make_probe(scratch, m, t, y);
-    const int n = (int)m->nrow, here = find_rank(&p, unmet);
+    const int n = (int)m->nrow, here = find_rank_here(&p, scratch, y);
     const int there = find_rank_beside(&p, scratch, y, here);
     double *size = CT_NEWN(scratch, double, m->nrow);
     double *lost = CT_NEWN(scratch, double, m->nrow * m->nrow),
@@ -196,4 +220,22 @@ bool ct_singular_is_start(struct ct_arena *scratch, const struct ct_embed *s, do
     for (size_t i = 0; i < m->nrow; i++)
         row[i] = size[i] > part_taken * most;
     return true;
+}
+
+double ct_singular_misfit(struct ct_arena *scratch, const struct ct_embed *s, double t,
+                          const double *y, int *freedoms)
+{
+    struct ct_machine *m = s->m;
+    struct probe p = make_probe(scratch, m, t, y);
+    const size_t n = m->nrow;
+    const int here = find_rank_here(&p, scratch, y);
+    double *w = CT_NEWN(scratch, double, n *n + 1), worst = 0;
+    *freedoms = (int)m->nu - here;
+    if (!find_combinations(&p, w))
+        return 0;
+    ct_machine_motion(m);
+    for (size_t i = 0; i + (size_t)here < n; i++)
+        worst = fmax(worst, fabs(ct_vector_dot(w + n * i, m->gam, n)));
+    const double speed = ct_vector_largest(y + m->nq, m->nu);
+    return worst / (p.largest * speed * speed);
 }

@@ -113,9 +113,9 @@ for options in '' '--keep-all' '--keep-all --tree absolute'; do
   done
 done
 
-echo '-- moving in line at the start: what the run says and, a little beside, whether it goes on parallel'
-start 0 | sed 's/{q: 0}/{q: 0, u: 3}/' >moving.yaml
-"$COTREE" simulate moving.yaml --quiet -o moving.csv 2>&1 | grep -o -e 'E3[0-9]*' -e 'note: the run began in a singular position'
+echo '-- moving in line at the start, but as no motion does: what the run says and, a little beside, whether it goes on parallel'
+start 0 | sed 's/{q: 0}/{q: 0, u: 3}/;s/{q: -0, guess: true}/{q: 0, u: -2}/' >moving.yaml
+"$COTREE" simulate moving.yaml --quiet -o moving.csv 2>&1 | grep -o -e 'E3[0-9]*' -e 'note: give the rates of 2 joints'
 start 1e-3 | sed 's/{q: 1e-3}/{q: 1e-3, u: 3}/;s/^outputs: .*/outputs: [A.q, D.q]/' >beside.yaml
 "$COTREE" simulate beside.yaml --quiet -o beside.csv
 tail -n 1 beside.csv | awk -F, '{ d = $2 - $3; print (d*d < 1e-16 && $2 > 0.2 ? "parallel" : d) }'

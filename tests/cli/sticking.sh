@@ -18,5 +18,5 @@ sed 's/-3\*sign(slide.u)/1 - 3*sign(slide.u)/; s/u: 1}/u: 0}/' cart.yaml >rest.y
 "$COTREE" simulate rest.yaml --quiet 2>&1 | head -1
 sed 's/-3\*sign(slide.u)/-3*tanh(slide.u\/0.001)/' cart.yaml >smooth.yaml
 "$COTREE" simulate smooth.yaml --quiet
-awk -F, 'END { print ($2 < 1e-6 && $2 > -1e-6) ? "at rest" : $2 }' smooth.csv
+awk -F, 'END { u = $2 + 0; print (u < 1e-6 && u > -1e-6) ? "at rest" : $2 }' smooth.csv # to awk 4e-309 as it stands is a text
 ls

@@ -12,6 +12,12 @@ said() { # MODEL TOLERANCE: rounding, and of what
     "$COTREE" simulate "$1" --tolerance "$2" --quiet -o "$work/result.csv" --summary "$work/summary.json"
     sed -n 's/^ *"rounding\(_of\)\{0,1\}": "\{0,1\}\([^",]*\)"\{0,1\},\{0,1\}$/\2/p' "$work/summary.json" | tr '\n' ' '
 }
+error_of() { # OUTPUT CASE: its largest error, of its largest value
+    awk -F, -v name="$1" 'FNR == 1 { for (i = 1; i <= NF; i++) if ($i == name) c = i; next }
+    FNR == NR { got[$1 + 0] = $c; next }
+    ($1 + 0) in got { e = got[$1 + 0] - $c; e = e < 0 ? -e : e; if (e > worst) worst = e; z = $c < 0 ? -$c : $c; if (z > m) m = z }
+    END { print worst/m }' "$work/result.csv" "$folder/$2.reference.csv"
+}
 said "$folder/damped_chain.yaml" 1e-6 >"$work/loose"
 said "$folder/damped_chain.yaml" 1e-10 >"$work/tight"
 said "$folder/chain_ends.yaml" 1e-10 >"$work/moved"
@@ -34,13 +40,34 @@ model=$folder/stretched.yaml
 said "$model" 1e-8 >"$work/few"
 "$COTREE" simulate "$model" --tolerance 1e-10 --quiet -o "$work/result.csv" --summary "$work/summary.json"
 told=$(sed -n 's/^ *"rounding_sum": \([^,]*\),/\1/p' "$work/summary.json")
-true=$(awk -F, 'FNR == 1 { for (i = 1; i <= NF; i++) if ($i == "force") c = i; next }
-    FNR == NR { got[$1 + 0] = $c; next }
-    ($1 + 0) in got { e = got[$1 + 0] - $c; e = e < 0 ? -e : e; if (e > worst) worst = e; z = $c < 0 ? -$c : $c; if (z > m) m = z }
-    END { print worst/m }' "$work/result.csv" "$folder/stretched.reference.csv")
+true=$(error_of force stretched)
 echo "told of all steps $told, error $true; at 1e-8: $(cat "$work/few")"
 if ! awk -v told="$told" -v true="$true" 'BEGIN { exit !(told > true/4 && told < 4*true && true > 1e-10) }' ||
     ! grep -q '^null null' "$work/few"; then
     echo "the sum of roundings is not told"
     exit 1
 fi
+# A frame on a light section: its inertia is what is left of others that cancel, to five digits less, and its vibration gets out of step by that, whatever
+# the method. At 1e-6 that is less than is asked for.
+for T in 1e-6 1e-10; do
+    "$COTREE" simulate "$folder/light_flight.yaml" --tolerance $T --quiet -o "$work/result.csv" --summary "$work/summary.json" 2>"$work/said"
+    told=$(sed -n 's/^ *"rounding_sum": \([^,]*\),/\1/p' "$work/summary.json")
+    echo "of a light section at $T told $told"
+    [ $T = 1e-10 ] || [ "$told" = null ] || exit 1
+done
+true=$(error_of f.u3 light_flight)
+echo "error $true"
+awk -v told="$told" -v true="$true" 'BEGIN { exit !(told > 0.3 * true && told < 10 * true && true > 1e-10) }' || {
+    echo "lost digits are not told"
+    exit 1
+}
+# What --verify says of the chain must not be what its second run errs by: steps of seven over the fastest rate make what is damped larger by 13 in each, unseen,
+# and were not held back before 500 of them; a run held to a thirtieth of the tolerance erred by more than the one it was compared with.
+"$COTREE" simulate "$folder/chain_ends.yaml" --tolerance 1e-10 --verify --quiet -o "$work/result.csv" --summary "$work/summary.json"
+told=$(sed -n 's/^ *"global": \([^,]*\),/\1/p' "$work/summary.json")
+true=$(error_of b0.velocity.x chain_ends)
+echo "of the chain's ends told $told, error $true"
+awk -v told="$told" -v true="$true" 'BEGIN { exit !(told > 0.3 * true && told < 10 * true) }' || {
+    echo "the error told is that of the second run"
+    exit 1
+}
