@@ -374,13 +374,14 @@ bool ct_equilibrium_find(struct ct_linear *l, const bool *held,
     start.kept_y = CT_NEWN(l->arena, double, l->m->nq + (size_t)l->nu + 1);
     start.kept_memory = CT_NEWN(l->arena, double, l->m->e->nmemory + 1);
     keep(&start, false);
+    if (!held) {
+        if (!ct_linear_rest(l))
+            return false;
+        if (has_no_potential(l) && ct_equilibrium_follow(l, out))
+            return true;
+        keep(&start, true);
+    }
     if (descend(&s, out))
         return true;
-    if (l->ctx->nerror)
-        return false;
-    const int most = moves_most(&s);
-    keep(&start, true);
-    if (!held && ct_linear_rest(l) && has_no_potential(l) && ct_equilibrium_follow(l, out))
-        return true;
-    return l->ctx->nerror ? false : ct_equilibrium_missing(l, most);
+    return l->ctx->nerror ? false : ct_equilibrium_missing(l, moves_most(&s));
 }
