@@ -265,46 +265,18 @@ bool ct_equilibrium_missing(const struct ct_linear *l, int k)
                     ct_linear_coordinate(l->m->e, l->arena, k));
 }
 
-static bool not_found(const struct search *s)
+static int moves_most(const struct search *s)
 {
     int most = 0;
     for (int k = 0; k < s->l->nu; k++)
         if (fabs(s->dq[k]) > fabs(s->dq[most]))
             most = k;
-    return ct_equilibrium_missing(s->l, most);
+    return most;
 }
 
 static double place_size(const struct ct_linear *l)
 {
     return 1 + ct_vector_largest(l->y, l->m->nq);
-}
-
-bool ct_equilibrium_find(struct ct_linear *l, const bool *held,
-                         struct ct_equilibrium_result *out)
-{
-    struct search s = search_create(l, held);
-    double last = INFINITY, *c = s.g;
-    *out = (struct ct_equilibrium_result){0};
-    if (!ct_linear_rest(l))
-        return false;
-    for (;; out->iterations++) {
-        find_directions(&s);
-        find_forces(&s);
-        if (!s.n)
-            return true;
-        find_stiffness(&s);
-        find_step(&s, c);
-        ct_matrix_multiply(s.B, s.S, c, l->nfree, s.n, 1);
-        ct_linear_expand(l, s.dq, s.B);
-        const double size = ct_vector_largest(s.dq, (size_t)l->nu) / place_size(l);
-        out->last_step = size;
-        if (size <= arrived || (size <= nearly && size > last / 2))
-            break;
-        last = size;
-        if (out->iterations == MOST_STEPS || !go(&s))
-            return l->ctx->nerror ? false : not_found(&s);
-    }
-    return true;
 }
 
 // Nothing but rounding is left. Where the stiffness vanishes, steps would follow it off the path.
@@ -353,4 +325,63 @@ bool ct_equilibrium_follow(struct ct_linear *l, struct ct_equilibrium_result *ou
             return false;
     }
     return true;
+}
+
+// Down the forces. False, without a diagnostic of its own, if that leads nowhere: s->dq is the last step that was sought.
+static bool descend(struct search *s, struct ct_equilibrium_result *out)
+{
+    struct ct_linear *l = s->l;
+    double last = INFINITY, *c = s->g;
+    *out = (struct ct_equilibrium_result){0};
+    if (!ct_linear_rest(l))
+        return false;
+    for (;; out->iterations++) {
+        find_directions(s);
+        find_forces(s);
+        if (!s->n)
+            return true;
+        find_stiffness(s);
+        find_step(s, c);
+        ct_matrix_multiply(s->B, s->S, c, l->nfree, s->n, 1);
+        ct_linear_expand(l, s->dq, s->B);
+        const double size = ct_vector_largest(s->dq, (size_t)l->nu) / place_size(l);
+        out->last_step = size;
+        if (size <= arrived || (size <= nearly && size > last / 2))
+            return true;
+        last = size;
+        if (out->iterations == MOST_STEPS || !go(s))
+            return false;
+    }
+}
+
+// Do forces that have no potential act here, as those that turn with a body?
+static bool has_no_potential(const struct ct_linear *l)
+{
+    const double rounding = 1e-9; // of the largest stiffness
+    double odd = 0, largest = 0;
+    for (int j = 0; j < l->nfree; j++)
+        for (int i = 0; i < l->nfree; i++) {
+            odd = fmax(odd, fabs(l->Kr[i + l->nfree * j] - l->Kr[j + l->nfree * i]));
+            largest = fmax(largest, fabs(l->Kr[i + l->nfree * j]));
+        }
+    return odd > rounding * largest;
+}
+
+bool ct_equilibrium_find(struct ct_linear *l, const bool *held,
+                         struct ct_equilibrium_result *out)
+{
+    struct search s = search_create(l, held), start = s;
+    start.kept_y = CT_NEWN(l->arena, double, l->m->nq + (size_t)l->nu + 1);
+    start.kept_memory = CT_NEWN(l->arena, double, l->m->e->nmemory + 1);
+    keep(&start, false);
+    if (!held) {
+        if (!ct_linear_rest(l))
+            return false;
+        if (has_no_potential(l) && ct_equilibrium_follow(l, out))
+            return true;
+        keep(&start, true);
+    }
+    if (descend(&s, out))
+        return true;
+    return l->ctx->nerror ? false : ct_equilibrium_missing(l, moves_most(&s));
 }

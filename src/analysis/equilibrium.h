@@ -14,7 +14,8 @@ struct ct_equilibrium_result {
  *
  * Each step goes to where the forces, linearised, vanish, but against them where the stiffness is negative, so that
  * it always does work; it is limited, and halved while it goes past the place where the forces turn round. Beside a
- * stable equilibrium this is Newton's method with the exact stiffness.
+ * stable equilibrium this is Newton's method with the exact stiffness. Forces without a potential may push round in a circle:
+ * with them Newton's method alone comes first.
  *
  * held  in   nu, true for coordinates that keep their values; NULL: none
  * l     out  at the equilibrium, by ct_linear_rest

@@ -20,9 +20,11 @@ bool ct_model_change_beams(struct ct_ctx *ctx, struct ct_model *m, long elements
             "there is no formulation '%s' of beams; there are %s, %s, %s, %s and %s",
             formulation, formulations[0], formulations[1], formulations[2], formulations[3],
             formulations[4]);
+    size_t nbeam = 0;
     for (size_t i = 1; i < m->nbody; i++) {
         if (!m->body[i].beam)
             continue;
+        nbeam++;
         struct ct_beam *beam = CT_NEW(ctx->model, struct ct_beam);
         *beam = *m->body[i].beam;
         if (formulation)
@@ -37,5 +39,9 @@ bool ct_model_change_beams(struct ct_ctx *ctx, struct ct_model *m, long elements
         }
         m->body[i].beam = beam;
     }
+    if (!nbeam && (elements > 0 || formulation))
+        return ct_error(ctx, (struct ct_mark){0}, CT_E_USAGE,
+                        "the model has no beams that could have other %s",
+                        elements > 0 ? "elements" : "formulations");
     return true;
 }

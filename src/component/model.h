@@ -112,7 +112,7 @@ bool ct_model_resolve(struct ct_ctx *ctx, const char *file, const struct ct_node
                       const struct ct_set *set, size_t nset, struct ct_model *m);
 
 /// Give all beams another number of equal elements (> 0) and another formulation (not NULL). False with an error if
-/// there is no such formulation.  Errors: E003.
+/// there is no such formulation, or no beam.  Errors: E003.
 bool ct_model_change_beams(struct ct_ctx *ctx, struct ct_model *m, long elements,
                            const char *formulation);
 

@@ -150,6 +150,7 @@ struct ct_flexible; // flexible.h
 struct ct_station;
 struct ct_sweep;
 struct ct_pull; // row.h
+struct ct_coupling;
 
 struct ct_build {
     struct ct_ctx *ctx;
@@ -222,6 +223,8 @@ struct ct_build {
     size_t nload, load_cap;
     struct ct_pull *pull;
     size_t npull, pull_cap;
+    struct ct_coupling *coupling; // row.h
+    size_t ncoupling, coupling_cap;
     const struct ct_sweep *sweep[2]; // by level, once asked for
     ct_ex *effort;                   // of joints along their unknown coordinates (nu)
     struct ct_mark holding;          // where the expression stands whose comparisons are held

@@ -47,8 +47,6 @@ void ct_forces_derive(struct ct_build *b);
 void ct_dynamics_derive(struct ct_build *b);
 /// Row of the full sweep less the efforts of the joints: M u' - Q - J' lam. After ct_forces_derive.
 ct_ex ct_sweep_residual(struct ct_build *b, int speed);
-/// Row of the full sweep for a driver: the effort that the branch must supply.
-ct_ex ct_sweep_driver(struct ct_build *b, int driver);
 
 // ---- loads --------------------------------------------------------------------------------------
 
@@ -60,9 +58,8 @@ ct_ex3 ct_load_vector(struct ct_build *b, const struct ct_instance *self);
 bool ct_vector_signal(const char *name, const char *property, ct_ex3 v, ct_ex *out);
 /// Power of a wrench on head against tail: F . (v_head - v_tail - w_tail x d) + T . w_rel.  (0.3)
 ct_ex ct_load_power(struct ct_build *b, int tail, int head, ct_ex3 force, ct_ex3 torque);
-/// Spring, damper and applied effort of a joint along a coordinate.
-ct_ex ct_joint_passive(struct ct_build *b, int coordinate);
-/// Effort of a driven coordinate: what its driver gives beyond that; of a gear's its multiplier.
+/// Effort of a driven coordinate's driver: its row of the full sweep less what the joint's spring, damper and applied effort
+/// and gears give along it.
 ct_ex ct_driver_effort(struct ct_build *b, int coordinate);
 /// An expression of the model with its signals replaced and its comparisons held.
 ct_ex ct_build_value(struct ct_build *b, ct_ex e);

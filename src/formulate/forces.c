@@ -311,11 +311,6 @@ ct_ex ct_sweep_residual(struct ct_build *b, int speed)
     return ct_ex_sub(b->x, sweep_row(b, ct_sweep_run(b, CT_FULL), speed), b->effort[speed]);
 }
 
-ct_ex ct_sweep_driver(struct ct_build *b, int driver)
-{
-    return sweep_driver_row(b, ct_sweep_run(b, CT_FULL), driver);
-}
-
 // ---- efforts of joints ------------------------------------------------------------------------------
 
 static ct_ex element(const struct ct_value *v, int k)
@@ -376,20 +371,21 @@ static struct effort own_effort(struct ct_build *b, const struct ct_edge_info *e
     return f;
 }
 
-ct_ex ct_joint_passive(struct ct_build *b, int coordinate)
-{
-    const struct ct_coordinate *c = &b->coordinate[coordinate];
-    return own_effort(b, &b->edge[c->edge], c->place).total;
-}
-
 ct_ex ct_driver_effort(struct ct_build *b, int coordinate)
 {
     struct ct_exs *x = b->x;
     const struct ct_coordinate *c = &b->coordinate[coordinate];
     if (c->motion_row)
         return b->eqs->row[c->motion_row - 1].lam;
-    const ct_ex row = ct_sweep_driver(b, c->driver);
-    return ct_ex_sub(x, row, ct_joint_passive(b, coordinate));
+    const struct effort own = own_effort(b, &b->edge[c->edge], c->place);
+    ct_ex rest
+        = ct_ex_sub(x, sweep_driver_row(b, ct_sweep_run(b, CT_FULL), c->driver), own.total);
+    for (size_t i = 0; i < b->ncoupling; i++)
+        if (b->coupling[i].coordinate == coordinate)
+            rest = ct_ex_sub(
+                x, rest,
+                ct_ex_mul(x, b->coupling[i].factor, b->eqs->row[b->coupling[i].row].lam));
+    return rest;
 }
 
 static void joint_effort(struct ct_build *b, const struct ct_edge_info *e, int k)

@@ -167,9 +167,14 @@ void ct_row_couple(struct ct_build *b, const struct ct_instance *self, int coord
         struct ct_wrench w;
         const struct ct_coordinate *c = &b->coordinate[coupled[i]];
         const struct ct_ends n = ct_edge_ends(b, c->edge);
-        if (ct_coordinate_is_known(c) || !ct_coordinate_wrench(b, coupled[i], &w))
-            continue;
         const ct_ex f = i ? ct_ex_neg(x, ratio) : CT_EX_ONE;
+        if (ct_coordinate_is_known(c)) {
+            const struct ct_coupling own = {row, coupled[i], f};
+            CT_PUSH(b->arena, b->coupling, b->ncoupling, b->coupling_cap, own);
+            continue;
+        }
+        if (!ct_coordinate_wrench(b, coupled[i], &w))
+            continue;
         const struct ct_pull p = {row,
                                   n.tail,
                                   n.head,

@@ -12,6 +12,12 @@ struct ct_pull {
     bool carried;
 };
 
+/// A coordinate of a branch that a gear's row couples: it feels factor * lam along itself, beside what the joint transmits.
+struct ct_coupling {
+    int row, coordinate;
+    ct_ex factor;
+};
+
 /// Coefficients of the unknown speeds in a row, and the part driven by time: v = sum coef u + driven.
 struct ct_linear {
     ct_ex *coef; // nu

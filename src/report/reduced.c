@@ -130,15 +130,14 @@ static double size_of_all(const struct ct_equations *e, const ct_ex *effort)
     return size;
 }
 
-// Driven branch coordinates: their rows of the cutsets, less what the joint does by itself.
+// Driven branch coordinates: their rows of the cutsets, less what the joint does by itself and gears do on it.
 static void find_efforts(struct ct_equations *e, ct_ex *effort)
 {
     struct ct_build *b = e->build;
     for (size_t i = 0; i < e->ncoordinate; i++) {
         const struct ct_coordinate *c = &e->coordinate[i];
         if (c->driver >= 0)
-            effort[c->driver]
-                = ct_ex_sub(b->x, ct_sweep_driver(b, c->driver), ct_joint_passive(b, (int)i));
+            effort[c->driver] = ct_driver_effort(b, (int)i);
     }
 }
 

@@ -516,6 +516,27 @@ static struct ct_assembler assembly_create(struct ct_ctx *ctx, struct ct_arena *
     return s;
 }
 
+// Is coordinate i of a joint an angle that does nothing but turn, so that a whole turn more is the same place?
+static bool is_turn(const struct ct_assembler *s, size_t i)
+{
+    const struct ct_coordinate *c = &s->e->coordinate[i];
+    const struct ct_edge_info *e = &s->e->build->edge[c->edge];
+    return e->kind == CT_EDGE_JOINT && !c->in_translation && c->place < e->trial.nmeasure
+        && e->trial.measure[c->place].kind == CT_MEASURE_ANGLE;
+}
+
+// Angles that nobody gave may have come to their places by the long way: they start within half a turn of their guesses.
+static void drop_whole_turns(const struct ct_assembler *s, double *q)
+{
+    const double pi = 3.14159265358979323846;
+    for (size_t i = 0; i < s->e->ncoordinate; i++) {
+        const double away = q[i] - s->q[i].value;
+        if (s->q[i].wanted && !s->q[i].is_given && fabs(away) > pi + ct_assembly_met
+            && is_turn(s, i))
+            q[i] -= 2 * pi * round(away / (2 * pi));
+    }
+}
+
 // From start values of the model to those of all coordinates.
 static bool find_start(struct ct_assembler *s, struct ct_start *out)
 {
@@ -540,6 +561,8 @@ static bool find_start(struct ct_assembler *s, struct ct_start *out)
         out->q[i] = m->result.out[2 * i];
         out->u[i] = m->result.out[2 * i + 1];
     }
+    if (!is_direct(s))
+        drop_whole_turns(s, out->q);
     return true;
 }
 

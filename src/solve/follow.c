@@ -32,8 +32,8 @@ static bool follow_step(struct ct_run *r, double t, double t1, const double *y, 
     const double h = t1 - t;
     double most = 0, worst = 0, *d = r->scratch;
     memcpy(out, y, r->ny * sizeof *y);
-    if (!nu)
-        return true;
+    if (!nu) // rows between driven coordinates alone: they hold or they do not
+        return ct_embed_project(r->s, ct_run_before(r, t1), out) == CT_EVAL_OK;
     if (ct_run_accelerate(r, ct_run_before(r, t), y) != CT_EVAL_OK)
         return false;
     for (size_t k = 0; k < nu; k++) {

@@ -45,6 +45,8 @@ awk -F, 'NR > 2 && $1 == method && !($5 < 0.02 * error || $5 < 1e-13) { print "f
 echo '-- of closed loops, too, with no more evaluations than they have stages'
 "$COTREE" accuracy "$SYSTEMS/four_bar/model.yaml" --until 1 --samples 2 --method rk4,dop853 --step 0.01 --quiet | cut -d, -f1,7,8
 say accuracy "$m" --per-decade 11
+say accuracy "$m" --elements 1,2
+say accuracy "$m" --formulations linear
 rm fine.csv
 echo '-- a reference from a file'
 "$COTREE" simulate "$m" --until 2 --samples 101 --tolerance 1e-11 --quiet -o reference.csv

@@ -82,3 +82,22 @@ rows loop --keep-all --tree joints
 for tree in auto joints absolute; do rows soft_loop --tree $tree; done
 rows mesh
 rows large_mesh
+
+# Ziegler's column under a force that follows its tip, which the forces circle but do not come down to. With the moments of the weights
+# G1, G2: -10 p - P/2 sin(q) + G1 = 0, -10 q + G2 = 0, solved apart: -0.0132778899, -0.0048631271 at P = 46, -0.0001492102, -0.0049616038 at 100.
+cat >follower.yaml <<'END'
+cotree: 1
+gravity: [0.3, -0.2, 0]
+parameters: {P: 46}
+bodies:
+  a: {mass: 2, inertia: 0.02, com: [0.25, 0, 0], points: {end: [0.5, 0, 0]}}
+  b: {mass: 1, inertia: 0.02, com: [0.25, 0, 0], points: {end: [0.5, 0, 0]}}
+joints:
+  p: {type: revolute, from: ground, to: a, initial: {q: 0.01}, stiffness: 10, damping: 0.1}
+  q: {type: revolute, from: a.end, to: b, stiffness: 10, damping: 0.05}
+forces:
+  push: {type: force, at: b.end, value: [-P, 0, 0], in: b}
+outputs: [p.q, q.q]
+END
+rows follower
+rows follower --set P=100

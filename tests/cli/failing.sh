@@ -87,3 +87,17 @@ joints:
   D: {type: revolute, from: bar.end, to: b.end}
 END
 say check parallelogram.yaml
+echo '-- gears between driven joints alone, whose motions contradict them'
+cat >geared.yaml <<'END'
+cotree: 1
+parameters: {r: 2}
+bodies: {a: {mass: 1, inertia: 0.1}, b: {mass: 1, inertia: 0.2}}
+joints:
+  x: {type: revolute, from: ground, to: a, motion: t^2}
+  y: {type: revolute, from: ground, to: b, motion: r*t^2}
+  cog: {type: gear, joints: [y, x], ratio: 2}
+outputs: [x.q, y.q]
+simulation: {duration: 1, samples: 2}
+END
+say inverse geared.yaml --quiet -o - | cut -d, -f1-3
+say kinematics geared.yaml --quiet --set r=2.1 | sed 's/t = .*: it/t = T: it/'

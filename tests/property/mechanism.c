@@ -297,5 +297,15 @@ const struct mechanism mechanisms[] = {
                {"rod", "B.p", "P", "type: distance"}},
      .is_driven = true,
      .is_irreversible = true},
+    {.name = "geared driver",
+     GROUND,
+     .body = {A_BODY, B_BODY, "D: {mass: 0.7, inertia: 0.05}", "E: {mass: 0.2, inertia: 0.03}"},
+     .joint = {{"x", "ground.a", "A", "type: revolute, axis: [1, 2, 0], motion: 0.5*sin(2*t)"},
+               {"y", "A.p", "B", "type: universal"},
+               {"z", "ground.b", "D", "type: prismatic, axis: [1, 1, 3], stiffness: 9"},
+               {"w", "D", "E", "type: cylindrical"},
+               {"cog", NULL, NULL, "type: gear, joints: [z, x], ratio: 0.3"},
+               {"rack", NULL, NULL, "type: gear, joints: [x, w.q2], ratio: -1.4"}},
+     .is_driven = true},
 };
 const size_t nmechanism = COUNT(mechanisms);

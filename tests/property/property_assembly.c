@@ -135,6 +135,40 @@ static void several_turns_are_kept(void **state)
     system_close(&s);
 }
 
+// A Bennett linkage, whose last angle is found the long way round: what nobody gave is within half a turn of its guess, and
+// theta4 = -theta2, theta3 = -theta1 with tan(theta1/2) tan(theta2/2) = sin((be + al)/2)/sin((be - al)/2).
+#define BENNETT(last)                                                                          \
+    "cotree: 1\nparameters: {a: 0.4, b: 0.6, al: 0.5, be: asin(b/a*sin(al))}\nbodies:\n"       \
+    "  ground: {points: {d: {at: [-b, 0, 0], rotate: [x, -be]}}}\n"                            \
+    "  l1: {mass: 1, inertia: 1, points: {e: {at: [a, 0, 0], rotate: [x, al]}}}\n"             \
+    "  l2: {mass: 1, inertia: 1, points: {e: {at: [b, 0, 0], rotate: [x, be]}}}\n"             \
+    "  l3: {mass: 1, inertia: 1, points: {e: {at: [a, 0, 0], rotate: [x, al]}}}\n"             \
+    "joints:\n"                                                                                \
+    "  j1: {type: revolute, from: ground, to: l1, initial: {q: 1.1, u: 3}}\n"                  \
+    "  j2: {type: revolute, from: l1.e, to: l2, initial: {q: 2.8, guess: true}}\n"             \
+    "  j3: {type: revolute, from: l2.e, to: l3, initial: {q: -1.1, guess: true}}\n"            \
+    "  j4: {type: revolute, from: l3.e, to: ground.d, initial: {" last "}}\n"
+
+static void angles_start_near_their_guesses(void **state)
+{
+    (void)state;
+    static const char *const last[] = {BENNETT("guess: true"), BENNETT("q: 3.3, guess: true"),
+                                       BENNETT("q: 10, guess: true")};
+    const double al = 0.5, be = asin(1.5 * sin(al)), pi = acos(-1);
+    const double second
+        = 2 * atan(sin((be + al) / 2) / sin((be - al) / 2) / tan(0.55)); // 2.839
+    const double fourth[] = {-second, 2 * pi - second, 4 * pi - second};
+    for (size_t i = 0; i < COUNT(last); i++) {
+        struct system s;
+        system_open_text(&s, "Bennett", last[i]);
+        expect_start(&s, "j1.q", 1.1, 3);
+        expect_start(&s, "j3.q", -1.1, -3);
+        assert_true(agree("Bennett", "j4.q", s.start.q[coordinate_named(&s, "j4.q")], fourth[i],
+                          1, 1e-8));
+        system_close(&s);
+    }
+}
+
 static void contradictions_are_named(void **state)
 {
     (void)state;
@@ -214,6 +248,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(values_given_on_any_joint_are_met),
         cmocka_unit_test(several_turns_are_kept),
+        cmocka_unit_test(angles_start_near_their_guesses),
         cmocka_unit_test(contradictions_are_named),
         cmocka_unit_test(half_turns_are_no_solutions),
         cmocka_unit_test(closing_by_a_half_turn_alone_is_an_error),
