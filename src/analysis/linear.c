@@ -151,7 +151,7 @@ static void speed_slopes(struct ct_linear *l, double *D, const double *u)
     put_in(l, u, l->a, l->lam);
     ct_machine_tangent(l->m);
     scatter(D, (size_t)l->nrow, (size_t)l->nu, f->dv, f->ndv,
-            l->m->slopes + f->ndq + f->ndu + f->nda);
+            l->m->slopes + f->ndq + f->ndu + f->nda + f->ndk);
 }
 
 // M, C, K, J, D at the state, with its accelerations and multipliers.
@@ -174,10 +174,7 @@ static bool slopes(struct ct_linear *l)
     if (!is_finite(m->slopes, m->nslope))
         return ct_error(l->ctx, (struct ct_mark){.file = m->model->file}, CT_E_SINGULAR,
                         "the equations have no finite derivatives at this configuration");
-    const double *value = m->slopes;
-    value = scatter(l->K, nu, nu, f->dq, f->ndq, value);
-    value = scatter(l->C, nu, nu, f->du, f->ndu, value);
-    value = scatter(l->M, nu, nu, f->da, f->nda, value);
+    const double *value = ct_machine_scatter(m, l->K, l->C, l->M);
     value = scatter(l->D, nrow, nu, f->dv, f->ndv, value);
     memset(l->J, 0, nrow * nu * sizeof *l->J);
     for (size_t i = 0; i < m->e->nJ; i++)

@@ -182,7 +182,8 @@ void ct_ex_gradient(struct ct_exs *x, struct ct_arena *scratch, ct_ex a, const c
 /// Derivative of node id by its i-th argument, as an expression of the node and its arguments.
 ct_ex ct_ex_partial(struct ct_exs *x, uint32_t id, int i);
 
-/// d(symbol)/d(direction) = value. A symbol may have several directions.
+/// d(symbol)/d(direction) = value. A symbol may have several directions. In place of a symbol also a node of another kind: what lies
+/// above it then sees these directions alone, and as a row of f it has the derivatives that follow from its arguments.
 struct ct_seed {
     ct_ex symbol;
     uint32_t direction;

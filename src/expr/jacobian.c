@@ -25,7 +25,8 @@ struct walk {
     struct tangent *tangent;
     size_t ntangent, cap;
     uint32_t *place;   // by id: its place in the order of the walk, plus one
-    struct list *list; // by place
+    struct list *list; // by place: what nodes above it see
+    struct list *own;  // by place: what follows from its arguments
 };
 
 static void push(struct walk *w, uint32_t direction, ct_ex value)
@@ -40,11 +41,14 @@ static struct list list_of(const struct walk *w, uint32_t id)
     return w->list[w->place[id] - 1];
 }
 
-// A symbol's list is what its seeds say; the seeds are sorted.
-static void seed_symbol(struct walk *w, uint32_t id, const struct ct_seed *seed, size_t nseed)
+// What the seeds of a node say, which are sorted. False: it has none.
+static bool seed_node(struct walk *w, uint32_t id, const struct ct_seed *seed, size_t nseed)
 {
-    for (size_t k = ct_seeds_find(seed, nseed, id); k < nseed && seed[k].symbol.id == id; k++)
+    size_t k = ct_seeds_find(seed, nseed, id);
+    const bool any = k < nseed && seed[k].symbol.id == id;
+    for (; k < nseed && seed[k].symbol.id == id; k++)
         push(w, seed[k].direction, seed[k].value);
+    return any;
 }
 
 // The derivatives of a node's arguments in one direction -> the derivative of the node.
@@ -93,6 +97,22 @@ static void chain(struct walk *w, uint32_t id)
     }
 }
 
+// Both lists of place k.
+static void list_node(struct walk *w, size_t k, uint32_t id, const struct ct_seed *seed,
+                      size_t nseed)
+{
+    const size_t first = w->ntangent;
+    if (w->x->node[id].op != CT_OP_SYM)
+        chain(w, id);
+    const size_t then = w->ntangent;
+    w->own[k] = w->list[k] = (struct list){first, then - first};
+    if (!seed_node(w, id, seed, nseed))
+        return;
+    w->list[k] = (struct list){then, w->ntangent - then};
+    if (w->x->node[id].op == CT_OP_SYM)
+        w->own[k] = w->list[k];
+}
+
 size_t ct_ex_jacobian(struct ct_exs *x, struct ct_arena *scratch, struct ct_arena *a,
                       const ct_ex *f, size_t nf, const struct ct_seed *seeds, size_t nseed,
                       struct ct_slope **out)
@@ -105,20 +125,16 @@ size_t ct_ex_jacobian(struct ct_exs *x, struct ct_arena *scratch, struct ct_aren
         most = id[k] > most ? id[k] : most;
     w.place = CT_NEWN(scratch, uint32_t, (size_t)most + 1);
     w.list = CT_NEWN(scratch, struct list, n + 1);
+    w.own = CT_NEWN(scratch, struct list, n + 1);
     const struct ct_seed *seed = ct_seeds_sorted(scratch, seeds, nseed);
     for (size_t k = 0; k < n; k++) {
-        w.list[k].first = w.ntangent;
-        if (x->node[id[k]].op == CT_OP_SYM)
-            seed_symbol(&w, id[k], seed, nseed);
-        else
-            chain(&w, id[k]);
-        w.list[k].n = w.ntangent - w.list[k].first;
+        list_node(&w, k, id[k], seed, nseed);
         w.place[id[k]] = (uint32_t)k + 1;
     }
     size_t nout = 0, cap = 0;
     *out = NULL;
     for (size_t r = 0; r < nf; r++) {
-        const struct list l = list_of(&w, f[r].id);
+        const struct list l = w.own[w.place[f[r].id] - 1];
         for (size_t k = l.first; k < l.first + l.n; k++) {
             const struct ct_slope s = {(uint32_t)r, w.tangent[k].direction, w.tangent[k].value};
             CT_PUSH(a, *out, nout, cap, s);

@@ -15,7 +15,9 @@ struct walk {
     const struct ct_exs *x;
     const uint32_t *id; // nodes, arguments first
     size_t n;
-    uint64_t *bits; // by id
+    uint64_t *bits; // by id: what nodes above it see
+    uint64_t *own;  // by id: what follows from its arguments
+    bool *is_inner; // by id: has seeds, but is no symbol
     double operations;
 };
 
@@ -55,14 +57,18 @@ static void unite(struct walk *w)
 {
     for (size_t k = 0; k < w->n; k++) {
         const struct ct_exnode *n = &w->x->node[w->id[k]];
-        if (n->op == CT_OP_SYM || n->op == CT_OP_CONST)
+        if (n->op == CT_OP_SYM || n->op == CT_OP_CONST) {
+            w->own[w->id[k]] = w->bits[w->id[k]];
             continue;
+        }
         const int narg = ct_op_info[n->op].narg;
         const bool is_if = n->op == CT_OP_IF; // its condition has no derivative
         const uint64_t a = w->bits[is_if ? n->b : n->a], b = is_if    ? w->bits[n->c]
                                                            : narg > 1 ? w->bits[n->b]
                                                                       : 0;
-        w->bits[w->id[k]] = a | b;
+        w->own[w->id[k]] = a | b;
+        if (!w->is_inner[w->id[k]])
+            w->bits[w->id[k]] = a | b;
         w->operations += operations_of((enum ct_op)n->op, a, b);
     }
 }
@@ -81,14 +87,20 @@ size_t ct_ex_pattern(struct ct_exs *x, struct ct_arena *scratch, struct ct_arena
 {
     const size_t n = ct_ex_walk(x, f, nf), nblock = (ndirection + WIDTH - 1) / WIDTH;
     uint64_t *found = CT_NEWN(scratch, uint64_t, nf * nblock + 1);
-    struct walk w
-        = {.x = x, .id = x->stack, .n = n, .bits = CT_NEWN(scratch, uint64_t, x->nnode)};
+    struct walk w = {.x = x,
+                     .id = x->stack,
+                     .n = n,
+                     .bits = CT_NEWN(scratch, uint64_t, x->nnode),
+                     .own = CT_NEWN(scratch, uint64_t, x->nnode),
+                     .is_inner = CT_NEWN(scratch, bool, x->nnode)};
+    for (size_t k = 0; k < nseed; k++)
+        w.is_inner[seed[k].symbol.id] = x->node[seed[k].symbol.id].op != CT_OP_SYM;
     for (size_t i = 0; i < nblock; i++) {
         clear(&w, seed, nseed);
         seed_bits(&w, seed, nseed, (uint32_t)(WIDTH * i));
         unite(&w);
         for (size_t r = 0; r < nf; r++)
-            found[nblock * r + i] = w.bits[f[r].id];
+            found[nblock * r + i] = w.own[f[r].id];
     }
     size_t nout = 0, cap = 0;
     *out = NULL;

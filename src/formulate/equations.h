@@ -108,20 +108,24 @@ struct ct_driver {
 
 /// The equations as implicit methods solve them, and the derivatives their iteration needs. Positions are
 /// varied along the retraction, so that an entry's direction is a speed's index.  (formulation 5.2, 8.2)
+///
+/// Where there are inner values k (nodes below r, each of them of earlier ones), slopes of r are those with k held, and rows nu + i are
+/// those of k_i: with the strict triangle of dk/dk, dr = r_q dq + r_k (1 - k_k)^-1 k_q dq.  (8.19)
 struct ct_residual {
-    ct_ex *r;                      // M u' - Q - J' lam  (nu)
-    bool has_slopes;               // those below are derived
-    struct ct_slope *dq, *du, *da; // of r by q, u, u'
-    struct ct_slope *dv;           // of the rows' v by q
-    size_t ndq, ndu, nda, ndv;
+    ct_ex *r;                           // M u' - Q - J' lam  (nu)
+    bool has_slopes;                    // those below are derived
+    ct_ex *inner;                       // k (ninner)
+    struct ct_slope *dq, *du, *da, *dk; // of r and k by q, u, u', k
+    struct ct_slope *dv;                // of the rows' v by q
+    size_t ninner, ndq, ndu, nda, ndk, ndv;
     struct ct_directional
         *along; // NULL: the slopes have values as expressions; else their places only
 };
 
-/// Derivatives along a motion (places, speeds, u': nu numbers each), from which slopes are read colour by colour.
+/// Derivatives along a motion (places, speeds, u': nu numbers each, and inner values), from which slopes are read colour by colour.
 struct ct_directional {
     ct_ex *seed;      // symbols of these numbers (nseed)
-    ct_ex *rate;      // of r (nu), and of v (nrow) along the places
+    ct_ex *rate;      // of r (nu) and inner values, and of v (nrow) along the places
     uint32_t *colour; // by seed: those of one colour share no row
     size_t nseed;
     uint32_t ncolour;

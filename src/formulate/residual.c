@@ -4,12 +4,13 @@
 // For a plain coordinate that is the coordinate itself, for a quaternion a body rotation.
 #include "formulate/residual.h"
 #include "formulate/composite.h"
+#include "formulate/inner.h"
 #include "formulate/open.h"
 
 #include <string.h>
 
-// Directions of the seeds: the speeds k as variations of the place, of the speed, of u'.
-enum { PLACE, SPEED, ACCELERATION, NLEVEL };
+// Directions of the seeds: the speeds k as variations of the place, of the speed, of u'; behind them inner values.
+enum { PLACE, SPEED, ACCELERATION, INNER, NLEVEL = INNER };
 
 struct seeds {
     struct ct_arena *a; // NULL: scratch
@@ -55,10 +56,10 @@ static size_t pick(struct ct_build *b, const struct ct_slope *all, size_t n, int
     *out = NULL;
     for (size_t i = 0; i < n; i++) {
         struct ct_slope s = all[i];
-        // NOLINTNEXTLINE(clang-analyzer-core.DivideZero): without speeds there is no slope
-        if (s.direction / b->eqs->nu != (size_t)level)
+        const size_t first = direction(b, level, 0);
+        if (s.direction < first || (level < INNER && s.direction >= first + b->eqs->nu))
             continue;
-        s.direction %= (uint32_t)b->eqs->nu;
+        s.direction -= (uint32_t)first;
         CT_PUSH(b->arena, *out, nout, cap, s);
     }
     return nout;
@@ -106,10 +107,10 @@ static void derive_rows(struct ct_build *b, ct_ex *r)
 // executing it so often; side by side in lanes it costs a quarter and something for the loads.
 static const double expected_evaluations = 300, making = 1500, per_lane = 0.3;
 
-// What both ways start from: r and v, and the motions they vary along.
+// What both ways start from: r with inner values behind it, v, and the motions they vary along.
 struct slopes {
     ct_ex *r, *v;
-    size_t nu, nrow;
+    size_t nu, ninner, nr, nrow; // nr: nu + ninner
     struct seeds all;
     size_t nplace; // of the seeds
 };
@@ -131,6 +132,7 @@ static void sort_out(struct ct_build *b, struct ct_residual *f, const struct ct_
     f->ndq = pick(b, all, n, PLACE, &f->dq);
     f->ndu = pick(b, all, n, SPEED, &f->du);
     f->nda = pick(b, all, n, ACCELERATION, &f->da);
+    f->ndk = pick(b, all, n, INNER, &f->dk);
 }
 
 // Entry by entry, as expressions.
@@ -139,7 +141,7 @@ static void derive_entries(struct ct_build *b, struct ct_residual *f, const stru
     struct ct_arena *scratch = b->ctx->scratch;
     struct ct_slope *all;
     const size_t n
-        = ct_ex_jacobian(b->x, scratch, scratch, s->r, s->nu, s->all.e, s->all.n, &all);
+        = ct_ex_jacobian(b->x, scratch, scratch, s->r, s->nr, s->all.e, s->all.n, &all);
     sort_out(b, f, all, n);
     f->ndv
         = ct_ex_jacobian(b->x, scratch, b->arena, s->v, s->nrow, s->all.e, s->nplace, &f->dv);
@@ -159,12 +161,12 @@ static struct ct_directional *derive_along(struct ct_build *b, const struct slop
 {
     const struct ct_equations *e = b->eqs;
     struct ct_directional *along = CT_NEW(b->arena, struct ct_directional);
-    const size_t nu = e->nu, n = NLEVEL * nu;
+    const size_t nu = e->nu, n = NLEVEL * nu + s->ninner;
     struct seeds seeds = {0};
     ct_ex *speed = CT_NEWN(b->ctx->scratch, ct_ex, nu + 1);
     along->nseed = n;
     along->seed = CT_NEWN(b->arena, ct_ex, n + 1);
-    along->rate = CT_NEWN(b->arena, ct_ex, nu + e->nrow + 1);
+    along->rate = CT_NEWN(b->arena, ct_ex, s->nr + e->nrow + 1);
     for (size_t k = 0; k < n; k++)
         along->seed[k] = ct_ex_sym(b->x, CT_SYM_SEED, "d", (uint32_t)k);
     for (size_t k = 0; k < nu; k++)
@@ -177,13 +179,15 @@ static struct ct_directional *derive_along(struct ct_build *b, const struct slop
         plant(b, &seeds, e->u[k].symbol, 0, along->seed[nu + k]);
         plant(b, &seeds, e->u[k].derivative, 0, along->seed[2 * nu + k]);
     }
+    for (size_t k = 0; k < s->ninner; k++)
+        plant(b, &seeds, s->r[nu + k], 0, along->seed[NLEVEL * nu + k]);
     struct ct_slope *d;
-    const size_t nr = ct_ex_jacobian(b->x, b->ctx->scratch, b->ctx->scratch, s->r, nu, seeds.e,
-                                     seeds.n, &d);
+    const size_t nr = ct_ex_jacobian(b->x, b->ctx->scratch, b->ctx->scratch, s->r, s->nr,
+                                     seeds.e, seeds.n, &d);
     for (size_t i = 0; i < nr; i++)
         along->rate[d[i].row] = d[i].value;
     for (size_t i = 0; i < e->nrow; i++)
-        along->rate[nu + i] = derivative_along(b, s->v[i], &places);
+        along->rate[s->nr + i] = derivative_along(b, s->v[i], &places);
     return along;
 }
 
@@ -237,10 +241,9 @@ static void colour(struct ct_build *b, struct ct_directional *along, const struc
     }
 }
 
-static double cost_along(struct ct_build *b, const struct ct_directional *along)
+static double cost_along(struct ct_build *b, const struct ct_directional *along, size_t nrate)
 {
-    const struct ct_tape_counts c
-        = ct_ex_count(b->ctx->scratch, b->x, along->rate, b->eqs->nu + b->eqs->nrow);
+    const struct ct_tape_counts c = ct_ex_count(b->ctx->scratch, b->x, along->rate, nrate);
     return ct_counted_cost(&c)
          * (making + expected_evaluations * per_lane * (double)along->ncolour);
 }
@@ -252,8 +255,8 @@ static bool try_along(struct ct_build *b, struct ct_residual *f, const struct sl
     struct ct_arena *scratch = b->ctx->scratch;
     struct ct_slope *all, *more;
     double operations, more_operations;
-    const size_t ndirection = NLEVEL * s->nu;
-    size_t n = ct_ex_pattern(b->x, scratch, scratch, s->r, s->nu, s->all.e, s->all.n,
+    const size_t ndirection = NLEVEL * s->nu + s->ninner;
+    size_t n = ct_ex_pattern(b->x, scratch, scratch, s->r, s->nr, s->all.e, s->all.n,
                              (uint32_t)ndirection, &all, &operations);
     const double entries = operations * (making + expected_evaluations);
     // what a single colour would cost bounds the gain
@@ -269,10 +272,10 @@ static bool try_along(struct ct_build *b, struct ct_residual *f, const struct sl
         memcpy(more, all, n * sizeof *more);
     for (size_t i = 0; i < f->ndv; i++, n++) {
         more[n] = f->dv[i];
-        more[n].row += (uint32_t)s->nu;
+        more[n].row += (uint32_t)s->nr;
     }
-    colour(b, along, more, n, s->nu + s->nrow);
-    if (form == CT_SLOPES_AUTO && cost_along(b, along) > entries)
+    colour(b, along, more, n, s->nr + s->nrow);
+    if (form == CT_SLOPES_AUTO && cost_along(b, along, s->nr + s->nrow) > entries)
         return false;
     f->along = along;
     return true;
@@ -301,6 +304,20 @@ void ct_residual_rows(struct ct_build *b)
         derive_rows(b, e->residual->r);
 }
 
+// Inner values of f as rows behind r, and as seeds behind the others.
+static void add_inner(struct ct_build *b, struct ct_residual *f, struct slopes *s)
+{
+    f->ninner = ct_inner_choose(b, f->r, s->all.e, s->all.n, &f->inner);
+    s->ninner = f->ninner;
+    s->nr = s->nu + s->ninner;
+    s->r = CT_NEWN(b->ctx->scratch, ct_ex, s->nr + 1);
+    memcpy(s->r, f->r, s->nu * sizeof *s->r);
+    for (size_t k = 0; k < s->ninner; k++) {
+        s->r[s->nu + k] = f->inner[k];
+        plant(b, &s->all, f->inner[k], direction(b, INNER, k), CT_EX_ONE);
+    }
+}
+
 void ct_residual_derive(struct ct_build *b, enum ct_slope_form form)
 {
     const struct ct_equations *e = b->eqs;
@@ -310,11 +327,11 @@ void ct_residual_derive(struct ct_build *b, enum ct_slope_form form)
         = CT_NEW(b->arena, struct ct_residual); // an earlier one stays as it is
     *f = (struct ct_residual){.r = e->residual->r, .has_slopes = true};
     b->eqs->residual = f;
-    s.r = f->r;
     s.v = CT_NEWN(b->ctx->scratch, ct_ex, e->nrow + 1);
     for (size_t i = 0; i < e->nrow; i++)
         s.v[i] = e->row[i].v;
     plant_all(b, &s);
+    add_inner(b, f, &s);
     if (form == CT_SLOPES_ENTRIES || !try_along(b, f, &s, form))
         derive_entries(b, f, &s);
 }

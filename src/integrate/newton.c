@@ -9,12 +9,14 @@ struct ct_newton {
     const struct ct_dae *dae;
     const int *kept; // rows that count  (m)
     int m;
-    double *v;    // M, C, K, J, D, zeros in rows that do not count
-    double *A;    // S, X, W
-    double *G;    // the matrix, real or complex
-    bool *counts; // each row  (most_rows)
-    int *rank_of; // of rows that count  (most_rows)
-    double *b;    // of all rows (n numbers or pairs)
+    double *v;     // K, C, M, R, D, J, zeros in rows that do not count
+    double *A;     // S, X, W
+    double *G;     // the matrix, real or complex
+    bool *counts;  // each row  (most_rows)
+    int *rank_of;  // of rows that count  (most_rows)
+    double *b;     // of all rows (n numbers or pairs)
+    double *k;     // variations of inner values  (ninner)
+    double *x, *y; // of products  (nu)
     struct ct_factors *real, *pair, *slow;
 };
 
@@ -30,6 +32,9 @@ struct ct_newton *ct_newton_create(struct ct_arena *a, const struct ct_dae *dae,
     s->A = CT_NEWN(a, double, CT_NEWTON_PARTS *nz + 1);
     s->G = CT_NEWN(a, double, numbers *nz + 1);
     s->b = CT_NEWN(a, double, numbers * plan->n + 1);
+    s->k = CT_NEWN(a, double, plan->ninner + 1);
+    s->x = CT_NEWN(a, double, plan->nu + 1);
+    s->y = CT_NEWN(a, double, plan->nu + 1);
     s->counts = CT_NEWN(a, bool, plan->most_rows + 1);
     s->rank_of = CT_NEWN(a, int, plan->most_rows + 1);
     s->real = ct_factors_create(a, plan->pattern, false);
@@ -72,7 +77,7 @@ enum ct_eval ct_newton_evaluate(struct ct_newton *s, double t, const double *q, 
         clear_rows(s, &p->D);
     }
     ct_newton_plan_assemble(p, s->A, s->v, w);
-    for (int i = 0; i < p->n - p->nu; i++)
+    for (int i = 0; i < p->first_inner - p->nu; i++)
         if (!s->counts[i % p->most_rows])
             s->A[p->place[i]] = 1;
     return CT_EVAL_OK;
@@ -96,7 +101,7 @@ bool ct_newton_factor_complex(struct ct_newton *s, double _Complex w)
     const double *A = s->A, *B = A + p->pattern->nz, *D = B + p->pattern->nz;
     const double _Complex ww = w * w;
     for (int i = 0; i < p->pattern->nz; i++) {
-        const double _Complex by = p->pattern->row[i] < p->nu ? ww : w;
+        const double _Complex by = ct_newton_plan_is_force(p, p->pattern->row[i]) ? ww : w;
         s->G[2 * i] = A[i] + creal(w) * B[i] + creal(by) * D[i];
         s->G[2 * i + 1] = cimag(w) * B[i] + cimag(by) * D[i];
     }
@@ -109,7 +114,10 @@ static void spread(const struct ct_newton *s, double *all, const double *b, int 
     const struct ct_newton_plan *p = s->p;
     for (int k = 0; k < p->nu; k++)
         all[stride * k] = b[k];
-    for (int first = p->nu, of = p->nu; first < p->n; first += p->most_rows, of += s->m) {
+    for (int k = p->first_inner; k < p->n; k++)
+        all[stride * k] = 0;
+    for (int first = p->nu, of = p->nu; first < p->first_inner;
+         first += p->most_rows, of += s->m) {
         for (int i = 0; i < p->most_rows; i++)
             all[stride * (first + i)] = 0;
         for (int i = 0; i < s->m; i++)
@@ -122,7 +130,8 @@ static void collect(const struct ct_newton *s, double *b, const double *all, int
     const struct ct_newton_plan *p = s->p;
     for (int k = 0; k < p->nu; k++)
         b[k] = all[stride * k];
-    for (int first = p->nu, of = p->nu; first < p->n; first += p->most_rows, of += s->m)
+    for (int first = p->nu, of = p->nu; first < p->first_inner;
+         first += p->most_rows, of += s->m)
         for (int i = 0; i < s->m; i++)
             b[of + i] = all[stride * (first + s->kept[i])];
 }
@@ -165,33 +174,57 @@ void ct_newton_solve_complex(struct ct_newton *s, double *b, int n)
 
 // ---- products -------------------------------------------------------------------------------------------
 
-// y += c A x. Entries stand row by row.
-static void add_product(const struct ct_newton_list *A, const double *value, double *y,
-                        double c, const double *x)
+// Row `row` of A times x.
+static inline double row_times(const struct ct_newton_list *A, const double *value, int row,
+                               const double *x)
 {
     const double *v = value + A->first;
-    for (int i = 0; i < A->n;) {
-        const int row = A->row[i];
-        double sum = 0;
-        for (; i < A->n && A->row[i] == row; i++)
-            sum += v[i] * x[A->column[i]];
-        y[row] += c * sum;
+    double sum = 0;
+    for (int i = A->start[row]; i < A->start[row + 1]; i++)
+        sum += v[i] * x[A->column[i]];
+    return sum;
+}
+
+// y += c (A + R_r (1 - R_k)^-1 A_k) x: inner values, of which each depends on those before it, on the way.
+static void add_product(const struct ct_newton *s, const struct ct_newton_list *A, double *y,
+                        double c, const double *x)
+{
+    const struct ct_newton_plan *p = s->p;
+    const int nu = p->nu;
+    for (int i = 0; i < p->ninner; i++)
+        s->k[i] = row_times(A, s->v, nu + i, x) + row_times(&p->R, s->v, nu + i, s->k);
+    for (int row = 0; row < nu; row++) {
+        const double by_inner = p->ninner ? row_times(&p->R, s->v, row, s->k) : 0;
+        y[row] += c * (row_times(A, s->v, row, x) + by_inner);
     }
 }
 
 void ct_newton_add_mass(const struct ct_newton *s, double *y, double c, const double *x)
 {
-    add_product(&s->p->M, s->v, y, c, x);
-}
-
-void ct_newton_add_damping(const struct ct_newton *s, double *y, double c, const double *x)
-{
-    add_product(&s->p->C, s->v, y, c, x);
+    add_product(s, &s->p->M, y, c, x);
 }
 
 void ct_newton_add_stiffness(const struct ct_newton *s, double *y, double c, const double *x)
 {
-    add_product(&s->p->K, s->v, y, c, x);
+    add_product(s, &s->p->K, y, c, x);
+}
+
+void ct_newton_add_motion(const struct ct_newton *s, double *y, double a, const double *F,
+                          double b, const double *G)
+{
+    const struct ct_newton_plan *p = s->p;
+    const struct ct_newton_list *M = &p->M, *C = &p->C, *R = &p->R;
+    const int nu = p->nu;
+    double *x = s->x;
+    for (int k = 0; k < nu; k++)
+        x[k] = a * F[k] + (G ? b * G[k] : 0);
+    for (int i = 0; i < p->ninner; i++)
+        s->k[i] = row_times(M, s->v, nu + i, x) + row_times(C, s->v, nu + i, F)
+                + row_times(R, s->v, nu + i, s->k);
+    for (int row = 0; row < nu; row++) {
+        const double by_inner = p->ninner ? row_times(R, s->v, row, s->k) : 0;
+        y[row] += row_times(M, s->v, row, x) + row_times(C, s->v, row, F) + by_inner;
+    }
 }
 
 void ct_newton_add_rows(const struct ct_newton *s, double *y, double c, const double *x)
@@ -212,23 +245,42 @@ void ct_newton_add_push(const struct ct_newton *s, double *y, double c, const do
             y[J->column[i]] += c * v[i] * x[s->rank_of[J->row[i]]];
 }
 
-static double form_of(const struct ct_newton_list *A, const double *value, const double *x)
+static double form_of(const struct ct_newton *s, const struct ct_newton_list *A,
+                      const double *x)
 {
-    const double *v = value + A->first;
+    const int nu = s->p->nu;
     double sum = 0;
-    for (int i = 0; i < A->n; i++)
-        sum += x[A->row[i]] * v[i] * x[A->column[i]];
+    memset(s->y, 0, (size_t)nu * sizeof *s->y);
+    add_product(s, A, s->y, 1, x);
+    for (int k = 0; k < nu; k++)
+        sum += x[k] * s->y[k];
     return sum;
 }
 
 double ct_newton_mass_form(const struct ct_newton *s, const double *x)
 {
-    return form_of(&s->p->M, s->v, x);
+    return form_of(s, &s->p->M, x);
 }
 
 double ct_newton_stiffness_form(const struct ct_newton *s, const double *x)
 {
-    return form_of(&s->p->K, s->v, x);
+    return form_of(s, &s->p->K, x);
+}
+
+// Of speed k, what inner values that it moves bring to its own row.
+static double mass_by_inner(const struct ct_newton *s, int k)
+{
+    const struct ct_newton_plan *p = s->p;
+    const struct ct_newton_list *M = &p->M, *R = &p->R;
+    const int nu = p->nu, end = R->start[k + 1];
+    const int last = end > R->start[k] ? R->column[end - 1] : -1;
+    memset(s->k, 0, (size_t)p->ninner * sizeof *s->k);
+    for (int i = p->M_start[k]; i < p->M_start[k + 1]; i++)
+        if (M->row[p->M_entry[i]] >= nu)
+            s->k[M->row[p->M_entry[i]] - nu] = s->v[M->first + p->M_entry[i]];
+    for (int i = 0; i <= last; i++)
+        s->k[i] += row_times(R, s->v, nu + i, s->k);
+    return row_times(R, s->v, k, s->k);
 }
 
 void ct_newton_masses(const struct ct_newton *s, double *mass)
@@ -238,4 +290,6 @@ void ct_newton_masses(const struct ct_newton *s, double *mass)
     for (int i = 0; i < M->n; i++)
         if (M->row[i] == M->column[i])
             mass[M->row[i]] += s->v[M->first + i];
+    for (int k = 0; k < s->p->nu && s->p->ninner; k++)
+        mass[k] += mass_by_inner(s, k);
 }

@@ -1,8 +1,10 @@
 // The matrix of the iteration, (8.2), as a list of its entries: what beams of many elements and long chains have, of whose parts each
-// meets its neighbours.
+// meets its neighbours or sums over them.
 //
 //     plan     which entries there are, which products they are sums of, the order they are factored in. One for a problem.
 //     newton   their numbers and factors, and the lists M, C, K, J, D they are made of. One for a run.
+//
+// Where parts meet in sums along a chain, inner values are further unknowns (8.19): they do not show, M, C and K are what they lead to.
 //
 // What always holds: rows that do not count have a place, too, with a one on the diagonal, so that the pattern stays when they
 // change. There is no plan where full matrices take less time.
@@ -52,8 +54,10 @@ void ct_newton_slow_parts(struct ct_newton *s, double *part);
 
 /// y (nu) += c A x (nu)
 void ct_newton_add_mass(const struct ct_newton *s, double *y, double c, const double *x);
-void ct_newton_add_damping(const struct ct_newton *s, double *y, double c, const double *x);
 void ct_newton_add_stiffness(const struct ct_newton *s, double *y, double c, const double *x);
+/// y (nu) += M (a F + b G) + C F, for F and G (nu); G may be NULL.
+void ct_newton_add_motion(const struct ct_newton *s, double *y, double a, const double *F,
+                          double b, const double *G);
 /// y (m) += c J x; y (nu) += c J' x (m)
 void ct_newton_add_rows(const struct ct_newton *s, double *y, double c, const double *x);
 void ct_newton_add_push(const struct ct_newton *s, double *y, double c, const double *x);

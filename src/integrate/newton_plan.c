@@ -5,10 +5,6 @@
 
 #include <string.h>
 
-// An operation of sparse factors, and of a sum over a list, takes so many of full ones: measured where both take as long, with beams of
-// 2 to 8 elements, closed loops of them and a platform, of 16 to 40 equations.
-static const double sparse_operation = 1.25;
-
 enum part { S, X, W };
 
 // ---- places and terms ---------------------------------------------------------------------------------
@@ -31,25 +27,46 @@ static int add_place(struct places *s, enum part part, int row, int column)
     return (int)s->n++;
 }
 
-static void list_lists(struct ct_newton_plan *p)
+static const int *find_rows(struct ct_arena *a, const struct ct_newton_list *A, int nrow)
+{
+    int *start = CT_NEWN(a, int, nrow + 1);
+    for (int i = 0; i < A->n; i++)
+        start[A->row[i] + 1]++;
+    for (int i = 0; i < nrow; i++)
+        start[i + 1] += start[i];
+    return start;
+}
+
+static void list_lists(struct ct_arena *a, struct ct_newton_plan *p)
 {
     const struct ct_slopes *s = p->slopes;
-    struct ct_newton_list *const list[] = {&p->K, &p->C, &p->M, &p->D, &p->J};
-    const int n[] = {s->nK, s->nC, s->nM, s->nD, s->nJ};
+    struct ct_newton_list *const list[] = {&p->K, &p->C, &p->M, &p->R, &p->D, &p->J};
+    const int n[] = {s->nK, s->nC, s->nM, s->nR, s->nD, s->nJ};
     for (size_t i = 0; i < COUNT(list); i++) {
-        *list[i] = (struct ct_newton_list){s->row + p->nvalue, s->column + p->nvalue, p->nvalue,
-                                           n[i]};
+        *list[i] = (struct ct_newton_list){.row = s->row + p->nvalue,
+                                           .column = s->column + p->nvalue,
+                                           .first = p->nvalue,
+                                           .n = n[i]};
         p->nvalue += n[i];
+        if (list[i] != &p->D && list[i] != &p->J)
+            list[i]->start = find_rows(a, list[i], p->nu + p->ninner);
     }
 }
 
-// A list at row `first`.
+// Where row i of K, C, M or R is in the matrix.
+static int row_of(const struct ct_newton_plan *p, int i)
+{
+    return i < p->nu ? i : p->first_inner + i - p->nu;
+}
+
+// A list at row `first`, columns from `column` on.
 static void add_copies(struct ct_newton_plan *p, struct places *s, enum part part,
-                       const struct ct_newton_list *A, int first)
+                       const struct ct_newton_list *A, int first, int column)
 {
     for (int i = 0; i < A->n; i++) {
+        const int row = first ? first + A->row[i] : row_of(p, A->row[i]);
         const struct ct_newton_copy c
-            = {add_place(s, part, first + A->row[i], A->column[i]), A->first + i, 1};
+            = {add_place(s, part, row, column + A->column[i]), A->first + i, 1};
         CT_PUSH(s->a, p->copy, p->ncopy, p->copy_cap, c);
     }
 }
@@ -59,7 +76,7 @@ static void add_transposed(struct ct_newton_plan *p, struct places *s)
 {
     const struct ct_newton_list *J = &p->J;
     for (int i = 0; i < J->n; i++) {
-        const int column = p->n - p->most_rows + J->row[i];
+        const int column = p->first_inner - p->most_rows + J->row[i];
         const struct ct_newton_copy c
             = {add_place(s, S, J->column[i], column), J->first + i, -1};
         CT_PUSH(s->a, p->copy, p->ncopy, p->copy_cap, c);
@@ -93,7 +110,8 @@ static void add_products(struct ct_newton_plan *p, struct places *s, enum part p
     for (int j = 0; j < J->n; j++)
         for (int k = by.start[J->column[j]]; k < by.start[J->column[j] + 1]; k++) {
             const int i = by.entry[k];
-            const int target = add_place(s, part, first + A->row[i], p->nu + J->row[j]);
+            const int row = first ? first + A->row[i] : row_of(p, A->row[i]);
+            const int target = add_place(s, part, row, p->nu + J->row[j]);
             const struct ct_newton_product x = {target, A->first + i, J->first + j};
             CT_PUSH(s->a, p->product, p->nproduct, p->product_cap, x);
         }
@@ -117,7 +135,8 @@ static void add_turns(struct ct_newton_plan *p, struct places *s, const int *q_o
         for (int i = 0; i < 3; i++) {
             const int next = (i + 1) % 3, other = (i + 2) % 3;
             for (int l = by.start[k + i]; l < by.start[k + i + 1]; l++) {
-                const int row = first + A->row[by.entry[l]], a = A->first + by.entry[l];
+                const int of = A->row[by.entry[l]], a = A->first + by.entry[l];
+                const int row = first ? first + of : row_of(p, of);
                 add_turn(p, s, part, row, k + next, a, k + other, -0.5);
                 add_turn(p, s, part, row, k + other, a, k + next, 0.5);
             }
@@ -129,15 +148,16 @@ static void add_turns(struct ct_newton_plan *p, struct places *s, const int *q_o
 static void add_terms(struct ct_newton_plan *p, struct places *s, const int *q_of)
 {
     const int nu = p->nu, below = nu + p->most_rows;
-    add_copies(p, s, S, &p->M, 0);
-    add_copies(p, s, X, &p->C, 0);
-    add_copies(p, s, W, &p->K, 0);
-    add_copies(p, s, S, &p->J, nu);
+    add_copies(p, s, S, &p->M, 0, 0);
+    add_copies(p, s, X, &p->C, 0, 0);
+    add_copies(p, s, W, &p->K, 0, 0);
+    add_copies(p, s, S, &p->R, 0, p->first_inner);
+    add_copies(p, s, S, &p->J, nu, 0);
     add_transposed(p, s);
     if (!p->is_stabilised)
         return;
-    add_copies(p, s, S, &p->J, below);
-    add_copies(p, s, W, &p->D, below);
+    add_copies(p, s, S, &p->J, below, 0);
+    add_copies(p, s, W, &p->D, below, 0);
     add_products(p, s, S, &p->M, 0);
     add_products(p, s, X, &p->C, 0);
     add_products(p, s, S, &p->J, below);
@@ -174,6 +194,8 @@ void ct_newton_plan_assemble(const struct ct_newton_plan *p, double *A, const do
         A[p->product[i].target] -= v[p->product[i].a] * v[p->product[i].b];
     for (size_t i = 0; w && i < p->nturn; i++)
         A[p->turn[i].target] += p->turn[i].half * v[p->turn[i].a] * w[p->turn[i].speed];
+    for (int i = p->first_inner; i < p->n; i++)
+        A[p->place[i - p->nu]] = -1;
 }
 
 void ct_newton_plan_form(const struct ct_newton_plan *p, double *G, const double *A, double c,
@@ -182,7 +204,8 @@ void ct_newton_plan_form(const struct ct_newton_plan *p, double *G, const double
     const int nz = p->pattern->nz, *row = p->pattern->row;
     const double x = c / e, y = 1 / e, z = 1 / c;
     for (int i = 0; i < nz; i++)
-        G[i] = A[i] + x * A[i + nz] + (row[i] < p->nu ? y : z) * A[i + 2 * nz];
+        G[i] = A[i] + x * A[i + nz]
+             + (ct_newton_plan_is_force(p, row[i]) ? y : z) * A[i + 2 * nz];
 }
 
 // Numbers as they may be, to find out what factors cost: heavy diagonals, the rest at random, the same each time.
@@ -201,17 +224,17 @@ static void invent(const struct ct_newton_plan *p, double *v)
                 v[heavy[k]->first + i] += much;
 }
 
-// Coordinates and rows that touch them as nodes of a graph.
+// Coordinates, inner values, and rows that touch coordinates, as nodes of a graph.
 static struct ct_pattern *find_graph(const struct ct_newton_plan *p, struct ct_arena *scratch)
 {
-    const struct ct_newton_list *const lists[] = {&p->M, &p->C, &p->K, &p->J, &p->J};
-    const int nnode = p->nu + p->most_rows;
+    const struct ct_newton_list *const lists[] = {&p->M, &p->C, &p->K, &p->R, &p->J, &p->J};
+    const int nunknown = p->nu + p->ninner, nnode = nunknown + p->most_rows;
     struct places s = {.a = scratch};
     for (size_t k = 0; k < COUNT(lists); k++)
         for (int i = 0; i < lists[k]->n; i++) {
-            const int row = lists[k]->row[i] + (k < 3 ? 0 : p->nu),
-                      column = lists[k]->column[i];
-            add_place(&s, S, k < 4 ? row : column, k < 4 ? column : row);
+            const int row = lists[k]->row[i] + (k < 4 ? 0 : nunknown),
+                      column = lists[k]->column[i] + (k == 3 ? p->nu : 0);
+            add_place(&s, S, k < 5 ? row : column, k < 5 ? column : row);
         }
     for (int i = 0; i < nnode; i++)
         add_place(&s, S, i, i);
@@ -219,29 +242,29 @@ static struct ct_pattern *find_graph(const struct ct_newton_plan *p, struct ct_a
     return ct_pattern_create(scratch, nnode, s.row, s.column, (int)s.n, place);
 }
 
-// first (n, out): coordinates in an order of little fill, and behind the last one that a row touches its multipliers, where elimination
-// has left a pivot on their diagonal: J H^-1 J' of what H there is of accelerations.
+// first (n, out): coordinates and inner values in an order of little fill, and behind the last coordinate that a row touches its
+// multipliers, where elimination has left a pivot on their diagonal: J H^-1 J' of what H there is of accelerations.
 static bool find_first(const struct ct_newton_plan *p, struct ct_arena *scratch, int *first)
 {
-    const int nu = p->nu, most_rows = p->most_rows;
-    int *node = CT_NEWN(scratch, int, nu + most_rows),
+    const int most_rows = p->most_rows, nunknown = p->nu + p->ninner;
+    int *node = CT_NEWN(scratch, int, nunknown + most_rows),
         *last = CT_NEWN(scratch, int, most_rows + 1);
-    int *rank = CT_NEWN(scratch, int, nu + most_rows), n = 0, at = 0;
+    int *rank = CT_NEWN(scratch, int, nunknown + most_rows), n = 0, at = 0;
     if (!ct_pattern_minimum_degree(find_graph(p, scratch), node))
         return false;
-    for (int i = 0; i < nu + most_rows; i++)
-        rank[node[i]] = node[i] < nu ? at++ : 0;
+    for (int i = 0; i < nunknown + most_rows; i++)
+        rank[node[i]] = node[i] < nunknown ? at++ : 0;
     for (int i = 0; i < p->J.n; i++)
         if (last[p->J.row[i]] < rank[p->J.column[i]])
             last[p->J.row[i]] = rank[p->J.column[i]];
     const struct ct_newton_list rows = {.row = NULL, .column = last, .n = most_rows};
-    const struct by_column after = sort_by_column(scratch, &rows, nu);
-    for (int i = 0; i < nu + most_rows; i++) {
-        if (node[i] >= nu)
+    const struct by_column after = sort_by_column(scratch, &rows, nunknown);
+    for (int i = 0; i < nunknown + most_rows; i++) {
+        if (node[i] >= nunknown)
             continue;
-        first[n++] = node[i];
+        first[n++] = row_of(p, node[i]);
         for (int k = after.start[rank[node[i]]]; k < after.start[rank[node[i]] + 1]; k++)
-            for (int j = nu + after.entry[k]; j < p->n; j += most_rows)
+            for (int j = p->nu + after.entry[k]; j < p->first_inner; j += most_rows)
                 first[n++] = j;
     }
     return true;
@@ -270,9 +293,10 @@ static struct ct_newton_work sparse_work(const struct ct_newton_plan *p)
 {
     const double nterm = (double)(p->ncopy + p->nproduct + p->nturn), nz = p->pattern->nz;
     return (struct ct_newton_work){
-        .assembly = sparse_operation * (nterm + CT_NEWTON_PARTS * nz),
-        .factorization = sparse_operation * (p->pattern->operations + 2 * CT_NEWTON_PARTS * nz),
-        .solution = sparse_operation * 2 * p->pattern->fill,
+        .assembly = CT_SPARSE_OPERATION * (nterm + CT_NEWTON_PARTS * nz),
+        .factorization
+        = CT_SPARSE_OPERATION * (p->pattern->operations + 2 * CT_NEWTON_PARTS * nz),
+        .solution = CT_SPARSE_OPERATION * 2 * p->pattern->fill,
     };
 }
 
@@ -298,7 +322,7 @@ static double work_of_step(struct ct_newton_work w)
 static bool may_pay(const struct ct_newton_plan *p, struct ct_arena *scratch)
 {
     const struct ct_newton_list *const lists[] = {&p->M, &p->C, &p->J};
-    double nproduct = 0, nentry = p->M.n + p->C.n + p->K.n;
+    double nproduct = 0, nentry = p->M.n + p->C.n + p->K.n + p->R.n;
     for (size_t i = 0; i < COUNT(lists) && p->is_stabilised; i++) {
         const struct by_column by = sort_by_column(scratch, lists[i], p->nu);
         for (int j = 0; j < p->J.n; j++) {
@@ -306,7 +330,7 @@ static bool may_pay(const struct ct_newton_plan *p, struct ct_arena *scratch)
             nproduct += by.start[k + 1] - by.start[k];
         }
     }
-    return sparse_operation * (nproduct + nentry) < work_of_step(full_work(p->n));
+    return CT_SPARSE_OPERATION * (nproduct + nentry) < work_of_step(full_work(p->first_inner));
 }
 
 static void *keep(struct ct_arena *a, const void *x, size_t n, size_t size)
@@ -324,20 +348,29 @@ static struct ct_newton_plan *make(struct ct_arena *a, struct ct_arena *scratch,
     p->slopes = dae->slopes;
     p->nu = dae->nu;
     p->most_rows = dae->most_rows;
-    p->n = dae->nu + (is_stabilised ? 2 : 1) * dae->most_rows;
+    p->ninner = dae->slopes->ninner;
+    p->first_inner = dae->nu + (is_stabilised ? 2 : 1) * dae->most_rows;
+    p->n = p->first_inner + p->ninner;
     p->is_stabilised = is_stabilised;
     p->place = CT_NEWN(a, int, p->n - p->nu + 1);
-    list_lists(p);
+    list_lists(a, p);
     if (!anyway && !may_pay(p, scratch))
         return NULL;
     add_terms(p, &s, dae->q_of);
     for (int i = 0; i < p->n - p->nu; i++)
         p->place[i] = add_place(&s, S, p->nu + i, p->nu + i);
     settle_targets(p, a, &s);
-    const double full = (double)p->n * p->n, most = 0.5;
-    if ((!anyway && p->pattern->nz > most * full) || !find_order(p, a, scratch)
-        || (!anyway && work_of_step(sparse_work(p)) > work_of_step(full_work(p->n))))
+    const double n = p->first_inner, most = 0.5;
+    const bool is_dense
+        = p->pattern->nz > most * n * n && !p->ninner; // those are looked for with a reason
+    if ((!anyway && is_dense) || !find_order(p, a, scratch)
+        || (!anyway && work_of_step(sparse_work(p)) > work_of_step(full_work(n))))
         return NULL;
+    if (p->ninner) {
+        const struct by_column M = sort_by_column(a, &p->M, p->nu);
+        p->M_start = M.start;
+        p->M_entry = M.entry;
+    }
     p->copy = keep(a, p->copy, p->ncopy, sizeof *p->copy);
     p->product = keep(a, p->product, p->nproduct, sizeof *p->product);
     p->turn = keep(a, p->turn, p->nturn, sizeof *p->turn);

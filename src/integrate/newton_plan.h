@@ -23,21 +23,33 @@ struct ct_newton_turn {
 
 struct ct_newton_list {
     const int *row, *column;
-    int first, n; // among the values
+    const int *start; // of K, C, M, R: entries of row i from start[i] to start[i + 1]
+    int first, n;     // among the values
 };
 
 struct ct_newton_plan {
     const struct ct_slopes *slopes;
-    struct ct_newton_list K, C, M, D, J;
+    struct ct_newton_list K, C, M, R, D,
+        J; // rows of K, C, M, R from nu on are those of inner values
     int nu, most_rows, n, nvalue;
+    int ninner, first_inner; // unknowns: nu, rows twice or once, inner values
+    const int *M_start,
+        *M_entry; // with inner values: of M by column, from M_start[k] to M_start[k + 1]
     bool is_stabilised;
     struct ct_pattern *pattern;
-    int *place;                  // of the ones of rows that do not count, for eta and for lam
+    int *
+        place; // behind nu: of the ones of rows that do not count, for eta and for lam; of the -1 of inner values
     struct ct_newton_copy *copy; // those of M first
     struct ct_newton_product *product;
     struct ct_newton_turn *turn;
     size_t ncopy, nproduct, nturn, copy_cap, product_cap, turn_cap;
 };
+
+/// Is a row that of a force or of an inner value, in which K counts by y? Else it is of a constraint.
+static inline bool ct_newton_plan_is_force(const struct ct_newton_plan *p, int row)
+{
+    return row < p->nu || row >= p->first_inner;
+}
 
 /// A (3 nz, out) = S, X, W from the lists v and the speeds w of rotations (or NULL).
 void ct_newton_plan_assemble(const struct ct_newton_plan *p, double *A, const double *v,

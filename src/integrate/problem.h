@@ -33,8 +33,12 @@ struct ct_dae_place {
 };
 
 /// Where K, C, M (nu x nu), D and J (most_rows x nu) have entries, each place at most once: lists one behind the other.
+///
+/// With inner values k (ninner) that r depends on, K, C, M and R have rows of r, then of k, with k held but in R = d(r, k)/dk, in
+/// which k_i depends on those before it alone: the matrices are r_q + r_k (1 - k_k)^-1 k_q and so on.  (8.19)
 struct ct_slopes {
-    int nK, nC, nM, nD, nJ;
+    int nK, nC, nM, nR, nD, nJ; // in this order; K, C, M, R by row
+    int ninner;
     const int *row, *column;
 };
 
@@ -71,7 +75,7 @@ struct ct_dae {
 
     /// The same derivatives as lists of entries; NULL: they are not known as such.
     const struct ct_slopes *slopes;
-    /// *value (out): those of K, C, M, D, J, one list behind the other, until the next call.
+    /// *value (out): those of K, C, M, R, D, J, one list behind the other, until the next call.
     enum ct_eval (*evaluate_slopes)(void *user, double t, const double *q, const double *u,
                                     const double *a, const double *lam, const double **value);
     /// The rows that count now, of most_rows, in the order of lam.

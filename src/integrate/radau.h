@@ -119,8 +119,7 @@ static inline void ct_radau_solve(struct ct_radau *s, const int nu, const int m)
     double *d = s->change.d, *u = s->change.u, *eta = s->change.eta;
     const bool is_sparse = nu > CT_MOST_INVERTED && it->sparse;
     if (is_sparse) {
-        ct_newton_add_mass(it->sparse, s->r, c, F);
-        ct_newton_add_damping(it->sparse, s->r, 1, F);
+        ct_newton_add_motion(it->sparse, s->r, c, F, 0, NULL);
         ct_newton_add_rows(it->sparse, s->v, 1, F);
     }
     for (int j = 0; j < nu && !is_sparse; j++) {

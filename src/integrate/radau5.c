@@ -214,12 +214,8 @@ static void reduce_sparse(struct ct_radau *s, double a, double b)
     const int nu = s->it->nu, m = s->it->m;
     const double *F = s->F + nu, *G = F + nu;
     double *r = s->r + nu, *v = s->v + m;
-    ct_newton_add_mass(matrix, r, a, F);
-    ct_newton_add_mass(matrix, r, -b, G);
-    ct_newton_add_damping(matrix, r, 1, F);
-    ct_newton_add_mass(matrix, r + nu, a, G);
-    ct_newton_add_mass(matrix, r + nu, b, F);
-    ct_newton_add_damping(matrix, r + nu, 1, G);
+    ct_newton_add_motion(matrix, r, a, F, -b, G);
+    ct_newton_add_motion(matrix, r + nu, a, G, b, F);
     ct_newton_add_rows(matrix, v, 1, F);
     ct_newton_add_rows(matrix, v + m, 1, G);
 }

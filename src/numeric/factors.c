@@ -63,7 +63,7 @@ static void release_order(void *order)
     klu_free_symbolic(&o->symbolic, &o->common);
 }
 
-bool ct_pattern_minimum_degree(const struct ct_pattern *graph, int *first)
+bool ct_pattern_minimum_degree(struct ct_pattern *graph, int *first)
 {
     klu_common common;
     klu_defaults(&common); // the order of least degree among them
@@ -72,6 +72,10 @@ bool ct_pattern_minimum_degree(const struct ct_pattern *graph, int *first)
     for (int i = 0; s && i < graph->n; i++)
         first[i] = s->Q[i];
     const bool ok = s != NULL;
+    if (ok) {
+        graph->operations = s->est_flops;
+        graph->fill = s->lnz + s->unz;
+    }
     klu_free_symbolic(&s, &common);
     return ok;
 }
@@ -262,7 +266,7 @@ bool ct_pattern_order(struct ct_arena *a, struct ct_pattern *p, double *value, i
     return false;
 }
 
-bool ct_pattern_minimum_degree(const struct ct_pattern *graph, int *first)
+bool ct_pattern_minimum_degree(struct ct_pattern *graph, int *first)
 {
     (void)graph, (void)first;
     return false;

@@ -128,7 +128,7 @@ static const double *scatter(double *A, int n, size_t nu, const struct ct_slope 
 {
     memset(A, 0, (size_t)n * nu * sizeof *A);
     for (size_t i = 0; i < ns; i++) {
-        const int row = place ? place[s[i].row] : (int)s[i].row;
+        const int row = place[s[i].row];
         if (row >= 0)
             A[row + n * (int)s[i].direction] = value[i];
     }
@@ -156,7 +156,6 @@ static enum ct_eval tangent(void *user, double t, const double *q, const double 
     const struct ct_equations *e = s->m->e;
     const struct ct_residual *f = e->residual;
     const double *value;
-    const int nu = (int)e->nu;
     const enum ct_eval result = evaluate_slopes(user, t, q, u, a, lam, &value);
     if (result != CT_EVAL_OK)
         return result;
@@ -165,9 +164,7 @@ static enum ct_eval tangent(void *user, double t, const double *q, const double 
         place[i] = -1;
     for (int i = 0; i < s->rank; i++)
         place[s->row[i]] = i;
-    value = scatter(K, nu, e->nu, f->dq, f->ndq, value, NULL);
-    value = scatter(C, nu, e->nu, f->du, f->ndu, value, NULL);
-    value = scatter(M, nu, e->nu, f->da, f->nda, value, NULL);
+    value = ct_machine_scatter(s->m, K, C, M);
     value = scatter(D, s->rank, e->nu, f->dv, f->ndv, value, place);
     memset(J, 0, (size_t)s->rank * e->nu * sizeof *J);
     for (size_t i = 0; i < e->nJ; i++)
@@ -239,14 +236,16 @@ static int list_slopes(int *row, int *column, const struct ct_slope *s, size_t n
 static const struct ct_slopes *find_slopes(struct ct_arena *a, const struct ct_equations *e)
 {
     const struct ct_residual *f = e->residual;
-    const size_t n = f->ndq + f->ndu + f->nda + f->ndv + e->nJ;
+    const size_t n = f->ndq + f->ndu + f->nda + f->ndk + f->ndv + e->nJ;
     struct ct_slopes *s = CT_NEW(a, struct ct_slopes);
     int *row = CT_NEWN(a, int, n + 1), *column = CT_NEWN(a, int, n + 1), i = 0;
     i += s->nK = list_slopes(row + i, column + i, f->dq, f->ndq);
     i += s->nC = list_slopes(row + i, column + i, f->du, f->ndu);
     i += s->nM = list_slopes(row + i, column + i, f->da, f->nda);
+    i += s->nR = list_slopes(row + i, column + i, f->dk, f->ndk);
     i += s->nD = list_slopes(row + i, column + i, f->dv, f->ndv);
     s->nJ = (int)e->nJ;
+    s->ninner = (int)f->ninner;
     for (size_t k = 0; k < e->nJ; k++, i++) {
         row[i] = e->J[k].row;
         column[i] = e->J[k].column;

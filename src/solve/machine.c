@@ -220,6 +220,48 @@ void ct_machine_tangent(struct ct_machine *m)
     memcpy(m->slopes + m->nslope - nJ, m->tangent.out, nJ * sizeof *m->slopes);
 }
 
+// y (n) += c x
+static void add_row(double *y, double c, const double *x, size_t n)
+{
+    for (size_t k = 0; k < n; k++)
+        y[k] += c * x[k];
+}
+
+// A (nu x nu, out) from slopes of r, and by r_k (1 - k_k)^-1 those of inner values; R: the values of dk.
+static void scatter_slopes(const struct ct_machine *m, double *A, const struct ct_slope *s,
+                           size_t n, const double *value, const double *R)
+{
+    const struct ct_residual *f = m->e->residual;
+    const size_t nu = m->nu;
+    memset(A, 0, nu * nu * sizeof *A);
+    if (f->ninner)
+        memset(m->inner, 0, f->ninner * nu * sizeof *m->inner);
+    for (size_t i = 0; i < n; i++)
+        if (s[i].row < nu)
+            A[s[i].row + nu * s[i].direction] = value[i];
+        else
+            m->inner[nu * (s[i].row - nu) + s[i].direction] = value[i];
+    size_t first = 0; // row of inner values
+    while (first < f->ndk && f->dk[first].row < nu)
+        first++;
+    for (size_t i = first; i < f->ndk; i++)
+        add_row(m->inner + nu * (f->dk[i].row - nu), R[i], m->inner + nu * f->dk[i].direction,
+                nu);
+    for (size_t i = 0; i < first; i++)
+        for (size_t k = 0; k < nu; k++)
+            A[f->dk[i].row + nu * k] += R[i] * m->inner[nu * f->dk[i].direction + k];
+}
+
+const double *ct_machine_scatter(const struct ct_machine *m, double *K, double *C, double *M)
+{
+    const struct ct_residual *f = m->e->residual;
+    const double *dq = m->slopes, *du = dq + f->ndq, *da = du + f->ndu, *dk = da + f->nda;
+    scatter_slopes(m, K, f->dq, f->ndq, dq, dk);
+    scatter_slopes(m, C, f->du, f->ndu, du, dk);
+    scatter_slopes(m, M, f->da, f->nda, da, dk);
+    return dk + f->ndk;
+}
+
 double ct_machine_tangent_operations(const struct ct_machine *m)
 {
     const struct ct_tape_counts c = m->tangent.listing->counts;

@@ -55,7 +55,8 @@ struct ct_machine {
         tangent; // dr/dq, dr/du, dr/du', dv/dq, J: the entries; J alone where the rest is found along directions
     struct ct_tangent_lanes *lanes; // those, or NULL
     double *
-        slopes; // of the last ct_machine_tangent: dr/dq, dr/du, dr/du', dv/dq, J, as the residual lists them
+        slopes; // of the last ct_machine_tangent: dr/dq, dr/du, dr/du', dr/dk, dv/dq, J, as the residual lists them
+    double *inner; // workspace (inner values x nu)
     size_t nslope;
 
     double *M, *Q, *J, *gam, *rate; // of the last ct_machine_motion
@@ -120,6 +121,8 @@ bool ct_machine_solved(struct ct_machine *m, double *a);
 void ct_machine_constraint(struct ct_machine *m);
 /// Derivatives of the residual at the input, into slopes.
 void ct_machine_tangent(struct ct_machine *m);
+/// K, C, M (nu x nu, out) for the slopes, inner values taken along; returns the values of dv.  (8.19)
+const double *ct_machine_scatter(const struct ct_machine *m, double *K, double *C, double *M);
 /// Operations of it, of lanes those of one.
 double ct_machine_tangent_operations(const struct ct_machine *m);
 void ct_program_run(struct ct_program *p, const double *input);

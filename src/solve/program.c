@@ -246,6 +246,7 @@ static void compile_residual(struct ct_arena *a, struct ct_machine *m, const str
         push_slopes(&tangent, f->dq, f->ndq);
         push_slopes(&tangent, f->du, f->ndu);
         push_slopes(&tangent, f->da, f->nda);
+        push_slopes(&tangent, f->dk, f->ndk);
         push_slopes(&tangent, f->dv, f->ndv);
     }
     for (size_t i = 0; i < e->nJ && f; i++)
@@ -254,11 +255,14 @@ static void compile_residual(struct ct_arena *a, struct ct_machine *m, const str
     compile(a, m, in, tangent.e, tangent.n, &m->tangent);
     m->slopes = m->tangent.out;
     m->nslope = tangent.n;
+    if (f && f->ninner)
+        m->inner = CT_NEWN(a, double, f->ninner * e->nu);
     if (!f || !f->along)
         return;
-    const size_t own = f->ndq + f->ndu + f->nda + f->ndv;
-    const struct ct_listing *l = ct_listing_create(a, e->x, f->along->rate, e->nu + e->nrow,
-                                                   in->symbol, in->slot, in->n, CT_FUSE_NO);
+    const size_t own = f->ndq + f->ndu + f->nda + f->ndk + f->ndv;
+    const struct ct_listing *l
+        = ct_listing_create(a, e->x, f->along->rate, e->nu + f->ninner + e->nrow, in->symbol,
+                            in->slot, in->n, CT_FUSE_NO);
     m->nslope = own + e->nJ;
     m->slopes = CT_NEWN(a, double, m->nslope + 1);
     m->lanes = ct_tangent_lanes_create(a, f, l, e->nu, m->ninput);

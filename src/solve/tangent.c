@@ -60,10 +60,11 @@ static void list_readings(struct ct_arena *a, struct ct_tangent_lanes *t,
     } list[] = {{f->dq, f->ndq, 0, 0},
                 {f->du, f->ndu, nu, 0},
                 {f->da, f->nda, 2 * nu, 0},
-                {f->dv, f->ndv, 0, nu}};
+                {f->dk, f->ndk, 3 * nu, 0},
+                {f->dv, f->ndv, 0, nu + f->ninner}};
     size_t *next = CT_NEWN(a, size_t, t->ncolour + 1);
     t->first_reading = CT_NEWN(a, size_t, t->ncolour + 1);
-    t->reading = CT_NEWN(a, struct reading, f->ndq + f->ndu + f->nda + f->ndv + 1);
+    t->reading = CT_NEWN(a, struct reading, f->ndq + f->ndu + f->nda + f->ndk + f->ndv + 1);
     for (size_t k = 0; k < COUNT(list); k++)
         for (size_t i = 0; i < list[k].n; i++)
             t->first_reading[f->along->colour[list[k].direction + list[k].s[i].direction]

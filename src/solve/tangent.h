@@ -20,7 +20,7 @@ void ct_tangent_lanes_use(struct ct_arena *a, struct ct_tangent_lanes *t, bool n
                           const double *input);
 /// Parameters have changed.
 void ct_tangent_lanes_prepare(struct ct_tangent_lanes *t, const double *input);
-/// slope (out): values of the slopes dq, du, da, dv of the residual at an input.
+/// slope (out): values of the slopes dq, du, da, dk, dv of the residual at an input.
 void ct_tangent_lanes_run(struct ct_tangent_lanes *t, const double *input, double *slope);
 /// Operations of all evaluations, lanes counted by what they cost.
 double ct_tangent_lanes_operations(const struct ct_tangent_lanes *t);

@@ -456,9 +456,10 @@ static void residual_and_slopes(struct subject *s, const char *what, double goal
     const struct {
         const struct ct_slope *s;
         size_t n;
-    } list[] = {{r->dq, r->ndq}, {r->du, r->ndu}, {r->da, r->nda}, {r->dv, r->ndv}};
-    ct_ex *out = CT_NEWN(a, ct_ex,
-                         e->nu + 2 * e->nrow + e->nJ + r->ndq + r->ndu + r->nda + r->ndv + 1);
+    } list[]
+        = {{r->dq, r->ndq}, {r->du, r->ndu}, {r->da, r->nda}, {r->dk, r->ndk}, {r->dv, r->ndv}};
+    ct_ex *out = CT_NEWN(
+        a, ct_ex, e->nu + 2 * e->nrow + e->nJ + r->ndq + r->ndu + r->nda + r->ndk + r->ndv + 1);
     size_t n = 0;
     for (size_t i = 0; i < e->nu; i++)
         out[n++] = r->r[i];

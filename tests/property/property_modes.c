@@ -93,10 +93,9 @@ static bool find_motions(struct system *s, struct variant *v, bool with_multipli
         for (size_t i = 0; i < v->m->nrow; i++)
             v->m->input[v->m->at_lam + i] = 0;
         ct_machine_tangent(v->m);
-        const struct ct_residual *f = v->e.residual;
-        double *K = CT_NEWN(v->arena, double, v->m->nu * v->m->nu);
-        for (size_t i = 0; i < f->ndq; i++)
-            K[f->dq[i].row + v->m->nu * f->dq[i].direction] = v->m->slopes[i];
+        const size_t n = v->m->nu * v->m->nu;
+        double *K = CT_NEWN(v->arena, double, 3 * n);
+        ct_machine_scatter(v->m, K, K + n, K + 2 * n);
         for (int j = 0; j < l->nfree; j++)
             for (int i = 0; i < l->nfree; i++) {
                 l->Kr[i + l->nfree * j] = 0;

@@ -268,14 +268,14 @@ static double *tables_of(struct job *j, enum ct_slope_form form, enum ct_backend
     ct_machine_use(a, m, backend);
     memcpy(m->input, input, m->ninput * sizeof *input);
     ct_machine_tangent(m);
-    const struct {
-        const struct ct_slope *s;
-        size_t n;
-    } list[] = {{f->dq, f->ndq}, {f->du, f->ndu}, {f->da, f->nda}, {f->dv, f->ndv}};
-    const double *value = m->slopes;
-    for (size_t k = 0; k < COUNT(list); k++)
-        for (size_t i = 0; i < list[k].n; i++)
-            table[n * nu * k + n * list[k].s[i].direction + list[k].s[i].row] = *value++;
+    double *K = CT_NEWN(a, double, 3 * nu * nu + 1), *const of[]
+                                                     = {K, K + nu * nu, K + 2 * nu * nu};
+    const double *value = ct_machine_scatter(m, of[0], of[1], of[2]);
+    for (size_t k = 0; k < COUNT(of); k++)
+        for (size_t i = 0; i < nu * nu; i++)
+            table[n * nu * k + n * (i / nu) + i % nu] = of[k][i];
+    for (size_t i = 0; i < f->ndv; i++)
+        table[n * nu * 3 + n * f->dv[i].direction + f->dv[i].row] = value[i];
     return table;
 }
 

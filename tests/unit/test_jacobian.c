@@ -2,6 +2,8 @@
 #include "random_ex.h"
 #include "tests/check.h"
 
+#include "expr/scarcity.h"
+
 #include <string.h>
 
 enum { NSYM = 6, NNODE = 120, NF = 9 };
@@ -174,6 +176,142 @@ static void gradients_are_single_derivatives(void **unused)
     assert_true(ncompared > 100);
 }
 
+// ---- inner values -----------------------------------------------------------------------------------------
+
+enum { NSMALL_GRAPH = 40, MOST_INNER = NSMALL_GRAPH, MOST_ROWS = NF + MOST_INNER };
+
+// Entries of a Jacobian with n inner values, directions NSYM and up: each is among those that the graph has, and in the pattern.
+static void check_places(struct fixture *f, const struct ct_scarcity *g, const ct_ex *row,
+                         size_t n, const struct ct_seed *seed, const struct ct_slope *s,
+                         size_t ns)
+{
+    bool in_graph[MOST_ROWS][NSYM + MOST_INNER] = {{false}};
+    bool in_pattern[MOST_ROWS][NSYM + MOST_INNER] = {{false}};
+    int *r, *c;
+    struct ct_slope *p;
+    double operations;
+    const size_t nentry = ct_scarcity_entries(g, f->a, &r, &c),
+                 np = ct_ex_pattern(&f->x, f->scratch, f->a, row, NF + n, seed, NSYM + n,
+                                    (uint32_t)(NSYM + n), &p, &operations);
+    for (size_t i = 0; i < nentry; i++) {
+        assert_false(in_graph[r[i]][c[i]]);
+        in_graph[r[i]][c[i]] = true;
+    }
+    for (size_t i = 0; i < np; i++)
+        in_pattern[p[i].row][p[i].direction] = true;
+    for (size_t i = 0; i < ns; i++) {
+        bool is_inner = false; // a row that is one itself depends on itself alone in the graph
+        for (size_t k = NF; k < NF + n && s[i].row < NF; k++)
+            is_inner = is_inner || ct_ex_same(row[k], row[s[i].row]);
+        assert_true(is_inner || in_graph[s[i].row][s[i].direction]);
+        assert_true(in_pattern[s[i].row][s[i].direction]);
+        if (s[i].row >= NF && s[i].direction >= NSYM) // of earlier ones
+            assert_true(s[i].direction - NSYM < s[i].row - NF);
+    }
+}
+
+// The derivative of each f by symbol k, over those of inner values: `sum` of them, one after the other.
+static void sum_up(double sum[MOST_ROWS], const struct ct_exs *x, const struct ct_slope *s,
+                   size_t ns, uint32_t k, const double *value)
+{
+    memset(sum, 0, MOST_ROWS * sizeof *sum);
+    for (int pass = 0; pass < 2; pass++) // inner values, which come behind the rows of f, first
+        for (size_t i = 0; i < ns; i++) {
+            if ((s[i].row < NF) == (pass == 0))
+                continue;
+            const double v = ct_ex_value(x, s[i].value, value);
+            if (s[i].direction == k)
+                sum[s[i].row] += v;
+            else if (s[i].direction >= NSYM)
+                sum[s[i].row] += v * sum[NF + s[i].direction - NSYM];
+        }
+}
+
+// Random graphs, thinned out by and by: over what is left the same derivatives.
+static void inner_values_lead_to_the_same_derivatives(void **unused)
+{
+    (void)unused;
+    struct random r = random_start("inner");
+    const double value[NSYM] = {0.3, -0.7, 1.1, 0.9, -1.3, 0.5};
+    int ncompared = 0;
+    size_t ninner = 0;
+    for (int trial = 0; trial < 200; trial++) {
+        struct fixture f;
+        begin(&f);
+        ct_ex node[NSYM + NSMALL_GRAPH], row[MOST_ROWS], *inner;
+        memcpy(node, f.sym, sizeof f.sym);
+        for (size_t i = NSYM; i < NSYM + NSMALL_GRAPH; i++)
+            node[i] = random_node(&r, &f.x, node, i);
+        for (int i = 0; i < NF; i++)
+            row[i] = node[random_below(&r, NSYM + NSMALL_GRAPH)];
+        struct ct_seed seed[NSYM + MOST_INNER];
+        for (uint32_t i = 0; i < NSYM; i++)
+            seed[i] = (struct ct_seed){f.sym[i], i, CT_EX_ONE};
+        struct ct_scarcity *g = ct_scarcity_create(&f.x, f.a, row, NF, seed, NSYM, NSYM);
+        for (long most = -2; most <= 8; most += 2) {
+            ct_scarcity_thin(g, most);
+            const size_t n = ct_scarcity_nodes(g, f.a, &inner);
+            if (n > MOST_INNER)
+                continue;
+            for (size_t i = 0; i < n; i++) {
+                row[NF + i] = inner[i];
+                seed[NSYM + i] = (struct ct_seed){inner[i], (uint32_t)(NSYM + i), CT_EX_ONE};
+            }
+            struct ct_slope *s;
+            const size_t ns
+                = ct_ex_jacobian(&f.x, f.scratch, f.a, row, NF + n, seed, NSYM + n, &s);
+            check_places(&f, g, row, n, seed, s, ns);
+            ninner += n;
+            for (uint32_t k = 0; k < NSYM; k++) {
+                double got[MOST_ROWS];
+                sum_up(got, &f.x, s, ns, k, value);
+                for (int i = 0; i < NF; i++) {
+                    const double want
+                        = ct_ex_value(&f.x, ct_ex_diff(&f.x, row[i], f.sym[k]), value);
+                    if (!isfinite(want) || fabs(want) > 1e6 || !isfinite(got[i]))
+                        continue; // 0 times infinity on the way
+                    CHECK_CLOSE(got[i], want, 1e-9, 1e-9);
+                    ncompared++;
+                }
+            }
+        }
+        end(&f);
+    }
+    printf("%zu inner values, %d derivatives compared\n", ninner, ncompared);
+    assert_true(ncompared > 10000 && ninner > 1000);
+}
+
+// Sums along a chain that each reach all rows: n entries for n values, and no nodes where rows see their neighbours alone.
+static void chains_keep_their_sums(void **unused)
+{
+    (void)unused;
+    enum { N = 40 };
+    struct fixture f;
+    begin(&f);
+    ct_ex sym[N], sum[N], near[N];
+    struct ct_seed seed[N];
+    for (uint32_t i = 0; i < N; i++) {
+        sym[i] = ct_ex_sym(&f.x, CT_SYM_Q, "s", i);
+        seed[i] = (struct ct_seed){sym[i], i, CT_EX_ONE};
+        const ct_ex square = ct_ex_mul(&f.x, sym[i], sym[i]);
+        sum[i] = i ? ct_ex_add(&f.x, sum[i - 1], square) : square;
+        near[i] = i ? ct_ex_fun(&f.x, CT_OP_SIN, ct_ex_mul(&f.x, sym[i], sym[i - 1])) : sym[i];
+    }
+    ct_ex rows[N], *node;
+    for (int i = 0; i < N; i++)
+        rows[i] = ct_ex_fun(&f.x, CT_OP_SIN, sum[i]);
+    int *r, *c;
+    struct ct_scarcity *g = ct_scarcity_create(&f.x, f.a, rows, N, seed, N, N);
+    ct_scarcity_thin(g, 0);
+    assert_true(ct_scarcity_entries(g, f.a, &r, &c) <= 3 * N);
+    assert_in_range(ct_scarcity_nodes(g, f.a, &node), N / 4, N);
+    g = ct_scarcity_create(&f.x, f.a, near, N, seed, N, N);
+    ct_scarcity_thin(g, 0);
+    assert_int_equal(ct_scarcity_nodes(g, f.a, &node), 0);
+    assert_int_equal(ct_scarcity_entries(g, f.a, &r, &c), 2 * N - 1);
+    end(&f);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -181,6 +319,8 @@ int main(void)
         cmocka_unit_test(numbers_are_values_of_derivatives),
         cmocka_unit_test(gradients_are_single_derivatives),
         cmocka_unit_test(seeds_form_directions),
+        cmocka_unit_test(inner_values_lead_to_the_same_derivatives),
+        cmocka_unit_test(chains_keep_their_sums),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

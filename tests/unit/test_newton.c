@@ -17,6 +17,10 @@
 static const char *const slider_crank = "../systems/slider_crank_flexible/model.yaml";
 static const char *const spin_up = "../systems/spin_up_beam/model.yaml";
 static const char *const free_beam = "unit/models/free_beam.yaml";
+// beams that do not stretch
+static const char *const arm = "unit/models/bent_arm.yaml";
+static const char *const cranks = "unit/models/bent_cranks.yaml";
+static const char *const mast = "unit/models/bent_mast.yaml";
 
 // A model read, formulated and started.
 struct job {
@@ -40,7 +44,7 @@ static void open_job(struct job *j, const char *name, enum ct_tree_choice tree, 
     const char *path = ct_arena_printf(j->ctx.model, "%s/%s", getenv("CT_TEST_DIR"), name);
     const struct ct_set set[] = {{ct_arena_printf(j->ctx.model, "n=%d", elements)},
                                  {ct_arena_printf(j->ctx.model, "m=%d", elements)}};
-    const size_t nset = elements == 0 ? 0 : name == slider_crank ? 2 : 1;
+    const size_t nset = elements == 0 ? 0 : name == slider_crank || name == cranks ? 2 : 1;
     const bool ok
         = ct_model_read(&j->ctx, path, set, nset, &j->model)
        && ct_formulate(&j->ctx, j->ctx.model, &j->model, &o, &j->e, &report)
@@ -242,14 +246,17 @@ static void compare_at(const char *name, struct pair *p, double h)
     double error[2] = {0};
     renew(p, h);
     const bool is_stabilised = p->it[0]->is_stabilised;
+    const bool has_inner = p->dae[0].slopes->ninner > 0;
     compare_solutions(p, real_pace / h, error);
     if (is_stabilised)
         compare_solutions(p, complex_pace / h, error);
     const double vibrations = is_stabilised ? compare_vibrations(p) : 0;
     printf("%s, h = %g: %d speeds, %d rows; full %.0e, sparse %.0e, vibrations %.0e\n", name, h,
            p->it[0]->nu, p->it[0]->m, error[0], error[1], vibrations);
-    // pivots are a thousandth of their columns at least, and lose as much again before others are sought
-    assert_true(error[1] <= 1e6 * DBL_EPSILON);
+    // pivots are a thousandth of their columns at least, and lose as much again before others are sought; inner values can be larger
+    // than what comes of them
+    const double lost = has_inner ? 1e7 : 1e6;
+    assert_true(error[1] <= lost * DBL_EPSILON);
     assert_true(vibrations <= 1e-6); // differences of what is slow and of all
 }
 
@@ -282,6 +289,25 @@ static void compare(const char *name, enum ct_tree_choice tree, int elements)
             compare_at(name, &p, steps[i]);
         change_rows(&j, &p, name);
         close_job(&j);
+    }
+}
+
+// Full matrices of beams with inner values are compared with differences in property_jacobians.c.
+static void inner_values_change_nothing(void **unused)
+{
+    (void)unused;
+    static const struct {
+        const char *name;
+        int elements;
+    } beams[] = {{arm, 40}, {cranks, 20}, {mast, 15}};
+    for (size_t i = 0; i < COUNT(beams); i++) {
+        struct job j;
+        open_job(&j, beams[i].name, CT_TREE_JOINTS, beams[i].elements);
+        printf("%s: %zu inner values\n", beams[i].name, j.e.residual->ninner);
+        assert_true(j.e.residual->ninner > 0);
+        assert_non_null(j.dae.plan[1]);
+        close_job(&j);
+        compare(beams[i].name, CT_TREE_JOINTS, beams[i].elements);
     }
 }
 
@@ -403,11 +429,21 @@ static double work_of_step(const char *name, int elements)
 static void steps_of_beams_cost_in_proportion_to_their_elements(void **unused)
 {
     (void)unused;
-    static const char *const names[] = {spin_up, free_beam, slider_crank};
-    for (size_t i = 0; i < COUNT(names); i++) {
-        const double few = work_of_step(names[i], 20), many = work_of_step(names[i], 80);
-        printf("%.2f times the work of 20 elements\n", many / few);
-        assert_true(many < 1.1 * 4 * few);
+    static const struct {
+        const char *name;
+        int few;
+        double spread; // inner values are chosen by steps
+    } beams[] = {{spin_up, 20, 1.1},
+                 {free_beam, 20, 1.1},
+                 {slider_crank, 20, 1.1},
+                 {arm, 40, 1.1},
+                 {cranks, 20, 1.2}};
+    for (size_t i = 0; i < COUNT(beams); i++) {
+        const int n = beams[i].few;
+        const double few = work_of_step(beams[i].name, n),
+                     many = work_of_step(beams[i].name, 4 * n);
+        printf("%.2f times the work of %d elements\n", many / few, n);
+        assert_true(many < beams[i].spread * 4 * few);
     }
 }
 
@@ -438,6 +474,7 @@ int main(void)
 {
     static const struct CMUnitTest tests[] = {
         cmocka_unit_test(sparse_matrices_have_the_solutions_of_full_ones),
+        cmocka_unit_test(inner_values_change_nothing),
         cmocka_unit_test(unsound_pivots_are_sought_anew),
         cmocka_unit_test(pivots_are_kept_while_three_digits_are_lost),
         cmocka_unit_test(entries_of_the_inverse_are_those_of_solutions),
