@@ -483,6 +483,13 @@ with_shear() {
         "$reference/R09_K4.yaml"
 }
 
+section_orders() {
+    echo '| quantity | beam | 16 elements | 32 elements | order |'
+    echo '| --- | --- | --- | --- | --- |'
+    sh "$reference/orders.sh" | sed -n -e 's/^tip,/tip under a force,/;s/^still,/first frequency,/;s/^turning,/the same turning at 100 rad\/s,/' \
+        -e 's/^\([a-z0-9/ ]*\), \(.*\), errors \(.*\), \(.*\): order \(.*\)$/| \1 | `\2` | \3 | \4 | \5 |/p'
+}
+
 section_shear() {
     echo "| elements of each frame | error | extrapolated |"
     echo "| --- | --- | --- |"
@@ -496,7 +503,7 @@ section_machine() {
 
 # ---- the page ------------------------------------------------------------------------------------------------
 
-sections="machine asked asked_beams hard lost elements source frames spatial shear figures aims"
+sections="machine asked asked_beams hard lost elements source frames spatial shear orders figures aims"
 
 # insert SECTION: what $work/section.md has takes the place of the section in the page
 insert() {

@@ -3,6 +3,9 @@
 //
 // Everything is written in the beam's axes; the base's motion is turned into them once.
 #include "formulate/elastic.h"
+#include "formulate/small.h"
+
+#include <string.h>
 
 static const ct_ex3 zero3 = {{{0}, {0}, {0}}};
 
@@ -283,6 +286,83 @@ static void mass_of_start(struct ct_build *b, const struct ct_flexible *f,
     }
 }
 
+// ---- where all coordinates are small ------------------------------------------------------------------------
+
+// What comes of the mass m beyond an element, of this first moment, which is drawn in by g of a dof.
+static void add_beyond(struct ct_exs *x, ct_ex g, ct_ex m, ct_ex3 moment, ct_ex3 *moved,
+                       ct_ex3 *swept)
+{
+    moved->e[0] = ct_ex_add(x, moved->e[0], ct_ex_mul(x, g, m));
+    swept->e[1] = ct_ex_add(x, swept->e[1], ct_ex_mul(x, g, moment.e[2]));
+    swept->e[2] = ct_ex_sub(x, swept->e[2], ct_ex_mul(x, g, moment.e[1]));
+}
+
+// Columns as forces on freedoms, those on rotations that follow handed on from node to node: the gradient of the momentum, at a cost in
+// proportion to the nodes, where sums for each coordinate would take their square.
+static void columns_by_freedom(struct ct_build *b, const struct ct_flexible *f,
+                               const struct ct_element_sums *s, struct ct_columns *out)
+{
+    struct ct_exs *x = b->x;
+    const int n = CT_NODE_FREEDOM * (f->beam->nelement + 1);
+    ct_ex *force[6], m = CT_EX_ZERO;
+    ct_ex3 moment = zero3;
+    for (int i = 0; i < 6; i++)
+        force[i] = CT_NEWN(b->ctx->scratch, ct_ex, n);
+    for (int e = f->beam->nelement; e-- > 0;) {
+        for (int j = 0; j < CT_DOF; j++) {
+            ct_ex3 moved = s[e].moved[j], swept = s[e].swept[j];
+            if (f->kinematics == CT_AXIAL_CHAIN && j < CT_PLACE_DOF)
+                add_beyond(x, f->element[e].g[j], m, moment, &moved, &swept);
+            for (int i = 0; i < 6; i++)
+                ct_dof_push(b, f, e, j, i < 3 ? moved.e[i] : swept.e[i - 3], force[i]);
+        }
+        m = ct_ex_add(x, m, s[e].m);
+        moment = ct_ex3_add(x, moment, s[e].moment);
+    }
+    for (int i = 0; i < 6; i++) {
+        if (f->follow)
+            ct_follow_forces(x, f->follow, force[i]);
+        for (int k = 0; k < n; k++)
+            for (int p = 0; p < f->freedom[k].npart && !ct_ex_is_zero(force[i][k]); p++) {
+                const struct ct_part *part = &f->freedom[k].part[p];
+                ct_ex *sum = i < 3 ? &out->moved[part->k].e[i] : &out->swept[part->k].e[i - 3];
+                *sum = ct_ex_add_product(x, *sum, part->coef, force[i][k]);
+            }
+    }
+}
+
+// Entries between the coordinates at rest: those of the straight beam, where rotations that follow have no inertia.
+static void mass_at_rest(struct ct_build *b, const struct ct_flexible *f,
+                         const struct ct_element_sums *s, ct_ex *M)
+{
+    const size_t n = (size_t)f->nelastic, nelement = (size_t)f->beam->nelement;
+    ct_ex *symbol = CT_NEWN(b->ctx->scratch, ct_ex, n + 1),
+          *zero = CT_NEWN(b->ctx->scratch, ct_ex, n + 1),
+          *all = CT_NEWN(b->ctx->scratch, ct_ex, nelement * CT_DOF * CT_DOF + 1);
+    for (size_t k = 0; k < n; k++)
+        symbol[k] = b->eqs->q[f->elastic[k].q].symbol;
+    for (size_t e = 0; e < nelement; e++)
+        memcpy(all + e * CT_DOF * CT_DOF, s[e].M, sizeof s[e].M);
+    ct_ex_subst_list(b->x, all, nelement * CT_DOF * CT_DOF, symbol, zero, n);
+    for (int e = 0; e < f->beam->nelement; e++)
+        for (int j = 0; j < CT_DOF; j++)
+            for (int k = 0; k < CT_DOF; k++)
+                ct_dof_push_pair(b, f, e, j, e, k, all[(e * CT_DOF + j) * CT_DOF + k], M);
+}
+
+// M and Q are cut to first order in the coordinates of f: of the entries between these those at rest are left.  (small.h)
+static void small_mass(struct ct_build *b, const struct ct_flexible *f, struct ct_columns *out,
+                       ct_ex *M)
+{
+    struct ct_element_sums *s = f->inertia->form->sums(b, f);
+    columns_by_freedom(b, f, s, out);
+    for (int e = 0; e < f->beam->nelement; e++)
+        ct_element_close(b->x, &s[e]);
+    mass_at_rest(b, f, s, M);
+}
+
+// ---- of any size ----------------------------------------------------------------------------------------------
+
 // Elements from the tip inwards: with a CHAIN what lies beyond moves along with an element's bending, but for starts that
 // are coordinates.
 static void mass_of_sums(struct ct_build *b, const struct ct_flexible *f,
@@ -299,11 +379,9 @@ static void mass_of_sums(struct ct_build *b, const struct ct_flexible *f,
         ct_element_close(x, &s[e]);
         for (int j = 0; j < CT_DOF; j++) {
             const ct_ex g = chain && j < CT_PLACE_DOF ? self->g[j] : CT_EX_ZERO;
-            const ct_ex3 along = {{ct_ex_mul(x, g, m), CT_EX_ZERO, CT_EX_ZERO}};
-            const ct_ex3 about = {{CT_EX_ZERO, ct_ex_mul(x, g, moment.e[2]),
-                                   ct_ex_neg(x, ct_ex_mul(x, g, moment.e[1]))}};
-            const ct_ex3 moved = ct_ex3_add(x, s[e].moved[j], along);
-            ct_dof_push_column(b, f, e, j, moved, ct_ex3_add(x, s[e].swept[j], about), out);
+            ct_ex3 moved = s[e].moved[j], swept = s[e].swept[j];
+            add_beyond(x, g, m, moment, &moved, &swept);
+            ct_dof_push_column(b, f, e, j, moved, swept, out);
             for (int k = 0; k < CT_DOF; k++) {
                 const ct_ex gk = chain && k < CT_PLACE_DOF ? self->g[k] : CT_EX_ZERO;
                 const ct_ex v
@@ -400,6 +478,8 @@ void ct_flexible_columns(struct ct_build *b, const struct ct_flexible *f,
     const struct ct_inertia_form *form = f->inertia->form;
     if (form->mass)
         form->mass(b, f, out, M);
+    else if (ct_small_is_all_of(b, f) && ct_flexible_is_nodal(f))
+        small_mass(b, f, out, M);
     else if (f->beam->modes || f->beam->nshape || draws_by_shapes(f))
         ct_flexible_modal_mass(b, f, out, M);
     else

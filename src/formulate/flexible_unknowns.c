@@ -279,6 +279,18 @@ static void given_unknowns(struct ct_build *b, struct ct_flexible *f)
     check_shapes(b, f, marks);
 }
 
+// Are bodies counted from a section of f other than its base?
+static bool carries_bodies(const struct ct_build *b, const struct ct_flexible *f)
+{
+    for (size_t i = 0; i < b->nnode; i++) {
+        const int from = b->T.parent[i];
+        if (from >= 0 && from != f->base && b->node[from].body == f->body
+            && b->edge[b->T.parent_edge[i]].kind == CT_EDGE_JOINT)
+            return true;
+    }
+    return false;
+}
+
 void ct_flexible_unknowns(struct ct_build *b, struct ct_flexible *f)
 {
     f->elastic = CT_NEWN(b->arena, struct ct_elastic, NKIND * (f->beam->nelement + 1));
@@ -299,6 +311,12 @@ void ct_flexible_unknowns(struct ct_build *b, struct ct_flexible *f)
                              "without inertia and moment they follow the other coordinates");
     } else
         nodal_unknowns(b, f);
+    if (f->formulation == CT_BEAM_STRETCH_LINEAR && carries_bodies(b, f))
+        ct_topology_left_out(
+            b,
+            ct_arena_printf(b->arena, "second order of %s's deflection in bodies on it",
+                            f->name),
+            "these trees count them from its points; '--tree absolute' keeps it");
     dof_values(b, f);
     if (f->axial == CT_AXIAL_CHAIN)
         run_chain(b, f);

@@ -51,6 +51,11 @@ bool ct_small_beam(const struct ct_build *b, const char *name)
     return is_named(b, name, &at);
 }
 
+bool ct_small_is_all_of(const struct ct_build *b, const struct ct_flexible *f)
+{
+    return f->formulation == CT_BEAM_STRETCH_LINEAR || ct_small_beam(b, f->name);
+}
+
 static bool collect_joint(struct ct_build *b, struct small *s, int j, struct ct_mark at)
 {
     if (b->edge_of_joint[j] < 0)
@@ -84,7 +89,7 @@ static bool collect(struct ct_build *b, struct small *s)
             ok &= collect_joint(b, s, (int)j, at);
     for (size_t i = 0; i < b->nflexible; i++) {
         const struct ct_flexible *f = &b->flexible[i];
-        if (f->formulation == CT_BEAM_STRETCH_LINEAR || is_named(b, f->name, &at))
+        if (ct_small_is_all_of(b, f))
             for (int k = 0; k < f->nelastic; k++) {
                 add_unknown(b, s, f->elastic[k].q, f->elastic[k].u);
                 s->follows |= f->follow != NULL;
@@ -172,24 +177,29 @@ static void truncate(struct ct_build *b, const struct small *s, ct_ex *f, size_t
     memcpy(f, is_matrix ? matrix : direction, n * sizeof *f);
 }
 
+static bool is_between_small(const struct small *s, const struct ct_entry *m)
+{
+    return s->is_small[m->row] && s->is_small[m->column];
+}
+
+// Entries between small speeds are those at rest. All at once: one by one each would walk through its expressions anew.
 static void truncate_masses(struct ct_build *b, const struct small *s)
 {
     struct ct_equations *e = b->eqs;
-    ct_ex *large = CT_NEWN(b->ctx->scratch, ct_ex, e->nM + 1);
-    size_t nlarge = 0, kept = 0;
-    for (size_t i = 0; i < e->nM; i++) {
-        struct ct_entry *m = &e->M[i];
-        if (s->is_small[m->row] && s->is_small[m->column])
-            ct_ex_subst_list(b->x, &m->value, 1, s->symbol, s->zero, s->n);
+    ct_ex *large = CT_NEWN(b->ctx->scratch, ct_ex, e->nM + 1),
+          *rest = CT_NEWN(b->ctx->scratch, ct_ex, e->nM + 1);
+    size_t nlarge = 0, nrest = 0, kept = 0;
+    for (size_t i = 0; i < e->nM; i++)
+        if (is_between_small(s, &e->M[i]))
+            rest[nrest++] = e->M[i].value;
         else
-            large[nlarge++] = m->value;
-    }
+            large[nlarge++] = e->M[i].value;
+    ct_ex_subst_list(b->x, rest, nrest, s->symbol, s->zero, s->n);
     truncate(b, s, large, nlarge);
-    nlarge = 0;
+    nlarge = nrest = 0;
     for (size_t i = 0; i < e->nM; i++) {
         struct ct_entry m = e->M[i];
-        if (!s->is_small[m.row] || !s->is_small[m.column])
-            m.value = large[nlarge++];
+        m.value = is_between_small(s, &m) ? rest[nrest++] : large[nlarge++];
         if (!ct_ex_is_zero(m.value))
             e->M[kept++] = m;
     }

@@ -115,6 +115,8 @@ struct ct_problem {
     /// Per speed (nu), and per coordinate that moves with it: is wanted of the run itself, and not only what it leads to in outputs.
     /// NULL, both: all are.
     const bool *asked_speeds, *asked_places;
+    bool
+        keeps_energy; // so that the total energy is kept to the accuracy, however little of it vibrates
     double accuracy,
         duration; // wanted of the outputs, relative, over the whole run; its length. 0: not known
     /// Rounding of f, per state (ny), where it is felt in the errors of steps as long as `noisy_step` or shorter. NULL: it is not.

@@ -100,8 +100,9 @@ static double find_loss(struct ct_radau *s, const struct ct_problem *p,
     ct_iteration_note_energy(it, small, u);
     if (v->present > felt * it->energy)
         ct_iteration_foresee_energy(it, small, p->duration, u_dot);
+    const bool counts = p->keeps_energy || v->present > felt * it->energy;
     const double pace = v->lost / s->now.h * p->duration;
-    return v->present > felt * it->energy ? pow(pace / (p->accuracy * it->energy), order) : 0;
+    return counts ? pow(pace / (p->accuracy * it->energy), order) : 0;
 }
 
 // Less of the error where it is one of vibrations: of speeds, and of places where outputs would not feel it if there were none.

@@ -47,12 +47,17 @@ static bool is_controlled(const struct ct_equations *e, ct_ex v)
         && v.id != e->total.id;
 }
 
+bool ct_fidelity_is_check(const struct ct_equations *e, size_t i)
+{
+    return e->result[i].value.id == e->total.id;
+}
+
 bool ct_fidelity_is_demanding(const struct ct_equations *e, size_t i)
 {
     const ct_ex v = e->result[i].value;
     const unsigned known
         = 1u << CT_SYM_TIME | 1u << CT_SYM_PARAM | 1u << CT_SYM_Q | 1u << CT_SYM_U;
-    return v.id == e->total.id || ct_ex_kinds(e->x, v) & ~known;
+    return !ct_fidelity_is_check(e, i) && ct_ex_kinds(e->x, v) & ~known;
 }
 
 bool ct_fidelity_find_asked(struct ct_arena *a, const struct ct_equations *e,

@@ -19,10 +19,12 @@ extern const double ct_fidelity_least_size;
 
 /// NULL if there is no output to control. Everything lives in a, the machine's arena.
 struct ct_fidelity *ct_fidelity_create(struct ct_arena *a, struct ct_machine *m);
-/// Is output i made of more than time and states, or the total energy?
+/// Is output i the total energy, a check of the run?
+bool ct_fidelity_is_check(const struct ct_equations *e, size_t i);
+/// Is it another one that is made of more than time and states?
 bool ct_fidelity_is_demanding(const struct ct_equations *e, size_t i);
 /// Per speed (nu, arena a): is it an output, and is the coordinate that moves with it? False, all count, where an output is
-/// demanding: accelerations and reactions feel every vibration, and the total energy is a check of all that moves.
+/// demanding: accelerations and reactions feel every vibration.
 bool ct_fidelity_find_asked(struct ct_arena *a, const struct ct_equations *e,
                             const bool **speeds, const bool **places);
 /// A new run begins: nothing is known of the sizes of outputs.

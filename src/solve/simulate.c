@@ -501,6 +501,8 @@ static void find_asked(struct ct_run *r, struct ct_problem *p)
     ct_machine_set(r->m, 0, r->y);
     if (!r->nroot)
         ct_fidelity_find_asked(r->arena, r->e, &p->asked_speeds, &p->asked_places);
+    for (size_t i = 0; i < r->e->nresult; i++)
+        p->keeps_energy |= ct_fidelity_is_check(r->e, i);
 }
 
 // Steps of the implicit method are held to this part of what is wanted.
