@@ -28,10 +28,10 @@ value() {
     sed -n "s/^ *\"$1\": \"\{0,1\}\([^\",]*\)\"\{0,1\},\{0,1\}\$/\1/p" "$work/summary.json" | head -n 1
 }
 
-# error_against REFERENCE.csv: the largest error over its columns and times, each column against its largest value in
-# the run; energies and momenta whose exact value is zero are left out.
+# error_against REFERENCE.csv [LEAST]: the largest error over its columns and times, each column against its largest value in
+# the run; energies and momenta whose exact value is zero are left out, and errors of LEAST and less by themselves.
 error_against() {
-    awk -F, '
+    awk -F, -v least="${2:-0}" '
         function size(x) { return x < 0 ? -x : x }
         FNR == 1 { nfile++ }
         nfile == 1 && FNR == 1 { for (i = 1; i <= NF; i++) column[i] = $i; n = NF; next }
@@ -52,7 +52,7 @@ error_against() {
         }
         END {
             for (i = 2; i <= n; i++)
-                if (exact[i] > 1e-12 && worst[i] / largest[i] > error) error = worst[i] / largest[i]
+                if (exact[i] > 1e-12 && worst[i] > least && worst[i] / largest[i] > error) error = worst[i] / largest[i]
             printf "%.1e\n", error
         }' "$1" "$work/result.csv"
 }
@@ -172,11 +172,17 @@ left() {
 }
 
 # reason ERROR: why the run of $case in $work/as_it_is.csv at tolerance T errs by more than 10 T:
+# a: the output is so small that the error is less than absolute, T/100,
 # r: the reference, where it has twelve digits (the errors that --verify estimates are less than 10 T),
 # c: what the motion does to any error (a change of a number of the model by its part T moves the outputs by a tenth of the
 # error or more, and by ten times T), b: double precision (the last bit of that number moves them by a third of the error, and a
 # hundredth of T leaves a third of it)
 reason() {
+    small=$(error_against "$reference/$case.reference.csv" "$(awk -v T="$T" 'BEGIN { print T/100 }')")
+    if is_less "$small" "$T" 10; then
+        echo " a"
+        return
+    fi
     case $case in
     B*)
         if run "$reference/$case.yaml" --method auto --tolerance "$T" --verify && is_less "$(value global)" "$T" 10; then
