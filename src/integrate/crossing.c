@@ -25,6 +25,7 @@ static const double gap = 0.3;
 // the checks of the step are not spoilt by what sweeps have left at coarse tolerances.
 static const double settled = 0.02, settled_fine = 1e-10;
 const double ct_crossing_held = 1e-9;
+const double ct_crossing_rounding = 5e-13;
 // Further off than that and so many times the tolerance there is nothing to be had from nearer by.
 static const double held_tolerance = 100;
 // Rounding stops sweeps: they end, too, when a sweep does not gain this factor any more and moves stages by less than
@@ -36,7 +37,7 @@ struct work {
     double A[STAGES][STAGES];         // integrals of the Lagrange polynomials up to c_j
     double left[SIDE][STAGES];        // the same for the polynomial through the left side alone
     double first[STAGES][STAGES];     // and through all stages before j
-    double centred[STAGES][STAGES];   // A from the middle of the step on
+    double from[STAGES][STAGES];      // A from a place within the step on
     double e[STAGES];                 // A's last without two inner stages, less it
     double t[STAGES], weight[STAGES]; // of the bridge
     double *k, *stage;                // (ny x STAGES) each
@@ -117,13 +118,8 @@ static void find_weights(struct work *w)
     }
     find_norms(w->norm, w->c, all);
     find_norms(norm, w->c, left);
-    double middle[STAGES];
-    integrate_lagrange(middle, w->c, all, w->norm, 0.5);
-    for (int j = 0; j < STAGES; j++) {
+    for (int j = 0; j < STAGES; j++)
         integrate_lagrange(w->A[j], w->c, all, w->norm, w->c[j]);
-        for (int i = 0; i < STAGES; i++)
-            w->centred[j][i] = w->A[j][i] - middle[i];
-    }
     for (int j = 0; j < SIDE; j++)
         integrate_lagrange(w->left[j], w->c, left, norm, w->c[j]);
     for (int j = 0; j < STAGES; j++) {
@@ -281,8 +277,20 @@ static enum ct_eval step(const struct ct_problem *p, double t, double h, const d
     return CT_EVAL_OK;
 }
 
+// w->from: integrals from theta on.
+static void begin_at(struct work *w, double theta)
+{
+    double before[STAGES];
+    bool all[STAGES];
+    memset(all, true, sizeof all);
+    integrate_lagrange(before, w->c, all, w->norm, theta);
+    for (int j = 0; j < STAGES; j++)
+        for (int i = 0; i < STAGES; i++)
+            w->from[j][i] = w->A[j][i] - before[i];
+}
+
 // Sweeps begin with stages along the tangent, which the first of them puts onto the constraints.
-enum ct_eval ct_crossing_lead_in(const struct ct_problem *p, double t, double h,
+enum ct_eval ct_crossing_lead_in(const struct ct_problem *p, double t, double h, double theta,
                                  const double *y, const double *dy,
                                  const struct ct_tolerance *tolerance, double *before,
                                  double *err, void *work, struct ct_integrate_stats *stats)
@@ -290,16 +298,17 @@ enum ct_eval ct_crossing_lead_in(const struct ct_problem *p, double t, double h,
     struct work *w = work;
     const int n = p->ny;
     const size_t bytes = (size_t)n * sizeof *y;
-    const struct task s = {p, t - h / 2, h, y, tolerance, w, stats};
+    const struct task s = {p, t - theta * h, h, y, tolerance, w, stats};
     if (!w->has_weights)
         find_weights(w);
+    begin_at(w, theta);
     for (int j = 0; j < STAGES; j++) {
         memcpy(w->k + j * n, dy, bytes);
         memcpy(w->stage + j * n, y, bytes);
     }
     if (p->set_crossing)
         p->set_crossing(p->user, true);
-    const enum ct_eval e = sweep(&s, (const double(*)[STAGES])w->centred, 0);
+    const enum ct_eval e = sweep(&s, (const double(*)[STAGES])w->from, 0);
     if (p->set_crossing)
         p->set_crossing(p->user, false);
     if (e != CT_EVAL_OK)

@@ -14,6 +14,9 @@ extern const struct ct_method ct_crossing;
 /// A smooth motion meets the constraints also in the middle, up to this [m, rad].
 extern const double ct_crossing_held;
 
+/// Beside a singular position f has fewer digits: crossings may err by this part of the largest state.
+extern const double ct_crossing_rounding;
+
 /// True where f is not to be computed.
 bool ct_crossing_is_gap(double theta);
 
@@ -23,10 +26,11 @@ struct ct_bridge ct_crossing_bridge(void *work, double t, double h, double theta
 struct ct_bridge ct_crossing_bridge_over(void *work, const struct ct_stepper_span *span,
                                          double from, double to, double theta);
 
-/// The state before (ny, out) at t - h/2 of the motion that is at y in a singular position at t, where dy is its derivative but for
-/// accelerations, which are not known: by the step that is centred there, from its middle. *err (out): what the step errs by, as of
-/// others; the tolerance of the step is its own, next to rounding. Its rest in the constraints is the caller's to look at. (8.23)
-enum ct_eval ct_crossing_lead_in(const struct ct_problem *p, double t, double h,
+/// The state before (ny, out) at t - theta h, where a step h across a singular position begins, of the motion that is at y at t, in
+/// the position or near it. dy: its derivative; accelerations, which need not be known, are not used. *err (out): what the step
+/// errs by, as of others; the tolerance of the step is its own, next to rounding. Its rest in the constraints is the caller's to
+/// look at. (8.23)
+enum ct_eval ct_crossing_lead_in(const struct ct_problem *p, double t, double h, double theta,
                                  const double *y, const double *dy,
                                  const struct ct_tolerance *tolerance, double *before,
                                  double *err, void *work, struct ct_integrate_stats *stats);

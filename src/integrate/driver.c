@@ -10,10 +10,8 @@
 #include <math.h>
 #include <string.h>
 
-// Beside a singular position f has fewer digits: crossings may err by this part of the largest state.
-static const double crossing_rounding = 5e-13;
-// More where an event has left the motion nearer to the position than crossings begin, with the square of how much nearer, up to this part
-// of what is wanted: from still nearer by there would be less.
+// Crossings may err by more than ct_crossing_rounding where an event has left the motion nearer to the position than crossings
+// begin, with the square of how much nearer, up to this part of what is wanted: from still nearer by there would be less.
 static const double unfelt = 0.1;
 
 static const struct ct_mark nowhere = {0};
@@ -211,8 +209,8 @@ tolerance_of(const struct ct_driver *r, const struct ct_stride *s, struct ct_tol
     for (int i = 0; i < r->p->ny; i++)
         largest = fmax(largest, fabs(r->y[i]));
     const double nearer = fmax(1, r->far / r->singular_in),
-                 noise = fmin(crossing_rounding * nearer * nearer,
-                              fmax(crossing_rounding, unfelt * r->p->accuracy));
+                 noise = fmin(ct_crossing_rounding * nearer * nearer,
+                              fmax(ct_crossing_rounding, unfelt * r->p->accuracy));
     *tol = (struct ct_tolerance){r->tolerance.rtol, fmax(r->tolerance.atol, noise * largest)};
     return tol;
 }
@@ -333,7 +331,8 @@ static enum ct_eval end_on_event(struct ct_driver *r, struct ct_stride *s)
 static enum ct_eval tell_accepted(struct ct_driver *r, const struct ct_stride *s)
 {
     const struct ct_problem *p = r->p;
-    return p->accepted ? p->accepted(p->user, s->t1, r->end, r->dend) : CT_EVAL_OK;
+    const bool is_across = s->method == &ct_crossing || s->is_striding;
+    return p->accepted ? p->accepted(p->user, s->t1, r->end, r->dend, is_across) : CT_EVAL_OK;
 }
 
 // What follows an attempt whose error is small enough; h is the step as it was attempted.

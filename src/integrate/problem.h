@@ -146,8 +146,10 @@ struct ct_problem {
     enum ct_eval (*project)(void *user, double t, double *y);
 
     /// After a step was accepted and projected: update memories and choices that keep f the same
-    /// function. May be NULL. Before it answers CT_EVAL_RETRY it must have changed nothing. dy belongs to y.
-    enum ct_eval (*accepted)(void *user, double t, const double *y, const double *dy);
+    /// function. May be NULL. Before it answers CT_EVAL_RETRY it must have changed nothing. dy belongs to y. is_across: the step was
+    /// made to cross a singular position.
+    enum ct_eval (*accepted)(void *user, double t, const double *y, const double *dy,
+                             bool is_across);
 
     /// Longest step from the last accepted state, or from where the start or an event has put it. May be NULL.
     double (*longest_step)(void *user);

@@ -9,6 +9,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <float.h>
 #include <string.h>
 
 // The error of a solution is larger than that of its steps, so steps are held to less than what is wanted, as far as
@@ -416,6 +417,32 @@ static bool integrate(struct ct_sim *sim)
     return ok;
 }
 
+// What steps say of singular positions that they were not made to cross.
+static void warn_of_positions(struct ct_sim *sim)
+{
+    const struct ct_singular *w = sim->report.singular;
+    const double rounding
+        = 0.1 * DBL_EPSILON; // as it is felt of what is divided twice by a pivot
+    const struct ct_mark mark = {.file = sim->system->model.file};
+    if (!w)
+        return;
+    if (w->nover)
+        ct_warning(
+            &sim->own, mark, 0,
+            "steps of fixed size have come across a singular position at t = %.9g%s, which "
+            "they do not see: the motion behind it may be another one; without 'step' "
+            "it is crossed",
+            w->over, w->nover > 1 ? " and more often later" : "");
+    if (w->closest * w->closest * sim->tolerance < rounding)
+        ct_warning(
+            &sim->own, mark, 0,
+            "the motion has come near to a singular position at t = %.9g without crossing it, "
+            "within %.1g "
+            "of the largest distance: rounding is felt there by more than the tolerance, "
+            "and may have led to another motion",
+            w->t_closest, w->closest);
+}
+
 // A run that a callback stopped has no diagnostic: it is done, too.
 static bool run(struct ct_sim *sim)
 {
@@ -441,8 +468,10 @@ static bool run(struct ct_sim *sim)
     if (sim->file)
         ok = ct_sim_close_results(sim, ok);
     sim->write += ct_clock() - start;
-    if (ok)
+    if (ok) {
         ct_sim_warn_of_beams(sim);
+        warn_of_positions(sim);
+    }
     if (ok && sim->kept)
         ct_sim_verify(sim);
     sim->is_done = ok;

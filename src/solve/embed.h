@@ -35,6 +35,7 @@ struct ct_embed {
     double largest;    // pivot of J_d
     double
         nearness; // how near J is to losing rank at the last accepted state, 1 at its farthest and where nobody looks
+    const bool *is_kept; // (nu) speeds that choices leave independent where they can; NULL: none
     bool *is_unique; // per row: its multiplier is determined
     long switches, factorizations;
     // closed forms, the latest used first
@@ -105,6 +106,12 @@ double ct_embed_pivot(struct ct_embed *s);
 /// Is it between the two? Cheaper than to find it where rows are redundant, false where that is not certain or where they
 /// are not.
 bool ct_embed_pivot_is_between(struct ct_embed *s, double low, double high);
+/// After ct_embed_pivot: on which side of the places where J_d is singular, -1 or 1. 0: not known, of large systems or redundant
+/// rows.
+int ct_embed_side(const struct ct_embed *s);
+/// After ct_embed_side, with the B (rank x free) of another place on the motion, where det J_d has the other sign, the choice of
+/// rows and columns being the same: has J lost rank between them? Else columns did: B has changed its sign.
+bool ct_embed_has_lost_rank(struct ct_embed *s, const double *B);
 /// At the last ct_machine_constraint, beside a place where J loses rank: x (rank, out) = (J_d J_d')^-1 v for a v without
 /// meaning, which has come into null(J') of that place, and log |det J_d|. False where that costs too much.
 bool ct_embed_dependence(struct ct_embed *s, double *x, double *log_det);

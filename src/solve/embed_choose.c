@@ -19,10 +19,10 @@ static int order_rows(struct ct_embed *s)
 
 // Columns count by what their speeds move, w (nu, out), where inertias are so different that a heavy dependent speed would
 // leave rounding of its forces, eps M_heavy, in the equations of light ones; else all alike. Elastic coordinates are always
-// light, and do not ask for it.
+// light, and do not ask for it. Those to be kept independent count little.
 static void weigh_columns(struct ct_embed *s, double *w)
 {
-    const double apart = 1e6; // leaves light ones ten digits
+    const double apart = 1e6, little = 0.03; // leaves light ones ten digits; B is as much larger
     const size_t n = s->m->nu;
     double least = INFINITY, most = 0;
     for (size_t j = 0; j < n; j++) {
@@ -33,6 +33,8 @@ static void weigh_columns(struct ct_embed *s, double *w)
     }
     for (size_t j = 0; j < n && most > apart * least; j++)
         w[j] = 1 / sqrt(fmax(s->m->M[j + n * j], least));
+    for (size_t j = 0; j < n && s->is_kept; j++)
+        w[j] *= s->is_kept[j] ? little : 1;
 }
 
 static void choose_columns(struct ct_embed *s)

@@ -78,6 +78,35 @@ double ct_embed_pivot(struct ct_embed *s)
     return pivot;
 }
 
+int ct_embed_side(const struct ct_embed *s)
+{
+    int side = 1;
+    if (has_redundant_rows(s) || ct_embed_is_large(s))
+        return 0;
+    for (int i = 0; i < s->rank; i++)
+        if ((s->Jd[i + s->rank * i] < 0) != (s->pivot[i] != i))
+            side = -side;
+    return side;
+}
+
+// The rows of J with the tangents of the other place, [J; T'], are as large a system as there are speeds, which is regular as long as
+// tangents turn by less than a right angle and J has its rank. det [J; T'] = det J_d det (1 + B' B_now), of which the
+// second factor is positive at the other place.
+bool ct_embed_has_lost_rank(struct ct_embed *s, const double *B)
+{
+    const int r = s->rank, f = (int)s->m->nu - r;
+    bool is_even = true;
+    ct_matrix_multiply_transposed(s->S, B, s->B, f, r, f);
+    for (int i = 0; i < f; i++)
+        s->S[i + f * i] += 1;
+    if (f && !ct_lu(s->S, s->iwork, f, f))
+        return false;
+    for (int i = 0; i < f; i++)
+        if ((s->S[i + f * i] < 0) != (s->iwork[i] != i))
+            is_even = !is_even;
+    return is_even;
+}
+
 bool ct_embed_dependence(struct ct_embed *s, double *x, double *log_det)
 {
     const int r = s->rank;

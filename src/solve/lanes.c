@@ -373,7 +373,7 @@ bool ct_lanes_load(struct ct_lanes *s, int l, const struct ct_run_options *o)
         || (s->is_used && (o->method != s->method || rank != s->rank))
         || (s->needs_lam && rank != s->nrow))
         return false;
-    if (is_singular_start(s) || ct_run_begins_implicit(s->run, o))
+    if (is_singular_start(s) || ct_run_is_beside(s->run) || ct_run_begins_implicit(s->run, o))
         return false;
     s->rank = rank;
     if (o->method != s->method)

@@ -1,11 +1,12 @@
-// A run that starts in a singular position, with speeds: from a little before it.
+// A run that starts in a singular position with speeds, or just beside one: from a little before it.
 //
-// Rows depend there and accelerations cannot be found, but speeds that belong to one of the motions through the position,
+// In the position rows depend and accelerations cannot be found, but speeds that belong to one of the motions through it,
 //
 //     J u = -Phi_t,   w' (J' u + ...) = 0  for w' J = 0                                              (8.23)
 //
-// tell which one it is. Collocation centred on the position finds the state half a step before the start; from there the run goes on
-// as any that comes to such a position, and crosses it.
+// tell which one it is. Beside it they are known to be those of a motion, but steps from there to where a crossing begins, or one that
+// begins there, would be among roundings. Collocation centred on the position finds the state half a step before it; from there the
+// run goes on as any that comes to such a position, and crosses it.
 #include "solve/run.h"
 
 #include "integrate/crossing.h"
@@ -15,13 +16,50 @@
 #include <math.h>
 #include <string.h>
 
-// Largest change of a coordinate from the start to either end of the step that is centred there [rad, m], at first; halved where the
+// Largest change of a coordinate from where the motion is slowest to either end of the step [rad, m], at first; halved where the
 // step errs.
 static const double longest_way = 0.4;
 enum { LOOKS = 8 };
 
-// The step may err by so much of the largest state, or of what is asked by more: rounding next to the position is what is left.
-static const double exact = 1e-12, unfelt = 0.1;
+// Starts from so far [rad, m] come to the position by a step across it and what is learnt on the way; up to there from it a start tells
+// nothing of how the smallest pivot falls.
+static const double beside = 0.2, near = 0.5;
+
+// The step may err by so much of the largest state; by so much of what is asked where more is rounding, which is felt as the way to the
+// position is short; looks for a better one end at a tenth of that.
+static const double exact = 1e-12, unfelt = 0.1, better = 0.1;
+
+// Where a run starts: all speeds together, and accelerations where they are known.
+struct lead {
+    const struct ct_problem *p;
+    void *work;
+    double u, a, ua;    // |u|, |u'|, u . u'
+    double in;          // time to the position, below 0 behind it
+    double most;        // the step may err by so much of the largest state
+    double *before;     // (ny, out)
+    double *end, *dend; // (ny)
+};
+
+// A step across, h, around a place `middle` seconds after the start, and what it errs by, of the largest state.
+struct across {
+    double middle, h, error;
+};
+
+static double begin_of(const struct across *c)
+{
+    return c->middle - c->h / 2;
+}
+
+// Time for a way from where the speed is u.
+static double time_for(const struct lead *l, double u, double way)
+{
+    return 2 * way / (u + sqrt(u * u + 2 * l->a * way));
+}
+
+static double speed_at(const struct lead *l, double t)
+{
+    return sqrt(fmax(0, l->u * l->u + t * (2 * l->ua + t * l->a * l->a)));
+}
 
 // How far the ends of the step may lie off the constraints [m, rad]: speeds that belong to no motion leave much more.
 static double off_constraints(struct ct_run *r, double t, const double *y)
@@ -42,60 +80,109 @@ static bool choose_beside(struct ct_run *r, double h, const double *y)
     ct_machine_set(r->m, h, r->stage);
     ct_machine_constraint(r->m);
     r->s->sigma_best = 0;
-    if (ct_embed_choose(r->s))
+    r->s->is_kept
+        = r->is_given; // what follows from them is known less well, the less the nearer the position is
+    const bool is_chosen = ct_embed_choose(r->s);
+    r->s->is_kept = NULL;
+    if (is_chosen)
         return true;
     r->ctx->ndiagnostic = n; // another place may do
     r->ctx->nerror = nerror;
     return false;
 }
 
-// The state half a step h before the start into r->stage; what the step errs by, of `exact`, or INFINITY.
-static double look_back(struct ct_run *r, const struct ct_problem *p, double h, void *work,
-                        double *before)
+// How far y may be from the start to be on the motion that is meant, of the largest state: speeds beside a position are known no better,
+// other motions are as far as speeds are large.
+static const double meant = 1e-4;
+
+// How far y is from it.
+static double miss(const struct ct_run *r, const double *y)
 {
-    const double *y = r->assembled;
+    double most = 0;
+    for (size_t i = 0; i + 1 < r->ny; i++)
+        most = fmax(most, fabs(y[i] - r->assembled[i]));
+    return most / ct_vector_largest(r->assembled, r->ny);
+}
+
+bool ct_run_meets_start(const struct ct_run *r, const double *y)
+{
+    return miss(r, y) <= meant;
+}
+
+// Does the step from l->before lead across, and to the start on its way? r->stage (out): what it makes of the start.
+static bool leads_across(struct ct_run *r, const struct lead *l, const struct across *c)
+{
+    const double t = begin_of(c), most = ct_vector_largest(l->before, r->ny),
+                 rounding = fmax(ct_crossing_rounding, unfelt * r->o->wanted);
+    const struct ct_tolerance tolerance = {r->o->rtol, fmax(r->o->atol, rounding * most)};
     double error;
-    if (!choose_beside(r, h / 2, y))
-        return INFINITY;
-    ct_machine_set(r->m, 0, y);
+    if (l->p->rhs(r, t, l->before, r->dy) != CT_EVAL_OK
+        || ct_crossing.step(l->p, t, c->h, l->before, r->dy, &tolerance, l->end, l->dend,
+                            &error, l->work, &r->stats)
+               != CT_EVAL_OK
+        || !(error <= 1))
+        return false;
+    ct_crossing.dense(l->p, c->h, -t / c->h, l->before, l->end, l->work, r->stage);
+    return ct_run_meets_start(r, r->stage);
+}
+
+// Sweeps of the step into l->before, down to a part of the largest state or, where they come to rounding before, to ten times as
+// much and so on. Returns what the step errs by, or INFINITY.
+static double sweep_back(struct ct_run *r, const struct lead *l, const struct across *c)
+{
+    const double *y = r->assembled, largest = ct_vector_largest(y, r->ny), t = begin_of(c);
+    double error;
+    for (double part = exact; part <= l->most; part *= 10) {
+        const struct ct_tolerance tolerance = {part, part * largest};
+        if (ct_crossing_lead_in(l->p, 0, c->h, -t / c->h, y, r->dy, &tolerance, l->before,
+                                &error, l->work, &r->stats)
+            == CT_EVAL_OK)
+            return fmax(error, 1) * part;
+    }
+    return INFINITY;
+}
+
+// The state where a step across begins, into l->before, and what that errs by; INFINITY where it does not lead across.
+static void look_back(struct ct_run *r, const struct lead *l, struct across *c)
+{
+    const double t = begin_of(c);
+    c->error = INFINITY;
+    if (!choose_beside(r, t + c->h, r->assembled))
+        return;
+    ct_machine_set(r->m, 0, r->assembled);
     ct_machine_motion(r->m);
     memset(r->dy, 0, r->ny * sizeof *r->dy);
     ct_machine_copy(r->dy, r->m->rate, r->m->nq);
-    const struct ct_tolerance tolerance = {exact, exact * ct_vector_largest(y, r->ny)};
-    if (ct_crossing_lead_in(p, 0, h, y, r->dy, &tolerance, before, &error, work, &r->stats)
-            != CT_EVAL_OK
-        || !(off_constraints(r, -h / 2, before) <= ct_crossing_held)
-        || p->project(r, -h / 2, before) != CT_EVAL_OK)
-        return INFINITY;
-    return error;
+    const double error = sweep_back(r, l, c);
+    if (error <= l->most && off_constraints(r, t, l->before) <= ct_crossing_held
+        && l->p->project(r, t, l->before) == CT_EVAL_OK && leads_across(r, l, c))
+        c->error = error;
 }
 
 // Do root functions keep their signs? What switches on the way is another motion.
-static bool keeps_sides(struct ct_run *r, double h, const double *before)
+static bool keeps_sides(struct ct_run *r, const struct lead *l, double t)
 {
     double *now = CT_NEWN(r->arena, double, 2 * (size_t)r->nroot + 1), *then = now + r->nroot;
     ct_run_root(r, 0, r->assembled, now);
-    ct_run_root(r, -h / 2, before, then);
+    ct_run_root(r, t, l->before, then);
     for (int i = 0; i < r->nroot; i++)
         if (!(now[i] * then[i] > 0))
             return false;
     return true;
 }
 
-// The step h that errs least, of those that are halves of each other; 0: there is no motion with these speeds.
-static double find_step(struct ct_run *r, const struct ct_problem *p, void *work,
-                        double *before)
+// best (in and out) becomes a step around `middle` that errs less, of those that are halves of each other and reach the start.
+static void find_step(struct ct_run *r, const struct lead *l, double middle,
+                      struct across *best)
 {
-    double h = 2 * longest_way / ct_vector_size(r->assembled + r->m->nq, r->m->nu), best = 0;
-    double least = fmax(1, unfelt * r->o->rtol / exact) * (1 + DBL_EPSILON);
-    for (int i = 0; i < LOOKS && least > 1; i++, h /= 2) {
-        const double error = look_back(r, p, h, work, before);
-        if (error < least && keeps_sides(r, h, before)) {
-            least = error;
-            best = h;
-        }
+    const double enough = fmax(exact, better * l->most);
+    struct across c = {middle, 2 * time_for(l, speed_at(l, middle), longest_way), INFINITY};
+    for (int i = 0; i < LOOKS && best->error > enough && c.h / 2 > fabs(middle); i++) {
+        look_back(r, l, &c);
+        if (c.error < best->error && keeps_sides(r, l, begin_of(&c)))
+            *best = c;
+        c.h /= 2;
     }
-    return best;
 }
 
 // Speeds that miss (8.23) by more, of their squares, belong to no motion: what rounding of them leaves is far below.
@@ -129,29 +216,97 @@ static void return_to_start(struct ct_run *r)
     ct_embed_choose(r->s);
 }
 
-bool ct_run_lead_in(struct ct_run *r, const struct ct_problem *p)
+// What is not given follows from what is by pivots as small as the way to the position.
+static void warn_of_rounding(struct ct_run *r, double unknown)
 {
-    const double speed = ct_vector_size(r->assembled + r->m->nq, r->m->nu);
-    if (!r->singular_joints || !(speed > 0))
-        return true;
+    ct_warning(r->ctx, (struct ct_mark){.file = r->model->file}, 0,
+               "the run starts so near to a singular position that rounding leaves places and "
+               "speeds that are not given known to %.1g: start in the position itself, or "
+               "farther from it",
+               unknown);
+}
+
+// From half a step before the position on, if there is one that crosses it. A motion that is slow there, and turns, comes to it twice:
+// then the step is better centred on where it turns.
+static bool begin_before(struct ct_run *r, struct lead *l)
+{
+    double **const vector[] = {&l->before, &l->end, &l->dend};
+    struct across best = {.error = INFINITY};
+    for (size_t i = 0; i < COUNT(vector); i++)
+        *vector[i] = CT_NEWN(r->arena, double, r->ny);
+    l->work = ct_crossing.create(r->arena, &ct_crossing, l->p);
+    find_step(r, l, l->in, &best);
+    if (l->a > 0)
+        find_step(r, l, -l->ua / (l->a * l->a), &best);
+    if (best.error < INFINITY)
+        look_back(r, l, &best);
+    if (!(best.error < INFINITY)) {
+        return_to_start(r);
+        return false;
+    }
+    const double unknown = miss(r, r->stage);
+    if (unknown > r->o->wanted)
+        warn_of_rounding(r, unknown);
+    r->t0 = begin_of(&best);
+    memcpy(r->y, l->before, r->ny * sizeof *r->y);
+    r->singular->keeps_rows = r->method->is_implicit && (size_t)r->s->rank < r->m->nrow;
+    ct_singular_expect(r->singular, r->t0, r->y, best.h / 2);
+    return true;
+}
+
+static bool begin_in_position(struct ct_run *r, struct lead *l)
+{
+    int freedoms;
     if (r->o->step > 0)
         return ct_error(r->ctx, (struct ct_mark){0}, CT_E_STEP_REFUSED,
                         "the run starts in a singular position, where constraints of %s do not "
                         "count: steps of fixed size do not lead "
                         "away from it; leave out 'step'",
                         r->singular_joints);
-    double *before = CT_NEWN(r->arena, double, r->ny);
-    void *work = ct_crossing.create(r->arena, &ct_crossing, p);
-    int freedoms;
     const double misfit = ct_singular_misfit(r->arena, r->s, 0, r->assembled, &freedoms);
-    const double h = misfit <= belongs ? find_step(r, p, work, before) : 0;
-    if (h == 0 || !(look_back(r, p, h, work, before) < INFINITY)) {
-        return_to_start(r);
-        return refuse_speeds(r, misfit, freedoms);
-    }
-    r->t0 = -h / 2;
-    memcpy(r->y, before, r->ny * sizeof *before);
-    r->singular->keeps_rows = r->method->is_implicit && (size_t)r->s->rank < r->m->nrow;
-    ct_singular_expect(r->singular, r->t0, r->y, h / 2);
+    l->most = fmax(exact, unfelt * r->o->rtol);
+    return (misfit <= belongs && begin_before(r, l)) || refuse_speeds(r, misfit, freedoms);
+}
+
+// How far the position is, below 0 behind the start, as the motion goes there; accelerations of the start are in r->dy.
+static double find_way(struct ct_run *r, struct lead *l)
+{
+    const double glance = 1e-3; // of the time to a position beside
+    const double *a = r->dy + r->m->nq, *u = r->y + r->m->nq;
+    l->u = ct_vector_size(u, r->m->nu);
+    l->a = ct_vector_size(a, r->m->nu);
+    l->ua = ct_vector_dot(u, a, r->m->nu);
+    if (!(l->u + l->a > 0))
+        return INFINITY;
+    const double s = glance * time_for(l, l->u, beside);
+    return ct_singular_near(r->singular, 0, r->y, r->dy, r->pending, s);
+}
+
+// Beside a position: from before it, or else what is known of it from the start on.
+static void begin_beside(struct ct_run *r, struct lead *l)
+{
+    const double way = find_way(r, l), size = fabs(way);
+    if (!(size > 0 && size < near))
+        return;
+    const double along = fmax(size, l->u * time_for(l, l->u, longest_way));
+    l->most = fmax(exact, unfelt * r->o->wanted * fmin(1, along));
+    l->in = copysign(time_for(l, l->u, size), way);
+    if (size > beside || !begin_before(r, l))
+        ct_singular_begin(r->singular, 0, r->y, way > 0 ? l->in : INFINITY, near / size);
+}
+
+bool ct_run_is_beside(struct ct_run *r)
+{
+    struct lead l = {.in = 0};
+    return r->m->nrow && fabs(find_way(r, &l)) < near;
+}
+
+bool ct_run_lead_in(struct ct_run *r, const struct ct_problem *p)
+{
+    struct lead l = {.p = p, .u = ct_vector_size(r->assembled + r->m->nq, r->m->nu)};
+    if (r->m->nrow && r->singular_joints && l.u > 0)
+        return begin_in_position(r, &l);
+    if (r->m->nrow && !r->singular_joints && r->o->step == 0)
+        begin_beside(r, &l);
     return true;
 }

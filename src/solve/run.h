@@ -67,6 +67,7 @@ struct ct_run {
     bool amplifies;                   // outputs do, at the start
     const char
         *singular_joints; // whose constraints depend at the start and not elsewhere; NULL: none
+    bool *is_given;       // (nu) speeds whose coordinates the start is given by
     bool has_jumped;      // speeds have, since the method was chosen
     double felt; // part of an output that vibrations make which an explicit method follows
     double t_before, last_event; // times
@@ -131,8 +132,11 @@ bool ct_run_report_jump(struct ct_run *r, const char *name, struct ct_mark mark,
 bool ct_run_chords_are_closed(struct ct_run *r, double t);
 
 /// From a start in a singular position, with speeds that tell which motion is meant, to a little before it: y, t0. False with
-/// CT_E_STEP_OPEN where speeds belong to none; else nothing changes.
+/// CT_E_STEP_OPEN where speeds belong to none. From one beside it the same where the position can be crossed; else steps begin
+/// there. Nothing changes elsewhere.
 bool ct_run_lead_in(struct ct_run *r, const struct ct_problem *p);
+/// Is y, at t = 0, the start, as well as that is known?
+bool ct_run_meets_start(const struct ct_run *r, const double *y);
 
 /// For ct_integrate: tells that the end is many steps away, once.
 void ct_run_foresee(void *user, double t, const double *y, double step, double to_come);

@@ -171,7 +171,8 @@ bool ct_run_is_followed(struct ct_run *r, double t, const double *y)
     return true;
 }
 
-static enum ct_eval accepted(void *user, double t, const double *y, const double *dy)
+static enum ct_eval accepted(void *user, double t, const double *y, const double *dy,
+                             bool is_across)
 {
     struct ct_run *r = user;
     const double turning_before = r->turning, t_before = r->t_turning;
@@ -183,7 +184,8 @@ static enum ct_eval accepted(void *user, double t, const double *y, const double
     if (!ct_run_is_followed(r, t, y))
         return CT_EVAL_RETRY;
     r->singular->keeps_rows = r->method->is_implicit && (size_t)r->s->rank < r->m->nrow;
-    if (!ct_singular_foresee(r->singular, t, y, dy, r->pending, r->o->step > 0)) {
+    const struct ct_singular_step step = {r->o->step > 0, is_across};
+    if (!ct_singular_foresee(r->singular, t, y, dy, r->pending, &step)) {
         r->turning = turning_before;
         r->t_turning = t_before;
         return CT_EVAL_RETRY;
@@ -222,10 +224,19 @@ static void find_needs(struct ct_run *r)
             r->root_of[r->nroot++] = (int)i;
 }
 
+static void note_given(struct ct_run *r, const struct ct_start *start)
+{
+    memset(r->is_given, 0, r->m->nu * sizeof *r->is_given);
+    for (size_t i = 0; i < start->n; i++)
+        if (r->e->coordinate[i].u >= 0)
+            r->is_given[r->e->coordinate[i].u] = start->is_given[i];
+}
+
 // To the start, assembled; rows and columns chosen there.
 bool ct_run_begin(struct ct_run *r, const struct ct_start *start)
 {
     ct_start_apply(start, r->m, r->y);
+    note_given(r, start);
     memcpy(r->assembled, r->y, r->ny * sizeof *r->y);
     r->t0 = 0;
     ct_machine_constraint(r->m);
@@ -261,6 +272,7 @@ struct ct_run *ct_run_prepare(struct ct_ctx *ctx, struct ct_arena *a,
     r->dy = CT_NEWN(a, double, r->ny);
     r->assembled = CT_NEWN(a, double, r->ny);
     r->stage = CT_NEWN(a, double, r->ny);
+    r->is_given = CT_NEWN(a, bool, r->m->nu + 1);
     r->scratch = CT_NEWN(a, double, 3 * r->m->nu + 2 * e->ndriver + r->m->nrow + 1);
     r->jump = ct_jump_create(a, r->m);
     r->value = CT_NEWN(a, double, e->nresult + 1);
@@ -352,8 +364,19 @@ static void keep_ledger(struct ct_run *r, const double *y)
         = fmax(r->report->velocity_constraint, ct_vector_largest(r->m->v, r->m->nrow));
 }
 
+// Steps that began before the start have to come to it.
+static bool has_come_to_start(struct ct_run *r, const double *y)
+{
+    return r->started || !(r->t0 < 0) || ct_run_meets_start(r, y)
+        || ct_error(r->ctx, (struct ct_mark){.file = r->model->file}, CT_E_STEP_SINGULAR,
+                    "the run starts beside a singular position, and the motion that comes from "
+                    "before it does not lead there: start farther from it, or in it");
+}
+
 static bool give_row(struct ct_run *r, double t, const double *y)
 {
+    if (!has_come_to_start(r, y))
+        return false;
     for (size_t i = 0; i < r->e->nresult; i++)
         if (!isfinite(r->value[i]))
             return ct_error(r->ctx, (struct ct_mark){.file = r->model->file}, CT_E_SINGULAR,
@@ -522,7 +545,8 @@ static bool lead_in(struct ct_run *r)
                                  .nu = (int)r->m->nu,
                                  .rhs = rhs,
                                  .project = project,
-                                 .set_crossing = set_crossing};
+                                 .set_crossing = set_crossing,
+                                 .residual = residual};
     return ct_run_lead_in(r, &p);
 }
 

@@ -93,6 +93,8 @@ bool ct_run_begin(struct ct_run *r, const struct ct_start *start);
 bool ct_run_restart(struct ct_run *r, const struct ct_start *start);
 struct ct_machine *ct_run_machine(struct ct_run *r);
 struct ct_embed *ct_run_embed(struct ct_run *r);
+/// Is the start beside a singular position, so that steps begin before it or are told of it? After begin or restart.
+bool ct_run_is_beside(struct ct_run *r);
 /// The start is in a singular position: constraints of these joints, quoted names that stay, depend on others there alone.
 void ct_run_note_singular_start(struct ct_run *r, const char *joints);
 const char *ct_run_singular_joints(const struct ct_run *r);

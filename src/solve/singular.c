@@ -1,6 +1,7 @@
 // See singular.h.
 #include "solve/singular.h"
 
+#include "numeric/dense.h"
 #include "solve/mode.h"
 
 #include <math.h>
@@ -15,6 +16,9 @@ struct ct_singular *ct_singular_create(struct ct_arena *arena, struct ct_machine
     w->y = CT_NEWN(arena, double, m->nq + m->nu + 1);
     w->d = CT_NEWN(arena, double, m->nu + 1);
     w->x = CT_NEWN(arena, double, m->nrow + 1);
+    w->B = CT_NEWN(arena, double, m->nrow * m->nu + 1);
+    w->u = CT_NEWN(arena, double, m->nu + 1);
+    w->a = CT_NEWN(arena, double, m->nu + 1);
     w->passed = CT_NEWN(arena, struct ct_singular_position, kept + 1);
     for (size_t i = 0; i < kept; i++)
         w->passed[i].row = CT_NEWN(arena, bool, m->nrow);
@@ -28,7 +32,9 @@ void ct_singular_start(struct ct_singular *w)
     w->was_told = false;
     w->reach = w->most = w->part = w->t = w->dt = 0;
     w->switches = -1;
-    w->npassed = 0;
+    w->npassed = w->nover = 0;
+    w->closest = INFINITY;
+    w->side = 0;
     w->s->nearness = 1;
 }
 
@@ -93,6 +99,21 @@ static double time_to_singular(struct ct_singular *w, const struct sight *a, dou
     return s - pivot / slope;
 }
 
+double ct_singular_near(struct ct_singular *w, double t, const double *y, const double *dy,
+                        double pending, double s)
+{
+    const struct sight a = {t, pending, y, dy};
+    if (!ct_embed_has_pivot(w->s))
+        return INFINITY;
+    const double now = pivot_at(w, ct_time_before(t, pending), y);
+    const double behind = pivot_after(w, &a, -s), ahead = pivot_after(w, &a, s);
+    const double way = ct_vector_size(w->d, w->m->nu);
+    if (behind > now
+        && behind > ahead) // where it rises from the position on it tells, too, beyond it
+        return now * way / (behind - now);
+    return ahead > now ? -now * way / (ahead - now) : now * way / (now - ahead);
+}
+
 // The position ahead, where the pivot of now has begun to fall.
 static void find_next(struct ct_singular *w, const struct sight *ahead, double now)
 {
@@ -119,9 +140,45 @@ static bool is_told_by_form(const struct ct_singular *w, double dt, bool is_fixe
         && ct_is_within(f->volume / w->volume, hardly);
 }
 
-bool ct_singular_foresee(struct ct_singular *w, double t, const double *y, const double *dy,
-                         double pending, bool is_fixed)
+// Do speeds follow from accelerations, with those of now and of the last look, dt before? Motions that meet in a position have
+// others.
+static bool has_jumped(const struct ct_singular *w, double dt, const double *u, const double *a)
 {
+    const double part = 0.2; // of the largest speed: far more than steps err by
+    const size_t nu = w->m->nu;
+    const double most = part * fmax(ct_vector_largest(u, nu), ct_vector_largest(w->u, nu));
+    for (size_t i = 0; i < nu; i++)
+        if (fabs(u[i] - w->u[i] - dt / 2 * (w->a[i] + a[i])) > most)
+            return true;
+    return false;
+}
+
+// After a look at a pivot: the side of now. Has the motion stepped over a position since the last look, or left it on another motion?
+static bool has_stepped_over(struct ct_singular *w, double dt, const struct sight *now,
+                             int *side)
+{
+    const double *u = now->y + w->m->nq, *a = now->dy + w->m->nq;
+    *side = ct_embed_side(w->s);
+    if (!*side || !w->side || w->s->switches != w->switches)
+        return false;
+    return (*side != w->side && ct_embed_has_lost_rank(w->s, w->B)) || has_jumped(w, dt, u, a);
+}
+
+static void keep_side(struct ct_singular *w, const struct sight *now, int side)
+{
+    const size_t nu = w->m->nu, rank = (size_t)w->s->rank;
+    w->side = side;
+    if (!side)
+        return;
+    memcpy(w->B, w->s->B, rank * (nu - rank) * sizeof *w->B);
+    memcpy(w->u, now->y + w->m->nq, nu * sizeof *w->u);
+    memcpy(w->a, now->dy + w->m->nq, nu * sizeof *w->a);
+}
+
+bool ct_singular_foresee(struct ct_singular *w, double t, const double *y, const double *dy,
+                         double pending, const struct ct_singular_step *step)
+{
+    const bool is_fixed = step->is_fixed;
     const struct sight ahead = {t, pending, y, dy};
     const double dt = t - w->t;
     if (!ct_embed_has_pivot(w->s) || !(dt > 0))
@@ -129,6 +186,7 @@ bool ct_singular_foresee(struct ct_singular *w, double t, const double *y, const
     if (is_told_by_form(w, dt, is_fixed)) {
         w->t = t;
         w->was_told = true;
+        w->side = 0;
         return true;
     }
     look_at(w, ct_time_before(t, pending), y);
@@ -139,9 +197,20 @@ bool ct_singular_foresee(struct ct_singular *w, double t, const double *y, const
     const double part = now / fmax(w->most, now);
     // after another choice of rows and columns the pivot is not to be compared with the last one
     const bool is_comparable = w->s->switches == w->switches;
+    int side = 0;
+    if (!is_far && has_stepped_over(w, dt, &ahead, &side) && !step->is_across) {
+        if (!is_fixed)
+            return false;
+        w->over = w->nover++ ? w->over : t;
+    }
     const bool was_unforeseen = is_comparable && isinf(w->in) && w->part > near_pivot;
     if (!is_fixed && part < (w->was_told ? singular_pivot : near_pivot) && was_unforeseen)
         return false;
+    if (part < w->closest && !step->is_across) {
+        w->closest = part;
+        w->t_closest = t;
+    }
+    keep_side(w, &ahead, side);
     w->t = t;
     w->was_told = false;
     w->part = part;
@@ -163,18 +232,31 @@ void ct_singular_turn(struct ct_singular *w, double t, const double *y, const do
                       double pending)
 {
     const struct sight ahead = {t, pending, y, dy};
+    w->side = 0;
     if (!(w->most > 0) || w->part > foreseen_pivot || !(w->dt > 0))
         return;
     find_next(w, &ahead, pivot_at(w, ct_time_before(t, pending), y));
 }
 
+void ct_singular_begin(struct ct_singular *w, double t, const double *y, double in,
+                       double times)
+{
+    ct_singular_expect(w, t, y, in);
+    w->most *= times;
+    w->part = w->s->nearness = 1 / times;
+    w->s->is_delicate = w->part < near_pivot;
+    w->reach = in * fmin(1, singular_pivot * times);
+}
+
 void ct_singular_expect(struct ct_singular *w, double t, const double *y, double in)
 {
     w->most = pivot_at(w, t, y); // what is farther off is not known
+    w->side = 0;
     w->t = t;
     w->part = w->s->nearness = 1;
     w->switches = w->s->switches;
-    w->in = w->reach = in;
+    w->in = in;
+    w->reach = INFINITY;
 }
 
 // The stages of a crossing keep away from the position and are put onto the constraints: an order of pivots that holds

@@ -28,6 +28,13 @@ struct ct_singular {
     bool was_told;          // the form has told of the last state that nothing has changed
     long switches, nmade;   // of the embedding, there
     double weakest, volume; // of its form there
+    int side;               // of det J_d there, 0: not known
+    double *B;              // (rank x free) there
+    double *u, *a;          // (nu) speeds and accelerations there, where `side` is known
+    long nover;             // positions that fixed steps have come across
+    double over;            // when first
+    double closest,
+        t_closest; // the smallest part of a step that was not made to cross, and when
     long npassed;
     struct ct_singular_position *passed; // the first of them (CT_MOST_SINGULAR)
     double *y, *d, *x;                   // (ny), (nu), (nrow)
@@ -40,13 +47,25 @@ void ct_singular_start(struct ct_singular *w);
 
 /// What is ahead of an accepted state, up to the event that is pending. False if the step to it has come beside a singular
 /// position, or past it, before that was foreseen, and may be taken again: not with fixed steps, which are told only whether
-/// they are beside one.
+/// they are beside one, and counted where they have come past it.
+struct ct_singular_step {
+    bool is_fixed, is_across; // of fixed size; made to cross a position
+};
 bool ct_singular_foresee(struct ct_singular *w, double t, const double *y, const double *dy,
-                         double pending, bool is_fixed);
+                         double pending, const struct ct_singular_step *step);
 /// Speeds have jumped at y, the last accepted place: next to a position, that comes sooner or later, or not at all.
 void ct_singular_turn(struct ct_singular *w, double t, const double *y, const double *dy,
                       double pending);
-/// At y, where the time is t, it is known of a position so much ahead: the first step from there is to cross it.
+/// How far [rad, m] y at t, where steps begin, is from a position: above 0 ahead along the motion, below 0 behind; as the smallest
+/// pivot changes within s seconds, infinite where it does not change or does not tell.
+double ct_singular_near(struct ct_singular *w, double t, const double *y, const double *dy,
+                        double pending, double s);
+/// At y, where steps begin, a position so much ahead is known of that is nearer than positions are where they are foreseen: the
+/// largest pivot is taken to be so many times the one of now.
+void ct_singular_begin(struct ct_singular *w, double t, const double *y, double in,
+                       double times);
+/// At y, where the time is t, it is known of a position so much ahead: the first step from there is to cross it, whatever rounding
+/// beside the position makes of it, as none from nearer by would be better.
 void ct_singular_expect(struct ct_singular *w, double t, const double *y, double in);
 /// Is y beside a singular position, foreseen or not? row (nrow, out): those that depend there; none of a large system.
 bool ct_singular_is_beside(struct ct_singular *w, double t, const double *y, bool *row);

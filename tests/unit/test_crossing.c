@@ -40,9 +40,10 @@ static enum ct_eval rhs(void *user, double t, const double *y, double *dy)
     return CT_EVAL_OK;
 }
 
-static enum ct_eval accepted(void *user, double t, const double *y, const double *dy)
+static enum ct_eval accepted(void *user, double t, const double *y, const double *dy,
+                             bool is_across)
 {
-    (void)y, (void)dy;
+    (void)y, (void)dy, (void)is_across;
     ((struct record *)user)->now = t;
     return CT_EVAL_OK;
 }

@@ -15,9 +15,10 @@ static enum ct_eval shortsighted(void *user, double t, const double *y, double *
     return (enum ct_eval)r->mode;
 }
 
-static enum ct_eval look_ahead(void *user, double t, const double *y, const double *dy)
+static enum ct_eval look_ahead(void *user, double t, const double *y, const double *dy,
+                               bool is_across)
 {
-    (void)y, (void)dy;
+    (void)y, (void)dy, (void)is_across;
     ((struct record *)user)->limit = t;
     return CT_EVAL_OK;
 }
