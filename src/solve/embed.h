@@ -35,7 +35,8 @@ struct ct_embed {
     double largest;    // pivot of J_d
     double
         nearness; // how near J is to losing rank at the last accepted state, 1 at its farthest and where nobody looks
-    const bool *is_kept; // (nu) speeds that choices leave independent where they can; NULL: none
+    const bool
+        *is_kept;    // (nu) speeds that choices leave independent where they can; NULL: none
     bool *is_unique; // per row: its multiplier is determined
     long switches, factorizations;
     // closed forms, the latest used first

@@ -22,7 +22,8 @@ static int order_rows(struct ct_embed *s)
 // light, and do not ask for it. Those to be kept independent count little.
 static void weigh_columns(struct ct_embed *s, double *w)
 {
-    const double apart = 1e6, little = 0.03; // leaves light ones ten digits; B is as much larger
+    const double apart = 1e6,
+                 little = 0.03; // leaves light ones ten digits; B is as much larger
     const size_t n = s->m->nu;
     double least = INFINITY, most = 0;
     for (size_t j = 0; j < n; j++) {

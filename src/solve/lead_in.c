@@ -27,7 +27,7 @@ static const double beside = 0.2, near = 0.5;
 
 // The step may err by so much of the largest state; by so much of what is asked where more is rounding, which is felt as the way to the
 // position is short; looks for a better one end at a tenth of that.
-static const double exact = 1e-12, unfelt = 0.1, better = 0.1;
+static const double exact = 1e-12, unfelt = 0.02, better = 0.1;
 
 // Where a run starts: all speeds together, and accelerations where they are known.
 struct lead {

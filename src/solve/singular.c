@@ -34,6 +34,7 @@ void ct_singular_start(struct ct_singular *w)
     w->switches = -1;
     w->npassed = w->nover = 0;
     w->closest = INFINITY;
+    w->swiftest = 0;
     w->side = 0;
     w->s->nearness = 1;
 }
@@ -73,6 +74,8 @@ static double pivot_after(struct ct_singular *w, const struct sight *a, double s
 // and goes on falling; where it has fallen to the second part pivots are sought at every evaluation, at the third f is
 // better not computed; at the second already where steps keep their rows and could have kept others.
 static const double foreseen_pivot = 0.8, near_pivot = 0.5, singular_pivot = 0.25;
+// At so little rounding, which is divided by its square, leaves no digit of which motion goes on: no step ends there.
+static const double lost_pivot = 1e-7;
 
 // The smallest pivot falls about linearly towards a singular position. Time to where it will vanish, by secants along
 // the motion as the accelerations of now continue it. INFINITY if it rises.
@@ -140,15 +143,15 @@ static bool is_told_by_form(const struct ct_singular *w, double dt, bool is_fixe
         && ct_is_within(f->volume / w->volume, hardly);
 }
 
-// Do speeds follow from accelerations, with those of now and of the last look, dt before? Motions that meet in a position have
-// others.
-static bool has_jumped(const struct ct_singular *w, double dt, const double *u, const double *a)
+// Have speeds changed by far more since the last look, dt before, than accelerations there or here make of them? Motions that meet in a
+// position have others.
+static bool has_jumped(struct ct_singular *w, double dt, const double *u, const double *a)
 {
-    const double part = 0.2; // of the largest speed: far more than steps err by
+    const double part = 0.2; // of the largest speed so far: far more than steps err by
     const size_t nu = w->m->nu;
-    const double most = part * fmax(ct_vector_largest(u, nu), ct_vector_largest(w->u, nu));
+    w->swiftest = fmax(w->swiftest, ct_vector_largest(u, nu));
     for (size_t i = 0; i < nu; i++)
-        if (fabs(u[i] - w->u[i] - dt / 2 * (w->a[i] + a[i])) > most)
+        if (fabs(u[i] - w->u[i]) > part * w->swiftest + dt * fmax(fabs(a[i]), fabs(w->a[i])))
             return true;
     return false;
 }
@@ -204,6 +207,8 @@ bool ct_singular_foresee(struct ct_singular *w, double t, const double *y, const
         w->over = w->nover++ ? w->over : t;
     }
     const bool was_unforeseen = is_comparable && isinf(w->in) && w->part > near_pivot;
+    if (!is_fixed && !step->is_across && part < lost_pivot)
+        return false;
     if (!is_fixed && part < (w->was_told ? singular_pivot : near_pivot) && was_unforeseen)
         return false;
     if (part < w->closest && !step->is_across) {

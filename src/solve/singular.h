@@ -31,6 +31,7 @@ struct ct_singular {
     int side;               // of det J_d there, 0: not known
     double *B;              // (rank x free) there
     double *u, *a;          // (nu) speeds and accelerations there, where `side` is known
+    double swiftest;        // largest speed at looks
     long nover;             // positions that fixed steps have come across
     double over;            // when first
     double closest,
