@@ -145,91 +145,118 @@ static bool is_told_by_form(const struct ct_singular *w, double dt, bool is_fixe
 
 // Have speeds changed by far more since the last look, dt before, than accelerations there or here make of them? Motions that meet in a
 // position have others.
-static bool has_jumped(struct ct_singular *w, double dt, const double *u, const double *a)
+static bool has_jumped(const struct ct_singular *w, double dt, const double *u, const double *a)
 {
     const double part = 0.2; // of the largest speed so far: far more than steps err by
     const size_t nu = w->m->nu;
-    w->swiftest = fmax(w->swiftest, ct_vector_largest(u, nu));
+    const double least = part * fmax(w->swiftest, ct_vector_largest(u, nu));
     for (size_t i = 0; i < nu; i++)
-        if (fabs(u[i] - w->u[i]) > part * w->swiftest + dt * fmax(fabs(a[i]), fabs(w->a[i])))
+        if (fabs(u[i] - w->u[i]) > least + dt * fmax(fabs(a[i]), fabs(w->a[i])))
             return true;
     return false;
 }
 
-// After a look at a pivot: the side of now. Has the motion stepped over a position since the last look, or left it on another motion?
-static bool has_stepped_over(struct ct_singular *w, double dt, const struct sight *now,
-                             int *side)
+// What is seen of an accepted state.
+struct look {
+    double now,
+        part; // the pivot, and against the largest; no more is known than that it is `is_far`
+    bool is_far;
+    int side; // as in ct_singular
+    bool
+        is_another; // a position has been stepped over since the last look, or left on another motion
+};
+
+static struct look look_around(struct ct_singular *w, const struct sight *at, double dt)
 {
-    const double *u = now->y + w->m->nq, *a = now->dy + w->m->nq;
-    *side = ct_embed_side(w->s);
-    if (!*side || !w->side || w->s->switches != w->switches)
-        return false;
-    return (*side != w->side && ct_embed_has_lost_rank(w->s, w->B)) || has_jumped(w, dt, u, a);
+    const double *u = at->y + w->m->nq, *a = at->dy + w->m->nq;
+    struct look l = {.side = 0};
+    look_at(w, ct_time_before(at->t, at->pending), at->y);
+    l.is_far = w->most > 0
+            && ct_embed_pivot_is_between(w->s, foreseen_pivot * w->most,
+                                         w->most); // then at least so much
+    l.now = l.is_far ? foreseen_pivot * w->most : ct_embed_pivot(w->s);
+    l.part = l.now / fmax(w->most, l.now);
+    if (l.is_far)
+        return l;
+    l.side = ct_embed_side(w->s);
+    if (l.side && w->side && w->s->switches == w->switches)
+        l.is_another = (l.side != w->side && ct_embed_has_lost_rank(w->s, w->B))
+                    || has_jumped(w, dt, u, a);
+    return l;
 }
 
-static void keep_side(struct ct_singular *w, const struct sight *now, int side)
+// Is the step to it to be taken again, shorter? After another choice of rows and columns the pivot is not to be compared with the last
+// one.
+static bool is_to_be_shorter(const struct ct_singular *w, const struct look *l)
+{
+    const bool was_unforeseen
+        = w->s->switches == w->switches && isinf(w->in) && w->part > near_pivot;
+    return l->is_another || l->part < lost_pivot
+        || (was_unforeseen && l->part < (w->was_told ? singular_pivot : near_pivot));
+}
+
+static void keep_side(struct ct_singular *w, const struct sight *at, int side)
 {
     const size_t nu = w->m->nu, rank = (size_t)w->s->rank;
     w->side = side;
     if (!side)
         return;
     memcpy(w->B, w->s->B, rank * (nu - rank) * sizeof *w->B);
-    memcpy(w->u, now->y + w->m->nq, nu * sizeof *w->u);
-    memcpy(w->a, now->dy + w->m->nq, nu * sizeof *w->a);
+    memcpy(w->u, at->y + w->m->nq, nu * sizeof *w->u);
+    memcpy(w->a, at->dy + w->m->nq, nu * sizeof *w->a);
+    w->swiftest = fmax(w->swiftest, ct_vector_largest(w->u, nu));
+}
+
+static void keep(struct ct_singular *w, const struct sight *at, const struct look *l, double dt)
+{
+    keep_side(w, at, l->side);
+    w->t = at->t;
+    w->was_told = false;
+    w->part = l->part;
+    w->switches = w->s->switches;
+    w->nmade = w->s->nmade;
+    w->weakest = w->s->has_form ? w->s->form[0]->weakest : 0;
+    w->volume = w->s->has_form ? w->s->form[0]->volume : NAN;
+    w->most = fmax(w->most, l->now);
+    w->in = INFINITY;
+    w->s->is_delicate = l->part < near_pivot;
+    w->s->nearness = l->part;
+    w->dt = dt;
+}
+
+// Where a step of another kind than crossings has come: what is told of it at the end of the run.
+static void note_step(struct ct_singular *w, double t, const struct look *l)
+{
+    if (l->is_another)
+        w->over = w->nover++ ? w->over : t;
+    if (l->part < w->closest) {
+        w->closest = l->part;
+        w->t_closest = t;
+    }
 }
 
 bool ct_singular_foresee(struct ct_singular *w, double t, const double *y, const double *dy,
                          double pending, const struct ct_singular_step *step)
 {
-    const bool is_fixed = step->is_fixed;
-    const struct sight ahead = {t, pending, y, dy};
+    const struct sight at = {t, pending, y, dy};
     const double dt = t - w->t;
     if (!ct_embed_has_pivot(w->s) || !(dt > 0))
         return true;
-    if (is_told_by_form(w, dt, is_fixed)) {
+    if (is_told_by_form(w, dt, step->is_fixed)) {
         w->t = t;
         w->was_told = true;
         w->side = 0;
         return true;
     }
-    look_at(w, ct_time_before(t, pending), y);
-    const bool is_far = w->most > 0
-                     && ct_embed_pivot_is_between(w->s, foreseen_pivot * w->most,
-                                                  w->most); // then at least so much
-    const double now = is_far ? foreseen_pivot * w->most : ct_embed_pivot(w->s);
-    const double part = now / fmax(w->most, now);
-    // after another choice of rows and columns the pivot is not to be compared with the last one
-    const bool is_comparable = w->s->switches == w->switches;
-    int side = 0;
-    if (!is_far && has_stepped_over(w, dt, &ahead, &side) && !step->is_across) {
-        if (!is_fixed)
+    const struct look l = look_around(w, &at, dt);
+    if (!step->is_across) {
+        if (!step->is_fixed && is_to_be_shorter(w, &l))
             return false;
-        w->over = w->nover++ ? w->over : t;
+        note_step(w, t, &l);
     }
-    const bool was_unforeseen = is_comparable && isinf(w->in) && w->part > near_pivot;
-    if (!is_fixed && !step->is_across && part < lost_pivot)
-        return false;
-    if (!is_fixed && part < (w->was_told ? singular_pivot : near_pivot) && was_unforeseen)
-        return false;
-    if (part < w->closest && !step->is_across) {
-        w->closest = part;
-        w->t_closest = t;
-    }
-    keep_side(w, &ahead, side);
-    w->t = t;
-    w->was_told = false;
-    w->part = part;
-    w->switches = w->s->switches;
-    w->nmade = w->s->nmade;
-    w->weakest = w->s->has_form ? w->s->form[0]->weakest : 0;
-    w->volume = w->s->has_form ? w->s->form[0]->volume : NAN;
-    w->most = fmax(w->most, now);
-    w->in = INFINITY;
-    w->s->is_delicate = part < near_pivot;
-    w->s->nearness = part;
-    w->dt = dt;
-    if (!(is_far || part > foreseen_pivot || is_fixed))
-        find_next(w, &ahead, now);
+    keep(w, &at, &l, dt);
+    if (!(l.is_far || l.part > foreseen_pivot || step->is_fixed))
+        find_next(w, &at, l.now);
     return true;
 }
 
