@@ -166,8 +166,7 @@ void ct_driver_look_ahead(struct ct_driver *r)
     }
     if (!(r->singular_in < INFINITY))
         return;
-    if (!(r->reach < INFINITY))
-        r->far = reach > r->singular_in ? reach : 0;
+    r->far = reach > r->singular_in ? reach : 0;
     r->reach = fmin(fmin(r->reach, reach), r->singular_in);
 }
 
