@@ -52,11 +52,11 @@ struct ct_driver {
     void *crossing_work; // of ct_crossing; NULL: there are no singular positions to cross
     double singular_in;  // time to the next one, from t
     double reach;        // crossing it is to begin this long before
-    double
-        far; // where it was further than the position when that was found, by an event; else 0
+    double far;          // time before it where crossings of it begin, if that is over; else 0
     struct ct_striding *striding; // NULL: no crossings by steps of the method itself
     bool has_failed_stride;       // across the next position
     int failed_crossings;         // of it
+    double foretold;              // when it was to come as the last of them was begun
     bool is_open;                 // the last step met everything but the constraints
     size_t sample;                // the next one to give
     bool lands;                   // steps end on samples: between them outputs err too much

@@ -14,6 +14,8 @@ static const int most_crossings = 6;
 // This much further away than where it should begin, a crossing may begin at once; after one that failed only where
 // a step to there has ended.
 static const double early = 1.3, on_time = 1.02;
+// Times to a position that differ by such a factor are those of two.
+static const double other = 2;
 // The end of a run is reached by a crossing, too, when it is this part of its reach before the position.
 static const double beside = 0.5;
 double ct_driver_step_limit(const struct ct_driver *r)
@@ -159,15 +161,16 @@ void ct_driver_look_ahead(struct ct_driver *r)
     double reach;
     const double before = r->singular_in;
     r->singular_in = r->p->singular_in(r->p->user, &reach);
-    if (!(r->singular_in < INFINITY) || r->singular_in > 2 * before) { // none, or another one
+    // none, or another one; or what has failed was begun for one that had been taken to be much farther off
+    if (!(r->singular_in < INFINITY) || r->singular_in > other * before
+        || (r->failed_crossings && other * r->singular_in < r->foretold - r->t)) {
         r->reach = INFINITY;
         r->failed_crossings = 0;
         r->has_failed_stride = false;
     }
     if (!(r->singular_in < INFINITY))
         return;
-    if (!(r->reach < INFINITY))
-        r->far = reach > r->singular_in ? reach : 0;
+    r->far = reach > r->singular_in ? reach : 0;
     r->reach = fmin(fmin(r->reach, reach), r->singular_in);
 }
 
@@ -192,6 +195,7 @@ void ct_driver_adapt_after_failed_crossing(struct ct_driver *r, const struct ct_
         r->has_failed_stride = true;
         return;
     }
+    r->foretold = r->t + r->singular_in;
     r->reach = r->singular_in * (error > 1 ? fmax(nearer, safety * pow(error, power)) : nearer);
     r->failed_crossings = isinf(error) ? most_crossings : r->failed_crossings + 1;
 }
