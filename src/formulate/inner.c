@@ -11,10 +11,6 @@
 #include <math.h>
 #include <string.h>
 
-// What factors take is foretold as if pivots were on the diagonal, and of entries their number alone: less than so much of the work
-// without inner values is less in truth, too.
-static const double clearly = 0.8;
-
 struct search {
     struct ct_build *b;
     struct ct_arena *a;
@@ -131,6 +127,14 @@ static size_t thin_out(const struct search *s, double work, ct_ex **inner)
     return nbest;
 }
 
+// A search takes as long as a thousand steps with full matrices of so few: what takes less for each unknown is not worth one, and none
+// has been seen to find anything there.
+static bool is_worth_a_search(const struct search *s, double work)
+{
+    const double few = 40;
+    return work > full_work(few) / few * (double)(s->nu + s->nrow);
+}
+
 size_t ct_inner_choose(struct ct_build *b, const ct_ex *r, const struct ct_seed *seed,
                        size_t nseed, ct_ex **inner)
 {
@@ -140,13 +144,10 @@ size_t ct_inner_choose(struct ct_build *b, const ct_ex *r, const struct ct_seed 
         return 0;
     const struct search s
         = {b, ct_arena_create_under(b->arena), r, seed, nseed, e->nu, e->nrow};
-    // what full matrices of so few take for each unknown is not worth a search: none has been seen to find anything there
-    const double few = 40, ample = full_work(few) / few * (double)(s.nu + s.nrow);
-    const double plain = plain_work(&s),
-                 least = fmin(plain, full_work((double)(s.nu + 2 * s.nrow)));
+    const double full = full_work((double)(s.nu + 2 * s.nrow));
+    const double least = is_worth_a_search(&s, full) ? fmin(plain_work(&s), full) : 0;
     ct_ex *found = NULL;
-    const size_t n
-        = isfinite(plain) && least > ample ? thin_out(&s, clearly * least, &found) : 0;
+    const size_t n = is_worth_a_search(&s, least) ? thin_out(&s, least, &found) : 0;
     if (n) {
         *inner = CT_NEWN(b->arena, ct_ex, n);
         memcpy(*inner, found, n * sizeof *found);

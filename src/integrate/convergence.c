@@ -44,21 +44,21 @@ static double toss(unsigned k)
     return (k & 1 ? 1 : -1) * (1 + odd * (k >> 8));
 }
 
-// Forces at q and speeds of the step's start into r (nu); no accelerations, no multipliers.
-static bool find_forces(struct ct_iteration *it, const double *q, double *r)
+// At q and speeds of the step's start: forces into r (nu), constraints into rows (m x 2); no accelerations, no multipliers.
+static bool find_forces(struct ct_iteration *it, const double *q, double *r, double *rows)
 {
     const struct ct_probe *p = &it->probe;
     const double *u = it->y + it->dae->nq;
-    return it->dae->residual(it->dae->user, it->t, q, u, p->zero, p->zero, r, p->rows,
-                             p->rows + it->m)
+    return it->dae->residual(it->dae->user, it->t, q, u, p->zero, p->zero, r, rows,
+                             rows + it->m)
         == CT_EVAL_OK;
 }
 
-// p->r (nu) = the rounding of forces, and what that of places makes of them: by how much those at places that cannot be told from these,
-// d away, are not what K says. here (nu) is overwritten.
-static bool round_forces(struct ct_iteration *it, double *here)
+// p->r (nu), p->phi (m) = the rounding of forces and of constraints, and what that of places makes of them: by how much those at places
+// that cannot be told from these, d away, are not what K and J say. here (nu) is overwritten.
+static bool round_residuals(struct ct_iteration *it, double *here)
 {
-    const int nu = it->nu;
+    const int nu = it->nu, m = it->m;
     const struct ct_dae *dae = it->dae;
     const struct ct_probe *p = &it->probe;
     for (int k = 0; k < nu; k++) {
@@ -66,14 +66,20 @@ static bool round_forces(struct ct_iteration *it, double *here)
         p->d[k] = toss((unsigned)k) * ct_place_rounding * DBL_EPSILON * place;
     }
     ct_iteration_move(dae, it->y, p->d, p->q);
-    if (!find_forces(it, it->y, here) || !find_forces(it, p->q, p->r))
+    if (!find_forces(it, it->y, here, p->phi) || !find_forces(it, p->q, p->r, p->rows))
         return false;
     for (int k = 0; k < nu; k++)
         p->r[k] = here[k] - p->r[k];
-    if (it->sparse)
+    for (int i = 0; i < m; i++)
+        p->phi[i] -= p->rows[i];
+    if (it->sparse) {
         ct_newton_add_stiffness(it->sparse, p->r, 1, p->d);
-    for (int j = 0; j < nu && !it->sparse; j++)
+        ct_newton_add_rows(it->sparse, p->phi, 1, p->d);
+    }
+    for (int j = 0; j < nu && !it->sparse; j++) {
         ct_vector_add(p->r, p->d[j], it->K + nu * j, (size_t)nu);
+        ct_vector_add(p->phi, p->d[j], it->J + m * j, (size_t)m);
+    }
     return true;
 }
 
@@ -81,21 +87,23 @@ const double *ct_iteration_noise(struct ct_iteration *it)
 {
     const int nu = it->nu, m = it->m;
     const struct ct_probe *p = &it->probe;
-    double *d = it->noise, *u = d + nu;
+    double *d = it->noise, *u = d + nu, *eta = p->rows;
     if (it->has_noise)
         return d;
     it->has_noise = true;
-    if (!round_forces(it, d)) {
+    if (!round_residuals(it, d)) {
         memset(d, 0, 2 * (size_t)nu * sizeof *d);
     } else if (it->is_few) { // places and speeds, one behind the other
         memset(it->b, 0, (size_t)it->n * sizeof *it->b);
         ct_stepper_copy(it->b, p->r, nu);
+        ct_stepper_copy(it->b + nu, p->phi, m);
         ct_product(it->x, it->response->real, it->b, it->response->rows, it->response->in);
         ct_stepper_copy(d, it->x, 2 * nu);
     } else {
-        ct_iteration_solve(it, d, p->rows, p->rows + m, p->r, p->zero, p->zero);
+        ct_iteration_solve(it, d, eta, eta + m, p->r, p->phi, p->zero);
+        ct_iteration_push(it, u, d, -1, eta, nu, m); // eta is zero in the index-3 form
         for (int k = 0; k < nu; k++)
-            u[k] = it->c * d[k];
+            u[k] *= it->c;
     }
     return d;
 }

@@ -78,10 +78,10 @@ static bool is_unfollowed(struct ct_driver *r, const struct ct_stride *s)
 }
 
 // Does the interpolant err in the next sample, by so much of what steps may? A step from the start of this one to there tells. Each
-// time it does not, more steps to come are not asked; where it does, some are taken to err as well.
+// time it does not, more steps to come are not asked; where it does, as many as ever are taken to err as well.
 static bool interpolant_errs(struct ct_driver *r, const struct ct_stride *s)
 {
-    enum { MOST_TRUSTED = 63, DISTRUSTED = 30 };
+    enum { MOST_UNASKED = 31 };
     const double much = 0.01;
     const struct ct_stepper_span span = {s->method, r->p, r->t, s->h, r->y, r->y1, s->work};
     const double h = r->o->sample[r->sample] - r->t;
@@ -99,8 +99,8 @@ static bool interpolant_errs(struct ct_driver *r, const struct ct_stride *s)
             r->point[i] -= r->beside[i];
         r->has_erred = !(ct_stepper_norm(r->p, &r->tolerance, r->y, r->y1, r->point) <= much);
     }
-    r->trusted = r->has_erred ? 0 : r->trusted < MOST_TRUSTED ? 2 * r->trusted + 1 : r->trusted;
-    r->unasked = r->has_erred ? DISTRUSTED : r->trusted;
+    r->trusted = r->has_erred ? 0 : r->trusted < MOST_UNASKED ? 2 * r->trusted + 1 : r->trusted;
+    r->unasked = r->has_erred ? MOST_UNASKED : r->trusted;
     return r->has_erred;
 }
 

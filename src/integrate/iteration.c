@@ -72,6 +72,7 @@ struct ct_iteration *ct_iteration_create(struct ct_arena *a, const struct ct_pro
         .d = CT_NEWN(a, double, nu + 1),
         .r = CT_NEWN(a, double, nu + 1),
         .rows = CT_NEWN(a, double, 2 * m + 1),
+        .phi = CT_NEWN(a, double, 2 * m + 1),
         .zero = CT_NEWN(a, double, nu + m + 1),
     };
     if (is_complex) {

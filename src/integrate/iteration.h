@@ -27,10 +27,11 @@
 
 enum ct_verdict { CT_GO_ON, CT_CONVERGED, CT_DIVERGED };
 
-/// Where rounding of forces is looked at.
+/// Where rounding of forces and constraints is looked at.
 struct ct_probe {
     double *q, *d;    // a place beside that of the step, its distance  (nq), (nu)
     double *r, *rows; // residuals there  (nu), (rows x 2)
+    double *phi;      // the same of constraints at the step's start  (rows x 2)
     double *zero;     // accelerations and multipliers  (larger of nu and rows)
 };
 
@@ -77,8 +78,9 @@ struct ct_iteration {
     double *fast;    // one of places and speeds as vibrations count  (2 nu)
     const double *y; // the start of the step
     double t;        // of the derivatives
-    double *noise;   // what a rounding of forces is worth in places and speeds, (8.17)  (2 nu)
-    bool has_noise;  // with the factors there are
+    double *
+        noise; // what a rounding of forces and constraints is worth in places and speeds, (8.17)  (2 nu)
+    bool has_noise; // with the factors there are
     struct ct_probe probe;
     // the run of corrections
     int count;
@@ -286,7 +288,7 @@ double ct_iteration_amplified(struct ct_iteration *it, const struct ct_problem *
                               const struct ct_tolerance *tolerance, double t1, const double *y1,
                               const double *d, const double *u);
 
-/// Places and speeds (2 nu) that the rounding of forces leads to, with the factors of the real system; two residuals, `b` is
+/// Places and speeds (2 nu) that the rounding of forces and constraints leads to, with the factors of the real system; two residuals, `b` is
 /// overwritten; zeros where they cannot be found. Corrections cannot be told from it.  (8.17)
 const double *ct_iteration_noise(struct ct_iteration *it);
 

@@ -84,65 +84,57 @@ bool ct_inverse(double *A, int *pivot, int n)
                         : invert(A, pivot, n, CT_MOST_INVERTED);
 }
 
-// So many rows, a multiple of two, at once.
-static inline void add_columns(double *restrict x, const double *restrict A,
-                               const double *restrict b, const int some, int rows, int n)
+// Eight rows and, at last, four: columns are read once for each, and their sums do not wait for each other.
+CT_FOUR_INLINE void product(double *restrict x, const double *restrict A,
+                            const double *restrict b, int rows, int n)
 {
-    ct_pair sum[FEW] = {{0}};
-    for (int j = 0; j < n; j++, A += rows)
-        for (int i = 0; i < some / PAIR; i++)
-            sum[i] = ct_pair_add(sum[i], ct_pair_take(A + PAIR * i), b[j]);
-    for (int i = 0; i < some / PAIR; i++)
-        ct_pair_put(x + PAIR * i, sum[i]);
-}
-
-// Eight rows and seven columns, which planar loops of three coordinates multiply in each correction.
-CT_FOUR_INLINE void add_seven(double *x, const double *A, const double *b)
-{
-    ct_four first, second;
-    ct_four_fill(&first, 0);
-    ct_four_fill(&second, 0);
-    for (int j = 0; j < 7; j++, A += 2 * FEW) {
-        ct_four_add_times(&first, b[j], A);
-        ct_four_add_times(&second, b[j], A + FEW);
+    int i = 0;
+    for (; i + 2 * FEW <= rows; i += 2 * FEW) {
+        const double *column = A + i;
+        ct_four first, second;
+        ct_four_fill(&first, 0);
+        ct_four_fill(&second, 0);
+        for (int j = 0; j < n; j++, column += rows) {
+            ct_four_add_times(&first, b[j], column);
+            ct_four_add_times(&second, b[j], column + FEW);
+        }
+        ct_four_put(x + i, &first);
+        ct_four_put(x + i + FEW, &second);
     }
-    ct_four_put(x, &first);
-    ct_four_put(x + FEW, &second);
+    if (i < rows) {
+        const double *column = A + i;
+        ct_four sum;
+        ct_four_fill(&sum, 0);
+        for (int j = 0; j < n; j++, column += rows)
+            ct_four_add_times(&sum, b[j], column);
+        ct_four_put(x + i, &sum);
+    }
 }
 
-static void add_seven_narrow(double *x, const double *A, const double *b)
+static void product_narrow(double *x, const double *A, const double *b, int rows, int n)
 {
-    add_seven(x, A, b);
+    product(x, A, b, rows, n);
 }
 
 #if defined(__x86_64__) && defined(__GNUC__)
-__attribute__((target("avx2"))) static void add_seven_wide(double *x, const double *A,
-                                                           const double *b)
+__attribute__((target("avx2"))) static void product_wide(double *x, const double *A,
+                                                         const double *b, int rows, int n)
 {
-    add_seven(x, A, b);
+    product(x, A, b, rows, n);
 }
-
-static void multiply_seven(double *x, const double *A, const double *b)
-{
-    (__builtin_cpu_supports("avx2") ? add_seven_wide : add_seven_narrow)(x, A, b);
-}
-#else
-#define multiply_seven add_seven_narrow
-#endif
 
 void ct_product(double *restrict x, const double *restrict A, const double *restrict b,
                 int rows, int n)
 {
-    int i = 0;
-    if (rows == 2 * FEW && n == 7) {
-        multiply_seven(x, A, b);
-        return;
-    }
-    for (; i + 2 * FEW <= rows; i += 2 * FEW)
-        add_columns(x + i, A + i, b, 2 * FEW, rows, n);
-    if (i < rows)
-        add_columns(x + i, A + i, b, FEW, rows, n);
+    (__builtin_cpu_supports("avx2") ? product_wide : product_narrow)(x, A, b, rows, n);
 }
+#else
+void ct_product(double *restrict x, const double *restrict A, const double *restrict b,
+                int rows, int n)
+{
+    product_narrow(x, A, b, rows, n);
+}
+#endif
 
 void ct_inverse_apply(double *restrict x, const double *restrict inverse,
                       const double *restrict b, int n)

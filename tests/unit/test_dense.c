@@ -254,6 +254,30 @@ static void complex_inverses_solve(void **unused)
     assert_false(ct_inverse_complex(singular, pivot, 2));
 }
 
+// For any number of columns, and of rows by fours; each sum has its terms in their order, whatever the processor adds at once.
+static void products_are_sums_in_order(void **unused)
+{
+    (void)unused;
+    enum { ROWS = 28, COLUMNS = 13 };
+    double A[ROWS * COLUMNS], b[COLUMNS], x[ROWS + 1];
+    for (int i = 0; i < ROWS * COLUMNS; i++)
+        A[i] = uniform();
+    for (int i = 0; i < COLUMNS; i++)
+        b[i] = uniform();
+    for (int rows = 4; rows <= ROWS; rows += 4)
+        for (int n = 0; n <= COLUMNS; n++) {
+            x[rows] = 1;
+            ct_product(x, A, b, rows, n);
+            for (int i = 0; i < rows; i++) {
+                double sum = 0;
+                for (int j = 0; j < n; j++)
+                    sum += A[i + rows * j] * b[j];
+                assert_true(x[i] == sum);
+            }
+            assert_true(x[rows] == 1);
+        }
+}
+
 static void pivoted_qr_finds_rank_and_columns(void **unused)
 {
     (void)unused;
@@ -379,6 +403,7 @@ int main(void)
         cmocka_unit_test(complex_lu_solves),
         cmocka_unit_test(inverses_solve),
         cmocka_unit_test(complex_inverses_solve),
+        cmocka_unit_test(products_are_sums_in_order),
         cmocka_unit_test(pivoted_qr_finds_rank_and_columns),
         cmocka_unit_test(least_squares_is_shortest_for_every_shape_and_rank),
         cmocka_unit_test(empty_least_squares_gives_zero),

@@ -604,7 +604,7 @@ static int no_rows(void *user, long *version)
 // What a correction that has stalled comes to, of that size.
 static enum ct_verdict judge_stalled(struct ct_iteration *it, double size)
 {
-    const double far[] = {1, 1};
+    const double far[] = {1, 1, 1, 1};
     ct_iteration_start(it);
     ct_iteration_judge(it, size, far, far, 1);
     return ct_iteration_judge(it, size, far, far, 1);
@@ -642,6 +642,75 @@ static void stalled_corrections_are_compared_with_rounding_of_forces(void **unus
     ct_arena_destroy(a);
 }
 
+// Two masses that move alike, the second held by a spring: the row is off by a grain in all places but one.
+static enum ct_eval find_grainy_row(void *user, double t, const double *q, const double *u,
+                                    const double *a, const double *lam, double *r, double *phi,
+                                    double *v)
+{
+    (void)user, (void)t;
+    r[0] = a[0] - lam[0];
+    r[1] = a[1] + stiffness * q[1] + lam[0];
+    phi[0] = q[0] - q[1] + (q[0] != 1 ? grain : 0);
+    v[0] = u[0] - u[1];
+    return CT_EVAL_OK;
+}
+
+static enum ct_eval derive_grainy_row(void *user, double t, const double *q, const double *u,
+                                      const double *a, const double *lam, double *M, double *C,
+                                      double *K, double *J, double *D)
+{
+    (void)user, (void)t, (void)q, (void)u, (void)a, (void)lam;
+    memset(M, 0, 4 * sizeof *M);
+    memset(C, 0, 4 * sizeof *C);
+    memset(K, 0, 4 * sizeof *K);
+    memset(D, 0, 2 * sizeof *D);
+    M[0] = M[3] = 1;
+    K[3] = stiffness;
+    J[0] = 1;
+    J[1] = -1;
+    return CT_EVAL_OK;
+}
+
+static int one_row(void *user, long *version)
+{
+    (void)user;
+    *version = 1;
+    return 1;
+}
+
+// (8.17): what rows are off by moves the masses apart by as much, d, which the spring feels: both swing by k d/2/(2 m e + k) for it.
+static void stalled_corrections_are_compared_with_rounding_of_constraints(void **unused)
+{
+    (void)unused;
+    static const int q_of[] = {0, 1};
+    const struct ct_dae dae = {.nq = 2,
+                               .nu = 2,
+                               .most_rows = 1,
+                               .q_of = q_of,
+                               .rows = one_row,
+                               .residual = find_grainy_row,
+                               .tangent = derive_grainy_row,
+                               .is_plain = true};
+    const struct ct_problem p = {.ny = 4, .dae = &dae};
+    const struct ct_tolerance tight = {1e-12, 1e-12};
+    const double y[] = {1, 1, 1, 1}, zero[] = {0, 0}, h = 1e-2, c = 2 / h, e = c * c;
+    struct ct_integrate_stats stats = {0};
+    struct ct_arena *a = ct_arena_create();
+    struct ct_iteration *it = ct_iteration_create(a, &p, true, false);
+    ct_iteration_begin(it, &tight, h, y);
+    assert_int_equal(ct_iteration_refresh(it, 0, y, y + 2, zero, zero, &stats), CT_EVAL_OK);
+    assert_true(ct_iteration_factor(it, c, e, 0, &stats));
+    const double *noise = ct_iteration_noise(it);
+    const double seen = ct_iteration_norm(it, noise, noise + 2, 2, 1);
+    const double swing = stiffness * grain / 2 / (2 * e + stiffness);
+    CHECK_CLOSE(fabs(noise[0] - noise[1]) / grain, 1, 1e-6, 0); // roundings beside the grain
+    CHECK_CLOSE(fabs(noise[2]) / (c * swing), 1, 1e-6, 0);
+    CHECK_CLOSE(noise[3] / noise[2], 1, 1e-6, 0);
+    assert_int_equal(judge_stalled(it, 6 * seen), CT_CONVERGED);
+    assert_int_not_equal(judge_stalled(it, 25 * seen), CT_CONVERGED);
+    ct_arena_destroy(a);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -650,6 +719,7 @@ int main(void)
         cmocka_unit_test(corrections_begin_with_multipliers_as_they_go_on),
         cmocka_unit_test(residuals_that_are_no_numbers_are_tried_again),
         cmocka_unit_test(stalled_corrections_are_compared_with_rounding_of_forces),
+        cmocka_unit_test(stalled_corrections_are_compared_with_rounding_of_constraints),
         cmocka_unit_test(index3_meets_speeds_to_second_order),
         cmocka_unit_test(errors_follow_the_tolerance),
         cmocka_unit_test(steps_restart_after_an_impact),

@@ -571,6 +571,76 @@ static void samples_of_what_steps_follow_cost_no_steps_of_their_own(void **unuse
                 1.05 * to_interpolate);
 }
 
+// Drawn fast to a speed of one and something that fades or swells: the interpolant errs by ever less or more of what is asked for.
+static const double draws = 1e3;
+static double swells, part; // [1/s], of the speed at the start
+
+static enum ct_eval drawn(void *user, double t, const double *y, double *dy)
+{
+    (void)user;
+    dy[0] = y[1];
+    dy[1] = -draws * (y[1] - 1 - part * exp(swells * t));
+    return CT_EVAL_OK;
+}
+
+static void drawn_exact(double t, double *y)
+{
+    const double left = part * draws / (draws + swells);
+    y[0] = t + left * expm1(swells * t) / swells;
+    y[1] = 1 + left * exp(swells * t);
+}
+
+static double damping_step(void *user)
+{
+    (void)user;
+    return 4 / draws;
+}
+
+// What each sample costs; *error: of the worst, of what is asked for.
+static double cost_of_samples(double *error)
+{
+    enum { SAMPLES = 1000 };
+    static double time[SAMPLES];
+    const struct ct_problem p
+        = {.ny = 2, .nq = 1, .nu = 1, .rhs = drawn, .longest_step = damping_step};
+    const double asked = 1e-9;
+    long evaluations[2];
+    for (int i = 0; i < SAMPLES; i++)
+        time[i] = 0.02 * (i + 0.5);
+    for (int k = 0; k < 2; k++) {
+        struct record *r = begin();
+        double y[NY];
+        drawn_exact(0, y);
+        r->exact = drawn_exact;
+        check_fine(r,
+                   run(r, ct_method_find("dop853"), p,
+                       (struct ct_integrate_options){
+                           .t1 = 20, .atol = asked, .sample = time, .nsample = k ? SAMPLES : 0},
+                       y));
+        evaluations[k] = r->stats.evaluations;
+        *error = r->worst_sample / asked;
+        end(r);
+    }
+    printf("%ld and %ld evaluations, error %.3g\n", evaluations[0], evaluations[1], *error);
+    return (double)(evaluations[1] - evaluations[0]) / SAMPLES;
+}
+
+// Whether it does is asked seldom, but soon enough: of what fades few samples have steps of their own, and what swells is seen in time.
+static void samples_cost_steps_of_their_own_while_the_interpolant_errs(void **unused)
+{
+    (void)unused;
+    const double to_interpolate = 3, step = 12;
+    double error;
+    swells = -1;
+    part = 1;
+    check_below("evaluations for samples of what fades", cost_of_samples(&error),
+                to_interpolate + 0.2 * step);
+    swells = 1;
+    part = 1e-9;
+    cost_of_samples(&error);
+    check_below("error of samples of what swells", error, 1);
+}
+
 // Of a motion that is none, too: accelerations have changed by so little where the rate is found that it is the one at the start.
 static void the_rate_from_rest_is_that_of_the_start(void **unused)
 {
@@ -617,6 +687,7 @@ int main(void)
         cmocka_unit_test(the_rate_from_rest_is_that_of_the_start),
         cmocka_unit_test(rates_that_change_by_more_than_twice_do_not_last),
         cmocka_unit_test(samples_of_what_steps_follow_cost_no_steps_of_their_own),
+        cmocka_unit_test(samples_cost_steps_of_their_own_while_the_interpolant_errs),
         cmocka_unit_test(methods_are_found_by_name),
         cmocka_unit_test(halving_a_fixed_step_shows_the_order),
         cmocka_unit_test(roundings_of_many_steps_do_not_add_up),
