@@ -156,7 +156,11 @@ void ct_run_explain_end(struct ct_run *r)
         return;
     if (code == CT_E_STEP_OPEN)
         name_open_row(r);
-    else if (code == CT_E_STEP_SMALL || code == CT_E_STEP_SINGULAR)
+    else if (code == CT_E_SAMPLE_REFUSED) {
+        name_open_row(r);
+        if (r->ctx->ndiagnostic == n)
+            name_singular(r, "");
+    } else if (code == CT_E_STEP_SMALL || code == CT_E_STEP_SINGULAR)
         name_singular(r, "");
     else if (code == CT_E_STEP_REFUSED)
         name_singular(r, ", which steps are not fitted to: leave out 'step'");

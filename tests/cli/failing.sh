@@ -100,4 +100,20 @@ outputs: [x.q, y.q]
 simulation: {duration: 1, samples: 2}
 END
 say inverse geared.yaml --quiet -o - | cut -d, -f1-3
-say kinematics geared.yaml --quiet --set r=2.1 | sed 's/t = .*: it/t = T: it/'
+say kinematics geared.yaml --quiet --set r=2.1 | sed 's/t = .*: it/t = T: it/; s/open by .*/open/'
+echo '-- a crank that turns farther than its rod reaches: the row is named'
+cat >reach.yaml <<'END'
+cotree: 1
+bodies:
+  crank: {mass: 1, inertia: 0.1, points: {pin: [0.3, 0, 0]}}
+  rod: {mass: 1, inertia: 0.1, points: {end: [0.2, 0, 0]}}
+  block: {mass: 1}
+joints:
+  drive: {type: revolute, from: ground, to: crank, motion: 0.3 + t}
+  pin: {type: revolute, from: crank.pin, to: rod, initial: {q: -0.5, guess: true}}
+  small_end: {type: revolute, from: rod.end, to: block}
+  guide: {type: prismatic, from: ground, to: block, axis: x, initial: {q: 0.5, guess: true}}
+outputs: [guide.q]
+simulation: {duration: 2, samples: 11}
+END
+say kinematics reach.yaml --quiet | sed 's/t = .*: it/t = T: it/; s/open by .*/open/'
