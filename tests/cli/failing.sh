@@ -117,3 +117,5 @@ outputs: [guide.q]
 simulation: {duration: 2, samples: 11}
 END
 say kinematics reach.yaml --quiet | sed 's/t = .*: it/t = T: it/; s/open by .*/open/'
+echo '-- a method of order 2 at a tolerance that its steps come to rounding with: what goes on is named'
+"$COTREE" simulate "$SYSTEMS/n_four_bar/model.yaml" --method generalized-alpha-index3 --tolerance 1e-8 --quiet -o out.csv 2>&1 | sed -n "s/^cotree: note: \(steps of .*, of order 2\), .*\('method: .*\)/\1 ... \2/p"
