@@ -297,6 +297,14 @@ static int by_size(const void *context, const void *x, const void *y)
     return sa != sb ? (sa > sb) - (sa < sb) : (a->re < b->re) - (a->re > b->re);
 }
 
+double ct_modes_rounding(const struct ct_motion_mode *mode, size_t nmode, double *fastest)
+{
+    *fastest = 0;
+    for (size_t i = 0; i < nmode; i++)
+        *fastest = fmax(*fastest, hypot(mode[i].re, mode[i].im));
+    return rounding * 2 * (double)nmode * *fastest; // as zeros of as many states
+}
+
 void ct_modes_sort(struct ct_arena *a, struct ct_motion_mode *mode, size_t nmode)
 {
     ct_sort(a, mode, nmode, sizeof *mode, by_size, NULL);

@@ -17,6 +17,9 @@ struct ct_motion_mode {
 bool ct_modes_solve(struct ct_ctx *ctx, struct ct_arena *a, const struct ct_linear *l,
                     struct ct_motion_mode **mode, size_t *nmode, const char **how);
 
+/// What rounding may leave of a real part among all the modes of a system [1/s] (theory 9.3), and the largest of their rates.
+double ct_modes_rounding(const struct ct_motion_mode *mode, size_t nmode, double *fastest);
+
 /// The modes of an eigenvalue w2 [1/s^2] of K y = w2 M y with the shape in the real part of `shape` (2 nu): one, or of a
 /// negative w2 two. mode has room for them.
 void ct_mode_add_undamped(struct ct_motion_mode *mode, size_t *nmode, double w2, double *shape,

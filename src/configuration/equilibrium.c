@@ -4,6 +4,7 @@
 #include "analysis/eigen.h"
 #include "report/columns.h"
 
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
@@ -14,6 +15,8 @@ struct ct_equilibrium {
     double *value;       // of the outputs
     double stiffness;    // least eigenvalue of the stiffness against the masses [1/s^2]
     double growth;       // largest real part of an eigenvalue [1/s]
+    double doubt;        // what rounding leaves of it: no growth below is told from none [1/s]
+    double fastest;      // largest eigenvalue [1/s]
     const char *softest; // coordinate that moves most in the least stiff direction
 };
 
@@ -70,6 +73,7 @@ static bool judge(struct ct_equilibrium *q)
         return false;
     for (size_t i = 0; i < n; i++)
         q->growth = fmax(q->growth, mode[i].re);
+    q->doubt = ct_modes_rounding(mode, n, &q->fastest);
     return true;
 }
 
@@ -144,7 +148,7 @@ double ct_equilibrium_value(const struct ct_equilibrium *q, const char *column)
 
 bool ct_equilibrium_is_stable(const struct ct_equilibrium *q)
 {
-    return !(q->growth > 0);
+    return !(q->growth > q->doubt);
 }
 
 struct output {
@@ -183,14 +187,19 @@ void ct_equilibrium_print_summary(const struct ct_equilibrium *q, FILE *out)
         return;
     }
     fprintf(out, "stability     %s",
-            q->growth > 0      ? "unstable"
-            : q->stiffness > 0 ? "stable"
-            : q->stiffness < 0 ? "held by gyroscopic forces alone"
-                               : "neutral");
+            q->growth > q->doubt ? "unstable"
+            : q->stiffness > 0   ? "stable"
+            : q->stiffness < 0   ? "held by forces without potential alone"
+                                 : "neutral");
     if (isfinite(q->stiffness))
         fprintf(out, ": least stiffness against mass %.9g 1/s^2, '%s' moves most", q->stiffness,
                 q->softest);
-    if (q->growth > 0)
+    if (q->growth > q->doubt)
         fprintf(out, "; motions grow as exp(%.4g t)", q->growth);
+    else if (q->growth > 0)
+        fprintf(out,
+                "; a growth below %.1g 1/s would not be told from rounding, as rates go up to "
+                "%.2g 1/s",
+                q->doubt, q->fastest);
     fputc('\n', out);
 }

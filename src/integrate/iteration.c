@@ -302,11 +302,11 @@ enum ct_eval ct_iteration_refresh(struct ct_iteration *it, double t, const doubl
     const enum ct_eval e = evaluate(it, t, q, u, a, lam);
     it->has_tangent = e == CT_EVAL_OK;
     it->is_worn = false;
+    it->is_new = true; // also where there are none: trying again would not end
     it->t = t;
     if (e != CT_EVAL_OK)
         return e;
     stats->jacobians++;
-    it->is_new = true;
     it->rate = it->c = it->e = it->slow = 0;
     return CT_EVAL_OK;
 }

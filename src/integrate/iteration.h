@@ -41,7 +41,7 @@ struct ct_iteration {
     bool is_stabilised;
     int nu, m, n;             // speeds, rows, equations
     long version;             // of the rows
-    bool has_tangent, is_new; // `is_new`: evaluated in this step
+    bool has_tangent, is_new; // `is_new`: evaluated, or tried, in this step
     bool is_worn;             // multipliers ask for other derivatives
     struct ct_response
         *response; // of few equations in plain coordinates, where there are rows; NULL: never

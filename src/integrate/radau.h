@@ -71,11 +71,14 @@ struct ct_radau {
     double *swiftest; // largest |u| at looks so far  (nu)
     double *furthest; // largest place that moves with each  (nu)
     double *ahead;    // places and speeds that are expected  (2 nu)
+    struct ct_missed {
+        double all, rate; // of vibrations, what there is, and what steps take, over h^5
+    } missed;             // by outputs at looks so far
     struct {
         double h,
             error; // a step, and what such ones take of vibrations, as an error of order 3; 0: not looked at
-        int left;  // steps until the next look
-    } missed;      // by outputs
+        int left; // steps until the next look
+    } look;
     double *ample; // what vibrations are measured against  (nu)
 };
 

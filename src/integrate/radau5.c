@@ -81,7 +81,8 @@ static void restart(void *work)
     struct ct_radau *s = work;
     s->is_fresh = true;
     s->was_tried = false;
-    s->missed.h = 0;
+    s->look.h = 0;
+    s->missed = (struct ct_missed){0};
     ct_iteration_forget(s->it);
 }
 

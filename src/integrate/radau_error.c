@@ -33,11 +33,16 @@ static const double growing = 0.13;
 static const double promised = 10;
 // Nor are they missed where all of them is this part of it in places, (8.10): the other half is for all other errors.
 static const double unfelt = 0.5;
+// What is lost of them, (8.22), is known better: the largest of many looks.
+static const double unmissed = 0.75;
 
 // Of a vibration of z = omega h, a step takes z^6/7200, and the filtered error is z^4/(60 gamma).  (8.21)
 static const double of_vibration = 7200, of_error = 60 * GAMMA;
-// One over (1 - S) S^2 at its own rate: there all of the vibration is what is taken.
-static const double at_rate = 8;
+// All steps take 1 - 1/e of a vibration of z0. `lost` looks at `apart` z0 and `all` at z0 over that: nearer to it less than a third of what is
+// lost is seen there.
+static const double apart = 2;
+// Phases of several vibrations come together only now and then: so much of what was missed at a look counts still at the next one.
+static const double fading = 0.9;
 
 // Speeds are eased where less than this part of the error is left then; looked at every so many steps where they were not, and
 // where they are too large.
@@ -146,7 +151,7 @@ static void note_sizes(struct ct_radau *s, const double *y)
 static double missing(struct ct_radau *s, const struct ct_problem *p, double t, const double *y,
                       double rate, double times)
 {
-    const double small = s->wanted.atol / s->wanted.rtol, may = unfelt * promised;
+    const double small = s->wanted.atol / s->wanted.rtol, may = unmissed * promised;
     const struct ct_band band = {.rate = rate,
                                  .times = times,
                                  .small = small,
@@ -158,22 +163,34 @@ static double missing(struct ct_radau *s, const struct ct_problem *p, double t, 
          / (may * p->accuracy);
 }
 
-// What steps like this one take from vibrations up to the end of the run, as an error of order 3: a rate of h^5. It is no more than
-// all there is, which does not grow with the step: so that holds steps up less before it counts.  (8.21), (8.22)
-static double find_missed(struct ct_radau *s, const struct ct_problem *p, double t,
-                          const double *y)
+// The amplitude of a vibration of z in parts of the filtered error.
+static double of_amplitude(double z)
 {
-    const double h = s->now.h, steps = ct_larger(p->duration / h, 1), half = 0.5;
-    const double order = 4. / 5,
-                 harmless = 1e-3; // an error of 1.8e-4: steps may grow eightfold
-    const double z = pow(at_rate * of_vibration / steps, 1. / 6), z4 = z * z * z * z;
-    const double half4 = half * half * half * half;
-    const double all = missing(s, p, t, y, half * z / h, of_error / (half4 * z4));
-    if (!(all > harmless))
-        return 0;
-    const double lost = missing(s, p, t, y, z / h, at_rate * of_error / z4);
-    const double error = ct_smaller(pow(lost, order), pow(all, 1 / order));
-    return isfinite(error) ? error : 0;
+    return of_error / (z * z * z * z);
+}
+
+// What steps like this one take from vibrations up to the end of the run, and all there is, each no less than what is remembered.
+// (8.21)
+static struct ct_missed find_missed(struct ct_radau *s, const struct ct_problem *p, double t,
+                                    const double *y)
+{
+    const double h = s->now.h, steps = ct_larger(p->duration / h, 1), h5 = h * h * h * h * h;
+    const double harmless = 1e-3; // an error of 1.8e-4: steps may grow eightfold
+    const double z0 = pow(of_vibration / steps, 1. / 6), above = apart * z0, below = z0 / apart;
+    const double apart6 = apart * apart * apart * apart * apart * apart;
+    const double all = missing(s, p, t, y, below / h, of_amplitude(below));
+    struct ct_missed m = {ct_larger(all, fading * s->missed.all), fading * s->missed.rate};
+    if (m.all > harmless)
+        m.rate = ct_larger(missing(s, p, t, y, above / h, apart6 * of_amplitude(above)) / h5,
+                           m.rate);
+    return m;
+}
+
+// As an error of order 3: a rate of h^5. All there is does not grow with the step, so that holds steps up less before it counts.  (8.22)
+static double missed_error(const struct ct_missed *m, double h)
+{
+    const double order = 4. / 5, h5 = h * h * h * h * h;
+    return ct_smaller(pow(m->rate * h5, order), pow(m->all, 1 / order));
 }
 
 // It is looked at where steps have become longer, and every so many steps, and follows their length in between.
@@ -183,18 +200,23 @@ static double miss(struct ct_radau *s, const struct ct_problem *p, double t, con
     const double h = s->now.h;
     if (!p->asked_speeds || !(p->accuracy > 0) || !(p->duration > 0))
         return 0;
-    if (h <= s->missed.h && s->missed.left-- > 0) {
-        const double part = h / s->missed.h;
-        return s->missed.error * part * part * part * part;
+    if (h <= s->look.h && s->look.left-- > 0) {
+        const double part = h / s->look.h;
+        return s->look.error * part * part * part * part;
     }
     note_sizes(s, y);
     ct_iteration_expect(s->it, p, t, y, dy + s->dae->nq, s->ahead);
-    s->missed.h = h;
-    s->missed.error = find_missed(s, p, t, y);
-    s->missed.left = STEPS_BETWEEN;
-    if (s->missed.error > 1 && !s->it->is_new)
+    const struct ct_missed m = find_missed(s, p, t, y);
+    const double error = missed_error(&m, h);
+    const bool is_told = isfinite(error), is_doubtful = error > 1 && !s->it->is_new;
+    s->look.h = h;
+    s->look.error = is_told ? error : 0;
+    s->look.left = STEPS_BETWEEN;
+    if (is_doubtful)
         ct_iteration_forget(s->it); // as in `ease`
-    return s->missed.error;
+    else if (is_told)
+        s->missed = m;
+    return s->look.error;
 }
 
 // Error of the step. Where it is too large at first, on a first step or after a refusal, it is filtered once more, which

@@ -196,8 +196,10 @@ static void take_implicit(struct ct_run *r, struct ct_integrate_options *io, dou
 static bool go_implicit(struct ct_run *r, struct ct_problem *p, struct ct_integrate_options *io)
 {
     // What is counted is not quite what is spent, and its errors are larger; more so where vibrations are no longer followed: a
-    // slider-crank of flexible rods gained no time from 2.8 times as far, and erred by the tolerance in place of a thousandth.
-    const double least_gain = r->stiffness->is_far ? 5 : 2;
+    // slider-crank of flexible rods gained no time from 2.8 times as far, and erred by the tolerance in place of a thousandth. Steps as
+    // long as stability allows do not follow them either.
+    const bool gives_up = r->stiffness->is_far && !ct_stiffness_is_unstable(r->stiffness);
+    const double least_gain = gives_up ? 5 : 2;
     prepare_implicit(r, p);
     const double gain = try_implicit(r, p, io, &r->implicit.cost) / r->explicit_pace;
     if (gain < least_gain) {

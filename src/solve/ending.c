@@ -142,6 +142,19 @@ static void name_singular_start(struct ct_run *r)
             r->singular_joints);
 }
 
+// Steps of order 2 come to rounding long before those of the others do, beside singular positions first.
+static void advise_order(struct ct_run *r)
+{
+    const int low = 2;
+    if (r->method->order <= low)
+        ct_note(
+            r->ctx, (struct ct_mark){0},
+            "steps of '%s', of order %d, are many times shorter than those of 'radau5' or "
+            "'dop853' at this tolerance, and end in rounding before these do: if the motion "
+            "goes on there, 'method: auto' may follow it",
+            r->method->name, r->method->order);
+}
+
 void ct_run_explain_end(struct ct_run *r)
 {
     const size_t n = r->ctx->ndiagnostic;
@@ -152,11 +165,17 @@ void ct_run_explain_end(struct ct_run *r)
         return;
     if (code == CT_E_STEP_COUNT)
         ct_run_explain_count(r);
+    if (code == CT_E_STEP_SMALL || code == CT_E_STEP_SINGULAR)
+        advise_order(r);
     if (!r->m->nrow)
         return;
     if (code == CT_E_STEP_OPEN)
         name_open_row(r);
-    else if (code == CT_E_STEP_SMALL || code == CT_E_STEP_SINGULAR)
+    else if (code == CT_E_SAMPLE_REFUSED) {
+        name_open_row(r);
+        if (r->ctx->ndiagnostic == n)
+            name_singular(r, "");
+    } else if (code == CT_E_STEP_SMALL || code == CT_E_STEP_SINGULAR)
         name_singular(r, "");
     else if (code == CT_E_STEP_REFUSED)
         name_singular(r, ", which steps are not fitted to: leave out 'step'");

@@ -64,6 +64,7 @@ static bool follow_to(struct ct_run *r, double t, double t1, double *y)
             h = (end - t) / 2;
             if (h > least * (t1 - t) && t + h > t)
                 continue;
+            r->stats.last_time = t;
             return ct_error(
                 r->ctx, (struct ct_mark){.file = r->model->file}, CT_E_SAMPLE_REFUSED,
                 "the mechanism cannot follow its motions beyond t = %.9g: it locks, "
@@ -126,14 +127,16 @@ static bool pass_event(struct ct_run *r, double t, double *y)
     ct_machine_constraint(m);
     if (!ct_run_chords_are_closed(r, t))
         return false;
-    if (ct_embed_project(r->s, t, y) != CT_EVAL_OK)
+    if (ct_embed_project(r->s, t, y) != CT_EVAL_OK) {
+        r->stats.last_time = t;
         return ct_error(r->ctx, (struct ct_mark){.file = r->model->file}, CT_E_SAMPLE_REFUSED,
                         "the mechanism cannot follow its motions at t = %.9g", t);
+    }
     y[r->ny - 1] += ct_run_kinetic_energy(r, t, y) - kinetic;
     return true;
 }
 
-bool ct_run_follow(struct ct_run *r, const struct ct_run_options *o,
+static bool follow(struct ct_run *r, const struct ct_run_options *o,
                    struct ct_run_report *report)
 {
     *report = (struct ct_run_report){.y = r->y,
@@ -174,4 +177,13 @@ bool ct_run_follow(struct ct_run *r, const struct ct_run_options *o,
     if (r->energy_scale > 0)
         report->energy_drift /= r->energy_scale;
     return true;
+}
+
+bool ct_run_follow(struct ct_run *r, const struct ct_run_options *o,
+                   struct ct_run_report *report)
+{
+    const bool ok = follow(r, o, report);
+    if (!ok)
+        ct_run_explain_end(r);
+    return ok;
 }

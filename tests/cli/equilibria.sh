@@ -101,3 +101,20 @@ outputs: [p.q, q.q]
 END
 rows follower
 rows follower --set P=100
+
+# Beck's beam, EI = 1, under a force that follows its tip: stable up to 20.051, without damping, so that growth at rounding is none.
+cat >beck.yaml <<'END'
+cotree: 1
+parameters: {p: 10, n: 20}
+bodies:
+  beam: {type: beam, elements: n, length: 1, density: 1, E: 1e4, area: 1e-2, Iz: 1e-4, formulation: foreshortening, deformation: [bending-z], points: {tip: length}}
+joints:
+  clamp: {type: weld, from: ground, to: beam}
+forces:
+  push: {type: force, at: beam.tip, value: [-p, 0, 0], in: beam.tip}
+outputs: [beam.tip.deflection.y]
+END
+rows beck --set p=5
+rows beck --set p=10 --set n=40
+rows beck --set p=20.05
+rows beck --set p=20.06

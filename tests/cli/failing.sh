@@ -100,4 +100,35 @@ outputs: [x.q, y.q]
 simulation: {duration: 1, samples: 2}
 END
 say inverse geared.yaml --quiet -o - | cut -d, -f1-3
-say kinematics geared.yaml --quiet --set r=2.1 | sed 's/t = .*: it/t = T: it/'
+say kinematics geared.yaml --quiet --set r=2.1 | sed 's/t = .*: it/t = T: it/; s/open by .*/open/'
+echo '-- a crank that turns farther than its rod reaches: the row is named'
+cat >reach.yaml <<'END'
+cotree: 1
+bodies:
+  crank: {mass: 1, inertia: 0.1, points: {pin: [0.3, 0, 0]}}
+  rod: {mass: 1, inertia: 0.1, points: {end: [0.2, 0, 0]}}
+  block: {mass: 1}
+joints:
+  drive: {type: revolute, from: ground, to: crank, motion: 0.3 + t}
+  pin: {type: revolute, from: crank.pin, to: rod, initial: {q: -0.5, guess: true}}
+  small_end: {type: revolute, from: rod.end, to: block}
+  guide: {type: prismatic, from: ground, to: block, axis: x, initial: {q: 0.5, guess: true}}
+outputs: [guide.q]
+simulation: {duration: 2, samples: 11}
+END
+say kinematics reach.yaml --quiet | sed 's/t = .*: it/t = T: it/; s/open by .*/open/'
+echo '-- a method of order 2 at a tolerance that its steps come to rounding with: what goes on is named'
+"$COTREE" simulate "$SYSTEMS/n_four_bar/model.yaml" --method generalized-alpha-index3 --tolerance 1e-8 --quiet -o out.csv 2>&1 | sed -n "s/^cotree: note: \(steps of .*, of order 2\), .*\('method: .*\)/\1 ... \2/p"
+echo '-- a force that is not a number behind a wall: implicit methods, whose derivatives end there, too, do not try for ever'
+cat >wall.yaml <<'END'
+cotree: 1
+bodies:
+  cart: {mass: 1}
+joints:
+  slide: {type: prismatic, axis: x, from: ground, to: cart, initial: {u: -1}, effort: 1e-3*sqrt(1 + slide.q)}
+simulation: {duration: 2}
+outputs: [slide.q]
+END
+for method in dop853 radau5 newmark generalized-alpha; do
+  timeout 60 "$COTREE" simulate wall.yaml --method $method --quiet -o out.csv 2>&1 | sed -n "s/^cotree: error: at t = \(1[.]000\).*\[\(E301\)\]/$method \1 \2/p"
+done
