@@ -10,8 +10,8 @@
 #include <math.h>
 #include <string.h>
 
-// Crossings may err by more than ct_crossing_rounding where an event has left the motion nearer to the position than crossings
-// begin, with the square of how much nearer, up to this part of what is wanted: from still nearer by there would be less.
+// Crossings may err by more than ct_crossing_rounding where they begin nearer to the position than crossings do, with the square of how much
+// nearer, up to this part of what is wanted: from still nearer by there would be less. (8.28)
 static const double unfelt = 0.1;
 
 static const struct ct_mark nowhere = {0};

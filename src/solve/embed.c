@@ -20,7 +20,7 @@ struct ct_embed *ct_embed_create(struct ct_arena *arena, struct ct_ctx *ctx,
     s->arena = arena;
     s->m = m;
     s->ctx = ctx;
-    s->nearness = 1;
+    s->nearness = s->scale = 1;
     s->row = CT_NEWN(arena, int, r + 1);
     s->dependent = CT_NEWN(arena, int, k);
     s->independent = CT_NEWN(arena, int, n + 1);

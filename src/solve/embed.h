@@ -34,6 +34,8 @@ struct ct_embed {
     double sigma_best; // largest sigma_chosen of the run
     double largest;    // pivot of J_d
     double
+        scale; // what rows are measured by: below 1 for mechanisms of less than centimetres, (6.3c)
+    double
         nearness; // how near J is to losing rank at the last accepted state, 1 at its farthest and where nobody looks
     const bool
         *is_kept;    // (nu) speeds that choices leave independent where they can; NULL: none

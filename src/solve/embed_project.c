@@ -68,7 +68,7 @@ static enum ct_eval project_by_matrices(struct ct_embed *s, double t, double *y)
     for (int i = 0;; i++) {
         ct_machine_set(m, t, y);
         ct_machine_constraint(m);
-        const double size = ct_vector_size(m->phi, m->nrow);
+        const double size = ct_vector_size(m->phi, m->nrow) / s->scale;
         if (ct_is_closed(nearness(s), size, before))
             break;
         if (ct_is_stray(i, size, before))
@@ -158,7 +158,7 @@ static enum ct_eval project_by_form(struct ct_embed *s, double t, double *y, boo
     if (s->kappa > ct_kappa_largest)
         return CT_EVAL_OK;
     for (int i = 0; close_form(s, t, y); i++) {
-        const double size = ct_vector_size(f->phi, m->nrow);
+        const double size = ct_vector_size(f->phi, m->nrow) / s->scale;
         const bool is_closed = ct_is_closed(nearness(s), size, before);
         if (!is_closed && ct_is_stray(i, size, before))
             return CT_EVAL_RETRY;

@@ -82,6 +82,7 @@ struct ct_lane {
     double end;     // time at the end of this try
     double error;   // of it
     double longest; // step
+    double scale;   // as in embed.h
     double kappa_chosen, sigma_chosen, sigma_best;
     double pivot_last, pivot_time; // see foresee_singular
     struct ct_strength strength;   // of its form

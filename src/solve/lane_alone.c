@@ -20,6 +20,7 @@ static void take_choice(struct ct_lanes *s, int l, double t, const vec *y)
     ct_lane_take(s->one_y, y, l, (size_t)s->ny);
     ct_machine_set(s->m, ct_run_before(s->run, t), s->one_y);
     embed->rank = s->rank;
+    embed->scale = lane->scale;
     memcpy(embed->row, lane->row, (size_t)s->nrow * sizeof *embed->row);
     memcpy(embed->dependent, lane->dependent, rank * sizeof *embed->dependent);
     memcpy(embed->independent, lane->independent, (n - rank) * sizeof *embed->independent);

@@ -167,7 +167,8 @@ static inline set judge(const struct ct_lanes *s, const vec *phi, int i, vec *be
     for (int l = 0; l < W; l++) {
         if (!ct_has_lane(active, l))
             continue;
-        const bool is_closed = ct_is_closed(s->sigma[l], size[l], (*before)[l]);
+        const double scale = s->lane[l].scale;
+        const bool is_closed = ct_is_closed(s->sigma[l], size[l] / scale, (*before)[l] / scale);
         if (is_closed || ct_is_stray(i, size[l], (*before)[l]))
             active &= ~(1u << l);
         if (!is_closed && !ct_has_lane(active, l))

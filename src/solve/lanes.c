@@ -379,6 +379,7 @@ bool ct_lanes_load(struct ct_lanes *s, int l, const struct ct_run_options *o)
     if (o->method != s->method)
         take_method(s, o->method);
     s->rtol[l] = o->rtol;
+    s->lane[l].scale = ct_run_embed(s->run)->scale;
     s->atol[l] = o->atol;
     s->pivot_most[l] = 0;
     s->near &= ~(1u << l);

@@ -118,7 +118,7 @@ static double residual(void *user, double t, const double *y)
     struct ct_run *r = user;
     ct_machine_set(r->m, ct_run_before(r, t), y);
     ct_machine_constraint(r->m);
-    return ct_vector_largest(r->m->phi, r->m->nrow);
+    return ct_vector_largest(r->m->phi, r->m->nrow) / r->s->scale;
 }
 
 // Its rows times the vector that they are combined with to nothing. Where rows are redundant, those that are kept may come to
@@ -131,10 +131,10 @@ static double mismatch(void *user, double t, const double *y)
     ct_machine_set(r->m, ct_run_before(r, t), y);
     ct_machine_constraint(r->m);
     if (!ct_embed_dependence(r->s, x, &log_det))
-        return ct_vector_largest(m->phi, m->nrow);
+        return ct_vector_largest(m->phi, m->nrow) / r->s->scale;
     for (int i = 0; i < r->s->rank; i++)
         sum += x[i] * m->phi[r->s->row[i]];
-    return fabs(sum) / ct_vector_largest(x, (size_t)r->s->rank);
+    return fabs(sum) / ct_vector_largest(x, (size_t)r->s->rank) / r->s->scale;
 }
 
 // A followed angle that turns faster at the end of a step than at its start must still stay within half a turn.
@@ -232,6 +232,19 @@ static void note_given(struct ct_run *r, const struct ct_start *start)
             r->is_given[r->e->coordinate[i].u] = start->is_given[i];
 }
 
+// Rows of mechanisms whose largest length is less are closed to less. [m] (6.3c)
+static const double small_length = 0.01;
+
+// What rows are measured by: 1, or the largest length of a body against that length.
+static double find_scale(const struct ct_model *model)
+{
+    double largest = 0;
+    for (size_t i = 0; i < model->nframe; i++)
+        for (int k = 0; k < 3; k++)
+            largest = fmax(largest, fabs(ct_model_number(model, model->frame[i].at.e[k])));
+    return largest > 0 ? fmin(1, largest / small_length) : 1;
+}
+
 // To the start, assembled; rows and columns chosen there.
 bool ct_run_begin(struct ct_run *r, const struct ct_start *start)
 {
@@ -241,6 +254,7 @@ bool ct_run_begin(struct ct_run *r, const struct ct_start *start)
     r->t0 = 0;
     ct_machine_constraint(r->m);
     r->s->sigma_best = 0;
+    r->s->scale = find_scale(r->model);
     if (!ct_embed_choose(r->s))
         return false;
     // measured on other trees, the loops close to rounding; the rest is taken off here
