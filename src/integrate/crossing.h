@@ -14,6 +14,10 @@ extern const struct ct_method ct_crossing;
 /// A smooth motion meets the constraints also in the middle, up to this [m, rad].
 extern const double ct_crossing_held;
 
+/// Does the motion only pass by a singular position beside y, at t, in the middle of a step across, as rows that should depend there miss
+/// each other? So little that steps by it would be among roundings counts as none. (8.29)
+bool ct_crossing_only_passes(const struct ct_problem *p, double t, const double *y);
+
 /// Beside a singular position f has fewer digits: crossings may err by this part of the largest state.
 extern const double ct_crossing_rounding;
 

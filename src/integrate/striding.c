@@ -86,7 +86,7 @@ enum ct_eval ct_striding_step(struct ct_striding *s, double t, double h, const d
     if (!is_accurate || e != CT_EVAL_OK)
         return e;
     m->dense(s->p, h, centre(s), y, y1, work, s->point);
-    if (!(s->p->mismatch(s->p->user, t + centre(s) * h, s->point) <= ct_crossing_held))
+    if (ct_crossing_only_passes(s->p, t + centre(s) * h, s->point))
         *err = INFINITY;
     return CT_EVAL_OK;
 }

@@ -128,6 +128,8 @@ static double mismatch(void *user, double t, const double *y)
     struct ct_run *r = user;
     const struct ct_machine *m = r->m;
     double log_det, sum = 0, *x = r->scratch;
+    if ((size_t)r->s->rank < m->nrow)
+        return 0;
     ct_machine_set(r->m, ct_run_before(r, t), y);
     ct_machine_constraint(r->m);
     if (!ct_embed_dependence(r->s, x, &log_det))
@@ -560,7 +562,9 @@ static bool lead_in(struct ct_run *r)
                                  .rhs = rhs,
                                  .project = project,
                                  .set_crossing = set_crossing,
-                                 .residual = residual};
+                                 .accuracy = r->o->wanted,
+                                 .residual = residual,
+                                 .mismatch = mismatch};
     return ct_run_lead_in(r, &p);
 }
 
