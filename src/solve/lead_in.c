@@ -131,13 +131,14 @@ static bool leads_across(struct ct_run *r, const struct lead *l, const struct ac
 static double sweep_back(struct ct_run *r, const struct lead *l, const struct across *c)
 {
     const double *y = r->assembled, largest = ct_vector_largest(y, r->ny), t = begin_of(c);
-    double error;
-    for (double part = exact; part <= l->most; part *= 10) {
+    double error, part = exact;
+    while (part <= l->most) {
         const struct ct_tolerance tolerance = {part, part * largest};
         if (ct_crossing_lead_in(l->p, 0, c->h, -t / c->h, y, r->dy, &tolerance, l->before,
                                 &error, l->work, &r->stats)
             == CT_EVAL_OK)
             return fmax(error, 1) * part;
+        part *= 10;
     }
     return INFINITY;
 }
