@@ -25,9 +25,9 @@ enum { LOOKS = 8 };
 // nothing of how the smallest pivot falls.
 static const double beside = 0.2, near = 0.5;
 
-// The step may err by so much of the largest state; by so much of what is asked where more is rounding, which is felt as the way to the
-// position is short; looks for a better one end at a tenth of that.
-static const double exact = 1e-12, unfelt = 0.02, better = 0.1;
+// The step may err by so much of the largest state; by so much of what is asked where that is more, which is felt as the way to the
+// position is short.
+static const double exact = 1e-12, unfelt = 0.02;
 
 // Where a run starts: all speeds together, and accelerations where they are known.
 struct lead {
@@ -172,17 +172,18 @@ static bool keeps_sides(struct ct_run *r, const struct lead *l, double t)
     return true;
 }
 
-// best (in and out) becomes a step around `middle` that errs less, of those that are halves of each other and reach the start.
+// The longest step around `middle` that errs little enough, of those that are halves of each other and reach the start, in place of
+// best (in and out) if that is shorter: it ends farther from the position.
 static void find_step(struct ct_run *r, const struct lead *l, double middle,
                       struct across *best)
 {
-    const double enough = fmax(exact, better * l->most);
     struct across c = {middle, 2 * time_for(l, speed_at(l, middle), longest_way), INFINITY};
-    for (int i = 0; i < LOOKS && best->error > enough && c.h / 2 > fabs(middle); i++) {
+    for (int i = 0; i < LOOKS && c.h > best->h && c.h / 2 > fabs(middle); i++, c.h /= 2) {
         look_back(r, l, &c);
-        if (c.error < best->error && keeps_sides(r, l, begin_of(&c)))
+        if (c.error < INFINITY && keeps_sides(r, l, begin_of(&c))) {
             *best = c;
-        c.h /= 2;
+            return;
+        }
     }
 }
 
