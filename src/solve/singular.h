@@ -46,12 +46,14 @@ struct ct_singular *ct_singular_create(struct ct_arena *arena, struct ct_machine
 /// Nothing is known and nothing was passed: before a run.
 void ct_singular_start(struct ct_singular *w);
 
-/// What is ahead of an accepted state, up to the event that is pending. False if the step to it has come beside a singular
-/// position, or past it, before that was foreseen, and may be taken again: not with fixed steps, which are told only whether
-/// they are beside one, and counted where they have come past it.
+/// The step that has come to an accepted state.
 struct ct_singular_step {
     bool is_fixed, is_across; // of fixed size; made to cross a position
 };
+
+/// What is ahead of an accepted state, up to the event that is pending. False if the step to it has come beside a singular
+/// position, or past it, before that was foreseen, and may be taken again: not with fixed steps, which are told only whether
+/// they are beside one, and counted where they have come past it.
 bool ct_singular_foresee(struct ct_singular *w, double t, const double *y, const double *dy,
                          double pending, const struct ct_singular_step *step);
 /// Speeds have jumped at y, the last accepted place: next to a position, that comes sooner or later, or not at all.
