@@ -62,7 +62,8 @@ static bool round_residuals(struct ct_iteration *it, double *here)
     const struct ct_dae *dae = it->dae;
     const struct ct_probe *p = &it->probe;
     for (int k = 0; k < nu; k++) {
-        const double place = dae->q_of[k] < 0 ? 1 : it->y[dae->q_of[k]];
+        const double at = dae->q_of[k] < 0 ? dae->scale : it->y[dae->q_of[k]];
+        const double place = copysign(ct_larger(fabs(at), dae->scale), at);
         p->d[k] = toss((unsigned)k) * ct_place_rounding * DBL_EPSILON * place;
     }
     ct_iteration_move(dae, it->y, p->d, p->q);
@@ -164,6 +165,12 @@ static bool is_unfelt(const struct ct_iteration *it, double size, const double *
         && is_within(d, n, it->unfelt_place) && is_within(u, n, it->unfelt_speed);
 }
 
+// Small enough where corrections followed down to rounding shrink no more or have been many.
+static bool is_fine(const struct ct_iteration *it, double size)
+{
+    return it->is_finest && size <= it->rounding;
+}
+
 enum ct_verdict ct_iteration_judge(struct ct_iteration *it, double size, const double *d,
                                    const double *u, int k)
 {
@@ -178,14 +185,14 @@ enum ct_verdict ct_iteration_judge(struct ct_iteration *it, double size, const d
             return CT_CONVERGED;
         take_rate(it, rate);
         if (rate >= hopeless || (it->rate >= 1 && it->count > 3))
-            return CT_DIVERGED;
+            return is_fine(it, size) ? CT_CONVERGED : CT_DIVERGED;
     }
     it->size = size;
     if (size <= it->kappa || (it->tail * size <= it->kappa && !is_too_early(it)))
         return CT_CONVERGED;
     if (it->count < it->most)
         return CT_GO_ON;
-    return it->is_finest && size <= it->rounding ? CT_CONVERGED : CT_DIVERGED;
+    return is_fine(it, size) ? CT_CONVERGED : CT_DIVERGED;
 }
 
 bool ct_iteration_can_renew(struct ct_iteration *it)

@@ -54,6 +54,7 @@ struct ct_dae {
     int most_rows; // rows there can be
     const int
         *q_of; // (nu) the coordinate that moves with speed k alone; -1: a rotation, of size one
+    double scale; // of places: residuals are rounded as where places are at least as large
 
     /// The number of rows now; *version changes when they become other rows. Only `rhs`, `project` and
     /// `accepted` of the problem change them.

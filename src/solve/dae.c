@@ -270,6 +270,7 @@ struct ct_dae *ct_dae_create(struct ct_arena *a, struct ct_embed *s)
                            .nu = (int)e->nu,
                            .most_rows = (int)e->nrow,
                            .q_of = q_of,
+                           .scale = s->scale,
                            .abreast = is_plain && is_few(s) ? abreast(a, s) : NULL,
                            .place = is_plain && is_few(s) ? place(a, s) : NULL,
                            .is_plain = is_plain,

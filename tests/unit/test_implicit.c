@@ -283,7 +283,7 @@ static bool run(struct user *s, const struct model *m, const char *method, struc
     static const int q_of[MOST_NU] = {0, 1};
     static const int row[MOST_M] = {0};
     struct ct_dae dae
-        = {s, m->nu, m->nu, m->m, q_of, rows, retract, chart_rate, start, residual, tangent};
+        = {s, m->nu, m->nu, m->m, q_of, 1, rows, retract, chart_rate, start, residual, tangent};
     struct abreast *w = &s->abreast;
     const struct ct_dae_abreast abreast
         = {w->t, w->q, w->u, w->a, w->lam, w->r, w->phi, w->v, row, evaluate_abreast};
