@@ -184,7 +184,9 @@ enum ct_verdict ct_iteration_judge(struct ct_iteration *it, double size, const d
             || is_unfelt(it, size, d, u, n) || is_noise(it, rate, size, u != NULL))
             return CT_CONVERGED;
         take_rate(it, rate);
-        if (rate >= hopeless || (it->rate >= 1 && it->count > 3))
+        if (rate >= hopeless)
+            return CT_DIVERGED;
+        if (it->rate >= 1 && it->count > 3)
             return is_fine(it, size) ? CT_CONVERGED : CT_DIVERGED;
     }
     it->size = size;
