@@ -394,7 +394,7 @@ static bool find_step(struct ct_driver *r, double stop, bool is_time, struct ct_
                 ct_driver_adapt_after_crossing(r, s);
             else if (r->o->step == 0)
                 ct_control_accept(&r->control, r->method, h, error);
-            ct_driver_look_ahead(r);
+            ct_driver_look_ahead(r, s->t1);
             return true;
         }
         if (r->o->step > 0)
@@ -451,7 +451,7 @@ static bool handle_event(struct ct_driver *r, bool is_state, bool is_time)
     r->reach = INFINITY; // of the position ahead everything may have changed
     r->failed_crossings = 0;
     r->has_failed_stride = false;
-    ct_driver_look_ahead(r);
+    ct_driver_look_ahead(r, r->t);
     return take_bearings(r);
 }
 
@@ -508,7 +508,7 @@ static bool start(struct ct_driver *r)
 {
     if (r->o->t0 < r->o->t1) { // else there is nothing to step
         bool is_time;
-        ct_driver_look_ahead(r);
+        ct_driver_look_ahead(r, r->t);
         const double limit
             = fmin(ct_driver_step_limit(r), ct_driver_next_stop(r, &is_time) - r->t);
         r->control.h = limit; // a scale for the bearings

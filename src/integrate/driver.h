@@ -91,8 +91,8 @@ double ct_driver_next_stop(const struct ct_driver *r, bool *is_time);
 /// s (out): the next step, towards the stop.
 void ct_driver_plan(struct ct_driver *r, double stop, bool is_time, struct ct_stride *s);
 bool ct_driver_is_too_small(const struct ct_driver *r, const struct ct_stride *s);
-/// Time to the next singular position, and where to begin to cross it.
-void ct_driver_look_ahead(struct ct_driver *r);
+/// Time to the next singular position from t, up to where steps have been accepted, and where to begin to cross it.
+void ct_driver_look_ahead(struct ct_driver *r, double t);
 void ct_driver_adapt_after_refusal(struct ct_driver *r, double h, double error);
 void ct_driver_adapt_after_crossing(struct ct_driver *r, const struct ct_stride *s);
 void ct_driver_adapt_after_failed_crossing(struct ct_driver *r, const struct ct_stride *s,

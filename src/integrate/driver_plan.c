@@ -154,7 +154,7 @@ void ct_driver_adapt_after_refusal(struct ct_driver *r, double h, double error)
         r->control.h = r->refusal.longest;
 }
 
-void ct_driver_look_ahead(struct ct_driver *r)
+void ct_driver_look_ahead(struct ct_driver *r, double t)
 {
     if (!r->crossing_work)
         return;
@@ -163,7 +163,7 @@ void ct_driver_look_ahead(struct ct_driver *r)
     r->singular_in = r->p->singular_in(r->p->user, &reach);
     // none, or another one; or what has failed was begun for one that had been taken to be much farther off
     if (!(r->singular_in < INFINITY) || r->singular_in > other * before
-        || (r->failed_crossings && other * r->singular_in < r->foretold - r->t)) {
+        || (r->failed_crossings && other * r->singular_in < r->foretold - t)) {
         r->reach = INFINITY;
         r->failed_crossings = 0;
         r->has_failed_stride = false;

@@ -109,12 +109,14 @@ double ct_embed_pivot(struct ct_embed *s);
 /// Is it between the two? Cheaper than to find it where rows are redundant, false where that is not certain or where they
 /// are not.
 bool ct_embed_pivot_is_between(struct ct_embed *s, double low, double high);
-/// After ct_embed_pivot: on which side of the places where J_d is singular, -1 or 1. 0: not known, of large systems or redundant
-/// rows.
+/// After ct_embed_pivot: on which side of the places where J_d is singular, -1 or 1: the sign of det [J; T'] with the tangents T of
+/// now, whatever rows and columns are chosen. 0: not known, of large systems or redundant rows.
 int ct_embed_side(const struct ct_embed *s);
-/// After ct_embed_side, with the B (rank x free) of another place on the motion, where det J_d has the other sign, the choice of
-/// rows and columns being the same: has J lost rank between them? Else columns did: B has changed its sign.
-bool ct_embed_has_lost_rank(struct ct_embed *s, const double *B);
+/// T (nu x free, out): the tangents of now, B for what depends and 1 for what does not.
+void ct_embed_tangents(const struct ct_embed *s, double *T);
+/// As ct_embed_side, with the tangents T of another place on the motion: it has the side of that place as long as J has not lost
+/// rank between them, whatever has been chosen in the meantime. 0: not known.
+int ct_embed_side_against(struct ct_embed *s, const double *T);
 /// At the last ct_machine_constraint, beside a place where J loses rank: x (rank, out) = (J_d J_d')^-1 v for a v without
 /// meaning, which has come into null(J') of that place, and log |det J_d|. False where that costs too much.
 bool ct_embed_dependence(struct ct_embed *s, double *x, double *log_det);

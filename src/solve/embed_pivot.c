@@ -78,33 +78,66 @@ double ct_embed_pivot(struct ct_embed *s)
     return pivot;
 }
 
+// 1, or -1 if an odd number of exchanges sorts a and b, which together are 0 ... na + nb - 1. place (na + nb)
+static int parity_of(const int *a, int na, const int *b, int nb, int *place)
+{
+    int parity = 1;
+    for (int i = 0; i < na + nb; i++)
+        place[i] = i < na ? a[i] : b[i - na];
+    for (int i = 0; i < na + nb; i++)
+        while (place[i] != i) {
+            const int k = place[i];
+            place[i] = place[k];
+            place[k] = k;
+            parity = -parity;
+        }
+    return parity;
+}
+
 int ct_embed_side(const struct ct_embed *s)
 {
-    int side = 1;
     if (has_redundant_rows(s) || ct_embed_is_large(s))
         return 0;
-    for (int i = 0; i < s->rank; i++)
-        if ((s->Jd[i + s->rank * i] < 0) != (s->pivot[i] != i))
+    const int r = s->rank;
+    int side = parity_of(s->row, r, NULL, 0, s->iwork)
+             * parity_of(s->dependent, r, s->independent, (int)s->m->nu - r, s->iwork);
+    for (int i = 0; i < r; i++)
+        if ((s->Jd[i + r * i] < 0) != (s->pivot[i] != i))
             side = -side;
     return side;
 }
 
-// The rows of J with the tangents of the other place, [J; T'], are as large a system as there are speeds, which is regular as long as
-// tangents turn by less than a right angle and J has its rank. det [J; T'] = det J_d det (1 + B' B_now), of which the
-// second factor is positive at the other place.
-bool ct_embed_has_lost_rank(struct ct_embed *s, const double *B)
+void ct_embed_tangents(const struct ct_embed *s, double *T)
 {
-    const int r = s->rank, f = (int)s->m->nu - r;
-    bool is_even = true;
-    ct_matrix_multiply_transposed(s->S, B, s->B, f, r, f);
-    for (int i = 0; i < f; i++)
-        s->S[i + f * i] += 1;
+    const size_t n = s->m->nu;
+    const int r = s->rank;
+    for (int j = 0; j < (int)n - r; j++, T += n) {
+        memset(T, 0, n * sizeof *T);
+        T[s->independent[j]] = 1;
+        for (int k = 0; k < r; k++)
+            T[s->dependent[k]] = s->B[k + r * j];
+    }
+}
+
+// The rows of J with the tangents of the other place, [J; T'], are as large a system as there are speeds, which is regular as long as
+// tangents turn by less than a right angle and J has its rank. det [J; T'] = det J_d det (T' [B; 1]_now), of which the
+// second factor is positive at the other place.
+int ct_embed_side_against(struct ct_embed *s, const double *T)
+{
+    const int n = (int)s->m->nu, r = s->rank, f = n - r;
+    int side = ct_embed_side(s);
+    for (int j = 0; j < f; j++)
+        for (int i = 0; i < f; i++) {
+            s->S[i + f * j] = T[s->independent[j] + n * i];
+            for (int k = 0; k < r; k++)
+                s->S[i + f * j] += T[s->dependent[k] + n * i] * s->B[k + r * j];
+        }
     if (f && !ct_lu(s->S, s->iwork, f, f))
-        return false;
+        return 0;
     for (int i = 0; i < f; i++)
         if ((s->S[i + f * i] < 0) != (s->iwork[i] != i))
-            is_even = !is_even;
-    return is_even;
+            side = -side;
+    return side;
 }
 
 bool ct_embed_dependence(struct ct_embed *s, double *x, double *log_det)

@@ -16,7 +16,7 @@ struct ct_singular *ct_singular_create(struct ct_arena *arena, struct ct_machine
     w->y = CT_NEWN(arena, double, m->nq + m->nu + 1);
     w->d = CT_NEWN(arena, double, m->nu + 1);
     w->x = CT_NEWN(arena, double, m->nrow + 1);
-    w->B = CT_NEWN(arena, double, m->nrow * m->nu + 1);
+    w->T = CT_NEWN(arena, double, m->nrow ? m->nu * m->nu : 1);
     w->u = CT_NEWN(arena, double, m->nu + 1);
     w->a = CT_NEWN(arena, double, m->nu + 1);
     w->passed = CT_NEWN(arena, struct ct_singular_position, kept + 1);
@@ -179,9 +179,8 @@ static struct look look_around(struct ct_singular *w, const struct sight *at, do
     if (l.is_far)
         return l;
     l.side = ct_embed_side(w->s);
-    if (l.side && w->side && w->s->switches == w->switches)
-        l.is_another = (l.side != w->side && ct_embed_has_lost_rank(w->s, w->B))
-                    || has_jumped(w, dt, u, a);
+    if (l.side && w->side)
+        l.is_another = ct_embed_side_against(w->s, w->T) == -w->side || has_jumped(w, dt, u, a);
     return l;
 }
 
@@ -197,11 +196,11 @@ static bool is_to_be_shorter(const struct ct_singular *w, const struct look *l)
 
 static void keep_side(struct ct_singular *w, const struct sight *at, int side)
 {
-    const size_t nu = w->m->nu, rank = (size_t)w->s->rank;
+    const size_t nu = w->m->nu;
     w->side = side;
     if (!side)
         return;
-    memcpy(w->B, w->s->B, rank * (nu - rank) * sizeof *w->B);
+    ct_embed_tangents(w->s, w->T);
     memcpy(w->u, at->y + w->m->nq, nu * sizeof *w->u);
     memcpy(w->a, at->dy + w->m->nq, nu * sizeof *w->a);
     w->swiftest = fmax(w->swiftest, ct_vector_largest(w->u, nu));

@@ -20,16 +20,17 @@ struct ct_singular_position {
 struct ct_singular {
     struct ct_machine *m;
     struct ct_embed *s;
-    double in;              // time to the position ahead; INFINITY: there is none
-    double reach;           // time before it in which f is better not computed
-    double most, part, t;   // the largest pivot so far, the last one against it, and its time
-    double dt;              // the step before
-    bool keeps_rows;        // a step does, and there are more than it needs
-    bool was_told;          // the form has told of the last state that nothing has changed
-    long switches, nmade;   // of the embedding, there
+    double in;            // time to the position ahead; INFINITY: there is none
+    double reach;         // time before it in which f is better not computed
+    double most, part, t; // the largest pivot so far, the last one against it, and its time
+    double dt;            // the step before
+    bool keeps_rows;      // a step does, and there are more than it needs
+    bool was_told;        // the form has told of the last state that nothing has changed
+    long switches, nmade; // of the embedding, there
+    long doubted; // its choice when a step was last looked at whether it is to be shorter
     double weakest, volume; // of its form there
-    int side;               // of det J_d there, 0: not known
-    double *B;              // (rank x free) there
+    int side;               // ct_embed_side there, 0: not known
+    double *T;              // (nu x free) tangents there
     double *u, *a;          // (nu) speeds and accelerations there, where `side` is known
     double swiftest;        // largest speed at looks
     long nover;             // positions that fixed steps have come across

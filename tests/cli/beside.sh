@@ -102,6 +102,27 @@ echo '-- so near that rounding of what is not given is more than is asked for'
 four_bar 1 2 1.5 1.5 -1e-5 5 1e-5 -1e-5 -1e-5 0.1 >model.yaml
 "$COTREE" simulate model.yaml --tolerance 1e-10 --quiet -o out.csv 2>&1 | grep -v '^ ' | sed 's/[0-9.]*e-[0-9]*/X/g'
 
+# and where that is less than what is asked for: the run is that from 1e-4 before the position but for what is 1e-4 of it
+four_bar 1 2 1.5 1.5 -4e-6 5 4e-6 -4e-6 -4e-6 0.2 >model.yaml
+four_bar 1 2 1.5 1.5 -1e-4 5 1e-4 -1e-4 -1e-4 0.2 >farther.yaml
+for name in model farther; do
+  "$COTREE" simulate $name.yaml --tolerance 1e-4 --quiet -o $name.csv
+  tail -n 1 $name.csv
+done | awk -F, 'NR == 1 { q = $2 } NR == 2 { d = $2 - q; print (d*d < 1e-6 ? "as from farther off" : d) }'
+
+# Speeds that jump tell of another motion: from rest before the position, back to it and across, or an error, but not that.
+echo '-- antiparallelograms at rest beside their line: what errs by more than 10 T'
+while read -r angle B C value; do
+  four_bar 1 2 1 2 "-$angle" 0 "$B" "$C" "$B" 0.6 >model.yaml
+  for T in 1e-8 1e-9 1e-10; do
+    "$COTREE" simulate model.yaml --tolerance $T --quiet -o out.csv 2>out.txt || continue
+    tail -n 1 out.csv | awk -F, -v T=$T -v q="$value" -v angle="$angle" '{ d = $2 - q; if (d*d > (10*T)^2) print angle, T ":", d }'
+  done
+done <<'END'
+0.01 0.029998000249962839 0.01 0.45136384027788584
+0.01 0.0298 0.01 0.45136384027788584
+END
+
 echo '-- steps that come across what they do not see'
 four_bar 1 2 1 2 -0.5 8 1.3 0.5 1.3 0.2 >model.yaml
 "$COTREE" simulate model.yaml --step 1e-3 --method rk4 --quiet -o out.csv 2>&1 | grep -v '^ '

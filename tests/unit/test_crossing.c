@@ -26,6 +26,12 @@ struct record {
     double worst, worst_bridged; // errors of steps and samples, and of derivatives by bridges
     int nbridge, nevent;
     double event, last;
+    double left,
+        grows; // what the constraints are missed by in the middle, falling with this power of the reach
+    double
+        trusted; // the position is `singular` after that time; before, another one that is passed by
+    double wavers; // every other time to the position is so many times as long
+    int nlook, ncrossing;
 };
 
 static enum ct_eval rhs(void *user, double t, const double *y, double *dy)
@@ -59,6 +65,37 @@ static double residual(void *user, double t, const double *y)
 {
     (void)y;
     return ((struct record *)user)->is_passed_by && fabs(t - singular) < 0.1 ? 1e-3 : 0;
+}
+
+// --- positions that are passed by, or missed by a little
+
+static double missed(void *user, double t, const double *y)
+{
+    (void)t, (void)y;
+    struct record *r = user;
+    r->ncrossing++;
+    return r->left * pow((singular - r->now) / 0.25, r->grows);
+}
+
+static double two_ahead(void *user, double *reach)
+{
+    const struct record *r = user;
+    *reach = 0.25;
+    return r->now < r->trusted ? singular - 0.9 - r->now : singular_in(user, reach);
+}
+
+static double missed_before(void *user, double t, const double *y)
+{
+    const struct record *r = user;
+    (void)t, (void)y;
+    return r->now < r->trusted ? 1e-2 : 0;
+}
+
+static double wavering(void *user, double *reach)
+{
+    struct record *r = user;
+    const double in = singular_in(user, reach);
+    return r->nlook++ % 2 ? in * r->wavers : in;
 }
 
 static double error_of(double t, const double *y)
@@ -125,6 +162,10 @@ static bool run(struct record *r, const char *method, struct ct_problem p, doubl
         sample[i] = end * i / (MOST - 1);
     *r = (struct record){.is_passed_by = r->is_passed_by,
                          .is_mismatched = r->is_mismatched,
+                         .left = r->left,
+                         .grows = r->grows,
+                         .trusted = r->trusted,
+                         .wavers = r->wavers,
                          .nearest = INFINITY,
                          .ctx = {.model = ct_arena_create()}};
     p.user = r;
@@ -267,6 +308,42 @@ static void a_motion_that_is_not_smooth_is_not_stridden_across(void **unused)
     check_below("error", refused.worst, 1e-5);
 }
 
+// What misses the constraints by less than 100 T may meet them from nearer by; what misses them by more is passed by at once.
+static void what_misses_a_little_is_tried_from_nearer_by(void **unused)
+{
+    (void)unused;
+    const double tolerance = 1e-6;
+    struct ct_problem p = problem;
+    struct record near = {.left = 50 * tolerance, .grows = 14}, far = {.left = 300 * tolerance};
+    p.residual = missed;
+    assert_true(run(&near, "dopri5", p, 3, tolerance));
+    assert_true(near.ncrossing > 1);
+    check_below("error", near.worst, 10 * tolerance);
+    p.rhs = sharp;
+    assert_true(run(&far, "dopri5", p, 3, tolerance));
+    assert_int_equal(far.ncrossing, 1);
+}
+
+// A position that is told of at more than twice the time is another one, and is crossed though the one before was not; up to twice
+// it is the same.
+static void another_position_is_crossed_after_one_that_is_passed_by(void **unused)
+{
+    (void)unused;
+    const double tolerance = 1e-6;
+    struct ct_problem p = problem;
+    struct record two = {.trusted = 0.3}, one = {.left = 1, .wavers = 1.8};
+    p.singular_in = two_ahead;
+    p.residual = missed_before;
+    assert_true(run(&two, "dopri5", p, 3, tolerance));
+    assert_true(two.nbridge > 10);
+    check_below("error", two.worst, 10 * tolerance);
+    p.singular_in = wavering;
+    p.residual = missed;
+    p.rhs = sharp;
+    assert_true(run(&one, "dopri5", p, 3, tolerance));
+    assert_int_equal(one.ncrossing, 1);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -274,6 +351,8 @@ int main(void)
         cmocka_unit_test(a_run_may_end_on_the_position),
         cmocka_unit_test(an_event_beside_the_position_is_found),
         cmocka_unit_test(a_position_that_is_passed_by_is_not_crossed),
+        cmocka_unit_test(what_misses_a_little_is_tried_from_nearer_by),
+        cmocka_unit_test(another_position_is_crossed_after_one_that_is_passed_by),
         cmocka_unit_test(long_steps_stride_across),
         cmocka_unit_test(a_motion_that_is_not_smooth_is_not_stridden_across),
     };
