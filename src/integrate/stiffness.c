@@ -24,6 +24,8 @@ static const double least_separation = 10;
 // Nor if they are vibrations that no output asks the rates of, (8.10): steps of explicit methods, of some 1/fast, are worth a
 // trial where so many of them are made while places change by themselves.
 static const double far_off = 1000;
+// Two applications of J to one motion stay in a plane, to this part of their length: else there are several, whose decay is not known.
+static const double one_motion = 0.1;
 // A motion that changes by no more in a step needs no such steps: (1e-3)^5 is rounding already. Where the rounding of places
 // alone changes forces by more than the tolerance, it is that which holds them up, far from the limit of stability.
 static const double idle_step = 1e-3;
@@ -47,7 +49,8 @@ struct ct_stiffness *ct_stiffness_create(struct ct_arena *a, const struct ct_pro
     struct ct_stiffness *s = CT_NEW(a, struct ct_stiffness);
     *s = (struct ct_stiffness){
         .p = p, .stats = stats, .rtol = rtol, .first = first, .last = last};
-    double **const vectors[] = {&s->v, &s->w, &s->f, &s->f0, &s->point, &s->y0, &s->quarter};
+    double **const vectors[]
+        = {&s->v, &s->w, &s->f, &s->f0, &s->point, &s->y0, &s->quarter, &s->once};
     for (size_t i = 0; i < COUNT(vectors); i++)
         *vectors[i] = CT_NEWN(a, double, p->ny);
     for (int i = first; i < last; i++) // a change of speeds in which none is singled out
@@ -88,6 +91,33 @@ static double turn_to(struct ct_stiffness *s, const double *x)
     return size;
 }
 
+// a'b with places as fast as speeds.
+static double dot(const struct ct_stiffness *s, const double *a, const double *b)
+{
+    double places = 0, speeds = 0;
+    for (int i = 0; i < s->last; i++)
+        *(i < s->first ? &places : &speeds) += a[i] * b[i];
+    return s->fast * s->fast * places + speeds;
+}
+
+// The rate at which the fastest motion dies: J^2 x = -2 decay J x - rate^2 x for a vibration, J x = -decay x for one that only
+// dies, by least squares for x, s->v before both applications, J x = gain s->once, s->v after them. Negative where it grows, zero where x is
+// not yet one motion.  (8.32)
+static double find_decay(const struct ct_stiffness *s, const double *x, double gain)
+{
+    const double *Jx = s->once, *JJx = s->v, size = s->fast * s->fast;
+    const double xx = dot(s, x, x), xy = dot(s, x, Jx), yy = dot(s, Jx, Jx);
+    const double xz = dot(s, x, JJx), yz = dot(s, Jx, JJx), zz = dot(s, JJx, JJx);
+    const double det = xx * yy - xy * xy;
+    if (!(det > sqrt(DBL_EPSILON) * xx * yy))
+        return -gain * xy / xx;
+    const double b = (xx * yz - xy * xz) / det, a = (yy * xz - xy * yz) / det;
+    if (!(zz - a * xz - b * yz < one_motion * one_motion * zz))
+        return 0;
+    const double half = -b * size / (2 * gain);
+    return half + sqrt(fmax(0, half * half + a * size));
+}
+
 // Two applications: one turns a vibration's places into speeds and back, its rate is the root of both gains.
 static bool find_fast(struct ct_stiffness *s, double t, const double *y)
 {
@@ -95,13 +125,17 @@ static bool find_fast(struct ct_stiffness *s, double t, const double *y)
         return false;
     turn_to(s, memcpy(s->w, s->v, (size_t)s->p->ny * sizeof *s->w));
     for (int round = s->fast > 0 ? 1 : first_rounds; round > 0; round--) {
-        double gain = 1;
+        double gain[2];
+        memcpy(s->quarter, s->v, (size_t)s->p->ny * sizeof *s->v);
         for (int i = 0; i < 2; i++) {
             if (!apply_jacobian(s, t, y, s->v, s->w))
                 return false;
-            gain *= turn_to(s, s->w);
+            gain[i] = turn_to(s, s->w);
+            if (i == 0)
+                memcpy(s->once, s->v, (size_t)s->p->ny * sizeof *s->v);
         }
-        s->fast = sqrt(gain);
+        s->fast = sqrt(gain[0] * gain[1]);
+        s->decay = find_decay(s, s->quarter, gain[0]);
     }
     return isfinite(s->fast);
 }
@@ -172,10 +206,23 @@ static void compare_rates(struct ct_stiffness *s, double before)
     s->alike = is_same ? s->alike + 1 : 1;
 }
 
+// What is left of the fastest motion since it was last excited: decay over the time since then, of which each test measures one
+// value for the steps before it. Without friction, too, it dies and grows at times as masses and stiffnesses change along the motion,
+// at the pace of that.  (8.33)
+static void note_decay(struct ct_stiffness *s, bool is_known, double pace, double start,
+                       double t)
+{
+    if (s->excited > start)
+        s->died = 0;
+    if (is_known)
+        s->died = fmax(0, s->died + (s->decay - pace) * (t - fmax(start, s->excited)));
+    s->is_dead = s->died > -log(s->rtol);
+}
+
 static bool test(struct ct_stiffness *s, double t, const double *y)
 {
     const double fast_before = s->fast;
-    const double steps = (double)(s->count - s->window_steps);
+    const double steps = (double)(s->count - s->window_steps), start = s->window_t;
     s->step = (t - s->window_t) / steps;
     s->evaluations = (double)(s->stats->evaluations - s->window_evaluations) / steps;
     s->window_t = t;
@@ -184,8 +231,8 @@ static bool test(struct ct_stiffness *s, double t, const double *y)
     if (s->p->rhs(s->p->user, s->t0, s->y0, s->f0) != CT_EVAL_OK || !find_fast(s, t, y))
         return false;
     s->slow = find_slow(s, t - s->t0);
-    const double reach = s->step * s->fast;
-    s->is_far = s->p->asked_speeds && s->fast > far_off * find_pace(s, y);
+    const double reach = s->step * s->fast, pace = find_pace(s, y);
+    s->is_far = s->p->asked_speeds && s->fast > far_off * pace;
     compare_rates(s, fast_before);
     s->is_followed = reach < unfollowed_step && lasts(s);
     const bool is_unfollowed = fmax(reach, (t - s->t0) * s->fast) >= unfollowed_step;
@@ -194,6 +241,7 @@ static bool test(struct ct_stiffness *s, double t, const double *y)
     const bool is_idle = s->is_far || s->step * s->slow < idle_step;
     const bool is_held_up = reach > suspicious_step || (is_idle && is_rounding_felt(s, y));
     const bool is_apart = s->is_far || s->fast > least_separation * s->slow;
+    note_decay(s, is_apart && lasts(s), pace, start, t);
     return reach > unfollowed_step || (is_held_up && is_apart);
 }
 
@@ -353,6 +401,12 @@ void ct_stiffness_measure_against(struct ct_stiffness *s, double pace,
 double ct_stiffness_pace(const struct ct_stiffness *s, const struct ct_cost *cost)
 {
     return s->step / (s->evaluations * cost->evaluation);
+}
+
+double ct_cost_step(const struct ct_cost *cost)
+{
+    const double residuals = 12; // four corrections
+    return residuals * cost->residual + cost->tangent + 2 * cost->factorization;
 }
 
 // ---- the trial -----------------------------------------------------------------------------------------

@@ -14,15 +14,16 @@
 
 struct ct_stiffness {
     const struct ct_problem *p;
-    double rtol;                                   // of outputs
-    int first, last;                               // of y: the accelerations in f
-    double *v, *w, *f, *f0, *point, *y0, *quarter; // (ny)
-    double t0;                                     // time of y0
-    long count, next_trial;                        // steps; when suspicion is next listened to
+    double rtol;                                          // of outputs
+    int first, last;                                      // of y: the accelerations in f
+    double *v, *w, *f, *f0, *point, *y0, *quarter, *once; // (ny)
+    double t0;                                            // time of y0
+    long count, next_trial; // steps; when suspicion is next listened to
     bool
         is_far; // vibrations of that rate need not be followed for their speeds, at the last test
     bool
         is_followed; // steps follow vibrations of that rate, which has lasted, at the last test
+    bool is_dead;    // less than the tolerance is left of that motion since it was excited
     int in_a_row;    // tests that were suspicious
     bool
         is_unstable; // steps are held up by stability, at the last test, and that rate has lasted
@@ -33,6 +34,9 @@ struct ct_stiffness {
     const struct ct_integrate_stats *stats; // of the run, live
     long window_evaluations;
     double fast, slow;  // of the last test [1/s]
+    double decay;       // rate at which the fastest motion dies, at the last test [1/s]
+    double died;        // its integral since `excited`
+    double excited;     // time of the last event, given
     double step;        // mean step since the test before [s]
     double evaluations; // for a step, since then
     double rival;       // time for as much work as an evaluation, by the other method  [s]
@@ -45,6 +49,9 @@ struct ct_cost {
     double tangent;       // of the derivatives
     double factorization; // of the matrix of an iteration
 };
+
+/// What a usual step of the implicit method costs, with derivatives and factors of its own.
+double ct_cost_step(const struct ct_cost *cost);
 
 /// A few steps of an implicit method, to see how far it gets for its work.
 struct ct_trial {

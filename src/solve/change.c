@@ -50,10 +50,15 @@ static double change_of_outputs(struct ct_run *r, double t, const double *y, con
     return most;
 }
 
-// The part of an output that vibrations make which the explicit method follows, far from the motion; at most all of it.
+// The part of an output that vibrations make which the explicit method follows, far from the motion; at most all of it, which outputs
+// that amplify are taken to feel. Errors in what dies have died with it at the end.
 static double find_felt(struct ct_run *r, double t, const double *y)
 {
     const double before = ct_run_before(r, t), *e, *later;
+    if (r->stiffness->is_dead)
+        return 0;
+    if (r->amplifies)
+        return 1;
     if (!ct_stiffness_find_vibration(r->stiffness, t, y, r->method->order, &e, &later))
         return 0;
     const double felt
@@ -71,8 +76,9 @@ bool ct_run_is_suspect(struct ct_run *r, double t, const double *y)
         const bool has_lost = ct_trial_has_lost(&r->implicit, t, r->explicit_pace);
         return (has_lost || r->has_jumped) && may_stop;
     }
+    s->excited = r->last_event;
     const bool is_suspect = ct_stiffness_watch(s, t, y, r->o->duration);
-    if (ct_stiffness_has_tested(s) && !r->amplifies)
+    if (ct_stiffness_has_tested(s))
         r->felt = find_felt(r, t, y);
     // before the trial that a test asks for, steps are those it is to be compared with
     r->is_to_follow = (s->step > wanted_step(r) || (ct_stiffness_is_unstable(s) && !is_suspect))
@@ -121,17 +127,17 @@ static struct ct_cost find_cost(const struct ct_run *r)
     };
 }
 
-// Time that the implicit method gains for its work, from here; nothing has changed afterwards.
+// Time that the implicit method gains for its work, from here, begun with steps of `first_step`; nothing has changed afterwards.
 static double try_implicit(struct ct_run *r, const struct ct_problem *p,
-                           const struct ct_integrate_options *io, const struct ct_cost *cost)
+                           const struct ct_integrate_options *io, double first_step)
 {
     struct ct_machine *m = r->m;
     struct ct_integrate_options trial_io = *io;
-    struct ct_trial trial = {.cost = *cost,
+    struct ct_trial trial = {.cost = r->implicit.cost,
                              .stats = &r->stats,
                              .start = io->t0,
                              .end = io->t1,
-                             .has_to_damp = r->stiffness->is_far};
+                             .has_to_damp = r->stiffness->is_far && !r->stiffness->is_dead};
     const size_t ndiagnostic = r->ctx->ndiagnostic, nerror = r->ctx->nerror;
     const double pending = r->pending, turning = r->turning, t_turning = r->t_turning;
     const struct ct_singular singular = *r->singular; // none is near
@@ -139,6 +145,7 @@ static double try_implicit(struct ct_run *r, const struct ct_problem *p,
     memcpy(y, r->y, r->ny * sizeof *y);
     memcpy(input, m->input, m->ninput * sizeof *input);
     trial_io.nsample = 0;
+    trial_io.first_step = first_step;
     trial_io.at_step = at_trial_step;
     r->trial = &trial;
     ct_integrate(r->ctx, r->o->stiff_method, p, &trial_io, y, &r->stats);
@@ -191,6 +198,15 @@ static void take_implicit(struct ct_run *r, struct ct_integrate_options *io, dou
     report->method = r->method;
 }
 
+// Where nothing fast is left, steps of the size that wins: from those of the explicit method they would grow for most of the trial, or
+// not at all where their errors are roundings.
+static double first_of_trial(const struct ct_run *r, const struct ct_integrate_options *io,
+                             double least_gain)
+{
+    const double winning = least_gain * r->explicit_pace * ct_cost_step(&r->implicit.cost);
+    return r->stiffness->is_dead ? fmax(io->first_step, winning) : io->first_step;
+}
+
 // Over to the implicit method if it gets farther for its work. True: it does. That says nothing of the motion behind a jump of speeds,
 // which excites vibrations: there the explicit method goes on.
 static bool go_implicit(struct ct_run *r, struct ct_problem *p, struct ct_integrate_options *io)
@@ -198,10 +214,12 @@ static bool go_implicit(struct ct_run *r, struct ct_problem *p, struct ct_integr
     // What is counted is not quite what is spent, and its errors are larger; more so where vibrations are no longer followed: a
     // slider-crank of flexible rods gained no time from 2.8 times as far, and erred by the tolerance in place of a thousandth. Steps as
     // long as stability allows do not follow them either.
-    const bool gives_up = r->stiffness->is_far && !ct_stiffness_is_unstable(r->stiffness);
+    const bool gives_up = r->stiffness->is_far && !r->stiffness->is_dead
+                       && !ct_stiffness_is_unstable(r->stiffness);
     const double least_gain = gives_up ? 5 : 2;
     prepare_implicit(r, p);
-    const double gain = try_implicit(r, p, io, &r->implicit.cost) / r->explicit_pace;
+    const double gain
+        = try_implicit(r, p, io, first_of_trial(r, io, least_gain)) / r->explicit_pace;
     if (gain < least_gain) {
         r->method = r->o->method;
         return false;

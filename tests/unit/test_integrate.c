@@ -539,6 +539,92 @@ static void rates_that_change_by_more_than_twice_do_not_last(void **unused)
     }
 }
 
+// y'' = -2 d y' - rate^2 y for two masses, {rate, d} of each.
+static double dying[2][2];
+
+static enum ct_eval two_that_die(void *user, double t, const double *y, double *dy)
+{
+    (void)user, (void)t;
+    for (int i = 0; i < 2; i++) {
+        dy[i] = y[2 + i];
+        dy[2 + i] = -2 * dying[i][1] * y[2 + i] - dying[i][0] * dying[i][0] * y[i];
+    }
+    return CT_EVAL_OK;
+}
+
+// The watch of a motion of that speed, after six tests that are a time of one apart; an event at that time.
+static struct ct_stiffness *watch_two(struct ct_arena *a,
+                                      const struct ct_integrate_stats *stats, double speed,
+                                      double event)
+{
+    enum { STEPS = 100, TESTS = 6 };
+    static const struct ct_problem p = {.ny = 4, .nq = 2, .nu = 2, .rhs = two_that_die};
+    const double y[] = {1, 1, speed, 0};
+    struct ct_stiffness *s = ct_stiffness_create(a, &p, stats, 1e-6, 2, 4);
+    s->excited = -INFINITY;
+    for (int k = 1; k <= STEPS * TESTS; k++) {
+        if ((double)k / STEPS > event)
+            s->excited = event;
+        ct_stiffness_watch(s, (double)k / STEPS, y, 1e9);
+    }
+    return s;
+}
+
+// Against the roots of z^2 + 2 d z + rate^2, of which the watch finds the one of the larger size.
+static void the_rate_at_which_the_fastest_motion_dies_is_found(void **unused)
+{
+    (void)unused;
+    static const double of[][2]
+        = {{1e3, 0}, {1e3, 2}, {1e3, 300}, {1e3, 900}, {1e3, 5e3}, {1e3, -2}};
+    for (size_t i = 0; i < COUNT(of); i++) {
+        struct ct_arena *a = ct_arena_create();
+        const struct ct_integrate_stats stats = {0};
+        const double rate = of[i][0], d = of[i][1];
+        memcpy(dying, (double[2][2]){{rate, d}, {1, 0.1}}, sizeof dying);
+        const struct ct_stiffness *s = watch_two(a, &stats, 0, INFINITY);
+        const double want = d > rate ? d + sqrt(d * d - rate * rate) : d;
+        check_close("decay", s->decay, want, 1e-3 * fmax(fabs(want), 1));
+        assert_true(s->is_dead == (6 * want > log(1e6)));
+        ct_arena_destroy(a);
+    }
+}
+
+// Two of about one rate are not one motion: what dies of them is not told from what they make together.
+static void several_fastest_motions_are_not_taken_to_die(void **unused)
+{
+    (void)unused;
+    struct ct_arena *a = ct_arena_create();
+    const struct ct_integrate_stats stats = {0};
+    memcpy(dying, (double[2][2]){{1000, 200}, {1000.5, 0}}, sizeof dying);
+    assert_false(watch_two(a, &stats, 0, INFINITY)->is_dead);
+    ct_arena_destroy(a);
+}
+
+// Nor is what a motion changes by as it goes on.
+static void what_dies_at_the_pace_of_the_motion_is_not_dead(void **unused)
+{
+    (void)unused;
+    struct ct_arena *a = ct_arena_create();
+    const struct ct_integrate_stats stats = {0};
+    memcpy(dying, (double[2][2]){{1e3, 50}, {1, 0.1}}, sizeof dying);
+    assert_true(watch_two(a, &stats, 25, INFINITY)->is_dead);
+    assert_false(watch_two(a, &stats, 75, INFINITY)->is_dead);
+    ct_arena_destroy(a);
+}
+
+static void what_an_event_excites_has_to_die_again(void **unused)
+{
+    (void)unused;
+    struct ct_arena *a = ct_arena_create();
+    const struct ct_integrate_stats stats = {0};
+    memcpy(dying, (double[2][2]){{1e3, 5}, {1, 0.1}}, sizeof dying);
+    assert_true(watch_two(a, &stats, 0, INFINITY)->is_dead);
+    const struct ct_stiffness *s = watch_two(a, &stats, 0, 4.5);
+    check_close("died", s->died, 1.5 * 5, 0.1);
+    assert_false(s->is_dead);
+    ct_arena_destroy(a);
+}
+
 // ---- samples between steps ----------------------------------------------------------------------------------
 
 // What it takes to see that the interpolant holds is next to nothing.
@@ -686,6 +772,10 @@ int main(void)
         cmocka_unit_test(stable_steps_make_nothing_larger),
         cmocka_unit_test(the_rate_from_rest_is_that_of_the_start),
         cmocka_unit_test(rates_that_change_by_more_than_twice_do_not_last),
+        cmocka_unit_test(the_rate_at_which_the_fastest_motion_dies_is_found),
+        cmocka_unit_test(several_fastest_motions_are_not_taken_to_die),
+        cmocka_unit_test(what_dies_at_the_pace_of_the_motion_is_not_dead),
+        cmocka_unit_test(what_an_event_excites_has_to_die_again),
         cmocka_unit_test(samples_of_what_steps_follow_cost_no_steps_of_their_own),
         cmocka_unit_test(samples_cost_steps_of_their_own_while_the_interpolant_errs),
         cmocka_unit_test(methods_are_found_by_name),
