@@ -16,7 +16,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { SIDE = 7, STAGES = 2 * SIDE, LEFT_SWEEPS = 2, MOST_SWEEPS = 30, QUADRATURE = 8 };
+enum { SIDE = 7, STAGES = 2 * SIDE, LEFT_SWEEPS = 2, MOST_SWEEPS = 60, QUADRATURE = 8 };
 
 // Part of the step in whose middle nothing is evaluated.
 static const double gap = 0.3;
@@ -24,6 +24,9 @@ static const double gap = 0.3;
 // Sweeps end when stages move less than this part of the tolerance, or less than this part of themselves: then
 // the checks of the step are not spoilt by what sweeps have left at coarse tolerances.
 static const double settled = 0.02, settled_fine = 1e-10;
+// Where f has all digits sweeps go down to rounding, to this part of the largest state: a motion that lingers beside a position makes
+// errors grow.
+static const double settled_sharp = 1e-15;
 const double ct_crossing_held = 1e-9;
 const double ct_crossing_rounding = 5e-13;
 // Further off than that and so many times the tolerance there is nothing to be had from nearer by.
@@ -260,22 +263,31 @@ static enum ct_eval step(const struct ct_problem *p, double t, double h, const d
     struct work *w = work;
     const int n = p->ny;
     const size_t bytes = (size_t)n * sizeof *y;
-    const struct task s = {p, t, h, y, tolerance, w, stats};
+    struct task s = {p, t, h, y, tolerance, w, stats};
     if (!w->has_weights)
         find_weights(w);
     memset(w->k, 0, STAGES * bytes);
     memcpy(w->k, dy, bytes);
     for (int j = 0; j < STAGES; j++)
         memcpy(w->stage + j * n, y, bytes);
-    if (p->set_crossing)
-        p->set_crossing(p->user, true);
-    enum ct_eval e = guess(&s);
+    enum ct_eval e = CT_EVAL_OK;
+    struct ct_tolerance sharp = {settled_sharp, 0};
+    if (p->set_crossing && p->set_crossing(p->user, true)) { // dy is not sharp
+        for (int i = 0; i < n; i++)
+            sharp.atol = fmax(sharp.atol, settled_sharp * fabs(y[i]));
+        s.tolerance = &sharp;
+        memcpy(w->point, y, bytes);
+        e = evaluate(&s, 0);
+    }
+    if (e == CT_EVAL_OK)
+        e = guess(&s);
     if (e == CT_EVAL_OK)
         e = sweep(&s, (const double(*)[STAGES])w->A, 1);
     if (p->set_crossing)
         p->set_crossing(p->user, false);
     if (e != CT_EVAL_OK)
         return e;
+    s.tolerance = tolerance;
     memcpy(y1, w->stage + (STAGES - 1) * n, bytes);
     memcpy(dy1, w->k + (STAGES - 1) * n, bytes);
     point_at(p, h, 0.5, y, w, w->end);

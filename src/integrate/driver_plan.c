@@ -124,9 +124,9 @@ void ct_driver_plan(struct ct_driver *r, double stop, bool is_time, struct ct_st
         s->t1 = r->t + length;
         return;
     }
-    // the run may end before the position, but beside it
+    // the run may end before the position, but beside it; one that begins beside it can only come from a crossing
     if (!is_strideable && has_crossing(r) && reach > 0
-        && r->singular_in - beside * reach < rest) {
+        && (isinf(r->far) || r->singular_in - beside * reach < rest)) {
         if (r->singular_in <= (r->failed_crossings ? on_time : early) * reach) {
             plan_crossing(r, stop, is_time, s);
             return;

@@ -162,8 +162,8 @@ struct ct_problem {
     /// and after it in which f is better not computed. May be NULL.
     double (*singular_in)(void *user, double *reach);
     /// What is evaluated from now on belongs to the crossing of a singular position, none of it close by; or does not.
-    /// May be NULL.
-    void (*set_crossing)(void *user, bool is_crossing);
+    /// True: f then has more digits than it had elsewhere. May be NULL.
+    bool (*set_crossing)(void *user, bool is_crossing);
     /// A singular position was crossed by this step, which ends at t1 at the latest. May be NULL.
     void (*crossed)(void *user, const struct ct_stepper_span *step, double t1);
     /// How far y is from the constraints. May be NULL.

@@ -3,6 +3,7 @@
 
 #include "numeric/dense.h"
 
+#include <float.h>
 #include <string.h>
 
 // Of the first row that is marked.
@@ -33,9 +34,9 @@ static void name_singular(struct ct_run *r, const char *advice)
     }
     ct_note(
         r->ctx, mark_of_row(r, first < 0 ? 0 : (size_t)first),
-        "the constraints come to depend on each other there (%s%s): the mechanism is at the "
+        "the constraints come to depend on each other there%s%s%s%s: the mechanism is at the "
         "end of its reach or in a singular position%s",
-        names, n > MOST_NAMES ? ", ..." : "", advice);
+        n ? " (" : "", names, n > MOST_NAMES ? ", ..." : "", n ? ")" : "", advice);
 }
 
 // Where steps ended as the constraints could not be met: the row that stays open farthest a little later.
@@ -155,6 +156,19 @@ static void advise_order(struct ct_run *r)
             r->method->name, r->method->order);
 }
 
+// What leads on beside a singular position: where rounding is what ends steps, a tolerance that leaves it unfelt.
+static const char *advise_there(struct ct_run *r)
+{
+    const double part = r->singular->closest, enough = DBL_EPSILON / (part * part), most = 1e-2;
+    if (!r->s->quad && enough > r->o->wanted && enough < most)
+        return ct_arena_printf(
+            r->arena,
+            "; rounding is felt there by %.0e: a tolerance of that, or a start "
+            "farther from it, may lead on",
+            enough);
+    return "; a larger tolerance, or a start farther from it, may lead on";
+}
+
 void ct_run_explain_end(struct ct_run *r)
 {
     const size_t n = r->ctx->ndiagnostic;
@@ -169,14 +183,15 @@ void ct_run_explain_end(struct ct_run *r)
         advise_order(r);
     if (!r->m->nrow)
         return;
-    if (code == CT_E_STEP_OPEN)
+    if (code == CT_E_STEP_OPEN) {
         name_open_row(r);
-    else if (code == CT_E_SAMPLE_REFUSED) {
+        name_singular(r, ", where a driver may not rest: let it pass, or rest beside it");
+    } else if (code == CT_E_SAMPLE_REFUSED) {
         name_open_row(r);
         if (r->ctx->ndiagnostic == n)
             name_singular(r, "");
     } else if (code == CT_E_STEP_SMALL || code == CT_E_STEP_SINGULAR)
-        name_singular(r, "");
+        name_singular(r, advise_there(r));
     else if (code == CT_E_STEP_REFUSED)
         name_singular(r, ", which steps are not fitted to: leave out 'step'");
     if (is_stuck || code == CT_E_STEP_OPEN)

@@ -11,6 +11,7 @@
 
 #include "integrate/crossing.h"
 #include "numeric/dense.h"
+#include "solve/quad_embed.h"
 
 #include <float.h>
 #include <math.h>
@@ -19,24 +20,25 @@
 // Largest change of a coordinate from where the motion is slowest to either end of the step [rad, m], at first; halved where the
 // step errs.
 static const double longest_way = 0.4;
-enum { LOOKS = 8 };
+enum { LOOKS = 12 }; // a motion that lingers leaves faster than accelerations of now tell
 
 // Starts from so far [rad, m] come to the position by a step across it and what is learnt on the way; up to there from it a start tells
 // nothing of how the smallest pivot falls.
 static const double beside = 0.2, near = 0.5;
 
-// The step may err by so much of the largest state; by so much of what is asked where that is more, which is felt as the way to the
-// position is short.
-static const double exact = 1e-12, unfelt = 0.02;
+// The step may err by so much of the largest state, or, in quadruple precision, times the way that the motion goes where that is short,
+// down to rounding of states; by so much of what is asked where no step errs less. (8.35)
+static const double exact = 1e-12, unfelt = 0.02, exact_in_quad = 1e-15;
 
 // Where a run starts: all speeds together, and accelerations where they are known.
 struct lead {
     const struct ct_problem *p;
     void *work;
-    double u, a, ua;    // |u|, |u'|, u . u'
-    double in;          // time to the position, below 0 behind it
-    double most;        // the step may err by so much of the largest state
-    double *before;     // (ny, out)
+    double u, a, ua; // |u|, |u'|, u . u'
+    double in;       // time to the position, below 0 behind it
+    double most,
+        least;      // the step may err by so much of the largest state; the second if none does
+    double *before; // (ny, out)
     double *end, *dend; // (ny)
 };
 
@@ -95,18 +97,23 @@ static bool choose_beside(struct ct_run *r, double h, const double *y)
 // other motions are as far as speeds are large.
 static const double meant = 1e-4;
 
-// How far y is from it.
-static double miss(const struct ct_run *r, const double *y)
+// How far the first n of y are from it.
+static double miss(const struct ct_run *r, const double *y, size_t n)
 {
     double most = 0;
-    for (size_t i = 0; i + 1 < r->ny; i++)
+    for (size_t i = 0; i < n; i++)
         most = fmax(most, fabs(y[i] - r->assembled[i]));
     return most / ct_vector_largest(r->assembled, r->ny);
 }
 
+static bool is_near_start(const struct ct_run *r, const double *y, size_t n)
+{
+    return miss(r, y, n) <= meant;
+}
+
 bool ct_run_meets_start(const struct ct_run *r, const double *y)
 {
-    return miss(r, y) <= meant;
+    return is_near_start(r, y, r->ny - 1);
 }
 
 // Does the step from l->before lead across, and to the start on its way? r->stage (out): what it makes of the start.
@@ -131,7 +138,7 @@ static bool leads_across(struct ct_run *r, const struct lead *l, const struct ac
 static double sweep_back(struct ct_run *r, const struct lead *l, const struct across *c)
 {
     const double *y = r->assembled, largest = ct_vector_largest(y, r->ny), t = begin_of(c);
-    double error, part = exact;
+    double error, part = r->s->quad ? exact_in_quad : exact;
     while (part <= l->most) {
         const struct ct_tolerance tolerance = {part, part * largest};
         if (ct_crossing_lead_in(l->p, 0, c->h, -t / c->h, y, r->dy, &tolerance, l->before,
@@ -141,6 +148,15 @@ static double sweep_back(struct ct_run *r, const struct lead *l, const struct ac
         part *= 10;
     }
     return INFINITY;
+}
+
+// The state where a step begins, with the digits that its stages have.
+static bool put_on_constraints(struct ct_run *r, const struct lead *l, double t)
+{
+    l->p->set_crossing(r, true);
+    const enum ct_eval e = l->p->project(r, t, l->before);
+    l->p->set_crossing(r, false);
+    return e == CT_EVAL_OK;
 }
 
 // The state where a step across begins, into l->before, and what that errs by; INFINITY where it does not lead across.
@@ -156,8 +172,25 @@ static void look_back(struct ct_run *r, const struct lead *l, struct across *c)
     ct_machine_copy(r->dy, r->m->rate, r->m->nq);
     const double error = sweep_back(r, l, c);
     if (error <= l->most && off_constraints(r, t, l->before) <= ct_crossing_held
-        && l->p->project(r, t, l->before) == CT_EVAL_OK && leads_across(r, l, c))
+        && put_on_constraints(r, l, t) && leads_across(r, l, c))
         c->error = error;
+}
+
+// Does J keep its rank on either side of the gap? Near a position among the stages samples would be among roundings.
+static bool keeps_rank(struct ct_run *r, const struct lead *l, const struct across *c)
+{
+    const struct ct_bridge b = ct_crossing_bridge(l->work, begin_of(c), c->h, 0.5);
+    int side = 0;
+    for (int k = 0; k < b.n; k++) {
+        ct_machine_set(r->m, b.t[k], b.y + (size_t)k * r->ny);
+        ct_machine_constraint(r->m);
+        ct_embed_pivot(r->s);
+        const int now = ct_embed_side(r->s);
+        if (k != b.n / 2 && now * side < 0)
+            return false;
+        side = now;
+    }
+    return true;
 }
 
 // Do root functions keep their signs? What switches on the way is another motion.
@@ -180,7 +213,7 @@ static void find_step(struct ct_run *r, const struct lead *l, double middle,
     struct across c = {middle, 2 * time_for(l, speed_at(l, middle), longest_way), INFINITY};
     for (int i = 0; i < LOOKS && c.h > best->h && c.h / 2 > fabs(middle); i++, c.h /= 2) {
         look_back(r, l, &c);
-        if (c.error < INFINITY && keeps_sides(r, l, begin_of(&c))) {
+        if (c.error < INFINITY && keeps_rank(r, l, &c) && keeps_sides(r, l, begin_of(&c))) {
             *best = c;
             return;
         }
@@ -198,7 +231,7 @@ static bool refuse_speeds(struct ct_run *r, double misfit, int freedoms)
              "and several motions go on, and %s",
              r->singular_joints,
              misfit > belongs ? "the speeds belong to none of them"
-                              : "none is found that has these speeds");
+                              : "none that has these speeds is found to this tolerance");
     if (misfit > belongs)
         ct_note(r->ctx, (struct ct_mark){0},
                 "give the rates of %d joints there, as one motion through the position has "
@@ -206,6 +239,11 @@ static bool refuse_speeds(struct ct_run *r, double misfit, int freedoms)
                 "%.2g of their squares; or start a little beside it, a joint off by 1e-3, on "
                 "the motion that is meant",
                 freedoms, misfit);
+    else
+        ct_note(
+            r->ctx, (struct ct_mark){0},
+            "a larger tolerance may do; or start a little beside it, a joint off by 1e-3, on "
+            "the motion that is meant");
     return false;
 }
 
@@ -228,6 +266,13 @@ static void warn_of_rounding(struct ct_run *r, double unknown)
                unknown);
 }
 
+static void find_best(struct ct_run *r, const struct lead *l, struct across *best)
+{
+    find_step(r, l, l->in, best);
+    if (l->a > 0)
+        find_step(r, l, -l->ua / (l->a * l->a), best);
+}
+
 // From half a step before the position on, if there is one that crosses it. A motion that is slow there, and turns, comes to it twice:
 // then the step is better centred on where it turns.
 static bool begin_before(struct ct_run *r, struct lead *l)
@@ -236,17 +281,21 @@ static bool begin_before(struct ct_run *r, struct lead *l)
     struct across best = {.error = INFINITY};
     for (size_t i = 0; i < COUNT(vector); i++)
         *vector[i] = CT_NEWN(r->arena, double, r->ny);
+    r->singular->in = 0; // nearer than from where crossings begin
+    r->singular->reach = INFINITY;
     l->work = ct_crossing.create(r->arena, &ct_crossing, l->p);
-    find_step(r, l, l->in, &best);
-    if (l->a > 0)
-        find_step(r, l, -l->ua / (l->a * l->a), &best);
+    find_best(r, l, &best);
+    if (isinf(best.error) && l->least > l->most) {
+        l->most = l->least;
+        find_best(r, l, &best);
+    }
     if (best.error < INFINITY)
         look_back(r, l, &best);
     if (!(best.error < INFINITY)) {
         return_to_start(r);
         return false;
     }
-    const double unknown = miss(r, r->stage);
+    const double unknown = miss(r, r->stage, r->ny - 1);
     if (unknown > r->o->wanted)
         warn_of_rounding(r, unknown);
     r->t0 = begin_of(&best);
@@ -254,6 +303,13 @@ static bool begin_before(struct ct_run *r, struct lead *l)
     r->singular->keeps_rows = r->method->is_implicit && (size_t)r->s->rank < r->m->nrow;
     ct_singular_expect(r->singular, r->t0, r->y, best.h / 2);
     return true;
+}
+
+// What the step may err by, where it is felt by so much, for steps that are held to `asked`.
+static void allow(const struct ct_run *r, struct lead *l, double asked, double felt)
+{
+    l->least = fmax(exact, unfelt * asked * felt);
+    l->most = r->s->quad ? fmax(exact_in_quad, exact * felt) : l->least;
 }
 
 static bool begin_in_position(struct ct_run *r, struct lead *l)
@@ -266,7 +322,7 @@ static bool begin_in_position(struct ct_run *r, struct lead *l)
                         "away from it; leave out 'step'",
                         r->singular_joints);
     const double misfit = ct_singular_misfit(r->arena, r->s, 0, r->assembled, &freedoms);
-    l->most = fmax(exact, unfelt * r->o->rtol);
+    allow(r, l, r->o->rtol, 1);
     return (misfit <= belongs && begin_before(r, l)) || refuse_speeds(r, misfit, freedoms);
 }
 
@@ -284,15 +340,48 @@ static double find_way(struct ct_run *r, struct lead *l)
     return ct_singular_near(r->singular, 0, r->y, r->dy, r->pending, s);
 }
 
+static bool is_all_given(const struct ct_run *r)
+{
+    for (size_t k = 0; k + (size_t)r->s->rank < r->m->nu; k++)
+        if (!r->is_given[r->s->independent[k]])
+            return false;
+    return true;
+}
+
+// What follows from what the start is given by, and accelerations, with all digits that this leaves: speeds that were found in double
+// precision may be far off. Coordinates that are not given have their own rounding, which is known no better elsewhere.
+static void sharpen_start(struct ct_run *r)
+{
+    if (!r->s->quad || !choose_beside(r, 0, r->assembled) || !is_all_given(r))
+        return;
+    memcpy(r->stage, r->assembled, r->ny * sizeof *r->stage);
+    if (ct_quad_embed_project(r->s->quad, r->s, 0, r->stage) != CT_EVAL_OK
+        || !is_near_start(r, r->stage, r->m->nq))
+        return;
+    ct_machine_set(r->m, 0, r->stage);
+    if (ct_quad_embed_accelerate(r->s->quad, r->s, r->s->a, r->m->rate) != CT_EVAL_OK)
+        return;
+    memcpy(r->assembled, r->stage, r->ny * sizeof *r->stage);
+    memcpy(r->y, r->stage, r->ny * sizeof *r->y);
+    ct_machine_copy(r->dy, r->m->rate, r->m->nq);
+    ct_machine_copy(r->dy + r->m->nq, r->s->a, r->m->nu);
+}
+
 // Beside a position: from before it, or else what is known of it from the start on.
 static void begin_beside(struct ct_run *r, struct lead *l)
 {
-    const double way = find_way(r, l), size = fabs(way);
+    double way = find_way(r, l), size = fabs(way);
+    if (size > 0 && size <= beside) {
+        sharpen_start(r);
+        way = find_way(r, l);
+        size = fabs(way);
+    }
     if (!(size > 0 && size < near))
         return;
     const double along = fmax(size, l->u * time_for(l, l->u, longest_way));
-    l->most = fmax(exact, unfelt * r->o->wanted * fmin(1, along));
+    allow(r, l, r->o->wanted, fmin(1, along));
     l->in = copysign(time_for(l, l->u, size), way);
+    ct_singular_measure(r->singular, 0, r->y, near / size);
     if (size > beside || !begin_before(r, l))
         ct_singular_begin(r->singular, 0, r->y, way > 0 ? l->in : INFINITY, near / size);
 }

@@ -4,6 +4,7 @@
 #include "formulate/flexible.h"
 #include "numeric/dense.h"
 #include "solve/dae.h"
+#include "solve/quad_embed.h"
 
 #include <string.h>
 
@@ -71,10 +72,10 @@ static double singular_in(void *user, double *reach)
     return r->singular->in;
 }
 
-static void set_crossing(void *user, bool is_crossing)
+static bool set_crossing(void *user, bool is_crossing)
 {
     struct ct_run *r = user;
-    ct_singular_set_crossing(r->singular, is_crossing);
+    return ct_singular_set_crossing(r->singular, is_crossing);
 }
 
 static void crossed(void *user, const struct ct_stepper_span *span, double t1)
@@ -587,6 +588,9 @@ bool ct_run_simulate(struct ct_run *r, const struct ct_run_options *o,
     report->final = CT_NEWN(r->arena, double, r->e->nresult + 1);
     memset(r->largest, 0, r->e->nresult * sizeof *r->largest);
     ct_singular_start(r->singular);
+    r->singular->wanted = o->step == 0 ? o->wanted : 0;
+    if (!r->s->quad && o->step == 0)
+        r->s->quad = ct_quad_embed_create(r->arena, r->m);
     if (r->fidelity)
         ct_fidelity_start(r->fidelity);
     r->o = o;

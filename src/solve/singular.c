@@ -4,6 +4,7 @@
 #include "numeric/dense.h"
 #include "solve/mode.h"
 
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
@@ -37,6 +38,9 @@ void ct_singular_start(struct ct_singular *w)
     w->swiftest = 0;
     w->side = 0;
     w->s->nearness = 1;
+    w->farthest = w->wanted = 0;
+    w->is_close = w->s->is_in_quad = false;
+    w->rank = 0;
 }
 
 // ---- ahead ------------------------------------------------------------------------------------------------
@@ -76,6 +80,19 @@ static double pivot_after(struct ct_singular *w, const struct sight *a, double s
 static const double foreseen_pivot = 0.8, near_pivot = 0.5, singular_pivot = 0.25;
 // At so little rounding, which is divided by its square, leaves no digit of which motion goes on: no step ends there.
 static const double lost_pivot = 1e-7;
+
+// Rounding of accelerations is eps over the square of the pivot, against its largest. Where that would be more than this part of what
+// is wanted they are found in quadruple precision.
+static const double felt_rounding = 0.01;
+
+static void note_closeness(struct ct_singular *w, double pivot)
+{
+    w->farthest = fmax(w->farthest, fmax(w->most, pivot));
+    const double part = pivot / w->farthest;
+    w->is_close = w->s->quad && w->wanted > 0 && part < singular_pivot / 2
+               && part * part * felt_rounding * w->wanted < DBL_EPSILON;
+    w->s->is_in_quad = w->is_close;
+}
 
 // The smallest pivot falls about linearly towards a singular position. Time to where it will vanish, by secants along
 // the motion as the accelerations of now continue it. INFINITY if it rises.
@@ -210,6 +227,7 @@ static void keep(struct ct_singular *w, const struct sight *at, const struct loo
 {
     keep_side(w, at, l->side);
     w->t = at->t;
+    w->rank = w->s->rank > w->rank ? w->s->rank : w->rank;
     w->was_told = false;
     w->part = l->part;
     w->switches = w->s->switches;
@@ -221,6 +239,7 @@ static void keep(struct ct_singular *w, const struct sight *at, const struct loo
     w->s->is_delicate = l->part < near_pivot;
     w->s->nearness = l->part;
     w->dt = dt;
+    note_closeness(w, l->now);
 }
 
 // Where a step of another kind than crossings has come: what is told of it at the end of the run.
@@ -269,12 +288,18 @@ void ct_singular_turn(struct ct_singular *w, double t, const double *y, const do
     find_next(w, &ahead, pivot_at(w, ct_time_before(t, pending), y));
 }
 
+void ct_singular_measure(struct ct_singular *w, double t, const double *y, double times)
+{
+    w->farthest = times * pivot_at(w, t, y);
+}
+
 void ct_singular_begin(struct ct_singular *w, double t, const double *y, double in,
                        double times)
 {
     ct_singular_expect(w, t, y, in);
     w->most *= times;
     w->part = w->s->nearness = 1 / times;
+    note_closeness(w, w->most / times);
     w->s->is_delicate = w->part < near_pivot;
     w->reach = in * fmin(1, singular_pivot * times);
 }
@@ -288,14 +313,21 @@ void ct_singular_expect(struct ct_singular *w, double t, const double *y, double
     w->switches = w->s->switches;
     w->in = in;
     w->reach = INFINITY;
+    note_closeness(w, w->most);
 }
+
+// Crossings that begin nearer to the position than this part of where they should are among roundings.
+static const double nearer_than = 0.7;
 
 // The stages of a crossing keep away from the position and are put onto the constraints: an order of pivots that holds
 // where it begins holds for all of them.
-void ct_singular_set_crossing(struct ct_singular *w, bool is_crossing)
+bool ct_singular_set_crossing(struct ct_singular *w, bool is_crossing)
 {
     w->s->is_crossing = is_crossing;
+    w->s->is_in_quad
+        = w->s->quad && (is_crossing ? w->in < nearer_than * w->reach : w->is_close);
     w->s->is_delicate = !is_crossing && w->part < near_pivot;
+    return w->s->is_in_quad;
 }
 
 // Rows with part in x (rank), a vector of null(J') that has come out of ct_embed_dependence.
@@ -316,6 +348,8 @@ bool ct_singular_is_beside(struct ct_singular *w, double t, const double *y, boo
     const double beside = 1e-2; // of the largest pivot
     double log_det;
     memset(row, 0, w->m->nrow * sizeof *row);
+    if (w->s->rank < w->rank) // in it
+        return true;
     if (!ct_embed_has_pivot(w->s) || !(pivot_at(w, t, y) < beside * w->most))
         return false;
     if (ct_embed_dependence(w->s, w->x, &log_det))

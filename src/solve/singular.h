@@ -20,8 +20,13 @@ struct ct_singular_position {
 struct ct_singular {
     struct ct_machine *m;
     struct ct_embed *s;
-    double in;            // time to the position ahead; INFINITY: there is none
-    double reach;         // time before it in which f is better not computed
+    double in;     // time to the position ahead; INFINITY: there is none
+    double wanted; // relative, of outputs; 0: not known
+    double
+        farthest;  // the largest pivot so far, or what a start beside a position takes it to be
+    int rank;      // of J, the largest so far
+    bool is_close; // so near that f is found in quadruple precision
+    double reach;  // time before it in which f is better not computed
     double most, part, t; // the largest pivot so far, the last one against it, and its time
     double dt;            // the step before
     bool keeps_rows;      // a step does, and there are more than it needs
@@ -64,6 +69,8 @@ void ct_singular_turn(struct ct_singular *w, double t, const double *y, const do
 /// pivot changes within s seconds, infinite where it does not change or does not tell.
 double ct_singular_near(struct ct_singular *w, double t, const double *y, const double *dy,
                         double pending, double s);
+/// Beside a position, at y: farther off the smallest pivot is so many times what it is here.
+void ct_singular_measure(struct ct_singular *w, double t, const double *y, double times);
 /// At y, where steps begin, a position so much ahead is known of that is nearer than positions are where they are foreseen: the
 /// largest pivot is taken to be so many times the one of now.
 void ct_singular_begin(struct ct_singular *w, double t, const double *y, double in,
@@ -82,7 +89,7 @@ bool ct_singular_is_start(struct ct_arena *scratch, const struct ct_embed *s, do
 double ct_singular_misfit(struct ct_arena *scratch, const struct ct_embed *s, double t,
                           const double *y, int *freedoms);
 /// What is evaluated from now on belongs to a crossing, or does not.
-void ct_singular_set_crossing(struct ct_singular *w, bool is_crossing);
+bool ct_singular_set_crossing(struct ct_singular *w, bool is_crossing);
 /// A crossing has been made and goes on to t1: find the position on it and keep it.
 void ct_singular_pass(struct ct_singular *w, const struct ct_stepper_span *span, double t1,
                       double pending);

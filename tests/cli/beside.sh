@@ -98,9 +98,9 @@ four_bar 1 2 1 2 -w 8 3*w w 3*w 0.8 | sed 's/^gravity/parameters: {w: 1e-3}\n&/'
 "$COTREE" sweep model.yaml --vary w=1e-5:1e-3:2 --tolerance 1e-8 --quiet -o out.csv
 cut -d, -f1-4 out.csv | sed 's/\(\.[0-9]\{6\}\)[0-9]*/\1/g'
 
-echo '-- so near that rounding of what is not given is more than is asked for'
+echo '-- so near that rounding of coordinates, none of which is given, is more than is asked for'
 four_bar 1 2 1.5 1.5 -1e-5 5 1e-5 -1e-5 -1e-5 0.1 >model.yaml
-"$COTREE" simulate model.yaml --tolerance 1e-10 --quiet -o out.csv 2>&1 | grep -v '^ ' | sed 's/[0-9.]*e-[0-9]*/X/g'
+"$COTREE" simulate model.yaml --tolerance 1e-10 --tree absolute --quiet -o out.csv 2>&1 | grep -v '^ ' | sed 's/[0-9.]*e-[0-9]*/X/g'
 
 # and where that is less than what is asked for: the run is that from 1e-4 before the position but for what is 1e-4 of it
 four_bar 1 2 1.5 1.5 -4e-6 5 4e-6 -4e-6 -4e-6 0.2 >model.yaml
@@ -126,6 +126,3 @@ END
 echo '-- steps that come across what they do not see'
 four_bar 1 2 1 2 -0.5 8 1.3 0.5 1.3 0.2 >model.yaml
 "$COTREE" simulate model.yaml --step 1e-3 --method rk4 --quiet -o out.csv 2>&1 | grep -v '^ '
-# slowly, from so near that no crossing begins: steps end there
-slider_crank 1e-5 -0.01 -3.1415926535897932 0.6 >model.yaml
-"$COTREE" simulate model.yaml --tolerance 1e-8 --quiet -o out.csv 2>&1 | grep -v '^ ' | sed 's/t = [0-9.e-]*/t = T/; s/(.*e-.*)/(X)/'
