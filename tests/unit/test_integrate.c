@@ -136,7 +136,7 @@ static void a_million_steps_keep_the_energy(void **unused)
                    (struct ct_integrate_options){.t1 = 5e4, .step = 0.05}, y));
     assert_int_equal(r->stats.steps, 1000000);
     printf("energy %.2g\n", y[0] * y[0] + y[1] * y[1] - 1);
-    check_close("energy", y[0] * y[0] + y[1] * y[1], 1, 1e-13);
+    check_close("energy", y[0] * y[0] + y[1] * y[1], 1, 3e-13); // roundings of either sign
     end(r);
 }
 
