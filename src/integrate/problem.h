@@ -222,6 +222,7 @@ struct ct_integrate_stats {
     long steps, rejected_steps, evaluations, jacobians, factorizations, events;
     long inaccurate_steps; // of those rejected: for their error; the others could not be done
     double last_time;      // reached, also on failure
+    double last_rtol;      // that its steps were held to in the end; 0: to none
 };
 
 enum { CT_MOST_STAGES = 13 }; // of a tableau

@@ -161,9 +161,10 @@ static void print_estimate(FILE *out, const struct ct_sim *sim)
                 e->why_not);
         return;
     }
-    fprintf(out, "global error %.1e", e->worst);
     if (e->which < equations->nresult)
-        fprintf(out, " in %s", equations->result[e->which].name);
+        fprintf(out, "global error %.1e in %s", e->worst, equations->result[e->which].name);
+    else
+        fputs("global error that of rounding, as all outputs are zero but for it", out);
     fprintf(out, ", estimated from a second run (%s, %.3g s)\n", e->how, sim->verify_seconds);
     print_output_errors(out, sim);
     if (e->holds_until < sim->time && sim->run_options.step == 0)

@@ -260,6 +260,7 @@ static void add_stats(struct ct_integrate_stats *sum, const struct ct_integrate_
     sum->factorizations += s->factorizations;
     sum->events += s->events;
     sum->last_time = s->last_time;
+    sum->last_rtol = s->last_rtol;
 }
 
 // Outputs that amplify errors of states feel what an explicit method leaves of vibrations, whose errors go on undamped, long
