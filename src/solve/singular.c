@@ -247,7 +247,7 @@ static void note_step(struct ct_singular *w, double t, const struct look *l)
 {
     if (l->is_another)
         w->over = w->nover++ ? w->over : t;
-    if (l->part < w->closest) {
+    if (l->part < w->closest && !w->s->is_in_quad) {
         w->closest = l->part;
         w->t_closest = t;
     }

@@ -41,7 +41,7 @@ struct ct_singular {
     long nover;             // positions that fixed steps have come across
     double over;            // when first
     double closest,
-        t_closest; // the smallest part of a step that was not made to cross, and when
+        t_closest; // the smallest part of a step that was not made to cross, in double precision, and when
     long npassed;
     struct ct_singular_position *passed; // the first of them (CT_MOST_SINGULAR)
     double *y, *d, *x;                   // (ny), (nu), (nrow)
