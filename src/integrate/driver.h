@@ -63,7 +63,7 @@ struct ct_driver {
     double *noise;                // of f, of problem.noise once that has been felt  (ny)
     double *rough;                // of f: what its arithmetic leaves by itself  (ny)
     double *other;                // a derivative to spare  (ny)
-    int noisy_steps;              // until it is measured anew
+    int noisy_steps;              // since it was measured
     struct ct_refusal refusal;    // of the step before this try
     struct ct_problem problem;    // the caller's, with what is found here
 };

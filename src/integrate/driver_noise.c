@@ -17,7 +17,8 @@ static const double change = 0x1p-40;
 static const double between = 3;
 // Places are changed by different parts, so that nothing cancels.
 static const double golden = 0.618033988749895;
-// After so many steps it is measured anew: as many thousandths of an evaluation a step as there are speeds.
+// After so many steps it is measured anew, or for the first time, as steps that rounding keeps short may not be refused: as many
+// thousandths of an evaluation a step as there are speeds.
 enum { STEPS_BETWEEN = 1000 };
 
 // What is damped forgets errors of steps, whatever makes them, but for the last ones: there they count. A vibration of omega answers a
@@ -67,6 +68,7 @@ static void measure(struct ct_driver *r, double h)
 {
     const struct ct_problem *p = r->p;
     r->problem.noise = NULL;
+    r->noisy_steps = 0;
     double largest = 0, most = 0;
     for (int i = 0; i < p->nq; i++)
         largest = fmax(largest, fabs(r->y[i]));
@@ -87,7 +89,6 @@ static void measure(struct ct_driver *r, double h)
         r->noise[i]
             = r->noise[i] > 0 ? fmax(r->noise[i] * DBL_EPSILON / change, r->rough[i]) : 0;
     r->problem.noise = r->noise;
-    r->noisy_steps = STEPS_BETWEEN;
 }
 
 // A step of this length and error, after one that was refused at the same place.
@@ -111,7 +112,8 @@ bool ct_driver_is_rounding(struct ct_driver *r, double h, double error)
 
 void ct_driver_note_step(struct ct_driver *r, double h, double error)
 {
-    if ((r->problem.noise && --r->noisy_steps == 0) || shows_rounding(r, h, error))
+    const bool is_held = r->o->step == 0 && !r->method->is_implicit;
+    if ((is_held && ++r->noisy_steps == STEPS_BETWEEN) || shows_rounding(r, h, error))
         measure(r, h);
     r->refusal = (struct ct_refusal){0};
 }
