@@ -256,8 +256,8 @@ static struct ct_solves run_for(const char *file, const struct ct_formulate_opti
 {
     const struct ct_run_options options = {.method = ct_method_find("dopri5"),
                                            .duration = duration,
-                                           .rtol = 1e-10,
-                                           .atol = 1e-12,
+                                           .rtol = 1e-9,
+                                           .atol = 1e-11,
                                            .nsample = 20};
     struct system s;
     struct variant v;
