@@ -118,9 +118,11 @@ static double extrapolate(struct run *r, int k)
         r->table[k][i] = better;
         const quad size = larger(1, magnitude(r->y[i]));
         const quad change = k > 0 ? better - r->table[k - 1][i] : size;
-        error = fmax(error, (double)(magnitude(change) / size));
+        const double part = (double)(magnitude(change) / size);
+        error
+            = isfinite(part) ? fmax(error, part) : INFINITY; // what has overflown is no number
     }
-    return isfinite(error) ? error : INFINITY;
+    return error;
 }
 
 // Memories follow the motion, as ct_memory_follow has them.

@@ -1,6 +1,7 @@
 // See singular.h.
 #include "solve/singular.h"
 
+#include "integrate/crossing.h"
 #include "numeric/dense.h"
 #include "solve/mode.h"
 
@@ -30,7 +31,7 @@ struct ct_singular *ct_singular_create(struct ct_arena *arena, struct ct_machine
 void ct_singular_start(struct ct_singular *w)
 {
     w->in = INFINITY;
-    w->was_told = false;
+    w->was_told = w->has_tried = false;
     w->reach = w->most = w->part = w->t = w->dt = 0;
     w->switches = -1;
     w->npassed = w->nover = 0;
@@ -275,6 +276,7 @@ bool ct_singular_foresee(struct ct_singular *w, double t, const double *y, const
     keep(w, &at, &l, dt);
     if (!(l.is_far || l.part > foreseen_pivot || step->is_fixed))
         find_next(w, &at, l.now);
+    w->has_tried &= w->in < INFINITY;
     return true;
 }
 
@@ -316,16 +318,24 @@ void ct_singular_expect(struct ct_singular *w, double t, const double *y, double
     note_closeness(w, w->most);
 }
 
-// Crossings that begin nearer to the position than this part of where they should are among roundings.
-static const double nearer_than = 0.7;
+// Crossings that begin nearer to the position than they should are among roundings if what these make of them, with the square of how much
+// nearer (8.28), is felt, and may be so, where the motion is slow, if one has failed from farther off and they begin so many times as near.
+static const double much_nearer = 10;
+
+static bool is_among_roundings(const struct ct_singular *w)
+{
+    const double n = w->reach / w->in, felt = felt_rounding * w->wanted;
+    return (w->has_tried && n > much_nearer)
+        || (felt > 0 && n > 1 && ct_crossing_rounding * n * n > felt);
+}
 
 // The stages of a crossing keep away from the position and are put onto the constraints: an order of pivots that holds
 // where it begins holds for all of them.
 bool ct_singular_set_crossing(struct ct_singular *w, bool is_crossing)
 {
     w->s->is_crossing = is_crossing;
-    w->s->is_in_quad
-        = w->s->quad && (is_crossing ? w->in < nearer_than * w->reach : w->is_close);
+    w->s->is_in_quad = w->s->quad && (is_crossing ? is_among_roundings(w) : w->is_close);
+    w->has_tried |= is_crossing;
     w->s->is_delicate = !is_crossing && w->part < near_pivot;
     return w->s->is_in_quad;
 }
@@ -410,6 +420,7 @@ void ct_singular_pass(struct ct_singular *w, const struct ct_stepper_span *span,
 {
     const struct passage p = {span, pending};
     const double theta = find_position(w, &p), t = span->t + theta * span->h;
+    w->has_tried = false;
     if (!(t <= t1))
         return;
     if (w->npassed++ >= CT_MOST_SINGULAR)

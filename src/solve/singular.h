@@ -30,6 +30,7 @@ struct ct_singular {
     double most, part, t; // the largest pivot so far, the last one against it, and its time
     double dt;            // the step before
     bool keeps_rows;      // a step does, and there are more than it needs
+    bool has_tried;       // to cross the position ahead
     bool was_told;        // the form has told of the last state that nothing has changed
     long switches, nmade; // of the embedding, there
     long doubted; // its choice when a step was last looked at whether it is to be shorter

@@ -108,3 +108,15 @@ sed -n 's/^reference *\(.*\): they differ by [0-9.e-]*$/\1/p' summary
 echo '-- a force of which radau5 loses a vibration of 9e-8 at any tolerance is checked by an explicit method'
 "$COTREE" accuracy "$SYSTEMS/stiff_spring_pendulum/model.yaml" --set k=1e8 --until 1 --method radau5 --tolerance 1e-5 2>summary >table
 sed -n 's/^reference .*\(checked with dopri5\).*/\1/p' summary
+
+# The first steps in quadruple precision overflow, which is no agreement: nothing has the error 0.
+echo '-- a damper that long steps are far too long for'
+cat >damper.yaml <<'END'
+cotree: 1
+bodies: {a: {mass: 1, inertia: 0.1}}
+joints: {s: {type: prismatic, from: ground, to: a, initial: {q: 2, u: 0.1}, effort: "-250*s.u - 1e4*s.u^3"}}
+outputs: [s.q]
+simulation: {duration: 36, samples: 2}
+END
+"$COTREE" accuracy damper.yaml --method dopri5 --tolerance 1e-4 --quiet -o damper.csv
+awk -F, 'NR > 1 { print ($5 > 0 && $5 < 1e-4 ? "an error" : $5) }' damper.csv
