@@ -99,7 +99,7 @@ int ct_embed_side(const struct ct_embed *s)
     if (has_redundant_rows(s) || ct_embed_is_large(s))
         return 0;
     const int r = s->rank;
-    int side = parity_of(s->row, r, NULL, 0, s->iwork)
+    int side = parity_of(s->row, r, s->row, 0, s->iwork)
              * parity_of(s->dependent, r, s->independent, (int)s->m->nu - r, s->iwork);
     for (int i = 0; i < r; i++)
         if ((s->Jd[i + r * i] < 0) != (s->pivot[i] != i))
