@@ -39,14 +39,15 @@ static void name_singular(struct ct_run *r, const char *advice)
         n ? " (" : "", names, n > MOST_NAMES ? ", ..." : "", n ? ")" : "", advice);
 }
 
+// A little later, or before, is this part of the run: far enough for a contradiction to be more than rounding.
+static const double little = 1e-3;
+
 // Where steps ended as the constraints could not be met: the row that stays open farthest a little later.
 static void name_open_row(struct ct_run *r)
 {
-    const double later
-        = 1e-3; // of the run: far enough for a contradiction to be more than rounding
     if (ct_run_rhs(r, r->stats.last_time, r->y, r->dy))
         return;
-    const double dt = later * r->o->duration, t = r->stats.last_time + dt;
+    const double dt = little * r->o->duration, t = r->stats.last_time + dt;
     for (size_t i = 0; i < r->m->nu; i++)
         r->scratch[i] = dt * r->y[r->m->nq + i];
     memcpy(r->stage, r->y, r->ny * sizeof *r->y);
@@ -156,9 +157,18 @@ static void advise_order(struct ct_run *r)
             r->method->name, r->method->order);
 }
 
+// Has an event been in the position, or next to it? Behind it no step comes out of the position.
+static bool has_switched(const struct ct_run *r)
+{
+    return r->stats.last_time - r->last_event <= little * r->o->duration;
+}
+
 // What leads on beside a singular position: where rounding is what ends steps, a tolerance that leaves it unfelt.
 static const char *advise_there(struct ct_run *r)
 {
+    if (has_switched(r))
+        return "; something switches there: let it do so, and drivers rest, a little before it "
+               "or behind";
     const double part = r->singular->closest, enough = DBL_EPSILON / (part * part), most = 1e-2;
     if (!r->s->quad && enough > r->o->wanted && enough < most)
         return ct_arena_printf(
@@ -185,7 +195,9 @@ void ct_run_explain_end(struct ct_run *r)
         return;
     if (code == CT_E_STEP_OPEN) {
         name_open_row(r);
-        name_singular(r, ", where a driver may not rest: let it pass, or rest beside it");
+        name_singular(r, has_switched(r) ? advise_there(r)
+                                         : ", where a driver may not rest: let it pass, or "
+                                           "rest beside it");
     } else if (code == CT_E_SAMPLE_REFUSED) {
         name_open_row(r);
         if (r->ctx->ndiagnostic == n)
