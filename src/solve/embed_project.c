@@ -205,12 +205,13 @@ static enum ct_eval project_in_quad(struct ct_embed *s, double t, double *y)
 
 static enum ct_eval project_as_due(struct ct_embed *s, double t, double *y)
 {
-    const size_t ny = s->m->nq + s->m->nu;
-    if (s->is_in_quad && project_in_quad(s, t, y) == CT_EVAL_OK)
-        return CT_EVAL_OK;
-    if (s->is_in_quad && s->is_crossing)
-        return CT_EVAL_RETRY;
-    ct_machine_copy(y, s->before, ny); // in the position itself, where only least norms lead on
+    if (!s->is_in_quad)
+        return project(s, t, y);
+    const enum ct_eval e = project_in_quad(s, t, y);
+    if (e == CT_EVAL_OK || s->is_crossing)
+        return e;
+    // in the position itself, where only least norms lead on
+    ct_machine_copy(y, s->before, s->m->nq + s->m->nu);
     return project(s, t, y);
 }
 
