@@ -552,7 +552,8 @@ double ct_iteration_error(struct ct_iteration *it, const struct ct_problem *p,
 
 double ct_iteration_amplified(struct ct_iteration *it, const struct ct_problem *p,
                               const struct ct_tolerance *tolerance, double t1, const double *y1,
-                              const double *d, const double *u)
+                              const double *d, const double *u, double states)
 {
-    return p->amplified_error(p->user, t1, y1, ct_iteration_states(it, y1, d, u), tolerance);
+    return p->amplified_error(p->user, t1, y1, ct_iteration_states(it, y1, d, u), tolerance,
+                              states);
 }

@@ -283,10 +283,10 @@ double ct_iteration_error(struct ct_iteration *it, const struct ct_problem *p,
                           const struct ct_tolerance *tolerance, double t1, const double *y1,
                           const double *d, const double *u, double states);
 
-/// What they mean for outputs that amplify, where 1 is the tolerance.  (8.11)
+/// What they mean for outputs that amplify, where 1 is the tolerance; `states` is the norm of the error of the step.  (8.11)
 double ct_iteration_amplified(struct ct_iteration *it, const struct ct_problem *p,
                               const struct ct_tolerance *tolerance, double t1, const double *y1,
-                              const double *d, const double *u);
+                              const double *d, const double *u, double states);
 
 /// Places and speeds (2 nu) that the rounding of forces and constraints leads to, with the factors of the real system; two residuals, `b` is
 /// overwritten; zeros where they cannot be found. Corrections cannot be told from it.  (8.17)

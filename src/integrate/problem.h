@@ -138,7 +138,7 @@ struct ct_problem {
     /// The same of the outputs that amplify errors of states, which output_error leaves to this where it is not NULL; 0 where
     /// there are none.  (8.11)
     double (*amplified_error)(void *user, double t, const double *y, const double *e,
-                              const struct ct_tolerance *tolerance);
+                              const struct ct_tolerance *tolerance, double states);
 
     /// dy (ny, out) = f(t, y).
     enum ct_eval (*rhs)(void *user, double t, const double *y, double *dy);

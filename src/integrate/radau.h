@@ -157,7 +157,7 @@ const struct ct_tolerance *ct_radau_ease(struct ct_radau *s,
 /// Corrections that are small as motions leave large errors of stiff forces.
 double ct_radau_imbalance(struct ct_radau *s, const struct ct_problem *p,
                           const struct ct_tolerance *eased, double t1, const double *y1,
-                          const double *dy1);
+                          const double *dy1, double states);
 /// ct_method.dense_error; slope: weights of the stages in the rates there.
 enum ct_eval ct_radau_dense_error(struct ct_radau *s, const struct ct_problem *p, double t,
                                   const double *slope, double *y, double *err,

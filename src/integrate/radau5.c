@@ -448,11 +448,12 @@ static enum ct_eval step(const struct ct_problem *p, double t, double h, const d
         e = iterate(s, t, h, y, dy, stats);
     if (e == CT_EVAL_OK)
         e = conclude(s, p, t, h, y, dy, tol, y1, dy1, err, stats);
-    if (e == CT_EVAL_OK && tol && ct_radau_imbalance(s, p, tol, t + h, y1, dy1) > left_over) {
+    if (e == CT_EVAL_OK && tol
+        && ct_radau_imbalance(s, p, tol, t + h, y1, dy1, *err) > left_over) {
         e = iterate_on(s, t, y, stats);
         if (e == CT_EVAL_OK)
             e = conclude(s, p, t, h, y, dy, tol, y1, dy1, err, stats);
-        if (e == CT_EVAL_OK && ct_radau_imbalance(s, p, tol, t + h, y1, dy1) > 1)
+        if (e == CT_EVAL_OK && ct_radau_imbalance(s, p, tol, t + h, y1, dy1, *err) > 1)
             e = CT_EVAL_RETRY;
     }
     if (e == CT_EVAL_OK && tol)

@@ -288,7 +288,7 @@ static struct ct_radau_stages answer(struct ct_radau *s, const double *off)
 
 double ct_radau_imbalance(struct ct_radau *s, const struct ct_problem *p,
                           const struct ct_tolerance *eased, double t1, const double *y1,
-                          const double *dy1)
+                          const double *dy1, double states)
 {
     const int nq = s->dae->nq, nu = s->dae->nu, last = STAGES - 1;
     if (!p->amplified_error)
@@ -297,7 +297,7 @@ double ct_radau_imbalance(struct ct_radau *s, const struct ct_problem *p,
     for (int k = 0; k < nu; k++)
         s->rate[k] -= dy1[nq + k];
     const struct ct_radau_stages off = answer(s, s->rate);
-    return ct_iteration_amplified(s->it, p, eased, t1, y1, off.d, off.u);
+    return ct_iteration_amplified(s->it, p, eased, t1, y1, off.d, off.u, states);
 }
 
 enum ct_eval ct_radau_dense_error(struct ct_radau *s, const struct ct_problem *p, double t,
@@ -313,7 +313,7 @@ enum ct_eval ct_radau_dense_error(struct ct_radau *s, const struct ct_problem *p
     for (int k = 0; k < nu; k++)
         s->rate[k] -= dy[nq + k];
     const struct ct_radau_stages off = answer(s, s->rate);
-    *err = ct_iteration_amplified(s->it, p, &s->eased, t, y, off.d, off.u);
+    *err = ct_iteration_amplified(s->it, p, &s->eased, t, y, off.d, off.u, INFINITY);
     return CT_EVAL_OK;
 }
 
@@ -328,7 +328,8 @@ double ct_radau_error_of_outputs(struct ct_radau *s, const struct ct_problem *p,
     err = ct_larger(err, ct_stepper_largest(p, eased, first, y, y1, s->defect));
     if (!(err <= 1) || !p->amplified_error)
         return err;
-    const double amplified = ct_iteration_amplified(s->it, p, &outputs, t1, y1, e->d, e->u);
+    const double amplified
+        = ct_iteration_amplified(s->it, p, &outputs, t1, y1, e->d, e->u, err);
     if (!(amplified > 0))
         return err;
     // what is left of speeds is a force that is the larger the shorter the step is, gone in the next one

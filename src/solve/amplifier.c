@@ -14,28 +14,36 @@ static const double change = 0x1p-40;
 // An output need not be better than so many roundings of states.
 static const double most_precise = 2;
 enum { CALLS_BETWEEN = 7 };
+// What outputs change by with their states changes slowly. Where that takes accelerations it holds for so many further places.
+static const int places_between[CT_OUTPUT_KINDS] = {0, 7};
 
 struct ct_amplifier {
-    struct ct_machine *m;
-    struct ct_program *program;
+    struct ct_outputs *outputs;
     size_t n, ny;
     double *at, *largest,
-        *way;  // (n) g; |g| over the looks so far; change of g for states changed by themselves
-    bool *has; // (n)
-    double *y; // (ny) to spare
-    int skip;  // calls that do not look
+        *way, // (n) g; |g| over the looks so far; change of g for states changed by themselves
+        *reach; // (n) and, of solutions, by what their tolerance takes for small; else the same place
+    bool *has;            // (n)
+    double *y;            // (ny) to spare
+    double t_seen, *seen; // the place of `at`, (ny)
+    int skip;             // calls that do not look
+    int between;          // places at which `way` is that of before
 };
 
-struct ct_amplifier *ct_amplifier_create(struct ct_arena *a, struct ct_machine *m,
-                                         struct ct_program *program, size_t n)
+struct ct_amplifier *ct_amplifier_create(struct ct_arena *a, struct ct_outputs *outputs)
 {
+    const struct ct_machine *m = outputs->s->m;
+    const size_t n = outputs->n;
     struct ct_amplifier *p = CT_NEW(a, struct ct_amplifier);
-    *p = (struct ct_amplifier){.m = m, .program = program, .n = n, .ny = m->nq + m->nu + 1};
+    *p = (struct ct_amplifier){.outputs = outputs, .n = n, .ny = m->nq + m->nu + 1};
     double **const vectors[] = {&p->at, &p->largest, &p->way};
     for (size_t i = 0; i < COUNT(vectors); i++)
         *vectors[i] = CT_NEWN(a, double, n);
+    p->reach = outputs->kind == CT_OUTPUTS_OF_SOLUTIONS ? CT_NEWN(a, double, n) : p->way;
     p->has = CT_NEWN(a, bool, n);
     p->y = CT_NEWN(a, double, p->ny);
+    p->seen = CT_NEWN(a, double, p->ny);
+    p->t_seen = NAN;
     return p;
 }
 
@@ -43,20 +51,13 @@ void ct_amplifier_start(struct ct_amplifier *p)
 {
     memset(p->largest, 0, p->n * sizeof *p->largest);
     memset(p->has, 0, p->n * sizeof *p->has);
-    p->skip = 0;
+    p->skip = p->between = 0;
+    p->t_seen = NAN;
 }
 
 bool ct_amplifier_has(const struct ct_amplifier *p, size_t i)
 {
     return p->has[i];
-}
-
-// g at p->y.
-static const double *evaluate(struct ct_amplifier *p, double t)
-{
-    ct_machine_set(p->m, t, p->y);
-    ct_program_run(p->program, p->m->input);
-    return p->program->out;
 }
 
 // 1 to 2, in no simple relation.
@@ -66,30 +67,61 @@ static double part(size_t i)
     return 1 + (x - (double)(size_t)x);
 }
 
-// Which outputs amplify at y? All states are changed by different parts of themselves, so that nothing cancels.
-static bool find(struct ct_amplifier *p, double t, const double *y,
+// What outputs change by, over `change`, where states are changed by it in different parts of themselves, so that nothing cancels; of
+// themselves and of `small`.
+static void find_way(struct ct_amplifier *p, double t, const double *y, double small,
+                     double *way)
+{
+    for (size_t i = 0; i < p->ny; i++)
+        p->y[i] = y[i] + change * part(i) * (y[i] + copysign(small, y[i]));
+    const double *off = ct_outputs_at(p->outputs, t, p->y);
+    for (size_t i = 0; i < p->n; i++)
+        way[i] = fabs(off[i] - p->at[i]) / change;
+}
+
+// Fills `at`, `largest`, `way`, `reach` at y.
+static void look(struct ct_amplifier *p, double t, const double *y,
+                 const struct ct_tolerance *tolerance)
+{
+    const bool is_solved = p->outputs->kind == CT_OUTPUTS_OF_SOLUTIONS;
+    memcpy(p->at, ct_outputs_at(p->outputs, t, y), p->n * sizeof *p->at);
+    for (size_t i = 0; i < p->n; i++)
+        p->largest[i] = ct_larger(fabs(p->at[i]), p->largest[i]);
+    p->t_seen = t;
+    ct_machine_copy(p->seen, y, p->ny);
+    if (p->between-- > 0)
+        return;
+    p->between = places_between[p->outputs->kind];
+    find_way(p, t, y, 0, p->way);
+    if (is_solved && tolerance->rtol > 0)
+        find_way(p, t, y, tolerance->atol / tolerance->rtol, p->reach);
+}
+
+// Which outputs amplify at y, by `way` or `reach`?
+static bool find(struct ct_amplifier *p, double t, const double *y, const double *way,
                  const struct ct_tolerance *tolerance)
 {
     bool any = false;
-    ct_machine_copy(p->y, y, p->ny);
-    memcpy(p->at, evaluate(p, t), p->n * sizeof *p->at);
-    for (size_t i = 0; i < p->ny; i++)
-        p->y[i] += change * part(i) * y[i];
-    const double *off = evaluate(p, t);
+    if (t != p->t_seen || memcmp(y, p->seen, p->ny * sizeof *y) != 0)
+        look(p, t, y, tolerance);
     for (size_t i = 0; i < p->n; i++) {
-        p->way[i] = fabs(off[i] - p->at[i]) / change;
-        p->largest[i] = ct_larger(p->largest[i], fabs(p->at[i]));
         const double wanted = tolerance->rtol * p->largest[i] + tolerance->atol;
-        p->has[i] = tolerance->rtol * p->way[i] > promised * wanted;
+        p->has[i] = tolerance->rtol * way[i] > promised * wanted;
         any |= p->has[i];
     }
     return any;
 }
 
+static void note_sizes(struct ct_amplifier *p, const double *largest)
+{
+    for (size_t i = 0; i < p->n; i++)
+        p->largest[i] = ct_larger(largest[i], p->largest[i]);
+}
+
 bool ct_amplifier_any(struct ct_amplifier *p, double t, const double *y,
                       const struct ct_tolerance *tolerance)
 {
-    const bool any = find(p, t, y, tolerance);
+    const bool any = find(p, t, y, p->way, tolerance);
     ct_amplifier_start(p);
     return any;
 }
@@ -99,11 +131,11 @@ int ct_amplifier_blunt(struct ct_amplifier *p, double t, const double *y, const 
 {
     const struct ct_tolerance tolerance = {wanted, 0};
     int blunt = -1;
-    find(p, t, y, &tolerance);
+    note_sizes(p, largest);
+    find(p, t, y, p->way, &tolerance);
     *part = wanted / most_precise;
     for (size_t i = 0; i < p->n; i++) {
-        const double size = ct_larger(largest[i], p->largest[i]),
-                     rounding = DBL_EPSILON * p->way[i];
+        const double size = p->largest[i], rounding = DBL_EPSILON * p->way[i];
         // a residual is nothing but rounding
         if (p->has[i] && rounding < size && rounding > *part * size) {
             *part = rounding / size;
@@ -114,20 +146,21 @@ int ct_amplifier_blunt(struct ct_amplifier *p, double t, const double *y, const 
 }
 
 double ct_amplifier_error(struct ct_amplifier *p, double t, const double *y, const double *e,
-                          const struct ct_tolerance *tolerance)
+                          const double *largest, const struct ct_tolerance *tolerance)
 {
     double sum = 0;
     size_t n = 0;
     if (p->skip-- > 0)
         return 0;
     p->skip = 0;
-    if (!find(p, t, y, tolerance)) {
+    note_sizes(p, largest);
+    if (!find(p, t, y, p->reach, tolerance)) {
         p->skip = CALLS_BETWEEN;
         return 0;
     }
     for (size_t i = 0; i < p->ny; i++)
         p->y[i] = y[i] + e[i];
-    const double *off = evaluate(p, t);
+    const double *off = ct_outputs_at(p->outputs, t, p->y);
     for (size_t i = 0; i < p->n; i++) {
         if (!p->has[i])
             continue;

@@ -2,26 +2,27 @@
 //
 //     amplified   |g(y + d) - g(y)| > 10 (rtol max |g| + atol),   d_i = w_i rtol y_i, 1 <= w_i < 2          (8.11)
 //
+// and d_i = w_i (rtol |y_i| + atol) for accelerations and reactions during steps.
+//
 // States that are right to the tolerance leave more of it in such an output than the 10 T that are promised. Methods for stiff
 // systems bring what is stiff back to its slow motion in each step, so forces are good at the ends of steps where steps
 // are controlled for them, but not between.
 #ifndef CT_SOLVE_AMPLIFIER_H
 #define CT_SOLVE_AMPLIFIER_H
 
-#include "integrate/problem.h"
-#include "solve/machine.h"
+#include "solve/outputs.h"
 
 struct ct_amplifier;
 
-/// Of the n outputs of a program on the machine's input; lives in a.
-struct ct_amplifier *ct_amplifier_create(struct ct_arena *a, struct ct_machine *m,
-                                         struct ct_program *program, size_t n);
+/// Lives in a.
+struct ct_amplifier *ct_amplifier_create(struct ct_arena *a, struct ct_outputs *outputs);
 /// A new run begins: nothing is known of the sizes of outputs.
 void ct_amplifier_start(struct ct_amplifier *p);
-/// Root mean square over the outputs that amplify of their errors at y (ny) for errors e (ny), where 1 is the tolerance, and
-/// no more is asked than roundings of states allow; 0 if there are none. Where there were none, only every eighth call looks.
+/// Root mean square over the outputs that amplify of their errors at y (ny) for errors e (ny), where 1 is the tolerance of them or of
+/// `largest` (n), and no more is asked than roundings of states allow; 0 if there are none. Where there were none, only every
+/// eighth call looks.
 double ct_amplifier_error(struct ct_amplifier *p, double t, const double *y, const double *e,
-                          const struct ct_tolerance *tolerance);
+                          const double *largest, const struct ct_tolerance *tolerance);
 /// Is there one at y? That look counts as none.
 bool ct_amplifier_any(struct ct_amplifier *p, double t, const double *y,
                       const struct ct_tolerance *tolerance);

@@ -134,8 +134,7 @@ static int find_worst(const struct ct_run *r, const double *felt, double *most)
 {
     int worst = -1;
     for (size_t i = 0; i < r->e->nresult; i++)
-        if (felt[i] > *most && felt[i] < 1 && !ct_fidelity_is_demanding(r->e, i)
-            && !ct_fidelity_is_check(r->e, i)) {
+        if (felt[i] > *most && felt[i] < 1 && !ct_fidelity_is_check(r->e, i)) {
             *most = felt[i];
             worst = (int)i;
         }

@@ -275,7 +275,7 @@ static bool begins_implicit(struct ct_run *r, const struct ct_run_options *o,
         return false;
     const double before = ct_run_before(r, r->t0);
     const bool is_due
-        = ct_amplifier_any(ct_fidelity_amplifier(r->fidelity), before, y, &tolerance)
+        = ct_fidelity_amplifies(r->fidelity, before, y, &tolerance)
        && ct_stiffness_expect(stiffness, r->t0, y, o->duration, o->method, o->rtol);
     ct_machine_set(r->m, before, y);
     ct_machine_constraint(r->m);

@@ -10,9 +10,12 @@
 // Where outputs have at most this part of the error of states, that of so many further steps is not looked at.
 static const double harmless = 0.25;
 enum { STEPS_BETWEEN = 7 };
-// Where the ratio of the two is the same to this part at two looks in a row, it is taken for that of more and more steps.
-static const double steady = 0.02;
+// Where the ratio of the two is the same to this part at two looks in a row, it is taken for that of more and more steps. Each look at
+// accelerations takes two of them, and they may err by more.
+static const double steady[CT_OUTPUT_KINDS] = {0.02, 0.5};
 enum { MOST_BETWEEN = 15 };
+// Nor are so many where they err by less than a quarter of what they may.
+static const int few_between[CT_OUTPUT_KINDS] = {0, 3};
 // Rounding is measured again after so many looks where it counts for nothing, and at once where an error would refuse a step.
 enum { LOOKS_BETWEEN = 15 };
 // State errors below this say nothing about the ratio of the two: steps are still growing.
@@ -23,29 +26,24 @@ static const double change = 0x1p-40;
 const double ct_fidelity_least_size = 1e6;
 static const double most_precise = 16;
 
-struct ct_fidelity {
-    struct ct_machine *m;
-    struct ct_program program;
+// Outputs of one kind.
+struct group {
+    struct ct_outputs outputs;
     struct ct_amplifier *amplifier;
     int *result; // (n) of the equations
-    size_t ny;
     struct ct_fidelity_record record;
     double *at, *probed; // (n) g there
     double *expected;    // (n) as large they are expected to become
-    double *y;           // (ny) to spare
+    double *shown;       // (n) their largest values at samples
 };
 
-// A function of time and states, but not a single one of them, which is controlled as it is, nor the total energy, which is a
-// check of the run: as a small difference of large terms it would ask for digits that nothing else needs.
-static bool is_controlled(const struct ct_equations *e, ct_ex v)
-{
-    const struct ct_exs *x = e->x;
-    const unsigned states = 1u << CT_SYM_Q | 1u << CT_SYM_U, kinds = ct_ex_kinds(x, v);
-    const unsigned others
-        = 1u << CT_SYM_TIME | 1u << CT_SYM_PARAM | 1u << CT_SYM_MODE | 1u << CT_SYM_MEMORY;
-    return kinds & states && !(kinds & ~(states | others)) && x->node[v.id].op != CT_OP_SYM
-        && v.id != e->total.id;
-}
+struct ct_fidelity {
+    struct group group[CT_OUTPUT_KINDS];
+    size_t n; // of groups that are not empty
+    size_t ny;
+    double *y;           // (ny) to spare
+    const double *shown; // of each result, its largest value at samples so far
+};
 
 bool ct_fidelity_is_check(const struct ct_equations *e, size_t i)
 {
@@ -80,54 +78,58 @@ bool ct_fidelity_find_asked(struct ct_arena *a, const struct ct_equations *e,
     return true;
 }
 
-struct ct_fidelity *ct_fidelity_create(struct ct_arena *a, struct ct_machine *m)
+// Of this kind; false if there is none.
+static bool create_group(struct ct_arena *a, struct ct_embed *s, enum ct_output_kind kind,
+                         long *evaluations, struct group *p)
 {
-    const struct ct_equations *e = m->e;
+    const struct ct_equations *e = s->m->e;
     ct_ex *g = CT_NEWN(a, ct_ex, e->nresult + 1);
-    int *result = CT_NEWN(a, int, e->nresult + 1);
     size_t n = 0;
+    *p = (struct group){.result = CT_NEWN(a, int, e->nresult + 1)};
     for (size_t i = 0; i < e->nresult; i++)
-        if (is_controlled(e, e->result[i].value)) {
-            result[n] = (int)i;
+        if (ct_outputs_kind(e, e->result[i].value) == kind) {
+            p->result[n] = (int)i;
             g[n++] = e->result[i].value;
         }
     if (!n)
-        return NULL;
-    struct ct_fidelity *p = CT_NEW(a, struct ct_fidelity);
-    *p = (struct ct_fidelity){.m = m, .ny = m->nq + m->nu + 1, .result = result};
-    ct_machine_compile(a, m, e->x, g, n, &p->program);
-    p->record = ct_fidelity_record(a, n);
+        return false;
+    ct_outputs_create(a, s, kind, g, n, evaluations, &p->outputs);
+    p->record = ct_fidelity_record(a, kind, n);
     p->at = CT_NEWN(a, double, n);
     p->probed = CT_NEWN(a, double, n);
     p->expected = CT_NEWN(a, double, n);
+    p->shown = CT_NEWN(a, double, n);
+    p->amplifier = ct_amplifier_create(a, &p->outputs);
+    return true;
+}
+
+struct ct_fidelity *ct_fidelity_create(struct ct_arena *a, struct ct_embed *s,
+                                       const double *shown, long *evaluations)
+{
+    struct ct_fidelity *p = CT_NEW(a, struct ct_fidelity);
+    *p = (struct ct_fidelity){.ny = s->m->nq + s->m->nu + 1, .shown = shown};
+    for (int kind = 0; kind < CT_OUTPUT_KINDS; kind++)
+        p->n += create_group(a, s, kind, evaluations, &p->group[p->n]);
     p->y = CT_NEWN(a, double, p->ny);
-    p->amplifier = ct_amplifier_create(a, m, &p->program, n);
-    return p;
+    return p->n ? p : NULL;
 }
 
-struct ct_amplifier *ct_fidelity_amplifier(struct ct_fidelity *p)
+const struct ct_outputs *ct_fidelity_outputs(const struct ct_fidelity *p,
+                                             enum ct_output_kind kind)
 {
-    return p->amplifier;
-}
-
-int ct_fidelity_blunt(struct ct_fidelity *p, double t, const double *y, double wanted,
-                      double *part)
-{
-    const int i = ct_amplifier_blunt(p->amplifier, t, y, p->record.largest, wanted, part);
-    return i < 0 ? -1 : p->result[i];
-}
-
-const struct ct_program *ct_fidelity_program(const struct ct_fidelity *p)
-{
-    return &p->program;
+    for (size_t i = 0; p && i < p->n; i++)
+        if (p->group[i].outputs.kind == kind)
+            return &p->group[i].outputs;
+    return NULL;
 }
 
 // ---- what is known --------------------------------------------------------------------------------
 
-struct ct_fidelity_record ct_fidelity_record(struct ct_arena *a, size_t n)
+struct ct_fidelity_record ct_fidelity_record(struct ct_arena *a, enum ct_output_kind kind,
+                                             size_t n)
 {
     return (struct ct_fidelity_record){
-        .n = n, .largest = CT_NEWN(a, double, n), .seen = CT_NEWN(a, double, n)};
+        .n = n, .kind = kind, .largest = CT_NEWN(a, double, n), .seen = CT_NEWN(a, double, n)};
 }
 
 void ct_fidelity_clear(struct ct_fidelity_record *r)
@@ -156,12 +158,14 @@ double ct_fidelity_foreseen(const struct ct_fidelity_record *r, double states)
 static void plan_looks(struct ct_fidelity_record *r, double error, double states)
 {
     const double before = r->ratio, ratio = states >= least_error ? error / states : 0;
-    const bool is_steady = fabs(ratio - before) <= steady * before;
+    const bool is_steady = fabs(ratio - before) <= steady[r->kind] * before;
     r->ratio = ratio;
     if (states >= least_error && ratio <= harmless)
         r->between = STEPS_BETWEEN;
     else
-        r->between = is_steady && ratio > 0 ? 2 * r->between + 1 : 0;
+        r->between = is_steady && ratio > 0 ? 2 * r->between + 1
+                   : error <= harmless      ? few_between[r->kind]
+                                            : 0;
     r->between = r->between < MOST_BETWEEN ? r->between : MOST_BETWEEN;
     r->skip = r->between;
 }
@@ -213,92 +217,163 @@ void ct_fidelity_keep(struct ct_fidelity_record *r)
 
 void ct_fidelity_start(struct ct_fidelity *p)
 {
-    ct_fidelity_clear(&p->record);
-    ct_amplifier_start(p->amplifier);
+    for (size_t i = 0; i < p->n; i++) {
+        ct_fidelity_clear(&p->group[i].record);
+        ct_amplifier_start(p->group[i].amplifier);
+    }
 }
 
-// g at p->y.
-static const double *evaluate(struct ct_fidelity *p, double t)
+// Leaves in g->at what outputs are at y.
+static void find_at(struct group *g, double t, const double *y)
 {
-    ct_machine_set(p->m, t, p->y);
-    ct_program_run(&p->program, p->m->input);
-    return p->program.out;
+    memcpy(g->at, ct_outputs_at(&g->outputs, t, y), g->record.n * sizeof *g->at);
 }
 
-// Leaves in p->probed what outputs are where states differ by little more than rounding.
-static void probe(struct ct_fidelity *p, double t, const double *y)
+// g at y + e.
+static const double *find_off(struct ct_fidelity *p, struct group *g, double t, const double *y,
+                              const double *e)
+{
+    for (size_t i = 0; i < p->ny; i++)
+        p->y[i] = y[i] + e[i];
+    return ct_outputs_at(&g->outputs, t, p->y);
+}
+
+// Leaves in g->probed what outputs are where states differ by little more than rounding.
+static void probe(struct ct_fidelity *p, struct group *g, double t, const double *y)
 {
     for (size_t i = 0; i < p->ny; i++)
         p->y[i] = y[i] + ct_fidelity_probe((int)i) * y[i];
-    memcpy(p->probed, evaluate(p, t), p->record.n * sizeof *p->probed);
+    memcpy(g->probed, ct_outputs_at(&g->outputs, t, p->y), g->record.n * sizeof *g->probed);
 }
 
-static double look(struct ct_fidelity *p, double t, const double *y, const double *e,
-                   const struct ct_tolerance *tolerance, double states)
+static double look(struct ct_fidelity *p, struct group *g, double t, const double *y,
+                   const double *e, const struct ct_tolerance *tolerance, double states)
 {
-    struct ct_fidelity_record *r = &p->record;
-    ct_machine_copy(p->y, y, p->ny);
-    memcpy(p->at, evaluate(p, t), r->n * sizeof *p->at);
+    struct ct_fidelity_record *r = &g->record;
     const bool is_probed = r->unprobed == 0;
+    find_at(g, t, y);
     if (is_probed)
-        probe(p, t, y);
+        probe(p, g, t, y);
     else
         r->unprobed--;
-    for (size_t i = 0; i < p->ny; i++)
-        p->y[i] = y[i] + e[i];
-    const double *off = evaluate(p, t);
-    const double *probed = is_probed ? p->probed : p->at;
-    const double error = ct_fidelity_judge(r, p->at, probed, off, tolerance, states);
+    const double *off = find_off(p, g, t, y, e), *probed = is_probed ? g->probed : g->at;
+    const double error = ct_fidelity_judge(r, g->at, probed, off, tolerance, states);
     if (is_probed || error <= 1)
         return error;
     r->skip = r->unprobed = 0; // no step is refused for its rounding
-    return look(p, t, y, e, tolerance, states);
+    return look(p, g, t, y, e, tolerance, states);
 }
 
 double ct_fidelity_error(struct ct_fidelity *p, double t, const double *y, const double *e,
                          const struct ct_tolerance *tolerance, double states, bool is_implicit)
 {
-    p->record.apart = is_implicit ? p->amplifier : NULL;
-    if (!ct_fidelity_is_due(&p->record))
-        return ct_fidelity_foreseen(&p->record, states);
-    return look(p, t, y, e, tolerance, states);
+    double most = 0;
+    for (size_t i = 0; i < p->n; i++) {
+        struct group *g = &p->group[i];
+        const struct ct_tolerance own = ct_outputs_tolerance(g->outputs.kind, tolerance);
+        if (is_implicit && g->outputs.kind == CT_OUTPUTS_OF_SOLUTIONS)
+            continue;
+        g->record.apart = is_implicit ? g->amplifier : NULL;
+        const double error = ct_fidelity_is_due(&g->record)
+                               ? look(p, g, t, y, e, &own, states)
+                               : ct_fidelity_foreseen(&g->record, states);
+        most = ct_larger(error, most);
+    }
+    return most;
+}
+
+// The same of a group.
+static double felt_by(struct ct_fidelity *p, struct group *g, double t, const double *y,
+                      const double *e, double least)
+{
+    double most = 0;
+    find_at(g, t, y);
+    probe(p, g, t, y);
+    const double *off = find_off(p, g, t, y, e);
+    for (size_t i = 0; i < g->record.n; i++) {
+        const double way = fabs(off[i] - g->at[i]),
+                     size = ct_larger(fabs(g->at[i]), g->record.largest[i]),
+                     to_come = least > 0 ? ct_larger(g->expected[i], least) : 0;
+        if (least > 0 && ct_amplifier_has(g->amplifier, i))
+            continue;
+        if (way > 0 && size >= ct_fidelity_least_size * rounding_of(g->at[i], g->probed[i]))
+            most = ct_larger(most, way / ct_larger(size, to_come));
+    }
+    return most;
 }
 
 double ct_fidelity_felt(struct ct_fidelity *p, double t, const double *y, const double *e,
                         double least)
 {
     double most = 0;
-    ct_machine_copy(p->y, y, p->ny);
-    memcpy(p->at, evaluate(p, t), p->record.n * sizeof *p->at);
-    probe(p, t, y);
-    for (size_t i = 0; i < p->ny; i++)
-        p->y[i] = y[i] + e[i];
-    const double *off = evaluate(p, t);
-    for (size_t i = 0; i < p->record.n; i++) {
-        const double way = fabs(off[i] - p->at[i]),
-                     size = ct_larger(fabs(p->at[i]), p->record.largest[i]),
-                     to_come = least > 0 ? ct_larger(p->expected[i], least) : 0;
-        if (least > 0 && ct_amplifier_has(p->amplifier, i))
-            continue;
-        if (way > 0 && size >= ct_fidelity_least_size * rounding_of(p->at[i], p->probed[i]))
-            most = ct_larger(most, way / ct_larger(size, to_come));
-    }
+    for (size_t i = 0; i < p->n; i++)
+        most = ct_larger(felt_by(p, &p->group[i], t, y, e, least), most);
     return most;
 }
 
 void ct_fidelity_expect(struct ct_fidelity *p, double t, const double *y, const double *way,
                         double times)
 {
-    ct_machine_copy(p->y, y, p->ny);
-    memcpy(p->at, evaluate(p, t), p->record.n * sizeof *p->at);
-    for (size_t i = 0; i < p->ny; i++)
-        p->y[i] = y[i] + way[i];
-    const double *off = evaluate(p, t);
-    for (size_t i = 0; i < p->record.n; i++)
-        p->expected[i] = times * fabs(off[i] - p->at[i]);
+    for (size_t k = 0; k < p->n; k++) {
+        struct group *g = &p->group[k];
+        find_at(g, t, y);
+        const double *off = find_off(p, g, t, y, way);
+        for (size_t i = 0; i < g->record.n; i++)
+            g->expected[i] = times * fabs(off[i] - g->at[i]);
+    }
 }
 
 void ct_fidelity_accept(struct ct_fidelity *p)
 {
-    ct_fidelity_keep(&p->record);
+    for (size_t i = 0; i < p->n; i++)
+        ct_fidelity_keep(&p->group[i].record);
+}
+
+// ---- outputs that amplify ---------------------------------------------------------------------------
+
+// A step that errs by less than this in states is a third as long as they ask for, and accelerations shorten it no further: shorter ones do
+// not damp the vibrations that those before have left, and would follow them.
+static const double least_states = 1e-2;
+
+double ct_fidelity_amplified(struct ct_fidelity *p, double t, const double *y, const double *e,
+                             const struct ct_tolerance *tolerance, double states)
+{
+    double most = 0;
+    for (size_t i = 0; i < p->n; i++) {
+        struct group *g = &p->group[i];
+        if (g->outputs.kind == CT_OUTPUTS_OF_SOLUTIONS && !(states >= least_states))
+            continue;
+        const struct ct_tolerance own = ct_outputs_tolerance(g->outputs.kind, tolerance);
+        for (size_t k = 0; k < g->record.n; k++)
+            g->shown[k] = p->shown[g->result[k]];
+        most = ct_larger(ct_amplifier_error(g->amplifier, t, y, e, g->shown, &own), most);
+    }
+    return most;
+}
+
+bool ct_fidelity_amplifies(struct ct_fidelity *p, double t, const double *y,
+                           const struct ct_tolerance *tolerance)
+{
+    bool any = false;
+    for (size_t i = 0; i < p->n; i++)
+        any |= ct_amplifier_any(p->group[i].amplifier, t, y, tolerance);
+    return any;
+}
+
+int ct_fidelity_blunt(struct ct_fidelity *p, double t, const double *y, double wanted,
+                      double *part)
+{
+    int blunt = -1;
+    for (size_t k = 0; k < p->n; k++) {
+        const struct group *g = &p->group[k];
+        double own;
+        for (size_t i = 0; i < g->record.n; i++)
+            g->shown[i] = ct_larger(p->shown[g->result[i]], g->record.largest[i]);
+        const int i = ct_amplifier_blunt(g->amplifier, t, y, g->shown, wanted, &own);
+        if (i >= 0 && (blunt < 0 || own > *part)) {
+            *part = own;
+            blunt = g->result[i];
+        }
+    }
+    return blunt;
 }

@@ -2,23 +2,22 @@
 //
 //     error of output g   |g(y1 + e) - g(y1)|,   e the error of the states      (8.6)
 //
-// Controlled are outputs that are functions of time and states, other than states themselves: accelerations and
-// reactions would cost an evaluation of the equations a step. Nor are those controlled that are rounding beside
-// what they are made of, such as residuals of constraints, nor the total energy.
+// Controlled are outputs that are functions of time and states, accelerations and reactions among them, other than states themselves.
+// Those that are rounding beside what they are made of, such as residuals of constraints, are not.
 #ifndef CT_SOLVE_FIDELITY_H
 #define CT_SOLVE_FIDELITY_H
 
-#include "integrate/problem.h"
 #include "solve/amplifier.h"
-#include "solve/machine.h"
 
 struct ct_fidelity;
 
 /// Outputs of fewer roundings than these do not count.
 extern const double ct_fidelity_least_size;
 
-/// NULL if there is no output to control. Everything lives in a, the machine's arena.
-struct ct_fidelity *ct_fidelity_create(struct ct_arena *a, struct ct_machine *m);
+/// NULL if there is no output to control. Everything lives in a, the machine's arena. shown (of each result): its largest value at
+/// samples so far. Evaluations of the equations that outputs take are added to *evaluations. Both must live as long.
+struct ct_fidelity *ct_fidelity_create(struct ct_arena *a, struct ct_embed *s,
+                                       const double *shown, long *evaluations);
 /// Is output i the total energy, a check of the run?
 bool ct_fidelity_is_check(const struct ct_equations *e, size_t i);
 /// Is it another one that is made of more than time and states?
@@ -32,7 +31,7 @@ void ct_fidelity_start(struct ct_fidelity *p);
 /// Root mean square over the outputs of their errors at y (ny) for errors e (ny), where 1 is the tolerance; `states` is the
 /// same of the states. As long as outputs are not nearly as bad as those, or the ratio of both is steady, only every eighth or
 /// sixteenth step is looked at; else that ratio tells, or 0. Where the method is implicit those that amplify are left to
-/// ct_amplifier_error.
+/// ct_fidelity_amplified.
 double ct_fidelity_error(struct ct_fidelity *p, double t, const double *y, const double *e,
                          const struct ct_tolerance *tolerance, double states, bool is_implicit);
 /// The most that an output, of those that are controlled, changes by for a change e (ny) of y (ny), over its largest value so far. With
@@ -45,22 +44,27 @@ void ct_fidelity_expect(struct ct_fidelity *p, double t, const double *y, const 
 /// The last step that was looked at is accepted.
 void ct_fidelity_accept(struct ct_fidelity *p);
 
-/// Those among the outputs that amplify.
-struct ct_amplifier *ct_fidelity_amplifier(struct ct_fidelity *p);
+/// As ct_amplifier_error and ct_amplifier_any, of all outputs that are controlled; states: norm of their error, where 1 is the tolerance.
+double ct_fidelity_amplified(struct ct_fidelity *p, double t, const double *y, const double *e,
+                             const struct ct_tolerance *tolerance, double states);
+bool ct_fidelity_amplifies(struct ct_fidelity *p, double t, const double *y,
+                           const struct ct_tolerance *tolerance);
 
 /// The result, of those that are controlled, with the fewest digits: one rounding of states is *part (out) of its largest value so
-/// far; -1 where steps can be held to `wanted` of all.
+/// far; -1, and *part as it was, where steps can be held to `wanted` of all.
 int ct_fidelity_blunt(struct ct_fidelity *p, double t, const double *y, double wanted,
                       double *part);
 
 // ---- for runs side by side, which evaluate outputs themselves --------------------------------------
 
-/// The outputs that are controlled, of the machine's input.
-const struct ct_program *ct_fidelity_program(const struct ct_fidelity *p);
+/// The outputs of a kind; NULL if there are none, or p is NULL.
+const struct ct_outputs *ct_fidelity_outputs(const struct ct_fidelity *p,
+                                             enum ct_output_kind kind);
 
 /// What is known of the outputs of a run.
 struct ct_fidelity_record {
     size_t n;
+    enum ct_output_kind kind;
     double *largest,
         *seen;     // (n) |g| over the steps that were accepted, at the last one looked at
     bool has_seen; // since the last acceptance
@@ -70,8 +74,9 @@ struct ct_fidelity_record {
     const struct ct_amplifier *apart; // those that amplify do not count; NULL: all do
     double ratio; // of the error of outputs to that of states at the last look; 0: not known
 };
-/// Of n outputs; all zero.
-struct ct_fidelity_record ct_fidelity_record(struct ct_arena *a, size_t n);
+/// Of n outputs of this kind; all zero.
+struct ct_fidelity_record ct_fidelity_record(struct ct_arena *a, enum ct_output_kind kind,
+                                             size_t n);
 void ct_fidelity_clear(struct ct_fidelity_record *r);
 /// Is this step looked at?
 bool ct_fidelity_is_due(struct ct_fidelity_record *r);

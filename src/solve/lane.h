@@ -33,6 +33,14 @@ struct ct_lane_program {
     size_t nout;
 };
 
+// Outputs of one kind that are controlled.
+struct ct_lane_outputs {
+    struct ct_lane_program program; // empty if there are none
+    bool needs_lam;
+    vec *at, *probed;                      // (n)
+    double *one_at, *one_probed, *one_off; // of a single lane
+};
+
 // A closed form for one choice of rows and columns, and the lanes that have made it.
 struct ct_lane_form {
     struct ct_form *form;
@@ -86,7 +94,7 @@ struct ct_lane {
     double kappa_chosen, sigma_chosen, sigma_best;
     double pivot_last, pivot_time; // see foresee_singular
     struct ct_strength strength;   // of its form
-    struct ct_fidelity_record outputs;
+    struct ct_fidelity_record outputs[CT_OUTPUT_KINDS];
     int *row, *dependent, *independent; // as in embed.h
     struct ct_repeat repeat;
     struct ct_tolerance tolerance; // before repeats count
@@ -104,11 +112,11 @@ struct ct_lanes {
     struct ct_embed *embed;
     struct ct_arena *arena;
     int nq, nu, nrow, ny, rank;
-    bool is_solved, has_power, needs_lam, has_quaternion, is_used;
+    bool is_solved, has_power, needs_lam, has_quaternion, is_used; // needs_lam: the power does
     int whose; // the lane whose parameters the run has for matrices; -1: not known
     struct ct_lane_program motion, power, memory; // motion: u', q' themselves if is_solved
-    struct ct_lane_program output;                // those that are controlled
-    struct ct_lane_program root;                  // of all modes
+    struct ct_lane_outputs output[CT_OUTPUT_KINDS];
+    struct ct_lane_program root; // of all modes
     struct ct_lane lane[W];
     struct ct_lanes_count count;
     const struct ct_method *method;
@@ -128,7 +136,7 @@ struct ct_lanes {
     vec slope;               // sigma for their strength where both fall alike, else 0
     vec kappa, sigma;        // as in embed.h
     vec pivot_most;          // the largest sigma so far
-    vec t, h;                // of this try
+    vec t, h, joint;         // of this try: from, how far, the error of its states
     vec before;         // the last time of evaluation before the next event by time; INFINITY
     int nroot;          // state modes
     const int *root_of; // (nroot) their places among the modes
@@ -140,8 +148,6 @@ struct ct_lanes {
     // states (ny), stages (ny x stages)
     vec *start, *y, *dy, *y1, *dy1, *end, *dend, *point, *late, *weight, *k;
     double *one_y, *one_dy, *one_point, *one_end; // a single lane's states
-    vec *at, *probed;                             // outputs that are controlled
-    double *one_at, *one_probed, *one_off;        // of a single lane
 };
 
 // ---- sets of lanes ----------------------------------------------------------------------------------

@@ -82,12 +82,12 @@ static set solve(struct ct_lanes *s, vec t, const vec *y, vec *dy, set wanted)
     return done | found;
 }
 
-// Multipliers into the input, for the power of motions; all rows are kept.
+// Multipliers into the input, for the power of motions and for outputs. Forms know those of kept rows.
 static void find_multipliers(struct ct_lanes *s, vec t, const vec *y, const vec *dy, set wanted)
 {
     const int n = s->nu + s->rank;
     set rest = wanted;
-    for (size_t k = 0; k < s->nform; k++) {
+    for (size_t k = 0; k < s->nform && s->rank == s->nrow; k++) {
         struct ct_lane_form *f = s->form[k];
         const set here = wanted & f->lanes & ~ct_lanes_without_form(s);
         if (!here)
@@ -212,56 +212,79 @@ static vec norm(const struct ct_lanes *s, const vec *e)
     return sum;
 }
 
-// Outputs that are controlled at (t, y).
-static const vec *outputs(struct ct_lanes *s, vec t, const vec *y)
+// Outputs of a kind at (t, y), in these lanes, as ct_outputs_at.
+static const vec *outputs(struct ct_lanes *s, enum ct_output_kind kind, vec t, const vec *y,
+                          set lanes)
 {
-    set_input(s, t, y);
-    ct_lane_run(&s->output, s->input);
-    return s->output.out;
+    struct ct_lane_outputs *o = &s->output[kind];
+    vec *dy = s->dend, *a = s->input + s->m->at_a, *lam = s->input + s->m->at_lam;
+    if (kind == CT_OUTPUTS_OF_SOLUTIONS) {
+        const set found = derive(s, t, y, dy, lanes);
+        for (int k = 0; k < s->nu; k++)
+            a[k] = choose(mask_of(found), dy[s->nq + k], all_lanes(NAN));
+        for (int i = 0; i < s->nrow; i++)
+            lam[i] = all_lanes(NAN);
+        if (o->needs_lam)
+            find_multipliers(s, t, y, dy, found);
+    } else {
+        set_input(s, t, y);
+    }
+    ct_lane_run(&o->program, s->input);
+    return o->program.out;
+}
+
+// The error of this lane's outputs, as in fidelity.c: off (n) at y + e. Are roundings, `probed`, known now?
+static double judge_lane(struct ct_lanes *s, enum ct_output_kind kind, int l, const vec *off,
+                         bool is_probed)
+{
+    struct ct_lane_outputs *o = &s->output[kind];
+    struct ct_fidelity_record *r = &s->lane[l].outputs[kind];
+    const struct ct_tolerance states = {s->rtol[l], s->atol[l]};
+    const struct ct_tolerance tolerance = ct_outputs_tolerance(kind, &states);
+    ct_lane_take(o->one_at, o->at, l, r->n);
+    ct_lane_take(o->one_off, off, l, r->n);
+    if (is_probed)
+        ct_lane_take(o->one_probed, o->probed, l, r->n);
+    else
+        r->unprobed--;
+    return ct_fidelity_judge(r, o->one_at, is_probed ? o->one_probed : o->one_at, o->one_off,
+                             &tolerance, s->joint[l]);
 }
 
 // What errors e of the states at the end of the step mean for outputs, in these lanes: as ct_fidelity_error.
-static void judge_outputs(struct ct_lanes *s, const vec *e, set lanes)
+static void judge_outputs(struct ct_lanes *s, enum ct_output_kind kind, const vec *e, set lanes)
 {
-    const size_t n = s->output.nout;
+    struct ct_lane_outputs *o = &s->output[kind];
+    const int n = (int)o->program.nout;
     const vec t = s->t + s->h;
     vec *y = s->end;
     set probing = 0, again = 0;
     for (int l = 0; l < W; l++)
-        if (ct_has_lane(lanes, l) && s->lane[l].outputs.unprobed == 0)
+        if (ct_has_lane(lanes, l) && s->lane[l].outputs[kind].unprobed == 0)
             probing |= 1u << l;
-    copy(s->at, outputs(s, t, s->y1), (int)n);
+    copy(o->at, outputs(s, kind, t, s->y1, lanes), n);
     for (int i = 0; i < s->ny && probing; i++)
         y[i] = s->y1[i] + ct_fidelity_probe(i) * s->y1[i];
     if (probing)
-        copy(s->probed, outputs(s, t, y), (int)n);
+        copy(o->probed, outputs(s, kind, t, y, probing), n);
     for (int i = 0; i < s->ny; i++)
         y[i] = s->y1[i] + e[i];
-    const vec *off = outputs(s, t, y);
+    const vec *off = outputs(s, kind, t, y, lanes);
     for (int l = 0; l < W; l++) {
         struct ct_lane *lane = &s->lane[l];
         if (!ct_has_lane(lanes, l))
             continue;
-        ct_lane_take(s->one_at, s->at, l, n);
-        ct_lane_take(s->one_off, off, l, n);
-        if (ct_has_lane(probing, l))
-            ct_lane_take(s->one_probed, s->probed, l, n);
-        else
-            lane->outputs.unprobed--;
         const bool is_probed = ct_has_lane(probing, l);
-        const struct ct_tolerance tolerance = {s->rtol[l], s->atol[l]};
-        const double error = ct_fidelity_judge(&lane->outputs, s->one_at,
-                                               is_probed ? s->one_probed : s->one_at,
-                                               s->one_off, &tolerance, lane->error);
+        const double error = judge_lane(s, kind, l, off, is_probed);
         if (is_probed || error <= 1) {
             lane->error = fmax(lane->error, error);
         } else { // no step is refused for its rounding
-            lane->outputs.skip = lane->outputs.unprobed = 0;
+            lane->outputs[kind].skip = lane->outputs[kind].unprobed = 0;
             again |= 1u << l;
         }
     }
     if (again)
-        judge_outputs(s, e, again);
+        judge_outputs(s, kind, e, again);
 }
 
 // As ct_stepper_join.
@@ -274,36 +297,46 @@ static vec join(vec e5, vec e3)
     return choose(e5 > 0, e5 / root, e5);
 }
 
+// Lanes of `wanted` whose outputs of this kind are to be looked at now; the others' error is foreseen.
+static set find_due(struct ct_lanes *s, enum ct_output_kind kind, set wanted)
+{
+    set due = 0;
+    for (int l = 0; l < W && s->output[kind].program.nout; l++) {
+        struct ct_lane *lane = &s->lane[l];
+        if (!ct_has_lane(wanted, l) || !(s->joint[l] <= 1))
+            continue;
+        if (ct_fidelity_is_due(&lane->outputs[kind]))
+            due |= 1u << l;
+        else
+            lane->error
+                = fmax(lane->error, ct_fidelity_foreseen(&lane->outputs[kind], s->joint[l]));
+    }
+    return due;
+}
+
 static void estimate(struct ct_lanes *s, set wanted)
 {
     vec *e = s->point;
-    set due = 0;
     combine(s, e, NULL, &s->error);
     find_weights(s);
     const vec size = norm(s, e);
-    vec joint = size;
+    s->joint = size;
     if (s->third.n) {
         combine(s, s->end, s->y, &s->third);
         for (int i = 0; i < s->ny; i++)
             s->end[i] = s->y1[i] - s->end[i];
-        joint = join(size, norm(s, s->end));
+        s->joint = join(size, norm(s, s->end));
     }
-    for (int l = 0; l < W; l++) {
-        struct ct_lane *lane = &s->lane[l];
-        lane->error = joint[l];
-        if (!s->output.nout || !ct_has_lane(wanted, l) || !(joint[l] <= 1))
-            continue;
-        if (ct_fidelity_is_due(&lane->outputs))
-            due |= 1u << l;
-        else
-            lane->error = fmax(lane->error, ct_fidelity_foreseen(&lane->outputs, joint[l]));
-    }
-    if (!due)
-        return;
-    const vec part = choose(size > 0, joint / size, all_lanes(1));
+    const vec part = choose(size > 0, s->joint / size, all_lanes(1));
+    for (int l = 0; l < W; l++)
+        s->lane[l].error = s->joint[l];
     for (int i = 0; i < s->ny; i++)
         e[i] *= part;
-    judge_outputs(s, e, due);
+    for (int kind = 0; kind < CT_OUTPUT_KINDS; kind++) {
+        const set due = find_due(s, kind, wanted);
+        if (due)
+            judge_outputs(s, kind, e, due);
+    }
 }
 
 // Ends of the stages at t + C h; the last one is the end of the step, y1 with dy1. That is not evaluated where its error
@@ -363,7 +396,8 @@ static void adapt(struct ct_lanes *s, set tried, set wanted)
         struct ct_lane *lane = &s->lane[l];
         if (ct_has_lane(wanted, l)) {
             ct_control_accept(&lane->control, s->method, lane->h, lane->error);
-            ct_fidelity_keep(&lane->outputs);
+            for (int kind = 0; kind < CT_OUTPUT_KINDS; kind++)
+                ct_fidelity_keep(&lane->outputs[kind]);
         } else if (ct_has_lane(tried, l)) {
             ct_control_refuse(&lane->control, s->method, s->h[l], lane->error);
             lane->events.whole = 0;

@@ -49,7 +49,8 @@ static void prepare_all(struct ct_lanes *s)
     prepare(&s->motion, s->input);
     prepare(&s->power, s->input);
     prepare(&s->memory, s->input);
-    prepare(&s->output, s->input);
+    for (int kind = 0; kind < CT_OUTPUT_KINDS; kind++)
+        prepare(&s->output[kind].program, s->input);
     prepare(&s->root, s->input);
     for (size_t i = 0; i < s->nform; i++)
         prepare_form(s->form[i], s->input);
@@ -88,22 +89,33 @@ static void make_room(struct ct_arena *a, struct ct_lanes *s)
     s->input = CT_NEWN(a, vec, s->m->ninput);
     s->k = CT_NEWN(a, vec, ny * CT_MOST_STAGES);
     s->group_size = CT_NEWN(a, vec, (size_t)(s->groups ? s->groups->n : 0) + 1);
-    const size_t noutput = s->output.nout;
-    s->at = CT_NEWN(a, vec, noutput + 1);
-    s->probed = CT_NEWN(a, vec, noutput + 1);
-    double **const outputs[] = {&s->one_at, &s->one_probed, &s->one_off};
-    for (size_t i = 0; i < COUNT(outputs); i++)
-        *outputs[i] = CT_NEWN(a, double, noutput + 1);
     s->stage = CT_NEWN(a, struct ct_lane_sum, CT_MOST_STAGES);
     s->place = CT_NEWN(a, int, n + 1);
     for (size_t i = 0; i < n; i++)
         s->place[i] = s->e->u[i].q;
     for (int l = 0; l < W; l++) {
-        s->lane[l].outputs = ct_fidelity_record(a, noutput);
         s->lane[l].row = CT_NEWN(a, int, r + 1);
         s->lane[l].dependent = CT_NEWN(a, int, r + 1);
         s->lane[l].independent = CT_NEWN(a, int, n + 1);
     }
+}
+
+static void make_outputs(struct ct_lanes *s, enum ct_output_kind kind)
+{
+    const struct ct_outputs *from = ct_fidelity_outputs(ct_run_fidelity(s->run), kind);
+    struct ct_lane_outputs *o = &s->output[kind];
+    double **const one[] = {&o->one_at, &o->one_probed, &o->one_off};
+    const size_t n = from ? from->n : 0;
+    if (from) {
+        make_program(s, &o->program, &from->program);
+        o->needs_lam = from->needs_lam;
+    }
+    o->at = CT_NEWN(s->arena, vec, n + 1);
+    o->probed = CT_NEWN(s->arena, vec, n + 1);
+    for (size_t i = 0; i < COUNT(one); i++)
+        *one[i] = CT_NEWN(s->arena, double, n + 1);
+    for (int l = 0; l < W; l++)
+        s->lane[l].outputs[kind] = ct_fidelity_record(s->arena, kind, n);
 }
 
 struct ct_lanes *ct_lanes_create(struct ct_arena *a, const struct ct_equations *e,
@@ -127,8 +139,8 @@ struct ct_lanes *ct_lanes_create(struct ct_arena *a, const struct ct_equations *
         make_program(s, &s->motion, &m->solved);
     make_program(s, &s->power, &m->power);
     make_program(s, &s->memory, &m->memory);
-    if (ct_run_fidelity(run))
-        make_program(s, &s->output, ct_fidelity_program(ct_run_fidelity(run)));
+    for (int kind = 0; kind < CT_OUTPUT_KINDS; kind++)
+        make_outputs(s, kind);
     make_program(s, &s->root, &m->root);
     make_room(a, s);
     ct_lane_make_events(s);
@@ -324,7 +336,8 @@ static void start_lane(struct ct_lane *lane, const struct ct_run_options *o)
     lane->t1 = o->duration;
     lane->control = ct_control_start();
     lane->control.is_starting = true;
-    ct_fidelity_clear(&lane->outputs);
+    for (int kind = 0; kind < CT_OUTPUT_KINDS; kind++)
+        ct_fidelity_clear(&lane->outputs[kind]);
     lane->tolerance = (struct ct_tolerance){o->rtol, o->atol};
     lane->repeat = ct_repeat_start(0, o->duration, &lane->tolerance);
     lane->least_rtol = o->least_rtol;

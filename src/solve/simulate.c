@@ -105,13 +105,12 @@ static void expect(void *user, double t, const double *y, const double *way, dou
 }
 
 static double amplified_error(void *user, double t, const double *y, const double *e,
-                              const struct ct_tolerance *tolerance)
+                              const struct ct_tolerance *tolerance, double states)
 {
     struct ct_run *r = user;
     if (!r->method->is_implicit)
         return 0;
-    return ct_amplifier_error(ct_fidelity_amplifier(r->fidelity), ct_run_before(r, t), y, e,
-                              tolerance);
+    return ct_fidelity_amplified(r->fidelity, ct_run_before(r, t), y, e, tolerance, states);
 }
 
 static double residual(void *user, double t, const double *y)
@@ -295,7 +294,7 @@ struct ct_run *ct_run_prepare(struct ct_ctx *ctx, struct ct_arena *a,
     r->value = CT_NEWN(a, double, e->nresult + 1);
     r->largest = CT_NEWN(a, double, e->nresult + 1);
     find_needs(r);
-    r->fidelity = ct_fidelity_create(a, r->m);
+    r->fidelity = ct_fidelity_create(a, r->s, r->largest, &r->stats.evaluations);
     return r;
 }
 

@@ -12,7 +12,7 @@ static double judge(double roundings)
     const double at = 1, off = 2,
                  probed = at + ct_fidelity_probe(0) / (DBL_EPSILON * roundings);
     struct ct_arena *a = ct_arena_create();
-    struct ct_fidelity_record r = ct_fidelity_record(a, 1);
+    struct ct_fidelity_record r = ct_fidelity_record(a, CT_OUTPUTS_OF_STATES, 1);
     const double error = ct_fidelity_judge(&r, &at, &probed, &off, &tolerance, 1);
     ct_arena_destroy(a);
     return error;
