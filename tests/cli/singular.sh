@@ -162,14 +162,3 @@ for T in $(awk 'BEGIN { for (i = 24; i <= 60; i++) print 10^(-i/6) }'); do
   "$COTREE" simulate platform.yaml --quiet --tolerance $T --summary s.json
   sed -n 's/.*"energy_drift": \([^,]*\),.*/\1/p' s.json | awk -v T=$T '!($1 < 10 * T) { print T ": the energy drifts by " $1 }'
 done
-
-# What an event in a singular position leaves does not come out of it: that is said; a little beside it does.
-echo '-- a force that switches in such a position, and one beside it'
-for beside in 0 1e-6; do
-  sed "s|u: -1}|u: -1}, effort: \"if(a.q < -pi/2 - $beside, 3, 0)\"|" parallelogram.yaml >switched.yaml
-  if "$COTREE" simulate switched.yaml --quiet -o switched.csv 2>out; then
-    echo "goes on"
-  else
-    grep -o 'something switches there' out
-  fi
-done
