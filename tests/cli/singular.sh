@@ -162,3 +162,12 @@ for T in $(awk 'BEGIN { for (i = 24; i <= 60; i++) print 10^(-i/6) }'); do
   "$COTREE" simulate platform.yaml --quiet --tolerance $T --summary s.json
   sed -n 's/.*"energy_drift": \([^,]*\),.*/\1/p' s.json | awk -v T=$T '!($1 < 10 * T) { print T ": the energy drifts by " $1 }'
 done
+
+# A driver that comes to rest in a singular position, or changes its rate or acceleration there, tells nothing of how the motion goes on: that is said.
+# Forces may switch there: switched.sh.
+echo '-- drivers that come to rest in such a position, slowly and at once, and that begin to brake there'
+for motion in '10*t^3 - 15*t^4 + 6*t^5' '3*t^2 - 2*t^3' t '1 + (t - 1) - (t - 1)^2'; do
+  case $motion in 1*-*t*) after="1 + (t - 1) - (t - 1)^2" motion=t ;; *) after=1 ;; esac
+  sed "s|initial: {q: 0, u: -1}|motion: \"-pi/2*if(t < 1, $motion, $after)\"|" parallelogram.yaml >rests.yaml
+  "$COTREE" simulate rests.yaml --quiet -o rests.csv 2>&1 | grep -o 'something switches there'
+done
