@@ -42,10 +42,12 @@ struct work {
     double first[STAGES][STAGES];     // and through all stages before j
     double from[STAGES][STAGES];      // A from a place within the step on
     double e[STAGES];                 // A's last without two inner stages, less it
+    double rest[STAGES];              // the same of `from`
     double t[STAGES], weight[STAGES]; // of the bridge
     double *k, *stage;                // (ny x STAGES) each
     double *point, *end;              // (ny) each
     bool has_weights;                 // most runs cross nothing
+    double begin; // where the step begins, as part of the whole: 0 but for rests
 };
 
 // --- weights ---------------------------------------------------------------------------------
@@ -110,13 +112,20 @@ static void set_stages(double *c)
     c[STAGES - 1] = 1;
 }
 
+// All stages but two inner ones.
+static void leave_out(bool *some)
+{
+    for (int j = 0; j < STAGES; j++)
+        some[j] = j != 2 && j != STAGES - 3;
+}
+
 static void find_weights(struct work *w)
 {
     set_stages(w->c);
     bool all[STAGES], left[STAGES], before[STAGES] = {0}, some[STAGES];
     double norm[STAGES];
     for (int j = 0; j < STAGES; j++) {
-        all[j] = some[j] = true;
+        all[j] = true;
         left[j] = j < SIDE;
     }
     find_norms(w->norm, w->c, all);
@@ -130,7 +139,7 @@ static void find_weights(struct work *w)
         integrate_lagrange(w->first[j], w->c, before, norm, w->c[j]);
         before[j] = true;
     }
-    some[2] = some[STAGES - 3] = false;
+    leave_out(some);
     find_norms(norm, w->c, some);
     integrate_lagrange(w->e, w->c, some, norm, 1);
     for (int j = 0; j < STAGES; j++)
@@ -229,21 +238,32 @@ static enum ct_eval sweep(const struct task *s, const double (*A)[STAGES], int f
     return CT_EVAL_RETRY;
 }
 
-static double estimate(const struct task *s, const double *y1)
+static double estimate(const struct task *s, const double *e, const double *y1)
 {
     struct work *w = s->w;
-    ct_stepper_combine(w->point, NULL, s->h, w->e, w->k, STAGES, s->p->ny);
+    ct_stepper_combine(w->point, NULL, s->h, e, w->k, STAGES, s->p->ny);
     return ct_stepper_norm(s->p, s->tolerance, s->y, y1, w->point);
 }
 
-// y (ny, out) at theta.
-static void point_at(const struct ct_problem *p, double h, double theta, const double *y,
-                     struct work *w, double *out)
+// a (STAGES, out): integrals of the Lagrange polynomials from 0 to c, a part of the whole.
+static void integrate_to(const struct work *w, double c, double *a)
 {
-    double a[STAGES];
     bool all[STAGES];
     memset(all, true, sizeof all);
-    integrate_lagrange(a, w->c, all, w->norm, theta);
+    integrate_lagrange(a, w->c, all, w->norm, c);
+}
+
+// y (ny, out) at c, a part of the whole, h, of which y is the state where the step begins.
+static void point_at(const struct ct_problem *p, double h, double c, const double *y,
+                     const struct work *w, double *out)
+{
+    double a[STAGES], before[STAGES];
+    integrate_to(w, c, a);
+    if (w->begin > 0) {
+        integrate_to(w, w->begin, before);
+        for (int j = 0; j < STAGES; j++)
+            a[j] -= before[j];
+    }
     ct_stepper_combine(out, y, h, a, w->k, STAGES, p->ny);
 }
 
@@ -256,112 +276,168 @@ bool ct_crossing_only_passes(const struct ct_problem *p, double t, const double 
         && p->mismatch(p->user, t, y) > fmin(ct_crossing_held, fmax(met, eps / p->accuracy));
 }
 
+// w->from: integrals from a part of the whole on; w->rest of them.
+static void begin_at(struct work *w, double begin)
+{
+    double before[STAGES], norm[STAGES];
+    bool some[STAGES];
+    integrate_to(w, begin, before);
+    for (int j = 0; j < STAGES; j++)
+        for (int i = 0; i < STAGES; i++)
+            w->from[j][i] = w->A[j][i] - before[i];
+    leave_out(some);
+    find_norms(norm, w->c, some);
+    integrate_lagrange(w->rest, w->c, some, norm, begin);
+    for (int j = 0; j < STAGES; j++)
+        w->rest[j] = w->e[j] - (w->rest[j] - before[j]);
+}
+
+// All stages from the state within the whole. Sweeps begin with stages along the tangent dy, which the first of them puts onto the
+// constraints.
+static enum ct_eval sweep_from(const struct task *s, double begin, const double *dy)
+{
+    struct work *w = s->w;
+    const int n = s->p->ny;
+    begin_at(w, begin);
+    for (int j = 0; j < STAGES; j++) {
+        memcpy(w->k + j * n, dy, (size_t)n * sizeof *dy);
+        memcpy(w->stage + j * n, s->y, (size_t)n * sizeof *dy);
+    }
+    return sweep(s, (const double(*)[STAGES])w->from, 0);
+}
+
+// All stages from the state at the first of them.
+static enum ct_eval sweep_on(const struct task *s, const double *dy, bool is_sharp)
+{
+    struct work *w = s->w;
+    const int n = s->p->ny;
+    const size_t bytes = (size_t)n * sizeof *dy;
+    memset(w->k, 0, STAGES * bytes);
+    memcpy(w->k, dy, bytes);
+    for (int j = 0; j < STAGES; j++)
+        memcpy(w->stage + j * n, s->y, bytes);
+    enum ct_eval e = CT_EVAL_OK;
+    if (is_sharp) { // dy is not
+        memcpy(w->point, s->y, bytes);
+        e = evaluate(s, 0);
+    }
+    if (e == CT_EVAL_OK)
+        e = guess(s);
+    return e == CT_EVAL_OK ? sweep(s, (const double(*)[STAGES])w->A, 1) : e;
+}
+
+// h: of the whole.
+static double error_of(const struct task *s, const double *y1)
+{
+    struct work *w = s->w;
+    const struct ct_problem *p = s->p;
+    const double middle = s->t + s->h / 2;
+    point_at(p, s->h, 0.5, s->y, w, w->end);
+    const double left = p->residual ? p->residual(p->user, middle, w->end) : 0;
+    return left > ct_crossing_held + held_tolerance * s->tolerance->rtol
+                || ct_crossing_only_passes(p, middle, w->end)
+             ? INFINITY
+             : fmax(estimate(s, w->begin > 0 ? w->rest : w->e, y1), left / ct_crossing_held);
+}
+
 static enum ct_eval step(const struct ct_problem *p, double t, double h, const double *y,
                          const double *dy, const struct ct_tolerance *tolerance, double *y1,
                          double *dy1, double *err, void *work, struct ct_integrate_stats *stats)
 {
     struct work *w = work;
     const int n = p->ny;
-    const size_t bytes = (size_t)n * sizeof *y;
-    struct task s = {p, t, h, y, tolerance, w, stats};
+    const double whole = h / (1 - w->begin);
+    struct task s = {p, t - w->begin * whole, whole, y, tolerance, w, stats};
     if (!w->has_weights)
         find_weights(w);
-    memset(w->k, 0, STAGES * bytes);
-    memcpy(w->k, dy, bytes);
-    for (int j = 0; j < STAGES; j++)
-        memcpy(w->stage + j * n, y, bytes);
-    enum ct_eval e = CT_EVAL_OK;
     struct ct_tolerance sharp = {settled_sharp, 0};
-    if (p->set_crossing && p->set_crossing(p->user, true)) { // dy is not sharp
-        for (int i = 0; i < n; i++)
-            sharp.atol = fmax(sharp.atol, settled_sharp * fabs(y[i]));
-        s.tolerance = &sharp;
-        memcpy(w->point, y, bytes);
-        e = evaluate(&s, 0);
-    }
-    if (e == CT_EVAL_OK)
-        e = guess(&s);
-    if (e == CT_EVAL_OK)
-        e = sweep(&s, (const double(*)[STAGES])w->A, 1);
+    const bool is_sharp = p->set_crossing && p->set_crossing(p->user, true);
+    for (int i = 0; i < n && is_sharp; i++)
+        sharp.atol = fmax(sharp.atol, settled_sharp * fabs(y[i]));
+    s.tolerance = is_sharp ? &sharp : tolerance;
+    const enum ct_eval e
+        = w->begin > 0 ? sweep_from(&s, w->begin, dy) : sweep_on(&s, dy, is_sharp);
     if (p->set_crossing)
         p->set_crossing(p->user, false);
     if (e != CT_EVAL_OK)
         return e;
     s.tolerance = tolerance;
-    memcpy(y1, w->stage + (STAGES - 1) * n, bytes);
-    memcpy(dy1, w->k + (STAGES - 1) * n, bytes);
-    point_at(p, h, 0.5, y, w, w->end);
-    const double left = p->residual ? p->residual(p->user, t + h / 2, w->end) : 0;
-    *err = left > ct_crossing_held + held_tolerance * tolerance->rtol
-                || ct_crossing_only_passes(p, t + h / 2, w->end)
-             ? INFINITY
-             : fmax(estimate(&s, y1), left / ct_crossing_held);
+    memcpy(y1, w->stage + (STAGES - 1) * n, (size_t)n * sizeof *y1);
+    memcpy(dy1, w->k + (STAGES - 1) * n, (size_t)n * sizeof *dy1);
+    *err = error_of(&s, y1);
     return CT_EVAL_OK;
 }
 
-// w->from: integrals from theta on.
-static void begin_at(struct work *w, double theta)
-{
-    double before[STAGES];
-    bool all[STAGES];
-    memset(all, true, sizeof all);
-    integrate_lagrange(before, w->c, all, w->norm, theta);
-    for (int j = 0; j < STAGES; j++)
-        for (int i = 0; i < STAGES; i++)
-            w->from[j][i] = w->A[j][i] - before[i];
-}
-
-// Sweeps begin with stages along the tangent, which the first of them puts onto the constraints.
 enum ct_eval ct_crossing_lead_in(const struct ct_problem *p, double t, double h, double theta,
                                  const double *y, const double *dy,
                                  const struct ct_tolerance *tolerance, double *before,
                                  double *err, void *work, struct ct_integrate_stats *stats)
 {
     struct work *w = work;
-    const int n = p->ny;
-    const size_t bytes = (size_t)n * sizeof *y;
     const struct task s = {p, t - theta * h, h, y, tolerance, w, stats};
     if (!w->has_weights)
         find_weights(w);
-    begin_at(w, theta);
-    for (int j = 0; j < STAGES; j++) {
-        memcpy(w->k + j * n, dy, bytes);
-        memcpy(w->stage + j * n, y, bytes);
-    }
     if (p->set_crossing)
         p->set_crossing(p->user, true);
-    const enum ct_eval e = sweep(&s, (const double(*)[STAGES])w->from, 0);
+    const enum ct_eval e = sweep_from(&s, theta, dy);
     if (p->set_crossing)
         p->set_crossing(p->user, false);
     if (e != CT_EVAL_OK)
         return e;
-    memcpy(before, w->stage, bytes);
-    *err = estimate(&s, before);
+    memcpy(before, w->stage, (size_t)p->ny * sizeof *y);
+    *err = estimate(&s, w->e, before);
     return CT_EVAL_OK;
+}
+
+void ct_crossing_begin(void *work, double begin)
+{
+    struct work *w = work;
+    w->begin = begin;
+}
+
+// Parts of the step as parts of the whole.
+static double part_of_whole(const struct work *w, double theta)
+{
+    return w->begin + theta * (1 - w->begin);
 }
 
 static void dense(const struct ct_problem *p, double h, double theta, const double *y,
                   const double *y1, void *work, double *out)
 {
+    struct work *w = work;
     (void)y1;
-    point_at(p, h, theta, y, work, out);
+    point_at(p, h / (1 - w->begin), part_of_whole(w, theta), y, w, out);
 }
 
-bool ct_crossing_is_gap(double theta)
+bool ct_crossing_is_gap(const void *work, double theta)
 {
-    return fabs(theta - 0.5) < gap / 2;
+    return fabs(part_of_whole(work, theta) - 0.5) < gap / 2;
+}
+
+// w->weight: of the stages, at a part of the whole.
+static void weigh(struct work *w, double c)
+{
+    bool all[STAGES];
+    memset(all, true, sizeof all);
+    products(w->weight, w->c, all, c);
+    for (int j = 0; j < STAGES; j++)
+        w->weight[j] /= w->norm[j];
+}
+
+void ct_crossing_slope(void *work, int n, double theta, double *dy)
+{
+    struct work *w = work;
+    weigh(w, part_of_whole(w, theta));
+    ct_stepper_combine(dy, NULL, 1, w->weight, w->k, STAGES, n);
 }
 
 struct ct_bridge ct_crossing_bridge(void *work, double t, double h, double theta)
 {
     struct work *w = work;
-    bool all[STAGES];
-    memset(all, true, sizeof all);
-    products(w->weight, w->c, all, theta);
-    for (int j = 0; j < STAGES; j++) {
-        w->t[j] = t + w->c[j] * h;
-        w->weight[j] /= w->norm[j];
-    }
+    const double whole = h / (1 - w->begin);
+    weigh(w, part_of_whole(w, theta));
+    for (int j = 0; j < STAGES; j++)
+        w->t[j] = t + (w->c[j] - w->begin) * whole;
     return (struct ct_bridge){STAGES, w->t, w->weight, w->stage};
 }
 
@@ -374,6 +450,7 @@ struct ct_bridge ct_crossing_bridge_over(void *work, const struct ct_stepper_spa
         find_weights(w);
     for (int j = 0; j < STAGES; j++)
         ct_stepper_point(span, begin + w->c[j] * length, w->stage + j * span->p->ny);
+    w->begin = 0;
     return ct_crossing_bridge(work, span->t + begin * span->h, length * span->h,
                               (theta - begin) / length);
 }

@@ -21,8 +21,15 @@ bool ct_crossing_only_passes(const struct ct_problem *p, double t, const double 
 /// Beside a singular position f has fewer digits: crossings may err by this part of the largest state.
 extern const double ct_crossing_rounding;
 
+/// The steps to come begin within what they cross, at this part of the whole: the rest of a crossing that something has cut. 0, as at
+/// first: where it begins. Stages are those of the whole, with f as it is then.  (8.37)
+void ct_crossing_begin(void *work, double begin);
+
 /// True where f is not to be computed.
-bool ct_crossing_is_gap(double theta);
+bool ct_crossing_is_gap(const void *work, double theta);
+
+/// dy (n, out): what f of the step just taken is at theta, interpolated between stages.
+void ct_crossing_slope(void *work, int n, double theta, double *dy);
 
 /// The stages of the step just taken from t by h, with weights for theta. Valid until the next one.
 struct ct_bridge ct_crossing_bridge(void *work, double t, double h, double theta);

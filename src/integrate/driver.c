@@ -76,12 +76,17 @@ static bool state_refused(struct ct_driver *r, enum ct_eval e)
                     "the equations of motion cannot be evaluated at t = %.9g", r->t);
 }
 
-// The derivative, and on which side the roots are, at a state that was not stepped to.
-static bool take_bearings(struct ct_driver *r)
+static void start_anew(struct ct_driver *r)
 {
     if (r->method->restart)
         r->method->restart(r->work);
     r->control.is_starting = true;
+}
+
+// The derivative, and on which side the roots are, at a state that was not stepped to.
+static bool take_bearings(struct ct_driver *r)
+{
+    start_anew(r);
     enum ct_eval e = ct_stepper_rhs(r->p, r->t, r->y, r->dy, r->stats);
     if (e == CT_EVAL_OK)
         e = ct_watch_start(&r->watch, r->t, r->control.h, r->y, r->dy);
@@ -186,14 +191,15 @@ static enum ct_eval project_end(struct ct_driver *r, const struct ct_method *met
 }
 
 // end, dend (out) = the crossing at t1, within it.
-static enum ct_eval cut(struct ct_driver *r, const struct ct_stride *s)
+static enum ct_eval cut(struct ct_driver *r, struct ct_stride *s)
 {
     const struct ct_problem *p = r->p;
     r->end = r->moved;
     r->dend = r->dmoved;
     s->method->dense(p, s->h, (s->t1 - r->t) / s->h, r->y, r->y1, s->work, r->end);
-    ct_stepper_copy(r->dend, r->dy1, p->ny);
-    if (ct_driver_is_in_gap(r, s, s->t1))
+    s->leaves_rest = s->is_event && p->is_singular && p->is_singular(p->user, s->t1, r->end);
+    ct_crossing_slope(s->work, p->ny, (s->t1 - r->t) / s->h, r->dend);
+    if (s->leaves_rest || ct_driver_is_in_gap(r, s, s->t1))
         return CT_EVAL_OK;
     const enum ct_eval e = p->project ? p->project(p->user, s->t1, r->end) : CT_EVAL_OK;
     return e == CT_EVAL_OK ? ct_stepper_rhs(p, s->t1, r->end, r->dend, r->stats) : e;
@@ -208,7 +214,9 @@ tolerance_of(const struct ct_driver *r, const struct ct_stride *s, struct ct_tol
         return r->o->step > 0 ? NULL : &r->tolerance;
     for (int i = 0; i < r->p->ny; i++)
         largest = fmax(largest, fabs(r->y[i]));
-    const double nearer = fmax(1, r->far / r->singular_in),
+    const double sooner
+        = ct_driver_has_rest(r) ? r->rest.first / r->rest.h : r->far / r->singular_in;
+    const double nearer = fmax(1, sooner),
                  noise = fmin(ct_crossing_rounding * nearer * nearer,
                               fmax(ct_crossing_rounding, unfelt * r->p->accuracy));
     *tol = (struct ct_tolerance){r->tolerance.rtol, fmax(r->tolerance.atol, noise * largest)};
@@ -224,6 +232,8 @@ static inline enum ct_eval attempt(struct ct_driver *r, struct ct_stride *s)
     s->error = 0;
     s->is_interpolated = false;
     r->is_open = false;
+    if (s->method == &ct_crossing)
+        ct_crossing_begin(s->work, s->begin);
     enum ct_eval e = s->is_striding
                        ? ct_striding_step(r->striding, r->t, s->h, r->y, r->dy, tolerance,
                                           r->y1, r->dy1, &error, s->work, r->stats)
@@ -304,6 +314,21 @@ static enum ct_eval step_to_event(struct ct_driver *r, struct ct_stride *s, doub
     return CT_EVAL_OK;
 }
 
+// The interpolant is the step itself: a place on it where the root is zero to rounding, as roots are found late by up to the resolution.
+static enum ct_eval cut_on_event(struct ct_driver *r, struct ct_stride *s, double theta)
+{
+    const struct ct_stepper_span span = {s->method, r->p, r->t, s->h, r->y, r->y1, s->work};
+    double dt;
+    ct_stepper_point(&span, theta, r->moved);
+    s->t1 = r->t + theta * s->h;
+    const enum ct_eval e = ct_watch_refine(&r->watch, s->t1, r->moved, &dt);
+    if (e != CT_EVAL_OK)
+        return e;
+    s->t1 += fabs(dt) <= ct_watch_resolution(r->t, s->h) ? dt : 0;
+    s->is_landing = false;
+    return cut(r, s);
+}
+
 // If a root fires within the step, the step is made to end there.
 static enum ct_eval end_on_event(struct ct_driver *r, struct ct_stride *s)
 {
@@ -317,11 +342,8 @@ static enum ct_eval end_on_event(struct ct_driver *r, struct ct_stride *s)
     if (e != CT_EVAL_OK || theta > 1)
         return e;
     s->is_event = true;
-    if (s->method == &ct_crossing) {
-        s->t1 = r->t + theta * s->h;
-        s->is_landing = false;
-        return cut(r, s);
-    }
+    if (s->method == &ct_crossing)
+        return cut_on_event(r, s, theta);
     const double rest = (1 - theta) * s->h;
     return rest <= ct_watch_resolution(r->t, s->h) ? CT_EVAL_OK
                                                    : step_to_event(r, s, theta * s->h);
@@ -332,13 +354,35 @@ static enum ct_eval tell_accepted(struct ct_driver *r, const struct ct_stride *s
 {
     const struct ct_problem *p = r->p;
     const bool is_across = s->method == &ct_crossing || s->is_striding;
+    if (s->leaves_rest) // that will be
+        return CT_EVAL_OK;
     return p->accepted ? p->accepted(p->user, s->t1, r->end, r->dend, is_across) : CT_EVAL_OK;
+}
+
+// Sides of roots after an event in the gap of a crossing, where f is r->dy now.
+static enum ct_eval take_sides(struct ct_driver *r)
+{
+    const struct ct_problem *p = r->p;
+    const enum ct_eval e = p->resumed ? p->resumed(p->user, r->t, r->y, r->dy) : CT_EVAL_OK;
+    return e == CT_EVAL_OK ? ct_watch_start(&r->watch, r->t, r->control.h, r->y, r->dy) : e;
+}
+
+// On which side the roots are where the rest of a crossing begins: what it makes of f there tells.
+static enum ct_eval take_bearings_of_rest(struct ct_driver *r, const struct ct_stride *s)
+{
+    if (!ct_driver_has_rest(r) || r->rest.is_known)
+        return CT_EVAL_OK;
+    r->rest.is_known = true;
+    ct_crossing_slope(s->work, r->p->ny, 0, r->dy);
+    return take_sides(r);
 }
 
 // What follows an attempt whose error is small enough; h is the step as it was attempted.
 static enum ct_eval finish_step(struct ct_driver *r, struct ct_stride *s, double h)
 {
-    enum ct_eval e = end_on_event(r, s);
+    enum ct_eval e = take_bearings_of_rest(r, s);
+    if (e == CT_EVAL_OK)
+        e = end_on_event(r, s);
     if (e == CT_EVAL_OK)
         e = interpolate_for_samples(r, s);
     if (e == CT_EVAL_OK && r->p->nroot)
@@ -363,6 +407,32 @@ static bool step_too_small(struct ct_driver *r, double h)
             r->t);
     return ct_error(r->ctx, nowhere, CT_E_STEP_SMALL,
                     "at t = %.9g the step size became too small (%.3g) to go on", r->t, h);
+}
+
+// No rest of a crossing has been found: other steps go on from the event.
+static bool leave_rest(struct ct_driver *r)
+{
+    const struct ct_problem *p = r->p;
+    enum ct_eval e = ct_stepper_rhs(p, r->t, r->y, r->dy, r->stats);
+    if (e == CT_EVAL_OK && p->accepted)
+        e = p->accepted(p->user, r->t, r->y, r->dy, true);
+    if (e == CT_EVAL_OK && !r->rest.is_known)
+        e = take_sides(r);
+    r->rest = (struct ct_rest){.h = 0};
+    ct_driver_look_ahead(r, r->t);
+    return e == CT_EVAL_OK || state_refused(r, e);
+}
+
+// The step that has failed is to be tried again shorter.
+static bool adapt_after_failed_step(struct ct_driver *r, const struct ct_stride *s, double h,
+                                    double error)
+{
+    const bool had_rest = ct_driver_has_rest(r);
+    if (s->method == &ct_crossing || s->is_striding)
+        ct_driver_adapt_after_failed_crossing(r, s, error);
+    else
+        ct_driver_adapt_after_refusal(r, h, error);
+    return had_rest == ct_driver_has_rest(r) || leave_rest(r);
 }
 
 // One step that everybody accepts: from y to end.
@@ -400,10 +470,8 @@ static bool find_step(struct ct_driver *r, double stop, bool is_time, struct ct_
         if (r->o->step > 0)
             return ct_error(r->ctx, nowhere, CT_E_STEP_REFUSED,
                             "at t = %.9g a step of fixed size %.3g is too large", r->t, h);
-        if (is_crossing)
-            ct_driver_adapt_after_failed_crossing(r, s, error);
-        else
-            ct_driver_adapt_after_refusal(r, h, error);
+        if (!adapt_after_failed_step(r, s, h, error))
+            return false;
     }
 }
 
@@ -444,15 +512,26 @@ static bool handle_event(struct ct_driver *r, bool is_state, bool is_time)
         return ct_error(r->ctx, nowhere, CT_E_EVENT_PILE,
                         "%d events in a row at t = %.9g without time going on", CT_WATCH_PILE,
                         r->t);
+    const double *dy = ct_driver_has_rest(r) ? r->dy : NULL;
     const enum ct_eval e
-        = p->event ? p->event(p->user, r->t, r->y, r->watch.crossed, is_time) : CT_EVAL_OK;
+        = p->event ? p->event(p->user, r->t, r->y, dy, r->watch.crossed, is_time) : CT_EVAL_OK;
     if (e != CT_EVAL_OK)
         return state_refused(r, e);
     r->reach = INFINITY; // of the position ahead everything may have changed
     r->failed_crossings = 0;
     r->has_failed_stride = false;
+    if (dy) {
+        start_anew(r);
+        return true;
+    }
     ct_driver_look_ahead(r, r->t);
     return take_bearings(r);
+}
+
+// Is the rest of a crossing to come?
+static bool is_on_the_way(const struct ct_driver *r)
+{
+    return ct_driver_has_rest(r) && r->t < r->o->t1;
 }
 
 static bool advance(struct ct_driver *r)
@@ -468,8 +547,9 @@ static bool advance(struct ct_driver *r)
                                        s.t1 - ct_driver_event_margin(is_event, s.t1, s.h)))
         return false;
     commit(r, &s);
-    return (!is_event || handle_event(r, s.is_event, is_time))
-        && ct_driver_give_samples_here(r);
+    if (is_event && !handle_event(r, s.is_event, is_time))
+        return false;
+    return is_on_the_way(r) || ct_driver_give_samples_here(r);
 }
 
 static void tell_foreseen(struct ct_driver *r)
@@ -498,7 +578,7 @@ static bool march(struct ct_driver *r)
                             "would be more than the %ld that are allowed",
                             r->t, r->stats->steps, r->pace.step, r->o->t1, most);
         tell_foreseen(r);
-        if (r->o->at_step && !r->o->at_step(r->p->user, r->t, r->y))
+        if (r->o->at_step && !is_on_the_way(r) && !r->o->at_step(r->p->user, r->t, r->y))
             return true;
     }
     return true;

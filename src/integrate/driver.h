@@ -66,6 +66,11 @@ struct ct_driver {
     int noisy_steps;              // since it was measured
     struct ct_refusal refusal;    // of the step before this try
     struct ct_problem problem;    // the caller's, with what is found here
+    struct ct_rest {
+        double h, first; // its length, and as it was tried first; 0: there is none
+        bool is_known;   // sides of roots are, with f as it is now
+        bool is_told;    // the position has been, by what came before the event
+    } rest; // of a crossing that an event has cut where f cannot be computed: the next step  (8.37)
 };
 
 // A step as planned: to t1, which is t + h but for rounding, or the end of the run before that.
@@ -73,8 +78,10 @@ struct ct_stride {
     const struct ct_method *method;
     void *work; // the method's
     double h, t1;
+    double begin; // of a crossing: where the step begins, as part of the whole; 0 but for rests
     bool is_landing;      // t1 is the stop it was planned for
     bool is_event;        // a state event ends it
+    bool leaves_rest;     // of a crossing, which is to be the next step
     bool is_interpolated; // the method is ready to interpolate it
     bool is_striding;     // across a singular position
     bool is_off_between;  // outputs err too much in a sample before its end
@@ -98,6 +105,11 @@ void ct_driver_adapt_after_crossing(struct ct_driver *r, const struct ct_stride 
 void ct_driver_adapt_after_failed_crossing(struct ct_driver *r, const struct ct_stride *s,
                                            double error);
 
+/// Has an event cut a crossing where f cannot be computed, so that the next step is its rest?
+static inline bool ct_driver_has_rest(const struct ct_driver *r)
+{
+    return r->rest.h > 0;
+}
 /// Is t in the gap of a crossing, where only its interpolant tells the state?
 bool ct_driver_is_in_gap(const struct ct_driver *r, const struct ct_stride *s, double t);
 /// A step h was refused for this error: is it rounding of f, which is taken off errors from now on?

@@ -82,6 +82,18 @@ static void plan_crossing(const struct ct_driver *r, double stop, bool is_time,
     s->t1 = s->is_landing ? stop : r->t + s->h;
 }
 
+// The rest of the crossing that an event has cut, centred on the event.
+static void plan_rest(const struct ct_driver *r, double stop, bool is_time, struct ct_stride *s)
+{
+    const double rest = stop - r->t;
+    s->method = &ct_crossing;
+    s->work = r->crossing_work;
+    s->begin = 0.5;
+    s->h = is_time ? fmin(r->rest.h, rest) : r->rest.h;
+    s->is_landing = s->h >= rest;
+    s->t1 = s->is_landing ? stop : r->t + s->h;
+}
+
 // Is a singular position ahead that is to be crossed?
 static bool has_crossing(const struct ct_driver *r)
 {
@@ -117,8 +129,12 @@ void ct_driver_plan(struct ct_driver *r, double stop, bool is_time, struct ct_st
     s->work = r->work;
     s->is_striding = length > 0;
     s->is_landing = s->is_event = s->is_interpolated = false;
-    s->is_off_between = s->is_damping = false;
-    s->error = 0;
+    s->is_off_between = s->is_damping = s->leaves_rest = false;
+    s->error = s->begin = 0;
+    if (ct_driver_has_rest(r)) {
+        plan_rest(r, stop, is_time, s);
+        return;
+    }
     if (s->is_striding) {
         s->h = length;
         s->t1 = r->t + length;
@@ -174,15 +190,34 @@ void ct_driver_look_ahead(struct ct_driver *r, double t)
     r->reach = fmin(fmin(r->reach, reach), r->singular_in);
 }
 
+// The rest of a crossing that began nearer to the position than it should have ends where that would have begun.
+static void keep_rest(struct ct_driver *r, const struct ct_stride *s)
+{
+    const double whole = isfinite(r->far) ? fmax(s->h / 2, r->far) : s->h / 2;
+    r->rest.first = s->begin > 0 ? r->rest.first : whole;
+    r->rest.h = s->leaves_rest ? r->rest.first : 0;
+    r->rest.is_known = false;
+    r->rest.is_told &= s->leaves_rest;
+}
+
 void ct_driver_adapt_after_crossing(struct ct_driver *r, const struct ct_stride *s)
 {
     const struct ct_stepper_span span = {s->method, r->p, r->t, s->h, r->y, r->y1, s->work};
-    if (r->p->crossed)
-        r->p->crossed(r->p->user, &span, s->t1);
+    if (r->p->crossed && !r->rest.is_told)
+        r->rest.is_told = r->p->crossed(r->p->user, &span, s->begin, s->t1);
+    keep_rest(r, s);
     r->singular_in = r->reach = INFINITY;
     r->failed_crossings = 0;
     r->has_failed_stride = false;
     r->control.was_refused = false;
+}
+
+// Shorter, which none is any more after so many times.
+static void shrink_rest(struct ct_driver *r)
+{
+    enum { MOST = 12 };
+    r->failed_crossings++;
+    r->rest.h = r->failed_crossings < MOST ? nearer * r->rest.h : 0;
 }
 
 void ct_driver_adapt_after_failed_crossing(struct ct_driver *r, const struct ct_stride *s,
@@ -193,6 +228,10 @@ void ct_driver_adapt_after_failed_crossing(struct ct_driver *r, const struct ct_
     r->stats->inaccurate_steps += error > 1;
     if (s->is_striding) {
         r->has_failed_stride = true;
+        return;
+    }
+    if (ct_driver_has_rest(r)) {
+        shrink_rest(r);
         return;
     }
     r->foretold = r->t + r->singular_in;

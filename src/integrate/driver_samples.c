@@ -8,7 +8,7 @@ bool ct_driver_is_in_gap(const struct ct_driver *r, const struct ct_stride *s, d
     const double theta = (t - r->t) / s->h;
     double from, to;
     return s->is_striding ? ct_striding_is_gap(r->striding, theta, &from, &to)
-                          : s->method == &ct_crossing && ct_crossing_is_gap(theta);
+                          : s->method == &ct_crossing && ct_crossing_is_gap(s->work, theta);
 }
 
 static bool give_sample(struct ct_driver *r, const double *y)
@@ -131,8 +131,8 @@ bool ct_driver_give_samples_before(struct ct_driver *r, const struct ct_stride *
 {
     while (r->sample < r->o->nsample && r->o->sample[r->sample] <= s->t1) {
         const double t = r->o->sample[r->sample];
-        const bool is_singular = !s->is_event && ct_driver_is_in_gap(r, s, t);
-        if (t >= end && !is_singular)
+        const bool is_singular = ct_driver_is_in_gap(r, s, t);
+        if (t >= end && (s->is_event || !is_singular))
             break;
         if (!find_state(r, s, t, r->point))
             return false;

@@ -164,8 +164,11 @@ struct ct_problem {
     /// What is evaluated from now on belongs to the crossing of a singular position, none of it close by; or does not.
     /// True: f then has more digits than it had elsewhere. May be NULL.
     bool (*set_crossing)(void *user, bool is_crossing);
-    /// A singular position was crossed by this step, which ends at t1 at the latest. May be NULL.
-    void (*crossed)(void *user, const struct ct_stepper_span *step, double t1);
+    /// Is y so near to a singular position that f has too few digits? NULL: it never is.
+    bool (*is_singular)(void *user, double t, const double *y);
+    /// A singular position was crossed by this step, which ends at t1 at the latest and is all but the first part of the crossing,
+    /// `begin` of it. False if the position is not before t1. May be NULL.
+    bool (*crossed)(void *user, const struct ct_stepper_span *step, double begin, double t1);
     /// How far y is from the constraints. May be NULL.
     double (*residual)(void *user, double t, const double *y);
     /// Beside a singular position: how far y is from them in what they ask of no motion there, the part that depends. It
@@ -184,9 +187,11 @@ struct ct_problem {
 
     /// At an event: t and y are those of the event, crossed[i] (nroot) is -1 or +1 for the roots that
     /// changed sign downwards or upwards, 0 else; is_time tells that a time event is due. Changes modes and may change y
-    /// (impulses). Integration restarts after it.
-    enum ct_eval (*event)(void *user, double t, double *y, const signed char *crossed,
-                          bool is_time);
+    /// (impulses). Integration restarts after it. dy: f before the event where it cannot be computed, in the gap of a crossing; else NULL.
+    enum ct_eval (*event)(void *user, double t, double *y, const double *dy,
+                          const signed char *crossed, bool is_time);
+    /// After an event in the gap of a crossing: dy is f there as it is now, found by a step from there. May be NULL.
+    enum ct_eval (*resumed)(void *user, double t, const double *y, const double *dy);
 };
 
 /// Times and states around a sample where f cannot be computed, and their weights in what is interpolated there.

@@ -157,10 +157,27 @@ static void advise_order(struct ct_run *r)
             r->method->name, r->method->order);
 }
 
-// Has an event been in the position, or next to it? Behind it no step comes out of the position.
+// Has an event been in the position, or next to it, or is one about to be there? Behind it no step comes out of the position.
 static bool has_switched(const struct ct_run *r)
 {
-    return r->stats.last_time - r->last_event <= little * r->o->duration;
+    const double t = r->stats.last_time, near = little * r->o->duration;
+    return t - r->last_event <= near || r->pending - t <= near;
+}
+
+static const char *const let_pass
+    = ", where a driver may not rest: let it pass, or rest beside it";
+
+// Do drivers come to rest, by what speeds have been?
+static bool is_driven_to_rest(const struct ct_run *r)
+{
+    const double rest = 0.01; // of the swiftest
+    bool is_driven = false;
+    for (size_t i = 0; i < r->model->njoint; i++) {
+        const struct ct_instance *joint = &r->model->joint[i];
+        is_driven |= joint->cls->motion && ct_instance_value(joint, "motion")->given;
+    }
+    return is_driven
+        && ct_vector_largest(r->y + r->m->nq, r->m->nu) < rest * r->singular->swiftest;
 }
 
 // What leads on beside a singular position: where rounding is what ends steps, a tolerance that leaves it unfelt.
@@ -169,6 +186,8 @@ static const char *advise_there(struct ct_run *r)
     if (has_switched(r))
         return "; something switches there: let it do so, and drivers rest, a little before it "
                "or behind";
+    if (is_driven_to_rest(r))
+        return let_pass;
     const double part = r->singular->closest, enough = DBL_EPSILON / (part * part), most = 1e-2;
     if (!r->s->quad && enough > r->o->wanted && enough < most)
         return ct_arena_printf(
@@ -195,9 +214,7 @@ void ct_run_explain_end(struct ct_run *r)
         return;
     if (code == CT_E_STEP_OPEN) {
         name_open_row(r);
-        name_singular(r, has_switched(r) ? advise_there(r)
-                                         : ", where a driver may not rest: let it pass, or "
-                                           "rest beside it");
+        name_singular(r, has_switched(r) ? advise_there(r) : let_pass);
     } else if (code == CT_E_SAMPLE_REFUSED) {
         name_open_row(r);
         if (r->ctx->ndiagnostic == n)

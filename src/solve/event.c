@@ -122,9 +122,13 @@ enum ct_eval ct_run_refuse_stuck(struct ct_run *r, double t, const double *y)
     if (!r->nroot)
         return CT_EVAL_OK;
     const enum ct_eval e = ct_run_rhs(r, t, y, r->dy);
-    if (e != CT_EVAL_OK)
-        return e;
-    const int i = ct_modes_find_stuck(r->m, t, y, r->dy);
+    return e == CT_EVAL_OK ? ct_run_resumed(r, t, y, r->dy) : e;
+}
+
+enum ct_eval ct_run_resumed(void *user, double t, const double *y, const double *dy)
+{
+    struct ct_run *r = user;
+    const int i = ct_modes_find_stuck(r->m, t, y, dy);
     if (i < 0)
         return CT_EVAL_OK;
     const struct ct_mode *mode = &r->e->mode[i];
@@ -148,13 +152,37 @@ static enum ct_eval look_ahead(struct ct_run *r, double t, const double *y)
     return CT_EVAL_OK;
 }
 
-enum ct_eval ct_run_event(void *user, double t, double *y, const signed char *crossed,
-                          bool is_time)
+// Sides at y, whose derivative is dy: a crossed root tells its own; the rest follow from where the motion leads.
+static void set_sides(struct ct_run *r, double t, const double *y, const double *dy,
+                      const signed char *crossed)
+{
+    double *mode = r->m->input + r->m->at_mode;
+    r->pending = ct_run_next_event(r, t);
+    ct_modes_start(r->m, t, y, dy);
+    for (int i = 0; i < r->nroot; i++)
+        if (crossed[i])
+            mode[r->root_of[i]] = ct_op_apply(r->e->mode[r->root_of[i]].op, crossed[i], 0, 0);
+}
+
+// In the gap of a crossing, where a root has crossed: what drivers do is known beforehand, and no speed jumps.
+static enum ct_eval switch_in_gap(struct ct_run *r, double t, const double *y, const double *dy,
+                                  const signed char *crossed)
+{
+    ct_machine_set(r->m, ct_run_before(r, t), y);
+    set_sides(r, t, y, dy, crossed);
+    ct_run_note_turning(r, t, y);
+    return CT_EVAL_OK;
+}
+
+enum ct_eval ct_run_event(void *user, double t, double *y, const double *dy,
+                          const signed char *crossed, bool is_time)
 {
     struct ct_run *r = user;
     struct ct_machine *m = r->m;
     (void)is_time;
     r->last_event = t;
+    if (dy)
+        return switch_in_gap(r, t, y, dy, crossed);
     double *before = r->scratch + m->nu, *momentum = before + 2 * r->e->ndriver;
     ct_run_watch_base(r, t, y, CT_WATCH_EVENT);
     ct_machine_set(m, ct_run_before(r, t), y);
@@ -166,16 +194,10 @@ enum ct_eval ct_run_event(void *user, double t, double *y, const signed char *cr
 
     if (!ct_run_tables_reach(r, t))
         return CT_EVAL_FATAL;
-    // sides: a crossed root tells its own; the rest follow from where the motion leads
-    double *mode = m->input + m->at_mode;
     enum ct_eval e = ct_run_rhs(r, t, y, r->dy);
     if (e != CT_EVAL_OK)
         return e;
-    r->pending = ct_run_next_event(r, t);
-    ct_modes_start(m, t, y, r->dy);
-    for (int i = 0; i < r->nroot; i++)
-        if (crossed[i])
-            mode[r->root_of[i]] = ct_op_apply(r->e->mode[r->root_of[i]].op, crossed[i], 0, 0);
+    set_sides(r, t, y, r->dy, crossed);
     e = apply_jump(r, t, y, before, momentum);
     if (e != CT_EVAL_OK)
         return e;

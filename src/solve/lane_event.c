@@ -233,7 +233,7 @@ static bool handle(struct ct_lanes *s, int l, bool is_time)
     const long switches = s->embed->switches;
     ct_lane_become_whole(s, l, t, s->y);
     lend(s, v);
-    if (ct_run_event(s->run, t, s->one_y, v->watch.crossed, is_time) != CT_EVAL_OK
+    if (ct_run_event(s->run, t, s->one_y, NULL, v->watch.crossed, is_time) != CT_EVAL_OK
         || ct_run_rhs(s->run, t, s->one_y, s->one_dy) != CT_EVAL_OK)
         return false;
     await(s, l);

@@ -118,8 +118,10 @@ double ct_run_next_event(void *user, double t);
 /// Do the tables tell what follows t? An error if not (E310).
 bool ct_run_tables_reach(struct ct_run *r, double t);
 enum ct_eval ct_run_root(void *user, double t, const double *y, double *g);
-enum ct_eval ct_run_event(void *user, double t, double *y, const signed char *crossed,
-                          bool is_time);
+enum ct_eval ct_run_event(void *user, double t, double *y, const double *dy,
+                          const signed char *crossed, bool is_time);
+/// As ct_run_refuse_stuck, where the derivative at y, dy, is known.
+enum ct_eval ct_run_resumed(void *user, double t, const double *y, const double *dy);
 /// With the modes set: CT_EVAL_FATAL with CT_E_STUCK where a force on both sides of its switch leads back to it (dry
 /// friction at rest): there is no motion that f describes.
 enum ct_eval ct_run_refuse_stuck(struct ct_run *r, double t, const double *y);

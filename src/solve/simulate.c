@@ -78,10 +78,16 @@ static bool set_crossing(void *user, bool is_crossing)
     return ct_singular_set_crossing(r->singular, is_crossing);
 }
 
-static void crossed(void *user, const struct ct_stepper_span *span, double t1)
+static bool is_singular(void *user, double t, const double *y)
 {
     struct ct_run *r = user;
-    ct_singular_pass(r->singular, span, t1, r->pending);
+    return ct_singular_is_felt(r->singular, ct_run_before(r, t), y);
+}
+
+static bool crossed(void *user, const struct ct_stepper_span *span, double begin, double t1)
+{
+    struct ct_run *r = user;
+    return ct_singular_pass(r->singular, span, begin, t1, r->pending);
 }
 
 static double output_error(void *user, double t, const double *y, const double *e,
@@ -630,13 +636,15 @@ bool ct_run_simulate(struct ct_run *r, const struct ct_run_options *o,
                            .seen_step = r->e->nclock ? seen_step : NULL,
                            .singular_in = r->m->nrow ? singular_in : NULL,
                            .set_crossing = set_crossing,
+                           .is_singular = is_singular,
                            .crossed = crossed,
                            .residual = residual,
                            .mismatch = (size_t)r->s->rank < r->m->nrow ? NULL : mismatch,
                            .nroot = r->nroot,
                            .root = ct_run_root,
                            .next_time_event = ct_run_next_event,
-                           .event = ct_run_event};
+                           .event = ct_run_event,
+                           .resumed = ct_run_resumed};
     find_asked(r, &p);
     const struct ct_integrate_options io
         = {.t0 = r->t0,

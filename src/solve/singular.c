@@ -21,6 +21,7 @@ struct ct_singular *ct_singular_create(struct ct_arena *arena, struct ct_machine
     w->T = CT_NEWN(arena, double, m->nrow ? m->nu * m->nu : 1);
     w->u = CT_NEWN(arena, double, m->nu + 1);
     w->a = CT_NEWN(arena, double, m->nu + 1);
+    w->last = CT_NEWN(arena, double, m->nq + m->nu + 1);
     w->passed = CT_NEWN(arena, struct ct_singular_position, kept + 1);
     for (size_t i = 0; i < kept; i++)
         w->passed[i].row = CT_NEWN(arena, bool, m->nrow);
@@ -86,13 +87,23 @@ static const double lost_pivot = 1e-7;
 // is wanted they are found in quadruple precision.
 static const double felt_rounding = 0.01;
 
+static bool is_felt(const struct ct_singular *w, double pivot)
+{
+    const double part = pivot / w->farthest;
+    return w->wanted > 0 && part < singular_pivot / 2
+        && part * part * felt_rounding * w->wanted < DBL_EPSILON;
+}
+
 static void note_closeness(struct ct_singular *w, double pivot)
 {
     w->farthest = fmax(w->farthest, fmax(w->most, pivot));
-    const double part = pivot / w->farthest;
-    w->is_close = w->s->quad && w->wanted > 0 && part < singular_pivot / 2
-               && part * part * felt_rounding * w->wanted < DBL_EPSILON;
+    w->is_close = w->s->quad && is_felt(w, pivot);
     w->s->is_in_quad = w->is_close;
+}
+
+bool ct_singular_is_felt(struct ct_singular *w, double t, const double *y)
+{
+    return is_felt(w, pivot_at(w, t, y));
 }
 
 // The smallest pivot falls about linearly towards a singular position. Time to where it will vanish, by secants along
@@ -202,6 +213,24 @@ static struct look look_around(struct ct_singular *w, const struct sight *at, do
     return l;
 }
 
+static void note_state(struct ct_singular *w, double t, const double *y)
+{
+    w->t = t;
+    memcpy(w->last, y, (w->m->nq + w->m->nu) * sizeof *y);
+}
+
+// A step that ends in the position itself, as one to an event there, chooses rows for it, of which there are fewer: those of before, for the
+// same step taken shorter. False where there are as many as ever.
+static bool return_rows(struct ct_singular *w, double pending)
+{
+    if (w->s->rank >= w->rank)
+        return false;
+    look_at(w, ct_time_before(w->t, pending), w->last);
+    w->s->sigma_best = 0;
+    ct_embed_choose(w->s);
+    return true;
+}
+
 // Is the step to it to be taken again, shorter? After another choice of rows and columns the pivot is not to be compared with the last
 // one.
 static bool is_to_be_shorter(const struct ct_singular *w, const struct look *l)
@@ -227,7 +256,7 @@ static void keep_side(struct ct_singular *w, const struct sight *at, int side)
 static void keep(struct ct_singular *w, const struct sight *at, const struct look *l, double dt)
 {
     keep_side(w, at, l->side);
-    w->t = at->t;
+    note_state(w, at->t, at->y);
     w->rank = w->s->rank > w->rank ? w->s->rank : w->rank;
     w->was_told = false;
     w->part = l->part;
@@ -262,14 +291,14 @@ bool ct_singular_foresee(struct ct_singular *w, double t, const double *y, const
     if (!ct_embed_has_pivot(w->s) || !(dt > 0))
         return true;
     if (is_told_by_form(w, dt, step->is_fixed)) {
-        w->t = t;
+        note_state(w, t, y);
         w->was_told = true;
         w->side = 0;
         return true;
     }
     const struct look l = look_around(w, &at, dt);
     if (!step->is_across) {
-        if (!step->is_fixed && is_to_be_shorter(w, &l))
+        if (!step->is_fixed && (return_rows(w, pending) || is_to_be_shorter(w, &l)))
             return false;
         note_step(w, t, &l);
     }
@@ -371,13 +400,18 @@ bool ct_singular_is_beside(struct ct_singular *w, double t, const double *y, boo
 
 struct passage {
     const struct ct_stepper_span *span;
-    double pending;
+    double begin, pending; // `begin`: of the span, as part of the crossing
 };
 
-static double pivot_on(struct ct_singular *w, const struct passage *p, double theta)
+static double time_on(const struct passage *p, double part)
 {
-    ct_stepper_point(p->span, theta, w->y);
-    return pivot_at(w, ct_time_before(p->span->t + theta * p->span->h, p->pending), w->y);
+    return p->span->t + (part - p->begin) / (1 - p->begin) * p->span->h;
+}
+
+static double pivot_on(struct ct_singular *w, const struct passage *p, double part)
+{
+    ct_stepper_point(p->span, (part - p->begin) / (1 - p->begin), w->y);
+    return pivot_at(w, ct_time_before(time_on(p, part), p->pending), w->y);
 }
 
 // Where on the crossing the pivot vanishes, as part of it: the pivot falls and rises about linearly, so that its sizes
@@ -415,17 +449,18 @@ static void find_dependence(struct ct_singular *w, const struct passage *p, doub
     mark_rows(w, at->row);
 }
 
-void ct_singular_pass(struct ct_singular *w, const struct ct_stepper_span *span, double t1,
-                      double pending)
+bool ct_singular_pass(struct ct_singular *w, const struct ct_stepper_span *span, double begin,
+                      double t1, double pending)
 {
-    const struct passage p = {span, pending};
-    const double theta = find_position(w, &p), t = span->t + theta * span->h;
+    const struct passage p = {span, begin, pending};
+    const double theta = find_position(w, &p), t = time_on(&p, theta);
     w->has_tried = false;
     if (!(t <= t1))
-        return;
+        return false;
     if (w->npassed++ >= CT_MOST_SINGULAR)
-        return;
+        return true;
     struct ct_singular_position *at = &w->passed[w->npassed - 1];
     at->t = fmax(t, 0); // a run that starts in one begins before it
     find_dependence(w, &p, theta, at);
+    return true;
 }

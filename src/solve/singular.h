@@ -45,6 +45,7 @@ struct ct_singular {
         t_closest; // the smallest part of a step that was not made to cross, in double precision, and when
     long npassed;
     struct ct_singular_position *passed; // the first of them (CT_MOST_SINGULAR)
+    double *last;                        // the last accepted state  (nq + nu)
     double *y, *d, *x;                   // (ny), (nu), (nrow)
 };
 
@@ -79,6 +80,8 @@ void ct_singular_begin(struct ct_singular *w, double t, const double *y, double 
 /// At y, where the time is t, it is known of a position so much ahead: the first step from there is to cross it, whatever rounding
 /// beside the position makes of it, as none from nearer by would be better.
 void ct_singular_expect(struct ct_singular *w, double t, const double *y, double in);
+/// Is y so near to one that rounding of accelerations in double precision is felt?
+bool ct_singular_is_felt(struct ct_singular *w, double t, const double *y);
 /// Is y beside a singular position, foreseen or not? row (nrow, out): those that depend there; none of a large system.
 bool ct_singular_is_beside(struct ct_singular *w, double t, const double *y, bool *row);
 /// Does J have less rank at y, where the embedding has chosen, or as near to y as loops are closed, than where the mechanism can
@@ -91,8 +94,9 @@ double ct_singular_misfit(struct ct_arena *scratch, const struct ct_embed *s, do
                           const double *y, int *freedoms);
 /// What is evaluated from now on belongs to a crossing, or does not.
 bool ct_singular_set_crossing(struct ct_singular *w, bool is_crossing);
-/// A crossing has been made and goes on to t1: find the position on it and keep it.
-void ct_singular_pass(struct ct_singular *w, const struct ct_stepper_span *span, double t1,
-                      double pending);
+/// A crossing has been made, of which the span is all but the first part, `begin` of it, and goes on to t1: find the position on it and
+/// keep it. False if there is none before t1.
+bool ct_singular_pass(struct ct_singular *w, const struct ct_stepper_span *span, double begin,
+                      double t1, double pending);
 
 #endif

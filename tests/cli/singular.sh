@@ -163,13 +163,11 @@ for T in $(awk 'BEGIN { for (i = 24; i <= 60; i++) print 10^(-i/6) }'); do
   sed -n 's/.*"energy_drift": \([^,]*\),.*/\1/p' s.json | awk -v T=$T '!($1 < 10 * T) { print T ": the energy drifts by " $1 }'
 done
 
-# What an event in a singular position leaves does not come out of it: that is said; a little beside it does.
-echo '-- a force that switches in such a position, and one beside it'
-for beside in 0 1e-6; do
-  sed "s|u: -1}|u: -1}, effort: \"if(a.q < -pi/2 - $beside, 3, 0)\"|" parallelogram.yaml >switched.yaml
-  if "$COTREE" simulate switched.yaml --quiet -o switched.csv 2>out; then
-    echo "goes on"
-  else
-    grep -o 'something switches there' out
-  fi
+# A driver that comes to rest in a singular position, or changes its rate or acceleration there, tells nothing of how the motion goes on: that is said.
+# Forces may switch there: switched.sh.
+echo '-- drivers that come to rest in such a position, slowly and at once, and that begin to brake there'
+for motion in '10*t^3 - 15*t^4 + 6*t^5' '3*t^2 - 2*t^3' t '1 + (t - 1) - (t - 1)^2'; do
+  case $motion in 1*-*t*) after="1 + (t - 1) - (t - 1)^2" motion=t ;; *) after=1 ;; esac
+  sed "s|initial: {q: 0, u: -1}|motion: \"-pi/2*if(t < 1, $motion, $after)\"|" parallelogram.yaml >rests.yaml
+  "$COTREE" simulate rests.yaml --quiet -o rests.csv 2>&1 | grep -o 'something switches there'
 done

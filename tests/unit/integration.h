@@ -90,9 +90,10 @@ static inline double next_due(void *user, double t)
     return *due;
 }
 
-static inline enum ct_eval note_event(void *user, double t, double *y,
+static inline enum ct_eval note_event(void *user, double t, double *y, const double *dy,
                                       const signed char *crossed, bool is_time)
 {
+    (void)dy;
     struct record *r = user;
     (void)y;
     assert_true(r->nevent < MOST);
@@ -223,11 +224,11 @@ static inline enum ct_eval height(void *user, double t, const double *y, double 
     return CT_EVAL_OK;
 }
 
-static inline enum ct_eval bounce(void *user, double t, double *y, const signed char *crossed,
-                                  bool is_time)
+static inline enum ct_eval bounce(void *user, double t, double *y, const double *dy,
+                                  const signed char *crossed, bool is_time)
 {
     struct record *r = user;
-    note_event(user, t, y, crossed, is_time);
+    note_event(user, t, y, dy, crossed, is_time);
     if (crossed[0] < 0)
         y[1] *= -r->limit;
     return CT_EVAL_OK;

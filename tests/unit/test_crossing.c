@@ -13,6 +13,7 @@
 enum { NY = 2, MOST = 512 };
 
 static const double singular = 1.3; // the time
+static const double width = 0.1;
 
 // y0' = cos t, y1' = -y0 with noise as of a division by the distance squared; closer than this: refused.
 static const double closest = 1e-3;
@@ -30,6 +31,10 @@ struct record {
         grows; // what the constraints are missed by in the middle, falling with this power of the reach
     double
         trusted; // the position is `singular` after that time; before, another one that is passed by
+    double jump;   // of y0' at the event, where that switches
+    double bend;   // and a part of it that is odd about the position, of this width
+    double beside; // time from the position to where it does
+    double since;  // seconds before the position from when on f is known once it has switched
     double wavers; // every other time to the position is so many times as long
     int nlook, ncrossing;
 };
@@ -98,15 +103,18 @@ static double wavering(void *user, double *reach)
     return r->nlook++ % 2 ? in * r->wavers : in;
 }
 
-static double error_of(double t, const double *y)
+static double error_of(const struct record *r, double t, const double *y)
 {
-    return fmax(fabs(y[0] - sin(t)), fabs(y[1] - cos(t)));
+    const double since = r->nevent ? fmax(0, t - r->event) : 0, x = since / width;
+    const double bent = log1p(x * x) / 2, sum = x * bent - x + atan(x);
+    return fmax(fabs(y[0] - sin(t) - r->jump * since - r->bend * bent),
+                fabs(y[1] - cos(t) + r->jump * since * since / 2 + r->bend * width * sum));
 }
 
 static bool at_step(void *user, double t, const double *y)
 {
     struct record *r = user;
-    r->worst = fmax(r->worst, error_of(t, y));
+    r->worst = fmax(r->worst, error_of(r, t, y));
     r->last = t;
     return true;
 }
@@ -114,7 +122,7 @@ static bool at_step(void *user, double t, const double *y)
 static bool at_sample(void *user, double t, const double *y)
 {
     struct record *r = user;
-    r->worst = fmax(r->worst, error_of(t, y));
+    r->worst = fmax(r->worst, error_of(r, t, y));
     return true;
 }
 
@@ -124,8 +132,10 @@ static bool at_singular_sample(void *user, double t, const double *y, const stru
     double rate = 0, dy[NY] = {0};
     for (int k = 0; k < b->n; k++) {
         assert_int_equal(rhs(user, b->t[k], b->y + NY * k, dy), CT_EVAL_OK);
+        dy[0] += r->nevent ? r->jump : 0;
         rate += b->weight[k] * dy[0];
     }
+    rate += r->nevent ? -r->jump : 0; // b has what rhs makes of it now
     r->worst_bridged = fmax(r->worst_bridged, fabs(rate - cos(t)));
     r->nbridge++;
     return at_sample(user, t, y);
@@ -138,9 +148,10 @@ static enum ct_eval root(void *user, double t, const double *y, double *g)
     return CT_EVAL_OK;
 }
 
-static enum ct_eval event(void *user, double t, double *y, const signed char *crossed,
-                          bool is_time)
+static enum ct_eval event(void *user, double t, double *y, const double *dy,
+                          const signed char *crossed, bool is_time)
 {
+    (void)dy;
     struct record *r = user;
     (void)y, (void)crossed, (void)is_time;
     r->nevent++;
@@ -166,6 +177,10 @@ static bool run(struct record *r, const char *method, struct ct_problem p, doubl
                          .grows = r->grows,
                          .trusted = r->trusted,
                          .wavers = r->wavers,
+                         .jump = r->jump,
+                         .bend = r->bend,
+                         .beside = r->beside,
+                         .since = r->since,
                          .nearest = INFINITY,
                          .ctx = {.model = ct_arena_create()}};
     p.user = r;
@@ -234,11 +249,90 @@ static void an_event_beside_the_position_is_found(void **unused)
     check_below("time of the event", fabs(r.event - singular - 0.01), 1e-8);
 }
 
+static enum ct_eval switched(void *user, double t, const double *y, double *dy)
+{
+    const struct record *r = user;
+    const enum ct_eval e = rhs(user, t, y, dy);
+    if (r->nevent && t < singular - r->since)
+        return CT_EVAL_RETRY;
+    const double x = (t - singular) / width;
+    dy[0] += r->nevent ? r->jump + r->bend / width * x / (1 + x * x) : 0;
+    return e;
+}
+
+static enum ct_eval root_beside(void *user, double t, const double *y, double *g)
+{
+    (void)t;
+    g[0] = y[0] - sin(singular + ((const struct record *)user)->beside);
+    return CT_EVAL_OK;
+}
+
+static bool is_singular(void *user, double t, const double *y)
+{
+    (void)user, (void)y;
+    return fabs(t - singular) < 2 * closest;
+}
+
+static const struct ct_problem switching = {.ny = NY,
+                                            .rhs = switched,
+                                            .accepted = accepted,
+                                            .singular_in = singular_in,
+                                            .residual = residual,
+                                            .is_singular = is_singular,
+                                            .nroot = 1,
+                                            .root = root_beside,
+                                            .event = event};
+
+// f can be computed neither at the event nor next to it: what comes behind is found from both sides.
+static void f_may_switch_in_the_position(void **unused)
+{
+    (void)unused;
+    static const char *const methods[] = {"dopri5", "dop853"};
+    static const double besides[] = {0, 1e-13, -1e-10, 1e-7, -5e-4, 1.9e-3};
+    for (size_t m = 0; m < COUNT(methods); m++)
+        for (size_t i = 0; i < COUNT(besides); i++)
+            for (int k = 3; k <= 13; k++) {
+                const double tolerance = pow(10, -k);
+                struct record r = {.jump = -0.3, .beside = besides[i], .since = 1};
+                assert_true(run(&r, methods[m], switching, 3, tolerance));
+                assert_int_equal(r.nevent, 1);
+                check_below("time of the event", fabs(r.event - singular - r.beside),
+                            k < 13 ? 10 * tolerance : 1e-13);
+                check_below("error", r.worst, 10 * tolerance + 1e-12);
+                check_below("error of the bridge", r.worst_bridged, 1e3 * tolerance + 1e-11);
+            }
+}
+
+// Before the event f need not be known far back; where it is not known at all steps go on from the event, if it can be computed there.
+static void f_that_has_switched_is_asked_for_near_by(void **unused)
+{
+    (void)unused;
+    struct record r = {.jump = 0.5, .since = 0.02}, none = {.jump = 0.5, .beside = 1.5e-3};
+    assert_true(run(&r, "dop853", switching, 3, 1e-9));
+    check_below("error", r.worst, 1e-8);
+    assert_true(run(&none, "dop853", switching, 3, 1e-9));
+    check_below("error", none.worst, 1e-8);
+    none.beside = 0;
+    assert_false(run(&none, "dop853", switching, 3, 1e-9));
+}
+
+// Over the whole crossing what is odd about the position cancels, and what it errs by in the gap; over the rest it does not.
+static void the_rest_has_an_error_of_its_own(void **unused)
+{
+    (void)unused;
+    for (int k = 4; k <= 11; k++) {
+        const double tolerance = pow(10, -k);
+        struct record r = {.bend = 0.1, .since = 1};
+        assert_true(run(&r, "dop853", switching, 1.7, tolerance));
+        check_below("error", r.worst, 10 * tolerance);
+    }
+}
+
 static enum ct_eval sharp(void *user, double t, const double *y, double *dy)
 {
     (void)user, (void)y;
-    const double width = 1e-3, s = (t - singular) / width;
-    dy[0] = 1 / (width * (1 + s * s));
+    const double narrow = 1e-3, s = (t - singular) / narrow;
+    dy[0] = 1 / (narrow * (1 + s * s));
     dy[1] = 0;
     return CT_EVAL_OK;
 }
@@ -351,6 +445,9 @@ int main(void)
         cmocka_unit_test(any_tolerance_gets_across),
         cmocka_unit_test(a_run_may_end_on_the_position),
         cmocka_unit_test(an_event_beside_the_position_is_found),
+        cmocka_unit_test(f_may_switch_in_the_position),
+        cmocka_unit_test(f_that_has_switched_is_asked_for_near_by),
+        cmocka_unit_test(the_rest_has_an_error_of_its_own),
         cmocka_unit_test(a_position_that_is_passed_by_is_not_crossed),
         cmocka_unit_test(what_misses_a_little_is_tried_from_nearer_by),
         cmocka_unit_test(another_position_is_crossed_after_one_that_is_passed_by),

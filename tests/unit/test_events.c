@@ -11,11 +11,11 @@ static enum ct_eval zigzag(void *user, double t, const double *y, double *dy)
     return CT_EVAL_OK;
 }
 
-static enum ct_eval turn(void *user, double t, double *y, const signed char *crossed,
-                         bool is_time)
+static enum ct_eval turn(void *user, double t, double *y, const double *dy,
+                         const signed char *crossed, bool is_time)
 {
     ((struct record *)user)->mode++;
-    return note_event(user, t, y, crossed, is_time);
+    return note_event(user, t, y, dy, crossed, is_time);
 }
 
 static void steps_end_exactly_on_time_events(void **unused)

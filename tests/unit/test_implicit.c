@@ -505,9 +505,10 @@ static enum ct_eval height(void *user, double t, const double *y, double *g)
     return CT_EVAL_OK;
 }
 
-static enum ct_eval bounce(void *user, double t, double *y, const signed char *crossed,
-                           bool is_time)
+static enum ct_eval bounce(void *user, double t, double *y, const double *dy,
+                           const signed char *crossed, bool is_time)
 {
+    (void)dy;
     struct user *s = user;
     assert_true(crossed[0] < 0 && !is_time);
     s->event[s->nevent++] = t;
