@@ -10,6 +10,14 @@
 // so these three add half of the cost of a step of six stages.
 static const double probes[] = {0.25, 0.5, 0.75, 1};
 
+// Between probes a root may cross and come back: where the parabola through three of them turns, unless it turns back before
+// zero by more than this part of its second difference. So much it may err by where the motion is smooth over a step.
+const double ct_watch_doubt = 0.1;
+// It is looked for with ever closer places, each time so much closer, and is found where it is deeper beyond zero than
+// this part of what g is in the step: some thousand roundings.
+static const double closer = 0.125, least_depth = 1e-12;
+enum { CLOSEST = 5 };
+
 // Time is resolved to this part of max(|t|, h). Some thousand roundings, so that secants still
 // see a change of g, and far below what a tolerance of 1e-12 does to a state.
 static const double resolution = 1e-12;
@@ -69,7 +77,7 @@ static enum ct_eval evaluate_inside(const struct ct_watch *w, const struct ct_st
 void ct_watch_init(struct ct_watch *w, const struct ct_problem *p, struct ct_arena *a)
 {
     const int n = p->nroot;
-    double *g = CT_NEWN(a, double, 6 * (size_t)n);
+    double *g = CT_NEWN(a, double, (7 + COUNT(probes)) * (size_t)n);
     *w = (struct ct_watch){
         .p = p,
         .side = CT_NEWN(a, signed char, n),
@@ -80,6 +88,7 @@ void ct_watch_init(struct ct_watch *w, const struct ct_problem *p, struct ct_are
         .high = g + 3 * n,
         .near = g + 4 * n,
         .slope = g + 5 * n,
+        .seen = g + 6 * n,
         .point = CT_NEWN(a, double, p->ny),
         .last_event = -INFINITY,
     };
@@ -200,11 +209,12 @@ static enum ct_eval locate(struct ct_watch *w, const struct ct_stepper_span *s, 
     return CT_EVAL_OK;
 }
 
-// The roots that fire at theta, from w->high, and their slopes there.
-static enum ct_eval mark(struct ct_watch *w, const struct ct_stepper_span *s, double theta)
+// The roots that fire at theta, from w->high, and their slopes there, which they keep for `reach`.
+static enum ct_eval mark(struct ct_watch *w, const struct ct_stepper_span *s, double theta,
+                         double reach)
 {
     const double least = slope_resolutions * ct_watch_resolution(s->t, s->h) / s->h;
-    const double size = fmin(slope_most, slope_spacing * theta + least);
+    const double size = fmin(slope_most * fmin(1, reach), slope_spacing * theta + least);
     const double d = theta > 0.5 ? -size : size;
     const enum ct_eval e = evaluate_inside(w, s, theta + d, w->g);
     for (int i = 0; i < w->p->nroot && e == CT_EVAL_OK; i++) {
@@ -226,29 +236,124 @@ static enum ct_eval evaluate_end(struct ct_watch *w, const struct ct_stepper_spa
     return e;
 }
 
-enum ct_eval ct_watch_search(struct ct_watch *w, const struct ct_stepper_span *s,
-                             const double *y_end, double *theta)
+// ---- roots that come back between probes -------------------------------------------------------------
+
+bool ct_watch_may_dip(double a, double b, double c)
+{
+    const double bend = a - 2 * b + c, slope = (c - a) / 2;
+    return bend > 0 && fabs(slope) <= (1 + ct_watch_doubt) * bend
+        && 2 * bend * b - slope * slope <= 2 * ct_watch_doubt * bend * bend;
+}
+
+// A place within the step where root i, which has not crossed at places `spacing` apart about theta, is beyond zero by more than
+// `depth`; g is left in w->high. *theta (in, out): 2 if there is none.
+static enum ct_eval find_dip(struct ct_watch *w, const struct ct_stepper_span *s, int i,
+                             const double *f, double depth, double spacing, double *theta)
+{
+    double x = *theta, at[3] = {f[0], f[1], f[2]};
+    *theta = 2;
+    for (int k = 0; k < CLOSEST && ct_watch_may_dip(at[0], at[1], at[2]); k++) {
+        const double bend = at[0] - 2 * at[1] + at[2];
+        x -= spacing * (at[2] - at[0]) / (2 * bend);
+        spacing *= closer;
+        x = fmin(fmax(x, spacing), 1 - spacing);
+        for (int j = 0; j < 3; j++) {
+            const double place = x + (j - 1) * spacing;
+            const enum ct_eval e = evaluate_inside(w, s, place, w->high);
+            if (e != CT_EVAL_OK)
+                return e;
+            at[j] = w->side[i] * w->high[i];
+            if (at[j] < -depth) {
+                *theta = place;
+                return CT_EVAL_OK;
+            }
+        }
+    }
+    return CT_EVAL_OK;
+}
+
+// The first place before probe `end` where a root is beyond zero that is not so at the probes; else 2.
+static enum ct_eval search_dips(struct ct_watch *w, const struct ct_stepper_span *s, int end,
+                                double before, double *theta)
 {
     const int n = w->p->nroot;
     *theta = 2;
-    memset(w->crossed, 0, (size_t)n);
-    memcpy(w->low, w->g0, (size_t)n * sizeof *w->g0);
+    for (int j = 2; j <= end; j++)
+        for (int i = 0; i < n; i++) {
+            double f[3], size = 0, x = probes[j - 2];
+            for (int k = 0; k < 3; k++) {
+                f[k] = w->side[i] * w->seen[n * (j - 2 + k) + i];
+                size = fmax(size, fabs(f[k]));
+            }
+            if (w->near[i] > 0 || f[0] <= 0 || f[2] <= 0 || !ct_watch_may_dip(f[0], f[1], f[2]))
+                continue;
+            const enum ct_eval e = find_dip(w, s, i, f, least_depth * size, probes[0], &x);
+            if (e != CT_EVAL_OK)
+                return e;
+            if (x < before)
+                *theta = fmin(*theta, x);
+        }
+    return CT_EVAL_OK;
+}
+
+// The event in [low, high], where no root is beyond zero at low, in w->low, and one is at high, in w->high.
+static enum ct_eval narrow(struct ct_watch *w, const struct ct_stepper_span *s, double low,
+                           double high, bool is_dip, double *theta)
+{
+    const double width = fmin(0.5, ct_watch_resolution(s->t, s->h) / s->h);
+    const enum ct_eval e = locate(w, s, low, high, width, theta);
+    return e == CT_EVAL_OK ? mark(w, s, *theta, is_dip ? high - *theta : INFINITY) : e;
+}
+
+// If a root comes back from beyond zero before `before`, where the probe `end` does not see it: *theta, else 2.
+static enum ct_eval narrow_dip(struct ct_watch *w, const struct ct_stepper_span *s, int end,
+                               double before, double *theta)
+{
+    const size_t n = (size_t)w->p->nroot;
+    double x;
+    enum ct_eval e = search_dips(w, s, end, before, &x);
+    *theta = 2;
+    if (e != CT_EVAL_OK || x > 1)
+        return e;
+    int k = 0;
+    while (probes[k] < x)
+        k++;
+    memcpy(w->low, w->seen + n * (size_t)k, n * sizeof *w->low);
+    e = evaluate_inside(w, s, x, w->high);
+    return e == CT_EVAL_OK ? narrow(w, s, k ? probes[k - 1] : 0, x, true, theta) : e;
+}
+
+enum ct_eval ct_watch_search(struct ct_watch *w, const struct ct_stepper_span *s,
+                             const double *y_end, double *theta)
+{
+    const size_t n = (size_t)w->p->nroot;
     double before = 0;
-    for (size_t j = 0; j < COUNT(probes); j++) {
+    *theta = 2;
+    memset(w->crossed, 0, n);
+    memcpy(w->seen, w->g0, n * sizeof *w->g0);
+    for (int j = 0; j < (int)COUNT(probes); j++) {
+        double *seen = w->seen + n * (size_t)j;
+        memcpy(w->low, seen, n * sizeof *w->low);
         enum ct_eval e = probes[j] < 1 ? evaluate_inside(w, s, probes[j], w->high)
                                        : evaluate_end(w, s, y_end, 1 - before);
         if (e != CT_EVAL_OK)
             return e;
+        memcpy(seen + n, w->high, n * sizeof *w->high);
         if (any_crossed(w, w->high)) {
-            const double width = fmin(0.5, ct_watch_resolution(s->t, s->h) / s->h);
-            e = locate(w, s, before, probes[j], width, theta);
-            return e == CT_EVAL_OK ? mark(w, s, *theta) : e;
+            e = narrow_dip(w, s, j + 1, before, theta);
+            if (e != CT_EVAL_OK || *theta <= 1)
+                return e;
+            memcpy(w->low, seen, n * sizeof *w->low);
+            memcpy(w->high, seen + n, n * sizeof *w->high);
+            return narrow(w, s, before, probes[j], false, theta);
         }
         settle(w, w->high);
-        swap(&w->low, &w->high);
         before = probes[j];
     }
-    return CT_EVAL_OK;
+    const enum ct_eval e = narrow_dip(w, s, COUNT(probes), 1, theta);
+    if (e == CT_EVAL_OK && *theta > 1)
+        memcpy(w->low, w->seen + n * COUNT(probes), n * sizeof *w->low);
+    return e;
 }
 
 enum ct_eval ct_watch_refine(struct ct_watch *w, double t, const double *y, double *dt)

@@ -1,8 +1,8 @@
 // State events: which root functions change sign within a step, and when.
 //
 //     side      -1 or +1 for each root: where it was last seen; 0: resting on zero, not watched
-//     probes    a step is looked at in a few places, so that a root that crosses and comes
-//               back is seen as far as the probes allow
+//     probes    a step is looked at in a few places, and where a parabola through three of them turns
+//               about zero, so that a root that crosses and comes back is seen
 //
 // What always holds between steps: g0 is g at the start of the next step, and a root that has
 // just fired has the side to which it is moving. So it cannot fire twice for one crossing, and
@@ -19,6 +19,7 @@ struct ct_watch {
     double *g, *low, *high;      // (nroot) each
     double *near;                // > 0: fired, and |g| has not been above this since (nroot)
     double *slope;               // dg/dt at the event  (nroot)
+    double *seen;                // g at the start of the step and at the probes  (nroot x 5)
     double *point;               // (ny)
     double last_event;           // time of the last state event
     int piled;                   // state events in a row without time going on
@@ -35,6 +36,11 @@ double ct_watch_resolution(double t, double h);
 double ct_watch_longest_step(double run);
 /// A state event at t is one of an infinite number.
 bool ct_watch_piles_up(struct ct_watch *w, double t, double run);
+
+/// Between probes roots are taken for parabolas that err by this part of their second difference.
+extern const double ct_watch_doubt;
+/// May a smooth function that is a, b, c > 0 at three equidistant places be less than zero between them?
+bool ct_watch_may_dip(double a, double b, double c);
 
 void ct_watch_init(struct ct_watch *w, const struct ct_problem *p, struct ct_arena *a);
 

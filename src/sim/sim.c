@@ -433,7 +433,7 @@ static void warn_of_positions(struct ct_sim *sim)
             "they do not see: the motion behind it may be another one; without 'step' "
             "it is crossed",
             w->over, w->nover > 1 ? " and more often later" : "");
-    if (w->closest * w->closest * sim->tolerance < rounding)
+    if (w->closest * w->closest * fmax(sim->tolerance, sim->least_rtol) < rounding)
         ct_warning(
             &sim->own, mark, 0,
             "the motion has come near to a singular position at t = %.9g without crossing it, "

@@ -142,6 +142,7 @@ struct ct_lanes {
     const int *root_of; // (nroot) their places among the modes
     vec *side, *g0,
         *g; // of them: see watch.h, at the start and, extrapolated a little, at the end of the step
+    vec *g_before;  // and a probe before that
     set unsettled;  // lanes in which one rests on zero or has just fired
     vec rtol, atol; // of the steps
     vec *input;

@@ -62,6 +62,7 @@ void ct_lane_make_events(struct ct_lanes *s)
     s->side = CT_NEWN(a, vec, s->nroot + 1);
     s->g0 = CT_NEWN(a, vec, s->nroot + 1);
     s->g = CT_NEWN(a, vec, s->nroot + 1);
+    s->g_before = CT_NEWN(a, vec, s->nroot + 1);
     for (int l = 0; l < W; l++) {
         struct ct_lane_events *v = &s->lane[l].events;
         s->before[l] = v->pending = INFINITY;

@@ -16,6 +16,14 @@ static inline void interpolate_lanes(struct ct_lanes *s, double theta)
     }
 }
 
+// As ct_watch_may_dip.
+static inline mask may_dip(vec a, vec b, vec c)
+{
+    const vec bend = a - 2 * b + c, slope = (c - a) / 2, most = (1 + ct_watch_doubt) * bend;
+    return (bend > 0) & (slope * slope <= most * most)
+         & (2 * bend * b - slope * slope <= 2 * ct_watch_doubt * bend * bend);
+}
+
 // Lanes of `wanted` in which root functions may have changed sign, looked at where watch.c looks; those with values that
 // are not finite are taken out of it.
 static inline set suspects(struct ct_lanes *s, vec end, set *wanted)
@@ -37,7 +45,11 @@ static inline set suspects(struct ct_lanes *s, vec end, set *wanted)
         for (int i = 0; i < s->nroot; i++) {
             const vec g = s->root.out[s->root_of[i]];
             hit |= s->side[i] * (g + ahead * (g - s->g[i])) <= 0;
+            if (k > 1)
+                hit |= may_dip(s->side[i] * s->g_before[i], s->side[i] * s->g[i],
+                               s->side[i] * g);
             odd += 0 * g;
+            s->g_before[i] = s->g[i];
             s->g[i] = g;
         }
     }
