@@ -6,6 +6,7 @@
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 const struct cli_command *const cli_commands[] = {&cli_simulate,
                                                   &cli_equations,
@@ -339,6 +340,34 @@ static bool check_words(const struct parser *p)
                       "auto, unrolled, one-system, sparse, dense");
 }
 
+static bool is_same_file(const char *a, const char *b)
+{
+    struct stat x, y;
+    const bool has_a = stat(a, &x) == 0, has_b = stat(b, &y) == 0;
+    if (has_a && has_b)
+        return S_ISREG(x.st_mode) && x.st_dev == y.st_dev && x.st_ino == y.st_ino;
+    return !has_a && !has_b && strcmp(a, b) == 0;
+}
+
+// What is written may be neither what is read nor written by another option.
+static bool check_files(const struct parser *p)
+{
+    const struct cli_args *args = p->args;
+    const char *const file[] = {args->output, args->summary,   args->plot, args->curve,
+                                args->model,  args->reference, args->tree};
+    enum { WRITTEN = 4 };
+    for (size_t i = 0; i < WRITTEN; i++)
+        for (size_t j = i + 1; j < CLI_COUNT(file); j++)
+            if (file[i] && file[j] && strcmp(file[i], "-") != 0
+                && is_same_file(file[i], file[j]))
+                return cli_complain(p->command,
+                                    j < WRITTEN ? "'%s' is to be written twice: name two files"
+                                                : "'%s' is read: write to another file",
+                                    file[i]),
+                       false;
+    return true;
+}
+
 bool cli_parse(int argc, char **argv, const struct cli_command **command, struct cli_args *args)
 {
     *args = (struct cli_args){.set.text = calloc((size_t)argc + 1, sizeof(char *)),
@@ -356,7 +385,7 @@ bool cli_parse(int argc, char **argv, const struct cli_command **command, struct
         return cli_complain(p.command, "'%s' needs a model: cotree %s MODEL.yaml",
                             p.command->name, p.command->name),
                false;
-    return check_words(&p);
+    return check_words(&p) && check_files(&p);
 }
 
 void cli_args_finish(struct cli_args *args)

@@ -227,6 +227,8 @@ struct ct_equations {
     ct_ex power; // d(work)/dt, in terms of u' and lam where drivers push; 0 when nothing works
     ct_ex kinetic, potential, strain; // strain: of beams
     ct_ex total;                      // energy less the work put in: constant
+    ct_ex open
+        [2]; // largest of phi, of v: constraint.position, constraint.velocity; zero where neither is asked for
     ct_ex
         kept; // of `rate_jumps: continuous`: what a jump leaves as it is, as half a sum of squares of speeds; else 0
     struct ct_residual *residual; // NULL if not asked for

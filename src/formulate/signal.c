@@ -298,7 +298,7 @@ static bool global_signal(struct ct_build *b, const struct signal *s, const char
             return false;
         if (!position && strcmp(s->property, "velocity"))
             return unknown(b, mark, name, "constraint has position and velocity");
-        *out = largest(b, position);
+        *out = e->open[!position] = largest(b, position);
         return true;
     }
     const int i = index_of(s->property, energies, 5);

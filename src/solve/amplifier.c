@@ -127,7 +127,7 @@ bool ct_amplifier_any(struct ct_amplifier *p, double t, const double *y,
 }
 
 int ct_amplifier_blunt(struct ct_amplifier *p, double t, const double *y, const double *largest,
-                       double wanted, double *part)
+                       double wanted, double small, double *part)
 {
     const struct ct_tolerance tolerance = {wanted, 0};
     int blunt = -1;
@@ -137,7 +137,7 @@ int ct_amplifier_blunt(struct ct_amplifier *p, double t, const double *y, const 
     for (size_t i = 0; i < p->n; i++) {
         const double size = p->largest[i], rounding = DBL_EPSILON * p->way[i];
         // a residual is nothing but rounding
-        if (p->has[i] && rounding < size && rounding > *part * size) {
+        if (p->has[i] && size > small && rounding < size && rounding > *part * size) {
             *part = rounding / size;
             blunt = (int)i;
         }

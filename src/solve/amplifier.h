@@ -27,9 +27,10 @@ double ct_amplifier_error(struct ct_amplifier *p, double t, const double *y, con
 bool ct_amplifier_any(struct ct_amplifier *p, double t, const double *y,
                       const struct ct_tolerance *tolerance);
 /// The output, of those that must be good to `wanted` of their largest values, that one rounding of states moves most of its
-/// largest value, *part (out): `largest` (n), or what looks have seen. -1 where steps can be held to what is wanted of all.
+/// largest value, *part (out): `largest` (n), or what looks have seen. -1 where steps can be held to what is wanted of all that are
+/// larger than `small`.
 int ct_amplifier_blunt(struct ct_amplifier *p, double t, const double *y, const double *largest,
-                       double wanted, double *part);
+                       double wanted, double small, double *part);
 /// Does output i, at the last look?
 bool ct_amplifier_has(const struct ct_amplifier *p, size_t i);
 

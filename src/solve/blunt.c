@@ -129,12 +129,19 @@ static bool find_felt(struct ct_run *r, double t, const struct noise *e, const d
     return true;
 }
 
+// What is smaller than this at all samples is zero, whatever its digits: what a loop keeps so.
+static double small_output(const struct ct_run *r)
+{
+    return r->o->rtol > 0 ? r->o->wanted * (r->o->atol / r->o->rtol) : 0;
+}
+
 // The one of the results that feels most, more than *most (in, out); -1: none. One that is nothing but rounding is zero.
 static int find_worst(const struct ct_run *r, const double *felt, double *most)
 {
     int worst = -1;
     for (size_t i = 0; i < r->e->nresult; i++)
-        if (felt[i] > *most && felt[i] < 1 && !ct_fidelity_is_check(r->e, i)) {
+        if (felt[i] > *most && felt[i] < 1 && r->largest[i] > small_output(r)
+            && !ct_outputs_is_check(r->e, r->e->result[i].value)) {
             *most = felt[i];
             worst = (int)i;
         }
@@ -254,7 +261,7 @@ struct ct_blunt ct_run_find_blunt(struct ct_run *r, double held, double wanted)
     double *at = CT_NEWN(r->arena, double, n + 1), *felt = CT_NEWN(r->arena, double, n + 1);
     struct ct_blunt b = {.output = -1, .one = held / most_precise, .sum = NAN};
     if (r->fidelity)
-        b.output = ct_fidelity_blunt(r->fidelity, t, r->y, held, &b.one);
+        b.output = ct_fidelity_blunt(r->fidelity, t, r->y, held, small_output(r), &b.one);
     if (!find_noise(r, time, &e) || ct_run_results(r, t, r->y, at) != CT_EVAL_OK
         || !feel(r, t, NULL, e.speed, at, felt))
         return b;

@@ -361,7 +361,7 @@ bool ct_fidelity_amplifies(struct ct_fidelity *p, double t, const double *y,
 }
 
 int ct_fidelity_blunt(struct ct_fidelity *p, double t, const double *y, double wanted,
-                      double *part)
+                      double small, double *part)
 {
     int blunt = -1;
     for (size_t k = 0; k < p->n; k++) {
@@ -369,7 +369,7 @@ int ct_fidelity_blunt(struct ct_fidelity *p, double t, const double *y, double w
         double own;
         for (size_t i = 0; i < g->record.n; i++)
             g->shown[i] = ct_larger(p->shown[g->result[i]], g->record.largest[i]);
-        const int i = ct_amplifier_blunt(g->amplifier, t, y, g->shown, wanted, &own);
+        const int i = ct_amplifier_blunt(g->amplifier, t, y, g->shown, wanted, small, &own);
         if (i >= 0 && (blunt < 0 || own > *part)) {
             *part = own;
             blunt = g->result[i];

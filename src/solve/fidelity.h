@@ -51,9 +51,9 @@ bool ct_fidelity_amplifies(struct ct_fidelity *p, double t, const double *y,
                            const struct ct_tolerance *tolerance);
 
 /// The result, of those that are controlled, with the fewest digits: one rounding of states is *part (out) of its largest value so
-/// far; -1, and *part as it was, where steps can be held to `wanted` of all.
+/// far; -1, and *part as it was, where steps can be held to `wanted` of all that are larger than `small`.
 int ct_fidelity_blunt(struct ct_fidelity *p, double t, const double *y, double wanted,
-                      double *part);
+                      double small, double *part);
 
 // ---- for runs side by side, which evaluate outputs themselves --------------------------------------
 

@@ -7,6 +7,11 @@
 // go on in the next steps, those do not.
 static const double promised = 10;
 
+bool ct_outputs_is_check(const struct ct_equations *e, ct_ex v)
+{
+    return v.id == e->total.id || v.id == e->open[0].id || v.id == e->open[1].id;
+}
+
 enum ct_output_kind ct_outputs_kind(const struct ct_equations *e, ct_ex v)
 {
     const unsigned kinds = ct_ex_kinds(e->x, v), states = 1u << CT_SYM_Q | 1u << CT_SYM_U;
@@ -15,7 +20,7 @@ enum ct_output_kind ct_outputs_kind(const struct ct_equations *e, ct_ex v)
         = 1u << CT_SYM_TIME | 1u << CT_SYM_PARAM | 1u << CT_SYM_MODE | 1u << CT_SYM_MEMORY;
     const bool is_state = kinds & states && e->x->node[v.id].op == CT_OP_SYM;
     if (!(kinds & (states | solved)) || kinds & ~(states | solved | others) || is_state
-        || v.id == e->total.id)
+        || ct_outputs_is_check(e, v))
         return CT_OUTPUT_KINDS;
     return kinds & solved ? CT_OUTPUTS_OF_SOLUTIONS : CT_OUTPUTS_OF_STATES;
 }

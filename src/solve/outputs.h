@@ -20,9 +20,11 @@ struct ct_outputs {
     long *evaluations; // those of the equations are counted here
 };
 
+/// Is an output a check of the run: the total energy, how far loops are open? As small differences of large terms they would ask for
+/// digits that nothing else needs.
+bool ct_outputs_is_check(const struct ct_equations *e, ct_ex v);
 /// The kind of an output, CT_OUTPUT_KINDS if it is not controlled: a single state, which is controlled as it is, what depends on
-/// none, work, and the total energy, which is a check of the run: as a small difference of large terms it would ask for digits
-/// that nothing else needs.
+/// none, work, and checks.
 enum ct_output_kind ct_outputs_kind(const struct ct_equations *e, ct_ex v);
 /// Of the values g (n) of the equations, all of this kind. Everything lives in a, the machine's arena; evaluations must live as
 /// long.

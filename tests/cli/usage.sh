@@ -24,4 +24,9 @@ say equations "$m" --show tree,cutsets -o e.txt
 say components "$m"
 say schema -x
 "$COTREE" simulate "$m" --until 2>/dev/null
+cp "$m" own.yaml
+say simulate own.yaml -o ./own.yaml
+cmp "$m" own.yaml
+say simulate own.yaml -o one --summary one
+rm own.yaml
 ls
