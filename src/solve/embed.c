@@ -150,6 +150,20 @@ enum ct_eval ct_embed_accelerate(struct ct_embed *s)
     return reduce_and_expand(s, s->m->M, s->a);
 }
 
+double ct_embed_left(const struct ct_embed *s)
+{
+    const int n = (int)s->m->nu, r = s->rank, f = n - r;
+    double least = 1;
+    for (int i = 0; i < f; i++) {
+        double size = s->m->M[s->independent[i] * (n + 1)];
+        for (int k = 0; k < r; k++)
+            size += s->B[k + r * i] * s->B[k + r * i] * s->m->M[s->dependent[k] * (n + 1)];
+        const double root = s->S[i + f * i]; // of the pivot
+        least = fmin(least, root * root / size);
+    }
+    return least;
+}
+
 void ct_embed_multipliers(struct ct_embed *s)
 {
     const int n = (int)s->m->nu, m = (int)s->m->nrow, ld = n > m ? n : m;

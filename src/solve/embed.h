@@ -53,10 +53,12 @@ struct ct_embed {
     bool is_delicate; // near a singular position: pivots are sought at every evaluation
     bool is_crossing; // stages are projected that steps do not end on: choices stay
     struct ct_quad_embed *quad; // what goes on beside positions is found by; NULL: as all else
-    bool is_in_quad;            // now
-    bool is_rough;              // the last check wanted a refinement
-    bool is_renewed;            // a projection has looked after them since a step ended last
-    long nweak; // checks in a row that found the form weak, or projections without one
+    double
+        least_left; // where less is left of inertias, of what cancels in them, they are found by it, too; 0: nowhere
+    bool is_in_quad; // now
+    bool is_rough;   // the last check wanted a refinement
+    bool is_renewed; // a projection has looked after them since a step ended last
+    long nweak;      // checks in a row that found the form weak, or projections without one
     int nunchecked; // projections until the next check, as long as the strength stays near that of the last one
     double checked_at, answer_checked; // strength and answer at the last check
     double

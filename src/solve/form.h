@@ -21,6 +21,9 @@ struct ct_form {
     double cost; // the same weighed by what an operation takes, in those of straight-line code
     double
         weakest; // of its pivots, at the last solution or close: what strength is, also above 1
+    double
+        least_part; // of the largest that an inertia of B' M B has been: below it `has_fallen`, at the last solution
+    bool has_fallen;
     double volume; // their product, |det J_d| but for a factor; NAN: not found
     // results of check
     const double *a, *lam; // u' (nu), multipliers of the kept rows (rank)

@@ -16,6 +16,7 @@ struct unrolled {
     struct ct_program solved, checked, closing;
     double M_size, J_size; // largest entries where it was made
     bool has_power;        // behind the pivots of solved
+    double *most;          // (nfree) of each inertia, the largest so far
 };
 
 static struct unrolled *unrolled_of(struct ct_form *f)
@@ -116,9 +117,14 @@ static double solve(struct ct_form *form, struct ct_machine *m, double *a)
     const double *out = f->solved.out, *inertia = out + m->nu + m->nq;
     m->evaluations++;
     ct_program_run(&f->solved, m->input);
-    for (size_t i = 0; i < f->c->nfree; i++)
+    form->has_fallen = false;
+    for (size_t i = 0; i < f->c->nfree; i++) {
         if (!(inertia[i] > 0))
             return 0;
+        if (inertia[i] > f->most[i])
+            f->most[i] = inertia[i];
+        form->has_fallen |= inertia[i] < form->least_part * f->most[i];
+    }
     for (size_t i = 0; i < m->nu; i++) {
         a[i] = out[i];
         if (!isfinite(a[i]))
@@ -194,6 +200,7 @@ static struct ct_form *create(struct ct_arena *a, struct ct_machine *m,
         ct_arena_destroy(own);
         return NULL;
     }
+    f->most = CT_NEWN(own, double, f->c->nfree + 1);
     compile_solved(f, m, x);
     compile_checked(f, m, x);
     compile_closing(f, m, x);
