@@ -152,16 +152,13 @@ enum ct_eval ct_embed_accelerate(struct ct_embed *s)
 
 double ct_embed_left(const struct ct_embed *s)
 {
-    const int n = (int)s->m->nu, r = s->rank, f = n - r;
-    double least = 1;
-    for (int i = 0; i < f; i++) {
-        double size = s->m->M[s->independent[i] * (n + 1)];
-        for (int k = 0; k < r; k++)
-            size += s->B[k + r * i] * s->B[k + r * i] * s->m->M[s->dependent[k] * (n + 1)];
-        const double root = s->S[i + f * i]; // of the pivot
-        least = fmin(least, root * root / size);
+    const int n = (int)s->m->nu, r = s->rank, i = s->independent[0];
+    double size = s->m->M[i + n * i];
+    for (int k = 0; k < r; k++) {
+        const int d = s->dependent[k];
+        size += s->B[k] * s->B[k] * s->m->M[d + n * d];
     }
-    return least;
+    return s->S[0] * s->S[0] / size; // S is the root
 }
 
 void ct_embed_multipliers(struct ct_embed *s)

@@ -54,7 +54,7 @@ struct ct_embed {
     bool is_crossing; // stages are projected that steps do not end on: choices stay
     struct ct_quad_embed *quad; // what goes on beside positions is found by; NULL: as all else
     double
-        least_left; // where less is left of inertias, of what cancels in them, they are found by it, too; 0: nowhere
+        least_left; // where less is left of the inertia of a single freedom, of what cancels in it, accelerations are found by it, too; 0: nowhere
     bool is_in_quad; // now
     bool is_rough;   // the last check wanted a refinement
     bool is_renewed; // a projection has looked after them since a step ended last

@@ -133,11 +133,16 @@ void ct_embed_follow_sigma(struct ct_embed *s)
 // tell.
 static const double wary = 10;
 
+static bool has_one_freedom(const struct ct_embed *s)
+{
+    return s->least_left > 0 && (size_t)s->rank + 1 == s->m->nu;
+}
+
 // u' by the form of now; false if its pivots are not sound here.
 static bool solve_form(struct ct_embed *s)
 {
     struct ct_form *f = s->form[0];
-    f->least_part = wary * s->least_left;
+    f->least_part = has_one_freedom(s) ? wary * s->least_left : 0;
     s->strength.now = ct_form_solve(f, s->m, s->a);
     if (!ct_embed_is_sound(s) || f->has_fallen)
         return false;
@@ -168,7 +173,7 @@ enum ct_eval ct_embed_solve(struct ct_embed *s)
     ct_machine_motion(m);
     s->solves.pivoted++;
     const enum ct_eval e = ct_embed_accelerate(s);
-    if (e == CT_EVAL_OK && s->least_left > 0 && ct_embed_left(s) < s->least_left)
+    if (e == CT_EVAL_OK && has_one_freedom(s) && ct_embed_left(s) < s->least_left)
         ct_quad_embed_accelerate(s->quad, s, s->a, m->rate); // or they stay as they are
     if (s->has_form && !is_tried)
         s->strength.now = ct_form_close(s->form[0], m);

@@ -551,8 +551,8 @@ static void find_asked(struct ct_run *r, struct ct_problem *p)
         p->keeps_energy |= ct_fidelity_is_check(r->e, i);
 }
 
-// Rounding of inertias may be this part of what is wanted of outputs.
-static const double felt_rounding = 0.01;
+// Rounding of inertias may be this part of what is wanted of outputs, or of this.
+static const double felt_rounding = 0.01, sharpest = 1e-10;
 
 // Steps of the implicit method are held to this part of what is wanted.
 static const double held_to = 0.1;
@@ -600,8 +600,9 @@ bool ct_run_simulate(struct ct_run *r, const struct ct_run_options *o,
     r->singular->wanted = o->step == 0 ? o->wanted : 0;
     if (!r->s->quad && o->step == 0)
         r->s->quad = ct_quad_embed_create(r->arena, r->m);
-    r->s->least_left
-        = r->s->quad && o->step == 0 ? DBL_EPSILON / (felt_rounding * o->wanted) : 0;
+    r->s->least_left = r->s->quad && o->step == 0
+                         ? DBL_EPSILON / (felt_rounding * fmax(o->wanted, sharpest))
+                         : 0;
     if (r->fidelity)
         ct_fidelity_start(r->fidelity);
     r->o = o;
