@@ -20,7 +20,7 @@ static inline double *ct_embed_J(const struct ct_embed *s, int row, int column)
 bool ct_embed_factor(struct ct_embed *s);
 /// S (free x free) = B' M B with the unit columns of the independent speeds, its lower triangle.
 void ct_embed_reduce_mass(struct ct_embed *s, const double *M);
-/// After ct_embed_accelerate with one freedom: B' M B against what its terms add up to before motions that constraints forbid cancel.
+/// After ct_embed_accelerate with one freedom: B' M B against what its terms add up to before motions that constraints forbid cancel.  (8.39)
 double ct_embed_left(const struct ct_embed *s);
 /// Dense factors of larger systems cost more than a step does.
 bool ct_embed_is_large(const struct ct_embed *s);
