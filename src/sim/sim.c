@@ -427,12 +427,13 @@ static void warn_of_positions(struct ct_sim *sim)
     if (!w)
         return;
     if (w->nover)
-        ct_warning(
-            &sim->own, mark, 0,
-            "steps of fixed size have come across a singular position at t = %.9g%s, which "
-            "they do not see: the motion behind it may be another one; without 'step' "
-            "it is crossed",
-            w->over, w->nover > 1 ? " and more often later" : "");
+        ct_warning(&sim->own, mark, 0,
+                   "steps of fixed size have come across a singular position, or past one "
+                   "close by, at "
+                   "t = %.9g%s, which they do not see: the motion behind it may be another "
+                   "one; without 'step' "
+                   "it is crossed",
+                   w->over, w->nover > 1 ? " and more often later" : "");
     if (w->closest * w->closest * fmax(sim->tolerance, sim->least_rtol) < rounding)
         ct_warning(
             &sim->own, mark, 0,

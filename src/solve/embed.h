@@ -113,16 +113,25 @@ double ct_embed_pivot(struct ct_embed *s);
 /// Is it between the two? Cheaper than to find it where rows are redundant, false where that is not certain or where they
 /// are not.
 bool ct_embed_pivot_is_between(struct ct_embed *s, double low, double high);
-/// After ct_embed_pivot: on which side of the places where J_d is singular, -1 or 1: the sign of det [J; T'] with the tangents T of
-/// now, whatever rows and columns are chosen. 0: not known, of large systems or redundant rows.
-int ct_embed_side(const struct ct_embed *s);
-/// T (nu x free, out): the tangents of now, B for what depends and 1 for what does not.
-void ct_embed_tangents(const struct ct_embed *s, double *T);
-/// As ct_embed_side, with the tangents T of another place on the motion: it has the side of that place as long as J has not lost
-/// rank between them, whatever has been chosen in the meantime. 0: not known.
-int ct_embed_side_against(struct ct_embed *s, const double *T);
+/// J as it is seen from other places of the motion.
+struct ct_embed_view {
+    int rank;              // 0: nothing is known
+    int side;              // the sign of det [J N; T' 0] with the T and N of the same place
+    double *T;             // (nu x free) tangents, J T = 0
+    double *N;             // (nrow x redundant) what annihilates J, N'J = 0
+    size_t room_T, room_N; // entries there is room for
+};
+struct ct_embed_view *ct_embed_view_create(struct ct_arena *arena);
+/// Where rows and columns have been chosen: room for as much as J has rank, or more; nothing is known as yet.
+void ct_embed_give_room(struct ct_embed *s, struct ct_embed_view *v);
+/// The view from the last ct_machine_constraint, after ct_embed_pivot. Nothing of a large system.
+void ct_embed_see(struct ct_embed *s, struct ct_embed_view *v);
+/// Has J lost rank, by an odd number in all, on the way from one to the other, whatever rows and columns have been chosen in
+/// the meantime? False if either is not known.  (8.40)
+bool ct_embed_has_passed(struct ct_embed *s, const struct ct_embed_view *from,
+                         const struct ct_embed_view *to);
 /// At the last ct_machine_constraint, beside a place where J loses rank: x (rank, out) = (J_d J_d')^-1 v for a v without
-/// meaning, which has come into null(J') of that place, and log |det J_d|. False where that costs too much.
+/// meaning, which has come into null(J') of that place, and log |det J_d|, or with redundant rows of the product of the singular values. False where that costs too much.
 bool ct_embed_dependence(struct ct_embed *s, double *x, double *log_det);
 /// Which multipliers are unique, into s->is_unique: rows of null(J') that vanish.  (6.5)
 void ct_embed_uniqueness(struct ct_embed *s);

@@ -3,6 +3,7 @@
 
 #include "numeric/dense.h"
 
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
@@ -21,11 +22,6 @@ static bool find_strength(struct ct_embed *s)
     return ct_embed_is_sound(s);
 }
 
-static bool has_redundant_rows(const struct ct_embed *s)
-{
-    return s->rank < (int)s->m->nrow;
-}
-
 // A (nrow x nrow, out) = J J', its lower triangle.
 static void square(const struct ct_embed *s, double *A)
 {
@@ -38,25 +34,30 @@ static void square(const struct ct_embed *s, double *A)
                 ct_vector_add(A + m * j + j, J[j], J + j, m - j);
 }
 
-static double smallest_singular_value(struct ct_embed *s)
+// The squares of the first `rank` singular values of J, ascending; NULL if they are not found. Eigenvalues of J J' cost a
+// third of a decomposition; half the digits are enough.
+static const double *squared_singular_values(struct ct_embed *s)
 {
-    // from the eigenvalues of J J', which cost a third of a decomposition; half the digits are enough
     const int m = (int)s->m->nrow;
     square(s, s->A);
-    if (!ct_symmetric_eigenvalues(s->b, s->A, m, m, s->work))
-        return 0;
-    return sqrt(fmax(0, s->b[m - s->rank]));
+    return ct_symmetric_eigenvalues(s->b, s->A, m, m, s->work) ? s->b + m - s->rank : NULL;
+}
+
+static double smallest_singular_value(struct ct_embed *s)
+{
+    const double *square = squared_singular_values(s);
+    return square ? sqrt(fmax(0, *square)) : 0;
 }
 
 bool ct_embed_has_pivot(const struct ct_embed *s)
 {
-    return s->rank && !(has_redundant_rows(s) && ct_embed_is_large(s));
+    return s->rank && !(ct_embed_has_redundant_rows(s) && ct_embed_is_large(s));
 }
 
 bool ct_embed_pivot_is_between(struct ct_embed *s, double low, double high)
 {
     const int m = (int)s->m->nrow, nzero = m - s->rank;
-    if (!has_redundant_rows(s))
+    if (!ct_embed_has_redundant_rows(s))
         return false;
     square(s, s->A);
     memcpy(s->MB, s->A, (size_t)(m * m) * sizeof *s->A);
@@ -66,7 +67,7 @@ bool ct_embed_pivot_is_between(struct ct_embed *s, double low, double high)
 
 double ct_embed_pivot(struct ct_embed *s)
 {
-    if (has_redundant_rows(s))
+    if (ct_embed_has_redundant_rows(s))
         return smallest_singular_value(s);
     // the place need not be one of the motion: what is known of the motion stays
     const double sigma = s->sigma, kappa = s->kappa, strength = s->strength.now;
@@ -78,66 +79,14 @@ double ct_embed_pivot(struct ct_embed *s)
     return pivot;
 }
 
-// 1, or -1 if an odd number of exchanges sorts a and b, which together are 0 ... na + nb - 1. place (na + nb)
-static int parity_of(const int *a, int na, const int *b, int nb, int *place)
+// log of the product of the first `rank` singular values: kept rows may lose more rank than all do.
+static double log_volume(struct ct_embed *s)
 {
-    int parity = 1;
-    for (int i = 0; i < na + nb; i++)
-        place[i] = i < na ? a[i] : b[i - na];
-    for (int i = 0; i < na + nb; i++)
-        while (place[i] != i) {
-            const int k = place[i];
-            place[i] = place[k];
-            place[k] = k;
-            parity = -parity;
-        }
-    return parity;
-}
-
-int ct_embed_side(const struct ct_embed *s)
-{
-    if (has_redundant_rows(s) || ct_embed_is_large(s))
-        return 0;
-    const int r = s->rank;
-    int side = parity_of(s->row, r, s->row, 0, s->iwork)
-             * parity_of(s->dependent, r, s->independent, (int)s->m->nu - r, s->iwork);
-    for (int i = 0; i < r; i++)
-        if ((s->Jd[i + r * i] < 0) != (s->pivot[i] != i))
-            side = -side;
-    return side;
-}
-
-void ct_embed_tangents(const struct ct_embed *s, double *T)
-{
-    const size_t n = s->m->nu;
-    const int r = s->rank;
-    for (int j = 0; j < (int)n - r; j++, T += n) {
-        memset(T, 0, n * sizeof *T);
-        T[s->independent[j]] = 1;
-        for (int k = 0; k < r; k++)
-            T[s->dependent[k]] = s->B[k + r * j];
-    }
-}
-
-// The rows of J with the tangents of the other place, [J; T'], are as large a system as there are speeds, which is regular as long as
-// tangents turn by less than a right angle and J has its rank. det [J; T'] = det J_d det (T' [B; 1]_now), of which the
-// second factor is positive at the other place.
-int ct_embed_side_against(struct ct_embed *s, const double *T)
-{
-    const int n = (int)s->m->nu, r = s->rank, f = n - r;
-    int side = ct_embed_side(s);
-    for (int j = 0; j < f; j++)
-        for (int i = 0; i < f; i++) {
-            s->S[i + f * j] = T[s->independent[j] + n * i];
-            for (int k = 0; k < r; k++)
-                s->S[i + f * j] += T[s->dependent[k] + n * i] * s->B[k + r * j];
-        }
-    if (f && !ct_lu(s->S, s->iwork, f, f))
-        return 0;
-    for (int i = 0; i < f; i++)
-        if ((s->S[i + f * i] < 0) != (s->iwork[i] != i))
-            side = -side;
-    return side;
+    const double *square = squared_singular_values(s);
+    double sum = 0;
+    for (int i = 0; i < s->rank; i++)
+        sum += square ? log(fmax(DBL_MIN, square[i])) / 2 : 0;
+    return sum;
 }
 
 bool ct_embed_dependence(struct ct_embed *s, double *x, double *log_det)
@@ -156,5 +105,7 @@ bool ct_embed_dependence(struct ct_embed *s, double *x, double *log_det)
         ct_lu_solve(x, s->Jd, s->pivot, r, r, 1, r, false);
         ct_lu_solve(x, s->Jd, s->pivot, r, r, 1, r, true);
     }
+    if (is_found && ct_embed_has_redundant_rows(s))
+        *log_det = log_volume(s);
     return is_found;
 }

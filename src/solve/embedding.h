@@ -5,6 +5,7 @@
 //     embed_form.c      the same in closed form, where that is sound
 //     embed_project.c   onto the constraints
 //     embed_pivot.c     how near J is to losing rank
+//     embed_side.c      whether it has lost rank between two places
 //     embed_inertia.c   what inertia some speeds have where others are free to follow
 #ifndef CT_SOLVE_EMBEDDING_H
 #define CT_SOLVE_EMBEDDING_H
@@ -14,6 +15,11 @@
 static inline double *ct_embed_J(const struct ct_embed *s, int row, int column)
 {
     return &s->m->J[(size_t)row + s->m->nrow * (size_t)column];
+}
+
+static inline bool ct_embed_has_redundant_rows(const struct ct_embed *s)
+{
+    return s->rank < (int)s->m->nrow;
 }
 
 /// LU of J_d and B = -J_d^-1 J_i (rank x free); false if J_d is singular.

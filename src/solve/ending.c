@@ -21,7 +21,7 @@ static void name_singular(struct ct_run *r, const char *advice)
     enum { MOST_NAMES = 5 };
     bool *row = CT_NEWN(r->arena, bool, r->m->nrow + 1);
     const double t = r->stats.last_time;
-    if (!ct_singular_is_beside(r->singular, ct_run_before(r, t), r->y, row))
+    if (!ct_singular_is_beside(r->singular, ct_run_before(r, t), r->y, r->o->step, row))
         return;
     const char *names = "";
     int first = -1, n = 0;

@@ -40,6 +40,7 @@ struct lead {
         least;      // the step may err by so much of the largest state; the second if none does
     double *before; // (ny, out)
     double *end, *dend; // (ny)
+    struct ct_embed_view *view[2];
 };
 
 // A step across, h, around a place `middle` seconds after the start, and what it errs by, of the largest state.
@@ -180,15 +181,17 @@ static void look_back(struct ct_run *r, const struct lead *l, struct across *c)
 static bool keeps_rank(struct ct_run *r, const struct lead *l, const struct across *c)
 {
     const struct ct_bridge b = ct_crossing_bridge(l->work, begin_of(c), c->h, 0.5);
-    int side = 0;
+    struct ct_embed_view *there = l->view[0], *here = l->view[1];
     for (int k = 0; k < b.n; k++) {
         ct_machine_set(r->m, b.t[k], b.y + (size_t)k * r->ny);
         ct_machine_constraint(r->m);
         ct_embed_pivot(r->s);
-        const int now = ct_embed_side(r->s);
-        if (k != b.n / 2 && now * side < 0)
+        ct_embed_see(r->s, here);
+        if (k && k != b.n / 2 && ct_embed_has_passed(r->s, there, here))
             return false;
-        side = now;
+        struct ct_embed_view *v = there;
+        there = here;
+        here = v;
     }
     return true;
 }
@@ -279,6 +282,10 @@ static bool begin_before(struct ct_run *r, struct lead *l)
 {
     double **const vector[] = {&l->before, &l->end, &l->dend};
     struct across best = {.error = INFINITY};
+    for (size_t i = 0; i < COUNT(l->view); i++) {
+        l->view[i] = ct_embed_view_create(r->arena);
+        ct_embed_give_room(r->s, l->view[i]);
+    }
     for (size_t i = 0; i < COUNT(vector); i++)
         *vector[i] = CT_NEWN(r->arena, double, r->ny);
     r->singular->in = 0; // nearer than from where crossings begin

@@ -1,5 +1,5 @@
-// See singular.h.
-#include "solve/singular.h"
+// See singular.h: what is ahead.
+#include "solve/sight.h"
 
 #include "integrate/crossing.h"
 #include "numeric/dense.h"
@@ -18,7 +18,8 @@ struct ct_singular *ct_singular_create(struct ct_arena *arena, struct ct_machine
     w->y = CT_NEWN(arena, double, m->nq + m->nu + 1);
     w->d = CT_NEWN(arena, double, m->nu + 1);
     w->x = CT_NEWN(arena, double, m->nrow + 1);
-    w->T = CT_NEWN(arena, double, m->nrow ? m->nu * m->nu : 1);
+    w->there = ct_embed_view_create(arena);
+    w->here = ct_embed_view_create(arena);
     w->u = CT_NEWN(arena, double, m->nu + 1);
     w->a = CT_NEWN(arena, double, m->nu + 1);
     w->last = CT_NEWN(arena, double, m->nq + m->nu + 1);
@@ -33,12 +34,13 @@ void ct_singular_start(struct ct_singular *w)
 {
     w->in = INFINITY;
     w->was_told = w->has_tried = false;
-    w->reach = w->most = w->part = w->t = w->dt = 0;
+    w->reach = w->most = w->part = w->pivot = w->fall = w->t = w->dt = 0;
     w->switches = -1;
     w->npassed = w->nover = 0;
     w->closest = INFINITY;
     w->swiftest = 0;
-    w->side = 0;
+    ct_embed_give_room(w->s, w->there);
+    ct_embed_give_room(w->s, w->here);
     w->s->nearness = 1;
     w->farthest = w->wanted = 0;
     w->is_close = w->s->is_in_quad = false;
@@ -53,27 +55,20 @@ static void look_at(struct ct_singular *w, double t, const double *y)
     ct_machine_constraint(w->m);
 }
 
-// The smallest pivot at y, where the time is t.
-static double pivot_at(struct ct_singular *w, double t, const double *y)
+double ct_singular_pivot(struct ct_singular *w, double t, const double *y)
 {
     look_at(w, t, y);
     return ct_embed_pivot(w->s);
 }
 
-struct sight { // along q' and q'' as they are at an accepted state
-    double t, pending;
-    const double *y, *dy;
-};
-
-// The same s seconds later.
-static double pivot_after(struct ct_singular *w, const struct sight *a, double s)
+double ct_singular_pivot_after(struct ct_singular *w, const struct ct_sight *a, double s)
 {
     const size_t nq = w->m->nq, nu = w->m->nu;
     memcpy(w->y, a->y, (nq + nu + 1) * sizeof *w->y);
     for (size_t i = 0; i < nu; i++)
         w->d[i] = s * (a->y[nq + i] + s / 2 * a->dy[nq + i]);
     ct_machine_retract(w->m, w->y, w->d);
-    return pivot_at(w, ct_time_before(a->t + s, a->pending), w->y);
+    return ct_singular_pivot(w, ct_time_before(a->t + s, a->pending), w->y);
 }
 
 // A position counts as singular ahead when the smallest pivot has fallen to the first part of its largest value so far
@@ -103,23 +98,23 @@ static void note_closeness(struct ct_singular *w, double pivot)
 
 bool ct_singular_is_felt(struct ct_singular *w, double t, const double *y)
 {
-    return is_felt(w, pivot_at(w, t, y));
+    return is_felt(w, ct_singular_pivot(w, t, y));
 }
 
 // The smallest pivot falls about linearly towards a singular position. Time to where it will vanish, by secants along
 // the motion as the accelerations of now continue it. INFINITY if it rises.
-static double time_to_singular(struct ct_singular *w, const struct sight *a, double now,
+static double time_to_singular(struct ct_singular *w, const struct ct_sight *a, double now,
                                double dt)
 {
     enum { SECANTS = 3 };
     const double glance = 1e-3, part = 0.8; // of the last step; of the way, not to step across
     const double far = 4 * dt;
-    double s = glance * dt, pivot = pivot_after(w, a, s), slope = (pivot - now) / s;
+    double s = glance * dt, pivot = ct_singular_pivot_after(w, a, s), slope = (pivot - now) / s;
     if (!(slope < 0))
         return INFINITY;
     for (int i = 0; i < SECANTS && s - pivot / slope < far; i++) {
         const double next = s - part * pivot / slope;
-        double there = pivot_after(w, a, next);
+        double there = ct_singular_pivot_after(w, a, next);
         if (there > fabs(pivot)) // it has changed its sign, which is not seen
             there = -there;
         if (there == pivot)
@@ -134,11 +129,12 @@ static double time_to_singular(struct ct_singular *w, const struct sight *a, dou
 double ct_singular_near(struct ct_singular *w, double t, const double *y, const double *dy,
                         double pending, double s)
 {
-    const struct sight a = {t, pending, y, dy};
+    const struct ct_sight a = {t, pending, y, dy};
     if (!ct_embed_has_pivot(w->s))
         return INFINITY;
-    const double now = pivot_at(w, ct_time_before(t, pending), y);
-    const double behind = pivot_after(w, &a, -s), ahead = pivot_after(w, &a, s);
+    const double now = ct_singular_pivot(w, ct_time_before(t, pending), y);
+    const double behind = ct_singular_pivot_after(w, &a, -s),
+                 ahead = ct_singular_pivot_after(w, &a, s);
     const double way = ct_vector_size(w->d, w->m->nu);
     if (behind > now
         && behind > ahead) // where it rises from the position on it tells, too, beyond it
@@ -147,7 +143,7 @@ double ct_singular_near(struct ct_singular *w, double t, const double *y, const 
 }
 
 // The position ahead, where the pivot of now has begun to fall.
-static void find_next(struct ct_singular *w, const struct sight *ahead, double now)
+static void find_next(struct ct_singular *w, const struct ct_sight *ahead, double now)
 {
     const double part = now / fmax(w->most, now);
     w->in = time_to_singular(w, ahead, now, w->dt);
@@ -190,26 +186,23 @@ struct look {
     double now,
         part; // the pivot, and against the largest; no more is known than that it is `is_far`
     bool is_far;
-    int side; // as in ct_singular
     bool
         is_another; // a position has been stepped over since the last look, or left on another motion
 };
 
-static struct look look_around(struct ct_singular *w, const struct sight *at, double dt)
+static struct look look_around(struct ct_singular *w, const struct ct_sight *at, double dt)
 {
     const double *u = at->y + w->m->nq, *a = at->dy + w->m->nq;
-    struct look l = {.side = 0};
+    struct look l = {.is_another = false};
     look_at(w, ct_time_before(at->t, at->pending), at->y);
     l.is_far = w->most > 0
             && ct_embed_pivot_is_between(w->s, foreseen_pivot * w->most,
                                          w->most); // then at least so much
     l.now = l.is_far ? foreseen_pivot * w->most : ct_embed_pivot(w->s);
     l.part = l.now / fmax(w->most, l.now);
-    if (l.is_far)
-        return l;
-    l.side = ct_embed_side(w->s);
-    if (l.side && w->side)
-        l.is_another = ct_embed_side_against(w->s, w->T) == -w->side || has_jumped(w, dt, u, a);
+    ct_embed_see(w->s, w->here);
+    if (w->here->rank && w->there->rank)
+        l.is_another = ct_embed_has_passed(w->s, w->there, w->here) || has_jumped(w, dt, u, a);
     return l;
 }
 
@@ -241,21 +234,28 @@ static bool is_to_be_shorter(const struct ct_singular *w, const struct look *l)
         || (was_unforeseen && l->part < (w->was_told ? singular_pivot : near_pivot));
 }
 
-static void keep_side(struct ct_singular *w, const struct sight *at, int side)
+static void keep_view(struct ct_singular *w, const struct ct_sight *at)
 {
     const size_t nu = w->m->nu;
-    w->side = side;
-    if (!side)
-        return;
-    ct_embed_tangents(w->s, w->T);
+    struct ct_embed_view *v = w->there;
+    w->there = w->here;
+    w->here = v;
     memcpy(w->u, at->y + w->m->nq, nu * sizeof *w->u);
     memcpy(w->a, at->dy + w->m->nq, nu * sizeof *w->a);
     w->swiftest = fmax(w->swiftest, ct_vector_largest(w->u, nu));
 }
 
-static void keep(struct ct_singular *w, const struct sight *at, const struct look *l, double dt)
+// Would the pivot have come to zero on this step, as it fell on the one before, or nearly so? Where rank is lost by two at a time
+// both places are on the same side.
+static bool is_steep(const struct ct_singular *w, double dt)
 {
-    keep_side(w, at, l->side);
+    return w->pivot > 0 && w->pivot < 2 * dt * w->fall;
+}
+
+static void keep(struct ct_singular *w, const struct ct_sight *at, const struct look *l,
+                 double dt)
+{
+    keep_view(w, at);
     note_state(w, at->t, at->y);
     w->rank = w->s->rank > w->rank ? w->s->rank : w->rank;
     w->was_told = false;
@@ -265,6 +265,8 @@ static void keep(struct ct_singular *w, const struct sight *at, const struct loo
     w->weakest = w->s->has_form ? w->s->form[0]->weakest : 0;
     w->volume = w->s->has_form ? w->s->form[0]->volume : NAN;
     w->most = fmax(w->most, l->now);
+    w->fall = ((w->pivot > 0 ? w->pivot : w->most) - l->now) / dt;
+    w->pivot = l->is_far ? w->most : l->now;
     w->in = INFINITY;
     w->s->is_delicate = l->part < near_pivot;
     w->s->nearness = l->part;
@@ -286,17 +288,20 @@ static void note_step(struct ct_singular *w, double t, const struct look *l)
 bool ct_singular_foresee(struct ct_singular *w, double t, const double *y, const double *dy,
                          double pending, const struct ct_singular_step *step)
 {
-    const struct sight at = {t, pending, y, dy};
+    const struct ct_sight at = {t, pending, y, dy};
     const double dt = t - w->t;
     if (!ct_embed_has_pivot(w->s) || !(dt > 0))
         return true;
     if (is_told_by_form(w, dt, step->is_fixed)) {
         note_state(w, t, y);
         w->was_told = true;
-        w->side = 0;
+        w->pivot = 0;
+        w->there->rank = 0;
         return true;
     }
-    const struct look l = look_around(w, &at, dt);
+    struct look l = look_around(w, &at, dt);
+    if (step->is_fixed && !l.is_another && is_steep(w, dt))
+        l.is_another = ct_singular_is_over(w, &at, w->pivot, l.now);
     if (!step->is_across) {
         if (!step->is_fixed && (return_rows(w, pending) || is_to_be_shorter(w, &l)))
             return false;
@@ -312,16 +317,17 @@ bool ct_singular_foresee(struct ct_singular *w, double t, const double *y, const
 void ct_singular_turn(struct ct_singular *w, double t, const double *y, const double *dy,
                       double pending)
 {
-    const struct sight ahead = {t, pending, y, dy};
-    w->side = 0;
+    const struct ct_sight ahead = {t, pending, y, dy};
+    w->there->rank = 0;
+    w->pivot = 0;
     if (!(w->most > 0) || w->part > foreseen_pivot || !(w->dt > 0))
         return;
-    find_next(w, &ahead, pivot_at(w, ct_time_before(t, pending), y));
+    find_next(w, &ahead, ct_singular_pivot(w, ct_time_before(t, pending), y));
 }
 
 void ct_singular_measure(struct ct_singular *w, double t, const double *y, double times)
 {
-    w->farthest = times * pivot_at(w, t, y);
+    w->farthest = times * ct_singular_pivot(w, t, y);
 }
 
 void ct_singular_begin(struct ct_singular *w, double t, const double *y, double in,
@@ -337,8 +343,8 @@ void ct_singular_begin(struct ct_singular *w, double t, const double *y, double 
 
 void ct_singular_expect(struct ct_singular *w, double t, const double *y, double in)
 {
-    w->most = pivot_at(w, t, y); // what is farther off is not known
-    w->side = 0;
+    w->most = ct_singular_pivot(w, t, y); // what is farther off is not known
+    w->there->rank = 0;
     w->t = t;
     w->part = w->s->nearness = 1;
     w->switches = w->s->switches;
@@ -367,100 +373,4 @@ bool ct_singular_set_crossing(struct ct_singular *w, bool is_crossing)
     w->has_tried |= is_crossing;
     w->s->is_delicate = !is_crossing && w->part < near_pivot;
     return w->s->is_in_quad;
-}
-
-// Rows with part in x (rank), a vector of null(J') that has come out of ct_embed_dependence.
-static void mark_rows(const struct ct_singular *w, bool *row)
-{
-    const double involved
-        = 1e-3; // of the largest entry; rows that take no part have the square of the distance
-    const int n = w->s->rank;
-    double most = 0;
-    for (int i = 0; i < n; i++)
-        most = fmax(most, fabs(w->x[i]));
-    for (int i = 0; i < n; i++)
-        row[w->s->row[i]] = fabs(w->x[i]) > involved * most;
-}
-
-bool ct_singular_is_beside(struct ct_singular *w, double t, const double *y, bool *row)
-{
-    const double beside = 1e-2; // of the largest pivot
-    double log_det;
-    memset(row, 0, w->m->nrow * sizeof *row);
-    if (w->s->rank < w->rank) // in it
-        return true;
-    if (!ct_embed_has_pivot(w->s) || !(pivot_at(w, t, y) < beside * w->most))
-        return false;
-    if (ct_embed_dependence(w->s, w->x, &log_det))
-        mark_rows(w, row);
-    return true;
-}
-
-// ---- passed -----------------------------------------------------------------------------------------------
-
-struct passage {
-    const struct ct_stepper_span *span;
-    double begin, pending; // `begin`: of the span, as part of the crossing
-};
-
-static double time_on(const struct passage *p, double part)
-{
-    return p->span->t + (part - p->begin) / (1 - p->begin) * p->span->h;
-}
-
-static double pivot_on(struct ct_singular *w, const struct passage *p, double part)
-{
-    ct_stepper_point(p->span, (part - p->begin) / (1 - p->begin), w->y);
-    return pivot_at(w, ct_time_before(time_on(p, part), p->pending), w->y);
-}
-
-// Where on the crossing the pivot vanishes, as part of it: the pivot falls and rises about linearly, so that its sizes
-// before and behind tell. NaN if it does not vanish.
-static double find_position(struct ct_singular *w, const struct passage *p)
-{
-    enum { LOOKS = 3 };
-    const double nearer = 0.125, vanished = 1e-3; // of the pivot where the crossing began
-    const double first = pivot_on(w, p, 0);
-    double theta = 0.5, d = 0.1;
-    for (int i = 0; i < LOOKS; i++) {
-        const double before = pivot_on(w, p, theta - d), behind = pivot_on(w, p, theta + d);
-        theta += d * (before - behind) / (before + behind);
-        d *= nearer;
-    }
-    return pivot_on(w, p, theta) < vanished * first ? theta : NAN;
-}
-
-// Rows that depend there and by how much the rank falls: with d the distance from the position det J_d is as d^loss.
-static void find_dependence(struct ct_singular *w, const struct passage *p, double theta,
-                            struct ct_singular_position *at)
-{
-    const double d = 0.02, nearer = 0.5;
-    double far, near;
-    const int n = w->s->rank;
-    memset(at->row, 0, w->m->nrow * sizeof *at->row);
-    at->rank_loss = 0;
-    pivot_on(w, p, theta - d);
-    if (!ct_embed_dependence(w->s, w->x, &far))
-        return;
-    pivot_on(w, p, theta - d * nearer);
-    if (!ct_embed_dependence(w->s, w->x, &near))
-        return;
-    at->rank_loss = (int)fmin(n, fmax(1, round((near - far) / log(nearer))));
-    mark_rows(w, at->row);
-}
-
-bool ct_singular_pass(struct ct_singular *w, const struct ct_stepper_span *span, double begin,
-                      double t1, double pending)
-{
-    const struct passage p = {span, begin, pending};
-    const double theta = find_position(w, &p), t = time_on(&p, theta);
-    w->has_tried = false;
-    if (!(t <= t1))
-        return false;
-    if (w->npassed++ >= CT_MOST_SINGULAR)
-        return true;
-    struct ct_singular_position *at = &w->passed[w->npassed - 1];
-    at->t = fmax(t, 0); // a run that starts in one begins before it
-    find_dependence(w, &p, theta, at);
-    return true;
 }

@@ -29,18 +29,18 @@ struct ct_singular {
     double reach;  // time before it in which f is better not computed
     double most, part, t; // the largest pivot so far, the last one against it, and its time
     double dt;            // the step before
+    double pivot, fall;   // the last one, 0: not known; and what it lost in a second
     bool keeps_rows;      // a step does, and there are more than it needs
     bool has_tried;       // to cross the position ahead
     bool was_told;        // the form has told of the last state that nothing has changed
     long switches, nmade; // of the embedding, there
     long doubted; // its choice when a step was last looked at whether it is to be shorter
-    double weakest, volume; // of its form there
-    int side;               // ct_embed_side there, 0: not known
-    double *T;              // (nu x free) tangents there
-    double *u, *a;          // (nu) speeds and accelerations there, where `side` is known
-    double swiftest;        // largest speed at looks
-    long nover;             // positions that fixed steps have come across
-    double over;            // when first
+    double weakest, volume;             // of its form there
+    struct ct_embed_view *there, *here; // the view from there, and of a step's end
+    double *u, *a;   // (nu) speeds and accelerations there, where that is known
+    double swiftest; // largest speed at looks
+    long nover;      // positions that fixed steps have come across
+    double over;     // when first
     double closest,
         t_closest; // the smallest part of a step that was not made to cross, in double precision, and when
     long npassed;
@@ -82,8 +82,10 @@ void ct_singular_begin(struct ct_singular *w, double t, const double *y, double 
 void ct_singular_expect(struct ct_singular *w, double t, const double *y, double in);
 /// Is y so near to one that rounding of accelerations in double precision is felt?
 bool ct_singular_is_felt(struct ct_singular *w, double t, const double *y);
-/// Is y beside a singular position, foreseen or not? row (nrow, out): those that depend there; none of a large system.
-bool ct_singular_is_beside(struct ct_singular *w, double t, const double *y, bool *row);
+/// Is y, where steps have ended, beside a singular position, foreseen or not, or would a step of this size, 0 where it is not fixed,
+/// come past one? row (nrow, out): those that depend there; none of a large system.
+bool ct_singular_is_beside(struct ct_singular *w, double t, const double *y, double step,
+                           bool *row);
 /// Does J have less rank at y, where the embedding has chosen, or as near to y as loops are closed, than where the mechanism can
 /// go from there? row (nrow, out): those that take part in what depends at y alone. Not looked for in large systems. The machine is
 /// left with its constraints at y.

@@ -1,0 +1,161 @@
+// See singular.h: what has been passed, and where steps have ended.
+#include "solve/sight.h"
+
+#include "numeric/dense.h"
+#include "solve/mode.h"
+
+#include <math.h>
+#include <string.h>
+
+// Rows with part in x (rank), a vector of null(J') that has come out of ct_embed_dependence.
+static void mark_rows(const struct ct_singular *w, bool *row)
+{
+    const double involved
+        = 1e-3; // of the largest entry; rows that take no part have the square of the distance
+    const int n = w->s->rank;
+    double most = 0;
+    for (int i = 0; i < n; i++)
+        most = fmax(most, fabs(w->x[i]));
+    for (int i = 0; i < n; i++)
+        row[w->s->row[i]] = fabs(w->x[i]) > involved * most;
+}
+
+struct passage {
+    const struct ct_stepper_span *span;
+    double begin, pending; // `begin`: of the span, as part of the crossing
+    const struct ct_sight
+        *to; // without a span: from the last state to this one, with a constant acceleration
+};
+
+static double time_on(const struct passage *p, double part)
+{
+    return p->span->t + (part - p->begin) / (1 - p->begin) * p->span->h;
+}
+
+static double pivot_to(struct ct_singular *w, const struct ct_sight *to, double part)
+{
+    const size_t nq = w->m->nq, nu = w->m->nu;
+    const double dt = to->t - w->t, *u = w->last + nq, *v = to->y + nq;
+    memcpy(w->y, w->last, (nq + nu) * sizeof *w->y);
+    for (size_t i = 0; i < nu; i++)
+        w->d[i] = part * dt * (u[i] + part / 2 * (v[i] - u[i]));
+    ct_machine_retract(w->m, w->y, w->d);
+    return ct_singular_pivot(w, ct_time_before(w->t + part * dt, to->pending), w->y);
+}
+
+static double pivot_on(struct ct_singular *w, const struct passage *p, double part)
+{
+    if (!p->span)
+        return pivot_to(w, p->to, part);
+    ct_stepper_point(p->span, (part - p->begin) / (1 - p->begin), w->y);
+    return ct_singular_pivot(w, ct_time_before(time_on(p, part), p->pending), w->y);
+}
+
+// From where the pivot is nearly as small as it becomes, within d: it falls and rises about linearly, so that its sizes before and
+// behind tell.
+static double narrow(struct ct_singular *w, const struct passage *p, double theta, double d)
+{
+    enum { LOOKS = 3 };
+    const double nearer = 0.125;
+    for (int i = 0; i < LOOKS; i++) {
+        const double before = pivot_on(w, p, theta - d), behind = pivot_on(w, p, theta + d);
+        theta += d * (before - behind) / (before + behind);
+        d *= nearer;
+    }
+    return theta;
+}
+
+// Where on the way the pivot is below what counts as zero, as part of it: near the middle, or where else it is least. NaN if it does
+// not vanish.
+static double find_position(struct ct_singular *w, const struct passage *p, double zero)
+{
+    enum { PARTS = 16 };
+    const double beside_middle = 0.1;
+    double theta = narrow(w, p, 0.5, beside_middle), least = INFINITY, at = 0;
+    if (pivot_on(w, p, theta) < zero)
+        return theta;
+    for (int i = 0; i <= PARTS; i++) {
+        const double part = (double)i / PARTS, pivot = pivot_on(w, p, part);
+        if (pivot < least) {
+            least = pivot;
+            at = part;
+        }
+    }
+    theta = narrow(w, p, at, 1.0 / PARTS);
+    return pivot_on(w, p, theta) < zero ? theta : NAN;
+}
+
+// Rows that depend there and by how much the rank falls: with d the distance from the position det J_d is as d^loss.
+static void find_dependence(struct ct_singular *w, const struct passage *p, double theta,
+                            struct ct_singular_position *at)
+{
+    const double d = 0.02, nearer = 0.5;
+    double far, near;
+    const int n = w->s->rank;
+    memset(at->row, 0, w->m->nrow * sizeof *at->row);
+    at->rank_loss = 0;
+    pivot_on(w, p, theta - d);
+    if (!ct_embed_dependence(w->s, w->x, &far))
+        return;
+    pivot_on(w, p, theta - d * nearer);
+    if (!ct_embed_dependence(w->s, w->x, &near))
+        return;
+    at->rank_loss = (int)fmin(n, fmax(1, round((near - far) / log(nearer))));
+    mark_rows(w, at->row);
+}
+
+bool ct_singular_pass(struct ct_singular *w, const struct ct_stepper_span *span, double begin,
+                      double t1, double pending)
+{
+    const double vanished = 1e-3; // of the pivot where the crossing began
+    const struct passage p = {.span = span, .begin = begin, .pending = pending};
+    const double theta = find_position(w, &p, vanished * pivot_on(w, &p, 0)),
+                 t = time_on(&p, theta);
+    w->has_tried = false;
+    if (!(t <= t1))
+        return false;
+    if (w->npassed++ >= CT_MOST_SINGULAR)
+        return true;
+    struct ct_singular_position *at = &w->passed[w->npassed - 1];
+    at->t = fmax(t, 0); // a run that starts in one begins before it
+    find_dependence(w, &p, theta, at);
+    return true;
+}
+
+// Steps came across a position, or close by, where on their way the pivot falls below this part of what it is at both ends.
+static const double nearly_zero = 0.1;
+
+bool ct_singular_is_over(struct ct_singular *w, const struct ct_sight *to, double before,
+                         double behind)
+{
+    const struct passage p = {.to = to};
+    const double part = find_position(w, &p, nearly_zero * fmin(before, behind));
+    return part > 0 && part < 1;
+}
+
+// Is there a position within s seconds of y, the speeds being what they are? The machine is left next to it.
+static bool is_within(struct ct_singular *w, double t, const double *y, double s)
+{
+    const struct ct_sight to = {.t = t + s, .pending = INFINITY, .y = y};
+    w->t = t;
+    memcpy(w->last, y, (w->m->nq + w->m->nu) * sizeof *y);
+    return ct_singular_is_over(w, &to, pivot_to(w, &to, 0), pivot_to(w, &to, 1));
+}
+
+bool ct_singular_is_beside(struct ct_singular *w, double t, const double *y, double step,
+                           bool *row)
+{
+    const double beside = 1e-2; // of the largest pivot
+    double log_det;
+    memset(row, 0, w->m->nrow * sizeof *row);
+    if (w->s->rank < w->rank) // in it
+        return true;
+    if (!ct_embed_has_pivot(w->s))
+        return false;
+    if (!(ct_singular_pivot(w, t, y) < beside * w->most)
+        && !(step > 0 && is_within(w, t, y, step)))
+        return false;
+    if (ct_embed_dependence(w->s, w->x, &log_det))
+        mark_rows(w, row);
+    return true;
+}
