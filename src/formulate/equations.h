@@ -38,6 +38,7 @@ struct ct_u {
     int joint, body;           // whose it is; the other is -1
     int beam;                  // body whose elastic coordinate it belongs to; 0: none
     enum ct_elastic_kind kind; // of those
+    bool is_turn;              // [rad/s]
 };
 
 struct ct_entry { // of a sparse matrix
@@ -51,7 +52,8 @@ struct ct_row {
     int joint;         // in the model; -1: none
     ct_ex phi, v, gam; // position, velocity J u + Phi_t, acceleration J u' + gam
     ct_ex lam;         // symbol
-    ct_ex wanted; // >= 0 in the right assembly (half-turn solutions of (4.4)); 0 where none
+    ct_ex wanted;   // >= 0 in the right assembly (half-turn solutions of (4.4)); 0 where none
+    bool is_length; // of phi [m]
 };
 
 /// A comparison whose outcome is held between events.

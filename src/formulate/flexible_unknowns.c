@@ -26,6 +26,7 @@ static int new_unknown(struct ct_build *b, struct ct_flexible *f, const char *na
     u.joint = u.body = -1;
     u.beam = f->body;
     u.kind = kind;
+    u.is_turn = kind == CT_ELASTIC_TURN;
     u.q = (int)s->nq;
     q.symbol = ct_ex_sym(b->x, CT_SYM_Q, name, (uint32_t)s->nq);
     u.symbol = q.rate = ct_ex_sym(b->x, CT_SYM_U, u.name, (uint32_t)s->nu);

@@ -17,10 +17,12 @@ static bool is_branch_coordinate(const struct ct_build *b, const struct ct_coord
 }
 
 static int new_speed(struct ct_build *b, const struct ct_edge_info *e, const char *suffix,
-                     int q)
+                     int q, bool is_turn)
 {
     struct ct_equations *s = b->eqs;
-    struct ct_u u = {.name = ct_arena_printf(b->arena, "%s.u%s", e->name, suffix), .q = q};
+    struct ct_u u = {.name = ct_arena_printf(b->arena, "%s.u%s", e->name, suffix),
+                     .q = q,
+                     .is_turn = is_turn};
     u.joint = e->kind == CT_EDGE_JOINT ? e->index : -1;
     u.body = e->kind == CT_EDGE_BODY ? e->index : -1;
     u.symbol = ct_ex_sym(b->x, CT_SYM_U, u.name, (uint32_t)s->nu);
@@ -62,7 +64,7 @@ static void choose_quaternion(struct ct_build *b, struct ct_edge_info *e, int k,
         c->value = b->eqs->q[c->q].symbol;
     }
     for (int i = 0; i < 3; i++) {
-        const int u = new_speed(b, e, ct_arena_printf(b->arena, "%d", speed + i + 1), -1);
+        const int u = new_speed(b, e, ct_arena_printf(b->arena, "%d", speed + i + 1), -1, true);
         b->coordinate[e->first_coordinate + k + i].u = u;
         w[i] = b->eqs->u[u].symbol;
     }
@@ -96,7 +98,7 @@ static void choose_plain(struct ct_build *b, const struct ct_edge_info *e,
     const bool one = e->trial.nfree == 1;
     const char *suffix = one ? "" : ct_arena_printf(b->arena, "%d", c->place + 1);
     c->q = new_coordinate(b, c->name, -1);
-    c->u = new_speed(b, e, suffix, c->q);
+    c->u = new_speed(b, e, suffix, c->q, c->in_rotation);
     c->value = b->eqs->q[c->q].symbol;
     c->rate = b->eqs->q[c->q].rate = b->eqs->u[c->u].symbol;
 }

@@ -106,6 +106,7 @@ static void add_row(struct ct_build *b, int joint, const char *name, struct ct_e
     struct ct_linear l = linear_zero(b);
     wrench_terms(b, n, w, carried, &l);
     const int index = push_row(b, name, joint, &l, phi, gam);
+    b->eqs->row[index].is_length = !ct_ex3_is_zero(w->force);
     const struct ct_pull p = {index, n.tail, n.head, joint, w->force, w->torque, carried};
     CT_PUSH(b->arena, b->pull, b->npull, b->pull_cap, p);
 }

@@ -25,6 +25,7 @@ struct ct_embed *ct_embed_create(struct ct_arena *arena, struct ct_ctx *ctx,
     s->dependent = CT_NEWN(arena, int, k);
     s->independent = CT_NEWN(arena, int, n + 1);
     s->is_unique = CT_NEWN(arena, bool, r + 1);
+    s->unit = CT_NEWN(arena, double, r + 1);
     s->a = CT_NEWN(arena, double, n + 1);
     s->lam = CT_NEWN(arena, double, r + 1);
     s->Jd = CT_NEWN(arena, double, r *r + 1);
@@ -46,6 +47,16 @@ struct ct_embed *ct_embed_create(struct ct_arena *arena, struct ct_ctx *ctx,
     s->work
         = CT_NEWN(arena, double, larger(for_qr, ct_symmetric_eigenvalues_work(size)) + 3 * k);
     return s;
+}
+
+// Of the redundant rows, which could be kept in place of others.
+static double largest_redundant(const struct ct_embed *s)
+{
+    double most = 0;
+    for (size_t i = (size_t)s->rank; i < s->m->nrow; i++)
+        for (int j = 0; j < s->rank; j++)
+            most = fmax(most, fabs(*ct_embed_J(s, s->row[i], s->dependent[j])));
+    return most;
 }
 
 bool ct_embed_factor(struct ct_embed *s)
@@ -70,7 +81,7 @@ bool ct_embed_factor(struct ct_embed *s)
         least = fmin(least, fabs(s->Jd[i + r * i]));
         most = fmax(most, fabs(s->Jd[i + r * i]));
     }
-    s->sigma = most > 0 ? least / most : 0;
+    s->sigma = most > 0 ? least / fmax(most, largest_redundant(s)) : 0;
     s->largest = most;
     return isfinite(s->kappa);
 }

@@ -22,7 +22,49 @@ static bool find_strength(struct ct_embed *s)
     return ct_embed_is_sound(s);
 }
 
-// A (nrow x nrow, out) = J J', its lower triangle.
+// The largest lever [m] of a row; 0: it has none.
+static double lever_of(const struct ct_embed *s, size_t row)
+{
+    double lever = 0;
+    for (size_t k = 0; k < s->m->nu && s->m->e->row[row].is_length; k++)
+        if (s->m->e->u[k].is_turn)
+            lever = fmax(lever, fabs(*ct_embed_J(s, (int)row, (int)k)));
+    return lever;
+}
+
+// The same of all rows, of those of one joint the largest: in line at the start one of them has none.
+static double find_levers(const struct ct_embed *s, double *lever)
+{
+    const struct ct_row *row = s->m->e->row;
+    double most = 0;
+    for (size_t i = 0, first = 0; i < s->m->nrow; i++) {
+        lever[i] = lever_of(s, i);
+        most = fmax(most, lever[i]);
+        if (!i || row[i].joint != row[i - 1].joint || row[i].is_length != row[i - 1].is_length)
+            first = i;
+        lever[first] = fmax(lever[first], lever[i]);
+        for (size_t k = first; k <= i; k++)
+            lever[k] = lever[first];
+    }
+    return most;
+}
+
+void ct_embed_find_units(struct ct_embed *s)
+{
+    const double alike = 4; // rows are measured by one unit where their levers differ by less
+    const double no_link = 1e-4; // of the largest lever: points that coincide at the start
+    const double most = find_levers(s, s->unit);
+    double largest = 0, least = INFINITY;
+    for (size_t i = 0; i < s->m->nrow; i++) {
+        if (s->unit[i] <= no_link * most)
+            s->unit[i] = s->unit[i] > 0 ? most : 1;
+        largest = fmax(largest, s->unit[i]);
+        least = fmin(least, s->unit[i]);
+    }
+    s->has_units = largest > alike * least;
+}
+
+// A (nrow x nrow, out) = J J', its lower triangle, rows measured by their units.
 static void square(const struct ct_embed *s, double *A)
 {
     const size_t n = s->m->nu, m = s->m->nrow;
@@ -32,6 +74,9 @@ static void square(const struct ct_embed *s, double *A)
         for (size_t j = 0; j < m; j++)
             if (J[j] != 0)
                 ct_vector_add(A + m * j + j, J[j], J + j, m - j);
+    for (size_t j = 0; j < m && s->has_units; j++)
+        for (size_t i = j; i < m; i++)
+            A[i + m * j] /= s->unit[i] * s->unit[j];
 }
 
 // The squares of the first `rank` singular values of J, ascending; NULL if they are not found. Eigenvalues of J J' cost a
@@ -65,14 +110,31 @@ bool ct_embed_pivot_is_between(struct ct_embed *s, double low, double high)
         && ct_symmetric_count_below(s->MB, m, m, high * high) > nzero;
 }
 
+// Of J_d, each measured by the unit of its row.
+static double smallest_pivot(struct ct_embed *s)
+{
+    const int r = s->rank;
+    double least = INFINITY;
+    memcpy(s->iwork, s->row, (size_t)r * sizeof *s->row);
+    for (int i = 0; i < r; i++) {
+        const int k = s->pivot[i], row = s->iwork[k];
+        s->iwork[k] = s->iwork[i];
+        s->iwork[i] = row;
+        least = fmin(least, fabs(s->Jd[i + r * i]) / s->unit[row]);
+    }
+    return least;
+}
+
 double ct_embed_pivot(struct ct_embed *s)
 {
     if (ct_embed_has_redundant_rows(s))
         return smallest_singular_value(s);
     // the place need not be one of the motion: what is known of the motion stays
     const double sigma = s->sigma, kappa = s->kappa, strength = s->strength.now;
-    const bool is_known = find_strength(s) || ct_embed_factor(s);
-    const double pivot = is_known ? s->sigma * s->largest * fmax(1, s->kappa) : 0;
+    const bool is_strength = find_strength(s), is_known = is_strength || ct_embed_factor(s);
+    const double least
+        = s->has_units && !is_strength ? smallest_pivot(s) : s->sigma * s->largest;
+    const double pivot = is_known ? least * fmax(1, s->kappa) : 0;
     s->sigma = sigma;
     s->kappa = kappa;
     s->strength.now = strength;

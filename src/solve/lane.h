@@ -91,6 +91,8 @@ struct ct_lane {
     double error;   // of it
     double longest; // step
     double scale;   // as in embed.h
+    double *unit;
+    bool has_units;
     double kappa_chosen, sigma_chosen, sigma_best;
     double pivot_last, pivot_time; // see foresee_singular
     struct ct_strength strength;   // of its form

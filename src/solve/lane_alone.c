@@ -21,6 +21,8 @@ static void take_choice(struct ct_lanes *s, int l, double t, const vec *y)
     ct_machine_set(s->m, ct_run_before(s->run, t), s->one_y);
     embed->rank = s->rank;
     embed->scale = lane->scale;
+    embed->has_units = lane->has_units;
+    memcpy(embed->unit, lane->unit, (size_t)s->nrow * sizeof *embed->unit);
     embed->least_left = 0; // whatever a run alone has left: bits depend on the member only
     memcpy(embed->row, lane->row, (size_t)s->nrow * sizeof *embed->row);
     memcpy(embed->dependent, lane->dependent, rank * sizeof *embed->dependent);

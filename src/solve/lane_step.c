@@ -492,7 +492,8 @@ static void foresee_singular(struct ct_lanes *s, vec t, const vec *y, set wanted
         if (!ct_has_lane(wanted, l))
             continue;
         const double before = lane->pivot_last, dt = t[l] - lane->pivot_time;
-        const double now = ct_has_lane(s->near, l) ? ct_lane_pivot(s, l, t[l], y) : INFINITY;
+        const bool is_sought = ct_has_lane(s->near, l) || lane->has_units;
+        const double now = is_sought ? ct_lane_pivot(s, l, t[l], y) : INFINITY;
         lane->pivot_last = now;
         lane->pivot_time = t[l];
         if (isfinite(before) && before > now && dt > 0

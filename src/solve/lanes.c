@@ -95,6 +95,7 @@ static void make_room(struct ct_arena *a, struct ct_lanes *s)
         s->place[i] = s->e->u[i].q;
     for (int l = 0; l < W; l++) {
         s->lane[l].row = CT_NEWN(a, int, r + 1);
+        s->lane[l].unit = CT_NEWN(a, double, r + 1);
         s->lane[l].dependent = CT_NEWN(a, int, r + 1);
         s->lane[l].independent = CT_NEWN(a, int, n + 1);
     }
@@ -393,6 +394,8 @@ bool ct_lanes_load(struct ct_lanes *s, int l, const struct ct_run_options *o)
         take_method(s, o->method);
     s->rtol[l] = o->rtol;
     s->lane[l].scale = ct_run_embed(s->run)->scale;
+    s->lane[l].has_units = s->embed->has_units;
+    memcpy(s->lane[l].unit, s->embed->unit, (size_t)s->nrow * sizeof *s->embed->unit);
     s->atol[l] = o->atol;
     s->pivot_most[l] = 0;
     s->near &= ~(1u << l);

@@ -162,7 +162,8 @@ static bool is_told_by_form(const struct ct_singular *w, double dt, bool is_fixe
         return false;
     const struct ct_form *f = s->form[0];
     if (w->part > foreseen_pivot && is_fixed)
-        return ct_is_within(f->weakest / w->weakest, ct_same_strength);
+        return ct_is_within(f->weakest / w->weakest, ct_same_strength)
+            && !(s->has_units && !ct_is_within(f->volume / w->volume, ct_same_strength));
     const bool is_away = is_fixed || w->part > foreseen_pivot || w->in > steps_away * dt;
     return w->part > near_pivot && is_away && ct_is_within(f->weakest / w->weakest, hardly)
         && ct_is_within(f->volume / w->volume, hardly);

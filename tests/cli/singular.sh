@@ -163,6 +163,26 @@ for T in $(awk 'BEGIN { for (i = 24; i <= 60; i++) print 10^(-i/6) }'); do
   sed -n 's/.*"energy_drift": \([^,]*\),.*/\1/p' s.json | awk -v T=$T '!($1 < 10 * T) { print T ": the energy drifts by " $1 }'
 done
 
+# Redundant rows may come to depend before all do, and steps choose others on their way: what is passed is to be seen all the same.
+echo '-- the platform with each method: positions, and by how much the rank falls'
+for T in 1e-4 1e-6; do
+  for method in auto dopri5 dop853 radau5 generalized-alpha generalized-alpha-index3 newmark hht; do
+    "$COTREE" simulate platform.yaml --quiet --tolerance $T --method $method --summary s.json -o platform.csv
+    printf '%s of %s ' "$(sed -n 's/.*"rank_loss": \([0-9]*\).*/\1/p' s.json | sort -u | paste -sd /)" \
+        "$(sed -n 's/.*"singular_positions_passed": //p' s.json)"
+  done
+  echo
+done
+echo '-- and of those that steps of fixed size come across, also where two loops lose rank at once'
+for model in platform.yaml "$SYSTEMS/n_four_bar/model.yaml"; do
+  for method in dopri5 rk4 newmark radau5; do
+    "$COTREE" simulate "$model" --method $method --step 0.02 --until 3 --samples 3 --quiet -o fixed.csv 2>&1 |
+      sed -n -e 's/.*warning: steps of fixed size \(.* at t = [0-9]\.[0-9]\).*/\1/p' -e 's/.*\[\(E305\)\]/\1/p' \
+        -e 's/.*note: \(.* each other there ([a-z0-9]*\).*/\1/p'
+  done
+done
+"$COTREE" simulate "$SYSTEMS/four_bar/model.yaml" --method dopri5 --step 0.02 --quiet -o fixed.csv
+
 # A driver that comes to rest in a singular position, or changes its rate or acceleration there, tells nothing of how the motion goes on: that is said.
 # Forces may switch there: switched.sh.
 echo '-- drivers that come to rest in such a position, slowly and at once, and that begin to brake there'
