@@ -20,12 +20,13 @@ struct ct_singular *ct_singular_create(struct ct_arena *arena, struct ct_machine
     w->x = CT_NEWN(arena, double, m->nrow + 1);
     w->there = ct_embed_view_create(arena);
     w->here = ct_embed_view_create(arena);
+    w->along = ct_embed_view_create(arena);
     w->u = CT_NEWN(arena, double, m->nu + 1);
     w->a = CT_NEWN(arena, double, m->nu + 1);
     w->last = CT_NEWN(arena, double, m->nq + m->nu + 1);
     w->passed = CT_NEWN(arena, struct ct_singular_position, kept + 1);
-    for (size_t i = 0; i < kept; i++)
-        w->passed[i].row = CT_NEWN(arena, bool, m->nrow);
+    for (size_t i = 0; i < kept + 1; i++) // one to look at
+        w->passed[i].row = CT_NEWN(arena, bool, m->nrow + 1);
     ct_singular_start(w);
     return w;
 }
@@ -41,6 +42,7 @@ void ct_singular_start(struct ct_singular *w)
     w->swiftest = 0;
     ct_embed_give_room(w->s, w->there);
     ct_embed_give_room(w->s, w->here);
+    ct_embed_give_room(w->s, w->along);
     w->s->nearness = 1;
     w->farthest = w->wanted = 0;
     w->is_close = w->s->is_in_quad = false;

@@ -35,8 +35,9 @@ struct ct_singular {
     bool was_told;        // the form has told of the last state that nothing has changed
     long switches, nmade; // of the embedding, there
     long doubted; // its choice when a step was last looked at whether it is to be shorter
-    double weakest, volume;             // of its form there
-    struct ct_embed_view *there, *here; // the view from there, and of a step's end
+    double weakest, volume; // of its form there
+    struct ct_embed_view *there, *here,
+        *along;      // the view from there, from where a step ends, and on the way
     double *u, *a;   // (nu) speeds and accelerations there, where that is known
     double swiftest; // largest speed at looks
     long nover;      // positions that fixed steps have come across

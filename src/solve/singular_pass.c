@@ -55,7 +55,7 @@ static double pivot_on(struct ct_singular *w, const struct passage *p, double pa
 // behind tell.
 static double narrow(struct ct_singular *w, const struct passage *p, double theta, double d)
 {
-    enum { LOOKS = 3 };
+    enum { LOOKS = 4 };
     const double nearer = 0.125;
     for (int i = 0; i < LOOKS; i++) {
         const double before = pivot_on(w, p, theta - d), behind = pivot_on(w, p, theta + d);
@@ -65,15 +65,19 @@ static double narrow(struct ct_singular *w, const struct passage *p, double thet
     return theta;
 }
 
-// Where on the way the pivot is below what counts as zero, as part of it: near the middle, or where else it is least. NaN if it does
-// not vanish.
-static double find_position(struct ct_singular *w, const struct passage *p, double zero)
+enum { PARTS = 16 }; // of a way that is searched
+
+// Where on the way the pivot is below what counts as zero, as part of it: near the middle. NaN if it is not.
+static double find_in_middle(struct ct_singular *w, const struct passage *p, double zero)
 {
-    enum { PARTS = 16 };
-    const double beside_middle = 0.1;
-    double theta = narrow(w, p, 0.5, beside_middle), least = INFINITY, at = 0;
-    if (pivot_on(w, p, theta) < zero)
-        return theta;
+    const double beside = 0.1, theta = narrow(w, p, 0.5, beside);
+    return pivot_on(w, p, theta) < zero ? theta : NAN;
+}
+
+// The same near where the pivot is least.
+static double find_least(struct ct_singular *w, const struct passage *p, double zero)
+{
+    double least = INFINITY, at = 0;
     for (int i = 0; i <= PARTS; i++) {
         const double part = (double)i / PARTS, pivot = pivot_on(w, p, part);
         if (pivot < least) {
@@ -81,8 +85,33 @@ static double find_position(struct ct_singular *w, const struct passage *p, doub
             at = part;
         }
     }
-    theta = narrow(w, p, at, 1.0 / PARTS);
-    return pivot_on(w, p, theta) < zero ? theta : NAN;
+    at = narrow(w, p, at, 1.0 / PARTS);
+    return pivot_on(w, p, at) < zero ? at : NAN;
+}
+
+// The same wherever sides change between two parts of the way. theta (PARTS, out); returns how many there are.
+static int find_changes(struct ct_singular *w, const struct passage *p, double zero,
+                        double from, double to, double *theta)
+{
+    const double part = (to - from) / PARTS, near = part / 4;
+    struct ct_embed_view *last = w->along, *next = w->here;
+    int n = 0;
+    double before = pivot_on(w, p, from);
+    ct_embed_see(w->s, last);
+    for (int i = 1; i <= PARTS; i++) {
+        const double behind = pivot_on(w, p, from + i * part);
+        ct_embed_see(w->s, next);
+        if (ct_embed_has_passed(w->s, last, next)) {
+            const double at = from + (i - behind / (before + behind)) * part;
+            theta[n] = narrow(w, p, at, near);
+            n += pivot_on(w, p, theta[n]) < zero;
+        }
+        struct ct_embed_view *v = last;
+        last = next;
+        next = v;
+        before = behind;
+    }
+    return n;
 }
 
 // Rows that depend there and by how much the rank falls: with d the distance from the position det J_d is as d^loss.
@@ -104,22 +133,60 @@ static void find_dependence(struct ct_singular *w, const struct passage *p, doub
     mark_rows(w, at->row);
 }
 
+// Are both ends of the way on sides as they would be with this loss of rank on it, if that is known?
+static bool tells_of(struct ct_singular *w, const struct passage *p, int rank_loss)
+{
+    pivot_on(w, p, 0);
+    ct_embed_see(w->s, w->along);
+    pivot_on(w, p, 1);
+    ct_embed_see(w->s, w->here);
+    return !w->along->rank || w->along->rank != w->here->rank
+        || ct_embed_has_passed(w->s, w->along, w->here) == (rank_loss % 2 == 1);
+}
+
+// Most often there is one position, in the middle, where it has been foreseen.
+static int find_positions(struct ct_singular *w, const struct passage *p, double *theta)
+{
+    const double vanished
+        = 1e-4; // of the pivot where the crossing began: near misses that are followed leave more
+    const double zero = vanished * pivot_on(w, p, 0);
+    struct ct_singular_position *last = &w->passed[CT_MOST_SINGULAR];
+    theta[0] = find_in_middle(w, p, zero);
+    if (isfinite(theta[0])) {
+        find_dependence(w, p, theta[0], last);
+        if (tells_of(w, p, last->rank_loss))
+            return 1;
+    }
+    const double first = isfinite(theta[0]) ? theta[0] : find_least(w, p, zero);
+    int n = find_changes(w, p, zero, 0, 1, theta);
+    if (!n && isfinite(first)) // several in one part
+        n = find_changes(w, p, zero, first - 1.0 / PARTS, first + 1.0 / PARTS, theta);
+    if (n)
+        return n;
+    theta[0] = first;
+    return isfinite(first);
+}
+
 bool ct_singular_pass(struct ct_singular *w, const struct ct_stepper_span *span, double begin,
                       double t1, double pending)
 {
-    const double vanished = 1e-3; // of the pivot where the crossing began
     const struct passage p = {.span = span, .begin = begin, .pending = pending};
-    const double theta = find_position(w, &p, vanished * pivot_on(w, &p, 0)),
-                 t = time_on(&p, theta);
+    double theta[PARTS];
+    const int n = find_positions(w, &p, theta);
+    bool has_passed = false;
     w->has_tried = false;
-    if (!(t <= t1))
-        return false;
-    if (w->npassed++ >= CT_MOST_SINGULAR)
-        return true;
-    struct ct_singular_position *at = &w->passed[w->npassed - 1];
-    at->t = fmax(t, 0); // a run that starts in one begins before it
-    find_dependence(w, &p, theta, at);
-    return true;
+    for (int i = 0; i < n; i++) {
+        const double t = time_on(&p, theta[i]);
+        if (!(t <= t1))
+            continue;
+        has_passed = true;
+        if (w->npassed++ >= CT_MOST_SINGULAR)
+            continue;
+        struct ct_singular_position *at = &w->passed[w->npassed - 1];
+        at->t = fmax(t, 0); // a run that starts in one begins before it
+        find_dependence(w, &p, theta[i], at);
+    }
+    return has_passed;
 }
 
 // Steps came across a position, or close by, where on their way the pivot falls below this part of what it is at both ends.
@@ -129,7 +196,7 @@ bool ct_singular_is_over(struct ct_singular *w, const struct ct_sight *to, doubl
                          double behind)
 {
     const struct passage p = {.to = to};
-    const double part = find_position(w, &p, nearly_zero * fmin(before, behind));
+    const double part = find_least(w, &p, nearly_zero * fmin(before, behind));
     return part > 0 && part < 1;
 }
 
