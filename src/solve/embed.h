@@ -35,7 +35,7 @@ struct ct_embed {
     double largest;    // pivot of J_d
     double
         scale; // what rows are measured by: below 1 for mechanisms of less than centimetres, (6.3c)
-    double *unit;   // (nrow) what rows are measured by against each other, (8.41)
+    double *unit;   // (nrow) what rows are measured by against each other, (8.42)
     bool has_units; // which differ
     double
         nearness; // how near J is to losing rank at the last accepted state, 1 at its farthest and where nobody looks
@@ -78,7 +78,7 @@ struct ct_embed *ct_embed_create(struct ct_arena *arena, struct ct_ctx *ctx,
 
 /// Forms of this kind only, whatever they cost; NULL: matrices only. Before rows and columns are chosen.
 void ct_embed_use(struct ct_embed *s, const struct ct_form_kind *kind);
-/// Units of rows, from the levers that they have at the last ct_machine_constraint.  (8.41)
+/// Units of rows, from the levers that they have at the last ct_machine_constraint.  (8.42)
 void ct_embed_find_units(struct ct_embed *s);
 /// Matrices only: accelerations then depend on nothing that was done before.
 void ct_embed_stay_dense(struct ct_embed *s);
