@@ -251,6 +251,8 @@ struct ct_method {
     int error_order; // the error of a step behaves as h^(error_order + 1), for step control
     /// Needs problem.dae, and meets the constraints by itself: the driver does not project its steps.
     bool is_implicit;
+    /// But those of speeds only to its order: speeds err across the constraints.
+    bool leaves_speeds;
     /// Rules of step control; 0: the usual ones. A next step that differs from the last by a factor between
     /// steady[0] and steady[1] is not made: it would cost a factorisation.
     double most_growth, steady[2];

@@ -19,6 +19,8 @@ static const int places_between[CT_OUTPUT_KINDS] = {0, 7};
 
 struct ct_amplifier {
     struct ct_outputs *outputs;
+    struct ct_invariant *invariant;
+    struct ct_invariant_record *record;
     size_t n, ny;
     double *at, *largest,
         *way, // (n) g; |g| over the looks so far; change of g for states changed by themselves
@@ -30,12 +32,18 @@ struct ct_amplifier {
     int between;          // places at which `way` is that of before
 };
 
-struct ct_amplifier *ct_amplifier_create(struct ct_arena *a, struct ct_outputs *outputs)
+struct ct_amplifier *ct_amplifier_create(struct ct_arena *a, struct ct_outputs *outputs,
+                                         struct ct_invariant *invariant,
+                                         struct ct_invariant_record *record)
 {
     const struct ct_machine *m = outputs->s->m;
     const size_t n = outputs->n;
     struct ct_amplifier *p = CT_NEW(a, struct ct_amplifier);
-    *p = (struct ct_amplifier){.outputs = outputs, .n = n, .ny = m->nq + m->nu + 1};
+    *p = (struct ct_amplifier){.outputs = outputs,
+                               .invariant = invariant,
+                               .record = record,
+                               .n = n,
+                               .ny = m->nq + m->nu + 1};
     double **const vectors[] = {&p->at, &p->largest, &p->way};
     for (size_t i = 0; i < COUNT(vectors); i++)
         *vectors[i] = CT_NEWN(a, double, n);
@@ -97,19 +105,32 @@ static void look(struct ct_amplifier *p, double t, const double *y,
         find_way(p, t, y, tolerance->atol / tolerance->rtol, p->reach);
 }
 
+// Without those that constraints determine, as far as that is known.
+static bool find_known(struct ct_amplifier *p, const double *way,
+                       const struct ct_tolerance *tolerance, bool *is_new)
+{
+    bool any = *is_new = false;
+    for (size_t i = 0; i < p->n; i++) {
+        const double wanted = tolerance->rtol * p->largest[i] + tolerance->atol;
+        const bool amplifies = tolerance->rtol * way[i] > promised * wanted;
+        p->has[i] = amplifies && !p->record->is_found[i];
+        any |= p->has[i];
+        *is_new |= amplifies && !p->record->is_settled[i];
+    }
+    return any;
+}
+
 // Which outputs amplify at y, by `way` or `reach`?
 static bool find(struct ct_amplifier *p, double t, const double *y, const double *way,
                  const struct ct_tolerance *tolerance)
 {
-    bool any = false;
+    bool is_new;
     if (t != p->t_seen || memcmp(y, p->seen, p->ny * sizeof *y) != 0)
         look(p, t, y, tolerance);
-    for (size_t i = 0; i < p->n; i++) {
-        const double wanted = tolerance->rtol * p->largest[i] + tolerance->atol;
-        p->has[i] = tolerance->rtol * way[i] > promised * wanted;
-        any |= p->has[i];
-    }
-    return any;
+    const bool any = find_known(p, way, tolerance, &is_new);
+    if (!is_new || !ct_invariant_look(p->invariant, p->record, t, y, tolerance))
+        return any;
+    return find_known(p, way, tolerance, &is_new);
 }
 
 static void note_sizes(struct ct_amplifier *p, const double *largest)

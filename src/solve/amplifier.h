@@ -10,12 +10,14 @@
 #ifndef CT_SOLVE_AMPLIFIER_H
 #define CT_SOLVE_AMPLIFIER_H
 
-#include "solve/outputs.h"
+#include "solve/invariant.h"
 
 struct ct_amplifier;
 
-/// Lives in a.
-struct ct_amplifier *ct_amplifier_create(struct ct_arena *a, struct ct_outputs *outputs);
+/// Lives in a. invariant (may be NULL), record: those that constraints determine do not amplify.
+struct ct_amplifier *ct_amplifier_create(struct ct_arena *a, struct ct_outputs *outputs,
+                                         struct ct_invariant *invariant,
+                                         struct ct_invariant_record *record);
 /// A new run begins: nothing is known of the sizes of outputs.
 void ct_amplifier_start(struct ct_amplifier *p);
 /// Root mean square over the outputs that amplify of their errors at y (ny) for errors e (ny), where 1 is the tolerance of them or of

@@ -106,6 +106,9 @@ void ct_embed_renew(struct ct_embed *s);
 void ct_embed_renew_after_step(struct ct_embed *s, double t, const double *y);
 /// Move q, u in y onto the constraints, independent coordinates held where J_d allows.  (6.6)
 enum ct_eval ct_embed_project(struct ct_embed *s, double t, double *y);
+/// The same for a look at another state, which leaves nothing behind but the machine's input and last values: choices stay. False if it
+/// comes to no place where loops are closed, or where dense factors cost more than steps do.
+bool ct_embed_close(struct ct_embed *s, double t, double *y);
 /// Is there a measure of how near J is to losing rank? Not of large systems with redundant rows, where it would cost more
 /// than the steps.
 bool ct_embed_has_pivot(const struct ct_embed *s);

@@ -89,6 +89,21 @@ static enum ct_eval project_by_matrices(struct ct_embed *s, double t, double *y)
     return CT_EVAL_OK;
 }
 
+bool ct_embed_close(struct ct_embed *s, double t, double *y)
+{
+    const double kappa = s->kappa, sigma = s->sigma, largest = s->largest, near = s->nearness;
+    if (ct_embed_is_large(s))
+        return false;
+    ct_machine_normalise(s->m, y);
+    s->nearness = 1; // that of steps
+    const bool is_closed = project_by_matrices(s, t, y) == CT_EVAL_OK;
+    s->nearness = near;
+    s->kappa = kappa;
+    s->sigma = sigma;
+    s->largest = largest;
+    return is_closed;
+}
+
 static bool close_form(struct ct_embed *s, double t, const double *y)
 {
     ct_machine_set(s->m, t, y);

@@ -29,12 +29,13 @@ static const double most_precise = 16;
 // Outputs of one kind.
 struct group {
     struct ct_outputs outputs;
+    struct ct_invariant *invariant; // NULL: constraints determine none
     struct ct_amplifier *amplifier;
     int *result; // (n) of the equations
     struct ct_fidelity_record record;
-    double *at, *probed; // (n) g there
-    double *expected;    // (n) as large they are expected to become
-    double *shown;       // (n) their largest values at samples
+    double *at, *probed, *off; // (n) g there
+    double *expected;          // (n) as large they are expected to become
+    double *shown;             // (n) their largest values at samples
 };
 
 struct ct_fidelity {
@@ -97,9 +98,12 @@ static bool create_group(struct ct_arena *a, struct ct_embed *s, enum ct_output_
     p->record = ct_fidelity_record(a, kind, n);
     p->at = CT_NEWN(a, double, n);
     p->probed = CT_NEWN(a, double, n);
+    p->off = CT_NEWN(a, double, n);
     p->expected = CT_NEWN(a, double, n);
     p->shown = CT_NEWN(a, double, n);
-    p->amplifier = ct_amplifier_create(a, &p->outputs);
+    p->invariant = ct_invariant_create(a, &p->outputs, g);
+    ct_invariant_clear(p->invariant, &p->record.invariant, false);
+    p->amplifier = ct_amplifier_create(a, &p->outputs, p->invariant, &p->record.invariant);
     return true;
 }
 
@@ -123,13 +127,25 @@ const struct ct_outputs *ct_fidelity_outputs(const struct ct_fidelity *p,
     return NULL;
 }
 
+struct ct_invariant *ct_fidelity_invariant(const struct ct_fidelity *p,
+                                           enum ct_output_kind kind)
+{
+    for (size_t i = 0; p && i < p->n; i++)
+        if (p->group[i].outputs.kind == kind)
+            return p->group[i].invariant;
+    return NULL;
+}
+
 // ---- what is known --------------------------------------------------------------------------------
 
 struct ct_fidelity_record ct_fidelity_record(struct ct_arena *a, enum ct_output_kind kind,
                                              size_t n)
 {
-    return (struct ct_fidelity_record){
-        .n = n, .kind = kind, .largest = CT_NEWN(a, double, n), .seen = CT_NEWN(a, double, n)};
+    return (struct ct_fidelity_record){.n = n,
+                                       .kind = kind,
+                                       .largest = CT_NEWN(a, double, n),
+                                       .seen = CT_NEWN(a, double, n),
+                                       .invariant = ct_invariant_record(a, n)};
 }
 
 void ct_fidelity_clear(struct ct_fidelity_record *r)
@@ -186,6 +202,8 @@ double ct_fidelity_judge(struct ct_fidelity_record *r, const double *at, const d
     for (size_t i = 0; i < r->n; i++) {
         const double rounding = rounding_of(at[i], probed[i]);
         r->seen[i] = fabs(at[i]);
+        if (r->invariant.is_found[i])
+            continue;
         const double size = ct_larger(r->seen[i], r->largest[i]);
         const double wanted = tolerance->rtol * size + tolerance->atol;
         is_felt |= !(size >= ct_fidelity_least_size * rounding)
@@ -204,6 +222,19 @@ double ct_fidelity_judge(struct ct_fidelity_record *r, const double *at, const d
     return error;
 }
 
+bool ct_fidelity_asks(const struct ct_fidelity_record *r, const double *at, const double *off,
+                      const struct ct_tolerance *tolerance, double states)
+{
+    const double least = harmless * ct_smaller(states, 1);
+    bool any = false;
+    for (size_t i = 0; i < r->n; i++) {
+        const double size = ct_larger(fabs(at[i]), r->largest[i]);
+        const double wanted = tolerance->rtol * size + tolerance->atol;
+        any |= !r->invariant.is_settled[i] && fabs(off[i] - at[i]) > least * wanted;
+    }
+    return any;
+}
+
 void ct_fidelity_keep(struct ct_fidelity_record *r)
 {
     if (!r->has_seen)
@@ -215,10 +246,12 @@ void ct_fidelity_keep(struct ct_fidelity_record *r)
 
 // ---- a run alone ------------------------------------------------------------------------------------
 
-void ct_fidelity_start(struct ct_fidelity *p)
+void ct_fidelity_start(struct ct_fidelity *p, const struct ct_method *method)
 {
     for (size_t i = 0; i < p->n; i++) {
         ct_fidelity_clear(&p->group[i].record);
+        ct_invariant_clear(p->group[i].invariant, &p->group[i].record.invariant,
+                           method->leaves_speeds);
         ct_amplifier_start(p->group[i].amplifier);
     }
 }
@@ -246,6 +279,19 @@ static void probe(struct ct_fidelity *p, struct group *g, double t, const double
     memcpy(g->probed, ct_outputs_at(&g->outputs, t, p->y), g->record.n * sizeof *g->probed);
 }
 
+// g at y + e as well, after a look for those that constraints determine where such a one might count.
+static const double *find_error(struct ct_fidelity *p, struct group *g, double t,
+                                const double *y, const double *e,
+                                const struct ct_tolerance *tolerance, double states)
+{
+    const double *off = find_off(p, g, t, y, e);
+    if (!ct_fidelity_asks(&g->record, g->at, off, tolerance, states))
+        return off;
+    memcpy(g->off, off, g->record.n * sizeof *off);
+    ct_invariant_look(g->invariant, &g->record.invariant, t, y, tolerance);
+    return g->off;
+}
+
 static double look(struct ct_fidelity *p, struct group *g, double t, const double *y,
                    const double *e, const struct ct_tolerance *tolerance, double states)
 {
@@ -256,7 +302,8 @@ static double look(struct ct_fidelity *p, struct group *g, double t, const doubl
         probe(p, g, t, y);
     else
         r->unprobed--;
-    const double *off = find_off(p, g, t, y, e), *probed = is_probed ? g->probed : g->at;
+    const double *off = find_error(p, g, t, y, e, tolerance, states),
+                 *probed = is_probed ? g->probed : g->at;
     const double error = ct_fidelity_judge(r, g->at, probed, off, tolerance, states);
     if (is_probed || error <= 1)
         return error;
@@ -294,7 +341,7 @@ static double felt_by(struct ct_fidelity *p, struct group *g, double t, const do
         const double way = fabs(off[i] - g->at[i]),
                      size = ct_larger(fabs(g->at[i]), g->record.largest[i]),
                      to_come = least > 0 ? ct_larger(g->expected[i], least) : 0;
-        if (least > 0 && ct_amplifier_has(g->amplifier, i))
+        if (g->record.invariant.is_found[i] || (least > 0 && ct_amplifier_has(g->amplifier, i)))
             continue;
         if (way > 0 && size >= ct_fidelity_least_size * rounding_of(g->at[i], g->probed[i]))
             most = ct_larger(most, way / ct_larger(size, to_come));
@@ -355,8 +402,10 @@ bool ct_fidelity_amplifies(struct ct_fidelity *p, double t, const double *y,
                            const struct ct_tolerance *tolerance)
 {
     bool any = false;
-    for (size_t i = 0; i < p->n; i++)
+    for (size_t i = 0; i < p->n; i++) { // whatever a run before has found
+        ct_invariant_clear(p->group[i].invariant, &p->group[i].record.invariant, false);
         any |= ct_amplifier_any(p->group[i].amplifier, t, y, tolerance);
+    }
     return any;
 }
 

@@ -26,8 +26,8 @@ bool ct_fidelity_is_demanding(const struct ct_equations *e, size_t i);
 /// demanding: accelerations and reactions feel every vibration.
 bool ct_fidelity_find_asked(struct ct_arena *a, const struct ct_equations *e,
                             const bool **speeds, const bool **places);
-/// A new run begins: nothing is known of the sizes of outputs.
-void ct_fidelity_start(struct ct_fidelity *p);
+/// A new run begins, by this method: nothing is known of the sizes of outputs.
+void ct_fidelity_start(struct ct_fidelity *p, const struct ct_method *method);
 /// Root mean square over the outputs of their errors at y (ny) for errors e (ny), where 1 is the tolerance; `states` is the
 /// same of the states. As long as outputs are not nearly as bad as those, or the ratio of both is steady, only every eighth or
 /// sixteenth step is looked at; else that ratio tells, or 0. Where the method is implicit those that amplify are left to
@@ -61,6 +61,10 @@ int ct_fidelity_blunt(struct ct_fidelity *p, double t, const double *y, double w
 const struct ct_outputs *ct_fidelity_outputs(const struct ct_fidelity *p,
                                              enum ct_output_kind kind);
 
+/// Those of them that constraints determine; NULL if they determine none.
+struct ct_invariant *ct_fidelity_invariant(const struct ct_fidelity *p,
+                                           enum ct_output_kind kind);
+
 /// What is known of the outputs of a run.
 struct ct_fidelity_record {
     size_t n;
@@ -71,7 +75,8 @@ struct ct_fidelity_record {
     int skip;      // steps that are not looked at
     int between;   // of them, planned at the last look
     int unprobed;  // looks at which rounding is not measured
-    const struct ct_amplifier *apart; // those that amplify do not count; NULL: all do
+    const struct ct_amplifier *apart;     // those that amplify do not count; NULL: all do
+    struct ct_invariant_record invariant; // those that constraints determine do not, either
     double ratio; // of the error of outputs to that of states at the last look; 0: not known
 };
 /// Of n outputs of this kind; all zero.
@@ -87,6 +92,9 @@ double ct_fidelity_foreseen(const struct ct_fidelity_record *r, double states);
 double ct_fidelity_judge(struct ct_fidelity_record *r, const double *at, const double *probed,
                          const double *off, const struct ct_tolerance *tolerance,
                          double states);
+/// Is there an output that counts, of those at y and at y + e (n each), unless constraints determine it? states: as above.
+bool ct_fidelity_asks(const struct ct_fidelity_record *r, const double *at, const double *off,
+                      const struct ct_tolerance *tolerance, double states);
 void ct_fidelity_keep(struct ct_fidelity_record *r);
 /// State i changed so little that outputs change by rounding only, enlarged by a factor.
 static inline double ct_fidelity_probe(int i)

@@ -227,6 +227,9 @@ void ct_lane_renew(struct ct_lanes *s, int lane, double t, const vec *y);
 double ct_lane_pivot(struct ct_lanes *s, int lane, double t, const vec *y);
 /// Multipliers at (t, y) into the input, u' as in dy.
 void ct_lane_multipliers(struct ct_lanes *s, int lane, double t, const vec *y, const vec *dy);
+/// Which outputs of this kind do constraints determine, at the end of the step as it was tried?
+void ct_lane_find_invariants(struct ct_lanes *s, enum ct_output_kind kind, int lane,
+                             const struct ct_tolerance *tolerance);
 /// Angles and rotations that are followed may turn by so much in a step [rad], else the member runs alone, where steps are
 /// held back: less than a fifth of a turn, as the step that follows may be five times as long.
 static const double ct_lane_most_turn = 1;

@@ -106,6 +106,16 @@ double ct_lane_pivot(struct ct_lanes *s, int l, double t, const vec *y)
     return ct_embed_pivot(s->embed);
 }
 
+void ct_lane_find_invariants(struct ct_lanes *s, enum ct_output_kind kind, int l,
+                             const struct ct_tolerance *tolerance)
+{
+    const double t = s->t[l] + s->h[l];
+    struct ct_invariant *p = ct_fidelity_invariant(ct_run_fidelity(s->run), kind);
+    ct_lane_become_whole(s, l, t, s->y1);
+    ct_invariant_look(p, &s->lane[l].outputs[kind].invariant, ct_run_before(s->run, t),
+                      s->one_y, tolerance);
+}
+
 void ct_lane_multipliers(struct ct_lanes *s, int l, double t, const vec *y, const vec *dy)
 {
     ct_lane_become(s, l, t, y);

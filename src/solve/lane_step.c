@@ -247,6 +247,8 @@ static double judge_lane(struct ct_lanes *s, enum ct_output_kind kind, int l, co
         ct_lane_take(o->one_probed, o->probed, l, r->n);
     else
         r->unprobed--;
+    if (ct_fidelity_asks(r, o->one_at, o->one_off, &tolerance, s->joint[l]))
+        ct_lane_find_invariants(s, kind, l, &tolerance);
     return ct_fidelity_judge(r, o->one_at, is_probed ? o->one_probed : o->one_at, o->one_off,
                              &tolerance, s->joint[l]);
 }

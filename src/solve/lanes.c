@@ -332,13 +332,16 @@ void ct_lane_limit_turn(struct ct_lanes *s, int l, double t, const double *y)
         lane->control.h = fmin(lane->control.h, ct_lane_most_turn / turning / 2);
 }
 
-static void start_lane(struct ct_lane *lane, const struct ct_run_options *o)
+static void start_lane(struct ct_lanes *s, struct ct_lane *lane, const struct ct_run_options *o)
 {
     lane->t1 = o->duration;
     lane->control = ct_control_start();
     lane->control.is_starting = true;
-    for (int kind = 0; kind < CT_OUTPUT_KINDS; kind++)
+    for (int kind = 0; kind < CT_OUTPUT_KINDS; kind++) {
         ct_fidelity_clear(&lane->outputs[kind]);
+        ct_invariant_clear(ct_fidelity_invariant(ct_run_fidelity(s->run), kind),
+                           &lane->outputs[kind].invariant, false);
+    }
     lane->tolerance = (struct ct_tolerance){o->rtol, o->atol};
     lane->repeat = ct_repeat_start(0, o->duration, &lane->tolerance);
     lane->least_rtol = o->least_rtol;
@@ -399,7 +402,7 @@ bool ct_lanes_load(struct ct_lanes *s, int l, const struct ct_run_options *o)
     s->atol[l] = o->atol;
     s->pivot_most[l] = 0;
     s->near &= ~(1u << l);
-    start_lane(&s->lane[l], o);
+    start_lane(s, &s->lane[l], o);
     ct_machine_set(s->m, 0, y);
     if (!ct_lane_begin_events(s, l, o) || !ct_lane_choose(s, l)
         || ct_run_rhs(s->run, 0, y, s->one_dy) != CT_EVAL_OK)

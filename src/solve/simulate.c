@@ -605,7 +605,7 @@ bool ct_run_simulate(struct ct_run *r, const struct ct_run_options *o,
                          ? DBL_EPSILON / (felt_rounding * fmax(o->wanted, sharpest))
                          : 0;
     if (r->fidelity)
-        ct_fidelity_start(r->fidelity);
+        ct_fidelity_start(r->fidelity, o->method);
     r->o = o;
     r->method = o->method;
     r->last_event = -INFINITY;
