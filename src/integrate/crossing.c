@@ -12,6 +12,8 @@
 // Chebyshev norm on two symmetric intervals.
 #include "integrate/crossing.h"
 
+#include "numeric/dense.h"
+
 #include <float.h>
 #include <math.h>
 #include <string.h>
@@ -269,11 +271,28 @@ static void point_at(const struct ct_problem *p, double h, double c, const doubl
 
 // Where rows depend what they miss there is no more than rounding: what polynomials err by counts by its square. A pivot as small as the
 // root of the miss divides rounding by the miss: where that leaves the digits that are wanted, steps can follow the motion.
-bool ct_crossing_only_passes(const struct ct_problem *p, double t, const double *y)
+static double allowed_mismatch(const struct ct_problem *p)
 {
     const double met = 1e-12, eps = 0.05 * DBL_EPSILON;
-    return p->mismatch
-        && p->mismatch(p->user, t, y) > fmin(ct_crossing_held, fmax(met, eps / p->accuracy));
+    return fmin(ct_crossing_held, fmax(met, eps / p->accuracy));
+}
+
+bool ct_crossing_only_passes(const struct ct_problem *p, double t, const double *y)
+{
+    return p->mismatch && p->mismatch(p->user, t, y) > allowed_mismatch(p);
+}
+
+// What a mismatch makes of a step that errs by `error`: the square of what it errs by in its middle may be all there is of it, which less
+// of a step leaves less of. Else the mechanism only passes by.
+static double judge(const struct task *s, double mismatch, double error)
+{
+    const double in_gap = 30; // times as much is open there, of rows that bend by 1/m or 1/rad
+    const double most = ct_vector_largest(s->y, (size_t)s->p->ny),
+                 own = in_gap * error * (s->tolerance->rtol * most + s->tolerance->atol);
+    const double part = mismatch / allowed_mismatch(s->p);
+    if (part <= 1)
+        return error;
+    return mismatch > own * own ? INFINITY : fmax(error, sqrt(part));
 }
 
 // w->from: integrals from a part of the whole on; w->rest of them.
@@ -333,11 +352,12 @@ static double error_of(const struct task *s, const double *y1)
     const struct ct_problem *p = s->p;
     const double middle = s->t + s->h / 2;
     point_at(p, s->h, 0.5, s->y, w, w->end);
-    const double left = p->residual ? p->residual(p->user, middle, w->end) : 0;
-    return left > ct_crossing_held + held_tolerance * s->tolerance->rtol
-                || ct_crossing_only_passes(p, middle, w->end)
-             ? INFINITY
-             : fmax(estimate(s, w->begin > 0 ? w->rest : w->e, y1), left / ct_crossing_held);
+    const double left = p->residual ? p->residual(p->user, middle, w->end) : 0,
+                 mismatch = p->mismatch ? p->mismatch(p->user, middle, w->end) : 0;
+    if (left > ct_crossing_held + held_tolerance * s->tolerance->rtol)
+        return INFINITY;
+    return fmax(judge(s, mismatch, estimate(s, w->begin > 0 ? w->rest : w->e, y1)),
+                left / ct_crossing_held);
 }
 
 static enum ct_eval step(const struct ct_problem *p, double t, double h, const double *y,
