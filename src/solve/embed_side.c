@@ -119,6 +119,12 @@ void ct_embed_see(struct ct_embed *s, struct ct_embed_view *v)
 // Of det (A'B), A and B (m x n); 0 where that is none.
 static int sign_between(struct ct_embed *s, const double *A, const double *B, int m, int n)
 {
+    if (n == 0)
+        return 1;
+    if (n == 1) {
+        const double d = ct_vector_dot(A, B, (size_t)m);
+        return (d > 0) - (d < 0);
+    }
     ct_matrix_multiply_transposed(s->S, A, B, n, m, n);
     return ct_lu(s->S, s->iwork, n, n) ? sign_of(s->S, s->iwork, n) : 0;
 }

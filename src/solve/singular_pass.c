@@ -55,7 +55,7 @@ static double pivot_on(struct ct_singular *w, const struct passage *p, double pa
 // behind tell.
 static double narrow(struct ct_singular *w, const struct passage *p, double theta, double d)
 {
-    enum { LOOKS = 4 };
+    enum { LOOKS = 3 };
     const double nearer = 0.125;
     for (int i = 0; i < LOOKS; i++) {
         const double before = pivot_on(w, p, theta - d), behind = pivot_on(w, p, theta + d);
@@ -133,59 +133,76 @@ static void find_dependence(struct ct_singular *w, const struct passage *p, doub
     mark_rows(w, at->row);
 }
 
-// Are both ends of the way on sides as they would be with this loss of rank on it, if that is known?
+// Is the end of the way on the side where this loss of rank on it leads to from w->along, where it begins, if that is known?
 static bool tells_of(struct ct_singular *w, const struct passage *p, int rank_loss)
 {
-    pivot_on(w, p, 0);
-    ct_embed_see(w->s, w->along);
     pivot_on(w, p, 1);
     ct_embed_see(w->s, w->here);
     return !w->along->rank || w->along->rank != w->here->rank
         || ct_embed_has_passed(w->s, w->along, w->here) == (rank_loss % 2 == 1);
 }
 
-// Most often there is one position, in the middle, where it has been foreseen.
-static int find_positions(struct ct_singular *w, const struct passage *p, double *theta)
+// Positions on a way, as parts of it.
+struct found {
+    double theta[PARTS];
+    int n;
+    bool is_seen; // one, of which all is known in the last of w->passed
+};
+
+// Most often there is one, in the middle, where it has been foreseen.
+static void find_positions(struct ct_singular *w, const struct passage *p, struct found *f)
 {
     const double vanished
         = 1e-4; // of the pivot where the crossing began: near misses that are followed leave more
     const double zero = vanished * pivot_on(w, p, 0);
     struct ct_singular_position *last = &w->passed[CT_MOST_SINGULAR];
-    theta[0] = find_in_middle(w, p, zero);
-    if (isfinite(theta[0])) {
-        find_dependence(w, p, theta[0], last);
-        if (tells_of(w, p, last->rank_loss))
-            return 1;
-    }
-    const double first = isfinite(theta[0]) ? theta[0] : find_least(w, p, zero);
-    int n = find_changes(w, p, zero, 0, 1, theta);
-    if (!n && isfinite(first)) // several in one part
-        n = find_changes(w, p, zero, first - 1.0 / PARTS, first + 1.0 / PARTS, theta);
-    if (n)
-        return n;
-    theta[0] = first;
-    return isfinite(first);
+    ct_embed_see(w->s, w->along);
+    double first = find_in_middle(w, p, zero);
+    f->theta[0] = first;
+    f->n = 1;
+    if (isfinite(first)) {
+        find_dependence(w, p, first, last);
+        f->is_seen = tells_of(w, p, last->rank_loss);
+        if (f->is_seen)
+            return;
+    } else
+        first = find_least(w, p, zero);
+    f->n = find_changes(w, p, zero, 0, 1, f->theta);
+    if (!f->n && isfinite(first)) // several in one part
+        f->n = find_changes(w, p, zero, first - 1.0 / PARTS, first + 1.0 / PARTS, f->theta);
+    if (f->n)
+        return;
+    f->theta[0] = first;
+    f->n = isfinite(first);
+}
+
+static void keep_position(struct ct_singular *w, const struct passage *p, const struct found *f,
+                          int i)
+{
+    if (w->npassed++ >= CT_MOST_SINGULAR)
+        return;
+    struct ct_singular_position *at = &w->passed[w->npassed - 1],
+                                *last = &w->passed[CT_MOST_SINGULAR];
+    if (!f->is_seen)
+        find_dependence(w, p, f->theta[i], last);
+    memcpy(at->row, last->row, w->m->nrow * sizeof *at->row);
+    at->rank_loss = last->rank_loss;
+    at->t = fmax(time_on(p, f->theta[i]), 0); // a run that starts in one begins before it
 }
 
 bool ct_singular_pass(struct ct_singular *w, const struct ct_stepper_span *span, double begin,
                       double t1, double pending)
 {
     const struct passage p = {.span = span, .begin = begin, .pending = pending};
-    double theta[PARTS];
-    const int n = find_positions(w, &p, theta);
+    struct found f = {.n = 0};
     bool has_passed = false;
+    find_positions(w, &p, &f);
     w->has_tried = false;
-    for (int i = 0; i < n; i++) {
-        const double t = time_on(&p, theta[i]);
-        if (!(t <= t1))
-            continue;
-        has_passed = true;
-        if (w->npassed++ >= CT_MOST_SINGULAR)
-            continue;
-        struct ct_singular_position *at = &w->passed[w->npassed - 1];
-        at->t = fmax(t, 0); // a run that starts in one begins before it
-        find_dependence(w, &p, theta[i], at);
-    }
+    for (int i = 0; i < f.n; i++)
+        if (time_on(&p, f.theta[i]) <= t1) {
+            keep_position(w, &p, &f, i);
+            has_passed = true;
+        }
     return has_passed;
 }
 
