@@ -68,8 +68,8 @@ static void find_tangents(const struct ct_embed *s, double *T)
 {
     const size_t n = s->m->nu;
     const int r = s->rank;
-    memset(T, 0, n * (n - (size_t)r) * sizeof *T);
     for (int j = 0; j < (int)n - r; j++, T += n) {
+        memset(T, 0, n * sizeof *T);
         T[s->independent[j]] = 1;
         for (int k = 0; k < r; k++)
             T[s->dependent[k]] = s->B[k + r * j];
@@ -80,8 +80,8 @@ static void find_tangents(const struct ct_embed *s, double *T)
 static void find_annihilators(const struct ct_embed *s, double *N)
 {
     const int m = (int)s->m->nrow, r = s->rank;
-    memset(N, 0, (size_t)(m * (m - r)) * sizeof *N);
     for (int j = r; j < m; j++, N += m) {
+        memset(N, 0, (size_t)m * sizeof *N);
         for (int k = 0; k < r; k++)
             s->d[k] = -*ct_embed_J(s, s->row[j], s->dependent[k]);
         ct_lu_solve(s->d, s->Jd, s->pivot, r, r, 1, r, true);
