@@ -18,7 +18,13 @@
 #include <math.h>
 #include <string.h>
 
-enum { SIDE = 7, STAGES = 2 * SIDE, LEFT_SWEEPS = 2, MOST_SWEEPS = 60, QUADRATURE = 8 };
+enum {
+    STAGES = CT_CROSSING_STAGES,
+    SIDE = STAGES / 2,
+    LEFT_SWEEPS = 2,
+    MOST_SWEEPS = 60,
+    QUADRATURE = 8
+};
 
 // Part of the step in whose middle nothing is evaluated.
 static const double gap = 0.3;

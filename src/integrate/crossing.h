@@ -10,6 +10,7 @@
 /// Not in ct_methods: only the driver takes such steps, centred on the position. *err is infinite when there is no
 /// smooth motion across, since the polynomial leaves the constraints: the mechanism only passes close by.
 extern const struct ct_method ct_crossing;
+enum { CT_CROSSING_STAGES = 14 };
 
 /// A smooth motion meets the constraints also in the middle, up to this [m, rad].
 extern const double ct_crossing_held;

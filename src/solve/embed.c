@@ -86,6 +86,15 @@ bool ct_embed_factor(struct ct_embed *s)
     return isfinite(s->kappa);
 }
 
+bool ct_embed_factor_aside(struct ct_embed *s)
+{
+    const double sigma = s->sigma, kappa = s->kappa;
+    const bool is_factored = ct_embed_factor(s);
+    s->sigma = sigma;
+    s->kappa = kappa;
+    return is_factored;
+}
+
 void ct_embed_reduce_mass(struct ct_embed *s, const double *M)
 {
     const int n = (int)s->m->nu, r = s->rank, f = n - r;

@@ -117,6 +117,8 @@ bool ct_embed_has_pivot(const struct ct_embed *s);
 /// which the kept ones may lose rank where the others do not, the smallest of the first `rank` singular values of J. To be
 /// compared with what it is elsewhere on the motion.
 double ct_embed_pivot(struct ct_embed *s);
+/// The smallest pivot of J_d alone there, to all digits; infinite of large systems.
+double ct_embed_kept_pivot(struct ct_embed *s);
 /// Is it between the two? Cheaper than to find it where rows are redundant, false where that is not certain or where they
 /// are not.
 bool ct_embed_pivot_is_between(struct ct_embed *s, double low, double high);

@@ -141,6 +141,16 @@ double ct_embed_pivot(struct ct_embed *s)
     return pivot;
 }
 
+double ct_embed_kept_pivot(struct ct_embed *s)
+{
+    double least = INFINITY;
+    if (ct_embed_is_large(s) || !ct_embed_factor_aside(s))
+        return least;
+    for (int i = 0; i < s->rank; i++)
+        least = fmin(least, fabs(s->Jd[i + s->rank * i]));
+    return least;
+}
+
 // log of the product of the first `rank` singular values: kept rows may lose more rank than all do.
 static double log_volume(struct ct_embed *s)
 {
@@ -154,10 +164,7 @@ static double log_volume(struct ct_embed *s)
 bool ct_embed_dependence(struct ct_embed *s, double *x, double *log_det)
 {
     const int r = s->rank;
-    const double sigma = s->sigma, kappa = s->kappa;
-    const bool is_found = !ct_embed_is_large(s) && ct_embed_factor(s);
-    s->sigma = sigma;
-    s->kappa = kappa;
+    const bool is_found = !ct_embed_is_large(s) && ct_embed_factor_aside(s);
     *log_det = 0;
     for (int i = 0; i < r && is_found; i++) {
         x[i] = 1 + fmod(i * 0.6180339887498949, 1); // in no simple relation

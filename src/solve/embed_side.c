@@ -91,22 +91,12 @@ static void find_annihilators(const struct ct_embed *s, double *N)
     }
 }
 
-// The place need not be one of the motion: what is known of the motion stays.
-static bool factor_aside(struct ct_embed *s)
-{
-    const double sigma = s->sigma, kappa = s->kappa;
-    const bool is_factored = ct_embed_factor(s);
-    s->sigma = sigma;
-    s->kappa = kappa;
-    return is_factored;
-}
-
 void ct_embed_see(struct ct_embed *s, struct ct_embed_view *v)
 {
     const size_t n = s->m->nu, m = s->m->nrow, r = (size_t)s->rank;
     v->rank = 0;
     if (!has_room(s, v) || ct_embed_is_large(s)
-        || (ct_embed_has_redundant_rows(s) && !factor_aside(s)))
+        || (ct_embed_has_redundant_rows(s) && !ct_embed_factor_aside(s)))
         return; // of rows none of which is redundant the pivot is that of the factors
     v->rank = s->rank;
     v->side = parity_of(s->row, s->rank, s->row + r, (int)(m - r), s->iwork)

@@ -24,6 +24,8 @@ static inline bool ct_embed_has_redundant_rows(const struct ct_embed *s)
 
 /// LU of J_d and B = -J_d^-1 J_i (rank x free); false if J_d is singular.
 bool ct_embed_factor(struct ct_embed *s);
+/// The same at a place that need not be one of the motion: kappa and sigma of that stay.
+bool ct_embed_factor_aside(struct ct_embed *s);
 /// S (free x free) = B' M B with the unit columns of the independent speeds, its lower triangle.
 void ct_embed_reduce_mass(struct ct_embed *s, const double *M);
 /// After ct_embed_accelerate with one freedom: B' M B against what its terms add up to before motions that constraints forbid cancel.  (8.39)

@@ -46,6 +46,7 @@ struct ct_run {
     struct ct_run_report *report;
     double energy0, energy_scale;
     struct ct_singular *singular;
+    struct ct_bridging *bridging;
     struct ct_clock clock;
     double pending;            // time of the event ahead; INFINITY if there is none
     double turning, t_turning; // how fast followed angles turn [rad/s], and when that was

@@ -3,6 +3,7 @@
 
 #include "formulate/flexible.h"
 #include "numeric/dense.h"
+#include "solve/bridge.h"
 #include "solve/dae.h"
 #include "solve/quad_embed.h"
 
@@ -227,6 +228,7 @@ static void find_needs(struct ct_run *r)
         r->has_lam_results |= uses(e, e->result[i].value, CT_SYM_LAM);
     for (size_t i = 0; i < e->nvalidity; i++)
         r->has_lam_results |= uses(e, e->validity[i].eta, CT_SYM_LAM);
+    r->singular->has_poles = r->has_lam_results;
     r->root_of = CT_NEWN(r->arena, int, e->nmode + 1);
     for (size_t i = 0; i < e->nmode; i++)
         if (!e->mode[i].is_time)
@@ -291,6 +293,7 @@ struct ct_run *ct_run_prepare(struct ct_ctx *ctx, struct ct_arena *a,
     r->m = ct_machine_create(a, model, e);
     r->s = ct_embed_create(a, ctx, r->m);
     r->singular = ct_singular_create(a, r->m, r->s);
+    r->bridging = ct_bridging_create(a, r->m);
     r->ny = r->m->nq + r->m->nu + 1;
     r->y = CT_NEWN(a, double, r->ny);
     r->dy = CT_NEWN(a, double, r->ny);
@@ -428,24 +431,14 @@ bool ct_run_at_sample(void *user, double t, const double *y)
                                                            : singular_at(r, t);
 }
 
-// Where accelerations and multipliers cannot be computed they are those at other times, interpolated.
+// Where accelerations and multipliers cannot be computed.
 static bool at_singular_sample(void *user, double t, const double *y, const struct ct_bridge *b)
 {
     struct ct_run *r = user;
     struct ct_machine *m = r->m;
     double *a = r->scratch, *lam = a + m->nu;
-    memset(a, 0, (m->nu + m->nrow) * sizeof *a);
-    for (int k = 0; k < b->n; k++) {
-        memcpy(r->stage, b->y + (size_t)k * r->ny, r->ny * sizeof *y);
-        if (ct_embed_project(r->s, b->t[k], r->stage) != CT_EVAL_OK
-            || ct_run_accelerate(r, b->t[k], r->stage) != CT_EVAL_OK)
-            return singular_at(r, t);
-        ct_embed_multipliers(r->s);
-        for (size_t i = 0; i < m->nu; i++)
-            a[i] += b->weight[k] * r->s->a[i];
-        for (size_t i = 0; i < m->nrow; i++)
-            lam[i] += b->weight[k] * r->s->lam[i];
-    }
+    if (!ct_run_bridge(r, t, b, a, lam))
+        return singular_at(r, t);
     ct_machine_set(m, t, y);
     memcpy(m->input + m->at_a, a, m->nu * sizeof *a);
     memcpy(m->input + m->at_lam, lam, m->nrow * sizeof *lam);

@@ -38,6 +38,7 @@ void ct_singular_start(struct ct_singular *w)
     w->reach = w->most = w->part = w->pivot = w->fall = w->t = w->dt = 0;
     w->switches = -1;
     w->npassed = w->nover = 0;
+    w->npole = 0;
     w->closest = INFINITY;
     w->swiftest = 0;
     ct_embed_give_room(w->s, w->there);

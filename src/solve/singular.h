@@ -9,6 +9,7 @@
 #include "solve/embed.h"
 
 enum { CT_MOST_SINGULAR = 100 }; // kept for the report
+enum { CT_MOST_POLES = 4 };      // of multipliers, on one crossing
 
 /// What was passed.
 struct ct_singular_position {
@@ -44,6 +45,10 @@ struct ct_singular {
     double over;     // when first
     double closest,
         t_closest; // the smallest part of a step that was not made to cross, in double precision, and when
+    bool has_poles; // they are asked for
+    int npole;
+    double pole
+        [CT_MOST_POLES]; // times of positions on the last crossing, to all digits, that the run may begin behind or end before
     long npassed;
     struct ct_singular_position *passed; // the first of them (CT_MOST_SINGULAR)
     double *last;                        // the last accepted state  (nq + nu)

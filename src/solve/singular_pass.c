@@ -51,18 +51,26 @@ static double pivot_on(struct ct_singular *w, const struct passage *p, double pa
     return ct_singular_pivot(w, ct_time_before(time_on(p, part), p->pending), w->y);
 }
 
+typedef double measure(struct ct_singular *w, const struct passage *p, double part);
+
 // From where the pivot is nearly as small as it becomes, within d: it falls and rises about linearly, so that its sizes before and
 // behind tell.
-static double narrow(struct ct_singular *w, const struct passage *p, double theta, double d)
+static double narrow_by(measure *pivot, struct ct_singular *w, const struct passage *p,
+                        double theta, double d)
 {
     enum { LOOKS = 3 };
     const double nearer = 0.125;
     for (int i = 0; i < LOOKS; i++) {
-        const double before = pivot_on(w, p, theta - d), behind = pivot_on(w, p, theta + d);
+        const double before = pivot(w, p, theta - d), behind = pivot(w, p, theta + d);
         theta += d * (before - behind) / (before + behind);
         d *= nearer;
     }
     return theta;
+}
+
+static double narrow(struct ct_singular *w, const struct passage *p, double theta, double d)
+{
+    return narrow_by(pivot_on, w, p, theta, d);
 }
 
 enum { PARTS = 16 }; // of a way that is searched
@@ -190,6 +198,22 @@ static void keep_position(struct ct_singular *w, const struct passage *p, const 
     at->t = fmax(time_on(p, f->theta[i]), 0); // a run that starts in one begins before it
 }
 
+// Of the kept rows, which depend where all do: singular values have but half of the digits.
+static double kept_pivot_on(struct ct_singular *w, const struct passage *p, double part)
+{
+    pivot_on(w, p, part);
+    return ct_embed_kept_pivot(w->s);
+}
+
+// To as many digits as the way has: what multipliers make of a position is divided by the time to it.
+static void keep_poles(struct ct_singular *w, const struct passage *p, const struct found *f)
+{
+    const double beside = 4e-4;
+    w->npole = 0;
+    for (int i = 0; i < f->n && w->has_poles && w->npole < CT_MOST_POLES; i++)
+        w->pole[w->npole++] = time_on(p, narrow_by(kept_pivot_on, w, p, f->theta[i], beside));
+}
+
 bool ct_singular_pass(struct ct_singular *w, const struct ct_stepper_span *span, double begin,
                       double t1, double pending)
 {
@@ -197,6 +221,7 @@ bool ct_singular_pass(struct ct_singular *w, const struct ct_stepper_span *span,
     struct found f = {.n = 0};
     bool has_passed = false;
     find_positions(w, &p, &f);
+    keep_poles(w, &p, &f);
     w->has_tried = false;
     for (int i = 0; i < f.n; i++)
         if (time_on(&p, f.theta[i]) <= t1) {

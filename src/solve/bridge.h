@@ -1,0 +1,24 @@
+// Accelerations and multipliers in the gap of a crossing, from what they are at its stages.
+//
+// Accelerations are smooth across a singular position, and interpolated. Multipliers are not: what bears on the motion that is blocked
+// there but for the position, forces that do not vanish, is carried by rows that come to depend, and grows like 1/(t - t_k) towards a
+// position at t_k. Less that part they are smooth:
+//
+//     lam(t) = P(t) + sum_k R_k/(t - t_k),   R_k = [lam prod_l (t - t_l)](t_k)/prod_{l != k} (t_k - t_l)           (8.43)
+//
+// with the product in brackets, and P, interpolated between stages.
+#ifndef CT_SOLVE_BRIDGE_H
+#define CT_SOLVE_BRIDGE_H
+
+#include "solve/run.h"
+
+struct ct_bridging;
+
+/// Room for that of outputs with multipliers; everything lives in a.
+struct ct_bridging *ct_bridging_create(struct ct_arena *a, const struct ct_machine *m);
+/// a (nu, out), lam (nrow, out) at t in the gap that b bridges, with the positions of the last crossing. False where they cannot be computed at
+/// the stages.
+bool ct_run_bridge(struct ct_run *r, double t, const struct ct_bridge *b, double *a,
+                   double *lam);
+
+#endif
