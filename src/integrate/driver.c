@@ -61,6 +61,10 @@ static void allocate(struct ct_driver *r)
         r->beside = CT_NEWN(a, double, r->p->ny);
         r->dbeside = CT_NEWN(a, double, r->p->ny);
     }
+    if (r->method->leaves_speeds) {
+        r->put = CT_NEWN(a, double, r->p->ny);
+        r->dput = CT_NEWN(a, double, r->p->ny);
+    }
     if (r->p->singular_in && r->o->step == 0)
         r->crossing_work = ct_crossing.create(a, &ct_crossing, r->p);
     if (r->crossing_work)
@@ -223,6 +227,44 @@ tolerance_of(const struct ct_driver *r, const struct ct_stride *s, struct ct_tol
     return tol;
 }
 
+static bool is_put(const struct ct_driver *r, const struct ct_stride *s)
+{
+    return s->method == &ct_crossing && r->method->leaves_speeds && r->p->project;
+}
+
+// Crossings begin on the constraints, which speeds of some methods meet to their order only; not where they miss these by so much more than
+// is wanted that steps have lost the motion.
+static enum ct_eval put_speeds(struct ct_driver *r, const struct ct_stride *s)
+{
+    const double most = 10; // times what is wanted
+    const struct ct_problem *p = r->p;
+    const double part = most * p->accuracy / r->tolerance.rtol;
+    const struct ct_tolerance allowed = {part * r->tolerance.rtol, part * r->tolerance.atol};
+    const size_t bytes = (size_t)p->ny * sizeof *r->y;
+    if (!is_put(r, s))
+        return CT_EVAL_OK;
+    memcpy(r->put, r->y, bytes);
+    memcpy(r->dput, r->dy, bytes);
+    const enum ct_eval e = p->project(p->user, r->t, r->y);
+    if (e != CT_EVAL_OK)
+        return e;
+    for (int i = 0; i < p->ny; i++)
+        r->point[i] = r->y[i] - r->put[i];
+    if (!(ct_stepper_norm(p, &allowed, r->put, r->y, r->point) <= 1))
+        return CT_EVAL_RETRY;
+    return p->rhs(p->user, r->t, r->y, r->dy);
+}
+
+// The step across has failed: steps go on from where they were.
+static void take_speeds_back(struct ct_driver *r, const struct ct_stride *s)
+{
+    const size_t bytes = (size_t)r->p->ny * sizeof *r->y;
+    if (!is_put(r, s))
+        return;
+    memcpy(r->y, r->put, bytes);
+    memcpy(r->dy, r->dput, bytes);
+}
+
 // From y to end by the method and the projection. Refused with s->error > 1 when that is the reason.
 static inline enum ct_eval attempt(struct ct_driver *r, struct ct_stride *s)
 {
@@ -234,8 +276,10 @@ static inline enum ct_eval attempt(struct ct_driver *r, struct ct_stride *s)
     r->is_open = false;
     if (s->method == &ct_crossing)
         ct_crossing_begin(s->work, s->begin);
-    enum ct_eval e = s->is_striding
-                       ? ct_striding_step(r->striding, r->t, s->h, r->y, r->dy, tolerance,
+    enum ct_eval e = put_speeds(r, s);
+    if (e != CT_EVAL_OK)
+        return e;
+    e = s->is_striding ? ct_striding_step(r->striding, r->t, s->h, r->y, r->dy, tolerance,
                                           r->y1, r->dy1, &error, s->work, r->stats)
                        : s->method->step(r->p, r->t, s->h, r->y, r->dy, tolerance, r->y1,
                                          r->dy1, &error, s->work, r->stats);
@@ -467,6 +511,7 @@ static bool find_step(struct ct_driver *r, double stop, bool is_time, struct ct_
             ct_driver_look_ahead(r, s->t1);
             return true;
         }
+        take_speeds_back(r, s);
         if (r->o->step > 0)
             return ct_error(r->ctx, nowhere, CT_E_STEP_REFUSED,
                             "at t = %.9g a step of fixed size %.3g is too large", r->t, h);

@@ -39,6 +39,7 @@ struct ct_driver {
     bool is_told;       // that it takes long
     double *y, *dy;     // (ny) each, as all that follow
     double *y1, *dy1;   // end of the step as the method gives it
+    double *put, *dput; // y, dy before speeds were put onto the constraints for a crossing
     double *end, *dend; // the same, projected: y1, dy1 themselves where that changes nothing
     double *moved, *dmoved; // where end, dend are others
     double *point;          // a state to spare
