@@ -6,7 +6,8 @@
 //
 //     lam(t) = P(t) + sum_k R_k/(t - t_k),   R_k = [lam prod_l (t - t_l)](t_k)/prod_{l != k} (t_k - t_l)           (8.43)
 //
-// with the product in brackets, and P, interpolated between stages.
+// with the product in brackets, and P, interpolated between stages. Results that are linear in multipliers are interpolated so themselves:
+// what y errs by in the gap times loads without bound would be seen in those that have no part in them.
 #ifndef CT_SOLVE_BRIDGE_H
 #define CT_SOLVE_BRIDGE_H
 
@@ -14,11 +15,11 @@
 
 struct ct_bridging;
 
-/// Room for that of outputs with multipliers; everything lives in a.
+/// For the results of m; everything lives in a.
 struct ct_bridging *ct_bridging_create(struct ct_arena *a, const struct ct_machine *m);
-/// a (nu, out), lam (nrow, out) at t in the gap that b bridges, with the positions of the last crossing. False where they cannot be computed at
-/// the stages.
-bool ct_run_bridge(struct ct_run *r, double t, const struct ct_bridge *b, double *a,
-                   double *lam);
+/// value (nresult, out): results at (t, y) in the gap that b bridges, with the positions of the last crossing. False where they cannot be
+/// computed at the stages.
+bool ct_run_bridge(struct ct_run *r, double t, const double *y, const struct ct_bridge *b,
+                   double *value);
 
 #endif

@@ -435,16 +435,7 @@ bool ct_run_at_sample(void *user, double t, const double *y)
 static bool at_singular_sample(void *user, double t, const double *y, const struct ct_bridge *b)
 {
     struct ct_run *r = user;
-    struct ct_machine *m = r->m;
-    double *a = r->scratch, *lam = a + m->nu;
-    if (!ct_run_bridge(r, t, b, a, lam))
-        return singular_at(r, t);
-    ct_machine_set(m, t, y);
-    memcpy(m->input + m->at_a, a, m->nu * sizeof *a);
-    memcpy(m->input + m->at_lam, lam, m->nrow * sizeof *lam);
-    ct_program_run(&m->result, m->input);
-    memcpy(r->value, m->result.out, r->e->nresult * sizeof *r->value);
-    return give_row(r, t, y);
+    return ct_run_bridge(r, t, y, b, r->value) ? give_row(r, t, y) : singular_at(r, t);
 }
 
 bool ct_run_at_step(void *user, double t, const double *y)
