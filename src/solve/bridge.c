@@ -2,38 +2,39 @@
 #include "solve/bridge.h"
 
 #include "integrate/crossing.h"
+#include "numeric/dense.h"
 
 #include <float.h>
 #include <math.h>
 #include <string.h>
 
-// What a position makes of the multipliers at the stages.
-struct pole {
-    double residue[CT_CROSSING_STAGES]; // weights: R_k
-    double factor; // what there is of it at t, less what weights make of it
+enum { N = CT_CROSSING_STAGES, MODELS = 1 << CT_MOST_POLES, CHECKED = 2 };
+
+// With poles at some of the positions: weights of the stages for t, and for what the two beside the gap are found to be from the others, less
+// what they are.
+struct model {
+    double weight[N], check[CHECKED][N];
 };
 
-// Numbers at t from what they are at the stages.
-struct sum {
+// Numbers at the stages, and at t.
+struct numbers {
     size_t n;
-    double *value;    // (n) as interpolated
-    double *R, *size; // (n x CT_MOST_POLES) R_k, and of what it is a sum
+    double *at, *value; // (n x N), (n)
 };
 
 struct ct_bridging {
     int n; // poles
-    struct pole pole[CT_MOST_POLES];
-    struct sum a, lam, result;
+    double pole[CT_MOST_POLES];
+    struct model model[MODELS]; // by the set of its poles
+    struct numbers a, lam, result;
     bool *is_linear; // (nresult) in multipliers
     bool any_linear;
 };
 
-static struct sum create_sum(struct ct_arena *a, size_t n)
+static struct numbers create_numbers(struct ct_arena *a, size_t n)
 {
-    return (struct sum){.n = n,
-                        .value = CT_NEWN(a, double, n + 1),
-                        .R = CT_NEWN(a, double, n *CT_MOST_POLES + 1),
-                        .size = CT_NEWN(a, double, n *CT_MOST_POLES + 1)};
+    return (struct numbers){
+        .n = n, .at = CT_NEWN(a, double, n *N + 1), .value = CT_NEWN(a, double, n + 1)};
 }
 
 // Is g, which has multipliers in it, linear in them, and smooth but for them? ds (nrow): in no simple relation.
@@ -62,9 +63,9 @@ static void find_linear(struct ct_bridging *s, struct ct_arena *a, const struct 
 struct ct_bridging *ct_bridging_create(struct ct_arena *a, const struct ct_machine *m)
 {
     struct ct_bridging *s = CT_NEW(a, struct ct_bridging);
-    s->a = create_sum(a, m->nu);
-    s->lam = create_sum(a, m->nrow);
-    s->result = create_sum(a, m->e->nresult);
+    s->a = create_numbers(a, m->nu);
+    s->lam = create_numbers(a, m->nrow);
+    s->result = create_numbers(a, m->e->nresult);
     s->is_linear = CT_NEWN(a, bool, m->e->nresult + 1);
     if (m->nrow)
         find_linear(s, a, m->e);
@@ -78,71 +79,99 @@ static double way_from(double t, double pole)
     return fabs(t - pole) > least ? t - pole : least;
 }
 
-// The weight of stage j in what is interpolated at t.
-static double lagrange(const struct ct_bridge *b, int j, double t)
+// The weight of stage j in what is interpolated at t between the stages that `some` names.
+static double lagrange(const struct ct_bridge *b, const bool *some, int j, double t)
 {
-    double weight = 1;
-    for (int i = 0; i < b->n; i++)
-        weight *= i == j ? 1 : (t - b->t[i]) / (b->t[j] - b->t[i]);
+    double weight = some[j];
+    for (int i = 0; i < N; i++)
+        if (some[i] && i != j)
+            weight *= (t - b->t[i]) / (b->t[j] - b->t[i]);
     return weight;
 }
 
-static void find_pole(const struct ct_bridge *b, double t, const double *at, int n, int k,
-                      struct pole *p)
+// Weights of the stages for t, with these poles.
+static void weigh(const struct ct_bridging *s, const struct ct_bridge *b, const bool *some,
+                  unsigned poles, double t, double *weight)
 {
-    p->factor = 1 / way_from(t, at[k]);
-    for (int j = 0; j < b->n; j++) {
-        p->residue[j] = lagrange(b, j, at[k]) * (b->t[j] - at[k]);
-        for (int l = 0; l < n; l++)
-            p->residue[j] *= l == k ? 1 : (b->t[j] - at[l]) / (at[k] - at[l]);
-        p->factor -= b->weight[j] / (b->t[j] - at[k]);
+    double plain[N];
+    for (int j = 0; j < N; j++)
+        weight[j] = plain[j] = lagrange(b, some, j, t);
+    for (int k = 0; k < s->n; k++) {
+        if (!(poles & 1u << k))
+            continue;
+        double factor = 1 / way_from(t, s->pole[k]);
+        for (int j = 0; j < N; j++)
+            factor -= some[j] ? plain[j] / way_from(b->t[j], s->pole[k]) : 0;
+        for (int j = 0; j < N; j++) {
+            double residue = lagrange(b, some, j, s->pole[k]) * (b->t[j] - s->pole[k]);
+            for (int l = 0; l < s->n; l++)
+                if (l != k && poles & 1u << l)
+                    residue *= (b->t[j] - s->pole[l]) / (s->pole[k] - s->pole[l]);
+            weight[j] += factor * residue;
+        }
+    }
+}
+
+static void find_models(struct ct_bridging *s, const struct ct_bridge *b, double t)
+{
+    bool all[N], others[N];
+    for (int j = 0; j < N; j++) {
+        all[j] = true;
+        others[j] = j != N / 2 - 1 && j != N / 2;
+    }
+    for (unsigned poles = 0; poles < 1u << s->n; poles++) {
+        struct model *m = &s->model[poles];
+        weigh(s, b, all, poles, t, m->weight);
+        for (int c = 0; c < CHECKED; c++) {
+            const int j = N / 2 - 1 + c;
+            weigh(s, b, others, poles, b->t[j], m->check[c]);
+            m->check[c][j] -= 1;
+        }
     }
 }
 
 // Positions that are next to each other are one.
-static void find_poles(struct ct_bridging *s, const struct ct_singular *w, double t,
+static void find_poles(struct ct_bridging *s, const struct ct_singular *w,
                        const struct ct_bridge *b)
 {
-    const double apart = 1e-6 * (b->t[b->n - 1] - b->t[0]);
-    double at[CT_MOST_POLES];
+    const double apart = 1e-7 * (b->t[N - 1] - b->t[0]);
     s->n = 0;
     for (int k = 0; k < w->npole; k++)
-        if (!s->n || w->pole[k] - at[s->n - 1] > apart)
-            at[s->n++] = w->pole[k];
-    for (int k = 0; k < s->n; k++)
-        find_pole(b, t, at, s->n, k, &s->pole[k]);
+        if (!s->n || w->pole[k] - s->pole[s->n - 1] > apart)
+            s->pole[s->n++] = w->pole[k];
 }
 
-static void clear(struct sum *x)
+static void note(struct numbers *x, const double *at, int j)
 {
-    memset(x->value, 0, x->n * sizeof *x->value);
-    memset(x->R, 0, x->n * CT_MOST_POLES * sizeof *x->R);
-    memset(x->size, 0, x->n * CT_MOST_POLES * sizeof *x->size);
-}
-
-// What x is at stage j, of this weight; npole: 0 where it has none.
-static void add_stage(const struct ct_bridging *s, struct sum *x, const double *at, int j,
-                      double weight, int npole)
-{
-    for (size_t i = 0; i < x->n; i++) {
-        x->value[i] += weight * at[i];
-        for (int k = 0; k < npole; k++) {
-            const double part = s->pole[k].residue[j] * at[i];
-            x->R[i * CT_MOST_POLES + (size_t)k] += part;
-            x->size[i * CT_MOST_POLES + (size_t)k] += fabs(part);
-        }
-    }
-}
-
-static void add_poles(const struct ct_bridging *s, struct sum *x)
-{
-    const double rounding = 1e-11; // of what sums that vanish are made of
     for (size_t i = 0; i < x->n; i++)
-        for (int k = 0; k < s->n; k++) {
-            const double R = x->R[i * CT_MOST_POLES + (size_t)k];
-            if (fabs(R) > rounding * x->size[i * CT_MOST_POLES + (size_t)k])
-                x->value[i] += s->pole[k].factor * R;
+        x->at[i * N + (size_t)j] = at[i];
+}
+
+static double error_of(const struct model *m, const double *at)
+{
+    double error = 0;
+    for (int c = 0; c < CHECKED; c++)
+        error += fabs(ct_vector_dot(m->check[c], at, N));
+    return error;
+}
+
+// A pole belongs to a number if the stages tell of it.
+static void take(const struct ct_bridging *s, struct numbers *x, bool has_poles)
+{
+    const double clearly = 0.1;
+    for (size_t i = 0; i < x->n; i++) {
+        const double *at = x->at + i * N;
+        const struct model *best = &s->model[0];
+        double least = error_of(best, at);
+        for (unsigned poles = 1; has_poles && poles < 1u << s->n; poles++) {
+            const double error = error_of(&s->model[poles], at);
+            if (error < clearly * least) {
+                least = error;
+                best = &s->model[poles];
+            }
         }
+        x->value[i] = ct_vector_dot(best->weight, at, N);
+    }
 }
 
 // Results where the machine is, with these accelerations and multipliers.
@@ -154,19 +183,18 @@ static const double *results(struct ct_machine *m, const double *a, const double
     return m->result.out;
 }
 
-static bool add_all_of_stage(struct ct_run *r, const struct ct_bridge *b, int j)
+static bool note_stage(struct ct_run *r, const struct ct_bridge *b, int j)
 {
     struct ct_bridging *s = r->bridging;
-    const double weight = b->weight[j];
     memcpy(r->stage, b->y + (size_t)j * r->ny, r->ny * sizeof *r->stage);
     if (ct_embed_project(r->s, b->t[j], r->stage) != CT_EVAL_OK
         || ct_run_accelerate(r, b->t[j], r->stage) != CT_EVAL_OK)
         return false;
     ct_embed_multipliers(r->s);
-    add_stage(s, &s->a, r->s->a, j, weight, 0);
-    add_stage(s, &s->lam, r->s->lam, j, weight, s->n);
+    note(&s->a, r->s->a, j);
+    note(&s->lam, r->s->lam, j);
     if (s->any_linear)
-        add_stage(s, &s->result, results(r->m, r->s->a, r->s->lam), j, weight, s->n);
+        note(&s->result, results(r->m, r->s->a, r->s->lam), j);
     return true;
 }
 
@@ -174,15 +202,14 @@ bool ct_run_bridge(struct ct_run *r, double t, const double *y, const struct ct_
                    double *value)
 {
     struct ct_bridging *s = r->bridging;
-    struct sum *const sums[] = {&s->a, &s->lam, &s->result};
-    for (size_t i = 0; i < COUNT(sums); i++)
-        clear(sums[i]);
-    find_poles(s, r->singular, t, b);
-    for (int j = 0; j < b->n; j++)
-        if (!add_all_of_stage(r, b, j))
+    find_poles(s, r->singular, b);
+    find_models(s, b, t);
+    for (int j = 0; j < N; j++)
+        if (!note_stage(r, b, j))
             return false;
-    add_poles(s, &s->lam);
-    add_poles(s, &s->result);
+    take(s, &s->a, false);
+    take(s, &s->lam, true);
+    take(s, &s->result, true);
     ct_machine_set(r->m, t, y);
     memcpy(value, results(r->m, s->a.value, s->lam.value), r->e->nresult * sizeof *value);
     for (size_t i = 0; i < r->e->nresult; i++)

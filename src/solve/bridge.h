@@ -6,7 +6,7 @@
 //
 //     lam(t) = P(t) + sum_k R_k/(t - t_k),   R_k = [lam prod_l (t - t_l)](t_k)/prod_{l != k} (t_k - t_l)           (8.43)
 //
-// with the product in brackets, and P, interpolated between stages. Results that are linear in multipliers are interpolated so themselves:
+// with the product in brackets, and P, interpolated between stages, and those positions that stages tell of. Results that are linear in multipliers are interpolated so themselves:
 // what y errs by in the gap times loads without bound would be seen in those that have no part in them.
 #ifndef CT_SOLVE_BRIDGE_H
 #define CT_SOLVE_BRIDGE_H

@@ -97,21 +97,29 @@ static double find_least(struct ct_singular *w, const struct passage *p, double 
     return pivot_on(w, p, at) < zero ? at : NAN;
 }
 
-// The same wherever sides change between two parts of the way. theta (PARTS, out); returns how many there are.
+struct window { // of a way, parts of it; and where the pivot is least in it
+    double from, to, least;
+};
+
+// The same wherever sides change within. theta (PARTS, out); returns how many there are.
 static int find_changes(struct ct_singular *w, const struct passage *p, double zero,
-                        double from, double to, double *theta)
+                        struct window *in, double *theta)
 {
-    const double part = (to - from) / PARTS, near = part / 4;
+    const double part = (in->to - in->from) / PARTS, near = part / 4;
     struct ct_embed_view *last = w->along, *next = w->here;
     int n = 0;
-    double before = pivot_on(w, p, from);
+    double before = pivot_on(w, p, in->from), least = before;
+    in->least = in->from;
     ct_embed_see(w->s, last);
     for (int i = 1; i <= PARTS; i++) {
-        const double behind = pivot_on(w, p, from + i * part);
+        const double at = in->from + i * part, behind = pivot_on(w, p, at);
         ct_embed_see(w->s, next);
+        if (behind < least) {
+            least = behind;
+            in->least = at;
+        }
         if (ct_embed_has_passed(w->s, last, next)) {
-            const double at = from + (i - behind / (before + behind)) * part;
-            theta[n] = narrow(w, p, at, near);
+            theta[n] = narrow(w, p, at - behind / (before + behind) * part, near);
             n += pivot_on(w, p, theta[n]) < zero;
         }
         struct ct_embed_view *v = last;
@@ -120,6 +128,22 @@ static int find_changes(struct ct_singular *w, const struct passage *p, double z
         before = behind;
     }
     return n;
+}
+
+// Several next to each other, which leave the side as it was, around a place.
+static int find_close(struct ct_singular *w, const struct passage *p, double zero,
+                      double around, double *theta)
+{
+    const double least = 1e-7;
+    struct window in = {.least = around};
+    for (double half = 1.0 / PARTS; half > least; half *= 2.0 / PARTS) {
+        in.from = in.least - half;
+        in.to = in.least + half;
+        const int n = find_changes(w, p, zero, &in, theta);
+        if (n)
+            return n;
+    }
+    return 0;
 }
 
 // Rows that depend there and by how much the rank falls: with d the distance from the position det J_d is as d^loss.
@@ -157,31 +181,44 @@ struct found {
     bool is_seen; // one, of which all is known in the last of w->passed
 };
 
-// Most often there is one, in the middle, where it has been foreseen.
+// One in the middle, where it has been foreseen, as most often. False if there may be others: multipliers tell two of them apart that are next
+// to each other.
+static bool find_foreseen(struct ct_singular *w, const struct passage *p, double zero,
+                          struct found *f)
+{
+    struct ct_singular_position *last = &w->passed[CT_MOST_SINGULAR];
+    ct_embed_see(w->s, w->along); // from where the pivot has just been found
+    f->theta[0] = find_in_middle(w, p, zero);
+    f->n = isfinite(f->theta[0]);
+    if (!f->n)
+        return false;
+    find_dependence(w, p, f->theta[0], last);
+    if (!tells_of(w, p, last->rank_loss))
+        return false;
+    f->is_seen = last->rank_loss % 2 == 1 || !w->has_poles;
+    return f->is_seen;
+}
+
 static void find_positions(struct ct_singular *w, const struct passage *p, struct found *f)
 {
     const double vanished
         = 1e-4; // of the pivot where the crossing began: near misses that are followed leave more
     const double zero = vanished * pivot_on(w, p, 0);
-    struct ct_singular_position *last = &w->passed[CT_MOST_SINGULAR];
-    ct_embed_see(w->s, w->along);
-    double first = find_in_middle(w, p, zero);
-    f->theta[0] = first;
-    f->n = 1;
-    if (isfinite(first)) {
-        find_dependence(w, p, first, last);
-        f->is_seen = tells_of(w, p, last->rank_loss);
-        if (f->is_seen)
-            return;
-    } else
-        first = find_least(w, p, zero);
-    f->n = find_changes(w, p, zero, 0, 1, f->theta);
-    if (!f->n && isfinite(first)) // several in one part
-        f->n = find_changes(w, p, zero, first - 1.0 / PARTS, first + 1.0 / PARTS, f->theta);
-    if (f->n)
+    struct window whole = {0, 1, 0};
+    double theta[PARTS];
+    if (find_foreseen(w, p, zero, f))
         return;
-    f->theta[0] = first;
-    f->n = isfinite(first);
+    int n = find_changes(w, p, zero, &whole, theta);
+    if (!n)
+        n = find_close(w, p, zero, f->n ? f->theta[0] : whole.least, theta);
+    if (!n && !f->n) {
+        theta[0] = find_least(w, p, zero);
+        n = isfinite(theta[0]);
+    }
+    if (!n)
+        return;
+    memcpy(f->theta, theta, sizeof theta);
+    f->n = n;
 }
 
 static void keep_position(struct ct_singular *w, const struct passage *p, const struct found *f,

@@ -38,6 +38,28 @@ for options in '' '--method dopri5' '--method radau5' '--keep-all' '--keep-all -
   done
   echo
 done
+echo '-- two of them, the second so much further, whose positions are next to each other: the forces of both'
+for apart in 0 0.001 0.003 0.03 0.1 0.3; do
+  awk -v apart=$apart '/^bodies:|^joints:|^outputs:|^simulation:|^cotree|^param|^gravity/ { part = $1 }
+    { line[n++] = $0; of[n - 1] = part }
+    END { for (i = 0; i < n; i++) {
+      if (line[i] ~ /^outputs/) { print "outputs: [A.q, C.force, zA.q, zC.force]"; continue }
+      print line[i]
+      if (line[i] ~ /^  [a-cA-D]: /) {
+        copy = line[i]
+        sub(/^  /, "  z", copy); gsub(/: ground.far/, ": ground.far", copy)
+        gsub(/to: /, "to: z", copy); gsub(/from: /, "from: z", copy); gsub(/zground/, "ground", copy)
+        if (copy ~ /q: 2,/) sub(/q: 2,/, "q: 2 + " apart ",", copy)
+        if (copy ~ /q: -2,/) sub(/q: -2,/, "q: -2 - " apart ",", copy)
+        print copy } } }' heavier.yaml >both.yaml
+  for method in auto radau5; do
+    for T in 1e-4 1e-6 1e-8; do
+      "$COTREE" simulate both.yaml --tolerance $T --method $method --until 0.4 --quiet -o both.csv --summary s.json
+      printf '%s %s, ' "$(cut -d, -f1-4 both.csv | across $T)" "$(cut -d, -f1,6-8 both.csv | across $T)"
+    done
+  done
+  echo
+done
 echo '-- a run that ends there, and rows of a sweep'
 "$COTREE" simulate heavier.yaml --tolerance 1e-8 --until 0.2665 --samples 3 --quiet -o ends.csv
 across 1e-8 <ends.csv
