@@ -24,7 +24,7 @@ struct ct_form {
     double
         least_part; // of the largest that an inertia of B' M B has been: below it `has_fallen`, at the last solution
     bool has_fallen;
-    double volume; // their product, |det J_d| but for a factor; NAN: not found
+    double volume; // their product, det J_d but for a factor; NAN: not found
     // results of check
     const double *a, *lam; // u' (nu), multipliers of the kept rows (rank)
     double left,

@@ -164,6 +164,8 @@ static bool is_told_by_form(const struct ct_singular *w, double dt, bool is_fixe
     if (!s->has_form || s->nweak || s->switches != w->switches || s->nmade != w->nmade)
         return false;
     const struct ct_form *f = s->form[0];
+    if (f->volume / w->volume < 0)
+        return false;
     if (w->part > foreseen_pivot && is_fixed)
         return ct_is_within(f->weakest / w->weakest, ct_same_strength)
             && !(s->has_units && !ct_is_within(f->volume / w->volume, ct_same_strength));
@@ -185,6 +187,29 @@ static bool has_jumped(const struct ct_singular *w, double dt, const double *u, 
     return false;
 }
 
+static void keep_speeds(struct ct_singular *w, const struct ct_sight *at)
+{
+    const size_t nu = w->m->nu;
+    memcpy(w->u, at->y + w->m->nq, nu * sizeof *w->u);
+    memcpy(w->a, at->dy + w->m->nq, nu * sizeof *w->a);
+    w->swiftest = fmax(w->swiftest, ct_vector_largest(w->u, nu));
+}
+
+static void keep_view(struct ct_singular *w, const struct ct_sight *at)
+{
+    struct ct_embed_view *v = w->there;
+    w->there = w->here;
+    w->here = v;
+    keep_speeds(w, at);
+}
+
+// From the last state, of which the form has told: what has not changed until then may have on the step from there.
+static void look_back(struct ct_singular *w, double pending)
+{
+    ct_singular_pivot(w, ct_time_before(w->t, pending), w->last);
+    ct_embed_see(w->s, w->there);
+}
+
 // What is seen of an accepted state.
 struct look {
     double now,
@@ -198,6 +223,8 @@ static struct look look_around(struct ct_singular *w, const struct ct_sight *at,
 {
     const double *u = at->y + w->m->nq, *a = at->dy + w->m->nq;
     struct look l = {.is_another = false};
+    if (w->was_told)
+        look_back(w, at->pending);
     look_at(w, ct_time_before(at->t, at->pending), at->y);
     l.is_far = w->most > 0
             && ct_embed_pivot_is_between(w->s, foreseen_pivot * w->most,
@@ -236,17 +263,6 @@ static bool is_to_be_shorter(const struct ct_singular *w, const struct look *l)
         = w->s->switches == w->switches && isinf(w->in) && w->part > near_pivot;
     return l->is_another || l->part < lost_pivot
         || (was_unforeseen && l->part < (w->was_told ? singular_pivot : near_pivot));
-}
-
-static void keep_view(struct ct_singular *w, const struct ct_sight *at)
-{
-    const size_t nu = w->m->nu;
-    struct ct_embed_view *v = w->there;
-    w->there = w->here;
-    w->here = v;
-    memcpy(w->u, at->y + w->m->nq, nu * sizeof *w->u);
-    memcpy(w->a, at->dy + w->m->nq, nu * sizeof *w->a);
-    w->swiftest = fmax(w->swiftest, ct_vector_largest(w->u, nu));
 }
 
 // Would the pivot have come to zero on this step, as it fell on the one before, or nearly so? Where rank is lost by two at a time
@@ -298,9 +314,9 @@ bool ct_singular_foresee(struct ct_singular *w, double t, const double *y, const
         return true;
     if (is_told_by_form(w, dt, step->is_fixed)) {
         note_state(w, t, y);
+        keep_speeds(w, &at);
         w->was_told = true;
         w->pivot = 0;
-        w->there->rank = 0;
         return true;
     }
     struct look l = look_around(w, &at, dt);

@@ -104,7 +104,7 @@ static double strength(struct unrolled *f, const double *pivot)
     for (size_t i = 0; i < f->c->npivot; i++) {
         const double size = fabs(pivot[i]) * f->c->scale[i];
         least = size < least ? size : least;
-        volume *= size;
+        volume *= pivot[i] * f->c->scale[i];
     }
     f->form.weakest = least;
     f->form.volume = volume;
