@@ -134,9 +134,10 @@ static int find_changes(struct ct_singular *w, const struct passage *p, double z
 static int find_close(struct ct_singular *w, const struct passage *p, double zero,
                       double around, double *theta)
 {
-    const double least = 1e-7;
+    enum { DEPTH = 7 }; // down to 1e-7
     struct window in = {.least = around};
-    for (double half = 1.0 / PARTS; half > least; half *= 2.0 / PARTS) {
+    double half = 1.0 / PARTS;
+    for (int i = 0; i < DEPTH; i++, half *= 2.0 / PARTS) {
         in.from = in.least - half;
         in.to = in.least + half;
         const int n = find_changes(w, p, zero, &in, theta);
