@@ -238,11 +238,11 @@ static enum ct_eval put_speeds(struct ct_driver *r, const struct ct_stride *s)
 {
     const double most = 10; // times what is wanted
     const struct ct_problem *p = r->p;
-    const double part = most * p->accuracy / r->tolerance.rtol;
-    const struct ct_tolerance allowed = {part * r->tolerance.rtol, part * r->tolerance.atol};
     const size_t bytes = (size_t)p->ny * sizeof *r->y;
     if (!is_put(r, s))
         return CT_EVAL_OK;
+    const double part = most * p->accuracy / r->tolerance.rtol;
+    const struct ct_tolerance allowed = {part * r->tolerance.rtol, part * r->tolerance.atol};
     memcpy(r->put, r->y, bytes);
     memcpy(r->dput, r->dy, bytes);
     const enum ct_eval e = p->project(p->user, r->t, r->y);

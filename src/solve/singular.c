@@ -155,7 +155,7 @@ static void find_next(struct ct_singular *w, const struct ct_sight *ahead, doubl
 
 // Where J loses rank its kept rows do, and a pivot of the form vanishes: while its pivots are what they were at the last look,
 // there is no need of another. Fixed steps cross nothing, and are told only whether pivots are to be sought at every evaluation.
-// With step control it is their product, too, that must hardly have changed, and no position may be near by what was seen then:
+// The sign of their product changes there, however far apart looks are. With step control it is that, too, that must hardly have changed, and no position may be near by what was seen then:
 // so little is neither lost of the largest pivot nor of the first sight of a position.
 static bool is_told_by_form(const struct ct_singular *w, double dt, bool is_fixed)
 {
@@ -340,6 +340,7 @@ void ct_singular_turn(struct ct_singular *w, double t, const double *y, const do
     const struct ct_sight ahead = {t, pending, y, dy};
     w->there->rank = 0;
     w->pivot = 0;
+    keep_speeds(w, &ahead); // a look back finds the place, and these
     if (!(w->most > 0) || w->part > foreseen_pivot || !(w->dt > 0))
         return;
     find_next(w, &ahead, ct_singular_pivot(w, ct_time_before(t, pending), y));

@@ -327,3 +327,28 @@ for options in '' '--keep-all' '--method radau5'; do
   done
   echo
 done
+
+echo '-- speeds that a driver makes jump, far from any position, are not taken for another motion: no step is refused but for its error'
+cat >jump.yaml <<'END'
+cotree: 1
+gravity: [0, -9.81, 0]
+bodies:
+  ground: {points: {far: [1, 0, 0]}}
+  crank: {mass: 1, inertia: 0.01, com: [0.15, 0, 0], points: {end: [0.3, 0, 0]}}
+  coupler: {mass: 1, inertia: 0.1, com: [0.4, 0, 0], points: {end: [0.9, 0, 0]}}
+  rocker: {mass: 1, inertia: 0.1, com: [0.3, 0, 0], points: {end: [0.7, 0, 0]}}
+joints:
+  A: {type: revolute, from: ground, to: crank, motion: "if(t < 0.503, 0.3 + t, 0.803 + 40*(t - 0.503))"}
+  B: {type: revolute, from: crank.end, to: coupler, initial: {q: 0.5, guess: true}}
+  C: {type: revolute, from: coupler.end, to: rocker.end, initial: {q: 1, guess: true}}
+  D: {type: revolute, from: ground.far, to: rocker, initial: {q: 2, guess: true}}
+outputs: [A.q, D.q, D.u]
+simulation: {duration: 1, samples: 11}
+END
+for options in '' '--keep-all'; do
+  for T in 1e-5 1e-8; do
+    # shellcheck disable=SC2086
+    "$COTREE" simulate jump.yaml --tolerance $T -o jump.csv $options 2>&1 |
+      sed -n 's/^work.* steps, \([0-9]*\) rejected (\([0-9]*\) for their error).*/\1 \2/p' | awk '{ print $1 - $2 }'
+  done
+done
