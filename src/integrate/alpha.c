@@ -53,7 +53,6 @@ struct state {
     double *dd, *du; // corrections (nu), one behind the other, zeros behind them (ny)
     double *eta, *dlam;
     double *r, *phi, *v; // behind each other
-    double *x;           // what answers them, of few unknowns
     struct correction last;
     double *rate1, *out;      // for interpolation: d' at the end; a motion (nu)
     double *end_rate, *error; // rates at the end and errors, of quadratures alone  (ny)
@@ -114,7 +113,6 @@ void *ct_alpha_create(struct ct_arena *a, const struct ct_method *method,
         *rows[i] = CT_NEWN(a, double, p->dae->most_rows + 1);
     s->q = CT_NEWN(a, double, p->dae->nq + 1);
     s->r = CT_NEWN(a, double, p->dae->nu + 2 * p->dae->most_rows + 1);
-    s->x = CT_NEWN(a, double, ct_response_padded(2 * p->dae->nu + p->dae->most_rows));
     s->dd = CT_NEWN(a, double, p->ny + p->dae->nu);
     s->du = s->dd + p->dae->nu;
     double **const states[] = {&s->start->rate, &s->end->rate, &s->end_rate, &s->error};
@@ -232,7 +230,7 @@ static enum ct_eval begin(struct state *s, const struct ct_problem *p, double t,
 
 // Where the step would end with accelerations, and multipliers, that go on as the polynomial through their last values, one to three. Those of
 // the index-3 form have too much rounding in them for that.
-static inline void predict_few(struct state *s, double h, const double *y, const int nu)
+static inline void predict_for(struct state *s, double h, const double *y, const int nu)
 {
     const struct ct_dae *dae = s->dae;
     const struct factors f = s->f;
@@ -258,22 +256,14 @@ static inline void predict_few(struct state *s, double h, const double *y, const
 static void predict(struct state *s, double h, const double *y)
 {
     if (s->dae->nu == 1)
-        predict_few(s, h, y, 1);
+        predict_for(s, h, y, 1);
     else if (s->dae->nu == 3)
-        predict_few(s, h, y, 3);
+        predict_for(s, h, y, 3);
     else
-        predict_few(s, h, y, s->dae->nu);
+        predict_for(s, h, y, s->dae->nu);
 }
 
-// s->last: what answers the residuals b.
-static inline void answer(struct state *s, const double *b, const int nu)
-{
-    const struct ct_response *a = s->it->response;
-    ct_product(s->x, a->real, b, a->rows, a->in);
-    s->last = (struct correction){s->x, s->x + nu, s->x + 2 * nu};
-}
-
-// The same of more unknowns.
+// s->last: the correction for the residuals r, phi, v.
 static inline void solve(struct state *s, const int nu, const int m)
 {
     struct ct_iteration *it = s->it;
@@ -304,34 +294,15 @@ static inline double add_correction(struct state *s, const int nu, const int m)
     return ct_iteration_norm(s->it, c.d, s->c->is_stabilised ? c.u : NULL, nu, 1);
 }
 
-// Residuals of few unknowns are evaluated where they stand, and answered by one product. A number that is not finite among them makes
-// none of the answers finite.
-static inline double correct_in_place(struct state *s, double t1, const double *y, const int nu,
-                                      const int m)
-{
-    const struct ct_dae_place *at = s->dae->place;
-    *at->t = t1;
-    for (int k = 0; k < nu; k++) {
-        at->q[k] = y[k] + s->d[k];
-        at->u[k] = s->u[k];
-        at->a[k] = s->end->u_dot[k];
-    }
-    for (int i = 0; i < s->dae->most_rows && m < s->dae->most_rows; i++)
-        at->lam[i] = 0;
-    for (int i = 0; i < m; i++)
-        at->lam[at->row[i]] = s->end->lam[i];
-    answer(s, at->evaluate(s->dae->user), nu);
-    return add_correction(s, nu, m);
-}
-
 static inline double solve_and_add(struct state *s, const int nu, const int m)
 {
     solve(s, nu, m);
     return add_correction(s, nu, m);
 }
 
-// *size (out): that of the correction.
-static enum ct_eval correct_apart(struct state *s, double t1, const double *y, double *size)
+// *size (out): that of the correction. Few freedoms, and planar loops of three coordinates, have code of their own: its
+// loops are known to be so long.
+static enum ct_eval find_correction(struct state *s, double t1, const double *y, double *size)
 {
     const struct ct_dae *dae = s->dae;
     const int nu = s->it->nu, m = s->it->m;
@@ -347,19 +318,12 @@ static enum ct_eval correct_apart(struct state *s, double t1, const double *y, d
     return CT_EVAL_OK;
 }
 
-// Few freedoms, and planar loops of three coordinates, have code of their own: its loops are known to be so long.
 static enum ct_eval correct(struct state *s, double t1, const double *y,
                             enum ct_verdict *verdict, struct ct_integrate_stats *stats)
 {
-    const int nu = s->it->nu, m = s->it->m;
     double size = 0;
-    enum ct_eval e = CT_EVAL_OK;
     stats->evaluations++;
-    if (!s->it->is_few)
-        e = correct_apart(s, t1, y, &size);
-    else
-        size = nu == 3 && m == 2 ? correct_in_place(s, t1, y, 3, 2)
-                                 : correct_in_place(s, t1, y, nu, m);
+    const enum ct_eval e = find_correction(s, t1, y, &size);
     if (e == CT_EVAL_OK)
         *verdict = ct_iteration_judge(s->it, size, s->last.d,
                                       s->c->is_stabilised ? s->last.u : NULL, 1);
@@ -474,10 +438,7 @@ static enum ct_eval finish(struct state *s, const struct ct_problem *p, double t
                            struct ct_integrate_stats *stats)
 {
     const int nq = s->dae->nq, nu = s->dae->nu;
-    if (s->it->is_few)
-        ct_iteration_move(s->dae, y, s->d, y1);
-    else
-        ct_stepper_copy(y1, s->q, nq);
+    ct_stepper_copy(y1, s->q, nq);
     ct_stepper_copy(y1 + nq, s->u, nu);
     ct_stepper_copy(y1 + nq + nu, y + nq + nu, p->ny - nq - nu);
     enum ct_eval e = CT_EVAL_OK;

@@ -94,12 +94,6 @@ const double *ct_iteration_noise(struct ct_iteration *it)
     it->has_noise = true;
     if (!round_residuals(it, d)) {
         memset(d, 0, 2 * (size_t)nu * sizeof *d);
-    } else if (it->is_few) { // places and speeds, one behind the other
-        memset(it->b, 0, (size_t)it->n * sizeof *it->b);
-        ct_stepper_copy(it->b, p->r, nu);
-        ct_stepper_copy(it->b + nu, p->phi, m);
-        ct_product(it->x, it->response->real, it->b, it->response->rows, it->response->in);
-        ct_stepper_copy(d, it->x, 2 * nu);
     } else {
         ct_iteration_solve(it, d, eta, eta + m, p->r, p->phi, p->zero);
         ct_iteration_push(it, u, d, -1, eta, nu, m); // eta is zero in the index-3 form

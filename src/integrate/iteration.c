@@ -61,9 +61,7 @@ struct ct_iteration *ct_iteration_create(struct ct_arena *a, const struct ct_pro
     if (!it->sparse)
         make_room(a, it, m, n, is_complex);
     it->b = CT_NEWN(a, double, 2 * n + 1);
-    it->share = CT_NEWN(a, double, ct_response_padded(2 * nu + m));
-    if (is_stabilised && dae->abreast && nu + 2 <= CT_MOST_INVERTED)
-        it->response = ct_response_create(a, nu, m, is_complex);
+    it->share = CT_NEWN(a, double, 2 * nu + 1);
     it->off = CT_NEWN(a, double, p->ny);
     it->fast = CT_NEWN(a, double, 2 * nu + 1);
     it->noise = CT_NEWN(a, double, 2 * nu + 1);
@@ -173,9 +171,6 @@ bool ct_iteration_begin(struct ct_iteration *it, const struct ct_tolerance *tole
     it->m = dae->rows(dae->user, &it->version);
     it->n = it->nu + (it->is_stabilised ? 2 : 1) * it->m;
     it->rows = it->n <= CT_MOST_INVERTED ? ct_inverse_rows(it->n) : it->n;
-    it->is_few = it->response && it->m && it->n <= CT_MOST_INVERTED;
-    if (it->is_few)
-        ct_response_set_rows(it->response, it->m);
     it->unfelt_place = rounding / 2;
     it->unfelt_speed = DBL_EPSILON / 2 * largest_of_some(y + dae->nq, it->nu);
     if (it->version == before)
@@ -286,9 +281,7 @@ static enum ct_eval evaluate(struct ct_iteration *it, double t, const double *q,
     if (it->w)
         memcpy(it->w, u, (size_t)it->nu * sizeof *u);
     it->is_assembled = false;
-    if (it->is_few)
-        ct_response_assemble(it->response, it->M, it->C, it->K, it->J, it->D);
-    else if (!it->sparse)
+    if (!it->sparse)
         assemble(it);
     return CT_EVAL_OK;
 }
@@ -362,8 +355,6 @@ static bool factor_complex(struct ct_iteration *it, double _Complex w)
 static bool factor_real(struct ct_iteration *it, double c, double e)
 {
     const int n = it->n;
-    if (it->is_few)
-        return ct_response_find(it->response, c, e);
     if (it->sparse)
         return ct_newton_factor(it->sparse, c, e);
     ct_iteration_fill(it, it->G, it->rows, c, e);
@@ -381,8 +372,7 @@ bool ct_iteration_factor_anew(struct ct_iteration *it, double c, double e, doubl
         return false;
     if (s != 0) {
         stats->factorizations++;
-        if (!(it->is_few ? ct_response_find_complex(it->response, s)
-                         : factor_complex(it, 1 / s)))
+        if (!factor_complex(it, 1 / s))
             return false;
     }
     it->c = c;

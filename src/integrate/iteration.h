@@ -19,7 +19,6 @@
 #define CT_INTEGRATE_ITERATION_H
 
 #include "integrate/newton.h"
-#include "integrate/response.h"
 #include "integrate/stepper.h"
 #include "numeric/inverse.h"
 
@@ -43,10 +42,7 @@ struct ct_iteration {
     long version;             // of the rows
     bool has_tangent, is_new; // `is_new`: evaluated, or tried, in this step
     bool is_worn;             // multipliers ask for other derivatives
-    struct ct_response
-        *response; // of few equations in plain coordinates, where there are rows; NULL: never
-    bool is_few;   // so they are now
-    bool is_assembled; // S, X, W are those of the derivatives
+    bool is_assembled;        // S, X, W are those of the derivatives
     struct ct_newton *
         sparse; // all these matrices and factors as lists of entries; NULL: full ones, as follows
     double *M, *C, *K, *J, *D;

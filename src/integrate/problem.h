@@ -15,23 +15,6 @@ enum ct_eval {
     CT_EVAL_FATAL, // diagnosed
 };
 
-/// The residual at four points at once: numbers of one kind stand in fours, one for each point.
-struct ct_dae_abreast {
-    double *t, *q, *u, *a, *lam; // to be set: (4), (4 x nq), (4 x nu) twice, (4 x most_rows)
-    const double *r, *phi, *v;   // (4 x nu), (4 x most_rows) twice
-    const int *row; // the one of most_rows of each row that counts; lam of others is to be zero
-    void (*evaluate)(void *user);
-};
-
-/// The residual in plain coordinates where its numbers stand, so that none are copied.
-struct ct_dae_place {
-    double *t, *q, *u, *a,
-        *lam;       // to be set before each evaluation: (1), (nq), (nu) twice, (most_rows)
-    const int *row; // the one of most_rows of each row that counts; lam of others is to be zero
-    /// r (nu), phi, v (rows), one behind the other, whatever they are; until anything else is evaluated.
-    const double *(*evaluate)(void *user);
-};
-
 /// Where K, C, M (nu x nu), D and J (most_rows x nu) have entries, each place at most once: lists one behind the other.
 ///
 /// With inner values k (ninner) that r depends on, K, C, M and R have rows of r, then of k, with k held but in R = d(r, k)/dk, in
@@ -84,8 +67,6 @@ struct ct_dae {
     const struct ct_newton_plan *plan[2]; // stabilised: 1; NULL: full matrices serve as well
 
     // what makes steps cheaper, where it is known
-    const struct ct_dae_abreast *abreast; // NULL: there is none
-    const struct ct_dae_place *place;     // NULL where `abreast` is
     bool
         is_plain; // coordinate k moves with speed k: q (+) d = q + d, and rates in the chart are speeds
     bool has_no_power; // rates of quadratures are zero

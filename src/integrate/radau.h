@@ -63,8 +63,6 @@ struct ct_radau {
     double *d;                   // a motion, or change of speed  (nu)
     double *gain, *defect;       // of quadratures: over h; error over h / GAMMA  (ny)
     double *power, *power1;      // their rates at both ends  (ny)
-    double *b, *x;               // of few unknowns: r, phi, v, and what answers them
-    struct ct_radau_few *few;
     // speeds in the error, see radau_error.c
     bool is_eased;    // they were counted by what is slow of them at the last look
     int unlooked;     // steps until the next one
@@ -89,35 +87,11 @@ static inline void ct_radau_weigh(double *out, const double *w, const double *z,
         out[k] = w[0] * z[k] + w[1] * z[k + n] + w[2] * z[k + 2 * n];
 }
 
-/// The same for few unknowns: one product, F taken in and added.
-static inline void ct_radau_answer(struct ct_radau *s, const int nu, const int m)
-{
-    struct ct_iteration *it = s->it;
-    const struct ct_response *a = it->response;
-    double *b = s->b, *v = b + nu + m;
-    ct_stepper_copy(b, s->r, nu);
-    ct_stepper_copy(b + nu, s->phi, m);
-    ct_stepper_copy(v, s->v, m);
-    for (int j = 0; j < nu; j++) {
-        ct_vector_add(b, it->c * s->F[j], it->M + nu * j, (size_t)nu);
-        ct_vector_add(b, s->F[j], it->C + nu * j, (size_t)nu);
-        ct_vector_add(v, s->F[j], it->J + m * j, (size_t)m);
-    }
-    ct_product(s->x, a->real, b, a->rows, a->in);
-    ct_stepper_copy(s->change.d, s->x, nu);
-    for (int k = 0; k < nu; k++)
-        s->change.u[k] = s->x[nu + k] + s->F[k];
-}
-
 /// The first column in the basis of eigenvectors. With u eliminated, r += (c M + C) F and v += J F; then u changes by
 /// (c - N) d - J' c eta + F.
 static inline void ct_radau_solve(struct ct_radau *s, const int nu, const int m)
 {
     struct ct_iteration *it = s->it;
-    if (it->is_few) {
-        ct_radau_answer(s, nu, m);
-        return;
-    }
     const double c = it->c, *F = s->F;
     double *d = s->change.d, *u = s->change.u, *eta = s->change.eta;
     const bool is_sparse = nu > CT_MOST_INVERTED && it->sparse;
@@ -162,18 +136,5 @@ double ct_radau_imbalance(struct ct_radau *s, const struct ct_problem *p,
 enum ct_eval ct_radau_dense_error(struct ct_radau *s, const struct ct_problem *p, double t,
                                   const double *slope, double *y, double *err,
                                   struct ct_integrate_stats *stats);
-
-// ---- of few unknowns, see radau_few.c ----------------------------------------------------------------
-
-struct ct_radau_few *ct_radau_few_create(struct ct_arena *a, int nu, int most_rows);
-/// First values of the stages, as for others.
-void ct_radau_few_predict(struct ct_radau *s, double h, const double *u0, const double *u_dot0);
-/// One correction.
-enum ct_eval ct_radau_few_correct(struct ct_radau *s, double t, const double *y,
-                                  enum ct_verdict *verdict, struct ct_integrate_stats *stats);
-/// The stages into s->now.
-void ct_radau_few_keep(struct ct_radau *s);
-/// That, at the end of an iteration.
-void ct_radau_few_finish(struct ct_radau *s);
 
 #endif

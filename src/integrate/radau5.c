@@ -62,10 +62,6 @@ static void *create(struct ct_arena *a, const struct ct_method *method,
     for (size_t i = 0; i < COUNT(speeds); i++)
         *speeds[i] = CT_NEWN(a, double, nu + 1);
     s->ahead = CT_NEWN(a, double, 2 * nu + 1);
-    s->b = CT_NEWN(a, double, nu + 2 * m + 1);
-    s->x = CT_NEWN(a, double, ct_response_padded(2 * nu + m));
-    if (s->it->response)
-        s->few = ct_radau_few_create(a, nu, m);
     s->lam = CT_NEWN(a, double, m + 1);
     s->q = CT_NEWN(a, double, p->dae->nq + 1);
     s->gain = CT_NEWN(a, double, p->ny);
@@ -313,8 +309,6 @@ static enum ct_eval refresh(struct ct_radau *s, double t, double h, const double
         return CT_EVAL_OK;
     if (s->is_fresh)
         return ct_iteration_refresh(s->it, t, y, y + nq, dy + nq, s->lam, stats);
-    if (s->it->is_few)
-        ct_radau_few_keep(s);
     place_stage(s, y, middle);
     ct_radau_weigh(s->u_dot, s->slope[middle], s->now.u, s->dae->nu);
     return ct_iteration_refresh(s->it, t + C[middle] * h, s->q, s->u, s->u_dot, s->lam, stats);
@@ -324,11 +318,8 @@ static enum ct_eval refresh(struct ct_radau *s, double t, double h, const double
 static enum ct_eval correct_until(struct ct_radau *s, double t, const double *y, enum ct_eval e,
                                   enum ct_verdict *verdict, struct ct_integrate_stats *stats)
 {
-    const bool is_few = s->it->is_few;
     while (e == CT_EVAL_OK && *verdict == CT_GO_ON)
-        e = (is_few ? ct_radau_few_correct : correct)(s, t, y, verdict, stats);
-    if (is_few && e == CT_EVAL_OK)
-        ct_radau_few_finish(s);
+        e = correct(s, t, y, verdict, stats);
     return e;
 }
 
@@ -340,7 +331,7 @@ static enum ct_eval iterate(struct ct_radau *s, double t, double h, const double
     find_weights(s, h);
     do {
         enum ct_verdict verdict = CT_GO_ON;
-        (s->it->is_few ? ct_radau_few_predict : predict)(s, h, y + nq, dy + nq);
+        predict(s, h, y + nq, dy + nq);
         enum ct_eval e = refresh(s, t, h, y, dy, stats);
         if (e == CT_EVAL_OK
             && !ct_iteration_factor(s->it, c, c * c, (ALPHA + BETA * I) / h, stats))

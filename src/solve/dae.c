@@ -3,8 +3,6 @@
 
 #include "integrate/newton.h"
 #include "integrate/stepper.h"
-#include "numeric/inverse.h"
-#include "solve/abreast.h"
 
 #include <math.h>
 #include <string.h>
@@ -91,37 +89,6 @@ static enum ct_eval residual(void *user, double t, const double *q, const double
     return CT_EVAL_OK;
 }
 
-// The same in place. Where all rows count in their order, all that it leaves is what is asked for.
-static const double *evaluate_in_place(void *user)
-{
-    const struct ct_embed *s = user;
-    const struct ct_machine *m = s->m;
-    const double *out = m->residual.out;
-    const size_t nu = m->nu, nrow = m->nrow, rank = (size_t)s->rank;
-    size_t in_order = 0;
-    ct_program_run(&s->m->residual, m->input);
-    while (in_order < rank && (size_t)s->row[in_order] == in_order)
-        in_order++;
-    if (in_order == nrow)
-        return out;
-    double *kept = s->residual;
-    ct_machine_copy(kept, out, nu);
-    for (size_t i = 0; i < rank; i++) {
-        kept[nu + i] = out[nu + (size_t)s->row[i]];
-        kept[nu + rank + i] = out[nu + nrow + (size_t)s->row[i]];
-    }
-    return kept;
-}
-
-// The same abreast.
-static void evaluate(void *user)
-{
-    const struct ct_embed *s = user;
-    const struct ct_machine *m = s->m;
-    ct_abreast_spread(m->abreast, m->input, m->at_mode);
-    ct_abreast_run(m->abreast);
-}
-
 // A (n x nu, out) from its entries; place[row] is the row's place in A, or -1. Returns what follows the values.
 static const double *scatter(double *A, int n, size_t nu, const struct ct_slope *s, size_t ns,
                              const double *value, const int *place)
@@ -171,51 +138,6 @@ static enum ct_eval tangent(void *user, double t, const double *q, const double 
         if (place[e->J[i].row] >= 0)
             J[place[e->J[i].row] + s->rank * e->J[i].column] = value[i];
     return CT_EVAL_OK;
-}
-
-// Where corrections are single products, evaluations of their own take most of the time.
-static bool is_few(const struct ct_embed *s)
-{
-    const struct ct_machine *m = s->m;
-    return m->nrow && m->residual.nout && m->nu + 2 * (size_t)s->rank <= CT_MOST_INVERTED;
-}
-
-static const struct ct_dae_place *place(struct ct_arena *a, struct ct_embed *s)
-{
-    const struct ct_machine *m = s->m;
-    double *in = m->input;
-    struct ct_dae_place *x = CT_NEW(a, struct ct_dae_place);
-    s->residual = CT_NEWN(a, double, m->nu + 2 * m->nrow);
-    *x = (struct ct_dae_place){.t = in,
-                               .q = in + m->at_q,
-                               .u = in + m->at_u,
-                               .a = in + m->at_a,
-                               .lam = in + m->at_lam,
-                               .row = s->row,
-                               .evaluate = evaluate_in_place};
-    return x;
-}
-
-static const struct ct_dae_abreast *abreast(struct ct_arena *a, struct ct_embed *s)
-{
-    struct ct_machine *m = s->m;
-    if (!m->abreast) {
-        m->abreast = ct_abreast_create(a, m->residual.listing, m->ninput);
-        ct_abreast_use(a, m->abreast, m->asked != CT_BACKEND_TAPE, m->input);
-    }
-    double *in = m->abreast->input, *out = m->abreast->out;
-    struct ct_dae_abreast *x = CT_NEW(a, struct ct_dae_abreast);
-    *x = (struct ct_dae_abreast){.t = in,
-                                 .q = in + CT_ABREAST * m->at_q,
-                                 .u = in + CT_ABREAST * m->at_u,
-                                 .a = in + CT_ABREAST * m->at_a,
-                                 .lam = in + CT_ABREAST * m->at_lam,
-                                 .r = out,
-                                 .phi = out + CT_ABREAST * m->nu,
-                                 .v = out + CT_ABREAST * (m->nu + m->nrow),
-                                 .row = s->row,
-                                 .evaluate = evaluate};
-    return x;
 }
 
 static const int *kept_rows(void *user)
@@ -271,8 +193,6 @@ struct ct_dae *ct_dae_create(struct ct_arena *a, struct ct_embed *s)
                            .most_rows = (int)e->nrow,
                            .q_of = q_of,
                            .scale = s->scale,
-                           .abreast = is_plain && is_few(s) ? abreast(a, s) : NULL,
-                           .place = is_plain && is_few(s) ? place(a, s) : NULL,
                            .is_plain = is_plain,
                            .has_no_power = ct_ex_is_zero(e->power),
                            .rows = rows,

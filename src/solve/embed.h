@@ -69,7 +69,7 @@ struct ct_embed {
     struct ct_solves solves;
     double *a, *lam; // results: u' (nu), lam (nrow)
     // workspace
-    double *Jd, *B, *c, *r, *S, *MB, *A, *b, *work, *d, *q, *before, *residual;
+    double *Jd, *B, *c, *r, *S, *MB, *A, *b, *work, *d, *q, *before;
     int *pivot, *iwork, *column;
 };
 

@@ -1,7 +1,6 @@
 // See machine.h.
 #include "solve/machine.h"
 
-#include "solve/abreast.h"
 #include "solve/program.h"
 #include "solve/tangent.h"
 
@@ -57,8 +56,6 @@ bool ct_machine_use(struct ct_arena *a, struct ct_machine *m, enum ct_backend ba
         available &= ct_program_choose(a, m, p);
     if (m->lanes)
         ct_tangent_lanes_use(a, m->lanes, m->asked != CT_BACKEND_TAPE, m->input);
-    if (m->abreast)
-        ct_abreast_use(a, m->abreast, m->asked != CT_BACKEND_TAPE, m->input);
     m->backend = m->asked != CT_BACKEND_TAPE && available ? "native" : "tape";
     return available || backend != CT_BACKEND_NATIVE;
 }
@@ -131,8 +128,6 @@ void ct_machine_prepare(struct ct_machine *m)
         prepare(p, m->input);
     if (m->lanes)
         ct_tangent_lanes_prepare(m->lanes, m->input);
-    if (m->abreast)
-        ct_abreast_prepare(m->abreast, m->input);
 }
 
 void ct_machine_prepare_motion(struct ct_machine *m)

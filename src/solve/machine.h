@@ -64,8 +64,6 @@ struct ct_machine {
     double *g[2];                   // values of root functions, for modes (nmode)
     double *turned, *ahead, *moved; // for ct_memory_turning (nmemory, nq + nu + 1, nu)
     long evaluations;
-    struct ct_abreast *
-        abreast; // the residual at some points side by side, where few unknowns have it; or NULL
     struct ct_program *apart; // ct_machine_compile
     enum ct_backend asked;
     const char *backend; // of what steps evaluate: "native" or "tape"

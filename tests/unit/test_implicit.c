@@ -18,9 +18,7 @@ struct model {
     // accelerations and multipliers
     void (*solve)(double t, const double *q, const double *u, double *a, double *lam);
     double q[MOST_NU], u[MOST_NU];
-    bool
-        is_abreast; // residuals of some points are evaluated at once, too, and where they stand
-    long undefined; // the number of the evaluation in place that is no number
+    long undefined; // the number of the residual that is no number; 0: none
 };
 
 // ---- the problems ---------------------------------------------------------------------------------
@@ -74,8 +72,7 @@ static void solve_rod(double t, const double *q, const double *u, double *a, dou
     a[1] = fy + q[1] * lam[0] / 3;
 }
 
-static const struct model rodded = {2, 1, rod, solve_rod, {1, 0}, {0.17, 0.3}, false};
-static const struct model rodded_abreast = {2, 1, rod, solve_rod, {1, 0}, {0.17, 0.3}, true};
+static const struct model rodded = {2, 1, rod, solve_rod, {1, 0}, {0.17, 0.3}};
 
 // Free fall with gravity 2.
 static void fall(double t, const double *q, const double *u, const double *a, const double *lam,
@@ -111,23 +108,9 @@ static const struct model creeping = {1, 0, creep, solve_creep, {1.5}, {0}};
 
 // ---- the problem of a model -----------------------------------------------------------------------
 
-enum { POINTS = 4 };
-
-struct abreast { // numbers of some points side by side
-    double t[POINTS], q[POINTS * MOST_NU], u[POINTS * MOST_NU], a[POINTS * MOST_NU],
-        lam[POINTS * MOST_M];
-    double r[POINTS * MOST_NU], phi[POINTS * MOST_M], v[POINTS * MOST_M];
-};
-
-struct place { // numbers of one point, and its residuals
-    double t, q[MOST_NU], u[MOST_NU], a[MOST_NU], lam[MOST_M], r[MOST_NU + 2 * MOST_M];
-};
-
 struct user {
     const struct model *model;
-    struct abreast abreast;
-    struct place place;
-    long nabreast, nplace; // evaluations of them
+    long nresidual; // evaluations
     struct ct_ctx ctx;
     struct ct_integrate_stats stats;
     size_t used;    // of the arena after the first step
@@ -182,48 +165,13 @@ static enum ct_eval residual(void *user, double t, const double *q, const double
 {
     struct user *s = user;
     s->model->residual(t, q, u, a, lam, r, phi, v);
+    if (++s->nresidual == s->model->undefined)
+        r[0] = NAN;
     if (t >= s->last && s->model->m) {
         s->last = t;
         memcpy(s->lam, lam, (size_t)s->model->m * sizeof *lam);
     }
     return CT_EVAL_OK;
-}
-
-static void evaluate_abreast(void *user)
-{
-    struct user *s = user;
-    struct abreast *w = &s->abreast;
-    const int nu = s->model->nu, m = s->model->m;
-    s->nabreast++;
-    for (int i = 0; i < POINTS; i++) {
-        double q[MOST_NU], u[MOST_NU], a[MOST_NU], lam[MOST_M], r[MOST_NU], phi[MOST_M],
-            v[MOST_M];
-        for (int k = 0; k < nu; k++) {
-            q[k] = w->q[i + POINTS * k];
-            u[k] = w->u[i + POINTS * k];
-            a[k] = w->a[i + POINTS * k];
-        }
-        for (int k = 0; k < m; k++)
-            lam[k] = w->lam[i + POINTS * k];
-        residual(user, w->t[i], q, u, a, lam, r, phi, v);
-        for (int k = 0; k < nu; k++)
-            w->r[i + POINTS * k] = r[k];
-        for (int k = 0; k < m; k++) {
-            w->phi[i + POINTS * k] = phi[k];
-            w->v[i + POINTS * k] = v[k];
-        }
-    }
-}
-
-static const double *evaluate_in_place(void *user)
-{
-    struct user *s = user;
-    struct place *w = &s->place;
-    double *phi = w->r + s->model->nu;
-    residual(user, w->t, w->q, w->u, w->a, w->lam, w->r, phi, phi + s->model->m);
-    if (++s->nplace == s->model->undefined)
-        w->r[0] = NAN;
-    return w->r;
 }
 
 // By central differences: as good as an iteration needs.
@@ -281,19 +229,8 @@ static bool run(struct user *s, const struct model *m, const char *method, struc
                 struct ct_integrate_options o, double *y)
 {
     static const int q_of[MOST_NU] = {0, 1};
-    static const int row[MOST_M] = {0};
-    struct ct_dae dae
+    const struct ct_dae dae
         = {s, m->nu, m->nu, m->m, q_of, 1, rows, retract, chart_rate, start, residual, tangent};
-    struct abreast *w = &s->abreast;
-    const struct ct_dae_abreast abreast
-        = {w->t, w->q, w->u, w->a, w->lam, w->r, w->phi, w->v, row, evaluate_abreast};
-    struct place *x = &s->place;
-    const struct ct_dae_place place = {&x->t, x->q, x->u, x->a, x->lam, row, evaluate_in_place};
-    if (m->is_abreast) {
-        dae.is_plain = true;
-        dae.abreast = &abreast;
-        dae.place = &place;
-    }
     *s = (struct user){.model = m, .ctx.model = ct_arena_create()};
     p.user = s;
     p.ny = 2 * m->nu + 1;
@@ -365,7 +302,7 @@ static void check_order(const struct model *m, const char *method, int nstep, do
 static void orders_are_those_of_the_theory(void **unused)
 {
     (void)unused;
-    const struct model *const model[] = {&swinging, &rodded, &rodded_abreast};
+    const struct model *const model[] = {&swinging, &rodded};
     for (size_t k = 0; k < COUNT(model); k++)
         for (size_t i = 0; i < COUNT(implicit); i++) {
             const bool is_radau = i == 0;
@@ -391,9 +328,6 @@ static void check_orders_of_multipliers(const struct model *m)
                             (struct ct_integrate_options){.t1 = t1, .step = t1 / (nstep << k)},
                             y));
             assert_true(s.last == t1);
-            const bool is_index3 = strcmp(implicit[i], "generalized-alpha-index3") == 0;
-            assert_true((s.nabreast > 0) == (is_radau && m->is_abreast));
-            assert_true((s.nplace > 0) == (!is_radau && !is_index3 && m->is_abreast));
             error[k] = fabs(s.lam[0] - lam);
         }
         const double order = log2(error[0] / error[1]), want = is_radau ? 3 : 2;
@@ -406,7 +340,6 @@ static void orders_of_multipliers_are_those_of_the_theory(void **unused)
 {
     (void)unused;
     check_orders_of_multipliers(&rodded);
-    check_orders_of_multipliers(&rodded_abreast);
 }
 
 // From the multipliers at the start of the step it is 20 with radau5 and 6.6 with the others.
@@ -432,14 +365,14 @@ static void corrections_begin_with_multipliers_as_they_go_on(void **unused)
 static void residuals_that_are_no_numbers_are_tried_again(void **unused)
 {
     (void)unused;
-    struct model broken = rodded_abreast;
+    struct model broken = rodded;
     const struct ct_integrate_options o = {.t1 = 2, .atol = 1e-6};
     double want[MOST_NY], y[MOST_NY];
     struct user s;
-    assert_true(run(&s, &rodded_abreast, "hht", plain, o, want));
+    assert_true(run(&s, &rodded, "hht", plain, o, want));
     for (broken.undefined = 40; broken.undefined < 48; broken.undefined++) {
         assert_true(run(&s, &broken, "hht", plain, o, y));
-        assert_true(s.nplace > broken.undefined);
+        assert_true(s.nresidual > broken.undefined);
         for (int i = 0; i < 4; i++)
             CHECK_CLOSE(y[i], want[i], 0, 5e-6); // of an error of 4e-4
     }
@@ -463,7 +396,7 @@ static void index3_meets_speeds_to_second_order(void **unused)
 static void errors_follow_the_tolerance(void **unused)
 {
     (void)unused;
-    const struct model *const model[] = {&swinging, &rodded, &rodded_abreast};
+    const struct model *const model[] = {&swinging, &rodded};
     for (size_t k = 0; k < COUNT(model); k++)
         for (size_t i = 0; i < COUNT(implicit); i++) {
             const int ny = 2 * model[k]->nu + 1;
