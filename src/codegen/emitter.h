@@ -39,7 +39,6 @@ struct ct_emitter {
     uint32_t *order;     // of the body's instructions
     size_t norder;
     uint32_t first_angle, nangle; // in the order: sines and cosines that are one call
-    uint32_t first_rest;          // in the order: behind calls and what leads to them
 
     // reads of a value: places in the order, ascending; those before next[v] are done
     uint32_t *start, *use, *next;

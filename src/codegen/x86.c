@@ -1,6 +1,5 @@
 // See x86.h: the walk over the listing that decides in which register each value is.
 #include "codegen/emitter.h"
-#include "codegen/merge.h"
 
 #include <assert.h>
 #include <string.h>
@@ -454,10 +453,9 @@ static void roll_up(struct ct_emitter *e)
         is_alone[op] = e->calls->by_op[op] != 0;
     if (e->norder < LEAST_ROLLED)
         return;
-    e->roll = ct_merge_loops(
-        e->arena, e->l, e->order, (uint32_t)e->norder, e->first_rest, is_alone, e->nfixed,
-        e->calls->rows_together && e->code.lanes == 1 ? CT_ROWS_TOGETHER : 1,
-        (uint32_t)e->code.lanes);
+    e->roll = ct_roll_find(e->arena, e->l, e->order, (uint32_t)e->norder, is_alone, e->nfixed,
+                           e->calls->rows_together && e->code.lanes == 1 ? CT_ROWS_TOGETHER : 1,
+                           (uint32_t)e->code.lanes);
     e->spread = CT_NEWN(e->arena, uint32_t, e->l->nvalue);
     for (size_t v = 0; v < e->l->nvalue; v++)
         e->spread[v] = none;

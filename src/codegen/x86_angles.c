@@ -66,8 +66,6 @@ bool ct_emitter_order(struct ct_emitter *e)
     for (int now = FOR_ANGLES; now < NTURN; now++) {
         if (now == ANGLES)
             e->first_angle = (uint32_t)e->norder;
-        if (now == REST)
-            e->first_rest = (uint32_t)e->norder;
         for (size_t i = l->nprologue; i < l->nins; i++)
             if (turn[i] == now)
                 e->order[e->norder++] = (uint32_t)i;

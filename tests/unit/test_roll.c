@@ -1,5 +1,5 @@
-// Loops of native code: random sweeps over rows have the bits of the tape, merged, in strips and side by side.
-#include "codegen/merge.h"
+// Loops of native code: random sweeps over rows have the bits of the tape, in strips and side by side.
+#include "codegen/roll.h"
 #include "codegen/native.h"
 #include "expr/tape.h"
 #include "random_ex.h"
@@ -220,67 +220,15 @@ static void set_steps(struct sweep *s, size_t nstep, struct operand first)
             .b = {.kind = i % 8 ? STEP : INPUT, .at = i % 8 ? i / 2 : i % PER_ROW}};
 }
 
-// A tree of steps, which wait little for each other, over twice as many operands.
-static void set_tree(struct sweep *s, size_t nleaf, struct operand first)
-{
-    set_steps(s, 2 * nleaf - 1, first);
-    s->nkept = MOST_KEPT;
-    for (size_t i = 0; i < nleaf; i++) {
-        s->step[i].a = (struct operand){first.kind, .at = i % MOST_KEPT};
-        s->step[i].b = (struct operand){.kind = INPUT, .at = i % PER_ROW};
-    }
-    for (size_t i = nleaf; i < s->nstep; i++) {
-        s->step[i].a = (struct operand){.kind = STEP, .at = 2 * (i - nleaf)};
-        s->step[i].b = (struct operand){.kind = STEP, .at = 2 * (i - nleaf) + 1};
-    }
-}
-
 static struct ct_roll loops_of(const struct program *p, uint32_t rows, uint32_t lanes)
 {
     const struct ct_listing *l = p->listing;
     const uint32_t n = (uint32_t)(l->nins - l->nprologue);
     uint32_t *order = CT_NEWN(p->arena, uint32_t, n);
-    bool *is_done = CT_NEWN(p->arena, bool, l->nvalue);
     const bool is_alone[CT_NKIND] = {false};
     for (uint32_t i = 0; i < n; i++)
         order[i] = (uint32_t)l->nprologue + i;
-    const struct ct_roll r = ct_merge_loops(p->arena, l, order, n, 0, is_alone, 0, rows, lanes);
-    for (size_t v = 0; v < l->nvalue; v++)
-        is_done[v] = l->is_leaf[v] || l->rate[v] != CT_RATE_CALL;
-    for (uint32_t i = 0; i < n; i++) { // each once, behind its operands
-        const struct ct_instruction *ins = &l->ins[order[i]];
-        assert_false(is_done[ins->res[0]]);
-        for (uint32_t k = 0; k < ins->narg; k++)
-            assert_true(is_done[ins->arg[k]]);
-        for (uint32_t k = 0; k < ins->nres; k++)
-            is_done[ins->res[k]] = true;
-    }
-    return r;
-}
-
-// A sweep whose rows the next one reads: results stay in their row.
-static void loops_over_the_same_rows_become_one(void **unused)
-{
-    (void)unused;
-    struct program *p = malloc(sizeof *p);
-    start(p, 1100, 2);
-    set_tree(&p->sweep[0], 8, (struct operand){.kind = SAME});
-    set_tree(&p->sweep[1], 8, (struct operand){.kind = RESULT});
-    finish(p);
-    const struct ct_roll r = loops_of(p, 1, 1);
-    assert_int_equal(r.nloop, 1);
-    assert_true(r.loop[0].count
-                > 1090); // steps of both in one row: hardly anything else is left
-    assert_true(r.nstraight < 10 * r.loop[0].period);
-    ct_arena_destroy(p->arena);
-    // the other way round nothing can be done before the last row of the first one
-    start(p, 1100, 2);
-    set_steps(&p->sweep[0], 24, (struct operand){.kind = SAME});
-    set_steps(&p->sweep[1], 24, (struct operand){.kind = MIRRORED});
-    finish(p);
-    assert_int_equal(loops_of(p, 1, 1).nloop, 2);
-    ct_arena_destroy(p->arena);
-    free(p);
+    return ct_roll_find(p->arena, l, order, n, is_alone, 0, rows, lanes);
 }
 
 // Side by side but for a running sum; what the sum alone reads has places for one strip.
@@ -345,7 +293,6 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(random_sweeps_have_the_bits_of_the_tape),
-        cmocka_unit_test(loops_over_the_same_rows_become_one),
         cmocka_unit_test(many_rows_are_done_in_strips),
         cmocka_unit_test(rows_leave_little_in_memory),
     };
