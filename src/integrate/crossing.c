@@ -32,9 +32,6 @@ static const double gap = 0.3;
 // Sweeps end when stages move less than this part of the tolerance, or less than this part of themselves: then
 // the checks of the step are not spoilt by what sweeps have left at coarse tolerances.
 static const double settled = 0.02, settled_fine = 1e-10;
-// Where f has all digits sweeps go down to rounding, to this part of the largest state: a motion that lingers beside a position makes
-// errors grow.
-static const double settled_sharp = 1e-15;
 const double ct_crossing_held = 1e-9;
 const double ct_crossing_rounding = 5e-13;
 // Further off than that and so many times the tolerance there is nothing to be had from nearer by.
@@ -332,7 +329,7 @@ static enum ct_eval sweep_from(const struct task *s, double begin, const double 
 }
 
 // All stages from the state at the first of them.
-static enum ct_eval sweep_on(const struct task *s, const double *dy, bool is_sharp)
+static enum ct_eval sweep_on(const struct task *s, const double *dy)
 {
     struct work *w = s->w;
     const int n = s->p->ny;
@@ -341,13 +338,7 @@ static enum ct_eval sweep_on(const struct task *s, const double *dy, bool is_sha
     memcpy(w->k, dy, bytes);
     for (int j = 0; j < STAGES; j++)
         memcpy(w->stage + j * n, s->y, bytes);
-    enum ct_eval e = CT_EVAL_OK;
-    if (is_sharp) { // dy is not
-        memcpy(w->point, s->y, bytes);
-        e = evaluate(s, 0);
-    }
-    if (e == CT_EVAL_OK)
-        e = guess(s);
+    const enum ct_eval e = guess(s);
     return e == CT_EVAL_OK ? sweep(s, (const double(*)[STAGES])w->A, 1) : e;
 }
 
@@ -373,21 +364,16 @@ static enum ct_eval step(const struct ct_problem *p, double t, double h, const d
     struct work *w = work;
     const int n = p->ny;
     const double whole = h / (1 - w->begin);
-    struct task s = {p, t - w->begin * whole, whole, y, tolerance, w, stats};
+    const struct task s = {p, t - w->begin * whole, whole, y, tolerance, w, stats};
     if (!w->has_weights)
         find_weights(w);
-    struct ct_tolerance sharp = {settled_sharp, 0};
-    const bool is_sharp = p->set_crossing && p->set_crossing(p->user, true);
-    for (int i = 0; i < n && is_sharp; i++)
-        sharp.atol = fmax(sharp.atol, settled_sharp * fabs(y[i]));
-    s.tolerance = is_sharp ? &sharp : tolerance;
-    const enum ct_eval e
-        = w->begin > 0 ? sweep_from(&s, w->begin, dy) : sweep_on(&s, dy, is_sharp);
+    if (p->set_crossing)
+        p->set_crossing(p->user, true);
+    const enum ct_eval e = w->begin > 0 ? sweep_from(&s, w->begin, dy) : sweep_on(&s, dy);
     if (p->set_crossing)
         p->set_crossing(p->user, false);
     if (e != CT_EVAL_OK)
         return e;
-    s.tolerance = tolerance;
     memcpy(y1, w->stage + (STAGES - 1) * n, (size_t)n * sizeof *y1);
     memcpy(dy1, w->k + (STAGES - 1) * n, (size_t)n * sizeof *dy1);
     *err = error_of(&s, y1);

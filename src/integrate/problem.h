@@ -143,8 +143,8 @@ struct ct_problem {
     /// and after it in which f is better not computed. May be NULL.
     double (*singular_in)(void *user, double *reach);
     /// What is evaluated from now on belongs to the crossing of a singular position, none of it close by; or does not.
-    /// True: f then has more digits than it had elsewhere. May be NULL.
-    bool (*set_crossing)(void *user, bool is_crossing);
+    /// May be NULL.
+    void (*set_crossing)(void *user, bool is_crossing);
     /// Is y so near to a singular position that f has too few digits? NULL: it never is.
     bool (*is_singular)(void *user, double t, const double *y);
     /// A singular position was crossed by this step, which ends at t1 at the latest and is all but the first part of the crossing,

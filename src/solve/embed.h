@@ -54,10 +54,9 @@ struct ct_embed {
     bool is_dear;     // matrices are cheaper
     bool is_delicate; // near a singular position: pivots are sought at every evaluation
     bool is_crossing; // stages are projected that steps do not end on: choices stay
-    struct ct_quad_embed *quad; // what goes on beside positions is found by; NULL: as all else
     double
-        least_left; // where less is left of the inertia of a single freedom, of what cancels in it, accelerations are found by it, too; 0: nowhere
-    bool is_in_quad; // now
+        least_left; // of the inertia of a single freedom, of what cancels in it: less leaves accelerations too few digits. 0: any will do
+    double left; // the least there has been where less than ten times as much was left  (8.39)
     bool is_rough;   // the last check wanted a refinement
     bool is_renewed; // a projection has looked after them since a step ended last
     long nweak;      // checks in a row that found the form weak, or projections without one

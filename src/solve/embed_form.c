@@ -1,6 +1,5 @@
 // See embedding.h: closed forms, which to use, and whether their pivots are still in a good order.
 #include "solve/embedding.h"
-#include "solve/quad_embed.h"
 
 #include <math.h>
 #include <string.h>
@@ -161,20 +160,14 @@ enum ct_eval ct_embed_solve(struct ct_embed *s)
     struct ct_machine *m = s->m;
     if (ct_machine_solved(m, s->a))
         return CT_EVAL_OK;
-    if (s->is_in_quad) {
-        ct_machine_motion(m); // multipliers come from its numbers
-        const enum ct_eval e = ct_quad_embed_accelerate(s->quad, s, s->a, m->rate);
-        if (e == CT_EVAL_OK || s->is_crossing)
-            return e;
-    }
     const bool is_tried = ct_embed_is_form_due(s);
     if (is_tried && solve_form(s))
         return CT_EVAL_OK;
     ct_machine_motion(m);
     s->solves.pivoted++;
     const enum ct_eval e = ct_embed_accelerate(s);
-    if (e == CT_EVAL_OK && has_one_freedom(s) && ct_embed_left(s) < s->least_left)
-        ct_quad_embed_accelerate(s->quad, s, s->a, m->rate); // or they stay as they are
+    if (e == CT_EVAL_OK && has_one_freedom(s))
+        s->left = fmin(s->left, ct_embed_left(s));
     if (s->has_form && !is_tried)
         s->strength.now = ct_form_close(s->form[0], m);
     if (s->has_form)

@@ -1,6 +1,5 @@
 // See embedding.h: projection.
 #include "solve/embedding.h"
-#include "solve/quad_embed.h"
 
 #include "integrate/stepper.h"
 #include "numeric/dense.h"
@@ -207,29 +206,6 @@ static enum ct_eval project(struct ct_embed *s, double t, double *y)
     return e;
 }
 
-static enum ct_eval project_in_quad(struct ct_embed *s, double t, double *y)
-{
-    const enum ct_eval e = ct_quad_embed_project(s->quad, s, t, y);
-    ct_machine_set(s->m, t, y);
-    if (e == CT_EVAL_OK && !s->is_crossing) { // kappa tells whether columns have worn
-        ct_machine_constraint(s->m);
-        ct_embed_factor(s);
-    }
-    return e;
-}
-
-static enum ct_eval project_as_due(struct ct_embed *s, double t, double *y)
-{
-    if (!s->is_in_quad)
-        return project(s, t, y);
-    const enum ct_eval e = project_in_quad(s, t, y);
-    if (e == CT_EVAL_OK || s->is_crossing)
-        return e;
-    // in the position itself, where only least norms lead on
-    ct_machine_copy(y, s->before, s->m->nq + s->m->nu);
-    return project(s, t, y);
-}
-
 enum ct_eval ct_embed_project(struct ct_embed *s, double t, double *y)
 {
     const size_t ny = s->m->nq + s->m->nu;
@@ -237,7 +213,7 @@ enum ct_eval ct_embed_project(struct ct_embed *s, double t, double *y)
     if (!s->m->nrow)
         return CT_EVAL_OK;
     ct_machine_copy(s->before, y, ny);
-    const enum ct_eval e = project_as_due(s, t, y);
+    const enum ct_eval e = project(s, t, y);
     if (e != CT_EVAL_OK || s->is_crossing)
         return e;
     ct_embed_tend_form(s);
@@ -248,7 +224,7 @@ enum ct_eval ct_embed_project(struct ct_embed *s, double t, double *y)
     ct_machine_constraint(s->m); // forms leave J as it was
     ct_embed_choose(s);
     ct_machine_copy(y, s->before, ny);
-    return project_as_due(s, t, y);
+    return project(s, t, y);
 }
 
 static void choose_if_worn(struct ct_embed *s)

@@ -189,7 +189,7 @@ static const char *advise_there(struct ct_run *r)
     if (is_driven_to_rest(r))
         return let_pass;
     const double part = r->singular->closest, enough = DBL_EPSILON / (part * part), most = 1e-2;
-    if (!r->s->quad && enough > r->o->wanted && enough < most)
+    if (enough > r->o->wanted && enough < most)
         return ct_arena_printf(
             r->arena,
             "; rounding is felt there by %.0e: a tolerance of that, or a start "

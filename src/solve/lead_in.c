@@ -11,7 +11,6 @@
 
 #include "integrate/crossing.h"
 #include "numeric/dense.h"
-#include "solve/quad_embed.h"
 
 #include <float.h>
 #include <math.h>
@@ -26,19 +25,17 @@ enum { LOOKS = 12 }; // a motion that lingers leaves faster than accelerations o
 // nothing of how the smallest pivot falls.
 static const double beside = 0.2, near = 0.5;
 
-// The step may err by so much of the largest state, or, in quadruple precision, times the way that the motion goes where that is short,
-// down to rounding of states; by so much of what is asked where no step errs less. (8.35)
-static const double exact = 1e-12, unfelt = 0.02, exact_in_quad = 1e-15;
+// The step may err by so much of the largest state, or by so much of what is asked if that is more. (8.35)
+static const double exact = 1e-12, unfelt = 0.02;
 
 // Where a run starts: all speeds together, and accelerations where they are known.
 struct lead {
     const struct ct_problem *p;
     void *work;
-    double u, a, ua; // |u|, |u'|, u . u'
-    double in;       // time to the position, below 0 behind it
-    double most,
-        least;      // the step may err by so much of the largest state; the second if none does
-    double *before; // (ny, out)
+    double u, a, ua;    // |u|, |u'|, u . u'
+    double in;          // time to the position, below 0 behind it
+    double most;        // the step may err by so much of the largest state
+    double *before;     // (ny, out)
     double *end, *dend; // (ny)
     struct ct_embed_view *view[2];
 };
@@ -139,7 +136,7 @@ static bool leads_across(struct ct_run *r, const struct lead *l, const struct ac
 static double sweep_back(struct ct_run *r, const struct lead *l, const struct across *c)
 {
     const double *y = r->assembled, largest = ct_vector_largest(y, r->ny), t = begin_of(c);
-    double error, part = r->s->quad ? exact_in_quad : exact;
+    double error, part = exact;
     while (part <= l->most) {
         const struct ct_tolerance tolerance = {part, part * largest};
         if (ct_crossing_lead_in(l->p, 0, c->h, -t / c->h, y, r->dy, &tolerance, l->before,
@@ -292,10 +289,6 @@ static bool begin_before(struct ct_run *r, struct lead *l)
     r->singular->reach = INFINITY;
     l->work = ct_crossing.create(r->arena, &ct_crossing, l->p);
     find_best(r, l, &best);
-    if (isinf(best.error) && l->least > l->most) {
-        l->most = l->least;
-        find_best(r, l, &best);
-    }
     if (best.error < INFINITY)
         look_back(r, l, &best);
     if (!(best.error < INFINITY)) {
@@ -313,10 +306,9 @@ static bool begin_before(struct ct_run *r, struct lead *l)
 }
 
 // What the step may err by, where it is felt by so much, for steps that are held to `asked`.
-static void allow(const struct ct_run *r, struct lead *l, double asked, double felt)
+static void allow(struct lead *l, double asked, double felt)
 {
-    l->least = fmax(exact, unfelt * asked * felt);
-    l->most = r->s->quad ? fmax(exact_in_quad, exact * felt) : l->least;
+    l->most = fmax(exact, unfelt * asked * felt);
 }
 
 static bool begin_in_position(struct ct_run *r, struct lead *l)
@@ -329,7 +321,7 @@ static bool begin_in_position(struct ct_run *r, struct lead *l)
                         "away from it; leave out 'step'",
                         r->singular_joints);
     const double misfit = ct_singular_misfit(r->arena, r->s, 0, r->assembled, &freedoms);
-    allow(r, l, r->o->rtol, 1);
+    allow(l, r->o->rtol, 1);
     return (misfit <= belongs && begin_before(r, l)) || refuse_speeds(r, misfit, freedoms);
 }
 
@@ -347,46 +339,14 @@ static double find_way(struct ct_run *r, struct lead *l)
     return ct_singular_near(r->singular, 0, r->y, r->dy, r->pending, s);
 }
 
-static bool is_all_given(const struct ct_run *r)
-{
-    for (size_t k = 0; k + (size_t)r->s->rank < r->m->nu; k++)
-        if (!r->is_given[r->s->independent[k]])
-            return false;
-    return true;
-}
-
-// What follows from what the start is given by, and accelerations, with all digits that this leaves: speeds that were found in double
-// precision may be far off. Coordinates that are not given have their own rounding, which is known no better elsewhere.
-static void sharpen_start(struct ct_run *r)
-{
-    if (!r->s->quad || !choose_beside(r, 0, r->assembled) || !is_all_given(r))
-        return;
-    memcpy(r->stage, r->assembled, r->ny * sizeof *r->stage);
-    if (ct_quad_embed_project(r->s->quad, r->s, 0, r->stage) != CT_EVAL_OK
-        || !is_near_start(r, r->stage, r->m->nq))
-        return;
-    ct_machine_set(r->m, 0, r->stage);
-    if (ct_quad_embed_accelerate(r->s->quad, r->s, r->s->a, r->m->rate) != CT_EVAL_OK)
-        return;
-    memcpy(r->assembled, r->stage, r->ny * sizeof *r->stage);
-    memcpy(r->y, r->stage, r->ny * sizeof *r->y);
-    ct_machine_copy(r->dy, r->m->rate, r->m->nq);
-    ct_machine_copy(r->dy + r->m->nq, r->s->a, r->m->nu);
-}
-
 // Beside a position: from before it, or else what is known of it from the start on.
 static void begin_beside(struct ct_run *r, struct lead *l)
 {
-    double way = find_way(r, l), size = fabs(way);
-    if (size > 0 && size <= beside) {
-        sharpen_start(r);
-        way = find_way(r, l);
-        size = fabs(way);
-    }
+    const double way = find_way(r, l), size = fabs(way);
     if (!(size > 0 && size < near))
         return;
     const double along = fmax(size, l->u * time_for(l, l->u, longest_way));
-    allow(r, l, r->o->wanted, fmin(1, along));
+    allow(l, r->o->wanted, fmin(1, along));
     l->in = copysign(time_for(l, l->u, size), way);
     ct_singular_measure(r->singular, 0, r->y, near / size);
     if (size > beside || !begin_before(r, l))

@@ -5,7 +5,6 @@
 #include "numeric/dense.h"
 #include "solve/bridge.h"
 #include "solve/dae.h"
-#include "solve/quad_embed.h"
 
 #include <float.h>
 #include <string.h>
@@ -74,10 +73,10 @@ static double singular_in(void *user, double *reach)
     return r->singular->in;
 }
 
-static bool set_crossing(void *user, bool is_crossing)
+static void set_crossing(void *user, bool is_crossing)
 {
     struct ct_run *r = user;
-    return ct_singular_set_crossing(r->singular, is_crossing);
+    ct_singular_set_crossing(r->singular, is_crossing);
 }
 
 static bool is_singular(void *user, double t, const double *y)
@@ -536,9 +535,6 @@ static void find_asked(struct ct_run *r, struct ct_problem *p)
         p->keeps_energy |= ct_fidelity_is_check(r->e, i);
 }
 
-// Rounding of inertias may be this part of what is wanted of outputs, or of this.
-static const double felt_rounding = 0.01, sharpest = 1e-10;
-
 // Steps of the implicit method are held to this part of what is wanted.
 static const double held_to = 0.1;
 
@@ -563,6 +559,17 @@ static bool lead_in(struct ct_run *r)
     return ct_run_lead_in(r, &p);
 }
 
+// Accelerations of a single freedom whose inertia is what next to nothing is left of others err by eps over that part.  (8.39)
+static void warn_of_cancellation(struct ct_run *r)
+{
+    if (r->s->left < r->s->least_left)
+        ct_warning(r->ctx, (struct ct_mark){.file = r->model->file}, 0,
+                   "the inertias of the mechanism cancel but for %.0e of them in some "
+                   "position: round-off of "
+                   "results may come to %.0e of them; '--tree absolute' has more digits there",
+                   r->s->left, DBL_EPSILON / r->s->left);
+}
+
 bool ct_run_simulate(struct ct_run *r, const struct ct_run_options *o,
                      struct ct_run_report *report)
 {
@@ -583,11 +590,8 @@ bool ct_run_simulate(struct ct_run *r, const struct ct_run_options *o,
     memset(r->largest, 0, r->e->nresult * sizeof *r->largest);
     ct_singular_start(r->singular);
     r->singular->wanted = o->step == 0 ? o->wanted : 0;
-    if (!r->s->quad && o->step == 0)
-        r->s->quad = ct_quad_embed_create(r->arena, r->m);
-    r->s->least_left = r->s->quad && o->step == 0
-                         ? DBL_EPSILON / (felt_rounding * fmax(o->wanted, sharpest))
-                         : 0;
+    r->s->least_left = o->step == 0 && o->wanted > 0 ? DBL_EPSILON / o->wanted : 0;
+    r->s->left = INFINITY;
     if (r->fidelity)
         ct_fidelity_start(r->fidelity, o->method);
     r->o = o;
@@ -668,6 +672,7 @@ bool ct_run_simulate(struct ct_run *r, const struct ct_run_options *o,
         report->blunt = b.output;
         report->rounding = b.one;
         report->rounding_sum = b.sum;
+        warn_of_cancellation(r);
     }
     report->energy_scale = r->energy_scale;
     if (r->energy_scale > 0)

@@ -34,7 +34,7 @@ struct ct_singular *ct_singular_create(struct ct_arena *arena, struct ct_machine
 void ct_singular_start(struct ct_singular *w)
 {
     w->in = INFINITY;
-    w->was_told = w->has_tried = false;
+    w->was_told = false;
     w->reach = w->most = w->part = w->pivot = w->fall = w->t = w->dt = 0;
     w->switches = -1;
     w->npassed = w->nover = 0;
@@ -46,7 +46,6 @@ void ct_singular_start(struct ct_singular *w)
     ct_embed_give_room(w->s, w->along);
     w->s->nearness = 1;
     w->farthest = w->wanted = 0;
-    w->is_close = w->s->is_in_quad = false;
     w->rank = 0;
 }
 
@@ -82,7 +81,7 @@ static const double foreseen_pivot = 0.8, near_pivot = 0.5, singular_pivot = 0.2
 static const double lost_pivot = 1e-7;
 
 // Rounding of accelerations is eps over the square of the pivot, against its largest. Where that would be more than this part of what
-// is wanted they are found in quadruple precision.
+// is wanted they have too few digits.
 static const double felt_rounding = 0.01;
 
 static bool is_felt(const struct ct_singular *w, double pivot)
@@ -90,13 +89,6 @@ static bool is_felt(const struct ct_singular *w, double pivot)
     const double part = pivot / w->farthest;
     return w->wanted > 0 && part < singular_pivot / 2
         && part * part * felt_rounding * w->wanted < DBL_EPSILON;
-}
-
-static void note_closeness(struct ct_singular *w, double pivot)
-{
-    w->farthest = fmax(w->farthest, fmax(w->most, pivot));
-    w->is_close = w->s->quad && is_felt(w, pivot);
-    w->s->is_in_quad = w->is_close;
 }
 
 bool ct_singular_is_felt(struct ct_singular *w, double t, const double *y)
@@ -291,7 +283,7 @@ static void keep(struct ct_singular *w, const struct ct_sight *at, const struct 
     w->s->is_delicate = l->part < near_pivot;
     w->s->nearness = l->part;
     w->dt = dt;
-    note_closeness(w, l->now);
+    w->farthest = fmax(w->farthest, fmax(w->most, l->now));
 }
 
 // Where a step of another kind than crossings has come: what is told of it at the end of the run.
@@ -299,7 +291,7 @@ static void note_step(struct ct_singular *w, double t, const struct look *l)
 {
     if (l->is_another)
         w->over = w->nover++ ? w->over : t;
-    if (l->part < w->closest && !w->s->is_in_quad) {
+    if (l->part < w->closest) {
         w->closest = l->part;
         w->t_closest = t;
     }
@@ -330,7 +322,6 @@ bool ct_singular_foresee(struct ct_singular *w, double t, const double *y, const
     keep(w, &at, &l, dt);
     if (!(l.is_far || l.part > foreseen_pivot || step->is_fixed))
         find_next(w, &at, l.now);
-    w->has_tried &= w->in < INFINITY;
     return true;
 }
 
@@ -357,7 +348,7 @@ void ct_singular_begin(struct ct_singular *w, double t, const double *y, double 
     ct_singular_expect(w, t, y, in);
     w->most *= times;
     w->part = w->s->nearness = 1 / times;
-    note_closeness(w, w->most / times);
+    w->farthest = fmax(w->farthest, w->most);
     w->s->is_delicate = w->part < near_pivot;
     w->reach = in * fmin(1, singular_pivot * times);
 }
@@ -371,27 +362,13 @@ void ct_singular_expect(struct ct_singular *w, double t, const double *y, double
     w->switches = w->s->switches;
     w->in = in;
     w->reach = INFINITY;
-    note_closeness(w, w->most);
-}
-
-// Crossings that begin nearer to the position than they should are among roundings if what these make of them, with the square of how much
-// nearer (8.28), is felt, and may be so, where the motion is slow, if one has failed from farther off and they begin so many times as near.
-static const double much_nearer = 10;
-
-static bool is_among_roundings(const struct ct_singular *w)
-{
-    const double n = w->reach / w->in, felt = felt_rounding * w->wanted;
-    return (w->has_tried && n > much_nearer)
-        || (felt > 0 && n > 1 && ct_crossing_rounding * n * n > felt);
+    w->farthest = fmax(w->farthest, w->most);
 }
 
 // The stages of a crossing keep away from the position and are put onto the constraints: an order of pivots that holds
 // where it begins holds for all of them.
-bool ct_singular_set_crossing(struct ct_singular *w, bool is_crossing)
+void ct_singular_set_crossing(struct ct_singular *w, bool is_crossing)
 {
     w->s->is_crossing = is_crossing;
-    w->s->is_in_quad = w->s->quad && (is_crossing ? is_among_roundings(w) : w->is_close);
-    w->has_tried |= is_crossing;
     w->s->is_delicate = !is_crossing && w->part < near_pivot;
-    return w->s->is_in_quad;
 }

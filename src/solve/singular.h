@@ -24,15 +24,13 @@ struct ct_singular {
     double in;     // time to the position ahead; INFINITY: there is none
     double wanted; // relative, of outputs; 0: not known
     double
-        farthest;  // the largest pivot so far, or what a start beside a position takes it to be
-    int rank;      // of J, the largest so far
-    bool is_close; // so near that f is found in quadruple precision
-    double reach;  // time before it in which f is better not computed
+        farthest; // the largest pivot so far, or what a start beside a position takes it to be
+    int rank;     // of J, the largest so far
+    double reach; // time before it in which f is better not computed
     double most, part, t; // the largest pivot so far, the last one against it, and its time
     double dt;            // the step before
     double pivot, fall;   // the last one, 0: not known; and what it lost in a second
     bool keeps_rows;      // a step does, and there are more than it needs
-    bool has_tried;       // to cross the position ahead
     bool was_told;        // the form has told of the last state that nothing has changed
     long switches, nmade; // of the embedding, there
     long doubted; // its choice when a step was last looked at whether it is to be shorter
@@ -44,7 +42,7 @@ struct ct_singular {
     long nover;      // positions that fixed steps have come across
     double over;     // when first
     double closest,
-        t_closest; // the smallest part of a step that was not made to cross, in double precision, and when
+        t_closest;  // the smallest part of a step that was not made to cross, and when
     bool has_poles; // they are asked for
     int npole;
     double pole
@@ -101,7 +99,7 @@ bool ct_singular_is_start(struct ct_arena *scratch, const struct ct_embed *s, do
 double ct_singular_misfit(struct ct_arena *scratch, const struct ct_embed *s, double t,
                           const double *y, int *freedoms);
 /// What is evaluated from now on belongs to a crossing, or does not.
-bool ct_singular_set_crossing(struct ct_singular *w, bool is_crossing);
+void ct_singular_set_crossing(struct ct_singular *w, bool is_crossing);
 /// A crossing has been made, of which the span is all but the first part, `begin` of it, and goes on to t1: find the position on it and
 /// keep it. False if there is none before t1.
 bool ct_singular_pass(struct ct_singular *w, const struct ct_stepper_span *span, double begin,

@@ -260,7 +260,6 @@ bool ct_singular_pass(struct ct_singular *w, const struct ct_stepper_span *span,
     bool has_passed = false;
     find_positions(w, &p, &f);
     keep_poles(w, &p, &f);
-    w->has_tried = false;
     for (int i = 0; i < f.n; i++)
         if (time_on(&p, f.theta[i]) <= t1) {
             keep_position(w, &p, &f, i);

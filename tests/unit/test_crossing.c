@@ -355,10 +355,9 @@ static enum ct_eval project(void *user, double t, double *y)
     return CT_EVAL_OK;
 }
 
-static bool set_crossing(void *user, bool is_crossing)
+static void set_crossing(void *user, bool is_crossing)
 {
     (void)user, (void)is_crossing;
-    return false;
 }
 
 static double mismatch(void *user, double t, const double *y)
