@@ -308,6 +308,19 @@ static bool wrong_word(struct ct_ctx *ctx, const char *what, const char *word, s
                     text, ct_suggest_or_list(ctx->model, text, words, nword));
 }
 
+// Suffixes of files that are taken for formats.
+static bool wrong_format(struct ct_ctx *ctx, const char *name, const char *const *formats,
+                         size_t nformat)
+{
+    static const char *const suffix[][2] = {{"tex", "latex"}, {"txt", "text"}, {"htm", "html"}};
+    for (size_t i = 0; i < COUNT(suffix); i++)
+        if (!strcmp(name, suffix[i][0]))
+            return ct_error(ctx, (struct ct_mark){0}, CT_E_USAGE,
+                            "equations have no format '%s'; did you mean '%s'?", name,
+                            suffix[i][1]);
+    return wrong_word(ctx, "format", name, strlen(name), formats, nformat);
+}
+
 // A list of names, separated by commas.
 static bool find_stages(struct ct_ctx *ctx, const char *text, unsigned *stages)
 {
@@ -335,7 +348,7 @@ static bool print_equations(void *task)
     unsigned stages;
     bool ok = find_stages(p->ctx, p->stages, &stages);
     if (!ct_equations_format_find(name, &format))
-        ok = wrong_word(p->ctx, "format", name, strlen(name), formats, COUNT(formats));
+        ok = wrong_format(p->ctx, name, formats, COUNT(formats));
     if (!ok)
         return false;
     ct_formulate_dynamics(&p->s->equations);

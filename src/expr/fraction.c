@@ -46,9 +46,19 @@ static bool nearest(double v, double tolerance, double *n, double *d)
     return true;
 }
 
+// A divisor of twos and fives alone: the fraction is a decimal, as people type it.
+static bool is_decimal(double divisor)
+{
+    while (fmod(divisor, 2) == 0)
+        divisor /= 2;
+    while (fmod(divisor, 5) == 0)
+        divisor /= 5;
+    return divisor == 1;
+}
+
 bool ct_fraction_find(double v, double *n, double *d)
 {
-    return !is_short(v) && nearest(v, 0, n, d);
+    return !is_short(v) && nearest(v, 0, n, d) && !is_decimal(*d);
 }
 
 // 0.21755580000000002 -> 0.2175558

@@ -4,7 +4,8 @@
 
 #include <stdbool.h>
 
-/// Is v the double nearest to a fraction *n / *d with d up to 10^6, |n d| up to 10^9, and no decimal of six digits?
+/// Is v the double nearest to a fraction *n / *d with d up to 10^6, |n d| up to 10^9, and no decimal, which a
+/// person may have typed? Decimals: six digits, or divisors made of twos and fives.
 /// Then n/d in double arithmetic gives the bits of v. Source: continued fractions; an approximation closer than 1/(2 d^2)
 /// is one of their convergents.
 bool ct_fraction_find(double v, double *n, double *d);

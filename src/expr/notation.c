@@ -154,24 +154,101 @@ const char *ct_c_operation(struct ct_arena *a, enum ct_op op, const char *const 
                                     : ct_arena_printf(a, "%s(%s, %s)", name, arg[0], arg[1]);
 }
 
+// ---- widths -----------------------------------------------------------------------------------
+
+// Letters and signs of Computer Modern at 10 pt [pt], rounded up.
+static double character_width(char c)
+{
+    if (strchr("il,.:;'|", c))
+        return 3.5;
+    if (strchr("fjrt()[]", c))
+        return 4.6;
+    if (strchr("mwMW", c))
+        return 9;
+    if (strchr("+-=<>", c)) // with the space around it
+        return 12.5;
+    return c >= 'A' && c <= 'Z' ? 8 : 5.6;
+}
+
+static bool is_command(const char *s, size_t n, const char *name)
+{
+    return strlen(name) == n && !strncmp(s, name, n);
+}
+
+// Of the command of n letters behind the backslash at s, without its arguments.
+static double command_width(const char *s, size_t n)
+{
+    static const char *const no_width[]
+        = {"mathrm", "boldsymbol", "frac", "dot",   "ddot", "dddot",        "tfrac",
+           "begin",  "end",        "text", "hline", "sqrt", "operatorname", "cases"};
+    static const char *const spelled[]
+        = {"sin",    "cos",    "tan", "sinh", "cosh", "tanh", "arcsin",
+           "arccos", "arctan", "exp", "ln",   "min",  "max"};
+    if (!isalpha((unsigned char)s[0])) // a space or a quoted sign
+        return strchr(",;", s[0]) ? 2.8 : strchr("_#$%&{}", s[0]) ? 5.6 : 0;
+    for (size_t i = 0; i < COUNT(no_width); i++)
+        if (is_command(s, n, no_width[i]))
+            return is_command(s, n, "sqrt") ? 10 : is_command(s, n, "begin") ? 15 : 0;
+    for (size_t i = 0; i < COUNT(spelled); i++)
+        if (is_command(s, n, spelled[i]))
+            return 5 * (double)n + 1.7;
+    if (is_command(s, n, "left") || is_command(s, n, "right"))
+        return 3; // a larger delimiter than its sign, and a thin space
+    if (is_command(s, n, "qquad") || is_command(s, n, "quad"))
+        return n == 5 ? 20 : 10;
+    return is_command(s, n, "cdot") || is_command(s, n, "times") ? 12.3 : 6.5; // Greek letters
+}
+
+static double width_of(const char **at, const char *end, double size, bool is_one);
+
+static double fraction_width(const char **at, const char *end, double size)
+{
+    const double above = width_of(at, end, size, true), below = width_of(at, end, size, true);
+    return 2.4 + (above > below ? above : below);
+}
+
+// Up to the end or the brace that closes; is_one: one item, a sign, a command or a group.
+static double width_of(const char **at, const char *end, double size, bool is_one)
+{
+    const double script = 0.8; // letters of 7 pt are wider for their size
+    double width = 0;
+    while (*at < end && **at != '}') {
+        const char c = *(*at)++;
+        if (c == ' ' || c == '&')
+            continue;
+        if (c == '{') {
+            width += width_of(at, end, size, false);
+            *at += *at < end;
+        } else if (c == '_' || c == '^') {
+            width += width_of(at, end, size * script, true) + 0.5;
+        } else if (c == '\\') {
+            const char *name = *at;
+            while (*at < end && isalpha((unsigned char)**at))
+                (*at)++;
+            *at += *at == name && *at < end;
+            width += size * command_width(name, (size_t)(*at - name));
+            if (is_command(name, (size_t)(*at - name), "frac"))
+                width += fraction_width(at, end, size);
+            if (is_command(name, (size_t)(*at - name), "begin")
+                || is_command(name, (size_t)(*at - name), "end"))
+                while (*at < end && *(*at)++ != '}') // the name of the environment
+                    ;
+        } else {
+            width += (c & 0xC0) == 0x80 ? 0 : size * character_width(c);
+        }
+        if (is_one)
+            break;
+    }
+    return width;
+}
+
 size_t ct_latex_width(const char *s, size_t length)
 {
-    size_t n = 0;
-    for (size_t i = 0; i < length; i++) {
-        if (s[i] != '\\') {
-            n += !strchr("{}^_ ", s[i]);
-            continue;
-        }
-        size_t k = i + 1;
-        while (k < length && isalpha((unsigned char)s[k]))
-            k++;
-        const bool is_free = k - i == 1 || !strncmp(s + i, "\\left", 5)
-                          || !strncmp(s + i, "\\right", 6) || !strncmp(s + i, "\\mathrm", 7)
-                          || !strncmp(s + i, "\\frac", 5);
-        n += is_free                ? 0
-           : k - i > 3 && k - i < 5 ? 3
-                                    : 1; // \sin and \cos print as they are spelled
-        i = k > i + 1 ? k - 1 : i + 1;
+    const char *at = s, *end = s + length;
+    double width = 0;
+    while (at < end) {
+        width += width_of(&at, end, 1, false);
+        at += at < end; // a brace without its partner
     }
-    return n;
+    return (size_t)(width + 0.5);
 }

@@ -126,9 +126,11 @@ static const char *without_group(struct ct_arena *a, const char *s, const struct
     return is_group ? ct_arena_strndup(a, s + first, n - first - last) : s;
 }
 
+// Too wide for a line that is indented.
 static bool is_wide(const char *s)
 {
-    return ct_latex_width(s, strlen(s)) > CT_LATEX_LINE;
+    const size_t indent = 40;
+    return ct_latex_width(s, strlen(s)) + indent > CT_LATEX_LINE;
 }
 
 // A fraction in LaTeX; one with a part wider than a line as a product, which can be broken: the number over what fits,
@@ -259,12 +261,27 @@ static bool is_comparison(uint32_t op)
     return op >= CT_OP_LT && op <= CT_OP_EQ;
 }
 
+static const char *take(struct ct_printer *pr, uint32_t id)
+{
+    const size_t start = pr->n;
+    emit(pr, (ct_ex){id}, LEVEL_ANY);
+    const char *s = ct_arena_strndup(pr->arena, pr->s + start, pr->n - start);
+    pr->n = start;
+    return s;
+}
+
+// Cases cannot be broken: those wider than a line are written as in a model file, if(a, b, c).
 static void emit_cases(struct ct_printer *pr, const struct ct_exnode *n)
 {
     const bool comparison = is_comparison(ct_ex_node(pr->x, (ct_ex){n->a})->op);
-    emit_wrapped(pr, "\\begin{cases} ", n->b, " & ");
-    emit_wrapped(pr, "", n->a, comparison ? " \\\\ " : " \\neq 0 \\\\ ");
-    emit_wrapped(pr, "", n->c, " & \\text{otherwise} \\end{cases}");
+    const char *then = take(pr, n->b), *is_true = take(pr, n->a), *otherwise = take(pr, n->c);
+    const char *s = ct_arena_printf(
+        pr->arena, "\\begin{cases} %s & %s%s \\\\ %s & \\text{otherwise} \\end{cases}", then,
+        is_true, comparison ? "" : " \\neq 0", otherwise);
+    put(pr, !is_wide(s) ? s
+                        : ct_arena_printf(
+                            pr->arena, "\\operatorname{if}\\left(%s%s,\\; %s,\\; %s\\right)",
+                            is_true, comparison ? "" : " \\neq 0", then, otherwise));
 }
 
 static void emit_function(struct ct_printer *pr, const struct ct_exnode *n)

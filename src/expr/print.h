@@ -32,10 +32,13 @@ struct ct_print {
     /// each other are cut in any case. A graph of n nodes can be a tree of 2^n: name shared nodes
     /// first (share.h).
     size_t limit;
-    /// Halves, quarters, eighths as fractions: m*l^2/4, not 0.25*m*l^2; of other numbers those that are exactly the double
+    /// Halves, quarters, eighths of parameters as fractions: m*l^2/4, not 0.25*m*l^2; a term without a parameter keeps its
+    /// decimal, as its number comes from data: 1.5*x'', not 3*x''/2. Of other numbers those that are exactly the double
     /// nearest to a small fraction (fraction.h): 13*m/35. Reads back to the same value up to rounding, not to the same
     /// nodes. Text and LaTeX.
     bool fractions;
+    /// No number comes from data: halves are fractions in every term.
+    bool no_data;
 };
 
 /// e as text; p may be NULL. The text and all work space live in a.
@@ -54,11 +57,11 @@ const char *ct_number_c(struct ct_arena *a, double v);
 const char *ct_latex_name(struct ct_arena *a, const char *name);
 /// A name with a backslash before what LaTeX takes for itself.
 const char *ct_latex_quoted(struct ct_arena *a, const char *name);
-/// Characters of LaTeX text (length) that take room on the page: a command counts as one, braces and sizes as none, a
-/// fraction as both its parts.
+/// Width of LaTeX mathematics (length) on the page [pt], in Computer Modern of 10 pt, to a few per cent.
 size_t ct_latex_width(const char *s, size_t length);
-/// Such characters that fit into a line of a page; a fraction with a part that is wider is printed as a product.
-enum { CT_LATEX_LINE = 85 };
+/// Width of a line [pt]: that of the class article at 10 pt, 345 pt; a fraction with a part that is wider is printed
+/// as a product.
+enum { CT_LATEX_LINE = 345 };
 /// A C identifier from a name: characters that are not allowed become _, a prime becomes d.
 /// Different names can become the same identifier: telling them apart is the caller's.
 const char *ct_c_name(struct ct_arena *a, const char *name);

@@ -212,6 +212,17 @@ static void split_fraction(struct ct_term *t)
     t->divisor *= divisor;
 }
 
+// Does a parameter stand in the term? Else its number comes from data, and keeps the digits of these.
+static bool has_parameter(const struct ct_printer *pr, const struct ct_term *t)
+{
+    unsigned kinds = 0;
+    for (size_t k = 0; k < t->above.n; k++)
+        kinds |= ct_ex_kinds(pr->x, t->above.at[k].e);
+    for (size_t k = 0; k < t->below.n; k++)
+        kinds |= ct_ex_kinds(pr->x, t->below.at[k].e);
+    return kinds & 1u << CT_SYM_PARAM;
+}
+
 static struct ct_term make_term(struct ct_printer *pr, ct_ex e, bool negative)
 {
     struct ct_term t = {.negative = negative, .number = 1, .divisor = 1};
@@ -221,7 +232,8 @@ static struct ct_term make_term(struct ct_printer *pr, ct_ex e, bool negative)
         ct_term_split_pi(&t);
     }
     // a number alone stays a short decimal
-    if (pr->p.fractions && t.above.n && t.divisor == 1 && !t.pi)
+    if (pr->p.fractions && t.above.n && t.divisor == 1 && !t.pi
+        && (pr->p.no_data || has_parameter(pr, &t)))
         split_fraction(&t);
     if (pr->p.fractions && t.divisor == 1 && !t.pi)
         split_small_fraction(&t);

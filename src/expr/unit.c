@@ -178,9 +178,12 @@ const char *ct_unit_nearest(const char *text)
         return NULL;
     memcpy(name, text, k); // NOLINT(bugprone-not-null-terminated-result): name is zeroed
     const char *names[COUNT(units)];
+    size_t n = 0;
+    // two letters are no slip in three: inches are no minutes
     for (size_t i = 0; i < COUNT(units); i++)
-        names[i] = units[i].name;
-    return ct_nearest(name, names, COUNT(units));
+        if (k > 2 || strlen(units[i].name) <= k)
+            names[n++] = units[i].name;
+    return ct_nearest(name, names, n);
 }
 
 static size_t count_digits(const char *s)

@@ -229,6 +229,21 @@ static bool find_normal(struct ct_build *b)
     return false;
 }
 
+const char *ct_plane_axis_name(const struct ct_build *b, int i)
+{
+    static const char *const letter[] = {"x", "y", "z"}, *const own[] = {"e1", "e2", "e3"};
+    if (!b->is_planar)
+        return letter[i];
+    for (int k = 0; k < 3; k++) {
+        double axis[3] = {0}, v[3];
+        axis[k] = 1;
+        value3(b, b->plane[i], v);
+        if (is_same(v, axis))
+            return letter[k];
+    }
+    return own[i];
+}
+
 void ct_plane_detect(struct ct_build *b, bool allowed)
 {
     const double axes[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};

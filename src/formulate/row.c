@@ -2,6 +2,7 @@
 #include "formulate/row.h"
 #include "formulate/dynamics.h"
 #include "formulate/gap.h"
+#include "formulate/topology.h"
 
 #include <string.h>
 
@@ -193,12 +194,12 @@ void ct_row_couple(struct ct_build *b, const struct ct_instance *self, int coord
 static void place_rows(struct ct_build *b, const struct ct_edge_info *e, struct ct_ends n)
 {
     struct ct_exs *x = b->x;
-    static const char *const letter[] = {"x", "y", "z"};
     const ct_ex3 d = ct_path_position(b, n.tail, n.head);
     const ct_ex3 a = ct_path_acceleration(b, n.tail, n.head, CT_BIAS);
     for (int i = 0; i < (b->is_planar ? 2 : 3); i++) {
         const struct ct_wrench w = {b->plane[i], zero3};
-        add_row(b, e->index, ct_arena_printf(b->arena, "%s.%s", e->name, letter[i]), n, &w,
+        add_row(b, e->index,
+                ct_arena_printf(b->arena, "%s.%s", e->name, ct_plane_axis_name(b, i)), n, &w,
                 false, ct_gap_number(b, e, ct_ex3_dot(x, b->plane[i], d)),
                 ct_ex3_dot(x, b->plane[i], a));
     }

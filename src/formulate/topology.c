@@ -317,11 +317,13 @@ void ct_topology_motion(struct ct_build *b, const struct ct_edge_info *e, struct
 static const char *coordinate_name(struct ct_build *b, const struct ct_edge_info *e,
                                    const struct ct_motion *m, int k)
 {
-    static const char *const planar[] = {"x", "y", "angle"};
-    static const char *const spatial[] = {"x", "y", "z", "p0", "p1", "p2", "p3"};
+    static const char *const orientation[] = {"p0", "p1", "p2", "p3"};
+    const int nplace = b->is_planar ? 2 : 3;
     if (e->kind == CT_EDGE_BODY)
         return ct_arena_printf(b->arena, "%s.%s", e->name,
-                               (b->is_planar ? planar : spatial)[k]);
+                               k < nplace     ? ct_plane_axis_name(b, k)
+                               : b->is_planar ? "angle"
+                                              : orientation[k - nplace]);
     return m->ncoord == 1 ? ct_arena_printf(b->arena, "%s.q", e->name)
                           : ct_arena_printf(b->arena, "%s.q%d", e->name, k + 1);
 }

@@ -14,6 +14,10 @@ void ct_topology_motion(struct ct_build *b, const struct ct_edge_info *e, struct
 /// components of ground; else n is the third of ground. After the coordinates of joints.
 void ct_plane_detect(struct ct_build *b, bool allowed);
 
+/// Name of direction i of the plane, 0 to 2 (of ground, where all may leave it): "x", "y", "z" along an axis of ground,
+/// else "e1", "e2", "e3".
+const char *ct_plane_axis_name(const struct ct_build *b, int i);
+
 /// Note what the equations leave out and why.
 void ct_topology_left_out(struct ct_build *b, const char *what, const char *why);
 

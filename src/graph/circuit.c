@@ -66,3 +66,22 @@ void ct_circuits_derive(struct ct_arena *a, const struct ct_graph *g, const stru
         }
     }
 }
+
+void ct_incidence_derive(struct ct_arena *a, const struct ct_graph *g, struct ct_incidence *A)
+{
+    int *start = CT_NEWN(a, int, g->nedge + 1);
+    for (int e = 0; e < g->nedge; e++)
+        start[e + 1] = (g->edge[e].head != 0) + (g->edge[e].tail != 0);
+    int *next = ct_incidence_create(a, g->nnode - 1, g->nedge, start, A);
+    for (int e = 0; e < g->nedge; e++) {
+        const int head = g->edge[e].head, tail = g->edge[e].tail;
+        const int first = head < tail ? head : tail, second = head < tail ? tail : head;
+        for (int i = 0; i < 2; i++) { // rows in order
+            const int v = i ? second : first;
+            if (v == 0)
+                continue;
+            A->row[next[e]] = v - 1;
+            A->value[next[e]++] = v == head ? 1 : -1;
+        }
+    }
+}

@@ -87,6 +87,9 @@ void ct_circuits_derive(struct ct_arena *a, const struct ct_graph *g, const stru
 void ct_cutsets_derive(struct ct_arena *a, const struct ct_graph *g, const struct ct_tree *t,
                        struct ct_incidence *Af);
 
+/// Incidence matrix without ground, (nnode - 1) x nedge: row v - 1 is node v, 1 at the head of an edge, -1 at its tail.
+void ct_incidence_derive(struct ct_arena *a, const struct ct_graph *g, struct ct_incidence *A);
+
 /// S without its entries; start (ncol + 1): how many column j has in start[j + 1], summed to starts. Returns the next
 /// free place of each column.
 int *ct_incidence_create(struct ct_arena *a, int nrow, int ncol, int *start,

@@ -69,7 +69,7 @@ static void print_edges(FILE *out, const struct ct_graph_view *view)
     fprintf(out, "    #  %-*s  %-*s  %-*s    %-*s  weight  tree    weight  tree\n", edge,
             "name", kind, "kind", node, "from", node, "to");
     for (int e = 0; e < nedge; e++) {
-        fprintf(out, "  %3d  ", e);
+        fprintf(out, "  %3d  ", e + 1);
         print_left(out, names->edge(names->data, e), edge);
         fprintf(out, "  ");
         print_left(out, names->kind(names->data, e), kind);
@@ -92,7 +92,7 @@ static const char *column_head(const struct ct_graph_names *names, int e, bool b
 {
     if (!by_number)
         return names->edge(names->data, e);
-    snprintf(text, 12, "%d", e);
+    snprintf(text, 12, "%d", e + 1);
     return text;
 }
 

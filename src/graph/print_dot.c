@@ -104,7 +104,7 @@ static void print_nodes(FILE *out, const struct ct_graph_view *view)
 static void print_edge_label(FILE *out, const struct ct_graph_names *names, int e, int look)
 {
     const char *const small = "<font point-size=\"8\" color=\"#777777\">";
-    fprintf(out, "label=<%s", look == QUIET ? small : "");
+    fprintf(out, "label=<%s%d ", look == QUIET ? small : "", e + 1);
     print_escaped(out, names->edge(names->data, e));
     if (look != QUIET) {
         fprintf(out, "<br/>%s", small);

@@ -53,7 +53,7 @@ static void print_edges(FILE *out, const struct ct_graph_view *view)
     const int n = view->g->nedge;
     fprintf(out, "  \"edges\": [\n");
     for (int e = 0; e < n; e++) {
-        fprintf(out, "    {\"id\": %d", e);
+        fprintf(out, "    {\"id\": %d", e + 1);
         print_member(out, "name", names->edge(names->data, e));
         print_member(out, "kind", names->kind(names->data, e));
         fprintf(out, ", \"tail\": %d, \"head\": %d", view->g->edge[e].tail,
@@ -77,9 +77,9 @@ static void print_rows(FILE *out, struct ct_arena *scratch, const char *key,
     fprintf(out, "    \"%s\": [\n", key);
     for (int i = 0; i < S->nrow; i++) {
         const int end = St.start[i + 1];
-        fprintf(out, "      {\"%s\": %d, \"edges\": [", own_key, own[i]);
+        fprintf(out, "      {\"%s\": %d, \"edges\": [", own_key, own[i] + 1);
         for (int k = St.start[i]; k < end; k++)
-            fprintf(out, "%d%s", St.row[k], k + 1 < end ? ", " : "], \"signs\": [");
+            fprintf(out, "%d%s", St.row[k] + 1, k + 1 < end ? ", " : "], \"signs\": [");
         for (int k = St.start[i]; k < end; k++)
             fprintf(out, "%d%s", St.value[k], k + 1 < end ? ", " : "]}");
         fprintf(out, "%s\n", separator(i, S->nrow));

@@ -2,6 +2,7 @@
 #include "report/derivation.h"
 
 #include "expr/collect.h"
+#include "formulate/build.h"
 
 #include <string.h>
 
@@ -110,6 +111,13 @@ const char *ct_derivation_text(struct ct_derivation *d, ct_ex v)
     return ct_ex_text(d->a, d->e->x, v, &d->print);
 }
 
+const char *ct_derivation_exact(struct ct_derivation *d, ct_ex v)
+{
+    struct ct_print p = d->print;
+    p.no_data = true;
+    return ct_ex_text(d->a, d->e->x, v, &p);
+}
+
 const char *ct_derivation_collected(struct ct_derivation *d, ct_ex v)
 {
     const struct ct_collect_options o = {.scratch = d->a};
@@ -168,4 +176,59 @@ const char *ct_derivation_axis(struct ct_derivation *d, ct_ex3 n)
             return minus[i];
     }
     return ct_derivation_vector(d, n);
+}
+
+size_t ct_derivation_lines(struct ct_derivation *d, ct_ex v)
+{
+    return 1 + ct_text_width(ct_derivation_text(d, v)) / (CT_PAGE_WIDTH - 12);
+}
+
+void ct_derivation_put_definitions(struct ct_derivation *d, const char *heading,
+                                   const struct ct_definitions *list)
+{
+    if (!list->n)
+        return;
+    ct_page_heading(&d->page, heading);
+    ct_page_equations(&d->page);
+    for (size_t i = 0; i < list->n; i++)
+        ct_page_equation(&d->page, NULL, ct_derivation_text(d, list->at[i].symbol),
+                         ct_derivation_text(d, list->at[i].value), NULL);
+}
+
+// ---- inertia ------------------------------------------------------------------------------------------
+
+const char *ct_derivation_inertia_force(struct ct_derivation *d, const struct ct_body *body)
+{
+    const struct ct_build *b = d->e->build;
+    const char *mass = ct_derivation_text(d, body->mass);
+    const char *com = b->node[b->node_of_com[body - d->m->body]].name;
+    if (ct_ex_is_zero(body->mass))
+        return NULL;
+    if (strchr(mass, ' '))
+        mass = ct_arena_printf(d->a, "(%s)", mass);
+    return ct_arena_printf(
+        d->a, ct_derivation_is_latex(d) ? "%s \\, (%s - \\boldsymbol{g})" : "%s*(%s - g)", mass,
+        ct_derivation_of(d, "a", com));
+}
+
+const char *ct_derivation_inertia_torque(struct ct_derivation *d, const struct ct_body *body)
+{
+    const bool latex = ct_derivation_is_latex(d);
+    const char *name = body->instance.name;
+    const char *al = ct_derivation_of(d, "al", name), *w = ct_derivation_of(d, "w", name);
+    bool is_massless = true;
+    for (int i = 0; i < 6; i++)
+        is_massless &= ct_ex_is_zero(body->inertia[i]);
+    if (is_massless || body->is_particle)
+        return NULL;
+    if (ct_ex_same(body->inertia[0], body->inertia[1])
+        && ct_ex_same(body->inertia[1], body->inertia[2])) { // I w is along w
+        const char *I = ct_derivation_text(d, body->inertia[0]);
+        if (strchr(I, ' '))
+            I = ct_arena_printf(d->a, "(%s)", I);
+        return ct_arena_printf(d->a, latex ? "%s \\, %s" : "%s*%s", I, al);
+    }
+    const char *I = ct_derivation_of(d, "I", name);
+    return ct_arena_printf(d->a, latex ? "(%s %s + %s \\times %s %s)" : "(%s*%s + %s x %s*%s)",
+                           I, al, w, I, w);
 }

@@ -20,7 +20,9 @@ void ct_derivation_init(struct ct_derivation *d, struct ct_arena *a, struct ct_e
 
 /// An expression as mathematics of the page.
 const char *ct_derivation_text(struct ct_derivation *d, ct_ex v);
-/// The same after collecting.
+/// The same where no number comes from the model's data: q/2, not 0.5*q.
+const char *ct_derivation_exact(struct ct_derivation *d, ct_ex v);
+/// As ct_derivation_text, after collecting.
 const char *ct_derivation_collected(struct ct_derivation *d, ct_ex v);
 /// A name of the model as mathematics: "crank.q", or LaTeX of it.
 const char *ct_derivation_name(struct ct_derivation *d, const char *name);
@@ -33,6 +35,19 @@ const char *ct_derivation_vector(struct ct_derivation *d, ct_ex3 v);
 /// A direction: x, -y, or [a, b, c].
 const char *ct_derivation_axis(struct ct_derivation *d, ct_ex3 n);
 
+/// Lines of text beyond which subexpressions get names.
+enum { CT_MOST_LINES = 30 };
+/// Lines that v takes, about.
+size_t ct_derivation_lines(struct ct_derivation *d, ct_ex v);
+/// Under a heading; nothing if there are none.
+void ct_derivation_put_definitions(struct ct_derivation *d, const char *heading,
+                                   const struct ct_definitions *list);
+
+/// Inertia less weight, m*(a(C) - g) and I*al + w x I*w of a body that is no beam; NULL where they are zero. The
+/// body's through variables are their negatives.
+const char *ct_derivation_inertia_force(struct ct_derivation *d, const struct ct_body *body);
+const char *ct_derivation_inertia_torque(struct ct_derivation *d, const struct ct_body *body);
+
 static inline bool ct_derivation_is_latex(const struct ct_derivation *d)
 {
     return d->page.look == CT_LOOK_LATEX;
@@ -40,6 +55,17 @@ static inline bool ct_derivation_is_latex(const struct ct_derivation *d)
 
 /// The reduced equations as a reader wants them: collected, or with names where they are long.
 void ct_derivation_reduce(struct ct_derivation *d, struct ct_reduced *r);
+
+/// Circuits with the terminal equations put in: places of the bodies that are chords, and constraint rows, by their
+/// definitions where they are long.
+struct ct_substituted {
+    int *edge;  // of the bodies: chords of translation
+    ct_ex3 *at; // centres of mass in ground axes [m]
+    size_t n;
+    ct_ex *phi; // nrow
+    struct ct_definitions definitions;
+};
+void ct_derivation_substitute(struct ct_derivation *d, struct ct_substituted *s);
 
 void ct_stage_terminal(struct ct_derivation *d);
 void ct_stage_graph(struct ct_derivation *d);

@@ -85,9 +85,9 @@ static void mark_used(struct writer *w, const struct ct_reduced *r)
     mark_below(w, r->J, e->nJ);
     mark_below(w, r->phi, e->nrow);
     mark_below(w, r->gam, e->nrow);
-    for (size_t i = r->ndefinition; i-- > 0;)
-        if (w->is_used[ct_ex_node(x, r->definition[i].symbol)->a])
-            mark_below(w, &r->definition[i].value, 1);
+    for (size_t i = r->definitions.n; i-- > 0;)
+        if (w->is_used[ct_ex_node(x, r->definitions.at[i].symbol)->a])
+            mark_below(w, &r->definitions.at[i].value, 1);
 }
 
 static void put_symbol(struct writer *w, ct_ex e, const char *value)
@@ -139,18 +139,26 @@ static void put_results(struct writer *w, const struct ct_reduced *r)
         fprintf(w->out, "    gam[%zu] = %s;\n", i, text(w, r->gam[i]));
 }
 
+// A name inside a comment of one line: what could end the line is written as a blank.
+static void put_comment_name(FILE *out, const char *name)
+{
+    for (; *name; name++)
+        fputc(iscntrl((unsigned char)*name) ? ' ' : *name, out);
+}
+
 static void put_head(struct writer *w, const char *name)
 {
     const struct ct_equations *e = w->d->e;
+    fputs("// ", w->out);
+    put_comment_name(w->out, w->d->m->name ? w->d->m->name : "model");
     fprintf(w->out,
-            "// %s: M u' = Q + J' lam, Phi = 0, J u' + gam = 0\n//\n"
+            ": M u' = Q + J' lam, Phi = 0, J u' + gam = 0\n//\n"
             "// M (%zu x %zu) and J (%zu x %zu) are column-major; entries that are always zero "
             "are not "
             "written.\n"
             "// mode: 0 or 1, the sides of comparisons (%zu); kept: values of the last step "
             "(%zu).\n",
-            w->d->m->name ? w->d->m->name : "model", e->nu, e->nu, e->nrow, e->nu, e->nmode,
-            e->nmemory);
+            e->nu, e->nu, e->nrow, e->nu, e->nmode, e->nmemory);
     fprintf(w->out, "#include <math.h>\n\n");
     if (e->x->ntable)
         fprintf(w->out, "// value of a sampled function or of one of its derivatives at x\n"
@@ -177,10 +185,10 @@ void ct_derivation_print_c(FILE *out, struct ct_derivation *d)
     mark_used(&w, &r);
     put_head(&w, ct_c_name(d->a, d->m->name ? d->m->name : "model"));
     put_known(&w);
-    if (r.ndefinition)
+    if (r.definitions.n)
         fprintf(out, "\n    // shared\n");
-    for (size_t i = 0; i < r.ndefinition; i++)
-        put_symbol(&w, r.definition[i].symbol, text(&w, r.definition[i].value));
+    for (size_t i = 0; i < r.definitions.n; i++)
+        put_symbol(&w, r.definitions.at[i].symbol, text(&w, r.definitions.at[i].value));
     put_results(&w, &r);
     fprintf(out, "}\n");
 }

@@ -8,6 +8,8 @@
 #include "report/equations.h"
 #include "report/json.h"
 
+#include <string.h>
+
 struct writer {
     struct ct_json j;
     struct ct_derivation *d;
@@ -77,29 +79,83 @@ static void put_beams(struct writer *w)
     ct_json_end(&w->j);
 }
 
+// The equations of a page that are about a component, as text.
+static void put_equations_about(struct writer *w, const struct ct_page *p, const char *name)
+{
+    ct_json_array(&w->j, "equations");
+    for (size_t i = 0; i < p->nblock; i++)
+        for (size_t k = 0; k < p->block[i].nequation; k++) {
+            const struct ct_page_equation *e = &p->block[i].equation[k];
+            if (!e->about || strcmp(e->about, name))
+                continue;
+            ct_json_object(&w->j, NULL);
+            ct_json_text(&w->j, "left", e->left);
+            ct_json_text(&w->j, "right", e->right);
+            if (e->note)
+                ct_json_text(&w->j, "note", e->note);
+            ct_json_end(&w->j);
+        }
+    ct_json_end(&w->j);
+}
+
+static void put_component(struct writer *w, const char *name, const char *type,
+                          const char *across, const char *through)
+{
+    ct_json_object(&w->j, NULL);
+    ct_json_text(&w->j, "name", name);
+    ct_json_text(&w->j, "type", type);
+    ct_json_text(&w->j, "across", across);
+    ct_json_text(&w->j, "through", through);
+    put_equations_about(w, &w->d->page, name);
+    ct_json_end(&w->j);
+}
+
 static void put_terminal(struct writer *w)
 {
     const struct ct_build *b = w->d->e->build;
+    ct_stage_terminal(w->d); // the page of this writer is never printed
     ct_json_array(&w->j, "terminal");
     for (size_t i = 0; i < b->nedge; i++) {
         const struct ct_edge_info *e = &b->edge[i];
-        ct_json_object(&w->j, NULL);
-        ct_json_text(&w->j, "name", e->name);
-        ct_json_text(&w->j, "type", w->d->e->edge_kind[i]);
-        ct_json_text(&w->j, "across",
-                     e->self       ? e->self->cls->across
-                     : e->flexible ? "d = r, S: place and turn of the section"
-                                   : "d, S constant");
-        ct_json_text(&w->j, "through", e->self ? e->self->cls->through : "F, T are reactions");
-        ct_json_end(&w->j);
+        put_component(w, e->name, w->d->e->edge_kind[i],
+                      e->self       ? e->self->cls->across
+                      : e->flexible ? "d = r, S: place and turn of the section"
+                                    : "d, S constant",
+                      e->self ? e->self->cls->through : "F, T are reactions");
+    }
+    for (size_t j = 0; j < w->d->m->njoint; j++) { // gears
+        const struct ct_instance *self = &w->d->m->joint[j];
+        if (b->edge_of_joint[j] < 0)
+            put_component(w, self->name, self->cls->name, self->cls->across,
+                          self->cls->through);
     }
     ct_json_end(&w->j);
     if (b->nflexible)
         put_beams(w);
 }
 
+// Rows of an integer matrix: what they are called, edges and their signs.
+static void put_rows(struct writer *w, const char *key, const char *own_key,
+                     const struct ct_incidence *S, const char *const *name)
+{
+    struct ct_incidence rows;
+    ct_incidence_transpose(w->d->a, S, &rows);
+    ct_json_array(&w->j, key);
+    for (int i = 0; i < S->nrow; i++) {
+        ct_json_object(&w->j, NULL);
+        ct_json_text(&w->j, own_key, name[i]);
+        ct_json_object(&w->j, "sum");
+        for (int k = rows.start[i]; k < rows.start[i + 1]; k++)
+            ct_json_integer(&w->j, w->d->e->edge_name[rows.row[k]], rows.value[k]);
+        ct_json_end(&w->j);
+        ct_json_end(&w->j);
+    }
+    ct_json_end(&w->j);
+}
+
 static void put_graph(struct writer *w)
 {
+    struct ct_incidence A;
     const struct ct_equations *e = w->d->e;
     ct_json_object(&w->j, "graph");
     ct_json_array(&w->j, "nodes");
@@ -109,6 +165,7 @@ static void put_graph(struct writer *w)
     ct_json_array(&w->j, "edges");
     for (int i = 0; i < e->graph->nedge; i++) {
         ct_json_object(&w->j, NULL);
+        ct_json_integer(&w->j, "number", i + 1);
         ct_json_text(&w->j, "name", e->edge_name[i]);
         ct_json_text(&w->j, "type", e->edge_kind[i]);
         ct_json_text(&w->j, "from", e->node_name[e->graph->edge[i].tail]);
@@ -116,6 +173,8 @@ static void put_graph(struct writer *w)
         ct_json_end(&w->j);
     }
     ct_json_end(&w->j);
+    ct_incidence_derive(w->d->a, e->graph, &A);
+    put_rows(w, "incidence", "node", &A, (const char *const *)e->node_name + 1);
     ct_json_end(&w->j);
 }
 
@@ -145,22 +204,38 @@ static void put_tree(struct writer *w)
     ct_json_end(&w->j);
 }
 
-// Rows of a cutset or circuit matrix: edges and their signs.
-static void put_rows(struct writer *w, const char *key, const char *own_key,
-                     const struct ct_incidence *S, const int *own)
+static void put_definitions(struct writer *w, const struct ct_definitions *list)
 {
-    struct ct_incidence rows;
-    ct_incidence_transpose(w->d->a, S, &rows);
-    ct_json_array(&w->j, key);
-    for (int i = 0; i < S->nrow; i++) {
-        ct_json_object(&w->j, NULL);
-        ct_json_text(&w->j, own_key, w->d->e->edge_name[own[i]]);
-        ct_json_object(&w->j, "sum");
-        for (int k = rows.start[i]; k < rows.start[i + 1]; k++)
-            ct_json_integer(&w->j, w->d->e->edge_name[rows.row[k]], rows.value[k]);
-        ct_json_end(&w->j);
+    ct_json_array(&w->j, "definitions");
+    for (size_t i = 0; i < list->n; i++) {
+        ct_json_array(&w->j, NULL);
+        ct_json_text(&w->j, NULL, text(w, list->at[i].symbol));
+        ct_json_text(&w->j, NULL, text(w, list->at[i].value));
         ct_json_end(&w->j);
     }
+    ct_json_end(&w->j);
+}
+
+// Circuits with the terminal equations put in.
+static void put_substituted(struct writer *w)
+{
+    const struct ct_equations *e = w->d->e;
+    struct ct_substituted s;
+    ct_derivation_substitute(w->d, &s);
+    ct_json_object(&w->j, "substituted");
+    put_definitions(w, &s.definitions);
+    ct_json_object(&w->j, "bodies"); // centres of mass in ground axes
+    for (size_t i = 0; i < s.n; i++) {
+        ct_json_array(&w->j, e->edge_name[s.edge[i]]);
+        for (int k = 0; k < 3; k++)
+            ct_json_text(&w->j, NULL, text(w, s.at[i].e[k]));
+        ct_json_end(&w->j);
+    }
+    ct_json_end(&w->j);
+    ct_json_object(&w->j, "joints"); // each is zero
+    for (size_t i = 0; i < e->nrow; i++)
+        ct_json_text(&w->j, e->row[i].name, text(w, s.phi[i]));
+    ct_json_end(&w->j);
     ct_json_end(&w->j);
 }
 
@@ -168,7 +243,7 @@ static void put_topology(struct writer *w, bool cutsets)
 {
     const struct ct_equations *e = w->d->e;
     const struct ct_tree *const tree[] = {e->T, e->R};
-    static const char *const name[] = {"translation", "rotation"};
+    static const char *const key[] = {"translation", "rotation"};
     ct_json_object(&w->j, cutsets ? "cutsets" : "circuits");
     for (int i = 0; i < 2; i++) {
         struct ct_incidence S;
@@ -176,9 +251,13 @@ static void put_topology(struct writer *w, bool cutsets)
             ct_cutsets_derive(w->d->a, e->graph, tree[i], &S);
         else
             ct_circuits_derive(w->d->a, e->graph, tree[i], &S);
-        put_rows(w, name[i], cutsets ? "branch" : "chord", &S,
-                 cutsets ? tree[i]->branch : tree[i]->chord);
+        const char **name = CT_NEWN(w->d->a, const char *, S.nrow + 1);
+        for (int k = 0; k < S.nrow; k++)
+            name[k] = e->edge_name[(cutsets ? tree[i]->branch : tree[i]->chord)[k]];
+        put_rows(w, key[i], cutsets ? "branch" : "chord", &S, name);
     }
+    if (!cutsets)
+        put_substituted(w);
     ct_json_end(&w->j);
 }
 
@@ -262,14 +341,7 @@ static void put_reduced(struct writer *w)
     ct_derivation_reduce(w->d, &r);
     put_unknowns(w, &r);
     put_known(w, &r);
-    ct_json_array(&w->j, "definitions");
-    for (size_t i = 0; i < r.ndefinition; i++) {
-        ct_json_array(&w->j, NULL);
-        ct_json_text(&w->j, NULL, text(w, r.definition[i].symbol));
-        ct_json_text(&w->j, NULL, text(w, r.definition[i].value));
-        ct_json_end(&w->j);
-    }
-    ct_json_end(&w->j);
+    put_definitions(w, &r.definitions);
     put_matrix(w, "M", e->M, r.M, e->nM);
     put_vector(w, "Q", r.Q, e->nu);
     put_matrix(w, "J", e->J, r.J, e->nJ);

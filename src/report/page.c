@@ -45,6 +45,19 @@ void ct_page_row(struct ct_page *p, const char *const *cell, size_t n)
         ct_page_cell(p, cell[i]);
 }
 
+void ct_page_matrix(struct ct_page *p, size_t ncolumn)
+{
+    add_block(p, CT_PAGE_MATRIX)->ncolumn = ncolumn;
+}
+
+bool ct_page_matrix_end(struct ct_page *p)
+{
+    const struct ct_page_block *b = &p->block[p->nblock - 1];
+    const bool fits = p->look == CT_LOOK_LATEX ? ct_page_latex_fits(b) : ct_page_text_fits(b);
+    p->nblock -= !fits;
+    return fits;
+}
+
 void ct_page_equations(struct ct_page *p)
 {
     add_block(p, CT_PAGE_EQUATIONS);
@@ -54,7 +67,7 @@ void ct_page_equation(struct ct_page *p, const char *label, const char *left, co
                       const char *note)
 {
     struct ct_page_block *b = &p->block[p->nblock - 1];
-    const struct ct_page_equation e = {label, left, right, note};
+    const struct ct_page_equation e = {label, left, right, note, p->about};
     CT_PUSH(p->arena, b->equation, b->nequation, b->equation_cap, e);
 }
 
@@ -79,6 +92,8 @@ size_t ct_page_first_term(const char *s)
             depth++;
         else if (strchr(")]}", s[i]))
             depth--;
+        else if (s[i] == '\\') // cases hold together
+            depth += !strncmp(s + i, "\\begin{", 7) - !strncmp(s + i, "\\end{", 5);
         else if (i > 0 && depth <= 0 && is_sign(s + i))
             return i;
     }

@@ -17,6 +17,7 @@ enum ct_page_kind {
     CT_PAGE_SENTENCE, // plain words
     CT_PAGE_TABLE,
     CT_PAGE_EQUATIONS, // a group, aligned
+    CT_PAGE_MATRIX,    // with names of its rows and columns
 };
 
 enum ct_look { CT_LOOK_TEXT, CT_LOOK_LATEX, CT_LOOK_HTML };
@@ -25,14 +26,18 @@ struct ct_page_equation {
     const char *label;        // plain words before it; NULL: none
     const char *left, *right; // mathematics; right == NULL: left is all
     const char *note;         // plain words after it; NULL: none
+    const char *about;        // the component whose terminal equation it is; NULL: none
 };
 
 struct ct_page_block {
     enum ct_page_kind kind;
     const char *text;  // TITLE, HEADING, SENTENCE
     const char *align; // TABLE: one letter a column: l or r plain, L or R mathematics
-    const char **cell; // TABLE: the first row is the head, plain; row by row
+    const char **
+        cell; // TABLE: the first row is the head, plain; row by row. MATRIX: mathematics; the first row
+    // has the names of the columns, the first column those of the rows
     size_t ncell, cell_cap;
+    size_t ncolumn; // MATRIX: with that of the names
     struct ct_page_equation *equation;
     size_t nequation, equation_cap;
 };
@@ -40,6 +45,7 @@ struct ct_page_block {
 struct ct_page {
     struct ct_arena *arena;
     enum ct_look look;
+    const char *about; // of the equations that are added
     struct ct_page_block *block;
     size_t nblock, block_cap;
 };
@@ -55,16 +61,24 @@ void ct_page_row(struct ct_page *p, const char *const *cell, size_t n);
 #define CT_PAGE_ROW(p, ...)                                                                    \
     ct_page_row((p), (const char *const[]){__VA_ARGS__},                                       \
                 COUNT(((const char *const[]){__VA_ARGS__})))
+/// Starts a matrix of ncolumn columns, that of the names of its rows included; cells follow as of a table.
+void ct_page_matrix(struct ct_page *p, size_t ncolumn);
+/// Ends it: takes it off the page again and returns false where it is wider or longer than a page.
+bool ct_page_matrix_end(struct ct_page *p);
 /// Starts a group of equations.
 void ct_page_equations(struct ct_page *p);
 void ct_page_equation(struct ct_page *p, const char *label, const char *left, const char *right,
                       const char *note);
 
+/// Does a matrix fit: lines of CT_PAGE_WIDTH columns; a page of LaTeX.
+bool ct_page_text_fits(const struct ct_page_block *b);
+bool ct_page_latex_fits(const struct ct_page_block *b);
+
 /// Columns of a UTF-8 string.
 size_t ct_text_width(const char *s);
 
 void ct_page_print_text(FILE *out, const struct ct_page *p);
-/// A fragment for a document that uses amsmath and longtable.
+/// A fragment for a document that uses amsmath and longtable; lines are as wide as those of article at 10 pt.
 void ct_page_print_latex(FILE *out, const struct ct_page *p);
 /// A whole document; mathematics is in the style of text and is set with sub- and superscripts.
 void ct_page_print_html(FILE *out, const struct ct_page *p, const char *title);

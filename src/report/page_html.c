@@ -232,6 +232,23 @@ static void put_table(FILE *out, const struct ct_page_block *b)
     fputs("</table>\n", out);
 }
 
+static void put_matrix(FILE *out, const struct ct_page_block *b)
+{
+    fputs("<table class=\"matrix\">\n", out);
+    for (size_t i = 0; i < b->ncell; i++) {
+        const size_t k = i % b->ncolumn;
+        const bool is_name = i < b->ncolumn || k == 0;
+        fputs(k ? "" : "<tr>", out);
+        fputs(is_name ? "<th>" : "<td>", out);
+        if (is_name)
+            put_escaped(out, b->cell[i], SIZE_MAX);
+        else
+            put_math(out, b->cell[i]);
+        fprintf(out, "</%s>%s", is_name ? "th" : "td", k + 1 == b->ncolumn ? "</tr>\n" : "");
+    }
+    fputs("</table>\n", out);
+}
+
 void ct_page_print_html(FILE *out, const struct ct_page *p, const char *title)
 {
     static const char *const tag[] = {"h1", "h2", "p"};
@@ -244,6 +261,7 @@ void ct_page_print_html(FILE *out, const struct ct_page *p, const char *title)
           "td, th { padding: 0 1em 0 0; text-align: left; vertical-align: top }\n"
           "th { font-weight: normal; color: #666 }\n"
           ".right { text-align: right }\n.equations td { padding: .2em .6em .2em 0 }\n"
+          ".matrix td { text-align: center; border-left: 1px solid #ccc; padding: 0 .6em }\n"
           ".left { white-space: nowrap }\n.label, .note { color: #666 }\n"
           "</style>\n</head>\n<body>\n",
           out);
@@ -251,6 +269,8 @@ void ct_page_print_html(FILE *out, const struct ct_page *p, const char *title)
         const struct ct_page_block *b = &p->block[i];
         if (b->kind == CT_PAGE_TABLE) {
             put_table(out, b);
+        } else if (b->kind == CT_PAGE_MATRIX) {
+            put_matrix(out, b);
         } else if (b->kind == CT_PAGE_EQUATIONS) {
             put_equations(out, b);
         } else {

@@ -1,4 +1,7 @@
 // Pages as LaTeX; see page.h.
+//
+// Widths are estimated (ct_latex_width), so that lines end where a margin would be passed. Groups of equations are
+// align*, which may go on on the next page; columns of tables that are too wide become paragraphs.
 #include "report/page.h"
 
 #include "expr/print.h"
@@ -8,28 +11,52 @@
 
 // ---- words ------------------------------------------------------------------------------------
 
-static void put_words(FILE *out, const char *s)
+// may_break: a line may end behind the dots and underscores of a name.
+static void put_characters(FILE *out, const char *s, size_t n, bool may_break)
 {
-    for (; *s; s++) {
-        if (strchr("_#$%&{}", *s))
-            fprintf(out, "\\%c", *s);
-        else if (*s == '^' || *s == '~')
-            fprintf(out, "\\%c{}", *s);
-        else if (*s == '|')
+    for (size_t i = 0; i < n; i++) {
+        const char c = s[i];
+        if (strchr("_#$%&{}", c))
+            fprintf(out, "\\%c", c);
+        else if (c == '^' || c == '~')
+            fprintf(out, "\\%c{}", c);
+        else if (c == '|')
             fputs("\\textbar{}", out);
-        else if (*s == '<' || *s == '>')
-            fputs(*s == '<' ? "\\textless{}" : "\\textgreater{}", out);
-        else if (*s == '\\')
+        else if (c == '<' || c == '>')
+            fputs(c == '<' ? "\\textless{}" : "\\textgreater{}", out);
+        else if (c == '\\')
             fputs("\\textbackslash{}", out);
         else
-            fputc(*s, out);
+            fputc(c, out);
+        if (c == '-' && i + 1 < n && s[i + 1] == '-') // no dash
+            fputs("{}", out);
+        if (may_break && (c == '.' || c == '_') && i + 1 < n && s[i + 1] != ' ')
+            fputs("\\allowbreak{}", out);
     }
+}
+
+static void put_words(FILE *out, const char *s)
+{
+    put_characters(out, s, strlen(s), true);
+}
+
+// Plain words at 10 pt [pt].
+static size_t words_width(const char *s)
+{
+    size_t width = 0;
+    for (; *s; s++)
+        width += ((unsigned char)*s & 0xC0) == 0x80 ? 0
+               : strchr("il.,: ", *s)               ? 3
+               : strchr("mwMW", *s)                 ? 9
+               : isupper((unsigned char)*s)         ? 8
+                                                    : 5;
+    return width;
 }
 
 // ---- equations --------------------------------------------------------------------------------
 
-// Widths of a line, and of what a further one is indented by.
-enum { LINE = CT_LATEX_LINE, AFTER_BREAK = 8 };
+// What lines are indented by: \quad, and again where they go on; the room an estimate may be wrong by.
+enum { LINE = CT_LATEX_LINE, QUAD = 10, SLACK = 12, EQUALS = 14 };
 
 // Length of a piece up to the next place where a line may end: before a sign, or a factor, at any depth of
 // parentheses but not within braces or cases.
@@ -42,21 +69,52 @@ static size_t piece_of(const char *s, bool at_factors)
         if (i == 0 || braces > 0)
             continue;
         if (!strncmp(s + i, " + ", 3) || !strncmp(s + i, " - ", 3)
-            || (at_factors && !strncmp(s + i, " \\, ", 4)))
+            || !strncmp(s + i, ",\\; ", 4) || (at_factors && !strncmp(s + i, " \\, ", 4)))
             return i;
     }
     return strlen(s);
 }
 
+// A line that is being written.
+struct line {
+    FILE *out;
+    size_t column, room; // [pt], from the place where the first line starts
+    size_t indent;       // of further lines [pt]
+    const char *again;   // what starts them
+    size_t *nline;       // of the environment
+};
+
+// Lines of an environment: TeX holds all of it in memory. Within an equation it may be longer, so that most end behind one.
+enum { MOST_LINES = 60, MOST_LINES_WITHIN = 200 };
+
+// Ends a line of align*, and the environment where it is long enough.
+static void put_line_end(FILE *out, size_t *nline, size_t most)
+{
+    if (++*nline < most) {
+        fputs(" \\\\\n", out);
+        return;
+    }
+    fputs("\n\\end{align*}\n\\begin{align*}\n", out);
+    *nline = 0;
+}
+
+static bool is_over(const struct line *l, size_t width)
+{
+    return l->column + width + SLACK > l->room && l->column > l->indent;
+}
+
 // A delimiter cannot be open at the end of a line: invisible ones close and open the `depth` that are. A sign
 // after the empty group is that of a sum.
-static void end_line(FILE *out, int depth, const char *indent)
+static void end_line(struct line *l, int depth)
 {
     for (int i = 0; i < depth; i++)
-        fputs(" \\right.", out);
-    fprintf(out, " \\\\\n    %s", indent);
+        fputs(" \\right.", l->out);
+    put_line_end(l->out, l->nline, MOST_LINES_WITHIN);
+    fprintf(l->out, "    %s{}", l->again);
     for (int i = 0; i < depth; i++)
-        fputs(i + 1 < depth ? "\\left. " : "\\left. {}", out);
+        fputs(" \\left.", l->out);
+    fputs(depth ? " {}" : "", l->out);
+    l->column = l->indent;
 }
 
 static int depth_after(int depth, const char *s, size_t n)
@@ -67,141 +125,304 @@ static int depth_after(int depth, const char *s, size_t n)
 }
 
 // A term wider than a line, broken within: between products where a sum in it does not fit either.
-static size_t put_wide_term(FILE *out, const char *s, size_t length, size_t column,
-                            const char *indent)
+static void put_wide_term(struct line *l, const char *s, size_t length)
 {
     const char *end = s + length;
     int depth = 0;
     while (s < end) {
         size_t n = piece_of(s, false);
-        if (ct_latex_width(s, n) > LINE - AFTER_BREAK)
+        if (l->indent + SLACK + ct_latex_width(s, n) > l->room)
+            n = piece_of(s, true);
+        if (!strncmp(s, " \\, ", 4)
+            && is_over(l, ct_latex_width(s, n))) // amid a product: its next factor
             n = piece_of(s, true);
         n = n < (size_t)(end - s) ? n : (size_t)(end - s);
         const size_t width = ct_latex_width(s, n);
-        if (column + width > LINE && column > AFTER_BREAK) {
-            end_line(out, depth, indent);
-            column = AFTER_BREAK;
-            if (!strncmp(s, " \\, ", 4)) { // the product is said
-                fputs(depth ? " \\cdot" : "{} \\cdot", out);
+        if (is_over(l, width)) {
+            const bool is_list = !strncmp(s, ",\\; ", 4);
+            if (is_list) { // the comma stays
+                fputs(",", l->out);
+                s += 4;
+                n -= 4;
+            }
+            end_line(l, depth);
+            if (!is_list && !strncmp(s, " \\, ", 4)) { // the product is said
+                fputs(" \\cdot", l->out);
                 s += 3;
                 n -= 3;
             }
         }
-        fprintf(out, "%.*s", (int)n, s);
+        fprintf(l->out, "%.*s", (int)n, s);
         depth = depth_after(depth, s, n);
-        column += width;
+        l->column += width;
         s += n;
     }
-    return column;
 }
 
 // Terms of a sum, on further lines where they do not fit.
-static void put_sum(FILE *out, const char *s, size_t column, const char *indent)
+static void put_sum(struct line *l, const char *s)
 {
     while (*s) {
         const size_t n = ct_page_first_term(s), width = ct_latex_width(s, n);
-        if (column + width > LINE && column > 20) {
-            end_line(out, 0, indent);
-            column = AFTER_BREAK;
-        }
-        if (column + width > LINE) {
-            column = put_wide_term(out, s, n, column, indent);
+        const bool is_wide = l->indent + width + SLACK > l->room;
+        if (is_over(l, width) && !(is_wide && l->column < l->indent + 40))
+            end_line(l, 0);
+        if (is_wide) {
+            put_wide_term(l, s, n);
         } else {
-            fprintf(out, "%.*s", (int)n, s);
-            column += width;
+            fprintf(l->out, "%.*s", (int)n, s);
+            l->column += width;
         }
         s += n;
     }
 }
 
-static void put_equation(FILE *out, const struct ct_page_equation *e, bool labelled)
+static void put_note(struct line *l, const char *note)
 {
+    const size_t room = l->room > l->indent + SLACK ? l->room - l->indent - SLACK : 0;
+    if (!note)
+        return;
+    if (!is_over(l, words_width(note) + 2 * QUAD))
+        fputs(" \\quad", l->out);
+    else
+        end_line(l, 0);
+    fputs("\\text{(", l->out);
+    for (size_t column = 0; *note;) { // lines of words
+        const size_t n = strcspn(note, " ");
+        char word[256];
+        snprintf(word, sizeof word, "%.*s", (int)n, note);
+        const size_t width = words_width(word) + 3;
+        if (column && column + width > room) {
+            fputs("}", l->out);
+            end_line(l, 0);
+            fputs("\\text{", l->out);
+            column = 0;
+        } else if (column) {
+            fputc(' ', l->out);
+        }
+        put_characters(l->out, note, n, false);
+        column += width;
+        note += n;
+        note += strspn(note, " ");
+    }
+    fputs(")}", l->out);
+}
+
+// Labels before the left sides; those that leave too little room stand on lines of their own.
+static void put_labelled(FILE *out, const struct ct_page_equation *e, size_t label_width,
+                         size_t *nline)
+{
+    const bool is_above = label_width > LINE / 4;
+    struct line l = {.out = out,
+                     .column = QUAD,
+                     .room = LINE - (is_above ? 0 : label_width),
+                     .indent = 2 * (size_t)QUAD,
+                     .again = "&\\qquad ",
+                     .nline = nline};
     const size_t left = ct_latex_width(e->left, strlen(e->left));
     const size_t right = e->right ? ct_latex_width(e->right, strlen(e->right)) : 0;
-    const size_t label = e->label ? ct_text_width(e->label) : 0;
-    fputs("    ", out);
-    if (labelled) {
-        if (e->label) {
-            fputs("\\text{", out);
-            put_words(out, e->label);
-            fputs(":} ", out);
-        }
-        fputs("&\\quad ", out);
-        put_sum(out, e->left, label, "&\\qquad ");
-        if (e->right && label + left + right > LINE)
-            fputs(" \\\\\n    &\\qquad = ", out);
-        else if (e->right)
-            fputs(" = ", out);
-        if (e->right)
-            put_sum(out, e->right, label + left + right > LINE ? 8 : label + left,
-                    "&\\qquad\\quad ");
-    } else {
-        fprintf(out, "%s &= ", e->left);
-        put_sum(out, e->right ? e->right : "", left + 3, "&\\quad ");
+    if (e->label) {
+        fputs(is_above ? "&\\text{" : "\\text{", out);
+        put_characters(out, e->label, strlen(e->label), false);
+        fputs(is_above ? ":} \\\\\n    " : ":} ", out);
     }
-    if (e->note) {
-        fputs(" && \\text{", out);
-        put_words(out, e->note);
-        fputs("}", out);
+    fputs("&\\quad ", out);
+    put_sum(&l, e->left);
+    if (!e->right) {
+        put_note(&l, e->note);
+        return;
     }
+    if (QUAD + left + EQUALS + right + SLACK > l.room) {
+        fputs(" \\\\\n    &\\qquad ", out);
+        l.column = l.indent;
+    }
+    fputs(" = ", out);
+    l.column += EQUALS;
+    l.again = "&\\qquad\\quad ";
+    l.indent += QUAD;
+    put_sum(&l, e->right);
+    put_note(&l, e->note);
+}
+
+static void put_aligned(FILE *out, const struct ct_page_equation *e, size_t left_width,
+                        size_t *nline)
+{
+    struct line l = {.out = out,
+                     .column = EQUALS,
+                     .room = LINE - left_width,
+                     .indent = QUAD,
+                     .again = "&\\quad ",
+                     .nline = nline};
+    fprintf(out, "%s &= ", e->left);
+    put_sum(&l, e->right ? e->right : "");
+    put_note(&l, e->note);
 }
 
 static void put_equations(FILE *out, const struct ct_page_block *b)
 {
     bool labelled = false;
+    size_t label_width = 0, left_width = 0, nline = 0;
     if (!b->nequation)
         return;
-    for (size_t i = 0; i < b->nequation; i++)
-        labelled |= b->equation[i].label || !b->equation[i].right
-                 || ct_latex_width(b->equation[i].left, strlen(b->equation[i].left)) > LINE / 2;
+    for (size_t i = 0; i < b->nequation; i++) {
+        const struct ct_page_equation *e = &b->equation[i];
+        const size_t left = ct_latex_width(e->left, strlen(e->left)),
+                     label = e->label ? words_width(e->label) + 6 : 0;
+        left_width = left > left_width ? left : left_width;
+        label_width = label > label_width ? label : label_width;
+        labelled |= e->label || !e->right || left > LINE / 3;
+    }
     fputs("\\begin{align*}\n", out);
     for (size_t i = 0; i < b->nequation; i++) {
-        put_equation(out, &b->equation[i], labelled);
-        fputs(i + 1 < b->nequation ? " \\\\\n" : "\n", out);
+        fputs("    ", out);
+        if (labelled)
+            put_labelled(out, &b->equation[i], label_width, &nline);
+        else
+            put_aligned(out, &b->equation[i], left_width, &nline);
+        if (i + 1 < b->nequation)
+            put_line_end(out, &nline, MOST_LINES);
     }
-    fputs("\\end{align*}\n", out);
+    fputs("\n\\end{align*}\n", out);
 }
 
 // ---- tables -----------------------------------------------------------------------------------
 
-static void put_table(FILE *out, const struct ct_page_block *b)
+static bool is_math(const struct ct_page_block *b, size_t cell)
 {
     const size_t n = strlen(b->align);
-    bool is_wide = false;
-    for (size_t i = n - 1; i < b->ncell; i += n)
-        is_wide |= ct_text_width(b->cell[i]) > 45;
-    fputs("\\begin{longtable}{", out);
-    for (size_t k = 0; k < n; k++)
-        if (k + 1 == n && is_wide)
-            fputs("p{0.45\\linewidth}", out);
-        else
-            fputc(tolower((unsigned char)b->align[k]), out);
-    fputs("}\n", out);
+    return n && cell >= n && isupper((unsigned char)b->align[cell % n]);
+}
+
+enum { SEPARATION = 12 }; // between columns [pt]
+
+// The widest part of a cell that cannot be broken [pt]: a formula, or what stands between blanks, dots and underscores.
+static size_t unbroken_width(const struct ct_page_block *b, size_t cell, struct ct_arena *a)
+{
+    const char *s = b->cell[cell];
+    size_t widest = 0;
+    if (is_math(b, cell))
+        return ct_latex_width(s, strlen(s));
+    while (*s) {
+        size_t n = strcspn(s, " ._");
+        n += s[n] == '.' || s[n] == '_';
+        const size_t w = words_width(ct_arena_strndup(a, s, n)) + 4;
+        widest = w > widest ? w : widest;
+        s += n;
+        s += strspn(s, " ");
+    }
+    return widest;
+}
+
+// Widths of the columns where the table is wider than a line, else zeros: each has room for what cannot be broken, and
+// they share the rest by what they lack. Returns whether even that is too wide.
+static bool share_line(const struct ct_page_block *b, struct ct_arena *a, size_t *width)
+{
+    const size_t n = strlen(b->align), line = LINE - SLACK - SEPARATION * n;
+    size_t *least = CT_NEWN(a, size_t, n + 1), sum = 0, sum_least = 0;
     for (size_t i = 0; i < b->ncell; i++) {
         const char *s = b->cell[i];
-        // NOLINTNEXTLINE(clang-analyzer-core.DivideZero): a table has columns
-        const bool is_math = isupper((unsigned char)b->align[i % n]) && i >= n;
-        fputs(i % n ? " & " : "    ", out);
-        if (is_math && *s)
+        const size_t w = is_math(b, i) ? ct_latex_width(s, strlen(s)) : words_width(s) + 4,
+                     l = unbroken_width(b, i, a);
+        width[i % n] = w > width[i % n] ? w : width[i % n];
+        least[i % n] = l > least[i % n] ? l : least[i % n];
+    }
+    for (size_t k = 0; k < n; k++) {
+        sum += width[k];
+        sum_least += least[k];
+    }
+    for (size_t k = 0; k < n; k++)
+        width[k]
+            = sum <= line ? 0
+            : sum_least >= line
+                ? least[k] * 85 / 100
+                : least[k] + (line - sum_least) * (width[k] - least[k]) / (sum - sum_least);
+    return sum > line && sum_least > line;
+}
+
+static void put_table(FILE *out, const struct ct_page_block *b, struct ct_arena *a)
+{
+    const size_t n = strlen(b->align);
+    size_t *width = CT_NEWN(a, size_t, n + 1);
+    const bool is_small = share_line(b, a, width);
+    fprintf(out, "{%s\\begin{longtable}{@{}", is_small ? "\\footnotesize" : "");
+    for (size_t k = 0; k < n; k++)
+        if (width[k])
+            fprintf(out, "p{%zupt}", width[k]);
+        else
+            fputc(tolower((unsigned char)b->align[k]), out);
+    fputs("@{}}\n", out);
+    for (size_t i = 0; i < b->ncell; i++) {
+        const char *s = b->cell[i];
+        const size_t k = n ? i % n : 0;
+        fputs(k ? " & " : "    ", out);
+        fputs(width[k] ? "\\raggedright " : "", out);
+        if (is_math(b, i) && *s)
             fprintf(out, "$%s$", s);
         else
             put_words(out, s);
-        if ((i + 1) % n == 0)
-            fputs(i + 1 == n ? " \\\\ \\hline\n" : " \\\\\n", out);
+        if (k + 1 == n)
+            fputs(i + 1 == n ? " \\tabularnewline \\hline\n" : " \\tabularnewline\n", out);
     }
-    fputs("\\end{longtable}\n", out);
+    fputs("\\end{longtable}}\n", out);
 }
+
+// ---- matrices ---------------------------------------------------------------------------------
+
+enum { COLUMN_GAP = 6, MOST_ROWS = 45 };
+static const double script_size
+    = 0.8; // of \scriptsize: letters of 7 pt are wider for their size
+
+static double matrix_width(const struct ct_page_block *b)
+{
+    double sum = 0;
+    for (size_t k = 0; k < b->ncolumn; k++) {
+        size_t width = 0;
+        for (size_t i = k; i < b->ncell; i += b->ncolumn) {
+            const size_t w = ct_latex_width(b->cell[i], strlen(b->cell[i]));
+            width = w > width ? w : width;
+        }
+        sum += (double)(width + COLUMN_GAP);
+    }
+    return sum;
+}
+
+bool ct_page_latex_fits(const struct ct_page_block *b)
+{
+    return matrix_width(b) * script_size + SLACK <= LINE && b->ncell <= MOST_ROWS * b->ncolumn;
+}
+
+static void put_matrix(FILE *out, const struct ct_page_block *b)
+{
+    const bool is_small = matrix_width(b) + SLACK > LINE;
+    fprintf(out, "{%s\\setlength{\\arraycolsep}{%dpt}\n\\[\n    \\begin{array}{r|",
+            is_small ? "\\scriptsize" : "", COLUMN_GAP / 2);
+    for (size_t k = 1; k < b->ncolumn; k++)
+        fputc('r', out);
+    fputs("}\n", out);
+    for (size_t i = 0; i < b->ncell; i++) {
+        const size_t k = i % b->ncolumn;
+        fprintf(out, "%s%s", k ? " & " : "    ",
+                strcmp(b->cell[i], ".") ? b->cell[i] : "\\cdot");
+        if (k + 1 == b->ncolumn)
+            fputs(i + 1 == b->ncolumn ? " \\\\ \\hline\n" : " \\\\\n", out);
+    }
+    fputs("    \\end{array}\n\\]}\n", out);
+}
+
+// ---- pages ------------------------------------------------------------------------------------
 
 void ct_page_print_latex(FILE *out, const struct ct_page *p)
 {
-    fputs("% needs \\usepackage{amsmath,longtable}\n", out);
+    fputs("% needs \\usepackage{amsmath,longtable}\n"
+          "\\begingroup\\allowdisplaybreaks\\sloppy\n",
+          out);
     for (size_t i = 0; i < p->nblock; i++) {
         const struct ct_page_block *b = &p->block[i];
         switch (b->kind) {
         case CT_PAGE_TITLE:
         case CT_PAGE_HEADING:
             fputs(b->kind == CT_PAGE_TITLE ? "\n\\section*{" : "\n\\subsection*{", out);
-            put_words(out, b->text);
+            put_characters(out, b->text, strlen(b->text), false);
             fputs("}\n", out);
             break;
         case CT_PAGE_SENTENCE:
@@ -209,11 +430,15 @@ void ct_page_print_latex(FILE *out, const struct ct_page *p)
             fputs("\n\n", out);
             break;
         case CT_PAGE_TABLE:
-            put_table(out, b);
+            put_table(out, b, p->arena);
             break;
         case CT_PAGE_EQUATIONS:
             put_equations(out, b);
             break;
+        case CT_PAGE_MATRIX:
+            put_matrix(out, b);
+            break;
         }
     }
+    fputs("\\endgroup\n", out);
 }

@@ -219,6 +219,50 @@ static void put_row(FILE *out, const struct ct_page_block *b, size_t row, const 
     fputs("\n", out);
 }
 
+// ---- matrices ---------------------------------------------------------------------------------
+
+static size_t column_width(const struct ct_page_block *b, size_t column)
+{
+    size_t width = 0;
+    for (size_t i = column; i < b->ncell; i += b->ncolumn) {
+        const size_t w = ct_text_width(b->cell[i]);
+        width = w > width ? w : width;
+    }
+    return width;
+}
+
+bool ct_page_text_fits(const struct ct_page_block *b)
+{
+    size_t width = 0;
+    for (size_t k = 0; k < b->ncolumn; k++)
+        width += 2 + column_width(b, k);
+    return width <= CT_PAGE_WIDTH;
+}
+
+// Names of rows to the left, entries to the right of their columns.
+static void put_matrix(FILE *out, struct ct_arena *a, const struct ct_page_block *b)
+{
+    size_t *width = CT_NEWN(a, size_t, b->ncolumn), blank = 0;
+    for (size_t k = 0; k < b->ncolumn; k++)
+        width[k] = column_width(b, k);
+    for (size_t i = 0; i < b->ncell; i++) {
+        const size_t k = i % b->ncolumn, room = width[k] - ct_text_width(b->cell[i]);
+        blank += k ? 2 + room : 2;
+        if (*b->cell[i]) {
+            put_indent(out, blank);
+            fputs(b->cell[i], out);
+            blank = 0;
+        }
+        blank += k ? 0 : room;
+        if (k + 1 < b->ncolumn)
+            continue;
+        fputs("\n", out);
+        blank = 0;
+    }
+}
+
+// ---- tables -----------------------------------------------------------------------------------
+
 static void put_table(FILE *out, struct ct_arena *a, const struct ct_page_block *b)
 {
     const size_t n = strlen(b->align);
@@ -253,6 +297,9 @@ void ct_page_print_text(FILE *out, const struct ct_page *p)
             break;
         case CT_PAGE_EQUATIONS:
             put_equations(out, b);
+            break;
+        case CT_PAGE_MATRIX:
+            put_matrix(out, p->arena, b);
             break;
         }
     }

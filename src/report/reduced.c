@@ -222,9 +222,9 @@ static int by_id(const void *unused, const void *a, const void *b)
 }
 
 // Each named node becomes a symbol; children have smaller ids, so one sweep upwards does.
-static void replace_named(struct ct_arena *a, struct ct_equations *e, struct ct_reduced *r,
-                          struct ct_share *share, const ct_ex *root, size_t nroot, ct_ex *map,
-                          bool may_tidy)
+static void replace_named(struct ct_arena *a, struct ct_equations *e,
+                          struct ct_definitions *list, struct ct_share *share,
+                          const ct_ex *root, size_t nroot, ct_ex *map, bool may_tidy)
 {
     struct ct_exs *x = e->x;
     const size_t n = ct_ex_walk(x, root, nroot);
@@ -232,38 +232,46 @@ static void replace_named(struct ct_arena *a, struct ct_equations *e, struct ct_
     for (size_t k = 0; k < n; k++)
         id[k] = x->stack[k];
     ct_sort(a, id, n, sizeof *id, by_id, NULL);
-    r->definition = CT_NEWN(a, struct ct_reduced_definition, share->n + 1);
+    *list = (struct ct_definitions){CT_NEWN(a, struct ct_reduced_definition, share->n + 1), 0};
     for (size_t k = 0; k < n; k++) {
         const ct_ex old = {id[k]};
         const char *name = ct_share_name(share, old);
         map[old.id] = rebuild(x, old, map);
         if (!name)
             continue;
-        const uint32_t number = (uint32_t)r->ndefinition;
-        struct ct_reduced_definition *d = &r->definition[r->ndefinition++];
+        const uint32_t number = (uint32_t)list->n;
+        struct ct_reduced_definition *d = &list->at[list->n++];
         d->value = may_tidy ? tidy(e, map[old.id]) : map[old.id];
         d->symbol = map[old.id] = ct_ex_sym(x, CT_SYM_LOCAL, name, number);
     }
 }
 
 // The order a reader meets them in: those a definition needs stand before it.
-void ct_reduced_share(struct ct_arena *a, struct ct_equations *e, struct ct_reduced *r)
+struct ct_definitions ct_definitions_find(struct ct_arena *a, struct ct_equations *e,
+                                          ct_ex *const *where, size_t n, double *size)
 {
     const struct ct_share_options o = {.most = 20000, .enough = 2000};
-    const size_t n = list_all(e, r, NULL);
-    ct_ex **where = CT_NEWN(a, ct_ex *, n + 1);
     ct_ex *root = CT_NEWN(a, ct_ex, n + 1);
-    list_all(e, r, where);
+    struct ct_definitions list;
     for (size_t i = 0; i < n; i++)
         root[i] = *where[i];
     struct ct_share share = ct_ex_share(a, e->x, root, n, &o);
     ct_ex *map = CT_NEWN(a, ct_ex, e->x->nnode);
     // collecting clears work space of the size of the store each time
     const bool may_tidy = (double)(n + share.n) * (double)e->x->nnode < 2e8;
-    replace_named(a, e, r, &share, root, n, map, may_tidy);
+    replace_named(a, e, &list, &share, root, n, map, may_tidy);
     for (size_t i = 0; i < n; i++)
         *where[i] = may_tidy ? tidy(e, map[root[i].id]) : map[root[i].id];
-    r->size = share.size;
+    *size = share.size;
+    return list;
+}
+
+void ct_reduced_share(struct ct_arena *a, struct ct_equations *e, struct ct_reduced *r)
+{
+    const size_t n = list_all(e, r, NULL);
+    ct_ex **where = CT_NEWN(a, ct_ex *, n + 1);
+    list_all(e, r, where);
+    r->definitions = ct_definitions_find(a, e, where, n, &r->size);
 }
 
 // ---- equations --------------------------------------------------------------------------------

@@ -13,6 +13,11 @@ struct ct_reduced_definition {
     ct_ex value;  // may use symbols of earlier definitions
 };
 
+struct ct_definitions {
+    struct ct_reduced_definition *at;
+    size_t n;
+};
+
 struct ct_reduced {
     ct_ex *M;         // nM values in the order of ct_equations.M
     ct_ex *J;         // nJ
@@ -21,8 +26,7 @@ struct ct_reduced {
     ct_ex *effort;    // ndriver: of the drivers of branches, in terms of u' and lam
     ct_ex *rate;      // nq: q' in terms of u
     bool is_collected;
-    struct ct_reduced_definition *definition; // none if everything is short
-    size_t ndefinition;
+    struct ct_definitions definitions; // none if everything is short
     double size; // of the whole print in characters, about; known once there are definitions
 };
 
@@ -32,6 +36,10 @@ void ct_reduced_prepare(struct ct_arena *a, struct ct_equations *e, bool may_col
 
 /// Names for what is written more than once: the expressions then use the symbols of definitions.
 void ct_reduced_share(struct ct_arena *a, struct ct_equations *e, struct ct_reduced *r);
+
+/// The same for n expressions, which are replaced in place; size: of the whole print in characters, about.
+struct ct_definitions ct_definitions_find(struct ct_arena *a, struct ct_equations *e,
+                                          ct_ex *const *where, size_t n, double *size);
 
 /// Operators and operands that a full print of e shows, counted up to `most`. Cost O(most).
 double ct_reduced_size(const struct ct_exs *x, ct_ex e, double most);

@@ -462,6 +462,7 @@ void ct_beams_put_terminal(struct ct_derivation *d)
 {
     const struct ct_build *b = d->e->build;
     for (size_t i = 0; i < b->nflexible; i++) {
+        d->page.about = b->flexible[i].name;
         put_body(d, &b->flexible[i]);
         if (!b->flexible[i].nelastic)
             continue;
@@ -495,9 +496,9 @@ static const char *turns_text(struct ct_derivation *d, const struct ct_motion *m
     const char *s = "";
     for (int i = 0; i < m->nturn; i++)
         s = ct_arena_printf(d->a, latex ? "%s%s\\operatorname{Rot}(%s, %s)" : "%s%sRot(%s, %s)",
-                            s, *s ? latex ? "\\," : "*" : "",
+                            s, *s ? latex ? " \\, " : "*" : "",
                             ct_derivation_axis(d, m->turn[i].axis),
-                            ct_derivation_collected(d, m->turn[i].angle));
+                            ct_derivation_exact(d, m->turn[i].angle));
     return *s ? s : "1";
 }
 
@@ -515,6 +516,7 @@ void ct_beams_put_arms(struct ct_derivation *d)
             ct_page_equations(&d->page);
         }
         any = true;
+        d->page.about = e->name;
         ct_page_equation(&d->page, NULL, ct_derivation_of(d, "d", e->name), place_text(d, e),
                          ct_arena_printf(d->a, "axes of %s", b->node[b->wiring[i].tail].name));
         ct_page_equation(&d->page, NULL, ct_derivation_of(d, "S", e->name),
@@ -527,9 +529,10 @@ void ct_beams_put_arms(struct ct_derivation *d)
 static const char *partial(struct ct_derivation *d, const char *letter, const char *arm,
                            const char *through)
 {
+    // one group of subscripts: LaTeX refuses a second one
     return ct_derivation_is_latex(d)
-             ? ct_arena_printf(d->a, "%s_{,q} \\cdot %s", ct_derivation_of(d, letter, arm),
-                               ct_derivation_of(d, through, arm))
+             ? ct_arena_printf(d->a, "\\boldsymbol{%s}_{\\mathrm{%s},q} \\cdot %s", letter,
+                               ct_latex_quoted(d->a, arm), ct_derivation_of(d, through, arm))
              : ct_arena_printf(d->a, "%s_q(%s) . %s", letter, arm,
                                ct_derivation_of(d, through, arm));
 }

@@ -1,14 +1,6 @@
 // The reduced equations as equations of a page.
 #include "report/derivation.h"
 
-// Lines of text beyond which subexpressions get names.
-enum { MOST_LINES = 30 };
-
-static size_t lines_of(const char *s)
-{
-    return 1 + ct_text_width(s) / (CT_PAGE_WIDTH - 12);
-}
-
 struct sides {
     ct_ex left, right;
     const char *label;
@@ -46,21 +38,10 @@ static bool is_long(struct ct_derivation *d, const struct group *g, size_t n)
 {
     size_t lines = 0;
     for (size_t k = 0; k < n; k++)
-        for (size_t i = 0; i < g[k].n && lines <= MOST_LINES; i++)
-            lines += lines_of(ct_derivation_text(d, g[k].at[i].left))
-                   + lines_of(ct_derivation_text(d, g[k].at[i].right));
-    return lines > MOST_LINES;
-}
-
-static void put_definitions(struct ct_derivation *d, const struct ct_reduced *r)
-{
-    if (!r->ndefinition)
-        return;
-    ct_page_heading(&d->page, "with");
-    ct_page_equations(&d->page);
-    for (size_t i = 0; i < r->ndefinition; i++)
-        ct_page_equation(&d->page, NULL, ct_derivation_text(d, r->definition[i].symbol),
-                         ct_derivation_text(d, r->definition[i].value), NULL);
+        for (size_t i = 0; i < g[k].n && lines <= CT_MOST_LINES; i++)
+            lines += ct_derivation_lines(d, g[k].at[i].left)
+                   + ct_derivation_lines(d, g[k].at[i].right);
+    return lines > CT_MOST_LINES;
 }
 
 // ---- groups -----------------------------------------------------------------------------------
@@ -93,7 +74,7 @@ static void put_kinematic(struct ct_derivation *d, const struct group *g)
         const char *name
             = ct_arena_printf(d->a, "%s'", ct_ex_symbol(d->e->x, g->at[i].left)->name);
         ct_page_equation(&d->page, NULL, ct_derivation_name(d, name),
-                         ct_derivation_text(d, g->at[i].right), NULL);
+                         ct_derivation_exact(d, g->at[i].right), NULL);
     }
 }
 
@@ -118,8 +99,8 @@ static bool shows(struct ct_derivation *d, const struct group g[NGROUP],
             CT_PUSH(d->a, e, n, cap, g[k].at[i].left);
             CT_PUSH(d->a, e, n, cap, g[k].at[i].right);
         }
-    for (size_t i = 0; i < r->ndefinition; i++)
-        CT_PUSH(d->a, e, n, cap, r->definition[i].value);
+    for (size_t i = 0; i < r->definitions.n; i++)
+        CT_PUSH(d->a, e, n, cap, r->definitions.at[i].value);
     const size_t nwalk = ct_ex_walk(x, e, n);
     for (size_t i = 0; i < nwalk; i++)
         if (x->stack[i] == symbol.id)
@@ -148,6 +129,69 @@ static void put_held(struct ct_derivation *d, const struct group g[NGROUP],
                              ct_memory_is_followed(&e->memory[i])
                                  ? "value at the last step"
                                  : "constant, from the assembled start");
+}
+
+// ---- matrices ---------------------------------------------------------------------------------
+
+static const char *speed_name(struct ct_derivation *d, size_t i)
+{
+    return ct_derivation_text(d, d->e->u[i].derivative);
+}
+
+// Entries of nrow rows; row: their names, columns are those of the accelerations. is_symmetric: the lower triangle
+// is given, and the other one stays blank.
+static bool put_matrix(struct ct_derivation *d, const char *const *row, size_t nrow,
+                       const struct ct_entry *entry, const ct_ex *value, size_t n,
+                       bool is_symmetric)
+{
+    const size_t nu = d->e->nu;
+    const char **cell = CT_NEWN(d->a, const char *, nrow *nu + 1);
+    for (size_t k = 0; k < n; k++) {
+        const size_t i = (size_t)entry[k].row, j = (size_t)entry[k].column;
+        cell[i * nu + j] = ct_derivation_text(d, value[k]);
+    }
+    ct_page_matrix(&d->page, nu + 1);
+    ct_page_cell(&d->page, "");
+    for (size_t j = 0; j < nu; j++)
+        ct_page_cell(&d->page, speed_name(d, j));
+    for (size_t i = 0; i < nrow; i++) {
+        ct_page_cell(&d->page, row[i]);
+        for (size_t j = 0; j < nu; j++)
+            ct_page_cell(&d->page, cell[i * nu + j]        ? cell[i * nu + j]
+                                   : is_symmetric && j > i ? ""
+                                                           : "0");
+    }
+    return ct_page_matrix_end(&d->page);
+}
+
+// More rows or columns never fit a page.
+enum { MOST_COLUMNS = 40 };
+
+// What is larger than a page stands in the equations alone, and this is said.
+static void put_matrices(struct ct_derivation *d, const struct ct_reduced *r)
+{
+    const struct ct_equations *e = d->e;
+    const char **row = CT_NEWN(d->a, const char *, e->nu + e->nrow + 1);
+    static const char larger[] = "%zu x %zu, larger than a page; its entries stand in the "
+                                 "equations below";
+    if (e->nu < 2)
+        return;
+    for (size_t i = 0; i < e->nu; i++)
+        row[i] = ct_derivation_name(d, speed_label(d, i));
+    ct_page_heading(&d->page, "mass matrix M (symmetric)");
+    if (e->nu > MOST_COLUMNS || !put_matrix(d, row, e->nu, e->M, r->M, e->nM, true))
+        ct_page_sentence(&d->page, larger, e->nu, e->nu);
+    if (!e->nrow)
+        return;
+    ct_page_heading(&d->page, "Jacobian J of the constraints");
+    for (size_t i = 0; i < e->nrow; i++)
+        row[i]
+            = ct_derivation_is_latex(d)
+                ? ct_arena_printf(d->a, "\\mathrm{%s}", ct_latex_quoted(d->a, e->row[i].name))
+                : e->row[i].name;
+    if (e->nu > MOST_COLUMNS || e->nrow > MOST_COLUMNS
+        || !put_matrix(d, row, e->nrow, e->J, r->J, e->nJ, false))
+        ct_page_sentence(&d->page, larger, e->nrow, e->nu);
 }
 
 static const char *count(struct ct_derivation *d, size_t n, const char *one, const char *many)
@@ -190,7 +234,8 @@ void ct_stage_reduced(struct ct_derivation *d)
         &d->page, "%s, %s%s", count(d, e->nu, "unknown speed", "unknown speeds"),
         count(d, e->nrow, "constraint", "constraints"),
         e->nu ? "; each equation is the cutset of a branch, projected on its motion" : "");
-    put_definitions(d, &r);
+    ct_derivation_put_definitions(d, "with", &r.definitions);
+    put_matrices(d, &r);
     if (e->nu) {
         ct_page_heading(&d->page,
                         e->nrow ? "motion: M u' = Q + J' lambda" : "motion: M u' = Q");

@@ -51,34 +51,20 @@ static void put_laws(struct ct_derivation *d)
 static const char *inertia_force(struct ct_derivation *d, const struct ct_body *body,
                                  const char *com)
 {
-    const bool latex = ct_derivation_is_latex(d);
     const char *mass = ct_derivation_text(d, body->mass);
     if (ct_ex_is_zero(body->mass))
         return "0";
     if (strchr(mass, ' '))
         mass = ct_arena_printf(d->a, "(%s)", mass);
-    return ct_arena_printf(d->a, latex ? "%s \\, (\\boldsymbol{g} - %s)" : "%s*(g - %s)", mass,
-                           ct_derivation_of(d, "a", com));
+    return ct_arena_printf(
+        d->a, ct_derivation_is_latex(d) ? "%s \\, (\\boldsymbol{g} - %s)" : "%s*(g - %s)", mass,
+        ct_derivation_of(d, "a", com));
 }
 
-static const char *inertia_torque(struct ct_derivation *d, const struct ct_body *body,
-                                  const char *name)
+static const char *inertia_torque(struct ct_derivation *d, const struct ct_body *body)
 {
-    const bool latex = ct_derivation_is_latex(d);
-    const char *al = ct_derivation_of(d, "al", name), *w = ct_derivation_of(d, "w", name);
-    bool is_massless = true;
-    for (int i = 0; i < 6; i++)
-        is_massless &= ct_ex_is_zero(body->inertia[i]);
-    if (is_massless)
-        return "0";
-    const bool is_round = ct_ex_same(body->inertia[0], body->inertia[1])
-                       && ct_ex_same(body->inertia[1], body->inertia[2]);
-    if (is_round) // I w is along w
-        return ct_arena_printf(d->a, latex ? "-%s \\, %s" : "-%s*%s",
-                               ct_derivation_text(d, body->inertia[0]), al);
-    const char *I = ct_derivation_of(d, "I", name);
-    return ct_arena_printf(
-        d->a, latex ? "-(%s %s + %s \\times %s %s)" : "-(%s*%s + %s x %s*%s)", I, al, w, I, w);
+    const char *inertia = ct_derivation_inertia_torque(d, body);
+    return inertia ? ct_arena_printf(d->a, "-%s", inertia) : "0";
 }
 
 static void put_inertia(struct ct_derivation *d, const struct ct_body *body)
@@ -113,12 +99,13 @@ static void put_bodies(struct ct_derivation *d)
         const char *com = d->e->build->node[d->e->build->node_of_com[i]].name;
         if (body->beam)
             continue;
+        d->page.about = name;
         ct_page_equation(&d->page, NULL, ct_derivation_of(d, "F", name),
                          inertia_force(d, body, com), NULL);
         if (body->is_particle)
             continue;
         ct_page_equation(&d->page, NULL, ct_derivation_of(d, "T", name),
-                         inertia_torque(d, body, name), NULL);
+                         inertia_torque(d, body), NULL);
         put_inertia(d, body);
     }
 }
@@ -129,7 +116,7 @@ static const char *turns_text(struct ct_derivation *d, const struct ct_turn *tur
     const char *s = "";
     for (int i = 0; i < n; i++)
         s = ct_arena_printf(d->a, latex ? "%s%s\\operatorname{Rot}(%s, %s)" : "%s%sRot(%s, %s)",
-                            s, *s ? latex ? "\\," : "*" : "",
+                            s, *s ? latex ? " \\, " : "*" : "",
                             ct_derivation_axis(d, turn[i].axis),
                             ct_derivation_text(d, turn[i].angle));
     return *s ? s : "1";
@@ -149,6 +136,7 @@ static void put_arms(struct ct_derivation *d)
         }
         any = true;
         const char *body = b->node[b->wiring[i].tail].name;
+        d->page.about = e->name;
         ct_page_equation(&d->page, NULL, ct_derivation_of(d, "d", e->name),
                          ct_derivation_vector(d, e->at),
                          ct_arena_printf(d->a, "axes of %s", body));
@@ -254,6 +242,7 @@ static void put_joints(struct ct_derivation *d)
     ct_page_equations(&d->page);
     for (size_t j = 0; j < d->m->njoint; j++) {
         const struct ct_instance *self = &d->m->joint[j];
+        d->page.about = self->name;
         if (b->edge_of_joint[j] >= 0) {
             put_joint(d, &b->edge[b->edge_of_joint[j]]);
         } else {
@@ -291,6 +280,7 @@ static void put_force(struct ct_derivation *d, const struct ct_instance *self)
 {
     const struct ct_component_class *cls = self->cls;
     const struct ct_value *in = NULL;
+    d->page.about = self->name;
     for (int k = 0; k < cls->nkey; k++)
         if (!strcmp(cls->key[k].name, "in"))
             in = &self->value[k];
@@ -338,4 +328,5 @@ void ct_stage_terminal(struct ct_derivation *d)
     ct_beams_put_arms(d);
     put_joints(d);
     put_forces(d);
+    d->page.about = NULL;
 }

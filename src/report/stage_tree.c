@@ -20,8 +20,8 @@ static void put_trees(struct ct_derivation *d)
     const struct ct_equations *e = d->e;
     const struct ct_build *b = e->build;
     int narm = 0;
-    ct_page_table(&d->page, "llllll");
-    CT_PAGE_ROW(&d->page, "component", "type", "from", "to", "translation", "rotation");
+    ct_page_table(&d->page, "rllllll");
+    CT_PAGE_ROW(&d->page, "#", "component", "type", "from", "to", "translation", "rotation");
     for (int i = 0; i < e->graph->nedge; i++) {
         const struct ct_edge *w = &e->graph->edge[i];
         if (b->edge[i].kind == CT_EDGE_ARM) {
@@ -29,8 +29,8 @@ static void put_trees(struct ct_derivation *d)
             continue;
         }
         const bool force = b->edge[i].kind == CT_EDGE_FORCE;
-        CT_PAGE_ROW(&d->page, e->edge_name[i], e->edge_kind[i], e->node_name[w->tail],
-                    e->node_name[w->head],
+        CT_PAGE_ROW(&d->page, ct_arena_printf(d->a, "%d", i + 1), e->edge_name[i],
+                    e->edge_kind[i], e->node_name[w->tail], e->node_name[w->head],
                     force ? "chord" : role(d, e->T, e->weight_t, i, true),
                     force ? "chord" : role(d, e->R, e->weight_r, i, b->edge[i].has_rotation));
     }
@@ -197,8 +197,8 @@ static const char *row_meaning(const char *name, const char **unit)
         return "no displacement across the axis";
     if (!strcmp(part, "length"))
         return "the distance is kept";
-    if (strlen(part) == 1)
-        return "the origins coincide";
+    if (strlen(part) == 1 || (part[0] == 'e' && strlen(part) == 2)) // x, y, z; e1, e2
+        return "the origins coincide along this axis";
     *unit = "N*m";
     if (!strcmp(part, "angle"))
         return "the angle is kept";

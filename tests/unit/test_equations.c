@@ -90,8 +90,8 @@ static void evaluate(struct fixture *f)
     const struct ct_exs *x = f->e.x;
     f->value = CT_NEWN(f->ctx.scratch, double, x->nnode);
     double *v = f->value;
-    for (size_t k = 0; k < f->r.ndefinition; k++) // marks them: any number that is not a node
-        f->symbol[ct_ex_node(x, f->r.definition[k].symbol)->a] = -1 - (double)k;
+    for (size_t k = 0; k < f->r.definitions.n; k++) // marks them: any number that is not a node
+        f->symbol[ct_ex_node(x, f->r.definitions.at[k].symbol)->a] = -1 - (double)k;
     for (uint32_t id = 0; id < x->nnode; id++) {
         const struct ct_exnode *n = &x->node[id];
         if (ct_ex_is_const(x, (ct_ex){id}, &v[id]))
@@ -99,7 +99,7 @@ static void evaluate(struct fixture *f)
         if (n->op == CT_OP_SYM) {
             v[id] = f->symbol[n->a];
             if (x->sym[n->a].kind == CT_SYM_LOCAL && f->symbol[n->a] <= -1)
-                v[id] = v[f->r.definition[(size_t)(-1 - f->symbol[n->a])].value.id];
+                v[id] = v[f->r.definitions.at[(size_t)(-1 - f->symbol[n->a])].value.id];
         } else if (n->op == CT_OP_TABLE) {
             v[id] = ct_table_value(&x->table[n->b], n->c, v[n->a]);
         } else {

@@ -219,8 +219,8 @@ static void names_are_escaped(void **state)
     check_contains(&nasty, JSON, "{\"id\": 1, \"name\": \"a\\\"b\\\\c\\u000a&d \xc3\xa9\"}");
     check_contains(&nasty, JSON, "\"name\": \"</font>\", \"kind\": \"\\u0009\"");
     check_contains(&nasty, DOT, "n1 [label=<a&quot;b&#92;c &amp;d \xc3\xa9>]");
-    check_contains(&nasty, DOT, "n0 -> n1 [label=<&lt;/font&gt;<br/>");
-    check_contains(&nasty, DOT, "n1 -> n0 [label=<&quot;]<br/>");
+    check_contains(&nasty, DOT, "n0 -> n1 [label=<1 &lt;/font&gt;<br/>");
+    check_contains(&nasty, DOT, "n1 -> n0 [label=<2 &quot;]<br/>");
     check_contains(&nasty, DOT, ">&#160;</font>>"); // Graphviz rejects an empty label
 }
 
