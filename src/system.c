@@ -197,8 +197,12 @@ void ct_system_destroy(struct ct_system *sys)
 
 bool ct_system_assemble(struct ct_ctx *own, struct ct_system *sys, struct ct_start *start)
 {
-    if (!sys->held_equations.build)
-        return ct_assemble(own, own->model, &sys->model, &sys->start_equations, start);
+    if (!sys->held_equations.build) {
+        const bool ok = ct_assemble(own, own->model, &sys->model, &sys->start_equations, start);
+        if (!ok)
+            ct_note_odd_axis(own, own->model, &sys->model);
+        return ok;
+    }
     return ct_assemble_open(own, own->model, &sys->model, &sys->start_equations, start)
         && ct_settle(own, own->model, &sys->model, &sys->held_equations, &sys->moving_equations,
                      start);

@@ -8,122 +8,108 @@
 #include <string.h>
 #include <sys/stat.h>
 
-const struct cli_command *const cli_commands[] = {&cli_simulate,
-                                                  &cli_equations,
-                                                  &cli_graph,
-                                                  &cli_accuracy,
-                                                  &cli_sweep,
-                                                  &cli_check,
-                                                  &cli_equilibrium,
-                                                  &cli_modes,
-                                                  &cli_linearize,
-                                                  &cli_buckling,
-                                                  &cli_kinematics,
-                                                  &cli_inverse,
-                                                  &cli_export,
-                                                  &cli_components,
-                                                  &cli_methods,
-                                                  &cli_schema,
-                                                  NULL};
+const struct cli_command *const cli_commands[]
+    = {&cli_simulate,   &cli_equations,   &cli_graph,  &cli_accuracy,   &cli_sweep,
+       &cli_check,      &cli_equilibrium, &cli_modes,  &cli_linearize,  &cli_buckling,
+       &cli_kinematics, &cli_inverse,     &cli_export, &cli_components, &cli_methods,
+       &cli_schema,     &cli_completion,  NULL};
 
 // ---- options --------------------------------------------------------------------------------------------
 
-enum kind { FLAG, TEXT, LIST, NUMBER, INTEGER, COUNT_OF, SEED };
-
-static const struct option {
-    const char *name;
-    char letter;       // 0: none
-    const char *value; // name of the value in the help
-    enum kind kind;
-    size_t field;
-    unsigned use;     // commands it means something to
-    bool is_common;   // accepted, without effect, by all commands that take a model
-    const char *help; // lines are broken by hand
-} options[] = {
+const struct cli_option cli_options[] = {
 #define FIELD(f) offsetof(struct cli_args, f)
-    {"output", 'o', "FILE", TEXT, FIELD(output), CLI_MODELS | CLI_LISTS, true,
+    {"output", 'o', "FILE", CLI_TEXT, FIELD(output), CLI_MODELS | CLI_LISTS, true,
      "where results go; the suffix says the type"},
-    {"set", 0, "NAME=VALUE", LIST, FIELD(set), CLI_MODELS, true,
+    {"set", 0, "NAME=VALUE", CLI_LIST, FIELD(set), CLI_MODELS, true,
      "another value for a parameter; may be repeated"},
-    {"tree", 0, "CHOICE", TEXT, FIELD(tree), CLI_MODELS, true,
+    {"tree", 0, "CHOICE", CLI_TEXT, FIELD(tree), CLI_MODELS, true,
      "auto, joints, absolute, or a YAML FILE with the keys\n"
-     "translation and rotation: lists of branches"},
-    {"keep-all", 0, NULL, FLAG, FIELD(keep_all), CLI_MODELS, true,
+     "translation and rotation: lists of branches",
+     "auto joints absolute"},
+    {"keep-all", 0, NULL, CLI_FLAG, FIELD(keep_all), CLI_MODELS, true,
      "leave nothing out: keep the spatial rows of planar models"},
-    {"tolerance", 0, "T", NUMBER, FIELD(tolerance), CLI_RUNS, true,
+    {"tolerance", 0, "T", CLI_NUMBER, FIELD(tolerance), CLI_RUNS, true,
      "wanted relative accuracy of the outputs"},
-    {"method", 0, "NAME", TEXT, FIELD(method), CLI_RUNS, true,
-     "auto, or a name that 'cotree methods' lists"},
-    {"step", 0, "H", NUMBER, FIELD(step), CLI_RUNS, true,
+    {"method", 0, "NAME", CLI_TEXT, FIELD(method), CLI_RUNS, true,
+     "auto, or a name that 'cotree methods' lists",
+     "auto dop853 dopri5 rk4 radau5 generalized-alpha generalized-alpha-index3 hht newmark"},
+    {"step", 0, "H", CLI_NUMBER, FIELD(step), CLI_RUNS, true,
      "fixed step in seconds, without step control"},
-    {"until", 0, "T", NUMBER, FIELD(until), CLI_TIMES, true,
+    {"until", 0, "T", CLI_NUMBER, FIELD(until), CLI_TIMES, true,
      "end time in seconds; the spacing of samples is kept"},
-    {"samples", 0, "N", INTEGER, FIELD(samples), CLI_TIMES, true,
+    {"samples", 0, "N", CLI_INTEGER, FIELD(samples), CLI_TIMES, true,
      "number of samples, both ends included"},
-    {"backend", 0, "CHOICE", TEXT, FIELD(backend), CLI_RUNS, true,
-     "what evaluates the equations: auto, native or tape"},
-    {"solver", 0, "CHOICE", TEXT, FIELD(solver), CLI_SIMULATE | CLI_ACCURACY | CLI_CHECK, false,
+    {"backend", 0, "CHOICE", CLI_TEXT, FIELD(backend), CLI_RUNS, true,
+     "what evaluates the equations: auto, native or tape", "auto native tape"},
+    {"solver", 0, "CHOICE", CLI_TEXT, FIELD(solver), CLI_SIMULATE | CLI_ACCURACY | CLI_CHECK,
+     false,
      "what finds the accelerations of closed loops: auto,\n"
-     "unrolled, one-system, sparse or dense"},
-    {"summary", 0, "FILE.json", TEXT, FIELD(summary), CLI_MODELS, true,
+     "unrolled, one-system, sparse or dense",
+     "auto unrolled one-system sparse dense"},
+    {"summary", 0, "FILE.json", CLI_TEXT, FIELD(summary), CLI_MODELS, true,
      "what the system is and what the run did, for programs"},
-    {"about", 0, "WHERE", TEXT, FIELD(about), CLI_ABOUT, false,
-     "initial, equilibrium, or a time in seconds"},
-    {"inputs", 0, "NAMES", TEXT, FIELD(inputs), CLI_LINEARIZE, false,
+    {"about", 0, "WHERE", CLI_TEXT, FIELD(about), CLI_ABOUT, false,
+     "initial, equilibrium, or a time in seconds", "initial equilibrium"},
+    {"inputs", 0, "NAMES", CLI_TEXT, FIELD(inputs), CLI_LINEARIZE, false,
      "J.effort, F.force.x, T.torque.z, parameters; a list"},
-    {"load", 0, "NAME", TEXT, FIELD(load), CLI_BUCKLING, false,
+    {"load", 0, "NAME", CLI_TEXT, FIELD(load), CLI_BUCKLING, false,
      "a force, a torque, a joint with an effort, or gravity"},
-    {"curve", 0, "FILE.csv", TEXT, FIELD(curve), CLI_BUCKLING, false,
+    {"curve", 0, "FILE.csv", CLI_TEXT, FIELD(curve), CLI_BUCKLING, false,
      "the lowest frequencies against the load factor"},
-    {"count", 0, "N", COUNT_OF, FIELD(count), CLI_MODES | CLI_BUCKLING, false,
+    {"count", 0, "N", CLI_COUNT_OF, FIELD(count), CLI_MODES | CLI_BUCKLING, false,
      "number of rows, the lowest ones; 10"},
-    {"hold-drivers", 0, NULL, FLAG, FIELD(hold_drivers), CLI_STATIC, false,
+    {"hold-drivers", 0, NULL, CLI_FLAG, FIELD(hold_drivers), CLI_STATIC, false,
      "equilibrium: motions stand still, even steady ones"},
-    {"vary", 0, "NAME=FROM:TO:N", LIST, FIELD(vary), CLI_SWEEP, false,
+    {"vary", 0, "NAME=FROM:TO:N", CLI_LIST, FIELD(vary), CLI_SWEEP, false,
      "N values of a parameter, both ends included;\n"
      "may be repeated"},
-    {"sample", 0, "K", COUNT_OF, FIELD(sample), CLI_SWEEP, false,
+    {"sample", 0, "K", CLI_COUNT_OF, FIELD(sample), CLI_SWEEP, false,
      "K random members instead of a grid"},
-    {"seed", 0, "S", SEED, FIELD(seed), CLI_SWEEP, false,
+    {"seed", 0, "S", CLI_SEED, FIELD(seed), CLI_SWEEP, false,
      "of the random numbers; 0. Same seed, same members"},
-    {"resume", 0, NULL, FLAG, FIELD(resume), CLI_SWEEP, false,
+    {"resume", 0, NULL, CLI_FLAG, FIELD(resume), CLI_SWEEP, false,
      "go on with the rows in FILE.partial"},
-    {"threads", 0, "N", COUNT_OF, FIELD(threads), CLI_SWEEP, false,
+    {"threads", 0, "N", CLI_COUNT_OF, FIELD(threads), CLI_SWEEP, false,
      "at most so many; all cores"},
-    {"lanes", 0, "N", COUNT_OF, FIELD(lanes), CLI_SWEEP | CLI_EXPORT, false,
+    {"lanes", 0, "N", CLI_COUNT_OF, FIELD(lanes), CLI_SWEEP | CLI_EXPORT, false,
      "1, 4 or 8 side by side: members in a core, inputs of programs"},
-    {"verify", 0, NULL, FLAG, FIELD(verify), CLI_SIMULATE, false,
+    {"verify", 0, NULL, CLI_FLAG, FIELD(verify), CLI_SIMULATE, false,
      "a second run; the difference tells the global error"},
-    {"error", 0, "E", NUMBER, FIELD(error), CLI_ACCURACY, false,
+    {"error", 0, "E", CLI_NUMBER, FIELD(error), CLI_ACCURACY, false,
      "the error that the cheapest setting must meet; 1e-6"},
-    {"per-decade", 0, "N", COUNT_OF, FIELD(per_decade), CLI_ACCURACY, false,
+    {"per-decade", 0, "N", CLI_COUNT_OF, FIELD(per_decade), CLI_ACCURACY, false,
      "N tolerances a power of ten, from 1e-2 on, or steps"},
-    {"elements", 0, "LIST", TEXT, FIELD(elements), CLI_ACCURACY, false,
+    {"elements", 0, "LIST", CLI_TEXT, FIELD(elements), CLI_ACCURACY, false,
      "numbers of elements of the beams, as in 1,2,5"},
-    {"formulations", 0, "LIST", TEXT, FIELD(formulations), CLI_ACCURACY, false,
-     "formulations of the beams, as in linear,foreshortening"},
-    {"reference", 0, "FILE.csv", TEXT, FIELD(reference), CLI_ACCURACY, false,
+    {"formulations", 0, "LIST", CLI_TEXT, FIELD(formulations), CLI_ACCURACY, false,
+     "formulations of the beams, as in linear,foreshortening",
+     "linear foreshortening force-only stretch-linear"},
+    {"reference", 0, "FILE.csv", CLI_TEXT, FIELD(reference), CLI_ACCURACY, false,
      "what to compare with, as simulate writes it"},
-    {"plot", 0, "FILE.svg", TEXT, FIELD(plot), CLI_ACCURACY, false,
+    {"plot", 0, "FILE.svg", CLI_TEXT, FIELD(plot), CLI_ACCURACY, false,
      "error against seconds, a line for each method"},
-    {"plot", 0, "FILE.svg", TEXT, FIELD(plot), CLI_MODES, false, "shapes of the first modes"},
-    {"show", 0, "STAGES", TEXT, FIELD(show), CLI_EQUATIONS, false,
+    {"plot", 0, "FILE.svg", CLI_TEXT, FIELD(plot), CLI_MODES, false,
+     "shapes of the first modes"},
+    {"show", 0, "STAGES", CLI_TEXT, FIELD(show), CLI_EQUATIONS, false,
      "terminal,graph,tree,cutset,circuit,reduced;\n"
-     "standard is tree,reduced"},
-    {"format", 0, "FORMAT", TEXT, FIELD(format), CLI_EQUATIONS, false,
-     "text, latex, html, c or json"},
-    {"format", 0, "FORMAT", TEXT, FIELD(format), CLI_GRAPH, false, "text, svg, dot or json"},
-    {"format", 0, "FORMAT", TEXT, FIELD(format), CLI_EXPORT, false, "c"},
-    {"quiet", 'q', NULL, FLAG, FIELD(quiet), CLI_MODELS, true,
+     "standard is tree,reduced",
+     "all terminal graph tree cutset circuit reduced"},
+    {"format", 0, "FORMAT", CLI_TEXT, FIELD(format), CLI_EQUATIONS, false,
+     "text, latex, html, c or json", "text latex html c json"},
+    {"format", 0, "FORMAT", CLI_TEXT, FIELD(format), CLI_GRAPH, false, "text, svg, dot or json",
+     "text svg dot json"},
+    {"format", 0, "FORMAT", CLI_TEXT, FIELD(format), CLI_EXPORT, false, "c", "c"},
+    {"quiet", 'q', NULL, CLI_FLAG, FIELD(quiet), CLI_MODELS, true,
      "no summary and no progress bar"},
-    {"help", 'h', NULL, FLAG, FIELD(help), CLI_MODELS | CLI_LISTS, true, "this text"},
-    {"version", 0, NULL, FLAG, FIELD(version), 0, true, "the version of the program"},
+    {"help", 'h', NULL, CLI_FLAG, FIELD(help), CLI_MODELS | CLI_LISTS, true, "this text"},
+    {"version", 'V', NULL, CLI_FLAG, FIELD(version), 0, true, "the version of the program"},
 #undef FIELD
 };
+const size_t cli_noption = CLI_COUNT(cli_options);
 
-static bool is_accepted(const struct option *o, const struct cli_command *c)
+bool cli_is_accepted(const struct cli_option *o, const struct cli_command *c)
 {
-    return !c || o->use & c->use || (o->is_common && (c->takes_model || o->kind == FLAG));
+    return !c || o->use & c->use || (o->is_common && (c->takes_model || o->kind == CLI_FLAG));
 }
 
 // ---- messages ---------------------------------------------------------------------------------------------
@@ -174,35 +160,35 @@ static bool parse_seed(const char *text, unsigned long long *v)
     return text[0] >= '0' && text[0] <= '9' && !*end && !errno;
 }
 
-static bool wrong_value(const struct cli_command *c, const struct option *o, const char *value,
-                        const char *wanted)
+static bool wrong_value(const struct cli_command *c, const struct cli_option *o,
+                        const char *value, const char *wanted)
 {
     return cli_complain(c, "--%s is '%s'; %s is wanted", o->name, value, wanted), false;
 }
 
-static bool store(const struct cli_command *c, const struct option *o, const char *value,
+static bool store(const struct cli_command *c, const struct cli_option *o, const char *value,
                   struct cli_args *args)
 {
     void *field = (char *)args + o->field;
     switch (o->kind) {
-    case FLAG:
+    case CLI_FLAG:
         *(bool *)field = true;
         return true;
-    case TEXT:
+    case CLI_TEXT:
         *(const char **)field = value;
         return *value || (cli_complain(c, "--%s is empty", o->name), false);
-    case LIST: {
+    case CLI_LIST: {
         struct cli_list *list = field;
         list->text[list->n++] = value;
         return true;
     }
-    case NUMBER:
+    case CLI_NUMBER:
         return parse_number(value, field)
             || wrong_value(c, o, value, "a number greater than 0");
-    case SEED:
+    case CLI_SEED:
         return parse_seed(value, field)
             || wrong_value(c, o, value, "an integer from 0 to 18446744073709551615");
-    case COUNT_OF:
+    case CLI_COUNT_OF:
         return parse_integer(value, 1, field)
             || wrong_value(c, o, value, "an integer from 1 to 1000000000");
     default: // both ends
@@ -220,23 +206,48 @@ struct parser {
     struct cli_args *args;
 };
 
+// The name that is meant: one that begins with what is written, else one that is near; NULL: none.
+static const char *find_meant(const char *text, const char *const *names, size_t n)
+{
+    const size_t length = strlen(text);
+    for (size_t i = 0; i < n && length > 1; i++)
+        if (strncmp(names[i], text, length) == 0)
+            return names[i];
+    return ct_did_you_mean(text, names, n);
+}
+
+// An option that other commands have: false after a message that names one of them.
+static bool is_nowhere(const struct parser *p, const char *name)
+{
+    for (size_t i = 0; i < cli_noption; i++)
+        for (const struct cli_command *const *c = cli_commands; p->command && *c; c++)
+            if (strcmp(cli_options[i].name, name) == 0 && cli_options[i].use & (*c)->use) {
+                cli_complain(p->command, "'%s' has no option --%s; '%s' has", p->command->name,
+                             name, (*c)->name);
+                return false;
+            }
+    return true;
+}
+
 static bool unknown_option(const struct parser *p, const char *name)
 {
-    const char *names[CLI_COUNT(options)];
+    const char *names[CLI_COUNT(cli_options)], *plain = name + strspn(name, "-");
     char text[64];
     size_t n = 0;
-    for (size_t i = 0; i < CLI_COUNT(options); i++)
-        if (is_accepted(&options[i], p->command))
-            names[n++] = options[i].name;
-    const char *near = ct_did_you_mean(name + strspn(name, "-"), names, n);
+    for (size_t i = 0; i < cli_noption; i++)
+        if (cli_is_accepted(&cli_options[i], p->command))
+            names[n++] = cli_options[i].name;
+    const char *near = find_meant(plain, names, n);
+    if (!near && !is_nowhere(p, plain))
+        return false;
     if (near)
         snprintf(text, sizeof text, "--%s", near);
     return wrong(p->command, "no such option:", name, near ? text : NULL);
 }
 
-static bool give(struct parser *p, const struct option *o, const char *value)
+static bool give(struct parser *p, const struct cli_option *o, const char *value)
 {
-    if (o->kind == FLAG) {
+    if (o->kind == CLI_FLAG) {
         if (value)
             return cli_complain(p->command, "--%s takes no value", o->name), false;
     } else if (!value) {
@@ -251,10 +262,10 @@ static bool give(struct parser *p, const struct option *o, const char *value)
 static bool parse_long(struct parser *p, const char *text)
 {
     const size_t n = strcspn(text, "=");
-    for (size_t i = 0; i < CLI_COUNT(options); i++) {
-        const struct option *o = &options[i];
+    for (size_t i = 0; i < cli_noption; i++) {
+        const struct cli_option *o = &cli_options[i];
         if (strlen(o->name) == n && strncmp(text, o->name, n) == 0
-            && is_accepted(o, p->command))
+            && cli_is_accepted(o, p->command))
             return give(p, o, text[n] ? text + n + 1 : NULL);
     }
     char name[64];
@@ -265,10 +276,10 @@ static bool parse_long(struct parser *p, const char *text)
 // -o FILE, -oFILE
 static bool parse_short(struct parser *p, const char *text)
 {
-    for (size_t i = 0; i < CLI_COUNT(options); i++) {
-        const struct option *o = &options[i];
-        if (o->letter && o->letter == text[1] && is_accepted(o, p->command)
-            && (!text[2] || o->kind != FLAG))
+    for (size_t i = 0; i < cli_noption; i++) {
+        const struct cli_option *o = &cli_options[i];
+        if (o->letter && o->letter == text[1] && cli_is_accepted(o, p->command)
+            && (!text[2] || o->kind != CLI_FLAG))
             return give(p, o, text[2] ? text + 2 : NULL);
     }
     return unknown_option(p, text);
@@ -276,7 +287,7 @@ static bool parse_short(struct parser *p, const char *text)
 
 static bool parse_command(struct parser *p, const char *name)
 {
-    const char *names[32];
+    const char *names[CLI_COUNT(cli_commands)];
     size_t n = 0;
     for (const struct cli_command *const *c = cli_commands; *c; c++) {
         if (strcmp((*c)->name, name) == 0) {
@@ -285,13 +296,42 @@ static bool parse_command(struct parser *p, const char *name)
         }
         names[n++] = (*c)->name;
     }
-    return wrong(NULL, "no such command:", name, ct_did_you_mean(name, names, n));
+    names[n++] = "help"; // in the place of the NULL
+    if (strcmp(name, "help") == 0)
+        return p->args->help = true;
+    const char *dot = strrchr(name, '.');
+    if (dot && (strcmp(dot, ".yaml") == 0 || strcmp(dot, ".yml") == 0))
+        return cli_complain(NULL, "a command is wanted before the model: cotree simulate %s",
+                            name),
+               false;
+    return wrong(NULL, "no such command:", name, find_meant(name, names, n));
+}
+
+// What a command takes in place of a model: one of its words.
+static bool parse_word(struct parser *p, const char *text)
+{
+    const char *const *words = p->command->words;
+    size_t n = 0;
+    if (p->args->word)
+        return cli_complain(p->command, "one word is enough: '%s' and '%s'", p->args->word,
+                            text),
+               false;
+    p->args->word = text;
+    for (; words[n]; n++)
+        if (strcmp(words[n], text) == 0)
+            return true;
+    const char *near = find_meant(text, words, n);
+    return cli_complain(p->command, "'%s' knows no '%s'%s%s%s", p->command->name, text,
+                        near ? "; did you mean '" : "", near ? near : "", near ? "'?" : ""),
+           false;
 }
 
 static bool parse_plain(struct parser *p, const char *text)
 {
     if (!p->command)
         return parse_command(p, text);
+    if (p->command->words)
+        return parse_word(p, text);
     if (!p->command->takes_model)
         return cli_complain(p->command, "'%s' takes no model: '%s'", p->command->name, text),
                false;
@@ -321,23 +361,29 @@ static bool parse_all(struct parser *p)
     return true;
 }
 
-static bool check_word(const struct parser *p, const char *option, const char *value,
-                       const char *const *words, size_t n, const char *all)
+// The option's value is one of its words.
+static bool check_word(const struct parser *p, const char *name, const char *value)
 {
-    for (size_t i = 0; i < n; i++)
-        if (!value || strcmp(value, words[i]) == 0)
+    const struct cli_option *o = cli_options;
+    char text[128];
+    size_t n = 0;
+    while (strcmp(o->name, name) != 0)
+        o++;
+    for (const char *w = o->words; *w; w += strspn(w, " ")) {
+        const size_t length = strcspn(w, " ");
+        if (!value || (strlen(value) == length && strncmp(value, w, length) == 0))
             return true;
-    return cli_complain(p->command, "--%s is '%s'; there are %s", option, value, all), false;
+        n += (size_t)snprintf(text + n, sizeof text - n, "%s%.*s", n ? ", " : "", (int)length,
+                              w);
+        w += length;
+    }
+    return cli_complain(p->command, "--%s is '%s'; there are %s", name, value, text), false;
 }
 
 static bool check_words(const struct parser *p)
 {
-    static const char *const backends[] = {"auto", "native", "tape"};
-    static const char *const solvers[] = {"auto", "unrolled", "one-system", "sparse", "dense"};
-    return check_word(p, "backend", p->args->backend, backends, CLI_COUNT(backends),
-                      "auto, native, tape")
-        && check_word(p, "solver", p->args->solver, solvers, CLI_COUNT(solvers),
-                      "auto, unrolled, one-system, sparse, dense");
+    return check_word(p, "backend", p->args->backend)
+        && check_word(p, "solver", p->args->solver);
 }
 
 static bool is_same_file(const char *a, const char *b)
@@ -381,6 +427,10 @@ bool cli_parse(int argc, char **argv, const struct cli_command **command, struct
         return ok;
     if (!p.command)
         return cli_complain(NULL, "a command is wanted"), false;
+    if (p.command->words && !args->word)
+        return cli_complain(p.command, "'%s' needs a word: %s", p.command->name,
+                            p.command->examples[0]),
+               false;
     if (p.command->takes_model && !args->model)
         return cli_complain(p.command, "'%s' needs a model: cotree %s MODEL.yaml",
                             p.command->name, p.command->name),
@@ -396,7 +446,7 @@ void cli_args_finish(struct cli_args *args)
 
 // ---- help -----------------------------------------------------------------------------------------------------
 
-static void print_option(FILE *out, const struct option *o)
+static void print_option(FILE *out, const struct cli_option *o)
 {
     char left[40];
     const bool is_output = strcmp(o->name, "output") == 0; // known by its letter
@@ -423,8 +473,8 @@ static void print_program_help(FILE *out)
           out);
     for (const struct cli_command *const *c = cli_commands; *c; c++)
         fprintf(out, "  %-12s %s\n", (*c)->name, (*c)->summary);
-    fputs("\n  cotree COMMAND --help   the options of a command\n"
-          "  cotree --version        the version of the program\n\n"
+    fputs("\n  cotree help COMMAND     the options of a command; also COMMAND --help\n"
+          "  cotree --version        the version of the program; also -V\n\n"
           "Results go to standard output or to -o FILE, messages to standard error.\n"
           "Exit status: 0 done, 1 the model or the run failed, 2 the command line is wrong.\n\n"
           "try:\n"
@@ -440,10 +490,13 @@ void cli_print_help(FILE *out, const struct cli_command *command)
         return;
     }
     fprintf(out, "usage: cotree %s%s [options]\n\n%s\n%s\n", command->name,
-            command->takes_model ? " MODEL.yaml" : "", command->summary, command->more);
-    for (size_t i = 0; i < CLI_COUNT(options); i++)
-        if (options[i].use & command->use)
-            print_option(out, &options[i]);
+            command->takes_model ? " MODEL.yaml"
+            : command->words     ? " SHELL"
+                                 : "",
+            command->summary, command->more);
+    for (size_t i = 0; i < cli_noption; i++)
+        if (cli_options[i].use & command->use)
+            print_option(out, &cli_options[i]);
     fputs("\ntry:\n", out);
     for (size_t i = 0; i < CLI_COUNT(command->examples); i++)
         fprintf(out, "  %s\n", command->examples[i]);

@@ -17,6 +17,7 @@ enum { CLI_DONE = 0, CLI_FAILED = 1, CLI_USAGE = 2 };
 /// What the command line says; zero where it says nothing.
 struct cli_args {
     const char *model;
+    const char *word; // what a command takes in place of a model
     const char *output, *summary, *format, *show, *tree, *method, *backend, *solver, *reference,
         *plot, *about, *inputs, *load, *curve, *elements, *formulations;
     struct cli_list { // what is given several times
@@ -47,7 +48,8 @@ enum cli_use {
     CLI_INVERSE = 8192,
     CLI_BUCKLING = 16384,
     CLI_SWEEP = 32768,
-    CLI_LISTS = CLI_COMPONENTS | CLI_METHODS | CLI_SCHEMA,
+    CLI_COMPLETION = 65536,
+    CLI_LISTS = CLI_COMPLETION | CLI_COMPONENTS | CLI_METHODS | CLI_SCHEMA,
     CLI_DRIVEN = CLI_KINEMATICS | CLI_INVERSE,
     CLI_ABOUT = CLI_MODES | CLI_LINEARIZE, // a configuration
     CLI_STATIC = CLI_ABOUT | CLI_EQUILIBRIUM | CLI_BUCKLING,
@@ -60,16 +62,43 @@ struct cli_command {
     const char *name, *summary; // one line
     enum cli_use use;
     bool takes_model;
-    const char *more;        // paragraph for its own help
-    const char *examples[2]; // to try
+    const char *const *words; // what it takes in place of a model, NULL at the end; or NULL
+    const char *more;         // paragraph for its own help
+    const char *examples[2];  // to try
     int (*run)(struct ct_ctx *ctx, const struct cli_args *args);
 };
 
 extern const struct cli_command cli_simulate, cli_equations, cli_graph, cli_accuracy, cli_check,
     cli_equilibrium, cli_modes, cli_linearize, cli_kinematics, cli_inverse, cli_buckling,
-    cli_sweep, cli_export, cli_components, cli_methods, cli_schema;
+    cli_sweep, cli_export, cli_components, cli_methods, cli_schema, cli_completion;
 /// All commands in the order of --help; NULL at the end.
 extern const struct cli_command *const cli_commands[];
+
+/// An option: where its value goes, and what help and completion say of it.
+struct cli_option {
+    const char *name;
+    char letter;       // 0: none
+    const char *value; // name of the value in the help; NULL: it has none
+    enum cli_kind {
+        CLI_FLAG,
+        CLI_TEXT,
+        CLI_LIST,
+        CLI_NUMBER,
+        CLI_INTEGER,
+        CLI_COUNT_OF,
+        CLI_SEED
+    } kind;
+    size_t field;
+    unsigned use;      // commands it means something to
+    bool is_common;    // accepted, without effect, by all commands that take a model
+    const char *help;  // lines are broken by hand
+    const char *words; // values it may have, blanks between; NULL: they are no words
+};
+/// All options in the order of --help.
+extern const struct cli_option cli_options[];
+extern const size_t cli_noption;
+/// command NULL: none was named.
+bool cli_is_accepted(const struct cli_option *o, const struct cli_command *command);
 
 /// Read argv: the command (NULL: none was named) and its arguments. False after a message: exit with 2.
 bool cli_parse(int argc, char **argv, const struct cli_command **command,

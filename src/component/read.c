@@ -103,6 +103,32 @@ static void read_gravity(struct ct_reader *r)
         ct_read_vec3(r, node, 0, "m/s^2", &r->m->gravity, NULL);
 }
 
+static void mark_reached(const struct ct_model *m, const struct ct_instance *self,
+                         bool *reached)
+{
+    if (self->from >= 0)
+        reached[m->frame[self->from].body] = true;
+    if (self->to >= 0)
+        reached[m->frame[self->to].body] = true;
+}
+
+// Beside bodies that joints hold one that nothing is attached to is most often forgotten.
+static void warn_of_lone_bodies(struct ct_reader *r)
+{
+    const struct ct_model *m = r->m;
+    bool *reached = CT_NEWN(r->ctx->scratch, bool, m->nbody);
+    for (size_t i = 0; i < m->njoint; i++)
+        mark_reached(m, &m->joint[i], reached);
+    for (size_t i = 0; i < m->nforce; i++)
+        mark_reached(m, &m->force[i], reached);
+    for (size_t i = 1; m->njoint && i < m->nbody; i++)
+        if (!reached[i])
+            ct_warning(r->ctx, m->body[i].instance.mark, CT_E_ALONE,
+                       "no joint and no force reaches body '%s': it moves on its own; give it "
+                       "a joint, of type 'free' if that is meant",
+                       m->body[i].instance.name);
+}
+
 static bool read_model(struct ct_ctx *ctx, const char *file, const struct ct_node *root,
                        const struct ct_set *set, size_t nset, struct ct_model *m)
 {
@@ -122,6 +148,8 @@ static bool read_model(struct ct_ctx *ctx, const char *file, const struct ct_nod
     ct_read_bodies_fill(&r);
     ct_read_joints_fill(&r);
     ct_read_forces_fill(&r);
+    if (!ctx->nerror)
+        warn_of_lone_bodies(&r);
     ct_read_outputs(&r);
     ct_read_simulation(&r);
     return true;

@@ -95,8 +95,11 @@ bool ct_read_beam_value(struct ct_reader *r, const struct ct_node *node,
 bool ct_read_fields(struct ct_reader *r, const struct ct_node *node, const struct ct_key *key,
                     struct ct_value *v);
 bool ct_fill_fields(struct ct_reader *r, const struct ct_instance *self, struct ct_beam *beam);
-/// {table:, column:, interpolate:}
-bool ct_read_table(struct ct_reader *r, const struct ct_node *node, ct_ex *e);
+/// {table:, column:, interpolate:, unit:, scale:}; wanted: a unit of the value's dimension, NULL: any
+bool ct_read_table(struct ct_reader *r, const struct ct_node *node, const char *wanted,
+                   ct_ex *e);
+/// [rad] Angles beyond it, written without a unit, are asked about: E152.
+extern const double ct_read_full_turn;
 
 // ---- components --------------------------------------------------------------------------------------
 

@@ -235,13 +235,37 @@ static bool check_parameter_unit(struct ct_reader *r, const struct ct_node *node
     return false;
 }
 
+const double ct_read_full_turn = 6.283185307179586;
+
+// An angle that can hardly be radians: a number without a unit beyond a turn, or a parameter that is such a whole number (which no
+// multiple of pi is).
+static void check_degrees(struct ct_reader *r, const struct ct_node *node, ct_ex e)
+{
+    double value;
+    const char *rest, *text = node->text + strspn(node->text, " +-");
+    const struct ct_sym *s = ct_ex_symbol(r->m->x, e);
+    const int i
+        = s && s->kind == CT_SYM_PARAM ? ct_names_get(&r->m->parameter_index, s->name) : -1;
+    if (!ct_read_number(r, e, &value) || !(fabs(value) > ct_read_full_turn))
+        return;
+    const size_t length = ct_number_parse(text, &(double){0});
+    rest = text + length + strspn(text + length, " ");
+    const bool is_bare = length && !*rest;
+    const bool is_whole = i >= 0 && !r->m->parameter[i].unit && value == floor(value);
+    if (is_bare || is_whole)
+        ct_warning(r->ctx, node->mark, CT_E_DEGREES,
+                   "the angle %s is %g radians, %.3g turns: write \"%g deg\" if degrees are "
+                   "meant, \"%g rad\" if not",
+                   node->text, value, fabs(value) / ct_read_full_turn, value, value);
+}
+
 bool ct_read_expr(struct ct_reader *r, const struct ct_node *node, unsigned flags,
                   const char *unit, ct_ex *e)
 {
     *e = CT_EX_ZERO;
     if (node->kind == CT_NODE_MAP && ct_node_get(node, "table")) {
         if (flags & (CT_KEY_TIME | CT_KEY_STATE))
-            return ct_read_table(r, node, e);
+            return ct_read_table(r, node, unit, e);
         return ct_error(r->ctx, node->mark, CT_E_NOT_HERE,
                         "a table cannot be used here: this value is constant in time");
     }
@@ -265,6 +289,8 @@ bool ct_read_expr(struct ct_reader *r, const struct ct_node *node, unsigned flag
     if (ct_read_number(r, *e, &value) && !isfinite(value))
         return ct_error(r->ctx, node->mark, CT_E_NUMBER, "'%s' is not a finite number",
                         node->text);
+    if (unit && strcmp(unit, "rad") == 0)
+        check_degrees(r, node, *e);
     return check_parameter_unit(r, node, unit, *e);
 }
 

@@ -344,6 +344,20 @@ static bool check_driven_start(struct ct_reader *r, const struct joint *j)
 
 // ---- a joint ------------------------------------------------------------------------------------------------------
 
+// Ends on one rigid body never move against each other; on one beam they do.
+static bool check_two_bodies(struct ct_reader *r, const struct joint *j)
+{
+    const struct ct_frame *from = &r->m->frame[j->self->from], *to = &r->m->frame[j->self->to];
+    const struct ct_body *body = &r->m->body[from->body];
+    if (from->body != to->body || body->beam)
+        return true;
+    return ct_error(r->ctx, value_of(j, "to")->mark, CT_E_SAME_BODY,
+                    "joint '%s': '%s' and '%s' are both on %s%s%s, so they cannot move against "
+                    "each other; which other body does it join?",
+                    j->self->name, from->name, to->name, from->body ? "body '" : "the ground",
+                    from->body ? body->instance.name : "", from->body ? "'" : "");
+}
+
 static bool read_ends(struct ct_reader *r, struct joint *j)
 {
     bool ok = true;
@@ -362,6 +376,8 @@ static bool read_ends(struct ct_reader *r, struct joint *j)
         ok = ct_error(r->ctx, value_of(j, "to")->mark, CT_E_SAME_FRAME,
                       "joint '%s': 'from' and 'to' are the same frame '%s'", j->self->name,
                       r->m->frame[j->self->to].name);
+    else if (j->self->from >= 0 && j->self->to >= 0)
+        ok &= check_two_bodies(r, j);
     j->at_particle = is_particle_frame(r, j->self->from) || is_particle_frame(r, j->self->to);
     return ok;
 }
@@ -425,7 +441,7 @@ int ct_read_joint_name(struct ct_reader *r, const char *name, struct ct_mark at)
     return -1;
 }
 
-// `a` or `a.q2`: which joint and coordinate (from 0); reports at the mark.
+// `a`, `a.q` or `a.q2`: which joint and coordinate (from 0); reports at the mark.
 static bool read_coordinate(struct ct_reader *r, const char *text, struct ct_mark at,
                             int *joint, int *coordinate)
 {
@@ -463,8 +479,10 @@ static bool read_coordinate(struct ct_reader *r, const char *text, struct ct_mar
     return true;
 }
 
-static bool check_coupling(struct ct_reader *r, const struct ct_value *v)
+// The names become those that equations give the coordinates.
+static bool check_coupling(struct ct_reader *r, struct ct_value *v)
 {
+    const char **name = CT_NEWN(r->a, const char *, v->n);
     bool ok = true;
     int *joint = CT_NEWN(r->ctx->scratch, int, v->n),
         *coordinate = CT_NEWN(r->ctx->scratch, int, v->n);
@@ -474,11 +492,15 @@ static bool check_coupling(struct ct_reader *r, const struct ct_value *v)
             ok = false;
             joint[i] = -1;
         }
+        name[i] = v->name[i];
+        if (joint[i] >= 0 && r->m->joint[joint[i]].ncoord == 1) // where q1 is q
+            name[i] = r->m->joint[joint[i]].name;
         for (size_t k = 0; k < i; k++)
             if (joint[i] >= 0 && joint[k] == joint[i] && coordinate[k] == coordinate[i])
                 ok = ct_error(r->ctx, v->at[i], CT_E_JOINT, "'%s' is coupled to itself",
                               v->name[i]);
     }
+    v->name = name;
     return ok;
 }
 
@@ -488,7 +510,7 @@ static void check_couplings(struct ct_reader *r, const struct ct_instance *self)
     ct_family_keys(CT_FAMILY_JOINT, &nfamily);
     for (int i = 0; self->cls && i < self->cls->nkey; i++)
         if (self->cls->key[i].kind == CT_VALUE_JOINTS && self->value[nfamily + i].given)
-            check_coupling(r, &self->value[nfamily + i]);
+            check_coupling(r, (struct ct_value *)(uintptr_t)&self->value[nfamily + i]);
 }
 
 void ct_read_joints_fill(struct ct_reader *r)

@@ -1,9 +1,11 @@
 // Functions of time from files: {table: FILE.csv, column: NAME, interpolate: cubic|linear}.
 //
 // The file is CSV with a header; one column is `t`, strictly increasing. `cubic` is the natural spline:
-// twice continuously differentiable, second derivative 0 at both ends.
+// twice continuously differentiable, second derivative 0 at both ends. A head may end with the unit of its column,
+// `angle [deg]`; `unit` says it where the head does not, and `scale` is a factor besides.
 #include "component/read.h"
 
+#include "expr/quantity.h"
 #include "expr/unit.h"
 #include "io/sheet.h"
 #include "io/text.h"
@@ -44,13 +46,41 @@ static bool read_csv(struct ct_reader *r, const struct ct_node *node, const char
     return false;
 }
 
+// Length of the name in a head: all of `angle`, or of `angle [deg]` what is before the unit.
+static size_t name_length(const char *head)
+{
+    size_t n = strlen(head);
+    const char *bracket = strrchr(head, '[');
+    if (!bracket || bracket == head || head[n - 1] != ']')
+        return n;
+    for (n = (size_t)(bracket - head); n && head[n - 1] == ' ';)
+        n--;
+    return n;
+}
+
+// The unit in a head; NULL: there is none.
+static const char *unit_in_head(struct ct_arena *a, const char *head)
+{
+    const size_t n = name_length(head);
+    if (!head[n])
+        return NULL;
+    const char *unit = strrchr(head, '[') + 1;
+    return ct_arena_strndup(a, unit, strlen(unit) - 1);
+}
+
+static bool is_called(const char *head, const char *name)
+{
+    const size_t n = name_length(head);
+    return strcmp(head, name) == 0 || (strlen(name) == n && strncmp(head, name, n) == 0);
+}
+
 static bool find_column(struct ct_reader *r, const struct ct_node *node,
                         const struct ct_sheet *csv, const char *name, size_t *column)
 {
     const char **names = CT_NEWN(r->ctx->scratch, const char *, csv->ncolumn);
     for (size_t k = 0; csv->nrow && k < csv->ncolumn; k++) {
         names[k] = csv->field[k];
-        if (strcmp(csv->field[k], name) == 0) {
+        if (is_called(csv->field[k], name)) {
             *column = k;
             return true;
         }
@@ -135,6 +165,38 @@ static void spline_slopes(size_t n, const double *x, const double *y, double *m,
         m[i] -= work[i] * m[i + 1];
 }
 
+static bool is_no_name(const void *user, const char *word)
+{
+    (void)user;
+    (void)word;
+    return false;
+}
+
+// factor (out): one of the unit in SI units. what: the column; wanted: a unit of its dimension, NULL: any.
+static bool read_unit(struct ct_reader *r, const char *what, const char *unit,
+                      struct ct_mark mark, const char *wanted, double *factor)
+{
+    const struct ct_quantity q
+        = {.text = what, .unit = unit, .mark = mark, .wanted = wanted, .is_name = is_no_name};
+    *factor = 1;
+    return ct_quantity_read(r->ctx, &q, factor);
+}
+
+// Times in seconds.
+static bool read_times(struct ct_reader *r, const struct ct_node *file,
+                       const struct ct_sheet *csv, size_t column, double *x)
+{
+    const char *unit = unit_in_head(r->ctx->scratch, csv->field[column]);
+    double second = 1;
+    if (unit && !read_unit(r, csv->field[column], unit, file->mark, "s", &second))
+        return false;
+    if (!read_column(r, csv, column, x))
+        return false;
+    for (size_t i = 0; i + 1 < csv->nrow; i++)
+        x[i] *= second;
+    return true;
+}
+
 static bool fill_table(struct ct_reader *r, const struct ct_node *file,
                        const struct ct_node *column, bool cubic, struct ct_table *t)
 {
@@ -150,7 +212,8 @@ static bool fill_table(struct ct_reader *r, const struct ct_node *file,
                         "the table '%s' needs at least two rows below its header", t->file);
     t->n = csv.nrow - 1;
     double *x = CT_NEWN(r->a, double, t->n), *y = CT_NEWN(r->a, double, t->n), *m = NULL;
-    if (!read_column(r, &csv, kt, x) || !read_column(r, &csv, ky, y)
+    t->column = ct_arena_strdup(r->a, csv.field[ky]); // with its unit
+    if (!read_times(r, file, &csv, kt, x) || !read_column(r, &csv, ky, y)
         || !check_increasing(r, &csv, kt, x) || !check_start(r, &csv, kt, x, t->n)) {
         ct_note(r->ctx, file->mark, "the table is used here");
         return false;
@@ -165,9 +228,48 @@ static bool fill_table(struct ct_reader *r, const struct ct_node *file,
     return true;
 }
 
-bool ct_read_table(struct ct_reader *r, const struct ct_node *node, ct_ex *e)
+// What values are multiplied by to be in SI units: as `unit` says, or else the head of the column.
+static bool find_factor(struct ct_reader *r, const struct ct_node *node,
+                        const struct ct_table *t, const char *wanted, double *factor)
 {
-    static const char *const keys[] = {"table", "column", "interpolate"};
+    const struct ct_node *unit = ct_node_get(node, "unit");
+    const char *in_head = unit_in_head(r->ctx->scratch, t->column), *text;
+    *factor = 1;
+    if (!unit)
+        return !in_head
+            || read_unit(r, t->column, in_head, ct_node_get(node, "column")->mark, wanted,
+                         factor);
+    if (!ct_read_text(r, unit, &text)
+        || !read_unit(r, t->column, text, unit->mark, wanted, factor))
+        return false;
+    struct ct_unit u;
+    size_t at;
+    if (in_head && ct_unit_parse(in_head, strlen(in_head), &u, &at) == CT_UNIT_OK
+        && u.si != *factor)
+        return ct_error(r->ctx, unit->mark, CT_E_CONFLICT,
+                        "the head of the column says '%s', 'unit' says %s", t->column, text);
+    return true;
+}
+
+// Values that can hardly be radians, in a table that says nothing of its unit.
+static void check_degrees(struct ct_reader *r, const struct ct_node *node,
+                          const struct ct_table *t)
+{
+    double most = 0;
+    for (size_t i = 0; i < t->n; i++)
+        most = fmax(most, fabs(t->y[i]));
+    if (most > ct_read_full_turn)
+        ct_warning(
+            r->ctx, ct_node_get(node, "column")->mark, CT_E_DEGREES,
+            "the column '%s' goes up to %g, read as radians: %.3g turns; add 'unit: deg' "
+            "if it is in degrees, 'unit: rad' if not",
+            t->column, most, most / ct_read_full_turn);
+}
+
+bool ct_read_table(struct ct_reader *r, const struct ct_node *node, const char *wanted,
+                   ct_ex *e)
+{
+    static const char *const keys[] = {"table", "column", "interpolate", "unit", "scale"};
     static const char *const kinds[] = {"cubic", "linear"};
     const struct ct_node *file = ct_node_get(node, "table"),
                          *column = ct_node_get(node, "column"),
@@ -198,6 +300,17 @@ bool ct_read_table(struct ct_reader *r, const struct ct_node *node, ct_ex *e)
         x->table = r->sampled;
         ct_names_put(r->ctx->scratch, &r->table, key, number);
     }
-    *e = ct_ex_table(r->m->x, (uint32_t)number, 0, r->m->time);
+    const struct ct_table *table = &r->sampled[number];
+    const struct ct_node *unit = ct_node_get(node, "unit"), *scale = ct_node_get(node, "scale");
+    double factor;
+    ct_ex times = CT_EX_ONE;
+    if (!find_factor(r, node, table, scale ? NULL : wanted, &factor)
+        || (scale && !ct_read_expr(r, scale, 0, NULL, &times)))
+        return false;
+    if (wanted && !strcmp(wanted, "rad") && !unit && !scale
+        && name_length(table->column) == strlen(table->column))
+        check_degrees(r, node, table);
+    times = ct_ex_mul(r->m->x, times, ct_ex_const(r->m->x, factor));
+    *e = ct_ex_mul(r->m->x, times, ct_ex_table(r->m->x, (uint32_t)number, 0, r->m->time));
     return true;
 }

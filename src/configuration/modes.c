@@ -43,6 +43,21 @@ static bool solve(struct ct_modes *s, size_t count)
     return ct_modes_solve(&s->own, a, s->at.l, &s->mode, &s->all, &s->how);
 }
 
+// Nothing is left to vibrate: motions drive it all, or loops hold it.
+static bool report_no_freedom(struct ct_modes *s)
+{
+    const struct ct_model *m = &s->system->model;
+    for (size_t i = 0; i < m->njoint; i++)
+        if (m->joint[i].cls->motion && ct_instance_value(&m->joint[i], "motion")->given)
+            return ct_error(&s->own, ct_instance_value(&m->joint[i], "motion")->mark,
+                            CT_E_NO_FREEDOM,
+                            "there are no modes: motions drive all freedoms, this one that of "
+                            "joint '%s'; a 'stiffness' in its place lets it vibrate",
+                            m->joint[i].name);
+    return ct_error(&s->own, (struct ct_mark){.file = m->file}, CT_E_NO_FREEDOM,
+                    "there are no modes: the joints leave nothing free to vibrate");
+}
+
 static bool find(void *task)
 {
     struct ct_modes *s = task;
@@ -53,6 +68,8 @@ static bool find(void *task)
     s->at.may_be_large = true;
     if (!ct_configuration_find(&s->own, s->system, &s->run, &s->at) || !solve(s, wanted))
         return false;
+    if (!s->all)
+        return report_no_freedom(s);
     s->n = s->all < wanted ? s->all : wanted;
     const int nu = s->at.l->nu;
     s->coordinate = CT_NEWN(s->own.model, const char *, nu + 1);

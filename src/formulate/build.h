@@ -228,8 +228,12 @@ struct ct_build {
     const struct ct_sweep *sweep[2]; // by level, once asked for
     ct_ex *effort;                   // of joints along their unknown coordinates (nu)
     struct ct_mark holding;          // where the expression stands whose comparisons are held
-    int resolving;                   // depth of signals within signals
-    bool is_open;                    // a signal was met that this planar model leaves open
+    // that expression as it is written, and what stands for its signals (nwritten)
+    ct_ex written;
+    const ct_ex *written_from, *written_to;
+    size_t nwritten;
+    int resolving;   // depth of signals within signals
+    bool is_open;    // a signal was met that this planar model leaves open
     bool in_outputs; // accelerations and multipliers may be used, comparisons stay as they are
     struct ct_kept_quaternion {
         bool made;

@@ -62,6 +62,7 @@ struct ct_mode {
     enum ct_op op; // LT, LE, GT, GE
     ct_ex g;       // the symbol is 1 where g op 0
     bool is_time;  // g depends on t alone
+    ct_ex written; // g with the signals that the model names
     struct ct_mark mark;
 };
 

@@ -7,14 +7,56 @@ static bool changes_in_time(const struct ct_build *b, ct_ex e)
     return ct_ex_kinds(b->x, e) & ~still;
 }
 
-// The 0/1 symbol of `g op 0`; one for equal questions.
-static ct_ex mode_symbol(struct ct_build *b, enum ct_op op, ct_ex g)
+// What is compared with 0 in a node of an expression; the node itself where it compares nothing.
+static ct_ex compared(struct ct_exs *x, ct_ex e)
+{
+    const struct ct_exnode n = *ct_ex_node(x, e);
+    const ct_ex p = {n.a}, q = {n.b};
+    switch (n.op) {
+    case CT_OP_LT:
+    case CT_OP_LE:
+    case CT_OP_GT:
+    case CT_OP_GE:
+    case CT_OP_MIN:
+    case CT_OP_MAX:
+        return ct_ex_sub(x, p, q);
+    case CT_OP_ABS:
+    case CT_OP_SIGN:
+        return p;
+    default:
+        return e;
+    }
+}
+
+// g as the model writes it: with its signals, not what stands for them.
+static ct_ex as_written(struct ct_build *b, ct_ex g)
+{
+    struct ct_exs *x = b->x;
+    if (!b->nwritten)
+        return g;
+    const size_t n = ct_ex_walk(x, &b->written, 1);
+    ct_ex *node = CT_NEWN(b->arena, ct_ex, n + 1);
+    for (size_t i = 0; i < n; i++)
+        node[i] = (ct_ex){x->stack[i]};
+    for (size_t i = 0; i < n; i++) {
+        const ct_ex own = compared(x, node[i]);
+        if (ct_ex_same(own, node[i]))
+            continue;
+        const ct_ex here = ct_ex_subst(x, own, b->written_from, b->written_to, b->nwritten);
+        if (ct_ex_same(here, g) || ct_ex_same(ct_ex_neg(x, here), g)) // sign(-u) is -sign(u)
+            return own;
+    }
+    return g;
+}
+
+// The 0/1 symbol of `g op 0`; one for equal questions. own: g before anything in it was held.
+static ct_ex mode_symbol(struct ct_build *b, enum ct_op op, ct_ex g, ct_ex own)
 {
     struct ct_equations *s = b->eqs;
     for (size_t i = 0; i < s->nmode; i++)
         if (s->mode[i].op == op && ct_ex_same(s->mode[i].g, g))
             return s->mode[i].symbol;
-    struct ct_mode m = {.op = op, .g = g, .mark = b->holding};
+    struct ct_mode m = {.op = op, .g = g, .written = as_written(b, own), .mark = b->holding};
     const unsigned of_time = 1u << CT_SYM_PARAM | 1u << CT_SYM_MODE | 1u << CT_SYM_TIME;
     m.is_time = !(ct_ex_kinds(b->x, g) & ~of_time);
     m.symbol = ct_ex_sym(b->x, CT_SYM_MODE, ct_arena_printf(b->arena, "mode%zu", s->nmode + 1),
@@ -23,8 +65,8 @@ static ct_ex mode_symbol(struct ct_build *b, enum ct_op op, ct_ex g)
     return m.symbol;
 }
 
-// The held form of a node whose arguments are held already.
-static ct_ex hold_node(struct ct_build *b, enum ct_op op, ct_ex e, ct_ex p, ct_ex q)
+// The held form of a node whose arguments are held already. own: what it compares before that.
+static ct_ex hold_node(struct ct_build *b, enum ct_op op, ct_ex e, ct_ex p, ct_ex q, ct_ex own)
 {
     struct ct_exs *x = b->x;
     switch (op) {
@@ -32,15 +74,15 @@ static ct_ex hold_node(struct ct_build *b, enum ct_op op, ct_ex e, ct_ex p, ct_e
     case CT_OP_LE:
     case CT_OP_GT:
     case CT_OP_GE:
-        return mode_symbol(b, op, ct_ex_sub(x, p, q));
+        return mode_symbol(b, op, ct_ex_sub(x, p, q), own);
     case CT_OP_ABS:
-        return ct_ex_if(x, mode_symbol(b, CT_OP_LT, p), ct_ex_neg(x, p), p);
+        return ct_ex_if(x, mode_symbol(b, CT_OP_LT, p, own), ct_ex_neg(x, p), p);
     case CT_OP_SIGN:
-        return ct_ex_sub(x, mode_symbol(b, CT_OP_GT, p), mode_symbol(b, CT_OP_LT, p));
+        return ct_ex_sub(x, mode_symbol(b, CT_OP_GT, p, own), mode_symbol(b, CT_OP_LT, p, own));
     case CT_OP_MIN:
-        return ct_ex_if(x, mode_symbol(b, CT_OP_LT, ct_ex_sub(x, p, q)), p, q);
+        return ct_ex_if(x, mode_symbol(b, CT_OP_LT, ct_ex_sub(x, p, q), own), p, q);
     case CT_OP_MAX:
-        return ct_ex_if(x, mode_symbol(b, CT_OP_GT, ct_ex_sub(x, p, q)), p, q);
+        return ct_ex_if(x, mode_symbol(b, CT_OP_GT, ct_ex_sub(x, p, q), own), p, q);
     default:
         return e;
     }
@@ -85,7 +127,7 @@ static ct_ex hold(struct ct_build *b, ct_ex e, bool is_within)
             held = hold_node(b, (enum ct_op)n.op,
                              narg == 1 ? ct_ex_fun(x, (enum ct_op)n.op, p)
                                        : ct_ex_fun2(x, (enum ct_op)n.op, p, q),
-                             p, q);
+                             p, q, compared(x, e));
     }
     if (is_first)
         note_clock(b, held);

@@ -484,7 +484,15 @@ ct_ex ct_build_value(struct ct_build *b, ct_ex e)
     const ct_ex replaced = ct_ex_subst(b->x, e, from, to, n);
     const bool more
         = ct_ex_kinds(b->x, replaced) & 1u << CT_SYM_SIGNAL; // more than COUNT(from)
-    return more          ? ct_build_value(b, replaced)
-         : b->in_outputs ? replaced
-                         : ct_mode_hold(b, replaced);
+    if (more)
+        return ct_build_value(b, replaced);
+    if (b->in_outputs)
+        return replaced;
+    b->written = e;
+    b->written_from = from;
+    b->written_to = to;
+    b->nwritten = n;
+    const ct_ex held = ct_mode_hold(b, replaced);
+    b->nwritten = 0;
+    return held;
 }

@@ -434,23 +434,51 @@ static enum ct_eval finish_step(struct ct_driver *r, struct ct_stride *s, double
     return e == CT_EVAL_OK ? tell_accepted(r, s) : e;
 }
 
+// So near to the end of a motion that locks, as part of the run, nothing more is to be had from steps.
+static const double nearest_lock = 1e-6;
+
+static bool is_at_lock(const struct ct_driver *r)
+{
+    return r->is_locked && r->singular_in <= nearest_lock * (r->o->t1 - r->o->t0);
+}
+
+static bool report_lock(const struct ct_driver *r)
+{
+    return ct_error(
+        r->ctx, nowhere, CT_E_LOCKED,
+        "the mechanism locks at t = %.6g: its motions lead no further, whatever the "
+        "step; end the run before, or change the motion or the lengths",
+        r->t + r->singular_in);
+}
+
 static bool step_too_small(struct ct_driver *r, double h)
 {
+    if (r->is_locked)
+        return report_lock(r);
     if (r->failed_crossings)
         return ct_error(
             r->ctx, nowhere, CT_E_STEP_SINGULAR,
-            "at t = %.9g the motion comes to a singular position (in %.3g s) and no smooth "
-            "motion across it is found: it locks there, or wants a larger tolerance, or a "
-            "length that differs slightly",
+            "at t = %.9g the mechanism is about to come (in %.3g s) to a singular position, "
+            "where "
+            "its constraints depend on each other, as links in one line do, and no smooth "
+            "motion "
+            "leads across: it locks there, or several motions go on; start farther from it, "
+            "take a larger tolerance, or change a length slightly",
             r->t, r->singular_in);
     if (r->is_open)
         return ct_error(
             r->ctx, nowhere, CT_E_STEP_OPEN,
-            "the constraints cannot be met beyond t = %.9g: drivers contradict each "
-            "other, or the mechanism locks",
+            "the constraints cannot be met beyond t = %.9g: motions contradict each other, or "
+            "the "
+            "mechanism is at the end of its reach; change the motions or the lengths, or end "
+            "the run before",
             r->t);
-    return ct_error(r->ctx, nowhere, CT_E_STEP_SMALL,
-                    "at t = %.9g the step size became too small (%.3g) to go on", r->t, h);
+    return ct_error(
+        r->ctx, nowhere, CT_E_STEP_SMALL,
+        "at t = %.9g steps have become too short (%.3g s) to go on: the motion or a "
+        "force grows without bound there, or jumps where no event shows it; look "
+        "at the last rows of the result",
+        r->t, h);
 }
 
 // No rest of a crossing has been found: other steps go on from the event.
@@ -486,6 +514,8 @@ static bool find_step(struct ct_driver *r, double stop, bool is_time, struct ct_
         ct_driver_plan(r, stop, is_time, s);
         const bool is_crossing = s->method == &ct_crossing || s->is_striding;
         const double h = s->h;
+        if (is_at_lock(r))
+            return report_lock(r);
         if (ct_driver_is_too_small(r, s))
             return step_too_small(r, h);
         if (!is_crossing)
@@ -513,8 +543,11 @@ static bool find_step(struct ct_driver *r, double stop, bool is_time, struct ct_
         }
         take_speeds_back(r, s);
         if (r->o->step > 0)
-            return ct_error(r->ctx, nowhere, CT_E_STEP_REFUSED,
-                            "at t = %.9g a step of fixed size %.3g is too large", r->t, h);
+            return ct_error(
+                r->ctx, nowhere, CT_E_STEP_REFUSED,
+                "at t = %.9g a step of fixed size %.3g s is too long: take a shorter "
+                "one, or leave 'step' out",
+                r->t, h);
         if (!adapt_after_failed_step(r, s, h, error))
             return false;
     }
@@ -564,7 +597,7 @@ static bool handle_event(struct ct_driver *r, bool is_state, bool is_time)
         return state_refused(r, e);
     r->reach = INFINITY; // of the position ahead everything may have changed
     r->failed_crossings = 0;
-    r->has_failed_stride = false;
+    r->has_failed_stride = r->is_locked = false;
     if (dy) {
         start_anew(r);
         return true;

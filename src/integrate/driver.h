@@ -57,6 +57,7 @@ struct ct_driver {
     struct ct_striding *striding; // NULL: no crossings by steps of the method itself
     bool has_failed_stride;       // across the next position
     int failed_crossings;         // of it
+    bool is_locked;               // the motion ends in it
     double foretold;              // when it was to come as the last of them was begun
     bool is_open;                 // the last step met everything but the constraints
     size_t sample;                // the next one to give

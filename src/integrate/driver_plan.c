@@ -97,7 +97,7 @@ static void plan_rest(const struct ct_driver *r, double stop, bool is_time, stru
 // Is a singular position ahead that is to be crossed?
 static bool has_crossing(const struct ct_driver *r)
 {
-    return r->singular_in < INFINITY && r->failed_crossings < most_crossings;
+    return r->singular_in < INFINITY && r->failed_crossings < most_crossings && !r->is_locked;
 }
 
 // The length of the step that strides across the next singular position from here, or 0; *wanted becomes that of a step to
@@ -237,4 +237,6 @@ void ct_driver_adapt_after_failed_crossing(struct ct_driver *r, const struct ct_
     r->foretold = r->t + r->singular_in;
     r->reach = r->singular_in * (error > 1 ? fmax(nearer, safety * pow(error, power)) : nearer);
     r->failed_crossings = isinf(error) ? most_crossings : r->failed_crossings + 1;
+    if (r->p->locks)
+        r->is_locked = r->p->locks(r->p->user, r->t, r->y, r->singular_in);
 }

@@ -47,7 +47,10 @@ static bool give_projected_sample(struct ct_driver *r, double *y)
     const enum ct_eval e = p->project ? p->project(p->user, t, y) : CT_EVAL_OK;
     if (e == CT_EVAL_RETRY)
         return ct_error(r->ctx, nowhere, CT_E_SAMPLE_REFUSED,
-                        "the constraints cannot be met at t = %.9g", t);
+                        "the constraints cannot be met at t = %.9g, between two steps that do "
+                        "meet them: the steps are too long for the mechanism; take a smaller "
+                        "tolerance",
+                        t);
     return e == CT_EVAL_OK && give_sample(r, y);
 }
 

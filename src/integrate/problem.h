@@ -142,6 +142,9 @@ struct ct_problem {
     /// cross it in one step without evaluating close to it, see crossing.h. *reach (out): the time before
     /// and after it in which f is better not computed. May be NULL.
     double (*singular_in)(void *user, double *reach);
+    /// Does the motion end in the position that is `in` ahead of y, the last accepted state, as the constraints cannot be met behind
+    /// it? Asked after a crossing has failed. May be NULL.
+    bool (*locks)(void *user, double t, const double *y, double in);
     /// What is evaluated from now on belongs to the crossing of a singular position, none of it close by; or does not.
     /// May be NULL.
     void (*set_crossing)(void *user, bool is_crossing);

@@ -117,6 +117,8 @@ static void write_table(struct ct_json *j)
     ct_schema_typed(j, "table", "string", NULL);
     ct_schema_typed(j, "column", "string", NULL);
     ct_schema_words(j, "interpolate", how, COUNT(how));
+    ct_schema_typed(j, "unit", "string", NULL);
+    ct_schema_refer(j, "scale", "scalar", "a factor for its values");
     ct_json_end(j);
     ct_json_array(j, "required");
     ct_json_text(j, NULL, "table");

@@ -44,4 +44,8 @@ void ct_start_beams(const struct ct_equations *e, const double *value, double *q
 /// Put a start into the state y (q, u, work) of a machine; memories of angles start at the values.
 void ct_start_apply(const struct ct_start *s, struct ct_machine *m, double *y);
 
+/// After the mechanism did not assemble: a note that names the one joint whose axis keeps it from moving in a plane, if there is
+/// one.  (odd_axis.c)
+void ct_note_odd_axis(struct ct_ctx *ctx, struct ct_arena *a, const struct ct_model *model);
+
 #endif

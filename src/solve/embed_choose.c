@@ -105,6 +105,41 @@ static struct ct_mark mark_of_lack(const struct ct_body *body)
     return body->instance.mark;
 }
 
+static bool is_held(const struct ct_model *m, int body)
+{
+    for (size_t i = 0; i < m->njoint; i++) {
+        const struct ct_instance *j = &m->joint[i];
+        if (j->from >= 0 && (m->frame[j->from].body == body || m->frame[j->to].body == body))
+            return true;
+    }
+    return false;
+}
+
+// Of a model without a beam that could lack it.
+static bool report_massless(struct ct_embed *s, const struct ct_u *u, const char *name,
+                            struct ct_mark mark)
+{
+    const struct ct_model *m = s->m->model;
+    const int b = u->joint >= 0 ? m->frame[m->joint[u->joint].to].body : u->body;
+    const char *body = m->body[b].instance.name;
+    if (u->joint < 0 && !is_held(m, b))
+        return ct_error(
+            s->ctx, mark, CT_E_MASSLESS,
+            "no joint holds body '%s', and its '%s' moves no mass: give it a joint, "
+            "or %s",
+            body, name, u->is_turn ? "an 'inertia', or make it 'type: particle'" : "a 'mass'");
+    if (!b) // the joint points at the ground
+        return ct_error(s->ctx, mark, CT_E_MASSLESS,
+                        "coordinate '%s' moves no mass: give %s to what it moves", name,
+                        u->is_turn ? "an 'inertia'" : "a 'mass'");
+    return ct_error(s->ctx, mark, CT_E_MASSLESS,
+                    "coordinate '%s' moves no mass: give body '%s' %s, or let it carry a body "
+                    "that has one",
+                    name, body,
+                    u->is_turn ? "an 'inertia' (a mass on the axis itself has none about it)"
+                               : "a 'mass'");
+}
+
 static bool massless(struct ct_embed *s, size_t speed)
 {
     const struct ct_u *u = &s->m->e->u[speed];
@@ -141,9 +176,7 @@ static bool massless(struct ct_embed *s, size_t speed)
                         "coordinate '%s' moves no mass: give beam '%s' %s, or a mass or an "
                         "inertia to what else it moves",
                         name, beam->instance.name, rotary_of(beam->beam));
-    return ct_error(s->ctx, mark, CT_E_MASSLESS,
-                    "coordinate '%s' moves no mass: give a mass or an inertia to what it moves",
-                    name);
+    return report_massless(s, u, name, mark);
 }
 
 // The speed of the joint that turns a beam's first section where that has no inertia: an axis that bends leaves it next to

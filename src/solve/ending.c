@@ -212,13 +212,17 @@ void ct_run_explain_end(struct ct_run *r)
         advise_order(r);
     if (!r->m->nrow)
         return;
-    if (code == CT_E_STEP_OPEN) {
+    if (code == CT_E_LOCKED) {
+        ct_run_note_drivers(r, r->stats.last_time, r->y);
+        name_singular(r, "");
+    } else if (code == CT_E_STEP_OPEN) {
         name_open_row(r);
         name_singular(r, has_switched(r) ? advise_there(r) : let_pass);
     } else if (code == CT_E_SAMPLE_REFUSED) {
         name_open_row(r);
         if (r->ctx->ndiagnostic == n)
             name_singular(r, "");
+        ct_run_note_drivers(r, r->stats.last_time, r->y);
     } else if (code == CT_E_STEP_SMALL || code == CT_E_STEP_SINGULAR)
         name_singular(r, advise_there(r));
     else if (code == CT_E_STEP_REFUSED)

@@ -137,7 +137,7 @@ enum ct_eval ct_run_resumed(void *user, double t, const double *y, const double 
         CT_E_STUCK,
         "at t = %.9g the motion is held where '%s' changes sign: on both sides the forces lead "
         "back; let the force change over a small range, as tanh(u/0.001) does for sign(u)",
-        t, ct_ex_text(r->arena, r->e->x, mode->g, NULL));
+        t, ct_ex_text(r->arena, r->e->x, mode->written, NULL));
     return CT_EVAL_FATAL;
 }
 

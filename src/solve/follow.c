@@ -67,8 +67,10 @@ static bool follow_to(struct ct_run *r, double t, double t1, double *y)
             r->stats.last_time = t;
             return ct_error(
                 r->ctx, (struct ct_mark){.file = r->model->file}, CT_E_SAMPLE_REFUSED,
-                "the mechanism cannot follow its motions beyond t = %.9g: it locks, "
-                "or passes a singular position",
+                "the mechanism cannot follow its motions beyond t = %.9g: it is at the end of "
+                "its "
+                "reach, its motions contradict each other, or links stand in one line; change "
+                "the motions or the lengths",
                 t);
         }
         memcpy(y, next, r->ny * sizeof *y);

@@ -123,6 +123,10 @@ enum ct_eval ct_run_event(void *user, double t, double *y, const double *dy,
                           const signed char *crossed, bool is_time);
 /// As ct_run_refuse_stuck, where the derivative at y, dy, is known.
 enum ct_eval ct_run_resumed(void *user, double t, const double *y, const double *dy);
+/// y at t, `in` before a position that no step has crossed: does the mechanism lock there?  (lock.c)
+bool ct_run_locks(void *user, double t, const double *y, double in);
+/// Notes that name the drivers that move at t, y, and where they are.
+void ct_run_note_drivers(struct ct_run *r, double t, const double *y);
 /// With the modes set: CT_EVAL_FATAL with CT_E_STUCK where a force on both sides of its switch leads back to it (dry
 /// friction at rest): there is no motion that f describes.
 enum ct_eval ct_run_refuse_stuck(struct ct_run *r, double t, const double *y);

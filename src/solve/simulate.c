@@ -399,15 +399,35 @@ static bool has_come_to_start(struct ct_run *r, const double *y)
                     "before it does not lead there: start farther from it, or in it");
 }
 
+// Fixed steps that are too long for the motion make it grow until products of states overflow.
+static bool has_blown_up(const struct ct_run *r, const double *y)
+{
+    const double largest = sqrt(sqrt(DBL_MAX)); // products of four are finite below
+    return r->o->step > 0 && !(ct_vector_largest(y, r->ny) < largest);
+}
+
+static bool report_not_finite(const struct ct_run *r, const char *output, double t,
+                              const double *y)
+{
+    const struct ct_mark mark = {.file = r->model->file};
+    if (has_blown_up(r, y))
+        return ct_error(
+            r->ctx, mark, CT_E_STEP_REFUSED,
+            "the motion has grown beyond all numbers at t = %.9g (the output '%s' has "
+            "no finite value): the fixed step of %.3g s is too long for it; take a "
+            "shorter one, or leave 'step' out",
+            t, output, r->o->step);
+    return ct_error(r->ctx, mark, CT_E_SINGULAR,
+                    "the output '%s' has no finite value at t = %.9g", output, t);
+}
+
 static bool give_row(struct ct_run *r, double t, const double *y)
 {
     if (!has_come_to_start(r, y))
         return false;
     for (size_t i = 0; i < r->e->nresult; i++)
         if (!isfinite(r->value[i]))
-            return ct_error(r->ctx, (struct ct_mark){.file = r->model->file}, CT_E_SINGULAR,
-                            "the output '%s' has no finite value at t = %.9g",
-                            r->e->result[i].name, t);
+            return report_not_finite(r, r->e->result[i].name, t, y);
     for (size_t i = 0; i < r->e->nresult; i++)
         r->largest[i] = fmax(r->largest[i], fabs(r->value[i]));
     keep_ledger(r, y);
@@ -631,6 +651,7 @@ bool ct_run_simulate(struct ct_run *r, const struct ct_run_options *o,
                            .longest_step = r->has_turns ? ct_run_longest_step : NULL,
                            .seen_step = r->e->nclock ? seen_step : NULL,
                            .singular_in = r->m->nrow ? singular_in : NULL,
+                           .locks = r->m->nrow ? ct_run_locks : NULL,
                            .set_crossing = set_crossing,
                            .is_singular = is_singular,
                            .crossed = crossed,

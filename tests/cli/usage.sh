@@ -3,9 +3,15 @@
 m=$SYSTEMS/pendulum/model.yaml
 say
 say simlate "$m"
+say sim "$m"
+say hlep
+say "$m"
 say simulate
 say simulate "$m" "$m"
 say simulate "$m" --tolernce 1e-9
+say simulate "$m" --tol 1e-9
+say simulate "$m" --out x.csv
+say simulate "$m" --vary l=1:2:3
 say simulate "$m" --tolerance
 say simulate "$m" --tolerance small
 say simulate "$m" --step=-1
@@ -23,6 +29,9 @@ say equations "$m" --format tex
 say equations "$m" --show tree,cutsets -o e.txt
 say components "$m"
 say schema -x
+say completion
+say completion bas
+say completion bash zsh
 "$COTREE" simulate "$m" --until 2>/dev/null
 cp "$m" own.yaml
 say simulate own.yaml -o ./own.yaml

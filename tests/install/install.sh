@@ -23,6 +23,10 @@ manual=$(find root -name cotree.1 -o -name cotree.1.gz)
 [ -n "$manual" ] || fail "no manual page"
 grep -q '^.SS simulate' "$manual" || fail "the manual page has no commands"
 
+for file in bash-completion/completions/cotree.bash zsh/site-functions/_cotree fish/vendor_completions.d/cotree.fish; do
+  [ -n "$(find root -path "*/share/$file" -size +1k)" ] || fail "no completion $file"
+done
+
 PKG_CONFIG_PATH=$place/$(dirname "$pc")
 PKG_CONFIG_SYSROOT_DIR=$place/root
 LD_LIBRARY_PATH=$place/$(dirname "$(find root -name 'libcotree.so')")
