@@ -14,12 +14,15 @@ static const struct ct_key keys[] = {
     {"elements", CT_VALUE_ELEMENTS, CT_KEY_LENGTH, "m", 1, 0,
      "number of equal elements, or a list of the places where they end, the last one `length` "
      "(1)"},
-    {"density", CT_VALUE_SCALAR, 0, "kg/m^3", 1, 1, "density; or mass_per_length"},
+    {"density", CT_VALUE_SCALAR, CT_KEY_SECTION, "kg/m^3", 1, 1,
+     "density; or mass_per_length; may contain x"},
     {"mass_per_length", CT_VALUE_SCALAR, CT_KEY_SECTION, "kg/m", 1, 1,
      "instead of density*area; may contain x"},
-    {"E", CT_VALUE_SCALAR, CT_KEY_REQUIRED, "Pa", 1, 1, "modulus of elasticity"},
-    {"G", CT_VALUE_SCALAR, 0, "Pa", 1, 1, "shear modulus; or nu"},
-    {"nu", CT_VALUE_SCALAR, 0, "", 1, 1, "Poisson's ratio: G = E/(2*(1 + nu))"},
+    {"E", CT_VALUE_SCALAR, CT_KEY_REQUIRED | CT_KEY_SECTION, "Pa", 1, 1,
+     "modulus of elasticity"},
+    {"G", CT_VALUE_SCALAR, CT_KEY_SECTION, "Pa", 1, 1, "shear modulus; or nu; may contain x"},
+    {"nu", CT_VALUE_SCALAR, CT_KEY_SECTION, "", 1, 1,
+     "Poisson's ratio: G = E/(2*(1 + nu)); may contain x"},
     {"area", CT_VALUE_SCALAR, CT_KEY_SECTION, "m^2", 1, 1,
      "area of the section; may contain x, the place along the beam"},
     {"Iy", CT_VALUE_SCALAR, CT_KEY_SECTION, "m^4", 1, 1,
@@ -32,8 +35,8 @@ static const struct ct_key keys[] = {
      "of sections, per length: values about x, y, z, which may contain x; or true: "
      "density*(Iy + Iz, Iy, Iz), none with lumped mass (false)"},
     {"theory", CT_VALUE_WORD, 0, "euler-bernoulli|timoshenko", 1, 1, "theory of bending"},
-    {"shear_factor", CT_VALUE_LIST, 0, "", 1, 2,
-     "multiplies G*area; timoshenko needs it; [ky, kz]: along y and along z"},
+    {"shear_factor", CT_VALUE_LIST, CT_KEY_SECTION, "", 1, 2,
+     "multiplies G*area; timoshenko needs it; [ky, kz]: along y and along z; may contain x"},
     {"geometric_stiffness", CT_VALUE_WORD, 0, "standard|higher-order", 1, 1,
      "work of the axial force"},
     {"integration", CT_VALUE_WORD, 0, "full|reduced|one-point", 1, 1,
@@ -42,6 +45,10 @@ static const struct ct_key keys[] = {
      "lumped: half of each element's mass at its ends"},
     {"formulation", CT_VALUE_WORD, 0, "auto|linear|foreshortening|force-only|stretch-linear", 1,
      1, "how bending shortens the axis"},
+    {"quadratic_velocity", CT_VALUE_WORD, 0, "true|false", 1, 1,
+     "false: centrifugal and Coriolis forces of the beam about its own frame are left out; "
+     "needs "
+     "formulation: linear"},
     {"twist", CT_VALUE_WORD, 0, "linear|quadratic", 1, 1,
      "shape of the twist in an element; quadratic needs integration: full and mass: "
      "consistent"},

@@ -11,7 +11,23 @@ static const double none = 1e-11; // of the largest eigenvalue: a direction with
 static const double symmetric = 1e-8;  // relative
 static const double refined = 1e-13;   // of a factor
 static const double small_load = 1e-2; // of the first factor: the second load level
-enum { MOST_LEVELS = 40, MOST_HALVINGS = 30, MOST_TRIES = 100, MARCH = 16, MOST_REFINE = 100 };
+// [rad] An axis that the square of the slope shortens is half as long as it was; what comes beyond is none of a beam's.
+static const double steepest = 1;
+static const double straight = 1e-8; // [rad] rounding of an axis that does not bend
+// Next to a fold the eigenvalue falls with the root of what is left of the path: of its value a step before. Where it is larger
+// at the end, Newton's method has lost the path.
+static const double folded = 1e-2;
+static const double behind
+    = 1 + 1. / 16; // of the last estimate: its rounding, and a little more
+// Steps along the path: the first against the first estimate, the shortest against the place.
+static const double first_step = 1. / 16, shortest_step = 1. / 64;
+enum {
+    MOST_LEVELS = 40,
+    MOST_HALVINGS = 30,
+    MOST_TRIES = 1000,
+    MOST_REFINE = 100,
+    MOST_STOPS = 2000
+};
 
 struct search {
     struct ct_linear *l;
@@ -25,6 +41,8 @@ struct search {
     int *pivot;
     struct ct_buckling_factor *found;
     size_t nfound, cap;
+    double searched; // the path up to this factor
+    bool is_steep;   // beyond it beams bend too far
 };
 
 // A place on the path.
@@ -45,6 +63,14 @@ static void keep(const struct ct_linear *l, size_t at, struct place *p)
     p->factor = m->input[at];
     memcpy(p->y, l->y, (m->nq + m->nu + 1) * sizeof *p->y);
     memcpy(p->memory, m->input + m->at_memory, m->e->nmemory * sizeof *p->memory);
+}
+
+static void copy_place(const struct search *s, struct place *to, const struct place *from)
+{
+    const struct ct_machine *m = s->l->m;
+    to->factor = from->factor;
+    memcpy(to->y, from->y, (m->nq + m->nu + 1) * sizeof *to->y);
+    memcpy(to->memory, from->memory, m->e->nmemory * sizeof *to->memory);
 }
 
 static void set_factor(const struct ct_linear *l, size_t at, double factor)
@@ -237,9 +263,9 @@ static bool eigenvalue_at(struct search *s, const struct place *from, double fac
 }
 
 // The factor in (a, b) where eigenvalue k falls through zero: the Illinois method, and bisection where the path ends
-// before b. va > 0 at a; vb <= 0 at b, or b cannot be reached.
-static void refine(struct search *s, struct place *a, double va, double b, double vb,
-                   bool reached, int k, struct ct_buckling_factor *out)
+// before b. va > 0 at a; vb <= 0 at b, or b cannot be reached. Returns the eigenvalue at the last place before.
+static double refine(struct search *s, struct place *a, double va, double b, double vb,
+                     bool reached, int k, struct ct_buckling_factor *out)
 {
     double low = a->factor;
     for (int i = 0; i < MOST_REFINE && b - low > refined * b; i++) {
@@ -248,7 +274,8 @@ static void refine(struct search *s, struct place *a, double va, double b, doubl
             c = low + (b - low) / 2;
         if (!(c > low && c < b))
             break;
-        if (!eigenvalue_at(s, a, c, k, &v)) {
+        // towards a fold the eigenvalue falls: what rises has jumped to another path
+        if (!eigenvalue_at(s, a, c, k, &v) || (!reached && v > va)) {
             b = c;
             reached = false;
             continue;
@@ -270,6 +297,7 @@ static void refine(struct search *s, struct place *a, double va, double b, doubl
     out->factor = low + (b - low) / 2;
     out->is_exact = true;
     out->is_limit = !reached;
+    return va;
 }
 
 static int count_negative(const struct search *s)
@@ -280,30 +308,34 @@ static int count_negative(const struct search *s)
     return n;
 }
 
-// Where to stop on the way: often before the first estimate, once behind it, then between one and the next and behind it.
-// Returns the number of stops.
-static int plan(const double *c, int n, double *stop)
+// By how much a section of a beam turns against its frame at most [rad].
+static double steepness(struct search *s)
 {
-    const double behind = 1 + 1. / MARCH;
-    int nstop = 0;
-    for (int i = 1; i <= MARCH; i++)
-        stop[nstop++] = behind * c[0] * i / MARCH;
-    for (int i = 1; i < n; i++) {
-        const double middle = (c[i - 1] + c[i]) / 2;
-        const double end
-            = i + 1 < n ? fmin(behind * c[i], (c[i] + c[i + 1]) / 2) : behind * c[i];
-        if (middle > stop[nstop - 1])
-            stop[nstop++] = middle;
-        if (end > stop[nstop - 1])
-            stop[nstop++] = end;
-    }
-    return nstop;
+    struct ct_machine *m = s->l->m;
+    double largest = 0;
+    if (!m->e->nbend)
+        return 0;
+    ct_program_run(&m->validity, m->input);
+    const double *square = m->validity.out + m->e->nvalidity;
+    for (size_t i = 0; i < m->e->nbend; i++)
+        for (size_t k = 0; k < m->e->bend[i].n; k++)
+            largest = fmax(largest, sqrt(*square++));
+    return largest;
 }
 
-// March along the path and refine where eigenvalues change their sign.
-static bool march(struct search *s, const struct place *start, const double *stop, int nstop)
+// From one stop to the next the eigenvalue that vanishes next loses no more than half of itself, and goes no further below zero.
+static bool is_gentle(const double *before, const double *after, int next, int n)
 {
-    struct place here = place_create(s), first = place_create(s);
+    return next == n || (before[next] > 0 && after[next] >= before[next] / 2)
+        || (after[next] <= 0 && after[next] >= -before[next] / 2);
+}
+
+// March along the path and refine where eigenvalues change their sign: to the factor `last`, or where beams bend until they are
+// too steep. The linear problem tells no more than the first step there: as the load bends the axis, K also changes by what
+// couples stretch and bending, which the square of the load takes back, and its factors may be far from those of the path.
+static bool march(struct search *s, const struct place *start, double step, double last)
+{
+    struct place here = place_create(s), next = place_create(s), first = place_create(s);
     go_back(s->l, s->at, start);
     if (!ct_linear_rest(s->l) || !eigenvalues(s))
         return false;
@@ -312,30 +344,52 @@ static bool march(struct search *s, const struct place *start, const double *sto
     int negative = count_negative(s);
     const int least = negative; // unstable without the load
     memcpy(before, s->value, (size_t)s->n * sizeof *before);
-    for (int i = 0; i < nstop && s->nfound < s->count; i++) {
-        const double c = stop[i];
+    s->searched = 0;
+    bool is_bent = false, is_lost = false;
+    double h = step;
+    for (int i = 0; i < MOST_STOPS && s->nfound < s->count && (here.factor < last || is_bent);
+         i++) {
+        const double c = is_bent ? here.factor + h : fmin(here.factor + h, last);
+        const bool is_shortest = h <= shortest_step * fmax(here.factor, step);
         go_back(s->l, s->at, &here);
-        const bool reached = ct_buckling_load(s->l, s->at, c) && eigenvalues(s);
-        const int now = reached ? count_negative(s) : negative + 1;
-        struct place next = place_create(s);
-        if (reached) {
+        const bool arrived = ct_buckling_load(s->l, s->at, c);
+        const double end = s->l->m->input[s->at];
+        const bool reached = arrived && eigenvalues(s);
+        const double steep = reached ? steepness(s) : 0;
+        const bool is_steep = steep > steepest;
+        if (reached)
             memcpy(after, s->value, (size_t)s->n * sizeof *after);
-            keep(s->l, s->at, &next);
+        if (!is_shortest
+            && (!reached || is_steep || !is_gentle(before, after, negative, s->n))) {
+            h = arrived ? h / 2 : fmin((end - here.factor) / 2, h / 2);
+            continue;
         }
+        s->is_steep = is_steep;
+        if (is_steep)
+            break;
+        if (reached)
+            keep(s->l, s->at, &next);
+        const int now = reached ? count_negative(s) : negative + 1;
         for (int k = negative; k < now && s->nfound < s->count; k++) {
             struct ct_buckling_factor f = {0};
-            memcpy(first.y, here.y, (s->l->m->nq + s->l->m->nu + 1) * sizeof *here.y);
-            memcpy(first.memory, here.memory, s->l->m->e->nmemory * sizeof *here.memory);
-            first.factor = here.factor;
-            refine(s, &first, before[k], c, reached ? after[k] : 0, reached, k, &f);
+            copy_place(s, &first, &here);
+            const double left
+                = refine(s, &first, before[k], c, reached ? after[k] : 0, reached, k, &f);
+            is_lost = f.is_limit && left > folded * before[k];
+            if (is_lost)
+                break;
             if (k >= least)
                 CT_PUSH(s->a, s->found, s->nfound, s->cap, f);
         }
-        if (!reached)
+        s->searched = first.factor;
+        if (!reached || is_lost)
             break;
         negative = now;
-        here = next;
+        s->searched = c;
+        is_bent = steep > straight;
+        copy_place(s, &here, &next);
         memcpy(before, after, (size_t)s->n * sizeof *before);
+        h = fmin(2 * h, fmax(here.factor, step));
     }
     return s->l->ctx->nerror == 0;
 }
@@ -368,6 +422,18 @@ static bool no_buckling(const struct search *s)
                           "see the modes of the loaded model");
 }
 
+static bool none_on_path(const struct search *s)
+{
+    return ct_error(s->l->ctx, (struct ct_mark){.file = s->l->m->model->file}, CT_E_NO_BUCKLING,
+                    "the load does not lead to buckling: up to a factor of %.3g the stiffness "
+                    "does not vanish%s",
+                    s->searched,
+                    s->is_steep
+                        ? "; beyond it sections of beams turn by more than 1 rad against "
+                          "their frames, which is no longer the beam's motion"
+                        : "");
+}
+
 bool ct_buckling_find(struct ct_linear *l, size_t at, size_t count,
                       struct ct_buckling_list *list)
 {
@@ -383,12 +449,11 @@ bool ct_buckling_find(struct ct_linear *l, size_t at, size_t count,
     if (!n)
         return no_buckling(&s);
     list->has_potential = is_symmetric(s.K0, s.f) && is_symmetric(s.K1, s.f);
-    double *stop = CT_NEWN(s.a, double, MARCH + 2 * n);
-    const int nstop = plan(c, n < (int)count ? n : (int)count, stop);
-    if (list->has_potential && !march(&s, &start, stop, nstop))
+    if (list->has_potential && !march(&s, &start, first_step * c[0], behind * c[n - 1]))
         return false;
-    const bool ended = s.nfound && s.found[s.nfound - 1].is_limit;
-    for (size_t k = s.nfound; k < (size_t)n && k < count && !ended; k++) {
+    if (list->has_potential && !s.nfound)
+        return none_on_path(&s);
+    for (size_t k = 0; k < (size_t)n && k < count && !list->has_potential; k++) {
         const struct ct_buckling_factor f = {.factor = c[k]};
         CT_PUSH(s.a, s.found, s.nfound, s.cap, f);
     }

@@ -16,6 +16,8 @@
 static const double refined = 1e-13, nearly = 1e-6; // of a factor
 static const double part
     = 0.5; // of the first factor: the second load level, large against rounding of K
+static const double in_proportion
+    = 0.1; // of a factor: by which those of path and linear problem may differ, so that one leads to the other
 enum { MOST_LEVELS = 40, MOST_STEPS = 30 };
 
 struct search {
@@ -176,7 +178,9 @@ bool ct_buckling_find_large(struct ct_linear *l, size_t at, size_t count,
             start_again(&s);
         }
         insert(list, f);
-        if (f.is_limit)
+        // where K does not follow the load in proportion, others may lie below
+        *applies &= f.is_exact && !f.is_limit && fabs(f.factor - c[k]) <= in_proportion * c[k];
+        if (!*applies)
             break;
     }
     return l->ctx->nerror == 0;

@@ -5,7 +5,8 @@
 //                                rotations (ry = -dw/dx, rz = dv/dx)
 //
 // What always holds after ct_model_read: length > 0, end[] increases strictly and ends at `length`, the values
-// have the right dimension and sign; only the section's values contain the symbol x. What a missing key leaves
+// have the right dimension and sign; only the section's and the material's values contain the symbol x, and are smooth within
+// each element as far as switches are known. What a missing key leaves
 // open is 0 and not among `known`.
 #ifndef CT_COMPONENT_BEAM_H
 #define CT_COMPONENT_BEAM_H
@@ -51,9 +52,12 @@ struct ct_beam {
     ct_ex x;      // the symbol of sections (LOCAL)
     ct_ex length; // [m]
     int nelement;
-    const ct_ex *end;      // [m] where elements end; end[nelement - 1] is `length`
-    bool is_even;          // they are of one length
-    ct_ex E, G;            // [Pa]; G is 0 where neither G nor nu is given
+    const ct_ex *end;  // [m] where elements end; end[nelement - 1] is `length`
+    bool is_even;      // they are of one length
+    const double *cut; // [m] where sections or material switch, ascending: elements end there
+    int ncut;
+    bool is_cut;           // they are more than the file asks for
+    ct_ex E, G;            // [Pa]; may contain x; G is 0 where neither G nor nu is given
     ct_ex area, Iy, Iz, J; // [m^2], [m^4]; may contain x
     ct_ex mass_per_length; // [kg/m]; may contain x
     bool has_rotary;       // `rotary_inertia` is neither absent nor false
@@ -62,12 +66,13 @@ struct ct_beam {
     ct_ex
         twist_inertia; // rho (Iy + Iz), of twist where torsion is present and has_rotary is false
     enum ct_beam_theory theory;
-    ct_ex shear_factor[2]; // Timoshenko; along y, along z
+    ct_ex shear_factor[2]; // Timoshenko; along y, along z; may contain x
     enum ct_beam_integration integration;
     bool is_lumped;
     bool higher_order; // geometric_stiffness: higher-order
     enum ct_beam_formulation formulation;
     bool is_chord;              // frame: chord
+    bool lacks_quadratic;       // quadratic_velocity: false
     bool has_quadratic_twist;   // twist: quadratic
     bool has_quadratic_stretch; // stretch: quadratic
     unsigned
@@ -83,5 +88,9 @@ struct ct_beam {
     int nstart;
     struct ct_mark formulation_mark, modes_mark, deformation_mark;
 };
+
+/// n equal elements; where the beam has cuts, between these as many equal ones each as make none longer than length/n.
+void ct_beam_divide(struct ct_exs *x, struct ct_arena *a, struct ct_beam *beam, long n,
+                    double length);
 
 #endif

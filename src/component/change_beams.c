@@ -29,14 +29,8 @@ bool ct_model_change_beams(struct ct_ctx *ctx, struct ct_model *m, long elements
         *beam = *m->body[i].beam;
         if (formulation)
             beam->formulation = (enum ct_beam_formulation)which;
-        if (elements > 0) {
-            ct_ex *end = CT_NEWN(ctx->model, ct_ex, elements);
-            for (long k = 0; k < elements; k++)
-                end[k] = ct_ex_scale(m->x, (double)(k + 1) / (double)elements, beam->length);
-            end[elements - 1] = beam->length; // without the rounding of the last one
-            beam->end = end;
-            beam->nelement = (int)elements;
-        }
+        if (elements > 0)
+            ct_beam_divide(m->x, ctx->model, beam, elements, ct_model_number(m, beam->length));
         m->body[i].beam = beam;
     }
     if (!nbeam && (elements > 0 || formulation))

@@ -1,7 +1,9 @@
 // Beams: the values of the class as struct ct_beam, checked along the axis.
 #include "component/read.h"
 
+#include "base/sort.h"
 #include "expr/quadrature.h"
+#include "expr/switches.h"
 
 #include <math.h>
 #include <string.h>
@@ -109,13 +111,19 @@ static bool excludes(const struct work *w, const char *a, const char *b)
                     "body '%s': give '%s' or '%s', not both", w->self->name, a, b);
 }
 
+// Does it vary along the beam?
+static bool is_along(const struct work *w, const struct ct_value *v, size_t i)
+{
+    return ct_ex_kinds(w->r->m->x, v->e[i]) & 1u << CT_SYM_LOCAL;
+}
+
 static bool check_above(const struct work *w, const char *key, double least, bool strict)
 {
     const struct ct_value *v = get(w, key);
     bool ok = true;
     for (size_t i = 0; v->given && !v->is_wrong && i < v->n; i++) {
         double number;
-        if (ct_read_number(w->r, v->e[i], &number) && !(number > least)
+        if (!is_along(w, v, i) && ct_read_number(w->r, v->e[i], &number) && !(number > least)
             && (strict || number != least))
             ok = ct_error(w->r->ctx, v->at[i], CT_E_RANGE,
                           "body '%s': '%s' is %g; it must be %s %g", w->self->name, key, number,
@@ -128,7 +136,8 @@ static bool check_density(const struct work *w)
 {
     const struct ct_value *v = get(w, "density");
     double number;
-    if (!v->given || v->is_wrong || !ct_read_number(w->r, v->e[0], &number) || number >= 0)
+    if (!v->given || v->is_wrong || is_along(w, v, 0) || !ct_read_number(w->r, v->e[0], &number)
+        || number >= 0)
         return true;
     return ct_error(w->r->ctx, v->mark, CT_E_MASS,
                     "body '%s': the density is negative (%g kg/m^3)", w->self->name, number);
@@ -138,7 +147,7 @@ static bool check_nu(const struct work *w)
 {
     const struct ct_value *v = get(w, "nu");
     double number;
-    if (!v->given || v->is_wrong || !ct_read_number(w->r, v->e[0], &number)
+    if (!v->given || v->is_wrong || is_along(w, v, 0) || !ct_read_number(w->r, v->e[0], &number)
         || (number > -1 && number <= 0.5))
         return true;
     return ct_error(w->r->ctx, v->mark, CT_E_RANGE,
@@ -215,6 +224,16 @@ static bool check_quadratic(const struct work *w, const char *key)
                     w->self->name, key, rule);
 }
 
+// With foreshortening the rates of the deflections draw the axis in: what is left of their forces would be of no model.
+static bool check_quadratic_velocity(const struct work *w)
+{
+    if (!get(w, "quadratic_velocity")->count || get(w, "formulation")->count == CT_BEAM_LINEAR)
+        return true;
+    return ct_error(w->r->ctx, get(w, "quadratic_velocity")->mark, CT_E_CONFLICT,
+                    "body '%s': 'quadratic_velocity: false' needs 'formulation: linear'",
+                    w->self->name);
+}
+
 // What `deformation` lists must have a stiffness; a beam that may do anything must bend at least.
 static bool check_deformation(const struct work *w, unsigned known)
 {
@@ -269,22 +288,42 @@ static bool check_ends(const struct work *w, const struct ct_value *v, double le
     return ok;
 }
 
+// Elements also end at the cuts that the list does not have.
+static void cut_list(const struct work *w)
+{
+    struct ct_beam *beam = w->beam;
+    ct_ex *end = CT_NEWN(w->r->a, ct_ex, beam->nelement + beam->ncut);
+    const double close = 1e-9 * ct_model_number(w->r->m, beam->length); // as in ct_beam_divide
+    int n = 0, k = 0;
+    for (int i = 0; i < beam->nelement; i++) {
+        const double to = ct_model_number(w->r->m, beam->end[i]);
+        for (; k < beam->ncut && beam->cut[k] < to - close; k++)
+            end[n++] = ct_ex_const(w->r->m->x, beam->cut[k]);
+        for (; k < beam->ncut && beam->cut[k] <= to + close; k++)
+            ;
+        end[n++] = beam->end[i];
+    }
+    beam->end = end;
+    beam->nelement = n;
+}
+
 static bool fill_elements(const struct work *w)
 {
     struct ct_exs *x = w->r->m->x;
     struct ct_beam *beam = w->beam;
     const struct ct_value *v = get(w, "elements");
-    double length;
-    const bool ok
-        = !v->is_wrong
-       && (!v->n || !ct_read_number(w->r, beam->length, &length) || check_ends(w, v, length));
-    const int n = beam->nelement = v->given && ok ? (int)v->count : 1;
+    const double length = ct_model_number(w->r->m, beam->length);
+    const bool ok = !v->is_wrong && (!v->n || check_ends(w, v, length));
+    if (!v->n || !ok) {
+        ct_beam_divide(x, w->r->a, beam, v->given && ok ? v->count : 1, length);
+        return ok;
+    }
+    const int n = beam->nelement = (int)v->count;
     ct_ex *end = CT_NEWN(w->r->a, ct_ex, n);
-    for (int i = 0; i < n; i++)
-        end[i] = v->n && ok ? v->e[i] : ct_ex_scale(x, (i + 1.0) / n, beam->length);
+    memcpy(end, v->e, (size_t)n * sizeof *end);
     end[n - 1] = beam->length; // without the rounding of the last one
     beam->end = end;
-    beam->is_even = !v->n;
+    beam->is_even = false;
     return ok;
 }
 
@@ -292,11 +331,6 @@ static bool fill_elements(const struct work *w)
 
 // Places inside an element at which the section is looked at: the ends themselves may be cusps or jumps.
 enum { NLOOK = 5 };
-
-static bool is_along(const struct work *w, const struct ct_value *v, size_t i)
-{
-    return ct_ex_kinds(w->r->m->x, v->e[i]) & 1u << CT_SYM_LOCAL;
-}
 
 static double value_at(const struct work *w, const struct ct_value *v, size_t i, double place)
 {
@@ -342,6 +376,85 @@ static bool check_along(const struct work *w, const char *key, size_t i, bool st
     return true;
 }
 
+// What quadrature by element misses of the integral of a key's i-th value over the beam, against its size: by one fine enough for
+// what switches anywhere.
+static double quadrature_error(const struct work *w, const struct ct_value *v, size_t i)
+{
+    enum {
+        POINTS = 8,
+        PARTS = 256
+    }; // as many as the stiffness has; the error of a jump falls with the parts
+    double point[POINTS], weight[POINTS], coarse = 0, fine = 0, size = 0, from = 0;
+    ct_gauss(POINTS, point, weight);
+    for (int k = 0; k < w->beam->nelement; k++) {
+        const double to = ct_model_number(w->r->m, w->beam->end[k]), h = to - from;
+        for (int p = 0; p < POINTS; p++) {
+            coarse += weight[p] * h * value_at(w, v, i, from + point[p] * h);
+            for (int part = 0; part < PARTS; part++) {
+                const double at = from + (part + point[p]) / PARTS * h,
+                             value = value_at(w, v, i, at);
+                fine += weight[p] * h / PARTS * value;
+                size += weight[p] * h / PARTS * fabs(value);
+            }
+        }
+        from = to;
+    }
+    return size > 0 ? fabs(coarse - fine) / size : 0;
+}
+
+static int ascending(const void *context, const void *a, const void *b)
+{
+    (void)context;
+    const double p = *(const double *)a, q = *(const double *)b;
+    return (p > q) - (p < q);
+}
+
+// Places where a value along the beam jumps or has a kink become ends of elements.
+static void cut_elements(const struct work *w)
+{
+    static const char *const keys[]
+        = {"E",           "G",  "nu", "density",         "area",
+           "Iy",          "Iz", "J",  "mass_per_length", "rotary_inertia",
+           "shear_factor"};
+    enum { MOST = 100 };
+    struct ct_beam *beam = w->beam;
+    const double length = ct_model_number(w->r->m, beam->length);
+    double place[MOST], *cut = NULL;
+    size_t ncut = 0, cap = 0;
+    for (size_t k = 0; k < COUNT(keys); k++) {
+        const struct ct_value *v = get(w, keys[k]);
+        for (size_t i = 0; v->given && !v->is_wrong && i < v->n; i++) {
+            if (!is_along(w, v, i))
+                continue;
+            const int n = ct_ex_switches(w->r->m->x, w->r->ctx->scratch, v->e[i], beam->x, 0,
+                                         length, w->value, place, MOST);
+            if (n < 0)
+                ct_warning(w->r->ctx, v->at[i], 0,
+                           "body '%s': where '%s' switches along the beam cannot be told, so "
+                           "elements do not end there; its integral over the elements is off "
+                           "by %.2g %%",
+                           w->self->name, keys[k], 100 * quadrature_error(w, v, i));
+            for (int p = 0; p < n; p++)
+                CT_PUSH(w->r->a, cut, ncut, cap, place[p]);
+        }
+    }
+    ct_sort(w->r->ctx->scratch, cut, ncut, sizeof *cut, ascending, NULL);
+    size_t kept = 0;
+    for (size_t i = 0; i < ncut; i++)
+        if (!kept || cut[i] - cut[kept - 1] > 1e-9 * length) // as in ct_beam_divide
+            cut[kept++] = cut[i];
+    beam->cut = cut;
+    beam->ncut = (int)kept;
+    if (!kept)
+        return;
+    const int before = beam->nelement;
+    if (get(w, "elements")->n)
+        cut_list(w);
+    else
+        ct_beam_divide(w->r->m->x, w->r->a, beam, beam->nelement, length);
+    beam->is_cut = beam->nelement > before;
+}
+
 // Does nothing of the key's value resist anywhere in one of the elements?
 static bool vanishes(const struct work *w, const char *key)
 {
@@ -372,9 +485,41 @@ static unsigned find_stiff(const struct work *w)
              | (vanishes(w, "J") ? CT_BEAM_TORSION : 0u));
 }
 
+static bool check_nu_along(const struct work *w)
+{
+    const struct ct_value *v = get(w, "nu");
+    double point[NLOOK], weight[NLOOK], from = 0;
+    if (!v->given || v->is_wrong || !is_along(w, v, 0))
+        return true;
+    ct_gauss(NLOOK, point, weight);
+    for (int k = 0; k < w->beam->nelement; k++) {
+        const double to = ct_model_number(w->r->m, w->beam->end[k]);
+        for (int p = 0; p < NLOOK; p++) {
+            const double at = from + point[p] * (to - from), nu = value_at(w, v, 0, at);
+            if (!(nu > -1 && nu <= 0.5))
+                return wrong_along(w, "nu", 0, at, nu, "between -1 and 0.5");
+        }
+        from = to;
+    }
+    return true;
+}
+
+// What is a number has been checked.
+static bool check_material(const struct work *w)
+{
+    static const char *const keys[] = {"E", "G", "shear_factor", "density"};
+    bool ok = check_nu_along(w);
+    for (size_t k = 0; k < COUNT(keys); k++)
+        for (size_t i = 0; i < get(w, keys[k])->n; i++)
+            if (is_along(w, get(w, keys[k]), i))
+                ok &= check_along(w, keys[k], i, k < 3);
+    return ok;
+}
+
 static bool check_section(const struct work *w)
 {
-    bool ok = check_along(w, "area", 0, true);
+    bool ok = check_material(w);
+    ok &= check_along(w, "area", 0, true);
     ok &= check_along(w, "Iy", 0, false);
     ok &= check_along(w, "Iz", 0, false);
     ok &= check_along(w, "J", 0, false);
@@ -447,6 +592,7 @@ static void fill_choices(const struct work *w)
     beam->formulation_mark = get(w, "formulation")->mark;
     beam->is_lumped = get(w, "mass")->count == 1;
     beam->higher_order = get(w, "geometric_stiffness")->count == 1;
+    beam->lacks_quadratic = get(w, "quadratic_velocity")->count == 1;
     beam->is_chord = get(w, "frame")->count == 1;
     beam->has_quadratic_twist = get(w, "twist")->count == 1;
     beam->has_quadratic_stretch = get(w, "stretch")->count == 1;
@@ -476,6 +622,7 @@ static bool fill(struct work *w, struct ct_body *b, bool values_ok)
     ok &= check_theory(w);
     ok &= check_quadratic(w, "twist");
     ok &= check_quadratic(w, "stretch");
+    ok &= check_quadratic_velocity(w);
     ok &= check_deformation(w, beam->known);
     double length;
     beam->length = scalar(w, "length");
@@ -486,6 +633,8 @@ static bool fill(struct work *w, struct ct_body *b, bool values_ok)
     w->value = CT_NEWN(w->r->ctx->scratch, double, x->nsym);
     if (w->r->parameters_ok) {
         memcpy(w->value, w->r->m->value, (1 + w->r->m->nparameter) * sizeof *w->value);
+        if (ok && values_ok)
+            cut_elements(w);
         ok &= check_section(w);
         beam->known = find_stiff(w);
         ok = ok && check_deformation(w, beam->known);

@@ -163,9 +163,12 @@ static void add_beam(struct ct_articulated *w, int i, struct ct_articulated_beam
     struct ct_columns c = {CT_NEWN(b->ctx->scratch, ct_ex3, e->nall + 1),
                            CT_NEWN(b->ctx->scratch, ct_ex3, e->nall + 1)};
     const struct ct_base motion = {.w = ct_ex33_apply_t(x, A, w->s->member[i].w)};
-    ct_ex3 F, T;
-    I->form->wrench(b, f, &motion, CT_BIAS, &F, &T);
-    ct_flexible_rows(b, f, &motion, CT_BIAS, w->row);
+    ct_ex3 F, T, lessF, lessT;
+    const struct ct_base felt = ct_flexible_felt(b, f, &motion, &lessF, &lessT);
+    I->form->wrench(b, f, &felt, CT_BIAS, &F, &T);
+    F = ct_ex3_sub(x, F, lessF);
+    T = ct_ex3_sub(x, T, lessT);
+    ct_flexible_rows(b, f, &felt, CT_BIAS, w->row);
     if (e->is_carried) {
         add_elements(w, k, e, A, &c);
     } else

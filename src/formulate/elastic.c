@@ -188,6 +188,20 @@ void ct_dof_push_column(struct ct_build *b, const struct ct_flexible *f, int e, 
     }
 }
 
+struct ct_base ct_flexible_felt(struct ct_build *b, const struct ct_flexible *f,
+                                const struct ct_base *m, ct_ex3 *force, ct_ex3 *torque)
+{
+    struct ct_base felt = *m;
+    *force = *torque = zero3;
+    if (!f->beam->lacks_quadratic)
+        return felt;
+    struct ct_exs *x = b->x;
+    *force = ct_ex3_cross(x, m->w, ct_ex3_cross(x, m->w, f->inertia->moment));
+    *torque = ct_ex3_cross(x, m->w, ct_ex33_apply(x, &f->inertia->inertia, m->w));
+    felt.w = zero3;
+    return felt;
+}
+
 // ---- sweep --------------------------------------------------------------------------------------------------
 
 void ct_flexible_sweep(struct ct_build *b, enum ct_level level, const ct_ex3 *apparent,
@@ -198,11 +212,14 @@ void ct_flexible_sweep(struct ct_build *b, enum ct_level level, const ct_ex3 *ap
         const struct ct_flexible *f = &b->flexible[i];
         const struct ct_place *p = &b->place[f->base];
         const struct ct_base m = base_motion(b, f, level, apparent[p->anchor]);
-        ct_ex3 F, T;
-        f->inertia->form->wrench(b, f, &m, level, &F, &T);
+        ct_ex3 F, T, lessF, lessT;
+        const struct ct_base felt = ct_flexible_felt(b, f, &m, &lessF, &lessT);
+        f->inertia->form->wrench(b, f, &felt, level, &F, &T);
+        F = ct_ex3_sub(x, F, lessF);
+        T = ct_ex3_sub(x, T, lessT);
         rest[p->anchor] = ct_ex3_add(x, rest[p->anchor], out_of(b, f, F));
         torque[p->frame] = ct_ex3_add(x, torque[p->frame], out_of(b, f, T));
-        ct_flexible_rows(b, f, &m, level, row);
+        ct_flexible_rows(b, f, &felt, level, row);
     }
 }
 
@@ -213,8 +230,9 @@ void ct_flexible_wrench(struct ct_build *b, const struct ct_flexible *f, ct_ex3 
     const struct ct_inertia *I = f->inertia;
     const ct_ex3 a
         = ct_ex3_sub(x, ct_node_acceleration(b, f->base, CT_FULL), b->model->gravity);
-    const struct ct_base m = base_motion(b, f, CT_FULL, a);
+    const struct ct_base moved = base_motion(b, f, CT_FULL, a);
     ct_ex3 F, T;
+    const struct ct_base m = ct_flexible_felt(b, f, &moved, &F, &T);
     f->inertia->form->wrench(b, f, &m, CT_FULL, &F, &T);
     F = ct_ex3_add(x, F, ct_ex3_scale(x, I->mass, m.a));
     F = ct_ex3_add(x, F, ct_ex3_cross(x, m.al, I->moment));

@@ -88,6 +88,10 @@ ct_ex ct_flexible_integral(struct ct_build *b, const struct ct_flexible *f, int 
 /// How the base moves.
 struct ct_base ct_flexible_base(struct ct_build *b, const struct ct_flexible *f,
                                 enum ct_level level);
+/// With quadratic_velocity: false: m as if the base did not turn, and of inertia that is lumped to the base the centrifugal force
+/// and gyroscopic torque, which are to be taken off (both zero else).
+struct ct_base ct_flexible_felt(struct ct_build *b, const struct ct_flexible *f,
+                                const struct ct_base *m, ct_ex3 *force, ct_ex3 *torque);
 /// Angular velocity, velocity and weight per mass of the base, in axes of the beam.
 void ct_flexible_carried(struct ct_build *b, const struct ct_flexible *f, ct_ex3 out[3]);
 /// al~ + w~ w~
@@ -175,6 +179,8 @@ struct ct_element_force {
     ct_ex row[CT_DOF];
     ct_ex energy, drag;
 };
+/// I - other where it is positive, else 0: of the axis about which a section is stiffer.  (5.6b)
+ct_ex ct_stiffer(struct ct_exs *x, ct_ex I, ct_ex other);
 /// By amplitudes (elastic_bent.c): foreshortened cubic elements of constant sections.
 bool ct_stiffness_has_amplitudes(struct ct_build *b, const struct ct_flexible *f);
 struct ct_element_force ct_element_bent(struct ct_build *b, const struct ct_flexible *f, int e);

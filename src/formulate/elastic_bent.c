@@ -99,46 +99,93 @@ static void bend(struct ct_build *b, const struct ct_flexible *f, int plane, ct_
     }
 }
 
-// int GJ p' (b' g - g' b)/2 + E (Iy - Iz) p b' g' dx with p = p_0 + t P_1/2 and the slopes g of v and w = -b of w:
+// (5.6b) at the two Gauss points z = +-1/sqrt(3), where curvatures of the amplitudes are exact. With the slopes g of v and w of
+// w, p = m + t z/2 and D = E (Iz - Iy)/h if that is positive,
 //
-//     GJ t/(2h) c - E (Iy - Iz)/h (p_0 a + t m/2)     (5.6b)
+//     GJ/(2h) ((t + c_0/2)^2 - t^2 + c_1^2/12) + D/2 ((g_1 + a_0)^2 - g_1^2 + (3 g_2 + a_1)^2/3 - 3 g_2^2)
 //
-//     c = (g_1 w_0 - g_0 w_1)/h + (g_2 w_1 - g_1 w_2)/2,   a = g_1 w_1 + 3 g_2 w_2,   m = g_1 w_2 + g_2 w_1
+//     c_0 = (g_1 w_0 - g_0 w_1)/h + (g_2 w_1 - g_1 w_2)/2,   c_1 = 3 (g_2 w_0 - g_0 w_2)/h
+//     a_0 = m w_1 + t w_2/2,   a_1 = 3 m w_2 + t w_1/2
+//
+// and where Iy > Iz the same with -p, g and w exchanged.
+
+// Adds D/2 (...) of the stiff plane i: force by slopes; by[0], by[1]: derivatives by m and t.
+static void bend_turned(struct ct_exs *x, ct_ex D, ct_ex m, ct_ex t, const ct_ex *stiff,
+                        const ct_ex *soft, struct ct_bent *force_stiff,
+                        struct ct_bent *force_soft, ct_ex by[2], struct ct_element_force *out)
+{
+    const ct_ex half = ct_ex_scale(x, 0.5, t), sixth = ct_ex_scale(x, 1.0 / 6, t);
+    const ct_ex a0 = ct_ex_add(x, ct_ex_mul(x, m, soft[1]), ct_ex_mul(x, half, soft[2])),
+                a1 = ct_ex_add(x, ct_ex_scale(x, 3, ct_ex_mul(x, m, soft[2])),
+                               ct_ex_mul(x, half, soft[1]));
+    // derivatives by a_0 and, three times, a_1; without what the bending stiffness knows
+    const ct_ex turned0 = ct_ex_mul(x, D, a0), turned1 = ct_ex_mul(x, D, a1);
+    const ct_ex M0 = ct_ex_add(x, ct_ex_mul(x, D, stiff[1]), turned0),
+                M1 = ct_ex_add(x, ct_ex_scale(x, 3, ct_ex_mul(x, D, stiff[2])), turned1);
+    add(x, &force_stiff->slope[1], turned0);
+    add(x, &force_stiff->slope[2], turned1);
+    add(x, &force_soft->slope[1], ct_ex_add(x, ct_ex_mul(x, M0, m), ct_ex_mul(x, M1, sixth)));
+    add(x, &force_soft->slope[2], ct_ex_add(x, ct_ex_mul(x, M0, half), ct_ex_mul(x, M1, m)));
+    add(x, &by[0], ct_ex_add(x, ct_ex_mul(x, M0, soft[1]), ct_ex_mul(x, M1, soft[2])));
+    add(x, &by[1],
+        ct_ex_scale(x, 0.5,
+                    ct_ex_add(x, ct_ex_mul(x, M0, soft[2]),
+                              ct_ex_scale(x, 1.0 / 3, ct_ex_mul(x, M1, soft[1])))));
+    const ct_ex mean = ct_ex_add(x, ct_ex_mul(x, M0, a0), ct_ex_mul(x, turned0, stiff[1]));
+    const ct_ex bow = ct_ex_add(x, ct_ex_scale(x, 1.0 / 3, ct_ex_mul(x, M1, a1)),
+                                ct_ex_mul(x, turned1, stiff[2]));
+    add(x, &out->energy, ct_ex_scale(x, 0.5, ct_ex_add(x, mean, bow)));
+}
+
+// Adds GJ/(2h) (...); by_t: derivative by t.
+static void twist_bent(struct ct_exs *x, ct_ex GJ, ct_ex per, ct_ex t, const ct_ex *g,
+                       const ct_ex *w, struct ct_bent force[2], ct_ex *by_t,
+                       struct ct_element_force *out)
+{
+    const ct_ex K = ct_ex_mul(x, per, GJ);
+    const ct_ex c0 = ct_ex_add(
+        x, ct_ex_mul(x, per, ct_ex_sub(x, ct_ex_mul(x, g[1], w[0]), ct_ex_mul(x, g[0], w[1]))),
+        ct_ex_scale(x, 0.5, ct_ex_sub(x, ct_ex_mul(x, g[2], w[1]), ct_ex_mul(x, g[1], w[2]))));
+    const ct_ex c1
+        = ct_ex_mul(x, ct_ex_scale(x, 3, per),
+                    ct_ex_sub(x, ct_ex_mul(x, g[2], w[0]), ct_ex_mul(x, g[0], w[2])));
+    const ct_ex turned = ct_ex_scale(x, 0.5, ct_ex_mul(x, K, c0));
+    // derivatives by c_0 and c_1
+    const ct_ex T0 = ct_ex_scale(x, 0.5, ct_ex_add(x, ct_ex_mul(x, K, t), turned)),
+                T1 = ct_ex_scale(x, 1.0 / 12, ct_ex_mul(x, K, c1));
+    const ct_ex half = ct_ex_scale(x, 0.5, T0), ends = ct_ex_mul(x, per, T0),
+                bow = ct_ex_mul(x, ct_ex_scale(x, 3, per), T1);
+    // c_0 T_0 + c_1 T_1 = sum_ij by_ij g_i w_j, by = -by'
+    const ct_ex by[CT_SLOPES][CT_SLOPES] = {{{0}, ct_ex_neg(x, ends), ct_ex_neg(x, bow)},
+                                            {ends, {0}, ct_ex_neg(x, half)},
+                                            {bow, half, {0}}};
+    for (int i = 0; i < CT_SLOPES; i++)
+        for (int j = 0; j < CT_SLOPES; j++) {
+            add(x, &force[0].slope[i], ct_ex_mul(x, by[i][j], w[j]));
+            add(x, &force[1].slope[j], ct_ex_mul(x, by[i][j], g[i]));
+        }
+    add(x, by_t, turned);
+    const ct_ex work = ct_ex_add(x, ct_ex_mul(x, T0, c0), ct_ex_mul(x, T1, c1));
+    add(x, &out->energy, ct_ex_scale(x, 0.5, ct_ex_add(x, work, ct_ex_mul(x, turned, t))));
+}
+
 static void couple(struct ct_build *b, const struct ct_flexible *f, int e, const struct bent *s,
                    struct ct_bent force[2], struct ct_element_force *out)
 {
     struct ct_exs *x = b->x;
-    const ct_ex *p = f->element[e].value + CT_PLACE_DOF;
-    const ct_ex *g = s->value[0].slope, *w = s->value[1].slope, per = s->per;
-    const ct_ex GJ = ct_ex_mul(x, f->beam->G, f->beam->J), t = ct_ex_sub(x, p[1], p[0]);
-    const ct_ex dI = ct_ex_sub(x, s->K[1], s->K[0]); // E (Iy - Iz)/h
-    const ct_ex mean = ct_ex_scale(x, 0.5, ct_ex_add(x, p[0], p[1]));
-    const ct_ex torque = ct_ex_mul(x, ct_ex_scale(x, 0.5, ct_ex_mul(x, per, GJ)), t);
-    const ct_ex bend = ct_ex_mul(x, dI, mean), bow = ct_ex_mul(x, ct_ex_scale(x, 0.5, dI), t);
-    // the energy is sum_ij by_ij g_i w_j
-    const ct_ex ends = ct_ex_mul(x, per, torque), half = ct_ex_scale(x, 0.5, torque);
-    const ct_ex by[CT_SLOPES][CT_SLOPES]
-        = {{{0}, ct_ex_neg(x, ends), {0}},
-           {ends, ct_ex_neg(x, bend), ct_ex_neg(x, ct_ex_add(x, half, bow))},
-           {{0}, ct_ex_sub(x, half, bow), ct_ex_scale(x, -3, bend)}};
-    for (int i = 0; i < CT_SLOPES; i++)
-        for (int j = 0; j < CT_SLOPES; j++) {
-            const ct_ex v = ct_ex_mul(x, by[i][j], w[j]);
-            add(x, &force[0].slope[i], v);
-            add(x, &force[1].slope[j], ct_ex_mul(x, by[i][j], g[i]));
-            add(x, &out->energy, ct_ex_mul(x, v, g[i]));
-        }
-    const ct_ex c = ct_ex_add(
-        x, ct_ex_mul(x, per, ct_ex_sub(x, ct_ex_mul(x, g[1], w[0]), ct_ex_mul(x, g[0], w[1]))),
-        ct_ex_scale(x, 0.5, ct_ex_sub(x, ct_ex_mul(x, g[2], w[1]), ct_ex_mul(x, g[1], w[2]))));
-    const ct_ex a
-        = ct_ex_add(x, ct_ex_mul(x, g[1], w[1]), ct_ex_scale(x, 3, ct_ex_mul(x, g[2], w[2])));
-    const ct_ex m = ct_ex_add(x, ct_ex_mul(x, g[1], w[2]), ct_ex_mul(x, g[2], w[1]));
-    const ct_ex by_t = ct_ex_sub(x, ct_ex_mul(x, ct_ex_scale(x, 0.5, ct_ex_mul(x, per, GJ)), c),
-                                 ct_ex_mul(x, ct_ex_scale(x, 0.5, dI), m));
-    const ct_ex by_mean = ct_ex_mul(x, ct_ex_scale(x, 0.5, dI), a);
-    add(x, &out->row[CT_PLACE_DOF], ct_ex_neg(x, ct_ex_add(x, by_mean, by_t)));
-    add(x, &out->row[CT_PLACE_DOF + 1], ct_ex_sub(x, by_t, by_mean));
+    const ct_ex *p = f->element[e].value + CT_PLACE_DOF, EI = ct_ex_mul(x, s->per, f->beam->E);
+    const ct_ex *g = s->value[0].slope, *w = s->value[1].slope;
+    const ct_ex t = ct_ex_sub(x, p[1], p[0]), m = ct_ex_scale(x, 0.5, ct_ex_add(x, p[0], p[1]));
+    ct_ex by[2] = {CT_EX_ZERO, CT_EX_ZERO}, against[2] = {CT_EX_ZERO, CT_EX_ZERO};
+    bend_turned(x, ct_ex_mul(x, EI, ct_stiffer(x, f->beam->Iz, f->beam->Iy)), m, t, g, w,
+                &force[0], &force[1], by, out);
+    bend_turned(x, ct_ex_mul(x, EI, ct_stiffer(x, f->beam->Iy, f->beam->Iz)), ct_ex_neg(x, m),
+                ct_ex_neg(x, t), w, g, &force[1], &force[0], against, out);
+    twist_bent(x, ct_ex_mul(x, f->beam->G, f->beam->J), s->per, t, g, w, force, &by[1], out);
+    const ct_ex by_mean = ct_ex_scale(x, 0.5, ct_ex_sub(x, by[0], against[0])),
+                by_t = ct_ex_sub(x, by[1], against[1]);
+    add(x, &out->row[CT_PLACE_DOF], ct_ex_sub(x, by_mean, by_t));
+    add(x, &out->row[CT_PLACE_DOF + 1], ct_ex_add(x, by_mean, by_t));
 }
 
 static void twist(struct ct_build *b, const struct ct_flexible *f, int e, const struct bent *s,

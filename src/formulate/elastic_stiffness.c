@@ -1,5 +1,6 @@
 // Stiffness and damping of beams; see elastic.h.
 #include "formulate/elastic.h"
+#include "expr/quadrature.h"
 
 #include <math.h>
 #include <string.h>
@@ -308,8 +309,6 @@ static void twist_element(struct ct_build *b, const struct ct_flexible *f, int e
 
 // ---- twist with bending ---------------------------------------------------------------------------------------
 
-enum { COUPLING_POINTS = 2, WITH_QUADRATIC_TWIST = 3 }; // exact where sections are constant
-
 static bool couples(const struct ct_flexible *f)
 {
     const unsigned all = CT_BEAM_TORSION | CT_BEAM_BENDING_Y | CT_BEAM_BENDING_Z;
@@ -348,31 +347,116 @@ static void push_angle(struct ct_build *b, const struct angle *a, int n, ct_ex b
     }
 }
 
-// Bending turns the axes of twist and twist those of bending: GJ p' (b' g - g' b)/2 + E (Iy - Iz) p b' g'.  (5.6b)
-static void couple_point(struct ct_build *b, const struct ct_flexible *f, int e, ct_ex xi,
-                         ct_ex GJ, ct_ex EI, struct ct_element_force *out)
+ct_ex ct_stiffer(struct ct_exs *x, ct_ex I, ct_ex other)
+{
+    return ct_ex_fun2(x, CT_OP_MAX, ct_ex_sub(x, I, other), CT_EX_ZERO);
+}
+
+// Squares of curvatures that are taken at n points and interpolated in between: with constant sections at Gauss points, where
+// all that is linear in an element is exact.
+enum { MOST_POINTS = 2 };
+
+struct squares {
+    int n;
+    double xi[MOST_POINTS];
+    ct_ex W[MOST_POINTS]
+           [MOST_POINTS]; // int stiffness L_i L_j dx, L_i: 1 at point i, 0 at the other
+};
+
+// n: one more than the degree of the sections' curvatures.
+static struct squares squares_of(struct ct_build *b, const struct ct_flexible *f, int e, int n,
+                                 ct_ex stiffness)
+{
+    static const struct ct_shape one = {.c = {1}};
+    const enum ct_rule rule = ct_flexible_stiffness_rule(f->beam);
+    const bool varies = ct_ex_kinds(b->x, stiffness) & 1u << CT_SYM_LOCAL;
+    struct squares s = {.n = n};
+    double weight[MOST_POINTS];
+    ct_gauss(n, s.xi, weight);
+    struct ct_shape L[MOST_POINTS] = {one, one};
+    if (n == 2)
+        for (int i = 0; i < 2; i++) {
+            const double other = s.xi[1 - i], d = s.xi[i] - other;
+            L[i] = (struct ct_shape){.c = {-other / d, 1 / d}};
+        }
+    for (int i = 0; i < n; i++)
+        for (int j = 0; j < n; j++)
+            if (varies || rule == CT_RULE_MIDDLE)
+                s.W[i][j] = ct_flexible_integral(b, f, e, stiffness, &L[i], &L[j], rule);
+            else if (i == j)
+                s.W[i][i]
+                    = ct_ex_scale(b->x, weight[i],
+                                  ct_flexible_integral(b, f, e, stiffness, &one, &one, rule));
+    return s;
+}
+
+// Adds (k + a)' W (k + a)/2 - k' W k/2 to the energy; by_k, by_a (out): its derivatives.
+static void add_square(struct ct_exs *x, const struct squares *s, const ct_ex *k,
+                       const ct_ex *a, ct_ex *by_k, ct_ex *by_a, ct_ex *energy)
+{
+    for (int i = 0; i < s->n; i++) {
+        ct_ex known = CT_EX_ZERO;
+        by_k[i] = CT_EX_ZERO;
+        for (int j = 0; j < s->n; j++) {
+            known = ct_ex_add_product(x, known, s->W[i][j], k[j]);
+            by_k[i] = ct_ex_add_product(x, by_k[i], s->W[i][j], a[j]);
+        }
+        by_a[i] = ct_ex_add(x, known, by_k[i]);
+        const ct_ex twice
+            = ct_ex_add(x, ct_ex_mul(x, by_a[i], a[i]), ct_ex_mul(x, by_k[i], k[i]));
+        *energy = ct_ex_add(x, *energy, ct_ex_scale(x, 0.5, twice));
+    }
+}
+
+// Bending turns the axes of twist, and twist those of bending.  (5.6b)
+static void couple_curvatures(struct ct_build *b, const struct ct_flexible *f, int e,
+                              struct ct_element_force *out)
 {
     struct ct_exs *x = b->x;
+    const struct ct_beam *beam = f->beam;
     const struct ct_element *self = &f->element[e];
-    const ct_ex h = self->span.length, half = ct_ex_scale(x, 0.5, GJ);
-    const struct angle p = angle_at(b, f->line, CT_LINE_DOF, self->value + CT_PLACE_DOF, xi, h),
-                       g = angle_at(b, f->shape.rotation, 4, self->value + 2, xi, h),
-                       w = angle_at(b, f->shape.rotation, 4, self->value + 6, xi, h); // -b
-    // derivatives by p, g and w of GJ p' (g' w - w' g)/2 - EI p w' g'
-    const ct_ex turn
-        = ct_ex_sub(x, ct_ex_mul(x, g.slope, w.value), ct_ex_mul(x, w.slope, g.value));
-    const ct_ex torque = ct_ex_mul(x, half, p.slope), bend = ct_ex_mul(x, EI, p.value);
-    const ct_ex twist = ct_ex_neg(x, ct_ex_mul(x, EI, ct_ex_mul(x, w.slope, g.slope)));
-    push_angle(b, &p, CT_LINE_DOF, twist, ct_ex_mul(x, half, turn), out->row + CT_PLACE_DOF);
-    push_angle(b, &g, 4, ct_ex_neg(x, ct_ex_mul(x, torque, w.slope)),
-               ct_ex_sub(x, ct_ex_mul(x, torque, w.value), ct_ex_mul(x, bend, w.slope)),
-               out->row + 2);
-    push_angle(
-        b, &w, 4, ct_ex_mul(x, torque, g.slope),
-        ct_ex_neg(x, ct_ex_add(x, ct_ex_mul(x, torque, g.value), ct_ex_mul(x, bend, g.slope))),
-        out->row + 6);
-    out->energy = ct_ex_add(x, out->energy, ct_ex_mul(x, torque, turn));
-    out->energy = ct_ex_add(x, out->energy, ct_ex_mul(x, p.value, twist));
+    const ct_ex h = self->span.length;
+    const int n = beam->theory == CT_BEAM_EULER_BERNOULLI ? 2 : 1;
+    const ct_ex stiff[2] = {ct_ex_mul(x, beam->E, ct_stiffer(x, beam->Iz, beam->Iy)),
+                            ct_ex_mul(x, beam->E, ct_stiffer(x, beam->Iy, beam->Iz))};
+    const struct squares torsion = squares_of(b, f, e, n, ct_ex_mul(x, beam->G, beam->J)),
+                         z = squares_of(b, f, e, n, stiff[0]),
+                         y = squares_of(b, f, e, n, stiff[1]);
+    struct angle p[MOST_POINTS], g[MOST_POINTS], w[MOST_POINTS]; // w: -b
+    ct_ex turn[MOST_POINTS], along_z[MOST_POINTS], along_y[MOST_POINTS], kp[MOST_POINTS],
+        kg[MOST_POINTS], kw[MOST_POINTS];
+    for (int i = 0; i < n; i++) {
+        const ct_ex xi = ct_ex_const(x, torsion.xi[i]);
+        p[i] = angle_at(b, f->line, CT_LINE_DOF, self->value + CT_PLACE_DOF, xi, h);
+        g[i] = angle_at(b, f->shape.rotation, 4, self->value + 2, xi, h);
+        w[i] = angle_at(b, f->shape.rotation, 4, self->value + 6, xi, h);
+        kp[i] = p[i].slope;
+        kg[i] = g[i].slope;
+        kw[i] = w[i].slope;
+        turn[i] = ct_ex_scale(
+            x, 0.5,
+            ct_ex_sub(x, ct_ex_mul(x, kg[i], w[i].value), ct_ex_mul(x, kw[i], g[i].value)));
+        along_z[i] = ct_ex_mul(x, p[i].value, kw[i]);
+        along_y[i] = ct_ex_neg(x, ct_ex_mul(x, p[i].value, kg[i]));
+    }
+    ct_ex Tp[MOST_POINTS], T[MOST_POINTS], Mg[MOST_POINTS], M[MOST_POINTS], Nw[MOST_POINTS],
+        N[MOST_POINTS];
+    add_square(x, &torsion, kp, turn, Tp, T, &out->energy); // p' + (g' w - w' g)/2
+    add_square(x, &z, kg, along_z, Mg, M, &out->energy);    // g' + p w'
+    add_square(x, &y, kw, along_y, Nw, N, &out->energy);    // w' - p g'
+    for (int i = 0; i < n; i++) {
+        const ct_ex half = ct_ex_scale(x, 0.5, T[i]);
+        const ct_ex by_p = ct_ex_sub(x, ct_ex_mul(x, M[i], kw[i]), ct_ex_mul(x, N[i], kg[i]));
+        const ct_ex by_g = ct_ex_add(
+            x, Mg[i],
+            ct_ex_sub(x, ct_ex_mul(x, half, w[i].value), ct_ex_mul(x, N[i], p[i].value)));
+        const ct_ex by_w = ct_ex_add(
+            x, Nw[i],
+            ct_ex_sub(x, ct_ex_mul(x, M[i], p[i].value), ct_ex_mul(x, half, g[i].value)));
+        push_angle(b, &p[i], CT_LINE_DOF, by_p, Tp[i], out->row + CT_PLACE_DOF);
+        push_angle(b, &g[i], 4, ct_ex_neg(x, ct_ex_mul(x, half, kw[i])), by_g, out->row + 2);
+        push_angle(b, &w[i], 4, ct_ex_mul(x, half, kg[i]), by_w, out->row + 6);
+    }
 }
 
 // Twist turns the axes of shear: (k_y - k_z) G area p gy gz.  (5.6b)
@@ -399,27 +483,22 @@ static void couple_shear(struct ct_build *b, const struct ct_flexible *f, int e,
 static void couple_element(struct ct_build *b, const struct ct_flexible *f, int e,
                            struct ct_element_force *out)
 {
+    enum { SHEAR_POINTS = 2 }; // exact where sections are constant and twist is linear
     struct ct_exs *x = b->x;
-    const struct ct_beam *beam = f->beam;
-    const struct ct_profile torsion
-        = {beam->x, ct_ex_mul(x, beam->G, beam->J)},
-        bending = {beam->x, ct_ex_mul(x, beam->E, ct_ex_sub(x, beam->Iy, beam->Iz))},
-        shear = {beam->x, ct_ex_sub(x, ct_flexible_shear(b, f, 0), ct_flexible_shear(b, f, 1))};
-    const bool varies = (ct_ex_kinds(x, torsion.value) | ct_ex_kinds(x, bending.value)
-                         | ct_ex_kinds(x, shear.value))
-                      & 1u << CT_SYM_LOCAL;
-    const enum ct_rule rule = ct_flexible_stiffness_rule(beam);
-    const int wanted = varies                    ? CT_MAX_GAUSS
-                     : beam->has_quadratic_twist ? WITH_QUADRATIC_TWIST
-                                                 : COUPLING_POINTS;
+    const struct ct_profile shear
+        = {f->beam->x, ct_ex_sub(x, ct_flexible_shear(b, f, 0), ct_flexible_shear(b, f, 1))};
+    const bool varies = ct_ex_kinds(x, shear.value) & 1u << CT_SYM_LOCAL;
     double xi[CT_MAX_GAUSS];
-    ct_ex GJ[CT_MAX_GAUSS], EI[CT_MAX_GAUSS], GA[CT_MAX_GAUSS];
-    const int n = ct_shape_points(x, &torsion, &f->element[e].span, rule, wanted, xi, GJ);
-    ct_shape_points(x, &bending, &f->element[e].span, rule, wanted, xi, EI);
-    ct_shape_points(x, &shear, &f->element[e].span, rule, wanted, xi, GA);
+    ct_ex GA[CT_MAX_GAUSS];
+    couple_curvatures(b, f, e, out);
+    if (ct_ex_is_zero(shear.value))
+        return;
+    const int wanted = varies                       ? CT_MAX_GAUSS
+                     : f->beam->has_quadratic_twist ? SHEAR_POINTS + 1
+                                                    : SHEAR_POINTS;
+    const int n = ct_shape_points(x, &shear, &f->element[e].span,
+                                  ct_flexible_stiffness_rule(f->beam), wanted, xi, GA);
     for (int i = 0; i < n; i++)
-        couple_point(b, f, e, ct_ex_const(x, xi[i]), GJ[i], EI[i], out);
-    for (int i = 0; i < n && !ct_ex_is_zero(shear.value); i++)
         couple_shear(b, f, e, ct_ex_const(x, xi[i]), GA[i], out);
 }
 

@@ -194,6 +194,16 @@ static void settle(struct ct_build *b, struct ct_flexible *f)
     if (beam->misses_rotary)
         ct_topology_left_out(b, ct_arena_printf(b->arena, "rotary inertia of %s", f->name),
                              "lumped mass has none unless 'rotary_inertia' gives values");
+    if (beam->lacks_quadratic)
+        ct_topology_left_out(
+            b, ct_arena_printf(b->arena, "quadratic velocity forces of %s", f->name),
+            "'quadratic_velocity: false'; energy and momentum are not kept");
+    if (beam->is_cut)
+        ct_topology_left_out(
+            b, ct_arena_printf(b->arena, "the elements of %s as given", f->name),
+            ct_arena_printf(b->arena,
+                            "they also end where its values switch (x = %.6g m%s), %d in all",
+                            beam->cut[0], beam->ncut > 1 ? ", ..." : "", beam->nelement));
     if (beam->nshape)
         f->deformation &= ct_fields_family(beam);
     need_stiffness(b, f);

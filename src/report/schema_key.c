@@ -97,7 +97,10 @@ static void choices(struct ct_json *j, const struct ct_key *key)
         const int length = (int)strcspn(p, "|");
         char word[64];
         snprintf(word, sizeof word, "%.*s", length, p);
-        ct_json_text(j, NULL, word);
+        if (strcmp(word, "true") == 0 || strcmp(word, "false") == 0)
+            ct_json_bool(j, NULL, *word == 't'); // as YAML reads them
+        else
+            ct_json_text(j, NULL, word);
         p += length;
     }
     ct_json_end(j);

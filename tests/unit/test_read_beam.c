@@ -248,9 +248,9 @@ static void a_parameter_may_be_called_x(void **state)
     struct bench *s = *state;
     const struct ct_beam *b
         = read_beam(s, "parameters: {x: 3}\n",
-                    "  length: x\n  E: 2*x\n  mass_per_length: \"1 + x\"\n  Iz: 1\n"
-                    "  points: {p: x/2}\n");
-    check(number(s, b->E), 6);
+                    "  length: x\n  E: 1\n  damping: {alpha: 2*x}\n"
+                    "  mass_per_length: \"1 + x\"\n  Iz: 1\n  points: {p: x/2}\n");
+    check(number(s, b->damping_mass), 6);
     check(number(s, s->m.body[1].mass), 7.5);
     check(number(s, s->m.frame[ct_model_find_frame(&s->m, "b.p")].at.e[0]), 1.5);
 }
