@@ -12,7 +12,7 @@
 
 // [px]: of the geometry at most; around it; the strip below; the whole at least
 enum { MOST_WIDTH = 640, MOST_HEIGHT = 460, MARGIN = 58, STRIP = 84, LEAST_WIDTH = 400 };
-enum { LEAST_HEIGHT = 60, ALONE = 120 };
+enum { LEAST_HEIGHT = 60, ALONE = 120, TRIAD = 46 };
 
 struct drawing {
     struct ct_arena *a;
@@ -22,12 +22,15 @@ struct drawing {
     struct ct_view view;
     struct ct_canvas canvas;
     struct ct_pen pen;
-    double size;       // of the scene [m]
-    bool *is_on_block; // by body: a slider's block is what is seen of it
-    struct outline {   // by body: what it is drawn as where it has no shape
+    double size;          // of the scene [m]
+    const double **block; // by body: place of the block of its telescope; NULL: it has none
+    int *nseen;           // by body: ends of joints that are seen
+    bool *is_on_block;    // by body: a slider's block is what is seen of it
+    struct outline {      // by body: what it is drawn as where it has no shape
         struct ct_spot *p;
         size_t n;
-        bool has_centre; // the last point is the centre of mass
+        bool has_centre; // the body ends there
+        struct ct_spot centre;
         double depth;
     } * outline;
     struct ct_label *label;
@@ -96,7 +99,7 @@ static void reach_body(const struct drawing *d, int body, struct reach *r)
         reach_out(r, &d->view, ct_scene_place(d->value, b->held[i]));
     if (body > 0)
         reach_out(r, &d->view, ct_scene_place(d->value, m->frame));
-    if (shows_centre(d, body) && b->nheld < 2) {
+    if (shows_centre(d, body) && b->nheld < 3) {
         ct_scene_point(d->value, m->frame, b->com, place);
         reach_out(r, &d->view, place);
     }
@@ -150,7 +153,7 @@ static void fit(struct drawing *d, double *width, double *height)
 // Pins as large as fits between neighbours.
 static double symbol_size(const struct drawing *d)
 {
-    const double largest = 6.5, least = 2.2, share = 0.3, same = 3; // [px]; of the distance
+    const double largest = 7, least = 2.2, share = 0.3, same = 3; // [px]; of the distance
     double nearest = INFINITY;
     const size_t n = d->s->model->njoint;
     for (size_t i = 0; i < n && i < 500; i++)
@@ -162,6 +165,70 @@ static double symbol_size(const struct drawing *d)
                     nearest = fmin(nearest, x);
             }
     return fmax(least, fmin(largest, share * nearest));
+}
+
+// ---- joints: where their symbols are ------------------------------------------------------------------------
+
+static int body_of(const struct drawing *d, int frame)
+{
+    return d->s->model->frame[frame].body;
+}
+
+static bool slides(enum ct_symbol s)
+{
+    return s == CT_SYMBOL_SLIDER || s == CT_SYMBOL_CYLINDRICAL || s == CT_SYMBOL_SCREW;
+}
+
+// Where something else than joint i holds a frame's place, too.
+static bool is_shared(const struct drawing *d, size_t i, int frame)
+{
+    const double same = 1; // [px]
+    for (size_t k = 0; k < d->s->model->njoint; k++)
+        for (int end = 0; end < 2; end++) {
+            const struct ct_scene_joint *j = &d->s->joint[k];
+            const int f = end ? j->to : j->from;
+            if (k != i && f >= 0 && body_of(d, f) == body_of(d, frame)
+                && distance(frame_spot(d, f), frame_spot(d, frame)) < same)
+                return true;
+        }
+    return false;
+}
+
+static bool is_telescope(const struct drawing *d, size_t i)
+{
+    const struct ct_scene_joint *j = &d->s->joint[i];
+    const double least = 6 * d->pen.size;
+    return slides(j->symbol) && body_of(d, j->from) > 0 && body_of(d, j->to) > 0
+        && is_shared(d, i, j->to)
+        && distance(frame_spot(d, j->from), frame_spot(d, j->to)) > least;
+}
+
+// What slides on ground is a block where it is; a telescope between two moving bodies has its block half-way.
+static struct ct_spot joint_spot(const struct drawing *d, size_t i)
+{
+    const struct ct_scene_joint *j = &d->s->joint[i];
+    const struct ct_spot from = frame_spot(d, j->from), to = frame_spot(d, j->to);
+    if (!slides(j->symbol))
+        return j->symbol == CT_SYMBOL_ROD ? between(from, to, 0.5) : to;
+    if (body_of(d, j->to) == 0)
+        return from;
+    return is_telescope(d, i) ? between(from, to, 0.5) : to;
+}
+
+// Bodies of which nothing but a slider's block is seen.
+static void find_blocks(struct drawing *d)
+{
+    d->is_on_block = CT_NEWN(d->a, bool, d->s->model->nbody);
+    d->nseen = CT_NEWN(d->a, int, d->s->model->nbody);
+    for (size_t i = 0; i < d->s->model->njoint; i++) {
+        const struct ct_scene_joint *j = &d->s->joint[i];
+        if (j->symbol == CT_SYMBOL_NONE)
+            continue;
+        d->nseen[body_of(d, j->from)]++;
+        d->nseen[body_of(d, j->to)]++;
+        if (slides(j->symbol) || j->symbol == CT_SYMBOL_PLANAR)
+            d->is_on_block[body_of(d, body_of(d, j->to) == 0 ? j->from : j->to)] = true;
+    }
 }
 
 // ---- what bodies are drawn as -----------------------------------------------------------------------------
@@ -215,6 +282,22 @@ static size_t hull(struct ct_arena *a, struct ct_spot *p, size_t n)
     return k;
 }
 
+// Does the line from a to b, or from b to a, lead on to c?
+static bool extends(const double a[3], const double b[3], const double c[3])
+{
+    const double straight = 0.02, beyond = 0.1; // of the distance from a to b
+    double d[3], e[3], across[3];
+    for (int i = 0; i < 3; i++) {
+        d[i] = b[i] - a[i];
+        e[i] = c[i] - a[i];
+    }
+    const double square = ct_dot3(d, d), part = ct_dot3(d, e) / square;
+    for (int i = 0; i < 3; i++)
+        across[i] = e[i] - part * d[i];
+    return ct_dot3(across, across) < straight * straight * square
+        && (part < -beyond || part > 1 + beyond);
+}
+
 static void find_outline(struct drawing *d, int body)
 {
     const struct ct_scene_body *b = &d->s->body[body];
@@ -224,12 +307,16 @@ static void find_outline(struct drawing *d, int body)
     o->p = CT_NEWN(d->a, struct ct_spot, b->nheld + 2);
     for (int i = 0; i < b->nheld; i++)
         add_place(d, o, ct_scene_place(d->value, b->held[i]), known, &n);
+    if (d->block[body])
+        add_place(d, o, d->block[body], known, &n);
     if (body > 0 && o->n == 0)
         add_place(d, o, ct_scene_place(d->value, d->s->model->body[body].frame), known, &n);
-    if (body > 0 && o->n < 2 && shows_centre(d, body)) {
+    if (body > 0 && shows_centre(d, body)) {
         double *place = CT_NEWN(d->a, double, 3);
         ct_scene_point(d->value, d->s->model->body[body].frame, b->com, place);
-        o->has_centre = add_place(d, o, place, known, &n);
+        if (n < 2 || (n == 2 && extends(known[0], known[1], place)))
+            o->has_centre = add_place(d, o, place, known, &n);
+        o->centre = spot(d, place);
     }
     if (o->n)
         o->depth /= (double)o->n;
@@ -237,63 +324,29 @@ static void find_outline(struct drawing *d, int body)
         o->n = hull(d->a, o->p, o->n);
 }
 
+// Both bodies of a telescope reach to its block.
+static void reach_blocks(struct drawing *d)
+{
+    for (size_t i = 0; i < d->s->model->njoint; i++) {
+        const struct ct_scene_joint *j = &d->s->joint[i];
+        if (!is_telescope(d, i))
+            continue;
+        double *middle = CT_NEWN(d->a, double, 3);
+        for (int k = 0; k < 3; k++)
+            middle[k]
+                = (ct_scene_place(d->value, j->from)[k] + ct_scene_place(d->value, j->to)[k])
+                / 2;
+        d->block[body_of(d, j->from)] = d->block[body_of(d, j->to)] = middle;
+    }
+}
+
 static void find_outlines(struct drawing *d)
 {
+    d->block = CT_NEWN(d->a, const double *, d->s->model->nbody);
+    reach_blocks(d);
     d->outline = CT_NEWN(d->a, struct outline, d->s->model->nbody);
     for (size_t i = 0; i < d->s->model->nbody; i++)
         find_outline(d, (int)i);
-}
-
-// ---- joints: where their symbols are ------------------------------------------------------------------------
-
-static int body_of(const struct drawing *d, int frame)
-{
-    return d->s->model->frame[frame].body;
-}
-
-static bool slides(enum ct_symbol s)
-{
-    return s == CT_SYMBOL_SLIDER || s == CT_SYMBOL_CYLINDRICAL || s == CT_SYMBOL_SCREW;
-}
-
-// Where something else than joint i holds a frame's place, too.
-static bool is_shared(const struct drawing *d, size_t i, int frame)
-{
-    const double same = 1; // [px]
-    for (size_t k = 0; k < d->s->model->njoint; k++)
-        for (int end = 0; end < 2; end++) {
-            const struct ct_scene_joint *j = &d->s->joint[k];
-            const int f = end ? j->to : j->from;
-            if (k != i && f >= 0 && body_of(d, f) == body_of(d, frame)
-                && distance(frame_spot(d, f), frame_spot(d, frame)) < same)
-                return true;
-        }
-    return false;
-}
-
-// What slides on ground is a block where it is; a telescope between two moving bodies has its block half-way.
-static struct ct_spot joint_spot(const struct drawing *d, size_t i)
-{
-    const struct ct_scene_joint *j = &d->s->joint[i];
-    const struct ct_spot from = frame_spot(d, j->from), to = frame_spot(d, j->to);
-    if (!slides(j->symbol))
-        return j->symbol == CT_SYMBOL_ROD ? between(from, to, 0.5) : to;
-    if (body_of(d, j->to) == 0)
-        return from;
-    const bool is_telescope = body_of(d, j->from) > 0 && is_shared(d, i, j->to)
-                           && distance(from, to) > 6 * d->pen.size;
-    return is_telescope ? between(from, to, 0.5) : to;
-}
-
-// Bodies of which nothing but a slider's block is seen.
-static void find_blocks(struct drawing *d)
-{
-    d->is_on_block = CT_NEWN(d->a, bool, d->s->model->nbody);
-    for (size_t i = 0; i < d->s->model->njoint; i++) {
-        const struct ct_scene_joint *j = &d->s->joint[i];
-        if (slides(j->symbol) || j->symbol == CT_SYMBOL_PLANAR)
-            d->is_on_block[body_of(d, body_of(d, j->to) == 0 ? j->from : j->to)] = true;
-    }
 }
 
 // Direction in which a body lies as seen from a place: to the middle of what is drawn of it.
@@ -483,9 +536,9 @@ static void draw_lump(struct drawing *d, int body)
         ct_canvas_circle(&d->canvas, at, 1.5 * d->pen.size, style, 2);
         return;
     }
-    if (b->nheld == 0 || !b->has_mass)
-        draw_triad(d, d->s->model->body[body].frame, 6 * d->pen.size);
-    if (b->has_mass)
+    if (d->nseen[body] == 0)
+        draw_triad(d, d->s->model->body[body].frame, TRIAD);
+    if (b->has_mass && d->nseen[body] < 2) // else it is hidden by what holds it
         ct_draw_centre(&d->pen, at, color_of(body));
 }
 
@@ -501,7 +554,7 @@ static void draw_body(struct drawing *d, int body)
     else
         draw_body_line(d, o->p, o->n, o->n > 2, color_of(body), body_width(d));
     if (o->has_centre)
-        ct_draw_centre(&d->pen, o->p[o->n - 1], color_of(body));
+        ct_draw_centre(&d->pen, o->centre, color_of(body));
     ct_canvas_close(&d->canvas);
 }
 
@@ -612,23 +665,16 @@ static void draw_guide(struct drawing *d, size_t i, struct ct_spot at)
         return;
     }
     const int guide = body_of(d, j->from);
-    const struct ct_spot from = frame_spot(d, j->from), to = frame_spot(d, j->to);
+    const struct ct_spot from = frame_spot(d, j->from);
     const double over = ((at.x - from.x) * along.x + (at.y - from.y) * along.y) > 0 ? 4 : -4;
-    const bool is_half_way = distance(at, to) > 1;
-    const struct ct_spot end
-        = is_half_way ? to
-                      : (struct ct_spot){at.x + over * s * along.x, at.y + over * s * along.y};
+    if (is_telescope(d, i)) // both bodies reach to the block
+        return;
     char style[96];
     snprintf(style, sizeof style, "stroke=\"%s\" stroke-width=\"%d\" fill=\"none\"",
              color_of(guide), (int)lround(10 * body_width(d)));
-    if (is_half_way) {
-        ct_canvas_line(&d->canvas, from, at, style, 2);
-        snprintf(style, sizeof style, "stroke=\"%s\" stroke-width=\"%d\" fill=\"none\"",
-                 color_of(body_of(d, j->to)), (int)lround(8 * body_width(d)));
-        ct_canvas_line(&d->canvas, at, end, style, 2);
-    } else {
-        ct_canvas_line(&d->canvas, from, end, style, 2);
-    }
+    ct_canvas_line(&d->canvas, from,
+                   (struct ct_spot){at.x + over * s * along.x, at.y + over * s * along.y},
+                   style, 2);
 }
 
 static void draw_springs(struct drawing *d, struct ct_spot a, struct ct_spot b, bool spring,
@@ -770,9 +816,9 @@ static void draw_joints(struct drawing *d)
             if (!is_seen(j) || slides(j->symbol) == (is_late == 1))
                 continue;
             open_joint(d, i, kinds[j->symbol]);
-            if (j->has_spring || j->has_damper)
+            if (j->has_spring || j->has_damper) // a coil goes around what slides in it
                 draw_springs(d, frame_spot(d, j->from), frame_spot(d, j->to), j->has_spring,
-                             j->has_damper);
+                             j->has_damper && !j->has_spring);
             if (j->symbol == CT_SYMBOL_ROD)
                 draw_rod(d, frame_spot(d, j->from), frame_spot(d, j->to));
             draw_symbol(d, i, joint_spot(d, i));
@@ -787,6 +833,13 @@ static double size_of(const double v[3])
 
 static const char load_color[] = "#b00020";
 
+// Is there an arrow?
+static bool acts(const struct drawing *d, const struct ct_scene_force *f)
+{
+    return f->first != SIZE_MAX
+        && (size_of(d->value + f->first) > 0 || size_of(d->value + f->first + 3) > 0);
+}
+
 static void draw_load(struct drawing *d, const struct ct_scene_force *f)
 {
     const double *force = d->value + f->first, *torque = force + 3;
@@ -795,11 +848,17 @@ static void draw_load(struct drawing *d, const struct ct_scene_force *f)
     if (size_of(force) > 0) {
         const struct ct_spot p = ct_view_across(&d->view, force);
         const double length = hypot(p.x, p.y);
-        if (length > seen * size_of(force))
-            ct_draw_arrow(
-                &d->pen, at,
-                (struct ct_spot){at.x + arm * p.x / length, at.y + arm * p.y / length},
-                load_color, 1.8);
+        if (length > seen * size_of(force)) {
+            const struct ct_spot along = {p.x / length, p.y / length};
+            const struct ct_spot to_body = direction_to(d, body_of(d, f->to), at);
+            const bool pushes = along.x * to_body.x + along.y * to_body.y > 0.5;
+            const double start = pushes ? -arm : 0;
+            ct_draw_arrow(&d->pen,
+                          (struct ct_spot){at.x + start * along.x, at.y + start * along.y},
+                          (struct ct_spot){at.x + (start + arm) * along.x,
+                                           at.y + (start + arm) * along.y},
+                          load_color, 1.8);
+        }
     }
     if (size_of(torque) > 0) {
         // counterclockwise where its vector points to the eye
@@ -833,7 +892,7 @@ static void draw_forces(struct drawing *d)
                     ct_draw_wall(&d->pen, p, out, 2.2 * d->pen.size);
                 }
             draw_springs(d, a, b, f->has_spring, f->has_damper);
-        } else if (f->first != SIZE_MAX) {
+        } else if (acts(d, f)) {
             draw_load(d, f);
         }
         ct_canvas_close(&d->canvas);
@@ -900,6 +959,8 @@ static void write_names(struct drawing *d)
     for (size_t i = 0; i < m->nforce; i++) {
         const struct ct_scene_force *f = &d->s->force[i];
         const struct ct_spot to = frame_spot(d, f->to);
+        if (f->from < 0 && !acts(d, f))
+            continue;
         const struct ct_spot at = f->from < 0 ? to : between(frame_spot(d, f->from), to, 0.5);
         add_label(d, m->force[i].name, attributes, SMALL, 2 * d->pen.size, &at, 1);
     }
@@ -1042,8 +1103,8 @@ bool ct_picture_write(struct ct_ctx *ctx, struct ct_arena *a, const struct ct_pi
         return false;
     ct_canvas_begin(&d.canvas, a, file.stream, width, height, p->title);
     d.pen = (struct ct_pen){&d.canvas, &d.view, symbol_size(&d)};
-    find_outlines(&d);
     find_blocks(&d);
+    find_outlines(&d);
     draw_all(&d);
     ct_canvas_end(&d.canvas);
     return ct_outfile_close(ctx, &file);

@@ -243,22 +243,24 @@ void ct_draw_wall(struct ct_pen *pen, struct ct_spot at, struct ct_spot along, d
 
 void ct_draw_spring(struct ct_pen *pen, struct ct_spot a, struct ct_spot b, double offset)
 {
-    enum { TURNS = 6, N = 2 * TURNS + 4 };
+    enum { FEWEST = 4, MOST = 16 }; // turns
     const struct ct_spot d = {b.x - a.x, b.y - a.y};
-    const double length = length_of(d), wide = pen->size, lead = 0.16;
+    const double length = length_of(d), wide = 1.1 * pen->size, lead = 0.14, pitch = 1.7;
+    const double turns = (1 - 2 * lead) * length / (pitch * wide);
+    const int n = 2 * (int)fmax(FEWEST, fmin(MOST, round(turns)));
     const struct ct_spot along = unit(d, (struct ct_spot){1, 0}), side = left_of(along);
-    struct ct_spot p[N];
+    struct ct_spot p[2 * MOST + 4];
+    size_t k = 0;
     a = at_plus(a, offset, side);
-    size_t n = 0;
-    p[n++] = a;
-    p[n++] = at_plus(a, lead * length, along);
-    for (int k = 0; k < 2 * TURNS; k++)
-        p[n++] = at_plus2(a, (lead + (1 - 2 * lead) * (k + 0.5) / (2 * TURNS)) * length, along,
-                          k % 2 ? -wide : wide, side);
-    p[n++] = at_plus(a, (1 - lead) * length, along);
-    p[n++] = at_plus(a, length, along);
-    ct_canvas_lines(pen->canvas, p, n, false,
-                    "stroke=\"#000000\" stroke-width=\"13\" fill=\"none\" "
+    p[k++] = a;
+    p[k++] = at_plus(a, lead * length, along);
+    for (int i = 0; i < n; i++)
+        p[k++] = at_plus2(a, (lead + (1 - 2 * lead) * (i + 0.5) / n) * length, along,
+                          i % 2 ? -wide : wide, side);
+    p[k++] = at_plus(a, (1 - lead) * length, along);
+    p[k++] = at_plus(a, length, along);
+    ct_canvas_lines(pen->canvas, p, k, false,
+                    "stroke=\"#000000\" stroke-width=\"12\" fill=\"none\" "
                     "stroke-linejoin=\"round\"",
                     2);
 }
@@ -290,7 +292,7 @@ void ct_draw_centre(struct ct_pen *pen, struct ct_spot at, const char *color)
 {
     const double r = 1.1 * pen->size;
     char style[64];
-    snprintf(style, sizeof style, "stroke=\"%s\" fill=\"#ffffff\"", color);
+    snprintf(style, sizeof style, "stroke=\"%s\" stroke-width=\"12\" fill=\"#ffffff\"", color);
     ct_canvas_circle(pen->canvas, at, r, style, 2);
     for (int k = 0; k < 2; k++) {
         const int x = (int)lround(10 * at.x), y = (int)lround(10 * at.y),
