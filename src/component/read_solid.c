@@ -129,8 +129,9 @@ static bool read_kind(struct ct_reader *r, const struct ct_node *node, struct ct
 
 // ---- one shape ------------------------------------------------------------------------------------------
 
-// The one key that says what it is.
-static bool find_kind(struct ct_reader *r, const struct ct_node *node, struct ct_solid *s)
+// The one key that says what it is; is_wanted: it is asked for where it is missing, else another key may be meant for it.
+static bool find_kind(struct ct_reader *r, const struct ct_node *node, bool is_wanted,
+                      struct ct_solid *s)
 {
     const struct ct_pair *found = NULL;
     bool ok = true;
@@ -147,7 +148,8 @@ static bool find_kind(struct ct_reader *r, const struct ct_node *node, struct ct
             s->kind = (enum ct_solid_kind)k;
         }
     if (!found)
-        return ct_error(r->ctx, node->mark, CT_E_KEY_MISSING,
+        return is_wanted
+            && ct_error(r->ctx, node->mark, CT_E_KEY_MISSING,
                         "a shape needs 'box', 'cylinder', 'sphere', 'lines' or 'file'");
     return ok;
 }
@@ -174,7 +176,7 @@ static bool read_solid(struct ct_reader *r, const char *owner, const struct ct_n
         return false;
     const char *what = ct_arena_printf(r->ctx->scratch, "a shape of body '%s'", owner);
     bool ok = ct_read_keys(r, node, what, keys, COUNT(keys));
-    const bool is_known = find_kind(r, node, s);
+    const bool is_known = find_kind(r, node, ok, s);
     if (is_known) {
         ok &= read_kind(r, ct_node_get(node, kinds[s->kind]), s);
         ok &= check_belongs(r, node, s, "axis", CT_SOLID_CYLINDER);

@@ -41,7 +41,8 @@ static bool is_binary(const char *text, size_t n)
 }
 
 static bool read_binary(struct ct_ctx *ctx, struct ct_arena *a, const char *path,
-                        const char *text, const float **triangle, size_t *n)
+                        struct ct_mark used, const char *text, const float **triangle,
+                        size_t *n)
 {
     const unsigned char *p = (const unsigned char *)text + HEAD;
     *n = read_u32(p - 4);
@@ -50,7 +51,7 @@ static bool read_binary(struct ct_ctx *ctx, struct ct_arena *a, const char *path
         for (size_t k = 0; k < CORNERS; k++) {
             const float v = read_f32(p + RECORD * i + 12 + 4 * k);
             if (!isfinite(v))
-                return ct_error(ctx, (struct ct_mark){0}, CT_E_STL_DATA,
+                return ct_error(ctx, used, CT_E_STL_DATA,
                                 "the STL file '%s': a corner of triangle %zu is not finite",
                                 path, i + 1);
             out[CORNERS * i + k] = v;
@@ -182,19 +183,24 @@ static bool is_text(const char *text, size_t n)
 }
 
 static bool read_either(struct ct_ctx *ctx, struct ct_arena *a, const char *path,
-                        const char *text, size_t size, const float **triangle, size_t *n)
+                        struct ct_mark used, const char *text, size_t size,
+                        const float **triangle, size_t *n)
 {
     if (is_binary(text, size))
-        return read_binary(ctx, a, path, text, triangle, n);
-    if (is_text(text, size))
-        return read_text(ctx, a, path, text, triangle, n);
+        return read_binary(ctx, a, path, used, text, triangle, n);
+    if (is_text(text, size)) {
+        if (read_text(ctx, a, path, text, triangle, n))
+            return true;
+        ct_note(ctx, used, "the file is used here");
+        return false;
+    }
     if (size < HEAD)
-        return ct_error(ctx, (struct ct_mark){0}, CT_E_STL_DATA,
+        return ct_error(ctx, used, CT_E_STL_DATA,
                         "'%s' is no STL file: it neither begins with 'solid' nor has the %d "
                         "bytes that a binary one begins with",
                         path, HEAD);
     const uint32_t told = read_u32((const unsigned char *)text + HEAD - 4);
-    return ct_error(ctx, (struct ct_mark){0}, CT_E_STL_DATA,
+    return ct_error(ctx, used, CT_E_STL_DATA,
                     "'%s' is no STL file: it does not begin with 'solid', and as a binary one "
                     "of %lu triangles it would have %llu bytes, not %zu",
                     path, (unsigned long)told, (unsigned long long)told * RECORD + HEAD, size);
@@ -215,11 +221,8 @@ bool ct_stl_read(struct ct_ctx *ctx, struct ct_arena *a, const char *path, struc
     case CT_TEXT_OK:
         break;
     }
-    bool ok = read_either(ctx, a, path, text, size, triangle, n);
-    if (ok && *n == 0)
-        ok = ct_error(ctx, (struct ct_mark){0}, CT_E_STL_DATA,
-                      "the STL file '%s' has no triangle", path);
-    if (!ok)
-        ct_note(ctx, used, "the file is used here");
-    return ok;
+    if (!read_either(ctx, a, path, used, text, size, triangle, n))
+        return false;
+    return *n > 0
+        || ct_error(ctx, used, CT_E_STL_DATA, "the STL file '%s' has no triangle", path);
 }

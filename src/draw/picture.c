@@ -35,6 +35,8 @@ struct drawing {
     } * outline;
     struct ct_label *label;
     size_t nlabel, label_cap;
+    struct ct_spot (
+        *edge)[4]; // by body with a shape: its uppermost, lowest, leftmost and rightmost spots
 };
 
 static const char *color_of(int body)
@@ -413,8 +415,10 @@ static void draw_path(struct drawing *d, size_t i)
 
 static void draw_paths(struct drawing *d)
 {
+    if (d->picture->nplace < 2)
+        return;
     ct_canvas_open(&d->canvas, "traces", NULL, "stroke-linejoin=\"round\"");
-    for (size_t i = 0; i < d->picture->npath && d->picture->nplace > 1; i++)
+    for (size_t i = 0; i < d->picture->npath; i++)
         draw_path(d, i);
     ct_canvas_close(&d->canvas);
 }
@@ -473,6 +477,26 @@ static void draw_facet(struct drawing *d, const struct ct_facet *f)
     }
 }
 
+static void find_edges(struct drawing *d, const struct ct_facets *f)
+{
+    bool *is_known = CT_NEWN(d->a, bool, d->s->model->nbody);
+    for (size_t i = 0; i < f->n; i++)
+        for (size_t k = 0; k < f->facet[i].n; k++) {
+            const struct ct_spot p = f->facet[i].p[k];
+            struct ct_spot *e = d->edge[f->facet[i].body];
+            const bool is_first = !is_known[f->facet[i].body];
+            is_known[f->facet[i].body] = true;
+            if (is_first || p.y < e[0].y)
+                e[0] = p;
+            if (is_first || p.y > e[1].y)
+                e[1] = p;
+            if (is_first || p.x < e[2].x)
+                e[2] = p;
+            if (is_first || p.x > e[3].x)
+                e[3] = p;
+        }
+}
+
 static void draw_shapes(struct drawing *d)
 {
     struct ct_facets f = {.arena = d->a, .scene = d->s, .view = &d->view, .value = d->value};
@@ -481,6 +505,8 @@ static void draw_shapes(struct drawing *d)
     if (!f.n)
         return;
     ct_facets_sort(&f);
+    d->edge = ct_arena_calloc(d->a, d->s->model->nbody, sizeof *d->edge);
+    find_edges(d, &f);
     for (size_t i = 0, end; i < f.n; i = end) { // a group for each run of one body's
         ct_canvas_open(&d->canvas, "body", d->s->model->body[f.facet[i].body].instance.name,
                        "stroke-linejoin=\"round\"");
@@ -641,6 +667,28 @@ static struct ct_spot below(struct ct_spot along)
     return turned ? (struct ct_spot){-side.x, -side.y} : side;
 }
 
+// Do the bodies that are jointed to a slider's block lie on this side of it?
+static bool is_crowded(const struct drawing *d, size_t i, struct ct_spot at,
+                       struct ct_spot side)
+{
+    const struct ct_scene_joint *j = &d->s->joint[i];
+    const int block = body_of(d, body_of(d, j->to) == 0 ? j->from : j->to);
+    const double clearly = 0.1;
+    double most = 0, least = 0;
+    for (size_t k = 0; k < d->s->model->njoint; k++) {
+        const struct ct_scene_joint *other = &d->s->joint[k];
+        if (k == i || other->symbol == CT_SYMBOL_NONE)
+            continue;
+        const int a = body_of(d, other->from), b = body_of(d, other->to);
+        if (a != block && b != block)
+            continue;
+        const struct ct_spot to = direction_to(d, a == block ? b : a, at);
+        most = fmax(most, to.x * side.x + to.y * side.y);
+        least = fmin(least, to.x * side.x + to.y * side.y);
+    }
+    return most > clearly && most > -least;
+}
+
 // What a slider slides on: hatched ground beside it, or a line of the body that guides it.
 static void draw_guide(struct drawing *d, size_t i, struct ct_spot at)
 {
@@ -656,7 +704,10 @@ static void draw_guide(struct drawing *d, size_t i, struct ct_spot at)
             ct_draw_ground(&d->pen, at, 1);
         return;
     }
-    const struct ct_spot along = {a.x / length, a.y / length}, side = below(along);
+    const struct ct_spot along = {a.x / length, a.y / length};
+    struct ct_spot side = below(along);
+    if (is_crowded(d, i, at, side))
+        side = (struct ct_spot){-side.x, -side.y};
     if (on_ground) {
         // it lies beside the block by half the block's thickness, seen from the side
         const double off = (d->view.shortening < 1 ? 1.9 : 1.35) * s;
@@ -786,7 +837,8 @@ static void draw_joints_behind(struct drawing *d)
 {
     for (size_t i = 0; i < d->s->model->njoint; i++) {
         const struct ct_scene_joint *j = &d->s->joint[i];
-        if (!is_seen(j))
+        if (!is_seen(j)
+            || (!slides(j->symbol) && body_of(d, j->from) != 0 && body_of(d, j->to) != 0))
             continue;
         const struct ct_spot at = joint_spot(d, i);
         open_joint(d, i, "support");
@@ -925,7 +977,10 @@ static void label_body(struct drawing *d, int body)
     struct ct_spot place[COUNT(share)];
     size_t n = 0;
     double away = body_width(d) / 2 + 3;
-    if (beam >= 0) {
+    if (has_shape(d, body)) {
+        for (; n < COUNT(d->edge[body]); n++)
+            place[n] = d->edge[body][n];
+    } else if (beam >= 0) {
         const struct ct_scene_beam *b = &d->s->beam[beam];
         for (; n < COUNT(share); n++)
             place[n] = spot(d, d->value + b->first + 3 * (size_t)(share[n] * (b->npoint - 1)));

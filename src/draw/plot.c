@@ -115,7 +115,8 @@ static struct axis choose_axis(double low, double high, int count, bool is_whole
 {
     static const double mantissas[] = {1, 2, 5, 10};
     const double rounding = 1e-12, most = fmax(fabs(low), fabs(high));
-    if (!(high - low > rounding * most)) { // constant
+    const double constant = 1e-6; // less would need labels of more than six digits
+    if (!(high - low > constant * most)) {
         const double margin = most > 0 ? 0.5 * most : 1;
         low -= margin;
         high += margin;
