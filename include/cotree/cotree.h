@@ -447,9 +447,10 @@ CT_API void ct_buckling_print_summary(const struct ct_buckling *s, FILE *out);
 
 /** Zero: the start, as it suits the system. */
 struct ct_draw_options {
-    const char *view; /* "x", "y", "z" (along an axis) or "iso"; NULL: along the normal of a planar mechanism, else iso */
-    double time;      /* [s]; > 0: the motion is followed up to there first */
-    bool trace;       /* the start, with the paths of points and of beams' ends over the run */
+    const char *
+        view; /* "x", "y", "z" (along an axis) or "iso"; NULL: along the normal of a planar mechanism, else iso */
+    double time; /* [s]; > 0: the motion is followed up to there first */
+    bool trace;  /* the start, with the paths of points and of beams' ends over the run */
     struct ct_sim_options run;
     const char *path; /* FILE.svg; NULL: standard output */
     FILE *progress;   /* a bar is shown there if it is a terminal */

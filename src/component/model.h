@@ -33,7 +33,7 @@ struct ct_body {
     ct_ex3 com;                  // [m] in body axes
     ct_ex inertia[6]; // xx yy zz xy xz yz about the centre of mass, body axes [kg m^2]
     bool is_particle;
-    const struct ct_beam *beam; // NULL: not a beam
+    const struct ct_beam *beam;   // NULL: not a beam
     const struct ct_solid *solid; // what it is drawn with
     size_t nsolid;
 };
