@@ -1,5 +1,6 @@
-// Shapes of bodies: {box: [a, b, c]}, {cylinder: [radius, length], axis: z}, {sphere: r}, {lines: [[x, y, z], ...]},
-// {file: part.stl, scale: 1}, each with `at`, `rotate`, `color`; or a list of them.
+// Shapes of bodies: {box: [a, b, c]}, {cylinder: [radius, length], axis: z}, {sphere: r}, {lines:
+// [[x, y, z], ...]}, {file: part.stl, scale: 1}, each with `at`, `rotate`, `color`; or a list of
+// them.
 #include "component/read.h"
 #include "component/read_stl.h"
 
@@ -11,7 +12,7 @@ static const char wanted_shape[]
     = "a shape ({box: [a, b, c]}, {cylinder: [radius, length]}, {sphere: radius}, {lines: "
       "[[x, y, z], ...]} or {file: FILE.stl}) or a list of them";
 
-// ---- colours ------------------------------------------------------------------------------------------
+// ---- colours ----------------------------------------------------------------------------------
 
 // The basic colours of CSS, and some that machines have; values of CSS.
 static const char *const colour_names[]
@@ -54,7 +55,7 @@ static bool read_color(struct ct_reader *r, const struct ct_node *node, const ch
                     *near ? near : "; a name as in CSS, or \"#rrggbb\" in quotes, is wanted");
 }
 
-// ---- sizes ----------------------------------------------------------------------------------------------
+// ---- sizes ------------------------------------------------------------------------------------
 
 static bool check_positive(struct ct_reader *r, const struct ct_node *node, const char *what,
                            ct_ex e)
@@ -127,9 +128,10 @@ static bool read_kind(struct ct_reader *r, const struct ct_node *node, struct ct
     return false;
 }
 
-// ---- one shape ------------------------------------------------------------------------------------------
+// ---- one shape --------------------------------------------------------------------------------
 
-// The one key that says what it is; is_wanted: it is asked for where it is missing, else another key may be meant for it.
+// The one key that says what it is; is_wanted: it is asked for where it is missing, else another
+// key may be meant for it.
 static bool find_kind(struct ct_reader *r, const struct ct_node *node, bool is_wanted,
                       struct ct_solid *s)
 {

@@ -3,7 +3,8 @@
 //     text     solid NAME { facet normal x y z  outer loop { vertex x y z } three times endloop endfacet } endsolid NAME
 //     binary   80 bytes, number n of triangles (4), n times: normal (12), corners (36), attribute (2); little-endian
 //
-// A file is binary if its length is the one that its number of triangles asks for: some binary files begin with "solid", too.
+// A file is binary if its length is the one that its number of triangles asks for: some binary
+// files begin with "solid", too.
 #include "component/read_stl.h"
 
 #include "expr/unit.h"
@@ -19,7 +20,7 @@
 enum { HEAD = 84, RECORD = 50, CORNERS = 9 };
 static const size_t max_bytes = (size_t)64 << 20;
 
-// ---- binary ---------------------------------------------------------------------------------------
+// ---- binary -----------------------------------------------------------------------------------
 
 static uint32_t read_u32(const unsigned char *p)
 {
@@ -60,7 +61,7 @@ static bool read_binary(struct ct_ctx *ctx, struct ct_arena *a, const char *path
     return true;
 }
 
-// ---- text -------------------------------------------------------------------------------------------
+// ---- text -------------------------------------------------------------------------------------
 
 struct scan {
     struct ct_ctx *ctx;
@@ -174,7 +175,7 @@ static bool read_text(struct ct_ctx *ctx, struct ct_arena *a, const char *path,
     return true;
 }
 
-// ---- either -------------------------------------------------------------------------------------------
+// ---- either -----------------------------------------------------------------------------------
 
 static bool is_text(const char *text, size_t n)
 {

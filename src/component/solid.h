@@ -1,7 +1,8 @@
 // Shapes that bodies are drawn with: `shape:` of the model file. Motion does not depend on them.
 //
-// What always holds after reading: lengths are of parameters alone and positive, triangles are finite. A solid is centred
-// at `at` in axes of its body, turned by `turn`; lines and files keep their own origin there.
+// What always holds after reading: lengths are of parameters alone and positive, triangles are
+// finite. A solid is centred at `at` in axes of its body, turned by `turn`; lines and files keep
+// their own origin there.
 #ifndef CT_COMPONENT_SOLID_H
 #define CT_COMPONENT_SOLID_H
 

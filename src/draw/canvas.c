@@ -14,7 +14,7 @@ static int tenths(double px)
     return (int)lround(10 * px);
 }
 
-// ---- text ---------------------------------------------------------------------------------------------
+// ---- text -------------------------------------------------------------------------------------
 
 // Control characters cannot stand in XML at all.
 void ct_canvas_escape(FILE *out, const char *text)
@@ -57,7 +57,7 @@ double ct_canvas_text_width(const char *text, double font)
     return em * font;
 }
 
-// ---- what is taken --------------------------------------------------------------------------------------
+// ---- what is taken ----------------------------------------------------------------------------
 
 static void take(struct ct_canvas *c, int column, int row)
 {
@@ -125,7 +125,7 @@ void ct_canvas_take_polygon(struct ct_canvas *c, const struct ct_spot *p, size_t
     }
 }
 
-// ---- polylines ------------------------------------------------------------------------------------------
+// ---- polylines --------------------------------------------------------------------------------
 
 static double off_line(struct ct_spot a, struct ct_spot b, struct ct_spot p)
 {
@@ -138,7 +138,8 @@ static double off_line(struct ct_spot a, struct ct_spot b, struct ct_spot p)
     return hypot(across, beyond);
 }
 
-// The farthest point from a chord stays, and both parts are looked at again.  (Douglas and Peucker 1973)
+// The farthest point from a chord stays, and both parts are looked at again. (Douglas and Peucker
+// 1973)
 static void keep_farthest(const struct ct_spot *p, size_t first, size_t last, double most,
                           bool *keep)
 {
@@ -174,7 +175,7 @@ size_t ct_spots_thin(struct ct_arena *a, struct ct_spot *p, size_t n, double mos
     return kept;
 }
 
-// ---- the file -------------------------------------------------------------------------------------------
+// ---- the file ---------------------------------------------------------------------------------
 
 void ct_canvas_begin(struct ct_canvas *c, struct ct_arena *a, FILE *out, double width,
                      double height, const char *title)

@@ -1,7 +1,8 @@
 // A picture as SVG, and which parts of it are taken, so that names find free places.
 //
-// Places are in pixels from the upper left corner; the file has tenths of a pixel, whole numbers: the same text in every
-// locale. What always holds: text that comes from a model is escaped, and valid XML whatever it contains.
+// Places are in pixels from the upper left corner; the file has tenths of a pixel, whole numbers:
+// the same text in every locale. What always holds: text that comes from a model is escaped, and
+// valid XML whatever it contains.
 #ifndef CT_DRAW_CANVAS_H
 #define CT_DRAW_CANVAS_H
 
@@ -9,7 +10,8 @@
 
 enum { CT_FONT = 13 }; // [px]
 
-/// Colours that stay apart without colour vision: Okabe and Ito (2008), without the yellow and the black.
+/// Colours that stay apart without colour vision: Okabe and Ito (2008), without the yellow and
+/// the black.
 extern const char *const ct_palette[];
 enum { CT_NPALETTE = 6 };
 
@@ -34,8 +36,8 @@ void ct_canvas_open(struct ct_canvas *c, const char *kind, const char *component
                     const char *attributes);
 void ct_canvas_close(struct ct_canvas *c);
 
-/// A polyline, or a polygon when closed. attributes: style that differs from the group's. halo [px] > 0: what is taken
-/// around it; 0: nothing.
+/// A polyline, or a polygon when closed. attributes: style that differs from the group's. halo
+/// [px] > 0: what is taken around it; 0: nothing.
 void ct_canvas_lines(struct ct_canvas *c, const struct ct_spot *p, size_t n, bool closed,
                      const char *attributes, double halo);
 void ct_canvas_line(struct ct_canvas *c, struct ct_spot a, struct ct_spot b,
@@ -56,7 +58,8 @@ void ct_canvas_take_box(struct ct_canvas *c, struct ct_spot low, struct ct_spot 
 /// How many cells of a rectangle are taken; -1: it reaches over the edge.
 int ct_canvas_count_taken(const struct ct_canvas *c, struct ct_spot low, struct ct_spot high);
 
-/// Leave out points of a polyline that are off the lines between the others by no more than `most`; how many stay, in place.
+/// Leave out points of a polyline that are off the lines between the others by no more than
+/// `most`; how many stay, in place.
 size_t ct_spots_thin(struct ct_arena *a, struct ct_spot *p, size_t n, double most);
 
 /// Width of a text [px], nearly, and no less than that of common sans-serif fonts.

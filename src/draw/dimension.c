@@ -1,4 +1,5 @@
-// See dimension.h. Signals have units by what they are of; sums keep them, and so do products with a number.
+// See dimension.h. Signals have units by what they are of; sums keep them, and so do products
+// with a number.
 #include "draw/dimension.h"
 
 #include "formulate/build.h"
@@ -6,7 +7,7 @@
 #include <math.h>
 #include <string.h>
 
-// ---- signals ----------------------------------------------------------------------------------------------
+// ---- signals ----------------------------------------------------------------------------------
 
 static const struct {
     const char *property, *unit;
@@ -90,7 +91,7 @@ static const char *unit_of_signal(const struct ct_build *b, const char *name)
     return NULL;
 }
 
-// ---- expressions --------------------------------------------------------------------------------------------
+// ---- expressions ------------------------------------------------------------------------------
 
 static const char *unit_of(const struct ct_build *b, ct_ex e, int depth);
 

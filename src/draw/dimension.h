@@ -4,7 +4,8 @@
 
 #include "formulate/equations.h"
 
-/// "m", "rad/s", "" for a plain number; NULL where it is not known, as of a product with a parameter.
+/// "m", "rad/s", "" for a plain number; NULL where it is not known, as of a product with a
+/// parameter.
 const char *ct_result_unit(const struct ct_equations *e, size_t result);
 
 #endif

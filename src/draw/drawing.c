@@ -1,4 +1,5 @@
-// A system as a line drawing: at its start, at a time, or with the paths of its points over a run.
+// A system as a line drawing: at its start, at a time, or with the paths of its points over a
+// run.
 #include "draw/picture.h"
 
 #include "draw/view.h"
@@ -22,7 +23,7 @@ struct drawing {
     } * source;
 };
 
-// ---- what leaves paths --------------------------------------------------------------------------------
+// ---- what leaves paths ------------------------------------------------------------------------
 
 static void add_path(struct drawing *d, int body, size_t at)
 {
@@ -58,7 +59,7 @@ static void keep_places(struct drawing *d, const double *value)
     d->nplace += d->nplace < d->nsample;
 }
 
-// ---- steps, each with a guard ---------------------------------------------------------------------------
+// ---- steps, each with a guard -----------------------------------------------------------------
 
 static bool make_scene(void *task)
 {
@@ -89,7 +90,8 @@ static bool compile(void *task)
     return true;
 }
 
-// The evaluator stands at the sample. Paths go with the picture of the start, a time with that of its end.
+// The evaluator stands at the sample. Paths go with the picture of the start, a time with that of
+// its end.
 static bool at_row(void *user, double t, const double *value, size_t n)
 {
     struct drawing *d = user;

@@ -7,7 +7,7 @@
 
 enum { ROUND = 32 }; // corners of what is round
 
-// ---- places ---------------------------------------------------------------------------------------------
+// ---- places -----------------------------------------------------------------------------------
 
 static double number(const struct ct_model *m, ct_ex e)
 {
@@ -41,7 +41,7 @@ void ct_solid_place(const struct ct_scene *s, const double *value, int body,
     ct_scene_point(value, m->body[body].frame, v, out);
 }
 
-// ---- corners --------------------------------------------------------------------------------------------
+// ---- corners ----------------------------------------------------------------------------------
 
 static void cross(const double a[3], const double b[3], double out[3])
 {
@@ -123,7 +123,7 @@ size_t ct_solid_corners(struct ct_arena *a, const struct ct_model *m,
     return n;
 }
 
-// ---- pieces ---------------------------------------------------------------------------------------------
+// ---- pieces -----------------------------------------------------------------------------------
 
 struct work {
     struct ct_facets *f;
@@ -172,7 +172,8 @@ static struct ct_facet *add(struct work *w, const int *corner, size_t n, const b
     return &f->facet[f->n - 1];
 }
 
-// A piece whose corners go round counterclockwise, seen from outside; nothing where it looks away.
+// A piece whose corners go round counterclockwise, seen from outside; nothing where it looks
+// away.
 static void add_outside(struct work *w, const int *corner, size_t n, const bool *is_edge)
 {
     double normal[3];
@@ -243,7 +244,7 @@ static void add_sphere(struct work *w, const double centre[3])
     add(w, NULL, FINE, all_edges(w->f->arena, FINE))->light = lit;
 }
 
-// ---- triangles --------------------------------------------------------------------------------------------
+// ---- triangles --------------------------------------------------------------------------------
 
 // A side of a triangle, its ends in an order of their own.
 struct side {
@@ -320,7 +321,7 @@ static void add_triangles(struct work *w)
     }
 }
 
-// ---- all of a body ----------------------------------------------------------------------------------------
+// ---- all of a body ----------------------------------------------------------------------------
 
 static void add_solid(struct work *w)
 {

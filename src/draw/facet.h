@@ -31,7 +31,8 @@ void ct_facets_sort(struct ct_facets *f);
 /// Where a point of a shape is: axes of the shape -> ground [m].
 void ct_solid_place(const struct ct_scene *s, const double *value, int body,
                     const struct ct_solid *solid, const double local[3], double out[3]);
-/// Corners of a shape's outline, in its axes [m]: enough to find how far it reaches. Returns their number.
+/// Corners of a shape's outline, in its axes [m]: enough to find how far it reaches. Returns
+/// their number.
 size_t ct_solid_corners(struct ct_arena *a, const struct ct_model *m,
                         const struct ct_solid *solid, double (**corner)[3]);
 

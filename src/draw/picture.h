@@ -17,7 +17,8 @@ struct ct_picture {
     const int *path_body; // whose point it is, for its colour
 };
 
-/// Write it as SVG. a: for the time of the call. False with E003 where there is no such view. Errors: E002. Raises the guard.
+/// Write it as SVG. a: for the time of the call. False with E003 where there is no such view.
+/// Errors: E002. Raises the guard.
 bool ct_picture_write(struct ct_ctx *ctx, struct ct_arena *a, const struct ct_picture *p,
                       const char *path);
 

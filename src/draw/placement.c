@@ -1,5 +1,5 @@
-// See placement.h. A label tries directions around each of its places, the nearest first: a greedy choice, which is known to come
-// near to the best one where labels are not crowded.
+// See placement.h. A label tries directions around each of its places, the nearest first: a
+// greedy choice, which is known to come near to the best one where labels are not crowded.
 #include "draw/placement.h"
 
 #include <math.h>

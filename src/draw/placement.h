@@ -1,4 +1,5 @@
-// Names in a picture: each beside what it names, on free ground; where there is none, it is left out.
+// Names in a picture: each beside what it names, on free ground; where there is none, it is left
+// out.
 #ifndef CT_DRAW_PLACEMENT_H
 #define CT_DRAW_PLACEMENT_H
 

@@ -21,7 +21,7 @@ struct ct_plot {
     size_t nrow, row_cap;
 };
 
-// ---- columns ----------------------------------------------------------------------------------------------
+// ---- columns ----------------------------------------------------------------------------------
 
 // The column that text begins with, up to a comma or its end: names may have commas themselves.
 static bool match(const struct ct_equations *e, const char *text, size_t *column,
@@ -101,7 +101,7 @@ bool ct_plot_row(void *plot, double t, const double *value, size_t n)
     return true;
 }
 
-// ---- axes ---------------------------------------------------------------------------------------------------
+// ---- axes -------------------------------------------------------------------------------------
 
 // Values from low to high, ticks at whole multiples of `step`, labels in units of 10^exponent.
 struct axis {
@@ -170,7 +170,7 @@ static const char *unit_name(struct ct_arena *a, const char *unit, int exponent)
                            *unit ? " " : "", unit);
 }
 
-// ---- panels -------------------------------------------------------------------------------------------------
+// ---- panels -----------------------------------------------------------------------------------
 
 struct panel {
     const char *unit; // NULL: not known
@@ -239,7 +239,7 @@ static void find_axes(struct work *w)
     }
 }
 
-// ---- drawing ------------------------------------------------------------------------------------------------
+// ---- drawing ----------------------------------------------------------------------------------
 
 static const char grid[] = "stroke=\"#dcdcdc\" stroke-width=\"8\"";
 

@@ -8,7 +8,7 @@
 #include <stdint.h>
 #include <string.h>
 
-// ---- joints -------------------------------------------------------------------------------------------
+// ---- joints -----------------------------------------------------------------------------------
 
 static void number3(const struct ct_model *m, ct_ex3 e, double out[3])
 {
@@ -24,7 +24,8 @@ static int count_lengths(const struct ct_motion *m)
     return n;
 }
 
-// By the number of lengths and of rotations; what slides without a length that is measured is a screw.
+// By the number of lengths and of rotations; what slides without a length that is measured is a
+// screw.
 static enum ct_symbol symbol_of(const struct ct_motion *m, int nlength)
 {
     const int nangle = m->quaternion >= 0 ? 3 : m->nturn;
@@ -74,7 +75,7 @@ static void create_joint(struct ct_build *b, size_t i, struct ct_scene_joint *j)
     j->has_damper = nlength == 1 && is_given(self, "damping");
 }
 
-// ---- bodies -------------------------------------------------------------------------------------------
+// ---- bodies -----------------------------------------------------------------------------------
 
 static void hold(bool *held, int frame)
 {
@@ -109,7 +110,7 @@ static void create_bodies(struct ct_arena *a, struct ct_scene *s)
     }
 }
 
-// ---- values -------------------------------------------------------------------------------------------
+// ---- values -----------------------------------------------------------------------------------
 
 struct values {
     struct ct_arena *a;
@@ -218,7 +219,7 @@ void ct_scene_compile(struct ct_arena *a, const struct ct_scene *s, struct ct_ma
     ct_machine_compile(a, m, m->e->build->x, s->expression, s->nvalue, p);
 }
 
-// ---- questions ------------------------------------------------------------------------------------------
+// ---- questions --------------------------------------------------------------------------------
 
 void ct_scene_direction(const double *value, int frame, const double local[3], double out[3])
 {

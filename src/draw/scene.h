@@ -7,9 +7,10 @@
 //       force[k]  spring, force, torque, ends    force and torque (3 + 3) of those from outside
 //       beam[i]   body, points of its axis       points (3 x npoint)
 //
-// What always holds: lengths in m, axes of ground unless a comment says otherwise; the values come from one program on the
-// input of a run's evaluator, so that a scene does not change the motion. Beams bend by their elements' own interpolation.
-// Drawing (svg) and other views know nothing of how the values are found.
+// What always holds: lengths in m, axes of ground unless a comment says otherwise; the values
+// come from one program on the input of a run's evaluator, so that a scene does not change the
+// motion. Beams bend by their elements' own interpolation. Drawing (svg) and other views know
+// nothing of how the values are found.
 #ifndef CT_DRAW_SCENE_H
 #define CT_DRAW_SCENE_H
 

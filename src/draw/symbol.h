@@ -1,4 +1,5 @@
-// The symbols of the field: joints, ground, springs, dampers, arrows. All sizes follow from one, that of a pin.
+// The symbols of the field: joints, ground, springs, dampers, arrows. All sizes follow from one,
+// that of a pin.
 #ifndef CT_DRAW_SYMBOL_H
 #define CT_DRAW_SYMBOL_H
 
@@ -10,7 +11,8 @@ struct ct_pen {
     double size; // radius of a pin [px]
 };
 
-/// A pin about an axis (ground axes): a circle seen from its end, else a short cylinder; stretch: half its length, in sizes.
+/// A pin about an axis (ground axes): a circle seen from its end, else a short cylinder; stretch:
+/// half its length, in sizes.
 void ct_draw_cylinder(struct ct_pen *pen, struct ct_spot at, const double axis[3],
                       double stretch);
 /// The block of a slider along an axis.

@@ -14,8 +14,8 @@ struct ct_view {
     struct ct_spot origin;             // [px]
 };
 
-/// name NULL: that which looks along the normal of a planar mechanism where this is an axis, else iso. False: no view has
-/// this name.
+/// name NULL: that which looks along the normal of a planar mechanism where this is an axis, else
+/// iso. False: no view has this name.
 bool ct_view_choose(struct ct_view *v, const struct ct_scene *s, const char *name);
 
 struct ct_spot ct_view_spot(const struct ct_view *v, const double place[3]);
