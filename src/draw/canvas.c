@@ -9,9 +9,11 @@ const char *const ct_palette[]
 
 static const double cell = 2; // [px]
 
+// Places far outside, and those that are not known, are not worth an overflow.
 static int tenths(double px)
 {
-    return (int)lround(10 * px);
+    const double far = 1e6; // [px]
+    return isnan(px) ? 0 : (int)lround(10 * fmax(-far, fmin(far, px)));
 }
 
 // ---- text -------------------------------------------------------------------------------------

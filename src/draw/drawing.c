@@ -2,7 +2,6 @@
 // run.
 #include "draw/picture.h"
 
-#include "draw/view.h"
 #include "sim/sim.h"
 
 #include <string.h>
@@ -13,6 +12,7 @@ struct drawing {
     struct ct_sim *sim;
     const struct ct_draw_options *options;
     struct ct_scene scene;
+    struct ct_view view;
     struct ct_program program;
     double *value; // at the state that is shown
     double *path;  // 3 x npath x nsample
@@ -64,9 +64,8 @@ static void keep_places(struct drawing *d, const double *value)
 static bool make_scene(void *task)
 {
     struct drawing *d = task;
-    struct ct_view view;
     ct_scene_create(d->system, &d->scene);
-    if (!ct_view_choose(&view, &d->scene, d->options->view))
+    if (!ct_view_choose(&d->view, &d->scene, d->options->view))
         return ct_error(d->ctx, (struct ct_mark){0}, CT_E_USAGE,
                         "there is no view '%s': x, y, z or iso", d->options->view);
     find_paths(d);
@@ -118,7 +117,7 @@ static bool write(void *task)
         = {.scene = &d->scene,
            .value = d->value,
            .title = d->scene.model->name,
-           .view = o->view,
+           .view = d->view,
            .caption = o->time > 0 ? ct_arena_printf(a, "t = %.6g s", o->time) : NULL,
            .path = d->path,
            .npath = d->npath,

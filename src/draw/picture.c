@@ -201,12 +201,8 @@ static void draw_all(struct ct_sketch *d)
 bool ct_picture_write(struct ct_ctx *ctx, struct ct_arena *a, const struct ct_picture *p,
                       const char *path)
 {
-    struct ct_sketch d = {.a = a, .picture = p, .s = p->scene, .value = p->value};
-    static const char *const views[] = {"x", "y", "z", "iso"};
-    if (!ct_view_choose(&d.view, p->scene, p->view))
-        return ct_error(ctx, (struct ct_mark){0}, CT_E_USAGE,
-                        "there is no view '%s': %s, %s, %s or %s", p->view, views[0], views[1],
-                        views[2], views[3]);
+    struct ct_sketch d
+        = {.a = a, .picture = p, .s = p->scene, .value = p->value, .view = p->view};
     struct ct_outfile file;
     double width, height;
     ct_sketch_fit(&d, &width, &height);

@@ -2,14 +2,14 @@
 #ifndef CT_DRAW_PICTURE_H
 #define CT_DRAW_PICTURE_H
 
-#include "draw/scene.h"
+#include "draw/view.h"
 
 /// What is drawn. All of it lives as long as the call.
 struct ct_picture {
     const struct ct_scene *scene;
     const double *value; // of the scene (nvalue)
     const char *title;
-    const char *view;    // "x", "y", "z", "iso"; NULL: what suits the scene
+    struct ct_view view; // as ct_view_choose gives it
     const char *caption; // "t = 1.5 s"; NULL: none
     // paths of points over the run: place k of path i is at path[3 (npath k + i)]
     const double *path;
@@ -17,8 +17,7 @@ struct ct_picture {
     const int *path_body; // whose point it is, for its colour
 };
 
-/// Write it as SVG. a: for the time of the call. False with E003 where there is no such view.
-/// Errors: E002. Raises the guard.
+/// Write it as SVG. a: for the time of the call. Errors: E002. Raises the guard.
 bool ct_picture_write(struct ct_ctx *ctx, struct ct_arena *a, const struct ct_picture *p,
                       const char *path);
 

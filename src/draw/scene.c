@@ -83,6 +83,25 @@ static void hold(bool *held, int frame)
         held[frame] = true;
 }
 
+// The frames that are held, body by body in one list.
+static void list_held(struct ct_arena *a, struct ct_scene *s, const bool *held)
+{
+    const struct ct_model *m = s->model;
+    int *list = CT_NEWN(a, int, m->nframe + 1);
+    for (size_t f = 0; f < m->nframe; f++)
+        s->body[m->frame[f].body].nheld += held[f];
+    for (size_t i = 0; i < m->nbody; i++) {
+        s->body[i].held = list;
+        list += s->body[i].nheld;
+        s->body[i].nheld = 0;
+    }
+    for (size_t f = 0; f < m->nframe; f++)
+        if (held[f]) {
+            struct ct_scene_body *b = &s->body[m->frame[f].body];
+            b->held[b->nheld++] = (int)f;
+        }
+}
+
 static void create_bodies(struct ct_arena *a, struct ct_scene *s)
 {
     const struct ct_model *m = s->model;
@@ -102,12 +121,8 @@ static void create_bodies(struct ct_arena *a, struct ct_scene *s)
         body->beam = -1;
         body->has_mass = i > 0 && !ct_ex_is_zero(from->mass);
         number3(m, from->com, body->com);
-        int *list = CT_NEWN(a, int, m->nframe);
-        for (size_t f = 0; f < m->nframe; f++)
-            if (held[f] && m->frame[f].body == (int)i)
-                list[body->nheld++] = (int)f;
-        body->held = list;
     }
+    list_held(a, s, held);
 }
 
 // ---- values -----------------------------------------------------------------------------------

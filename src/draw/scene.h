@@ -59,7 +59,7 @@ struct ct_scene_body {
     bool has_mass;
     int beam;  // -1: none
     int nheld; // frames that joints, springs and forces hold
-    const int *held;
+    int *held;
 };
 
 struct ct_scene {
