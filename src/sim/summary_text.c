@@ -265,6 +265,13 @@ static void print_rounding(FILE *out, const struct ct_sim *sim)
     fputc('\n', out);
 }
 
+static void print_file(FILE *out, const struct ct_sim *sim)
+{
+    const char *path = ct_sim_results_path(sim, false);
+    if (path)
+        fprintf(out, "results      %ld samples in %s\n", sim->nwritten, path);
+}
+
 void ct_sim_print_summary(const struct ct_sim *sim, FILE *out)
 {
     const struct ct_run_report *r = &sim->report;
@@ -286,6 +293,7 @@ void ct_sim_print_summary(const struct ct_sim *sim, FILE *out)
             "seconds      read %.3g, generate %.3g, compile %.3g, integrate %.3g, write %.3g\n",
             sim->system->read, sim->system->generate, sim->compile, sim->integrate, sim->write);
     print_open(out, sim);
+    print_file(out, sim);
 }
 
 // ---- what a system is ----------------------------------------------------------------------------------
