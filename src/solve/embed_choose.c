@@ -10,11 +10,7 @@
 // Rows of J, the best first, into s->row; the number of independent ones.
 static int order_rows(struct ct_embed *s)
 {
-    const int n = (int)s->m->nu, m = (int)s->m->nrow;
-    for (int i = 0; i < m; i++) // A = J', n x m
-        for (int j = 0; j < n; j++)
-            s->A[j + n * i] = *ct_embed_J(s, i, j);
-    return ct_qr_pivot(s->A, s->row, s->b, n, m, n, ct_rank_tolerance, s->work);
+    return ct_machine_order_rows(s->m, s->m->J, ct_rank_tolerance, s->row, s->A, s->b, s->work);
 }
 
 // Columns count by what their speeds move, w (nu, out), where inertias are so different that a heavy dependent speed would

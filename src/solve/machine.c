@@ -95,6 +95,13 @@ struct ct_machine *ct_machine_create(struct ct_arena *a, const struct ct_model *
     ct_programs_compile(a, m);
     m->M = CT_NEWN(a, double, (e->has_dynamics ? m->nu * m->nu : 0) + 1);
     m->J = CT_NEWN(a, double, m->nrow * m->nu + 1);
+    m->row_size = CT_NEWN(a, double, m->nrow + 1);
+    m->speed_size = CT_NEWN(a, double, m->nu + 1);
+    m->symbol_value = CT_NEWN(a, double, e->x->nsym + 1);
+    for (size_t i = 0; i < m->nrow; i++)
+        m->row_size[i] = 1;
+    for (size_t k = 0; k < m->nu; k++)
+        m->speed_size[k] = 1;
     m->g[0] = CT_NEWN(a, double, e->nmode + 1);
     m->g[1] = CT_NEWN(a, double, e->nmode + 1);
     m->turned = CT_NEWN(a, double, e->nmemory + 1);

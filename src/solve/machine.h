@@ -61,6 +61,8 @@ struct ct_machine {
 
     double *M, *Q, *J, *gam, *rate; // of the last ct_machine_motion
     double *phi, *v;                // of the last ct_machine_constraint (J as well)
+    double *row_size, *speed_size;  // of the last ct_machine_measure_rows; 1 before
+    double *symbol_value;           // workspace of it, by symbol of e->x
     double *g[2];                   // values of root functions, for modes (nmode)
     double *turned, *ahead, *moved; // for ct_memory_turning (nmemory, nq + nu + 1, nu)
     long evaluations;
@@ -119,6 +121,12 @@ void ct_machine_motion(struct ct_machine *m);
 bool ct_machine_solved(struct ct_machine *m, double *a);
 /// phi, v, J at the input.
 void ct_machine_constraint(struct ct_machine *m);
+/// Natural sizes of rows and speeds at the input, which ranks are judged against.  (theory 6.5)
+void ct_machine_measure_rows(struct ct_machine *m);
+/// Rank of J (nrow x nu): rows of which more than `least` is left against their sizes. row (nrow, out): the largest first. A (nu x nrow,
+/// out): the factor R. tau (nrow), work (ct_qr_pivot_work(nu, nrow)).
+int ct_machine_order_rows(const struct ct_machine *m, const double *J, double least, int *row,
+                          double *A, double *tau, double *work);
 /// Derivatives of the residual at the input, into slopes.
 void ct_machine_tangent(struct ct_machine *m);
 /// K, C, M (nu x nu, out) for the slopes, inner values taken along; returns the values of dv.  (8.19)

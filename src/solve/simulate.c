@@ -266,6 +266,7 @@ bool ct_run_begin(struct ct_run *r, const struct ct_start *start)
     ct_machine_constraint(r->m);
     r->s->sigma_best = 0;
     r->s->scale = find_scale(r->model);
+    ct_machine_measure_rows(r->m);
     ct_embed_find_units(r->s);
     if (!ct_embed_choose(r->s))
         return false;
