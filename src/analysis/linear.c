@@ -188,7 +188,7 @@ static void choose(struct ct_linear *l, const double *J)
 {
     const int n = l->nu, m = l->nrow;
     ct_machine_measure_rows(l->m);
-    l->rank = ct_machine_order_rows(l->m, J, ct_rank_tolerance, l->row, l->A, l->d, l->work);
+    l->rank = ct_machine_order_rows(l->m, J, l->m->rank_tolerance, l->row, l->A, l->d, l->work);
     const int r = l->rank;
     for (int i = 0; i < r; i++)
         for (int j = 0; j < n; j++)

@@ -52,7 +52,7 @@ static void choose_rows(struct ct_balance *s, struct ct_arena *a)
                          / s->m->row_size[i];
     ct_qr_pivot(A, s->row, tau, (int)n, (int)m, (int)n, 0, work);
     s->nlam = 0;
-    while (s->nlam < (m < n ? m : n) && fabs(A[s->nlam + n * s->nlam]) > ct_rank_tolerance)
+    while (s->nlam < (m < n ? m : n) && fabs(A[s->nlam + n * s->nlam]) > s->m->rank_tolerance)
         s->nlam++;
     for (size_t i = 0; i < m; i++)
         s->lam_place[i] = -1;

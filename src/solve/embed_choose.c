@@ -10,7 +10,7 @@
 // Rows of J, the best first, into s->row; the number of independent ones.
 static int order_rows(struct ct_embed *s)
 {
-    return ct_machine_order_rows(s->m, s->m->J, ct_rank_tolerance, s->row, s->A, s->b, s->work);
+    return ct_machine_order_rows(s->m, s->m->J, s->m->rank_tolerance, s->row, s->A, s->b, s->work);
 }
 
 // Columns count by what their speeds move, w (nu, out), where inertias are so different that a heavy dependent speed would
@@ -423,6 +423,7 @@ static void choose_there(struct ct_embed *s)
     ct_machine_retract(m, q, s->r);
     ct_machine_constraint(m);
     order_rows(s);
+    ct_machine_leave_out(s->m, s->row, s->rank);
     choose_columns(s);
     memcpy(q, s->q, m->nq * sizeof *q);
     ct_machine_constraint(m);
@@ -431,6 +432,7 @@ static void choose_there(struct ct_embed *s)
 static bool choose_here(struct ct_embed *s)
 {
     s->rank = order_rows(s);
+    ct_machine_leave_out(s->m, s->row, s->rank);
     choose_columns(s);
     return ct_embed_factor(s);
 }

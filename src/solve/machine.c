@@ -102,6 +102,8 @@ struct ct_machine *ct_machine_create(struct ct_arena *a, const struct ct_model *
         m->row_size[i] = 1;
     for (size_t k = 0; k < m->nu; k++)
         m->speed_size[k] = 1;
+    m->rank_tolerance = ct_rank_tolerance;
+    m->left_out = CT_NEWN(a, bool, m->nrow + 1);
     m->g[0] = CT_NEWN(a, double, e->nmode + 1);
     m->g[1] = CT_NEWN(a, double, e->nmode + 1);
     m->turned = CT_NEWN(a, double, e->nmemory + 1);
@@ -168,6 +170,8 @@ size_t ct_machine_code_size(struct ct_machine *m)
 
 void ct_machine_reset(struct ct_machine *m)
 {
+    m->is_inexact = false;
+    m->rank_tolerance = ct_rank_tolerance;
     start_input(m);
     ct_machine_prepare(m);
 }
@@ -215,6 +219,9 @@ void ct_machine_constraint(struct ct_machine *m)
 {
     ct_program_run(&m->constraint, m->input);
     scatter_J(m, m->v + m->nrow);
+    for (size_t i = 0; i < m->nrow && m->is_inexact; i++)
+        if (m->left_out[i])
+            m->phi[i] = m->v[i] = 0;
 }
 
 void ct_machine_tangent(struct ct_machine *m)

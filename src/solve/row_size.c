@@ -67,3 +67,15 @@ int ct_machine_order_rows(const struct ct_machine *m, const double *J, double le
         rank++;
     return rank;
 }
+
+void ct_machine_set_inexact(struct ct_machine *m)
+{
+    m->is_inexact = true;
+    m->rank_tolerance = ct_data_tolerance;
+}
+
+void ct_machine_leave_out(struct ct_machine *m, const int *row, int rank)
+{
+    for (int i = 0; i < (int)m->nrow && m->is_inexact; i++)
+        m->left_out[row[i]] = i >= rank;
+}
