@@ -124,15 +124,24 @@ static int loop_rank(struct ct_assembler *s, double tolerance)
     return ct_machine_order_rows(s->m, s->m->J, tolerance, f->row, f->A, f->tau, f->work);
 }
 
+// The largest gap at s->y, against the sizes of rows.
+static double largest_gap(struct ct_assembler *s)
+{
+    double open = 0;
+    evaluate(s);
+    for (size_t i = 0; i < s->m->nrow; i++)
+        if (s->fixed_row[i])
+            open = fmax(open, fabs(s->m->phi[i]) / s->m->row_size[i]);
+    return open;
+}
+
 bool ct_loop_filter_is_due(struct ct_assembler *s)
 {
-    // Steps divide by damping, 1e-8, at least: gaps and singular values below this move nothing by more than its square over
-    // that of the damping, 1e-6.
+    // Steps divide by the damping, 1e-8, at worst: what gaps and singular values below this move is 1e-6 of a step.
     const double unmoved = 1e-11;
     if (!s->m->nrow || !s->m->nu)
         return false;
-    evaluate(s);
-    return loop_rank(s, unmoved) > loop_rank(s, ct_data_tolerance);
+    return largest_gap(s) > unmoved || loop_rank(s, unmoved) > loop_rank(s, ct_data_tolerance);
 }
 
 // The loops alone, filtered, into s->A (nrow x nu) and s->r.
@@ -210,12 +219,7 @@ static bool is_rank_everywhere(struct ct_assembler *s)
 
 bool ct_loop_filter_holds(struct ct_assembler *s)
 {
-    evaluate(s);
-    double open = 0;
-    for (size_t i = 0; i < s->m->nrow; i++)
-        if (s->fixed_row[i])
-            open = fmax(open, fabs(s->m->phi[i]) / s->m->row_size[i]);
-    return open <= ct_data_tolerance && is_rank_everywhere(s);
+    return largest_gap(s) <= ct_data_tolerance && is_rank_everywhere(s);
 }
 
 void ct_loop_filter_warn(struct ct_assembler *s)

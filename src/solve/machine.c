@@ -219,9 +219,7 @@ void ct_machine_constraint(struct ct_machine *m)
 {
     ct_program_run(&m->constraint, m->input);
     scatter_J(m, m->v + m->nrow);
-    for (size_t i = 0; i < m->nrow && m->is_inexact; i++)
-        if (m->left_out[i])
-            m->phi[i] = m->v[i] = 0;
+    ct_machine_blank(m, m->phi, m->v);
 }
 
 void ct_machine_tangent(struct ct_machine *m)

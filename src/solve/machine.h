@@ -136,6 +136,8 @@ void ct_machine_measure_rows(struct ct_machine *m);
 void ct_machine_set_inexact(struct ct_machine *m);
 /// Of such data: the rows behind the first `rank` of row (nrow) take no part.
 void ct_machine_leave_out(struct ct_machine *m, const int *row, int rank);
+/// phi, v (nrow) of rows that are left out become 0.
+void ct_machine_blank(const struct ct_machine *m, double *phi, double *v);
 /// Rank of J (nrow x nu): rows of which more than `least` is left against their sizes. row (nrow, out): the largest first. A (nu x nrow,
 /// out): the factor R. tau (nrow), work (ct_qr_pivot_work(nu, nrow)).
 int ct_machine_order_rows(const struct ct_machine *m, const double *J, double least, int *row,

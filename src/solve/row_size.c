@@ -79,3 +79,10 @@ void ct_machine_leave_out(struct ct_machine *m, const int *row, int rank)
     for (int i = 0; i < (int)m->nrow && m->is_inexact; i++)
         m->left_out[row[i]] = i >= rank;
 }
+
+void ct_machine_blank(const struct ct_machine *m, double *phi, double *v)
+{
+    for (size_t i = 0; i < m->nrow && m->is_inexact; i++)
+        if (m->left_out[i])
+            phi[i] = v[i] = 0;
+}
