@@ -104,6 +104,7 @@ struct ct_machine *ct_machine_create(struct ct_arena *a, const struct ct_model *
         m->speed_size[k] = 1;
     m->rank_tolerance = ct_rank_tolerance;
     m->left_out = CT_NEWN(a, bool, m->nrow + 1);
+    m->open = CT_NEWN(a, double, m->nrow + 1);
     m->g[0] = CT_NEWN(a, double, e->nmode + 1);
     m->g[1] = CT_NEWN(a, double, e->nmode + 1);
     m->turned = CT_NEWN(a, double, e->nmemory + 1);
@@ -219,7 +220,10 @@ void ct_machine_constraint(struct ct_machine *m)
 {
     ct_program_run(&m->constraint, m->input);
     scatter_J(m, m->v + m->nrow);
-    ct_machine_blank(m, m->phi, m->v);
+    for (size_t i = 0; i < m->nrow && m->is_inexact; i++) {
+        m->phi[i] = m->left_out[i] ? 0 : m->phi[i] - m->open[i];
+        m->v[i] = m->left_out[i] ? 0 : m->v[i];
+    }
 }
 
 void ct_machine_tangent(struct ct_machine *m)

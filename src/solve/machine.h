@@ -70,7 +70,10 @@ struct ct_machine {
     double *phi, *v;                // of the last ct_machine_constraint (J as well)
     double *row_size, *speed_size;  // of the last ct_machine_measure_rows; 1 before
     double rank_tolerance; // what is left of a row, against its size, is none: round-off, or the tolerance of the data
-    bool is_inexact, *left_out; // (nrow) rows that hold to the tolerance of the data only: their phi and v read 0
+    // Data close to their tolerance only: rows keep what they leave open at the start, phi - open = 0; those that are left out,
+    // as they depend on others to that tolerance, read 0.
+    bool is_inexact, *left_out; // (nrow)
+    double *open;               // (nrow)
     double *symbol_value;           // workspace of it, by symbol of e->x
     double *g[2];                   // values of root functions, for modes (nmode)
     double *turned, *ahead, *moved; // for ct_memory_turning (nmemory, nq + nu + 1, nu)
@@ -132,12 +135,10 @@ bool ct_machine_solved(struct ct_machine *m, double *a);
 void ct_machine_constraint(struct ct_machine *m);
 /// Natural sizes of rows and speeds at the input, which ranks are judged against.  (theory 6.5)
 void ct_machine_measure_rows(struct ct_machine *m);
-/// The start is one of data that close to their tolerance only.
+/// The input is the start of data that close to their tolerance only.
 void ct_machine_set_inexact(struct ct_machine *m);
 /// Of such data: the rows behind the first `rank` of row (nrow) take no part.
 void ct_machine_leave_out(struct ct_machine *m, const int *row, int rank);
-/// phi, v (nrow) of rows that are left out become 0.
-void ct_machine_blank(const struct ct_machine *m, double *phi, double *v);
 /// Rank of J (nrow x nu): rows of which more than `least` is left against their sizes. row (nrow, out): the largest first. A (nu x nrow,
 /// out): the factor R. tau (nrow), work (ct_qr_pivot_work(nu, nrow)).
 int ct_machine_order_rows(const struct ct_machine *m, const double *J, double least, int *row,

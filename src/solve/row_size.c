@@ -72,17 +72,14 @@ void ct_machine_set_inexact(struct ct_machine *m)
 {
     m->is_inexact = true;
     m->rank_tolerance = ct_data_tolerance;
+    memset(m->open, 0, m->nrow * sizeof *m->open);
+    memset(m->left_out, 0, m->nrow * sizeof *m->left_out);
+    ct_machine_constraint(m);
+    memcpy(m->open, m->phi, m->nrow * sizeof *m->open);
 }
 
 void ct_machine_leave_out(struct ct_machine *m, const int *row, int rank)
 {
     for (int i = 0; i < (int)m->nrow && m->is_inexact; i++)
         m->left_out[row[i]] = i >= rank;
-}
-
-void ct_machine_blank(const struct ct_machine *m, double *phi, double *v)
-{
-    for (size_t i = 0; i < m->nrow && m->is_inexact; i++)
-        if (m->left_out[i])
-            phi[i] = v[i] = 0;
 }

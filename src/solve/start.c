@@ -22,8 +22,6 @@ void ct_start_apply(const struct ct_start *s, struct ct_machine *m, double *y)
 {
     const struct ct_equations *e = m->e;
     double *memory = m->input + m->at_memory;
-    if (s->is_inexact)
-        ct_machine_set_inexact(m);
     memset(y, 0, (m->nq + m->nu + 1) * sizeof *y);
     for (size_t i = 0; i < s->n; i++) {
         const struct ct_coordinate *c = &e->coordinate[i];
@@ -49,4 +47,6 @@ void ct_start_apply(const struct ct_start *s, struct ct_machine *m, double *y)
     ct_machine_set(m, 0, y);
     ct_modes_start(m, 0, y, NULL);
     ct_memory_start(m);
+    if (s->is_inexact)
+        ct_machine_set_inexact(m);
 }

@@ -160,7 +160,6 @@ static double close(struct ct_form *form, struct ct_machine *m)
 {
     struct unrolled *f = unrolled_of(form);
     ct_program_run(&f->closing, m->input);
-    ct_machine_blank(m, f->closing.out, f->closing.out + m->nrow);
     return strength(f, form->du + m->nu + f->c->nshift);
 }
 
