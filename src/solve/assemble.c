@@ -311,7 +311,7 @@ static double find_velocities(struct ct_assembler *s)
             u[k] += s->b[k];
     }
     velocity_rows(s);
-    return violation(s);
+    return fmax(violation(s), ct_loop_filter_missed(s, true));
 }
 
 // ---- the stage ---------------------------------------------------------------------------------------------------
@@ -410,6 +410,7 @@ static bool try_inexact(struct ct_assembler *s, int try, double *residual)
     s->filter->is_on = true;
     start_near_targets(s, try);
     *residual = find_positions(s);
+    *residual = fmax(*residual, ct_loop_filter_missed(s, false));
     s->filter->is_on = *residual < ct_assembly_met && half_turned_joint(s) < 0
                     && ct_loop_filter_holds(s);
     return s->filter->is_on;

@@ -217,6 +217,18 @@ static bool is_rank_everywhere(struct ct_assembler *s)
     return is_same;
 }
 
+double ct_loop_filter_missed(const struct ct_assembler *s, bool of_speeds)
+{
+    double most = 0, r;
+    for (size_t i = 0; i < s->e->ncoordinate && s->filter->is_on; i++) {
+        if (of_speeds && s->u[i].is_given)
+            most = fmax(most, fabs(s->m->result.out[2 * i + 1] - s->u[i].value));
+        else if (!of_speeds && s->q[i].is_given && ct_assembler_deviation(s, i, &r))
+            most = fmax(most, fabs(r));
+    }
+    return most;
+}
+
 bool ct_loop_filter_holds(struct ct_assembler *s)
 {
     return largest_gap(s) <= ct_data_tolerance && is_rank_everywhere(s);

@@ -53,6 +53,8 @@ struct ct_loop_filter *ct_loop_filter_create(struct ct_arena *a, const struct ct
 void ct_loop_filter_apply(struct ct_assembler *s, const bool *is_loop);
 /// Have rows at s->y parts that are neither round-off nor more than the tolerance of the data?
 bool ct_loop_filter_is_due(struct ct_assembler *s);
+/// With the filter, at the last rows: by how much given values are missed, which it may have left out.
+double ct_loop_filter_missed(const struct ct_assembler *s, bool of_speeds);
 /// At s->y, closed with the filter: are the gaps within the tolerance, and is the rank the same elsewhere on the motion?
 bool ct_loop_filter_holds(struct ct_assembler *s);
 /// By how much loops stay open.

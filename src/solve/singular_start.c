@@ -153,18 +153,21 @@ static struct probe make_probe(struct ct_arena *scratch, struct ct_machine *m, d
     return p;
 }
 
-// Rank of J at y. p->largest: the largest row beside it, as all may vanish there.
+// Rank of J at y, rows being measured by the largest beside it, as all may vanish there; not below what round-off leaves.
+// p->largest: that row, in its own unit.
 static int find_rank_here(struct probe *p, struct ct_arena *scratch, const double *y)
 {
     const double way = 0.1;
     const size_t ny = p->m->nq + p->m->nu + 1;
     move(p, scratch, way);
     evaluate(p);
+    find_rank(p, 0);
+    const double beside = fabs(p->A[0]);
     size_rows(p, p->x);
     p->largest = ct_vector_largest(p->x, p->m->nrow);
     memcpy(p->y, y, ny * sizeof *y);
     evaluate(p);
-    return find_rank(p, unmet);
+    return find_rank(p, fmax(unmet * beside, p->m->rank_tolerance));
 }
 
 // Rank of J beside y, with the largest way along which it is more than `here`; where it is not, `here` or less.
