@@ -248,6 +248,12 @@ bool ct_loop_filter_holds(struct ct_assembler *s)
     return gap <= ct_data_tolerance && is_least(s, gap) && is_rank_everywhere(s);
 }
 
+size_t ct_loop_filter_freedoms(struct ct_assembler *s)
+{
+    evaluate(s);
+    return s->m->nu - (size_t)loop_rank(s, ct_data_tolerance);
+}
+
 void ct_loop_filter_warn(struct ct_assembler *s)
 {
     const struct ct_machine *m = s->m;
