@@ -411,8 +411,8 @@ static bool try_inexact(struct ct_assembler *s, int try, double *residual)
     start_near_targets(s, try);
     *residual = find_positions(s);
     *residual = fmax(*residual, ct_loop_filter_missed(s, false));
-    s->filter->is_on = *residual < ct_assembly_met && half_turned_joint(s) < 0
-                    && ct_loop_filter_holds(s);
+    s->filter->is_on
+        = *residual < ct_assembly_met && half_turned_joint(s) < 0 && ct_loop_filter_holds(s);
     return s->filter->is_on;
 }
 

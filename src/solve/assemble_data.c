@@ -4,7 +4,7 @@
 // values of the tolerance of the data, delta, and gaps of that size: closed exactly, the door would turn by gap/delta, anything,
 // or lock. Such a row says what its neighbours say; its small part is left out. With Q an orthonormal basis of the columns of
 //
-//     A = [ N^-1 J S ]  loops, by natural sizes (theory 6.5)       A' = Q Q' A,   r' = Q Q' r
+//     A = [ N^-1 J S ]  loops, by natural sizes (6.5a)       A' = Q Q' A,   r' = Q Q' r
 //         [ w G S    ]  given values, w large: they are kept
 //
 // of which columns with less than the tolerance left are left out, Newton's iteration on A', r' ends where the gaps are least
@@ -164,8 +164,8 @@ static void shortest_step(struct ct_assembler *s)
 {
     for (size_t i = 0; i < s->nhard; i++)
         s->b[i] = -s->r[i];
-    ct_lstsq(s->b, s->A, (int)s->nhard, (int)s->m->nu, (int)s->most, ct_rank_tolerance, s->iwork,
-             s->work);
+    ct_lstsq(s->b, s->A, (int)s->nhard, (int)s->m->nu, (int)s->most, ct_rank_tolerance,
+             s->iwork, s->work);
 }
 
 // From s->y by `way` [m or rad] along a motion of no meaning that the loops leave free, and onto them again. False if that does not succeed.
@@ -266,12 +266,12 @@ void ct_loop_filter_warn(struct ct_assembler *s)
             worst = i;
     const struct ct_row *row = &s->e->row[worst];
     const struct ct_model *model = s->e->build->model;
-    ct_warning(s->ctx,
-               row->joint < 0 ? (struct ct_mark){.file = model->file}
-                              : model->joint[row->joint].mark,
-               0,
-               "joints repeat each other to the digits of their places only: the loops are closed "
-               "in the least-squares sense, '%s' stays open by %.2g%s; what constraints say "
-               "beyond the others is left out",
-               row->name, fabs(m->phi[worst]), row->is_length ? " m" : "");
+    ct_warning(
+        s->ctx,
+        row->joint < 0 ? (struct ct_mark){.file = model->file} : model->joint[row->joint].mark,
+        0,
+        "joints repeat each other to the digits of their places only: the loops are closed "
+        "in the least-squares sense, '%s' stays open by %.2g%s; what constraints say "
+        "beyond the others is left out",
+        row->name, fabs(m->phi[worst]), row->is_length ? " m" : "");
 }

@@ -36,15 +36,15 @@ struct ct_assembler {
     double *kept_y, *kept_memory, *kept_A, *step;
     int *iwork;
     struct ct_loop_filter *filter; // assemble_data.c
-    size_t most;     // rows of A
-    size_t nhard, n; // rows now: what must be met comes first
+    size_t most;                   // rows of A
+    size_t nhard, n;               // rows now: what must be met comes first
 };
 
 /// Rows of loops that depend on others but for the tolerance of the data, as those of coaxial hinges whose places are given to
 /// some digits: what they say beyond the others is left out, and the loops close in the least-squares sense.
 struct ct_loop_filter {
-    bool is_on;                          // rows are filtered
-    double *B, *Q, *A;                   // workspace
+    bool is_on;        // rows are filtered
+    double *B, *Q, *A; // workspace
     double *size, *r, *tau, *work, *kept_y;
     int *row;
 };

@@ -10,7 +10,8 @@
 // Rows of J, the best first, into s->row; the number of independent ones.
 static int order_rows(struct ct_embed *s)
 {
-    return ct_machine_order_rows(s->m, s->m->J, s->m->rank_tolerance, s->row, s->A, s->b, s->work);
+    return ct_machine_order_rows(s->m, s->m->J, s->m->rank_tolerance, s->row, s->A, s->b,
+                                 s->work);
 }
 
 // Columns count by what their speeds move, w (nu, out), where inertias are so different that a heavy dependent speed would

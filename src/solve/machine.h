@@ -20,7 +20,7 @@ enum ct_backend {
     CT_BACKEND_NATIVE,
 };
 
-/// What is left of a row against its natural size (theory 6.5). Round-off of sums of some hundred terms, of places known to 1e-13, is
+/// What is left of a row against its natural size (6.5a). Round-off of sums of some hundred terms, of places known to 1e-13, is
 /// below 1e-12: a row with less than the first left is dependent.
 static const double ct_rank_tolerance = 1e-9;
 /// Places and angles given to six digits err by 5e-6 of their size at most; a row adds up a few of them. Where loops close to that
@@ -69,12 +69,13 @@ struct ct_machine {
     double *M, *Q, *J, *gam, *rate; // of the last ct_machine_motion
     double *phi, *v;                // of the last ct_machine_constraint (J as well)
     double *row_size, *speed_size;  // of the last ct_machine_measure_rows; 1 before
-    double rank_tolerance; // what is left of a row, against its size, is none: round-off, or the tolerance of the data
+    double
+        rank_tolerance; // what is left of a row, against its size, is none: round-off, or the tolerance of the data
     // Data close to their tolerance only: rows keep what they leave open at the start, phi - open = 0; those that are left out,
     // as they depend on others to that tolerance, read 0.
-    bool is_inexact, *left_out; // (nrow)
-    size_t most_rank;           // of J; nrow where data are exact
-    double *open;               // (nrow)
+    bool is_inexact, *left_out;     // (nrow)
+    size_t most_rank;               // of J; nrow where data are exact
+    double *open;                   // (nrow)
     double *symbol_value;           // workspace of it, by symbol of e->x
     double *g[2];                   // values of root functions, for modes (nmode)
     double *turned, *ahead, *moved; // for ct_memory_turning (nmemory, nq + nu + 1, nu)
@@ -134,7 +135,7 @@ void ct_machine_motion(struct ct_machine *m);
 bool ct_machine_solved(struct ct_machine *m, double *a);
 /// phi, v, J at the input.
 void ct_machine_constraint(struct ct_machine *m);
-/// Natural sizes of rows and speeds at the input, which ranks are judged against.  (theory 6.5)
+/// Natural sizes of rows and speeds at the input, which ranks are judged against.  (6.5a)
 void ct_machine_measure_rows(struct ct_machine *m);
 /// The input is the start of data that close to their tolerance only, with so many freedoms of joints on any trees.
 void ct_machine_set_inexact(struct ct_machine *m, size_t freedoms);

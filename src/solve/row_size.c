@@ -1,4 +1,4 @@
-// Natural sizes of constraint rows: what their coefficients are made of before they cancel.  (theory 6.5)
+// Natural sizes of constraint rows: what their coefficients are made of before they cancel.  (6.5a)
 //
 // A coefficient of a row of lengths is  p . (axis x sum d),  the sum over vectors d on the way between two frames; of a
 // row of angles it is a product of unit vectors. Where a constraint is redundant the sum cancels, down to the round-off or
