@@ -1,0 +1,223 @@
+// Random mechanisms, most of them with redundant joints, against an independent solver (oracle/): freedoms, start values, closure and
+// accelerations, on all trees, with and without what a planar mechanism leaves out, with data of 17, 10 and 6 digits.
+//
+//     property_redundant_joints                                 what the suite runs
+//     property_redundant_joints KIND FIRST COUNT DIGITS [FOLDER]
+//
+// KIND is pairs, loops or plain; FIRST the first seed. Models that fail are written to FOLDER. DIGITS may be 17, 10, 6 or 0 for all of them.
+#include "tests/property/oracle/engine.h"
+#include "tests/property/oracle/generate.h"
+#include "tests/check.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static const char *const kind_name[KINDS] = {"pairs", "loops", "plain"};
+
+static const struct way ways[] = {{"auto", "auto", false},
+                                  {"joints", "joints", false},
+                                  {"absolute", "absolute", false},
+                                  {"auto --keep-all", "auto", true},
+                                  {"joints --keep-all", "joints", true}};
+enum { WAYS = sizeof ways / sizeof ways[0] };
+
+// ---- one answer against the solver --------------------------------------------------------------------------------------
+
+struct verdict {
+    const char *what; // NULL: all agrees
+    double found, allowed;
+};
+
+static void expect(struct verdict *v, const char *what, double found, double allowed)
+{
+    if (!v->what && !(found <= allowed)) // also if not a number
+        *v = (struct verdict){what, found, allowed};
+}
+
+static double difference(struct vector a, struct vector b)
+{
+    return norm(plus(a, -1, b));
+}
+
+// What was demanded is kept, whatever the digits: these coordinates are independent.
+static void check_start(const struct scene *s, const struct answer *a, struct verdict *v)
+{
+    for (int i = 0; i < s->njoint; i++) {
+        const struct joint *j = &s->joint[i];
+        const int n = joint_speeds(j->type) - 3 * joint_has_quaternion(j->type);
+        if (j->start != START_DEMAND)
+            continue;
+        for (int c = 0; c < n; c++)
+            expect(v, "demanded q", fabs(a->at.q[i][c] - j->q[c]), 1e-9);
+        for (int c = 0; c < joint_speeds(j->type); c++)
+            expect(v, "demanded u", fabs(a->at.u[i][c] - j->u[c]), 1e-9);
+        if (joint_has_quaternion(j->type)) {
+            const struct axes want = from_angles(j->rotate),
+                              got = from_quaternion(a->at.q[i] + n);
+            expect(v, "demanded rotation", norm(small_rotation(relative(want, got))), 1e-9);
+        }
+    }
+}
+
+// Largest difference of accelerations, and the largest of `want` and the squares of speeds in *scale.
+static double compare(const struct scene *s, const struct motion *got,
+                      const struct motion *want, const struct motion *at, double *scale)
+{
+    double worst = 0;
+    *scale = norm(s->gravity);
+    for (int b = 1; b < s->nbody; b++) {
+        worst = fmax(worst, difference(got->v[b], want->v[b]));
+        worst = fmax(worst, difference(got->w[b], want->w[b]));
+        *scale = fmax(*scale, fmax(norm(want->v[b]), norm(want->w[b])));
+        *scale = fmax(*scale, fmax(dot(at->w[b], at->w[b]), norm(at->v[b])));
+        if (isnan(norm(got->v[b]) + norm(got->w[b])))
+            return NAN;
+    }
+    for (int j = 0; j < s->njoint; j++)
+        for (int i = 0; i < joint_speeds(s->joint[j].type); i++) {
+            worst = fmax(worst, fabs(got->u[j][i] - want->u[j][i]));
+            *scale = fmax(*scale, fabs(want->u[j][i]));
+            if (isnan(got->u[j][i]))
+                return NAN;
+        }
+    return worst;
+}
+
+static struct verdict judge(const struct scene *s, const struct answer *a, int freedoms)
+{
+    struct verdict v = {0};
+    struct oracle o;
+    struct motion want;
+    double condition, scale;
+    // Digits of the data leave gaps of this size between joints that repeat each other, angles and lengths over size.
+    const double data = s->digits > 15 ? 0 : pow(10, 1 - s->digits);
+    expect(&v, a->message, !a->ok, 0);
+    if (v.what)
+        return v;
+    expect(&v, "freedoms", fabs((double)(a->freedoms - freedoms)), 0);
+    check_start(s, a, &v);
+    oracle_open(&o, s, &a->at);
+    const double spread = 1 / o.smallest;
+    expect(&v, "rank at the start", o.freedoms != freedoms, 0);
+    expect(&v, "closure", o.position, 1e-9 + 10 * data * spread);
+    expect(&v, "speeds", o.velocity, 1e-9 + 30 * data * spread);
+    if (!v.what) {
+        expect(&v, "solver", !oracle_accelerations(&o, &a->at, &want, &condition), 0);
+        const double worst = compare(s, &a->a, &want, &a->at, &scale);
+        // round-off and the closure to 1e-12, each amplified by the inverse of G and of the mass matrix
+        expect(&v, "accelerations", worst / scale,
+               (1e-11 + 100 * data) * spread * spread * sqrt(condition));
+    }
+    if (strstr(a->message, "singular"))
+        expect(&v, "a warning of a singular position", 1, 0);
+    oracle_close(&o);
+    return v;
+}
+
+// ---- many of them ------------------------------------------------------------------------------------------------------
+
+static struct {
+    const char *folder; // models that fail go there; NULL: to the output
+    int mechanisms, failures, redundant;
+    int of_type[JOINT_TYPES];
+} run;
+
+static void report(const struct scene *s, const struct way *way, const struct verdict *v)
+{
+    char path[400];
+    print_error("%s, tree %s: %s: %.3g, allowed %.3g\n", s->name, way->name, v->what, v->found,
+                v->allowed);
+    if (run.folder)
+        snprintf(path, sizeof path, "%s/%s.yaml", run.folder, s->name);
+    FILE *f = run.folder ? fopen(path, "w") : stderr;
+    if (f)
+        scene_write(s, f);
+    if (f && f != stderr)
+        fclose(f);
+}
+
+static bool agrees(enum kind kind, uint64_t seed, int digits)
+{
+    struct scene s;
+    int freedoms;
+    bool ok = true;
+    scene_generate(&s, kind, seed, digits, &freedoms);
+    for (int j = 0; j < s.njoint; j++)
+        run.of_type[s.joint[j].type]++;
+    run.mechanisms++;
+    for (int k = 0; k < WAYS; k++) {
+        struct answer a;
+        engine_ask(&s, &ways[k], &a);
+        const struct verdict v = judge(&s, &a, freedoms);
+        if (v.what)
+            report(&s, &ways[k], &v);
+        ok &= !v.what;
+    }
+    run.failures += !ok;
+    return ok;
+}
+
+// digits 0: each seed takes its own
+static bool all_agree(enum kind kind, uint64_t first, int count, int digits)
+{
+    static const int several[] = {17, 10, 6};
+    const int failures = run.failures;
+    print_message("%s: seeds %llu to %llu\n", kind_name[kind], (unsigned long long)first,
+                  (unsigned long long)first + (unsigned long long)count - 1);
+    for (int i = 0; i < count; i++)
+        agrees(kind, first + (uint64_t)i, digits ? digits : several[(first + (uint64_t)i) % 3]);
+    print_message("%d of %d fail\n", run.failures - failures, count);
+    return run.failures == failures;
+}
+
+static void pairs_of_joints_agree_with_the_solver(void **state)
+{
+    (void)state;
+    assert_true(all_agree(KIND_PAIRS, 1, 300, 0));
+}
+
+static void redundant_loops_agree_with_the_solver(void **state)
+{
+    (void)state;
+    assert_true(all_agree(KIND_LOOPS, 1, 300, 0));
+}
+
+static void plain_mechanisms_agree_with_the_solver(void **state)
+{
+    (void)state;
+    assert_true(all_agree(KIND_PLAIN, 1, 150, 0));
+}
+
+static void all_types_of_joints_came(void **state)
+{
+    (void)state;
+    for (int i = 0; i < JOINT_TYPES; i++)
+        assert_true(run.of_type[i] > 10);
+}
+
+static int run_by_hand(int argc, char **argv)
+{
+    int kind = 0;
+    while (kind < KINDS && strcmp(argv[1], kind_name[kind]) != 0)
+        kind++;
+    if (kind == KINDS || argc < 5) {
+        fputs(
+            "usage: property_redundant_joints pairs|loops|plain FIRST COUNT DIGITS [FOLDER]\n",
+            stderr);
+        return 2;
+    }
+    run.folder = argc > 5 ? argv[5] : NULL;
+    return !all_agree((enum kind)kind, strtoull(argv[2], NULL, 10), atoi(argv[3]),
+                      atoi(argv[4]));
+}
+
+int main(int argc, char **argv)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(pairs_of_joints_agree_with_the_solver),
+        cmocka_unit_test(redundant_loops_agree_with_the_solver),
+        cmocka_unit_test(plain_mechanisms_agree_with_the_solver),
+        cmocka_unit_test(all_types_of_joints_came),
+    };
+    return argc > 1 ? run_by_hand(argc, argv) : cmocka_run_group_tests(tests, NULL, NULL);
+}
