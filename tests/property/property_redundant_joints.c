@@ -122,11 +122,21 @@ static struct {
     int of_type[JOINT_TYPES];
 } run;
 
+// As in "revolute 0-1, planar 1-0": types and bodies.
+static void print_joints(const struct scene *s)
+{
+    for (int j = 0; j < s->njoint; j++)
+        print_error("%s%s %d-%d", j ? ", " : "", joint_type_name[s->joint[j].type],
+                    s->joint[j].from, s->joint[j].to);
+}
+
 static void report(const struct scene *s, const struct way *way, const struct verdict *v)
 {
     char path[400];
-    print_error("%s, tree %s: %s: %.3g, allowed %.3g\n", s->name, way->name, v->what, v->found,
+    print_error("%s, tree %s: %s: %.3g, allowed %.3g (", s->name, way->name, v->what, v->found,
                 v->allowed);
+    print_joints(s);
+    print_error(")\n");
     if (run.folder)
         snprintf(path, sizeof path, "%s/%s.yaml", run.folder, s->name);
     FILE *f = run.folder ? fopen(path, "w") : stderr;
