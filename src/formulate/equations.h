@@ -54,6 +54,8 @@ struct ct_row {
     ct_ex lam;         // symbol
     ct_ex wanted;   // >= 0 in the right assembly (half-turn solutions of (4.4)); 0 where none
     bool is_length; // of phi [m]
+    const ct_ex3 *lever; // [m] vectors along the row's path that its speeds turn  (nlever)
+    size_t nlever;
 };
 
 /// A comparison whose outcome is held between events.

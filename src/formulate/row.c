@@ -106,7 +106,10 @@ static void add_row(struct ct_build *b, int joint, const char *name, struct ct_e
     struct ct_linear l = linear_zero(b);
     wrench_terms(b, n, w, carried, &l);
     const int index = push_row(b, name, joint, &l, phi, gam);
-    b->eqs->row[index].is_length = !ct_ex3_is_zero(w->force);
+    struct ct_row *row = &b->eqs->row[index];
+    row->is_length = !ct_ex3_is_zero(w->force);
+    if (row->is_length)
+        row->lever = ct_path_levers(b, n.tail, n.head, carried, &row->nlever);
     const struct ct_pull p = {index, n.tail, n.head, joint, w->force, w->torque, carried};
     CT_PUSH(b->arena, b->pull, b->npull, b->pull_cap, p);
 }

@@ -130,6 +130,7 @@ static void position_rows(struct ct_assembler *s)
             add_row(s, s->speeds + i, nc, r);
     elastic_rows(s, false);
     s->nhard = s->n;
+    ct_loop_filter_apply(s, s->fixed_row);
     for (size_t i = 0; i < nc; i++)
         if (!s->q[i].is_given && s->q[i].wanted && ct_assembler_deviation(s, i, &r))
             add_row(s, s->speeds + i, nc, r);
@@ -151,6 +152,7 @@ static void velocity_rows(struct ct_assembler *s)
             add_row(s, s->speeds + i, nc, m->result.out[2 * i + 1] - s->u[i].value);
     elastic_rows(s, true);
     s->nhard = s->n;
+    ct_loop_filter_apply(s, NULL);
     for (size_t i = 0; i < nc; i++)
         if (!s->u[i].is_given && s->u[i].wanted)
             add_row(s, s->speeds + i, nc, m->result.out[2 * i + 1] - s->u[i].value);
@@ -309,7 +311,7 @@ static double find_velocities(struct ct_assembler *s)
             u[k] += s->b[k];
     }
     velocity_rows(s);
-    return violation(s);
+    return fmax(violation(s), ct_loop_filter_missed(s, true));
 }
 
 // ---- the stage ---------------------------------------------------------------------------------------------------
@@ -377,6 +379,7 @@ static void start_near_targets(struct ct_assembler *s, int try)
     ct_machine_set(s->m, 0, s->y);
     ct_modes_start(s->m, 0, s->y, NULL);
     ct_memory_start(s->m);
+    ct_machine_measure_rows(s->m);
 }
 
 // The joint of the first row that holds half a turn away from where it should; -1 if none does.
@@ -401,13 +404,33 @@ static bool report_half_turn(struct ct_assembler *s, int joint)
         self->name);
 }
 
+// The same with the data taken to their tolerance, where that is what they mean.
+static bool try_inexact(struct ct_assembler *s, int try, double *residual)
+{
+    s->filter->is_on = true;
+    start_near_targets(s, try);
+    *residual = find_positions(s);
+    *residual = fmax(*residual, ct_loop_filter_missed(s, false));
+    s->filter->is_on = *residual < ct_assembly_met && half_turned_joint(s) < 0
+                    && ct_loop_filter_holds(s);
+    return s->filter->is_on;
+}
+
+static bool try_exact(struct ct_assembler *s, int try, double *residual)
+{
+    start_near_targets(s, try);
+    *residual = find_positions(s);
+    return *residual < ct_assembly_met && half_turned_joint(s) < 0;
+}
+
 // Tries from places further and further away.
 static bool try_positions(struct ct_assembler *s, double *residual)
 {
     for (int try = 0; try < MOST_STARTS; try++) {
-        start_near_targets(s, try);
-        *residual = find_positions(s);
-        if (*residual < ct_assembly_met && half_turned_joint(s) < 0)
+        const bool is_exact = try_exact(s, try, residual);
+        if (is_exact && !ct_loop_filter_is_due(s))
+            return true;
+        if (try_inexact(s, try, residual) || (is_exact && try_exact(s, try, residual)))
             return true;
     }
     return false;
@@ -513,6 +536,7 @@ static struct ct_assembler assembly_create(struct ct_ctx *ctx, struct ct_arena *
     s.iwork = CT_NEWN(a, int, s.most + nu);
     s.work = CT_NEWN(a, double, ct_lstsq_work((int)s.most, (int)nu + 1));
     find_fixed_rows(&s, a);
+    s.filter = ct_loop_filter_create(a, &s);
     return s;
 }
 
@@ -563,6 +587,9 @@ static bool find_start(struct ct_assembler *s, struct ct_start *out)
     }
     if (!is_direct(s))
         drop_whole_turns(s, out->q);
+    out->is_inexact = s->filter && s->filter->is_on;
+    if (out->is_inexact)
+        ct_loop_filter_warn(s);
     return true;
 }
 
@@ -594,6 +621,8 @@ bool ct_assembly_find(struct ct_assembly *s, struct ct_start *out)
     memset(s->s.u, 0, n * sizeof *s->s.u);
     ct_machine_reset(s->s.m);
     ct_assembler_find_targets(&s->s, s->model);
+    if (s->s.filter)
+        s->s.filter->is_on = false;
     for (size_t i = 0; i < n; i++)
         s->is_given[i] = s->s.q[i].is_given;
     return find_start(&s->s, out);

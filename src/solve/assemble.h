@@ -13,6 +13,7 @@ struct ct_start {
     const bool *is_given; // of each: its place is given, not guessed or left open
     size_t n;
     double residual;      // largest |phi| left
+    bool is_inexact;      // they close to the tolerance of the data only, in the least-squares sense
     bool is_open;         // the loops do not close: places as they are wanted
     double *elastic;      // elastic coordinates of all beams, beam by beam; NULL: undeformed
     double *elastic_rate; // and their rates; NULL: as the beams are given

@@ -35,9 +35,30 @@ struct ct_assembler {
     double *r, *shift; // residuals; of what must be met, its multipliers over hard^2
     double *kept_y, *kept_memory, *kept_A, *step;
     int *iwork;
+    struct ct_loop_filter *filter; // assemble_data.c
     size_t most;     // rows of A
     size_t nhard, n; // rows now: what must be met comes first
 };
+
+/// Rows of loops that depend on others but for the tolerance of the data, as those of coaxial hinges whose places are given to
+/// some digits: what they say beyond the others is left out, and the loops close in the least-squares sense.
+struct ct_loop_filter {
+    bool is_on;                          // rows are filtered
+    double *B, *Q, *A;                   // workspace
+    double *size, *r, *tau, *work, *kept_y;
+    int *row;
+};
+struct ct_loop_filter *ct_loop_filter_create(struct ct_arena *a, const struct ct_assembler *s);
+/// The first rows of s->A, s->r, up to s->nhard, are those of the loops that is_loop (nrow; NULL: all) names, then given values.
+void ct_loop_filter_apply(struct ct_assembler *s, const bool *is_loop);
+/// Have rows at s->y parts that are neither round-off nor more than the tolerance of the data?
+bool ct_loop_filter_is_due(struct ct_assembler *s);
+/// With the filter, at the last rows: by how much given values are missed, which it may have left out.
+double ct_loop_filter_missed(const struct ct_assembler *s, bool of_speeds);
+/// At s->y, closed with the filter: are the gaps within the tolerance, and is the rank the same elsewhere on the motion?
+bool ct_loop_filter_holds(struct ct_assembler *s);
+/// By how much loops stay open.
+void ct_loop_filter_warn(struct ct_assembler *s);
 
 /// What a joint's `initial` says of its values or rates.
 const struct ct_value *ct_initial_value(const struct ct_edge_info *e, bool is_speed);

@@ -85,7 +85,8 @@ static enum ct_eval residual(void *user, double t, const double *q, const double
         return CT_EVAL_RETRY;
     copy_few(r, out, nu);
     for (int i = 0; i < s->rank; i++) {
-        phi[i] = out[nu + (size_t)s->row[i]];
+        phi[i] = out[nu + (size_t)s->row[i]]
+               - (s->m->is_inexact ? s->m->open[s->row[i]] : 0);
         v[i] = out[nu + nrow + (size_t)s->row[i]];
     }
     return CT_EVAL_OK;
@@ -177,7 +178,7 @@ static enum ct_eval tangent(void *user, double t, const double *q, const double 
 static bool is_few(const struct ct_embed *s)
 {
     const struct ct_machine *m = s->m;
-    return m->nrow && m->residual.nout && m->nu + 2 * (size_t)s->rank <= CT_MOST_INVERTED;
+    return m->nrow && !m->is_inexact && m->residual.nout && m->nu + 2 * (size_t)s->rank <= CT_MOST_INVERTED;
 }
 
 static const struct ct_dae_place *place(struct ct_arena *a, struct ct_embed *s)

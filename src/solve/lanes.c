@@ -386,7 +386,7 @@ bool ct_lanes_load(struct ct_lanes *s, int l, const struct ct_run_options *o)
 {
     const double *y = ct_run_state(s->run);
     const int rank = s->embed->rank;
-    if (!(o->duration > 0) || ct_lanes_refusal(o) || !tables_reach(s->e->x, o->duration)
+    if (!(o->duration > 0) || s->m->is_inexact || ct_lanes_refusal(o) || !tables_reach(s->e->x, o->duration)
         || (s->is_used && (o->method != s->method || rank != s->rank))
         || (s->needs_lam && rank != s->nrow))
         return false;
