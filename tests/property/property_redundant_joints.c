@@ -30,6 +30,7 @@ struct verdict {
 
 static void expect(struct verdict *v, const char *what, double found, double allowed)
 {
+
     if (!v->what && !(found <= allowed)) // also if not a number
         *v = (struct verdict){what, found, allowed};
 }
@@ -89,14 +90,30 @@ static double compare(const struct oracle *o, const struct motion *got,
     return worst / scale;
 }
 
+// Where everything is demanded or guessed, the guesses say the position that the mechanism was made in: nothing is nearer.
+static void check_nearest(const struct scene *s, const struct answer *a, double size,
+                          double allowed, struct verdict *v)
+{
+    for (int j = 0; j < s->njoint; j++)
+        if (joint_speeds(s->joint[j].type) > 0 && s->joint[j].start == START_NONE)
+            return;
+    for (int b = 1; b < s->nbody; b++) {
+        const struct pose *at = &a->at.body[b], *want = &s->body[b].pose;
+        expect(v, "place of a body", difference(at->at, want->at) / size, allowed);
+        expect(v, "axes of a body", norm(small_rotation(relative(want->R, at->R))), allowed);
+    }
+    for (int j = 0; j < s->njoint; j++)
+        for (int c = 0; c < joint_speeds(s->joint[j].type); c++)
+            expect(v, "speed of a joint",
+                   fabs(a->at.u[j][c] - s->joint[j].u[c]) / fmax(size, 1), 10 * allowed);
+}
+
 static struct verdict judge(const struct scene *s, const struct answer *a, int freedoms)
 {
     struct verdict v = {0};
     struct oracle o;
     struct motion want;
     double condition;
-    // Digits of the data leave gaps of this size between joints that repeat each other: angles, and lengths over size.
-    const double data = s->digits > 15 ? 0 : pow(10, 1 - s->digits);
     if (!a->ok) {
         v.what = a->message;
         return v;
@@ -104,16 +121,19 @@ static struct verdict judge(const struct scene *s, const struct answer *a, int f
     if (a->freedoms != freedoms)
         v = (struct verdict){"freedoms", (double)a->freedoms, freedoms};
     oracle_open(&o, s, &a->at);
-    const double spread = 1 / o.smallest;
+    // Digits of the data leave gaps of this size between joints that repeat each other: angles, and lengths over size.
+    const double data = s->digits > 15 ? 0 : pow(10, 1 - s->digits), spread = 1 / o.smallest;
+    const double gap = o.rank < o.nrow ? data : 0;
     check_start(s, a, o.size, &v);
     expect(&v, "freedoms where it starts", o.freedoms != freedoms, 0);
-    expect(&v, "closure", o.position, 1e-9 + 10 * data * spread);
-    expect(&v, "speeds", o.velocity, 1e-9 + 30 * data * spread);
+    expect(&v, "closure", o.position, 1e-11 + 10 * gap * spread);
+    expect(&v, "speeds", o.velocity, 1e-11 + 30 * gap * spread);
+    check_nearest(s, a, o.size, (1e-9 + 10 * data) * spread, &v);
     if (!v.what) {
         expect(&v, "solver", !oracle_accelerations(&o, &a->at, &want, &condition), 0);
         // round-off and the closure to 1e-12, each amplified by the inverse of G and of the mass matrix
         expect(&v, "accelerations", compare(&o, &a->a, &want, &a->at),
-               (1e-11 + 100 * data) * spread * spread * sqrt(condition));
+               (1e-11 + 100 * gap) * spread * spread * sqrt(condition));
     }
     if (strstr(a->message, "singular"))
         expect(&v, a->message, 1, 0);
@@ -198,7 +218,7 @@ static void pairs_of_joints_agree_with_the_solver(void **state)
 static void redundant_loops_agree_with_the_solver(void **state)
 {
     (void)state;
-    assert_true(all_agree(KIND_LOOPS, 1, 300, 0));
+    assert_true(all_agree(KIND_LOOPS, 1, 150, 0));
 }
 
 static void plain_mechanisms_agree_with_the_solver(void **state)
