@@ -205,6 +205,7 @@ struct ct_equations {
     // operations by formulation, the solution included; INFINITY: it does not apply or cannot win
     double formulation_cost[CT_NFORMULATION];
     bool has_dynamics; // M and Q are derived; else ct_formulate_dynamics does it
+    bool is_open;      // joints close no loop: J keeps its rank on any trees
     bool is_analysed;  // to be linearised, not to be integrated: a few evaluations
     ct_ex *Q;          // nu
     const struct ct_carried

@@ -2,6 +2,7 @@
 #include "formulate/row.h"
 #include "formulate/dynamics.h"
 #include "formulate/gap.h"
+#include "graph/pieces.h"
 
 #include <string.h>
 
@@ -338,8 +339,26 @@ static void driven_row(struct ct_build *b, int coordinate)
     b->coordinate[coordinate].motion_row = (int)b->eqs->nrow; // one too large: 0 is none
 }
 
+// Do joints close no loop? Gears couple coordinates across bodies, so that they count as one.
+static bool is_open(const struct ct_build *b)
+{
+    const struct ct_model *m = b->model;
+    struct ct_pieces p;
+    ct_pieces_init(b->arena, (int)m->nbody, &p);
+    for (size_t j = 0; j < m->njoint; j++) {
+        const struct ct_instance *joint = &m->joint[j];
+        if (joint->from < 0 || joint->to < 0)
+            return false;
+        const struct ct_edge between = {m->frame[joint->from].body, m->frame[joint->to].body};
+        if (!ct_pieces_join(&p, between))
+            return false;
+    }
+    return true;
+}
+
 bool ct_rows_derive(struct ct_build *b)
 {
+    b->eqs->is_open = is_open(b);
     for (size_t i = 0; i < b->nedge; i++) {
         const struct ct_edge_info *e = &b->edge[i];
         const bool moves

@@ -588,8 +588,10 @@ static bool find_start(struct ct_assembler *s, struct ct_start *out)
     if (!is_direct(s))
         drop_whole_turns(s, out->q);
     out->is_inexact = s->filter && s->filter->is_on;
-    if (out->is_inexact)
+    if (out->is_inexact) {
+        out->freedoms = ct_loop_filter_freedoms(s);
         ct_loop_filter_warn(s);
+    }
     return true;
 }
 

@@ -14,6 +14,7 @@ struct ct_start {
     size_t n;
     double residual;      // largest |phi| left
     bool is_inexact;      // they close to the tolerance of the data only, in the least-squares sense
+    size_t freedoms;      // then: left by the loops, without those of beams
     bool is_open;         // the loops do not close: places as they are wanted
     double *elastic;      // elastic coordinates of all beams, beam by beam; NULL: undeformed
     double *elastic_rate; // and their rates; NULL: as the beams are given

@@ -135,10 +135,11 @@ static double largest_gap(struct ct_assembler *s)
     return open;
 }
 
+// Steps divide by the damping, 1e-8, at worst: what gaps and singular values below this move is 1e-6 of a step.
+static const double unmoved = 1e-11;
+
 bool ct_loop_filter_is_due(struct ct_assembler *s)
 {
-    // Steps divide by the damping, 1e-8, at worst: what gaps and singular values below this move is 1e-6 of a step.
-    const double unmoved = 1e-11;
     if (!s->m->nrow || !s->m->nu)
         return false;
     return largest_gap(s) > unmoved || loop_rank(s, unmoved) > loop_rank(s, ct_data_tolerance);
@@ -229,9 +230,28 @@ double ct_loop_filter_missed(const struct ct_assembler *s, bool of_speeds)
     return most;
 }
 
+// Are gaps that are left such that no motion closes them? Beside a singular position given values may hold it up.
+static bool is_least(struct ct_assembler *s, double gap)
+{
+    const double little = 1e-2; // of the gap: what iterations leave
+    loop_rows(s);
+    double left = 0;
+    for (size_t i = 0; i < s->m->nrow; i++)
+        if (s->fixed_row[i])
+            left = fmax(left, fabs(s->r[i]) / s->m->row_size[i]);
+    return left <= fmax(unmoved, little * gap);
+}
+
 bool ct_loop_filter_holds(struct ct_assembler *s)
 {
-    return largest_gap(s) <= ct_data_tolerance && is_rank_everywhere(s);
+    const double gap = largest_gap(s);
+    return gap <= ct_data_tolerance && is_least(s, gap) && is_rank_everywhere(s);
+}
+
+size_t ct_loop_filter_freedoms(struct ct_assembler *s)
+{
+    evaluate(s);
+    return s->m->nu - (size_t)loop_rank(s, ct_data_tolerance);
 }
 
 void ct_loop_filter_warn(struct ct_assembler *s)

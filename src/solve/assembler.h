@@ -57,6 +57,8 @@ bool ct_loop_filter_is_due(struct ct_assembler *s);
 double ct_loop_filter_missed(const struct ct_assembler *s, bool of_speeds);
 /// At s->y, closed with the filter: are the gaps within the tolerance, and is the rank the same elsewhere on the motion?
 bool ct_loop_filter_holds(struct ct_assembler *s);
+/// Freedoms that the loops leave at s->y, to the tolerance of the data.
+size_t ct_loop_filter_freedoms(struct ct_assembler *s);
 /// By how much loops stay open.
 void ct_loop_filter_warn(struct ct_assembler *s);
 

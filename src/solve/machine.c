@@ -103,6 +103,7 @@ struct ct_machine *ct_machine_create(struct ct_arena *a, const struct ct_model *
     for (size_t k = 0; k < m->nu; k++)
         m->speed_size[k] = 1;
     m->rank_tolerance = ct_rank_tolerance;
+    m->most_rank = m->nrow;
     m->left_out = CT_NEWN(a, bool, m->nrow + 1);
     m->open = CT_NEWN(a, double, m->nrow + 1);
     m->g[0] = CT_NEWN(a, double, e->nmode + 1);
@@ -172,6 +173,7 @@ size_t ct_machine_code_size(struct ct_machine *m)
 void ct_machine_reset(struct ct_machine *m)
 {
     m->is_inexact = false;
+    m->most_rank = m->nrow;
     m->rank_tolerance = ct_rank_tolerance;
     start_input(m);
     ct_machine_prepare(m);

@@ -73,6 +73,7 @@ struct ct_machine {
     // Data close to their tolerance only: rows keep what they leave open at the start, phi - open = 0; those that are left out,
     // as they depend on others to that tolerance, read 0.
     bool is_inexact, *left_out; // (nrow)
+    size_t most_rank;           // of J; nrow where data are exact
     double *open;               // (nrow)
     double *symbol_value;           // workspace of it, by symbol of e->x
     double *g[2];                   // values of root functions, for modes (nmode)
@@ -135,8 +136,8 @@ bool ct_machine_solved(struct ct_machine *m, double *a);
 void ct_machine_constraint(struct ct_machine *m);
 /// Natural sizes of rows and speeds at the input, which ranks are judged against.  (theory 6.5)
 void ct_machine_measure_rows(struct ct_machine *m);
-/// The input is the start of data that close to their tolerance only.
-void ct_machine_set_inexact(struct ct_machine *m);
+/// The input is the start of data that close to their tolerance only, with so many freedoms of joints on any trees.
+void ct_machine_set_inexact(struct ct_machine *m, size_t freedoms);
 /// Of such data: the rows behind the first `rank` of row (nrow) take no part.
 void ct_machine_leave_out(struct ct_machine *m, const int *row, int rank);
 /// Rank of J (nrow x nu): rows of which more than `least` is left against their sizes. row (nrow, out): the largest first. A (nu x nrow,

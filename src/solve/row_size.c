@@ -11,6 +11,7 @@
 // Entries J_ik S_k / N_i are at most of order 1 and have no unit.
 #include "solve/machine.h"
 
+#include "formulate/build.h"
 #include "numeric/dense.h"
 
 #include <math.h>
@@ -57,8 +58,10 @@ void ct_machine_measure_rows(struct ct_machine *m)
 int ct_machine_order_rows(const struct ct_machine *m, const double *J, double least, int *row,
                           double *A, double *tau, double *work)
 {
-    const int n = (int)m->nu, nrow = (int)m->nrow, most = n < nrow ? n : nrow;
-    int rank = 0;
+    const int n = (int)m->nu, nrow = (int)m->nrow;
+    int rank = 0, most = n < nrow ? n : nrow;
+    if (most > (int)m->most_rank)
+        most = (int)m->most_rank;
     for (int i = 0; i < nrow; i++)
         for (int k = 0; k < n; k++)
             A[k + n * i] = J[i + nrow * k] * m->speed_size[k] / m->row_size[i];
@@ -68,10 +71,13 @@ int ct_machine_order_rows(const struct ct_machine *m, const double *J, double le
     return rank;
 }
 
-void ct_machine_set_inexact(struct ct_machine *m)
+void ct_machine_set_inexact(struct ct_machine *m, size_t freedoms)
 {
     m->is_inexact = true;
-    m->rank_tolerance = ct_data_tolerance;
+    if (m->e->build->nflexible) // which may follow loops that are stiff without them
+        m->rank_tolerance = ct_data_tolerance;
+    else
+        m->most_rank = m->nu - freedoms;
     memset(m->open, 0, m->nrow * sizeof *m->open);
     memset(m->left_out, 0, m->nrow * sizeof *m->left_out);
     ct_machine_constraint(m);
