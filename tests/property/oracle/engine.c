@@ -91,6 +91,7 @@ static void read_motion(const struct scene *s, const struct ct_sim *sim, struct 
     }
 }
 
+// The first error, or else the first warning, without the file's name and the quoted lines.
 static void keep_message(const struct ct_ctx *ctx, struct answer *out)
 {
     char *text = NULL;
@@ -98,7 +99,11 @@ static void keep_message(const struct ct_ctx *ctx, struct answer *out)
     FILE *f = open_memstream(&text, &n);
     ct_ctx_print_diagnostics(ctx, f);
     fclose(f);
-    snprintf(out->message, sizeof out->message, "%s", text);
+    const char *said = strstr(text, "error: ");
+    if (!said)
+        said = strstr(text, "warning: ");
+    if (said)
+        snprintf(out->message, sizeof out->message, "%.*s", (int)strcspn(said, "\n"), said);
     free(text);
 }
 

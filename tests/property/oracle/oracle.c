@@ -98,8 +98,7 @@ static bool is_length(const struct joint *j, int i)
         || (j->type == PLANAR && i < 2) || (j->type == FREE && i < 3);
 }
 
-// The unit of a coordinate's column.
-static double unit_of(const struct oracle *o, int joint, int i)
+double oracle_unit(const struct oracle *o, int joint, int i)
 {
     return is_length(&o->s->joint[joint], i) ? o->size : 1;
 }
@@ -137,7 +136,7 @@ static void add_joint(struct oracle *o, int joint, int row, const struct motion 
         add_turn(o, row + 3 + i, j->to, e);
         add_turn(o, row + 3 + i, j->from, scaled(-1, e));
         for (int c = 0; c < nu; c++) {
-            const double scale = unit_of(o, joint, c);
+            const double scale = oracle_unit(o, joint, c);
             *entry(o, row + i, o->column[joint] + c) = -p.linear[c].e[i] * scale / o->size;
             *entry(o, row + 3 + i, o->column[joint] + c) = -p.angular[c].e[i] * scale;
         }
@@ -327,7 +326,7 @@ static void unpack(const struct oracle *o, const double *x, struct motion *out)
         }
     for (int j = 0; j < s->njoint; j++)
         for (int i = 0; i < joint_speeds(s->joint[j].type); i++)
-            out->u[j][i] = x[o->column[j] + i] * unit_of(o, j, i);
+            out->u[j][i] = x[o->column[j] + i] * oracle_unit(o, j, i);
 }
 
 void oracle_freedom(const struct oracle *o, int k, struct motion *speeds)
@@ -386,7 +385,7 @@ static void balance(const struct oracle *o, const struct motion *m, const double
         if (n == 1)
             r[o->column[j]]
                 = -(p->effort - p->stiffness * (m->q[j][0] - p->rest) - p->damping * m->u[j][0])
-                * unit_of(o, j, 0);
+                * oracle_unit(o, j, 0);
     }
 }
 

@@ -43,6 +43,9 @@ struct motion motion_of_scene(const struct scene *s);
 void oracle_open(struct oracle *o, const struct scene *s, const struct motion *m);
 void oracle_close(struct oracle *o);
 
+/// The unit of coordinate i of a joint: the mechanism's size for a length, 1 for an angle.
+double oracle_unit(const struct oracle *o, int joint, int i);
+
 /// The accelerations: of motion, v and w are those of the bodies' frames, u those of the joints. False if the mass matrix of the freedoms is not
 /// positive definite. stiffness of the answer: the condition number of that matrix.
 bool oracle_accelerations(const struct oracle *o, const struct motion *m, struct motion *a,
