@@ -558,6 +558,9 @@ static void find_asked(struct ct_run *r, struct ct_problem *p)
         p->keeps_energy |= ct_fidelity_is_check(r->e, i);
 }
 
+// Steps in double precision are held to no less than this.
+static const double sharpest = 1e-10;
+
 // Steps of the implicit method are held to this part of what is wanted.
 static const double held_to = 0.1;
 
@@ -613,7 +616,7 @@ bool ct_run_simulate(struct ct_run *r, const struct ct_run_options *o,
     memset(r->largest, 0, r->e->nresult * sizeof *r->largest);
     ct_singular_start(r->singular);
     r->singular->wanted = o->step == 0 ? o->wanted : 0;
-    r->s->least_left = o->step == 0 && o->wanted > 0 ? DBL_EPSILON / o->wanted : 0;
+    r->s->least_left = o->step == 0 ? DBL_EPSILON / fmax(o->wanted, sharpest) : 0;
     r->s->left = INFINITY;
     if (r->fidelity)
         ct_fidelity_start(r->fidelity, o->method);
