@@ -261,6 +261,7 @@ static bool prepare(struct ct_sim *sim, const struct ct_sim_options *o)
     sim->open.result = CT_NEWN(sim->own.model, bool, s->equations.nresult + 1);
     sim->report.final = CT_NEWN(sim->own.model, double, s->equations.nresult + 1);
     sim->report.rank = ct_run_embed(sim->run)->rank;
+    ct_sim_warn_of_start(sim);
     warn_of_singular_start(sim);
     if (ct_run_results(sim->run, 0, ct_run_state(sim->run), sim->report.final) != CT_EVAL_OK)
         return ct_error(&sim->own, (struct ct_mark){.file = s->model.file}, CT_E_SINGULAR,

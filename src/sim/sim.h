@@ -106,6 +106,8 @@ void ct_sim_verify(struct ct_sim *sim);
 /// two runs differ there.
 bool ct_is_rounding(double scale, double deviation, double largest);
 
+/// Warn of joints that start more than a right angle or half the natural length from their guesses.
+void ct_sim_warn_of_start(struct ct_sim *sim);
 /// Warn of beams that bent too far for one frame.
 void ct_slope_warn(struct ct_ctx *ctx, const struct ct_equations *e,
                    const struct ct_slope_report *report);

@@ -109,6 +109,7 @@ static void write_structure(struct ct_json *j, const struct ct_sim *sim)
     ct_json_text(j, "tree_choice", sim->system->tree.how);
     write_left_out(j, e);
     write_beams(j, e);
+    ct_sim_write_start(j, sim);
 }
 
 static void write_open(struct ct_json *j, const struct ct_sim *sim)

@@ -255,6 +255,22 @@ static double find_scale(const struct ct_model *model)
     return largest > 0 ? fmin(1, largest / small_length) : 1;
 }
 
+// A run that starts in a singular configuration begins with the assembled speeds, which rows chosen there need not keep (lead_in.c).
+static bool keeps_demands(struct ct_run *r, const struct ct_start *start)
+{
+    if (!ct_start_has_moved(r->e, start, r->assembled, r->y))
+        return true;
+    struct ct_arena *own = ct_arena_create_under(r->arena);
+    bool *row = CT_NEWN(own, bool, r->m->nrow + 1);
+    const bool ok
+        = ct_singular_is_start(own, r->s, 0, r->assembled, row)
+       || ct_start_is_kept(r->ctx, own, r->model, r->e, start, r->assembled, r->y, true);
+    ct_arena_destroy(own);
+    ct_machine_set(r->m, 0, r->y);
+    ct_machine_constraint(r->m);
+    return ok;
+}
+
 // To the start, assembled; rows and columns chosen there.
 bool ct_run_begin(struct ct_run *r, const struct ct_start *start)
 {
@@ -277,6 +293,8 @@ bool ct_run_begin(struct ct_run *r, const struct ct_start *start)
                  "the assembled start is singular: the loops cannot be held there");
         return false;
     }
+    if (!keeps_demands(r, start))
+        return false;
     if (rhs(r, 0, r->y, r->dy) != CT_EVAL_OK) {
         ct_error(r->ctx, (struct ct_mark){.file = r->model->file}, CT_E_SINGULAR,
                  "the accelerations at t = 0 cannot be found");

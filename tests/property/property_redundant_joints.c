@@ -46,14 +46,15 @@ static double difference(struct vector a, struct vector b)
     return norm(plus(a, -1, b));
 }
 
-// What was demanded is kept, whatever the digits: these coordinates are independent. Lengths and angles alike, lengths over size.
-static void check_start(const struct scene *s, const struct answer *a, double size,
+// What was demanded is kept: these coordinates are independent. Lengths and angles alike, lengths over size. Where loops close in the
+// least-squares sense, to `data`, so are demands.
+static void check_start(const struct scene *s, const struct answer *a, double size, double data,
                         struct verdict *v)
 {
     for (int i = 0; i < s->njoint; i++) {
         const struct joint *j = &s->joint[i];
         const int n = joint_speeds(j->type) - 3 * joint_has_quaternion(j->type);
-        const double kept = 1e-9 * fmax(size, 1);
+        const double kept = (1e-9 + 10 * data) * fmax(size, 1);
         if (j->start != START_DEMAND)
             continue;
         for (int c = 0; c < n; c++)
@@ -124,7 +125,7 @@ static struct verdict judge(const struct scene *s, const struct answer *a, int f
     // Digits of the data leave gaps of this size between joints that repeat each other: angles, and lengths over size.
     const double data = s->digits > 15 ? 0 : pow(10, 1 - s->digits), spread = 1 / o.smallest;
     const double gap = o.rank < o.nrow ? data : 0;
-    check_start(s, a, o.size, &v);
+    check_start(s, a, o.size, gap, &v);
     expect(&v, "freedoms where it starts", o.freedoms != freedoms, 0);
     expect(&v, "closure", o.position, 1e-11 + 10 * gap * spread);
     expect(&v, "speeds", o.velocity, 1e-11 + 30 * gap * spread);
@@ -145,7 +146,7 @@ static struct verdict judge(const struct scene *s, const struct answer *a, int f
 
 static struct {
     const char *folder; // models that fail go there; NULL: to the output
-    int mechanisms, failures, redundant;
+    int mechanisms, failures, refused;
     int of_type[JOINT_TYPES];
 } run;
 
@@ -179,7 +180,7 @@ static bool agrees(enum kind kind, uint64_t seed, int digits)
 {
     struct scene s;
     int freedoms;
-    bool ok = true;
+    int refused = 0, wrong = 0;
     scene_generate(&s, kind, seed, digits, &freedoms);
     for (int j = 0; j < s.njoint; j++)
         run.of_type[s.joint[j].type]++;
@@ -188,10 +189,15 @@ static bool agrees(enum kind kind, uint64_t seed, int digits)
         struct answer a;
         engine_ask(&s, &ways[k], &a);
         const struct verdict v = judge(&s, &a, freedoms);
-        if (v.what)
+        const bool is_refused = digits == 6 && !a.ok && strstr(a.message, "E402");
+        if (v.what && !is_refused)
             report(&s, &ways[k], &v);
-        ok &= !v.what;
+        refused += is_refused;
+        wrong += v.what && !is_refused;
     }
+    // redundant joints of long chains may add up more than six digits are off: on every tree, and with its message
+    const bool ok = !wrong && (refused == 0 || refused == WAYS);
+    run.refused += ok && refused;
     run.failures += !ok;
     return ok;
 }
@@ -200,13 +206,14 @@ static bool agrees(enum kind kind, uint64_t seed, int digits)
 static bool all_agree(enum kind kind, uint64_t first, int count, int digits)
 {
     static const int several[] = {17, 10, 6};
-    const int failures = run.failures;
+    const int failures = run.failures, refused = run.refused;
     print_message("%s: seeds %llu to %llu\n", kind_name[kind], (unsigned long long)first,
                   (unsigned long long)first + (unsigned long long)count - 1);
     for (int i = 0; i < count; i++)
         agrees(kind, first + (uint64_t)i, digits ? digits : several[(first + (uint64_t)i) % 3]);
-    print_message("%d of %d fail\n", run.failures - failures, count);
-    return run.failures == failures;
+    print_message("%d of %d fail, %d of 6 digits are refused\n", run.failures - failures, count,
+                  run.refused - refused);
+    return run.failures == failures && 100 * (run.refused - refused) <= count;
 }
 
 static void pairs_of_joints_agree_with_the_solver(void **state)
