@@ -244,8 +244,9 @@ static bool is_least(struct ct_assembler *s, double gap)
 
 bool ct_loop_filter_holds(struct ct_assembler *s)
 {
+    const double closed = 1e-14; // round-off of some sums of vectors: the data close exactly, and mean it
     const double gap = largest_gap(s);
-    return gap <= ct_data_tolerance && is_least(s, gap) && is_rank_everywhere(s);
+    return gap > closed && gap <= ct_data_tolerance && is_least(s, gap) && is_rank_everywhere(s);
 }
 
 size_t ct_loop_filter_freedoms(struct ct_assembler *s)
