@@ -76,13 +76,13 @@ title() {
     R08a) echo "heavy top, 10 s" ;;
     R08b) echo "top through the vertical, 10 s" ;;
     R12) echo "chain of 40 links, 5 s" ;;
-    R13_d1) echo "parallelogram through singular positions, 20 s" ;;
+    R13_d1) echo "parallelogram, bars collinear, 20 s" ;;
     R13_d0999) echo "nearly a parallelogram, 4 s" ;;
     R13_d099_10s) echo "near a parallelogram, 10 s" ;;
     R14_k1e4) echo "spring pendulum, 1e4 N/m, 10 s" ;;
     R14_k1e6) echo "spring pendulum, 1e6 N/m, 10 s" ;;
     R15_M1e-3) echo "light cart, 1 g, 10 s" ;;
-    H_light_cart) echo "light cart, 1 mg, absolute coordinates, 10 s" ;;
+    H_light_cart) echo "light cart (absolute), 1 mg, 10 s" ;;
     R15_M1e-6) echo "light cart, 1 mg, 10 s" ;;
     R16) echo "six-axis arm, 2 s" ;;
     R04_2000s) echo "pendulum, 2000 s" ;;
@@ -201,7 +201,10 @@ reason() {
 # row CASE: its line of the table
 row() {
     case=$1
-    line="| $(title "$case") ($case)"
+    case $case in
+    B*) line="| $case" ;; # the page says what the parts of these names mean
+    *) line="| $(title "$case") ($case)" ;;
+    esac
     methods=
     for T in 1e-4 1e-6 1e-8 1e-10; do
         if run "$reference/$case.yaml" --method auto --tolerance $T; then
@@ -283,31 +286,32 @@ section_lost() {
 
 # ---- work and precision ------------------------------------------------------------------------------------
 
-# cheapest TABLE ERROR [error]: the cheapest setting that meets it, or "none"; with its error in a column of its own
+# cheapest TABLE ERROR LAST: cells of the cheapest setting that meets it: time [ms] or "none", method and setting, evaluations,
+# and LAST, its `steps` or its `error`
 cheapest() {
-    awk -F, -v wanted="$2" -v has_error="${3:+1}" '
+    awk -F, -v wanted="$2" -v last="$3" '
         NR > 1 && $5 != "" && $5 <= wanted && (best == "" || $6 < best) {
             best = $6; what = sprintf("%s, %.3g", $1, $2); error = $5; steps = $7; f = $8
         }
         END {
-            if (best == "") printf "none"
-            else printf "%.3g ms (%s: %d steps, %d evaluations)", 1e3 * best, what, steps, f
-            if (has_error) printf " | %s", best == "" ? "" : sprintf("%.1e", error)
-            print ""
+            if (best == "") print "none | | |"
+            else printf "%.3g | %s | %d | %s\n", 1e3 * best, what, f, last == "steps" ? steps : sprintf("%.1e", error)
         }' "$1"
 }
 
-# figure NAME CASE REFERENCE MODEL OPTION...: table and plot, a line of the table of cheapest settings
+# figure NAME CASE REFERENCE MODEL OPTION...: table and plot, lines of the table of cheapest settings
 figure() {
     name=$1 what=$2 against=$3
     shift 3
     "$COTREE" accuracy "$@" --reference "$against" --error 1e-6 --plot "$work/figures/$name.svg" -o "$work/$name.csv" --quiet
-    echo "| [$what](figures/$name.svg) | $(cheapest "$work/$name.csv" 1e-6) | $(cheapest "$work/$name.csv" 1e-8) |"
+    for wanted in 1e-6 1e-8; do
+        echo "| [$what](figures/$name.svg) | $wanted | $(cheapest "$work/$name.csv" "$wanted" steps) |"
+    done
 }
 
 section_figures() {
-    echo "| problem | error 1e-6 | error 1e-8 |"
-    echo "| --- | --- | --- |"
+    echo "| problem | error | time [ms] | method, tolerance | evaluations | steps |"
+    echo "| --- | --- | --- | --- | --- | --- |"
     for case in R05_N1 R05_N2 R05_N10 R01 R06_brick R04 R08b R14_k1e6 R12; do
         figure "accuracy_$case" "$(title "$case")" "$reference/$case.reference.csv" "$reference/$case.yaml"
     done
@@ -324,11 +328,11 @@ columns() {
         { for (i = 1; i <= n; i++) printf "%s%s", (i > 1 ? "," : ""), $(of[name[i]]); print "" }' "$table"
 }
 
-# Beside what other engines need, and a twentieth of that: the error of the output point at the end of the run (of Andrews'
-# mechanism of the seven angles).
+# Times of other engines over ours: the error of the output point at the end of the run (of Andrews' mechanism of the
+# seven angles).
 section_aims() {
-    echo "| problem | error | ours | error at the end | engine | its time | a twentieth |"
-    echo "| --- | --- | --- | --- | --- | --- | --- |"
+    echo "| problem | error | cotree [ms] | method, tolerance or step | evaluations | its error | other engine | [ms] | ratio |"
+    echo "| --- | --- | --- | --- | --- | --- | --- | --- | --- |"
     before=
     while IFS=, read -r case wanted its engine; do
         what=$(title "$case")
@@ -348,25 +352,26 @@ section_aims() {
             if [ -n "$step" ]; then
                 "$COTREE" accuracy "$reference/$case.yaml" --reference "$work/point.csv" --samples 2 \
                     --method rk4,dopri5,dop853 --step "$step" --per-decade 10 -o "$work/fixed.csv" --quiet "$@"
-                sed -e 1d -e 's/,/ with fixed steps,/' "$work/fixed.csv" >>"$work/aim.csv"
+                sed -e 1d -e 's/,/ fixed,/' "$work/fixed.csv" >>"$work/aim.csv"
             fi
         fi
         before=$case
-        awk -v t="$its" -v line="| $what | $wanted | $(cheapest "$work/aim.csv" "$wanted" error) | $engine" '
-            BEGIN { printf "%s | %s ms | %g ms |\n", line, t, sprintf("%.2g", t / 20) }'
+        cells=$(cheapest "$work/aim.csv" "$wanted" error)
+        awk -v t="$its" -v ours="${cells%% *}" -v line="| $what | $wanted | $cells | $engine" '
+            BEGIN { printf "%s | %s | %s |\n", line, t, (ours + 0 > 0 ? sprintf("%.3g", t / ours) : "") }'
     done <<'END'
-R05_N1,1e-6,5.0,RBDL with fixed steps of Runge-Kutta 4
-R05_N1,1e-8,26,RBDL with fixed steps of Runge-Kutta 4
+R05_N1,1e-6,5.0,RBDL, fixed RK4
+R05_N1,1e-8,26,RBDL, fixed RK4
 R05_N10,1e-6,69,RBDL
 R05_N10,1e-8,350,Pinocchio
 R05_N40,1e-6,730,Pinocchio
 R05_N40,1e-8,3850,Pinocchio
-R01,1e-6,5.1,RBDL with CVODE
-R01,1e-8,9.7,RBDL with CVODE
-R01,1e-6,2.9,equations written by hand with CVODE
-R01,1e-8,4.4,equations written by hand with CVODE
-R06_brick,1e-6,2.7,RBDL with CVODE
-R06_brick,1e-8,3.0,RBDL with CVODE
+R01,1e-6,5.1,RBDL, CVODE
+R01,1e-8,9.7,RBDL, CVODE
+R01,1e-6,2.9,by hand, CVODE
+R01,1e-8,4.4,by hand, CVODE
+R06_brick,1e-6,2.7,RBDL, CVODE
+R06_brick,1e-8,3.0,RBDL, CVODE
 END
 }
 
@@ -492,8 +497,9 @@ with_shear() {
 section_orders() {
     echo '| quantity | beam | 16 elements | 32 elements | order |'
     echo '| --- | --- | --- | --- | --- |'
-    sh "$reference/orders.sh" | sed -n -e 's/^tip,/tip under a force,/;s/^still,/first frequency,/;s/^turning,/the same turning at 100 rad\/s,/' \
-        -e 's/^\([a-z0-9/ ]*\), \(.*\), errors \(.*\), \(.*\): order \(.*\)$/| \1 | `\2` | \3 | \4 | \5 |/p'
+    # shellcheck disable=SC2016 # backquotes of Markdown
+    sh "$reference/orders.sh" | sed -n -e 's/^tip,/tip under a force,/;s/^still,/first frequency,/;s/^turning,/the same at 100 rad\/s,/' \
+        -e 's/theory: timoshenko, shear_factor: 5\/6/timoshenko/' -e 's/^\([a-z0-9/ ]*\), \(.*\), errors \(.*\), \(.*\): order \(.*\)$/| \1 | `\2` | \3 | \4 | \5 |/p'
 }
 
 section_shear() {

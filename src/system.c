@@ -205,7 +205,8 @@ bool ct_system_assemble(struct ct_ctx *own, struct ct_system *sys, struct ct_sta
     }
     return ct_assemble_open(own, own->model, &sys->model, &sys->start_equations, start)
         && ct_settle(own, own->model, &sys->model, &sys->held_equations, &sys->moving_equations,
-                     start);
+                     start)
+        && ct_start_meets_demands(own, start);
 }
 
 // ---- what it is ---------------------------------------------------------------------------------------

@@ -50,10 +50,44 @@ CT_API void ct_ctx_print_diagnostics(const struct ct_ctx *ctx, FILE *out);
 /** The gravest fault among the diagnostics. */
 CT_API enum ct_fault ct_ctx_fault(const struct ct_ctx *ctx);
 
+/**
+ * How a command is interrupted: long work asks is_wanted(user) now and then, at accepted steps and between parts of an
+ * analysis, and ends with E005 when it is true. Rows that are complete stay in PATH.partial. NULL: never.
+ *
+ * It is asked from any thread that does the work, and has to answer at once: by a flag that a signal or another thread
+ * sets. It holds for all that is done with this context.
+ */
+CT_API void ct_ctx_set_interrupt(struct ct_ctx *ctx, bool (*is_wanted)(void *user), void *user);
+/** Has something been interrupted? */
+CT_API bool ct_ctx_was_interrupted(const struct ct_ctx *ctx);
+
 /** The version of the library, as in "0.1.0". */
 CT_API const char *ct_version(void);
 /** The name of n that is nearest to a misspelt one, or NULL if none is near. */
 CT_API const char *ct_did_you_mean(const char *name, const char *const *names, size_t n);
+
+/* ---- files ------------------------------------------------------------------------------------- */
+
+enum ct_contents {
+    CT_CONTENTS_TABLE,   /* results: .csv, .csv.gz, .json, .npz (NumPy), .mat (version 4) */
+    CT_CONTENTS_SUMMARY, /* .json */
+    CT_CONTENTS_PLOT     /* .svg */
+};
+/** Is there a format for the suffix of path? Without a suffix it is the first one. Errors: E007. */
+CT_API bool ct_can_write(struct ct_ctx *ctx, enum ct_contents contents, const char *path);
+
+/**
+ * A text file that appears under its name when it is complete, for what is printed to streams.
+ *
+ * path    in    NULL or "-": standard output
+ *
+ * Errors  E002; E006 while another process is writing it
+ * Owner   the caller, until ct_output_close
+ */
+CT_API struct ct_output *ct_output_open(struct ct_ctx *ctx, const char *path);
+CT_API FILE *ct_output_stream(const struct ct_output *o);
+/** ok: what was written is whole; else nothing of it stays. True if it is there. Accepts NULL. Errors: E002. */
+CT_API bool ct_output_close(struct ct_ctx *ctx, struct ct_output *o, bool ok);
 
 /* ---- systems: a model and its equations ------------------------------------------------------- */
 
@@ -134,8 +168,9 @@ struct ct_sim_options {
 
 /** Where results go. All of it may be zero. */
 struct ct_sim_results {
-    const char *path; /* FILE.csv or FILE.json; "-" is standard output as CSV; NULL: no file */
-    FILE *progress;   /* a bar is shown there if it is a terminal */
+    const char
+        *path;      /* a table, see ct_contents; "-" is standard output as CSV; NULL: no file */
+    FILE *progress; /* a bar is shown there if it is a terminal */
     /** Called for each sample; return false to stop the run there, which is no failure. */
     bool (*row)(void *user, double t, const double *value, size_t n);
     void *user;
@@ -233,7 +268,7 @@ CT_API struct ct_accuracy *ct_accuracy_create(struct ct_ctx *ctx, struct ct_syst
 /** Accepts NULL. */
 CT_API void ct_accuracy_destroy(struct ct_accuracy *a);
 
-/** The table; FILE.json: an object of columns, else CSV; NULL or "-": CSV on standard output. Errors: E002. */
+/** The table (ct_contents); NULL or "-": CSV on standard output. Errors: E002. */
 CT_API bool ct_accuracy_write(struct ct_ctx *ctx, const struct ct_accuracy *a,
                               const char *path);
 /** The work-precision plot as SVG. Errors: E002. */
@@ -260,7 +295,8 @@ struct ct_study_options {
 
 /** Where rows go. All of it may be zero. */
 struct ct_study_results {
-    const char *path; /* FILE.csv or FILE.json; "-" is standard output as CSV; NULL: no file */
+    const char
+        *path;      /* a table, see ct_contents; "-" is standard output as CSV; NULL: no file */
     bool resume;    /* go on with the rows of an interrupted sweep, which are in PATH.partial */
     FILE *progress; /* a bar is shown there if it is a terminal */
     /** Called for each member in order, one at a time but from any thread: run from 1, what varies, the outputs at the
@@ -332,7 +368,7 @@ CT_API void ct_equilibrium_destroy(struct ct_equilibrium *q);
 CT_API double ct_equilibrium_value(const struct ct_equilibrium *q, const char *column);
 /** Does no small motion about it grow? */
 CT_API bool ct_equilibrium_is_stable(const struct ct_equilibrium *q);
-/** One row of outputs, t = 0. FILE.json: an object of columns, else CSV; NULL or "-": standard output. Errors: E002. */
+/** One row of outputs, t = 0, as a table (ct_contents); NULL or "-": standard output. Errors: E002. */
 CT_API bool ct_equilibrium_write(struct ct_ctx *ctx, const struct ct_equilibrium *q,
                                  const char *path);
 /** How good it is and whether it is stable, for people. */
@@ -372,7 +408,7 @@ CT_API struct ct_mode_info ct_modes_info(const struct ct_modes *modes, size_t i)
 /** Entry of a mode's shape: how the coordinate of that name moves; the largest entry is 1. False: no such name. */
 CT_API bool ct_modes_shape(const struct ct_modes *modes, size_t i, const char *coordinate,
                            double *re, double *im);
-/** The table; FILE.json: with shapes, else CSV; NULL or "-": standard output. Errors: E002. */
+/** The table (ct_contents), but for CSV with shapes; NULL or "-": standard output. Errors: E002. */
 CT_API bool ct_modes_write(struct ct_ctx *ctx, const struct ct_modes *modes, const char *path);
 /** The shapes of the first modes as SVG: frames and the lines between them, at rest and displaced. Errors: E002. */
 CT_API bool ct_modes_draw(struct ct_ctx *ctx, struct ct_modes *modes, const char *path);
@@ -407,7 +443,7 @@ CT_API const double *ct_linearization_matrix(const struct ct_linearization *s, c
                                              size_t *rows, size_t *columns);
 /** Name of state ('x'), input ('u') or output ('y') i; NULL beyond the last one. */
 CT_API const char *ct_linearization_name(const struct ct_linearization *s, char what, size_t i);
-/** FILE.npz for NumPy, FILE.json, else CSV of [A B; C D]; NULL or "-": CSV on standard output. Errors: E002. */
+/** The matrices (ct_contents), CSV of [A B; C D]; NULL or "-": CSV on standard output. Errors: E002. */
 CT_API bool ct_linearization_write(struct ct_ctx *ctx, const struct ct_linearization *s,
                                    const char *path);
 /** Where, and the names, for people. */
@@ -434,7 +470,7 @@ CT_API void ct_buckling_destroy(struct ct_buckling *s);
 /** Positive factors, ascending; NaN beyond the last one. */
 CT_API size_t ct_buckling_count(const struct ct_buckling *s);
 CT_API double ct_buckling_factor(const struct ct_buckling *s, size_t i);
-/** The table; FILE.json: an object of columns, else CSV; NULL or "-": standard output. Errors: E002. */
+/** The table (ct_contents); NULL or "-": standard output. Errors: E002. */
 CT_API bool ct_buckling_write(struct ct_ctx *ctx, struct ct_buckling *s, const char *path);
 /** The lowest frequencies (count of them; 3) at 21 factors from 0 to the first one; negative where a motion grows
  *  without oscillating. Files as above. */

@@ -8,6 +8,7 @@
 #include "accuracy/accuracy.h"
 
 #include "base/guard.h"
+#include "report/number.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -102,7 +103,7 @@ static bool shows_mesh(const struct ct_accuracy *a, size_t start)
 // Two digits of 10^power: 2.2e-05, and 1e-05, not 1.0000000000000001e-05.
 static double tolerance_at(double power)
 {
-    char text[CT_PRECISION_NUMBER_SIZE];
+    char text[CT_NUMBER_SIZE];
     snprintf(text, sizeof text, "%.1e", pow(10, power));
     return strtod(text, NULL);
 }
@@ -131,7 +132,7 @@ static bool climb_tolerances(struct ct_accuracy *a, const char *name, double end
 // Ten digits of v: 1e-4, not 9.9999999999999991e-05.
 static double readable(double v)
 {
-    char text[CT_PRECISION_NUMBER_SIZE];
+    char text[CT_NUMBER_SIZE];
     snprintf(text, sizeof text, "%.10g", v);
     return strtod(text, NULL);
 }
@@ -374,12 +375,12 @@ bool ct_accuracy_draw(struct ct_ctx *ctx, const struct ct_accuracy *a, const cha
 
 static void print_setting(const struct ct_precision_point *p, FILE *out)
 {
-    char text[CT_PRECISION_NUMBER_SIZE];
+    char text[CT_NUMBER_SIZE];
     char name[80];
     ct_precision_name(name, sizeof name, p);
     fprintf(out, "method %s, %s %s: error %.2g in %.3g s\n", name,
-            p->has_step ? "step" : "tolerance", ct_precision_number(text, p->tolerance),
-            p->error, p->seconds);
+            p->has_step ? "step" : "tolerance", ct_number_format(text, p->tolerance), p->error,
+            p->seconds);
 }
 
 static void print_left_out(const struct ct_accuracy *a, FILE *out)
@@ -410,14 +411,14 @@ static const struct ct_precision_point *find_nearest(const struct ct_accuracy *a
 
 void ct_accuracy_print_summary(const struct ct_accuracy *a, FILE *out)
 {
-    char wanted[CT_PRECISION_NUMBER_SIZE];
+    char wanted[CT_NUMBER_SIZE];
     const struct ct_precision_point *nearest = find_nearest(a);
     fprintf(out, "reference     %s", a->source);
     if (!isnan(a->uncertainty))
         fprintf(out, ": they differ by %.2g", a->uncertainty);
     fputc('\n', out);
     print_left_out(a, out);
-    ct_precision_number(wanted, a->wanted);
+    ct_number_format(wanted, a->wanted);
     if (a->best) {
         fprintf(out, "cheapest      for an error of %s: ", wanted);
         print_setting(a->best, out);

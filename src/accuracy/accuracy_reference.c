@@ -192,13 +192,16 @@ static bool read_sheet(struct ct_accuracy *a, const char *path, struct ct_sheet 
     const size_t max_bytes = (size_t)1 << 30;
     char *text;
     size_t n;
-    switch (ct_text_read(a->own.scratch, path, max_bytes, &text, &n)) {
+    switch (ct_text_read_regular(a->own.scratch, path, max_bytes, &text, &n)) {
     case CT_TEXT_UNREADABLE:
         return ct_error(&a->own, (struct ct_mark){0}, CT_E_TABLE,
                         "cannot read the reference '%s': %s", path, strerror(errno));
     case CT_TEXT_TOO_BIG:
         return ct_error(&a->own, (struct ct_mark){0}, CT_E_TABLE,
                         "the reference '%s' is larger than %zu MiB", path, max_bytes >> 20);
+    case CT_TEXT_ENDLESS:
+        return ct_error(&a->own, (struct ct_mark){0}, CT_E_TABLE,
+                        "the reference '%s' is no regular file", path);
     case CT_TEXT_OK:
         break;
     }
@@ -213,7 +216,7 @@ static bool read_field(struct ct_accuracy *a, const struct ct_sheet *sheet, size
     const size_t n = ct_number_parse(digits, v);
     *v *= sign;
     return (n && !digits[n] && isfinite(*v))
-        || ct_error(&a->own, sheet->mark[k], CT_E_TABLE_DATA, "'%s' is not a finite number",
+        || ct_error(&a->own, sheet->mark[k], CT_E_TABLE_DATA, "'%.60s' is not a finite number",
                     text);
 }
 
@@ -285,8 +288,8 @@ static bool fill_reference(struct ct_accuracy *a, const struct ct_sheet *sheet, 
     a->source = ct_arena_printf(a->own.model, "%s, at %zu of %zu samples", sheet->file, matched,
                                 a->nsample);
     return matched
-        || ct_error(&a->own, (struct ct_mark){.file = sheet->file}, CT_E_TABLE_DATA,
-                    "the reference has no row at the time of a sample");
+        || ct_error(&a->own, (struct ct_mark){.file = sheet->file, .is_table = true},
+                    CT_E_TABLE_DATA, "the reference has no row at the time of a sample");
 }
 
 bool ct_accuracy_read_reference(struct ct_accuracy *a, const char *path)

@@ -51,6 +51,7 @@ enum ct_ending ct_accuracy_start(struct ct_accuracy *a, const struct ct_setting 
     a->sim->deadline = ct_clock() + limit;
     const struct ct_sim_results results = {.row = row, .user = a};
     const bool ok = ct_sim_run(&a->said, a->sim, &results);
+    ct_guard_poll(); // a run that was interrupted says nothing about its method
     p->seconds = a->sim->integrate;
     p->steps = a->sim->report.stats.steps;
     p->evaluations = a->sim->report.stats.evaluations;
@@ -63,7 +64,9 @@ bool ct_accuracy_repeat(struct ct_accuracy *a,
     const struct ct_sim_results results = {.row = row, .user = a};
     a->nrow = 0;
     a->sim->deadline = 0;
-    if (!ct_sim_run_again(&a->said, a->sim, &results))
+    const bool ok = ct_sim_run_again(&a->said, a->sim, &results);
+    ct_guard_poll();
+    if (!ok)
         return false;
     *seconds = a->sim->integrate;
     return true;

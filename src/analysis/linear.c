@@ -187,10 +187,8 @@ static bool slopes(struct ct_linear *l)
 static void choose(struct ct_linear *l, const double *J)
 {
     const int n = l->nu, m = l->nrow;
-    for (int i = 0; i < m; i++) // A = J'
-        for (int j = 0; j < n; j++)
-            l->A[j + n * i] = J[i + m * j];
-    l->rank = m && n ? ct_qr_pivot(l->A, l->row, l->d, n, m, n, ct_rank_tolerance, l->work) : 0;
+    ct_machine_measure_rows(l->m);
+    l->rank = ct_machine_order_rows(l->m, J, l->m->rank_tolerance, l->row, l->A, l->d, l->work);
     const int r = l->rank;
     for (int i = 0; i < r; i++)
         for (int j = 0; j < n; j++)
@@ -353,7 +351,7 @@ static void multipliers(struct ct_linear *l, const double *r)
                 l->A[j + n * i] = l->m->J[i + m * j];
         memset(l->d, 0, larger((size_t)n, (size_t)m) * sizeof *l->d);
         memcpy(l->d, r, (size_t)n * sizeof *r);
-        ct_lstsq(l->d, l->A, n, m, n, ct_rank_tolerance, l->iwork, l->work);
+        ct_lstsq_of_rank(l->d, l->A, n, m, n, ct_rank_tolerance, l->rank, l->iwork, l->work);
         memcpy(l->lam, l->d, (size_t)m * sizeof *l->lam);
     }
     for (int j = 0; j < n; j++) {

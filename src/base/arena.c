@@ -41,6 +41,7 @@ static const size_t least_pages = 1 << 18;
 // size: of all.
 static struct chunk *chunk_create(size_t size)
 {
+    ct_guard_poll();
     if (ct_guard_must_fail())
         return NULL;
     const bool is_pages = size >= least_pages;

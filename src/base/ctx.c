@@ -4,6 +4,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+// Nobody reads on after so many; the rest is counted.
+enum { MOST_KEPT = 100 };
+
 static void record(struct ct_ctx *ctx, enum ct_severity severity, enum ct_code code,
                    struct ct_mark mark, const char *fmt, va_list ap)
     __attribute__((format(printf, 5, 0)));
@@ -11,10 +14,16 @@ static void record(struct ct_ctx *ctx, enum ct_severity severity, enum ct_code c
 static void record(struct ct_ctx *ctx, enum ct_severity severity, enum ct_code code,
                    struct ct_mark mark, const char *fmt, va_list ap)
 {
+    const bool is_error = severity == CT_SEVERITY_ERROR;
+    if (ctx->ndiagnostic >= MOST_KEPT) {
+        ctx->nunseen++;
+        ctx->nerror += is_error;
+        return;
+    }
     const struct ct_diagnostic d
         = {severity, code, mark, ct_arena_vprintf(ctx->model, fmt, ap)};
     CT_PUSH(ctx->model, ctx->diagnostic, ctx->ndiagnostic, ctx->diagnostic_cap, d);
-    ctx->nerror += severity == CT_SEVERITY_ERROR;
+    ctx->nerror += is_error;
 }
 
 bool ct_error(struct ct_ctx *ctx, struct ct_mark mark, enum ct_code code, const char *fmt, ...)
@@ -95,24 +104,40 @@ static void print_source_line(struct ct_mark m, FILE *out)
     fclose(f);
 }
 
+static bool has_code(const struct ct_ctx *ctx, enum ct_code code)
+{
+    for (size_t i = 0; i < ctx->ndiagnostic; i++)
+        if (ctx->diagnostic[i].code == code)
+            return true;
+    return false;
+}
+
 void ct_ctx_print(const struct ct_ctx *ctx, FILE *out)
 {
     static const char *const word[] = {"error", "warning", "note"};
     for (size_t i = 0; i < ctx->ndiagnostic; i++) {
         const struct ct_diagnostic *d = &ctx->diagnostic[i];
-        if (d->mark.file)
-            fprintf(out, "%s:%d:%d: ", d->mark.file, d->mark.line + 1, d->mark.column + 1);
-        else
+        if (d->mark.file) {
+            print_plain(d->mark.file, out);
+            fprintf(out, ":%d:%d: ", d->mark.line + 1, d->mark.column + 1);
+        } else {
             fputs("cotree: ", out);
+        }
         fprintf(out, "%s: ", word[d->severity]);
         print_plain(d->text, out);
         if (d->code)
             fprintf(out, " [E%03d]", d->code);
         fputc('\n', out);
-        // each line costs a pass over the file; nobody reads on after so many
-        if (d->mark.file && i < 200)
+        if (d->mark.file && !d->mark.is_table)
             print_source_line(d->mark, out);
     }
+    if (ctx->nunseen)
+        fprintf(out, "cotree: note: %zu more messages are not shown\n", ctx->nunseen);
+    if (ctx->was_interrupted && !has_code(ctx, CT_E_INTERRUPTED))
+        fprintf(out,
+                "cotree: error: interrupted before there were results; the same command begins "
+                "anew [E%03d]\n",
+                CT_E_INTERRUPTED);
     if (ctx->no_memory)
         fprintf(out, "cotree: error: out of memory [E%03d]\n", CT_E_MEMORY);
 }

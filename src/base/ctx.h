@@ -6,6 +6,7 @@
 #define CT_BASE_CTX_H
 
 #include "base/arena.h"
+#include "base/guard.h"
 
 #include <stdarg.h>
 #include <stdbool.h>
@@ -16,6 +17,8 @@
 struct ct_mark {
     const char *file;
     int line, column;
+    bool
+        is_table; // of a file that a model names: its lines are not shown, since it may be any file
 };
 
 enum ct_code {
@@ -40,6 +43,9 @@ struct ct_ctx {
     size_t ndiagnostic, diagnostic_cap;
     size_t nerror;  // errors among them
     bool no_memory; // the guard was reached: E001, which needs no room of its own
+    struct ct_interrupt interrupt;
+    bool was_interrupted; // the guard was reached by it: E005, if no diagnostic says more
+    size_t nunseen;       // diagnostics that were not kept
 };
 
 /// Put an error into the context. Always returns false, so that `return ct_error(...)` reads well.

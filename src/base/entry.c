@@ -37,12 +37,14 @@ void ct_ctx_print_diagnostics(const struct ct_ctx *ctx, FILE *out)
 // Codes of what only options name.
 static bool is_option(int code)
 {
-    return code == CT_E_USAGE || code == CT_E_INPUT || code == CT_E_LOAD;
+    return code == CT_E_USAGE || code == CT_E_SUFFIX || code == CT_E_INPUT || code == CT_E_LOAD;
 }
 
 enum ct_fault ct_ctx_fault(const struct ct_ctx *ctx)
 {
-    enum ct_fault fault = ctx->no_memory || ctx->nerror ? CT_FAULT_MODEL : CT_FAULT_NONE;
+    if (ctx->no_memory || ctx->was_interrupted) // whatever was said before
+        return CT_FAULT_MODEL;
+    enum ct_fault fault = ctx->nerror ? CT_FAULT_MODEL : CT_FAULT_NONE;
     for (size_t i = 0; i < ctx->ndiagnostic; i++)
         if (ctx->diagnostic[i].severity == CT_SEVERITY_ERROR
             && is_option(ctx->diagnostic[i].code))
@@ -60,18 +62,45 @@ const char *ct_did_you_mean(const char *name, const char *const *names, size_t n
     return ct_nearest(name, names, n);
 }
 
-bool ct_enter(struct ct_ctx *ctx, bool (*work)(void *task), void *task)
+static bool enter(struct ct_ctx *ctx, struct ct_interrupt interrupt, bool (*work)(void *task),
+                  void *task)
 {
     struct ct_guard g;
     ct_guard_push(&g);
+    g.interrupt = interrupt;
     if (setjmp(g.env)) {
+        if (ct_guard_is_interrupted())
+            ctx->was_interrupted = true;
+        else
+            ctx->no_memory = true;
         ct_guard_pop(&g);
-        ctx->no_memory = true;
         return false;
     }
     const bool ok = work(task);
+    ctx->was_interrupted |= !ok && ct_guard_is_interrupted();
     ct_guard_pop(&g);
     return ok;
+}
+
+bool ct_enter(struct ct_ctx *ctx, bool (*work)(void *task), void *task)
+{
+    return enter(ctx, ctx->interrupt.is_wanted ? ctx->interrupt : ct_guard_interrupt(), work,
+                 task);
+}
+
+bool ct_enter_uninterrupted(struct ct_ctx *ctx, bool (*work)(void *task), void *task)
+{
+    return enter(ctx, (struct ct_interrupt){0}, work, task);
+}
+
+void ct_ctx_set_interrupt(struct ct_ctx *ctx, bool (*is_wanted)(void *user), void *user)
+{
+    ctx->interrupt = (struct ct_interrupt){is_wanted, user};
+}
+
+bool ct_ctx_was_interrupted(const struct ct_ctx *ctx)
+{
+    return ctx->was_interrupted;
 }
 
 void ct_own_init(struct ct_ctx *own)
@@ -128,6 +157,8 @@ void ct_own_next_stage(struct ct_ctx *own)
 
 void ct_ctx_hand_over(struct ct_ctx *to, struct ct_ctx *from)
 {
+    to->nunseen += from->nunseen;
+    to->was_interrupted |= from->was_interrupted;
     const char *file = NULL, *copy = NULL; // most diagnostics are about the same file
     for (size_t i = 0; i < from->ndiagnostic; i++) {
         struct ct_diagnostic d = from->diagnostic[i];
@@ -140,7 +171,7 @@ void ct_ctx_hand_over(struct ct_ctx *to, struct ct_ctx *from)
         CT_PUSH(to->model, to->diagnostic, to->ndiagnostic, to->diagnostic_cap, d);
         to->nerror += d.severity == CT_SEVERITY_ERROR;
     }
-    from->ndiagnostic = from->nerror = 0;
+    from->ndiagnostic = from->nerror = from->nunseen = 0;
 }
 
 const char *ct_suggest(struct ct_arena *a, const char *name, const char *const *names, size_t n)

@@ -9,6 +9,8 @@
 
 /// Run work(task) with a guard: without memory false, and E001 in ctx.
 bool ct_enter(struct ct_ctx *ctx, bool (*work)(void *task), void *task);
+/// The same, whatever is interrupted: to say and keep what there is.
+bool ct_enter_uninterrupted(struct ct_ctx *ctx, bool (*work)(void *task), void *task);
 /// Two arenas for a context that a system or a run owns. Raises the guard.
 void ct_own_init(struct ct_ctx *own);
 void ct_own_finish(struct ct_ctx *own);

@@ -1,21 +1,39 @@
-// The one non-local exit: out of memory.
+// The one non-local exit: out of memory, or interrupted.
 //
 // A public entry point that allocates opens a guard; arenas jump to it when the system refuses
 // memory. Guards nest; each thread has its own. Only arena.c and guard.c know longjmp.
+//
+// A guard also knows whom to ask whether the work is still wanted. Arenas ask when they need more memory from the
+// system, iterations each time round; what writes rows asks at accepted steps and stops without a jump.
 #ifndef CT_BASE_GUARD_H
 #define CT_BASE_GUARD_H
 
 #include <setjmp.h>
 
+#include <stdbool.h>
+
+struct ct_interrupt {
+    bool (*is_wanted)(void *user); // NULL: never
+    void *user;
+};
+
 struct ct_guard {
     jmp_buf env;
     struct ct_guard *outer;
+    struct ct_interrupt interrupt; // that of the outer one until it is replaced
 };
 
 void ct_guard_push(struct ct_guard *g);
 void ct_guard_pop(struct ct_guard *g);
 /// Jump to the innermost guard; aborts if there is none.
 _Noreturn void ct_guard_raise(void);
+
+/// Whom the innermost guard asks, for guards of other threads.
+struct ct_interrupt ct_guard_interrupt(void);
+/// Is an interrupt wanted?
+bool ct_guard_is_interrupted(void);
+/// If it is, jump to the innermost guard.
+void ct_guard_poll(void);
 
 /// for (struct ct_guard g; ...) would hide the setjmp; use it as
 ///     struct ct_guard g;

@@ -41,13 +41,16 @@ struct beams {
     size_t nvariant;
 };
 
-static bool read_lists(struct beams *b, const struct cli_args *args)
+static bool read_lists(struct beams *b, const struct cli_args *args, int *status)
 {
     const char *const given[2] = {args->elements, args->formulations};
     for (int k = 0; k < 2; k++) {
         b->text[k] = given[k] ? strdup(given[k]) : NULL;
-        if (given[k] && !b->text[k])
-            return cli_complain(&cli_accuracy, "out of memory"), false;
+        if (given[k] && !b->text[k]) {
+            fputs("cotree: error: out of memory [E001]\n", stderr);
+            *status = CLI_FAILED;
+            return false;
+        }
         b->n[k] = split(b->text[k], b->entry[k]);
         if (b->n[k] < 0)
             return cli_complain(&cli_accuracy, "at most %d entries in a list of beams", MOST),
@@ -113,7 +116,7 @@ static int run(struct ct_ctx *ctx, const struct cli_args *args)
 {
     struct beams b = {0};
     int status = CLI_USAGE;
-    if (read_lists(&b, args))
+    if (read_lists(&b, args, &status))
         status = study(ctx, args, &b) ? CLI_DONE : CLI_FAILED;
     for (size_t i = 0; i < b.nvariant; i++)
         ct_system_destroy(b.variant[i].system);

@@ -108,8 +108,8 @@ const struct cli_option cli_options[] = {
      "all terminal graph tree cutset circuit reduced"},
     {"format", 0, "FORMAT", CLI_TEXT, FIELD(format), CLI_EQUATIONS, false,
      "text, latex, html, c or json", "text latex html c json"},
-    {"format", 0, "FORMAT", CLI_TEXT, FIELD(format), CLI_GRAPH, false, "text, svg, dot or json",
-     "text svg dot json"},
+    {"format", 0, "FORMAT", CLI_TEXT, FIELD(format), CLI_GRAPH, false,
+     "text, svg, png, dot or json", "text svg png dot json"},
     {"format", 0, "FORMAT", CLI_TEXT, FIELD(format), CLI_EXPORT, false, "c", "c"},
     {"quiet", 'q', NULL, CLI_FLAG, FIELD(quiet), CLI_MODELS, true,
      "no summary and no progress bar"},
@@ -443,7 +443,8 @@ bool cli_parse(int argc, char **argv, const struct cli_command **command, struct
                               .vary.text = calloc((size_t)argc + 1, sizeof(char *))};
     struct parser p = {.argc = argc, .argv = argv, .args = args};
     const bool has_room = args->set.text && args->vary.text;
-    bool ok = has_room || (fputs("cotree: error: out of memory\n", stderr), false);
+    bool ok = has_room || (fputs("cotree: error: out of memory [E001]\n", stderr), false);
+    args->no_memory = !has_room;
     ok = ok && parse_all(&p);
     *command = p.command;
     if (!ok || args->help || args->version)

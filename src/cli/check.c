@@ -3,11 +3,11 @@
 
 static bool check(struct ct_ctx *ctx, struct ct_sim *sim, const struct cli_args *args)
 {
-    struct cli_output o;
-    if (!sim || !cli_output_open(&o, args->output))
+    struct ct_output *o = sim ? ct_output_open(ctx, args->output) : NULL;
+    if (!o)
         return false;
-    ct_sim_print_check(sim, o.stream);
-    bool ok = cli_output_close(&o, true) == CLI_DONE;
+    ct_sim_print_check(sim, ct_output_stream(o));
+    bool ok = ct_output_close(ctx, o, true);
     if (ok && args->summary)
         ok = ct_sim_write_summary(ctx, sim, args->summary);
     return ok;
@@ -15,6 +15,9 @@ static bool check(struct ct_ctx *ctx, struct ct_sim *sim, const struct cli_args 
 
 static int run(struct ct_ctx *ctx, const struct cli_args *args)
 {
+    static const char *const formats[] = {"text"}, *const suffixes[] = {"txt"};
+    if (!cli_format(&cli_check, args, formats, suffixes, CLI_COUNT(formats)))
+        return CLI_USAGE;
     struct ct_system *sys = cli_load(ctx, args);
     struct ct_sim *sim = cli_sim(ctx, sys, args);
     const bool ok = check(ctx, sim, args);

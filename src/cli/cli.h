@@ -4,7 +4,7 @@
 //
 // What always holds: a command is one file and a place to stop in the pipeline; it uses the public API
 // only. Results go to standard output or to a file that appears when it is complete, messages to standard
-// error. Exit status: 0 done, 1 the model or the run failed, 2 the command line is wrong.
+// error. Exit status: 0 done, 1 the model or the run failed, 2 the command line is wrong, 130 and 143 interrupted.
 #ifndef CT_CLI_CLI_H
 #define CT_CLI_CLI_H
 
@@ -28,7 +28,8 @@ struct cli_args {
     long samples, count, sample, threads, lanes, per_decade;
     unsigned long long seed;
     bool has_time; // --time 0 is a time, too
-    bool trace, hold_drivers, keep_all, resume, verify, quiet, help, version;
+    bool trace, hold_drivers, keep_all, resume, verify, quiet, help, version,
+        no_memory; // while it was read
 };
 
 /// One bit for each command, for the table of options.
@@ -58,6 +59,7 @@ enum cli_use {
     CLI_RUNS = CLI_SIMULATE | CLI_ACCURACY | CLI_SWEEP,
     CLI_STEPS = CLI_RUNS | CLI_DRAW, // that may integrate
     CLI_TIMES = CLI_RUNS | CLI_DRIVEN,
+    CLI_TABLES = CLI_TIMES | CLI_STATIC, // write a table to -o
     CLI_MODELS
     = CLI_TIMES | CLI_STATIC | CLI_EQUATIONS | CLI_GRAPH | CLI_DRAW | CLI_CHECK | CLI_EXPORT
 };
@@ -140,27 +142,40 @@ typedef bool cli_motion(struct ct_ctx *ctx, struct ct_sim *sim,
 /// Sees each sample, as `row` of struct ct_sim_results.
 typedef bool cli_row(void *user, double t, const double *value, size_t n);
 /// A run of a system (NULL: false) that writes its samples; row may be NULL.
-bool cli_run_system(struct ct_ctx *ctx, const struct cli_args *args, struct ct_system *sys,
-                    cli_motion *motion, cli_row *row, void *user);
+bool cli_run_system(struct ct_ctx *ctx, const struct cli_args *args, const char *suffix,
+                    struct ct_system *sys, cli_motion *motion, cli_row *row, void *user);
 /// The whole of a command that writes the samples of a motion; returns its exit status.
-int cli_run_motion(struct ct_ctx *ctx, const struct cli_args *args,
+/// Without -o the results go to the model's name with `suffix`.
+int cli_run_motion(struct ct_ctx *ctx, const struct cli_args *args, const char *suffix,
                    enum ct_columns_more columns, cli_motion *motion);
 
-/// The format that --format or the suffix of -o asks for; suffixes[i] belongs to formats[i].
-const char *cli_format(const struct cli_args *args, const char *const *formats,
-                       const char *const *suffixes, size_t n);
+/// The format that --format or the suffix of -o asks for; suffixes[i] belongs to formats[i]. NULL after a message.
+const char *cli_format(const struct cli_command *command, const struct cli_args *args,
+                       const char *const *formats, const char *const *suffixes, size_t n);
 
 /// The model's file name with another suffix (".csv"), in the current folder; to be freed. NULL without memory.
 char *cli_standard_path(const char *model, const char *suffix);
 
-/// Text that appears under its name when it is complete; path NULL or "-": standard output.
-struct cli_output {
-    FILE *stream;
-    const char *path;
-    char *partial; // where it is written; NULL: straight to path
-};
-bool cli_output_open(struct cli_output *o, const char *path);
-/// ok: what was written is whole. Returns CLI_DONE or CLI_FAILED.
-int cli_output_close(struct cli_output *o, bool ok);
+/// A command that prints a list, to files with this suffix.
+int cli_print_list(struct ct_ctx *ctx, const struct cli_command *command,
+                   const struct cli_args *args, const char *suffix, void (*print)(FILE *out));
+
+/// Is there a format for every file the command is to write? Before anything is read. CLI_DONE or CLI_USAGE.
+int cli_check_suffixes(struct ct_ctx *ctx, const struct cli_command *command,
+                       const struct cli_args *args);
+
+// ---- interrupt.c -----------------------------------------------------------------------------
+
+/// From now on SIGINT and SIGTERM are requests: contexts are told, and within a second the process ends in any case.
+/// Before other threads are made.
+void cli_interrupt_begin(void);
+/// Has a signal come? For ct_ctx_set_interrupt.
+bool cli_is_interrupted(void *unused);
+/// What is to be said if work does not end by itself; NULL: nothing.
+void cli_interrupt_explain(const char *what_stays);
+/// The exit status: 128 and the signal where one has come and the work has failed.
+int cli_interrupt_status(int status);
+/// In a child process: signals as they were.
+void cli_interrupt_end(void);
 
 #endif

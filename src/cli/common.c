@@ -1,10 +1,8 @@
 // What commands share: loading, formats, files.
 #include "cli/cli.h"
 
-#include <errno.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 
 struct ct_system_options cli_system_options(const struct cli_args *args)
 {
@@ -65,15 +63,19 @@ bool cli_summarize(struct ct_ctx *ctx, struct ct_system *sys, const struct cli_a
 }
 
 static bool write_motion(struct ct_ctx *ctx, struct ct_sim *sim, const struct cli_args *args,
-                         cli_motion *motion, cli_row *row, void *user)
+                         const char *suffix, cli_motion *motion, cli_row *row, void *user)
 {
-    char *standard = args->output ? NULL : cli_standard_path(args->model, ".csv");
+    char *standard = args->output ? NULL : cli_standard_path(args->model, suffix);
     const char *path = args->output ? args->output : standard;
     const struct ct_sim_results results = {.path = path ? path : "-",
                                            .progress = args->quiet ? NULL : stderr,
                                            .row = row,
                                            .user = user};
+    char text[512];
+    snprintf(text, sizeof text, ": whole rows may be in '%s.partial'", results.path);
+    cli_interrupt_explain(text);
     bool ok = motion(ctx, sim, &results);
+    cli_interrupt_explain(NULL);
     if (ok && args->summary)
         ok = ct_sim_write_summary(ctx, sim, args->summary);
     if (ok && !args->quiet)
@@ -82,34 +84,53 @@ static bool write_motion(struct ct_ctx *ctx, struct ct_sim *sim, const struct cl
     return ok;
 }
 
-bool cli_run_system(struct ct_ctx *ctx, const struct cli_args *args, struct ct_system *sys,
-                    cli_motion *motion, cli_row *row, void *user)
+bool cli_run_system(struct ct_ctx *ctx, const struct cli_args *args, const char *suffix,
+                    struct ct_system *sys, cli_motion *motion, cli_row *row, void *user)
 {
     struct ct_sim *sim = cli_sim(ctx, sys, args);
-    const bool ok = sim && write_motion(ctx, sim, args, motion, row, user);
+    const bool ok = sim && write_motion(ctx, sim, args, suffix, motion, row, user);
     ct_sim_destroy(sim);
     return ok;
 }
 
-int cli_run_motion(struct ct_ctx *ctx, const struct cli_args *args,
+int cli_run_motion(struct ct_ctx *ctx, const struct cli_args *args, const char *suffix,
                    enum ct_columns_more columns, cli_motion *motion)
 {
     struct ct_system *sys = cli_load_with(ctx, args, columns);
-    const bool ok = cli_run_system(ctx, args, sys, motion, NULL, NULL);
+    const bool ok = cli_run_system(ctx, args, suffix, sys, motion, NULL, NULL);
     ct_system_destroy(sys);
     return ok ? CLI_DONE : CLI_FAILED;
 }
 
-const char *cli_format(const struct cli_args *args, const char *const *formats,
-                       const char *const *suffixes, size_t n)
+static bool is_one_of(const char *word, const char *const *words, size_t n)
+{
+    for (size_t i = 0; i < n; i++)
+        if (strcmp(word, words[i]) == 0)
+            return true;
+    return false;
+}
+
+const char *cli_format(const struct cli_command *command, const struct cli_args *args,
+                       const char *const *formats, const char *const *suffixes, size_t n)
 {
     if (args->format)
         return args->format;
-    const char *dot = args->output ? strrchr(args->output, '.') : NULL;
+    const char *slash = args->output ? strrchr(args->output, '/') : NULL;
+    const char *base = slash ? slash + 1 : args->output;
+    const char *dot = base && *base ? strrchr(base + 1, '.') : NULL;
     for (size_t i = 0; dot && i < n; i++)
         if (strcmp(dot + 1, suffixes[i]) == 0)
             return formats[i];
-    return formats[0];
+    if (!dot)
+        return formats[0];
+    char list[128] = "";
+    for (size_t i = 0; i < n; i++)
+        if (!is_one_of(suffixes[i], suffixes, i))
+            snprintf(list + strlen(list), sizeof list - strlen(list), "%s.%s",
+                     *list ? ", " : "", suffixes[i]);
+    cli_complain(command, "'%s': nothing here is written as '%s'; the suffix may be %s%s",
+                 args->output, dot, list, n > 1 ? ", or any with --format" : "");
+    return NULL;
 }
 
 // ---- files ---------------------------------------------------------------------------------------------
@@ -127,49 +148,31 @@ char *cli_standard_path(const char *model, const char *suffix)
     return path;
 }
 
-static void cannot(const char *what, const char *path, int error)
+int cli_check_suffixes(struct ct_ctx *ctx, const struct cli_command *command,
+                       const struct cli_args *args)
 {
-    fprintf(stderr, "cotree: error: cannot %s '%s': %s\n", what, path, strerror(error));
+    const struct {
+        const char *path;
+        enum ct_contents contents;
+    } file[] = {{command->use & CLI_TABLES ? args->output : NULL, CT_CONTENTS_TABLE},
+                {args->curve, CT_CONTENTS_TABLE},
+                {args->summary, CT_CONTENTS_SUMMARY},
+                {args->plot, CT_CONTENTS_PLOT}};
+    for (size_t i = 0; i < CLI_COUNT(file); i++)
+        if (file[i].path && !ct_can_write(ctx, file[i].contents, file[i].path))
+            return CLI_USAGE;
+    return CLI_DONE;
 }
 
-bool cli_output_open(struct cli_output *o, const char *path)
+int cli_print_list(struct ct_ctx *ctx, const struct cli_command *command,
+                   const struct cli_args *args, const char *suffix, void (*print)(FILE *out))
 {
-    *o = (struct cli_output){.stream = stdout, .path = "standard output"};
-    if (!path || strcmp(path, "-") == 0)
-        return true;
-    o->path = path;
-    struct stat st;
-    if (stat(path, &st) != 0 || S_ISREG(st.st_mode)) { // not /dev/null and the like
-        const size_t n = strlen(path) + sizeof ".partial";
-        o->partial = malloc(n);
-        if (!o->partial) {
-            cannot("write", path, ENOMEM);
-            return false;
-        }
-        snprintf(o->partial, n, "%s.partial", path);
-    }
-    o->stream = fopen(o->partial ? o->partial : path, "w");
-    if (o->stream)
-        return true;
-    cannot("write", o->partial ? o->partial : path, errno);
-    free(o->partial);
-    return false;
-}
-
-int cli_output_close(struct cli_output *o, bool ok)
-{
-    errno = 0;
-    bool written = fflush(o->stream) == 0 && !ferror(o->stream);
-    if (o->stream != stdout)
-        written = fclose(o->stream) == 0 && written;
-    if (!written)
-        cannot("write", o->path, errno ? errno : EIO);
-    if (ok && written && o->partial && rename(o->partial, o->path) != 0) {
-        cannot("replace", o->path, errno);
-        written = false;
-    }
-    if (!ok && o->partial) // half a text is of no use
-        remove(o->partial);
-    free(o->partial);
-    return ok && written ? CLI_DONE : CLI_FAILED;
+    static const char *const formats[] = {"text"};
+    if (!cli_format(command, args, formats, &suffix, 1))
+        return CLI_USAGE;
+    struct ct_output *o = ct_output_open(ctx, args->output);
+    if (!o)
+        return CLI_FAILED;
+    print(ct_output_stream(o));
+    return ct_output_close(ctx, o, true) ? CLI_DONE : CLI_FAILED;
 }

@@ -228,15 +228,14 @@ static const char *const shells[] = {"bash", "zsh", "fish", NULL};
 static int run(struct ct_ctx *ctx, const struct cli_args *args)
 {
     static void (*const print[])(FILE * out) = {print_bash, print_zsh, print_fish};
-    struct cli_output o;
     size_t i = 0;
-    (void)ctx;
     while (strcmp(shells[i], args->word) != 0)
         i++;
-    if (!cli_output_open(&o, args->output))
+    struct ct_output *o = ct_output_open(ctx, args->output);
+    if (!o)
         return CLI_FAILED;
-    print[i](o.stream);
-    return cli_output_close(&o, true);
+    print[i](ct_output_stream(o));
+    return ct_output_close(ctx, o, true) ? CLI_DONE : CLI_FAILED;
 }
 
 const struct cli_command cli_completion = {

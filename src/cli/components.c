@@ -3,12 +3,7 @@
 
 static int run(struct ct_ctx *ctx, const struct cli_args *args)
 {
-    struct cli_output o;
-    (void)ctx;
-    if (!cli_output_open(&o, args->output))
-        return CLI_FAILED;
-    ct_components_print(o.stream);
-    return cli_output_close(&o, true);
+    return cli_print_list(ctx, &cli_components, args, "txt", ct_components_print);
 }
 
 const struct cli_command cli_components = {

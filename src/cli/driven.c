@@ -3,12 +3,12 @@
 
 static int run_kinematics(struct ct_ctx *ctx, const struct cli_args *args)
 {
-    return cli_run_motion(ctx, args, CT_COLUMNS_COORDINATES, ct_sim_follow);
+    return cli_run_motion(ctx, args, ".kinematics.csv", CT_COLUMNS_COORDINATES, ct_sim_follow);
 }
 
 static int run_inverse(struct ct_ctx *ctx, const struct cli_args *args)
 {
-    return cli_run_motion(ctx, args, CT_COLUMNS_EFFORTS, ct_sim_follow);
+    return cli_run_motion(ctx, args, ".inverse.csv", CT_COLUMNS_EFFORTS, ct_sim_follow);
 }
 
 const struct cli_command cli_kinematics = {

@@ -5,13 +5,15 @@ static int run(struct ct_ctx *ctx, const struct cli_args *args)
 {
     static const char *const formats[] = {"text", "latex", "html", "html", "c", "json"};
     static const char *const suffixes[] = {"txt", "tex", "html", "htm", "c", "json"};
-    const char *format = cli_format(args, formats, suffixes, CLI_COUNT(formats));
+    const char *format
+        = cli_format(&cli_equations, args, formats, suffixes, CLI_COUNT(formats));
+    if (!format)
+        return CLI_USAGE;
     struct ct_system *sys = cli_load(ctx, args);
-    struct cli_output o;
-    int status = CLI_FAILED;
-    if (sys && cli_output_open(&o, args->output))
-        status = cli_output_close(
-            &o, ct_system_print_equations(ctx, sys, args->show, format, o.stream));
+    struct ct_output *o = sys ? ct_output_open(ctx, args->output) : NULL;
+    const bool ok
+        = o && ct_system_print_equations(ctx, sys, args->show, format, ct_output_stream(o));
+    int status = ct_output_close(ctx, o, ok) ? CLI_DONE : CLI_FAILED;
     if (status == CLI_DONE && !cli_summarize(ctx, sys, args))
         status = CLI_FAILED;
     ct_system_destroy(sys);

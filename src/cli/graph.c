@@ -1,32 +1,99 @@
 // cotree graph: draws the linear graph and its trees.
 #include "cli/cli.h"
 
+#include <errno.h>
+#include <poll.h>
+#include <signal.h>
 #include <string.h>
 #include <sys/wait.h>
+#include <time.h>
 #include <unistd.h>
 
-// Graphviz turns what is in `source` into SVG on the file descriptor out.
-static bool run_dot(FILE *source, int out)
+// A minute: graphs of thousands of edges are drawn in seconds.
+enum { MOST_SECONDS = 60, LOOK_MS = 50 };
+
+// Graphviz reads what is in `source` and writes to `out`.
+static pid_t start_dot(FILE *source, int out, const char *type)
 {
     const pid_t child = fork();
     if (child == 0) {
+        cli_interrupt_end();
         if (lseek(fileno(source), 0, SEEK_SET) == 0 && dup2(fileno(source), STDIN_FILENO) >= 0
             && dup2(out, STDOUT_FILENO) >= 0)
-            execlp("dot", "dot", "-Tsvg", (char *)NULL);
+            execlp("dot", "dot", type, (char *)NULL);
         _exit(127);
     }
-    int status = -1;
-    if (child >= 0 && waitpid(child, &status, 0) == child && status == 0)
-        return true;
-    fputs(status != -1 && WIFEXITED(status) && WEXITSTATUS(status) == 127
-              ? "cotree: error: svg is drawn by Graphviz, whose program 'dot' is not there; "
-                "--format dot prints what it reads\n"
-              : "cotree: error: Graphviz ('dot') failed\n",
-          stderr);
-    return false;
+    return child;
 }
 
-static bool draw_svg(struct ct_ctx *ctx, struct ct_system *sys, FILE *out)
+enum end { ENDED, INTERRUPTED, TOO_LONG };
+
+// What comes out of `in` goes to `out`, until there is no more; *n (out): bytes.
+static enum end copy(int in, FILE *out, size_t *n)
+{
+    const time_t start = time(NULL);
+    char text[4096];
+    for (*n = 0;;) {
+        struct pollfd p = {.fd = in, .events = POLLIN};
+        if (cli_is_interrupted(NULL))
+            return INTERRUPTED;
+        if (time(NULL) - start > MOST_SECONDS)
+            return TOO_LONG;
+        if (poll(&p, 1, LOOK_MS) <= 0)
+            continue;
+        const ssize_t got = read(in, text, sizeof text);
+        if (got == 0 || (got < 0 && errno != EINTR))
+            return ENDED;
+        if (got > 0)
+            *n += fwrite(text, 1, (size_t)got, out);
+    }
+}
+
+static bool dot_failed(enum end end, int status, size_t n)
+{
+    const bool is_missing
+        = end == ENDED && status != -1 && WIFEXITED(status) && WEXITSTATUS(status) == 127;
+    if (cli_is_interrupted(
+            NULL)) // dot, too, where the signal came from a terminal; said at the end
+        return true;
+    if (end == TOO_LONG)
+        fprintf(stderr,
+                "cotree: error: Graphviz ('dot') has drawn nothing within %d s; --format dot "
+                "prints what it reads\n",
+                MOST_SECONDS);
+    else if (is_missing)
+        fputs("cotree: error: svg and png are drawn by Graphviz, whose program 'dot' is not "
+              "there; --format dot prints what it reads\n",
+              stderr);
+    else if (status != 0)
+        fputs("cotree: error: Graphviz ('dot') failed\n", stderr);
+    else if (n == 0)
+        fputs("cotree: error: Graphviz ('dot') has drawn nothing\n", stderr);
+    else
+        return false;
+    return true;
+}
+
+static bool run_dot(FILE *source, FILE *out, const char *type)
+{
+    int channel[2], status = -1;
+    size_t n = 0;
+    if (pipe(channel) != 0) {
+        fprintf(stderr, "cotree: error: cannot start 'dot': %s\n", strerror(errno));
+        return false;
+    }
+    const pid_t child = start_dot(source, channel[1], type);
+    close(channel[1]);
+    const enum end end = child >= 0 ? copy(channel[0], out, &n) : ENDED;
+    close(channel[0]);
+    if (child >= 0 && end != ENDED)
+        kill(child, SIGKILL);
+    if (child >= 0 && waitpid(child, &status, 0) != child)
+        status = -1;
+    return !dot_failed(end, status, n);
+}
+
+static bool draw(struct ct_ctx *ctx, struct ct_system *sys, FILE *out, const char *type)
 {
     FILE *source = tmpfile();
     if (!source) {
@@ -34,31 +101,36 @@ static bool draw_svg(struct ct_ctx *ctx, struct ct_system *sys, FILE *out)
         return false;
     }
     const bool ok = ct_system_print_graph(ctx, sys, "dot", source) && fflush(source) == 0
-                 && fflush(out) == 0 && run_dot(source, fileno(out));
+                 && run_dot(source, out, type);
     fclose(source);
     return ok;
 }
 
+static bool print_graph(struct ct_ctx *ctx, struct ct_system *sys, const char *format,
+                        FILE *out)
+{
+    return strcmp(format, "svg") == 0 ? draw(ctx, sys, out, "-Tsvg")
+         : strcmp(format, "png") == 0 ? draw(ctx, sys, out, "-Tpng")
+                                      : ct_system_print_graph(ctx, sys, format, out);
+}
+
 static int run(struct ct_ctx *ctx, const struct cli_args *args)
 {
-    static const char *const formats[] = {"text", "svg", "dot", "dot", "json"};
-    static const char *const suffixes[] = {"txt", "svg", "dot", "gv", "json"};
-    const char *format = cli_format(args, formats, suffixes, CLI_COUNT(formats));
+    static const char *const formats[] = {"text", "svg", "png", "dot", "dot", "json"};
+    static const char *const suffixes[] = {"txt", "svg", "png", "dot", "gv", "json"};
+    const char *format = cli_format(&cli_graph, args, formats, suffixes, CLI_COUNT(formats));
     bool is_known = false;
+    if (!format)
+        return CLI_USAGE;
     for (size_t i = 0; i < CLI_COUNT(formats); i++)
         is_known |= strcmp(format, formats[i]) == 0;
     if (!is_known)
-        return cli_complain(&cli_graph, "--format is '%s'; there are text, svg, dot and json",
-                            format);
+        return cli_complain(&cli_graph,
+                            "--format is '%s'; there are text, svg, png, dot and json", format);
     struct ct_system *sys = cli_load(ctx, args);
-    struct cli_output o;
-    int status = CLI_FAILED;
-    if (sys && cli_output_open(&o, args->output)) {
-        const bool ok = strcmp(format, "svg") == 0
-                          ? draw_svg(ctx, sys, o.stream)
-                          : ct_system_print_graph(ctx, sys, format, o.stream);
-        status = cli_output_close(&o, ok);
-    }
+    struct ct_output *o = sys ? ct_output_open(ctx, args->output) : NULL;
+    const bool ok = o && print_graph(ctx, sys, format, ct_output_stream(o));
+    int status = ct_output_close(ctx, o, ok) ? CLI_DONE : CLI_FAILED;
     if (status == CLI_DONE && !cli_summarize(ctx, sys, args))
         status = CLI_FAILED;
     ct_system_destroy(sys);

@@ -1,6 +1,11 @@
 // cotree: reads the command line, runs the command, prints what there is to say.
 #include "cli/cli.h"
 
+#include <errno.h>
+#include <fcntl.h>
+#include <string.h>
+#include <unistd.h>
+
 static int run(const struct cli_command *command, const struct cli_args *args)
 {
     struct ct_ctx *ctx = ct_ctx_create();
@@ -8,7 +13,10 @@ static int run(const struct cli_command *command, const struct cli_args *args)
         fputs("cotree: error: out of memory\n", stderr);
         return CLI_FAILED;
     }
-    const int status = command->run(ctx, args);
+    ct_ctx_set_interrupt(ctx, cli_is_interrupted, NULL);
+    int status = cli_check_suffixes(ctx, command, args);
+    if (status == CLI_DONE)
+        status = command->run(ctx, args);
     const int fault = (int)ct_ctx_fault(ctx);
     ct_ctx_print_diagnostics(ctx, stderr);
     ct_ctx_destroy(ctx);
@@ -18,8 +26,22 @@ static int run(const struct cli_command *command, const struct cli_args *args)
 // Help and version are results, too: standard output must have taken them.
 static int finish(void)
 {
-    struct cli_output o;
-    return cli_output_open(&o, NULL) ? cli_output_close(&o, true) : CLI_FAILED;
+    errno = 0;
+    if (fflush(stdout) == 0 && !ferror(stdout))
+        return CLI_DONE;
+    fprintf(stderr, "cotree: error: cannot write 'standard output': %s [E002]\n",
+            strerror(errno ? errno : EIO));
+    return CLI_FAILED;
+}
+
+// A stream that the caller closed would become the next file that is opened; instead reading and writing it fails.
+static bool occupy_standard_streams(void)
+{
+    for (int fd = STDIN_FILENO; fd <= STDERR_FILENO; fd++)
+        if (fcntl(fd, F_GETFD) == -1
+            && open("/dev/null", fd == STDIN_FILENO ? O_WRONLY : O_RDONLY) != fd)
+            return false;
+    return true;
 }
 
 // OpenBLAS, where it is the BLAS, starts a thread a core even for matrices of ten rows: that costs
@@ -32,6 +54,9 @@ int main(int argc, char **argv)
         openblas_set_num_threads(1);
     const struct cli_command *command;
     struct cli_args args;
+    if (!occupy_standard_streams())
+        return CLI_FAILED;
+    cli_interrupt_begin();
     int status = CLI_USAGE;
     if (cli_parse(argc, argv, &command, &args)) {
         if (args.help) {
@@ -43,7 +68,9 @@ int main(int argc, char **argv)
         } else {
             status = run(command, &args);
         }
+    } else if (args.no_memory) {
+        status = CLI_FAILED;
     }
     cli_args_finish(&args);
-    return status;
+    return cli_interrupt_status(status);
 }

@@ -6,7 +6,7 @@ static int run_and_plot(struct ct_ctx *ctx, const struct cli_args *args)
 {
     struct ct_system *sys = cli_load(ctx, args);
     struct ct_plot *plot = ct_plot_create(ctx, sys, args->columns);
-    const bool ok = plot && cli_run_system(ctx, args, sys, ct_sim_run, ct_plot_row, plot)
+    const bool ok = plot && cli_run_system(ctx, args, ".csv", sys, ct_sim_run, ct_plot_row, plot)
                  && ct_plot_write(ctx, plot, args->plot);
     ct_plot_destroy(plot);
     ct_system_destroy(sys);
@@ -19,7 +19,7 @@ static int run(struct ct_ctx *ctx, const struct cli_args *args)
         return cli_complain(&cli_simulate,
                             "--columns says what --plot shows; there is no --plot");
     return args->plot ? run_and_plot(ctx, args)
-                      : cli_run_motion(ctx, args, CT_COLUMNS_OF_MODEL, ct_sim_run);
+                      : cli_run_motion(ctx, args, ".csv", CT_COLUMNS_OF_MODEL, ct_sim_run);
 }
 
 const struct cli_command cli_simulate = {
@@ -30,8 +30,9 @@ const struct cli_command cli_simulate = {
     .more
     = "\n"
       "Without -o the results go to the model's file name with .csv in the current folder;\n"
-      "FILE.json makes an object of columns, '-' is standard output. A run that fails leaves\n"
-      "what it has in FILE.partial.\n",
+      "'-' is standard output. Suffixes: .csv, .csv.gz, .json (an object of columns), .npz "
+      "for\n"
+      "NumPy, .mat for MATLAB. A run that fails leaves what it has in FILE.partial.\n",
     .examples = {"cotree simulate pendulum.yaml -o pendulum.csv",
                  "cotree simulate pendulum.yaml --set l=2 --until 5 --tolerance 1e-10"},
     .run = run,

@@ -10,7 +10,13 @@ static bool sweep(struct ct_ctx *ctx, struct ct_study *s, const struct cli_args 
     const struct ct_study_results results = {.path = path ? path : "-",
                                              .resume = args->resume,
                                              .progress = args->quiet ? NULL : stderr};
+    char text[512];
+    snprintf(text, sizeof text,
+             ": whole rows may be in '%s.partial'; the same command with --resume goes on",
+             results.path);
+    cli_interrupt_explain(text);
     bool ok = ct_study_run(ctx, s, &results);
+    cli_interrupt_explain(NULL);
     if (ok && args->summary)
         ok = ct_study_write_summary(ctx, s, args->summary);
     if (ok && !args->quiet)

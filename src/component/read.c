@@ -78,8 +78,32 @@ static const char *stem(struct ct_reader *r)
     const char *slash = strrchr(r->m->file, '/');
     const char *base = slash ? slash + 1 : r->m->file;
     const char *dot = strrchr(base, '.');
-    return ct_arena_strndup(r->a, base,
-                            dot && dot > base ? (size_t)(dot - base) : strlen(base));
+    char *name
+        = ct_arena_strndup(r->a, base, dot && dot > base ? (size_t)(dot - base) : strlen(base));
+    for (char *c = name; *c; c++) // as in messages: nothing that steers a terminal
+        if ((unsigned char)*c < ' ' || *c == 127)
+            *c = '?';
+    return name;
+}
+
+// Control characters, of ASCII and behind it (U+0080 to U+009F), but for those in `allowed`.
+static bool has_control(const char *text, const char *allowed)
+{
+    for (const unsigned char *s = (const unsigned char *)text; *s; s++)
+        if ((*s < ' ' && !strchr(allowed, *s)) || *s == 127
+            || (*s == 0xc2 && s[1] >= 0x80 && s[1] < 0xa0))
+            return true;
+    return false;
+}
+
+// They would steer the terminal where the text is printed.
+static void read_plain(struct ct_reader *r, const char *key, const char *allowed,
+                       const char **text)
+{
+    const struct ct_node *node = ct_node_get(r->root, key);
+    if (node && ct_read_text(r, node, text) && has_control(*text, allowed))
+        ct_error(r->ctx, node->mark, CT_E_NAME, "'%s' contains control characters%s", key,
+                 *allowed ? "" : "; it is a single line of text");
 }
 
 static void read_top(struct ct_reader *r)
@@ -89,10 +113,8 @@ static void read_top(struct ct_reader *r)
     ct_read_keys(r, r->root, "a model", top_keys, COUNT(top_keys));
     m->name = stem(r);
     m->description = "";
-    if (ct_node_get(r->root, "name"))
-        ct_read_text(r, ct_node_get(r->root, "name"), &m->name);
-    if (ct_node_get(r->root, "description"))
-        ct_read_text(r, ct_node_get(r->root, "description"), &m->description);
+    read_plain(r, "name", "", &m->name);
+    read_plain(r, "description", "\n\t", &m->description);
 }
 
 static void read_gravity(struct ct_reader *r)

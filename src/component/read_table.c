@@ -29,13 +29,16 @@ static bool read_csv(struct ct_reader *r, const struct ct_node *node, const char
 {
     char *text;
     size_t n;
-    switch (ct_text_read(r->ctx->scratch, path, max_bytes, &text, &n)) {
+    switch (ct_text_read_regular(r->ctx->scratch, path, max_bytes, &text, &n)) {
     case CT_TEXT_UNREADABLE:
         return ct_error(r->ctx, node->mark, CT_E_TABLE, "cannot read the table '%s': %s", path,
                         strerror(errno));
     case CT_TEXT_TOO_BIG:
         return ct_error(r->ctx, node->mark, CT_E_TABLE, "the table '%s' is larger than %zu MiB",
                         path, max_bytes >> 20);
+    case CT_TEXT_ENDLESS:
+        return ct_error(r->ctx, node->mark, CT_E_TABLE, "the table '%s' is no regular file",
+                        path);
     case CT_TEXT_OK:
         break;
     }
@@ -107,7 +110,7 @@ static bool read_column(struct ct_reader *r, const struct ct_sheet *csv, size_t 
         const size_t k = i * csv->ncolumn + column;
         if (!parse_field(csv->field[k], &value[i - 1]))
             return ct_error(r->ctx, csv->mark[k], CT_E_TABLE_DATA,
-                            "'%s' is not a finite number", csv->field[k]);
+                            "'%.60s' is not a finite number", csv->field[k]);
     }
     return true;
 }

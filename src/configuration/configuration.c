@@ -70,8 +70,11 @@ struct ct_linear *ct_configuration_start(struct ct_ctx *own, struct ct_system *s
     ct_start_apply(&start, m, l->y);
     for (size_t k = 0; k < m->nu && at_rest; k++)
         l->y[m->nq + k] = 0;
+    double *before = CT_NEWN(own->model, double, m->nq + m->nu + 1);
+    memcpy(before, l->y, (m->nq + m->nu) * sizeof *before);
     if (ct_linear_close(l))
-        return l;
+        return ct_start_is_kept(own, own->model, model, e, &start, before, l->y, false) ? l
+                                                                                        : NULL;
     ct_error(own, (struct ct_mark){.file = model->file}, CT_E_ASSEMBLY,
              "the assembled start is singular: the loops cannot be held there");
     return NULL;

@@ -4,9 +4,9 @@
 #include "analysis/state_space.h"
 #include "formulate/residual.h"
 #include "numeric/dense.h"
+#include "report/archive.h"
 #include "report/columns.h"
 #include "report/json.h"
-#include "report/npz.h"
 #include "configuration/variant.h"
 
 #include <math.h>
@@ -425,32 +425,39 @@ static bool write_json(const struct output *o)
     return ct_outfile_close(o->ctx, &file);
 }
 
-static bool write_npz(const struct output *o)
+static bool write_archive(const struct output *o, enum ct_suffix suffix)
 {
     const struct ct_linearization *s = o->s;
-    struct ct_npz z;
-    if (!ct_npz_open(o->ctx, &z, o->path))
+    struct ct_outfile file;
+    struct ct_archive z;
+    if (!ct_outfile_open(o->ctx, &file, o->path))
         return false;
-    ct_npz_matrix(&z, "A", s->A, s->nstate, s->nstate);
-    ct_npz_matrix(&z, "B", s->B, s->nstate, s->ninput);
-    ct_npz_matrix(&z, "C", s->C, s->noutput, s->nstate);
-    ct_npz_matrix(&z, "D", s->D, s->noutput, s->ninput);
-    ct_npz_vector(&z, "x0", s->x0, s->nstate);
-    ct_npz_vector(&z, "xdot0", s->rate0, s->nstate);
-    ct_npz_vector(&z, "y0", s->y0, s->noutput);
-    ct_npz_names(&z, "states", s->state, s->nstate);
-    ct_npz_names(&z, "inputs", s->input, s->ninput);
-    ct_npz_names(&z, "outputs", s->output, s->noutput);
-    return ct_npz_close(o->ctx, &z);
+    ct_archive_init(&z, o->ctx->model, suffix, &file);
+    ct_archive_matrix(&z, "A", s->A, s->nstate, s->nstate);
+    ct_archive_matrix(&z, "B", s->B, s->nstate, s->ninput);
+    ct_archive_matrix(&z, "C", s->C, s->noutput, s->nstate);
+    ct_archive_matrix(&z, "D", s->D, s->noutput, s->ninput);
+    ct_archive_vector(&z, "x0", s->x0, s->nstate);
+    ct_archive_vector(&z, "xdot0", s->rate0, s->nstate);
+    ct_archive_vector(&z, "y0", s->y0, s->noutput);
+    ct_archive_names(&z, "states", s->state, s->nstate);
+    ct_archive_names(&z, "inputs", s->input, s->ninput);
+    ct_archive_names(&z, "outputs", s->output, s->noutput);
+    if (ct_archive_finish(o->ctx, &z))
+        return ct_outfile_close(o->ctx, &file);
+    ct_outfile_discard(&file);
+    return false;
 }
 
 static bool write_all(void *task)
 {
     const struct output *o = task;
-    const char *path = o->path ? o->path : "-";
-    return ct_has_suffix(path, ".npz")  ? write_npz(o)
-         : ct_has_suffix(path, ".json") ? write_json(o)
-                                        : write_csv(o);
+    enum ct_suffix suffix;
+    if (!ct_suffix_read(o->ctx, o->path, CT_SUFFIX_TABLE, &suffix))
+        return false;
+    return suffix == CT_SUFFIX_JSON                           ? write_json(o)
+         : suffix == CT_SUFFIX_NPZ || suffix == CT_SUFFIX_MAT ? write_archive(o, suffix)
+                                                              : write_csv(o);
 }
 
 bool ct_linearization_write(struct ct_ctx *ctx, const struct ct_linearization *s,

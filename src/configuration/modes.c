@@ -4,6 +4,7 @@
 #include "analysis/eigen.h"
 #include "formulate/flexible.h"
 #include "formulate/kinematics.h"
+#include "report/archive.h"
 #include "report/json.h"
 #include "report/shape.h"
 #include "report/columns.h"
@@ -195,10 +196,48 @@ static bool write_json(const struct output *o)
     return ct_outfile_close(o->ctx, &file);
 }
 
+// Shapes as matrices with a column for each mode, a row for each coordinate.
+static bool write_archive(const struct output *o, enum ct_suffix suffix)
+{
+    const struct ct_modes *s = o->s;
+    const size_t nu = (size_t)s->at.l->nu, n = s->n;
+    struct ct_arena *a = o->ctx->model;
+    double *table = CT_NEWN(a, double, 5 * n + 1), *shape = CT_NEWN(a, double, 2 * nu * n + 1);
+    static const char *const names[]
+        = {"frequency_hz", "omega_rad_s", "damping", "eigenvalue_real", "eigenvalue_imaginary"};
+    struct ct_outfile file;
+    struct ct_archive z;
+    for (size_t i = 0; i < n; i++) {
+        const struct ct_mode_info m = ct_modes_info(s, i);
+        const double value[] = {m.frequency_hz, m.omega, m.damping, m.re, m.im};
+        for (size_t k = 0; k < COUNT(names); k++)
+            table[i + n * k] = value[k];
+        memcpy(shape + nu * i, s->mode[i].shape, nu * sizeof *shape);
+        memcpy(shape + nu * (n + i), s->mode[i].shape + nu, nu * sizeof *shape);
+    }
+    if (!ct_outfile_open(o->ctx, &file, o->path))
+        return false;
+    ct_archive_init(&z, a, suffix, &file);
+    for (size_t k = 0; k < COUNT(names); k++)
+        ct_archive_vector(&z, names[k], table + n * k, n);
+    ct_archive_matrix(&z, "shape_real", shape, nu, n);
+    ct_archive_matrix(&z, "shape_imaginary", shape + nu * n, nu, n);
+    ct_archive_names(&z, "coordinates", s->coordinate, nu);
+    if (ct_archive_finish(o->ctx, &z))
+        return ct_outfile_close(o->ctx, &file);
+    ct_outfile_discard(&file);
+    return false;
+}
+
 static bool write_modes(void *task)
 {
     const struct output *o = task;
-    return o->path && ct_has_suffix(o->path, ".json") ? write_json(o) : write_csv(o);
+    enum ct_suffix suffix;
+    if (!ct_suffix_read(o->ctx, o->path, CT_SUFFIX_TABLE, &suffix))
+        return false;
+    return suffix == CT_SUFFIX_JSON                           ? write_json(o)
+         : suffix == CT_SUFFIX_NPZ || suffix == CT_SUFFIX_MAT ? write_archive(o, suffix)
+                                                              : write_csv(o);
 }
 
 bool ct_modes_write(struct ct_ctx *ctx, const struct ct_modes *modes, const char *path)

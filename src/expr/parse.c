@@ -370,39 +370,81 @@ static bool parse_unary(struct parser *s, ct_ex *e)
     return ok;
 }
 
+// What a row of operators gives. A row is cut into parts, so that the expression of n terms nests no deeper than
+// PART + n / PART where from left to right it would be n: walks over it recurse.
+enum { PART = 16 };
+struct row {
+    ct_ex whole, part; // whole: of the parts that are complete
+    int npart, nterm;  // nterm: in the part that is not
+};
+
+static ct_ex join(struct ct_exs *x, char sign, ct_ex a, ct_ex b)
+{
+    return sign == '+' ? ct_ex_add(x, a, b)
+         : sign == '-' ? ct_ex_sub(x, a, b)
+         : sign == '*' ? ct_ex_mul(x, a, b)
+                       : ct_ex_div(x, a, b);
+}
+
+// neutral: '+' or '*', what joins parts.
+static void end_part(struct ct_exs *x, struct row *r, char neutral)
+{
+    r->whole = r->npart++ ? join(x, neutral, r->whole, r->part) : r->part;
+    r->nterm = 0;
+}
+
+static void add_term(struct ct_exs *x, struct row *r, char neutral, char sign, ct_ex term)
+{
+    if (r->nterm)
+        r->part = join(x, sign, r->part, term);
+    else if (sign == neutral)
+        r->part = term;
+    else
+        r->part = neutral == '+' ? ct_ex_neg(x, term) : ct_ex_div(x, CT_EX_ONE, term);
+    if (++r->nterm == PART)
+        end_part(x, r, neutral);
+}
+
+static ct_ex end_row(struct ct_exs *x, struct row *r, char neutral)
+{
+    if (r->nterm)
+        end_part(x, r, neutral);
+    return r->whole;
+}
+
 static bool parse_product(struct parser *s, ct_ex *e)
 {
-    if (!parse_unary(s, e))
-        return false;
-    for (;;) {
-        skip_blanks(s);
-        const char c = *s->p;
-        if (c != '*' && c != '/')
-            return true;
-        s->p++;
+    struct row r = {0};
+    for (char sign = '*';;) {
         ct_ex b;
-        if (*s->p == '*')
-            return unexpected(s, "a number, a name or '('");
         if (!parse_unary(s, &b))
             return false;
-        *e = c == '*' ? ct_ex_mul(s->scope->x, *e, b) : ct_ex_div(s->scope->x, *e, b);
+        add_term(s->scope->x, &r, '*', sign, b);
+        skip_blanks(s);
+        if (*s->p != '*' && *s->p != '/') {
+            *e = end_row(s->scope->x, &r, '*');
+            return true;
+        }
+        sign = *s->p++;
+        if (*s->p == '*')
+            return unexpected(s, "a number, a name or '('");
     }
 }
 
 static bool parse_sum(struct parser *s, ct_ex *e)
 {
-    if (!parse_product(s, e))
-        return false;
-    for (;;) {
-        skip_blanks(s);
-        const char c = *s->p;
-        if (c != '+' && c != '-')
-            return true;
-        s->p++;
+    struct row r = {0};
+    for (char sign = '+';;) {
         ct_ex b;
         if (!parse_product(s, &b))
             return false;
-        *e = c == '+' ? ct_ex_add(s->scope->x, *e, b) : ct_ex_sub(s->scope->x, *e, b);
+        add_term(s->scope->x, &r, '+', sign, b);
+        skip_blanks(s);
+        if (*s->p != '+' && *s->p != '-') {
+            *e = end_row(s->scope->x, &r, '+');
+            return true;
+        }
+        sign = *s->p++;
     }
 }
 

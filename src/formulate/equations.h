@@ -54,6 +54,8 @@ struct ct_row {
     ct_ex lam;         // symbol
     ct_ex wanted;   // >= 0 in the right assembly (half-turn solutions of (4.4)); 0 where none
     bool is_length; // of phi [m]
+    const ct_ex3 *lever; // [m] vectors along the row's path that its speeds turn  (nlever)
+    size_t nlever;
 };
 
 /// A comparison whose outcome is held between events.
@@ -204,6 +206,7 @@ struct ct_equations {
     // operations by formulation, the solution included; INFINITY: it does not apply or cannot win
     double formulation_cost[CT_NFORMULATION];
     bool has_dynamics; // M and Q are derived; else ct_formulate_dynamics does it
+    bool is_open;      // joints close no loop: J keeps its rank on any trees
     bool is_analysed;  // to be linearised, not to be integrated: a few evaluations
     ct_ex *Q;          // nu
     const struct ct_carried

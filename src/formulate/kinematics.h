@@ -84,6 +84,10 @@ void ct_path_mark(struct ct_build *b, int tail, int head, bool *marked);
 /// axes): dv_head - dv_tail (- dw_tail x d).  False if it is zero by structure.
 bool ct_path_sweep(struct ct_build *b, int tail, int head, size_t r, bool carried,
                    ct_ex3 *sweep);
+/// Vectors of the branches between the nodes that some spin turns against the other end (of a row seen from the tail's axes:
+/// against the tail), each in axes of its own. Coefficients of a row are sums over them, which may cancel; the sum of their
+/// lengths is what these were made of.
+const ct_ex3 *ct_path_levers(struct ct_build *b, int tail, int head, bool carried, size_t *n);
 /// +1, -1 or 0: the slide of an anchor lies on the path's head side, tail side, or on neither (both).
 int ct_path_slide(struct ct_build *b, int tail, int head, int anchor);
 

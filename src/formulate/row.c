@@ -3,6 +3,7 @@
 #include "formulate/dynamics.h"
 #include "formulate/gap.h"
 #include "formulate/topology.h"
+#include "graph/pieces.h"
 
 #include <string.h>
 
@@ -107,7 +108,10 @@ static void add_row(struct ct_build *b, int joint, const char *name, struct ct_e
     struct ct_linear l = linear_zero(b);
     wrench_terms(b, n, w, carried, &l);
     const int index = push_row(b, name, joint, &l, phi, gam);
-    b->eqs->row[index].is_length = !ct_ex3_is_zero(w->force);
+    struct ct_row *row = &b->eqs->row[index];
+    row->is_length = !ct_ex3_is_zero(w->force);
+    if (row->is_length)
+        row->lever = ct_path_levers(b, n.tail, n.head, carried, &row->nlever);
     const struct ct_pull p = {index, n.tail, n.head, joint, w->force, w->torque, carried};
     CT_PUSH(b->arena, b->pull, b->npull, b->pull_cap, p);
 }
@@ -336,8 +340,26 @@ static void driven_row(struct ct_build *b, int coordinate)
     b->coordinate[coordinate].motion_row = (int)b->eqs->nrow; // one too large: 0 is none
 }
 
+// Do joints close no loop? Gears couple coordinates across bodies, so that they count as one.
+static bool is_open(const struct ct_build *b)
+{
+    const struct ct_model *m = b->model;
+    struct ct_pieces p;
+    ct_pieces_init(b->arena, (int)m->nbody, &p);
+    for (size_t j = 0; j < m->njoint; j++) {
+        const struct ct_instance *joint = &m->joint[j];
+        if (joint->from < 0 || joint->to < 0)
+            return false;
+        const struct ct_edge between = {m->frame[joint->from].body, m->frame[joint->to].body};
+        if (!ct_pieces_join(&p, between))
+            return false;
+    }
+    return true;
+}
+
 bool ct_rows_derive(struct ct_build *b)
 {
+    b->eqs->is_open = is_open(b);
     for (size_t i = 0; i < b->nedge; i++) {
         const struct ct_edge_info *e = &b->edge[i];
         const bool moves

@@ -500,6 +500,37 @@ bool ct_path_sweep(struct ct_build *b, int tail, int head, size_t r, bool carrie
     return any;
 }
 
+// Does some spin turn a vector of `cluster` in the sweep of a row?
+static bool is_swept(const struct ct_build *b, int tail, int head, bool carried, int cluster)
+{
+    const int from = b->place[tail].frame, to = b->place[head].frame;
+    for (size_t r = 0; r < b->nspin; r++) {
+        const int c = b->spin[r].cluster;
+        const bool is_base = carried && ct_cluster_is_outboard(b, c, from);
+        if (ct_cluster_is_outboard(b, c, cluster) != is_base
+            && (carried || !ct_cluster_is_outboard(b, c, from)
+                || !ct_cluster_is_outboard(b, c, to)))
+            return true;
+    }
+    return false;
+}
+
+const ct_ex3 *ct_path_levers(struct ct_build *b, int tail, int head, bool carried, size_t *n)
+{
+    const struct ct_tree *T = &b->T;
+    ct_ex3 *lever = CT_NEWN(b->arena, ct_ex3, T->depth[tail] + T->depth[head] + 1);
+    *n = 0;
+    for (int i = tail, j = head; i != j;) { // the deeper one steps inwards
+        int *const k = T->depth[i] > T->depth[j] ? &i : &j;
+        const struct ct_edge_info *e = &b->edge[T->parent_edge[*k]];
+        const ct_ex3 d = e->kind == CT_EDGE_ARM ? e->at : e->motion.d;
+        if (!ct_ex3_is_zero(d) && is_swept(b, tail, head, carried, tail_of(b, *k)->frame))
+            lever[(*n)++] = d;
+        *k = T->parent[*k];
+    }
+    return lever;
+}
+
 int ct_path_slide(struct ct_build *b, int tail, int head, int anchor)
 {
     const bool at_head = ct_anchor_is_outboard(b, anchor, b->place[head].anchor);

@@ -15,7 +15,7 @@ struct scan {
 
 static struct ct_mark here(const struct scan *s)
 {
-    return (struct ct_mark){s->csv->file, s->line, (int)(s->p - s->line_start)};
+    return (struct ct_mark){s->csv->file, s->line, (int)(s->p - s->line_start), true};
 }
 
 static bool at_break(const struct scan *s)
@@ -95,7 +95,7 @@ bool ct_sheet_parse(struct ct_ctx *ctx, struct ct_arena *a, const char *file, ch
     *csv = (struct ct_sheet){.file = file};
     struct scan s = {.ctx = ctx, .a = a, .csv = csv, .p = text, .end = text + n};
     if (memchr(text, 0, n))
-        return ct_error(ctx, (struct ct_mark){file, 0, 0}, CT_E_TABLE_DATA,
+        return ct_error(ctx, (struct ct_mark){file, 0, 0, true}, CT_E_TABLE_DATA,
                         "the file is no text: it contains the character NUL");
     if (n >= 3 && memcmp(text, "\xef\xbb\xbf", 3) == 0)
         s.p += 3;

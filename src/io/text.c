@@ -4,9 +4,11 @@
 #include "base/guard.h"
 
 #include <errno.h>
+#include <fcntl.h>
 #include <stdio.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 static enum ct_text_result read_all(struct ct_arena *a, FILE *f, size_t most, char **text,
                                     size_t *n)
@@ -33,12 +35,10 @@ static enum ct_text_result read_all(struct ct_arena *a, FILE *f, size_t most, ch
     return ferror(f) ? CT_TEXT_UNREADABLE : CT_TEXT_OK;
 }
 
-enum ct_text_result ct_text_read(struct ct_arena *a, const char *path, size_t most, char **text,
-                                 size_t *n)
+// f is closed in the end.
+static enum ct_text_result read_and_close(struct ct_arena *a, FILE *f, size_t most, char **text,
+                                          size_t *n)
 {
-    FILE *f = fopen(path, "rb");
-    if (!f)
-        return CT_TEXT_UNREADABLE;
     struct stat s;
     if (fstat(fileno(f), &s) == 0 && S_ISDIR(s.st_mode)) {
         fclose(f);
@@ -60,4 +60,26 @@ enum ct_text_result ct_text_read(struct ct_arena *a, const char *path, size_t mo
     fclose(f);
     errno = reason;
     return result;
+}
+
+enum ct_text_result ct_text_read(struct ct_arena *a, const char *path, size_t most, char **text,
+                                 size_t *n)
+{
+    FILE *f = fopen(path, "rb");
+    return f ? read_and_close(a, f, most, text, n) : CT_TEXT_UNREADABLE;
+}
+
+enum ct_text_result ct_text_read_regular(struct ct_arena *a, const char *path, size_t most,
+                                         char **text, size_t *n)
+{
+    const int fd = open(path, O_RDONLY | O_NONBLOCK | O_CLOEXEC); // a FIFO is not waited for
+    struct stat s;
+    if (fd < 0)
+        return CT_TEXT_UNREADABLE;
+    const bool may_end = fstat(fd, &s) != 0 || S_ISREG(s.st_mode) || S_ISDIR(s.st_mode);
+    FILE *f = may_end ? fdopen(fd, "rb") : NULL;
+    if (f)
+        return read_and_close(a, f, most, text, n);
+    close(fd);
+    return may_end ? CT_TEXT_UNREADABLE : CT_TEXT_ENDLESS;
 }

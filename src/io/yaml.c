@@ -363,6 +363,7 @@ bool ct_yaml_read(struct ct_ctx *ctx, const char *path, const struct ct_node **r
     case CT_TEXT_TOO_BIG:
         return ct_error(ctx, none, CT_E_YAML_LIMIT, "'%s' is larger than %zu MiB", path,
                         max_bytes >> 20);
+    case CT_TEXT_ENDLESS: // a model may come from a pipe
     case CT_TEXT_OK:
         break;
     }

@@ -463,11 +463,17 @@ static void solve_trapezoid(double *b, double *A, int rank, int n, int lda, doub
 
 int ct_lstsq(double *b, double *A, int m, int n, int lda, double tol, int *iwork, double *work)
 {
+    return ct_lstsq_of_rank(b, A, m, n, lda, tol, min_int(m, n), iwork, work);
+}
+
+int ct_lstsq_of_rank(double *b, double *A, int m, int n, int lda, double tol, int most,
+                     int *iwork, double *work)
+{
     int info;
     const int k = min_int(m, n), one = 1, lwork = (int)ct_qr_pivot_work(m, n);
     double *tau = work, *x = tau + k, *rest = x + n;
     lda = max_int(1, lda);
-    const int rank = ct_qr_pivot(A, iwork, tau, m, n, lda, tol, rest);
+    const int rank = min_int(ct_qr_pivot(A, iwork, tau, m, n, lda, tol, rest), most);
     if (rank == 0) {
         memset(b, 0, (size_t)n * sizeof *b);
         return 0;

@@ -102,6 +102,9 @@ size_t ct_qr_pivot_work(int m, int n);
 /// Minimum-norm least-squares solution of A x = b by complete orthogonal decomposition:
 /// A (m x n) is destroyed, b (max(m, n), in and out). Returns the rank with relative tolerance tol.
 int ct_lstsq(double *b, double *A, int m, int n, int lda, double tol, int *iwork, double *work);
+/// The same where the rank is known to be `most` at most.
+int ct_lstsq_of_rank(double *b, double *A, int m, int n, int lda, double tol, int most,
+                     int *iwork, double *work);
 size_t ct_lstsq_work(int m, int n);
 
 /// Eigenvalues w (n, ascending) and vectors (in place of A, v' B v = 1) of A v = w B v, A symmetric, B symmetric

@@ -1,18 +1,13 @@
 // See columns.h.
 #include "report/columns.h"
 
+#include "report/archive.h"
 #include "report/csv.h"
 #include "report/json.h"
 
 #include <assert.h>
 #include <math.h>
 #include <string.h>
-
-bool ct_has_suffix(const char *path, const char *suffix)
-{
-    const size_t n = strlen(path), k = strlen(suffix);
-    return n >= k && strcmp(path + n - k, suffix) == 0;
-}
 
 void ct_columns_init(struct ct_columns *t, struct ct_arena *a, const char *name,
                      enum ct_column_kind kind)
@@ -40,20 +35,21 @@ void ct_columns_text(struct ct_columns *t, size_t column, const char *text)
     CT_PUSH(t->arena, c->text, c->n, c->cap, text);
 }
 
-static bool write_csv(struct ct_ctx *ctx, const struct ct_columns *t, const char *path)
+static bool write_csv(struct ct_ctx *ctx, const struct ct_columns *t, const char *path,
+                      enum ct_suffix suffix)
 {
     struct ct_csv w;
     const char **name = CT_NEWN(t->arena, const char *, t->ncolumn);
     for (size_t i = 0; i < t->ncolumn; i++)
         name[i] = t->column[i].name;
-    if (!ct_csv_open(ctx, &w, path && strcmp(path, "-") != 0 ? path : NULL, name, t->ncolumn))
+    if (!ct_csv_open(ctx, &w, path, suffix, name, t->ncolumn))
         return false;
     for (size_t r = 0; r < t->column[0].n; r++) {
         for (size_t i = 0; i < t->ncolumn; i++) {
             const struct ct_column *c = &t->column[i];
             assert(c->n == t->column[0].n);
             if (c->kind == CT_COLUMN_TEXT)
-                ct_csv_text(&w, c->text[r]);
+                ct_csv_text(&w, c->text[r] ? c->text[r] : "");
             else if (isfinite(c->number[r]))
                 ct_csv_number(&w, c->number[r]);
             else
@@ -67,13 +63,10 @@ static bool write_csv(struct ct_ctx *ctx, const struct ct_columns *t, const char
     return ct_csv_close(ctx, &w);
 }
 
-static bool write_json(struct ct_ctx *ctx, const struct ct_columns *t, const char *path)
+static void write_json(const struct ct_columns *t, FILE *out)
 {
-    struct ct_outfile file;
     struct ct_json j;
-    if (!ct_outfile_open(ctx, &file, path))
-        return false;
-    ct_json_init(&j, file.stream);
+    ct_json_init(&j, out);
     ct_json_object(&j, NULL);
     for (size_t i = 0; i < t->ncolumn; i++) {
         const struct ct_column *c = &t->column[i];
@@ -90,11 +83,50 @@ static bool write_json(struct ct_ctx *ctx, const struct ct_columns *t, const cha
         ct_json_end(&j);
     }
     ct_json_end(&j);
-    return ct_outfile_close(ctx, &file);
+}
+
+// The arrays, and the names of all columns in order: those of .mat are not the same.
+static void fill_archive(struct ct_archive *z, const struct ct_columns *t)
+{
+    const char **name = CT_NEWN(z->arena, const char *, t->ncolumn + 1);
+    for (size_t i = 0; i < t->ncolumn; i++) {
+        const struct ct_column *c = &t->column[i];
+        name[i] = c->name;
+        if (c->kind == CT_COLUMN_TEXT)
+            ct_archive_names(z, c->name, c->text, c->n);
+        else
+            ct_archive_vector(z, c->name, c->number, c->n);
+    }
+    ct_archive_names(z, "columns", name, t->ncolumn);
+}
+
+bool ct_columns_put(struct ct_ctx *ctx, const struct ct_columns *t, enum ct_suffix suffix,
+                    struct ct_outfile *file)
+{
+    if (suffix == CT_SUFFIX_JSON) {
+        write_json(t, file->stream);
+        return true;
+    }
+    struct ct_archive z;
+    ct_archive_init(&z, ctx->model, suffix, file);
+    fill_archive(&z, t);
+    return ct_archive_finish(ctx, &z);
 }
 
 bool ct_columns_write(struct ct_ctx *ctx, const struct ct_columns *t, const char *path)
 {
-    return path && ct_has_suffix(path, ".json") ? write_json(ctx, t, path)
-                                                : write_csv(ctx, t, path);
+    enum ct_suffix suffix;
+    struct ct_outfile file;
+    if (!ct_suffix_read(ctx, path, CT_SUFFIX_TABLE, &suffix))
+        return false;
+    if (path && strcmp(path, "-") == 0)
+        path = NULL;
+    if (suffix == CT_SUFFIX_CSV || suffix == CT_SUFFIX_CSV_GZ)
+        return write_csv(ctx, t, path, suffix);
+    if (!ct_outfile_open(ctx, &file, path))
+        return false;
+    if (ct_columns_put(ctx, t, suffix, &file))
+        return ct_outfile_close(ctx, &file);
+    ct_outfile_discard(&file);
+    return false;
 }

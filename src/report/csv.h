@@ -1,23 +1,28 @@
-// Results as comma-separated values (RFC 4180), row by row.
+// Results as comma-separated values (RFC 4180), row by row; as FILE.csv.gz compressed.
 //
 //     t,crank.q,"atan2(y, x)"         header: quoted where a comma, quote or line end asks for it
-//     0,0.5,1.25                      numbers: 17 digits, read back to the same bits
+//     0,0.5,1.25                      numbers: fewest digits that read back to the same bits
 //
-// What always holds: each row has as many fields as the header (asserted); the file appears under its
-// name only when it is complete (outfile.h).
+// What always holds: each row has as many fields as the header (asserted); what has reached the system ends with a
+// whole row; the file appears under its name only when it is complete (outfile.h).
 #ifndef CT_REPORT_CSV_H
 #define CT_REPORT_CSV_H
 
 #include "report/outfile.h"
+#include "report/suffix.h"
 
 struct ct_csv {
     struct ct_outfile file;
+    struct ct_gzip *gzip; // NULL: not compressed
+    struct ct_arena *arena;
     size_t ncolumn;
     size_t nfield; // in the current row
+    char *text;    // rows that wait, and the current one  (n used, cap)
+    size_t n, cap;
 };
 
-/// Open path (NULL: standard output) and write the header. Errors: E002.
-bool ct_csv_open(struct ct_ctx *ctx, struct ct_csv *w, const char *path,
+/// Open path (NULL: standard output) and write the header. Errors: E002, E006.
+bool ct_csv_open(struct ct_ctx *ctx, struct ct_csv *w, const char *path, enum ct_suffix suffix,
                  const char *const *column, size_t ncolumn);
 
 /// One row of numbers, value (ncolumn). Errors: E002.
@@ -27,6 +32,9 @@ bool ct_csv_row(struct ct_ctx *ctx, struct ct_csv *w, const double *value);
 void ct_csv_number(struct ct_csv *w, double value);
 void ct_csv_text(struct ct_csv *w, const char *text);
 bool ct_csv_end_row(struct ct_ctx *ctx, struct ct_csv *w);
+
+/// Rows so far have reached the system, but for what compression keeps. Errors: E002.
+bool ct_csv_flush(struct ct_ctx *ctx, struct ct_csv *w);
 
 /// Complete the file under its own name. Errors: E002.
 bool ct_csv_close(struct ct_ctx *ctx, struct ct_csv *w);

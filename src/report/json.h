@@ -10,7 +10,7 @@
 //
 // Every function that starts a value takes its key first: a name in an object, NULL in an array and
 // at the top. What always holds: the output is valid JSON in UTF-8 whatever the strings contain;
-// numbers have 17 digits, and what is not finite is null. To write to memory instead of a file, pass
+// numbers have the fewest digits that read back, and what is not finite is null. To write to memory instead of a file, pass
 // what open_memstream gives.
 #ifndef CT_REPORT_JSON_H
 #define CT_REPORT_JSON_H

@@ -2,9 +2,11 @@
 #ifndef CT_REPORT_NUMBER_H
 #define CT_REPORT_NUMBER_H
 
-enum { CT_NUMBER_SIZE = 32 };
+#include "base/decimal.h"
 
-/// Write v with 17 significant digits (%.17g) and a decimal point to text; what is not finite
+enum { CT_NUMBER_SIZE = CT_DECIMAL_SIZE };
+
+/// Write v with the fewest digits that read back (base/decimal.h) to text; what is not finite
 /// becomes nan, inf or -inf. Returns text.
 const char *ct_number_format(char text[CT_NUMBER_SIZE], double v);
 

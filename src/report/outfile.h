@@ -3,8 +3,10 @@
 //     open: FILE.partial  -- writing -->  FILE.partial  -- close -->  FILE
 //                                               `-- abandon, crash -->  FILE.partial stays
 //
-// What always holds: until close has succeeded FILE is what it was before. Only a file that is not a
-// regular one, such as /dev/null, is written to directly.
+// What always holds: until close has succeeded FILE is what it was before; FILE.partial is written by one process at a
+// time (it is locked), is never a link, and has reached the disk before it becomes FILE. Only a file that is not a
+// regular one, such as /dev/null, is written to directly. Where a file system has no locks the last of two writers
+// that begin at the same time wins.
 #ifndef CT_REPORT_OUTFILE_H
 #define CT_REPORT_OUTFILE_H
 
@@ -17,8 +19,11 @@ struct ct_outfile {
 };
 
 /// Open path for writing; NULL means standard output. Strings live in ctx->model.
-/// Errors: E002.
+/// Errors: E002; E006 where another one is writing it.
 bool ct_outfile_open(struct ct_ctx *ctx, struct ct_outfile *o, const char *path);
+
+/// The same with what is in the partial file of an earlier writer, for reading and writing, at its start.
+bool ct_outfile_reopen(struct ct_ctx *ctx, struct ct_outfile *o, const char *path);
 
 /// Everything written so far has reached the system. Errors: E002.
 bool ct_outfile_flush(struct ct_ctx *ctx, struct ct_outfile *o);
@@ -28,5 +33,8 @@ bool ct_outfile_close(struct ct_ctx *ctx, struct ct_outfile *o);
 
 /// Give up: the partial file stays. Accepts all zeros and a closed file.
 void ct_outfile_abandon(struct ct_outfile *o);
+
+/// Give up, where half a file is of no use: the partial file goes, too.
+void ct_outfile_discard(struct ct_outfile *o);
 
 #endif

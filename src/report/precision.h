@@ -36,10 +36,6 @@ bool ct_precision_is_alike(const struct ct_precision_point *p,
 /// "radau5, N = 5, linear"
 void ct_precision_name(char *text, size_t size, const struct ct_precision_point *p);
 
-enum { CT_PRECISION_NUMBER_SIZE = 32 };
-/// v in the fewest digits that read back to it. Returns text.
-const char *ct_precision_number(char text[CT_PRECISION_NUMBER_SIZE], double v);
-
 /// The table: JSON (an object of columns) if path ends with .json, else CSV; path NULL or "-": CSV on
 /// standard output. Errors: E002.
 bool ct_precision_write(struct ct_ctx *ctx, const char *path,

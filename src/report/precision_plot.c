@@ -3,6 +3,7 @@
 #include "report/precision.h"
 
 #include "report/outfile.h"
+#include "report/suffix.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -219,7 +220,9 @@ bool ct_precision_draw(struct ct_ctx *ctx, const char *path,
                        const struct ct_precision_plot *plot)
 {
     struct ct_outfile file;
-    if (!ct_outfile_open(ctx, &file, path))
+    enum ct_suffix unused;
+    if (!ct_suffix_read(ctx, path, CT_SUFFIX_SVG, &unused)
+        || !ct_outfile_open(ctx, &file, path))
         return false;
     struct canvas c = {.out = file.stream,
                        .x = axis_over(LEFT, WIDTH - RIGHT),

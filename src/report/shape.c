@@ -2,6 +2,7 @@
 #include "report/shape.h"
 
 #include "report/outfile.h"
+#include "report/suffix.h"
 
 #include <math.h>
 
@@ -87,7 +88,9 @@ bool ct_shapes_draw(struct ct_ctx *ctx, const char *path, const char *title,
                     size_t npoint, const struct ct_bone *bone, size_t nbone)
 {
     struct ct_outfile file;
-    if (!ct_outfile_open(ctx, &file, path))
+    enum ct_suffix unused;
+    if (!ct_suffix_read(ctx, path, CT_SUFFIX_SVG, &unused)
+        || !ct_outfile_open(ctx, &file, path))
         return false;
     struct view v = {.out = file.stream, .low = {INFINITY, INFINITY}};
     double high[2] = {-INFINITY, -INFINITY};

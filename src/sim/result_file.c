@@ -1,88 +1,108 @@
-// Results of a run as a file: rows as CSV, columns as JSON.
+// Results of a run as a file: rows as CSV, columns in the other formats.
 #include "sim/sim.h"
 
+#include "report/columns.h"
 #include "report/csv.h"
-#include "report/json.h"
-#include "report/outfile.h"
 
 #include <string.h>
 
+static const double seconds_between_flushes = 0.5; // what an interruption may cost at most
+
 struct ct_result_file {
-    bool is_json;
-    struct ct_csv csv;
-    struct ct_outfile json;
-    double *value; // JSON is written by columns: rows are kept until the end
-    size_t nvalue, value_cap, ncolumn;
-    const char **column; // "t" first
+    enum ct_suffix suffix;
+    struct ct_csv csv;         // rows as they come
+    struct ct_outfile whole;   // else: it is written at the end
+    struct ct_columns columns; // until then
+    size_t ncolumn;
+    double flushed;
+    bool is_by_row;
 };
 
-static bool has_suffix(const char *path, const char *suffix)
+static const char *column_name(const struct ct_equations *e, size_t c)
 {
-    const size_t n = strlen(path), k = strlen(suffix);
-    return n >= k && strcmp(path + n - k, suffix) == 0;
+    return c ? e->result[c - 1].name : "t";
 }
 
 bool ct_sim_open_results(struct ct_sim *sim, const char *path)
 {
     const struct ct_equations *e = &sim->system->equations;
     struct ct_result_file *f = sim->file = CT_NEW(sim->own.model, struct ct_result_file);
-    f->ncolumn = e->nresult + 1;
-    f->column = CT_NEWN(sim->own.model, const char *, f->ncolumn);
-    f->column[0] = "t";
-    for (size_t i = 0; i < e->nresult; i++)
-        f->column[i + 1] = e->result[i].name;
-    f->is_json = has_suffix(path, ".json");
-    if (f->is_json)
-        return ct_outfile_open(&sim->own, &f->json, path);
-    return ct_csv_open(&sim->own, &f->csv, strcmp(path, "-") == 0 ? NULL : path, f->column,
-                       f->ncolumn);
+    const size_t n = f->ncolumn = e->nresult + 1;
+    if (!ct_suffix_read(&sim->own, path, CT_SUFFIX_TABLE, &f->suffix))
+        return false;
+    f->is_by_row = f->suffix == CT_SUFFIX_CSV || f->suffix == CT_SUFFIX_CSV_GZ;
+    f->flushed = ct_clock();
+    if (!f->is_by_row) {
+        ct_columns_init(&f->columns, sim->own.model, "t", CT_COLUMN_NUMBER);
+        for (size_t i = 1; i < n; i++)
+            ct_columns_add(&f->columns, column_name(e, i), CT_COLUMN_NUMBER);
+        return ct_outfile_open(&sim->own, &f->whole, path);
+    }
+    const char **name = CT_NEWN(sim->own.model, const char *, n);
+    for (size_t i = 0; i < n; i++)
+        name[i] = column_name(e, i);
+    return ct_csv_open(&sim->own, &f->csv, strcmp(path, "-") == 0 ? NULL : path, f->suffix,
+                       name, n);
+}
+
+// Whoever looks at the file, or is interrupted, has the rows of half a second ago.
+static bool write_csv_row(struct ct_sim *sim, double t, const double *value)
+{
+    struct ct_result_file *f = sim->file;
+    const double now = ct_clock();
+    ct_csv_number(&f->csv, t);
+    for (size_t i = 0; i + 1 < f->ncolumn; i++)
+        ct_csv_number(&f->csv, value[i]);
+    if (!ct_csv_end_row(&sim->own, &f->csv))
+        return false;
+    if (now - f->flushed < seconds_between_flushes)
+        return true;
+    f->flushed = now;
+    return ct_csv_flush(&sim->own, &f->csv);
 }
 
 bool ct_sim_write_row(struct ct_sim *sim, double t, const double *value)
 {
     struct ct_result_file *f = sim->file;
-    if (!f->is_json) {
-        ct_csv_number(&f->csv, t);
-        for (size_t i = 0; i + 1 < f->ncolumn; i++)
-            ct_csv_number(&f->csv, value[i]);
-        return ct_csv_end_row(&sim->own, &f->csv);
-    }
-    CT_PUSH(sim->own.model, f->value, f->nvalue, f->value_cap, t);
-    for (size_t i = 0; i + 1 < f->ncolumn; i++)
-        CT_PUSH(sim->own.model, f->value, f->nvalue, f->value_cap, value[i]);
+    sim->nwritten++;
+    if (f->is_by_row)
+        return write_csv_row(sim, t, value);
+    ct_columns_number(&f->columns, 0, t);
+    for (size_t i = 1; i < f->ncolumn; i++)
+        ct_columns_number(&f->columns, i, value[i - 1]);
     return true;
-}
-
-static void write_columns(struct ct_sim *sim)
-{
-    const struct ct_result_file *f = sim->file;
-    const size_t n = f->nvalue / f->ncolumn;
-    double *one = CT_NEWN(sim->own.model, double, n + 1);
-    struct ct_json j;
-    ct_json_init(&j, f->json.stream);
-    ct_json_object(&j, NULL);
-    for (size_t c = 0; c < f->ncolumn; c++) {
-        for (size_t i = 0; i < n; i++)
-            one[i] = f->value[i * f->ncolumn + c];
-        ct_json_numbers(&j, f->column[c], one, n);
-    }
-    ct_json_end(&j);
 }
 
 void ct_sim_abandon_results(struct ct_sim *sim)
 {
     ct_csv_abandon(&sim->file->csv);
-    ct_outfile_abandon(&sim->file->json);
+    ct_outfile_abandon(&sim->file->whole);
+}
+
+void ct_sim_interrupt_results(struct ct_sim *sim)
+{
+    ct_csv_abandon(&sim->file->csv);
+    ct_outfile_discard(&sim->file->whole); // to write it takes longer than anybody waits
+}
+
+const char *ct_sim_results_path(const struct ct_sim *sim, bool is_partial)
+{
+    const struct ct_result_file *f = sim->file;
+    if (!f)
+        return NULL;
+    const struct ct_outfile *o = f->is_by_row ? &f->csv.file : &f->whole;
+    return !is_partial ? o->path : f->is_by_row ? o->partial : NULL;
 }
 
 bool ct_sim_close_results(struct ct_sim *sim, bool ok)
 {
     struct ct_result_file *f = sim->file;
-    if (f->is_json)
-        write_columns(sim);
+    if (ok && f->is_by_row)
+        return ct_csv_close(&sim->own, &f->csv);
+    if (!f->is_by_row)
+        ok &= ct_columns_put(&sim->own, &f->columns, f->suffix, &f->whole);
     if (ok)
-        return f->is_json ? ct_outfile_close(&sim->own, &f->json)
-                          : ct_csv_close(&sim->own, &f->csv);
+        return ct_outfile_close(&sim->own, &f->whole);
     ct_sim_abandon_results(sim);
     return false;
 }

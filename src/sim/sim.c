@@ -1,8 +1,8 @@
 // Runs: options resolved, the start assembled, the motion integrated and written.
 #include "sim/sim.h"
 
+#include "base/guard.h"
 #include "formulate/flexible.h"
-#include "report/progress.h"
 #include "solve/criterion.h"
 #include "solve/lanes.h"
 #include "solve/singular.h"
@@ -261,6 +261,7 @@ static bool prepare(struct ct_sim *sim, const struct ct_sim_options *o)
     sim->open.result = CT_NEWN(sim->own.model, bool, s->equations.nresult + 1);
     sim->report.final = CT_NEWN(sim->own.model, double, s->equations.nresult + 1);
     sim->report.rank = ct_run_embed(sim->run)->rank;
+    ct_sim_warn_of_start(sim);
     warn_of_singular_start(sim);
     if (ct_run_results(sim->run, 0, ct_run_state(sim->run), sim->report.final) != CT_EVAL_OK)
         return ct_error(&sim->own, (struct ct_mark){.file = s->model.file}, CT_E_SINGULAR,
@@ -335,12 +336,15 @@ static bool is_hopeless(const struct ct_sim *sim, double t, double end)
 static bool at_progress(void *user, double t, double end)
 {
     struct ct_sim *sim = user;
+    sim->reached = t;
     if (sim->progress)
         ct_progress_update(sim->progress, end > 0 ? t / end : 1);
+    if (ct_guard_is_interrupted())
+        sim->is_interrupted = true;
     // a look at the clock costs as much as a step of a small system
     if (sim->deadline > 0 && sim->nstep++ % steps_between_looks == 0)
         sim->is_late = is_hopeless(sim, t, end);
-    return !sim->is_late;
+    return !sim->is_late && !sim->is_interrupted;
 }
 
 static void foresee(void *user, const struct ct_foresight *f)
@@ -395,14 +399,12 @@ static void explain_change(struct ct_sim *sim)
 static bool integrate(struct ct_sim *sim)
 {
     struct ct_run_options *o = &sim->run_options;
-    struct ct_progress progress = {0};
     if (sim->results->progress) {
-        ct_progress_init(&progress, sim->results->progress,
+        ct_progress_init(&sim->bar, sim->results->progress,
                          sim->is_followed ? "follow" : "simulate");
-        sim->progress = &progress;
+        sim->progress = &sim->bar;
     }
-    if (sim->results->progress || sim->deadline > 0)
-        o->progress = at_progress;
+    o->progress = at_progress;
     o->foresee = foresee;
     o->row = at_row;
     o->want_residual = want_residual;
@@ -411,7 +413,8 @@ static bool integrate(struct ct_sim *sim)
     const bool ok = sim->is_followed ? ct_run_follow(sim->run, o, &sim->report)
                                      : ct_run_simulate(sim->run, o, &sim->report);
     sim->integrate = ct_clock() - start - sim->write;
-    ct_progress_finish(&progress);
+    if (sim->progress)
+        ct_progress_finish(sim->progress);
     sim->progress = NULL;
     explain_change(sim);
     return ok;
@@ -462,7 +465,9 @@ static bool run(struct ct_sim *sim)
     if (sim->is_verified)
         sim->kept = CT_NEWN(sim->own.model, double,
                             sim->run_options.nsample * sim->system->equations.nresult + 1);
-    bool ok = integrate(sim) || sim->own.nerror == 0;
+    bool ok = integrate(sim) || (sim->own.nerror == 0 && !sim->is_interrupted);
+    if (sim->is_interrupted)
+        return false;
     const double start = ct_clock();
     if (ok)
         ct_run_find_open(sim->run, sim->time, sim->report.y, sim->open.row, sim->open.result);
@@ -496,7 +501,7 @@ static bool run_again(void *task)
 {
     struct work *w = task;
     struct ct_sim *sim = w->sim;
-    sim->has_run = sim->is_done = sim->is_late = false;
+    sim->has_run = sim->is_done = sim->is_late = sim->is_interrupted = false;
     sim->write = 0;
     sim->nstep = 0;
     const char *singular_joints = ct_run_singular_joints(sim->run);
@@ -525,6 +530,30 @@ bool ct_sim_follow(struct ct_ctx *ctx, struct ct_sim *sim, const struct ct_sim_r
     return ct_sim_run(ctx, sim, results);
 }
 
+// How far it came, what is there of it.
+static bool report_interrupt(void *task)
+{
+    struct work *w = task;
+    struct ct_sim *sim = w->sim;
+    const double end = sim->run_options.duration > 0 ? sim->run_options.duration
+                                                     : sim->system->model.simulation.duration;
+    if (sim->file)
+        ct_sim_interrupt_results(sim);
+    const char *partial = ct_sim_results_path(sim, true);
+    const char *rows
+        = partial && sim->nwritten ? ct_arena_printf(
+              sim->own.model, ": the first %ld samples are in '%s'", sim->nwritten, partial)
+        : sim->file ? ": nothing is written, as only .csv files keep the samples so far"
+                    : "";
+    ct_error(
+        &sim->own, (struct ct_mark){0}, CT_E_INTERRUPTED,
+        "interrupted at t = %.6g s of %.6g s%s; the same command begins anew, with --until "
+        "T it ends earlier",
+        sim->reached, end, rows);
+    ct_ctx_hand_over(w->ctx, &sim->own);
+    return false;
+}
+
 bool ct_sim_run(struct ct_ctx *ctx, struct ct_sim *sim, const struct ct_sim_results *results)
 {
     static const struct ct_sim_results nowhere;
@@ -533,6 +562,12 @@ bool ct_sim_run(struct ct_ctx *ctx, struct ct_sim *sim, const struct ct_sim_resu
         return false;
     sim->results = results ? results : &nowhere;
     const bool ok = ct_enter(ctx, run_and_report, &w);
+    if (!ok && ctx->was_interrupted && sim->results->path) {
+        if (sim->progress) // a jump led here
+            ct_progress_finish(sim->progress);
+        sim->progress = NULL;
+        ct_enter_uninterrupted(ctx, report_interrupt, &w);
+    }
     if (!ok && sim->file) // without memory the file is still open
         ct_sim_abandon_results(sim);
     sim->results = NULL;

@@ -13,6 +13,7 @@
 #ifndef CT_SIM_H
 #define CT_SIM_H
 
+#include "report/progress.h"
 #include "solve/simulate.h"
 #include "system.h"
 
@@ -56,12 +57,14 @@ struct ct_sim {
     size_t nkept;
     struct ct_estimate estimate; // what it said
     const struct ct_sim_results *results;
-    struct ct_result_file *file; // result_file.c; NULL: none is written
-    struct ct_progress *progress;
-    long nstep;      // accepted so far, for deadlines
-    double begun;    // on ct_clock, when steps begin
-    double deadline; // on ct_clock, when the run is given up; 0: none
-    bool has_run, is_done, is_late, is_followed;
+    struct ct_result_file *file;       // result_file.c; NULL: none is written
+    long nwritten;                     // rows of it
+    struct ct_progress bar, *progress; // NULL: none is shown
+    long nstep;                        // accepted so far, for deadlines
+    double begun;                      // on ct_clock, when steps begin
+    double deadline;                   // on ct_clock, when the run is given up; 0: none
+    bool has_run, is_done, is_late, is_interrupted, is_followed;
+    double reached;                                   // by accepted steps
     double time;                                      // of the last sample
     double compile, integrate, write, verify_seconds; // seconds
 };
@@ -83,7 +86,8 @@ bool ct_sim_has_solver(struct ct_sim *sim);
 bool ct_sim_run_again(struct ct_ctx *ctx, struct ct_sim *sim,
                       const struct ct_sim_results *results);
 
-/// Results as a file, sim->file, in sim->own: rows as CSV, columns as JSON where the path ends so, "-": the standard output.
+/// Results as a file, sim->file, in sim->own, in the format its suffix names; "-": CSV on standard output.
+/// Errors: E002, E006, E007.
 bool ct_sim_open_results(struct ct_sim *sim, const char *path);
 bool ct_sim_write_row(struct ct_sim *sim, double t, const double *value);
 /// ok: the run succeeded; else what there is stays in the partial file, and false.
@@ -91,12 +95,19 @@ bool ct_sim_close_results(struct ct_sim *sim, bool ok);
 /// Without a word: what there is stays in the partial file.
 void ct_sim_abandon_results(struct ct_sim *sim);
 
+/// The same of a run that was interrupted: rows stay in the partial file, of the formats without rows nothing.
+void ct_sim_interrupt_results(struct ct_sim *sim);
+/// The file of the results, NULL where there is none; of partial ones NULL where they stay nowhere.
+const char *ct_sim_results_path(const struct ct_sim *sim, bool is_partial);
+
 /// After a run that kept its rows: another one, and what it says, in sim->estimate. Raises the guard.
 void ct_sim_verify(struct ct_sim *sim);
 /// True for a column whose largest value, scale, is rounding beside the largest column; deviation: how far
 /// two runs differ there.
 bool ct_is_rounding(double scale, double deviation, double largest);
 
+/// Warn of joints that start more than a right angle or half the natural length from their guesses.
+void ct_sim_warn_of_start(struct ct_sim *sim);
 /// Warn of beams that bent too far for one frame.
 void ct_slope_warn(struct ct_ctx *ctx, const struct ct_equations *e,
                    const struct ct_slope_report *report);

@@ -2,9 +2,11 @@
 //     summary.c        the figures
 //     summary_file.c   for programs (--summary)
 //     summary_text.c   for people
+//     summary_start.c  what was asked of the joints and where they start
 #ifndef CT_SUMMARY_H
 #define CT_SUMMARY_H
 
+#include "report/json.h"
 #include "sim/sim.h"
 
 /// Operations of all kinds.
@@ -19,6 +21,13 @@ const char *ct_sim_solver(const struct ct_sim *sim);
 /// Speeds less rank, and rows less rank.
 long ct_sim_freedoms(const struct ct_sim *sim);
 long ct_sim_redundant(const struct ct_sim *sim);
+
+enum { CT_MOST_START_TEXT = 256 }; // longer names are cut
+/// Coordinates of the start, and of number i what was asked and found, in out; NULL: not of a joint.
+size_t ct_sim_start_count(const struct ct_sim *sim);
+const char *ct_sim_start_text(const struct ct_sim *sim, size_t i, char *out, size_t size);
+/// The same for programs, under the key "start".
+void ct_sim_write_start(struct ct_json *j, const struct ct_sim *sim);
 
 bool ct_is_arm(const struct ct_equations *e, int edge);
 

@@ -3,6 +3,7 @@
 
 #include "formulate/flexible.h"
 #include "report/json.h"
+#include "report/suffix.h"
 #include "report/outfile.h"
 #include "report/stage_beam.h"
 #include "solve/singular.h"
@@ -108,6 +109,7 @@ static void write_structure(struct ct_json *j, const struct ct_sim *sim)
     ct_json_text(j, "tree_choice", sim->system->tree.how);
     write_left_out(j, e);
     write_beams(j, e);
+    ct_sim_write_start(j, sim);
 }
 
 static void write_open(struct ct_json *j, const struct ct_sim *sim)
@@ -238,6 +240,7 @@ static void write_work(struct ct_json *j, const struct ct_sim *sim)
     ct_json_text(j, "backend", ct_run_machine(sim->run)->backend);
     write_solver(j, sim);
     write_formulation(j, &sim->system->equations);
+    ct_json_text(j, "results", ct_sim_results_path(sim, false));
     ct_json_text(j, "sweeps_alone_because", ct_sim_refuses_lanes(sim));
     ct_json_integer(j, "steps", r->stats.steps);
     ct_json_integer(j, "rejected_steps", r->stats.rejected_steps);
@@ -307,7 +310,9 @@ static bool write_file(void *task)
 {
     const struct work *w = task;
     struct ct_outfile file;
-    if (!ct_outfile_open(w->ctx, &file, strcmp(w->path, "-") == 0 ? NULL : w->path))
+    enum ct_suffix unused;
+    if (!ct_suffix_read(w->ctx, w->path, CT_SUFFIX_JSON, &unused)
+        || !ct_outfile_open(w->ctx, &file, strcmp(w->path, "-") == 0 ? NULL : w->path))
         return false;
     write_summary(file.stream, w->sim);
     return ct_outfile_close(w->ctx, &file);

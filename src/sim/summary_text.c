@@ -77,6 +77,23 @@ static void print_freedoms(FILE *out, const struct ct_sim *sim)
             e->nq, e->nu, e->nrow, ct_sim_redundant(sim), ct_sim_freedoms(sim));
 }
 
+// Of each joint's coordinates what was guessed and where they start; those that are demanded or driven as they are.
+static void print_start(FILE *out, const struct ct_sim *sim)
+{
+    enum { MOST_SHOWN = 100 }; // the rest is in the summary file
+    struct list l = {out, "start", 0};
+    size_t n = 0;
+    char text[CT_MOST_START_TEXT];
+    for (size_t i = 0; i < ct_sim_start_count(sim); i++)
+        if (ct_sim_start_text(sim, i, text, sizeof text) && n++ < MOST_SHOWN)
+            add(&l, text);
+    if (n > MOST_SHOWN) {
+        snprintf(text, sizeof text, "%zu more", n - MOST_SHOWN);
+        add(&l, text);
+    }
+    end_list(&l);
+}
+
 static void print_names(FILE *out, const char *title, const bool *is, size_t n,
                         const char *(*name)(const struct ct_equations *e, size_t i),
                         const struct ct_equations *e)
@@ -265,11 +282,19 @@ static void print_rounding(FILE *out, const struct ct_sim *sim)
     fputc('\n', out);
 }
 
+static void print_file(FILE *out, const struct ct_sim *sim)
+{
+    const char *path = ct_sim_results_path(sim, false);
+    if (path)
+        fprintf(out, "results      %ld samples in %s\n", sim->nwritten, path);
+}
+
 void ct_sim_print_summary(const struct ct_sim *sim, FILE *out)
 {
     const struct ct_run_report *r = &sim->report;
     fprintf(out, "%s: t = %.9g s\n", sim->system->model.name, sim->time);
     print_freedoms(out, sim);
+    print_start(out, sim);
     fprintf(out, "tree         %s\n", sim->system->tree.how);
     print_trees(out, &sim->system->equations);
     print_choices(out, &sim->system->equations);
@@ -286,6 +311,7 @@ void ct_sim_print_summary(const struct ct_sim *sim, FILE *out)
             "seconds      read %.3g, generate %.3g, compile %.3g, integrate %.3g, write %.3g\n",
             sim->system->read, sim->system->generate, sim->compile, sim->integrate, sim->write);
     print_open(out, sim);
+    print_file(out, sim);
 }
 
 // ---- what a system is ----------------------------------------------------------------------------------
@@ -410,6 +436,7 @@ void ct_sim_print_check(const struct ct_sim *sim, FILE *out)
     print_redundant(out, sim);
     print_names(out, "undetermined", sim->open.row, e->nrow, row_name, e);
     print_names(out, "undetermined outputs: ", sim->open.result, e->nresult, result_name, e);
+    print_start(out, sim);
     fprintf(out, "tree         %s", s->tree.how);
     if (s->tree.cost > 0)
         fprintf(out, ", cost %.0f (least weight: %.0f)", s->tree.cost,

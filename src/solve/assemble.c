@@ -2,7 +2,8 @@
 //
 // First the loops are closed and the given values met: Newton steps, damped as Levenberg and Marquardt do, so that
 // rows which depend on each other in the solution do not throw it off. Then Gauss-Newton steps along these
-// constraints take all other coordinates to their guesses, each followed by closing again.
+// constraints take all other coordinates to their guesses, each followed by closing again. This ends in a local minimum of the
+// distance to the guesses. Further starts look for a nearer one.
 #include "solve/assembler.h"
 #include "formulate/flexible.h"
 #include "numeric/dense.h"
@@ -17,7 +18,16 @@ static const double hard = 1e4;         // weight of what must be met against wh
 static const double longest_step = 0.5; // [m or rad], against jumping to another assembly
 static const double small_step = 1e-12; // has arrived [m or rad]
 static const double speeds_met = 1e-6;  // may be large; a contradiction is of their order
-enum { MOST_ITERATIONS = 200, MOST_HALVINGS = 12, MOST_STARTS = 24 };
+enum {
+    MOST_ITERATIONS = 200,
+    MOST_HALVINGS = 12,
+    MOST_STARTS = 24,
+    MOST_SEARCHES = 16,
+    MOST_FAR_SEARCHES = 64
+};
+enum { MOST_APPROACHES = 30 };
+static const double most_search_work = 1e9; // multiplications: about a second
+static const double pi = 3.14159265358979323846;
 
 // ---- residuals --------------------------------------------------------------------------------------------
 
@@ -50,6 +60,8 @@ bool ct_assembler_deviation(const struct ct_assembler *s, size_t i, double *r)
 {
     if (!s->q[i].in_quaternion) {
         *r = measured(s, i) - s->q[i].value;
+        if (ct_assembler_is_turn(s, i))
+            *r -= 2 * pi * round(*r / (2 * pi));
         return true;
     }
     const struct ct_coordinate *c = &s->e->coordinate[i];
@@ -82,11 +94,25 @@ static void speed_rows(struct ct_assembler *s, double *rows)
     ct_program_run(&m->result, m->input);
 }
 
-static void add_row(struct ct_assembler *s, const double *coef, size_t stride, double r)
+static void add_row(struct ct_assembler *s, const double *coef, size_t stride, double weight,
+                    double r)
 {
     for (size_t k = 0; k < s->m->nu; k++)
-        s->A[s->n + s->most * k] = coef[stride * k];
-    s->r[s->n++] = r;
+        s->A[s->n + s->most * k] = weight * coef[stride * k];
+    s->r[s->n++] = weight * r;
+}
+
+// Row i of the constraints, r its residual. Coefficients that are round-off of the row's natural size (theory 6.5) are none: a row
+// that repeats what the tree imposes leaves the speeds alone.
+static void add_constraint(struct ct_assembler *s, size_t i, double r)
+{
+    const struct ct_machine *m = s->m;
+    double largest = 0;
+    for (size_t k = 0; k < m->nu; k++)
+        largest = fmax(largest, fabs(m->J[i + m->nrow * k]) * m->speed_size[k]);
+    add_row(s, m->J + i, m->nrow, 1, r);
+    for (size_t k = 0; k < m->nu && largest <= ct_rank_tolerance * m->row_size[i]; k++)
+        s->A[s->n - 1 + s->most * k] = 0;
 }
 
 // Elastic coordinate i of all beams, which starts with what the model says.
@@ -106,7 +132,7 @@ static void elastic_rows(struct ct_assembler *s, bool of_speeds)
         const double now = of_speeds ? s->y[s->m->nq + (size_t)e->u] : s->y[e->q];
         memset(s->unit, 0, nu * sizeof *s->unit);
         s->unit[e->u] = 1;
-        add_row(s, s->unit, 1,
+        add_row(s, s->unit, 1, 1,
                 now - ct_ex_value(s->e->x, of_speeds ? e->start_rate : e->start, s->value));
     }
 }
@@ -124,15 +150,16 @@ static void position_rows(struct ct_assembler *s)
     s->n = 0;
     for (size_t i = 0; i < m->nrow; i++)
         if (s->fixed_row[i])
-            add_row(s, m->J + i, m->nrow, m->phi[i]);
+            add_constraint(s, i, m->phi[i]);
     for (size_t i = 0; i < nc; i++)
         if (s->q[i].is_given && ct_assembler_deviation(s, i, &r))
-            add_row(s, s->speeds + i, nc, r);
+            add_row(s, s->speeds + i, nc, 1, r);
     elastic_rows(s, false);
     s->nhard = s->n;
+    ct_loop_filter_apply(s, s->fixed_row);
     for (size_t i = 0; i < nc; i++)
         if (!s->q[i].is_given && s->q[i].wanted && ct_assembler_deviation(s, i, &r))
-            add_row(s, s->speeds + i, nc, r);
+            add_row(s, s->speeds + i, nc, s->q[i].weight, r);
 }
 
 // The same for the speeds.
@@ -145,15 +172,17 @@ static void velocity_rows(struct ct_assembler *s)
     speed_rows(s, s->speeds);
     s->n = 0;
     for (size_t i = 0; i < m->nrow; i++)
-        add_row(s, m->J + i, m->nrow, m->v[i]);
+        add_constraint(s, i, m->v[i]);
     for (size_t i = 0; i < nc; i++)
         if (s->u[i].is_given)
-            add_row(s, s->speeds + i, nc, m->result.out[2 * i + 1] - s->u[i].value);
+            add_row(s, s->speeds + i, nc, 1, m->result.out[2 * i + 1] - s->u[i].value);
     elastic_rows(s, true);
     s->nhard = s->n;
+    ct_loop_filter_apply(s, NULL);
     for (size_t i = 0; i < nc; i++)
         if (!s->u[i].is_given && s->u[i].wanted)
-            add_row(s, s->speeds + i, nc, m->result.out[2 * i + 1] - s->u[i].value);
+            add_row(s, s->speeds + i, nc, s->u[i].weight,
+                    m->result.out[2 * i + 1] - s->u[i].value);
 }
 
 // Largest residual of what must be met; sum of squares of what is wanted.
@@ -185,11 +214,14 @@ static double limit_step(double *d, size_t n)
     return largest;
 }
 
-static void solve_rows(struct ct_assembler *s, size_t n)
+static const double solved = 1e-12; // rank of rows with all weights
+
+static void solve_rows(struct ct_assembler *s, size_t n, double tol)
 {
     const size_t nu = s->m->nu;
+    s->work_done += (double)n * (double)(nu * nu);
     if (n && nu)
-        ct_lstsq(s->b, s->A, (int)n, (int)nu, (int)s->most, 1e-12, s->iwork, s->work);
+        ct_lstsq(s->b, s->A, (int)n, (int)nu, (int)s->most, tol, s->iwork, s->work);
     else
         memset(s->b, 0, (nu + 1) * sizeof *s->b);
 }
@@ -206,7 +238,7 @@ static void closing_step(struct ct_assembler *s, double damping)
             s->A[n + s->most * l] = k == l ? damping : 0;
         s->b[n] = 0;
     }
-    solve_rows(s, n);
+    solve_rows(s, n, solved);
 }
 
 // Step into s->b that leaves the constraints alone and takes what is wanted nearest to its residuals' zero. The
@@ -222,12 +254,35 @@ static void wishing_step(struct ct_assembler *s)
         }
     for (size_t i = 0; i < s->n; i++)
         s->b[i] = i < s->nhard ? -hard * (s->r[i] + s->shift[i]) : -s->r[i];
-    solve_rows(s, s->n);
+    solve_rows(s, s->n, solved);
     for (size_t i = 0; i < s->nhard; i++) {
         s->shift[i] += s->r[i];
         for (size_t k = 0; k < nu; k++)
             s->shift[i] += row[i + s->nhard * k] * s->b[k];
     }
+}
+
+// How far the step in s->b goes along what the constraints let move [m or rad]. In a nearly singular position a step off them seems to
+// gain distance, at no more than rounding of what is closed. To be called after wishing_step.
+static double size_along_constraints(struct ct_assembler *s)
+{
+    // loops that close to 1e-13 meet a singular position to about the root of that
+    const double dependent = 1e-6;
+    const size_t nu = s->m->nu, n = s->nhard;
+    memcpy(s->step, s->b, nu * sizeof *s->step);
+    for (size_t i = 0; i < n; i++) {
+        s->b[i] = 0;
+        for (size_t k = 0; k < nu; k++) {
+            s->A[i + s->most * k] = s->kept_A[i + n * k];
+            s->b[i] += s->kept_A[i + n * k] * s->step[k];
+        }
+    }
+    solve_rows(s, n, dependent);
+    for (size_t k = 0; k < nu; k++)
+        s->b[k] -= s->step[k];
+    const double size = ct_vector_largest(s->b, nu);
+    memcpy(s->b, s->step, nu * sizeof *s->step);
+    return size;
 }
 
 // Close the loops from s->y; returns what is left.
@@ -278,18 +333,43 @@ static bool take_step(struct ct_assembler *s, double *nearest)
     return false;
 }
 
+// Towards the guesses and closed loops at once, from positions that may be open: Gauss-Newton steps of the constrained least-squares
+// problem, so that what has no guess moves first.
+static void approach(struct ct_assembler *s)
+{
+    const double arrived = 1e-3; // [m or rad]; the rest is left to what follows
+    for (int i = 0; i < MOST_APPROACHES; i++) {
+        position_rows(s);
+        memset(s->shift, 0, s->nhard * sizeof *s->shift);
+        wishing_step(s);
+        const double size = limit_step(s->b, s->m->nu);
+        if (!isfinite(size))
+            return;
+        ct_machine_retract(s->m, s->y, s->b);
+        if (size < arrived)
+            return;
+    }
+}
+
+// Close the loops from s->y and go to the nearest position along them; returns what is left open.
 static double find_positions(struct ct_assembler *s)
 {
     double worst = close_loops(s);
     if (!(worst < ct_assembly_met))
         return worst;
     memset(s->shift, 0, s->nhard * sizeof *s->shift);
-    double nearest = distance(s);
+    // below this, steps that no longer halve are rounding
+    const double rounding = 1e-11;
+    double nearest = distance(s), before = INFINITY;
     for (int i = 0; i < MOST_ITERATIONS; i++) {
         wishing_step(s);
-        const double size = limit_step(s->b, s->m->nu);
-        if (!(size > small_step) || !take_step(s, &nearest))
+        if (!(size_along_constraints(s) > small_step))
             break;
+        const double size = limit_step(s->b, s->m->nu);
+        if (!(size > small_step) || (size < rounding && size > before / 2)
+            || !take_step(s, &nearest))
+            break;
+        before = size;
     }
     return close_loops(s);
 }
@@ -309,7 +389,7 @@ static double find_velocities(struct ct_assembler *s)
             u[k] += s->b[k];
     }
     velocity_rows(s);
-    return violation(s);
+    return fmax(violation(s), ct_loop_filter_missed(s, true));
 }
 
 // ---- the stage ---------------------------------------------------------------------------------------------------
@@ -377,6 +457,7 @@ static void start_near_targets(struct ct_assembler *s, int try)
     ct_machine_set(s->m, 0, s->y);
     ct_modes_start(s->m, 0, s->y, NULL);
     ct_memory_start(s->m);
+    ct_machine_measure_rows(s->m);
 }
 
 // The joint of the first row that holds half a turn away from where it should; -1 if none does.
@@ -401,14 +482,120 @@ static bool report_half_turn(struct ct_assembler *s, int joint)
         self->name);
 }
 
-// Tries from places further and further away.
+// ---- the nearest position -----------------------------------------------------------------------------------
+
+static bool is_open_coordinate(const struct ct_assembler *s, size_t i)
+{
+    const struct ct_target *t = &s->q[i];
+    return t->wanted && !t->is_given && !t->is_guessed && s->e->coordinate[i].u >= 0
+        && s->e->build->edge[s->e->coordinate[i].edge].kind == CT_EDGE_JOINT;
+}
+
+// A small motion into s->b from the targets to a position to look from: what has no guess goes anywhere within half a turn or the
+// natural length, guesses at most `reach` [rad and natural lengths], what is given stays.
+static void draw_search(struct ct_assembler *s, int search, double reach)
+{
+    uint64_t state = (uint64_t)search;
+    memset(s->b, 0, s->m->nu * sizeof *s->b);
+    for (size_t i = 0; i < s->e->ncoordinate; i++) {
+        const struct ct_coordinate *c = &s->e->coordinate[i];
+        const struct ct_target *t = &s->q[i];
+        if (is_open_coordinate(s, i)) {
+            const double unit = ct_assembly_open_weight / t->weight;
+            const bool is_rotation = t->in_quaternion || ct_assembler_is_turn(s, i);
+            s->b[c->u] = unit * (is_rotation ? pi : 1) * chance(&state);
+        } else if (t->is_guessed && c->u >= 0) {
+            s->b[c->u] = reach / t->weight * chance(&state);
+        }
+    }
+}
+
+// How many searches for a nearer position are worth their time. None where all joints are guessed or given and met within 0.1 rad or
+// natural lengths: of 1800 random loops those with a nearer position were at least 0.5 away. Many where joints without guesses may
+// have led far from the guesses of others.
+static int most_searches(const struct ct_assembler *s, double nearest)
+{
+    const double near = 0.1;
+    const bool is_near = nearest <= near * near;
+    for (size_t i = 0; i < s->e->ncoordinate; i++)
+        if (is_open_coordinate(s, i))
+            return nearest <= ct_assembly_met * ct_assembly_met ? 0
+                 : is_near                                      ? MOST_SEARCHES
+                                                                : MOST_FAR_SEARCHES;
+    return is_near ? 0 : MOST_SEARCHES;
+}
+
+static bool is_closed(struct ct_assembler *s, double residual)
+{
+    if (s->filter->is_on)
+        residual = fmax(residual, ct_loop_filter_missed(s, false));
+    return residual < ct_assembly_met && half_turned_joint(s) < 0
+        && (!s->filter->is_on || ct_loop_filter_holds(s));
+}
+
+static void keep_best(struct ct_assembler *s, bool back)
+{
+    double *memory = s->m->input + s->m->at_memory;
+    const size_t ny = s->m->nq + s->m->nu, nm = s->e->nmemory;
+    memcpy(back ? s->y : s->best_y, back ? s->best_y : s->y, ny * sizeof *s->y);
+    memcpy(back ? memory : s->best_memory, back ? s->best_memory : memory, nm * sizeof *memory);
+}
+
+// From a closed position at s->y, the nearest found so far, to the nearest of all that further starts come to. Of equally near ones
+// the first stays.
+static void search_nearer(struct ct_assembler *s)
+{
+    // of a distance, beside rounding: the end of different iterations
+    const double same = 1e-6;
+    double nearest = distance(s);
+    keep_best(s, false);
+    s->work_done = 0;
+    for (int search = 0; search < most_searches(s, nearest) && s->work_done < most_search_work;
+         search++) {
+        start_near_targets(s, 0);
+        if (search > 0) { // every second one leaves the guesses where they are
+            draw_search(s, search, search % 2 ? 0 : sqrt(nearest));
+            ct_machine_retract(s->m, s->y, s->b);
+        }
+        approach(s);
+        if (!is_closed(s, find_positions(s))
+            || !(sqrt(distance(s)) < sqrt(nearest) * (1 - same) - ct_assembly_met))
+            continue;
+        nearest = distance(s);
+        keep_best(s, false);
+    }
+    keep_best(s, true);
+    position_rows(s);
+}
+
+// The same with the data taken to their tolerance, where that is what they mean.
+static bool try_inexact(struct ct_assembler *s, int try, double *residual)
+{
+    s->filter->is_on = true;
+    start_near_targets(s, try);
+    *residual = find_positions(s);
+    s->filter->is_on = is_closed(s, *residual);
+    return s->filter->is_on;
+}
+
+static bool try_exact(struct ct_assembler *s, int try, double *residual)
+{
+    start_near_targets(s, try);
+    *residual = find_positions(s);
+    return is_closed(s, *residual);
+}
+
+// Tries from positions further and further away, until one closes; then the nearest.
 static bool try_positions(struct ct_assembler *s, double *residual)
 {
     for (int try = 0; try < MOST_STARTS; try++) {
-        start_near_targets(s, try);
-        *residual = find_positions(s);
-        if (*residual < ct_assembly_met && half_turned_joint(s) < 0)
-            return true;
+        const bool is_exact = try_exact(s, try, residual);
+        if (!(is_exact && !ct_loop_filter_is_due(s)) && !try_inexact(s, try, residual)
+            && !(is_exact && try_exact(s, try, residual)))
+            continue;
+        search_nearer(s);
+        *residual = violation(s);
+        return true;
     }
     return false;
 }
@@ -420,7 +607,7 @@ static bool is_met_with_guesses(struct ct_assembler *s, bool of_speeds)
     const size_t n = s->e->ncoordinate;
     struct ct_target *target = of_speeds ? s->u : s->q;
     double residual;
-    struct ct_target *kept = CT_NEWN(s->e->build->arena, struct ct_target, n + 1);
+    struct ct_target *kept = s->kept_targets;
     memcpy(kept, target, n * sizeof *kept);
     for (size_t i = 0; i < n; i++) {
         target[i].wanted = target[i].is_given;
@@ -484,7 +671,7 @@ static void take_targets(struct ct_assembler *s)
 
 static struct ct_assembler assembly_create(struct ct_ctx *ctx, struct ct_arena *a,
                                            const struct ct_model *model,
-                                           const struct ct_equations *e)
+                                           const struct ct_equations *e, bool is_iterated)
 {
     struct ct_assembler s = {.ctx = ctx, .e = e, .m = ct_machine_create(a, model, e)};
     const size_t nc = e->ncoordinate, nu = s.m->nu;
@@ -496,9 +683,13 @@ static struct ct_assembler assembly_create(struct ct_ctx *ctx, struct ct_arena *
     s.y = CT_NEWN(a, double, s.m->nq + nu + 1);
     s.kept_y = CT_NEWN(a, double, s.m->nq + nu + 1);
     s.kept_memory = CT_NEWN(a, double, e->nmemory + 1);
+    s.best_y = CT_NEWN(a, double, s.m->nq + nu + 1);
+    s.best_memory = CT_NEWN(a, double, e->nmemory + 1);
     s.b = CT_NEWN(a, double, s.m->nrow + nc + 2 * nu + 1);
+    s.kept_targets = CT_NEWN(a, struct ct_target, nc + 1);
+    ct_assembler_list_frames(&s, a, model);
     ct_assembler_find_targets(&s, model);
-    if (is_direct(&s))
+    if (!is_iterated && is_direct(&s))
         return s;
     s.most = s.m->nrow + nc + s.nelastic + nu + 1;
     s.unit = CT_NEWN(a, double, nu + 1);
@@ -513,26 +704,16 @@ static struct ct_assembler assembly_create(struct ct_ctx *ctx, struct ct_arena *
     s.iwork = CT_NEWN(a, int, s.most + nu);
     s.work = CT_NEWN(a, double, ct_lstsq_work((int)s.most, (int)nu + 1));
     find_fixed_rows(&s, a);
+    s.filter = ct_loop_filter_create(a, &s);
     return s;
 }
 
-// Is coordinate i of a joint an angle that does nothing but turn, so that a whole turn more is the same place?
-static bool is_turn(const struct ct_assembler *s, size_t i)
-{
-    const struct ct_coordinate *c = &s->e->coordinate[i];
-    const struct ct_edge_info *e = &s->e->build->edge[c->edge];
-    return e->kind == CT_EDGE_JOINT && !c->in_translation && c->place < e->trial.nmeasure
-        && e->trial.measure[c->place].kind == CT_MEASURE_ANGLE;
-}
-
-// Angles that nobody gave may have come to their places by the long way: they start within half a turn of their guesses.
+// Angles may have come to their places by the long way: they start within half a turn of what is asked.
 static void drop_whole_turns(const struct ct_assembler *s, double *q)
 {
-    const double pi = 3.14159265358979323846;
     for (size_t i = 0; i < s->e->ncoordinate; i++) {
         const double away = q[i] - s->q[i].value;
-        if (s->q[i].wanted && !s->q[i].is_given && fabs(away) > pi + ct_assembly_met
-            && is_turn(s, i))
+        if (s->q[i].wanted && fabs(away) > pi + ct_assembly_met && ct_assembler_is_turn(s, i))
             q[i] -= 2 * pi * round(away / (2 * pi));
     }
 }
@@ -563,6 +744,11 @@ static bool find_start(struct ct_assembler *s, struct ct_start *out)
     }
     if (!is_direct(s))
         drop_whole_turns(s, out->q);
+    out->is_inexact = s->filter && s->filter->is_on;
+    if (out->is_inexact) {
+        out->freedoms = ct_loop_filter_freedoms(s);
+        ct_loop_filter_warn(s);
+    }
     return true;
 }
 
@@ -579,7 +765,7 @@ struct ct_assembly *ct_assembly_create(struct ct_ctx *ctx, struct ct_arena *a,
 {
     struct ct_assembly *s = CT_NEW(a, struct ct_assembly);
     s->model = model;
-    s->s = assembly_create(ctx, a, model, e);
+    s->s = assembly_create(ctx, a, model, e, false);
     s->q = CT_NEWN(a, double, e->ncoordinate + 1);
     s->u = CT_NEWN(a, double, e->ncoordinate + 1);
     s->is_given = CT_NEWN(a, bool, e->ncoordinate + 1);
@@ -594,8 +780,14 @@ bool ct_assembly_find(struct ct_assembly *s, struct ct_start *out)
     memset(s->s.u, 0, n * sizeof *s->s.u);
     ct_machine_reset(s->s.m);
     ct_assembler_find_targets(&s->s, s->model);
+    if (s->s.filter)
+        s->s.filter->is_on = false;
     for (size_t i = 0; i < n; i++)
         s->is_given[i] = s->s.q[i].is_given;
+    out->length = s->s.length;
+    out->e = s->s.e;
+    out->q_target = s->s.q;
+    out->u_target = s->s.u;
     return find_start(&s->s, out);
 }
 
@@ -611,6 +803,11 @@ static bool assemble(struct ct_ctx *ctx, struct ct_arena *a, const struct ct_mod
     s->u = CT_NEWN(a, double, e->ncoordinate + 1);
     s->is_given = CT_NEWN(a, bool, e->ncoordinate + 1);
     const bool ok = ct_assembly_find(s, out);
+    struct ct_target *target = CT_NEWN(a, struct ct_target, 2 * e->ncoordinate + 1);
+    memcpy(target, out->q_target, e->ncoordinate * sizeof *target);
+    memcpy(target + e->ncoordinate, out->u_target, e->ncoordinate * sizeof *target);
+    out->q_target = target;
+    out->u_target = target + e->ncoordinate;
     ct_arena_destroy(own);
     return ok;
 }
@@ -625,4 +822,36 @@ bool ct_assemble_open(struct ct_ctx *ctx, struct ct_arena *a, const struct ct_mo
                       const struct ct_equations *e, struct ct_start *out)
 {
     return assemble(ctx, a, model, e, true, out);
+}
+
+void ct_start_read_back(struct ct_ctx *ctx, struct ct_arena *a, const struct ct_model *model,
+                        const struct ct_equations *e, const struct ct_start *start,
+                        const double *y, double *q, double *u)
+{
+    struct ct_assembler s = assembly_create(ctx, a, model, start->e, true);
+    s.filter->is_on = start->is_inexact;
+    for (size_t i = 0; i < start->n; i++) {
+        const bool in_quaternion = s.q[i].in_quaternion;
+        s.q[i] = (struct ct_target){
+            .value = start->q[i], .weight = s.q[i].weight, .in_quaternion = in_quaternion};
+        s.u[i] = (struct ct_target){.value = start->u[i], .weight = s.u[i].weight};
+    }
+    start_near_targets(&s, 0);
+    for (size_t i = 0; i < start->n; i++) {
+        const struct ct_coordinate *c = &e->coordinate[i];
+        s.q[i].wanted = c->q >= 0;
+        if (c->q >= 0)
+            s.q[i].value = y[c->q];
+        s.u[i].wanted = c->u >= 0;
+        if (c->u >= 0)
+            s.u[i].value = y[e->nq + (size_t)c->u];
+    }
+    find_positions(&s);
+    find_velocities(&s);
+    ct_machine_set(s.m, 0, s.y);
+    ct_program_run(&s.m->result, s.m->input);
+    for (size_t i = 0; i < start->n; i++) {
+        q[i] = measured(&s, i);
+        u[i] = s.m->result.out[2 * i + 1];
+    }
 }

@@ -37,10 +37,12 @@ static bool report_missed(struct ct_assembler *s, bool is_speed)
         return true;
     const struct ct_coordinate *c = s->e->coordinate;
     ct_error(s->ctx, initial_mark(s, worst, is_speed), CT_E_START,
-             "initial %s contradict each other: %s'%s' of joint '%s' is missed by %.3g; mark "
-             "what need not hold with 'guess: true'",
+             "initial %s contradict each other: %s'%s' of joint '%s' is missed by %.3g "
+             "(demanded %.6g, found %.6g); mark what need not hold with 'guess: true'",
              is_speed ? "speeds" : "values", is_speed ? "the rate of " : "", c[worst].name,
-             s->e->build->edge[c[worst].edge].self->name, most);
+             s->e->build->edge[c[worst].edge].self->name, most,
+             is_speed ? s->u[worst].value : s->q[worst].value,
+             ct_start_shown(s->m->result.out[2 * worst + is_speed]));
     for (size_t i = 0; i < s->e->ncoordinate; i++)
         nmissed += i != worst && missed(s, i, is_speed) > fmax(ct_assembly_met, slight * most);
     for (size_t i = 0, n = 0; i < s->e->ncoordinate && n < MOST_NOTES; i++) {

@@ -34,6 +34,78 @@ bool ct_initial_number(const struct ct_model *model, const struct ct_value *v, i
     return true;
 }
 
+// ---- natural scales -----------------------------------------------------------------------------------------
+
+// The largest distance between two points of one body, the ground included, at which joints act; 1 m if there is none. It does
+// not change when the mechanism is moved or turned.
+static double natural_length(const struct ct_assembler *s, const struct ct_model *model)
+{
+    double largest = 0;
+    for (size_t i = 0; i < s->nframe; i++)
+        for (int k = 0; k < 3; k++)
+            s->point[3 * i + (size_t)k]
+                = ct_model_number(model, model->frame[s->frame[i]].at.e[k]);
+    for (size_t i = 0; i < s->nframe; i++)
+        for (size_t j = 0; j < i; j++) {
+            double square = 0;
+            for (size_t k = 0; k < 3; k++) {
+                const double d = s->point[3 * i + k] - s->point[3 * j + k];
+                square += d * d;
+            }
+            if (model->frame[s->frame[i]].body == model->frame[s->frame[j]].body)
+                largest = fmax(largest, square);
+        }
+    return largest > 0 ? sqrt(largest) : 1;
+}
+
+void ct_assembler_list_frames(struct ct_assembler *s, struct ct_arena *a,
+                              const struct ct_model *model)
+{
+    bool *is_listed = CT_NEWN(a, bool, model->nframe + 1);
+    s->frame = CT_NEWN(a, int, 2 * model->njoint + 1);
+    for (size_t i = 0; i < 2 * model->njoint; i++) {
+        const struct ct_instance *j = &model->joint[i / 2];
+        const int f = i % 2 ? j->to : j->from;
+        if (f >= 0 && !is_listed[f])
+            s->frame[s->nframe++] = f;
+        if (f >= 0)
+            is_listed[f] = true;
+    }
+    s->point = CT_NEWN(a, double, 3 * s->nframe + 1);
+}
+
+bool ct_assembler_is_turn(const struct ct_assembler *s, size_t i)
+{
+    const struct ct_coordinate *c = &s->e->coordinate[i];
+    const struct ct_edge_info *e = &s->e->build->edge[c->edge];
+    return e->kind == CT_EDGE_JOINT && !c->in_translation && c->place < e->trial.nmeasure
+        && e->trial.measure[c->place].kind == CT_MEASURE_ANGLE;
+}
+
+// Not of a quaternion.
+static bool is_length(const struct ct_equations *eqs, size_t i)
+{
+    const struct ct_coordinate *c = &eqs->coordinate[i];
+    const struct ct_edge_info *e = &eqs->build->edge[c->edge];
+    if (e->kind == CT_EDGE_BODY)
+        return c->place < (eqs->build->is_planar ? 2 : 3);
+    if (c->place < e->trial.nmeasure)
+        return e->trial.measure[c->place].kind == CT_MEASURE_LENGTH;
+    return !c->in_rotation;
+}
+
+bool ct_start_is_length(const struct ct_start *start, size_t i)
+{
+    return !start->q_target[i].in_quaternion && is_length(start->e, i);
+}
+
+static double weight_of(const struct ct_target *t, double unit)
+{
+    return (t->is_given || t->is_guessed ? 1 : ct_assembly_open_weight) / unit;
+}
+
+// ---- values -------------------------------------------------------------------------------------------------
+
 static void joint_target(struct ct_assembler *s, size_t i, const struct ct_model *model)
 {
     const struct ct_coordinate *c = &s->e->coordinate[i];
@@ -52,13 +124,14 @@ static void joint_target(struct ct_assembler *s, size_t i, const struct ct_model
     }
     q->wanted = true;
     q->is_given = given && !initial->guess;
+    q->is_guessed = given && initial->guess;
     u->wanted = c->place < e->self->nfree;
-    u->is_given = ct_initial_number(model, &initial->u, c->place, &u->value) && !initial->guess
-               && u->wanted;
-    if (c->is_driven) // the motion itself holds the value
-        q->wanted = q->is_given = u->wanted = u->is_given = false;
-    if (!c->in_translation && !c->in_rotation)
-        q->wanted = q->is_given = u->wanted = u->is_given = false;
+    given = ct_initial_number(model, &initial->u, c->place, &u->value) && u->wanted;
+    u->is_given = given && !initial->guess;
+    u->is_guessed = given && initial->guess;
+    if (c->is_driven
+        || (!c->in_translation && !c->in_rotation)) // the motion holds the value; no freedom
+        *q = *u = (struct ct_target){.in_quaternion = q->in_quaternion};
 }
 
 // A body that hangs on no joint starts with its frame at the origin: its centre of mass at com.
@@ -108,5 +181,11 @@ void ct_assembler_find_targets(struct ct_assembler *s, const struct ct_model *mo
         const struct ct_coordinate *c = &s->e->coordinate[i];
         if (s->q[i].in_quaternion && c->place == s->e->build->edge[c->edge].trial.quaternion)
             normalise_target(&s->q[i]);
+    }
+    s->length = natural_length(s, model);
+    for (size_t i = 0; i < s->e->ncoordinate; i++) {
+        const double unit = !s->q[i].in_quaternion && is_length(s->e, i) ? s->length : 1;
+        s->q[i].weight = weight_of(&s->q[i], unit);
+        s->u[i].weight = weight_of(&s->u[i], unit);
     }
 }

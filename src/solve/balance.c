@@ -48,10 +48,12 @@ static void choose_rows(struct ct_balance *s, struct ct_arena *a)
     double *work = CT_NEWN(a, double, ct_qr_pivot_work((int)n, (int)m));
     for (size_t i = 0; i < m; i++)
         for (size_t k = 0; k < n; k++)
-            A[k + n * i] = s->m->J[i + m * (size_t)s->u[k]];
-    s->nlam = m && n ? (size_t)ct_qr_pivot(A, s->row, tau, (int)n, (int)m, (int)n,
-                                           ct_rank_tolerance, work)
-                     : 0;
+            A[k + n * i] = s->m->J[i + m * (size_t)s->u[k]] * s->m->speed_size[s->u[k]]
+                         / s->m->row_size[i];
+    ct_qr_pivot(A, s->row, tau, (int)n, (int)m, (int)n, 0, work);
+    s->nlam = 0;
+    while (s->nlam < (m < n ? m : n) && fabs(A[s->nlam + n * s->nlam]) > s->m->rank_tolerance)
+        s->nlam++;
     for (size_t i = 0; i < m; i++)
         s->lam_place[i] = -1;
     for (size_t i = 0; i < s->nlam; i++)
@@ -62,6 +64,7 @@ void ct_balance_choose_here(struct ct_balance *s, struct ct_arena *a)
 {
     ct_machine_set(s->m, 0, s->y);
     ct_machine_constraint(s->m);
+    ct_machine_measure_rows(s->m);
     choose_rows(s, a);
     for (size_t i = 0; i < s->e->nrow; i++)
         if (s->lam_place[i] < 0)

@@ -9,9 +9,6 @@
 #include <float.h>
 #include <math.h>
 
-// A row counts as dependent when what is left of it is this small against the largest: the
-// constraints of a closed mechanism are known to about 1e-12 after projection.
-static const double ct_rank_tolerance = 1e-9;
 // Choose anew when the dependent part has become this much worse than when it was chosen, (6.3)
 static const double ct_kappa_growth = 10;
 static const double ct_kappa_largest = 1e3;

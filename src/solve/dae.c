@@ -83,7 +83,7 @@ static enum ct_eval residual(void *user, double t, const double *q, const double
         return CT_EVAL_RETRY;
     copy_few(r, out, nu);
     for (int i = 0; i < s->rank; i++) {
-        phi[i] = out[nu + (size_t)s->row[i]];
+        phi[i] = out[nu + (size_t)s->row[i]] - (s->m->is_inexact ? s->m->open[s->row[i]] : 0);
         v[i] = out[nu + nrow + (size_t)s->row[i]];
     }
     return CT_EVAL_OK;

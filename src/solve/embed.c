@@ -196,7 +196,7 @@ void ct_embed_multipliers(struct ct_embed *s)
         for (int j = 0; j < n; j++)
             s->d[i] += s->m->M[i + n * j] * s->a[j];
     }
-    ct_lstsq(s->d, s->A, n, m, n, ct_rank_tolerance, s->iwork, s->work);
+    ct_lstsq_of_rank(s->d, s->A, n, m, n, ct_rank_tolerance, s->rank, s->iwork, s->work);
     memcpy(s->lam, s->d, (size_t)m * sizeof *s->lam);
 }
 
@@ -223,7 +223,7 @@ void ct_embed_null_vector(struct ct_embed *s, int row, double *z)
     memset(s->d, 0, (size_t)ld * sizeof *s->d);
     for (int j = 0; j < n; j++)
         s->d[j] = *ct_embed_J(s, row, j);
-    ct_lstsq(s->d, s->A, n, m, n, ct_rank_tolerance, s->iwork, s->work);
+    ct_lstsq_of_rank(s->d, s->A, n, m, n, ct_rank_tolerance, s->rank, s->iwork, s->work);
     for (int i = 0; i < m; i++)
         z[i] = (i == row) - s->d[i];
 }

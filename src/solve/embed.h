@@ -108,7 +108,7 @@ enum ct_eval ct_embed_project(struct ct_embed *s, double t, double *y);
 /// The same for a look at another state, which leaves nothing behind but the machine's input and last values: choices stay. False if it
 /// comes to no place where loops are closed, or where dense factors cost more than steps do.
 bool ct_embed_close(struct ct_embed *s, double t, double *y);
-/// Is there a measure of how near J is to losing rank? Not of large systems with redundant rows, where it would cost more
+/// Is there a measure of how near J is to losing rank? Not where joints close no loop, as it keeps its rank there on any trees; not of large systems with redundant rows, where it would cost more
 /// than the steps.
 bool ct_embed_has_pivot(const struct ct_embed *s);
 /// How near J is to losing rank at the last ct_machine_constraint: the smallest pivot of J_d, times the largest entry of B

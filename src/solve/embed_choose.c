@@ -10,11 +10,8 @@
 // Rows of J, the best first, into s->row; the number of independent ones.
 static int order_rows(struct ct_embed *s)
 {
-    const int n = (int)s->m->nu, m = (int)s->m->nrow;
-    for (int i = 0; i < m; i++) // A = J', n x m
-        for (int j = 0; j < n; j++)
-            s->A[j + n * i] = *ct_embed_J(s, i, j);
-    return ct_qr_pivot(s->A, s->row, s->b, n, m, n, ct_rank_tolerance, s->work);
+    return ct_machine_order_rows(s->m, s->m->J, s->m->rank_tolerance, s->row, s->A, s->b,
+                                 s->work);
 }
 
 // Columns count by what their speeds move, w (nu, out), where inertias are so different that a heavy dependent speed would
@@ -460,6 +457,7 @@ static void choose_there(struct ct_embed *s)
     ct_machine_retract(m, q, s->r);
     ct_machine_constraint(m);
     order_rows(s);
+    ct_machine_leave_out(s->m, s->row, s->rank);
     choose_columns(s);
     memcpy(q, s->q, m->nq * sizeof *q);
     ct_machine_constraint(m);
@@ -468,6 +466,7 @@ static void choose_there(struct ct_embed *s)
 static bool choose_here(struct ct_embed *s)
 {
     s->rank = order_rows(s);
+    ct_machine_leave_out(s->m, s->row, s->rank);
     choose_columns(s);
     return ct_embed_factor(s);
 }

@@ -96,7 +96,8 @@ static double smallest_singular_value(struct ct_embed *s)
 
 bool ct_embed_has_pivot(const struct ct_embed *s)
 {
-    return s->rank && !(ct_embed_has_redundant_rows(s) && ct_embed_is_large(s));
+    return s->rank && !s->m->e->is_open
+        && !(ct_embed_has_redundant_rows(s) && ct_embed_is_large(s));
 }
 
 bool ct_embed_pivot_is_between(struct ct_embed *s, double low, double high)

@@ -15,7 +15,7 @@ static void least_norm_step(struct ct_embed *s, const double *r, double *d)
     memset(s->d, 0, (size_t)ld * sizeof *s->d);
     for (int i = 0; i < m; i++)
         s->d[i] = -r[i];
-    ct_lstsq(s->d, s->A, m, n, m, ct_rank_tolerance, s->iwork, s->work);
+    ct_lstsq_of_rank(s->d, s->A, m, n, m, ct_rank_tolerance, s->rank, s->iwork, s->work);
     memcpy(d, s->d, (size_t)n * sizeof *d);
 }
 

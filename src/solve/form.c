@@ -7,8 +7,6 @@
 
 // A call of a solver for dense matrices costs about as much as so many operations of straight-line code.
 static const double call = 500;
-// Smaller systems are never cheaper as sparse matrices.
-enum { LEAST_SPARSE = 100 };
 // Making programs takes a microsecond and half a kilobyte a node.
 static const double most_nodes = 2e6;
 // Where somebody wants them whatever they cost.
@@ -108,7 +106,7 @@ static struct ct_form *compare(struct ct_arena *a, struct ct_machine *m,
         const double operations = ct_form_operations(&m->motion) + p.pivots->operations;
         c->whole = ct_form_straight_cost(operations, ct_form_code_size(operations));
     }
-    if (m->nu + p.rank >= LEAST_SPARSE) {
+    if (m->nu + p.rank >= CT_LEAST_SPARSE) {
         f = ct_form_sparse.create(a, m, &p, 0);
         c->sparse = cost_of(f);
     }

@@ -48,6 +48,8 @@ struct ct_form_kind {
     void (*destroy)(struct ct_form *f, struct ct_machine *m); // may be NULL
 };
 
+/// Smaller systems are never cheaper as sparse matrices: unknowns.
+enum { CT_LEAST_SPARSE = 100 };
 extern const struct ct_form_kind ct_form_unrolled, ct_form_whole, ct_form_sparse;
 
 /// What solving is predicted to cost in each way, M, Q, J and gam included [operations of straight-line code]; NAN: it was

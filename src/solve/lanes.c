@@ -3,6 +3,7 @@
 #include "integrate/stepper.h"
 #include "numeric/dense.h"
 #include "solve/mode.h"
+#include "solve/singular.h"
 
 #include <math.h>
 #include <string.h>
@@ -368,25 +369,32 @@ static void fill(struct ct_lanes *s, int l, const double *y)
     prepare_all(s);
 }
 
-// Has the projection of the start changed its speeds? Rows that see them by rounding alone belong to a singular position, which is
-// left alone.
+// Are there rows that depend on others at the start and not elsewhere? Such a start is left alone.
 static bool is_singular_start(const struct ct_lanes *s)
 {
-    const double changed = 1e-6;
-    const size_t nq = (size_t)s->ny - s->m->nu - 1;
-    const double *u = ct_run_assembled(s->run) + nq, *now = ct_run_state(s->run) + nq;
+    const double changed
+        = 1e-6; // rows that see speeds by rounding alone make a projection change them
+    const struct ct_embed *embed = ct_run_embed(s->run);
+    const double *u = ct_run_assembled(s->run) + s->nq, *now = ct_run_state(s->run) + s->nq;
     const double largest = ct_vector_largest(u, s->m->nu);
     for (size_t k = 0; k < s->m->nu; k++)
         if (fabs(now[k] - u[k]) > changed * largest)
             return true;
-    return false;
+    if (embed->rank == s->nrow)
+        return false;
+    struct ct_arena *own = ct_arena_create_under(s->arena);
+    bool *row = CT_NEWN(own, bool, (size_t)s->nrow + 1);
+    const bool is_singular = ct_singular_is_start(own, embed, 0, ct_run_assembled(s->run), row);
+    ct_arena_destroy(own);
+    return is_singular;
 }
 
 bool ct_lanes_load(struct ct_lanes *s, int l, const struct ct_run_options *o)
 {
     const double *y = ct_run_state(s->run);
     const int rank = s->embed->rank;
-    if (!(o->duration > 0) || ct_lanes_refusal(o) || !tables_reach(s->e->x, o->duration)
+    if (!(o->duration > 0) || s->m->is_inexact || ct_lanes_refusal(o)
+        || !tables_reach(s->e->x, o->duration)
         || (s->is_used && (o->method != s->method || rank != s->rank))
         || (s->needs_lam && rank != s->nrow))
         return false;

@@ -92,6 +92,17 @@ struct ct_machine *ct_machine_create(struct ct_arena *a, const struct ct_model *
     ct_programs_compile(a, m);
     m->M = CT_NEWN(a, double, (e->has_dynamics ? m->nu * m->nu : 0) + 1);
     m->J = CT_NEWN(a, double, m->nrow * m->nu + 1);
+    m->row_size = CT_NEWN(a, double, m->nrow + 1);
+    m->speed_size = CT_NEWN(a, double, m->nu + 1);
+    m->symbol_value = CT_NEWN(a, double, e->x->nsym + 1);
+    for (size_t i = 0; i < m->nrow; i++)
+        m->row_size[i] = 1;
+    for (size_t k = 0; k < m->nu; k++)
+        m->speed_size[k] = 1;
+    m->rank_tolerance = ct_rank_tolerance;
+    m->most_rank = m->nrow;
+    m->left_out = CT_NEWN(a, bool, m->nrow + 1);
+    m->open = CT_NEWN(a, double, m->nrow + 1);
     m->g[0] = CT_NEWN(a, double, e->nmode + 1);
     m->g[1] = CT_NEWN(a, double, e->nmode + 1);
     m->turned = CT_NEWN(a, double, e->nmemory + 1);
@@ -156,6 +167,9 @@ size_t ct_machine_code_size(struct ct_machine *m)
 
 void ct_machine_reset(struct ct_machine *m)
 {
+    m->is_inexact = false;
+    m->most_rank = m->nrow;
+    m->rank_tolerance = ct_rank_tolerance;
     start_input(m);
     ct_machine_prepare(m);
 }
@@ -203,6 +217,10 @@ void ct_machine_constraint(struct ct_machine *m)
 {
     ct_program_run(&m->constraint, m->input);
     scatter_J(m, m->v + m->nrow);
+    for (size_t i = 0; i < m->nrow && m->is_inexact; i++) {
+        m->phi[i] = m->left_out[i] ? 0 : m->phi[i] - m->open[i];
+        m->v[i] = m->left_out[i] ? 0 : m->v[i];
+    }
 }
 
 void ct_machine_tangent(struct ct_machine *m)

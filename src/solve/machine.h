@@ -20,6 +20,13 @@ enum ct_backend {
     CT_BACKEND_NATIVE,
 };
 
+/// What is left of a row against its natural size (6.5a). Round-off of sums of some hundred terms, of places known to 1e-13, is
+/// below 1e-12: a row with less than the first left is dependent.
+static const double ct_rank_tolerance = 1e-9;
+/// Places and angles given to six digits err by 5e-6 of their size at most; a row adds up a few of them. Where loops close to that
+/// only, a row with less left than this depends on others as the data are meant, if it stays so along the motion.
+static const double ct_data_tolerance = 3e-5;
+
 struct ct_machine {
     const struct ct_equations *e;
     const struct ct_model *model;
@@ -61,6 +68,15 @@ struct ct_machine {
 
     double *M, *Q, *J, *gam, *rate; // of the last ct_machine_motion
     double *phi, *v;                // of the last ct_machine_constraint (J as well)
+    double *row_size, *speed_size;  // of the last ct_machine_measure_rows; 1 before
+    double
+        rank_tolerance; // what is left of a row, against its size, is none: round-off, or the tolerance of the data
+    // Data close to their tolerance only: rows keep what they leave open at the start, phi - open = 0; those that are left out,
+    // as they depend on others to that tolerance, read 0.
+    bool is_inexact, *left_out;     // (nrow)
+    size_t most_rank;               // of J; nrow where data are exact
+    double *open;                   // (nrow)
+    double *symbol_value;           // workspace of it, by symbol of e->x
     double *g[2];                   // values of root functions, for modes (nmode)
     double *turned, *ahead, *moved; // for ct_memory_turning (nmemory, nq + nu + 1, nu)
     long evaluations;
@@ -117,6 +133,16 @@ void ct_machine_motion(struct ct_machine *m);
 bool ct_machine_solved(struct ct_machine *m, double *a);
 /// phi, v, J at the input.
 void ct_machine_constraint(struct ct_machine *m);
+/// Natural sizes of rows and speeds at the input, which ranks are judged against.  (6.5a)
+void ct_machine_measure_rows(struct ct_machine *m);
+/// The input is the start of data that close to their tolerance only, with so many freedoms of joints on any trees.
+void ct_machine_set_inexact(struct ct_machine *m, size_t freedoms);
+/// Of such data: the rows behind the first `rank` of row (nrow) take no part.
+void ct_machine_leave_out(struct ct_machine *m, const int *row, int rank);
+/// Rank of J (nrow x nu): rows of which more than `least` is left against their sizes. row (nrow, out): the largest first. A (nu x nrow,
+/// out): the factor R. tau (nrow), work (ct_qr_pivot_work(nu, nrow)).
+int ct_machine_order_rows(const struct ct_machine *m, const double *J, double least, int *row,
+                          double *A, double *tau, double *work);
 /// Derivatives of the residual at the input, into slopes.
 void ct_machine_tangent(struct ct_machine *m);
 /// K, C, M (nu x nu, out) for the slopes, inner values taken along; returns the values of dv.  (8.19)

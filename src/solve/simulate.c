@@ -255,6 +255,22 @@ static double find_scale(const struct ct_model *model)
     return largest > 0 ? fmin(1, largest / small_length) : 1;
 }
 
+// A run that starts in a singular configuration begins with the assembled speeds, which rows chosen there need not keep (lead_in.c).
+static bool keeps_demands(struct ct_run *r, const struct ct_start *start)
+{
+    if (!ct_start_has_moved(r->e, start, r->assembled, r->y))
+        return true;
+    struct ct_arena *own = ct_arena_create_under(r->arena);
+    bool *row = CT_NEWN(own, bool, r->m->nrow + 1);
+    const bool ok
+        = ct_singular_is_start(own, r->s, 0, r->assembled, row)
+       || ct_start_is_kept(r->ctx, own, r->model, r->e, start, r->assembled, r->y, true);
+    ct_arena_destroy(own);
+    ct_machine_set(r->m, 0, r->y);
+    ct_machine_constraint(r->m);
+    return ok;
+}
+
 // To the start, assembled; rows and columns chosen there.
 bool ct_run_begin(struct ct_run *r, const struct ct_start *start)
 {
@@ -265,6 +281,9 @@ bool ct_run_begin(struct ct_run *r, const struct ct_start *start)
     ct_machine_constraint(r->m);
     r->s->sigma_best = 0;
     r->s->scale = find_scale(r->model);
+    ct_machine_measure_rows(r->m);
+    if (r->m->is_inexact) // closed forms know no gaps
+        ct_embed_use(r->s, r->m->nu + r->m->nrow < CT_LEAST_SPARSE ? NULL : &ct_form_sparse);
     ct_embed_find_units(r->s);
     if (!ct_embed_choose(r->s))
         return false;
@@ -274,6 +293,8 @@ bool ct_run_begin(struct ct_run *r, const struct ct_start *start)
                  "the assembled start is singular: the loops cannot be held there");
         return false;
     }
+    if (!keeps_demands(r, start))
+        return false;
     if (rhs(r, 0, r->y, r->dy) != CT_EVAL_OK) {
         ct_error(r->ctx, (struct ct_mark){.file = r->model->file}, CT_E_SINGULAR,
                  "the accelerations at t = 0 cannot be found");
@@ -555,6 +576,9 @@ static void find_asked(struct ct_run *r, struct ct_problem *p)
         p->keeps_energy |= ct_fidelity_is_check(r->e, i);
 }
 
+// Steps in double precision are held to no less than this.
+static const double sharpest = 1e-10;
+
 // Steps of the implicit method are held to this part of what is wanted.
 static const double held_to = 0.1;
 
@@ -610,7 +634,7 @@ bool ct_run_simulate(struct ct_run *r, const struct ct_run_options *o,
     memset(r->largest, 0, r->e->nresult * sizeof *r->largest);
     ct_singular_start(r->singular);
     r->singular->wanted = o->step == 0 ? o->wanted : 0;
-    r->s->least_left = o->step == 0 && o->wanted > 0 ? DBL_EPSILON / o->wanted : 0;
+    r->s->least_left = o->step == 0 ? DBL_EPSILON / fmax(o->wanted, sharpest) : 0;
     r->s->left = INFINITY;
     if (r->fidelity)
         ct_fidelity_start(r->fidelity, o->method);

@@ -21,7 +21,7 @@ struct probe {
     double t, *y, *x, *d, *A, *work; // (ny), (nu), (larger of nu and nrow), (nrow x nu)
     int *iwork;                      // (larger of nu and nrow)
     double *eigen_work;
-    double largest;
+    double largest; // row of J beside the position  [m or 1]
 };
 
 static double *workspace(struct ct_arena *a, int n, int m)
@@ -93,17 +93,10 @@ static void take_rows(struct probe *p)
             p->A[j + n * i] = p->m->J[i + m * j];
 }
 
-// The rank of J, what is left of other rows being less than `least`; p->largest: the largest row.
+// The rank of J, what is left of other rows being less than `least` of their natural sizes.
 static int find_rank(struct probe *p, double least)
 {
-    const int n = (int)p->m->nu, m = (int)p->m->nrow, most = n < m ? n : m;
-    int rank = 0;
-    take_rows(p);
-    ct_qr_pivot(p->A, p->iwork, p->x, n, m, n, 0, p->work);
-    while (rank < most && fabs(p->A[rank + n * rank]) > least)
-        rank++;
-    p->largest = fabs(p->A[0]);
-    return rank;
+    return ct_machine_order_rows(p->m, p->m->J, least, p->iwork, p->A, p->x, p->work);
 }
 
 // N (nrow x nrow, out): its first nrow - rank columns are what rows can be combined to that says nothing, J' N = 0.
@@ -160,8 +153,8 @@ static struct probe make_probe(struct ct_arena *scratch, struct ct_machine *m, d
     return p;
 }
 
-// Rank of J at y. Where all rows vanish, as the one of a slider-crank with equal links in its dead centre does, there is nothing to
-// measure them by but what they are beside it: p->largest.
+// Rank of J at y, rows being measured by the largest beside it, as all may vanish there; not below what round-off leaves.
+// p->largest: that row, in its own unit.
 static int find_rank_here(struct probe *p, struct ct_arena *scratch, const double *y)
 {
     const double way = 0.1;
@@ -169,12 +162,12 @@ static int find_rank_here(struct probe *p, struct ct_arena *scratch, const doubl
     move(p, scratch, way);
     evaluate(p);
     find_rank(p, 0);
-    const double beside = p->largest;
+    const double beside = fabs(p->A[0]);
+    size_rows(p, p->x);
+    p->largest = ct_vector_largest(p->x, p->m->nrow);
     memcpy(p->y, y, ny * sizeof *y);
     evaluate(p);
-    const int rank = find_rank(p, unmet * beside);
-    p->largest = beside;
-    return rank;
+    return find_rank(p, fmax(unmet * beside, p->m->rank_tolerance));
 }
 
 // Rank of J beside y, with the largest way along which it is more than `here`; where it is not, `here` or less.
@@ -184,13 +177,12 @@ static int find_rank_beside(struct probe *p, struct ct_arena *scratch, const dou
     const double ways[] = {0.1, 0.02};
     const double part = 1e-3; // of J's change along the way, which is about as large as the way
     const size_t ny = p->m->nq + p->m->nu + 1;
-    const double largest = p->largest;
     int there = 0;
     for (size_t i = 0; i < COUNT(ways) && here < (int)p->m->nrow && there <= here; i++) {
         memcpy(p->y, y, ny * sizeof *p->y);
         move(p, scratch, ways[i]);
         if (close(p, ways[i]))
-            there = find_rank(p, part * ways[i] * largest);
+            there = find_rank(p, part * ways[i]);
     }
     return there;
 }

@@ -47,4 +47,6 @@ void ct_start_apply(const struct ct_start *s, struct ct_machine *m, double *y)
     ct_machine_set(m, 0, y);
     ct_modes_start(m, 0, y, NULL);
     ct_memory_start(m);
+    if (s->is_inexact)
+        ct_machine_set_inexact(m, s->freedoms);
 }

@@ -14,6 +14,7 @@
 // only what is constant and, one at a time, the rows.
 #include "study/study.h"
 
+#include "base/guard.h"
 #include "io/text.h"
 #include "solve/lanes.h"
 
@@ -226,8 +227,11 @@ static bool run_all(struct ct_study *s)
         ct_progress_init(&s->progress, r->progress, "sweep");
     s->sink.flushed = start;
     ct_study_write_rows(s); // past those taken over
+    s->interrupt = ct_guard_interrupt();
     ct_study_run_members(s);
     ct_progress_finish(&s->progress);
+    if (ct_guard_is_interrupted() && s->written < s->plan.nmember)
+        return false;
     s->seconds = ct_clock() - start;
     s->own.no_memory |= s->no_memory;
     return ct_study_close(s, !s->no_memory && !s->sink.has_failed
@@ -248,6 +252,25 @@ static bool run_and_report(void *data)
     return ok;
 }
 
+// Which rows are there, and how to go on.
+static bool report_interrupt(void *data)
+{
+    struct task *t = data;
+    struct ct_study *s = t->s;
+    ct_progress_finish(&s->progress);
+    ct_csv_abandon(&s->sink.csv);
+    ct_outfile_discard(&s->sink.whole); // to write it takes longer than anybody waits
+    const char *partial = s->sink.is_by_row ? s->sink.csv.file.partial : NULL;
+    const bool goes_on = partial && s->sink.suffix == CT_SUFFIX_CSV;
+    ct_error(&s->own, none, CT_E_INTERRUPTED, "interrupted after %ld of %ld rows%s%s%s%s",
+             s->written, s->plan.nmember, partial ? ", which are in '" : "",
+             partial ? partial : "", partial ? "'" : "",
+             goes_on ? "; the same command with --resume goes on"
+                     : "; only a sweep into a .csv file can be resumed");
+    ct_ctx_hand_over(t->ctx, &s->own);
+    return false;
+}
+
 bool ct_study_run(struct ct_ctx *ctx, struct ct_study *s,
                   const struct ct_study_results *results)
 {
@@ -257,9 +280,11 @@ bool ct_study_run(struct ct_ctx *ctx, struct ct_study *s,
         return false;
     s->results = results ? results : &nowhere;
     const bool ok = ct_enter(ctx, run_and_report, &t);
+    if (!ok && ctx->was_interrupted && s->results->path)
+        ct_enter_uninterrupted(ctx, report_interrupt, &t);
     if (!ok) { // without memory they are still open
         ct_csv_abandon(&s->sink.csv);
-        ct_outfile_abandon(&s->sink.json);
+        ct_outfile_abandon(&s->sink.whole);
     }
     s->results = NULL;
     return ok;

@@ -45,12 +45,15 @@ struct ct_study {
     const char *method, *backend;
     double tolerance;
     const struct ct_study_results *results;
+    struct ct_interrupt interrupt; // of the caller, for all threads
     struct ct_result_sink {
-        bool is_json, is_open, has_failed;
+        enum ct_suffix suffix;
+        bool is_by_row, is_open, has_failed;
         struct ct_csv csv;
-        struct ct_outfile json;
+        struct ct_outfile whole; // columns, written at the end
         double flushed;
     } sink;
+    const char *path_written; // the file of rows, once it is complete
     struct ct_progress progress;
     struct ct_study_row *row;
     double *varied;                                       // values of a row  (naxis)

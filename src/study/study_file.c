@@ -1,8 +1,9 @@
 // The rows of a study: in order, in a file that appears when all are there, and taken over from one that was cut off.
 #include "study/study.h"
 
+#include "base/guard.h"
 #include "io/text.h"
-#include "report/json.h"
+#include "report/columns.h"
 #include "report/number.h"
 
 #include <errno.h>
@@ -50,7 +51,7 @@ static bool write_row(struct ct_study *s, long member, const double *value)
     if (now - s->sink.flushed < seconds_between_flushes)
         return true;
     s->sink.flushed = now;
-    return ct_outfile_flush(&s->own, &w->file);
+    return ct_csv_flush(&s->own, w);
 }
 
 static bool give_row(struct ct_study *s, long member, const struct ct_study_row *row)
@@ -72,12 +73,12 @@ void ct_study_write_rows(struct ct_study *s)
             return;
         if (row->state == CT_ROW_RESUMED || row->state == CT_ROW_RESUMED_FAILED)
             continue;
-        const bool is_csv = s->sink.is_open && !s->sink.is_json;
+        const bool is_csv = s->sink.is_open && s->sink.is_by_row;
         if (is_csv && !write_row(s, s->written, row->value))
             s->is_stopped = s->sink.has_failed = true;
         else if (!give_row(s, s->written, row))
             s->is_stopped = true;
-        if (!s->sink.is_json) {
+        if (s->sink.is_by_row || !s->sink.is_open) {
             free(row->value);
             row->value = NULL;
         }
@@ -117,6 +118,8 @@ static double *copy_values(const double *value, size_t n)
 void ct_study_record(struct ct_study *s, long member, const double *value,
                      const struct ct_ctx *ctx)
 {
+    if (!value && ct_guard_is_interrupted()) // it may not have failed: it is still to be done
+        return;
     struct ct_study_row row = {.state = value ? CT_ROW_DONE : CT_ROW_FAILED};
     if (value)
         row.value = copy_values(value, s->system->equations.nresult);
@@ -139,50 +142,57 @@ void ct_study_record(struct ct_study *s, long member, const double *value,
 
 // ---- the file -----------------------------------------------------------------------------------------
 
-static bool has_suffix(const char *path, const char *suffix)
+// What the file begins with.
+static const char *header_text(struct ct_study *s)
 {
-    const size_t n = strlen(path), k = strlen(suffix);
-    return n >= k && strcmp(path + n - k, suffix) == 0;
-}
-
-// What the file begins with, on the heap.
-static char *header_text(struct ct_study *s)
-{
-    char *text = NULL;
-    size_t size, n;
+    size_t n;
     const char **name = column_names(s, &n);
-    struct ct_csv w = {.ncolumn = n};
-    w.file.stream = open_memstream(&text, &size);
-    if (!w.file.stream)
-        return NULL;
+    struct ct_csv w = {.ncolumn = n, .arena = s->own.model};
     for (size_t i = 0; i < n; i++)
         ct_csv_text(&w, name[i]);
-    fputc('\n', w.file.stream);
-    return fclose(w.file.stream) == 0 ? text : NULL;
+    return ct_arena_printf(s->own.model, "%.*s\n", (int)w.n, w.text);
 }
 
-// Is this the row of the member, and how did that end? -1: it is not.
-static int read_status(const struct ct_study *s, long member, const char *line)
+// A field of a row as it is written: a number, and *line (inout) is behind its comma.
+static bool read_number(const char **line)
 {
     char text[CT_NUMBER_SIZE];
-    size_t n = strlen(ct_number_format(text, (double)(member + 1)));
-    if (strncmp(line, text, n) != 0)
-        return -1;
-    line += n;
-    for (size_t i = 0; i < s->plan.naxis; i++) {
-        ct_number_format(text, ct_plan_value(&s->plan, member, i));
-        n = strlen(text);
-        if (*line++ != ',' || strncmp(line, text, n) != 0)
-            return -1;
-        line += n;
-    }
-    size_t fields = 0;
-    for (const char *p = line; *p; p++)
-        fields += *p == ',';
-    const char *last = strrchr(line, ',');
-    const bool is_row = *line == ',' && fields == s->system->equations.nresult + 1
-                     && (strcmp(last, ",0\n") == 0 || strcmp(last, ",1\n") == 0);
-    return is_row ? last[1] == '1' : -1;
+    const size_t n = strcspn(*line, ",\n");
+    const double v = strtod(*line, NULL);
+    const bool is_number = n > 0 && n == strlen(ct_number_format(text, v))
+                        && memcmp(*line, text, n) == 0 && (*line)[n] == ',';
+    *line += n + 1;
+    return is_number;
+}
+
+static bool read_empty(const char **line)
+{
+    return *(*line)++ == ',';
+}
+
+// The same, of this value.
+static bool read_value(const char **line, double v)
+{
+    char text[CT_NUMBER_SIZE];
+    const size_t n = strlen(ct_number_format(text, v));
+    const bool is_it = strncmp(*line, text, n) == 0 && (*line)[n] == ',';
+    *line += n + 1;
+    return is_it;
+}
+
+// Is this the row of the member, every field whole, and how did that end? -1: it is not.
+static int read_status(const struct ct_study *s, long member, const char *line)
+{
+    const size_t length = strlen(line);
+    const int status = length > 2 && strcmp(line + length - 3, ",0\n") == 0 ? 0
+                     : length > 2 && strcmp(line + length - 3, ",1\n") == 0 ? 1
+                                                                            : -1;
+    bool ok = status >= 0 && read_value(&line, (double)(member + 1));
+    for (size_t i = 0; ok && i < s->plan.naxis; i++)
+        ok = read_value(&line, ct_plan_value(&s->plan, member, i));
+    for (size_t i = 0; ok && i < s->system->equations.nresult; i++)
+        ok = status ? read_empty(&line) : read_number(&line);
+    return ok && strlen(line) == 2 ? status : -1;
 }
 
 static bool not_resumable(struct ct_study *s, const char *path, const char *why)
@@ -195,14 +205,14 @@ static bool not_resumable(struct ct_study *s, const char *path, const char *why)
 // Take over whole rows of a file; *kept (out): bytes of them.
 static bool read_rows(struct ct_study *s, FILE *in, const char *path, long *kept)
 {
-    char *line = NULL, *header = header_text(s);
+    char *line = NULL;
+    const char *header = header_text(s);
     size_t size = 0;
     ssize_t n = getline(&line, &size, in);
     bool ok = true;
     *kept = 0;
     if (n > 0 && line[n - 1] == '\n') {
-        ok = (header && strcmp(line, header) == 0)
-          || not_resumable(s, path, "its columns are others");
+        ok = strcmp(line, header) == 0 || not_resumable(s, path, "its columns are others");
         *kept = n;
     }
     for (long i = 0; ok && *kept && (n = getline(&line, &size, in)) > 0; i++) {
@@ -210,9 +220,10 @@ static bool read_rows(struct ct_study *s, FILE *in, const char *path, long *kept
             break; // cut off in the middle
         const int status = i < s->plan.nmember ? read_status(s, i, line) : -1;
         ok = status >= 0
-          || not_resumable(
-                 s, path,
-                 ct_arena_printf(s->own.model, "row %ld is not one of this sweep", i + 1));
+          || not_resumable(s, path,
+                           ct_arena_printf(s->own.model,
+                                           "row %ld is damaged, or not one of this sweep",
+                                           i + 1));
         if (!ok)
             break;
         s->row[i].state = status ? CT_ROW_RESUMED_FAILED : CT_ROW_RESUMED;
@@ -222,7 +233,6 @@ static bool read_rows(struct ct_study *s, FILE *in, const char *path, long *kept
         *kept += n;
     }
     free(line);
-    free(header);
     return ok;
 }
 
@@ -302,32 +312,29 @@ static const char *find_difference(struct ct_study *s, const char *rows)
 // Go on at the end of the rows that a partial file has; if there is none, *found is false.
 static bool resume(struct ct_study *s, const char *path, bool *found)
 {
-    struct ct_outfile *o = &s->sink.csv.file;
+    struct ct_csv *w = &s->sink.csv;
     struct stat rows;
     const char *partial = ct_arena_printf(s->own.model, "%s.partial", path);
-    size_t n;
     long kept;
-    *found = stat(partial, &rows) == 0 && S_ISREG(rows.st_mode) && rows.st_size > 0;
+    *found = lstat(partial, &rows) == 0 && rows.st_size > 0;
     if (!*found)
         return true;
+    *w = (struct ct_csv){.arena = s->own.model};
+    column_names(s, &w->ncolumn);
+    if (!ct_outfile_reopen(&s->own, &w->file, path))
+        return false;
     const char *difference = find_difference(s, partial);
     if (difference)
         return not_resumable(s, partial, difference);
-    FILE *stream = fopen(partial, "r+");
-    if (!stream)
-        return not_resumable(s, partial, "it cannot be opened");
-    column_names(s, &n);
-    s->sink.csv = (struct ct_csv){.ncolumn = n};
-    *o = (struct ct_outfile){stream, ct_arena_strdup(s->own.model, path), partial};
-    if (!read_rows(s, stream, partial, &kept))
+    if (!read_rows(s, w->file.stream, partial, &kept))
         return false;
     if (kept == 0) { // not even the header is there
-        fclose(stream);
-        o->stream = NULL;
+        ct_outfile_abandon(&w->file);
         *found = false;
         return true;
     }
-    return (fseek(stream, kept, SEEK_SET) == 0 && ftruncate(fileno(stream), kept) == 0)
+    return (fseek(w->file.stream, kept, SEEK_SET) == 0
+            && ftruncate(fileno(w->file.stream), kept) == 0)
         || not_resumable(s, partial, "it cannot be written");
 }
 
@@ -357,8 +364,8 @@ static bool begin_file(struct ct_study *s, const char *path)
 {
     size_t n;
     const char **name = column_names(s, &n);
-    s->sink.is_open
-        = ct_csv_open(&s->own, &s->sink.csv, strcmp(path, "-") == 0 ? NULL : path, name, n);
+    s->sink.is_open = ct_csv_open(&s->own, &s->sink.csv, strcmp(path, "-") == 0 ? NULL : path,
+                                  s->sink.suffix, name, n);
     return s->sink.is_open && write_settings(s);
 }
 
@@ -366,13 +373,18 @@ bool ct_study_open(struct ct_study *s)
 {
     const struct ct_study_results *r = s->results;
     const char *path = r->path;
-    s->sink.is_json = has_suffix(path, ".json");
-    if (r->resume && (s->sink.is_json || strcmp(path, "-") == 0))
+    struct ct_result_sink *k = &s->sink;
+    if (!ct_suffix_read(&s->own, path, CT_SUFFIX_TABLE, &k->suffix))
+        return false;
+    if (r->resume && (k->suffix != CT_SUFFIX_CSV || strcmp(path, "-") == 0))
         return ct_error(&s->own, none, CT_E_USAGE,
                         "only a sweep into a CSV file can be resumed");
-    if (s->sink.is_json) {
-        s->sink.is_open = ct_outfile_open(&s->own, &s->sink.json, path);
-        return s->sink.is_open;
+    s->path_written
+        = strcmp(path, "-") == 0 ? "standard output" : ct_arena_strdup(s->own.model, path);
+    k->is_by_row = k->suffix == CT_SUFFIX_CSV || k->suffix == CT_SUFFIX_CSV_GZ;
+    if (!k->is_by_row) {
+        k->is_open = ct_outfile_open(&s->own, &k->whole, path);
+        return k->is_open;
     }
     if (r->resume && is_complete(s, path))
         return true;
@@ -383,28 +395,30 @@ bool ct_study_open(struct ct_study *s)
 
 // ---- the end --------------------------------------------------------------------------------------------
 
-// An object of columns; null where a member failed.
-static void write_columns(struct ct_study *s)
+// The value of a member in a column; NaN where it failed.
+static double cell(const struct ct_study *s, long member, size_t c, size_t ncolumn)
 {
-    const long n = s->plan.nmember;
+    const struct ct_study_row *row = &s->row[member];
+    return c == 0             ? (double)(member + 1)
+         : c <= s->plan.naxis ? ct_plan_value(&s->plan, member, c - 1)
+         : c + 1 == ncolumn   ? row->state == CT_ROW_FAILED
+         : row->value         ? row->value[c - 1 - s->plan.naxis]
+                              : (double)NAN;
+}
+
+// Members up to the first that is not over.
+static bool put_columns(struct ct_study *s)
+{
     size_t ncolumn;
     const char **name = column_names(s, &ncolumn);
-    struct ct_json j;
-    ct_json_init(&j, s->sink.json.stream);
-    ct_json_object(&j, NULL);
-    double *column = CT_NEWN(s->own.scratch, double, n);
-    for (size_t c = 0; c < ncolumn; c++) {
-        for (long i = 0; i < n; i++) {
-            const double *value = s->row[i].value;
-            column[i] = c == 0             ? (double)(i + 1)
-                      : c <= s->plan.naxis ? ct_plan_value(&s->plan, i, c - 1)
-                      : c + 1 == ncolumn   ? s->row[i].state == CT_ROW_FAILED
-                      : value              ? value[c - 1 - s->plan.naxis]
-                                           : NAN;
-        }
-        ct_json_numbers(&j, name[c], column, (size_t)n);
-    }
-    ct_json_end(&j);
+    struct ct_columns t;
+    ct_columns_init(&t, s->own.model, name[0], CT_COLUMN_NUMBER);
+    for (size_t c = 1; c < ncolumn; c++)
+        ct_columns_add(&t, name[c], CT_COLUMN_NUMBER);
+    for (size_t c = 0; c < ncolumn; c++)
+        for (long i = 0; i < s->written; i++)
+            ct_columns_number(&t, c, cell(s, i, c, ncolumn));
+    return ct_columns_put(&s->own, &t, s->sink.suffix, &s->sink.whole);
 }
 
 bool ct_study_close(struct ct_study *s, bool ok)
@@ -412,11 +426,11 @@ bool ct_study_close(struct ct_study *s, bool ok)
     struct ct_result_sink *k = &s->sink;
     if (!k->is_open)
         return ok;
-    if (ok && k->is_json)
-        write_columns(s);
+    if (!k->is_by_row)
+        ok &= put_columns(s);
     if (ok)
-        ok = k->is_json ? ct_outfile_close(&s->own, &k->json) : finish_rows(s);
+        ok = k->is_by_row ? finish_rows(s) : ct_outfile_close(&s->own, &k->whole);
     ct_csv_abandon(&k->csv);
-    ct_outfile_abandon(&k->json);
+    ct_outfile_abandon(&k->whole);
     return ok;
 }

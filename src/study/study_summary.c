@@ -52,6 +52,7 @@ static void write_summary(FILE *out, const struct ct_study *s)
     ct_json_init(&j, out);
     ct_json_object(&j, NULL);
     ct_json_text(&j, "model", s->system->model.name);
+    ct_json_text(&j, "results", s->path_written);
     ct_json_integer(&j, "members", s->plan.nmember);
     ct_json_integer(&j, "done", s->ndone - s->nfailed);
     ct_json_integer(&j, "failed", s->nfailed);
@@ -85,7 +86,9 @@ static bool write_file(void *task)
 {
     const struct summary *w = task;
     struct ct_outfile file;
-    if (!ct_outfile_open(w->ctx, &file, strcmp(w->path, "-") == 0 ? NULL : w->path))
+    enum ct_suffix unused;
+    if (!ct_suffix_read(w->ctx, w->path, CT_SUFFIX_JSON, &unused)
+        || !ct_outfile_open(w->ctx, &file, strcmp(w->path, "-") == 0 ? NULL : w->path))
         return false;
     write_summary(file.stream, w->s);
     return ct_outfile_close(w->ctx, &file);
@@ -126,4 +129,6 @@ void ct_study_print_summary(const struct ct_study *s, FILE *out)
     fprintf(out, "\nseconds      read %.3g, generate %.3g, run %.3g\n", s->system->read,
             s->system->generate, s->seconds);
     print_failures(out, s);
+    if (s->path_written)
+        fprintf(out, "results      %ld rows in %s\n", s->plan.nmember, s->path_written);
 }

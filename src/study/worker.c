@@ -1,6 +1,7 @@
 // Members of a study: each thread is a worker with a system of its own. See study.h.
 #include "study/study.h"
 
+#include "base/guard.h"
 #include "report/number.h"
 #include "solve/lanes.h"
 
@@ -35,7 +36,8 @@ static long take_member(struct ct_study *s)
     {
         while (s->next < s->plan.nmember && s->row[s->next].state != CT_ROW_PENDING)
             s->next++;
-        if (s->next < s->plan.nmember && !s->is_stopped && !s->no_memory)
+        if (s->next < s->plan.nmember && !s->is_stopped && !s->no_memory
+            && !ct_guard_is_interrupted())
             member = s->next++;
     }
     return member;
@@ -246,7 +248,7 @@ static void run_lanes(struct worker *w)
                                      &w->system->start_equations);
     create_groups(w);
     w->value = CT_NEWN(sim->own.model, double, w->system->equations.nresult + 1);
-    for (bool is_running = true; is_running;) {
+    for (bool is_running = true; is_running && !ct_guard_is_interrupted();) {
         is_running = false;
         for (int g = 0; g < w->ngroup; g++)
             is_running |= step_group(w, g);
@@ -299,7 +301,11 @@ static void run_worker(struct ct_study *s, int thread)
 {
     struct worker w = {.s = s, .system = thread == 0 ? s->system : NULL};
     struct ct_ctx *ctx = ct_ctx_create();
-    if (!ctx || (!ct_enter(ctx, work, &w) && (thread == 0 || ctx->no_memory)))
+    if (ctx)
+        ctx->interrupt = s->interrupt;
+    if (!ctx
+        || (!ct_enter(ctx, work, &w) && !ctx->was_interrupted
+            && (thread == 0 || ctx->no_memory)))
         lose_memory(s);
     ct_ctx_destroy(ctx);
     ct_own_finish(&w.sim.own);

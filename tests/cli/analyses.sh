@@ -30,7 +30,7 @@ od -A n -c -N 4 m.npz
 "$COTREE" linearize "$m" --inputs foot.efort
 echo '-- driven motions'
 d=$SYSTEMS/puma560_driven/model.yaml
-"$COTREE" kinematics "$d" --samples 3 -q && ls model.csv && wc -l <model.csv
+"$COTREE" kinematics "$d" --samples 3 -q && ls model.kinematics.csv && wc -l <model.kinematics.csv
 "$COTREE" inverse "$d" --samples 3 -o - -q | cut -d, -f20-26 | head -1
 "$COTREE" inverse "$m"
 echo '-- a free cart under a leaning pole: one rigid-body motion, whatever rounding makes of its double zero'

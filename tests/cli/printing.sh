@@ -48,8 +48,8 @@ for s in "$SYSTEMS"/*/model.yaml; do
     grep -En '_\{([^{}]|\{[^{}]*\})*\}_' | head -n 2
 done
 
-echo '-- a name with a newline stays in its comment'
-printf 'cotree: 1\nname: "one\\n#error two\\\\"\n' >line.yaml
+echo '-- a name that ends with a backslash stays in its comment'
+printf 'cotree: 1\nname: "one */ two\\\\"\n' >line.yaml
 sed 1d flip.yaml >>line.yaml
 "$COTREE" equations line.yaml --format c -o line.c
 head -n 1 line.c

@@ -42,7 +42,7 @@ joints:
   a: {type: revolute, from: ground, to: crank, initial: {q: 4.05, u: 1}}
   b: {type: revolute, from: crank.tip, to: coupler, initial: {q: 2.7, guess: true}}
   c: {type: revolute, from: coupler.tip, to: rocker.tip, initial: {q: -3.74, guess: true}}
-  d: {type: revolute, from: ground.g, to: rocker, initial: {q: -6.79, guess: true}}
+  d: {type: revolute, from: ground.g, to: rocker, initial: {q: -6.79 rad, guess: true}}
 outputs: [a.q, b.q, c.q, d.q, d.u]
 simulation: {duration: 2e-6, samples: 11}
 EOF

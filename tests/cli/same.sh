@@ -51,7 +51,7 @@ bodies:
   rod: {mass: 0.7, inertia: 5.5e-3, com: [l/2, 0, 0], points: {pin: [l, 0, 0]}}
   slider: {mass: 0.5}
 joints:
-  main: {type: revolute, from: ground, to: crank, axis: [0, 0, -1], effort: 0.5, initial: {q: 20, u: 10}}
+  main: {type: revolute, from: ground, to: crank, axis: [0, 0, -1], effort: 0.5, initial: {q: 20 rad, u: 10}}
   big_end: {type: revolute, from: crank.pin, to: rod, effort: "-0.05*big_end.q", initial: {q: 2*pi*turns - 2, guess: true}}
   small_end: {type: revolute, from: rod.pin, to: slider, axis: [0, 0, -1], initial: {q: 0.35, guess: true}}
   guide: {type: prismatic, from: ground, to: slider, axis: x, initial: {q: 0.4, guess: true}}

@@ -23,7 +23,7 @@ say simulate "$m" --method dopri6
 say simulate "$m" --method euler
 say simulate "$m" --method radau
 say simulate "$m" --tree jonts
-say graph "$m" --format png
+say graph "$m" --format gif
 say graph "$m" --show tree
 say equations "$m" --format tex
 say equations "$m" --show tree,cutsets -o e.txt

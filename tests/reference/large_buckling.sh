@@ -39,7 +39,7 @@ beams 1 60 >one.yaml
 "$COTREE" buckling one.yaml --load push --count 4 --curve curve.csv -o one.csv 2>summary
 grep -q 'refined on the path' summary
 beams 1 24 >few.yaml
-"$COTREE" buckling few.yaml --load push --count 2 --curve few.csv -o few.factors -q
+"$COTREE" buckling few.yaml --load push --count 2 --curve few.csv -o few_factors.csv -q
 awk 'BEGIN { for (j = 0; j < 4; j++) printf "%.17g\n", (1 + 2 * int(j / 2))^2 * (4 * atan2(1, 1))^2 * 1e7 / 12 / 400 }' | compare one.csv 1e-6
 awk -F, '
   FNR == NR { few[FNR] = $2; next }

@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
+#include <zlib.h>
 
 static char folder[] = "/tmp/cotree-test-XXXXXX";
 static char path[64], other[64], table[64];
@@ -626,6 +627,18 @@ static unsigned long number(const unsigned char *b, int size)
     return v;
 }
 
+// What is compressed (RFC 1951) behind a local header.
+static size_t inflate_all(const unsigned char *packed, size_t n, unsigned char *to, size_t room)
+{
+    z_stream z = {.next_in = (Bytef *)(uintptr_t)packed, .avail_in = (uInt)n};
+    z.next_out = to;
+    z.avail_out = (uInt)room;
+    assert_int_equal(inflateInit2(&z, -15), Z_OK);
+    assert_int_equal(inflate(&z, Z_FINISH), Z_STREAM_END);
+    inflateEnd(&z);
+    return room - z.avail_out;
+}
+
 // The file as its two formats describe it, read by hand.
 static void npz_holds_the_matrices(void **state)
 {
@@ -653,13 +666,18 @@ static void npz_holds_the_matrices(void **state)
     assert_memory_equal(entry + 46, "B.npy", 5);
     const unsigned char *local = all + number(entry + 42, 4);
     assert_int_equal(number(local, 4), 0x04034b50);
-    const unsigned char *npy = local + 30 + number(local + 26, 2);
+    static unsigned char npy[65536];
+    assert_int_equal(number(local + 8, 2), 8);
+    const size_t size = inflate_all(local + 30 + number(local + 26, 2), number(local + 18, 4),
+                                    npy, sizeof npy);
+    assert_int_equal(number(local + 14, 4), crc32(0, npy, (uInt)size));
     assert_memory_equal(npy, "\x93NUMPY\1\0", 8);
     const unsigned char *data = npy + 10 + number(npy + 8, 2);
     assert_int_equal((data - npy) % 64, 0);
     assert_memory_equal(npy + 10, "{'descr': '<f8', 'fortran_order': True, 'shape': (2, 3), }",
                         58);
     assert_int_equal(number(entry + 24, 4), (unsigned long)(data - npy) + 48);
+    assert_int_equal(size, number(entry + 24, 4));
     size_t rows, columns;
     const double *B = ct_linearization_matrix(l, 'B', &rows, &columns);
     double read[6];
@@ -671,6 +689,52 @@ static void npz_holds_the_matrices(void **state)
     ct_linearization_destroy(l);
     assert_null(ct_linearize(ctx, sys, &(struct ct_linearize_options){.inputs = "a.efort"}));
     assert_null(ct_linearize(ctx, sys, &(struct ct_linearize_options){.inputs = ""}));
+    ct_system_destroy(sys);
+    ct_ctx_destroy(ctx);
+}
+
+// Version 4: five integers, the name, the numbers by columns.
+static void mat_holds_the_matrices(void **state)
+{
+    (void)state;
+    struct ct_ctx *ctx = ct_ctx_create();
+    struct ct_system *sys = load_with(ctx, swinging, NULL);
+    struct ct_linearization *l
+        = checked(ctx, ct_linearize(ctx, sys, &(struct ct_linearize_options){0}));
+    snprintf(table, sizeof table, "%s/table.mat", folder);
+    assert_true(ct_linearization_write(ctx, l, table));
+    static unsigned char all[65536];
+    FILE *f = fopen(table, "rb");
+    const size_t n = fread(all, 1, sizeof all, f);
+    fclose(f);
+    remove(table);
+    snprintf(table, sizeof table, "%s/table.csv", folder);
+    static const char *const names[]
+        = {"A", "B", "C", "D", "x0", "xdot0", "y0", "states", "inputs", "outputs"};
+    const unsigned char *at = all;
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+        const bool is_text = i >= 7;
+        const unsigned long rows = number(at + 4, 4), columns = number(at + 8, 4);
+        assert_int_equal(number(at, 4), is_text);
+        assert_int_equal(number(at + 12, 4), 0);
+        assert_int_equal(number(at + 16, 4), strlen(names[i]) + 1);
+        assert_string_equal((const char *)at + 20, names[i]);
+        at += 20 + strlen(names[i]) + 1;
+        if (i < 4) {
+            size_t n_rows, n_columns;
+            const double *M = ct_linearization_matrix(l, names[i][0], &n_rows, &n_columns);
+            assert_int_equal(rows, n_rows);
+            assert_int_equal(columns, n_columns);
+            assert_memory_equal(at, M, rows * columns * sizeof *M);
+        } else if (is_text && rows) { // the first letter of the first name
+            double letter;
+            memcpy(&letter, at, sizeof letter);
+            assert_true(letter >= 'a' && letter <= 'z');
+        }
+        at += rows * columns * sizeof(double);
+    }
+    assert_int_equal(at - all, n);
+    ct_linearization_destroy(l);
     ct_system_destroy(sys);
     ct_ctx_destroy(ctx);
 }
@@ -786,6 +850,7 @@ int main(void)
         cmocka_unit_test(a_following_load_does_not_buckle_two_links),
         cmocka_unit_test(the_linear_model_moves_as_the_system_does),
         cmocka_unit_test(npz_holds_the_matrices),
+        cmocka_unit_test(mat_holds_the_matrices),
         cmocka_unit_test(efforts_of_inverse_give_the_motion_back),
         cmocka_unit_test(driven_motions_are_those_of_a_run),
         cmocka_unit_test(a_freedom_without_a_motion_is_named),

@@ -13,7 +13,7 @@ static void read_set(struct bench *s, const char *text, const struct ct_set *set
     if (!ok)
         ct_ctx_print(&s->ctx, stderr);
     assert_true(ok);
-    assert_int_equal(s->ctx.ndiagnostic, 0);
+    assert_int_equal(s->ctx.nerror, 0);
 }
 
 static void read_text(struct bench *s, const char *text)

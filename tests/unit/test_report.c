@@ -85,7 +85,7 @@ static void rows_appear_under_the_name_only_when_complete(void **state)
     struct ct_ctx *ctx = *state;
     static const char *const column[] = {"t", "crank.q", "atan2(y, x)", "a \"b\""};
     struct ct_csv w;
-    assert_true(ct_csv_open(ctx, &w, "report_a.csv", column, COUNT(column)));
+    assert_true(ct_csv_open(ctx, &w, "report_a.csv", CT_SUFFIX_CSV, column, COUNT(column)));
     assert_true(ct_csv_row(ctx, &w, (const double[]){0, 0.5, -1, 1e-3}));
     assert_true(ct_csv_row(ctx, &w, (const double[]){0.25, (double)NAN, 2, 0.1}));
     assert_null(contents(ctx, "report_a.csv"));
@@ -93,7 +93,7 @@ static void rows_appear_under_the_name_only_when_complete(void **state)
     assert_string_equal(contents(ctx, "report_a.csv"),
                         "t,crank.q,\"atan2(y, x)\",\"a \"\"b\"\"\"\n"
                         "0,0.5,-1,0.001\n"
-                        "0.25,nan,2,0.10000000000000001\n");
+                        "0.25,nan,2,0.1\n");
     assert_null(contents(ctx, "report_a.csv.partial"));
     remove("report_a.csv");
 }
@@ -103,7 +103,7 @@ static void fields_may_be_text_or_empty(void **state)
     struct ct_ctx *ctx = *state;
     static const char *const column[] = {"method", "error", "note"};
     struct ct_csv w;
-    assert_true(ct_csv_open(ctx, &w, "report_b.csv", column, COUNT(column)));
+    assert_true(ct_csv_open(ctx, &w, "report_b.csv", CT_SUFFIX_CSV, column, COUNT(column)));
     ct_csv_text(&w, "rk4");
     ct_csv_number(&w, 0.5);
     ct_csv_text(&w, "");
@@ -127,7 +127,7 @@ static void a_failed_run_keeps_the_old_result_and_the_partial_rows(void **state)
     fputs("old\n", old);
     fclose(old);
     struct ct_csv w;
-    assert_true(ct_csv_open(ctx, &w, "report_c.csv", column, 1));
+    assert_true(ct_csv_open(ctx, &w, "report_c.csv", CT_SUFFIX_CSV, column, 1));
     assert_true(ct_csv_row(ctx, &w, (const double[]){0.5}));
     ct_csv_abandon(&w);
     ct_csv_abandon(&w);
@@ -143,7 +143,7 @@ static void a_folder_that_is_missing_is_reported(void **state)
     struct ct_ctx *ctx = *state;
     static const char *const column[] = {"t"};
     struct ct_csv w;
-    assert_false(ct_csv_open(ctx, &w, "no/such/folder/x.csv", column, 1));
+    assert_false(ct_csv_open(ctx, &w, "no/such/folder/x.csv", CT_SUFFIX_CSV, column, 1));
     assert_int_equal(ctx->nerror, 1);
     assert_int_equal(ctx->diagnostic[0].code, CT_E_FILE);
     assert_string_equal(ctx->diagnostic[0].text, "cannot write 'no/such/folder/x.csv.partial': "
@@ -158,8 +158,8 @@ static void a_full_device_is_reported(void **state)
     if (access("/dev/full", W_OK) != 0)
         skip();
     struct ct_csv w;
-    assert_true(
-        ct_csv_open(ctx, &w, "/dev/full", column, 1)); // written directly, not beside it
+    assert_true(ct_csv_open(ctx, &w, "/dev/full", CT_SUFFIX_CSV, column,
+                            1)); // written directly, not beside it
     assert_null(w.file.partial);
     assert_true(ct_csv_row(ctx, &w, (const double[]){0}));
     assert_false(ct_csv_close(ctx, &w));
@@ -174,7 +174,7 @@ static void a_full_device_is_noticed_while_writing(void **state)
     if (access("/dev/full", W_OK) != 0)
         skip();
     struct ct_csv w;
-    assert_true(ct_csv_open(ctx, &w, "/dev/full", column, 1));
+    assert_true(ct_csv_open(ctx, &w, "/dev/full", CT_SUFFIX_CSV, column, 1));
     long row = 0;
     while (row < 1000000 && ct_csv_row(ctx, &w, (const double[]){0.1}))
         row++;
@@ -189,7 +189,7 @@ static void a_name_taken_by_a_folder_is_reported(void **state)
     static const char *const column[] = {"t"};
     assert_int_equal(mkdir("report_folder", 0777), 0);
     struct ct_csv w;
-    assert_false(ct_csv_open(ctx, &w, "report_folder", column, 1));
+    assert_false(ct_csv_open(ctx, &w, "report_folder", CT_SUFFIX_CSV, column, 1));
     assert_string_equal(ctx->diagnostic[0].text,
                         "cannot write 'report_folder': Is a directory");
     rmdir("report_folder");
@@ -200,7 +200,7 @@ static void a_name_taken_while_writing_leaves_the_partial_file(void **state)
     struct ct_ctx *ctx = *state;
     static const char *const column[] = {"t"};
     struct ct_csv w;
-    assert_true(ct_csv_open(ctx, &w, "report_taken", column, 1));
+    assert_true(ct_csv_open(ctx, &w, "report_taken", CT_SUFFIX_CSV, column, 1));
     assert_int_equal(mkdir("report_taken", 0777), 0);
     assert_false(ct_csv_close(ctx, &w));
     assert_string_equal(ctx->diagnostic[0].text,
@@ -252,7 +252,7 @@ static void json_is_nested_and_indented(void **state)
                               "  \"seconds\": {},\n"
                               "  \"q\": [0.5, null, -1],\n"
                               "  \"drift\": null,\n"
-                              "  \"step\": 0.10000000000000001,\n"
+                              "  \"step\": 0.1,\n"
                               "  \"done\": true,\n"
                               "  \"reason\": null\n"
                               "}\n");

@@ -1,0 +1,96 @@
+// Ctrl-C and SIGTERM: the work is asked to end, and keeps what it has.
+//
+//     signal --> thread: a flag --> contexts ask for it at their steps --> files are closed, what is left is said
+//                  `-- patience is over (a long factorization, say) --> the process ends
+//
+// Both signals are blocked in all threads but this one, which waits for them: there is no handler. A signal that was
+// ignored from outside, as by nohup, stays so.
+#include "cli/cli.h"
+
+#include <errno.h>
+#include <pthread.h>
+#include <signal.h>
+#include <stdatomic.h>
+#include <string.h>
+#include <time.h>
+#include <unistd.h>
+
+static atomic_int signal_seen;
+static _Atomic(const char *) explanation;
+static sigset_t waited_for, outside;
+
+static void write_text(const char *text)
+{
+    if (write(STDERR_FILENO, text, strlen(text)) < 0)
+        return; // nobody listens
+}
+
+// The main thread ends the process when it is done.
+static void end_process(int number)
+{
+    const char *what_stays = atomic_load(&explanation);
+    if (isatty(STDERR_FILENO))
+        write_text("\r\033[K"); // the progress bar
+    write_text("cotree: error: interrupted");
+    write_text(what_stays ? what_stays
+                          : " before there were results; the same command begins anew");
+    write_text(" [E005]\n");
+    _exit(128 + number);
+}
+
+static void *wait_for_signal(void *unused)
+{
+    const struct timespec patience = {.tv_nsec = 800000000}; // of the second that is promised
+    int number = 0;
+    (void)unused;
+    if (sigwait(&waited_for, &number) != 0)
+        return NULL;
+    atomic_store(&signal_seen, number);
+    struct timespec left = patience;
+    while (nanosleep(&left, &left) != 0 && errno == EINTR)
+        ;
+    end_process(number);
+    return NULL;
+}
+
+static void want(int number)
+{
+    struct sigaction before;
+    if (sigaction(number, NULL, &before) == 0 && before.sa_handler != SIG_IGN)
+        sigaddset(&waited_for, number);
+}
+
+void cli_interrupt_begin(void)
+{
+    pthread_t thread;
+    sigemptyset(&waited_for);
+    want(SIGINT);
+    want(SIGTERM);
+    pthread_sigmask(SIG_BLOCK, &waited_for, &outside);
+    if (pthread_create(&thread, NULL, wait_for_signal, NULL) == 0)
+        pthread_detach(thread);
+    else
+        pthread_sigmask(SIG_SETMASK, &outside, NULL); // then they end the process at once
+}
+
+void cli_interrupt_end(void)
+{
+    pthread_sigmask(SIG_SETMASK, &outside, NULL);
+}
+
+bool cli_is_interrupted(void *unused)
+{
+    (void)unused;
+    return atomic_load_explicit(&signal_seen, memory_order_relaxed) != 0;
+}
+
+void cli_interrupt_explain(const char *what_stays)
+{
+    atomic_store(&explanation, what_stays);
+}
+
+int cli_interrupt_status(int status)
+{
+    const int number = atomic_load(&signal_seen);
+    return status && number ? 128 + number : status;
+}
