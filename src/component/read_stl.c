@@ -219,6 +219,8 @@ bool ct_stl_read(struct ct_ctx *ctx, struct ct_arena *a, const char *path, struc
     case CT_TEXT_TOO_BIG:
         return ct_error(ctx, used, CT_E_STL, "the STL file '%s' is larger than %zu MiB", path,
                         max_bytes >> 20);
+    case CT_TEXT_ENDLESS:
+        return ct_error(ctx, used, CT_E_STL, "the STL file '%s' is no regular file", path);
     case CT_TEXT_OK:
         break;
     }
