@@ -135,7 +135,7 @@ static bool read_kind(struct ct_reader *r, const struct ct_node *node, struct ct
 static bool find_kind(struct ct_reader *r, const struct ct_node *node, bool is_wanted,
                       struct ct_solid *s)
 {
-    const struct ct_pair *found = NULL;
+    const struct ct_simd2 *found = NULL;
     bool ok = true;
     for (size_t i = 0; i < node->n; i++)
         for (int k = 0; k < CT_NSOLID; k++) {
@@ -159,7 +159,7 @@ static bool find_kind(struct ct_reader *r, const struct ct_node *node, bool is_w
 static bool check_belongs(struct ct_reader *r, const struct ct_node *node,
                           const struct ct_solid *s, const char *key, enum ct_solid_kind kind)
 {
-    const struct ct_pair *p = ct_node_find(node, key);
+    const struct ct_simd2 *p = ct_node_find(node, key);
     if (!p || s->kind == kind)
         return true;
     return ct_error(r->ctx, p->mark, CT_E_CONFLICT, "'%s' is for a '%s', not for a '%s'", key,

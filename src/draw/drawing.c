@@ -76,14 +76,14 @@ static bool compile(void *task)
 {
     struct drawing *d = task;
     struct ct_sim *sim = d->sim;
-    struct ct_machine *m = ct_run_machine(sim->run);
+    struct ct_evaluator *m = ct_run_evaluator(sim->run);
     ct_scene_compile(sim->own.model, &d->scene, m, &d->program);
     d->value = CT_NEWN(sim->own.model, double, d->scene.nvalue + 1);
     if (d->options->trace) {
         d->nsample = sim->run_options.nsample;
         d->path = CT_NEWN(sim->own.model, double, 3 * d->npath * d->nsample + 1);
     }
-    ct_machine_set(m, 0, ct_run_state(sim->run));
+    ct_evaluator_set(m, 0, ct_run_state(sim->run));
     ct_program_run(&d->program, m->input);
     memcpy(d->value, d->program.out, d->scene.nvalue * sizeof *d->value);
     return true;
@@ -97,7 +97,7 @@ static bool at_row(void *user, double t, const double *value, size_t n)
     (void)t;
     (void)value;
     (void)n;
-    ct_program_run(&d->program, ct_run_machine(d->sim->run)->input);
+    ct_program_run(&d->program, ct_run_evaluator(d->sim->run)->input);
     if (d->options->trace)
         keep_places(d, d->program.out);
     else

@@ -114,7 +114,7 @@ struct axis {
 static struct axis choose_axis(double low, double high, int count, bool is_whole)
 {
     static const double mantissas[] = {1, 2, 5, 10};
-    const double rounding = 1e-12, most = fmax(fabs(low), fabs(high));
+    const double roundoff = 1e-12, most = fmax(fabs(low), fabs(high));
     const double constant = 1e-6; // less would need labels of more than six digits
     if (!(high - low > constant * most)) {
         const double margin = most > 0 ? 0.5 * most : 1;
@@ -124,12 +124,12 @@ static struct axis choose_axis(double low, double high, int count, bool is_whole
     struct axis a = {.low = low, .high = high};
     const double rough = (high - low) / count, power = pow(10, floor(log10(rough)));
     size_t i = 0;
-    while (i + 1 < COUNT(mantissas) && mantissas[i] * power < rough * (1 - rounding))
+    while (i + 1 < COUNT(mantissas) && mantissas[i] * power < rough * (1 - roundoff))
         i++;
     a.step = mantissas[i] * power;
     if (is_whole) {
-        a.low = floor(low / a.step + rounding) * a.step;
-        a.high = ceil(high / a.step - rounding) * a.step;
+        a.low = floor(low / a.step + roundoff) * a.step;
+        a.high = ceil(high / a.step - roundoff) * a.step;
     }
     const double largest = fmax(fabs(a.low), fabs(a.high));
     const int digits = (int)floor(log10(largest));
@@ -246,9 +246,9 @@ static const char grid[] = "stroke=\"#dcdcdc\" stroke-width=\"8\"";
 static void draw_ticks(struct work *w, const struct panel *panel, bool is_last)
 {
     const struct axis *x = &w->x, *y = &panel->y;
-    const double rounding = 1e-9; // of a step
-    for (double n = ceil(x->low / x->step - rounding);
-         n * x->step <= x->high + rounding * x->step; n++) {
+    const double roundoff = 1e-9; // of a step
+    for (double n = ceil(x->low / x->step - roundoff);
+         n * x->step <= x->high + roundoff * x->step; n++) {
         const double at = place(x, n * x->step);
         ct_canvas_line(&w->canvas, (struct ct_spot){at, y->from}, (struct ct_spot){at, y->to},
                        grid, 0);
@@ -256,8 +256,8 @@ static void draw_ticks(struct work *w, const struct panel *panel, bool is_last)
             ct_canvas_text(&w->canvas, (struct ct_spot){at, y->from + 17}, "middle", "",
                            tick_name(w->a, x, n * x->step));
     }
-    for (double n = ceil(y->low / y->step - rounding);
-         n * y->step <= y->high + rounding * y->step; n++) {
+    for (double n = ceil(y->low / y->step - roundoff);
+         n * y->step <= y->high + roundoff * y->step; n++) {
         const double at = place(y, n * y->step);
         ct_canvas_line(&w->canvas, (struct ct_spot){x->from, at}, (struct ct_spot){x->to, at},
                        grid, 0);

@@ -1,8 +1,8 @@
 // See scene.h.
 #include "draw/scene.h"
 
-#include "formulate/flexible.h"
-#include "formulate/kinematics.h"
+#include "formulate/beam/flexible_body.h"
+#include "formulate/kinematics/kinematics.h"
 
 #include <math.h>
 #include <stdint.h>
@@ -171,7 +171,7 @@ static void push_beam(struct ct_build *b, struct values *v, const struct ct_flex
         struct ct_station s;
         const double share = (double)i / (beam->npoint - 1);
         ct_flexible_station(b, f, ct_ex_scale(b->x, share, f->beam->length), f->kinematics, &s);
-        push3(v, ct_ex3_add(b->x, base, ct_node_turn(b, f->base, s.place)));
+        push3(v, ct_ex3_add(b->x, base, ct_node_turn(b, f->base, s.position)));
     }
 }
 
@@ -228,10 +228,10 @@ void ct_scene_create(struct ct_system *sys, struct ct_scene *s)
     s->nvalue = v.n;
 }
 
-void ct_scene_compile(struct ct_arena *a, const struct ct_scene *s, struct ct_machine *m,
+void ct_scene_compile(struct ct_arena *a, const struct ct_scene *s, struct ct_evaluator *m,
                       struct ct_program *p)
 {
-    ct_machine_compile(a, m, m->e->build->x, s->expression, s->nvalue, p);
+    ct_evaluator_add_program(a, m, m->e->build->x, s->expression, s->nvalue, p);
 }
 
 // ---- questions --------------------------------------------------------------------------------

@@ -14,7 +14,7 @@
 #ifndef CT_DRAW_SCENE_H
 #define CT_DRAW_SCENE_H
 
-#include "solve/machine.h"
+#include "solve/evaluator/evaluator.h"
 #include "system.h"
 
 /// How a joint is drawn, by what it lets move.
@@ -80,7 +80,7 @@ struct ct_scene {
 void ct_scene_create(struct ct_system *sys, struct ct_scene *s);
 
 /// The program of its values on a run's evaluator. a: lives as long as that. Raises the guard.
-void ct_scene_compile(struct ct_arena *a, const struct ct_scene *s, struct ct_machine *m,
+void ct_scene_compile(struct ct_arena *a, const struct ct_scene *s, struct ct_evaluator *m,
                       struct ct_program *p);
 
 /// Place (3) and rotation (3 x 3, column-major, its axes -> ground's) of a frame.

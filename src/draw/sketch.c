@@ -87,7 +87,7 @@ void ct_sketch_fit(struct ct_sketch *d, double *width, double *height)
     const struct reach r = find_reach(d);
     const double w = r.high[0] - r.low[0], h = r.high[1] - r.low[1];
     d->size = fmax(fmax(w, h), r.high[2] - r.low[2]);
-    const double nothing = 1e-9 * d->size; // rounding
+    const double nothing = 1e-9 * d->size; // round-off
     d->view.scale = fmin(w > nothing ? MOST_WIDTH / w : INFINITY,
                          h > nothing ? MOST_HEIGHT / h : INFINITY);
     if (!isfinite(d->view.scale))

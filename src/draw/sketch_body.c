@@ -267,7 +267,7 @@ void ct_sketch_draw_bodies(struct ct_sketch *d)
     struct by_depth *o = CT_NEWN(d->a, struct by_depth, n);
     for (size_t i = 1; i < n; i++) {
         o[i] = (struct by_depth){d->outline[i].depth, (int)i};
-        // those in a plane keep their order, whatever rounding says of their depths
+        // those in a plane keep their order, whatever round-off says of their depths
         const double apart = 1e-6 * (d->size > 0 ? d->size : 1);
         o[i].depth = round(o[i].depth / apart);
     }
