@@ -4,8 +4,8 @@
 //
 // d is the place of `to` seen from `from`, d' its rate there, phi the rotation vector (|phi| < pi), w the
 // relative angular velocity. Source: formulation 7.3 for the rotation vector.
-#include "formulate/dynamics.h"
-#include "formulate/row.h"
+#include "formulate/dynamics/dynamics.h"
+#include "formulate/kinematics/constraint_row.h"
 
 static const struct ct_key keys[] = {
     {"from", CT_VALUE_FRAME, CT_KEY_REQUIRED, NULL, 1, 1, "frame in whose axes it acts"},
@@ -57,7 +57,7 @@ static void apply(struct ct_build *b, const struct ct_instance *self)
 {
     struct ct_exs *x = b->x;
     const int tail = b->node_of_frame[self->from], head = b->node_of_frame[self->to];
-    const int from = b->place[tail].frame, to = b->place[head].frame;
+    const int from = b->placement[tail].frame, to = b->placement[head].frame;
     const ct_ex3 k = three(self, "stiffness", 0), kr = three(self, "stiffness", 3);
     const ct_ex3 c = three(self, "damping", 0), cr = three(self, "damping", 3);
     const ct_ex3 place = ct_path_position_seen(b, tail, head);

@@ -4,8 +4,8 @@
 //   through  force along d                         1 reaction [N]
 //
 // Row (|d|^2 - L^2)/(2 L), so that the multiplier is the force in the rod. Source: formulation 4.2.
-#include "formulate/dynamics.h"
-#include "formulate/row.h"
+#include "formulate/dynamics/dynamics.h"
+#include "formulate/kinematics/constraint_row.h"
 
 static const struct ct_key keys[] = {
     {"length", CT_VALUE_SCALAR, 0, "m", 1, 1, "length of the rod (the distance at the start)"},

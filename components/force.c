@@ -1,6 +1,6 @@
 // Applied force at the origin of a frame, in ground axes or in the turning axes of a frame.
-#include "formulate/dynamics.h"
-#include "formulate/row.h"
+#include "formulate/dynamics/dynamics.h"
+#include "formulate/kinematics/constraint_row.h"
 
 static const struct ct_key keys[] = {
     {"at", CT_VALUE_FRAME, CT_KEY_REQUIRED, NULL, 1, 1, "frame at whose origin the force acts"},

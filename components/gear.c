@@ -2,7 +2,7 @@
 //
 //   across   q_a = ratio q_b + const               1 constraint, the constant from the start
 //   through  effort lam on a, -ratio lam on b      1 reaction
-#include "formulate/row.h"
+#include "formulate/kinematics/constraint_row.h"
 
 static const struct ct_key keys[] = {
     {"joints", CT_VALUE_JOINTS, CT_KEY_REQUIRED, NULL, 2, 2,

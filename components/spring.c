@@ -3,8 +3,8 @@
 //   through  F = -n (k (|d| - length) + c |d|'),  n = d/|d|        [N]
 //
 // Source: formulation 1.4.
-#include "formulate/dynamics.h"
-#include "formulate/row.h"
+#include "formulate/dynamics/dynamics.h"
+#include "formulate/kinematics/constraint_row.h"
 
 #include <string.h>
 

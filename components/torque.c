@@ -1,6 +1,6 @@
 // Applied torque on a frame or body, in ground axes or in the turning axes of a frame.
-#include "formulate/dynamics.h"
-#include "formulate/row.h"
+#include "formulate/dynamics/dynamics.h"
+#include "formulate/kinematics/constraint_row.h"
 
 static const struct ct_key keys[] = {
     {"on", CT_VALUE_FRAME, CT_KEY_REQUIRED, NULL, 1, 1,
@@ -14,7 +14,7 @@ static void apply(struct ct_build *b, const struct ct_instance *self)
 {
     const int node = b->node_of_frame[self->to];
     struct ct_load l = {.self = self, .head = node, .torque = ct_load_vector(b, self)};
-    l.power = ct_ex3_dot(b->x, l.torque, ct_cluster_velocity(b, b->place[node].frame));
+    l.power = ct_ex3_dot(b->x, l.torque, ct_cluster_velocity(b, b->placement[node].frame));
     ct_load_add(b, &l);
 }
 

@@ -338,7 +338,7 @@ section_aims() {
         what=$(title "$case")
         set --
         [ "$case" != R05_N40 ] || { set -- --until 10; what="forty four-bars, 10 s"; }
-        # a 25th of the run; singular positions are to be passed with error control
+        # a 25th of the run; singular configurations are to be passed with error control
         case $case in
         R05*) step="" point="B0_x B0_y" ;;
         R01) step=0.0012 point="beta theta gamma phi delta omega epsilon" ;;

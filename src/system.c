@@ -4,7 +4,7 @@
 #include "graph/print.h"
 #include "io/yaml.h"
 #include "report/equations.h"
-#include "solve/settle.h"
+#include "solve/initial/initial_equilibrium.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -48,7 +48,7 @@ static bool read_tree_file(struct ct_ctx *ctx, const char *path, struct ct_formu
     static const char *const keys[] = {"translation", "rotation"};
     bool ok = true;
     for (size_t i = 0; i < root->n; i++) {
-        const struct ct_pair *p = &root->pair[i];
+        const struct ct_simd2 *p = &root->pair[i];
         if (strcmp(p->key, keys[0]) == 0) {
             ok &= read_branches(ctx, p->value, &f->trans, &f->trans_mark, &f->ntrans);
         } else if (strcmp(p->key, keys[1]) == 0) {
@@ -93,7 +93,7 @@ static bool choose_tree(struct ct_ctx *ctx, const char *tree, struct ct_formulat
 
 static bool read_model(struct ct_system *s, const char *path, const struct ct_system_options *o)
 {
-    const double start = ct_clock();
+    const double start = ct_input_sampling();
     struct ct_set *set = CT_NEWN(s->own.model, struct ct_set, o->nset + 1);
     for (size_t i = 0; i < o->nset; i++)
         set[i].text = o->set[i];
@@ -101,17 +101,17 @@ static bool read_model(struct ct_system *s, const char *path, const struct ct_sy
         = ct_model_read(&s->own, path, set, o->nset, &s->model)
        && ct_model_change_beams(&s->own, &s->model, o->beam_elements, o->beam_formulation);
     ct_own_next_stage(&s->own);
-    s->read = ct_clock() - start;
+    s->read = ct_input_sampling() - start;
     return ok;
 }
 
 static bool formulate(struct ct_system *s, const struct ct_formulate_options *f,
                       struct ct_equations *out, struct ct_tree_report *report)
 {
-    const double start = ct_clock();
+    const double start = ct_input_sampling();
     const bool ok = ct_formulate(&s->own, s->own.model, &s->model, f, out, report);
     ct_own_next_stage(&s->own);
-    s->generate += ct_clock() - start;
+    s->generate += ct_input_sampling() - start;
     return ok;
 }
 
@@ -119,15 +119,16 @@ static bool formulate(struct ct_system *s, const struct ct_formulate_options *f,
 static bool formulate_settled(struct ct_system *s, const struct ct_system_options *o)
 {
     struct ct_tree_report unused;
-    struct ct_formulate_options f = {.tree = CT_TREE_JOINTS,
-                                     .first = ct_settle_first(s->own.model, &s->model),
-                                     .keep_all = o->keep_all,
-                                     .held = true,
-                                     .gaps = true,
-                                     .measure_all = true,
-                                     .measured_for = &s->equations,
-                                     .deformed = true,
-                                     .like = &s->equations};
+    struct ct_formulate_options f
+        = {.tree = CT_TREE_JOINTS,
+           .first = ct_initial_equilibrium_fixed_joints(s->own.model, &s->model),
+           .keep_all = o->keep_all,
+           .held = true,
+           .gaps = true,
+           .measure_all = true,
+           .measured_for = &s->equations,
+           .deformed = true,
+           .like = &s->equations};
     if (!formulate(s, &f, &s->held_equations, &unused))
         return false;
     f.held = f.gaps = false;
@@ -160,7 +161,8 @@ static bool build(struct ct_system *s, const char *path, const struct ct_system_
         return false;
     return formulate(s, &motion, &s->equations, &s->tree) // graph, trees, equations of motion
         && formulate(s, &start, &s->start_equations, &unused) // equations for assembling
-        && (!ct_settle_wanted(&s->model) || formulate_settled(s, o)); // and for static shapes
+        && (!ct_initial_equilibrium_is_wanted(&s->model)
+            || formulate_settled(s, o)); // and for static shapes
 }
 
 struct load {
@@ -195,17 +197,19 @@ void ct_system_destroy(struct ct_system *sys)
     free(sys);
 }
 
-bool ct_system_assemble(struct ct_ctx *own, struct ct_system *sys, struct ct_start *start)
+bool ct_system_assemble(struct ct_ctx *own, struct ct_system *sys,
+                        struct ct_initial_state *start)
 {
     if (!sys->held_equations.build) {
-        const bool ok = ct_assemble(own, own->model, &sys->model, &sys->start_equations, start);
+        const bool ok
+            = ct_assembly_solve(own, own->model, &sys->model, &sys->start_equations, start);
         if (!ok)
-            ct_note_odd_axis(own, own->model, &sys->model);
+            ct_note_misaligned_joint(own, own->model, &sys->model);
         return ok;
     }
-    return ct_assemble_open(own, own->model, &sys->model, &sys->start_equations, start)
-        && ct_settle(own, own->model, &sys->model, &sys->held_equations, &sys->moving_equations,
-                     start)
+    return ct_assembly_solve_open(own, own->model, &sys->model, &sys->start_equations, start)
+        && ct_initial_equilibrium_solve(own, own->model, &sys->model, &sys->held_equations,
+                                        &sys->moving_equations, start)
         && ct_start_meets_demands(own, start);
 }
 

@@ -4,7 +4,7 @@
 
 #include "base/entry.h"
 #include "formulate/formulate.h"
-#include "solve/assemble.h"
+#include "solve/initial/assembly.h"
 
 #include <cotree/cotree.h>
 
@@ -21,7 +21,8 @@ struct ct_system {
     double read, generate; // seconds
 };
 
-/// The assembled start, with beams settled that ask for it. Errors: those of ct_assemble and ct_settle.
-bool ct_system_assemble(struct ct_ctx *own, struct ct_system *sys, struct ct_start *start);
+/// The assembled start, with beams settled that ask for it. Errors: those of ct_assembly_solve and ct_initial_equilibrium_solve.
+bool ct_system_assemble(struct ct_ctx *own, struct ct_system *sys,
+                        struct ct_initial_state *start);
 
 #endif

@@ -161,7 +161,7 @@ struct ct_sim_options {
     long samples;    /* number of samples, both ends included */
     bool verify; /* after the run another one, and from both the global error of each output */
     const char *
-        backend; /* what evaluates the equations: "auto", "native" or "tape"; same to rounding */
+        backend; /* what evaluates the equations: "auto", "native" or "tape"; same to round-off */
     const char *solver; /* what finds the accelerations of closed loops: "auto", "unrolled",
                            "one-system", "sparse" or "dense"; not of studies */
 };

@@ -59,15 +59,17 @@ static bool compare_row(void *user, double t, const double *value, size_t n)
 // One setting, several times in place while the time lasts.
 static enum ct_ending measure(struct ct_accuracy *a, const struct ct_setting *s, double end)
 {
-    struct ct_precision_point p;
+    struct ct_work_precision_point p;
     double seconds[MOST_REPEATS], sum;
     int n = 1;
-    const enum ct_ending ending = ct_accuracy_start(a, s, end - ct_clock(), compare_row, &p);
+    const enum ct_ending ending
+        = ct_accuracy_start(a, s, end - ct_input_sampling(), compare_row, &p);
     if (ending == CT_RUN_DONE)
         p.error = a->worst;
     seconds[0] = sum = p.seconds;
     while (ending == CT_RUN_DONE && n < (sum < short_times ? MOST_REPEATS : REPEATS)
-           && ct_clock() + p.seconds < end && ct_accuracy_repeat(a, compare_row, &seconds[n]))
+           && ct_input_sampling() + p.seconds < end
+           && ct_accuracy_repeat(a, compare_row, &seconds[n]))
         sum += seconds[n++];
     ct_accuracy_end_run(a);
     if (ending == CT_RUN_REFUSED)
@@ -93,7 +95,7 @@ static bool shows_mesh(const struct ct_accuracy *a, size_t start)
     enum { SETTINGS = 3 };
     if (!a->variant || a->npoint < start + SETTINGS)
         return false;
-    const struct ct_precision_point *last = &a->point[a->npoint - 1];
+    const struct ct_work_precision_point *last = &a->point[a->npoint - 1];
     bool is_same = true;
     for (int i = 1; i < SETTINGS; i++)
         is_same = is_same && fabs(last[-i].error - last->error) <= same_error * last->error;
@@ -159,8 +161,8 @@ static bool climb_steps(struct ct_accuracy *a, const char *name, double end)
 
 static bool climb(struct ct_accuracy *a, const char *name)
 {
-    const double end
-        = ct_clock() + fmax(share_of_method, share_of_reference * a->reference_seconds);
+    const double end = ct_input_sampling()
+                     + fmax(share_of_method, share_of_reference * a->reference_seconds);
     const bool is_asked = a->o->run.step > 0 && !(a->o->run.tolerance > 0);
     const bool is_fixed = is_asked || strcmp(name, "rk4") == 0;
     return (is_fixed ? climb_steps : climb_tolerances)(a, name, end)
@@ -347,7 +349,7 @@ struct output {
 static bool write_table(void *task)
 {
     const struct output *o = task;
-    return ct_precision_write(o->ctx, o->path, o->a->point, o->a->npoint);
+    return ct_work_precision_write(o->ctx, o->path, o->a->point, o->a->npoint);
 }
 
 bool ct_accuracy_write(struct ct_ctx *ctx, const struct ct_accuracy *a, const char *path)
@@ -360,11 +362,11 @@ static bool draw_plot(void *task)
 {
     const struct output *o = task;
     const struct ct_accuracy *a = o->a;
-    const struct ct_precision_plot plot = {.title = a->system->model.name,
-                                           .wanted = a->wanted,
-                                           .uncertainty = a->uncertainty,
-                                           .best = a->best};
-    return ct_precision_draw(o->ctx, o->path, a->point, a->npoint, &plot);
+    const struct ct_work_precision_plot plot = {.title = a->system->model.name,
+                                                .wanted = a->wanted,
+                                                .uncertainty = a->uncertainty,
+                                                .best = a->best};
+    return ct_work_precision_draw(o->ctx, o->path, a->point, a->npoint, &plot);
 }
 
 bool ct_accuracy_draw(struct ct_ctx *ctx, const struct ct_accuracy *a, const char *path)
@@ -373,11 +375,11 @@ bool ct_accuracy_draw(struct ct_ctx *ctx, const struct ct_accuracy *a, const cha
     return a && ct_enter(ctx, draw_plot, &o);
 }
 
-static void print_setting(const struct ct_precision_point *p, FILE *out)
+static void print_setting(const struct ct_work_precision_point *p, FILE *out)
 {
     char text[CT_NUMBER_SIZE];
     char name[80];
-    ct_precision_name(name, sizeof name, p);
+    ct_work_precision_name(name, sizeof name, p);
     fprintf(out, "method %s, %s %s: error %.2g in %.3g s\n", name,
             p->has_step ? "step" : "tolerance", ct_number_format(text, p->tolerance), p->error,
             p->seconds);
@@ -392,13 +394,13 @@ static void print_left_out(const struct ct_accuracy *a, FILE *out)
             separator = ", ";
         }
     if (*separator == ',')
-        fputs(": not in the reference, or zero but for rounding\n", out);
+        fputs(": not in the reference, or zero but for round-off\n", out);
 }
 
 // The cheapest of those with the least error; NULL if all failed.
-static const struct ct_precision_point *find_nearest(const struct ct_accuracy *a)
+static const struct ct_work_precision_point *find_nearest(const struct ct_accuracy *a)
 {
-    const struct ct_precision_point *nearest = NULL;
+    const struct ct_work_precision_point *nearest = NULL;
     double least = INFINITY;
     for (size_t i = 0; i < a->npoint; i++)
         least = fmin(least, a->point[i].error);
@@ -412,7 +414,7 @@ static const struct ct_precision_point *find_nearest(const struct ct_accuracy *a
 void ct_accuracy_print_summary(const struct ct_accuracy *a, FILE *out)
 {
     char wanted[CT_NUMBER_SIZE];
-    const struct ct_precision_point *nearest = find_nearest(a);
+    const struct ct_work_precision_point *nearest = find_nearest(a);
     fprintf(out, "reference     %s", a->source);
     if (!isnan(a->uncertainty))
         fprintf(out, ": they differ by %.2g", a->uncertainty);

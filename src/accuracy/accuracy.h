@@ -6,7 +6,7 @@
 #ifndef CT_ACCURACY_H
 #define CT_ACCURACY_H
 
-#include "report/precision.h"
+#include "report/work_precision.h"
 #include "report/progress.h"
 #include "sim/sim.h"
 
@@ -31,9 +31,9 @@ struct ct_accuracy {
     const char *source;            // of the reference
     double uncertainty;            // NaN: not known
     double reference_seconds;
-    struct ct_precision_point *point;
+    struct ct_work_precision_point *point;
     size_t npoint, point_cap;
-    const struct ct_precision_point *best;
+    const struct ct_work_precision_point *best;
 };
 
 enum ct_ending {
@@ -60,7 +60,7 @@ void ct_accuracy_end_run(struct ct_accuracy *a);
 enum ct_ending ct_accuracy_start(struct ct_accuracy *a, const struct ct_setting *s,
                                  double limit,
                                  bool (*row)(void *, double, const double *, size_t),
-                                 struct ct_precision_point *p);
+                                 struct ct_work_precision_point *p);
 
 // The same run again in place; *seconds (out). False if it fails.
 bool ct_accuracy_repeat(struct ct_accuracy *a,
@@ -69,9 +69,9 @@ bool ct_accuracy_repeat(struct ct_accuracy *a,
 // The first with nothing left of it.
 enum ct_ending ct_accuracy_run(struct ct_accuracy *a, const struct ct_setting *s, double limit,
                                bool (*row)(void *, double, const double *, size_t),
-                               struct ct_precision_point *p);
+                               struct ct_work_precision_point *p);
 
-// Largest |y - x| / max |x| over the columns that are more than rounding; x, y (nsample, nresult); scale (nresult, out):
+// Largest |y - x| / max |x| over the columns that are more than round-off; x, y (nsample, nresult); scale (nresult, out):
 // max |x|, 0 for those that are not.
 double ct_accuracy_compare(const struct ct_accuracy *a, const double *x, const double *y,
                            double *scale);

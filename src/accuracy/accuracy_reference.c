@@ -5,7 +5,7 @@
 #include "expr/unit.h"
 #include "io/sheet.h"
 #include "io/text.h"
-#include "solve/quad.h"
+#include "solve/run/quad_run.h"
 
 #include <errno.h>
 #include <float.h>
@@ -38,7 +38,7 @@ static bool keep_row(void *user, double t, const double *value, size_t n)
 
 static bool run_candidate(struct ct_accuracy *a, struct candidate *c)
 {
-    struct ct_precision_point p;
+    struct ct_work_precision_point p;
     const struct ct_setting s = {.method = c->method, .tolerance = 1, .rtol = c->rtol};
     a->store = CT_NEWN(a->own.model, double, a->nsample * a->nresult + 1);
     const enum ct_ending ending = ct_accuracy_run(a, &s, reference_limit, keep_row, &p);
@@ -83,7 +83,7 @@ static void drop_small(struct ct_accuracy *a)
             a->scale[i] = 0;
 }
 
-// No two came to their end: one alone must do. Its digits are not known, so that what is small counts as rounding.
+// No two came to their end: one alone must do. Its digits are not known, so that what is small counts as round-off.
 static void choose_single(struct ct_accuracy *a, const struct candidate *c, int n)
 {
     for (int i = 0; i < n && !a->reference; i++)
@@ -107,7 +107,7 @@ static bool has_time(const struct candidate *c)
 static bool is_in_time(void *user)
 {
     const double *end = user;
-    return ct_clock() < *end;
+    return ct_input_sampling() < *end;
 }
 
 // Two runs with different steps; the first is the reference if they agree better than runs in double precision do, and
@@ -122,11 +122,11 @@ static void run_quad(struct ct_accuracy *a)
     o.method = "dop853";
     a->said.ndiagnostic = a->said.nerror = 0;
     a->sim = ct_sim_create(&a->said, a->system, &o);
-    bool ok = a->sim && ct_quad_can_run(ct_run_machine(a->sim->run));
-    double end = ct_clock() + quad_limit;
+    bool ok = a->sim && ct_quad_can_run(ct_run_evaluator(a->sim->run));
+    double end = ct_input_sampling() + quad_limit;
     for (int i = 0; i < 2 && ok; i++) {
         row[i] = CT_NEWN(a->own.model, double, a->nsample * a->nresult + 1);
-        ok = ct_quad_run(a->own.model, ct_run_machine(a->sim->run), ct_run_state(a->sim->run),
+        ok = ct_quad_run(a->own.model, ct_run_evaluator(a->sim->run), ct_run_state(a->sim->run),
                          a->duration, a->nsample, tolerance[i], is_in_time, &end, row[i]);
     }
     ct_accuracy_end_run(a);
@@ -305,7 +305,7 @@ bool ct_accuracy_read_reference(struct ct_accuracy *a, const char *path)
     if (!fill_reference(a, &sheet, time, of, largest))
         return false;
     ct_accuracy_compare(a, a->reference, a->reference, a->scale);
-    for (size_t i = 0; i < a->nresult; i++) // columns that are rounding stay left out
+    for (size_t i = 0; i < a->nresult; i++) // columns that are round-off stay left out
         a->scale[i] = a->scale[i] > 0 ? fmax(a->scale[i], largest[i]) : 0;
     a->uncertainty = NAN;
     return true;

@@ -36,19 +36,20 @@ bool ct_accuracy_start_run(struct ct_accuracy *a, const struct ct_setting *s)
 enum ct_ending ct_accuracy_start(struct ct_accuracy *a, const struct ct_setting *s,
                                  double limit,
                                  bool (*row)(void *, double, const double *, size_t),
-                                 struct ct_precision_point *p)
+                                 struct ct_work_precision_point *p)
 {
-    *p = (struct ct_precision_point){.method = s->method,
-                                     .elements = a->variant ? a->variant->elements : 0,
-                                     .formulation = a->variant ? a->variant->formulation : NULL,
-                                     .tolerance = s->step > 0 ? s->step : s->tolerance,
-                                     .has_step = s->step > 0,
-                                     .error = NAN};
+    *p = (struct ct_work_precision_point){.method = s->method,
+                                          .elements = a->variant ? a->variant->elements : 0,
+                                          .formulation
+                                          = a->variant ? a->variant->formulation : NULL,
+                                          .tolerance = s->step > 0 ? s->step : s->tolerance,
+                                          .has_step = s->step > 0,
+                                          .error = NAN};
     if (!ct_accuracy_start_run(a, s))
         return ct_ctx_fault(&a->said) == CT_FAULT_OPTION ? CT_RUN_REFUSED : CT_RUN_FAILED;
     a->nrow = 0;
     a->worst = 0;
-    a->sim->deadline = ct_clock() + limit;
+    a->sim->deadline = ct_input_sampling() + limit;
     const struct ct_sim_results results = {.row = row, .user = a};
     const bool ok = ct_sim_run(&a->said, a->sim, &results);
     ct_guard_poll(); // a run that was interrupted says nothing about its method
@@ -74,7 +75,7 @@ bool ct_accuracy_repeat(struct ct_accuracy *a,
 
 enum ct_ending ct_accuracy_run(struct ct_accuracy *a, const struct ct_setting *s, double limit,
                                bool (*row)(void *, double, const double *, size_t),
-                               struct ct_precision_point *p)
+                               struct ct_work_precision_point *p)
 {
     const enum ct_ending ending = ct_accuracy_start(a, s, limit, row, p);
     ct_accuracy_end_run(a);

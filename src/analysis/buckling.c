@@ -13,12 +13,12 @@ static const double refined = 1e-13;   // of a factor
 static const double small_load = 1e-2; // of the first factor: the second load level
 // [rad] An axis that the square of the slope shortens is half as long as it was; what comes beyond is none of a beam's.
 static const double steepest = 1;
-static const double straight = 1e-8; // [rad] rounding of an axis that does not bend
+static const double straight = 1e-8; // [rad] round-off of an axis that does not bend
 // Next to a fold the eigenvalue falls with the root of what is left of the path: of its value a step before. Where it is larger
 // at the end, Newton's method has lost the path.
 static const double folded = 1e-2;
 static const double behind
-    = 1 + 1. / 16; // of the last estimate: its rounding, and a little more
+    = 1 + 1. / 16; // of the last estimate: its round-off, and a little more
 // Steps along the path: the first against the first estimate, the shortest against the place.
 static const double first_step = 1. / 16, shortest_step = 1. / 64;
 enum {
@@ -52,14 +52,14 @@ struct place {
 
 static struct place place_create(struct search *s)
 {
-    const struct ct_machine *m = s->l->m;
+    const struct ct_evaluator *m = s->l->m;
     return (struct place){.y = CT_NEWN(s->a, double, m->nq + m->nu + 1),
                           .memory = CT_NEWN(s->a, double, m->e->nmemory + 1)};
 }
 
 static void keep(const struct ct_linear *l, size_t at, struct place *p)
 {
-    const struct ct_machine *m = l->m;
+    const struct ct_evaluator *m = l->m;
     p->factor = m->input[at];
     memcpy(p->y, l->y, (m->nq + m->nu + 1) * sizeof *p->y);
     memcpy(p->memory, m->input + m->at_memory, m->e->nmemory * sizeof *p->memory);
@@ -67,7 +67,7 @@ static void keep(const struct ct_linear *l, size_t at, struct place *p)
 
 static void copy_place(const struct search *s, struct place *to, const struct place *from)
 {
-    const struct ct_machine *m = s->l->m;
+    const struct ct_evaluator *m = s->l->m;
     to->factor = from->factor;
     memcpy(to->y, from->y, (m->nq + m->nu + 1) * sizeof *to->y);
     memcpy(to->memory, from->memory, m->e->nmemory * sizeof *to->memory);
@@ -76,12 +76,12 @@ static void copy_place(const struct search *s, struct place *to, const struct pl
 static void set_factor(const struct ct_linear *l, size_t at, double factor)
 {
     l->m->input[at] = factor;
-    ct_machine_prepare(l->m);
+    ct_evaluator_prepare(l->m);
 }
 
 static void go_back(struct ct_linear *l, size_t at, const struct place *p)
 {
-    const struct ct_machine *m = l->m;
+    const struct ct_evaluator *m = l->m;
     memcpy(l->y, p->y, (m->nq + m->nu + 1) * sizeof *p->y);
     memcpy(m->input + m->at_memory, p->memory, m->e->nmemory * sizeof *p->memory);
     set_factor(l, at, p->factor);
@@ -97,8 +97,7 @@ bool ct_buckling_load(struct ct_linear *l, size_t at, double factor)
     for (int i = 0; i < MOST_HALVINGS && tries < MOST_TRIES && last.factor != factor; tries++) {
         const double here = last.factor, next = here + (factor - here) * ldexp(1, -i);
         set_factor(l, at, next);
-        if (l->M ? ct_equilibrium_follow(l, &result)
-                 : ct_equilibrium_follow_large(l, &result)) {
+        if (l->M ? ct_equilibrium_rates(l, &result) : ct_equilibrium_rates_sparse(l, &result)) {
             keep(l, at, &last);
             i = i > 0 ? i - 1 : 0;
         } else {
@@ -311,14 +310,14 @@ static int count_negative(const struct search *s)
 // By how much a section of a beam turns against its frame at most [rad].
 static double steepness(struct search *s)
 {
-    struct ct_machine *m = s->l->m;
+    struct ct_evaluator *m = s->l->m;
     double largest = 0;
-    if (!m->e->nbend)
+    if (!m->e->nbent_beam)
         return 0;
     ct_program_run(&m->validity, m->input);
     const double *square = m->validity.out + m->e->nvalidity;
-    for (size_t i = 0; i < m->e->nbend; i++)
-        for (size_t k = 0; k < m->e->bend[i].n; k++)
+    for (size_t i = 0; i < m->e->nbent_beam; i++)
+        for (size_t k = 0; k < m->e->bent_beam[i].n; k++)
             largest = fmax(largest, sqrt(*square++));
     return largest;
 }

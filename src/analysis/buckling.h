@@ -18,7 +18,7 @@ struct ct_buckling_list {
 };
 
 /**
- * The lowest positive factors of the load whose factor is input `at` of the machine.
+ * The lowest positive factors of the load whose factor is input `at` of the evaluator.
  *
  * K_1 is the slope of the stiffness along the path of equilibria at factor 0. Each estimate is refined on the path, by
  * the eigenvalue of the stiffness that changes its sign.
@@ -33,11 +33,11 @@ struct ct_buckling_list {
 bool ct_buckling_find(struct ct_linear *l, size_t at, size_t count,
                       struct ct_buckling_list *list);
 
-/// The same of systems too large for full matrices, l as ct_equilibrium_find_large leaves it. *applies is false, and
+/// The same of systems too large for full matrices, l as ct_equilibrium_find_sparse leaves it. *applies is false, and
 /// nothing is said, where sparse factors do not serve: something can move freely, the equilibrium is not stable
 /// without the load, the load has no potential, or no factor is found.
-bool ct_buckling_find_large(struct ct_linear *l, size_t at, size_t count,
-                            struct ct_buckling_list *list, bool *applies);
+bool ct_buckling_find_sparse(struct ct_linear *l, size_t at, size_t count,
+                             struct ct_buckling_list *list, bool *applies);
 
 /// Take l along the path from one factor to another, in as many steps as it needs. False where the path ends.
 bool ct_buckling_load(struct ct_linear *l, size_t at, double factor);

@@ -10,7 +10,7 @@
 static const double longest_turn
     = 0.2; // [rad] in one step, against jumping to another equilibrium
 static const double first_length = 0.2; // [m] at first; doubled after steps that went well
-static const double arrived = 1e-13;    // of a step against the coordinates: their rounding
+static const double arrived = 1e-13;    // of a step against the coordinates: their round-off
 static const double nearly
     = 1e-8; // from here on a step that is not shorter than half the last ends the search
 static const double flat = 1e-11;    // of the stiffest direction: no stiffness
@@ -79,7 +79,7 @@ static void find_directions(struct search *s)
 {
     const struct ct_linear *l = s->l;
     const int f = l->nfree;
-    const double still = 1e-12; // of a unit vector, squared: rounding
+    const double still = 1e-12; // of a unit vector, squared: round-off
     memset(s->S, 0, (size_t)f * (size_t)f * sizeof *s->S);
     s->n = 0;
     if (!s->held) {
@@ -150,7 +150,7 @@ static void find_forces(struct search *s)
     }
 }
 
-// Is the stiffness positive beyond its rounding? Its pivots are compared each with its own diagonal, so that a structure of
+// Is the stiffness positive beyond its round-off? Its pivots are compared each with its own diagonal, so that a structure of
 // many elements, whose soft directions are far below its stiff ones, is not taken for a mechanism.
 static bool is_positive(struct search *s)
 {
@@ -230,10 +230,10 @@ static bool go(struct search *s)
     for (size_t k = 0; k < nu; k++)
         s->dq[k] *= part;
     const bool is_fine
-        = s->is_newton && ct_vector_largest(s->dq, nu) < nearly; // slopes are rounding here
+        = s->is_newton && ct_vector_largest(s->dq, nu) < nearly; // slopes are round-off here
     keep(s, false);
     for (int i = 0; i < MOST_HALVINGS; i++) {
-        ct_machine_retract(l->m, l->y, s->dq);
+        ct_evaluator_retract(l->m, l->y, s->dq);
         if (ct_linear_close(l) && ct_linear_rest(l)
             && (is_fine || slope(s) <= turned_back * fabs(before) * ldexp(1, -i) * part)) {
             if (i == 0 && part < 1)
@@ -279,7 +279,7 @@ static double place_size(const struct ct_linear *l)
     return 1 + ct_vector_largest(l->y, l->m->nq);
 }
 
-// Nothing but rounding is left. Where the stiffness vanishes, steps would follow it off the path.
+// Nothing but round-off is left. Where the stiffness vanishes, steps would follow it off the path.
 static bool is_balanced(const struct search *s)
 {
     for (int k = 0; k < s->n; k++)
@@ -288,7 +288,7 @@ static bool is_balanced(const struct search *s)
     return true;
 }
 
-bool ct_equilibrium_follow(struct ct_linear *l, struct ct_equilibrium_result *out)
+bool ct_equilibrium_rates(struct ct_linear *l, struct ct_equilibrium_result *out)
 {
     enum { MOST = 25 };
     struct search s = search_create(l, NULL);
@@ -320,7 +320,7 @@ bool ct_equilibrium_follow(struct ct_linear *l, struct ct_equilibrium_result *ou
         if (!isfinite(size) || out->iterations == MOST || allowed(&s) < 1 || size > last / 2)
             return false;
         last = size;
-        ct_machine_retract(l->m, l->y, s.dq);
+        ct_evaluator_retract(l->m, l->y, s.dq);
         if (!ct_linear_close(l) || !ct_linear_rest(l) || l->ctx->nerror != before)
             return false;
     }
@@ -357,14 +357,14 @@ static bool descend(struct search *s, struct ct_equilibrium_result *out)
 // Do forces that have no potential act here, as those that turn with a body?
 static bool has_no_potential(const struct ct_linear *l)
 {
-    const double rounding = 1e-9; // of the largest stiffness
+    const double roundoff = 1e-9; // of the largest stiffness
     double odd = 0, largest = 0;
     for (int j = 0; j < l->nfree; j++)
         for (int i = 0; i < l->nfree; i++) {
             odd = fmax(odd, fabs(l->Kr[i + l->nfree * j] - l->Kr[j + l->nfree * i]));
             largest = fmax(largest, fabs(l->Kr[i + l->nfree * j]));
         }
-    return odd > rounding * largest;
+    return odd > roundoff * largest;
 }
 
 bool ct_equilibrium_find(struct ct_linear *l, const bool *held,
@@ -377,7 +377,7 @@ bool ct_equilibrium_find(struct ct_linear *l, const bool *held,
     if (!held) {
         if (!ct_linear_rest(l))
             return false;
-        if (has_no_potential(l) && ct_equilibrium_follow(l, out))
+        if (has_no_potential(l) && ct_equilibrium_rates(l, out))
             return true;
         keep(&start, true);
     }

@@ -2,7 +2,7 @@
 #ifndef CT_ANALYSIS_EQUILIBRIUM_H
 #define CT_ANALYSIS_EQUILIBRIUM_H
 
-#include "analysis/linear.h"
+#include "analysis/linearization.h"
 
 struct ct_equilibrium_result {
     int iterations;
@@ -29,15 +29,15 @@ bool ct_equilibrium_find(struct ct_linear *l, const bool *held,
 /// The same of systems too large for full matrices, with sparse factors. The equations have the rows of their residual.
 /// Leaves a and lam in l, no matrices. *applies is false, and no equilibrium is sought, where something moves, or
 /// factors are not available.
-bool ct_equilibrium_find_large(struct ct_linear *l, struct ct_equilibrium_result *out,
-                               bool *applies);
+bool ct_equilibrium_find_sparse(struct ct_linear *l, struct ct_equilibrium_result *out,
+                                bool *applies);
 
 /// Say that none is found, and that the coordinate of speed k goes on to move: CT_E_EQUILIBRIUM.
 bool ct_equilibrium_missing(const struct ct_linear *l, int k);
 
 /// Newton alone, from a place next to an equilibrium, stable or not: along a path of loads. No diagnostic.
-bool ct_equilibrium_follow(struct ct_linear *l, struct ct_equilibrium_result *out);
+bool ct_equilibrium_rates(struct ct_linear *l, struct ct_equilibrium_result *out);
 /// The same of large systems: no matrices are left in l.
-bool ct_equilibrium_follow_large(struct ct_linear *l, struct ct_equilibrium_result *out);
+bool ct_equilibrium_rates_sparse(struct ct_linear *l, struct ct_equilibrium_result *out);
 
 #endif

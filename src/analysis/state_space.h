@@ -1,8 +1,8 @@
-// Linearised equations as x' = A x + B f, places and speeds as states.  (formulation 9.4)
+// Linearised equations as x' = A x + B f, positions and speeds as states.  (formulation 9.4)
 #ifndef CT_ANALYSIS_STATE_SPACE_H
 #define CT_ANALYSIS_STATE_SPACE_H
 
-#include "analysis/linear.h"
+#include "analysis/linearization.h"
 
 /// x = (places, speeds): coordinates y of ct_linear that move mass, then those without mass that dampers hold, then the
 /// speeds of the first. g (nfree) are forces along the independent speeds, Z' B f. Column-major, no gaps.

@@ -1,6 +1,6 @@
 // See decimal.h.
 //
-//     v = c 2^q            rounding interval: all that reads back as v
+//     v = c 2^q            round-off interval: all that reads back as v
 //     k = floor(log10(2^q))  so that 10^k <= 2^q: the interval holds one or more multiples of 10^k,
 //                          and at most one multiple of 10^(k+1)
 //

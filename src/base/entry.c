@@ -189,7 +189,7 @@ const char *ct_suggest_or_list(struct ct_arena *a, const char *name, const char 
     return text;
 }
 
-double ct_clock(void)
+double ct_input_sampling(void)
 {
     struct timespec t;
     clock_gettime(CLOCK_MONOTONIC, &t);

@@ -3,7 +3,7 @@
 #define CT_CODEGEN_EMITTER_H
 
 #include "codegen/encode.h"
-#include "codegen/roll.h"
+#include "codegen/reroll.h"
 #include "codegen/x86.h"
 
 enum { CT_NREGISTER = 16, CT_ROWS_TOGETHER = 4 };
@@ -25,7 +25,7 @@ struct ct_stream {
 
 struct ct_home {
     unsigned area; // enum ct_area, or CT_NAREA + a stream
-    uint32_t place;
+    uint32_t slot;
 };
 
 struct ct_emitter {
@@ -33,8 +33,8 @@ struct ct_emitter {
     struct ct_arena *arena;
     const struct ct_listing *l;
     const struct ct_x86_calls *calls;
-    int base[CT_NAREA + CT_ROLL_STREAMS]; // register that points at each area
-    struct ct_roll roll;
+    int base[CT_NAREA + CT_REROLL_STREAMS]; // register that points at each area
+    struct ct_reroll reroll;
     const bool *is_kept; // by value, in loops: it is stored at its home at once
     uint32_t *order;     // of the body's instructions
     size_t norder;

@@ -85,7 +85,7 @@ static void put_layout(struct text *t, const struct ct_export *x)
     put_constant(t, "PARAMETER", 1, "the model's parameters");
     put_constant(t, "Q", x->at_q, "coordinates");
     put_constant(t, "U", x->at_u, "speeds");
-    put_constant(t, "MODE", x->at_mode, "sides of comparisons, 0 or 1");
+    put_constant(t, "MODE", x->at_switch, "sides of comparisons, 0 or 1");
     put_constant(t, "MEMORY", x->at_memory, "angles and rotations followed from step to step");
     put_constant(t, "NINPUT", x->ninput, "");
     put(t, "\n    /* out[] of motion */\n");

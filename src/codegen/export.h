@@ -30,7 +30,7 @@ struct ct_export {
     const double *scale;
     double weakest;
     size_t rank; // of the constraints
-    size_t at_q, at_u, at_mode, at_memory, ninput;
+    size_t at_q, at_u, at_switch, at_memory, ninput;
     const struct ct_export_state *state; // the first one is the start
     size_t nstate;
     unsigned lanes; // > 1: both programs for so many inputs side by side, too

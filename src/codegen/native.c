@@ -1,7 +1,7 @@
 // See native.h.
 #define _DEFAULT_SOURCE // MAP_ANONYMOUS; NOLINT(bugprone-reserved-identifier): the C library names it
 #include "codegen/native.h"
-#include "codegen/pair.h"
+#include "codegen/native_wide.h"
 
 #include "codegen/x86.h"
 #include "expr/sincos.h"
@@ -24,14 +24,14 @@ typedef void (*body_fn)(const double *input, double *out, double *work);
 struct ct_native {
     const struct ct_listing *l;
     size_t lanes, nwork;         // nwork: places
-    uint32_t *place;             // of values that prepare computes
+    uint32_t *slot;              // of values that prepare computes
     const struct ct_copy *table; // and copies of them
     size_t ntable;
     void *memory;
     size_t nmemory, ncode;
     body_fn body;
-    struct ct_native *four;     // of eight lanes, which have no code of their own
-    const struct ct_pair *pair; // and their two halves
+    struct ct_native *four;      // of eight lanes, which have no code of their own
+    const struct ct_simd2 *pair; // and their two halves
 };
 
 // ---- functions that code calls ----------------------------------------------------------------
@@ -193,15 +193,15 @@ static const struct ct_copy *copy_table(struct ct_arena *a, const struct ct_x86_
 static void place_prologue(struct ct_arena *a, struct ct_native *f)
 {
     const struct ct_listing *l = f->l;
-    f->place = CT_NEWN(a, uint32_t, l->nvalue);
+    f->slot = CT_NEWN(a, uint32_t, l->nvalue);
     for (size_t v = 0; v < l->nvalue; v++)
         if (l->rate[v] != CT_RATE_CALL)
-            f->place[v] = (uint32_t)f->nwork++;
+            f->slot[v] = (uint32_t)f->nwork++;
 }
 
 static void take_leaf(const struct ct_native *f, size_t v, const double *input, double *work)
 {
-    double *w = work + f->lanes * f->place[v];
+    double *w = work + f->lanes * f->slot[v];
     ct_ex_is_const(f->l->x, (ct_ex){f->l->node[v]}, w);
     for (size_t i = 0; i < f->lanes; i++)
         w[i] = f->l->input[v] == CT_VALUE_NONE ? w[0] : input[f->lanes * f->l->input[v] + i];
@@ -213,17 +213,17 @@ static void run_instruction(const struct ct_native *f, const struct ct_instructi
     for (size_t lane = 0; lane < f->lanes; lane++) {
         double arg[3] = {0}, res[2];
         for (uint32_t k = 0; k < i->narg; k++)
-            arg[k] = work[f->lanes * f->place[i->arg[k]] + lane];
+            arg[k] = work[f->lanes * f->slot[i->arg[k]] + lane];
         ct_instruction_apply(f->l, i, arg, res);
         for (uint32_t k = 0; k < i->nres; k++)
-            work[f->lanes * f->place[i->res[k]] + lane] = res[k];
+            work[f->lanes * f->slot[i->res[k]] + lane] = res[k];
     }
 }
 
 void ct_native_prepare(const struct ct_native *f, const double *input, double *work)
 {
     if (f->pair) {
-        ct_pair_prepare(f->pair, input, work);
+        ct_native_wide_prepare(f->pair, input, work);
         return;
     }
     for (size_t v = 0; v < f->l->nvalue; v++)
@@ -234,7 +234,7 @@ void ct_native_prepare(const struct ct_native *f, const double *input, double *w
     for (size_t i = 0; i < f->ntable; i++) {
         const struct ct_copy *c = &f->table[i];
         const size_t n = c->is_number ? 1 : f->lanes;
-        memcpy(work + n * c->place, work + f->lanes * f->place[c->value], n * sizeof *work);
+        memcpy(work + n * c->slot, work + f->lanes * f->slot[c->value], n * sizeof *work);
     }
 }
 
@@ -261,20 +261,20 @@ static bool has_fused(const struct ct_listing *l)
 
 static struct ct_native *create_pair(struct ct_arena *a, const struct ct_listing *l)
 {
-    struct ct_native *four = ct_native_create(a, l, CT_PAIR_LANES / 2), *f;
+    struct ct_native *four = ct_native_create(a, l, CT_NATIVE_WIDE_LANES / 2), *f;
     if (!four)
         return NULL;
     f = CT_NEW(a, struct ct_native);
     *f = (struct ct_native){.l = four->l,
-                            .lanes = CT_PAIR_LANES,
+                            .lanes = CT_NATIVE_WIDE_LANES,
                             .four = four,
-                            .pair = ct_pair_create(a, four, four->l)};
+                            .pair = ct_native_wide_create(a, four, four->l)};
     return f;
 }
 
 struct ct_native *ct_native_create(struct ct_arena *a, const struct ct_listing *l, int lanes)
 {
-    if (lanes == CT_PAIR_LANES)
+    if (lanes == CT_NATIVE_WIDE_LANES)
         return create_pair(a, l);
 #if HAS_X86
     if (!ct_native_is_available(lanes) || (has_fused(l) && !__builtin_cpu_supports("fma")))
@@ -287,7 +287,7 @@ struct ct_native *ct_native_create(struct ct_arena *a, const struct ct_listing *
     *f = (struct ct_native){.l = l, .lanes = (size_t)lanes};
     place_prologue(a, f);
     struct ct_arena *scratch = ct_arena_create_under(a); // several times what is kept
-    const struct ct_x86_code code = ct_x86_emit(scratch, l, lanes, f->place, f->nwork, &calls);
+    const struct ct_x86_code code = ct_x86_emit(scratch, l, lanes, f->slot, f->nwork, &calls);
     f->nwork = code.nwork;
     f->ntable = code.ntable;
     f->table = copy_table(a, &code);
@@ -307,7 +307,7 @@ struct ct_native *ct_native_create(struct ct_arena *a, const struct ct_listing *
 
 size_t ct_native_work(const struct ct_native *f)
 {
-    return f->pair ? ct_pair_work(f->pair) : f->nwork * f->lanes;
+    return f->pair ? ct_native_wide_work(f->pair) : f->nwork * f->lanes;
 }
 
 size_t ct_native_code_size(const struct ct_native *f)
@@ -323,7 +323,7 @@ const unsigned char *ct_native_code(const struct ct_native *f)
 void ct_native_eval(const struct ct_native *f, const double *input, double *out, double *work)
 {
     if (f->pair)
-        ct_pair_eval(f->pair, input, out, work);
+        ct_native_wide_eval(f->pair, input, out, work);
     else
         f->body(input, out, work);
 }

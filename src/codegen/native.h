@@ -18,7 +18,7 @@ struct ct_native;
 
 /// Can this processor run native code of 1, 4 or 8 lanes?
 bool ct_native_is_available(int lanes);
-/// Compile for 1, 4 or 8 lanes, eight as twice four (pair.h); l must live as long. NULL where native code is not available: use the
+/// Compile for 1, 4 or 8 lanes, eight as twice four (native_wide.h); l must live as long. NULL where native code is not available: use the
 /// tape. The code goes with the arena. Cost: instructions of l.
 struct ct_native *ct_native_create(struct ct_arena *a, const struct ct_listing *l, int lanes);
 

@@ -17,7 +17,7 @@ uint32_t ct_emitter_place_size(const struct ct_emitter *e, unsigned area)
 struct ct_rm ct_emitter_memory(const struct ct_emitter *e, struct ct_home h)
 {
     assert(h.area != CT_AREA_NONE);
-    return ct_in_memory(e->base[h.area], (int32_t)(h.place * ct_emitter_place_size(e, h.area)));
+    return ct_in_memory(e->base[h.area], (int32_t)(h.slot * ct_emitter_place_size(e, h.area)));
 }
 
 // Place in the order of the next read of v; none: never again.
@@ -28,7 +28,7 @@ static uint32_t next_use(const struct ct_emitter *e, uint32_t v)
 
 static bool is_spilled(const struct ct_emitter *e, uint32_t v)
 {
-    return e->home[v].area == CT_AREA_WORK && e->home[v].place >= e->nfixed;
+    return e->home[v].area == CT_AREA_WORK && e->home[v].slot >= e->nfixed;
 }
 
 static void need_home(struct ct_emitter *e, uint32_t v)
@@ -359,7 +359,7 @@ void ct_emitter_give_up(struct ct_emitter *e, const uint32_t *v, uint32_t n)
 {
     for (uint32_t k = 0; k < n; k++)
         if (next_use(e, v[k]) == none && is_spilled(e, v[k])) {
-            e->free[e->nfree++] = e->home[v[k]].place;
+            e->free[e->nfree++] = e->home[v[k]].slot;
             e->home[v[k]].area = CT_AREA_NONE;
         }
 }
@@ -453,13 +453,14 @@ static void roll_up(struct ct_emitter *e)
         is_alone[op] = e->calls->by_op[op] != 0;
     if (e->norder < LEAST_ROLLED)
         return;
-    e->roll = ct_roll_find(e->arena, e->l, e->order, (uint32_t)e->norder, is_alone, e->nfixed,
-                           e->calls->rows_together && e->code.lanes == 1 ? CT_ROWS_TOGETHER : 1,
-                           (uint32_t)e->code.lanes);
+    e->reroll
+        = ct_reroll_find(e->arena, e->l, e->order, (uint32_t)e->norder, is_alone, e->nfixed,
+                         e->calls->rows_together && e->code.lanes == 1 ? CT_ROWS_TOGETHER : 1,
+                         (uint32_t)e->code.lanes);
     e->spread = CT_NEWN(e->arena, uint32_t, e->l->nvalue);
     for (size_t v = 0; v < e->l->nvalue; v++)
         e->spread[v] = none;
-    e->nfixed = e->nwork = e->roll.nwork;
+    e->nfixed = e->nwork = e->reroll.nwork;
 }
 
 // ---- the whole --------------------------------------------------------------------------------
@@ -476,8 +477,8 @@ static void place_values(struct ct_emitter *e, const uint32_t *home)
             e->home[v] = (struct ct_home){CT_AREA_WORK, home[v]};
         else if (l->is_leaf[v])
             e->home[v] = (struct ct_home){CT_AREA_INPUT, l->input[v]};
-        else if (e->roll.nloop && e->roll.place[v] < CT_ROLL_OUT)
-            e->home[v] = (struct ct_home){CT_AREA_WORK, e->roll.place[v]};
+        else if (e->reroll.nloop && e->reroll.slot[v] < CT_REROLL_OUT)
+            e->home[v] = (struct ct_home){CT_AREA_WORK, e->reroll.slot[v]};
     }
     for (int r = 0; r < CT_NREGISTER; r++)
         e->content[r] = none;
@@ -487,7 +488,7 @@ static void place_values(struct ct_emitter *e, const uint32_t *home)
         const uint32_t v = l->out[k];
         e->next_output[k] = e->first_output[v];
         e->first_output[v] = (uint32_t)k + 1;
-        if (e->roll.nloop && e->roll.place[v] == CT_ROLL_OUT)
+        if (e->reroll.nloop && e->reroll.slot[v] == CT_REROLL_OUT)
             e->home[v] = (struct ct_home){CT_AREA_OUT, (uint32_t)k};
     }
 }
@@ -507,7 +508,7 @@ static void emit_entry(struct ct_emitter *e, bool calls)
         ct_put_move(&e->code, CT_R14, CT_RSI);
         ct_put_move(&e->code, CT_RBX, CT_RDX);
     }
-    for (size_t i = 0; i < COUNT(loop_register) && e->roll.nloop; i++)
+    for (size_t i = 0; i < COUNT(loop_register) && e->reroll.nloop; i++)
         ct_put_push(&e->code, loop_register[i]);
     e->base[CT_AREA_INPUT] = calls ? CT_RBP : CT_RDI;
     e->base[CT_AREA_OUT] = calls ? CT_R14 : CT_RSI;
@@ -519,9 +520,9 @@ static void copy_outputs(struct ct_emitter *e)
 {
     for (uint32_t k = 0; k < e->l->nout; k++) {
         const uint32_t v = e->l->out[k];
-        const bool is_rolled = e->roll.nloop && e->roll.place[v] != none;
+        const bool is_rolled = e->reroll.nloop && e->reroll.slot[v] != none;
         if (e->l->rate[v] == CT_RATE_CALL && !e->l->is_leaf[v]
-            && (!is_rolled || (e->home[v].area == CT_AREA_OUT && e->home[v].place == k)))
+            && (!is_rolled || (e->home[v].area == CT_AREA_OUT && e->home[v].slot == k)))
             continue;
         ct_put_load(&e->code, 0, ct_emitter_memory(e, e->home[v]));
         ct_put_store(&e->code, ct_emitter_memory(e, (struct ct_home){CT_AREA_OUT, k}), 0);
@@ -531,7 +532,7 @@ static void copy_outputs(struct ct_emitter *e)
 static void emit_return(struct ct_emitter *e, bool calls)
 {
     ct_put_vzeroupper(&e->code);
-    for (size_t i = COUNT(loop_register); i-- > 0 && e->roll.nloop;)
+    for (size_t i = COUNT(loop_register); i-- > 0 && e->reroll.nloop;)
         ct_put_pop(&e->code, loop_register[i]);
     if (calls) {
         ct_put_pop(&e->code, CT_R14);
@@ -561,7 +562,7 @@ struct ct_x86_code ct_x86_emit(struct ct_arena *a, const struct ct_listing *l, i
     ct_emitter_list_uses(&e);
     place_values(&e, home);
     emit_entry(&e, any_call);
-    const struct ct_loop *loop = e.roll.loop, *end = loop + e.roll.nloop;
+    const struct ct_loop *loop = e.reroll.loop, *end = loop + e.reroll.nloop;
     for (uint32_t at = 0; at < e.norder; at++) {
         if (loop < end && at == loop->first) {
             at += loop->period * loop->count - 1;
@@ -578,5 +579,6 @@ struct ct_x86_code ct_x86_emit(struct ct_arena *a, const struct ct_listing *l, i
     copy_outputs(&e);
     emit_return(&e, any_call);
     ct_put_pool(&e.code);
-    return (struct ct_x86_code){e.code.byte, e.code.n, e.nwork, e.roll.table, e.roll.ntable};
+    return (struct ct_x86_code){e.code.byte, e.code.n, e.nwork, e.reroll.table,
+                                e.reroll.ntable};
 }

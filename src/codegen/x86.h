@@ -2,7 +2,7 @@
 //
 //     void code(const double *input, double *out, double *work)          System V calling convention
 //
-// Straight-line code for the body of a listing, with loops where a long one repeats itself (roll.h): three-operand VEX instructions on doubles, one a
+// Straight-line code for the body of a listing, with loops where a long one repeats itself (reroll.h): three-operand VEX instructions on doubles, one a
 // register (xmm) or four (ymm, four lanes). Values live in 16 registers; when these run out, the one
 // whose next use is farthest goes to its home in memory: its input, its output, its place in the work
 // array, or a place there that is given to it then. Operands that are not worth a register are read
@@ -18,7 +18,7 @@
 #ifndef CT_CODEGEN_X86_H
 #define CT_CODEGEN_X86_H
 
-#include "codegen/roll.h"
+#include "codegen/reroll.h"
 
 /// Functions that code calls for an operator, from memory to memory, `lanes` numbers each:
 ///

@@ -91,7 +91,7 @@ static void sort_waves(struct ct_emitter *e)
         for (uint32_t k = i; k > 0; k--) {
             const struct ct_home *a = &e->home[wave(e, k - 1)->arg[0]],
                                  *b = &e->home[wave(e, k)->arg[0]];
-            if (a->area != CT_AREA_INPUT || b->area != CT_AREA_INPUT || a->place <= b->place)
+            if (a->area != CT_AREA_INPUT || b->area != CT_AREA_INPUT || a->slot <= b->slot)
                 break;
             const uint32_t kept = order[k];
             order[k] = order[k - 1];
@@ -103,7 +103,7 @@ static bool are_side_by_side(const struct ct_emitter *e)
 {
     for (uint32_t k = 0; k < e->nangle; k++) {
         const struct ct_home *h = &e->home[wave(e, k)->arg[0]];
-        if (h->area != CT_AREA_INPUT || h->place != e->home[wave(e, 0)->arg[0]].place + k)
+        if (h->area != CT_AREA_INPUT || h->slot != e->home[wave(e, 0)->arg[0]].slot + k)
             return false;
     }
     return true;
@@ -117,7 +117,7 @@ static struct ct_home gather_angles(struct ct_emitter *e)
     for (uint32_t k = 0; k < e->nangle; k++) {
         const int r = ct_emitter_load(e, wave(e, k)->arg[0]);
         ct_put_store(&e->code,
-                     ct_emitter_memory(e, (struct ct_home){CT_AREA_WORK, first.place + k}), r);
+                     ct_emitter_memory(e, (struct ct_home){CT_AREA_WORK, first.slot + k}), r);
         ct_emitter_pass(e, wave(e, k)->arg[0], e->first_angle + e->nangle);
         ct_emitter_unpin(e, wave(e, k));
     }
@@ -171,5 +171,5 @@ void ct_emitter_angles(struct ct_emitter *e)
     ct_put_call(c, e->calls->sincos_many);
     place_waves(e, sines, cosines);
     for (uint32_t k = 0; copied && k < e->nangle; k++)
-        e->free[e->nfree++] = angles.place + k;
+        e->free[e->nfree++] = angles.slot + k;
 }

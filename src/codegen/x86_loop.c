@@ -1,4 +1,4 @@
-// Loops of roll.h as code: the body is emitted as a program of its own, whose operands are at registers that move on.
+// Loops of reroll.h as code: the body is emitted as a program of its own, whose operands are at registers that move on.
 #include "codegen/emitter.h"
 
 #include <assert.h>
@@ -6,14 +6,14 @@
 
 static const uint32_t none = CT_VALUE_NONE;
 
-static const int stream_register[CT_ROLL_STREAMS]
+static const int stream_register[CT_REROLL_STREAMS]
     = {CT_RCX, CT_R8, CT_R9, CT_R10, CT_R11, CT_R13, CT_R15};
 
 // The body of a loop as a listing: values 0 ... period-1 are its results, further ones its operands from memory.
 struct body {
     struct ct_emitter e;
     struct ct_listing l;
-    struct ct_stream stream[CT_ROLL_STREAMS];
+    struct ct_stream stream[CT_REROLL_STREAMS];
     unsigned nstream;
     int32_t together; // rows
     uint32_t *slot;   // 1 + value, by hash
@@ -33,7 +33,7 @@ static unsigned stream_of(struct body *b, const struct ct_operand *o)
            && (b->stream[i].area != s.area || b->stream[i].stride != s.stride
                || b->stream[i].stays != s.stays || b->stream[i].is_number != s.is_number))
         i++;
-    assert(i < CT_ROLL_STREAMS);
+    assert(i < CT_REROLL_STREAMS);
     if (i == b->nstream) {
         b->stream[b->nstream++] = s;
         b->e.base[CT_NAREA + i] = stream_register[i];
@@ -53,7 +53,7 @@ static struct ct_home spread(struct ct_emitter *e, uint32_t value)
         e->spread[value] = e->nwork;
         for (int i = 0; i < 4; i++) {
             const struct ct_copy c = {value, e->nwork++};
-            CT_PUSH(e->arena, e->roll.table, e->roll.ntable, e->roll.table_cap, c);
+            CT_PUSH(e->arena, e->reroll.table, e->reroll.ntable, e->reroll.table_cap, c);
         }
     }
     return (struct ct_home){CT_AREA_WORK, e->spread[value]};
@@ -208,9 +208,9 @@ static void emit_rows(struct ct_emitter *e, const struct ct_loop *loop, uint32_t
     c->lanes = e->code.lanes;
     e->code = *c;
     e->nwork = b.e.nwork;
-    e->roll.table = b.e.roll.table;
-    e->roll.ntable = b.e.roll.ntable;
-    e->roll.table_cap = b.e.roll.table_cap;
+    e->reroll.table = b.e.reroll.table;
+    e->reroll.ntable = b.e.reroll.ntable;
+    e->reroll.table_cap = b.e.reroll.table_cap;
 }
 
 // Rows four at a time; the last four may begin among those that are done, which gives the same once more.
@@ -255,7 +255,7 @@ static void carry_over(struct ct_emitter *e, const struct ct_loop *loop)
         for (uint32_t back = CT_ROWS_TOGETHER; back < loop->nbefore + CT_ROWS_TOGETHER;
              back += CT_ROWS_TOGETHER) {
             const struct ct_home to = {CT_AREA_WORK, loop->carried[i] - back},
-                                 from = {CT_AREA_WORK, to.place + loop->strip};
+                                 from = {CT_AREA_WORK, to.slot + loop->strip};
             const int r = (int)(i % CT_NREGISTER);
             ct_put_load(&e->code, r, ct_emitter_memory(e, from));
             ct_put_store(&e->code, ct_emitter_memory(e, to), r);
@@ -286,7 +286,7 @@ static void emit_copies(struct ct_emitter *e, const struct ct_loop *loop)
     for (size_t i = 0; i < loop->ncopy; i++) {
         const int r = ct_emitter_load(e, loop->copy[i].value);
         ct_put_store(&e->code,
-                     ct_emitter_memory(e, (struct ct_home){CT_AREA_WORK, loop->copy[i].place}),
+                     ct_emitter_memory(e, (struct ct_home){CT_AREA_WORK, loop->copy[i].slot}),
                      r);
         e->pinned = 0;
         ct_emitter_release(e, &loop->copy[i].value, 1);

@@ -3,14 +3,14 @@
 
 #include <math.h>
 
-static const double rounding = 1e-9; // of the length: places that are one
+static const double roundoff = 1e-9; // of the length: places that are one
 
 static void divide_evenly(struct ct_exs *x, struct ct_arena *a, struct ct_beam *beam, long n)
 {
     ct_ex *end = CT_NEWN(a, ct_ex, n);
     for (long i = 0; i < n; i++)
         end[i] = ct_ex_scale(x, (double)(i + 1) / (double)n, beam->length);
-    end[n - 1] = beam->length; // without the rounding of the last one
+    end[n - 1] = beam->length; // without the round-off of the last one
     beam->end = end;
     beam->nelement = (int)n;
 }
@@ -24,9 +24,9 @@ void ct_beam_divide(struct ct_exs *x, struct ct_arena *a, struct ct_beam *beam, 
         const double from = k ? beam->cut[k - 1] : 0,
                      to = k < beam->ncut ? beam->cut[k] : length,
                      wanted = (to - from) / length * (double)n;
-        share[k] = (long)fmax(ceil(wanted - rounding * (double)n), 1);
+        share[k] = (long)fmax(ceil(wanted - roundoff * (double)n), 1);
         sum += share[k];
-        is_even &= fabs(to / length * (double)n - (double)sum) <= rounding * (double)n;
+        is_even &= fabs(to / length * (double)n - (double)sum) <= roundoff * (double)n;
     }
     beam->is_even = is_even;
     if (is_even) {

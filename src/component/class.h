@@ -154,7 +154,7 @@ struct ct_component_class {
     bool always_branch;           // joints whose rows as a chord do not exist: screw, custom
     /// Joints with motion: fill `m` from the instance. NULL for distance and gear.
     void (*motion)(struct ct_exs *x, const struct ct_instance *self, struct ct_motion *m);
-    /// Forces, distance and gear: add loads or rows through formulate/load.h and row.h.
+    /// Forces, distance and gear: add loads or rows through formulate/load.h and constraint_row.h.
     void (*apply)(struct ct_build *b, const struct ct_instance *self);
     /// Signals of its own (S.force, S.length ...): false if there is none of that name.
     bool (*signal)(struct ct_build *b, const struct ct_instance *self, const char *name,

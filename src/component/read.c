@@ -61,7 +61,7 @@ static void sort_diagnostics(struct ct_ctx *ctx, const char *file, size_t from)
 
 static void check_version(struct ct_reader *r)
 {
-    const struct ct_pair *p = ct_node_find(r->root, "cotree");
+    const struct ct_simd2 *p = ct_node_find(r->root, "cotree");
     if (!p)
         ct_error(r->ctx, r->root->mark, CT_E_VERSION,
                  "the file must start with its version, 'cotree: 1'");

@@ -268,7 +268,7 @@ static bool check_deformation(const struct work *w, unsigned known)
 
 static bool check_ends(const struct work *w, const struct ct_value *v, double length)
 {
-    const double rounding = 1e-12 * length; // as in 0.1 + 0.2
+    const double roundoff = 1e-12 * length; // as in 0.1 + 0.2
     double last = 0, end;
     bool ok = true;
     for (size_t i = 0; i < v->n; i++) {
@@ -279,7 +279,7 @@ static bool check_ends(const struct work *w, const struct ct_value *v, double le
                           "body '%s': element %zu ends at %g m, where it begins is %g m; the "
                           "ends must increase from 0 to the length",
                           w->self->name, i + 1, end, last);
-        else if (i + 1 == v->n && !(fabs(end - length) <= rounding))
+        else if (i + 1 == v->n && !(fabs(end - length) <= roundoff))
             ok = ct_error(w->r->ctx, v->at[i], CT_E_RANGE,
                           "body '%s': the last element ends at %g m, the length is %g m",
                           w->self->name, end, length);
@@ -321,7 +321,7 @@ static bool fill_elements(const struct work *w)
     const int n = beam->nelement = (int)v->count;
     ct_ex *end = CT_NEWN(w->r->a, ct_ex, n);
     memcpy(end, v->e, (size_t)n * sizeof *end);
-    end[n - 1] = beam->length; // without the rounding of the last one
+    end[n - 1] = beam->length; // without the round-off of the last one
     beam->end = end;
     beam->is_even = false;
     return ok;

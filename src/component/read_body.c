@@ -18,7 +18,7 @@ static void declare_points(struct ct_reader *r, int body, const struct ct_node *
 {
     const struct ct_node *points = ct_node_get(node, "points");
     for (size_t i = 0; points && points->kind == CT_NODE_MAP && i < points->n; i++) {
-        const struct ct_pair *p = &points->pair[i];
+        const struct ct_simd2 *p = &points->pair[i];
         if (!ct_read_name(r, p->key, p->mark, "point"))
             continue;
         const char *name
@@ -47,8 +47,8 @@ static int add_body(struct ct_reader *r, const char *name, struct ct_mark at)
 
 void ct_read_bodies_declare(struct ct_reader *r)
 {
-    const struct ct_pair *ground = NULL;
-    const struct ct_pair *section = ct_node_find(r->root, "bodies");
+    const struct ct_simd2 *ground = NULL;
+    const struct ct_simd2 *section = ct_node_find(r->root, "bodies");
     const struct ct_node *node = section ? section->value : NULL;
     if (node && ct_node_is_null(node))
         node = NULL;
@@ -61,7 +61,7 @@ void ct_read_bodies_declare(struct ct_reader *r)
         declare_points(r, 0, ground->value);
     }
     for (size_t i = 0; ok && i < node->n; i++) {
-        const struct ct_pair *p = &node->pair[i];
+        const struct ct_simd2 *p = &node->pair[i];
         if (p == ground || !ct_read_component_name(r, p, "body"))
             continue;
         const int body = add_body(r, p->key, p->mark);
@@ -80,8 +80,8 @@ static bool check_on_beam(struct ct_reader *r, const struct ct_frame *f, struct 
     if (!length->n || !ct_read_number(r, length->e[0], &l) || !(l > 0)
         || !ct_read_number(r, f->at.e[0], &x))
         return true;                   // which has been reported
-    const double rounding = 1e-12 * l; // as in 0.1 + 0.2
-    if (x >= -rounding && x <= l + rounding)
+    const double roundoff = 1e-12 * l; // as in 0.1 + 0.2
+    if (x >= -roundoff && x <= l + roundoff)
         return true;
     return ct_error(r->ctx, at, CT_E_RANGE,
                     "point '%s' is at x = %g m, the beam reaches from 0 to %g m", f->name, x,
@@ -224,14 +224,14 @@ static bool check_inertia(struct ct_reader *r, const struct ct_body *b,
         I[i] /= largest; // so that cubes neither over- nor underflow
     principal_moments(I, lam);
     // moments are copied from data sheets and programs that print six or seven digits
-    const double rounding = 1e-6 * lam[2];
-    if (lam[0] >= -rounding && lam[2] <= lam[0] + lam[1] + rounding)
+    const double roundoff = 1e-6 * lam[2];
+    if (lam[0] >= -roundoff && lam[2] <= lam[0] + lam[1] + roundoff)
         return true;
     return ct_error(
         r->ctx, given->mark, CT_E_INERTIA,
         "body '%s': no body has the principal moments of inertia %g, %g, %g kg*m^2: %s",
         b->instance.name, lam[0] * largest, lam[1] * largest, lam[2] * largest,
-        lam[0] < -rounding ? "one is negative" : "one is larger than the sum of the others");
+        lam[0] < -roundoff ? "one is negative" : "one is larger than the sum of the others");
 }
 
 static bool fill_inertia(struct ct_reader *r, struct ct_body *b, const struct ct_value *v)
@@ -273,7 +273,7 @@ static bool check_particle_keys(struct ct_reader *r, const struct ct_body *b,
     static const char *const names[] = {"points", "inertia", "com"};
     bool ok = true;
     for (size_t i = 0; i < COUNT(names); i++) {
-        const struct ct_pair *p = ct_node_find(node, names[i]);
+        const struct ct_simd2 *p = ct_node_find(node, names[i]);
         if (p)
             ok = ct_error(r->ctx, p->mark, CT_E_PARTICLE,
                           "'%s' is a particle: it has a mass, but no '%s'", b->instance.name,
@@ -285,7 +285,7 @@ static bool check_particle_keys(struct ct_reader *r, const struct ct_body *b,
 static bool read_body(struct ct_reader *r, struct ct_body *b, const struct ct_node *node)
 {
     struct ct_instance *self = &b->instance;
-    const struct ct_pair p = {self->name, self->mark, node};
+    const struct ct_simd2 p = {self->name, self->mark, node};
     self->cls = ct_read_class(r, CT_FAMILY_BODY, &p, "body", "rigid");
     if (!self->cls)
         return false;

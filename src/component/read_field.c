@@ -132,8 +132,8 @@ static double size_of(const struct field_check *c, ct_ex e)
 static bool vanishes_at(const struct field_check *c, ct_ex e, double size, double place,
                         const char *what, enum ct_code code)
 {
-    const double rounding = 1e-9, v = field_at(c, e, place);
-    if (fabs(v) <= rounding * size)
+    const double roundoff = 1e-9, v = field_at(c, e, place);
+    if (fabs(v) <= roundoff * size)
         return true;
     return ct_error(c->r->ctx, c->g->mark, code,
                     "body '%s': the %s of this is %g at x = %g m, where the beam's frame "

@@ -122,7 +122,7 @@ static bool read_samples(struct ct_reader *r, const struct ct_node *node,
     double v;
     if (!read_bounded(r, node, "samples", "", at_rest ? 1 : 2, false, &v))
         return false;
-    // an integer computed from parameters: n * eps of rounding
+    // an integer computed from parameters: n * eps of round-off
     if (fabs(v - round(v)) > 1e-9 * v)
         return ct_error(r->ctx, node->mark, CT_E_RANGE,
                         "'samples' is %g; it must be an integer", v);
@@ -151,10 +151,10 @@ static bool read_interval(struct ct_reader *r, const struct ct_node *node,
 static bool read_sampling(struct ct_reader *r, const struct ct_node *node,
                           struct ct_simulation *s)
 {
-    const struct ct_pair *samples = ct_node_find(node, "samples"),
-                         *interval = ct_node_find(node, "interval");
+    const struct ct_simd2 *samples = ct_node_find(node, "samples"),
+                          *interval = ct_node_find(node, "interval");
     if (samples && interval) {
-        const struct ct_pair *second = samples > interval ? samples : interval;
+        const struct ct_simd2 *second = samples > interval ? samples : interval;
         return ct_error(r->ctx, second->mark, CT_E_CONFLICT,
                         "give 'samples' or 'interval', not both");
     }
@@ -219,7 +219,7 @@ void ct_read_simulation(struct ct_reader *r)
     *s = (struct ct_simulation){.samples = 1001, .rtol = 1e-8, .method = "auto"};
     s->small.frame = -1;
     s->mark = (struct ct_mark){r->m->file, 0, 0};
-    const struct ct_pair *p = ct_node_find(r->root, "simulation");
+    const struct ct_simd2 *p = ct_node_find(r->root, "simulation");
     const struct ct_node *node = p && !ct_node_is_null(p->value) ? p->value : NULL;
     if (p)
         s->mark = p->mark;

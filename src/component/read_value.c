@@ -228,7 +228,7 @@ static bool read_list(struct ct_reader *r, const struct ct_node *node, const str
     return ct_read_items(r, node, key, v);
 }
 
-// Unit vectors a and b (6 numbers): |a x b|^2 = 1 - (a.b)^2 to rounding of some eps
+// Unit vectors a and b (6 numbers): |a x b|^2 = 1 - (a.b)^2 to round-off of some eps
 static bool check_crossed(struct ct_reader *r, const struct ct_value *v)
 {
     double u[6], c = 0;
@@ -363,7 +363,7 @@ bool ct_read_count(struct ct_reader *r, const struct ct_node *node, const char *
     *count = least;
     if (!ct_read_expr(r, node, 0, "", &e) || !read_deciding(r, e, &v))
         return false;
-    // an integer computed from parameters: n * eps of rounding
+    // an integer computed from parameters: n * eps of round-off
     if (fabs(v - round(v)) > 1e-9 * fabs(v))
         return ct_error(r->ctx, node->mark, CT_E_RANGE, "'%s' is %g; it must be an integer",
                         name, v);

@@ -9,7 +9,7 @@
 // factored for reading. Nothing here is for evaluation: a factored recursion is cheaper to run than
 // its expanded sum.
 //
-// What always holds: the result equals the expression up to rounding, wherever both are defined
+// What always holds: the result equals the expression up to round-off, wherever both are defined
 // (x/x is 1); same input, same result; the result is never larger than the expression.
 #ifndef CT_EXPR_COLLECT_H
 #define CT_EXPR_COLLECT_H

@@ -50,7 +50,7 @@ enum ct_sym_kind {
     CT_SYM_U,      // speed
     CT_SYM_A,      // derivative of a speed
     CT_SYM_LAM,    // multiplier of a constraint row
-    CT_SYM_MODE,   // 0 or 1: the side of a comparison, constant between events
+    CT_SYM_SWITCH, // 0 or 1: the side of a comparison, constant between events
     CT_SYM_MEMORY, // value kept from the last accepted step (angle of a chord)
     CT_SYM_WORK,   // energy.work: a quadrature beside the states
     CT_SYM_LOCAL, // argument of an expression of its own: coordinate of a custom joint, x of a beam

@@ -10,14 +10,14 @@
 /// is one of their convergents.
 bool ct_fraction_find(double v, double *n, double *d);
 
-/// The double nearest to such a fraction where v differs from it by a few roundings; otherwise v.
+/// The double nearest to such a fraction where v differs from it by a few round-off errors; otherwise v.
 double ct_fraction_snap(double v);
 
-/// v as people read it: such a fraction, also after more roundings, or a decimal of 13 digits where v differs from
+/// v as people read it: such a fraction, also after more round-off errors, or a decimal of 13 digits where v differs from
 /// it by noise; otherwise v.
 double ct_fraction_tidy(double v);
 
-/// The power k, 1, 2, -1 or -2, for which v is *n / *d pi^k but for a few roundings, n and d up to 1000; 0: none.
+/// The power k, 1, 2, -1 or -2, for which v is *n / *d pi^k but for a few round-off errors, n and d up to 1000; 0: none.
 int ct_fraction_of_pi(double v, double *n, double *d);
 
 #endif

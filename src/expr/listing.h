@@ -46,7 +46,7 @@ struct ct_tape_counts {
 };
 
 /// Products used once, in a sum, become fused multiply-adds: never; in all back ends alike; in native code alone, where
-/// the processor has them and the program is long (native.h), so that its results are those of others to rounding.
+/// the processor has them and the program is long (native.h), so that its results are those of others to round-off.
 enum ct_fuse { CT_FUSE_NO, CT_FUSE_YES, CT_FUSE_NATIVE };
 
 struct ct_listing {

@@ -4,7 +4,7 @@
 //     monomial            powers  (a, 2), (b, 1)         sorted by atom, no exponent 0; interned
 //
 // What always holds: equal monomials have equal numbers, 0 is the monomial without powers; the terms
-// of a polynomial have distinct monomials, ascending, and no coefficient is rounding noise: each
+// of a polynomial have distinct monomials, ascending, and no coefficient is round-off noise: each
 // carries the size of the largest contribution to it, and what cancelled to a few units in the last
 // place of that is dropped.
 #ifndef CT_EXPR_POLYNOMIAL_H

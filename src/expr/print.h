@@ -34,7 +34,7 @@ struct ct_print {
     size_t limit;
     /// Halves, quarters, eighths of parameters as fractions: m*l^2/4, not 0.25*m*l^2; a term without a parameter keeps its
     /// decimal, as its number comes from data: 1.5*x'', not 3*x''/2. Of other numbers those that are exactly the double
-    /// nearest to a small fraction (fraction.h): 13*m/35. Reads back to the same value up to rounding, not to the same
+    /// nearest to a small fraction (fraction.h): 13*m/35. Reads back to the same value up to round-off, not to the same
     /// nodes. Text and LaTeX.
     bool fractions;
     /// No number comes from data: halves are fractions in every term.

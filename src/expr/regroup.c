@@ -55,7 +55,7 @@ void ct_poly_content(struct ct_collector *c, struct ct_poly *p, double *k, uint3
         const struct ct_term *t = &p->t[i];
         q.t[i] = (struct ct_term){t->c / *k, t->size / fabs(*k),
                                   ct_mono_times(&c->ps, t->mono, out)};
-        // what was equal up to rounding is now exactly 1
+        // what was equal up to round-off is now exactly 1
         if (ct_same_number(fabs(q.t[i].c), 1))
             q.t[i].c = q.t[i].c < 0 ? -1 : 1;
     }
@@ -64,7 +64,7 @@ void ct_poly_content(struct ct_collector *c, struct ct_poly *p, double *k, uint3
 
 // ---- products -----------------------------------------------------------------------------------
 
-// 0.04409999999999999 is 0.0441: the decimal of 12 digits where it differs by rounding noise only.
+// 0.04409999999999999 is 0.0441: the decimal of 12 digits where it differs by round-off noise only.
 static double without_noise(double k)
 {
     char s[32];

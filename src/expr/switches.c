@@ -8,7 +8,7 @@
 
 static const double same = 1e-9; // of the whole: places that are one
 static const double least
-    = 0x1p-48; // of the whole: an interval that is a place, some roundings wide
+    = 0x1p-48; // of the whole: an interval that is a place, some round-off errors wide
 enum { MOST_INTERVALS = 20000 }; // for one argument; a simple root takes about 100
 
 struct interval {

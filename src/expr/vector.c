@@ -108,8 +108,8 @@ ct_ex33 ct_ex33_transpose(const ct_ex33 *A)
 static ct_ex exact_quarter(struct ct_exs *x, ct_ex e)
 {
     double v;
-    const double rounding = 4 * DBL_EPSILON; // of angles up to a few turns
-    if (ct_ex_is_const(x, e, &v) && fabs(v - round(v)) < rounding)
+    const double roundoff = 4 * DBL_EPSILON; // of angles up to a few turns
+    if (ct_ex_is_const(x, e, &v) && fabs(v - round(v)) < roundoff)
         return ct_ex_const(x, round(v));
     return e;
 }

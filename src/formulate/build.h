@@ -29,11 +29,11 @@ struct ct_node_info {
 /// A coordinate of a joint or of a body edge: unknown, driven, or measured.
 struct ct_coordinate {
     const char *name;                 // "crank.q", "crank.q2"
-    int edge, place;                  // place among the edge's coordinates
+    int edge, index;                  // place among the edge's coordinates
     bool in_translation, in_rotation; // enters d, enters the turns
     bool is_driven;
     int q, u, driver;  // index of the unknown or the driver; -1 where not
-    ct_ex value, rate; // of unknown and driven ones; measured ones: row.h
+    ct_ex value, rate; // of unknown and driven ones; measured ones: constraint_row.h
     ct_ex measured;    // value of a measured one, once asked for
     bool has_measured;
     int motion_row; // driven and measured: its row, plus one
@@ -58,7 +58,7 @@ struct ct_edge_info {
     ct_ex along;                       // [m]
     const struct ct_station *station;  // once the beam's coordinates are chosen
     ct_ex3 *foreshortened; // slides that forces act along, where they differ; else NULL
-    ct_ex3 *slide, *turn;  // of the station, by elastic coordinate
+    ct_ex3 *translation, *rotation; // of the station, by elastic coordinate
 };
 
 /// coef times a speed: of an unknown (speed >= 0) or of a driver (driver >= 0).
@@ -68,7 +68,7 @@ struct ct_term {
 };
 
 /// One axis of rotation of a cluster against its parent. A quaternion gives three.
-struct ct_spin {
+struct ct_rotation_axis {
     int cluster; // the one it introduces
     ct_ex3 axis; // unit vector
     int nterm;   // rate = sum of terms (+ what depends on time alone)
@@ -81,7 +81,7 @@ struct ct_spin {
 
 struct ct_cluster {
     int parent;
-    int first_spin, nspin;
+    int first_axis, naxis;
     int enter, leave; // preorder interval: holds those of the clusters outboard
     ct_ex33 R;
     int base;    // accumulated angle: R = R_base Rot(axis, angle)
@@ -93,11 +93,11 @@ struct ct_cluster {
     ct_ex omega;     // planar: w = omega * normal
     ct_ex3 w, al[2]; // angular velocity, acceleration: [0] with u' = 0, [1] with symbols u'
     bool has_al[2];
-    ct_ex33 L; // augmented inertia, local (lumping.c)
+    ct_ex33 L; // augmented inertia, local (augmented_body.c)
 };
 
 /// Sliding of a link along p (local) at the speed of an unknown or a driver.
-struct ct_slide {
+struct ct_translation_axis {
     int speed, driver;
     ct_ex3 p;
     ct_ex3
@@ -109,9 +109,9 @@ struct ct_anchor {
     int parent, cluster;
     int enter, leave; // preorder interval: holds those of the anchors outboard
     ct_ex3 local;
-    ct_ex3 fixed, slid; // its parts where it moves: the constant one, and what it slides by
-    int nslide;
-    struct ct_slide *slide;
+    ct_ex3 fixed, sliding; // its parts where it moves: the constant one, and what it slides by
+    int ntranslation_axis;
+    struct ct_translation_axis *translation_axis;
     ct_ex3 drift,
         drift_bias; // local: rate of `local`, and its second derivative with all u' = 0
     bool moves;     // has slides or a drift
@@ -122,7 +122,7 @@ struct ct_anchor {
 };
 
 /// Where a node is: at an anchor plus R_cluster local; its axes: R_frame S.
-struct ct_place {
+struct ct_node_placement {
     int anchor, cluster;
     ct_ex3 local;
     int frame; // cluster the node's axes belong to
@@ -145,11 +145,11 @@ struct ct_piece {
     ct_ex3 local;
 };
 
-struct ct_star;     // dynamics.h
-struct ct_flexible; // flexible.h
+struct ct_augmented_body; // dynamics.h
+struct ct_flexible;       // flexible_body.h
 struct ct_station;
 struct ct_sweep;
-struct ct_pull; // row.h
+struct ct_multiplier_wrench; // constraint_row.h
 struct ct_coupling;
 
 struct ct_build {
@@ -169,11 +169,12 @@ struct ct_build {
     const bool *is_linear; // by body: beams left to the program that are; NULL: not known yet
     const struct ct_equations *like; // whose beams are formulated alike; NULL: none
     bool keep_all;                   // leave nothing out
-    bool frees_beams; // beams do what their sections allow, whether the scene excites it or not
-    bool is_freed;    // for that alone the mechanism is not planar
-    bool is_held;     // drivers stand still: time does not go on
-    bool has_gaps;    // loops need not be closed (gap.h)
-    struct ct_build *rigid; // the scene with rigid beams, once asked for (recoil.h)
+    bool
+        keeps_all_deformations; // beams do what their sections allow, whether the scene excites it or not
+    bool is_spatial_for_beams; // for that alone the mechanism is not planar
+    bool drivers_are_held;     // drivers stand still: time does not go on
+    bool has_offsets;          // loops need not be closed (constraint_offset.h)
+    struct ct_build *rigid; // the scene with rigid beams, once asked for (beam_error_coupled.h)
     bool has_no_rigid;      // that is of no use
     bool is_rigid;   // beams keep their shape: for assembly, where they are not deformed yet
     ct_ex3 plane[3]; // e1, e2, n
@@ -195,35 +196,35 @@ struct ct_build {
 
     struct ct_cluster *cluster;
     size_t ncluster, cluster_cap;
-    struct ct_spin *spin;
-    size_t nspin, spin_cap;
+    struct ct_rotation_axis *rotation_axis;
+    size_t nrotation_axis, rotation_axis_cap;
     struct ct_anchor *anchor;
     size_t nanchor, anchor_cap;
-    struct ct_place *place; // by node
-    struct ct_piece *piece; // of the path sought last (nanchor + 2)
-    bool *marked;           // clusters that matter to it (ncluster)
-    ct_ex *coefficient;     // of the speeds, in the row in hand (nu)
-    struct ct_user {        // a spin or an anchor's slide that a speed moves
-        bool slides;
+    struct ct_node_placement *placement; // by node
+    struct ct_piece *piece;              // of the path sought last (nanchor + 2)
+    bool *marked;                        // clusters that matter to it (ncluster)
+    ct_ex *coefficient;                  // of the speeds, in the row in hand (nu)
+    struct ct_speed_axis {               // a spin or an anchor's slide that a speed moves
+        bool is_translation;
         size_t at, next; // next: its number plus one, 0 at the end
         int k;           // term or slide
-    } * user;
-    size_t nuser, user_cap,
-        *first_user; // first_user by speed, numbers plus one; NULL: not listed yet
+    } * speed_axis;
+    size_t nspeed_axis, speed_axis_cap,
+        *first_speed_axis; // first_user by speed, numbers plus one; NULL: not listed yet
 
     struct ct_flexible *flexible; // one per beam
     size_t nflexible;
 
-    struct ct_star *star;
-    size_t nstar, star_cap;
-    bool is_lumped; // stars are made
-    int *child;     // anchors, star by star
+    struct ct_augmented_body *augmented_body;
+    size_t naugmented_body, augmented_body_cap;
+    bool is_lumped; // augmented bodies are made
+    int *child;     // anchors, augmented body by augmented body
 
     struct ct_load *load;
     size_t nload, load_cap;
-    struct ct_pull *pull;
-    size_t npull, pull_cap;
-    struct ct_coupling *coupling; // row.h
+    struct ct_multiplier_wrench *multiplier_wrench;
+    size_t nmultiplier_wrench, multiplier_wrench_cap;
+    struct ct_coupling *coupling; // constraint_row.h
     size_t ncoupling, coupling_cap;
     const struct ct_sweep *sweep[2]; // by level, once asked for
     ct_ex *effort;                   // of joints along their unknown coordinates (nu)

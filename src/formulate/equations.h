@@ -11,7 +11,7 @@
 #define CT_FORMULATE_EQUATIONS_H
 
 #include "component/model.h"
-#include "formulate/swing.h"
+#include "beam_error/beam_error_modal.h"
 #include "graph/graph.h"
 
 /// A stored coordinate.
@@ -38,7 +38,7 @@ struct ct_u {
     int joint, body;           // whose it is; the other is -1
     int beam;                  // body whose elastic coordinate it belongs to; 0: none
     enum ct_elastic_kind kind; // of those
-    bool is_turn;              // [rad/s]
+    bool is_rotation;          // [rad/s]
 };
 
 struct ct_entry { // of a sparse matrix
@@ -52,14 +52,15 @@ struct ct_row {
     int joint;         // in the model; -1: none
     ct_ex phi, v, gam; // position, velocity J u + Phi_t, acceleration J u' + gam
     ct_ex lam;         // symbol
-    ct_ex wanted;   // >= 0 in the right assembly (half-turn solutions of (4.4)); 0 where none
-    bool is_length; // of phi [m]
+    ct_ex
+        assembly_sign; // >= 0 in the right assembly (half-turn solutions of (4.4)); 0 where none
+    bool is_length;    // of phi [m]
     const ct_ex3 *lever; // [m] vectors along the row's path that its speeds turn  (nlever)
     size_t nlever;
 };
 
 /// A comparison whose outcome is held between events.
-struct ct_mode {
+struct ct_switch {
     ct_ex symbol;
     enum ct_op op; // LT, LE, GT, GE
     ct_ex g;       // the symbol is 1 where g op 0
@@ -80,12 +81,12 @@ struct ct_memory {
         CT_MEMORY_TURNS
     } kind;
     ct_ex33 R;        // QUATERNION, first of four: the rotation itself
-    int joint, place; // ANGLE: the coordinate, to start from a given value; joint -1: none
+    int joint, index; // ANGLE: the coordinate, to start from a given value; joint -1: none
     bool is_sum;      // ANGLE: a sum of angles and whole turns, found without its last value
 };
 
 /// Does it change from step to step?
-static inline bool ct_memory_is_followed(const struct ct_memory *m)
+static inline bool ct_memory_is_updated(const struct ct_memory *m)
 {
     return m->kind == CT_MEMORY_ANGLE || m->kind == CT_MEMORY_QUATERNION;
 }
@@ -93,7 +94,7 @@ static inline bool ct_memory_is_followed(const struct ct_memory *m)
 /// Is it found from its last value, so that it must not turn far in a step?
 static inline bool ct_memory_limits_steps(const struct ct_memory *m)
 {
-    return ct_memory_is_followed(m) && !m->is_sum;
+    return ct_memory_is_updated(m) && !m->is_sum;
 }
 
 struct ct_result {
@@ -105,7 +106,7 @@ struct ct_result {
 /// A driven coordinate: known branch coordinate with its value, rate and acceleration.
 struct ct_driver {
     const char *name;
-    int joint, place;
+    int joint, index;
     struct ct_mark mark;
     ct_ex value, rate, acceleration; // functions of t (and of modes)
     ct_ex effort;                    // generalised force the driver gives [N or N m]
@@ -119,10 +120,10 @@ struct ct_driver {
 struct ct_residual {
     ct_ex *r;                           // M u' - Q - J' lam  (nu)
     bool has_slopes;                    // those below are derived
-    ct_ex *inner;                       // k (ninner)
+    ct_ex *auxiliary;                   // k (ninner)
     struct ct_slope *dq, *du, *da, *dk; // of r and k by q, u, u', k
     struct ct_slope *dv;                // of the rows' v by q
-    size_t ninner, ndq, ndu, nda, ndk, ndv;
+    size_t nauxiliary, ndq, ndu, nda, ndk, ndv;
     struct ct_directional
         *along; // NULL: the slopes have values as expressions; else their places only
 };
@@ -143,7 +144,7 @@ enum ct_more_outputs {
     CT_MORE_EFFORTS // efforts of motions, forces and torques of all joints
 };
 
-struct ct_recoil;
+struct ct_beam_error_coupled;
 
 /// Validity indicator of a linear beam.
 struct ct_validity {
@@ -151,17 +152,17 @@ struct ct_validity {
     struct ct_mark mark;
     ct_ex eta;
     double omega; // first bending frequency of the beam in its frame [rad/s]
-    // What foretells the error of a linear beam  (swing.h)
+    // What estimates the error of a linear beam  (beam_error_modal.h)
     bool
-        foretells; // its base moves as time tells or can be foreseen, nothing but bodies welded to it hangs on it or loads it
-    const struct ct_recoil
-        *recoil;  // its base is not driven, but moves as can be foreseen (recoil.h); else NULL
-    bool settles; // it starts in equilibrium
-    ct_ex3 carried[3]; // w, v, weight per mass of the base, axes of the beam
-    ct_ex end[2];      // deflection of its end along y and z
+        estimates_error; // its base moves as time tells or can be foreseen, nothing but bodies welded to it hangs on it or loads it
+    const struct ct_beam_error_coupled *
+        coupled; // its base is not driven, but moves as can be foreseen (beam_error_coupled.h); else NULL
+    bool starts_static;    // it starts in equilibrium
+    ct_ex3 base_motion[3]; // w, v, weight per mass of the base, axes of the beam
+    ct_ex end[2];          // deflection of its end along y and z
     int nshape;
     struct ct_bending_shape {
-        struct ct_swing swing;
+        struct ct_beam_mode mode;
         ct_ex state[2];  // x, x'
         double start[2]; // with `initial: {v: ...}`
         const double
@@ -209,21 +210,21 @@ struct ct_equations {
     bool is_open;      // joints close no loop: J keeps its rank on any trees
     bool is_analysed;  // to be linearised, not to be integrated: a few evaluations
     ct_ex *Q;          // nu
-    const struct ct_carried
-        *carried;       // of closed systems, with the solution (carried.h); or NULL
+    const struct ct_beam_augmented
+        *augmented;     // of closed systems, with the solution (beam_augmented.h); or NULL
     struct ct_entry *J; // row by row
     size_t nJ, J_cap;
     struct ct_row *row;
     size_t nrow, row_cap;
-    struct ct_mode *mode;
-    size_t nmode, mode_cap;
-    ct_ex
-        *clock; // functions of t alone that loads and drivers have, each as large as it can be
-    size_t nclock, clock_cap;
+    struct ct_switch *switches;
+    size_t nswitch, switch_cap;
+    ct_ex *
+        time_function; // functions of t alone that loads and drivers have, each as large as it can be
+    size_t ntime_function, time_function_cap;
     struct ct_memory *memory;
     size_t nmemory, memory_cap;
-    struct ct_gap *gap; // of rows (gap.h)
-    size_t ngap, gap_cap;
+    struct ct_constraint_offset *offset; // of rows (constraint_offset.h)
+    size_t noffset, offset_cap;
     struct ct_driver *driver;
     size_t ndriver, driver_cap;
     struct ct_result *result; // outputs, one per column
@@ -233,10 +234,10 @@ struct ct_equations {
     ct_ex power; // d(work)/dt, in terms of u' and lam where drivers push; 0 when nothing works
     ct_ex kinetic, potential, strain; // strain: of beams
     ct_ex total;                      // energy less the work put in: constant
-    ct_ex open
+    ct_ex closure_error
         [2]; // largest of phi, of v: constraint.position, constraint.velocity; zero where neither is asked for
     ct_ex
-        kept; // of `rate_jumps: continuous`: what a jump leaves as it is, as half a sum of squares of speeds; else 0
+        continuity; // of `rate_jumps: continuous`: what a jump leaves as it is, as half a sum of squares of speeds; else 0
     struct ct_residual *residual; // NULL if not asked for
     bool is_planar;
     int bare_beam,
@@ -244,8 +245,8 @@ struct ct_equations {
     const bool *is_small; // by speed: M and Q are cut to first order in these; NULL: not cut
     struct ct_validity *validity;
     size_t nvalidity, validity_cap;
-    struct ct_bent_beam *bend;
-    size_t nbend, bend_cap;
+    struct ct_bent_beam *bent_beam;
+    size_t nbent_beam, bent_beam_cap;
     struct ct_left_out *left_out;
     size_t nleft_out, left_out_cap;
     struct ct_coordinate *coordinate; // of all joints and bodies (build.h)

@@ -1,16 +1,16 @@
 // The stage that turns a model into equations.
 #include "formulate/formulate.h"
-#include "formulate/carried.h"
-#include "formulate/dynamics.h"
-#include "formulate/open.h"
-#include "formulate/residual.h"
-#include "formulate/row.h"
-#include "formulate/signal.h"
-#include "formulate/small.h"
-#include "formulate/system_sum.h"
-#include "formulate/topology.h"
-#include "formulate/trees.h"
-#include "formulate/validity.h"
+#include "formulate/closed_form/beam_augmented.h"
+#include "formulate/dynamics/dynamics.h"
+#include "formulate/recursive/open_chain.h"
+#include "formulate/dynamics/residual.h"
+#include "formulate/kinematics/constraint_row.h"
+#include "formulate/outputs/signal.h"
+#include "formulate/dynamics/small_motion.h"
+#include "formulate/dynamics/momentum_energy.h"
+#include "formulate/topology/linear_graph.h"
+#include "formulate/topology/tree_selection.h"
+#include "beam_error/validity.h"
 
 #include <string.h>
 
@@ -43,9 +43,10 @@ struct ct_build *ct_build_create(struct ct_ctx *ctx, struct ct_arena *a,
         .model = m,
         .is_rigid = o->rigid || (o->measure_all && !o->deformed && !starts_deformed(m)),
         .keep_all = o->keep_all,
-        .frees_beams = o->frees_beams || (o->like && o->like->build->frees_beams),
-        .is_held = o->held,
-        .has_gaps = o->gaps,
+        .keeps_all_deformations
+        = o->frees_beams || (o->like && o->like->build->keeps_all_deformations),
+        .drivers_are_held = o->held,
+        .has_offsets = o->gaps,
         .like = o->like,
         .is_linear = is_linear};
     b->eqs = CT_NEW(a, struct ct_equations);
@@ -53,7 +54,7 @@ struct ct_build *ct_build_create(struct ct_ctx *ctx, struct ct_arena *a,
     b->value = start_values(a, m);
     b->x->ndecided = m->x->nsym;
     b->x->decided = CT_NEWN(a, unsigned char, m->x->nsym + 1);
-    ct_topology_derive(b, !o->keep_all);
+    ct_linear_graph_derive(b, !o->keep_all);
     return b;
 }
 
@@ -150,9 +151,9 @@ static void measure_all(struct ct_build *b, const struct ct_equations *needed_by
 static void derive_dynamics(struct ct_build *b, const struct ct_formulate_options *o)
 {
     b->eqs->is_analysed
-        = o->for_analysis && b->eqs->nu > CT_MOST_DENSE && !ct_small_is_wanted(b);
+        = o->for_analysis && b->eqs->nu > CT_MOST_DENSE && !ct_small_motion_is_wanted(b);
     if (b->eqs->is_analysed) {
-        ct_masses_lump(b); // for energies and rows
+        ct_augmented_bodies_lump(b); // for energies and rows
         return;
     }
     if (o->with_solution && !b->eqs->nrow && b->eqs->nu) {
@@ -161,7 +162,7 @@ static void derive_dynamics(struct ct_build *b, const struct ct_formulate_option
     }
     ct_dynamics_derive(b);
     if (o->with_solution && b->eqs->nrow)
-        b->eqs->carried = ct_carried_derive(b);
+        b->eqs->augmented = ct_beam_augmented_derive(b);
 }
 
 // The choice must not depend on the trees: where these do not show what drives a beam, trees through joints are asked.
@@ -177,7 +178,7 @@ static const bool *choose_linear(struct ct_ctx *ctx, struct ct_arena *a,
     struct ct_tree_report unused = {0};
     through.tree = CT_TREE_JOINTS;
     struct ct_build *other = ct_build_create(ctx, a, m, &through, NULL);
-    if (!ct_trees_choose(&other, &through, &unused)
+    if (!ct_tree_selection_run(&other, &through, &unused)
         || !(other->is_derived || ct_build_derive(other, false)))
         return NULL;
     linear = ct_validity_choose(other, &is_driven);
@@ -208,8 +209,8 @@ static bool choose_beams(struct ct_ctx *ctx, struct ct_arena *a, const struct ct
         struct ct_flexible *f = &(*b)->flexible[i];
         f->why = old->flexible[i].why;
         if (f->beam->formulation == CT_BEAM_AUTO && f->formulation == CT_BEAM_LINEAR)
-            ct_topology_left_out(*b, ct_arena_printf(a, "foreshortening of %s", f->name),
-                                 f->why);
+            ct_linear_graph_note_left_out(
+                *b, ct_arena_printf(a, "foreshortening of %s", f->name), f->why);
     }
     return ct_build_derive(*b, !o->without_dynamics);
 }
@@ -241,7 +242,7 @@ bool ct_formulate(struct ct_ctx *ctx, struct ct_arena *a, const struct ct_model 
     const size_t before = ctx->nerror;
     struct ct_build *b = ct_build_create(ctx, a, m, options, NULL);
     *report = (struct ct_tree_report){0};
-    if (ctx->nerror > before || !ct_trees_choose(&b, options, report)
+    if (ctx->nerror > before || !ct_tree_selection_run(&b, options, report)
         || !(b->is_derived || ct_build_derive(b, !options->without_dynamics))
         || !choose_beams(ctx, a, m, options, &b))
         return false;

@@ -34,9 +34,9 @@ struct ct_formulate_options {
     const bool
         *first; // by joint: of those a tree through joints has all it can have; NULL: none
     const struct ct_equations *like; // beams as in these; NULL: choose
-    bool gaps;                       // rows of joints hold where they start (gap.h)
-    bool held;                       // drivers stand still at their values: for what is static
-    bool without_dynamics; // neither M nor Q: places and speeds are all that is wanted
+    bool gaps;             // rows of joints hold where they start (constraint_offset.h)
+    bool held;             // drivers stand still at their values: for what is static
+    bool without_dynamics; // neither M nor Q: positions and speeds are all that is wanted
     bool
         frees_beams; // what the scene does not excite in beams is kept, too; as in `like`, where given
     bool

@@ -32,13 +32,13 @@ static const double gap = 0.3;
 // Sweeps end when stages move less than this part of the tolerance, or less than this part of themselves: then
 // the checks of the step are not spoilt by what sweeps have left at coarse tolerances.
 static const double settled = 0.02, settled_fine = 1e-10;
-const double ct_crossing_held = 1e-9;
-const double ct_crossing_rounding = 5e-13;
+const double ct_crossing_mismatch_limit = 1e-9;
+const double ct_crossing_roundoff = 5e-13;
 // Further off than that and so many times the tolerance there is nothing to be had from nearer by.
 static const double held_tolerance = 100;
-// Rounding stops sweeps: they end, too, when a sweep does not gain this factor any more and moves stages by less than
+// Round-off stops sweeps: they end, too, when a sweep does not gain this factor any more and moves stages by less than
 // this many times the tolerance. Most of what moves then are coordinates that the constraints determine.
-static const double slow = 0.5, rounding = 10;
+static const double slow = 0.5, roundoff = 10;
 
 struct work {
     double c[STAGES], norm[STAGES];   // norms of find_norms, of all stages
@@ -234,7 +234,7 @@ static enum ct_eval sweep(const struct task *s, const double (*A)[STAGES], int f
             e = put_stage(s, j, A[j], &moved);
         if (e != CT_EVAL_OK)
             return e;
-        if (moved <= fine || (moved <= rounding && moved > slow * before))
+        if (moved <= fine || (moved <= roundoff && moved > slow * before))
             return CT_EVAL_OK;
         if (i > 1 && moved > before)
             return CT_EVAL_RETRY;
@@ -272,15 +272,15 @@ static void point_at(const struct ct_problem *p, double h, double c, const doubl
     ct_stepper_combine(out, y, h, a, w->k, STAGES, p->ny);
 }
 
-// Where rows depend what they miss there is no more than rounding: what polynomials err by counts by its square. A pivot as small as the
-// root of the miss divides rounding by the miss: where that leaves the digits that are wanted, steps can follow the motion.
+// Where rows depend what they miss there is no more than round-off: what polynomials err by counts by its square. A pivot as small as the
+// root of the miss divides round-off by the miss: where that leaves the digits that are wanted, steps can follow the motion.
 static double allowed_mismatch(const struct ct_problem *p)
 {
     const double met = 1e-12, eps = 0.05 * DBL_EPSILON;
-    return fmin(ct_crossing_held, fmax(met, eps / p->accuracy));
+    return fmin(ct_crossing_mismatch_limit, fmax(met, eps / p->accuracy));
 }
 
-bool ct_crossing_only_passes(const struct ct_problem *p, double t, const double *y)
+bool ct_crossing_misses_singularity(const struct ct_problem *p, double t, const double *y)
 {
     return p->mismatch && p->mismatch(p->user, t, y) > allowed_mismatch(p);
 }
@@ -351,10 +351,10 @@ static double error_of(const struct task *s, const double *y1)
     point_at(p, s->h, 0.5, s->y, w, w->end);
     const double left = p->residual ? p->residual(p->user, middle, w->end) : 0,
                  mismatch = p->mismatch ? p->mismatch(p->user, middle, w->end) : 0;
-    if (left > ct_crossing_held + held_tolerance * s->tolerance->rtol)
+    if (left > ct_crossing_mismatch_limit + held_tolerance * s->tolerance->rtol)
         return INFINITY;
     return fmax(judge(s, mismatch, estimate(s, w->begin > 0 ? w->rest : w->e, y1)),
-                left / ct_crossing_held);
+                left / ct_crossing_mismatch_limit);
 }
 
 static enum ct_eval step(const struct ct_problem *p, double t, double h, const double *y,
@@ -380,10 +380,10 @@ static enum ct_eval step(const struct ct_problem *p, double t, double h, const d
     return CT_EVAL_OK;
 }
 
-enum ct_eval ct_crossing_lead_in(const struct ct_problem *p, double t, double h, double theta,
-                                 const double *y, const double *dy,
-                                 const struct ct_tolerance *tolerance, double *before,
-                                 double *err, void *work, struct ct_integrate_stats *stats)
+enum ct_eval ct_crossing_initial_step(const struct ct_problem *p, double t, double h,
+                                      double theta, const double *y, const double *dy,
+                                      const struct ct_tolerance *tolerance, double *before,
+                                      double *err, void *work, struct ct_integrate_stats *stats)
 {
     struct work *w = work;
     const struct task s = {p, t - theta * h, h, y, tolerance, w, stats};
@@ -443,18 +443,20 @@ void ct_crossing_slope(void *work, int n, double theta, double *dy)
     ct_stepper_combine(dy, NULL, 1, w->weight, w->k, STAGES, n);
 }
 
-struct ct_bridge ct_crossing_bridge(void *work, double t, double h, double theta)
+struct ct_gap_interpolation ct_crossing_interpolation(void *work, double t, double h,
+                                                      double theta)
 {
     struct work *w = work;
     const double whole = h / (1 - w->begin);
     weigh(w, part_of_whole(w, theta));
     for (int j = 0; j < STAGES; j++)
         w->t[j] = t + (w->c[j] - w->begin) * whole;
-    return (struct ct_bridge){STAGES, w->t, w->weight, w->stage};
+    return (struct ct_gap_interpolation){STAGES, w->t, w->weight, w->stage};
 }
 
-struct ct_bridge ct_crossing_bridge_over(void *work, const struct ct_stepper_span *span,
-                                         double from, double to, double theta)
+struct ct_gap_interpolation ct_crossing_interpolation_over(void *work,
+                                                           const struct ct_stepper_span *span,
+                                                           double from, double to, double theta)
 {
     struct work *w = work;
     const double length = (to - from) / gap, begin = (from + to) / 2 - length / 2;
@@ -463,13 +465,13 @@ struct ct_bridge ct_crossing_bridge_over(void *work, const struct ct_stepper_spa
     for (int j = 0; j < STAGES; j++)
         ct_stepper_point(span, begin + w->c[j] * length, w->stage + j * span->p->ny);
     w->begin = 0;
-    return ct_crossing_bridge(work, span->t + begin * span->h, length * span->h,
-                              (theta - begin) / length);
+    return ct_crossing_interpolation(work, span->t + begin * span->h, length * span->h,
+                                     (theta - begin) / length);
 }
 
 const struct ct_method ct_crossing = {
     .name = "crossing",
-    .summary = "across a singular position",
+    .summary = "across a singular configuration",
     .source = "hairer1993",
     .order = STAGES,
     .error_order = STAGES - 3,

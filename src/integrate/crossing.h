@@ -1,4 +1,4 @@
-// One step across a singular position: collocation whose stages stay away from it.
+// One step across a singular configuration: collocation whose stages stay away from it.
 //
 // f has a limit at the position but cannot be computed there or close by. Seen along the motion it is smooth,
 // so a polynomial of high order through values of f on both sides carries it across.
@@ -13,14 +13,14 @@ extern const struct ct_method ct_crossing;
 enum { CT_CROSSING_STAGES = 14 };
 
 /// A smooth motion meets the constraints also in the middle, up to this [m, rad].
-extern const double ct_crossing_held;
+extern const double ct_crossing_mismatch_limit;
 
-/// Does the motion only pass by a singular position beside y, at t, in the middle of a step across, as rows that should depend there miss
-/// each other? So little that steps by it would be among roundings counts as none. (8.29)
-bool ct_crossing_only_passes(const struct ct_problem *p, double t, const double *y);
+/// Does the motion only pass by a singular configuration beside y, at t, in the middle of a step across, as rows that should depend there miss
+/// each other? So little that steps by it would be among round-off errors counts as none. (8.29)
+bool ct_crossing_misses_singularity(const struct ct_problem *p, double t, const double *y);
 
-/// Beside a singular position f has fewer digits: crossings may err by this part of the largest state.
-extern const double ct_crossing_rounding;
+/// Beside a singular configuration f has fewer digits: crossings may err by this part of the largest state.
+extern const double ct_crossing_roundoff;
 
 /// The steps to come begin within what they cross, at this part of the whole: the rest of a crossing that something has cut. 0, as at
 /// first: where it begins. Stages are those of the whole, with f as it is then.  (8.37)
@@ -33,18 +33,22 @@ bool ct_crossing_is_gap(const void *work, double theta);
 void ct_crossing_slope(void *work, int n, double theta, double *dy);
 
 /// The stages of the step just taken from t by h, with weights for theta. Valid until the next one.
-struct ct_bridge ct_crossing_bridge(void *work, double t, double h, double theta);
+struct ct_gap_interpolation ct_crossing_interpolation(void *work, double t, double h,
+                                                      double theta);
 /// The same around the gap from `from` to `to` of a step of another method, with states of its interpolant.
-struct ct_bridge ct_crossing_bridge_over(void *work, const struct ct_stepper_span *span,
-                                         double from, double to, double theta);
+struct ct_gap_interpolation ct_crossing_interpolation_over(void *work,
+                                                           const struct ct_stepper_span *span,
+                                                           double from, double to,
+                                                           double theta);
 
-/// The state before (ny, out) at t - theta h, where a step h across a singular position begins, of the motion that is at y at t, in
+/// The state before (ny, out) at t - theta h, where a step h across a singular configuration begins, of the motion that is at y at t, in
 /// the position or near it. dy: its derivative; accelerations, which need not be known, are not used. *err (out): what the step
-/// errs by, as of others; the tolerance of the step is its own, next to rounding. Its rest in the constraints is the caller's to
+/// errs by, as of others; the tolerance of the step is its own, next to round-off. Its rest in the constraints is the caller's to
 /// look at. (8.23)
-enum ct_eval ct_crossing_lead_in(const struct ct_problem *p, double t, double h, double theta,
-                                 const double *y, const double *dy,
-                                 const struct ct_tolerance *tolerance, double *before,
-                                 double *err, void *work, struct ct_integrate_stats *stats);
+enum ct_eval ct_crossing_initial_step(const struct ct_problem *p, double t, double h,
+                                      double theta, const double *y, const double *dy,
+                                      const struct ct_tolerance *tolerance, double *before,
+                                      double *err, void *work,
+                                      struct ct_integrate_stats *stats);
 
 #endif

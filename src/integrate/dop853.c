@@ -144,7 +144,7 @@ static const double D[CORRECTIONS][ALL_STAGES] = {
 };
 
 struct work {
-    struct ct_carry carry;
+    struct ct_compensation carry;
     double *k;     // (ny x 16)
     double *F;     // (ny x 4) of the interpolant
     double *spare; // two vectors (ny)
@@ -156,7 +156,7 @@ static void *create(struct ct_arena *a, const struct ct_method *method,
     (void)method;
     const size_t n = (size_t)p->ny;
     struct work *w = CT_NEW(a, struct work);
-    *w = (struct work){.carry = ct_carry_create(a, p->ny),
+    *w = (struct work){.carry = ct_compensation_create(a, p->ny),
                        .k = CT_NEWN(a, double, ALL_STAGES *n),
                        .F = CT_NEWN(a, double, CORRECTIONS *n),
                        .spare = CT_NEWN(a, double, 2 * n)};
@@ -188,12 +188,12 @@ static double estimate(const struct ct_problem *p, double t, double h, const dou
     const int n = p->ny;
     double *e = w->spare, *y3 = e + n;
     ct_stepper_combine(e, NULL, h, E5, w->k, STAGES - 1, n);
-    ct_stepper_take_noise(p, h, e);
+    ct_stepper_subtract_roundoff(p, h, e);
     const double e5 = ct_stepper_norm(p, tolerance, y, y1, e);
     ct_stepper_combine(y3, y, h, B3, w->k, STAGES - 1, n);
     for (int i = 0; i < n; i++)
         y3[i] = y1[i] - y3[i];
-    ct_stepper_take_noise(p, h, y3);
+    ct_stepper_subtract_roundoff(p, h, y3);
     const double joint = ct_stepper_join(e5, ct_stepper_norm(p, tolerance, y, y1, y3));
     if (e5 == 0 || !p->output_error)
         return joint;
@@ -253,7 +253,8 @@ static double swiftness(const struct ct_problem *p, double h, const double *y, c
     const int n = p->ny;
     struct work *w = work;
     ct_stepper_combine(w->spare, y, h, A[BEFORE], w->k, BEFORE, n);
-    return ct_stepper_swiftness(p, h, y1, w->k + LAST * n, w->spare, w->k + BEFORE * n);
+    return ct_stepper_stiffness_estimate(p, h, y1, w->k + LAST * n, w->spare,
+                                         w->k + BEFORE * n);
 }
 
 static const struct ct_tableau tableau = {.stages = STAGES,
@@ -273,17 +274,17 @@ const struct ct_method ct_method_dop853 = {
     .error_order = 7,
     // the two results of the estimate may cross by accident: a long step after a short one is not to be trusted
     .most_growth = 1.5,
-    .quiet = {1. / 3, 3. / 5},
+    .stage_gap = {1. / 3, 3. / 5},
     .create = create,
-    .restart = ct_carry_restart,
-    .accept = ct_carry_accept,
+    .restart = ct_compensation_restart,
+    .accept = ct_compensation_accept,
     .step = step,
-    .followed
+    .resolved_limit
     = 2.5, // stable up to about 6; where accuracy holds steps up, at 1e-4, they come to 2.4 (cart pole, four-bars)
     // left of the imaginary axis |R(z)| <= 1 for |z| <= 5.95; but at z = -4.95 the estimate is largest, and falls to zero at -5.65: control
     // would go on to -6.4, where errors grow
-    .stable = 4.8,
-    .swiftness = swiftness,
+    .stability_limit = 4.8,
+    .stiffness_estimate = swiftness,
     .prepare = prepare,
     .dense = dense,
 };

@@ -39,7 +39,7 @@ static const double D[STAGES] = {
 };
 
 struct work {
-    struct ct_carry carry;
+    struct ct_compensation carry;
     double *k;                     // (ny x 7)
     double *point, *slope, *a, *b; // (ny) each
     bool is_prepared;
@@ -51,7 +51,7 @@ static void *create(struct ct_arena *arena, const struct ct_method *method,
     (void)method;
     const size_t n = (size_t)p->ny;
     struct work *w = CT_NEW(arena, struct work);
-    *w = (struct work){.carry = ct_carry_create(arena, p->ny),
+    *w = (struct work){.carry = ct_compensation_create(arena, p->ny),
                        .k = CT_NEWN(arena, double, STAGES *n),
                        .point = CT_NEWN(arena, double, n),
                        .slope = CT_NEWN(arena, double, n),
@@ -82,7 +82,7 @@ static enum ct_eval step(const struct ct_problem *p, double t, double h, const d
     ct_stepper_copy(dy1, k + (STAGES - 1) * n, n);
     if (tolerance) {
         ct_stepper_combine(point, NULL, h, E, k, STAGES, n);
-        ct_stepper_take_noise(p, h, point);
+        ct_stepper_subtract_roundoff(p, h, point);
         *err = ct_stepper_error(p, tolerance, t + h, y, y1, point);
     }
     return CT_EVAL_OK;
@@ -157,8 +157,8 @@ const struct ct_method ct_method_dopri5 = {
     .order = 5,
     .error_order = 4,
     .create = create,
-    .restart = ct_carry_restart,
-    .accept = ct_carry_accept,
+    .restart = ct_compensation_restart,
+    .accept = ct_compensation_accept,
     .step = step,
     .prepare = prepare,
     .has_rough_dense = true,

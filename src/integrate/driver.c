@@ -4,13 +4,13 @@
 //         -> samples on the way -> commit -> event -> sample on it
 //
 // A step that the method, the projection or a root function refuses, or whose error is too large,
-// is tried again shorter; until `commit` nothing has changed. Step control is that of control.h.
+// is tried again shorter; until `commit` nothing has changed. Step control is that of step_control.h.
 #include "integrate/driver.h"
 
 #include <math.h>
 #include <string.h>
 
-// Crossings may err by more than ct_crossing_rounding where they begin nearer to the position than crossings do, with the square of how much
+// Crossings may err by more than ct_crossing_roundoff where they begin nearer to the position than crossings do, with the square of how much
 // nearer, up to this part of what is wanted: from still nearer by there would be less. (8.28)
 static const double unfelt = 0.1;
 
@@ -51,25 +51,26 @@ static void allocate(struct ct_driver *r)
 {
     struct ct_arena *a = r->ctx->model;
     double **const vectors[]
-        = {&r->y0,     &r->y,     &r->dy,    &r->y1,    &r->dy1,  &r->moved,
-           &r->dmoved, &r->point, &r->noise, &r->rough, &r->other};
+        = {&r->y0,    &r->y,      &r->dy,    &r->y1,       &r->dy1,
+           &r->moved, &r->dmoved, &r->point, &r->roundoff, &r->arithmetic_roundoff,
+           &r->other};
     for (size_t i = 0; i < COUNT(vectors); i++)
         *vectors[i] = CT_NEWN(a, double, r->p->ny);
     r->work = r->method->create(a, r->method, r->p);
-    if (r->method->swiftness && r->o->step == 0) {
-        r->aside = r->method->create(a, r->method, r->p);
-        r->beside = CT_NEWN(a, double, r->p->ny);
-        r->dbeside = CT_NEWN(a, double, r->p->ny);
+    if (r->method->stiffness_estimate && r->o->step == 0) {
+        r->sample_work = r->method->create(a, r->method, r->p);
+        r->sample_end = CT_NEWN(a, double, r->p->ny);
+        r->dsample_end = CT_NEWN(a, double, r->p->ny);
     }
     if (r->method->leaves_speeds) {
-        r->put = CT_NEWN(a, double, r->p->ny);
-        r->dput = CT_NEWN(a, double, r->p->ny);
+        r->put_y = CT_NEWN(a, double, r->p->ny);
+        r->put_dy = CT_NEWN(a, double, r->p->ny);
     }
-    if (r->p->singular_in && r->o->step == 0)
+    if (r->p->time_to_singular && r->o->step == 0)
         r->crossing_work = ct_crossing.create(a, &ct_crossing, r->p);
     if (r->crossing_work)
-        r->striding = ct_striding_create(a, r->method, r->p);
-    ct_watch_init(&r->watch, r->p, a);
+        r->stage_gap = ct_stage_gap_create(a, r->method, r->p);
+    ct_event_location_init(&r->events, r->p, a);
 }
 
 static bool state_refused(struct ct_driver *r, enum ct_eval e)
@@ -93,7 +94,7 @@ static bool take_bearings(struct ct_driver *r)
     start_anew(r);
     enum ct_eval e = ct_stepper_rhs(r->p, r->t, r->y, r->dy, r->stats);
     if (e == CT_EVAL_OK)
-        e = ct_watch_start(&r->watch, r->t, r->control.h, r->y, r->dy);
+        e = ct_event_location_start(&r->events, r->t, r->control.h, r->y, r->dy);
     return e == CT_EVAL_OK || state_refused(r, e);
 }
 
@@ -136,7 +137,7 @@ static double first_step(struct ct_driver *r, double limit)
     const struct ct_problem *p = r->p;
     const double d0 = ct_stepper_norm(p, &r->tolerance, r->y, r->y, r->y);
     const double d1 = ct_stepper_norm(p, &r->tolerance, r->y, r->y, r->dy);
-    const double h = ct_control_glance(d0, d1, limit);
+    const double h = ct_step_control_euler_step(d0, d1, limit);
     for (int i = 0; i < p->ny; i++)
         r->y1[i] = r->y[i] + h * r->dy[i];
     if (ct_stepper_rhs(p, r->t + h, r->y1, r->dy1, r->stats) != CT_EVAL_OK)
@@ -144,10 +145,11 @@ static double first_step(struct ct_driver *r, double limit)
     for (int i = 0; i < p->ny; i++)
         r->point[i] = (r->dy1[i] - r->dy[i]) / h;
     const double d2 = ct_stepper_norm(p, &r->tolerance, r->y, r->y, r->point);
-    const double first = ct_control_first(r->method, h, d1, d2, limit);
+    const double first = ct_step_control_first(r->method, h, d1, d2, limit);
     const double rate = r->method->is_implicit ? 0 : find_rate(r, h, limit);
-    return rate > 0 ? fmin(ct_control_first_at_rate(r->method, rate, r->tolerance.rtol), limit)
-                    : first;
+    return rate > 0
+             ? fmin(ct_step_control_first_at_rate(r->method, rate, r->tolerance.rtol), limit)
+             : first;
 }
 
 // --- one step --------------------------------------------------------------------------------
@@ -195,46 +197,48 @@ static enum ct_eval project_end(struct ct_driver *r, const struct ct_method *met
 }
 
 // end, dend (out) = the crossing at t1, within it.
-static enum ct_eval cut(struct ct_driver *r, struct ct_stride *s)
+static enum ct_eval cut(struct ct_driver *r, struct ct_planned_step *s)
 {
     const struct ct_problem *p = r->p;
     r->end = r->moved;
     r->dend = r->dmoved;
     s->method->dense(p, s->h, (s->t1 - r->t) / s->h, r->y, r->y1, s->work, r->end);
-    s->leaves_rest = s->is_event && p->is_singular && p->is_singular(p->user, s->t1, r->end);
+    s->leaves_remainder
+        = s->is_event && p->is_singular && p->is_singular(p->user, s->t1, r->end);
     ct_crossing_slope(s->work, p->ny, (s->t1 - r->t) / s->h, r->dend);
-    if (s->leaves_rest || ct_driver_is_in_gap(r, s, s->t1))
+    if (s->leaves_remainder || ct_driver_is_in_gap(r, s, s->t1))
         return CT_EVAL_OK;
     const enum ct_eval e = p->project ? p->project(p->user, s->t1, r->end) : CT_EVAL_OK;
     return e == CT_EVAL_OK ? ct_stepper_rhs(p, s->t1, r->end, r->dend, r->stats) : e;
 }
 
-// tol (out): that of the run, of crossings with room for rounding. NULL: steps are fixed.
-static const struct ct_tolerance *
-tolerance_of(const struct ct_driver *r, const struct ct_stride *s, struct ct_tolerance *tol)
+// tol (out): that of the run, of crossings with room for round-off. NULL: steps are fixed.
+static const struct ct_tolerance *tolerance_of(const struct ct_driver *r,
+                                               const struct ct_planned_step *s,
+                                               struct ct_tolerance *tol)
 {
     double largest = 0;
     if (s->method != &ct_crossing)
         return r->o->step > 0 ? NULL : &r->tolerance;
     for (int i = 0; i < r->p->ny; i++)
         largest = fmax(largest, fabs(r->y[i]));
-    const double sooner
-        = ct_driver_has_rest(r) ? r->rest.first / r->rest.h : r->far / r->singular_in;
+    const double sooner = ct_driver_has_remainder(r) ? r->remainder.first / r->remainder.h
+                                                     : r->crossing_begin / r->singular_in;
     const double nearer = fmax(1, sooner),
-                 noise = fmin(ct_crossing_rounding * nearer * nearer,
-                              fmax(ct_crossing_rounding, unfelt * r->p->accuracy));
+                 noise = fmin(ct_crossing_roundoff * nearer * nearer,
+                              fmax(ct_crossing_roundoff, unfelt * r->p->accuracy));
     *tol = (struct ct_tolerance){r->tolerance.rtol, fmax(r->tolerance.atol, noise * largest)};
     return tol;
 }
 
-static bool is_put(const struct ct_driver *r, const struct ct_stride *s)
+static bool is_put(const struct ct_driver *r, const struct ct_planned_step *s)
 {
     return s->method == &ct_crossing && r->method->leaves_speeds && r->p->project;
 }
 
 // Crossings begin on the constraints, which speeds of some methods meet to their order only; not where they miss these by so much more than
 // is wanted that steps have lost the motion.
-static enum ct_eval put_speeds(struct ct_driver *r, const struct ct_stride *s)
+static enum ct_eval project_speeds(struct ct_driver *r, const struct ct_planned_step *s)
 {
     const double most = 10; // times what is wanted
     const struct ct_problem *p = r->p;
@@ -243,30 +247,30 @@ static enum ct_eval put_speeds(struct ct_driver *r, const struct ct_stride *s)
         return CT_EVAL_OK;
     const double part = most * p->accuracy / r->tolerance.rtol;
     const struct ct_tolerance allowed = {part * r->tolerance.rtol, part * r->tolerance.atol};
-    memcpy(r->put, r->y, bytes);
-    memcpy(r->dput, r->dy, bytes);
+    memcpy(r->put_y, r->y, bytes);
+    memcpy(r->put_dy, r->dy, bytes);
     const enum ct_eval e = p->project(p->user, r->t, r->y);
     if (e != CT_EVAL_OK)
         return e;
     for (int i = 0; i < p->ny; i++)
-        r->point[i] = r->y[i] - r->put[i];
-    if (!(ct_stepper_norm(p, &allowed, r->put, r->y, r->point) <= 1))
+        r->point[i] = r->y[i] - r->put_y[i];
+    if (!(ct_stepper_norm(p, &allowed, r->put_y, r->y, r->point) <= 1))
         return CT_EVAL_RETRY;
     return p->rhs(p->user, r->t, r->y, r->dy);
 }
 
 // The step across has failed: steps go on from where they were.
-static void take_speeds_back(struct ct_driver *r, const struct ct_stride *s)
+static void restore_speeds(struct ct_driver *r, const struct ct_planned_step *s)
 {
     const size_t bytes = (size_t)r->p->ny * sizeof *r->y;
     if (!is_put(r, s))
         return;
-    memcpy(r->y, r->put, bytes);
-    memcpy(r->dy, r->dput, bytes);
+    memcpy(r->y, r->put_y, bytes);
+    memcpy(r->dy, r->put_dy, bytes);
 }
 
 // From y to end by the method and the projection. Refused with s->error > 1 when that is the reason.
-static inline enum ct_eval attempt(struct ct_driver *r, struct ct_stride *s)
+static inline enum ct_eval attempt(struct ct_driver *r, struct ct_planned_step *s)
 {
     struct ct_tolerance own;
     const struct ct_tolerance *tolerance = tolerance_of(r, s, &own);
@@ -276,16 +280,16 @@ static inline enum ct_eval attempt(struct ct_driver *r, struct ct_stride *s)
     r->is_open = false;
     if (s->method == &ct_crossing)
         ct_crossing_begin(s->work, s->begin);
-    enum ct_eval e = put_speeds(r, s);
+    enum ct_eval e = project_speeds(r, s);
     if (e != CT_EVAL_OK)
         return e;
-    e = s->is_striding ? ct_striding_step(r->striding, r->t, s->h, r->y, r->dy, tolerance,
-                                          r->y1, r->dy1, &error, s->work, r->stats)
-                       : s->method->step(r->p, r->t, s->h, r->y, r->dy, tolerance, r->y1,
-                                         r->dy1, &error, s->work, r->stats);
+    e = s->uses_stage_gap ? ct_stage_gap_step(r->stage_gap, r->t, s->h, r->y, r->dy, tolerance,
+                                              r->y1, r->dy1, &error, s->work, r->stats)
+                          : s->method->step(r->p, r->t, s->h, r->y, r->dy, tolerance, r->y1,
+                                            r->dy1, &error, s->work, r->stats);
     if (e != CT_EVAL_OK)
         return e;
-    s->is_interpolated = s->is_striding;
+    s->is_interpolated = s->uses_stage_gap;
     if (!ct_stepper_finite(r->y1, r->p->ny) || isnan(error))
         return CT_EVAL_RETRY;
     s->error = error;
@@ -298,7 +302,7 @@ static inline enum ct_eval attempt(struct ct_driver *r, struct ct_stride *s)
 }
 
 // Make the method ready to interpolate, once.
-static enum ct_eval interpolate(struct ct_driver *r, struct ct_stride *s)
+static enum ct_eval interpolate(struct ct_driver *r, struct ct_planned_step *s)
 {
     if (s->is_interpolated || !s->method->prepare)
         return CT_EVAL_OK;
@@ -307,12 +311,13 @@ static enum ct_eval interpolate(struct ct_driver *r, struct ct_stride *s)
 }
 
 // Are outputs that amplify as good in the next sample as at the end of the step? If not, steps end on samples from here on.
-static enum ct_eval look_at_sample(struct ct_driver *r, struct ct_stride *s)
+static enum ct_eval look_at_sample(struct ct_driver *r, struct ct_planned_step *s)
 {
     const struct ct_stepper_span span = {s->method, r->p, r->t, s->h, r->y, r->y1, s->work};
     const double theta = (r->o->sample[r->sample] - r->t) / s->h;
     double error = 0;
-    if (!s->method->dense_error || !r->p->amplified_error || r->o->step > 0 || s->is_striding)
+    if (!s->method->dense_error || !r->p->sensitive_output_error || r->o->step > 0
+        || s->uses_stage_gap)
         return CT_EVAL_OK;
     ct_stepper_point(&span, theta, r->point);
     const enum ct_eval e
@@ -321,7 +326,7 @@ static enum ct_eval look_at_sample(struct ct_driver *r, struct ct_stride *s)
     return s->is_off_between ? CT_EVAL_RETRY : e;
 }
 
-static enum ct_eval interpolate_for_samples(struct ct_driver *r, struct ct_stride *s)
+static enum ct_eval interpolate_for_samples(struct ct_driver *r, struct ct_planned_step *s)
 {
     if (!(r->sample < r->o->nsample && r->o->sample[r->sample] < s->t1))
         return CT_EVAL_OK;
@@ -335,22 +340,22 @@ static enum ct_eval interpolate_for_samples(struct ct_driver *r, struct ct_strid
 // Step again, to the event that the interpolant shows at t + h; then correct h for the difference
 // between the interpolant and the step until the root that fires is zero to the resolution.
 // Corrected up to where the whole step ended, the step is the whole step, for the sake of its stop.
-static enum ct_eval step_to_event(struct ct_driver *r, struct ct_stride *s, double h)
+static enum ct_eval step_to_event(struct ct_driver *r, struct ct_planned_step *s, double h)
 {
-    const struct ct_stride whole = *s;
-    const double unresolved = ct_watch_resolution(r->t, whole.h);
+    const struct ct_planned_step whole = *s;
+    const double unresolved = ct_event_location_resolution(r->t, whole.h);
     double dt = INFINITY;
-    for (int i = 0; i <= CT_WATCH_CORRECTIONS && fabs(dt) > unresolved && h > 0; i++) {
+    for (int i = 0; i <= CT_EVENT_CORRECTIONS && fabs(dt) > unresolved && h > 0; i++) {
         const bool is_whole = whole.h - h <= unresolved;
         *s = whole;
         if (!is_whole) {
             s->h = h;
             s->t1 = r->t + h;
-            s->is_landing = false;
+            s->reaches_stop = false;
         }
         enum ct_eval e = attempt(r, s);
         if (e == CT_EVAL_OK)
-            e = ct_watch_refine(&r->watch, s->t1, r->end, &dt);
+            e = ct_event_location_refine(&r->events, s->t1, r->end, &dt);
         if (e != CT_EVAL_OK || is_whole)
             return e;
         h += dt;
@@ -358,23 +363,23 @@ static enum ct_eval step_to_event(struct ct_driver *r, struct ct_stride *s, doub
     return CT_EVAL_OK;
 }
 
-// The interpolant is the step itself: a place on it where the root is zero to rounding, as roots are found late by up to the resolution.
-static enum ct_eval cut_on_event(struct ct_driver *r, struct ct_stride *s, double theta)
+// The interpolant is the step itself: a place on it where the root is zero to round-off, as roots are found late by up to the resolution.
+static enum ct_eval cut_on_event(struct ct_driver *r, struct ct_planned_step *s, double theta)
 {
     const struct ct_stepper_span span = {s->method, r->p, r->t, s->h, r->y, r->y1, s->work};
     double dt;
     ct_stepper_point(&span, theta, r->moved);
     s->t1 = r->t + theta * s->h;
-    const enum ct_eval e = ct_watch_refine(&r->watch, s->t1, r->moved, &dt);
+    const enum ct_eval e = ct_event_location_refine(&r->events, s->t1, r->moved, &dt);
     if (e != CT_EVAL_OK)
         return e;
-    s->t1 += fabs(dt) <= ct_watch_resolution(r->t, s->h) ? dt : 0;
-    s->is_landing = false;
+    s->t1 += fabs(dt) <= ct_event_location_resolution(r->t, s->h) ? dt : 0;
+    s->reaches_stop = false;
     return cut(r, s);
 }
 
 // If a root fires within the step, the step is made to end there.
-static enum ct_eval end_on_event(struct ct_driver *r, struct ct_stride *s)
+static enum ct_eval end_on_event(struct ct_driver *r, struct ct_planned_step *s)
 {
     double theta;
     if (r->p->nroot == 0)
@@ -382,23 +387,23 @@ static enum ct_eval end_on_event(struct ct_driver *r, struct ct_stride *s)
     const struct ct_stepper_span span = {s->method, r->p, r->t, s->h, r->y, r->y1, s->work};
     enum ct_eval e = s->method->has_rough_dense ? CT_EVAL_OK : interpolate(r, s);
     if (e == CT_EVAL_OK)
-        e = ct_watch_search(&r->watch, &span, r->end, &theta);
+        e = ct_event_location_search(&r->events, &span, r->end, &theta);
     if (e != CT_EVAL_OK || theta > 1)
         return e;
     s->is_event = true;
     if (s->method == &ct_crossing)
         return cut_on_event(r, s, theta);
     const double rest = (1 - theta) * s->h;
-    return rest <= ct_watch_resolution(r->t, s->h) ? CT_EVAL_OK
-                                                   : step_to_event(r, s, theta * s->h);
+    return rest <= ct_event_location_resolution(r->t, s->h) ? CT_EVAL_OK
+                                                            : step_to_event(r, s, theta * s->h);
 }
 
 // The caller's memories and choices move on to the end of the step.
-static enum ct_eval tell_accepted(struct ct_driver *r, const struct ct_stride *s)
+static enum ct_eval tell_accepted(struct ct_driver *r, const struct ct_planned_step *s)
 {
     const struct ct_problem *p = r->p;
-    const bool is_across = s->method == &ct_crossing || s->is_striding;
-    if (s->leaves_rest) // that will be
+    const bool is_across = s->method == &ct_crossing || s->uses_stage_gap;
+    if (s->leaves_remainder) // that will be
         return CT_EVAL_OK;
     return p->accepted ? p->accepted(p->user, s->t1, r->end, r->dend, is_across) : CT_EVAL_OK;
 }
@@ -408,29 +413,32 @@ static enum ct_eval take_sides(struct ct_driver *r)
 {
     const struct ct_problem *p = r->p;
     const enum ct_eval e = p->resumed ? p->resumed(p->user, r->t, r->y, r->dy) : CT_EVAL_OK;
-    return e == CT_EVAL_OK ? ct_watch_start(&r->watch, r->t, r->control.h, r->y, r->dy) : e;
+    return e == CT_EVAL_OK
+             ? ct_event_location_start(&r->events, r->t, r->control.h, r->y, r->dy)
+             : e;
 }
 
 // On which side the roots are where the rest of a crossing begins: what it makes of f there tells.
-static enum ct_eval take_bearings_of_rest(struct ct_driver *r, const struct ct_stride *s)
+static enum ct_eval take_bearings_of_remainder(struct ct_driver *r,
+                                               const struct ct_planned_step *s)
 {
-    if (!ct_driver_has_rest(r) || r->rest.is_known)
+    if (!ct_driver_has_remainder(r) || r->remainder.is_known)
         return CT_EVAL_OK;
-    r->rest.is_known = true;
+    r->remainder.is_known = true;
     ct_crossing_slope(s->work, r->p->ny, 0, r->dy);
     return take_sides(r);
 }
 
 // What follows an attempt whose error is small enough; h is the step as it was attempted.
-static enum ct_eval finish_step(struct ct_driver *r, struct ct_stride *s, double h)
+static enum ct_eval finish_step(struct ct_driver *r, struct ct_planned_step *s, double h)
 {
-    enum ct_eval e = take_bearings_of_rest(r, s);
+    enum ct_eval e = take_bearings_of_remainder(r, s);
     if (e == CT_EVAL_OK)
         e = end_on_event(r, s);
     if (e == CT_EVAL_OK)
         e = interpolate_for_samples(r, s);
     if (e == CT_EVAL_OK && r->p->nroot)
-        e = ct_watch_accept(&r->watch, s->t1, h, r->end, s->is_event);
+        e = ct_event_location_accept(&r->events, s->t1, h, r->end, s->is_event);
     return e == CT_EVAL_OK ? tell_accepted(r, s) : e;
 }
 
@@ -458,7 +466,8 @@ static bool step_too_small(struct ct_driver *r, double h)
     if (r->failed_crossings)
         return ct_error(
             r->ctx, nowhere, CT_E_STEP_SINGULAR,
-            "at t = %.9g the mechanism is about to come (in %.3g s) to a singular position, "
+            "at t = %.9g the mechanism is about to come (in %.3g s) to a singular "
+            "configuration, "
             "where "
             "its constraints depend on each other, as links in one line do, and no smooth "
             "motion "
@@ -482,37 +491,37 @@ static bool step_too_small(struct ct_driver *r, double h)
 }
 
 // No rest of a crossing has been found: other steps go on from the event.
-static bool leave_rest(struct ct_driver *r)
+static bool leave_remainder(struct ct_driver *r)
 {
     const struct ct_problem *p = r->p;
     enum ct_eval e = ct_stepper_rhs(p, r->t, r->y, r->dy, r->stats);
     if (e == CT_EVAL_OK && p->accepted)
         e = p->accepted(p->user, r->t, r->y, r->dy, true);
-    if (e == CT_EVAL_OK && !r->rest.is_known)
+    if (e == CT_EVAL_OK && !r->remainder.is_known)
         e = take_sides(r);
-    r->rest = (struct ct_rest){.h = 0};
+    r->remainder = (struct ct_crossing_remainder){.h = 0};
     ct_driver_look_ahead(r, r->t);
     return e == CT_EVAL_OK || state_refused(r, e);
 }
 
 // The step that has failed is to be tried again shorter.
-static bool adapt_after_failed_step(struct ct_driver *r, const struct ct_stride *s, double h,
-                                    double error)
+static bool adapt_after_failed_step(struct ct_driver *r, const struct ct_planned_step *s,
+                                    double h, double error)
 {
-    const bool had_rest = ct_driver_has_rest(r);
-    if (s->method == &ct_crossing || s->is_striding)
+    const bool had_rest = ct_driver_has_remainder(r);
+    if (s->method == &ct_crossing || s->uses_stage_gap)
         ct_driver_adapt_after_failed_crossing(r, s, error);
     else
         ct_driver_adapt_after_refusal(r, h, error);
-    return had_rest == ct_driver_has_rest(r) || leave_rest(r);
+    return had_rest == ct_driver_has_remainder(r) || leave_remainder(r);
 }
 
 // One step that everybody accepts: from y to end.
-static bool find_step(struct ct_driver *r, double stop, bool is_time, struct ct_stride *s)
+static bool find_step(struct ct_driver *r, double stop, bool is_time, struct ct_planned_step *s)
 {
     for (;;) {
-        ct_driver_plan(r, stop, is_time, s);
-        const bool is_crossing = s->method == &ct_crossing || s->is_striding;
+        ct_driver_plan_step(r, stop, is_time, s);
+        const bool is_crossing = s->method == &ct_crossing || s->uses_stage_gap;
         const double h = s->h;
         if (is_at_lock(r))
             return report_lock(r);
@@ -527,7 +536,7 @@ static bool find_step(struct ct_driver *r, double stop, bool is_time, struct ct_
         if (e == CT_EVAL_FATAL)
             return false;
         if (s->is_off_between) {
-            r->lands = true;
+            r->ends_on_samples = true;
             r->stats->rejected_steps++;
             r->stop = stop = ct_driver_next_stop(r, &is_time);
             r->is_stop_time = is_time;
@@ -537,11 +546,11 @@ static bool find_step(struct ct_driver *r, double stop, bool is_time, struct ct_
             if (is_crossing)
                 ct_driver_adapt_after_crossing(r, s);
             else if (r->o->step == 0)
-                ct_control_accept(&r->control, r->method, h, error);
+                ct_step_control_accept(&r->control, r->method, h, error);
             ct_driver_look_ahead(r, s->t1);
             return true;
         }
-        take_speeds_back(r, s);
+        restore_speeds(r, s);
         if (r->o->step > 0)
             return ct_error(
                 r->ctx, nowhere, CT_E_STEP_REFUSED,
@@ -558,11 +567,12 @@ static bool find_step(struct ct_driver *r, double stop, bool is_time, struct ct_
 static void count_turns(struct ct_driver *r, double t1)
 {
     const struct ct_integrate_options *o = r->o;
-    if (ct_repeat_step(&r->repeat, t1, r->y0, r->y, r->end, r->p->nq, r->p->nu))
-        r->tolerance = ct_repeat_tolerance(&r->repeat, o->rtol, o->atol, o->least_rtol);
+    if (ct_periodic_tolerance_step(&r->periodic, t1, r->y0, r->y, r->end, r->p->nq, r->p->nu))
+        r->tolerance
+            = ct_periodic_tolerance_find(&r->periodic, o->rtol, o->atol, o->least_rtol);
 }
 
-static void commit(struct ct_driver *r, const struct ct_stride *s)
+static void commit(struct ct_driver *r, const struct ct_planned_step *s)
 {
     if (r->o->least_rtol > 0 && r->o->step == 0)
         count_turns(r, s->t1);
@@ -586,18 +596,18 @@ static bool handle_event(struct ct_driver *r, bool is_state, bool is_time)
     const struct ct_problem *p = r->p;
     r->stats->events++;
     r->stop = -INFINITY;
-    if (is_state && ct_watch_piles_up(&r->watch, r->t, r->o->t1 - r->o->t0))
+    if (is_state && ct_event_location_accumulates(&r->events, r->t, r->o->t1 - r->o->t0))
         return ct_error(r->ctx, nowhere, CT_E_EVENT_PILE,
-                        "%d events in a row at t = %.9g without time going on", CT_WATCH_PILE,
-                        r->t);
-    const double *dy = ct_driver_has_rest(r) ? r->dy : NULL;
+                        "%d events in a row at t = %.9g without time going on",
+                        CT_EVENT_ACCUMULATION, r->t);
+    const double *dy = ct_driver_has_remainder(r) ? r->dy : NULL;
     const enum ct_eval e
-        = p->event ? p->event(p->user, r->t, r->y, dy, r->watch.crossed, is_time) : CT_EVAL_OK;
+        = p->event ? p->event(p->user, r->t, r->y, dy, r->events.crossed, is_time) : CT_EVAL_OK;
     if (e != CT_EVAL_OK)
         return state_refused(r, e);
     r->reach = INFINITY; // of the position ahead everything may have changed
     r->failed_crossings = 0;
-    r->has_failed_stride = r->is_locked = false;
+    r->has_failed_stage_gap = r->is_locked = false;
     if (dy) {
         start_anew(r);
         return true;
@@ -609,17 +619,17 @@ static bool handle_event(struct ct_driver *r, bool is_state, bool is_time)
 // Is the rest of a crossing to come?
 static bool is_on_the_way(const struct ct_driver *r)
 {
-    return ct_driver_has_rest(r) && r->t < r->o->t1;
+    return ct_driver_has_remainder(r) && r->t < r->o->t1;
 }
 
 static bool advance(struct ct_driver *r)
 {
-    struct ct_stride s;
-    if (r->t >= r->stop || r->o->step > 0 || r->lands)
+    struct ct_planned_step s;
+    if (r->t >= r->stop || r->o->step > 0 || r->ends_on_samples)
         r->stop = ct_driver_next_stop(r, &r->is_stop_time);
     if (!find_step(r, r->stop, r->is_stop_time, &s))
         return false;
-    const bool is_time = r->is_stop_time && s.is_landing;
+    const bool is_time = r->is_stop_time && s.reaches_stop;
     const bool is_event = s.is_event || is_time;
     if (!ct_driver_give_samples_before(r, &s,
                                        s.t1 - ct_driver_event_margin(is_event, s.t1, s.h)))
@@ -630,15 +640,15 @@ static bool advance(struct ct_driver *r)
     return is_on_the_way(r) || ct_driver_give_samples_here(r);
 }
 
-static void tell_foreseen(struct ct_driver *r)
+static void forecast_steps(struct ct_driver *r)
 {
-    if (!r->o->foresee || r->is_told || !(r->pace.to_come > r->o->many_steps))
+    if (!r->o->forecast || r->is_announced || !(r->pace.to_come > r->o->many_steps))
         return;
-    r->is_told = true;
-    r->o->foresee(r->p->user, r->t, r->y, r->pace.step, r->pace.to_come);
+    r->is_announced = true;
+    r->o->forecast(r->p->user, r->t, r->y, r->pace.step, r->pace.to_come);
 }
 
-static bool march(struct ct_driver *r)
+static bool run_steps(struct ct_driver *r)
 {
     const long most = r->o->max_steps ? r->o->max_steps : 100000000;
     while (r->t < r->o->t1) {
@@ -650,12 +660,13 @@ static bool march(struct ct_driver *r)
         if (!advance(r))
             return false;
         if (r->stats->steps >= r->pace.next
-            && ct_control_is_endless(&r->pace, r->stats->steps, most, r->t, r->o->t1 - r->t))
+            && ct_step_control_exceeds_limit(&r->pace, r->stats->steps, most, r->t,
+                                             r->o->t1 - r->t))
             return ct_error(r->ctx, nowhere, CT_E_STEP_COUNT,
                             "at t = %.3g after %ld steps, of %.2g s now: up to t = %.9g they "
                             "would be more than the %ld that are allowed",
                             r->t, r->stats->steps, r->pace.step, r->o->t1, most);
-        tell_foreseen(r);
+        forecast_steps(r);
         if (r->o->at_step && !is_on_the_way(r) && !r->o->at_step(r->p->user, r->t, r->y))
             return true;
     }
@@ -699,8 +710,8 @@ bool ct_integrate(struct ct_ctx *ctx, const struct ct_method *method,
         .stats = stats,
         .tolerance = tolerance,
         .t = options->t0,
-        .repeat = ct_repeat_start(options->t0, options->t1, &tolerance),
-        .control = ct_control_start(),
+        .periodic = ct_periodic_tolerance_start(options->t0, options->t1, &tolerance),
+        .control = ct_step_control_start(),
         .pace = {.t = options->t0},
         .singular_in = INFINITY,
         .reach = INFINITY,
@@ -711,7 +722,7 @@ bool ct_integrate(struct ct_ctx *ctx, const struct ct_method *method,
     allocate(&r);
     memcpy(r.y, y, (size_t)p->ny * sizeof *y);
     memcpy(r.y0, y, (size_t)p->ny * sizeof *y);
-    const bool ok = start(&r) && march(&r);
+    const bool ok = start(&r) && run_steps(&r);
     memcpy(y, r.y, (size_t)p->ny * sizeof *y);
     stats->last_time = r.t;
     stats->last_rtol = options->step > 0 ? 0 : r.tolerance.rtol;

@@ -1,14 +1,14 @@
-// See driver.h: samples.
+// Samples by dense output; see driver.h.
 #include "integrate/driver.h"
 
 static const struct ct_mark nowhere = {0};
 
-bool ct_driver_is_in_gap(const struct ct_driver *r, const struct ct_stride *s, double t)
+bool ct_driver_is_in_gap(const struct ct_driver *r, const struct ct_planned_step *s, double t)
 {
     const double theta = (t - r->t) / s->h;
     double from, to;
-    return s->is_striding ? ct_striding_is_gap(r->striding, theta, &from, &to)
-                          : s->method == &ct_crossing && ct_crossing_is_gap(s->work, theta);
+    return s->uses_stage_gap ? ct_stage_gap_contains(r->stage_gap, theta, &from, &to)
+                             : s->method == &ct_crossing && ct_crossing_is_gap(s->work, theta);
 }
 
 static bool give_sample(struct ct_driver *r, const double *y)
@@ -17,25 +17,25 @@ static bool give_sample(struct ct_driver *r, const double *y)
     return r->o->at_sample(r->p->user, t, y);
 }
 
-static struct ct_bridge bridge(const struct ct_driver *r, const struct ct_stride *s,
-                               double theta)
+static struct ct_gap_interpolation
+gap_interpolation(const struct ct_driver *r, const struct ct_planned_step *s, double theta)
 {
     const struct ct_stepper_span span = {s->method, r->p, r->t, s->h, r->y, r->y1, s->work};
     double from, to;
-    if (!s->is_striding)
-        return ct_crossing_bridge(s->work, r->t, s->h, theta);
-    ct_striding_is_gap(r->striding, theta, &from, &to);
-    return ct_crossing_bridge_over(r->crossing_work, &span, from, to, theta);
+    if (!s->uses_stage_gap)
+        return ct_crossing_interpolation(s->work, r->t, s->h, theta);
+    ct_stage_gap_contains(r->stage_gap, theta, &from, &to);
+    return ct_crossing_interpolation_over(r->crossing_work, &span, from, to, theta);
 }
 
 // A sample in the gap of a crossing is as good as the interpolant: projected it would be worse.
-static bool give_singular_sample(struct ct_driver *r, const struct ct_stride *s,
+static bool give_singular_sample(struct ct_driver *r, const struct ct_planned_step *s,
                                  const double *y)
 {
     const double t = r->o->sample[r->sample];
     if (!r->o->at_singular_sample)
         return give_sample(r, y);
-    const struct ct_bridge b = bridge(r, s, (t - r->t) / s->h);
+    const struct ct_gap_interpolation b = gap_interpolation(r, s, (t - r->t) / s->h);
     r->sample++;
     return r->o->at_singular_sample(r->p->user, t, y, &b);
 }
@@ -68,52 +68,53 @@ static double change_over_step(const struct ct_driver *r)
 
 // Is there a motion that the step does not follow, much faster than the one there is? Not each step shows it, so that it is
 // remembered.
-static bool is_unfollowed(struct ct_driver *r, const struct ct_stride *s)
+static bool is_unresolved(struct ct_driver *r, const struct ct_planned_step *s)
 {
     const double kept = 0.95; // from look to look
     const double much_faster = 3;
-    if (!r->aside || s->work != r->work || s->is_striding)
+    if (!r->sample_work || s->work != r->work || s->uses_stage_gap)
         return false;
-    const double seen = r->method->swiftness(r->p, s->h, r->y, r->y1, s->work) / s->h;
+    const double seen = r->method->stiffness_estimate(r->p, s->h, r->y, r->y1, s->work) / s->h;
     r->fastest = ct_larger(seen, kept * r->fastest);
     const double fast = r->fastest * s->h;
-    return fast > r->method->followed && fast > much_faster * change_over_step(r);
+    return fast > r->method->resolved_limit && fast > much_faster * change_over_step(r);
 }
 
 // Does the interpolant err in the next sample, by so much of what steps may? A step from the start of this one to there tells. Each
 // time it does not, more steps to come are not asked; where it does, as many as ever are taken to err as well.
-static bool interpolant_errs(struct ct_driver *r, const struct ct_stride *s)
+static bool interpolant_errs(struct ct_driver *r, const struct ct_planned_step *s)
 {
     enum { MOST_UNASKED = 31 };
     const double much = 0.01;
     const struct ct_stepper_span span = {s->method, r->p, r->t, s->h, r->y, r->y1, s->work};
     const double h = r->o->sample[r->sample] - r->t;
     double unused;
-    if (r->unasked > 0) {
-        r->unasked--;
+    if (r->unchecked > 0) {
+        r->unchecked--;
         return r->has_erred;
     }
     r->has_erred = true;
-    if (s->method->step(r->p, r->t, h, r->y, r->dy, NULL, r->beside, r->dbeside, &unused,
-                        r->aside, r->stats)
+    if (s->method->step(r->p, r->t, h, r->y, r->dy, NULL, r->sample_end, r->dsample_end,
+                        &unused, r->sample_work, r->stats)
         == CT_EVAL_OK) {
         ct_stepper_point(&span, h / s->h, r->point);
         for (int i = 0; i < r->p->ny; i++)
-            r->point[i] -= r->beside[i];
+            r->point[i] -= r->sample_end[i];
         r->has_erred = !(ct_stepper_norm(r->p, &r->tolerance, r->y, r->y1, r->point) <= much);
     }
     r->trusted = r->has_erred ? 0 : r->trusted < MOST_UNASKED ? 2 * r->trusted + 1 : r->trusted;
-    r->unasked = r->has_erred ? MOST_UNASKED : r->trusted;
+    r->unchecked = r->has_erred ? MOST_UNASKED : r->trusted;
     return r->has_erred;
 }
 
-bool ct_driver_is_damping(struct ct_driver *r, const struct ct_stride *s)
+bool ct_driver_is_damping(struct ct_driver *r, const struct ct_planned_step *s)
 {
-    return is_unfollowed(r, s) && interpolant_errs(r, s);
+    return is_unresolved(r, s) && interpolant_errs(r, s);
 }
 
 // y (ny, out) at t, inside of the step: from the interpolant, where that holds, else by a step from the start of this one.
-static bool find_state(struct ct_driver *r, const struct ct_stride *s, double t, double *y)
+static bool find_state(struct ct_driver *r, const struct ct_planned_step *s, double t,
+                       double *y)
 {
     const struct ct_stepper_span span = {s->method, r->p, r->t, s->h, r->y, r->y1, s->work};
     double error;
@@ -122,7 +123,7 @@ static bool find_state(struct ct_driver *r, const struct ct_stride *s, double t,
         return true;
     }
     const enum ct_eval e = s->method->step(r->p, r->t, t - r->t, r->y, r->dy, NULL, y,
-                                           r->dbeside, &error, r->aside, r->stats);
+                                           r->dsample_end, &error, r->sample_work, r->stats);
     if (e == CT_EVAL_OK && ct_stepper_finite(y, r->p->ny))
         return true;
     return e != CT_EVAL_FATAL
@@ -130,7 +131,8 @@ static bool find_state(struct ct_driver *r, const struct ct_stride *s, double t,
                     "the equations of motion cannot be evaluated at t = %.9g", t);
 }
 
-bool ct_driver_give_samples_before(struct ct_driver *r, const struct ct_stride *s, double end)
+bool ct_driver_give_samples_before(struct ct_driver *r, const struct ct_planned_step *s,
+                                   double end)
 {
     while (r->sample < r->o->nsample && r->o->sample[r->sample] <= s->t1) {
         const double t = r->o->sample[r->sample];

@@ -21,7 +21,7 @@ enum ct_eval {
 /// which k_i depends on those before it alone: the matrices are r_q + r_k (1 - k_k)^-1 k_q and so on.  (8.19)
 struct ct_slopes {
     int nK, nC, nM, nR, nD, nJ; // in this order; K, C, M, R by row
-    int ninner;
+    int nauxiliary;
     const int *row, *column;
 };
 
@@ -63,8 +63,8 @@ struct ct_dae {
     enum ct_eval (*evaluate_slopes)(void *user, double t, const double *q, const double *u,
                                     const double *a, const double *lam, const double **value);
     /// The rows that count now, of most_rows, in the order of lam.
-    const int *(*kept_rows)(void *user);
-    const struct ct_newton_plan *plan[2]; // stabilised: 1; NULL: full matrices serve as well
+    const int *(*active_rows)(void *user);
+    const struct ct_newton_pattern *plan[2]; // stabilised: 1; NULL: full matrices serve as well
 
     // what makes steps cheaper, where it is known
     bool
@@ -93,17 +93,17 @@ struct ct_problem {
     /// What implicit methods need beside the rest; NULL: none can be used.
     const struct ct_dae *dae;
     /// Per state: counts in error control (quadratures do not). NULL: all do.
-    const bool *watched;
+    const bool *error_controlled;
     /// Per speed (nu), and per coordinate that moves with it: is wanted of the run itself, and not only what it leads to in outputs.
     /// NULL, both: all are.
-    const bool *asked_speeds, *asked_places;
+    const bool *requested_speeds, *requested_positions;
     bool
         keeps_energy; // so that the total energy is kept to the accuracy, however little of it vibrates
     double accuracy,
         duration; // wanted of the outputs, relative, over the whole run; its length. 0: not known
-    /// Rounding of f, per state (ny), where it is felt in the errors of steps as long as `noisy_step` or shorter. NULL: it is not.
-    const double *noise;
-    double noisy_step;
+    /// Round-off of f, per state (ny), where it is felt in the errors of steps as long as `roundoff_step` or shorter. NULL: it is not.
+    const double *roundoff;
+    double roundoff_step;
     /// NULL: every state is measured by itself.
     const struct ct_groups *groups;
 
@@ -113,13 +113,15 @@ struct ct_problem {
                            const struct ct_tolerance *tolerance, double states);
     /// The most that an output changes by for a change e (ny) of y, over its largest value so far. With least > 0 over that if it is
     /// more, or over what is expected, and without outputs that amplify errors of states. NULL: there is none but states.
-    double (*felt)(void *user, double t, const double *y, const double *e, double least);
+    double (*output_change)(void *user, double t, const double *y, const double *e,
+                            double least);
     /// Outputs are expected to become as large as so many `times` what they change by for a change way (ny) of y. NULL as above.
-    void (*expect)(void *user, double t, const double *y, const double *way, double times);
+    void (*expect_output)(void *user, double t, const double *y, const double *way,
+                          double times);
     /// The same of the outputs that amplify errors of states, which output_error leaves to this where it is not NULL; 0 where
     /// there are none.  (8.11)
-    double (*amplified_error)(void *user, double t, const double *y, const double *e,
-                              const struct ct_tolerance *tolerance, double states);
+    double (*sensitive_output_error)(void *user, double t, const double *y, const double *e,
+                                     const struct ct_tolerance *tolerance, double states);
 
     /// dy (ny, out) = f(t, y).
     enum ct_eval (*rhs)(void *user, double t, const double *y, double *dy);
@@ -129,33 +131,33 @@ struct ct_problem {
 
     /// After a step was accepted and projected: update memories and choices that keep f the same
     /// function. May be NULL. Before it answers CT_EVAL_RETRY it must have changed nothing. dy belongs to y. is_across: the step was
-    /// made to cross a singular position.
+    /// made to cross a singular configuration.
     enum ct_eval (*accepted)(void *user, double t, const double *y, const double *dy,
                              bool is_across);
 
     /// Longest step from the last accepted state, or from where the start or an event has put it. May be NULL.
     double (*longest_step)(void *user);
     /// The longest step from t, of at most h, that does not pass over what f does by time alone. May be NULL.
-    double (*seen_step)(void *user, double t, double h);
-    /// Time from the last accepted state to the next singular position as far as it can be foreseen,
+    double (*input_limited_step)(void *user, double t, double h);
+    /// Time from the last accepted state to the next singular configuration as far as it can be foreseen,
     /// else INFINITY. There f has a limit along the motion that cannot be computed: methods with step control
     /// cross it in one step without evaluating close to it, see crossing.h. *reach (out): the time before
     /// and after it in which f is better not computed. May be NULL.
-    double (*singular_in)(void *user, double *reach);
+    double (*time_to_singular)(void *user, double *reach);
     /// Does the motion end in the position that is `in` ahead of y, the last accepted state, as the constraints cannot be met behind
     /// it? Asked after a crossing has failed. May be NULL.
     bool (*locks)(void *user, double t, const double *y, double in);
-    /// What is evaluated from now on belongs to the crossing of a singular position, none of it close by; or does not.
+    /// What is evaluated from now on belongs to the crossing of a singular configuration, none of it close by; or does not.
     /// May be NULL.
     void (*set_crossing)(void *user, bool is_crossing);
-    /// Is y so near to a singular position that f has too few digits? NULL: it never is.
+    /// Is y so near to a singular configuration that f has too few digits? NULL: it never is.
     bool (*is_singular)(void *user, double t, const double *y);
-    /// A singular position was crossed by this step, which ends at t1 at the latest and is all but the first part of the crossing,
+    /// A singular configuration was crossed by this step, which ends at t1 at the latest and is all but the first part of the crossing,
     /// `begin` of it. False if the position is not before t1. May be NULL.
     bool (*crossed)(void *user, const struct ct_stepper_span *step, double begin, double t1);
     /// How far y is from the constraints. May be NULL.
     double (*residual)(void *user, double t, const double *y);
-    /// Beside a singular position: how far y is from them in what they ask of no motion there, the part that depends. It
+    /// Beside a singular configuration: how far y is from them in what they ask of no motion there, the part that depends. It
     /// vanishes with the square of the distance where the position is singular, but not where it is only nearly so.
     /// May be NULL.
     double (*mismatch)(void *user, double t, const double *y);
@@ -179,7 +181,7 @@ struct ct_problem {
 };
 
 /// Times and states around a sample where f cannot be computed, and their weights in what is interpolated there.
-struct ct_bridge {
+struct ct_gap_interpolation {
     int n;
     const double *t, *weight; // (n)
     const double *y;          // (ny x n)
@@ -197,11 +199,11 @@ struct ct_integrate_options {
     /// Called once for each sample, in order. A sample on an event is given after it. y may be used
     /// freely; dy is not given. Return false to stop (a diagnostic is there).
     bool (*at_sample)(void *user, double t, const double *y);
-    /// The same for samples in singular positions or close to them. NULL: at_sample.
+    /// The same for samples in singular configurations or close to them. NULL: at_sample.
     bool (*at_singular_sample)(void *user, double t, const double *y,
-                               const struct ct_bridge *b);
+                               const struct ct_gap_interpolation *b);
     /// Called once if the end is foreseen to be more than so many steps away, with their present size. May be NULL.
-    void (*foresee)(void *user, double t, const double *y, double step, double to_come);
+    void (*forecast)(void *user, double t, const double *y, double step, double to_come);
     double many_steps;
     /// Called after each accepted step for progress; may be NULL. Return false to stop quietly.
     bool (*at_step)(void *user, double t, const double *y);
@@ -240,9 +242,9 @@ struct ct_method {
     /// Rules of step control; 0: the usual ones. A next step that differs from the last by a factor between
     /// steady[0] and steady[1] is not made: it would cost a factorisation.
     double most_growth, steady[2];
-    /// The part of a step in which neither `step` nor `prepare` evaluates f, where a singular position may lie; see
-    /// striding.h. 0, 0: there is none to speak of.
-    double quiet[2];
+    /// The part of a step in which neither `step` nor `prepare` evaluates f, where a singular configuration may lie; see
+    /// crossing_stage_gap.h. 0, 0: there is none to speak of.
+    double stage_gap[2];
     const void *coefficients; // of families of methods
     /// The private workspace for a run. What it keeps from step to step begins with `restart` and moves on
     /// with `accept`; both may be NULL.
@@ -259,13 +261,13 @@ struct ct_method {
                          const double *dy, const struct ct_tolerance *tolerance, double *y1,
                          double *dy1, double *err, void *work,
                          struct ct_integrate_stats *stats);
-    /// h times the rate of the fastest motion that the last two stages of a step have seen, at one time. Beyond `followed` the step
+    /// h times the rate of the fastest motion that the last two stages of a step have seen, at one time. Beyond `resolved_limit` the step
     /// does not follow that motion but damps it, and `dense` does not hold inside the step. NULL: it does.
-    double followed;
-    double (*swiftness)(const struct ct_problem *p, double h, const double *y, const double *y1,
-                        void *work);
+    double resolved_limit;
+    double (*stiffness_estimate)(const struct ct_problem *p, double h, const double *y,
+                                 const double *y1, void *work);
     /// Up to so much of it a step makes nothing that is damped, or turns, larger; beyond, the estimate does not see what does. 0: it does.
-    double stable;
+    double stability_limit;
     /// Called once for a step before its first `dense`: extra stages. May be NULL. With
     /// has_rough_dense, `dense` works without it, too, well enough to find roots.
     bool has_rough_dense;
@@ -293,7 +295,7 @@ const struct ct_method *ct_method_find(const char *name);
 /// quadratures and outputs, not speeds.
 ///
 /// With least_rtol, nq and nu, a motion that repeats itself for more than some turns up to t1 is held to a
-/// smaller part of the tolerance, see repeat.h.
+/// smaller part of the tolerance, see periodic_tolerance.h.
 ///
 /// Steps end exactly on time events and on t1. Samples between step ends are interpolated and
 /// projected. State events are located on the interpolant; the step is then taken again up to the

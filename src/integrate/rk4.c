@@ -13,7 +13,7 @@ static const double C[STAGES] = {0, 1. / 2, 1. / 2, 1};
 static const double B[STAGES] = {1. / 6, 1. / 3, 1. / 3, 1. / 6};
 
 struct work {
-    struct ct_carry carry;                       // of fixed steps
+    struct ct_compensation carry;                // of fixed steps
     double *k;                                   // (ny x 4)
     double *point, *dy, *dy1, *middle, *dmiddle; // (ny) each
     bool is_halved;
@@ -25,7 +25,7 @@ static void *create(struct ct_arena *a, const struct ct_method *method,
     (void)method;
     const size_t n = (size_t)p->ny;
     struct work *w = CT_NEW(a, struct work);
-    *w = (struct work){.carry = ct_carry_create(a, p->ny),
+    *w = (struct work){.carry = ct_compensation_create(a, p->ny),
                        .k = CT_NEWN(a, double, STAGES *n),
                        .point = CT_NEWN(a, double, n),
                        .dy = CT_NEWN(a, double, n),
@@ -135,8 +135,8 @@ const struct ct_method ct_method_rk4 = {
     .order = 4,
     .error_order = 4,
     .create = create,
-    .restart = ct_carry_restart,
-    .accept = ct_carry_accept,
+    .restart = ct_compensation_restart,
+    .accept = ct_compensation_accept,
     .step = step,
     .dense = dense,
 };

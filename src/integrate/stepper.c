@@ -147,27 +147,27 @@ void ct_stepper_combine(double *restrict out, const double *y, double h, const d
     (n < LANES ? combine_few : combine_fours)(out, y, h, a, k, s, n);
 }
 
-struct ct_carry ct_carry_create(struct ct_arena *a, int n)
+struct ct_compensation ct_compensation_create(struct ct_arena *a, int n)
 {
-    return (struct ct_carry){CT_NEWN(a, double, n), CT_NEWN(a, double, n), n};
+    return (struct ct_compensation){CT_NEWN(a, double, n), CT_NEWN(a, double, n), n};
 }
 
-void ct_carry_restart(void *work)
+void ct_compensation_restart(void *work)
 {
-    const struct ct_carry *c = work;
+    const struct ct_compensation *c = work;
     memset(c->now, 0, (size_t)c->n * sizeof *c->now);
 }
 
-void ct_carry_accept(void *work)
+void ct_compensation_accept(void *work)
 {
-    struct ct_carry *c = work;
+    struct ct_compensation *c = work;
     double *now = c->now;
     c->now = c->next;
     c->next = now;
 }
 
 void ct_stepper_advance(double *restrict out, const double *y, double h, const double *a,
-                        const double *k, int s, struct ct_carry *c)
+                        const double *k, int s, struct ct_compensation *c)
 {
     ct_stepper_combine(out, NULL, h, a, k, s, c->n);
     for (int i = 0; i < c->n; i++) {
@@ -202,7 +202,7 @@ double ct_stepper_norm(const struct ct_problem *p, const struct ct_tolerance *to
     int n = 0;
     ct_stepper_group(p->groups, p->ny, y, y1);
     for (int i = 0; i < p->ny; i++) {
-        if (p->watched && !p->watched[i])
+        if (p->error_controlled && !p->error_controlled[i])
             continue;
         const double weight = tolerance->rtol * size_of(p->groups, i, y, y1) + tolerance->atol;
         const double part = e[i] / weight;
@@ -212,18 +212,19 @@ double ct_stepper_norm(const struct ct_problem *p, const struct ct_tolerance *to
     return n ? sqrt(sum / n) : 0;
 }
 
-void ct_stepper_take_noise(const struct ct_problem *p, double h, double *e)
+void ct_stepper_subtract_roundoff(const struct ct_problem *p, double h, double *e)
 {
     const double evaluations
         = 4; // weights of the stages in errors have sums of squares of 1 to 16
-    for (int i = 0; i < p->ny && p->noise && h <= p->noisy_step; i++)
-        e[i] = copysign(fmax(0, fabs(e[i]) - evaluations * h * p->noise[i]), e[i]);
+    for (int i = 0; i < p->ny && p->roundoff && h <= p->roundoff_step; i++)
+        e[i] = copysign(fmax(0, fabs(e[i]) - evaluations * h * p->roundoff[i]), e[i]);
 }
 
 double ct_stepper_error(const struct ct_problem *p, const struct ct_tolerance *tolerance,
                         double t1, const double *y, const double *y1, const double *e)
 {
-    return ct_stepper_worse(p, tolerance, t1, y1, e, ct_stepper_norm(p, tolerance, y, y1, e));
+    return ct_stepper_larger_error(p, tolerance, t1, y1, e,
+                                   ct_stepper_norm(p, tolerance, y, y1, e));
 }
 
 double ct_stepper_join(double e5, double e3)
@@ -237,7 +238,7 @@ double ct_stepper_largest(const struct ct_problem *p, const struct ct_tolerance 
     double worst = 0;
     for (int i = first; i < p->ny; i++) {
         const double weight = tolerance->rtol * fmax(fabs(y[i]), fabs(y1[i])) + tolerance->atol;
-        if (!p->watched || p->watched[i])
+        if (!p->error_controlled || p->error_controlled[i])
             worst = fmax(worst, fabs(e[i]) / weight);
     }
     return worst;
@@ -253,10 +254,11 @@ void ct_stepper_hermite(double *restrict out, double theta, double h, const doub
     }
 }
 
-double ct_stepper_swiftness(const struct ct_problem *p, double h, const double *y1,
-                            const double *dy1, const double *point, const double *dpoint)
+double ct_stepper_stiffness_estimate(const struct ct_problem *p, double h, const double *y1,
+                                     const double *dy1, const double *point,
+                                     const double *dpoint)
 {
-    const double roundings = 16 * DBL_EPSILON; // less tells nothing
+    const double roundoffs = 16 * DBL_EPSILON; // less tells nothing
     double size = 0, way = 0, change = 0;
     for (int i = 0; i < (p->nu ? p->nq + p->nu : p->ny); i++) {
         const double d = y1[i] - point[i], f = dy1[i] - dpoint[i];
@@ -264,7 +266,7 @@ double ct_stepper_swiftness(const struct ct_problem *p, double h, const double *
         way += d * d;
         change += f * f;
     }
-    return way > roundings * roundings * size ? h * sqrt(change / way) : 0;
+    return way > roundoffs * roundoffs * size ? h * sqrt(change / way) : 0;
 }
 
 void ct_stepper_point(const struct ct_stepper_span *s, double theta, double *out)

@@ -1,4 +1,4 @@
-// What one-step methods share: stages, the error norm, Hermite interpolation.
+// What one-step methods share: stages, the error norm, dense output by Hermite interpolation.
 #ifndef CT_INTEGRATE_STEPPER_H
 #define CT_INTEGRATE_STEPPER_H
 
@@ -44,25 +44,26 @@ enum ct_eval ct_stepper_rhs(const struct ct_problem *p, double t, const double *
 void ct_stepper_combine(double *restrict out, const double *y, double h, const double *a,
                         const double *k, int s, int n);
 
-/// Compensated summation: what rounding has left of the steps so far, now (n) and after the step just taken, next (n).
-/// y + now is nearer to the sum of all steps than y, whose rounding errors would add up in long runs. Source: higham2002.
-struct ct_carry {
+/// Compensated summation: what round-off has left of the steps so far, now (n) and after the step just taken, next (n).
+/// y + now is nearer to the sum of all steps than y, whose round-off errors would add up in long runs. Source: higham2002.
+struct ct_compensation {
     double *now, *next;
     int n;
 };
 
-struct ct_carry ct_carry_create(struct ct_arena *a, int n);
-/// ct_method.restart and .accept of methods whose workspace begins with a struct ct_carry.
-void ct_carry_restart(void *work);
-void ct_carry_accept(void *work);
+struct ct_compensation ct_compensation_create(struct ct_arena *a, int n);
+/// ct_method.restart and .accept of methods whose workspace begins with a struct ct_compensation.
+void ct_compensation_restart(void *work);
+void ct_compensation_accept(void *work);
 
 /// ct_stepper_combine for the end of a step from y: with c->now, leaving c->next.
 void ct_stepper_advance(double *restrict out, const double *y, double h, const double *a,
-                        const double *k, int s, struct ct_carry *c);
+                        const double *k, int s, struct ct_compensation *c);
 
 /// ct_method.swiftness, from what lies between two points at the end of a step, y1 and point, and between f there.
-double ct_stepper_swiftness(const struct ct_problem *p, double h, const double *y1,
-                            const double *dy1, const double *point, const double *dpoint);
+double ct_stepper_stiffness_estimate(const struct ct_problem *p, double h, const double *y1,
+                                     const double *dy1, const double *point,
+                                     const double *dpoint);
 
 /// g->size = the largest |y_i|, |y1_i| of each group. g may be NULL.
 void ct_stepper_group(const struct ct_groups *g, int ny, const double *y, const double *y1);
@@ -72,14 +73,14 @@ void ct_stepper_group(const struct ct_groups *g, int ny, const double *y, const 
 double ct_stepper_norm(const struct ct_problem *p, const struct ct_tolerance *tolerance,
                        const double *y, const double *y1, const double *e);
 
-/// e (ny) less what rounding of f, where that is felt, may have in it in a step h.
-void ct_stepper_take_noise(const struct ct_problem *p, double h, double *e);
+/// e (ny) less what round-off of f, where that is felt, may have in it in a step h.
+void ct_stepper_subtract_roundoff(const struct ct_problem *p, double h, double *e);
 
 /// `states`, the norm of the error e (ny) of a step that ends at y1, time t1; or what e means for outputs, if that is
 /// more.  (8.6)
-static inline double ct_stepper_worse(const struct ct_problem *p,
-                                      const struct ct_tolerance *tolerance, double t1,
-                                      const double *y1, const double *e, double states)
+static inline double ct_stepper_larger_error(const struct ct_problem *p,
+                                             const struct ct_tolerance *tolerance, double t1,
+                                             const double *y1, const double *e, double states)
 {
     // a step that is refused anyway says nothing more
     if (!p->output_error || !(states <= 1))

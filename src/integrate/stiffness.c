@@ -26,7 +26,7 @@ static const double least_separation = 10;
 static const double far_off = 1000;
 // Two applications of J to one motion stay in a plane, to this part of their length: else there are several, whose decay is not known.
 static const double one_motion = 0.1;
-// A motion that changes by no more in a step needs no such steps: (1e-3)^5 is rounding already. Where the rounding of places
+// A motion that changes by no more in a step needs no such steps: (1e-3)^5 is round-off already. Where the round-off of places
 // alone changes forces by more than the tolerance, it is that which holds them up, far from the limit of stability.
 static const double idle_step = 1e-3;
 // Fewer steps to come are not worth a trial, nor the preparation of an implicit method.
@@ -161,8 +161,8 @@ static double find_slow(const struct ct_stiffness *s, double h)
     return size > 0 ? sqrt(change) / (h * size) : 0;
 }
 
-// Stiff forces answer a rounding of places by eps fast^2 times as much acceleration.
-static bool is_rounding_felt(const struct ct_stiffness *s, const double *y)
+// Stiff forces answer a round-off of places by eps fast^2 times as much acceleration.
+static bool is_roundoff_visible(const struct ct_stiffness *s, const double *y)
 {
     double place = 0;
     for (int i = 0; i < s->first; i++)
@@ -192,9 +192,9 @@ static double find_departure(const struct ct_stiffness *s, const double *y)
     return sqrt(change / fmin(place, 1));
 }
 
-// Has the rate of the fastest motion been about the same for some tests? Beside singular positions it is large for a moment, and
+// Has the rate of the fastest motion been about the same for some tests? Beside singular configurations it is large for a moment, and
 // nothing turns.
-static bool lasts(const struct ct_stiffness *s)
+static bool is_persistent(const struct ct_stiffness *s)
 {
     return s->alike >= suspicious_tests;
 }
@@ -232,16 +232,16 @@ static bool test(struct ct_stiffness *s, double t, const double *y)
         return false;
     s->slow = find_slow(s, t - s->t0);
     const double reach = s->step * s->fast, pace = find_pace(s, y);
-    s->is_far = s->p->asked_speeds && s->fast > far_off * pace;
+    s->is_far = s->p->requested_speeds && s->fast > far_off * pace;
     compare_rates(s, fast_before);
-    s->is_followed = reach < unfollowed_step && lasts(s);
+    s->is_followed = reach < unfollowed_step && is_persistent(s);
     const bool is_unfollowed = fmax(reach, (t - s->t0) * s->fast) >= unfollowed_step;
-    s->is_unstable = is_unfollowed && lasts(s);
-    s->look_at = is_unfollowed && !lasts(s) ? s->count + look_after : 0;
+    s->is_unstable = is_unfollowed && is_persistent(s);
+    s->test_at = is_unfollowed && !is_persistent(s) ? s->count + look_after : 0;
     const bool is_idle = s->is_far || s->step * s->slow < idle_step;
-    const bool is_held_up = reach > suspicious_step || (is_idle && is_rounding_felt(s, y));
+    const bool is_held_up = reach > suspicious_step || (is_idle && is_roundoff_visible(s, y));
     const bool is_apart = s->is_far || s->fast > least_separation * s->slow;
-    note_decay(s, is_apart && lasts(s), pace, start, t);
+    note_decay(s, is_apart && is_persistent(s), pace, start, t);
     return reach > unfollowed_step || (is_held_up && is_apart);
 }
 
@@ -249,29 +249,29 @@ static bool test(struct ct_stiffness *s, double t, const double *y)
 static void look_again(struct ct_stiffness *s, double t, const double *y)
 {
     const double before = s->fast;
-    s->look_at = 0;
+    s->test_at = 0;
     if (!find_fast(s, t, y))
         return;
     compare_rates(s, before);
-    s->is_unstable = lasts(s);
-    if (!lasts(s))
-        s->look_at = s->count + look_after;
+    s->is_unstable = is_persistent(s);
+    if (!is_persistent(s))
+        s->test_at = s->count + look_after;
 }
 
-bool ct_stiffness_watch(struct ct_stiffness *s, double t, const double *y, double end)
+bool ct_stiffness_detect(struct ct_stiffness *s, double t, const double *y, double end)
 {
     s->count++;
     if ((s->count + 1) % test_every == 0) {
         memcpy(s->y0, y, (size_t)s->p->ny * sizeof *y);
         s->t0 = t;
     }
-    if (s->count == s->look_at)
+    if (s->count == s->test_at)
         look_again(s, t, y);
     if (s->count % test_every != 0)
         return false;
     s->in_a_row = test(s, t, y) ? s->in_a_row + 1 : 0;
     const bool is_due = s->in_a_row >= suspicious_tests && s->count >= s->next_trial;
-    const bool is_overtaken = s->step < s->rival * s->evaluations;
+    const bool is_overtaken = s->step < s->other_pace * s->evaluations;
     return (is_due || is_overtaken) && end - t > steps_worth_it * s->step;
 }
 
@@ -282,7 +282,7 @@ bool ct_stiffness_is_unstable(const struct ct_stiffness *s)
 
 double ct_stiffness_stable_step(const struct ct_stiffness *s, const struct ct_method *m)
 {
-    return m->stable > 0 && lasts(s) ? m->stable / s->fast : INFINITY;
+    return m->stability_limit > 0 && is_persistent(s) ? m->stability_limit / s->fast : INFINITY;
 }
 
 bool ct_stiffness_has_tested(const struct ct_stiffness *s)
@@ -311,7 +311,7 @@ static bool find_second_derivative(struct ct_stiffness *s, double t, const doubl
                                    double *out)
 {
     const double dt
-        = 1e-3 / s->fast; // far above rounding, far below a period; back, where tables are
+        = 1e-3 / s->fast; // far above round-off, far below a period; back, where tables are
     if (s->p->rhs(s->p->user, t - dt, y, out) != CT_EVAL_OK)
         return false;
     double *along = s->quarter;
@@ -342,8 +342,8 @@ bool ct_stiffness_find_vibration(struct ct_stiffness *s, double t, const double 
     return turn_on(s, t, y, x);
 }
 
-bool ct_stiffness_expect(struct ct_stiffness *s, double t, const double *y, double end,
-                         const struct ct_method *method, double rtol)
+bool ct_stiffness_predict(struct ct_stiffness *s, double t, const double *y, double end,
+                          const struct ct_method *method, double rtol)
 {
     if (s->first == s->last || !find_fast(s, t, y))
         return false;
@@ -372,15 +372,15 @@ static double error_constant(const struct ct_method *m)
     return fabs(x[b->stages - 1] - wanted);
 }
 
-double ct_stiffness_followed_step(const struct ct_method *method, double fast, double time,
+double ct_stiffness_accurate_step(const struct ct_method *method, double fast, double time,
                                   double rtol)
 {
     const double each = rtol / (fast * time * error_constant(method));
     return pow(each, 1. / method->order) / fast;
 }
 
-void ct_stiffness_put_off(struct ct_stiffness *s, double t, double spent,
-                          const struct ct_cost *cost)
+void ct_stiffness_postpone(struct ct_stiffness *s, double t, double spent,
+                           const struct ct_cost *cost)
 {
     const double steps = spent / fmax(1, s->evaluations * cost->evaluation);
     s->next_trial = s->count + (long)fmin(1e9, put_off_work * steps);
@@ -389,13 +389,12 @@ void ct_stiffness_put_off(struct ct_stiffness *s, double t, double spent,
     s->window_t = t; // counts begin anew with the next steps
     s->window_evaluations = 0;
     s->in_a_row = 0;
-    s->rival = 0;
+    s->other_pace = 0;
 }
 
-void ct_stiffness_measure_against(struct ct_stiffness *s, double pace,
-                                  const struct ct_cost *cost)
+void ct_stiffness_compare_with(struct ct_stiffness *s, double pace, const struct ct_cost *cost)
 {
-    s->rival = pace * cost->evaluation;
+    s->other_pace = pace * cost->evaluation;
 }
 
 double ct_stiffness_pace(const struct ct_stiffness *s, const struct ct_cost *cost)

@@ -1,9 +1,9 @@
-// Is an explicit run held up by stability? The fastest motion the equations are capable of against the motion there is.
+// Stiffness detection: is an explicit run held up by stability? The fastest motion the equations are capable of against the motion there is.
 //
 //     fast    |J^2 v|^(1/2), J = df/dy, v the result of the last test: the power method, one round each test
 //     slow    |change of the accelerations| / (h |accelerations|) over one step
 //     stiff   step * fast is near the limit of stability though fast is much more than slow, or
-//             step * slow is next to nothing and roundings of places, times fast^2, are felt in the accelerations
+//             step * slow is next to nothing and round-off errors of places, times fast^2, are felt in the accelerations
 //
 // What always holds: a test costs four evaluations and is made every hundred steps; it changes nothing in the problem.
 // Suspicion is no proof: a trial finds out whether an implicit method is faster.
@@ -28,7 +28,7 @@ struct ct_stiffness {
     bool
         is_unstable; // steps are held up by stability, at the last test, and that rate has lasted
     int alike;       // tests with about the rate of the one before
-    long look_at;    // step after which the rate is looked at again between tests; 0: none
+    long test_at;    // step after which the rate is looked at again between tests; 0: none
     double window_t; // where the last test was
     long window_steps;
     const struct ct_integrate_stats *stats; // of the run, live
@@ -39,7 +39,7 @@ struct ct_stiffness {
     double excited;     // time of the last event, given
     double step;        // mean step since the test before [s]
     double evaluations; // for a step, since then
-    double rival;       // time for as much work as an evaluation, by the other method  [s]
+    double other_pace;  // time for as much work as an evaluation, by the other method  [s]
 };
 
 /// What the parts of a run cost, in common units.
@@ -73,12 +73,12 @@ struct ct_stiffness *ct_stiffness_create(struct ct_arena *a, const struct ct_pro
 int ct_stiffness_fastest(struct ct_stiffness *s, double t, const double *y);
 /// After each accepted step to t, y; end: of the run. True if a trial is worth its work now: tests were suspicious and
 /// there are many steps to come.
-bool ct_stiffness_watch(struct ct_stiffness *s, double t, const double *y, double end);
+bool ct_stiffness_detect(struct ct_stiffness *s, double t, const double *y, double end);
 /// Before the first step from t, y of an explicit method: would it make many steps because of vibrations that are far from the
 /// motion, if it follows them to rtol? Their pace is that of ct_stiffness_pace then.
-bool ct_stiffness_expect(struct ct_stiffness *s, double t, const double *y, double end,
-                         const struct ct_method *method, double rtol);
-/// Was the step that ct_stiffness_watch saw last one with a test?
+bool ct_stiffness_predict(struct ct_stiffness *s, double t, const double *y, double end,
+                          const struct ct_method *method, double rtol);
+/// Was the step that ct_stiffness_detect saw last one with a test?
 bool ct_stiffness_has_tested(const struct ct_stiffness *s);
 /// After a test, where such vibrations are followed: what is vibration of y (ny), and what it is a quarter of a period later. From y'',
 /// by J^(p-1)/fast^(p+1), p the order of the method: what is slower counts by as much less as it errs less. p + 1 evaluations.
@@ -90,15 +90,14 @@ bool ct_stiffness_is_unstable(const struct ct_stiffness *s);
 double ct_stiffness_stable_step(const struct ct_stiffness *s, const struct ct_method *m);
 /// The longest step with which an explicit method follows a vibration of `fast` for a time so that its phase and size err by rtol
 /// at the end, when the errors of all steps have added up.  (8.14)
-double ct_stiffness_followed_step(const struct ct_method *method, double fast, double time,
+double ct_stiffness_accurate_step(const struct ct_method *method, double fast, double time,
                                   double rtol);
 /// After a trial that was lost, at time t for the work `spent`: not again before the number of steps has doubled, nor
 /// before steps have cost many times as much.
-void ct_stiffness_put_off(struct ct_stiffness *s, double t, double spent,
-                          const struct ct_cost *cost);
+void ct_stiffness_postpone(struct ct_stiffness *s, double t, double spent,
+                           const struct ct_cost *cost);
 /// When the implicit method has been left, which gained as much time for its work: a trial as soon as steps gain less.
-void ct_stiffness_measure_against(struct ct_stiffness *s, double pace,
-                                  const struct ct_cost *cost);
+void ct_stiffness_compare_with(struct ct_stiffness *s, double pace, const struct ct_cost *cost);
 
 /// Time gained for the work of an explicit run between its last two tests.
 double ct_stiffness_pace(const struct ct_stiffness *s, const struct ct_cost *cost);

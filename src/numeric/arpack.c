@@ -70,7 +70,8 @@ int ct_arpack_largest(struct ct_arena *a, const struct ct_operator *op, int n, i
     ncv = ncv < n ? ncv : n;
     const int lworkl = ncv * (ncv + 8), rvec = 1;
     int ido = 0, info = 1, iparam[11] = {1, 0, MOST_RESTARTS, 1, 0, 0, 3}, ipntr[11];
-    const double tolerance = 0, zero = 0; // to rounding; no shift: eigenvalues of OP are wanted
+    const double tolerance = 0,
+                 zero = 0; // to round-off; no shift: eigenvalues of OP are wanted
     double *resid = CT_NEWN(a, double, n), *basis = CT_NEWN(a, double, size *(size_t)ncv),
            *workd = CT_NEWN(a, double, 3 * size), *workl = CT_NEWN(a, double, lworkl),
            *work = CT_NEWN(a, double, n), *d = CT_NEWN(a, double, nev + 1);

@@ -522,7 +522,7 @@ size_t ct_symmetric_eigenvalues_work(int n)
 int ct_symmetric_count_below(double *A, int n, int lda, double x)
 {
     const double certain
-        = 1e-6; // the roundings of other entries then stay below 1e-9 of the largest
+        = 1e-6; // the round-off errors of other entries then stay below 1e-9 of the largest
     double largest = 0;
     int count = 0;
     for (int k = 0; k < n; k++) {

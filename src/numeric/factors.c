@@ -2,7 +2,7 @@
 #include "numeric/factors.h"
 
 #include "numeric/klu_include.h"
-#include "numeric/selected.h"
+#include "numeric/selected_inverse.h"
 
 #include <math.h>
 #include <stdlib.h>

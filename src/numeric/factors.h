@@ -21,7 +21,7 @@ struct ct_pattern {
     int n, nz;
     int *start, *row; // of columns (n + 1); (nz)
     double operations,
-        fill; // of real factors: multiplications and additions, entries. After ct_pattern_order, or as foretold
+        fill; // of real factors: multiplications and additions, entries. After ct_pattern_order, or as estimated
     struct ct_pattern_order *order; // NULL: none
 };
 

@@ -1,21 +1,21 @@
 // See inverse.h. Columns are handled by pairs of rows.
 #include "numeric/inverse.h"
 
-#include "numeric/four.h"
-#include "numeric/pair.h"
+#include "numeric/simd4.h"
+#include "numeric/simd2.h"
 
 #include <math.h>
 
-enum { FEW = 4, PAIR = CT_PAIR };
+enum { FEW = 4, PAIR = CT_SIMD2 };
 
 // y + i z -= (c + i d) (r + i s)
 static inline void take_complex(double *y, double *z, double c, double d, const double *r,
                                 const double *s, int rows)
 {
     for (int i = 0; i < rows; i += PAIR) {
-        const ct_pair re = ct_pair_take(r + i), im = ct_pair_take(s + i);
-        ct_pair_put(y + i, ct_pair_add(ct_pair_add(ct_pair_take(y + i), re, -c), im, d));
-        ct_pair_put(z + i, ct_pair_add(ct_pair_add(ct_pair_take(z + i), im, -c), re, -d));
+        const ct_simd2 re = ct_simd2_load(r + i), im = ct_simd2_load(s + i);
+        ct_simd2_store(y + i, ct_simd2_add(ct_simd2_add(ct_simd2_load(y + i), re, -c), im, d));
+        ct_simd2_store(z + i, ct_simd2_add(ct_simd2_add(ct_simd2_load(z + i), im, -c), re, -d));
     }
 }
 
@@ -85,29 +85,29 @@ bool ct_inverse(double *A, int *pivot, int n)
 }
 
 // Eight rows and, at last, four: columns are read once for each, and their sums do not wait for each other.
-CT_FOUR_INLINE void product(double *restrict x, const double *restrict A,
-                            const double *restrict b, int rows, int n)
+CT_SIMD4_INLINE void product(double *restrict x, const double *restrict A,
+                             const double *restrict b, int rows, int n)
 {
     int i = 0;
     for (; i + 2 * FEW <= rows; i += 2 * FEW) {
         const double *column = A + i;
-        ct_four first, second;
-        ct_four_fill(&first, 0);
-        ct_four_fill(&second, 0);
+        ct_simd4 first, second;
+        ct_simd4_fill(&first, 0);
+        ct_simd4_fill(&second, 0);
         for (int j = 0; j < n; j++, column += rows) {
-            ct_four_add_times(&first, b[j], column);
-            ct_four_add_times(&second, b[j], column + FEW);
+            ct_simd4_add_times(&first, b[j], column);
+            ct_simd4_add_times(&second, b[j], column + FEW);
         }
-        ct_four_put(x + i, &first);
-        ct_four_put(x + i + FEW, &second);
+        ct_simd4_put(x + i, &first);
+        ct_simd4_put(x + i + FEW, &second);
     }
     if (i < rows) {
         const double *column = A + i;
-        ct_four sum;
-        ct_four_fill(&sum, 0);
+        ct_simd4 sum;
+        ct_simd4_fill(&sum, 0);
         for (int j = 0; j < n; j++, column += rows)
-            ct_four_add_times(&sum, b[j], column);
-        ct_four_put(x + i, &sum);
+            ct_simd4_add_times(&sum, b[j], column);
+        ct_simd4_put(x + i, &sum);
     }
 }
 
@@ -180,16 +180,16 @@ void ct_product_complex(double *restrict x, double *restrict y, const double *re
 {
     for (int i = 0; i < rows; i += PAIR) {
         const double *X = re + i, *Y = im + i;
-        ct_pair real = {0}, imaginary = {0}, less = {0}, more = {0};
+        ct_simd2 real = {0}, imaginary = {0}, less = {0}, more = {0};
         for (int j = 0; j < n; j++, X += rows, Y += rows) {
-            const ct_pair p = ct_pair_take(X), q = ct_pair_take(Y);
-            real = ct_pair_add(real, p, a[j]);
-            imaginary = ct_pair_add(imaginary, p, b[j]);
-            less = ct_pair_add(less, q, b[j]);
-            more = ct_pair_add(more, q, a[j]);
+            const ct_simd2 p = ct_simd2_load(X), q = ct_simd2_load(Y);
+            real = ct_simd2_add(real, p, a[j]);
+            imaginary = ct_simd2_add(imaginary, p, b[j]);
+            less = ct_simd2_add(less, q, b[j]);
+            more = ct_simd2_add(more, q, a[j]);
         }
-        ct_pair_put(x + i, ct_pair_add(real, less, -1));
-        ct_pair_put(y + i, ct_pair_add(imaginary, more, 1));
+        ct_simd2_store(x + i, ct_simd2_add(real, less, -1));
+        ct_simd2_store(y + i, ct_simd2_add(imaginary, more, 1));
     }
 }
 

@@ -139,7 +139,7 @@ bool ct_sparse_factor(struct ct_sparse *s, const double *value)
         && s->common.status == KLU_OK;
 }
 
-// r = b - A x; the largest of |r| / (|b| + most |A| most |x|) by rows. Rows whose terms are all rounding stand beside
+// r = b - A x; the largest of |r| / (|b| + most |A| most |x|) by rows. Rows whose terms are all round-off stand beside
 // the largest entries they could have.
 static double backward_error(struct ct_sparse *s, const double *x, const double *b)
 {

@@ -41,8 +41,8 @@ static const char *symbol(void *data, struct ct_arena *a, const struct ct_sym *s
     const size_t k = (size_t)(s - n->d->e->x->sym);
     if (s->kind == CT_SYM_TIME)
         return "t";
-    if (s->kind == CT_SYM_MODE || s->kind == CT_SYM_MEMORY)
-        return ct_arena_printf(a, s->kind == CT_SYM_MODE ? "mode[%u]" : "kept[%u]", s->index);
+    if (s->kind == CT_SYM_SWITCH || s->kind == CT_SYM_MEMORY)
+        return ct_arena_printf(a, s->kind == CT_SYM_SWITCH ? "mode[%u]" : "kept[%u]", s->index);
     if (!n->of[k]) {
         const char *name = ct_c_name(a, s->name);
         for (int i = 2; is_taken(n, name); i++)
@@ -158,7 +158,7 @@ static void put_head(struct writer *w, const char *name)
             "written.\n"
             "// mode: 0 or 1, the sides of comparisons (%zu); kept: values of the last step "
             "(%zu).\n",
-            e->nu, e->nu, e->nrow, e->nu, e->nmode, e->nmemory);
+            e->nu, e->nu, e->nrow, e->nu, e->nswitch, e->nmemory);
     fprintf(w->out, "#include <math.h>\n\n");
     if (e->x->ntable)
         fprintf(w->out, "// value of a sampled function or of one of its derivatives at x\n"

@@ -327,10 +327,10 @@ static void put_known(struct writer *w, const struct ct_reduced *r)
         ct_json_text(&w->j, e->driver[i].name, text(w, r->effort[i]));
     ct_json_end(&w->j);
     ct_json_object(&w->j, "modes"); // 1 where it holds
-    for (size_t i = 0; i < e->nmode; i++)
-        ct_json_text(&w->j, ct_ex_symbol(e->x, e->mode[i].symbol)->name,
-                     ct_arena_printf(w->d->a, "%s %s 0", text(w, e->mode[i].g),
-                                     ct_op_info[e->mode[i].op].name));
+    for (size_t i = 0; i < e->nswitch; i++)
+        ct_json_text(&w->j, ct_ex_symbol(e->x, e->switches[i].symbol)->name,
+                     ct_arena_printf(w->d->a, "%s %s 0", text(w, e->switches[i].g),
+                                     ct_op_info[e->switches[i].op].name));
     ct_json_end(&w->j);
 }
 

@@ -9,7 +9,7 @@
 //     reduced    M u' = Q + J' lam, one equation per unknown speed; the constraints
 //
 // What always holds: the same model, trees and format give the same bytes. The expressions that are
-// printed equal those of struct ct_equations up to rounding.
+// printed equal those of struct ct_equations up to round-off.
 #ifndef CT_REPORT_EQUATIONS_H
 #define CT_REPORT_EQUATIONS_H
 

@@ -1,7 +1,7 @@
 // Names by meaning for the expressions of the recursion; see reduced.h.
 #include "report/reduced.h"
 
-#include "formulate/dynamics.h"
+#include "formulate/dynamics/dynamics.h"
 
 static void label(struct ct_build *b, ct_ex e, const char *letter, const char *name,
                   const char *part)
@@ -34,7 +34,7 @@ static void label33(struct ct_build *b, const ct_ex33 *A, const char *letter, co
 static void name_places(const struct ct_build *b, const char **cluster, const char **anchor)
 {
     for (size_t i = 0; i < b->nnode; i++) {
-        const struct ct_place *p = &b->place[i];
+        const struct ct_node_placement *p = &b->placement[i];
         if (!cluster[p->frame])
             cluster[p->frame] = b->node[i].name;
         if (!anchor[p->anchor] && ct_ex3_is_zero(p->local))

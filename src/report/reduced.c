@@ -4,7 +4,7 @@
 #include "expr/collect.h"
 #include "base/sort.h"
 #include "expr/share.h"
-#include "formulate/dynamics.h"
+#include "formulate/dynamics/dynamics.h"
 
 // Beyond this many nodes of an expanded expression nobody reads it as a formula of its own, and
 // collecting takes seconds.

@@ -2,7 +2,7 @@
 //
 //     sum over j of M[i][j] u'[j]  =  Q[i] + sum over r of J[r][i] lam[r]
 //
-// What always holds: each expression equals its namesake in struct ct_equations up to rounding.
+// What always holds: each expression equals its namesake in struct ct_equations up to round-off.
 #ifndef CT_REPORT_REDUCED_H
 #define CT_REPORT_REDUCED_H
 

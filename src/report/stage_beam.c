@@ -2,7 +2,7 @@
 #include "report/stage_beam.h"
 
 #include "expr/collect.h"
-#include "formulate/elastic.h"
+#include "formulate/beam/beam_dynamics.h"
 
 #include <string.h>
 
@@ -18,7 +18,7 @@ static const struct {
 } families[] = {{CT_BEAM_AXIAL, "axial", 0, CT_LINE_DOF},
                 {CT_BEAM_BENDING_Z, "bending-z", 2, 4},
                 {CT_BEAM_BENDING_Y, "bending-y", 6, 4},
-                {CT_BEAM_TORSION, "torsion", CT_PLACE_DOF, CT_LINE_DOF}};
+                {CT_BEAM_TORSION, "torsion", CT_AXIS_DOF, CT_LINE_DOF}};
 
 // Dofs of family i that the beam's elements have.
 static int ndof_of(const struct ct_beam *beam, size_t i)
@@ -167,9 +167,9 @@ void ct_beam_element_derive(struct ct_build *b, const struct ct_flexible *f,
         }
     out->axial
         = ct_ex_add(x, field(out, f->line, 0, 2), field(out, &f->line[2], CT_MIDDLE_DOF, 1));
-    out->v = field(out, f->shape.place, 2, 4);
-    out->w = field(out, f->shape.place, 6, 4);
-    out->twist = field(out, f->line, CT_PLACE_DOF, CT_LINE_DOF);
+    out->v = field(out, f->shape.deflection, 2, 4);
+    out->w = field(out, f->shape.deflection, 6, 4);
+    out->twist = field(out, f->line, CT_AXIS_DOF, CT_LINE_DOF);
     out->is_constant = !varies(b, beam.area) && !varies(b, beam.Iy) && !varies(b, beam.Iz)
                     && !varies(b, beam.J);
     if (!out->is_constant)
@@ -545,10 +545,10 @@ static const char *into_arms(struct ct_derivation *d, const struct ct_flexible *
         const struct ct_edge_info *e = &b->edge[i];
         if (e->flexible != f)
             continue;
-        if (!ct_ex3_is_zero(e->slide[k]))
+        if (!ct_ex3_is_zero(e->translation[k]))
             s = ct_arena_printf(d->a, "%s%s%s", s, *s ? " + " : "",
                                 partial(d, "d", e->name, "F"));
-        if (!ct_ex3_is_zero(e->turn[k]))
+        if (!ct_ex3_is_zero(e->rotation[k]))
             s = ct_arena_printf(d->a, "%s%s%s", s, *s ? " + " : "",
                                 partial(d, "Y", e->name, "T"));
     }

@@ -4,7 +4,7 @@
 #ifndef CT_REPORT_STAGE_BEAM_H
 #define CT_REPORT_STAGE_BEAM_H
 
-#include "formulate/flexible.h"
+#include "formulate/beam/flexible_body.h"
 #include "report/derivation.h"
 
 /// The element of a beam, with symbols instead of its dofs; constants of the sections where these do not vary.

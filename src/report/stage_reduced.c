@@ -113,12 +113,12 @@ static void put_held(struct ct_derivation *d, const struct group g[NGROUP],
                      const struct ct_reduced *r)
 {
     const struct ct_equations *e = d->e;
-    if (e->nmode) {
+    if (e->nswitch) {
         ct_page_heading(&d->page, "held between events: 1 where it holds, else 0");
         ct_page_equations(&d->page);
     }
-    for (size_t i = 0; i < e->nmode; i++) {
-        const struct ct_mode *m = &e->mode[i];
+    for (size_t i = 0; i < e->nswitch; i++) {
+        const struct ct_switch *m = &e->switches[i];
         const ct_ex holds = ct_ex_fun2(e->x, m->op, m->g, CT_EX_ZERO);
         ct_page_equation(&d->page, NULL, ct_derivation_text(d, m->symbol),
                          ct_derivation_text(d, holds), NULL);
@@ -126,7 +126,7 @@ static void put_held(struct ct_derivation *d, const struct group g[NGROUP],
     for (size_t i = 0; i < e->nmemory; i++)
         if (shows(d, g, r, e->memory[i].symbol))
             ct_page_sentence(&d->page, "%s: %s", ct_ex_symbol(e->x, e->memory[i].symbol)->name,
-                             ct_memory_is_followed(&e->memory[i])
+                             ct_memory_is_updated(&e->memory[i])
                                  ? "value at the last step"
                                  : "constant, from the assembled start");
 }

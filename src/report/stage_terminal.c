@@ -2,7 +2,7 @@
 #include "report/stage_beam.h"
 
 #include "formulate/build.h"
-#include "formulate/topology.h"
+#include "formulate/topology/linear_graph.h"
 
 #include <string.h>
 
@@ -198,7 +198,7 @@ static void name_coordinates(struct ct_derivation *d, const struct ct_edge_info 
         const char *name = d->e->coordinate[e->first_coordinate + k].name;
         m->coord[k] = ct_ex_sym(d->e->x, CT_SYM_LOCAL, name, (uint32_t)k);
     }
-    ct_topology_motion(d->e->build, e, m);
+    ct_linear_graph_edge_motion(d->e->build, e, m);
 }
 
 static void put_joint(struct ct_derivation *d, const struct ct_edge_info *e)

@@ -3,7 +3,7 @@
 #include "report/stage_beam.h"
 
 #include "expr/collect.h"
-#include "formulate/kinematics.h"
+#include "formulate/kinematics/kinematics.h"
 
 #include <string.h>
 

@@ -1,7 +1,7 @@
 // The trees, and what they make of the model: unknowns, drivers, constraint rows.
 #include "report/derivation.h"
 
-#include "formulate/flexible.h"
+#include "formulate/beam/flexible_body.h"
 
 #include <string.h>
 
@@ -52,7 +52,7 @@ static const struct ct_measure *measure_of(const struct ct_equations *e,
                                            const struct ct_coordinate *c)
 {
     const struct ct_motion *m = &e->build->edge[c->edge].motion;
-    const int k = m->quaternion >= 0 && c->place > m->quaternion ? m->quaternion : c->place;
+    const int k = m->quaternion >= 0 && c->index > m->quaternion ? m->quaternion : c->index;
     return k < m->nmeasure ? &m->measure[k] : NULL;
 }
 
@@ -68,7 +68,7 @@ static const char *meaning_of(struct ct_derivation *d, const struct ct_coordinat
     *unit = "m";
     if (!m) {
         *unit = c->in_rotation ? "rad" : "m";
-        return ct_arena_printf(d->a, "coordinate %d of %s", c->place + 1, what);
+        return ct_arena_printf(d->a, "coordinate %d of %s", c->index + 1, what);
     }
     if (m->kind == CT_MEASURE_QUATERNION) {
         *unit = "";

@@ -34,17 +34,17 @@ static const double *copy(struct ct_arena *a, const double *v, size_t n)
 static bool record(struct work *w, const double *y)
 {
     struct ct_arena *a = w->ctx->model;
-    struct ct_machine *m = ct_run_machine(w->sim->run);
-    struct ct_embed *s = ct_run_embed(w->sim->run);
+    struct ct_evaluator *m = ct_run_evaluator(w->sim->run);
+    struct ct_partition *s = ct_run_partition(w->sim->run);
     const double met = 1e-8; // assembled to about 1e-12, in metres and radians
-    ct_machine_set(m, 0, y);
-    ct_machine_constraint(m);
+    ct_evaluator_set(m, 0, y);
+    ct_evaluator_constraint(m);
     for (size_t i = 0; i < 2 * m->nrow; i++)
         if (!(fabs(m->constraint.out[i]) <= met))
             return false;
     const double *constraint = copy(a, m->constraint.out, m->constraint.nout);
-    ct_machine_motion(m);
-    if (ct_embed_accelerate(s) != CT_EVAL_OK)
+    ct_evaluator_dynamics(m);
+    if (ct_partition_accelerate(s) != CT_EVAL_OK)
         return false;
     w->state[w->x.nstate++] = (struct ct_export_state){copy(a, m->input, m->ninput),
                                                        copy(a, m->motion.out, m->motion.nout),
@@ -53,10 +53,10 @@ static bool record(struct work *w, const double *y)
 }
 
 // The start; with its speeds doubled; in open systems somewhere else. Elastic coordinates stay: the accelerations of a bent
-// stiff beam are so large that rounding alone makes them differ.
+// stiff beam are so large that round-off alone makes them differ.
 static bool record_states(struct work *w)
 {
-    const struct ct_machine *m = ct_run_machine(w->sim->run);
+    const struct ct_evaluator *m = ct_run_evaluator(w->sim->run);
     const double *start = ct_run_state(w->sim->run);
     const size_t ny = m->nq + m->nu + 1;
     double *y = CT_NEWN(w->ctx->model, double, ny), *d = CT_NEWN(w->ctx->model, double, ny);
@@ -70,12 +70,12 @@ static bool record_states(struct work *w)
     }
     record(w, y);
     if (m->nrow == 0) {
-        ct_machine_retract(m, y, d);
+        ct_evaluator_retract(m, y, d);
         for (size_t i = 0; i < m->nu; i++)
             y[m->nq + i] += d[i];
         record(w, y);
     }
-    ct_machine_set(ct_run_machine(w->sim->run), 0, start);
+    ct_evaluator_set(ct_run_evaluator(w->sim->run), 0, start);
     return true;
 }
 
@@ -113,15 +113,15 @@ static bool want_dynamics(struct ct_sim *sim)
 // Accelerations in closed form, where the run has them.
 static void find_solution(struct work *w)
 {
-    const struct ct_embed *s = ct_run_embed(w->sim->run);
-    const struct ct_machine *m = s->m;
+    const struct ct_partition *s = ct_run_partition(w->sim->run);
+    const struct ct_evaluator *m = s->m;
     w->x.rank = (size_t)s->rank;
-    w->x.weakest = ct_form_weakest;
+    w->x.weakest = ct_solver_least_strength;
     if (m->solved.nout) {
         w->x.solved = m->solved.listing;
         w->x.nfree = m->nu;
-    } else if (s->has_form) {
-        const struct ct_form_code code = ct_form_code(s->form[0]);
+    } else if (s->has_solver) {
+        const struct ct_solver_code code = ct_solver_code(s->solver[0]);
         w->x.solved = code.listing;
         w->x.nfree = code.nfree;
         w->x.npivot = code.npivot;
@@ -135,7 +135,7 @@ static bool write_c(void *task)
     if (!want_dynamics(w->sim))
         return false;
     struct ct_arena *a = w->ctx->model;
-    const struct ct_machine *m = ct_run_machine(w->sim->run);
+    const struct ct_evaluator *m = ct_run_evaluator(w->sim->run);
     const char *title = w->sim->system->model.name;
     w->x = (struct ct_export){.name = ct_c_name(a, title),
                               .title = title,
@@ -144,7 +144,7 @@ static bool write_c(void *task)
                               .constraint = m->constraint.listing,
                               .at_q = m->at_q,
                               .at_u = m->at_u,
-                              .at_mode = m->at_mode,
+                              .at_switch = m->at_switch,
                               .at_memory = m->at_memory,
                               .ninput = m->ninput,
                               .state = w->state,

@@ -2,10 +2,10 @@
 #include "sim/sim.h"
 
 #include "base/guard.h"
-#include "formulate/flexible.h"
-#include "solve/criterion.h"
-#include "solve/lanes.h"
-#include "solve/singular.h"
+#include "formulate/beam/flexible_body.h"
+#include "solve/constraint/partition_conditioning.h"
+#include "solve/batch/batch.h"
+#include "solve/singular/rank_monitor.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -14,15 +14,15 @@
 
 // The error of a solution is larger than that of its steps, so steps are held to less than what is wanted, as far as
 // double precision has that many digits. Over the reference cases outputs err by up to 3000 times the tolerance of the
-// steps with dopri5 and past singular positions, by up to 1300 times with dop853 where there are no loops.
+// steps with dopri5 and past singular configurations, by up to 1300 times with dop853 where there are no loops.
 static const double usual_share = 2e-3, share_of_high_order = 5e-3;
 // Steps of order p err by h^(p+1) and the solution by h^p: T = c tol^(p/(p+1)). For order 2, c is 10 to 50 in most cases.
 static const double order2_factor = 30;
 // Of Radau's steps the error of an estimate of order 3 is controlled, eased to tol^(2/3)/10: T/10 for this power of T.
 static const double radau_power = 1.5;
 static const double radau_share = 1e-2; // for loose tolerances
-// About a hundred roundings. With loops it is ct_position_tolerance, as well as projections close them: from steps that are
-// held to less, down to 1e-14, outputs come out no better past singular positions, and a few times better, below 1e-12,
+// About a hundred round-off errors. With loops it is ct_position_tolerance, as well as projections close them: from steps that are
+// held to less, down to 1e-14, outputs come out no better past singular configurations, and a few times better, below 1e-12,
 // where there are none.
 static const double least_rtol = 2e-14;
 // Above this tolerance high order does not pay for its twelve evaluations: over the reference cases both explicit methods
@@ -152,7 +152,7 @@ bool ct_sim_resolve(struct ct_sim *sim, const struct ct_sim_options *o)
                  : o->until > 0   ? samples_until(m, o->until)
                                   : (size_t)m->samples,
         .rate_jumps = m->rate_jumps,
-        .wanted = sim->tolerance,
+        .output_rtol = sim->tolerance,
         .least_rtol = sim->least_rtol,
     };
     if (!choose_method(sim, o->method))
@@ -163,10 +163,10 @@ bool ct_sim_resolve(struct ct_sim *sim, const struct ct_sim_options *o)
     return true;
 }
 
-const char *ct_sim_refuses_lanes(const struct ct_sim *sim)
+const char *ct_sim_refuses_batch(const struct ct_sim *sim)
 {
     return sim->system->held_equations.build ? "beams start in equilibrium"
-                                             : ct_lanes_refusal(&sim->run_options);
+                                             : ct_batch_obstacle(&sim->run_options);
 }
 
 // Machine code where it can be had, unless the tape is asked for.
@@ -178,7 +178,7 @@ static bool choose_backend(struct ct_sim *sim, const char *name)
     for (size_t i = 0; i < COUNT(words); i++) {
         if (name && strcmp(name, words[i]) != 0)
             continue;
-        return ct_machine_use(sim->own.model, ct_run_machine(sim->run), backends[i])
+        return ct_evaluator_use(sim->own.model, ct_run_evaluator(sim->run), backends[i])
             || ct_error(&sim->own, (struct ct_mark){0}, CT_E_USAGE,
                         "native code is not available on this computer; there is tape");
     }
@@ -196,7 +196,7 @@ struct create {
 // Impulses at events need the mass matrix.
 static bool needs_dynamics(const struct ct_equations *e)
 {
-    return !e->solution || e->nmode || e->x->ntable;
+    return !e->solution || e->nswitch || e->x->ntable;
 }
 
 // Names of the joints of the rows that are marked, each once: "a, b".
@@ -218,13 +218,13 @@ static const char *joints_of(const struct ct_sim *sim, const bool *row, int *fir
     return names;
 }
 
-// What is said of a start in a singular position holds for that position: freedoms, redundant rows.
+// What is said of a start in a singular configuration holds for that position: freedoms, redundant rows.
 static void warn_of_singular_start(struct ct_sim *sim)
 {
     bool *row = CT_NEWN(sim->own.model, bool, sim->system->equations.nrow + 1);
     int first;
-    if (!ct_singular_is_start(sim->own.scratch, ct_run_embed(sim->run), 0,
-                              ct_run_assembled(sim->run), row))
+    if (!ct_singular_start_test(sim->own.scratch, ct_run_partition(sim->run), 0,
+                                ct_run_assembled(sim->run), row))
         return;
     const char *names = joints_of(sim, row, &first);
     if (first < 0)
@@ -232,7 +232,7 @@ static void warn_of_singular_start(struct ct_sim *sim)
     ct_run_note_singular_start(sim->run, names);
     ct_warning(
         &sim->own, sim->system->model.joint[first].mark, 0,
-        "the mechanism starts in a singular position: constraints of %s depend on others "
+        "the mechanism starts in a singular configuration: constraints of %s depend on others "
         "there and not elsewhere; beside it there are fewer freedoms, and several "
         "motions may begin in it",
         names);
@@ -243,7 +243,7 @@ static bool prepare(struct ct_sim *sim, const struct ct_sim_options *o)
     struct ct_system *s = sim->system;
     if (!ct_sim_resolve(sim, o))
         return false;
-    const double start = ct_clock();
+    const double start = ct_input_sampling();
     if (sim->run_options.method->is_implicit) // made once, when the first run asks for it
         ct_formulate_residual(&s->equations);
     if (needs_dynamics(&s->equations))
@@ -254,19 +254,20 @@ static bool prepare(struct ct_sim *sim, const struct ct_sim_options *o)
     if (!ct_sim_choose_solver(sim, o->solver) || !ct_run_begin(sim->run, &sim->start)
         || !ct_sim_has_solver(sim))
         return false;
-    sim->compile = ct_clock() - start;
+    sim->compile = ct_input_sampling() - start;
     if (!choose_backend(sim, o->backend))
         return false;
     sim->open.row = CT_NEWN(sim->own.model, bool, s->equations.nrow + 1);
     sim->open.result = CT_NEWN(sim->own.model, bool, s->equations.nresult + 1);
     sim->report.final = CT_NEWN(sim->own.model, double, s->equations.nresult + 1);
-    sim->report.rank = ct_run_embed(sim->run)->rank;
+    sim->report.rank = ct_run_partition(sim->run)->rank;
     ct_sim_warn_of_start(sim);
     warn_of_singular_start(sim);
     if (ct_run_results(sim->run, 0, ct_run_state(sim->run), sim->report.final) != CT_EVAL_OK)
         return ct_error(&sim->own, (struct ct_mark){.file = s->model.file}, CT_E_SINGULAR,
                         "the equations are singular at the start");
-    ct_run_find_open(sim->run, 0, ct_run_state(sim->run), sim->open.row, sim->open.result);
+    ct_run_find_undetermined(sim->run, 0, ct_run_state(sim->run), sim->open.row,
+                             sim->open.result);
     return true;
 }
 
@@ -315,21 +316,22 @@ void ct_sim_destroy(struct ct_sim *sim)
 static bool at_row(void *user, double t, const double *value, size_t n)
 {
     struct ct_sim *sim = user;
-    const double start = ct_clock();
+    const double start = ct_input_sampling();
     sim->time = t;
     if (sim->kept)
         memcpy(sim->kept + sim->nkept++ * n, value, n * sizeof *value);
     bool go_on = !sim->file || ct_sim_write_row(sim, t, value);
     if (go_on && sim->results->row)
         go_on = sim->results->row(sim->results->user, t, value, n);
-    sim->write += ct_clock() - start;
+    sim->write += ct_input_sampling() - start;
     return go_on;
 }
 
 // Past the deadline; or an eighth of the time is gone, and at the pace so far four times as much would not be enough.
 static bool is_hopeless(const struct ct_sim *sim, double t, double end)
 {
-    const double now = ct_clock(), all = sim->deadline - sim->begun, gone = now - sim->begun;
+    const double now = ct_input_sampling(), all = sim->deadline - sim->begun,
+                 gone = now - sim->begun;
     return now > sim->deadline || (gone > all / 8 && t / end < gone / all / 4);
 }
 
@@ -347,7 +349,7 @@ static bool at_progress(void *user, double t, double end)
     return !sim->is_late && !sim->is_interrupted;
 }
 
-static void foresee(void *user, const struct ct_foresight *f)
+static void foresee(void *user, const struct ct_step_forecast *f)
 {
     struct ct_sim *sim = user;
     if (!sim->progress)
@@ -405,14 +407,14 @@ static bool integrate(struct ct_sim *sim)
         sim->progress = &sim->bar;
     }
     o->progress = at_progress;
-    o->foresee = foresee;
+    o->forecast = foresee;
     o->row = at_row;
     o->want_residual = want_residual;
     o->user = sim;
-    const double start = sim->begun = ct_clock();
-    const bool ok = sim->is_followed ? ct_run_follow(sim->run, o, &sim->report)
+    const double start = sim->begun = ct_input_sampling();
+    const bool ok = sim->is_followed ? ct_run_kinematic(sim->run, o, &sim->report)
                                      : ct_run_simulate(sim->run, o, &sim->report);
-    sim->integrate = ct_clock() - start - sim->write;
+    sim->integrate = ct_input_sampling() - start - sim->write;
     if (sim->progress)
         ct_progress_finish(sim->progress);
     sim->progress = NULL;
@@ -420,29 +422,30 @@ static bool integrate(struct ct_sim *sim)
     return ok;
 }
 
-// What steps say of singular positions that they were not made to cross.
+// What steps say of singular configurations that they were not made to cross.
 static void warn_of_positions(struct ct_sim *sim)
 {
-    const struct ct_singular *w = sim->report.singular;
-    const double rounding
+    const struct ct_rank_monitor *w = sim->report.singular;
+    const double roundoff
         = 0.1 * DBL_EPSILON; // as it is felt of what is divided twice by a pivot
     const struct ct_mark mark = {.file = sim->system->model.file};
     if (!w)
         return;
     if (w->nover)
         ct_warning(&sim->own, mark, 0,
-                   "steps of fixed size have come across a singular position, or past one "
+                   "steps of fixed size have come across a singular configuration, or past one "
                    "close by, at "
                    "t = %.9g%s, which they do not see: the motion behind it may be another "
                    "one; without 'step' "
                    "it is crossed",
                    w->over, w->nover > 1 ? " and more often later" : "");
-    if (w->closest * w->closest * fmax(sim->tolerance, sim->least_rtol) < rounding)
+    if (w->closest * w->closest * fmax(sim->tolerance, sim->least_rtol) < roundoff)
         ct_warning(
             &sim->own, mark, 0,
-            "the motion has come near to a singular position at t = %.9g without crossing it, "
+            "the motion has come near to a singular configuration at t = %.9g without crossing "
+            "it, "
             "within %.1g "
-            "of the largest distance: rounding is felt there by more than the tolerance, "
+            "of the largest distance: round-off is felt there by more than the tolerance, "
             "and may have led to another motion",
             w->t_closest, w->closest);
 }
@@ -468,12 +471,13 @@ static bool run(struct ct_sim *sim)
     bool ok = integrate(sim) || (sim->own.nerror == 0 && !sim->is_interrupted);
     if (sim->is_interrupted)
         return false;
-    const double start = ct_clock();
+    const double start = ct_input_sampling();
     if (ok)
-        ct_run_find_open(sim->run, sim->time, sim->report.y, sim->open.row, sim->open.result);
+        ct_run_find_undetermined(sim->run, sim->time, sim->report.y, sim->open.row,
+                                 sim->open.result);
     if (sim->file)
         ok = ct_sim_close_results(sim, ok);
-    sim->write += ct_clock() - start;
+    sim->write += ct_input_sampling() - start;
     if (ok) {
         ct_sim_warn_of_beams(sim);
         warn_of_positions(sim);

@@ -14,7 +14,7 @@
 #define CT_SIM_H
 
 #include "report/progress.h"
-#include "solve/simulate.h"
+#include "solve/run/run.h"
 #include "system.h"
 
 /// What multipliers leave open, at the start and at the end of a run.
@@ -24,20 +24,20 @@ struct ct_open {
 };
 
 /// The estimated global error of an output.
-struct ct_output_error {
+struct ct_output_error_estimate {
     double absolute; // the largest over samples
     double scale;    // largest |value|
-    double relative; // absolute / scale; NaN: the output is zero but for rounding
+    double relative; // absolute / scale; NaN: the output is zero but for round-off
 };
 
 /// What a second run says about the first. See verify.c.
 struct ct_estimate {
-    const char *how;                // the second run; NULL: none was made
-    const char *why_not;            // it failed
-    struct ct_output_error *output; // (nresult); NULL: not known
-    size_t which;                   // the output that is worst; nresult: there is none
-    double worst;                   // its relative error; NaN: not known
-    double holds_until;             // the last sample up to which errors are as wanted
+    const char *how;                         // the second run; NULL: none was made
+    const char *why_not;                     // it failed
+    struct ct_output_error_estimate *output; // (nresult); NULL: not known
+    size_t which;                            // the output that is worst; nresult: there is none
+    double worst;                            // its relative error; NaN: not known
+    double holds_until;                      // the last sample up to which errors are as wanted
 };
 
 struct ct_sim {
@@ -48,7 +48,7 @@ struct ct_sim {
     double tolerance;   // wanted of outputs
     double least_rtol;  // of steps: what double precision allows
     struct ct_run_options run_options;
-    struct ct_start start;
+    struct ct_initial_state start;
     struct ct_run *run;
     struct ct_run_report report;
     struct ct_open open;
@@ -61,8 +61,8 @@ struct ct_sim {
     long nwritten;                     // rows of it
     struct ct_progress bar, *progress; // NULL: none is shown
     long nstep;                        // accepted so far, for deadlines
-    double begun;                      // on ct_clock, when steps begin
-    double deadline;                   // on ct_clock, when the run is given up; 0: none
+    double begun;                      // on ct_input_sampling, when steps begin
+    double deadline; // on ct_input_sampling, when the run is given up; 0: none
     bool has_run, is_done, is_late, is_interrupted, is_followed;
     double reached;                                   // by accepted steps
     double time;                                      // of the last sample
@@ -71,8 +71,8 @@ struct ct_sim {
 
 /// What the options and the model's `simulation` say about runs, into sim->run_options. Errors: E003.
 bool ct_sim_resolve(struct ct_sim *sim, const struct ct_sim_options *o);
-/// Why members of a study with these options go one by one, or NULL: side by side (solve/lanes.h).
-const char *ct_sim_refuses_lanes(const struct ct_sim *sim);
+/// Why members of a study with these options go one by one, or NULL: side by side (solve/batch/batch.h).
+const char *ct_sim_refuses_batch(const struct ct_sim *sim);
 /// A run that has no start yet (see ct_run_restart), in a ct_sim of zeros whose context is open.
 bool ct_sim_prepare(struct ct_sim *sim, struct ct_system *sys, const struct ct_sim_options *o);
 
@@ -102,7 +102,7 @@ const char *ct_sim_results_path(const struct ct_sim *sim, bool is_partial);
 
 /// After a run that kept its rows: another one, and what it says, in sim->estimate. Raises the guard.
 void ct_sim_verify(struct ct_sim *sim);
-/// True for a column whose largest value, scale, is rounding beside the largest column; deviation: how far
+/// True for a column whose largest value, scale, is round-off beside the largest column; deviation: how far
 /// two runs differ there.
 bool ct_is_rounding(double scale, double deviation, double largest);
 

@@ -1,13 +1,13 @@
 // What a run has to say about its beams.
 #include "sim/sim.h"
-#include "formulate/flexible.h"
+#include "formulate/beam/flexible_body.h"
 
 #include <math.h>
 
 void ct_slope_warn(struct ct_ctx *ctx, const struct ct_equations *e,
                    const struct ct_slope_report *report)
 {
-    for (size_t i = 0; i < e->nbend; i++) {
+    for (size_t i = 0; i < e->nbent_beam; i++) {
         if (report[i].passed_at < 0)
             continue;
         const char *since
@@ -15,10 +15,10 @@ void ct_slope_warn(struct ct_ctx *ctx, const struct ct_equations *e,
                 ? ct_arena_printf(ctx->scratch, ", more than %g from t = %.6g s on",
                                   CT_SLOPE_LIMIT, report[i].passed_at)
                 : "";
-        ct_warning(ctx, e->bend[i].mark, 0,
+        ct_warning(ctx, e->bent_beam[i].mark, 0,
                    "sections of beam '%s' turn by up to %.3g rad against its frame%s: one "
                    "frame is good for %g; cut the beam into several that are welded end to end",
-                   e->bend[i].beam, report[i].largest, since, CT_SLOPE_LIMIT);
+                   e->bent_beam[i].beam, report[i].largest, since, CT_SLOPE_LIMIT);
     }
 }
 
@@ -35,20 +35,20 @@ static void warn_of_starts(struct ct_sim *sim, const struct ct_build *b)
     }
 }
 
-// What the indicator found, and what it foretells, of a linear beam.
+// What the indicator found, and what it estimates, of a linear beam.
 static void warn_of_linear(struct ct_sim *sim, const struct ct_validity *beam,
                            const struct ct_validity_report *v)
 {
     struct ct_arena *a = sim->own.scratch;
-    const double error = ct_swings_error(&v->swings, CT_SWING_LINEAR),
-                 other = ct_swings_error(&v->swings, CT_SWING_FORESHORTENED);
+    const double error = ct_beam_error_modal_error(&v->modal, CT_BEAM_MODEL_LINEAR),
+                 other = ct_beam_error_modal_error(&v->modal, CT_BEAM_MODEL_FORESHORTENED);
     const char *size
-        = isnan(error) && v->swings.n
-            ? "its error is not foretold: it bends in more shapes than are followed"
-        : isnan(error) ? "its error is not foretold: joints, loads or loops drive it beside "
+        = isnan(error) && v->modal.n
+            ? "its error is not estimated: it bends in more shapes than are followed"
+        : isnan(error) ? "its error is not estimated: joints, loads or loops drive it beside "
                          "its base, or jumps and "
                          "events of the state drive that"
-        : error > CT_FORETOLD_MOST
+        : error > CT_ESTIMATED_ERROR_LIMIT
             ? "its error is beyond 1, as large as the deflections or larger"
             : ct_arena_printf(a, "its error is about %.2g of the largest deflection", error);
     const char *how = v->left_at >= 0
@@ -61,7 +61,7 @@ static void warn_of_linear(struct ct_sim *sim, const struct ct_validity *beam,
                             a,
                             "the validity indicator reaches %.3g only, but from t = %.6g s on "
                             "what it causes has grown beyond %.3g",
-                            v->largest, v->off_since, CT_VALIDITY_LIMIT);
+                            v->largest, v->error_beyond_since, CT_VALIDITY_LIMIT);
     const char *cure
         = 3 * other > error
             ? "it bends too far for one frame: cut it into several foreshortened ones that are "
@@ -75,10 +75,10 @@ void ct_sim_warn_of_beams(struct ct_sim *sim)
 {
     const struct ct_equations *e = &sim->system->equations;
     warn_of_starts(sim, e->build);
-    ct_slope_warn(&sim->own, e, sim->report.bend);
+    ct_slope_warn(&sim->own, e, sim->report.slopes);
     for (size_t i = 0; i < e->nvalidity; i++) {
         const struct ct_validity_report *v = &sim->report.validity[i];
-        if (v->left_at >= 0 || v->off_since >= 0)
+        if (v->left_at >= 0 || v->error_beyond_since >= 0)
             warn_of_linear(sim, &e->validity[i], v);
     }
 }

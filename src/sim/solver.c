@@ -1,17 +1,17 @@
 // What finds the accelerations of closed loops, as asked for.
 #include "sim/summary.h"
 
-#include "solve/form.h"
+#include "solve/constraint/solver.h"
 
 #include <string.h>
 
 static const struct {
     const char *name;
-    const struct ct_form_kind *kind; // NULL: dense matrices, or the cheapest
+    const struct ct_solver_kind *kind; // NULL: dense matrices, or the cheapest
 } solvers[] = {{"auto", NULL},
-               {"unrolled", &ct_form_unrolled},
-               {"one-system", &ct_form_whole},
-               {"sparse", &ct_form_sparse},
+               {"unrolled", &ct_solver_symbolic},
+               {"one-system", &ct_solver_symbolic_kkt},
+               {"sparse", &ct_solver_sparse},
                {"dense", NULL}};
 
 bool ct_sim_choose_solver(struct ct_sim *sim, const char *name)
@@ -27,13 +27,13 @@ bool ct_sim_choose_solver(struct ct_sim *sim, const char *name)
     if (i == 0)
         return true;
     sim->solver = solvers[i].name;
-    ct_embed_use(ct_run_embed(sim->run), solvers[i].kind);
+    ct_partition_use_solver(ct_run_partition(sim->run), solvers[i].kind);
     return true;
 }
 
 bool ct_sim_has_solver(struct ct_sim *sim)
 {
-    const struct ct_embed *s = ct_run_embed(sim->run);
+    const struct ct_partition *s = ct_run_partition(sim->run);
     if (!sim->solver)
         return true;
     if (!s->m->nrow)
@@ -44,7 +44,7 @@ bool ct_sim_has_solver(struct ct_sim *sim)
                         "system are found by '%s'",
                         sim->solver, ct_sim_solver(sim));
     for (size_t i = 0; i < COUNT(solvers); i++)
-        if (strcmp(solvers[i].name, sim->solver) == 0 && (!solvers[i].kind || s->has_form))
+        if (strcmp(solvers[i].name, sim->solver) == 0 && (!solvers[i].kind || s->has_solver))
             return true;
     return ct_error(&sim->own, (struct ct_mark){.file = sim->system->model.file}, CT_E_USAGE,
                     "the accelerations cannot be found by '%s' here: the program would be too "

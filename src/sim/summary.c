@@ -1,7 +1,7 @@
 // See summary.h.
 #include "sim/summary.h"
 
-#include "formulate/flexible.h"
+#include "formulate/beam/flexible_body.h"
 
 long ct_tape_count_all(const struct ct_tape_counts *c)
 {
@@ -10,24 +10,24 @@ long ct_tape_count_all(const struct ct_tape_counts *c)
 
 long ct_sim_operations(const struct ct_sim *sim)
 {
-    const struct ct_machine *m = ct_run_machine(sim->run);
+    const struct ct_evaluator *m = ct_run_evaluator(sim->run);
     if (m->solved.nout) {
         const struct ct_tape_counts all = m->solved.listing->counts;
         return ct_tape_count_all(&all);
     }
-    const struct ct_embed *embed = ct_run_embed(sim->run);
-    if (embed->nform)
-        return (long)embed->form[0]->operations;
+    const struct ct_partition *embed = ct_run_partition(sim->run);
+    if (embed->nsolver)
+        return (long)embed->solver[0]->operations;
     const struct ct_tape_counts c = m->motion.listing->counts;
-    return ct_tape_count_all(&c) + (long)ct_embed_operations(embed);
+    return ct_tape_count_all(&c) + (long)ct_partition_operations(embed);
 }
 
 const char *ct_sim_solver(const struct ct_sim *sim)
 {
-    const struct ct_embed *embed = ct_run_embed(sim->run);
+    const struct ct_partition *embed = ct_run_partition(sim->run);
     return !embed->m->nu         ? "none"
          : embed->m->solved.nout ? "unrolled"
-         : embed->nform          ? embed->form[0]->kind->name
+         : embed->nsolver        ? embed->solver[0]->kind->name
                                  : "dense";
 }
 
@@ -61,7 +61,7 @@ const char *ct_row_owner(const struct ct_sim *sim, size_t row)
 }
 
 const struct ct_formulation_name ct_formulation_names[CT_NFORMULATION]
-    = {{"embedding", "embedding of the constraints"},
+    = {{"embedding", "coordinate partitioning"},
        {"cutsets", "cutset sums"},
        {"composite", "composite bodies"},
        {"articulated", "articulated bodies"}};

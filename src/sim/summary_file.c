@@ -1,12 +1,12 @@
 // What a run did and what a system is, for programs: one JSON object.
 #include "sim/summary.h"
 
-#include "formulate/flexible.h"
+#include "formulate/beam/flexible_body.h"
 #include "report/json.h"
 #include "report/suffix.h"
 #include "report/outfile.h"
 #include "report/stage_beam.h"
-#include "solve/singular.h"
+#include "solve/singular/rank_monitor.h"
 
 #if defined(__unix__) || defined(__APPLE__)
 #include <sys/resource.h>
@@ -171,22 +171,22 @@ static void write_validity(struct ct_json *j, const struct ct_sim *sim)
         ct_json_number(j, "limit", CT_VALIDITY_LIMIT);
         if (v->left_at >= 0)
             ct_json_number(j, "left_at", v->left_at);
-        const double error = ct_swings_error(&v->swings, CT_SWING_LINEAR);
-        if (error > CT_FORETOLD_MOST)
+        const double error = ct_beam_error_modal_error(&v->modal, CT_BEAM_MODEL_LINEAR);
+        if (error > CT_ESTIMATED_ERROR_LIMIT)
             ct_json_text(j, "error", "beyond 1");
         else if (isnan(error))
             ct_json_text(j, "error", "not foretold");
         else
             ct_json_number(j, "error", error);
-        if (v->off_since >= 0)
-            ct_json_number(j, "off_since", v->off_since);
+        if (v->error_beyond_since >= 0)
+            ct_json_number(j, "off_since", v->error_beyond_since);
         ct_json_end(j);
     }
     ct_json_end(j);
 }
 
 static void write_position(struct ct_json *j, const struct ct_sim *sim,
-                           const struct ct_singular_position *at)
+                           const struct ct_singular_configuration *at)
 {
     const struct ct_equations *e = &sim->system->equations;
     ct_json_object(j, NULL);
@@ -202,14 +202,14 @@ static void write_position(struct ct_json *j, const struct ct_sim *sim,
     ct_json_end(j);
 }
 
-static long kept_positions(const struct ct_singular *w)
+static long kept_positions(const struct ct_rank_monitor *w)
 {
     return w->npassed < CT_MOST_SINGULAR ? w->npassed : CT_MOST_SINGULAR;
 }
 
 static void write_singular(struct ct_json *j, const struct ct_sim *sim)
 {
-    const struct ct_singular *w = sim->report.singular;
+    const struct ct_rank_monitor *w = sim->report.singular;
     ct_json_integer(j, "singular_positions_passed", w ? w->npassed : 0);
     ct_json_array(j, "singular_positions");
     for (long i = 0; w && i < kept_positions(w); i++)
@@ -219,12 +219,12 @@ static void write_singular(struct ct_json *j, const struct ct_sim *sim)
 
 static void write_solver(struct ct_json *j, const struct ct_sim *sim)
 {
-    const struct ct_form_costs *c = &ct_run_embed(sim->run)->costs;
+    const struct ct_solver_costs *c = &ct_run_partition(sim->run)->costs;
     ct_json_text(j, "solver", ct_sim_solver(sim));
     ct_json_object(j, "solver_costs");
     if (c->dense > 0) {
-        ct_json_number(j, "unrolled", c->unrolled);
-        ct_json_number(j, "one_system", c->whole);
+        ct_json_number(j, "unrolled", c->symbolic);
+        ct_json_number(j, "one_system", c->symbolic_kkt);
         ct_json_number(j, "sparse", c->sparse);
         ct_json_number(j, "dense", c->dense);
     }
@@ -237,11 +237,11 @@ static void write_work(struct ct_json *j, const struct ct_sim *sim)
     ct_json_text(j, "method", last_method(sim)->name);
     ct_json_text(j, "method_why", sim->method_why);
     ct_json_number(j, "tolerance", sim->tolerance);
-    ct_json_text(j, "backend", ct_run_machine(sim->run)->backend);
+    ct_json_text(j, "backend", ct_run_evaluator(sim->run)->backend);
     write_solver(j, sim);
     write_formulation(j, &sim->system->equations);
     ct_json_text(j, "results", ct_sim_results_path(sim, false));
-    ct_json_text(j, "sweeps_alone_because", ct_sim_refuses_lanes(sim));
+    ct_json_text(j, "sweeps_alone_because", ct_sim_refuses_batch(sim));
     ct_json_integer(j, "steps", r->stats.steps);
     ct_json_integer(j, "rejected_steps", r->stats.rejected_steps);
     ct_json_integer(j, "inaccurate_steps", r->stats.inaccurate_steps);
@@ -267,18 +267,18 @@ static void write_work(struct ct_json *j, const struct ct_sim *sim)
     ct_json_end(j);
     write_validity(j, sim);
     ct_json_object(j, "memory");
-    ct_json_integer(j, "code", (long)ct_machine_code_size(ct_run_machine(sim->run)));
+    ct_json_integer(j, "code", (long)ct_evaluator_code_size(ct_run_evaluator(sim->run)));
     ct_json_integer(j, "peak", peak_memory());
     ct_json_end(j);
     ct_json_object(j, "error");
     ct_json_number(j, "energy_drift", r->energy_drift);
     ct_json_number(j, "position_constraint", r->position_constraint);
     ct_json_number(j, "velocity_constraint", r->velocity_constraint);
-    const bool is_blunt = !sim->is_followed && r->blunt >= 0;
-    ct_json_number(j, "rounding", is_blunt ? r->rounding : NAN);
-    ct_json_number(j, "rounding_sum", is_blunt ? r->rounding_sum : NAN);
+    const bool is_blunt = !sim->is_followed && r->roundoff_limited >= 0;
+    ct_json_number(j, "rounding", is_blunt ? r->roundoff : NAN);
+    ct_json_number(j, "rounding_sum", is_blunt ? r->roundoff_sum : NAN);
     ct_json_text(j, "rounding_of",
-                 is_blunt ? sim->system->equations.result[r->blunt].name : NULL);
+                 is_blunt ? sim->system->equations.result[r->roundoff_limited].name : NULL);
     write_estimate(j, sim);
     ct_json_end(j);
 }

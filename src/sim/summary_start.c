@@ -14,7 +14,7 @@ static enum asked asked_of(const struct ct_coordinate *c, const struct ct_target
     return c->is_driven ? MOTION : t->is_given ? DEMAND : t->is_guessed ? GUESS : NOTHING;
 }
 
-static bool is_of_joint(const struct ct_start *s, size_t i)
+static bool is_of_joint(const struct ct_initial_state *s, size_t i)
 {
     const struct ct_coordinate *c = &s->e->coordinate[i];
     return s->e->build->edge[c->edge].kind == CT_EDGE_JOINT
@@ -28,7 +28,7 @@ size_t ct_sim_start_count(const struct ct_sim *sim)
 
 const char *ct_sim_start_text(const struct ct_sim *sim, size_t i, char *out, size_t size)
 {
-    const struct ct_start *s = &sim->start;
+    const struct ct_initial_state *s = &sim->start;
     const struct ct_coordinate *c = &s->e->coordinate[i];
     const double q = ct_start_shown(s->q[i]);
     if (!is_of_joint(s, i))
@@ -49,7 +49,7 @@ const char *ct_sim_start_text(const struct ct_sim *sim, size_t i, char *out, siz
 void ct_sim_write_start(struct ct_json *j, const struct ct_sim *sim)
 {
     static const char *const word[] = {"nothing", "guess", "demand", "motion"};
-    const struct ct_start *s = &sim->start;
+    const struct ct_initial_state *s = &sim->start;
     ct_json_array(j, "start");
     for (size_t i = 0; i < ct_sim_start_count(sim); i++) {
         const struct ct_coordinate *c = &s->e->coordinate[i];
@@ -74,7 +74,7 @@ void ct_sim_write_start(struct ct_json *j, const struct ct_sim *sim)
 
 // How far coordinate i is from its guess, 1 being a right angle or half the natural length; 0 without a guess. An orientation counts
 // at its first number.
-static double moved(const struct ct_start *s, size_t i)
+static double moved(const struct ct_initial_state *s, size_t i)
 {
     const struct ct_target *t = &s->q_target[i];
     if (!t->is_guessed)
@@ -82,7 +82,7 @@ static double moved(const struct ct_start *s, size_t i)
     if (!t->in_quaternion)
         return fabs(s->q[i] - t->value) * t->weight / (ct_start_is_length(s, i) ? 0.5 : pi / 2);
     const struct ct_coordinate *c = &s->e->coordinate[i];
-    if (c->place != s->e->build->edge[c->edge].trial.quaternion)
+    if (c->index != s->e->build->edge[c->edge].trial.quaternion)
         return 0;
     double cosine = 0;
     for (size_t k = 0; k < 4; k++)
@@ -93,7 +93,7 @@ static double moved(const struct ct_start *s, size_t i)
 void ct_sim_warn_of_start(struct ct_sim *sim)
 {
     enum { MOST_WARNINGS = 4 };
-    const struct ct_start *s = &sim->start;
+    const struct ct_initial_state *s = &sim->start;
     size_t n = 0, shown = 0;
     for (size_t i = 0; i < ct_sim_start_count(sim); i++)
         n += is_of_joint(s, i) && moved(s, i) > 1;

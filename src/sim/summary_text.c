@@ -1,10 +1,10 @@
 // What a run did, and what a system is, for people.
 #include "sim/summary.h"
 
-#include "formulate/flexible.h"
+#include "formulate/beam/flexible_body.h"
 #include "report/stage_beam.h"
-#include "solve/singular.h"
-#include "solve/tangent.h"
+#include "solve/singular/rank_monitor.h"
+#include "solve/evaluator/tangent.h"
 
 #include <math.h>
 #include <string.h>
@@ -147,7 +147,7 @@ static void print_output_errors(FILE *out, const struct ct_sim *sim)
     const char *separator = "";
     int column = 0;
     for (size_t i = 0; i < e->nresult && i < most_shown; i++) {
-        const struct ct_output_error *o = &sim->estimate.output[i];
+        const struct ct_output_error_estimate *o = &sim->estimate.output[i];
         char text[24] = "zero";
         if (!isnan(o->relative))
             snprintf(text, sizeof text, "%.1e", o->relative);
@@ -181,7 +181,7 @@ static void print_estimate(FILE *out, const struct ct_sim *sim)
     if (e->which < equations->nresult)
         fprintf(out, "global error %.1e in %s", e->worst, equations->result[e->which].name);
     else
-        fputs("global error that of rounding, as all outputs are zero but for it", out);
+        fputs("global error that of round-off, as all outputs are zero but for it", out);
     fprintf(out, ", estimated from a second run (%s, %.3g s)\n", e->how, sim->verify_seconds);
     print_output_errors(out, sim);
     if (e->holds_until < sim->time && sim->run_options.step == 0)
@@ -192,7 +192,7 @@ static void print_estimate(FILE *out, const struct ct_sim *sim)
 // How implicit methods get their derivatives, where one runs.
 static void print_derivatives(FILE *out, const struct ct_sim *sim)
 {
-    const struct ct_machine *m = ct_run_machine(sim->run);
+    const struct ct_evaluator *m = ct_run_evaluator(sim->run);
     if (!m->nslope)
         return;
     if (m->lanes)
@@ -215,13 +215,13 @@ static void print_method(FILE *out, const struct ct_sim *sim)
         "work         %ld steps, %ld rejected (%ld for their error), %ld evaluations of %ld "
         "operations (%s)\n",
         r->stats.steps, r->stats.rejected_steps, r->stats.inaccurate_steps,
-        r->stats.evaluations, ct_sim_operations(sim), ct_run_machine(sim->run)->backend);
+        r->stats.evaluations, ct_sim_operations(sim), ct_run_evaluator(sim->run)->backend);
     if (r->stats.jacobians > 0)
         print_derivatives(out, sim);
 }
 
 static void print_position(FILE *out, const struct ct_sim *sim,
-                           const struct ct_singular_position *at)
+                           const struct ct_singular_configuration *at)
 {
     enum { MOST_NAMES = 8 };
     const struct ct_equations *e = &sim->system->equations;
@@ -240,7 +240,7 @@ static void print_position(FILE *out, const struct ct_sim *sim,
 static void print_singular(FILE *out, const struct ct_sim *sim)
 {
     enum { MOST_SHOWN = 5 };
-    const struct ct_singular *w = sim->report.singular;
+    const struct ct_rank_monitor *w = sim->report.singular;
     if (!w || !w->npassed)
         return;
     fprintf(out, "singular     %ld position%s passed%s\n", w->npassed,
@@ -263,22 +263,22 @@ static void print_choices(FILE *out, const struct ct_equations *e)
 static void print_rounding(FILE *out, const struct ct_sim *sim)
 {
     const struct ct_run_report *r = &sim->report;
-    if (sim->is_followed || r->blunt < 0)
+    if (sim->is_followed || r->roundoff_limited < 0)
         return;
-    if (isnan(r->rounding)) {
+    if (isnan(r->roundoff)) {
         fprintf(out,
                 "rounding     inertias that are left of larger ones which cancel lose digits: "
                 "it comes to some %.1e of the largest %s\n",
-                r->rounding_sum, sim->system->equations.result[r->blunt].name);
+                r->roundoff_sum, sim->system->equations.result[r->roundoff_limited].name);
         return;
     }
     fprintf(out,
             "rounding     one of coordinates is %.1e of the largest %s: steps cannot be held "
             "to less",
-            r->rounding, sim->system->equations.result[r->blunt].name);
-    if (!isnan(r->rounding_sum))
-        fprintf(out, ", and those of %ld steps add up to some %.1e", r->followed,
-                r->rounding_sum);
+            r->roundoff, sim->system->equations.result[r->roundoff_limited].name);
+    if (!isnan(r->roundoff_sum))
+        fprintf(out, ", and those of %ld steps add up to some %.1e", r->explicit_steps,
+                r->roundoff_sum);
     fputc('\n', out);
 }
 
@@ -360,7 +360,7 @@ static void print_formulation(FILE *out, const struct ct_equations *e)
 // The rows that take no part in the dynamics, by joint.
 static void print_redundant(FILE *out, const struct ct_sim *sim)
 {
-    const struct ct_embed *s = ct_run_embed(sim->run);
+    const struct ct_partition *s = ct_run_partition(sim->run);
     const struct ct_equations *e = &sim->system->equations;
     if (s->rank == (int)e->nrow)
         return;
@@ -380,9 +380,9 @@ static void print_redundant(FILE *out, const struct ct_sim *sim)
 // The solver, asked for or chosen by what each is predicted to cost.
 static void print_solver(FILE *out, const struct ct_sim *sim)
 {
-    const struct ct_embed *s = ct_run_embed(sim->run);
-    const struct ct_form_costs *c = &s->costs;
-    const double cost[] = {c->unrolled, c->whole, c->sparse, c->dense};
+    const struct ct_partition *s = ct_run_partition(sim->run);
+    const struct ct_solver_costs *c = &s->costs;
+    const double cost[] = {c->symbolic, c->symbolic_kkt, c->sparse, c->dense};
     static const char *const name[] = {"unrolled", "as one system", "sparse", "dense"};
     fprintf(out, "solver       %s", ct_sim_solver(sim));
     if (sim->solver)
@@ -420,7 +420,7 @@ void ct_sim_print_check(const struct ct_sim *sim, FILE *out)
     const struct ct_system *s = sim->system;
     const struct ct_model *m = &s->model;
     const struct ct_equations *e = &s->equations;
-    const struct ct_machine *machine = ct_run_machine(sim->run);
+    const struct ct_evaluator *machine = ct_run_evaluator(sim->run);
     fprintf(out, "%s\n", m->name);
     if (*m->description)
         fprintf(out, "%s\n", m->description);
@@ -456,6 +456,6 @@ void ct_sim_print_check(const struct ct_sim *sim, FILE *out)
     print_derivatives(out, sim);
     fprintf(out, "evaluation   %ld operations, solving for accelerations included\n",
             ct_sim_operations(sim));
-    if (ct_sim_refuses_lanes(sim))
-        fprintf(out, "sweeps       one by one: %s\n", ct_sim_refuses_lanes(sim));
+    if (ct_sim_refuses_batch(sim))
+        fprintf(out, "sweeps       one by one: %s\n", ct_sim_refuses_batch(sim));
 }

@@ -4,7 +4,7 @@
 //     half the fixed step   the same with 2^-order of it (Richardson)
 //     looser tolerance      where double precision leaves no room for a tighter one: its error is larger, and so is the difference
 //
-// A second run of nearly the same steps has nearly the same errors, those of rounding included, and the difference says nothing of
+// A second run of nearly the same steps has nearly the same errors, those of round-off included, and the difference says nothing of
 // them: see is_other, (8.31).
 //
 // What always holds: the estimate of an output is the largest difference over samples times a factor that makes up for
@@ -12,7 +12,7 @@
 #include "sim/sim.h"
 
 #include "base/guard.h"
-#include "solve/singular.h"
+#include "solve/singular/rank_monitor.h"
 
 #include <float.h>
 #include <math.h>
@@ -24,11 +24,11 @@ static const double tightening = 1. / 30;
 // With less to gain than this, the second run is looser by as much: then it has the larger error.
 static const double least_gain = 5;
 // A run that is compared with may be held to this part of what double precision leaves to the steps of one that is wanted: of
-// motions with many turns errors of truncation go on falling to there. An explicit step errs by roundings of h f alone, as those of y
-// are carried over, and by as much less as it is shorter. Not past singular positions.
+// motions with many turns errors of truncation go on falling to there. An explicit step errs by round-off errors of h f alone, as those of y
+// are carried over, and by as much less as it is shorter. Not past singular configurations.
 static const double beyond = 0.1;
 static const double second_try = 3; // looser, where the second run failed
-// Errors follow tolerances only roughly, and where they are rounding not at all: two runs that err by as much differ by root 2 of it.
+// Errors follow tolerances only roughly, and where they are round-off not at all: two runs that err by as much differ by root 2 of it.
 static const double tolerance_margin = 1.5;
 // An output holds as long as its error stays within so many tolerances.
 static const double held_tolerances = 10;
@@ -40,7 +40,7 @@ struct companion {
     long nstep;        // out
 };
 
-// A column this small against the largest one is rounding: sums of terms of order 1 leave some hundred eps; without
+// A column this small against the largest one is round-off: sums of terms of order 1 leave some hundred eps; without
 // a single digit that agrees, some more.
 bool ct_is_rounding(double scale, double deviation, double largest)
 {
@@ -85,7 +85,7 @@ static struct companion choose(const struct ct_sim *sim)
 {
     const struct ct_run_options *o = &sim->run_options;
     const struct ct_method *m = sim->report.method;
-    const struct ct_singular *w = sim->report.singular;
+    const struct ct_rank_monitor *w = sim->report.singular;
     if (o->step > 0) {
         const double gain = ldexp(1, m->order);
         return (struct companion){.method = m->name,
@@ -107,7 +107,7 @@ struct comparison {
     double *difference; // between the runs  (nkept x nresult)
     double *time;       // (nkept)
     size_t nrow;
-    struct ct_output_error *output;
+    struct ct_output_error_estimate *output;
 };
 
 static bool compare_row(void *user, double t, const double *value, size_t n)
@@ -119,7 +119,7 @@ static bool compare_row(void *user, double t, const double *value, size_t n)
         return false;
     c->time[c->nrow++] = t;
     for (size_t i = 0; i < n; i++) {
-        struct ct_output_error *o = &c->output[i];
+        struct ct_output_error_estimate *o = &c->output[i];
         difference[i] = fabs(value[i] - first[i]);
         o->scale = fmax(o->scale, fabs(first[i]));
         o->absolute = fmax(o->absolute, difference[i]);
@@ -127,14 +127,14 @@ static bool compare_row(void *user, double t, const double *value, size_t n)
     return true;
 }
 
-static bool has_digits(const struct ct_output_error *o)
+static bool has_digits(const struct ct_output_error_estimate *o)
 {
     return o->absolute < 0.5 * o->scale;
 }
 
 // Outputs without a digit that agrees, and not larger than the errors of others make them, are zero as far as can be
 // seen: the sum of energies that cancel, the momentum of a motion that has none.
-static void find_relative(struct ct_output_error *o, size_t n)
+static void find_relative(struct ct_output_error_estimate *o, size_t n)
 {
     const double spread = 100; // sums of outputs add up their errors
     const double small = 1e-3; // against others that have lost all digits
@@ -161,18 +161,18 @@ static void judge(const struct ct_sim *sim, const struct comparison *c, double m
 {
     const size_t n = sim->system->equations.nresult;
     const double wanted = held_tolerances * sim->tolerance;
-    // steps err by roundings of either sign, which no run tells that has the same ones
-    const double rounding = DBL_EPSILON * sqrt(fmax(1, (double)sim->report.stats.steps));
+    // steps err by round-off errors of either sign, which no run tells that has the same ones
+    const double roundoff = DBL_EPSILON * sqrt(fmax(1, (double)sim->report.stats.steps));
     const struct ct_equations *q = &sim->system->equations;
     for (size_t i = 0; i < n; i++) // the total energy is a sum that may cancel
         if (q->result[i].value.id == q->total.id)
             c->output[i].scale = fmax(c->output[i].scale, sim->report.energy_scale);
     for (size_t i = 0; i < n; i++)
         c->output[i].absolute
-            = fmax(c->output[i].absolute * margin, rounding * c->output[i].scale);
+            = fmax(c->output[i].absolute * margin, roundoff * c->output[i].scale);
     find_relative(c->output, n);
     for (size_t i = 0; i < n; i++) {
-        const struct ct_output_error *o = &c->output[i];
+        const struct ct_output_error_estimate *o = &c->output[i];
         if (o->relative > e->worst) {
             e->worst = o->relative;
             e->which = i;
@@ -222,7 +222,7 @@ static bool run_companion(const struct ct_sim *sim, struct ct_ctx *said, struct 
            .step = c->step,
            .until = o->duration,
            .samples = (long)o->nsample,
-           .backend = strcmp(ct_run_machine(sim->run)->backend, "tape") == 0 ? "tape" : NULL,
+           .backend = strcmp(ct_run_evaluator(sim->run)->backend, "tape") == 0 ? "tape" : NULL,
            .solver = sim->solver};
     comparison->nrow = 0;
     said->ndiagnostic = said->nerror = 0;
@@ -259,7 +259,7 @@ static bool is_other(const struct ct_sim *sim, const struct companion *c)
 }
 
 // After a second run of nearly the same steps: a third one. Tighter by as much again while there is room, as what holds steps up
-// may be a longest step, or a singular position to be crossed; else looser.
+// may be a longest step, or a singular configuration to be crossed; else looser.
 static struct companion choose_third(const struct ct_sim *sim, const struct companion *second)
 {
     struct companion c = *second;
@@ -273,7 +273,7 @@ static struct companion choose_third(const struct ct_sim *sim, const struct comp
     return c.rtol >= c.least_rtol ? c : choose_looser(sim);
 }
 
-// To the bit: what is told is rounding of so many steps.
+// To the bit: what is told is round-off of so many steps.
 static bool is_same(const struct comparison *c)
 {
     for (size_t i = 0; i < c->nrow * c->sim->system->equations.nresult; i++)
@@ -298,10 +298,10 @@ static struct comparison start_comparison(const struct ct_sim *sim)
     return (struct comparison){.sim = sim,
                                .difference = CT_NEWN(a, double, sim->nkept *n + 1),
                                .time = CT_NEWN(a, double, sim->nkept + 1),
-                               .output = CT_NEWN(a, struct ct_output_error, n + 1)};
+                               .output = CT_NEWN(a, struct ct_output_error_estimate, n + 1)};
 }
 
-// One that does not fail: what did not pass a singular position may pass a little looser.
+// One that does not fail: what did not pass a singular configuration may pass a little looser.
 static bool find_companion(const struct ct_sim *sim, struct ct_ctx *said, struct companion *c,
                            struct comparison *comparison)
 {
@@ -343,7 +343,7 @@ void ct_sim_verify(struct ct_sim *sim)
     struct ct_ctx said = {.model = a, .scratch = sim->own.scratch};
     struct companion c = choose(sim);
     struct ct_estimate *e = &sim->estimate;
-    const double start = ct_clock();
+    const double start = ct_input_sampling();
     struct comparison comparison = start_comparison(sim);
     *e = (struct ct_estimate){.which = sim->system->equations.nresult, .worst = NAN};
     const bool ok = find_companion(sim, &said, &c, &comparison);
@@ -358,5 +358,5 @@ void ct_sim_verify(struct ct_sim *sim)
         e->output = comparison.output;
         judge(sim, &comparison, c.margin, e);
     }
-    sim->verify_seconds = ct_clock() - start;
+    sim->verify_seconds = ct_input_sampling() - start;
 }

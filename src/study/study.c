@@ -6,7 +6,7 @@
 // its values, so that whatever the reader refuses is refused here too, and so that initial values and `simulation`
 // may depend on what varies; then its values go into the worker's own system, whose equations stay. Three ways:
 //
-//     in lanes    the usual one; see solve/lanes.h
+//     in lanes    the usual one; see solve/batch/batch.h
 //     alone       where lanes cannot be: other methods, what a lane has given up
 //     derived     a system for each member, where a value decides about the equations: in ct_exs.decided
 //
@@ -16,7 +16,7 @@
 
 #include "base/guard.h"
 #include "io/text.h"
-#include "solve/lanes.h"
+#include "solve/batch/batch.h"
 
 #ifdef _OPENMP
 #include <omp.h>
@@ -109,17 +109,17 @@ static bool choose_way(struct ct_study *s, const struct ct_study_options *o)
                         "there is no end time: 'simulation' needs a 'duration'");
     s->method = probe->run_options.method->name;
     s->tolerance = probe->tolerance;
-    s->backend = ct_run_machine(probe->run)->backend;
-    s->alone_by = o->lanes == 1 ? "as asked" : ct_sim_refuses_lanes(probe);
+    s->backend = ct_run_evaluator(probe->run)->backend;
+    s->alone_by = o->lanes == 1 ? "as asked" : ct_sim_refuses_batch(probe);
     if (s->is_derived)
         s->alone_by = ct_arena_printf(s->own.model, "the equations depend on the value of '%s'",
                                       s->derived_by);
-    s->lanes = s->alone_by ? 1 : o->lanes > CT_LANES ? CT_LANE_GROUPS * CT_LANES : CT_LANES;
+    s->lanes = s->alone_by ? 1 : o->lanes > CT_LANES ? CT_BATCH_GROUPS * CT_LANES : CT_LANES;
     if (o->lanes != 0 && o->lanes != 1 && o->lanes != CT_LANES
-        && o->lanes != CT_LANE_GROUPS * CT_LANES)
+        && o->lanes != CT_BATCH_GROUPS * CT_LANES)
         return ct_error(&s->own, none, CT_E_USAGE,
                         "there are no %ld lanes; there are 1, %d and %d", o->lanes, CT_LANES,
-                        CT_LANE_GROUPS * CT_LANES);
+                        CT_BATCH_GROUPS * CT_LANES);
     return true;
 }
 
@@ -214,7 +214,7 @@ void ct_study_destroy(struct ct_study *s)
 static bool run_all(struct ct_study *s)
 {
     const struct ct_study_results *r = s->results;
-    const double start = ct_clock();
+    const double start = ct_input_sampling();
     if (s->has_run)
         return ct_error(&s->own, none, CT_E_USAGE, "the sweep is over already");
     s->has_run = true;
@@ -232,7 +232,7 @@ static bool run_all(struct ct_study *s)
     ct_progress_finish(&s->progress);
     if (ct_guard_is_interrupted() && s->written < s->plan.nmember)
         return false;
-    s->seconds = ct_clock() - start;
+    s->seconds = ct_input_sampling() - start;
     s->own.no_memory |= s->no_memory;
     return ct_study_close(s, !s->no_memory && !s->sink.has_failed
                                  && (s->written == s->plan.nmember || s->is_stopped));

@@ -4,7 +4,7 @@
 //     tolerance  1e-08
 //
 // Files that are read stand as a checksum: FNV-1a of 64 bits (Fowler, Noll and Vo), enough to see that somebody has
-// changed them. Threads, lanes and the back end are left out: they change roundings at most.
+// changed them. Threads, lanes and the back end are left out: they change round-off errors at most.
 #include "study/study.h"
 
 #include "io/text.h"

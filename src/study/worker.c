@@ -3,7 +3,7 @@
 
 #include "base/guard.h"
 #include "report/number.h"
-#include "solve/lanes.h"
+#include "solve/batch/batch.h"
 
 #ifdef _OPENMP
 #include <omp.h>
@@ -18,9 +18,9 @@ struct worker {
     struct ct_ctx member_ctx; // what the reader says about a member
     struct ct_sim sim;        // its run is the companion of the lanes
     struct ct_assembly *assembly;
-    struct ct_lanes *group[CT_LANE_GROUPS]; // of lanes: they step in turn
+    struct ct_batch *group[CT_BATCH_GROUPS]; // of lanes: they step in turn
     int ngroup;
-    long member[CT_LANE_GROUPS][CT_LANES];
+    long member[CT_BATCH_GROUPS][CT_LANES];
     double *value; // results of a member  (nresult)
 };
 
@@ -172,7 +172,7 @@ static void forget_errors(struct ct_ctx *ctx)
 
 static bool start_member(struct worker *w)
 {
-    struct ct_start start;
+    struct ct_initial_state start;
     return ct_assembly_find(w->assembly, &start) && ct_run_restart(w->sim.run, &start)
         && ct_sim_resolve(&w->sim, &w->s->run);
 }
@@ -187,7 +187,7 @@ static bool fill_lane(struct worker *w, int group, int lane)
         } else if (!start_member(w)) {
             ct_study_record(s, member, NULL, &w->sim.own);
             forget_errors(&w->sim.own);
-        } else if (ct_lanes_load(w->group[group], lane, &w->sim.run_options)) {
+        } else if (ct_batch_load(w->group[group], lane, &w->sim.run_options)) {
             w->member[group][lane] = member;
             return true;
         } else {
@@ -201,16 +201,16 @@ static bool fill_lane(struct worker *w, int group, int lane)
 static void empty_lane(struct worker *w, int group, int lane)
 {
     const long member = w->member[group][lane];
-    struct ct_lanes *lanes = w->group[group];
-    const bool has_arrived = ct_lanes_state(lanes, lane) == CT_LANE_ARRIVED;
-    if (has_arrived && ct_lanes_results(lanes, lane, w->value)) {
+    struct ct_batch *lanes = w->group[group];
+    const bool has_arrived = ct_batch_state(lanes, lane) == CT_LANE_ARRIVED;
+    if (has_arrived && ct_batch_results(lanes, lane, w->value)) {
         ct_study_record(w->s, member, w->value, &w->sim.own);
     } else { // it is known to be readable
         forget_errors(&w->sim.own);
         if (set_member(w, member))
             run_own(w, member);
     }
-    ct_lanes_free(lanes, lane);
+    ct_batch_free(lanes, lane);
 }
 
 static void create_groups(struct worker *w)
@@ -218,11 +218,11 @@ static void create_groups(struct worker *w)
     struct ct_sim *sim = &w->sim;
     w->ngroup = w->s->lanes / CT_LANES;
     for (int g = 0; g < w->ngroup; g++)
-        w->group[g] = ct_lanes_create(sim->own.model, &w->system->equations, sim->run);
+        w->group[g] = ct_batch_create(sim->own.model, &w->system->equations, sim->run);
     // at the file's own values, which the system still has: the same in each worker
     if (start_member(w))
         for (int g = 0; g < w->ngroup; g++)
-            ct_lanes_begin(w->group[g]);
+            ct_batch_begin(w->group[g]);
     forget_errors(&sim->own);
 }
 
@@ -231,13 +231,13 @@ static bool step_group(struct worker *w, int group)
 {
     bool is_running = false;
     for (int l = 0; l < CT_LANES; l++) {
-        const enum ct_lane_state state = ct_lanes_state(w->group[group], l);
+        const enum ct_lane_state state = ct_batch_state(w->group[group], l);
         if (state != CT_LANE_RUNNING && state != CT_LANE_IDLE)
             empty_lane(w, group, l);
         is_running |= state == CT_LANE_RUNNING || fill_lane(w, group, l);
     }
     if (is_running)
-        ct_lanes_step(w->group[group]);
+        ct_batch_step(w->group[group]);
     return is_running;
 }
 
@@ -254,7 +254,7 @@ static void run_lanes(struct worker *w)
             is_running |= step_group(w, g);
     }
     for (int g = 0; g < w->ngroup; g++) {
-        const struct ct_lanes_count count = ct_lanes_count(w->group[g]);
+        const struct ct_batch_counts count = ct_batch_counts(w->group[g]);
         count_steps(w->s, count.steps, count.rejected, 0);
     }
 }

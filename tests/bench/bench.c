@@ -46,7 +46,7 @@ static bool open_evaluator(struct evaluator *v, struct subject *s, const struct 
                            const char *name, int lanes, bool native)
 {
     struct ct_arena *a = s->ctx.model;
-    const struct ct_machine *m = s->machine;
+    const struct ct_evaluator *m = s->machine;
     const size_t n = (size_t)lanes;
     *v = (struct evaluator){
         .name = name, .lanes = lanes, .tape = native ? NULL : ct_tape_create(a, p->listing)};
@@ -171,20 +171,20 @@ static void show_use(const struct ct_program *p, const struct times *t)
 static void accelerate(void *data)
 {
     struct subject *s = data;
-    ct_embed_solve(ct_run_embed(s->run));
+    ct_partition_solve(ct_run_partition(s->run));
 }
 
 static void accelerate_by_matrices(void *data)
 {
     struct subject *s = data;
-    ct_machine_motion(s->machine);
-    ct_embed_accelerate(ct_run_embed(s->run));
+    ct_evaluator_dynamics(s->machine);
+    ct_partition_accelerate(ct_run_partition(s->run));
 }
 
 static void assemble(void *data)
 {
     struct subject *s = data;
-    ct_machine_motion(s->machine);
+    ct_evaluator_dynamics(s->machine);
 }
 
 // M, Q, J, gam and the solve, with a goal for both together.
@@ -205,7 +205,7 @@ static void show_accelerations(struct subject *s, const char *what, double per, 
 static void project(void *data)
 {
     struct subject *s = data;
-    ct_embed_project(ct_run_embed(s->run), 0, s->state);
+    ct_partition_project(ct_run_partition(s->run), 0, s->state);
 }
 
 static void show_projection(struct subject *s, double per)
@@ -242,7 +242,7 @@ static double model_to_native(const char *path)
     const double start = bench_now();
     if (!bench_generate(&s))
         bench_give_up(&s);
-    ct_machine_create(s.ctx.model, &s.model, &s.equations);
+    ct_evaluator_create(s.ctx.model, &s.model, &s.equations);
     const double t = bench_now() - start;
     bench_close_subject(&s);
     return t;
@@ -374,7 +374,7 @@ static void run_solved(void *data)
 // which take much longer (500 balls: 45.8 instead of 34.7 us); no motion stays there.
 static void set_in_motion(struct subject *s)
 {
-    struct ct_machine *m = s->machine;
+    struct ct_evaluator *m = s->machine;
     uint64_t chance = 1;
     for (size_t i = m->at_u; i < m->at_u + m->nu; i++) {
         chance = chance * 6364136223846793005u + 1442695040888963407u;
@@ -428,7 +428,7 @@ static void inverse_dynamics(const char *name, const char *path, double goal)
     double t;
     bench_open_subject(&s, path);
     ct_formulate_residual(&s.equations);
-    ct_machine_add_residual(s.ctx.model, s.machine);
+    ct_evaluator_add_residual(s.ctx.model, s.machine);
     bench_measure(f, data, 1, &t);
     bench_title(name, "%s, forces for given motion", name);
     bench_line("  inverse dynamics, native", t, goal);
@@ -473,36 +473,36 @@ static void residual_and_slopes(struct subject *s, const char *what, double goal
     for (size_t i = 0; i < e->nJ; i++)
         out[n++] = e->J[i].value;
     struct apart p = {.input = s->machine->input};
-    ct_machine_compile(a, s->machine, e->x, out, n, &p.program);
+    ct_evaluator_add_program(a, s->machine, e->x, out, n, &p.program);
     const call_fn f[] = {run_apart};
     void *const data[] = {&p};
     double t;
     bench_measure(f, data, 1, &t);
     bench_line(what, t, goal);
-    ct_machine_forget(s->machine, &p.program);
+    ct_evaluator_remove_program(s->machine, &p.program);
 }
 
-// Accelerations with the order of pivots made at the start against pivots sought anew, at places and speeds around it:
+// Accelerations with the order of pivots made at the start against pivots sought anew, at positions and speeds around it:
 // the relative difference that one state in a hundred exceeds.
 static void fixed_against_pivoted(struct subject *s)
 {
     enum { NSTATE = 1000 };
     static double difference[NSTATE];
-    struct ct_machine *m = s->machine;
-    struct ct_embed *e = ct_run_embed(s->run);
+    struct ct_evaluator *m = s->machine;
+    struct ct_partition *e = ct_run_partition(s->run);
     double *kept = CT_NEWN(s->ctx.model, double, m->ninput),
            *a = CT_NEWN(s->ctx.model, double, m->nu + 1);
     uint64_t chance = 1;
     memcpy(kept, m->input, m->ninput * sizeof *kept);
-    for (int k = 0; k < NSTATE && e->nform; k++) {
+    for (int k = 0; k < NSTATE && e->nsolver; k++) {
         double most = 0, worst = 0;
         for (size_t i = m->at_q; i < m->at_u + m->nu; i++) {
             chance = chance * 6364136223846793005u + 1442695040888963407u;
             m->input[i] = kept[i] + 0.5 * ((double)(chance >> 11) / (double)(1ll << 52) - 1);
         }
-        ct_machine_motion(m);
-        ct_embed_accelerate(e);
-        const bool ok = ct_form_solve(e->form[0], m, a) > 0;
+        ct_evaluator_dynamics(m);
+        ct_partition_accelerate(e);
+        const bool ok = ct_solver_solve(e->solver[0], m, a) > 0;
         for (size_t i = 0; i < m->nu; i++) {
             most = fmax(most, fabs(e->a[i]));
             worst = fmax(worst, fabs(a[i] - e->a[i]));
@@ -518,7 +518,7 @@ static void fixed_against_pivoted(struct subject *s)
 // The first step of an implicit method: what it needs beside the equations, and its derivatives.
 static void run_tangent(void *data)
 {
-    ct_machine_tangent(data);
+    ct_evaluator_tangent(data);
 }
 
 static void implicit_chain(int n)
@@ -528,7 +528,7 @@ static void implicit_chain(int n)
     bench_open_subject(&s, bench_spatial_chain(n));
     const double start = bench_now();
     ct_formulate_residual(&s.equations);
-    ct_machine_add_residual(s.ctx.model, s.machine);
+    ct_evaluator_add_residual(s.ctx.model, s.machine);
     const double made = bench_now() - start;
     const call_fn f[] = {run_tangent};
     void *const data[] = {s.machine};
@@ -577,7 +577,7 @@ static void andrews(void)
     show_accelerations(&s, "  accelerations, solve included, native", 1, 160e-9);
     residual_and_slopes(&s, "  residual and its sparse Jacobian", 160e-9);
     fixed_against_pivoted(&s);
-    ct_machine_use(s.ctx.model, s.machine, CT_BACKEND_TAPE);
+    ct_evaluator_use(s.ctx.model, s.machine, CT_BACKEND_TAPE);
     show_accelerations(&s, "  accelerations, solve included, tape", 1, 0.6e-6);
     bench_close_subject(&s);
 }
@@ -597,8 +597,8 @@ static void four_bars(int n)
 
 static const char *solver(const struct subject *s)
 {
-    const struct ct_embed *e = ct_run_embed(s->run);
-    return e->nform ? e->form[0]->kind->name : "dense";
+    const struct ct_partition *e = ct_run_partition(s->run);
+    return e->nsolver ? e->solver[0]->kind->name : "dense";
 }
 
 // A coordinate for each place and angle: many freedoms, all of them coupled, and sparse matrices.
@@ -728,10 +728,10 @@ static double accelerations(struct subject *s)
 
 static double operations(const struct subject *s)
 {
-    const struct ct_machine *m = s->machine;
+    const struct ct_evaluator *m = s->machine;
     const struct ct_tape_counts c = (m->solved.nout ? &m->solved : &m->motion)->listing->counts;
     return (double)(c.multiplications + c.additions + c.divisions + c.functions)
-         + (m->solved.nout ? 0 : ct_embed_operations(ct_run_embed(s->run)));
+         + (m->solved.nout ? 0 : ct_partition_operations(ct_run_partition(s->run)));
 }
 
 // Cost against the number of elements, or of beams in a chain; it should be in proportion.
@@ -793,7 +793,7 @@ static void beam_forces(const char *what, const struct beam *kind)
     double t;
     bench_open_subject(&s, bench_beam(kind, 10));
     ct_formulate_residual(&s.equations);
-    ct_machine_add_residual(s.ctx.model, s.machine);
+    ct_evaluator_add_residual(s.ctx.model, s.machine);
     bench_measure(f, data, 1, &t);
     bench_line(what, t, 1.2e-6);
     bench_close_subject(&s);

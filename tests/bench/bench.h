@@ -8,7 +8,7 @@
 #define CT_TESTS_BENCH_H
 
 #include "formulate/formulate.h"
-#include "solve/simulate.h"
+#include "solve/run/run.h"
 
 #include <cotree/cotree.h>
 
@@ -48,9 +48,9 @@ struct subject {
     struct ct_ctx ctx;
     struct ct_model model;
     struct ct_equations equations, assembly;
-    struct ct_start start;
+    struct ct_initial_state start;
     struct ct_run *run;
-    struct ct_machine *machine;
+    struct ct_evaluator *machine;
     double *state;
     double generate,
         prepare; // seconds, from the file to equations; from there to the start of a run

@@ -56,14 +56,14 @@ void bench_open_subject_on(struct subject *s, const char *path, enum ct_tree_cho
     if (s->equations.nrow)
         ct_formulate_dynamics(&s->equations);
     if (!ct_formulate(&s->ctx, s->ctx.model, &s->model, &assembly, &s->assembly, &report)
-        || !ct_assemble(&s->ctx, s->ctx.model, &s->model, &s->assembly, &s->start))
+        || !ct_assembly_solve(&s->ctx, s->ctx.model, &s->model, &s->assembly, &s->start))
         bench_give_up(s);
     s->run = ct_run_create(&s->ctx, s->ctx.model, &s->model, &s->equations, &s->start);
     if (!s->run)
         bench_give_up(s);
     s->prepare = bench_now() - generated;
-    s->machine = ct_run_machine(s->run);
-    ct_machine_set(s->machine, 0, ct_run_state(s->run));
+    s->machine = ct_run_evaluator(s->run);
+    ct_evaluator_set(s->machine, 0, ct_run_state(s->run));
 }
 
 void bench_open_subject(struct subject *s, const char *path)

@@ -7,7 +7,7 @@
 // time, taken alternately over the solvers, the least. The solver that `cotree check` chooses is marked.
 #include "sim/sim.h"
 #include "codegen/native.h"
-#include "solve/form.h"
+#include "solve/constraint/solver.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -33,10 +33,10 @@ static double now(void)
 
 static double sample(struct subject *s)
 {
-    struct ct_embed *e = ct_run_embed(s->sim->run);
+    struct ct_partition *e = ct_run_partition(s->sim->run);
     const double start = now();
     for (long i = 0; i < s->n; i++)
-        ct_embed_solve(e);
+        ct_partition_solve(e);
     return (now() - start) / (double)s->n;
 }
 
@@ -54,9 +54,9 @@ static void open_subject(struct ct_ctx *ctx, struct subject *s, struct ct_system
 
 static void show(const struct subject *s, const char *name, double dense)
 {
-    const struct ct_embed *e = ct_run_embed(s->sim->run);
-    const struct ct_form *f = e->has_form ? e->form[0] : NULL;
-    const struct ct_program *p = f ? ct_form_code(f).solved : NULL;
+    const struct ct_partition *e = ct_run_partition(s->sim->run);
+    const struct ct_solver *f = e->has_solver ? e->solver[0] : NULL;
+    const struct ct_program *p = f ? ct_solver_code(f).solved : NULL;
     const double cost = f ? f->cost : dense;
     printf("| %zu | %s | %.0f | %zu KiB | %.3g s | %.4g us | %.3g |\n",
            e->m->nu + (size_t)e->rank, name, cost,
@@ -73,8 +73,8 @@ static bool measure(struct ct_ctx *ctx, const char *path)
     open_subject(ctx, &s[0], sys, NULL);
     if (!s[0].sim)
         return false;
-    const struct ct_embed *chosen = ct_run_embed(s[0].sim->run);
-    const struct ct_form_costs c = chosen->costs;
+    const struct ct_partition *chosen = ct_run_partition(s[0].sim->run);
+    const struct ct_solver_costs c = chosen->costs;
     for (size_t i = 1; i < NSOLVER; i++)
         if (i < NSOLVER - 1 || chosen->m->nu <= MOST_DENSE)
             open_subject(ctx, &s[i], sys, names[i]);
@@ -83,7 +83,7 @@ static bool measure(struct ct_ctx *ctx, const char *path)
             if (s[i].sim)
                 s[i].least = fmin(s[i].least, sample(&s[i]));
     printf("\n%s: predicted unrolled %.0f, one-system %.0f, sparse %.0f, dense %.0f\n\n", path,
-           c.unrolled, c.whole, c.sparse, c.dense);
+           c.symbolic, c.symbolic_kkt, c.sparse, c.dense);
     printf("| unknowns | solver | operations | code | made in | evaluation | ns/operation |\n"
            "|---|---|---:|---:|---:|---:|---:|\n");
     for (size_t i = 0; i < NSOLVER; i++)

@@ -8,7 +8,7 @@
 // printed beside it. Times are processor time, the least of several runs, which take turns so that a busy machine slows all of
 // them.
 #include "sim/sim.h"
-#include "solve/dae.h"
+#include "solve/constraint/dae.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -70,7 +70,7 @@ static void run(struct ct_ctx *ctx, struct ct_system *system, struct subject *s)
 static double evaluation(struct ct_ctx *ctx, struct ct_system *system, const struct subject *s)
 {
     struct ct_sim *sim = prepare(ctx, system, s);
-    const struct ct_machine *m = ct_run_machine(sim->run);
+    const struct ct_evaluator *m = ct_run_evaluator(sim->run);
     const size_t n = m->nq + m->nu + 1;
     double y[MOST_STATES], dy[MOST_STATES];
     memcpy(y, ct_run_state(sim->run), n * sizeof *y);
@@ -89,8 +89,8 @@ static double evaluation(struct ct_ctx *ctx, struct ct_system *system, const str
 static double residual(struct ct_ctx *ctx, struct ct_system *system, const struct subject *s)
 {
     struct ct_sim *sim = prepare(ctx, system, s);
-    const struct ct_dae *dae = ct_dae_create(sim->own.model, ct_run_embed(sim->run));
-    const struct ct_machine *m = ct_run_machine(sim->run);
+    const struct ct_dae *dae = ct_dae_create(sim->own.model, ct_run_partition(sim->run));
+    const struct ct_evaluator *m = ct_run_evaluator(sim->run);
     const double none[MOST_STATES] = {0};
     double y[MOST_STATES], r[MOST_STATES] = {0}, left[2][MOST_STATES] = {{0}};
     memcpy(y, ct_run_state(sim->run), (m->nq + m->nu) * sizeof *y);

@@ -102,7 +102,7 @@ END
 rows follower
 rows follower --set P=100
 
-# Beck's beam, EI = 1, under a force that follows its tip: stable up to 20.051, without damping, so that growth at rounding is none.
+# Beck's beam, EI = 1, under a force that follows its tip: stable up to 20.051, without damping, so that growth at round-off is none.
 cat >beck.yaml <<'END'
 cotree: 1
 parameters: {p: 10, n: 20}

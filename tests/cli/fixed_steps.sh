@@ -1,4 +1,4 @@
-# Shorter fixed steps of radau5 do not err more, down to rounding. The reference is a method of order 8 with step control.
+# Shorter fixed steps of radau5 do not err more, down to round-off. The reference is a method of order 8 with step control.
 # agrees BOUND STEP: columns of run.csv and reference.csv
 agrees() {
   paste -d, reference.csv run.csv | awk -F, -v bound="$1" -v step="$2" '
@@ -42,7 +42,7 @@ for step in 5e-3 2.5e-3 1.25e-3; do
   "$COTREE" simulate model.yaml --method radau5 --step $step --quiet -o run.csv
   agrees 1e-9 $step
 done
-# A million steps between a thousand samples are no more, though their rounding adds up.
+# A million steps between a thousand samples are no more, though their round-off adds up.
 "$COTREE" simulate "$SYSTEMS/pendulum/model.yaml" --method rk4 --step 1e-3 --until 1000 --samples 1001 --quiet -o run.csv --summary run.json
 grep '"steps"' run.json | tr -d ' ,'
 # Particles on rods, whose dependent coordinates are worn within a few steps: the error is that of dense matrices, which see it at once.

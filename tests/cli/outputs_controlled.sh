@@ -102,7 +102,7 @@ outputs: [A.q, D.u]
 simulation: {duration: 2, samples: 21}
 E
 sed '/^outputs/s/D.u/D.u, {name: off, value: 1e6*(link.mid.position.x - 1)}/' watt.yaml >straight.yaml
-# what is left of such a distance is rounding, but the sum is not
+# what is left of such a distance is round-off, but the sum is not
 sed '/^outputs/s/pa.u/pa.u, {name: sum, value: 1e11*rod.end.position.x + px.q}/' trammel.yaml >sum.yaml
 while read -r method T first second; do
   steps $first $second | awk '{ print ($NF > 1.3*$1 ? "more steps" : $0) }'

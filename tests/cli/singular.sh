@@ -1,4 +1,4 @@
-# Singular positions passed, in the ledger and in the summary; of spatial rows most are redundant.
+# Singular configurations passed, in the ledger and in the summary; of spatial rows most are redundant.
 cat >parallelogram.yaml <<'END'
 cotree: 1
 name: parallelogram
@@ -80,7 +80,7 @@ END
 "$COTREE" sweep turning.yaml --vary w=0:1000:5 -o sweep.csv --quiet
 tail -n +2 sweep.csv | awk -F, '{ printf "%s %.6f %s\n", $1, $3, $4 }'
 
-echo '-- starts in a singular position, all bars in line, and a shifted parallelogram'
+echo '-- starts in a singular configuration, all bars in line, and a shifted parallelogram'
 start() {
   cat <<END
 cotree: 1
@@ -130,7 +130,7 @@ start 1e-3 | sed 's/{q: 1e-3}/{q: 1e-3, u: 3}/;s/^outputs: .*/outputs: [A.q, D.q
 "$COTREE" simulate beside.yaml --quiet -o beside.csv
 tail -n 1 beside.csv | awk -F, '{ d = $2 - $3; print (d*d < 1e-16 && $2 > 0.2 ? "parallel" : d) }'
 
-# Which rows are kept is chosen beside a singular position, where all choices are poor: behind it the poor one must not stay.
+# Which rows are kept is chosen near a singular configuration, where all choices are poor: behind it the poor one must not stay.
 # Kept, the rows of the platform lose their rank when the cranks hang down, and the energy is lost to 8e-8 at tolerances of 1e-9.
 echo '-- a platform on five cranks: the energy within 10 T, whatever the tolerance'
 cat >platform.yaml <<'END'
@@ -189,8 +189,8 @@ for model in platform.yaml "$SYSTEMS/n_four_bar/model.yaml"; do
 done
 "$COTREE" simulate "$SYSTEMS/four_bar/model.yaml" --method dopri5 --step 0.02 --quiet -o fixed.csv
 
-# A driver that comes to rest in a singular position, or changes its rate or acceleration there, tells nothing of how the motion goes on: that is said.
-# Forces may switch there: switched.sh.
+# A driver that comes to rest in a singular configuration, or changes its rate or acceleration there, tells nothing of how the motion goes on: that is said.
+# Forces may switch there: singular_switching.sh.
 echo '-- drivers that come to rest in such a position, slowly and at once, and that begin to brake there'
 for motion in '10*t^3 - 15*t^4 + 6*t^5' '3*t^2 - 2*t^3' t '1 + (t - 1) - (t - 1)^2'; do
   case $motion in 1*-*t*) after="1 + (t - 1) - (t - 1)^2" motion=t ;; *) after=1 ;; esac

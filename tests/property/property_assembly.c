@@ -2,7 +2,7 @@
 #include "tests/property/mechanism.h"
 #include "tests/property/system.h"
 
-static const double met = 2e-9; // assembly promises 1e-9, the comparison may add rounding
+static const double met = 2e-9; // assembly promises 1e-9, the comparison may add round-off
 
 static size_t coordinate_named(const struct system *s, const char *name)
 {
@@ -49,8 +49,8 @@ static bool takes_values(const struct ct_instance *j)
 
 // The mechanism with values of joint k's coordinates out of a state, which lies on its motion where it is driven.
 static const char *text_with_values(struct ct_arena *a, const struct mechanism *m, size_t k,
-                                    const struct system *s, const struct ct_start *state,
-                                    size_t n)
+                                    const struct system *s,
+                                    const struct ct_initial_state *state, size_t n)
 {
     struct mechanism given = *m;
     const size_t first
@@ -72,7 +72,7 @@ static void values_given_on_any_joint_are_met(void **state)
     for (size_t i = 0; i < nmechanism; i++) {
         struct ct_arena *a = ct_arena_create();
         struct system s;
-        struct ct_start want;
+        struct ct_initial_state want;
         system_open_text(&s, mechanisms[i].name,
                          mechanism_text(a, &mechanisms[i], NULL, 0, false));
         assert_true(system_random_state(&s, 0, 0.6, &want));
@@ -214,9 +214,9 @@ static void half_turns_are_no_solutions(void **state)
         struct system s;
         system_open_text(&s, "half-turn", near[i]);
         for (size_t k = 0; k < s.machine->nrow; k++) {
-            ct_machine_set(s.machine, 0, s.y);
-            ct_program_run(&s.machine->wanted, s.machine->input);
-            assert_true(s.machine->wanted.out[k] >= 0);
+            ct_evaluator_set(s.machine, 0, s.y);
+            ct_program_run(&s.machine->assembly_sign, s.machine->input);
+            assert_true(s.machine->assembly_sign.out[k] >= 0);
         }
         // axes along each other: the z axis of `a` for turns about z, all of them otherwise
         const double *q = &s.start.q[coordinate_named(&s, "ball.q1")];

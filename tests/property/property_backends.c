@@ -13,7 +13,7 @@ enum { NLANE = 8 };
 // The inputs of NLANE random states, in lanes: the assembled one with every entry moved a little.
 static double *random_inputs(struct variant *v)
 {
-    const struct ct_machine *m = v->m;
+    const struct ct_evaluator *m = v->m;
     double *input = CT_NEWN(v->arena, double, NLANE * m->ninput);
     for (size_t k = 0; k < m->ninput; k++)
         for (size_t i = 0; i < NLANE; i++)
@@ -200,11 +200,11 @@ static void choice_of_back_end_changes_no_bit(void **unused)
     memcpy(before, v.s->a, v.m->nu * sizeof *before);
     const bool has_native = ct_native_is_available(1);
     assert_string_equal(v.m->backend, has_native ? "native" : "tape");
-    assert_true(ct_machine_use(v.arena, v.m, CT_BACKEND_TAPE));
+    assert_true(ct_evaluator_use(v.arena, v.m, CT_BACKEND_TAPE));
     assert_string_equal(v.m->backend, "tape");
     assert_true(variant_solve(&v));
     assert_memory_equal(before, v.s->a, v.m->nu * sizeof *before);
-    assert_true(ct_machine_use(v.arena, v.m, CT_BACKEND_NATIVE) == has_native);
+    assert_true(ct_evaluator_use(v.arena, v.m, CT_BACKEND_NATIVE) == has_native);
     assert_true(variant_solve(&v));
     assert_memory_equal(before, v.s->a, v.m->nu * sizeof *before);
     variant_close(&v);

@@ -407,13 +407,13 @@ static bool forms_agree(size_t i, double tol)
     for (size_t k = 0; k < nu; k++)
         acceleration[k] = chance();
     for (int k = 0; k < 2; k++) {
-        struct ct_machine *m = v[k].m;
-        ct_machine_set(m, 0, v[0].y);
-        ct_machine_motion(m);
+        struct ct_evaluator *m = v[k].m;
+        ct_evaluator_set(m, 0, v[0].y);
+        ct_evaluator_dynamics(m);
         memcpy(m->input + m->at_a, acceleration, nu * sizeof(double));
         ct_program_run(&m->result, m->input);
     }
-    const struct ct_machine *m = v[0].m, *w = v[1].m;
+    const struct ct_evaluator *m = v[0].m, *w = v[1].m;
     double force = 1e-3;
     for (size_t k = 0; k < nu; k++)
         force = fmax(force, fabs(m->Q[k]));

@@ -41,7 +41,7 @@ static void put_out(struct system *s, const char *frame)
 // A random state of joints and bodies with random elastic coordinates, brought onto the constraints.
 static void move_anywhere(struct system *s, struct variant *v, double t, double amplitude)
 {
-    struct ct_start state;
+    struct ct_initial_state state;
     assert_true(system_random_state(s, t, 0.5, &state));
     variant_set(v, &state, t);
     for (size_t k = 0; k < v->e.nu; k++)
@@ -50,8 +50,8 @@ static void move_anywhere(struct system *s, struct variant *v, double t, double 
             v->y[v->e.nq + k] = amplitude * chance();
         }
     variant_renew(v, t);
-    assert_true(ct_embed_choose(v->s));
-    assert_int_equal(ct_embed_project(v->s, t, v->y), CT_EVAL_OK);
+    assert_true(ct_partition_choose(v->s));
+    assert_int_equal(ct_partition_project(v->s, t, v->y), CT_EVAL_OK);
     variant_renew(v, t);
 }
 
@@ -400,7 +400,7 @@ static void the_part_between_two_sections_is_balanced(void **state)
 // ---- statics ------------------------------------------------------------------------------------------------------
 
 // A clamped beam with end forces, an end torque and its weight. Loads are small, so that second-order terms are below
-// rounding.
+// round-off.
 static const char cantilever[]
     = "cotree: 1\n"
       "gravity: [0, -2e-7, 0]\n"

@@ -3,12 +3,12 @@
 #include "tests/property/mechanism.h"
 #include "tests/property/system.h"
 
-// T is quadratic in the speeds, so that second differences with unit steps are exact to rounding.
+// T is quadratic in the speeds, so that second differences with unit steps are exact to round-off.
 static const double exact = 1e-12;
 
 static double kinetic(struct variant *v, const double *u)
 {
-    struct ct_machine *m = v->m;
+    struct ct_evaluator *m = v->m;
     memcpy(m->input + m->at_u, u, m->nu * sizeof *u);
     ct_program_run(&m->energy, m->input);
     return m->energy.out[0];
@@ -17,7 +17,7 @@ static double kinetic(struct variant *v, const double *u)
 // M_kl = T(e_k + e_l) - T(e_k) - T(e_l) + T(0), drivers or not.
 static bool mass_matrix_agrees(struct system *s, struct variant *v)
 {
-    struct ct_machine *m = v->m;
+    struct ct_evaluator *m = v->m;
     const size_t n = m->nu;
     double *u = CT_NEWN(v->arena, double, n + 1), *own = CT_NEWN(v->arena, double, n + 1);
     double *kept = CT_NEWN(v->arena, double, n + 1), largest = 0;
@@ -47,7 +47,7 @@ static bool mass_matrix_agrees(struct system *s, struct variant *v)
 // M positive definite on the motions that the rows allow.
 static bool mass_is_positive(struct system *s, struct variant *v)
 {
-    struct ct_machine *m = v->m;
+    struct ct_evaluator *m = v->m;
     const size_t n = m->nu, r = m->nrow;
     double *A = CT_NEWN(v->arena, double, n *n + 1), *w = CT_NEWN(v->arena, double, n + 1);
     double *work = CT_NEWN(v->arena, double, ct_symmetric_eigenvalues_work((int)n + 1));
@@ -77,7 +77,7 @@ static bool mass_is_positive(struct system *s, struct variant *v)
 static bool power_agrees(struct system *s, struct variant *v, double t)
 {
     const double tolerance = 2e-6; // of energies and of what flows between them
-    struct ct_machine *m = v->m;
+    struct ct_evaluator *m = v->m;
     const size_t n = m->nq + m->nu;
     double *dy = CT_NEWN(v->arena, double, n + 1), *d = CT_NEWN(v->arena, double, m->nu + 1);
     double *y = CT_NEWN(v->arena, double, n + 1), total[2], largest = 0;
@@ -106,13 +106,13 @@ static bool power_agrees(struct system *s, struct variant *v, double t)
             d[k] = e * (v->y[m->nq + k] + e / 2 * dy[k]);
             y[m->nq + k] += e * dy[k];
         }
-        ct_machine_retract(m, y, d);
-        ct_machine_set(m, t + e, y);
+        ct_evaluator_retract(m, y, d);
+        ct_evaluator_set(m, t + e, y);
         ct_program_run(&m->energy, m->input);
         total[side] = m->energy.out[0] + m->energy.out[1];
         largest = fmax(largest, fabs(m->energy.out[0]) + fabs(m->energy.out[1]));
     }
-    ct_machine_set(m, t, v->y);
+    ct_evaluator_set(m, t, v->y);
     return agree(s->name, "power", power, (total[1] - total[0]) / (2 * h), 1 + largest + flow,
                  tolerance);
 }
@@ -128,7 +128,7 @@ static bool energies_agree(struct system *s)
         variant_open(s, how[i], &v);
         for (int k = 0; k < 2; k++) {
             const double t = k ? 0.43 : 0.01;
-            struct ct_start state;
+            struct ct_initial_state state;
             assert_true(system_random_state(s, t, 0.5, &state));
             variant_set(&v, &state, t);
             ok &= mass_matrix_agrees(s, &v);

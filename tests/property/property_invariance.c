@@ -25,7 +25,7 @@ static bool same_results(const char *name, const struct variant *a, const struct
     return ok;
 }
 
-static void solve_at(struct variant *v, const struct ct_start *state, double t)
+static void solve_at(struct variant *v, const struct ct_initial_state *state, double t)
 {
     variant_set(v, state, t);
     assert_true(variant_solve(v));
@@ -103,7 +103,7 @@ static bool motion_is_carried_along(const struct mechanism *mechanism, bool keep
     }
     bool ok = s[0].assembly.is_planar == s[1].assembly.is_planar;
     for (int random = 0; random < 2 && all_hang_on_joints(&s[0]); random++) {
-        struct ct_start state[2];
+        struct ct_initial_state state[2];
         const double t = 0.6 * random;
         for (int k = 0; k < 2; k++)
             state[k] = s[k].start;
@@ -175,7 +175,7 @@ static void order_of_lines_leaves_the_motion_unchanged(void **state)
 static bool plane_is_as_space(struct system *s)
 {
     struct variant plane, space;
-    struct ct_start state;
+    struct ct_initial_state state;
     system_no_outputs(s);
     system_output_motion(s);
     system_output_reactions(s);

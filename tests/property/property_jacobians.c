@@ -8,14 +8,14 @@
 #include "tests/property/system.h"
 
 #include "analysis/state_space.h"
-#include "formulate/residual.h"
-#include "solve/quad_program.h"
+#include "formulate/dynamics/residual.h"
+#include "solve/evaluator/quad_program.h"
 
 #ifdef CT_HAVE_QUADMATH
 
 // Differences over 2 h and h, extrapolated, err by (h / L)^4, 1e-16 for lengths of L = 1e-3, and 1e-34 / h.
 static const double step = 1e-7;
-// Rounding in double precision is left: 1e-14 in the residual; masses that differ much (arm and wrist of puma560) lose four
+// Round-off in double precision is left: 1e-14 in the residual; masses that differ much (arm and wrist of puma560) lose four
 // digits of the accelerations.
 static const double residual_tolerance = 1e-12, acceleration_tolerance = 1e-10;
 
@@ -39,7 +39,7 @@ static void differentiate(struct ct_arena *a, function f, void *user, size_t n,
 }
 
 // d (ninput, out): the motion of the input that moves places by dq, speeds by du, u' by da (nu each; NULL: not).
-static void move_input(struct ct_machine *m, double *d, const double *dq, const double *du,
+static void move_input(struct ct_evaluator *m, double *d, const double *dq, const double *du,
                        const double *da)
 {
     const size_t bytes = m->nu * sizeof *dq;
@@ -111,9 +111,9 @@ static double compare_residual(struct variant *v, const struct system *s,
     ct_residual_derive(e.build, form);
     const struct ct_residual *f = e.residual = e.build->eqs->residual;
     assert_int_equal(f->along != NULL, form == CT_SLOPES_ALONG);
-    struct ct_machine *m = ct_machine_create(a, &s->model, &e);
+    struct ct_evaluator *m = ct_evaluator_create(a, &s->model, &e);
     memcpy(m->input, v->m->input, m->ninput * sizeof *m->input);
-    ct_machine_tangent(m);
+    ct_evaluator_tangent(m);
     const size_t nu = m->nu, nrow = m->nrow, nout = nu + 2 * nrow;
     enum { K, C, M, D, J, NTABLE };
     double *got[NTABLE], *want[NTABLE], worst = 0;
@@ -121,7 +121,7 @@ static double compare_residual(struct variant *v, const struct system *s,
         got[i] = CT_NEWN(a, double, (nu + nrow) * nu + 1);
         want[i] = CT_NEWN(a, double, (nu + nrow) * nu + 1);
     }
-    const double *value = ct_machine_scatter(m, got[K], got[C], got[M]);
+    const double *value = ct_evaluator_scatter(m, got[K], got[C], got[M]);
     value = scatter(got[D], nrow, f->dv, f->ndv, value);
     for (size_t i = 0; i < e.nJ; i++)
         got[J][(size_t)e.J[i].row + nrow * (size_t)e.J[i].column] = value[i];
@@ -155,7 +155,7 @@ static double compare_residual(struct variant *v, const struct system *s,
 // ---- accelerations ----------------------------------------------------------------------------------------
 
 struct accelerations {
-    const struct ct_machine *m;
+    const struct ct_evaluator *m;
     struct ct_quad_program motion; // M, Q, J, gam, q'
     ct_quad *out, *A;              // of the motion; n x (n + 1), n = nu + nrow, by rows
 };
@@ -212,12 +212,12 @@ static void evaluate_accelerations(void *user, const ct_quad *input, ct_quad *ou
     solve(s->A, n, out);
 }
 
-// Worst of the accelerations of independent speeds by their places and speeds. Closed loops at rest, where what the
+// Worst of the accelerations of independent speeds by their positions and speeds. Closed loops at rest, where what the
 // linearisation leaves out, the change of the rows with time, is zero.
 static double compare_accelerations(struct variant *v, double t)
 {
     struct ct_arena *a = v->arena;
-    struct ct_machine *m = v->m;
+    struct ct_evaluator *m = v->m;
     struct ct_linear *l = ct_linear_create(&v->ctx, a, m);
     struct ct_state_space x;
     const size_t nu = m->nu, n = nu + m->nrow;
@@ -228,7 +228,7 @@ static double compare_accelerations(struct variant *v, double t)
     assert_true(ct_linear_move(l) && ct_state_space_create(&v->ctx, a, l, &x));
     assert_int_equal(l->rank, m->nrow);
     assert_int_equal(x.n, 2 * l->nfree); // all have mass
-    ct_machine_set(m, t, l->y);
+    ct_evaluator_set(m, t, l->y);
     struct accelerations q
         = {m, ct_quad_load(a, &m->motion), CT_NEWN(a, ct_quad, m->motion.nout + 1),
            CT_NEWN(a, ct_quad, n * (n + 1))};
@@ -255,7 +255,7 @@ static void compare_all(struct system *s, enum ct_tree_choice tree, double t)
 {
     const struct ct_formulate_options o
         = {.tree = tree, .with_energy = true, .with_outputs = true, .with_residual = true};
-    struct ct_start state;
+    struct ct_initial_state state;
     struct variant v;
     variant_open(s, &o, &v);
     assert_int_equal(v.e.x->ntable, 0);
@@ -323,10 +323,10 @@ static void compare_inner(struct system *s)
 {
     const struct ct_formulate_options o
         = {.tree = CT_TREE_JOINTS, .with_energy = true, .with_residual = true};
-    struct ct_start state;
+    struct ct_initial_state state;
     struct variant v;
     variant_open(s, &o, &v);
-    assert_true(v.e.residual->ninner > 0);
+    assert_true(v.e.residual->nauxiliary > 0);
     assert_true(system_random_state(s, 0, 0.1, &state));
     variant_set(&v, &state, 0);
     for (size_t i = 0; i < v.m->nu; i++)
@@ -336,7 +336,7 @@ static void compare_inner(struct system *s)
     const double entries = compare_residual(&v, s, CT_SLOPES_ENTRIES),
                  along = compare_residual(&v, s, CT_SLOPES_ALONG);
     print_message("%s: %zu speeds, %zu rows, %zu inner values; entries %.0e, along %.0e\n",
-                  s->name, v.m->nu, v.m->nrow, v.e.residual->ninner, entries, along);
+                  s->name, v.m->nu, v.m->nrow, v.e.residual->nauxiliary, entries, along);
     assert_true(entries <= residual_tolerance && along <= residual_tolerance);
     variant_close(&v);
 }

@@ -9,8 +9,8 @@ static const double step = 1e-5, tolerance = 2e-7;
 static void constraints_at(struct variant *v, double t, const double *y, double *phi,
                            double *rate)
 {
-    ct_machine_set(v->m, t, y);
-    ct_machine_constraint(v->m);
+    ct_evaluator_set(v->m, t, y);
+    ct_evaluator_constraint(v->m);
     memcpy(phi, v->m->phi, v->m->nrow * sizeof *phi);
     memcpy(rate, v->m->v, v->m->nrow * sizeof *rate);
 }
@@ -23,14 +23,14 @@ struct difference {
 static void differences(struct variant *v, double t, const double *d, double dt,
                         struct difference *out)
 {
-    struct ct_machine *m = v->m;
+    struct ct_evaluator *m = v->m;
     double *small = CT_NEWN(v->arena, double, m->nu + 1);
     for (int k = 0; k < 2; k++) {
         const double h = k ? step : -step;
         memcpy(out->y, v->y, (m->nq + m->nu + 1) * sizeof *v->y);
         for (size_t i = 0; i < m->nu; i++)
             small[i] = h * d[i];
-        ct_machine_retract(m, out->y, small);
+        ct_evaluator_retract(m, out->y, small);
         constraints_at(v, t + h * dt, out->y, out->phi[k], out->rate[k]);
     }
 }
@@ -90,7 +90,7 @@ static bool measured_rows_agree(struct system *s, struct variant *v, double t, c
 
 static bool rows_agree(struct system *s, struct variant *v, double t, bool on_rows)
 {
-    struct ct_machine *m = v->m;
+    struct ct_evaluator *m = v->m;
     const size_t n = m->nu, r = m->nrow;
     bool ok = true;
     double *d = CT_NEWN(v->arena, double, n + 1), *u = v->y + m->nq;
@@ -132,7 +132,7 @@ static bool rows_agree(struct system *s, struct variant *v, double t, bool on_ro
 // Rates of the stored coordinates against the retraction.
 static bool rates_agree(struct system *s, struct variant *v)
 {
-    struct ct_machine *m = v->m;
+    struct ct_evaluator *m = v->m;
     double *y[2], *d = CT_NEWN(v->arena, double, m->nu + 1);
     bool ok = true;
     for (int k = 0; k < 2; k++) {
@@ -140,7 +140,7 @@ static bool rates_agree(struct system *s, struct variant *v)
         memcpy(y[k], v->y, (m->nq + m->nu) * sizeof *d);
         for (size_t i = 0; i < m->nu; i++)
             d[i] = (k ? step : -step) * v->y[m->nq + i];
-        ct_machine_retract(m, y[k], d);
+        ct_evaluator_retract(m, y[k], d);
     }
     for (size_t i = 0; i < m->nq; i++)
         ok &= agree(s->name, text_of(v->arena, "rate of %s", v->e.q[i].name), m->rate[i],
@@ -170,16 +170,16 @@ static bool system_agrees(struct system *s)
         }
         for (int k = 0; k < 2; k++) {
             const double t = k ? 0.37 : 0;
-            struct ct_start state;
+            struct ct_initial_state state;
             assert_true(system_random_state(s, t, 0.5, &state));
             variant_set(&v, &state, t);
             // off the constraints, too: the derivatives hold anywhere
             for (size_t q = 0; k && q < v.m->nq; q++)
                 v.y[q] += 0.01 * chance();
-            ct_machine_normalise(v.m, v.y);
-            ct_machine_set(v.m, t, v.y);
-            ct_machine_motion(v.m);
-            ct_machine_constraint(v.m);
+            ct_evaluator_normalise(v.m, v.y);
+            ct_evaluator_set(v.m, t, v.y);
+            ct_evaluator_dynamics(v.m);
+            ct_evaluator_constraint(v.m);
             const bool same = rates_agree(s, &v) & rows_agree(s, &v, t, k == 0);
             if (!same)
                 print_error("  with trees through %s\n", how[i].name);

@@ -2,7 +2,7 @@
 // multipliers' forces; without it they differ.
 #include "tests/property/system.h"
 
-#include "analysis/eigen.h"
+#include "analysis/eigenvalues.h"
 #include "analysis/equilibrium.h"
 
 enum { MOST = 64 };
@@ -85,17 +85,17 @@ static bool find_motions(struct system *s, struct variant *v, bool with_multipli
     struct ct_equilibrium_result result;
     struct ct_motion_mode *mode;
     const char *how;
-    ct_start_apply(&s->start, v->m, l->y);
+    ct_initial_state_apply(&s->start, v->m, l->y);
     memset(l->y + v->m->nq, 0, v->m->nu * sizeof *l->y);
     if (!ct_linear_close(l) || !ct_equilibrium_find(l, NULL, &result))
         return false;
     if (!with_multipliers) { // K of the forces alone
         for (size_t i = 0; i < v->m->nrow; i++)
             v->m->input[v->m->at_lam + i] = 0;
-        ct_machine_tangent(v->m);
+        ct_evaluator_tangent(v->m);
         const size_t n = v->m->nu * v->m->nu;
         double *K = CT_NEWN(v->arena, double, 3 * n);
-        ct_machine_scatter(v->m, K, K + n, K + 2 * n);
+        ct_evaluator_scatter(v->m, K, K + n, K + 2 * n);
         for (int j = 0; j < l->nfree; j++)
             for (int i = 0; i < l->nfree; i++) {
                 l->Kr[i + l->nfree * j] = 0;

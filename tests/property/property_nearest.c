@@ -329,7 +329,7 @@ static void find_coordinates(const struct hidden *h, const struct system *s, con
     for (size_t c = 0; c < s->assembly.ncoordinate; c++) {
         const struct ct_coordinate *at = &s->assembly.coordinate[c];
         const struct ct_edge_info *e = &s->assembly.build->edge[at->edge];
-        if (e->kind == CT_EDGE_JOINT && at->place == 0)
+        if (e->kind == CT_EDGE_JOINT && at->index == 0)
             q[e->index] = &s->start.q[c];
     }
 }
@@ -358,7 +358,7 @@ static int count_asked(int standard)
     return given ? atoi(given) : standard;
 }
 
-// How many starts are farther from the guesses than the known position, or farther than with spatial rows by more than rounding.
+// How many starts are farther from the guesses than the known position, or farther than with spatial rows by more than round-off.
 static int count_farther(const char *name, void (*make)(struct hidden *h), int n)
 {
     int farther = 0, unlike = 0, failed = 0;

@@ -1,4 +1,4 @@
-// Constraints that depend on each other: which, what they leave open, long runs, singular positions; and the
+// Constraints that depend on each other: which, what they leave open, long runs, singular configurations; and the
 // linear graphs of real systems.
 #include "graph/graph.h"
 #include "tests/property/mechanism.h"
@@ -33,8 +33,8 @@ static void parallel_hinges_in_space_leave_three_reactions_open(void **state)
     variant_open(&s, &by_joints_spatial, &v);
     struct ct_run *run = open_run(&s, &v);
     bool *row = CT_NEWN(v.arena, bool, v.e.nrow), *result = CT_NEWN(v.arena, bool, v.e.nresult);
-    ct_run_find_open(run, 0, ct_run_state(run), row, result);
-    const struct ct_embed *embed = ct_run_embed(run);
+    ct_run_find_undetermined(run, 0, ct_run_state(run), row, result);
+    const struct ct_partition *embed = ct_run_partition(run);
     assert_int_equal(v.e.nrow, 5);
     assert_int_equal(embed->rank, 2);
     size_t n = 0;
@@ -61,7 +61,7 @@ static void multipliers_have_the_least_norm(void **state)
     for (size_t i = 0; i < COUNT(file); i++) {
         struct system s;
         struct variant v;
-        struct ct_start at;
+        struct ct_initial_state at;
         system_open_file(&s, file[i]);
         system_keep_all(&s);
         system_no_outputs(&s);
@@ -76,7 +76,7 @@ static void multipliers_have_the_least_norm(void **state)
         bool ok = true;
         for (size_t r = 0; r < v.e.nrow; r++) { // lam has no part in null(J')
             double part = 0;
-            ct_embed_null_vector(v.s, (int)r, z);
+            ct_partition_null_vector(v.s, (int)r, z);
             for (size_t k = 0; k < v.e.nrow; k++)
                 part += z[k] * v.s->lam[k];
             ok &= agree(file[i], v.e.row[r].name, part, 0, largest, 1e-9);
@@ -166,19 +166,19 @@ static bool compare_with_pivot(void *user, double t, const double *value, size_t
     (void)value;
     (void)n;
     struct lookout *l = user;
-    struct ct_embed *s = ct_run_embed(l->run);
-    ct_machine_constraint(ct_run_machine(l->run));
-    const double pivot = ct_embed_pivot(s);
+    struct ct_partition *s = ct_run_partition(l->run);
+    ct_evaluator_constraint(ct_run_evaluator(l->run));
+    const double pivot = ct_partition_pivot(s);
     l->most = fmax(l->most, pivot);
     const bool is_beside = pivot<0.3 * l->most, is_far = pivot> 0.7 * l->most;
     l->nbeside += is_beside;
     l->nfar += is_far && t > 0;
-    l->ok &= !(is_beside && !s->is_delicate) && !(is_far && s->is_delicate);
+    l->ok &= !(is_beside && !s->is_near_singular) && !(is_far && s->is_near_singular);
     return true;
 }
 
 // Fixed steps look at J only where the pivots of the form have changed, and seek pivots at every evaluation all the same where the
-// mechanism is beside a singular position, with redundant rows or without.
+// mechanism is near a singular configuration, with redundant rows or without.
 static void fixed_steps_know_of_singular_positions(void **state)
 {
     (void)state;
@@ -205,10 +205,10 @@ static void fixed_steps_know_of_singular_positions(void **state)
         const bool ok = ct_run_simulate(l.run, &run, &report);
         if (!ok)
             ct_ctx_print(&v.ctx, stderr);
-        print_message("%s: %d samples beside a singular position, %d far from it\n", method[i],
-                      l.nbeside, l.nfar);
+        print_message("%s: %d samples near a singular configuration, %d far from it\n",
+                      method[i], l.nbeside, l.nfar);
         assert_true(ok && l.ok && l.nbeside > 0 && l.nfar > 0);
-        assert_int_equal(ct_run_embed(l.run)->rank < (int)v.e.nrow, is_spatial);
+        assert_int_equal(ct_run_partition(l.run)->rank < (int)v.e.nrow, is_spatial);
         variant_close(&v);
         system_close(&s);
     }

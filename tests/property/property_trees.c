@@ -43,7 +43,7 @@ static bool results_agree(struct system *s, const struct variant *a, const struc
     return ok;
 }
 
-static void solve_at(struct system *s, struct variant *v, const struct ct_start *state,
+static void solve_at(struct system *s, struct variant *v, const struct ct_initial_state *state,
                      double t)
 {
     variant_set(v, state, t);
@@ -52,7 +52,7 @@ static void solve_at(struct system *s, struct variant *v, const struct ct_start 
         ct_ctx_print(&v->ctx, stderr);
         fail();
     }
-    ct_embed_uniqueness(v->s);
+    ct_partition_uniqueness(v->s);
 }
 
 // ---- three choices on everything ------------------------------------------------------------------------
@@ -70,7 +70,7 @@ static bool choices_agree(struct system *s, bool keep_all)
         variant_open(s, how[i], &v[i]);
     for (int k = 0; k < 3; k++) {
         const double t = 0.31 * k;
-        struct ct_start state;
+        struct ct_initial_state state;
         assert_true(system_random_state(s, t, 0.6, &state));
         for (size_t i = 0; i < n; i++) {
             solve_at(s, &v[i], &state, t);
@@ -153,7 +153,7 @@ static bool pairs_agree(struct system *s, size_t pairs, size_t *tried)
     const struct tree_list T = system_trees(s, false, false), R = system_trees(s, false, true);
     const size_t all = T.n * R.n, step = pairs && all > pairs ? all / pairs : 1;
     struct variant first;
-    struct ct_start state;
+    struct ct_initial_state state;
     bool ok = true;
     variant_open(s, &by_joints, &first);
     assert_true(system_random_state(s, 0.2, 0.6, &state));

@@ -139,12 +139,12 @@ static bool assemble(struct system *s, bool keep_all)
         = {.tree = CT_TREE_JOINTS, .measure_all = true, .keep_all = keep_all};
     struct ct_tree_report report;
     if (!ct_formulate(&s->ctx, s->ctx.model, &s->model, &o, &s->assembly, &report)
-        || !ct_assemble(&s->ctx, s->ctx.model, &s->model, &s->assembly, &s->start))
+        || !ct_assembly_solve(&s->ctx, s->ctx.model, &s->model, &s->assembly, &s->start))
         return false;
-    s->machine = ct_machine_create(s->ctx.model, &s->model, &s->assembly);
-    s->embed = ct_embed_create(s->ctx.model, &s->ctx, s->machine);
+    s->machine = ct_evaluator_create(s->ctx.model, &s->model, &s->assembly);
+    s->embed = ct_partition_create(s->ctx.model, &s->ctx, s->machine);
     s->y = CT_NEWN(s->ctx.model, double, s->machine->nq + s->machine->nu + 1);
-    ct_start_apply(&s->start, s->machine, s->y);
+    ct_initial_state_apply(&s->start, s->machine, s->y);
     return true;
 }
 
@@ -284,7 +284,7 @@ void system_output_reactions(struct system *s)
     }
 }
 
-static bool meets_rows(const struct ct_machine *m)
+static bool meets_rows(const struct ct_evaluator *m)
 {
     for (size_t i = 0; i < m->nrow; i++)
         if (!(fabs(m->phi[i]) < 1e-11 && fabs(m->v[i]) < 1e-10))
@@ -295,26 +295,27 @@ static bool meets_rows(const struct ct_machine *m)
 // One small step that the rows allow to first order, then onto them.
 static bool wander(struct system *s, double t, double amplitude, const double *wish, double *y)
 {
-    struct ct_machine *m = s->machine;
+    struct ct_evaluator *m = s->machine;
     double *d = y + m->nq; // speeds are projected, so they serve as the direction
     for (size_t k = 0; k < m->nu; k++)
         d[k] = wish[k];
-    if (ct_embed_project(s->embed, t, y) != CT_EVAL_OK)
+    if (ct_partition_project(s->embed, t, y) != CT_EVAL_OK)
         return false;
     double *step = CT_NEWN(s->ctx.scratch, double, m->nu + 1);
     for (size_t k = 0; k < m->nu; k++)
         step[k] = amplitude * d[k];
-    ct_machine_retract(m, y, step);
-    if (ct_embed_project(s->embed, t, y) != CT_EVAL_OK)
+    ct_evaluator_retract(m, y, step);
+    if (ct_partition_project(s->embed, t, y) != CT_EVAL_OK)
         return false;
-    ct_memory_follow(m);
+    ct_memory_update(m);
     return meets_rows(m);
 }
 
-bool system_random_state(struct system *s, double t, double amplitude, struct ct_start *out)
+bool system_random_state(struct system *s, double t, double amplitude,
+                         struct ct_initial_state *out)
 {
     enum { STEPS = 5 };
-    struct ct_machine *m = s->machine;
+    struct ct_evaluator *m = s->machine;
     const size_t n = m->nq + m->nu + 1, nmemory = s->assembly.nmemory;
     double *y = CT_NEWN(s->ctx.scratch, double, n),
            *wish = CT_NEWN(s->ctx.scratch, double, m->nu + 1);
@@ -326,23 +327,23 @@ bool system_random_state(struct system *s, double t, double amplitude, struct ct
         memcpy(y, s->y, n * sizeof *y);
         for (size_t k = 0; k < m->nu; k++)
             wish[k] = chance();
-        ct_machine_set(m, t, y);
-        ct_modes_start(m, t, y, NULL);
-        ct_machine_constraint(m);
-        ct_machine_motion(m);
-        ok = ct_embed_choose(s->embed);
+        ct_evaluator_set(m, t, y);
+        ct_switches_start(m, t, y, NULL);
+        ct_evaluator_constraint(m);
+        ct_evaluator_dynamics(m);
+        ok = ct_partition_choose(s->embed);
         for (int k = 0; k < STEPS && ok; k++)
             ok = wander(s, t, amplitude / STEPS, wish, y);
         for (size_t k = 0; k < m->nu; k++)
             y[m->nq + k] = 2 * chance();
-        ok = ok && ct_embed_project(s->embed, t, y) == CT_EVAL_OK && meets_rows(m)
+        ok = ok && ct_partition_project(s->embed, t, y) == CT_EVAL_OK && meets_rows(m)
           && (!s->embed->rank || s->embed->kappa < 30);
     }
     s->ctx.nerror = s->ctx.ndiagnostic = 0;
-    ct_machine_set(m, t, y);
-    ct_memory_follow(m);
+    ct_evaluator_set(m, t, y);
+    ct_memory_update(m);
     ct_program_run(&m->result, m->input);
-    *out = (struct ct_start){.n = s->assembly.ncoordinate};
+    *out = (struct ct_initial_state){.n = s->assembly.ncoordinate};
     out->q = CT_NEWN(s->ctx.model, double, out->n + 1);
     out->u = CT_NEWN(s->ctx.model, double, out->n + 1);
     for (size_t i = 0; i < out->n; i++) {
@@ -364,8 +365,8 @@ bool variant_try(struct system *s, const struct ct_formulate_options *o, struct 
         return false;
     if (!o->without_dynamics)
         ct_formulate_dynamics(&v->e);
-    v->m = ct_machine_create(v->arena, &s->model, &v->e);
-    v->s = ct_embed_create(v->arena, &v->ctx, v->m);
+    v->m = ct_evaluator_create(v->arena, &s->model, &v->e);
+    v->s = ct_partition_create(v->arena, &v->ctx, v->m);
     v->y = CT_NEWN(v->arena, double, v->m->nq + v->m->nu + 1);
     v->result = CT_NEWN(v->arena, double, v->e.nresult + 1);
     return true;
@@ -387,29 +388,29 @@ void variant_close(struct variant *v)
 
 void variant_renew(struct variant *v, double t)
 {
-    ct_machine_set(v->m, t, v->y);
-    ct_modes_start(v->m, t, v->y, NULL);
-    ct_machine_set(v->m, t, v->y);
+    ct_evaluator_set(v->m, t, v->y);
+    ct_switches_start(v->m, t, v->y, NULL);
+    ct_evaluator_set(v->m, t, v->y);
     ct_memory_start(v->m);
-    ct_machine_motion(v->m);
-    ct_machine_constraint(v->m);
+    ct_evaluator_dynamics(v->m);
+    ct_evaluator_constraint(v->m);
 }
 
-void variant_set(struct variant *v, const struct ct_start *state, double t)
+void variant_set(struct variant *v, const struct ct_initial_state *state, double t)
 {
-    ct_start_apply(state, v->m, v->y);
+    ct_initial_state_apply(state, v->m, v->y);
     variant_renew(v, t);
 }
 
 bool variant_solve(struct variant *v)
 {
-    struct ct_machine *m = v->m;
-    ct_machine_constraint(m);
-    ct_machine_motion(m);
-    if (!ct_embed_choose(v->s) || ct_embed_accelerate(v->s) != CT_EVAL_OK)
+    struct ct_evaluator *m = v->m;
+    ct_evaluator_constraint(m);
+    ct_evaluator_dynamics(m);
+    if (!ct_partition_choose(v->s) || ct_partition_accelerate(v->s) != CT_EVAL_OK)
         return false;
     memcpy(m->input + m->at_a, v->s->a, m->nu * sizeof(double));
-    ct_embed_multipliers(v->s);
+    ct_partition_multipliers(v->s);
     memcpy(m->input + m->at_lam, v->s->lam, m->nrow * sizeof(double));
     ct_program_run(&m->result, m->input);
     memcpy(v->result, m->result.out, v->e.nresult * sizeof(double));

@@ -9,8 +9,8 @@
 
 #include "formulate/build.h"
 #include "formulate/formulate.h"
-#include "solve/mode.h"
-#include "solve/simulate.h"
+#include "solve/evaluator/switch_state.h"
+#include "solve/run/run.h"
 #include "tests/check.h"
 
 #include <stdlib.h>
@@ -20,10 +20,10 @@ struct system {
     const char *name;
     struct ct_ctx ctx;
     struct ct_model model;
-    struct ct_equations assembly; // on trees through joints, all joints measured
-    struct ct_start start;        // assembled at t = 0
-    struct ct_machine *machine;   // of assembly
-    struct ct_embed *embed;
+    struct ct_equations assembly;  // on trees through joints, all joints measured
+    struct ct_initial_state start; // assembled at t = 0
+    struct ct_evaluator *machine;  // of assembly
+    struct ct_partition *embed;
     double *y; // of machine, assembled
 };
 
@@ -32,8 +32,8 @@ struct variant {
     struct ct_ctx ctx;
     struct ct_equations e;
     struct ct_tree_report report;
-    struct ct_machine *m;
-    struct ct_embed *s;
+    struct ct_evaluator *m;
+    struct ct_partition *s;
     double *y, *result; // nresult
 };
 
@@ -66,7 +66,8 @@ void system_output_reactions(struct system *s);
 
 /// A random state near the assembled one at time t that meets all constraints; false if the mechanism cannot
 /// be moved there.
-bool system_random_state(struct system *s, double t, double amplitude, struct ct_start *out);
+bool system_random_state(struct system *s, double t, double amplitude,
+                         struct ct_initial_state *out);
 
 // ---- variants -----------------------------------------------------------------------------------------------
 
@@ -74,7 +75,7 @@ bool variant_try(struct system *s, const struct ct_formulate_options *o, struct 
 void variant_open(struct system *s, const struct ct_formulate_options *o, struct variant *v);
 void variant_close(struct variant *v);
 /// Put a state in at time t; modes and memories follow.
-void variant_set(struct variant *v, const struct ct_start *state, double t);
+void variant_set(struct variant *v, const struct ct_initial_state *state, double t);
 /// The same with the state that is in v->y.
 void variant_renew(struct variant *v, double t);
 /// Accelerations, multipliers and results there.

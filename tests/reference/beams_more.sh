@@ -2,7 +2,7 @@
 # beams_more.sh CASE: beams against closed forms and independent programs (Ritz, transfer matrices, shooting). COTREE is the program.
 #   axis       E, density, area and Iz are polynomials of x: three frequencies and static deflections; errors fall with the
 #              fourth power of the element's length
-#   jump       Iz and mass per length jump inside an element: the tip is right to rounding with any number of elements
+#   jump       Iz and mass per length jump inside an element: the tip is right to round-off with any number of elements
 #   arm        a strip that an eccentric end force bends about its weak axis and twists
 #   weak       one that is bent about its weak axis, or in its plane, does not buckle
 #   sideways   a cantilever under an end force across, cut into 4 and 8 beams: Kirchhoff rods with the bending before; the first

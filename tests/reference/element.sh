@@ -3,7 +3,7 @@
 # energy, displacement and velocity of the tip. The figures are of a derivation of Liang's formulas (2017, 3.2 and 3.3) with
 # many-digit arithmetic that only differentiates positions in time; the speeds of the second state are the accelerations there, so
 # that its energy is a' M a/2. Deflections are polynomials through values and slopes of both nodes. All are exact for cubic elements:
-# what is left is rounding. COTREE is the program.
+# what is left is round-off. COTREE is the program.
 #
 # As in the figures, turning about the axis has no inertia: a massless hub gives it some, its energy is taken off.
 set -eu

@@ -63,7 +63,7 @@ check() { # FORMULATION X Y Z
         NR == 2 {
             split(want, w, " ")
             for (i = 1; i <= 3; i++) {
-                # loads of 1e4 N move masses of 0.1 kg: rounding makes 1e-11 of it
+                # loads of 1e4 N move masses of 0.1 kg: round-off makes 1e-11 of it
                 error = $(i + 1) - w[i]
                 if (!(error^2 <= 1e-18)) {
                     printf "%s, acceleration %d: %.17g for %s\n", name, i, $(i + 1), w[i]

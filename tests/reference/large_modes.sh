@@ -54,7 +54,7 @@ compare() {
     END { exit bad || n != 10 }' "$work/exact" "$work/$1.csv"
 }
 
-# what linear shapes of stretch and twist leave is (pi (2 j - 1)/2)^2/(24 N^2); bending is right to N^4 roundings
+# what linear shapes of stretch and twist leave is (pi (2 j - 1)/2)^2/(24 N^2); bending is right to N^4 round-off errors
 beams 1 200 1/10 >"$work/one.yaml"
 compare one 3e-5 1/10
 beams 20 10 1/10 >"$work/chain.yaml"

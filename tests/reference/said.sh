@@ -8,7 +8,7 @@ before_run() { # MODEL.yaml, with `auto`
     "$COTREE" check "$1" | sed -n "/linear beam's error/ { s/.*linear beam's error: \([^;)]*\).*/\1/p; q; }"
 }
 
-# foretold NAME KIND: the largest difference of the tips (y, z; 401 samples) of a linear and a foreshortened beam over the largest
+# estimated NAME KIND: the largest difference of the tips (y, z; 401 samples) of a linear and a foreshortened beam over the largest
 # deflection of the latter must be what is said before and after the run within a factor of 3, or more than 1/3 where KIND is
 # `beyond 1` and so is that. `model FORMULATION` prints the model.
 foretold() {

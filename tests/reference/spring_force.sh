@@ -1,13 +1,13 @@
 #!/bin/sh
 # spring_force.sh CASE: with `method: auto` and the tolerances T and parameters of the line CASE in spring_force.txt the outputs of
 # spring_force.yaml err by less than 10 T of their largest values, the force of the spring, 3 m g, at samples every 0.01 s. In
-# it remain the vibration that the spring has from the start, m g/k of that, which a method may damp, and the rounding of
+# it remain the vibration that the spring has from the start, m g/k of that, which a method may damp, and the round-off of
 # coordinates, for which four of k eps l are granted; where that is more than steps are held to, the summary must say so. Fixed
-# steps of 1e-4 s, 20 000 of them, have the force to 2e-7 or its rounding: those of step control must not be more.
+# steps of 1e-4 s, 20 000 of them, have the force to 2e-7 or its round-off: those of step control must not be more.
 # Released below the horizontal the spring vibrates by as much as it is stretched, and each vibration has to be followed: most=N, twice
-# the fixed steps of dop853 that have the force to 1e-7 of its largest value or its rounding. Roundings of all steps add up to the
+# the fixed steps of dop853 that have the force to 1e-7 of its largest value or its round-off. Round-off errors of all steps add up to the
 # root of their number, which is granted in place of the vibration from the start, and which the summary must tell.
-# reference=CASE: the same in spring_deformation.yaml, where the deformation of the spring is a coordinate and has no rounding that is
+# reference=CASE: the same in spring_deformation.yaml, where the deformation of the spring is a coordinate and has no round-off that is
 # felt: 10 T, and nothing is told.
 # COTREE is the program, COMPARE the comparison tool.
 set -eu

@@ -64,6 +64,21 @@ mkdir src/new
 touch src/new/file.c
 fails_with 'folder new is not in' layers
 rm -r src/new
+mkdir -p src/tall/top src/tall/bottom
+printf 'low\nhigh low\nsrc  *\ncli  cotree\ntall/bottom low\ntall/top tall/bottom\ntall/tall.c tall/*\nonly yaml.h low\nupward src/tall/bottom/c.c tall/top/t.h\n' >rooms.txt
+rooms() {
+  sh "$tests/style/layers.sh" rooms.txt .
+}
+echo '#include "tall/bottom/b.h"' >src/tall/top/t.c
+echo '#include "tall/top/t.h"' >src/tall/bottom/c.c
+printf '#include "tall/top/t.h"\n#include "tall/bottom/b.h"\n' >src/tall/tall.c
+passes rooms
+echo '#include "tall/top/t.h"' >src/tall/bottom/d.c
+fails_with 'src/tall/bottom/d.c:1: tall/bottom may not include "tall/top/t.h"' rooms
+rm src/tall/bottom/d.c
+echo >src/tall/bottom/c.c
+fails_with 'rooms.txt: src/tall/bottom/c.c does not include "tall/top/t.h" any more' rooms
+rm -r src/tall
 printf 'high low\nlow\nsrc  *\ncli  cotree\n' >turned.txt
 turned() {
   sh "$tests/style/layers.sh" turned.txt .

@@ -60,7 +60,7 @@ struct want {
     double omega, damping;
 };
 
-// All modes of a model about a configuration: as many as wanted, to rounding of well conditioned problems.
+// All modes of a model about a configuration: as many as wanted, to round-off of well conditioned problems.
 static void check_modes(const char *text, const char *about, const struct want *want, size_t n)
 {
     struct ct_ctx *ctx = ct_ctx_create();
@@ -310,7 +310,7 @@ static void rows_of_many_masses(void **state)
         assert_int_equal(ct_modes_count(modes), COUNT);
         for (int i = 0; i < COUNT; i++) {
             const double angle = held ? (2 * i + 1) * pi / (2 * (2 * N + 1)) : i * pi / (2 * N);
-            // the roundings of a stiffness whose slowest mode is a hundred thousandth of the fastest
+            // the round-off errors of a stiffness whose slowest mode is a hundred thousandth of the fastest
             CHECK_CLOSE(ct_modes_info(modes, (size_t)i).omega, 2 * 20 * sin(angle), 1e-9, 1e-9);
         }
         ct_modes_destroy(modes);

@@ -80,7 +80,7 @@ static void check_values(struct fixture *f, struct random *r, ct_ex e, ct_ex got
         for (size_t k = 0; k < f->x.nsym; k++)
             value[k] = random_double(r);
         evaluate_all(&f->x, value, v);
-        // rounding is relative to the largest number on the way, not to the result
+        // round-off is relative to the largest number on the way, not to the result
         double scale = fabs(v[e.id]);
         for (size_t n = ct_ex_walk(&f->x, &e, 1); n-- > 0;)
             scale = fmax(scale, fabs(v[f->x.stack[n]]));

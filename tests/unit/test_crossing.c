@@ -126,7 +126,8 @@ static bool at_sample(void *user, double t, const double *y)
     return true;
 }
 
-static bool at_singular_sample(void *user, double t, const double *y, const struct ct_bridge *b)
+static bool at_singular_sample(void *user, double t, const double *y,
+                               const struct ct_gap_interpolation *b)
 {
     struct record *r = user;
     double rate = 0, dy[NY] = {0};
@@ -162,7 +163,7 @@ static enum ct_eval event(void *user, double t, double *y, const double *dy,
 static const struct ct_problem problem = {.ny = NY,
                                           .rhs = rhs,
                                           .accepted = accepted,
-                                          .singular_in = singular_in,
+                                          .time_to_singular = singular_in,
                                           .residual = residual};
 
 static bool run(struct record *r, const char *method, struct ct_problem p, double end,
@@ -276,7 +277,7 @@ static bool is_singular(void *user, double t, const double *y)
 static const struct ct_problem switching = {.ny = NY,
                                             .rhs = switched,
                                             .accepted = accepted,
-                                            .singular_in = singular_in,
+                                            .time_to_singular = singular_in,
                                             .residual = residual,
                                             .is_singular = is_singular,
                                             .nroot = 1,
@@ -426,12 +427,12 @@ static void another_position_is_crossed_after_one_that_is_passed_by(void **unuse
     const double tolerance = 1e-6;
     struct ct_problem p = problem;
     struct record two = {.trusted = 0.3}, one = {.left = 1, .wavers = 1.8};
-    p.singular_in = two_ahead;
+    p.time_to_singular = two_ahead;
     p.residual = missed_before;
     assert_true(run(&two, "dopri5", p, 3, tolerance));
     assert_true(two.nbridge > 10);
     check_below("error", two.worst, 10 * tolerance);
-    p.singular_in = wavering;
+    p.time_to_singular = wavering;
     p.residual = missed;
     p.rhs = sharp;
     assert_true(run(&one, "dopri5", p, 3, tolerance));

@@ -2,11 +2,11 @@
 #include "tests/check.h"
 
 #include "formulate/formulate.h"
-#include "formulate/residual.h"
-#include "integrate/alpha.h"
-#include "solve/dae.h"
-#include "solve/quad.h"
-#include "solve/simulate.h"
+#include "formulate/dynamics/residual.h"
+#include "integrate/implicit/alpha.h"
+#include "solve/constraint/dae.h"
+#include "solve/run/quad_run.h"
+#include "solve/run/run.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -53,7 +53,7 @@ static bool open_job_with(struct job *j, const char *folder, const char *name,
     const struct ct_formulate_options measuring = {.tree = CT_TREE_JOINTS, .measure_all = true};
     struct ct_equations measured;
     struct ct_tree_report report;
-    struct ct_start start;
+    struct ct_initial_state start;
     *j = (struct job){.ctx = {.model = ct_arena_create(), .scratch = ct_arena_create()}};
     const char *path
         = ct_arena_printf(j->ctx.model, "%s/%s/%s", getenv("CT_TEST_DIR"), folder, name);
@@ -61,7 +61,7 @@ static bool open_job_with(struct job *j, const char *folder, const char *name,
         = ct_model_read(&j->ctx, path, set, nset, &j->model)
        && ct_formulate(&j->ctx, j->ctx.model, &j->model, &o, &j->e, &report)
        && ct_formulate(&j->ctx, j->ctx.model, &j->model, &measuring, &measured, &report)
-       && ct_assemble(&j->ctx, j->ctx.model, &j->model, &measured, &start)
+       && ct_assembly_solve(&j->ctx, j->ctx.model, &j->model, &measured, &start)
        && (j->run = ct_run_create(&j->ctx, j->ctx.model, &j->model, &j->e, &start));
     ct_ctx_print(&j->ctx, stdout);
     return ok;
@@ -132,12 +132,12 @@ static double largest(const double *v, int n)
 static double check_residual(struct job *j, const struct ct_dae *dae, const struct point *p,
                              const double *r, int m)
 {
-    struct ct_machine *machine = ct_run_machine(j->run);
-    const struct ct_embed *s = ct_run_embed(j->run);
+    struct ct_evaluator *machine = ct_run_evaluator(j->run);
+    const struct ct_partition *s = ct_run_partition(j->run);
     const size_t nu = machine->nu;
     memcpy(machine->input + machine->at_q, p->q, machine->nq * sizeof *p->q);
     memcpy(machine->input + machine->at_u, p->u, nu * sizeof *p->u);
-    ct_machine_motion(machine);
+    ct_evaluator_dynamics(machine);
     double worst = 0, size = 1e-300;
     for (size_t i = 0; i < nu; i++) {
         double want = -machine->Q[i];
@@ -201,7 +201,7 @@ static void check_derivatives(const char *name, enum ct_tree_choice tree)
 {
     struct job j;
     open_system(&j, name, tree);
-    const struct ct_dae *dae = ct_dae_create(j.ctx.model, ct_run_embed(j.run));
+    const struct ct_dae *dae = ct_dae_create(j.ctx.model, ct_run_partition(j.run));
     long version;
     const int nu = dae->nu, m = dae->rows(dae->user, &version), n = nu + 2 * m;
     double *M = CT_NEWN(j.ctx.model, double, 3 * nu * nu + 2 * m * nu + 1), *C = M + nu * nu,
@@ -238,7 +238,7 @@ static void check_derivatives(const char *name, enum ct_tree_choice tree)
            name, tree, nu, m, worst[0], worst[1], worst[2], worst[3], worst[4], worst[5]);
     assert_true(worst[0] <= 1e-11); // the two forms are sums of some hundred terms
     for (int i = 1; i < 6; i++)
-        assert_true(worst[i] <= 1e-7); // differences leave h^4 and rounding / h
+        assert_true(worst[i] <= 1e-7); // differences leave h^4 and round-off / h
     close_job(&j);
 }
 
@@ -264,13 +264,13 @@ static double *tables_of(struct job *j, enum ct_slope_form form, enum ct_backend
     ct_residual_derive(e->build, form);
     const struct ct_residual *f = e->residual = e->build->eqs->residual;
     assert_int_equal(f->along != NULL, form == CT_SLOPES_ALONG);
-    struct ct_machine *m = ct_machine_create(a, &j->model, e);
-    ct_machine_use(a, m, backend);
+    struct ct_evaluator *m = ct_evaluator_create(a, &j->model, e);
+    ct_evaluator_use(a, m, backend);
     memcpy(m->input, input, m->ninput * sizeof *input);
-    ct_machine_tangent(m);
+    ct_evaluator_tangent(m);
     double *K = CT_NEWN(a, double, 3 * nu * nu + 1), *const of[]
                                                      = {K, K + nu * nu, K + 2 * nu * nu};
-    const double *value = ct_machine_scatter(m, of[0], of[1], of[2]);
+    const double *value = ct_evaluator_scatter(m, of[0], of[1], of[2]);
     for (size_t k = 0; k < COUNT(of); k++)
         for (size_t i = 0; i < nu * nu; i++)
             table[n * nu * k + n * (i / nu) + i % nu] = of[k][i];
@@ -284,10 +284,10 @@ static void compare_forms(const char *name, enum ct_tree_choice tree)
 {
     struct job j;
     open_system(&j, name, tree);
-    const struct ct_dae *dae = ct_dae_create(j.ctx.model, ct_run_embed(j.run));
+    const struct ct_dae *dae = ct_dae_create(j.ctx.model, ct_run_partition(j.run));
     long version;
     const int m = dae->rows(dae->user, &version);
-    struct ct_machine *machine = ct_run_machine(j.run);
+    struct ct_evaluator *machine = ct_run_evaluator(j.run);
     const struct point p = random_point(&j, dae, m, 0.05);
     memcpy(machine->input + machine->at_q, p.q, machine->nq * sizeof *p.q);
     memcpy(machine->input + machine->at_u, p.u, machine->nu * sizeof *p.u);
@@ -498,7 +498,7 @@ static void orders_of_explicit_methods_hold_for_models(void **unused)
             struct ct_run_report report;
             const double h = cases[k].step[i];
             double error[2];
-            if (h == 0) // its errors are large or rounding
+            if (h == 0) // its errors are large or round-off
                 continue;
             for (int half = 0; half < 2; half++)
                 error[half] = run_case(cases[k].name, method[i], 0, half ? h / 2 : h,
@@ -516,7 +516,7 @@ static bool go_on(void *user)
     return true;
 }
 
-// References of other origin, as near as double precision shows. The double pendulum amplifies the rounding of g and of
+// References of other origin, as near as double precision shows. The double pendulum amplifies the round-off of g and of
 // its start by 1e3 in 10 s.
 static void runs_in_quadruple_precision_meet_references(void **unused)
 {
@@ -540,7 +540,7 @@ static void runs_in_quadruple_precision_meet_references(void **unused)
         read_reference(&r, cases[k].name);
         const size_t n = j.e.nresult;
         double *value = CT_NEWN(j.ctx.model, double, cases[k].nsample *n + 1);
-        const struct ct_machine *m = ct_run_machine(j.run);
+        const struct ct_evaluator *m = ct_run_evaluator(j.run);
         assert_true(ct_quad_can_run(m));
         assert_true(ct_quad_run(j.ctx.model, m, ct_run_state(j.run), cases[k].duration,
                                 cases[k].nsample, 1e-24, go_on, NULL, value));
@@ -562,7 +562,7 @@ static bool count_sample(void *user, double t, const double *value, size_t n)
 }
 
 // The member without damping, rho = 1, on a slider-crank that turns freely: its energy stays within the error of order 2
-// however long it runs, CT_LONG_STEPS steps, and the constraints are met to rounding.
+// however long it runs, CT_LONG_STEPS steps, and the constraints are met to round-off.
 static void energy_stays_bounded_without_damping(void **unused)
 {
     (void)unused;

@@ -67,9 +67,9 @@ static void choose_state(struct fixture *f)
     const struct ct_equations *e = &f->e;
     for (size_t i = 0; i < e->x->nsym; i++) {
         const enum ct_sym_kind kind = e->x->sym[i].kind;
-        f->symbol[i] = kind == CT_SYM_PARAM ? 0.5 + random_number()
-                     : kind == CT_SYM_MODE  ? (double)(random_number() < 0.5)
-                                            : 2 * random_number() - 1;
+        f->symbol[i] = kind == CT_SYM_PARAM  ? 0.5 + random_number()
+                     : kind == CT_SYM_SWITCH ? (double)(random_number() < 0.5)
+                                             : 2 * random_number() - 1;
     }
     for (size_t i = 0; i < e->nq; i++) {
         if (e->q[i].quaternion != 0)

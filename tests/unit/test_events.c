@@ -262,7 +262,7 @@ static void a_sample_on_an_event_is_taken_after_it(void **unused)
 {
     (void)unused;
     static const double due[] = {0.3, INFINITY};
-    static const double times[] = {0, 0.1 + 0.2 /* after 0.3 by a rounding */, 1, 1.5, 1.5};
+    static const double times[] = {0, 0.1 + 0.2 /* after 0.3 by a round-off */, 1, 1.5, 1.5};
     for (int m = 0; m < ct_nmethod && !ct_methods[m]->is_implicit; m++)
         for (int is_fixed = 0; is_fixed < 2; is_fixed++) {
             struct record *r = begin();

@@ -18,7 +18,7 @@ static void fractions_have_the_bits_of_their_quotient(void **state)
         double n, d;
         assert_true(ct_fraction_find(v, &n, &d));
         assert_true(n / d == v && d <= 1000000);
-        // a neighbour is another number, though near enough to be one spoiled by rounding
+        // a neighbour is another number, though near enough to be one spoiled by round-off
         const double next = nextafter(v, 1e9);
         assert_false(ct_fraction_find(next, &n, &d));
         assert_true(ct_fraction_snap(next) == v);

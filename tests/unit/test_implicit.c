@@ -1,6 +1,6 @@
 // Implicit methods on small problems written out: orders, tolerances, constraints, events, stiffness.
 #include "tests/check.h"
-#include "integrate/iteration.h"
+#include "integrate/implicit/newton_iteration.h"
 #include "integrate/problem.h"
 
 #include <float.h>
@@ -501,7 +501,7 @@ static void implicit_methods_want_a_residual(void **unused)
     ct_arena_destroy(s.ctx.model);
 }
 
-// ---- rounding of forces -----------------------------------------------------------------------------------
+// ---- round-off of forces -----------------------------------------------------------------------------------
 
 // A spring whose force is off by a grain in all places but one, and how far from there it is looked at.
 static const double stiffness = 1e4, grain = 1e-6;
@@ -536,16 +536,16 @@ static int no_rows(void *user, long *version)
 }
 
 // What a correction that has stalled comes to, of that size.
-static enum ct_verdict judge_stalled(struct ct_iteration *it, double size)
+static enum ct_convergence judge_stalled(struct ct_newton_iteration *it, double size)
 {
     const double far[] = {1, 1, 1, 1};
-    ct_iteration_start(it);
-    ct_iteration_judge(it, size, far, far, 1);
-    return ct_iteration_judge(it, size, far, far, 1);
+    ct_newton_iteration_start(it);
+    ct_newton_iteration_test_convergence(it, size, far, far, 1);
+    return ct_newton_iteration_test_convergence(it, size, far, far, 1);
 }
 
-// (8.17): stages may add up three times what is seen of a rounding, and looks differ by two. What is 25 times as much is none. Forces
-// are looked at where places cannot be told apart, from 8 roundings on.
+// (8.17): stages may add up three times what is seen of a round-off, and looks differ by two. What is 25 times as much is none. Forces
+// are looked at where places cannot be told apart, from 8 round-off errors on.
 static void stalled_corrections_are_compared_with_rounding_of_forces(void **unused)
 {
     (void)unused;
@@ -562,13 +562,14 @@ static void stalled_corrections_are_compared_with_rounding_of_forces(void **unus
     const double y[] = {1, 1}, zero[] = {0}, h = 1e-2;
     struct ct_integrate_stats stats = {0};
     struct ct_arena *a = ct_arena_create();
-    struct ct_iteration *it = ct_iteration_create(a, &p, true, false);
-    ct_iteration_begin(it, &tight, h, y);
-    assert_int_equal(ct_iteration_refresh(it, 0, y, y + 1, zero, zero, &stats), CT_EVAL_OK);
-    assert_true(ct_iteration_factor(it, 2 / h, 4 / (h * h), 0, &stats));
+    struct ct_newton_iteration *it = ct_newton_iteration_create(a, &p, true, false);
+    ct_newton_iteration_begin(it, &tight, h, y);
+    assert_int_equal(ct_newton_iteration_refresh(it, 0, y, y + 1, zero, zero, &stats),
+                     CT_EVAL_OK);
+    assert_true(ct_newton_iteration_factor(it, 2 / h, 4 / (h * h), 0, &stats));
     farthest = 0;
-    const double *noise = ct_iteration_noise(it);
-    const double seen = ct_iteration_norm(it, noise, noise + 1, 1, 1);
+    const double *noise = ct_newton_iteration_roundoff(it);
+    const double seen = ct_newton_iteration_norm(it, noise, noise + 1, 1, 1);
     printf("seen %.3g of the tolerance, %.3g roundings away\n", seen, farthest / DBL_EPSILON);
     assert_true(seen > 1 && farthest >= 4 * DBL_EPSILON && farthest <= 32 * DBL_EPSILON);
     assert_int_equal(judge_stalled(it, 6 * seen), CT_CONVERGED);
@@ -630,14 +631,16 @@ static void stalled_corrections_are_compared_with_rounding_of_constraints(void *
     const double y[] = {1, 1, 1, 1}, zero[] = {0, 0}, h = 1e-2, c = 2 / h, e = c * c;
     struct ct_integrate_stats stats = {0};
     struct ct_arena *a = ct_arena_create();
-    struct ct_iteration *it = ct_iteration_create(a, &p, true, false);
-    ct_iteration_begin(it, &tight, h, y);
-    assert_int_equal(ct_iteration_refresh(it, 0, y, y + 2, zero, zero, &stats), CT_EVAL_OK);
-    assert_true(ct_iteration_factor(it, c, e, 0, &stats));
-    const double *noise = ct_iteration_noise(it);
-    const double seen = ct_iteration_norm(it, noise, noise + 2, 2, 1);
+    struct ct_newton_iteration *it = ct_newton_iteration_create(a, &p, true, false);
+    ct_newton_iteration_begin(it, &tight, h, y);
+    assert_int_equal(ct_newton_iteration_refresh(it, 0, y, y + 2, zero, zero, &stats),
+                     CT_EVAL_OK);
+    assert_true(ct_newton_iteration_factor(it, c, e, 0, &stats));
+    const double *noise = ct_newton_iteration_roundoff(it);
+    const double seen = ct_newton_iteration_norm(it, noise, noise + 2, 2, 1);
     const double swing = stiffness * grain / 2 / (2 * e + stiffness);
-    CHECK_CLOSE(fabs(noise[0] - noise[1]) / grain, 1, 1e-6, 0); // roundings beside the grain
+    CHECK_CLOSE(fabs(noise[0] - noise[1]) / grain, 1, 1e-6,
+                0); // round-off errors beside the grain
     CHECK_CLOSE(fabs(noise[2]) / (c * swing), 1, 1e-6, 0);
     CHECK_CLOSE(noise[3] / noise[2], 1, 1e-6, 0);
     assert_int_equal(judge_stalled(it, 6 * seen), CT_CONVERGED);

@@ -1,6 +1,6 @@
 // Integration against solutions in closed form: orders, tolerances, samples, projection. The explicit methods,
-// which stand first in the table; test_implicit.c has the others, test_events.c events, test_refusals.c what cannot go on.
-#include "integrate/control.h"
+// which stand first in the table; test_implicit.c has the others, test_events.c events, test_failed_runs.c what cannot go on.
+#include "integrate/step_control.h"
 #include "integrate/stiffness.h"
 #include "integrate/stepper.h"
 #include "tests/unit/integration.h"
@@ -34,7 +34,7 @@ static double kepler_error(const struct ct_method *method, int nstep)
 static void halving_a_fixed_step_shows_the_order(void **unused)
 {
     (void)unused;
-    // steps small enough for the leading term, errors above 1e-13 for rounding
+    // steps small enough for the leading term, errors above 1e-13 for round-off
     static const struct {
         const char *name;
         int nstep;
@@ -57,7 +57,7 @@ static enum ct_eval even(void *user, double t, const double *y, double *dy)
     return CT_EVAL_OK;
 }
 
-// Summed without care, a hundred thousand steps leave an error of some hundred roundings or more.
+// Summed without care, a hundred thousand steps leave an error of some hundred round-off errors or more.
 static void roundings_of_many_steps_do_not_add_up(void **unused)
 {
     (void)unused;
@@ -136,7 +136,8 @@ static void a_million_steps_keep_the_energy(void **unused)
                    (struct ct_integrate_options){.t1 = 5e4, .step = 0.05}, y));
     assert_int_equal(r->stats.steps, 1000000);
     printf("energy %.2g\n", y[0] * y[0] + y[1] * y[1] - 1);
-    check_close("energy", y[0] * y[0] + y[1] * y[1], 1, 3e-13); // roundings of either sign
+    check_close("energy", y[0] * y[0] + y[1] * y[1], 1,
+                3e-13); // round-off errors of either sign
     end(r);
 }
 
@@ -312,7 +313,7 @@ static void a_quadrature_does_not_shorten_steps(void **unused)
             check_fine(r, run(r, ct_methods[m],
                               (struct ct_problem){.ny = k ? 3 : 2,
                                                   .rhs = k ? with_quadrature : oscillator,
-                                                  .watched = k == 1 ? two : all},
+                                                  .error_controlled = k == 1 ? two : all},
                               (struct ct_integrate_options){.t1 = 10, .atol = 1e-8}, y));
             steps[k] = r->stats.steps;
             end(r);
@@ -452,7 +453,7 @@ static void next_steps_are_those_of_the_pi_controller(void **unused)
     (void)unused;
     for (int order = 2; order <= 8; order += 3) {
         const struct ct_method method = {.error_order = order};
-        struct ct_control c = ct_control_start();
+        struct ct_step_control c = ct_step_control_start();
         double before = 1e-4;
         c.h = 0.1;
         double error = 0.9;
@@ -461,12 +462,12 @@ static void next_steps_are_those_of_the_pi_controller(void **unused)
             const double power = 1. / (order + 1) - 0.75 * beta;
             const double factor = safety * pow(error, -power) * pow(before, beta);
             const double wanted = h * fmin(fmax(factor, least), most);
-            ct_control_accept(&c, &method, h, error);
+            ct_step_control_accept(&c, &method, h, error);
             assert_true(fabs(c.h / wanted - 1) < 3e-4);
             before = fmax(error, 1e-4);
         }
         c.h = 1;
-        ct_control_accept(&c, &method, c.h, 0);
+        ct_step_control_accept(&c, &method, c.h, 0);
         assert_true(c.h == most);
     }
 }
@@ -543,7 +544,7 @@ static double left_of_one(const struct ct_method *m, void *work, double rate, do
     return hypot(y1[0], y1[1]);
 }
 
-// Up to `stable` nothing left of the imaginary axis becomes larger, and of what is damped a longer step has the larger estimate: not
+// Up to `stability_limit` nothing left of the imaginary axis becomes larger, and of what is damped a longer step has the larger estimate: not
 // far beyond, that falls to nothing while what is left of an error grows.
 static void stable_steps_make_nothing_larger(void **unused)
 {
@@ -553,18 +554,18 @@ static void stable_steps_make_nothing_larger(void **unused)
         const struct ct_method *m = ct_methods[i];
         struct ct_arena *a = ct_arena_create();
         double error, most = 0, peak = 0;
-        if (m->stable > 0) {
+        if (m->stability_limit > 0) {
             void *work = m->create(a, m, &(struct ct_problem){.ny = 2, .rhs = spiral});
             for (int k = 1; k <= 40; k++)
                 for (int j = 0; j <= 40; j++)
-                    most = fmax(most, left_of_one(m, work, m->stable * k / 40,
+                    most = fmax(most, left_of_one(m, work, m->stability_limit * k / 40,
                                                   pi / 2 * (1 + j / 40.), &error));
             check_below("what a stable step leaves", most, 1);
             for (most = 0; left_of_one(m, work, peak + 0.01, pi, &error), error > most;
                  peak += 0.01)
                 most = error;
             printf("%s: the estimate is largest at %.2f\n", m->name, peak);
-            check_close("stable", m->stable / peak, 0.95, 0.05);
+            check_close("stable", m->stability_limit / peak, 0.95, 0.05);
         }
         ct_arena_destroy(a);
     }
@@ -598,7 +599,7 @@ static void rates_that_change_by_more_than_twice_do_not_last(void **unused)
         struct ct_stiffness *s = ct_stiffness_create(a, &p, &stats, 1e-6, 1, 2);
         growth = growths[i];
         for (int k = 1; k <= STEPS * TESTS; k++)
-            ct_stiffness_watch(s, (double)k / STEPS, y, 1e9);
+            ct_stiffness_detect(s, (double)k / STEPS, y, 1e9);
         check_close("fast", s->fast / (omega * pow(growth, TESTS)), 1, 0.01);
         assert_true(isfinite(ct_stiffness_stable_step(s, ct_method_find("dop853")))
                     == (growth < 2));
@@ -632,7 +633,7 @@ static struct ct_stiffness *watch_two(struct ct_arena *a,
     for (int k = 1; k <= STEPS * TESTS; k++) {
         if ((double)k / STEPS > event)
             s->excited = event;
-        ct_stiffness_watch(s, (double)k / STEPS, y, 1e9);
+        ct_stiffness_detect(s, (double)k / STEPS, y, 1e9);
     }
     return s;
 }
@@ -819,7 +820,7 @@ static void followed_steps_err_by_the_tolerance_at_the_end(void **unused)
     for (int power = -4; power >= -8; power -= 2) {
         const double T = pow(10, power);
         const struct ct_method *m = ct_method_find("dop853");
-        const double steps = ceil(time / ct_stiffness_followed_step(m, omega, time, T));
+        const double steps = ceil(time / ct_stiffness_accurate_step(m, omega, time, T));
         double y[NY] = {1, 0};
         struct record *r = begin();
         r->stop_after = 0;

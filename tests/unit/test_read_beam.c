@@ -170,7 +170,7 @@ static void a_tapered_section_is_a_function_of_x(void **state)
     check(number(s, s->m.body[1].mass), 6 * (1 - 0.5 + 1.0 / 12));
 }
 
-// int_0^2 exp(x) dx by 8 points on each of two elements: the remainder is far below rounding.
+// int_0^2 exp(x) dx by 8 points on each of two elements: the remainder is far below round-off.
 static void the_mass_of_any_section_is_an_integral(void **state)
 {
     struct bench *s = *state;

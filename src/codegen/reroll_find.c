@@ -1,0 +1,163 @@
+// See reroll_layout.h: repeats in the sequence of operators, together with how far back near operands are.
+#include "codegen/reroll_layout.h"
+
+static const uint32_t none = CT_VALUE_NONE;
+
+enum {
+    WINDOW = 16, // instructions that must repeat to be looked at
+    NEAR = 64,   // operands so close belong to what repeats
+    MOST_PERIOD = 8192,
+    MOST_TRIES = 64,
+    LEAST_SAVED = 48, // instructions
+};
+
+static bool is_commutative(unsigned op)
+{
+    return op == CT_OP_ADD || op == CT_OP_MUL || op == CT_OP_FMA || op == CT_OP_FMS
+        || op == CT_OP_FNMA;
+}
+
+// Constants and parameters, inputs, results.
+static uint32_t age(const struct ct_repetitions *p, uint32_t v)
+{
+    return p->at[v] != none ? p->at[v] + 2 : p->l->rate[v] == CT_RATE_CALL;
+}
+
+static void order_operands(struct ct_repetitions *p)
+{
+    for (uint32_t i = 0; i < p->n; i++) {
+        const struct ct_instruction *ins = ct_repetition_instruction(p, i);
+        p->is_swapped[i] = is_commutative(ins->op) && age(p, ins->arg[0]) < age(p, ins->arg[1]);
+    }
+}
+
+static uint64_t mix(uint64_t h, uint64_t v)
+{
+    h = (h ^ v) * UINT64_C(0x9E3779B97F4A7C15);
+    return h ^ h >> 29;
+}
+
+static void sign_places(struct ct_repetitions *p, const bool is_alone[CT_NKIND])
+{
+    for (uint32_t i = 0; i < p->n; i++) {
+        const struct ct_instruction *ins = ct_repetition_instruction(p, i);
+        uint64_t h = mix(ins->op, ins->nres);
+        if (is_alone[ins->op] || ins->nres != 1)
+            h = mix(h, (uint64_t)i + CT_NKIND);
+        for (uint32_t k = 0; k < ins->narg; k++) {
+            const uint32_t from = p->at[ct_repetition_operand(p, i, k)];
+            h = mix(h, from != none && i - from < NEAR ? i - from : 0);
+        }
+        p->sign[i] = h;
+    }
+}
+
+static void link_windows(struct ct_repetitions *p)
+{
+    size_t size = 64;
+    while (size < 2 * (size_t)p->n)
+        size *= 2;
+    uint32_t *last = CT_NEWN(p->scratch, uint32_t, size); // 1 + place, by hash
+    // h = sum of sign[i + k] base^k over the window, moved on by one place
+    const uint64_t base = UINT64_C(0x9E3779B97F4A7C15);
+    uint64_t h = 0, leaving = 1;
+    for (int k = 0; k < WINDOW; k++)
+        leaving *= base;
+    for (uint32_t i = p->n; i-- > 0;) {
+        h = p->sign[i] + base * h - (i + WINDOW < p->n ? leaving * p->sign[i + WINDOW] : 0);
+        p->again[i] = none;
+        if (i + WINDOW > p->n)
+            continue;
+        uint32_t *slot = &last[mix(0, h) & (size - 1)];
+        p->again[i] = *slot ? *slot - 1 : none;
+        *slot = i + 1;
+    }
+}
+
+// The repeat that starts at i and saves most.
+static struct ct_repetition best_repeat(const struct ct_repetitions *p, uint32_t i,
+                                        uint32_t *longest)
+{
+    struct ct_repetition best = {.first = i};
+    uint32_t saved = LEAST_SAVED - 1, c = p->again[i];
+    for (int tries = 0; tries < MOST_TRIES && c > i && c != none && c - i <= MOST_PERIOD;
+         tries++) {
+        const uint32_t period = c - i;
+        uint32_t same = 0;
+        if (best.count && period % best.period == 0) { // saves less than that did
+            c = p->again[c];
+            continue;
+        }
+        while (c + same < p->n && p->sign[i + same] == p->sign[c + same])
+            same++;
+        const uint32_t count = same / period + 1;
+        if (count >= CT_LEAST_ROWS && (count - 1) * period > saved) {
+            saved = (count - 1) * period;
+            best.period = period;
+            best.count = count;
+            *longest = same;
+        }
+        c = p->again[c];
+    }
+    return best;
+}
+
+// Rows fewer than before, side by side: are they nearly as many sets of lanes?
+static bool keeps_sets(uint32_t rows, uint32_t before, uint32_t lanes)
+{
+    return 8 * (rows / lanes) >= 7 * (before / lanes);
+}
+
+// Where rows begin is chosen so that the fewest results are read across that place. same: places that repeat what is a
+// row before them. Cost: two rows.
+static void turn_rows(const struct ct_repetitions *p, struct ct_repetition *r, uint32_t same,
+                      uint32_t lanes)
+{
+    const uint32_t n = r->period, begin = r->first + (r->count / 2 - 1) * n;
+    uint32_t *last = CT_NEWN(p->scratch, uint32_t, n);
+    int32_t *across
+        = CT_NEWN(p->scratch, int32_t, 2 * n + 1); // by place: more than at the one before
+    for (uint32_t place = begin; place < begin + 2 * n; place++)
+        for (uint32_t k = 0; k < ct_repetition_instruction(p, place)->narg; k++) {
+            const uint32_t from = p->at[ct_repetition_operand(p, place, k)];
+            if (from != none && from >= begin && from < begin + n)
+                last[from - begin] = place - begin;
+        }
+    for (uint32_t from = 0; from < n; from++)
+        if (last[from]) {
+            across[from + 1]++;
+            across[last[from] + 1]--;
+        }
+    for (uint32_t i = 1; i < 2 * n; i++)
+        across[i] += across[i - 1];
+    uint32_t best = 0;
+    for (uint32_t i = 1; i < n && i <= same; i++)
+        if (across[i] + across[i + n] < across[best] + across[best + n]
+            && keeps_sets((same - i) / n + 1, r->count, lanes))
+            best = i;
+    r->first += best;
+    r->count = (same - best) / n + 1;
+}
+
+void ct_repetitions_find(struct ct_repetitions *p, const bool is_alone[CT_NKIND], uint32_t rows)
+{
+    order_operands(p);
+    sign_places(p, is_alone);
+    link_windows(p);
+    for (uint32_t i = 0; i < p->n; i++)
+        p->repetition_of[i] = none;
+    for (uint32_t i = 0; i < p->n;) {
+        uint32_t same = 0;
+        struct ct_repetition r = best_repeat(p, i, &same);
+        if (!r.count) {
+            i++;
+            continue;
+        }
+        if ((same - r.period) / r.period + 1 >= CT_LEAST_ROWS)
+            turn_rows(p, &r, same, rows);
+        for (uint32_t k = 0; k < r.period * r.count; k++)
+            p->repetition_of[r.first + k] = (uint32_t)p->nrepetition;
+        i = r.first + r.period * r.count;
+        CT_PUSH(p->arena, p->repetition, p->nrepetition, p->repetition_cap, r);
+    }
+}

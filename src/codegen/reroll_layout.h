@@ -1,0 +1,147 @@
+// Stretches of a program that repeat, between the files that find them (reroll_find.c), that say how their
+// operands are reached (reroll.c) and where their results are (reroll_layout.c).
+#ifndef CT_CODEGEN_REROLL_LAYOUT_H
+#define CT_CODEGEN_REROLL_LAYOUT_H
+
+#include "codegen/reroll.h"
+
+struct ct_repetitions {
+    struct ct_arena *arena, *scratch; // scratch: until the loops are made
+    const struct ct_listing *l;
+    const uint32_t *order;
+    uint32_t n;
+    uint32_t *at;     // by value: the place in the order that makes it, or none
+    uint64_t *sign;   // by place: what must repeat
+    uint32_t *again;  // by place: the next one whose window has the same hash, or none
+    bool *is_swapped; // by place, see ct_repetition_argument
+    struct ct_repetition *repetition;
+    size_t nrepetition, repetition_cap;
+    uint32_t *repetition_of; // the stretch of a place, or none
+    uint32_t *output;        // by value: 1 + the first output that it is, or 0
+};
+
+// A result of a repeat that is put where the row before its first or behind its last one would be.
+struct ct_repetition_edge {
+    int32_t row;
+    uint32_t value;
+    uint32_t next;  // 1 + index of the next one of the instruction
+    uint32_t asker; // the repeat that needs it first
+};
+
+// A sequence of operands that is copied to places of its own.
+struct ct_repetition_column {
+    uint32_t operand; // 3 slot + k that it is the sequence of
+    bool is_copied;   // in each evaluation
+    bool is_number;   // constants: one double for all lanes
+    uint32_t at;      // among those of its kind
+};
+
+// How an operand is reached, before places are known.
+struct ct_source {
+    enum {
+        CT_SOURCE_OPEN, // not known yet
+        CT_SOURCE_ROW,
+        CT_SOURCE_FIXED,
+        CT_SOURCE_INPUTS,
+        CT_SOURCE_RESULTS,
+        CT_SOURCE_COLUMN
+    } kind;
+    uint32_t
+        at; // instruction of the body; value; input at row 0; instruction of the other body; column
+    uint32_t other; // CT_SOURCE_RESULTS: repeat
+    int32_t row,
+        step; // CT_SOURCE_RESULTS: its row at row 0, rows per row; CT_SOURCE_INPUTS: step is the stride
+};
+
+// Where a result that leaves its row is kept: row by row; one strip of rows; one place for all rows, as the next row is
+// done with it before it has its own; in the output that it is, out_stride from row to row.
+enum ct_keep { CT_KEEP_ROWS, CT_KEEP_STRIP, CT_KEEP_PLACE, CT_KEEP_OUT };
+
+struct ct_repetition_stream {
+    int kind;
+    uint32_t other;
+    int32_t step;
+};
+
+struct ct_repetition {
+    uint32_t first, period, count;
+    uint32_t ncut, whole_first, whole_count; // before it was cut
+    bool is_dropped;
+    struct ct_source *reach; // (3 x period)
+    bool *escapes;           // (period) read beyond its row, or by another part of it
+    bool *escapes_far;       // (period) read by another stretch, row by row
+    uint32_t *least_row;     // (period) the first one that others read
+    uint32_t *edge_of;       // (period) 1 + the first edge
+    struct ct_repetition_edge *edge;
+    size_t nedge, edge_cap;
+    struct ct_repetition_column *column;
+    size_t ncolumn, column_cap;
+    struct ct_repetition_stream stream[CT_REROLL_STREAMS];
+    int nstream;
+    int32_t before, behind;           // rows for edges
+    uint32_t keep_first, keep_behind; // see leave_ends
+
+    // rows side by side, see choose_lanes
+    bool is_side_by_side;
+    unsigned char *part; // (period) the loop that it is in; npart - 1: one row at a time
+    uint32_t npart, nlate;
+
+    // places
+    uint32_t origin;                  // place of row 0
+    enum ct_keep *keep;               // (period)
+    uint32_t *offset;                 // (period) number of the result, or output of row 0
+    int32_t *out_stride;              // (period)
+    uint32_t row_stride, slot_stride; // places between rows, between results
+    uint32_t nresult;
+    uint32_t strip; // rows, 0: all
+    uint32_t local_origin, local_stride, nlocal;
+    uint32_t passed_origin, npassed;
+    uint32_t number_origin,
+        nnumber; // columns of constants, one double for all lanes: the first one of row 0; of a row
+};
+
+static inline const struct ct_instruction *
+ct_repetition_instruction(const struct ct_repetitions *p, uint32_t place)
+{
+    return &p->l->ins[p->order[place]];
+}
+
+/// Operand k of what is at a place. The first two of sums and products are taken in an order of their own: the store sorts
+/// them by age, so that a constant that something else has made before comes first in one row and second in another.
+static inline uint32_t ct_repetition_operand(const struct ct_repetitions *p, uint32_t place,
+                                             uint32_t k)
+{
+    return ct_repetition_instruction(p, place)->arg[k < 2 && p->is_swapped[place] ? 1 - k : k];
+}
+
+/// Operand 3 slot + k of a row.
+static inline uint32_t ct_repetition_argument(const struct ct_repetitions *p,
+                                              const struct ct_repetition *r, uint32_t row,
+                                              uint32_t operand)
+{
+    return ct_repetition_operand(p, r->first + row * r->period + operand / 3, operand % 3);
+}
+
+/// The stretch that makes v, with its row and instruction; NULL if none does.
+static inline struct ct_repetition *ct_repetition_of(const struct ct_repetitions *p, uint32_t v,
+                                                     int32_t *row, uint32_t *slot)
+{
+    const uint32_t at = p->at[v];
+    if (at == CT_VALUE_NONE || p->repetition_of[at] == CT_VALUE_NONE)
+        return NULL;
+    struct ct_repetition *r = &p->repetition[p->repetition_of[at]];
+    *row = (int32_t)((at - r->first) / r->period);
+    *slot = (at - r->first) % r->period;
+    return r;
+}
+
+enum { CT_LEAST_ROWS = 4 };
+
+/// All of them, ascending. is_alone, rows: those of ct_reroll_find.
+void ct_repetitions_find(struct ct_repetitions *p, const bool is_alone[CT_NKIND],
+                         uint32_t rows);
+/// Places of all results that need some, and the loops. Arguments as those of ct_reroll_find.
+void ct_repetition_lay_out(struct ct_repetitions *p, uint32_t rows, uint32_t lanes,
+                           struct ct_reroll *out);
+
+#endif

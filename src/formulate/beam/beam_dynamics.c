@@ -1,0 +1,517 @@
+// Dynamics of flexible bodies; see flexible_body.h. How integrals over a beam are taken is in inertia_points.c and
+// inertia_exact.c, its stiffness in stiffness.c.
+//
+// Everything is written in the beam's axes; the base's motion is turned into them once.
+#include "formulate/beam/beam_dynamics.h"
+#include "formulate/dynamics/small_motion.h"
+
+#include <string.h>
+
+static const ct_ex3 zero3 = {{{0}, {0}, {0}}};
+
+// ---- the base -----------------------------------------------------------------------------------------
+
+// Ground components <-> axes of the beam.
+static ct_ex3 into(struct ct_build *b, const struct ct_flexible *f, ct_ex3 v)
+{
+    return ct_node_unturn(b, f->base, v);
+}
+
+static ct_ex3 out_of(struct ct_build *b, const struct ct_flexible *f, ct_ex3 v)
+{
+    return ct_node_turn(b, f->base, v);
+}
+
+// Angular rates summed in the cluster's own axes, where the axes of its turns are fixed in it and it turns
+// against ground; in a plane they stay along the normal.
+static bool plain_rates(struct ct_build *b, const struct ct_node_placement *p,
+                        enum ct_level level, struct ct_base *out)
+{
+    struct ct_exs *x = b->x;
+    ct_ex3 w, al;
+    if (b->is_planar) {
+        out->w = ct_ex33_apply_t(x, &p->S, ct_cluster_velocity(b, p->frame));
+        out->al = ct_ex33_apply_t(x, &p->S, ct_cluster_acceleration(b, p->frame, level));
+        return true;
+    }
+    if (!ct_cluster_own_rates(b, p->frame, level, &w, &al))
+        return false;
+    out->w = ct_ex33_apply_t(x, &p->S, w);
+    out->al = ct_ex33_apply_t(x, &p->S, al);
+    return true;
+}
+
+static struct ct_base base_motion(struct ct_build *b, const struct ct_flexible *f,
+                                  enum ct_level level, ct_ex3 apparent)
+{
+    const struct ct_node_placement *p = &b->placement[f->base];
+    struct ct_base m = {.a = into(b, f, apparent)};
+    if (!plain_rates(b, p, level, &m)) {
+        m.w = into(b, f, ct_cluster_velocity(b, p->frame));
+        m.al = into(b, f, ct_cluster_acceleration(b, p->frame, level));
+    }
+    return m;
+}
+
+struct ct_base ct_flexible_base(struct ct_build *b, const struct ct_flexible *f,
+                                enum ct_level level)
+{
+    const ct_ex3 a = ct_node_acceleration(b, f->base, level);
+    return base_motion(b, f, level, ct_ex3_sub(b->x, a, b->model->gravity));
+}
+
+void ct_flexible_base_motion(struct ct_build *b, const struct ct_flexible *f, ct_ex3 out[3])
+{
+    out[0] = base_motion(b, f, CT_FULL, zero3).w;
+    out[1] = into(b, f, ct_node_velocity(b, f->base));
+    out[2] = into(b, f, b->model->gravity);
+}
+
+// al~ + w~ w~
+ct_ex33 ct_base_turning(struct ct_build *b, const struct ct_base *m)
+{
+    struct ct_exs *x = b->x;
+    ct_ex33 Om;
+    ct_ex square[3];
+    for (int i = 0; i < 3; i++)
+        square[i] = ct_ex_mul(x, m->w.e[i], m->w.e[i]);
+    for (int i = 0; i < 3; i++) {
+        const int j = (i + 1) % 3, k = (i + 2) % 3;
+        const ct_ex both = ct_ex_mul(x, m->w.e[i], m->w.e[j]);
+        Om.e[4 * i] = ct_ex_neg(x, ct_ex_add(x, square[j], square[k]));
+        Om.e[i + 3 * j] = ct_ex_sub(x, both, m->al.e[k]);
+        Om.e[j + 3 * i] = ct_ex_add(x, both, m->al.e[k]);
+    }
+    return Om;
+}
+
+ct_ex3 ct_twice_cross(struct ct_build *b, ct_ex3 w, ct_ex3 v)
+{
+    return ct_ex3_scale(b->x, ct_ex_const(b->x, 2), ct_ex3_cross(b->x, w, v));
+}
+
+ct_ex *ct_chain_accelerations(struct ct_build *b, const struct ct_flexible *f)
+{
+    if (f->kinematics != CT_AXIAL_CHAIN)
+        return NULL;
+    ct_ex *c = CT_NEWN(b->arena, ct_ex, f->beam->nelement + 1);
+    for (int e = 0; e < f->beam->nelement; e++) {
+        c[e + 1] = c[e];
+        for (int j = 2; j < CT_BENT_DOF; j++)
+            c[e + 1]
+                = ct_ex_add(b->x, c[e + 1],
+                            ct_ex_mul(b->x, f->element[e].g[j], f->element[e].acceleration[j]));
+    }
+    return c;
+}
+
+// ---- lumping ---------------------------------------------------------------------------------------------
+
+void ct_flexible_lump(struct ct_build *b)
+{
+    for (size_t i = 0; i < b->nflexible; i++) {
+        struct ct_flexible *f = &b->flexible[i];
+        const struct ct_node_placement *p = &b->placement[f->base];
+        f->inertia = CT_NEW(b->arena, struct ct_inertia);
+        f->inertia->mass = b->model->body[f->body].mass;
+        f->inertia->method = f->axial == CT_AXIAL_LINEAR   ? &ct_inertia_exact
+                           : ct_inertia_has_legendre(b, f) ? &ct_inertia_legendre
+                                                           : &ct_inertia_points;
+        f->inertia->method->derive(b, f);
+        const struct ct_inertia *I = f->inertia;
+        const ct_ex33 t = ct_ex33_transpose(&p->S), half = ct_ex33_mul(b->x, &I->inertia, &t);
+        const ct_ex33 turned = ct_ex33_mul(b->x, &p->S, &half);
+        ct_augmented_bodies_add(b, p->anchor, p->frame, I->mass,
+                                ct_ex33_apply(b->x, &p->S, I->moment), &turned);
+    }
+}
+
+// ---- handing over to elastic coordinates ----------------------------------------------------------
+
+void ct_dof_push(struct ct_build *b, const struct ct_flexible *f, int e, int j, ct_ex value,
+                 ct_ex *by_freedom)
+{
+    int sign;
+    if (!ct_dof_freedom(f, e, j, &sign))
+        return;
+    ct_ex *sum = &by_freedom[f->element[e].freedom[j]];
+    *sum = sign > 0 ? ct_ex_add(b->x, *sum, value) : ct_ex_sub(b->x, *sum, value);
+}
+
+void ct_flexible_rows(struct ct_build *b, const struct ct_flexible *f, const struct ct_base *m,
+                      enum ct_level level, ct_ex *row)
+{
+    const int n = CT_NODE_FREEDOM * (f->beam->nelement + 1);
+    ct_ex *force = CT_NEWN(b->ctx->scratch, ct_ex, n);
+    f->inertia->method->rows(b, f, m, level, force);
+    ct_stiffness_rows(b, f, force);
+    if (f->condensation)
+        ct_condensation_forces(b->x, f->condensation, force);
+    for (int i = 0; i < n; i++)
+        for (int p = 0; p < f->freedom[i].npart; p++) {
+            ct_ex *r = &row[f->elastic[f->freedom[i].part[p].k].u];
+            *r = ct_ex_add(b->x, *r, ct_ex_mul(b->x, f->freedom[i].part[p].coef, force[i]));
+        }
+}
+
+void ct_dof_push_pair(struct ct_build *b, const struct ct_flexible *f, int e, int j, int g,
+                      int k, ct_ex value, ct_ex *M)
+{
+    int sj, sk;
+    const struct ct_freedom *p = ct_dof_freedom(f, e, j, &sj),
+                            *q = ct_dof_freedom(f, g, k, &sk);
+    if (!p || !q || ct_ex_is_zero(value))
+        return;
+    for (int i = 0; i < p->npart; i++)
+        for (int l = 0; l < q->npart; l++) {
+            const int row = f->elastic[p->part[i].k].u, column = f->elastic[q->part[l].k].u;
+            const ct_ex c = ct_ex_mul(b->x, p->part[i].coef, q->part[l].coef);
+            ct_ex v = ct_ex_mul(b->x, c, value);
+            if (row < column)
+                continue; // the transposed pair is pushed, too
+            v = sj == sk ? v : ct_ex_neg(b->x, v);
+            ct_ex *m = &M[(size_t)row + b->eqs->nu * (size_t)column];
+            *m = ct_ex_add(b->x, *m, v);
+        }
+}
+
+void ct_dof_push_column(struct ct_build *b, const struct ct_flexible *f, int e, int j,
+                        ct_ex3 moved, ct_ex3 swept, struct ct_columns *out)
+{
+    int sign;
+    const struct ct_freedom *d = ct_dof_freedom(f, e, j, &sign);
+    for (int i = 0; d && i < d->npart; i++) {
+        const int k = d->part[i].k;
+        const ct_ex c = sign > 0 ? d->part[i].coef : ct_ex_neg(b->x, d->part[i].coef);
+        out->moved[k] = ct_ex3_add(b->x, out->moved[k], ct_ex3_scale(b->x, c, moved));
+        out->swept[k] = ct_ex3_add(b->x, out->swept[k], ct_ex3_scale(b->x, c, swept));
+    }
+}
+
+struct ct_base ct_flexible_felt(struct ct_build *b, const struct ct_flexible *f,
+                                const struct ct_base *m, ct_ex3 *force, ct_ex3 *torque)
+{
+    struct ct_base felt = *m;
+    *force = *torque = zero3;
+    if (!f->beam->lacks_quadratic)
+        return felt;
+    struct ct_exs *x = b->x;
+    *force = ct_ex3_cross(x, m->w, ct_ex3_cross(x, m->w, f->inertia->moment));
+    *torque = ct_ex3_cross(x, m->w, ct_ex33_apply(x, &f->inertia->inertia, m->w));
+    felt.w = zero3;
+    return felt;
+}
+
+// ---- sweep --------------------------------------------------------------------------------------------------
+
+void ct_flexible_sweep(struct ct_build *b, enum ct_level level, const ct_ex3 *apparent,
+                       ct_ex3 *rest, ct_ex3 *torque, ct_ex *row)
+{
+    struct ct_exs *x = b->x;
+    for (size_t i = 0; i < b->nflexible; i++) {
+        const struct ct_flexible *f = &b->flexible[i];
+        const struct ct_node_placement *p = &b->placement[f->base];
+        const struct ct_base m = base_motion(b, f, level, apparent[p->anchor]);
+        ct_ex3 F, T, lessF, lessT;
+        const struct ct_base felt = ct_flexible_felt(b, f, &m, &lessF, &lessT);
+        f->inertia->method->wrench(b, f, &felt, level, &F, &T);
+        F = ct_ex3_sub(x, F, lessF);
+        T = ct_ex3_sub(x, T, lessT);
+        rest[p->anchor] = ct_ex3_add(x, rest[p->anchor], out_of(b, f, F));
+        torque[p->frame] = ct_ex3_add(x, torque[p->frame], out_of(b, f, T));
+        ct_flexible_rows(b, f, &felt, level, row);
+    }
+}
+
+void ct_flexible_wrench(struct ct_build *b, const struct ct_flexible *f, ct_ex3 *force,
+                        ct_ex3 *torque)
+{
+    struct ct_exs *x = b->x;
+    const struct ct_inertia *I = f->inertia;
+    const ct_ex3 a
+        = ct_ex3_sub(x, ct_node_acceleration(b, f->base, CT_FULL), b->model->gravity);
+    const struct ct_base moved = base_motion(b, f, CT_FULL, a);
+    ct_ex3 F, T;
+    const struct ct_base m = ct_flexible_felt(b, f, &moved, &F, &T);
+    f->inertia->method->wrench(b, f, &m, CT_FULL, &F, &T);
+    F = ct_ex3_add(x, F, ct_ex3_scale(x, I->mass, m.a));
+    F = ct_ex3_add(x, F, ct_ex3_cross(x, m.al, I->moment));
+    F = ct_ex3_add(x, F, ct_ex3_cross(x, m.w, ct_ex3_cross(x, m.w, I->moment)));
+    T = ct_ex3_add(x, T, ct_ex3_cross(x, I->moment, m.a));
+    T = ct_ex3_add(x, T, ct_ex33_apply(x, &I->inertia, m.al));
+    T = ct_ex3_add(x, T, ct_ex3_cross(x, m.w, ct_ex33_apply(x, &I->inertia, m.w)));
+    *force = out_of(b, f, F);
+    *torque = out_of(b, f, T);
+}
+
+// ---- motion --------------------------------------------------------------------------------------------------
+
+struct ct_flexible_state ct_flexible_moving(struct ct_build *b, const struct ct_flexible *f)
+{
+    struct ct_exs *x = b->x;
+    const struct ct_inertia *I = f->inertia;
+    const struct ct_base m = base_motion(b, f, CT_BIAS, zero3);
+    const ct_ex3 v = into(b, f, ct_node_velocity(b, f->base));
+    struct ct_relative r = {zero3, zero3, CT_EX_ZERO};
+    I->method->moving(b, f, &r);
+    const ct_ex3 momentum = ct_ex3_add(x, ct_ex3_cross(x, m.w, I->moment), r.momentum);
+    const ct_ex3 Iw = ct_ex33_apply(x, &I->inertia, m.w);
+    ct_ex twice = ct_ex_add(x, r.twice_kinetic, ct_ex_mul(x, I->mass, ct_ex3_dot(x, v, v)));
+    twice = ct_ex_add(x, twice, ct_ex_scale(x, 2, ct_ex3_dot(x, v, momentum)));
+    twice = ct_ex_add(x, twice, ct_ex3_dot(x, m.w, Iw));
+    twice = ct_ex_add(x, twice, ct_ex_scale(x, 2, ct_ex3_dot(x, m.w, r.angular_momentum)));
+    const ct_ex3 spin
+        = ct_ex3_add(x, ct_ex3_add(x, r.angular_momentum, Iw), ct_ex3_cross(x, I->moment, v));
+    const ct_ex3 whole = ct_ex3_add(x, momentum, ct_ex3_scale(x, I->mass, v));
+    return (struct ct_flexible_state){.mass = I->mass,
+                                      .moment = out_of(b, f, I->moment),
+                                      .momentum = out_of(b, f, whole),
+                                      .angular_momentum = out_of(b, f, spin),
+                                      .twice_kinetic = twice};
+}
+
+// ---- mass matrix ------------------------------------------------------------------------------------------------
+
+// c p times p: of bending dofs alone.
+void ct_element_close(struct ct_exs *x, struct ct_element_sums *s)
+{
+    for (int k = 0; k < s->nsquare; k++)
+        for (int i = 2; i < CT_BENT_DOF; i++)
+            for (int j = 2; j <= i; j++)
+                s->M[i][j] = s->M[j][i]
+                    = ct_ex_add(x, s->M[i][j], ct_ex_mul(x, s->heavy[k][i], s->square[k][j]));
+    s->nsquare = 0;
+}
+
+// All of element e moves along with its start, the elastic coordinate k.
+static void mass_of_start(struct ct_build *b, const struct ct_flexible *f,
+                          const struct ct_element_sums *s, int e, struct ct_columns *out,
+                          ct_ex *M)
+{
+    struct ct_exs *x = b->x;
+    const int k = ct_flexible_start(f, e);
+    const struct ct_term own = {f->elastic[k].u, -1, CT_EX_ONE};
+    out->moved[k] = (ct_ex3){{s->m, CT_EX_ZERO, CT_EX_ZERO}};
+    out->swept[k] = (ct_ex3){{CT_EX_ZERO, s->moment.e[2], ct_ex_neg(x, s->moment.e[1])}};
+    ct_ex *self = &M[(size_t)own.speed * (b->eqs->nu + 1)];
+    *self = ct_ex_add(x, *self, s->m);
+    for (int j = 0; j < CT_DOF; j++) {
+        int sign;
+        const struct ct_freedom *d = ct_dof_freedom(f, e, j, &sign);
+        for (int p = 0; d && p < d->npart; p++) {
+            const struct ct_term dof = {f->elastic[d->part[p].k].u, -1, d->part[p].coef};
+            ct_mass_spread(b, M, &own, 1, &dof, 1, ct_ex_scale(x, sign, s->moved[j].e[0]));
+        }
+    }
+}
+
+// ---- where all coordinates are small ------------------------------------------------------------------------
+
+// What comes of the mass m beyond an element, of this first moment, which is drawn in by g of a dof.
+static void add_beyond(struct ct_exs *x, ct_ex g, ct_ex m, ct_ex3 moment, ct_ex3 *moved,
+                       ct_ex3 *swept)
+{
+    moved->e[0] = ct_ex_add(x, moved->e[0], ct_ex_mul(x, g, m));
+    swept->e[1] = ct_ex_add(x, swept->e[1], ct_ex_mul(x, g, moment.e[2]));
+    swept->e[2] = ct_ex_sub(x, swept->e[2], ct_ex_mul(x, g, moment.e[1]));
+}
+
+// Columns as forces on freedoms, those on rotations that follow handed on from node to node: the gradient of the momentum, at a cost in
+// proportion to the nodes, where sums for each coordinate would take their square.
+static void columns_by_freedom(struct ct_build *b, const struct ct_flexible *f,
+                               const struct ct_element_sums *s, struct ct_columns *out)
+{
+    struct ct_exs *x = b->x;
+    const int n = CT_NODE_FREEDOM * (f->beam->nelement + 1);
+    ct_ex *force[6], m = CT_EX_ZERO;
+    ct_ex3 moment = zero3;
+    for (int i = 0; i < 6; i++)
+        force[i] = CT_NEWN(b->ctx->scratch, ct_ex, n);
+    for (int e = f->beam->nelement; e-- > 0;) {
+        for (int j = 0; j < CT_DOF; j++) {
+            ct_ex3 moved = s[e].moved[j], swept = s[e].swept[j];
+            if (f->kinematics == CT_AXIAL_CHAIN && j < CT_AXIS_DOF)
+                add_beyond(x, f->element[e].g[j], m, moment, &moved, &swept);
+            for (int i = 0; i < 6; i++)
+                ct_dof_push(b, f, e, j, i < 3 ? moved.e[i] : swept.e[i - 3], force[i]);
+        }
+        m = ct_ex_add(x, m, s[e].m);
+        moment = ct_ex3_add(x, moment, s[e].moment);
+    }
+    for (int i = 0; i < 6; i++) {
+        if (f->condensation)
+            ct_condensation_forces(x, f->condensation, force[i]);
+        for (int k = 0; k < n; k++)
+            for (int p = 0; p < f->freedom[k].npart && !ct_ex_is_zero(force[i][k]); p++) {
+                const struct ct_part *part = &f->freedom[k].part[p];
+                ct_ex *sum = i < 3 ? &out->moved[part->k].e[i] : &out->swept[part->k].e[i - 3];
+                *sum = ct_ex_add_product(x, *sum, part->coef, force[i][k]);
+            }
+    }
+}
+
+// Entries between the coordinates at rest: those of the straight beam, where rotations that follow have no inertia.
+static void mass_at_rest(struct ct_build *b, const struct ct_flexible *f,
+                         const struct ct_element_sums *s, ct_ex *M)
+{
+    const size_t n = (size_t)f->nelastic, nelement = (size_t)f->beam->nelement;
+    ct_ex *symbol = CT_NEWN(b->ctx->scratch, ct_ex, n + 1),
+          *zero = CT_NEWN(b->ctx->scratch, ct_ex, n + 1),
+          *all = CT_NEWN(b->ctx->scratch, ct_ex, nelement * CT_DOF * CT_DOF + 1);
+    for (size_t k = 0; k < n; k++)
+        symbol[k] = b->eqs->q[f->elastic[k].q].symbol;
+    for (size_t e = 0; e < nelement; e++)
+        memcpy(all + e * CT_DOF * CT_DOF, s[e].M, sizeof s[e].M);
+    ct_ex_subst_list(b->x, all, nelement * CT_DOF * CT_DOF, symbol, zero, n);
+    for (int e = 0; e < f->beam->nelement; e++)
+        for (int j = 0; j < CT_DOF; j++)
+            for (int k = 0; k < CT_DOF; k++)
+                ct_dof_push_pair(b, f, e, j, e, k, all[(e * CT_DOF + j) * CT_DOF + k], M);
+}
+
+// M and Q are cut to first order in the coordinates of f: of the entries between these those at rest are left.  (small_motion.h)
+static void small_mass(struct ct_build *b, const struct ct_flexible *f, struct ct_columns *out,
+                       ct_ex *M)
+{
+    struct ct_element_sums *s = f->inertia->method->sums(b, f);
+    columns_by_freedom(b, f, s, out);
+    for (int e = 0; e < f->beam->nelement; e++)
+        ct_element_close(b->x, &s[e]);
+    mass_at_rest(b, f, s, M);
+}
+
+// ---- of any size ----------------------------------------------------------------------------------------------
+
+// Elements from the tip inwards: with a CHAIN what lies beyond moves along with an element's bending, but for starts that
+// are coordinates.
+static void mass_of_sums(struct ct_build *b, const struct ct_flexible *f,
+                         struct ct_columns *out, ct_ex *M)
+{
+    struct ct_exs *x = b->x;
+    const bool chain = f->kinematics == CT_AXIAL_CHAIN && !f->nstart;
+    const int n = f->beam->nelement;
+    struct ct_element_sums *s = f->inertia->method->sums(b, f);
+    ct_ex m = CT_EX_ZERO;
+    ct_ex3 moment = zero3;
+    for (int e = n; e-- > 0;) {
+        const struct ct_element *self = &f->element[e];
+        ct_element_close(x, &s[e]);
+        for (int j = 0; j < CT_DOF; j++) {
+            const ct_ex g = chain && j < CT_AXIS_DOF ? self->g[j] : CT_EX_ZERO;
+            ct_ex3 moved = s[e].moved[j], swept = s[e].swept[j];
+            add_beyond(x, g, m, moment, &moved, &swept);
+            ct_dof_push_column(b, f, e, j, moved, swept, out);
+            for (int k = 0; k < CT_DOF; k++) {
+                const ct_ex gk = chain && k < CT_AXIS_DOF ? self->g[k] : CT_EX_ZERO;
+                const ct_ex v
+                    = ct_ex_add(x, s[e].M[j][k], ct_ex_mul(x, ct_ex_mul(x, g, gk), m));
+                ct_dof_push_pair(b, f, e, j, e, k, v, M);
+            }
+            for (int inner = 0; inner < e && chain; inner++)
+                for (int k = 2; k < CT_BENT_DOF; k++) {
+                    const ct_ex v = ct_ex_mul(x, f->element[inner].g[k], moved.e[0]);
+                    ct_dof_push_pair(b, f, e, j, inner, k, v, M);
+                    ct_dof_push_pair(b, f, inner, k, e, j, v, M);
+                }
+        }
+        if (f->nstart && e > 0)
+            mass_of_start(b, f, &s[e], e, out, M);
+        m = ct_ex_add(x, m, s[e].m);
+        moment = ct_ex3_add(x, moment, s[e].moment);
+    }
+}
+
+// Rows of the elastic coordinates in the column of a speed that moves the base: coef (p . moved + s . swept).
+static void base_column(struct ct_build *b, const struct ct_flexible *f,
+                        const struct ct_columns *c, ct_ex3 p, ct_ex3 s,
+                        const struct ct_term *term, int nterm, ct_ex *M)
+{
+    for (int k = 0; k < f->nelastic; k++) {
+        const ct_ex m = ct_ex_add(b->x, ct_ex3_dot(b->x, p, c->moved[k]),
+                                  ct_ex3_dot(b->x, s, c->swept[k]));
+        if (ct_ex_is_zero(m))
+            continue;
+        const struct ct_term own = {f->elastic[k].u, -1, CT_EX_ONE};
+        ct_mass_spread(b, M, &own, 1, term, nterm, m);
+    }
+}
+
+static bool has_unknown(const struct ct_term *p, int np)
+{
+    for (int i = 0; i < np; i++)
+        if (p[i].speed >= 0)
+            return true;
+    return false;
+}
+
+static void base_columns(struct ct_build *b, const struct ct_flexible *f,
+                         const struct ct_columns *c, ct_ex *M)
+{
+    struct ct_exs *x = b->x;
+    const struct ct_node_placement *at = &b->placement[f->base];
+    for (size_t r = 0; r < b->nrotation_axis; r++) {
+        const struct ct_rotation_axis *spin = &b->rotation_axis[r];
+        ct_ex3 reach = zero3, s = zero3;
+        if (!has_unknown(spin->term, spin->nterm))
+            continue;
+        for (int a = at->anchor; a > 0; a = b->anchor[a].parent)
+            if (ct_cluster_is_outboard(b, spin->cluster, b->anchor[a].cluster))
+                reach = ct_ex3_add(x, reach, ct_link_vector(b, a));
+        const ct_ex3 p
+            = ct_ex3_is_zero(reach)
+                ? zero3
+                : into(b, f, ct_ex3_cross(x, spin->axis, ct_build_in_plane(b, reach)));
+        if (ct_cluster_is_outboard(b, spin->cluster, at->frame)) {
+            if (spin->cluster == at->frame && !ct_ex3_is_zero(spin->local))
+                s = ct_ex33_apply_t(x, &at->S, spin->local);
+            else if (b->is_planar)
+                s = ct_ex33_apply_t(x, &at->S, spin->axis);
+            else
+                s = into(b, f, spin->axis);
+        }
+        base_column(b, f, c, p, s, spin->term, spin->nterm, M);
+    }
+    for (int a = at->anchor; a > 0; a = b->anchor[a].parent)
+        for (int k = 0; k < b->anchor[a].ntranslation_axis; k++) {
+            const struct ct_translation_axis *slide = &b->anchor[a].translation_axis[k];
+            const struct ct_term term = {slide->speed, slide->driver, CT_EX_ONE};
+            if (slide->speed < 0)
+                continue;
+            const ct_ex3 p = b->anchor[a].cluster == at->frame
+                               ? ct_ex33_apply_t(x, &at->S, slide->p)
+                               : into(b, f, ct_cluster_turn(b, b->anchor[a].cluster, slide->p));
+            base_column(b, f, c, p, zero3, &term, 1, M);
+        }
+}
+
+// Do slopes that follow, and so all coordinates, draw the axis of every element in?
+static bool draws_by_shapes(const struct ct_flexible *f)
+{
+    return f->condensation && f->kinematics == CT_AXIAL_CHAIN
+        && (f->beam->theory == CT_BEAM_EULER_BERNOULLI || f->beam->higher_order);
+}
+
+void ct_flexible_columns(struct ct_build *b, const struct ct_flexible *f,
+                         struct ct_columns *out, ct_ex *M)
+{
+    const struct ct_inertia_method *form = f->inertia->method;
+    if (form->mass)
+        form->mass(b, f, out, M);
+    else if (ct_small_motion_is_all_of(b, f) && ct_flexible_is_nodal(f))
+        small_mass(b, f, out, M);
+    else if (f->beam->modes || f->beam->nshape || draws_by_shapes(f))
+        ct_flexible_modal_mass(b, f, out, M);
+    else
+        mass_of_sums(b, f, out, M);
+}
+
+void ct_flexible_mass(struct ct_build *b, ct_ex *M)
+{
+    for (size_t i = 0; i < b->nflexible; i++) {
+        const struct ct_flexible *f = &b->flexible[i];
+        struct ct_columns c = {CT_NEWN(b->arena, ct_ex3, f->nelastic + 1),
+                               CT_NEWN(b->arena, ct_ex3, f->nelastic + 1)};
+        ct_flexible_columns(b, f, &c, M);
+        base_columns(b, f, &c, M);
+    }
+}

@@ -1,0 +1,146 @@
+// Mass matrix of a beam whose coordinates are shapes of all of it; see beam_dynamics.h.
+//
+// With C (dofs x shapes) of an element, M its matrix between dofs, and a CHAIN: mass m beyond it, g = dc/d dof, so that
+// gamma = C' g is what a shape draws in there,
+//
+//     M_shapes = sum_e C' M C + m gamma gamma' + gamma beta' + beta gamma',   beta = sum_beyond C' int mu dr_x + m gamma
+//
+// from the tip inwards. Going by pairs of dofs would take the square of the elements times that of the shapes.
+#include "formulate/beam/beam_dynamics.h"
+
+// Of an element: C, and of its shapes the sums that its dofs have; of those beyond it: beta.
+struct reduced {
+    ct_ex *C;            // CT_DOF x n, by rows
+    ct_ex *draw, *along; // gamma, beta
+    ct_ex3 *moved, *swept;
+};
+
+static void find_shares(struct ct_build *b, const struct ct_flexible *f, int e, ct_ex *C)
+{
+    const int n = f->nelastic;
+    for (int j = 0; j < CT_DOF; j++) {
+        int sign;
+        const struct ct_freedom *d = ct_dof_freedom(f, e, j, &sign);
+        for (int k = 0; k < n; k++)
+            C[j * n + k] = CT_EX_ZERO;
+        for (int p = 0; d && p < d->npart; p++)
+            C[j * n + d->part[p].k]
+                = sign > 0 ? d->part[p].coef : ct_ex_neg(b->x, d->part[p].coef);
+    }
+}
+
+static bool is_fixed(const struct ct_exs *x, ct_ex e)
+{
+    return !(ct_ex_kinds(x, e) & ~(1u << CT_SYM_PARAM));
+}
+
+// C' M C onto the lower triangle, M C first: of what stays the same all along, or of what does not.
+static void add_element(struct ct_build *b, const struct ct_flexible *f, const ct_ex *C,
+                        const struct ct_element_sums *s, bool fixed, ct_ex *M)
+{
+    struct ct_exs *x = b->x;
+    const int n = f->nelastic;
+    for (int k = 0; k < n; k++) {
+        ct_ex MC[CT_DOF] = {{0}};
+        for (int j = 0; j < CT_DOF; j++)
+            for (int l = 0; l < CT_DOF; l++)
+                if (is_fixed(x, s->M[j][l]) == fixed)
+                    MC[j] = ct_ex_add(x, MC[j], ct_ex_mul(x, s->M[j][l], C[l * n + k]));
+        for (int i = k; i < n; i++)
+            for (int j = 0; j < CT_DOF; j++)
+                M[i + n * k] = ct_ex_add(x, M[i + n * k], ct_ex_mul(x, C[j * n + i], MC[j]));
+    }
+}
+
+// What the sums keep as squares. p: n
+static void add_squares(struct ct_build *b, const struct ct_flexible *f, const ct_ex *C,
+                        const struct ct_element_sums *s, ct_ex *p, ct_ex *M)
+{
+    struct ct_exs *x = b->x;
+    const int n = f->nelastic;
+    for (int q = 0; q < s->nsquare; q++) {
+        for (int k = 0; k < n; k++) {
+            p[k] = CT_EX_ZERO;
+            for (int j = 2; j < CT_BENT_DOF; j++)
+                p[k] = ct_ex_add(x, p[k], ct_ex_mul(x, C[j * n + k], s->square[q][j]));
+        }
+        for (int k = 0; k < n; k++) {
+            const ct_ex heavy = ct_ex_mul(x, s->weight[q], p[k]);
+            for (int i = k; i < n; i++)
+                M[i + n * k] = ct_ex_add(x, M[i + n * k], ct_ex_mul(x, heavy, p[i]));
+        }
+    }
+}
+
+static void reduce(struct ct_build *b, const struct ct_flexible *f, int e,
+                   const struct ct_element_sums *s, struct reduced *r)
+{
+    struct ct_exs *x = b->x;
+    const int n = f->nelastic;
+    find_shares(b, f, e, r->C);
+    for (int k = 0; k < n; k++) {
+        r->draw[k] = CT_EX_ZERO;
+        r->moved[k] = r->swept[k] = (ct_ex3){{CT_EX_ZERO, CT_EX_ZERO, CT_EX_ZERO}};
+        for (int j = 0; j < CT_DOF; j++) {
+            const ct_ex c = r->C[j * n + k];
+            r->moved[k] = ct_ex3_add(x, r->moved[k], ct_ex3_scale(x, c, s->moved[j]));
+            r->swept[k] = ct_ex3_add(x, r->swept[k], ct_ex3_scale(x, c, s->swept[j]));
+            if (f->kinematics == CT_AXIAL_CHAIN && j < CT_AXIS_DOF)
+                r->draw[k] = ct_ex_add(x, r->draw[k], ct_ex_mul(x, c, f->element[e].g[j]));
+        }
+    }
+}
+
+// What lies beyond the element, of this mass and moment, is drawn in by its shapes.
+static void add_beyond(struct ct_build *b, const struct ct_flexible *f, struct reduced *r,
+                       ct_ex m, ct_ex3 moment, ct_ex *M)
+{
+    struct ct_exs *x = b->x;
+    const int n = f->nelastic;
+    for (int k = 0; k < n; k++)
+        for (int i = k; i < n; i++) {
+            ct_ex v = ct_ex_mul(x, r->draw[i], ct_ex_mul(x, r->draw[k], m));
+            v = ct_ex_add(x, v, ct_ex_mul(x, r->draw[i], r->along[k]));
+            v = ct_ex_add(x, v, ct_ex_mul(x, r->along[i], r->draw[k]));
+            M[i + n * k] = ct_ex_add(x, M[i + n * k], v);
+        }
+    for (int k = 0; k < n; k++) {
+        const ct_ex3 about = {{CT_EX_ZERO, moment.e[2], ct_ex_neg(x, moment.e[1])}};
+        r->moved[k].e[0] = ct_ex_add(x, r->moved[k].e[0], ct_ex_mul(x, r->draw[k], m));
+        r->along[k] = ct_ex_add(x, r->along[k], r->moved[k].e[0]);
+        r->swept[k] = ct_ex3_add(x, r->swept[k], ct_ex3_scale(x, r->draw[k], about));
+    }
+}
+
+void ct_flexible_modal_mass(struct ct_build *b, const struct ct_flexible *f,
+                            struct ct_columns *out, ct_ex *M)
+{
+    struct ct_exs *x = b->x;
+    const int n = f->nelastic;
+    const struct ct_element_sums *s = f->inertia->method->sums(b, f);
+    struct reduced r = {CT_NEWN(b->arena, ct_ex, CT_DOF * n), CT_NEWN(b->arena, ct_ex, n),
+                        CT_NEWN(b->arena, ct_ex, n), CT_NEWN(b->arena, ct_ex3, n),
+                        CT_NEWN(b->arena, ct_ex3, n)};
+    ct_ex *own = CT_NEWN(b->arena, ct_ex, n * n), *fixed = CT_NEWN(b->arena, ct_ex, n * n),
+          *p = CT_NEWN(b->arena, ct_ex, n), m = CT_EX_ZERO;
+    ct_ex3 moment = {{CT_EX_ZERO, CT_EX_ZERO, CT_EX_ZERO}};
+    for (int e = f->beam->nelement; e-- > 0;) {
+        reduce(b, f, e, &s[e], &r);
+        add_element(b, f, r.C, &s[e], true, fixed);
+        add_element(b, f, r.C, &s[e], false, own);
+        add_squares(b, f, r.C, &s[e], p, own);
+        add_beyond(b, f, &r, m, moment, own);
+        for (int k = 0; k < n; k++) {
+            out->moved[k] = ct_ex3_add(x, out->moved[k], r.moved[k]);
+            out->swept[k] = ct_ex3_add(x, out->swept[k], r.swept[k]);
+        }
+        m = ct_ex_add(x, m, s[e].m);
+        moment = ct_ex3_add(x, moment, s[e].moment);
+    }
+    for (int k = 0; k < n; k++)
+        for (int i = k; i < n; i++) {
+            const int u = f->elastic[i].u, v = f->elastic[k].u;
+            ct_ex *entry = &M[(size_t)(u > v ? u : v) + b->eqs->nu * (size_t)(u > v ? v : u)];
+            *entry = ct_ex_add(x, *entry, ct_ex_add(x, fixed[i + n * k], own[i + n * k]));
+        }
+}

@@ -1,0 +1,274 @@
+// See composite_sums.h.
+#include "formulate/dynamics/composite_sums.h"
+
+#include "formulate/dynamics/dynamics.h"
+
+static const ct_ex3 zero3 = {{{0}, {0}, {0}}};
+
+static size_t at(const struct ct_composite_sums *s, int anchor, int cluster)
+{
+    return (size_t)anchor + s->b->nanchor * (size_t)cluster;
+}
+
+ct_ex3 ct_composite_sums_body_moment(struct ct_composite_sums *s, int star)
+{
+    if (!s->has_moment[star])
+        s->moment[star] = ct_cluster_turn(s->b, s->b->augmented_body[star].cluster,
+                                          s->b->augmented_body[star].moment);
+    s->has_moment[star] = true;
+    return s->moment[star];
+}
+
+bool ct_composite_sums_turns_with(const struct ct_composite_sums *s, int cluster,
+                                  int star_cluster)
+{
+    return ct_cluster_is_outboard(s->b, cluster, star_cluster);
+}
+
+ct_ex3 ct_composite_sums_link(struct ct_composite_sums *s, int anchor)
+{
+    return ct_build_in_plane(s->b, ct_link_vector(s->b, anchor));
+}
+
+// A augmented body counts if a turn of it accelerates anything: by its first moment or through a link.
+static bool is_felt(const struct ct_build *b, const struct ct_augmented_body *s)
+{
+    for (int k = 0; k < s->nchild; k++)
+        if (!ct_ex_is_zero(b->anchor[b->child[s->first_child + k]].mass))
+            return true;
+    return !ct_ex3_is_zero(s->moment);
+}
+
+static void count_augmented_bodies(struct ct_composite_sums *s)
+{
+    const struct ct_build *b = s->b;
+    for (size_t i = 0; i < b->nanchor; i++)
+        s->first[i] = -1;
+    for (size_t i = b->naugmented_body; i-- > 0;) {
+        s->next[i] = s->first[b->augmented_body[i].anchor];
+        s->first[b->augmented_body[i].anchor] = (int)i;
+        if (!is_felt(b, &b->augmented_body[i]))
+            continue;
+        s->nstar[b->augmented_body[i].anchor]++;
+        for (int c = b->augmented_body[i].cluster; c > 0; c = b->cluster[c].parent)
+            s->nturning[at(s, b->augmented_body[i].anchor, c)]++;
+    }
+    for (size_t a = b->nanchor; a-- > 1;) {
+        s->nstar[b->anchor[a].parent] += s->nstar[a];
+        for (size_t c = 1; c < b->ncluster; c++)
+            s->nturning[at(s, b->anchor[a].parent, (int)c)]
+                += s->nturning[at(s, (int)a, (int)c)];
+    }
+}
+
+enum ct_turning ct_composite_sums_turning(const struct ct_composite_sums *s, int anchor,
+                                          int cluster)
+{
+    const int n = s->nturning[at(s, anchor, cluster)];
+    return !n ? CT_TURNS_NONE : n < s->nstar[anchor] ? CT_TURNS_SOME : CT_TURNS_ALL;
+}
+
+// The innermost anchor outboard of which everything turns with a cluster; if there is none, the outermost one
+// inboard of all that does.
+static void find_starts(struct ct_composite_sums *s)
+{
+    const struct ct_build *b = s->b;
+    for (size_t c = 0; c < b->ncluster; c++)
+        s->start[c] = -1;
+    for (size_t i = 0; i < b->naugmented_body; i++)
+        for (int c = b->augmented_body[i].cluster; c > 0 && is_felt(b, &b->augmented_body[i]);
+             c = b->cluster[c].parent) {
+            int other = b->augmented_body[i].anchor;
+            if (s->start[c] < 0)
+                s->start[c] = other;
+            while (s->start[c] != other) // numbers grow outwards
+                *(s->start[c] > other ? &s->start[c] : &other)
+                    = b->anchor[s->start[c] > other ? s->start[c] : other].parent;
+        }
+    for (size_t c = 1; c < b->ncluster; c++)
+        for (int a = s->start[c]; a >= 0; a = a ? b->anchor[a].parent : -1)
+            if (ct_composite_sums_turning(s, a, (int)c) == CT_TURNS_ALL)
+                s->start[c] = a;
+}
+
+ct_ex3 ct_composite_sums_reach(struct ct_composite_sums *s, int anchor, int cluster)
+{
+    const size_t i = at(s, anchor, cluster);
+    if (anchor == 0)
+        return zero3;
+    if (!s->has_g[i]) {
+        const struct ct_anchor *a = &s->b->anchor[anchor];
+        s->g[i] = ct_composite_sums_reach(s, a->parent, cluster);
+        if (ct_composite_sums_turns_with(s, cluster, a->cluster))
+            s->g[i] = ct_ex3_add(s->b->x, s->g[i], ct_composite_sums_link(s, anchor));
+        s->has_g[i] = true;
+    }
+    return s->g[i];
+}
+
+ct_ex3 ct_composite_sums_moment(struct ct_composite_sums *s, int anchor)
+{
+    struct ct_build *b = s->b;
+    if (!s->has_all[anchor]) {
+        ct_ex3 sum = zero3;
+        for (int i = s->first[anchor]; i >= 0; i = s->next[i]) {
+            sum = ct_ex3_add(b->x, sum, ct_composite_sums_body_moment(s, i));
+            for (int k = 0; k < b->augmented_body[i].nchild; k++)
+                sum = ct_ex3_add(b->x, sum,
+                                 ct_composite_sums_moment(
+                                     s, b->child[b->augmented_body[i].first_child + k]));
+        }
+        s->all[anchor] = sum;
+        s->has_all[anchor] = true;
+    }
+    return s->all[anchor];
+}
+
+ct_ex3 ct_composite_sums_moment_turning(struct ct_composite_sums *s, int anchor, int cluster)
+{
+    struct ct_build *b = s->b;
+    const size_t at_pair = at(s, anchor, cluster);
+    const enum ct_turning part = ct_composite_sums_turning(s, anchor, cluster);
+    if (part == CT_TURNS_NONE)
+        return zero3;
+    if (part == CT_TURNS_ALL)
+        return ct_composite_sums_moment(s, anchor);
+    if (!s->has_h[at_pair]) {
+        ct_ex3 sum = zero3;
+        for (int i = s->first[anchor]; i >= 0; i = s->next[i]) {
+            if (ct_composite_sums_turns_with(s, cluster, b->augmented_body[i].cluster))
+                sum = ct_ex3_add(b->x, sum, ct_composite_sums_body_moment(s, i));
+            for (int k = 0; k < b->augmented_body[i].nchild; k++)
+                sum = ct_ex3_add(
+                    b->x, sum,
+                    ct_composite_sums_moment_turning(
+                        s, b->child[b->augmented_body[i].first_child + k], cluster));
+        }
+        s->h[at_pair] = sum;
+        s->has_h[at_pair] = true;
+    }
+    return s->h[at_pair];
+}
+
+// ---- composite inertia ------------------------------------------------------------------------------
+
+static void add_tensor(struct ct_build *b, ct_ex33 *sum, const ct_ex33 *a)
+{
+    for (int i = 0; i < 9; i++)
+        sum->e[i] = ct_ex_add(b->x, sum->e[i], a->e[i]);
+}
+
+// d x (s x h) + h x (s x d) = [2 (d.h) 1 - d h' - h d'] s; planar: 2 (d.h), kept in the last entry.
+static ct_ex33 cross_inertia(struct ct_build *b, ct_ex3 d, ct_ex3 h)
+{
+    struct ct_exs *x = b->x;
+    const ct_ex twice = ct_ex_scale(x, 2, ct_ex3_dot(x, d, h));
+    ct_ex33 X = {{{0}}};
+    if (b->is_planar) {
+        X.e[8] = twice;
+        return X;
+    }
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j <= i; j++) {
+            const ct_ex both
+                = ct_ex_add(x, ct_ex_mul(x, d.e[i], h.e[j]), ct_ex_mul(x, h.e[i], d.e[j]));
+            const ct_ex v = i == j ? ct_ex_sub(x, twice, both) : ct_ex_neg(x, both);
+            X.e[i + 3 * j] = X.e[j + 3 * i] = v;
+        }
+    return X;
+}
+
+static const ct_ex33 *cross_descendants(struct ct_composite_sums *s, int anchor)
+{
+    struct ct_build *b = s->b;
+    if (!s->has_cross[anchor]) {
+        ct_ex33 sum = {{{0}}};
+        for (int i = s->first[anchor]; i >= 0; i = s->next[i])
+            for (int k = 0; k < b->augmented_body[i].nchild; k++) {
+                const int child = b->child[b->augmented_body[i].first_child + k];
+                const ct_ex33 X = cross_inertia(b, ct_composite_sums_link(s, child),
+                                                ct_composite_sums_moment(s, child));
+                add_tensor(b, &sum, cross_descendants(s, child));
+                add_tensor(b, &sum, &X);
+            }
+        s->cross[anchor] = sum;
+        s->has_cross[anchor] = true;
+    }
+    return &s->cross[anchor];
+}
+
+// Augmented inertia of a cluster in ground components; planar: about the normal, in the last entry.
+ct_ex33 ct_cluster_inertia(struct ct_build *b, int c)
+{
+    struct ct_exs *x = b->x;
+    const ct_ex33 *L = &b->cluster[c].L, *R = &b->cluster[c].R;
+    ct_ex33 out = {{{0}}};
+    if (b->is_planar) {
+        out.e[8] = ct_ex3_dot(x, b->plane[2], ct_ex33_apply(x, L, b->plane[2]));
+        return out;
+    }
+    const ct_ex33 half = ct_ex33_mul(x, R, L);
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j <= i; j++) {
+            const ct_ex3 row = {{half.e[i], half.e[i + 3], half.e[i + 6]}};
+            const ct_ex3 column = {{R->e[j], R->e[j + 3], R->e[j + 6]}};
+            out.e[i + 3 * j] = out.e[j + 3 * i] = ct_ex3_dot(x, row, column);
+        }
+    return out;
+}
+
+static void sum_inertias(struct ct_composite_sums *s)
+{
+    struct ct_build *b = s->b;
+    for (size_t c = b->ncluster; c-- > 1;) {
+        const ct_ex33 own = ct_cluster_inertia(b, (int)c);
+        add_tensor(b, &s->inertia[c], &s->descendants[c]);
+        add_tensor(b, &s->inertia[c], &own);
+        if (b->cluster[c].parent > 0)
+            add_tensor(b, &s->descendants[b->cluster[c].parent], &s->inertia[c]);
+    }
+}
+
+void ct_composite_sums_add_full(struct ct_composite_sums *s, int anchor, int cluster,
+                                ct_ex33 *sum)
+{
+    struct ct_build *b = s->b;
+    const enum ct_turning part = ct_composite_sums_turning(s, anchor, cluster);
+    if (part == CT_TURNS_NONE)
+        return;
+    if (part == CT_TURNS_ALL) {
+        add_tensor(b, sum, cross_descendants(s, anchor));
+        return;
+    }
+    for (int i = s->first[anchor]; i >= 0; i = s->next[i])
+        for (int k = 0; k < b->augmented_body[i].nchild; k++)
+            ct_composite_sums_add_full(s, b->child[b->augmented_body[i].first_child + k],
+                                       cluster, sum);
+}
+
+struct ct_composite_sums ct_composite_sums_create(struct ct_build *b)
+{
+    const size_t na = b->nanchor, nc = b->ncluster, ns = b->naugmented_body + 1;
+    struct ct_composite_sums s = {.b = b};
+    s.nstar = CT_NEWN(b->arena, int, na);
+    s.nturning = CT_NEWN(b->arena, int, na *nc);
+    s.g = CT_NEWN(b->arena, ct_ex3, na * nc);
+    s.h = CT_NEWN(b->arena, ct_ex3, na * nc);
+    s.has_g = CT_NEWN(b->arena, bool, na *nc);
+    s.has_h = CT_NEWN(b->arena, bool, na *nc);
+    s.moment = CT_NEWN(b->arena, ct_ex3, ns);
+    s.has_moment = CT_NEWN(b->arena, bool, ns);
+    s.all = CT_NEWN(b->arena, ct_ex3, na);
+    s.has_all = CT_NEWN(b->arena, bool, na);
+    s.cross = CT_NEWN(b->arena, ct_ex33, na);
+    s.has_cross = CT_NEWN(b->arena, bool, na);
+    s.inertia = CT_NEWN(b->arena, ct_ex33, nc);
+    s.descendants = CT_NEWN(b->arena, ct_ex33, nc);
+    s.first = CT_NEWN(b->arena, int, na);
+    s.next = CT_NEWN(b->arena, int, ns);
+    s.start = CT_NEWN(b->arena, int, nc);
+    count_augmented_bodies(&s);
+    find_starts(&s);
+    sum_inertias(&s);
+    return s;
+}

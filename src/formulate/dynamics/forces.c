@@ -1,0 +1,435 @@
+// Forward accelerations and the reverse cutset sweep; loads; generalised forces.  (formulation 5.2)
+//
+// A link carries the force F = m a + what its outboard augmented bodies need to turn and slide; a cluster feels the
+// torque of its augmented bodies about their anchors. Summed from the leaves this is the cutset of each branch, and
+// its projection on the motion of the branch is a row of M u' - Q - J' lam.
+#include "formulate/beam/flexible_body.h"
+#include "formulate/kinematics/constraint_row.h"
+#include "formulate/outputs/signal.h"
+#include "formulate/dynamics/small_motion.h"
+
+#include <string.h>
+
+// ---- loads ----------------------------------------------------------------------------------------
+
+void ct_load_add(struct ct_build *b, const struct ct_load *load)
+{
+    CT_PUSH(b->arena, b->load, b->nload, b->load_cap, *load);
+}
+
+ct_ex3 ct_load_vector(struct ct_build *b, const struct ct_instance *self)
+{
+    const struct ct_value *value = ct_instance_value(self, "value");
+    const struct ct_value *in = ct_instance_value(self, "in");
+    ct_ex3 v;
+    for (int i = 0; i < 3; i++)
+        v.e[i] = ct_build_value(b, value->e[i]);
+    return in->given ? ct_node_turn(b, b->node_of_frame[in->frame], v) : v;
+}
+
+bool ct_vector_signal(const char *name, const char *property, ct_ex3 v, ct_ex *out)
+{
+    const size_t n = strlen(property);
+    if (strncmp(name, property, n) != 0 || name[n] != '.' || strlen(name) != n + 2
+        || name[n + 1] < 'x' || name[n + 1] > 'z')
+        return false;
+    *out = v.e[name[n + 1] - 'x'];
+    return true;
+}
+
+ct_ex ct_load_power(struct ct_build *b, int tail, int head, ct_ex3 force, ct_ex3 torque)
+{
+    struct ct_exs *x = b->x;
+    const int from = b->placement[tail].frame, to = b->placement[head].frame;
+    ct_ex3 v = ct_path_velocity(b, tail, head);
+    if (from)
+        v = ct_ex3_sub(x, v,
+                       ct_cluster_cross_velocity(b, from, ct_path_position(b, tail, head)));
+    return ct_ex_add(x, ct_ex3_dot(x, force, v),
+                     ct_ex3_dot(x, torque, ct_cluster_path_velocity(b, from, to)));
+}
+
+// ---- the sweep --------------------------------------------------------------------------------------
+
+struct work {
+    struct ct_build *b;
+    enum ct_level level;
+    ct_ex3 *rest;   // by anchor: force of all outboard beyond mass * acceleration of the anchor
+    ct_ex3 *torque; // by cluster
+    ct_ex3 *apparent; // by anchor: acceleration less gravity
+};
+
+// Applied force and torque at a node, taken off what the tree must supply.
+static void apply_at(struct work *w, int node, ct_ex3 force, ct_ex3 torque)
+{
+    struct ct_exs *x = w->b->x;
+    const struct ct_node_placement *p = &w->b->placement[node];
+    ct_ex3 *rest = &w->rest[p->anchor], *arm = &w->torque[p->cluster],
+           *own = &w->torque[p->frame];
+    *rest = ct_ex3_sub(x, *rest, force);
+    *arm = ct_ex3_sub(x, *arm,
+                      ct_ex3_cross(x, ct_cluster_turn(w->b, p->cluster, p->local), force));
+    *own = ct_ex3_sub(x, *own, torque);
+}
+
+// A pair of wrenches on the line through head.  (0.2)
+static void apply_pair(struct work *w, int tail, int head, ct_ex3 force, ct_ex3 torque,
+                       bool carried)
+{
+    struct ct_exs *x = w->b->x;
+    apply_at(w, head, force, torque);
+    if (tail == 0)
+        return;
+    ct_ex3 back = torque;
+    if (carried)
+        back = ct_ex3_add(x, back, ct_ex3_cross(x, ct_path_position(w->b, tail, head), force));
+    apply_at(w, tail, ct_ex3_neg(x, force), ct_ex3_neg(x, back));
+}
+
+static void apply_loads(struct work *w)
+{
+    struct ct_build *b = w->b;
+    for (size_t i = 0; i < b->nload; i++) {
+        const struct ct_load *l = &b->load[i];
+        apply_pair(w, l->tail, l->head, l->force, l->torque, !l->is_central);
+    }
+    if (w->level == CT_BIAS)
+        return;
+    for (size_t i = 0; i < b->nmultiplier_wrench; i++) {
+        const struct ct_multiplier_wrench *p = &b->multiplier_wrench[i];
+        const ct_ex lam = b->eqs->row[p->row].lam;
+        apply_pair(w, p->tail, p->head, ct_ex3_scale(b->x, lam, p->force),
+                   ct_ex3_scale(b->x, lam, p->torque), p->carried);
+    }
+}
+
+static void find_apparent(struct work *w)
+{
+    struct ct_build *b = w->b;
+    w->apparent[0] = ct_ex3_neg(b->x, b->model->gravity);
+    for (size_t a = 1; a < b->nanchor; a++)
+        w->apparent[a] = ct_ex3_add(b->x, w->apparent[b->anchor[a].parent],
+                                    ct_link_acceleration(b, (int)a, w->level));
+}
+
+// Rest of an anchor and the torques of its augmented bodies; anchors outboard are done.
+static void sweep_augmented_body(struct work *w, const struct ct_augmented_body *s)
+{
+    struct ct_build *b = w->b;
+    struct ct_exs *x = b->x;
+    const ct_ex3 moment = ct_cluster_turn(b, s->cluster, s->moment);
+    const ct_ex3 turning = ct_ex3_add(
+        x, ct_ex3_cross(x, ct_cluster_acceleration(b, s->cluster, w->level), moment),
+        ct_cluster_centripetal(b, s->cluster, moment));
+    ct_ex3 rest = turning;
+    ct_ex3 torque = ct_ex3_cross(x, moment, w->apparent[s->anchor]);
+    for (int k = 0; k < s->nchild; k++) {
+        const int child = b->child[s->first_child + k];
+        const ct_ex3 slide = ct_ex3_scale(x, b->anchor[child].mass,
+                                          ct_link_sliding_acceleration(b, child, w->level));
+        const ct_ex3 force = ct_ex3_add(x, w->rest[child], slide);
+        rest = ct_ex3_add(x, rest, force);
+        torque = ct_ex3_add(x, torque, ct_ex3_cross(x, ct_link_vector(b, child), force));
+    }
+    w->rest[s->anchor] = ct_ex3_add(x, w->rest[s->anchor], rest);
+    w->torque[s->cluster] = ct_ex3_add(x, w->torque[s->cluster], torque);
+}
+
+// I al + w x I w of a cluster's augmented inertia.
+static ct_ex3 inertia_torque(struct work *w, int c)
+{
+    struct ct_build *b = w->b;
+    struct ct_exs *x = b->x;
+    const ct_ex33 I = ct_cluster_inertia(b, c);
+    const ct_ex3 al = ct_cluster_acceleration(b, c, w->level);
+    if (b->is_planar)
+        return ct_ex3_scale(x, I.e[8], al);
+    const ct_ex3 omega = ct_cluster_velocity(b, c);
+    return ct_ex3_add(x, ct_ex33_apply(x, &I, al),
+                      ct_ex3_cross(x, omega, ct_ex33_apply(x, &I, omega)));
+}
+
+// The same in axes of the cluster, I constant: for clusters that turn against ground, where the rates are plain
+// and nobody further inboard asks for the torque. False where an axis is not fixed in the cluster.
+static bool local_inertia_torque(struct work *w, int c, ct_ex3 *torque)
+{
+    struct ct_build *b = w->b;
+    struct ct_exs *x = b->x;
+    const ct_ex33 *L = &b->cluster[c].L;
+    ct_ex3 omega, al;
+    if (b->is_planar || !ct_cluster_own_rates(b, c, w->level, &omega, &al))
+        return false;
+    *torque = ct_ex3_add(x, ct_ex33_apply(x, L, al),
+                         ct_ex3_cross(x, omega, ct_ex33_apply(x, L, omega)));
+    return true;
+}
+
+static void sweep_anchors(struct work *w)
+{
+    struct ct_build *b = w->b;
+    int *first = CT_NEWN(b->arena, int, b->nanchor),
+        *next = CT_NEWN(b->arena, int, b->naugmented_body + 1);
+    for (size_t i = 0; i < b->naugmented_body;
+         i++) { // chains end at 0: numbers are one too large
+        next[i] = first[b->augmented_body[i].anchor];
+        first[b->augmented_body[i].anchor] = (int)i + 1;
+    }
+    for (size_t a = b->nanchor; a-- > 0;)
+        for (int i = first[a]; i; i = next[i - 1])
+            sweep_augmented_body(w, &b->augmented_body[i - 1]);
+}
+
+const struct ct_sweep *ct_sweep_run(struct ct_build *b, enum ct_level level)
+{
+    if (b->sweep[level])
+        return b->sweep[level];
+    struct work w = {.b = b, .level = level};
+    ct_augmented_bodies_lump(b);
+    struct ct_sweep *s = CT_NEW(b->arena, struct ct_sweep);
+    w.rest = CT_NEWN(b->arena, ct_ex3, b->nanchor);
+    w.torque = s->torque = CT_NEWN(b->arena, ct_ex3, b->ncluster);
+    s->local = CT_NEWN(b->arena, ct_ex3, b->ncluster);
+    w.apparent = CT_NEWN(b->arena, ct_ex3, b->nanchor);
+    s->force = CT_NEWN(b->arena, ct_ex3, b->nanchor);
+    s->row = CT_NEWN(b->arena, ct_ex, b->eqs->nu + 1);
+    find_apparent(&w);
+    apply_loads(&w);
+    ct_flexible_sweep(b, level, w.apparent, w.rest, w.torque, s->row);
+    sweep_anchors(&w);
+    for (size_t c = b->ncluster; c-- > 1;) {
+        if (!local_inertia_torque(&w, (int)c, &s->local[c]))
+            w.torque[c] = ct_ex3_add(b->x, w.torque[c], inertia_torque(&w, (int)c));
+        const int parent = b->cluster[c].parent;
+        w.torque[parent] = ct_ex3_add(b->x, w.torque[parent], w.torque[c]);
+    }
+    for (size_t a = 1; a < b->nanchor; a++) {
+        const ct_ex3 inertia = ct_ex3_scale(b->x, b->anchor[a].mass, w.apparent[a]);
+        s->force[a] = ct_ex3_add(b->x, w.rest[a], inertia);
+    }
+    b->sweep[level] = s;
+    return s;
+}
+
+// ---- rows -----------------------------------------------------------------------------------------
+
+// Sum over the motion of a speed or a driver: s . torque and p . force.
+static ct_ex add_rotation_axis(struct ct_build *b, const struct ct_sweep *s, ct_ex sum,
+                               size_t r, const struct ct_term *t)
+{
+    struct ct_exs *x = b->x;
+    const int c = b->rotation_axis[r].cluster;
+    const ct_ex moment = ct_ex_add(x, ct_ex3_dot(x, b->rotation_axis[r].axis, s->torque[c]),
+                                   ct_ex3_dot(x, b->rotation_axis[r].local, s->local[c]));
+    return ct_ex_add(x, sum, ct_ex_mul(x, t->coef, moment));
+}
+
+static ct_ex add_translation_axis(struct ct_build *b, const struct ct_sweep *s, ct_ex sum,
+                                  size_t a, const struct ct_translation_axis *t)
+{
+    struct ct_exs *x = b->x;
+    const ct_ex3 p = ct_cluster_turn(b, b->anchor[a].cluster, t->p);
+    sum = ct_ex_add(x, sum, ct_ex3_dot(x, p, s->force[a]));
+    if (ct_ex3_is_zero(t->extra))
+        return sum;
+    const ct_ex3 extra = ct_cluster_turn(b, b->anchor[a].cluster, t->extra);
+    return ct_ex_add(x, sum, ct_ex3_dot(x, extra, ct_sweep_run(b, CT_BIAS)->force[a]));
+}
+
+static void list_speed_axis(struct ct_build *b, int speed, bool slides, size_t at, int k,
+                            size_t *last)
+{
+    if (speed < 0)
+        return;
+    const struct ct_speed_axis user = {.is_translation = slides, .at = at, .k = k};
+    CT_PUSH(b->arena, b->speed_axis, b->nspeed_axis, b->speed_axis_cap, user);
+    if (b->first_speed_axis[speed])
+        b->speed_axis[last[speed] - 1].next = b->nspeed_axis;
+    else
+        b->first_speed_axis[speed] = b->nspeed_axis;
+    last[speed] = b->nspeed_axis;
+}
+
+// What each speed moves, in the order of spins and anchors.
+static void list_speed_axes(struct ct_build *b)
+{
+    size_t *last = CT_NEWN(b->ctx->scratch, size_t, b->eqs->nu + 1);
+    b->first_speed_axis = CT_NEWN(b->arena, size_t, b->eqs->nu + 1);
+    for (size_t r = 0; r < b->nrotation_axis; r++)
+        for (int k = 0; k < b->rotation_axis[r].nterm; k++)
+            list_speed_axis(b, b->rotation_axis[r].term[k].speed, false, r, k, last);
+    for (size_t a = 1; a < b->nanchor; a++)
+        for (int k = 0; k < b->anchor[a].ntranslation_axis; k++)
+            list_speed_axis(b, b->anchor[a].translation_axis[k].speed, true, a, k, last);
+}
+
+static ct_ex sweep_row(struct ct_build *b, const struct ct_sweep *s, int speed)
+{
+    ct_ex sum = s->row[speed];
+    if (!b->first_speed_axis)
+        list_speed_axes(b);
+    for (size_t i = b->first_speed_axis[speed]; i > 0; i = b->speed_axis[i - 1].next) {
+        const struct ct_speed_axis *m = &b->speed_axis[i - 1];
+        sum = m->is_translation
+                ? add_translation_axis(b, s, sum, m->at,
+                                       &b->anchor[m->at].translation_axis[m->k])
+                : add_rotation_axis(b, s, sum, m->at, &b->rotation_axis[m->at].term[m->k]);
+    }
+    return sum;
+}
+
+static ct_ex sweep_driver_row(struct ct_build *b, const struct ct_sweep *s, int driver)
+{
+    ct_ex sum = CT_EX_ZERO;
+    for (size_t r = 0; r < b->nrotation_axis; r++)
+        for (int k = 0; k < b->rotation_axis[r].nterm; k++)
+            if (b->rotation_axis[r].term[k].speed == -1
+                && b->rotation_axis[r].term[k].driver == driver)
+                sum = add_rotation_axis(b, s, sum, r, &b->rotation_axis[r].term[k]);
+    for (size_t a = 1; a < b->nanchor; a++)
+        for (int k = 0; k < b->anchor[a].ntranslation_axis; k++)
+            if (b->anchor[a].translation_axis[k].speed == -1
+                && b->anchor[a].translation_axis[k].driver == driver)
+                sum = add_translation_axis(b, s, sum, a, &b->anchor[a].translation_axis[k]);
+    return sum;
+}
+
+void ct_forces_derive(struct ct_build *b)
+{
+    const struct ct_sweep *s = ct_sweep_run(b, CT_BIAS);
+    struct ct_equations *e = b->eqs;
+    for (size_t k = 0; k < e->nu; k++)
+        e->Q[k] = ct_ex_sub(b->x, b->effort[k], sweep_row(b, s, (int)k));
+}
+
+void ct_dynamics_derive(struct ct_build *b)
+{
+    if (b->eqs->has_dynamics)
+        return;
+    ct_augmented_bodies_lump(b);
+    ct_mass_matrix_derive(b);
+    ct_forces_derive(b);
+    ct_small_motion_derive(b);
+    b->eqs->has_dynamics = true;
+}
+
+ct_ex ct_sweep_residual(struct ct_build *b, int speed)
+{
+    return ct_ex_sub(b->x, sweep_row(b, ct_sweep_run(b, CT_FULL), speed), b->effort[speed]);
+}
+
+// ---- efforts of joints ------------------------------------------------------------------------------
+
+static ct_ex element(const struct ct_value *v, int k)
+{
+    return v->given && (size_t)k < v->n && !v->hole[k] ? v->e[k] : CT_EX_ZERO;
+}
+
+// Generalised force `effort` along a coordinate: on its row, or, where it is measured, as a wrench pair.
+static void push_coordinate(struct ct_build *b, int coordinate, ct_ex effort, ct_ex potential,
+                            ct_ex power)
+{
+    const struct ct_coordinate *c = &b->coordinate[coordinate];
+    const struct ct_edge_info *e = &b->edge[c->edge];
+    struct ct_equations *s = b->eqs;
+    if (c->u >= 0)
+        s->Q[c->u] = ct_ex_add(b->x, s->Q[c->u], effort);
+    if (c->u >= 0 || c->driver >= 0) {
+        s->potential = ct_ex_add(b->x, s->potential, potential);
+        s->power = ct_ex_add(b->x, s->power, power);
+        return;
+    }
+    struct ct_wrench w;
+    if (ct_coordinate_wrench(b, coordinate, &w))
+        ct_load_add(b, &(struct ct_load){.self = e->self,
+                                         .tail = b->wiring[c->edge].tail,
+                                         .head = b->wiring[c->edge].head,
+                                         .force = ct_ex3_scale(b->x, effort, w.force),
+                                         .torque = ct_ex3_scale(b->x, effort, w.torque),
+                                         .potential = potential,
+                                         .power = power});
+}
+
+// What a joint does along coordinate k of its own: spring, damper, applied effort.
+struct effort {
+    ct_ex total, potential, power;
+};
+
+static struct effort own_effort(struct ct_build *b, const struct ct_edge_info *e, int k)
+{
+    struct ct_exs *x = b->x;
+    const int coordinate = e->first_coordinate + k;
+    const ct_ex stiffness = element(ct_instance_value(e->self, "stiffness"), k);
+    const ct_ex damping = element(ct_instance_value(e->self, "damping"), k);
+    const ct_ex applied = ct_build_value(b, element(ct_instance_value(e->self, "effort"), k));
+    struct effort f = {applied, CT_EX_ZERO, CT_EX_ZERO};
+    if (!ct_ex_is_zero(stiffness)) {
+        const ct_ex rest = element(ct_instance_value(e->self, "rest"), k);
+        const ct_ex stretch = ct_ex_sub(x, ct_coordinate_value(b, coordinate), rest);
+        const ct_ex pull = ct_ex_mul(x, stiffness, stretch);
+        f.total = ct_ex_sub(x, f.total, pull);
+        f.potential = ct_ex_scale(x, 0.5, ct_ex_mul(x, pull, stretch));
+    }
+    if (!ct_ex_is_zero(damping) || !ct_ex_is_zero(applied)) {
+        const ct_ex u = ct_coordinate_speed(b, coordinate), drag = ct_ex_mul(x, damping, u);
+        f.total = ct_ex_sub(x, f.total, drag);
+        f.power = ct_ex_mul(x, ct_ex_sub(x, applied, drag), u);
+    }
+    return f;
+}
+
+ct_ex ct_driver_effort(struct ct_build *b, int coordinate)
+{
+    struct ct_exs *x = b->x;
+    const struct ct_coordinate *c = &b->coordinate[coordinate];
+    if (c->motion_row)
+        return b->eqs->row[c->motion_row - 1].lam;
+    const struct effort own = own_effort(b, &b->edge[c->edge], c->index);
+    ct_ex rest
+        = ct_ex_sub(x, sweep_driver_row(b, ct_sweep_run(b, CT_FULL), c->driver), own.total);
+    for (size_t i = 0; i < b->ncoupling; i++)
+        if (b->coupling[i].coordinate == coordinate)
+            rest = ct_ex_sub(
+                x, rest,
+                ct_ex_mul(x, b->coupling[i].factor, b->eqs->row[b->coupling[i].row].lam));
+    return rest;
+}
+
+static void joint_effort(struct ct_build *b, const struct ct_edge_info *e, int k)
+{
+    const struct ct_coordinate *c = &b->coordinate[e->first_coordinate + k];
+    const struct ct_value *stiffness = ct_instance_value(e->self, "stiffness");
+    if (!c->in_translation && !c->in_rotation)
+        return; // the joint reaches a particle: this freedom does not exist
+    if (!ct_ex_is_zero(element(stiffness, k)) && e->trial.quaternion >= 0
+        && k >= e->trial.quaternion) {
+        ct_error(b->ctx, stiffness->mark, CT_E_STIFFNESS,
+                 "joint '%s': a free rotation has no coordinate for a stiffness; use a bushing",
+                 e->self->name);
+        return;
+    }
+    const struct effort f = own_effort(b, e, k);
+    if (!ct_ex_is_zero(f.total))
+        push_coordinate(b, e->first_coordinate + k, f.total, f.potential, f.power);
+}
+
+bool ct_loads_derive(struct ct_build *b)
+{
+    const size_t before = b->ctx->nerror;
+    for (size_t i = 0; i < b->nedge; i++) {
+        const struct ct_edge_info *e = &b->edge[i];
+        b->holding = e->mark;
+        if (e->kind == CT_EDGE_JOINT && e->self->cls->motion)
+            for (int k = 0; k < e->self->nfree; k++)
+                joint_effort(b, e, k);
+        if (e->kind == CT_EDGE_FORCE)
+            e->self->cls->apply(b, e->self);
+    }
+    for (size_t i = 0; i < b->nload; i++) {
+        b->eqs->potential = ct_ex_add(b->x, b->eqs->potential, b->load[i].potential);
+        b->eqs->power = ct_ex_add(b->x, b->eqs->power, b->load[i].power);
+    }
+    b->effort = CT_NEWN(b->arena, ct_ex, b->eqs->nu + 1);
+    for (size_t k = 0; k < b->eqs->nu; k++)
+        b->effort[k] = b->eqs->Q[k]; // so far these are all that is in Q
+    return b->ctx->nerror == before;
+}

@@ -1,0 +1,291 @@
+// The mass matrix by cutset sums over composite bodies.
+//
+// Spin r about the axis s moves everything whose vectors turn with its cluster. With the reach
+// g (sum of the turning vectors on the path to a point) a point moves by s x g, and
+//
+//   M_r'r = s' . [ sum over augmented bodies that turn with r' of  b x (s x g) + sum over links d x (s x h)
+//                  + (augmented inertia of what turns with both) s ]
+//
+// where b is a augmented body's first moment and h the sum of the first moments outboard of a link that turn
+// with r. Where everything outboard turns together, h and the inertia are composites that are summed
+// once. In a planar mechanism all this is scalar. Columns are taken for the outer of two spins.
+#include "formulate/beam/flexible_body.h"
+#include "formulate/dynamics/composite_sums.h"
+
+static const ct_ex3 zero3 = {{{0}, {0}, {0}}};
+
+// ---- torques of a column ----------------------------------------------------------------------------
+
+// The column under work: spin of `cluster` about `axis`.
+struct column {
+    int cluster;
+    ct_ex3 axis;
+    ct_ex33 inertia;
+    bool is_local;   // the inertia is the cluster's own and the axis is fixed in it:
+    ct_ex3 momentum; // their product in its axes, constant
+    ct_ex3 *torque;  // by anchor, of everything outboard
+    bool *has_torque;
+};
+
+// a x (axis x v): planar: (a . v) along the axis.
+static ct_ex3 double_cross(struct ct_build *b, const struct column *c, ct_ex3 a, ct_ex3 v)
+{
+    if (b->is_planar)
+        return ct_ex3_scale(b->x, ct_ex3_dot(b->x, a, v), c->axis);
+    return ct_ex3_cross(b->x, a, ct_ex3_cross(b->x, c->axis, v));
+}
+
+static ct_ex3 augmented_body_torque(struct ct_composite_sums *s, const struct column *c,
+                                    int star)
+{
+    struct ct_build *b = s->b;
+    const struct ct_augmented_body *self = &b->augmented_body[star];
+    ct_ex3 sum = double_cross(b, c, ct_composite_sums_body_moment(s, star),
+                              ct_composite_sums_reach(s, self->anchor, c->cluster));
+    for (int k = 0; k < self->nchild; k++) {
+        const int child = b->child[self->first_child + k];
+        sum = ct_ex3_add(b->x, sum,
+                         double_cross(b, c, ct_composite_sums_link(s, child),
+                                      ct_composite_sums_moment_turning(s, child, c->cluster)));
+    }
+    return sum;
+}
+
+// Torque about an anchor of everything outboard, the inertia of the column itself left out.
+static ct_ex3 anchor_torque(struct ct_composite_sums *s, const struct column *c, int anchor)
+{
+    struct ct_build *b = s->b;
+    if (!s->nstar[anchor])
+        return zero3;
+    if (c->has_torque[anchor])
+        return c->torque[anchor];
+    if (ct_composite_sums_turning(s, anchor, c->cluster) != CT_TURNS_SOME)
+        return double_cross(b, c, ct_composite_sums_moment(s, anchor),
+                            ct_composite_sums_reach(s, anchor, c->cluster));
+    ct_ex3 sum = zero3;
+    for (int i = s->first[anchor]; i >= 0; i = s->next[i]) {
+        sum = ct_ex3_add(b->x, sum, augmented_body_torque(s, c, i));
+        for (int k = 0; k < b->augmented_body[i].nchild; k++)
+            sum = ct_ex3_add(
+                b->x, sum, anchor_torque(s, c, b->child[b->augmented_body[i].first_child + k]));
+    }
+    c->torque[anchor] = sum;
+    c->has_torque[anchor] = true;
+    return sum;
+}
+
+// Torque on all that turns with a row's cluster.
+static ct_ex3 row_torque(struct ct_composite_sums *s, const struct column *c, int row,
+                         int anchor)
+{
+    struct ct_build *b = s->b;
+    const enum ct_turning part = ct_composite_sums_turning(s, anchor, row);
+    if (part == CT_TURNS_NONE)
+        return zero3;
+    if (part == CT_TURNS_ALL)
+        return anchor_torque(s, c, anchor);
+    ct_ex3 sum = zero3;
+    for (int i = s->first[anchor]; i >= 0; i = s->next[i]) {
+        if (ct_composite_sums_turns_with(s, row, b->augmented_body[i].cluster))
+            sum = ct_ex3_add(b->x, sum, augmented_body_torque(s, c, i));
+        for (int k = 0; k < b->augmented_body[i].nchild; k++)
+            sum = ct_ex3_add(
+                b->x, sum,
+                row_torque(s, c, row, b->child[b->augmented_body[i].first_child + k]));
+    }
+    return sum;
+}
+
+static ct_ex3 column_inertia_torque(struct ct_build *b, const struct column *c)
+{
+    if (b->is_planar)
+        return ct_ex3_scale(b->x, c->inertia.e[8], c->axis);
+    if (c->is_local)
+        return ct_cluster_turn(b, c->cluster, c->momentum);
+    return ct_ex33_apply(b->x, &c->inertia, c->axis);
+}
+
+// ---- the matrix -------------------------------------------------------------------------------------
+
+static void add_entry(struct ct_build *b, ct_ex *M, int k, int l, ct_ex v)
+{
+    const size_t n = b->eqs->nu;
+    const size_t i = (size_t)(k > l ? k : l) + n * (size_t)(k > l ? l : k);
+    M[i] = ct_ex_add(b->x, M[i], v);
+}
+
+void ct_mass_spread(struct ct_build *b, ct_ex *M, const struct ct_term *p, int np,
+                    const struct ct_term *q, int nq, ct_ex m)
+{
+    for (int i = 0; i < np; i++)
+        for (int j = 0; j < nq; j++) {
+            if (p[i].speed < 0 || q[j].speed < 0)
+                continue;
+            ct_ex v = ct_ex_mul(b->x, ct_ex_mul(b->x, p[i].coef, q[j].coef), m);
+            if (p[i].speed == q[j].speed)
+                v = ct_ex_scale(b->x, 2, v);
+            add_entry(b, M, p[i].speed, q[j].speed, v);
+        }
+}
+
+static void spread_self(struct ct_build *b, ct_ex *M, const struct ct_term *p, int np, ct_ex m)
+{
+    for (int i = 0; i < np; i++)
+        for (int j = 0; j <= i; j++)
+            if (p[i].speed >= 0 && p[j].speed >= 0)
+                add_entry(b, M, p[i].speed, p[j].speed,
+                          ct_ex_mul(b->x, ct_ex_mul(b->x, p[i].coef, p[j].coef), m));
+}
+
+static bool has_unknown(const struct ct_term *p, int np)
+{
+    for (int i = 0; i < np; i++)
+        if (p[i].speed >= 0)
+            return true;
+    return false;
+}
+
+// Does the column of cluster c serve the row of cluster r? The outer one of two nested clusters is the
+// column; of two side by side the one whose vectors start farther out.
+static bool is_row_of(const struct ct_build *b, const int *depth, int r, int c)
+{
+    if (ct_cluster_is_outboard(b, r, c))
+        return true;
+    if (ct_cluster_is_outboard(b, c, r))
+        return false;
+    return depth[r] != depth[c] ? depth[r] < depth[c] : r < c;
+}
+
+static void rotation_column(struct ct_composite_sums *s, ct_ex *M, size_t r,
+                            const struct column *c, const int *depth)
+{
+    struct ct_build *b = s->b;
+    const struct ct_rotation_axis *self = &b->rotation_axis[r];
+    const ct_ex3 own = column_inertia_torque(b, c);
+    for (size_t row = 0; row < b->nrotation_axis; row++) {
+        const struct ct_rotation_axis *other = &b->rotation_axis[row];
+        const bool same = other->cluster == c->cluster;
+        if ((same && row > r) || !is_row_of(b, depth, other->cluster, c->cluster)
+            || !has_unknown(other->term, other->nterm))
+            continue;
+        const int start = s->start[other->cluster];
+        ct_ex3 torque = start < 0 ? zero3 : row_torque(s, c, other->cluster, start);
+        const bool is_fixed = same && c->is_local && !ct_ex3_is_zero(other->local);
+        if (!is_fixed && ct_cluster_is_outboard(b, other->cluster, c->cluster))
+            torque = ct_ex3_add(b->x, own, torque);
+        ct_ex m = ct_ex3_dot(b->x, other->axis, torque);
+        if (is_fixed)
+            m = ct_ex_add(b->x, m, ct_ex3_dot(b->x, other->local, c->momentum));
+        if (row == r)
+            spread_self(b, M, self->term, self->nterm, m);
+        else
+            ct_mass_spread(b, M, self->term, self->nterm, other->term, other->nterm, m);
+    }
+    // slides carried by the spin, or that carry it: p . (s x (m g + h))
+    for (size_t a = 1; a < b->nanchor; a++) {
+        const struct ct_anchor *anchor = &b->anchor[a];
+        for (int k = 0; k < anchor->ntranslation_axis; k++) {
+            const struct ct_translation_axis *slide = &anchor->translation_axis[k];
+            const struct ct_term along = {slide->speed, slide->driver, CT_EX_ONE};
+            if (slide->speed < 0)
+                continue;
+            const ct_ex3 g = ct_composite_sums_reach(s, (int)a, c->cluster);
+            const ct_ex3 moved
+                = ct_ex3_add(b->x, ct_ex3_scale(b->x, anchor->mass, g),
+                             ct_composite_sums_moment_turning(s, (int)a, c->cluster));
+            if (ct_ex3_is_zero(moved))
+                continue;
+            const ct_ex3 p = ct_cluster_turn(b, anchor->cluster, slide->p);
+            const ct_ex m = ct_ex3_dot(b->x, p, ct_ex3_cross(b->x, c->axis, moved));
+            ct_mass_spread(b, M, self->term, self->nterm, &along, 1, m);
+        }
+    }
+}
+
+static void translation_pairs(struct ct_build *b, ct_ex *M)
+{
+    for (size_t i = 1; i < b->nanchor; i++)
+        for (size_t j = 1; j <= i; j++) {
+            if (!b->anchor[i].ntranslation_axis || !b->anchor[j].ntranslation_axis
+                || !ct_anchor_is_outboard(b, (int)j, (int)i))
+                continue;
+            const struct ct_anchor *out = &b->anchor[i], *in = &b->anchor[j];
+            for (int k = 0; k < out->ntranslation_axis; k++)
+                for (int l = 0; l < (i == j ? k + 1 : in->ntranslation_axis); l++) {
+                    if (out->translation_axis[k].speed < 0 || in->translation_axis[l].speed < 0)
+                        continue;
+                    const bool fixed = out->cluster == in->cluster;
+                    const ct_ex3 p
+                        = fixed ? out->translation_axis[k].p
+                                : ct_cluster_turn(b, out->cluster, out->translation_axis[k].p);
+                    const ct_ex3 q
+                        = fixed ? in->translation_axis[l].p
+                                : ct_cluster_turn(b, in->cluster, in->translation_axis[l].p);
+                    const ct_ex m = ct_ex_mul(b->x, out->mass, ct_ex3_dot(b->x, p, q));
+                    const struct ct_term tp = {out->translation_axis[k].speed, -1, CT_EX_ONE};
+                    const struct ct_term tq = {in->translation_axis[l].speed, -1, CT_EX_ONE};
+                    if (i == j && k == l)
+                        spread_self(b, M, &tp, 1, m);
+                    else
+                        ct_mass_spread(b, M, &tp, 1, &tq, 1, m);
+                }
+        }
+}
+
+// Depth in anchors of the first augmented body that turns with a cluster.
+static int *start_depths(struct ct_composite_sums *s)
+{
+    struct ct_build *b = s->b;
+    int *depth = CT_NEWN(b->arena, int, b->ncluster), *of = CT_NEWN(b->arena, int, b->nanchor);
+    for (size_t a = 1; a < b->nanchor; a++)
+        of[a] = of[b->anchor[a].parent] + 1;
+    for (size_t c = 0; c < b->ncluster; c++)
+        depth[c] = (int)b->nanchor;
+    for (size_t i = 0; i < b->naugmented_body; i++)
+        for (int c = b->augmented_body[i].cluster; c > 0; c = b->cluster[c].parent)
+            if (of[b->augmented_body[i].anchor] < depth[c])
+                depth[c] = of[b->augmented_body[i].anchor];
+    return depth;
+}
+
+static bool is_zero(const ct_ex33 *A)
+{
+    for (int i = 0; i < 9; i++)
+        if (!ct_ex_is_zero(A->e[i]))
+            return false;
+    return true;
+}
+
+void ct_mass_matrix_derive(struct ct_build *b)
+{
+    struct ct_equations *e = b->eqs;
+    struct ct_composite_sums s = ct_composite_sums_create(b);
+    ct_ex *M = CT_NEWN(b->arena, ct_ex, e->nu * e->nu + 1);
+    const int *depth = start_depths(&s);
+    for (size_t r = 0; r < b->nrotation_axis; r++) {
+        const struct ct_rotation_axis *self = &b->rotation_axis[r];
+        struct column c = {.cluster = self->cluster, .axis = self->axis};
+        if (!has_unknown(self->term, self->nterm))
+            continue;
+        c.inertia = s.descendants[c.cluster];
+        c.torque = CT_NEWN(b->arena, ct_ex3, b->nanchor);
+        c.has_torque = CT_NEWN(b->arena, bool, b->nanchor);
+        ct_composite_sums_add_full(&s, 0, c.cluster, &c.inertia);
+        c.is_local = !b->is_planar && !ct_ex3_is_zero(self->local) && is_zero(&c.inertia);
+        if (c.is_local) {
+            c.momentum = ct_ex33_apply(b->x, &b->cluster[c.cluster].L, self->local);
+        } else {
+            c.inertia = s.inertia[c.cluster];
+            ct_composite_sums_add_full(&s, 0, c.cluster, &c.inertia);
+        }
+        rotation_column(&s, M, r, &c, depth);
+    }
+    translation_pairs(b, M);
+    ct_flexible_mass(b, M);
+    for (size_t i = 0; i < e->nu; i++)
+        for (size_t j = 0; j <= i; j++) {
+            const struct ct_entry entry = {(int)i, (int)j, M[i + e->nu * j]};
+            if (!ct_ex_is_zero(entry.value))
+                CT_PUSH(b->arena, e->M, e->nM, e->M_cap, entry);
+        }
+}

@@ -1,0 +1,143 @@
+// See momentum_energy.h.
+#include "formulate/dynamics/momentum_energy.h"
+
+#include "formulate/beam/flexible_body.h"
+
+static const ct_ex3 zero3 = {{{0}, {0}, {0}}};
+
+// ---- vectors -------------------------------------------------------------------------------------------
+
+static ct_ex3 body_momentum(struct ct_build *b, size_t i)
+{
+    return ct_ex3_scale(b->x, b->model->body[i].mass, ct_node_velocity(b, b->node_of_com[i]));
+}
+
+static ct_ex3 body_angular_momentum(struct ct_build *b, size_t i)
+{
+    const struct ct_body *body = &b->model->body[i];
+    const int node = b->node_of_com[i];
+    if (body->is_particle)
+        return zero3;
+    const ct_ex *I = body->inertia;
+    const ct_ex33 own = {{I[0], I[3], I[4], I[3], I[1], I[5], I[4], I[5], I[2]}};
+    const ct_ex3 w = ct_node_unturn(b, node, ct_cluster_velocity(b, b->placement[node].frame));
+    return ct_node_turn(b, node, ct_ex33_apply(b->x, &own, w));
+}
+
+// The same sums of a beam: mass times place, momentum, angular momentum.
+static ct_ex3 beam_vector(struct ct_build *b, const struct ct_flexible *f,
+                          enum ct_system_total property)
+{
+    struct ct_exs *x = b->x;
+    const struct ct_flexible_state s = ct_flexible_moving(b, f);
+    const ct_ex3 r = ct_node_position(b, f->base);
+    if (property == CT_SUM_CENTRE)
+        return ct_ex3_add(x, ct_ex3_scale(x, s.mass, r), s.moment);
+    return property == CT_SUM_MOMENTUM
+             ? s.momentum
+             : ct_ex3_add(x, ct_ex3_cross(x, r, s.momentum), s.angular_momentum);
+}
+
+ct_ex3 ct_system_total_vector(struct ct_build *b, enum ct_system_total property)
+{
+    struct ct_exs *x = b->x;
+    ct_ex3 sum = zero3;
+    ct_ex mass = CT_EX_ZERO;
+    for (size_t i = 1; i < b->model->nbody; i++) {
+        const ct_ex3 r = ct_node_position(b, b->node_of_com[i]);
+        const ct_ex m = b->model->body[i].mass;
+        const struct ct_flexible *f = ct_flexible_of(b, (int)i);
+        mass = ct_ex_add(x, mass, m);
+        if (f) {
+            sum = ct_ex3_add(x, sum, beam_vector(b, f, property));
+            continue;
+        }
+        if (property == CT_SUM_CENTRE)
+            sum = ct_ex3_add(x, sum, ct_ex3_scale(x, m, r));
+        else if (property == CT_SUM_MOMENTUM)
+            sum = ct_ex3_add(x, sum, body_momentum(b, i));
+        else
+            sum = ct_ex3_add(x, sum,
+                             ct_ex3_add(x, ct_ex3_cross(x, r, body_momentum(b, i)),
+                                        body_angular_momentum(b, i)));
+    }
+    for (int i = 0; i < 3 && property == CT_SUM_CENTRE; i++)
+        sum.e[i] = ct_ex_div(x, sum.e[i], mass);
+    return sum;
+}
+
+// ---- energies ------------------------------------------------------------------------------------------
+
+// Twice the kinetic energy of a beam; its weight and strain.
+static ct_ex beam_energies(struct ct_build *b, const struct ct_flexible *f)
+{
+    struct ct_exs *x = b->x;
+    const struct ct_flexible_state s = ct_flexible_moving(b, f);
+    b->eqs->strain = ct_ex_add(x, b->eqs->strain, ct_flexible_strain(b, f));
+    b->eqs->potential
+        = ct_ex_sub(x, b->eqs->potential,
+                    ct_ex3_dot(x, b->model->gravity, beam_vector(b, f, CT_SUM_CENTRE)));
+    return s.twice_kinetic;
+}
+
+// Speeds of all joints, relative to their frames, and of beams in theirs: the same for any tree.
+static ct_ex continuous_speeds(struct ct_build *b)
+{
+    // what beams keep does not depend on how many elements they have: where joints can close a loop, they do
+    const double share_of_beams = 1e6;
+    struct ct_exs *x = b->x;
+    const struct ct_equations *e = b->eqs;
+    ct_ex joints = CT_EX_ZERO, beams = CT_EX_ZERO;
+    for (size_t i = 0; i < b->model->njoint; i++) {
+        const struct ct_instance *self = &b->model->joint[i];
+        for (int k = 0; k < self->nfree && self->from >= 0 && b->edge_of_joint[i] >= 0; k++) {
+            const int first = b->edge[b->edge_of_joint[i]].first_coordinate;
+            const ct_ex u = ct_coordinate_speed(b, first + k);
+            joints = ct_ex_add(x, joints, ct_ex_mul(x, u, u));
+        }
+    }
+    for (size_t i = 0; i < e->nu; i++)
+        if (e->u[i].beam)
+            beams = ct_ex_add(x, beams, ct_ex_mul(x, e->u[i].symbol, e->u[i].symbol));
+    return ct_ex_scale(x, 0.5, ct_ex_add(x, joints, ct_ex_scale(x, share_of_beams, beams)));
+}
+
+void ct_energies_derive(struct ct_build *b)
+{
+    struct ct_exs *x = b->x;
+    struct ct_equations *e = b->eqs;
+    ct_ex kinetic = CT_EX_ZERO;
+    for (size_t i = 0; i < b->nflexible; i++)
+        kinetic = ct_ex_add(x, kinetic, beam_energies(b, &b->flexible[i]));
+    e->power = ct_ex_add(x, e->power, ct_flexible_dissipation(b));
+    for (size_t i = 1; i < b->model->nbody; i++) {
+        const struct ct_body *body = &b->model->body[i];
+        const int node = b->node_of_com[i];
+        if (body->beam)
+            continue;
+        const ct_ex3 v = ct_node_velocity(b, node);
+        const ct_ex weight = ct_ex_mul(
+            x, body->mass, ct_ex3_dot(x, b->model->gravity, ct_node_position(b, node)));
+        kinetic = ct_ex_add(x, kinetic, ct_ex_mul(x, body->mass, ct_ex3_dot(x, v, v)));
+        kinetic = ct_ex_add(x, kinetic,
+                            ct_ex3_dot(x, ct_cluster_velocity(b, b->placement[node].frame),
+                                       body_angular_momentum(b, i)));
+        e->potential = ct_ex_sub(x, e->potential, weight);
+    }
+    e->kinetic = ct_ex_scale(x, 0.5, kinetic);
+    e->continuity = b->model->simulation.rate_jumps == CT_RATE_CONTINUOUS ? continuous_speeds(b)
+                                                                          : CT_EX_ZERO;
+    for (size_t i = 0; i < b->ncoordinate; i++) {
+        const struct ct_coordinate *c = &b->coordinate[i];
+        if (c->driver < 0)
+            continue;
+        struct ct_driver *d = &e->driver[c->driver];
+        d->effort = ct_driver_effort(b, (int)i);
+        e->power = ct_ex_add(x, e->power, ct_ex_mul(x, d->effort, d->rate));
+    }
+    e->work_symbol = ct_ex_sym(x, CT_SYM_WORK, "work", 0);
+    if (ct_ex_is_zero(e->power))
+        e->work_symbol = CT_EX_ZERO;
+    const ct_ex stored = ct_ex_add(x, e->kinetic, ct_ex_add(x, e->potential, e->strain));
+    e->total = ct_ex_sub(x, stored, e->work_symbol);
+}

@@ -1,0 +1,544 @@
+// Places along the translational tree: anchors joined by links, nodes at constant offsets.
+//
+// A branch whose vector is constant in the cluster of its predecessor's vector adds to that vector;
+// only where the cluster changes, or where the branch slides, does an anchor come into being.
+#include "formulate/beam/flexible_body.h"
+
+#include <assert.h>
+#include <string.h>
+
+static const ct_ex3 zero3 = {{{0}, {0}, {0}}};
+
+static bool same3(ct_ex3 a, ct_ex3 b)
+{
+    return ct_ex_same(a.e[0], b.e[0]) && ct_ex_same(a.e[1], b.e[1])
+        && ct_ex_same(a.e[2], b.e[2]);
+}
+
+static bool is_moving(const struct ct_build *b, ct_ex3 v)
+{
+    const unsigned moving = 1u << CT_SYM_Q | 1u << CT_SYM_TIME;
+    return (ct_ex_kinds(b->x, v.e[0]) | ct_ex_kinds(b->x, v.e[1]) | ct_ex_kinds(b->x, v.e[2]))
+         & moving;
+}
+
+// ---- anchors --------------------------------------------------------------------------------------
+
+static int add_anchor(struct ct_build *b, int parent, int cluster, ct_ex3 local)
+{
+    const struct ct_anchor a = {.parent = parent, .cluster = cluster, .local = local};
+    CT_PUSH(b->arena, b->anchor, b->nanchor, b->anchor_cap, a);
+    return (int)b->nanchor - 1;
+}
+
+// The anchor at a place; one that stands there already is used again.
+static int anchor_at(struct ct_build *b, const struct ct_node_placement *p)
+{
+    if (ct_ex3_is_zero(p->local))
+        return p->anchor;
+    for (size_t i = b->nanchor; i-- > 1;) {
+        const struct ct_anchor *a = &b->anchor[i];
+        if (a->parent == p->anchor && a->cluster == p->cluster && !a->moves
+            && same3(a->local, p->local))
+            return (int)i;
+    }
+    return add_anchor(b, p->anchor, p->cluster, p->local);
+}
+
+static void add_translation_axis(struct ct_build *b, struct ct_anchor *a, int speed, int driver,
+                                 int sign, ct_ex3 along, ct_ex3 extra)
+{
+    if (sign < 0) {
+        along = ct_ex3_neg(b->x, along);
+        extra = ct_ex3_neg(b->x, extra);
+    }
+    if (!ct_ex3_is_zero(along) || !ct_ex3_is_zero(extra))
+        a->translation_axis[a->ntranslation_axis++]
+            = (struct ct_translation_axis){speed, driver, along, extra};
+}
+
+// The elastic coordinates' slides of a section whose beam has the axes of `tail`.
+static void slide_section(struct ct_build *b, const struct ct_edge_info *e,
+                          const struct ct_node_placement *tail, int sign, struct ct_anchor *a)
+{
+    const struct ct_flexible *f = e->flexible;
+    a->translation_axis = CT_NEWN(b->arena, struct ct_translation_axis, f->nelastic + 1);
+    a->ntranslation_axis = 0;
+    for (int k = 0; k < f->nelastic; k++) {
+        const ct_ex3 along = ct_ex33_apply(b->x, &tail->S, e->translation[k]);
+        ct_ex3 extra = zero3;
+        if (e->foreshortened)
+            extra = ct_ex3_sub(b->x, ct_ex33_apply(b->x, &tail->S, e->foreshortened[k]), along);
+        add_translation_axis(b, a, f->elastic[k].u, -1, sign, along, extra);
+    }
+}
+
+// Node beyond a branch that slides: an anchor of its own.
+static void place_translating(struct ct_build *b, const struct ct_edge_info *e,
+                              const struct ct_node_placement *p,
+                              const struct ct_node_placement *tail, int sign, ct_ex3 vector,
+                              struct ct_node_placement *self)
+{
+    const int cluster = tail->frame;
+    const bool goes_on = p->cluster == cluster;
+    const ct_ex3 fixed = goes_on ? p->local : zero3;
+    const int parent = goes_on ? p->anchor : anchor_at(b, p);
+    const int i = add_anchor(b, parent, cluster, ct_ex3_add(b->x, fixed, vector));
+    struct ct_anchor *a = &b->anchor[i];
+    a->moves = true;
+    a->fixed = fixed;
+    a->sliding = vector;
+    if (e->flexible)
+        slide_section(b, e, tail, sign, a);
+    else
+        a->translation_axis = CT_NEWN(b->arena, struct ct_translation_axis, e->ncoordinate + 1);
+    for (int k = 0; k < e->ncoordinate; k++) {
+        const struct ct_coordinate *c = &b->coordinate[e->first_coordinate + k];
+        ct_ex3 p_tail;
+        for (int j = 0; j < 3; j++)
+            p_tail.e[j] = ct_edge_partial(b, e, e->trial.d.e[j], k);
+        add_translation_axis(b, a, c->u, c->driver, sign, ct_ex33_apply(b->x, &tail->S, p_tail),
+                             zero3);
+    }
+    a->drift = ct_build_rate3(b, vector);
+    a->drift_bias = ct_build_rate3(b, a->drift);
+    self->anchor = i;
+    self->cluster = cluster;
+    self->local = zero3;
+}
+
+// The place whose axes the branch to a node has.
+static const struct ct_node_placement *tail_of(const struct ct_build *b, int node)
+{
+    return &b->placement[b->T.sign[node] > 0 ? b->T.parent[node] : node];
+}
+
+// Along the branch to a node, in axes of its cluster.
+static ct_ex3 branch_vector(struct ct_build *b, int node)
+{
+    const struct ct_edge_info *e = &b->edge[b->T.parent_edge[node]];
+    const ct_ex3 d = e->kind == CT_EDGE_ARM ? e->at : e->motion.d,
+                 vector = ct_ex33_apply(b->x, &tail_of(b, node)->S, d);
+    return b->T.sign[node] < 0 ? ct_ex3_neg(b->x, vector) : vector;
+}
+
+void ct_translation_slide_sections(struct ct_build *b)
+{
+    for (int node = 1; node < (int)b->nnode; node++) {
+        const struct ct_edge_info *e = &b->edge[b->T.parent_edge[node]];
+        if (e->flexible && is_moving(b, branch_vector(b, node)))
+            slide_section(b, e, tail_of(b, node), b->T.sign[node],
+                          &b->anchor[b->placement[node].anchor]);
+    }
+}
+
+// (4.1): r_c = r_p + sign R_tail d, d in axes of the branch's tail.
+static void place_node(struct ct_build *b, int node)
+{
+    const int parent = b->T.parent[node], sign = b->T.sign[node];
+    const struct ct_edge_info *e = &b->edge[b->T.parent_edge[node]];
+    const struct ct_node_placement *tail = tail_of(b, node);
+    const struct ct_node_placement p = b->placement[parent];
+    struct ct_node_placement *self = &b->placement[node];
+    const ct_ex3 vector = branch_vector(b, node);
+    self->anchor = p.anchor;
+    self->cluster = p.cluster;
+    self->local = p.local;
+    if (ct_ex3_is_zero(vector))
+        return;
+    if (is_moving(b, vector)) {
+        place_translating(b, e, &p, tail, sign, vector, self);
+    } else if (p.cluster == tail->frame || ct_ex3_is_zero(p.local)) {
+        self->cluster = tail->frame;
+        self->local = ct_ex3_add(b->x, p.local, vector);
+    } else {
+        self->anchor = anchor_at(b, &p);
+        self->cluster = tail->frame;
+        self->local = vector;
+    }
+}
+
+static void number_anchors(struct ct_build *b)
+{
+    int *size = CT_NEWN(b->arena, int, b->nanchor), *next = CT_NEWN(b->arena, int, b->nanchor);
+    for (size_t a = b->nanchor; a-- > 1;)
+        size[b->anchor[a].parent] += ++size[a];
+    b->anchor[0].leave = size[0];
+    next[0] = 1;
+    for (size_t a = 1; a < b->nanchor; a++) {
+        struct ct_anchor *self = &b->anchor[a];
+        self->enter = next[self->parent];
+        self->leave = self->enter + size[a] - 1;
+        next[self->parent] += size[a];
+        next[a] = self->enter + 1;
+    }
+}
+
+// The base of a beam is at an anchor, so that its masses are seen from there.
+static void anchor_base(struct ct_build *b, int node)
+{
+    struct ct_node_placement *p = &b->placement[node];
+    p->anchor = anchor_at(b, p);
+    p->cluster = p->frame;
+    p->local = zero3;
+}
+
+void ct_translation_derive(struct ct_build *b)
+{
+    add_anchor(b, -1, 0, zero3);
+    for (size_t i = 1; i < b->nnode; i++) {
+        place_node(b, b->T.order[i]);
+        const struct ct_flexible *f = ct_flexible_of(b, b->node[b->T.order[i]].body);
+        if (f && f->base == b->T.order[i])
+            anchor_base(b, b->T.order[i]);
+    }
+    number_anchors(b);
+}
+
+ct_ex3 ct_build_in_plane(struct ct_build *b, ct_ex3 v)
+{
+    if (!b->is_planar)
+        return v;
+    const ct_ex3 n = b->plane[2];
+    return ct_ex3_sub(b->x, v, ct_ex3_scale(b->x, ct_ex3_dot(b->x, n, v), n));
+}
+
+// ---- links ----------------------------------------------------------------------------------------
+
+ct_ex3 ct_link_vector(struct ct_build *b, int i)
+{
+    struct ct_anchor *a = &b->anchor[i];
+    if (!a->has_d)
+        a->d = ct_cluster_turn(b, a->cluster, a->local);
+    a->has_d = true;
+    return a->d;
+}
+
+ct_ex3 ct_link_velocity(struct ct_build *b, int i)
+{
+    struct ct_anchor *a = &b->anchor[i];
+    const ct_ex3 v = ct_cluster_cross_velocity(b, a->cluster, ct_link_vector(b, i));
+    return a->moves ? ct_ex3_add(b->x, v, ct_cluster_turn(b, a->cluster, a->drift)) : v;
+}
+
+// Acceleration of a vector fixed in a cluster: al x d + w x (w x d).
+static ct_ex3 carried_acceleration(struct ct_build *b, int cluster, ct_ex3 d,
+                                   enum ct_level level)
+{
+    const ct_ex3 turning = ct_ex3_cross(b->x, ct_cluster_acceleration(b, cluster, level), d);
+    return ct_ex3_add(b->x, turning, ct_cluster_centripetal(b, cluster, d));
+}
+
+ct_ex3 ct_link_sliding_acceleration(struct ct_build *b, int i, enum ct_level level)
+{
+    struct ct_anchor *a = &b->anchor[i];
+    struct ct_exs *x = b->x;
+    if (!a->moves)
+        return zero3;
+    ct_ex3 s = a->drift_bias;
+    for (int k = 0; level == CT_FULL && k < a->ntranslation_axis; k++)
+        if (a->translation_axis[k].speed >= 0)
+            s = ct_ex3_add(x, s,
+                           ct_ex3_scale(x, b->eqs->u[a->translation_axis[k].speed].derivative,
+                                        a->translation_axis[k].p));
+    const ct_ex3 drift = ct_cluster_turn(b, a->cluster, a->drift);
+    const ct_ex3 coriolis
+        = ct_ex3_scale(x, ct_ex_const(x, 2), ct_cluster_cross_velocity(b, a->cluster, drift));
+    return ct_ex3_add(x, coriolis, ct_cluster_turn(b, a->cluster, s));
+}
+
+ct_ex3 ct_link_acceleration(struct ct_build *b, int i, enum ct_level level)
+{
+    const ct_ex3 carried
+        = carried_acceleration(b, b->anchor[i].cluster, ct_link_vector(b, i), level);
+    return ct_ex3_add(b->x, carried, ct_link_sliding_acceleration(b, i, level));
+}
+
+// ---- anchors and nodes ------------------------------------------------------------------------------
+
+static ct_ex3 anchor_position(struct ct_build *b, int i)
+{
+    return i ? ct_ex3_add(b->x, anchor_position(b, b->anchor[i].parent), ct_link_vector(b, i))
+             : zero3;
+}
+
+static ct_ex3 anchor_velocity(struct ct_build *b, int i)
+{
+    struct ct_anchor *a = &b->anchor[i];
+    if (i && !a->has_v) {
+        a->v = ct_ex3_add(b->x, anchor_velocity(b, a->parent), ct_link_velocity(b, i));
+        a->has_v = true;
+    }
+    return a->v;
+}
+
+ct_ex3 ct_anchor_acceleration(struct ct_build *b, int i, enum ct_level level)
+{
+    struct ct_anchor *a = &b->anchor[i];
+    if (i && !a->has_a[level]) {
+        a->a[level] = ct_ex3_add(b->x, ct_anchor_acceleration(b, a->parent, level),
+                                 ct_link_acceleration(b, i, level));
+        a->has_a[level] = true;
+    }
+    return a->a[level];
+}
+
+static ct_ex3 offset(struct ct_build *b, const struct ct_node_placement *p)
+{
+    return ct_cluster_turn(b, p->cluster, p->local);
+}
+
+ct_ex3 ct_node_position(struct ct_build *b, int node)
+{
+    const struct ct_node_placement *p = &b->placement[node];
+    return ct_ex3_add(b->x, anchor_position(b, p->anchor), offset(b, p));
+}
+
+ct_ex3 ct_node_velocity(struct ct_build *b, int node)
+{
+    const struct ct_node_placement *p = &b->placement[node];
+    return ct_ex3_add(b->x, anchor_velocity(b, p->anchor),
+                      ct_cluster_cross_velocity(b, p->cluster, offset(b, p)));
+}
+
+ct_ex3 ct_node_acceleration(struct ct_build *b, int node, enum ct_level level)
+{
+    const struct ct_node_placement *p = &b->placement[node];
+    return ct_ex3_add(b->x, ct_anchor_acceleration(b, p->anchor, level),
+                      carried_acceleration(b, p->cluster, offset(b, p), level));
+}
+
+// ---- paths ----------------------------------------------------------------------------------------
+
+struct path {
+    struct ct_piece *piece;
+    size_t n;
+};
+
+static void add_piece(struct path *p, int anchor, int cluster, int sign, ct_ex3 local)
+{
+    if (!ct_ex3_is_zero(local))
+        p->piece[p->n++] = (struct ct_piece){anchor, cluster, sign, local};
+}
+
+// From tail to head: offsets and links up to where both chains of anchors meet. It holds until the next one is
+// sought: there are as many as pairs of a row and a speed.
+static struct path find_path(struct ct_build *b, int tail, int head)
+{
+    const struct ct_node_placement *t = &b->placement[tail], *h = &b->placement[head];
+    if (!b->piece)
+        b->piece = CT_NEWN(b->arena, struct ct_piece, b->nanchor + 2);
+    struct path p = {b->piece, 0};
+    if (t->anchor == h->anchor && t->cluster == h->cluster) {
+        add_piece(&p, -1, h->cluster, 1, ct_ex3_sub(b->x, h->local, t->local));
+        return p;
+    }
+    add_piece(&p, -1, h->cluster, 1, h->local);
+    add_piece(&p, -1, t->cluster, -1, t->local);
+    int i = h->anchor, j = t->anchor;
+    while (i != j) // numbers grow outwards: the larger one steps inwards
+        if (i > j) {
+            add_piece(&p, i, b->anchor[i].cluster, 1, b->anchor[i].local);
+            i = b->anchor[i].parent;
+        } else {
+            add_piece(&p, j, b->anchor[j].cluster, -1, b->anchor[j].local);
+            j = b->anchor[j].parent;
+        }
+    return p;
+}
+
+static ct_ex3 piece_vector(struct ct_build *b, const struct ct_piece *p)
+{
+    return p->anchor >= 0 ? ct_link_vector(b, p->anchor)
+                          : ct_cluster_turn(b, p->cluster, p->local);
+}
+
+static ct_ex3 piece_velocity(struct ct_build *b, const struct ct_piece *p)
+{
+    return p->anchor >= 0 ? ct_link_velocity(b, p->anchor)
+                          : ct_cluster_cross_velocity(b, p->cluster, piece_vector(b, p));
+}
+
+static ct_ex3 piece_acceleration(struct ct_build *b, const struct ct_piece *p,
+                                 enum ct_level level)
+{
+    return p->anchor >= 0 ? ct_link_acceleration(b, p->anchor, level)
+                          : carried_acceleration(b, p->cluster, piece_vector(b, p), level);
+}
+
+static ct_ex3 accumulate(struct ct_build *b, ct_ex3 sum, int sign, ct_ex3 v)
+{
+    return sign > 0 ? ct_ex3_add(b->x, sum, v) : ct_ex3_sub(b->x, sum, v);
+}
+
+// From ground over many pieces: places and velocities that nodes on the way share cost less than a sum of one's own.
+static bool is_long(const struct path *p, int tail)
+{
+    return tail == 0 && p->n > CT_LONG_PATH;
+}
+
+ct_ex3 ct_path_position(struct ct_build *b, int tail, int head)
+{
+    const struct path p = find_path(b, tail, head);
+    ct_ex3 sum = zero3;
+    if (is_long(&p, tail))
+        return ct_node_position(b, head);
+    for (size_t i = 0; i < p.n; i++)
+        sum = accumulate(b, sum, p.piece[i].sign, piece_vector(b, &p.piece[i]));
+    return sum;
+}
+
+ct_ex3 ct_path_velocity(struct ct_build *b, int tail, int head)
+{
+    const struct path p = find_path(b, tail, head);
+    ct_ex3 sum = zero3;
+    if (is_long(&p, tail))
+        return ct_node_velocity(b, head);
+    for (size_t i = 0; i < p.n; i++)
+        sum = accumulate(b, sum, p.piece[i].sign, piece_velocity(b, &p.piece[i]));
+    return sum;
+}
+
+ct_ex3 ct_path_acceleration(struct ct_build *b, int tail, int head, enum ct_level level)
+{
+    const struct path p = find_path(b, tail, head);
+    ct_ex3 sum = zero3;
+    for (size_t i = 0; i < p.n; i++)
+        sum = accumulate(b, sum, p.piece[i].sign, piece_acceleration(b, &p.piece[i], level));
+    return sum;
+}
+
+// Does the piece turn with node t? What it slides by is added to *slid then, what is fixed of it to *fixed: arms on both sides cancel
+// there before anything is rounded.
+static bool add_own(struct ct_build *b, const struct ct_node_placement *t,
+                    const struct ct_piece *p, ct_ex3 *fixed, ct_ex3 *slid)
+{
+    const struct ct_anchor *a = p->anchor >= 0 ? &b->anchor[p->anchor] : NULL;
+    if (p->cluster != t->frame)
+        return false;
+    const bool moves = a && a->moves;
+    *fixed = accumulate(b, *fixed, p->sign, moves ? a->fixed : p->local);
+    if (moves)
+        *slid = accumulate(b, *slid, p->sign, a->sliding);
+    return true;
+}
+
+ct_ex3 ct_path_position_seen(struct ct_build *b, int tail, int head)
+{
+    const struct path p = find_path(b, tail, head);
+    const struct ct_node_placement *t = &b->placement[tail];
+    const ct_ex33 to_axes = ct_ex33_transpose(&t->S);
+    ct_ex3 sum = zero3, fixed = zero3, slid = zero3;
+    for (size_t i = 0; i < p.n; i++)
+        if (!add_own(b, t, &p.piece[i], &fixed, &slid))
+            sum = accumulate(b, sum, p.piece[i].sign, piece_vector(b, &p.piece[i]));
+    const ct_ex3 own = ct_ex33_apply(b->x, &to_axes, ct_ex3_add(b->x, fixed, slid));
+    return ct_ex3_is_zero(sum) ? own : ct_ex3_add(b->x, own, ct_node_unturn(b, tail, sum));
+}
+
+ct_ex3 ct_path_velocity_seen(struct ct_build *b, int tail, int head)
+{
+    const struct path p = find_path(b, tail, head);
+    const struct ct_node_placement *t = &b->placement[tail];
+    const ct_ex33 to_axes = ct_ex33_transpose(&t->S);
+    ct_ex3 sum = zero3, carried = zero3, own = zero3;
+    for (size_t i = 0; i < p.n; i++) {
+        const struct ct_piece *piece = &p.piece[i];
+        if (piece->cluster != t->frame) {
+            sum = accumulate(b, sum, piece->sign, piece_velocity(b, piece));
+            carried = accumulate(b, carried, piece->sign, piece_vector(b, piece));
+        } else if (piece->anchor >= 0 && b->anchor[piece->anchor].moves) {
+            own = accumulate(b, own, piece->sign, b->anchor[piece->anchor].drift);
+        }
+    }
+    sum = ct_ex3_sub(b->x, sum, ct_cluster_cross_velocity(b, t->frame, carried));
+    own = ct_ex33_apply(b->x, &to_axes, own);
+    return ct_ex3_is_zero(sum) ? own : ct_ex3_add(b->x, own, ct_node_unturn(b, tail, sum));
+}
+
+// local x v for a vector v of the spin's own cluster, in its axes; worth it where a component vanishes.
+static bool local_sweep(struct ct_build *b, const struct ct_rotation_axis *s, ct_ex3 v,
+                        ct_ex3 *sweep)
+{
+    const ct_ex3 local = ct_ex3_cross(b->x, s->local, v);
+    bool any_zero = false;
+    for (int i = 0; i < 3; i++)
+        any_zero = any_zero || ct_ex_is_zero(local.e[i]);
+    if (b->is_planar || ct_ex3_is_zero(s->local) || !any_zero)
+        return false;
+    *sweep = ct_cluster_turn(b, s->cluster, local);
+    return true;
+}
+
+void ct_path_mark(struct ct_build *b, int tail, int head, bool *marked)
+{
+    const struct path p = find_path(b, tail, head);
+    int end[2] = {b->placement[tail].frame, b->placement[head].frame};
+    memset(marked, 0, b->ncluster * sizeof *marked);
+    for (size_t i = 0; i < p.n + COUNT(end); i++)
+        for (int c = i < p.n ? p.piece[i].cluster : end[i - p.n]; c > 0 && !marked[c];
+             c = b->cluster[c].parent)
+            marked[c] = true;
+}
+
+bool ct_path_sweep(struct ct_build *b, int tail, int head, size_t r, bool carried,
+                   ct_ex3 *sweep)
+{
+    const struct path p = find_path(b, tail, head);
+    const struct ct_rotation_axis *s = &b->rotation_axis[r];
+    const int base = carried && ct_cluster_is_outboard(b, s->cluster, b->placement[tail].frame);
+    bool any = false, is_own = true;
+    ct_ex3 reach = zero3, own = zero3;
+    for (size_t i = 0; i < p.n; i++) {
+        const struct ct_piece *piece = &p.piece[i];
+        const int turns = ct_cluster_is_outboard(b, s->cluster, piece->cluster);
+        if (turns == base)
+            continue;
+        any = true;
+        const int sign = (turns - base) * piece->sign;
+        reach = accumulate(b, reach, sign, piece_vector(b, piece));
+        is_own = is_own && piece->cluster == s->cluster;
+        own = accumulate(b, own, sign, piece->local);
+    }
+    if (!is_own || !local_sweep(b, s, own, sweep))
+        *sweep = ct_ex3_cross(b->x, s->axis, reach);
+    return any;
+}
+
+// Does some spin turn a vector of `cluster` in the sweep of a row?
+static bool is_swept(const struct ct_build *b, int tail, int head, bool carried, int cluster)
+{
+    const int from = b->placement[tail].frame, to = b->placement[head].frame;
+    for (size_t r = 0; r < b->nrotation_axis; r++) {
+        const int c = b->rotation_axis[r].cluster;
+        const bool is_base = carried && ct_cluster_is_outboard(b, c, from);
+        if (ct_cluster_is_outboard(b, c, cluster) != is_base
+            && (carried || !ct_cluster_is_outboard(b, c, from)
+                || !ct_cluster_is_outboard(b, c, to)))
+            return true;
+    }
+    return false;
+}
+
+const ct_ex3 *ct_path_levers(struct ct_build *b, int tail, int head, bool carried, size_t *n)
+{
+    const struct ct_tree *T = &b->T;
+    ct_ex3 *lever = CT_NEWN(b->arena, ct_ex3, T->depth[tail] + T->depth[head] + 1);
+    *n = 0;
+    for (int i = tail, j = head; i != j;) { // the deeper one steps inwards
+        int *const k = T->depth[i] > T->depth[j] ? &i : &j;
+        const struct ct_edge_info *e = &b->edge[T->parent_edge[*k]];
+        const ct_ex3 d = e->kind == CT_EDGE_ARM ? e->at : e->motion.d;
+        if (!ct_ex3_is_zero(d) && is_swept(b, tail, head, carried, tail_of(b, *k)->frame))
+            lever[(*n)++] = d;
+        *k = T->parent[*k];
+    }
+    return lever;
+}
+
+int ct_path_translation_side(struct ct_build *b, int tail, int head, int anchor)
+{
+    const bool at_head = ct_anchor_is_outboard(b, anchor, b->placement[head].anchor);
+    const bool at_tail = ct_anchor_is_outboard(b, anchor, b->placement[tail].anchor);
+    return (int)at_head - (int)at_tail;
+}

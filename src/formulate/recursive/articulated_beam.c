@@ -1,0 +1,533 @@
+// See articulated_beam.h.
+#include "formulate/recursive/articulated_beam.h"
+
+#include <string.h>
+
+enum { FREEDOMS = CT_NODE_FREEDOM };
+
+// ---- arithmetic -----------------------------------------------------------------------------------------
+
+static ct_ex force_of(const struct ct_articulated_body *k, int i)
+{
+    return i < 3 ? k->n.e[i] : k->f.e[i - 3];
+}
+
+static ct_ex product(struct ct_exs *x, const ct_ex *v, const ct_ex *w)
+{
+    ct_ex sum = CT_EX_ZERO;
+    for (int r = 0; r < CT_SPATIAL_SIZE; r++)
+        sum = ct_ex_add(x, sum, ct_ex_mul(x, v[r], w[r]));
+    return sum;
+}
+
+static bool is_zero(const ct_ex *v)
+{
+    for (int r = 0; r < CT_SPATIAL_SIZE; r++)
+        if (!ct_ex_is_zero(v[r]))
+            return false;
+    return true;
+}
+
+static ct_ex *entry_of(struct ct_articulated_beam *e, int k, int l)
+{
+    return k > l ? &e->M[k + e->nall * l] : &e->M[l + e->nall * k];
+}
+
+static int place_of(const struct ct_articulated_beam *e, int speed)
+{
+    return speed < 0 ? e->n - speed : e->number[speed];
+}
+
+static void add_to(struct ct_exs *x, ct_ex *sum, ct_ex v)
+{
+    *sum = ct_ex_add(x, *sum, v);
+}
+
+// Does a freedom that follows stand for itself? In a CHAIN elements see it; else where it turns a section that members hang on.
+static bool has_followers(const struct ct_articulated *w, size_t i)
+{
+    const struct ct_flexible *f = &w->b->flexible[i];
+    if (ct_flexible_is_augmented(f))
+        return true;
+    for (size_t k = 1; k < w->s->n; k++) {
+        const struct ct_member *m = &w->s->member[k];
+        for (int j = 0; j < m->nfree && m->beam == (int)i + 1; j++)
+            if (m->screw[j].speed < -f->beam->nelement + 1)
+                return true;
+    }
+    return false;
+}
+
+void ct_articulated_beam_start(struct ct_articulated *w, size_t i)
+{
+    struct ct_build *b = w->b;
+    struct ct_articulated_beam *e = &w->elastic[i];
+    const struct ct_flexible *f = e->f = &b->flexible[i];
+    e->n = f->nelastic;
+    e->is_augmented = ct_flexible_is_augmented(f);
+    e->nfollow = has_followers(w, i) ? ct_condensation_count(f) : 0;
+    e->nall = e->n + (e->is_augmented || e->nfollow ? f->beam->nelement : 0) + 2 * e->nfollow;
+    const size_t n = (size_t)e->nall;
+    e->number = CT_NEWN(b->arena, int, b->eqs->nu + 1);
+    for (size_t k = 0; k < b->eqs->nu; k++)
+        e->number[k] = -1;
+    for (int k = 0; k < e->n; k++)
+        e->number[f->elastic[k].u] = k;
+    e->M = CT_NEWN(b->arena, ct_ex, n * n + 1);
+    e->row = CT_NEWN(b->arena, ct_ex, n + 1);
+    e->a = CT_NEWN(b->arena, ct_ex, n + 1);
+    e->G = CT_NEWN(b->arena, struct ct_spatial_vector, n + 1);
+    e->order = CT_NEWN(b->arena, int, n + 1);
+    e->is_done = CT_NEWN(b->arena, bool, n + 1);
+}
+
+// The place of number k of those that follow; that of its multiplier.
+static int follower(const struct ct_articulated_beam *e, int k)
+{
+    return e->n + e->f->beam->nelement + k;
+}
+
+static int multiplier(const struct ct_articulated_beam *e, int k)
+{
+    return follower(e, k) + e->nfollow;
+}
+
+// Is a place the foreshortening at the start of an element?
+static bool is_start(const struct ct_articulated_beam *e, int place)
+{
+    return e->is_augmented && place >= e->n && place < follower(e, 0);
+}
+
+static int freedom_place(const struct ct_articulated_beam *e, int freedom)
+{
+    const struct ct_freedom *d = &e->f->freedom[freedom];
+    const int k = ct_condensation_number(e->f, freedom);
+    return k >= 0 ? follower(e, k) : d->npart ? d->part[0].k : -1;
+}
+
+// The place of dof j of element i and its sign; -1: it is fixed.
+static int dof_place(const struct ct_articulated_beam *e, int i, int j, int *sign)
+{
+    const struct ct_freedom *d = ct_dof_freedom(e->f, i, j, sign);
+    return d ? freedom_place(e, (int)(d - e->f->freedom)) : -1;
+}
+
+// Mass of the elements by their own dofs and c.
+static void add_elements(struct ct_articulated *w, struct ct_articulated_body *k,
+                         struct ct_articulated_beam *e, const ct_ex33 *A, struct ct_columns *c)
+{
+    struct ct_build *b = w->b;
+    struct ct_exs *x = b->x;
+    struct ct_element_sums *s = e->f->inertia->method->sums(b, e->f);
+    for (int i = 0; i < e->f->beam->nelement; i++) {
+        ct_element_close(x, &s[i]);
+        const int carried = e->n + i;
+        for (int j = 0; j < CT_DOF; j++) {
+            int sign;
+            const int at = dof_place(e, i, j, &sign);
+            if (at < 0)
+                continue;
+            const ct_ex one = ct_ex_const(x, sign);
+            c->moved[at] = ct_ex3_add(x, c->moved[at], ct_ex3_scale(x, one, s[i].moved[j]));
+            c->swept[at] = ct_ex3_add(x, c->swept[at], ct_ex3_scale(x, one, s[i].swept[j]));
+            for (int l = 0; l < CT_DOF; l++) {
+                int other;
+                const int to = dof_place(e, i, l, &other);
+                if (to >= 0 && to <= at) // the transposed pair comes, too
+                    add_to(x, entry_of(e, at, to), ct_ex_scale(x, sign * other, s[i].M[j][l]));
+            }
+            if (i > 0)
+                add_to(x, entry_of(e, carried, at), ct_ex_scale(x, sign, s[i].moved[j].e[0]));
+        }
+        if (i == 0)
+            continue; // nothing is before it
+        const ct_ex3 along = {{s[i].m, CT_EX_ZERO, CT_EX_ZERO}};
+        const ct_ex3 about = {{CT_EX_ZERO, s[i].moment.e[2], ct_ex_neg(x, s[i].moment.e[1])}};
+        const ct_ex3 f = ct_ex33_apply(x, A, along), n = ct_ex33_apply(x, A, about);
+        add_to(x, entry_of(e, carried, carried), s[i].m);
+        for (int r = 0; r < CT_SPATIAL_SIZE; r++)
+            add_to(x, &k->C[carried].e[r], r < 3 ? n.e[r] : f.e[r - 3]);
+    }
+}
+
+// The beam's own inertia, stiffness and damping at its base, and what its velocity needs; in the member's axes.
+static void add_beam(struct ct_articulated *w, int i, struct ct_articulated_beam *e,
+                     const ct_ex33 *A)
+{
+    struct ct_build *b = w->b;
+    struct ct_exs *x = b->x;
+    const struct ct_flexible *f = e->f;
+    const struct ct_inertia *I = f->inertia;
+    struct ct_articulated_body *k = &w->body[i];
+    const size_t nu = b->eqs->nu;
+    struct ct_columns c = {CT_NEWN(b->ctx->scratch, ct_ex3, e->nall + 1),
+                           CT_NEWN(b->ctx->scratch, ct_ex3, e->nall + 1)};
+    const struct ct_base motion = {.w = ct_ex33_apply_t(x, A, w->s->member[i].w)};
+    ct_ex3 F, T, lessF, lessT;
+    const struct ct_base felt = ct_flexible_felt(b, f, &motion, &lessF, &lessT);
+    I->method->wrench(b, f, &felt, CT_BIAS, &F, &T);
+    F = ct_ex3_sub(x, F, lessF);
+    T = ct_ex3_sub(x, T, lessT);
+    ct_flexible_rows(b, f, &felt, CT_BIAS, w->row);
+    if (e->is_augmented) {
+        add_elements(w, k, e, A, &c);
+    } else
+        ct_flexible_columns(b, f, &c, w->M);
+    k->n = ct_ex3_add(x, k->n, ct_ex33_apply(x, A, T));
+    k->f = ct_ex3_add(x, k->f, ct_ex33_apply(x, A, F));
+    for (int j = 0; j < e->nall; j++) {
+        const ct_ex3 swept = ct_ex33_apply(x, A, c.swept[j]),
+                     moved = ct_ex33_apply(x, A, c.moved[j]);
+        for (int r = 0; r < CT_SPATIAL_SIZE; r++)
+            k->C[j].e[r] = ct_ex_add(x, k->C[j].e[r], r < 3 ? swept.e[r] : moved.e[r - 3]);
+    }
+    for (int j = 0; j < e->n; j++) {
+        const size_t u = (size_t)f->elastic[j].u;
+        e->row[j] = ct_ex_add(x, e->row[j], w->row[u]);
+        for (int l = 0; l <= j; l++) {
+            const size_t v = (size_t)f->elastic[l].u;
+            ct_ex *to = entry_of(e, j, l);
+            *to = ct_ex_add(x, *to, w->M[u > v ? u + nu * v : v + nu * u]);
+        }
+    }
+}
+
+// Elastic coordinates that move this member.
+static void add_screws(struct ct_articulated *w, int i, struct ct_articulated_beam *e)
+{
+    struct ct_exs *x = w->b->x;
+    const struct ct_member *m = &w->s->member[i];
+    struct ct_articulated_body *k = &w->body[i];
+    struct ct_spatial_vector *P
+        = CT_NEWN(w->b->ctx->scratch, struct ct_spatial_vector, m->nfree + 1),
+        *S = CT_NEWN(w->b->ctx->scratch, struct ct_spatial_vector, m->nfree + 1);
+    for (int j = 0; j < m->nfree; j++) {
+        const int own = place_of(e, m->screw[j].speed);
+        ct_articulated_project(w, k, &m->screw[j], P[j].e);
+        for (int r = 0; r < CT_SPATIAL_SIZE; r++) {
+            S[j].e[r] = ct_screw_direction(&m->screw[j], r);
+            e->row[own] = ct_ex_add(x, e->row[own], ct_ex_mul(x, S[j].e[r], force_of(k, r)));
+        }
+        for (int l = 0; l < e->nall; l++) {
+            const ct_ex v = product(x, S[j].e, k->C[l].e);
+            ct_ex *to = entry_of(e, own, l);
+            *to = ct_ex_add(x, *to, l == own ? ct_ex_scale(x, 2, v) : v);
+        }
+        for (int l = 0; l <= j; l++) {
+            ct_ex *to = entry_of(e, own, place_of(e, m->screw[l].speed));
+            *to = ct_ex_add(x, *to, product(x, S[l].e, P[j].e));
+        }
+    }
+    for (int j = 0; j < m->nfree; j++) {
+        ct_ex *C = k->C[place_of(e, m->screw[j].speed)].e;
+        for (int r = 0; r < CT_SPATIAL_SIZE; r++)
+            C[r] = ct_ex_add(x, C[r], P[j].e[r]);
+    }
+}
+
+// What is left of the body: I - G C', and its forces.
+static void reduce_body(struct ct_exs *x, struct ct_articulated_body *k,
+                        const struct ct_spatial_vector *G, const struct ct_spatial_vector *C,
+                        ct_ex rest)
+{
+    for (int r = 0; r < CT_SPATIAL_SIZE; r++) {
+        for (int c = 0; c <= r; c++)
+            ct_articulated_set(
+                k, r, c,
+                ct_ex_sub(x, ct_articulated_entry(k, r, c), ct_ex_mul(x, G->e[r], C->e[c])));
+        *ct_articulated_force(k, r)
+            = ct_ex_add(x, *ct_articulated_force(k, r), ct_ex_mul(x, C->e[r], rest));
+    }
+}
+
+// What is left of the member's matrix when e'' number j is free to be what it likes.
+static void free_coordinate(struct ct_articulated *w, struct ct_articulated_body *k,
+                            struct ct_articulated_beam *e, int j)
+{
+    struct ct_exs *x = w->b->x;
+    const int speed = e->f->elastic[j].u;
+    const ct_ex D = w->pivot[speed] = *entry_of(e, j, j), g = ct_ex_div(x, CT_EX_ONE, D);
+    const ct_ex rest = e->row[j];
+    e->is_done[j] = true;
+    e->order[e->nstep++] = j;
+    e->row[j] = ct_ex_mul(x, rest, g);
+    for (int r = 0; r < CT_SPATIAL_SIZE; r++)
+        e->G[j].e[r] = ct_ex_mul(x, k->C[j].e[r], g);
+    for (int l = e->nall; l-- > 0;) {
+        ct_ex *at = entry_of(e, j, l);
+        if (e->is_done[l] || ct_ex_is_zero(*at))
+            continue;
+        const ct_ex a = ct_ex_mul(x, *at, g);
+        for (int i = 0; i <= l; i++) {
+            ct_ex *to = entry_of(e, l, i);
+            if (!e->is_done[i])
+                *to = ct_ex_sub(x, *to, ct_ex_mul(x, a, *entry_of(e, j, i)));
+        }
+        for (int r = 0; r < CT_SPATIAL_SIZE; r++)
+            k->C[l].e[r] = ct_ex_sub(x, k->C[l].e[r], ct_ex_mul(x, a, k->C[j].e[r]));
+        e->row[l] = ct_ex_sub(x, e->row[l], ct_ex_mul(x, a, rest));
+        *at = a;
+    }
+    reduce_body(x, k, &e->G[j], &k->C[j], e->row[j]);
+}
+
+// One that follows and its multiplier, [h p; p q]: h q <= 0 < p^2, as h is an inertia and q of multipliers the reverse.
+static void free_follower(struct ct_articulated *w, struct ct_articulated_body *k,
+                          struct ct_articulated_beam *e, int number)
+{
+    struct ct_exs *x = w->b->x;
+    const int at[2] = {follower(e, number), multiplier(e, number)};
+    const ct_ex h = *entry_of(e, at[0], at[0]), p = *entry_of(e, at[0], at[1]),
+                q = *entry_of(e, at[1], at[1]),
+                g
+                = ct_ex_div(x, CT_EX_ONE, ct_ex_sub(x, ct_ex_mul(x, h, q), ct_ex_mul(x, p, p)));
+    const ct_ex minus = ct_ex_neg(x, ct_ex_mul(x, p, g));
+    const ct_ex inverse[2][2] = {{ct_ex_mul(x, q, g), minus}, {minus, ct_ex_mul(x, h, g)}};
+    const ct_ex rest[2] = {e->row[at[0]], e->row[at[1]]};
+    for (int i = 0; i < 2; i++) {
+        e->is_done[at[i]] = true;
+        e->order[e->nstep++] = at[i];
+        e->row[at[i]] = ct_ex_add(x, ct_ex_mul(x, inverse[i][0], rest[0]),
+                                  ct_ex_mul(x, inverse[i][1], rest[1]));
+        for (int r = 0; r < CT_SPATIAL_SIZE; r++)
+            e->G[at[i]].e[r] = ct_ex_add(x, ct_ex_mul(x, inverse[i][0], k->C[at[0]].e[r]),
+                                         ct_ex_mul(x, inverse[i][1], k->C[at[1]].e[r]));
+    }
+    *entry_of(e, at[0], at[1]) = CT_EX_ZERO; // known together on the way back
+    for (int l = e->nall; l-- > 0;) {
+        if (e->is_done[l])
+            continue;
+        ct_ex *const to[2] = {entry_of(e, at[0], l), entry_of(e, at[1], l)};
+        if (ct_ex_is_zero(*to[0]) && ct_ex_is_zero(*to[1]))
+            continue;
+        ct_ex a[2];
+        for (int i = 0; i < 2; i++)
+            a[i] = ct_ex_add(x, ct_ex_mul(x, inverse[i][0], *to[0]),
+                             ct_ex_mul(x, inverse[i][1], *to[1]));
+        for (int i = 0; i < 2; i++) {
+            for (int j = 0; j <= l; j++)
+                if (!e->is_done[j])
+                    *entry_of(e, l, j) = ct_ex_sub(x, *entry_of(e, l, j),
+                                                   ct_ex_mul(x, a[i], *entry_of(e, at[i], j)));
+            for (int r = 0; r < CT_SPATIAL_SIZE; r++)
+                k->C[l].e[r] = ct_ex_sub(x, k->C[l].e[r], ct_ex_mul(x, a[i], k->C[at[i]].e[r]));
+            e->row[l] = ct_ex_sub(x, e->row[l], ct_ex_mul(x, a[i], rest[i]));
+        }
+        *to[0] = a[0];
+        *to[1] = a[1];
+    }
+    for (int i = 0; i < 2; i++)
+        reduce_body(x, k, &e->G[at[i]], &k->C[at[i]], e->row[at[i]]);
+}
+
+// c of element i as a sum: places and weights (CT_AXIS_DOF + 1 of each). Returns their number.
+static int carried_by(struct ct_articulated *w, const struct ct_articulated_beam *e, int i,
+                      int *place, ct_ex *weight)
+{
+    int n = 0, sign;
+    if (i > 1) {
+        place[n] = e->n + i - 1;
+        weight[n++] = CT_EX_ONE;
+    }
+    for (int j = 2; j < CT_BENT_DOF; j++) {
+        const int at = dof_place(e, i - 1, j, &sign);
+        if (at < 0)
+            continue;
+        place[n] = at;
+        weight[n++] = ct_ex_scale(w->b->x, sign, e->f->element[i - 1].g[j]);
+    }
+    return n;
+}
+
+// Put in what c of element i is; all beyond its start are eliminated.
+static void put_in(struct ct_articulated *w, struct ct_articulated_body *k,
+                   struct ct_articulated_beam *e, int i)
+{
+    struct ct_exs *x = w->b->x;
+    const int p = e->n + i;
+    int place[CT_AXIS_DOF + 1];
+    ct_ex weight[CT_AXIS_DOF + 1];
+    const int n = carried_by(w, e, i, place, weight);
+    const ct_ex own = *entry_of(e, p, p);
+    e->is_done[p] = true;
+    e->order[e->nstep++] = p;
+    for (int t = 0; t < n; t++) {
+        for (int z = 0; z < e->nall; z++) {
+            const ct_ex v = ct_ex_mul(x, weight[t], *entry_of(e, p, z));
+            if (!e->is_done[z])
+                add_to(x, entry_of(e, place[t], z), z == place[t] ? ct_ex_scale(x, 2, v) : v);
+        }
+        const ct_ex heavy = ct_ex_mul(x, weight[t], own);
+        for (int u = 0; u <= t; u++)
+            add_to(x, entry_of(e, place[t], place[u]), ct_ex_mul(x, weight[u], heavy));
+        for (int r = 0; r < CT_SPATIAL_SIZE; r++)
+            add_to(x, &k->C[place[t]].e[r], ct_ex_mul(x, weight[t], k->C[p].e[r]));
+        add_to(x, &e->row[place[t]], ct_ex_mul(x, weight[t], e->row[p]));
+    }
+}
+
+static void free_followers(struct ct_articulated *w, struct ct_articulated_body *k,
+                           struct ct_articulated_beam *e, int node)
+{
+    for (int j = FREEDOMS; j-- > 0;) {
+        const int number = ct_condensation_number(e->f, FREEDOMS * node + j);
+        if (number >= 0)
+            free_follower(w, k, e, number);
+    }
+}
+
+// Freedoms that follow satisfy their sums, which multipliers hold them to.
+static void add_laws(struct ct_exs *x, struct ct_articulated_beam *e)
+{
+    for (int k = 0; k < e->nfollow; k++) {
+        int n;
+        const struct ct_condensation_term *law = ct_condensation_law(e->f, k, &n);
+        *entry_of(e, multiplier(e, k), follower(e, k)) = CT_EX_ONE;
+        for (int i = 0; i < n; i++)
+            *entry_of(e, multiplier(e, k), freedom_place(e, law[i].freedom))
+                = ct_ex_const(x, law[i].by);
+    }
+}
+
+// Does anything act on freedoms that follow? Nothing does where sections are turned only for what hangs on hinges or balls.
+static bool feels_followers(struct ct_articulated_beam *e, const struct ct_spatial_vector *C)
+{
+    for (int k = 0; k < e->nfollow; k++) {
+        const int at = follower(e, k);
+        if (e->is_augmented || !ct_ex_is_zero(e->row[at]) || !is_zero(C[at].e))
+            return true;
+        for (int l = 0; l < e->nall; l++)
+            if (!ct_ex_is_zero(*entry_of(e, at, l)))
+                return true;
+    }
+    return false;
+}
+
+static void eliminate_beam(struct ct_articulated *w, int i, struct ct_articulated_beam *e)
+{
+    struct ct_exs *x = w->b->x;
+    struct ct_articulated_body *k = &w->body[i];
+    for (int j = 0; j < e->n; j++)
+        e->row[j] = ct_ex_sub(x, w->effort[e->f->elastic[j].u], e->row[j]);
+    for (int j = e->n; j < e->nall; j++)
+        e->row[j] = ct_ex_neg(x, e->row[j]);
+    if (e->is_augmented)
+        e->is_done[e->n] = true; // c of the first element is zero
+    e->follows = feels_followers(e, k->C);
+    if (e->follows)
+        add_laws(x, e);
+    int next = e->n;
+    for (int node = e->f->beam->nelement; node > 0 && (e->is_augmented || e->follows); node--) {
+        int first = next; // coordinates are numbered node by node
+        for (int j = 0; j < FREEDOMS; j++) {
+            const int at = freedom_place(e, FREEDOMS * node + j);
+            if (at >= 0 && at < first)
+                first = at;
+        }
+        if (e->follows)
+            free_followers(w, k, e, node);
+        while (next > first)
+            free_coordinate(w, k, e, --next);
+        if (node > 1 && e->is_augmented)
+            put_in(w, k, e, node - 1);
+    }
+    if (e->follows)
+        free_followers(w, k, e, 0);
+    while (next > 0)
+        free_coordinate(w, k, e, --next);
+}
+
+void ct_articulated_beam_sum(struct ct_articulated *w, int i)
+{
+    const int number = w->s->member[i].beam - 1;
+    const struct ct_member_beam *at = &w->s->beam[number];
+    struct ct_articulated_beam *e = &w->elastic[number];
+    struct ct_articulated_body *k = &w->body[i];
+    if (!k->C)
+        k->C = CT_NEWN(w->b->arena, struct ct_spatial_vector, e->nall + 1);
+    if (i == at->base)
+        add_beam(w, i, e, &at->A);
+    add_screws(w, i, e);
+    if (i == at->root)
+        eliminate_beam(w, i, e);
+}
+
+static ct_ex sum_of_parts(struct ct_exs *x, const struct ct_articulated_beam *e,
+                          const struct ct_freedom *d)
+{
+    ct_ex sum = CT_EX_ZERO;
+    for (int p = 0; p < d->npart; p++)
+        sum = ct_ex_add(x, sum, ct_ex_mul(x, d->part[p].coef, e->a[d->part[p].k]));
+    return sum;
+}
+
+// e'' of all coordinates; A of the root without its own motion by them.
+static void find_accelerations(struct ct_articulated *w, const struct ct_articulated_body *root,
+                               struct ct_articulated_beam *e, ct_ex *out)
+{
+    struct ct_exs *x = w->b->x;
+    ct_ex A[CT_SPATIAL_SIZE];
+    for (int r = 0; r < CT_SPATIAL_SIZE; r++)
+        A[r] = r < 3 ? root->al.e[r] : root->a.e[r - 3];
+    memset(e->is_done, 0, (size_t)e->nall * sizeof *e->is_done);
+    for (int step = e->nstep; step-- > 0;) {
+        const int j = e->order[step];
+        if (!is_start(e, j)) {
+            e->a[j] = ct_ex_sub(x, e->row[j], product(x, e->G[j].e, A));
+            for (int l = 0; l < e->nall; l++)
+                if (e->is_done[l])
+                    e->a[j] = ct_ex_sub(x, e->a[j], ct_ex_mul(x, *entry_of(e, j, l), e->a[l]));
+            if (j < e->n)
+                out[e->f->elastic[j].u] = e->a[j];
+        } else {
+            int place[CT_AXIS_DOF + 1];
+            ct_ex weight[CT_AXIS_DOF + 1];
+            const int n = carried_by(w, e, j - e->n, place, weight);
+            for (int t = 0; t < n; t++)
+                add_to(x, &e->a[j], ct_ex_mul(x, weight[t], e->a[place[t]]));
+        }
+        e->is_done[j] = true;
+    }
+    for (int i = 0; i < CT_NODE_FREEDOM * (e->f->beam->nelement + 1) && !e->follows; i++)
+        if (ct_condensation_number(e->f, i) >= 0 && e->nfollow)
+            e->a[freedom_place(e, i)] = sum_of_parts(x, e, &e->f->freedom[i]);
+}
+
+void ct_articulated_beam_hand(struct ct_articulated *w, int i)
+{
+    const struct ct_articulated_beam *e = &w->elastic[w->s->member[i].beam - 1];
+    struct ct_exs *x = w->b->x;
+    const struct ct_member *m = &w->s->member[i];
+    const ct_ex3 bias = ct_member_shift_bias(w->b, w->s, i);
+    struct ct_articulated_body *p = &w->body[m->parent];
+    if (!p->C)
+        p->C = CT_NEWN(w->b->arena, struct ct_spatial_vector, e->nall + 1);
+    for (int j = 0; j < e->nall; j++) {
+        const ct_ex *C = w->body[i].C[j].e;
+        ct_ex3 n = {{C[0], C[1], C[2]}}, f = {{C[3], C[4], C[5]}};
+        if (is_zero(C))
+            continue;
+        e->row[j] = ct_ex_add(x, e->row[j], ct_ex3_dot(x, n, m->al_relative));
+        n = ct_member_out(w->b, m, n);
+        f = ct_member_out(w->b, m, f);
+        e->row[j] = ct_ex_add(x, e->row[j], ct_ex3_dot(x, f, bias));
+        n = ct_ex3_add(x, n, ct_ex3_cross(x, m->r, f));
+        for (int r = 0; r < CT_SPATIAL_SIZE; r++)
+            p->C[j].e[r] = ct_ex_add(x, p->C[j].e[r], r < 3 ? n.e[r] : f.e[r - 3]);
+    }
+}
+
+void ct_articulated_beam_accelerate(struct ct_articulated *w, int i, ct_ex *out)
+{
+    struct ct_exs *x = w->b->x;
+    const struct ct_member *m = &w->s->member[i];
+    struct ct_articulated_beam *e = &w->elastic[m->beam - 1];
+    struct ct_articulated_body *k = &w->body[i];
+    if (i == w->s->beam[m->beam - 1].root)
+        find_accelerations(w, k, e, out);
+    for (int j = 0; j < m->nfree; j++) {
+        const ct_ex u = e->a[place_of(e, m->screw[j].speed)];
+        k->al = ct_ex3_add(x, k->al, ct_ex3_scale(x, u, m->screw[j].rotation));
+        k->a = ct_ex3_add(x, k->a, ct_ex3_scale(x, u, m->screw[j].translation));
+    }
+}

@@ -1,0 +1,232 @@
+// See open_chain.h. A formulation is tried by generating it and counting; what cannot win by the pattern of the mass matrix
+// alone is not generated.
+#include "formulate/recursive/open_chain.h"
+#include "formulate/recursive/articulated_body.h"
+#include "formulate/recursive/composite_body.h"
+#include "formulate/dynamics/dynamics.h"
+#include "formulate/beam/flexible_body.h"
+
+#include <math.h>
+
+// A call of a solver for dense matrices, in operations of straight-line code.
+static const double call_cost = 300;
+// What is made of more operations takes too much memory; below, repeats are rolled up (codegen/reroll.h).
+static const double longest_program = 1e7;
+
+double ct_counted_cost(const struct ct_tape_counts *c)
+{
+    const double per_function = 8, per_division = 4; // in multiplications
+    return (double)(c->multiplications + c->additions) + per_division * (double)c->divisions
+         + per_function * (double)c->functions;
+}
+
+static double cost_of(struct ct_build *b, const ct_ex *e, size_t n)
+{
+    const struct ct_tape_counts c = ct_ex_count(b->ctx->scratch, b->x, e, n);
+    return ct_counted_cost(&c);
+}
+
+// ---- M u' = Q -------------------------------------------------------------------------------------------
+
+// A pivot, and its reciprocal where it divides more than two numbers: that is cheaper, but rounds twice.
+struct pivot {
+    ct_ex value, reciprocal;
+};
+
+static struct pivot take_pivot(struct ct_exs *x, const ct_ex *H, size_t n, size_t k)
+{
+    struct pivot p = {H[k + n * k], CT_EX_ZERO};
+    size_t below = 0;
+    for (size_t i = 0; i < k; i++)
+        below += !ct_ex_is_zero(H[k + n * i]);
+    if (below > 1)
+        p.reciprocal = ct_ex_div(x, CT_EX_ONE, p.value);
+    return p;
+}
+
+static ct_ex divide(struct ct_exs *x, ct_ex a, const struct pivot *p)
+{
+    return ct_ex_is_zero(p->reciprocal) ? ct_ex_div(x, a, p->value)
+                                        : ct_ex_mul(x, a, p->reciprocal);
+}
+
+// M = L' D L from the last speed to the first, unrolled: speeds are numbered from ground outwards, so this order makes
+// no fill in a branched chain, and entries that are zero by structure cost nothing. M is positive definite, so no
+// pivots are sought. H: lower triangle of M. Source: Featherstone (2008), key featherstone2008, 8.5.
+static ct_ex *solve_symbolic(struct ct_build *b, ct_ex *H, const ct_ex *Q, ct_ex *pivots)
+{
+    struct ct_exs *x = b->x;
+    const size_t n = b->eqs->nu;
+    struct pivot *pivot = CT_NEWN(b->arena, struct pivot, n + 1);
+    ct_ex *u = CT_NEWN(b->arena, ct_ex, n + 1);
+    // H becomes D on the diagonal and L (unit, lower) below
+    for (size_t k = n; k-- > 0;) {
+        pivot[k] = take_pivot(x, H, n, k);
+        pivots[k] = pivot[k].value;
+        for (size_t i = k; i-- > 0;) {
+            if (ct_ex_is_zero(H[k + n * i]))
+                continue;
+            const ct_ex a = divide(x, H[k + n * i], &pivot[k]);
+            for (size_t j = 0; j <= i; j++)
+                H[i + n * j] = ct_ex_sub(x, H[i + n * j], ct_ex_mul(x, a, H[k + n * j]));
+            H[k + n * i] = a;
+        }
+    }
+    for (size_t k = 0; k < n; k++)
+        u[k] = Q[k];
+    for (size_t k = n; k-- > 0;) // L' z = Q
+        for (size_t i = 0; i < k; i++)
+            u[i] = ct_ex_sub(x, u[i], ct_ex_mul(x, H[k + n * i], u[k]));
+    for (size_t k = 0; k < n; k++) { // D y = z, L u = y
+        u[k] = divide(x, u[k], &pivot[k]);
+        for (size_t i = 0; i < k; i++)
+            u[k] = ct_ex_sub(x, u[k], ct_ex_mul(x, H[k + n * i], u[i]));
+    }
+    return u;
+}
+
+// Operations of the unrolled solution by the pattern of the lower triangle: pivot k touches its d nonzeros.
+static double symbolic_cost(const bool *pattern, size_t n)
+{
+    double cost = 0;
+    for (size_t k = 0; k < n; k++) {
+        double d = 0;
+        for (size_t i = 0; i < k; i++)
+            d += pattern[k + n * i];
+        cost += d * d + 6 * d + 5;
+    }
+    return cost;
+}
+
+static double dense_cost(double n)
+{
+    return n * n * n / 3 + 2 * n * n + call_cost;
+}
+
+// ---- candidates -----------------------------------------------------------------------------------------
+
+struct trial {
+    ct_ex *solution, *pivot;
+    double cost; // INFINITY: does not apply
+};
+
+// Speeds act on each other along a branch only: nonzeros of the lower triangle.
+static double least_matrix_cost(struct ct_build *b, const struct ct_members *s)
+{
+    const size_t n = b->eqs->nu;
+    double *above = CT_NEWN(b->ctx->scratch, double, s->n), cost = 0, nonzeros = 0;
+    for (size_t i = 1; i < s->n; i++) {
+        const struct ct_member *m = &s->member[i];
+        const bool is_root = m->beam && s->beam[m->beam - 1].root == (int)i;
+        const int own = is_root ? b->flexible[m->beam - 1].nelastic : m->beam ? 0 : m->nfree;
+        above[i] = above[m->parent] + own;
+        const bool is_band = m->beam && b->flexible[m->beam - 1].kinematics != CT_AXIAL_CHAIN;
+        for (int k = 0; k < own; k++) { // within a band more may be zero
+            const double d = above[m->parent] + (is_band ? 0 : k);
+            cost += d * d + 6 * d + 5;
+            nonzeros += d + 1;
+        }
+    }
+    return fmin(cost, dense_cost((double)n)) + 2 * nonzeros;
+}
+
+static struct trial try_matrix(struct ct_build *b, ct_ex *H, const ct_ex *Q)
+{
+    const size_t n = b->eqs->nu;
+    ct_ex *all = CT_NEWN(b->ctx->scratch, ct_ex, n * n + n + 1);
+    bool *pattern = CT_NEWN(b->ctx->scratch, bool, n *n + 1);
+    size_t k = 0;
+    for (size_t i = 0; i < n * n; i++) {
+        pattern[i] = !ct_ex_is_zero(H[i]);
+        if (pattern[i])
+            all[k++] = H[i];
+    }
+    for (size_t i = 0; i < n; i++)
+        all[k++] = Q[i];
+    const double unrolled = symbolic_cost(pattern, n), dense = dense_cost((double)n);
+    // nodes are at least as many as operations: only where they are very many need these be counted
+    const double most = (double)b->x->nnode + unrolled;
+    const bool is_short = unrolled < dense && most < longest_program;
+    const double assembly = is_short ? 0 : cost_of(b, all, k);
+    struct trial t = {NULL, NULL, assembly + dense};
+    if (is_short || (unrolled < dense && assembly + unrolled < longest_program)) {
+        t.pivot = CT_NEWN(b->arena, ct_ex, n + 1);
+        t.solution = solve_symbolic(b, H, Q, t.pivot);
+        t.cost = cost_of(b, t.solution, n);
+    }
+    return t;
+}
+
+static struct trial try_cutsets(struct ct_build *b)
+{
+    const struct ct_equations *e = b->eqs;
+    const size_t n = e->nu;
+    ct_ex *H = CT_NEWN(b->arena, ct_ex, n * n + 1);
+    ct_dynamics_derive(b);
+    for (size_t i = 0; i < e->nM; i++)
+        H[(size_t)e->M[i].row + n * (size_t)e->M[i].column] = e->M[i].value;
+    return try_matrix(b, H, e->Q);
+}
+
+static struct trial try_composite(struct ct_build *b, const struct ct_members *s)
+{
+    const size_t n = b->eqs->nu;
+    ct_ex *H = CT_NEWN(b->arena, ct_ex, n * n + 1), *Q = CT_NEWN(b->arena, ct_ex, n + 1);
+    ct_composite_derive(b, s, b->effort, H, Q);
+    struct trial t = try_matrix(b, H, Q);
+    if (!t.solution)
+        t.cost = INFINITY; // a call of a solver takes M and Q of the equations
+    return t;
+}
+
+static struct trial try_articulated(struct ct_build *b, const struct ct_members *s)
+{
+    ct_ex *pivot = CT_NEWN(b->arena, ct_ex, b->eqs->nu + 1),
+          *u = ct_articulated_solve(b, s, b->effort, pivot);
+    return (struct trial){u, pivot, cost_of(b, u, b->eqs->nu)};
+}
+
+// The mass matrix is what people look at, and its pivots lose least: another form must be cheaper by this.
+static const double worth = 0.9;
+
+double ct_open_cost(struct ct_build *b, double by_matrix)
+{
+    const struct ct_members *s = b->eqs->nrow ? NULL : ct_members_derive(b);
+    const double articulated = s ? try_articulated(b, s).cost : INFINITY;
+    return articulated < worth * by_matrix ? articulated : by_matrix;
+}
+
+static enum ct_formulation cheapest(const struct trial *t, enum ct_formulation wanted)
+{
+    enum ct_formulation best = CT_FORMULATION_CUTSETS;
+    if (wanted != CT_FORMULATION_AUTO && isfinite(t[wanted].cost))
+        return wanted;
+    for (int k = CT_FORMULATION_CUTSETS; k < CT_NFORMULATION; k++)
+        if (t[k].cost < (best == CT_FORMULATION_CUTSETS ? worth : 1) * t[best].cost)
+            best = (enum ct_formulation)k;
+    return best;
+}
+
+void ct_open_solve(struct ct_build *b, enum ct_formulation which)
+{
+    struct ct_equations *e = b->eqs;
+    struct trial t[CT_NFORMULATION];
+    const bool tries_members = which == CT_FORMULATION_AUTO || which > CT_FORMULATION_CUTSETS;
+    const struct ct_members *s = tries_members ? ct_members_derive(b) : NULL;
+    for (int k = 0; k < CT_NFORMULATION; k++)
+        t[k] = (struct trial){NULL, NULL, INFINITY};
+    if (s && which != CT_FORMULATION_COMPOSITE)
+        t[CT_FORMULATION_ARTICULATED] = try_articulated(b, s);
+    const double known = t[CT_FORMULATION_ARTICULATED].cost;
+    const bool by_matrix = e->nu <= CT_SMALL_SYSTEM || !s || least_matrix_cost(b, s) < known;
+    if (by_matrix && s && !s->nbeam && which != CT_FORMULATION_ARTICULATED && !b->is_planar)
+        t[CT_FORMULATION_COMPOSITE] = try_composite(b, s);
+    // in space axes of the bodies always need fewer operations than those of ground
+    if (by_matrix && !isfinite(t[CT_FORMULATION_COMPOSITE].cost))
+        t[CT_FORMULATION_CUTSETS] = try_cutsets(b);
+    e->formulation = cheapest(t, which);
+    e->solution = t[e->formulation].solution;
+    e->pivot = t[e->formulation].pivot;
+    for (int k = 0; k < CT_NFORMULATION; k++)
+        e->formulation_cost[k] = t[k].cost;
+}

@@ -1,0 +1,266 @@
+// Planar mechanisms, class K: does all that moves stay in a plane?  (formulation 5.6 d)
+#include "formulate/topology/linear_graph.h"
+
+#include "formulate/beam/deformation_selection.h"
+#include "formulate/beam/flexible_body.h"
+#include "graph/reach.h"
+
+#include <math.h>
+
+static void value3(const struct ct_build *b, ct_ex3 v, double out[3])
+{
+    for (int i = 0; i < 3; i++)
+        out[i] = ct_ex_value(b->x, v.e[i], b->value);
+}
+
+static const double parallel_tolerance = 1e-12; // unit vectors from a dozen round-off errors
+
+static bool is_parallel(const double a[3], const double n[3])
+{
+    const double c = a[0] * n[0] + a[1] * n[1] + a[2] * n[2];
+    double d = 0;
+    for (int i = 0; i < 3; i++)
+        d = fmax(d, fabs(a[i] - c * n[i]));
+    return d < parallel_tolerance;
+}
+
+static bool is_same(const double a[3], const double n[3])
+{
+    return is_parallel(a, n) && a[0] * n[0] + a[1] * n[1] + a[2] * n[2] > 0;
+}
+
+static bool is_across(const double a[3], const double n[3])
+{
+    return fabs(a[0] * n[0] + a[1] * n[1] + a[2] * n[2]) < parallel_tolerance;
+}
+
+// The motion of joint e keeps to the plane with normal n (in axes of `from`).
+static bool joint_is_planar(struct ct_build *b, const struct ct_edge_info *e, const double n[3])
+{
+    const struct ct_motion *m = &e->trial;
+    double v[3];
+    if (m->quaternion >= 0 && e->has_rotation)
+        return false;
+    for (int i = 0; i < m->nturn && e->has_rotation; i++) {
+        value3(b, m->turn[i].axis, v);
+        if (!is_parallel(v, n))
+            return false;
+    }
+    for (int k = 0; k < m->ncoord; k++) {
+        ct_ex3 p;
+        for (int i = 0; i < 3; i++)
+            p.e[i] = ct_ex_diff(b->x, m->d.e[i], m->coord[k]);
+        if (ct_ex3_is_zero(p))
+            continue;
+        for (int i = 0; i < 3; i++) // a direction that turns with q is not looked into
+            if (ct_ex_kinds(b->x, p.e[i]) & 1u << CT_SYM_LOCAL)
+                return false;
+        value3(b, p, v);
+        if (!is_across(v, n))
+            return false;
+    }
+    return true;
+}
+
+// Arms and joints with motion: they tell how their frames stand to each other.
+static bool holds_axes(const struct ct_edge_info *e)
+{
+    return e->kind != CT_EDGE_BODY && e->kind != CT_EDGE_FORCE && !e->never_branch;
+}
+
+// Edges that hold axes, in the order in which they take them from known nodes to others; turning: only those with rotation.
+static int *spread_axes(struct ct_build *b, bool turning, bool *known, int *n)
+{
+    const struct ct_graph g = {(int)b->nnode, (int)b->nedge, b->wiring};
+    bool *usable = CT_NEWN(b->arena, bool, b->nedge + 1);
+    for (size_t i = 0; i < b->nedge; i++)
+        usable[i] = holds_axes(&b->edge[i]) && (!turning || b->edge[i].has_rotation);
+    int *order = CT_NEWN(b->arena, int, b->nnode);
+    *n = ct_graph_spread(b->arena, &g, usable, known, order);
+    return order;
+}
+
+// Where joints stand still, the axes of every node are a constant rotation away from ground's; turns about the
+// normal change nothing in how they see it. Nodes that no joint holds stay at NULL.
+static ct_ex33 **upright_axes(struct ct_build *b)
+{
+    ct_ex33 **U = CT_NEWN(b->arena, ct_ex33 *, b->nnode);
+    bool *known = CT_NEWN(b->arena, bool, b->nnode);
+    for (size_t i = 0; i < b->nnode; i++)
+        if (i == 0 || b->node[i].is_particle) { // axes of particles stay those of ground
+            U[i] = CT_NEW(b->arena, ct_ex33);
+            *U[i] = ct_ex33_identity();
+            known[i] = true;
+        }
+    int n;
+    const int *order = spread_axes(b, true, known, &n);
+    for (int k = 0; k < n; k++) {
+        const struct ct_edge_info *e = &b->edge[order[k]];
+        const struct ct_edge ends = b->wiring[order[k]];
+        const int from = U[ends.tail] ? ends.tail : ends.head,
+                  to = from == ends.tail ? ends.head : ends.tail;
+        const ct_ex33 S = from == ends.tail ? e->S : ct_ex33_transpose(&e->S);
+        U[to] = CT_NEW(b->arena, ct_ex33);
+        *U[to] = ct_ex33_mul(b->x, U[from], &S);
+    }
+    return U;
+}
+
+// How far an arm or a joint reaches out of the plane [m]; the coordinates of a joint keep to it.
+static ct_ex reach_out(struct ct_build *b, int edge, const ct_ex33 *U)
+{
+    const struct ct_edge_info *e = &b->edge[edge];
+    const ct_ex zero[CT_MAX_COORD] = {{0}};
+    ct_ex3 d = e->at;
+    for (int i = 0; i < 3 && e->kind != CT_EDGE_ARM; i++)
+        d.e[i]
+            = ct_ex_subst(b->x, e->trial.d.e[i], e->trial.coord, zero, (size_t)e->ncoordinate);
+    return ct_ex3_dot(b->x, ct_ex33_apply_t(b->x, U, b->plane[2]), d);
+}
+
+static const double layer_tolerance
+    = 1e-9; // of places out of the plane, against the longest arm
+
+static double longest_arm(const struct ct_build *b)
+{
+    double longest = 0, at[3];
+    unsigned char *decided = b->x->decided;
+    b->x->decided = NULL; // a scale of round-off errors: the equations do not depend on it
+    for (size_t i = 0; i < b->nedge; i++) {
+        value3(b, b->edge[i].at, at);
+        longest = fmax(longest, sqrt(at[0] * at[0] + at[1] * at[1] + at[2] * at[2]));
+    }
+    b->x->decided = decided;
+    return longest;
+}
+
+// Places of the nodes along the normal, where joints keep to the plane.
+static void find_layers(struct ct_build *b, ct_ex33 *const *U)
+{
+    bool *known = CT_NEWN(b->arena, bool, b->nnode),
+         *placed = CT_NEWN(b->arena, bool, b->nnode);
+    b->layer = CT_NEWN(b->arena, ct_ex, b->nnode);
+    known[0] = placed[0] = true;
+    int n;
+    const int *order = spread_axes(b, false, known, &n);
+    for (int k = 0; k < n; k++) {
+        const int tail = b->wiring[order[k]].tail, head = b->wiring[order[k]].head;
+        const ct_ex up = reach_out(b, order[k], U[tail]);
+        if (placed[tail])
+            b->layer[head] = ct_ex_add(b->x, b->layer[tail], up);
+        else
+            b->layer[tail] = ct_ex_sub(b->x, b->layer[head], up);
+        placed[tail] = placed[head] = true;
+    }
+}
+
+// Does every joint keep to the plane, and do its loops close out of it? Every body must hang on joints.
+static bool is_plane(struct ct_build *b, ct_ex33 *const *U)
+{
+    double(*n)[3] = ct_arena_calloc(b->arena, b->nnode, sizeof *n);
+    const double allowed = layer_tolerance * longest_arm(b);
+    for (size_t i = 0; i < b->nnode; i++) {
+        if (!U[i])
+            return false;
+        value3(b, ct_ex33_apply_t(b->x, U[i], b->plane[2]), n[i]);
+    }
+    find_layers(b, U);
+    for (size_t i = 0; i < b->nedge; i++) {
+        const struct ct_edge_info *e = &b->edge[i];
+        const int tail = b->wiring[i].tail, head = b->wiring[i].head;
+        if (!holds_axes(e))
+            continue;
+        const ct_ex end = ct_ex_add(b->x, b->layer[tail], reach_out(b, (int)i, U[tail]));
+        if (fabs(ct_ex_value(b->x, end, b->value) - ct_ex_value(b->x, b->layer[head], b->value))
+            > allowed)
+            return false;
+        if (e->kind != CT_EDGE_ARM && e->has_rotation && !is_same(n[tail], n[head]))
+            return false;
+        if (e->kind == CT_EDGE_JOINT && !joint_is_planar(b, e, n[tail]))
+            return false;
+    }
+    return true;
+}
+
+// Nodes that see the normal as ground does need no rotation of their own.
+static void keep_uprights(struct ct_build *b, ct_ex33 **U)
+{
+    double g[3], n[3];
+    value3(b, b->plane[2], g);
+    b->upright = CT_NEWN(b->arena, ct_ex33, b->nnode);
+    for (size_t i = 0; i < b->nnode; i++) {
+        value3(b, ct_ex33_apply_t(b->x, U[i], b->plane[2]), n);
+        b->upright[i] = is_same(n, g) ? ct_ex33_identity() : *U[i];
+    }
+}
+
+// Does everything keep to the plane across an axis (ground components)? The sense does not matter; prefer the one along
+// +z, +y, +x, so that coordinates read as usual.
+static bool takes_normal(struct ct_build *b, ct_ex33 **U, ct_ex3 axis)
+{
+    double n[3];
+    value3(b, axis, n);
+    const int most = fabs(n[2]) > 0.5 ? 2 : fabs(n[1]) > 0.5 ? 1 : 0;
+    b->plane[2] = n[most] < 0 ? ct_ex3_neg(b->x, axis) : axis;
+    if (!is_plane(b, U) || !ct_deformation_keeps_plane(b, U))
+        return false;
+    keep_uprights(b, U);
+    return true;
+}
+
+// The normal can only be the axis of the first joint that turns, as ground sees it; where none does, an axis that a beam
+// bends about.
+static bool find_normal(struct ct_build *b)
+{
+    ct_ex33 **U = upright_axes(b);
+    for (size_t i = 0; i < b->nedge; i++) {
+        const struct ct_edge_info *e = &b->edge[i];
+        const ct_ex33 *A = U[b->wiring[i].tail];
+        if (e->kind == CT_EDGE_JOINT && e->has_rotation && e->trial.nturn)
+            return A && takes_normal(b, U, ct_ex33_apply(b->x, A, e->trial.turn[0].axis));
+    }
+    for (int axis = 2; axis > 0 && b->nflexible; axis--) {
+        const ct_ex33 *A = U[b->flexible[0].base];
+        if (A
+            && takes_normal(b, U,
+                            (ct_ex3){{A->e[3 * axis], A->e[1 + 3 * axis], A->e[2 + 3 * axis]}}))
+            return true;
+    }
+    return false;
+}
+
+const char *ct_plane_axis_name(const struct ct_build *b, int i)
+{
+    static const char *const letter[] = {"x", "y", "z"}, *const own[] = {"e1", "e2", "e3"};
+    if (!b->is_planar)
+        return letter[i];
+    for (int k = 0; k < 3; k++) {
+        double axis[3] = {0}, v[3];
+        axis[k] = 1;
+        value3(b, b->plane[i], v);
+        if (is_same(v, axis))
+            return letter[k];
+    }
+    return own[i];
+}
+
+void ct_planarity_detect(struct ct_build *b, bool allowed)
+{
+    const double axes[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+    for (int i = 0; i < 3; i++)
+        b->plane[i] = ct_ex3_const(b->x, axes + 3 * i);
+    b->keeps_plane = find_normal(b);
+    b->normal = b->plane[2];
+    if (!allowed || !b->keeps_plane) {
+        b->plane[2] = ct_ex3_const(b->x, axes + 6);
+        return;
+    }
+    b->is_planar = b->eqs->is_planar = true;
+    ct_axes_across(b->x, b->plane[2], b->value, &b->plane[0], &b->plane[1]);
+    double v[3];
+    value3(b, b->plane[2], v);
+    const char *why = ct_arena_printf(
+        b->arena, "every joint turns about (%.6g, %.6g, %.6g) or slides across it", v[0], v[1],
+        v[2]);
+    ct_linear_graph_note_left_out(b, "motion out of the plane and its constraint rows", why);
+}

@@ -1,0 +1,173 @@
+// See tree_selection.h: which edges are branches by rule, and which come first.
+#include "formulate/topology/tree_selection.h"
+
+#include "base/sort.h"
+#include "formulate/beam/beam_dynamics.h"
+#include "formulate/recursive/member.h"
+#include "formulate/dynamics/small_motion.h"
+#include "graph/reach.h"
+
+#include <string.h>
+
+// Distance of each node from ground over edges that can be branches: in edges, or in rotational freedoms.
+static int *node_depths(struct ct_build *b, bool by_rotation)
+{
+    int *depth = CT_NEWN(b->arena, int, b->nnode), *length = CT_NEWN(b->arena, int, b->nedge);
+    bool *usable = CT_NEWN(b->arena, bool, b->nedge);
+    for (size_t e = 0; e < b->nedge; e++) {
+        usable[e] = b->edge[e].kind != CT_EDGE_BODY && !b->edge[e].never_branch;
+        length[e] = by_rotation ? b->edge[e].weight_r : 1;
+    }
+    ct_graph_distances(b->arena, &b->graph, usable, length, (int)b->nnode * CT_MAX_COORD,
+                       depth);
+    return depth;
+}
+
+// A coordinate that carries an effort, a spring or a driver is best a branch of its own.
+static bool is_active(const struct ct_instance *joint)
+{
+    static const char *const keys[] = {"stiffness", "damping", "effort", "motion"};
+    for (size_t i = 0; i < COUNT(keys) && joint->cls->motion; i++)
+        if (ct_instance_value(joint, keys[i])->given)
+            return true;
+    return false;
+}
+
+// Is an end of the edge on a beam whose sections may follow the other nodes for want of inertia? What is counted through
+// such a section moves with all of them, and fills the mass matrix. The start of a clamped beam does not follow.
+static bool turns_follower(const struct ct_build *b, size_t i)
+{
+    const int end[2] = {b->wiring[i].tail, b->wiring[i].head};
+    for (int k = 0; k < 2; k++) {
+        const struct ct_flexible *f = ct_flexible_of(b, b->node[end[k]].body);
+        if (f && (f->beam->is_chord || end[k] != f->base)
+            && (f->beam->is_lumped || f->beam->theory == CT_BEAM_TIMOSHENKO)
+            && (ct_ex_is_zero(ct_flexible_rotary(f, 1).value)
+                || ct_ex_is_zero(ct_flexible_rotary(f, 2).value)))
+            return true;
+    }
+    return false;
+}
+
+// Does no edge that can be a branch close a loop, and is no joint a constraint alone?
+static bool is_without_loops(const struct ct_build *b)
+{
+    int *weight = CT_NEWN(b->ctx->scratch, int, b->nedge + 1),
+        *piece = CT_NEWN(b->ctx->scratch, int, b->nnode + 1), npiece = 1;
+    size_t nusable = 0;
+    struct ct_tree unused;
+    for (size_t e = 0; e < b->nedge; e++) {
+        const enum ct_edge_kind kind = b->edge[e].kind;
+        if (b->edge[e].never_branch && kind != CT_EDGE_FORCE)
+            return false;
+        const bool usable = kind != CT_EDGE_BODY && kind != CT_EDGE_FORCE;
+        weight[e] = usable ? 0 : -1;
+        nusable += usable;
+    }
+    ct_tree_kruskal(b->arena, &b->graph, weight, NULL, &unused, piece);
+    for (size_t i = 0; i < b->nnode; i++)
+        npiece = piece[i] >= npiece ? piece[i] + 1 : npiece;
+    return nusable + (size_t)npiece == b->nnode;
+}
+
+// Is a beam in an open system that fills the mass matrix by itself (CHAIN), where all beams can be articulated bodies (6.9b)?
+static bool fills_matrix(const struct ct_build *b)
+{
+    bool any = false;
+    for (size_t i = 0; i < b->nflexible; i++)
+        any = any || b->flexible[i].kinematics == CT_AXIAL_CHAIN;
+    return any && ct_members_take_beams(b) && is_without_loops(b);
+}
+
+// Is the farther end of the edge a section of a beam that its frame is not fixed to? A beam that is entered there has the form
+// of articulated bodies only if what it hangs on turns it: an angle from ground is that of its frame.
+static bool enters_section(const struct ct_build *b, size_t i, const int *depth)
+{
+    const int tail = b->wiring[i].tail, head = b->wiring[i].head,
+              end = depth[head] > depth[tail] ? head : tail;
+    const struct ct_flexible *f = ct_flexible_of(b, b->node[end].body);
+    return f && end != f->base;
+}
+
+// Order among equal weights. In a plane the angle of a body weighs as much as that of a joint and gives
+// shorter expressions; a passive joint on a body that turns yields to it, but for beams entered at a section: where sections
+// follow, if only articulated bodies do without a full mass matrix.  (2.3)
+static int tie_rank(const struct ct_build *b, size_t i, const int *depth, const int *turned,
+                    enum ct_tree_choice choice, bool fills)
+{
+    const struct ct_edge_info *e = &b->edge[i];
+    const int tail = b->wiring[i].tail, head = b->wiring[i].head, last = 2 * (int)b->nedge;
+    if (e->kind == CT_EDGE_ARM)
+        return -1;
+    if (e->kind == CT_EDGE_BODY)
+        return b->is_planar && choice == CT_TREE_AUTO ? 1 : last;
+    const bool enters = enters_section(b, i, depth),
+               is_first = turned[tail] == 0 || turned[head] == 0 || enters;
+    if ((is_first && !(b->is_planar && turns_follower(b, i) && !(enters && fills)))
+        || (e->kind == CT_EDGE_JOINT && is_active(e->self)))
+        return 0;
+    return 2 + (depth[tail] < depth[head] ? depth[tail] : depth[head]);
+}
+
+static int order_names(const void *build, const void *left, const void *right)
+{
+    const struct ct_build *b = build;
+    const int *i = left, *k = right;
+    return strcmp(b->edge[*i].name, b->edge[*k].name);
+}
+
+// Equal ranks in the order of names: the trees of assembly, and with them the assembly found where there
+// are several, do not depend on the order of the file.
+static void rank_by_name(const struct ct_build *b, int *rank)
+{
+    const int n = (int)b->nedge;
+    int *sorted = CT_NEWN(b->arena, int, n + 1), place = 0;
+    for (int i = 0; i < n; i++)
+        sorted[i] = i;
+    ct_sort(b->arena, sorted, b->nedge, sizeof *sorted, order_names, b);
+    for (int k = 0; k < n; k++) { // place: how many names come before
+        if (k && order_names(b, &sorted[k - 1], &sorted[k]) != 0)
+            place = k;
+        rank[sorted[k]] = n * (rank[sorted[k]] + 1) + place;
+    }
+}
+
+struct ct_pair_rules ct_pair_rules_make(struct ct_build *b,
+                                        const struct ct_formulate_options *o)
+{
+    const enum ct_tree_choice choice = o->tree;
+    const size_t n = b->nedge;
+    struct ct_pair_rules r = {.weight_t = CT_NEWN(b->arena, int, n),
+                              .weight_r = CT_NEWN(b->arena, int, n),
+                              .rank = CT_NEWN(b->arena, int, n),
+                              .forced_t = CT_NEWN(b->arena, bool, n),
+                              .forced_r = CT_NEWN(b->arena, bool, n),
+                              .banned_t = CT_NEWN(b->arena, bool, n),
+                              .banned_r = CT_NEWN(b->arena, bool, n),
+                              .tied = CT_NEWN(b->arena, bool, n)};
+    const int *depth = node_depths(b, false), *turned = node_depths(b, true);
+    const bool fills = fills_matrix(b);
+    for (size_t i = 0; i < n; i++) {
+        const struct ct_edge_info *e = &b->edge[i];
+        const bool is_body = e->kind == CT_EDGE_BODY;
+        const bool is_particle = is_body && b->model->body[e->index].is_particle;
+        const bool dear = choice == CT_TREE_ABSOLUTE ? !is_body : is_body;
+        const int extra = choice != CT_TREE_AUTO && dear && !e->must_be_branch ? 100 : 0;
+        r.weight_t[i] = e->weight_t + extra;
+        r.weight_r[i] = e->weight_r + extra;
+        if (o->first && e->kind == CT_EDGE_JOINT && o->first[e->index])
+            r.weight_t[i] = r.weight_r[i] = -1;
+        r.rank[i] = tie_rank(b, i, depth, turned, choice, fills);
+        const bool is_small = e->kind == CT_EDGE_JOINT && ct_small_motion_joint(b, e->index);
+        r.forced_t[i] = e->must_be_branch || is_small;
+        r.forced_r[i] = e->must_be_branch || is_particle || (is_small && e->has_rotation);
+        r.banned_t[i] = e->never_branch;
+        r.banned_r[i] = e->never_branch || !e->has_rotation;
+        r.tied[i] = e->must_be_branch;
+        if (is_particle)
+            r.weight_r[i] = 0;
+    }
+    if (choice == CT_TREE_JOINTS)
+        rank_by_name(b, r.rank);
+    return r;
+}

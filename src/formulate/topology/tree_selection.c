@@ -1,0 +1,369 @@
+// See tree_selection.h: tree selection by exact operation counts.
+#include "formulate/topology/tree_selection.h"
+
+#include "formulate/dynamics/dynamics.h"
+#include "formulate/beam/flexible_body.h"
+#include "formulate/recursive/open_chain.h"
+#include "graph/exchange.h"
+
+#include <math.h>
+#include <string.h>
+
+struct search {
+    struct ct_ctx *ctx;
+    const struct ct_build *open; // the stage's, whose trees are sought
+    const struct ct_model *model;
+    const struct ct_formulate_options *options;
+    struct ct_arena *owner; // of generations
+    struct ct_arena *trial; // of one at a time, cleared for the next
+    bool stays_open;        // there is a pair without rows, and none with rows is wanted
+    struct ct_tree T, R;    // of least weight
+    double cost;            // theirs; 0: not counted yet
+    struct ct_build
+        *first; // theirs, which may be chosen: the equations are then made once; or NULL
+};
+
+// Has it a beam that fills the mass matrix by itself? Articulated bodies do without (6.9).
+static bool has_chain(const struct ct_build *b)
+{
+    for (size_t i = 0; i < b->nflexible; i++)
+        if (b->flexible[i].kinematics == CT_AXIAL_CHAIN)
+            return true;
+    return false;
+}
+
+// The exact count of a generation; INFINITY where it fails or is not wanted.
+static double derive_and_count(const struct search *s, struct ct_build *b,
+                               const struct ct_tree *T, const struct ct_tree *R)
+{
+    b->T = *T;
+    b->R = *R;
+    if (!ct_build_derive(b, true) || (s->stays_open && b->eqs->nrow))
+        return INFINITY;
+    ct_dynamics_derive(b);
+    const double cost = ct_equations_cost(b->ctx->scratch, b->eqs);
+    return has_chain(b) ? ct_open_cost(b, cost) : cost;
+}
+
+static bool is_same(const struct ct_tree *t, const bool *is_branch)
+{
+    return memcmp(t->is_branch, is_branch, (size_t)t->nedge * sizeof *is_branch) == 0;
+}
+
+// That of a trial generation; nothing of it is kept.
+static double pair_cost(void *data, const struct ct_tree *T, const struct ct_tree *R)
+{
+    const struct search *s = data;
+    if (s->cost > 0 && is_same(&s->T, T->is_branch) && is_same(&s->R, R->is_branch))
+        return s->cost;
+    ct_arena_clear(s->trial);
+    struct ct_ctx quiet
+        = {.model = s->trial, .scratch = s->trial}; // errors are reported by the chosen pair
+    struct ct_build *b = s->open->nflexible
+                           ? ct_build_create(&quiet, s->trial, s->model, s->options, NULL)
+                           : ct_build_clone(&quiet, s->trial, s->open);
+    return derive_and_count(s, b, T, R);
+}
+
+// The equations of a trial are those of the stage where all of these have rows and no beams: beams are chosen in between,
+// open systems are solved in other ways, and analyses need less.
+static bool may_keep(const struct ct_build *b, const struct ct_formulate_options *o)
+{
+    return !b->nflexible && !o->for_analysis && !o->without_dynamics;
+}
+
+// Of s->T and s->R. As pair_cost, but what is generated stays, in an arena of its own: s->first, if it can be the stage's.
+static double first_cost(struct search *s)
+{
+    struct ct_ctx quiet
+        = {.model = ct_arena_create_under(s->owner), .scratch = s->ctx->scratch};
+    struct ct_build *b = ct_build_create(&quiet, quiet.model, s->model, s->options, NULL);
+    const double cost = derive_and_count(s, b, &s->T, &s->R);
+    if (isfinite(cost) && b->eqs->nrow && !quiet.ndiagnostic)
+        s->first = b;
+    else
+        ct_arena_destroy(quiet.model);
+    return cost;
+}
+
+// The pair is chosen: the build that has its equations takes the place of *b, or goes.
+static void take_first(struct search *s, struct ct_build **b, const struct ct_tree_pair *p)
+{
+    struct ct_build *first = s->first;
+    if (!first)
+        return;
+    if (!is_same(&s->T, p->trans) || !is_same(&s->R, p->rot)) {
+        ct_arena_destroy(first->arena);
+        return;
+    }
+    ct_arena_merge(s->owner, first->arena);
+    first->ctx = s->ctx;
+    first->arena = first->x->arena = s->owner;
+    first->is_derived = true;
+    *b = first;
+}
+
+// Is every chord of the least-weight trees a body edge, a force or a rod? Then there is no loop to cut.
+static bool is_open(const struct ct_build *b, const struct ct_tree_pair *p)
+{
+    for (size_t i = 0; i < b->nedge; i++) {
+        const enum ct_edge_kind kind = b->edge[i].kind;
+        if ((kind == CT_EDGE_JOINT || kind == CT_EDGE_CLOSURE) && !b->edge[i].never_branch
+            && (!p->trans[i] || (b->edge[i].has_rotation && !p->rot[i]))
+            && b->edge[i].trial.quaternion != 3)
+            return false;
+    }
+    return true;
+}
+
+// Rows that the chords leave, and unknowns, by (2.1).
+static void count_weights(const struct ct_build *b, const struct ct_tree_pair *p, int *nrow,
+                          int *nu)
+{
+    const int directions[2] = {b->is_planar ? 2 : 3, b->is_planar ? 1 : 3};
+    *nrow = *nu = 0;
+    for (size_t i = 0; i < b->nedge; i++) {
+        const struct ct_edge_info *e = &b->edge[i];
+        const bool is_joint = e->kind == CT_EDGE_JOINT || e->kind == CT_EDGE_CLOSURE;
+        const int weight[2] = {e->weight_t, e->weight_r};
+        const bool branch[2] = {p->trans[i], p->rot[i] || !e->has_rotation};
+        for (int k = 0; k < 2; k++) {
+            *nu += branch[k] ? weight[k] : 0;
+            *nrow += is_joint && !branch[k] ? directions[k] - weight[k] : 0;
+        }
+    }
+}
+
+// In a plane angles are chosen from ground even in open chains, and joints are then chords without rows. For a long
+// chain there is nothing to gain by a search, whose trials would need its mass matrix.
+static bool is_long_chain(const struct ct_build *b, const struct ct_tree_pair *p)
+{
+    int nrow, nu;
+    count_weights(b, p, &nrow, &nu);
+    return nrow == 0 && nu > CT_SMALL_SYSTEM;
+}
+
+static bool least_weight(struct ct_build *b, const struct ct_pair_rules *r,
+                         struct ct_tree_pair *p)
+{
+    int *w = CT_NEWN(b->arena, int, b->nedge);
+    struct ct_tree t;
+    bool **out[] = {&p->trans, &p->rot};
+    for (int k = 0; k < 2; k++) {
+        const bool *forced = k ? r->forced_r : r->forced_t,
+                   *banned = k ? r->banned_r : r->banned_t;
+        const int *weight = k ? r->weight_r : r->weight_t;
+        for (size_t i = 0; i < b->nedge; i++)
+            w[i] = banned[i] ? -1 : forced[i] ? 0 : weight[i] + 2;
+        if (!ct_tree_kruskal(b->arena, &b->graph, w, r->rank, &t, NULL))
+            return ct_error(b->ctx, (struct ct_mark){0}, CT_E_TREE,
+                            "the model's graph has no spanning tree");
+        *out[k] = t.is_branch;
+    }
+    return true;
+}
+
+// Work of the search is bounded by nodes generated, not by time: same model, same tree.
+static const double search_nodes = 600000;
+// Fewer pairs than these are not worth their time: exchanges seldom find a cheaper one among so few.
+static const double fewest_pairs = 16;
+
+static void improve(struct ct_build *b, struct search *s, const struct ct_pair_rules *r,
+                    struct ct_tree_pair *p, struct ct_tree_report *report)
+{
+    struct ct_search_stats stats;
+    ct_tree_from_branches(b->arena, &b->graph, p->trans, &s->T);
+    ct_tree_from_branches(b->arena, &b->graph, p->rot, &s->R);
+    s->cost = may_keep(b, s->options) ? first_cost(s) : pair_cost(s, &s->T, &s->R);
+    const double pairs = floor(search_nodes / fmax(s->cost, 100));
+    const struct ct_search_options o
+        = {.trans = {r->weight_t, r->rank, r->forced_t, r->banned_t},
+           .rot = {r->weight_r, r->rank, r->forced_r, r->banned_r},
+           .tied = r->tied,
+           .limit = pairs < 1 ? -1 : fmin(pairs, 2000),
+           .budget = (int)fmax(1, fmin(pairs, 400)),
+           .excess = 2};
+    if (pairs < fewest_pairs
+        || !ct_tree_search(b->arena, &b->graph, &o, pair_cost, s, p, &stats)) {
+        report->how = "least weight";
+        report->cost = report->cost_least_weight = s->cost;
+        return;
+    }
+    report->cost = stats.cost;
+    report->cost_least_weight = stats.cost_least_weight;
+    report->how = stats.exhaustive
+                    ? ct_arena_printf(b->arena, "cheapest of all %d pairs", stats.nevaluated)
+                    : ct_arena_printf(b->arena, "cheapest of %d pairs tried by exchanges",
+                                      stats.nevaluated);
+}
+
+static const char *near_edge(struct ct_build *b, const char *name)
+{
+    const char **names = CT_NEWN(b->arena, const char *, b->nedge);
+    size_t n = 0;
+    for (size_t i = 0; i < b->nedge; i++)
+        if (b->edge[i].kind != CT_EDGE_ARM)
+            names[n++] = b->edge[i].name;
+    const char *near = ct_nearest(name, names, n);
+    return near ? ct_arena_printf(b->arena, "; did you mean '%s'?", near) : "";
+}
+
+static bool mark_named(struct ct_build *b, const char *const *names, const struct ct_mark *mark,
+                       size_t n, const bool *forced, bool *branch)
+{
+    memcpy(branch, forced, b->nedge * sizeof *branch);
+    bool ok = true;
+    for (size_t k = 0; k < n; k++) {
+        size_t i = 0;
+        while (i < b->nedge && strcmp(b->edge[i].name, names[k]) != 0)
+            i++;
+        if (i == b->nedge)
+            ok = ct_error(b->ctx, mark ? mark[k] : (struct ct_mark){0}, CT_E_TREE,
+                          "tree: there is no edge '%s'%s", names[k], near_edge(b, names[k]));
+        else
+            branch[i] = true;
+    }
+    return ok;
+}
+
+static bool given_trees(struct ct_build *b, const struct ct_formulate_options *o,
+                        const struct ct_pair_rules *r, struct ct_tree_pair *p)
+{
+    p->trans = CT_NEWN(b->arena, bool, b->nedge);
+    p->rot = CT_NEWN(b->arena, bool, b->nedge);
+    if (!mark_named(b, o->trans, o->trans_mark, o->ntrans, r->forced_t, p->trans)
+        || !mark_named(b, o->rot, o->rot_mark, o->nrot, r->forced_r, p->rot))
+        return false;
+    bool ok = true;
+    for (size_t i = 0; i < b->nedge; i++)
+        if ((p->trans[i] && r->banned_t[i]) || (p->rot[i] && r->banned_r[i]))
+            ok = ct_error(b->ctx, (struct ct_mark){0}, CT_E_TREE,
+                          "tree: '%s' cannot be a branch", b->edge[i].name);
+    return ok;
+}
+
+// Unknowns of a body: those of its joint are as many at least.
+static double own_unknowns(const struct ct_build *b, size_t body)
+{
+    const struct ct_beam *beam = b->model->body[body].beam;
+    return 1 + (beam ? 6. * beam->nelement : 0);
+}
+
+// Entries of the mass matrix between different bodies, roughly: each body against all that carry it in the tree.
+static double coupling(struct ct_build *b, const bool *branch)
+{
+    struct ct_tree t;
+    ct_tree_from_branches(b->arena, &b->graph, branch, &t);
+    double *inboard = CT_NEWN(b->ctx->scratch, double, b->nnode), sum = 0;
+    for (size_t k = 0; k < b->nnode; k++) { // in the order from ground
+        const int v = t.order[k], from = t.parent[v];
+        if (from < 0)
+            continue;
+        const int body = b->node[v].body;
+        const bool enters = body > 0 && b->node[from].body != body;
+        const double own = enters ? own_unknowns(b, (size_t)body) : 0;
+        sum += own * inboard[from];
+        inboard[v] = inboard[from] + own;
+    }
+    return sum;
+}
+
+// Long chains of many unknowns: with each body counted from its neighbour the mass matrix is full, with each counted from
+// ground it is not. The rows of the joints are sparse either way.
+static enum ct_tree_choice choose_for_analysis(struct ct_build *b,
+                                               const struct ct_formulate_options *o,
+                                               const struct ct_tree_pair *p)
+{
+    const double most = 400; // for each unknown
+    double n = 0;
+    for (size_t i = 1; i < b->model->nbody; i++)
+        n += own_unknowns(b, i);
+    if (!o->for_analysis || o->tree != CT_TREE_AUTO || n <= CT_MOST_DENSE
+        || (coupling(b, p->trans) <= most * n && coupling(b, p->rot) <= most * n))
+        return o->tree;
+    return CT_TREE_ABSOLUTE;
+}
+
+// Trees in which each body is counted from ground.
+static bool absolute_trees(struct ct_build *b, const struct ct_formulate_options *o,
+                           struct ct_tree_pair *p)
+{
+    struct ct_formulate_options from_ground = *o;
+    from_ground.tree = CT_TREE_ABSOLUTE;
+    const struct ct_pair_rules absolute = ct_pair_rules_make(b, &from_ground);
+    return least_weight(b, &absolute, p);
+}
+
+// Has it loops of several beams whose motion does not depend on the trees?
+static bool has_loops_of_beams(const struct ct_build *b)
+{
+    for (size_t i = 0; i < b->nflexible; i++) {
+        const enum ct_beam_formulation f = b->flexible[i].beam->formulation;
+        if (f == CT_BEAM_FORCE_ONLY || f == CT_BEAM_STRETCH_LINEAR)
+            return false;
+    }
+    return b->nflexible > 1;
+}
+
+// Through joints, what beams in loops move fills the mass matrix, and their rows it reaches; counted from ground there are
+// more unknowns and rows, which all stay sparse. That is taken where it promises a tenth less by its count.
+static void count_from_ground(struct ct_build *b, const struct search *s,
+                              struct ct_tree_pair *p, struct ct_tree_report *report)
+{
+    const double clearly = 0.9;
+    struct ct_tree_pair q;
+    struct ct_tree T, R;
+    if (!has_loops_of_beams(b) || !absolute_trees(b, s->options, &q))
+        return;
+    ct_tree_from_branches(b->arena, &b->graph, q.trans, &T);
+    ct_tree_from_branches(b->arena, &b->graph, q.rot, &R);
+    const double cost = pair_cost((void *)(uintptr_t)s, &T, &R);
+    if (!(cost < clearly * report->cost))
+        return;
+    *p = q;
+    report->cost = cost;
+    report->how
+        = "absolute coordinates: through the joints the beams would fill the mass matrix";
+}
+
+bool ct_tree_selection_run(struct ct_build **build, const struct ct_formulate_options *o,
+                           struct ct_tree_report *report)
+{
+    struct ct_build *b = *build;
+    const struct ct_pair_rules r = ct_pair_rules_make(b, o);
+    struct ct_tree_pair p;
+    static const char *const how[]
+        = {"least weight", "through joints", "absolute coordinates", "given"};
+    report->how = how[o->tree];
+    if (o->tree == CT_TREE_GIVEN ? !given_trees(b, o, &r, &p) : !least_weight(b, &r, &p))
+        return false;
+    if (choose_for_analysis(b, o, &p) != o->tree) {
+        report->how = "absolute coordinates: through the joints the mass matrix would be full";
+        if (!absolute_trees(b, o, &p))
+            return false;
+    } else if (o->tree == CT_TREE_AUTO && (is_open(b, &p) || is_long_chain(b, &p))) {
+        report->how = "least weight; there are no loops to cut";
+    } else if (o->tree == CT_TREE_AUTO && !o->measure_all) {
+        int nrow, nu;
+        count_weights(b, &p, &nrow, &nu);
+        struct search s = {b->ctx,
+                           b,
+                           b->model,
+                           o,
+                           b->arena,
+                           .trial = ct_arena_create_under(b->arena),
+                           .stays_open = nrow == 0};
+        improve(b, &s, &r, &p, report);
+        count_from_ground(b, &s, &p, report);
+        ct_arena_destroy(s.trial);
+        take_first(&s, build, &p);
+        b = *build;
+    }
+    if (!ct_tree_from_branches(b->arena, &b->graph, p.trans, &b->T))
+        return ct_error(b->ctx, (struct ct_mark){0}, CT_E_TREE,
+                        "tree: the translational branches are no spanning tree");
+    if (!ct_tree_from_branches(b->arena, &b->graph, p.rot, &b->R))
+        return ct_error(b->ctx, (struct ct_mark){0}, CT_E_TREE,
+                        "tree: the rotational branches are no spanning tree");
+    return true;
+}

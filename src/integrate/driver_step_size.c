@@ -1,0 +1,247 @@
+// See driver.h: how long the next step is to be.
+#include "integrate/driver.h"
+
+#include <assert.h>
+#include <math.h>
+
+// What a crossing that failed shrinks its reach by aims at this part of what its error would allow.
+static const double safety = 0.9;
+
+// A step across a singular configuration that fails is tried again from nearer, after so many times not any more: then
+// the position is not singular but only nearly so.
+static const double nearer = 0.5;
+static const int most_crossings = 6;
+// This much further away than where it should begin, a crossing may begin at once; after one that failed only where
+// a step to there has ended.
+static const double early = 1.3, on_time = 1.02;
+// Times to a position that differ by such a factor are those of two.
+static const double other = 2;
+// The end of a run is reached by a crossing, too, when it is this part of its reach before the position.
+static const double beside = 0.5;
+double ct_driver_step_limit(const struct ct_driver *r)
+{
+    const double run = r->o->t1 - r->o->t0;
+    const double limit = r->p->nroot ? ct_event_location_longest_step(run) : run;
+    return r->p->longest_step ? ct_smaller(limit, r->p->longest_step(r->p->user)) : limit;
+}
+
+double ct_driver_event_margin(bool is_event, double t, double h)
+{
+    return is_event ? ct_event_location_resolution(t, h) : 0;
+}
+
+double ct_driver_next_stop(const struct ct_driver *r, bool *is_time)
+{
+    double stop = r->o->t1;
+    *is_time = false;
+    if (r->p->next_time_event) {
+        const double event = r->p->next_time_event(r->p->user, r->t);
+        assert(!(event <= r->t));
+        if (event <= stop) {
+            stop = event;
+            *is_time = true;
+        }
+    }
+    const bool is_on_sample
+        = (r->o->step > 0 || r->ends_on_samples) && r->sample < r->o->nsample;
+    if (is_on_sample
+        && r->o->sample[r->sample] < stop - ct_driver_event_margin(*is_time, stop, 0)) {
+        stop = r->o->sample[r->sample];
+        *is_time = false;
+    }
+    return stop;
+}
+
+// The fewest even steps up to the stop that are not longer than the one asked for: those that were left at the last step, less
+// one, where that ended as planned.
+static double fit_fixed(struct ct_driver *r, double stop)
+{
+    // a stop that is a whole number of steps away but for round-off, that of t in each step before added up, must not cost one more
+    const double roundoff = 1e-6, rest = stop - r->t;
+    struct ct_fixed_steps *e = &r->even;
+    if (e->stop == stop && e->next == r->t && e->left > 1) {
+        e->left--;
+    } else {
+        e->left = ct_larger(ceil(rest / r->o->step - roundoff), 1);
+        e->stop = stop;
+    }
+    const double h = rest / e->left;
+    e->next = r->t + h;
+    return h;
+}
+
+// The step across a singular configuration, centred on it. Beyond the end of the run f is the same function, beyond a
+// time event it is not.
+static void plan_crossing(const struct ct_driver *r, double stop, bool is_time,
+                          struct ct_planned_step *s)
+{
+    const double rest = stop - r->t, whole = 2 * r->singular_in;
+    s->method = &ct_crossing;
+    s->work = r->crossing_work;
+    s->h = is_time ? fmin(whole, rest) : whole;
+    s->reaches_stop = s->h >= rest;
+    s->t1 = s->reaches_stop ? stop : r->t + s->h;
+}
+
+// The rest of the crossing that an event has cut, centred on the event.
+static void plan_remainder(const struct ct_driver *r, double stop, bool is_time,
+                           struct ct_planned_step *s)
+{
+    const double rest = stop - r->t;
+    s->method = &ct_crossing;
+    s->work = r->crossing_work;
+    s->begin = 0.5;
+    s->h = is_time ? fmin(r->remainder.h, rest) : r->remainder.h;
+    s->reaches_stop = s->h >= rest;
+    s->t1 = s->reaches_stop ? stop : r->t + s->h;
+}
+
+// Is a singular configuration ahead that is to be crossed?
+static bool has_crossing(const struct ct_driver *r)
+{
+    return r->singular_in < INFINITY && r->failed_crossings < most_crossings && !r->is_locked;
+}
+
+// The length of the step that strides across the next singular configuration from here, or 0; *wanted becomes that of a step to
+// where it may begin. False if it is to be crossed otherwise.
+static bool plan_stage_gap(const struct ct_driver *r, double rest, double *wanted,
+                           double *length)
+{
+    *length = 0;
+    if (!r->stage_gap || r->has_failed_stage_gap || !has_crossing(r) || !(r->reach < INFINITY))
+        return false;
+    const double step = ct_stage_gap_approach(r->stage_gap, r->singular_in, r->reach, *wanted);
+    if (!(ct_stage_gap_length(r->stage_gap, r->singular_in) < rest) || isinf(step))
+        return false;
+    if (step == 0)
+        *length = ct_stage_gap_length(r->stage_gap, r->singular_in);
+    else
+        *wanted = step;
+    return true;
+}
+
+// s (out): member by member, because steps are short against the time that a copy of it waits for its parts.
+void ct_driver_plan_step(struct ct_driver *r, double stop, bool is_time,
+                         struct ct_planned_step *s)
+{
+    const double rest = stop - r->t;
+    double wanted = ct_smaller(r->control.h, ct_driver_step_limit(r)), length;
+    const double reach = is_time ? ct_smaller(r->reach, rest - r->singular_in) : r->reach;
+    const bool is_strideable = plan_stage_gap(r, rest, &wanted, &length);
+    s->method = r->method;
+    s->work = r->work;
+    s->uses_stage_gap = length > 0;
+    s->reaches_stop = s->is_event = s->is_interpolated = false;
+    s->is_off_between = s->is_damping = s->leaves_remainder = false;
+    s->error = s->begin = 0;
+    if (ct_driver_has_remainder(r)) {
+        plan_remainder(r, stop, is_time, s);
+        return;
+    }
+    if (s->uses_stage_gap) {
+        s->h = length;
+        s->t1 = r->t + length;
+        return;
+    }
+    // the run may end before the position, but beside it; one that begins beside it can only come from a crossing
+    if (!is_strideable && has_crossing(r) && reach > 0
+        && (isinf(r->crossing_begin) || r->singular_in - beside * reach < rest)) {
+        if (r->singular_in <= (r->failed_crossings ? on_time : early) * reach) {
+            plan_crossing(r, stop, is_time, s);
+            return;
+        }
+        wanted = ct_step_control_fit(r->singular_in - reach, wanted);
+    }
+    if (r->p->input_limited_step && r->o->step == 0)
+        wanted = r->p->input_limited_step(r->p->user, r->t, ct_smaller(wanted, rest));
+    s->h = r->o->step > 0 ? fit_fixed(r, stop) : ct_step_control_fit(rest, wanted);
+    s->reaches_stop = s->h >= rest;
+    s->t1 = s->reaches_stop ? stop : r->t + s->h;
+}
+
+bool ct_driver_is_too_small(const struct ct_driver *r, const struct ct_planned_step *s)
+{
+    return !s->reaches_stop
+        && ct_step_control_is_below_roundoff(s->h, r->t, r->o->t1 - r->o->t0);
+}
+
+void ct_driver_adapt_after_refusal(struct ct_driver *r, double h, double error)
+{
+    r->stats->rejected_steps++;
+    r->stats->inaccurate_steps += error > 1;
+    ct_step_control_refuse(&r->control, r->method, h, error);
+    if (ct_driver_is_roundoff(r, h, error))
+        r->control.h = r->refusal.longest;
+}
+
+void ct_driver_look_ahead(struct ct_driver *r, double t)
+{
+    if (!r->crossing_work)
+        return;
+    double reach;
+    const double before = r->singular_in;
+    r->singular_in = r->p->time_to_singular(r->p->user, &reach);
+    // none, or another one; or what has failed was begun for one that had been taken to be much farther off
+    if (!(r->singular_in < INFINITY) || r->singular_in > other * before
+        || (r->failed_crossings && other * r->singular_in < r->predicted_at - t)) {
+        r->reach = INFINITY;
+        r->failed_crossings = 0;
+        r->has_failed_stage_gap = false;
+    }
+    if (!(r->singular_in < INFINITY))
+        return;
+    r->crossing_begin = reach > r->singular_in ? reach : 0;
+    r->reach = fmin(fmin(r->reach, reach), r->singular_in);
+}
+
+// The rest of a crossing that began nearer to the position than it should have ends where that would have begun.
+static void keep_remainder(struct ct_driver *r, const struct ct_planned_step *s)
+{
+    const double whole
+        = isfinite(r->crossing_begin) ? fmax(s->h / 2, r->crossing_begin) : s->h / 2;
+    r->remainder.first = s->begin > 0 ? r->remainder.first : whole;
+    r->remainder.h = s->leaves_remainder ? r->remainder.first : 0;
+    r->remainder.is_known = false;
+    r->remainder.is_announced &= s->leaves_remainder;
+}
+
+void ct_driver_adapt_after_crossing(struct ct_driver *r, const struct ct_planned_step *s)
+{
+    const struct ct_stepper_span span = {s->method, r->p, r->t, s->h, r->y, r->y1, s->work};
+    if (r->p->crossed && !r->remainder.is_announced)
+        r->remainder.is_announced = r->p->crossed(r->p->user, &span, s->begin, s->t1);
+    keep_remainder(r, s);
+    r->singular_in = r->reach = INFINITY;
+    r->failed_crossings = 0;
+    r->has_failed_stage_gap = false;
+    r->control.was_refused = false;
+}
+
+// Shorter, which none is any more after so many times.
+static void shrink_remainder(struct ct_driver *r)
+{
+    enum { MOST = 12 };
+    r->failed_crossings++;
+    r->remainder.h = r->failed_crossings < MOST ? nearer * r->remainder.h : 0;
+}
+
+void ct_driver_adapt_after_failed_crossing(struct ct_driver *r, const struct ct_planned_step *s,
+                                           double error)
+{
+    const double power = -1.0 / (ct_crossing.error_order + 1);
+    r->stats->rejected_steps++;
+    r->stats->inaccurate_steps += error > 1;
+    if (s->uses_stage_gap) {
+        r->has_failed_stage_gap = true;
+        return;
+    }
+    if (ct_driver_has_remainder(r)) {
+        shrink_remainder(r);
+        return;
+    }
+    r->predicted_at = r->t + r->singular_in;
+    r->reach = r->singular_in * (error > 1 ? fmax(nearer, safety * pow(error, power)) : nearer);
+    r->failed_crossings = isinf(error) ? most_crossings : r->failed_crossings + 1;
+    if (r->p->locks)
+        r->is_locked = r->p->locks(r->p->user, r->t, r->y, r->singular_in);
+}

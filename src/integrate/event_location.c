@@ -1,0 +1,400 @@
+// See event_location.h. Location is a bracketed secant iteration for all roots at once that always keeps
+// the leftmost crossing, after Hiebert and Shampine (1980), key hiebert1980.
+#include "integrate/event_location.h"
+
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+// Places within a step, besides its end. Root functions cost about as much as a derivative,
+// so these three add half of the cost of a step of six stages.
+static const double probes[] = {0.25, 0.5, 0.75, 1};
+
+// Between probes a root may cross and come back: where the parabola through three of them turns, unless it turns back before
+// zero by more than this part of its second difference. So much it may err by where the motion is smooth over a step.
+const double ct_event_location_margin = 0.1;
+// It is looked for with ever closer places, each time so much closer, and is found where it is deeper beyond zero than
+// this part of what g is in the step: some thousand round-off errors.
+static const double closer = 0.125, least_depth = 1e-12;
+enum { CLOSEST = 5 };
+
+// Time is resolved to this part of max(|t|, h). Some thousand round-off errors, so that secants still
+// see a change of g, and far below what a tolerance of 1e-12 does to a state.
+static const double resolution = 1e-12;
+
+// How much later, in parts of a usual step, a root is looked at that has just fired: g changes
+// by 1e-7 of what it does in a step, some 1e8 round-off errors, and is still a straight line.
+static const double glance = 1e-7;
+
+// Spacing of the difference that gives the slope at the event, in parts of the time since the
+// step began: the slope is off by about as much, so each correction by it gains three digits.
+// Near the start it is this many resolutions, for the same number of digits.
+static const double slope_spacing = 1e-3, slope_resolutions = 1e3, slope_most = 0.1;
+
+// With events a run has at least this many steps, so that probes are never too far apart when
+// the motion between events is so simple (free fall) that steps could grow without limit.
+static const double event_steps = 50;
+
+// State events in a row, each within this part of max(|t|, run) after the one before, pile up:
+// a bouncing ball comes here after its height has fallen by 1e-18.
+static const double pile_time = 1e-9;
+
+double ct_event_location_resolution(double t, double h)
+{
+    return resolution * fmax(fabs(t), h);
+}
+
+double ct_event_location_longest_step(double run)
+{
+    return run / event_steps;
+}
+
+bool ct_event_location_accumulates(struct ct_event_location *w, double t, double run)
+{
+    w->accumulated
+        = t - w->last_event <= pile_time * fmax(fabs(t), run) ? w->accumulated + 1 : 0;
+    w->last_event = t;
+    return w->accumulated >= CT_EVENT_ACCUMULATION;
+}
+
+static int sign(double x)
+{
+    return (x > 0) - (x < 0);
+}
+
+static enum ct_eval evaluate(const struct ct_event_location *w, double t, const double *y,
+                             double *g)
+{
+    const enum ct_eval e = w->p->root(w->p->user, t, y, g);
+    return e == CT_EVAL_OK && !ct_stepper_finite(g, w->p->nroot) ? CT_EVAL_RETRY : e;
+}
+
+static enum ct_eval evaluate_inside(const struct ct_event_location *w,
+                                    const struct ct_stepper_span *s, double theta, double *g)
+{
+    ct_stepper_point(s, theta, w->point);
+    return evaluate(w, s->t + theta * s->h, w->point, g);
+}
+
+void ct_event_location_init(struct ct_event_location *w, const struct ct_problem *p,
+                            struct ct_arena *a)
+{
+    const int n = p->nroot;
+    double *g = CT_NEWN(a, double, (7 + COUNT(probes)) * (size_t)n);
+    *w = (struct ct_event_location){
+        .p = p,
+        .side = CT_NEWN(a, signed char, n),
+        .crossed = CT_NEWN(a, signed char, n),
+        .g0 = g,
+        .g = g + n,
+        .low = g + 2 * n,
+        .high = g + 3 * n,
+        .recently_fired = g + 4 * n,
+        .slope = g + 5 * n,
+        .probed = g + 6 * n,
+        .point = CT_NEWN(a, double, p->ny),
+        .last_event = -INFINITY,
+    };
+}
+
+enum ct_eval ct_event_location_start(struct ct_event_location *w, double t, double h,
+                                     const double *y, const double *dy)
+{
+    const int n = w->p->nroot;
+    bool has_doubt = false;
+    enum ct_eval e = n ? evaluate(w, t, y, w->g0) : CT_EVAL_OK;
+    if (e != CT_EVAL_OK)
+        return e;
+    for (int i = 0; i < n; i++) {
+        w->side[i] = (signed char)sign(w->g0[i]);
+        // where it fired the value is noise, unless the event has moved the state away
+        if (fabs(w->g0[i]) <= w->recently_fired[i])
+            w->side[i] = 0;
+        else
+            w->recently_fired[i] = 0;
+        w->crossed[i] = 0;
+        has_doubt |= w->side[i] == 0;
+    }
+    if (!has_doubt)
+        return CT_EVAL_OK;
+    const double later = glance * h;
+    for (int i = 0; i < w->p->ny; i++)
+        w->point[i] = y[i] + later * dy[i];
+    e = evaluate(w, t + later, w->point, w->g);
+    for (int i = 0; i < n && e == CT_EVAL_OK; i++)
+        if (w->side[i] == 0)
+            w->side[i] = (signed char)sign(w->g[i] - w->g0[i]);
+    return e == CT_EVAL_RETRY ? CT_EVAL_OK : e; // the first step will find the side
+}
+
+// Reaching zero is crossing it; a root at rest on zero does not fire. One that has just fired may
+// still be on the wrong side: until it has got away it must go further than it was then.
+static bool has_crossed(const struct ct_event_location *w, int i, const double *g)
+{
+    const double x = w->side[i] * g[i];
+    return w->side[i] && (w->recently_fired[i] > 0 ? x < -w->recently_fired[i] : x <= 0);
+}
+
+// A probe without an event: roots that rested take sides, those that have fired got away.
+static void set_sides(struct ct_event_location *w, const double *g)
+{
+    for (int i = 0; i < w->p->nroot; i++) {
+        if (w->side[i] == 0)
+            w->side[i] = (signed char)sign(g[i]);
+        if (w->side[i] * g[i] > w->recently_fired[i])
+            w->recently_fired[i] = 0;
+    }
+}
+
+static bool any_crossed(const struct ct_event_location *w, const double *g)
+{
+    for (int i = 0; i < w->p->nroot; i++)
+        if (has_crossed(w, i, g))
+            return true;
+    return false;
+}
+
+// Where between low and high the first of the crossing roots should be zero, by secants.
+// `bias` weighs the values at high against those at low (Illinois).
+static double guess(const struct ct_event_location *w, double low, double high, double bias)
+{
+    double part = 1;
+    for (int i = 0; i < w->p->nroot; i++) {
+        if (!has_crossed(w, i, w->high))
+            continue;
+        const double a = fabs(w->low[i]), b = bias * fabs(w->high[i]);
+        // at the start of a step the root may still be on the wrong side by a round-off
+        const bool is_secant = sign(w->low[i]) == w->side[i] && a + b > 0;
+        part = fmin(part, is_secant ? a / (a + b) : 0.5);
+    }
+    return low + (high - low) * part;
+}
+
+static void swap(double **a, double **b)
+{
+    double *c = *a;
+    *a = *b;
+    *b = c;
+}
+
+// Narrow [low, high] around the first crossing, from values in w->low and w->high, until it is
+// shorter than `width`. Ends: at the latest each third try halves the bracket.
+static enum ct_eval locate(struct ct_event_location *w, const struct ct_stepper_span *s,
+                           double low, double high, double width, double *theta)
+{
+    double bias = 1;
+    double before = high - low; // the bracket two tries ago, with `tries` counting since
+    for (int tries = 0, last = 0; high - low > width;) {
+        double x = guess(w, low, high, bias);
+        if (++tries > 2) {
+            if (high - low > 0.5 * before)
+                x = 0.5 * (low + high);
+            before = high - low;
+            tries = 0;
+        }
+        // a guess at one end steps half a width inside: then the next bracket is the last
+        x = fmin(fmax(x, low + 0.5 * width), high - 0.5 * width);
+        const enum ct_eval e = evaluate_inside(w, s, x, w->g);
+        if (e != CT_EVAL_OK)
+            return e;
+        const int now = any_crossed(w, w->g) ? 1 : -1;
+        bias = now != last ? 1 : now > 0 ? 2 * bias : 0.5 * bias;
+        last = now;
+        if (now > 0) {
+            high = x;
+            swap(&w->high, &w->g);
+        } else {
+            low = x;
+            swap(&w->low, &w->g);
+        }
+    }
+    *theta = high;
+    return CT_EVAL_OK;
+}
+
+// The roots that fire at theta, from w->high, and their slopes there, which they keep for `reach`.
+static enum ct_eval mark(struct ct_event_location *w, const struct ct_stepper_span *s,
+                         double theta, double reach)
+{
+    const double least = slope_resolutions * ct_event_location_resolution(s->t, s->h) / s->h;
+    const double size = fmin(slope_most * fmin(1, reach), slope_spacing * theta + least);
+    const double d = theta > 0.5 ? -size : size;
+    const enum ct_eval e = evaluate_inside(w, s, theta + d, w->g);
+    for (int i = 0; i < w->p->nroot && e == CT_EVAL_OK; i++) {
+        w->crossed[i] = has_crossed(w, i, w->high) ? (signed char)-w->side[i] : 0;
+        w->slope[i] = (w->g[i] - w->high[i]) / (d * s->h);
+    }
+    return e;
+}
+
+// g at the end of a step (out: w->high), carried on by the resolution: a root that is about to be
+// zero fires at the end of this step and not at the start of the next, after a sample there.
+static enum ct_eval evaluate_end(struct ct_event_location *w, const struct ct_stepper_span *s,
+                                 const double *y_end, double since)
+{
+    const double ahead = ct_event_location_resolution(s->t, s->h) / (since * s->h);
+    const enum ct_eval e = evaluate(w, s->t + s->h, y_end, w->high);
+    for (int i = 0; i < w->p->nroot && e == CT_EVAL_OK; i++)
+        w->high[i] += ahead * (w->high[i] - w->low[i]);
+    return e;
+}
+
+// ---- roots that come back between probes -------------------------------------------------------------
+
+bool ct_event_location_may_dip(double a, double b, double c)
+{
+    const double bend = a - 2 * b + c, slope = (c - a) / 2;
+    return bend > 0 && fabs(slope) <= (1 + ct_event_location_margin) * bend
+        && 2 * bend * b - slope * slope <= 2 * ct_event_location_margin * bend * bend;
+}
+
+// A place within the step where root i, which has not crossed at places `spacing` apart about theta, is beyond zero by more than
+// `depth`; g is left in w->high. *theta (in, out): 2 if there is none.
+static enum ct_eval find_dip(struct ct_event_location *w, const struct ct_stepper_span *s,
+                             int i, const double *f, double depth, double spacing,
+                             double *theta)
+{
+    double x = *theta, at[3] = {f[0], f[1], f[2]};
+    *theta = 2;
+    for (int k = 0; k < CLOSEST && ct_event_location_may_dip(at[0], at[1], at[2]); k++) {
+        const double bend = at[0] - 2 * at[1] + at[2];
+        x -= spacing * (at[2] - at[0]) / (2 * bend);
+        spacing *= closer;
+        x = fmin(fmax(x, spacing), 1 - spacing);
+        for (int j = 0; j < 3; j++) {
+            const double place = x + (j - 1) * spacing;
+            const enum ct_eval e = evaluate_inside(w, s, place, w->high);
+            if (e != CT_EVAL_OK)
+                return e;
+            at[j] = w->side[i] * w->high[i];
+            if (at[j] < -depth) {
+                *theta = place;
+                return CT_EVAL_OK;
+            }
+        }
+    }
+    return CT_EVAL_OK;
+}
+
+// The first place before probe `end` where a root is beyond zero that is not so at the probes; else 2.
+static enum ct_eval search_dips(struct ct_event_location *w, const struct ct_stepper_span *s,
+                                int end, double before, double *theta)
+{
+    const int n = w->p->nroot;
+    *theta = 2;
+    for (int j = 2; j <= end; j++)
+        for (int i = 0; i < n; i++) {
+            double f[3], size = 0, x = probes[j - 2];
+            for (int k = 0; k < 3; k++) {
+                f[k] = w->side[i] * w->probed[n * (j - 2 + k) + i];
+                size = fmax(size, fabs(f[k]));
+            }
+            if (w->recently_fired[i] > 0 || f[0] <= 0 || f[2] <= 0
+                || !ct_event_location_may_dip(f[0], f[1], f[2]))
+                continue;
+            const enum ct_eval e = find_dip(w, s, i, f, least_depth * size, probes[0], &x);
+            if (e != CT_EVAL_OK)
+                return e;
+            if (x < before)
+                *theta = fmin(*theta, x);
+        }
+    return CT_EVAL_OK;
+}
+
+// The event in [low, high], where no root is beyond zero at low, in w->low, and one is at high, in w->high.
+static enum ct_eval narrow(struct ct_event_location *w, const struct ct_stepper_span *s,
+                           double low, double high, bool is_dip, double *theta)
+{
+    const double width = fmin(0.5, ct_event_location_resolution(s->t, s->h) / s->h);
+    const enum ct_eval e = locate(w, s, low, high, width, theta);
+    return e == CT_EVAL_OK ? mark(w, s, *theta, is_dip ? high - *theta : INFINITY) : e;
+}
+
+// If a root comes back from beyond zero before `before`, where the probe `end` does not see it: *theta, else 2.
+static enum ct_eval narrow_dip(struct ct_event_location *w, const struct ct_stepper_span *s,
+                               int end, double before, double *theta)
+{
+    const size_t n = (size_t)w->p->nroot;
+    double x;
+    enum ct_eval e = search_dips(w, s, end, before, &x);
+    *theta = 2;
+    if (e != CT_EVAL_OK || x > 1)
+        return e;
+    int k = 0;
+    while (probes[k] < x)
+        k++;
+    memcpy(w->low, w->probed + n * (size_t)k, n * sizeof *w->low);
+    e = evaluate_inside(w, s, x, w->high);
+    return e == CT_EVAL_OK ? narrow(w, s, k ? probes[k - 1] : 0, x, true, theta) : e;
+}
+
+enum ct_eval ct_event_location_search(struct ct_event_location *w,
+                                      const struct ct_stepper_span *s, const double *y_end,
+                                      double *theta)
+{
+    const size_t n = (size_t)w->p->nroot;
+    double before = 0;
+    *theta = 2;
+    memset(w->crossed, 0, n);
+    memcpy(w->probed, w->g0, n * sizeof *w->g0);
+    for (int j = 0; j < (int)COUNT(probes); j++) {
+        double *seen = w->probed + n * (size_t)j;
+        memcpy(w->low, seen, n * sizeof *w->low);
+        enum ct_eval e = probes[j] < 1 ? evaluate_inside(w, s, probes[j], w->high)
+                                       : evaluate_end(w, s, y_end, 1 - before);
+        if (e != CT_EVAL_OK)
+            return e;
+        memcpy(seen + n, w->high, n * sizeof *w->high);
+        if (any_crossed(w, w->high)) {
+            e = narrow_dip(w, s, j + 1, before, theta);
+            if (e != CT_EVAL_OK || *theta <= 1)
+                return e;
+            memcpy(w->low, seen, n * sizeof *w->low);
+            memcpy(w->high, seen + n, n * sizeof *w->high);
+            return narrow(w, s, before, probes[j], false, theta);
+        }
+        set_sides(w, w->high);
+        before = probes[j];
+    }
+    const enum ct_eval e = narrow_dip(w, s, COUNT(probes), 1, theta);
+    if (e == CT_EVAL_OK && *theta > 1)
+        memcpy(w->low, w->probed + n * COUNT(probes), n * sizeof *w->low);
+    return e;
+}
+
+enum ct_eval ct_event_location_refine(struct ct_event_location *w, double t, const double *y,
+                                      double *dt)
+{
+    *dt = 0;
+    const enum ct_eval e = evaluate(w, t, y, w->g);
+    for (int i = 0; i < w->p->nroot && e == CT_EVAL_OK; i++)
+        if (w->crossed[i] && w->slope[i] != 0) {
+            *dt = -w->g[i] / w->slope[i];
+            break;
+        }
+    return e;
+}
+
+enum ct_eval ct_event_location_accept(struct ct_event_location *w, double t, double h,
+                                      const double *y, bool is_event)
+{
+    const int n = w->p->nroot;
+    if (n == 0)
+        return CT_EVAL_OK;
+    if (!is_event) { // the last probe was at y, and it ended up in w->low
+        swap(&w->g0, &w->low);
+        return CT_EVAL_OK;
+    }
+    const enum ct_eval e = evaluate(w, t, y, w->g0);
+    for (int i = 0; i < n && e == CT_EVAL_OK; i++) {
+        if (!w->crossed[i] && has_crossed(w, i, w->g0)) {
+            w->crossed[i] = (signed char)-w->side[i];
+            w->slope[i] = 0;
+        }
+        // ten resolutions: the location and its refinement are each good to a few
+        if (w->crossed[i])
+            w->recently_fired[i]
+                = fabs(w->g0[i]) + 10 * fabs(w->slope[i]) * ct_event_location_resolution(t, h);
+    }
+    return e;
+}

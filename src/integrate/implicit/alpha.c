@@ -1,0 +1,518 @@
+// See alpha.h. One step is a simplified Newton iteration on the motion d of the places; speeds and accelerations follow
+// it linearly. Sources: Bruls, Cardona and Arnold (2012), key bruls2012; the error estimate and the rule for
+// step changes: formulation 8.2.
+//
+// J' of the correction J' eta is that of the iteration matrix: eta vanishes with the error of a step, so its
+// direction matters to no order.
+#include "integrate/implicit/alpha.h"
+#include "integrate/implicit/newton_iteration.h"
+
+#include <math.h>
+#include <string.h>
+
+// What passes from step to step.
+struct memory {
+    double h;                // of the step that ends here
+    double *a, *u_dot, *lam; // (nu), (nu), (rows)
+    double *jerk;            // u'' amid that step  (nu)
+    double *slope,
+        *bend; // divided differences of u': over that step; with the one before it  (nu)
+    double *lam_slope, *lam_bend; // the same of lam  (rows)
+    double *a_noise, *jerk_noise; // of a and `jerk`, where there are rows  (nu)
+    double *rate;                 // at that step's start, of quadratures alone  (ny)
+};
+
+// What d(place) of a correction is worth in speeds, a, and accelerations, for steps of size h behind one of size `before`.
+struct factors {
+    double h, before, by_speed, by_u_dot;
+    double a_by_speed, u_dot_by_speed; // of a correction of speeds
+    double pace, across, ratio;        // 1/h, 1/(h + before), h/before
+    double pace_of_a, back;            // 1/(gamma h), (1 - gamma)/gamma
+    double a_then, a_now,
+        a_before;                // (8.1): a of u' at the end and at the start, and less of a0
+    double u_a0, u_a, d_a0, d_a; // speeds and places of a0 and a
+};
+
+// A correction: of places, of speeds, of multipliers.
+struct correction {
+    const double *d, *u, *lam;
+};
+
+struct state {
+    const struct ct_dae *dae;
+    const struct ct_alpha *c;
+    struct ct_newton_iteration *it;
+    struct factors f;
+    double share;                          // 1/(1 - alpha_m)
+    double by_places, by_speeds;           // (8.3) over h^2, (8.8) over h^3 u'''
+    bool is_fresh, has_jerk;               // nothing is known of the time before; but u'' is
+    struct memory memory[2], *start, *end; // of the step
+    double *a0, *jerk;                     // (nu): a at the start, for this step's size; u''
+    double *d, *u, *q;                     // the step's motion (nu), its end (nu, nq)
+    double *noise;                         // what corrections leave of speeds  (nu)
+    double *dd, *du; // corrections (nu), one behind the other, zeros behind them (ny)
+    double *eta, *dlam;
+    double *r, *phi, *v; // behind each other
+    struct correction last;
+    double *rate1, *out;      // for interpolation: d' at the end; a motion (nu)
+    double *end_rate, *error; // rates at the end and errors, of quadratures alone  (ny)
+};
+
+// The leading error of speeds is h^3 u''' times this.  (8.8)
+static double speed_factor(const struct ct_alpha *c)
+{
+    const double delta = c->alpha_m - c->alpha_f;
+    const double a = (1 - c->alpha_f - (1 - c->alpha_m) * (1 + 2 * delta) - delta * delta) / 2;
+    return 1. / 12 - delta * delta / 2 + a;
+}
+
+void *ct_alpha_create(struct ct_arena *a, const struct ct_method *method,
+                      const struct ct_problem *p)
+{
+    struct state *s = CT_NEW(a, struct state);
+    s->dae = p->dae;
+    s->start = &s->memory[0];
+    s->end = &s->memory[1];
+    s->c = method->coefficients;
+    s->share = 1 / (1 - s->c->alpha_m);
+    s->by_places = s->c->beta + 1. / 12 - s->c->gamma / 2;
+    s->by_speeds = speed_factor(s->c);
+    s->it = ct_newton_iteration_create(a, p, s->c->is_stabilised, false);
+    double **const speeds[] = {&s->start->slope,
+                               &s->start->bend,
+                               &s->end->slope,
+                               &s->end->bend,
+                               &s->start->a,
+                               &s->start->u_dot,
+                               &s->start->jerk,
+                               &s->end->a,
+                               &s->end->u_dot,
+                               &s->end->jerk,
+                               &s->a0,
+                               &s->jerk,
+                               &s->d,
+                               &s->u,
+                               &s->rate1,
+                               &s->out,
+                               &s->noise,
+                               &s->start->a_noise,
+                               &s->start->jerk_noise,
+                               &s->end->a_noise,
+                               &s->end->jerk_noise};
+    double **const rows[] = {&s->start->lam,
+                             &s->end->lam,
+                             &s->start->lam_slope,
+                             &s->end->lam_slope,
+                             &s->start->lam_bend,
+                             &s->end->lam_bend,
+                             &s->eta,
+                             &s->dlam};
+    for (size_t i = 0; i < COUNT(speeds); i++)
+        *speeds[i] = CT_NEWN(a, double, p->dae->nu + 1);
+    for (size_t i = 0; i < COUNT(rows); i++)
+        *rows[i] = CT_NEWN(a, double, p->dae->most_rows + 1);
+    s->q = CT_NEWN(a, double, p->dae->nq + 1);
+    s->r = CT_NEWN(a, double, p->dae->nu + 2 * p->dae->most_rows + 1);
+    s->dd = CT_NEWN(a, double, p->ny + p->dae->nu);
+    s->du = s->dd + p->dae->nu;
+    double **const states[] = {&s->start->rate, &s->end->rate, &s->end_rate, &s->error};
+    for (size_t i = 0; i < COUNT(states); i++)
+        *states[i] = CT_NEWN(a, double, p->ny);
+    s->is_fresh = true;
+    return s;
+}
+
+void ct_alpha_restart(void *work)
+{
+    struct state *s = work;
+    s->is_fresh = true;
+    s->has_jerk = false;
+    ct_newton_iteration_forget(s->it);
+}
+
+void ct_alpha_accept(void *work)
+{
+    struct state *s = work;
+    struct memory *spare = s->start;
+    s->start = s->end;
+    s->end = spare;
+    s->is_fresh = false;
+}
+
+static void find_factors(struct state *s, double h)
+{
+    const struct ct_alpha *c = s->c;
+    const double before = s->is_fresh ? INFINITY : s->start->h;
+    if (s->f.h == h && s->f.before == before)
+        return;
+    const double by_a = 1 / (c->beta * h * h), by_speed = c->gamma / (c->beta * h);
+    const double by_u_dot = by_a * (1 - c->alpha_m) / (1 - c->alpha_f);
+    s->f = (struct factors){.h = h,
+                            .before = before,
+                            .by_speed = by_speed,
+                            .by_u_dot = by_u_dot,
+                            .a_by_speed = by_a / by_speed,
+                            .u_dot_by_speed = by_u_dot / by_speed,
+                            .pace = 1 / h,
+                            .across = 1 / (h + before),
+                            .ratio = h / before,
+                            .pace_of_a = 1 / (c->gamma * h),
+                            .back = (1 - c->gamma) / c->gamma,
+                            .a_then = (1 - c->alpha_f) * s->share,
+                            .a_now = c->alpha_f * s->share,
+                            .a_before = c->alpha_m * s->share,
+                            .u_a0 = h * (1 - c->gamma),
+                            .u_a = h * c->gamma,
+                            .d_a0 = h * h * (0.5 - c->beta),
+                            .d_a = h * h * c->beta};
+}
+
+// ---- the start of a step --------------------------------------------------------------------------
+
+// u'' by a difference along the motion; a hundredth of a step is far from round-off and from the step's error.
+static enum ct_eval find_jerk(struct state *s, const struct ct_problem *p, double t, double h,
+                              const double *y, const double *dy, double *y1, double *dy1,
+                              struct ct_integrate_stats *stats)
+{
+    const int nu = s->dae->nu, nq = s->dae->nq;
+    const double ahead = h / 100;
+    for (int i = 0; i < p->ny; i++)
+        y1[i] = y[i] + ahead * dy[i];
+    const enum ct_eval e = ct_stepper_rhs(p, t + ahead, y1, dy1, stats);
+    for (int k = 0; k < nu && e == CT_EVAL_OK; k++)
+        s->jerk[k] = (dy1[nq + k] - dy[nq + k]) / ahead;
+    s->has_jerk = e == CT_EVAL_OK;
+    return e;
+}
+
+// Of rows that were not followed before.
+static enum ct_eval start_multipliers(struct state *s, double t, const double *y)
+{
+    for (int i = 0; i < s->it->m; i++)
+        s->start->lam_slope[i] = s->start->lam_bend[i] = 0;
+    return s->dae->start(s->dae->user, t, y, s->du, s->start->lam);
+}
+
+// a0 at the size of this step, and multipliers of the rows as they now are.
+static enum ct_eval begin(struct state *s, const struct ct_problem *p, double t, double h,
+                          const double *y, const double *dy,
+                          const struct ct_tolerance *tolerance, double *y1, double *dy1,
+                          struct ct_integrate_stats *stats)
+{
+    const struct ct_alpha *c = s->c;
+    const int nu = s->dae->nu;
+    const double *u_dot = dy + s->dae->nq;
+    enum ct_eval e = CT_EVAL_OK;
+    if (s->is_fresh && !c->starts_anew && !s->has_jerk)
+        e = find_jerk(s, p, t, h, y, dy, y1, dy1, stats);
+    const bool has_new_rows = ct_newton_iteration_begin(s->it, tolerance, h, y);
+    s->phi = s->r + nu;
+    s->v = s->phi + s->it->m;
+    if (e == CT_EVAL_OK && (s->is_fresh || has_new_rows))
+        e = start_multipliers(s, t, y);
+    if (e != CT_EVAL_OK)
+        return e;
+    if (s->is_fresh || c->starts_anew)
+        ct_stepper_copy(s->start->u_dot, u_dot, nu);
+    find_factors(s, h);
+    const double *now = s->start->u_dot, *a = s->start->a, ratio = s->f.ratio;
+    if (!s->is_fresh && !c->starts_anew)
+        for (int k = 0; k < nu; k++)
+            s->a0[k] = now[k] + ratio * (a[k] - now[k]);
+    else
+        for (int k = 0; k < nu; k++)
+            s->a0[k]
+                = now[k] + (c->starts_anew ? 0 : (c->alpha_m - c->alpha_f) * h * s->jerk[k]);
+    return CT_EVAL_OK;
+}
+
+// ---- the iteration ----------------------------------------------------------------------------------
+
+// Where the step would end with accelerations, and multipliers, that go on as the polynomial through their last values, one to three. Those of
+// the index-3 form have too much round-off in them for that.
+static inline void predict_for(struct state *s, double h, const double *y, const int nu)
+{
+    const struct ct_dae *dae = s->dae;
+    const struct factors f = s->f;
+    const double *u0 = y + dae->nq;
+    const bool is_known = !s->is_fresh && s->c->is_stabilised;
+    const double further = is_known ? h : 0, last = is_known ? h + s->start->h : 0;
+    for (int k = 0; k < nu; k++) {
+        const double u_dot = s->start->u_dot[k], a0 = s->a0[k];
+        const double then = u_dot + further * (s->start->slope[k] + last * s->start->bend[k]);
+        const double a = f.a_then * then + f.a_now * u_dot - f.a_before * a0;
+        s->end->u_dot[k] = then;
+        s->end->a[k] = a;
+        s->u[k] = u0[k] + (f.u_a0 * a0 + f.u_a * a);
+        s->d[k] = h * u0[k] + (f.d_a0 * a0 + f.d_a * a);
+    }
+    for (int i = 0; i < s->it->m; i++)
+        s->end->lam[i] = s->start->lam[i]
+                       + further * (s->start->lam_slope[i] + last * s->start->lam_bend[i]);
+    ct_newton_iteration_move(dae, y, s->d, s->q);
+}
+
+// One freedom, and planar loops of three coordinates, have code of their own: loops that may be of any length take longer to begin than to do its work.
+static void predict(struct state *s, double h, const double *y)
+{
+    if (s->dae->nu == 1)
+        predict_for(s, h, y, 1);
+    else if (s->dae->nu == 3)
+        predict_for(s, h, y, 3);
+    else
+        predict_for(s, h, y, s->dae->nu);
+}
+
+// s->last: the correction for the residuals r, phi, v.
+static inline void solve(struct state *s, const int nu, const int m)
+{
+    struct ct_newton_iteration *it = s->it;
+    ct_newton_iteration_solve(it, s->dd, s->eta, s->dlam, s->r, s->phi, s->v);
+    for (int k = 0; k < nu; k++)
+        s->du[k] = s->f.by_speed * s->dd[k];
+    if (m)
+        ct_newton_iteration_add_constraint_force(it, s->du, s->du, -s->f.by_speed, s->eta, nu,
+                                                 m); // eta moves places alone
+    s->last = (struct correction){s->dd, s->du, s->dlam};
+}
+
+// Adds it. Its size.
+static inline double add_correction(struct state *s, const int nu, const int m)
+{
+    const struct factors f = s->f;
+    const struct correction c = s->last;
+    for (int k = 0; k < nu; k++) {
+        const double du = c.u[k];
+        s->d[k] += c.d[k];
+        s->u[k] += du;
+        s->end->a[k] += f.a_by_speed * du;
+        s->end->u_dot[k] += f.u_dot_by_speed * du;
+    }
+    for (int i = 0; i < m; i++)
+        s->end->lam[i] += c.lam[i];
+    // in the index-3 form speeds have round-off over h in them: places alone decide
+    return ct_newton_iteration_norm(s->it, c.d, s->c->is_stabilised ? c.u : NULL, nu, 1);
+}
+
+static inline double solve_and_add(struct state *s, const int nu, const int m)
+{
+    solve(s, nu, m);
+    return add_correction(s, nu, m);
+}
+
+// *size (out): that of the correction. Few freedoms, and planar loops of three coordinates, have code of their own: its
+// loops are known to be so long.
+static enum ct_eval find_correction(struct state *s, double t1, const double *y, double *size)
+{
+    const struct ct_dae *dae = s->dae;
+    const int nu = s->it->nu, m = s->it->m;
+    const enum ct_eval e = dae->residual(dae->user, t1, s->q, s->u, s->end->u_dot, s->end->lam,
+                                         s->r, s->phi, s->v);
+    if (e != CT_EVAL_OK)
+        return e;
+    *size = m == 2 && nu == 3 ? solve_and_add(s, 3, 2)
+          : m || nu > 2       ? solve_and_add(s, nu, m)
+          : nu == 1           ? solve_and_add(s, 1, 0)
+                              : solve_and_add(s, 2, 0);
+    ct_newton_iteration_move(dae, y, s->d, s->q);
+    return CT_EVAL_OK;
+}
+
+static enum ct_eval correct(struct state *s, double t1, const double *y,
+                            enum ct_convergence *verdict, struct ct_integrate_stats *stats)
+{
+    double size = 0;
+    stats->evaluations++;
+    const enum ct_eval e = find_correction(s, t1, y, &size);
+    if (e == CT_EVAL_OK)
+        *verdict = ct_newton_iteration_test_convergence(
+            s->it, size, s->last.d, s->c->is_stabilised ? s->last.u : NULL, 1);
+    return e;
+}
+
+// What the last correction leaves of speeds: where it has come to round-off, as much as it was.
+static void note_roundoff(struct state *s)
+{
+    const double left = ct_smaller(s->it->tail, 1);
+    for (int k = 0; k < s->it->nu && s->it->m; k++)
+        s->noise[k] = left * fabs(s->last.u[k]);
+}
+
+static enum ct_eval iterate(struct state *s, double t1, double h, const double *y,
+                            struct ct_integrate_stats *stats)
+{
+    do {
+        enum ct_convergence verdict = CT_ITERATING;
+        predict(s, h, y);
+        enum ct_eval e = CT_EVAL_OK;
+        if (ct_newton_iteration_is_old(s->it))
+            e = ct_newton_iteration_refresh(s->it, t1, s->q, s->u, s->end->u_dot, s->end->lam,
+                                            stats);
+        if (e == CT_EVAL_OK
+            && !ct_newton_iteration_factor(s->it, s->f.by_speed, s->f.by_u_dot, 0, stats))
+            e = CT_EVAL_RETRY;
+        ct_newton_iteration_start(s->it);
+        while (e == CT_EVAL_OK && verdict == CT_ITERATING)
+            e = correct(s, t1, y, &verdict, stats);
+        if (e == CT_EVAL_OK && s->it->m)
+            ct_newton_iteration_note_multipliers(s->it, s->end->lam, s->last.lam, s->it->m);
+        if (e == CT_EVAL_OK && verdict == CT_CONVERGED)
+            note_roundoff(s);
+        if (e == CT_EVAL_FATAL || verdict == CT_CONVERGED)
+            return e;
+    } while (ct_newton_iteration_can_refresh(s->it));
+    return CT_EVAL_RETRY;
+}
+
+// ---- a step -----------------------------------------------------------------------------------------
+
+// Beside singular configurations speeds that meet the constraints have round-off over the square of the distance, u' that over h
+// and (8.8) again as much as speeds themselves, however short the step is, more after a shorter one: it is no error of the step.
+static inline void subtract_roundoff(struct state *s, double h, const int nu)
+{
+    const double back = s->f.back, pace = s->f.pace_of_a;
+    const double ratio = s->f.ratio;
+    const double speeds = s->is_fresh ? 0 : h * h * h * 2 * s->f.across * fabs(s->by_speeds);
+    for (int k = 0; k < nu; k++) {
+        const double a0 = ratio * s->start->a_noise[k], a1 = s->noise[k] * pace + back * a0;
+        s->end->a_noise[k] = a1;
+        s->end->jerk_noise[k] = s->f.pace * (a0 + a1);
+        const double noise
+            = speeds * (s->end->jerk_noise[k] + (s->is_fresh ? 0 : s->start->jerk_noise[k]));
+        s->du[k] = copysign(ct_larger(0, fabs(s->du[k]) - noise), s->du[k]);
+    }
+}
+
+// s->dd and s->du become the errors of positions and speeds; the norm of the first.
+static inline double find_errors(struct state *s, double h, const int nu)
+{
+    const double places = h * h * s->by_places, pace = s->f.pace;
+    const bool knows_speeds = s->c->is_stabilised && !s->is_fresh;
+    const double slope = knows_speeds ? 2 * s->f.across : 0;
+    const double speeds = h * h * h * slope * s->by_speeds;
+    for (int k = 0; k < nu; k++) {
+        const double change = s->end->a[k] - s->a0[k];
+        const double jerk = pace * change;
+        s->dd[k] = places * change;
+        s->du[k] = speeds * (jerk - s->start->jerk[k]);
+        s->end->jerk[k] = jerk;
+    }
+    if (s->it->m && s->c->is_stabilised)
+        subtract_roundoff(s, h, nu);
+    return ct_newton_iteration_norm(s->it, s->dd, NULL, nu, 1);
+}
+
+// The leading errors: of places (8.3), and of speeds (8.8) with u''' from u'' amid this step and the one before, zero where
+// there is none and in the index-3 form, whose accelerations have round-off over h^2 in them. Those of speeds count in
+// outputs alone.
+static double estimate(struct state *s, const struct ct_problem *p,
+                       const struct ct_tolerance *tolerance, double t1, double h,
+                       const double *y1)
+{
+    const double states = s->dae->nu == 1 ? find_errors(s, h, 1)
+                        : s->dae->nu == 3 ? find_errors(s, h, 3)
+                                          : find_errors(s, h, s->dae->nu);
+    if (s->dae->is_plain) // then s->dd is the error of the whole state
+        return ct_stepper_larger_error(p, tolerance, t1, y1, s->dd, states);
+    return ct_newton_iteration_error(s->it, p, tolerance, t1, y1, s->dd, s->du, states);
+}
+
+// The error of the trapezoidal rule for quadratures, h^2/12 times the change of the slope of their rate; the slopes are
+// those of this step and of the one before, zero where there is none.
+static double estimate_quadratures(struct state *s, const struct ct_problem *p,
+                                   const struct ct_tolerance *tolerance, double h,
+                                   const double *y, const double *dy, const double *y1,
+                                   const double *dy1)
+{
+    const int first = s->dae->nq + s->dae->nu;
+    if (s->dae->has_no_power)
+        return 0;
+    const double ratio = s->is_fresh ? 0 : h / s->start->h;
+    for (int i = first; i < p->ny; i++)
+        s->error[i] = h / 12 * (dy1[i] - dy[i] - ratio * (dy[i] - s->start->rate[i]));
+    return ct_stepper_largest(p, tolerance, first, y, y1, s->error);
+}
+
+// y1 and dy1 from the iteration's end; quadratures by the trapezoidal rule.
+static enum ct_eval finish(struct state *s, const struct ct_problem *p, double t1, double h,
+                           const double *y, const double *dy, double *y1, double *dy1,
+                           struct ct_integrate_stats *stats)
+{
+    const int nq = s->dae->nq, nu = s->dae->nu;
+    ct_stepper_copy(y1, s->q, nq);
+    ct_stepper_copy(y1 + nq, s->u, nu);
+    ct_stepper_copy(y1 + nq + nu, y + nq + nu, p->ny - nq - nu);
+    enum ct_eval e = CT_EVAL_OK;
+    if (s->c->is_stabilised && p->project) // takes off what the iteration left
+        e = p->project(p->user, t1, y1);
+    if (e == CT_EVAL_OK)
+        e = ct_stepper_rhs(p, t1, y1, dy1, stats);
+    if (s->dae->has_no_power)
+        return e;
+    for (int i = nq + nu; i < p->ny && e == CT_EVAL_OK; i++)
+        y1[i] = y[i] + h / 2 * (dy[i] + dy1[i]);
+    return e;
+}
+
+// For the prediction of the next step.
+static inline void note_accelerations(struct state *s, double h, const int nu)
+{
+    const double pace = s->f.pace, across = s->f.across; // zero behind no step
+    for (int k = 0; k < nu; k++) {
+        const double slope = pace * (s->end->u_dot[k] - s->start->u_dot[k]);
+        s->end->slope[k] = slope;
+        s->end->bend[k] = across * (slope - s->start->slope[k]);
+    }
+    for (int i = 0; i < s->it->m; i++) {
+        const double slope = pace * (s->end->lam[i] - s->start->lam[i]);
+        s->end->lam_slope[i] = slope;
+        s->end->lam_bend[i] = across * (slope - s->start->lam_slope[i]);
+    }
+    s->end->h = h;
+}
+
+enum ct_eval ct_alpha_step(const struct ct_problem *p, double t, double h, const double *y,
+                           const double *dy, const struct ct_tolerance *tolerance, double *y1,
+                           double *dy1, double *err, void *work,
+                           struct ct_integrate_stats *stats)
+{
+    struct state *s = work;
+    const int first = s->dae->nq + s->dae->nu; // of quadratures
+    enum ct_eval e = begin(s, p, t, h, y, dy, tolerance, y1, dy1, stats);
+    if (e == CT_EVAL_OK)
+        e = iterate(s, t + h, h, y, stats);
+    if (e == CT_EVAL_OK)
+        e = finish(s, p, t + h, h, y, dy, y1, dy1, stats);
+    if (e != CT_EVAL_OK)
+        return e;
+    if (tolerance)
+        *err = ct_larger(estimate(s, p, tolerance, t + h, h, y1),
+                         estimate_quadratures(s, p, tolerance, h, y, dy, y1, dy1));
+    if (s->dae->nu == 1)
+        note_accelerations(s, h, 1);
+    else if (s->dae->nu == 3)
+        note_accelerations(s, h, 3);
+    else
+        note_accelerations(s, h, s->dae->nu);
+    if (s->dae->has_no_power)
+        return CT_EVAL_OK;
+    ct_stepper_copy(s->end->rate + first, dy + first, p->ny - first);
+    ct_stepper_copy(s->end_rate + first, dy1 + first, p->ny - first);
+    return CT_EVAL_OK;
+}
+
+// Cubic Hermite: places in the chart at the start of the step, speeds and quadratures.
+void ct_alpha_dense(const struct ct_problem *p, double h, double theta, const double *y,
+                    const double *y1, void *work, double *out)
+{
+    struct state *s = work;
+    const int nq = s->dae->nq, nu = s->dae->nu;
+    s->dae->chart_rate(s->dae->user, s->d, s->u, s->rate1);
+    memset(s->dd, 0, (size_t)nu * sizeof *s->dd);
+    ct_stepper_hermite(s->out, theta, h, s->dd, y + nq, s->d, s->rate1, nu);
+    s->dae->retract(s->dae->user, y, s->out, out);
+    ct_stepper_hermite(out + nq, theta, h, y + nq, s->start->u_dot, y1 + nq, s->end->u_dot, nu);
+    const int i = nq + nu;
+    ct_stepper_hermite(out + i, theta, h, y + i, s->end->rate + i, y1 + i, s->end_rate + i,
+                       p->ny - i);
+}

@@ -1,0 +1,312 @@
+// Errors of fast modes and numerical dissipation: what errors of implicit methods mean where they are vibrations much faster than the motion: which part of a speed is slow, and what
+// energy a step of Radau takes from the rest, and what outputs miss of it then. See newton_iteration.h; (8.10), (8.13), (8.21).
+#include "integrate/implicit/newton_iteration.h"
+#include "numeric/dense.h"
+
+#include <math.h>
+#include <string.h>
+
+// Vibrations so many times as fast as the motion are not part of it.
+static const double much_faster = 10;
+
+// How fast the motion is for its way: the largest |u|/|q|, without coordinates that are small as the tolerance sees them, and
+// of those that have gone further than a unit as after that.  [1/s]
+static double pace_of(const struct ct_newton_iteration *it, double small, const double *y)
+{
+    const double *u = y + it->dae->nq;
+    double pace = 0;
+    for (int k = 0; k < it->nu; k++) {
+        const int i = it->dae->q_of[k];
+        const double way = i < 0 ? 1 : ct_smaller(fabs(y[i]), 1);
+        pace = ct_larger(pace, (fabs(u[k]) + small) / (way + small));
+    }
+    return pace;
+}
+
+// b (n) = the slow part of u, in its first nu entries.
+static void pass_slow(struct ct_newton_iteration *it, const double *u)
+{
+    const int nu = it->nu, n = it->n;
+    double *b = it->b;
+    memset(b + nu, 0, (size_t)(n - nu) * sizeof *b);
+    ct_newton_iteration_multiply_mass(it, b, u);
+    if (it->sparse)
+        ct_newton_solve_slow(it->sparse, b);
+    else
+        ct_lu_solve(b, it->H, it->pivot_slow, n, n, 1, n, false);
+}
+
+// How much of speed k is slow.
+static double remains(struct ct_newton_iteration *it, int k)
+{
+    memset(it->off, 0, (size_t)it->nu * sizeof *it->off);
+    it->off[k] = 1;
+    pass_slow(it, it->off);
+    return it->b[k];
+}
+
+static bool has_factors(struct ct_newton_iteration *it, double c)
+{
+    if (it->sparse)
+        return ct_newton_factor_slow(it->sparse, c);
+    ct_newton_iteration_fill(it, it->H, it->n, c, c * c);
+    return ct_lu(it->H, it->pivot_slow, it->n, it->n);
+}
+
+static void find_masses(struct ct_newton_iteration *it)
+{
+    if (it->sparse)
+        ct_newton_masses(it->sparse, it->mass);
+    for (int k = 0; k < it->nu && !it->sparse; k++)
+        it->mass[k] = it->M[k + it->nu * k];
+}
+
+static void find_slow_speeds(struct ct_newton_iteration *it)
+{
+    const double half = 0.5;
+    if (it->sparse)
+        ct_newton_slow_parts(it->sparse, it->off);
+    for (int k = 0; k < it->nu; k++)
+        it->is_slow[k] = (it->sparse ? it->off[k] : remains(it, k)) > half;
+}
+
+// Factors that tell what is slower than c; those of up to twice or half of it will do.
+static bool factor_slow(struct ct_newton_iteration *it, double c)
+{
+    if (it->slow > c / 2 && it->slow < 2 * c) {
+        it->is_band_factor = it->is_band_factor && !has_factors(it, it->slow);
+        return !it->is_band_factor;
+    }
+    it->slow = has_factors(it, c) ? c : 0;
+    it->is_band_factor = false;
+    find_masses(it);
+    if (it->slow > 0)
+        find_slow_speeds(it);
+    return it->slow > 0;
+}
+
+// What the slow motion does not feel of speeds: as much as is ample of the largest slow one, in a mass as light as the
+// lightest slow one.
+static double negligible_energy(const struct ct_newton_iteration *it, const double *ample)
+{
+    double light = INFINITY, most = 0;
+    for (int k = 0; k < it->nu; k++)
+        if (it->is_slow[k]) {
+            light = fmin(light, it->mass[k]);
+            most = fmax(most, ample[k]);
+        }
+    return isfinite(light) ? sqrt(light) * most : 0;
+}
+
+// x' A x for A (nu x nu).
+static double form_of(const double *A, const double *x, int nu)
+{
+    double sum = 0;
+    for (int j = 0; j < nu; j++)
+        for (int k = 0; k < nu; k++)
+            sum += x[k] * A[k + nu * j] * x[j];
+    return sum;
+}
+
+static double mass_form(const struct ct_newton_iteration *it, const double *x)
+{
+    return it->sparse ? ct_newton_mass_form(it->sparse, x) : form_of(it->M, x, it->nu);
+}
+
+// x' M x, and with K, of what is fast of x.
+static void measure_fast(struct ct_newton_iteration *it, const double *x, double *mass,
+                         double *stiffness)
+{
+    pass_slow(it, x);
+    for (int k = 0; k < it->nu; k++)
+        it->off[k] = x[k] - it->b[k];
+    *mass = mass_form(it, it->off);
+    *stiffness = it->sparse ? ct_newton_stiffness_form(it->sparse, it->off)
+                            : form_of(it->K, it->off, it->nu);
+}
+
+void ct_newton_iteration_note_energy(struct ct_newton_iteration *it, double small,
+                                     const double *speeds)
+{
+    it->largest_mass = 0;
+    for (int k = 0; k < it->nu; k++)
+        it->largest_mass = ct_larger(it->largest_mass, it->mass[k]);
+    it->energy
+        = ct_larger(it->energy, mass_form(it, speeds) + it->largest_mass * small * small);
+}
+
+void ct_newton_iteration_predict_energy(struct ct_newton_iteration *it, double small,
+                                        double time, const double *accelerations)
+{
+    pass_slow(it, accelerations);
+    memcpy(it->off, it->b, (size_t)it->nu * sizeof *it->off);
+    const double force = mass_form(it, it->off); // squared, over a mass
+    const double on_the_way = 2 * small * sqrt(it->largest_mass * force),
+                 at_the_end = force * time * time;
+    it->energy = ct_larger(it->energy, ct_smaller(on_the_way, at_the_end));
+}
+
+struct ct_vibration ct_newton_iteration_vibration(struct ct_newton_iteration *it, double gamma,
+                                                  double h, const double *d, const double *u)
+{
+    double mu, ku, md, kd;
+    measure_fast(it, u, &mu, &ku);
+    measure_fast(it, d, &md, &kd);
+    const double z2 = (h * h * ku + kd) / (mu + md / (h * h)); // Rayleigh's quotient of both
+    if (!(z2 > 0))
+        return (struct ct_vibration){0};
+    const double filtered = 1 + gamma * gamma / z2;
+    const double lost = (mu + z2 / (h * h) * md) * filtered;
+    const double times = 1 + 3600 * (1 + z2 * (0.06 + 0.0025 * z2)) / (z2 * z2 * z2);
+    return (struct ct_vibration){lost, lost * times, sqrt(filtered * times)};
+}
+
+double ct_newton_iteration_output_change(struct ct_newton_iteration *it,
+                                         const struct ct_problem *p,
+                                         const struct ct_vibration *v, double t,
+                                         const double *y, const double *d, const double *u)
+{
+    const int nu = it->nu;
+    double *places = it->fast, *speeds = it->fast + nu;
+    if (!p->output_change)
+        return 0;
+    pass_slow(it, d);
+    for (int k = 0; k < nu; k++)
+        places[k] = v->times * (d[k] - it->b[k]);
+    pass_slow(it, u);
+    for (int k = 0; k < nu; k++)
+        speeds[k] = v->times * (u[k] - it->b[k]);
+    return p->output_change(p->user, t, y, ct_newton_iteration_states(it, y, places, speeds),
+                            0);
+}
+
+double ct_newton_iteration_slow_norm(struct ct_newton_iteration *it, const struct ct_problem *p,
+                                     const struct ct_tolerance *tolerance, const double *y,
+                                     const double *ample, const double *d, const double *u,
+                                     double *slow)
+{
+    const int nu = it->nu;
+    double *b = it->b, *places = it->fast, *speeds = it->fast + nu;
+    const double small = tolerance->atol / tolerance->rtol;
+    *slow = INFINITY;
+    if (!isfinite(small) || !factor_slow(it, much_faster * pace_of(it, small, y)))
+        return INFINITY;
+    const double unfelt = negligible_energy(it, ample);
+    pass_slow(it, d);
+    for (int k = 0; k < nu; k++)
+        places[k] = p->requested_positions[k] ? d[k] : b[k];
+    pass_slow(it, u);
+    for (int k = 0; k < nu; k++) {
+        const double borne = fmax(ample[k], unfelt / sqrt(it->mass[k]));
+        const double fast = (u[k] - b[k]) / (borne * it->share[nu + k]);
+        speeds[k] = p->requested_speeds[k] ? u[k] : hypot(b[k], fast);
+    }
+    *slow = ct_newton_iteration_norm(it, places, speeds, nu, 1);
+    return ct_newton_iteration_norm(it, d, speeds, nu, 1);
+}
+
+// out (nu) = x less what is slow of it; they may be one.
+static void keep_fast(struct ct_newton_iteration *it, double *out, const double *x)
+{
+    pass_slow(it, x);
+    for (int k = 0; k < it->nu; k++)
+        out[k] = x[k] - it->b[k];
+}
+
+// x (nu) <- times (1 - S) S^2 x, S what pass_slow leaves.
+static void pass_band(struct ct_newton_iteration *it, double *x, double times)
+{
+    for (int i = 0; i < 2; i++) {
+        pass_slow(it, x);
+        memcpy(x, it->b, (size_t)it->nu * sizeof *x);
+    }
+    keep_fast(it, x, x);
+    for (int k = 0; k < it->nu; k++)
+        x[k] *= times;
+}
+
+// A part of a way small enough for outputs to change in proportion, and far above their round-off.
+static const double sample = 0x1p-14;
+
+void ct_newton_iteration_predict_motion(struct ct_newton_iteration *it,
+                                        const struct ct_problem *p, double t, const double *y,
+                                        const double *a, double *ahead)
+{
+    const int nu = it->nu;
+    const double time = p->duration, *u = y + it->dae->nq;
+    double *part = it->fast, far = 1;
+    memset(ahead, 0, 2 * (size_t)nu * sizeof *ahead);
+    it->is_band_factor = true;
+    if (has_factors(it, 1 / time)) {
+        for (int k = 0; k < nu; k++)
+            part[k] = time * (u[k] + time * a[k]);
+        pass_slow(it, part);
+        memcpy(ahead, it->b, (size_t)nu * sizeof *ahead);
+        pass_slow(it, a);
+        for (int k = 0; k < nu; k++) {
+            ahead[nu + k] = time * it->b[k];
+            far = ct_larger(far, fabs(ahead[k]));
+        }
+    }
+    for (int k = 0; k < 2 * nu; k++) {
+        ahead[k] = isfinite(ahead[k] / far) ? ahead[k] / far : 0;
+        part[k] = sample * ahead[k];
+    }
+    if (p->expect_output)
+        p->expect_output(p->user, t, y, ct_newton_iteration_states(it, y, part, part + nu),
+                         1 / sample);
+}
+
+// What changes of positions and speeds (nu) are of states that are outputs, over the largest of them so far or expected.
+static double output_change_of_states(const struct ct_newton_iteration *it,
+                                      const struct ct_problem *p, const struct ct_band *b,
+                                      const double *places, const double *speeds)
+{
+    const int nu = it->nu;
+    double most = 0;
+    for (int k = 0; k < nu; k++) {
+        const double place = ct_larger(b->furthest[k], fabs(b->ahead[k])),
+                     speed = ct_larger(b->swiftest[k], fabs(b->ahead[nu + k]));
+        if (it->dae->q_of[k] >= 0 && p->requested_positions[k] && places[k] != 0)
+            most = ct_larger(most, fabs(places[k]) / ct_larger(place, b->least));
+        if (p->requested_speeds[k] && speeds[k] != 0)
+            most = ct_larger(most, fabs(speeds[k]) / ct_larger(speed, b->least));
+    }
+    return most;
+}
+
+// The vibration places, speeds (nu) a quarter of a period later.
+static void turn_quarter(double *places, double *speeds, double rate, int nu)
+{
+    for (int k = 0; k < nu; k++) {
+        const double place = places[k];
+        places[k] = speeds[k] / rate;
+        speeds[k] = -rate * place;
+    }
+}
+
+double ct_newton_iteration_output_change_in_band(struct ct_newton_iteration *it,
+                                                 const struct ct_problem *p,
+                                                 const struct ct_band *b, double t,
+                                                 const double *y, const double *d,
+                                                 const double *u)
+{
+    double *places = it->fast, *speeds = it->fast + it->nu, felt[2];
+    if (!isfinite(b->small) || !factor_slow(it, much_faster * pace_of(it, b->small, y)))
+        return 0;
+    keep_fast(it, places, d);
+    keep_fast(it, speeds, u);
+    it->is_band_factor = true;
+    if (!has_factors(it, b->rate))
+        return 0;
+    pass_band(it, places, b->times);
+    pass_band(it, speeds, b->times);
+    for (int quarter = 0; quarter < 2; quarter++) {
+        const double *e = ct_newton_iteration_states(it, y, places, speeds);
+        felt[quarter]
+            = ct_larger(output_change_of_states(it, p, b, places, speeds),
+                        p->output_change ? p->output_change(p->user, t, y, e, b->least) : 0);
+        turn_quarter(places, speeds, b->rate, it->nu);
+    }
+    return hypot(felt[0], felt[1]);
+}

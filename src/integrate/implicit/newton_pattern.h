@@ -1,0 +1,61 @@
+// What the plan of newton_sparse.h consists of: shared by the two files that know.
+#ifndef CT_INTEGRATE_IMPLICIT_NEWTON_PATTERN_H
+#define CT_INTEGRATE_IMPLICIT_NEWTON_PATTERN_H
+
+#include "integrate/implicit/newton_sparse.h"
+#include "numeric/factors.h"
+
+// The matrix is S + x X + (y or z) W; numbers of the three stand one behind the other.
+enum { CT_NEWTON_PARTS = 3 };
+
+// Entries are sums of terms +-v[a], -v[a] v[b] and +-v[a] w[b]/2, for the list of values v.
+struct ct_newton_copy {
+    int target, a;
+    double sign;
+};
+struct ct_newton_product {
+    int target, a, b;
+};
+struct ct_newton_rotation {
+    int target, a, speed;
+    double half;
+};
+
+struct ct_newton_list {
+    const int *row, *column;
+    const int *start; // of K, C, M, R: entries of row i from start[i] to start[i + 1]
+    int first, n;     // among the values
+};
+
+struct ct_newton_pattern {
+    const struct ct_slopes *slopes;
+    struct ct_newton_list K, C, M, R, D,
+        J; // rows of K, C, M, R from nu on are those of inner values
+    int nu, most_rows, n, nvalue;
+    int nauxiliary, first_auxiliary; // unknowns: nu, rows twice or once, inner values
+    const int *M_start,
+        *M_entry; // with inner values: of M by column, from M_start[k] to M_start[k + 1]
+    bool is_stabilised;
+    struct ct_pattern *pattern;
+    int *
+        index; // behind nu: of the ones of rows that do not count, for eta and for lam; of the -1 of inner values
+    struct ct_newton_copy *copy; // those of M first
+    struct ct_newton_product *product;
+    struct ct_newton_rotation *rotation;
+    size_t ncopy, nproduct, nrotation, copy_cap, product_cap, rotation_cap;
+};
+
+/// Is a row that of a force or of an inner value, in which K counts by y? Else it is of a constraint.
+static inline bool ct_newton_pattern_is_force(const struct ct_newton_pattern *p, int row)
+{
+    return row < p->nu || row >= p->first_auxiliary;
+}
+
+/// A (3 nz, out) = S, X, W from the lists v and the speeds w of rotations (or NULL).
+void ct_newton_pattern_assemble(const struct ct_newton_pattern *p, double *A, const double *v,
+                                const double *w);
+/// G (nz, out): the matrix for c and e.
+void ct_newton_pattern_form(const struct ct_newton_pattern *p, double *G, const double *A,
+                            double c, double e);
+
+#endif

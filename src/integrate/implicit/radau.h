@@ -1,0 +1,140 @@
+// A step of Radau IIA from inside, for radau5.c and radau_error.c: its stages, and the real one of its linear systems.
+#ifndef CT_INTEGRATE_IMPLICIT_RADAU_H
+#define CT_INTEGRATE_IMPLICIT_RADAU_H
+
+#include "integrate/implicit/newton_iteration.h"
+#include "numeric/dense.h"
+
+enum { STAGES = 3 };
+
+#define CBRT3 1.4422495703074083823
+/// The real eigenvalue of the inverse of the Runge-Kutta matrix.
+#define GAMMA (3 - CBRT3 + CBRT3 * CBRT3)
+
+#define SQRT3 1.7320508075688772935
+#define SQRT6 2.4494897427831780982
+
+#define C1 ((4 - SQRT6) / 10)
+#define C2 ((4 + SQRT6) / 10)
+/// Where stages are, in parts of the step.
+static const double C[STAGES] = {C1, C2, 1};
+static const double A[STAGES][STAGES]
+    = {{(88 - 7 * SQRT6) / 360, (296 - 169 * SQRT6) / 1800, (-2 + 3 * SQRT6) / 225},
+       {(296 + 169 * SQRT6) / 1800, (88 + 7 * SQRT6) / 360, (-2 - 3 * SQRT6) / 225},
+       {(16 - SQRT6) / 36, (16 + SQRT6) / 36, 1. / 9}};
+
+// The eigenvalues of A^-1, the roots of x^3 - 9 x^2 + 36 x - 60: GAMMA and ALPHA +- i BETA.
+static const double ALPHA = 3 + (CBRT3 - CBRT3 * CBRT3) / 2;
+static const double BETA = SQRT3 / 2 * (CBRT3 + CBRT3 * CBRT3);
+
+/// A^-1 = T diag(GAMMA, [ALPHA -BETA; BETA ALPHA]) T^-1, as in the program of the source.
+static const double T[STAGES][STAGES]
+    = {{9.1232394870892942792e-02, -0.14125529502095420843, -3.0029194105147424492e-02},
+       {0.24171793270710701896, 0.20412935229379993199, 0.38294211275726193779},
+       {0.96604818261509293619, 1, 0}};
+static const double T_INVERSE[STAGES][STAGES]
+    = {{4.3255798900631553510, 0.33919925181580986954, 0.54177053993587487119},
+       {-4.1787185915519047273, -0.32768282076106238708, 0.47662355450055045196},
+       {-0.50287263494578687595, 2.5719269498556054292, -0.59603920482822492497}};
+
+/// Stages of a step, or their corrections, one stage behind the other.
+struct ct_radau_stages {
+    double h;
+    double *d, *u;     // motion and change of speed since the start  (nu x 3)
+    double *lam, *eta; // (rows x 3)
+};
+
+struct ct_radau {
+    const struct ct_dae *dae;
+    struct ct_newton_iteration *it;
+    bool is_fresh, was_tried;           // there is no step before
+    struct ct_radau_stages before, now; // the last accepted step, this one
+    struct ct_radau_stages change;      // corrections, first in the basis of eigenvectors
+    double h;                           // of the weights that follow
+    double slope[STAGES][STAGES], defect_of[STAGES]; // A^-1/h and E/h
+    double ratio; // of this step to the one before: of the weights that follow
+    double further[STAGES][STAGES];     // its polynomial at this one's stages, less its end
+    double further_lam[STAGES][STAGES]; // that of its multipliers
+    bool knows_multipliers;             // of the step before, of the same rows
+    struct ct_tolerance step_tolerance, estimate_tolerance;
+    double *rate, *F, *r;        // u' (nu); residuals of d' and u'  (nu x 3)
+    double *phi, *v;             // (rows x 3)
+    double *q, *u, *u_dot, *lam; // of a stage; of the start  (lam)
+    double *d;                   // a motion, or change of speed  (nu)
+    double *gain, *defect;       // of quadratures: over h; error over h / GAMMA  (ny)
+    double *power, *power1;      // their rates at both ends  (ny)
+    // speeds in the error, see radau_error.c
+    bool counts_slow_only;    // they were counted by what is slow of them at the last look
+    int unchecked;            // steps until the next one
+    double *largest_speed;    // largest |u| at looks so far  (nu)
+    double *largest_position; // largest place that moves with each  (nu)
+    double *expected;         // positions and speeds that are expected  (2 nu)
+    struct ct_lost_vibration {
+        double all, rate; // of vibrations, what there is, and what steps take, over h^5
+    } lost;               // by outputs at looks so far
+    struct {
+        double h,
+            error; // a step, and what such ones take of vibrations, as an error of order 3; 0: not looked at
+        int left; // steps until the next look
+    } vibration_check;
+    double *vibration_scale; // what vibrations are measured against  (nu)
+};
+
+/// out (n) = weighted stages z (n x 3).
+static inline void ct_radau_weigh(double *out, const double *w, const double *z, int n)
+{
+    for (int k = 0; k < n; k++)
+        out[k] = w[0] * z[k] + w[1] * z[k + n] + w[2] * z[k + 2 * n];
+}
+
+/// The first column in the basis of eigenvectors. With u eliminated, r += (c M + C) F and v += J F; then u changes by
+/// (c - N) d - J' c eta + F.
+static inline void ct_radau_solve(struct ct_radau *s, const int nu, const int m)
+{
+    struct ct_newton_iteration *it = s->it;
+    const double c = it->c, *F = s->F;
+    double *d = s->change.d, *u = s->change.u, *eta = s->change.eta;
+    const bool is_sparse = nu > CT_MOST_INVERTED && it->sparse;
+    if (is_sparse) {
+        ct_newton_add_motion(it->sparse, s->r, c, F, 0, NULL);
+        ct_newton_add_rows(it->sparse, s->v, 1, F);
+    }
+    for (int j = 0; j < nu && !is_sparse; j++) {
+        ct_vector_add(s->r, c * F[j], it->M + nu * j, (size_t)nu);
+        ct_vector_add(s->r, F[j], it->C + nu * j, (size_t)nu);
+        ct_vector_add(s->v, F[j], it->J + m * j, (size_t)m);
+    }
+    ct_newton_iteration_solve(it, d, eta, s->change.lam, s->r, s->phi, s->v);
+    for (int k = 0; k < nu; k++)
+        u[k] = c * d[k] + F[k];
+    if (!s->dae->is_plain)
+        ct_newton_iteration_add_rotation(it, u, -1, d);
+    for (int i = 0; i < m; i++)
+        eta[i] *= c;
+    if (m)
+        ct_newton_iteration_add_constraint_force(it, u, u, -1, eta, nu, m);
+}
+
+/// The error of the step in the states, into *err and s->change, tol eased.
+enum ct_eval ct_radau_estimate(struct ct_radau *s, const struct ct_problem *p,
+                               const struct ct_tolerance *tol, double t, const double *y,
+                               const double *dy, double *y1, double *dy1, double *err,
+                               struct ct_integrate_stats *stats);
+/// That of outputs and quadratures, where it is more than err, the one of the states.
+double ct_radau_error_of_outputs(struct ct_radau *s, const struct ct_problem *p, double t1,
+                                 const double *y, const struct ct_tolerance *eased,
+                                 const double *y1, double err);
+/// The tolerance of the estimate for one of the step, found once as long as it is the same.
+const struct ct_tolerance *ct_radau_estimate_tolerance(struct ct_radau *s,
+                                                       const struct ct_tolerance *tolerance);
+/// Has the iteration come so far that outputs that amplify, at the end of the step y1, dy1, have what the tolerance asks?
+/// Corrections that are small as motions leave large errors of stiff forces.
+double ct_radau_imbalance(struct ct_radau *s, const struct ct_problem *p,
+                          const struct ct_tolerance *eased, double t1, const double *y1,
+                          const double *dy1, double states);
+/// ct_method.dense_error; slope: weights of the stages in the rates there.
+enum ct_eval ct_radau_dense_error(struct ct_radau *s, const struct ct_problem *p, double t,
+                                  const double *slope, double *y, double *err,
+                                  struct ct_integrate_stats *stats);
+
+#endif

@@ -1,0 +1,347 @@
+// Error estimate of a step of Radau IIA: of the states, of the outputs.  (8.4)
+//
+// That of the states is the one of an embedded formula of order 3, filtered by the real system of the iteration. An error of
+// speeds is one of the motion, which goes on in them, or one of vibrations, which leaves places by that error over their
+// frequency, and so is in the error of places, too. Where no output is made of speeds, those of vibrations much faster than
+// the motion need not count again: undamped, they would have to be followed for their rates alone.
+//
+//     counted   s = (c^2 M + c C + K)^-1 c^2 M e_u,   c = 10 max (|u| + a)/(min(|q|, 1) + a)          (8.10)
+//
+// with the places e_d. Of a vibration of omega it leaves c^2/(c^2 + omega^2). The motion feels the energy of the rest, so that is
+// held to the root of the tolerance. Where outputs would not feel it if all of the vibration were lost, the same is done with places.
+//
+// What outputs do feel of vibrations adds up over all steps, which no error of a single one tells: what steps like this one take of
+// them up to the end is an error as well.  (8.21), (8.22)
+//
+// Outputs that amplify errors of states, as forces of stiff springs do, (8.11), have errors of their own: at the end of the step, of
+// what the iteration has left, and between steps.
+// Source: Hairer and Wanner (1996), IV.8, key hairer1996; formulation 8.4.
+#include "integrate/implicit/radau.h"
+
+#include <math.h>
+#include <string.h>
+
+// Outputs near zero are held to this part of the absolute tolerance: of a vibration that is damped because the estimate does
+// not see it, over 1e5 radians, less than ten times that tolerance is lost.  (8.7)
+static const double near_zero = 0.05;
+
+// Outputs that amplify see what the step before has left of speeds, not what this one leaves: its error counts for at least so much,
+// (0.9/1.5)^4, so that steps grow by no more than half.
+static const double growing = 0.13;
+
+// What is promised of outputs, in parts of what is wanted: vibrations of less energy may be lost altogether.
+static const double promised = 10;
+// Nor are they missed where all of them is this part of it in places, (8.10): the other half is for all other errors.
+static const double unfelt = 0.5;
+// What is lost of them, (8.22), is known better: the largest of many looks.
+static const double unmissed = 0.75;
+
+// Of a vibration of z = omega h, a step takes z^6/7200, and the filtered error is z^4/(60 gamma).  (8.21)
+static const double of_vibration = 7200, of_error = 60 * GAMMA;
+// All steps take 1 - 1/e of a vibration of z0. `lost` looks at `apart` z0 and `all` at z0 over that: nearer to it less than a third of what is
+// lost is seen there.
+static const double apart = 2;
+// Phases of several vibrations come together only now and then: so much of what was missed at a look counts still at the next one.
+static const double fading = 0.9;
+
+// Speeds are eased where less than this part of the error is left then; looked at every so many steps where they were not, and
+// where they are too large.
+static const double worth_it = 0.5;
+enum { STEPS_BETWEEN = 15 };
+
+// The filtered error of the embedded formula at the start y, whose rates are u and u_dot.
+static inline double filter_few(struct ct_radau *s, const double *u, const double *u_dot,
+                                const int nu, const int m)
+{
+    struct ct_newton_iteration *it = s->it;
+    const struct ct_radau_stages *z = &s->now;
+    double *F = s->F, *defect = s->rate;
+    ct_radau_weigh(F, s->defect_of, z->d, nu);
+    ct_radau_weigh(defect, s->defect_of, z->u, nu);
+    for (int k = 0; k < nu; k++) { // as residuals: the error is the correction they lead to
+        F[k] = -(F[k] + u[k]);
+        defect[k] = -(defect[k] + u_dot[k]);
+        s->r[k] = 0;
+    }
+    const bool is_sparse = nu > CT_MOST_INVERTED && it->sparse;
+    if (is_sparse)
+        ct_newton_add_mass(it->sparse, s->r, 1, defect);
+    for (int j = 0; j < nu && !is_sparse; j++)
+        for (int k = 0; k < nu; k++)
+            s->r[k] += it->M[k + nu * j] * defect[j];
+    for (int i = 0; i < m; i++)
+        s->phi[i] = s->v[i] = 0;
+    ct_radau_solve(s, nu, m);
+    return ct_newton_iteration_norm(it, s->change.d, s->change.u, nu, 1);
+}
+
+static double filter(struct ct_radau *s, const double *u, const double *u_dot)
+{
+    const int nu = s->it->nu, m = s->it->m;
+    return m || nu > 2 ? filter_few(s, u, u_dot, nu, m)
+         : nu == 1     ? filter_few(s, u, u_dot, 1, 0)
+                       : filter_few(s, u, u_dot, 2, 0);
+}
+
+// The motion feels the energy of vibrations, the square of their speeds: against that of the largest speeds so far.
+static void find_vibration_scale(struct ct_radau *s, const struct ct_problem *p,
+                                 const double *u)
+{
+    const double small = s->step_tolerance.atol / s->step_tolerance.rtol;
+    const double root = sqrt(p->accuracy > 0 ? p->accuracy : s->step_tolerance.rtol);
+    for (int k = 0; k < s->dae->nu; k++) {
+        s->largest_speed[k] = ct_larger(s->largest_speed[k], fabs(u[k]));
+        s->vibration_scale[k] = root * (s->largest_speed[k] + small);
+    }
+}
+
+// What the step takes from vibrations, as an error of order 3: 1 where as much in every step would be felt at the end of the run. A rate
+// of h^5.
+static double find_loss(struct ct_radau *s, const struct ct_problem *p,
+                        const struct ct_vibration *v, const double *u, const double *u_dot)
+{
+    struct ct_newton_iteration *it = s->it;
+    const double order = 4. / 5;
+    const double small = s->step_tolerance.atol / s->step_tolerance.rtol,
+                 felt = promised * p->accuracy;
+    ct_newton_iteration_note_energy(it, small, u);
+    if (v->present > felt * it->energy)
+        ct_newton_iteration_predict_energy(it, small, p->duration, u_dot);
+    const bool counts = p->keeps_energy || v->present > felt * it->energy;
+    const double pace = v->lost / s->now.h * p->duration;
+    return counts ? pow(pace / (p->accuracy * it->energy), order) : 0;
+}
+
+// Less of the error where it is one of vibrations: of speeds, and of places where outputs would not feel it if there were none.
+static void discount_fast_modes(struct ct_radau *s, const struct ct_problem *p,
+                                const struct ct_tolerance *tol, double t, const double *y,
+                                const double *dy, double *err, double *loss)
+{
+    const int nq = s->dae->nq;
+    const double *d = s->change.d, *u = s->change.u;
+    if (!p->requested_speeds || (*err <= 1 && !s->counts_slow_only && s->unchecked-- > 0))
+        return;
+    find_vibration_scale(s, p, y + nq);
+    double slow, eased = ct_newton_iteration_slow_norm(s->it, p, tol, y, s->vibration_scale, d,
+                                                       u, &slow);
+    if (isfinite(eased) && p->accuracy > 0) {
+        const struct ct_vibration v
+            = ct_newton_iteration_vibration(s->it, GAMMA, s->now.h, d, u);
+        if (loss)
+            *loss = find_loss(s, p, &v, y + nq, dy + nq);
+        if (slow < worth_it * eased
+            && ct_newton_iteration_output_change(s->it, p, &v, t, y, d, u)
+                   < unfelt * promised * p->accuracy)
+            eased = slow;
+    }
+    s->counts_slow_only = eased < worth_it * *err;
+    s->unchecked = STEPS_BETWEEN;
+    if (s->counts_slow_only && eased > 1 && !s->it->is_new)
+        ct_newton_iteration_forget(
+            s->it); // modes turn with the motion: those of before take vibrations for slow
+    *err = ct_smaller(*err, eased);
+}
+
+// The largest positions and speeds so far.
+static void note_sizes(struct ct_radau *s, const double *y)
+{
+    const int nq = s->dae->nq, *q_of = s->dae->q_of;
+    for (int k = 0; k < s->dae->nu; k++) {
+        s->largest_speed[k] = ct_larger(s->largest_speed[k], fabs(y[nq + k]));
+        if (q_of[k] >= 0)
+            s->largest_position[k] = ct_larger(s->largest_position[k], fabs(y[q_of[k]]));
+    }
+}
+
+// What outputs would miss of vibrations of about this rate that are `times` their errors, in parts of what they may miss.
+static double missing(struct ct_radau *s, const struct ct_problem *p, double t, const double *y,
+                      double rate, double times)
+{
+    const double small = s->step_tolerance.atol / s->step_tolerance.rtol,
+                 may = unmissed * promised;
+    const struct ct_band band = {.rate = rate,
+                                 .times = times,
+                                 .small = small,
+                                 .least = near_zero / may * small,
+                                 .furthest = s->largest_position,
+                                 .swiftest = s->largest_speed,
+                                 .ahead = s->expected};
+    return ct_newton_iteration_output_change_in_band(s->it, p, &band, t, y, s->change.d,
+                                                     s->change.u)
+         / (may * p->accuracy);
+}
+
+// The amplitude of a vibration of z in parts of the filtered error.
+static double of_amplitude(double z)
+{
+    return of_error / (z * z * z * z);
+}
+
+// What steps like this one take from vibrations up to the end of the run, and all there is, each no less than what is remembered.
+// (8.21)
+static struct ct_lost_vibration find_lost(struct ct_radau *s, const struct ct_problem *p,
+                                          double t, const double *y)
+{
+    const double h = s->now.h, steps = ct_larger(p->duration / h, 1), h5 = h * h * h * h * h;
+    const double harmless = 1e-3; // an error of 1.8e-4: steps may grow eightfold
+    const double z0 = pow(of_vibration / steps, 1. / 6), above = apart * z0, below = z0 / apart;
+    const double apart6 = apart * apart * apart * apart * apart * apart;
+    const double all = missing(s, p, t, y, below / h, of_amplitude(below));
+    struct ct_lost_vibration m = {ct_larger(all, fading * s->lost.all), fading * s->lost.rate};
+    if (m.all > harmless)
+        m.rate = ct_larger(missing(s, p, t, y, above / h, apart6 * of_amplitude(above)) / h5,
+                           m.rate);
+    return m;
+}
+
+// As an error of order 3: a rate of h^5. All there is does not grow with the step, so that holds steps up less before it counts.  (8.22)
+static double lost_error(const struct ct_lost_vibration *m, double h)
+{
+    const double order = 4. / 5, h5 = h * h * h * h * h;
+    return ct_smaller(pow(m->rate * h5, order), pow(m->all, 1 / order));
+}
+
+// It is looked at where steps have become longer, and every so many steps, and follows their length in between.
+static double miss(struct ct_radau *s, const struct ct_problem *p, double t, const double *y,
+                   const double *dy)
+{
+    const double h = s->now.h;
+    if (!p->requested_speeds || !(p->accuracy > 0) || !(p->duration > 0))
+        return 0;
+    if (h <= s->vibration_check.h && s->vibration_check.left-- > 0) {
+        const double part = h / s->vibration_check.h;
+        return s->vibration_check.error * part * part * part * part;
+    }
+    note_sizes(s, y);
+    ct_newton_iteration_predict_motion(s->it, p, t, y, dy + s->dae->nq, s->expected);
+    const struct ct_lost_vibration m = find_lost(s, p, t, y);
+    const double error = lost_error(&m, h);
+    const bool is_told = isfinite(error), is_doubtful = error > 1 && !s->it->is_new;
+    s->vibration_check.h = h;
+    s->vibration_check.error = is_told ? error : 0;
+    s->vibration_check.left = STEPS_BETWEEN;
+    if (is_doubtful)
+        ct_newton_iteration_forget(s->it); // as in `discount_fast_modes`
+    else if (is_told)
+        s->lost = m;
+    return s->vibration_check.error;
+}
+
+// Error of the step. Where it is too large at first, on a first step or after a refusal, it is filtered once more, which
+// takes off what stiff components that start off their slow motion add to it.
+enum ct_eval ct_radau_estimate(struct ct_radau *s, const struct ct_problem *p,
+                               const struct ct_tolerance *tol, double t, const double *y,
+                               const double *dy, double *y1, double *dy1, double *err,
+                               struct ct_integrate_stats *stats)
+{
+    const int nq = s->dae->nq, nu = s->dae->nu;
+    double loss = 0;
+    *err = filter(s, y + nq, dy + nq);
+    discount_fast_modes(s, p, tol, t, y, dy, err, &loss);
+    loss = ct_larger(loss, miss(s, p, t, y, dy));
+    if (*err < 1 || loss > 1 || !(s->is_fresh || s->was_tried)) {
+        *err = ct_larger(*err, loss);
+        return CT_EVAL_OK;
+    }
+    memcpy(y1, y, (size_t)p->ny * sizeof *y);
+    s->dae->retract(s->dae->user, y, s->change.d, y1);
+    for (int k = 0; k < nu; k++)
+        y1[nq + k] += s->change.u[k];
+    const enum ct_eval e = ct_stepper_rhs(p, t, y1, dy1, stats);
+    if (e != CT_EVAL_OK)
+        return e;
+    *err = filter(s, y1 + nq, dy1 + nq);
+    discount_fast_modes(s, p, tol, t, y, dy, err, NULL);
+    return CT_EVAL_OK;
+}
+
+// The error estimate is that of order 3, but the step is better: a tolerance tol of the step is one of 0.1 tol^(2/3)
+// of the estimate, as in the program of the source.
+static struct ct_tolerance loosen(const struct ct_tolerance *tolerance)
+{
+    const double tol = tolerance->rtol > 0 ? tolerance->rtol : tolerance->atol;
+    const double factor = fmax(1, 0.1 / cbrt(tol));
+    return (struct ct_tolerance){factor * tolerance->rtol, factor * tolerance->atol};
+}
+
+const struct ct_tolerance *ct_radau_estimate_tolerance(struct ct_radau *s,
+                                                       const struct ct_tolerance *tolerance)
+{
+    if (s->step_tolerance.rtol != tolerance->rtol || s->step_tolerance.atol != tolerance->atol)
+        s->estimate_tolerance = loosen(tolerance);
+    s->step_tolerance = *tolerance;
+    return &s->estimate_tolerance;
+}
+
+// What a defect of accelerations, off (nu), is as an error of positions and speeds, which goes behind those of the step: what the
+// stiff forces that balance it are changed by.
+static struct ct_radau_stages answer(struct ct_radau *s, const double *off)
+{
+    const struct ct_newton_iteration *it = s->it;
+    const struct ct_radau_stages estimate = s->change;
+    const int nu = it->nu, m = it->m;
+    s->change.d += nu;
+    s->change.u += nu;
+    s->change.lam += m;
+    s->change.eta += m;
+    memset(s->F, 0, (size_t)nu * sizeof *s->F);
+    ct_newton_iteration_multiply_mass(it, s->r, off);
+    for (int i = 0; i < m; i++)
+        s->phi[i] = s->v[i] = 0;
+    ct_radau_solve(s, nu, m);
+    const struct ct_radau_stages found = s->change;
+    s->change = estimate;
+    return found;
+}
+
+double ct_radau_imbalance(struct ct_radau *s, const struct ct_problem *p,
+                          const struct ct_tolerance *eased, double t1, const double *y1,
+                          const double *dy1, double states)
+{
+    const int nq = s->dae->nq, nu = s->dae->nu, last = STAGES - 1;
+    if (!p->sensitive_output_error)
+        return 0;
+    ct_radau_weigh(s->rate, s->slope[last], s->now.u, nu);
+    for (int k = 0; k < nu; k++)
+        s->rate[k] -= dy1[nq + k];
+    const struct ct_radau_stages off = answer(s, s->rate);
+    return ct_newton_iteration_sensitive_error(s->it, p, eased, t1, y1, off.d, off.u, states);
+}
+
+enum ct_eval ct_radau_dense_error(struct ct_radau *s, const struct ct_problem *p, double t,
+                                  const double *slope, double *y, double *err,
+                                  struct ct_integrate_stats *stats)
+{
+    const int nq = s->dae->nq, nu = s->dae->nu;
+    double *dy = s->defect;
+    const enum ct_eval e = ct_stepper_rhs(p, t, y, dy, stats);
+    if (e != CT_EVAL_OK)
+        return e;
+    ct_radau_weigh(s->rate, slope, s->now.u, nu);
+    for (int k = 0; k < nu; k++)
+        s->rate[k] -= dy[nq + k];
+    const struct ct_radau_stages off = answer(s, s->rate);
+    *err = ct_newton_iteration_sensitive_error(s->it, p, &s->estimate_tolerance, t, y, off.d,
+                                               off.u, INFINITY);
+    return CT_EVAL_OK;
+}
+
+double ct_radau_error_of_outputs(struct ct_radau *s, const struct ct_problem *p, double t1,
+                                 const double *y, const struct ct_tolerance *eased,
+                                 const double *y1, double err)
+{
+    const struct ct_tolerance outputs = {eased->rtol, near_zero * eased->atol};
+    const struct ct_radau_stages *e = &s->change;
+    const int first = s->dae->nq + s->dae->nu;
+    err = ct_newton_iteration_error(s->it, p, &outputs, t1, y1, e->d, e->u, err);
+    err = ct_larger(err, ct_stepper_largest(p, eased, first, y, y1, s->defect));
+    if (!(err <= 1) || !p->sensitive_output_error)
+        return err;
+    const double amplified
+        = ct_newton_iteration_sensitive_error(s->it, p, &outputs, t1, y1, e->d, e->u, err);
+    if (!(amplified > 0))
+        return err;
+    // what is left of speeds is a force that is the larger the shorter the step is, gone in the next one
+    const double part = s->is_fresh ? 1 : ct_smaller(1, s->now.h / s->before.h);
+    return ct_larger(err, ct_larger(part * amplified, growing));
+}

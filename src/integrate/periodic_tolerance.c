@@ -1,0 +1,71 @@
+// See periodic_tolerance.h.
+#include "integrate/periodic_tolerance.h"
+
+#include <math.h>
+
+// Steps between looks. What the first ones err acts on all turns.
+enum { STEPS_BETWEEN = 16 };
+// What runs ask of their steps is found on those of up to so many turns.
+static const double usual_turns = 20;
+
+// For 2000 turns: with less, steps would err by their round-off.
+static const double least_share = 1e-4;
+
+struct ct_periodic_tolerance ct_periodic_tolerance_start(double t0, double t1,
+                                                         const struct ct_tolerance *tolerance)
+{
+    const double small = tolerance->rtol > 0 ? tolerance->atol / tolerance->rtol : INFINITY;
+    return (struct ct_periodic_tolerance){.t0 = t0, .t1 = t1, .small = small, .share = 1};
+}
+
+// A turn is there and back: twice as far as it gets for coordinates, which begin at its end, four times the largest
+// speed. What has not turned yet has not repeated anything.
+static double turns_so_far(const struct ct_periodic_tolerance *r)
+{
+    const double far_q = fmax(sqrt(r->range_q), r->small),
+                 far_u = fmax(sqrt(r->range_u), r->small);
+    if (!(r->path_q > far_q && r->path_u > far_u))
+        return 0;
+    return fmin((r->path_q / far_q - 1) / 2, (r->path_u / far_u - 1) / 4);
+}
+
+bool ct_periodic_tolerance_add(struct ct_periodic_tolerance *r, double t, double dq, double q,
+                               double du, double u)
+{
+    r->path_q += sqrt(dq);
+    r->path_u += sqrt(du);
+    r->range_q = q > r->range_q ? q : r->range_q;
+    r->range_u = u > r->range_u ? u : r->range_u;
+    if (++r->steps < STEPS_BETWEEN)
+        return false;
+    const double before = r->share;
+    const double turns = turns_so_far(r) * (r->t1 - r->t0) / (t - r->t0);
+    const double ratio = fmin(1, usual_turns / turns);
+    r->steps = 0;
+    r->share = fmax(ratio * ratio, least_share);
+    return r->share != before;
+}
+
+bool ct_periodic_tolerance_step(struct ct_periodic_tolerance *r, double t, const double *y0,
+                                const double *y, const double *y1, int nq, int nu)
+{
+    double dq = 0, q = 0, du = 0, u = 0;
+    for (int i = 0; i < nq; i++) {
+        const double step = y1[i] - y[i], away = y1[i] - y0[i];
+        dq += step * step;
+        q += away * away;
+    }
+    for (int i = nq; i < nq + nu; i++) {
+        const double step = y1[i] - y[i];
+        du += step * step;
+        u += y1[i] * y1[i];
+    }
+    return ct_periodic_tolerance_add(r, t, dq, q, du, u);
+}
+
+struct ct_tolerance ct_periodic_tolerance_find(const struct ct_periodic_tolerance *r,
+                                               double rtol, double atol, double least)
+{
+    const double share = fmin(fmax(r->share, least / rtol), 1);
+    return (struct ct_tolerance){share * rtol, share * atol};
+}

@@ -1,0 +1,92 @@
+// Four numbers handled at once.
+//
+// What always holds: each has the round-off errors of its own, as if it were alone. Only pointers are handed over, since how a four is handed
+// over depends on what processor code is for.
+#ifndef CT_NUMERIC_SIMD4_H
+#define CT_NUMERIC_SIMD4_H
+
+enum { CT_SIMD4 = 4 };
+
+#if defined(__GNUC__)
+
+typedef double ct_simd4
+    __attribute__((vector_size(CT_SIMD4 * sizeof(double)), aligned(sizeof(double)), may_alias));
+
+#define CT_SIMD4_INLINE __attribute__((always_inline)) static inline
+
+/// y (out) = c in all four.
+CT_SIMD4_INLINE void ct_simd4_fill(ct_simd4 *y, double c)
+{
+    *y = (ct_simd4){c, c, c, c};
+}
+
+/// sum += x
+CT_SIMD4_INLINE void ct_simd4_add(ct_simd4 *sum, const double *x)
+{
+    *sum += *(const ct_simd4 *)x;
+}
+
+/// sum += c x
+CT_SIMD4_INLINE void ct_simd4_add_times(ct_simd4 *sum, double c, const double *x)
+{
+    *sum += c * *(const ct_simd4 *)x;
+}
+
+/// sum += x y, each with each
+CT_SIMD4_INLINE void ct_simd4_add_product(ct_simd4 *sum, const double *x, const double *y)
+{
+    *sum += *(const ct_simd4 *)x * *(const ct_simd4 *)y;
+}
+
+/// x (4, out)
+CT_SIMD4_INLINE void ct_simd4_put(double *x, const ct_simd4 *y)
+{
+    *(ct_simd4 *)x = *y;
+}
+
+#else
+
+typedef struct {
+    double part[CT_SIMD4];
+} ct_simd4;
+
+#define CT_SIMD4_INLINE static inline
+
+/// y (out) = c in all four.
+CT_SIMD4_INLINE void ct_simd4_fill(ct_simd4 *y, double c)
+{
+    for (int i = 0; i < CT_SIMD4; i++)
+        y->part[i] = c;
+}
+
+/// sum += x
+CT_SIMD4_INLINE void ct_simd4_add(ct_simd4 *sum, const double *x)
+{
+    for (int i = 0; i < CT_SIMD4; i++)
+        sum->part[i] += x[i];
+}
+
+/// sum += c x
+CT_SIMD4_INLINE void ct_simd4_add_times(ct_simd4 *sum, double c, const double *x)
+{
+    for (int i = 0; i < CT_SIMD4; i++)
+        sum->part[i] += c * x[i];
+}
+
+/// sum += x y, each with each
+CT_SIMD4_INLINE void ct_simd4_add_product(ct_simd4 *sum, const double *x, const double *y)
+{
+    for (int i = 0; i < CT_SIMD4; i++)
+        sum->part[i] += x[i] * y[i];
+}
+
+/// x (4, out)
+CT_SIMD4_INLINE void ct_simd4_put(double *x, const ct_simd4 *y)
+{
+    for (int i = 0; i < CT_SIMD4; i++)
+        x[i] = y->part[i];
+}
+
+#endif
+
+#endif

@@ -1,0 +1,463 @@
+// Members come and go: see batch.h. What happens to them is in the other files of batch_internal.h.
+#include "solve/batch/batch_internal.h"
+#include "integrate/stepper.h"
+#include "numeric/dense.h"
+#include "solve/evaluator/switch_state.h"
+#include "solve/singular/rank_monitor.h"
+
+#include <math.h>
+#include <string.h>
+
+// ---- programs ---------------------------------------------------------------------------------------
+
+static bool is_native(const struct ct_batch *s)
+{
+    return s->m->motion.native && ct_native_is_available(W);
+}
+
+static void make_program(struct ct_batch *s, struct ct_lane_program *p,
+                         const struct ct_program *from)
+{
+    struct ct_arena *a = s->arena;
+    *p = (struct ct_lane_program){.nout = from->nout};
+    if (!p->nout)
+        return;
+    const struct ct_listing *l = ct_listing_for_lanes(a, from->listing);
+    p->tape = ct_tape_create(a, l);
+    p->native = is_native(s) ? ct_native_create(a, l, W) : NULL;
+    const size_t n = p->native ? ct_native_work(p->native) : W * ct_tape_work(p->tape);
+    p->out = CT_NEWN(a, vec, p->nout);
+    p->work = ct_arena_line(a, (n + 1) * sizeof *p->work);
+}
+
+static void prepare(struct ct_lane_program *p, const vec *input)
+{
+    if (p->nout && p->native)
+        ct_native_prepare(p->native, (const double *)input, p->work);
+    else if (p->nout)
+        ct_tape_prepare_lanes(p->tape, W, (const double *)input, p->work);
+}
+
+static void prepare_solver(struct ct_lane_solver *f, const vec *input)
+{
+    prepare(&f->solved, input);
+    prepare(&f->checked, input);
+    prepare(&f->closing, input);
+}
+
+static void prepare_all(struct ct_batch *s)
+{
+    prepare(&s->motion, s->input);
+    prepare(&s->power, s->input);
+    prepare(&s->memory, s->input);
+    for (int kind = 0; kind < CT_OUTPUT_KINDS; kind++)
+        prepare(&s->output[kind].program, s->input);
+    prepare(&s->root, s->input);
+    for (size_t i = 0; i < s->nsolver; i++)
+        prepare_solver(s->solver[i], s->input);
+}
+
+// ---- creation ---------------------------------------------------------------------------------------
+
+const char *ct_batch_obstacle(const struct ct_run_options *o)
+{
+    if (!o->method->tableau)
+        return "the method is not an explicit one with step control";
+    if (o->step > 0)
+        return "the step is fixed";
+    return NULL;
+}
+
+// Beyond their ends tables have no values: a run alone says so.
+static bool tables_reach(const struct ct_exs *x, double end)
+{
+    for (size_t i = 0; i < x->ntable; i++)
+        if (x->table[i].x[x->table[i].n - 1] < end)
+            return false;
+    return true;
+}
+
+static void make_room(struct ct_arena *a, struct ct_batch *s)
+{
+    const size_t n = (size_t)s->nu, r = (size_t)s->nrow, ny = (size_t)s->ny;
+    vec **const states[] = {&s->start, &s->y,    &s->dy,    &s->y1,   &s->dy1,
+                            &s->end,   &s->dend, &s->point, &s->late, &s->weight};
+    double **const one[] = {&s->one_y, &s->one_dy, &s->one_point, &s->one_end};
+    for (size_t i = 0; i < COUNT(states); i++)
+        *states[i] = CT_NEWN(a, vec, ny);
+    for (size_t i = 0; i < COUNT(one); i++)
+        *one[i] = CT_NEWN(a, double, ny);
+    s->input = CT_NEWN(a, vec, s->m->ninput);
+    s->k = CT_NEWN(a, vec, ny * CT_MOST_STAGES);
+    s->group_size = CT_NEWN(a, vec, (size_t)(s->groups ? s->groups->n : 0) + 1);
+    s->stage = CT_NEWN(a, struct ct_lane_sum, CT_MOST_STAGES);
+    s->coordinate_of = CT_NEWN(a, int, n + 1);
+    for (size_t i = 0; i < n; i++)
+        s->coordinate_of[i] = s->e->u[i].q;
+    for (int l = 0; l < W; l++) {
+        s->lane[l].row = CT_NEWN(a, int, r + 1);
+        s->lane[l].unit = CT_NEWN(a, double, r + 1);
+        s->lane[l].dependent = CT_NEWN(a, int, r + 1);
+        s->lane[l].independent = CT_NEWN(a, int, n + 1);
+    }
+}
+
+static void make_outputs(struct ct_batch *s, enum ct_output_kind kind)
+{
+    const struct ct_controlled_outputs *from
+        = ct_output_error_outputs(ct_run_output_error(s->run), kind);
+    struct ct_lane_outputs *o = &s->output[kind];
+    double **const one[] = {&o->one_at, &o->one_probed, &o->one_off};
+    const size_t n = from ? from->n : 0;
+    if (from) {
+        make_program(s, &o->program, &from->program);
+        o->needs_lam = from->needs_lam;
+    }
+    o->at = CT_NEWN(s->arena, vec, n + 1);
+    o->probed = CT_NEWN(s->arena, vec, n + 1);
+    for (size_t i = 0; i < COUNT(one); i++)
+        *one[i] = CT_NEWN(s->arena, double, n + 1);
+    for (int l = 0; l < W; l++)
+        s->lane[l].outputs[kind] = ct_output_error_record(s->arena, kind, n);
+}
+
+struct ct_batch *ct_batch_create(struct ct_arena *a, const struct ct_equations *e,
+                                 struct ct_run *run)
+{
+    struct ct_batch *s = CT_NEW(a, struct ct_batch);
+    struct ct_evaluator *m = ct_run_evaluator(run);
+    *s = (struct ct_batch){
+        .e = e, .run = run, .m = m, .arena = a, .partition = ct_run_partition(run)};
+    ct_partition_use_dense_only(s->partition);
+    s->nq = (int)m->nq;
+    s->nu = (int)m->nu;
+    s->nrow = (int)m->nrow;
+    s->ny = s->nq + s->nu + 1;
+    s->has_power = !ct_ex_is_zero(e->power);
+    s->needs_lam = ct_ex_kinds(e->x, e->power) & 1u << CT_SYM_LAM;
+    for (size_t i = 0; i < e->nq; i++)
+        s->has_quaternion |= e->q[i].quaternion >= 0;
+    s->is_solved = m->solved.nout > 0 && s->nrow == 0;
+    s->groups = ct_run_groups(run);
+    if (s->is_solved)
+        make_program(s, &s->motion, &m->solved);
+    make_program(s, &s->power, &m->power);
+    make_program(s, &s->memory, &m->memory);
+    for (int kind = 0; kind < CT_OUTPUT_KINDS; kind++)
+        make_outputs(s, kind);
+    make_program(s, &s->root, &m->root);
+    make_room(a, s);
+    ct_lane_make_events(s);
+    return s;
+}
+
+// ---- lanes and single numbers -----------------------------------------------------------------------
+
+void ct_lane_take(double *out, const vec *v, int l, size_t n)
+{
+    for (size_t i = 0; i < n; i++)
+        out[i] = v[i][l];
+}
+
+void ct_lane_put(vec *v, int l, const double *in, size_t n)
+{
+    for (size_t i = 0; i < n; i++)
+        v[i][l] = in[i];
+}
+
+// ---- forms ------------------------------------------------------------------------------------------
+
+// Large systems have very many choices, and take long to get a form: only that of the start has one.
+static bool is_allowed(const struct ct_batch *s)
+{
+    enum { LARGE = 20000 }; // operations
+    return s->origin
+        && (!s->nsolver
+            || (s->solver[0]->code.listing && s->solver[0]->solver->operations < LARGE));
+}
+
+// Made where the file's own values start, a form is the same whoever needs it first.
+static struct ct_lane_solver *make_solver(struct ct_batch *s, const struct ct_partition_sets *p)
+{
+    struct ct_evaluator *m = s->m;
+    const size_t size = m->ninput * sizeof *m->input;
+    if (!is_allowed(s))
+        return NULL;
+    double *now = CT_NEWN(s->arena, double, m->ninput);
+    memcpy(now, m->input, size);
+    memcpy(m->input, s->origin, size);
+    s->whose = -1;
+    ct_evaluator_prepare(m);
+    ct_evaluator_dynamics(m);
+    struct ct_lane_solver *f = CT_NEW(s->arena, struct ct_lane_solver);
+    f->solver
+        = ct_solver_create(s->arena, m, p, ct_partition_operations(s->partition), NULL, NULL);
+    if (f->solver
+        && f->solver->kind == &ct_solver_symbolic_kkt) { // lanes judge by B and its pivots
+        const double cost = f->solver->cost;
+        ct_solver_destroy(m, f->solver);
+        f->solver
+            = ct_solver_create_within(s->arena, m, p, &ct_solver_symbolic, CT_LANES * cost);
+    }
+    memcpy(m->input, now, size);
+    ct_evaluator_prepare(m);
+    if (f->solver)
+        f->code = ct_solver_code(f->solver);
+    if (f->code.listing) {
+        make_program(s, &f->solved, f->code.solved);
+        make_program(s, &f->checked, f->code.checked);
+        make_program(s, &f->closing, f->code.closing);
+        prepare_solver(f, s->input);
+        s->solver_has_power = f->code.has_power; // a matter of the equations
+    } else { // none, or one of another kind: what has been tried is not tried again
+        f->solver = CT_NEW(s->arena, struct ct_solver);
+        f->solver->arena = s->arena;
+        ct_solver_set_partition(f->solver, p);
+    }
+    CT_PUSH(s->arena, s->solver, s->nsolver, s->solver_cap, f);
+    return f;
+}
+
+static struct ct_lane_solver *find_solver(struct ct_batch *s, const struct ct_partition_sets *p)
+{
+    for (size_t i = 0; i < s->nsolver; i++)
+        if (ct_solver_matches(s->solver[i]->solver, p))
+            return s->solver[i];
+    return make_solver(s, p);
+}
+
+void ct_batch_begin(struct ct_batch *s)
+{
+    const struct ct_partition *embed = s->partition;
+    const size_t rank = (size_t)embed->rank, n = (size_t)s->nu;
+    const struct ct_partition_sets p
+        = {embed->row, embed->dependent, embed->independent, rank, n - rank};
+    s->origin = CT_NEWN(s->arena, double, s->m->ninput);
+    ct_evaluator_set(s->m, 0, ct_run_state(s->run));
+    memcpy(s->origin, s->m->input, s->m->ninput * sizeof *s->origin);
+    if (s->nrow)
+        find_solver(s, &p);
+}
+
+bool ct_lane_choose(struct ct_batch *s, int l)
+{
+    struct ct_lane *lane = &s->lane[l];
+    const struct ct_partition *embed = s->partition;
+    const size_t rank = (size_t)s->rank, n = (size_t)s->nu;
+    if (embed->rank != s->rank)
+        return false;
+    memcpy(lane->row, embed->row, (size_t)s->nrow * sizeof *embed->row);
+    memcpy(lane->dependent, embed->dependent, rank * sizeof *embed->dependent);
+    memcpy(lane->independent, embed->independent, (n - rank) * sizeof *embed->independent);
+    lane->kappa_chosen = embed->kappa_chosen;
+    lane->sigma_chosen = embed->sigma_chosen;
+    lane->sigma_best = embed->sigma_best;
+    lane->strength = (struct ct_strength){0};
+    s->kappa[l] = embed->kappa;
+    s->sigma[l] = embed->sigma;
+    s->low[l] = s->high[l] = s->slope[l] = 0;
+    s->needs_refinement &= ~(1u << l);
+    s->alike &= ~(1u << l);
+    for (size_t i = 0; i < s->nsolver; i++)
+        s->solver[i]->lanes &= ~(1u << l);
+    if (!s->nrow)
+        return true;
+    const struct ct_partition_sets p
+        = {lane->row, lane->dependent, lane->independent, rank, n - rank};
+    struct ct_lane_solver *f = find_solver(s, &p);
+    if (!f || !f->code.listing)
+        return false;
+    f->lanes |= 1u << l;
+    return true;
+}
+
+// Of the member that the run has been started with.
+static void compare_at_start(struct ct_batch *s, int l)
+{
+    for (size_t i = 0; i < s->nsolver; i++)
+        if (ct_has_lane(s->solver[i]->lanes, l)) {
+            s->strength[l] = ct_solver_close(s->solver[i]->solver, s->m);
+            ct_lane_compare(s, l);
+        }
+}
+
+// ---- the method -------------------------------------------------------------------------------------
+
+// a (n), those that are not zero.
+static struct ct_lane_sum sum_of(const struct ct_batch *s, const double *a, int n)
+{
+    struct ct_lane_sum sum = {0};
+    for (int i = 0; i < n; i++)
+        if (a[i] != 0) {
+            sum.at[sum.n] = W * (size_t)i * (size_t)s->ny;
+            sum.a[sum.n++] = a[i];
+        }
+    return sum;
+}
+
+static void take_method(struct ct_batch *s, const struct ct_method *method)
+{
+    const struct ct_tableau *b = method->tableau;
+    s->method = method;
+    for (int i = 1; i < b->stages; i++)
+        s->stage[i] = sum_of(s, b->A + b->stride * i, i);
+    s->error = sum_of(s, b->E, b->nerror);
+    s->third = b->B3 ? sum_of(s, b->B3, b->nerror) : (struct ct_lane_sum){0};
+}
+
+// ---- members come and go ----------------------------------------------------------------------------
+
+// The step to begin with, from y and its derivative in one_dy.
+static bool first_step(struct ct_batch *s, int l, const double *y)
+{
+    struct ct_lane *lane = &s->lane[l];
+    const struct ct_problem p = {.ny = s->has_power ? s->ny : s->ny - 1, .groups = s->groups};
+    const struct ct_tolerance tolerance = {s->rtol[l], s->atol[l]};
+    const double d0 = ct_stepper_norm(&p, &tolerance, y, y, y);
+    const double d1 = ct_stepper_norm(&p, &tolerance, y, y, s->one_dy);
+    const double limit = fmin(lane->longest, ct_lane_stop(lane));
+    const double h = lane->control.h = ct_step_control_euler_step(d0, d1, limit);
+    for (int i = 0; i < s->ny; i++)
+        s->one_point[i] = y[i] + h * s->one_dy[i];
+    if (ct_run_rhs(s->run, h, s->one_point, s->one_end) != CT_EVAL_OK)
+        return true; // step control will find a smaller one
+    for (int i = 0; i < s->ny; i++)
+        s->one_point[i] = (s->one_end[i] - s->one_dy[i]) / h;
+    const double d2 = ct_stepper_norm(&p, &tolerance, y, y, s->one_point);
+    lane->control.h = ct_step_control_first(s->method, h, d1, d2, limit);
+    return isfinite(lane->control.h);
+}
+
+void ct_lane_limit_turn(struct ct_batch *s, int l, double t, const double *y)
+{
+    struct ct_lane *lane = &s->lane[l];
+    const double glance = 1e-6; // of the run, or [s]
+    const double turning = ct_memory_turning(s->m, ct_time_just_before(t, lane->events.pending),
+                                             y, glance * fmin(1, lane->t1));
+    ct_evaluator_set(s->m, t, y);
+    if (turning > 0)
+        lane->control.h = fmin(lane->control.h, ct_lane_most_turn / turning / 2);
+}
+
+static void start_lane(struct ct_batch *s, struct ct_lane *lane, const struct ct_run_options *o)
+{
+    lane->t1 = o->duration;
+    lane->control = ct_step_control_start();
+    lane->control.is_starting = true;
+    for (int kind = 0; kind < CT_OUTPUT_KINDS; kind++) {
+        ct_output_error_clear(&lane->outputs[kind]);
+        ct_constrained_output_clear(
+            ct_output_error_constrained(ct_run_output_error(s->run), kind),
+            &lane->outputs[kind].constrained, false);
+    }
+    lane->tolerance = (struct ct_tolerance){o->rtol, o->atol};
+    lane->periodic = ct_periodic_tolerance_start(0, o->duration, &lane->tolerance);
+    lane->least_rtol = o->least_rtol;
+    lane->pivot_last = INFINITY;
+    lane->pivot_time = 0;
+    lane->steps = 0;
+    lane->is_watched = o->stiff_method != NULL;
+    lane->nstiff = lane->nother = 0;
+}
+
+// The member that the run has been started with into lane l; also into lanes that never had one, which run
+// beside it for finite numbers.
+static void fill(struct ct_batch *s, int l, const double *y)
+{
+    for (int i = 0; i < W; i++)
+        if (i == l || !s->is_used) {
+            ct_lane_put(s->input, i, s->m->input, s->m->ninput);
+            ct_lane_put(s->y, i, y, (size_t)s->ny);
+            ct_lane_put(s->start, i, y, (size_t)s->ny);
+            ct_lane_put(s->dy, i, s->one_dy, (size_t)s->ny);
+            s->t[i] = 0;
+        }
+    s->is_used = true;
+    prepare_all(s);
+}
+
+// Are there rows that depend on others at the start and not elsewhere? Such a start is left alone.
+static bool is_singular_start(const struct ct_batch *s)
+{
+    const double changed
+        = 1e-6; // rows that see speeds by round-off alone make a projection change them
+    const struct ct_partition *embed = ct_run_partition(s->run);
+    const double *u = ct_run_assembled(s->run) + s->nq, *now = ct_run_state(s->run) + s->nq;
+    const double largest = ct_vector_largest(u, s->m->nu);
+    for (size_t k = 0; k < s->m->nu; k++)
+        if (fabs(now[k] - u[k]) > changed * largest)
+            return true;
+    if (embed->rank == s->nrow)
+        return false;
+    struct ct_arena *own = ct_arena_create_under(s->arena);
+    bool *row = CT_NEWN(own, bool, (size_t)s->nrow + 1);
+    const bool is_singular
+        = ct_singular_start_test(own, embed, 0, ct_run_assembled(s->run), row);
+    ct_arena_destroy(own);
+    return is_singular;
+}
+
+bool ct_batch_load(struct ct_batch *s, int l, const struct ct_run_options *o)
+{
+    const double *y = ct_run_state(s->run);
+    const int rank = s->partition->rank;
+    if (!(o->duration > 0) || s->m->is_inexact || ct_batch_obstacle(o)
+        || !tables_reach(s->e->x, o->duration)
+        || (s->is_used && (o->method != s->method || rank != s->rank))
+        || (s->needs_lam && rank != s->nrow))
+        return false;
+    if (is_singular_start(s) || ct_run_starts_near_singular(s->run)
+        || ct_run_begins_implicit(s->run, o))
+        return false;
+    s->rank = rank;
+    if (o->method != s->method)
+        take_method(s, o->method);
+    s->rtol[l] = o->rtol;
+    s->lane[l].scale = ct_run_partition(s->run)->scale;
+    s->lane[l].has_units = s->partition->has_units;
+    memcpy(s->lane[l].unit, s->partition->unit, (size_t)s->nrow * sizeof *s->partition->unit);
+    s->atol[l] = o->atol;
+    s->pivot_most[l] = 0;
+    s->near_singular &= ~(1u << l);
+    start_lane(s, &s->lane[l], o);
+    ct_evaluator_set(s->m, 0, y);
+    if (!ct_lane_begin_events(s, l, o) || !ct_lane_choose(s, l)
+        || ct_run_rhs(s->run, 0, y, s->one_dy) != CT_EVAL_OK)
+        return false;
+    s->sigma[l] = s->partition->sigma; // of y now
+    compare_at_start(s, l);
+    if (!first_step(s, l, y))
+        return false;
+    ct_lane_limit_turn(s, l, 0, y);
+    fill(s, l, y);
+    if (!ct_lane_take_bearings(s, l, 0, y, s->one_dy))
+        return false;
+    s->lane[l].state = CT_LANE_RUNNING;
+    return true;
+}
+
+enum ct_lane_state ct_batch_state(const struct ct_batch *s, int lane)
+{
+    return s->lane[lane].state;
+}
+
+bool ct_batch_results(struct ct_batch *s, int l, double *out)
+{
+    ct_lane_load_run_whole(s, l, s->lane[l].t1, s->y);
+    if (ct_run_results(s->run, s->lane[l].t1, s->one_y, out) != CT_EVAL_OK)
+        return false;
+    for (size_t i = 0; i < s->e->nresult; i++)
+        if (!isfinite(out[i]))
+            return false;
+    return true;
+}
+
+void ct_batch_free(struct ct_batch *s, int lane)
+{
+    s->lane[lane].state = CT_LANE_IDLE;
+}
+
+struct ct_batch_counts ct_batch_counts(const struct ct_batch *s)
+{
+    return s->count;
+}

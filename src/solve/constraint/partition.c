@@ -1,0 +1,262 @@
+// See partition.h.
+#include "solve/constraint/partition_internal.h"
+
+#include "numeric/dense.h"
+
+#include <math.h>
+#include <string.h>
+
+static size_t larger(size_t a, size_t b)
+{
+    return a > b ? a : b;
+}
+
+struct ct_partition *ct_partition_create(struct ct_arena *arena, struct ct_ctx *ctx,
+                                         struct ct_evaluator *m)
+{
+    const size_t n = m->nu, r = m->nrow, k = larger(n, r) + 1;
+    const size_t kk = m->e->has_dynamics || r ? k : 1; // else there is nothing to solve
+    struct ct_partition *s = CT_NEW(arena, struct ct_partition);
+    s->arena = arena;
+    s->m = m;
+    s->ctx = ctx;
+    s->nearness = s->scale = 1;
+    s->row = CT_NEWN(arena, int, r + 1);
+    s->dependent = CT_NEWN(arena, int, k);
+    s->independent = CT_NEWN(arena, int, n + 1);
+    s->is_unique = CT_NEWN(arena, bool, r + 1);
+    s->unit = CT_NEWN(arena, double, r + 1);
+    s->a = CT_NEWN(arena, double, n + 1);
+    s->lam = CT_NEWN(arena, double, r + 1);
+    s->Jd = CT_NEWN(arena, double, r *r + 1);
+    s->B = CT_NEWN(arena, double, r *kk + 1);
+    s->S = CT_NEWN(arena, double, kk *kk);
+    s->MB = CT_NEWN(arena, double, kk *kk);
+    s->A = CT_NEWN(arena, double, r *kk + 1);
+    s->q = CT_NEWN(arena, double, m->nq + 1);
+    s->before = CT_NEWN(arena, double, m->nq + m->nu + 1);
+    s->c = CT_NEWN(arena, double, k);
+    s->r = CT_NEWN(arena, double, k);
+    s->b = CT_NEWN(arena, double, k);
+    s->d = CT_NEWN(arena, double, k);
+    s->pivot = CT_NEWN(arena, int, k);
+    s->iwork = CT_NEWN(arena, int, k);
+    s->column = CT_NEWN(arena, int, k);
+    const int size = (int)kk;
+    const size_t for_qr = larger(ct_lstsq_work(size, size), ct_qr_pivot_work(size, size));
+    s->work
+        = CT_NEWN(arena, double, larger(for_qr, ct_symmetric_eigenvalues_work(size)) + 3 * k);
+    return s;
+}
+
+// Of the redundant rows, which could be kept in place of others.
+static double largest_redundant(const struct ct_partition *s)
+{
+    double most = 0;
+    for (size_t i = (size_t)s->rank; i < s->m->nrow; i++)
+        for (int j = 0; j < s->rank; j++)
+            most = fmax(most, fabs(*ct_partition_J(s, s->row[i], s->dependent[j])));
+    return most;
+}
+
+bool ct_partition_factor(struct ct_partition *s)
+{
+    const int r = s->rank, f = (int)s->m->nu - r;
+    s->factorizations++;
+    for (int j = 0; j < r; j++)
+        for (int i = 0; i < r; i++)
+            s->Jd[i + r * j] = *ct_partition_J(s, s->row[i], s->dependent[j]);
+    if (!ct_lu(s->Jd, s->pivot, r, r))
+        return false;
+    for (int j = 0; j < f; j++)
+        for (int i = 0; i < r; i++)
+            s->B[i + r * j] = -*ct_partition_J(s, s->row[i], s->independent[j]);
+    if (f)
+        ct_lu_solve(s->B, s->Jd, s->pivot, r, r, f, r, false);
+    s->kappa = 0;
+    for (int i = 0; i < r * f; i++)
+        s->kappa = fmax(s->kappa, fabs(s->B[i]));
+    double least = INFINITY, most = 0;
+    for (int i = 0; i < r; i++) {
+        least = fmin(least, fabs(s->Jd[i + r * i]));
+        most = fmax(most, fabs(s->Jd[i + r * i]));
+    }
+    s->sigma = most > 0 ? least / fmax(most, largest_redundant(s)) : 0;
+    s->largest = most;
+    return isfinite(s->kappa);
+}
+
+bool ct_partition_factor_only(struct ct_partition *s)
+{
+    const double sigma = s->sigma, kappa = s->kappa;
+    const bool is_factored = ct_partition_factor(s);
+    s->sigma = sigma;
+    s->kappa = kappa;
+    return is_factored;
+}
+
+void ct_partition_reduce_mass(struct ct_partition *s, const double *M)
+{
+    const int n = (int)s->m->nu, r = s->rank, f = n - r;
+    for (int j = 0; j < f; j++) // MB = M [B; 1], n x f
+        for (int i = 0; i < n; i++) {
+            double sum = M[i + n * s->independent[j]];
+            for (int k = 0; k < r; k++)
+                sum += M[i + n * s->dependent[k]] * s->B[k + r * j];
+            s->MB[i + n * j] = sum;
+        }
+    for (int j = 0; j < f; j++)
+        for (int i = j; i < f; i++) {
+            double sum = s->MB[s->independent[i] + n * j];
+            for (int k = 0; k < r; k++)
+                sum += s->B[k + r * i] * s->MB[s->dependent[k] + n * j];
+            s->S[i + f * j] = sum;
+        }
+}
+
+// b (free) = B' v for v (nu).
+static void reduce_force(struct ct_partition *s, double *b, const double *v)
+{
+    const int r = s->rank, f = (int)s->m->nu - r;
+    for (int i = 0; i < f; i++) {
+        b[i] = v[s->independent[i]];
+        for (int k = 0; k < r; k++)
+            b[i] += s->B[k + r * i] * v[s->dependent[k]];
+    }
+}
+
+// x (nu) = [B; 1] z + [c; 0].
+static void expand(const struct ct_partition *s, double *x, const double *z, const double *c)
+{
+    const int r = s->rank, f = (int)s->m->nu - r;
+    for (int i = 0; i < f; i++)
+        x[s->independent[i]] = z[i];
+    for (int k = 0; k < r; k++) {
+        double sum = c[k];
+        for (int i = 0; i < f; i++)
+            sum += s->B[k + r * i] * z[i];
+        x[s->dependent[k]] = sum;
+    }
+}
+
+// x (nu) = [B; 1] (B' M B)^-1 B' r + [c; 0] by the numbers of now.
+static enum ct_eval reduce_and_expand(struct ct_partition *s, const double *M, double *x)
+{
+    const int f = (int)s->m->nu - s->rank;
+    ct_partition_reduce_mass(s, M);
+    reduce_force(s, s->b, s->r);
+    if (f && !ct_cholesky(s->S, f, f))
+        return CT_EVAL_RETRY;
+    if (f)
+        ct_cholesky_solve(s->b, s->S, f, f, 1, f);
+    expand(s, x, s->b, s->c);
+    return CT_EVAL_OK;
+}
+
+enum ct_eval ct_partition_accelerate(struct ct_partition *s)
+{
+    const int n = (int)s->m->nu, r = s->rank;
+    if (r && !ct_partition_factor(s))
+        return CT_EVAL_RETRY;
+    for (int k = 0; k < r; k++)
+        s->c[k] = -s->m->gam[s->row[k]];
+    if (r)
+        ct_lu_solve(s->c, s->Jd, s->pivot, r, r, 1, r, false);
+    for (int i = 0; i < n; i++) { // Q - M c
+        s->r[i] = s->m->Q[i];
+        for (int k = 0; k < r; k++)
+            s->r[i] -= s->m->M[i + n * s->dependent[k]] * s->c[k];
+    }
+    return reduce_and_expand(s, s->m->M, s->a);
+}
+
+double ct_partition_cancellation(const struct ct_partition *s)
+{
+    const int n = (int)s->m->nu, r = s->rank, i = s->independent[0];
+    double size = s->m->M[i + n * i];
+    for (int k = 0; k < r; k++) {
+        const int d = s->dependent[k];
+        size += s->B[k] * s->B[k] * s->m->M[d + n * d];
+    }
+    return s->S[0] * s->S[0] / size; // S is the root
+}
+
+void ct_partition_multipliers(struct ct_partition *s)
+{
+    const int n = (int)s->m->nu, m = (int)s->m->nrow, ld = n > m ? n : m;
+    if (!m || ct_partition_solver_multipliers(s))
+        return;
+    ct_evaluator_dynamics(s->m);
+    for (int i = 0; i < m; i++)
+        for (int j = 0; j < n; j++)
+            s->A[j + n * i] = *ct_partition_J(s, i, j);
+    memset(s->d, 0, (size_t)ld * sizeof *s->d);
+    for (int i = 0; i < n; i++) {
+        s->d[i] = -s->m->Q[i];
+        for (int j = 0; j < n; j++)
+            s->d[i] += s->m->M[i + n * j] * s->a[j];
+    }
+    ct_lstsq_of_rank(s->d, s->A, n, m, n, ct_rank_tolerance, s->rank, s->iwork, s->work);
+    memcpy(s->lam, s->d, (size_t)m * sizeof *s->lam);
+}
+
+void ct_partition_retained_multipliers(struct ct_partition *s, double *lam)
+{
+    const int n = (int)s->m->nu, r = s->rank;
+    for (int i = 0; i < r; i++) {
+        const int d = s->dependent[i];
+        lam[i] = -s->m->Q[d];
+        for (int j = 0; j < n; j++)
+            lam[i] += s->m->M[d + n * j] * s->a[j];
+    }
+    if (r)
+        ct_lu_solve(lam, s->Jd, s->pivot, r, r, 1, r, true);
+}
+
+void ct_partition_null_vector(struct ct_partition *s, int row, double *z)
+{
+    // the least-squares solution of J' x = J' e_row is e_row without its part in null(J')
+    const int n = (int)s->m->nu, m = (int)s->m->nrow, ld = n > m ? n : m;
+    for (int i = 0; i < m; i++)
+        for (int j = 0; j < n; j++)
+            s->A[j + n * i] = *ct_partition_J(s, i, j);
+    memset(s->d, 0, (size_t)ld * sizeof *s->d);
+    for (int j = 0; j < n; j++)
+        s->d[j] = *ct_partition_J(s, row, j);
+    ct_lstsq_of_rank(s->d, s->A, n, m, n, ct_rank_tolerance, s->rank, s->iwork, s->work);
+    for (int i = 0; i < m; i++)
+        z[i] = (i == row) - s->d[i];
+}
+
+void ct_partition_uniqueness(struct ct_partition *s)
+{
+    const double unique_tolerance = 1e-6; // the entry is 0 to round-off or of order one
+    for (int k = 0; k < (int)s->m->nrow; k++) {
+        ct_partition_null_vector(s, k, s->r);
+        s->is_unique[k] = fabs(s->r[k]) < unique_tolerance;
+    }
+}
+
+enum ct_eval ct_partition_impulse(struct ct_partition *s, const double *W, const double *w,
+                                  double *u)
+{
+    // with u+ = [B; 1] z + [c; 0]: B' W B z = B' (w - W c)
+    const int n = (int)s->m->nu, r = s->rank;
+    ct_evaluator_constraint(s->m);
+    if (r && !ct_partition_factor(s))
+        return CT_EVAL_RETRY;
+    for (int k = 0; k < r; k++) { // J_d c = -Phi_t = -(v - J u), u as the evaluator has it
+        double driven = s->m->v[s->row[k]];
+        for (int j = 0; j < n; j++)
+            driven -= *ct_partition_J(s, s->row[k], j) * s->m->input[s->m->at_u + j];
+        s->c[k] = -driven;
+    }
+    if (r)
+        ct_lu_solve(s->c, s->Jd, s->pivot, r, r, 1, r, false);
+    for (int i = 0; i < n; i++) {
+        s->r[i] = w[i];
+        for (int k = 0; k < r; k++)
+            s->r[i] -= W[i + n * s->dependent[k]] * s->c[k];
+    }
+    return reduce_and_expand(s, W, u);
+}

@@ -1,0 +1,181 @@
+// Rank of J: how near it is to losing it; see partition_internal.h.
+#include "solve/constraint/partition_internal.h"
+
+#include "numeric/dense.h"
+
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+bool ct_partition_is_large(const struct ct_partition *s)
+{
+    enum { LARGE = 200 };
+    return s->rank >= LARGE;
+}
+
+static bool find_strength(struct ct_partition *s)
+{
+    if (!ct_partition_is_large(s) || !ct_partition_is_solver_due(s))
+        return false;
+    s->strength.now = ct_solver_close(s->solver[0], s->m);
+    s->sigma = ct_strength_sigma(&s->strength);
+    return ct_partition_is_sound(s);
+}
+
+// The largest lever [m] of a row; 0: it has none.
+static double lever_of(const struct ct_partition *s, size_t row)
+{
+    double lever = 0;
+    for (size_t k = 0; k < s->m->nu && s->m->e->row[row].is_length; k++)
+        if (s->m->e->u[k].is_rotation)
+            lever = fmax(lever, fabs(*ct_partition_J(s, (int)row, (int)k)));
+    return lever;
+}
+
+// The same of all rows, of those of one joint the largest: in line at the start one of them has none.
+static double find_levers(const struct ct_partition *s, double *lever)
+{
+    const struct ct_row *row = s->m->e->row;
+    double most = 0;
+    for (size_t i = 0, first = 0; i < s->m->nrow; i++) {
+        lever[i] = lever_of(s, i);
+        most = fmax(most, lever[i]);
+        if (!i || row[i].joint != row[i - 1].joint || row[i].is_length != row[i - 1].is_length)
+            first = i;
+        lever[first] = fmax(lever[first], lever[i]);
+        for (size_t k = first; k <= i; k++)
+            lever[k] = lever[first];
+    }
+    return most;
+}
+
+void ct_partition_find_units(struct ct_partition *s)
+{
+    const double alike = 4; // rows are measured by one unit where their levers differ by less
+    const double no_link = 1e-4; // of the largest lever: points that coincide at the start
+    const double most = find_levers(s, s->unit);
+    double largest = 0, least = INFINITY;
+    for (size_t i = 0; i < s->m->nrow; i++) {
+        if (s->unit[i] <= no_link * most)
+            s->unit[i] = s->unit[i] > 0 ? most : 1;
+        largest = fmax(largest, s->unit[i]);
+        least = fmin(least, s->unit[i]);
+    }
+    s->has_units = largest > alike * least;
+}
+
+// A (nrow x nrow, out) = J J', its lower triangle, rows measured by their units.
+static void square(const struct ct_partition *s, double *A)
+{
+    const size_t n = s->m->nu, m = s->m->nrow;
+    const double *J = s->m->J;
+    memset(A, 0, m * m * sizeof *A);
+    for (size_t k = 0; k < n; k++, J += m)
+        for (size_t j = 0; j < m; j++)
+            if (J[j] != 0)
+                ct_vector_add(A + m * j + j, J[j], J + j, m - j);
+    for (size_t j = 0; j < m && s->has_units; j++)
+        for (size_t i = j; i < m; i++)
+            A[i + m * j] /= s->unit[i] * s->unit[j];
+}
+
+// The squares of the first `rank` singular values of J, ascending; NULL if they are not found. Eigenvalues of J J' cost a
+// third of a decomposition; half the digits are enough.
+static const double *squared_singular_values(struct ct_partition *s)
+{
+    const int m = (int)s->m->nrow;
+    square(s, s->A);
+    return ct_symmetric_eigenvalues(s->b, s->A, m, m, s->work) ? s->b + m - s->rank : NULL;
+}
+
+static double smallest_singular_value(struct ct_partition *s)
+{
+    const double *square = squared_singular_values(s);
+    return square ? sqrt(fmax(0, *square)) : 0;
+}
+
+bool ct_partition_has_pivot(const struct ct_partition *s)
+{
+    return s->rank && !s->m->e->is_open
+        && !(ct_partition_has_redundant_rows(s) && ct_partition_is_large(s));
+}
+
+bool ct_partition_pivot_is_between(struct ct_partition *s, double low, double high)
+{
+    const int m = (int)s->m->nrow, nzero = m - s->rank;
+    if (!ct_partition_has_redundant_rows(s))
+        return false;
+    square(s, s->A);
+    memcpy(s->MB, s->A, (size_t)(m * m) * sizeof *s->A);
+    return ct_symmetric_count_below(s->A, m, m, low * low) == nzero
+        && ct_symmetric_count_below(s->MB, m, m, high * high) > nzero;
+}
+
+// Of J_d, each measured by the unit of its row.
+static double smallest_pivot(struct ct_partition *s)
+{
+    const int r = s->rank;
+    double least = INFINITY;
+    memcpy(s->iwork, s->row, (size_t)r * sizeof *s->row);
+    for (int i = 0; i < r; i++) {
+        const int k = s->pivot[i], row = s->iwork[k];
+        s->iwork[k] = s->iwork[i];
+        s->iwork[i] = row;
+        least = fmin(least, fabs(s->Jd[i + r * i]) / s->unit[row]);
+    }
+    return least;
+}
+
+double ct_partition_pivot(struct ct_partition *s)
+{
+    if (ct_partition_has_redundant_rows(s))
+        return smallest_singular_value(s);
+    // the place need not be one of the motion: what is known of the motion stays
+    const double sigma = s->sigma, kappa = s->kappa, strength = s->strength.now;
+    const bool is_strength = find_strength(s), is_known = is_strength || ct_partition_factor(s);
+    const double least
+        = s->has_units && !is_strength ? smallest_pivot(s) : s->sigma * s->largest;
+    const double pivot = is_known ? least * fmax(1, s->kappa) : 0;
+    s->sigma = sigma;
+    s->kappa = kappa;
+    s->strength.now = strength;
+    return pivot;
+}
+
+double ct_partition_retained_pivot(struct ct_partition *s)
+{
+    double least = INFINITY;
+    if (ct_partition_is_large(s) || !ct_partition_factor_only(s))
+        return least;
+    for (int i = 0; i < s->rank; i++)
+        least = fmin(least, fabs(s->Jd[i + s->rank * i]));
+    return least;
+}
+
+// log of the product of the first `rank` singular values: kept rows may lose more rank than all do.
+static double log_volume(struct ct_partition *s)
+{
+    const double *square = squared_singular_values(s);
+    double sum = 0;
+    for (int i = 0; i < s->rank; i++)
+        sum += square ? log(fmax(DBL_MIN, square[i])) / 2 : 0;
+    return sum;
+}
+
+bool ct_partition_dependence(struct ct_partition *s, double *x, double *log_det)
+{
+    const int r = s->rank;
+    const bool is_found = !ct_partition_is_large(s) && ct_partition_factor_only(s);
+    *log_det = 0;
+    for (int i = 0; i < r && is_found; i++) {
+        x[i] = 1 + fmod(i * 0.6180339887498949, 1); // in no simple relation
+        *log_det += log(fabs(s->Jd[i + r * i]));
+    }
+    if (is_found) {
+        ct_lu_solve(x, s->Jd, s->pivot, r, r, 1, r, false);
+        ct_lu_solve(x, s->Jd, s->pivot, r, r, 1, r, true);
+    }
+    if (is_found && ct_partition_has_redundant_rows(s))
+        *log_det = log_volume(s);
+    return is_found;
+}

@@ -1,0 +1,225 @@
+// See partition_internal.h: closed forms, which to use, and whether their pivots are still in a good order.
+#include "solve/constraint/partition_internal.h"
+
+#include <math.h>
+#include <string.h>
+
+// So many weak checks in a row ask for another order.
+enum { MOST_WEAK = 3 };
+// As long as the strength of the pivots is that of when they left such a part of what is allowed, or less, they are checked
+// after every eighth projection.
+static const double well_below = 0.1;
+enum { UNCHECKED = 7 };
+
+static struct ct_partition_sets partition(const struct ct_partition *s)
+{
+    return (struct ct_partition_sets){s->row, s->dependent, s->independent, (size_t)s->rank,
+                                      s->m->nu - (size_t)s->rank};
+}
+
+// Operations of embedding by matrices, (6.2), for n speeds, r kept rows, f = n - r freedoms: LU of J_d, its
+// solutions, products M B and B' M B, Cholesky of the reduced mass matrix.
+double ct_partition_operations(const struct ct_partition *s)
+{
+    const double n = (double)s->m->nu, r = s->rank, f = n - r;
+    const double lu = 2 * r * r * r / 3 + 2 * r * r * (f + 1);
+    const double right = 2 * n * r + 2 * r * f;
+    const double reduced = r > 0 ? 2 * n * r * f + r * f * (f + 1) : 0;
+    return lu + right + reduced + f * f * f / 3 + 2 * f * f + 2 * r * f;
+}
+
+// form[i] comes first, the others move behind it.
+static void put_first(struct ct_partition *s, size_t i)
+{
+    struct ct_solver *f = s->solver[i];
+    memmove(s->solver + 1, s->solver, i * sizeof *s->solver);
+    s->solver[0] = f;
+}
+
+// In the place of form[0], if that is for the rows and columns of now; the order of pivots is sought at the
+// evaluator's input.
+static void make_solver(struct ct_partition *s)
+{
+    const struct ct_partition_sets p = partition(s);
+    if (s->has_solver || s->nsolver == CT_MOST_SOLVERS) {
+        put_first(s, s->has_solver ? 0 : s->nsolver - 1);
+        ct_solver_destroy(s->m, s->solver[0]);
+        memmove(s->solver, s->solver + 1, --s->nsolver * sizeof *s->solver);
+    }
+    ct_evaluator_dynamics(s->m);
+    struct ct_solver_costs costs = {0};
+    struct ct_solver *f
+        = s->is_requested
+            ? ct_solver_create_any_length(s->arena, s->m, &p, s->kind)
+            : ct_solver_create(s->arena, s->m, &p, ct_partition_operations(s), s->kind, &costs);
+    if (s->nmade == 0 && !s->is_requested)
+        s->costs = costs;
+    s->solves.reordered += s->nmade++ > 0;
+    s->has_solver = f != NULL;
+    if (f) {
+        s->kind = f->kind;
+        s->solver[s->nsolver] = f;
+        put_first(s, s->nsolver++);
+    }
+}
+
+// Projections to wait for with weak pivots, or without a form, until one is made: more and more, so that a motion
+// that changes its rows and columns all the time does not spend its time on forms.
+static long checks_before_retry(const struct ct_partition *s)
+{
+    const long doublings = s->nmade / CT_MOST_SOLVERS;
+    return 1L << (doublings < 16 ? doublings : 16);
+}
+
+static void forget_strength(struct ct_partition *s)
+{
+    s->nweak = s->nunchecked = 0;
+    s->strength.at_sigma = 0;
+    s->strength.is_alike = false;
+}
+
+void ct_partition_select_solver(struct ct_partition *s)
+{
+    const struct ct_partition_sets p = partition(s);
+    size_t i = 0;
+    s->has_solver = s->needs_refinement = false;
+    forget_strength(s);
+    if (!s->m->nrow || s->is_expensive)
+        return;
+    while (i < s->nsolver && !ct_solver_matches(s->solver[i], &p))
+        i++;
+    if (i < s->nsolver) {
+        s->has_solver = true;
+        put_first(s, i);
+    } else if (checks_before_retry(s) == 1) {
+        make_solver(s);
+        s->is_expensive = s->nmade == 1 && !s->has_solver;
+    }
+}
+
+void ct_partition_use_dense_only(struct ct_partition *s)
+{
+    s->is_expensive = true;
+    s->has_solver = false;
+}
+
+void ct_partition_use_solver(struct ct_partition *s, const struct ct_solver_kind *kind)
+{
+    s->kind = kind;
+    s->is_requested = kind != NULL;
+    if (!kind)
+        ct_partition_use_dense_only(s);
+}
+
+bool ct_partition_is_sound(const struct ct_partition *s)
+{
+    double low, high;
+    ct_strength_range(&s->strength, &low, &high);
+    return s->strength.now > low && s->strength.now < high;
+}
+
+bool ct_partition_is_solver_due(const struct ct_partition *s)
+{
+    return s->has_solver && s->nweak == 0 && (s->strength.is_alike || !s->is_near_singular);
+}
+
+void ct_partition_update_sigma(struct ct_partition *s)
+{
+    if (s->strength.is_alike)
+        s->sigma = ct_strength_sigma(&s->strength);
+}
+
+// Inertias of a form tell what they are of those elsewhere, not what has cancelled in them: before less is left of any than may be, matrices
+// tell.
+static const double wary = 10;
+
+static bool has_one_freedom(const struct ct_partition *s)
+{
+    return s->least_cancellation > 0 && (size_t)s->rank + 1 == s->m->nu;
+}
+
+// u' by the form of now; false if its pivots are not sound here.
+static bool use_solver(struct ct_partition *s)
+{
+    struct ct_solver *f = s->solver[0];
+    f->least_part = has_one_freedom(s) ? wary * s->least_cancellation : 0;
+    s->strength.now = ct_solver_solve(f, s->m, s->a);
+    if (!ct_partition_is_sound(s) || f->has_fallen)
+        return false;
+    ct_partition_update_sigma(s);
+    s->solves.fixed++;
+    if (!s->needs_refinement)
+        return true;
+    ct_solver_check(f, s->m);
+    s->solves.refined++;
+    memcpy(s->a, f->a, s->m->nu * sizeof *s->a);
+    return f->refined_remainder <= ct_left_most;
+}
+
+enum ct_eval ct_partition_solve(struct ct_partition *s)
+{
+    struct ct_evaluator *m = s->m;
+    if (ct_evaluator_solved(m, s->a))
+        return CT_EVAL_OK;
+    const bool is_tried = ct_partition_is_solver_due(s);
+    if (is_tried && use_solver(s))
+        return CT_EVAL_OK;
+    ct_evaluator_dynamics(m);
+    s->solves.pivoted++;
+    const enum ct_eval e = ct_partition_accelerate(s);
+    if (e == CT_EVAL_OK && has_one_freedom(s))
+        s->left = fmin(s->left, ct_partition_cancellation(s));
+    if (s->has_solver && !is_tried)
+        s->strength.now = ct_solver_close(s->solver[0], m);
+    if (s->has_solver)
+        ct_strength_compare(&s->strength, s->sigma);
+    return e;
+}
+
+// After a projection, at the evaluator's input: are the pivots still in a good order? Beside a singular configuration, where answers grow
+// whatever is chosen, choices had better stay.
+static void check_solver(struct ct_partition *s)
+{
+    struct ct_solver *f = s->solver[0];
+    if (s->nunchecked > 0 && ct_is_within(s->strength.now / s->checked_at, ct_same_strength)
+        && (s->correction <= ct_correction_growth * s->correction_checked
+            || s->nearness < ct_small_pivot)) {
+        s->nunchecked--;
+        return;
+    }
+    s->correction_checked = s->correction > 0 ? s->correction : s->correction_checked;
+    ct_solver_check(f, s->m);
+    s->needs_refinement = f->remainder > ct_left_plain;
+    s->nunchecked = f->remainder <= well_below * ct_left_plain ? UNCHECKED : 0;
+    s->checked_at = s->strength.now;
+    if (s->strength.now > ct_solver_least_strength && f->refined_remainder <= ct_left_most) {
+        s->kappa = isnan(f->kappa) ? s->kappa : f->kappa;
+        s->nweak = 0;
+    } else if (++s->nweak >= MOST_WEAK * checks_before_retry(s)) {
+        make_solver(s);
+        forget_strength(s);
+    }
+}
+
+void ct_partition_check_solver(struct ct_partition *s)
+{
+    if (!s->m->nrow || s->is_expensive || (s->is_near_singular && !s->strength.is_alike))
+        return;
+    if (s->has_solver)
+        check_solver(s);
+    else if (++s->nweak >= checks_before_retry(s)) {
+        make_solver(s);
+        forget_strength(s);
+    }
+}
+
+bool ct_partition_solver_multipliers(struct ct_partition *s)
+{
+    struct ct_solver *f = s->solver[0];
+    if (!ct_partition_is_solver_due(s) || s->rank < (int)s->m->nrow
+        || !ct_partition_is_sound(s))
+        return false;
+    ct_solver_check(f, s->m);
+    memcpy(s->lam, f->lam, s->m->nrow * sizeof *s->lam); // all rows are kept, in their order
+    return f->refined_remainder <= ct_left_most;
+}

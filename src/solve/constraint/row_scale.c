@@ -1,0 +1,91 @@
+// Natural sizes of constraint rows: what their coefficients are made of before they cancel.  (6.5a)
+//
+// A coefficient of a row of lengths is  p . (axis x sum d),  the sum over vectors d on the way between two frames; of a
+// row of angles it is a product of unit vectors. Where a constraint is redundant the sum cancels, down to the round-off or
+// to the tolerance of the numbers that are given. What is left is judged against
+//
+//     L_i = sum |d|   of rows of lengths [m],   1 of rows of angles and of rows without levers
+//     S_k = max L_i   over the rows that speed k slides in [m],   1 of turns
+//     N_i = max(L_i, S_k)
+//
+// Entries J_ik S_k / N_i are at most of order 1 and have no unit.
+#include "solve/evaluator/evaluator.h"
+
+#include "formulate/build.h"
+#include "numeric/dense.h"
+
+#include <math.h>
+#include <string.h>
+
+// Sum of the lengths of the row's levers; 1 where there are none.
+static double lever_sum(const struct ct_evaluator *m, const struct ct_row *row,
+                        const double *value)
+{
+    double sum = 0;
+    for (size_t i = 0; i < row->nlever; i++) {
+        double square = 0;
+        for (int k = 0; k < 3; k++) {
+            const double d = ct_ex_value(m->e->x, row->lever[i].e[k], value);
+            square += d * d;
+        }
+        sum += sqrt(square);
+    }
+    return sum > 0 && isfinite(sum) ? sum : 1;
+}
+
+void ct_evaluator_measure_rows(struct ct_evaluator *m)
+{
+    const struct ct_equations *e = m->e;
+    ct_evaluator_values(m, e->x, m->symbol_value);
+    for (size_t i = 0; i < m->nrow; i++)
+        m->row_size[i] = lever_sum(m, &e->row[i], m->symbol_value);
+    for (size_t k = 0; k < m->nu; k++)
+        m->speed_size[k] = 0;
+    for (size_t i = 0; i < e->nJ; i++) {
+        const struct ct_entry *J = &e->J[i];
+        if (e->row[J->row].is_length && !e->u[J->column].is_rotation)
+            m->speed_size[J->column] = fmax(m->speed_size[J->column], m->row_size[J->row]);
+    }
+    for (size_t k = 0; k < m->nu; k++)
+        m->speed_size[k] = m->speed_size[k] > 0 ? m->speed_size[k] : 1;
+    for (size_t i = 0; i < e->nJ; i++) {
+        const struct ct_entry *J = &e->J[i];
+        if (e->row[J->row].is_length && !e->u[J->column].is_rotation)
+            m->row_size[J->row] = fmax(m->row_size[J->row], m->speed_size[J->column]);
+    }
+}
+
+int ct_evaluator_order_rows(const struct ct_evaluator *m, const double *J, double least,
+                            int *row, double *A, double *tau, double *work)
+{
+    const int n = (int)m->nu, nrow = (int)m->nrow;
+    int rank = 0, most = n < nrow ? n : nrow;
+    if (most > (int)m->most_rank)
+        most = (int)m->most_rank;
+    for (int i = 0; i < nrow; i++)
+        for (int k = 0; k < n; k++)
+            A[k + n * i] = J[i + nrow * k] * m->speed_size[k] / m->row_size[i];
+    ct_qr_pivot(A, row, tau, n, nrow, n, 0, work);
+    while (rank < most && fabs(A[rank + n * rank]) > least)
+        rank++;
+    return rank;
+}
+
+void ct_evaluator_set_inexact(struct ct_evaluator *m, size_t freedoms)
+{
+    m->is_inexact = true;
+    if (m->e->build->nflexible) // which may follow loops that are stiff without them
+        m->rank_tolerance = ct_data_tolerance;
+    else
+        m->most_rank = m->nu - freedoms;
+    memset(m->open, 0, m->nrow * sizeof *m->open);
+    memset(m->left_out, 0, m->nrow * sizeof *m->left_out);
+    ct_evaluator_constraint(m);
+    memcpy(m->open, m->phi, m->nrow * sizeof *m->open);
+}
+
+void ct_evaluator_leave_out(struct ct_evaluator *m, const int *row, int rank)
+{
+    for (int i = 0; i < (int)m->nrow && m->is_inexact; i++)
+        m->left_out[row[i]] = i >= rank;
+}

@@ -1,0 +1,203 @@
+// See solver.h.
+#include "solve/constraint/solver.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+// A call of a solver for dense matrices costs about as much as so many operations of straight-line code.
+static const double call = 500;
+// Making programs takes a microsecond and half a kilobyte a node.
+static const double most_nodes = 2e6;
+// Where somebody wants them whatever they cost.
+static const double most_asked_nodes = 8e6;
+// Checks and projections take up to so many times the nodes of the solution.
+static const double programs = 4;
+// Solving all equations as one system must promise so much to be tried.
+static const double worth = 0.9;
+// Beyond so many unknowns finding its order takes too long.
+enum { MOST_WHOLE = 3000 };
+
+const double ct_solver_least_strength = 1e-3;
+
+static int ascending(const void *a, const void *b)
+{
+    return *(const int *)a - *(const int *)b;
+}
+
+static int *sorted(struct ct_arena *a, const int *v, size_t n)
+{
+    int *copy = CT_NEWN(a, int, n + 1);
+    memcpy(copy, v, n * sizeof *copy);
+    qsort(copy, n, sizeof *copy, ascending);
+    return copy;
+}
+
+// Of both, the cheaper one; the other is destroyed.
+static struct ct_solver *cheaper(struct ct_evaluator *m, struct ct_solver *a,
+                                 struct ct_solver *b)
+{
+    if (!a || !b)
+        return a ? a : b;
+    const bool first = a->cost <= b->cost;
+    ct_solver_destroy(m, first ? b : a);
+    return first ? a : b;
+}
+
+double ct_solver_code_size(double operations)
+{
+    const double bytes = 11; // lattices and nets: 10 to 11.6
+    return bytes * operations;
+}
+
+// Code is read once in an evaluation. The second of the caches, which it shares with data, keeps all of a program up to
+// `near` and next to nothing of one beyond `far`; a byte from behind it takes as long as a third of an operation. Measured
+// on lattices and nets of 110 to 2000 unknowns, processors with 2 MiB of that cache: docs/performance.md.
+double ct_solver_straight_cost(double operations, double bytes)
+{
+    const double near = 1 << 20, far = 3 << 20, per_byte = 0.33;
+    const double missed = fmin(1, fmax(0, (bytes - near) / (far - near)));
+    return operations + per_byte * missed * bytes;
+}
+
+// The most operations of straight-line code that cost no more.
+static double longest(double cost)
+{
+    double low = 0, high = cost; // low costs less, high as much or more
+    while (high - low > 1) {
+        const double middle = (low + high) / 2;
+        *(ct_solver_straight_cost(middle, ct_solver_code_size(middle)) < cost ? &low : &high)
+            = middle;
+    }
+    return high;
+}
+
+static double cost_of(const struct ct_solver *f)
+{
+    return f ? f->cost : INFINITY;
+}
+
+// Nodes that programs may take, where what they compete with costs so much.
+static double allowed(double cost)
+{
+    return fmin(programs * longest(fmin(cost, most_nodes)), most_nodes);
+}
+
+const double *ct_solver_values(struct ct_arena *a, const struct ct_evaluator *m)
+{
+    if (!m->e->augmented)
+        return NULL;
+    double *value = CT_NEWN(a, double, m->e->x->nsym + 1);
+    ct_evaluator_values(m, m->e->x, value);
+    return value;
+}
+
+// The cheapest but dense matrices; costs are filled.
+static struct ct_solver *compare(struct ct_arena *a, struct ct_evaluator *m,
+                                 const struct ct_partition_sets *partition,
+                                 struct ct_solver_costs *c)
+{
+    struct ct_arena *own = ct_arena_create_under(a);
+    struct ct_partition_sets p = *partition;
+    struct ct_solver *f = NULL;
+    const bool is_small = m->nu + p.rank <= MOST_WHOLE;
+    p.value = ct_solver_values(own, m);
+    if (p.nfree && is_small)
+        p.pivots = ct_pivot_order_find(own, m->e, &p, m->motion.out, m->Q + m->nu);
+    if (p.pivots) {
+        const double operations = ct_solver_operations(&m->motion) + p.pivots->operations;
+        c->symbolic_kkt = ct_solver_straight_cost(operations, ct_solver_code_size(operations));
+    }
+    if (m->nu + p.rank >= CT_LEAST_SPARSE) {
+        f = ct_solver_sparse.create(a, m, &p, 0);
+        c->sparse = cost_of(f);
+    }
+    const double others = fmin(c->dense, fmin(c->sparse, c->symbolic_kkt));
+    struct ct_solver *unrolled = ct_solver_symbolic.create(a, m, &p, allowed(others));
+    c->symbolic = cost_of(unrolled);
+    f = cheaper(m, f, unrolled);
+    if (c->symbolic_kkt < worth * (f ? f->cost : c->dense))
+        f = cheaper(m, f, ct_solver_symbolic_kkt.create(a, m, &p, allowed(c->symbolic_kkt)));
+    ct_arena_destroy(own);
+    return f;
+}
+
+struct ct_solver *ct_solver_create(struct ct_arena *a, struct ct_evaluator *m,
+                                   const struct ct_partition_sets *p, double operations,
+                                   const struct ct_solver_kind *kind,
+                                   struct ct_solver_costs *costs)
+{
+    struct ct_solver_costs c = {.symbolic = NAN, .symbolic_kkt = NAN, .sparse = NAN};
+    c.dense = ct_solver_operations(&m->motion) + operations + call;
+    struct ct_solver *f = kind ? kind->create(a, m, p, most_nodes) : compare(a, m, p, &c);
+    if (f && !kind && f->cost > c.dense) {
+        ct_solver_destroy(m, f);
+        f = NULL;
+    }
+    if (costs)
+        *costs = c;
+    return f;
+}
+
+struct ct_solver *ct_solver_create_within(struct ct_arena *a, struct ct_evaluator *m,
+                                          const struct ct_partition_sets *p,
+                                          const struct ct_solver_kind *kind, double cost)
+{
+    return kind->create(a, m, p, allowed(cost));
+}
+
+struct ct_solver *ct_solver_create_any_length(struct ct_arena *a, struct ct_evaluator *m,
+                                              const struct ct_partition_sets *p,
+                                              const struct ct_solver_kind *kind)
+{
+    return kind->create(a, m, p, most_asked_nodes);
+}
+
+void ct_solver_set_partition(struct ct_solver *f, const struct ct_partition_sets *p)
+{
+    f->row = sorted(f->arena, p->row, p->rank);
+    f->dependent = sorted(f->arena, p->dependent, p->rank);
+    f->rank = p->rank;
+}
+
+void ct_solver_destroy(struct ct_evaluator *m, struct ct_solver *f)
+{
+    if (f->kind->destroy)
+        f->kind->destroy(f, m);
+    ct_arena_destroy(f->arena);
+}
+
+static bool holds(const int *sorted_list, size_t n, const int *v)
+{
+    for (size_t i = 0; i < n; i++)
+        if (!bsearch(&v[i], sorted_list, n, sizeof *v, ascending))
+            return false;
+    return true;
+}
+
+bool ct_solver_matches(const struct ct_solver *f, const struct ct_partition_sets *p)
+{
+    return f->rank == p->rank && holds(f->row, f->rank, p->row)
+        && holds(f->dependent, f->rank, p->dependent);
+}
+
+double ct_solver_operations(const struct ct_program *p)
+{
+    const struct ct_tape_counts c = p->listing->counts;
+    return (double)(c.multiplications + c.additions + c.divisions + c.functions);
+}
+
+double ct_solver_solve(struct ct_solver *f, struct ct_evaluator *m, double *a)
+{
+    return f->kind->solve(f, m, a);
+}
+
+void ct_solver_check(struct ct_solver *f, struct ct_evaluator *m)
+{
+    f->kind->check(f, m);
+}
+
+double ct_solver_close(struct ct_solver *f, struct ct_evaluator *m)
+{
+    return f->kind->close(f, m);
+}

@@ -1,0 +1,175 @@
+// See switch_state.h.
+#include "solve/evaluator/switch_state.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static double side_of(enum ct_op op, double g)
+{
+    return ct_op_apply(op, g, 0, 0);
+}
+
+// g at the state moved by h along (1, dy).
+static void evaluate(struct ct_evaluator *m, double t, const double *y, const double *dy,
+                     double h, double *g)
+{
+    const size_t n = m->nq + m->nu;
+    m->input[0] = t + h;
+    for (size_t i = 0; i < n && dy; i++)
+        m->input[m->at_q + i] = y[i] + h * dy[i];
+    ct_program_run(&m->root, m->input);
+    memcpy(g, m->root.out, m->e->nswitch * sizeof *g);
+    m->input[0] = t;
+    memcpy(m->input + m->at_q, y, n * sizeof *y);
+}
+
+// Modes may stand inside the g of others; so many levels are settled.
+enum { MOST_LEVELS = 4 };
+
+// How far to look ahead for the later side, [s].
+static double ahead_of(double t)
+{
+    return 1e-7 * fmax(1, fabs(t));
+}
+
+void ct_switches_start(struct ct_evaluator *m, double t, const double *y, const double *dy)
+{
+    const double zero = 1e-12; // g is zero when it is round-off beside its change in a second
+    const double ahead = ahead_of(t);
+    double *mode = m->input + m->at_switch;
+    for (size_t level = 0; level < MOST_LEVELS && level < m->e->nswitch; level++) {
+        evaluate(m, t, y, dy, 0, m->g[0]);
+        evaluate(m, t, y, dy, ahead, m->g[1]);
+        for (size_t i = 0; i < m->e->nswitch; i++) {
+            const double now = m->g[0][i], later = m->g[1][i];
+            const bool is_zero = fabs(now) <= zero * fmax(1, fabs(later - now) / ahead);
+            mode[i] = side_of(m->e->switches[i].op, is_zero ? later : now);
+        }
+    }
+}
+
+int ct_switches_find_sticking(struct ct_evaluator *m, double t, const double *y,
+                              const double *dy)
+{
+    const double *mode = m->input + m->at_switch;
+    const double ahead = ahead_of(t), near = 1e-3; // of the way that g goes meanwhile
+    evaluate(m, t, y, dy, 0, m->g[0]);
+    evaluate(m, t, y, dy, ahead, m->g[1]);
+    for (size_t i = 0; i < m->e->nswitch; i++) {
+        const double now = m->g[0][i], later = m->g[1][i];
+        if (!m->e->switches[i].is_time && fabs(now) < near * fabs(later - now)
+            && side_of(m->e->switches[i].op, later) != mode[i])
+            return (int)i;
+    }
+    return -1;
+}
+
+// ---- time events ----------------------------------------------------------------------------------------
+
+struct times {
+    struct ct_arena *a;
+    double *t;
+    size_t n, cap;
+};
+
+void ct_switches_of_time(struct ct_evaluator *m, double t)
+{
+    m->input[0] = t;
+    for (size_t level = 0; level < MOST_LEVELS; level++) {
+        ct_program_run(&m->root, m->input);
+        for (size_t k = 0; k < m->e->nswitch; k++)
+            if (m->e->switches[k].is_time)
+                m->input[m->at_switch + k] = side_of(m->e->switches[k].op, m->root.out[k]);
+    }
+}
+
+// Outcome of mode i at time t, the modes inside its g settled for that time.
+static bool outcome(struct ct_evaluator *m, size_t i, double t, double *g)
+{
+    ct_switches_of_time(m, t);
+    *g = m->root.out[i];
+    return side_of(m->e->switches[i].op, *g) != 0;
+}
+
+// The first double in (a, b] whose outcome differs from that at a; one step earlier if g vanishes there.
+static double bisect(struct ct_evaluator *m, size_t i, double a, double b)
+{
+    double g;
+    const bool before = outcome(m, i, a, &g);
+    for (;;) {
+        const double middle = a + (b - a) / 2;
+        if (!(middle > a && middle < b))
+            break;
+        if (outcome(m, i, middle, &g) == before)
+            a = middle;
+        else
+            b = middle;
+    }
+    outcome(m, i, a, &g);
+    return g == 0 ? a : b;
+}
+
+static void find_changes(struct ct_evaluator *m, size_t i, double t0, double t1,
+                         struct times *list)
+{
+    enum { PIECES = 4096 };
+    double g, a = t0;
+    bool side = outcome(m, i, a, &g);
+    for (int k = 1; k <= PIECES; k++) {
+        const double b = k == PIECES ? t1 : t0 + (t1 - t0) * k / PIECES;
+        const bool next = outcome(m, i, b, &g);
+        if (next != side) {
+            const double t = bisect(m, i, a, b);
+            if (t > t0)
+                CT_PUSH(list->a, list->t, list->n, list->cap, t);
+        }
+        side = next;
+        a = b;
+    }
+}
+
+static int ascending(const void *a, const void *b)
+{
+    const double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+bool ct_table_has_kinks(const struct ct_table *table, int order)
+{
+    const int unfelt
+        = 5; // methods of this order see the error of a jump of the third derivative
+    return !table->m || order > unfelt;
+}
+
+size_t ct_time_events(struct ct_arena *a, struct ct_evaluator *m, int order, double t0,
+                      double t1, double **time)
+{
+    struct times list = {.a = a};
+    const struct ct_exs *x = m->e->x;
+    for (size_t i = 0; i < m->e->nswitch; i++)
+        if (m->e->switches[i].is_time)
+            find_changes(m, i, t0, t1, &list);
+    for (size_t k = 0; k < x->ntable; k++)
+        for (size_t i = 0; i < x->table[k].n; i++) {
+            const double at = x->table[k].x[i];
+            const bool is_kink = ct_table_has_kinks(&x->table[k], order) && at <= t1;
+            const bool is_end = i + 1 == x->table[k].n && at < t1;
+            if (at > t0 && (is_kink || is_end))
+                CT_PUSH(a, list.t, list.n, list.cap, at);
+        }
+    if (list.n)
+        qsort(list.t, list.n, sizeof *list.t, ascending);
+    size_t kept = 0;
+    for (size_t i = 0; i < list.n; i++)
+        if (kept == 0 || list.t[i] > list.t[kept - 1])
+            list.t[kept++] = list.t[i];
+    m->input[0] = t0;
+    *time = list.t;
+    return kept;
+}
+
+double ct_time_just_before(double t, double pending)
+{
+    return t < pending ? t : nextafter(pending, -INFINITY);
+}

@@ -1,0 +1,861 @@
+// See assembly.h.
+//
+// First the loops are closed and the given values met: Newton steps, damped as Levenberg and Marquardt do, so that
+// rows which depend on each other in the solution do not throw it off. Then Gauss-Newton steps along these
+// constraints take all other coordinates to their guesses, each followed by closing again. This ends in a local minimum of the
+// distance to the guesses. Further starts look for a nearer one.
+#include "solve/initial/assembly_internal.h"
+#include "formulate/beam/flexible_body.h"
+#include "numeric/dense.h"
+#include "solve/constraint/partition.h"
+#include "solve/evaluator/switch_state.h"
+
+#include <math.h>
+#include <stdint.h>
+#include <string.h>
+
+static const double hard = 1e4;         // weight of what must be met against what is wanted
+static const double longest_step = 0.5; // [m or rad], against jumping to another assembly
+static const double small_step = 1e-12; // has arrived [m or rad]
+static const double speeds_met = 1e-6;  // may be large; a contradiction is of their order
+enum {
+    MOST_ITERATIONS = 200,
+    MOST_HALVINGS = 12,
+    MOST_STARTS = 24,
+    MOST_SEARCHES = 16,
+    MOST_FAR_SEARCHES = 64
+};
+enum { MOST_APPROACHES = 30 };
+static const double most_search_work = 1e9; // multiplications: about a second
+static const double pi = 3.14159265358979323846;
+
+// ---- residuals --------------------------------------------------------------------------------------------
+
+static double measured(const struct ct_assembler *s, size_t i)
+{
+    return s->m->result.out[2 * i];
+}
+
+// Rotation vector from the target quaternion to the present one, component k: along it the rate of half its square
+// is its product with the angular velocity, exactly.
+static double quaternion_error(const struct ct_assembler *s, size_t first, int k)
+{
+    double t[4], p[4], v[3], norm = 0;
+    for (size_t i = 0; i < 4; i++) {
+        t[i] = s->q[first + i].value;
+        p[i] = measured(s, first + i);
+    }
+    for (int i = 0; i < 3; i++) {
+        const int a = 1 + (i + 1) % 3, b = 1 + (i + 2) % 3;
+        v[i] = t[0] * p[1 + i] - p[0] * t[1 + i] - (t[a] * p[b] - t[b] * p[a]);
+        norm += v[i] * v[i];
+    }
+    norm = sqrt(norm);
+    const double w = t[0] * p[0] + t[1] * p[1] + t[2] * p[2] + t[3] * p[3];
+    const double factor = norm > 0 ? 2 * atan2(norm, fabs(w)) / norm : 2;
+    return w < 0 ? -factor * v[k] : factor * v[k];
+}
+
+bool ct_assembler_deviation(const struct ct_assembler *s, size_t i, double *r)
+{
+    if (!s->q[i].in_quaternion) {
+        *r = measured(s, i) - s->q[i].value;
+        if (ct_assembler_is_turn(s, i))
+            *r -= 2 * pi * round(*r / (2 * pi));
+        return true;
+    }
+    const struct ct_coordinate *c = &s->e->coordinate[i];
+    const int k = c->index - s->e->build->edge[c->edge].trial.quaternion;
+    if (k == 3)
+        return false;
+    *r = quaternion_error(s, i - (size_t)k, k);
+    return true;
+}
+
+// Coefficients of the measured speed of coordinate i: by unit speeds, as it is linear in them.
+static void speed_rows(struct ct_assembler *s, double *rows)
+{
+    struct ct_evaluator *m = s->m;
+    double *u = m->input + m->at_u;
+    double *kept = s->row;
+    memcpy(kept, u, m->nu * sizeof *u);
+    memset(u, 0, m->nu * sizeof *u);
+    ct_program_run(&m->result, m->input);
+    for (size_t i = 0; i < s->e->ncoordinate; i++)
+        s->speed0[i] = m->result.out[2 * i + 1];
+    for (size_t k = 0; k < m->nu; k++) {
+        u[k] = 1;
+        ct_program_run(&m->result, m->input);
+        for (size_t i = 0; i < s->e->ncoordinate; i++)
+            rows[i + s->e->ncoordinate * k] = m->result.out[2 * i + 1] - s->speed0[i];
+        u[k] = 0;
+    }
+    memcpy(u, kept, m->nu * sizeof *u);
+    ct_program_run(&m->result, m->input);
+}
+
+static void add_row(struct ct_assembler *s, const double *coef, size_t stride, double weight,
+                    double r)
+{
+    for (size_t k = 0; k < s->m->nu; k++)
+        s->A[s->n + s->most * k] = weight * coef[stride * k];
+    s->r[s->n++] = weight * r;
+}
+
+// Row i of the constraints, r its residual. Coefficients that are round-off of the row's natural size (theory 6.5) are none: a row
+// that repeats what the tree imposes leaves the speeds alone.
+static void add_constraint(struct ct_assembler *s, size_t i, double r)
+{
+    const struct ct_evaluator *m = s->m;
+    double largest = 0;
+    for (size_t k = 0; k < m->nu; k++)
+        largest = fmax(largest, fabs(m->J[i + m->nrow * k]) * m->speed_size[k]);
+    add_row(s, m->J + i, m->nrow, 1, r);
+    for (size_t k = 0; k < m->nu && largest <= ct_rank_tolerance * m->row_size[i]; k++)
+        s->A[s->n - 1 + s->most * k] = 0;
+}
+
+// Elastic coordinate i of all beams, which starts with what the model says.
+static const struct ct_elastic *elastic_of(const struct ct_assembler *s, size_t i)
+{
+    const struct ct_flexible *f = s->e->build->flexible;
+    for (; i >= (size_t)f->nelastic; f++)
+        i -= (size_t)f->nelastic;
+    return &f->elastic[i];
+}
+
+static void elastic_rows(struct ct_assembler *s, bool of_speeds)
+{
+    const size_t nu = s->m->nu;
+    for (size_t i = 0; i < s->nelastic; i++) {
+        const struct ct_elastic *e = elastic_of(s, i);
+        const double now = of_speeds ? s->y[s->m->nq + (size_t)e->u] : s->y[e->q];
+        memset(s->unit, 0, nu * sizeof *s->unit);
+        s->unit[e->u] = 1;
+        add_row(s, s->unit, 1, 1,
+                now - ct_ex_value(s->e->x, of_speeds ? e->start_rate : e->start, s->value));
+    }
+}
+
+// Rows of the positions at s->y: A d + r = 0.
+static void position_rows(struct ct_assembler *s)
+{
+    struct ct_evaluator *m = s->m;
+    const size_t nc = s->e->ncoordinate;
+    double r;
+    ct_evaluator_set(m, 0, s->y);
+    ct_memory_update(m);
+    ct_evaluator_constraint(m);
+    speed_rows(s, s->speeds);
+    s->n = 0;
+    for (size_t i = 0; i < m->nrow; i++)
+        if (s->fixed_row[i])
+            add_constraint(s, i, m->phi[i]);
+    for (size_t i = 0; i < nc; i++)
+        if (s->q[i].is_given && ct_assembler_deviation(s, i, &r))
+            add_row(s, s->speeds + i, nc, 1, r);
+    elastic_rows(s, false);
+    s->nhard = s->n;
+    ct_loop_filter_apply(s, s->fixed_row);
+    for (size_t i = 0; i < nc; i++)
+        if (!s->q[i].is_given && s->q[i].wanted && ct_assembler_deviation(s, i, &r))
+            add_row(s, s->speeds + i, nc, s->q[i].weight, r);
+}
+
+// The same for the speeds.
+static void velocity_rows(struct ct_assembler *s)
+{
+    struct ct_evaluator *m = s->m;
+    const size_t nc = s->e->ncoordinate;
+    ct_evaluator_set(m, 0, s->y);
+    ct_evaluator_constraint(m);
+    speed_rows(s, s->speeds);
+    s->n = 0;
+    for (size_t i = 0; i < m->nrow; i++)
+        add_constraint(s, i, m->v[i]);
+    for (size_t i = 0; i < nc; i++)
+        if (s->u[i].is_given)
+            add_row(s, s->speeds + i, nc, 1, m->result.out[2 * i + 1] - s->u[i].value);
+    elastic_rows(s, true);
+    s->nhard = s->n;
+    ct_loop_filter_apply(s, NULL);
+    for (size_t i = 0; i < nc; i++)
+        if (!s->u[i].is_given && s->u[i].wanted)
+            add_row(s, s->speeds + i, nc, s->u[i].weight,
+                    m->result.out[2 * i + 1] - s->u[i].value);
+}
+
+// Largest residual of what must be met; sum of squares of what is wanted.
+static double violation(const struct ct_assembler *s)
+{
+    double worst = 0;
+    for (size_t i = 0; i < s->nhard; i++)
+        worst = fabs(s->r[i]) > worst || isnan(s->r[i]) ? fabs(s->r[i]) : worst;
+    return worst;
+}
+
+static double distance(const struct ct_assembler *s)
+{
+    double sum = 0;
+    for (size_t i = s->nhard; i < s->n; i++)
+        sum += s->r[i] * s->r[i];
+    return sum;
+}
+
+// ---- iterations ---------------------------------------------------------------------------------------------
+
+static double limit_step(double *d, size_t n)
+{
+    double largest = 0;
+    for (size_t i = 0; i < n; i++)
+        largest = fabs(d[i]) > largest || isnan(d[i]) ? fabs(d[i]) : largest;
+    for (size_t i = 0; i < n && largest > longest_step; i++)
+        d[i] *= longest_step / largest;
+    return largest;
+}
+
+static const double solved = 1e-12; // rank of rows with all weights
+
+static void solve_rows(struct ct_assembler *s, size_t n, double tol)
+{
+    const size_t nu = s->m->nu;
+    s->work_done += (double)n * (double)(nu * nu);
+    if (n && nu)
+        ct_lstsq(s->b, s->A, (int)n, (int)nu, (int)s->most, tol, s->iwork, s->work);
+    else
+        memset(s->b, 0, (nu + 1) * sizeof *s->b);
+}
+
+// Step into s->b towards what must be met: |A d + r|^2 + damping^2 |d|^2 becomes least.
+static void closing_step(struct ct_assembler *s, double damping)
+{
+    const size_t nu = s->m->nu;
+    size_t n = s->nhard;
+    for (size_t i = 0; i < n; i++)
+        s->b[i] = -s->r[i];
+    for (size_t k = 0; k < nu && damping > 0; k++, n++) {
+        for (size_t l = 0; l < nu; l++)
+            s->A[n + s->most * l] = k == l ? damping : 0;
+        s->b[n] = 0;
+    }
+    solve_rows(s, n, solved);
+}
+
+// Step into s->b that leaves the constraints alone and takes what is wanted nearest to its residuals' zero. The
+// weight of the constraints is finite; their multipliers, learnt from step to step, make up for that.
+static void wishing_step(struct ct_assembler *s)
+{
+    const size_t nu = s->m->nu;
+    double *row = s->saved_A;
+    for (size_t i = 0; i < s->nhard; i++)
+        for (size_t k = 0; k < nu; k++) {
+            row[i + s->nhard * k] = s->A[i + s->most * k];
+            s->A[i + s->most * k] *= hard;
+        }
+    for (size_t i = 0; i < s->n; i++)
+        s->b[i] = i < s->nhard ? -hard * (s->r[i] + s->shift[i]) : -s->r[i];
+    solve_rows(s, s->n, solved);
+    for (size_t i = 0; i < s->nhard; i++) {
+        s->shift[i] += s->r[i];
+        for (size_t k = 0; k < nu; k++)
+            s->shift[i] += row[i + s->nhard * k] * s->b[k];
+    }
+}
+
+// How far the step in s->b goes along what the constraints let move [m or rad]. In a nearly singular configuration a step off them seems to
+// gain distance, at no more than round-off of what is closed. To be called after wishing_step.
+static double size_along_constraints(struct ct_assembler *s)
+{
+    // loops that close to 1e-13 meet a singular configuration to about the root of that
+    const double dependent = 1e-6;
+    const size_t nu = s->m->nu, n = s->nhard;
+    memcpy(s->step, s->b, nu * sizeof *s->step);
+    for (size_t i = 0; i < n; i++) {
+        s->b[i] = 0;
+        for (size_t k = 0; k < nu; k++) {
+            s->A[i + s->most * k] = s->saved_A[i + n * k];
+            s->b[i] += s->saved_A[i + n * k] * s->step[k];
+        }
+    }
+    solve_rows(s, n, dependent);
+    for (size_t k = 0; k < nu; k++)
+        s->b[k] -= s->step[k];
+    const double size = ct_vector_largest(s->b, nu);
+    memcpy(s->b, s->step, nu * sizeof *s->step);
+    return size;
+}
+
+// Close the loops from s->y; returns what is left.
+static double close_loops(struct ct_assembler *s)
+{
+    // a step divides by the damping at worst, so that it must stay above round-off errors
+    const double least_damping = 1e-8, closed = 1e-15;
+    double before = INFINITY;
+    for (int i = 0;; i++) {
+        position_rows(s);
+        const double worst = violation(s);
+        if (!isfinite(worst) || worst <= closed || i == MOST_ITERATIONS
+            || (worst < 1e-11 && worst > before / 2))
+            return worst;
+        closing_step(s, fmax(fmin(1, worst), least_damping));
+        limit_step(s->b, s->m->nu);
+        ct_evaluator_retract(s->m, s->y, s->b);
+        before = worst;
+    }
+}
+
+static void keep_place(struct ct_assembler *s, bool back)
+{
+    double *memory = s->m->input + s->m->at_memory;
+    const size_t ny = s->m->nq + s->m->nu, nm = s->e->nmemory;
+    memcpy(back ? s->y : s->saved_y, back ? s->saved_y : s->y, ny * sizeof *s->y);
+    memcpy(back ? memory : s->saved_memory, back ? s->saved_memory : memory,
+           nm * sizeof *memory);
+}
+
+// The step in s->b or a part of it, if that comes nearer to the guesses.
+static bool take_step(struct ct_assembler *s, double *nearest)
+{
+    const size_t nu = s->m->nu;
+    double *d = s->step, part = 1;
+    const double roundoff = 1e-14; // of a sum of squares
+    memcpy(d, s->b, nu * sizeof *d);
+    keep_place(s, false);
+    for (int i = 0; i < MOST_HALVINGS; i++, part /= 2) {
+        for (size_t k = 0; k < nu; k++)
+            s->b[k] = part * d[k];
+        ct_evaluator_retract(s->m, s->y, s->b);
+        if (close_loops(s) < ct_assembly_tolerance
+            && distance(s) <= *nearest * (1 + roundoff)) {
+            *nearest = distance(s);
+            return true;
+        }
+        keep_place(s, true);
+    }
+    return false;
+}
+
+// Towards the guesses and closed loops at once, from positions that may be open: Gauss-Newton steps of the constrained least-squares
+// problem, so that what has no guess moves first.
+static void approach(struct ct_assembler *s)
+{
+    const double arrived = 1e-3; // [m or rad]; the rest is left to what follows
+    for (int i = 0; i < MOST_APPROACHES; i++) {
+        position_rows(s);
+        memset(s->shift, 0, s->nhard * sizeof *s->shift);
+        wishing_step(s);
+        const double size = limit_step(s->b, s->m->nu);
+        if (!isfinite(size))
+            return;
+        ct_evaluator_retract(s->m, s->y, s->b);
+        if (size < arrived)
+            return;
+    }
+}
+
+// Close the loops from s->y and go to the nearest position along them; returns what is left open.
+static double find_positions(struct ct_assembler *s)
+{
+    double worst = close_loops(s);
+    if (!(worst < ct_assembly_tolerance))
+        return worst;
+    memset(s->shift, 0, s->nhard * sizeof *s->shift);
+    // below this, steps that no longer halve are round-off
+    const double roundoff = 1e-11;
+    double nearest = distance(s), before = INFINITY;
+    for (int i = 0; i < MOST_ITERATIONS; i++) {
+        wishing_step(s);
+        if (!(size_along_constraints(s) > small_step))
+            break;
+        const double size = limit_step(s->b, s->m->nu);
+        if (!(size > small_step) || (size < roundoff && size > before / 2)
+            || !take_step(s, &nearest))
+            break;
+        before = size;
+    }
+    return close_loops(s);
+}
+
+static double find_velocities(struct ct_assembler *s)
+{
+    double *u = s->y + s->m->nq;
+    memset(s->shift, 0, s->most * sizeof *s->shift);
+    for (int i = 0; i < 5;
+         i++) { // linear: the multipliers are learnt in three, two take off round-off
+        velocity_rows(s);
+        if (i < 3)
+            wishing_step(s);
+        else
+            closing_step(s, 0);
+        for (size_t k = 0; k < s->m->nu; k++)
+            u[k] += s->b[k];
+    }
+    velocity_rows(s);
+    return fmax(violation(s), ct_loop_filter_missed(s, true));
+}
+
+// ---- the stage ---------------------------------------------------------------------------------------------------
+
+// Rows whose constant comes from the start (gears, rods of the initial length) hold at any place.
+static void find_fixed_rows(struct ct_assembler *s, struct ct_arena *a)
+{
+    struct ct_exs *x = s->e->x;
+    s->fixed_row = CT_NEWN(a, bool, s->m->nrow + 1);
+    for (size_t i = 0; i < s->m->nrow; i++) {
+        s->fixed_row[i] = true;
+        const size_t n = ct_ex_walk(x, &s->e->row[i].phi, 1);
+        for (size_t k = 0; k < n; k++) {
+            const struct ct_sym *sym = ct_ex_symbol(x, (ct_ex){x->stack[k]});
+            if (sym && sym->kind == CT_SYM_MEMORY
+                && s->e->memory[sym->index].kind == CT_MEMORY_OFFSET)
+                s->fixed_row[i] = false;
+        }
+    }
+}
+
+// Deterministic numbers in [-1, 1): same model, same start.
+static double chance(uint64_t *state)
+{
+    *state = *state * 6364136223846793005u + 1442695040888963407u;
+    return (double)(*state >> 11) / 4503599627370496.0 - 1;
+}
+
+// A small motion into s->b, larger from try to try: of joints, then of bodies, so that their numbers do not depend on how many
+// freedoms beams keep, which stay as they start.
+static void draw_motion(struct ct_assembler *s, int try)
+{
+    uint64_t state = (uint64_t)try;
+    const struct ct_u *u = s->e->u;
+    memset(s->b, 0, s->m->nu * sizeof *s->b);
+    for (int of_bodies = 0; of_bodies < 2; of_bodies++)
+        for (size_t k = 0; k < s->m->nu; k++)
+            if (!u[k].beam && (u[k].joint < 0) == of_bodies)
+                s->b[k] = 0.15 * try * chance(&state);
+}
+
+// From the targets, from the second try on moved a little, then more.
+static void start_near_targets(struct ct_assembler *s, int try)
+{
+    double *memory = s->m->input + s->m->at_memory;
+    memset(s->y, 0, (s->m->nq + s->m->nu + 1) * sizeof *s->y);
+    for (size_t i = 0; i < s->e->ncoordinate; i++) {
+        const struct ct_coordinate *c = &s->e->coordinate[i];
+        if (c->q >= 0)
+            s->y[c->q] = s->q[i].value;
+    }
+    ct_initial_state_of_beams(s->e, s->value, s->y, NULL);
+    ct_evaluator_normalise(s->m, s->y);
+    draw_motion(s, try);
+    ct_evaluator_retract(s->m, s->y, s->b);
+    for (size_t i = 0; i < s->e->nmemory; i++)
+        for (size_t k = 0; k < s->e->ncoordinate && s->e->memory[i].kind == CT_MEMORY_ANGLE;
+             k++) {
+            const struct ct_coordinate *c = &s->e->coordinate[k];
+            const struct ct_edge_info *e = &s->e->build->edge[c->edge];
+            if (e->kind == CT_EDGE_JOINT && e->index == s->e->memory[i].joint
+                && c->index == s->e->memory[i].index)
+                memory[i] = s->q[k].value;
+        }
+    ct_evaluator_set(s->m, 0, s->y);
+    ct_switches_start(s->m, 0, s->y, NULL);
+    ct_memory_start(s->m);
+    ct_evaluator_measure_rows(s->m);
+}
+
+// The joint of the first row that holds half a turn away from where it should; -1 if none does.
+static int half_turned_joint(struct ct_assembler *s)
+{
+    struct ct_evaluator *m = s->m;
+    ct_evaluator_set(m, 0, s->y);
+    ct_program_run(&m->assembly_sign, m->input);
+    for (size_t i = 0; i < m->nrow; i++)
+        if (m->assembly_sign.out[i] < 0)
+            return s->e->row[i].joint;
+    return -1;
+}
+
+static bool report_half_turn(struct ct_assembler *s, int joint)
+{
+    const struct ct_instance *self = &s->e->build->model->joint[joint];
+    return ct_error(
+        s->ctx, self->mark, CT_E_ASSEMBLY,
+        "the mechanism cannot be assembled: it closes only with the axes of '%s' turned to "
+        "their opposite; give guesses in `initial`",
+        self->name);
+}
+
+// ---- the nearest position -----------------------------------------------------------------------------------
+
+static bool is_open_coordinate(const struct ct_assembler *s, size_t i)
+{
+    const struct ct_target *t = &s->q[i];
+    return t->wanted && !t->is_given && !t->is_guessed && s->e->coordinate[i].u >= 0
+        && s->e->build->edge[s->e->coordinate[i].edge].kind == CT_EDGE_JOINT;
+}
+
+// A small motion into s->b from the targets to a position to look from: what has no guess goes anywhere within half a turn or the
+// natural length, guesses at most `reach` [rad and natural lengths], what is given stays.
+static void draw_search(struct ct_assembler *s, int search, double reach)
+{
+    uint64_t state = (uint64_t)search;
+    memset(s->b, 0, s->m->nu * sizeof *s->b);
+    for (size_t i = 0; i < s->e->ncoordinate; i++) {
+        const struct ct_coordinate *c = &s->e->coordinate[i];
+        const struct ct_target *t = &s->q[i];
+        if (is_open_coordinate(s, i)) {
+            const double unit = ct_assembly_open_weight / t->weight;
+            const bool is_rotation = t->in_quaternion || ct_assembler_is_turn(s, i);
+            s->b[c->u] = unit * (is_rotation ? pi : 1) * chance(&state);
+        } else if (t->is_guessed && c->u >= 0) {
+            s->b[c->u] = reach / t->weight * chance(&state);
+        }
+    }
+}
+
+// How many searches for a nearer position are worth their time. None where all joints are guessed or given and met within 0.1 rad or
+// natural lengths: of 1800 random loops those with a nearer position were at least 0.5 away. Many where joints without guesses may
+// have led far from the guesses of others.
+static int most_searches(const struct ct_assembler *s, double nearest)
+{
+    const double near = 0.1;
+    const bool is_near = nearest <= near * near;
+    for (size_t i = 0; i < s->e->ncoordinate; i++)
+        if (is_open_coordinate(s, i))
+            return nearest <= ct_assembly_tolerance * ct_assembly_tolerance ? 0
+                 : is_near                                                  ? MOST_SEARCHES
+                                                                            : MOST_FAR_SEARCHES;
+    return is_near ? 0 : MOST_SEARCHES;
+}
+
+static bool is_closed(struct ct_assembler *s, double residual)
+{
+    if (s->filter->is_on)
+        residual = fmax(residual, ct_loop_filter_missed(s, false));
+    return residual < ct_assembly_tolerance && half_turned_joint(s) < 0
+        && (!s->filter->is_on || ct_loop_filter_holds(s));
+}
+
+static void keep_best(struct ct_assembler *s, bool back)
+{
+    double *memory = s->m->input + s->m->at_memory;
+    const size_t ny = s->m->nq + s->m->nu, nm = s->e->nmemory;
+    memcpy(back ? s->y : s->best_y, back ? s->best_y : s->y, ny * sizeof *s->y);
+    memcpy(back ? memory : s->best_memory, back ? s->best_memory : memory, nm * sizeof *memory);
+}
+
+// From a closed position at s->y, the nearest found so far, to the nearest of all that further starts come to. Of equally near ones
+// the first stays.
+static void search_nearer(struct ct_assembler *s)
+{
+    // of a distance, beside round-off: the end of different iterations
+    const double same = 1e-6;
+    double nearest = distance(s);
+    keep_best(s, false);
+    s->work_done = 0;
+    for (int search = 0; search < most_searches(s, nearest) && s->work_done < most_search_work;
+         search++) {
+        start_near_targets(s, 0);
+        if (search > 0) { // every second one leaves the guesses where they are
+            draw_search(s, search, search % 2 ? 0 : sqrt(nearest));
+            ct_evaluator_retract(s->m, s->y, s->b);
+        }
+        approach(s);
+        if (!is_closed(s, find_positions(s))
+            || !(sqrt(distance(s)) < sqrt(nearest) * (1 - same) - ct_assembly_tolerance))
+            continue;
+        nearest = distance(s);
+        keep_best(s, false);
+    }
+    keep_best(s, true);
+    position_rows(s);
+}
+
+// The same with the data taken to their tolerance, where that is what they mean.
+static bool try_inexact(struct ct_assembler *s, int try, double *residual)
+{
+    s->filter->is_on = true;
+    start_near_targets(s, try);
+    *residual = find_positions(s);
+    s->filter->is_on = is_closed(s, *residual);
+    return s->filter->is_on;
+}
+
+static bool try_exact(struct ct_assembler *s, int try, double *residual)
+{
+    start_near_targets(s, try);
+    *residual = find_positions(s);
+    return is_closed(s, *residual);
+}
+
+// Tries from positions further and further away, until one closes; then the nearest.
+static bool try_positions(struct ct_assembler *s, double *residual)
+{
+    for (int try = 0; try < MOST_STARTS; try++) {
+        const bool is_exact = try_exact(s, try, residual);
+        if (!(is_exact && !ct_loop_filter_is_due(s)) && !try_inexact(s, try, residual)
+            && !(is_exact && try_exact(s, try, residual)))
+            continue;
+        search_nearer(s);
+        *residual = violation(s);
+        return true;
+    }
+    return false;
+}
+
+// Find positions, or speeds, with what is given as the only guesses; true if the rest is met. What given values then miss is
+// what contradicts: a compromise that leaves loops open as well misses them by less.
+static bool is_met_with_guesses(struct ct_assembler *s, bool of_speeds)
+{
+    const size_t n = s->e->ncoordinate;
+    struct ct_target *target = of_speeds ? s->u : s->q;
+    double residual;
+    struct ct_target *kept = s->kept_targets;
+    memcpy(kept, target, n * sizeof *kept);
+    for (size_t i = 0; i < n; i++) {
+        target[i].wanted = target[i].is_given;
+        target[i].is_given = false;
+    }
+    const bool is_met
+        = of_speeds ? find_velocities(s) < speeds_met : try_positions(s, &residual);
+    memcpy(target, kept, n * sizeof *kept);
+    return is_met;
+}
+
+// The first try's failure is the one to report.
+static bool assemble_positions(struct ct_assembler *s, double *residual, bool *is_open)
+{
+    if (try_positions(s, residual))
+        return true;
+    start_near_targets(s, 0);
+    *is_open = s->may_stay_open;
+    if (s->may_stay_open)
+        return true;
+    *residual = find_positions(s);
+    if (*residual < ct_assembly_tolerance)
+        return report_half_turn(s, half_turned_joint(s));
+    const bool closes = is_met_with_guesses(s, false);
+    if (!closes) {
+        start_near_targets(s, 0);
+        find_positions(s);
+    }
+    return ct_assembler_report_positions(s, closes);
+}
+
+// From speeds that cannot be met.
+static bool report_speeds(struct ct_assembler *s)
+{
+    if (!is_met_with_guesses(s, true))
+        find_velocities(s);
+    ct_evaluator_set(s->m, 0, s->y);
+    ct_program_run(&s->m->result, s->m->input);
+    return ct_assembler_report_speeds(s);
+}
+
+// Without rows, and with all that is given or wanted among the unknowns, the targets are the start.
+static bool is_direct(const struct ct_assembler *s)
+{
+    for (size_t i = 0; i < s->e->ncoordinate; i++) {
+        const struct ct_coordinate *c = &s->e->coordinate[i];
+        if ((s->q[i].wanted && c->q < 0) || (s->u[i].wanted && c->u < 0))
+            return false;
+    }
+    return s->m->nrow == 0;
+}
+
+static void take_targets(struct ct_assembler *s)
+{
+    start_near_targets(s, 0);
+    for (size_t i = 0; i < s->e->ncoordinate; i++)
+        if (s->u[i].wanted && s->e->coordinate[i].u >= 0)
+            s->y[s->m->nq + (size_t)s->e->coordinate[i].u] = s->u[i].value;
+    ct_initial_state_of_beams(s->e, s->value, NULL, s->y + s->m->nq);
+}
+
+static struct ct_assembler assembly_create(struct ct_ctx *ctx, struct ct_arena *a,
+                                           const struct ct_model *model,
+                                           const struct ct_equations *e, bool is_iterated)
+{
+    struct ct_assembler s = {.ctx = ctx, .e = e, .m = ct_evaluator_create(a, model, e)};
+    const size_t nc = e->ncoordinate, nu = s.m->nu;
+    for (size_t i = 0; i < e->build->nflexible; i++)
+        s.nelastic += (size_t)e->build->flexible[i].nelastic;
+    s.value = model->value;
+    s.q = CT_NEWN(a, struct ct_target, nc + 1);
+    s.u = CT_NEWN(a, struct ct_target, nc + 1);
+    s.y = CT_NEWN(a, double, s.m->nq + nu + 1);
+    s.saved_y = CT_NEWN(a, double, s.m->nq + nu + 1);
+    s.saved_memory = CT_NEWN(a, double, e->nmemory + 1);
+    s.best_y = CT_NEWN(a, double, s.m->nq + nu + 1);
+    s.best_memory = CT_NEWN(a, double, e->nmemory + 1);
+    s.b = CT_NEWN(a, double, s.m->nrow + nc + 2 * nu + 1);
+    s.kept_targets = CT_NEWN(a, struct ct_target, nc + 1);
+    ct_assembler_list_frames(&s, a, model);
+    ct_assembler_find_targets(&s, model);
+    if (!is_iterated && is_direct(&s))
+        return s;
+    s.most = s.m->nrow + nc + s.nelastic + nu + 1;
+    s.unit = CT_NEWN(a, double, nu + 1);
+    s.A = CT_NEWN(a, double, s.most *(nu + 1));
+    s.saved_A = CT_NEWN(a, double, s.most *(nu + 1));
+    s.step = CT_NEWN(a, double, nu + 1);
+    s.r = CT_NEWN(a, double, s.most);
+    s.shift = CT_NEWN(a, double, s.most);
+    s.row = CT_NEWN(a, double, nu + 1);
+    s.speed0 = CT_NEWN(a, double, nc + 1);
+    s.speeds = CT_NEWN(a, double, (nc + 1) * (nu + 1));
+    s.iwork = CT_NEWN(a, int, s.most + nu);
+    s.work = CT_NEWN(a, double, ct_lstsq_work((int)s.most, (int)nu + 1));
+    find_fixed_rows(&s, a);
+    s.filter = ct_loop_filter_create(a, &s);
+    return s;
+}
+
+// Angles may have come to their places by the long way: they start within half a turn of what is asked.
+static void drop_whole_turns(const struct ct_assembler *s, double *q)
+{
+    for (size_t i = 0; i < s->e->ncoordinate; i++) {
+        const double away = q[i] - s->q[i].value;
+        if (s->q[i].wanted && fabs(away) > pi + ct_assembly_tolerance
+            && ct_assembler_is_turn(s, i))
+            q[i] -= 2 * pi * round(away / (2 * pi));
+    }
+}
+
+// From start values of the model to those of all coordinates.
+static bool find_start(struct ct_assembler *s, struct ct_initial_state *out)
+{
+    struct ct_evaluator *m = s->m;
+    const size_t nc = s->e->ncoordinate;
+    double left = 0;
+    if (!is_direct(s) && !assemble_positions(s, &out->residual, &out->is_open))
+        return false;
+    if (is_direct(s) || out->is_open)
+        take_targets(s);
+    ct_evaluator_set(m, 0, s->y);
+    ct_memory_start(m);
+    if (!is_direct(s) && !out->is_open)
+        left = find_velocities(s);
+    ct_evaluator_set(m, 0, s->y);
+    ct_program_run(&m->result, m->input);
+    if (!(left < speeds_met))
+        return report_speeds(s);
+    if (!ct_assembler_check_drivers(s))
+        return false;
+    for (size_t i = 0; i < nc; i++) {
+        out->q[i] = m->result.out[2 * i];
+        out->u[i] = m->result.out[2 * i + 1];
+    }
+    if (!is_direct(s))
+        drop_whole_turns(s, out->q);
+    out->is_inexact = s->filter && s->filter->is_on;
+    if (out->is_inexact) {
+        out->freedoms = ct_loop_filter_freedoms(s);
+        ct_loop_filter_warn(s);
+    }
+    return true;
+}
+
+struct ct_assembly {
+    struct ct_assembler s;
+    const struct ct_model *model;
+    double *q, *u;
+    bool *is_given;
+};
+
+struct ct_assembly *ct_assembly_create(struct ct_ctx *ctx, struct ct_arena *a,
+                                       const struct ct_model *model,
+                                       const struct ct_equations *e)
+{
+    struct ct_assembly *s = CT_NEW(a, struct ct_assembly);
+    s->model = model;
+    s->s = assembly_create(ctx, a, model, e, false);
+    s->q = CT_NEWN(a, double, e->ncoordinate + 1);
+    s->u = CT_NEWN(a, double, e->ncoordinate + 1);
+    s->is_given = CT_NEWN(a, bool, e->ncoordinate + 1);
+    return s;
+}
+
+bool ct_assembly_find(struct ct_assembly *s, struct ct_initial_state *out)
+{
+    const size_t n = s->s.e->ncoordinate;
+    *out = (struct ct_initial_state){.q = s->q, .u = s->u, .is_given = s->is_given, .n = n};
+    memset(s->s.q, 0, n * sizeof *s->s.q);
+    memset(s->s.u, 0, n * sizeof *s->s.u);
+    ct_evaluator_reset(s->s.m);
+    ct_assembler_find_targets(&s->s, s->model);
+    if (s->s.filter)
+        s->s.filter->is_on = false;
+    for (size_t i = 0; i < n; i++)
+        s->is_given[i] = s->s.q[i].is_given;
+    out->length = s->s.length;
+    out->e = s->s.e;
+    out->q_target = s->s.q;
+    out->u_target = s->s.u;
+    return find_start(&s->s, out);
+}
+
+static bool assemble(struct ct_ctx *ctx, struct ct_arena *a, const struct ct_model *model,
+                     const struct ct_equations *e, bool may_gape, struct ct_initial_state *out)
+{
+    *out = (struct ct_initial_state){0};
+    struct ct_arena *own
+        = ct_arena_create_under(a); // what is made here is needed for the start alone
+    struct ct_assembly *s = ct_assembly_create(ctx, own, model, e);
+    s->s.may_stay_open = may_gape;
+    s->q = CT_NEWN(a, double, e->ncoordinate + 1);
+    s->u = CT_NEWN(a, double, e->ncoordinate + 1);
+    s->is_given = CT_NEWN(a, bool, e->ncoordinate + 1);
+    const bool ok = ct_assembly_find(s, out);
+    struct ct_target *target = CT_NEWN(a, struct ct_target, 2 * e->ncoordinate + 1);
+    memcpy(target, out->q_target, e->ncoordinate * sizeof *target);
+    memcpy(target + e->ncoordinate, out->u_target, e->ncoordinate * sizeof *target);
+    out->q_target = target;
+    out->u_target = target + e->ncoordinate;
+    ct_arena_destroy(own);
+    return ok;
+}
+
+bool ct_assembly_solve(struct ct_ctx *ctx, struct ct_arena *a, const struct ct_model *model,
+                       const struct ct_equations *e, struct ct_initial_state *out)
+{
+    return assemble(ctx, a, model, e, false, out);
+}
+
+bool ct_assembly_solve_open(struct ct_ctx *ctx, struct ct_arena *a,
+                            const struct ct_model *model, const struct ct_equations *e,
+                            struct ct_initial_state *out)
+{
+    return assemble(ctx, a, model, e, true, out);
+}
+
+void ct_start_read_back(struct ct_ctx *ctx, struct ct_arena *a, const struct ct_model *model,
+                        const struct ct_equations *e, const struct ct_initial_state *start,
+                        const double *y, double *q, double *u)
+{
+    struct ct_assembler s = assembly_create(ctx, a, model, start->e, true);
+    s.filter->is_on = start->is_inexact;
+    for (size_t i = 0; i < start->n; i++) {
+        const bool in_quaternion = s.q[i].in_quaternion;
+        s.q[i] = (struct ct_target){
+            .value = start->q[i], .weight = s.q[i].weight, .in_quaternion = in_quaternion};
+        s.u[i] = (struct ct_target){.value = start->u[i], .weight = s.u[i].weight};
+    }
+    start_near_targets(&s, 0);
+    for (size_t i = 0; i < start->n; i++) {
+        const struct ct_coordinate *c = &e->coordinate[i];
+        s.q[i].wanted = c->q >= 0;
+        if (c->q >= 0)
+            s.q[i].value = y[c->q];
+        s.u[i].wanted = c->u >= 0;
+        if (c->u >= 0)
+            s.u[i].value = y[e->nq + (size_t)c->u];
+    }
+    find_positions(&s);
+    find_velocities(&s);
+    ct_evaluator_set(s.m, 0, s.y);
+    ct_program_run(&s.m->result, s.m->input);
+    for (size_t i = 0; i < start->n; i++) {
+        q[i] = measured(&s, i);
+        u[i] = s.m->result.out[2 * i + 1];
+    }
+}

@@ -1,0 +1,280 @@
+// Assembly of data that are redundant but for their last digits; see assembly_internal.h.
+//
+// Two coaxial hinges whose places are given to some digits have rows that should repeat others and instead leave singular
+// values of the tolerance of the data, delta, and gaps of that size: closed exactly, the door would turn by gap/delta, anything,
+// or lock. Such a row says what its neighbours say; its small part is left out. With Q an orthonormal basis of the columns of
+//
+//     A = [ N^-1 J S ]  loops, by natural sizes (6.5a)       A' = Q Q' A,   r' = Q Q' r
+//         [ w G S    ]  given values, w large: they are kept
+//
+// of which columns with less than the tolerance left are left out, Newton's iteration on A', r' ends where the gaps are least
+// in the sum of squares.
+#include "solve/initial/assembly_internal.h"
+
+#include "numeric/dense.h"
+
+#include <math.h>
+#include <string.h>
+
+// Weight of given values: what loops leave open moves them by its square less.
+static const double given_weight = 1e3;
+
+struct ct_loop_filter *ct_loop_filter_create(struct ct_arena *a, const struct ct_assembler *s)
+{
+    struct ct_loop_filter *f = CT_NEW(a, struct ct_loop_filter);
+    const size_t nu = s->m->nu, nrow = s->m->nrow, ny = s->m->nq + nu;
+    const size_t most = nrow > nu ? nrow : nu;
+    f->Q = CT_NEWN(a, double, s->most *(nu + 1));
+    f->B = CT_NEWN(a, double, s->most *(nu + 1));
+    f->A = CT_NEWN(a, double, most *(nu + 1));
+    f->size = CT_NEWN(a, double, s->most);
+    f->r = CT_NEWN(a, double, s->most);
+    f->kept_y = CT_NEWN(a, double, ny + 1);
+    f->tau = CT_NEWN(a, double, most + 1);
+    f->work = CT_NEWN(a, double, ct_qr_pivot_work((int)nu, (int)nrow) + most);
+    f->row = CT_NEWN(a, int, most + 1);
+    return f;
+}
+
+// ---- the projection --------------------------------------------------------------------------------------
+
+// v (n) -= its part in the first `rank` columns of Q, twice against round-off.
+static void orthogonalise(double *v, const double *Q, size_t rank, size_t n)
+{
+    for (int again = 0; again < 2; again++)
+        for (size_t k = 0; k < rank; k++)
+            ct_vector_add(v, -ct_vector_dot(Q + n * k, v, n), Q + n * k, n);
+}
+
+// Q (n x nu, out): basis of the columns of B (n x nu, destroyed) of which more than the tolerance is left, the largest first. Returns
+// their number.
+static size_t find_basis(double *Q, double *B, size_t n, size_t nu)
+{
+    size_t rank = 0;
+    for (;; rank++) {
+        size_t best = 0;
+        double most = 0;
+        for (size_t k = 0; k < nu; k++) {
+            orthogonalise(B + n * k, Q, rank, n);
+            const double left = sqrt(ct_vector_dot(B + n * k, B + n * k, n));
+            best = left > most ? k : best;
+            most = fmax(most, left);
+        }
+        if (rank == nu || rank == n || !(most > ct_data_tolerance))
+            return rank;
+        for (size_t i = 0; i < n; i++)
+            Q[i + n * rank] = B[i + n * best] / most;
+    }
+}
+
+// x (n) = Q Q' x
+static void project(double *x, double *image, const double *Q, size_t rank, size_t n)
+{
+    memset(image, 0, n * sizeof *image);
+    for (size_t k = 0; k < rank; k++)
+        ct_vector_add(image, ct_vector_dot(Q + n * k, x, n), Q + n * k, n);
+    memcpy(x, image, n * sizeof *x);
+}
+
+// f->size: of the rows of s->A up to s->nhard.
+static void find_sizes(const struct ct_assembler *s, const bool *is_loop)
+{
+    const double *size = s->m->row_size;
+    size_t n = 0;
+    for (size_t i = 0; i < s->m->nrow; i++)
+        if (!is_loop || is_loop[i])
+            s->filter->size[n++] = size[i];
+    for (; n < s->nhard; n++)
+        s->filter->size[n] = 1 / given_weight;
+}
+
+void ct_loop_filter_apply(struct ct_assembler *s, const bool *is_loop)
+{
+    struct ct_loop_filter *f = s->filter;
+    const size_t n = s->nhard, nu = s->m->nu;
+    if (!f->is_on || !n)
+        return;
+    find_sizes(s, is_loop);
+    for (size_t k = 0; k < nu; k++)
+        for (size_t i = 0; i < n; i++)
+            f->B[i + n * k] = s->A[i + s->most * k] * s->m->speed_size[k] / f->size[i];
+    const size_t rank = find_basis(f->Q, f->B, n, nu);
+    for (size_t k = 0; k <= nu; k++) { // the last one is r
+        double *column = k < nu ? s->A + s->most * k : s->r;
+        for (size_t i = 0; i < n; i++)
+            f->r[i] = column[i] / f->size[i];
+        project(f->r, f->B, f->Q, rank, n);
+        for (size_t i = 0; i < n; i++)
+            column[i] = f->r[i] * f->size[i];
+    }
+}
+
+// ---- when it is due --------------------------------------------------------------------------------------
+
+static void evaluate(struct ct_assembler *s)
+{
+    ct_evaluator_set(s->m, 0, s->y);
+    ct_evaluator_constraint(s->m);
+}
+
+// Rank of the loops at s->y by a tolerance.
+static int loop_rank(struct ct_assembler *s, double tolerance)
+{
+    struct ct_loop_filter *f = s->filter;
+    return ct_evaluator_order_rows(s->m, s->m->J, tolerance, f->row, f->A, f->tau, f->work);
+}
+
+// The largest gap at s->y, against the sizes of rows.
+static double largest_gap(struct ct_assembler *s)
+{
+    double open = 0;
+    evaluate(s);
+    for (size_t i = 0; i < s->m->nrow; i++)
+        if (s->fixed_row[i])
+            open = fmax(open, fabs(s->m->phi[i]) / s->m->row_size[i]);
+    return open;
+}
+
+// Steps divide by the damping, 1e-8, at worst: what gaps and singular values below this move is 1e-6 of a step.
+static const double unmoved = 1e-11;
+
+bool ct_loop_filter_is_due(struct ct_assembler *s)
+{
+    if (!s->m->nrow || !s->m->nu)
+        return false;
+    return largest_gap(s) > unmoved || loop_rank(s, unmoved) > loop_rank(s, ct_data_tolerance);
+}
+
+// The loops alone, filtered, into s->A (nrow x nu) and s->r.
+static void loop_rows(struct ct_assembler *s)
+{
+    struct ct_evaluator *m = s->m;
+    evaluate(s);
+    for (size_t i = 0; i < m->nrow; i++) {
+        for (size_t k = 0; k < m->nu; k++)
+            s->A[i + s->most * k] = m->J[i + m->nrow * k];
+        s->r[i] = m->phi[i];
+    }
+    s->n = s->nhard = m->nrow;
+    ct_loop_filter_apply(s, NULL);
+}
+
+// s->b (nu) = the shortest vector with A b = -r
+static void shortest_step(struct ct_assembler *s)
+{
+    for (size_t i = 0; i < s->nhard; i++)
+        s->b[i] = -s->r[i];
+    ct_lstsq(s->b, s->A, (int)s->nhard, (int)s->m->nu, (int)s->most, ct_rank_tolerance,
+             s->iwork, s->work);
+}
+
+// From s->y by `way` [m or rad] along a motion of no meaning that the loops leave free, and onto them again. False if that does not succeed.
+static bool move(struct ct_assembler *s, double way)
+{
+    enum { MOST = 20 };
+    const double closed = 1e-9; // far below the tolerance of the data
+    const size_t nu = s->m->nu;
+    double *d = s->step;
+    loop_rows(s);
+    for (size_t k = 0; k < nu; k++)
+        d[k] = fmod(1 + (double)k * 0.6180339887498949, 1) - 0.4; // in no simple relation
+    memset(s->r, 0, s->nhard * sizeof *s->r);
+    for (size_t k = 0; k < nu; k++)
+        ct_vector_add(s->r, d[k], s->A + s->most * k, s->nhard);
+    shortest_step(s);
+    ct_vector_add(s->b, 1, d, nu);
+    const double size = ct_vector_largest(s->b, nu);
+    for (size_t k = 0; k < nu && size > 0; k++)
+        s->b[k] *= way / size;
+    for (int i = 0; i < MOST; i++) {
+        ct_evaluator_retract(s->m, s->y, s->b);
+        loop_rows(s);
+        shortest_step(s);
+        const double step = ct_vector_largest(s->b, nu);
+        if (!(step < way))
+            return false;
+        if (step < closed)
+            return true;
+    }
+    return false;
+}
+
+// Beside a singular configuration rows depend on each other there alone: is the rank, to the tolerance of the data, no more elsewhere?
+static bool is_rank_everywhere(struct ct_assembler *s)
+{
+    const double ways[] = {0.1, 0.3};
+    const size_t ny = s->m->nq + s->m->nu;
+    evaluate(s);
+    const int here = loop_rank(s, ct_data_tolerance);
+    bool is_same = true;
+    memcpy(s->filter->kept_y, s->y, ny * sizeof *s->y);
+    for (size_t i = 0; i < COUNT(ways) && is_same && here < (int)s->m->nu; i++) {
+        const bool is_moved = move(s, ways[i]);
+        evaluate(s);
+        is_same = is_moved && loop_rank(s, ct_data_tolerance) <= here;
+        memcpy(s->y, s->filter->kept_y, ny * sizeof *s->y);
+    }
+    evaluate(s);
+    return is_same;
+}
+
+double ct_loop_filter_missed(const struct ct_assembler *s, bool of_speeds)
+{
+    double most = 0, r;
+    for (size_t i = 0; i < s->e->ncoordinate && s->filter->is_on; i++) {
+        if (of_speeds && s->u[i].is_given)
+            most = fmax(most, fabs(s->m->result.out[2 * i + 1] - s->u[i].value));
+        else if (!of_speeds && s->q[i].is_given && ct_assembler_deviation(s, i, &r))
+            most = fmax(most, fabs(r));
+    }
+    return most;
+}
+
+// Are gaps that are left such that no motion closes them? Beside a singular configuration given values may hold it up.
+static bool is_least(struct ct_assembler *s, double gap)
+{
+    const double little = 1e-2; // of the gap: what iterations leave
+    loop_rows(s);
+    double left = 0;
+    for (size_t i = 0; i < s->m->nrow; i++)
+        if (s->fixed_row[i])
+            left = fmax(left, fabs(s->r[i]) / s->m->row_size[i]);
+    return left <= fmax(unmoved, little * gap);
+}
+
+bool ct_loop_filter_holds(struct ct_assembler *s)
+{
+    const double closed
+        = 1e-14; // round-off of some sums of vectors: the data close exactly, and mean it
+    const double gap = largest_gap(s);
+    return gap > closed && gap <= ct_data_tolerance && is_least(s, gap)
+        && is_rank_everywhere(s);
+}
+
+size_t ct_loop_filter_freedoms(struct ct_assembler *s)
+{
+    evaluate(s);
+    return s->m->nu - (size_t)loop_rank(s, ct_data_tolerance);
+}
+
+void ct_loop_filter_warn(struct ct_assembler *s)
+{
+    const struct ct_evaluator *m = s->m;
+    size_t worst = 0;
+    evaluate(s);
+    for (size_t i = 1; i < m->nrow; i++)
+        if (s->fixed_row[i]
+            && (!s->fixed_row[worst]
+                || fabs(m->phi[i]) / m->row_size[i] > fabs(m->phi[worst]) / m->row_size[worst]))
+            worst = i;
+    const struct ct_row *row = &s->e->row[worst];
+    const struct ct_model *model = s->e->build->model;
+    ct_warning(
+        s->ctx,
+        row->joint < 0 ? (struct ct_mark){.file = model->file} : model->joint[row->joint].mark,
+        0,
+        "joints repeat each other to the digits of their places only: the loops are closed "
+        "in the least-squares sense, '%s' stays open by %.2g%s; what constraints say "
+        "beyond the others is left out",
+        row->name, fabs(m->phi[worst]), row->is_length ? " m" : "");
+}

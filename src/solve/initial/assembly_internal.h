@@ -1,0 +1,95 @@
+// Assembly from inside: what its files share.
+//
+//     assembly.c           iterations, from the targets to a start
+//     assembly_targets.c   what `initial` asks of coordinates
+//     assembly_report.c    what went wrong
+//     start_demands.c      is what was demanded kept?
+#ifndef CT_SOLVE_INITIAL_ASSEMBLY_INTERNAL_H
+#define CT_SOLVE_INITIAL_ASSEMBLY_INTERNAL_H
+
+#include "solve/initial/assembly.h"
+
+#include "formulate/build.h"
+
+/// Left over of what must be met [m or rad].
+static const double ct_assembly_tolerance = 1e-9;
+/// Weight of a deviation from 0 where there is no guess, against 1 of a guess: 1e-6 of its square.
+static const double ct_assembly_open_weight = 1e-3;
+
+struct ct_assembler {
+    struct ct_ctx *ctx;
+    struct ct_evaluator *m;
+    const struct ct_equations *e;
+    struct ct_target *q, *u; // by place in eqs->coordinate
+    int *frame;              // (nframe) frames at which joints act
+    double *point, length;   // (3 x nframe) where they are on their bodies; natural length [m]
+    size_t nframe;
+    size_t
+        nelastic; // elastic coordinates of the beams, which are rigid unless some start deformed
+    const double *value; // of the model's parameters
+    double *unit;        // a row of 0 and 1, by speed
+    bool may_stay_open;  // a start that does not close will do
+    bool *fixed_row;     // rows without an offset of their own
+    double *y, *A, *b, *row, *work, *speed0, *speeds;
+    double *r, *shift; // residuals; of what must be met, its multipliers over hard^2
+    double *saved_y, *saved_memory, *saved_A, *step;
+    struct ct_target *kept_targets;
+    double *best_y, *best_memory; // the nearest position so far
+    double work_done;             // multiplications in solved rows, about
+    int *iwork;
+    struct ct_loop_filter *filter; // assembly_data.c
+    size_t most;                   // rows of A
+    size_t nhard, n;               // rows now: what must be met comes first
+};
+
+/// Rows of loops that depend on others but for the tolerance of the data, as those of coaxial hinges whose places are given to
+/// some digits: what they say beyond the others is left out, and the loops close in the least-squares sense.
+struct ct_loop_filter {
+    bool is_on;        // rows are filtered
+    double *B, *Q, *A; // workspace
+    double *size, *r, *tau, *work, *kept_y;
+    int *row;
+};
+struct ct_loop_filter *ct_loop_filter_create(struct ct_arena *a, const struct ct_assembler *s);
+/// The first rows of s->A, s->r, up to s->nhard, are those of the loops that is_loop (nrow; NULL: all) names, then given values.
+void ct_loop_filter_apply(struct ct_assembler *s, const bool *is_loop);
+/// Have rows at s->y parts that are neither round-off nor more than the tolerance of the data?
+bool ct_loop_filter_is_due(struct ct_assembler *s);
+/// With the filter, at the last rows: by how much given values are missed, which it may have left out.
+double ct_loop_filter_missed(const struct ct_assembler *s, bool of_speeds);
+/// At s->y, closed with the filter: are the gaps within the tolerance, and is the rank the same elsewhere on the motion?
+bool ct_loop_filter_holds(struct ct_assembler *s);
+/// Freedoms that the loops leave at s->y, to the tolerance of the data.
+size_t ct_loop_filter_freedoms(struct ct_assembler *s);
+/// By how much loops stay open.
+void ct_loop_filter_warn(struct ct_assembler *s);
+/// Values q and speeds u (of start->e->ncoordinate, out) of all coordinates at the state y (nq + nu) of equations of motion e, which lies
+/// near the start.
+void ct_start_read_back(struct ct_ctx *ctx, struct ct_arena *a, const struct ct_model *model,
+                        const struct ct_equations *e, const struct ct_initial_state *start,
+                        const double *y, double *q, double *u);
+
+/// What a joint's `initial` says of its values or rates.
+const struct ct_value *ct_initial_value(const struct ct_edge_info *e, bool is_speed);
+/// Where a joint's value for a coordinate stands there: with `rotate` the list may leave the quaternion out. False: nowhere.
+bool ct_initial_number(const struct ct_model *model, const struct ct_value *v, int place,
+                       double *out);
+/// Is coordinate i an angle that does nothing but turn, so that a whole turn more is the same position?
+bool ct_assembler_is_turn(const struct ct_assembler *s, size_t i);
+/// Fills s->frame and makes s->point.
+void ct_assembler_list_frames(struct ct_assembler *s, struct ct_arena *a,
+                              const struct ct_model *model);
+/// Fills s->q, s->u, which are zeros, and s->length.
+void ct_assembler_find_targets(struct ct_assembler *s, const struct ct_model *model);
+
+/// Deviation of coordinate i from its target; for three of a quaternion's four numbers a rotation, for the fourth false.
+bool ct_assembler_deviation(const struct ct_assembler *s, size_t i, double *r);
+
+/// The given value that is missed most, or the row that stays open farthest. closes: loops do, with the given values as
+/// guesses. False. Errors: CT_E_START, CT_E_ASSEMBLY.
+bool ct_assembler_report_positions(struct ct_assembler *s, bool closes);
+bool ct_assembler_report_speeds(struct ct_assembler *s);
+/// Does each driven joint start on its motion? Errors: CT_E_START.
+bool ct_assembler_check_drivers(struct ct_assembler *s);
+
+#endif

@@ -1,0 +1,325 @@
+// See closure_continuation.h.
+#include "solve/initial/closure_continuation.h"
+#include "formulate/kinematics/constraint_offset.h"
+#include "numeric/dense.h"
+#include "solve/constraint/partition_conditioning.h"
+
+#include <math.h>
+#include <string.h>
+
+void ct_closure_continuation_begin(struct ct_static_residual *s)
+{
+    const double *memory = s->m->input + s->m->at_memory;
+    for (size_t i = 0; i < s->e->noffset; i++) {
+        const struct ct_constraint_offset *g = &s->e->offset[i];
+        if (g->is_rotation)
+            ct_quaternion_of(memory + g->first, s->offset + 4 * i);
+        else
+            s->offset[4 * i] = memory[g->first];
+    }
+}
+
+void ct_closure_continuation_set(struct ct_static_residual *s, double part)
+{
+    double *memory = s->m->input + s->m->at_memory;
+    for (size_t i = 0; i < s->e->noffset; i++) {
+        const struct ct_constraint_offset *g = &s->e->offset[i];
+        const double *q = s->offset + 4 * i;
+        if (!g->is_rotation) {
+            memory[g->first] = part * q[0];
+            continue;
+        }
+        const double sine = sqrt(q[1] * q[1] + q[2] * q[2] + q[3] * q[3]),
+                     half = part * atan2(sine, q[0]), size = sine > 0 ? sin(half) / sine : 0;
+        const double p[4] = {cos(half), size * q[1], size * q[2], size * q[3]};
+        for (int k = 0; k < 3; k++) { // 2 (p v + v v' - ...): columns of the rotation
+            const int l = (k + 1) % 3, n = (k + 2) % 3;
+            double *R = memory + g->first;
+            R[4 * k] = 2 * (p[0] * p[0] + p[1 + k] * p[1 + k]) - 1;
+            R[l + 3 * k] = 2 * (p[1 + k] * p[1 + l] + p[0] * p[1 + n]);
+            R[k + 3 * l] = 2 * (p[1 + k] * p[1 + l] - p[0] * p[1 + n]);
+        }
+    }
+}
+
+double ct_closure_continuation_remaining(struct ct_static_residual *s, size_t *row)
+{
+    double worst = 0;
+    ct_static_residual_evaluate(s);
+    for (size_t i = 0; i < s->e->nrow; i++) {
+        const double phi = fabs(s->values.out[s->n + i]);
+        if (!(phi <= worst)) {
+            worst = phi;
+            *row = i;
+        }
+    }
+    return worst;
+}
+
+// Where s->y is, of n places and m rows that count.
+struct local {
+    size_t nB;         // m, but for rows that are nearly dependent
+    double *B;         // nB vectors: the rows, orthonormal
+    double *J;         // m x n: the rows
+    double *force, *v; // along the rows (n); of a motion (n)
+    double *k,
+        *shape; // derivatives of the energy and their directions (n, n x n): those along the rows first
+};
+
+// out = x without its part across the rows
+static void along_rows(const struct ct_static_residual *s, const struct local *l, double *x)
+{
+    for (size_t i = 0; i < l->nB; i++) {
+        double part = 0;
+        for (size_t k = 0; k < s->n; k++)
+            part += l->B[k + s->n * i] * x[k];
+        for (size_t k = 0; k < s->n; k++)
+            x[k] -= part * l->B[k + s->n * i];
+    }
+}
+
+static void row_directions(struct ct_static_residual *s, struct ct_arena *a, struct local *l)
+{
+    const size_t n = s->n, m = s->nlam;
+    struct ct_basis basis = {n, 0, CT_NEWN(a, double, n *n + 1)};
+    double *v = CT_NEWN(a, double, n + 1);
+    l->J = CT_NEWN(a, double, m *n + 1);
+    for (size_t i = 0; i < m; i++) {
+        for (size_t k = 0; k < n; k++)
+            v[k] = l->J[i + m * k] = s->m->J[(size_t)s->row[i] + s->e->nrow * (size_t)s->u[k]];
+        ct_basis_extend(&basis, v);
+    }
+    l->B = basis.v;
+    l->nB = basis.count;
+}
+
+// Multipliers that leave the least force: J' lam = -Q.
+static void find_multipliers(struct ct_static_residual *s, struct ct_arena *a,
+                             const struct local *l)
+{
+    const size_t n = s->n, m = s->nlam;
+    double *A = CT_NEWN(a, double, m *n + 1), *b = CT_NEWN(a, double, n + m + 1);
+    int *iwork = CT_NEWN(a, int, m + 1);
+    double *work = CT_NEWN(a, double, ct_lstsq_work((int)n, (int)m + 1));
+    memset(s->lam, 0, s->e->nrow * sizeof *s->lam);
+    ct_static_residual_evaluate(s);
+    for (size_t k = 0; k < n; k++) {
+        b[k] = -s->values.out[k];
+        for (size_t i = 0; i < m; i++)
+            A[k + n * i] = l->J[i + m * k];
+    }
+    if (m && n)
+        ct_lstsq(b, A, (int)n, (int)m, (int)n, ct_rank_tolerance, iwork, work);
+    for (size_t i = 0; i < m; i++)
+        s->lam[s->row[i]] = b[i];
+}
+
+// Forces, stiffness and its directions along the rows. False if there are none to be found.
+static bool look_around(struct ct_static_residual *s, struct ct_arena *a, struct local *l)
+{
+    const double across = 1e3; // what stands for the rows, against the stiffest direction
+    const size_t n = s->n;
+    double *work = CT_NEWN(a, double, ct_symmetric_eigenvalues_work((int)n));
+    ct_static_residual_choose_rows(s, a);
+    row_directions(s, a, l);
+    find_multipliers(s, a, l);
+    ct_static_residual_evaluate(s);
+    ct_static_residual_fill(s);
+    l->force = CT_NEWN(a, double, n + 1);
+    l->v = CT_NEWN(a, double, n + 1);
+    l->k = CT_NEWN(a, double, n + 1);
+    l->shape = CT_NEWN(a, double, n *n + 1);
+    memcpy(l->force, s->values.out, n * sizeof *l->force);
+    along_rows(s, l, l->force);
+    const size_t size = n + s->nlam;
+    for (int transposed = 0; transposed < 2; transposed++) // P H P, column by column
+        for (size_t k = 0; k < n; k++) {
+            double *column = CT_NEWN(a, double, n + 1);
+            for (size_t i = 0; i < n; i++)
+                column[i] = transposed ? l->shape[k + n * i]
+                                       : -0.5 * (s->A[i + size * k] + s->A[k + size * i]);
+            along_rows(s, l, column);
+            if (!transposed)
+                memcpy(l->shape + n * k, column, n * sizeof *column);
+            else
+                for (size_t i = 0; i < n; i++)
+                    l->shape[k + n * i] = column[i];
+        }
+    for (size_t r = 0; r < l->nB; r++)
+        for (size_t k = 0; k < n; k++)
+            for (size_t i = 0; i < n; i++)
+                l->shape[i + n * k]
+                    += across * s->stiffness * l->B[i + n * r] * l->B[k + n * r];
+    return n && ct_symmetric_eigen(l->k, l->shape, (int)n, (int)n, work);
+}
+
+static void step_by(struct ct_static_residual *s, const double *d, double part)
+{
+    memset(s->step, 0, s->e->nu * sizeof *s->step);
+    for (size_t k = 0; k < s->n; k++)
+        s->step[s->u[k]] = part * d[k];
+    ct_evaluator_retract(s->m, s->y, s->step);
+}
+
+static void limit(double *d, size_t n, double most)
+{
+    double size = 0;
+    for (size_t k = 0; k < n; k++)
+        size = fmax(size, fabs(d[k]));
+    for (size_t k = 0; k < n && size > most; k++)
+        d[k] *= most / size;
+}
+
+// Shortest steps that close the rows that count.
+static void close_rows(struct ct_static_residual *s, struct ct_arena *a)
+{
+    enum { MOST_CLOSINGS = 20 };
+    const double closed = 1e-10, longest = 0.2;
+    const size_t n = s->n;
+    for (int i = 0; i < MOST_CLOSINGS; i++) {
+        struct local l = {0};
+        size_t row = 0;
+        ct_static_residual_choose_rows(s, a);
+        row_directions(s, a, &l);
+        if (ct_closure_continuation_remaining(s, &row) < closed || !s->nlam)
+            return;
+        const size_t m = s->nlam;
+        double *b = CT_NEWN(a, double, n + m + 1);
+        int *iwork = CT_NEWN(a, int, n + m + 1);
+        double *work = CT_NEWN(a, double, ct_lstsq_work((int)m, (int)n + 1));
+        for (size_t r = 0; r < m; r++)
+            b[r] = -s->values.out[n + (size_t)s->row[r]];
+        ct_lstsq(b, l.J, (int)m, (int)n, (int)m, ct_rank_tolerance, iwork, work);
+        limit(b, n, longest);
+        step_by(s, b, 1);
+    }
+}
+
+struct saved_state {
+    double *y, *lam;
+};
+
+static struct saved_state saved_state(struct ct_static_residual *s, struct ct_arena *a)
+{
+    return (struct saved_state){CT_NEWN(a, double, s->m->nq + 1),
+                                CT_NEWN(a, double, s->e->nrow + 1)};
+}
+
+static void keep(struct ct_static_residual *s, struct saved_state *k, bool back)
+{
+    memcpy(back ? s->y : k->y, back ? k->y : s->y, s->m->nq * sizeof *s->y);
+    memcpy(back ? s->lam : k->lam, back ? k->lam : s->lam, s->e->nrow * sizeof *s->lam);
+}
+
+// A motion along the rows that the forces push: Newton's where the stiffness is positive, away from a saddle where it is
+// not (9.2). It is halved while at its end the forces push back by more than half. Returns its size.
+static double descend(struct ct_static_residual *s, struct ct_arena *a, const struct local *l)
+{
+    const double longest = 0.2, flat = 1e-12; // [m or rad]; against the stiffest direction
+    enum { MOST = 10 };
+    const size_t n = s->n, ntangent = n - l->nB;
+    struct saved_state from = saved_state(s, a);
+    double *d = CT_NEWN(a, double, n + 1), push = 0, part = 1, size = 0;
+    for (size_t i = 0; i < ntangent; i++) {
+        double along = 0;
+        for (size_t k = 0; k < n; k++)
+            along += l->shape[k + n * i] * l->force[k];
+        for (size_t k = 0; k < n; k++)
+            d[k] += l->shape[k + n * i] * along / fmax(fabs(l->k[i]), flat * s->stiffness);
+    }
+    limit(d, n, longest);
+    for (size_t k = 0; k < n; k++) {
+        push += d[k] * l->force[k];
+        size = fmax(size, fabs(d[k]));
+    }
+    keep(s, &from, false);
+    for (int i = 0; i < MOST; i++, part /= 2) {
+        struct local end = {0};
+        keep(s, &from, true);
+        step_by(s, d, part);
+        close_rows(s, a);
+        ct_static_residual_choose_rows(s, a);
+        row_directions(s, a, &end);
+        find_multipliers(s, a, &end);
+        ct_static_residual_evaluate(s);
+        double back = 0;
+        for (size_t k = 0; k < n; k++)
+            back += d[k] * s->values.out[k];
+        if (back > -push / 2)
+            break;
+    }
+    return size * part;
+}
+
+// Is the place one where all rows hold and that is stable?
+static bool is_good(struct ct_static_residual *s, struct ct_arena *a)
+{
+    const double closed = 1e-9, unstable = -1e-9; // against the stiffest direction
+    struct local l = {0};
+    size_t row = 0;
+    if (ct_closure_continuation_remaining(s, &row) > closed || !look_around(s, a, &l))
+        return false;
+    return s->n == l.nB || l.k[0] > unstable * s->stiffness;
+}
+
+// Newton's method from s->y.
+static bool find_equilibrium_here(struct ct_static_residual *s, struct ct_arena *a)
+{
+    ct_static_residual_choose_rows(s, a);
+    return ct_static_residual_iterate(s, a) && is_good(s, a);
+}
+
+// Down the energy from s->y, pushed a little out of a symmetric place; at last by Newton's method.
+static bool relax(struct ct_static_residual *s, struct ct_arena *a)
+{
+    enum { MOST = 500 };
+    const double push = 0.01, near = 1e-3; // [m or rad]
+    double size = INFINITY;
+    for (int i = 0; i < MOST && size > near; i++) {
+        struct ct_arena *own = ct_arena_create_under(a);
+        struct local l = {0};
+        if (!look_around(s, own, &l)) {
+            ct_arena_destroy(own);
+            return false;
+        }
+        if (i == 0) {
+            double most = 0;
+            for (size_t k = 0; k < s->n; k++)
+                most = fabs(l.shape[k]) > fabs(most) ? l.shape[k] : most;
+            step_by(s, l.shape, push / most);
+        } else {
+            size = descend(s, own, &l);
+        }
+        close_rows(s, own);
+        ct_arena_destroy(own);
+    }
+    return find_equilibrium_here(s, a);
+}
+
+bool ct_closure_continuation_run(struct ct_static_residual *s, struct ct_arena *a)
+{
+    const double least = 1.0 / 16; // of what is open at the start
+    struct saved_state at = saved_state(s, a);
+    double open = 1, step = 1;
+    keep(s, &at, false);
+    while (open > 0) {
+        struct ct_arena *own = ct_arena_create_under(a);
+        const double part = fmax(0, open - step);
+        ct_closure_continuation_set(s, part);
+        bool ok = find_equilibrium_here(s, own);
+        if (!ok)
+            keep(s, &at, true);
+        if (!ok && step <= least)
+            ok = relax(s, own);
+        ct_arena_destroy(own);
+        if (!ok && step <= least)
+            return false;
+        step = ok ? 2 * step : step / 2;
+        if (!ok)
+            continue;
+        open = part;
+        ct_memory_update(s->m);
+        keep(s, &at, false);
+    }
+    return true;
+}

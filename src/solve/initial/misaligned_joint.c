@@ -1,0 +1,168 @@
+// The one axis that keeps a plane mechanism from closing: a joint whose `axis` was forgotten or mistaken.
+//
+// If all joints but one move in planes of one normal, which each of them hands on from body to body (a hinge about it, a guide across
+// it, a weld), the odd one is most often meant to do so, too. Only hinges, guides and welds are looked at: with other joints a
+// mechanism is meant to be spatial.
+#include "solve/initial/assembly.h"
+
+#include <math.h>
+#include <string.h>
+
+struct plane {
+    const struct ct_model *m;
+    const struct ct_measure **measure; // (njoint) NULL: a weld
+    double (*normal)[3];               // (nbody) in axes of the body
+    bool *known;                       // (nbody)
+};
+
+static const double straight = 1e-6; // [rad], of axes that are given to some digits
+
+// v = R v, or R' v, with the rotation by `angle` about the unit vector u.
+static void turn(const double u[3], double angle, double v[3])
+{
+    const double c = cos(angle), s = sin(angle),
+                 along = u[0] * v[0] + u[1] * v[1] + u[2] * v[2];
+    const double w[3]
+        = {u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]};
+    for (int i = 0; i < 3; i++)
+        v[i] = c * v[i] + s * w[i] + (1 - c) * along * u[i];
+}
+
+static void numbers(const struct ct_model *m, ct_ex3 e, double v[3])
+{
+    for (int i = 0; i < 3; i++)
+        v[i] = ct_model_number(m, e.e[i]);
+}
+
+// Components in axes of a frame become those in axes of its body, or the other way round.
+static void to_body(const struct ct_model *m, int frame, bool back, double v[3])
+{
+    const struct ct_frame *f = &m->frame[frame];
+    for (int k = 0; k < f->nturn; k++) {
+        double u[3];
+        const struct ct_turn *t = &f->turn[back ? k : f->nturn - 1 - k];
+        numbers(m, t->axis, u);
+        turn(u, (back ? -1 : 1) * ct_model_number(m, t->angle), v);
+    }
+}
+
+// Does the joint keep motion in the plane whose normal is n, in axes of its frames?
+static bool keeps(const struct plane *p, size_t joint, const double n[3])
+{
+    const struct ct_measure *q = p->measure[joint];
+    double a[3], along = 0;
+    if (!q)
+        return true;
+    numbers(p->m, q->kind == CT_MEASURE_ANGLE ? q->about : q->along, a);
+    for (int i = 0; i < 3; i++)
+        along += a[i] * n[i];
+    return q->kind == CT_MEASURE_ANGLE ? fabs(along) > 1 - straight * straight
+                                       : fabs(along) < straight;
+}
+
+// The joint `from` hands the normal on to one of its bodies from the other, if it keeps it.
+static bool hand_on(struct plane *p, size_t joint)
+{
+    const struct ct_instance *j = &p->m->joint[joint];
+    const int frame[2] = {j->from, j->to};
+    for (int end = 0; end < 2; end++) {
+        const int here = p->m->frame[frame[end]].body, there = p->m->frame[frame[1 - end]].body;
+        double n[3];
+        if (!p->known[here] || p->known[there])
+            continue;
+        memcpy(n, p->normal[here], sizeof n);
+        to_body(p->m, frame[end], true, n);
+        if (!keeps(p, joint, n))
+            return false;
+        to_body(p->m, frame[1 - end], false, n);
+        memcpy(p->normal[there], n, sizeof n);
+        p->known[there] = true;
+        return true;
+    }
+    return false;
+}
+
+static bool is_odd(const struct plane *p, size_t joint)
+{
+    const struct ct_instance *j = &p->m->joint[joint];
+    double n[3];
+    memcpy(n, p->normal[p->m->frame[j->from].body], sizeof n);
+    to_body(p->m, j->from, true, n);
+    return !keeps(p, joint, n);
+}
+
+// The only joint that leaves the plane of the hinge `joint`; -1: there is none, or several, or too few hinges tell.
+static int find_odd(struct plane *p, size_t joint)
+{
+    const struct ct_model *m = p->m;
+    const int least = 2; // other hinges
+    int odd = -1, nodd = 0, nhinge = 0;
+    memset(p->known, 0, m->nbody * sizeof *p->known);
+    const int body = m->frame[m->joint[joint].from].body;
+    numbers(m, p->measure[joint]->about, p->normal[body]);
+    to_body(m, m->joint[joint].from, false, p->normal[body]);
+    p->known[body] = true;
+    for (bool more = true; more;) {
+        more = false;
+        for (size_t i = 0; i < m->njoint; i++)
+            more |= hand_on(p, i);
+    }
+    for (size_t i = 0; i < m->njoint; i++) {
+        const struct ct_instance *j = &m->joint[i];
+        if (!p->known[m->frame[j->from].body] || !p->known[m->frame[j->to].body])
+            return -1;
+        if (is_odd(p, i)) {
+            odd = (int)i;
+            nodd++;
+        } else {
+            nhinge += p->measure[i] && p->measure[i]->kind == CT_MEASURE_ANGLE;
+        }
+    }
+    return nodd == 1 && nhinge >= least ? odd : -1;
+}
+
+// How each joint moves; false if one does otherwise than hinges, guides and welds.
+static bool find_measures(struct ct_arena *a, struct plane *p)
+{
+    const struct ct_model *m = p->m;
+    for (size_t i = 0; i < m->njoint; i++) {
+        const struct ct_instance *j = &m->joint[i];
+        struct ct_motion motion
+            = {.ncoord = j->ncoord, .nfree = j->nfree, .quaternion = -1, .value = m->value};
+        if (!j->cls->motion || j->local || m->body[m->frame[j->from].body].is_particle
+            || m->body[m->frame[j->to].body].is_particle)
+            return false;
+        j->cls->motion(m->x, j, &motion);
+        if (motion.nmeasure > 1 || motion.quaternion >= 0)
+            return false;
+        if (motion.nmeasure) {
+            struct ct_measure *own = CT_NEW(a, struct ct_measure);
+            *own = motion.measure[0];
+            p->measure[i] = own;
+        }
+    }
+    return true;
+}
+
+void ct_note_misaligned_joint(struct ct_ctx *ctx, struct ct_arena *a, const struct ct_model *m)
+{
+    struct plane p = {.m = m,
+                      .measure = CT_NEWN(a, const struct ct_measure *, m->njoint + 1),
+                      .normal = (double(*)[3])CT_NEWN(a, double, 3 * m->nbody),
+                      .known = CT_NEWN(a, bool, m->nbody)};
+    if (!find_measures(a, &p))
+        return;
+    for (size_t i = 0; i < m->njoint; i++) {
+        if (!p.measure[i] || p.measure[i]->kind != CT_MEASURE_ANGLE)
+            continue;
+        const int odd = find_odd(&p, i);
+        if (odd < 0)
+            continue;
+        const bool is_hinge = p.measure[odd]->kind == CT_MEASURE_ANGLE;
+        ct_note(ctx, m->joint[odd].mark, "joint '%s' %s: is its 'axis' right?",
+                m->joint[odd].name,
+                is_hinge ? "turns about another axis than all other hinges"
+                         : "slides out of the plane in which all other joints move");
+        return;
+    }
+}

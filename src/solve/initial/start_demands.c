@@ -1,0 +1,111 @@
+// Is a demanded `initial` kept, in the assembled start and on the constraints of the equations of motion? See assembly.h.
+//
+// The assembly meets demands or fails. Afterwards beams that settle may move joints, and the equations of motion, on other trees, may
+// judge the rank of the constraints differently: a freedom that is lost there takes its speed along.
+#include "solve/initial/assembly_internal.h"
+
+#include <math.h>
+
+// Of a demanded value, against itself and 1 rad or the natural length. Beside a singular configuration, by 1e-5 rad, round-off of
+// constraints moves speeds by 3e-6; a freedom that is lost takes all of the value.
+static const double kept = 1e-4;
+
+double ct_start_shown(double value)
+{
+    return fabs(value) < ct_assembly_tolerance ? 0 : value;
+}
+
+static double unit_of(const struct ct_initial_state *s, const struct ct_target *t, double value)
+{
+    const double scale = t->is_given && t->weight > 0 ? 1 / t->weight : s->length;
+    return fmax(scale, fabs(value));
+}
+
+// Is what coordinate i has, of values or speeds, what is demanded?
+static bool is_met(const struct ct_initial_state *s, size_t i, bool is_speed, double found)
+{
+    const struct ct_target *t = is_speed ? &s->u_target[i] : &s->q_target[i];
+    double away = fabs(found - t->value);
+    if (!is_speed && t->in_quaternion) // p and -p are one orientation
+        away = fmin(away, fabs(found + t->value));
+    return !t->is_given || away <= kept * unit_of(s, t, t->value);
+}
+
+static bool report(struct ct_ctx *ctx, const struct ct_initial_state *s, size_t i,
+                   bool is_speed, double found)
+{
+    const struct ct_coordinate *c = &s->e->coordinate[i];
+    const struct ct_instance *joint = s->e->build->edge[c->edge].self;
+    const struct ct_target *t = is_speed ? &s->u_target[i] : &s->q_target[i];
+    const struct ct_value *v = is_speed ? &joint->initial.u : &joint->initial.q;
+    const bool is_turn = !is_speed && t->in_quaternion && joint->initial.rotate.given;
+    return ct_error(ctx, is_turn ? joint->initial.rotate.mark : v->mark, CT_E_START,
+                    "joint '%s': initial demands %.10g as %s'%s', the constraints leave "
+                    "%.10g; correct the joints that repeat each other, or mark what need not "
+                    "hold with 'guess: true'",
+                    joint->name, t->value, is_speed ? "rate of " : "", c->name,
+                    ct_start_shown(found));
+}
+
+// The first of each joint that is not kept is reported.
+static bool compare(struct ct_ctx *ctx, const struct ct_initial_state *s, const double *q,
+                    const double *u)
+{
+    int reported = -1;
+    for (size_t i = 0; i < s->n; i++) {
+        const int edge = s->e->coordinate[i].edge;
+        for (int is_speed = 0; is_speed < (u ? 2 : 1) && edge != reported; is_speed++) {
+            const double found = is_speed ? u[i] : q[i];
+            if (is_met(s, i, is_speed, found))
+                continue;
+            report(ctx, s, i, is_speed, found);
+            reported = edge;
+        }
+    }
+    return reported < 0;
+}
+
+bool ct_start_meets_demands(struct ct_ctx *ctx, const struct ct_initial_state *start)
+{
+    return compare(ctx, start, start->q, start->u);
+}
+
+// Have unknowns changed by more than a demand may? Each against itself and 1, as its unit is not known here.
+static bool differs(const double *x, const double *y, size_t n, double scale)
+{
+    for (size_t i = 0; i < n; i++)
+        if (!(fabs(x[i] - y[i]) <= kept * scale * fmax(1, fabs(x[i]))))
+            return true;
+    return false;
+}
+
+bool ct_start_has_moved(const struct ct_equations *e, const struct ct_initial_state *start,
+                        const double *before, const double *after)
+{
+    if (!start->e) // a state that was not assembled: nothing is demanded
+        return false;
+    const double scale = fmin(1, start->length);
+    return differs(before, after, e->nq, scale)
+        || differs(before + e->nq, after + e->nq, e->nu, scale);
+}
+
+bool ct_start_is_kept(struct ct_ctx *ctx, struct ct_arena *a, const struct ct_model *model,
+                      const struct ct_equations *e, const struct ct_initial_state *start,
+                      const double *before, const double *after, bool with_speeds)
+{
+    if (!ct_start_has_moved(e, start, before, after))
+        return true;
+    struct ct_arena *own = ct_arena_create_under(a);
+    double *q = CT_NEWN(own, double, start->n + 1), *u = CT_NEWN(own, double, start->n + 1);
+    // with beams that have settled the equations for assembling know nothing of their shape: unknowns alone tell
+    if (!start->elastic)
+        ct_start_read_back(ctx, own, model, e, start, after, q, u);
+    for (size_t i = 0; i < start->n && start->elastic; i++) {
+        const struct ct_coordinate *c = &e->coordinate[i];
+        q[i] = c->q >= 0 ? after[c->q] : start->q[i];
+        u[i] = c->u >= 0 ? after[e->nq + (size_t)c->u] : start->u[i];
+    }
+    const bool ok = compare(ctx, start, q, with_speeds ? u : NULL);
+    ct_arena_destroy(own);
+    return ok;
+}

@@ -1,0 +1,177 @@
+// See constrained_output.h.
+#include "solve/output_error/constrained_output.h"
+
+#include "integrate/stepper.h"
+#include "numeric/dense.h"
+#include "solve/output_error/output_error.h"
+
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+// States are moved by so much: so far that outputs which are flat where a loop stands change as well, a dead centre's or the straight line
+// of Watt's linkage. Where loops do not close so far away by less, 2^-28 in the end, which is felt above round-off.  [m, rad, m/s, rad/s]
+static const double first_way = 0x1p-4, shorter = 0.25;
+enum { TRIES = 13 };
+// The part of its tolerance that errors of states may be of an output which is left to them.
+static const double harmless = 0.25;
+enum { MOST_BETWEEN = 7 };
+
+struct ct_constrained_output {
+    struct ct_controlled_outputs *outputs;
+    size_t n, ny;
+    double *at, *along; // (n) g where loops are closed, and at a place along the constraints
+    double *y, *closed; // (ny) to spare; y where loops are closed
+    double *d;          // (nu) to spare
+    int *all;           // (nu) 0, 1, 2 ...
+    unsigned *kinds;    // (n) of symbols of g
+};
+
+// Looks see one side of comparisons and one time: events and loads lead to others.
+static bool may_change(const struct ct_equations *e, enum ct_output_kind kind)
+{
+    unsigned kinds = 0;
+    for (size_t i = 0; i < e->nrow; i++)
+        kinds |= ct_ex_kinds(e->x, e->row[i].phi);
+    return kinds & 1u << CT_SYM_SWITCH
+        || (kind == CT_OUTPUTS_OF_SOLUTIONS && (e->nswitch > 0 || e->ntime_function > 0));
+}
+
+struct ct_constrained_output *
+ct_constrained_output_create(struct ct_arena *a, struct ct_controlled_outputs *outputs,
+                             const ct_ex *g)
+{
+    const struct ct_evaluator *m = outputs->s->m;
+    const size_t n = outputs->n;
+    if (!m->nrow || may_change(m->e, outputs->kind))
+        return NULL;
+    struct ct_constrained_output *p = CT_NEW(a, struct ct_constrained_output);
+    *p = (struct ct_constrained_output){.outputs = outputs, .n = n, .ny = m->nq + m->nu + 1};
+    double **const vectors[] = {&p->at, &p->along};
+    for (size_t i = 0; i < COUNT(vectors); i++)
+        *vectors[i] = CT_NEWN(a, double, n);
+    p->y = CT_NEWN(a, double, p->ny);
+    p->closed = CT_NEWN(a, double, p->ny);
+    p->d = CT_NEWN(a, double, m->nu + 1);
+    p->all = CT_NEWN(a, int, m->nu + 1);
+    for (size_t k = 0; k < m->nu; k++)
+        p->all[k] = (int)k;
+    p->kinds = CT_NEWN(a, unsigned, n);
+    for (size_t i = 0; i < n; i++)
+        p->kinds[i] = ct_ex_kinds(m->e->x, g[i]);
+    return p;
+}
+
+struct ct_constrained_output_record ct_constrained_output_record(struct ct_arena *a, size_t n)
+{
+    return (struct ct_constrained_output_record){
+        .n = n, .is_found = CT_NEWN(a, bool, n + 1), .is_settled = CT_NEWN(a, bool, n + 1)};
+}
+
+void ct_constrained_output_clear(const struct ct_constrained_output *p,
+                                 struct ct_constrained_output_record *r, bool leaves_speeds)
+{
+    const unsigned others
+        = 1u << CT_SYM_SWITCH | (leaves_speeds ? 1u << CT_SYM_U : 0); // what looks do not see
+    r->skip = r->between = 0;
+    for (size_t i = 0; i < r->n; i++) {
+        r->is_found[i] = false;
+        r->is_settled[i] = !p || p->kinds[i] & others;
+    }
+}
+
+// 1 to 2, in no simple relation.
+static double part(size_t i)
+{
+    const double x = 0.618033988749895 * (double)i;
+    return 1 + (x - (double)(size_t)x);
+}
+
+// p->y = p->closed, with coordinates and their speeds moved by `way`: those of `which` (n).
+static void move_states(struct ct_constrained_output *p, const int *which, size_t n, double way)
+{
+    const struct ct_evaluator *m = p->outputs->s->m;
+    memset(p->d, 0, m->nu * sizeof *p->d);
+    ct_evaluator_copy(p->y, p->closed, p->ny);
+    for (size_t i = 0; i < n; i++) {
+        const size_t k = (size_t)which[i];
+        p->d[k] = way * part(k);
+        p->y[m->nq + k] += way * part(m->nu + k);
+    }
+    ct_evaluator_retract(m, p->y, p->d);
+}
+
+// p->y where loops are closed, as far from p->closed as they can be; the part it was moved by, 0 if none.
+static double find_along(struct ct_constrained_output *p, double t)
+{
+    struct ct_partition *s = p->outputs->s;
+    const size_t nfree = s->m->nu - (size_t)s->rank;
+    double way = first_way;
+    for (int i = 0; i < TRIES; i++, way *= shorter) {
+        move_states(p, s->independent, nfree, way);
+        if (ct_partition_close_loops(s, t, p->y))
+            return way;
+    }
+    return 0;
+}
+
+// Where loops are closed so near to y and along the constraints that all can be compared; the part between them, 0 if none.
+static double find_positions(struct ct_constrained_output *p, double t, const double *y)
+{
+    ct_evaluator_copy(p->closed, y, p->ny);
+    if (!ct_partition_close_loops(p->outputs->s, t, p->closed))
+        return 0;
+    memcpy(p->at, ct_controlled_outputs_at(p->outputs, t, p->closed), p->n * sizeof *p->at);
+    const double way = find_along(p, t);
+    if (way > 0)
+        memcpy(p->along, ct_controlled_outputs_at(p->outputs, t, p->y),
+               p->n * sizeof *p->along);
+    return way;
+}
+
+// way: of states of this size.
+static bool is_constrained(double at, double along, double across, double way, double small)
+{
+    const double change = fabs(along - at), roundoff = DBL_EPSILON * fabs(across - at) / way;
+    return change <= ct_output_error_least_size * roundoff
+        && change <= harmless * way * (fabs(at) + small);
+}
+
+static void look(struct ct_constrained_output *p, struct ct_constrained_output_record *r,
+                 double t, const double *y, double small)
+{
+    const size_t nstate = p->ny - 1;
+    const double way = find_positions(p, t, y), size = ct_vector_largest(p->closed, nstate);
+    bool any = false;
+    if (!(way > 0)) {
+        memset(r->is_found, 0, r->n * sizeof *r->is_found);
+        r->between = MOST_BETWEEN;
+        return;
+    }
+    move_states(p, p->all, p->outputs->s->m->nu, way);
+    const double *across = ct_controlled_outputs_at(p->outputs, t, p->y);
+    for (size_t i = 0; i < r->n; i++) {
+        r->is_found[i] = !r->is_settled[i]
+                      && is_constrained(p->at[i], p->along[i], across[i],
+                                        way / ct_larger(1, size + small), small);
+        r->is_settled[i] = !r->is_found[i];
+        any |= r->is_found[i];
+    }
+    r->between = any ? 2 * r->between + 1 : 0;
+    r->between = r->between < MOST_BETWEEN ? r->between : MOST_BETWEEN;
+}
+
+bool ct_constrained_output_find(struct ct_constrained_output *p,
+                                struct ct_constrained_output_record *r, double t,
+                                const double *y, const struct ct_tolerance *tolerance)
+{
+    if (!p || !(tolerance->rtol > 0 && tolerance->atol > 0) || p->outputs->s->is_crossing
+        || r->skip-- > 0)
+        return false;
+    look(p, r, t, y, tolerance->atol / tolerance->rtol);
+    if (p->outputs->kind == CT_OUTPUTS_OF_SOLUTIONS)
+        ct_controlled_outputs_at(p->outputs, t,
+                                 y); // what solutions have measured is of here again
+    r->skip = r->between;
+    return true;
+}

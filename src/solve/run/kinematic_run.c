@@ -1,0 +1,191 @@
+// Kinematic analysis, runs in which everything is driven: positions, speeds and accelerations follow from the rows, sample by sample, and
+// only the work is integrated. See ct_run_kinematic in run.h.
+#include "solve/run/run_internal.h"
+
+#include <string.h>
+
+static bool check_driven(struct ct_run *r)
+{
+    if (r->s->rank == (int)r->m->nu)
+        return true;
+    const struct ct_u *u = &r->e->u[r->s->independent[0]];
+    const struct ct_mark mark = u->joint >= 0 ? r->model->joint[u->joint].mark
+                              : u->body >= 0  ? r->model->body[u->body].instance.mark
+                                              : (struct ct_mark){.file = r->model->file};
+    if (u->beam > 0)
+        return ct_error(r->ctx, r->model->body[u->beam].instance.mark, CT_E_NOT_DRIVEN,
+                        "not all freedoms are driven: %d left, such as '%s' of the beam '%s'; "
+                        "'deformation: []' makes it rigid",
+                        (int)r->m->nu - r->s->rank, r->e->q[u->q].name,
+                        r->model->body[u->beam].instance.name);
+    return ct_error(r->ctx, mark, CT_E_NOT_DRIVEN,
+                    "not all freedoms are driven: %d left, such as '%s'; give each a 'motion'",
+                    (int)r->m->nu - r->s->rank, u->q >= 0 ? r->e->q[u->q].name : u->name);
+}
+
+// From y at t to t1 in one go: along the motion to second order, then onto the rows. False if that leads too far.
+static bool advance_step(struct ct_run *r, double t, double t1, const double *y, double *out)
+{
+    const double longest = 0.3; // [rad or m]: more could lead to another assembly
+    const double part = 0.25;   // of the step: what the rows may correct
+    const size_t nq = r->m->nq, nu = r->m->nu;
+    const double h = t1 - t;
+    double most = 0, worst = 0, *d = r->scratch;
+    memcpy(out, y, r->ny * sizeof *y);
+    if (!nu) // rows between driven coordinates alone: they hold or they do not
+        return ct_partition_project(r->s, ct_run_time_before_event(r, t1), out) == CT_EVAL_OK;
+    if (ct_run_accelerate(r, ct_run_time_before_event(r, t), y) != CT_EVAL_OK)
+        return false;
+    for (size_t k = 0; k < nu; k++) {
+        d[k] = h * (y[nq + k] + h / 2 * r->s->a[k]);
+        out[nq + k] += h * r->s->a[k];
+        most = fmax(most, fabs(d[k]));
+    }
+    if (!(most <= longest))
+        return false;
+    ct_evaluator_retract(r->m, out, d);
+    memcpy(r->stage, out, nq * sizeof *out);
+    if (ct_partition_project(r->s, ct_run_time_before_event(r, t1), out) != CT_EVAL_OK)
+        return false;
+    for (size_t i = 0; i < nq; i++)
+        worst = fmax(worst, fabs(out[i] - r->stage[i]));
+    return worst <= part * most + 1e-9;
+}
+
+static bool advance_to(struct ct_run *r, double t, double t1, double *y)
+{
+    const double least = 1e-9; // of the way: it does not go on
+    double h = t1 - t, *next = r->next;
+    ct_run_note_turning(r, t, y);
+    while (t < t1) {
+        h = fmin(h, ct_run_longest_step(r));
+        const double end = h >= t1 - t ? t1 : t + h;
+        if (!advance_step(r, t, end, y, next) || !ct_run_turns_are_followed(r, end, next)) {
+            h = (end - t) / 2;
+            if (h > least * (t1 - t) && t + h > t)
+                continue;
+            r->stats.last_time = t;
+            return ct_error(
+                r->ctx, (struct ct_mark){.file = r->model->file}, CT_E_SAMPLE_REFUSED,
+                "the mechanism cannot follow its motions beyond t = %.9g: it is at the end of "
+                "its "
+                "reach, its motions contradict each other, or links stand in one line; change "
+                "the motions or the lengths",
+                t);
+        }
+        memcpy(y, next, r->ny * sizeof *y);
+        ct_evaluator_set(r->m, ct_run_time_before_event(r, end), y);
+        ct_memory_update(r->m);
+        h = 2 * (end - t);
+        t = end;
+    }
+    return true;
+}
+
+// Work over an interval without events: Gauss's formula with three nodes.
+static bool advance_with_work(struct ct_run *r, double t, double t1, double *y)
+{
+    static const double node[] = {0.1127016653792583, 0.5, 0.8872983346207417},
+                        weight[] = {5. / 18, 8. / 18, 5. / 18};
+    double work = 0, now = t;
+    for (int i = 0; i < 3 && r->has_power; i++) {
+        const double at = t + node[i] * (t1 - t);
+        if (!advance_to(r, now, at, y))
+            return false;
+        now = at;
+        if (ct_run_accelerate(r, ct_run_time_before_event(r, at), y) != CT_EVAL_OK)
+            return ct_error(r->ctx, (struct ct_mark){.file = r->model->file}, CT_E_SINGULAR,
+                            "the equations are singular at t = %.9g", at);
+        ct_run_find_multipliers(r);
+        ct_program_run(&r->m->power, r->m->input);
+        work += weight[i] * (t1 - t) * r->m->power.out[0];
+    }
+    if (!advance_to(r, now, t1, y))
+        return false;
+    y[r->ny - 1] += work;
+    return true;
+}
+
+// Sides after an event; the motions must not jump there. Their rates may: an impulse, whose work is booked.
+static bool pass_event(struct ct_run *r, double t, double *y)
+{
+    struct ct_evaluator *m = r->m;
+    double *before = r->scratch + m->nu;
+    ct_evaluator_set(m, ct_run_time_before_event(r, t), y);
+    ct_program_run(&m->driver, m->input);
+    memcpy(before, m->driver.out, m->driver.nout * sizeof *before);
+    const double kinetic = ct_run_kinetic_energy(r, ct_run_time_before_event(r, t), y);
+    r->pending = ct_run_next_event(r, t);
+    if (!ct_run_tables_reach(r, t))
+        return false;
+    ct_switches_start(m, t, y, NULL);
+    ct_evaluator_set(m, t, y);
+    ct_program_run(&m->driver, m->input);
+    for (size_t i = 0; i < r->e->ndriver; i++) {
+        const double jump = m->driver.out[2 * i] - before[2 * i];
+        if (fabs(jump) > ct_run_jump_tolerance * fmax(1, fabs(before[2 * i])))
+            return ct_run_report_jump(r, r->e->driver[i].name, r->e->driver[i].mark, jump, t);
+    }
+    ct_evaluator_constraint(m);
+    if (!ct_run_chords_are_closed(r, t))
+        return false;
+    if (ct_partition_project(r->s, t, y) != CT_EVAL_OK) {
+        r->stats.last_time = t;
+        return ct_error(r->ctx, (struct ct_mark){.file = r->model->file}, CT_E_SAMPLE_REFUSED,
+                        "the mechanism cannot follow its motions at t = %.9g", t);
+    }
+    y[r->ny - 1] += ct_run_kinetic_energy(r, t, y) - kinetic;
+    return true;
+}
+
+static bool run_kinematic(struct ct_run *r, const struct ct_run_options *o,
+                          struct ct_run_report *report)
+{
+    *report = (struct ct_run_report){.y = r->y,
+                                     .rank = r->s->rank,
+                                     .method = o->method,
+                                     .changed_at = NAN,
+                                     .returned_at = NAN};
+    report->final = CT_NEWN(r->arena, double, r->e->nresult + 1);
+    r->o = o;
+    r->report = report;
+    r->next = CT_NEWN(r->arena, double, r->ny);
+    r->nevent = ct_time_events(r->arena, r->m, 0, 0, o->duration, &r->event);
+    r->pending = ct_run_next_event(r, 0);
+    if (!ct_run_tables_reach(r, 0))
+        return false;
+    ct_switches_start(r->m, 0, r->y, NULL);
+    if (!check_driven(r))
+        return false;
+    double t = 0;
+    for (size_t i = 0; i < o->nsample; i++) {
+        const double end = ct_run_sample_time(o, i);
+        while (r->pending <= end) {
+            const double event = r->pending;
+            if (!advance_with_work(r, t, event, r->y) || !pass_event(r, event, r->y))
+                return false;
+            t = event;
+        }
+        if (!advance_with_work(r, t, end, r->y))
+            return false;
+        t = end;
+        ct_switches_start(r->m, t, r->y, NULL);
+        if (!ct_run_at_sample(r, t, r->y) || !ct_run_at_step(r, t, r->y))
+            return false;
+    }
+    report->switches = r->s->switches;
+    report->factorizations = r->s->factorizations;
+    report->stats.evaluations = r->m->evaluations;
+    if (r->energy_scale > 0)
+        report->energy_drift /= r->energy_scale;
+    return true;
+}
+
+bool ct_run_kinematic(struct ct_run *r, const struct ct_run_options *o,
+                      struct ct_run_report *report)
+{
+    const bool ok = run_kinematic(r, o, report);
+    if (!ok)
+        ct_run_explain_end(r);
+    return ok;
+}

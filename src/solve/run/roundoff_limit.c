@@ -1,0 +1,280 @@
+// Round-off limit: outputs with fewer digits than are asked for, whatever the steps: looked for at the end of a run.
+//
+// Some are functions of states that amplify their round-off (output_sensitivity.h). Others feel it through the motion: stiff forces answer a
+// round-off of places, eps q, by accelerations eps |f'(q) q|, and a speed keeps of that what its damping and its vibration leave,
+//
+//     eps |f'(q) q| / max(omega, |f'(u)|),   omega^2 = |f'(q) q|/|q|                                  (8.15)
+//
+// A body on a stiff damped spring that creeps along has as few digits in its speed as the spring in its force. Those of the steps of an
+// explicit method add up where nothing damps them,
+//
+//     (omega/max omega) root(min(n, n/(f'(u) (t1 - t0))))  times a round-off                           (8.18)
+//
+// An inertia that is left of others which cancel, as that of a light section in free flight, has lost as many digits as they are larger, the
+// same ones all along. What it moves gets out of step: its speed errs by half of that part of its accelerations times the time.
+#include "solve/run/run_internal.h"
+
+#include <float.h>
+#include <string.h>
+
+// Changes are so many round-off errors, far above them, and so little that the equations are linear in them.
+static const double roundoffs = 0x1p12;
+// An output need not be better than so many round-off errors.
+static const double most_precise = 2;
+
+static double part_of(size_t i)
+{
+    const double golden
+        = 0.618033988749895; // different for each state, so that nothing cancels
+    return 1 + fmod(golden * (double)i, 1);
+}
+
+struct roundoff {
+    double *speed; // (nu) in so many round-off errors, after damping
+    double *share; // (nu) omega/(the largest omega)
+    double *
+        sum; // (nu) root of the steps whose round-off errors are still there: of either sign, n add up to the root of n
+    double place; // largest, in so many round-off errors
+};
+
+// Of speeds, at r->y. omega is the root of the answer to a change of places; noise is omega times places, and less where damping is
+// more than omega.
+static bool find_roundoff(struct ct_run *r, double t, struct roundoff *e)
+{
+    const size_t nq = r->m->nq, nu = r->m->nu;
+    const double *f = r->dy + nq;
+    double *f0 = r->scratch, most = 0;
+    if (ct_run_rhs(r, t, r->y, r->dy) != CT_EVAL_OK)
+        return false;
+    memcpy(f0, f, nu * sizeof *f);
+    memcpy(r->stage, r->y, r->ny * sizeof *r->y);
+    e->place = 0;
+    for (size_t i = 0; i < nq; i++) {
+        const double change = roundoffs * DBL_EPSILON / 2 * part_of(i) * fabs(r->y[i]);
+        e->place = fmax(e->place, change);
+        r->stage[i] += change;
+    }
+    if (!(e->place > 0) || ct_run_rhs(r, t, r->stage, r->dy) != CT_EVAL_OK)
+        return false;
+    memcpy(r->stage, r->y, r->ny * sizeof *r->y);
+    for (size_t k = 0; k < nu; k++) {
+        e->speed[k] = sqrt(fabs(f[k] - f0[k]) * e->place);
+        e->share[k] = e->speed[k] / e->place;
+        most = fmax(most, e->share[k]);
+        r->stage[nq + k] += e->speed[k];
+    }
+    if (ct_run_rhs(r, t, r->stage, r->dy) != CT_EVAL_OK)
+        return false;
+    for (size_t k = 0; k < nu; k++) {
+        const double omega = e->share[k], damping = fabs(f[k] - f0[k]) / e->speed[k];
+        e->share[k] = most > 0 ? omega / most : 0;
+        e->speed[k] *= damping > omega ? omega / damping : 1;
+    }
+    return true;
+}
+
+// What is damped forgets the round-off errors of steps before 1/damping; each speed is changed alone, as what turns answers with the others,
+// undamped. f (nu) at r->y is in r->scratch.
+static bool remember(struct ct_run *r, double t, struct roundoff *e)
+{
+    const size_t nq = r->m->nq, nu = r->m->nu;
+    const double steps = (double)r->report->explicit_steps;
+    memcpy(r->stage, r->y, r->ny * sizeof *r->y);
+    for (size_t k = 0; k < nu; k++) {
+        double remembered = steps;
+        if (e->speed[k] > 0) {
+            r->stage[nq + k] += e->speed[k];
+            if (ct_run_rhs(r, t, r->stage, r->dy) != CT_EVAL_OK)
+                return false;
+            r->stage[nq + k] = r->y[nq + k];
+            const double damping = (r->scratch[k] - r->dy[nq + k]) / e->speed[k];
+            remembered /= fmax(1, damping * t);
+        }
+        e->sum[k] = sqrt(fmax(remembered, 1));
+    }
+    return true;
+}
+
+// What outputs change by for a change of places, d (nu), and for one of speeds, u (nu): in round-off errors, of their largest values.
+static bool evaluate_change(struct ct_run *r, double t, const double *d, const double *u,
+                            const double *at, double *part)
+{
+    memcpy(r->stage, r->y, r->ny * sizeof *r->y);
+    if (d)
+        ct_evaluator_retract(r->m, r->stage, d);
+    for (size_t k = 0; u && k < r->m->nu; k++)
+        r->stage[r->m->nq + k] += u[k];
+    if (ct_run_results(r, t, r->stage, r->value) != CT_EVAL_OK)
+        return false;
+    for (size_t i = 0; i < r->e->nresult; i++)
+        part[i] = fabs(r->value[i] - at[i]) / roundoffs / r->largest[i];
+    return true;
+}
+
+// Sums of round-off errors, (8.18), that results feel as parts of their largest values (nresult, out).
+static bool find_output_changes(struct ct_run *r, double t, const struct roundoff *e,
+                                const double *at, double *felt)
+{
+    const size_t nu = r->m->nu, n = r->e->nresult;
+    double *d = CT_NEWN(r->arena, double, nu + 1), *u = CT_NEWN(r->arena, double, nu + 1),
+           *speeds = CT_NEWN(r->arena, double, n + 1);
+    for (size_t k = 0; k < nu; k++) {
+        d[k] = e->place * e->share[k] * e->sum[k];
+        u[k] = e->speed[k] * e->share[k] * e->sum[k];
+    }
+    if (!evaluate_change(r, t, d, NULL, at, felt)
+        || !evaluate_change(r, t, NULL, u, at, speeds))
+        return false;
+    for (size_t i = 0; i < n; i++)
+        felt[i] = hypot(felt[i], speeds[i]);
+    return true;
+}
+
+// What is smaller than this at all samples is zero, whatever its digits: what a loop keeps so.
+static double small_output(const struct ct_run *r)
+{
+    return r->o->rtol > 0 ? r->o->output_rtol * (r->o->atol / r->o->rtol) : 0;
+}
+
+// The one of the results that feels most, more than *most (in, out); -1: none. One that is nothing but round-off is zero.
+static int find_worst(const struct ct_run *r, const double *felt, double *most)
+{
+    int worst = -1;
+    for (size_t i = 0; i < r->e->nresult; i++)
+        if (felt[i] > *most && felt[i] < 1 && r->largest[i] > small_output(r)
+            && !ct_controlled_outputs_is_check(r->e, r->e->result[i].value)) {
+            *most = felt[i];
+            worst = (int)i;
+        }
+    return worst;
+}
+
+// Where no single round-off is too much, those of all steps may be. First as if nothing damped them, which costs little.
+static void add_up(struct ct_run *r, double t, struct roundoff *e, const double *at,
+                   double wanted, struct ct_roundoff_limit *b)
+{
+    const double steps = (double)r->report->explicit_steps;
+    double *felt = CT_NEWN(r->arena, double, r->e->nresult + 1), most = wanted;
+    for (size_t k = 0; k < r->m->nu; k++)
+        e->sum[k] = sqrt(steps);
+    if (!find_output_changes(r, t, e, at, felt)
+        || (b->output < 0 && find_worst(r, felt, &most) < 0)
+        || !remember(r, r->report->stats.last_time, e)
+        || !find_output_changes(r, t, e, at, felt))
+        return;
+    most = wanted;
+    if (b->output < 0) {
+        b->output = find_worst(r, felt, &most);
+        b->one = most / sqrt(steps);
+    }
+    if (b->output >= 0 && felt[b->output] > b->one)
+        b->sum = felt[b->output];
+}
+
+// out (nu, nq, nu; out): u', q' and the inertias that u' is found with in closed form, with places changed by `side` times many round-off errors.
+static void solve_perturbed(struct ct_run *r, double t, int side, size_t look, double *out)
+{
+    const struct ct_evaluator *m = r->m;
+    memcpy(r->stage, r->y, r->ny * sizeof *r->y);
+    for (size_t i = 0; i < m->nq; i++)
+        r->stage[i] += side * roundoffs * DBL_EPSILON / 2 * part_of(i + look) * fabs(r->y[i]);
+    ct_evaluator_set(r->m, t, r->stage);
+    ct_program_run(&r->m->solved, m->input);
+    memcpy(out, m->solved.out, (2 * m->nu + m->nq) * sizeof *out);
+}
+
+struct cancellation {
+    double *part; // (nu) round-off of each of these inertias, as a part of it
+    double *
+        noise; // (nu) of u' where that of `worst` was largest: what a round-off of its inertia does to all speeds
+    size_t worst; // the speed whose acceleration errs most
+};
+
+// With places changed to both sides what is linear in them cancels: the rest is as large as root 6 round-off errors.
+static void find_cancellation(struct ct_run *r, double t, struct cancellation *g)
+{
+    enum { LOOKS = 8 };
+    const size_t nu = r->m->nu, n = 2 * nu + r->m->nq, pivots = nu + r->m->nq;
+    double *here = CT_NEWN(r->arena, double, n), *ahead = CT_NEWN(r->arena, double, n *LOOKS),
+           *behind = CT_NEWN(r->arena, double, n);
+    solve_perturbed(r, t, 0, 0, here);
+    for (size_t look = 0; look < LOOKS; look++) {
+        double *sum = ahead + look * n;
+        solve_perturbed(r, t, 1, look, sum);
+        solve_perturbed(r, t, -1, look, behind);
+        for (size_t i = 0; i < n; i++)
+            sum[i] += behind[i] - 2 * here[i];
+        for (size_t k = 0; k < nu; k++)
+            g->part[k]
+                = hypot(g->part[k], sum[pivots + k] / here[pivots + k] / sqrt(6 * LOOKS));
+    }
+    for (size_t k = 0; k < nu; k++)
+        if (g->part[k] * fabs(here[k]) > g->part[g->worst] * fabs(here[g->worst]))
+            g->worst = k;
+    g->noise = ahead;
+    for (size_t look = 1; look < LOOKS; look++)
+        if (fabs(ahead[look * n + g->worst]) > fabs(g->noise[g->worst]))
+            g->noise = ahead + look * n;
+}
+
+// For how long speed k remembers, of t. f (nu) at r->y is in r->scratch.
+static double remembered(struct ct_run *r, double t, size_t k)
+{
+    const size_t nq = r->m->nq;
+    const double change = roundoffs * DBL_EPSILON * fabs(r->y[nq + k]);
+    memcpy(r->stage, r->y, r->ny * sizeof *r->y);
+    r->stage[nq + k] += change;
+    if (!(change > 0) || ct_run_rhs(r, t, r->stage, r->dy) != CT_EVAL_OK)
+        return t;
+    return t / fmax(1, (r->scratch[k] - r->dy[nq + k]) / change * t);
+}
+
+// Does what such an inertia moves get so far out of step that an output errs by more than is wanted?
+static void find_phase_error(struct ct_run *r, double t, const double *at, double wanted,
+                             struct ct_roundoff_limit *b)
+{
+    const double few = 100 * DBL_EPSILON; // digits that any sum loses
+    const size_t nu = r->m->nu;
+    struct cancellation g = {.part = CT_NEWN(r->arena, double, nu + 1)};
+    double *u = CT_NEWN(r->arena, double, nu + 1),
+           *felt = CT_NEWN(r->arena, double, r->e->nresult + 1), most = wanted;
+    if (!r->e->solution || ct_run_rhs(r, t, r->y, r->dy) != CT_EVAL_OK)
+        return;
+    memcpy(r->scratch, r->dy + r->m->nq, nu * sizeof *r->scratch);
+    find_cancellation(r, t, &g);
+    const size_t k = g.worst;
+    if (!(g.part[k] > few && g.part[k] < 1) || g.noise[k] == 0)
+        return;
+    const double error = g.part[k] * fabs(r->scratch[k]) * remembered(r, t, k) / 2;
+    for (size_t i = 0; i < nu; i++)
+        u[i] = roundoffs * error * g.noise[i] / g.noise[k];
+    if (!evaluate_change(r, t, NULL, u, at, felt))
+        return;
+    b->output = find_worst(r, felt, &most);
+    b->one = NAN;
+    b->sum = b->output < 0 ? NAN : most;
+}
+
+struct ct_roundoff_limit ct_run_find_roundoff_limit(struct ct_run *r, double held,
+                                                    double wanted)
+{
+    const double time = r->report->stats.last_time, t = ct_run_time_before_event(r, time);
+    const size_t nu = r->m->nu, n = r->e->nresult;
+    struct roundoff e = {CT_NEWN(r->arena, double, nu + 1), CT_NEWN(r->arena, double, nu + 1),
+                         CT_NEWN(r->arena, double, nu + 1), 0};
+    double *at = CT_NEWN(r->arena, double, n + 1), *felt = CT_NEWN(r->arena, double, n + 1);
+    struct ct_roundoff_limit b = {.output = -1, .one = held / most_precise, .sum = NAN};
+    if (r->output_error)
+        b.output = ct_output_error_roundoff_limit(r->output_error, t, r->y, held,
+                                                  small_output(r), &b.one);
+    if (!find_roundoff(r, time, &e) || ct_run_results(r, t, r->y, at) != CT_EVAL_OK
+        || !evaluate_change(r, t, NULL, e.speed, at, felt))
+        return b;
+    const int slow = find_worst(r, felt, &b.one);
+    b.output = slow >= 0 ? slow : b.output;
+    if (r->report->explicit_steps > 0)
+        add_up(r, t, &e, at, wanted, &b);
+    if (b.output < 0)
+        find_phase_error(r, t, at, wanted, &b);
+    return b;
+}

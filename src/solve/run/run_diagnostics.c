@@ -1,0 +1,233 @@
+// Diagnosis of runs that end before their time: which constraints, and where.
+#include "solve/run/run_internal.h"
+
+#include "numeric/dense.h"
+
+#include <float.h>
+#include <string.h>
+
+// Of the first row that is marked.
+static struct ct_mark mark_of_row(const struct ct_run *r, size_t row)
+{
+    const int joint = r->e->row[row].joint;
+    if (joint < 0)
+        return (struct ct_mark){.file = r->model->file};
+    return r->model->joint[joint].mark;
+}
+
+// Where steps ended as they became too short: near a singular configuration?
+static void name_singular(struct ct_run *r, const char *advice)
+{
+    enum { MOST_NAMES = 5 };
+    bool *row = CT_NEWN(r->arena, bool, r->m->nrow + 1);
+    const double t = r->stats.last_time;
+    if (!ct_rank_monitor_is_near_singular(r->singular, ct_run_time_before_event(r, t), r->y,
+                                          r->o->step, row))
+        return;
+    const char *names = "";
+    int first = -1, n = 0;
+    for (size_t i = 0; i < r->m->nrow; i++) {
+        if (!row[i] || n++ >= MOST_NAMES)
+            continue;
+        first = first < 0 ? (int)i : first;
+        names
+            = ct_arena_printf(r->arena, "%s%s%s", names, *names ? ", " : "", r->e->row[i].name);
+    }
+    ct_note(
+        r->ctx, mark_of_row(r, first < 0 ? 0 : (size_t)first),
+        "the constraints come to depend on each other there%s%s%s%s: the mechanism is at the "
+        "end of its reach or in a singular configuration%s",
+        n ? " (" : "", names, n > MOST_NAMES ? ", ..." : "", n ? ")" : "", advice);
+}
+
+// A little later, or before, is this part of the run: far enough for a contradiction to be more than round-off.
+static const double little = 1e-3;
+
+// Where steps ended as the constraints could not be met: the row that stays open farthest a little later.
+static void name_open_row(struct ct_run *r)
+{
+    if (ct_run_rhs(r, r->stats.last_time, r->y, r->dy))
+        return;
+    const double dt = little * r->o->duration, t = r->stats.last_time + dt;
+    for (size_t i = 0; i < r->m->nu; i++)
+        r->scratch[i] = dt * r->y[r->m->nq + i];
+    memcpy(r->stage, r->y, r->ny * sizeof *r->y);
+    ct_evaluator_retract(r->m, r->stage, r->scratch);
+    if (ct_partition_project(r->s, t, r->stage) == CT_EVAL_OK)
+        return;
+    ct_evaluator_constraint(r->m);
+    size_t worst = 0;
+    for (size_t i = 1; i < r->m->nrow; i++)
+        if (fabs(r->m->phi[i]) > fabs(r->m->phi[worst]))
+            worst = i;
+    ct_note(r->ctx, mark_of_row(r, worst), "'%s' stays open by %.3g at t = %.9g",
+            r->e->row[worst].name, fabs(r->m->phi[worst]), t);
+}
+
+// left (nu, out): what inertia carries the small coordinates at the evaluator's input.
+static bool find_left(struct ct_run *r, double *left)
+{
+    ct_evaluator_constraint(r->m);
+    ct_evaluator_dynamics(r->m);
+    return ct_partition_inertias(r->s, r->e->is_small, left);
+}
+
+// The speed that carries small coordinates whose inertia has shrunk most against what it is with these at zero; *part (out) of it is
+// left. -1: none has lost much.
+static int lost_speed(struct ct_run *r, double *part)
+{
+    const size_t nu = r->m->nu;
+    double *now = CT_NEWN(r->arena, double, nu + 1),
+           *straight = CT_NEWN(r->arena, double, nu + 1);
+    int lost = -1;
+    *part = 0.1; // more is no reason to stop: steps shorten with its root
+    ct_evaluator_set(r->m, r->stats.last_time, r->y);
+    if (!find_left(r, now))
+        return -1;
+    for (size_t k = 0; k < nu; k++)
+        if (r->e->is_small[k] && r->e->u[k].q >= 0)
+            r->m->input[r->m->at_q + (size_t)r->e->u[k].q] = 0;
+    if (!find_left(r, straight))
+        return -1;
+    for (size_t k = 0; k < nu; k++)
+        if (straight[k] > 0 && now[k] < *part * straight[k]) {
+            *part = now[k] / straight[k];
+            lost = (int)k;
+        }
+    return lost;
+}
+
+// Equations that are cut to first order have lost an inertia, which leaves no step: whose, and what to do.
+static bool name_lost(struct ct_run *r)
+{
+    double part;
+    const int lost = lost_speed(r, &part);
+    if (lost < 0)
+        return false;
+    const struct ct_u *u = &r->e->u[lost];
+    const struct ct_mark mark
+        = u->joint >= 0 ? r->model->joint[u->joint].mark
+        : u->beam > 0 || u->body > 0
+            ? r->model->body[u->beam > 0 ? u->beam : u->body].instance.mark
+            : (struct ct_mark){0};
+    ct_note(
+        r->ctx, mark,
+        "at t = %.9g the inertia that '%s' moves, with what it carries free to follow, is %.2g "
+        "of what it is "
+        "undeformed: equations that are cut to first order, by 'stretch-linear' or 'small', "
+        "lose masses as deflections grow; 'foreshortening', or no 'small', has all terms",
+        r->stats.last_time, u->q >= 0 ? r->e->q[u->q].name : u->name, part);
+    return true;
+}
+
+void ct_run_note_singular_start(struct ct_run *r, const char *joints)
+{
+    r->singular_joints = joints;
+}
+
+const char *ct_run_singular_joints(const struct ct_run *r)
+{
+    return r->singular_joints;
+}
+
+// Where the run began there are fewer independent rows than on each of the motions that go on from there, and none is taken.
+static void name_singular_start(struct ct_run *r)
+{
+    const double near
+        = 0.1; // [rad or m], as far as ct_singular_start_test looks: what ends it later is something else
+    const double way = r->stats.last_time * ct_vector_size(r->y + r->m->nq, r->m->nu);
+    if (r->singular_joints && way < near)
+        ct_note(r->ctx, (struct ct_mark){0},
+                "the run began in a singular configuration, where constraints of %s do not "
+                "count and "
+                "several motions go on: start a little beside it, a joint off by 1e-3, on the "
+                "one that is meant",
+                r->singular_joints);
+}
+
+// Steps of order 2 come to round-off long before those of the others do, near singular configurations first.
+static void advise_order(struct ct_run *r)
+{
+    const int low = 2;
+    if (r->method->order <= low)
+        ct_note(
+            r->ctx, (struct ct_mark){0},
+            "steps of '%s', of order %d, are many times shorter than those of 'radau5' or "
+            "'dop853' at this tolerance, and end in round-off before these do: if the motion "
+            "goes on there, 'method: auto' may follow it",
+            r->method->name, r->method->order);
+}
+
+// Has an event been in the position, or next to it, or is one about to be there? Behind it no step comes out of the position.
+static bool has_switched(const struct ct_run *r)
+{
+    const double t = r->stats.last_time, near = little * r->o->duration;
+    return t - r->last_event <= near || r->pending - t <= near;
+}
+
+static const char *const let_pass
+    = ", where a driver may not rest: let it pass, or rest beside it";
+
+// Do drivers come to rest, by what speeds have been?
+static bool is_driven_to_rest(const struct ct_run *r)
+{
+    const double rest = 0.01; // of the swiftest
+    bool is_driven = false;
+    for (size_t i = 0; i < r->model->njoint; i++) {
+        const struct ct_instance *joint = &r->model->joint[i];
+        is_driven |= joint->cls->motion && ct_instance_value(joint, "motion")->given;
+    }
+    return is_driven
+        && ct_vector_largest(r->y + r->m->nq, r->m->nu) < rest * r->singular->swiftest;
+}
+
+// What leads on near a singular configuration: where round-off is what ends steps, a tolerance that leaves it unfelt.
+static const char *advise_there(struct ct_run *r)
+{
+    if (has_switched(r))
+        return "; something switches there: let it do so, and drivers rest, a little before it "
+               "or behind";
+    if (is_driven_to_rest(r))
+        return let_pass;
+    const double part = r->singular->closest, enough = DBL_EPSILON / (part * part), most = 1e-2;
+    if (enough > r->o->output_rtol && enough < most)
+        return ct_arena_printf(
+            r->arena,
+            "; round-off is felt there by %.0e: a tolerance of that, or a start "
+            "farther from it, may lead on",
+            enough);
+    return "; a larger tolerance, or a start farther from it, may lead on";
+}
+
+void ct_run_explain_end(struct ct_run *r)
+{
+    const size_t n = r->ctx->ndiagnostic;
+    const enum ct_code code = n ? r->ctx->diagnostic[n - 1].code : 0;
+    const bool is_stuck
+        = code == CT_E_STEP_COUNT || code == CT_E_STEP_SMALL || code == CT_E_STEP_SINGULAR;
+    if (is_stuck && r->e->is_small && name_lost(r))
+        return;
+    if (code == CT_E_STEP_COUNT)
+        ct_run_explain_count(r);
+    if (code == CT_E_STEP_SMALL || code == CT_E_STEP_SINGULAR)
+        advise_order(r);
+    if (!r->m->nrow)
+        return;
+    if (code == CT_E_LOCKED) {
+        ct_run_note_drivers(r, r->stats.last_time, r->y);
+        name_singular(r, "");
+    } else if (code == CT_E_STEP_OPEN) {
+        name_open_row(r);
+        name_singular(r, has_switched(r) ? advise_there(r) : let_pass);
+    } else if (code == CT_E_SAMPLE_REFUSED) {
+        name_open_row(r);
+        if (r->ctx->ndiagnostic == n)
+            name_singular(r, "");
+        ct_run_note_drivers(r, r->stats.last_time, r->y);
+    } else if (code == CT_E_STEP_SMALL || code == CT_E_STEP_SINGULAR)
+        name_singular(r, advise_there(r));
+    else if (code == CT_E_STEP_REFUSED)
+        name_singular(r, ", which steps are not fitted to: leave out 'step'");
+    if (is_stuck || code == CT_E_STEP_OPEN)
+        name_singular_start(r);
+}

@@ -1,0 +1,382 @@
+// See rank_monitor.h: what is ahead.
+#include "solve/singular/rank_monitor_internal.h"
+
+#include "integrate/crossing.h"
+#include "numeric/dense.h"
+#include "solve/evaluator/switch_state.h"
+
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+struct ct_rank_monitor *ct_rank_monitor_create(struct ct_arena *arena, struct ct_evaluator *m,
+                                               struct ct_partition *s)
+{
+    struct ct_rank_monitor *w = CT_NEW(arena, struct ct_rank_monitor);
+    const size_t kept = m->nrow ? CT_MOST_SINGULAR : 0;
+    *w = (struct ct_rank_monitor){.m = m, .s = s};
+    w->y = CT_NEWN(arena, double, m->nq + m->nu + 1);
+    w->d = CT_NEWN(arena, double, m->nu + 1);
+    w->x = CT_NEWN(arena, double, m->nrow + 1);
+    w->there = ct_tangent_basis_create(arena);
+    w->here = ct_tangent_basis_create(arena);
+    w->along = ct_tangent_basis_create(arena);
+    w->u = CT_NEWN(arena, double, m->nu + 1);
+    w->a = CT_NEWN(arena, double, m->nu + 1);
+    w->last = CT_NEWN(arena, double, m->nq + m->nu + 1);
+    w->passed = CT_NEWN(arena, struct ct_singular_configuration, kept + 1);
+    for (size_t i = 0; i < kept + 1; i++) // one to look at
+        w->passed[i].row = CT_NEWN(arena, bool, m->nrow + 1);
+    ct_rank_monitor_start(w);
+    return w;
+}
+
+void ct_rank_monitor_start(struct ct_rank_monitor *w)
+{
+    w->time_to_singular = INFINITY;
+    w->solver_unchanged = false;
+    w->reach = w->most = w->part = w->pivot = w->fall = w->t = w->dt = 0;
+    w->switches = -1;
+    w->npassed = w->nover = 0;
+    w->npole = 0;
+    w->closest = INFINITY;
+    w->swiftest = 0;
+    ct_tangent_basis_reserve(w->s, w->there);
+    ct_tangent_basis_reserve(w->s, w->here);
+    ct_tangent_basis_reserve(w->s, w->along);
+    w->s->nearness = 1;
+    w->farthest = w->wanted = 0;
+    w->rank = 0;
+}
+
+// ---- ahead ------------------------------------------------------------------------------------------------
+
+static void look_at(struct ct_rank_monitor *w, double t, const double *y)
+{
+    ct_evaluator_set(w->m, t, y);
+    ct_evaluator_constraint(w->m);
+}
+
+double ct_rank_monitor_pivot(struct ct_rank_monitor *w, double t, const double *y)
+{
+    look_at(w, t, y);
+    return ct_partition_pivot(w->s);
+}
+
+double ct_rank_monitor_pivot_after(struct ct_rank_monitor *w, const struct ct_rank_test *a,
+                                   double s)
+{
+    const size_t nq = w->m->nq, nu = w->m->nu;
+    memcpy(w->y, a->y, (nq + nu + 1) * sizeof *w->y);
+    for (size_t i = 0; i < nu; i++)
+        w->d[i] = s * (a->y[nq + i] + s / 2 * a->dy[nq + i]);
+    ct_evaluator_retract(w->m, w->y, w->d);
+    return ct_rank_monitor_pivot(w, ct_time_just_before(a->t + s, a->pending), w->y);
+}
+
+// A position counts as singular ahead when the smallest pivot has fallen to the first part of its largest value so far
+// and goes on falling; where it has fallen to the second part pivots are sought at every evaluation, at the third f is
+// better not computed; at the second already where steps keep their rows and could have kept others.
+static const double foreseen_pivot = 0.8, near_pivot = 0.5, singular_pivot = 0.25;
+// At so little round-off, which is divided by its square, leaves no digit of which motion goes on: no step ends there.
+static const double lost_pivot = 1e-7;
+
+// Round-off of accelerations is eps over the square of the pivot, against its largest. Where that would be more than this part of what
+// is wanted they have too few digits.
+static const double felt_rounding = 0.01;
+
+static bool is_roundoff_limited(const struct ct_rank_monitor *w, double pivot)
+{
+    const double part = pivot / w->farthest;
+    return w->wanted > 0 && part < singular_pivot / 2
+        && part * part * felt_rounding * w->wanted < DBL_EPSILON;
+}
+
+bool ct_rank_monitor_is_roundoff_limited(struct ct_rank_monitor *w, double t, const double *y)
+{
+    return is_roundoff_limited(w, ct_rank_monitor_pivot(w, t, y));
+}
+
+// The smallest pivot falls about linearly towards a singular configuration. Time to where it will vanish, by secants along
+// the motion as the accelerations of now continue it. INFINITY if it rises.
+static double time_to_singular(struct ct_rank_monitor *w, const struct ct_rank_test *a,
+                               double now, double dt)
+{
+    enum { SECANTS = 3 };
+    const double glance = 1e-3, part = 0.8; // of the last step; of the way, not to step across
+    const double far = 4 * dt;
+    double s = glance * dt, pivot = ct_rank_monitor_pivot_after(w, a, s),
+           slope = (pivot - now) / s;
+    if (!(slope < 0))
+        return INFINITY;
+    for (int i = 0; i < SECANTS && s - pivot / slope < far; i++) {
+        const double next = s - part * pivot / slope;
+        double there = ct_rank_monitor_pivot_after(w, a, next);
+        if (there > fabs(pivot)) // it has changed its sign, which is not seen
+            there = -there;
+        if (there == pivot)
+            break;
+        slope = (there - pivot) / (next - s);
+        s = next;
+        pivot = there;
+    }
+    return s - pivot / slope;
+}
+
+double ct_rank_monitor_distance(struct ct_rank_monitor *w, double t, const double *y,
+                                const double *dy, double pending, double s)
+{
+    const struct ct_rank_test a = {t, pending, y, dy};
+    if (!ct_partition_has_pivot(w->s))
+        return INFINITY;
+    const double now = ct_rank_monitor_pivot(w, ct_time_just_before(t, pending), y);
+    const double behind = ct_rank_monitor_pivot_after(w, &a, -s),
+                 ahead = ct_rank_monitor_pivot_after(w, &a, s);
+    const double way = ct_vector_size(w->d, w->m->nu);
+    if (behind > now
+        && behind > ahead) // where it rises from the position on it tells, too, beyond it
+        return now * way / (behind - now);
+    return ahead > now ? -now * way / (ahead - now) : now * way / (now - ahead);
+}
+
+// The position ahead, where the pivot of now has begun to fall.
+static void find_next(struct ct_rank_monitor *w, const struct ct_rank_test *ahead, double now)
+{
+    const double part = now / fmax(w->most, now);
+    w->time_to_singular = time_to_singular(w, ahead, now, w->dt);
+    w->reach = w->time_to_singular * (w->retains_rows ? near_pivot : singular_pivot) / part;
+}
+
+// Where J loses rank its kept rows do, and a pivot of the form vanishes: while its pivots are what they were at the last look,
+// there is no need of another. Fixed steps cross nothing, and are told only whether pivots are to be sought at every evaluation.
+// The sign of their product changes there, however far apart looks are. With step control it is that, too, that must hardly have changed, and no position may be near by what was seen then:
+// so little is neither lost of the largest pivot nor of the first sight of a position.
+static bool is_unchanged_by_solver(const struct ct_rank_monitor *w, double dt, bool is_fixed)
+{
+    const double hardly = 1.05, steps_away = 8;
+    const struct ct_partition *s = w->s;
+    if (!s->has_solver || s->nweak || s->switches != w->switches || s->nmade != w->nmade)
+        return false;
+    const struct ct_solver *f = s->solver[0];
+    if (f->volume / w->volume < 0)
+        return false;
+    if (w->part > foreseen_pivot && is_fixed)
+        return ct_is_within(f->weakest / w->weakest, ct_same_strength)
+            && !(s->has_units && !ct_is_within(f->volume / w->volume, ct_same_strength));
+    const bool is_away
+        = is_fixed || w->part > foreseen_pivot || w->time_to_singular > steps_away * dt;
+    return w->part > near_pivot && is_away && ct_is_within(f->weakest / w->weakest, hardly)
+        && ct_is_within(f->volume / w->volume, hardly);
+}
+
+// Have speeds changed by far more since the last look, dt before, than accelerations there or here make of them? Motions that meet in a
+// position have others.
+static bool has_jumped(const struct ct_rank_monitor *w, double dt, const double *u,
+                       const double *a)
+{
+    const double part = 0.2; // of the largest speed so far: far more than steps err by
+    const size_t nu = w->m->nu;
+    const double least = part * fmax(w->swiftest, ct_vector_largest(u, nu));
+    for (size_t i = 0; i < nu; i++)
+        if (fabs(u[i] - w->u[i]) > least + dt * fmax(fabs(a[i]), fabs(w->a[i])))
+            return true;
+    return false;
+}
+
+static void keep_speeds(struct ct_rank_monitor *w, const struct ct_rank_test *at)
+{
+    const size_t nu = w->m->nu;
+    memcpy(w->u, at->y + w->m->nq, nu * sizeof *w->u);
+    memcpy(w->a, at->dy + w->m->nq, nu * sizeof *w->a);
+    w->swiftest = fmax(w->swiftest, ct_vector_largest(w->u, nu));
+}
+
+static void keep_tangent_basis(struct ct_rank_monitor *w, const struct ct_rank_test *at)
+{
+    struct ct_tangent_basis *v = w->there;
+    w->there = w->here;
+    w->here = v;
+    keep_speeds(w, at);
+}
+
+// From the last state, of which the form has told: what has not changed until then may have on the step from there.
+static void look_back(struct ct_rank_monitor *w, double pending)
+{
+    ct_rank_monitor_pivot(w, ct_time_just_before(w->t, pending), w->last);
+    ct_tangent_basis_find(w->s, w->there);
+}
+
+// What is seen of an accepted state.
+struct look {
+    double now,
+        part; // the pivot, and against the largest; no more is known than that it is `is_far`
+    bool is_far;
+    bool
+        is_another; // a position has been stepped over since the last look, or left on another motion
+};
+
+static struct look look_around(struct ct_rank_monitor *w, const struct ct_rank_test *at,
+                               double dt)
+{
+    const double *u = at->y + w->m->nq, *a = at->dy + w->m->nq;
+    struct look l = {.is_another = false};
+    if (w->solver_unchanged)
+        look_back(w, at->pending);
+    look_at(w, ct_time_just_before(at->t, at->pending), at->y);
+    l.is_far = w->most > 0
+            && ct_partition_pivot_is_between(w->s, foreseen_pivot * w->most,
+                                             w->most); // then at least so much
+    l.now = l.is_far ? foreseen_pivot * w->most : ct_partition_pivot(w->s);
+    l.part = l.now / fmax(w->most, l.now);
+    ct_tangent_basis_find(w->s, w->here);
+    if (w->here->rank && w->there->rank)
+        l.is_another = ct_singularity_test_sign_changed(w->s, w->there, w->here)
+                    || has_jumped(w, dt, u, a);
+    return l;
+}
+
+static void note_state(struct ct_rank_monitor *w, double t, const double *y)
+{
+    w->t = t;
+    memcpy(w->last, y, (w->m->nq + w->m->nu) * sizeof *y);
+}
+
+// A step that ends in the position itself, as one to an event there, chooses rows for it, of which there are fewer: those of before, for the
+// same step taken shorter. False where there are as many as ever.
+static bool return_rows(struct ct_rank_monitor *w, double pending)
+{
+    if (w->s->rank >= w->rank)
+        return false;
+    look_at(w, ct_time_just_before(w->t, pending), w->last);
+    w->s->sigma_best = 0;
+    ct_partition_choose(w->s);
+    return true;
+}
+
+// Is the step to it to be taken again, shorter? After another choice of rows and columns the pivot is not to be compared with the last
+// one.
+static bool is_to_be_shorter(const struct ct_rank_monitor *w, const struct look *l)
+{
+    const bool was_unforeseen
+        = w->s->switches == w->switches && isinf(w->time_to_singular) && w->part > near_pivot;
+    return l->is_another || l->part < lost_pivot
+        || (was_unforeseen && l->part < (w->solver_unchanged ? singular_pivot : near_pivot));
+}
+
+// Would the pivot have come to zero on this step, as it fell on the one before, or nearly so? Where rank is lost by two at a time
+// both places are on the same side.
+static bool is_steep(const struct ct_rank_monitor *w, double dt)
+{
+    return w->pivot > 0 && w->pivot < 2 * dt * w->fall;
+}
+
+static void keep(struct ct_rank_monitor *w, const struct ct_rank_test *at, const struct look *l,
+                 double dt)
+{
+    keep_tangent_basis(w, at);
+    note_state(w, at->t, at->y);
+    w->rank = w->s->rank > w->rank ? w->s->rank : w->rank;
+    w->solver_unchanged = false;
+    w->part = l->part;
+    w->switches = w->s->switches;
+    w->nmade = w->s->nmade;
+    w->weakest = w->s->has_solver ? w->s->solver[0]->weakest : 0;
+    w->volume = w->s->has_solver ? w->s->solver[0]->volume : NAN;
+    w->most = fmax(w->most, l->now);
+    w->fall = ((w->pivot > 0 ? w->pivot : w->most) - l->now) / dt;
+    w->pivot = l->is_far ? w->most : l->now;
+    w->time_to_singular = INFINITY;
+    w->s->is_near_singular = l->part < near_pivot;
+    w->s->nearness = l->part;
+    w->dt = dt;
+    w->farthest = fmax(w->farthest, fmax(w->most, l->now));
+}
+
+// Where a step of another kind than crossings has come: what is told of it at the end of the run.
+static void note_step(struct ct_rank_monitor *w, double t, const struct look *l)
+{
+    if (l->is_another)
+        w->over = w->nover++ ? w->over : t;
+    if (l->part < w->closest) {
+        w->closest = l->part;
+        w->t_closest = t;
+    }
+}
+
+bool ct_rank_monitor_predict(struct ct_rank_monitor *w, double t, const double *y,
+                             const double *dy, double pending,
+                             const struct ct_rank_monitor_step *step)
+{
+    const struct ct_rank_test at = {t, pending, y, dy};
+    const double dt = t - w->t;
+    if (!ct_partition_has_pivot(w->s) || !(dt > 0))
+        return true;
+    if (is_unchanged_by_solver(w, dt, step->is_fixed)) {
+        note_state(w, t, y);
+        keep_speeds(w, &at);
+        w->solver_unchanged = true;
+        w->pivot = 0;
+        return true;
+    }
+    struct look l = look_around(w, &at, dt);
+    if (step->is_fixed && !l.is_another && is_steep(w, dt))
+        l.is_another = ct_rank_monitor_is_crossed(w, &at, w->pivot, l.now);
+    if (!step->is_across) {
+        if (!step->is_fixed && (return_rows(w, pending) || is_to_be_shorter(w, &l)))
+            return false;
+        note_step(w, t, &l);
+    }
+    keep(w, &at, &l, dt);
+    if (!(l.is_far || l.part > foreseen_pivot || step->is_fixed))
+        find_next(w, &at, l.now);
+    return true;
+}
+
+void ct_rank_monitor_reset(struct ct_rank_monitor *w, double t, const double *y,
+                           const double *dy, double pending)
+{
+    const struct ct_rank_test ahead = {t, pending, y, dy};
+    w->there->rank = 0;
+    w->pivot = 0;
+    keep_speeds(w, &ahead); // a look back finds the place, and these
+    if (!(w->most > 0) || w->part > foreseen_pivot || !(w->dt > 0))
+        return;
+    find_next(w, &ahead, ct_rank_monitor_pivot(w, ct_time_just_before(t, pending), y));
+}
+
+void ct_rank_monitor_scale_pivot(struct ct_rank_monitor *w, double t, const double *y,
+                                 double times)
+{
+    w->farthest = times * ct_rank_monitor_pivot(w, t, y);
+}
+
+void ct_rank_monitor_start_near(struct ct_rank_monitor *w, double t, const double *y, double in,
+                                double times)
+{
+    ct_rank_monitor_announce(w, t, y, in);
+    w->most *= times;
+    w->part = w->s->nearness = 1 / times;
+    w->farthest = fmax(w->farthest, w->most);
+    w->s->is_near_singular = w->part < near_pivot;
+    w->reach = in * fmin(1, singular_pivot * times);
+}
+
+void ct_rank_monitor_announce(struct ct_rank_monitor *w, double t, const double *y, double in)
+{
+    w->most = ct_rank_monitor_pivot(w, t, y); // what is farther off is not known
+    w->there->rank = 0;
+    w->t = t;
+    w->part = w->s->nearness = 1;
+    w->switches = w->s->switches;
+    w->time_to_singular = in;
+    w->reach = INFINITY;
+    w->farthest = fmax(w->farthest, w->most);
+}
+
+// The stages of a crossing keep away from the position and are put onto the constraints: an order of pivots that holds
+// where it begins holds for all of them.
+void ct_rank_monitor_set_crossing(struct ct_rank_monitor *w, bool is_crossing)
+{
+    w->s->is_crossing = is_crossing;
+    w->s->is_near_singular = !is_crossing && w->part < near_pivot;
+}

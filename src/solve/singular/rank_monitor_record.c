@@ -1,0 +1,308 @@
+// See rank_monitor.h: what has been passed, and where steps have ended.
+#include "solve/singular/rank_monitor_internal.h"
+
+#include "numeric/dense.h"
+#include "solve/evaluator/switch_state.h"
+
+#include <math.h>
+#include <string.h>
+
+// Rows with part in x (rank), a vector of null(J') that has come out of ct_partition_dependence.
+static void mark_rows(const struct ct_rank_monitor *w, bool *row)
+{
+    const double involved
+        = 1e-3; // of the largest entry; rows that take no part have the square of the distance
+    const int n = w->s->rank;
+    double most = 0;
+    for (int i = 0; i < n; i++)
+        most = fmax(most, fabs(w->x[i]));
+    for (int i = 0; i < n; i++)
+        row[w->s->row[i]] = fabs(w->x[i]) > involved * most;
+}
+
+struct passage {
+    const struct ct_stepper_span *span;
+    double begin, pending; // `begin`: of the span, as part of the crossing
+    const struct ct_rank_test
+        *to; // without a span: from the last state to this one, with a constant acceleration
+};
+
+static double time_on(const struct passage *p, double part)
+{
+    return p->span->t + (part - p->begin) / (1 - p->begin) * p->span->h;
+}
+
+static double pivot_to(struct ct_rank_monitor *w, const struct ct_rank_test *to, double part)
+{
+    const size_t nq = w->m->nq, nu = w->m->nu;
+    const double dt = to->t - w->t, *u = w->last + nq, *v = to->y + nq;
+    memcpy(w->y, w->last, (nq + nu) * sizeof *w->y);
+    for (size_t i = 0; i < nu; i++)
+        w->d[i] = part * dt * (u[i] + part / 2 * (v[i] - u[i]));
+    ct_evaluator_retract(w->m, w->y, w->d);
+    return ct_rank_monitor_pivot(w, ct_time_just_before(w->t + part * dt, to->pending), w->y);
+}
+
+static double pivot_on(struct ct_rank_monitor *w, const struct passage *p, double part)
+{
+    if (!p->span)
+        return pivot_to(w, p->to, part);
+    ct_stepper_point(p->span, (part - p->begin) / (1 - p->begin), w->y);
+    return ct_rank_monitor_pivot(w, ct_time_just_before(time_on(p, part), p->pending), w->y);
+}
+
+typedef double measure(struct ct_rank_monitor *w, const struct passage *p, double part);
+
+// From where the pivot is nearly as small as it becomes, within d: it falls and rises about linearly, so that its sizes before and
+// behind tell.
+static double narrow_by(measure *pivot, struct ct_rank_monitor *w, const struct passage *p,
+                        double theta, double d)
+{
+    enum { LOOKS = 3 };
+    const double nearer = 0.125;
+    for (int i = 0; i < LOOKS; i++) {
+        const double before = pivot(w, p, theta - d), behind = pivot(w, p, theta + d);
+        theta += d * (before - behind) / (before + behind);
+        d *= nearer;
+    }
+    return theta;
+}
+
+static double narrow(struct ct_rank_monitor *w, const struct passage *p, double theta, double d)
+{
+    return narrow_by(pivot_on, w, p, theta, d);
+}
+
+enum { PARTS = 16 }; // of a way that is searched
+
+// Where on the way the pivot is below what counts as zero, as part of it: near the middle. NaN if it is not.
+static double find_in_middle(struct ct_rank_monitor *w, const struct passage *p, double zero)
+{
+    const double beside = 0.1, theta = narrow(w, p, 0.5, beside);
+    return pivot_on(w, p, theta) < zero ? theta : NAN;
+}
+
+// The same near where the pivot is least.
+static double find_least(struct ct_rank_monitor *w, const struct passage *p, double zero)
+{
+    double least = INFINITY, at = 0;
+    for (int i = 0; i <= PARTS; i++) {
+        const double part = (double)i / PARTS, pivot = pivot_on(w, p, part);
+        if (pivot < least) {
+            least = pivot;
+            at = part;
+        }
+    }
+    at = narrow(w, p, at, 1.0 / PARTS);
+    return pivot_on(w, p, at) < zero ? at : NAN;
+}
+
+struct window { // of a way, parts of it; and where the pivot is least in it
+    double from, to, least;
+};
+
+// The same wherever sides change within. theta (PARTS, out); returns how many there are.
+static int find_changes(struct ct_rank_monitor *w, const struct passage *p, double zero,
+                        struct window *in, double *theta)
+{
+    const double part = (in->to - in->from) / PARTS, near = part / 4;
+    struct ct_tangent_basis *last = w->along, *next = w->here;
+    int n = 0;
+    double before = pivot_on(w, p, in->from), least = before;
+    in->least = in->from;
+    ct_tangent_basis_find(w->s, last);
+    for (int i = 1; i <= PARTS; i++) {
+        const double at = in->from + i * part, behind = pivot_on(w, p, at);
+        ct_tangent_basis_find(w->s, next);
+        if (behind < least) {
+            least = behind;
+            in->least = at;
+        }
+        if (ct_singularity_test_sign_changed(w->s, last, next)) {
+            theta[n] = narrow(w, p, at - behind / (before + behind) * part, near);
+            n += pivot_on(w, p, theta[n]) < zero;
+        }
+        struct ct_tangent_basis *v = last;
+        last = next;
+        next = v;
+        before = behind;
+    }
+    return n;
+}
+
+// Several next to each other, which leave the side as it was, around a place.
+static int find_close(struct ct_rank_monitor *w, const struct passage *p, double zero,
+                      double around, double *theta)
+{
+    enum { DEPTH = 7 }; // down to 1e-7
+    struct window in = {.least = around};
+    double half = 1.0 / PARTS;
+    for (int i = 0; i < DEPTH; i++, half *= 2.0 / PARTS) {
+        in.from = in.least - half;
+        in.to = in.least + half;
+        const int n = find_changes(w, p, zero, &in, theta);
+        if (n)
+            return n;
+    }
+    return 0;
+}
+
+// Rows that depend there and by how much the rank falls: with d the distance from the position det J_d is as d^loss.
+static void find_dependence(struct ct_rank_monitor *w, const struct passage *p, double theta,
+                            struct ct_singular_configuration *at)
+{
+    const double d = 0.02, nearer = 0.5;
+    double far, near;
+    const int n = w->s->rank;
+    memset(at->row, 0, w->m->nrow * sizeof *at->row);
+    at->rank_loss = 0;
+    pivot_on(w, p, theta - d);
+    if (!ct_partition_dependence(w->s, w->x, &far))
+        return;
+    pivot_on(w, p, theta - d * nearer);
+    if (!ct_partition_dependence(w->s, w->x, &near))
+        return;
+    at->rank_loss = (int)fmin(n, fmax(1, round((near - far) / log(nearer))));
+    mark_rows(w, at->row);
+}
+
+// Is the end of the way on the side where this loss of rank on it leads to from w->along, where it begins, if that is known?
+static bool tells_of(struct ct_rank_monitor *w, const struct passage *p, int rank_loss)
+{
+    pivot_on(w, p, 1);
+    ct_tangent_basis_find(w->s, w->here);
+    return !w->along->rank || w->along->rank != w->here->rank
+        || ct_singularity_test_sign_changed(w->s, w->along, w->here) == (rank_loss % 2 == 1);
+}
+
+// Positions on a way, as parts of it.
+struct found {
+    double theta[PARTS];
+    int n;
+    bool is_seen; // one, of which all is known in the last of w->passed
+};
+
+// One in the middle, where it has been foreseen, as most often. False if there may be others: multipliers tell two of them apart that are next
+// to each other.
+static bool find_foreseen(struct ct_rank_monitor *w, const struct passage *p, double zero,
+                          struct found *f)
+{
+    struct ct_singular_configuration *last = &w->passed[CT_MOST_SINGULAR];
+    ct_tangent_basis_find(w->s, w->along); // from where the pivot has just been found
+    f->theta[0] = find_in_middle(w, p, zero);
+    f->n = isfinite(f->theta[0]);
+    if (!f->n)
+        return false;
+    find_dependence(w, p, f->theta[0], last);
+    if (!tells_of(w, p, last->rank_loss))
+        return false;
+    f->is_seen = last->rank_loss % 2 == 1 || !w->has_poles;
+    return f->is_seen;
+}
+
+static void find_positions(struct ct_rank_monitor *w, const struct passage *p, struct found *f)
+{
+    const double vanished
+        = 1e-4; // of the pivot where the crossing began: near misses that are followed leave more
+    const double zero = vanished * pivot_on(w, p, 0);
+    struct window whole = {0, 1, 0};
+    double theta[PARTS];
+    if (find_foreseen(w, p, zero, f))
+        return;
+    int n = find_changes(w, p, zero, &whole, theta);
+    if (!n)
+        n = find_close(w, p, zero, f->n ? f->theta[0] : whole.least, theta);
+    if (!n && !f->n) {
+        theta[0] = find_least(w, p, zero);
+        n = isfinite(theta[0]);
+    }
+    if (!n)
+        return;
+    memcpy(f->theta, theta, sizeof theta);
+    f->n = n;
+}
+
+static void keep_position(struct ct_rank_monitor *w, const struct passage *p,
+                          const struct found *f, int i)
+{
+    if (w->npassed++ >= CT_MOST_SINGULAR)
+        return;
+    struct ct_singular_configuration *at = &w->passed[w->npassed - 1],
+                                     *last = &w->passed[CT_MOST_SINGULAR];
+    if (!f->is_seen)
+        find_dependence(w, p, f->theta[i], last);
+    memcpy(at->row, last->row, w->m->nrow * sizeof *at->row);
+    at->rank_loss = last->rank_loss;
+    at->t = fmax(time_on(p, f->theta[i]), 0); // a run that starts in one begins before it
+}
+
+// Of the kept rows, which depend where all do: singular values have but half of the digits.
+static double kept_pivot_on(struct ct_rank_monitor *w, const struct passage *p, double part)
+{
+    pivot_on(w, p, part);
+    return ct_partition_retained_pivot(w->s);
+}
+
+// To as many digits as the way has: what multipliers make of a position is divided by the time to it.
+static void keep_poles(struct ct_rank_monitor *w, const struct passage *p,
+                       const struct found *f)
+{
+    const double beside = 4e-4;
+    w->npole = 0;
+    for (int i = 0; i < f->n && w->has_poles && w->npole < CT_MOST_POLES; i++)
+        w->pole[w->npole++] = time_on(p, narrow_by(kept_pivot_on, w, p, f->theta[i], beside));
+}
+
+bool ct_rank_monitor_record(struct ct_rank_monitor *w, const struct ct_stepper_span *span,
+                            double begin, double t1, double pending)
+{
+    const struct passage p = {.span = span, .begin = begin, .pending = pending};
+    struct found f = {.n = 0};
+    bool has_passed = false;
+    find_positions(w, &p, &f);
+    keep_poles(w, &p, &f);
+    for (int i = 0; i < f.n; i++)
+        if (time_on(&p, f.theta[i]) <= t1) {
+            keep_position(w, &p, &f, i);
+            has_passed = true;
+        }
+    return has_passed;
+}
+
+// Steps came across a position, or close by, where on their way the pivot falls below this part of what it is at both ends.
+static const double nearly_zero = 0.1;
+
+bool ct_rank_monitor_is_crossed(struct ct_rank_monitor *w, const struct ct_rank_test *to,
+                                double before, double behind)
+{
+    const struct passage p = {.to = to};
+    const double part = find_least(w, &p, nearly_zero * fmin(before, behind));
+    return part > 0 && part < 1;
+}
+
+// Is there a position within s seconds of y, the speeds being what they are? The machine is left next to it.
+static bool is_within(struct ct_rank_monitor *w, double t, const double *y, double s)
+{
+    const struct ct_rank_test to = {.t = t + s, .pending = INFINITY, .y = y};
+    w->t = t;
+    memcpy(w->last, y, (w->m->nq + w->m->nu) * sizeof *y);
+    return ct_rank_monitor_is_crossed(w, &to, pivot_to(w, &to, 0), pivot_to(w, &to, 1));
+}
+
+bool ct_rank_monitor_is_near_singular(struct ct_rank_monitor *w, double t, const double *y,
+                                      double step, bool *row)
+{
+    const double beside = 1e-2; // of the largest pivot
+    double log_det;
+    memset(row, 0, w->m->nrow * sizeof *row);
+    if (w->s->rank < w->rank) // in it
+        return true;
+    if (!ct_partition_has_pivot(w->s))
+        return false;
+    if (!(ct_rank_monitor_pivot(w, t, y) < beside * w->most)
+        && !(step > 0 && is_within(w, t, y, step)))
+        return false;
+    if (ct_partition_dependence(w->s, w->x, &log_det))
+        mark_rows(w, row);
+    return true;
+}

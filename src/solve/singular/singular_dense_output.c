@@ -1,0 +1,223 @@
+// See singular_dense_output.h.
+#include "solve/singular/singular_dense_output.h"
+
+#include "integrate/crossing.h"
+#include "numeric/dense.h"
+
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+enum { N = CT_CROSSING_STAGES, MODELS = 1 << CT_MOST_POLES, CHECKED = 2 };
+
+// With poles at some of the positions: weights of the stages for t, and for what the two beside the gap are found to be from the others, less
+// what they are.
+struct model {
+    double weight[N], check[CHECKED][N];
+};
+
+// Numbers at the stages, and at t.
+struct numbers {
+    size_t n;
+    double *at, *value; // (n x N), (n)
+};
+
+struct ct_singular_dense_output {
+    int n; // poles
+    double pole[CT_MOST_POLES];
+    struct model model[MODELS]; // by the set of its poles
+    struct numbers a, lam, result;
+    bool *is_linear; // (nresult) in multipliers
+    bool any_linear;
+};
+
+static struct numbers create_numbers(struct ct_arena *a, size_t n)
+{
+    return (struct numbers){
+        .n = n, .at = CT_NEWN(a, double, n *N + 1), .value = CT_NEWN(a, double, n + 1)};
+}
+
+// Is g, which has multipliers in it, linear in them, and smooth but for them? ds (nrow): in no simple relation.
+static bool is_linear(const struct ct_equations *e, ct_ex g, const ct_ex *lam, const ct_ex *ds)
+{
+    const unsigned has_lam = 1u << CT_SYM_LAM, kinds = ct_ex_kinds(e->x, g);
+    if (!(kinds & has_lam) || kinds & 1u << CT_SYM_SWITCH)
+        return false;
+    const ct_ex slope = ct_ex_diff_along(e->x, g, lam, ds, e->nrow);
+    return !ct_ex_is_zero(slope) && !(ct_ex_kinds(e->x, slope) & has_lam);
+}
+
+static void find_linear(struct ct_singular_dense_output *s, struct ct_arena *a,
+                        const struct ct_equations *e)
+{
+    ct_ex *lam = CT_NEWN(a, ct_ex, 2 * e->nrow + 1), *ds = lam + e->nrow;
+    for (size_t i = 0; i < e->nrow; i++) {
+        lam[i] = e->row[i].lam;
+        ds[i] = ct_ex_const(e->x, 1 + fmod((double)i * 0.6180339887498949, 1));
+    }
+    for (size_t i = 0; i < e->nresult; i++) {
+        s->is_linear[i] = is_linear(e, e->result[i].value, lam, ds);
+        s->any_linear |= s->is_linear[i];
+    }
+}
+
+struct ct_singular_dense_output *ct_singular_dense_output_create(struct ct_arena *a,
+                                                                 const struct ct_evaluator *m)
+{
+    struct ct_singular_dense_output *s = CT_NEW(a, struct ct_singular_dense_output);
+    s->a = create_numbers(a, m->nu);
+    s->lam = create_numbers(a, m->nrow);
+    s->result = create_numbers(a, m->e->nresult);
+    s->is_linear = CT_NEWN(a, bool, m->e->nresult + 1);
+    if (m->nrow)
+        find_linear(s, a, m->e);
+    return s;
+}
+
+// (t - t_k), but for t_k itself, where there is no value: as near as times differ.
+static double distance_to_pole(double t, double pole)
+{
+    const double least = DBL_EPSILON * fmax(fabs(t), DBL_MIN / DBL_EPSILON);
+    return fabs(t - pole) > least ? t - pole : least;
+}
+
+// The weight of stage j in what is interpolated at t between the stages that `some` names.
+static double lagrange(const struct ct_gap_interpolation *b, const bool *some, int j, double t)
+{
+    double weight = some[j];
+    for (int i = 0; i < N; i++)
+        if (some[i] && i != j)
+            weight *= (t - b->t[i]) / (b->t[j] - b->t[i]);
+    return weight;
+}
+
+// Weights of the stages for t, with these poles.
+static void find_weights(const struct ct_singular_dense_output *s,
+                         const struct ct_gap_interpolation *b, const bool *some, unsigned poles,
+                         double t, double *weight)
+{
+    double plain[N];
+    for (int j = 0; j < N; j++)
+        weight[j] = plain[j] = lagrange(b, some, j, t);
+    for (int k = 0; k < s->n; k++) {
+        if (!(poles & 1u << k))
+            continue;
+        double factor = 1 / distance_to_pole(t, s->pole[k]);
+        for (int j = 0; j < N; j++)
+            factor -= some[j] ? plain[j] / distance_to_pole(b->t[j], s->pole[k]) : 0;
+        for (int j = 0; j < N; j++) {
+            double residue = lagrange(b, some, j, s->pole[k]) * (b->t[j] - s->pole[k]);
+            for (int l = 0; l < s->n; l++)
+                if (l != k && poles & 1u << l)
+                    residue *= (b->t[j] - s->pole[l]) / (s->pole[k] - s->pole[l]);
+            weight[j] += factor * residue;
+        }
+    }
+}
+
+static void find_models(struct ct_singular_dense_output *s,
+                        const struct ct_gap_interpolation *b, double t)
+{
+    bool all[N], others[N];
+    for (int j = 0; j < N; j++) {
+        all[j] = true;
+        others[j] = j != N / 2 - 1 && j != N / 2;
+    }
+    for (unsigned poles = 0; poles < 1u << s->n; poles++) {
+        struct model *m = &s->model[poles];
+        find_weights(s, b, all, poles, t, m->weight);
+        for (int c = 0; c < CHECKED; c++) {
+            const int j = N / 2 - 1 + c;
+            find_weights(s, b, others, poles, b->t[j], m->check[c]);
+            m->check[c][j] -= 1;
+        }
+    }
+}
+
+// Positions that are next to each other are one.
+static void find_poles(struct ct_singular_dense_output *s, const struct ct_rank_monitor *w,
+                       const struct ct_gap_interpolation *b)
+{
+    const double apart = 1e-7 * (b->t[N - 1] - b->t[0]);
+    s->n = 0;
+    for (int k = 0; k < w->npole; k++)
+        if (!s->n || w->pole[k] - s->pole[s->n - 1] > apart)
+            s->pole[s->n++] = w->pole[k];
+}
+
+static void note(struct numbers *x, const double *at, int j)
+{
+    for (size_t i = 0; i < x->n; i++)
+        x->at[i * N + (size_t)j] = at[i];
+}
+
+static double error_of(const struct model *m, const double *at)
+{
+    double error = 0;
+    for (int c = 0; c < CHECKED; c++)
+        error += fabs(ct_vector_dot(m->check[c], at, N));
+    return error;
+}
+
+// A pole belongs to a number if the stages tell of it.
+static void take(const struct ct_singular_dense_output *s, struct numbers *x, bool has_poles)
+{
+    const double clearly = 0.1;
+    for (size_t i = 0; i < x->n; i++) {
+        const double *at = x->at + i * N;
+        const struct model *best = &s->model[0];
+        double least = error_of(best, at);
+        for (unsigned poles = 1; has_poles && poles < 1u << s->n; poles++) {
+            const double error = error_of(&s->model[poles], at);
+            if (error < clearly * least) {
+                least = error;
+                best = &s->model[poles];
+            }
+        }
+        x->value[i] = ct_vector_dot(best->weight, at, N);
+    }
+}
+
+// Results where the evaluator is, with these accelerations and multipliers.
+static const double *results(struct ct_evaluator *m, const double *a, const double *lam)
+{
+    memcpy(m->input + m->at_a, a, m->nu * sizeof *a);
+    memcpy(m->input + m->at_lam, lam, m->nrow * sizeof *lam);
+    ct_program_run(&m->result, m->input);
+    return m->result.out;
+}
+
+static bool note_stage(struct ct_run *r, const struct ct_gap_interpolation *b, int j)
+{
+    struct ct_singular_dense_output *s = r->singular_dense_output;
+    memcpy(r->stage, b->y + (size_t)j * r->ny, r->ny * sizeof *r->stage);
+    if (ct_partition_project(r->s, b->t[j], r->stage) != CT_EVAL_OK
+        || ct_run_accelerate(r, b->t[j], r->stage) != CT_EVAL_OK)
+        return false;
+    ct_partition_multipliers(r->s);
+    note(&s->a, r->s->a, j);
+    note(&s->lam, r->s->lam, j);
+    if (s->any_linear)
+        note(&s->result, results(r->m, r->s->a, r->s->lam), j);
+    return true;
+}
+
+bool ct_run_singular_dense_output(struct ct_run *r, double t, const double *y,
+                                  const struct ct_gap_interpolation *b, double *value)
+{
+    struct ct_singular_dense_output *s = r->singular_dense_output;
+    find_poles(s, r->singular, b);
+    find_models(s, b, t);
+    for (int j = 0; j < N; j++)
+        if (!note_stage(r, b, j))
+            return false;
+    take(s, &s->a, false);
+    take(s, &s->lam, true);
+    take(s, &s->result, true);
+    ct_evaluator_set(r->m, t, y);
+    memcpy(value, results(r->m, s->a.value, s->lam.value), r->e->nresult * sizeof *value);
+    for (size_t i = 0; i < r->e->nresult; i++)
+        if (s->is_linear[i])
+            value[i] = s->result.value[i];
+    return true;
+}

@@ -1,0 +1,375 @@
+// A run that starts in a singular configuration with speeds, or just beside one: from a little before it.
+//
+// In the position rows depend and accelerations cannot be found, but speeds that belong to one of the motions through it,
+//
+//     J u = -Phi_t,   w' (J' u + ...) = 0  for w' J = 0                                              (8.23)
+//
+// tell which one it is. Beside it they are known to be those of a motion, but steps from there to where a crossing begins, or one that
+// begins there, would be among round-off errors. Collocation centred on the position finds the state half a step before it; from there the
+// run goes on as any that comes to such a position, and crosses it.
+#include "solve/run/run_internal.h"
+
+#include "integrate/crossing.h"
+#include "numeric/dense.h"
+
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+// Largest change of a coordinate from where the motion is slowest to either end of the step [rad, m], at first; halved where the
+// step errs.
+static const double longest_way = 0.4;
+enum { LOOKS = 12 }; // a motion that lingers leaves faster than accelerations of now tell
+
+// Starts from so far [rad, m] come to the position by a step across it and what is learnt on the way; up to there from it a start tells
+// nothing of how the smallest pivot falls.
+static const double beside = 0.2, near = 0.5;
+
+// The step may err by so much of the largest state, or by so much of what is asked if that is more. (8.35)
+static const double exact = 1e-12, unfelt = 0.02;
+
+// Where a run starts: all speeds together, and accelerations where they are known.
+struct initial_step {
+    const struct ct_problem *p;
+    void *work;
+    double u, a, ua;    // |u|, |u'|, u . u'
+    double in;          // time to the position, below 0 behind it
+    double most;        // the step may err by so much of the largest state
+    double *before;     // (ny, out)
+    double *end, *dend; // (ny)
+    struct ct_tangent_basis *view[2];
+};
+
+// A step across, h, around a place `middle` seconds after the start, and what it errs by, of the largest state.
+struct across {
+    double middle, h, error;
+};
+
+static double begin_of(const struct across *c)
+{
+    return c->middle - c->h / 2;
+}
+
+// Time for a way from where the speed is u.
+static double time_for(const struct initial_step *l, double u, double way)
+{
+    return 2 * way / (u + sqrt(u * u + 2 * l->a * way));
+}
+
+static double speed_at(const struct initial_step *l, double t)
+{
+    return sqrt(fmax(0, l->u * l->u + t * (2 * l->ua + t * l->a * l->a)));
+}
+
+// How far the ends of the step may lie off the constraints [m, rad]: speeds that belong to no motion leave much more.
+static double off_constraints(struct ct_run *r, double t, const double *y)
+{
+    ct_evaluator_set(r->m, t, y);
+    ct_evaluator_constraint(r->m);
+    return ct_vector_largest(r->m->phi, r->m->nrow);
+}
+
+// Rows and columns of the coordinate partitioning, for the motion from y with derivative dy, at h after it.
+static bool choose_near_singular(struct ct_run *r, double h, const double *y)
+{
+    const size_t n = r->ctx->ndiagnostic, nerror = r->ctx->nerror;
+    memcpy(r->stage, y, r->ny * sizeof *y);
+    for (size_t k = 0; k < r->m->nu; k++)
+        r->scratch[k] = h * y[r->m->nq + k];
+    ct_evaluator_retract(r->m, r->stage, r->scratch);
+    ct_evaluator_set(r->m, h, r->stage);
+    ct_evaluator_constraint(r->m);
+    r->s->sigma_best = 0;
+    r->s->prefers_independent
+        = r->is_given; // what follows from them is known less well, the less the nearer the position is
+    const bool is_chosen = ct_partition_choose(r->s);
+    r->s->prefers_independent = NULL;
+    if (is_chosen)
+        return true;
+    r->ctx->ndiagnostic = n; // another place may do
+    r->ctx->nerror = nerror;
+    return false;
+}
+
+// How far y may be from the start to be on the motion that is meant, of the largest state: speeds beside a position are known no better,
+// other motions are as far as speeds are large.
+static const double meant = 1e-4;
+
+// How far the first n of y are from it.
+static double miss(const struct ct_run *r, const double *y, size_t n)
+{
+    double most = 0;
+    for (size_t i = 0; i < n; i++)
+        most = fmax(most, fabs(y[i] - r->assembled[i]));
+    return most / ct_vector_largest(r->assembled, r->ny);
+}
+
+static bool is_near_start(const struct ct_run *r, const double *y, size_t n)
+{
+    return miss(r, y, n) <= meant;
+}
+
+bool ct_run_meets_start(const struct ct_run *r, const double *y)
+{
+    return is_near_start(r, y, r->ny - 1);
+}
+
+// Does the step from l->before lead across, and to the start on its way? r->stage (out): what it makes of the start.
+static bool leads_across(struct ct_run *r, const struct initial_step *l, const struct across *c)
+{
+    const double t = begin_of(c), most = ct_vector_largest(l->before, r->ny),
+                 roundoff = fmax(ct_crossing_roundoff, unfelt * r->o->output_rtol);
+    const struct ct_tolerance tolerance = {r->o->rtol, fmax(r->o->atol, roundoff * most)};
+    double error;
+    if (l->p->rhs(r, t, l->before, r->dy) != CT_EVAL_OK
+        || ct_crossing.step(l->p, t, c->h, l->before, r->dy, &tolerance, l->end, l->dend,
+                            &error, l->work, &r->stats)
+               != CT_EVAL_OK
+        || !(error <= 1))
+        return false;
+    ct_crossing.dense(l->p, c->h, -t / c->h, l->before, l->end, l->work, r->stage);
+    return ct_run_meets_start(r, r->stage);
+}
+
+// Sweeps of the step into l->before, down to a part of the largest state or, where they come to round-off before, to ten times as
+// much and so on. Returns what the step errs by, or INFINITY.
+static double collocate_backwards(struct ct_run *r, const struct initial_step *l,
+                                  const struct across *c)
+{
+    const double *y = r->assembled, largest = ct_vector_largest(y, r->ny), t = begin_of(c);
+    double error, part = exact;
+    while (part <= l->most) {
+        const struct ct_tolerance tolerance = {part, part * largest};
+        if (ct_crossing_initial_step(l->p, 0, c->h, -t / c->h, y, r->dy, &tolerance, l->before,
+                                     &error, l->work, &r->stats)
+            == CT_EVAL_OK)
+            return fmax(error, 1) * part;
+        part *= 10;
+    }
+    return INFINITY;
+}
+
+// The state where a step begins, with the digits that its stages have.
+static bool put_on_constraints(struct ct_run *r, const struct initial_step *l, double t)
+{
+    l->p->set_crossing(r, true);
+    const enum ct_eval e = l->p->project(r, t, l->before);
+    l->p->set_crossing(r, false);
+    return e == CT_EVAL_OK;
+}
+
+// The state where a step across begins, into l->before, and what that errs by; INFINITY where it does not lead across.
+static void look_back(struct ct_run *r, const struct initial_step *l, struct across *c)
+{
+    const double t = begin_of(c);
+    c->error = INFINITY;
+    if (!choose_near_singular(r, t + c->h, r->assembled))
+        return;
+    ct_evaluator_set(r->m, 0, r->assembled);
+    ct_evaluator_dynamics(r->m);
+    memset(r->dy, 0, r->ny * sizeof *r->dy);
+    ct_evaluator_copy(r->dy, r->m->rate, r->m->nq);
+    const double error = collocate_backwards(r, l, c);
+    if (error <= l->most && off_constraints(r, t, l->before) <= ct_crossing_mismatch_limit
+        && put_on_constraints(r, l, t) && leads_across(r, l, c))
+        c->error = error;
+}
+
+// Does J keep its rank on either side of the gap? Near a position among the stages samples would be among round-off errors.
+static bool keeps_rank(struct ct_run *r, const struct initial_step *l, const struct across *c)
+{
+    const struct ct_gap_interpolation b
+        = ct_crossing_interpolation(l->work, begin_of(c), c->h, 0.5);
+    struct ct_tangent_basis *there = l->view[0], *here = l->view[1];
+    for (int k = 0; k < b.n; k++) {
+        ct_evaluator_set(r->m, b.t[k], b.y + (size_t)k * r->ny);
+        ct_evaluator_constraint(r->m);
+        ct_partition_pivot(r->s);
+        ct_tangent_basis_find(r->s, here);
+        if (k && k != b.n / 2 && ct_singularity_test_sign_changed(r->s, there, here))
+            return false;
+        struct ct_tangent_basis *v = there;
+        there = here;
+        here = v;
+    }
+    return true;
+}
+
+// Do root functions keep their signs? What switches on the way is another motion.
+static bool keeps_sides(struct ct_run *r, const struct initial_step *l, double t)
+{
+    double *now = CT_NEWN(r->arena, double, 2 * (size_t)r->nroot + 1), *then = now + r->nroot;
+    ct_run_root(r, 0, r->assembled, now);
+    ct_run_root(r, t, l->before, then);
+    for (int i = 0; i < r->nroot; i++)
+        if (!(now[i] * then[i] > 0))
+            return false;
+    return true;
+}
+
+// The longest step around `middle` that errs little enough, of those that are halves of each other and reach the start, in place of
+// best (in and out) if that is shorter: it ends farther from the position.
+static void find_step(struct ct_run *r, const struct initial_step *l, double middle,
+                      struct across *best)
+{
+    struct across c = {middle, 2 * time_for(l, speed_at(l, middle), longest_way), INFINITY};
+    for (int i = 0; i < LOOKS && c.h > best->h && c.h / 2 > fabs(middle); i++, c.h /= 2) {
+        look_back(r, l, &c);
+        if (c.error < INFINITY && keeps_rank(r, l, &c) && keeps_sides(r, l, begin_of(&c))) {
+            *best = c;
+            return;
+        }
+    }
+}
+
+// Speeds that miss (8.23) by more, of their squares, belong to no motion: what round-off of them leaves is far below.
+static const double belongs = 1e-7;
+
+static bool refuse_speeds(struct ct_run *r, double misfit, int freedoms)
+{
+    ct_error(r->ctx, (struct ct_mark){0}, CT_E_STEP_OPEN,
+             "the constraints cannot be met beyond t = 0: the run starts in a singular "
+             "configuration, where constraints of %s do not count "
+             "and several motions go on, and %s",
+             r->singular_joints,
+             misfit > belongs ? "the speeds belong to none of them"
+                              : "none that has these speeds is found to this tolerance");
+    if (misfit > belongs)
+        ct_note(r->ctx, (struct ct_mark){0},
+                "give the rates of %d joints there, as one motion through the position has "
+                "them together: those of now miss that by "
+                "%.2g of their squares; or start a little beside it, a joint off by 1e-3, on "
+                "the motion that is meant",
+                freedoms, misfit);
+    else
+        ct_note(
+            r->ctx, (struct ct_mark){0},
+            "a larger tolerance may do; or start a little beside it, a joint off by 1e-3, on "
+            "the motion that is meant");
+    return false;
+}
+
+// As if nothing had been tried.
+static void return_to_start(struct ct_run *r)
+{
+    ct_evaluator_set(r->m, 0, r->y);
+    ct_evaluator_constraint(r->m);
+    r->s->sigma_best = 0;
+    ct_partition_choose(r->s);
+}
+
+// What is not given follows from what is by pivots as small as the way to the position.
+static void warn_of_rounding(struct ct_run *r, double unknown)
+{
+    ct_warning(
+        r->ctx, (struct ct_mark){.file = r->model->file}, 0,
+        "the run starts so near to a singular configuration that round-off leaves places and "
+        "speeds that are not given known to %.1g: start in the position itself, or "
+        "farther from it",
+        unknown);
+}
+
+static void find_best(struct ct_run *r, const struct initial_step *l, struct across *best)
+{
+    find_step(r, l, l->in, best);
+    if (l->a > 0)
+        find_step(r, l, -l->ua / (l->a * l->a), best);
+}
+
+// From half a step before the position on, if there is one that crosses it. A motion that is slow there, and turns, comes to it twice:
+// then the step is better centred on where it turns.
+static bool begin_before(struct ct_run *r, struct initial_step *l)
+{
+    double **const vector[] = {&l->before, &l->end, &l->dend};
+    struct across best = {.error = INFINITY};
+    for (size_t i = 0; i < COUNT(l->view); i++) {
+        l->view[i] = ct_tangent_basis_create(r->arena);
+        ct_tangent_basis_reserve(r->s, l->view[i]);
+    }
+    for (size_t i = 0; i < COUNT(vector); i++)
+        *vector[i] = CT_NEWN(r->arena, double, r->ny);
+    r->singular->time_to_singular = 0; // nearer than from where crossings begin
+    r->singular->reach = INFINITY;
+    l->work = ct_crossing.create(r->arena, &ct_crossing, l->p);
+    find_best(r, l, &best);
+    if (best.error < INFINITY)
+        look_back(r, l, &best);
+    if (!(best.error < INFINITY)) {
+        return_to_start(r);
+        return false;
+    }
+    const double unknown = miss(r, r->stage, r->ny - 1);
+    if (unknown > r->o->output_rtol)
+        warn_of_rounding(r, unknown);
+    r->t0 = begin_of(&best);
+    memcpy(r->y, l->before, r->ny * sizeof *r->y);
+    r->singular->retains_rows = r->method->is_implicit && (size_t)r->s->rank < r->m->nrow;
+    ct_rank_monitor_announce(r->singular, r->t0, r->y, best.h / 2);
+    return true;
+}
+
+// What the step may err by, where it is felt by so much, for steps that are held to `asked`.
+static void allow(struct initial_step *l, double asked, double felt)
+{
+    l->most = fmax(exact, unfelt * asked * felt);
+}
+
+static bool begin_in_position(struct ct_run *r, struct initial_step *l)
+{
+    int freedoms;
+    if (r->o->step > 0)
+        return ct_error(
+            r->ctx, (struct ct_mark){0}, CT_E_STEP_REFUSED,
+            "the run starts in a singular configuration, where constraints of %s do not "
+            "count: steps of fixed size do not lead "
+            "away from it; leave out 'step'",
+            r->singular_joints);
+    const double misfit = ct_singular_start_misfit(r->arena, r->s, 0, r->assembled, &freedoms);
+    allow(l, r->o->rtol, 1);
+    return (misfit <= belongs && begin_before(r, l)) || refuse_speeds(r, misfit, freedoms);
+}
+
+// How far the position is, below 0 behind the start, as the motion goes there; accelerations of the start are in r->dy.
+static double find_way(struct ct_run *r, struct initial_step *l)
+{
+    const double glance = 1e-3; // of the time to a position beside
+    const double *a = r->dy + r->m->nq, *u = r->y + r->m->nq;
+    l->u = ct_vector_size(u, r->m->nu);
+    l->a = ct_vector_size(a, r->m->nu);
+    l->ua = ct_vector_dot(u, a, r->m->nu);
+    if (!(l->u + l->a > 0))
+        return INFINITY;
+    const double s = glance * time_for(l, l->u, beside);
+    return ct_rank_monitor_distance(r->singular, 0, r->y, r->dy, r->pending, s);
+}
+
+// Beside a position: from before it, or else what is known of it from the start on.
+static void begin_near_singular(struct ct_run *r, struct initial_step *l)
+{
+    const double way = find_way(r, l), size = fabs(way);
+    if (!(size > 0 && size < near))
+        return;
+    const double along = fmax(size, l->u * time_for(l, l->u, longest_way));
+    allow(l, r->o->output_rtol, fmin(1, along));
+    l->in = copysign(time_for(l, l->u, size), way);
+    ct_rank_monitor_scale_pivot(r->singular, 0, r->y, near / size);
+    if (size > beside || !begin_before(r, l))
+        ct_rank_monitor_start_near(r->singular, 0, r->y, way > 0 ? l->in : INFINITY,
+                                   near / size);
+}
+
+bool ct_run_starts_near_singular(struct ct_run *r)
+{
+    struct initial_step l = {.in = 0};
+    return r->m->nrow && fabs(find_way(r, &l)) < near;
+}
+
+bool ct_run_singular_initial_step(struct ct_run *r, const struct ct_problem *p)
+{
+    struct initial_step l = {.p = p, .u = ct_vector_size(r->assembled + r->m->nq, r->m->nu)};
+    if (r->m->nrow && r->singular_joints && l.u > 0)
+        return begin_in_position(r, &l);
+    if (r->m->nrow && !r->singular_joints && r->o->step == 0)
+        begin_near_singular(r, &l);
+    return true;
+}
