@@ -204,7 +204,7 @@ bool ct_system_assemble(struct ct_ctx *own, struct ct_system *sys,
         const bool ok
             = ct_assembly_solve(own, own->model, &sys->model, &sys->start_equations, start);
         if (!ok)
-            ct_note_odd_axis(own, own->model, &sys->model);
+            ct_note_misaligned_joint(own, own->model, &sys->model);
         return ok;
     }
     return ct_assembly_solve_open(own, own->model, &sys->model, &sys->start_equations, start)

@@ -14,7 +14,7 @@ bodies:
   rocker: {mass: 1, inertia: 0.1, points: {end: [0.2, 0, 0]}}
 joints:
   a: {type: revolute, from: ground, to: crank, $2}
-  b: {type: revolute, from: crank.end, to: coupler, initial: {q: 0.5, guess: true}}
+  b: {type: revolute, from: crank.end, to: coupler, initial: {q: -1.1, guess: true}}
   c: {type: revolute, from: ground.far, to: rocker, initial: {q: 1, guess: true}}
   d: {type: revolute, from: coupler.end, to: rocker.end}
 simulation: {duration: 2, samples: 2001}
@@ -114,3 +114,16 @@ outputs: [pin.q, pin.u]
 END
   say simulate table.yaml -q -o -
 done
+
+# a load in a plane that `deformation` leaves out
+cat >across.yaml <<'END'
+cotree: 1
+bodies:
+  strip: {type: beam, length: 1, elements: 2, E: 7e10, density: 2700, area: 1e-4, Iz: 1e-9, deformation: [bending-z], points: {tip: length}}
+joints:
+  w: {type: weld, from: ground, to: strip}
+forces:
+  push: {type: force, at: strip.tip, value: [0, 3, 0]}
+  side: {type: force, at: strip.tip, value: [0, 3, 4]}
+END
+"$COTREE" check across.yaml -q 2>&1
