@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { ROUND = 32 }; // corners of what is round
+enum { ROUND = 48 }; // corners of what is round
 
 // ---- places -----------------------------------------------------------------------------------
 
