@@ -68,7 +68,7 @@ static bool write_motion(struct ct_ctx *ctx, struct ct_sim *sim, const struct cl
     char *standard = args->output ? NULL : cli_standard_path(args->model, suffix);
     const char *path = args->output ? args->output : standard;
     const struct ct_sim_results results
-        = {.path = path ? path : "-", .progress = args->quiet ? NULL : stderr};
+        = {.path = path ? path : "-", .bar = args->quiet ? NULL : stderr};
     char text[512];
     snprintf(text, sizeof text, ": whole rows may be in '%s.partial'", results.path);
     cli_interrupt_explain(text);

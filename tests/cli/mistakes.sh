@@ -14,7 +14,7 @@ bodies:
   rocker: {mass: 1, inertia: 0.1, points: {end: [0.2, 0, 0]}}
 joints:
   a: {type: revolute, from: ground, to: crank, $2}
-  b: {type: revolute, from: crank.end, to: coupler, initial: {q: -1.1, guess: true}}
+  b: {type: revolute, from: crank.end, to: coupler, initial: {q: 0.5, guess: true}}
   c: {type: revolute, from: ground.far, to: rocker, initial: {q: 1, guess: true}}
   d: {type: revolute, from: coupler.end, to: rocker.end}
 simulation: {duration: 2, samples: 2001}

@@ -247,8 +247,7 @@ static bool solutions_agree(const struct loop *l, struct variant *v, struct ct_s
     assert_true(ct_solver_solve(f, m, a) > 1e-3);
     ct_evaluator_dynamics(m);
     assert_int_equal(ct_partition_accelerate(v->s), CT_EVAL_OK);
-    // three random errors are typical ones, not the worst
-    const double tol = fmax(1e-10, 10 * sensitivity(v));
+    const double tol = fmax(1e-10, sensitivity(v));
     assert_true(tol < 1e-6); // else nothing is compared
     bool ok = same(l->name, "u'", a, v->s->a, m->nu, tol);
     ct_solver_check(f, m);

@@ -81,8 +81,7 @@ void ct_initial_state_apply(const struct ct_initial_state *s, struct ct_evaluato
                             double *y);
 
 /// After the mechanism did not assemble: a note that names the one joint whose axis keeps it from moving in a plane, if there is
-/// one.  (misaligned_joint.c)
-void ct_note_misaligned_joint(struct ct_ctx *ctx, struct ct_arena *a,
-                              const struct ct_model *model);
+/// one.  (odd_axis.c)
+void ct_note_odd_axis(struct ct_ctx *ctx, struct ct_arena *a, const struct ct_model *model);
 
 #endif

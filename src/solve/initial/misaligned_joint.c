@@ -144,7 +144,7 @@ static bool find_measures(struct ct_arena *a, struct plane *p)
     return true;
 }
 
-void ct_note_misaligned_joint(struct ct_ctx *ctx, struct ct_arena *a, const struct ct_model *m)
+void ct_note_odd_axis(struct ct_ctx *ctx, struct ct_arena *a, const struct ct_model *m)
 {
     struct plane p = {.m = m,
                       .measure = CT_NEWN(a, const struct ct_measure *, m->njoint + 1),
