@@ -91,14 +91,24 @@ static bool choose_tree(struct ct_ctx *ctx, const char *tree, struct ct_formulat
 
 // ---- the pipeline ----------------------------------------------------------------------------------
 
-static bool read_model(struct ct_system *s, const char *path, const struct ct_system_options *o)
+// The file `name`; or n bytes of text, whose file that would be.
+struct source {
+    const char *name, *text;
+    size_t n;
+};
+
+static bool read_model(struct ct_system *s, const struct source *from,
+                       const struct ct_system_options *o)
 {
     const double start = ct_input_sampling();
     struct ct_set *set = CT_NEWN(s->own.model, struct ct_set, o->nset + 1);
     for (size_t i = 0; i < o->nset; i++)
         set[i].text = o->set[i];
     const bool ok
-        = ct_model_read(&s->own, path, set, o->nset, &s->model)
+        = (from->text ? ct_model_parse(&s->own, ct_arena_strdup(s->own.model, from->name),
+                                       ct_arena_strndup(s->own.model, from->text, from->n),
+                                       from->n, set, o->nset, &s->model)
+                      : ct_model_read(&s->own, from->name, set, o->nset, &s->model))
        && ct_model_change_beams(&s->own, &s->model, o->beam_elements, o->beam_formulation);
     ct_own_next_stage(&s->own);
     s->read = ct_input_sampling() - start;
@@ -136,7 +146,8 @@ static bool formulate_settled(struct ct_system *s, const struct ct_system_option
     return s->held_equations.nrow == 0 || formulate(s, &f, &s->moving_equations, &unused);
 }
 
-static bool build(struct ct_system *s, const char *path, const struct ct_system_options *o)
+static bool build(struct ct_system *s, const struct source *from,
+                  const struct ct_system_options *o)
 {
     struct ct_formulate_options motion = {.keep_all = o->keep_all,
                                           .with_energy = true,
@@ -156,8 +167,9 @@ static bool build(struct ct_system *s, const char *path, const struct ct_system_
                                                .like = &s->equations,
                                                .without_dynamics = true};
     struct ct_tree_report unused;
+    s->published = CT_NEW(s->own.model, struct ct_published);
     if (!choose_tree(&s->own, o->tree, &motion) // which branches, if any are given
-        || !read_model(s, path, o))             // text -> component instances
+        || !read_model(s, from, o))             // text -> component instances
         return false;
     return formulate(s, &motion, &s->equations, &s->tree) // graph, trees, equations of motion
         && formulate(s, &start, &s->start_equations, &unused) // equations for assembling
@@ -167,21 +179,22 @@ static bool build(struct ct_system *s, const char *path, const struct ct_system_
 
 struct load {
     struct ct_system *s;
-    const char *path;
+    struct source from;
     const struct ct_system_options *options;
 };
 
 static bool load(void *task)
 {
     const struct load *l = task;
-    return build(l->s, l->path, l->options);
+    return build(l->s, &l->from, l->options);
 }
 
-struct ct_system *ct_system_load(struct ct_ctx *ctx, const char *path,
-                                 const struct ct_system_options *options)
+static struct ct_system *load_from(struct ct_ctx *ctx, const struct source *from,
+                                   const struct ct_system_options *options)
 {
-    static const struct ct_system_options standard;
-    struct load l = {ct_own_alloc(ctx, sizeof *l.s), path, options ? options : &standard};
+    struct ct_system_options o;
+    ct_options_take(&o, options, sizeof o);
+    struct load l = {ct_own_alloc(ctx, sizeof *l.s), *from, &o};
     if (!l.s)
         return NULL;
     if (ct_own_enter(ctx, &l.s->own, load, &l))
@@ -190,11 +203,45 @@ struct ct_system *ct_system_load(struct ct_ctx *ctx, const char *path,
     return NULL;
 }
 
+struct ct_system *ct_system_load(struct ct_ctx *ctx, const char *path,
+                                 const struct ct_system_options *options)
+{
+    return ctx && path ? load_from(ctx, &(struct source){path, NULL, 0}, options) : NULL;
+}
+
+struct ct_system *ct_system_load_text(struct ct_ctx *ctx, const char *text, size_t n,
+                                      const char *name, const struct ct_system_options *options)
+{
+    const struct source from = {name ? name : "model", text, n};
+    return ctx && text ? load_from(ctx, &from, options) : NULL;
+}
+
 void ct_system_destroy(struct ct_system *sys)
 {
+    if (sys && sys->published)
+        free(atomic_load(&sys->published->start));
     if (sys)
         ct_own_finish(&sys->own);
     free(sys);
+}
+
+struct ct_system *ct_system_borrow(struct ct_ctx *own, struct ct_system *sys)
+{
+    if (sys->is_private)
+        return sys;
+    struct ct_arena *a = own->model;
+    struct ct_system *s = CT_NEW(a, struct ct_system);
+    const struct ct_model *model = ct_model_fork(a, &sys->model);
+    s->is_private = true;
+    s->model = *model;
+    s->tree = sys->tree;
+    s->read = sys->read;
+    s->generate = sys->generate;
+    ct_equations_fork(own, a, &s->model, &sys->equations, &s->equations);
+    ct_equations_fork(own, a, &s->model, &sys->start_equations, &s->start_equations);
+    ct_equations_fork(own, a, &s->model, &sys->held_equations, &s->held_equations);
+    ct_equations_fork(own, a, &s->model, &sys->moving_equations, &s->moving_equations);
+    return s;
 }
 
 bool ct_system_assemble(struct ct_ctx *own, struct ct_system *sys,
@@ -217,17 +264,21 @@ bool ct_system_assemble(struct ct_ctx *own, struct ct_system *sys,
 
 const char *ct_system_name(const struct ct_system *sys)
 {
+    if (!sys)
+        return NULL;
     return sys->model.name;
 }
 
 size_t ct_system_column_count(const struct ct_system *sys)
 {
+    if (!sys)
+        return 0;
     return sys->equations.nresult;
 }
 
 const char *ct_system_column(const struct ct_system *sys, size_t i)
 {
-    return i < sys->equations.nresult ? sys->equations.result[i].name : NULL;
+    return sys && i < sys->equations.nresult ? sys->equations.result[i].name : NULL;
 }
 
 // ---- the graph -----------------------------------------------------------------------------------------
@@ -251,7 +302,7 @@ static const char *edge_kind(void *data, int i)
 }
 
 struct drawing {
-    struct ct_ctx *ctx;
+    struct ct_ctx *ctx, *own;
     struct ct_system *s;
     const char *format;
     FILE *out;
@@ -260,8 +311,8 @@ struct drawing {
 static bool draw(void *task)
 {
     const struct drawing *d = task;
-    struct ct_equations *e = &d->s->equations;
-    struct ct_ctx *own = &d->s->own;
+    struct ct_ctx *own = d->own;
+    struct ct_equations *e = &ct_system_borrow(own, d->s)->equations;
     static const char *const formats[] = {"text", "dot", "json"};
     bool *quiet = CT_NEWN(own->scratch, bool, e->graph->nedge + 1);
     bool *marked = CT_NEWN(own->scratch, bool, e->graph->nedge + 1);
@@ -289,21 +340,23 @@ static bool draw(void *task)
     else
         ok = ct_error(d->ctx, (struct ct_mark){0}, CT_E_USAGE,
                       "a graph has no format '%s': text, dot or json", format);
-    ct_own_next_stage(own);
     return ok;
 }
 
 bool ct_system_print_graph(struct ct_ctx *ctx, struct ct_system *sys, const char *format,
                            FILE *out)
 {
-    struct drawing d = {ctx, sys, format, out};
-    return sys && ct_enter(ctx, draw, &d);
+    struct ct_ctx own = {0};
+    struct drawing d = {ctx, &own, sys, format, out};
+    const bool ok = ctx && sys && out && ct_own_enter(ctx, &own, draw, &d);
+    ct_own_finish(&own);
+    return ok;
 }
 
 // ---- the equations -------------------------------------------------------------------------------------
 
 struct printing {
-    struct ct_ctx *ctx;
+    struct ct_ctx *ctx, *own;
     struct ct_system *s;
     const char *stages, *format;
     FILE *out;
@@ -360,17 +413,45 @@ static bool print_equations(void *task)
         ok = wrong_format(p->ctx, name, formats, COUNT(formats));
     if (!ok)
         return false;
-    ct_formulate_dynamics(&p->s->equations);
-    ok = ct_equations_print(p->out, p->s->own.scratch, &p->s->equations, &p->s->model, stages,
-                            format)
-      || ct_error(p->ctx, (struct ct_mark){0}, CT_E_FILE, "cannot write the equations");
-    ct_own_next_stage(&p->s->own);
-    return ok;
+    struct ct_system *s = ct_system_borrow(p->own, p->s);
+    ct_formulate_dynamics(&s->equations);
+    return ct_equations_print(p->out, p->own->scratch, &s->equations, &s->model, stages, format)
+        || ct_error(p->ctx, (struct ct_mark){0}, CT_E_FILE, "cannot write the equations");
 }
 
 bool ct_system_print_equations(struct ct_ctx *ctx, struct ct_system *sys, const char *stages,
                                const char *format, FILE *out)
 {
-    struct printing p = {ctx, sys, stages, format, out};
-    return sys && ct_enter(ctx, print_equations, &p);
+    struct ct_ctx own = {0};
+    struct printing p = {ctx, &own, sys, stages, format, out};
+    const bool ok = ctx && sys && out && ct_own_enter(ctx, &own, print_equations, &p);
+    ct_own_finish(&own);
+    return ok;
+}
+
+// ---- the same as texts -------------------------------------------------------------------------------------
+
+static bool graph_into(void *task, FILE *out)
+{
+    const struct drawing *d = task;
+    return ct_system_print_graph(d->ctx, d->s, d->format, out);
+}
+
+char *ct_system_graph(struct ct_ctx *ctx, struct ct_system *sys, const char *format)
+{
+    struct drawing d = {.ctx = ctx, .s = sys, .format = format};
+    return ctx && sys ? ct_text_of(ctx, graph_into, &d) : NULL;
+}
+
+static bool equations_into(void *task, FILE *out)
+{
+    const struct printing *p = task;
+    return ct_system_print_equations(p->ctx, p->s, p->stages, p->format, out);
+}
+
+char *ct_system_equations(struct ct_ctx *ctx, struct ct_system *sys, const char *stages,
+                          const char *format)
+{
+    struct printing p = {.ctx = ctx, .s = sys, .stages = stages, .format = format};
+    return ctx && sys ? ct_text_of(ctx, equations_into, &p) : NULL;
 }

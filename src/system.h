@@ -8,9 +8,11 @@
 
 #include <cotree/cotree.h>
 
-/// A model and its equations; constant once loaded. Everything lives in own.model.
+/// A model and its equations; constant once loaded, so that any number of threads may read it. Everything lives in own.model.
 struct ct_system {
     struct ct_ctx own;
+    bool
+        is_private; // of one run, analysis or worker: what is derived later goes into its own equations
     struct ct_model model;
     struct ct_equations equations;
     struct ct_tree_report tree;
@@ -19,7 +21,15 @@ struct ct_system {
     // with drivers that move
     struct ct_equations held_equations, moving_equations;
     double read, generate; // seconds
+    struct ct_published {
+        _Atomic(double *)
+            start; // q, u, outputs at the start, once asked for; NaN where it cannot be assembled
+    } * published;
 };
+
+/// What a run or an analysis may derive more in: the system itself if it is private, else a copy in own->model that shares what is
+/// never written. `sys` must live as long. Raises the guard. Cost: the stores of expressions.
+struct ct_system *ct_system_borrow(struct ct_ctx *own, struct ct_system *sys);
 
 /// The assembled start, with beams settled that ask for it. Errors: those of ct_assembly_solve and ct_initial_equilibrium_solve.
 bool ct_system_assemble(struct ct_ctx *own, struct ct_system *sys,

@@ -11,15 +11,27 @@
  *     ct_system_destroy(sys);
  *     ct_ctx_destroy(ctx);
  *
+ * or, step by step, as a simulation of a controller does:
+ *
+ *     struct ct_data *d = ct_data_create(ctx, sys, NULL);
+ *     ct_data_set_one(ctx, d, CT_INPUT, "tau", 0.1);
+ *     ct_data_step(ctx, d, 1e-3);
+ *     printf("%g\n", ct_data_value(d, CT_COORDINATE, 0));
+ *     ct_data_destroy(d);
+ *
  * What always holds: a function that fails returns NULL or false and has put at least one diagnostic
- * into the context. Functions that take a NULL system or run fail quietly, so that a chain of calls
- * needs one check at its end. Options are structs in which zero means the default; words in them
- * (methods, formats, trees) are those of the command line. A system does not change once it is loaded
- * and may have any number of runs; all of them belong to one thread at a time.
+ * into the context. Functions that take a NULL context, system, run or state fail quietly (numbers are
+ * NaN, counts 0), so that a chain of calls needs one check at its end. Options are structs in which zero
+ * means the default; words in them (methods, formats, trees) are those of the command line. They begin
+ * with their size, 0 for that of this header, so that programs run with libraries whose structs have
+ * grown. A system does not change once it is loaded: any number of threads may use it, each with a context,
+ * runs and states of its own. A system must live as long as what was made from it. The locale of the
+ * program has no effect on what is read or written.
  */
 #ifndef COTREE_COTREE_H
 #define COTREE_COTREE_H
 
+#include <cotree/diagnostic.h>
 #include <cotree/export.h>
 
 #include <stdbool.h>
@@ -51,6 +63,26 @@ CT_API void ct_ctx_print_diagnostics(const struct ct_ctx *ctx, FILE *out);
 CT_API enum ct_fault ct_ctx_fault(const struct ct_ctx *ctx);
 
 /**
+ * Diagnostics one by one: errors and warnings in the order in which they came, notes with what they belong to. False
+ * beyond the last one.
+ */
+CT_API size_t ct_ctx_count(const struct ct_ctx *ctx);
+CT_API bool ct_ctx_diagnostic(struct ct_ctx *ctx, size_t i, struct ct_diagnostic *diagnostic);
+/** Forget all diagnostics, and that a cancellation was asked for. */
+CT_API void ct_ctx_clear(struct ct_ctx *ctx);
+/** Call back for each error and warning before the function that made it returns; NULL: no more. Not from within the callback. */
+CT_API void ct_ctx_on_diagnostic(struct ct_ctx *ctx,
+                                 void (*callback)(void *user,
+                                                  const struct ct_diagnostic *diagnostic),
+                                 void *user);
+/** From any thread or signal handler: runs and sweeps that report to this context end at their next step, as if
+ *  `progress` had returned false, until ct_ctx_clear. */
+CT_API void ct_ctx_cancel(struct ct_ctx *ctx);
+
+/** Free a text that the library has made. Accepts NULL. */
+CT_API void ct_free(void *text);
+
+/**
  * How a command is interrupted: long work asks is_wanted(user) now and then, at accepted steps and between parts of an
  * analysis, and ends with E005 when it is true. Rows that are complete stay in PATH.partial. NULL: never.
  *
@@ -61,7 +93,10 @@ CT_API void ct_ctx_set_interrupt(struct ct_ctx *ctx, bool (*is_wanted)(void *use
 /** Has something been interrupted? */
 CT_API bool ct_ctx_was_interrupted(const struct ct_ctx *ctx);
 
-/** The version of the library, as in "0.1.0". */
+/** The version of this header; of the library, as in "0.1.0". */
+#define CT_VERSION_MAJOR 0
+#define CT_VERSION_MINOR 1
+#define CT_VERSION_PATCH 0
 CT_API const char *ct_version(void);
 /** The name of n that is nearest to a misspelt one, or NULL if none is near. */
 CT_API const char *ct_did_you_mean(const char *name, const char *const *names, size_t n);
@@ -101,6 +136,7 @@ enum ct_columns_more {
 };
 
 struct ct_system_options {
+    size_t size;            /* 0, or sizeof (struct ct_system_options) */
     const char *const *set; /* "NAME=VALUE": values that replace those of parameters */
     size_t nset;
     const char *tree; /* "auto", "joints", "absolute", or a YAML file that names the branches */
@@ -124,6 +160,12 @@ struct ct_system_options {
  */
 CT_API struct ct_system *ct_system_load(struct ct_ctx *ctx, const char *path,
                                         const struct ct_system_options *options);
+/**
+ * The same for n bytes of text. name stands for the file in diagnostics; tables are sought beside it. NULL: "model".
+ */
+CT_API struct ct_system *ct_system_load_text(struct ct_ctx *ctx, const char *text, size_t n,
+                                             const char *name,
+                                             const struct ct_system_options *options);
 /** Accepts NULL. Its runs must be destroyed before. */
 CT_API void ct_system_destroy(struct ct_system *sys);
 
@@ -147,12 +189,47 @@ CT_API bool ct_system_print_graph(struct ct_ctx *ctx, struct ct_system *sys, con
 CT_API bool ct_system_print_equations(struct ct_ctx *ctx, struct ct_system *sys,
                                       const char *stages, const char *format, FILE *out);
 
+/** The same as texts, which ct_free frees; NULL where they fail. */
+CT_API char *ct_system_graph(struct ct_ctx *ctx, struct ct_system *sys, const char *format);
+CT_API char *ct_system_equations(struct ct_ctx *ctx, struct ct_system *sys, const char *stages,
+                                 const char *format);
+
+/** What a system has names for. */
+enum ct_kind {
+    CT_PARAMETER,
+    CT_INPUT,      /* set from outside, held in between */
+    CT_COORDINATE, /* q: of the chosen trees, so others for other trees */
+    CT_SPEED,      /* u; q' = u but for rotations with quaternions */
+    CT_MULTIPLIER, /* lambda, one for each constraint */
+    CT_STATE,      /* of first-order equations of the model's own */
+    CT_OUTPUT,     /* columns of results, without t */
+    CT_FRAME,      /* "ground", BODY or BODY.POINT */
+    CT_COMPONENT   /* bodies, joints, forces */
+};
+
+struct ct_item {
+    const char *name;    /* belongs to the system, as the other texts */
+    const char *unit;    /* "rad", "N*m", "" for a pure number; NULL: not known */
+    const char *meaning; /* a few words */
+    double
+        value; /* default of a parameter or input, start of a coordinate, speed or output; else NaN */
+    size_t line, column; /* where the file says it, from 1; 0: nowhere */
+};
+
+CT_API size_t ct_system_count(const struct ct_system *sys, enum ct_kind kind);
+/** False beyond the last one. */
+CT_API bool ct_system_item(const struct ct_system *sys, enum ct_kind kind, size_t i,
+                           struct ct_item *item);
+/** The number of a name; -1: there is none. */
+CT_API long ct_system_find(const struct ct_system *sys, enum ct_kind kind, const char *name);
+
 /* ---- runs -------------------------------------------------------------------------------------- */
 
 struct ct_sim;
 
 /** Zero: what the model's `simulation` says. */
 struct ct_sim_options {
+    size_t size;        /* 0, or sizeof (struct ct_sim_options) */
     const char *method; /* a name that ct_methods_print lists, or "auto" */
     double tolerance;   /* wanted relative accuracy of the outputs */
     double absolute; /* of quantities near zero; tolerance / 100 when only the other is given */
@@ -168,9 +245,12 @@ struct ct_sim_options {
 
 /** Where results go. All of it may be zero. */
 struct ct_sim_results {
+    size_t size; /* 0, or sizeof (struct ct_sim_results) */
     const char
-        *path;      /* a table, see ct_contents; "-" is standard output as CSV; NULL: no file */
-    FILE *progress; /* a bar is shown there if it is a terminal */
+        *path; /* a table, see ct_contents; "-" is standard output as CSV; NULL: no file */
+    FILE *bar; /* progress is shown there if it is a terminal */
+    /** Called at each accepted step; return false to stop the run there, which is no failure. */
+    bool (*progress)(void *user, double t, double end);
     /** Called for each sample; return false to stop the run there, which is no failure. */
     bool (*row)(void *user, double t, const double *value, size_t n);
     void *user;
@@ -213,6 +293,10 @@ CT_API double ct_sim_value(const struct ct_sim *sim, const char *column);
 /** The global error of a column against its largest value, estimated by a run with `verify`; NaN where it is not known. */
 CT_API double ct_sim_error(const struct ct_sim *sim, const char *column);
 
+/** The text of ct_sim_print_summary, which ct_free frees. */
+CT_API char *ct_sim_summary(const struct ct_sim *sim);
+/** That of ct_sim_write_summary. */
+CT_API char *ct_sim_summary_json(const struct ct_sim *sim);
 /** What the run did and how well it kept energy and constraints, for people. */
 CT_API void ct_sim_print_summary(const struct ct_sim *sim, FILE *out);
 /** The same for programs: a JSON object. Errors: E002. */
@@ -232,12 +316,96 @@ CT_API bool ct_sim_export(struct ct_ctx *ctx, struct ct_sim *sim, const char *fo
 CT_API bool ct_sim_export_lanes(struct ct_ctx *ctx, struct ct_sim *sim, const char *format,
                                 const char *folder, long lanes);
 
+/* ---- one state of a system, step by step ------------------------------------------------------------ */
+
+/**
+ * A state: time, coordinates q, speeds u, inputs, parameters, and all that follows from them:
+ *
+ *     M u' = Q + J' lambda,    J u' + gamma = 0,    phi = 0
+ *
+ * It belongs to one thread at a time. Nothing allocates memory once each call has been made: get, value, set, step.
+ */
+struct ct_data;
+
+/** Quantities at the state; nu speeds, nq coordinates, m constraints. Matrices row by row, a vector has one column. */
+enum ct_quantity {
+    CT_Q_M,            /* nu x nu, mass matrix */
+    CT_Q_FORCE,        /* nu, Q: applied forces less what depends on speeds */
+    CT_Q_J,            /* m x nu */
+    CT_Q_GAMMA,        /* m */
+    CT_Q_PHI,          /* m: how far loops are open */
+    CT_Q_ACCELERATION, /* nu, u' */
+    CT_Q_MULTIPLIERS,  /* m, of least norm where constraints are redundant */
+    CT_Q_OUTPUTS,      /* as CT_OUTPUT */
+    CT_Q_ENERGY, /* 5: kinetic, potential, strain, work put in, total = kinetic + potential + strain - work */
+    CT_Q_COORDINATES, /* nq */
+    CT_Q_SPEEDS,      /* nu */
+    CT_Q_RATE,        /* nq, q' */
+    CT_Q_PHI_RATE     /* m, d phi/dt = J u + the part by time */
+};
+
+/**
+ * A state at t = 0, assembled as a run starts. Of the options `method`, `tolerance`, `absolute`, `step`, `backend` and `solver` count;
+ * method "auto" is "dopri5", or what the model says. Stiff systems want "radau5". options may be NULL.
+ *
+ * Errors   E003 for options; E4xx when the mechanism cannot be assembled
+ * Owner    the caller, until ct_data_destroy; the system must live as long
+ */
+CT_API struct ct_data *ct_data_create(struct ct_ctx *ctx, const struct ct_system *sys,
+                                      const struct ct_sim_options *options);
+/** Another one in the same state, with the same values. */
+CT_API struct ct_data *ct_data_clone(struct ct_ctx *ctx, const struct ct_data *data);
+/** Accepts NULL. */
+CT_API void ct_data_destroy(struct ct_data *data);
+
+/** The start again, with parameters and inputs as they are now. Errors: E4xx, and the state is not changed. */
+CT_API bool ct_data_reset(struct ct_ctx *ctx, struct ct_data *data);
+/**
+ * All n values of a kind in its order: parameters, inputs, coordinates, speeds. What parameters are derived from others follows; one whose
+ * value differs from the one it has is independent from then on. Nothing is assembled.
+ *
+ * Errors   E500 for a wrong number or a value that is not finite; E501 for a kind that cannot be set; E502 for a parameter whose value
+ *          has decided about the equations. The state is not changed then.
+ */
+CT_API bool ct_data_set(struct ct_ctx *ctx, struct ct_data *data, enum ct_kind kind,
+                        const double *value, size_t n);
+/** One of them. Errors: the same; E503 for a name that there is not. */
+CT_API bool ct_data_set_one(struct ct_ctx *ctx, struct ct_data *data, enum ct_kind kind,
+                            const char *name, double value);
+CT_API bool ct_data_set_time(struct ct_ctx *ctx, struct ct_data *data, double t);
+/** The nearest coordinates and speeds that meet the constraints. Errors: E504 names those that cannot be met. */
+CT_API bool ct_data_assemble(struct ct_ctx *ctx, struct ct_data *data);
+
+/** Computed on demand, valid until the next set or step. NULL where that fails. Errors: E405. rows, columns may be NULL. */
+CT_API const double *ct_data_get(struct ct_ctx *ctx, struct ct_data *data,
+                                 enum ct_quantity quantity, size_t *rows, size_t *columns);
+/** A parameter, input, coordinate, speed, multiplier or output; NaN where there is none, or it cannot be computed. */
+CT_API double ct_data_value(const struct ct_data *data, enum ct_kind kind, size_t i);
+CT_API double ct_data_time(const struct ct_data *data);
+/**
+ * To t + dt exactly, within the tolerance, events on the way, inputs held. A state that is off the constraints is assembled before.
+ *
+ * Errors   E3xx, E4xx, E504; the state is then where it got to. E500 unless dt >= 0.
+ */
+CT_API bool ct_data_step(struct ct_ctx *ctx, struct ct_data *data, double dt);
+/**
+ * Efforts (nu, out) that give the accelerations u' (nu): M u' - Q in open systems. In loops those of the joints that have an effort in
+ * the model, of all joints if none has, in the sense of least squares and of least size; others are 0. A warning says where they are
+ * not unique. Errors: E405; E505 where they do not give these accelerations.
+ */
+CT_API bool ct_data_inverse(struct ct_ctx *ctx, struct ct_data *data,
+                            const double *acceleration, double *effort);
+/** Axes R (row by row: R v is in ground axes for v in axes of the frame) and origin p [m] of a frame. Errors: E500. */
+CT_API bool ct_data_pose(struct ct_ctx *ctx, struct ct_data *data, size_t frame, double R[9],
+                         double p[3]);
+
 /* ---- speed against error ------------------------------------------------------------------------- */
 
 struct ct_accuracy;
 
 /** Zero: the default. */
 struct ct_accuracy_options {
+    size_t size; /* 0, or sizeof (struct ct_accuracy_options) */
     /** Of all runs. method: names separated by commas, NULL or "auto" for the usual ones; tolerance and
      *  step, where they are given, are the only ones tried. */
     struct ct_sim_options run;
@@ -251,7 +419,7 @@ struct ct_accuracy_options {
     size_t nvariant;
     const char *reference; /* CSV as simulate writes it; NULL: found by tight runs that agree */
     int per_decade; /* tolerances, or steps from run.step on, in a power of ten, at most 10; 0: powers of ten, the other tolerances begin at 1e-2 */
-    FILE *progress; /* a bar is shown there if it is a terminal */
+    FILE *bar;      /* progress is shown there if it is a terminal */
 };
 
 /**
@@ -282,6 +450,7 @@ struct ct_study;
 
 /** Zero: the default. */
 struct ct_study_options {
+    size_t size;               /* 0, or sizeof (struct ct_study_options) */
     struct ct_sim_options run; /* of all members */
     /** "NAME=FROM:TO:N" each: a grid whose last axis runs fastest. With sample also "NAME=FROM:TO" (uniform) and
      *  "NAME=normal:MEAN:DEVIATION"; N is of no use then. */
@@ -295,10 +464,13 @@ struct ct_study_options {
 
 /** Where rows go. All of it may be zero. */
 struct ct_study_results {
+    size_t size; /* 0, or sizeof (struct ct_study_results) */
     const char
-        *path;      /* a table, see ct_contents; "-" is standard output as CSV; NULL: no file */
-    bool resume;    /* go on with the rows of an interrupted sweep, which are in PATH.partial */
-    FILE *progress; /* a bar is shown there if it is a terminal */
+        *path;   /* a table, see ct_contents; "-" is standard output as CSV; NULL: no file */
+    bool resume; /* go on with the rows of an interrupted sweep, which are in PATH.partial */
+    FILE *bar;   /* progress is shown there if it is a terminal */
+    /** Called after each member, one at a time but from any thread: so many of all are over. Return false to stop. */
+    bool (*progress)(void *user, double done, double all);
     /** Called for each member in order, one at a time but from any thread: run from 1, what varies, the outputs at the
      *  end time, or value NULL and why it failed. Return false to stop, which is no failure. */
     bool (*row)(void *user, long run, const double *varied, const double *value,
@@ -336,6 +508,9 @@ CT_API bool ct_study_run(struct ct_ctx *ctx, struct ct_study *study,
 /** Members in all, and of those that are over, the failed ones. */
 CT_API long ct_study_count(const struct ct_study *study);
 CT_API long ct_study_failed(const struct ct_study *study);
+/** Columns of rows: `run`, what varies, then outputs at the end time. */
+CT_API size_t ct_study_column_count(const struct ct_study *study);
+CT_API const char *ct_study_column(const struct ct_study *study, size_t i);
 /** What was done and which members failed, for people. */
 CT_API void ct_study_print_summary(const struct ct_study *study, FILE *out);
 /** The same for programs: a JSON object. Errors: E002. */
@@ -348,6 +523,7 @@ struct ct_equilibrium;
 
 /** Zero: the default. */
 struct ct_equilibrium_options {
+    size_t size; /* 0, or sizeof (struct ct_equilibrium_options) */
     /** Motions stand still where they are at t = 0. Else those with a constant rate that turn the system as a whole go
      *  on, and the equilibrium is one in the turning frame; others stand still in any case. */
     bool hold_drivers;
@@ -378,6 +554,7 @@ struct ct_modes;
 
 /** Zero: the default. */
 struct ct_modes_options {
+    size_t size;       /* 0, or sizeof (struct ct_modes_options) */
     const char *about; /* "initial" (NULL), "equilibrium", or a time [s] of the motion */
     long count;        /* of rows; 10 */
     bool hold_drivers; /* as for equilibria */
@@ -419,6 +596,7 @@ struct ct_linearization;
 
 /** Zero: the default. */
 struct ct_linearize_options {
+    size_t size;       /* 0, or sizeof (struct ct_linearize_options) */
     const char *about; /* as for modes */
     /** Names separated by commas: "J.effort", "F.force.x", "T.torque.z" add to what the model says, others are its
      *  parameters. NULL: the efforts that the model gives and the components of its forces and torques. */
@@ -452,6 +630,7 @@ CT_API void ct_linearization_print_summary(const struct ct_linearization *s, FIL
 struct ct_buckling;
 
 struct ct_buckling_options {
+    size_t size;       /* 0, or sizeof (struct ct_buckling_options) */
     const char *load;  /* a force, a torque, a joint with an effort, or "gravity" */
     long count;        /* of factors; 10 */
     bool hold_drivers; /* as for equilibria */

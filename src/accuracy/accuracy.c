@@ -251,7 +251,7 @@ static bool study(struct ct_accuracy *a)
     for (size_t v = 0; v < nvariant; v++) {
         if (a->o->variant) {
             a->variant = &a->o->variant[v];
-            a->system = a->variant->system;
+            a->system = ct_system_borrow(&a->own, a->variant->system);
         }
         for (int i = 0; i < n; i++) {
             ct_progress_update(&a->progress, ((double)v * n + i + 1) / (all + 1));
@@ -297,8 +297,9 @@ static bool create(void *task)
     struct ct_accuracy *a = c->a;
     ct_own_init(&a->own);
     a->said.model = a->own.model;
-    if (a->o->progress) {
-        ct_progress_init(&a->progress, a->o->progress, "accuracy");
+    a->system = ct_system_borrow(&a->own, a->system); // all runs share what is derived later
+    if (a->o->bar) {
+        ct_progress_init(&a->progress, a->o->bar, "accuracy");
         ct_progress_update(&a->progress, 0);
     }
     const bool ok = has_sense(a) && study(a);
@@ -310,8 +311,9 @@ static bool create(void *task)
 struct ct_accuracy *ct_accuracy_create(struct ct_ctx *ctx, struct ct_system *sys,
                                        const struct ct_accuracy_options *options)
 {
-    static const struct ct_accuracy_options standard;
-    if (!sys)
+    struct ct_accuracy_options o;
+    ct_options_take(&o, options, sizeof o);
+    if (!ctx || !sys)
         return NULL;
     struct create c = {ctx, calloc(1, sizeof *c.a)};
     if (!c.a) {
@@ -319,7 +321,7 @@ struct ct_accuracy *ct_accuracy_create(struct ct_ctx *ctx, struct ct_system *sys
         return NULL;
     }
     c.a->system = sys;
-    c.a->o = options ? options : &standard;
+    c.a->o = &o;
     c.a->wanted = c.a->o->error != 0 ? c.a->o->error : standard_error;
     const bool ok = ct_enter(ctx, create, &c);
     c.a->o = NULL;
@@ -354,6 +356,8 @@ static bool write_table(void *task)
 
 bool ct_accuracy_write(struct ct_ctx *ctx, const struct ct_accuracy *a, const char *path)
 {
+    if (!ctx || !a)
+        return false;
     struct output o = {ctx, a, path};
     return a && ct_enter(ctx, write_table, &o);
 }
@@ -371,6 +375,8 @@ static bool draw_plot(void *task)
 
 bool ct_accuracy_draw(struct ct_ctx *ctx, const struct ct_accuracy *a, const char *path)
 {
+    if (!ctx || !a || !path)
+        return false;
     struct output o = {ctx, a, path};
     return a && ct_enter(ctx, draw_plot, &o);
 }
@@ -411,7 +417,7 @@ static const struct ct_work_precision_point *find_nearest(const struct ct_accura
     return nearest;
 }
 
-void ct_accuracy_print_summary(const struct ct_accuracy *a, FILE *out)
+static void print_summary(const struct ct_accuracy *a, FILE *out)
 {
     char wanted[CT_NUMBER_SIZE];
     const struct ct_work_precision_point *nearest = find_nearest(a);
@@ -431,4 +437,13 @@ void ct_accuracy_print_summary(const struct ct_accuracy *a, FILE *out)
     fputs(nearest ? "; the nearest is " : "; every run failed\n", out);
     if (nearest)
         print_setting(nearest, out);
+}
+
+void ct_accuracy_print_summary(const struct ct_accuracy *a, FILE *out)
+{
+    if (!a || !out)
+        return;
+    const locale_t before = ct_locale_enter();
+    print_summary(a, out);
+    ct_locale_leave(before);
 }

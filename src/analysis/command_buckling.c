@@ -50,6 +50,7 @@ static bool find(void *task)
     size_t parameter;
     if (!s->load)
         return ct_error(&s->own, (struct ct_mark){0}, CT_E_USAGE, "which load is to grow?");
+    s->system = ct_system_borrow(&s->own, s->system);
     s->variant = ct_variant_create(&s->own, &s->system->model, 1);
     if (!ct_variant_load(&s->own, s->variant, s->load, &parameter)
         || !ct_equations_like(&s->own, s->variant, &s->system->equations, false, &s->equations))
@@ -80,15 +81,17 @@ static bool find(void *task)
 struct ct_buckling *ct_buckling_create(struct ct_ctx *ctx, struct ct_system *sys,
                                        const struct ct_buckling_options *options)
 {
-    if (!sys)
+    if (!ctx || !sys)
         return NULL;
     struct ct_buckling *s = ct_own_alloc(ctx, sizeof *s);
     if (!s)
         return NULL;
     s->system = sys;
-    s->load = options ? options->load : NULL;
-    s->count = options && options->count > 0 ? (size_t)options->count : STANDARD_COUNT;
-    s->at.hold_drivers = options && options->hold_drivers;
+    struct ct_buckling_options o;
+    ct_options_take(&o, options, sizeof o);
+    s->load = o.load;
+    s->count = o.count > 0 ? (size_t)o.count : STANDARD_COUNT;
+    s->at.hold_drivers = o.hold_drivers;
     return ct_analysis_find(ctx, s, &s->own, &s->at, find);
 }
 
@@ -100,11 +103,15 @@ void ct_buckling_destroy(struct ct_buckling *s)
 
 size_t ct_buckling_count(const struct ct_buckling *s)
 {
+    if (!s)
+        return 0;
     return s->list.n;
 }
 
 double ct_buckling_factor(const struct ct_buckling *s, size_t i)
 {
+    if (!s)
+        return NAN;
     return i < s->list.n ? s->list.factor[i].factor : NAN;
 }
 
@@ -133,6 +140,8 @@ static bool write_factors(void *task)
 
 bool ct_buckling_write(struct ct_ctx *ctx, struct ct_buckling *s, const char *path)
 {
+    if (!ctx || !s)
+        return false;
     struct output o = {ctx, s, path, 0};
     return s && ct_enter(ctx, write_factors, &o);
 }
@@ -194,11 +203,13 @@ static bool write_curve(void *task)
 bool ct_buckling_write_curve(struct ct_ctx *ctx, struct ct_buckling *s, const char *path,
                              long count)
 {
+    if (!ctx || !s)
+        return false;
     struct output o = {ctx, s, path, count > 0 ? count : 3};
     return s && ct_enter(ctx, write_curve, &o);
 }
 
-void ct_buckling_print_summary(const struct ct_buckling *s, FILE *out)
+static void print_summary(const struct ct_buckling *s, FILE *out)
 {
     const struct ct_buckling_list *list = &s->list;
     size_t exact = 0;
@@ -221,4 +232,13 @@ void ct_buckling_print_summary(const struct ct_buckling *s, FILE *out)
     if (f->linear > 0 && f->is_exact)
         fprintf(out, "; %.9g by the linear problem", f->linear);
     fputs(f->is_limit ? "; the path of equilibria ends there\n" : "\n", out);
+}
+
+void ct_buckling_print_summary(const struct ct_buckling *s, FILE *out)
+{
+    if (!s || !out)
+        return;
+    const locale_t before = ct_locale_enter();
+    print_summary(s, out);
+    ct_locale_leave(before);
 }

@@ -94,6 +94,7 @@ static bool find(void *task)
 {
     struct ct_equilibrium *q = task;
     bool is_judged = false;
+    q->system = ct_system_borrow(&q->own, q->system);
     q->at.about = "equilibrium";
     q->at.may_be_large = true;
     if (!ct_configuration_find(&q->own, q->system, NULL, &q->at)
@@ -120,13 +121,15 @@ static bool find(void *task)
 struct ct_equilibrium *ct_equilibrium_create(struct ct_ctx *ctx, struct ct_system *sys,
                                              const struct ct_equilibrium_options *options)
 {
-    if (!sys)
+    if (!ctx || !sys)
         return NULL;
     struct ct_equilibrium *q = ct_own_alloc(ctx, sizeof *q);
     if (!q)
         return NULL;
     q->system = sys;
-    q->at.hold_drivers = options && options->hold_drivers;
+    struct ct_equilibrium_options o;
+    ct_options_take(&o, options, sizeof o);
+    q->at.hold_drivers = o.hold_drivers;
     return ct_analysis_find(ctx, q, &q->own, &q->at, find);
 }
 
@@ -140,6 +143,8 @@ void ct_equilibrium_destroy(struct ct_equilibrium *q)
 
 double ct_equilibrium_value(const struct ct_equilibrium *q, const char *column)
 {
+    if (!q || !column)
+        return NAN;
     for (size_t i = 0; i < q->at.e->nresult; i++)
         if (strcmp(q->at.e->result[i].name, column) == 0)
             return q->value[i];
@@ -148,6 +153,8 @@ double ct_equilibrium_value(const struct ct_equilibrium *q, const char *column)
 
 bool ct_equilibrium_is_stable(const struct ct_equilibrium *q)
 {
+    if (!q)
+        return false;
     return !(q->growth > q->doubt);
 }
 
@@ -173,11 +180,13 @@ static bool write_row(void *task)
 
 bool ct_equilibrium_write(struct ct_ctx *ctx, const struct ct_equilibrium *q, const char *path)
 {
+    if (!ctx || !q)
+        return false;
     struct output o = {ctx, q, path};
     return q && ct_enter(ctx, write_row, &o);
 }
 
-void ct_equilibrium_print_summary(const struct ct_equilibrium *q, FILE *out)
+static void print_summary(const struct ct_equilibrium *q, FILE *out)
 {
     ct_configuration_print(&q->at, out);
     fprintf(out, "balance       the last step moved coordinates by %.2g\n",
@@ -202,4 +211,13 @@ void ct_equilibrium_print_summary(const struct ct_equilibrium *q, FILE *out)
                 "%.2g 1/s",
                 q->doubt, q->fastest);
     fputc('\n', out);
+}
+
+void ct_equilibrium_print_summary(const struct ct_equilibrium *q, FILE *out)
+{
+    if (!q || !out)
+        return;
+    const locale_t before = ct_locale_enter();
+    print_summary(q, out);
+    ct_locale_leave(before);
 }

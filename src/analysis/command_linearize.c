@@ -283,6 +283,7 @@ static bool fill(struct ct_linearization *s)
 static bool find(void *task)
 {
     struct ct_linearization *s = task;
+    s->system = ct_system_borrow(&s->own, s->system);
     if (!make_variant(s, s->inputs))
         return false;
     s->at.model = s->variant;
@@ -294,15 +295,15 @@ static bool find(void *task)
 struct ct_linearization *ct_linearize(struct ct_ctx *ctx, struct ct_system *sys,
                                       const struct ct_linearize_options *options)
 {
-    static const struct ct_linearize_options standard;
-    const struct ct_linearize_options *o = options ? options : &standard;
-    struct ct_linearization *s = sys ? ct_own_alloc(ctx, sizeof *s) : NULL;
+    struct ct_linearize_options o;
+    ct_options_take(&o, options, sizeof o);
+    struct ct_linearization *s = ctx && sys ? ct_own_alloc(ctx, sizeof *s) : NULL;
     if (!s)
         return NULL;
     *s = (struct ct_linearization){.system = sys,
-                                   .run = o->run,
-                                   .inputs = o->inputs,
-                                   .at = {.about = o->about, .hold_drivers = o->hold_drivers}};
+                                   .run = o.run,
+                                   .inputs = o.inputs,
+                                   .at = {.about = o.about, .hold_drivers = o.hold_drivers}};
     return ct_analysis_find(ctx, s, &s->own, &s->at, find);
 }
 
@@ -317,6 +318,12 @@ void ct_linearization_destroy(struct ct_linearization *s)
 const double *ct_linearization_matrix(const struct ct_linearization *s, char name, size_t *rows,
                                       size_t *columns)
 {
+    size_t ignored;
+    rows = rows ? rows : &ignored;
+    columns = columns ? columns : &ignored;
+    *rows = *columns = 0;
+    if (!s)
+        return NULL;
     const struct {
         char name;
         const double *value;
@@ -337,6 +344,8 @@ const double *ct_linearization_matrix(const struct ct_linearization *s, char nam
 
 const char *ct_linearization_name(const struct ct_linearization *s, char what, size_t i)
 {
+    if (!s)
+        return NULL;
     const size_t n = what == 'x' ? s->nstate
                    : what == 'u' ? s->ninput
                    : what == 'y' ? s->noutput
@@ -463,6 +472,8 @@ static bool write_all(void *task)
 bool ct_linearization_write(struct ct_ctx *ctx, const struct ct_linearization *s,
                             const char *path)
 {
+    if (!ctx || !s)
+        return false;
     struct output o = {ctx, s, path};
     return s && ct_enter(ctx, write_all, &o);
 }
@@ -475,10 +486,19 @@ static void print_names(FILE *out, const char *title, const char *const *name, s
     fputc('\n', out);
 }
 
-void ct_linearization_print_summary(const struct ct_linearization *s, FILE *out)
+static void print_summary(const struct ct_linearization *s, FILE *out)
 {
     ct_configuration_print(&s->at, out);
     print_names(out, "states", s->state, s->nstate);
     print_names(out, "inputs", s->input, s->ninput);
     print_names(out, "outputs", s->output, s->noutput);
+}
+
+void ct_linearization_print_summary(const struct ct_linearization *s, FILE *out)
+{
+    if (!s || !out)
+        return;
+    const locale_t before = ct_locale_enter();
+    print_summary(s, out);
+    ct_locale_leave(before);
 }

@@ -66,6 +66,7 @@ static bool find(void *task)
         return ct_error(&s->own, (struct ct_mark){0}, CT_E_USAGE,
                         "the number of modes is %ld; it must be greater than 0", s->count);
     const size_t wanted = s->count ? (size_t)s->count : STANDARD_COUNT;
+    s->system = ct_system_borrow(&s->own, s->system);
     s->at.may_be_large = true;
     if (!ct_configuration_find(&s->own, s->system, &s->run, &s->at) || !solve(s, wanted))
         return false;
@@ -82,15 +83,15 @@ static bool find(void *task)
 struct ct_modes *ct_modes_create(struct ct_ctx *ctx, struct ct_system *sys,
                                  const struct ct_modes_options *options)
 {
-    static const struct ct_modes_options standard;
-    const struct ct_modes_options *o = options ? options : &standard;
-    struct ct_modes *s = sys ? ct_own_alloc(ctx, sizeof *s) : NULL;
+    struct ct_modes_options o;
+    ct_options_take(&o, options, sizeof o);
+    struct ct_modes *s = ctx && sys ? ct_own_alloc(ctx, sizeof *s) : NULL;
     if (!s)
         return NULL;
     *s = (struct ct_modes){.system = sys,
-                           .run = o->run,
-                           .count = o->count,
-                           .at = {.about = o->about, .hold_drivers = o->hold_drivers}};
+                           .run = o.run,
+                           .count = o.count,
+                           .at = {.about = o.about, .hold_drivers = o.hold_drivers}};
     return ct_analysis_find(ctx, s, &s->own, &s->at, find);
 }
 
@@ -104,11 +105,15 @@ void ct_modes_destroy(struct ct_modes *s)
 
 size_t ct_modes_count(const struct ct_modes *s)
 {
+    if (!s)
+        return 0;
     return s->n;
 }
 
 struct ct_mode_info ct_modes_info(const struct ct_modes *s, size_t i)
 {
+    if (!s)
+        return (struct ct_mode_info){0};
     const double pi = 3.14159265358979323846;
     if (i >= s->n)
         return (struct ct_mode_info){0};
@@ -124,6 +129,8 @@ struct ct_mode_info ct_modes_info(const struct ct_modes *s, size_t i)
 bool ct_modes_shape(const struct ct_modes *s, size_t i, const char *coordinate, double *re,
                     double *im)
 {
+    if (!s || !coordinate || !re || !im)
+        return false;
     const int nu = s->at.l->nu;
     for (int k = 0; k < nu && i < s->n; k++)
         if (strcmp(s->coordinate[k], coordinate) == 0) {
@@ -242,16 +249,27 @@ static bool write_modes(void *task)
 
 bool ct_modes_write(struct ct_ctx *ctx, const struct ct_modes *modes, const char *path)
 {
+    if (!ctx || !modes)
+        return false;
     struct output o = {ctx, modes, path};
     return modes && ct_enter(ctx, write_modes, &o);
 }
 
-void ct_modes_print_summary(const struct ct_modes *s, FILE *out)
+static void print_summary(const struct ct_modes *s, FILE *out)
 {
     ct_configuration_print(&s->at, out);
     fprintf(out, "%-14s%d, %s eigenvalue problem; %zu of %zu modes\n",
             s->at.l->nfree ? "freedoms" : "speeds",
             s->at.l->nfree ? s->at.l->nfree : s->at.l->nu, s->how, s->n, s->all);
+}
+
+void ct_modes_print_summary(const struct ct_modes *s, FILE *out)
+{
+    if (!s || !out)
+        return;
+    const locale_t before = ct_locale_enter();
+    print_summary(s, out);
+    ct_locale_leave(before);
 }
 
 // ---- the picture -------------------------------------------------------------------------------------------
@@ -422,6 +440,8 @@ static bool draw_modes(void *task)
 
 bool ct_modes_draw(struct ct_ctx *ctx, struct ct_modes *modes, const char *path)
 {
+    if (!ctx || !modes || !path)
+        return false;
     struct output o = {ctx, modes, path};
     return modes && ct_enter(ctx, draw_modes, &o);
 }

@@ -170,7 +170,12 @@ static struct names list_inputs(struct ct_arena *a, const struct ct_model *m, bo
 size_t ct_variant_standard_inputs(struct ct_ctx *own, const struct ct_model *m,
                                   const char ***name)
 {
-    const struct names l = list_inputs(own->model, m, false);
+    struct names l = {.a = own->model};
+    for (size_t i = 0; i < m->nparameter; i++)
+        if (m->parameter[i].is_input)
+            push(&l, m->parameter[i].name);
+    if (!l.n)
+        l = list_inputs(own->model, m, false);
     *name = l.name;
     return l.n;
 }

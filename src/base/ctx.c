@@ -1,5 +1,6 @@
 // Diagnostics; see ctx.h.
 #include "base/ctx.h"
+#include "base/entry.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -20,8 +21,7 @@ static void record(struct ct_ctx *ctx, enum ct_severity severity, enum ct_code c
         ctx->nerror += is_error;
         return;
     }
-    const struct ct_diagnostic d
-        = {severity, code, mark, ct_arena_vprintf(ctx->model, fmt, ap)};
+    const struct ct_finding d = {severity, code, mark, ct_arena_vprintf(ctx->model, fmt, ap)};
     CT_PUSH(ctx->model, ctx->diagnostic, ctx->ndiagnostic, ctx->diagnostic_cap, d);
     ctx->nerror += is_error;
 }
@@ -116,7 +116,7 @@ void ct_ctx_print(const struct ct_ctx *ctx, FILE *out)
 {
     static const char *const word[] = {"error", "warning", "note"};
     for (size_t i = 0; i < ctx->ndiagnostic; i++) {
-        const struct ct_diagnostic *d = &ctx->diagnostic[i];
+        const struct ct_finding *d = &ctx->diagnostic[i];
         if (d->mark.file) {
             print_plain(d->mark.file, out);
             fprintf(out, ":%d:%d: ", d->mark.line + 1, d->mark.column + 1);

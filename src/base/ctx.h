@@ -8,7 +8,10 @@
 #include "base/arena.h"
 #include "base/guard.h"
 
+#include <cotree/diagnostic.h>
+
 #include <stdarg.h>
+#include <stdatomic.h>
 #include <stdbool.h>
 #include <stdio.h>
 
@@ -27,9 +30,7 @@ enum ct_code {
 #undef MESSAGE
 };
 
-enum ct_severity { CT_SEVERITY_ERROR, CT_SEVERITY_WARNING, CT_SEVERITY_NOTE };
-
-struct ct_diagnostic {
+struct ct_finding {
     enum ct_severity severity;
     enum ct_code code; // 0 for notes
     struct ct_mark mark;
@@ -39,10 +40,15 @@ struct ct_diagnostic {
 struct ct_ctx {
     struct ct_arena *model;   // load until the model is destroyed
     struct ct_arena *scratch; // one stage; reset by the stage driver
-    struct ct_diagnostic *diagnostic;
+    struct ct_finding *diagnostic;
     size_t ndiagnostic, diagnostic_cap;
     size_t nerror;  // errors among them
     bool no_memory; // the guard was reached: E001, which needs no room of its own
+    // of contexts that callers make
+    atomic_bool is_cancelled; // runs that report here end at their next step
+    void (*tell)(void *user, const struct ct_diagnostic *diagnostic); // NULL: nobody is told
+    void *user;
+    size_t ntold; // diagnostics that have been
     struct ct_interrupt interrupt;
     bool was_interrupted; // the guard was reached by it: E005, if no diagnostic says more
     size_t nunseen;       // diagnostics that were not kept

@@ -6,6 +6,7 @@
 
 #include <cotree/cotree.h>
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
@@ -31,7 +32,125 @@ void ct_ctx_destroy(struct ct_ctx *ctx)
 
 void ct_ctx_print_diagnostics(const struct ct_ctx *ctx, FILE *out)
 {
-    ct_ctx_print(ctx, out);
+    if (ctx && out)
+        ct_ctx_print(ctx, out);
+}
+
+// ---- diagnostics one by one ---------------------------------------------------------------------------------
+
+size_t ct_ctx_count(const struct ct_ctx *ctx)
+{
+    size_t n = ctx && ctx->no_memory;
+    for (size_t i = 0; ctx && i < ctx->ndiagnostic; i++)
+        n += ctx->diagnostic[i].severity != CT_SEVERITY_NOTE;
+    return n;
+}
+
+// The notes that follow entry i, a line for each.
+static const char *notes_after(struct ct_ctx *ctx, size_t i)
+{
+    const char *text = "";
+    for (size_t k = i + 1;
+         k < ctx->ndiagnostic && ctx->diagnostic[k].severity == CT_SEVERITY_NOTE; k++) {
+        const struct ct_finding *note = &ctx->diagnostic[k];
+        const char *end = *text ? "\n" : "";
+        text = note->mark.file
+                 ? ct_arena_printf(ctx->model, "%s%s%s:%d:%d: %s", text, end, note->mark.file,
+                                   note->mark.line + 1, note->mark.column + 1, note->text)
+                 : ct_arena_printf(ctx->model, "%s%s%s", text, end, note->text);
+    }
+    return text;
+}
+
+static struct ct_diagnostic describe(struct ct_ctx *ctx, size_t i)
+{
+    const struct ct_finding *d = &ctx->diagnostic[i];
+    const bool is_placed = d->mark.file != NULL;
+    return (struct ct_diagnostic){.severity = d->severity,
+                                  .code = (int)d->code,
+                                  .message = d->text,
+                                  .file = d->mark.file,
+                                  .line = is_placed ? (size_t)d->mark.line + 1 : 0,
+                                  .column = is_placed ? (size_t)d->mark.column + 1 : 0,
+                                  .notes = notes_after(ctx, i)};
+}
+
+struct question {
+    struct ct_ctx *ctx;
+    size_t i;
+    struct ct_diagnostic *out;
+};
+
+static bool find_diagnostic(void *task)
+{
+    const struct question *q = task;
+    size_t n = 0;
+    for (size_t k = 0; k < q->ctx->ndiagnostic; k++)
+        if (q->ctx->diagnostic[k].severity != CT_SEVERITY_NOTE && n++ == q->i) {
+            *q->out = describe(q->ctx, k);
+            return true;
+        }
+    return false;
+}
+
+bool ct_ctx_diagnostic(struct ct_ctx *ctx, size_t i, struct ct_diagnostic *diagnostic)
+{
+    struct question q = {ctx, i, diagnostic};
+    if (!ctx || !diagnostic || i >= ct_ctx_count(ctx))
+        return false;
+    if (ct_enter(ctx, find_diagnostic, &q))
+        return true;
+    *diagnostic = (struct ct_diagnostic){.severity = CT_SEVERITY_ERROR,
+                                         .code = CT_E_MEMORY,
+                                         .message = "out of memory",
+                                         .notes = ""};
+    return true;
+}
+
+void ct_ctx_clear(struct ct_ctx *ctx)
+{
+    if (!ctx)
+        return;
+    ct_arena_clear(ctx->model);
+    ctx->diagnostic = NULL;
+    ctx->ndiagnostic = ctx->diagnostic_cap = ctx->nerror = ctx->ntold = 0;
+    ctx->no_memory = false;
+    atomic_store(&ctx->is_cancelled, false);
+}
+
+void ct_ctx_on_diagnostic(struct ct_ctx *ctx,
+                          void (*callback)(void *user, const struct ct_diagnostic *diagnostic),
+                          void *user)
+{
+    if (!ctx)
+        return;
+    ctx->tell = callback;
+    ctx->user = user;
+    ctx->ntold = ctx->ndiagnostic;
+}
+
+void ct_ctx_cancel(struct ct_ctx *ctx)
+{
+    if (ctx)
+        atomic_store(&ctx->is_cancelled, true);
+}
+
+// What has come since the last time.
+static void tell(struct ct_ctx *ctx)
+{
+    if (!ctx->tell)
+        return;
+    for (; ctx->ntold < ctx->ndiagnostic; ctx->ntold++) {
+        if (ctx->diagnostic[ctx->ntold].severity == CT_SEVERITY_NOTE)
+            continue;
+        const struct ct_diagnostic d = describe(ctx, ctx->ntold);
+        ctx->tell(ctx->user, &d);
+    }
+}
+
+void ct_free(void *text)
+{
+    free(text);
 }
 
 // Codes of what only options name.
@@ -42,6 +161,8 @@ static bool is_option(int code)
 
 enum ct_fault ct_ctx_fault(const struct ct_ctx *ctx)
 {
+    if (!ctx)
+        return CT_FAULT_NONE;
     if (ctx->no_memory || ctx->was_interrupted) // whatever was said before
         return CT_FAULT_MODEL;
     enum ct_fault fault = ctx->nerror ? CT_FAULT_MODEL : CT_FAULT_NONE;
@@ -62,6 +183,44 @@ const char *ct_did_you_mean(const char *name, const char *const *names, size_t n
     return ct_nearest(name, names, n);
 }
 
+locale_t ct_locale_enter(void)
+{
+    return uselocale(newlocale(LC_ALL_MASK, "C", (locale_t)0)); // a constant, not made anew
+}
+
+void ct_locale_leave(locale_t before)
+{
+    uselocale(before);
+}
+
+char *ct_text_of(struct ct_ctx *ctx, bool (*print)(void *task, FILE *out), void *task)
+{
+    char *text = NULL;
+    size_t n;
+    FILE *out = open_memstream(&text, &n);
+    bool ok = out && print(task, out);
+    const bool is_whole = out && !ferror(out);
+    if (out)
+        ok &= fclose(out) == 0 && is_whole;
+    if (ctx && (!out || !is_whole))
+        ctx->no_memory = true;
+    if (ok)
+        return text;
+    free(text);
+    return NULL;
+}
+
+void ct_options_take(void *to, const void *from, size_t size)
+{
+    size_t given = 0;
+    memset(to, 0, size);
+    if (from)
+        memcpy(&given, from, sizeof given);
+    if (from)
+        memcpy(to, from, given > 0 && given < size ? given : size);
+}
+
+// Diagnostics are told by the outermost call alone, when they have come to the caller's context.
 static bool enter(struct ct_ctx *ctx, struct ct_interrupt interrupt, bool (*work)(void *task),
                   void *task)
 {
@@ -77,12 +236,21 @@ static bool enter(struct ct_ctx *ctx, struct ct_interrupt interrupt, bool (*work
         return false;
     }
     const bool ok = work(task);
+    tell(ctx);
     ctx->was_interrupted |= !ok && ct_guard_is_interrupted();
     ct_guard_pop(&g);
     return ok;
 }
 
 bool ct_enter(struct ct_ctx *ctx, bool (*work)(void *task), void *task)
+{
+    const locale_t before = ct_locale_enter();
+    const bool ok = ct_enter_plainly(ctx, work, task);
+    ct_locale_leave(before);
+    return ok;
+}
+
+bool ct_enter_plainly(struct ct_ctx *ctx, bool (*work)(void *task), void *task)
 {
     return enter(ctx, ctx->interrupt.is_wanted ? ctx->interrupt : ct_guard_interrupt(), work,
                  task);
@@ -95,12 +263,13 @@ bool ct_enter_uninterrupted(struct ct_ctx *ctx, bool (*work)(void *task), void *
 
 void ct_ctx_set_interrupt(struct ct_ctx *ctx, bool (*is_wanted)(void *user), void *user)
 {
-    ctx->interrupt = (struct ct_interrupt){is_wanted, user};
+    if (ctx)
+        ctx->interrupt = (struct ct_interrupt){is_wanted, user};
 }
 
 bool ct_ctx_was_interrupted(const struct ct_ctx *ctx)
 {
-    return ctx->was_interrupted;
+    return ctx && ctx->was_interrupted;
 }
 
 void ct_own_init(struct ct_ctx *own)
@@ -161,7 +330,7 @@ void ct_ctx_hand_over(struct ct_ctx *to, struct ct_ctx *from)
     to->was_interrupted |= from->was_interrupted;
     const char *file = NULL, *copy = NULL; // most diagnostics are about the same file
     for (size_t i = 0; i < from->ndiagnostic; i++) {
-        struct ct_diagnostic d = from->diagnostic[i];
+        struct ct_finding d = from->diagnostic[i];
         d.text = ct_arena_strdup(to->model, d.text);
         if (d.mark.file && d.mark.file != file) {
             file = d.mark.file;

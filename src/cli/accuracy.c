@@ -104,7 +104,7 @@ static bool study(struct ct_ctx *ctx, const struct cli_args *args, struct beams 
                                                 .variant = varies ? b->variant : NULL,
                                                 .nvariant = b->nvariant,
                                                 .reference = args->reference,
-                                                .progress = args->quiet ? NULL : stderr};
+                                                .bar = args->quiet ? NULL : stderr};
     struct ct_accuracy *a = ct_accuracy_create(ctx, sys, &options);
     const bool ok = a && report(ctx, a, args) && cli_summarize(ctx, sys, args);
     ct_accuracy_destroy(a);

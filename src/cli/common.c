@@ -68,7 +68,7 @@ static bool write_motion(struct ct_ctx *ctx, struct ct_sim *sim, const struct cl
     char *standard = args->output ? NULL : cli_standard_path(args->model, suffix);
     const char *path = args->output ? args->output : standard;
     const struct ct_sim_results results = {.path = path ? path : "-",
-                                           .progress = args->quiet ? NULL : stderr,
+                                           .bar = args->quiet ? NULL : stderr,
                                            .row = row,
                                            .user = user};
     char text[512];

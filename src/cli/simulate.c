@@ -6,7 +6,8 @@ static int run_and_plot(struct ct_ctx *ctx, const struct cli_args *args)
 {
     struct ct_system *sys = cli_load(ctx, args);
     struct ct_plot *plot = ct_plot_create(ctx, sys, args->columns);
-    const bool ok = plot && cli_run_system(ctx, args, ".csv", sys, ct_sim_run, ct_plot_row, plot)
+    const bool ok = plot
+                 && cli_run_system(ctx, args, ".csv", sys, ct_sim_run, ct_plot_row, plot)
                  && ct_plot_write(ctx, plot, args->plot);
     ct_plot_destroy(plot);
     ct_system_destroy(sys);

@@ -7,9 +7,8 @@ static bool sweep(struct ct_ctx *ctx, struct ct_study *s, const struct cli_args 
 {
     char *standard = args->output ? NULL : cli_standard_path(args->model, ".sweep.csv");
     const char *path = args->output ? args->output : standard;
-    const struct ct_study_results results = {.path = path ? path : "-",
-                                             .resume = args->resume,
-                                             .progress = args->quiet ? NULL : stderr};
+    const struct ct_study_results results = {
+        .path = path ? path : "-", .resume = args->resume, .bar = args->quiet ? NULL : stderr};
     char text[512];
     snprintf(text, sizeof text,
              ": whole rows may be in '%s.partial'; the same command with --resume goes on",

@@ -45,6 +45,7 @@ struct ct_parameter {
     ct_ex definition; // in terms of parameters before it
     const char *unit; // that it was given with; NULL: none
     double value;
+    bool is_input; // set from outside, also while a motion goes on
 };
 
 /// One entry of `outputs`: a signal, a vector signal (several columns later) or an expression.

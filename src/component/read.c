@@ -7,13 +7,13 @@
 #include <string.h>
 
 static const char *const top_keys[]
-    = {"cotree", "name",   "description", "gravity", "parameters",
+    = {"cotree", "name",   "description", "gravity", "parameters", "inputs",
        "bodies", "joints", "forces",      "outputs", "simulation"};
 
 // ---- diagnostics in the order of the file ------------------------------------------------------------------
 
 struct group {
-    const struct ct_diagnostic *first; // an error or warning; its notes follow
+    const struct ct_finding *first; // an error or warning; its notes follow
     struct ct_mark mark; // the first one in the model's own file: a table is used there
     size_t n, number;
 };
@@ -37,7 +37,7 @@ static void sort_diagnostics(struct ct_ctx *ctx, const char *file, size_t from)
     const size_t n = ctx->ndiagnostic - from;
     if (n < 2)
         return;
-    struct ct_diagnostic *copy = CT_NEWN(ctx->scratch, struct ct_diagnostic, n);
+    struct ct_finding *copy = CT_NEWN(ctx->scratch, struct ct_finding, n);
     struct group *group = CT_NEWN(ctx->scratch, struct group, n);
     memcpy(copy, ctx->diagnostic + from, n * sizeof *copy);
     size_t ngroup = 0;

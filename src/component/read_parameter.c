@@ -2,6 +2,7 @@
 #include "component/read.h"
 
 #include "expr/parse.h"
+#include "expr/unit.h"
 
 #include <math.h>
 #include <string.h>
@@ -20,32 +21,69 @@ struct work {
     size_t norder;
 };
 
-static bool add_parameter(struct ct_reader *r, const struct ct_simd2 *p)
+static bool add_parameter(struct ct_reader *r, const struct ct_simd2 *p, bool is_input)
 {
     struct ct_model *m = r->m;
-    if (!ct_read_name(r, p->key, p->mark, "parameter"))
+    const char *sort = is_input ? "input" : "parameter";
+    if (!ct_read_name(r, p->key, p->mark, sort))
         return false;
     if (ct_is_reserved(p->key))
         return ct_error(r->ctx, p->mark, CT_E_NAME,
-                        "'%s' cannot name a parameter: it has a meaning in expressions",
+                        "'%s' cannot name %s %s: it has a meaning in expressions", p->key,
+                        is_input ? "an" : "a", sort);
+    const int other = ct_names_get(&m->parameter_index, p->key);
+    if (other >= 0 && m->parameter[other].is_input != is_input)
+        return ct_error(r->ctx, p->mark, CT_E_NAME,
+                        "'%s' is a parameter already: give the "
+                        "input another name",
                         p->key);
-    if (ct_names_get(&m->parameter_index, p->key) >= 0)
+    if (other >= 0)
         return false; // a key given twice has been reported
     const int i = (int)m->nparameter;
     const ct_ex s = ct_ex_sym(m->x, CT_SYM_PARAM, p->key, (uint32_t)i);
     m->x->sym[ct_ex_node(m->x, s)->a].mark = p->mark;
-    const struct ct_parameter new = {.name = p->key, .mark = p->mark, .symbol = s};
+    const struct ct_parameter new
+        = {.name = p->key, .mark = p->mark, .symbol = s, .is_input = is_input};
     CT_PUSH(r->a, m->parameter, m->nparameter, m->parameter_cap, new);
     ct_names_put(r->a, &m->parameter_index, p->key, i);
     CT_PUSH(r->a, r->known, r->nknown, r->known_cap, p->key);
     return true;
 }
 
+static const char *const input_keys[] = {"value", "unit"};
+
+// The value of an input, `{value: V, unit: U}` or V itself: with the unit, where V has none of its own.
+static const struct ct_node *input_value(struct ct_reader *r, const struct ct_simd2 *p)
+{
+    const struct ct_node *node = p->value;
+    if (node->kind != CT_NODE_MAP)
+        return node;
+    ct_read_keys(r, node, ct_arena_printf(r->a, "input '%s'", p->key), input_keys,
+                 COUNT(input_keys));
+    const struct ct_node *value = ct_node_get(node, "value"), *unit = ct_node_get(node, "unit");
+    struct ct_node *both = CT_NEW(r->a, struct ct_node);
+    *both = (struct ct_node){
+        .kind = CT_NODE_SCALAR, .mark = node->mark, .text = "0", .is_plain = true};
+    if (value)
+        *both = *value;
+    const char *name = NULL;
+    if (unit && (!ct_read_text(r, unit, &name) || both->kind != CT_NODE_SCALAR))
+        return both;
+    double number;
+    const size_t sign = both->text[0] == '-';
+    if (name && both->text[sign + ct_number_parse(both->text + sign, &number)] == 0) {
+        both->text = ct_arena_printf(r->a, "%s %s", both->text, name);
+        both->is_exact = false;
+        both->mark = unit->mark;
+    }
+    return both;
+}
+
 // The errors since `first` become errors of the command line.
 static void blame_command_line(struct ct_reader *r, size_t first, const char *text)
 {
     for (size_t i = first; i < r->ctx->ndiagnostic; i++) {
-        struct ct_diagnostic *d = &r->ctx->diagnostic[i];
+        struct ct_finding *d = &r->ctx->diagnostic[i];
         d->mark = (struct ct_mark){0};
         d->code = d->severity == CT_SEVERITY_NOTE ? 0 : CT_E_USAGE;
         d->text = ct_arena_printf(r->a, "--set '%s': %s", text, d->text);
@@ -205,18 +243,25 @@ static bool evaluate(struct ct_reader *r, const struct work *w, size_t i)
 void ct_read_parameters(struct ct_reader *r, const struct ct_set *set, size_t nset)
 {
     const struct ct_node *node = ct_node_get(r->root, "parameters");
+    const struct ct_node *inputs = ct_node_get(r->root, "inputs");
     bool ok = true;
     CT_PUSH(r->a, r->known, r->nknown, r->known_cap, "t");
     if (node && ct_node_is_null(node))
         node = NULL;
     if (node && !ct_read_shape(r, node, CT_NODE_MAP, "a map of parameters"))
         return;
-    const size_t n = node ? node->n : 0;
+    if (inputs && ct_node_is_null(inputs))
+        inputs = NULL;
+    if (inputs && !ct_read_shape(r, inputs, CT_NODE_MAP, "a map of inputs"))
+        return;
+    const size_t nparameter = node ? node->n : 0, n = nparameter + (inputs ? inputs->n : 0);
     struct ct_arena *scratch = r->ctx->scratch;
     struct work w = {.node = CT_NEWN(scratch, const struct ct_node *, n)};
     for (size_t i = 0; i < n; i++) {
-        if (add_parameter(r, &node->pair[i]))
-            w.node[w.n++] = node->pair[i].value;
+        const bool is_input = i >= nparameter;
+        const struct ct_simd2 *p = is_input ? &inputs->pair[i - nparameter] : &node->pair[i];
+        if (add_parameter(r, p, is_input))
+            w.node[w.n++] = is_input ? input_value(r, p) : p->value;
         else
             ok = false;
     }

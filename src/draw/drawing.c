@@ -131,7 +131,7 @@ static bool write(void *task)
 static bool run(struct drawing *d)
 {
     const struct ct_sim_results results
-        = {.progress = d->options->progress, .row = at_row, .user = d};
+        = {.bar = d->options->progress, .row = at_row, .user = d};
     if (!d->options->trace && !(d->options->time > 0))
         return true;
     return ct_sim_run(d->ctx, d->sim, &results);

@@ -59,6 +59,13 @@ bool ct_formulate(struct ct_ctx *ctx, struct ct_arena *a, const struct ct_model 
                   const struct ct_formulate_options *options, struct ct_equations *out,
                   struct ct_tree_report *report);
 
+/// A copy of equations in which more can be derived, while any number of threads read the original: for one run or one
+/// analysis. model: what ct_model_fork has made of theirs. Cost: the store of expressions.
+void ct_equations_fork(struct ct_ctx *ctx, struct ct_arena *a, const struct ct_model *model,
+                       const struct ct_equations *from, struct ct_equations *to);
+/// The same of a model: its store, its parameters and their values.
+struct ct_model *ct_model_fork(struct ct_arena *a, const struct ct_model *from);
+
 /// M and Q, if the equations do not have them yet: for those who do not use the solution.
 void ct_formulate_dynamics(struct ct_equations *e);
 

@@ -725,6 +725,7 @@ bool ct_integrate(struct ct_ctx *ctx, const struct ct_method *method,
     const bool ok = start(&r) && run_steps(&r);
     memcpy(y, r.y, (size_t)p->ny * sizeof *y);
     stats->last_time = r.t;
+    stats->next_step = r.control.h;
     stats->last_rtol = options->step > 0 ? 0 : r.tolerance.rtol;
     return ok;
 }

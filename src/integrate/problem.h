@@ -214,6 +214,7 @@ struct ct_integrate_stats {
     long inaccurate_steps; // of those rejected: for their error; the others could not be done
     double last_time;      // reached, also on failure
     double last_rtol;      // that its steps were held to in the end; 0: to none
+    double next_step;      // that step control would take next
 };
 
 enum { CT_MOST_STAGES = 13 }; // of a tableau

@@ -401,6 +401,23 @@ static void write_ground(struct ct_json *j)
     ct_json_end(j);
 }
 
+static void write_input(struct ct_json *j)
+{
+    ct_json_object(j, "input");
+    ct_json_text(j, "description", "a number set from outside, held in between");
+    ct_json_array(j, "type");
+    ct_json_text(j, NULL, "object");
+    ct_json_text(j, NULL, "number");
+    ct_json_text(j, NULL, "string");
+    ct_json_end(j);
+    ct_json_object(j, "properties");
+    ct_schema_refer(j, "value", "scalar", "where nothing sets it (0)");
+    ct_schema_typed(j, "unit", "string", NULL);
+    ct_json_end(j);
+    ct_json_bool(j, "additionalProperties", false);
+    ct_json_end(j);
+}
+
 static void write_definitions(struct ct_json *j)
 {
     ct_json_object(j, "$defs");
@@ -414,6 +431,7 @@ static void write_definitions(struct ct_json *j)
     write_outputs(j);
     write_simulation(j);
     write_ground(j);
+    write_input(j);
     for (int f = 0; f < (int)COUNT(families); f++) {
         write_family(j, (enum ct_family)f);
         for (int i = 0; i < ct_ncomponent_class; i++)
@@ -454,6 +472,7 @@ static void write_sections(struct ct_json *j)
     ct_schema_typed(j, "description", "string", NULL);
     ct_schema_refer(j, "gravity", "vector", "in ground axes [m/s^2] ([0, 0, 0])");
     write_section(j, "parameters", "scalar", false);
+    write_section(j, "inputs", "input", false);
     write_section(j, "bodies", "body", true);
     write_section(j, "joints", "joint", false);
     write_section(j, "forces", "force", false);

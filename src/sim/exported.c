@@ -165,7 +165,7 @@ bool ct_sim_export_lanes(struct ct_ctx *ctx, struct ct_sim *sim, const char *for
                          const char *folder, long lanes)
 {
     struct work w = {.ctx = ctx, .sim = sim, .folder = folder, .lanes = (unsigned)lanes};
-    if (!sim)
+    if (!ctx || !sim || !folder)
         return false;
     if (format && strcmp(format, "c") != 0)
         return ct_error(ctx, (struct ct_mark){0}, CT_E_USAGE,

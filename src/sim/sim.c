@@ -170,7 +170,7 @@ const char *ct_sim_refuses_batch(const struct ct_sim *sim)
 }
 
 // Machine code where it can be had, unless the tape is asked for.
-static bool choose_backend(struct ct_sim *sim, const char *name)
+bool ct_sim_choose_backend(struct ct_sim *sim, const char *name)
 {
     static const char *const words[] = {"auto", "tape", "native"};
     static const enum ct_backend backends[]
@@ -219,7 +219,7 @@ static const char *joints_of(const struct ct_sim *sim, const bool *row, int *fir
 }
 
 // What is said of a start in a singular configuration holds for that position: freedoms, redundant rows.
-static void warn_of_singular_start(struct ct_sim *sim)
+void ct_sim_warn_of_singular_start(struct ct_sim *sim)
 {
     bool *row = CT_NEWN(sim->own.model, bool, sim->system->equations.nrow + 1);
     int first;
@@ -255,14 +255,14 @@ static bool prepare(struct ct_sim *sim, const struct ct_sim_options *o)
         || !ct_sim_has_solver(sim))
         return false;
     sim->compile = ct_input_sampling() - start;
-    if (!choose_backend(sim, o->backend))
+    if (!ct_sim_choose_backend(sim, o->backend))
         return false;
     sim->open.row = CT_NEWN(sim->own.model, bool, s->equations.nrow + 1);
     sim->open.result = CT_NEWN(sim->own.model, bool, s->equations.nresult + 1);
     sim->report.final = CT_NEWN(sim->own.model, double, s->equations.nresult + 1);
     sim->report.rank = ct_run_partition(sim->run)->rank;
     ct_sim_warn_of_start(sim);
-    warn_of_singular_start(sim);
+    ct_sim_warn_of_singular_start(sim);
     if (ct_run_results(sim->run, 0, ct_run_state(sim->run), sim->report.final) != CT_EVAL_OK)
         return ct_error(&sim->own, (struct ct_mark){.file = s->model.file}, CT_E_SINGULAR,
                         "the equations are singular at the start");
@@ -279,22 +279,24 @@ bool ct_sim_prepare(struct ct_sim *sim, struct ct_system *sys, const struct ct_s
     if (needs_dynamics(&sys->equations))
         ct_formulate_dynamics(&sys->equations);
     sim->run = ct_run_prepare(&sim->own, sim->own.model, &sys->model, &sys->equations);
-    return choose_backend(sim, o->backend);
+    return ct_sim_choose_backend(sim, o->backend);
 }
 
 static bool create(void *task)
 {
     const struct create *c = task;
+    c->sim->system = ct_system_borrow(&c->sim->own, c->sim->system);
     return prepare(c->sim, c->options);
 }
 
 struct ct_sim *ct_sim_create(struct ct_ctx *ctx, struct ct_system *sys,
                              const struct ct_sim_options *options)
 {
-    static const struct ct_sim_options standard;
-    if (!sys)
+    struct ct_sim_options o;
+    ct_options_take(&o, options, sizeof o);
+    if (!ctx || !sys)
         return NULL;
-    struct create c = {ct_own_alloc(ctx, sizeof *c.sim), options ? options : &standard};
+    struct create c = {ct_own_alloc(ctx, sizeof *c.sim), &o};
     if (!c.sim)
         return NULL;
     c.sim->system = sys;
@@ -341,6 +343,10 @@ static bool at_progress(void *user, double t, double end)
     sim->reached = t;
     if (sim->progress)
         ct_progress_update(sim->progress, end > 0 ? t / end : 1);
+    if (sim->results->progress && !sim->results->progress(sim->results->user, t, end))
+        return false;
+    if (atomic_load_explicit(&sim->caller->is_cancelled, memory_order_relaxed))
+        return false;
     if (ct_guard_is_interrupted())
         sim->is_interrupted = true;
     // a look at the clock costs as much as a step of a small system
@@ -401,8 +407,8 @@ static void explain_change(struct ct_sim *sim)
 static bool integrate(struct ct_sim *sim)
 {
     struct ct_run_options *o = &sim->run_options;
-    if (sim->results->progress) {
-        ct_progress_init(&sim->bar, sim->results->progress,
+    if (sim->results->bar) {
+        ct_progress_init(&sim->bar, sim->results->bar,
                          sim->is_followed ? "follow" : "simulate");
         sim->progress = &sim->bar;
     }
@@ -496,7 +502,9 @@ struct work {
 static bool run_and_report(void *task)
 {
     struct work *w = task;
+    w->sim->caller = w->ctx;
     const bool ok = run(w->sim);
+    w->sim->caller = NULL;
     ct_ctx_hand_over(w->ctx, &w->sim->own);
     return ok;
 }
@@ -560,11 +568,12 @@ static bool report_interrupt(void *task)
 
 bool ct_sim_run(struct ct_ctx *ctx, struct ct_sim *sim, const struct ct_sim_results *results)
 {
-    static const struct ct_sim_results nowhere;
+    struct ct_sim_results all;
     struct work w = {ctx, sim};
-    if (!sim)
+    if (!ctx || !sim)
         return false;
-    sim->results = results ? results : &nowhere;
+    ct_options_take(&all, results, sizeof all);
+    sim->results = &all;
     const bool ok = ct_enter(ctx, run_and_report, &w);
     if (!ok && ctx->was_interrupted && sim->results->path) {
         if (sim->progress) // a jump led here
@@ -580,11 +589,15 @@ bool ct_sim_run(struct ct_ctx *ctx, struct ct_sim *sim, const struct ct_sim_resu
 
 double ct_sim_time(const struct ct_sim *sim)
 {
+    if (!sim)
+        return NAN;
     return sim->time;
 }
 
 double ct_sim_value(const struct ct_sim *sim, const char *column)
 {
+    if (!sim || !column)
+        return NAN;
     const struct ct_equations *e = &sim->system->equations;
     for (size_t i = 0; i < e->nresult; i++)
         if (strcmp(e->result[i].name, column) == 0)
@@ -594,6 +607,8 @@ double ct_sim_value(const struct ct_sim *sim, const char *column)
 
 double ct_sim_error(const struct ct_sim *sim, const char *column)
 {
+    if (!sim || !column)
+        return NAN;
     const struct ct_equations *e = &sim->system->equations;
     for (size_t i = 0; i < e->nresult && sim->estimate.output; i++)
         if (strcmp(e->result[i].name, column) == 0)

@@ -57,6 +57,7 @@ struct ct_sim {
     size_t nkept;
     struct ct_estimate estimate; // what it said
     const struct ct_sim_results *results;
+    struct ct_ctx *caller;             // of the run: it may be cancelled
     struct ct_result_file *file;       // result_file.c; NULL: none is written
     long nwritten;                     // rows of it
     struct ct_progress bar, *progress; // NULL: none is shown
@@ -80,6 +81,11 @@ bool ct_sim_prepare(struct ct_sim *sim, struct ct_system *sys, const struct ct_s
 bool ct_sim_choose_solver(struct ct_sim *sim, const char *name);
 /// Is it solved as was asked, where the run begins? Systems without loops are solved in one way only. Errors: E003.
 bool ct_sim_has_solver(struct ct_sim *sim);
+
+/// Evaluate by what `name` says; NULL: by the best there is. Errors: E003.
+bool ct_sim_choose_backend(struct ct_sim *sim, const char *name);
+/// After the run has begun: notes, and warns, that it does so in a singular configuration.
+void ct_sim_warn_of_singular_start(struct ct_sim *sim);
 
 /// After a run that was made: the same again from its start, nothing made anew; for timing. Not of one that is verified or
 /// followed.

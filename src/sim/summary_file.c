@@ -320,6 +320,28 @@ static bool write_file(void *task)
 
 bool ct_sim_write_summary(struct ct_ctx *ctx, const struct ct_sim *sim, const char *path)
 {
+    if (!ctx || !sim || !path)
+        return false;
     struct work w = {ctx, sim, path};
     return sim && ct_enter(ctx, write_file, &w);
+}
+
+static bool print_text(void *task, FILE *out)
+{
+    write_summary(out, task);
+    return true;
+}
+
+char *ct_sim_summary_json(const struct ct_sim *sim)
+{
+    union {
+        const struct ct_sim *given;
+        void *task;
+    } u = {sim};
+    if (!sim)
+        return NULL;
+    const locale_t before = ct_locale_enter();
+    char *text = ct_text_of(NULL, print_text, u.task);
+    ct_locale_leave(before);
+    return text;
 }

@@ -289,7 +289,7 @@ static void print_file(FILE *out, const struct ct_sim *sim)
         fprintf(out, "results      %ld samples in %s\n", sim->nwritten, path);
 }
 
-void ct_sim_print_summary(const struct ct_sim *sim, FILE *out)
+static void print_summary(const struct ct_sim *sim, FILE *out)
 {
     const struct ct_run_report *r = &sim->report;
     fprintf(out, "%s: t = %.9g s\n", sim->system->model.name, sim->time);
@@ -312,6 +312,31 @@ void ct_sim_print_summary(const struct ct_sim *sim, FILE *out)
             sim->system->read, sim->system->generate, sim->compile, sim->integrate, sim->write);
     print_open(out, sim);
     print_file(out, sim);
+}
+
+void ct_sim_print_summary(const struct ct_sim *sim, FILE *out)
+{
+    if (!sim || !out)
+        return;
+    const locale_t before = ct_locale_enter();
+    print_summary(sim, out);
+    ct_locale_leave(before);
+}
+
+static bool print_text(void *task, FILE *out)
+{
+    const struct ct_sim *sim = task;
+    ct_sim_print_summary(sim, out);
+    return true;
+}
+
+char *ct_sim_summary(const struct ct_sim *sim)
+{
+    union {
+        const struct ct_sim *given;
+        void *task;
+    } u = {sim};
+    return sim ? ct_text_of(NULL, print_text, u.task) : NULL;
 }
 
 // ---- what a system is ----------------------------------------------------------------------------------
@@ -415,7 +440,7 @@ static void print_beams(FILE *out, const struct ct_equations *e)
     }
 }
 
-void ct_sim_print_check(const struct ct_sim *sim, FILE *out)
+static void print_check(const struct ct_sim *sim, FILE *out)
 {
     const struct ct_system *s = sim->system;
     const struct ct_model *m = &s->model;
@@ -458,4 +483,13 @@ void ct_sim_print_check(const struct ct_sim *sim, FILE *out)
             ct_sim_operations(sim));
     if (ct_sim_refuses_batch(sim))
         fprintf(out, "sweeps       one by one: %s\n", ct_sim_refuses_batch(sim));
+}
+
+void ct_sim_print_check(const struct ct_sim *sim, FILE *out)
+{
+    if (!sim || !out)
+        return;
+    const locale_t before = ct_locale_enter();
+    print_check(sim, out);
+    ct_locale_leave(before);
 }

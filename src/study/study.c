@@ -18,12 +18,9 @@
 #include "io/text.h"
 #include "solve/batch/batch.h"
 
-#ifdef _OPENMP
-#include <omp.h>
-#endif
-
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 static const struct ct_mark none = {0};
 enum { MOST_TEXT = 64 << 20, MOST_THREADS = 1024 };
@@ -125,16 +122,11 @@ static bool choose_way(struct ct_study *s, const struct ct_study_options *o)
 
 static int count_threads(const struct ct_study *s, long wanted)
 {
-#ifdef _OPENMP
     const long most = (s->plan.nmember + s->lanes - 1) / s->lanes;
-    long n = wanted > 0 ? wanted : omp_get_max_threads();
+    long n = wanted > 0 ? wanted : sysconf(_SC_NPROCESSORS_ONLN);
+    n = n > 0 ? n : 1;
     n = n < most ? n : most;
     return (int)(n < MOST_THREADS ? n : MOST_THREADS);
-#else
-    (void)s;
-    (void)wanted;
-    return 1;
-#endif
 }
 
 static bool prepare(struct ct_study *s, const struct ct_study_options *o)
@@ -176,6 +168,7 @@ struct create {
 static bool create(void *task)
 {
     const struct create *c = task;
+    pthread_mutex_init(&c->s->rows, NULL);
     take_options(c->s, c->path, c->system, c->options);
     return prepare(c->s, c->options);
 }
@@ -184,9 +177,13 @@ struct ct_study *ct_study_create(struct ct_ctx *ctx, const char *path,
                                  const struct ct_system_options *system,
                                  const struct ct_study_options *options)
 {
-    static const struct ct_system_options standard;
-    struct create c
-        = {ct_own_alloc(ctx, sizeof *c.s), path, system ? system : &standard, options};
+    struct ct_system_options so;
+    struct ct_study_options o;
+    ct_options_take(&so, system, sizeof so);
+    ct_options_take(&o, options, sizeof o);
+    if (!ctx || !path)
+        return NULL;
+    struct create c = {ct_own_alloc(ctx, sizeof *c.s), path, &so, &o};
     if (!c.s)
         return NULL;
     if (ct_own_enter(ctx, &c.s->own, create, &c))
@@ -205,6 +202,7 @@ void ct_study_destroy(struct ct_study *s)
     }
     free(s->row);
     ct_system_destroy(s->system);
+    pthread_mutex_destroy(&s->rows);
     ct_own_finish(&s->own);
     free(s);
 }
@@ -223,8 +221,8 @@ static bool run_all(struct ct_study *s)
                    "the model lists no 'outputs': only what varies is written");
     if (r->path && !ct_study_open(s))
         return false;
-    if (r->progress)
-        ct_progress_init(&s->progress, r->progress, "sweep");
+    if (r->bar)
+        ct_progress_init(&s->progress, r->bar, "sweep");
     s->sink.flushed = start;
     ct_study_write_rows(s); // past those taken over
     s->interrupt = ct_guard_interrupt();
@@ -274,11 +272,13 @@ static bool report_interrupt(void *data)
 bool ct_study_run(struct ct_ctx *ctx, struct ct_study *s,
                   const struct ct_study_results *results)
 {
-    static const struct ct_study_results nowhere;
+    struct ct_study_results all;
+    ct_options_take(&all, results, sizeof all);
     struct task t = {ctx, s};
-    if (!s)
+    if (!ctx || !s)
         return false;
-    s->results = results ? results : &nowhere;
+    s->results = &all;
+    s->caller = ctx;
     const bool ok = ct_enter(ctx, run_and_report, &t);
     if (!ok && ctx->was_interrupted && s->results->path)
         ct_enter_uninterrupted(ctx, report_interrupt, &t);
@@ -287,15 +287,20 @@ bool ct_study_run(struct ct_ctx *ctx, struct ct_study *s,
         ct_outfile_abandon(&s->sink.whole);
     }
     s->results = NULL;
+    s->caller = NULL;
     return ok;
 }
 
 long ct_study_count(const struct ct_study *s)
 {
+    if (!s)
+        return 0;
     return s->plan.nmember;
 }
 
 long ct_study_failed(const struct ct_study *s)
 {
+    if (!s)
+        return 0;
     return s->nfailed;
 }

@@ -14,6 +14,8 @@
 #include "sim/sim.h"
 #include "study/plan.h"
 
+#include <pthread.h>
+
 struct ct_study_row {
     enum {
         CT_ROW_PENDING,
@@ -45,6 +47,7 @@ struct ct_study {
     const char *method, *backend;
     double tolerance;
     const struct ct_study_results *results;
+    struct ct_ctx *caller;         // of the run: it may be cancelled
     struct ct_interrupt interrupt; // of the caller, for all threads
     struct ct_result_sink {
         enum ct_suffix suffix;
@@ -60,6 +63,7 @@ struct ct_study {
     long next, written, ndone, nfailed, nresumed, nalone; // next: member to run
     long steps, rejected;
     bool is_stopped, no_memory, has_run;
+    pthread_mutex_t rows; // held by who takes a member or records one
     double seconds;
 };
 

@@ -89,7 +89,7 @@ void ct_study_write_rows(struct ct_study *s)
 static char *message_of(const struct ct_ctx *ctx, int *code)
 {
     for (size_t i = 0; i < ctx->ndiagnostic; i++) {
-        const struct ct_diagnostic *d = &ctx->diagnostic[i];
+        const struct ct_finding *d = &ctx->diagnostic[i];
         if (d->severity != CT_SEVERITY_ERROR)
             continue;
         const size_t n = strlen(d->text) + (d->mark.file ? strlen(d->mark.file) : 0) + 64;
@@ -125,19 +125,19 @@ void ct_study_record(struct ct_study *s, long member, const double *value,
         row.value = copy_values(value, s->system->equations.nresult);
     else
         row.message = message_of(ctx, &row.code);
-#ifdef _OPENMP
-#pragma omp critical(ct_study_rows)
-#endif
-    {
-        s->no_memory |= value ? !row.value : !row.message;
-        if (value && !row.value)
-            row.state = CT_ROW_PENDING;
-        s->row[member] = row;
-        s->ndone++;
-        s->nfailed += !value;
-        ct_study_write_rows(s);
-        ct_progress_update(&s->progress, (double)s->ndone / (double)s->plan.nmember);
-    }
+    pthread_mutex_lock(&s->rows);
+    s->no_memory |= value ? !row.value : !row.message;
+    if (value && !row.value)
+        row.state = CT_ROW_PENDING;
+    s->row[member] = row;
+    s->ndone++;
+    s->nfailed += !value;
+    ct_study_write_rows(s);
+    ct_progress_update(&s->progress, (double)s->ndone / (double)s->plan.nmember);
+    if (s->results->progress
+        && !s->results->progress(s->results->user, (double)s->ndone, (double)s->plan.nmember))
+        s->is_stopped = true;
+    pthread_mutex_unlock(&s->rows);
 }
 
 // ---- the file -----------------------------------------------------------------------------------------
@@ -433,4 +433,21 @@ bool ct_study_close(struct ct_study *s, bool ok)
     ct_csv_abandon(&k->csv);
     ct_outfile_abandon(&k->whole);
     return ok;
+}
+
+// ---- columns ------------------------------------------------------------------------------------------
+
+size_t ct_study_column_count(const struct ct_study *study)
+{
+    return study ? 1 + study->plan.naxis + study->system->equations.nresult : 0;
+}
+
+const char *ct_study_column(const struct ct_study *study, size_t i)
+{
+    if (i >= ct_study_column_count(study))
+        return NULL;
+    return i == 0 ? "run"
+         : i <= study->plan.naxis
+             ? study->plan.axis[i - 1].name
+             : study->system->equations.result[i - 1 - study->plan.naxis].name;
 }

@@ -96,6 +96,8 @@ static bool write_file(void *task)
 
 bool ct_study_write_summary(struct ct_ctx *ctx, const struct ct_study *s, const char *path)
 {
+    if (!ctx || !s || !path)
+        return false;
     struct summary w = {ctx, s, path};
     return s && ct_enter(ctx, write_file, &w);
 }
@@ -112,7 +114,7 @@ static void print_failures(FILE *out, const struct ct_study *s)
         fprintf(out, "failed       %ld in all; --summary FILE.json lists them\n", s->nfailed);
 }
 
-void ct_study_print_summary(const struct ct_study *s, FILE *out)
+static void print_summary(const struct ct_study *s, FILE *out)
 {
     fprintf(out, "%s: %ld members, %ld failed", s->system->model.name, s->plan.nmember,
             s->nfailed);
@@ -131,4 +133,13 @@ void ct_study_print_summary(const struct ct_study *s, FILE *out)
     print_failures(out, s);
     if (s->path_written)
         fprintf(out, "results      %ld rows in %s\n", s->plan.nmember, s->path_written);
+}
+
+void ct_study_print_summary(const struct ct_study *s, FILE *out)
+{
+    if (!s || !out)
+        return;
+    const locale_t before = ct_locale_enter();
+    print_summary(s, out);
+    ct_locale_leave(before);
 }

@@ -5,10 +5,7 @@
 #include "report/number.h"
 #include "solve/batch/batch.h"
 
-#ifdef _OPENMP
-#include <omp.h>
-#endif
-
+#include <stdlib.h>
 #include <string.h>
 
 // One thread's own.
@@ -30,37 +27,30 @@ struct worker {
 static long take_member(struct ct_study *s)
 {
     long member = -1;
-#ifdef _OPENMP
-#pragma omp critical(ct_study_rows)
-#endif
-    {
-        while (s->next < s->plan.nmember && s->row[s->next].state != CT_ROW_PENDING)
-            s->next++;
-        if (s->next < s->plan.nmember && !s->is_stopped && !s->no_memory
-            && !ct_guard_is_interrupted())
-            member = s->next++;
-    }
+    pthread_mutex_lock(&s->rows);
+    while (s->next < s->plan.nmember && s->row[s->next].state != CT_ROW_PENDING)
+        s->next++;
+    if (s->next < s->plan.nmember && !s->is_stopped && !s->no_memory
+        && !atomic_load(&s->caller->is_cancelled) && !ct_guard_is_interrupted())
+        member = s->next++;
+    pthread_mutex_unlock(&s->rows);
     return member;
 }
 
 static void count_steps(struct ct_study *s, long steps, long rejected, long alone)
 {
-#ifdef _OPENMP
-#pragma omp critical(ct_study_rows)
-#endif
-    {
-        s->steps += steps;
-        s->rejected += rejected;
-        s->nalone += alone;
-    }
+    pthread_mutex_lock(&s->rows);
+    s->steps += steps;
+    s->rejected += rejected;
+    s->nalone += alone;
+    pthread_mutex_unlock(&s->rows);
 }
 
 static void lose_memory(struct ct_study *s)
 {
-#ifdef _OPENMP
-#pragma omp critical(ct_study_rows)
-#endif
+    pthread_mutex_lock(&s->rows);
     s->no_memory = true;
+    pthread_mutex_unlock(&s->rows);
 }
 
 // ---- a member -----------------------------------------------------------------------------------------
@@ -266,7 +256,10 @@ struct ct_system *ct_study_load_system(struct ct_ctx *ctx, const struct ct_study
 {
     struct ct_system_options o = s->system_options;
     o.set = member_set(s, ctx->model, -1, &o.nset);
-    return ct_system_load(ctx, s->path, &o);
+    struct ct_system *system = ct_system_load(ctx, s->path, &o);
+    if (system)
+        system->is_private = true; // members share what is derived later
+    return system;
 }
 
 static bool work(void *task)
@@ -297,29 +290,38 @@ static bool work(void *task)
 }
 
 // A worker that cannot start leaves its members to the others; the first one's system is there already.
-static void run_worker(struct ct_study *s, int thread)
+static void run_worker(struct ct_study *s, bool is_first)
 {
-    struct worker w = {.s = s, .system = thread == 0 ? s->system : NULL};
+    struct worker w = {.s = s, .system = is_first ? s->system : NULL};
     struct ct_ctx *ctx = ct_ctx_create();
     if (ctx)
         ctx->interrupt = s->interrupt;
     if (!ctx
-        || (!ct_enter(ctx, work, &w) && !ctx->was_interrupted
-            && (thread == 0 || ctx->no_memory)))
+        || (!ct_enter(ctx, work, &w) && !ctx->was_interrupted && (is_first || ctx->no_memory)))
         lose_memory(s);
     ct_ctx_destroy(ctx);
     ct_own_finish(&w.sim.own);
     ct_own_finish(&w.member_ctx);
-    if (thread > 0)
+    if (!is_first)
         ct_system_destroy(w.system);
 }
 
+static void *run_other_worker(void *study)
+{
+    run_worker(study, false);
+    return NULL;
+}
+
+// Threads are made for each sweep, so that a process may fork between two.
 void ct_study_run_members(struct ct_study *s)
 {
-#ifdef _OPENMP
-#pragma omp parallel num_threads(s->threads)
-    run_worker(s, omp_get_thread_num());
-#else
-    run_worker(s, 0);
-#endif
+    pthread_t *thread = calloc((size_t)s->threads, sizeof *thread);
+    int n = 1; // this one is the first
+    while (thread && n < s->threads
+           && pthread_create(&thread[n], NULL, run_other_worker, s) == 0)
+        n++;
+    run_worker(s, true);
+    for (int i = 1; i < n; i++)
+        pthread_join(thread[i], NULL);
+    free(thread);
 }

@@ -35,7 +35,7 @@ echo '-- stewart'
 echo '-- each joint'
 cat >joints.yaml <<'END'
 cotree: 1
-name: "</title><script>alert('1')</script> & \"quoted\" \x01 \u202E"
+name: "</title><script>alert('1')</script> & \"quoted\" \u202E"
 gravity: [0, 0, -9.81]
 parameters: {m: 1}
 bodies:

@@ -16,7 +16,7 @@ static void require(bool holds)
 static void check_diagnostics(const struct ct_ctx *ctx, size_t size)
 {
     for (size_t i = 0; i < ctx->ndiagnostic; i++) {
-        const struct ct_diagnostic *d = &ctx->diagnostic[i];
+        const struct ct_finding *d = &ctx->diagnostic[i];
         require(d->text && (d->severity != CT_SEVERITY_ERROR || d->code != 0));
         require(d->code != CT_E_INTERNAL);
         require(d->mark.file && d->mark.line >= 0 && d->mark.column >= 0);

@@ -3,6 +3,8 @@
 // The linker sends malloc, calloc, realloc and ct_pages_create of the library to the functions below (-Wl,--wrap).
 #include "tests/property/system.h"
 
+#include <cotree/cotree.h>
+
 // NOLINTBEGIN(bugprone-reserved-identifier): the linker names them
 void *__real_malloc(size_t size);
 void *__real_calloc(size_t n, size_t size);
@@ -118,6 +120,46 @@ static void no_step_allocates(void **state)
     assert_true(n > 3 * nshipped);
 }
 
+// Setting, stepping and asking, as a controller does, once each has been done.
+static void states_allocate_nothing_once_warm(void **state)
+{
+    (void)state;
+    static const char *const names[]
+        = {"puma560", "double_pendulum", "slider_crank", "cart_pole"};
+    const char *root = getenv("CT_SOURCE_DIR");
+    for (size_t i = 0; i < COUNT(names); i++) {
+        char path[1024];
+        snprintf(path, sizeof path, "%s/systems/%s/model.yaml", root ? root : ".", names[i]);
+        struct ct_ctx *ctx = ct_ctx_create();
+        struct ct_system *sys = ct_system_load(ctx, path, NULL);
+        struct ct_data *d = ct_data_create(ctx, sys, NULL);
+        assert_non_null(d);
+        double R[9], p[3], value[32];
+        const size_t nu = ct_system_count(sys, CT_SPEED);
+        assert_true(nu <= COUNT(value));
+        long before = 0;
+        for (int k = 0; k < 100; k++) {
+            if (k == 20)
+                before = nallocation;
+            assert_true(ct_data_step(ctx, d, 1e-3));
+            for (enum ct_quantity q = CT_Q_M; q <= CT_Q_PHI_RATE; q++)
+                assert_non_null(ct_data_get(ctx, d, q, NULL, NULL));
+            for (size_t j = 0; j < nu; j++)
+                value[j] = ct_data_value(d, CT_SPEED, j);
+            assert_true(ct_data_set(ctx, d, CT_SPEED, value, nu));
+            if (ct_system_count(sys, CT_PARAMETER))
+                assert_true(ct_data_pose(ctx, d, 1, R, p));
+            assert_true(isfinite(ct_data_value(d, CT_OUTPUT, 0)));
+        }
+        if (nallocation != before)
+            print_error("%s: %ld allocations\n", names[i], nallocation - before);
+        assert_int_equal(nallocation, before);
+        ct_data_destroy(d);
+        ct_system_destroy(sys);
+        ct_ctx_destroy(ctx);
+    }
+}
+
 // The count sees what the library takes.
 static void allocations_are_counted(void **state)
 {
@@ -130,6 +172,7 @@ static void allocations_are_counted(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[]
-        = {cmocka_unit_test(allocations_are_counted), cmocka_unit_test(no_step_allocates)};
+        = {cmocka_unit_test(allocations_are_counted), cmocka_unit_test(no_step_allocates),
+           cmocka_unit_test(states_allocate_nothing_once_warm)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -28,7 +28,7 @@ static void expect_failure(struct system *s, const char *text, enum ct_code code
 {
     assert_false(system_try_text(s, "model.yaml", text));
     assert_true(s->ctx.ndiagnostic > 0);
-    const struct ct_diagnostic *d = &s->ctx.diagnostic[0];
+    const struct ct_finding *d = &s->ctx.diagnostic[0];
     if (d->code != code || !strstr(d->text, named)) {
         print_error("got: %s\nwanted code %d and '%s'\n", d->text, code, named);
         fail();

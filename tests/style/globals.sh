@@ -19,7 +19,7 @@ done | awk -F'|' '
     name = $1
     sub(/ *$/, "", name)
     # of the C library, its start code and OpenMP: locks of named critical sections
-    if (name ~ /@/ || name ~ /^__/ || name ~ /^completed\./ || name ~ /^\.gomp_/) next
+    if (name ~ /@/ || name ~ /^__/ || name ~ /^completed\./) next
     if (object ~ /base_guard\.c/ && (name == "innermost" || name == "fail_after")) next
     if (object ~ /cotree:$/ && name ~ /^(signal_seen|explanation|waited_for|outside)$/) next
     print object " " name

@@ -598,7 +598,7 @@ static double input_limited_step(void *user, double t, double h)
     return ct_input_sampling_limit_step(&r->input_sampling, r->method, t, h, r->o->rtol);
 }
 
-static bool initial_step(struct ct_run *r)
+bool ct_run_start_steps(struct ct_run *r)
 {
     const struct ct_problem p = {.user = r,
                                  .ny = (int)r->ny,
@@ -622,6 +622,43 @@ static void warn_of_cancellation(struct ct_run *r)
                    "position: round-off of "
                    "results may come to %.0e of them; '--tree absolute' has more digits there",
                    r->s->left, DBL_EPSILON / r->s->left);
+}
+
+// The problem of the run, as r->o asks for it. watched: (ny), in the run's arena.
+void ct_run_pose(struct ct_run *r, struct ct_problem *p, const bool *watched)
+{
+    const struct ct_run_options *o = r->o;
+    *p = (struct ct_problem){
+        .user = r,
+        .ny = (int)r->ny,
+        .nq = (int)r->m->nq,
+        .nu = (int)r->m->nu,
+        .dae = o->method->is_implicit ? ct_dae_create(r->arena, r->s) : NULL,
+        .error_controlled = watched,
+        .accuracy = o->output_rtol,
+        .duration = o->duration,
+        .groups = ct_run_groups(r),
+        .output_error = r->output_error ? output_error : NULL,
+        .output_change = r->output_error ? output_change : NULL,
+        .expect_output = r->output_error ? expect_output : NULL,
+        .sensitive_output_error = r->output_error ? sensitive_output_error : NULL,
+        .rhs = rhs,
+        .project = has_constraints(r) ? project : NULL,
+        .accepted = accepted,
+        .longest_step = r->has_turns ? ct_run_longest_step : NULL,
+        .input_limited_step = r->e->ntime_function ? input_limited_step : NULL,
+        .time_to_singular = r->m->nrow ? time_to_singular : NULL,
+        .locks = r->m->nrow ? ct_run_locks : NULL,
+        .set_crossing = set_crossing,
+        .is_singular = is_singular,
+        .crossed = crossed,
+        .residual = residual,
+        .mismatch = (size_t)r->s->rank < r->m->nrow ? NULL : mismatch,
+        .nroot = r->nroot,
+        .root = ct_run_root,
+        .next_time_event = ct_run_next_event,
+        .event = ct_run_event,
+        .resumed = ct_run_resumed};
 }
 
 bool ct_run_simulate(struct ct_run *r, const struct ct_run_options *o,
@@ -664,39 +701,10 @@ bool ct_run_simulate(struct ct_run *r, const struct ct_run_options *o,
     ct_run_note_turning(r, 0, r->y);
     if (ct_run_refuse_sticking(r, 0, r->y) == CT_EVAL_FATAL)
         return false;
-    if (!initial_step(r))
+    if (!ct_run_start_steps(r))
         return false;
-    struct ct_problem p
-        = {.user = r,
-           .ny = (int)r->ny,
-           .nq = (int)r->m->nq,
-           .nu = (int)r->m->nu,
-           .dae = o->method->is_implicit ? ct_dae_create(r->arena, r->s) : NULL,
-           .error_controlled = watched,
-           .accuracy = o->output_rtol,
-           .duration = o->duration,
-           .groups = ct_run_groups(r),
-           .output_error = r->output_error ? output_error : NULL,
-           .output_change = r->output_error ? output_change : NULL,
-           .expect_output = r->output_error ? expect_output : NULL,
-           .sensitive_output_error = r->output_error ? sensitive_output_error : NULL,
-           .rhs = rhs,
-           .project = has_constraints(r) ? project : NULL,
-           .accepted = accepted,
-           .longest_step = r->has_turns ? ct_run_longest_step : NULL,
-           .input_limited_step = r->e->ntime_function ? input_limited_step : NULL,
-           .time_to_singular = r->m->nrow ? time_to_singular : NULL,
-           .locks = r->m->nrow ? ct_run_locks : NULL,
-           .set_crossing = set_crossing,
-           .is_singular = is_singular,
-           .crossed = crossed,
-           .residual = residual,
-           .mismatch = (size_t)r->s->rank < r->m->nrow ? NULL : mismatch,
-           .nroot = r->nroot,
-           .root = ct_run_root,
-           .next_time_event = ct_run_next_event,
-           .event = ct_run_event,
-           .resumed = ct_run_resumed};
+    struct ct_problem p;
+    ct_run_pose(r, &p, watched);
     find_requested(r, &p);
     const struct ct_integrate_options io
         = {.t0 = r->t0,

@@ -77,6 +77,9 @@ struct ct_run {
     double t_sample;             // the last one
 };
 
+/// The problem of a run whose options are set. watched: by state (ny), what error control looks at; lives as long.
+void ct_run_pose(struct ct_run *r, struct ct_problem *p, const bool *watched);
+
 /// The time to evaluate at for t.
 static inline double ct_run_time_before_event(const struct ct_run *r, double t)
 {
@@ -143,6 +146,8 @@ bool ct_run_chords_are_closed(struct ct_run *r, double t);
 /// CT_E_STEP_OPEN where speeds belong to none. From one beside it the same where the position can be crossed; else steps begin
 /// there. Nothing changes elsewhere.
 bool ct_run_singular_initial_step(struct ct_run *r, const struct ct_problem *p);
+/// The same with the problem that it asks for.
+bool ct_run_start_steps(struct ct_run *r);
 /// Is y, at t = 0, the start, as well as that is known?
 bool ct_run_meets_start(const struct ct_run *r, const double *y);
 

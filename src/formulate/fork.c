@@ -1,0 +1,137 @@
+// A copy of equations that may grow: their store of expressions, and all that is derived when it is first asked for.
+//
+// Expressions are numbers in a store, so that a copy of the store gives them the same meaning. What the derivation of mass
+// matrices, residuals and signals writes is copied; what it only reads (trees, names, lists of terms) is shared.
+#include "formulate/beam/beam_dynamics.h"
+#include "formulate/beam/flexible_body.h"
+#include "formulate/formulate.h"
+#include "formulate/kinematics/constraint_row.h"
+
+#include <string.h>
+
+static void *copy(struct ct_arena *a, const void *from, size_t n, size_t size)
+{
+    void *to = ct_arena_calloc(a, n + 1, size);
+    if (from && n)
+        memcpy(to, from, n * size);
+    return to;
+}
+
+#define COPY(a, p, n) ((p) = copy((a), (p), (n), sizeof *(p)))
+
+static struct ct_exs *fork_store(struct ct_arena *a, const struct ct_exs *from)
+{
+    struct ct_exs *x = ct_exs_clone(a, from);
+    x->table_cap = x->ntable; // another one is put into a copy of the list
+    x->label = from->label;
+    x->label_cap = from->label_cap;
+    if (x->label)
+        COPY(a, x->label, x->label_cap);
+    if (x->decided)
+        COPY(a, x->decided, x->ndecided);
+    x->stamp = NULL;
+    x->memo = NULL;
+    x->stack = NULL;
+    return x;
+}
+
+static void fork_flexible(struct ct_arena *a, struct ct_flexible *f)
+{
+    const size_t nelement = (size_t)f->beam->nelement;
+    if (f->elastic)
+        COPY(a, f->elastic, (size_t)f->nelastic);
+    if (f->freedom)
+        COPY(a, f->freedom, CT_NODE_FREEDOM * (nelement + 1));
+    if (f->element)
+        COPY(a, f->element, nelement);
+    if (f->inertia)
+        COPY(a, f->inertia, 1);
+}
+
+static struct ct_build *fork_build(struct ct_ctx *ctx, struct ct_arena *a,
+                                   const struct ct_build *from)
+{
+    struct ct_build *b = copy(a, from, 1, sizeof *b);
+    b->ctx = ctx;
+    b->arena = a;
+    COPY(a, b->edge, b->nedge);
+    COPY(a, b->coordinate, b->ncoordinate);
+    COPY(a, b->cluster, b->ncluster);
+    COPY(a, b->rotation_axis, b->nrotation_axis);
+    COPY(a, b->anchor, b->nanchor);
+    if (b->flexible)
+        COPY(a, b->flexible, b->nflexible);
+    for (size_t i = 0; i < b->nflexible; i++)
+        fork_flexible(a, &b->flexible[i]);
+    for (size_t i = 0; i < b->nedge; i++)
+        if (b->edge[i].flexible)
+            b->edge[i].flexible = b->flexible + (b->edge[i].flexible - from->flexible);
+    b->edge_cap = b->nedge;
+    b->coordinate_cap = b->ncoordinate;
+    b->cluster_cap = b->ncluster;
+    b->rotation_axis_cap = b->nrotation_axis;
+    b->anchor_cap = b->nanchor;
+    COPY(a, b->augmented_body, b->naugmented_body);
+    b->augmented_body_cap = b->naugmented_body;
+    COPY(a, b->load, b->nload);
+    b->load_cap = b->nload;
+    b->multiplier_wrench_cap = b->nmultiplier_wrench;
+    b->coupling_cap = b->ncoupling;
+    b->speed_axis_cap = b->nspeed_axis;
+    if (b->quaternion)
+        COPY(a, b->quaternion, b->nnode);
+    // workspace
+    if (b->piece)
+        COPY(a, b->piece, b->nanchor + 2);
+    if (b->marked)
+        COPY(a, b->marked, b->ncluster);
+    if (b->coefficient)
+        COPY(a, b->coefficient, b->eqs->nu);
+    return b;
+}
+
+void ct_equations_fork(struct ct_ctx *ctx, struct ct_arena *a, const struct ct_model *model,
+                       const struct ct_equations *from, struct ct_equations *to)
+{
+    *to = *from;
+    if (!from->build)
+        return;
+    to->x = fork_store(a, from->x);
+    COPY(a, to->Q, to->nu);
+    COPY(a, to->row, to->nrow);
+    COPY(a, to->memory, to->nmemory);
+    COPY(a, to->switches, to->nswitch);
+    COPY(a, to->result, to->nresult);
+    if (to->residual)
+        COPY(a, to->residual, 1);
+    // lists that grow are copied then
+    to->q_cap = to->nq;
+    to->u_cap = to->nu;
+    to->M_cap = to->nM;
+    to->J_cap = to->nJ;
+    to->row_cap = to->nrow;
+    to->switch_cap = to->nswitch;
+    to->time_function_cap = to->ntime_function;
+    to->memory_cap = to->nmemory;
+    to->offset_cap = to->noffset;
+    to->driver_cap = to->ndriver;
+    to->result_cap = to->nresult;
+    to->validity_cap = to->nvalidity;
+    to->bent_beam_cap = to->nbent_beam;
+    to->left_out_cap = to->nleft_out;
+    to->build = fork_build(ctx, a, from->build);
+    to->build->model = model;
+    to->build->x = to->x;
+    to->build->eqs = copy(a, to, 1, sizeof *to);
+    to->coordinate = to->build->coordinate;
+}
+
+struct ct_model *ct_model_fork(struct ct_arena *a, const struct ct_model *from)
+{
+    struct ct_model *m = copy(a, from, 1, sizeof *m);
+    m->x = fork_store(a, from->x);
+    COPY(a, m->parameter, m->nparameter);
+    m->parameter_cap = m->nparameter;
+    COPY(a, m->value, m->nparameter + 1);
+    return m;
+}

@@ -1,0 +1,2 @@
+# What the program of docs/api.md prints.
+"$PROGRAM"
