@@ -145,7 +145,7 @@ struct ct_piece {
     ct_ex3 local;
 };
 
-struct ct_augmented_body; // dynamics.h
+struct ct_augmented_body; // mass_sums.h
 struct ct_flexible;       // flexible_body.h
 struct ct_station;
 struct ct_sweep;
@@ -252,5 +252,12 @@ static inline bool ct_anchor_is_outboard(const struct ct_build *b, int inner, in
     return b->anchor[inner].enter <= b->anchor[outer].enter
         && b->anchor[outer].leave <= b->anchor[inner].leave;
 }
+
+/// Planar: v less its part along the normal; otherwise v.
+ct_ex3 ct_build_in_plane(struct ct_build *b, ct_ex3 v);
+/// Note what the equations leave out and why.
+void ct_build_note_left_out(struct ct_build *b, const char *what, const char *why);
+/// Does the model name this joint or beam under `small`? at, unless NULL, is set to where it does.
+bool ct_build_is_small(const struct ct_build *b, const char *name, struct ct_mark *at);
 
 #endif

@@ -209,7 +209,7 @@ static bool choose_beams(struct ct_ctx *ctx, struct ct_arena *a, const struct ct
         struct ct_flexible *f = &(*b)->flexible[i];
         f->why = old->flexible[i].why;
         if (f->beam->formulation == CT_BEAM_AUTO && f->formulation == CT_BEAM_LINEAR)
-            ct_linear_graph_note_left_out(
+            ct_build_note_left_out(
                 *b, ct_arena_printf(a, "foreshortening of %s", f->name), f->why);
     }
     return ct_build_derive(*b, !o->without_dynamics);

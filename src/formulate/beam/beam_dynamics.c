@@ -3,7 +3,6 @@
 //
 // Everything is written in the beam's axes; the base's motion is turned into them once.
 #include "formulate/beam/beam_dynamics.h"
-#include "formulate/dynamics/small_motion.h"
 
 #include <string.h>
 
@@ -497,7 +496,7 @@ void ct_flexible_columns(struct ct_build *b, const struct ct_flexible *f,
     const struct ct_inertia_method *form = f->inertia->method;
     if (form->mass)
         form->mass(b, f, out, M);
-    else if (ct_small_motion_is_all_of(b, f) && ct_flexible_is_nodal(f))
+    else if (ct_flexible_is_small(b, f) && ct_flexible_is_nodal(f))
         small_mass(b, f, out, M);
     else if (f->beam->modes || f->beam->nshape || draws_by_shapes(f))
         ct_flexible_modal_mass(b, f, out, M);

@@ -2,8 +2,6 @@
 #include "formulate/beam/beam_dynamics.h"
 #include "formulate/beam/deformation_selection.h"
 #include "formulate/beam/beam_field.h"
-#include "formulate/dynamics/small_motion.h"
-#include "formulate/topology/linear_graph.h"
 
 #include <math.h>
 #include <string.h>
@@ -127,7 +125,7 @@ static enum ct_axial axial_of(const struct ct_build *b, const struct ct_flexible
     if (f->formulation == CT_BEAM_LINEAR)
         return CT_AXIAL_LINEAR;
     return f->deformation & CT_BEAM_AXIAL && f->formulation == CT_BEAM_FORESHORTENING
-                && !f->beam->modes && !f->beam->nshape && !ct_small_motion_beam(b, f->name)
+                && !f->beam->modes && !f->beam->nshape && !ct_build_is_small(b, f->name, NULL)
              ? CT_AXIAL_LOCAL
              : CT_AXIAL_CHAIN;
 }
@@ -149,7 +147,7 @@ static void need_stiffness(struct ct_build *b, struct ct_flexible *f)
             continue;
         f->deformation &= ~all[i].family;
         if (b->keep_all || b->is_spatial_for_beams)
-            ct_linear_graph_note_left_out(
+            ct_build_note_left_out(
                 b, ct_arena_printf(b->arena, "that %s can %s", f->name, all[i].what),
                 ct_arena_printf(b->arena, "%s is not given", all[i].key));
         else
@@ -183,25 +181,25 @@ static void choose_deformation(struct ct_build *b, struct ct_flexible *f)
                               : NULL;
     if (untwisted) {
         f->deformation &= ~(unsigned)CT_BEAM_TORSION;
-        ct_linear_graph_note_left_out(b, ct_arena_printf(b->arena, "torsion of %s", f->name),
+        ct_build_note_left_out(b, ct_arena_printf(b->arena, "torsion of %s", f->name),
                                       untwisted);
     }
     if (b->is_planar && beam->deformation & ~(unsigned)(CT_BEAM_AXIAL | f->deformation))
-        ct_linear_graph_note_left_out(
+        ct_build_note_left_out(
             b,
             ct_arena_printf(b->arena, "bending of %s out of the plane, and its torsion",
                             f->name),
             "gravity, loads, masses and arms lie in the plane");
     if (beam->misses_rotary)
-        ct_linear_graph_note_left_out(
+        ct_build_note_left_out(
             b, ct_arena_printf(b->arena, "rotary inertia of %s", f->name),
             "lumped mass has none unless 'rotary_inertia' gives values");
     if (beam->lacks_quadratic)
-        ct_linear_graph_note_left_out(
+        ct_build_note_left_out(
             b, ct_arena_printf(b->arena, "quadratic velocity forces of %s", f->name),
             "'quadratic_velocity: false'; energy and momentum are not kept");
     if (beam->is_cut)
-        ct_linear_graph_note_left_out(
+        ct_build_note_left_out(
             b, ct_arena_printf(b->arena, "the elements of %s as given", f->name),
             ct_arena_printf(b->arena,
                             "they also end where its values switch (x = %.6g m%s), %d in all",
@@ -472,4 +470,20 @@ void ct_station_partials(struct ct_build *b, const struct ct_flexible *f,
     own_partials(b, f, s, slide, turn, false);
     if (s->axial == CT_AXIAL_CHAIN)
         (is_handed(b, f) ? handed_partials : chain_partials)(b, f, s->element, slide);
+}
+
+bool ct_flexible_is_small(const struct ct_build *b, const struct ct_flexible *f)
+{
+    return f->formulation == CT_BEAM_STRETCH_LINEAR || ct_build_is_small(b, f->name, NULL);
+}
+
+bool ct_flexible_may_be_articulated(const struct ct_build *b)
+{
+    if (b->model->simulation.small.given)
+        return false;
+    for (size_t i = 0; i < b->nflexible; i++)
+        if (b->flexible[i].kinematics != b->flexible[i].axial
+            || b->flexible[i].formulation == CT_BEAM_STRETCH_LINEAR)
+            return false;
+    return true;
 }

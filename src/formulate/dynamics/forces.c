@@ -37,18 +37,6 @@ bool ct_vector_signal(const char *name, const char *property, ct_ex3 v, ct_ex *o
     return true;
 }
 
-ct_ex ct_load_power(struct ct_build *b, int tail, int head, ct_ex3 force, ct_ex3 torque)
-{
-    struct ct_exs *x = b->x;
-    const int from = b->placement[tail].frame, to = b->placement[head].frame;
-    ct_ex3 v = ct_path_velocity(b, tail, head);
-    if (from)
-        v = ct_ex3_sub(x, v,
-                       ct_cluster_cross_velocity(b, from, ct_path_position(b, tail, head)));
-    return ct_ex_add(x, ct_ex3_dot(x, force, v),
-                     ct_ex3_dot(x, torque, ct_cluster_path_velocity(b, from, to)));
-}
-
 // ---- the sweep --------------------------------------------------------------------------------------
 
 struct work {

@@ -5,7 +5,7 @@
 #include "formulate/dynamics/residual.h"
 #include "formulate/recursive/composite_body.h"
 #include "formulate/dynamics/auxiliary_unknowns.h"
-#include "formulate/recursive/open_chain.h"
+#include "formulate/operation_count.h"
 
 #include <string.h>
 

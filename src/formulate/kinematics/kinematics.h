@@ -45,8 +45,6 @@ ct_ex3 ct_cluster_centripetal(struct ct_build *b, int c, ct_ex3 v);
 
 /// Planar: does spin r turn about the normal (true) or its opposite?
 bool ct_rotation_axis_is_positive(const struct ct_build *b, size_t r);
-/// Planar: v less its part along the normal; otherwise v.
-ct_ex3 ct_build_in_plane(struct ct_build *b, ct_ex3 v);
 
 // ---- links: the vector from an anchor's parent to the anchor --------------------------------------
 

@@ -3,8 +3,6 @@
 
 #include "base/sort.h"
 #include "formulate/beam/beam_dynamics.h"
-#include "formulate/recursive/member.h"
-#include "formulate/dynamics/small_motion.h"
 #include "graph/reach.h"
 
 #include <string.h>
@@ -76,7 +74,7 @@ static bool fills_matrix(const struct ct_build *b)
     bool any = false;
     for (size_t i = 0; i < b->nflexible; i++)
         any = any || b->flexible[i].kinematics == CT_AXIAL_CHAIN;
-    return any && ct_members_take_beams(b) && is_without_loops(b);
+    return any && ct_flexible_may_be_articulated(b) && is_without_loops(b);
 }
 
 // Is the farther end of the edge a section of a beam that its frame is not fixed to? A beam that is entered there has the form
@@ -158,7 +156,7 @@ struct ct_pair_rules ct_pair_rules_make(struct ct_build *b,
         if (o->first && e->kind == CT_EDGE_JOINT && o->first[e->index])
             r.weight_t[i] = r.weight_r[i] = -1;
         r.rank[i] = tie_rank(b, i, depth, turned, choice, fills);
-        const bool is_small = e->kind == CT_EDGE_JOINT && ct_small_motion_joint(b, e->index);
+        const bool is_small = e->kind == CT_EDGE_JOINT && ct_build_is_small(b, e->name, NULL);
         r.forced_t[i] = e->must_be_branch || is_small;
         r.forced_r[i] = e->must_be_branch || is_particle || (is_small && e->has_rotation);
         r.banned_t[i] = e->never_branch;
