@@ -2,7 +2,7 @@
 #include "beam_error/beam_error_coupled.h"
 #include "expr/tape.h"
 #include "formulate/dynamics/dynamics.h"
-#include "formulate/beam/beam_dynamics.h"
+#include "formulate/beam_dynamics/beam_dynamics.h"
 #include "formulate/topology/tree_selection.h"
 #include "numeric/dense.h"
 

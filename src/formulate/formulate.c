@@ -3,7 +3,7 @@
 #include "formulate/closed_form/beam_augmented.h"
 #include "formulate/dynamics/dynamics.h"
 #include "formulate/recursive/open_chain.h"
-#include "formulate/dynamics/residual.h"
+#include "formulate/residual/residual.h"
 #include "formulate/kinematics/constraint_row.h"
 #include "formulate/outputs/signal.h"
 #include "formulate/dynamics/small_motion.h"
@@ -209,8 +209,8 @@ static bool choose_beams(struct ct_ctx *ctx, struct ct_arena *a, const struct ct
         struct ct_flexible *f = &(*b)->flexible[i];
         f->why = old->flexible[i].why;
         if (f->beam->formulation == CT_BEAM_AUTO && f->formulation == CT_BEAM_LINEAR)
-            ct_build_note_left_out(
-                *b, ct_arena_printf(a, "foreshortening of %s", f->name), f->why);
+            ct_build_note_left_out(*b, ct_arena_printf(a, "foreshortening of %s", f->name),
+                                   f->why);
     }
     return ct_build_derive(*b, !o->without_dynamics);
 }

@@ -1,10 +1,11 @@
-// Rotations of a beam's nodes that move no mass; see beam_dynamics.h.
+// Rotations of a beam's nodes that move no mass; see massless_rotations.h.
 //
 // Lumped masses without rotary inertia, and sections of Timoshenko's theory without it, leave rotations that nothing
 // accelerates. Where no moment acts on them either, they follow the other freedoms, K_rr r + K_rt t = 0, and are no
 // coordinates. A moment comes from a joint that holds the section's rotation, a torque, an arm off the axis, or a force
 // between nodes; the rotations that it acts on stay coordinates.
-#include "formulate/beam/beam_dynamics.h"
+#include "formulate/beam/massless_rotations.h"
+#include "formulate/beam/section_properties.h"
 
 #include <math.h>
 #include <string.h>

@@ -1,5 +1,8 @@
 // See dynamics.h: masses that move alike, lumped on augmented bodies.
 #include "formulate/beam/flexible_body.h"
+#include "formulate/mass_sums.h"
+#include "formulate/dynamics/dynamics.h"
+#include "formulate/beam_dynamics/beam_dynamics.h"
 
 // Inertia of a body turned from its own axes into its cluster's: S I S'.
 static void add_inertia(struct ct_build *b, const struct ct_body *body,
@@ -50,9 +53,10 @@ void ct_augmented_bodies_lump(struct ct_build *b)
         b->anchor[self->parent].mass
             = ct_ex_add(b->x, b->anchor[self->parent].mass, self->mass);
         ct_augmented_body_of(b, self->parent,
-                          self->cluster); // also without mass: loads pass through it
+                             self->cluster); // also without mass: loads pass through it
         if (!ct_ex_is_zero(self->mass))
-            ct_augmented_bodies_add_point(b, self->parent, self->cluster, self->mass, self->local);
+            ct_augmented_bodies_add_point(b, self->parent, self->cluster, self->mass,
+                                          self->local);
     }
     link_children(b);
 }

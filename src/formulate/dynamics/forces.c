@@ -7,6 +7,7 @@
 #include "formulate/kinematics/constraint_row.h"
 #include "formulate/outputs/signal.h"
 #include "formulate/dynamics/small_motion.h"
+#include "formulate/beam_dynamics/beam_dynamics.h"
 
 #include <string.h>
 

@@ -11,6 +11,10 @@
 // once. In a planar mechanism all this is scalar. Columns are taken for the outer of two spins.
 #include "formulate/beam/flexible_body.h"
 #include "formulate/dynamics/composite_sums.h"
+#include "formulate/mass_sums.h"
+#include "formulate/dynamics/dynamics.h"
+#include "formulate/kinematics/kinematics.h"
+#include "formulate/beam_dynamics/beam_dynamics.h"
 
 static const ct_ex3 zero3 = {{{0}, {0}, {0}}};
 
@@ -113,7 +117,7 @@ static void spread_self(struct ct_build *b, ct_ex *M, const struct ct_term *p, i
         for (int j = 0; j <= i; j++)
             if (p[i].speed >= 0 && p[j].speed >= 0)
                 ct_mass_add_entry(b, M, p[i].speed, p[j].speed,
-                          ct_ex_mul(b->x, ct_ex_mul(b->x, p[i].coef, p[j].coef), m));
+                                  ct_ex_mul(b->x, ct_ex_mul(b->x, p[i].coef, p[j].coef), m));
 }
 
 static bool has_unknown(const struct ct_term *p, int np)

@@ -2,6 +2,8 @@
 #include "formulate/dynamics/momentum_energy.h"
 
 #include "formulate/beam/flexible_body.h"
+#include "formulate/beam/stiffness.h"
+#include "formulate/beam_dynamics/beam_dynamics.h"
 
 static const ct_ex3 zero3 = {{{0}, {0}, {0}}};
 

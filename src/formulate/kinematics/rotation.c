@@ -5,6 +5,8 @@
 #include "formulate/beam/flexible_body.h"
 #include "formulate/beam/section_rotation.h"
 #include "formulate/topology/linear_graph.h"
+#include "formulate/kinematics/kinematics.h"
+#include "formulate/kinematics/switch.h"
 
 #include <assert.h>
 

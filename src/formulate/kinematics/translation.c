@@ -3,6 +3,7 @@
 // A branch whose vector is constant in the cluster of its predecessor's vector adds to that vector;
 // only where the cluster changes, or where the branch slides, does an anchor come into being.
 #include "formulate/beam/flexible_body.h"
+#include "formulate/kinematics/kinematics.h"
 
 #include <assert.h>
 #include <string.h>

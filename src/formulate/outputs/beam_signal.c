@@ -1,6 +1,6 @@
 // See beam_signal.h.
 #include "formulate/outputs/beam_signal.h"
-#include "formulate/beam/beam_dynamics.h"
+#include "formulate/beam_dynamics/beam_dynamics.h"
 #include "formulate/dynamics/reaction.h"
 #include "formulate/beam/section_rotation.h"
 

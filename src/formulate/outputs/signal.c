@@ -5,6 +5,7 @@
 #include "formulate/dynamics/momentum_energy.h"
 #include "formulate/topology/linear_graph.h"
 #include "beam_error/validity.h"
+#include "formulate/beam_dynamics/beam_dynamics.h"
 
 #include <stdlib.h>
 #include <string.h>

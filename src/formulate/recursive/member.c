@@ -5,7 +5,7 @@
 // member has both.
 #include "formulate/recursive/member_internal.h"
 
-#include "formulate/beam/beam_dynamics.h"
+#include "formulate/beam_dynamics/beam_dynamics.h"
 
 static const ct_ex3 zero3 = {{{0}, {0}, {0}}};
 

@@ -2,7 +2,7 @@
 #include "formulate/topology/tree_selection.h"
 
 #include "base/sort.h"
-#include "formulate/beam/beam_dynamics.h"
+#include "formulate/beam_dynamics/beam_dynamics.h"
 #include "graph/reach.h"
 
 #include <string.h>
