@@ -11,17 +11,24 @@ static const ct_ex3 zero3 = {{{0}, {0}, {0}}};
 
 // ---- lumping ---------------------------------------------------------------------------------------------
 
+void ct_flexible_inertia_derive(struct ct_build *b, struct ct_flexible *f)
+{
+    if (f->inertia)
+        return;
+    f->inertia = CT_NEW(b->arena, struct ct_inertia);
+    f->inertia->mass = b->model->body[f->body].mass;
+    f->inertia->method = f->axial == CT_AXIAL_LINEAR   ? &ct_inertia_exact
+                       : ct_inertia_has_legendre(b, f) ? &ct_inertia_legendre
+                                                       : &ct_inertia_points;
+    f->inertia->method->derive(b, f);
+}
+
 void ct_flexible_lump(struct ct_build *b)
 {
     for (size_t i = 0; i < b->nflexible; i++) {
         struct ct_flexible *f = &b->flexible[i];
         const struct ct_node_placement *p = &b->placement[f->base];
-        f->inertia = CT_NEW(b->arena, struct ct_inertia);
-        f->inertia->mass = b->model->body[f->body].mass;
-        f->inertia->method = f->axial == CT_AXIAL_LINEAR   ? &ct_inertia_exact
-                           : ct_inertia_has_legendre(b, f) ? &ct_inertia_legendre
-                                                           : &ct_inertia_points;
-        f->inertia->method->derive(b, f);
+        ct_flexible_inertia_derive(b, f);
         const struct ct_inertia *I = f->inertia;
         const ct_ex33 t = ct_ex33_transpose(&p->S), half = ct_ex33_mul(b->x, &I->inertia, &t);
         const ct_ex33 turned = ct_ex33_mul(b->x, &p->S, &half);

@@ -106,6 +106,8 @@ void ct_flexible_rows(struct ct_build *b, const struct ct_flexible *f, const str
 
 // ---- for the equations of the whole system -------------------------------------------------------
 
+/// f->inertia, once: mass, first moment, inertia about the base. After the unknowns of beams.
+void ct_flexible_inertia_derive(struct ct_build *b, struct ct_flexible *f);
 /// Mass, first moment and inertia of the beams, added to anchors and clusters; before augmented bodies are linked.
 void ct_flexible_lump(struct ct_build *b);
 /// Rows and columns of the elastic coordinates, added to the lower triangle M (nu x nu).

@@ -45,8 +45,6 @@ bool ct_vector_signal(const char *name, const char *property, ct_ex3 v, ct_ex *o
 /// Effort of a driven coordinate's driver: its row of the full sweep less what the joint's spring, damper and applied effort
 /// and gears give along it.
 ct_ex ct_driver_effort(struct ct_build *b, int coordinate);
-/// An expression of the model with its signals replaced and its comparisons held.
-ct_ex ct_build_value(struct ct_build *b, ct_ex e);
 /// Efforts, springs and dampers of joints; forces.
 bool ct_loads_derive(struct ct_build *b);
 

@@ -5,9 +5,11 @@
 // its projection on the motion of the branch is a row of M u' - Q - J' lam.
 #include "formulate/beam/flexible_body.h"
 #include "formulate/kinematics/constraint_row.h"
-#include "formulate/outputs/signal.h"
+#include "formulate/signals/signal.h"
 #include "formulate/dynamics/small_motion.h"
 #include "formulate/beam_dynamics/beam_dynamics.h"
+#include "formulate/mass_sums.h"
+#include "formulate/dynamics/dynamics.h"
 
 #include <string.h>
 

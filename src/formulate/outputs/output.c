@@ -1,5 +1,6 @@
 // Columns of results: the outputs of a model and those that are asked for besides.  (format, section 6)
-#include "formulate/outputs/signal.h"
+#include "formulate/outputs/output.h"
+#include "formulate/outputs/dynamic_signal.h"
 
 #include <string.h>
 
@@ -39,7 +40,7 @@ static bool numbered_columns(struct ct_build *b, const char *name, struct ct_mar
     for (int i = 1; i <= n; i++) {
         const char *column = ct_arena_printf(b->arena, "%s%d", name, i);
         ct_ex v;
-        if (!ct_signal_resolve(b, column, mark, &v))
+        if (!ct_output_signal(b, column, mark, &v))
             return false;
         push_result(b, column, v);
     }
@@ -56,10 +57,10 @@ static bool signal_columns(struct ct_build *b, const char *name, struct ct_mark 
         return true;
     const char *const *component = ct_signal_components(b, name);
     if (!component)
-        return ct_signal_resolve(b, name, mark, &v) && push_result(b, name, v);
+        return ct_output_signal(b, name, mark, &v) && push_result(b, name, v);
     for (; *component; component++) {
         const char *column = with_component(b, name, *component);
-        if (!ct_signal_resolve(b, column, mark, &v))
+        if (!ct_output_signal(b, column, mark, &v))
             return false;
         push_result(b, column, v);
     }
@@ -104,7 +105,7 @@ bool ct_outputs_derive(struct ct_build *b)
         if (o->is_signal)
             named_columns(b, o);
         else
-            push_result(b, o->name, ct_build_value(b, o->value));
+            push_result(b, o->name, ct_output_value(b, o->value));
         new_names(b, &names, first, i);
     }
     b->in_outputs = false;
