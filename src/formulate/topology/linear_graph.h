@@ -19,5 +19,4 @@ void ct_planarity_detect(struct ct_build *b, bool allowed);
 /// else "e1", "e2", "e3".
 const char *ct_plane_axis_name(const struct ct_build *b, int i);
 
-
 #endif

@@ -2,7 +2,7 @@
 #include "formulate/topology/tree_selection.h"
 
 #include "base/sort.h"
-#include "formulate/beam_dynamics/beam_dynamics.h"
+#include "formulate/beam/section_properties.h"
 #include "graph/reach.h"
 
 #include <string.h>
