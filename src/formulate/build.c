@@ -28,3 +28,12 @@ bool ct_build_is_small(const struct ct_build *b, const char *name, struct ct_mar
         }
     return false;
 }
+
+bool ct_joint_is_active(const struct ct_instance *joint)
+{
+    static const char *const keys[] = {"stiffness", "damping", "effort", "motion"};
+    for (size_t i = 0; i < COUNT(keys) && joint->cls->motion; i++)
+        if (ct_instance_value(joint, keys[i])->given)
+            return true;
+    return false;
+}

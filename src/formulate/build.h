@@ -260,4 +260,7 @@ void ct_build_note_left_out(struct ct_build *b, const char *what, const char *wh
 /// Does the model name this joint or beam under `small`? at, unless NULL, is set to where it does.
 bool ct_build_is_small(const struct ct_build *b, const char *name, struct ct_mark *at);
 
+/// Has the joint a spring, a damper, an effort or a prescribed motion along its coordinates?
+bool ct_joint_is_active(const struct ct_instance *joint);
+
 #endif

@@ -21,16 +21,6 @@ static int *node_depths(struct ct_build *b, bool by_rotation)
     return depth;
 }
 
-// A coordinate that carries an effort, a spring or a driver is best a branch of its own.
-static bool is_active(const struct ct_instance *joint)
-{
-    static const char *const keys[] = {"stiffness", "damping", "effort", "motion"};
-    for (size_t i = 0; i < COUNT(keys) && joint->cls->motion; i++)
-        if (ct_instance_value(joint, keys[i])->given)
-            return true;
-    return false;
-}
-
 // Is an end of the edge on a beam whose sections may follow the other nodes for want of inertia? What is counted through
 // such a section moves with all of them, and fills the mass matrix. The start of a clamped beam does not follow.
 static bool turns_follower(const struct ct_build *b, size_t i)
@@ -102,7 +92,7 @@ static int tie_rank(const struct ct_build *b, size_t i, const int *depth, const 
     const bool enters = enters_section(b, i, depth),
                is_first = turned[tail] == 0 || turned[head] == 0 || enters;
     if ((is_first && !(b->is_planar && turns_follower(b, i) && !(enters && fills)))
-        || (e->kind == CT_EDGE_JOINT && is_active(e->self)))
+        || (e->kind == CT_EDGE_JOINT && ct_joint_is_active(e->self)))
         return 0;
     return 2 + (depth[tail] < depth[head] ? depth[tail] : depth[head]);
 }
