@@ -47,5 +47,7 @@ bool ct_vector_signal(const char *name, const char *property, ct_ex3 v, ct_ex *o
 ct_ex ct_driver_effort(struct ct_build *b, int coordinate);
 /// Efforts, springs and dampers of joints; forces.
 bool ct_loads_derive(struct ct_build *b);
+/// Warns of forces across a beam whose `deformation` leaves out the bending that they ask for. After ct_loads_derive.
+void ct_warn_of_excluded_loads(struct ct_ctx *ctx, struct ct_build *b);
 
 #endif
