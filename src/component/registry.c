@@ -1,5 +1,5 @@
-// The list of all component classes. Only readers of models and reports need it: what derives equations meets classes through
-// instances.
+// The list of all component classes. Only readers of models and reports need it: what derives
+// equations meets classes through instances.
 #include "component/class.h"
 
 #include <string.h>

@@ -1,4 +1,5 @@
-// Bending modes of a linear beam, as numbers: for the estimate of its error (beam_error/beam_error_modal.h).
+// Bending modes of a linear beam, as numbers: for the estimate of its error
+// (beam_error/beam_error_modal.h).
 #ifndef CT_FORMULATE_BENDING_MODE_H
 #define CT_FORMULATE_BENDING_MODE_H
 

@@ -139,10 +139,28 @@ struct ct_load {
     ct_ex power;     // put in by the part that has no potential [W]
 };
 
-/// One piece of a path between two nodes: an anchor's link, or the offset of an end node (anchor < 0).
+/// One piece of a path between two nodes: an anchor's link, or the offset of an end node (anchor
+/// < 0).
 struct ct_piece {
     int anchor, cluster, sign;
     ct_ex3 local;
+};
+
+/// Expressions of the model while their signals are replaced (signals/signal.h) and their
+/// comparisons held (switch.h).
+struct ct_signal_state {
+    struct ct_mark holding; // where the expression stands whose comparisons are held
+    // that expression as it is written, and what stands for its signals (nreplaced)
+    ct_ex written;
+    const ct_ex *from, *to;
+    size_t nreplaced;
+    int resolving;   // depth of signals within signals
+    bool is_open;    // a reaction was met that this planar model leaves open
+    bool in_outputs; // accelerations and multipliers may be used, comparisons stay as they are
+    struct ct_kept_quaternion {
+        bool made;
+        ct_ex p[4];
+    } * quaternion; // by node, of frames whose quaternion is an output
 };
 
 struct ct_augmented_body; // mass_sums.h
@@ -228,18 +246,7 @@ struct ct_build {
     size_t ncoupling, coupling_cap;
     const struct ct_sweep *sweep[2]; // by level, once asked for
     ct_ex *effort;                   // of joints along their unknown coordinates (nu)
-    struct ct_mark holding;          // where the expression stands whose comparisons are held
-    // that expression as it is written, and what stands for its signals (nwritten)
-    ct_ex written;
-    const ct_ex *written_from, *written_to;
-    size_t nwritten;
-    int resolving;   // depth of signals within signals
-    bool is_open;    // a signal was met that this planar model leaves open
-    bool in_outputs; // accelerations and multipliers may be used, comparisons stay as they are
-    struct ct_kept_quaternion {
-        bool made;
-        ct_ex p[4];
-    } * quaternion; // by node, of frames whose quaternion is an output
+    struct ct_signal_state signals;
 };
 
 static inline bool ct_cluster_is_outboard(const struct ct_build *b, int inner, int outer)

@@ -25,7 +25,8 @@ void ct_inertia_add_point(struct ct_build *b, ct_ex33 *L, ct_ex m, ct_ex3 v)
     }
 }
 
-void ct_augmented_bodies_add_point(struct ct_build *b, int anchor, int cluster, ct_ex m, ct_ex3 local)
+void ct_augmented_bodies_add_point(struct ct_build *b, int anchor, int cluster, ct_ex m,
+                                   ct_ex3 local)
 {
     struct ct_augmented_body *s = ct_augmented_body_of(b, anchor, cluster);
     const ct_ex3 v = ct_build_in_plane(b, local);

@@ -1,4 +1,5 @@
-// Operations of expressions in one number, so that ways to write the same equations can be compared.
+// Operations of expressions in one number, so that ways to write the same equations can be
+// compared.
 #ifndef CT_FORMULATE_OPERATION_COUNT_H
 #define CT_FORMULATE_OPERATION_COUNT_H
 

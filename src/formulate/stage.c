@@ -10,7 +10,8 @@
 #include <math.h>
 #include <string.h>
 
-// ---- equations of one pair of trees ------------------------------------------------------------------
+// ---- equations of one pair of trees
+// ------------------------------------------------------------------
 
 static double *start_values(struct ct_arena *a, const struct ct_model *m)
 {
@@ -91,7 +92,8 @@ bool ct_build_derive(struct ct_build *b, bool with_dynamics)
     return b->ctx->nerror == before;
 }
 
-// ---- the choice of trees -----------------------------------------------------------------------------
+// ---- the choice of trees
+// -----------------------------------------------------------------------------
 
 struct trials {
     struct ct_ctx *ctx;
@@ -141,8 +143,8 @@ static bool is_same(const struct ct_tree *t, const struct ct_tree *other)
         && memcmp(t->is_branch, other->is_branch, (size_t)t->nedge * sizeof *t->is_branch) == 0;
 }
 
-// The equations of a trial are those of the stage where all of these have rows and no beams: beams are chosen in between,
-// open systems are solved in other ways, and analyses need less.
+// The equations of a trial are those of the stage where all of these have rows and no beams:
+// beams are chosen in between, open systems are solved in other ways, and analyses need less.
 static bool may_keep(const struct ct_build *b, const struct ct_formulate_options *o)
 {
     return !b->nflexible && !o->for_analysis && !o->without_dynamics;

@@ -40,8 +40,8 @@ ct_ex ct_flexible_shear(struct ct_build *b, const struct ct_flexible *f, int pla
              : CT_EX_ZERO;
 }
 
-// With slopes and rotations linear in an element, a curvature c bends it with EI c h and shears it with c (x - h/2), which one
-// point in the middle does not see: (EI + k GA h^2/12) c^2 h/2.
+// With slopes and rotations linear in an element, a curvature c bends it with EI c h and shears
+// it with c (x - h/2), which one point in the middle does not see: (EI + k GA h^2/12) c^2 h/2.
 double ct_flexible_locking(struct ct_build *b, const struct ct_flexible *f)
 {
     const struct ct_beam *beam = f->beam;

@@ -1,4 +1,5 @@
-// Sections of a beam: where they are, how they are turned, and how elastic coordinates move them; see flexible_body.h.
+// Sections of a beam: where they are, how they are turned, and how elastic coordinates move them;
+// see flexible_body.h.
 #include "formulate/beam/static_condensation.h"
 
 #include <math.h>
@@ -154,8 +155,8 @@ void ct_station_own_partials(struct ct_build *b, const struct ct_flexible *f,
     own_partials(b, f, s, slide, turn, true);
 }
 
-// Are slides of sections less work by forces that what follows hands on? These are summed for each section anew; sums freedom
-// by freedom go on from one section to the next.
+// Are slides of sections less work by forces that what follows hands on? These are summed for
+// each section anew; sums freedom by freedom go on from one section to the next.
 static bool is_handed(const struct ct_build *b, const struct ct_flexible *f)
 {
     size_t nsection = 0, nproduct = 0;

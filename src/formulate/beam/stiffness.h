@@ -5,10 +5,12 @@
 #include "formulate/beam/degrees_of_freedom.h"
 #include "formulate/beam/section_properties.h"
 
-/// Stiffness and mass of an element at rest by its dofs; those between stretch and bending are zero.
+/// Stiffness and mass of an element at rest by its dofs; those between stretch and bending are
+/// zero.
 void ct_element_matrices(struct ct_build *b, const struct ct_flexible *f, int e,
                          ct_ex K[CT_DOF][CT_DOF], ct_ex M[CT_DOF][CT_DOF]);
-/// What the stiffness of one element adds: rows of its dofs, strain energy, twice the power its damping takes.
+/// What the stiffness of one element adds: rows of its dofs, strain energy, twice the power its
+/// damping takes.
 struct ct_element_force {
     ct_ex row[CT_DOF];
     ct_ex energy, drag;

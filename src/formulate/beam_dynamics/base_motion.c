@@ -13,8 +13,8 @@ ct_ex3 ct_base_out_of(struct ct_build *b, const struct ct_flexible *f, ct_ex3 v)
     return ct_node_turn(b, f->base, v);
 }
 
-// Angular rates summed in the cluster's own axes, where the axes of its turns are fixed in it and it turns
-// against ground; in a plane they stay along the normal.
+// Angular rates summed in the cluster's own axes, where the axes of its turns are fixed in it and
+// it turns against ground; in a plane they stay along the normal.
 static bool plain_rates(struct ct_build *b, const struct ct_node_placement *p,
                         enum ct_level level, struct ct_base *out)
 {

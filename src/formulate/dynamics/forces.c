@@ -408,7 +408,7 @@ bool ct_loads_derive(struct ct_build *b)
     const size_t before = b->ctx->nerror;
     for (size_t i = 0; i < b->nedge; i++) {
         const struct ct_edge_info *e = &b->edge[i];
-        b->holding = e->mark;
+        b->signals.holding = e->mark;
         if (e->kind == CT_EDGE_JOINT && e->self->cls->motion)
             for (int k = 0; k < e->self->nfree; k++)
                 joint_effort(b, e, k);

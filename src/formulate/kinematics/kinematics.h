@@ -1,6 +1,6 @@
 // Kinematics by circuit equations: rotations along T_R, places along T_T.  (formulation 4.1)
 //
-// Everything is generated when first asked for, and kept: what nobody asks for does not exist.
+// An expression is generated when it is first asked for, and kept. What nobody asks for is not generated.
 #ifndef CT_FORMULATE_KINEMATICS_KINEMATICS_H
 #define CT_FORMULATE_KINEMATICS_KINEMATICS_H
 

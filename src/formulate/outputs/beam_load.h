@@ -1,9 +1,10 @@
-// Force and moment that a section of a beam transmits: what the part beyond the section exerts on the part before it, axes of the
-// section.  (format, section 6)
+// Force and moment that a section of a beam transmits: what the part beyond the section exerts on
+// the part before it, axes of the section.  (format, section 6)
 //
-// They follow from the cutset through the section: what the inertia and weight of the part beyond need, and what the arms beyond
-// transmit. So they agree with the reactions of joints, whatever is held rigid. What acts at the section's own place belongs to the
-// part beyond; at x = 0 to the part before, with the frame.
+// They follow from the cutset through the section: what the inertia and weight of the part beyond
+// need, and what the arms beyond transmit. So they agree with the reactions of joints, whatever
+// is held rigid. What acts at the section's own place belongs to the part beyond; at x = 0 to the
+// part before, with the frame.
 #ifndef CT_FORMULATE_OUTPUTS_BEAM_LOAD_H
 #define CT_FORMULATE_OUTPUTS_BEAM_LOAD_H
 

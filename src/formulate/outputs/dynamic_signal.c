@@ -14,7 +14,8 @@ static bool reaction(struct ct_build *b, const struct ct_signal *s, ct_ex *out)
               i = ct_signal_component_index(s);
     ct_ex3 force, torque;
     ct_reaction_derive(b, s->number, &force, &torque);
-    b->is_open = b->is_open || (i >= 0 && !ct_reaction_is_known(b, s->number, is_force, i));
+    b->signals.is_open
+        = b->signals.is_open || (i >= 0 && !ct_reaction_is_known(b, s->number, is_force, i));
     const ct_ex3 v = is_force ? force : torque;
     return ct_signal_component(b, s, s->axes ? v : ct_node_unturn(b, tail, v), out);
 }
@@ -23,7 +24,8 @@ static bool beam_load(struct ct_build *b, const struct ct_signal *s, ct_ex *out)
 {
     const bool is_force = !strcmp(s->property, "force");
     const int i = ct_signal_component_index(s);
-    b->is_open = b->is_open || (i >= 0 && !ct_beam_load_is_known(b, s->number, is_force, i));
+    b->signals.is_open
+        = b->signals.is_open || (i >= 0 && !ct_beam_load_is_known(b, s->number, is_force, i));
     return ct_signal_component(b, s, ct_beam_load(b, s->number, is_force), out);
 }
 
@@ -77,7 +79,6 @@ ct_ex ct_output_value(struct ct_build *b, ct_ex e)
         ct_output_signal(b, s.name, s.mark, &to[i]);
     }
     const ct_ex replaced = ct_ex_subst(b->x, e, from, to, n);
-    const bool more
-        = ct_ex_kinds(b->x, replaced) & 1u << CT_SYM_SIGNAL; // than CT_MOST_SIGNALS
+    const bool more = ct_ex_kinds(b->x, replaced) & 1u << CT_SYM_SIGNAL; // than CT_MOST_SIGNALS
     return more ? ct_output_value(b, replaced) : replaced;
 }

@@ -6,8 +6,9 @@
 
 static bool push_result(struct ct_build *b, const char *name, ct_ex value)
 {
-    const struct ct_result r = {.name = name, .value = value, .undetermined = b->is_open};
-    b->is_open = false;
+    const struct ct_result r
+        = {.name = name, .value = value, .undetermined = b->signals.is_open};
+    b->signals.is_open = false;
     CT_PUSH(b->arena, b->eqs->result, b->eqs->nresult, b->eqs->result_cap, r);
     return true;
 }
@@ -98,7 +99,7 @@ bool ct_outputs_derive(struct ct_build *b)
 {
     const size_t before = b->ctx->nerror;
     struct ct_names names = {0};
-    b->in_outputs = true;
+    b->signals.in_outputs = true;
     for (size_t i = 0; i < b->model->noutput; i++) {
         const struct ct_output *o = &b->model->output[i];
         const size_t first = b->eqs->nresult;
@@ -108,7 +109,7 @@ bool ct_outputs_derive(struct ct_build *b)
             push_result(b, o->name, ct_output_value(b, o->value));
         new_names(b, &names, first, i);
     }
-    b->in_outputs = false;
+    b->signals.in_outputs = false;
     return b->ctx->nerror == before;
 }
 
@@ -172,13 +173,13 @@ bool ct_outputs_add(struct ct_build *b, enum ct_more_outputs more)
     const size_t n = b->model->njoint;
     bool ok = true;
     b->eqs->more = more;
-    b->in_outputs = true;
+    b->signals.in_outputs = true;
     for (size_t j = 0; j < n && more == CT_MORE_COORDINATES && b->model->noutput == 0; j++)
         ok &= coordinate_columns(b, &b->model->joint[j]);
     for (size_t j = 0; j < n && more == CT_MORE_EFFORTS; j++)
         ok &= effort_columns(b, j);
     for (size_t j = 0; j < n && more == CT_MORE_EFFORTS; j++)
         ok &= reaction_columns(b, j);
-    b->in_outputs = false;
+    b->signals.in_outputs = false;
     return ok;
 }

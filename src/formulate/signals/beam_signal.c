@@ -28,8 +28,9 @@ ct_ex3 ct_beam_signal_place(const struct ct_build *b, int frame)
     return frame == b->model->body[p->body].frame ? zero3 : p->at;
 }
 
-// Place of a frame on the deformed beam, axes of the beam; a frame off the axis turns with its section. The axis is
-// foreshortened where its forces are, also if the kinematics leaves that out.
+// Place of a frame on the deformed beam, axes of the beam; a frame off the axis turns with its
+// section. The axis is foreshortened where its forces are, also if the kinematics leaves that
+// out.
 static ct_ex3 deformed_place(struct ct_build *b, const struct ct_flexible *f, ct_ex3 rest)
 {
     const ct_ex3 across = {{CT_EX_ZERO, rest.e[1], rest.e[2]}};

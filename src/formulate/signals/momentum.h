@@ -6,7 +6,8 @@
 
 enum ct_system_total { CT_SUM_CENTRE, CT_SUM_MOMENTUM, CT_SUM_ANGULAR_MOMENTUM };
 
-/// In axes of ground: the centre of mass [m], the momentum [N s], or the angular momentum about the origin of ground [N m s].
+/// In axes of ground: the centre of mass [m], the momentum [N s], or the angular momentum about
+/// the origin of ground [N m s].
 ct_ex3 ct_system_total_vector(struct ct_build *b, enum ct_system_total property);
 /// Of one beam: mass times centre of mass [kg m], momentum, angular momentum.
 ct_ex3 ct_beam_total_vector(struct ct_build *b, struct ct_flexible *f,

@@ -1,4 +1,5 @@
-// See signal.h: names taken apart, the signals of kinematics, and expressions of the model that use them.
+// See signal.h: names taken apart, the signals of kinematics, and expressions of the model that
+// use them.
 #include "formulate/signals/signal.h"
 #include "formulate/beam_dynamics/beam_dynamics.h"
 #include "formulate/kinematics/constraint_row.h"
@@ -10,7 +11,8 @@
 
 static const ct_ex3 zero3 = {{{0}, {0}, {0}}};
 
-// ---- taking names apart -----------------------------------------------------------------------------------
+// ---- taking names apart
+// -----------------------------------------------------------------------------------
 
 static const char *const axis_names[] = {"x", "y", "z"};
 
@@ -27,8 +29,8 @@ bool ct_signal_unknown(struct ct_build *b, const struct ct_signal *s, const char
     return ct_error(b->ctx, s->mark, CT_E_SIGNAL, "there is no signal '%s': %s", s->name, why);
 }
 
-// The signal follows from forces: what it is, for those who know them. number: of the joint, the coordinate, the energy, the frame or
-// the body.
+// The signal follows from forces: what it is, for those who know them. number: of the joint, the
+// coordinate, the energy, the frame or the body.
 static bool leave_to_dynamics(struct ct_signal *s, enum ct_dynamic_signal kind, int number)
 {
     s->dynamic = kind;
@@ -36,7 +38,8 @@ static bool leave_to_dynamics(struct ct_signal *s, enum ct_dynamic_signal kind, 
     return true;
 }
 
-// ---- frames ---------------------------------------------------------------------------------------------------
+// ---- frames
+// ---------------------------------------------------------------------------------------------------
 
 static const char *const vector_properties[]
     = {"position", "velocity", "acceleration", "angular_velocity", "angular_acceleration"};
@@ -98,9 +101,9 @@ bool ct_signal_component(struct ct_build *b, const struct ct_signal *s, ct_ex3 v
 // The quaternion of a frame is followed in time, so its four numbers are made together and kept.
 static ct_ex frame_quaternion(struct ct_build *b, int node, int i)
 {
-    if (!b->quaternion)
-        b->quaternion = CT_NEWN(b->arena, struct ct_kept_quaternion, b->nnode);
-    struct ct_kept_quaternion *q = &b->quaternion[node];
+    if (!b->signals.quaternion)
+        b->signals.quaternion = CT_NEWN(b->arena, struct ct_kept_quaternion, b->nnode);
+    struct ct_kept_quaternion *q = &b->signals.quaternion[node];
     if (!q->made) {
         const ct_ex33 R = ct_node_rotation(b, node);
         ct_quaternion_follow(b, b->node[node].name, &R, q->p);
@@ -144,7 +147,8 @@ static bool frame_signal(struct ct_build *b, int frame, const struct ct_signal *
               "angular_acceleration, rotation and quaternion");
 }
 
-// ---- joints ----------------------------------------------------------------------------------------------------
+// ---- joints
+// ----------------------------------------------------------------------------------------------------
 
 // "joint 'pin' (cylindrical) has q1 and q2"
 static const char *coordinates_of(struct ct_build *b, const struct ct_instance *self,
@@ -237,7 +241,8 @@ static bool joint_signal(struct ct_build *b, int joint, struct ct_signal *s, ct_
     return ct_signal_unknown(b, s, "a joint has q, u, a, effort, force and torque");
 }
 
-// ---- forces ---------------------------------------------------------------------------------------------------
+// ---- forces
+// ---------------------------------------------------------------------------------------------------
 
 static bool force_signal(struct ct_build *b, const struct ct_instance *self,
                          const struct ct_signal *s, ct_ex *out)
@@ -258,7 +263,8 @@ static bool force_signal(struct ct_build *b, const struct ct_instance *self,
     return !s->axes || ct_signal_component(b, s, v, out);
 }
 
-// ---- the whole system ----------------------------------------------------------------------------------------------
+// ---- the whole system
+// ----------------------------------------------------------------------------------------------
 
 static ct_ex largest(struct ct_build *b, bool position)
 {
@@ -311,7 +317,8 @@ static ct_ex3 body_com(struct ct_build *b, int body)
                       ct_ex3_scale(b->x, ct_ex_div(b->x, CT_EX_ONE, s.mass), s.moment));
 }
 
-// ---- beams -----------------------------------------------------------------------------------------------------------
+// ---- beams
+// -----------------------------------------------------------------------------------------------------------
 
 static bool beam_signal(struct ct_build *b, int frame, struct ct_signal *s, ct_ex *out)
 {
@@ -327,7 +334,8 @@ static bool beam_signal(struct ct_build *b, int frame, struct ct_signal *s, ct_e
     return ct_signal_component(b, s, ct_beam_signal_vector(b, frame, s->property), out);
 }
 
-// ---- any signal ----------------------------------------------------------------------------------------------------
+// ---- any signal
+// ----------------------------------------------------------------------------------------------------
 
 // Split at dots after the longest prefix that names something; " in AXES" is taken off the end.
 static bool split(struct ct_build *b, const char *name, struct ct_signal *s, int *frame)
@@ -431,7 +439,8 @@ const char *const *ct_signal_components(struct ct_build *b, const char *name)
     return !strcmp(s.property, "quaternion") ? four : NULL;
 }
 
-// ---- expressions of the model ------------------------------------------------------------------------------------------
+// ---- expressions of the model
+// ------------------------------------------------------------------------------------------
 
 static const int deepest_signal = 64; // a force that measures a force that measures ... itself
 
@@ -453,7 +462,7 @@ static ct_ex signal_value(struct ct_build *b, ct_ex e)
     struct ct_signal s;
     ct_ex out;
     if (ct_signal_resolve(b, symbol.name, symbol.mark, &s, &out)
-        && (s.dynamic || (!b->in_outputs && ct_ex_kinds(b->x, out) & late)))
+        && (s.dynamic || (!b->signals.in_outputs && ct_ex_kinds(b->x, out) & late)))
         refuse(b, &s);
     return out;
 }
@@ -477,25 +486,25 @@ ct_ex ct_build_value(struct ct_build *b, ct_ex e)
     const size_t n = ct_signals_list(b, e, from);
     if (!n)
         return ct_switch_hold(b, e);
-    if (b->resolving > deepest_signal) {
+    if (b->signals.resolving > deepest_signal) {
         ct_error(b->ctx, ct_ex_symbol(b->x, from[0])->mark, CT_E_SIGNAL_USE,
                  "signal '%s' depends on itself", ct_ex_symbol(b->x, from[0])->name);
         return CT_EX_ZERO;
     }
-    b->resolving++;
+    b->signals.resolving++;
     for (size_t i = 0; i < n; i++)
         to[i] = signal_value(b, from[i]);
-    b->resolving--;
+    b->signals.resolving--;
     const ct_ex replaced = ct_ex_subst(b->x, e, from, to, n);
     if (ct_ex_kinds(b->x, replaced) & 1u << CT_SYM_SIGNAL) // more than CT_MOST_SIGNALS
         return ct_build_value(b, replaced);
-    if (b->in_outputs)
+    if (b->signals.in_outputs)
         return replaced;
-    b->written = e;
-    b->written_from = from;
-    b->written_to = to;
-    b->nwritten = n;
+    b->signals.written = e;
+    b->signals.from = from;
+    b->signals.to = to;
+    b->signals.nreplaced = n;
     const ct_ex held = ct_switch_hold(b, replaced);
-    b->nwritten = 0;
+    b->signals.nreplaced = 0;
     return held;
 }

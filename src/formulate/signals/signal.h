@@ -1,7 +1,8 @@
 // Signals: names of the format (section 6) turned into expressions.
 //
-// Here are those that follow from places, velocities and loads: a force may depend on them. Those that follow from forces - reactions,
-// efforts of drivers, energies, what a beam transmits, how good a linear beam is - are recognised here and derived in outputs/.
+// Here are those that follow from places, velocities and loads: a force may depend on them. Those
+// that follow from forces - reactions, efforts of drivers, energies, what a beam transmits, how
+// good a linear beam is - are recognised here and derived in outputs/.
 #ifndef CT_FORMULATE_SIGNALS_SIGNAL_H
 #define CT_FORMULATE_SIGNALS_SIGNAL_H
 
@@ -17,7 +18,8 @@ enum ct_dynamic_signal {
     CT_DYNAMIC_VALIDITY,  // of a linear beam: its body
 };
 
-/// A name taken apart: "rod.tip.velocity.x in crank" is owner "rod.tip", property "velocity", component "x", axes "crank".
+/// A name taken apart: "rod.tip.velocity.x in crank" is owner "rod.tip", property "velocity",
+/// component "x", axes "crank".
 struct ct_signal {
     const char *name;
     struct ct_mark mark;
@@ -26,11 +28,12 @@ struct ct_signal {
     int number;
 };
 
-/// One scalar signal, taken apart in *s. out: its expression, zero where s->dynamic says that it follows from forces. False with a
-/// diagnostic at mark if there is no such signal.
+/// One scalar signal, taken apart in *s. out: its expression, zero where s->dynamic says that it
+/// follows from forces. False with a diagnostic at mark if there is no such signal.
 bool ct_signal_resolve(struct ct_build *b, const char *name, struct ct_mark mark,
                        struct ct_signal *s, ct_ex *out);
-/// Components a name without one stands for (".x", ".y", ".z"); NULL-terminated, or NULL for a scalar signal.
+/// Components a name without one stands for (".x", ".y", ".z"); NULL-terminated, or NULL for a
+/// scalar signal.
 const char *const *ct_signal_components(struct ct_build *b, const char *name);
 
 /// The component of v, in axes of ground, that the signal asks for, in the axes that it asks for.
