@@ -4,7 +4,6 @@
 
 #include "formulate/build.h"
 
-
 /// That of the accelerations by articulated bodies where they would be taken, else by_matrix, what the mass matrix costs. After
 /// ct_loads_derive.
 double ct_open_cost(struct ct_build *b, double by_matrix);
