@@ -40,6 +40,7 @@ const struct ct_component_class ct_component_distance = {
     .family = CT_FAMILY_JOINT,
     .key = keys,
     .nkey = COUNT(keys),
+    .is_moment_free = true,
     .across = "|d| = length",
     .through = "F along d is the reaction; T = 0",
     .apply = apply,

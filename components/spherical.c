@@ -20,6 +20,7 @@ const struct ct_component_class ct_component_spherical = {
     .name = "spherical",
     .summary = "two frames share a point; rotation is free",
     .family = CT_FAMILY_JOINT,
+    .is_moment_free = true,
     .across = "d = 0, S = S(q1..q4) with S' = S u~",
     .through = "T = effort - damping*u; F is a reaction",
     .ncoord = 4,

@@ -81,6 +81,7 @@ const struct ct_component_class ct_component_spring = {
     .family = CT_FAMILY_FORCE,
     .key = keys,
     .nkey = COUNT(keys),
+    .is_moment_free = true,
     .across = "free",
     .through = "F = -(stiffness*(|d| - length) + damping*|d|')*d/|d|, T = 0",
     .apply = apply,

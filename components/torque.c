@@ -32,6 +32,7 @@ const struct ct_component_class ct_component_torque = {
     .nkey = COUNT(keys),
     .across = "free",
     .through = "F = 0, T = value",
+    .applied = CT_APPLIED_TORQUE,
     .apply = apply,
     .signal = signal,
     .signals = "torque.x, .y, .z",

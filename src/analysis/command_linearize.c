@@ -2,7 +2,7 @@
 #include "analysis/configuration.h"
 
 #include "analysis/state_space.h"
-#include "formulate/dynamics/residual.h"
+#include "formulate/residual/residual.h"
 #include "numeric/dense.h"
 #include "report/archive.h"
 #include "report/columns.h"

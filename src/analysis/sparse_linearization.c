@@ -1,7 +1,7 @@
 // See sparse_linearization.h.
 #include "analysis/sparse_linearization.h"
 #include "formulate/build.h"
-#include "formulate/dynamics/residual.h"
+#include "formulate/residual/residual.h"
 
 #include <math.h>
 #include <string.h>

@@ -2,8 +2,8 @@
 #include "beam_error/beam_error_coupled.h"
 #include "expr/tape.h"
 #include "formulate/dynamics/dynamics.h"
-#include "formulate/beam/beam_dynamics.h"
-#include "formulate/topology/tree_selection.h"
+#include "formulate/beam_dynamics/beam_dynamics.h"
+#include "formulate/stage.h"
 #include "numeric/dense.h"
 
 #include <math.h>
@@ -51,7 +51,7 @@ static struct ct_build *rigid_scene(struct ct_build *b)
         return b->rigid;
     b->has_no_rigid = true;
     struct ct_build *r = ct_build_create(b->ctx, b->arena, b->model, &o, NULL);
-    if (!ct_tree_selection_run(&r, &o, &unused) || !(r->is_derived || ct_build_derive(r, true)))
+    if (!ct_build_choose_trees(&r, &o, &unused) || !(r->is_derived || ct_build_derive(r, true)))
         return NULL;
     if (r->eqs->nrow || r->eqs->nu > MOST || r->eqs->nmemory || r->eqs->nswitch > MOST_MODES)
         return NULL;

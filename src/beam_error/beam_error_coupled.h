@@ -12,6 +12,7 @@
 #ifndef CT_BEAM_ERROR_BEAM_ERROR_COUPLED_H
 #define CT_BEAM_ERROR_BEAM_ERROR_COUPLED_H
 
+#include "beam_error/beam_error_modal.h"
 #include "formulate/beam/flexible_body.h"
 
 enum { CT_BEAM_ERROR_COUPLED_MOST = 12 }; // speeds of the scene, beams rigid

@@ -26,28 +26,10 @@
 #ifndef CT_BEAM_ERROR_BEAM_ERROR_MODAL_H
 #define CT_BEAM_ERROR_BEAM_ERROR_MODAL_H
 
-#include <stdbool.h>
+#include "formulate/bending_mode.h"
 
 /// Beyond it the linear beam is wrong altogether, and no figure is given.
 #define CT_ESTIMATED_ERROR_LIMIT 1.0
-
-enum {
-    CT_PLANE_SHAPES = 3,
-    CT_BENDING_SHAPES = 2 * CT_PLANE_SHAPES,
-    CT_BEAM_MODE_STATIONS
-    = 4 // quarters of the beam, the end last, where deflections are looked at
-};
-
-/// A bending shape phi of unit mass.
-struct ct_beam_mode {
-    bool is_z;                    // it moves along z
-    double omega2, damping;       // [1/s^2], [1/s]
-    double turning, axial;        // eta per w^2, and per acceleration along x  [s^2], [s^2/m]
-    double mass[2];               // int phi m dx, int phi m x dx
-    double shortening, curvature; // b, g
-    double deflection[CT_BEAM_MODE_STATIONS]; // phi there
-    double coupling[CT_BENDING_SHAPES];       // C with the shapes of the other plane, by number
-};
 
 enum ct_beam_model {
     CT_BEAM_MODEL_LINEAR,

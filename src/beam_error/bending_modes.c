@@ -1,7 +1,7 @@
 // See bending_modes.h.
 #include "beam_error/bending_modes.h"
 #include "expr/quadrature.h"
-#include "formulate/beam/beam_dynamics.h"
+#include "formulate/beam_dynamics/beam_dynamics.h"
 #include "formulate/beam/beam_field.h"
 #include "formulate/beam/attached_bodies.h"
 #include "numeric/dense.h"

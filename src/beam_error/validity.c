@@ -2,7 +2,7 @@
 #include "beam_error/validity.h"
 #include "expr/tape.h"
 #include "beam_error/bending_modes.h"
-#include "formulate/beam/beam_dynamics.h"
+#include "formulate/beam_dynamics/beam_dynamics.h"
 #include "beam_error/beam_error_coupled.h"
 #include "formulate/beam/attached_bodies.h"
 

@@ -10,6 +10,7 @@
 #ifndef CT_BEAM_ERROR_VALIDITY_H
 #define CT_BEAM_ERROR_VALIDITY_H
 
+#include "beam_error/beam_error_modal.h"
 #include "formulate/beam/flexible_body.h"
 
 /// The indicator of a beam, the larger one of its planes of bending; masses welded to its points count. eta in terms of

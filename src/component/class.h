@@ -145,6 +145,9 @@ struct ct_instance {
 /// Value of a key of the instance by name; the key must exist (asserted). `given` tells if it was.
 const struct ct_value *ct_instance_value(const struct ct_instance *self, const char *key);
 
+/// What the key `value` of a force is: a vector on the frame `to`.
+enum ct_applied_load { CT_APPLIED_NONE, CT_APPLIED_FORCE, CT_APPLIED_TORQUE };
+
 struct ct_component_class {
     const char *name, *summary;
     enum ct_family family;
@@ -153,6 +156,9 @@ struct ct_component_class {
     const char *across, *through; // terminal equations, for `components` and `--show terminal`
     int ncoord, nfree;            // joints; custom: -1, from its list of coordinates
     bool always_branch;           // joints whose rows as a chord do not exist: screw, custom
+    bool
+        is_moment_free; // joints and forces: transmits no moment, but for springs, dampers and efforts of joints
+    enum ct_applied_load applied; // forces
     /// Joints with motion: fill `m` from the instance. NULL for distance and gear.
     void (*motion)(struct ct_exs *x, const struct ct_instance *self, struct ct_motion *m);
     /// Forces, distance and gear: add loads or rows through formulate/load.h and constraint_row.h.

@@ -139,13 +139,31 @@ struct ct_load {
     ct_ex power;     // put in by the part that has no potential [W]
 };
 
-/// One piece of a path between two nodes: an anchor's link, or the offset of an end node (anchor < 0).
+/// One piece of a path between two nodes: an anchor's link, or the offset of an end node (anchor
+/// < 0).
 struct ct_piece {
     int anchor, cluster, sign;
     ct_ex3 local;
 };
 
-struct ct_augmented_body; // dynamics.h
+/// Expressions of the model while their signals are replaced (signals/signal.h) and their
+/// comparisons held (switch.h).
+struct ct_signal_state {
+    struct ct_mark holding; // where the expression stands whose comparisons are held
+    // that expression as it is written, and what stands for its signals (nreplaced)
+    ct_ex written;
+    const ct_ex *from, *to;
+    size_t nreplaced;
+    int resolving;   // depth of signals within signals
+    bool is_open;    // a reaction was met that this planar model leaves open
+    bool in_outputs; // accelerations and multipliers may be used, comparisons stay as they are
+    struct ct_kept_quaternion {
+        bool made;
+        ct_ex p[4];
+    } * quaternion; // by node, of frames whose quaternion is an output
+};
+
+struct ct_augmented_body; // mass_sums.h
 struct ct_flexible;       // flexible_body.h
 struct ct_station;
 struct ct_sweep;
@@ -228,18 +246,7 @@ struct ct_build {
     size_t ncoupling, coupling_cap;
     const struct ct_sweep *sweep[2]; // by level, once asked for
     ct_ex *effort;                   // of joints along their unknown coordinates (nu)
-    struct ct_mark holding;          // where the expression stands whose comparisons are held
-    // that expression as it is written, and what stands for its signals (nwritten)
-    ct_ex written;
-    const ct_ex *written_from, *written_to;
-    size_t nwritten;
-    int resolving;   // depth of signals within signals
-    bool is_open;    // a signal was met that this planar model leaves open
-    bool in_outputs; // accelerations and multipliers may be used, comparisons stay as they are
-    struct ct_kept_quaternion {
-        bool made;
-        ct_ex p[4];
-    } * quaternion; // by node, of frames whose quaternion is an output
+    struct ct_signal_state signals;
 };
 
 static inline bool ct_cluster_is_outboard(const struct ct_build *b, int inner, int outer)
@@ -252,5 +259,15 @@ static inline bool ct_anchor_is_outboard(const struct ct_build *b, int inner, in
     return b->anchor[inner].enter <= b->anchor[outer].enter
         && b->anchor[outer].leave <= b->anchor[inner].leave;
 }
+
+/// Planar: v less its part along the normal; otherwise v.
+ct_ex3 ct_build_in_plane(struct ct_build *b, ct_ex3 v);
+/// Note what the equations leave out and why.
+void ct_build_note_left_out(struct ct_build *b, const char *what, const char *why);
+/// Does the model name this joint or beam under `small`? at, unless NULL, is set to where it does.
+bool ct_build_is_small(const struct ct_build *b, const char *name, struct ct_mark *at);
+
+/// Has the joint a spring, a damper, an effort or a prescribed motion along its coordinates?
+bool ct_joint_is_active(const struct ct_instance *joint);
 
 #endif

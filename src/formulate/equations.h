@@ -11,7 +11,7 @@
 #define CT_FORMULATE_EQUATIONS_H
 
 #include "component/model.h"
-#include "beam_error/beam_error_modal.h"
+#include "formulate/bending_mode.h"
 #include "graph/graph.h"
 
 /// A stored coordinate.

@@ -2,10 +2,11 @@
 //
 // Expressions are numbers in a store, so that a copy of the store gives them the same meaning. What the derivation of mass
 // matrices, residuals and signals writes is copied; what it only reads (trees, names, lists of terms) is shared.
-#include "formulate/beam/beam_dynamics.h"
+#include "formulate/beam_dynamics/beam_dynamics.h"
 #include "formulate/beam/flexible_body.h"
 #include "formulate/formulate.h"
 #include "formulate/kinematics/constraint_row.h"
+#include "formulate/mass_sums.h"
 
 #include <string.h>
 
@@ -78,8 +79,8 @@ static struct ct_build *fork_build(struct ct_ctx *ctx, struct ct_arena *a,
     b->multiplier_wrench_cap = b->nmultiplier_wrench;
     b->coupling_cap = b->ncoupling;
     b->speed_axis_cap = b->nspeed_axis;
-    if (b->quaternion)
-        COPY(a, b->quaternion, b->nnode);
+    if (b->signals.quaternion)
+        COPY(a, b->signals.quaternion, b->nnode);
     // workspace
     if (b->piece)
         COPY(a, b->piece, b->nanchor + 2);

@@ -3,97 +3,16 @@
 #include "formulate/closed_form/beam_augmented.h"
 #include "formulate/dynamics/dynamics.h"
 #include "formulate/recursive/open_chain.h"
-#include "formulate/dynamics/residual.h"
+#include "formulate/residual/residual.h"
 #include "formulate/kinematics/constraint_row.h"
-#include "formulate/outputs/signal.h"
+#include "formulate/outputs/output.h"
 #include "formulate/dynamics/small_motion.h"
-#include "formulate/dynamics/momentum_energy.h"
+#include "formulate/dynamics/energy.h"
 #include "formulate/topology/linear_graph.h"
-#include "formulate/topology/tree_selection.h"
+#include "formulate/stage.h"
 #include "beam_error/validity.h"
 
 #include <string.h>
-
-// ---- one pair of trees ---------------------------------------------------------------------------
-
-static double *start_values(struct ct_arena *a, const struct ct_model *m)
-{
-    double *v = CT_NEWN(a, double, m->x->nsym + 1);
-    for (size_t i = 0; i < m->nparameter; i++)
-        v[ct_ex_node(m->x, m->parameter[i].symbol)->a] = m->parameter[i].value;
-    return v;
-}
-
-static bool starts_deformed(const struct ct_model *m)
-{
-    for (size_t i = 1; i < m->nbody; i++)
-        if (m->body[i].beam && m->body[i].beam->nstart)
-            return true;
-    return false;
-}
-
-struct ct_build *ct_build_create(struct ct_ctx *ctx, struct ct_arena *a,
-                                 const struct ct_model *m, const struct ct_formulate_options *o,
-                                 const bool *is_linear)
-{
-    struct ct_build *b = CT_NEW(a, struct ct_build);
-    *b = (struct ct_build){
-        .ctx = ctx,
-        .arena = a,
-        .model = m,
-        .is_rigid = o->rigid || (o->measure_all && !o->deformed && !starts_deformed(m)),
-        .keep_all = o->keep_all,
-        .keeps_all_deformations
-        = o->frees_beams || (o->like && o->like->build->keeps_all_deformations),
-        .drivers_are_held = o->held,
-        .has_offsets = o->gaps,
-        .like = o->like,
-        .is_linear = is_linear};
-    b->eqs = CT_NEW(a, struct ct_equations);
-    b->x = b->eqs->x = ct_exs_clone(a, m->x);
-    b->value = start_values(a, m);
-    b->x->ndecided = m->x->nsym;
-    b->x->decided = CT_NEWN(a, unsigned char, m->x->nsym + 1);
-    ct_linear_graph_derive(b, !o->keep_all);
-    return b;
-}
-
-static void *copy(struct ct_arena *a, const void *from, size_t n, size_t cap, size_t size)
-{
-    void *to = ct_arena_calloc(a, cap, size);
-    if (n)
-        memcpy(to, from, n * size);
-    return to;
-}
-
-struct ct_build *ct_build_clone(struct ct_ctx *ctx, struct ct_arena *a,
-                                const struct ct_build *from)
-{
-    struct ct_build *b = copy(a, from, 1, 1, sizeof *b);
-    b->ctx = ctx;
-    b->arena = a;
-    b->eqs = copy(a, from->eqs, 1, 1, sizeof *b->eqs);
-    b->x = b->eqs->x = ct_exs_clone(a, from->x);
-    const size_t ndecided = b->x->ndecided;
-    b->x->decided = copy(a, from->x->decided, ndecided, ndecided + 1, 1);
-    b->edge = copy(a, from->edge, b->nedge, b->edge_cap, sizeof *b->edge);
-    b->coordinate
-        = copy(a, from->coordinate, b->ncoordinate, b->coordinate_cap, sizeof *b->coordinate);
-    return b;
-}
-
-bool ct_build_derive(struct ct_build *b, bool with_dynamics)
-{
-    const size_t before = b->ctx->nerror;
-    ct_unknowns_choose(b);
-    b->eqs->Q = CT_NEWN(b->arena, ct_ex, b->eqs->nu + 1);
-    ct_rotation_derive(b);
-    ct_translation_derive(b);
-    ct_rows_derive(b);
-    if (with_dynamics)
-        ct_loads_derive(b);
-    return b->ctx->nerror == before;
-}
 
 // ---- the stage -------------------------------------------------------------------------------------------
 
@@ -178,7 +97,7 @@ static const bool *choose_linear(struct ct_ctx *ctx, struct ct_arena *a,
     struct ct_tree_report unused = {0};
     through.tree = CT_TREE_JOINTS;
     struct ct_build *other = ct_build_create(ctx, a, m, &through, NULL);
-    if (!ct_tree_selection_run(&other, &through, &unused)
+    if (!ct_build_choose_trees(&other, &through, &unused)
         || !(other->is_derived || ct_build_derive(other, false)))
         return NULL;
     linear = ct_validity_choose(other, &is_driven);
@@ -209,8 +128,8 @@ static bool choose_beams(struct ct_ctx *ctx, struct ct_arena *a, const struct ct
         struct ct_flexible *f = &(*b)->flexible[i];
         f->why = old->flexible[i].why;
         if (f->beam->formulation == CT_BEAM_AUTO && f->formulation == CT_BEAM_LINEAR)
-            ct_linear_graph_note_left_out(
-                *b, ct_arena_printf(a, "foreshortening of %s", f->name), f->why);
+            ct_build_note_left_out(*b, ct_arena_printf(a, "foreshortening of %s", f->name),
+                                   f->why);
     }
     return ct_build_derive(*b, !o->without_dynamics);
 }
@@ -242,7 +161,7 @@ bool ct_formulate(struct ct_ctx *ctx, struct ct_arena *a, const struct ct_model 
     const size_t before = ctx->nerror;
     struct ct_build *b = ct_build_create(ctx, a, m, options, NULL);
     *report = (struct ct_tree_report){0};
-    if (ctx->nerror > before || !ct_tree_selection_run(&b, options, report)
+    if (ctx->nerror > before || !ct_build_choose_trees(&b, options, report)
         || !(b->is_derived || ct_build_derive(b, !options->without_dynamics))
         || !choose_beams(ctx, a, m, options, &b))
         return false;

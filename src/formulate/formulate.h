@@ -44,6 +44,9 @@ struct ct_formulate_options {
                       // solution, and trees that couple few unknowns
 };
 
+/// Up to this many speeds every formulation is tried: they are cheap to generate, and the mass matrix is what people
+/// look at.
+enum { CT_SMALL_SYSTEM = 24 };
 enum { CT_MOST_FULL = 3000 }; // speeds; full matrices of larger systems would take hours
 enum { CT_MOST_DENSE = 300 }; // speeds; larger systems are analysed with sparse matrices
 

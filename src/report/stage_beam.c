@@ -2,7 +2,7 @@
 #include "report/stage_beam.h"
 
 #include "expr/collect.h"
-#include "formulate/beam/beam_dynamics.h"
+#include "formulate/beam_dynamics/beam_dynamics.h"
 
 #include <string.h>
 

@@ -1,5 +1,6 @@
 // What a run has to say about its beams.
 #include "sim/sim.h"
+#include "beam_error/beam_error_modal.h"
 #include "formulate/beam/flexible_body.h"
 
 #include <math.h>

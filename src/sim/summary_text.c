@@ -5,6 +5,7 @@
 #include "report/stage_beam.h"
 #include "solve/singular/rank_monitor.h"
 #include "solve/evaluator/tangent.h"
+#include "formulate/beam/section_properties.h"
 
 #include <math.h>
 #include <string.h>

@@ -8,7 +8,7 @@
 #include "tests/property/system.h"
 
 #include "analysis/state_space.h"
-#include "formulate/dynamics/residual.h"
+#include "formulate/residual/residual.h"
 #include "solve/evaluator/quad_program.h"
 
 #ifdef CT_HAVE_QUADMATH

@@ -2,7 +2,7 @@
 #include "tests/check.h"
 
 #include "formulate/formulate.h"
-#include "formulate/dynamics/residual.h"
+#include "formulate/residual/residual.h"
 #include "integrate/implicit/alpha.h"
 #include "solve/constraint/dae.h"
 #include "solve/run/quad_run.h"

@@ -2,7 +2,6 @@
 #include "formulate/beam/attached_bodies.h"
 
 #include <math.h>
-#include <string.h>
 
 // A frame of the beam beyond its base. The section at the start of one on its chord turns against the base.
 static bool is_beyond(const struct ct_build *b, const struct ct_flexible *f, int frame)
@@ -13,7 +12,7 @@ static bool is_beyond(const struct ct_build *b, const struct ct_flexible *f, int
 
 static bool is_weld(const struct ct_instance *joint)
 {
-    return joint->from >= 0 && !strcmp(joint->cls->name, "weld");
+    return joint->from >= 0 && joint->cls->motion && joint->cls->nfree == 0;
 }
 
 double *ct_attached_bodies_find(const struct ct_build *b, const struct ct_flexible *f)

@@ -1,6 +1,7 @@
 // See beam_field.h.
 #include "formulate/beam/beam_field.h"
-#include "formulate/beam/beam_dynamics.h"
+#include "formulate/beam/modal_reduction.h"
+#include "formulate/beam/degrees_of_freedom.h"
 
 enum { NKIND = CT_NODE_FREEDOM };
 

@@ -3,7 +3,6 @@
 #include "formulate/beam/beam_field.h"
 
 #include <math.h>
-#include <string.h>
 
 static const double roundoff = 1e-12; // of components of unit vectors
 
@@ -61,8 +60,8 @@ static bool loads_keep_plane(struct ct_build *b, ct_ex33 *const *U)
     const struct ct_model *m = b->model;
     for (size_t i = 0; i < m->nforce; i++) {
         const struct ct_instance *self = &m->force[i];
-        const bool is_torque = !strcmp(self->cls->name, "torque");
-        if (is_torque || !strcmp(self->cls->name, "force")) {
+        const bool is_torque = self->cls->applied == CT_APPLIED_TORQUE;
+        if (self->cls->applied) {
             const struct ct_value *v = ct_instance_value(self, "value");
             const struct ct_value *in = ct_instance_value(self, "in");
             const ct_ex3 value = {{v->e[0], v->e[1], v->e[2]}};
@@ -174,7 +173,7 @@ static bool is_twisted(const struct ct_build *b, const struct ct_flexible *f)
             return true;
     for (size_t i = 0; i < m->njoint; i++) {
         const struct ct_instance *j = &m->joint[i];
-        if (j->from < 0 || !j->cls->motion || !strcmp(j->cls->name, "spherical")
+        if (j->from < 0 || (j->cls->is_moment_free && !ct_joint_is_active(j))
             || m->body[m->frame[j->from].body].is_particle
             || m->body[m->frame[j->to].body].is_particle)
             continue;
@@ -182,8 +181,7 @@ static bool is_twisted(const struct ct_build *b, const struct ct_flexible *f)
             return true;
     }
     for (size_t i = 0; i < m->nforce; i++) {
-        const char *kind = m->force[i].cls->name;
-        if ((!strcmp(kind, "torque") || !strcmp(kind, "bushing"))
+        if (!m->force[i].cls->is_moment_free
             && (turns_section(b, m->force[i].from, f) || turns_section(b, m->force[i].to, f)))
             return true;
     }

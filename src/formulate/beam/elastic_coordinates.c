@@ -1,8 +1,10 @@
 // Unknowns of a beam: nodal, modal, or shares of given shapes; see flexible_body.h.
 #include "formulate/beam/legendre.h"
-#include "formulate/beam/beam_dynamics.h"
 #include "formulate/beam/beam_field.h"
-#include "formulate/topology/linear_graph.h"
+#include "formulate/beam/static_condensation.h"
+#include "formulate/beam/massless_rotations.h"
+#include "formulate/beam/modal_reduction.h"
+#include "formulate/beam/degrees_of_freedom.h"
 
 #include <math.h>
 
@@ -311,13 +313,12 @@ void ct_flexible_unknowns(struct ct_build *b, struct ct_flexible *f)
             unknowns_of_shapes(b, f, &s);
     } else if (ct_flexible_condense(b, f, &s)) {
         unknowns_of_shapes(b, f, &s);
-        ct_linear_graph_note_left_out(
-            b, ct_arena_printf(b->arena, "rotations of %s's nodes", f->name),
-            "without inertia and moment they follow the other coordinates");
+        ct_build_note_left_out(b, ct_arena_printf(b->arena, "rotations of %s's nodes", f->name),
+                               "without inertia and moment they follow the other coordinates");
     } else
         nodal_unknowns(b, f);
     if (f->formulation == CT_BEAM_STRETCH_LINEAR && carries_bodies(b, f))
-        ct_linear_graph_note_left_out(
+        ct_build_note_left_out(
             b,
             ct_arena_printf(b->arena, "second order of %s's deflection in bodies on it",
                             f->name),

@@ -17,7 +17,7 @@
 #ifndef CT_FORMULATE_BEAM_FLEXIBLE_BODY_H
 #define CT_FORMULATE_BEAM_FLEXIBLE_BODY_H
 
-#include "formulate/dynamics/dynamics.h"
+#include "formulate/build.h"
 #include "formulate/beam/shape_function.h"
 
 /// A linear beam is good enough below this indicator.
@@ -127,9 +127,10 @@ void ct_flexible_create(struct ct_build *b);
 void ct_flexible_choose_deformation(struct ct_build *b);
 /// The beam of a body; NULL if it is none.
 struct ct_flexible *ct_flexible_of(const struct ct_build *b, int body);
-/// Deformation (bit) that a kind of freedom belongs to.
-unsigned ct_freedom_family(int kind);
-bool ct_freedom_is_fixed(const struct ct_flexible *f, int node, int kind);
+/// Are all coordinates of beam f small, by its formulation or its name?
+bool ct_flexible_is_small(const struct ct_build *b, const struct ct_flexible *f);
+/// Can all beams be articulated bodies (recursive/member.h), as far as their kinematics and coordinates that are small go?
+bool ct_flexible_may_be_articulated(const struct ct_build *b);
 /// Unknowns of the elastic coordinates (elastic_coordinates.c), after those of joints and bodies.
 void ct_flexible_unknowns(struct ct_build *b, struct ct_flexible *f);
 void ct_axial_field(struct ct_build *b, const struct ct_flexible *f, int e, ct_ex xi,
@@ -157,40 +158,9 @@ static inline int ct_stretch_dof(int i)
 {
     return i < 2 ? i : CT_MIDDLE_DOF;
 }
-/// Parts of element e's dof j: *sign times those of the freedom; NULL if it is fixed.
-const struct ct_freedom *ct_dof_freedom(const struct ct_flexible *f, int e, int j, int *sign);
 /// sum over the dofs in [from, to) of the shape times the value (rate, ...) of each.
 ct_ex ct_element_field(struct ct_build *b, const struct ct_element *e,
                        const struct ct_shape *shape, const ct_ex *of, int from, int n,
                        ct_ex xi);
-
-// ---- beam_dynamics.c: dynamics ---------------------------------------------------------------------------
-
-/// Mass, first moment and inertia of the beams, added to anchors and clusters; before augmented bodies are linked.
-void ct_flexible_lump(struct ct_build *b);
-/// Rows and columns of the elastic coordinates, added to the lower triangle M (nu x nu).
-void ct_flexible_mass(struct ct_build *b, ct_ex *M);
-/// What the beams' deformation adds to the sweep: force at the base's anchor, torque on its cluster, rows of the elastic
-/// coordinates. apparent: by anchor, acceleration less gravity.
-void ct_flexible_sweep(struct ct_build *b, enum ct_level level, const ct_ex3 *apparent,
-                       ct_ex3 *rest, ct_ex3 *torque, ct_ex *row);
-/// Mass, com (less the base's place), momentum, angular momentum about the base's origin, kinetic energy; ground axes.
-struct ct_flexible_state {
-    ct_ex mass;
-    ct_ex3 moment; // mass (com - base)
-    ct_ex3 momentum, angular_momentum;
-    ct_ex twice_kinetic;
-};
-struct ct_flexible_state ct_flexible_moving(struct ct_build *b, const struct ct_flexible *f);
-/// Force and torque about the base that the beam's inertia and weight need, with the symbols u'; ground axes.
-void ct_flexible_wrench(struct ct_build *b, const struct ct_flexible *f, ct_ex3 *force,
-                        ct_ex3 *torque);
-/// By how much more than EI fully integrated elements of Timoshenko's theory resist bending, since they cannot bend without
-/// shear: the largest k GA h^2/(12 EI).
-double ct_flexible_locking(struct ct_build *b, const struct ct_flexible *f);
-/// [J]
-ct_ex ct_flexible_strain(struct ct_build *b, const struct ct_flexible *f);
-/// Power of the beams' own damping, negative.
-ct_ex ct_flexible_dissipation(struct ct_build *b);
 
 #endif

@@ -1,10 +1,11 @@
-// Rotations of a beam's nodes that move no mass; see beam_dynamics.h.
+// Rotations of a beam's nodes that move no mass; see massless_rotations.h.
 //
 // Lumped masses without rotary inertia, and sections of Timoshenko's theory without it, leave rotations that nothing
 // accelerates. Where no moment acts on them either, they follow the other freedoms, K_rr r + K_rt t = 0, and are no
 // coordinates. A moment comes from a joint that holds the section's rotation, a torque, an arm off the axis, or a force
 // between nodes; the rotations that it acts on stay coordinates.
-#include "formulate/beam/beam_dynamics.h"
+#include "formulate/beam/massless_rotations.h"
+#include "formulate/beam/section_properties.h"
 
 #include <math.h>
 #include <string.h>
@@ -19,15 +20,6 @@ struct node_moments {
 };
 
 // ---- what acts on a point --------------------------------------------------------------------------------
-
-static bool is_active(const struct ct_instance *joint)
-{
-    static const char *const keys[] = {"stiffness", "damping", "effort", "motion"};
-    for (size_t i = 0; i < COUNT(keys); i++)
-        if (ct_instance_value(joint, keys[i])->given)
-            return true;
-    return false;
-}
 
 // The axis of the beam that v, in axes of the frame, points along; -1: none.
 static int axis_along(struct ct_build *b, const struct ct_frame *frame, ct_ex3 v)
@@ -61,12 +53,13 @@ static unsigned joint_moments(const struct node_moments *w, size_t j, const stru
     const struct ct_instance *self = &b->model->joint[j];
     const int other
         = b->model->frame[&b->model->frame[self->from] == at ? self->to : self->from].body;
-    if (b->model->body[other].is_particle || !strcmp(self->cls->name, "distance"))
+    if (b->model->body[other].is_particle
+        || (self->cls->is_moment_free && !ct_joint_is_active(self)))
         return 0;
-    if (b->edge_of_joint[j] < 0 || is_active(self))
+    if (b->edge_of_joint[j] < 0 || ct_joint_is_active(self))
         return ALL;
     const struct ct_edge_info *e = &b->edge[b->edge_of_joint[j]];
-    if (e->must_be_branch || !strcmp(self->cls->name, "custom"))
+    if (e->must_be_branch)
         return ALL;
     if (e->weight_r == (b->is_planar ? 1 : NAXIS))
         return b->is_planar ? ALL & ~about_normal(w) : 0;
@@ -74,13 +67,6 @@ static unsigned joint_moments(const struct node_moments *w, size_t j, const stru
         return ALL;
     const int axis = axis_along(b, at, e->trial.turn[0].axis);
     return axis < 0 ? ALL : ALL & ~(1u << axis);
-}
-
-static unsigned force_moments(const struct ct_instance *self)
-{
-    const bool has_line
-        = !strcmp(self->cls->name, "force") || !strcmp(self->cls->name, "spring");
-    return has_line ? 0 : ALL;
 }
 
 // Moments at a frame; false if nothing acts there.
@@ -96,7 +82,7 @@ static bool moments_at(const struct node_moments *w, size_t frame, unsigned *abo
         }
     for (size_t i = 0; i < m->nforce; i++)
         if (m->force[i].from == (int)frame || m->force[i].to == (int)frame) {
-            *about |= force_moments(&m->force[i]);
+            *about |= m->force[i].cls->is_moment_free ? 0 : ALL;
             any = true;
         }
     return any;
@@ -128,8 +114,8 @@ static unsigned turns_freely(const struct node_moments *w, size_t j, const struc
 {
     struct ct_build *b = w->b;
     const struct ct_instance *self = &b->model->joint[j];
-    if (b->edge_of_joint[j] < 0 || !strcmp(self->cls->name, "custom")
-        || ct_instance_value(self, "motion")->given)
+    const bool is_custom = self->cls->ncoord < 0;
+    if (b->edge_of_joint[j] < 0 || is_custom || ct_instance_value(self, "motion")->given)
         return 0;
     const struct ct_edge_info *e = &b->edge[b->edge_of_joint[j]];
     if (e->weight_r == (b->is_planar ? 1 : NAXIS))

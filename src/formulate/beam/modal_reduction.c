@@ -1,4 +1,4 @@
-// Reduction of a beam to shapes, a superelement; see beam_dynamics.h.
+// Reduction of a beam to shapes, a superelement; see modal_reduction.h.
 //
 // Condensed: rotations that move no mass follow the other freedoms.
 //
@@ -7,8 +7,11 @@
 // that joints or loads act on, the others of them held; Phi, the lowest modes with those freedoms held. A beam
 // that nothing acts on beyond its base has modes only.
 // Source: Craig & Bampton (1968), key craig1968.
-#include "formulate/beam/beam_dynamics.h"
+#include "formulate/beam/modal_reduction.h"
 #include "numeric/dense.h"
+#include "formulate/beam/static_condensation.h"
+#include "formulate/beam/massless_rotations.h"
+#include "formulate/beam/stiffness.h"
 
 #include <float.h>
 #include <math.h>

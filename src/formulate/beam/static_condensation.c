@@ -1,4 +1,4 @@
-// Static condensation: rotations that follow the other freedoms of their beam, at a cost in proportion to its nodes; see beam_dynamics.h.
+// Static condensation: rotations that follow the other freedoms of their beam, at a cost in proportion to its nodes; see static_condensation.h.
 //
 // They are in equilibrium, K_rr r + K_rt t = 0. Nodes see their neighbours only: K_rr = L D L' has a narrow band, its inverse
 // has none. With numbers A = D^-1 L D, G = -D^-1 K_rt,
@@ -6,7 +6,7 @@
 //     A y = G t,  L' r = y        from the first to the last, and back
 //
 // and forces s on the rotations are, on t, the transposed of this:  L p = s,  A' w = p,  G' w.
-#include "formulate/beam/beam_dynamics.h"
+#include "formulate/beam/static_condensation.h"
 
 struct entry {
     int at; // number of one that follows, or a freedom

@@ -1,9 +1,9 @@
-// Stiffness of cubic elements with constant sections, by the amplitudes of legendre.h; see beam_dynamics.h. What
+// Stiffness of cubic elements with constant sections, by the amplitudes of legendre.h; see stiffness.h. What
 // stiffness.c does with matrices of the dofs, to round-off:
 //
 //     bending EI/h (D_11 + 3 D_22)     twist GJ/(2h) t^2, t = phi2 - phi1     stretch u_2 - u_1 + S(1)
+#include "formulate/beam/stiffness.h"
 #include "formulate/beam/legendre.h"
-#include "formulate/beam/beam_dynamics.h"
 
 struct bent {
     struct ct_legendre_bending value[2], rate[2];

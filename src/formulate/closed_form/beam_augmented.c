@@ -4,9 +4,10 @@
 // starts of elements are further elastic coordinates: sections move by these and their own element's dofs.
 #include "formulate/closed_form/beam_augmented.h"
 
-#include "formulate/beam/beam_dynamics.h"
+#include "formulate/beam_dynamics/beam_dynamics.h"
 #include "formulate/kinematics/constraint_row.h"
 #include "formulate/dynamics/small_motion.h"
+#include "formulate/dynamics/dynamics.h"
 
 #include <limits.h>
 #include <string.h>

@@ -7,13 +7,7 @@
 #define CT_FORMULATE_DYNAMICS_DYNAMICS_H
 
 #include "formulate/kinematics/kinematics.h"
-
-struct ct_augmented_body {
-    int anchor, cluster;
-    ct_ex3
-        moment; // local: sum of mass * vector, of masses at it and of what hangs on its links [kg m]
-    int first_child, nchild; // in b->child: anchors whose link belongs to the augmented body
-};
+#include "formulate/mass_sums.h"
 
 /// Forces along the tree, accumulated from the leaves: cutset sums.
 struct ct_sweep {
@@ -28,14 +22,6 @@ struct ct_sweep {
 void ct_augmented_bodies_lump(struct ct_build *b);
 /// Augmented inertia of a cluster in ground components; planar: about the normal, in the last entry.
 ct_ex33 ct_cluster_inertia(struct ct_build *b, int c);
-/// m (v.v 1 - v v') added to a tensor.
-void ct_inertia_add_point(struct ct_build *b, ct_ex33 *L, ct_ex m, ct_ex3 v);
-/// A mass at an anchor whose first moment and inertia (both local) turn with a cluster.
-void ct_augmented_bodies_add(struct ct_build *b, int anchor, int cluster, ct_ex m,
-                             ct_ex3 moment, const ct_ex33 *inertia);
-/// m between two motions, spread over the unknowns they belong to, added to the lower triangle M (nu x nu).
-void ct_mass_spread(struct ct_build *b, ct_ex *M, const struct ct_term *p, int np,
-                    const struct ct_term *q, int nq, ct_ex m);
 /// M, lower triangle.  (5.2)
 void ct_mass_matrix_derive(struct ct_build *b);
 /// Forward accelerations and reverse cutset sweep.  (5.3)  CT_BIAS: u' = 0 and no multipliers;
@@ -56,13 +42,9 @@ void ct_load_add(struct ct_build *b, const struct ct_load *load);
 ct_ex3 ct_load_vector(struct ct_build *b, const struct ct_instance *self);
 /// Is `name` "PROPERTY.x", .y or .z? Then *out is that component of v.
 bool ct_vector_signal(const char *name, const char *property, ct_ex3 v, ct_ex *out);
-/// Power of a wrench on head against tail: F . (v_head - v_tail - w_tail x d) + T . w_rel.  (0.3)
-ct_ex ct_load_power(struct ct_build *b, int tail, int head, ct_ex3 force, ct_ex3 torque);
 /// Effort of a driven coordinate's driver: its row of the full sweep less what the joint's spring, damper and applied effort
 /// and gears give along it.
 ct_ex ct_driver_effort(struct ct_build *b, int coordinate);
-/// An expression of the model with its signals replaced and its comparisons held.
-ct_ex ct_build_value(struct ct_build *b, ct_ex e);
 /// Efforts, springs and dampers of joints; forces.
 bool ct_loads_derive(struct ct_build *b);
 /// Warns of forces across a beam whose `deformation` leaves out the bending that they ask for. After ct_loads_derive.

@@ -5,8 +5,11 @@
 // its projection on the motion of the branch is a row of M u' - Q - J' lam.
 #include "formulate/beam/flexible_body.h"
 #include "formulate/kinematics/constraint_row.h"
-#include "formulate/outputs/signal.h"
+#include "formulate/signals/signal.h"
 #include "formulate/dynamics/small_motion.h"
+#include "formulate/beam_dynamics/beam_dynamics.h"
+#include "formulate/mass_sums.h"
+#include "formulate/dynamics/dynamics.h"
 
 #include <string.h>
 
@@ -35,18 +38,6 @@ bool ct_vector_signal(const char *name, const char *property, ct_ex3 v, ct_ex *o
         return false;
     *out = v.e[name[n + 1] - 'x'];
     return true;
-}
-
-ct_ex ct_load_power(struct ct_build *b, int tail, int head, ct_ex3 force, ct_ex3 torque)
-{
-    struct ct_exs *x = b->x;
-    const int from = b->placement[tail].frame, to = b->placement[head].frame;
-    ct_ex3 v = ct_path_velocity(b, tail, head);
-    if (from)
-        v = ct_ex3_sub(x, v,
-                       ct_cluster_cross_velocity(b, from, ct_path_position(b, tail, head)));
-    return ct_ex_add(x, ct_ex3_dot(x, force, v),
-                     ct_ex3_dot(x, torque, ct_cluster_path_velocity(b, from, to)));
 }
 
 // ---- the sweep --------------------------------------------------------------------------------------
@@ -417,7 +408,7 @@ bool ct_loads_derive(struct ct_build *b)
     const size_t before = b->ctx->nerror;
     for (size_t i = 0; i < b->nedge; i++) {
         const struct ct_edge_info *e = &b->edge[i];
-        b->holding = e->mark;
+        b->signals.holding = e->mark;
         if (e->kind == CT_EDGE_JOINT && e->self->cls->motion)
             for (int k = 0; k < e->self->nfree; k++)
                 joint_effort(b, e, k);

@@ -11,6 +11,10 @@
 // once. In a planar mechanism all this is scalar. Columns are taken for the outer of two spins.
 #include "formulate/beam/flexible_body.h"
 #include "formulate/dynamics/composite_sums.h"
+#include "formulate/mass_sums.h"
+#include "formulate/dynamics/dynamics.h"
+#include "formulate/kinematics/kinematics.h"
+#include "formulate/beam_dynamics/beam_dynamics.h"
 
 static const ct_ex3 zero3 = {{{0}, {0}, {0}}};
 
@@ -107,34 +111,13 @@ static ct_ex3 column_inertia_torque(struct ct_build *b, const struct column *c)
 
 // ---- the matrix -------------------------------------------------------------------------------------
 
-static void add_entry(struct ct_build *b, ct_ex *M, int k, int l, ct_ex v)
-{
-    const size_t n = b->eqs->nu;
-    const size_t i = (size_t)(k > l ? k : l) + n * (size_t)(k > l ? l : k);
-    M[i] = ct_ex_add(b->x, M[i], v);
-}
-
-void ct_mass_spread(struct ct_build *b, ct_ex *M, const struct ct_term *p, int np,
-                    const struct ct_term *q, int nq, ct_ex m)
-{
-    for (int i = 0; i < np; i++)
-        for (int j = 0; j < nq; j++) {
-            if (p[i].speed < 0 || q[j].speed < 0)
-                continue;
-            ct_ex v = ct_ex_mul(b->x, ct_ex_mul(b->x, p[i].coef, q[j].coef), m);
-            if (p[i].speed == q[j].speed)
-                v = ct_ex_scale(b->x, 2, v);
-            add_entry(b, M, p[i].speed, q[j].speed, v);
-        }
-}
-
 static void spread_self(struct ct_build *b, ct_ex *M, const struct ct_term *p, int np, ct_ex m)
 {
     for (int i = 0; i < np; i++)
         for (int j = 0; j <= i; j++)
             if (p[i].speed >= 0 && p[j].speed >= 0)
-                add_entry(b, M, p[i].speed, p[j].speed,
-                          ct_ex_mul(b->x, ct_ex_mul(b->x, p[i].coef, p[j].coef), m));
+                ct_mass_add_entry(b, M, p[i].speed, p[j].speed,
+                                  ct_ex_mul(b->x, ct_ex_mul(b->x, p[i].coef, p[j].coef), m));
 }
 
 static bool has_unknown(const struct ct_term *p, int np)

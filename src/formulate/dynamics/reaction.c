@@ -5,6 +5,7 @@
 #include "formulate/dynamics/reaction.h"
 #include "formulate/beam/flexible_body.h"
 #include "formulate/kinematics/constraint_row.h"
+#include "formulate/beam_dynamics/beam_dynamics.h"
 
 #include <math.h>
 

@@ -1,7 +1,7 @@
 // See small_motion.h.
 #include "formulate/dynamics/small_motion.h"
 #include "formulate/beam/flexible_body.h"
-#include "formulate/recursive/open_chain.h"
+#include "formulate/operation_count.h"
 
 #include <string.h>
 
@@ -26,34 +26,6 @@ static void add_unknown(struct ct_build *b, struct small *s, int q, int u)
     add(b, s, b->eqs->q[q].symbol);
     add(b, s, b->eqs->u[u].symbol);
     s->is_small[u] = true;
-}
-
-static bool is_named(const struct ct_build *b, const char *name, struct ct_mark *at)
-{
-    const struct ct_value *v = &b->model->simulation.small;
-    for (size_t i = 0; v->given && i < v->n; i++)
-        if (!strcmp(v->name[i], name)) {
-            *at = v->at[i];
-            return true;
-        }
-    return false;
-}
-
-bool ct_small_motion_joint(const struct ct_build *b, int j)
-{
-    struct ct_mark at;
-    return is_named(b, b->model->joint[j].name, &at);
-}
-
-bool ct_small_motion_beam(const struct ct_build *b, const char *name)
-{
-    struct ct_mark at;
-    return is_named(b, name, &at);
-}
-
-bool ct_small_motion_is_all_of(const struct ct_build *b, const struct ct_flexible *f)
-{
-    return f->formulation == CT_BEAM_STRETCH_LINEAR || ct_small_motion_beam(b, f->name);
 }
 
 static bool collect_joint(struct ct_build *b, struct small *s, int j, struct ct_mark at)
@@ -85,11 +57,11 @@ static bool collect(struct ct_build *b, struct small *s)
     bool ok = true;
     s->is_small = CT_NEWN(b->arena, bool, b->eqs->nu + 1);
     for (size_t j = 0; j < b->model->njoint; j++)
-        if (is_named(b, b->model->joint[j].name, &at))
+        if (ct_build_is_small(b, b->model->joint[j].name, &at))
             ok &= collect_joint(b, s, (int)j, at);
     for (size_t i = 0; i < b->nflexible; i++) {
         const struct ct_flexible *f = &b->flexible[i];
-        if (ct_small_motion_is_all_of(b, f))
+        if (ct_flexible_is_small(b, f))
             for (int k = 0; k < f->nelastic; k++) {
                 add_unknown(b, s, f->elastic[k].q, f->elastic[k].u);
                 s->follows |= f->condensation != NULL;

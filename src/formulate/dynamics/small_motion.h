@@ -4,12 +4,6 @@
 
 #include "formulate/build.h"
 
-/// Is joint j named under `small`?
-bool ct_small_motion_joint(const struct ct_build *b, int j);
-/// Is the beam `name`?
-bool ct_small_motion_beam(const struct ct_build *b, const char *name);
-/// Are all coordinates of beam f small, by its formulation or its name?
-bool ct_small_motion_is_all_of(const struct ct_build *b, const struct ct_flexible *f);
 /// Are there coordinates that are small?
 bool ct_small_motion_is_wanted(const struct ct_build *b);
 /// M and Q to first order in the coordinates of all joints and beams that are small, and in their rates, about zero;

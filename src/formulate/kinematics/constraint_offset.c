@@ -1,6 +1,6 @@
 // See constraint_offset.h.
 #include "formulate/kinematics/constraint_offset.h"
-#include "formulate/kinematics/constraint_row.h"
+#include "formulate/kinematics/coordinate.h"
 
 static void new_offset(struct ct_build *b, bool is_rotation)
 {
@@ -14,7 +14,7 @@ ct_ex ct_constraint_offset_subtract(struct ct_build *b, const struct ct_edge_inf
     if (!b->has_offsets)
         return phi;
     new_offset(b, false);
-    return ct_ex_sub(b->x, phi, ct_row_keep(b, e->name, e->index, phi));
+    return ct_ex_sub(b->x, phi, ct_memory_keep(b, e->name, e->index, phi));
 }
 
 void ct_constraint_offset_rotate(struct ct_build *b, const struct ct_edge_info *e, int tail,
@@ -27,7 +27,7 @@ void ct_constraint_offset_rotate(struct ct_build *b, const struct ct_edge_info *
     ct_ex33 kept;
     new_offset(b, true);
     for (int i = 0; i < 9; i++)
-        kept.e[i] = ct_row_keep(b, e->name, e->index, R.e[i]);
+        kept.e[i] = ct_memory_keep(b, e->name, e->index, R.e[i]);
     for (int i = 0; i < n; i++)
         s[i] = ct_ex33_apply(b->x, &kept, s[i]);
 }

@@ -1,6 +1,5 @@
 // Constraint rows of chords.  (formulation 4.2)
 #include "formulate/kinematics/constraint_row.h"
-#include "formulate/dynamics/dynamics.h"
 #include "formulate/kinematics/constraint_offset.h"
 #include "formulate/topology/linear_graph.h"
 #include "graph/pieces.h"
@@ -143,17 +142,9 @@ void ct_row_add(struct ct_build *b, const struct ct_instance *self, const char *
     add_row(b, joint_index(b, self), name, (struct ct_ends){tail, head}, w, carried, phi, gam);
 }
 
-ct_ex ct_row_keep(struct ct_build *b, const char *name, int joint, ct_ex at_start)
-{
-    const size_t i = b->eqs->nmemory;
-    const ct_ex s = ct_memory_new(b, CT_MEMORY_OFFSET, name, joint, 0);
-    b->eqs->memory[i].update = at_start;
-    return s;
-}
-
 ct_ex ct_row_offset(struct ct_build *b, const struct ct_instance *self, ct_ex at_start)
 {
-    return ct_row_keep(b, self->name, joint_index(b, self), at_start);
+    return ct_memory_keep(b, self->name, joint_index(b, self), at_start);
 }
 
 void ct_row_couple(struct ct_build *b, const struct ct_instance *self, int coordinate_a,

@@ -38,7 +38,5 @@ void ct_row_couple(struct ct_build *b, const struct ct_instance *self, int coord
                    int coordinate_b, ct_ex ratio);
 /// A constant that takes the value of `at_start` in the assembled start and keeps it.
 ct_ex ct_row_offset(struct ct_build *b, const struct ct_instance *self, ct_ex at_start);
-/// The same under any name; joint -1: of none.
-ct_ex ct_row_keep(struct ct_build *b, const char *name, int joint, ct_ex at_start);
 
 #endif

@@ -1,6 +1,5 @@
 // See coordinate.h.
 #include "formulate/kinematics/coordinate.h"
-#include "formulate/dynamics/dynamics.h"
 
 #include <string.h>
 
@@ -25,6 +24,14 @@ ct_ex ct_memory_new(struct ct_build *b, enum ct_memory_kind kind, const char *na
                     (uint32_t)s->nmemory);
     CT_PUSH(b->arena, s->memory, s->nmemory, s->memory_cap, m);
     return m.symbol;
+}
+
+ct_ex ct_memory_keep(struct ct_build *b, const char *name, int joint, ct_ex at_start)
+{
+    const size_t i = b->eqs->nmemory;
+    const ct_ex s = ct_memory_new(b, CT_MEMORY_OFFSET, name, joint, 0);
+    b->eqs->memory[i].update = at_start;
+    return s;
 }
 
 // Angle about a from V to W, followed from its last value r: r + the angle that is left, which stays
@@ -224,6 +231,18 @@ bool ct_coordinate_wrench(struct ct_build *b, int coordinate, struct ct_wrench *
     }
     }
     return true;
+}
+
+ct_ex ct_load_power(struct ct_build *b, int tail, int head, ct_ex3 force, ct_ex3 torque)
+{
+    struct ct_exs *x = b->x;
+    const int from = b->placement[tail].frame, to = b->placement[head].frame;
+    ct_ex3 v = ct_path_velocity(b, tail, head);
+    if (from)
+        v = ct_ex3_sub(x, v,
+                       ct_cluster_cross_velocity(b, from, ct_path_position(b, tail, head)));
+    return ct_ex_add(x, ct_ex3_dot(x, force, v),
+                     ct_ex3_dot(x, torque, ct_cluster_path_velocity(b, from, to)));
 }
 
 ct_ex ct_coordinate_speed(struct ct_build *b, int coordinate)

@@ -44,4 +44,10 @@ ct_ex ct_along_acceleration(struct ct_build *b, struct ct_ends n, ct_ex3 p,
 ct_ex ct_memory_new(struct ct_build *b, enum ct_memory_kind kind, const char *name, int joint,
                     int place);
 
+/// Power of a wrench on head against tail: F . (v_head - v_tail - w_tail x d) + T . w_rel.  (0.3)
+ct_ex ct_load_power(struct ct_build *b, int tail, int head, ct_ex3 force, ct_ex3 torque);
+
+/// A value that is found at the assembled start and kept: its symbol. joint -1: of none.
+ct_ex ct_memory_keep(struct ct_build *b, const char *name, int joint, ct_ex at_start);
+
 #endif

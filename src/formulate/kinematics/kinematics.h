@@ -1,6 +1,6 @@
 // Kinematics by circuit equations: rotations along T_R, places along T_T.  (formulation 4.1)
 //
-// Everything is generated when first asked for, and kept: what nobody asks for does not exist.
+// An expression is generated when it is first asked for, and kept. What nobody asks for is not generated.
 #ifndef CT_FORMULATE_KINEMATICS_KINEMATICS_H
 #define CT_FORMULATE_KINEMATICS_KINEMATICS_H
 
@@ -45,8 +45,6 @@ ct_ex3 ct_cluster_centripetal(struct ct_build *b, int c, ct_ex3 v);
 
 /// Planar: does spin r turn about the normal (true) or its opposite?
 bool ct_rotation_axis_is_positive(const struct ct_build *b, size_t r);
-/// Planar: v less its part along the normal; otherwise v.
-ct_ex3 ct_build_in_plane(struct ct_build *b, ct_ex3 v);
 
 // ---- links: the vector from an anchor's parent to the anchor --------------------------------------
 

@@ -5,6 +5,8 @@
 #include "formulate/beam/flexible_body.h"
 #include "formulate/beam/section_rotation.h"
 #include "formulate/topology/linear_graph.h"
+#include "formulate/kinematics/kinematics.h"
+#include "formulate/kinematics/switch.h"
 
 #include <assert.h>
 
@@ -80,7 +82,7 @@ static void choose_driven(struct ct_build *b, const struct ct_edge_info *e,
 {
     struct ct_driver d = {.name = c->name, .joint = e->index, .index = c->index};
     const struct ct_value *motion = ct_instance_value(e->self, "motion");
-    d.mark = b->holding = motion->at[c->index];
+    d.mark = b->signals.holding = motion->at[c->index];
     d.value = ct_switch_hold(b, motion->e[c->index]);
     if (!b->drivers_are_held) {
         d.rate = ct_build_rate(b, d.value);

@@ -1,4 +1,4 @@
-// Comparisons as held modes; see switch.h.
+// See switch.h.
 #include "formulate/kinematics/switch.h"
 
 static bool changes_in_time(const struct ct_build *b, ct_ex e)
@@ -32,9 +32,9 @@ static ct_ex compared(struct ct_exs *x, ct_ex e)
 static ct_ex as_written(struct ct_build *b, ct_ex g)
 {
     struct ct_exs *x = b->x;
-    if (!b->nwritten)
+    if (!b->signals.nreplaced)
         return g;
-    const size_t n = ct_ex_walk(x, &b->written, 1);
+    const size_t n = ct_ex_walk(x, &b->signals.written, 1);
     ct_ex *node = CT_NEWN(b->arena, ct_ex, n + 1);
     for (size_t i = 0; i < n; i++)
         node[i] = (ct_ex){x->stack[i]};
@@ -42,7 +42,8 @@ static ct_ex as_written(struct ct_build *b, ct_ex g)
         const ct_ex own = compared(x, node[i]);
         if (ct_ex_same(own, node[i]))
             continue;
-        const ct_ex here = ct_ex_subst(x, own, b->written_from, b->written_to, b->nwritten);
+        const ct_ex here
+            = ct_ex_subst(x, own, b->signals.from, b->signals.to, b->signals.nreplaced);
         if (ct_ex_same(here, g) || ct_ex_same(ct_ex_neg(x, here), g)) // sign(-u) is -sign(u)
             return own;
     }
@@ -56,7 +57,8 @@ static ct_ex switch_symbol(struct ct_build *b, enum ct_op op, ct_ex g, ct_ex own
     for (size_t i = 0; i < s->nswitch; i++)
         if (s->switches[i].op == op && ct_ex_same(s->switches[i].g, g))
             return s->switches[i].symbol;
-    struct ct_switch m = {.op = op, .g = g, .written = as_written(b, own), .mark = b->holding};
+    struct ct_switch m
+        = {.op = op, .g = g, .written = as_written(b, own), .mark = b->signals.holding};
     const unsigned of_time = 1u << CT_SYM_PARAM | 1u << CT_SYM_SWITCH | 1u << CT_SYM_TIME;
     m.is_time = !(ct_ex_kinds(b->x, g) & ~of_time);
     m.symbol
@@ -93,7 +95,7 @@ static ct_ex hold_node(struct ct_build *b, enum ct_op op, ct_ex e, ct_ex p, ct_e
 static bool is_time_function(const struct ct_build *b, ct_ex e)
 {
     const unsigned kinds = ct_ex_kinds(b->x, e), time = 1u << CT_SYM_TIME;
-    return !b->in_outputs && !ct_ex_symbol(b->x, e) && kinds & time
+    return !b->signals.in_outputs && !ct_ex_symbol(b->x, e) && kinds & time
         && !(kinds & ~(time | 1u << CT_SYM_PARAM));
 }
 

@@ -1,12 +1,13 @@
-// Switches, comparisons held between events: `t < 1`, `abs(u)`, `min(a, b)` become 0/1 symbols with a root function.
+// Switches: the outcome of a comparison is held between events. `t < 1`, `abs(u)` and `min(a, b)`
+// become symbols of value 0 or 1, each with a function whose sign changes at its event.
 #ifndef CT_FORMULATE_KINEMATICS_SWITCH_H
 #define CT_FORMULATE_KINEMATICS_SWITCH_H
 
 #include "formulate/build.h"
 
-/// e with every comparison, abs, sign, min and max whose arguments change in time replaced by a form
-/// that is smooth between events; the events are added to b->eqs->mode, and what
-/// depends on time alone, unless b->in_outputs, to b->eqs->clock.
+/// e with every comparison, abs, sign, min and max whose arguments change in time replaced by a
+/// form that is smooth between events. The switches are added to b->eqs->switches. Functions of
+/// time alone are added to b->eqs->time_function, unless the expression is one of outputs.
 ct_ex ct_switch_hold(struct ct_build *b, ct_ex e);
 
 #endif

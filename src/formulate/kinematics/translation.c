@@ -3,6 +3,7 @@
 // A branch whose vector is constant in the cluster of its predecessor's vector adds to that vector;
 // only where the cluster changes, or where the branch slides, does an anchor come into being.
 #include "formulate/beam/flexible_body.h"
+#include "formulate/kinematics/kinematics.h"
 
 #include <assert.h>
 #include <string.h>
@@ -193,14 +194,6 @@ void ct_translation_derive(struct ct_build *b)
             anchor_base(b, b->T.order[i]);
     }
     number_anchors(b);
-}
-
-ct_ex3 ct_build_in_plane(struct ct_build *b, ct_ex3 v)
-{
-    if (!b->is_planar)
-        return v;
-    const ct_ex3 n = b->plane[2];
-    return ct_ex3_sub(b->x, v, ct_ex3_scale(b->x, ct_ex3_dot(b->x, n, v), n));
 }
 
 // ---- links ----------------------------------------------------------------------------------------

@@ -1,12 +1,14 @@
 // Columns of results: the outputs of a model and those that are asked for besides.  (format, section 6)
-#include "formulate/outputs/signal.h"
+#include "formulate/outputs/output.h"
+#include "formulate/outputs/dynamic_signal.h"
 
 #include <string.h>
 
 static bool push_result(struct ct_build *b, const char *name, ct_ex value)
 {
-    const struct ct_result r = {.name = name, .value = value, .undetermined = b->is_open};
-    b->is_open = false;
+    const struct ct_result r
+        = {.name = name, .value = value, .undetermined = b->signals.is_open};
+    b->signals.is_open = false;
     CT_PUSH(b->arena, b->eqs->result, b->eqs->nresult, b->eqs->result_cap, r);
     return true;
 }
@@ -39,7 +41,7 @@ static bool numbered_columns(struct ct_build *b, const char *name, struct ct_mar
     for (int i = 1; i <= n; i++) {
         const char *column = ct_arena_printf(b->arena, "%s%d", name, i);
         ct_ex v;
-        if (!ct_signal_resolve(b, column, mark, &v))
+        if (!ct_output_signal(b, column, mark, &v))
             return false;
         push_result(b, column, v);
     }
@@ -56,10 +58,10 @@ static bool signal_columns(struct ct_build *b, const char *name, struct ct_mark 
         return true;
     const char *const *component = ct_signal_components(b, name);
     if (!component)
-        return ct_signal_resolve(b, name, mark, &v) && push_result(b, name, v);
+        return ct_output_signal(b, name, mark, &v) && push_result(b, name, v);
     for (; *component; component++) {
         const char *column = with_component(b, name, *component);
-        if (!ct_signal_resolve(b, column, mark, &v))
+        if (!ct_output_signal(b, column, mark, &v))
             return false;
         push_result(b, column, v);
     }
@@ -97,17 +99,17 @@ bool ct_outputs_derive(struct ct_build *b)
 {
     const size_t before = b->ctx->nerror;
     struct ct_names names = {0};
-    b->in_outputs = true;
+    b->signals.in_outputs = true;
     for (size_t i = 0; i < b->model->noutput; i++) {
         const struct ct_output *o = &b->model->output[i];
         const size_t first = b->eqs->nresult;
         if (o->is_signal)
             named_columns(b, o);
         else
-            push_result(b, o->name, ct_build_value(b, o->value));
+            push_result(b, o->name, ct_output_value(b, o->value));
         new_names(b, &names, first, i);
     }
-    b->in_outputs = false;
+    b->signals.in_outputs = false;
     return b->ctx->nerror == before;
 }
 
@@ -171,13 +173,13 @@ bool ct_outputs_add(struct ct_build *b, enum ct_more_outputs more)
     const size_t n = b->model->njoint;
     bool ok = true;
     b->eqs->more = more;
-    b->in_outputs = true;
+    b->signals.in_outputs = true;
     for (size_t j = 0; j < n && more == CT_MORE_COORDINATES && b->model->noutput == 0; j++)
         ok &= coordinate_columns(b, &b->model->joint[j]);
     for (size_t j = 0; j < n && more == CT_MORE_EFFORTS; j++)
         ok &= effort_columns(b, j);
     for (size_t j = 0; j < n && more == CT_MORE_EFFORTS; j++)
         ok &= reaction_columns(b, j);
-    b->in_outputs = false;
+    b->signals.in_outputs = false;
     return ok;
 }

@@ -12,7 +12,7 @@
 #ifndef CT_FORMULATE_RECURSIVE_ARTICULATED_BEAM_H
 #define CT_FORMULATE_RECURSIVE_ARTICULATED_BEAM_H
 
-#include "formulate/beam/beam_dynamics.h"
+#include "formulate/beam_dynamics/beam_dynamics.h"
 #include "formulate/recursive/member.h"
 
 enum { CT_SPATIAL_SIZE = 6 }; // al, a or n, f

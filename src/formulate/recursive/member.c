@@ -5,7 +5,7 @@
 // member has both.
 #include "formulate/recursive/member_internal.h"
 
-#include "formulate/beam/beam_dynamics.h"
+#include "formulate/beam_dynamics/beam_dynamics.h"
 
 static const ct_ex3 zero3 = {{{0}, {0}, {0}}};
 
@@ -398,17 +398,6 @@ static void flatten(struct ct_member_build *w)
             w->s->member[i].r = ct_build_in_plane(b, w->s->member[i].r);
 }
 
-bool ct_members_take_beams(const struct ct_build *b)
-{
-    if (b->model->simulation.small.given)
-        return false;
-    for (size_t i = 0; i < b->nflexible; i++)
-        if (b->flexible[i].kinematics != b->flexible[i].axial
-            || b->flexible[i].formulation == CT_BEAM_STRETCH_LINEAR)
-            return false;
-    return true;
-}
-
 ct_ex3 ct_members_gravity_acceleration(struct ct_build *b)
 {
     return ct_member_express_ground(b, 0,
@@ -419,7 +408,7 @@ const struct ct_members *ct_members_derive(struct ct_build *b)
 {
     struct ct_members *s = CT_NEW(b->arena, struct ct_members);
     struct ct_member_build w = {.b = b, .s = s};
-    if (b->eqs->nrow || !ct_members_take_beams(b))
+    if (b->eqs->nrow || !ct_flexible_may_be_articulated(b))
         return NULL;
     s->nbeam = b->nflexible;
     s->beam = CT_NEWN(b->arena, struct ct_member_beam, s->nbeam + 1);

@@ -69,9 +69,6 @@ struct ct_members {
 /// ct_loads_derive.
 const struct ct_members *ct_members_derive(struct ct_build *b);
 
-/// Can the model have this form, as far as its beams and coordinates that are small go?
-bool ct_members_take_beams(const struct ct_build *b);
-
 /// R v and R' v: a vector out of a member's axes into its parent's, and back.
 ct_ex3 ct_member_out(struct ct_build *b, const struct ct_member *m, ct_ex3 v);
 ct_ex3 ct_member_in(struct ct_build *b, const struct ct_member *m, ct_ex3 v);

@@ -1,7 +1,7 @@
 // Inertia of members and what acts on them; see member.h.
 #include "formulate/recursive/member_internal.h"
 
-#include "formulate/beam/beam_dynamics.h"
+#include "formulate/beam_dynamics/beam_dynamics.h"
 
 static const ct_ex3 zero3 = {{{0}, {0}, {0}}};
 

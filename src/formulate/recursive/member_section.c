@@ -1,7 +1,7 @@
 // Beams among members: their base, and what slides and turns between it and a section; see member.h.
 #include "formulate/recursive/member_internal.h"
 
-#include "formulate/beam/beam_dynamics.h"
+#include "formulate/beam_dynamics/beam_dynamics.h"
 #include "formulate/beam/section_rotation.h"
 
 #include <math.h>

@@ -1,6 +1,8 @@
 // See open_chain.h. A formulation is tried by generating it and counting; what cannot win by the pattern of the mass matrix
 // alone is not generated.
 #include "formulate/recursive/open_chain.h"
+#include "formulate/formulate.h"
+#include "formulate/operation_count.h"
 #include "formulate/recursive/articulated_body.h"
 #include "formulate/recursive/composite_body.h"
 #include "formulate/dynamics/dynamics.h"
@@ -12,13 +14,6 @@
 static const double call_cost = 300;
 // What is made of more operations takes too much memory; below, repeats are rolled up (codegen/reroll.h).
 static const double longest_program = 1e7;
-
-double ct_counted_cost(const struct ct_tape_counts *c)
-{
-    const double per_function = 8, per_division = 4; // in multiplications
-    return (double)(c->multiplications + c->additions) + per_division * (double)c->divisions
-         + per_function * (double)c->functions;
-}
 
 static double cost_of(struct ct_build *b, const ct_ex *e, size_t n)
 {

@@ -2,15 +2,7 @@
 #ifndef CT_FORMULATE_RECURSIVE_OPEN_CHAIN_H
 #define CT_FORMULATE_RECURSIVE_OPEN_CHAIN_H
 
-#include "expr/listing.h"
 #include "formulate/build.h"
-
-/// Up to this many speeds every formulation is tried: they are cheap to generate, and the mass matrix is what people
-/// look at.
-enum { CT_SMALL_SYSTEM = 24 };
-
-/// Operations in multiplications: a division counts 4, a function 8.
-double ct_counted_cost(const struct ct_tape_counts *c);
 
 /// That of the accelerations by articulated bodies where they would be taken, else by_matrix, what the mass matrix costs. After
 /// ct_loads_derive.

@@ -361,12 +361,6 @@ static void add_coordinates(struct ct_build *b, int edge)
     e->trial = m;
 }
 
-void ct_linear_graph_note_left_out(struct ct_build *b, const char *what, const char *why)
-{
-    const struct ct_left_out l = {what, why};
-    CT_PUSH(b->arena, b->eqs->left_out, b->eqs->nleft_out, b->eqs->left_out_cap, l);
-}
-
 // ---- the stage ------------------------------------------------------------------------------------
 
 // Rooms for what most models have, so that nothing is copied as the list grows: edges are large.

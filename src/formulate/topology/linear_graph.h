@@ -19,7 +19,4 @@ void ct_planarity_detect(struct ct_build *b, bool allowed);
 /// else "e1", "e2", "e3".
 const char *ct_plane_axis_name(const struct ct_build *b, int i);
 
-/// Note what the equations leave out and why.
-void ct_linear_graph_note_left_out(struct ct_build *b, const char *what, const char *why);
-
 #endif

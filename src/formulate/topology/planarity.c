@@ -262,5 +262,5 @@ void ct_planarity_detect(struct ct_build *b, bool allowed)
     const char *why = ct_arena_printf(
         b->arena, "every joint turns about (%.6g, %.6g, %.6g) or slides across it", v[0], v[1],
         v[2]);
-    ct_linear_graph_note_left_out(b, "motion out of the plane and its constraint rows", why);
+    ct_build_note_left_out(b, "motion out of the plane and its constraint rows", why);
 }

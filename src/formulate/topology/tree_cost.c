@@ -2,7 +2,7 @@
 #include "formulate/topology/tree_selection.h"
 
 #include "expr/tape.h"
-#include "formulate/recursive/open_chain.h"
+#include "formulate/operation_count.h"
 
 // Graph of a symmetric matrix under elimination.
 struct minor {

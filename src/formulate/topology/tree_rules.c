@@ -2,9 +2,7 @@
 #include "formulate/topology/tree_selection.h"
 
 #include "base/sort.h"
-#include "formulate/beam/beam_dynamics.h"
-#include "formulate/recursive/member.h"
-#include "formulate/dynamics/small_motion.h"
+#include "formulate/beam/section_properties.h"
 #include "graph/reach.h"
 
 #include <string.h>
@@ -21,16 +19,6 @@ static int *node_depths(struct ct_build *b, bool by_rotation)
     ct_graph_distances(b->arena, &b->graph, usable, length, (int)b->nnode * CT_MAX_COORD,
                        depth);
     return depth;
-}
-
-// A coordinate that carries an effort, a spring or a driver is best a branch of its own.
-static bool is_active(const struct ct_instance *joint)
-{
-    static const char *const keys[] = {"stiffness", "damping", "effort", "motion"};
-    for (size_t i = 0; i < COUNT(keys) && joint->cls->motion; i++)
-        if (ct_instance_value(joint, keys[i])->given)
-            return true;
-    return false;
 }
 
 // Is an end of the edge on a beam whose sections may follow the other nodes for want of inertia? What is counted through
@@ -76,7 +64,7 @@ static bool fills_matrix(const struct ct_build *b)
     bool any = false;
     for (size_t i = 0; i < b->nflexible; i++)
         any = any || b->flexible[i].kinematics == CT_AXIAL_CHAIN;
-    return any && ct_members_take_beams(b) && is_without_loops(b);
+    return any && ct_flexible_may_be_articulated(b) && is_without_loops(b);
 }
 
 // Is the farther end of the edge a section of a beam that its frame is not fixed to? A beam that is entered there has the form
@@ -104,7 +92,7 @@ static int tie_rank(const struct ct_build *b, size_t i, const int *depth, const 
     const bool enters = enters_section(b, i, depth),
                is_first = turned[tail] == 0 || turned[head] == 0 || enters;
     if ((is_first && !(b->is_planar && turns_follower(b, i) && !(enters && fills)))
-        || (e->kind == CT_EDGE_JOINT && is_active(e->self)))
+        || (e->kind == CT_EDGE_JOINT && ct_joint_is_active(e->self)))
         return 0;
     return 2 + (depth[tail] < depth[head] ? depth[tail] : depth[head]);
 }
@@ -158,7 +146,7 @@ struct ct_pair_rules ct_pair_rules_make(struct ct_build *b,
         if (o->first && e->kind == CT_EDGE_JOINT && o->first[e->index])
             r.weight_t[i] = r.weight_r[i] = -1;
         r.rank[i] = tie_rank(b, i, depth, turned, choice, fills);
-        const bool is_small = e->kind == CT_EDGE_JOINT && ct_small_motion_joint(b, e->index);
+        const bool is_small = e->kind == CT_EDGE_JOINT && ct_build_is_small(b, e->name, NULL);
         r.forced_t[i] = e->must_be_branch || is_small;
         r.forced_r[i] = e->must_be_branch || is_particle || (is_small && e->has_rotation);
         r.banned_t[i] = e->never_branch;

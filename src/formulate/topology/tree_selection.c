@@ -1,107 +1,11 @@
-// See tree_selection.h: tree selection by exact operation counts.
+// See tree_selection.h: the search for the cheapest pair of trees.
 #include "formulate/topology/tree_selection.h"
 
-#include "formulate/dynamics/dynamics.h"
 #include "formulate/beam/flexible_body.h"
-#include "formulate/recursive/open_chain.h"
 #include "graph/exchange.h"
 
 #include <math.h>
 #include <string.h>
-
-struct search {
-    struct ct_ctx *ctx;
-    const struct ct_build *open; // the stage's, whose trees are sought
-    const struct ct_model *model;
-    const struct ct_formulate_options *options;
-    struct ct_arena *owner; // of generations
-    struct ct_arena *trial; // of one at a time, cleared for the next
-    bool stays_open;        // there is a pair without rows, and none with rows is wanted
-    struct ct_tree T, R;    // of least weight
-    double cost;            // theirs; 0: not counted yet
-    struct ct_build
-        *first; // theirs, which may be chosen: the equations are then made once; or NULL
-};
-
-// Has it a beam that fills the mass matrix by itself? Articulated bodies do without (6.9).
-static bool has_chain(const struct ct_build *b)
-{
-    for (size_t i = 0; i < b->nflexible; i++)
-        if (b->flexible[i].kinematics == CT_AXIAL_CHAIN)
-            return true;
-    return false;
-}
-
-// The exact count of a generation; INFINITY where it fails or is not wanted.
-static double derive_and_count(const struct search *s, struct ct_build *b,
-                               const struct ct_tree *T, const struct ct_tree *R)
-{
-    b->T = *T;
-    b->R = *R;
-    if (!ct_build_derive(b, true) || (s->stays_open && b->eqs->nrow))
-        return INFINITY;
-    ct_dynamics_derive(b);
-    const double cost = ct_equations_cost(b->ctx->scratch, b->eqs);
-    return has_chain(b) ? ct_open_cost(b, cost) : cost;
-}
-
-static bool is_same(const struct ct_tree *t, const bool *is_branch)
-{
-    return memcmp(t->is_branch, is_branch, (size_t)t->nedge * sizeof *is_branch) == 0;
-}
-
-// That of a trial generation; nothing of it is kept.
-static double pair_cost(void *data, const struct ct_tree *T, const struct ct_tree *R)
-{
-    const struct search *s = data;
-    if (s->cost > 0 && is_same(&s->T, T->is_branch) && is_same(&s->R, R->is_branch))
-        return s->cost;
-    ct_arena_clear(s->trial);
-    struct ct_ctx quiet
-        = {.model = s->trial, .scratch = s->trial}; // errors are reported by the chosen pair
-    struct ct_build *b = s->open->nflexible
-                           ? ct_build_create(&quiet, s->trial, s->model, s->options, NULL)
-                           : ct_build_clone(&quiet, s->trial, s->open);
-    return derive_and_count(s, b, T, R);
-}
-
-// The equations of a trial are those of the stage where all of these have rows and no beams: beams are chosen in between,
-// open systems are solved in other ways, and analyses need less.
-static bool may_keep(const struct ct_build *b, const struct ct_formulate_options *o)
-{
-    return !b->nflexible && !o->for_analysis && !o->without_dynamics;
-}
-
-// Of s->T and s->R. As pair_cost, but what is generated stays, in an arena of its own: s->first, if it can be the stage's.
-static double first_cost(struct search *s)
-{
-    struct ct_ctx quiet
-        = {.model = ct_arena_create_under(s->owner), .scratch = s->ctx->scratch};
-    struct ct_build *b = ct_build_create(&quiet, quiet.model, s->model, s->options, NULL);
-    const double cost = derive_and_count(s, b, &s->T, &s->R);
-    if (isfinite(cost) && b->eqs->nrow && !quiet.ndiagnostic)
-        s->first = b;
-    else
-        ct_arena_destroy(quiet.model);
-    return cost;
-}
-
-// The pair is chosen: the build that has its equations takes the place of *b, or goes.
-static void take_first(struct search *s, struct ct_build **b, const struct ct_tree_pair *p)
-{
-    struct ct_build *first = s->first;
-    if (!first)
-        return;
-    if (!is_same(&s->T, p->trans) || !is_same(&s->R, p->rot)) {
-        ct_arena_destroy(first->arena);
-        return;
-    }
-    ct_arena_merge(s->owner, first->arena);
-    first->ctx = s->ctx;
-    first->arena = first->x->arena = s->owner;
-    first->is_derived = true;
-    *b = first;
-}
 
 // Is every chord of the least-weight trees a body edge, a force or a rod? Then there is no loop to cut.
 static bool is_open(const struct ct_build *b, const struct ct_tree_pair *p)
@@ -168,14 +72,16 @@ static const double search_nodes = 600000;
 // Fewer pairs than these are not worth their time: exchanges seldom find a cheaper one among so few.
 static const double fewest_pairs = 16;
 
-static void improve(struct ct_build *b, struct search *s, const struct ct_pair_rules *r,
-                    struct ct_tree_pair *p, struct ct_tree_report *report)
+static void improve(struct ct_build *b, const struct ct_pair_rules *r,
+                    const struct ct_pair_trials *trials, struct ct_tree_pair *p,
+                    struct ct_tree_report *report)
 {
     struct ct_search_stats stats;
-    ct_tree_from_branches(b->arena, &b->graph, p->trans, &s->T);
-    ct_tree_from_branches(b->arena, &b->graph, p->rot, &s->R);
-    s->cost = may_keep(b, s->options) ? first_cost(s) : pair_cost(s, &s->T, &s->R);
-    const double pairs = floor(search_nodes / fmax(s->cost, 100));
+    struct ct_tree T, R;
+    ct_tree_from_branches(b->arena, &b->graph, p->trans, &T);
+    ct_tree_from_branches(b->arena, &b->graph, p->rot, &R);
+    const double first = trials->cost(trials->stage, &T, &R);
+    const double pairs = floor(search_nodes / fmax(first, 100));
     const struct ct_search_options o
         = {.trans = {r->weight_t, r->rank, r->forced_t, r->banned_t},
            .rot = {r->weight_r, r->rank, r->forced_r, r->banned_r},
@@ -184,9 +90,9 @@ static void improve(struct ct_build *b, struct search *s, const struct ct_pair_r
            .budget = (int)fmax(1, fmin(pairs, 400)),
            .excess = 2};
     if (pairs < fewest_pairs
-        || !ct_tree_search(b->arena, &b->graph, &o, pair_cost, s, p, &stats)) {
+        || !ct_tree_search(b->arena, &b->graph, &o, trials->cost, trials->stage, p, &stats)) {
         report->how = "least weight";
-        report->cost = report->cost_least_weight = s->cost;
+        report->cost = report->cost_least_weight = first;
         return;
     }
     report->cost = stats.cost;
@@ -307,17 +213,18 @@ static bool has_loops_of_beams(const struct ct_build *b)
 
 // Through joints, what beams in loops move fills the mass matrix, and their rows it reaches; counted from ground there are
 // more unknowns and rows, which all stay sparse. That is taken where it promises a tenth less by its count.
-static void count_from_ground(struct ct_build *b, const struct search *s,
-                              struct ct_tree_pair *p, struct ct_tree_report *report)
+static void count_from_ground(struct ct_build *b, const struct ct_formulate_options *o,
+                              const struct ct_pair_trials *trials, struct ct_tree_pair *p,
+                              struct ct_tree_report *report)
 {
     const double clearly = 0.9;
     struct ct_tree_pair q;
     struct ct_tree T, R;
-    if (!has_loops_of_beams(b) || !absolute_trees(b, s->options, &q))
+    if (!has_loops_of_beams(b) || !absolute_trees(b, o, &q))
         return;
     ct_tree_from_branches(b->arena, &b->graph, q.trans, &T);
     ct_tree_from_branches(b->arena, &b->graph, q.rot, &R);
-    const double cost = pair_cost((void *)(uintptr_t)s, &T, &R);
+    const double cost = trials->cost(trials->stage, &T, &R);
     if (!(cost < clearly * report->cost))
         return;
     *p = q;
@@ -326,10 +233,9 @@ static void count_from_ground(struct ct_build *b, const struct search *s,
         = "absolute coordinates: through the joints the beams would fill the mass matrix";
 }
 
-bool ct_tree_selection_run(struct ct_build **build, const struct ct_formulate_options *o,
-                           struct ct_tree_report *report)
+bool ct_tree_selection_run(struct ct_build *b, const struct ct_formulate_options *o,
+                           const struct ct_pair_trials *trials, struct ct_tree_report *report)
 {
-    struct ct_build *b = *build;
     const struct ct_pair_rules r = ct_pair_rules_make(b, o);
     struct ct_tree_pair p;
     static const char *const how[]
@@ -346,18 +252,9 @@ bool ct_tree_selection_run(struct ct_build **build, const struct ct_formulate_op
     } else if (o->tree == CT_TREE_AUTO && !o->measure_all) {
         int nrow, nu;
         count_weights(b, &p, &nrow, &nu);
-        struct search s = {b->ctx,
-                           b,
-                           b->model,
-                           o,
-                           b->arena,
-                           .trial = ct_arena_create_under(b->arena),
-                           .stays_open = nrow == 0};
-        improve(b, &s, &r, &p, report);
-        count_from_ground(b, &s, &p, report);
-        ct_arena_destroy(s.trial);
-        take_first(&s, build, &p);
-        b = *build;
+        trials->begin(trials->stage, nrow == 0);
+        improve(b, &r, trials, &p, report);
+        count_from_ground(b, o, trials, &p, report);
     }
     if (!ct_tree_from_branches(b->arena, &b->graph, p.trans, &b->T))
         return ct_error(b->ctx, (struct ct_mark){0}, CT_E_TREE,

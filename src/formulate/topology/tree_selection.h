@@ -1,4 +1,5 @@
-// The choice of trees from inside: what its files and the stage share.
+// The choice of a pair of spanning trees: topology proposes pairs, the stage derives their equations and counts the operations,
+// topology compares.
 //
 //     tree_selection.c        which pair of trees
 //     tree_rules.c   what edges may and must be in them
@@ -8,10 +9,21 @@
 
 #include "formulate/build.h"
 #include "formulate/formulate.h"
+#include "graph/exchange.h"
 
-/// (*b)->T and (*b)->R; *b is another one, is_derived, where its equations were made on the way. Errors: CT_E_TREE.
-bool ct_tree_selection_run(struct ct_build **b, const struct ct_formulate_options *o,
-                           struct ct_tree_report *report);
+/// Trial equations of pairs of trees, made by the stage.
+struct ct_pair_trials {
+    void *stage;
+    /// Before the first: stays_open if there is a pair without constraint rows, so that none with rows is wanted.
+    void (*begin)(void *stage, bool stays_open);
+    /// Operations of the equations of a pair, in multiplications; INFINITY where they fail or are not wanted. The first pair is that of
+    /// least weight.
+    ct_tree_cost cost;
+};
+
+/// b->T and b->R. Errors: CT_E_TREE.
+bool ct_tree_selection_run(struct ct_build *b, const struct ct_formulate_options *o,
+                           const struct ct_pair_trials *trials, struct ct_tree_report *report);
 
 /// By edge.
 struct ct_pair_rules {
@@ -26,16 +38,5 @@ struct ct_pair_rules ct_pair_rules_make(struct ct_build *b,
 
 /// In multiplications: the entries of M, Q, J and gam, and a sparse factorization.
 double ct_equations_cost(struct ct_arena *scratch, const struct ct_equations *e);
-
-/// Graph, nodes and edges of the model; trees are still open.
-struct ct_build *ct_build_create(struct ct_ctx *ctx, struct ct_arena *a,
-                                 const struct ct_model *m, const struct ct_formulate_options *o,
-                                 const bool *is_linear);
-/// A copy of a build without beams whose trees are open, to derive trial equations: what these write is its own, the rest
-/// stays that of `from`. Names of expressions are left behind.
-struct ct_build *ct_build_clone(struct ct_ctx *ctx, struct ct_arena *a,
-                                const struct ct_build *from);
-/// What comes before M and Q: Phi, J, gam and, unless only positions and speeds are wanted, the loads.
-bool ct_build_derive(struct ct_build *b, bool with_dynamics);
 
 #endif

@@ -1,6 +1,6 @@
 // See static_residual.h.
 #include "solve/initial/static_residual.h"
-#include "formulate/dynamics/residual.h"
+#include "formulate/residual/residual.h"
 #include "numeric/dense.h"
 #include "solve/constraint/partition_conditioning.h"
 

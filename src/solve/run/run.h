@@ -2,6 +2,7 @@
 #ifndef CT_SOLVE_RUN_RUN_H
 #define CT_SOLVE_RUN_RUN_H
 
+#include "beam_error/beam_error_modal.h"
 #include "integrate/problem.h"
 #include "solve/initial/assembly.h"
 #include "solve/constraint/partition.h"

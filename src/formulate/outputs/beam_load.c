@@ -1,6 +1,7 @@
-// See beam_signal.h.
-#include "formulate/outputs/beam_signal.h"
-#include "formulate/beam/beam_dynamics.h"
+// See beam_load.h.
+#include "formulate/outputs/beam_load.h"
+#include "formulate/signals/beam_signal.h"
+#include "formulate/beam_dynamics/beam_dynamics.h"
 #include "formulate/dynamics/reaction.h"
 #include "formulate/beam/section_rotation.h"
 
@@ -8,90 +9,6 @@
 #include <string.h>
 
 static const ct_ex3 zero3 = {{{0}, {0}, {0}}};
-
-bool ct_beam_signal_exists(const char *property)
-{
-    static const char *const names[]
-        = {"deflection", "slope", "chord_deflection", "strain", "force", "moment"};
-    for (size_t i = 0; i < COUNT(names); i++)
-        if (!strcmp(property, names[i]))
-            return true;
-    return false;
-}
-
-// ---- places -------------------------------------------------------------------------------------------
-
-static const struct ct_flexible *beam_of(const struct ct_build *b, int frame)
-{
-    return ct_flexible_of(b, b->model->frame[frame].body);
-}
-
-// Undeformed place of a frame, axes of the beam.
-static ct_ex3 rest_place(const struct ct_build *b, int frame)
-{
-    const struct ct_frame *p = &b->model->frame[frame];
-    return frame == b->model->body[p->body].frame ? zero3 : p->at;
-}
-
-// Place of a frame on the deformed beam, axes of the beam; a frame off the axis turns with its section. The axis is
-// foreshortened where its forces are, also if the kinematics leaves that out.
-static ct_ex3 deformed_place(struct ct_build *b, const struct ct_flexible *f, ct_ex3 rest)
-{
-    const ct_ex3 across = {{CT_EX_ZERO, rest.e[1], rest.e[2]}};
-    struct ct_station s;
-    ct_flexible_station(b, f, rest.e[0], f->axial, &s);
-    const ct_ex33 S = ct_section_axes(b->x, s.angle);
-    return ct_ex3_add(b->x, s.position, ct_ex33_apply(b->x, &S, across));
-}
-
-// R' v, R the smallest rotation that turns x into the unit vector n.
-static ct_ex3 seen_along(struct ct_build *b, ct_ex3 n, ct_ex3 v)
-{
-    struct ct_exs *x = b->x;
-    const ct_ex across
-        = ct_ex_add(x, ct_ex_mul(x, n.e[1], v.e[1]), ct_ex_mul(x, n.e[2], v.e[2]));
-    const ct_ex share = ct_ex_div(x, across, ct_ex_add(x, CT_EX_ONE, n.e[0]));
-    ct_ex3 out = {{ct_ex3_dot(x, n, v)}};
-    for (int i = 1; i < 3; i++)
-        out.e[i] = ct_ex_sub(x, v.e[i], ct_ex_mul(x, n.e[i], ct_ex_add(x, v.e[0], share)));
-    return out;
-}
-
-static ct_ex3 chord_deflection(struct ct_build *b, const struct ct_flexible *f, ct_ex3 rest)
-{
-    struct ct_exs *x = b->x;
-    const ct_ex3 end = {{f->beam->length, CT_EX_ZERO, CT_EX_ZERO}};
-    const ct_ex3 start = deformed_place(b, f, zero3);
-    const ct_ex3 chord = ct_ex3_sub(x, deformed_place(b, f, end), start);
-    const ct_ex length = ct_ex_fun(x, CT_OP_SQRT, ct_ex3_dot(x, chord, chord));
-    const ct_ex3 n = ct_ex3_scale(x, ct_ex_div(x, CT_EX_ONE, length), chord);
-    const ct_ex3 from_start = ct_ex3_sub(x, deformed_place(b, f, rest), start);
-    return ct_ex3_sub(x, seen_along(b, n, from_start), rest);
-}
-
-// Stretch of the element by its length; LOCAL coordinates are places, so that bending adds to it.
-ct_ex ct_beam_signal_strain(struct ct_build *b, int frame)
-{
-    struct ct_exs *x = b->x;
-    const struct ct_flexible *f = beam_of(b, frame);
-    struct ct_station s;
-    ct_flexible_station(b, f, rest_place(b, frame).e[0], f->kinematics, &s);
-    const struct ct_element *e = &f->element[s.element];
-    const ct_ex h = e->span.length;
-    ct_ex stretch = ct_ex_sub(x, e->value[1], e->value[0]);
-    for (int dof = 2; dof < CT_BENT_DOF && f->axial == CT_AXIAL_LOCAL; dof++) {
-        const int plane = dof >= 6, first = plane ? 6 : 2, j = dof - first;
-        ct_ex Ea = CT_EX_ZERO;
-        for (int k = 0; k < 4; k++)
-            Ea = ct_ex_add(x, Ea,
-                           ct_ex_mul(x, ct_shape_at(x, &f->shortening[j][k], CT_EX_ONE, h),
-                                     e->value[first + k]));
-        stretch = ct_ex_add(x, stretch, ct_ex_scale(x, 0.5, ct_ex_mul(x, Ea, e->value[dof])));
-    }
-    const struct ct_shape rise = ct_shape_slope(&f->line[2]);
-    return ct_ex_add(x, ct_ex_div(x, stretch, h),
-                     ct_element_field(b, e, &rise, e->value, CT_MIDDLE_DOF, 1, s.xi));
-}
 
 // ---- the part beyond a section --------------------------------------------------------------------------
 
@@ -264,40 +181,25 @@ static void add_arms(struct ct_build *b, struct cut *c)
     }
 }
 
-static ct_ex3 resultant(struct ct_build *b, int frame, bool is_force)
+ct_ex3 ct_beam_load(struct ct_build *b, int frame, bool is_force)
 {
-    struct cut c = cut_at(b, beam_of(b, frame), rest_place(b, frame).e[0]);
+    struct cut c
+        = cut_at(b, ct_beam_signal_beam(b, frame), ct_beam_signal_place(b, frame).e[0]);
     add_inertia(b, &c);
     add_arms(b, &c);
     const ct_ex33 S = ct_section_axes(b->x, c.s.angle);
     return ct_ex3_neg(b->x, ct_ex33_apply_t(b->x, &S, is_force ? c.force : c.torque));
 }
 
-bool ct_beam_signal_is_known(const struct ct_build *b, int frame, bool is_force, int i)
+bool ct_beam_load_is_known(const struct ct_build *b, int frame, bool is_force, int i)
 {
-    const struct ct_flexible *f = beam_of(b, frame);
-    struct cut c = {.f = f, .x = ct_ex_value(b->x, rest_place(b, frame).e[0], b->value)};
+    const struct ct_flexible *f = ct_beam_signal_beam(b, frame);
+    struct cut c
+        = {.f = f, .x = ct_ex_value(b->x, ct_beam_signal_place(b, frame).e[0], b->value)};
     c.tolerance = same_place * ct_ex_value(b->x, f->beam->length, b->value);
     c.is_start = c.x < c.tolerance;
     for (size_t e = 0; e < b->nedge; e++)
         if (is_beyond(b, &c, (int)e) && !ct_reaction_of_edge_is_known(b, (int)e, is_force, i))
             return false;
     return true;
-}
-
-// ---- any of them ------------------------------------------------------------------------------------------
-
-ct_ex3 ct_beam_signal_vector(struct ct_build *b, int frame, const char *property)
-{
-    const struct ct_flexible *f = beam_of(b, frame);
-    const ct_ex3 rest = rest_place(b, frame);
-    struct ct_station s;
-    if (!strcmp(property, "deflection"))
-        return ct_ex3_sub(b->x, deformed_place(b, f, rest), rest);
-    if (!strcmp(property, "chord_deflection"))
-        return chord_deflection(b, f, rest);
-    if (strcmp(property, "slope"))
-        return resultant(b, frame, !strcmp(property, "force"));
-    ct_flexible_station(b, f, rest.e[0], f->kinematics, &s);
-    return (ct_ex3){{s.angle[0], s.angle[1], s.angle[2]}};
 }

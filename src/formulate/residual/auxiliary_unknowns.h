@@ -1,6 +1,6 @@
 // Auxiliary unknowns of the residual (inner values) that make the matrices of implicit methods sparse.  (formulation 8.2)
-#ifndef CT_FORMULATE_DYNAMICS_AUXILIARY_UNKNOWNS_H
-#define CT_FORMULATE_DYNAMICS_AUXILIARY_UNKNOWNS_H
+#ifndef CT_FORMULATE_RESIDUAL_AUXILIARY_UNKNOWNS_H
+#define CT_FORMULATE_RESIDUAL_AUXILIARY_UNKNOWNS_H
 
 #include "formulate/dynamics/dynamics.h"
 

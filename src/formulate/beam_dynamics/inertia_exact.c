@@ -7,7 +7,7 @@
 // and z_a,k = Om_ab q_k + 2 w~_ab q'_k (+ q''_k where a = b), b = d(k), the row of dof j with a = d(j) is
 //
 //     F_j a_a + X_j Om_ax + sum_k S_jk z_a,k        (5.4), (5.5)
-#include "formulate/beam/beam_dynamics.h"
+#include "formulate/beam_dynamics/beam_dynamics.h"
 
 static const ct_ex3 zero3 = {{{0}, {0}, {0}}};
 

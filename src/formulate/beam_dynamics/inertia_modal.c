@@ -6,7 +6,7 @@
 //     M_shapes = sum_e C' M C + m gamma gamma' + gamma beta' + beta gamma',   beta = sum_beyond C' int mu dr_x + m gamma
 //
 // from the tip inwards. Going by pairs of dofs would take the square of the elements times that of the shapes.
-#include "formulate/beam/beam_dynamics.h"
+#include "formulate/beam_dynamics/beam_dynamics.h"
 
 // Of an element: C, and of its shapes the sums that its dofs have; of those beyond it: beta.
 struct reduced {

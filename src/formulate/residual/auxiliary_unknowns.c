@@ -2,7 +2,7 @@
 //
 // The graph of single operations of r is thinned out step by step (scarcity.h), and what factors of the matrix with the nodes that
 // are left would take is looked up on its pattern: too many nodes are as bad as too few.
-#include "formulate/dynamics/auxiliary_unknowns.h"
+#include "formulate/residual/auxiliary_unknowns.h"
 
 #include "expr/scarcity.h"
 #include "numeric/factors.h"

@@ -1,6 +1,6 @@
 // Residual form and its Jacobians, for implicit integration.  (formulation 5.2, 8.2)
-#ifndef CT_FORMULATE_DYNAMICS_RESIDUAL_H
-#define CT_FORMULATE_DYNAMICS_RESIDUAL_H
+#ifndef CT_FORMULATE_RESIDUAL_RESIDUAL_H
+#define CT_FORMULATE_RESIDUAL_RESIDUAL_H
 
 #include "formulate/dynamics/dynamics.h"
 

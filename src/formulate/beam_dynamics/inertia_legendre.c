@@ -2,7 +2,7 @@
 // inertia_points.c sums over points, to round-off. Where the sections' rotary inertia counts, it stays along the axes of
 // the beam.
 #include "formulate/beam/legendre.h"
-#include "formulate/beam/beam_dynamics.h"
+#include "formulate/beam_dynamics/beam_dynamics.h"
 
 static const ct_ex3 zero3 = {{{0}, {0}, {0}}};
 

@@ -2,122 +2,33 @@
 // inertia_exact.c, its stiffness in stiffness.c.
 //
 // Everything is written in the beam's axes; the base's motion is turned into them once.
-#include "formulate/beam/beam_dynamics.h"
-#include "formulate/dynamics/small_motion.h"
+#include "formulate/beam_dynamics/beam_dynamics.h"
+#include "formulate/mass_sums.h"
 
 #include <string.h>
 
 static const ct_ex3 zero3 = {{{0}, {0}, {0}}};
 
-// ---- the base -----------------------------------------------------------------------------------------
-
-// Ground components <-> axes of the beam.
-static ct_ex3 into(struct ct_build *b, const struct ct_flexible *f, ct_ex3 v)
-{
-    return ct_node_unturn(b, f->base, v);
-}
-
-static ct_ex3 out_of(struct ct_build *b, const struct ct_flexible *f, ct_ex3 v)
-{
-    return ct_node_turn(b, f->base, v);
-}
-
-// Angular rates summed in the cluster's own axes, where the axes of its turns are fixed in it and it turns
-// against ground; in a plane they stay along the normal.
-static bool plain_rates(struct ct_build *b, const struct ct_node_placement *p,
-                        enum ct_level level, struct ct_base *out)
-{
-    struct ct_exs *x = b->x;
-    ct_ex3 w, al;
-    if (b->is_planar) {
-        out->w = ct_ex33_apply_t(x, &p->S, ct_cluster_velocity(b, p->frame));
-        out->al = ct_ex33_apply_t(x, &p->S, ct_cluster_acceleration(b, p->frame, level));
-        return true;
-    }
-    if (!ct_cluster_own_rates(b, p->frame, level, &w, &al))
-        return false;
-    out->w = ct_ex33_apply_t(x, &p->S, w);
-    out->al = ct_ex33_apply_t(x, &p->S, al);
-    return true;
-}
-
-static struct ct_base base_motion(struct ct_build *b, const struct ct_flexible *f,
-                                  enum ct_level level, ct_ex3 apparent)
-{
-    const struct ct_node_placement *p = &b->placement[f->base];
-    struct ct_base m = {.a = into(b, f, apparent)};
-    if (!plain_rates(b, p, level, &m)) {
-        m.w = into(b, f, ct_cluster_velocity(b, p->frame));
-        m.al = into(b, f, ct_cluster_acceleration(b, p->frame, level));
-    }
-    return m;
-}
-
-struct ct_base ct_flexible_base(struct ct_build *b, const struct ct_flexible *f,
-                                enum ct_level level)
-{
-    const ct_ex3 a = ct_node_acceleration(b, f->base, level);
-    return base_motion(b, f, level, ct_ex3_sub(b->x, a, b->model->gravity));
-}
-
-void ct_flexible_base_motion(struct ct_build *b, const struct ct_flexible *f, ct_ex3 out[3])
-{
-    out[0] = base_motion(b, f, CT_FULL, zero3).w;
-    out[1] = into(b, f, ct_node_velocity(b, f->base));
-    out[2] = into(b, f, b->model->gravity);
-}
-
-// al~ + w~ w~
-ct_ex33 ct_base_turning(struct ct_build *b, const struct ct_base *m)
-{
-    struct ct_exs *x = b->x;
-    ct_ex33 Om;
-    ct_ex square[3];
-    for (int i = 0; i < 3; i++)
-        square[i] = ct_ex_mul(x, m->w.e[i], m->w.e[i]);
-    for (int i = 0; i < 3; i++) {
-        const int j = (i + 1) % 3, k = (i + 2) % 3;
-        const ct_ex both = ct_ex_mul(x, m->w.e[i], m->w.e[j]);
-        Om.e[4 * i] = ct_ex_neg(x, ct_ex_add(x, square[j], square[k]));
-        Om.e[i + 3 * j] = ct_ex_sub(x, both, m->al.e[k]);
-        Om.e[j + 3 * i] = ct_ex_add(x, both, m->al.e[k]);
-    }
-    return Om;
-}
-
-ct_ex3 ct_twice_cross(struct ct_build *b, ct_ex3 w, ct_ex3 v)
-{
-    return ct_ex3_scale(b->x, ct_ex_const(b->x, 2), ct_ex3_cross(b->x, w, v));
-}
-
-ct_ex *ct_chain_accelerations(struct ct_build *b, const struct ct_flexible *f)
-{
-    if (f->kinematics != CT_AXIAL_CHAIN)
-        return NULL;
-    ct_ex *c = CT_NEWN(b->arena, ct_ex, f->beam->nelement + 1);
-    for (int e = 0; e < f->beam->nelement; e++) {
-        c[e + 1] = c[e];
-        for (int j = 2; j < CT_BENT_DOF; j++)
-            c[e + 1]
-                = ct_ex_add(b->x, c[e + 1],
-                            ct_ex_mul(b->x, f->element[e].g[j], f->element[e].acceleration[j]));
-    }
-    return c;
-}
-
 // ---- lumping ---------------------------------------------------------------------------------------------
+
+void ct_flexible_inertia_derive(struct ct_build *b, struct ct_flexible *f)
+{
+    if (f->inertia)
+        return;
+    f->inertia = CT_NEW(b->arena, struct ct_inertia);
+    f->inertia->mass = b->model->body[f->body].mass;
+    f->inertia->method = f->axial == CT_AXIAL_LINEAR   ? &ct_inertia_exact
+                       : ct_inertia_has_legendre(b, f) ? &ct_inertia_legendre
+                                                       : &ct_inertia_points;
+    f->inertia->method->derive(b, f);
+}
 
 void ct_flexible_lump(struct ct_build *b)
 {
     for (size_t i = 0; i < b->nflexible; i++) {
         struct ct_flexible *f = &b->flexible[i];
         const struct ct_node_placement *p = &b->placement[f->base];
-        f->inertia = CT_NEW(b->arena, struct ct_inertia);
-        f->inertia->mass = b->model->body[f->body].mass;
-        f->inertia->method = f->axial == CT_AXIAL_LINEAR   ? &ct_inertia_exact
-                           : ct_inertia_has_legendre(b, f) ? &ct_inertia_legendre
-                                                           : &ct_inertia_points;
-        f->inertia->method->derive(b, f);
+        ct_flexible_inertia_derive(b, f);
         const struct ct_inertia *I = f->inertia;
         const ct_ex33 t = ct_ex33_transpose(&p->S), half = ct_ex33_mul(b->x, &I->inertia, &t);
         const ct_ex33 turned = ct_ex33_mul(b->x, &p->S, &half);
@@ -127,16 +38,6 @@ void ct_flexible_lump(struct ct_build *b)
 }
 
 // ---- handing over to elastic coordinates ----------------------------------------------------------
-
-void ct_dof_push(struct ct_build *b, const struct ct_flexible *f, int e, int j, ct_ex value,
-                 ct_ex *by_freedom)
-{
-    int sign;
-    if (!ct_dof_freedom(f, e, j, &sign))
-        return;
-    ct_ex *sum = &by_freedom[f->element[e].freedom[j]];
-    *sum = sign > 0 ? ct_ex_add(b->x, *sum, value) : ct_ex_sub(b->x, *sum, value);
-}
 
 void ct_flexible_rows(struct ct_build *b, const struct ct_flexible *f, const struct ct_base *m,
                       enum ct_level level, ct_ex *row)
@@ -154,54 +55,6 @@ void ct_flexible_rows(struct ct_build *b, const struct ct_flexible *f, const str
         }
 }
 
-void ct_dof_push_pair(struct ct_build *b, const struct ct_flexible *f, int e, int j, int g,
-                      int k, ct_ex value, ct_ex *M)
-{
-    int sj, sk;
-    const struct ct_freedom *p = ct_dof_freedom(f, e, j, &sj),
-                            *q = ct_dof_freedom(f, g, k, &sk);
-    if (!p || !q || ct_ex_is_zero(value))
-        return;
-    for (int i = 0; i < p->npart; i++)
-        for (int l = 0; l < q->npart; l++) {
-            const int row = f->elastic[p->part[i].k].u, column = f->elastic[q->part[l].k].u;
-            const ct_ex c = ct_ex_mul(b->x, p->part[i].coef, q->part[l].coef);
-            ct_ex v = ct_ex_mul(b->x, c, value);
-            if (row < column)
-                continue; // the transposed pair is pushed, too
-            v = sj == sk ? v : ct_ex_neg(b->x, v);
-            ct_ex *m = &M[(size_t)row + b->eqs->nu * (size_t)column];
-            *m = ct_ex_add(b->x, *m, v);
-        }
-}
-
-void ct_dof_push_column(struct ct_build *b, const struct ct_flexible *f, int e, int j,
-                        ct_ex3 moved, ct_ex3 swept, struct ct_columns *out)
-{
-    int sign;
-    const struct ct_freedom *d = ct_dof_freedom(f, e, j, &sign);
-    for (int i = 0; d && i < d->npart; i++) {
-        const int k = d->part[i].k;
-        const ct_ex c = sign > 0 ? d->part[i].coef : ct_ex_neg(b->x, d->part[i].coef);
-        out->moved[k] = ct_ex3_add(b->x, out->moved[k], ct_ex3_scale(b->x, c, moved));
-        out->swept[k] = ct_ex3_add(b->x, out->swept[k], ct_ex3_scale(b->x, c, swept));
-    }
-}
-
-struct ct_base ct_flexible_felt(struct ct_build *b, const struct ct_flexible *f,
-                                const struct ct_base *m, ct_ex3 *force, ct_ex3 *torque)
-{
-    struct ct_base felt = *m;
-    *force = *torque = zero3;
-    if (!f->beam->lacks_quadratic)
-        return felt;
-    struct ct_exs *x = b->x;
-    *force = ct_ex3_cross(x, m->w, ct_ex3_cross(x, m->w, f->inertia->moment));
-    *torque = ct_ex3_cross(x, m->w, ct_ex33_apply(x, &f->inertia->inertia, m->w));
-    felt.w = zero3;
-    return felt;
-}
-
 // ---- sweep --------------------------------------------------------------------------------------------------
 
 void ct_flexible_sweep(struct ct_build *b, enum ct_level level, const ct_ex3 *apparent,
@@ -211,14 +64,14 @@ void ct_flexible_sweep(struct ct_build *b, enum ct_level level, const ct_ex3 *ap
     for (size_t i = 0; i < b->nflexible; i++) {
         const struct ct_flexible *f = &b->flexible[i];
         const struct ct_node_placement *p = &b->placement[f->base];
-        const struct ct_base m = base_motion(b, f, level, apparent[p->anchor]);
+        const struct ct_base m = ct_base_motion(b, f, level, apparent[p->anchor]);
         ct_ex3 F, T, lessF, lessT;
         const struct ct_base felt = ct_flexible_felt(b, f, &m, &lessF, &lessT);
         f->inertia->method->wrench(b, f, &felt, level, &F, &T);
         F = ct_ex3_sub(x, F, lessF);
         T = ct_ex3_sub(x, T, lessT);
-        rest[p->anchor] = ct_ex3_add(x, rest[p->anchor], out_of(b, f, F));
-        torque[p->frame] = ct_ex3_add(x, torque[p->frame], out_of(b, f, T));
+        rest[p->anchor] = ct_ex3_add(x, rest[p->anchor], ct_base_out_of(b, f, F));
+        torque[p->frame] = ct_ex3_add(x, torque[p->frame], ct_base_out_of(b, f, T));
         ct_flexible_rows(b, f, &felt, level, row);
     }
 }
@@ -230,7 +83,7 @@ void ct_flexible_wrench(struct ct_build *b, const struct ct_flexible *f, ct_ex3 
     const struct ct_inertia *I = f->inertia;
     const ct_ex3 a
         = ct_ex3_sub(x, ct_node_acceleration(b, f->base, CT_FULL), b->model->gravity);
-    const struct ct_base moved = base_motion(b, f, CT_FULL, a);
+    const struct ct_base moved = ct_base_motion(b, f, CT_FULL, a);
     ct_ex3 F, T;
     const struct ct_base m = ct_flexible_felt(b, f, &moved, &F, &T);
     f->inertia->method->wrench(b, f, &m, CT_FULL, &F, &T);
@@ -240,8 +93,8 @@ void ct_flexible_wrench(struct ct_build *b, const struct ct_flexible *f, ct_ex3 
     T = ct_ex3_add(x, T, ct_ex3_cross(x, I->moment, m.a));
     T = ct_ex3_add(x, T, ct_ex33_apply(x, &I->inertia, m.al));
     T = ct_ex3_add(x, T, ct_ex3_cross(x, m.w, ct_ex33_apply(x, &I->inertia, m.w)));
-    *force = out_of(b, f, F);
-    *torque = out_of(b, f, T);
+    *force = ct_base_out_of(b, f, F);
+    *torque = ct_base_out_of(b, f, T);
 }
 
 // ---- motion --------------------------------------------------------------------------------------------------
@@ -250,8 +103,8 @@ struct ct_flexible_state ct_flexible_moving(struct ct_build *b, const struct ct_
 {
     struct ct_exs *x = b->x;
     const struct ct_inertia *I = f->inertia;
-    const struct ct_base m = base_motion(b, f, CT_BIAS, zero3);
-    const ct_ex3 v = into(b, f, ct_node_velocity(b, f->base));
+    const struct ct_base m = ct_base_motion(b, f, CT_BIAS, zero3);
+    const ct_ex3 v = ct_base_into(b, f, ct_node_velocity(b, f->base));
     struct ct_relative r = {zero3, zero3, CT_EX_ZERO};
     I->method->moving(b, f, &r);
     const ct_ex3 momentum = ct_ex3_add(x, ct_ex3_cross(x, m.w, I->moment), r.momentum);
@@ -264,24 +117,13 @@ struct ct_flexible_state ct_flexible_moving(struct ct_build *b, const struct ct_
         = ct_ex3_add(x, ct_ex3_add(x, r.angular_momentum, Iw), ct_ex3_cross(x, I->moment, v));
     const ct_ex3 whole = ct_ex3_add(x, momentum, ct_ex3_scale(x, I->mass, v));
     return (struct ct_flexible_state){.mass = I->mass,
-                                      .moment = out_of(b, f, I->moment),
-                                      .momentum = out_of(b, f, whole),
-                                      .angular_momentum = out_of(b, f, spin),
+                                      .moment = ct_base_out_of(b, f, I->moment),
+                                      .momentum = ct_base_out_of(b, f, whole),
+                                      .angular_momentum = ct_base_out_of(b, f, spin),
                                       .twice_kinetic = twice};
 }
 
 // ---- mass matrix ------------------------------------------------------------------------------------------------
-
-// c p times p: of bending dofs alone.
-void ct_element_close(struct ct_exs *x, struct ct_element_sums *s)
-{
-    for (int k = 0; k < s->nsquare; k++)
-        for (int i = 2; i < CT_BENT_DOF; i++)
-            for (int j = 2; j <= i; j++)
-                s->M[i][j] = s->M[j][i]
-                    = ct_ex_add(x, s->M[i][j], ct_ex_mul(x, s->heavy[k][i], s->square[k][j]));
-    s->nsquare = 0;
-}
 
 // All of element e moves along with its start, the elastic coordinate k.
 static void mass_of_start(struct ct_build *b, const struct ct_flexible *f,
@@ -460,14 +302,14 @@ static void base_columns(struct ct_build *b, const struct ct_flexible *f,
         const ct_ex3 p
             = ct_ex3_is_zero(reach)
                 ? zero3
-                : into(b, f, ct_ex3_cross(x, spin->axis, ct_build_in_plane(b, reach)));
+                : ct_base_into(b, f, ct_ex3_cross(x, spin->axis, ct_build_in_plane(b, reach)));
         if (ct_cluster_is_outboard(b, spin->cluster, at->frame)) {
             if (spin->cluster == at->frame && !ct_ex3_is_zero(spin->local))
                 s = ct_ex33_apply_t(x, &at->S, spin->local);
             else if (b->is_planar)
                 s = ct_ex33_apply_t(x, &at->S, spin->axis);
             else
-                s = into(b, f, spin->axis);
+                s = ct_base_into(b, f, spin->axis);
         }
         base_column(b, f, c, p, s, spin->term, spin->nterm, M);
     }
@@ -477,9 +319,10 @@ static void base_columns(struct ct_build *b, const struct ct_flexible *f,
             const struct ct_term term = {slide->speed, slide->driver, CT_EX_ONE};
             if (slide->speed < 0)
                 continue;
-            const ct_ex3 p = b->anchor[a].cluster == at->frame
-                               ? ct_ex33_apply_t(x, &at->S, slide->p)
-                               : into(b, f, ct_cluster_turn(b, b->anchor[a].cluster, slide->p));
+            const ct_ex3 p
+                = b->anchor[a].cluster == at->frame
+                    ? ct_ex33_apply_t(x, &at->S, slide->p)
+                    : ct_base_into(b, f, ct_cluster_turn(b, b->anchor[a].cluster, slide->p));
             base_column(b, f, c, p, zero3, &term, 1, M);
         }
 }
@@ -497,7 +340,7 @@ void ct_flexible_columns(struct ct_build *b, const struct ct_flexible *f,
     const struct ct_inertia_method *form = f->inertia->method;
     if (form->mass)
         form->mass(b, f, out, M);
-    else if (ct_small_motion_is_all_of(b, f) && ct_flexible_is_nodal(f))
+    else if (ct_flexible_is_small(b, f) && ct_flexible_is_nodal(f))
         small_mass(b, f, out, M);
     else if (f->beam->modes || f->beam->nshape || draws_by_shapes(f))
         ct_flexible_modal_mass(b, f, out, M);
@@ -514,4 +357,15 @@ void ct_flexible_mass(struct ct_build *b, ct_ex *M)
         ct_flexible_columns(b, f, &c, M);
         base_columns(b, f, &c, M);
     }
+}
+
+// c p times p: of bending dofs alone.
+void ct_element_close(struct ct_exs *x, struct ct_element_sums *s)
+{
+    for (int k = 0; k < s->nsquare; k++)
+        for (int i = 2; i < CT_BENT_DOF; i++)
+            for (int j = 2; j <= i; j++)
+                s->M[i][j] = s->M[j][i]
+                    = ct_ex_add(x, s->M[i][j], ct_ex_mul(x, s->heavy[k][i], s->square[k][j]));
+    s->nsquare = 0;
 }

@@ -2,10 +2,10 @@
 //
 // Coordinates are varied along the motions that speeds stand for: dq_i = sum_k Z_ik de_k with q' = Z(q) u.
 // For a plain coordinate that is the coordinate itself, for a quaternion a body rotation.
-#include "formulate/dynamics/residual.h"
+#include "formulate/residual/residual.h"
 #include "formulate/recursive/composite_body.h"
-#include "formulate/dynamics/auxiliary_unknowns.h"
-#include "formulate/recursive/open_chain.h"
+#include "formulate/residual/auxiliary_unknowns.h"
+#include "formulate/operation_count.h"
 
 #include <string.h>
 

@@ -3,8 +3,9 @@
 // With Om = al~ + w~ w~ a point needs
 //
 //     c = a + Om r + 2 w x r' + r''        force m c  (5.4), (5.5)
-#include "formulate/beam/beam_dynamics.h"
+#include "formulate/beam_dynamics/beam_dynamics.h"
 #include "formulate/beam/section_rotation.h"
+#include "formulate/mass_sums.h"
 
 static const ct_ex3 zero3 = {{{0}, {0}, {0}}};
 enum { FEW_POINTS = 6, MANY_POINTS = 8 }; // sections that are constant (exact), that vary

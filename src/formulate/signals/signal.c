@@ -1,22 +1,18 @@
-// Names of signals -> expressions.  (format, section 6)
-#include "formulate/outputs/signal.h"
-#include "formulate/outputs/beam_signal.h"
-#include "formulate/dynamics/reaction.h"
-#include "formulate/dynamics/momentum_energy.h"
-#include "formulate/topology/linear_graph.h"
-#include "beam_error/validity.h"
+// See signal.h: names taken apart, the signals of kinematics, and expressions of the model that
+// use them.
+#include "formulate/signals/signal.h"
+#include "formulate/beam_dynamics/beam_dynamics.h"
+#include "formulate/kinematics/constraint_row.h"
+#include "formulate/signals/beam_signal.h"
+#include "formulate/signals/momentum.h"
 
 #include <stdlib.h>
 #include <string.h>
 
 static const ct_ex3 zero3 = {{{0}, {0}, {0}}};
 
-// ---- taking names apart -----------------------------------------------------------------------------------
-
-// "rod.tip.velocity.x in crank": what | property | component | axes
-struct signal {
-    const char *owner, *property, *component, *axes;
-};
+// ---- taking names apart
+// -----------------------------------------------------------------------------------
 
 static const char *const axis_names[] = {"x", "y", "z"};
 
@@ -28,12 +24,22 @@ static int index_of(const char *s, const char *const *names, int n)
     return -1;
 }
 
-static bool unknown(struct ct_build *b, struct ct_mark mark, const char *name, const char *why)
+bool ct_signal_unknown(struct ct_build *b, const struct ct_signal *s, const char *why)
 {
-    return ct_error(b->ctx, mark, CT_E_SIGNAL, "there is no signal '%s': %s", name, why);
+    return ct_error(b->ctx, s->mark, CT_E_SIGNAL, "there is no signal '%s': %s", s->name, why);
 }
 
-// ---- frames ---------------------------------------------------------------------------------------------------
+// The signal follows from forces: what it is, for those who know them. number: of the joint, the
+// coordinate, the energy, the frame or the body.
+static bool leave_to_dynamics(struct ct_signal *s, enum ct_dynamic_signal kind, int number)
+{
+    s->dynamic = kind;
+    s->number = number;
+    return true;
+}
+
+// ---- frames
+// ---------------------------------------------------------------------------------------------------
 
 static const char *const vector_properties[]
     = {"position", "velocity", "acceleration", "angular_velocity", "angular_acceleration"};
@@ -55,37 +61,38 @@ static ct_ex3 frame_vector(struct ct_build *b, int node, int property)
     }
 }
 
-static bool in_axes(struct ct_build *b, const struct signal *s, const char *name,
-                    struct ct_mark mark, ct_ex3 *v)
+static bool in_axes(struct ct_build *b, const struct ct_signal *s, ct_ex3 *v)
 {
     if (!s->axes)
         return true;
     const int f = ct_model_find_frame(b->model, s->axes);
     if (f < 0)
-        return unknown(b, mark, name, ct_arena_printf(b->arena, "no frame '%s'", s->axes));
+        return ct_signal_unknown(b, s, ct_arena_printf(b->arena, "no frame '%s'", s->axes));
     *v = ct_node_unturn(b, b->node_of_frame[f], *v);
     return true;
 }
 
 // What is one number has neither components nor axes: "j.q.x", "energy.total in b".
-static bool is_number(struct ct_build *b, const struct signal *s, const char *name,
-                      struct ct_mark mark)
+bool ct_signal_is_number(struct ct_build *b, const struct ct_signal *s)
 {
     if (s->component)
-        return unknown(
-            b, mark, name,
-            ct_arena_printf(b->arena, "%s.%s has no components", s->owner, s->property));
+        return ct_signal_unknown(
+            b, s, ct_arena_printf(b->arena, "%s.%s has no components", s->owner, s->property));
     return !s->axes
-        || unknown(b, mark, name, "'in' gives the axes of a vector, and this is none");
+        || ct_signal_unknown(b, s, "'in' gives the axes of a vector, and this is none");
 }
 
-static bool component_of(struct ct_build *b, const struct signal *s, const char *name,
-                         struct ct_mark mark, ct_ex3 v, ct_ex *out)
+int ct_signal_component_index(const struct ct_signal *s)
+{
+    return index_of(s->component, axis_names, 3);
+}
+
+bool ct_signal_component(struct ct_build *b, const struct ct_signal *s, ct_ex3 v, ct_ex *out)
 {
     const int i = index_of(s->component, axis_names, 3);
     if (i < 0)
-        return unknown(b, mark, name, "a component is x, y or z");
-    if (!in_axes(b, s, name, mark, &v))
+        return ct_signal_unknown(b, s, "a component is x, y or z");
+    if (!in_axes(b, s, &v))
         return false;
     *out = v.e[i];
     return true;
@@ -94,9 +101,9 @@ static bool component_of(struct ct_build *b, const struct signal *s, const char 
 // The quaternion of a frame is followed in time, so its four numbers are made together and kept.
 static ct_ex frame_quaternion(struct ct_build *b, int node, int i)
 {
-    if (!b->quaternion)
-        b->quaternion = CT_NEWN(b->arena, struct ct_kept_quaternion, b->nnode);
-    struct ct_kept_quaternion *q = &b->quaternion[node];
+    if (!b->signals.quaternion)
+        b->signals.quaternion = CT_NEWN(b->arena, struct ct_kept_quaternion, b->nnode);
+    struct ct_kept_quaternion *q = &b->signals.quaternion[node];
     if (!q->made) {
         const ct_ex33 R = ct_node_rotation(b, node);
         ct_quaternion_follow(b, b->node[node].name, &R, q->p);
@@ -105,8 +112,7 @@ static ct_ex frame_quaternion(struct ct_build *b, int node, int i)
     return q->p[i];
 }
 
-static bool frame_signal(struct ct_build *b, int frame, const struct signal *s,
-                         const char *name, struct ct_mark mark, ct_ex *out)
+static bool frame_signal(struct ct_build *b, int frame, const struct ct_signal *s, ct_ex *out)
 {
     static const char *const entries[]
         = {"xx", "yx", "zx", "xy", "yy", "zy", "xz", "yz", "zz"}; // column-major
@@ -114,33 +120,35 @@ static bool frame_signal(struct ct_build *b, int frame, const struct signal *s,
     const int node = b->node_of_frame[frame];
     const int property = index_of(s->property, vector_properties, COUNT(vector_properties));
     if (property >= 0)
-        return component_of(b, s, name, mark, frame_vector(b, node, property), out);
+        return ct_signal_component(b, s, frame_vector(b, node, property), out);
     if (s->axes && (!strcmp(s->property, "rotation") || !strcmp(s->property, "quaternion")))
-        return unknown(b, mark, name, "'in' gives the axes of a vector, and this is none");
+        return ct_signal_unknown(b, s, "'in' gives the axes of a vector, and this is none");
     if (!strcmp(s->property, "rotation")) {
         const int i = index_of(s->component, entries, 9);
         if (i < 0)
-            return unknown(b, mark, name, "an entry of a rotation is xx, xy ... zz");
+            return ct_signal_unknown(b, s, "an entry of a rotation is xx, xy ... zz");
         *out = ct_node_rotation(b, node).e[i];
         return true;
     }
     if (!strcmp(s->property, "quaternion")) {
         const int i = index_of(s->component, numbers, 4);
         if (i < 0)
-            return unknown(b, mark, name, "a component of a quaternion is 0, 1, 2 or 3");
+            return ct_signal_unknown(b, s, "a component of a quaternion is 0, 1, 2 or 3");
         *out = frame_quaternion(b, node, i);
         return true;
     }
-    return unknown(b, mark, name,
-                   b->model->body[b->model->frame[frame].body].beam
-                       ? "a frame of a beam has deflection, slope, chord_deflection, strain, "
-                         "force, moment, position, velocity, acceleration, angular_velocity, "
-                         "angular_acceleration, rotation and quaternion"
-                       : "a frame has position, velocity, acceleration, angular_velocity, "
-                         "angular_acceleration, rotation and quaternion");
+    return ct_signal_unknown(
+        b, s,
+        b->model->body[b->model->frame[frame].body].beam
+            ? "a frame of a beam has deflection, slope, chord_deflection, strain, "
+              "force, moment, position, velocity, acceleration, angular_velocity, "
+              "angular_acceleration, rotation and quaternion"
+            : "a frame has position, velocity, acceleration, angular_velocity, "
+              "angular_acceleration, rotation and quaternion");
 }
 
-// ---- joints ----------------------------------------------------------------------------------------------------
+// ---- joints
+// ----------------------------------------------------------------------------------------------------
 
 // "joint 'pin' (cylindrical) has q1 and q2"
 static const char *coordinates_of(struct ct_build *b, const struct ct_instance *self,
@@ -157,25 +165,22 @@ static const char *coordinates_of(struct ct_build *b, const struct ct_instance *
                            n);
 }
 
-static bool effort_signal(struct ct_build *b, int joint, int k, const char *name,
-                          struct ct_mark mark, ct_ex *out)
+static bool effort_signal(struct ct_build *b, int joint, int k, struct ct_signal *s, ct_ex *out)
 {
     const struct ct_instance *self = &b->model->joint[joint];
     if (self->from < 0) {
         if (k > 0)
-            return unknown(b, mark, name, "the joint has no such coordinate");
+            return ct_signal_unknown(b, s, "the joint has no such coordinate");
         for (size_t i = 0; i < b->eqs->nrow; i++)
             if (b->eqs->row[i].joint == joint)
                 *out = b->eqs->row[i].lam;
         return true;
     }
     if (k >= self->nfree)
-        return unknown(b, mark, name, coordinates_of(b, self, "effort", false));
+        return ct_signal_unknown(b, s, coordinates_of(b, self, "effort", false));
     const int coordinate = b->edge[b->edge_of_joint[joint]].first_coordinate + k;
-    if (b->coordinate[coordinate].is_driven) {
-        *out = ct_driver_effort(b, coordinate);
-        return true;
-    }
+    if (b->coordinate[coordinate].is_driven)
+        return leave_to_dynamics(s, CT_DYNAMIC_DRIVER, coordinate);
     const struct ct_value *effort = ct_instance_value(self, "effort");
     const bool given = effort->given && (size_t)k < effort->n && !effort->hole[k];
     *out = given ? ct_build_value(b, effort->e[k]) : CT_EX_ZERO;
@@ -192,8 +197,7 @@ static int number_of(const char *digits)
 }
 
 // q, u, a, effort with or without a number.
-static bool coordinate_signal(struct ct_build *b, int joint, const struct signal *s,
-                              const char *name, struct ct_mark mark, ct_ex *out)
+static bool coordinate_signal(struct ct_build *b, int joint, struct ct_signal *s, ct_ex *out)
 {
     const struct ct_instance *self = &b->model->joint[joint];
     const size_t letters = strcspn(s->property, "0123456789");
@@ -201,19 +205,19 @@ static bool coordinate_signal(struct ct_build *b, int joint, const struct signal
     const char *const kind = ct_arena_strndup(b->arena, s->property, letters);
     const bool stored = !strcmp(kind, "q");
     const int n = stored ? self->ncoord : self->nfree;
-    if (!is_number(b, s, name, mark))
+    if (!ct_signal_is_number(b, s))
         return false;
     if (number < 1)
-        return unknown(b, mark, name, coordinates_of(b, self, kind, stored));
+        return ct_signal_unknown(b, s, coordinates_of(b, self, kind, stored));
     if (!s->property[letters] && n > 1)
-        return unknown(b, mark, name,
-                       ct_arena_printf(b->arena,
-                                       "the joint has %d of them; name one, as in %s.%s2", n,
-                                       s->owner, kind));
+        return ct_signal_unknown(
+            b, s,
+            ct_arena_printf(b->arena, "the joint has %d of them; name one, as in %s.%s2", n,
+                            s->owner, kind));
     if (!strcmp(kind, "effort"))
-        return effort_signal(b, joint, number - 1, name, mark, out);
+        return effort_signal(b, joint, number - 1, s, out);
     if (self->from < 0 || number > n)
-        return unknown(b, mark, name, coordinates_of(b, self, kind, stored));
+        return ct_signal_unknown(b, s, coordinates_of(b, self, kind, stored));
     const int coordinate = b->edge[b->edge_of_joint[joint]].first_coordinate + number - 1;
     if (stored)
         *out = ct_coordinate_value(b, coordinate);
@@ -224,32 +228,24 @@ static bool coordinate_signal(struct ct_build *b, int joint, const struct signal
     return true;
 }
 
-static bool joint_signal(struct ct_build *b, int joint, const struct signal *s,
-                         const char *name, struct ct_mark mark, ct_ex *out)
+static bool joint_signal(struct ct_build *b, int joint, struct ct_signal *s, ct_ex *out)
 {
     static const char *const kinds[] = {"q", "u", "a", "effort"};
-    const bool is_force = !strcmp(s->property, "force");
-    if ((is_force || !strcmp(s->property, "torque")) && b->edge_of_joint[joint] >= 0) {
-        ct_ex3 force, torque;
-        ct_reaction_derive(b, joint, &force, &torque);
-        const int tail = b->wiring[b->edge_of_joint[joint]].tail;
-        const int i = index_of(s->component, axis_names, 3);
-        b->is_open = b->is_open || (i >= 0 && !ct_reaction_is_known(b, joint, is_force, i));
-        const ct_ex3 v = is_force ? force : torque;
-        return component_of(b, s, name, mark, s->axes ? v : ct_node_unturn(b, tail, v), out);
-    }
+    if ((!strcmp(s->property, "force") || !strcmp(s->property, "torque"))
+        && b->edge_of_joint[joint] >= 0)
+        return leave_to_dynamics(s, CT_DYNAMIC_REACTION, joint);
     const size_t letters = strcspn(s->property, "0123456789");
     for (size_t i = 0; i < COUNT(kinds); i++)
         if (strlen(kinds[i]) == letters && !strncmp(s->property, kinds[i], letters))
-            return coordinate_signal(b, joint, s, name, mark, out);
-    return unknown(b, mark, name, "a joint has q, u, a, effort, force and torque");
+            return coordinate_signal(b, joint, s, out);
+    return ct_signal_unknown(b, s, "a joint has q, u, a, effort, force and torque");
 }
 
-// ---- forces ---------------------------------------------------------------------------------------------------
+// ---- forces
+// ---------------------------------------------------------------------------------------------------
 
 static bool force_signal(struct ct_build *b, const struct ct_instance *self,
-                         const struct signal *s, const char *name, struct ct_mark mark,
-                         ct_ex *out)
+                         const struct ct_signal *s, ct_ex *out)
 {
     const char *component = s->component ? s->component : "";
     const char *dot = s->component ? "." : "";
@@ -261,13 +257,14 @@ static bool force_signal(struct ct_build *b, const struct ct_instance *self,
         has = self->cls->signal(
             b, self, ct_arena_printf(b->arena, "%s.%s", s->property, axis_names[i]), &v.e[i]);
     if (!has)
-        return unknown(b, mark, name,
-                       ct_arena_printf(b->arena, "force '%s' (%s) has %s", self->name,
-                                       self->cls->name, self->cls->signals));
-    return !s->axes || component_of(b, s, name, mark, v, out);
+        return ct_signal_unknown(b, s,
+                                 ct_arena_printf(b->arena, "force '%s' (%s) has %s", self->name,
+                                                 self->cls->name, self->cls->signals));
+    return !s->axes || ct_signal_component(b, s, v, out);
 }
 
-// ---- the whole system ----------------------------------------------------------------------------------------------
+// ---- the whole system
+// ----------------------------------------------------------------------------------------------
 
 static ct_ex largest(struct ct_build *b, bool position)
 {
@@ -279,8 +276,7 @@ static ct_ex largest(struct ct_build *b, bool position)
     return max;
 }
 
-static bool global_signal(struct ct_build *b, const struct signal *s, const char *name,
-                          struct ct_mark mark, ct_ex *out)
+static bool global_signal(struct ct_build *b, struct ct_signal *s, ct_ex *out)
 {
     static const char *const sums[] = {"com", "momentum", "angular_momentum"};
     static const char *const energies[] = {"kinetic", "potential", "strain", "work", "total"};
@@ -288,63 +284,61 @@ static bool global_signal(struct ct_build *b, const struct signal *s, const char
     if (!strcmp(s->owner, "system")) {
         const int i = index_of(s->property, sums, 3);
         return i < 0
-                 ? unknown(b, mark, name, "the system has com, momentum and angular_momentum")
-                 : component_of(b, s, name, mark,
-                                ct_system_total_vector(b, (enum ct_system_total)i), out);
+                 ? ct_signal_unknown(b, s, "the system has com, momentum and angular_momentum")
+                 : ct_signal_component(b, s, ct_system_total_vector(b, (enum ct_system_total)i),
+                                       out);
     }
     if (!strcmp(s->owner, "constraint")) {
         const bool position = !strcmp(s->property, "position");
-        if (!is_number(b, s, name, mark))
+        if (!ct_signal_is_number(b, s))
             return false;
         if (!position && strcmp(s->property, "velocity"))
-            return unknown(b, mark, name, "constraint has position and velocity");
+            return ct_signal_unknown(b, s, "constraint has position and velocity");
         *out = e->closure_error[!position] = largest(b, position);
         return true;
     }
     const int i = index_of(s->property, energies, 5);
-    const ct_ex values[] = {e->kinetic, e->potential, e->strain, e->work_symbol, e->total};
-    if (!is_number(b, s, name, mark))
+    if (!ct_signal_is_number(b, s))
         return false;
     if (i < 0)
-        return unknown(b, mark, name, "energy has kinetic, potential, strain, work and total");
-    *out = values[i];
-    return true;
+        return ct_signal_unknown(b, s, "energy has kinetic, potential, strain, work and total");
+    return leave_to_dynamics(s, CT_DYNAMIC_ENERGY, i);
 }
 
 static ct_ex3 body_com(struct ct_build *b, int body)
 {
-    const struct ct_flexible *f = ct_flexible_of(b, body);
+    struct ct_flexible *f = ct_flexible_of(b, body);
     const ct_ex3 r = ct_node_position(b, b->node_of_com[body]);
     if (!f)
         return r;
+    ct_flexible_inertia_derive(b, f);
     const struct ct_flexible_state s = ct_flexible_moving(b, f);
     return ct_ex3_add(b->x, r,
                       ct_ex3_scale(b->x, ct_ex_div(b->x, CT_EX_ONE, s.mass), s.moment));
 }
 
-// ---- beams -----------------------------------------------------------------------------------------------------------
+// ---- beams
+// -----------------------------------------------------------------------------------------------------------
 
-static bool beam_signal(struct ct_build *b, int frame, const struct signal *s, const char *name,
-                        struct ct_mark mark, ct_ex *out)
+static bool beam_signal(struct ct_build *b, int frame, struct ct_signal *s, ct_ex *out)
 {
-    const bool is_force = !strcmp(s->property, "force");
-    const int i = index_of(s->component, axis_names, 3);
     if (!strcmp(s->property, "strain")) {
         *out = ct_beam_signal_strain(b, frame);
-        return is_number(b, s, name, mark);
+        return ct_signal_is_number(b, s);
     }
     if (s->axes)
-        return unknown(b, mark, name,
-                       "it is in axes of the beam; 'in' is for vectors of the ground's");
-    if (is_force || !strcmp(s->property, "moment"))
-        b->is_open = b->is_open || (i >= 0 && !ct_beam_signal_is_known(b, frame, is_force, i));
-    return component_of(b, s, name, mark, ct_beam_signal_vector(b, frame, s->property), out);
+        return ct_signal_unknown(
+            b, s, "it is in axes of the beam; 'in' is for vectors of the ground's");
+    if (!strcmp(s->property, "force") || !strcmp(s->property, "moment"))
+        return leave_to_dynamics(s, CT_DYNAMIC_BEAM_LOAD, frame);
+    return ct_signal_component(b, s, ct_beam_signal_vector(b, frame, s->property), out);
 }
 
-// ---- any signal ----------------------------------------------------------------------------------------------------
+// ---- any signal
+// ----------------------------------------------------------------------------------------------------
 
 // Split at dots after the longest prefix that names something; " in AXES" is taken off the end.
-static bool split(struct ct_build *b, const char *name, struct signal *s, int *frame)
+static bool split(struct ct_build *b, const char *name, struct ct_signal *s, int *frame)
 {
     char *text = ct_arena_strdup(b->arena, name);
     char *axes = strstr(text, " in ");
@@ -378,38 +372,34 @@ static bool split(struct ct_build *b, const char *name, struct signal *s, int *f
     return true;
 }
 
-bool ct_signal_resolve(struct ct_build *b, const char *name, struct ct_mark mark, ct_ex *out)
+bool ct_signal_resolve(struct ct_build *b, const char *name, struct ct_mark mark,
+                       struct ct_signal *s, ct_ex *out)
 {
-    struct signal s = {0};
     int frame;
     *out = CT_EX_ZERO;
-    if (!split(b, name, &s, &frame))
-        return unknown(b, mark, name, "a signal is written OWNER.PROPERTY");
-    if (!strcmp(s.owner, "system") || !strcmp(s.owner, "energy")
-        || !strcmp(s.owner, "constraint"))
-        return global_signal(b, &s, name, mark, out);
-    const int joint = ct_model_find_joint(b->model, s.owner);
+    *s = (struct ct_signal){.name = name, .mark = mark};
+    if (!split(b, name, s, &frame))
+        return ct_signal_unknown(b, s, "a signal is written OWNER.PROPERTY");
+    if (!strcmp(s->owner, "system") || !strcmp(s->owner, "energy")
+        || !strcmp(s->owner, "constraint"))
+        return global_signal(b, s, out);
+    const int joint = ct_model_find_joint(b->model, s->owner);
     if (joint >= 0)
-        return joint_signal(b, joint, &s, name, mark, out);
-    const int force = ct_model_find_force(b->model, s.owner);
+        return joint_signal(b, joint, s, out);
+    const int force = ct_model_find_force(b->model, s->owner);
     if (force >= 0)
-        return force_signal(b, &b->model->force[force], &s, name, mark, out);
+        return force_signal(b, &b->model->force[force], s, out);
     if (frame < 0)
-        return unknown(b, mark, name, "nothing has this name");
+        return ct_signal_unknown(b, s, "nothing has this name");
     const int body = b->model->frame[frame].body;
-    if (!strcmp(s.property, "validity") && frame == b->model->body[body].frame
-        && ct_flexible_of(b, body)) {
-        struct ct_validity v;
-        if (!ct_validity_derive(b, ct_flexible_of(b, body), &v))
-            return unknown(b, mark, name, "the beam does not bend");
-        *out = v.eta;
-        return is_number(b, &s, name, mark);
-    }
-    if (!strcmp(s.property, "com") && body > 0)
-        return component_of(b, &s, name, mark, body_com(b, body), out);
-    if (b->model->body[body].beam && ct_beam_signal_exists(s.property))
-        return beam_signal(b, frame, &s, name, mark, out);
-    return frame_signal(b, frame, &s, name, mark, out);
+    if (!strcmp(s->property, "validity") && frame == b->model->body[body].frame
+        && ct_flexible_of(b, body))
+        return ct_signal_is_number(b, s) && leave_to_dynamics(s, CT_DYNAMIC_VALIDITY, body);
+    if (!strcmp(s->property, "com") && body > 0)
+        return ct_signal_component(b, s, body_com(b, body), out);
+    if (b->model->body[body].beam && ct_beam_signal_exists(s->property))
+        return beam_signal(b, frame, s, out);
+    return frame_signal(b, frame, s, out);
 }
 
 const char *const *ct_signal_components(struct ct_build *b, const char *name)
@@ -432,7 +422,7 @@ const char *const *ct_signal_components(struct ct_build *b, const char *name)
                                           "deflection",
                                           "slope",
                                           "chord_deflection"};
-    struct signal s = {0};
+    struct ct_signal s = {0};
     int frame;
     if (!split(b, name, &s, &frame) || s.component)
         return NULL;
@@ -449,50 +439,72 @@ const char *const *ct_signal_components(struct ct_build *b, const char *name)
     return !strcmp(s.property, "quaternion") ? four : NULL;
 }
 
-// ---- expressions of the model ------------------------------------------------------------------------------------------
+// ---- expressions of the model
+// ------------------------------------------------------------------------------------------
 
 static const int deepest_signal = 64; // a force that measures a force that measures ... itself
 
-ct_ex ct_build_value(struct ct_build *b, ct_ex e)
+// The error of a force that depends on what follows from forces.
+static void refuse(struct ct_build *b, const struct ct_signal *s)
 {
-    if (!(ct_ex_kinds(b->x, e) & 1u << CT_SYM_SIGNAL))
-        return ct_switch_hold(b, e);
-    ct_ex from[32], to[32];
+    ct_error(
+        b->ctx, s->mark, CT_E_SIGNAL_USE,
+        "a force cannot depend on '%s': accelerations, reactions, energies and work follow "
+        "from it",
+        s->name);
+}
+
+// The signal e, in an expression of a force.
+static ct_ex signal_value(struct ct_build *b, ct_ex e)
+{
+    const struct ct_sym symbol = *ct_ex_symbol(b->x, e);
+    const unsigned late = 1u << CT_SYM_A | 1u << CT_SYM_LAM | 1u << CT_SYM_WORK;
+    struct ct_signal s;
+    ct_ex out;
+    if (ct_signal_resolve(b, symbol.name, symbol.mark, &s, &out)
+        && (s.dynamic || (!b->signals.in_outputs && ct_ex_kinds(b->x, out) & late)))
+        refuse(b, &s);
+    return out;
+}
+
+size_t ct_signals_list(struct ct_build *b, ct_ex e, ct_ex signal[CT_MOST_SIGNALS])
+{
     size_t n = 0;
     const size_t nwalk = ct_ex_walk(b->x, &e, 1);
-    for (size_t i = 0; i < nwalk && n < COUNT(from); i++)
-        if (ct_ex_symbol(b->x, (ct_ex){b->x->stack[i]})
-            && ct_ex_symbol(b->x, (ct_ex){b->x->stack[i]})->kind == CT_SYM_SIGNAL)
-            from[n++] = (ct_ex){b->x->stack[i]};
-    if (b->resolving > deepest_signal) {
+    for (size_t i = 0; i < nwalk && n < CT_MOST_SIGNALS; i++) {
+        const ct_ex node = {b->x->stack[i]};
+        const struct ct_sym *symbol = ct_ex_symbol(b->x, node);
+        if (symbol && symbol->kind == CT_SYM_SIGNAL)
+            signal[n++] = node;
+    }
+    return n;
+}
+
+ct_ex ct_build_value(struct ct_build *b, ct_ex e)
+{
+    ct_ex from[CT_MOST_SIGNALS], to[CT_MOST_SIGNALS];
+    const size_t n = ct_signals_list(b, e, from);
+    if (!n)
+        return ct_switch_hold(b, e);
+    if (b->signals.resolving > deepest_signal) {
         ct_error(b->ctx, ct_ex_symbol(b->x, from[0])->mark, CT_E_SIGNAL_USE,
                  "signal '%s' depends on itself", ct_ex_symbol(b->x, from[0])->name);
         return CT_EX_ZERO;
     }
-    b->resolving++;
-    for (size_t i = 0; i < n; i++) {
-        const struct ct_sym s = *ct_ex_symbol(b->x, from[i]);
-        const unsigned late = 1u << CT_SYM_A | 1u << CT_SYM_LAM | 1u << CT_SYM_WORK;
-        if (ct_signal_resolve(b, s.name, s.mark, &to[i]) && !b->in_outputs
-            && ct_ex_kinds(b->x, to[i]) & late)
-            ct_error(b->ctx, s.mark, CT_E_SIGNAL_USE,
-                     "a force cannot depend on '%s': accelerations, reactions and work follow "
-                     "from it",
-                     s.name);
-    }
-    b->resolving--;
+    b->signals.resolving++;
+    for (size_t i = 0; i < n; i++)
+        to[i] = signal_value(b, from[i]);
+    b->signals.resolving--;
     const ct_ex replaced = ct_ex_subst(b->x, e, from, to, n);
-    const bool more
-        = ct_ex_kinds(b->x, replaced) & 1u << CT_SYM_SIGNAL; // more than COUNT(from)
-    if (more)
+    if (ct_ex_kinds(b->x, replaced) & 1u << CT_SYM_SIGNAL) // more than CT_MOST_SIGNALS
         return ct_build_value(b, replaced);
-    if (b->in_outputs)
+    if (b->signals.in_outputs)
         return replaced;
-    b->written = e;
-    b->written_from = from;
-    b->written_to = to;
-    b->nwritten = n;
+    b->signals.written = e;
+    b->signals.from = from;
+    b->signals.to = to;
+    b->signals.nreplaced = n;
     const ct_ex held = ct_switch_hold(b, replaced);
-    b->nwritten = 0;
+    b->signals.nreplaced = 0;
     return held;
 }

@@ -1,0 +1,34 @@
+// From the degrees of freedom of an element (dofs) to those of the nodes (freedoms) and to the
+// elastic coordinates, and forces, masses and columns the other way. flexible_body.h says which
+// are which.
+#ifndef CT_FORMULATE_BEAM_DEGREES_OF_FREEDOM_H
+#define CT_FORMULATE_BEAM_DEGREES_OF_FREEDOM_H
+
+#include "formulate/beam/flexible_body.h"
+
+/// Deformation (bit) that a kind of freedom belongs to.
+unsigned ct_freedom_family(int kind);
+bool ct_freedom_is_fixed(const struct ct_flexible *f, int node, int kind);
+/// Parts of element e's dof j: *sign times those of the freedom; NULL if it is fixed.
+const struct ct_freedom *ct_dof_freedom(const struct ct_flexible *f, int e, int j, int *sign);
+
+/// Columns of the base's motion: p . moved + s . swept for a velocity p and an angular velocity s
+/// of the base.
+struct ct_columns {
+    ct_ex3 *moved, *swept; // by elastic coordinate, axes of the beam
+};
+
+/// Generalised force on a dof, added to that on its freedom.
+void ct_dof_push(struct ct_build *b, const struct ct_flexible *f, int e, int j, ct_ex value,
+                 ct_ex *by_freedom);
+/// Entry of the mass matrix between dof j of element e and dof k of element g; the transposed
+/// pair is pushed by itself.
+void ct_dof_push_pair(struct ct_build *b, const struct ct_flexible *f, int e, int j, int g,
+                      int k, ct_ex value, ct_ex *M);
+void ct_dof_push_column(struct ct_build *b, const struct ct_flexible *f, int e, int j,
+                        ct_ex3 moved, ct_ex3 swept, struct ct_columns *out);
+/// Second derivatives of the foreshortening at the start of each element of a CHAIN with the
+/// symbols u', less the bias.
+ct_ex *ct_chain_accelerations(struct ct_build *b, const struct ct_flexible *f);
+
+#endif

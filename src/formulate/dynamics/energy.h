@@ -1,0 +1,11 @@
+// Energies of all bodies.
+#ifndef CT_FORMULATE_DYNAMICS_ENERGY_H
+#define CT_FORMULATE_DYNAMICS_ENERGY_H
+
+#include "formulate/dynamics/dynamics.h"
+#include "formulate/kinematics/coordinate.h"
+
+/// Kinetic energy, potential of gravity and power of drivers, added to b->eqs.
+void ct_energies_derive(struct ct_build *b);
+
+#endif

@@ -1,0 +1,67 @@
+// See mass_sums.h.
+#include "formulate/mass_sums.h"
+
+struct ct_augmented_body *ct_augmented_body_of(struct ct_build *b, int anchor, int cluster)
+{
+    for (size_t i = 0; i < b->naugmented_body; i++)
+        if (b->augmented_body[i].anchor == anchor && b->augmented_body[i].cluster == cluster)
+            return &b->augmented_body[i];
+    const struct ct_augmented_body s = {.anchor = anchor, .cluster = cluster};
+    CT_PUSH(b->arena, b->augmented_body, b->naugmented_body, b->augmented_body_cap, s);
+    return &b->augmented_body[b->naugmented_body - 1];
+}
+
+void ct_inertia_add_point(struct ct_build *b, ct_ex33 *L, ct_ex m, ct_ex3 v)
+{
+    struct ct_exs *x = b->x;
+    for (int i = 0; i < 3; i++) {
+        const int j = (i + 1) % 3, k = (i + 2) % 3;
+        const ct_ex other
+            = ct_ex_add(x, ct_ex_mul(x, v.e[j], v.e[j]), ct_ex_mul(x, v.e[k], v.e[k]));
+        L->e[i + 3 * i] = ct_ex_add(x, L->e[i + 3 * i], ct_ex_mul(x, m, other));
+        const ct_ex cross = ct_ex_mul(x, m, ct_ex_mul(x, v.e[i], v.e[j]));
+        L->e[i + 3 * j] = ct_ex_sub(x, L->e[i + 3 * j], cross);
+        L->e[j + 3 * i] = ct_ex_sub(x, L->e[j + 3 * i], cross);
+    }
+}
+
+void ct_augmented_bodies_add_point(struct ct_build *b, int anchor, int cluster, ct_ex m,
+                                   ct_ex3 local)
+{
+    struct ct_augmented_body *s = ct_augmented_body_of(b, anchor, cluster);
+    const ct_ex3 v = ct_build_in_plane(b, local);
+    s->moment = ct_ex3_add(b->x, s->moment, ct_ex3_scale(b->x, m, v));
+    ct_inertia_add_point(b, &b->cluster[cluster].L, m, v);
+}
+
+void ct_augmented_bodies_add(struct ct_build *b, int anchor, int cluster, ct_ex m,
+                             ct_ex3 moment, const ct_ex33 *inertia)
+{
+    struct ct_augmented_body *s = ct_augmented_body_of(b, anchor, cluster);
+    ct_ex33 *L = &b->cluster[cluster].L;
+    s->moment = ct_ex3_add(b->x, s->moment, ct_build_in_plane(b, moment));
+    for (int i = 0; i < 9; i++)
+        L->e[i] = ct_ex_add(b->x, L->e[i], inertia->e[i]);
+    b->anchor[anchor].mass = ct_ex_add(b->x, b->anchor[anchor].mass, m);
+}
+
+void ct_mass_add_entry(struct ct_build *b, ct_ex *M, int k, int l, ct_ex v)
+{
+    const size_t n = b->eqs->nu;
+    const size_t i = (size_t)(k > l ? k : l) + n * (size_t)(k > l ? l : k);
+    M[i] = ct_ex_add(b->x, M[i], v);
+}
+
+void ct_mass_spread(struct ct_build *b, ct_ex *M, const struct ct_term *p, int np,
+                    const struct ct_term *q, int nq, ct_ex m)
+{
+    for (int i = 0; i < np; i++)
+        for (int j = 0; j < nq; j++) {
+            if (p[i].speed < 0 || q[j].speed < 0)
+                continue;
+            ct_ex v = ct_ex_mul(b->x, ct_ex_mul(b->x, p[i].coef, q[j].coef), m);
+            if (p[i].speed == q[j].speed)
+                v = ct_ex_scale(b->x, 2, v);
+            ct_mass_add_entry(b, M, p[i].speed, q[j].speed, v);
+        }
+}

@@ -1,0 +1,9 @@
+// See operation_count.h.
+#include "formulate/operation_count.h"
+
+double ct_counted_cost(const struct ct_tape_counts *c)
+{
+    const double per_function = 8, per_division = 4; // in multiplications
+    return (double)(c->multiplications + c->additions) + per_division * (double)c->divisions
+         + per_function * (double)c->functions;
+}
