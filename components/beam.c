@@ -78,6 +78,7 @@ const struct ct_component_class ct_component_beam = {
     .name = "beam",
     .summary = "elastic beam of finite elements, a frame at x = 0 and points",
     .family = CT_FAMILY_BODY,
+    .body = CT_BODY_BEAM,
     .key = keys,
     .nkey = COUNT(keys),
     .across = "section at x: d = r(x, q), S(x, q)",

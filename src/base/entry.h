@@ -29,6 +29,6 @@ const char *ct_suggest(struct ct_arena *a, const char *name, const char *const *
 const char *ct_suggest_or_list(struct ct_arena *a, const char *name, const char *const *names,
                                size_t n);
 /// Monotonic time [s].
-double ct_input_sampling(void);
+double ct_monotonic_time(void);
 
 #endif

@@ -30,8 +30,8 @@ struct ct_native {
     void *memory;
     size_t nmemory, ncode;
     body_fn body;
-    struct ct_native *four;      // of eight lanes, which have no code of their own
-    const struct ct_simd2 *pair; // and their two halves
+    struct ct_native *four;            // of eight lanes, which have no code of their own
+    const struct ct_native_wide *pair; // and their two halves
 };
 
 // ---- functions that code calls ----------------------------------------------------------------

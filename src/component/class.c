@@ -1,20 +1,8 @@
-// The registry of component classes and the keys that families share.
+// Keys that families share, and values of instances by key; see class.h.
 #include "component/class.h"
 
 #include <assert.h>
 #include <string.h>
-
-#define COMPONENT(name) extern const struct ct_component_class ct_component_##name;
-#include "components.def"
-#undef COMPONENT
-
-const struct ct_component_class *const ct_component_classes[] = {
-#define COMPONENT(name) &ct_component_##name,
-#include "components.def"
-#undef COMPONENT
-};
-
-const int ct_ncomponent_class = COUNT(ct_component_classes);
 
 // COORDS take their units from the coordinates: N/m or N*m/rad and so on
 static const struct ct_key joint_keys[] = {
@@ -48,15 +36,6 @@ const char *const *ct_key_choices(struct ct_arena *a, const struct ct_key *key, 
         p += length;
     }
     return word;
-}
-
-const struct ct_component_class *ct_component_find(enum ct_family family, const char *name)
-{
-    for (int i = 0; i < ct_ncomponent_class; i++)
-        if (ct_component_classes[i]->family == family
-            && strcmp(ct_component_classes[i]->name, name) == 0)
-            return ct_component_classes[i];
-    return NULL;
 }
 
 const struct ct_value *ct_instance_value(const struct ct_instance *self, const char *key)

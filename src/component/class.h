@@ -15,6 +15,7 @@ struct ct_build; // the equations under construction, formulate/build.h
 struct ct_instance;
 
 enum ct_family { CT_FAMILY_BODY, CT_FAMILY_JOINT, CT_FAMILY_FORCE };
+enum ct_body_kind { CT_BODY_RIGID, CT_BODY_PARTICLE, CT_BODY_BEAM };
 
 enum ct_value_kind {
     CT_VALUE_SCALAR,  // one expression
@@ -147,6 +148,7 @@ const struct ct_value *ct_instance_value(const struct ct_instance *self, const c
 struct ct_component_class {
     const char *name, *summary;
     enum ct_family family;
+    enum ct_body_kind body;   // bodies
     const struct ct_key *key; // keys of its own; those of the family come from class.c
     int nkey;
     const char *across, *through; // terminal equations, for `components` and `--show terminal`

@@ -2,7 +2,6 @@
 // sections are declared before any value is read, so that order within the file does not matter.
 #include "component/read.h"
 
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -61,7 +60,7 @@ static void sort_diagnostics(struct ct_ctx *ctx, const char *file, size_t from)
 
 static void check_version(struct ct_reader *r)
 {
-    const struct ct_simd2 *p = ct_node_find(r->root, "cotree");
+    const struct ct_node_pair *p = ct_node_find(r->root, "cotree");
     if (!p)
         ct_error(r->ctx, r->root->mark, CT_E_VERSION,
                  "the file must start with its version, 'cotree: 1'");
@@ -211,36 +210,4 @@ bool ct_model_resolve(struct ct_ctx *ctx, const char *file, const struct ct_node
                       const struct ct_set *set, size_t nset, struct ct_model *m)
 {
     return finish(ctx, file, root, ctx->nerror, ctx->ndiagnostic, set, nset, m);
-}
-
-// ---- questions to a model ------------------------------------------------------------------------------------------
-
-double ct_model_number(const struct ct_model *m, ct_ex e)
-{
-    double v;
-    if (ct_ex_is_const(m->x, e, &v))
-        return v;
-    if (ct_ex_kinds(m->x, e) & ~(1u << CT_SYM_PARAM))
-        return NAN;
-    return ct_ex_value(m->x, e, m->value);
-}
-
-int ct_model_find_joint(const struct ct_model *m, const char *name)
-{
-    return ct_names_get(&m->joint_index, name);
-}
-
-int ct_model_find_frame(const struct ct_model *m, const char *name)
-{
-    return ct_names_get(&m->frame_index, name);
-}
-
-int ct_model_find_body(const struct ct_model *m, const char *name)
-{
-    return ct_names_get(&m->body_index, name);
-}
-
-int ct_model_find_force(const struct ct_model *m, const char *name)
-{
-    return ct_names_get(&m->force_index, name);
 }

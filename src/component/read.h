@@ -57,7 +57,8 @@ bool ct_read_text(struct ct_reader *r, const struct ct_node *node, const char **
 /// An identifier that may name something of this sort ("body").
 bool ct_read_name(struct ct_reader *r, const char *name, struct ct_mark at, const char *sort);
 /// A body, joint or force: its name must differ from all others.
-bool ct_read_component_name(struct ct_reader *r, const struct ct_simd2 *p, const char *sort);
+bool ct_read_component_name(struct ct_reader *r, const struct ct_node_pair *p,
+                            const char *sort);
 /// Suggestions cost a pass over all names each; after many errors nobody reads them.
 bool ct_read_suggests(const struct ct_reader *r);
 /// "; did you mean 'x'?" or "".
@@ -105,7 +106,7 @@ extern const double ct_read_full_turn;
 
 /// The class named by `type`; NULL after an error. standard: when there is no `type`, or NULL.
 const struct ct_component_class *ct_read_class(struct ct_reader *r, enum ct_family family,
-                                               const struct ct_simd2 *p, const char *sort,
+                                               const struct ct_node_pair *p, const char *sort,
                                                const char *standard);
 /// Room for the values of all keys, none given.
 void ct_read_clear(struct ct_reader *r, struct ct_instance *self);

@@ -5,7 +5,7 @@
 
 // All components are edges of one linear graph and known by their names in signals, trees and
 // summaries: no two of them, of whatever sort, may share one.
-bool ct_read_component_name(struct ct_reader *r, const struct ct_simd2 *p, const char *sort)
+bool ct_read_component_name(struct ct_reader *r, const struct ct_node_pair *p, const char *sort)
 {
     static const char *const taken[] = {"ground", "system", "energy", "constraint"};
     if (!ct_read_name(r, p->key, p->mark, sort))
@@ -34,7 +34,7 @@ bool ct_read_component_name(struct ct_reader *r, const struct ct_simd2 *p, const
 }
 
 const struct ct_component_class *ct_read_class(struct ct_reader *r, enum ct_family family,
-                                               const struct ct_simd2 *p, const char *sort,
+                                               const struct ct_node_pair *p, const char *sort,
                                                const char *standard)
 {
     if (!ct_read_shape(r, p->value, CT_NODE_MAP, "a map of keys"))

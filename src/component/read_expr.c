@@ -308,3 +308,58 @@ bool ct_read_vec3(struct ct_reader *r, const struct ct_node *node, unsigned flag
     }
     return ok;
 }
+
+void ct_read_room(struct ct_reader *r, struct ct_value *v, size_t n)
+{
+    v->n = n;
+    v->e = CT_NEWN(r->a, ct_ex, n);
+    v->at = CT_NEWN(r->a, struct ct_mark, n);
+    for (size_t i = 0; i < n; i++)
+        v->e[i] = CT_EX_ZERO;
+}
+
+bool ct_read_items(struct ct_reader *r, const struct ct_node *node, const struct ct_key *key,
+                   struct ct_value *v)
+{
+    ct_read_room(r, v, node->n);
+    bool ok = true;
+    for (size_t i = 0; i < node->n; i++) {
+        v->at[i] = node->item[i]->mark;
+        ok &= ct_read_expr(r, node->item[i], key->flags, key->unit, &v->e[i]);
+    }
+    return ok;
+}
+
+// A count decides about the equations: keep account of the parameters in it.
+static bool read_deciding(struct ct_reader *r, ct_ex e, double *v)
+{
+    struct ct_model *m = r->m;
+    if (!m->decided) {
+        m->x->ndecided = m->x->nsym;
+        m->decided = CT_NEWN(r->a, unsigned char, m->x->nsym);
+    }
+    m->x->decided = m->decided;
+    const bool ok = ct_read_number(r, e, v);
+    m->x->decided = NULL;
+    return ok;
+}
+
+bool ct_read_count(struct ct_reader *r, const struct ct_node *node, const char *name,
+                   long least, long *count)
+{
+    enum { MOST = 10000 };
+    ct_ex e;
+    double v;
+    *count = least;
+    if (!ct_read_expr(r, node, 0, "", &e) || !read_deciding(r, e, &v))
+        return false;
+    // an integer computed from parameters: n * eps of round-off
+    if (fabs(v - round(v)) > 1e-9 * fabs(v))
+        return ct_error(r->ctx, node->mark, CT_E_RANGE, "'%s' is %g; it must be an integer",
+                        name, v);
+    if (!(v > (double)least - 0.5 && v <= MOST))
+        return ct_error(r->ctx, node->mark, CT_E_RANGE, "'%s' is %g; it must be %ld to %d",
+                        name, v, least, MOST);
+    *count = lround(v);
+    return true;
+}

@@ -11,7 +11,7 @@ void ct_read_forces_declare(struct ct_reader *r)
         || !ct_read_shape(r, node, CT_NODE_MAP, "a map of forces"))
         return;
     for (size_t i = 0; i < node->n; i++) {
-        const struct ct_simd2 *p = &node->pair[i];
+        const struct ct_node_pair *p = &node->pair[i];
         if (!ct_read_component_name(r, p, "force"))
             continue;
         const struct ct_instance new = {.name = p->key, .mark = p->mark, .from = -1, .to = -1};
@@ -49,7 +49,7 @@ static int frame_under(const struct ct_instance *self, const char *name, struct 
 static bool read_force(struct ct_reader *r, struct ct_instance *self,
                        const struct ct_node *node)
 {
-    const struct ct_simd2 p = {self->name, self->mark, node};
+    const struct ct_node_pair p = {self->name, self->mark, node};
     self->cls = ct_read_class(r, CT_FAMILY_FORCE, &p, "force", NULL);
     if (!self->cls)
         return false;

@@ -60,7 +60,7 @@ void ct_read_joints_declare(struct ct_reader *r)
         || !ct_read_shape(r, node, CT_NODE_MAP, "a map of joints"))
         return;
     for (size_t i = 0; i < node->n; i++) {
-        const struct ct_simd2 *p = &node->pair[i];
+        const struct ct_node_pair *p = &node->pair[i];
         if (!ct_read_component_name(r, p, "joint"))
             continue;
         const struct ct_instance new = {.name = p->key, .mark = p->mark, .from = -1, .to = -1};
@@ -132,7 +132,7 @@ static void count_coordinates(struct ct_reader *r, struct joint *j)
 }
 
 static bool check_has_coordinate(struct ct_reader *r, const struct joint *j,
-                                 const struct ct_simd2 *p)
+                                 const struct ct_node_pair *p)
 {
     const struct ct_instance *self = j->self;
     if (self->nfree > 0)
@@ -201,7 +201,7 @@ static bool check_rotation_entries(struct ct_reader *r, const struct joint *j,
 }
 
 static bool read_coords(struct ct_reader *r, struct joint *j, const struct ct_key *key,
-                        const struct ct_simd2 *p)
+                        const struct ct_node_pair *p)
 {
     if (!check_has_coordinate(r, j, p))
         return false;
@@ -254,7 +254,7 @@ static bool read_initial_q(struct ct_reader *r, const struct joint *j,
 }
 
 static bool read_initial_rotate(struct ct_reader *r, const struct joint *j,
-                                const struct ct_simd2 *p, struct ct_value *v)
+                                const struct ct_node_pair *p, struct ct_value *v)
 {
     if (j->quaternion < 0)
         return ct_error(r->ctx, p->mark, CT_E_COORDINATE,
@@ -266,7 +266,7 @@ static bool read_initial_rotate(struct ct_reader *r, const struct joint *j,
     return ct_read_turns(r, p->value, 0, &v->turn, &v->nturn);
 }
 
-static bool read_initial(struct ct_reader *r, struct joint *j, const struct ct_simd2 *p)
+static bool read_initial(struct ct_reader *r, struct joint *j, const struct ct_node_pair *p)
 {
     static const char *const keys[] = {"q", "u", "rotate", "guess"};
     static const struct ct_key u_key = {.name = "u"};
@@ -282,7 +282,7 @@ static bool read_initial(struct ct_reader *r, struct joint *j, const struct ct_s
         = ct_arena_printf(r->ctx->scratch, "'initial' of joint '%s'", j->self->name);
     bool ok = ct_read_keys(r, node, what, keys, COUNT(keys));
     const struct ct_node *q = ct_node_get(node, "q"), *u = ct_node_get(node, "u");
-    const struct ct_simd2 *rotate = ct_node_find(node, "rotate");
+    const struct ct_node_pair *rotate = ct_node_find(node, "rotate");
     if (rotate)
         ok &= read_initial_rotate(r, j, rotate, &initial->rotate);
     if (q)
@@ -388,7 +388,7 @@ static bool read_common(struct ct_reader *r, struct joint *j)
     const struct ct_key *key = ct_family_keys(CT_FAMILY_JOINT, &n);
     bool ok = true;
     for (int i = 0; i < n; i++) {
-        const struct ct_simd2 *p = ct_node_find(j->node, key[i].name);
+        const struct ct_node_pair *p = ct_node_find(j->node, key[i].name);
         if (p && key[i].kind == CT_VALUE_COORDS)
             ok &= read_coords(r, j, &key[i], p);
         else if (p && key[i].kind == CT_VALUE_INITIAL)
@@ -400,7 +400,7 @@ static bool read_common(struct ct_reader *r, struct joint *j)
 static bool read_joint(struct ct_reader *r, struct ct_instance *self,
                        const struct ct_node *node)
 {
-    const struct ct_simd2 p = {self->name, self->mark, node};
+    const struct ct_node_pair p = {self->name, self->mark, node};
     self->cls = ct_read_class(r, CT_FAMILY_JOINT, &p, "joint", NULL);
     if (!self->cls)
         return false;

@@ -20,7 +20,7 @@ struct work {
     size_t norder;
 };
 
-static bool add_parameter(struct ct_reader *r, const struct ct_simd2 *p)
+static bool add_parameter(struct ct_reader *r, const struct ct_node_pair *p)
 {
     struct ct_model *m = r->m;
     if (!ct_read_name(r, p->key, p->mark, "parameter"))

@@ -20,7 +20,7 @@ enum ct_node_kind { CT_NODE_SCALAR, CT_NODE_LIST, CT_NODE_MAP };
 
 struct ct_node;
 
-struct ct_simd2 {
+struct ct_node_pair {
     const char *key;
     struct ct_mark mark; // of the key
     const struct ct_node *value;
@@ -37,7 +37,7 @@ struct ct_node {
     // lists and maps
     size_t n;
     const struct ct_node *const *item;
-    const struct ct_simd2 *pair;
+    const struct ct_node_pair *pair;
     // measures of the tree below, aliases counted as often as they are used
     size_t height, weight;
 };
@@ -52,7 +52,7 @@ bool ct_yaml_parse(struct ct_ctx *ctx, const char *file, const char *text, size_
                    const struct ct_node **root);
 
 /// The pair with this key, or NULL. node may be NULL or no map.
-const struct ct_simd2 *ct_node_find(const struct ct_node *node, const char *key);
+const struct ct_node_pair *ct_node_find(const struct ct_node *node, const char *key);
 /// The value of this key, or NULL.
 const struct ct_node *ct_node_get(const struct ct_node *node, const char *key);
 /// `~`, `null` or nothing at all.
